@@ -501,7 +501,7 @@ static vg_status shape(size_t lo, const char *walls, struct vg_error *err)
   snprintf(p.asked.layer.walls, sizeof p.asked.layer.walls, "%s", walls);
   st = vg_problem_given(&p, "bricks", &m, err);
   if (st >= 0) st = vg_boundary_shape(&p.read, &o, &show, &p.boundary,
-                                        err);
+                                      err);
   vg_problem_release(&p);
   return st;
 }

@@ -16,7 +16,7 @@
 /* --- the decision -------------------------------------------------------- */
 
 struct vg_flow_options vg_boundary_flow_options(const struct vg_boundary *b,
-                                               struct vg_display *show)
+                                                struct vg_display *show)
 {
   struct vg_flow_options o = vg_options_flow(&b->read->settings,
                                              b->read->has_cells);
@@ -52,7 +52,7 @@ static void note_cap(struct vg_boundary *b)
 }
 
 vg_status vg_boundary_decide(struct vg_boundary *b, struct vg_display *show,
-                            struct vg_error *err)
+                             struct vg_error *err)
 {
   const struct vg_flow_options o = vg_boundary_flow_options(b, show);
   struct vg_error why = VG_ERROR_INIT;
@@ -91,7 +91,7 @@ static void list_rims(const struct vg_rim *rim, size_t n, char *text,
 }
 
 vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
-                                 struct vg_display *show, struct vg_error *err)
+                                  struct vg_display *show, struct vg_error *err)
 {
   struct vg_error why = VG_ERROR_INIT;
   struct vg_rim *rim = NULL;
@@ -162,7 +162,7 @@ static struct vg_farfield decided_farfield(const struct vg_boundary *b)
 }
 
 vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
-                              struct vg_error *err)
+                               struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
   struct vg_sizing_options options = vg_boundary_sizing(b);

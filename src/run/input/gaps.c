@@ -95,7 +95,7 @@ static vg_status too_many(const struct vg_boundary *b, const struct vg_gaps *g,
 }
 
 vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
-                          struct vg_error *err)
+                           struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
   struct vg_gaps found = VG_GAPS_INIT;

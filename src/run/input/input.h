@@ -228,7 +228,7 @@ const struct vg_mesh *vg_problem_surface(const struct vg_problem *p);
 /** Remesh the surface; distances are measured, notes tell. The surface is as
  * the check left it. VG_ERR_GEOMETRY where no sound surface came out. */
 vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
-                           struct vg_error *err);
+                            struct vg_error *err);
 
 /** What the table `surface` asks for. NULL, NULL: nothing. */
 struct vg_surface_sizes {

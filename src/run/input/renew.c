@@ -225,7 +225,7 @@ static void note_faults(struct vg_boundary *b)
 }
 
 vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
-                           struct vg_error *err)
+                            struct vg_error *err)
 {
   struct vg_renewal *r = &b->renewal;
   struct vg_surface_sizes sizes = { NULL, NULL, NULL };
@@ -276,9 +276,9 @@ static void keep_conditions(const struct vg_mesh *from, struct vg_mesh *to)
 }
 
 vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
-                                const struct vg_patch *patch, size_t n_patch,
-                                size_t n_note, struct vg_display *show,
-                                struct vg_error *err)
+                                 const struct vg_patch *patch, size_t n_patch,
+                                 size_t n_note, struct vg_display *show,
+                                 struct vg_error *err)
 {
   const struct vg_mesh given = { .n_patch = n_patch,
                                  .patch = (struct vg_patch *)(uintptr_t)patch };

@@ -15,30 +15,31 @@
  * @param n_note notes beyond these are of the tessellation before
  * VG_BLOCKED when there is no further one, or no model: nothing happened. */
 vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
-                                const struct vg_patch *patch, size_t n_patch,
-                                size_t n_note, struct vg_display *show,
-                                struct vg_error *err);
+                                 const struct vg_patch *patch, size_t n_patch,
+                                 size_t n_note, struct vg_display *show,
+                                 struct vg_error *err);
 
 /* run/input/domain.c ------------------------------------------------------*/
 
 /** What settings and files say of the flow domain. */
 struct vg_flow_options vg_boundary_flow_options(const struct vg_boundary *b,
-                                               struct vg_display *show);
+                                                struct vg_display *show);
 
 /** Decide which flow the surface bounds, with notes, into b->flow. b->check is
  * of vg_surface_check with `external` -1.
  * Errors as vg_flow_settle. */
 vg_status vg_boundary_decide(struct vg_boundary *b, struct vg_display *show,
-                            struct vg_error *err);
+                             struct vg_error *err);
 
 /** VG_ERR_GEOMETRY that lists the rims of an open surface and says how they can be
  * closed. */
 vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
-                                 struct vg_display *show, struct vg_error *err);
+                                  struct vg_display *show,
+                                  struct vg_error *err);
 
 /** Add farfield and symmetry plane as the decision asks for. */
 vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
-                              struct vg_error *err);
+                               struct vg_error *err);
 
 /* run/input/wrap_surface.c ------------------------------------------------*/
 
@@ -50,13 +51,13 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
  * VG_ERR_INPUT where a patch of `walls` or of the table `layers` is left
  * without triangles; otherwise as vg_wrap. */
 vg_status vg_boundary_wrap(struct vg_boundary *b, const uint8_t *keep,
-                          struct vg_display *show, struct vg_error *err);
+                           struct vg_display *show, struct vg_error *err);
 
 /** What will do for a surface that cannot be repaired, as the end of a message:
  * "; --wrap 0.2 puts a closed surface around it". A wrap is tried for it, which
  * takes some seconds. "" where a wrap is no remedy: text[120] */
 void vg_boundary_suggest_wrap(const struct vg_boundary *b,
-                             struct vg_display *show, char *text, size_t size);
+                              struct vg_display *show, char *text, size_t size);
 
 /** Open edges are the only defects. */
 int vg_is_only_open(const struct vg_surface_report *r);

@@ -8,10 +8,10 @@
 #include "run/settings/options.h"
 
 vg_status vg_boundary_effects(const struct vg_boundary *b,
-                             const struct vg_mesh *front,
-                             const struct vg_sizing *sizing,
-                             struct vg_effects *out,
-                             struct vg_error *err)
+                              const struct vg_mesh *front,
+                              const struct vg_sizing *sizing,
+                              struct vg_effects *out,
+                              struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
   const struct vg_sizing_options o = vg_options_sizing(s, NULL);

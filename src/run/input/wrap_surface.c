@@ -101,7 +101,7 @@ static void progress(void *user, size_t done, size_t expected)
 }
 
 vg_status vg_boundary_wrap(struct vg_boundary *b, const uint8_t *keep,
-                          struct vg_display *show, struct vg_error *err)
+                           struct vg_display *show, struct vg_error *err)
 {
   size_t n = b->surface.n_patch;
   uint8_t *empty = vg_alloc(n, 1), *asked = vg_calloc(n, 1);
@@ -128,7 +128,7 @@ done:
 }
 
 void vg_boundary_suggest_wrap(const struct vg_boundary *b,
-                             struct vg_display *show, char *text, size_t size)
+                              struct vg_display *show, char *text, size_t size)
 {
   const struct vg_stop stop = { vg_display_stop, show };
   const size_t *n = b->check.count;

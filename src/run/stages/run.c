@@ -165,7 +165,7 @@ static vg_status look_at_sources(struct vg_run *r, const struct vg_problem *p,
   vg_status st = VG_OK;
 
   if (!r->rank) st = vg_boundary_effects(&p->boundary, front, sizing,
-                                        &r->effects, err);
+                                         &r->effects, err);
   r->time_size += vg_display_now() - t;
   return vg_comm_agree(r->comm, st, err);
 }
