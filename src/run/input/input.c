@@ -16,6 +16,7 @@
 #include "io/vgrid/vgrid.h"
 #include "layers/columns/law.h"
 #include "run/common/text.h"
+#include "run/input/shape_parts.h"
 #include "run/input/share.h"
 #include "run/input/sizes.h"
 #include "run/settings/deck.h"

@@ -186,11 +186,6 @@ int vg_read_is_by_first(const struct vg_read *read, struct vg_comm *comm);
 /** Options of sizes: settings and map. */
 struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b);
 
-/** 1 where settings remesh this surface: `auto` remeshes CAD, and tessellations
- * (STL, OBJ, Cart3D) more than half of whose triangles are slivers. */
-int vg_read_is_remeshed(const struct vg_read *read,
-                        const struct vg_mesh *surface);
-
 struct vg_shape_options {
   int threads;                     /* 0: one per core */
   int remesh_open;                 /* 1: remesh an open surface, too, that is no
@@ -225,52 +220,11 @@ void vg_boundary_release(struct vg_boundary *b);
 /** The triangles of the boundary; before vg_boundary_shape those of `read`. */
 const struct vg_mesh *vg_problem_surface(const struct vg_problem *p);
 
-/** Remesh the surface; distances are measured, notes tell. The surface is as
- * the check left it. VG_ERR_GEOMETRY where no sound surface came out. */
-vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
-                            struct vg_error *err);
-
-/** What the table `surface` asks for. NULL, NULL: nothing. */
-struct vg_surface_sizes {
-  double *cap;                      /* [n_point] largest size; INFINITY: none */
-  double *across;                   /* [n_patch] edges across strips */
-  double *stretch;                  /* [3 n_tri] as vg_remesh_options has it;
-                                       NULL where nothing is stretched */
-};
-
-/** From the settings, for the surface as it is now. VG_ERR_INPUT for patches
- * that it lacks, or two without an edge in common. O(n log n) for each curve,
- * O(n) for each other row. */
-vg_status vg_surface_sizes_make(const struct vg_boundary *b,
-                                struct vg_surface_sizes *s,
-                                struct vg_error *err);
-
-void vg_surface_sizes_release(struct vg_surface_sizes *s);
-
-/** Share of the triangles that have an angle below 10 degrees. */
-double vg_surface_sliver_share(const struct vg_mesh *m);
-
-/** A note where `auto` decides by the slivers of the surface, and a warning
- * where slivers stay. */
-void vg_boundary_note_slivers(struct vg_boundary *b);
-
-/** 1 where the defects in *r are such that the remesher may repair: it judges
- * the new surface. Edges of four triangles count as such where triangles lie
- * back to back. */
-int vg_surface_is_reference(const struct vg_surface_report *r);
-
 /** After vg_boundary_shape on several ranks: what the first one put back on CAD
  * goes to those that have their own (is_maker); nothing happens for other
  * surfaces. st: how this rank fared. Collective. */
 vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
                            int is_maker, vg_status st, struct vg_error *err);
-
-/** Put the points of a surface that was made anew back on b->model, as far as
- * no triangle folds or meets another one; distances are measured, notes tell.
- * VG_ERR_GEOMETRY when Open CASCADE fails. */
-vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err);
-
-void vg_renewal_release(struct vg_renewal *r);
 
 /** A note for settings that were given and had no effect, since the run had
  * nothing that they act on, such as a surface made anew; at its end, once. What
@@ -285,19 +239,6 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
 /** Writers give patches without a condition that of an inviscid wall: a note
  * tells which these are. Once conditions are final. */
 void vg_boundary_note_unset(struct vg_boundary *b);
-
-/** Names and conditions of rows of the table `patches`. VG_ERR_INPUT for a
- * patch that the surface lacks; with may_lack 1, before holes are closed, rows
- * of caps that will be made then have no effect. */
-vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
-                               int may_lack, struct vg_mesh *surface,
-                               struct vg_error *err);
-
-/** 1 when patch i of the surface is a cap that closes a hole. */
-int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
-
-/** 1 when a patch has a boundary condition: then all of them should. */
-int vg_surface_has_conditions(const struct vg_mesh *m);
 
 /** All faces with a defect, with the kind as a cell field, into a .vtu. */
 vg_status vg_write_defects(const char *path, const struct vg_mesh *m,

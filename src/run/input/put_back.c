@@ -11,7 +11,7 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 #include "core/remesh/put_back.h"
-#include "run/input/input.h"
+#include "run/input/shape_parts.h"
 
 #define ON_EDGE 1e-6      /* of its length: a point this near is on it */
 

@@ -41,7 +41,8 @@ static int is_sliver(const struct vg_mesh *m, const uint32_t v[3])
   return vg_dot(n, n) * least <= SLIVER2 * l[0] * l[1] * l[2];
 }
 
-double vg_surface_sliver_share(const struct vg_mesh *m)
+/* Share of the triangles that have an angle below 10 degrees. */
+static double sliver_share(const struct vg_mesh *m)
 {
   size_t n = 0;
 
@@ -59,14 +60,14 @@ int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
 {
   if (r->settings.remesh != VG_ANSWER_AUTO)
     return r->settings.remesh == VG_ANSWER_YES;
-  if (is_tessellation(r)) return vg_surface_sliver_share(surface) > MOST;
+  if (is_tessellation(r)) return sliver_share(surface) > MOST;
   return !*r->files.front && vg_format_is_cad(r->files.surface)
          && !(r->settings.wrap > 0);
 }
 
 void vg_boundary_note_slivers(struct vg_boundary *b)
 {
-  const double share = vg_surface_sliver_share(&b->surface);
+  const double share = sliver_share(&b->surface);
 
   if (b->read->settings.remesh != VG_ANSWER_AUTO || !(share > MOST)) return;
   if (b->is_remeshed)

@@ -5,7 +5,57 @@
 
 #include "run/input/input.h"
 
-/* run/input/renew.c -------------------------------------------------------*/
+/* run/input/input.c ------------------------------------------------------ */
+
+/** Names and conditions of rows of the table `patches`. VG_ERR_INPUT for a
+ * patch that the surface lacks; with may_lack 1, before holes are closed, rows
+ * of caps that will be made then have no effect. */
+vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
+                               int may_lack, struct vg_mesh *surface,
+                               struct vg_error *err);
+
+/** 1 when patch i of the surface is a cap that closes a hole. */
+int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
+
+/* run/input/renew.c, surface_sizes.c, put_back.c --------------------------- */
+
+/** 1 where settings remesh this surface: `auto` remeshes CAD, and tessellations
+ * (STL, OBJ, Cart3D) more than half of whose triangles are slivers. */
+int vg_read_is_remeshed(const struct vg_read *read,
+                        const struct vg_mesh *surface);
+
+/** Remesh the surface; distances are measured, notes tell. The surface is as
+ * the check left it. VG_ERR_GEOMETRY where no sound surface came out. */
+vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
+                            struct vg_error *err);
+
+/** What the table `surface` asks for. NULL, NULL: nothing. */
+struct vg_surface_sizes {
+  double *cap;                      /* [n_point] largest size; INFINITY: none */
+  double *across;                   /* [n_patch] edges across strips */
+  double *stretch;                  /* [3 n_tri] as vg_remesh_options has it;
+                                       NULL where nothing is stretched */
+};
+
+/** From the settings, for the surface as it is now. VG_ERR_INPUT for patches
+ * that it lacks, or two without an edge in common. O(n log n) for each curve,
+ * O(n) for each other row. */
+vg_status vg_surface_sizes_make(const struct vg_boundary *b,
+                                struct vg_surface_sizes *s,
+                                struct vg_error *err);
+
+void vg_surface_sizes_release(struct vg_surface_sizes *s);
+
+/** A note where `auto` decides by the slivers of the surface, and a warning
+ * where slivers stay. */
+void vg_boundary_note_slivers(struct vg_boundary *b);
+
+/** Put the points of a remeshed surface back on b->model, as far as
+ * no triangle folds or meets another one; distances are measured, notes tell.
+ * VG_ERR_GEOMETRY when Open CASCADE fails. */
+vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err);
+
+void vg_renewal_release(struct vg_renewal *r);
 
 /** The surface of a CAD model, whose tessellation led to no sound surface, by
  * the next tessellation of a fixed order, with a note.
@@ -31,8 +81,8 @@ struct vg_flow_options vg_boundary_flow_options(const struct vg_boundary *b,
 vg_status vg_boundary_decide(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err);
 
-/** VG_ERR_GEOMETRY that lists the rims of an open surface and says how they can be
- * closed. */
+/** VG_ERR_GEOMETRY that lists the rims of an open surface and says how they can
+ * be closed. */
 vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
                                   struct vg_display *show,
                                   struct vg_error *err);

@@ -16,7 +16,8 @@
 #define ROUNDING 1e-9      /* S62: of the length: gaps between rims that are
                               rounding of coordinates */
 
-int vg_surface_has_conditions(const struct vg_mesh *m)
+/* Then all patches should have one. */
+static int has_conditions(const struct vg_mesh *m)
 {
   for (size_t i = 0; i < m->n_patch; i++)
     if (m->patch[i].bc != VG_BC_NONE) return 1;
@@ -251,7 +252,7 @@ done:
 
 /* Defects that the remesher tolerates, since the new surface is judged. Edges
  * of four triangles are tolerated where triangles lie back to back. */
-int vg_surface_is_reference(const struct vg_surface_report *r)
+static int is_reference(const struct vg_surface_report *r)
 {
   const size_t n_double = r->count[VG_DEFECT_DUPLICATE_TRIANGLE];
 
@@ -291,7 +292,7 @@ static vg_status shape(struct vg_boundary *b, const struct vg_shape_options *o,
     VG_TRY(vg_boundary_gaps(b, show, err));
   if (is_open_for_good(b, o)) return vg_boundary_refuse_open(b, show, err);
   if (!b->is_remeshed || o->has_maker) goto done;
-  if (!vg_surface_is_reference(&b->check)) return defects(b, show, err);
+  if (!is_reference(&b->check)) return defects(b, show, err);
   st = vg_boundary_renew(b, show, &why);
   if (st < 0) {
     if (st == VG_ERR_GEOMETRY)
@@ -366,7 +367,7 @@ vg_status vg_boundary_shape(struct vg_read *read,
   b->model = read->model;
   read->model = (struct vg_cad_model)VG_CAD_MODEL_INIT;
   vg_mesh_keep_boundary(&b->surface);
-  b->require_bc = vg_surface_has_conditions(&b->surface);
+  b->require_bc = has_conditions(&b->surface);
   b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
   vg_boundary_note_slivers(b);
   st = try_shapes(b, o, show, err);

@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
-#include "run/input/input.h"
+#include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
 #include "run/settings/surface_table.h"
 

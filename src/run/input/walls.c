@@ -10,6 +10,7 @@
 #include "core/surface/surface_swap.h"
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
+#include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
 
 #define MESHING_WALL 2     /* class of a .d3m patch that grows layers */
