@@ -29,7 +29,7 @@ int vg_read_is_remeshed(const struct vg_read *read,
 vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
                             struct vg_error *err);
 
-/** What the table `surface` asks for. NULL, NULL: nothing. */
+/** Sizes by the table `surface`. NULL, NULL: it is empty. */
 struct vg_surface_sizes {
   double *cap;                      /* [n_point] largest size; INFINITY: none */
   double *across;                   /* [n_patch] edges across strips */
@@ -38,7 +38,7 @@ struct vg_surface_sizes {
 };
 
 /** From the settings, for the surface as it is now. VG_ERR_INPUT for patches
- * that it lacks, or two without an edge in common. O(n log n) for each curve,
+ * that it lacks, or two that share no edge. O(n log n) for each curve,
  * O(n) for each other row. */
 vg_status vg_surface_sizes_make(const struct vg_boundary *b,
                                 struct vg_surface_sizes *s,
