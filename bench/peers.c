@@ -27,7 +27,7 @@
 #include "io/stream/stream.h"
 #include "peers.h"
 #include "run/settings/deck.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 #define NAME_MAX_LEN 4096
 

@@ -8,7 +8,7 @@
 #include "api/job.h"
 #include "base/memory.h"
 #include "run/report/report.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 void vg_job_release_run(vanguard_job *job, int success)
 {

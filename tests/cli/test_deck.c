@@ -56,7 +56,7 @@ static void assert_same_settings(const struct vg_settings *a,
   assert_same(p, n, a, b);
   for (int t = 0; t < VG_TABLE_N; t++) {
     enum vg_table_kind kind = (enum vg_table_kind)t;
-    const struct vg_table *table = vg_settings_table(kind);
+    const struct vg_setting_table *table = vg_settings_table(kind);
 
     assert_int_equal(vg_settings_rows(a, kind), vg_settings_rows(b, kind));
     for (size_t i = 0; i < vg_settings_rows(a, kind); i++)

@@ -1,4 +1,4 @@
-/* A new setting is one row of run/settings/rows.h: this program compiles the
+/* A new setting is one row of run/settings/setting_rows.h: this program compiles the
  * settings with three more rows (tests/cli/new_row) and nothing else. Default,
  * deck, command line, help, digest and the check of a resumed run follow. */
 #include <setjmp.h>

@@ -8,7 +8,7 @@
 #include "cli/serve/fields.h"
 #include "cli/serve/form.h"
 #include "cli/serve/inside.h"
-#include "cli/serve/markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/projects.h"
 #include "cli/serve/runs.h"
 #include "portal_support.h"

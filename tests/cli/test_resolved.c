@@ -13,7 +13,7 @@
 
 #include "core/flow/flow.h"
 #include "run/input/layers.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 #define TEXT (2 * VG_LIST_MAX + 4)
 #define MOST 120               /* settings */
@@ -136,7 +136,7 @@ static void assert_same_rows(const struct vg_settings *a,
                              const struct vg_settings *b,
                              enum vg_table_kind kind)
 {
-  const struct vg_table *t = vg_settings_table(kind);
+  const struct vg_setting_table *t = vg_settings_table(kind);
   char x[TEXT], y[TEXT];
 
   assert_int_equal(vg_settings_rows(a, kind), vg_settings_rows(b, kind));

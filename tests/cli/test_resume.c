@@ -144,7 +144,7 @@ static void every_row_is_judged_by_its_flag(void **state)
   }
   for (int k = 0; k < VG_TABLE_N; k++) {
     const enum vg_table_kind kind = (enum vg_table_kind)k;
-    const struct vg_table *t = vg_settings_table(kind);
+    const struct vg_setting_table *t = vg_settings_table(kind);
 
     for (size_t c = 0; c < t->n_column; c++) {
       struct vg_settings other = VG_SETTINGS_INIT;

@@ -9,7 +9,7 @@
 #include "run/common/text.h"
 #include "run/input/layers.h"
 #include "run/report/report.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 struct findings {
   int has_lines;            /* 1: the surface has no defects that keep its lines

@@ -15,7 +15,7 @@
 #include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/report/report.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 struct arguments {
   struct vg_cli_one one;

@@ -393,7 +393,6 @@ static void print_surface(FILE *to, const struct run *r)
   const struct vg_problem *p = &r->problem;
   const struct vg_boundary *b = &p->boundary;
   const struct vg_mesh *m = vg_problem_surface(p);
-  const struct vg_mesh front = vg_layer_stage_front(&r->layers, &b->surface);
 
   fprintf(to, "%s\n\n", p->asked.title);
   vg_report_flow_text(to, &b->flow, b->domain.added_farfield);

@@ -34,7 +34,7 @@ static void row(struct page *p, const struct vg_param *param, int is_far,
 static const struct vg_param *param_of(const struct vg_settings *s, size_t i,
                                        int *is_far, const void **base)
 {
-  const struct vg_table *far = vg_settings_table(VG_TABLE_FARFIELD);
+  const struct vg_setting_table *far = vg_settings_table(VG_TABLE_FARFIELD);
   size_t n;
   const struct vg_param *p = vg_settings_params(&n);
 

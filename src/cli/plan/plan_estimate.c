@@ -13,7 +13,7 @@
 #include "core/geometry/vector.h"
 #include "partition/advance/advance.h"
 #include "partition/advance/ways.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 /* Walls with more points get their layers estimated, not grown. */
 #define GROW_LIMIT 50000

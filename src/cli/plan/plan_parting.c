@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "cli/plan/plan_estimate.h"
 #include "partition/advance/ways.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 void vg_plan_parting_release(struct vg_plan_parting *q)
 {

@@ -33,7 +33,7 @@ static vg_status take_params(const struct vg_fields *f, const char *prefix,
 }
 
 /* Whether a row says anything but defaults. */
-static int is_given(const struct vg_table *t, const void *row,
+static int is_given(const struct vg_setting_table *t, const void *row,
                     const void *defaults)
 {
   for (size_t c = 0; c < t->n_column; c++)
@@ -48,8 +48,8 @@ static int is_given(const struct vg_table *t, const void *row,
 static vg_status take_values(const struct vg_fields *f, struct vg_settings *s,
                              struct vg_error *err)
 {
-  const struct vg_table *farfield = vg_settings_table(VG_TABLE_FARFIELD);
-  const struct vg_table *sweep = vg_settings_table(VG_TABLE_SWEEP);
+  const struct vg_setting_table *farfield = vg_settings_table(VG_TABLE_FARFIELD);
+  const struct vg_setting_table *sweep = vg_settings_table(VG_TABLE_SWEEP);
   struct vg_settings defaults;
   size_t n;
   const struct vg_param *p = vg_settings_params(&n);

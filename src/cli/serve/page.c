@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/serve/form.h"
-#include "cli/serve/markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
 #include "cli/serve/projects.h"
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/serve/form.h"
-#include "cli/serve/markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/rows.h"
 
 #define VALUE_SIZE (2 * VG_LIST_MAX + 4)
@@ -135,7 +135,7 @@ static void print_row(FILE *to, enum vg_table_kind kind, const char *title,
                       const struct vg_settings *s,
                       const struct vg_fields *posted)
 {
-  const struct vg_table *t = vg_settings_table(kind);
+  const struct vg_setting_table *t = vg_settings_table(kind);
   union { struct vg_farfield_row f; struct vg_sweep_row w; } defaults;
 
   vg_settings_row_default(kind, &defaults);
@@ -154,7 +154,7 @@ static void print_table(FILE *to, enum vg_table_kind kind, const char *title,
                         const char *example, const struct vg_settings *s,
                         const struct vg_fields *posted)
 {
-  const struct vg_table *t = vg_settings_table(kind);
+  const struct vg_setting_table *t = vg_settings_table(kind);
   const char *sent = vg_fields_get(posted, t->name);
 
   begin_group(to, title, (sent && *sent) || vg_settings_rows(s, kind),

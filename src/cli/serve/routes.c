@@ -5,7 +5,7 @@
 
 #include "cli/serve/assets.h"
 #include "cli/serve/form.h"
-#include "cli/serve/markup.h"
+#include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
 #include "cli/serve/projects.h"
 #include "run/settings/deck.h"

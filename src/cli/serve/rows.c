@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/serve/markup.h"
+#include "cli/serve/page_markup.h"
 
 #define VALUE_SIZE (2 * VG_LIST_MAX + 4)
 #define MOST_COLUMNS 64
@@ -143,7 +143,7 @@ static size_t width_of(const struct vg_settings *s, enum vg_table_kind kind,
 void vg_rows_print(FILE *to, const struct vg_settings *s,
                    enum vg_table_kind kind)
 {
-  const struct vg_table *t = vg_settings_table(kind);
+  const struct vg_setting_table *t = vg_settings_table(kind);
   union row defaults;
   char value[VALUE_SIZE];
   size_t width[MOST_COLUMNS], n = vg_settings_rows(s, kind);

@@ -8,7 +8,7 @@
 #include "io/stream/convention.h"
 #include "run/input/input.h"
 #include "run/input/shape_parts.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 #define FARFIELD_TRIANGLES 1e8
 #define SHOWN_RIMS 3

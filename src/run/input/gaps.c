@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "run/input/sizes.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 /* S60: limit of what gaps ask for. */
 #define MOST_PLACE 2e7

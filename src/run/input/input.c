@@ -20,7 +20,7 @@
 #include "run/input/share.h"
 #include "run/input/sizes.h"
 #include "run/settings/deck.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 #include "run/settings/patch_names.h"
 
 void vg_note(struct vg_notes *notes, const char *format, ...)
@@ -303,13 +303,6 @@ static void note_cad(void *user, const char *text)
   vg_note(user, "CAD: %s", text);
 }
 
-/* user: the notes. */
-static int stop_cad(void *user)
-{
-  (void)user;
-  return vg_display_stop(NULL);
-}
-
 /* The conditions are those of the .mapbc that is named or has the stem of the
  * file. */
 static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
@@ -322,13 +315,13 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
   vg_status st = name_mapbc(r, err);
 
   cad.note = note_cad;
-  cad.stop = stop_cad;
+  cad.stop.ask = vg_display_stop;
   cad.user = r->notes;
   if (st < 0) return st;
   st = vg_surface_read(path, &r->surface, &info, err);
   /* the library's message says less */
-  if (st < 0)
-    return vg_display_stop(NULL) ? vg_display_stopped(NULL, err) : st;
+  if (st == VG_ERR_STOPPED) return vg_display_stopped(NULL, err);
+  if (st < 0) return st;
   r->has_cells = info.n_cell > 0;
   r->side = side_of(info.format);
   if (info.n_cell)

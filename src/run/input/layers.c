@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "io/mesh/vtu.h"
 #include "layers/grow/grow.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 #define DEFAULT_RATE 0.2   /* RANS practice; growth 1.2 */
 #define SHOWN_PATCHES 20

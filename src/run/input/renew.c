@@ -11,7 +11,7 @@
 #include "io/mesh/format.h"
 #include "run/input/shape_parts.h"
 #include "run/input/share.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 #define SLIVER2 0.03015369  /* S49: (sin 10 degrees)^2 */
 #define NEEDLE 5.0        /* S56: degrees */
@@ -289,7 +289,7 @@ vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
   vg_status st;
 
   if (i >= TRIES || !b->model.cad) return VG_BLOCKED;
-  cad.stop = vg_display_stop;
+  cad.stop.ask = vg_display_stop;
   cad.chord = fmin(cad.chord * again[i][0], 0.1);
   cad.angle = fmin(fmax(cad.angle * again[i][1], 2), 30);
   vg_display_update(show, "tessellate", 0, 0);

@@ -12,7 +12,7 @@
 #include "io/mesh/format.h"
 #include "io/mesh/sol.h"
 #include "io/mesh/vtu_read.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 /* H8: between two points of a cell that are further apart than FAR times the
  * smaller of their sizes there are samples, at most PARTS - 1. */

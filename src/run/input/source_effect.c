@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "run/common/text.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 vg_status vg_boundary_effects(const struct vg_boundary *b,
                               const struct vg_mesh *front,

@@ -10,7 +10,7 @@
 #include "run/input/shape_parts.h"
 #include "run/input/sizes.h"
 #include "run/settings/deck.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 #define SHOWN_PATCHES 20   /* numbers in a note */
 #define ROUNDING 1e-9      /* S62: of the length: gaps between rims that are

@@ -6,7 +6,7 @@
 #include "core/wrap/wrap.h"
 #include "run/common/text.h"
 #include "run/input/shape_parts.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 #include "run/settings/patch_names.h"
 
 #define LONG 60.0          /* seconds that are announced */

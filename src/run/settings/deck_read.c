@@ -139,7 +139,7 @@ static const char *any_name(const void *user, size_t i)
 
 /* Nearest column of any table or parameter, with where it belongs. */
 static vg_status unknown_name(const struct reader *r, const char *name,
-                              const struct vg_table *table,
+                              const struct vg_setting_table *table,
                               struct vg_error *err)
 {
   size_t n;
@@ -160,7 +160,7 @@ static vg_status unknown_name(const struct reader *r, const char *name,
 
 /* Tokens as names out of p[n]; table NULL: the parameters. */
 static vg_status take_names(struct reader *r, const struct vg_param *p,
-                            size_t n, const struct vg_table *table,
+                            size_t n, const struct vg_setting_table *table,
                             struct vg_error *err)
 {
   r->n_name = 0;
@@ -233,7 +233,7 @@ static vg_status parameters(struct reader *r, struct vg_error *err)
 
 /* `layers` is a setting and a table. Alone on a line it is the setting when
  * the line below is a value for it, not names of columns. */
-static int is_setting(struct reader *r, const struct vg_table *table)
+static int is_setting(struct reader *r, const struct vg_setting_table *table)
 {
   size_t n;
   const struct vg_param *p = vg_settings_params(&n);
@@ -246,7 +246,7 @@ static int is_setting(struct reader *r, const struct vg_table *table)
                       NULL) >= 0;
 }
 
-static vg_status set_alone(struct reader *r, const struct vg_table *table,
+static vg_status set_alone(struct reader *r, const struct vg_setting_table *table,
                            struct vg_error *err)
 {
   size_t n;
@@ -264,7 +264,7 @@ static vg_status set_alone(struct reader *r, const struct vg_table *table,
 }
 
 /* Names of the columns. *is_value: it was no table, see is_setting. */
-static vg_status table_head(struct reader *r, const struct vg_table *table,
+static vg_status table_head(struct reader *r, const struct vg_setting_table *table,
                             int *is_value, struct vg_error *err)
 {
   int state;

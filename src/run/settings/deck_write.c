@@ -102,7 +102,7 @@ static int is_default(const struct vg_param *p, const void *row,
 }
 
 /* Columns worth writing and their widths; 0: left out. */
-static void column_widths(const struct vg_table *t, enum vg_table_kind kind,
+static void column_widths(const struct vg_setting_table *t, enum vg_table_kind kind,
                           const struct vg_settings *s, const void *defaults,
                           size_t *width)
 {
@@ -143,7 +143,7 @@ static const char *const example[VG_TABLE_N] = {
 static void write_table(struct vg_output *out, const struct vg_settings *s,
                         enum vg_table_kind kind, int explain)
 {
-  const struct vg_table *t = vg_settings_table(kind);
+  const struct vg_setting_table *t = vg_settings_table(kind);
   union { struct vg_farfield_row f; struct vg_patch_row p;
           struct vg_layer_row l; struct vg_surface_row u; struct vg_source s;
           struct vg_sweep_row w; } defaults;

@@ -13,7 +13,7 @@ static const struct { const char *column, *name; } farfield_names[] = {
 };
 #define N_FARFIELD (sizeof farfield_names / sizeof *farfield_names)
 
-static const struct vg_param *column_of(const struct vg_table *t,
+static const struct vg_param *column_of(const struct vg_setting_table *t,
                                         const char *name)
 {
   for (size_t c = 0; c < t->n_column; c++)
@@ -151,7 +151,7 @@ static vg_status find_table(const char *name, enum vg_table_kind *kind,
                  "patches, layers, sources and sweep", name);
 }
 
-static vg_status set_columns(const struct vg_table *t, void *row, size_t n,
+static vg_status set_columns(const struct vg_setting_table *t, void *row, size_t n,
                              const char *const *column,
                              const char *const *value, struct vg_error *err)
 {

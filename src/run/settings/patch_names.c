@@ -213,7 +213,7 @@ static vg_status is_twice(enum vg_table_kind kind, const struct vg_patch *p,
                           const struct vg_settings *old, size_t a, size_t b,
                           struct vg_error *err)
 {
-  const struct vg_table *t = vg_settings_table(kind);
+  const struct vg_setting_table *t = vg_settings_table(kind);
   char one[2 * VG_NAME_MAX + 4], two[2 * VG_NAME_MAX + 4];
 
   vg_param_format(&t->column[0], vg_settings_row(old, kind, a), one,
@@ -240,7 +240,7 @@ static vg_status resolve_row(struct vg_settings *s, enum vg_table_kind kind,
                              size_t *of, struct vg_error *err)
 {
   union { struct vg_layer_row l; struct vg_patch_row p; } row;
-  const struct vg_table *t = vg_settings_table(kind);
+  const struct vg_setting_table *t = vg_settings_table(kind);
   struct ref r;
   vg_status st = VG_OK;
 

@@ -66,7 +66,7 @@ static const char *const source_words[] = {
   VG_ROW(TEXT, place, member, name_, initial, __VA_ARGS__)
 
 static const struct vg_param params[] = {
-#include "run/settings/rows.h"
+#include "run/settings/setting_rows.h"
 };
 #undef VG_ROW
 #undef VG_TEXT_ROW
@@ -237,7 +237,7 @@ static const struct vg_param sweep_columns[] = {
 
 #define COUNT(a) (sizeof (a) / sizeof *(a))
 
-static const struct vg_table tables[VG_TABLE_N] = {
+static const struct vg_setting_table tables[VG_TABLE_N] = {
   [VG_TABLE_FARFIELD] = { "farfield", "The outer boundary. One line.",
     farfield_columns, COUNT(farfield_columns),
     sizeof (struct vg_farfield_row) },
@@ -261,7 +261,7 @@ const struct vg_param *vg_settings_params(size_t *n)
   return params;
 }
 
-const struct vg_table *vg_settings_table(enum vg_table_kind kind)
+const struct vg_setting_table *vg_settings_table(enum vg_table_kind kind)
 {
   return kind == VG_TABLE_SURFACE ? &vg_surface_table : &tables[kind];
 }
@@ -304,7 +304,7 @@ void vg_settings_default(struct vg_settings *s)
   const struct vg_layer_options layers = VG_LAYER_OPTIONS_INIT;
 
   memset(s, 0, sizeof *s);
-#include "run/settings/rows.h"
+#include "run/settings/setting_rows.h"
   snprintf(s->title, sizeof s->title, "untitled");
   vg_settings_row_default(VG_TABLE_FARFIELD, &s->farfield);
 }

@@ -4,7 +4,7 @@
  * One row of a table describes one value: the deck's reader and writer, the
  * command line and its help, the log, the digest of a job and the check of a
  * resumed run walk these rows, so a new setting is one new row in
- * run/settings/rows.h. Uses core and io/stream/stream.h. */
+ * run/settings/setting_rows.h. Uses core and io/stream/stream.h. */
 #ifndef VG_RUN_SETTINGS_SETTINGS_H
 #define VG_RUN_SETTINGS_SETTINGS_H
 
@@ -101,7 +101,7 @@ struct vg_layer_settings {
 #define VG_IN_plain(declaration)
 #define VG_IN_cad(declaration)
 #define VG_IN_layer(declaration) declaration
-#include "run/settings/rows.h"
+#include "run/settings/setting_rows.h"
 #undef VG_IN_layer
 #undef VG_IN_cad
   struct vg_layer_limits limit;
@@ -111,7 +111,7 @@ struct vg_layer_settings {
 struct vg_cad_settings {
 #define VG_IN_layer(declaration)
 #define VG_IN_cad(declaration) declaration
-#include "run/settings/rows.h"
+#include "run/settings/setting_rows.h"
 #undef VG_IN_cad
 #undef VG_IN_plain
 };
@@ -121,7 +121,7 @@ struct vg_settings {
   char title[VG_TITLE_MAX + 1];
 #define VG_IN_cad(declaration)
 #define VG_IN_plain(declaration) declaration
-#include "run/settings/rows.h"
+#include "run/settings/setting_rows.h"
 #undef VG_IN_plain
 #undef VG_IN_cad
 #undef VG_IN_layer
@@ -194,7 +194,7 @@ struct vg_param {
 enum vg_table_kind { VG_TABLE_FARFIELD, VG_TABLE_PATCHES, VG_TABLE_LAYERS,
                      VG_TABLE_SURFACE, VG_TABLE_SOURCES, VG_TABLE_SWEEP, VG_TABLE_N };
 
-struct vg_table {
+struct vg_setting_table {
   const char *name, *help;
   const struct vg_param *column;
   size_t n_column, row_size;
@@ -204,7 +204,7 @@ struct vg_table {
 const struct vg_param *vg_settings_params(size_t *n);
 
 /** Description of a table. Static. */
-const struct vg_table *vg_settings_table(enum vg_table_kind kind);
+const struct vg_setting_table *vg_settings_table(enum vg_table_kind kind);
 
 /** Give every setting its default. *s is overwritten, not released. */
 void vg_settings_default(struct vg_settings *s);

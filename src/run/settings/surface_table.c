@@ -27,7 +27,7 @@ static const struct vg_param columns[] = {
     "which stays as a line, over those across it; fades out by growth; 0: 1" },
 };
 
-const struct vg_table vg_surface_table = { "surface", "Sizes of a new surface "
+const struct vg_setting_table vg_surface_table = { "surface", "Sizes of a new surface "
   "on patches and along the curves between them.", columns,
   sizeof columns / sizeof *columns, sizeof (struct vg_surface_row) };
 

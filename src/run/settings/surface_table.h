@@ -4,7 +4,7 @@
 
 #include "run/settings/settings.h"
 
-extern const struct vg_table vg_surface_table;
+extern const struct vg_setting_table vg_surface_table;
 
 /** Whether a row is about the curve between two patches. */
 int vg_surface_row_has_beside(const struct vg_surface_row *r);

@@ -21,7 +21,7 @@
 #include "run/common/progress.h"
 #include "run/settings/deck.h"
 #include "run/settings/lists.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 #define WALLS "wall.vtu"
 

@@ -13,7 +13,7 @@
 #include "run/input/sizes.h"
 #include "run/input/walls.h"
 #include "run/report/report.h"
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 uint64_t vg_run_cells(const struct vg_run *r)
 {

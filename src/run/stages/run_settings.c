@@ -28,7 +28,7 @@ static void put_plain(FILE *to, const struct vg_settings *s)
 {
   size_t n;
   const struct vg_param *p = vg_settings_params(&n);
-  const struct vg_table *far = vg_settings_table(VG_TABLE_FARFIELD);
+  const struct vg_setting_table *far = vg_settings_table(VG_TABLE_FARFIELD);
 
   put_values(to, "", p, n, s);
   put_values(to, "farfield ", far->column, far->n_column, &s->farfield);
@@ -37,7 +37,7 @@ static void put_plain(FILE *to, const struct vg_settings *s)
 static void put_rows(FILE *to, const struct vg_settings *s,
                      enum vg_table_kind kind)
 {
-  const struct vg_table *t = vg_settings_table(kind);
+  const struct vg_setting_table *t = vg_settings_table(kind);
   size_t n = vg_settings_rows(s, kind);
 
   for (size_t i = 0; i < n; i++)
@@ -80,7 +80,7 @@ vg_status vg_run_settings_digest(const struct vg_settings *s,
   return VG_OK;
 }
 
-static int decides(const struct vg_table *t)
+static int decides(const struct vg_setting_table *t)
 {
   for (size_t c = 0; c < t->n_column; c++)
     if (!t->column[c].keeps_mesh) return 1;
@@ -91,7 +91,7 @@ static int decides(const struct vg_table *t)
 static void put_table(FILE *to, const struct vg_settings *s,
                       enum vg_table_kind kind)
 {
-  const struct vg_table *t = vg_settings_table(kind);
+  const struct vg_setting_table *t = vg_settings_table(kind);
   struct vg_digest d = {{0, 0}};
   size_t n = vg_settings_rows(s, kind);
 

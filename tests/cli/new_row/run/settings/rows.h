@@ -1,5 +1,5 @@
 /* The rows of the program, and three that test_new_row.c adds. */
-#include "../../../../../src/run/settings/rows.h"
+#include "../../../../../src/run/settings/setting_rows.h"
 
 VG_ROW(REAL, plain, tip_size, "tip_size", 0.125,
   .hi = 1, .unit = "length", .help = "edge at the tip")

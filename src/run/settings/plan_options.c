@@ -1,4 +1,4 @@
-#include "run/settings/options.h"
+#include "run/settings/plan_options.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 #define _GNU_SOURCE
-#include "cli/serve/markup.h"
+#include "cli/serve/page_markup.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* run/settings/rows.h: the settings that are no tables, one row each.
+/* run/settings/setting_rows.h: the settings that are no tables, one row each.
  *
  * A row is all that a setting needs: settings.h takes the members of its
  * structures from the rows, settings.c their defaults and descriptions. Deck,

@@ -1,4 +1,4 @@
-/* run/settings/options.h: from settings to the options of the modules below.
+/* run/settings/plan_options.h: from settings to the options of the modules below.
  * One function fills each structure. A caller adds what is no setting: threads,
  * callbacks, arrays of the surface. Functions on the surface take the settings
  * that were read, those on the mesh resolved ones (run/settings/resolved.h).
