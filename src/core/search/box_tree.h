@@ -59,10 +59,10 @@ static inline size_t vg_box_tree_end(const struct vg_box_tree *t, size_t node)
   return end < t->n ? end : t->n;
 }
 
-/** Order boxes along the Hilbert curve through their middles, at any scale: runs
- * of boxes that the 2^20 cells per side of the curve do not tell apart are
- * ordered along a curve of their own, so that one box far away does not spoil
- * the order of the others. O(n log n) at the usual scales.
+/** Order boxes along the Hilbert curve through their middles, at any scale:
+ * runs of boxes that the 2^20 cells per side of the curve do not tell apart
+ * are ordered along a curve of their own, so that one box far away does not
+ * spoil the order of the others. O(n log n) at the usual scales.
  *
  * @param box    [n] finite
  * @param order  out: [n] a permutation of 0 .. n - 1

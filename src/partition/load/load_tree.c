@@ -29,8 +29,9 @@ double vg_load_volume(const struct vg_front *v)
 {
   const double *o = v->n_face ? v->x[v->face[0][0]] : NULL;
 
+  /* Normals point inwards. */
   return -vg_enclosed6(v->n_face, (const uint32_t (*)[3])v->face,
-                       (const double (*)[3])v->x, o) / 6;   /* normals inwards */
+                       (const double (*)[3])v->x, o) / 6;
 }
 
 void vg_load_box(const struct vg_front *v, double lo[3], double hi[3])
