@@ -28,12 +28,12 @@ static inline void scene_set(struct scene *s, double tolerance, double size)
   vg_ref_sizes(&s->ref);
   s->w = (struct vg_tris){ .ref = &s->ref, .curves = &s->curves,
     .tolerance = tolerance, .relative = 1, .h_min = size, .h_max = size };
-  if (vg_work_begin(&s->w, &err) < 0) fail_msg("%s", err.text);
+  if (vg_tris_begin(&s->w, &err) < 0) fail_msg("%s", err.text);
 }
 
 static inline void scene_release(struct scene *s)
 {
-  vg_work_release(&s->w);
+  vg_tris_release(&s->w);
   vg_curves_release(&s->curves);
   vg_ref_release(&s->ref);
   vg_mesh_release(&s->m);
@@ -57,10 +57,10 @@ static inline void scene_expect_whole(const struct scene *s)
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     uint32_t g = w->mate[h];
 
-    if (vg_work_removed(w, h / 3)) continue;
+    if (vg_tris_removed(w, h / 3)) continue;
     n_tri += h % 3 == 0;
     assert_int_equal(w->mate[g], h);
-    assert_int_equal(vg_work_from(w, g), vg_work_to(w, h));
+    assert_int_equal(vg_tris_from(w, g), vg_tris_to(w, h));
     assert_int_equal(w->edge[g], w->edge[h]);
     n_edge += h < g;
     if (h < g && w->edge[h])
@@ -75,12 +75,12 @@ static inline void scene_expect_whole(const struct scene *s)
 
     if (h == VG_REF_NONE) continue;
     n_point++;
-    assert_false(vg_work_removed(w, h / 3));
-    assert_int_equal(vg_work_from(w, h), p);
-    n = vg_work_ring(w, (uint32_t)p, ring, &open);
+    assert_false(vg_tris_removed(w, h / 3));
+    assert_int_equal(vg_tris_from(w, h), p);
+    n = vg_tris_ring(w, (uint32_t)p, ring, &open);
     for (size_t i = 0; i < n; i++)
       for (size_t k = 0; k < i; k++)
-        assert_int_not_equal(vg_work_to(w, ring[i]), vg_work_to(w, ring[k]));
+        assert_int_not_equal(vg_tris_to(w, ring[i]), vg_tris_to(w, ring[k]));
   }
   for (size_t p = 0; p < w->ref->n_point; p++) n_sample += w->is_sample[p];
   assert_int_equal(n_sample, n_listed);
@@ -108,29 +108,29 @@ static inline int scene_change(struct vg_tris *w, uint32_t *state)
   double before, x[3];
   size_t t = h / 3;
 
-  if (vg_work_removed(w, t)) return 0;
-  if (kind == 0) return vg_work_split(w, h, NULL) != VG_REF_NONE;
-  if (kind == 1) return vg_work_collapse(w, h, 1e9, 0.01);
+  if (vg_tris_removed(w, t)) return 0;
+  if (kind == 0) return vg_tris_split(w, h, NULL) != VG_REF_NONE;
+  if (kind == 1) return vg_tris_collapse(w, h, 1e9, 0.01);
   if (kind == 2) {
     size_t other = w->mate[h] == VG_REF_NONE ? t : w->mate[h] / 3;
 
-    before = fmin(vg_work_tri_shape(w, t), vg_work_tri_shape(w, other));
-    if (!vg_work_swap(w, h)) return 0;
-    assert_true(vg_work_tri_shape(w, t) > before);
-    assert_true(vg_work_tri_shape(w, other) > before);
+    before = fmin(vg_tris_tri_shape(w, t), vg_tris_tri_shape(w, other));
+    if (!vg_tris_swap(w, h)) return 0;
+    assert_true(vg_tris_tri_shape(w, t) > before);
+    assert_true(vg_tris_tri_shape(w, other) > before);
     return 1;
   }
   if (kind == 3) {
-    struct vg_work_span s;
+    struct vg_tris_span s;
 
-    return vg_work_span(w, vg_work_from(w, h), &s)
-           && vg_work_slide(w, vg_work_from(w, h),
+    return vg_tris_span(w, vg_tris_from(w, h), &s)
+           && vg_tris_slide(w, vg_tris_from(w, h),
                             s.lo + scene_drawn(state) * (s.hi - s.lo), 0.01);
   }
   for (int k = 0; k < 3; k++)
-    x[k] = vg_work_at(w, vg_work_from(w, h))[k]
+    x[k] = vg_tris_at(w, vg_tris_from(w, h))[k]
            + 0.1 * (scene_drawn(state) - 0.5);
-  return vg_work_move(w, vg_work_from(w, h), x, 0.01);
+  return vg_tris_move(w, vg_tris_from(w, h), x, 0.01);
 }
 
 #endif

@@ -124,18 +124,18 @@ static void a_plate_gets_the_triangles_of_its_metric(void **unused)
   scene_set(&s, 1e-6, 0.1);
   w->form = falling;
   for (size_t p = 0; p < w->n_point; p++)
-    vg_work_ask(w, &w->point[p], w->point[p].asked.size);
+    vg_tris_ask(w, &w->point[p], w->point[p].asked.size);
   change(&s);
   scene_expect_whole(&s);
   scene_expect_near(&s, 1e-9);
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
-    double l = vg_work_ratio(w, h);
+    double l = vg_tris_ratio(w, h);
 
-    if (vg_work_removed(w, h / 3)) continue;
+    if (vg_tris_removed(w, h / 3)) continue;
     n_edge++;
     n_fit += l <= M_SQRT2 && l >= M_SQRT1_2;
     n_tri += h % 3 == 0;
-    worst = fmin(worst, vg_work_tri_shape(w, h / 3));
+    worst = fmin(worst, vg_tris_tri_shape(w, h / 3));
   }
   /* The integral of 1 / (0.1 (10 - 3 x)) is 7.7 edges along x up to 3; there
    * are 10 from there on; instead of 40. */

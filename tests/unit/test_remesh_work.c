@@ -74,9 +74,9 @@ static void does_not_fold(void **unused)
   (void)unused;
   knife(&s.m);
   scene_set(&s, 0.1, 1);
-  while (vg_work_from(w, h) != 0 || vg_work_to(w, h) != 1) h++;
-  assert_true(vg_work_tri_shape(w, h / 3) < 0.2);   /* worth a swap */
-  assert_false(vg_work_swap(w, h));
+  while (vg_tris_from(w, h) != 0 || vg_tris_to(w, h) != 1) h++;
+  assert_true(vg_tris_tri_shape(w, h / 3) < 0.2);   /* worth a swap */
+  assert_false(vg_tris_swap(w, h));
   scene_expect_whole(&s);
   scene_release(&s);
 }
@@ -93,16 +93,16 @@ static void corners_and_ridges_stay(void **unused)
   shape_box(&s.m, size, n);
   scene_set(&s, 1e-3, 1);
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
-    uint32_t p = vg_work_from(w, h);
+    uint32_t p = vg_tris_from(w, h);
     int kind = w->point[p].kind, on_line = w->edge[h] != 0;
 
-    if (vg_work_removed(w, h / 3)) continue;
+    if (vg_tris_removed(w, h / 3)) continue;
     if (kind == VG_WORK_CORNER || (kind == VG_WORK_CURVE && !on_line))
-      assert_false(vg_work_collapse(w, h, 1e9, 0));
+      assert_false(vg_tris_collapse(w, h, 1e9, 0));
     else if (kind != VG_WORK_FACE && on_line) continue;
     assert_false(kind != VG_WORK_FACE
-                 && vg_work_move(w, p, (double[3]){ 0, 0, 0 }, 0));
-    if (w->edge[h]) assert_false(vg_work_swap(w, h));
+                 && vg_tris_move(w, p, (double[3]){ 0, 0, 0 }, 0));
+    if (w->edge[h]) assert_false(vg_tris_swap(w, h));
   }
   scene_expect_whole(&s);
   scene_release(&s);
@@ -122,24 +122,24 @@ static void points_slide_along_ridges(void **unused)
   shape_box(&s.m, size, n);
   scene_set(&s, 1e-3, 1);
   for (uint32_t p = 0; p < w->n_point; p++) {
-    struct vg_work_span a, b;
+    struct vg_tris_span a, b;
     double x[3];
 
-    if (!vg_work_span(w, p, &a)) {
+    if (!vg_tris_span(w, p, &a)) {
       assert_int_not_equal(w->point[p].kind, VG_WORK_CURVE);
-      assert_false(vg_work_slide(w, p, 0.1, 0));
+      assert_false(vg_tris_slide(w, p, 0.1, 0));
       continue;
     }
-    assert_false(vg_work_slide(w, p, a.lo, 0));
-    assert_false(vg_work_slide(w, p, a.hi + 0.1, 0));
-    assert_false(vg_work_slide(w, p, (3 * a.lo + a.hi) / 4, 1));
-    if (!vg_work_slide(w, p, (3 * a.lo + a.hi) / 4, 0)) continue;
+    assert_false(vg_tris_slide(w, p, a.lo, 0));
+    assert_false(vg_tris_slide(w, p, a.hi + 0.1, 0));
+    assert_false(vg_tris_slide(w, p, (3 * a.lo + a.hi) / 4, 1));
+    if (!vg_tris_slide(w, p, (3 * a.lo + a.hi) / 4, 0)) continue;
     n_slid++;
-    assert_true(vg_work_span(w, p, &b));
+    assert_true(vg_tris_span(w, p, &b));
     assert_true(b.lo == a.lo && b.hi == a.hi
                 && b.at == (3 * a.lo + a.hi) / 4);
     vg_curve_at(w->curves, w->ref, b.curve, b.at, x);
-    assert_true(vg_distance(x, vg_work_at(w, p)) == 0);
+    assert_true(vg_distance(x, vg_tris_at(w, p)) == 0);
   }
   assert_true(n_slid > 12);
   scene_expect_whole(&s);
@@ -158,7 +158,7 @@ static void tolerance_is_kept(void **unused)
   shape_ball(&s.m, size, 6);
   scene_set(&s, 1e-3, 1);
   for (uint32_t h = 0; h < 3 * s.w.n_tri; h++)
-    assert_false(vg_work_collapse(&s.w, h, 1e9, 0));
+    assert_false(vg_tris_collapse(&s.w, h, 1e9, 0));
   assert_int_equal(s.w.n_collapse, 0);
   scene_release(&s);
 }

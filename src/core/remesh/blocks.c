@@ -39,7 +39,7 @@ static vg_status room(struct vg_block *b, const struct vg_tris *w,
     .clock = 1, .stop = w->stop };
   b->origin = vg_alloc(3 * b->n_tri, sizeof *b->origin);
   if (!b->origin) return vg_fail_memory(err, "a block of the surface");
-  return vg_work_room(l, b->n_tri, err);
+  return vg_tris_room(l, b->n_tri, err);
 }
 
 static vg_status take_points(struct vg_block *b, const struct vg_tris *w,
@@ -64,7 +64,7 @@ static vg_status take_points(struct vg_block *b, const struct vg_tris *w,
   l->point = vg_alloc(l->n_point, sizeof *l->point);
   if (!l->point) return vg_fail_memory(err, "a block of the surface");
   for (size_t i = 0; i < l->n_point; i++) {
-    struct vg_work_point *p = &l->point[i];
+    struct vg_tris_point *p = &l->point[i];
 
     *p = w->point[b->origin[i]];
     p->half = VG_REF_NONE;
@@ -72,8 +72,8 @@ static vg_status take_points(struct vg_block *b, const struct vg_tris *w,
     p->tried = !p->changed;
   }
   for (uint32_t h = 0; h < 3 * l->n_tri; h++)
-    if (l->point[vg_work_from(l, h)].half == VG_REF_NONE)
-      l->point[vg_work_from(l, h)].half = h;
+    if (l->point[vg_tris_from(l, h)].half == VG_REF_NONE)
+      l->point[vg_tris_from(l, h)].half = h;
   return VG_OK;
 }
 
@@ -81,7 +81,7 @@ static vg_status take_line(struct vg_tris *l, const struct vg_tris *w,
                            uint32_t line, const uint32_t *map, uint32_t *edge,
                            struct vg_error *err)
 {
-  struct vg_work_line *to;
+  struct vg_tris_line *to;
 
   if (vg_reserve(&l->line, &l->cap_line, l->n_line + 1, sizeof *l->line))
     return vg_fail_memory(err, "a block of the surface");
@@ -108,8 +108,8 @@ static vg_status take_edges(const struct blocks *s, struct vg_block *b,
 
     l->mate[h] = inside ? 3 * s->local[g / 3] + g % 3 : VG_REF_NONE;
     if (g != VG_REF_NONE && !inside)
-      l->point[vg_work_from(l, h)].frozen
-        = l->point[vg_work_to(l, h)].frozen = VG_WORK_FROZEN;
+      l->point[vg_tris_from(l, h)].frozen
+        = l->point[vg_tris_to(l, h)].frozen = VG_WORK_FROZEN;
     if (!w->edge[from]) continue;
     if (inside && l->mate[h] < h) l->edge[h] = l->edge[l->mate[h]];
     else VG_TRY(take_line(l, w, w->edge[from] - 1, map, &l->edge[h], err));
@@ -126,7 +126,7 @@ static vg_status find_fans(struct vg_tris *l, struct vg_error *err)
 
   if (!open) return vg_fail_memory(err, "a block of the surface");
   for (uint32_t h = 0; h < 3 * l->n_tri; h++) {
-    uint32_t p = vg_work_from(l, h);
+    uint32_t p = vg_tris_from(l, h);
 
     if (l->mate[h] != VG_REF_NONE || !l->point[p].frozen) continue;
     if (open[p]) l->point[p].frozen = VG_WORK_FANS;
@@ -229,7 +229,7 @@ vg_status vg_blocks_run(struct vg_tris *w, size_t n, int phase, int threads,
   if (n < 2) return body(user, w, err);
   st = run_blocks(&s, w, phase, threads > 0 ? threads : vg_cores(), err);
   for (size_t i = 0; s.block && i < n; i++) {
-    vg_work_release(&s.block[i].w);
+    vg_tris_release(&s.block[i].w);
     free(s.block[i].origin);
     free(s.block[i].point);
     free(s.block[i].place);

@@ -26,16 +26,16 @@ struct cutting {
 
 static double weight_of(const struct vg_tris *w, size_t t)
 {
-  const struct vg_work_point *p[3];
+  const struct vg_tris_point *p[3];
   double u[3], v[3], n[3], size, area2;
 
-  if (vg_work_removed(w, t)) return 0;
+  if (vg_tris_removed(w, t)) return 0;
   for (int k = 0; k < 3; k++) p[k] = &w->point[w->tri[t][k]];
   vg_sub(p[1]->x, p[0]->x, u);
   vg_sub(p[2]->x, p[0]->x, v);
   vg_cross(u, v, n);
   size = (p[0]->asked.size + p[1]->asked.size + p[2]->asked.size) / 3;
-  area2 = vg_form_area2(vg_work_form(w, w->tri[t][0]), n);
+  area2 = vg_form_area2(vg_tris_form(w, w->tri[t][0]), n);
   return OLD + sqrt(area2) / (0.8660254037844386 * size * size);
 }
 
@@ -131,12 +131,12 @@ vg_status vg_blocks_cut(const struct vg_tris *w, size_t k, int phase,
     VG_TRY(vg_fail_memory(err, "the blocks of the surface"));
   for (uint32_t t = 0; t < w->n_tri; t++) {
     block[t] = VG_REF_NONE;
-    if (vg_work_removed(w, t)) continue;
+    if (vg_tris_removed(w, t)) continue;
     c.weight[t] = weight_of(w, t);
     for (int d = 0; d < 3; d++)
-      c.middle[t][d] = (vg_work_at(w, w->tri[t][0])[d]
-                        + vg_work_at(w, w->tri[t][1])[d]
-                        + vg_work_at(w, w->tri[t][2])[d]) / 3;
+      c.middle[t][d] = (vg_tris_at(w, w->tri[t][0])[d]
+                        + vg_tris_at(w, w->tri[t][1])[d]
+                        + vg_tris_at(w, w->tri[t][2])[d]) / 3;
     c.list[n++] = t;
   }
   bisect(&c, c.list, n, 0, k);

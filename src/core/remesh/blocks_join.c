@@ -41,7 +41,7 @@ static vg_status number(const struct vg_tris *w, size_t n, struct joining *j,
     for (size_t p = b->n_origin; p < b->w.n_point; p++)
       n_point += b->w.point[p].half != VG_REF_NONE;
     for (size_t t = 0; t < b->w.n_tri; t++)
-      n_tri += !vg_work_removed(&b->w, t);
+      n_tri += !vg_tris_removed(&b->w, t);
     n_line += b->w.n_line;
   }
   j->made.n_point = j->made.cap_point = n_point;
@@ -57,7 +57,7 @@ static vg_status room(struct joining *j, struct vg_error *err)
   struct vg_tris *m = &j->made;
   vg_status st;
 
-  VG_TRY(vg_work_room(m, m->n_tri, err));
+  VG_TRY(vg_tris_room(m, m->n_tri, err));
   m->point = vg_alloc(m->n_point, sizeof *m->point);
   m->line = vg_alloc(m->n_line, sizeof *m->line);
   if (!m->point || !m->line) st = vg_fail_memory(err, "the new surface");
@@ -72,7 +72,7 @@ static void put_points(struct joining *j, struct vg_block *b)
   uint32_t next = (uint32_t)b->first_point;
 
   for (size_t p = 0; p < b->w.n_point; p++) {
-    struct vg_work_point *q = &b->w.point[p];
+    struct vg_tris_point *q = &b->w.point[p];
 
     b->point[p] = VG_REF_NONE;
     if (q->half == VG_REF_NONE) continue;
@@ -121,11 +121,11 @@ static void put(void *context, size_t first, size_t end, int worker)
       continue;
     }
     for (size_t t = 0; t < b->w.n_tri; t++)
-      b->place[t] = vg_work_removed(&b->w, t) ? VG_REF_NONE : next++;
+      b->place[t] = vg_tris_removed(&b->w, t) ? VG_REF_NONE : next++;
     put_points(j, b);
     put_tris(j, b);
     for (size_t k = 0; k < b->w.n_line; k++) {
-      struct vg_work_line line = b->w.line[k];
+      struct vg_tris_line line = b->w.line[k];
 
       for (int e = 0; e < 2; e++)
         if (b->point[line.end[e]] != VG_REF_NONE)
@@ -151,13 +151,13 @@ static vg_status list_sides(const struct joining *j, size_t n, struct sides *s,
     const struct vg_block *b = &j->block[i];
 
     for (uint32_t h = 0; h < 3 * b->w.n_tri; h++) {
-      if (b->place[h / 3] == VG_REF_NONE || !vg_work_is_border(&b->w, h))
+      if (b->place[h / 3] == VG_REF_NONE || !vg_tris_is_border(&b->w, h))
         continue;
       if (vg_reserve(&s->half, &s->cap_half, s->n + 1, sizeof *s->half)
           || vg_reserve(&s->end, &s->cap_end, s->n + 1, sizeof *s->end))
         return vg_fail_memory(err, "the borders of blocks");
-      s->end[s->n][0] = b->point[vg_work_from(&b->w, h)];
-      s->end[s->n][1] = b->point[vg_work_to(&b->w, h)];
+      s->end[s->n][0] = b->point[vg_tris_from(&b->w, h)];
+      s->end[s->n][1] = b->point[vg_tris_to(&b->w, h)];
       s->half[s->n++] = 3 * b->place[h / 3] + h % 3;
     }
   }
@@ -194,9 +194,9 @@ done:
  * too long or too short. */
 static int is_bad(const struct vg_tris *w, uint32_t t)
 {
-  if (vg_work_tri_shape(w, t) < BAD2) return 1;
+  if (vg_tris_tri_shape(w, t) < BAD2) return 1;
   for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
-    double r = vg_work_ratio(w, h);
+    double r = vg_tris_ratio(w, h);
 
     if (r < VG_WORK_SHORT || r > VG_WORK_LONG) return 1;
   }
@@ -215,7 +215,7 @@ static void finish_points(struct joining *j, size_t n)
   }
   for (size_t p = 0; p < m->n_point; p++) m->point[p].half = VG_REF_NONE;
   for (uint32_t h = 0; h < 3 * m->n_tri; h++) {
-    struct vg_work_point *p = &m->point[vg_work_from(m, h)];
+    struct vg_tris_point *p = &m->point[vg_tris_from(m, h)];
 
     if (p->half == VG_REF_NONE) p->half = h;
   }
@@ -263,11 +263,11 @@ vg_status vg_blocks_join(struct vg_tris *w, size_t n, struct vg_block *b,
     j.made.n_swap += b[i].w.n_swap;
     j.made.n_move += b[i].w.n_move;
   }
-  VG_CHECK("the joining of blocks of a surface", vg_work_defects(&j.made));
-  vg_work_free_arrays(w);
+  VG_CHECK("the joining of blocks of a surface", vg_tris_defects(&j.made));
+  vg_tris_free_arrays(w);
   *w = j.made;
 done:
-  if (st < 0) vg_work_free_arrays(&j.made);
+  if (st < 0) vg_tris_free_arrays(&j.made);
   free(j.number);
   return st;
 }

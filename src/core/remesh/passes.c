@@ -57,7 +57,7 @@ static double size_along(void *user, double s)
   double x[3], size;
 
   vg_curve_at(w->curves, w->ref, c->curve, s, x);
-  size = vg_work_size(w, x, &c->by);
+  size = vg_tris_size(w, x, &c->by);
   return w->form ? size_of_edges(c, s, x, size) : size;
 }
 
@@ -67,7 +67,7 @@ static uint32_t half_of(const struct vg_tris *w, uint32_t i)
   for (int k = 0; k < 2; k++) {
     uint32_t ring[VG_WORK_RING];
     int open;
-    size_t n = vg_work_ring(w, w->line[i].end[k], ring, &open);
+    size_t n = vg_tris_ring(w, w->line[i].end[k], ring, &open);
 
     for (size_t j = 0; j < n; j++) {
       if (w->edge[ring[j]] == i + 1) return ring[j];
@@ -133,7 +133,7 @@ static void divide(struct vg_tris *w, const struct steps *of, uint32_t first,
     else if ((h = half_of(w, cur)) != VG_REF_NONE) {
       uint32_t n_line = (uint32_t)w->n_line;
 
-      m = vg_work_split(w, h, &s[k]);
+      m = vg_tris_split(w, h, &s[k]);
       if (m != VG_REF_NONE) cur = n_line;   /* the second half */
     }
     if (m != VG_REF_NONE) w->point[m].goes = 0;
@@ -161,7 +161,7 @@ vg_status vg_pass_divide(struct vg_tris *w, int threads, struct vg_error *err)
     divide(w, &d.of[i], (uint32_t)line, (uint32_t)end);
     line = end;
   }
-  if (st >= 0) st = vg_work_status(w, err);
+  if (st >= 0) st = vg_tris_status(w, err);
   for (size_t i = 0; i < n; i++) free(d.of[i].s);
   free(d.of);
   return st;
@@ -172,18 +172,18 @@ static int take_away(struct vg_tris *w, uint32_t p)
 {
   uint32_t ring[VG_WORK_RING], h[2], n_h = 0;
   int open;
-  size_t n = vg_work_ring(w, p, ring, &open);
+  size_t n = vg_tris_ring(w, p, ring, &open);
 
   for (size_t i = 0; i < n && n_h < 2; i++)
     if (w->edge[ring[i]]) h[n_h++] = ring[i];
-  if (n_h == 2 && vg_work_ratio(w, h[1]) < vg_work_ratio(w, h[0])) {
+  if (n_h == 2 && vg_tris_ratio(w, h[1]) < vg_tris_ratio(w, h[0])) {
     uint32_t g = h[0];
 
     h[0] = h[1];
     h[1] = g;
   }
   for (uint32_t i = 0; i < n_h; i++)
-    if (vg_work_collapse(w, h[i], INFINITY, 0)) return 1;
+    if (vg_tris_collapse(w, h[i], INFINITY, 0)) return 1;
   return 0;
 }
 
@@ -215,7 +215,7 @@ static int list_edge(const struct vg_tris *w, uint32_t h, double lo, double hi,
   uint64_t bits;
 
   if (w->mate[h] != VG_REF_NONE && w->mate[h] < h) return 0;
-  r = vg_work_ratio(w, h);
+  r = vg_tris_ratio(w, h);
   if (r >= lo && r <= hi) return 0;
   memcpy(&bits, &r, sizeof bits);
   if (vg_reserve(&l->key, &l->cap, l->n + 1, sizeof *l->key)) return -1;
@@ -239,7 +239,7 @@ static vg_status edges_by_ratio(struct vg_tris *w, int look, double lo,
 
     for (int k = 0; k < 3; k++)
       is_new[k] = w->point[w->tri[t][k]].changed > since;
-    if (!(is_new[0] | is_new[1] | is_new[2]) || vg_work_removed(w, t))
+    if (!(is_new[0] | is_new[1] | is_new[2]) || vg_tris_removed(w, t))
       continue;
     for (uint32_t k = 0; k < 3; k++)
       if (is_new[k] || is_new[(k + 1) % 3])
@@ -257,8 +257,8 @@ static int try_collapse(struct vg_tris *w, uint32_t h, double most)
 
   /* From the less bound end; equal ones, the one with the smaller size. */
   if (g != VG_REF_NONE) {
-    const struct vg_work_point *a = &w->point[vg_work_from(w, h)];
-    const struct vg_work_point *b = &w->point[vg_work_to(w, h)];
+    const struct vg_tris_point *a = &w->point[vg_tris_from(w, h)];
+    const struct vg_tris_point *b = &w->point[vg_tris_to(w, h)];
 
     if (a->kind > b->kind) {
       uint32_t k = h;
@@ -267,8 +267,8 @@ static int try_collapse(struct vg_tris *w, uint32_t h, double most)
       g = k;
     }
   }
-  return vg_work_collapse(w, h, most, ANGLE2)
-         || (g != VG_REF_NONE && vg_work_collapse(w, g, most, ANGLE2));
+  return vg_tris_collapse(w, h, most, ANGLE2)
+         || (g != VG_REF_NONE && vg_tris_collapse(w, g, most, ANGLE2));
 }
 
 vg_status vg_pass_collapse(struct vg_tris *w, double least, double most,
@@ -288,14 +288,14 @@ vg_status vg_pass_collapse(struct vg_tris *w, double least, double most,
     for (size_t i = 0; i < n_key && !w->ends; i++) {
       uint32_t h = key[i].index;
 
-      if (vg_work_removed(w, h / 3) || vg_work_ratio(w, h) >= least) continue;
+      if (vg_tris_removed(w, h / 3) || vg_tris_ratio(w, h) >= least) continue;
       done += (size_t)try_collapse(w, h, most);
     }
     *n += done;
     if (COLLAPSED_OF * done < n_key) done = 0;
     vg_pass_swap(w);
   }
-  VG_TRY(vg_work_status(w, err));
+  VG_TRY(vg_tris_status(w, err));
 done:
   free(key);
   return st;
@@ -304,12 +304,12 @@ done:
 /* Of both of its triangles: needles are cut across, not along. */
 static int is_longest(const struct vg_tris *w, uint32_t h)
 {
-  const double l = LONGEST * vg_work_ratio(w, h);
+  const double l = LONGEST * vg_tris_ratio(w, h);
 
   for (int side = 0; side < 2; side++, h = w->mate[h]) {
     if (h == VG_REF_NONE) break;
-    if (vg_work_ratio(w, vg_half_next(h)) > l
-        || vg_work_ratio(w, vg_half_prev(h)) > l) return 0;
+    if (vg_tris_ratio(w, vg_half_next(h)) > l
+        || vg_tris_ratio(w, vg_half_prev(h)) > l) return 0;
   }
   return 1;
 }
@@ -331,14 +331,14 @@ vg_status vg_pass_split(struct vg_tris *w, double most, int across, size_t *n,
     for (size_t i = 0; i < n_key && !w->ends; i++) {
       uint32_t h = key[i].index;
 
-      if (vg_work_removed(w, h / 3) || vg_work_ratio(w, h) <= most
+      if (vg_tris_removed(w, h / 3) || vg_tris_ratio(w, h) <= most
           || (across && !is_longest(w, h))) continue;
-      done += vg_work_split(w, h, NULL) != VG_REF_NONE;
+      done += vg_tris_split(w, h, NULL) != VG_REF_NONE;
     }
     *n += done;
     vg_pass_swap(w);
   }
-  VG_TRY(vg_work_status(w, err));
+  VG_TRY(vg_tris_status(w, err));
 done:
   free(key);
   return st;
@@ -356,13 +356,13 @@ size_t vg_pass_swap(struct vg_tris *w)
     now = 0;
     w->looked[VG_WORK_SWAPS] = w->clock;
     for (uint32_t t = 0; t < w->n_tri && !w->ends; t++) {
-      if (w->stamp[t] <= before || vg_work_removed(w, t)) continue;
+      if (w->stamp[t] <= before || vg_tris_removed(w, t)) continue;
       for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
         uint32_t g = w->mate[h];
 
         if (g == VG_REF_NONE || w->edge[h]
             || (g < h && w->stamp[g / 3] > before)) continue;
-        now += (size_t)vg_work_swap(w, h);
+        now += (size_t)vg_tris_swap(w, h);
       }
     }
     n += now;
@@ -378,21 +378,21 @@ size_t vg_pass_swap(struct vg_tris *w)
 static int better_place(const struct vg_tris *w, uint32_t p, double x[3],
                         double *worst)
 {
-  const double *form = vg_work_form(w, p), *o = vg_work_at(w, p);
+  const double *form = vg_tris_form(w, p), *o = vg_tris_at(w, p);
   uint32_t ring[VG_WORK_RING];
   int open;
-  size_t n = vg_work_ring(w, p, ring, &open);
+  size_t n = vg_tris_ring(w, p, ring, &open);
   double sum = 0;
 
   if (!n || open) return 0;
   *worst = 1;
   memset(x, 0, 3 * sizeof *x);
   for (size_t i = 0; i < n; i++) {
-    const uint32_t to = vg_work_to(w, ring[i]);
-    const uint32_t last = vg_work_from(w, vg_half_prev(ring[i]));
-    const double *a = vg_work_at(w, to), *b = vg_work_at(w, last);
+    const uint32_t to = vg_tris_to(w, ring[i]);
+    const uint32_t last = vg_tris_from(w, vg_half_prev(ring[i]));
+    const double *a = vg_tris_at(w, to), *b = vg_tris_at(w, last);
     double e[3], d[3], mid[3], l2, along, high, weight;
-    double shape = vg_work_shape(w, &w->point[p], &w->point[to],
+    double shape = vg_tris_shape(w, &w->point[p], &w->point[to],
                                  &w->point[last]);
 
     *worst = fmin(*worst, shape);
@@ -427,10 +427,10 @@ static int smooth_point(struct vg_tris *w, uint32_t p)
 
     for (int k = 0; k < 3; k++) y[k] = o[k] + step * (x[k] - o[k]);
     vg_sub(y, o, d);
-    if (vg_form_norm(vg_work_form(w, p), d)
+    if (vg_form_norm(vg_tris_form(w, p), d)
         < (worst > FINE2 ? STEP_GOOD : STEP_BAD) * w->point[p].asked.size)
       return 0;
-    if (vg_work_move(w, p, y, worst > FINE2 ? worst
+    if (vg_tris_move(w, p, y, worst > FINE2 ? worst
                      : worst + SHAPE_GAIN * (1 - worst))) return 1;
   }
   return 0;

@@ -21,7 +21,7 @@ struct ring {
   size_t n;                 /* triangles */
   int is_stretched;
   uint32_t half[VG_WORK_RING];
-  const struct vg_work_point *at[MOST + 1];   /* the first one again at the
+  const struct vg_tris_point *at[MOST + 1];   /* the first one again at the
                                                  end, but on a rim */
   double form[MOST][6];     /* of the triangles, where edges are stretched */
   double rim2[MOST];        /* squared lengths of the edges between them */
@@ -47,14 +47,14 @@ static int take_ring(const struct vg_tris *w, uint32_t p, struct ring *r)
 
   if (w->point[p].kind == VG_WORK_CORNER || w->point[p].frozen
       || w->point[p].kept) return 0;
-  r->n = vg_work_ring(w, p, r->half, &open);
+  r->n = vg_tris_ring(w, p, r->half, &open);
   if (!r->n || r->n > MOST) return 0;
   r->is_stretched = w->form != NULL;
   for (size_t i = 0; i < r->n; i++)
-    r->at[i] = &w->point[vg_work_to(w, r->half[i])];
-  r->at[r->n] = &w->point[vg_work_from(w, vg_half_prev(r->half[r->n - 1]))];
+    r->at[i] = &w->point[vg_tris_to(w, r->half[i])];
+  r->at[r->n] = &w->point[vg_tris_from(w, vg_half_prev(r->half[r->n - 1]))];
   for (size_t i = 0; i < r->n; i++) {
-    const struct vg_work_point *a = r->at[i], *b = r->at[i + 1];
+    const struct vg_tris_point *a = r->at[i], *b = r->at[i + 1];
 
     for (int k = 0; k < 6 && r->is_stretched; k++)
       r->form[i][k] = (own[k] + a->asked.form[k] + b->asked.form[k]) / 3;
@@ -63,7 +63,7 @@ static int take_ring(const struct vg_tris *w, uint32_t p, struct ring *r)
   return 1;
 }
 
-/* As vg_work_shape, of the squared lengths of the sides; not exact where it is
+/* As vg_tris_shape, of the squared lengths of the sides; not exact where it is
  * tiny. */
 static inline double shape_of(double a, double b, double c)
 {
@@ -97,7 +97,7 @@ static double shape_at(const struct ring *r, const double x[3], double bound)
 static int tangents(const struct vg_tris *w, const struct ring *r, uint32_t p,
                     double u[3], double v[3])
 {
-  const double *x = vg_work_at(w, p);
+  const double *x = vg_tris_at(w, p);
   double n[3] = { 0, 0, 0 }, a[3], b[3], m[3];
 
   for (size_t i = 0; i < r->n; i++) {
@@ -156,9 +156,9 @@ static void search_face(const struct vg_tris *w, const struct ring *r,
 static void search_curve(const struct vg_tris *w, const struct ring *r,
                          struct place *to)
 {
-  struct vg_work_span s;
+  struct vg_tris_span s;
 
-  if (!vg_work_span(w, to->p, &s)) return;
+  if (!vg_tris_span(w, to->p, &s)) return;
   to->at = s.at;
   for (double step = STEP * (s.hi - s.lo); step > LEAST * (s.hi - s.lo);) {
     const double from = to->at;
@@ -204,8 +204,8 @@ static int move_corner(struct vg_tris *w, uint32_t t, double shape)
       if (to[k].shape > best->shape) best = &to[k];
     if (!(best->shape > BETTER * shape)) return 0;
     if (w->point[best->p].kind == VG_WORK_FACE
-        ? vg_work_move(w, best->p, best->x, 1)
-        : vg_work_slide(w, best->p, best->at, 1)) return 1;
+        ? vg_tris_move(w, best->p, best->x, 1)
+        : vg_tris_slide(w, best->p, best->at, 1)) return 1;
     best->shape = 0;
   }
 }
@@ -218,7 +218,7 @@ static double shape_without(const struct vg_tris *w, const struct ring *r,
 
   for (size_t k = 1; k + 1 < r->n; k++) {
     size_t j = (i + k) % r->n;
-    double s = vg_work_shape(w, r->at[i], r->at[j], r->at[j + 1]);
+    double s = vg_tris_shape(w, r->at[i], r->at[j], r->at[j + 1]);
 
     if (s <= bound) return 0;
     if (s < least) least = s;
@@ -242,14 +242,14 @@ static int take_away(struct vg_tris *w, uint32_t p)
     if (s > best) best = s, at = i;
   }
   return at != SIZE_MAX
-         && vg_work_collapse(w, r.half[at], VG_WORK_LONG, 1);
+         && vg_tris_collapse(w, r.half[at], VG_WORK_LONG, 1);
 }
 
 static void sort_edges(const struct vg_tris *w, uint32_t *order)
 {
   for (int i = 0; i < 2; i++)
     for (int k = 0; k < 2 - i; k++)
-      if (vg_work_ratio(w, order[k]) > vg_work_ratio(w, order[k + 1])) {
+      if (vg_tris_ratio(w, order[k]) > vg_tris_ratio(w, order[k + 1])) {
         uint32_t h = order[k];
 
         order[k] = order[k + 1];
@@ -260,20 +260,20 @@ static void sort_edges(const struct vg_tris *w, uint32_t *order)
 static int polish_tri(struct vg_tris *w, uint32_t t)
 {
   uint32_t order[3] = { 3 * t, 3 * t + 1, 3 * t + 2 };
-  const double shape = vg_work_tri_shape(w, t);
+  const double shape = vg_tris_tri_shape(w, t);
 
   sort_edges(w, order);
   for (int k = 2; k >= 0; k--)
-    if (vg_work_swap(w, order[k])) return 1;
+    if (vg_tris_swap(w, order[k])) return 1;
   for (int k = 0; k < 3; k++)
     if (take_away(w, w->tri[t][k])) return 1;
   if (move_corner(w, t, shape)) return 1;
   for (int k = 0; k < 2; k++) {
     uint32_t h = order[k], g = w->mate[h];
 
-    if (vg_work_ratio(w, h) > 1) break;
-    if (vg_work_collapse(w, h, LONGEST, 1)
-        || (g != VG_REF_NONE && vg_work_collapse(w, g, LONGEST, 1)))
+    if (vg_tris_ratio(w, h) > 1) break;
+    if (vg_tris_collapse(w, h, LONGEST, 1)
+        || (g != VG_REF_NONE && vg_tris_collapse(w, g, LONGEST, 1)))
       return 1;
   }
   return 0;
@@ -289,7 +289,7 @@ vg_status vg_pass_polish(struct vg_tris *w, double shape, size_t *n,
   *n = 0;
   w->looked[VG_WORK_POLISH] = w->clock;
   for (uint32_t t = 0; t < w->n_tri && !w->ends; t++)
-    if (w->stamp[t] > before && !vg_work_removed(w, t)
-        && vg_work_tri_shape(w, t) < shape) *n += (size_t)polish_tri(w, t);
-  return vg_work_status(w, err);
+    if (w->stamp[t] > before && !vg_tris_removed(w, t)
+        && vg_tris_tri_shape(w, t) < shape) *n += (size_t)polish_tri(w, t);
+  return vg_tris_status(w, err);
 }

@@ -364,7 +364,7 @@ static void narrow(struct vg_tris *w)
 {
   if (!w->other_size) return;
   for (size_t p = 0; p < w->n_point; p++) {
-    struct vg_work_point *q = &w->point[p];
+    struct vg_tris_point *q = &w->point[p];
     double h;
 
     if (q->half == VG_REF_NONE) continue;
@@ -372,12 +372,12 @@ static void narrow(struct vg_tris *w)
     if (h < w->h_min) h = w->h_min;
     if (!(h < q->asked.size)) continue;
     q->asked.size = h;
-    vg_work_find_room(w, q);
+    vg_tris_find_room(w, q);
     q->changed = ++w->clock;
   }
   for (uint32_t t = 0; t < w->n_tri; t++)
-    if (!vg_work_is_old(w, 3 * t, w->looked[VG_WORK_POLISH])
-        || !vg_work_is_old(w, 3 * t + 1, w->looked[VG_WORK_POLISH]))
+    if (!vg_tris_is_old(w, 3 * t, w->looked[VG_WORK_POLISH])
+        || !vg_tris_is_old(w, 3 * t + 1, w->looked[VG_WORK_POLISH]))
       w->stamp[t] = w->clock;
 }
 
@@ -443,7 +443,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
   if (stretch.by) w.stretch = &stretch;
   VG_TRY(ask_sources(j, &w, &set, err));
   if (j->n_source > j->o->n_source) w.h_min *= SPOT_LEAST;
-  VG_TRY(vg_work_begin(&w, err));
+  VG_TRY(vg_tris_begin(&w, err));
   if (!j->looks) VG_TRY(change(j, &w, err));
   for (int mend = 0; !*sound && mend < a->mends; mend++) {
     const int is_end = mend + 1 == a->mends;
@@ -472,7 +472,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
   r->n_swap = w.n_swap + j->n_flat;
   r->n_move = w.n_move;
 done:
-  vg_work_release(&w);
+  vg_tris_release(&w);
   vg_stretch_release(&stretch);
   vg_source_release(&set);
   return st;

@@ -32,8 +32,8 @@ static uint32_t patch_of(const struct vg_tris *w, size_t t,
   double x[3], y[3], u[3], v[3], n[3];
 
   middle(w, t, x);
-  vg_sub(vg_work_at(w, w->tri[t][1]), vg_work_at(w, w->tri[t][0]), u);
-  vg_sub(vg_work_at(w, w->tri[t][2]), vg_work_at(w, w->tri[t][0]), v);
+  vg_sub(vg_tris_at(w, w->tri[t][1]), vg_tris_at(w, w->tri[t][0]), u);
+  vg_sub(vg_tris_at(w, w->tri[t][2]), vg_tris_at(w, w->tri[t][0]), v);
   vg_cross(u, v, n);
   if (!(vg_unit(n) > 0)
       || !(vg_ref_project(w->ref, x, n, &hint, y) < INFINITY))
@@ -52,7 +52,7 @@ static void straighten(const struct vg_tris *w, uint32_t *label, size_t *count)
     for (uint32_t t = 0; t < w->n_tri; t++) {
       uint32_t other[3], own = label[t], n_other = 0;
 
-      if (vg_work_removed(w, t) || count[own] < 2) continue;
+      if (vg_tris_removed(w, t) || count[own] < 2) continue;
       for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
         uint32_t q;
 
@@ -88,7 +88,7 @@ static void keep_patches(const struct vg_tris *w, const struct vg_mesh *given,
       x[d] = w->ref->shape[i].a[d]
              + (w->ref->shape[i].u[d] + w->ref->shape[i].v[d]) / 3;
     for (size_t t = 0; t < w->n_tri; t++) {
-      if (vg_work_removed(w, t) || count[label[t]] < 2) continue;
+      if (vg_tris_removed(w, t) || count[label[t]] < 2) continue;
       middle(w, t, y);
       if (vg_distance2(x, y) < best) best = vg_distance2(x, y), at = t;
     }
@@ -112,7 +112,7 @@ static void find_labels(void *context, size_t first, size_t end, int worker)
   (void)worker;
   if (vg_stops(&l->w->stop)) return;
   for (size_t t = first; t < end; t++)
-    if (!vg_work_removed(l->w, t)) l->label[t] = patch_of(l->w, t, l->patch);
+    if (!vg_tris_removed(l->w, t)) l->label[t] = patch_of(l->w, t, l->patch);
 }
 
 static vg_status label_all(const struct vg_tris *w,
@@ -127,7 +127,7 @@ static vg_status label_all(const struct vg_tris *w,
   vg_parallel_for(w->threads, w->n_tri, 1024, find_labels, &l);
   VG_TRY(vg_stopped(&w->stop, err));
   for (size_t t = 0; t < w->n_tri; t++)
-    if (!vg_work_removed(w, t)) count[label[t]]++;
+    if (!vg_tris_removed(w, t)) count[label[t]]++;
   straighten(w, label, count);
   keep_patches(w, given, label, count);
 done:
@@ -144,10 +144,10 @@ static enum vg_remesh_cause cause_of(const struct vg_tris *w, size_t t)
   int n_line = 0, n_edge = 0;
 
   for (uint32_t h = 3 * (uint32_t)t; h < 3 * t + 3; h++) {
-    double l = vg_distance2(vg_work_at(w, vg_work_from(w, h)),
-                            vg_work_at(w, vg_work_to(w, h)));
+    double l = vg_distance2(vg_tris_at(w, vg_tris_from(w, h)),
+                            vg_tris_at(w, vg_tris_to(w, h)));
 
-    n_line += w->point[vg_work_from(w, h)].kind != VG_WORK_FACE;
+    n_line += w->point[vg_tris_from(w, h)].kind != VG_WORK_FACE;
     n_edge += w->edge[h] != 0;
     if (l < least) least = l, at = h;
   }
@@ -161,7 +161,7 @@ static enum vg_remesh_cause cause_of(const struct vg_tris *w, size_t t)
 static void count_aspect(const struct vg_tris *w, size_t t,
                          struct vg_remesh_report *r)
 {
-  const struct vg_work_point *p[3];
+  const struct vg_tris_point *p[3];
   double u[3], v[3], n[3], form[6], aspect, upto = 1.5;
   int i = 0;
 
@@ -182,7 +182,7 @@ static vg_status list_bad(const struct vg_tris *w, size_t t, size_t face,
                           size_t *cap, struct vg_remesh_report *r,
                           struct vg_error *err)
 {
-  const double sine = sqrt(vg_work_tri_shape(w, t));
+  const double sine = sqrt(vg_tris_tri_shape(w, t));
   struct vg_remesh_bad b = { .face = face };
 
   b.angle = asin(fmin(sine, 1)) * (180 / M_PI);   /* for the report only */
@@ -203,14 +203,14 @@ static void count_edges(const struct vg_tris *w, struct vg_remesh_report *r)
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     double ratio;
 
-    if (vg_work_removed(w, h / 3)
+    if (vg_tris_removed(w, h / 3)
         || (w->mate[h] != VG_REF_NONE && w->mate[h] < h)) continue;
-    ratio = vg_work_ratio(w, h);
+    ratio = vg_tris_ratio(w, h);
     r->n_edge++;
     r->n_edge_fit += ratio <= NEAR_SQRT2 && ratio >= 1 / NEAR_SQRT2;
     if (w->edge[h])
-      r->line_length[1] += vg_distance(vg_work_at(w, vg_work_from(w, h)),
-                                       vg_work_at(w, vg_work_to(w, h)));
+      r->line_length[1] += vg_distance(vg_tris_at(w, vg_tris_from(w, h)),
+                                       vg_tris_at(w, vg_tris_to(w, h)));
   }
 }
 
@@ -219,23 +219,23 @@ static void count_edges(const struct vg_tris *w, struct vg_remesh_report *r)
 static size_t bad_half(const struct vg_tris *w, uint32_t h)
 {
   const uint32_t mate = w->mate[h];
-  size_t bad = vg_work_from(w, h) >= w->n_point;
+  size_t bad = vg_tris_from(w, h) >= w->n_point;
 
   bad += w->edge[h] > w->n_line;
   if (mate == VG_REF_NONE) return bad;
-  if (mate >= 3 * w->n_tri || vg_work_removed(w, mate / 3)) return bad + 1;
+  if (mate >= 3 * w->n_tri || vg_tris_removed(w, mate / 3)) return bad + 1;
   return bad + (w->mate[mate] != h) +
-         (vg_work_from(w, mate) != vg_work_to(w, h)) +
-         (vg_work_to(w, mate) != vg_work_from(w, h)) +
+         (vg_tris_from(w, mate) != vg_tris_to(w, h)) +
+         (vg_tris_to(w, mate) != vg_tris_from(w, h)) +
          (!w->edge[h] != !w->edge[mate]);
 }
 
-size_t vg_work_defects(const struct vg_tris *w)
+size_t vg_tris_defects(const struct vg_tris *w)
 {
   size_t bad = 0;
 
   for (uint32_t t = 0; t < w->n_tri; t++) {
-    if (vg_work_removed(w, t)) continue;
+    if (vg_tris_removed(w, t)) continue;
     bad += w->tri[t][1] == w->tri[t][2] || w->tri[t][2] == w->tri[t][0];
     for (uint32_t h = 3 * t; h < 3 * t + 3; h++) bad += bad_half(w, h);
   }
@@ -243,8 +243,8 @@ size_t vg_work_defects(const struct vg_tris *w)
     const uint32_t h = w->point[p].half;
 
     bad += h != VG_REF_NONE &&
-           (h >= 3 * w->n_tri || vg_work_removed(w, h / 3) ||
-            vg_work_from(w, h) != p);
+           (h >= 3 * w->n_tri || vg_tris_removed(w, h / 3) ||
+            vg_tris_from(w, h) != p);
   }
   return bad;
 }
@@ -266,7 +266,7 @@ static vg_status store(const struct vg_tris *w, const uint32_t *label,
   out->n_point = n;
   n = 0;
   for (size_t t = 0; t < w->n_tri; t++) {
-    if (vg_work_removed(w, t)) continue;
+    if (vg_tris_removed(w, t)) continue;
     for (int k = 0; k < 3; k++) out->tri[n][k] = map[w->tri[t][k]];
     VG_TRY(list_bad(w, t, n, &cap, r, err));
     out->tri_patch[n++] = label[t];
@@ -297,7 +297,7 @@ vg_status vg_result_store(const struct vg_tris *w, const struct vg_mesh *given,
   out->n_patch = given->n_patch;
   VG_TRY(label_all(w, given, label, err));
   VG_TRY(store(w, label, map, out, r, err));
-  VG_CHECK("the remeshing of a surface", vg_work_defects(w));
+  VG_CHECK("the remeshing of a surface", vg_tris_defects(w));
   VG_CHECK("the remeshing of a surface", vg_mesh_bad_faces(out));
 done:
   free(map);

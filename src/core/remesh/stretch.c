@@ -31,7 +31,7 @@ static double size_at(void *user, double s)
   double x[3];
 
   vg_curve_at(p->w->curves, p->w->ref, p->curve, p->from + s, x);
-  return vg_work_size(p->w, x, &p->hint);
+  return vg_tris_size(p->w, x, &p->hint);
 }
 
 static double chord(const struct part *p, double at, double along)
@@ -46,7 +46,7 @@ static struct vg_stretch_place place_at(const struct vg_stretch *s,
 {
   struct vg_stretch_place q = { .at = at };
   const double size = size_at(p, at - p->from);
-  const double room = CHORD * vg_work_tolerance(p->w, size);
+  const double room = CHORD * vg_tris_tolerance(p->w, size);
   double a[3], b[3];
 
   q.along = fmax(fmin(p->by * size, s->h_max), size);
@@ -139,7 +139,7 @@ vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_tris *w,
   for (uint32_t h = 0; h < 3 * w->n_tri; h++)
     if (w->edge[h]) by[w->edge[h] - 1] = s->by[h];
   for (size_t i = 0, end; i < w->n_line; i = end) {
-    const struct vg_work_line *l = &w->line[i];
+    const struct vg_tris_line *l = &w->line[i];
     struct part p = { w, l->curve, l->at[0], l->at[1], by[i], VG_REF_NONE };
 
     for (end = i + 1; end < w->n_line && w->line[end].curve == p.curve

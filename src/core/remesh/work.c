@@ -31,14 +31,14 @@ static vg_status make_lines(struct vg_tris *w, struct vg_error *err)
     size_t k = c->curve[i].first;
 
     for (; k + 1 < c->curve[i].first + c->curve[i].n; k++)
-      w->line[w->n_line++] = (struct vg_work_line){ (uint32_t)i,
+      w->line[w->n_line++] = (struct vg_tris_line){ (uint32_t)i,
         { c->point[k], c->point[k + 1] }, { c->at[k], c->at[k + 1] } };
   }
   memcpy(w->edge, c->line, 3 * w->n_tri * sizeof *w->edge);
   return VG_OK;
 }
 
-vg_status vg_work_status(const struct vg_tris *w, struct vg_error *err)
+vg_status vg_tris_status(const struct vg_tris *w, struct vg_error *err)
 {
   if (w->failed) return vg_fail_memory(err, "the new surface");
   return w->ends ? vg_stopped(&w->stop, err) : VG_OK;
@@ -50,12 +50,12 @@ static double bounded(const struct vg_tris *w, const double x[3], double h)
   return fmin(w->h_max, fmax(w->h_min, h));
 }
 
-double vg_work_size(const struct vg_tris *w, const double x[3], uint32_t *by)
+double vg_tris_size(const struct vg_tris *w, const double x[3], uint32_t *by)
 {
   return bounded(w, x, vg_ref_size(w->ref, x, INFINITY, by));
 }
 
-double vg_work_size_near(const struct vg_tris *w, const double x[3],
+double vg_tris_size_near(const struct vg_tris *w, const double x[3],
                          uint32_t home, size_t n, const uint32_t *point,
                          uint32_t *by)
 {
@@ -88,8 +88,8 @@ static void pass_sizes_on(struct vg_tris *w)
     changed = 0;
     for (uint32_t i = 0; i < n; i++) {
       uint32_t h = sweep % 2 ? n - 1 - i : i;
-      const struct vg_work_point *a = &w->point[vg_work_from(w, h)];
-      struct vg_work_point *b = &w->point[vg_work_to(w, h)];
+      const struct vg_tris_point *a = &w->point[vg_tris_from(w, h)];
+      struct vg_tris_point *b = &w->point[vg_tris_to(w, h)];
       double gap = b->asked.size - a->asked.size, asked;
 
       if (!(gap > 0) || gap * gap <= w->ref->slope * w->ref->slope
@@ -110,10 +110,10 @@ static void find_sizes(void *context, size_t first, size_t end, int worker)
   (void)worker;
   if (vg_stops(&w->stop)) return;
   for (size_t p = first; p < end; p++) {
-    struct vg_work_point *q = &w->point[p];
+    struct vg_tris_point *q = &w->point[p];
 
     q->by = q->home;
-    vg_work_ask(w, q, bounded(w, q->x, vg_ref_size(w->ref, q->x,
+    vg_tris_ask(w, q, bounded(w, q->x, vg_ref_size(w->ref, q->x,
                                                    q->asked.size, &q->by)));
   }
 }
@@ -123,7 +123,7 @@ static vg_status make_points(struct vg_tris *w, struct vg_error *err)
   const struct vg_ref *r = w->ref;
 
   for (size_t p = 0; p < w->n_point; p++) {
-    struct vg_work_point *q = &w->point[p];
+    struct vg_tris_point *q = &w->point[p];
 
     memcpy(q->x, r->point[p], sizeof q->x);
     q->half = q->home = VG_REF_NONE;
@@ -132,12 +132,12 @@ static vg_status make_points(struct vg_tris *w, struct vg_error *err)
     q->changed = 1;
   }
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
-    struct vg_work_point *q = &w->point[vg_work_from(w, h)];
+    struct vg_tris_point *q = &w->point[vg_tris_from(w, h)];
 
     if (q->half == VG_REF_NONE) q->half = h, q->home = h / 3;
     if (w->edge[h]) {
       q->kind = VG_WORK_CURVE;
-      w->point[vg_work_to(w, h)].kind = VG_WORK_CURVE;
+      w->point[vg_tris_to(w, h)].kind = VG_WORK_CURVE;
     }
   }
   for (size_t p = 0; p < w->n_point; p++) {
@@ -164,7 +164,7 @@ static vg_status make_samples(struct vg_tris *w, struct vg_error *err)
          ? VG_OK : vg_fail_memory(err, "the samples of the surface");
 }
 
-vg_status vg_work_room(struct vg_tris *w, size_t n, struct vg_error *err)
+vg_status vg_tris_room(struct vg_tris *w, size_t n, struct vg_error *err)
 {
   w->n_tri = w->cap_tri = w->cap_first = w->cap_stamp = n;
   w->cap_mate = w->cap_edge = 3 * n;
@@ -177,7 +177,7 @@ vg_status vg_work_room(struct vg_tris *w, size_t n, struct vg_error *err)
          ? VG_OK : vg_fail_memory(err, "the new surface");
 }
 
-vg_status vg_work_begin(struct vg_tris *w, struct vg_error *err)
+vg_status vg_tris_begin(struct vg_tris *w, struct vg_error *err)
 {
   assert(w->ref && w->curves && w->h_min > 0 && w->h_max >= w->h_min);
 
@@ -185,7 +185,7 @@ vg_status vg_work_begin(struct vg_tris *w, struct vg_error *err)
   vg_status st;
 
   w->clock = 1;
-  VG_TRY(vg_work_room(w, r->n_tri, err));
+  VG_TRY(vg_tris_room(w, r->n_tri, err));
   w->n_point = w->cap_point = r->n_point;
   w->point = vg_calloc(w->n_point, sizeof *w->point);
   if (!w->point) return vg_fail_memory(err, "the new surface");
@@ -208,7 +208,7 @@ done:
   return st;
 }
 
-void vg_work_free_arrays(struct vg_tris *w)
+void vg_tris_free_arrays(struct vg_tris *w)
 {
   free(w->point);
   free(w->tri);
@@ -224,9 +224,9 @@ void vg_work_free_arrays(struct vg_tris *w)
   w->line = NULL;
 }
 
-void vg_work_release(struct vg_tris *w)
+void vg_tris_release(struct vg_tris *w)
 {
-  vg_work_free_arrays(w);
+  vg_tris_free_arrays(w);
   if (!w->is_block) {
     free(w->follow);
     free(w->is_sample);
@@ -237,7 +237,7 @@ void vg_work_release(struct vg_tris *w)
 
 /* --- looking ------------------------------------------------------------- */
 
-size_t vg_work_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
+size_t vg_tris_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
                     int *open)
 {
   assert(p < w->n_point && half && open);
@@ -263,15 +263,15 @@ size_t vg_work_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
   return n;
 }
 
-double vg_work_ratio(const struct vg_tris *w, uint32_t h)
+double vg_tris_ratio(const struct vg_tris *w, uint32_t h)
 {
-  return vg_work_length(w, &w->point[vg_work_from(w, h)],
-                        &w->point[vg_work_to(w, h)]);
+  return vg_tris_length(w, &w->point[vg_tris_from(w, h)],
+                        &w->point[vg_tris_to(w, h)]);
 }
 
-double vg_work_shape(const struct vg_tris *w, const struct vg_work_point *a,
-                     const struct vg_work_point *b,
-                     const struct vg_work_point *c)
+double vg_tris_shape(const struct vg_tris *w, const struct vg_tris_point *a,
+                     const struct vg_tris_point *b,
+                     const struct vg_tris_point *c)
 {
   double form[6];
 
@@ -281,19 +281,19 @@ double vg_work_shape(const struct vg_tris *w, const struct vg_work_point *a,
   return vg_form_shape(form, a->x, b->x, c->x);
 }
 
-double vg_work_tri_shape(const struct vg_tris *w, size_t t)
+double vg_tris_tri_shape(const struct vg_tris *w, size_t t)
 {
-  return vg_work_shape(w, &w->point[w->tri[t][0]], &w->point[w->tri[t][1]],
+  return vg_tris_shape(w, &w->point[w->tri[t][0]], &w->point[w->tri[t][1]],
                        &w->point[w->tri[t][2]]);
 }
 
-double vg_work_tolerance(const struct vg_tris *w, double size)
+double vg_tris_tolerance(const struct vg_tris *w, double size)
 {
   if (w->far > 0 && size > w->far) return w->relative * size;
   return fmin(w->tolerance, w->relative * size);
 }
 
-void vg_work_find_room(const struct vg_tris *w, struct vg_work_point *p)
+void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p)
 {
   assert(p->asked.size > 0);
 
@@ -308,7 +308,7 @@ void vg_work_find_room(const struct vg_tris *w, struct vg_work_point *p)
     size = fmax(size, fmin(r->plain[q[0]],
                            fmin(r->plain[q[1]], r->plain[q[2]])));
   }
-  p->room = vg_work_tolerance(w, size);
+  p->room = vg_tris_tolerance(w, size);
 }
 
 /* --- a cavity ------------------------------------------------------------ */
@@ -329,9 +329,9 @@ void vg_cavity_narrow(const struct vg_tris *w, struct vg_cavity *c,
   c->tolerance = fmin(c->tolerance, w->point[point].room);
 }
 
-void vg_cavity_add(struct vg_cavity *c, const struct vg_work_point *x,
-                   const struct vg_work_point *y,
-                   const struct vg_work_point *z, int edges)
+void vg_cavity_add(struct vg_cavity *c, const struct vg_tris_point *x,
+                   const struct vg_tris_point *y,
+                   const struct vg_tris_point *z, int edges)
 {
   c->corner[c->n_new][0] = x;
   c->corner[c->n_new][1] = y;
@@ -343,7 +343,7 @@ void vg_cavity_measure(const struct vg_tris *w, struct vg_cavity *c)
 {
   c->shape = 1;
   for (size_t i = 0; i < c->n_new; i++) {
-    double s = vg_work_shape(w, c->corner[i][0], c->corner[i][1],
+    double s = vg_tris_shape(w, c->corner[i][0], c->corner[i][1],
                              c->corner[i][2]);
 
     if (s < c->shape) c->shape = s;
@@ -374,7 +374,7 @@ static int sample_near(const struct vg_tris *w, struct vg_cavity *c,
 
 static int tri_fits(const struct vg_tris *w, struct vg_cavity *c, size_t i)
 {
-  const struct vg_work_point *const *p = c->corner[i];
+  const struct vg_tris_point *const *p = c->corner[i];
   const double *n = c->made[i].n;
   double x[3];
 
@@ -395,7 +395,7 @@ static int tri_fits(const struct vg_tris *w, struct vg_cavity *c, size_t i)
 static int crossings_fit(const struct vg_tris *w, struct vg_cavity *c,
                          size_t i)
 {
-  const struct vg_work_point *const *p = c->corner[i];
+  const struct vg_tris_point *const *p = c->corner[i];
   const double *n = c->made[i].n;
   double x[3];
 
@@ -447,11 +447,11 @@ static int make_triangles(struct vg_cavity *c, double sum[3])
 /* Unit normal of a triangle as it is; returns its height over an edge. */
 static double facing(const struct vg_tris *w, uint32_t t, double n[3])
 {
-  const double *a = vg_work_at(w, w->tri[t][0]);
+  const double *a = vg_tris_at(w, w->tri[t][0]);
   double u[3], v[3], l;
 
-  vg_sub(vg_work_at(w, w->tri[t][1]), a, u);
-  vg_sub(vg_work_at(w, w->tri[t][2]), a, v);
+  vg_sub(vg_tris_at(w, w->tri[t][1]), a, u);
+  vg_sub(vg_tris_at(w, w->tri[t][2]), a, v);
   l = sqrt(fmax(vg_dot(u, u), vg_dot(v, v)));
   vg_cross(u, v, n);
   return l > 0 ? vg_unit(n) / l : 0;

@@ -92,15 +92,15 @@ static void normal_of(const struct vg_tris *w, uint32_t t, double n[3])
 /* --- split --------------------------------------------------------------- */
 
 static void middle_of(const struct vg_tris *w, uint32_t h, const double *at,
-                      struct vg_work_point *p, double *s)
+                      struct vg_tris_point *p, double *s)
 {
-  const double *a = vg_work_at(w, vg_work_from(w, h));
-  const double *b = vg_work_at(w, vg_work_to(w, h));
+  const double *a = vg_tris_at(w, vg_tris_from(w, h));
+  const double *b = vg_tris_at(w, vg_tris_to(w, h));
   double n[3] = { 0, 0, 0 }, x[3];
   const double *n_or_any;
 
   if (w->edge[h]) {
-    const struct vg_work_line *l = &w->line[w->edge[h] - 1];
+    const struct vg_tris_line *l = &w->line[w->edge[h] - 1];
 
     *s = at ? *at : (l->at[0] + l->at[1]) / 2;
     vg_curve_at(w->curves, w->ref, l->curve, *s, p->x);
@@ -116,25 +116,25 @@ static void middle_of(const struct vg_tris *w, uint32_t h, const double *at,
 }
 
 static int split_fits(const struct vg_tris *w, uint32_t h,
-                      const struct vg_work_point *m, struct vg_cavity *c)
+                      const struct vg_tris_point *m, struct vg_cavity *c)
 {
-  const double ratio = vg_work_ratio(w, h);
+  const double ratio = vg_tris_ratio(w, h);
   double shape = 1;
   int face = !w->edge[h];
 
   c->on_curve = !face;
   for (int side = 0; side < 2; side++) {
-    const struct vg_work_point *a, *b, *o;
+    const struct vg_tris_point *a, *b, *o;
 
     if (side) h = w->mate[h];
     if (h == VG_REF_NONE) break;
-    vg_cavity_narrow(w, c, vg_work_from(w, vg_half_prev(h)));
-    a = &w->point[vg_work_from(w, h)];
-    b = &w->point[vg_work_to(w, h)];
-    o = &w->point[vg_work_from(w, vg_half_prev(h))];
+    vg_cavity_narrow(w, c, vg_tris_from(w, vg_half_prev(h)));
+    a = &w->point[vg_tris_from(w, h)];
+    b = &w->point[vg_tris_to(w, h)];
+    o = &w->point[vg_tris_from(w, vg_half_prev(h))];
     c->was[c->n_new] = c->was[c->n_new + 1] = (uint16_t)c->n_old;
     c->old[c->n_old++] = h / 3;
-    shape = fmin(shape, vg_work_shape(w, a, b, o));
+    shape = fmin(shape, vg_tris_shape(w, a, b, o));
     vg_cavity_add(c, a, m, o, side ? 2 : face + 2);
     vg_cavity_add(c, m, b, o, side ? 0 : face);
   }
@@ -147,16 +147,16 @@ static int split_fits(const struct vg_tris *w, uint32_t h,
 
 /* Of a long edge, something finer may lie between its ends. */
 static void size_between(const struct vg_tris *w, uint32_t h,
-                         struct vg_work_point *p)
+                         struct vg_tris_point *p)
 {
-  const uint32_t end[2] = { vg_work_from(w, h), vg_work_to(w, h) };
+  const uint32_t end[2] = { vg_tris_from(w, h), vg_tris_to(w, h) };
 
-  vg_work_ask(w, p, vg_work_ratio(w, h) < NEARBY
-              ? vg_work_size_near(w, p->x, p->home, 2, end, &p->by)
-              : vg_work_size(w, p->x, &p->by));
+  vg_tris_ask(w, p, vg_tris_ratio(w, h) < NEARBY
+              ? vg_tris_size_near(w, p->x, p->home, 2, end, &p->by)
+              : vg_tris_size(w, p->x, &p->by));
 }
 
-static uint32_t add_point(struct vg_tris *w, const struct vg_work_point *p)
+static uint32_t add_point(struct vg_tris *w, const struct vg_tris_point *p)
 {
   if (w->n_point > UINT32_MAX - 2
       || vg_reserve(&w->point, &w->cap_point, w->n_point + 1,
@@ -174,7 +174,7 @@ static uint32_t split_line(struct vg_tris *w, uint32_t h, uint32_t m,
                            double s, uint32_t *second)
 {
   uint32_t i = w->edge[h] - 1, j = (uint32_t)w->n_line;
-  int forward = w->line[i].end[0] == vg_work_from(w, h);
+  int forward = w->line[i].end[0] == vg_tris_from(w, h);
 
   if (w->line[i].end[0] == w->line[i].end[1]) forward = 1;
   w->line[w->n_line++] = w->line[i];
@@ -189,12 +189,12 @@ static uint32_t split_line(struct vg_tris *w, uint32_t h, uint32_t m,
 static void stitch(struct vg_tris *w, uint32_t h, uint32_t m,
                    const uint32_t *t, const uint32_t *e)
 {
-  const uint32_t end[2] = { vg_work_from(w, h), vg_work_to(w, h) };
+  const uint32_t end[2] = { vg_tris_from(w, h), vg_tris_to(w, h) };
   const uint32_t half[2] = { h, w->mate[h] };
 
   for (int side = 0; side < 2 && half[side] != VG_REF_NONE; side++) {
     uint32_t k = half[side], t0 = t[2 * side], t1 = t[2 * side + 1];
-    uint32_t o = vg_work_from(w, vg_half_prev(k));
+    uint32_t o = vg_tris_from(w, vg_half_prev(k));
     uint32_t h1 = vg_half_next(k), h2 = vg_half_prev(k);
     uint32_t m1 = w->mate[h1], e1 = w->edge[h1];
     uint32_t m2 = w->mate[h2], e2 = w->edge[h2];
@@ -214,16 +214,16 @@ static void stitch(struct vg_tris *w, uint32_t h, uint32_t m,
   }
 }
 
-uint32_t vg_work_split(struct vg_tris *w, uint32_t h, const double *at)
+uint32_t vg_tris_split(struct vg_tris *w, uint32_t h, const double *at)
 {
-  assert(h < 3 * w->n_tri && !vg_work_removed(w, h / 3));
+  assert(h < 3 * w->n_tri && !vg_tris_removed(w, h / 3));
 
   struct vg_cavity c;
-  uint32_t a = vg_work_from(w, h), b = vg_work_to(w, h), m, t[4], e[2];
-  struct vg_work_point p = w->point[a];
+  uint32_t a = vg_tris_from(w, h), b = vg_tris_to(w, h), m, t[4], e[2];
+  struct vg_tris_point p = w->point[a];
   double s = 0;
 
-  if (vg_work_ends(w) || vg_work_stays(w, h)) return VG_REF_NONE;
+  if (vg_tris_ends(w) || vg_tris_stays(w, h)) return VG_REF_NONE;
   vg_cavity_begin(w, &c, a);
   vg_cavity_narrow(w, &c, b);
   middle_of(w, h, at, &p, &s);
@@ -270,8 +270,8 @@ static uint32_t other_line(const struct vg_tris *w, const uint32_t *ring,
 static int curve_fits(const struct vg_tris *w, uint32_t h,
                       const uint32_t *ring, size_t n, double tolerance)
 {
-  const struct vg_work_line *a, *b;
-  uint32_t u = vg_work_to(w, h), other;
+  const struct vg_tris_line *a, *b;
+  uint32_t u = vg_tris_to(w, h), other;
 
   if (!w->edge[h]) return 0;
   other = other_line(w, ring, n, w->edge[h]);
@@ -289,22 +289,22 @@ static int curve_fits(const struct vg_tris *w, uint32_t h,
 static int link_fits(const struct vg_tris *w, uint32_t h,
                      const uint32_t *ring, size_t n, int open)
 {
-  uint32_t u = vg_work_to(w, h), other[VG_WORK_RING];
+  uint32_t u = vg_tris_to(w, h), other[VG_WORK_RING];
   size_t n_other, common = 0, wanted = w->mate[h] == VG_REF_NONE ? 1 : 2;
   int other_open;
 
-  n_other = vg_work_ring(w, u, other, &other_open);
+  n_other = vg_tris_ring(w, u, other, &other_open);
   if (!n_other || n + n_other < 7) return 0;
   for (size_t i = 0; i < n; i++)
     for (int end = 0; end < (open && i + 1 == n ? 2 : 1); end++) {
-      uint32_t p = end ? vg_work_from(w, vg_half_prev(ring[i]))
-                       : vg_work_to(w, ring[i]);
+      uint32_t p = end ? vg_tris_from(w, vg_half_prev(ring[i]))
+                       : vg_tris_to(w, ring[i]);
       int found = 0;
 
       for (size_t k = 0; k < n_other && !found; k++)
-        found = vg_work_to(w, other[k]) == p
+        found = vg_tris_to(w, other[k]) == p
                 || (other_open && k + 1 == n_other
-                    && vg_work_from(w, vg_half_prev(other[k])) == p);
+                    && vg_tris_from(w, vg_half_prev(other[k])) == p);
       common += (size_t)found;
     }
   return common == wanted;
@@ -314,17 +314,17 @@ static int link_fits(const struct vg_tris *w, uint32_t h,
 static int joins_fit(const struct vg_tris *w, uint32_t h,
                      const uint32_t *ring, size_t n, int open)
 {
-  const uint32_t u = vg_work_to(w, h), g = w->mate[h];
-  const uint32_t o = vg_work_from(w, vg_half_prev(h));
-  const uint32_t q = g == VG_REF_NONE ? u : vg_work_from(w, vg_half_prev(g));
+  const uint32_t u = vg_tris_to(w, h), g = w->mate[h];
+  const uint32_t o = vg_tris_from(w, vg_half_prev(h));
+  const uint32_t q = g == VG_REF_NONE ? u : vg_tris_from(w, vg_half_prev(g));
 
   if (w->point[u].frozen == VG_WORK_FANS) return 0;
   for (size_t i = 0; i < n; i++)
     for (int end = 0; end < (open && i + 1 == n ? 2 : 1); end++) {
-      uint32_t p = end ? vg_work_from(w, vg_half_prev(ring[i]))
-                       : vg_work_to(w, ring[i]);
+      uint32_t p = end ? vg_tris_from(w, vg_half_prev(ring[i]))
+                       : vg_tris_to(w, ring[i]);
 
-      if (p != u && p != o && p != q && !vg_work_may_join(w, p, u)) return 0;
+      if (p != u && p != o && p != q && !vg_tris_may_join(w, p, u)) return 0;
     }
   return 1;
 }
@@ -333,24 +333,24 @@ static int collapse_fits(const struct vg_tris *w, uint32_t h,
                          const uint32_t *ring, size_t n, double most,
                          double shape, struct vg_cavity *c)
 {
-  uint32_t v = vg_work_from(w, h), u = vg_work_to(w, h);
-  const struct vg_work_point *pu = &w->point[u];
+  uint32_t v = vg_tris_from(w, h), u = vg_tris_to(w, h);
+  const struct vg_tris_point *pu = &w->point[u];
   double before = 1, longest = most, l;
 
   c->on_curve = w->point[v].kind == VG_WORK_CURVE;
   for (size_t i = 0; i < n; i++) {
     c->old[c->n_old++] = ring[i] / 3;
-    vg_cavity_narrow(w, c, vg_work_to(w, ring[i]));
-    before = fmin(before, vg_work_tri_shape(w, ring[i] / 3));
-    longest = fmax(longest, vg_work_ratio(w, ring[i]));
+    vg_cavity_narrow(w, c, vg_tris_to(w, ring[i]));
+    before = fmin(before, vg_tris_tri_shape(w, ring[i] / 3));
+    longest = fmax(longest, vg_tris_ratio(w, ring[i]));
   }
   for (size_t i = 0; i < n; i++) {
-    uint32_t a = vg_work_to(w, ring[i]);
-    uint32_t b = vg_work_from(w, vg_half_prev(ring[i]));
-    const struct vg_work_point *pa = &w->point[a], *pb = &w->point[b];
+    uint32_t a = vg_tris_to(w, ring[i]);
+    uint32_t b = vg_tris_from(w, vg_half_prev(ring[i]));
+    const struct vg_tris_point *pa = &w->point[a], *pb = &w->point[b];
 
     if (a == u || b == u) continue;
-    l = vg_work_length(w, pu, pa);
+    l = vg_tris_length(w, pu, pa);
     if (l > longest) return 0;
     /* u a is new unless a is next to the edge that goes; curves are seen to
      * elsewhere */
@@ -367,12 +367,12 @@ static int collapse_fits(const struct vg_tris *w, uint32_t h,
 static void collapse(struct vg_tris *w, uint32_t h, const uint32_t *ring,
                      size_t n, const struct vg_cavity *c)
 {
-  uint32_t u = vg_work_to(w, h), g = w->mate[h], t[VG_WORK_RING], n_t = 0;
+  uint32_t u = vg_tris_to(w, h), g = w->mate[h], t[VG_WORK_RING], n_t = 0;
   uint32_t go[2] = { h, g }, keep[VG_WORK_RING], n_keep = 0, v;
 
-  v = vg_work_from(w, h);
+  v = vg_tris_from(w, h);
   if (w->point[v].kind == VG_WORK_CURVE) {
-    struct vg_work_line *a = &w->line[w->edge[h] - 1], *b;
+    struct vg_tris_line *a = &w->line[w->edge[h] - 1], *b;
     int last = a->end[1] == u;
 
     b = &w->line[other_line(w, ring, n, w->edge[h]) - 1];
@@ -413,18 +413,18 @@ static void collapse(struct vg_tris *w, uint32_t h, const uint32_t *ring,
   w->n_collapse++;
 }
 
-int vg_work_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
+int vg_tris_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
 {
-  assert(h < 3 * w->n_tri && !vg_work_removed(w, h / 3));
+  assert(h < 3 * w->n_tri && !vg_tris_removed(w, h / 3));
 
   struct vg_cavity c;
-  uint32_t ring[VG_WORK_RING], v = vg_work_from(w, h), k = h, g = w->mate[h];
+  uint32_t ring[VG_WORK_RING], v = vg_tris_from(w, h), k = h, g = w->mate[h];
   size_t n;
   int open;
 
-  if (vg_work_ends(w) || w->point[v].kind == VG_WORK_CORNER
+  if (vg_tris_ends(w) || w->point[v].kind == VG_WORK_CORNER
       || w->point[v].frozen || w->point[v].kept) return 0;
-  n = vg_work_ring(w, v, ring, &open);
+  n = vg_tris_ring(w, v, ring, &open);
   if (!n) return 0;
   if (w->edge[h] && w->point[v].kind == VG_WORK_FACE) return 0;
   vg_cavity_begin(w, &c, v);
@@ -435,8 +435,8 @@ int vg_work_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
     uint32_t p = vg_half_next(k), q = vg_half_prev(k);
 
     if (w->edge[p] && w->edge[q]) return 0;
-    if ((vg_work_is_border(w, p) && w->edge[q])
-        || (vg_work_is_border(w, q) && w->edge[p])) return 0;
+    if ((vg_tris_is_border(w, p) && w->edge[q])
+        || (vg_tris_is_border(w, q) && w->edge[p])) return 0;
     if (w->mate[p] == VG_REF_NONE && w->mate[q] == VG_REF_NONE) return 0;
   }
   if (!joins_fit(w, h, ring, n, open) || !link_fits(w, h, ring, n, open)
@@ -447,24 +447,24 @@ int vg_work_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
 
 /* --- swap ---------------------------------------------------------------- */
 
-int vg_work_swap(struct vg_tris *w, uint32_t h)
+int vg_tris_swap(struct vg_tris *w, uint32_t h)
 {
-  assert(h < 3 * w->n_tri && !vg_work_removed(w, h / 3));
+  assert(h < 3 * w->n_tri && !vg_tris_removed(w, h / 3));
 
   struct vg_cavity c;
   uint32_t g = w->mate[h], ring[VG_WORK_RING], t[2] = { h / 3, g / 3 };
   uint32_t p[4], out[4], m[4], e[4];
-  const struct vg_work_point *x[4];
+  const struct vg_tris_point *x[4];
   double before;
   size_t n;
   int open;
 
-  if (vg_work_ends(w) || g == VG_REF_NONE || w->edge[h]
-      || vg_work_stays(w, h)) return 0;
-  p[0] = vg_work_from(w, h);
-  p[1] = vg_work_to(w, h);
-  p[2] = vg_work_from(w, vg_half_prev(h));
-  p[3] = vg_work_from(w, vg_half_prev(g));
+  if (vg_tris_ends(w) || g == VG_REF_NONE || w->edge[h]
+      || vg_tris_stays(w, h)) return 0;
+  p[0] = vg_tris_from(w, h);
+  p[1] = vg_tris_to(w, h);
+  p[2] = vg_tris_from(w, vg_half_prev(h));
+  p[3] = vg_tris_from(w, vg_half_prev(g));
   for (int k = 0; k < 4; k++) x[k] = &w->point[p[k]];
   vg_cavity_begin(w, &c, p[0]);
   for (int k = 1; k < 4; k++) vg_cavity_narrow(w, &c, p[k]);
@@ -472,17 +472,17 @@ int vg_work_swap(struct vg_tris *w, uint32_t h)
   c.old[c.n_old++] = g / 3;
   vg_cavity_add(&c, x[2], x[0], x[3], 4);
   vg_cavity_add(&c, x[3], x[1], x[2], 0);
-  before = fmin(vg_work_shape(w, x[0], x[1], x[2]),
-                vg_work_shape(w, x[0], x[1], x[3]));
+  before = fmin(vg_tris_shape(w, x[0], x[1], x[2]),
+                vg_tris_shape(w, x[0], x[1], x[3]));
   vg_cavity_measure(w, &c);
   if (!(c.shape > GAIN * before) || p[2] == p[3]
-      || !vg_work_may_join(w, p[2], p[3])) return 0;
-  n = vg_work_ring(w, p[2], ring, &open);
+      || !vg_tris_may_join(w, p[2], p[3])) return 0;
+  n = vg_tris_ring(w, p[2], ring, &open);
   if (!n || n + 1 >= VG_WORK_RING) return 0;
   for (size_t i = 0; i < n; i++)
-    if (vg_work_to(w, ring[i]) == p[3]
-        || vg_work_from(w, vg_half_prev(ring[i])) == p[3]) return 0;
-  n = vg_work_ring(w, p[3], ring, &open);
+    if (vg_tris_to(w, ring[i]) == p[3]
+        || vg_tris_from(w, vg_half_prev(ring[i])) == p[3]) return 0;
+  n = vg_tris_ring(w, p[3], ring, &open);
   if (!n || n + 1 >= VG_WORK_RING || !vg_cavity_fits(w, &c)) return 0;
   out[0] = vg_half_next(h);    /* 1 2 */
   out[1] = vg_half_prev(h);    /* 2 0 */
@@ -505,17 +505,17 @@ int vg_work_swap(struct vg_tris *w, uint32_t h)
 
 /* p becomes q: what is around it is told. */
 static void settle_move(struct vg_tris *w, uint32_t p, const uint32_t *ring,
-                        const struct vg_cavity *c, struct vg_work_point *q)
+                        const struct vg_cavity *c, struct vg_tris_point *q)
 {
   uint32_t near[VG_WORK_RING + 2];
   size_t n = 0;
 
-  for (size_t i = 0; i < c->n_old; i++) near[n++] = vg_work_to(w, ring[i]);
+  for (size_t i = 0; i < c->n_old; i++) near[n++] = vg_tris_to(w, ring[i]);
   if (w->mate[ring[0]] == VG_REF_NONE)
-    near[n++] = vg_work_from(w, vg_half_prev(ring[c->n_old - 1]));
+    near[n++] = vg_tris_from(w, vg_half_prev(ring[c->n_old - 1]));
   near[n++] = p;
   q->given = VG_REF_NONE;
-  vg_work_ask(w, q, vg_work_size_near(w, q->x, q->home, n, near, &q->by));
+  vg_tris_ask(w, q, vg_tris_size_near(w, q->x, q->home, n, near, &q->by));
   w->point[p] = *q;
   for (size_t i = 0; i < n; i++) w->point[near[i]].changed = ++w->clock;
   for (size_t i = 0; i < c->n_old; i++) w->stamp[c->old[i]] = w->clock;
@@ -526,7 +526,7 @@ static void settle_move(struct vg_tris *w, uint32_t p, const uint32_t *ring,
 /* The triangles around p as they would be were it q; returns the least shape
  * that they have now. */
 static double move_cavity(const struct vg_tris *w, uint32_t p, size_t n,
-                          const uint32_t *ring, const struct vg_work_point *q,
+                          const uint32_t *ring, const struct vg_tris_point *q,
                           struct vg_cavity *c)
 {
   double before = 1;
@@ -535,31 +535,31 @@ static double move_cavity(const struct vg_tris *w, uint32_t p, size_t n,
   for (size_t i = 0; i < n; i++) {
     c->was[i] = (uint16_t)i;
     c->old[c->n_old++] = ring[i] / 3;
-    vg_cavity_narrow(w, c, vg_work_to(w, ring[i]));
-    before = fmin(before, vg_work_tri_shape(w, ring[i] / 3));
-    vg_cavity_add(c, q, &w->point[vg_work_to(w, ring[i])],
-                  &w->point[vg_work_from(w, vg_half_prev(ring[i]))],
+    vg_cavity_narrow(w, c, vg_tris_to(w, ring[i]));
+    before = fmin(before, vg_tris_tri_shape(w, ring[i] / 3));
+    vg_cavity_add(c, q, &w->point[vg_tris_to(w, ring[i])],
+                  &w->point[vg_tris_from(w, vg_half_prev(ring[i]))],
                   w->edge[ring[i]] ? 0 : 1);
   }
   c->fresh = w->point[p].given;
   return before;
 }
 
-int vg_work_move(struct vg_tris *w, uint32_t p, const double x[3],
+int vg_tris_move(struct vg_tris *w, uint32_t p, const double x[3],
                  double shape)
 {
   assert(p < w->n_point);
 
   struct vg_cavity c;
-  struct vg_work_point q = w->point[p];
+  struct vg_tris_point q = w->point[p];
   uint32_t ring[VG_WORK_RING];
   double n[3] = { 0, 0, 0 }, before;
   size_t n_ring;
   int open;
 
-  if (vg_work_ends(w) || w->point[p].kind != VG_WORK_FACE
+  if (vg_tris_ends(w) || w->point[p].kind != VG_WORK_FACE
       || w->point[p].frozen || w->point[p].kept) return 0;
-  n_ring = vg_work_ring(w, p, ring, &open);
+  n_ring = vg_tris_ring(w, p, ring, &open);
   if (!n_ring) return 0;
   for (size_t i = 0; i < n_ring; i++) normal_of(w, ring[i] / 3, n);
   if (!(vg_unit(n) > 0)) return 0;
@@ -582,7 +582,7 @@ int vg_work_move(struct vg_tris *w, uint32_t p, const double x[3],
 static int lines_at(const struct vg_tris *w, uint32_t p, size_t n,
                     const uint32_t *ring, uint32_t line[2])
 {
-  const struct vg_work_line *a, *b;
+  const struct vg_tris_line *a, *b;
   uint32_t first = other_line(w, ring, n, 0), second;
 
   second = first ? other_line(w, ring, n, first) : 0;
@@ -596,7 +596,7 @@ static int lines_at(const struct vg_tris *w, uint32_t p, size_t n,
          && a->end[0] != p && b->end[1] != p && a->at[1] == b->at[0];
 }
 
-int vg_work_span(const struct vg_tris *w, uint32_t p, struct vg_work_span *s)
+int vg_tris_span(const struct vg_tris *w, uint32_t p, struct vg_tris_span *s)
 {
   uint32_t ring[VG_WORK_RING];
   size_t n;
@@ -605,7 +605,7 @@ int vg_work_span(const struct vg_tris *w, uint32_t p, struct vg_work_span *s)
   assert(p < w->n_point && s);
   if (w->point[p].kind != VG_WORK_CURVE || w->point[p].frozen
       || w->point[p].kept) return 0;
-  n = vg_work_ring(w, p, ring, &open);
+  n = vg_tris_ring(w, p, ring, &open);
   if (!n || !lines_at(w, p, n, ring, s->line)) return 0;
   s->curve = w->line[s->line[0]].curve;
   s->lo = w->line[s->line[0]].at[0];
@@ -614,24 +614,24 @@ int vg_work_span(const struct vg_tris *w, uint32_t p, struct vg_work_span *s)
   return 1;
 }
 
-int vg_work_slide(struct vg_tris *w, uint32_t p, double at, double shape)
+int vg_tris_slide(struct vg_tris *w, uint32_t p, double at, double shape)
 {
   assert(p < w->n_point);
 
-  struct vg_work_point q = w->point[p];
-  struct vg_work_span s;
+  struct vg_tris_point q = w->point[p];
+  struct vg_tris_span s;
   struct vg_cavity c;
   uint32_t ring[VG_WORK_RING];
   double before, foot[3];
   size_t n;
   int open;
 
-  if (!vg_work_span(w, p, &s) || !(at > s.lo && at < s.hi)) return 0;
-  n = vg_work_ring(w, p, ring, &open);
+  if (!vg_tris_span(w, p, &s) || !(at > s.lo && at < s.hi)) return 0;
+  n = vg_tris_ring(w, p, ring, &open);
   vg_curve_at(w->curves, w->ref, s.curve, at, q.x);
   before = fmin(shape, move_cavity(w, p, n, ring, &q, &c));
   if (open)
-    vg_cavity_narrow(w, &c, vg_work_from(w, vg_half_prev(ring[n - 1])));
+    vg_cavity_narrow(w, &c, vg_tris_from(w, vg_half_prev(ring[n - 1])));
   c.on_curve = 1;
   vg_cavity_measure(w, &c);
   if (!(c.shape > before)

@@ -12,7 +12,7 @@
 struct vg_cavity {
   size_t n_old, n_new, n_sample;
   uint32_t old[VG_WORK_NEW];          /* triangles */
-  const struct vg_work_point *corner[VG_WORK_NEW][3];
+  const struct vg_tris_point *corner[VG_WORK_NEW][3];
   uint8_t edges[VG_WORK_NEW];         /* bit k: edge k is new, and not on a
                                          curve */
   uint16_t was[VG_WORK_NEW];          /* on a curve: of the old ones, that
@@ -35,12 +35,12 @@ void vg_cavity_narrow(const struct vg_tris *w, struct vg_cavity *c,
                       uint32_t point);
 
 /** Add a triangle that will be there. */
-void vg_cavity_add(struct vg_cavity *c, const struct vg_work_point *x,
-                   const struct vg_work_point *y,
-                   const struct vg_work_point *z, int edges);
+void vg_cavity_add(struct vg_cavity *c, const struct vg_tris_point *x,
+                   const struct vg_tris_point *y,
+                   const struct vg_tris_point *z, int edges);
 
 /** Tolerance at points of this size. */
-double vg_work_tolerance(const struct vg_tris *w, double size);
+double vg_tris_tolerance(const struct vg_tris *w, double size);
 
 /** Sets c->shape: cheap, before what follows. */
 void vg_cavity_measure(const struct vg_tris *w, struct vg_cavity *c);
