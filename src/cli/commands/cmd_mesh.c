@@ -612,44 +612,45 @@ static int run(const struct arguments *a)
   return close_log(&r, status);
 }
 
+static const struct argp_option own[] = {
+  { "project", 'p', "PROJECT", 0, "stem of the project files, or the full "
+    "name of a surface file", 1 },
+  { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if there is "
+    "one]", 1 },
+  { "out", 'o', "DIR", 0, "folder for the results [default beside the "
+    "input]", 1 },
+  { "json", 'j', NULL, 0, "report as JSON on standard output", 1 },
+  { "quiet", 'q', NULL, 0, "no progress", 1 },
+  { "progress", KEY_PROGRESS, "SECONDS", 0, "between lines of progress where "
+    "standard error is no terminal [default 10]", 1 },
+  { "timeline", KEY_TIMELINE, NULL, 0, "write what each worker did when, "
+    "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'; the "
+    "report then tells of cells near interfaces", 1 },
+  { "log", KEY_LOG, "FILE", 0, "write all that is said into FILE as well, "
+    "with versions, host, ranks and threads, and settings", 1 },
+  { "run-dir", KEY_RUN_DIR, "DIR", 0, "keep finished tasks here, so that a "
+    "run that is stopped or killed can be resumed; removed at success", 1 },
+  { "resume", KEY_RESUME, NULL, 0, "go on with what is kept in --run-dir, "
+    "on any number of ranks and threads", 1 },
+  { "keep-run", KEY_KEEP, NULL, 0, "keep --run-dir at success", 1 },
+  { "run-limit", KEY_LIMIT, "BYTES", 0, "keep no more in --run-dir, over all "
+    "ranks [default 0: no limit]", 1 },
+  { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0, "do tasks in another order; "
+    "the files stay the same (a test) [default 0: heaviest first]", 1 },
+  { "test-node-ranks", KEY_NODE_RANKS, "N", OPTION_HIDDEN, "take N ranks "
+    "that follow each other for those of a node (a test)", 1 },
+  { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN, "the last node takes "
+    "its surface, layers or sizes for changed (a test)", 1 },
+  { "test-fail-leaves", KEY_FAIL, "SHARE[,ROUNDS]", OPTION_HIDDEN, "this "
+    "share of the leaves is not filled at the first ROUNDS attempts (a "
+    "test)", 1 },
+  { NULL, 't', "N", 0, "the same as --threads", 1 },
+  { NULL, 'L', "N", 0, "the same as --levels", 1 },
+  { 0 }
+};
+
 int vg_cmd_mesh(int argc, char **argv)
 {
-  const struct argp_option own[] = {
-    { "project", 'p', "PROJECT", 0, "stem of the project files, or the full "
-      "name of a surface file", 1 },
-    { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if there is "
-      "one]", 1 },
-    { "out", 'o', "DIR", 0, "folder for the results [default beside the "
-      "input]", 1 },
-    { "json", 'j', NULL, 0, "report as JSON on standard output", 1 },
-    { "quiet", 'q', NULL, 0, "no progress", 1 },
-    { "progress", KEY_PROGRESS, "SECONDS", 0, "between lines of progress where "
-      "standard error is no terminal [default 10]", 1 },
-    { "timeline", KEY_TIMELINE, NULL, 0, "write what each worker did when, "
-      "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'; the "
-      "report then tells of cells near interfaces", 1 },
-    { "log", KEY_LOG, "FILE", 0, "write all that is said into FILE as well, "
-      "with versions, host, ranks and threads, and settings", 1 },
-    { "run-dir", KEY_RUN_DIR, "DIR", 0, "keep finished tasks here, so that a "
-      "run that is stopped or killed can be resumed; removed at success", 1 },
-    { "resume", KEY_RESUME, NULL, 0, "go on with what is kept in --run-dir, "
-      "on any number of ranks and threads", 1 },
-    { "keep-run", KEY_KEEP, NULL, 0, "keep --run-dir at success", 1 },
-    { "run-limit", KEY_LIMIT, "BYTES", 0, "keep no more in --run-dir, over all "
-      "ranks [default 0: no limit]", 1 },
-    { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0, "do tasks in another order; "
-      "the files stay the same (a test) [default 0: heaviest first]", 1 },
-    { "test-node-ranks", KEY_NODE_RANKS, "N", OPTION_HIDDEN, "take N ranks "
-      "that follow each other for those of a node (a test)", 1 },
-    { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN, "the last node takes "
-      "its surface, layers or sizes for changed (a test)", 1 },
-    { "test-fail-leaves", KEY_FAIL, "SHARE[,ROUNDS]", OPTION_HIDDEN, "this "
-      "share of the leaves is not filled at the first ROUNDS attempts (a "
-      "test)", 1 },
-    { NULL, 't', "N", 0, "the same as --threads", 1 },
-    { NULL, 'L', "N", 0, "the same as --levels", 1 },
-    { 0 }
-  };
   struct vg_cli_options options;
   struct argp argp = { .parser = option, .args_doc = "-p PROJECT",
     .doc = "Mesh the volume of a project: viscous layers on its walls "

@@ -121,57 +121,58 @@ static error_t option(int key, char *arg, struct argp_state *state)
   return vg_cli_add_override(&o->kept, key, arg, state);
 }
 
+static const struct argp_option own[] = {
+  { "project", 'p', "PROJECT", 0, "path and name without extension, or one "
+    "surface file, as for 'vanguard mesh'", 1 },
+  { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if it exists]",
+    1 },
+  { "replay", 'r', "FILE", 0, "record of a run, as 'vanguard mesh "
+    "--timeline' writes it", 1 },
+  { "ranks", 'n', "LIST", 0, "numbers of ranks: 1,2,4 or 3:7 or 1:64:x2 "
+    "[default 1:512:x2]", 1 },
+  { "threads", 't', "LIST", 0, "threads of each rank [default 1]; those "
+    "that are idle help with joins, so that a node's cores as one rank do "
+    "more than as ranks of one thread", 1 },
+  { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0, "ranks that share a "
+    "node: no latency between them, check, sizes and layers made together "
+    "[default 1]", 1 },
+  { "cores", KEY_CORES, "N", 0, "cores of a node: --ranks are numbers of "
+    "nodes, and of all ways to share their cores among ranks and threads "
+    "the best is named with its mpirun line; of a project only", 1 },
+  { "latency", KEY_LATENCY, "S", 0, "seconds per message [default 2e-6]",
+    1 },
+  { "bandwidth", KEY_BANDWIDTH, "B", 0, "bytes per second of a rank's link "
+    "[default 1e10]", 1 },
+  { "rate", KEY_RATE, "X", 0, "speed of a core over the recorded one; "
+    "without a record over the one that the times were measured on "
+    "[default 1]", 1 },
+  { "rates", KEY_RATES, "FILE", 0, "take the seconds per cell and face of "
+    "this machine from the record of a run on it, by least squares "
+    "[default: those of the machine that docs/performance-parallel.md "
+    "names]", 1 },
+  { "target", KEY_TARGET, "S", 0, "find the smallest machine that needs no "
+    "more than S seconds; of a project only, a --replay shows all of "
+    "--ranks and --threads [default: the largest that is 80 % efficient]",
+    1 },
+  { "serial", KEY_SERIAL, "S", 0, "seconds outside the tasks, which no "
+    "workers share [default: phases of the record, shared by a node or by "
+    "all; without one by the times of reading, checking and sizes now]", 1 },
+  { "joins-roam", KEY_ROAM, NULL, 0, "joins are done by any rank, not at "
+    "their home", 1 },
+  { "loop-threads", KEY_LOOPS, "N", 0, "most threads that make loops of "
+    "joins faster, since they share the memory of a rank [default 16]", 1 },
+  { "json", 'j', NULL, 0, "forecast as JSON on standard output, with "
+    "the whole tree", 1 },
+  { "depth", KEY_DEPTH, "N", 0, "levels of the tree of cuts that are shown "
+    "[default 2]", 1 },
+  { "quiet", 'q', NULL, 0, "no progress", 1 },
+  { "plot", KEY_PLOT, "FILE", 0, "figure of the speed-up (SVG)", 1 },
+  { NULL, 'L', "N", 0, "the same as --levels", 1 },
+  { 0 }
+};
+
 int vg_cmd_plan(int argc, char **argv)
 {
-  const struct argp_option own[] = {
-    { "project", 'p', "PROJECT", 0, "path and name without extension, or one "
-      "surface file, as for 'vanguard mesh'", 1 },
-    { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if it exists]",
-      1 },
-    { "replay", 'r', "FILE", 0, "record of a run, as 'vanguard mesh "
-      "--timeline' writes it", 1 },
-    { "ranks", 'n', "LIST", 0, "numbers of ranks: 1,2,4 or 3:7 or 1:64:x2 "
-      "[default 1:512:x2]", 1 },
-    { "threads", 't', "LIST", 0, "threads of each rank [default 1]; those "
-      "that are idle help with joins, so that a node's cores as one rank do "
-      "more than as ranks of one thread", 1 },
-    { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0, "ranks that share a "
-      "node: no latency between them, check, sizes and layers made together "
-      "[default 1]", 1 },
-    { "cores", KEY_CORES, "N", 0, "cores of a node: --ranks are numbers of "
-      "nodes, and of all ways to share their cores among ranks and threads "
-      "the best is named with its mpirun line; of a project only", 1 },
-    { "latency", KEY_LATENCY, "S", 0, "seconds per message [default 2e-6]",
-      1 },
-    { "bandwidth", KEY_BANDWIDTH, "B", 0, "bytes per second of a rank's link "
-      "[default 1e10]", 1 },
-    { "rate", KEY_RATE, "X", 0, "speed of a core over the recorded one; "
-      "without a record over the one that the times were measured on "
-      "[default 1]", 1 },
-    { "rates", KEY_RATES, "FILE", 0, "take the seconds per cell and face of "
-      "this machine from the record of a run on it, by least squares "
-      "[default: those of the machine that docs/performance-parallel.md "
-      "names]", 1 },
-    { "target", KEY_TARGET, "S", 0, "find the smallest machine that needs no "
-      "more than S seconds; of a project only, a --replay shows all of "
-      "--ranks and --threads [default: the largest that is 80 % efficient]",
-      1 },
-    { "serial", KEY_SERIAL, "S", 0, "seconds outside the tasks, which no "
-      "workers share [default: phases of the record, shared by a node or by "
-      "all; without one by the times of reading, checking and sizes now]", 1 },
-    { "joins-roam", KEY_ROAM, NULL, 0, "joins are done by any rank, not at "
-      "their home", 1 },
-    { "loop-threads", KEY_LOOPS, "N", 0, "most threads that make loops of "
-      "joins faster, since they share the memory of a rank [default 16]", 1 },
-    { "json", 'j', NULL, 0, "forecast as JSON on standard output, with "
-      "the whole tree", 1 },
-    { "depth", KEY_DEPTH, "N", 0, "levels of the tree of cuts that are shown "
-      "[default 2]", 1 },
-    { "quiet", 'q', NULL, 0, "no progress", 1 },
-    { "plot", KEY_PLOT, "FILE", 0, "figure of the speed-up (SVG)", 1 },
-    { NULL, 'L', "N", 0, "the same as --levels", 1 },
-    { 0 }
-  };
   struct vg_cli_options options;
   struct argp argp = { .parser = option,
     .args_doc = "-p PROJECT\n--replay FILE [--schedule dynamic|cyclic]",

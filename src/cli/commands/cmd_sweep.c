@@ -297,41 +297,42 @@ done:
   return st < 0 ? vg_cli_fail(&err) : status;
 }
 
+static const struct argp_option options[] = {
+  { "project", 'p', "PROJECT", 0, "as for vanguard mesh", 1 },
+  { "deck", 'd', "FILE", 0, "run deck, for vanguard mesh too; lists that no "
+    "option gives come from its table sweep [default PROJECT.deck if there "
+    "is one]", 1 },
+  { "levels", 'L', "LIST", 0, "levels of bisection: 1,2,4 or 3:7 or "
+    "2:10:2", 2 },
+  { "leaf-cells", KEY_LEAF_CELLS, "LIST", 0, "cells to a leaf; both lists "
+    "make cases of their own [default as vanguard mesh has it]", 2 },
+  { "decompose", KEY_DECOMPOSE, "LIST", 0, "ways to decompose: advancing,"
+    "discrete,octree; each with all --parts, as cases of their own [default "
+    "as vanguard mesh has it]", 2 },
+  { "parts", KEY_PARTS, "LIST", 0, "numbers of parts", 2 },
+  { "ranks", 'n', "LIST", 0, "numbers of ranks [default 1]", 2 },
+  { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 2 },
+  { "family", KEY_FAMILY, "LIST", 0, "levels of a grid family, as in 1:3: "
+    "all sizes times 2/(level + 1), layers by the Drag Prediction "
+    "Workshops' rule (--scale, --scale-layers workshop)", 2 },
+  { "repeat", KEY_REPEAT, "K", 0, "times that each case is run [default "
+    "1]", 2 },
+  { "launcher", KEY_LAUNCHER, "COMMAND", 0, "how ranks are started, e.g. "
+    "'srun -n {ranks} -c {threads}' [default 'mpirun -n {ranks} --bind-to "
+    "none', nothing for one rank]", 3 },
+  { "out", 'o', "DIR", 0, "folder for tables, figures and a folder for "
+    "each case [default sweep]", 3 },
+  { "keep", KEY_KEEP, NULL, 0, "keep all meshes [default: reports, records "
+    "and logs only]", 3 },
+  { "json", 'j', NULL, 0, "table as JSON on standard output", 3 },
+  { "quiet", 'q', NULL, 0, "no progress", 3 },
+  { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN, "instead of this "
+    "program", 3 },
+  { 0 }
+};
+
 int vg_cmd_sweep(int argc, char **argv)
 {
-  const struct argp_option options[] = {
-    { "project", 'p', "PROJECT", 0, "as for vanguard mesh", 1 },
-    { "deck", 'd', "FILE", 0, "run deck, for vanguard mesh too; lists that no "
-      "option gives come from its table sweep [default PROJECT.deck if there "
-      "is one]", 1 },
-    { "levels", 'L', "LIST", 0, "levels of bisection: 1,2,4 or 3:7 or "
-      "2:10:2", 2 },
-    { "leaf-cells", KEY_LEAF_CELLS, "LIST", 0, "cells to a leaf; both lists "
-      "make cases of their own [default as vanguard mesh has it]", 2 },
-    { "decompose", KEY_DECOMPOSE, "LIST", 0, "ways to decompose: advancing,"
-      "discrete,octree; each with all --parts, as cases of their own [default "
-      "as vanguard mesh has it]", 2 },
-    { "parts", KEY_PARTS, "LIST", 0, "numbers of parts", 2 },
-    { "ranks", 'n', "LIST", 0, "numbers of ranks [default 1]", 2 },
-    { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 2 },
-    { "family", KEY_FAMILY, "LIST", 0, "levels of a grid family, as in 1:3: "
-      "all sizes times 2/(level + 1), layers by the Drag Prediction "
-      "Workshops' rule (--scale, --scale-layers workshop)", 2 },
-    { "repeat", KEY_REPEAT, "K", 0, "times that each case is run [default "
-      "1]", 2 },
-    { "launcher", KEY_LAUNCHER, "COMMAND", 0, "how ranks are started, e.g. "
-      "'srun -n {ranks} -c {threads}' [default 'mpirun -n {ranks} --bind-to "
-      "none', nothing for one rank]", 3 },
-    { "out", 'o', "DIR", 0, "folder for tables, figures and a folder for "
-      "each case [default sweep]", 3 },
-    { "keep", KEY_KEEP, NULL, 0, "keep all meshes [default: reports, records "
-      "and logs only]", 3 },
-    { "json", 'j', NULL, 0, "table as JSON on standard output", 3 },
-    { "quiet", 'q', NULL, 0, "no progress", 3 },
-    { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN, "instead of this "
-      "program", 3 },
-    { 0 }
-  };
   const struct argp argp = { .options = options, .parser = option,
     .args_doc = "-p PROJECT [-- MESH-OPTION...]",
     .doc = "Run vanguard mesh for all combinations of levels, leaf sizes or ways "
