@@ -72,8 +72,8 @@ void vg_entries_add(const struct vg_entries *l, void *to, const void *from)
   }
 }
 
-/* Sums of counts and times, and the most of what has an extreme, whose sign is
- * changed where it is the least. */
+/* Counts and times are summed. Of other reals the most is taken, after a change
+ * of sign where the least is wanted. */
 vg_status vg_entries_agree(const struct vg_entries *l, void *report,
                           struct vg_comm *comm, struct vg_error *err)
 {

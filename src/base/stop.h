@@ -1,4 +1,4 @@
-/* base/stop.h: how work that takes long is told to end before it is done. */
+/* base/stop.h: how work that takes long is asked to stop before it is done. */
 #ifndef VG_BASE_STOP_H
 #define VG_BASE_STOP_H
 
@@ -26,7 +26,7 @@ static inline vg_status vg_stopped(const struct vg_stop *s,
                                    struct vg_error *err)
 {
   if (!vg_stops(s)) return VG_OK;
-  return vg_fail(err, VG_ERR_STOPPED, "given up unfinished, as asked for");
+  return vg_fail(err, VG_ERR_STOPPED, "stopped before it was done, as asked");
 }
 
 #ifdef __cplusplus

@@ -4,8 +4,8 @@
  * that advance from the front by the local spacing (core/fill/place.h), inserts
  * them (core/delaunay/insert.h) and optimises the cells
  * (core/optimise/optimise.h). Without a region it fills the whole void. With a
- * region it keeps the cells along the region's planes, and the front around
- * them becomes part of the front of what is left:
+ * region it keeps the cells along the region's planes. The faces around these
+ * cells join the front of the void that is left:
  *
  *     front   ___________           ___________
  *            |     :     |         |   |xxx|   |   x  cells that are kept
@@ -86,8 +86,8 @@ void vg_filled_put(struct vg_writer *w, const struct vg_filled *f, int cells);
 void vg_filled_get(struct vg_reader *r, struct vg_filled *f, int cells);
 
 /** Number of defects: cells without positive volume (exact), indices out of
- * range, edges of the front of what is left that are not balanced, for a front
- * that was closed. 0 where all is well; SIZE_MAX when memory is refused, or
+ * range, and open edges of the front of the void that is left, for a front that
+ * was closed. 0 where all is well; SIZE_MAX when memory is refused, or
  * where the consumed faces do not ascend or are out of range. has_region: as in the call that made *f. O(n log n). For checks. */
 size_t vg_filled_defects(const struct vg_front *front,
                          const struct vg_filled *f, int has_region);

@@ -5,7 +5,7 @@
 #include "core/delaunay/tets.h"
 #include "core/fill/fill.h"
 
-/* A front on its way to cells. */
+/* A front that is being filled. */
 struct vg_filling {
   const struct vg_front *front;
   const struct vg_region *region;    /* NULL: everywhere */

@@ -1,5 +1,5 @@
-/* What the kernel returns: the cells that are kept, and the change of the
- * front around them. */
+/* The result of the kernel: the cells that are kept, and the change of the front
+ * around them. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,7 +92,7 @@ static vg_status take_cells(struct vg_filling *g, const uint32_t *number,
   return VG_OK;
 }
 
-/* --- the front of what is left ------------------------------------------- */
+/* --- the change of the front ---------------------------------------------- */
 
 /* Faces of the front by their lowest point. */
 struct lookup {
@@ -231,7 +231,8 @@ static int is_positive(const struct vg_front *front, const struct vg_filled *f,
   return vg_orient3d(x[0], x[1], x[2], x[3]) > 0;
 }
 
-/* The front of what is left, with the points of the front and new ones. */
+/* Open edges of the front of the void that is left. Its points are those of the
+ * front and the new ones. */
 static size_t open_edges_left(const struct vg_front *front,
                               const struct vg_filled *f)
 {

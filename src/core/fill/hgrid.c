@@ -307,7 +307,7 @@ void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
 int vg_hgrid_init(struct vg_hgrid *s, const double lo[3], double h_min,
                   double h_max, double slope)
 {
-  assert(!s->slot && !s->block && !s->page);
+  assert(!s->table.slot && !s->block && !s->page);
   assert(h_min > 0 && h_max >= h_min && slope >= 0);
   memcpy(s->lo, lo, sizeof s->lo);
   s->slope = slope;

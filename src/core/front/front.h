@@ -31,7 +31,8 @@ struct vg_front {
   uint32_t (*face)[3];       /* [n_face] indices of the corners */
   uint32_t *patch;           /* [n_face] patches that the faces belong to; NULL:
                                 not known, as in fronts that tasks are given */
-  uint32_t *face_id;         /* [n_face] ids of faces, likewise */
+  uint32_t *face_id;         /* [n_face] ids of the faces; NULL: the faces have
+                                none */
 };
 #define VG_FRONT_INIT { 0 }
 

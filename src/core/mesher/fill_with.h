@@ -28,7 +28,7 @@ void vg_mesher_close(struct vg_mesher_pool *p);
  * front the face of one cell on its inner side, every other face that of two
  * cells on both sides of it, all volumes positive (exactly), their sum that of
  * the front.
- * Returns VG_NOT_BETTER when the cells do not pass, or there are none: *out is
+ * Returns VG_NOT_BETTER when the cells do not pass, or the mesher made none: *out is
  * untouched, and *report counts why (n_other_...); VG_ERR_STOPPED;
  * VG_ERR_UNSUPPORTED beyond options->point_limit.
  * Threads: any number of voids at a time. */

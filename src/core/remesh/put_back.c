@@ -96,7 +96,7 @@ static size_t return_corners(struct moving *k, size_t t)
 }
 
 /* Return the points in the first n rings around the marked points. */
-static void return_rings(struct moving *k, int n)
+static void return_rings(struct moving *k, uint8_t n)
 {
   for (uint8_t ring = 1; ring <= n; ring++)
     for (size_t t = 0; t < k->m->n_tri; t++) {

@@ -53,7 +53,7 @@ struct vg_cad_options {
                                 by line: unit, what was healed or dropped, with
                                 places; NULL: lost */
   void *user;                /* of note */
-  struct vg_stop stop;       /* asked ten times a second: give up? */
+  struct vg_stop stop;       /* asked ten times a second */
 };
 #define VG_CAD_OPTIONS_INIT \
   { .chord = 2e-3, .angle = 15, .seconds = 3600 }   /* S15 */

@@ -206,7 +206,7 @@ static vg_status final_status(const struct vg_engine *e, struct vg_error *err)
 
   if (v->status >= 0) return (vg_status)v->status;
   if (v->status == VG_ERR_STOPPED)
-    return vg_fail(err, VG_ERR_STOPPED, "given up unfinished, as asked for");
+    return vg_fail(err, VG_ERR_STOPPED, "stopped before it was done, as asked");
   if (v->from == e->rank)
     return vg_fail(err, (vg_status)v->status, "%s", v->text);
   return vg_fail(err, (vg_status)v->status, "rank %d: %s", v->from, v->text);

@@ -51,8 +51,8 @@ struct vg_engine_ops {
   /** Do the task. Allowed to keep results on this rank (in user).
    * outcome out: what its home needs to know, for `done` (may be left NULL).
    * worker: 0 .. threads - 1, names scratch space.
-   * VG_ERR_STOPPED: given up because vg_engine_stopping(e); counts as not
-   * done (and stops the job, should it not be stopping yet).
+   * VG_ERR_STOPPED: abandoned because vg_engine_stopping(e). The task counts as
+   * not done, and the job stops if it was not stopping yet.
    * done in: zeros; out: what was done, for progress and records. */
   vg_status (*run)(void *user, const struct vg_engine *e,
                    const struct vg_task *task, int worker, void **outcome,
