@@ -11,7 +11,8 @@
 #define GMSH "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
 #define POINTER \
   "version https://git-lfs.github.com/spec/v1\n" \
-  "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393" \
+  "oid sha256:4d7a214614ab2935c943f9e0ff69d22e" \
+  "adbb8f32b1258daaa5e2ca24d17e2393" \
   "\nsize 12345\n"
 #define MARK "\xef\xbb\xbf"
 #define MEDIT "MeshVersionFormatted 2\nDimension 3\n"

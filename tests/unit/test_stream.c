@@ -90,7 +90,8 @@ static void drops_the_byte_order_mark_of_a_text(void **state)
 
 #define POINTER \
   "version https://git-lfs.github.com/spec/v1\n" \
-  "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393" \
+  "oid sha256:4d7a214614ab2935c943f9e0ff69d22e" \
+  "adbb8f32b1258daaa5e2ca24d17e2393" \
   "\nsize 12345\n"
 
 static void names_a_pointer_of_git_lfs(void **state)

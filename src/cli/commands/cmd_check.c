@@ -160,8 +160,8 @@ int vg_cmd_check(int argc, char **argv)
 {
   const struct argp_option own[] = {
     { "deck", 'd', "FILE", 0, "settings, patches and sources [default "
-      "STEM.deck where that exists]; the edges of a mesh, and of a surface, are compared "
-      "with the sizes of a deck that is given", 1 },
+      "STEM.deck where that exists]; the edges of a mesh, and of a "
+      "surface, are compared with the sizes of a deck that is given", 1 },
     { "defects", 'f', "FILE", 0, "write all faces with a defect to this .vtu "
       "file", 1 },
     { "against", 'a', "FILE", 0, "measure how far a surface is from this one, "

@@ -336,8 +336,8 @@ int vg_cmd_sweep(int argc, char **argv)
   const struct argp argp = { .options = options, .parser = option,
     .args_doc = "-p PROJECT [-- MESH-OPTION...]",
     .doc = "Run vanguard mesh for all combinations of levels, leaf sizes or ways "
-      "to decompose, ranks and threads, and compare: sweep.csv and sweep.json with times, "
-      "balance and digests, figures of speed-up, phases, each run's timeline "
+      "to decompose, ranks and threads, and compare: sweep.csv and "
+      "sweep.json with times, balance and digests, figures of speed-up, phases, each run's timeline "
       "and sizes of its leaves.\v"
       "Options after '--' go to vanguard mesh. Speed-ups are against the "
       "first case on one worker; if none is, those of the fewest stand for "

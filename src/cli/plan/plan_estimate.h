@@ -56,8 +56,8 @@ struct vg_plan {
   double layer_tet, layer_point;   /* if all are tetrahedra */
   double cell, point, prism, tet;  /* of the mesh; cell: of all kinds */
   double phase[VG_PHASE_N];     /* s of one core, outside the tasks; judging
-                                   includes all that is written with it, writing
-                                   is what comes behind */
+                                   includes the files written with it, writing
+                                   those that follow */
   double shared, per_cell, per_thread;  /* bytes: of any rank; of the mesh,
                                    the mean of field and layers; of a leaf */
   size_t n_row;

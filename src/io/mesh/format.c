@@ -186,8 +186,8 @@ const char *vg_format_list(void)
   return ".stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid, .X.ugrid with X "
          "of b8 lb8 b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 .lb8.ugrid64, "
          ".cogsg, .front .surf .step .stp .iges .igs .brep (read only), "
-         ".fluent.msh .su2 .vtu .openfoam (written only); .gz may follow what is "
-         "read";
+         ".fluent.msh .su2 .vtu .openfoam (written only); .gz may follow what "
+         "is read";
 }
 
 /* Does name[0..n) end in ".suffix"? */

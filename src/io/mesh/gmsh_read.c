@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "io/mesh/gmsh.h"
+#include "io/mesh/gmsh_parts.h"
 #include "io/stream/convention.h"
 
 enum { NODES_MOST = 8 };
@@ -29,8 +30,6 @@ static const struct type {
   { 27, SKIPPED, 5, { 0 } }, { 28, SKIPPED, 6, { 0 } },
 };
 
-struct name { int64_t tag; char text[VG_NAME_MAX]; };
-struct group { int64_t surface, physical; };
 struct numbered { int64_t tag; uint32_t at; };
 
 struct reader {
@@ -39,11 +38,11 @@ struct reader {
   int binary, wide;          /* wide: sizes have 8 bytes */
   struct vg_mesh m;
   size_t cap_point, cap[N_ELEMENT];
-  struct group *face[2];     /* of triangles, quadrilaterals: as `tri` */
+  struct vg_gmsh_group *face[2];     /* of triangles, quadrilaterals: as `tri` */
   size_t cap_face[2];
-  struct name *name;         /* of physical groups of surfaces */
+  struct vg_gmsh_name *name;         /* of physical groups of surfaces */
   size_t n_name, cap_name;
-  struct group *group;       /* of surfaces, by rising number */
+  struct vg_gmsh_group *group;       /* of surfaces, by rising number */
   size_t n_group, cap_group;
   struct numbered *node;     /* [n_point] by rising tag */
   int is_run;                /* tags are first_tag, first_tag + 1, ... */
@@ -184,14 +183,14 @@ static vg_status read_entity(struct reader *r, int dimension,
   if (vg_reserve(&r->group, &r->cap_group, r->n_group + 1, sizeof *r->group))
     return vg_fail_memory(err, "the surfaces");
   /* below 0: the group has the surface turned round */
-  r->group[r->n_group++] = (struct group){ tag, llabs(physical) };
+  r->group[r->n_group++] = (struct vg_gmsh_group){ tag, llabs(physical) };
 done:
   return st;
 }
 
 static int by_surface(const void *a, const void *b)
 {
-  const struct group *p = a, *q = b;
+  const struct vg_gmsh_group *p = a, *q = b;
 
   if (p->surface != q->surface) return p->surface < q->surface ? -1 : 1;
   return (p->physical > q->physical) - (p->physical < q->physical);
@@ -412,7 +411,7 @@ static vg_status reserve_elements(struct reader *r, enum element e, int64_t n,
 
 /* Room of the next element of a kind, which is counted. */
 static uint32_t *next_element(struct reader *r, enum element e,
-                              struct group group)
+                              struct vg_gmsh_group group)
 {
   struct vg_mesh *m = &r->m;
 
@@ -432,7 +431,7 @@ static uint32_t *next_element(struct reader *r, enum element e,
 
 static vg_status take_element(struct reader *r, const struct type *t,
                               int64_t number, const int64_t *tag,
-                              struct group group, struct vg_error *err)
+                              struct vg_gmsh_group group, struct vg_error *err)
 {
   uint32_t node[NODES_MOST], *to;
 
@@ -450,7 +449,7 @@ static vg_status take_element(struct reader *r, const struct type *t,
 static vg_status read_block_4(struct reader *r, struct vg_error *err)
 {
   int64_t head[3], n, v[1 + NODES_MOST];
-  struct group group = { 0, 0 };
+  struct vg_gmsh_group group = { 0, 0 };
   const struct type *t;
   size_t n_value;
   vg_status st;
@@ -463,7 +462,7 @@ static vg_status read_block_4(struct reader *r, struct vg_error *err)
   VG_TRY(check_count(r, n, n_value, 0, "elements", err));
   VG_TRY(reserve_elements(r, t->element, n, err));
   if (head[0] == 2)
-    group = (struct group){ head[1], physical_of(r, head[1]) };
+    group = (struct vg_gmsh_group){ head[1], physical_of(r, head[1]) };
   for (int64_t i = 0; i < n; i++) {
     VG_TRY(read_sizes(r, n_value, v, "the elements", err));
     VG_TRY(take_element(r, t, v[0], v + 1, group, err));
@@ -499,7 +498,7 @@ static vg_status read_element_2(struct reader *r, const struct type *t,
   if (n_tag > 2)
     VG_TRY(skip_ints(r, n_tag - 2, "the groups of an element", err));
   VG_TRY(read_ints(r, (size_t)t->n_node, node, "the elements", err));
-  st = take_element(r, t, number, node, (struct group){
+  st = take_element(r, t, number, node, (struct vg_gmsh_group){
     tag[1], llabs(tag[0]) }, err);
 done:
   return st;
@@ -690,54 +689,6 @@ static vg_status read_sections(struct reader *r, struct vg_error *err)
 
 /* --- finishing --- */
 
-/* Number of a face's patch. */
-static int64_t patch_of(const struct group *g, int has_groups)
-{
-  return has_groups ? g->physical : g->surface;
-}
-
-/* Patches stand by rising number. */
-static void set_name(struct vg_mesh *m, const struct name *name)
-{
-  size_t lo = 0, hi = m->n_patch;
-
-  while (lo < hi) {
-    size_t mid = lo + (hi - lo) / 2;
-
-    if (m->patch[mid].id < name->tag) lo = mid + 1;
-    else hi = mid;
-  }
-  if (lo < m->n_patch && m->patch[lo].id == name->tag)
-    memcpy(m->patch[lo].name, name->text, VG_NAME_MAX);
-}
-
-static vg_status set_patches(struct reader *r, struct vg_error *err)
-{
-  const size_t n[2] = { r->m.n_tri, r->m.n_quad };
-  int32_t *tag = vg_alloc(n[0] + n[1], sizeof *tag), *to = tag;
-  int has_groups = 0;
-  vg_status st = VG_OK;
-
-  if (!tag) return vg_fail_memory(err, "the patches");
-  for (int k = 0; k < 2; k++)
-    for (size_t i = 0; i < n[k]; i++)
-      has_groups |= r->face[k][i].physical != 0;
-  for (int k = 0; k < 2; k++)
-    for (size_t i = 0; i < n[k] && st == VG_OK; i++) {
-      int64_t id = patch_of(&r->face[k][i], has_groups);
-
-      if (id < -INT32_MAX || id > INT32_MAX)
-        st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: group %lld does not fit a "
-                     "patch number of 32 bits", r->in->path, (long long)id);
-      *to++ = (int32_t)id;
-    }
-  if (st == VG_OK) st = vg_patches_from_tags(&r->m, tag, err);
-  free(tag);
-  for (size_t i = 0; has_groups && i < r->n_name && st == VG_OK; i++)
-    set_name(&r->m, &r->name[i]);
-  return st;
-}
-
 static vg_status finish(struct reader *r, struct vg_error *err)
 {
   struct vg_mesh *m = &r->m;
@@ -752,7 +703,7 @@ static vg_status finish(struct reader *r, struct vg_error *err)
                    "groups Gmsh saves only what is in one", r->in->path);
   VG_TRY(vg_check_points(r->in->path, m->n_point, (const double (*)[3])m->point,
                          err));
-  VG_TRY(set_patches(r, err));
+  VG_TRY(vg_gmsh_set_patches(m, r->face, r->n_name, r->name, r->in->path, err));
   if (!has_cells) vg_mesh_keep_boundary(m);
   VG_TRY(vg_mesh_turn(m, NULL, err));
 done:

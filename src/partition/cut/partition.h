@@ -36,8 +36,8 @@ struct vg_partition_options {
   struct vg_store *store;    /* may be NULL */
   struct vg_digest job;      /* of size field and options, for the store */
   double fail_leaves;        /* share of the leaves that are not filled, by
-                                their paths, nor the first fail_rounds - 1 times
-                                that they are made larger: for tests; 0 */
+                                their paths, nor in the first fail_rounds - 1
+                                larger attempts: for tests; 0 */
   int fail_rounds;
   struct vg_progress progress;  /* on rank 0; cells done, expected */
   struct vg_stop stop;       /* asked on every rank */

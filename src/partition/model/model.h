@@ -70,8 +70,8 @@ struct vg_model_result {
   double critical;           /* s, longest chain of tasks, loops with all the
                                 help they may have, and what is outside */
   double cuts;               /* share of the busy time spent on P, T and J */
-  double cuts_extra;         /* share of it that their cells, final ones, would
-                                not have cost in leaves: the price of cutting */
+  double cuts_extra;         /* share of it that their final cells would
+                                not have cost in leaves: what cutting costs */
   double cuts_wall;          /* s, from the first task's start until the last
                                 of P, T and J has ended */
   double idle;               /* share of the workers' time */

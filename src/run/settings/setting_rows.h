@@ -1,3 +1,4 @@
+/* clang-format off */
 /* run/settings/setting_rows.h: the settings that are no tables, one row each.
  *
  * A row is all that a setting needs: settings.h takes the members of its

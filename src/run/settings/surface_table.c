@@ -24,7 +24,8 @@ static const struct vg_param columns[] = {
     "such as a blunt trailing edge; 0: 1" },
   { "stretch", AT(stretch), .type = VG_PARAM_REAL, .hi = VG_REMESH_STRETCH,
     .unit = "times", .help = "edges along the curve between patch and beside, "
-    "which stays as a line, over those across it; fades out by growth; 0: 1" },
+    "which stays as a line, over those across it; fades out by growth; "
+    "0: 1" },
 };
 
 const struct vg_setting_table vg_surface_table = { "surface", "Sizes of a new surface "
