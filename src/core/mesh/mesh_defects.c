@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "core/mesh/edges.h"
 
 static size_t bad_face(const struct vg_mesh *m, const uint32_t *node, int n,
                        uint32_t patch)
@@ -27,49 +28,40 @@ size_t vg_mesh_bad_faces(const struct vg_mesh *m)
   return bad;
 }
 
-/* An edge from its lower to its higher node, and whether a face uses it in
- * that direction. */
-struct edge { uint32_t lo, hi; int up; };
-
-static int order(const void *a, const void *b)
+static size_t add_sides(const uint32_t *node, int n, uint32_t (*side)[2])
 {
-  const struct edge *p = a, *q = b;
-
-  if (p->lo != q->lo) return p->lo < q->lo ? -1 : 1;
-  return (p->hi > q->hi) - (p->hi < q->hi);
-}
-
-static size_t add_edges(const uint32_t *node, int n, struct edge *out)
-{
-  size_t n_edge = 0;
+  size_t n_side = 0;
 
   for (int k = 0; k < n; k++) {
-    const uint32_t a = node[k], b = node[(k + 1) % n];
-
-    if (a == b) continue;    /* a face without area: an error elsewhere */
-    out[n_edge++] = a < b ? (struct edge){ a, b, 1 } : (struct edge){ b, a, 0 };
+    if (node[k] == node[(k + 1) % n]) continue;    /* an error elsewhere */
+    side[n_side][0] = node[k];
+    side[n_side++][1] = node[(k + 1) % n];
   }
-  return n_edge;
+  return n_side;
 }
 
 size_t vg_mesh_open_edges(const struct vg_mesh *m)
 {
-  struct edge *edge = vg_alloc(3 * m->n_tri + 4 * m->n_quad, sizeof *edge);
+  uint32_t (*side)[2] = vg_alloc(3 * m->n_tri + 4 * m->n_quad, sizeof *side);
+  struct vg_edges e = VG_EDGES_INIT;
   size_t n = 0, bad = 0;
 
-  if (!edge) return SIZE_MAX;
+  if (!side) return SIZE_MAX;
   for (size_t i = 0; i < m->n_tri; i++)
-    n += add_edges(m->tri[i], 3, edge + n);
+    n += add_sides(m->tri[i], 3, side + n);
   for (size_t i = 0; i < m->n_quad; i++)
-    n += add_edges(m->quad[i], 4, edge + n);
-  qsort(edge, n, sizeof *edge, order);
-  for (size_t i = 0, j; i < n; i = j) {
+    n += add_sides(m->quad[i], 4, side + n);
+  if (vg_edges_build_sides(&e, m->n_point, n, (const uint32_t (*)[2])side,
+                           NULL) < 0)
+    bad = SIZE_MAX;
+  for (size_t i = 0; i < e.n; i++) {
     long balance = 0;
 
-    for (j = i; j < n && !order(&edge[i], &edge[j]); j++)
-      balance += edge[j].up ? 1 : -1;
+    for (uint32_t k = e.start[i]; k < e.start[i + 1]; k++)
+      balance += side[e.half[k]][0] < side[e.half[k]][1] ? 1 : -1;
     bad += balance != 0;
   }
-  free(edge);
+  vg_edges_release(&e);
+  free(side);
   return bad;
 }

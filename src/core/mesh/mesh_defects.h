@@ -11,7 +11,7 @@ size_t vg_mesh_bad_faces(const struct vg_mesh *m);
 
 /** Number of edges that boundary faces do not use equally often in both
  * directions; 0 when the boundary is closed and oriented. SIZE_MAX when memory
- * is refused. O(n log n). All nodes must be in range. */
+ * is refused. O(faces). All nodes must be in range. */
 size_t vg_mesh_open_edges(const struct vg_mesh *m);
 
 #endif
