@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 #include "core/geometry/vector.h"
 #include "core/surface/surface_check.h"
 
@@ -487,17 +488,9 @@ static int by_nodes(const void *pa, const void *pb)
 
 static struct face face_of(const struct vg_mesh *m, uint32_t t)
 {
-  static const int pair[3][2] = { { 0, 1 }, { 1, 2 }, { 0, 1 } };
   struct face f = { { m->tri[t][0], m->tri[t][1], m->tri[t][2] }, t, 0 };
 
-  for (int i = 0; i < 3; i++) {
-    uint32_t *a = &f.node[pair[i][0]], *b = &f.node[pair[i][1]], c = *a;
-
-    if (*a <= *b) continue;
-    *a = *b;
-    *b = c;
-    f.turned = !f.turned;
-  }
+  f.turned = (int)vg_order3(f.node);
   return f;
 }
 

@@ -8,6 +8,7 @@
 
 #include <assert.h>
 
+#include "base/tri_key.h"
 #include "core/search/box_tree.h"
 #include "layers/slide/slide.h"
 
@@ -87,7 +88,7 @@ static inline uint32_t vg_slide_column(const struct vg_slide_work *w,
 static inline uint64_t vg_slide_key(uint32_t a, uint32_t b)
 {
   assert(a != b);
-  return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+  return vg_edge_key(a, b);
 }
 
 /** Append a point; VG_ERR_MEMORY or VG_ERR_UNSUPPORTED. */

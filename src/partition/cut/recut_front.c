@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 #include "core/delaunay/tets.h"
 #include "partition/cut/node.h"
 
@@ -14,15 +15,7 @@ static struct side side_of(const uint32_t v[3])
 {
   struct side s = { {v[0], v[1], v[2]}, 1 };
 
-  for (int k = 0; k < 3; k++) {
-    int i = k % 2;           /* 0 1, 1 2, 0 1 */
-    uint32_t swap = s.v[i];
-
-    if (swap < s.v[i + 1]) continue;
-    s.v[i] = s.v[i + 1];
-    s.v[i + 1] = swap;
-    s.sense = -s.sense;
-  }
+  if (vg_order3(s.v)) s.sense = -1;
   return s;
 }
 
