@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "base/union_find.h"
 #include "core/delaunay/tets.h"
+#include "core/search/box.h"
 #include "partition/cut/node.h"
 
 /* At the end of the path of a void, as often as it was made larger. */
@@ -51,7 +52,7 @@ struct corners { uint64_t name[3]; };    /* of a face, rising */
 struct unfilled {
   char path[VG_PATH_MAX];
   struct vg_error why;
-  double lo[3], hi[3];
+  struct vg_box box;
   size_t n_face;
   struct corners *face;      /* [n_face] in order */
 };
@@ -96,18 +97,13 @@ static void put_void(struct vg_writer *w, const struct vg_node *n,
                      const struct vg_error *why)
 {
   const struct vg_front *f = &n->front;
-  double box[6] = { INFINITY, INFINITY, INFINITY,
-                    -INFINITY, -INFINITY, -INFINITY };
+  struct vg_box box = VG_BOX_EMPTY;
   uint64_t n_face = f->n_face;
 
-  for (size_t i = 0; i < f->n_point; i++)
-    for (int k = 0; k < 3; k++) {
-      box[k] = fmin(box[k], f->x[i][k]);
-      box[3 + k] = fmax(box[3 + k], f->x[i][k]);
-    }
+  for (size_t i = 0; i < f->n_point; i++) vg_box_add(&box, f->x[i]);
   vg_put(w, sizeof n->path, 1, n->path);
   vg_put(w, sizeof why->text, 1, why->text);
-  vg_put(w, 6, sizeof *box, box);
+  vg_put(w, 1, sizeof box, &box);
   vg_put(w, 1, sizeof n_face, &n_face);
   for (size_t k = 0; k < f->n_face; k++) {
     const uint32_t *v = f->face[k];
@@ -124,8 +120,7 @@ static void get_void(struct vg_reader *r, struct unfilled *u)
 
   vg_get(r, sizeof u->path, 1, u->path);
   vg_get(r, sizeof u->why.text, 1, u->why.text);
-  vg_get(r, 3, sizeof *u->lo, u->lo);
-  vg_get(r, 3, sizeof *u->hi, u->hi);
+  vg_get(r, 1, sizeof u->box, &u->box);
   vg_get(r, 1, sizeof n_face, &n_face);
   u->path[sizeof u->path - 1] = u->why.text[sizeof u->why.text - 1] = 0;
   u->face = vg_get_array(r, (size_t)n_face, sizeof *u->face);
@@ -195,17 +190,10 @@ static int leaves_taken(const struct unfilled *u)
 
 static int boxes_meet(const struct unfilled *u, const struct vg_piece *q)
 {
-  double lo[3] = {INFINITY, INFINITY, INFINITY};
-  double hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+  struct vg_box box = VG_BOX_EMPTY;
 
-  for (size_t i = 0; i < q->n_in + q->n_point; i++)
-    for (int k = 0; k < 3; k++) {
-      lo[k] = fmin(lo[k], q->x[i][k]);
-      hi[k] = fmax(hi[k], q->x[i][k]);
-    }
-  for (int k = 0; k < 3; k++)
-    if (lo[k] > u->hi[k] || hi[k] < u->lo[k]) return 0;
-  return 1;
+  for (size_t i = 0; i < q->n_in + q->n_point; i++) vg_box_add(&box, q->x[i]);
+  return vg_box_touch(&u->box, &box);
 }
 
 static uint64_t name_in(const struct vg_piece *q, uint32_t v)

@@ -37,18 +37,6 @@ static const double close_enough = 1.1;
 
 /* --- boxes --------------------------------------------------------------- */
 
-static const struct vg_select_box empty = {
-  {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-
-static void widen(struct vg_select_box *b, const double lo[3],
-                  const double hi[3])
-{
-  for (int k = 0; k < 3; k++) {
-    b->lo[k] = lo[k] < b->lo[k] ? lo[k] : b->lo[k];
-    b->hi[k] = hi[k] > b->hi[k] ? hi[k] : b->hi[k];
-  }
-}
-
 /* Boxes of a level from `first` on have something new below, which begins at
  * `from`; those from n on are new themselves. */
 struct update {
@@ -57,8 +45,7 @@ struct update {
   size_t first, from, n;
 };
 
-static void widen_run(const struct update *u, size_t run,
-                      struct vg_select_box *b)
+static void widen_run(const struct update *u, size_t run, struct vg_box *b)
 {
   const struct vg_front *f = u->s->front;
   size_t end = (run + 1) * RUN < f->n_face ? (run + 1) * RUN : f->n_face;
@@ -66,29 +53,28 @@ static void widen_run(const struct update *u, size_t run,
 
   for (size_t i = from; i < end; i++)
     for (int j = 0; j < 3 && f->face[i][0] != VG_FACE_GONE; j++)
-      widen(b, f->x[f->face[i][j]], f->x[f->face[i][j]]);
+      vg_box_add(b, f->x[f->face[i][j]]);
 }
 
-static void widen_box(const struct update *u, size_t box,
-                      struct vg_select_box *b)
+static void widen_box(const struct update *u, size_t box, struct vg_box *b)
 {
   const struct vg_select_level *below = &u->s->level[u->level - 1];
   size_t end = (box + 1) * FAN < below->n ? (box + 1) * FAN : below->n;
   size_t from = box * FAN > u->from ? box * FAN : u->from;
 
-  for (size_t i = from; i < end; i++)
-    widen(b, below->box[i].lo, below->box[i].hi);
+  for (size_t i = from; i < end; i++) vg_box_join(b, &below->box[i]);
 }
 
 static void update_part(void *context, size_t first, size_t end, int worker)
 {
   const struct update *u = context;
-  struct vg_select_box *box = u->s->level[u->level].box;
+  struct vg_box *box = u->s->level[u->level].box;
 
   (void)worker;
   for (size_t i = u->first + first; i < u->first + end; i++) {
-    struct vg_select_box b = i < u->n ? box[i] : empty;
+    struct vg_box b = VG_BOX_EMPTY;
 
+    if (i < u->n) b = box[i];
     if (u->level) widen_box(u, i, &b);
     else widen_run(u, i, &b);
     box[i] = b;
@@ -129,7 +115,7 @@ struct list {
 };
 
 /* The spacing at the foot of any point of a box is at most this. */
-static double most_spacing(const struct list *l, const struct vg_select_box *b)
+static double most_spacing(const struct list *l, const struct vg_box *b)
 {
   double middle[3], d2 = 0;
 
@@ -143,7 +129,7 @@ static double most_spacing(const struct list *l, const struct vg_select_box *b)
 
 /* How far n . x, sign times, is below sign * offset in all of a box. */
 static double beyond(const struct vg_plane *p, double sign,
-                     const struct vg_select_box *b)
+                     const struct vg_box *b)
 {
   double far = sign * p->offset;
 
@@ -157,8 +143,8 @@ static double beyond(const struct vg_plane *p, double sign,
 
 /* Distance of a box from the planes, or beyond a wall, where distances count
  * for more: whichever is most; no further once it is more than `enough`. */
-static double distance(const struct vg_region *r,
-                       const struct vg_select_box *b, double enough)
+static double distance(const struct vg_region *r, const struct vg_box *b,
+                       double enough)
 {
   double far = 0;
 
@@ -178,7 +164,7 @@ struct limits {
 };
 
 static void add_limit(struct limits *l, const struct vg_plane *p, double sign,
-                      double most, const struct vg_select_box *b)
+                      double most, const struct vg_box *b)
 {
   double least = sign * p->offset - most, nearest = 0;
 
@@ -208,7 +194,7 @@ static int list_run(struct list *l, size_t run, double most)
 {
   const struct vg_front *f = l->s->front;
   const struct vg_region *r = l->region;
-  const struct vg_select_box *b = &l->s->level[0].box[run];
+  const struct vg_box *b = &l->s->level[0].box[run];
   size_t end = (run + 1) * RUN < f->n_face ? (run + 1) * RUN : f->n_face;
   struct limits limits = { .n = 0 };
 
@@ -234,7 +220,7 @@ static int list_run(struct list *l, size_t run, double most)
 static int list_box(struct list *l, int level, size_t b, double most)
 {
   const struct vg_select_level *at = &l->s->level[level];
-  const struct vg_select_box *box = &at->box[b];
+  const struct vg_box *box = &at->box[b];
   double far;
 
   if (!(box->lo[0] <= box->hi[0])) return 0;
@@ -506,12 +492,11 @@ static int touch_run(const struct touch *t, size_t run)
                                               : t->s->n_face;
 
   for (size_t i = run * RUN; i < end; i++) {
-    struct vg_select_box b = empty;
+    struct vg_box b = VG_BOX_EMPTY;
     int found;
 
     if (f->face[i][0] == VG_FACE_GONE) continue;
-    for (int j = 0; j < 3; j++)
-      widen(&b, f->x[f->face[i][j]], f->x[f->face[i][j]]);
+    for (int j = 0; j < 3; j++) vg_box_add(&b, f->x[f->face[i][j]]);
     if (is_beside(t, b.lo, b.hi)) continue;
     found = t->visit(t->context, (uint32_t)i);
     if (found) return found;
@@ -522,7 +507,7 @@ static int touch_run(const struct touch *t, size_t run)
 static int touch_box(const struct touch *t, int level, size_t b)
 {
   const struct vg_select_level *at = &t->s->level[level];
-  const struct vg_select_box *box = &at->box[b];
+  const struct vg_box *box = &at->box[b];
 
   if (!(box->lo[0] <= box->hi[0]) || is_beside(t, box->lo, box->hi)) return 0;
   if (!level) return touch_run(t, b);

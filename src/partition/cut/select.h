@@ -1,22 +1,24 @@
 /* partition/cut/select.h: the part of a front that a region needs. Uses
- * task_data.h, engine.h. */
+ * core/search/box.h, task_data.h, engine.h. */
 #ifndef VG_PARTITION_CUT_SELECT_H
 #define VG_PARTITION_CUT_SELECT_H
 
+#include "core/search/box.h"
 #include "partition/cut/task_data.h"
 #include "partition/engine/engine.h"
 
 enum { VG_SELECT_LEVELS = 12 };
 
 /** Boxes around runs of faces, around runs of these, and so on: what lies far
- * off is passed over in one. */
+ * off is passed over in one. This tree grows with the faces that are appended
+ * to the front, whereas the one of core/search is built as a whole. */
 struct vg_select {
   const struct vg_front *front;   /* borrowed */
   const struct vg_sizing *sizing; /* borrowed */
   size_t n_face;             /* so many have boxes */
   struct vg_select_level {
     size_t n, cap;
-    struct vg_select_box { double lo[3], hi[3]; } *box;
+    struct vg_box *box;
   } level[VG_SELECT_LEVELS]; /* from the smallest; the last has one */
 };
 
