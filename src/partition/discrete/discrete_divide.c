@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
 #include "core/domain/planar.h"
 #include "core/geometry/vector.h"
 #include "partition/discrete/discrete_parts.h"
@@ -68,14 +69,15 @@ static void mark_rim(const struct vg_coarse *c, const struct vg_interface *f,
 {
   for (size_t q = 0; q < 4 * c->t.n_cell; q++) {
     const uint32_t *v = c->t.cell[q / 4].v;
+    const uint8_t *face = vg_face[q % 4];
 
     if (c->on[q / 4][q % 4] == VG_NONE) continue;
     for (int k = 0; k < 3; k++) {
-      uint32_t a = v[vg_face[q % 4][k]], b = v[vg_face[q % 4][(k + 1) % 3]];
-      const uint32_t key[2] = { a < b ? a : b, a < b ? b : a };
-      const uint32_t (*at)[2] =
-        bsearch(key, f->end, f->n_edge, sizeof *f->end, by_ends);
+      uint32_t key[2] = { v[face[k]], v[face[(k + 1) % 3]] };
+      const uint32_t (*at)[2];
 
+      vg_order2(&key[0], &key[1]);
+      at = bsearch(key, f->end, f->n_edge, sizeof *f->end, by_ends);
       if (at) is_rim[at - (const uint32_t (*)[2])f->end] = 1;
     }
   }

@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/tri_key.h"
+#include "core/mesh/edges.h"
 #include "partition/discrete/discrete_parts.h"
 
 void vg_interface_release(struct vg_interface *f)
@@ -23,18 +25,6 @@ void vg_interface_corners(const struct vg_coarse *c,
   for (int k = 0; k < 3; k++) v[k] = cell->v[vg_face[f->side[i] & 3][k]];
 }
 
-/* An edge of a face: place is 3 * face + k. */
-struct listed { uint32_t end[2], place; };
-
-static int by_ends(const void *a, const void *b)
-{
-  const struct listed *s = a, *t = b;
-
-  for (int k = 0; k < 2; k++)
-    if (s->end[k] != t->end[k]) return s->end[k] < t->end[k] ? -1 : 1;
-  return (s->place > t->place) - (s->place < t->place);
-}
-
 static vg_status list_sides(const struct vg_coarse *c, struct vg_interface *f,
                             struct vg_error *err)
 {
@@ -53,49 +43,45 @@ static vg_status list_sides(const struct vg_coarse *c, struct vg_interface *f,
   return VG_OK;
 }
 
-static void number_edges(struct vg_interface *f, size_t n,
-                         const struct listed *l)
+/* Number the edges by rising ends. Takes over e->of_half. */
+static vg_status number_edges(struct vg_interface *f,
+                              const uint32_t (*corner)[3], struct vg_edges *e,
+                              struct vg_error *err)
 {
-  for (size_t k = 0; k < n; k++) {
-    if (!k || memcmp(l[k].end, l[k - 1].end, sizeof l[k].end)) {
-      memcpy(f->end[f->n_edge], l[k].end, sizeof *f->end);
-      f->n_around[f->n_edge++] = 0;
-    }
-    f->n_around[f->n_edge - 1]++;
-    f->edge[l[k].place / 3][l[k].place % 3] = (uint32_t)(f->n_edge - 1);
+  f->edge = (uint32_t (*)[3])e->of_half;
+  e->of_half = NULL;
+  f->n_edge = e->n;
+  f->end = vg_alloc(e->n, sizeof *f->end);
+  f->n_around = vg_alloc(e->n, sizeof *f->n_around);
+  if (!f->end || !f->n_around) return vg_fail_memory(err, "the interfaces");
+  for (size_t i = 0; i < e->n; i++) {
+    uint32_t half = *vg_edges_at(e, i);
+
+    f->end[i][0] = vg_half_from(corner, half);
+    f->end[i][1] = vg_half_to(corner, half);
+    vg_order2(&f->end[i][0], &f->end[i][1]);
+    f->n_around[i] = vg_edges_count(e, i);
   }
+  return VG_OK;
 }
 
 vg_status vg_interface_list(const struct vg_coarse *c,
                             struct vg_interface *f, struct vg_error *err)
 {
-  struct listed *l;
-  size_t n;
-  vg_status st = list_sides(c, f, err);
+  struct vg_edges e = VG_EDGES_INIT;
+  uint32_t (*corner)[3] = NULL;
+  vg_status st;
 
-  if (st < 0) return st;
-  n = 3 * f->n_face;
-  l = vg_alloc(n, sizeof *l);
-  f->edge = vg_alloc(f->n_face, sizeof *f->edge);
-  f->end = vg_alloc(n, sizeof *f->end);
-  f->n_around = vg_alloc(n, sizeof *f->n_around);
-  if (!l || !f->edge || !f->end || !f->n_around) {
-    free(l);
-    return vg_fail_memory(err, "the interfaces");
-  }
-  for (size_t i = 0; i < f->n_face; i++) {
-    uint32_t v[3];
-
-    vg_interface_corners(c, f, i, v);
-    for (uint32_t k = 0; k < 3; k++) {
-      uint32_t a = v[k], b = v[(k + 1) % 3];
-
-      l[3 * i + k] = (struct listed){ { a < b ? a : b, a < b ? b : a },
-                                      (uint32_t)(3 * i + k) };
-    }
-  }
-  if (n) qsort(l, n, sizeof *l, by_ends);
-  number_edges(f, n, l);
-  free(l);
-  return VG_OK;
+  VG_TRY(list_sides(c, f, err));
+  corner = vg_alloc(f->n_face, sizeof *corner);
+  if (!corner) VG_TRY(vg_fail_memory(err, "the interfaces"));
+  for (size_t i = 0; i < f->n_face; i++)
+    vg_interface_corners(c, f, i, corner[i]);
+  VG_TRY(vg_edges_build(&e, c->t.n_point, f->n_face,
+                        (const uint32_t (*)[3])corner, NULL, 0, err));
+  st = number_edges(f, (const uint32_t (*)[3])corner, &e, err);
+done:
+  vg_edges_release(&e);
+  free(corner);
+  return st;
 }

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/mesh/edges.h"
 #include "partition/discrete/discrete_parts.h"
 
 /* An edge is halved while longer than this many of the size at its middle. */
@@ -14,17 +15,13 @@ static const double longest = 1.5;   /* D8 */
 /* A coarse edge is halved a few times; one beyond that has no sensible size. */
 enum { ROUNDS = 60 };
 
-struct triangle { uint32_t v[3], face; };
-
-/* An edge of a triangle: place is 3 * triangle + k. Begins with its ends. */
-struct listed { uint32_t end[2], place; };
-
 struct halving {
   const struct vg_coarse *c;
   const struct vg_sizing *sizing;
   struct vg_sheets *s;
   size_t n;
-  struct triangle *tri;      /* by face */
+  uint32_t (*tri)[3];        /* [n] Triangles, by rising face. */
+  uint32_t *face;            /* [n] The face that each triangle is part of. */
   double *reach;             /* [c.n_front] square of the longest edge of the
                                 front at a point */
   uint32_t *middle;          /* [n][3] of edges that were halved, or VG_NONE */
@@ -35,24 +32,6 @@ static const double *point_of(const struct halving *h, uint32_t k)
   size_t n = h->c->t.n_point;
 
   return k < n ? h->c->t.x[k] : h->s->x[k - n];
-}
-
-static int by_ends(const void *a, const void *b)
-{
-  const struct listed *s = a, *t = b;
-
-  for (int k = 0; k < 2; k++)
-    if (s->end[k] != t->end[k]) return s->end[k] < t->end[k] ? -1 : 1;
-  return (s->place > t->place) - (s->place < t->place);
-}
-
-static int same_ends(const void *a, const void *b)
-{
-  const uint32_t *s = a, *t = b;
-
-  for (int k = 0; k < 2; k++)
-    if (s[k] != t[k]) return s[k] < t[k] ? -1 : 1;
-  return 0;
 }
 
 /* Edges at a point of the front are not halved below the longest edge of the
@@ -78,18 +57,27 @@ static vg_status find_reach(struct halving *h, struct vg_error *err)
   return VG_OK;
 }
 
-/* Of edges as long the later one counts as longer. */
-static int is_longer(const struct halving *h, const struct listed *a,
-                     const struct listed *b)
+static double length2(const struct halving *h, uint32_t half)
 {
-  double x = vg_distance2(point_of(h, a->end[0]), point_of(h, a->end[1]));
-  double y = vg_distance2(point_of(h, b->end[0]), point_of(h, b->end[1]));
+  const uint32_t (*tri)[3] = (const uint32_t (*)[3])h->tri;
 
-  return x != y ? x > y : same_ends(a->end, b->end) > 0;
+  return vg_distance2(point_of(h, vg_half_from(tri, half)),
+                      point_of(h, vg_half_to(tri, half)));
 }
 
-static int is_too_long(const struct halving *h, const uint32_t end[2])
+/* Of edges of equal length, the one with the higher number counts as longer. */
+static int is_longer(const struct halving *h, const struct vg_edges *e,
+                     uint32_t a, uint32_t b)
 {
+  double x = length2(h, a), y = length2(h, b);
+
+  return x != y ? x > y : e->of_half[a] > e->of_half[b];
+}
+
+static int is_too_long(const struct halving *h, uint32_t half)
+{
+  const uint32_t (*tri)[3] = (const uint32_t (*)[3])h->tri;
+  const uint32_t end[2] = { vg_half_from(tri, half), vg_half_to(tri, half) };
   const double *a = point_of(h, end[0]), *b = point_of(h, end[1]);
   double mid[3], most;
 
@@ -102,45 +90,45 @@ static int is_too_long(const struct halving *h, const uint32_t end[2])
   return vg_distance2(a, b) > most;
 }
 
-/* Of each triangle the longest edge that is too long: each once, *n of them in
- * l [triangles]. */
-static void list_long(const struct halving *h, struct listed *l, size_t *n)
+/* Mark in each triangle the longest of the edges that are too long. middle out:
+ * [e->n] VG_NONE for edges without a mark. */
+static void mark_long(const struct halving *h, const struct vg_edges *e,
+                      uint32_t *middle)
 {
-  size_t left = 0;
+  memset(middle, 0xff, e->n * sizeof *middle);
+  for (uint32_t i = 0; i < h->n; i++) {
+    uint32_t best = VG_NONE;
 
-  *n = 0;
-  for (size_t i = 0; i < h->n; i++) {
-    struct listed best = { {0, 0}, VG_NONE };
-
-    for (uint32_t k = 0; k < 3; k++) {
-      uint32_t a = h->tri[i].v[k], b = h->tri[i].v[(k + 1) % 3];
-      struct listed edge = { { a < b ? a : b, a < b ? b : a },
-                             (uint32_t)(3 * i + k) };
-
-      if (is_too_long(h, edge.end) &&
-          (best.place == VG_NONE || is_longer(h, &edge, &best)))
-        best = edge;
-    }
-    if (best.place != VG_NONE) l[(*n)++] = best;
+    for (uint32_t half = 3 * i; half < 3 * i + 3; half++)
+      if (is_too_long(h, half) &&
+          (best == VG_NONE || is_longer(h, e, half, best)))
+        best = half;
+    if (best != VG_NONE) middle[e->of_half[best]] = 0;
   }
-  if (*n) qsort(l, *n, sizeof *l, by_ends);
-  for (size_t k = 0; k < *n; k++)
-    if (!left || same_ends(l[k].end, l[left - 1].end)) l[left++] = l[k];
-  *n = left;
 }
 
-/* A point in the middle of each: place becomes the point. */
-static vg_status add_middles(struct halving *h, struct listed *l, size_t n,
+/* Add a point in the middle of each marked edge. middle[i] becomes its number.
+ */
+static vg_status add_middles(struct halving *h, const struct vg_edges *e,
+                             uint32_t *middle, size_t *n_halved,
                              struct vg_error *err)
 {
-  for (size_t k = 0; k < n; k++) {
+  const uint32_t (*tri)[3] = (const uint32_t (*)[3])h->tri;
+
+  *n_halved = 0;
+  for (size_t k = 0; k < e->n; k++) {
+    uint32_t half = *vg_edges_at(e, k);
+
+    if (middle[k] == VG_NONE) continue;
     if (vg_reserve(&h->s->x, &h->s->cap_point, h->s->n_point + 1,
                    sizeof *h->s->x))
       return vg_fail_memory(err, "the interfaces");
     for (int i = 0; i < 3; i++)
-      h->s->x[h->s->n_point][i] = 0.5 * (point_of(h, l[k].end[0])[i] +
-                                         point_of(h, l[k].end[1])[i]);
-    l[k].place = (uint32_t)(h->c->t.n_point + h->s->n_point++);
+      h->s->x[h->s->n_point][i] =
+        0.5 * (point_of(h, vg_half_from(tri, half))[i] +
+               point_of(h, vg_half_to(tri, half))[i]);
+    middle[k] = (uint32_t)(h->c->t.n_point + h->s->n_point++);
+    ++*n_halved;
   }
   return VG_OK;
 }
@@ -148,49 +136,48 @@ static vg_status add_middles(struct halving *h, struct listed *l, size_t n,
 static vg_status halve_edges(struct halving *h, size_t *n_halved,
                              struct vg_error *err)
 {
-  struct listed *l = vg_alloc(h->n, sizeof *l);
-  vg_status st = VG_OK;
+  size_t n_point = h->c->t.n_point + h->s->n_point;
+  struct vg_edges e = VG_EDGES_INIT;
+  uint32_t *middle = NULL;
+  vg_status st;
 
   free(h->middle);
   h->middle = vg_alloc(3 * h->n, sizeof *h->middle);
-  if (!l || !h->middle) st = vg_fail_memory(err, "the interfaces");
-  if (st == VG_OK) {
-    list_long(h, l, n_halved);
-    st = add_middles(h, l, *n_halved, err);
-  }
-  for (size_t k = 0; st == VG_OK && k < 3 * h->n; k++) {
-    uint32_t a = h->tri[k / 3].v[k % 3], b = h->tri[k / 3].v[(k + 1) % 3];
-    const uint32_t end[2] = { a < b ? a : b, a < b ? b : a };
-    const struct listed *at =
-      *n_halved ? bsearch(end, l, *n_halved, sizeof *l, same_ends) : NULL;
-
-    h->middle[k] = at ? at->place : VG_NONE;
-  }
-  free(l);
+  if (!h->middle) VG_TRY(vg_fail_memory(err, "the interfaces"));
+  VG_TRY(vg_edges_build(&e, n_point, h->n, (const uint32_t (*)[3])h->tri, NULL,
+                        0, err));
+  middle = vg_alloc(e.n, sizeof *middle);
+  if (!middle) VG_TRY(vg_fail_memory(err, "the interfaces"));
+  mark_long(h, &e, middle);
+  VG_TRY(add_middles(h, &e, middle, n_halved, err));
+  for (size_t k = 0; k < 3 * h->n; k++) h->middle[k] = middle[e.of_half[k]];
+done:
+  vg_edges_release(&e);
+  free(middle);
   return st;
 }
 
 /* The parts of a triangle, turned as it is. */
-static int fall(const struct halving *h, const struct triangle *t,
+static int fall(const struct halving *h, const uint32_t v[3],
                 const uint32_t m[3], uint32_t part[4][3])
 {
   int n = 0, k = 0;
 
   for (int i = 0; i < 3; i++) n += m[i] != VG_NONE;
   if (n == 0) {
-    memcpy(part[0], t->v, sizeof part[0]);
+    memcpy(part[0], v, sizeof part[0]);
     return 1;
   }
   if (n == 3) {
     for (int i = 0; i < 3; i++)
-      memcpy(part[i], (uint32_t[3]){ t->v[i], m[i], m[(i + 2) % 3] },
+      memcpy(part[i], (uint32_t[3]){ v[i], m[i], m[(i + 2) % 3] },
              sizeof part[i]);
     memcpy(part[3], m, sizeof part[3]);
     return 4;
   }
   while (n == 1 ? m[k] == VG_NONE : m[k] != VG_NONE) k++;
   {                          /* k: the edge that is halved, or is not */
-    uint32_t a = t->v[k], b = t->v[(k + 1) % 3], c = t->v[(k + 2) % 3];
+    uint32_t a = v[k], b = v[(k + 1) % 3], c = v[(k + 2) % 3];
     uint32_t p = m[(k + 1) % 3], q = m[(k + 2) % 3];
 
     if (n == 1) {
@@ -213,21 +200,24 @@ static int fall(const struct halving *h, const struct triangle *t,
 
 static vg_status fall_all(struct halving *h, struct vg_error *err)
 {
-  struct triangle *to = vg_alloc(4 * h->n, sizeof *to);
+  uint32_t (*to)[3] = vg_alloc(4 * h->n, sizeof *to);
+  uint32_t *face = vg_alloc(4 * h->n, sizeof *face);
   size_t n = 0;
 
-  if (!to) return vg_fail_memory(err, "the interfaces");
+  if (!to || !face) {
+    free(to);
+    free(face);
+    return vg_fail_memory(err, "the interfaces");
+  }
   for (size_t i = 0; i < h->n; i++) {
-    uint32_t part[4][3];
-    int n_part = fall(h, &h->tri[i], h->middle + 3 * i, part);
+    int n_part = fall(h, h->tri[i], h->middle + 3 * i, to + n);
 
-    for (int k = 0; k < n_part; k++) {
-      memcpy(to[n].v, part[k], sizeof part[k]);
-      to[n++].face = h->tri[i].face;
-    }
+    for (int k = 0; k < n_part; k++) face[n++] = h->face[i];
   }
   free(h->tri);
+  free(h->face);
   h->tri = to;
+  h->face = face;
   h->n = n;
   return VG_OK;
 }
@@ -241,8 +231,8 @@ static vg_status hand_over(const struct halving *h, size_t n_face,
   s->tri = vg_alloc(h->n, sizeof *s->tri);
   if (!s->begin || !s->tri) return vg_fail_memory(err, "the interfaces");
   for (size_t k = 0; k < h->n; k++) {
-    memcpy(s->tri[k], h->tri[k].v, sizeof *s->tri);
-    s->begin[h->tri[k].face + 1] = k + 1;
+    memcpy(s->tri[k], h->tri[k], sizeof *s->tri);
+    s->begin[h->face[k] + 1] = k + 1;
   }
   return VG_OK;
 }
@@ -257,10 +247,12 @@ vg_status vg_sheets_halve(const struct vg_coarse *c,
   vg_status st;
 
   h.tri = vg_alloc(f->n_face, sizeof *h.tri);
-  st = h.tri ? find_reach(&h, err) : vg_fail_memory(err, "the interfaces");
+  h.face = vg_alloc(f->n_face, sizeof *h.face);
+  st = h.tri && h.face ? find_reach(&h, err)
+                       : vg_fail_memory(err, "the interfaces");
   for (size_t i = 0; st == VG_OK && i < f->n_face; i++) {
-    vg_interface_corners(c, f, i, h.tri[i].v);
-    h.tri[i].face = (uint32_t)i;
+    vg_interface_corners(c, f, i, h.tri[i]);
+    h.face[i] = (uint32_t)i;
   }
   for (int k = 0; st == VG_OK && n_halved && k < ROUNDS; k++) {
     st = halve_edges(&h, &n_halved, err);
@@ -268,6 +260,7 @@ vg_status vg_sheets_halve(const struct vg_coarse *c,
   }
   if (st == VG_OK) st = hand_over(&h, f->n_face, err);
   free(h.tri);
+  free(h.face);
   free(h.middle);
   free(h.reach);
   return st;
