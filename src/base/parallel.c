@@ -57,7 +57,7 @@ void vg_parallel_for(int threads, size_t n, size_t grain, vg_loop_body body,
   int started = 1;
 
   assert(threads >= 0);
-  assert(grain > 0 && body);
+  assert(body);
   if (!n) return;
   if (threads <= 0) threads = vg_cores();
   if (threads > WORKERS_MAX) threads = WORKERS_MAX;

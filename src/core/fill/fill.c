@@ -79,7 +79,7 @@ vg_status vg_fill_front(const struct vg_front *front,
   double t0 = vg_clock();
   vg_status st;
 
-  assert(!region || region->n_plane > 0);
+  assert(!region || region->n_plane + region->n_wall > 0);
   assert(!out->n_point && !out->n_cell && !out->x && !out->cell);
   if (!front->n_face) return region ? VG_BLOCKED : VG_OK;
   st = vg_front_check(front, err);

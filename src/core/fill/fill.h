@@ -98,7 +98,7 @@ size_t vg_filled_defects(const struct vg_front *front,
  *                a region: closed, free of intersections. With a region: all
  *                faces that vg_region_may_meet within VG_BAND_FRONT, and no
  *                others
- * @param region  NULL: fill the void. Else at least one plane; cells lie within
+ * @param region  NULL: fill the void. Else planes, walls or both; cells lie within
  *                the walls, so that regions which walls keep apart may be made
  *                from the same front at the same time, at a cost that does not
  *                depend on the rest of the front
