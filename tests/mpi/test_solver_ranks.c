@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "../unit/slices_support.h"
-#include "io/mesh/metis_part.h"
+#include "io/stream/metis_part.h"
 #include "io/slices/slices.h"
 #include "partition/solver/solver.h"
 

@@ -6,7 +6,7 @@
 #include "fill_support.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
-#include "io/mesh/metis_part.h"
+#include "io/stream/metis_part.h"
 #include "io/mesh/ugrid.h"
 #include "io/vgrid/vgrid.h"
 #include "join_support.h"

@@ -11,7 +11,7 @@
 #include "cli/common/options.h"
 #include "io/mesh/foam.h"
 #include "io/mesh/format.h"
-#include "io/mesh/metis_part.h"
+#include "io/stream/metis_part.h"
 #include "io/mesh/vtu.h"
 #include "partition/solver/solver.h"
 #include "run/common/progress.h"

@@ -30,7 +30,7 @@ int vg_slices_can_write(const char *form);
  * and threads; "vtu" has fields angle_min and radius_ratio when all cells are
  * tetrahedra. Where the mesh has parts for the solver, vtu and pvtu have them
  * as cell data solver_part, and part.N, with N their number, is a METIS file
- * (io/mesh/metis_part.h). A .pvtu has no such twin: a piece for every run of slices of
+ * (io/stream/metis_part.h). A .pvtu has no such twin: a piece for every run of slices of
  * about 2 M cells, in which each slice has its own points; cell data
  * `subdomain` and `kind` of the slices.
  * Memory: a slice and 1 MB per thread; boundary points for cogsg and mapbc.

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/bytes.h"
-#include "io/mesh/metis_part.h"
+#include "io/stream/metis_part.h"
 #include "io/slices/slices_parts.h"
 
 /* Cells of one kind in a slice. */

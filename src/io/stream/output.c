@@ -201,7 +201,7 @@ void vg_output_record(struct vg_output *out, uint64_t bytes)
  * writer's; it must not become a file. */
 void vg_output_record_end(struct vg_output *out)
 {
-  assert(out->record_open && !out->record_left);
+  assert(out->record_open);
   if (out->record_left && !out->error) out->error = EPROTO;
   close_part(out);
   out->record_open = 0;

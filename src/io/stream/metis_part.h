@@ -1,8 +1,8 @@
-/* io/mesh/metis_part.h: parts of cells as METIS's programs write them, in
+/* io/stream/metis_part.h: parts of cells as METIS's programs write them, in
  * STEM.part.N: a line with the number of its part, from 0, for each cell, in
  * the order of the cells. */
-#ifndef VG_IO_MESH_METIS_PART_H
-#define VG_IO_MESH_METIS_PART_H
+#ifndef VG_IO_STREAM_METIS_PART_H
+#define VG_IO_STREAM_METIS_PART_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-#include "io/mesh/metis_part.h"
+#include "io/stream/metis_part.h"
 
 #include "io/stream/stream.h"
 
