@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "api/job.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -182,6 +183,7 @@ void vg_job_give(void *out, const void *full, size_t size)
 {
   size_t known;
 
+  assert(size >= sizeof known);
   memcpy(&known, out, sizeof known);
   if (known < size) size = known;
   if (size > sizeof known)

@@ -197,6 +197,33 @@ static void open_fronts_are_seen(void **state)
   scene_end(&s);
 }
 
+/* A region is given the part of a front that it needs, which is open: the
+ * boundary of its cells is closed all the same. */
+static void open_parts_of_a_front_are_no_defect(void **state)
+{
+  struct vg_filled f;
+  struct zone_part p;
+  struct scene s;
+  size_t next = 0, n = 0;
+
+  (void)state;
+  zone_of_box(&s, &p, &f);
+  for (size_t i = 0; i < p.front.n_face; i++) {
+    int is_consumed = next < f.n_consumed && f.consumed[next] == i;
+
+    if (!is_consumed && i % 2) continue;
+    if (is_consumed) f.consumed[next++] = (uint32_t)n;
+    memmove(p.front.face[n++], p.front.face[i], sizeof *p.front.face);
+  }
+  assert_true(n < p.front.n_face);
+  p.front.n_face = n;
+  assert_true(vg_front_open_edges(&p.front) > 0);
+  assert_int_equal(vg_filled_defects(&p.front, &f, 1), 0);
+  vg_filled_release(&f);
+  zone_part_release(&p);
+  scene_end(&s);
+}
+
 /* Consumed faces are a set, in ascending order, of faces that exist. */
 static void bad_lists_are_seen(void **state)
 {
@@ -262,6 +289,7 @@ int main(void)
     cmocka_unit_test(as_bytes),
     cmocka_unit_test(bad_cells_are_seen),
     cmocka_unit_test(open_fronts_are_seen),
+    cmocka_unit_test(open_parts_of_a_front_are_no_defect),
     cmocka_unit_test(bad_lists_are_seen),
     cmocka_unit_test(nothing_is_left_without_a_region),
   };

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 
+#include "base/checks.h"
 #include "base/clock.h"
 #include "core/fill/fill_parts.h"
 #include "core/recover/boundary.h"
@@ -64,6 +65,9 @@ static vg_status make(struct vg_filling *g, struct vg_error *err)
   if (st == VG_OK) st = vg_filling_improve(g, err);
   if (st == VG_OK) st = choose(g, err);
   if (st == VG_OK) st = vg_filled_take(g, err);
+  if (st == VG_OK)
+    VG_CHECK("the filling of a front",
+             vg_filled_defects(g->front, &g->out, g->region != NULL));
   return st;
 }
 
@@ -79,8 +83,11 @@ vg_status vg_fill_front(const struct vg_front *front,
   double t0 = vg_clock();
   vg_status st;
 
-  assert(!region || region->n_plane + region->n_wall > 0);
+  assert(sizing && options && options->sweeps >= 0 && report);
+  assert(!region || region->n_plane > 0 || region->n_wall > 0);
+  assert(!region || vg_region_is_sound(region));
   assert(!out->n_point && !out->n_cell && !out->x && !out->cell);
+  assert(!out->n_face && !out->n_consumed && !out->face && !out->consumed);
   if (!front->n_face) return region ? VG_BLOCKED : VG_OK;
   st = vg_front_check(front, err);
   if (st == VG_OK) st = make(&g, err);

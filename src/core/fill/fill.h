@@ -86,9 +86,12 @@ void vg_filled_put(struct vg_writer *w, const struct vg_filled *f, int cells);
 void vg_filled_get(struct vg_reader *r, struct vg_filled *f, int cells);
 
 /** Number of defects: cells without positive volume (exact), indices out of
- * range, and open edges of the front of the void that is left, for a front that
- * was closed. 0 where all is well; SIZE_MAX when memory is refused, or
- * where the consumed faces do not ascend or are out of range. has_region: as in the call that made *f. O(n log n). For checks. */
+ * range, and, with a region, open edges of the boundary of its cells, which the
+ * consumed faces and the new faces make up. A closed front stays closed exactly
+ * where these edges are none. Without a region, new and consumed faces are
+ * defects. 0 where all is well; SIZE_MAX when memory is refused, or where the
+ * consumed faces do not ascend or are out of range. has_region: as in the call
+ * that made *f, which has its cells. O(n log n). For checks. */
 size_t vg_filled_defects(const struct vg_front *front,
                          const struct vg_filled *f, int has_region);
 
@@ -98,7 +101,7 @@ size_t vg_filled_defects(const struct vg_front *front,
  *                a region: closed, free of intersections. With a region: all
  *                faces that vg_region_may_meet within VG_BAND_FRONT, and no
  *                others
- * @param region  NULL: fill the void. Else planes, walls or both; cells lie within
+ * @param region  NULL: fill the void. Else it has a plane or walls; cells lie in
  *                the walls, so that regions which walls keep apart may be made
  *                from the same front at the same time, at a cost that does not
  *                depend on the rest of the front

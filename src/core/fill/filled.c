@@ -1,5 +1,6 @@
 /* The result of the kernel: the cells that are kept, and the change of the front
  * around them. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,8 @@ void vg_filled_put(struct vg_writer *w, const struct vg_filled *f, int cells)
   uint64_t count[5] = {f->n_point, f->n_cell, f->n_face, f->n_consumed,
                        f->n_hole};
 
+  assert(w && f);
+  assert(!cells || f->cell || !f->n_cell);
   vg_put(w, 5, sizeof *count, count);
   vg_put(w, 1, sizeof f->volume, &f->volume);
   vg_put(w, f->n_point, sizeof *f->x, f->x);
@@ -34,6 +37,7 @@ void vg_filled_get(struct vg_reader *r, struct vg_filled *f, int cells)
 {
   uint64_t count[5] = {0};
 
+  assert(r && f);
   memset(f, 0, sizeof *f);
   vg_get(r, 5, sizeof *count, count);
   vg_get(r, 1, sizeof f->volume, &f->volume);
@@ -205,6 +209,7 @@ vg_status vg_filled_take(struct vg_filling *g, struct vg_error *err)
   vg_status st = number ? number_points(g, number, err)
                         : vg_fail_memory(err, "the points of the mesh");
 
+  assert(!g->out.cell && !g->out.n_face && !g->out.face && !g->out.consumed);
   if (st == VG_OK) st = take_cells(g, number, err);
   if (st == VG_OK && g->region) st = close_front(g, number, err);
   free(number);
@@ -231,25 +236,29 @@ static int is_positive(const struct vg_front *front, const struct vg_filled *f,
   return vg_orient3d(x[0], x[1], x[2], x[3]) > 0;
 }
 
-/* Open edges of the front of the void that is left. Its points are those of the
- * front and the new ones. */
-static size_t open_edges_left(const struct vg_front *front,
-                              const struct vg_filled *f)
+/* Open edges of the boundary of a region's cells: the consumed faces of the
+ * front, and the new faces seen from the cells. */
+static size_t open_edges_around(const struct vg_front *front,
+                                const struct vg_filled *f)
 {
-  struct vg_front left = { .n_point = front->n_point + f->n_point };
-  size_t next = 0, n_open = SIZE_MAX;
+  struct vg_front around = { .n_point = front->n_point + f->n_point };
+  size_t n_open;
 
-  left.face = vg_alloc(front->n_face + f->n_face, sizeof *left.face);
-  if (!left.face) return SIZE_MAX;
-  for (size_t i = 0; i < front->n_face; i++) {
-    if (next < f->n_consumed && f->consumed[next] == i) next++;
-    else memcpy(left.face[left.n_face++], front->face[i], sizeof *left.face);
-  }
-  if (f->n_face)
-    memcpy(left.face + left.n_face, f->face, f->n_face * sizeof *left.face);
-  left.n_face += f->n_face;
-  if (next == f->n_consumed) n_open = vg_front_open_edges(&left);
-  free(left.face);
+  for (size_t i = 0; i < f->n_consumed; i++)
+    if (f->consumed[i] >= front->n_face ||
+        (i && f->consumed[i] <= f->consumed[i - 1]))
+      return SIZE_MAX;
+  around.face = vg_alloc(f->n_consumed + f->n_face, sizeof *around.face);
+  if (!around.face) return SIZE_MAX;
+  for (size_t i = 0; i < f->n_consumed; i++)
+    memcpy(around.face[around.n_face++], front->face[f->consumed[i]],
+           sizeof *around.face);
+  for (size_t i = 0; i < f->n_face; i++)
+    for (int k = 0; k < 3; k++)
+      around.face[f->n_consumed + i][k] = f->face[i][2 - k];
+  around.n_face += f->n_face;
+  n_open = vg_front_open_edges(&around);
+  free(around.face);
   return n_open;
 }
 
@@ -258,9 +267,10 @@ size_t vg_filled_defects(const struct vg_front *front,
 {
   size_t bad = 0, n_open;
 
+  assert(front && f && (f->cell || !f->n_cell));
   for (size_t c = 0; c < f->n_cell; c++)
     bad += !is_positive(front, f, f->cell[c]);
   if (!has_region) return bad + f->n_face + f->n_consumed;
-  n_open = open_edges_left(front, f);
+  n_open = open_edges_around(front, f);
   return n_open == SIZE_MAX ? n_open : bad + n_open;
 }

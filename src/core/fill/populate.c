@@ -1,6 +1,7 @@
 /* Points into the cells of a front, and the cells improved. */
 #include "core/fill/fill_parts.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,6 +98,7 @@ vg_status vg_filling_populate(struct vg_filling *g, struct vg_error *err)
   double t0;
   vg_status st;
 
+  assert(g->t.n_point >= g->front->n_point);
   VG_TRY(vg_place_seeds(g->front->n_point, (const double (*)[3])g->t.x,
                         g->sizing, g->region, &placed, err));
   st = insert_placed(g, &placed, seed_distance, err);
@@ -118,6 +120,7 @@ vg_status vg_filling_improve(struct vg_filling *g, struct vg_error *err)
   double t0 = vg_clock();
   vg_status st = VG_OK;
 
+  assert(g->t.n_point >= g->front->n_point);
   VG_TRY(vg_tets_compact(&g->t, g->front->n_point, err));
   VG_TRY(vg_stopped(&g->options->stop, err));
   if (g->region) near = *g->region;

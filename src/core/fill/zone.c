@@ -1,5 +1,6 @@
 /* Which cells a region keeps: those along a plane (a zone) or along a line (a
  * pencil). */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -124,6 +125,8 @@ vg_status vg_zone_narrow(struct vg_filling *g, struct vg_error *err)
   vg_status st = is_known ? look_at_points(&z, err)
                           : vg_fail_memory(err, "the points of a zone");
 
+  assert(r && (r->n_plane > 0 || r->n_wall > 0));
+  assert(t->n_point >= g->front->n_point + 8);
   if (st < 0) goto done;
   for (uint32_t p = 0; p < t->n_point; p++)
     is_known[p] = !is_corner(&z, p) &&
@@ -249,6 +252,7 @@ vg_status vg_zone_choose(struct vg_filling *g, struct vg_error *err)
   vg_status st = used ? look_at_points(&z, err)
                       : vg_fail_memory(err, "the points of a zone");
 
+  assert(g->region && !g->out.n_cell);
   if (st < 0) goto done;
   for (uint32_t c = 0; c < t->n_cell; c++) {
     if (t->flag[c] & VG_DEAD || !belongs(&z, c)) continue;

@@ -1,5 +1,6 @@
 #include "core/front/front.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,8 @@ void vg_front_put(struct vg_writer *w, const struct vg_front *f, int ids)
 {
   uint64_t count[2] = {f->n_point, f->n_face};
 
+  assert(w && f);
+  assert(!ids || f->id || !f->n_point);
   vg_put(w, 2, sizeof *count, count);
   vg_put(w, f->n_point, sizeof *f->x, f->x);
   vg_put(w, f->n_face, sizeof *f->face, f->face);
@@ -39,6 +42,7 @@ void vg_front_get(struct vg_reader *r, struct vg_front *f, int ids)
 {
   uint64_t count[2] = {0, 0};
 
+  assert(r && f);
   memset(f, 0, sizeof *f);
   vg_get(r, 2, sizeof *count, count);
   f->n_point = count[0];
@@ -72,6 +76,7 @@ vg_status vg_front_check(const struct vg_front *f, struct vg_error *err)
   vg_status st = used ? mark_points(f, used, err)
                       : vg_fail_memory(err, "the front");
 
+  assert(f && (f->x || !f->n_point) && (f->face || !f->n_face));
   while (st == VG_OK && p < f->n_point && used[p]) p++;
   free(used);
   if (st < 0 || p == f->n_point) return st;
@@ -84,6 +89,7 @@ double vg_front_volume(const struct vg_front *f)
 {
   double sum = 0;
 
+  assert((f->x && f->face) || !f->n_face);
   for (size_t i = 0; i < f->n_face; i++) {
     double a[3], b[3], c[3];
 
@@ -120,6 +126,7 @@ vg_status vg_front_weld(struct vg_front *f, struct vg_error *err)
   size_t n = 0;
   vg_status st = to ? find_twins(f, to, err) : vg_fail_memory(err, "a front");
 
+  assert(f->id || !f->n_point);
   for (size_t k = 0; st == VG_OK && k < f->n_point; k++) {
     if (to[k] != k) {
       to[k] = to[to[k]];
@@ -142,6 +149,8 @@ vg_status vg_front_join(struct vg_front *to, const struct vg_front *from,
   size_t cap_x = to->n_point, cap_id = to->n_point, cap_face = to->n_face;
   size_t np = to->n_point + from->n_point, nf = to->n_face + from->n_face;
 
+  assert(to->id || !to->n_point);
+  assert(from->id || !from->n_point);
   if (vg_reserve(&to->x, &cap_x, np, sizeof *to->x) ||
       vg_reserve(&to->id, &cap_id, np, sizeof *to->id) ||
       vg_reserve(&to->face, &cap_face, nf, sizeof *to->face))

@@ -1,14 +1,37 @@
 #include "core/front/region.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 
+static int is_unit(const double n[3])
+{
+  /* a rounding error of the normalisation, far below any angle that counts */
+  return fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-12;
+}
+
+int vg_region_is_sound(const struct vg_region *r)
+{
+  const double *a = r->plane[0].normal, *b = r->plane[1].normal;
+
+  if (r->n_plane < 0 || r->n_plane > 2) return 0;
+  if (r->n_wall < 0 || r->n_wall > VG_REGION_WALLS) return 0;
+  if (!(r->reach >= 0) || !(r->wide >= 0)) return 0;
+  for (int i = 0; i < r->n_plane; i++)
+    if (!is_unit(r->plane[i].normal)) return 0;
+  for (int i = 0; i < r->n_wall; i++)
+    if (!is_unit(r->wall[i].normal)) return 0;
+  return r->n_plane < 2 ||
+         fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) < 1e-12;
+}
+
 void vg_region_foot(const struct vg_region *r, const double x[3],
                     double foot[3])
 {
+  assert(r->n_plane >= 0 && r->n_plane <= 2 && foot);
   memcpy(foot, x, 3 * sizeof *x);
   for (int i = 0; i < r->n_plane; i++) {
     double s = vg_plane_side(&r->plane[i], foot);
@@ -28,6 +51,7 @@ double vg_region_spacing(const struct vg_region *r,
 
 int vg_region_within(const struct vg_region *r, const double x[3])
 {
+  assert(r->n_wall >= 0 && r->n_wall <= VG_REGION_WALLS);
   for (int i = 0; i < r->n_wall; i++)
     if (!(vg_plane_side(&r->wall[i], x) > 0)) return 0;
   return 1;
@@ -64,6 +88,7 @@ int vg_region_near_by(const struct vg_region *r, const struct vg_sizing *sizing,
 {
   double far = gap(r, 1, &x), most = vg_region_band(r, band), foot2 = 0, off;
 
+  assert(h > 0 && d >= 0);
   if (far == 0) return 1;
   for (int i = 0; i < r->n_plane; i++) {
     double s = vg_plane_side(&r->plane[i], x);
@@ -275,6 +300,8 @@ vg_status vg_region_cache_init(struct vg_region_cache *cache,
   int m = region->n_plane + region->n_wall;
   double least, most;
 
+  assert(cache && sizing && (x || !n));
+  assert(vg_region_is_sound(region));
   vg_sizing_range(sizing, &least, &most);
   *cache = (struct vg_region_cache){region, sizing, x, vg_sizing_slope(sizing),
                              most - least, m, NULL, NULL};
@@ -374,6 +401,7 @@ int vg_region_cache_meets(const struct vg_region_cache *cache,
                           const uint32_t v[3],
                           double band)
 {
+  assert(cache->region && cache->side && cache->spacing);
   return cache_meets(cache, v, band, 1);
 }
 
@@ -381,5 +409,6 @@ int vg_region_cache_may_meet(const struct vg_region_cache *cache,
                              const uint32_t v[3],
                              double band)
 {
+  assert(cache->region && cache->side && cache->spacing);
   return cache_meets(cache, v, band, 0);
 }

@@ -49,6 +49,10 @@ _Static_assert(sizeof(struct vg_region) ==
  * other side would have to be told from outside through them. */
 #define VG_BEYOND_WALLS 0.5   /* K19 */
 
+/** What the members above promise: numbers of planes and walls in range, unit
+ * normals, planes at right angles, no negative distance. For assertions. */
+int vg_region_is_sound(const struct vg_region *r);
+
 /** How far x is above the plane. */
 static inline double vg_plane_side(const struct vg_plane *p, const double x[3])
 {

@@ -2,6 +2,7 @@
  * two cells have from opposite sides, and the front's own covered once from
  * within, every place inside lies in as many cells as the front winds around it:
  * one. Volumes are compared besides. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -128,6 +129,9 @@ vg_status vg_mesher_check(size_t n_front, size_t n_face,
   struct vg_cell_links l = VG_CELL_LINKS_INIT;
   vg_status st;
 
+  assert(wrong && *n >= n_front);
+  assert(face || !n_face);
+  assert(cell || !n_cell);
   memcpy(&m.tri, &face, sizeof m.tri);   /* read only */
   *wrong = check_numbers(n_front, *n, (const double (*)[3])x, n_cell,
                          (const uint32_t (*)[4])cell);

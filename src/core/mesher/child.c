@@ -1,5 +1,6 @@
 /* The process of a mesher: core/mesher/mesher_parts.h. */
 #define _GNU_SOURCE
+#include <assert.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <poll.h>
@@ -157,6 +158,7 @@ void vg_mesher_serve(int fd)
   struct vg_mesher_job job;
   pid_t self = getpid();
 
+  assert(fd >= 0);
   if (!vg_child_get(fd, &spec, sizeof spec)) _exit(1);
   m = load(spec.name, hello.text, sizeof hello.text);
   hello.is_ready = m != NULL;

@@ -3,6 +3,7 @@
  * are split where they are longer than their least corner's size, and read from
  * it trilinearly. A cell's children are asked for at once, when a point in it is
  * first looked up. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,6 +60,7 @@ struct vg_child_sizes *vg_child_sizes_new(int fd,
   struct vg_child_sizes *s = vg_calloc(1, sizeof *s);
   double x[8][3], h[8];
 
+  assert(fd >= 0 && f && f->n_point);
   if (!s || vg_reserve(&s->node, &s->room, 1, sizeof *s->node)) {
     vg_child_sizes_free(s);
     return NULL;

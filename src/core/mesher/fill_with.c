@@ -1,6 +1,7 @@
 /* The parent's end of meshers in processes: core/mesher/mesher_parts.h. */
 #include "core/mesher/fill_with.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <poll.h>
 #include <pthread.h>
@@ -79,6 +80,7 @@ vg_status vg_mesher_open(const char *name, struct vg_mesher_pool **out,
   struct vg_child c;
   vg_status st;
 
+  assert(name && out);
   if (!p) return vg_fail_memory(err, "a mesher");
   pthread_mutex_init(&p->lock, NULL);
   p->patience = patience;
@@ -111,6 +113,7 @@ void vg_mesher_close(struct vg_mesher_pool *p)
 void vg_mesher_patience(struct vg_mesher_pool *p, double seconds,
                         double seconds_each)
 {
+  assert(p && seconds >= 0 && seconds_each >= 0);
   p->patience = seconds;
   p->patience_each = seconds_each;
 }
@@ -254,6 +257,8 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
   enum outcome o;
   vg_status st;
 
+  assert(p && sizing && options && report);
+  assert(!out->n_point && !out->n_cell && !out->x && !out->cell);
   if (!front->n_face) return VG_OK;
   st = borrow(p, &c, err);
   if (st < 0) return st;

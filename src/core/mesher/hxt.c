@@ -2,6 +2,7 @@
  * three billion tetrahedra", Int. J. Numer. Methods Eng. 117(9), 2019), by
  * gmsh's C interface. The library is looked for when a mesher of that name is
  * asked for, and need not be there before; only in a child. */
+#include <assert.h>
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -259,5 +260,6 @@ const struct vg_mesher *vg_mesher_hxt(char *why, size_t size)
 {
   static const struct vg_mesher hxt = { VG_MESHER_VERSION, "HXT", fill, NULL };
 
+  assert(why && size > 0);
   return load(why, size) ? &hxt : NULL;
 }

@@ -1,6 +1,7 @@
 /* What bounds the parts of a void, told by the edges of its front. Where more
  * than two triangles meet at an edge, two that have the void between them bound
  * the same part. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,6 +39,7 @@ void vg_mesher_normal(const struct vg_mesher_front *f, size_t face,
   const double *a = f->x[f->face[face][0]], *b = f->x[f->face[face][1]];
   const double *c = f->x[f->face[face][2]];
 
+  assert(face < f->n_face && n);
   for (int k = 0; k < 3; k++) {
     int i = (k + 1) % 3, j = (k + 2) % 3;
 
@@ -208,6 +210,7 @@ int vg_mesher_find_shells(const struct vg_mesher_front *f,
   struct vg_mesher_shells s = { 0 };
   int bad;
 
+  assert(f && out);
   s.of = vg_alloc(f->n_face, sizeof *s.of);
   s.piece = vg_alloc(f->n_face, sizeof *s.piece);
   bad = !w.edge || !w.shell || !w.piece || !s.of || !s.piece ||

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "io/cad/cad.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <dlfcn.h>
 #include <poll.h>
@@ -467,6 +468,8 @@ vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
                        enum vg_cad_kind kind, const struct vg_cad_options *o,
                        struct vg_cad_surface *out, struct vg_error *err)
 {
+  assert(in && o && out);
+  assert(kind >= VG_CAD_STEP && kind <= VG_CAD_BREP);
   return parse(c, in, kind, o, 1, out, err);
 }
 
@@ -476,6 +479,7 @@ vg_status vg_cad_again(struct vg_cad *c, const struct vg_cad_options *o,
   const struct vg_cad_ask ask = question(VG_CAD_ASK_AGAIN, 0, 0, o);
   struct call k = { c, "the CAD model", o, vg_clock() };
 
+  assert(o && out);
   if (!c->has_model)
     return vg_fail(err, VG_ERR_INPUT, "no CAD model was read");
   c->o = *o;
@@ -494,6 +498,8 @@ vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
   struct vg_cad *c = NULL;
   vg_status st;
 
+  assert(kind >= VG_CAD_STEP && kind <= VG_CAD_BREP);
+  assert(!keep || !keep->cad);
   VG_TRY(vg_input_open(path, &in, err));
   VG_TRY(vg_cad_open(&c, err));
   VG_TRY(parse(c, &in, kind, options ? options : &plain, keep != NULL, &s,
@@ -531,6 +537,8 @@ vg_status vg_cad_project(struct vg_cad *c, enum vg_cad_on on, size_t n,
   struct vg_cad_tell t;
   vg_status st = VG_OK;
 
+  assert(on >= VG_CAD_ON_FACES && on <= VG_CAD_ON_TRIANGLES);
+  assert((number && point) || !n);
   if (!c->has_model)
     return vg_fail(err, VG_ERR_INPUT, "no CAD model was read");
   if (!n) return VG_OK;

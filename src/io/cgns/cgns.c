@@ -4,6 +4,7 @@
  * there. */
 #include "io/cgns/cgns.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -405,6 +406,7 @@ void vg_cgns_put_cells(struct vg_output *out, const struct vg_cgns_places *p,
   size_t width = (size_t)k->n_node, most = BLOCK / width;
   uint32_t v[BLOCK];
 
+  assert(kind >= 0 && kind < VG_CGNS_KINDS && (node || !n));
   for (size_t i = 0, m; i < n; i += m) {
     m = n - i < most ? n - i : most;
     for (size_t c = 0; c < m; c++, node += width)
@@ -478,12 +480,14 @@ void vg_cgns_put(struct vg_output *out, const struct vg_cgns *c)
 void vg_cgns_seek_x(struct vg_output *out, const struct vg_cgns_places *p,
                     int axis, uint64_t point)
 {
+  assert(axis >= 0 && axis < 3);
   vg_output_seek(out, p->at_x[axis] + 8 * point);
 }
 
 void vg_cgns_seek_cell(struct vg_output *out, const struct vg_cgns_places *p,
                        int kind, uint64_t cell)
 {
+  assert(kind >= 0 && kind < VG_CGNS_KINDS);
   vg_output_seek(out, p->at[kind] + cell * (uint64_t)kinds[kind].n_node *
                  (uint64_t)index_size(p));
 }

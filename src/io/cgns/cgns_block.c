@@ -1,5 +1,6 @@
 #include "io/cgns/cgns_block.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,6 +22,7 @@ int vg_cgns_range_is_thin(const struct vg_cgns_range *range, int axis)
 {
   int u, v;
 
+  assert(axis >= 0 && axis < 3);
   other_axes(axis, &u, &v);
   return range->lo[u] == range->hi[u] || range->lo[v] == range->hi[v];
 }
@@ -29,6 +31,7 @@ size_t vg_cgns_block_cells(const struct vg_cgns_block *b, int axis)
 {
   int u, v;
 
+  assert(axis >= 0 && axis < 3 && b->n[axis] == 1);
   other_axes(axis, &u, &v);
   return (size_t)(b->n[u] - 1) * (size_t)(b->n[v] - 1);
 }
@@ -39,6 +42,7 @@ void vg_cgns_block_mark(const struct vg_cgns_block *b,
 {
   int u, v;
 
+  assert(axis >= 0 && axis < 3 && b->n[axis] == 1 && cell);
   other_axes(axis, &u, &v);
   for (int64_t j = range->lo[v]; j < range->hi[v]; j++)
     for (int64_t i = range->lo[u]; i < range->hi[u]; i++)
@@ -116,6 +120,7 @@ vg_status vg_cgns_block_surface(struct vg_cgns_block *b, int axis,
   vg_status st = VG_OK;
   int u, v;
 
+  assert(axis >= 0 && axis < 3 && b->n[axis] == 1 && cell);
   other_axes(axis, &u, &v);
   for (at[v] = 1; at[v] < b->n[v]; at[v]++)
     for (at[u] = 1; at[u] < b->n[u] && st >= 0; at[u]++)
@@ -161,6 +166,7 @@ vg_status vg_cgns_block_boundary(struct vg_cgns_block *b,
   vg_status st = VG_OK;
   int u, v;
 
+  assert(axis >= 0 && axis < 3 && range->lo[axis] == range->hi[axis]);
   other_axes(axis, &u, &v);
   for (at[v] = range->lo[v]; at[v] < range->hi[v]; at[v]++)
     for (at[u] = range->lo[u]; at[u] < range->hi[u]; at[u]++)

@@ -1,5 +1,6 @@
 #include "io/cgns/cgns_store.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,6 +50,7 @@ void vg_cgns_store_get(const struct vg_cgns_store *s, uint64_t at, uint64_t n,
 {
   unsigned char *out = to;
 
+  assert(to || !n);
   if (s->view) {
     view_bytes(s, at, n, out);
     return;
@@ -85,6 +87,7 @@ void vg_cgns_store_put(struct vg_cgns_store *s, uint64_t at, uint64_t n,
 {
   const unsigned char *in = from;
 
+  assert(!s->view && (from || !n));
   for (uint64_t part; n; n -= part, at += part, in += part) {
     struct vg_cgns_page *p = page_for(s, at / VG_CGNS_PAGE);
 

@@ -3,6 +3,7 @@
  * HDF5 notes no times, and room for arrays is reserved at once. */
 #include "io/cgns/cgns_tree.h"
 
+#include <assert.h>
 #include <hdf5.h>
 #include <stdlib.h>
 #include <string.h>
@@ -279,6 +280,7 @@ vg_status vg_cgns_tree_new(struct vg_cgns_store *store, const char *name,
   hid_t access, create;
   vg_status st = VG_OK;
 
+  assert(!store->view && !store->size && !store->n_page);
   if (!t) return vg_fail_memory(err, "a CGNS file");
   t->store = store;
   access = access_to(t);
@@ -307,6 +309,7 @@ vg_status vg_cgns_tree_add(struct vg_cgns_tree *t, int64_t parent,
                            const struct vg_cgns_data *d, int64_t *id,
                            uint64_t *at, struct vg_error *err)
 {
+  assert(d->n_dim >= 0 && d->n_dim <= 2);
   hid_t node = H5Gcreate2(parent, name, H5P_DEFAULT, t->group_plist,
                           H5P_DEFAULT);
   int flags = 1;

@@ -1,5 +1,6 @@
 #include "io/mesh/fluent.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -255,6 +256,7 @@ void vg_fluent_seek_point(struct vg_output *out, const struct vg_fluent *f,
 void vg_fluent_put_kinds(struct vg_output *out, const struct vg_fluent *f,
                          int kind, uint64_t cell, uint64_t n)
 {
+  assert(kind >= 0 && kind < VG_FLUENT_KINDS);
   if (cell_kind(f) != MIXED) return;
   vg_output_seek(out, f->at_cell + 2 * (f->first[kind] + cell));
   put_kinds(out, f, kind, cell, n);
@@ -265,6 +267,7 @@ void vg_fluent_seek_internal(struct vg_output *out, const struct vg_fluent *f,
 {
   int kind = face_kind(f->n_internal, f->n_quad);
 
+  assert(face <= f->n_internal);
   vg_output_seek(out, f->at_internal + face * face_line(f, kind));
 }
 
@@ -272,6 +275,7 @@ void vg_fluent_put_internal(struct vg_output *out, const struct vg_fluent *f,
                             int n, const uint32_t *node, uint32_t cell,
                             uint32_t mate)
 {
+  assert((n == 3 || n == 4) && node && cell < mate);
   put_face(out, f, face_kind(f->n_internal, f->n_quad), n, node, mate + 1,
            cell + 1);
 }
@@ -288,6 +292,7 @@ void vg_fluent_seek_boundary(struct vg_output *out, const struct vg_fluent *f,
 {
   size_t p = patch_of(f, at);
 
+  assert(at < f->frame->n_tri + f->frame->n_quad);
   vg_output_seek(out, f->at_patch[p] +
                  (at - f->start[p]) * face_line(f, f->kind[p]));
 }
@@ -298,6 +303,7 @@ void vg_fluent_put_boundary(struct vg_output *out, const struct vg_fluent *f,
   size_t i = f->order[at], n_tri = f->frame->n_tri;
   int is_tri = i < n_tri;
 
+  assert(at < f->frame->n_tri + f->frame->n_quad);
   put_face(out, f, f->kind[patch_of(f, at)], is_tri ? 3 : 4,
            is_tri ? f->frame->tri[i] : f->frame->quad[i - n_tri], cell + 1, 0);
 }

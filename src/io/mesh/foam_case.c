@@ -1,6 +1,7 @@
 /* The folders of an OpenFOAM case: io/mesh/foam.h. */
 #include "io/mesh/foam.h"
 
+#include <assert.h>
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -357,6 +358,7 @@ vg_status vg_foam_write_parts(const char *case_dir, size_t n_cell,
   char *path = inside(case_dir, "constant", VG_FOAM_PARTS);
   vg_status st;
 
+  assert(part || !n_cell);
   if (!path) return vg_fail_memory(err, "a file name");
   VG_TRY(vg_output_open(path, &out, err));
   vg_foam_header(&out, "labelList", "constant", VG_FOAM_PARTS, 1, NULL);

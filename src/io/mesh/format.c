@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "io/mesh/format.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -382,6 +383,7 @@ vg_status vg_format_layer_tets(const char *path, int *is_known, size_t *n,
 {
   const struct format *f = find(path, without_gz(path));
 
+  assert(is_known && n);
   *is_known = 0;
   if (f && f->read == vg_ugrid_read)
     return vg_ugrid_layer_tets(path, is_known, n, err);

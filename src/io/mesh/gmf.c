@@ -1,5 +1,7 @@
 #include "io/mesh/gmf.h"
 
+#include <assert.h>
+
 vg_status vg_gmf_fail(const struct vg_gmf *g, struct vg_error *err,
                       const char *text)
 {
@@ -92,6 +94,7 @@ vg_status vg_gmf_ints(struct vg_gmf *g, size_t n, int64_t *v,
   int32_t narrow[VG_GMF_INTS];
   vg_status st = VG_OK;
 
+  assert(n <= VG_GMF_INTS && v);
   if (!g->binary) {
     for (size_t k = 0; k < n && st == VG_OK; k++)
       st = vg_input_int(g->in, &v[k], what, err);

@@ -2,6 +2,7 @@
  * elements have 8 bytes, tags of entities 4. */
 #include "io/mesh/gmsh.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -254,6 +255,7 @@ void vg_gmsh_put_cells(struct vg_output *out, const struct vg_gmsh *g,
   size_t width = (size_t)k->n_node, most = BLOCK / (1 + width);
   int64_t tag = (int64_t)(g->first[kind] + cell), v[BLOCK];
 
+  assert(kind >= 0 && kind < VG_GMSH_KINDS && (node || !n));
   for (size_t i = 0, m; i < n; i += m) {
     int64_t *to = v;
 
@@ -394,6 +396,7 @@ void vg_gmsh_seek_points(struct vg_output *out, const struct vg_gmsh *g,
 void vg_gmsh_seek_cell(struct vg_output *out, const struct vg_gmsh *g,
                        int kind, uint64_t cell)
 {
+  assert(kind >= 0 && kind < VG_GMSH_KINDS);
   vg_output_seek(out, g->at[kind] + cell * cell_size(kind));
 }
 

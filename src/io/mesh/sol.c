@@ -1,5 +1,6 @@
 #include "io/mesh/sol.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -121,6 +122,7 @@ vg_status vg_sol_parse(struct vg_input *in, size_t *n, double **value,
   struct reader r = { .g = { .in = in } };
   vg_status st = vg_gmf_open(&r.g, err);
 
+  assert(in && n && value);
   if (st >= 0) st = r.g.binary ? read_binary(&r, err) : read_text(&r, err);
   if (st >= 0 && !r.value)
     st = vg_fail(err, VG_ERR_FORMAT, "%s: there is no SolAtVertices in it",

@@ -1,5 +1,6 @@
 #include "io/mesh/su2.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -141,6 +142,7 @@ void vg_su2_release(struct vg_su2 *s)
 void vg_su2_seek_cell(struct vg_output *out, const struct vg_su2 *s, int kind,
                       uint64_t cell)
 {
+  assert(kind >= 0 && kind < VG_SU2_KINDS);
   vg_output_seek(out, s->at[kind] + cell * cell_line(s, kind));
 }
 

@@ -1,5 +1,6 @@
 #include "io/mesh/tri.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -418,6 +419,7 @@ vg_status vg_tri_write_binary(const char *path, const struct vg_mesh *m,
   size_t n;
   vg_status st;
 
+  assert(real_size == 4 || real_size == 8);
   VG_TRY(count(path, m, &n, err));
   VG_TRY(vg_output_open(path, &o, err));
   vg_output_order(&o, !little);

@@ -1,6 +1,7 @@
 /* Reader and writer of the UGRID family: io/mesh/ugrid.h, formats.md 2. */
 #include "io/mesh/ugrid.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -420,6 +421,7 @@ vg_status vg_ugrid_parse(struct vg_input *in, const struct vg_ugrid_kind *kind,
   int32_t *tag = NULL;
   vg_status st;
 
+  assert(in && kind && out);
   if (kind->is_text) VG_TRY(read_text(in, &m, &tag, err));
   else VG_TRY(read_binary(in, kind, &m, &tag, err));
   VG_TRY(vg_check_points(in->path, m.n_point, m.point, err));
@@ -724,6 +726,7 @@ void vg_ugrid_seek(struct vg_output *out, const struct vg_ugrid_kind *kind,
 {
   uint64_t head = 7 * (uint64_t)kind->int_size, at;
 
+  assert(!kind->is_text && (item == 0 || (item >= 3 && item <= 5)));
   if (!item)
     at = 3 * (uint64_t)kind->real_size * first;
   else

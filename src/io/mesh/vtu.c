@@ -1,5 +1,6 @@
 #include "io/mesh/vtu.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -309,6 +310,7 @@ void vg_vtu_put(struct vg_output *out, const struct vg_mesh *frame,
                     .point = (const double (*)[3])frame->point,
                     .field = field, .n_field = n };
 
+  assert((field || !n) && n <= VG_VTU_FIELDS_MAX);
   add_cells(&g, frame);
   put_grid(out, &g);
 }
@@ -320,6 +322,7 @@ void vg_vtu_find(const struct vg_mesh *frame, uint64_t file_size,
   struct grid g = { .n_point = frame->n_point, .field = field, .n_field = n };
   uint64_t at = file_size - strlen(END);
 
+  assert((field || !n) && n <= VG_VTU_FIELDS_MAX);
   add_cells(&g, frame);
   for (size_t i = n; i-- > 0;) {
     at -= field_bytes(&g, &field[i]);
@@ -338,6 +341,8 @@ void vg_vtu_put_cells(struct vg_output *out, const struct vg_vtu_places *at,
   struct block b = cells[c->kind];
   int64_t end = (int64_t)c->first_node;
 
+  assert(c->kind >= 0 && (size_t)c->kind < sizeof cells / sizeof *cells);
+  assert(c->node || !c->n);
   b.node = c->node;
   b.n = c->n;
   vg_output_seek(out, at->connectivity + 8 * c->first_node);
@@ -358,6 +363,7 @@ vg_status vg_vtu_write(const char *path, const struct vg_mesh *m,
                     .point = (const double (*)[3])m->point,
                     .field = fields, .n_field = n };
 
+  assert(fields || !n);
   add_cells(&g, m);
   if (!g.n_cell) return vg_vtu_write_boundary(path, m, fields, n, err);
   return write_grid(path, &g, err);
@@ -404,6 +410,7 @@ vg_status vg_vtu_write_boundary(const char *path, const struct vg_mesh *m,
   uint32_t *list = NULL, *number = NULL;
   vg_status st = number_points(m, &list, &number, &g.n_point, err);
 
+  assert(fields || !n);
   if (st < 0) return st;
   g.list = list;
   g.number = number;
@@ -424,6 +431,7 @@ vg_status vg_vtu_write_triangles(const char *path, size_t n_point,
   struct grid g = { .n_point = n_point, .point = point, .field = fields,
                     .n_field = n };
 
+  assert((point || !n_point) && (tri || !n_tri) && (fields || !n));
   add_block(&g, n_tri ? tri[0] : NULL, n_tri, &triangle);
   return write_grid(path, &g, err);
 }

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "io/mesh/vtu_read.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -384,6 +385,7 @@ vg_status vg_vtu_points_parse(struct vg_input *in, const char *name, size_t *n,
   size_t count = 0;
   vg_status st;
 
+  assert(in && name && n && x && value);
   VG_TRY(read_head(&f, err));
   VG_TRY(read_piece(&f, &count, err));
   VG_TRY(find_array(&f, "Points", NULL, 3, &point, err));

@@ -1,5 +1,7 @@
 #include "io/stream/metis_part.h"
 
+#include <assert.h>
+
 #include "io/stream/stream.h"
 
 uint64_t vg_metis_part_bytes(size_t n, const uint32_t *part)
@@ -13,6 +15,7 @@ uint64_t vg_metis_part_bytes(size_t n, const uint32_t *part)
 
 void vg_metis_part_put(struct vg_output *out, size_t n, const uint32_t *part)
 {
+  assert(part || !n);
   for (size_t i = 0; i < n; i++) {
     vg_output_int(out, part[i]);
     vg_output_bytes(out, "\n", 1);

@@ -1,4 +1,5 @@
 /* .bc: boundary triangles of a VGRID mesh, text (formats.md 1.3). */
+#include <assert.h>
 #include <stdlib.h>
 
 #include "base/memory.h"
@@ -64,6 +65,7 @@ vg_status vg_bc_parse(struct vg_input *in, size_t n_boundary,
   size_t n;
   vg_status st = VG_OK;
 
+  assert(in && m && info);
   VG_TRY(bc_header(in, head, err));
   n = (size_t)head[0];
   tri = vg_alloc(n, sizeof *tri);

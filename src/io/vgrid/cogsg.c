@@ -1,5 +1,6 @@
 /* .cogsg and the triple it belongs to (formats.md 1.2). */
 #define _GNU_SOURCE
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -203,6 +204,7 @@ vg_status vg_cogsg_layer_tets(const char *path, int *is_known, size_t *n,
   int32_t v[6];
   vg_status st;
 
+  assert(path && is_known && n);
   *is_known = 0;
   VG_TRY(vg_input_open_head(path, 65536, &in, err));
   VG_TRY(find_layout(&in, &l, err));
@@ -224,6 +226,7 @@ vg_status vg_cogsg_parse(struct vg_input *cogsg, struct vg_input *bc,
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
+  assert(cogsg && out);
   VG_TRY(parse_volume(cogsg, &m, &found, err));
   if (bc) VG_TRY(vg_bc_parse(bc, found.n_boundary, &m, &found, err));
   VG_TRY(vg_mesh_turn(&m, turned, err));
@@ -335,6 +338,7 @@ void vg_cogsg_put(struct vg_output *out, const struct vg_mesh *m,
   };
   const int32_t zero = 0;
 
+  assert(!new_to_old == !old_to_new);
   vg_output_order(out, 1);
   vg_output_record(out, HEAD_BYTES + 16 * (uint64_t)m->n_tet);
   vg_output_i32(out, 6, head);
@@ -356,6 +360,8 @@ void vg_cogsg_seek(struct vg_output *out, uint64_t n_tet, uint64_t n_point,
 {
   uint64_t cells = HEAD_BYTES + 16 * n_tet;
 
+  assert(column >= 0 && column < (part == VG_COGSG_CELLS ? 4 : 3));
+  assert(first <= (part == VG_COGSG_CELLS ? n_tet : n_point));
   vg_output_order(out, 1);
   if (part == VG_COGSG_CELLS)
     vg_output_seek_record(out, 0, cells, HEAD_BYTES +

@@ -1,5 +1,6 @@
 /* .d3m project files, reader (formats.md 1.6). '#' lines are titles, blank
  * lines separate, text behind the numbers of a line is ignored. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -454,6 +455,7 @@ vg_status vg_d3m_parse(struct vg_input *in, struct vg_project *out,
   struct reader r = {in, &p, {0, NULL}, {0, NULL}};
   vg_status st;
 
+  assert(in && out);
   if (!vg_input_is_text(in))
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: holds binary data; a .d3m is text", in->path);

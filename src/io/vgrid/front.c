@@ -1,5 +1,6 @@
 /* .front: VGRID's surface mesh and restart file (formats.md 1.9). Points,
  * faces and curve edges are read, the rest is passed over. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -147,6 +148,7 @@ vg_status vg_front_parse(struct vg_input *in, const struct vg_project *project,
   size_t n_edge = 0;
   vg_status st;
 
+  assert(in && out);
   VG_TRY(front_header(in, head, err));
   m.n_tri = (size_t)head[NFACE];
   m.n_point = (size_t)head[NPOIT];

@@ -10,6 +10,7 @@
  *      along them, are those of one patch: loops of the project are inward
  *      by the right-hand rule as faces are, so that even two patches inside
  *      one loop differ. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -653,6 +654,7 @@ vg_status vg_front_patches(struct vg_mesh *m, size_t n_edge,
   struct front w = {.m = m, .project = project, .path = path};
   vg_status st;
 
+  assert(edge || !n_edge);
   VG_TRY(build_edges(&w, n_edge, edge, err));
   VG_TRY(flood(&w, err));
   if (project && project->n_shape) VG_TRY(match_project(&w, err));

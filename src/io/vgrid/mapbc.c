@@ -2,6 +2,7 @@
  * */
 #include "io/vgrid/mapbc.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,6 +28,7 @@ static const struct {
 
 int32_t vg_bc_to_fun3d(int32_t usm3d, int axis)
 {
+  assert(axis < 3);
   if (usm3d == 1) return axis < 0 ? 3000 : 6661 + axis;
   for (size_t i = 0; i < N_PAIR; i++)
     if (pair[i].usm3d == usm3d) return pair[i].fun3d;
@@ -46,6 +48,7 @@ vg_status vg_patch_axes(const struct vg_mesh *m, int *axis,
   double (*box)[6] = vg_alloc(m->n_patch, sizeof *box);
   double lo[3], hi[3], size = 0;
 
+  assert(axis || !m->n_patch);
   if (!box) return vg_fail_memory(err, "the boxes of the patches");
   vg_mesh_bounds(m, lo, hi);
   for (int k = 0; k < 3; k++)
@@ -391,6 +394,7 @@ vg_status vg_mapbc_apply(const struct vg_mapbc *b, struct vg_mesh *m,
   int *axis = vg_alloc(m->n_patch, sizeof *axis);
   vg_status st = VG_OK;
 
+  assert(b->entry || !b->n);
   if (!list || !used || !axis)
     st = vg_fail_memory(err, "the boundary conditions");
   else
@@ -498,6 +502,7 @@ vg_status vg_mapbc_write(const char *path, const struct vg_mesh *m,
                          enum vg_mapbc_layout layout, const char *title,
                          size_t *n_unset, struct vg_error *err)
 {
+  assert(layout == VG_MAPBC_VGRID || layout == VG_MAPBC_FUN3D);
   return write_marked(path, m, layout, title, "", n_unset, err);
 }
 

@@ -1,5 +1,6 @@
 /* VGRID's order of points (formats.md 1.2): corners, points along the curves
  * between patches, other surface points, field points. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -206,6 +207,7 @@ vg_status vg_vgrid_order(const struct vg_mesh *m, uint32_t **new_to_old,
   vg_status st = VG_OK;
   int in_order;
 
+  assert(new_to_old && old_to_new && n_curve_point && n_boundary);
   *new_to_old = *old_to_new = NULL;
   w.class = vg_alloc(m->n_point, 1);
   if (!w.class) return vg_fail_memory(err, "the order of the points");

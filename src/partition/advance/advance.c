@@ -1,5 +1,6 @@
 #include "partition/advance/advance.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -224,6 +225,7 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   double t0 = vg_clock();
   vg_status st;
 
+  assert(front && sizing && options && out && report);
   st = vg_comm_agree(comm, p ? VG_OK : vg_fail_memory(err, "the partition"),
                      err);
   if (st < 0) {
@@ -266,6 +268,7 @@ const struct vg_slices *vg_partition_slices(const struct vg_partition *p)
 vg_status vg_partition_leaves(const struct vg_partition *p, size_t *n,
                               uint64_t **sizes, struct vg_error *err)
 {
+  assert(p && n && sizes);
   *n = 0;
   *sizes = vg_alloc(p->n_piece, sizeof **sizes);
   if (!*sizes) return vg_fail_memory(err, "sizes of leaves");

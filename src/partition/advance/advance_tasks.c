@@ -2,6 +2,7 @@
  * it gets to other ranks and back. */
 #include "partition/advance/advance_tasks.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -504,6 +505,7 @@ vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
   int cut = n->to_part || vg_node_wants_cut(p, n);
   struct vg_work *w = new_work(cut ? VG_WORK_START : VG_WORK_LEAF, n);
 
+  assert(p && n && t);
   if (!w) {
     vg_node_free(n);
     return vg_fail_memory(err, "a task");

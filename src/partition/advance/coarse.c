@@ -1,5 +1,6 @@
 #include "partition/advance/coarse.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -214,6 +215,7 @@ vg_status vg_coarse_record(struct vg_spans *before, struct vg_spans *spans,
   const char *last = last_task(before);
   vg_status st;
 
+  assert(before && spans);
   for (size_t k = 0; k < spans->n; k++)
     if (!spans->span[k].after[0])
       memcpy(spans->span[k].after, last, strlen(last) + 1);
@@ -234,6 +236,9 @@ vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
   double t = vg_clock(), factor = 0;
   vg_status st = VG_OK;
 
+  assert(!root == (p->rank != 0));
+  assert(!c->n_point && !c->n_cell && !c->x && !c->cell);
+  assert(!spans || !spans->n);
   if (root) {
     o = vg_node_parting(p, root);
     st = vg_parting_check_options(&o, root->load.cells, err);

@@ -1,5 +1,6 @@
 /* Cells that were made for nothing: of zones whose changes cross the front.
  * Their home found that, when they were kept elsewhere already. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,6 +13,7 @@ vg_status vg_partition_note_drop(struct vg_partition *p,
 {
   vg_status st = VG_OK;
 
+  assert(p && c && c->serial);
   pthread_mutex_lock(&p->lock);
   if (vg_reserve(&p->drop, &p->cap_drop, p->n_drop + 1, sizeof *p->drop)) {
     st = vg_fail_memory(err, "cutting a front");
@@ -58,6 +60,7 @@ vg_status vg_partition_forget_spans(struct vg_partition *p,
   struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
   vg_status st = all ? VG_OK : vg_fail_memory(err, "the record of tasks");
 
+  assert(path || !n_path);
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(vg_comm_allgather(comm, &mine, all, err));
   for (int r = 0; spans && r < p->size; r++)
@@ -78,6 +81,7 @@ vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
   size_t n = 0, n_path = 0;
   vg_status st = all ? VG_OK : vg_fail_memory(err, "the cells of a task");
 
+  assert(p->size == vg_comm_size(comm) && (p->drop || !p->n_drop));
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(vg_comm_allgather(comm, &mine, all, err));
   for (int r = 0; r < p->size; r++) n += all[r].n / sizeof *p->drop;

@@ -1,5 +1,6 @@
 #include "partition/cut/lattice.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -152,6 +153,9 @@ int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
   int want = bisections_wanted(load, rule, levels), used = 0;
   int half[3] = {0, 0, 0};
 
+  assert(load && retry >= 0 && out);
+  assert(rule->first_axis >= -1 && rule->first_axis < 3);
+  assert(!rule->constant || rule->first_axis >= 0);
   memset(out, 0, sizeof *out);
   if (retry && want > 1) want = 1;
   for (; used < want; used++) {
@@ -346,6 +350,7 @@ size_t vg_lattice_count(const struct vg_lattice *l, int stage)
 {
   size_t x_y = segments_along(l, 0) + segments_along(l, 1);
 
+  assert(stage >= 0 && stage < VG_LATTICE_STAGES);
   if (stage == 0 && l->lines_at_once) return x_y + segments_along(l, 2);
   if (stage == 0) return (size_t)(l->n[0] * l->n[1]);
   if (stage == 1) return l->lines_at_once ? 0 : x_y;
@@ -357,6 +362,7 @@ size_t vg_lattice_count(const struct vg_lattice *l, int stage)
 int vg_lattice_region(const struct vg_lattice *l, int stage, size_t k,
                       struct vg_region *r)
 {
+  assert(k < vg_lattice_count(l, stage) && r);
   memset(r, 0, sizeof *r);
   if (stage == VG_LATTICE_TILES) return piece(l, k, r);
   if (stage == 2) return rib(l, k, r);
@@ -368,6 +374,8 @@ void vg_lattice_patch(const struct vg_lattice *l, int axis, int i,
                       const double lo[3], const double hi[3],
                       struct vg_region *r)
 {
+  assert(axis >= 0 && axis < 3 && i >= 0 && i < l->n[axis]);
+  assert(lo && hi && r);
   memset(r, 0, sizeof *r);
   cross(r, axis, l->at[axis][i]);
   between(r, l, axis, i);
@@ -382,6 +390,9 @@ void vg_lattice_patch(const struct vg_lattice *l, int axis, int i,
 
 size_t vg_lattice_blocks(const struct vg_lattice *l)
 {
+  assert(l->n[0] >= 0 && l->n[0] <= VG_LATTICE_PLANES);
+  assert(l->n[1] >= 0 && l->n[1] <= VG_LATTICE_PLANES);
+  assert(l->n[2] >= 0 && l->n[2] <= VG_LATTICE_PLANES);
   return (size_t)(l->n[0] + 1) * (size_t)(l->n[1] + 1) * (size_t)(l->n[2] + 1);
 }
 
@@ -390,6 +401,7 @@ uint32_t vg_lattice_block(const struct vg_lattice *l, const double x[3],
 {
   int block = 0;
 
+  assert(upper == 0 || upper == 1);
   for (int axis = 2; axis >= 0; axis--) {
     int below = 0;
 

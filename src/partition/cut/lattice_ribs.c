@@ -4,6 +4,7 @@
  * as fans from each corner of the tile, where the body may be that spacing
  * grows away from; those which meet the fewest cells become ribs, as many as
  * have room beside each other. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -311,6 +312,7 @@ vg_status vg_lattice_add_ribs(const struct vg_load *load,
   int tile = 0;
   vg_status st = VG_OK;
 
+  assert(!l->n_rib && !l->rib);
   for (int axis = 0; axis < 3; axis++)
     for (int i = 0; i < l->n[axis] && st == VG_OK; i++) {
       st = part_plane(&to, load, axis, i, tile);

@@ -1,5 +1,6 @@
 #include "partition/cut/needles.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "core/geometry/vector.h"
@@ -36,6 +37,7 @@ int vg_crosses_needles(const struct vg_front *front,
 {
   size_t count[3][VG_LATTICE_PLANES] = { { 0 } };
 
+  assert(front && l);
   if (!l->n[0] && !l->n[1] && !l->n[2]) return 0;
   for (size_t i = 0; i < front->n_face; i++) {
     const double *x[3];

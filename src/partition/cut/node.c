@@ -1,5 +1,6 @@
 #include "partition/cut/node.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,7 @@ uint32_t vg_partition_serial(struct vg_partition *p)
 {
   uint32_t k = (uint32_t)atomic_fetch_add(&p->n_serial, 1);
 
+  assert(p->rank >= 0 && p->rank < p->size);
   return 1 + k * (uint32_t)p->size + (uint32_t)p->rank;
 }
 
@@ -63,6 +65,7 @@ struct vg_node *vg_node_new(const char *path, struct vg_front *front)
 {
   struct vg_node *n = vg_calloc(1, sizeof *n);
 
+  assert(strlen(path) < VG_PATH_MAX && front);
   if (!n) return NULL;
   snprintf(n->path, sizeof n->path, "%s", path);
   n->front = *front;
@@ -306,6 +309,7 @@ vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
 {
   vg_status st;
 
+  assert(!n->n_work && !n->work && !n->n_child);
   if (n->to_part) return vg_node_part(p, n, e, err);
   n->stage = 0;
   if (!vg_node_wants_cut(p, n)) return keep_whole(n, err);
@@ -326,6 +330,7 @@ vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
 {
   vg_status st;
 
+  assert(n->n_work && !n->n_left && !n->n_child);
   VG_TRY(vg_node_put(p, n, e, err));
   drop_stage(n);
   VG_TRY(prepare(p, n, e, err));

@@ -8,6 +8,7 @@
  * farther from their plane than zones know the front, is grown again plane
  * after plane, as patches of the planes without the regions that hindered, and
  * as wide as these triangles. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -352,6 +353,8 @@ vg_status vg_node_open_places(struct vg_partition *p, struct vg_node *n,
                       .margin = axis < 0 ? margin : patch_margin };
   vg_status st;
 
+  assert(axis >= -1 && axis < 3);
+  assert(region && n_region);
   *region = NULL;
   *n_region = 0;
   if (axis >= 0 && !n->lattice.n[axis]) return VG_OK;

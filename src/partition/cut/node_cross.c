@@ -10,6 +10,7 @@
  * and so the band stay what they are: so it lies between the plane and a face
  * around the cells, new or gone, that leaves the band. Points there that the
  * zone was not given must be outside all faces around its cells. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -375,6 +376,7 @@ int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
   struct band b = { .region = r, .sizing = sizing,
                     .width = vg_region_band(r, VG_BAND_FRONT) };
 
+  assert(i < n->n_work && first <= n->front.n_point);
   if (!r->n_plane || !sizing) return 0;
   b.slope = vg_sizing_slope(sizing);
   for (size_t k = 0; k < n_around(&c) && !found; k++) {

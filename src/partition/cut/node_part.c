@@ -2,6 +2,7 @@
  * Points of interfaces are on two parts and more. One that is filled as it is
  * has them for its own: its leaf adopts them, as those of larger voids do
  * (recut_names.c), wherever it is filled. */
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -217,6 +218,7 @@ vg_status vg_node_part(struct vg_partition *p, struct vg_node *n,
   struct shares s = { &parting, vg_partition_serial(p), NULL, NULL, NULL };
   vg_status st;
 
+  assert(n->to_part && p->options.maker && !n->n_child);
   st = find_or_make(p, n, s.serial, e, &parting, err);
   if (st != VG_OK) goto done;          /* or stopped */
   if (!parting.n_part) {

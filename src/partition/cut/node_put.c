@@ -2,6 +2,7 @@
  * places behind the front in their order; then points are copied, and faces
  * that are new tested against the front, then put into it, in loops whose
  * chunks write what is theirs. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -159,6 +160,7 @@ vg_status vg_node_put(struct vg_partition *p, struct vg_node *n,
   struct put put = { .n = n };
   vg_status st = make_room(&put, e, err);
 
+  assert((n->change && n->point && n->face) || !n->n_work);
   if (st == VG_OK) {
     vg_engine_loop(e, n->n_work, 1, test_part, &put);
     st = count_changes(&put, p, err);
@@ -221,6 +223,7 @@ vg_status vg_node_list_open(struct vg_node *n, const struct vg_engine *e,
                     vg_alloc(n_chunk, sizeof *l.count) };
   int bad = !l.face || !l.count;
 
+  assert(n->n_seen <= n->front.n_face);
   /* where no region held a face, nothing was put in that labelled them */
   if (!bad) bad = label_points(n, e, err) != VG_OK;
   for (size_t k = 0; k < n->n_open; k++)

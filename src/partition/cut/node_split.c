@@ -5,6 +5,7 @@
  * planes, the blocks on both sides are one void. A void's parts, a body in it
  * or a fragment that a zone went around, need not be told apart: cutting and
  * filling take any number of them. */
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -365,6 +366,8 @@ vg_status vg_node_share_load(struct vg_node *n, double correction,
   struct vg_load *load = vg_calloc(n->n_child, sizeof *load);
   vg_status st = VG_OK;
 
+  assert(n->child || !n->n_child);
+  assert(correction > 0);
   if (!v || !load) st = vg_fail_memory(err, "the load of a void");
   for (size_t k = 0; st == VG_OK && k < n->n_child; k++)
     v[k] = n->child[k]->front;
@@ -453,6 +456,7 @@ void vg_node_plan_children(const struct vg_partition *p, struct vg_node *n,
 {
   struct plans plans = { p, n->child };
 
+  assert(n->child || !n->n_child);
   vg_engine_loop(e, n->n_child, 1, plan_part, &plans);
 }
 
@@ -463,6 +467,7 @@ vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
   int nothing;
   vg_status st;
 
+  assert(!n->n_work && !n->n_child && !n->child);
   VG_TRY(find_children(&s, err));
   VG_TRY(split_front(&s, err));
   VG_TRY(find_nothing(&s, &nothing, err));

@@ -1,5 +1,6 @@
 /* Numbers for what all ranks made: tasks in the order of their paths, each
  * with its points and cells in its own order. One exchange of counts. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -205,6 +206,7 @@ vg_status vg_partition_number(struct vg_partition *p, struct vg_comm *comm,
   size_t n;
   vg_status st;
 
+  assert(p->rank == vg_comm_rank(comm) && p->size == vg_comm_size(comm));
   VG_TRY(vg_comm_agree(comm, gather(p, comm, &s, &n, err), err));
   st = number(p, n, s, err);
   if (st == VG_OK) st = open_slices(p, err);

@@ -1,5 +1,6 @@
 #include "partition/cut/parting.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -140,6 +141,7 @@ vg_status vg_parting_check(const struct vg_parting *p,
   struct side *s;
   vg_status st = check_names(p, serial, err);
 
+  assert(front && (p->part || !p->n_part) && (p->x || !p->n_point));
   if (st < 0) return st;
   for (size_t k = 0; k < p->n_part; k++) n += p->part[k].front.n_face;
   s = vg_alloc(n, sizeof *s);
@@ -180,6 +182,7 @@ void vg_parting_put(struct vg_writer *w, struct vg_parting *p,
 {
   uint64_t count[2] = {p->n_point, p->n_part};
 
+  assert(w && (p->part || !p->n_part));
   vg_put(w, 2, sizeof *count, count);
   vg_put(w, p->n_point, sizeof *p->x, p->x);
   vg_put(w, 1, sizeof p->report, &p->report);
@@ -198,6 +201,7 @@ void vg_parting_get(struct vg_reader *r, uint32_t serial,
 {
   uint64_t count[2] = {0, 0};
 
+  assert(r && p);
   memset(p, 0, sizeof *p);
   vg_get(r, 2, sizeof *count, count);
   p->n_point = count[0];

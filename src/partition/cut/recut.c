@@ -5,6 +5,7 @@
  * too, and so on: voids that meet become one. So the price is what lies around
  * the place, however the tree of cuts looks. Nothing is kept for this while all
  * goes well. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,6 +26,7 @@ vg_status vg_recut_note_leaf(struct vg_partition *p, struct vg_node *n,
 {
   vg_status st = VG_OK;
 
+  assert(n && why);
   pthread_mutex_lock(&p->lock);
   if (vg_reserve(&p->unfilled, &p->cap_unfilled, p->n_unfilled + 1,
                  sizeof *p->unfilled)) {
@@ -538,6 +540,7 @@ vg_status vg_recut_voids(struct vg_partition *p, struct vg_comm *comm,
   uint64_t all = p->n_unfilled;
   vg_status st;
 
+  assert(n_void && node && n);
   *n_void = *n = 0;
   *node = NULL;
   VG_TRY(vg_comm_sum(comm, 1, &all, err));

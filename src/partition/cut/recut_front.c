@@ -1,5 +1,6 @@
 /* The front of a void, from the cells that were made in it: faces that only
  * one of them has. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -101,6 +102,7 @@ vg_status vg_recut_settle(struct vg_front *f, struct vg_error *err)
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
   vg_status st = s && to ? cancel(f, err) : vg_fail_memory(err, "a front");
 
+  assert(f->id || !f->n_point);
   if (st == VG_OK) place_points(f, s, to);
   free(s);
   free(to);
@@ -111,6 +113,7 @@ vg_status vg_recut_settle(struct vg_front *f, struct vg_error *err)
 vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
                          struct vg_error *err)
 {
+  assert(!f->n_point && !f->n_face && !f->x && !f->id && !f->face);
   f->n_point = q->n_in + q->n_point;
   f->n_face = 4 * q->n_cell;
   f->x = vg_alloc(f->n_point, sizeof *f->x);

@@ -2,6 +2,7 @@
  * common with them, by names that say whose points they were. The void that is
  * filled there has all of these on its front: its leaf adopts them. Of voids
  * that touch in a point the first one does. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -169,6 +170,7 @@ vg_status vg_recut_adopt(struct vg_partition *p, struct vg_comm *comm,
   size_t n_gone, n_claim = 0, n_all = 0, n_map = 0, cap_map = 0, n_every = 0;
   vg_status st;
 
+  assert((own || !n_own) && ((node && k) || !n));
   VG_TRY(gather(p, comm, n_own, sizeof *own, own, (void **)&gone, &n_gone,
                 err));
   if (n_gone) qsort(gone, n_gone, sizeof *gone, by_value);

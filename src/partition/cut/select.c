@@ -1,5 +1,6 @@
 #include "partition/cut/select.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,7 @@ static const double crossing = 0.1, margin = 1.5;   /* K22 */
 void vg_select_init(struct vg_select *s, const struct vg_front *front,
                     const struct vg_sizing *sizing)
 {
+  assert(s && front && sizing);
   memset(s, 0, sizeof *s);
   s->front = front;
   s->sizing = sizing;
@@ -86,6 +88,7 @@ vg_status vg_select_update(struct vg_select *s, const struct vg_engine *e,
 {
   size_t from = s->n_face, below = s->front->n_face;
 
+  assert(s->n_face <= s->front->n_face);
   for (int k = 0; k < VG_SELECT_LEVELS && (!k || below > 1); k++) {
     struct vg_select_level *l = &s->level[k];
     size_t fan = k ? FAN : RUN, n = (below + fan - 1) / fan;
@@ -343,6 +346,7 @@ vg_status vg_select_part(const struct vg_select *s,
                     .band = vg_region_band(region, VG_BAND_FRONT) };
   vg_status st;
 
+  assert(vg_region_is_sound(region) && part && point && face);
   memset(part, 0, sizeof *part);
   *point = *face = NULL;
   st = list_faces(&l) ? vg_fail_memory(err, "cutting a front") : VG_OK;
@@ -382,6 +386,7 @@ vg_status vg_select_widen(const struct vg_select *s, struct vg_region *region,
   vg_status st = VG_OK;
   double most = 0;
 
+  assert(vg_region_is_sound(region));
   if (list_faces(&l)) st = vg_fail_memory(err, "cutting a front");
   for (size_t i = 0; st == VG_OK && i < l.n; i++) {
     const double *x[3];
@@ -424,6 +429,7 @@ vg_status vg_select_near(struct vg_front *part, const struct vg_region *region,
   vg_status st = near ? list_near(part, region, sizing, near, &n, err)
                       : vg_fail_memory(err, "cutting a front");
 
+  assert(vg_region_is_sound(region) && *point && *face);
   if (st < 0 || n == part->n_face) goto done;
   VG_TRY(take(part, n, near, &less, &of_part, err));
   for (size_t k = 0; k < less.n_point; k++) of_part[k] = (*point)[of_part[k]];
@@ -526,6 +532,7 @@ int vg_select_touched(const struct vg_select *s, const double *const x[3],
   struct touch t = { .s = s, .x = x, .visit = visit, .context = context };
   int top = VG_SELECT_LEVELS - 1, found = 0;
 
+  assert(s->front && x && visit);
   touch_init(&t);
   while (top > 0 && !s->level[top].n) top--;
   for (size_t b = 0; b < s->level[top].n && !found; b++)

@@ -1,5 +1,6 @@
 #include "partition/cut/task_data.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,6 +12,7 @@ double vg_front_work(const struct vg_front *f)
 {
   double area = 0, volume = vg_front_volume(f);
 
+  assert((f->x && f->face) || !f->n_face);
   for (size_t i = 0; i < f->n_face; i++) {
     const double *x = f->x[f->face[i][0]];
     double a[3], b[3], n[3];
@@ -43,6 +45,7 @@ void vg_change_put(struct vg_writer *w, const struct vg_change *c)
 {
   uint64_t head[3] = {(uint64_t)c->blocked, c->serial, c->n_part};
 
+  assert(w && c);
   vg_put(w, 3, sizeof *head, head);
   vg_filled_put(w, &c->made, 0);
 }
@@ -51,6 +54,7 @@ void vg_change_get(struct vg_reader *r, struct vg_change *c)
 {
   uint64_t head[3] = {0};
 
+  assert(r && c);
   memset(c, 0, sizeof *c);
   vg_get(r, 3, sizeof *head, head);
   vg_filled_get(r, &c->made, 0);

@@ -1,4 +1,5 @@
 /* What tasks that make cells do: look in the store, else grow, and keep. */
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -229,6 +230,7 @@ vg_status vg_work_zone(struct vg_partition *p, const struct vg_work *w,
   struct made m = MADE_INIT;
   vg_status st = VG_OK;
 
+  assert(w->what == VG_WORK_ZONE && change);
   if (w->part.n_face)
     st = find_or_make(p, &w->part, &w->region, 0, &m, e, err);
   if (st == VG_OK)
@@ -278,6 +280,7 @@ vg_status vg_work_leaf(struct vg_partition *p, const struct vg_work *w,
   char path[VG_PATH_MAX];
   vg_status st;
 
+  assert(w->what == VG_WORK_LEAF && w->node && outgrown && n_cell);
   *outgrown = 0;
   if (p->options.fail_leaves > 0 && fails_on_purpose(p, n->path))
     return vg_fail(err, VG_ERR_GEOMETRY, "%s is not filled on purpose",

@@ -1,5 +1,6 @@
 #include "partition/discrete/discrete.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -170,6 +171,7 @@ vg_status vg_discrete_refuse(vg_status st, const char *why, double factor,
 {
   char text[300];            /* why may be in *err */
 
+  assert(st < 0 && why);
   snprintf(text, sizeof text, "%s", why);
   return vg_fail(err, st, "no coarse mesh for the discrete decomposition "
                  "(%s); try another coarsening than %g, or decompose by "
@@ -215,6 +217,7 @@ vg_status vg_discrete_part(const struct vg_front *front,
   double t[VG_PARTING_STEPS + 1];
   vg_status st = vg_parting_check_options(o, load->cells, err);
 
+  assert(front && sizing && !out->n_point && !out->n_part && !out->part);
   if (st < 0) return st;
   t[0] = vg_clock();
   r->n_asked = (uint64_t)o->n_part;

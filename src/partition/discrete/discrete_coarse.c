@@ -1,4 +1,5 @@
 /* The coarse mesh, by the kernel that makes all cells. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +32,7 @@ vg_status vg_discrete_sizes(const struct vg_mesh *front,
   struct vg_sizing *most = NULL;
   vg_status st;
 
+  assert(front && sizing && out);
   o.growth = growth;
   o.coarseness = coarseness;
   o.h_max = INFINITY;
@@ -146,6 +148,7 @@ vg_status vg_coarse_fill(const struct vg_front *front,
   struct vg_coarse_cells all = { .n_cell = 0 };
   vg_status st;
 
+  assert(!c->t.n_cell && !c->on && !c->weight && !c->part);
   VG_TRY(given ? copy_points(given, &all, err)
                : fill(front, sizing, factor, e, &all, err));
   c->n_front = front->n_point;

@@ -1,4 +1,5 @@
 /* Coarse cells to parts. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -386,6 +387,7 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
   struct dual d = { .begin = NULL };
   vg_status st = VG_OK;
 
+  assert(c->on && !c->weight && !c->part && o->n_part >= 1 && n_apart);
   c->weight = vg_alloc(c->t.n_cell, sizeof *c->weight);
   c->part = vg_alloc(c->t.n_cell, sizeof *c->part);
   c->n_part = (uint32_t)o->n_part;

@@ -1,5 +1,6 @@
 /* Interfaces at the local size: points along their edges first, then each
  * coarse face as a plane region. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -356,6 +357,7 @@ vg_status vg_sheets_remesh(const struct vg_coarse *c,
                       vg_calloc(f->n_face, sizeof *a.of) };
   vg_status st = d && a.of ? VG_OK : vg_fail_memory(err, "the interfaces");
 
+  assert(!s->n_point && !s->x && !s->begin && !s->tri);
   VG_TRY(st);
   VG_TRY(divide_edges(c, f, sizing, s, d, err));
   vg_engine_loop(e, f->n_face, 32, do_faces, &a);

@@ -1,4 +1,5 @@
 /* Faces and edges between parts. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +23,7 @@ void vg_interface_corners(const struct vg_coarse *c,
 {
   const struct vg_cell *cell = &c->t.cell[f->side[i] >> 2];
 
+  assert(i < f->n_face && f->side[i] >> 2 < c->t.n_cell);
   for (int k = 0; k < 3; k++) v[k] = cell->v[vg_face[f->side[i] & 3][k]];
 }
 
@@ -72,6 +74,7 @@ vg_status vg_interface_list(const struct vg_coarse *c,
   uint32_t (*corner)[3] = NULL;
   vg_status st;
 
+  assert(c->part && !f->n_edge && !f->edge && !f->end && !f->n_around);
   VG_TRY(list_sides(c, f, err));
   corner = vg_alloc(f->n_face, sizeof *corner);
   if (!corner) VG_TRY(vg_fail_memory(err, "the interfaces"));

@@ -2,6 +2,7 @@
  * edge of a triangle is halved if it is too long, and triangles fall into two,
  * three or four by their edges that were, time by time (M.-C. Rivara, Int. J.
  * Numer. Methods Eng. 20, 1984: angles stay above half of what they were). */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -246,6 +247,7 @@ vg_status vg_sheets_halve(const struct vg_coarse *c,
   size_t n_halved = 1;
   vg_status st;
 
+  assert(!s->n_point && !s->x && !s->begin && !s->tri);
   h.tri = vg_alloc(f->n_face, sizeof *h.tri);
   h.face = vg_alloc(f->n_face, sizeof *h.face);
   st = h.tri && h.face ? find_reach(&h, err)

@@ -1,6 +1,7 @@
 /* Interfaces smoothed: a point goes towards the middle of those that it has
  * edges to on the interfaces, one where parts meet along a curve towards its
  * neighbours on that, as long as the coarse cells stay good. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -131,6 +132,7 @@ vg_status vg_interface_smooth(struct vg_coarse *c,
   struct lists cells = { NULL, NULL }, edges = { NULL, NULL };
   vg_status st;
 
+  assert(c->n_front <= c->t.n_point && (f->side || !f->n_face));
   VG_TRY(list_cells(c, &cells, err));
   VG_TRY(list_edges(c, f, &edges, err));
   for (int sweep = 0; sweep < SWEEPS; sweep++)

@@ -1,6 +1,7 @@
 /* Outline: the octree is refined with the triangles of the front, which tell
  * what is in the void, until octants are as wide as sizes allow; then balanced,
  * and each triangle takes those out that it is too close to. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -271,6 +272,7 @@ vg_status vg_octants_make(const struct vg_front *v, const struct vg_load *load,
                      .stack = VG_LOAD_STACK_INIT, .t = t };
   vg_status st;
 
+  assert(coarsening >= 2 && t);
   memset(t, 0, sizeof *t);
   memcpy(t->lo, load->lo, sizeof t->lo);
   t->unit = load->unit;

@@ -1,6 +1,7 @@
 /* Outline: what hangs together of the free leaves is parted by itself, into its
  * share of the parts; pieces that hang apart join the part beside them, or
  * become parts of their own. What hangs together of the others is a gap. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -466,6 +467,7 @@ vg_status vg_octants_part(struct vg_octants *t, const struct vg_front *v,
   const size_t n = t->n_leaf;
   vg_status st;
 
+  assert(t->octant && o->n_part >= 1 && (gap || !v->n_face));
   c.cells = vg_alloc(n, sizeof *c.cells);
   c.edge = vg_alloc(n, sizeof *c.edge);
   c.up = vg_alloc(n, sizeof *c.up);

@@ -3,6 +3,7 @@
  * away. */
 #include "partition/octree/octree.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -358,6 +359,7 @@ vg_status vg_octree_part(const struct vg_front *front,
                      .serial = serial };
   vg_status st = check_options(o, err);
 
+  assert(front && sizing && !out->n_point && !out->n_part && !out->part);
   if (st < 0) return st;
   if (!(load->cells > 0) || !(load->unit > 0))
     return vg_fail(err, VG_ERR_GEOMETRY, "the void of %zu triangles encloses "

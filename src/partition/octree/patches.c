@@ -1,5 +1,6 @@
 /* Outline: curves are divided, then patches between them triangulated, each for
  * itself; then numbered in their order. */
+#include <assert.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -333,6 +334,7 @@ vg_status vg_interfaces_make(const struct vg_octants *t,
                       .out = out };
   vg_status st;
 
+  assert(t && p && (p->patch || !p->n) && out);
   memset(out, 0, sizeof *out);
   pthread_mutex_init(&m.lock, NULL);
   m.curve = vg_calloc(p->n_curve, sizeof *m.curve);

@@ -2,6 +2,7 @@
  * their line (where octants of two sizes meet they overlap). A segment with two
  * faces in one plane, between the same two parts, is inside a patch; others
  * bound patches, and are curves where they go on straight. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -358,6 +359,7 @@ vg_status vg_patches_make(const struct vg_octants *t, struct vg_patches *p,
   uint32_t *number = NULL;
   vg_status st;
 
+  assert(t->octant && p);
   memset(p, 0, sizeof *p);
   VG_TRY(list_squares(&b, &whole, err));
   VG_TRY(divide_edges(&b, whole, err));

@@ -1,5 +1,6 @@
 #include "run/common/json_file.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "io/stream/stream.h"
@@ -11,6 +12,7 @@ vg_status vg_json_write(const char *path, const json_t *o, const char *what,
   char *text = json_dumps(o, JSON_INDENT(2));
   vg_status st;
 
+  assert(path && what);
   if (!text) return vg_fail_memory(err, what);
   st = vg_output_open(path, &out, err);
   if (st >= 0) {

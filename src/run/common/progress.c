@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "run/common/progress.h"
 
+#include <assert.h>
 #include <ftw.h>
 #include <pthread.h>
 #include <semaphore.h>
@@ -95,6 +96,7 @@ static void *wait_for_deadline(void *unused)
 
 void vg_display_deadline(double seconds)
 {
+  assert(seconds > 0);
   sigset_t all, before;
   pthread_t thread;
 
@@ -302,6 +304,7 @@ void vg_display_update(void *user, const char *stage, size_t done,
   double now = vg_display_now(), every = d->live ? LIVE_EVERY_S : d->every;
   int tells;
 
+  assert(d && stage);
   if (d->logs && d->done > d->logged && strcmp(stage, d->stage) != 0)
     log_line(d, now);
   tells = move_on(d, stage, done, expected, now);

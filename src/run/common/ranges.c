@@ -1,5 +1,6 @@
 #include "run/common/ranges.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,6 +94,7 @@ vg_status vg_range_parse(const char *what, const char *text, int64_t lo,
   struct vg_range_list r = VG_RANGE_INIT;
   vg_status st;
 
+  assert(what && text && lo <= hi && out);
   for (;;) {
     size_t len = strcspn(text, ",");
     struct span s;

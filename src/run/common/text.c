@@ -1,5 +1,6 @@
 #include "run/common/text.h"
 
+#include <assert.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,6 +78,7 @@ char *vg_text_clean(const char *text, char *out, size_t size)
 {
   size_t used;
 
+  assert(out && size > 0);
   put(text, SIZE_MAX, out, size, &used);
   return out;
 }
@@ -85,6 +87,7 @@ char *vg_text_column(const char *text, size_t columns, char *out, size_t size)
 {
   size_t used, at = put(text, columns, out, size, &used);
 
+  assert(out && size > 0);
   for (; used < columns && at + 1 < size; used++) out[at++] = ' ';
   out[at] = 0;
   return out;

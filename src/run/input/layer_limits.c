@@ -1,4 +1,5 @@
 /* What layers must reach, once they and the field are known. */
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -50,6 +51,7 @@ vg_status vg_layer_stage_finish(struct vg_layer_stage *s,
   size_t at = 0;
   vg_status st;
 
+  assert(s->is_on && s->top);
   VG_TRY(vg_layers_tops(surface, &s->layers.columns, s->top, s->n_wall,
                         s->wall, &s->all, err));
   for (uint32_t i = 0; i < s->n_patch; i++) { /* s->wall is by rising patch */

@@ -1,5 +1,6 @@
 #include "run/input/layers.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -552,6 +553,7 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
                         { 0, NULL } };
   vg_status st = h.least ? VG_OK : vg_fail_memory(err, "the patches");
 
+  assert(!s->is_on && !s->reason && !s->request && !s->limit);
   if (st >= 0) st = allocate(s, b->surface.n_patch, err);
   if (st >= 0)
     st = b->read->settings.layer.grow == VG_ANSWER_NO
@@ -674,6 +676,7 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
   double t;
   vg_status st;
 
+  assert(s->is_on);
   s->options.progress = (struct vg_progress){ vg_display_update, show };
   s->options.stop = (struct vg_stop){ vg_display_stop, show };
   st = vg_layers_grow(surface, sizing, &s->options, &s->layers, &s->report,

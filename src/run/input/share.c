@@ -1,5 +1,6 @@
 #include "run/input/share.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "base/bytes.h"
@@ -33,6 +34,7 @@ vg_status vg_surface_share(struct vg_comm *c, struct vg_mesh *m,
   unsigned char *at[N_PART];
   vg_status st;
 
+  assert(number && common);
   if (vg_comm_node_size(c) == 1) return VG_OK;
   list_parts(&h, m, part);
   st = vg_comm_node_shmem(c, N_PART, part, common, err);

@@ -1,5 +1,6 @@
 #include "run/input/walls.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,7 @@ const char *vg_wall_reason_name(enum vg_wall_reason reason)
   static const char *const name[] = { "no", "setting", "meshing class",
                                       "condition", "body" };
 
+  assert(reason <= VG_WALL_BODY);
   return name[reason];
 }
 
@@ -243,6 +245,7 @@ vg_status vg_walls_find(const struct vg_boundary *b,
   uint8_t *has_faces = mark_of ? mark_of + 2 * m->n_patch : NULL;
   vg_status st;
 
+  assert((reason || !m->n_patch) && n_wall);
   *n_wall = 0;
   if (!mark_of) return vg_fail_memory(err, "the patches");
   for (size_t i = 0; i < m->n_tri; i++) has_faces[m->tri_patch[i]] = 1;

@@ -1,5 +1,6 @@
 #include "run/picture/cuts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +31,7 @@ vg_status vg_cuts_new(size_t n, const struct vg_cut *cut,
 {
   struct vg_cuts *c = vg_calloc(1, sizeof *c);
 
+  assert(n <= VG_CUTS_MAX && (cut || !n) && out);
   if (c) c->at = vg_calloc(n * TILES, sizeof *c->at);
   if (!c || !c->at) {
     free(c);

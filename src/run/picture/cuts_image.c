@@ -1,5 +1,8 @@
 /* Samples of a cut into pixels. */
 #include "run/picture/cuts.h"
+
+#include <assert.h>
+
 #include "run/picture/cuts_parts.h"
 
 const uint8_t vg_cut_kind_colour[VG_CUT_KINDS][3] = {
@@ -33,6 +36,7 @@ size_t vg_cuts_in_parts(const struct vg_cuts *c, size_t i)
 {
   size_t n = 0;
 
+  assert(i < c->n);
   for (size_t k = i * TILES; k < (i + 1) * TILES; k++)
     for (size_t j = 0; c->at[k] && j < TILE * TILE; j++)
       n += (c->at[k]->code[j] & (PARTS - 1)) >= PART_FIRST;
@@ -88,6 +92,7 @@ vg_status vg_cuts_image(const struct vg_cuts *c, size_t i,
 {
   vg_status st = vg_image_new(VG_CUT_WIDTH, VG_CUT_HEIGHT, out, err);
 
+  assert(i < c->n && out);
   for (int k = 0; k < TILES && st >= 0; k++) {
     int y = k / TILES_X * TILE / SAMPLES, x = k % TILES_X * TILE / SAMPLES;
 

@@ -1,5 +1,6 @@
 #include "run/picture/image.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -12,6 +13,7 @@
 vg_status vg_image_new(int width, int height, struct vg_image *m,
                        struct vg_error *err)
 {
+  assert(width > 0 && height > 0 && m);
   m->rgba = vg_calloc((size_t)width * (size_t)height, sizeof *m->rgba);
   if (!m->rgba) return vg_fail_memory(err, "a picture");
   m->width = width;
@@ -180,6 +182,7 @@ vg_status vg_image_png(const struct vg_image *m, struct vg_bytes *out,
 vg_status vg_deflate(const void *data, size_t n, struct vg_bytes *out,
                      struct vg_error *err)
 {
+  assert((data || !n) && out);
   uLongf packed = compressBound(n);
   unsigned char *to = vg_alloc(packed, 1);
 

@@ -1,5 +1,6 @@
 #include "run/picture/shot.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,6 +27,7 @@ void vg_camera_aim(const struct vg_mesh *m, const uint8_t *is_seen,
   double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
   double middle[2], extent[2];
 
+  assert(width > 0 && height > 0 && (toward[0] != 0 || toward[1] != 0));
   memset(c, 0, sizeof *c);
   c->width = width;
   c->height = height;
@@ -227,6 +229,7 @@ vg_status vg_shot_take(const struct vg_mesh *m, const uint8_t *is_seen,
                        vg_alloc(m->n_tri, sizeof *d.row) };
   vg_status st = VG_OK;
 
+  assert(!s->tri && !s->light && (is_seen || !m->n_tri));
   if (made.tri && made.light && d.depth && d.at && d.row) {
     memset(made.tri, 255, n * sizeof *made.tri);
     for (size_t i = 0; i < n; i++) d.depth[i] = -INFINITY;

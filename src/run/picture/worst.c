@@ -1,5 +1,6 @@
 #include "run/picture/worst.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -105,6 +106,7 @@ vg_status vg_around_find(struct vg_comm *comm, const struct vg_slices *s,
   struct vg_bytes *from = vg_calloc(size, sizeof *from);
   vg_status st = to && from ? VG_OK : vg_fail_memory(err, "the worst cells");
 
+  assert((id && out) || !n);
   memset(out, 0, n * sizeof *out);
   if (st >= 0) st = vg_slices_each(s, threads, search_slice, &q, err);
   if (st >= 0 && rank) st = pack(n, out, &to[0], err);

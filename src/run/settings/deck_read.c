@@ -1,5 +1,6 @@
 /* Reader of the run deck: a state machine over lines. Declared in
  * run/settings/deck.h; grammar in docs/deck.md. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -487,6 +488,7 @@ vg_status vg_deck_parse(const char *name, const void *data, size_t size,
   struct vg_input in = VG_INPUT_INIT;
   vg_status st = vg_input_memory(name, data, size, &in, err);
 
+  assert(name && (data || !size) && s);
   return st < 0 ? st : run(&in, s, err);
 }
 

@@ -1,5 +1,6 @@
 #include "run/settings/lists.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "io/mesh/foam.h"
@@ -51,6 +52,7 @@ vg_status vg_write_list(const char *list, size_t *n,
 {
   vg_status st = VG_OK;
 
+  assert(*n <= VG_WRITE_ITEMS && item);
   while (*list && st >= 0) {
     size_t len = strcspn(list, ", ");
 

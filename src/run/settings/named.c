@@ -1,5 +1,6 @@
 /* Settings and rows of tables by their names. Declared in
  * run/settings/settings.h. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,6 +28,7 @@ const struct vg_param *vg_settings_name(size_t i, const char **name,
   size_t n;
   const struct vg_param *p = vg_settings_params(&n);
 
+  assert(name && in_farfield);
   *in_farfield = i >= n;
   if (i < n) {
     *name = p[i].name;
@@ -205,6 +207,8 @@ vg_status vg_settings_copy(struct vg_settings *to,
   struct vg_settings s = *from;
   vg_status st = VG_OK;
 
+  assert(to != from && !to->source && !to->patch);
+  assert(!to->layer_row && !to->surface_row);
   s.source = NULL;
   s.patch = NULL;
   s.layer_row = NULL;

@@ -1,5 +1,6 @@
 /* Values of settings as text, both ways, and the search for a slip of the
  * pen. Declared in run/settings/settings.h. */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -146,6 +147,7 @@ vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
   const int64_t no_count = VG_COUNT_NONE;
   char *at = (char *)base + p->offset;
 
+  assert(p && base && (text || !len));
   if (p->optional && vg_token_is(text, len, "-")) {
     if (p->type == VG_PARAM_REAL) memcpy(at, &unset, sizeof unset);
     if (p->type == VG_PARAM_ID || p->type == VG_PARAM_PATCH)
@@ -194,6 +196,7 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
   int32_t id;
   int word;
 
+  assert(p && base && out && size > 0);
   if (p->type == VG_PARAM_PATCH && ((const char *)base)[p->name_at]) {
     format_text((const char *)base + p->name_at, out, size);
     return;

@@ -1,5 +1,6 @@
 #include "run/settings/patch_names.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,6 +49,7 @@ int vg_patch_list_next(const char **text, struct vg_patch_item *item)
   const char *at = *text + strspn(*text, ", ");
   const char *digit = at + (*at == '-');
 
+  assert(text && *text && item);
   *text = at;
   memset(item, 0, sizeof *item);
   if (!*at) return 0;
@@ -102,6 +104,7 @@ void vg_patch_list_text(const struct vg_mesh *m, size_t n, char *text,
 {
   size_t at = 0;
 
+  assert(n <= m->n_patch && text && size > 0);
   *text = 0;
   for (size_t i = 0; i < n; i++) {
     const struct vg_patch *p = &m->patch[i];
@@ -180,6 +183,7 @@ vg_status vg_patch_list_mark(const char *what, const char *list,
   struct vg_patch_item item;
   vg_status st = vg_patch_list_check(what, list, err);
 
+  assert(n <= m->n_patch && (on || !n));
   while (st >= 0 && vg_patch_list_next(&at, &item))
     st = mark(what, &item, m, n, on, err);
   return st;
@@ -191,6 +195,7 @@ vg_status vg_patch_ref_mark(const char *what, int32_t id, const char *name,
 {
   struct vg_patch_item item = { .from = id, .to = id };
 
+  assert(n <= m->n_patch && (on || !n));
   snprintf(item.name, sizeof item.name, "%s", name);
   return mark(what, &item, m, n, on, err);
 }

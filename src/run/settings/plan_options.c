@@ -1,5 +1,6 @@
 #include "run/settings/plan_options.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "partition/advance/ways.h"
@@ -205,6 +206,7 @@ vg_options_partition(const struct vg_settings *s)
 {
   struct vg_partition_options o = VG_PARTITION_OPTIONS_INIT;
 
+  assert(s->decompose >= 0 && s->decompose < VG_DECOMPOSITIONS);
   o.rule = vg_options_cuts(s);
   o.levels = (int)s->levels;
   o.maker = vg_ways[s->decompose].maker;

@@ -1,5 +1,6 @@
 #include "run/settings/resolved.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +31,7 @@ double vg_settings_first(const struct vg_layer_settings *l, double first,
 
 void vg_resolve_flow(struct vg_settings *s, int flow, int axis)
 {
+  assert(axis >= -1 && axis < 3);
   if (flow == VG_FLOW_UNKNOWN) return;
   if (s->farfield.kind == VG_DOMAIN_AUTO)
     s->farfield.kind = flow == VG_FLOW_EXTERNAL ? VG_DOMAIN_SPHERE
@@ -107,6 +109,8 @@ vg_status vg_resolve(const struct vg_settings *read,
   struct vg_settings *s = &r.settings;
   vg_status st;
 
+  assert((decided->patch || !decided->n_patch) && out);
+  assert(decided->grows || !decided->n_grows);
   VG_TRY(vg_resolve_nothing(read, &r, err));
   s->remesh = answer(decided->is_remeshed);
   s->swap = answer(decided->is_swapped);

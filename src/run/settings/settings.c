@@ -1,5 +1,6 @@
 #include "run/settings/settings.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -263,6 +264,7 @@ const struct vg_param *vg_settings_params(size_t *n)
 
 const struct vg_setting_table *vg_settings_table(enum vg_table_kind kind)
 {
+  assert(kind < VG_TABLE_N);
   return kind == VG_TABLE_SURFACE ? &vg_surface_table : &tables[kind];
 }
 
@@ -277,6 +279,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
 
+  assert(kind < VG_TABLE_N && row);
   for (int k = 0; k < 3; k++)
     far.centre[k] = far.lo[k] = far.hi[k] = NAN;
   switch (kind) {
@@ -326,6 +329,7 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
 {
   int refused = 0;
 
+  assert(kind < VG_TABLE_N && row);
   switch (kind) {
   case VG_TABLE_FARFIELD:
     memcpy(&s->farfield, row, sizeof s->farfield);
@@ -369,6 +373,7 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
 const void *vg_settings_row(const struct vg_settings *s,
                             enum vg_table_kind kind, size_t i)
 {
+  assert(i < vg_settings_rows(s, kind));
   if (kind == VG_TABLE_FARFIELD) return &s->farfield;
   if (kind == VG_TABLE_SWEEP) return &s->sweep;
   if (kind == VG_TABLE_PATCHES) return &s->patch[i];
@@ -379,6 +384,7 @@ const void *vg_settings_row(const struct vg_settings *s,
 
 size_t vg_settings_rows(const struct vg_settings *s, enum vg_table_kind kind)
 {
+  assert(kind < VG_TABLE_N);
   if (kind == VG_TABLE_FARFIELD) return 1;
   if (kind == VG_TABLE_SWEEP) return s->n_sweep;
   if (kind == VG_TABLE_LAYERS) return s->n_layer;
@@ -391,6 +397,7 @@ void vg_settings_override(struct vg_settings *s, const struct vg_param *set)
   struct vg_layer_settings *l = &s->layer;
   const void *at = (const char *)s + set->offset;
 
+  assert(set->offset < sizeof *s);
   if (at == &l->first) l->y_plus = 0;
   if (at == &l->y_plus) l->first = 0;
   if (at == &s->leaf_cells) s->levels = 0;

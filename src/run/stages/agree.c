@@ -1,5 +1,6 @@
 #include "run/stages/agree.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -90,6 +91,7 @@ vg_status vg_run_agree(struct vg_comm *c, const struct vg_mesh *surface,
   struct claim claim;
   vg_status st;
 
+  assert(surface && sizing && change <= VG_AGREE_NOTHING);
   if (n == vg_comm_node_size(c)) return VG_OK;
   claim = make_claim(c, surface, layers, sizing, change);
   own = (struct vg_bytes){ sizeof claim, (unsigned char *)&claim };

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "run/stages/output.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -64,11 +65,13 @@ static char *join(const char *dir, const char *name, const char *suffix)
 
 char *vg_outputs_temp_path(struct vg_outputs *o, const char *suffix)
 {
+  assert(o->temp_dir && o->name && suffix);
   return join(o->temp_dir, o->name, suffix);
 }
 
 char *vg_outputs_final(const struct vg_outputs *o, const char *suffix)
 {
+  assert(o->dir && o->name && suffix);
   if (strcmp(o->dir, ".") == 0) {
     char *path;
 
@@ -162,6 +165,7 @@ vg_status vg_outputs_place(const char *stem, const char *dir,
   const char *base = slash ? slash + 1 : stem;
   vg_status st = VG_OK;
 
+  assert(!o->dir && !o->name);
   if (dir) o->dir = strdup(dir);
   else if (!slash) o->dir = strdup(".");
   else o->dir = strndup(stem, slash == stem
@@ -276,6 +280,7 @@ vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
   struct vg_bytes name = {0, NULL};
   vg_status st = VG_OK;
 
+  assert(!o->temp_dir);
   o->is_guest = vg_comm_rank(comm) > 0;
   if (!o->is_guest) st = make_temp_dir(o, err);
   VG_TRY(vg_comm_agree(comm, st, err));
@@ -543,6 +548,7 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
   struct writing w = { o, p, layers, comm, mesh, threads, VG_MESH_INIT };
   vg_status st = VG_OK;
 
+  assert(!o->n_open && o->temp_dir);
   for (size_t i = 0; i < o->n_item && st >= 0; i++)
     if (!vg_slices_is_ugrid(o->item[i]))
       st = write_item(&w, o->item[i], err);
@@ -577,6 +583,7 @@ vg_status vg_outputs_digest(struct vg_outputs *o, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
+  assert(!o->is_guest && o->temp_dir);
   for (size_t i = 0; i < o->n_file && st >= 0; i++) {
     char *path = vg_outputs_temp_path(o, o->file[i].suffix);
 
@@ -591,6 +598,7 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
+  assert(!o->is_guest && o->temp_dir);
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
     if (!o->file[i].is_case && !o->file[i].keep_old)
       st = refuse_folder(o, o->file[i].suffix, err);

@@ -1,5 +1,7 @@
 #include "run/stages/pictures.h"
 
+#include <assert.h>
+
 #include "run/common/progress.h"
 
 vg_status vg_run_pictures_plan(struct vg_run_pictures *r, struct vg_comm *comm,
@@ -10,6 +12,7 @@ vg_status vg_run_pictures_plan(struct vg_run_pictures *r, struct vg_comm *comm,
   double t = vg_display_now();
   vg_status st;
 
+  assert(!r->cuts);
   if (!r->is_on) return VG_OK;
   st = vg_cut_plan(surface, columns, &r->plan, err);
   if (st >= 0) st = vg_cuts_new(r->plan.n, r->plan.cut, &r->cuts, err);
