@@ -40,7 +40,9 @@ struct options {
   int domain, fill, threads, runs;
 };
 
-struct clocks { double wall, cpu; };   /* cpu: user and system */
+struct clocks {
+  double wall, cpu;
+}; /* cpu: user and system */
 
 /* One run of everything; [0] tetrahedra, [1] mixed. */
 struct figures {
@@ -146,14 +148,14 @@ static vg_status fill(const struct vg_mesh *surface,
 {
   const struct vg_front front = vg_front_of(surface);
   const struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
-  struct vg_fill_report r = {0};
+  struct vg_fill_report r = { 0 };
   struct vg_filled made = VG_FILLED_INIT;
   size_t cap = surface->n_point;
   vg_status st = vg_mesh_copy(field, surface, err);
 
   if (st >= 0) st = vg_fill_front(&front, NULL, sizing, &o, &made, &r, err);
-  if (st >= 0 && vg_reserve(&field->point, &cap, cap + made.n_point,
-                            sizeof *field->point))
+  if (st >= 0 &&
+      vg_reserve(&field->point, &cap, cap + made.n_point, sizeof *field->point))
     st = vg_fail_memory(err, "the field");
   if (st >= 0) {
     memcpy(field->point + field->n_point, made.x,
@@ -178,16 +180,15 @@ static vg_status make_field(const struct bench *b,
   vg_status st;
 
   if (!b->o.fill) return vg_mesh_copy(field, &front, err);
-  st = vg_sizing_new(&b->sizing, b->n_source, b->source, &front,
-                     &sizing, err);
+  st = vg_sizing_new(&b->sizing, b->n_source, b->source, &front, &sizing, err);
   if (st >= 0) st = fill(&front, sizing, field, err);
   vg_sizing_free(sizing);
   return st;
 }
 
 static vg_status join(const struct bench *b, const struct vg_layers *layers,
-                      const struct vg_mesh *field, int kind,
-                      struct figures *f, struct vg_error *err)
+                      const struct vg_mesh *field, int kind, struct figures *f,
+                      struct vg_error *err)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct clocks start = now();
@@ -254,12 +255,11 @@ static void print_grow(const struct bench *b, const struct figures *f)
   printf("grow | %s | %d | %zu | %zu | %.1f | %.2f | %.2f | %.2f | %.2f "
          "| %.2f | %.0f | %.0f | %.3f / %.3f | %.0f | %.1f | %zu |\n",
          b->o.name, b->o.threads, r->n_wall_point, r->n_cell,
-         (double)r->n_layer_point / (double)r->n_column,
-         us * r->time_topology, us * r->time_direction, us * r->time_height,
-         us * r->time_clear, us * r->time_slide, n / t,
-         n / (t * f->grown.cpu / f->grown.wall), f->grown.wall, f->grown.cpu,
-         n / r->time_total, 1e-6 * (double)r->n_cell / r->time_total,
-         r->n_round);
+         (double)r->n_layer_point / (double)r->n_column, us * r->time_topology,
+         us * r->time_direction, us * r->time_height, us * r->time_clear,
+         us * r->time_slide, n / t, n / (t * f->grown.cpu / f->grown.wall),
+         f->grown.wall, f->grown.cpu, n / r->time_total,
+         1e-6 * (double)r->n_cell / r->time_total, r->n_round);
 }
 
 static int by_joined(const void *a, const void *b, int kind)
@@ -281,8 +281,7 @@ static int by_joined_mixed(const void *a, const void *b)
   return by_joined(a, b, 1);
 }
 
-static void print_join(const struct bench *b, const struct figures *f,
-                       int kind)
+static void print_join(const struct bench *b, const struct figures *f, int kind)
 {
   const struct vg_join_info *j = &f->join[kind];
   double n = (double)f->n_cell[kind];
@@ -299,8 +298,7 @@ static void print_join(const struct bench *b, const struct figures *f,
            f->written[kind].cpu,
            1e-6 * (double)f->n_byte[kind] / f->written[kind].wall,
            1e-6 * n / wall);
-  else
-    printf("- | - | - |\n");
+  else printf("- | - | - |\n");
 }
 
 static vg_status measure(struct bench *b, struct vg_error *err)
@@ -308,8 +306,8 @@ static vg_status measure(struct bench *b, struct vg_error *err)
   struct vg_mesh field = VG_MESH_INIT;
   struct vg_sizing *sizing = NULL;
   const int n = b->o.runs;
-  vg_status st = vg_sizing_new(&b->sizing, b->n_source, b->source,
-                               &b->surface, &sizing, err);
+  vg_status st = vg_sizing_new(&b->sizing, b->n_source, b->source, &b->surface,
+                               &sizing, err);
 
   for (int i = 0; i < n && st >= 0; i++)
     st = one_run(b, sizing, &field, &b->run[i], err);
@@ -332,12 +330,20 @@ static int is_yes(const char *text)
 
 static int set_option(struct options *o, const char *name, const char *value)
 {
-  const struct { const char *name; const char **to; } text[] = {
-    { "--name", &o->name }, { "--demo", &o->demo }, { "--walls", &o->walls },
+  const struct {
+    const char *name;
+    const char **to;
+  } text[] = {
+    { "--name", &o->name },
+    { "--demo", &o->demo },
+    { "--walls", &o->walls },
     { "--out", &o->out },
   };
-  const struct { const char *name; double *to; } number[] = {
-    { "--length", &o->length }, { "--reynolds", &o->reynolds },
+  const struct {
+    const char *name;
+    double *to;
+  } number[] = {
+    { "--length", &o->length },   { "--reynolds", &o->reynolds },
     { "--rate1", &o->law.rate1 }, { "--rate2", &o->law.rate2 },
     { "--cap", &o->law.cap },
   };
@@ -365,15 +371,21 @@ static int parse(int argc, char **argv, struct options *o)
   }
   if (!o->name) o->name = o->demo ? o->demo : o->surface;
   return !o->demo == !o->surface || o->runs < 1 || o->runs > RUNS_MAX ||
-         o->threads < 0 || !(o->length > 0 && o->reynolds > 0) ? -1 : 0;
+             o->threads < 0 || !(o->length > 0 && o->reynolds > 0)
+         ? -1
+         : 0;
 }
 
 int main(int argc, char **argv)
 {
   struct vg_demo demo = VG_DEMO_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  struct bench b = { .o = { .length = 0.7, .reynolds = 5e6, .fill = 1,
-                            .law = VG_LAW_INIT, .threads = 1, .runs = 3 },
+  struct bench b = { .o = { .length = 0.7,
+                            .reynolds = 5e6,
+                            .fill = 1,
+                            .law = VG_LAW_INIT,
+                            .threads = 1,
+                            .runs = 3 },
                      .sizing = VG_SIZING_OPTIONS_INIT };
   vg_status st;
   int bad;

@@ -88,7 +88,7 @@ int main(int argc, char **argv)
   struct vg_sizing_options options = VG_SIZING_OPTIONS_INIT;
   struct vg_sizing *s = NULL;
   struct vg_error err = VG_ERROR_INIT;
-  double (*x)[3] = malloc(count * sizeof *x), *h = malloc(count * sizeof *h);
+  double(*x)[3] = malloc(count * sizeof *x), *h = malloc(count * sizeof *h);
   uint64_t seed = 1;
 
   if (argc > 3) options.growth = atof(argv[3]);
@@ -112,17 +112,17 @@ int main(int argc, char **argv)
          t, wall, vg_sizing_leaves(s));
   for (size_t i = 0; i < count; i++)
     for (int k = 0; k < 3; k++) x[i][k] = span * (2 * random_unit(&seed) - 1);
-  rate("random in the box", s, count, (const double (*)[3])x, h);
+  rate("random in the box", s, count, (const double(*)[3])x, h);
   for (size_t i = 0; i < count; i++)
     for (int k = 0; k < 3; k++) x[i][k] = 1.2 * (2 * random_unit(&seed) - 1);
-  rate("random near the sphere", s, count, (const double (*)[3])x, h);
+  rate("random near the sphere", s, count, (const double(*)[3])x, h);
   for (int k = 0; k < 3; k++) x[0][k] = 0.7;
   for (size_t i = 1; i < count; i++)
     for (int k = 0; k < 3; k++) {
       x[i][k] = x[i - 1][k] + 0.02 * (2 * random_unit(&seed) - 1);
       if (fabs(x[i][k]) > span) x[i][k] = x[i - 1][k];
     }
-  rate("along a walk", s, count, (const double (*)[3])x, h);
+  rate("along a walk", s, count, (const double(*)[3])x, h);
   vg_sizing_free(s);
   vg_mesh_release(&mesh);
   free(x);

@@ -32,7 +32,7 @@
 
 enum { BINS = 1800, N_SIZE = 4000, LEAF = 1, ZONE = 2, REPAIR = 3 };
 
-#define MIXED UINT32_MAX      /* of a point: cells of two tasks */
+#define MIXED UINT32_MAX /* of a point: cells of two tasks */
 #define NOBODY (UINT32_MAX - 1)
 
 static const double degree = 57.29577951308232;
@@ -153,16 +153,14 @@ static vg_status widen(void *context, const struct vg_slice *s,
       beside |= r && r <= k->now;
     }
     for (int i = 0; beside && i < 4; i++)
-      if (!k->ring[s->id[v[i]]])
-        k->ring[s->id[v[i]]] = (uint8_t)(k->now + 1);
+      if (!k->ring[s->id[v[i]]]) k->ring[s->id[v[i]]] = (uint8_t)(k->now + 1);
   }
   return VG_OK;
 }
 
 /* --- figures ------------------------------------------------------------- */
 
-static void area(const double *a, const double *b, const double *c,
-                 double n[3])
+static void area(const double *a, const double *b, const double *c, double n[3])
 {
   for (int k = 0; k < 3; k++) {
     int l = (k + 1) % 3, m = (k + 2) % 3;
@@ -181,8 +179,7 @@ static void angles(const double *const x[4], double *low, double *high)
   area(x[0], x[3], x[1], n[2]);
   area(x[0], x[1], x[2], n[3]);
   for (int i = 0; i < 4; i++)
-    length[i] = sqrt(n[i][0] * n[i][0] + n[i][1] * n[i][1] +
-                     n[i][2] * n[i][2]);
+    length[i] = sqrt(n[i][0] * n[i][0] + n[i][1] * n[i][1] + n[i][2] * n[i][2]);
   *low = 180;
   *high = 0;
   for (int i = 0; i < 4; i++)
@@ -204,7 +201,7 @@ static double edge_over_target(const struct vg_sizing *sizing,
     middle[k] = (x[0][k] + x[1][k] + x[2][k] + x[3][k]) / 4;
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < i; j++) {
-      double d[3] = {x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]};
+      double d[3] = { x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2] };
 
       sum += sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     }
@@ -347,8 +344,8 @@ static void decompose(int n, char **word, struct vg_partition_options *o)
 {
   int is_octree = n > 1 && !strcmp(word[1], "octree");
 
-  o->maker = vg_ways[is_octree ? VG_DECOMPOSE_OCTREE
-                               : VG_DECOMPOSE_DISCRETE].maker;
+  o->maker = vg_ways[is_octree ? VG_DECOMPOSE_OCTREE : VG_DECOMPOSE_DISCRETE]
+               .maker;
   o->parting.n_part = atoi(word[0]);
   o->parting.h_refine = n > 1 && !strcmp(word[1], "h-refine");
   if (n > 2 && !strcmp(word[2], "rcb"))
@@ -361,20 +358,21 @@ int main(int argc, char **argv)
   struct vg_error err = VG_ERROR_INIT;
   struct vg_sizing *sizing = NULL;
   struct vg_partition_options o = VG_PARTITION_OPTIONS_INIT;
-  struct vg_partition_report r = {0};
+  struct vg_partition_report r = { 0 };
   struct vg_spans spans = VG_SPANS_INIT;
   struct vg_partition *p = NULL;
   double t0;
 
   if (argc < 4) {
     fprintf(stderr, "usage: interface CASE|FILE CELLS LEAF [THREADS [PARTS "
-            "[remesh|h-refine|octree [metis|rcb]]]]\n");
+                    "[remesh|h-refine|octree [metis|rcb]]]]\n");
     return 2;
   }
   must(vg_child_server_start(&err), &err);
   load(argv[1], atof(argv[2]), &d);
   must(vg_sizing_new(&d.sizing, d.n_source, d.source, &d.surface, &sizing,
-                     &err), &err);
+                     &err),
+       &err);
   o.rule.leaf_cells = atof(argv[3]);
   o.threads = argc > 4 ? atoi(argv[4]) : 1;
   if (argc > 5) decompose(argc - 5, argv + 5, &o);

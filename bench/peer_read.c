@@ -32,8 +32,8 @@ static vg_status open_part(const char *stem, const char *suffix,
   return VG_OK;
 }
 
-static vg_status read_nodes(const char *stem, struct vg_mesh *m,
-                            int64_t *first, struct vg_error *err)
+static vg_status read_nodes(const char *stem, struct vg_mesh *m, int64_t *first,
+                            struct vg_error *err)
 {
   struct vg_input in = VG_INPUT_INIT;
   const char *rest;
@@ -67,7 +67,8 @@ static void make_positive(struct vg_mesh *m)
     uint32_t *t = m->tet[i], swap = t[0];
 
     if (vg_orient3d(m->point[t[0]], m->point[t[1]], m->point[t[2]],
-                    m->point[t[3]]) >= 0) continue;
+                    m->point[t[3]]) >= 0)
+      continue;
     t[0] = t[1];
     t[1] = swap;
   }
@@ -185,12 +186,11 @@ done:
 }
 
 static vg_status msh_element(struct vg_input *in, struct vg_mesh *m,
-                             int32_t type, int32_t n_tag,
-                             const uint32_t *index, size_t n_index,
-                             int32_t *tag, struct vg_error *err)
+                             int32_t type, int32_t n_tag, const uint32_t *index,
+                             size_t n_index, int32_t *tag, struct vg_error *err)
 {
-  static const int n_node[16] =
-    {0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1};
+  static const int n_node[16] = { 0, 2, 3, 4,  4,  8,  6,  5,
+                                  3, 6, 9, 10, 27, 18, 14, 1 };
   int32_t v[64];
   uint32_t *to = NULL;
   int n = n_node[type & 15];

@@ -16,7 +16,7 @@
 struct sampler {
   const struct vg_sizing *sizing;
   double lo[3], width, cells;
-  uint64_t *key;         /* corners on the finest grid, 21 bits each */
+  uint64_t *key; /* corners on the finest grid, 21 bits each */
   size_t n, cap;
   vg_status st;
 };
@@ -42,10 +42,9 @@ static double size_at(const struct sampler *s, const uint64_t at[3],
 
 /* A field of bounded gradient cannot hide a fine spot in a cell of that many
  * target lengths, so looking at corners and middle is enough. */
-static int is_fine(const struct sampler *s, const uint64_t at[3],
-                   uint64_t span)
+static int is_fine(const struct sampler *s, const uint64_t at[3], uint64_t span)
 {
-  double middle = size_at(s, at, span, (double[3]){0.5, 0.5, 0.5});
+  double middle = size_at(s, at, span, (double[3]){ 0.5, 0.5, 0.5 });
   double width = s->width * (double)span / (double)(1 << MAX_LEVEL);
 
   if (span == 1 || width <= s->cells * middle) return 1;
@@ -53,8 +52,7 @@ static int is_fine(const struct sampler *s, const uint64_t at[3],
   for (int i = 0; i < 8; i++) {
     double part[3] = { i & 1, i >> 1 & 1, i >> 2 };
 
-    if (fabs(size_at(s, at, span, part) - middle) > UNIFORM * middle)
-      return 0;
+    if (fabs(size_at(s, at, span, part) - middle) > UNIFORM * middle) return 0;
   }
   return 1;
 }
@@ -81,8 +79,7 @@ static int by_key(const void *a, const void *b)
   return (p > q) - (p < q);
 }
 
-static vg_status evaluate(struct sampler *s, double (**point)[3],
-                          double **size)
+static vg_status evaluate(struct sampler *s, double (**point)[3], double **size)
 {
   double unit = s->width / (double)(1 << MAX_LEVEL);
   size_t n = 0;
@@ -102,14 +99,13 @@ static vg_status evaluate(struct sampler *s, double (**point)[3],
     for (int k = 0; k < 3; k++)
       (*point)[i][k] = s->lo[k] +
                        unit * (double)(s->key[i] >> (42 - 21 * k) & 0x1FFFFF);
-  vg_sizing_eval(s->sizing, n, (const double (*)[3])*point, *size);
+  vg_sizing_eval(s->sizing, n, (const double(*)[3]) * point, *size);
   return VG_OK;
 }
 
 vg_status peer_sample(const struct vg_sizing *sizing, const double lo[3],
                       const double hi[3], double cells, size_t *n,
-                      double (**point)[3], double **size,
-                      struct vg_error *err)
+                      double (**point)[3], double **size, struct vg_error *err)
 {
   struct sampler s = { .sizing = sizing, .cells = cells };
   const uint64_t origin[3] = { 0, 0, 0 };

@@ -107,9 +107,9 @@ static void point_behind(const struct vg_mesh *m, size_t face, double x[3])
   for (int k = 0; k < 3; k++) d[k] /= length;
   for (size_t i = 0; i < m->n_tri; i++) {
     const uint32_t *t = m->tri[i];
-    double at = i == face ? INFINITY
-                : ray_hit(o, d, m->point[t[0]], m->point[t[1]],
-                          m->point[t[2]]);
+    double at = i == face
+                ? INFINITY
+                : ray_hit(o, d, m->point[t[0]], m->point[t[1]], m->point[t[2]]);
 
     if (at > 1e-9 * sqrt(length) && at < least) least = at;
   }
@@ -190,7 +190,7 @@ static vg_status write_smesh(const char *stem, const struct vg_mesh *m,
   char name[NAME_MAX_LEN];
   struct vg_output f = VG_OUTPUT_INIT;
   size_t n_hole;
-  double (*hole)[3] = NULL;
+  double(*hole)[3] = NULL;
   vg_status st = VG_OK;
 
   VG_TRY(find_holes(m, &n_hole, &hole, err));
@@ -200,9 +200,8 @@ static vg_status write_smesh(const char *stem, const struct vg_mesh *m,
   for (size_t i = 0; i < m->n_point; i++) put_point(&f, i + 1, m->point[i]);
   vg_output_format(&f, "%zu 1\n", m->n_tri);
   for (size_t i = 0; i < m->n_tri; i++)
-    vg_output_format(&f, "3 %u %u %u %u\n", m->tri[i][0] + 1,
-                     m->tri[i][1] + 1, m->tri[i][2] + 1,
-                     m->tri_patch[i] + 1);
+    vg_output_format(&f, "3 %u %u %u %u\n", m->tri[i][0] + 1, m->tri[i][1] + 1,
+                     m->tri[i][2] + 1, m->tri_patch[i] + 1);
   vg_output_format(&f, "%zu\n", n_hole);
   for (size_t i = 0; i < n_hole; i++) put_point(&f, i + 1, hole[i]);
   vg_output_text(&f, "0\n");
@@ -216,7 +215,7 @@ done:
 /* The triangles, those of a patch as one discrete surface. Physical groups
  * are not set: Gmsh would then save nothing else. */
 static vg_status write_msh(const char *stem, const struct vg_mesh *m,
-                            struct vg_error *err)
+                           struct vg_error *err)
 {
   char name[NAME_MAX_LEN];
   struct vg_output f = VG_OUTPUT_INIT;
@@ -229,9 +228,8 @@ static vg_status write_msh(const char *stem, const struct vg_mesh *m,
   for (size_t i = 0; i < m->n_point; i++) put_point(&f, i + 1, m->point[i]);
   vg_output_format(&f, "$EndNodes\n$Elements\n%zu\n", m->n_tri);
   for (size_t i = 0; i < m->n_tri; i++)
-    vg_output_format(&f, "%zu 2 2 0 %u %u %u %u\n", i + 1,
-                     m->tri_patch[i] + 1, m->tri[i][0] + 1,
-                     m->tri[i][1] + 1, m->tri[i][2] + 1);
+    vg_output_format(&f, "%zu 2 2 0 %u %u %u %u\n", i + 1, m->tri_patch[i] + 1,
+                     m->tri[i][0] + 1, m->tri[i][1] + 1, m->tri[i][2] + 1);
   vg_output_text(&f, "$EndElements\n");
   VG_TRY(vg_output_commit(&f, err));
 done:
@@ -259,8 +257,7 @@ static vg_status write_geo(const char *stem, const struct vg_mesh *m,
   base = base ? base + 1 : stem;
   VG_TRY(vg_output_open(name, &f, err));
   vg_output_format(&f, "Merge \"%s.msh\";\nSurface Loop(1) = {1", base);
-  for (size_t i = 1; i < m->n_patch; i++)
-    vg_output_format(&f, ", %zu", i + 1);
+  for (size_t i = 1; i < m->n_patch; i++) vg_output_format(&f, ", %zu", i + 1);
   vg_output_text(&f, "};\nVolume(1) = {1};\n");
   if (has_field) vg_output_format(&f, "Merge \"%s.pos\";\n", base);
   vg_output_text(&f, has_field ? field_sizes : extended_sizes);
@@ -285,12 +282,10 @@ static vg_status prepare(char **arg, struct vg_error *err)
   VG_TRY(write_geo(arg[2], &m, 1, err));
   VG_TRY(write_geo(arg[2], &m, 0, err));
   vg_mesh_bounds(&m, lo, hi);
-  VG_TRY(peer_sample(sizing, lo, hi, BACKGROUND_CELLS, &n, &point, &size,
-                     err));
-  VG_TRY(peer_write_background(arg[2], n, (const double (*)[3])point, size,
-                               err));
-  printf("points %zu\ntriangles %zu\nbackground %zu\n", m.n_point, m.n_tri,
-         n);
+  VG_TRY(peer_sample(sizing, lo, hi, BACKGROUND_CELLS, &n, &point, &size, err));
+  VG_TRY(
+    peer_write_background(arg[2], n, (const double(*)[3])point, size, err));
+  printf("points %zu\ntriangles %zu\nbackground %zu\n", m.n_point, m.n_tri, n);
 done:
   vg_sizing_free(sizing);
   vg_mesh_release(&m);
@@ -307,8 +302,8 @@ static void print_report(const struct vg_mesh_report *r, size_t n_tri,
   printf("valid %d\nkept %d\n", r->is_valid, n_tri == n_surface_tri);
   printf("cells %zu\npoints %zu\n", r->n_cell, r->n_point);
   printf("not_positive %zu\nopen %zu\ncrowded %zu\nsame_side %zu\n"
-         "orphan %zu\noutward %zu\nunused %zu\n", r->not_positive,
-         r->open_face, r->crowded_face, r->same_side_face,
+         "orphan %zu\noutward %zu\nunused %zu\n",
+         r->not_positive, r->open_face, r->crowded_face, r->same_side_face,
          r->orphan_boundary, r->outward_boundary, r->unused_point);
   printf("volume %.12g\nvolume_error %.3g\n", r->volume, r->volume_error);
   printf("angle_min %.2f\nangle_max %.2f\nbelow_20 %.4f\nabove_150 %.4f\n",
@@ -332,10 +327,8 @@ static vg_status judge(char **arg, const char *out, struct vg_error *err)
   vg_status st = VG_OK;
 
   VG_TRY(load_surface(arg[1], arg[2], &surface, &sizing, err));
-  if (ends_with(arg[0], ".ugrid"))
-    VG_TRY(vg_ugrid_read(arg[0], &m, NULL, err));
-  else if (ends_with(arg[0], ".msh"))
-    VG_TRY(peer_read_msh(arg[0], &m, err));
+  if (ends_with(arg[0], ".ugrid")) VG_TRY(vg_ugrid_read(arg[0], &m, NULL, err));
+  else if (ends_with(arg[0], ".msh")) VG_TRY(peer_read_msh(arg[0], &m, err));
   else VG_TRY(peer_read_tetgen(arg[0], &surface, &m, err));
   VG_TRY(vg_mesh_judge(&m, sizing, &r, err));
   print_report(&r, m.n_tri, surface.n_tri);

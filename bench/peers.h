@@ -20,8 +20,7 @@ vg_status peer_read_msh(const char *path, struct vg_mesh *out,
  * field is uniform. Caller frees *point, *size. */
 vg_status peer_sample(const struct vg_sizing *sizing, const double lo[3],
                       const double hi[3], double cells, size_t *n,
-                      double (**point)[3], double **size,
-                      struct vg_error *err);
+                      double (**point)[3], double **size, struct vg_error *err);
 
 /** Write STEM.b.node and STEM.b.mtr, a background of TetGen without its
  * tetrahedra (tetgen STEM.b.node makes these). */

@@ -9,7 +9,8 @@ vg_status vg_job_meshed(vanguard_job *job)
 {
   if (job->is_refused) return VG_ERR_USAGE;
   if (job->is_meshed) return VG_OK;
-  return vg_fail(&job->err, VG_ERR_USAGE, "there is no mesh: vanguard_mesh has "
+  return vg_fail(&job->err, VG_ERR_USAGE,
+                 "there is no mesh: vanguard_mesh has "
                  "not been called, or has failed");
 }
 
@@ -130,12 +131,14 @@ vanguard_status vanguard_arrays(vanguard_job *job, double *xyz, uint32_t *tet,
 
   if (st < 0) return vg_job_status(st);
   if (job->run.size > 1)
-    return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED, "no process "
+    return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED,
+                                 "no process "
                                  "has the whole mesh of %d ranks: use "
                                  "vanguard_piece_get, or write it",
                                  job->run.size));
   if (job->run.slices.n_point >= UINT32_MAX)
-    return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED, "%llu points "
+    return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED,
+                                 "%llu points "
                                  "are too many for numbers of 32 bits: use "
                                  "vanguard_piece_get, or write b8l.ugrid",
                                  (unsigned long long)job->run.slices.n_point));
@@ -241,8 +244,8 @@ vanguard_status vanguard_wall(vanguard_job *job, size_t i,
   vg_status st = vg_job_meshed(job);
 
   if (st >= 0 && (!vanguard_walls(job) || i > job->layers.n_wall))
-    st = vg_fail(&job->err, VG_ERR_USAGE, "no wall %zu: this rank knows %zu",
-                 i, vanguard_walls(job));
+    st = vg_fail(&job->err, VG_ERR_USAGE, "no wall %zu: this rank knows %zu", i,
+                 vanguard_walls(job));
   if (st < 0) return vg_job_status(st);
   from = i < job->layers.n_wall ? &job->layers.wall[i] : &job->layers.all;
   w.patch = i < job->layers.n_wall ? from->patch : SIZE_MAX;
@@ -305,7 +308,8 @@ vanguard_status vanguard_wall_points(vanguard_job *job,
 const char *vanguard_cause(int32_t cause)
 {
   return cause >= 0 && cause < VG_CAUSE_N
-    ? vg_layer_cause_name((enum vg_layer_cause)cause) : NULL;
+         ? vg_layer_cause_name((enum vg_layer_cause)cause)
+         : NULL;
 }
 
 /* --- files --------------------------------------------------------------- */
@@ -314,14 +318,15 @@ const char *vanguard_cause(int32_t cause)
 static vg_status plan_files(vanguard_job *job, const char *stem,
                             const char *forms, struct vg_outputs *o)
 {
-  struct vg_settings view = job->problem.asked;   /* tables are borrowed */
+  struct vg_settings view = job->problem.asked; /* tables are borrowed */
   size_t n = forms ? strlen(forms) : 0;
   char list[VG_WRITE_MAX];
 
   if (n >= sizeof view.write)
-    return vg_fail(&job->err, VG_ERR_INPUT, "the list of forms has %zu "
-                   "characters, at most %zu are taken", n,
-                   sizeof view.write - 1);
+    return vg_fail(&job->err, VG_ERR_INPUT,
+                   "the list of forms has %zu "
+                   "characters, at most %zu are taken",
+                   n, sizeof view.write - 1);
   if (forms) memcpy(view.write, forms, n + 1);
   vg_resolve_write(&view, list);
   return vg_outputs_plan(&job->problem, stem, NULL, list, job->run.size, o,
@@ -335,8 +340,9 @@ static vg_status put_files(vanguard_job *job, struct vg_outputs *o)
 
   VG_TRY(vg_outputs_check(&job->problem, o, &job->err));
   VG_TRY(vg_outputs_open(o, &job->problem, r->comm, &r->slices, &job->err));
-  st = o->n_open ? vg_slices_each(&r->slices, r->threads, vg_outputs_put, o,
-                                  &job->err) : VG_OK;
+  st = o->n_open
+       ? vg_slices_each(&r->slices, r->threads, vg_outputs_put, o, &job->err)
+       : VG_OK;
   VG_TRY(vg_outputs_close(o, st, &job->err));
   VG_TRY(vg_outputs_mesh(o, &job->problem, &job->layers, r->comm, &r->slices,
                          r->threads, &job->err));
@@ -353,8 +359,7 @@ vanguard_status vanguard_write(vanguard_job *job, const char *stem,
 
   if (st < 0) return vg_job_status(st);
   st = vg_comm_agree(job->comm, plan_files(job, stem, forms, &o), &job->err);
-  if (st >= 0)
-    st = vg_comm_agree(job->comm, put_files(job, &o), &job->err);
+  if (st >= 0) st = vg_comm_agree(job->comm, put_files(job, &o), &job->err);
   vg_outputs_release(&o);
   return vg_job_status(st);
 }

@@ -31,10 +31,11 @@ vanguard_status vanguard_prepare(void)
 static vg_status refuse_abi(int abi, struct vg_error *err)
 {
   if (abi == VANGUARD_ABI) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "the program was compiled for ABI %d "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the program was compiled for ABI %d "
                  "of libvanguard, this is version %s with ABI %d; compile it "
-                 "with the header of this version", abi, VG_VERSION,
-                 VANGUARD_ABI);
+                 "with the header of this version",
+                 abi, VG_VERSION, VANGUARD_ABI);
 }
 
 static vanguard_job *new_job(int abi)
@@ -130,8 +131,10 @@ vanguard_status vanguard_get(vanguard_job *job, const char *name, char *value,
   if (st >= 0)
     st = vg_settings_get(&job->settings, name, text, sizeof text, &job->err);
   if (st >= 0 && strlen(text) >= size)
-    st = vg_fail(&job->err, VG_ERR_USAGE, "the value of %s has %zu characters, "
-                 "%zu are too few for it", name, strlen(text), size);
+    st = vg_fail(&job->err, VG_ERR_USAGE,
+                 "the value of %s has %zu characters, "
+                 "%zu are too few for it",
+                 name, strlen(text), size);
   if (st >= 0) memcpy(value, text, strlen(text) + 1);
   return vg_job_status(st);
 }
@@ -161,9 +164,10 @@ int vanguard_setting(size_t i, struct vanguard_setting *out)
 {
   static const char *const kind[] = {
     [VG_PARAM_REAL] = "real", [VG_PARAM_COUNT] = "count",
-    [VG_PARAM_ID] = "count", [VG_PARAM_PATCH] = "text",
-    [VG_PARAM_FLAG] = "flag",
-    [VG_PARAM_WORD] = "word", [VG_PARAM_TEXT] = "text" };
+    [VG_PARAM_ID] = "count",  [VG_PARAM_PATCH] = "text",
+    [VG_PARAM_FLAG] = "flag", [VG_PARAM_WORD] = "word",
+    [VG_PARAM_TEXT] = "text"
+  };
   struct vanguard_setting s = { .struct_size = sizeof s };
   int in_farfield;
   const struct vg_param *p = vg_settings_name(i, &s.name, &in_farfield);
@@ -228,13 +232,17 @@ static vg_status check_triangles(const char *name, size_t n_point, size_t n,
                                  const uint32_t *tri, struct vg_error *err)
 {
   if (n_point >= UINT32_MAX)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: %zu points are too many for "
-                   "a surface", name, n_point);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: %zu points are too many for "
+                   "a surface",
+                   name, n_point);
   for (size_t i = 0; i < 3 * n; i++)
     if (tri[i] >= n_point)
-      return vg_fail(err, VG_ERR_INPUT, "%s: triangle %zu has point %lu, but "
-                     "points go from 0 to %lld", name, i / 3,
-                     (unsigned long)tri[i], (long long)n_point - 1);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: triangle %zu has point %lu, but "
+                     "points go from 0 to %lld",
+                     name, i / 3, (unsigned long)tri[i],
+                     (long long)n_point - 1);
   return VG_OK;
 }
 
@@ -326,12 +334,12 @@ vanguard_status vanguard_sizes(vanguard_job *job, vanguard_size_function *size,
 vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
                                      const double *xyz, const double *size)
 {
-  double (*at)[3] = NULL, *of = NULL;
+  double(*at)[3] = NULL, *of = NULL;
   vg_status st;
 
   VG_TRY(vg_job_usable(job));
-  VG_TRY(vg_size_samples_check("size_points", n, (const double (*)[3])xyz,
-                               size, &job->err));
+  VG_TRY(vg_size_samples_check("size_points", n, (const double(*)[3])xyz, size,
+                               &job->err));
   at = vg_alloc(n, sizeof *at);
   of = vg_alloc(n, sizeof *of);
   if (!at || !of) {

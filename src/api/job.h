@@ -11,17 +11,17 @@
 
 struct vanguard_job {
   struct vg_comm *comm;
-  int is_refused;            /* the caller's ABI is: no call makes sense */
+  int is_refused; /* the caller's ABI is: no call makes sense */
   struct vg_error err;
   struct vg_settings settings;
-  char *project, *deck;      /* of vanguard_open; NULL */
-  char *name;                /* of `surface` */
-  struct vg_mesh surface;    /* of vanguard_surface */
+  char *project, *deck;   /* of vanguard_open; NULL */
+  char *name;             /* of `surface` */
+  struct vg_mesh surface; /* of vanguard_surface */
   vanguard_size_function *size;
   void *size_user;
-  struct vg_size_map map;    /* of `size` or `samples`; at NULL: none */
+  struct vg_size_map map; /* of `size` or `samples`; at NULL: none */
   size_t n_size;
-  double (*size_at)[3], *size_of;  /* [n_size] of vanguard_size_points */
+  double (*size_at)[3], *size_of; /* [n_size] of vanguard_size_points */
   /* a run */
   vanguard_progress *progress;
   void *progress_user;
@@ -31,7 +31,7 @@ struct vanguard_job {
   struct vg_layer_stage layers;
   struct vg_run run;
   int is_meshed;
-  uint32_t *wall_point;      /* of vanguard_wall_points; NULL: not asked yet */
+  uint32_t *wall_point; /* of vanguard_wall_points; NULL: not asked yet */
   char *details;
 };
 

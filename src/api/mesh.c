@@ -57,11 +57,9 @@ static vg_status use_sizes(vanguard_job *job)
     job->map = (struct vg_size_map){ .at = size_at, .user = job };
     p->read.map = &job->map;
   } else if (job->n_size) {
-    st = vg_size_samples_new(job->n_size, (const double (*)[3])job->size_at,
-                             job->size_of,
-                             vg_options_growth(&p->asked),
-                             (int)p->asked.threads, &job->samples,
-                             &job->err);
+    st = vg_size_samples_new(job->n_size, (const double(*)[3])job->size_at,
+                             job->size_of, vg_options_growth(&p->asked),
+                             (int)p->asked.threads, &job->samples, &job->err);
     if (st >= 0) p->read.map = vg_size_samples_map(job->samples);
   }
   return st;
@@ -81,7 +79,8 @@ static vg_status take_input(vanguard_job *job, struct vg_mesh *copy)
   else if (job->surface.n_tri)
     st = vg_mesh_copy(copy, &job->surface, &job->err);
   else
-    st = vg_fail(&job->err, VG_ERR_USAGE, "no surface: call vanguard_open or "
+    st = vg_fail(&job->err, VG_ERR_USAGE,
+                 "no surface: call vanguard_open or "
                  "vanguard_surface before vanguard_mesh");
 done:
   return st;

@@ -63,7 +63,10 @@ typedef enum {
 typedef struct vanguard_job vanguard_job;
 
 /* struct vanguard_counts n = VANGUARD_INIT(n); */
-#define VANGUARD_INIT(name) { .struct_size = sizeof (name) }
+#define VANGUARD_INIT(name)                                                    \
+  {                                                                            \
+    .struct_size = sizeof(name)                                                \
+  }
 
 /* --- the library --------------------------------------------------------- */
 
@@ -135,20 +138,18 @@ VANGUARD_API vanguard_status vanguard_get(vanguard_job *job, const char *name,
  * Example: columns { "kind", "x0", "r0", "h0" } and values { "sphere", "0.5",
  * "0.2", "0.01" } in "sources". */
 VANGUARD_API vanguard_status vanguard_add(vanguard_job *job, const char *table,
-                                          size_t n,
-                                          const char *const *column,
+                                          size_t n, const char *const *column,
                                           const char *const *value);
 
 /** Take all settings and rows of a deck, given as text. */
-VANGUARD_API vanguard_status vanguard_deck(vanguard_job *job,
-                                           const char *text);
+VANGUARD_API vanguard_status vanguard_deck(vanguard_job *job, const char *text);
 
 struct vanguard_setting {
   size_t struct_size;
-  const char *name, *unit, *help;  /* static */
-  const char *kind;                /* "real", "count", "flag", "word", "text" */
-  const char *const *words;        /* of a "word": NULL-ended; else NULL */
-  double least, most;              /* of a number */
+  const char *name, *unit, *help; /* static */
+  const char *kind;               /* "real", "count", "flag", "word", "text" */
+  const char *const *words;       /* of a "word": NULL-ended; else NULL */
+  double least, most;             /* of a number */
 };
 
 /** Setting i of all there are; 1, or 0 behind the last. */
@@ -175,8 +176,7 @@ VANGUARD_API vanguard_status vanguard_open(vanguard_job *job,
  *               and conditions: vanguard_add(job, "patches", ...)
  * VANGUARD_ERR_INPUT names a triangle with a point that is not there. */
 VANGUARD_API vanguard_status vanguard_surface(vanguard_job *job,
-                                              const char *name,
-                                              size_t n_point,
+                                              const char *name, size_t n_point,
                                               const double *xyz, size_t n_tri,
                                               const uint32_t *tri,
                                               const int32_t *patch);
@@ -240,9 +240,9 @@ VANGUARD_API void vanguard_cancel(vanguard_job *job);
 struct vanguard_counts {
   size_t struct_size;
   uint64_t n_point, n_tet, n_pyr, n_pri;
-  uint64_t n_tri, n_quad;        /* of the boundary */
+  uint64_t n_tri, n_quad; /* of the boundary */
   uint64_t n_boundary_point;
-  uint64_t n_layer_point;        /* points before this are the layers' */
+  uint64_t n_layer_point; /* points before this are the layers' */
   uint64_t n_layer_tet, n_layer_pyr, n_layer_pri;
   size_t n_patch;
 };
@@ -251,9 +251,9 @@ VANGUARD_API vanguard_status vanguard_count(vanguard_job *job,
 
 struct vanguard_patch {
   size_t struct_size;
-  int32_t id;                    /* number in the input and in files */
-  int32_t bc, bc_fun3d;          /* USM3D's, FUN3D's code; INT32_MIN: none */
-  const char *name;              /* may be "" */
+  int32_t id;           /* number in the input and in files */
+  int32_t bc, bc_fun3d; /* USM3D's, FUN3D's code; INT32_MIN: none */
+  const char *name;     /* may be "" */
 };
 VANGUARD_API vanguard_status vanguard_patch(vanguard_job *job, size_t i,
                                             struct vanguard_patch *out);
@@ -279,17 +279,17 @@ VANGUARD_API vanguard_status vanguard_arrays(vanguard_job *job, double *xyz,
  * library. */
 struct vanguard_piece {
   size_t struct_size;
-  size_t n_point;                /* of this piece, others' included */
-  const double *xyz;             /* [n_point][3] */
-  const uint32_t *id;            /* [n_point] its number in the mesh */
-  uint64_t own_at;               /* points own_at + k of the mesh ... */
+  size_t n_point;     /* of this piece, others' included */
+  const double *xyz;  /* [n_point][3] */
+  const uint32_t *id; /* [n_point] its number in the mesh */
+  uint64_t own_at;    /* points own_at + k of the mesh ... */
   size_t n_own;
-  const uint32_t *own;           /* [n_own] ... are point own[k] of the piece */
-  uint64_t tet_at, pyr_at, pri_at;  /* first cells of it in the mesh */
+  const uint32_t *own; /* [n_own] ... are point own[k] of the piece */
+  uint64_t tet_at, pyr_at, pri_at; /* first cells of it in the mesh */
   size_t n_tet, n_pyr, n_pri;
-  const uint32_t *tet, *pyr, *pri;  /* [][4], [][5], [][6] points of it */
-  uint32_t subdomain;            /* 0: layers */
-  void *keep;                    /* the library's */
+  const uint32_t *tet, *pyr, *pri; /* [][4], [][5], [][6] points of it */
+  uint32_t subdomain;              /* 0: layers */
+  void *keep;                      /* the library's */
 };
 VANGUARD_API size_t vanguard_pieces(const vanguard_job *job);
 
@@ -304,11 +304,11 @@ VANGUARD_API void vanguard_piece_put(vanguard_job *job,
 struct vanguard_quality {
   size_t struct_size;
   double volume;
-  double angle_min, angle_max;   /* dihedral */
-  double angle_min_p1;           /* 1 % of the cells have a smaller one */
-  double radius_ratio_min, radius_ratio_mean;  /* 3 inradius / circumradius */
-  double volume_ratio_p95, volume_ratio_max;   /* of cells with a common face */
-  double edge_within;            /* % of edges 0.7 to 1.5 times the target */
+  double angle_min, angle_max; /* dihedral */
+  double angle_min_p1;         /* 1 % of the cells have a smaller one */
+  double radius_ratio_min, radius_ratio_mean; /* 3 inradius / circumradius */
+  double volume_ratio_p95, volume_ratio_max;  /* of cells with a common face */
+  double edge_within; /* % of edges 0.7 to 1.5 times the target */
 };
 VANGUARD_API vanguard_status vanguard_measure(vanguard_job *job,
                                               struct vanguard_quality *out);
@@ -317,17 +317,17 @@ VANGUARD_API vanguard_status vanguard_measure(vanguard_job *job,
  * points. */
 struct vanguard_wall {
   size_t struct_size;
-  size_t patch;                  /* index; SIZE_MAX: all of them together */
+  size_t patch; /* index; SIZE_MAX: all of them together */
   size_t n_face, n_point;
-  double full, any;              /* % of faces with all levels that law and
-                                    size ask for; with one level at least */
-  double first[3], asked[3];     /* height of the first point; as asked */
+  double full, any;          /* % of faces with all levels that law and
+                                size ask for; with one level at least */
+  double first[3], asked[3]; /* height of the first point; as asked */
   double level[3], total[3], growth[3];
-  double share;                  /* height over the law's, mean by area */
-  double first_error;            /* largest |first - asked| / asked */
-  double y_plus[3];              /* 0 without a Reynolds number */
-  double top_ratio[3];           /* volumes across the tops: median, 95 %,
-                                    largest */
+  double share;        /* height over the law's, mean by area */
+  double first_error;  /* largest |first - asked| / asked */
+  double y_plus[3];    /* 0 without a Reynolds number */
+  double top_ratio[3]; /* volumes across the tops: median, 95 %,
+                          largest */
 };
 
 /** Walls with layers, on rank 0 (0 elsewhere, and without layers); wall i, or
@@ -342,20 +342,20 @@ VANGUARD_API vanguard_status vanguard_wall(vanguard_job *job, size_t i,
 struct vanguard_wall_points {
   size_t struct_size;
   size_t n_point;
-  const uint32_t *point;         /* of the mesh, rising */
-  const int32_t *level, *wanted; /* levels; as many as law and size ask for */
-  const double *first, *asked;   /* height of the first point; as asked; 0:
-                                    there is no level */
-  const double *total;           /* height of the last */
-  const double *share;           /* height over the law's */
-  const double *growth;          /* largest ratio of neighbouring layers */
-  const int32_t *cause, *squeezed;  /* of fewer levels, of thinner ones:
-                                       numbers for vanguard_cause */
+  const uint32_t *point;           /* of the mesh, rising */
+  const int32_t *level, *wanted;   /* levels; as many as law and size ask for */
+  const double *first, *asked;     /* height of the first point; as asked; 0:
+                                      there is no level */
+  const double *total;             /* height of the last */
+  const double *share;             /* height over the law's */
+  const double *growth;            /* largest ratio of neighbouring layers */
+  const int32_t *cause, *squeezed; /* of fewer levels, of thinner ones:
+                                      numbers for vanguard_cause */
 };
 
 /** On rank 0; n_point is 0 elsewhere and without layers. */
-VANGUARD_API vanguard_status vanguard_wall_points(
-  vanguard_job *job, struct vanguard_wall_points *out);
+VANGUARD_API vanguard_status
+vanguard_wall_points(vanguard_job *job, struct vanguard_wall_points *out);
 
 /** A cause in a word: 0 "none", 1 "size" (the layers end as thick as the local
  * cell, as intended), "proximity", "corner", "no_view", "cell", "collision",
@@ -368,8 +368,7 @@ VANGUARD_API const char *vanguard_cause(int32_t cause);
  * were used, and with layers STEM.wall.vtu. All appear together or not at all
  * and replace what is there, but never an input. Collective.
  * VANGUARD_ERR_UNSUPPORTED: several ranks, and a form that one writes. */
-VANGUARD_API vanguard_status vanguard_write(vanguard_job *job,
-                                            const char *stem,
+VANGUARD_API vanguard_status vanguard_write(vanguard_job *job, const char *stem,
                                             const char *forms);
 
 #ifdef __cplusplus

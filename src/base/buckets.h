@@ -20,10 +20,10 @@
 
 /** A zeroed queue has no classes. Threads: one at a time. */
 struct vg_buckets {
-  int n;                     /* Number of classes. */
-  int lowest;                /* All classes below this one are empty. */
-  uint32_t *first, *last;    /* [n] First and last item of each class. */
-  uint32_t *next;            /* [cap] Item that follows in the same class. */
+  int n;                  /* Number of classes. */
+  int lowest;             /* All classes below this one are empty. */
+  uint32_t *first, *last; /* [n] First and last item of each class. */
+  uint32_t *next;         /* [cap] Item that follows in the same class. */
   size_t cap;
 };
 

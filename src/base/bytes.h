@@ -10,7 +10,11 @@
 #include "base/comm.h"
 #include "base/memory.h"
 
-struct vg_writer { struct vg_bytes bytes; size_t cap; int refused; };
+struct vg_writer {
+  struct vg_bytes bytes;
+  size_t cap;
+  int refused;
+};
 
 static inline void vg_put(struct vg_writer *w, size_t n, size_t size,
                           const void *data)
@@ -27,7 +31,11 @@ static inline void vg_put(struct vg_writer *w, size_t n, size_t size,
   w->bytes.n += more;
 }
 
-struct vg_reader { const unsigned char *data; size_t n, at; int bad; };
+struct vg_reader {
+  const unsigned char *data;
+  size_t n, at;
+  int bad;
+};
 
 static inline void vg_get(struct vg_reader *r, size_t n, size_t size,
                           void *data)
@@ -60,8 +68,10 @@ static inline void *vg_get_array(struct vg_reader *r, size_t n, size_t size)
 /** VG_ERR_FORMAT: what was read cannot be, or does not fit into memory. */
 static inline vg_status vg_fail_damaged(struct vg_error *err, const char *what)
 {
-  return vg_fail(err, VG_ERR_FORMAT, "a damaged message (%s), or one that does "
-                 "not fit into memory", what);
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "a damaged message (%s), or one that does "
+                 "not fit into memory",
+                 what);
 }
 
 #endif

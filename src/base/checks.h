@@ -24,9 +24,9 @@ enum { VG_CHECKS_ON = 0 };
 void vg_check_none(const char *stage, const char *what, size_t n_defect);
 
 /* Evaluate `n_defect`, a count, when checks are on; abort unless it is 0. */
-#define VG_CHECK(stage, n_defect) \
-  do { \
-    if (VG_CHECKS_ON) vg_check_none(stage, #n_defect, n_defect); \
+#define VG_CHECK(stage, n_defect)                                              \
+  do {                                                                         \
+    if (VG_CHECKS_ON) vg_check_none(stage, #n_defect, n_defect);               \
   } while (0)
 
 #endif

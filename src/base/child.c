@@ -16,7 +16,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-
 /* One message asks for one child; a socket to it comes along. */
 struct request {
   vg_child_body *body;
@@ -24,13 +23,13 @@ struct request {
   cpu_set_t affinity;
 };
 
-union ticket {               /* control data that carries one descriptor */
+union ticket { /* control data that carries one descriptor */
   char bytes[CMSG_SPACE(sizeof(int))];
   struct cmsghdr aligned;
 };
 
-static atomic_int control = -1;  /* our end; closed by stop alone */
-static atomic_int server;        /* its process; 0: none, or waited for */
+static atomic_int control = -1; /* our end; closed by stop alone */
+static atomic_int server;       /* its process; 0: none, or waited for */
 static atomic_int server_died;
 
 /* --- a process that shares nothing --------------------------------------- */
@@ -58,35 +57,33 @@ static void keep_only(int fd)
   for (int k = 0; k <= STDERR_FILENO; k++)
     if (k != fd && nowhere >= 0 && k != nowhere) dup2(nowhere, k);
   close_from(STDERR_FILENO + 1, fd > STDERR_FILENO ? (unsigned)fd : 0);
-  close_from(fd > STDERR_FILENO ? (unsigned)fd + 1 : STDERR_FILENO + 1,
-             ~0u);
+  close_from(fd > STDERR_FILENO ? (unsigned)fd + 1 : STDERR_FILENO + 1, ~0u);
 }
 
 /* What a terminal or a batch system sends to a whole group: our user decides.
  * All else as at the start of a program; no signal blocked. */
 static void set_signals(void)
 {
-  static const int others[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1,
-                               SIGUSR2};
-  static const int own[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGPROF,
-                            SIGPIPE, SIGCHLD, SIGALRM};
+  static const int others[] = { SIGINT,  SIGTERM, SIGHUP,
+                                SIGQUIT, SIGUSR1, SIGUSR2 };
+  static const int own[] = { SIGSEGV, SIGABRT, SIGBUS,  SIGFPE, SIGILL,
+                             SIGPROF, SIGPIPE, SIGCHLD, SIGALRM };
   sigset_t none;
 
   for (size_t k = 0; k < sizeof others / sizeof *others; k++)
     signal(others[k], SIG_IGN);
-  for (size_t k = 0; k < sizeof own / sizeof *own; k++)
-    signal(own[k], SIG_DFL);
+  for (size_t k = 0; k < sizeof own / sizeof *own; k++) signal(own[k], SIG_DFL);
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
 }
 
 static void detach(pid_t parent, int fd)
 {
-  struct rlimit none = {0, 0};
+  struct rlimit none = { 0, 0 };
 
   set_signals();
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);   /* it ended before it could matter */
+  if (getppid() != parent) _exit(1); /* it ended before it could matter */
   setrlimit(RLIMIT_CORE, &none);
   keep_only(fd);
 }
@@ -98,9 +95,11 @@ static void detach(pid_t parent, int fd)
 static ssize_t take_request(int from, struct request *r, int *fd)
 {
   union ticket t;
-  struct iovec part = {r, sizeof *r};
-  struct msghdr m = {.msg_iov = &part, .msg_iovlen = 1,
-                     .msg_control = t.bytes, .msg_controllen = sizeof t};
+  struct iovec part = { r, sizeof *r };
+  struct msghdr m = { .msg_iov = &part,
+                      .msg_iovlen = 1,
+                      .msg_control = t.bytes,
+                      .msg_controllen = sizeof t };
   struct cmsghdr *c;
   ssize_t n;
 
@@ -114,12 +113,11 @@ static ssize_t take_request(int from, struct request *r, int *fd)
   return n;
 }
 
-__attribute__((noreturn))
-static void be_child(pid_t parent, int fd, const struct request *r)
+__attribute__((noreturn)) static void be_child(pid_t parent, int fd,
+                                               const struct request *r)
 {
   detach(parent, fd);
-  if (r->has_affinity)
-    sched_setaffinity(0, sizeof r->affinity, &r->affinity);
+  if (r->has_affinity) sched_setaffinity(0, sizeof r->affinity, &r->affinity);
   if (send(fd, "", 1, MSG_NOSIGNAL) != 1) _exit(1);
   r->body(fd);
   _exit(1);
@@ -134,7 +132,7 @@ __attribute__((noreturn)) static void serve(int from)
 
   set_signals();
   signal(SIGPIPE, SIG_IGN);
-  signal(SIGCHLD, SIG_IGN);  /* children leave no zombies */
+  signal(SIGCHLD, SIG_IGN); /* children leave no zombies */
   prctl(PR_SET_NAME, "vanguard-child");
   keep_only(from);
   while ((n = take_request(from, &r, &fd)) > 0) {
@@ -172,7 +170,8 @@ static void wait_for(int options)
 {
   pid_t pid = atomic_exchange(&server, 0);
 
-  while (pid > 0 && waitpid(pid, NULL, options) < 0 && errno == EINTR) {}
+  while (pid > 0 && waitpid(pid, NULL, options) < 0 && errno == EINTR) {
+  }
 }
 
 void vg_child_server_stop(void)
@@ -180,28 +179,30 @@ void vg_child_server_stop(void)
   int fd = atomic_exchange(&control, -1);
 
   if (fd < 0) return;
-  shutdown(fd, SHUT_RDWR);   /* ends it even where a copy of fd is about */
+  shutdown(fd, SHUT_RDWR); /* ends it even where a copy of fd is about */
   close(fd);
   wait_for(0);
 }
 
 static void remember_death(void)
 {
-  struct pollfd p = {.fd = control, .events = 0};
+  struct pollfd p = { .fd = control, .events = 0 };
 
   if (p.fd < 0 || server_died) return;
   if (poll(&p, 1, 0) <= 0 || !(p.revents & (POLLHUP | POLLERR))) return;
   server_died = 1;
-  wait_for(0);               /* its socket is closed: it is about to end */
+  wait_for(0); /* its socket is closed: it is about to end */
 }
 
 static int send_ticket(int to, int fd, vg_child_body *body)
 {
   struct request r = { .body = body };
-  struct iovec part = {&r, sizeof r};
-  union ticket t = {{0}};
-  struct msghdr m = {.msg_iov = &part, .msg_iovlen = 1,
-                     .msg_control = t.bytes, .msg_controllen = sizeof t};
+  struct iovec part = { &r, sizeof r };
+  union ticket t = { { 0 } };
+  struct msghdr m = { .msg_iov = &part,
+                      .msg_iovlen = 1,
+                      .msg_control = t.bytes,
+                      .msg_controllen = sizeof t };
   struct cmsghdr *c = CMSG_FIRSTHDR(&m);
   ssize_t n;
 
@@ -269,7 +270,8 @@ void vg_child_close(struct vg_child *c)
   assert(c);
   shutdown(c->fd, SHUT_RDWR);
   close(c->fd);
-  while (c->pid > 0 && waitpid(c->pid, NULL, 0) < 0 && errno == EINTR) {}
+  while (c->pid > 0 && waitpid(c->pid, NULL, 0) < 0 && errno == EINTR) {
+  }
 }
 
 /* A body that ends at once. */

@@ -49,9 +49,9 @@ int vg_child_server_is_alive(void);
 typedef void vg_child_body(int fd);
 
 struct vg_child {
-  int fd;                    /* a stream socket; the end of its other end is the
-                                end of the child */
-  pid_t pid;                 /* forked in place; 0: the server's */
+  int fd;    /* a stream socket; the end of its other end is the
+                end of the child */
+  pid_t pid; /* forked in place; 0: the server's */
 };
 
 /** A fresh child that runs `body`, a function of this program: the server has

@@ -25,8 +25,13 @@
 /* Sleep between looks: a share of what was waited so far, so that waits take
  * at most so much longer, and long ones use no core. While bytes flow it is
  * the looks that move them, so there a rank sleeps only after LOOKS of them. */
-enum { NAP_FIRST_NS = 2000, NAP_BRISK_NS = 16000, NAP_LAST_NS = 2000000,
-       NAP_SHARE = 32, LOOKS = 64 };
+enum {
+  NAP_FIRST_NS = 2000,
+  NAP_BRISK_NS = 16000,
+  NAP_LAST_NS = 2000000,
+  NAP_SHARE = 32,
+  LOOKS = 64
+};
 
 /* Sleeps end at most so long after their time; the kernel's own 50 us are as
  * long as most waits. */
@@ -52,8 +57,9 @@ static void nap_idle(double waited)
 {
   double ns = 1e9 * waited / NAP_SHARE;
 
-  nap(ns < NAP_FIRST_NS ? NAP_FIRST_NS : ns > NAP_LAST_NS ? NAP_LAST_NS
-                                                          : (long)ns);
+  nap(ns < NAP_FIRST_NS  ? NAP_FIRST_NS
+      : ns > NAP_LAST_NS ? NAP_LAST_NS
+                         : (long)ns);
 }
 
 static void nap_brisk(unsigned n)
@@ -73,8 +79,7 @@ int vg_comm_wait(int n, MPI_Request *request, int brisk)
   unsigned looks = 0;
   double begun = brisk ? 0 : vg_clock();
 
-  while (!(rc = MPI_Testall(n, request, &done, MPI_STATUSES_IGNORE)) &&
-         !done) {
+  while (!(rc = MPI_Testall(n, request, &done, MPI_STATUSES_IGNORE)) && !done) {
     if (brisk) vg_comm_nap(looks++);
     else nap_idle(vg_clock() - begun);
   }
@@ -157,7 +162,8 @@ static void spare_delays(void)
 
     if (getpeername(file, (struct sockaddr *)&to, &n) ||
         to.sin_family != AF_INET ||
-        ntohl(to.sin_addr.s_addr) >> 24 != IN_LOOPBACKNET) continue;
+        ntohl(to.sin_addr.s_addr) >> 24 != IN_LOOPBACKNET)
+      continue;
     setsockopt(file, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   }
 }
@@ -165,10 +171,12 @@ static void spare_delays(void)
 static vg_status allows_threads(int level, struct vg_error *err)
 {
   if (level >= MPI_THREAD_MULTIPLE) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "this MPI library does not allow "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "this MPI library does not allow "
                  "calls from several threads (MPI_THREAD_MULTIPLE; it offers "
                  "level %d); use one that does, or run one rank with "
-                 "--threads and without mpirun", level);
+                 "--threads and without mpirun",
+                 level);
 }
 
 static vg_status start(struct vg_comm *c, struct vg_error *err)
@@ -176,7 +184,8 @@ static vg_status start(struct vg_comm *c, struct vg_error *err)
   int is_up, is_over, level, rc;
 
   if (MPI_Finalized(&is_over) || is_over)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "MPI was left and cannot be "
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "MPI was left and cannot be "
                    "joined again in the same process");
   rc = MPI_Initialized(&is_up);
   if (!rc && is_up) rc = MPI_Query_thread(&level);
@@ -259,10 +268,12 @@ static vg_status check_size(const struct vg_comm *c, long announced,
                             struct vg_error *err)
 {
   if (c->size > 1 || announced <= 1 || !c->owns_mpi) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "the launcher started %ld "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the launcher started %ld "
                  "processes that do not find each other: use the mpirun of "
                  "the MPI library that this program is linked with (or srun "
-                 "--mpi with a plugin that it knows)", announced);
+                 "--mpi with a plugin that it knows)",
+                 announced);
 }
 
 static struct vg_comm *new_comm(void)
@@ -285,10 +296,12 @@ vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err)
 
   if (!launched(&announced)) {
     if (is_loose_step())
-      return vg_fail(err, VG_ERR_UNSUPPORTED, "srun started %ld processes "
+      return vg_fail(err, VG_ERR_UNSUPPORTED,
+                     "srun started %ld processes "
                      "without connecting them; use srun --mpi=pmix or "
                      "--mpi=pmi2 (srun --mpi=list shows what there is), or "
-                     "mpirun", announced);
+                     "mpirun",
+                     announced);
     *out = NULL;
     return VG_OK;
   }
@@ -376,7 +389,7 @@ void vg_library_mpi(struct vg_library *out)
   char text[MPI_MAX_LIBRARY_VERSION_STRING];
   int n = 0;
 
-  MPI_Get_library_version(text, &n);   /* also before MPI is started */
+  MPI_Get_library_version(text, &n); /* also before MPI is started */
   out->name = "MPI";
   snprintf(out->version, sizeof out->version, "%.100s", text);
 }

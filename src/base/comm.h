@@ -17,7 +17,10 @@
 struct vg_comm;
 
 /** Bytes with their owner: free(data). */
-struct vg_bytes { size_t n; unsigned char *data; };
+struct vg_bytes {
+  size_t n;
+  unsigned char *data;
+};
 
 /** Join the job that a launcher started (found by its environment), or be one
  * rank alone. For a program of its own: starts MPI, which is told to use no
@@ -54,7 +57,7 @@ void vg_comm_close(struct vg_comm *c);
 /** End all ranks now, with an exit status: for what no rank can repair. Prints
  * nothing (the launcher may) and flushes nothing. Does not return. */
 void vg_comm_abort(struct vg_comm *c, int exit_status)
-    __attribute__((noreturn));
+  __attribute__((noreturn));
 
 int vg_comm_rank(const struct vg_comm *c);
 int vg_comm_size(const struct vg_comm *c);
@@ -85,7 +88,11 @@ vg_status vg_comm_node_bcast(struct vg_comm *c, struct vg_bytes *b,
                              struct vg_error *err);
 
 /** Bytes that the ranks of a node have in common, to be read. */
-struct vg_shmem { size_t n; const unsigned char *data; int is_mapped; };
+struct vg_shmem {
+  size_t n;
+  const unsigned char *data;
+  int is_mapped;
+};
 
 enum { VG_SHMEM_ALIGN = 64 };
 
@@ -104,8 +111,8 @@ static inline size_t vg_shmem_padded(size_t n)
  *             node have. Local from then on: a rank may release it before
  *             others do */
 vg_status vg_comm_node_shmem(struct vg_comm *c, size_t n_part,
-                             const struct vg_bytes *part,
-                             struct vg_shmem *out, struct vg_error *err);
+                             const struct vg_bytes *part, struct vg_shmem *out,
+                             struct vg_error *err);
 
 void vg_shmem_release(struct vg_shmem *b);
 
@@ -152,15 +159,18 @@ int vg_comm_default_threads(const struct vg_comm *c);
 
 /* --- messages, for one thread that polls --------------------------------- */
 
-struct vg_message { int from, kind; struct vg_bytes bytes; };
+struct vg_message {
+  int from, kind;
+  struct vg_bytes bytes;
+};
 
 /** Post a message; takes over b (b->data becomes NULL). Never blocks. A
  * message to oneself arrives like any other. Any length. Those of a rank to
  * another arrive in the order of posting. kind: 0 .. 16383.
  * On failure b stays the caller's, or is NULL. VG_ERR_UNSUPPORTED in a job
  * without MPI. Threads: safe. */
-vg_status vg_comm_post(struct vg_comm *c, int to, int kind,
-                       struct vg_bytes *b, struct vg_error *err);
+vg_status vg_comm_post(struct vg_comm *c, int to, int kind, struct vg_bytes *b,
+                       struct vg_error *err);
 
 /** Take one message that has arrived and free what was sent. VG_OK: *m is
  * the caller's; VG_BLOCKED: none. One thread only. Long messages move only

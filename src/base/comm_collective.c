@@ -51,7 +51,7 @@ vg_status vg_comm_max(struct vg_comm *c, size_t n, double *v,
 
 struct verdict {
   int status, rank;
-  char text[sizeof ((struct vg_error *)0)->text];
+  char text[sizeof((struct vg_error *)0)->text];
 };
 
 /* Failures before what another rank's failure caused, before outcomes. */
@@ -97,8 +97,7 @@ vg_status vg_comm_agree_in(const struct vg_comm *c, MPI_Comm comm,
                  v.text[0] ? v.text : vg_status_name((vg_status)v.status));
 }
 
-vg_status vg_comm_agree(struct vg_comm *c, vg_status mine,
-                        struct vg_error *err)
+vg_status vg_comm_agree(struct vg_comm *c, vg_status mine, struct vg_error *err)
 {
   return c ? vg_comm_agree_in(c, c->all, mine, err) : mine;
 }
@@ -189,7 +188,11 @@ static vg_status fresh_all(const struct vg_comm *c, const uint64_t *n,
 
 /* --- all to all ---------------------------------------------------------- */
 
-struct transfers { int n; size_t cap; MPI_Request *request; };
+struct transfers {
+  int n;
+  size_t cap;
+  MPI_Request *request;
+};
 
 static vg_status transfer(const struct vg_comm *c, struct transfers *t,
                           const struct vg_bytes *b, int peer, int is_send,
@@ -198,10 +201,10 @@ static vg_status transfer(const struct vg_comm *c, struct transfers *t,
   for (size_t at = 0; at < b->n; at += c->chunk) {
     int m = (int)(b->n - at < c->chunk ? b->n - at : c->chunk), rc;
 
-    rc = is_send ? MPI_Isend(b->data + at, m, MPI_BYTE, peer,
-                             VG_TAG_EXCHANGE, c->all, t->request + t->n)
-                 : MPI_Irecv(b->data + at, m, MPI_BYTE, peer,
-                             VG_TAG_EXCHANGE, c->all, t->request + t->n);
+    rc = is_send ? MPI_Isend(b->data + at, m, MPI_BYTE, peer, VG_TAG_EXCHANGE,
+                             c->all, t->request + t->n)
+                 : MPI_Irecv(b->data + at, m, MPI_BYTE, peer, VG_TAG_EXCHANGE,
+                             c->all, t->request + t->n);
     if (rc) return vg_comm_fail(err, "exchange", rc);
     t->n++;
   }
@@ -232,15 +235,15 @@ static vg_status exchange_bytes(const struct vg_comm *c,
                   (c->rank + c->size - k) % c->size, 0, err);
   n_receive = t.n;
   for (int k = 1; k < c->size && st >= 0; k++)
-    st = transfer(c, &t, &to[(c->rank + k) % c->size],
-                  (c->rank + k) % c->size, 1, err);
+    st = transfer(c, &t, &to[(c->rank + k) % c->size], (c->rank + k) % c->size,
+                  1, err);
   if (st >= 0) {
     int rc = vg_comm_wait(t.n, t.request, 1);
 
     if (rc) st = vg_comm_fail(err, "exchange", rc);
   }
   if (st < 0 && vg_comm_cancel_receives(n_receive, t.request))
-    for (int k = 0; k < c->size; k++) from[k].data = NULL;   /* MPI's now */
+    for (int k = 0; k < c->size; k++) from[k].data = NULL; /* MPI's now */
   return st;
 }
 
@@ -308,7 +311,7 @@ static vg_status exchange_sizes(struct vg_comm *c, uint64_t *n,
                       &request[m++]);
   }
   if (!rc) rc = take_sizes(c, tag, m, request, n);
-  if (rc) return vg_comm_fail(err, "exchange", rc);   /* they are MPI's now */
+  if (rc) return vg_comm_fail(err, "exchange", rc); /* they are MPI's now */
 done:
   free(request);
   free(to);
@@ -325,8 +328,7 @@ static vg_status exchange(struct vg_comm *c, const struct vg_bytes *to,
 
   VG_TRY(exchange_sizes(c, n, err));
   VG_TRY(fresh_all(c, n, &got, err));
-  if (to[c->rank].n)
-    memcpy(got[c->rank].data, to[c->rank].data, to[c->rank].n);
+  if (to[c->rank].n) memcpy(got[c->rank].data, to[c->rank].data, to[c->rank].n);
   all = vg_alloc(n_chunks(c, to) + n_chunks(c, got), sizeof *all);
   st = all ? VG_OK : vg_fail_memory(err, "transfers");
   VG_TRY(vg_comm_agree_in(c, c->all, st, err));
@@ -381,9 +383,8 @@ static vg_status gather(struct vg_comm *c, const struct vg_bytes *mine,
     total += count[i];
   }
   all = vg_alloc((size_t)total, 1);
-  VG_TRY(vg_comm_agree_in(c, c->all, all ? VG_OK
-                                         : vg_fail_memory(err, "gathering"),
-                          err));
+  VG_TRY(vg_comm_agree_in(c, c->all,
+                          all ? VG_OK : vg_fail_memory(err, "gathering"), err));
   rc = MPI_Iallgatherv(mine->data, (int)mine->n, MPI_BYTE, all, count, at,
                        MPI_BYTE, c->all, &request);
   VG_TRY(finish(&request, rc, "gathering", err));

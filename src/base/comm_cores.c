@@ -57,8 +57,7 @@ static int n_cores(const struct vg_cores_mask *m)
 
   if (!most) return vg_cores();
   if (!hwloc_topology_init(&topology)) {
-    hwloc_topology_set_all_types_filter(topology,
-                                        HWLOC_TYPE_FILTER_KEEP_NONE);
+    hwloc_topology_set_all_types_filter(topology, HWLOC_TYPE_FILTER_KEEP_NONE);
     hwloc_topology_set_type_filter(topology, HWLOC_OBJ_CORE,
                                    HWLOC_TYPE_FILTER_KEEP_ALL);
     if (!hwloc_topology_load(topology)) n = topology_cores(topology, m);
@@ -78,8 +77,8 @@ vg_status vg_comm_cores_open(struct vg_comm *c, struct vg_error *err)
   st = c->core ? VG_OK : vg_fail_memory(err, "the binding of ranks");
   if ((st = vg_comm_agree_in(c, c->all, st, err)) < 0) return st;
   own_mask(&own);
-  rc = MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, c->core,
-                      (int)sizeof own, MPI_BYTE, c->node, &request);
+  rc = MPI_Iallgather(&own, (int)sizeof own, MPI_BYTE, c->core, (int)sizeof own,
+                      MPI_BYTE, c->node, &request);
   if (!rc) rc = vg_comm_wait(1, &request, 0);
   return rc ? vg_comm_fail(err, "cannot join the node", rc) : VG_OK;
 }

@@ -14,11 +14,11 @@
 #include "base/comm_parts.h"
 #include "base/memory.h"
 
-enum { KIND_MAX = 16383 };   /* MPI promises tags up to 32767 */
+enum { KIND_MAX = 16383 }; /* MPI promises tags up to 32767 */
 
 struct vg_sent {
-  size_t n_left;             /* requests that are not done */
-  uint64_t n;                /* what an announcement says */
+  size_t n_left; /* requests that are not done */
+  uint64_t n;    /* what an announcement says */
   unsigned char *data;
 };
 
@@ -34,9 +34,12 @@ static int reserve_requests(struct vg_comm *c, size_t more)
   size_t need = (size_t)c->n_request + more;
 
   return need > INT_MAX ||
-         vg_reserve(&c->request, &c->cap_request, need, sizeof *c->request) ||
-         vg_reserve(&c->sent, &c->cap_sent, need, sizeof *c->sent) ||
-         vg_reserve(&c->done, &c->cap_done, need, sizeof *c->done) ? -1 : 0;
+             vg_reserve(&c->request, &c->cap_request, need,
+                        sizeof *c->request) ||
+             vg_reserve(&c->sent, &c->cap_sent, need, sizeof *c->sent) ||
+             vg_reserve(&c->done, &c->cap_done, need, sizeof *c->done)
+         ? -1
+         : 0;
 }
 
 static int send_part(struct vg_comm *c, struct vg_sent *s, const void *data,
@@ -61,8 +64,8 @@ static int send_all(struct vg_comm *c, struct vg_sent *s, int to, int kind)
   rc = send_part(c, s, &s->n, sizeof s->n, to, 2 * kind + 1, c->message_comm);
   for (size_t at = 0; at < s->n && !rc; at += c->chunk)
     rc = send_part(c, s, s->data + at,
-                   s->n - at < c->chunk ? s->n - at : c->chunk, to,
-                   VG_TAG_PART, c->all);
+                   s->n - at < c->chunk ? s->n - at : c->chunk, to, VG_TAG_PART,
+                   c->all);
   return rc;
 }
 
@@ -102,8 +105,8 @@ static vg_status post(struct vg_comm *c, int to, int kind, struct vg_bytes *b,
   return VG_OK;
 }
 
-vg_status vg_comm_post(struct vg_comm *c, int to, int kind,
-                       struct vg_bytes *b, struct vg_error *err)
+vg_status vg_comm_post(struct vg_comm *c, int to, int kind, struct vg_bytes *b,
+                       struct vg_error *err)
 {
   vg_status st;
 
@@ -113,8 +116,10 @@ vg_status vg_comm_post(struct vg_comm *c, int to, int kind,
   if (!c)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "messages need a job with MPI");
   if (to < 0 || to >= c->size || kind < 0 || kind > KIND_MAX)
-    return vg_fail(err, VG_ERR_INPUT, "no message of kind %d can go to rank "
-                   "%d of %d", kind, to, c->size);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "no message of kind %d can go to rank "
+                   "%d of %d",
+                   kind, to, c->size);
   if (to == c->rank) return post_to_self(c, kind, b, err);
   pthread_mutex_lock(&c->lock);
   st = post(c, to, kind, b, err);
@@ -138,7 +143,7 @@ static vg_status reclaim(struct vg_comm *c, struct vg_error *err)
     free(s->data);
     free(s);
   }
-  if (n_done <= 0) return VG_OK;   /* may be MPI_UNDEFINED */
+  if (n_done <= 0) return VG_OK; /* may be MPI_UNDEFINED */
   for (int i = 0; i < c->n_request; i++) {
     if (c->request[i] == MPI_REQUEST_NULL) continue;
     c->request[n] = c->request[i];
@@ -167,8 +172,8 @@ static vg_status start_long(struct vg_comm *c, struct vg_incoming *a,
   for (size_t at = 0; at < b->n; at += c->chunk) {
     size_t m = b->n - at < c->chunk ? b->n - at : c->chunk;
 
-    rc = MPI_Irecv(b->data + at, (int)m, MPI_BYTE, a->message.from,
-                   VG_TAG_PART, c->all, &a->request[a->n_request]);
+    rc = MPI_Irecv(b->data + at, (int)m, MPI_BYTE, a->message.from, VG_TAG_PART,
+                   c->all, &a->request[a->n_request]);
     if (rc) return vg_comm_fail(err, "cannot receive a message", rc);
     a->n_request++;
   }
@@ -202,8 +207,7 @@ static int probe(struct vg_comm *c, int *is_there, MPI_Message *handle,
   *is_there = 0;
   for (int i = 0; i < 2 && !*is_there && !rc; i++)
     rc = MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, c->message_comm, is_there,
-                     handle,
-                     status);
+                     handle, status);
   return rc;
 }
 
@@ -223,7 +227,7 @@ static vg_status look(struct vg_comm *c, struct vg_error *err)
     memset(a, 0, sizeof *a);
     a->message.from = status.MPI_SOURCE;
     a->message.kind = status.MPI_TAG / 2;
-    c->n_incoming++;         /* before it can fail: its memory is kept */
+    c->n_incoming++; /* before it can fail: its memory is kept */
     if (status.MPI_TAG % 2) st = start_long(c, a, &handle, err);
     else st = start_short(a, &handle, &status, err);
     if (st < 0) return st;
@@ -247,8 +251,7 @@ static vg_status take(struct vg_comm *c, struct vg_message *m,
     int is_whole = 0, rc;
 
     if (is_overtaking(c, i)) continue;
-    rc = MPI_Testall(a->n_request, a->request, &is_whole,
-                     MPI_STATUSES_IGNORE);
+    rc = MPI_Testall(a->n_request, a->request, &is_whole, MPI_STATUSES_IGNORE);
     if (rc) return vg_comm_fail(err, "cannot receive a message", rc);
     if (!is_whole) continue;
     *m = a->message;

@@ -9,48 +9,50 @@
 #include "base/comm.h"
 
 /* Sets of processors by their number; more than any node has. */
-struct vg_cores_mask { unsigned long word[8192 / (8 * sizeof(long))]; };
+struct vg_cores_mask {
+  unsigned long word[8192 / (8 * sizeof(long))];
+};
 
 /* Tags on `all` outside collectives. */
 enum { VG_TAG_EXCHANGE = 1, VG_TAG_PART = 2, VG_TAG_SIZE = 3 /* and 4 */ };
 
 enum { VG_INCOMING_MAX = 64 };
 
-struct vg_wakeup;            /* comm_wake.c */
-struct vg_sent;              /* memory under way, until all requests are done */
-struct vg_self_message;            /* a message to oneself */
+struct vg_wakeup;       /* comm_wake.c */
+struct vg_sent;         /* memory under way, until all requests are done */
+struct vg_self_message; /* a message to oneself */
 
 struct vg_incoming {
   struct vg_message message;
-  MPI_Request *request;      /* [n_request] */
+  MPI_Request *request; /* [n_request] */
   int n_request;
 };
 
 struct vg_comm {
-  MPI_Comm all;              /* collectives, and parts of long messages */
-  MPI_Comm message_comm;             /* messages */
-  MPI_Comm node;             /* ranks of this node */
+  MPI_Comm all;          /* collectives, and parts of long messages */
+  MPI_Comm message_comm; /* messages */
+  MPI_Comm node;         /* ranks of this node */
   int rank, size, node_rank, node_size;
-  int owns_mpi;              /* was started here */
-  int apart;                 /* ranks of a node have no memory in common */
-  size_t chunk;              /* bytes that go in one call of MPI, <= INT_MAX */
-  int turn;                  /* 0 or 1: the tag of the next exchange's sizes */
+  int owns_mpi;               /* was started here */
+  int apart;                  /* ranks of a node have no memory in common */
+  size_t chunk;               /* bytes that go in one call of MPI, <= INT_MAX */
+  int turn;                   /* 0 or 1: the tag of the next exchange's sizes */
   struct vg_cores_mask *core; /* [node_size], their binding when opened */
-  struct vg_shmem wakeups;  /* memory of these: */
-  struct vg_wakeup *wakeup;  /* [node_size] */
-  int *wakeup_at;            /* [size] which is a rank's */
+  struct vg_shmem wakeups;    /* memory of these: */
+  struct vg_wakeup *wakeup;   /* [node_size] */
+  int *wakeup_at;             /* [size] which is a rank's */
 
-  pthread_mutex_t lock;      /* of what follows, to `received` */
-  MPI_Request *request;      /* [n_request] of sends under way */
-  struct vg_sent **sent;     /* [n_request] what each of them sends */
-  int *done;                 /* [cap_request] */
+  pthread_mutex_t lock;  /* of what follows, to `received` */
+  MPI_Request *request;  /* [n_request] of sends under way */
+  struct vg_sent **sent; /* [n_request] what each of them sends */
+  int *done;             /* [cap_request] */
   int n_request;
   size_t cap_request, cap_sent, cap_done;
   struct vg_self_message *first, **last;
-  uint64_t posted;           /* to others, ever */
+  uint64_t posted; /* to others, ever */
 
-  uint64_t received;         /* from others, ever; the polling thread's */
-  struct vg_incoming incoming[VG_INCOMING_MAX];  /* by time of arrival */
+  uint64_t received; /* from others, ever; the polling thread's */
+  struct vg_incoming incoming[VG_INCOMING_MAX]; /* by time of arrival */
   int n_incoming;
 };
 

@@ -21,7 +21,7 @@
 
 struct ticket {
   uint64_t n, device, inode;
-  int64_t process, file;     /* file < 0: there is none */
+  int64_t process, file; /* file < 0: there is none */
 };
 
 /* At least 1, as nothing cannot be mapped. */
@@ -38,8 +38,7 @@ static size_t total(size_t n_part, const struct vg_bytes *part)
 static int write_part(int file, const struct vg_bytes *b, size_t at)
 {
   for (size_t done = 0; done < b->n;) {
-    ssize_t n = pwrite(file, b->data + done, b->n - done,
-                       (off_t)(at + done));
+    ssize_t n = pwrite(file, b->data + done, b->n - done, (off_t)(at + done));
 
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return -1;
@@ -164,14 +163,13 @@ vg_status vg_comm_node_memory(struct vg_comm *c, size_t n_part,
 {
   vg_status st = VG_BLOCKED;
 
-  if (vg_comm_node_size(c) > 1)
-    st = share(c, n_part, part, writes, out, err);
+  if (vg_comm_node_size(c) > 1) st = share(c, n_part, part, writes, out, err);
   return st == VG_BLOCKED ? copy(c, n_part, part, out, err) : st;
 }
 
 vg_status vg_comm_node_shmem(struct vg_comm *c, size_t n_part,
-                             const struct vg_bytes *part,
-                             struct vg_shmem *out, struct vg_error *err)
+                             const struct vg_bytes *part, struct vg_shmem *out,
+                             struct vg_error *err)
 {
   assert(out && (part || !n_part || vg_comm_node_rank(c)));
   return vg_comm_node_memory(c, n_part, part, 0, out, err);

@@ -12,8 +12,8 @@ struct vg_team {
   struct vg_comm *c;
   MPI_Comm comm;
   int rank, size;
-  int is_broken;             /* a member failed, and all know */
-  int *count, *at;           /* [size] for MPI */
+  int is_broken;   /* a member failed, and all know */
+  int *count, *at; /* [size] for MPI */
 };
 
 static void team_free(struct vg_team *t)

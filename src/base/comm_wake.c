@@ -47,11 +47,10 @@ vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err)
   vg_status st = VG_OK;
 
   c->wakeup_at = vg_alloc((size_t)c->size, sizeof *c->wakeup_at);
-  if (!none.data || find_neighbours(c)) st = vg_fail_memory(err,
-                                                            "what wakes ranks");
+  if (!none.data || find_neighbours(c))
+    st = vg_fail_memory(err, "what wakes ranks");
   st = vg_comm_agree_in(c, c->all, st, err);
-  if (st >= 0)
-    st = vg_comm_node_memory(c, 1, &none, 1, &c->wakeups, err);
+  if (st >= 0) st = vg_comm_node_memory(c, 1, &none, 1, &c->wakeups, err);
   free(none.data);
   if (st >= 0) c->wakeup = (void *)(uintptr_t)c->wakeups.data;
   return vg_comm_agree_in(c, c->all, st, err);
@@ -92,8 +91,9 @@ void vg_comm_sleep(struct vg_comm *c, unsigned heard, double seconds)
 {
   assert(seconds >= 0);
   struct vg_wakeup *b = &c->wakeup[c->node_rank];
-  const struct timespec t = { (time_t)seconds,
-    (long)(1e9 * (seconds - (double)(time_t)seconds)) };
+  const struct timespec t = {
+    (time_t)seconds, (long)(1e9 * (seconds - (double)(time_t)seconds))
+  };
 
   atomic_store(&b->sleeps, 1);
   syscall(SYS_futex, &b->count, FUTEX_WAIT, heard, &t, NULL, 0);

@@ -65,17 +65,17 @@ void vg_entries_add(const struct vg_entries *l, void *to, const void *from)
     const struct vg_entry *f = &l->entry[k];
 
     if (is_real(f))
-      set_real(f, to, real_of_two(f->rule, vg_entry_real(f, to),
-                                  vg_entry_real(f, from)));
-    else
-      set_count(f, to, vg_entry_count(f, to) + vg_entry_count(f, from));
+      set_real(f, to,
+               real_of_two(f->rule, vg_entry_real(f, to),
+                           vg_entry_real(f, from)));
+    else set_count(f, to, vg_entry_count(f, to) + vg_entry_count(f, from));
   }
 }
 
 /* Counts and times are summed. Of other reals the most is taken, after a change
  * of sign where the least is wanted. */
 vg_status vg_entries_agree(const struct vg_entries *l, void *report,
-                          struct vg_comm *comm, struct vg_error *err)
+                           struct vg_comm *comm, struct vg_error *err)
 {
   uint64_t *sum = vg_calloc(l->n, sizeof *sum);
   double *most = vg_calloc(l->n, sizeof *most);
@@ -88,8 +88,7 @@ vg_status vg_entries_agree(const struct vg_entries *l, void *report,
     else if (f->rule == VG_ENTRY_SUM)
       sum[k] = (uint64_t)(vg_entry_real(f, report) * per_second);
     else
-      most[k] = (f->rule == VG_ENTRY_LEAST ? -1 : 1) *
-                vg_entry_real(f, report);
+      most[k] = (f->rule == VG_ENTRY_LEAST ? -1 : 1) * vg_entry_real(f, report);
   }
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(vg_comm_sum(comm, l->n, sum, err));
@@ -100,8 +99,7 @@ vg_status vg_entries_agree(const struct vg_entries *l, void *report,
     if (!is_real(f)) set_count(f, report, sum[k]);
     else if (f->rule == VG_ENTRY_SUM)
       set_real(f, report, (double)sum[k] / per_second);
-    else
-      set_real(f, report, f->rule == VG_ENTRY_LEAST ? -most[k] : most[k]);
+    else set_real(f, report, f->rule == VG_ENTRY_LEAST ? -most[k] : most[k]);
   }
 done:
   free(sum);
@@ -110,7 +108,7 @@ done:
 }
 
 void vg_entries_put(const struct vg_entries *l, struct vg_writer *w,
-                   const void *report)
+                    const void *report)
 {
   for (size_t k = 0; k < l->n; k++) {
     const struct vg_entry *f = &l->entry[k];
@@ -123,7 +121,7 @@ void vg_entries_put(const struct vg_entries *l, struct vg_writer *w,
 }
 
 void vg_entries_get(const struct vg_entries *l, struct vg_reader *r,
-                   void *report)
+                    void *report)
 {
   for (size_t k = 0; k < l->n; k++) {
     const struct vg_entry *f = &l->entry[k];

@@ -11,30 +11,32 @@
 #include "base/status.h"
 
 enum vg_entry_type {
-  VG_ENTRY_COUNT,            /* uint64_t or size_t, which are the same */
-  VG_ENTRY_FLAG,             /* int: how often something happened, as a flag */
-  VG_ENTRY_REAL,             /* double */
-  VG_ENTRY_SECONDS           /* double: a time, which is not stored */
+  VG_ENTRY_COUNT,  /* uint64_t or size_t, which are the same */
+  VG_ENTRY_FLAG,   /* int: how often something happened, as a flag */
+  VG_ENTRY_REAL,   /* double */
+  VG_ENTRY_SECONDS /* double: a time, which is not stored */
 };
 
 /* How the reports of two tasks, or of two ranks, become one. */
 enum vg_entry_rule { VG_ENTRY_SUM, VG_ENTRY_MOST, VG_ENTRY_LEAST };
 
 struct vg_entry {
-  const char *name;          /* key in the JSON report; NULL: not there */
-  size_t offset;             /* of the field in its struct */
+  const char *name; /* key in the JSON report; NULL: not there */
+  size_t offset;    /* of the field in its struct */
   enum vg_entry_type type;
   enum vg_entry_rule rule;
 };
 
 struct vg_entries {
   size_t n;
-  const struct vg_entry *entry;  /* [n] in the order of the JSON report */
+  const struct vg_entry *entry; /* [n] in the order of the JSON report */
 };
 
 /* A row. member: of struct type, also of a nested struct or array. */
-#define VG_ENTRY(name, type, member, kind, rule) \
-  { name, offsetof(type, member), VG_ENTRY_ ## kind, VG_ENTRY_ ## rule }
+#define VG_ENTRY(name, type, member, kind, rule)                               \
+  {                                                                            \
+    name, offsetof(type, member), VG_ENTRY_##kind, VG_ENTRY_##rule             \
+  }
 
 _Static_assert(sizeof(size_t) == sizeof(uint64_t), "fields are 64 bits wide");
 
@@ -46,15 +48,15 @@ void vg_entries_add(const struct vg_entries *l, void *to, const void *from);
 
 /** The reports of all ranks combined, on all of them. Collective. */
 vg_status vg_entries_agree(const struct vg_entries *l, void *report,
-                          struct vg_comm *comm, struct vg_error *err);
+                           struct vg_comm *comm, struct vg_error *err);
 
 /** Append the report to a record, without its times; the reverse, where times
  * are 0. Damaged data set r->bad. */
 struct vg_writer;
 struct vg_reader;
 void vg_entries_put(const struct vg_entries *l, struct vg_writer *w,
-                   const void *report);
+                    const void *report);
 void vg_entries_get(const struct vg_entries *l, struct vg_reader *r,
-                   void *report);
+                    void *report);
 
 #endif

@@ -19,36 +19,35 @@
  * heap[0] is the item that leaves next.
  * @param before  int before(const TYPE *a, const TYPE *b): does a leave before
  *                b? A function or a macro, which is compiled in line. */
-#define VG_HEAP_DEFINE(name, type, before)                              \
-  static inline void name##_push(type *heap, size_t *n, type item)      \
-  {                                                                     \
-    size_t at = (*n)++;                                                 \
-                                                                        \
-    while (at && before(&item, &heap[(at - 1) / 2])) {                  \
-      heap[at] = heap[(at - 1) / 2];                                    \
-      at = (at - 1) / 2;                                                \
-    }                                                                   \
-    heap[at] = item;                                                    \
-  }                                                                     \
-                                                                        \
-  static inline type name##_pop(type *heap, size_t *n)                  \
-  {                                                                     \
-    size_t left, at = 0, child;                                         \
-    type top, last;                                                     \
-                                                                        \
-    assert(*n > 0);                                                     \
-    left = --*n;                                                        \
-    top = heap[0];                                                      \
-    last = heap[left];                                                  \
-    while ((child = 2 * at + 1) < left) {                               \
-      if (child + 1 < left && before(&heap[child + 1], &heap[child]))   \
-        child++;                                                        \
-      if (before(&last, &heap[child])) break;                           \
-      heap[at] = heap[child];                                           \
-      at = child;                                                       \
-    }                                                                   \
-    heap[at] = last;                                                    \
-    return top;                                                         \
+#define VG_HEAP_DEFINE(name, type, before)                                     \
+  static inline void name##_push(type *heap, size_t *n, type item)             \
+  {                                                                            \
+    size_t at = (*n)++;                                                        \
+                                                                               \
+    while (at && before(&item, &heap[(at - 1) / 2])) {                         \
+      heap[at] = heap[(at - 1) / 2];                                           \
+      at = (at - 1) / 2;                                                       \
+    }                                                                          \
+    heap[at] = item;                                                           \
+  }                                                                            \
+                                                                               \
+  static inline type name##_pop(type *heap, size_t *n)                         \
+  {                                                                            \
+    size_t left, at = 0, child;                                                \
+    type top, last;                                                            \
+                                                                               \
+    assert(*n > 0);                                                            \
+    left = --*n;                                                               \
+    top = heap[0];                                                             \
+    last = heap[left];                                                         \
+    while ((child = 2 * at + 1) < left) {                                      \
+      if (child + 1 < left && before(&heap[child + 1], &heap[child])) child++; \
+      if (before(&last, &heap[child])) break;                                  \
+      heap[at] = heap[child];                                                  \
+      at = child;                                                              \
+    }                                                                          \
+    heap[at] = last;                                                           \
+    return top;                                                                \
   }
 
 #endif

@@ -8,10 +8,13 @@ extern "C" {
 #endif
 
 /** As the library itself says at run time, where it can; one line. */
-struct vg_library { const char *name; char version[112]; };
+struct vg_library {
+  const char *name;
+  char version[112];
+};
 
-void vg_library_mpi(struct vg_library *out);     /* base/comm.c */
-void vg_library_hwloc(struct vg_library *out);   /* base/comm_cores.c */
+void vg_library_mpi(struct vg_library *out);   /* base/comm.c */
+void vg_library_hwloc(struct vg_library *out); /* base/comm_cores.c */
 
 #ifdef __cplusplus
 }

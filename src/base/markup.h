@@ -8,8 +8,11 @@
  * NULL: the character itself. */
 static inline const char *vg_markup_entity(char c)
 {
-  return c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;"
-         : c == '"' ? "&quot;" : NULL;
+  return c == '&' ? "&amp;"
+       : c == '<' ? "&lt;"
+       : c == '>' ? "&gt;"
+       : c == '"' ? "&quot;"
+                  : NULL;
 }
 
 #endif

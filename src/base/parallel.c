@@ -13,7 +13,7 @@ struct loop {
   size_t n, grain;
   vg_loop_body body;
   void *context;
-  atomic_size_t next;       /* chunk */
+  atomic_size_t next; /* chunk */
 };
 
 struct worker {

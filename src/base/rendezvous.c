@@ -58,9 +58,9 @@ int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key)
 struct sorting {
   const struct vg_rendezvous *m;
   size_t (*bin)(const struct sorting *s, uint64_t h);
-  struct vg_bytes *from;     /* [n_from] */
+  struct vg_bytes *from; /* [n_from] */
   size_t n_from, n_bin;
-  size_t *at;                /* [n_from][n_bin + 1], the first 0 */
+  size_t *at; /* [n_from][n_bin + 1], the first 0 */
 };
 
 static size_t rank_bin(const struct sorting *s, uint64_t h)
@@ -110,8 +110,8 @@ static void swap_items(unsigned char *a, unsigned char *b, size_t size)
 /* Items of bins low and up in order of groups of `width` bins each, in place:
  * every swap brings one to its group. next, end: [n_group] of items */
 static void order_groups(const struct sorting *s, unsigned char *item,
-                         size_t low, size_t width, size_t n_group,
-                         size_t *next, const size_t *end)
+                         size_t low, size_t width, size_t n_group, size_t *next,
+                         const size_t *end)
 {
   size_t size = s->m->size;
 
@@ -217,8 +217,9 @@ static vg_status send(const struct vg_rendezvous *m, struct vg_bytes *list,
                       struct vg_error *err)
 {
   size_t size = (size_t)vg_comm_size(m->comm);
-  struct sorting s = { .m = m, .bin = rank_bin, .from = list,
-                       .n_from = n_list, .n_bin = size };
+  struct sorting s = {
+    .m = m, .bin = rank_bin, .from = list, .n_from = n_list, .n_bin = size
+  };
   struct vg_bytes *to = vg_calloc(size, sizeof *to);
   struct vg_bytes *from = vg_calloc(size, sizeof *from);
   unsigned char *all = NULL;
@@ -243,9 +244,9 @@ done:
 
 struct hall {
   const struct vg_rendezvous *m;
-  struct sorting s;          /* by part, a power of two of them */
-  size_t most;               /* items of the largest part */
-  struct vg_items *left;     /* NULL, or [threads]: groups not whole go here */
+  struct sorting s;      /* by part, a power of two of them */
+  size_t most;           /* items of the largest part */
+  struct vg_items *left; /* NULL, or [threads]: groups not whole go here */
   atomic_int refused;
 };
 
@@ -389,15 +390,16 @@ static vg_status meet_here(const struct vg_rendezvous *m, struct vg_bytes *from,
                            size_t n_from, struct vg_items *left,
                            struct vg_error *err)
 {
-  struct hall h = { .m = m, .left = left,
-                    .s = { .m = m, .bin = part_bin, .from = from,
-                           .n_from = n_from, .n_bin = 1 } };
+  struct hall h = {
+    .m = m,
+    .left = left,
+    .s = { .m = m, .bin = part_bin, .from = from, .n_from = n_from, .n_bin = 1 }
+  };
   size_t n = 0;
   vg_status st;
 
   for (size_t r = 0; r < n_from; r++) n += from[r].n / m->size;
-  while (h.s.n_bin < MOST_PARTS && h.s.n_bin * PART_ITEMS < n)
-    h.s.n_bin *= 2;
+  while (h.s.n_bin < MOST_PARTS && h.s.n_bin * PART_ITEMS < n) h.s.n_bin *= 2;
   VG_TRY(sort_items(&h.s, err));
   for (size_t p = 0; p < h.s.n_bin; p++) {
     size_t count = 0;
@@ -424,8 +426,7 @@ static struct vg_bytes *take_lists(const struct vg_rendezvous *m,
   struct vg_bytes *from = vg_calloc(n_list, sizeof *from);
 
   for (size_t l = 0; l < n_list; l++) {
-    struct vg_items *one =
-      (void *)((unsigned char *)list + l * stride);
+    struct vg_items *one = (void *)((unsigned char *)list + l * stride);
 
     if (from) from[l] = (struct vg_bytes){ one->n * m->size, one->data };
     else free(one->data);
@@ -436,8 +437,8 @@ static struct vg_bytes *take_lists(const struct vg_rendezvous *m,
 
 /* Look at what is whole on this rank. *from, *n_from: what is not. Local. */
 static vg_status meet_first(const struct vg_rendezvous *m,
-                            struct vg_bytes **from,
-                            size_t *n_from, struct vg_error *err)
+                            struct vg_bytes **from, size_t *n_from,
+                            struct vg_error *err)
 {
   size_t n = (size_t)(m->threads > 0 ? m->threads : 1);
   struct vg_items *left = vg_calloc(n, sizeof *left);
@@ -455,8 +456,7 @@ static vg_status meet_first(const struct vg_rendezvous *m,
 }
 
 vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
-                            struct vg_items *list,
-                            size_t n_list, size_t stride,
+                            struct vg_items *list, size_t n_list, size_t stride,
                             struct vg_error *err)
 {
   assert(m->group && m->threads >= 0);

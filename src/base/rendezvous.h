@@ -31,11 +31,10 @@ void vg_items_release(struct vg_items *list);
 struct vg_rendezvous {
   struct vg_comm *comm;
   int threads;
-  size_t size, key;          /* bytes of an item, multiple of 4, and of its
-                                key at its beginning */
+  size_t size, key; /* bytes of an item, multiple of 4, and of its
+                       key at its beginning */
   /** n items of one key, in any order. Called by several threads. */
-  void (*group)(void *context, const unsigned char *item, size_t n,
-                int worker);
+  void (*group)(void *context, const unsigned char *item, size_t n, int worker);
   void *context;
   /** NULL, or whether n items of one key, all that this rank has, are all
    * there are. Such groups are looked at where they are and do not travel. */
@@ -63,8 +62,7 @@ int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key);
  * Memory: the items once, on several ranks twice. VG_ERR_MEMORY on all
  * ranks. */
 vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
-                            struct vg_items *list,
-                            size_t n_list, size_t stride,
+                            struct vg_items *list, size_t n_list, size_t stride,
                             struct vg_error *err);
 
 #endif

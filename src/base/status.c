@@ -22,7 +22,8 @@ vg_status vg_fail_memory(struct vg_error *err, const char *what)
   assert(what);
   return vg_fail(err, VG_ERR_MEMORY,
                  "not enough memory for %s; use a coarser spacing or a "
-                 "machine with more memory", what);
+                 "machine with more memory",
+                 what);
 }
 
 const char *vg_status_name(vg_status code)

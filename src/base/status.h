@@ -7,7 +7,7 @@
 #define VG_BASE_STATUS_H
 
 #ifdef __cplusplus
-extern "C" {              /* for the C++ adapters of third-party libraries */
+extern "C" { /* for the C++ adapters of third-party libraries */
 #endif
 
 typedef enum {
@@ -32,12 +32,15 @@ struct vg_error {
   vg_status code;
   char text[1024];
 };
-#define VG_ERROR_INIT { VG_OK, "" }
+#define VG_ERROR_INIT                                                          \
+  {                                                                            \
+    VG_OK, ""                                                                  \
+  }
 
 /** Fill *err (which may be NULL) printf-wise and return code.
  * Threads: safe on distinct err. */
-vg_status vg_fail(struct vg_error *err, vg_status code, const char *format,
-                  ...) __attribute__((format(printf, 3, 4)));
+vg_status vg_fail(struct vg_error *err, vg_status code, const char *format, ...)
+  __attribute__((format(printf, 3, 4)));
 
 /** vg_fail for an allocation of `what` that was refused. */
 vg_status vg_fail_memory(struct vg_error *err, const char *what);
@@ -46,7 +49,10 @@ vg_status vg_fail_memory(struct vg_error *err, const char *what);
 const char *vg_status_name(vg_status code);
 
 /* In functions with `vg_status st` and a `done:` label that cleans up. */
-#define VG_TRY(call) do { if ((st = (call)) < 0) goto done; } while (0)
+#define VG_TRY(call)                                                           \
+  do {                                                                         \
+    if ((st = (call)) < 0) goto done;                                          \
+  } while (0)
 
 #ifdef __cplusplus
 }

@@ -11,7 +11,7 @@ extern "C" {
 /* Asked often, on any thread, some thousand times a second: cheap. Once it has
  * said so it says so ever after. */
 struct vg_stop {
-  int (*ask)(void *user);   /* anything but 0: end; NULL: never */
+  int (*ask)(void *user); /* anything but 0: end; NULL: never */
   void *user;
 };
 

@@ -24,10 +24,13 @@
 #define VG_TABLE_FREE UINT32_MAX
 
 struct vg_table {
-  uint32_t *slot, *end;      /* Slots, a power of two of them; owned. */
-  unsigned shift;            /* 64 minus the binary logarithm of the slots. */
+  uint32_t *slot, *end; /* Slots, a power of two of them; owned. */
+  unsigned shift;       /* 64 minus the binary logarithm of the slots. */
 };
-#define VG_TABLE_INIT { NULL, NULL, 0 }
+#define VG_TABLE_INIT                                                          \
+  {                                                                            \
+    NULL, NULL, 0                                                              \
+  }
 
 /** Make an empty table with room for n items; the old content of *t is not
  * released. Memory: 4 bytes for each of 2 n slots, rounded up to a power of 2.
@@ -64,8 +67,9 @@ static inline uint32_t *vg_table_next(const struct vg_table *t, uint32_t *at)
  * to the free slot where an item with this hash belongs.
  * @param t      const struct vg_table *, with room
  * @param is_it  expression: does the item of number *at have the wanted key? */
-#define VG_TABLE_FIND(t, at, hash, is_it)                              \
-  for ((at) = vg_table_home((t), (hash));                              \
-       *(at) != VG_TABLE_FREE && !(is_it); (at) = vg_table_next((t), (at))) {}
+#define VG_TABLE_FIND(t, at, hash, is_it)                                      \
+  for ((at) = vg_table_home((t), (hash)); *(at) != VG_TABLE_FREE && !(is_it);  \
+       (at) = vg_table_next((t), (at))) {                                      \
+  }
 
 #endif

@@ -11,14 +11,14 @@
 #include "base/parallel.h"
 #include "base/status.h"
 
-struct vg_team;              /* NULL: this process alone */
+struct vg_team; /* NULL: this process alone */
 
 /** What a loop writes into an array: for item i the elements begin[i] to
  * begin[i + 1] - 1 [n + 1]; where begin is NULL, the element i / per. */
 struct vg_team_out {
   void *data;
-  size_t size;               /* bytes of an element */
-  size_t per;                /* divides the loop's grain; 0: 1 */
+  size_t size; /* bytes of an element */
+  size_t per;  /* divides the loop's grain; 0: 1 */
   const uint32_t *begin;
 };
 

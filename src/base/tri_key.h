@@ -44,8 +44,8 @@ static inline uint64_t vg_edge_key(uint32_t a, uint32_t b)
 
 /* Key of a triangle, the same for all orders of its corners. */
 struct vg_tri_key {
-  uint64_t low;              /* Lowest corner << 32 | middle corner. */
-  uint32_t high;             /* Highest corner. */
+  uint64_t low;  /* Lowest corner << 32 | middle corner. */
+  uint32_t high; /* Highest corner. */
 };
 
 static inline struct vg_tri_key vg_tri_key(const uint32_t corner[3])

@@ -14,15 +14,15 @@
 static const struct command {
   const char *name, *summary;
   int (*run)(int argc, char **argv);
-  const char *title;               /* argv[0] of the subcommand, for help */
+  const char *title; /* argv[0] of the subcommand, for help */
   int meshes;
 } commands[] = {
   { "mesh", "mesh the volume of a project, on threads and MPI ranks",
     vg_cmd_mesh, "vanguard mesh", 1 },
   { "surface", "make the triangles of a surface anew to size", vg_cmd_surface,
     "vanguard surface", 0 },
-  { "check", "judge a surface or a volume mesh", vg_cmd_check,
-    "vanguard check", 0 },
+  { "check", "judge a surface or a volume mesh", vg_cmd_check, "vanguard check",
+    0 },
   { "partition", "share a volume mesh out to a solver's processes",
     vg_cmd_partition, "vanguard partition", 1 },
   { "plan", "forecast cells, memory and time before a project is meshed",
@@ -31,22 +31,23 @@ static const struct command {
     vg_cmd_sweep, "vanguard sweep", 0 },
   { "serve", "start, watch and resume runs from a browser", vg_cmd_serve,
     "vanguard serve", 0 },
-  { "deck", "write a run deck with all defaults", vg_cmd_deck,
-    "vanguard deck", 0 },
-  { "demo", "write a complete example project", vg_cmd_demo,
-    "vanguard demo", 0 },
+  { "deck", "write a run deck with all defaults", vg_cmd_deck, "vanguard deck",
+    0 },
+  { "demo", "write a complete example project", vg_cmd_demo, "vanguard demo",
+    0 },
 };
 #define N_COMMAND (sizeof commands / sizeof *commands)
 
 static void usage(FILE *to)
 {
   fprintf(to, "Usage: vanguard COMMAND [OPTION...]\n"
-          "Vanguard makes volume meshes for aerodynamics from closed "
-          "surfaces: viscous\nlayers on the walls, tetrahedra around "
-          "them.\n\n");
+              "Vanguard makes volume meshes for aerodynamics from closed "
+              "surfaces: viscous\nlayers on the walls, tetrahedra around "
+              "them.\n\n");
   for (size_t i = 0; i < N_COMMAND; i++)
     fprintf(to, "  %-9s %s\n", commands[i].name, commands[i].summary);
-  fprintf(to, "\n'vanguard COMMAND --help' lists the options of a command, "
+  fprintf(to,
+          "\n'vanguard COMMAND --help' lists the options of a command, "
           "'vanguard --version'\nshows the version. On several nodes: "
           "'mpirun -n RANKS vanguard mesh -p PROJECT'.\n"
           "Exit status: 0 done, 1 failed, 2 wrong usage, 4 done, but a limit "
@@ -67,8 +68,10 @@ static int unknown(const char *word)
     fprintf(stderr, "vanguard: no command '%s'; did you mean '%s'?\n", word,
             near);
   else
-    fprintf(stderr, "vanguard: no command '%s'; 'vanguard --help' lists "
-            "them\n", word);
+    fprintf(stderr,
+            "vanguard: no command '%s'; 'vanguard --help' lists "
+            "them\n",
+            word);
   return VG_EXIT_USAGE;
 }
 
@@ -121,13 +124,12 @@ int main(int argc, char **argv)
     vg_version_print(stdout, argc > 2 && !strcmp(argv[2], "--verbose"));
     return written(VG_EXIT_DONE);
   }
-  if (!strcmp(word, "--help") || !strcmp(word, "-h") ||
-      !strcmp(word, "help")) {
+  if (!strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help")) {
     if (argc < 3) {
       usage(stdout);
       return VG_EXIT_DONE;
     }
-    word = argv[1] = argv[2];   /* of a command, as COMMAND --help has it */
+    word = argv[1] = argv[2]; /* of a command, as COMMAND --help has it */
     argv[2] = help;
     argc = 3;
   }

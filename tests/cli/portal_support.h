@@ -23,8 +23,8 @@
 struct portal_scene {
   char dir[200], root[256];
   struct vg_portal *p;
-  const char *token;           /* in the portal's address */
-  char *answer;                /* [PORTAL_ANSWER_MAX] */
+  const char *token; /* in the portal's address */
+  char *answer;      /* [PORTAL_ANSWER_MAX] */
 };
 
 static inline void portal_file(const char *dir, const char *name,
@@ -73,7 +73,7 @@ static inline vg_status portal_scene_open(struct portal_scene *s,
   snprintf(path, sizeof path, "%s/root/away", s->dir);
   if (symlink("../other", path)) abort();
   o.root = s->root;
-  o.port = -1;                 /* none: connections are given to it */
+  o.port = -1; /* none: connections are given to it */
   o.jobs = 0;
   o.max_upload = 1000;
   st = vg_portal_open(&o, &s->p, err);

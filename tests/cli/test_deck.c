@@ -71,8 +71,7 @@ static void round_trip(struct vg_settings *s, int explain)
   struct vg_settings back = VG_SETTINGS_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
-  assert_int_equal(vg_deck_write(path, s, "# comment\n", explain, &err),
-                   VG_OK);
+  assert_int_equal(vg_deck_write(path, s, "# comment\n", explain, &err), VG_OK);
   if (vg_deck_read(path, &back, &err) < 0) fail_msg("%s", err.text);
   assert_same_settings(s, &back);
   vg_settings_release(&back);
@@ -123,15 +122,20 @@ static void add_source(struct vg_settings *s, int kind)
 static void everything_survives_a_round_trip(void **state)
 {
   struct vg_settings s;
-  struct vg_farfield_row far = { VG_DOMAIN_BOX, 12.5, 0, 3, { NAN, NAN, NAN },
-                                 { -1, -2, -3 }, { 1, 2, 1e9 } };
+  struct vg_farfield_row far = {
+    VG_DOMAIN_BOX, 12.5, 0, 3, { NAN, NAN, NAN }, { -1, -2, -3 }, { 1, 2, 1e9 }
+  };
   struct vg_patch_row patch = { -7, 4000, 1, "left wing", "" };
-  struct vg_layer_row layer = { -7, VG_ANSWER_YES, 1e-5, 1.15, NAN, NAN, NAN,
-                                30, 2, 0.125, 0, { 98, 99.9, 70, NAN, 8 },
-                                "" };
+  struct vg_layer_row layer = {
+    -7,  VG_ANSWER_YES, 1e-5, 1.15,
+    NAN, NAN,           NAN,  30,
+    2,   0.125,         0,    { 98, 99.9, 70, NAN, 8 },
+    ""
+  };
   struct vg_surface_row surface = { VG_BC_NONE, 4, 0.25, 0, 0, 2, "tail*", "" };
-  struct vg_sweep_row sweep = { "1,2", "1:4:x2", "", "20000,50000",
-                                "1:3", "advancing,octree", "4,16", 3 };
+  struct vg_sweep_row sweep = { "1,2",         "1:4:x2", "",
+                                "20000,50000", "1:3",    "advancing,octree",
+                                "4,16",        3 };
 
   (void)state;
   vg_settings_default(&s);
@@ -151,12 +155,28 @@ static void everything_survives_a_round_trip(void **state)
   patch.bc = VG_BC_NONE;
   strcpy(patch.name, "-");
   vg_settings_add(&s, VG_TABLE_PATCHES, &patch, NULL);
-  s.layer = (struct vg_layer_settings){ .grow = VG_ANSWER_YES, .first = 1e-6,
-    .ratio = NAN, .rate1 = 0.15, .rate2 = 0.02, .count = 30, .most = 40,
-    .constant = 5, .total = 2.5, .cap = 1.3, .reynolds = 5e6, .length = 1.5,
-    .walls = "1-3,-7", .slip = "8 ,9", .fan_angle = 40, .gap = 0.3, .end = 0.8,
-    .slope = 1.5, .smooth = 7, .by_source = 1, .scale_rule = 2,
-    .limit = { 95, NAN, 60, 1, 5.5 } };
+  s.layer = (struct vg_layer_settings){ .grow = VG_ANSWER_YES,
+                                        .first = 1e-6,
+                                        .ratio = NAN,
+                                        .rate1 = 0.15,
+                                        .rate2 = 0.02,
+                                        .count = 30,
+                                        .most = 40,
+                                        .constant = 5,
+                                        .total = 2.5,
+                                        .cap = 1.3,
+                                        .reynolds = 5e6,
+                                        .length = 1.5,
+                                        .walls = "1-3,-7",
+                                        .slip = "8 ,9",
+                                        .fan_angle = 40,
+                                        .gap = 0.3,
+                                        .end = 0.8,
+                                        .slope = 1.5,
+                                        .smooth = 7,
+                                        .by_source = 1,
+                                        .scale_rule = 2,
+                                        .limit = { 95, NAN, 60, 1, 5.5 } };
   vg_settings_add(&s, VG_TABLE_LAYERS, &layer, NULL);
   vg_settings_add(&s, VG_TABLE_SURFACE, &surface, NULL);
   surface.beside = 8;
@@ -189,7 +209,8 @@ static void blocks_come_in_any_order(void **state)
             "# values may wait\n"
             "  1.5d1\t1.25\n"
             "farfield\nkind lengths\nsphere 30\n"
-            "\nrepair\nno\n", &s, &err) < 0)
+            "\nrepair\nno\n",
+            &s, &err) < 0)
     fail_msg("%s", err.text);
   assert_string_equal(s.title, "ONERA M6");
   assert_int_equal(s.n_source, 2);
@@ -215,7 +236,7 @@ static void messages_name_line_and_remedy(void **state)
   refuse("# only a comment\n", "title");
   refuse("growth scale\n1.2 1\n", "run.deck:1: this line holds names");
   refuse("t\ngrwoth\n1.2\n", "run.deck:2: 'grwoth' is not a name known in "
-         "this deck; did you mean 'growth'?");
+                             "this deck; did you mean 'growth'?");
   refuse("t\nsuorces\n", "did you mean 'sources'?");
   refuse("t\nzzzzzzzz\n", "'vanguard deck' writes all names");
   refuse("t\n\ngrowth hmin\n1.2\n", "run.deck:4: 1 values for 2 names");
@@ -226,7 +247,7 @@ static void messages_name_line_and_remedy(void **state)
   refuse("t\ngrowth\nnan\n", "growth must be a number");
   refuse("t\nhmin hmin\n1 1\n", "named twice");
   refuse("t\nhmin\n1\nhmin\n2\n", "run.deck:4: 'hmin' was set before (line "
-         "2)");
+                                  "2)");
   refuse("t\noptimise\n1.5\n", "whole number");
   refuse("t\noptimise\n-1\n", "at least 0");
   refuse("t\nrepair\nyess\n", "did you mean 'yes'?");
@@ -239,9 +260,9 @@ static void messages_name_line_and_remedy(void **state)
   refuse("t\nratio rate1\n1.2 0.2\n", "ratio and rates are both given");
   refuse("t\nlayer_cap\n0.5\n", "layer_cap is 0.5; it must be at least 1");
   refuse("t\nlayers\nyse\n", "run.deck:3: 'yse' is not a name known in "
-         "layers");
+                             "layers");
   refuse("t\nlayers\nyes\n\nlayers\nno\n", "'layers' was set before (line "
-         "3)");
+                                           "3)");
 }
 
 static void tables_are_checked_too(void **state)
@@ -253,7 +274,7 @@ static void tables_are_checked_too(void **state)
   refuse("t\nsources\nkind x0\npoint 1\n", "needs a column 'h0'");
   refuse("t\nsources\nkind h0 x9\n", "did you mean 'x");
   refuse("t\nsources\nkind h0\npiont 1\n", "run.deck:4: kind cannot be "
-         "'piont'; did you mean 'point'?");
+                                           "'piont'; did you mean 'point'?");
   refuse("t\nsources\nkind h0\npoint -\n", "h0 must be a number");
   refuse("t\nsources\nkind h0\npoint 0\n", "must be above 0");
   refuse("t\nsources\nkind h0 growth\npoint 1 0.5\n", "growth of source 1");
@@ -291,7 +312,8 @@ static void layers_are_a_setting_and_a_table(void **state)
   assert_int_equal(s.layer.grow, VG_ANSWER_YES);
   assert_int_equal(s.n_layer, 2);
   assert_int_equal(s.layer_row[0].grow, VG_ANSWER_AUTO);
-  assert_true(s.layer_row[0].first == 1e-5 && s.layer_row[0].limit.min_full == 98);
+  assert_true(s.layer_row[0].first == 1e-5 &&
+              s.layer_row[0].limit.min_full == 98);
   assert_true(isnan(s.layer_row[0].ratio));
   assert_int_equal(s.layer_row[1].grow, VG_ANSWER_NO);
   assert_true(isnan(s.layer_row[1].first));
@@ -346,16 +368,20 @@ static void patches_come_from_a_mesh(void **state)
 /* What is not as by default is given; each setting says what it needs. */
 static void tells_what_is_given(void **state)
 {
-  static const struct { const char *name; enum vg_use use; int given; } row[] = {
-    { "growth", VG_USE_ALWAYS, 0 }, { "hmax", VG_USE_ALWAYS, 1 },
-    { "cad_angle", VG_USE_CAD, 0 }, { "unit", VG_USE_CAD, 1 },
-    { "first", VG_USE_LAYERS, 1 }, { "ratio", VG_USE_LAYERS, 0 },
-    { "min_full", VG_USE_LAYERS, 0 }, { "layers", VG_USE_ALWAYS, 0 },
-    { "surface_size", VG_USE_REMESH, 1 }, { "parts", VG_USE_ALWAYS, 1 },
-    { "coarsening", VG_USE_PARTS, 0 },
-    { "levels", VG_USE_PLANES, 0 }, { "d3m_sources", VG_USE_D3M, 0 },
-    { "farfield", VG_USE_ALWAYS, 0 },
-    { "farfield_size", VG_USE_FARFIELD, 1 } };
+  static const struct {
+    const char *name;
+    enum vg_use use;
+    int given;
+  } row[] = {
+    { "growth", VG_USE_ALWAYS, 0 },         { "hmax", VG_USE_ALWAYS, 1 },
+    { "cad_angle", VG_USE_CAD, 0 },         { "unit", VG_USE_CAD, 1 },
+    { "first", VG_USE_LAYERS, 1 },          { "ratio", VG_USE_LAYERS, 0 },
+    { "min_full", VG_USE_LAYERS, 0 },       { "layers", VG_USE_ALWAYS, 0 },
+    { "surface_size", VG_USE_REMESH, 1 },   { "parts", VG_USE_ALWAYS, 1 },
+    { "coarsening", VG_USE_PARTS, 0 },      { "levels", VG_USE_PLANES, 0 },
+    { "d3m_sources", VG_USE_D3M, 0 },       { "farfield", VG_USE_ALWAYS, 0 },
+    { "farfield_size", VG_USE_FARFIELD, 1 }
+  };
   struct vg_settings s;
   struct vg_error err = VG_ERROR_INIT;
   const struct vg_param *p;

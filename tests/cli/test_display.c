@@ -8,7 +8,11 @@
 
 #include "run/common/progress.h"
 
-struct told { char stage[40]; size_t done, expected; int n, stops; };
+struct told {
+  char stage[40];
+  size_t done, expected;
+  int n, stops;
+};
 
 static int tell(void *user, const char *stage, size_t done, size_t expected)
 {
@@ -24,10 +28,11 @@ static int tell(void *user, const char *stage, size_t done, size_t expected)
 static void counts_and_shares_only_rise(void **state)
 {
   static const size_t step[][2] = {
-    { 10, 100 }, { 5, 100 },      /* work was given up */
-    { 20, 400 },                  /* the estimate has grown */
-    { 90, 100 }, { 120, 100 },    /* more than was expected */
-    { 60, 1000 }, { 150, 150 } };
+    { 10, 100 },  { 5, 100 },   /* work was given up */
+    { 20, 400 },                /* the estimate has grown */
+    { 90, 100 },  { 120, 100 }, /* more than was expected */
+    { 60, 1000 }, { 150, 150 }
+  };
   struct told t = { .n = 0 };
   struct vg_display d = { .quiet = 1, .tell = tell, .user = &t };
   size_t before = 0;

@@ -1,6 +1,7 @@
-/* A new setting is one row of run/settings/setting_rows.h: this program compiles the
- * settings with three more rows (tests/cli/new_row) and nothing else. Default,
- * deck, command line, help, digest and the check of a resumed run follow. */
+/* A new setting is one row of run/settings/setting_rows.h: this program
+ * compiles the settings with three more rows (tests/cli/new_row) and nothing
+ * else. Default, deck, command line, help, digest and the check of a resumed
+ * run follow. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -124,8 +125,9 @@ static const char *line_of(const struct vg_settings *s, const char *name,
   snprintf(key, sizeof key, "\n%s=", name);
   at = strstr(text, key);
   *out = 0;
-  if (at) snprintf(out, size, "%.*s", (int)strcspn(at + strlen(key), "\n"),
-                   at + strlen(key));
+  if (at)
+    snprintf(out, size, "%.*s", (int)strcspn(at + strlen(key), "\n"),
+             at + strlen(key));
   free(text);
   return out;
 }

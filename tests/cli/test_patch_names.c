@@ -24,10 +24,13 @@ static void lists_have_numbers_and_names(void **unused)
 {
   const char *at = "-3, 4-9,-2--1 wing*,\"upper, left\",'a \"b\" c' fus?lage,"
                    "\"7\"";
-  static const struct { int64_t from, to; const char *name; } expected[] = {
-    { -3, -3, "" }, { 4, 9, "" }, { -2, -1, "" }, { 0, 0, "wing*" },
-    { 0, 0, "upper, left" }, { 0, 0, "a \"b\" c" }, { 0, 0, "fus?lage" },
-    { 0, 0, "7" } };
+  static const struct {
+    int64_t from, to;
+    const char *name;
+  } expected[] = { { -3, -3, "" },          { 4, 9, "" },
+                   { -2, -1, "" },          { 0, 0, "wing*" },
+                   { 0, 0, "upper, left" }, { 0, 0, "a \"b\" c" },
+                   { 0, 0, "fus?lage" },    { 0, 0, "7" } };
   struct vg_patch_item item;
 
   (void)unused;
@@ -62,12 +65,23 @@ static void lists_are_checked(void **unused)
 
 static void patterns_match(void **unused)
 {
-  static const struct { const char *pattern, *name; int does; } x[] = {
-    { "wing", "wing", 1 }, { "wing", "Wing", 0 }, { "wing*", "wing", 1 },
-    { "wing*", "wing_left", 1 }, { "*ing", "wing", 1 }, { "*", "", 1 },
-    { "?", "", 0 }, { "fus?lage", "fuselage", 1 }, { "fus?lage", "fuslage", 0 },
-    { "a*b*c", "aXbYbZc", 1 }, { "a*b*c", "aXcYb", 0 }, { "**a", "ba", 1 },
-    { "*aaaaaaaab", "aaaaaaaaaaaaaaaaaaaaaaaa", 0 }, { "[a]", "a", 0 } };
+  static const struct {
+    const char *pattern, *name;
+    int does;
+  } x[] = { { "wing", "wing", 1 },
+            { "wing", "Wing", 0 },
+            { "wing*", "wing", 1 },
+            { "wing*", "wing_left", 1 },
+            { "*ing", "wing", 1 },
+            { "*", "", 1 },
+            { "?", "", 0 },
+            { "fus?lage", "fuselage", 1 },
+            { "fus?lage", "fuslage", 0 },
+            { "a*b*c", "aXbYbZc", 1 },
+            { "a*b*c", "aXcYb", 0 },
+            { "**a", "ba", 1 },
+            { "*aaaaaaaab", "aaaaaaaaaaaaaaaaaaaaaaaa", 0 },
+            { "[a]", "a", 0 } };
 
   (void)unused;
   for (size_t i = 0; i < sizeof x / sizeof *x; i++)
@@ -100,7 +114,8 @@ static void lists_are_marked(void **unused)
   assert_true(!on[0] && !on[1] && !on[2] && on[3]); /* unless it is quoted */
   assert_int_equal(vg_patch_list_mark("walls", "wing_m", &m, 4, on, &err),
                    VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "is called 'wing_m'; did you mean "
+  assert_non_null(strstr(err.text,
+                         "is called 'wing_m'; did you mean "
                          "'wing_l'? Patches: 1 wing_l (no condition), 2"));
   assert_int_equal(vg_patch_list_mark("walls", "8-9", &m, 4, on, &err),
                    VG_ERR_INPUT);
@@ -127,7 +142,8 @@ static void rows_are_resolved(void **unused)
   (void)unused;
   scene(&m);
   read_deck("t\npatches\nid bc name\nwing* 4 -\ntail 5 \"rear end\"\n\n"
-            "layers\nid first\n\"rear*\" 1e-3\n2 2e-3\n77 1\n", &s);
+            "layers\nid first\n\"rear*\" 1e-3\n2 2e-3\n77 1\n",
+            &s);
   for (int again = 0; again < 2; again++) {
     if (vg_patch_rows_resolve(&s, &m, &err) < 0) fail_msg("%s", err.text);
     assert_int_equal(s.n_patch, 3);
@@ -155,7 +171,7 @@ static void two_rows_of_a_patch_are_refused(void **unused)
   read_deck("t\nlayers\nid first\n2 1e-3\nwing* 2e-3\n", &s);
   assert_int_equal(vg_patch_rows_resolve(&s, &m, &err), VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "patch 2 wing_r is listed twice, as 2 and "
-                         "as wing*"));
+                                   "as wing*"));
   assert_int_equal(s.n_layer, 2); /* as it was */
   read_deck("t\npatches\nid bc\nwnig_l 4\n", &s);
   assert_int_equal(vg_patch_rows_resolve(&s, &m, &err), VG_ERR_INPUT);

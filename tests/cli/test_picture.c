@@ -112,8 +112,9 @@ static void test_png_of_many_colours(void **state)
   (void)state;
   assert_int_equal(vg_image_new(W, H, &m, NULL), VG_OK);
   for (int i = 0; i < W * H; i++) {
-    const uint8_t rgba[4] = { (uint8_t)(i % 16 * 16), (uint8_t)(i / 16 % 16
-                              * 16), (uint8_t)(i / 256 * 16), 255 };
+    const uint8_t rgba[4] = { (uint8_t)(i % 16 * 16),
+                              (uint8_t)(i / 16 % 16 * 16),
+                              (uint8_t)(i / 256 * 16), 255 };
 
     memcpy(m.rgba[i], rgba, 4);
   }
@@ -131,19 +132,24 @@ static void test_png_of_many_colours(void **state)
 /* --- cuts ---------------------------------------------------------------- */
 
 /* A cube of side 1 as six tetrahedra around a diagonal. */
-static const double cube[8][3] = {
-  { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 }, { 0, 0, 1 },
-  { 1, 0, 1 }, { 0, 1, 1 }, { 1, 1, 1 } };
-static const uint32_t six[6][4] = {
-  { 0, 1, 3, 7 }, { 0, 3, 2, 7 }, { 0, 2, 6, 7 }, { 0, 6, 4, 7 },
-  { 0, 4, 5, 7 }, { 0, 5, 1, 7 } };
+static const double cube[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 },
+                                   { 1, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 },
+                                   { 0, 1, 1 }, { 1, 1, 1 } };
+static const uint32_t six[6][4] = { { 0, 1, 3, 7 }, { 0, 3, 2, 7 },
+                                    { 0, 2, 6, 7 }, { 0, 6, 4, 7 },
+                                    { 0, 4, 5, 7 }, { 0, 5, 1, 7 } };
 static const uint32_t ids[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
 
 static struct vg_slice part_of_cube(size_t from, size_t to)
 {
-  return (struct vg_slice){ .n_point = 8, .x = cube, .id = ids,
-    .cell_at = { from }, .n_cell = { to - from }, .cell = { six[from] },
-    .kind = 1, .domain = 1 };
+  return (struct vg_slice){ .n_point = 8,
+                            .x = cube,
+                            .id = ids,
+                            .cell_at = { from },
+                            .n_cell = { to - from },
+                            .cell = { six[from] },
+                            .kind = 1,
+                            .domain = 1 };
 }
 
 static struct vg_cuts *cuts_of(size_t n, const struct vg_cut *cut)
@@ -158,8 +164,9 @@ static struct vg_cuts *cuts_of(size_t n, const struct vg_cut *cut)
  * pixel; every sample in it, none outside. */
 static void test_cut_of_a_cube(void **state)
 {
-  const struct vg_cut cut = { .axis = 1, .at = 0.4, .centre = { 0.5, 0.5 },
-                              .width = 2 };
+  const struct vg_cut cut = {
+    .axis = 1, .at = 0.4, .centre = { 0.5, 0.5 }, .width = 2
+  };
   struct vg_cuts *c = cuts_of(1, &cut);
   struct vg_slice s = part_of_cube(0, 6);
   struct vg_image m = VG_IMAGE_INIT;
@@ -178,7 +185,7 @@ static void test_cut_of_a_cube(void **state)
     }
   assert_int_equal(wrong, 0);
   assert_int_equal(vg_cuts_in_parts(c, 0),
-                   VG_CUT_WIDTH * VG_CUT_WIDTH);   /* 4 of each 4th pixel */
+                   VG_CUT_WIDTH * VG_CUT_WIDTH); /* 4 of each 4th pixel */
   vg_image_release(&m);
   vg_cuts_free(c);
 }
@@ -188,7 +195,8 @@ static void test_cut_in_any_order(void **state)
 {
   const struct vg_cut cut[2] = {
     { .axis = 2, .at = 0.31, .centre = { 0.4, 0.6 }, .width = 0.9 },
-    { .axis = 0, .at = 0, .centre = { 0.5, 0.5 }, .width = 3 } };
+    { .axis = 0, .at = 0, .centre = { 0.5, 0.5 }, .width = 3 }
+  };
   struct vg_cuts *a = cuts_of(2, cut), *b = cuts_of(2, cut);
   struct vg_slice whole = part_of_cube(0, 6);
 
@@ -217,17 +225,22 @@ static void test_cut_in_any_order(void **state)
 
 /* Two squares across y, the second one nearer to an eye at small y; both turn
  * their front there. */
-static double square_point[8][3] = {
-  { 0, 0, 0 }, { 1, 0, 0 }, { 1, 0, 1 }, { 0, 0, 1 },
-  { 0, -1, 0 }, { 0.5, -1, 0 }, { 0.5, -1, 1 }, { 0, -1, 1 } };
-static uint32_t square_tri[4][3] = { { 0, 1, 2 }, { 0, 2, 3 }, { 4, 5, 6 },
-                                     { 4, 6, 7 } };
+static double square_point[8][3] = { { 0, 0, 0 },    { 1, 0, 0 },
+                                     { 1, 0, 1 },    { 0, 0, 1 },
+                                     { 0, -1, 0 },   { 0.5, -1, 0 },
+                                     { 0.5, -1, 1 }, { 0, -1, 1 } };
+static uint32_t square_tri[4][3] = {
+  { 0, 1, 2 }, { 0, 2, 3 }, { 4, 5, 6 }, { 4, 6, 7 }
+};
 static uint32_t square_patch[4] = { 0, 0, 1, 1 };
 
 static struct vg_mesh squares(void)
 {
-  return (struct vg_mesh){ .n_point = 8, .n_tri = 4, .point = square_point,
-                           .tri = square_tri, .tri_patch = square_patch };
+  return (struct vg_mesh){ .n_point = 8,
+                           .n_tri = 4,
+                           .point = square_point,
+                           .tri = square_tri,
+                           .tri_patch = square_patch };
 }
 
 /* Sum of opacity, and of red, over a picture of the squares. */
@@ -362,8 +375,7 @@ static void put_cube(const struct vg_slices *s, struct vg_slice *slice)
 /* All of the cube's cells touch: those of the same slice are found. */
 static void test_around(void **state)
 {
-  const struct vg_slices s = { .n_slice = 2, .get = get_cube,
-                               .put = put_cube };
+  const struct vg_slices s = { .n_slice = 2, .get = get_cube, .put = put_cube };
   const uint64_t id[3] = { 4, 0, 6 };
   struct vg_around a[3];
 
@@ -377,12 +389,15 @@ static void test_around(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_png), cmocka_unit_test(test_png_of_many_colours),
-    cmocka_unit_test(test_cut_of_a_cube),
-    cmocka_unit_test(test_cut_in_any_order), cmocka_unit_test(test_shot),
-    cmocka_unit_test(test_decimate), cmocka_unit_test(test_body),
-    cmocka_unit_test(test_around) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_png),
+                                      cmocka_unit_test(
+                                        test_png_of_many_colours),
+                                      cmocka_unit_test(test_cut_of_a_cube),
+                                      cmocka_unit_test(test_cut_in_any_order),
+                                      cmocka_unit_test(test_shot),
+                                      cmocka_unit_test(test_decimate),
+                                      cmocka_unit_test(test_body),
+                                      cmocka_unit_test(test_around) };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

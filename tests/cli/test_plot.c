@@ -110,8 +110,8 @@ static void grow(struct vg_spans *s, const char *node, const char *after,
 
 static void make(int ranks, int threads, struct vg_timeline *t)
 {
-  static const double seconds[VG_PHASE_N] = { 0.2, 0.5, 0.4, 1.1, 0, 0.1,
-                                              0.3, 0.6, 0 };
+  static const double seconds[VG_PHASE_N] = { 0.2, 0.5, 0.4, 1.1, 0,
+                                              0.1, 0.3, 0.6, 0 };
   struct vg_machine m = VG_MACHINE_INIT;
   struct vg_model_result f;
   struct vg_spans s = VG_SPANS_INIT;
@@ -186,8 +186,9 @@ static void odd_records_are_drawn(void **state)
 {
   const char *path = VG_TMP_DIR "/odd.svg";
   struct vg_timeline t = VG_TIMELINE_INIT;
-  struct vg_span far = { "0L", "", 'Q', { 0 }, 7, 7, 0, 1e9, 1e9, 1, 0, 1e15, 0,
-                         (uint64_t)1 << 53, 0, 0, 0 };
+  struct vg_span far = { "0L", "",  'Q', { 0 }, 7,    7, 0,
+                         1e9,  1e9, 1,   0,     1e15, 0, (uint64_t)1 << 53,
+                         0,    0,   0 };
   char *text;
 
   (void)state;
@@ -243,15 +244,17 @@ static void speedup_is_drawn(void **state)
 
   (void)state;
   assert_int_equal(vg_plot_speedup(path, "Sphere", "against 1 worker: 63.2 s",
-                                   3, series, NULL), VG_OK);
+                                   3, series, NULL),
+                   VG_OK);
   text = contents(path);
   assert_well_formed(text);
   assert_non_null(strstr(text, ">ideal<"));
   assert_non_null(strstr(text, ">512<"));
   assert_non_null(strstr(text, "stroke-dasharray"));
   free(text);
-  assert_int_equal(vg_plot_speedup(VG_TMP_DIR "/speedup2.svg", "Sphere", "",
-                                   2, series, NULL), VG_OK);
+  assert_int_equal(vg_plot_speedup(VG_TMP_DIR "/speedup2.svg", "Sphere", "", 2,
+                                   series, NULL),
+                   VG_OK);
   text = contents(VG_TMP_DIR "/speedup2.svg");
   assert_well_formed(text);
   assert_null(strstr(text, ">512<"));
@@ -266,7 +269,8 @@ static void phases_are_drawn(void **state)
   const double none[VG_PHASE_N] = { 0 };
   const struct vg_plot_bar bars[] = {
     { "1 rank x 1 thread, leaves of 50k", one },
-    { "2 ranks x 1 thread, leaves of 50k", two }, { "none", none },
+    { "2 ranks x 1 thread, leaves of 50k", two },
+    { "none", none },
   };
   char *text;
 
@@ -281,14 +285,22 @@ static void phases_are_drawn(void **state)
 
 static void axes_have_round_ticks(void **state)
 {
-  static const struct { double most; int n; double step, hi; } row[] = {
-    { 10, 5, 2, 10 }, { 9.5, 5, 2, 10 }, { 0.37, 8, 0.05, 0.4 },
-    { 1234567, 6, 500000, 1500000 }, { 1, 1, 1, 1 },
+  static const struct {
+    double most;
+    int n;
+    double step, hi;
+  } row[] = {
+    { 10, 5, 2, 10 },       { 9.5, 5, 2, 10 },
+    { 0.37, 8, 0.05, 0.4 }, { 1234567, 6, 500000, 1500000 },
+    { 1, 1, 1, 1 },
   };
-  static const struct { double v; const char *text; } number[] = {
-    { 0, "0" }, { 0.25, "0.25" }, { 9999, "9999" }, { 10000, "10k" },
-    { 123456, "123.5k" }, { 2.5e6, "2.5M" }, { -0.0001, "0" },
-    { -12, "-12" }, { 3e12, "3000G" },
+  static const struct {
+    double v;
+    const char *text;
+  } number[] = {
+    { 0, "0" },       { 0.25, "0.25" },     { 9999, "9999" },
+    { 10000, "10k" }, { 123456, "123.5k" }, { 2.5e6, "2.5M" },
+    { -0.0001, "0" }, { -12, "-12" },       { 3e12, "3000G" },
   };
   char text[32];
 

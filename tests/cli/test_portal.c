@@ -67,9 +67,20 @@ static void check_inside(const char *name, vg_status expected)
 
 static void paths_stay_inside(void **state)
 {
-  static const char *const bad[] = { "..", "../other/secret.obj", "/etc/passwd",
-    "./octa.obj", "octa.obj/", "a//b", "vanguard-runs/../../other", "out.obj",
-    "away", "away/secret.obj", "a\nb", "\xff", "a/..", "." };
+  static const char *const bad[] = { "..",
+                                     "../other/secret.obj",
+                                     "/etc/passwd",
+                                     "./octa.obj",
+                                     "octa.obj/",
+                                     "a//b",
+                                     "vanguard-runs/../../other",
+                                     "out.obj",
+                                     "away",
+                                     "away/secret.obj",
+                                     "a\nb",
+                                     "\xff",
+                                     "a/..",
+                                     "." };
 
   (void)state;
   check_inside("", VG_OK);
@@ -85,8 +96,8 @@ static void paths_stay_inside(void **state)
 
 static void names_of_files_are_plain(void **state)
 {
-  static const char *const bad[] = { "", ".", "..", ".x", "-x", "a/b", "a\\b",
-                                     "a\x01", "\xc0\x80" };
+  static const char *const bad[] = { "",    ".",    "..",    ".x",      "-x",
+                                     "a/b", "a\\b", "a\x01", "\xc0\x80" };
   struct vg_error err;
   char longest[202];
 
@@ -117,15 +128,21 @@ static void markup_is_escaped(void **state)
   vg_markup_size(to, 1234567);
   fclose(to);
   assert_string_equal(text, "&lt;b a=&quot;x&quot; b=&#39;y&#39;&gt;&amp; "
-                      "?\xc3\xa4\n|a%20b/%3Cc%3E.stl|999 B|1.2 MB");
+                            "?\xc3\xa4\n|a%20b/%3Cc%3E.stl|999 B|1.2 MB");
   free(text);
 }
 
 static void lines_of_progress_are_understood(void **state)
 {
-  static const char *const other[] = { "", "vanguard: no room", "Surface",
-    "  points  12", "fill 12 of ~x", "fill 12 of ~20 nonsense", "fill 3 4",
-    "3 of 2: n1", "0 of 2: n1" };
+  static const char *const other[] = { "",
+                                       "vanguard: no room",
+                                       "Surface",
+                                       "  points  12",
+                                       "fill 12 of ~x",
+                                       "fill 12 of ~20 nonsense",
+                                       "fill 3 4",
+                                       "3 of 2: n1",
+                                       "0 of 2: n1" };
   static const char tail[] = "ill  1\nread\nfill         1 of ~2   50%\nx 9";
   struct vg_tell t = VG_TELL_INIT;
 
@@ -133,7 +150,8 @@ static void lines_of_progress_are_understood(void **state)
   assert_true(vg_tell_line("read", 4, &t));
   assert_string_equal(t.stage, "read");
   assert_true(t.share < 0);
-#define LINE "cut and join              12,345 of ~27,000   46%  350,000/s" \
+#define LINE                                                                   \
+  "cut and join              12,345 of ~27,000   46%  350,000/s"               \
   "  ETA 2 min 10 s"
   assert_true(vg_tell_line(LINE, sizeof LINE - 1, &t));
   assert_string_equal(t.stage, "cut and join");
@@ -180,7 +198,7 @@ static void a_form_becomes_settings(void **state)
   put(&f, "farfield.lengths", "7");
   put(&f, "sweep.threads", "1,2");
   put(&f, "patches", "\r\nid bc name # it\r\n\r\n3 4 \"a wing\"\r\n4 - -");
-  put(&f, "layers", "id y_plus\n3 1");      /* needs what follows */
+  put(&f, "layers", "id y_plus\n3 1"); /* needs what follows */
   put(&f, "s.reynolds", "1e6");
   put(&f, "s.reference_length", "1");
   put(&f, "sources", "kind x0 h0\npoint 1 0.5\nsphere 2 0.25\n");
@@ -263,8 +281,11 @@ static void a_printed_form_comes_back(void **state)
 {
   struct vg_settings s, back;
   struct vg_fields f = VG_FIELDS_INIT, none = VG_FIELDS_INIT;
-  struct vg_source source = { .kind = VG_SOURCE_SPHERE, .h0 = 0.25,
-                              .p0 = { 1, 2, 3 }, .an = 1, .group = "a \"b\"" };
+  struct vg_source source = { .kind = VG_SOURCE_SPHERE,
+                              .h0 = 0.25,
+                              .p0 = { 1, 2, 3 },
+                              .an = 1,
+                              .group = "a \"b\"" };
   struct vg_error err = VG_ERROR_INIT;
   char *text, *at, *table, path[300];
   size_t size;
@@ -274,8 +295,7 @@ static void a_printed_form_comes_back(void **state)
   vg_settings_default(&s);
   s.growth = 1.1;
   s.layer.first = 1e-5;
-  assert_int_equal(vg_settings_add(&s, VG_TABLE_SOURCES, &source, &err),
-                   VG_OK);
+  assert_int_equal(vg_settings_add(&s, VG_TABLE_SOURCES, &source, &err), VG_OK);
   vg_form_print(to, "octa.obj", &s, &none, 1);
   fclose(to);
   table = strstr(text, "name=\"sources\"");
@@ -283,7 +303,7 @@ static void a_printed_form_comes_back(void **state)
   table = strstr(table, ">\n") + 2;
   assert_non_null(strstr(table, "&quot;a &quot;&quot;b&quot;&quot;&quot;"));
   assert_true(!strncmp(table, "kind", 4));
-  for (at = text; (at = strstr(at, "<input autocomplete")); ) {
+  for (at = text; (at = strstr(at, "<input autocomplete"));) {
     char *name = attribute(at, " name=\""), *value;
 
     value = attribute(name + strlen(name) + 1, " value=\"");
@@ -305,11 +325,17 @@ static void a_printed_form_comes_back(void **state)
 
 static void places_are_checked(void **state)
 {
-  static const struct { const char *name, *value; vg_status st; } t[] = {
-    { "ranks", "2", VG_OK }, { "ranks", "0", VG_ERR_INPUT },
-    { "time", "1-02:00:00", VG_OK }, { "time", "1; rm", VG_ERR_INPUT },
-    { "partition", "--x", VG_ERR_INPUT }, { "partition", "big", VG_OK },
-    { "where", "moon", VG_ERR_INPUT }, { "where", "slurm", VG_OK } };
+  static const struct {
+    const char *name, *value;
+    vg_status st;
+  } t[] = { { "ranks", "2", VG_OK },
+            { "ranks", "0", VG_ERR_INPUT },
+            { "time", "1-02:00:00", VG_OK },
+            { "time", "1; rm", VG_ERR_INPUT },
+            { "partition", "--x", VG_ERR_INPUT },
+            { "partition", "big", VG_OK },
+            { "where", "moon", VG_ERR_INPUT },
+            { "where", "slurm", VG_OK } };
   struct vg_error err;
 
   (void)state;
@@ -394,7 +420,7 @@ static void records_come_back(void **state)
   assert_int_equal(vg_runs_new(&r, &run, &err), VG_OK);
   portal_file(run->dir, "run.json", "{\"state\": \"done\"}");
   assert_int_equal(vg_runs_open(&again, &err), VG_OK);
-  assert_int_equal(again.n, 2);       /* the third has no record */
+  assert_int_equal(again.n, 2); /* the third has no record */
   run = again.item[0];
   assert_string_equal(run->project, "a \"b\".stl");
   assert_string_equal(run->title, "fl\xc3\xbcgel");
@@ -411,15 +437,17 @@ static void records_come_back(void **state)
 
 static void damaged_records_are_refused(void **state)
 {
-  static const char *const bad[] = { "", "{}", "[1]", "{\"state\": 1}",
-    "{\"state\": \"done\", \"state\": \"done\"}" };
+  static const char *const bad[] = {
+    "", "{}", "[1]", "{\"state\": 1}",
+    "{\"state\": \"done\", \"state\": \"done\"}"
+  };
   struct vg_serve_run run = { .id = 3 };
   struct vg_error err;
 
   (void)state;
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-    assert_int_equal(vg_record_parse("it", bad[i], strlen(bad[i]), &run,
-                                     &err), VG_ERR_FORMAT);
+    assert_int_equal(vg_record_parse("it", bad[i], strlen(bad[i]), &run, &err),
+                     VG_ERR_FORMAT);
   assert_null(run.project);
 }
 
@@ -437,7 +465,7 @@ static void jobs_stand_as_squeue_says(void **state)
     snprintf(run[k]->job, sizeof run[k]->job, "%d", 12 + k);
   }
   r.squeue_start = 5;
-  run[2]->submitted = 6;              /* later than squeue looked */
+  run[2]->submitted = 6; /* later than squeue looked */
   vg_runs_take_squeue(&r, "112 RUNNING\n12 RUNNING\n", 23);
   assert_int_equal(run[0]->state, VG_SERVE_RUNNING);
   assert_int_equal(run[1]->state, VG_SERVE_FAILED);
@@ -463,7 +491,9 @@ static void asks(int status, const char *format)
   if (strncmp(scene.answer, expected, strlen(expected)) != 0)
     fail_msg("not %d but '%.30s' %.200s for\n%s", status, scene.answer,
              strstr(scene.answer, "role=\"alert\"")
-             ? strstr(scene.answer, "role=\"alert\"") : "", request);
+               ? strstr(scene.answer, "role=\"alert\"")
+               : "",
+             request);
   assert_null(strstr(scene.answer, PORTAL_SECRET));
 }
 
@@ -484,8 +514,7 @@ static void gate_keeps_strangers_out(void **state)
   asks(200, "GET /%s HTTP/1.1\r\nHost: localhost:9\r\n\r\n");
   asks(200, "GET /%s HTTP/1.1\r\nHost: [::1]\r\n\r\n");
   asks(403, "GET / HTTP/1.1\r\n" HOST "\r\n");
-  asks(403, "GET /0123456789abcdef0123456789abcdef/ HTTP/1.1\r\n" HOST
-       "\r\n");
+  asks(403, "GET /0123456789abcdef0123456789abcdef/ HTTP/1.1\r\n" HOST "\r\n");
   asks(403, "GET /x%s HTTP/1.1\r\n" HOST "\r\n");
   asks(403, "GET /%s HTTP/1.1\r\nHost: evil.example\r\n\r\n");
   asks(403, "GET /%s HTTP/1.1\r\nHost: 127.0.0.1.evil.example\r\n\r\n");
@@ -494,14 +523,14 @@ static void gate_keeps_strangers_out(void **state)
   /* POST: from its own pages alone */
   asks(403, "POST /%sruns HTTP/1.1\r\n" HOST FORM "Content-Length: 0\r\n\r\n");
   asks(403, "POST /%sruns HTTP/1.1\r\n" HOST FORM "Origin: null\r\n"
-       "Content-Length: 0\r\n\r\n");
+            "Content-Length: 0\r\n\r\n");
   asks(403, "POST /%sruns HTTP/1.1\r\n" HOST FORM
-       "Origin: http://evil.example\r\nContent-Length: 0\r\n\r\n");
-  asks(413, "POST /%sruns HTTP/1.1\r\n" OWN FORM
-       "Content-Length: 2000000\r\n\r\n");
+            "Origin: http://evil.example\r\nContent-Length: 0\r\n\r\n");
+  asks(413,
+       "POST /%sruns HTTP/1.1\r\n" OWN FORM "Content-Length: 2000000\r\n\r\n");
   asks(413, "POST /%supload HTTP/1.1\r\n" OWN
-       "Content-Type: multipart/form-data; boundary=XYZ\r\n"
-       "Content-Length: 70000\r\n\r\n");
+            "Content-Type: multipart/form-data; boundary=XYZ\r\n"
+            "Content-Length: 70000\r\n\r\n");
 }
 
 static void pages_are_safe(void **state)
@@ -512,8 +541,7 @@ static void pages_are_safe(void **state)
   assert_non_null(strstr(scene.answer, "frame-ancestors 'none'"));
   assert_non_null(strstr(scene.answer, "X-Content-Type-Options: nosniff"));
   assert_non_null(strstr(scene.answer, "name=\"s.growth\""));
-  asks(200, "GET /%s?project=%%3Cscript%%3Ealert(1) HTTP/1.1\r\n" HOST
-       "\r\n");
+  asks(200, "GET /%s?project=%%3Cscript%%3Ealert(1) HTTP/1.1\r\n" HOST "\r\n");
   assert_null(strstr(scene.answer, "<script>alert"));
   asks(200, "GET /%s?project=../other/secret.obj HTTP/1.1\r\n" HOST "\r\n");
   asks(200, "GET /%s?project=out.obj HTTP/1.1\r\n" HOST "\r\n");
@@ -528,13 +556,13 @@ static void a_run_waits_and_is_stopped(void **state)
   (void)state;
   need_server();
   asks(400, "POST /%sruns HTTP/1.1\r\n" OWN FORM "Content-Length: 30\r\n\r\n"
-       "project=octa.obj&s.growth=0.50");
+            "project=octa.obj&s.growth=0.50");
   assert_non_null(strstr(scene.answer, "must be above 1"));
   assert_non_null(strstr(scene.answer, "value=\"0.50\""));
   asks(400, "POST /%sruns HTTP/1.1\r\n" OWN FORM "Content-Length: 27\r\n\r\n"
-       "project=../other/secret.obj");
+            "project=../other/secret.obj");
   asks(303, "POST /%sruns HTTP/1.1\r\n" OWN FORM "Content-Length: 30\r\n\r\n"
-       "project=octa.obj&title=%%3Cb%%3E");
+            "project=octa.obj&title=%%3Cb%%3E");
   asks(200, "GET /%sruns HTTP/1.1\r\n" HOST "\r\n");
   assert_non_null(strstr(scene.answer, "data-state=\"queued\""));
   assert_non_null(strstr(scene.answer, "&lt;b&gt;"));
@@ -544,13 +572,13 @@ static void a_run_waits_and_is_stopped(void **state)
   asks(404, "GET /%sruns/1/file/%%2e%%2e/lock HTTP/1.1\r\n" HOST "\r\n");
   asks(404, "GET /%sruns/1/file/ HTTP/1.1\r\n" HOST "\r\n");
   assert_int_equal(vg_portal_active(scene.p), 1);
-  asks(303, "POST /%sruns/1/stop HTTP/1.1\r\n" OWN FORM
-       "Content-Length: 0\r\n\r\n");
+  asks(303,
+       "POST /%sruns/1/stop HTTP/1.1\r\n" OWN FORM "Content-Length: 0\r\n\r\n");
   assert_int_equal(vg_portal_active(scene.p), 0);
-  asks(404, "POST /%sruns/1/burn HTTP/1.1\r\n" OWN FORM
-       "Content-Length: 0\r\n\r\n");
+  asks(404,
+       "POST /%sruns/1/burn HTTP/1.1\r\n" OWN FORM "Content-Length: 0\r\n\r\n");
   asks(404, "POST /%sruns/77/stop HTTP/1.1\r\n" OWN FORM
-       "Content-Length: 0\r\n\r\n");
+            "Content-Length: 0\r\n\r\n");
 }
 
 /* A form of one file; `text` is its content. */
@@ -558,16 +586,19 @@ static void brings(int status, const char *folder, const char *name,
                    const char *text)
 {
   char body[8192], request[12000];
-  int n = snprintf(body, sizeof body,
+  int n = snprintf(
+    body, sizeof body,
     "--XYZ\r\nContent-Disposition: form-data; name=\"folder\"\r\n\r\n%s\r\n"
     "--XYZ\r\nContent-Disposition: form-data; name=\"file\"; "
     "filename=\"%s\"\r\n"
-    "Content-Type: application/octet-stream\r\n\r\n%s\r\n--XYZ--\r\n", folder,
-    name, text);
+    "Content-Type: application/octet-stream\r\n\r\n%s\r\n--XYZ--\r\n",
+    folder, name, text);
 
-  snprintf(request, sizeof request, "POST /%%supload HTTP/1.1\r\n" OWN
+  snprintf(request, sizeof request,
+           "POST /%%supload HTTP/1.1\r\n" OWN
            "Content-Type: multipart/form-data; boundary=XYZ\r\n"
-           "Content-Length: %d\r\n\r\n%s", n, body);
+           "Content-Length: %d\r\n\r\n%s",
+           n, body);
   asks(status, request);
 }
 

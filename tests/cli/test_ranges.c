@@ -42,8 +42,7 @@ static void refuses(const char *text, int64_t hi, const char *expected)
   struct vg_range_list r = { 1, 1, &kept };
   struct vg_error err = VG_ERROR_INIT;
 
-  assert_int_equal(vg_range_parse("-n", text, 0, hi, &r, &err),
-                   VG_ERR_INPUT);
+  assert_int_equal(vg_range_parse("-n", text, 0, hi, &r, &err), VG_ERR_INPUT);
   if (!strstr(err.text, expected))
     fail_msg("'%s' lacks '%s'", err.text, expected);
   assert_ptr_equal(r.v, &kept);

@@ -16,17 +16,17 @@
 #include "run/settings/plan_options.h"
 
 #define TEXT (2 * VG_LIST_MAX + 4)
-#define MOST 120               /* settings */
+#define MOST 120 /* settings */
 
 static struct vg_mesh cube(void)
 {
-  static const double at[8][3] = {
-    { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 },
-    { 0, 0, 1 }, { 1, 0, 1 }, { 1, 1, 1 }, { 0, 1, 1 } };
-  static const uint32_t tri[12][3] = {
-    { 0, 2, 1 }, { 0, 3, 2 }, { 4, 5, 6 }, { 4, 6, 7 }, { 0, 1, 5 },
-    { 0, 5, 4 }, { 1, 2, 6 }, { 1, 6, 5 }, { 2, 3, 7 }, { 2, 7, 6 },
-    { 3, 0, 4 }, { 3, 4, 7 } };
+  static const double at[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 },
+                                   { 0, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 },
+                                   { 1, 1, 1 }, { 0, 1, 1 } };
+  static const uint32_t tri[12][3] = { { 0, 2, 1 }, { 0, 3, 2 }, { 4, 5, 6 },
+                                       { 4, 6, 7 }, { 0, 1, 5 }, { 0, 5, 4 },
+                                       { 1, 2, 6 }, { 1, 6, 5 }, { 2, 3, 7 },
+                                       { 2, 7, 6 }, { 3, 0, 4 }, { 3, 4, 7 } };
   struct vg_mesh m = VG_MESH_INIT;
 
   m.n_point = 8;
@@ -66,9 +66,13 @@ done:
 
 static void ask(struct vg_settings *s)
 {
-  static const struct { const char *name, *value; } want[] = {
-    { "y_plus", "1" }, { "reynolds", "1e6" }, { "reference_length", "1" },
-    { "walls", "sides" }, { "farfield_lengths", "3" } };
+  static const struct {
+    const char *name, *value;
+  } want[] = { { "y_plus", "1" },
+               { "reynolds", "1e6" },
+               { "reference_length", "1" },
+               { "walls", "sides" },
+               { "farfield_lengths", "3" } };
   struct vg_error err = VG_ERROR_INIT;
 
   vg_settings_default(s);

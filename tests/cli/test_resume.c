@@ -17,7 +17,9 @@
 #define DIR VG_TMP_DIR "/resume.run"
 
 /* The rows that do not decide the mesh; all the others do. */
-static const struct { const char *table, *rows; } keeps[] = {
+static const struct {
+  const char *table, *rows;
+} keeps[] = {
   { "", " cad_seconds max_cells write report_html ugrid_tail solver_parts "
         "schedule threads min_full min_any min_height max_first_error "
         "max_top_ratio " },
@@ -41,17 +43,18 @@ static int is_listed(const char *table, const char *row)
 /* Set another value than the one there is. */
 static void change(const struct vg_param *p, void *base)
 {
-  static const char *const value[] = {
-    "yes", "no", "0.25", "1.5", "2", "7", "20", "3,5", "b8.ugrid", "./x.so",
-    "4000" };
+  static const char *const value[] = { "yes",      "no",     "0.25", "1.5",
+                                       "2",        "7",      "20",   "3,5",
+                                       "b8.ugrid", "./x.so", "4000" };
   char was[600], is[600];
   struct vg_error err = VG_ERROR_INIT;
 
   vg_param_format(p, base, was, sizeof was);
   for (size_t i = 0; p->words && p->words[i]; i++)
     if (strcmp(p->words[i], was) != 0) {
-      assert_int_equal(vg_param_set(p, base, p->words[i],
-                                    strlen(p->words[i]), &err), VG_OK);
+      assert_int_equal(vg_param_set(p, base, p->words[i], strlen(p->words[i]),
+                                    &err),
+                       VG_OK);
       return;
     }
   for (size_t i = 0; i < sizeof value / sizeof *value; i++) {
@@ -113,11 +116,12 @@ static void resume(const struct vg_settings *s, const char *table,
   }
   if (st >= 0) fail_msg("%s %s: not refused", table, p->name);
   snprintf(name, sizeof name, "%s%s%s was",
-           !*table ? "" : !strcmp(table, "farfield") ? "farfield " : "table ",
+           !*table                      ? ""
+           : !strcmp(table, "farfield") ? "farfield "
+                                        : "table ",
            strcmp(table, "farfield") != 0 && *table ? table : "",
            !*table || !strcmp(table, "farfield") ? p->name : "");
-  if (!strstr(err.text, name))
-    fail_msg("'%s' lacks '%s'", err.text, name);
+  if (!strstr(err.text, name)) fail_msg("'%s' lacks '%s'", err.text, name);
 }
 
 static void every_row_is_judged_by_its_flag(void **state)
@@ -129,10 +133,10 @@ static void every_row_is_judged_by_its_flag(void **state)
   const struct vg_param *p = vg_settings_params(&n);
 
   (void)state;
-  assert_int_equal(system("rm -rf " DIR), 0);   /* of a test that failed */
+  assert_int_equal(system("rm -rf " DIR), 0); /* of a test that failed */
   fill(&s);
   assert_int_equal(open_run(&s, 0, &store, &err), VG_OK);
-  vg_store_keep(store, (struct vg_digest){{1, 2}}, 4, "kept");
+  vg_store_keep(store, (struct vg_digest){ { 1, 2 } }, 4, "kept");
   vg_store_close(store, 0);
   assert_int_equal(open_run(&s, 1, &store, &err), VG_OK);
   vg_store_close(store, 0);
@@ -150,8 +154,8 @@ static void every_row_is_judged_by_its_flag(void **state)
       struct vg_settings other = VG_SETTINGS_INIT;
 
       assert_int_equal(vg_settings_copy(&other, &s, &err), VG_OK);
-      change(&t->column[c], (void *)(uintptr_t)
-             vg_settings_row(&other, kind, 0));
+      change(&t->column[c],
+             (void *)(uintptr_t)vg_settings_row(&other, kind, 0));
       resume(&other, t->name, &t->column[c]);
       vg_settings_release(&other);
     }

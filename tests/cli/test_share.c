@@ -10,18 +10,25 @@
 
 #include "run/input/share.h"
 
-static double point[4][3] = { { 0, 0, -0.0 }, { 1, 0, 0 }, { 0, 1, 0 },
-                              { 0, 0, 1e-300 } };
-static uint32_t tri[4][3] = { { 0, 1, 2 }, { 0, 3, 1 }, { 1, 3, 2 },
-                              { 0, 2, 3 } };
+static double point[4][3] = {
+  { 0, 0, -0.0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1e-300 }
+};
+static uint32_t tri[4][3] = {
+  { 0, 1, 2 }, { 0, 3, 1 }, { 1, 3, 2 }, { 0, 2, 3 }
+};
 static uint32_t tri_patch[4] = { 0, 1, 1, 0 };
 static struct vg_patch patch[2] = { { 7, 3, 5000, 3, "far" },
                                     { -2, VG_BC_NONE, 4000, 4, "wing" } };
 
 static struct vg_bytes packed(void)
 {
-  struct vg_mesh m = { .n_point = 4, .n_tri = 4, .n_patch = 2, .point = point,
-                       .tri = tri, .tri_patch = tri_patch, .patch = patch };
+  struct vg_mesh m = { .n_point = 4,
+                       .n_tri = 4,
+                       .n_patch = 2,
+                       .point = point,
+                       .tri = tri,
+                       .tri_patch = tri_patch,
+                       .patch = patch };
   struct vg_bytes b = { 0, NULL };
   struct vg_error err = VG_ERROR_INIT;
 
@@ -70,9 +77,8 @@ static void other_bytes_are_refused(void **state)
   unsigned char was[sizeof many];
 
   (void)state;
-  for (size_t n = 0; n < b.n; n += 9)
-    refuses((struct vg_bytes){ n, b.data });
-  for (int k = 0; k < 3; k++) {          /* counts */
+  for (size_t n = 0; n < b.n; n += 9) refuses((struct vg_bytes){ n, b.data });
+  for (int k = 0; k < 3; k++) { /* counts */
     memcpy(was, b.data + 8 * k, sizeof was);
     memcpy(b.data + 8 * k, &many, sizeof many);
     refuses(b);

@@ -12,12 +12,24 @@
 
 static void test_characters(void **state)
 {
-  const struct { const char *text; size_t n; } row[] = {
-    {"a", 1}, {"\xc3\xbc", 2}, {"\xe6\x9c\xba", 3}, {"\xf0\x9f\x9b\xa9", 4},
-    {"\xfc", 0}, {"\xc3", 0}, {"\xe6\x9c", 0}, {"\xbc", 0},
-    {"\xc0\xaf", 0}, {"\xe0\x80\xaf", 0}, {"\xed\xa0\x80", 0},
-    {"\xef\xbf\xbe", 0}, {"\xef\xbf\xbd", 3}, {"\xf4\x90\x80\x80", 0},
-    {"\xf5\x80\x80\x80", 0} };
+  const struct {
+    const char *text;
+    size_t n;
+  } row[] = { { "a", 1 },
+              { "\xc3\xbc", 2 },
+              { "\xe6\x9c\xba", 3 },
+              { "\xf0\x9f\x9b\xa9", 4 },
+              { "\xfc", 0 },
+              { "\xc3", 0 },
+              { "\xe6\x9c", 0 },
+              { "\xbc", 0 },
+              { "\xc0\xaf", 0 },
+              { "\xe0\x80\xaf", 0 },
+              { "\xed\xa0\x80", 0 },
+              { "\xef\xbf\xbe", 0 },
+              { "\xef\xbf\xbd", 3 },
+              { "\xf4\x90\x80\x80", 0 },
+              { "\xf5\x80\x80\x80", 0 } };
 
   (void)state;
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
@@ -51,7 +63,8 @@ static void test_column(void **state)
                       "\xc3\xbc");
   /* Two columns each, so that a third is left over. */
   assert_string_equal(vg_text_column("\xe6\x9c\xba\xe7\xbf\xbc", 3, out,
-                                     sizeof out), "\xe6\x9c\xba ");
+                                     sizeof out),
+                      "\xe6\x9c\xba ");
   /* A mark stands over the letter before it. */
   assert_string_equal(vg_text_column("u\xcc\x88x", 3, out, sizeof out),
                       "u\xcc\x88x ");
@@ -59,10 +72,16 @@ static void test_column(void **state)
 
 static void test_end(void **state)
 {
-  const struct { const char *text, *mended; } row[] = {
-    {"", ""}, {"ab", "ab"}, {"a\xc3\xbc", "a\xc3\xbc"}, {"a\xc3", "a"},
-    {"a\xe6\x9c", "a"}, {"a\xe6\x9c\xba", "a\xe6\x9c\xba"},
-    {"\xf0\x9f\x9b", ""}, {"\xbc\xbc", "\xbc\xbc"} };
+  const struct {
+    const char *text, *mended;
+  } row[] = { { "", "" },
+              { "ab", "ab" },
+              { "a\xc3\xbc", "a\xc3\xbc" },
+              { "a\xc3", "a" },
+              { "a\xe6\x9c", "a" },
+              { "a\xe6\x9c\xba", "a\xe6\x9c\xba" },
+              { "\xf0\x9f\x9b", "" },
+              { "\xbc\xbc", "\xbc\xbc" } };
   char text[16];
 
   (void)state;
@@ -75,9 +94,10 @@ static void test_end(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_characters), cmocka_unit_test(test_clean),
-    cmocka_unit_test(test_column), cmocka_unit_test(test_end) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_characters),
+                                      cmocka_unit_test(test_clean),
+                                      cmocka_unit_test(test_column),
+                                      cmocka_unit_test(test_end) };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

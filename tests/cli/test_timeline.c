@@ -12,13 +12,16 @@
 
 #include "cli/plot/timeline.h"
 
-#define COLUMNS "\"columns\": [\"path\",\"after\",\"kind\",\"rank\"," \
-  "\"thread\",\"home\",\"start\",\"end\",\"cpu\",\"estimate\",\"cells\"," \
+#define COLUMNS                                                                \
+  "\"columns\": [\"path\",\"after\",\"kind\",\"rank\","                        \
+  "\"thread\",\"home\",\"start\",\"end\",\"cpu\",\"estimate\",\"cells\","      \
   "\"bytes_in\",\"bytes_out\"]"
-#define HEAD "{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 2, " \
+#define HEAD                                                                   \
+  "{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 2, "                      \
   "\"threads\": 3}, "
 
-#define HELP "\"help_columns\": [\"path\",\"rank\",\"thread\",\"start\"," \
+#define HELP                                                                   \
+  "\"help_columns\": [\"path\",\"rank\",\"thread\",\"start\","                 \
   "\"end\"], \"help\": "
 
 static void refuse(const char *text, const char *expected)
@@ -44,13 +47,44 @@ static void accept(const char *text, struct vg_timeline *t)
 static void fill(struct vg_timeline *t)
 {
   static const struct vg_span span[] = {
-    { "0.1L", "0J", 'L', { 0 }, 1, 0, 0, 1.25, 3.5, 2.125, 0, 400, 1.5e-7, 500,
-      88, 60, 7 },
-    { "0J", "", 'J', { 0 }, 0, 2, 0, 0, 1.000001, 1.75, 1.25, 300, 0, 0, 9, 0,
+    { "0.1L",
+      "0J",
+      'L',
+      { 0 },
+      1,
+      0,
+      0,
+      1.25,
+      3.5,
+      2.125,
+      0,
+      400,
+      1.5e-7,
+      500,
+      88,
+      60,
+      7 },
+    { "0J",
+      "",
+      'J',
+      { 0 },
+      0,
+      2,
+      0,
+      0,
+      1.000001,
+      1.75,
+      1.25,
+      300,
+      0,
+      0,
+      9,
+      0,
       0 },
   };
   static const struct vg_help help[] = {
-    { "0J", 0, 1, 0.125, 0.875 }, { "0J", 0, 0, 0.25, 0.5 },
+    { "0J", 0, 1, 0.125, 0.875 },
+    { "0J", 0, 0, 0.25, 0.5 },
   };
 
   snprintf(t->title, sizeof t->title, "a \"wing\"\n\\ \xc3\xbc");
@@ -118,7 +152,7 @@ static void what_is_outside_fits_the_record(void **state)
    * 27 % are for every node; check and sizes likewise */
   assert_true(fabs(m.by_node - 0.27 * 13.125 - 0.8 * 4.5 - 0.2 * 12) < 1e-12);
   t.seconds[VG_PHASE_TOTAL] = t.seconds[VG_PHASE_WRITE] = 0;
-  vg_timeline_outside(&t, &m);      /* a record that lacks them */
+  vg_timeline_outside(&t, &m); /* a record that lacks them */
   assert_true(m.serial > 0);
   assert_true(fabs(m.by_all - 0.75 * 12 - 0.61 * 13.125 -
                    0.99 * 6.5 / (0.01 + 0.99 / 6)) < 1e-12);
@@ -134,7 +168,9 @@ static void any_title_can_be_written(void **state)
 
   (void)state;
   fill(&t);
-  snprintf(t.title, sizeof t.title, "m\xfc""ll");
+  snprintf(t.title, sizeof t.title,
+           "m\xfc"
+           "ll");
   if (vg_timeline_write(path, &t, &err) < 0 ||
       vg_timeline_read(path, &u, &err) < 0)
     fail_msg("%s", err.text);
@@ -150,10 +186,11 @@ static void columns_come_in_any_order(void **state)
 
   (void)state;
   accept(HEAD "\"columns\": [\"new\",\"bytes_out\",\"after\",\"kind\","
-         "\"rank\",\"thread\",\"home\",\"start\",\"end\",\"cpu\","
-         "\"estimate\",\"cells\",\"bytes_in\",\"path\"], \"spans\": "
-         "[[[1,2],9,\"\",\"L\",1,2,0,1,2.5,1,10,11,12,\"0L\"]], "
-         "\"more\": null}", &t);
+              "\"rank\",\"thread\",\"home\",\"start\",\"end\",\"cpu\","
+              "\"estimate\",\"cells\",\"bytes_in\",\"path\"], \"spans\": "
+              "[[[1,2],9,\"\",\"L\",1,2,0,1,2.5,1,10,11,12,\"0L\"]], "
+              "\"more\": null}",
+         &t);
   assert_int_equal(t.spans.n, 1);
   assert_string_equal(t.spans.span[0].path, "0L");
   assert_int_equal(t.spans.span[0].bytes_out, 9);
@@ -170,7 +207,8 @@ static void what_is_absent_is_zero(void **state)
 
   (void)state;
   accept(HEAD COLUMNS ", \"spans\": [[\"0L\",\"\",\"L\",1,2,0,1,2,1,0,0,0,"
-         "0]], \"help\": []}", &t);
+                      "0]], \"help\": []}",
+         &t);
   assert_true(t.spans.span[0].loops == 0 && t.spans.span[0].cpu == 1);
   assert_int_equal(t.spans.n_help, 0);
   vg_timeline_release(&t);
@@ -187,9 +225,11 @@ static void faults_are_named(void **state)
   refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 2}}",
          "fact \"threads\" is not a whole number");
   refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 0, "
-         "\"threads\": 1}}", "0 ranks with 1 threads");
+         "\"threads\": 1}}",
+         "0 ranks with 1 threads");
   refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 1048576, "
-         "\"threads\": 1048576}}", "workers can be read");
+         "\"threads\": 1048576}}",
+         "workers can be read");
   refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 1, "
          "\"threads\": 1, \"seconds_judge\": -1}}",
          "fact \"seconds_judge\" is not a number from 0");
@@ -198,9 +238,9 @@ static void faults_are_named(void **state)
   refuse(HEAD COLUMNS ", \"spans\": [[\"0L\"]]}", "span 1 has no \"after\"");
   refuse(HEAD COLUMNS ", \"spans\": [7]}", "span 1 has no \"path\"");
   refuse(HEAD "\"columns\": [\"path\",\"after\",\"kind\",\"rank\","
-         "\"thread\",\"home\",\"start\",\"end\",\"cpu\",\"loops\","
-         "\"estimate\",\"cells\",\"bytes_in\",\"bytes_out\"], \"spans\": "
-         "[[\"0J\",\"\",\"J\",0,0,0,0,2,1,1.5,0,0,0,0]]}",
+              "\"thread\",\"home\",\"start\",\"end\",\"cpu\",\"loops\","
+              "\"estimate\",\"cells\",\"bytes_in\",\"bytes_out\"], \"spans\": "
+              "[[\"0J\",\"\",\"J\",0,0,0,0,2,1,1.5,0,0,0,0]]}",
          "span 1, task 0J: \"loops\" is not within \"cpu\"");
   refuse(HEAD COLUMNS ", \"spans\": [], \"help\": [[\"0J\",0,0,1,2]]}",
          "no column \"path\" in \"help_columns\"");
@@ -217,8 +257,10 @@ static void refuse_span(const char *values, const char *expected)
 {
   char text[1024];
 
-  snprintf(text, sizeof text, HEAD COLUMNS ", \"spans\": [[\"0J\",\"\","
-           "\"J\",0,0,0,0,1,1,0,0,0,0],[%s]]}", values);
+  snprintf(text, sizeof text,
+           HEAD COLUMNS ", \"spans\": [[\"0J\",\"\","
+                        "\"J\",0,0,0,0,1,1,0,0,0,0],[%s]]}",
+           values);
   refuse(text, expected);
 }
 
@@ -229,7 +271,8 @@ static void faults_of_spans_are_named(void **state)
               "span 2: \"path\" is not of any length");
   refuse_span("1,\"\",\"L\",0,0,0,0,1,1,0,0,0,0", "span 2: \"path\"");
   refuse_span("\"0.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1.1."
-              "1.1L\",\"\",\"L\",0,0,0,0,1,1,0,0,0,0", "span 2: \"path\"");
+              "1.1L\",\"\",\"L\",0,0,0,0,1,1,0,0,0,0",
+              "span 2: \"path\"");
   refuse_span("\"0L\",\"\",\"l\",0,0,0,0,1,1,0,0,0,0",
               "span 2, task 0L: \"kind\" is not a letter");
   refuse_span("\"0L\",\"\",\"L\",2,0,0,0,1,1,0,0,0,0",

@@ -31,9 +31,9 @@ static inline void fuzz_indices(const uint32_t *index, size_t n, size_t limit,
 /* What holds for every mesh that a reader returns. */
 static inline void fuzz_check_mesh(const struct vg_mesh *m)
 {
-#define NODES(array, count, width) \
-  if (m->count) \
-    fuzz_indices(m->array[0], m->count * width, m->n_point, #array " nodes")
+#define NODES(array, count, width)                                             \
+  if (m->count)                                                                \
+  fuzz_indices(m->array[0], m->count *width, m->n_point, #array " nodes")
   NODES(tri, n_tri, 3);
   NODES(quad, n_quad, 4);
   NODES(tet, n_tet, 4);
@@ -41,8 +41,7 @@ static inline void fuzz_check_mesh(const struct vg_mesh *m)
   NODES(pri, n_pri, 6);
   NODES(hex, n_hex, 8);
 #undef NODES
-  if (m->n_tri)
-    fuzz_indices(m->tri_patch, m->n_tri, m->n_patch, "tri_patch");
+  if (m->n_tri) fuzz_indices(m->tri_patch, m->n_tri, m->n_patch, "tri_patch");
   if (m->n_quad)
     fuzz_indices(m->quad_patch, m->n_quad, m->n_patch, "quad_patch");
   for (size_t i = 0; i < m->n_point; i++)
@@ -71,8 +70,7 @@ typedef vg_status (*fuzz_parse)(struct vg_input *, struct vg_mesh *,
                                 struct vg_error *);
 
 /* A reader that turns one input into a mesh. */
-static inline void fuzz_mesh(fuzz_parse parse, const uint8_t *data,
-                             size_t size)
+static inline void fuzz_mesh(fuzz_parse parse, const uint8_t *data, size_t size)
 {
   struct vg_input in = VG_INPUT_INIT;
   struct vg_mesh m = VG_MESH_INIT, empty = VG_MESH_INIT;

@@ -23,8 +23,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   if (!cad) fuzz_expect(vg_cad_open(&cad, &err) == VG_OK, "a child");
   o.seconds = 4;
   st = vg_input_memory("FUZZ", data, size, &in, &err);
-  if (st == VG_OK) st = vg_cad_parse(cad, &in, kind_of(data, size), &o, &s,
-                                     &err);
+  if (st == VG_OK)
+    st = vg_cad_parse(cad, &in, kind_of(data, size), &o, &s, &err);
   fuzz_check_answer(st, &err);
   if (st == VG_OK) {
     fuzz_check_mesh(&s.mesh);

@@ -12,8 +12,9 @@ static void weld(struct vg_mesh *m, const struct vg_surface_report *r,
   double gap = -1;
 
   fuzz_expect(vg_surface_rim_gap(m, r, &gap, &n_edge, err) == VG_OK &&
-              gap >= 0 && n_edge <= r->count[VG_DEFECT_OPEN_EDGE] &&
-              (gap > 0) == (n_edge > 0), "a gap goes with edges");
+                gap >= 0 && n_edge <= r->count[VG_DEFECT_OPEN_EDGE] &&
+                (gap > 0) == (n_edge > 0),
+              "a gap goes with edges");
   if (gap > 0) {
     fuzz_expect(vg_surface_weld_rims(m, gap, NULL, &n_welded, err) == VG_OK,
                 "a surface can be welded");

@@ -34,7 +34,7 @@ static char *with_token(const uint8_t *data, size_t size, size_t *n,
 
   *n = 0;
   *has_token = 0;
-  for (size_t i = 0; out && i < size; ) {
+  for (size_t i = 0; out && i < size;) {
     if (size - i >= 5 && !memcmp(data + i, word, 5)) {
       memcpy(out + *n, scene.token, token);
       *n += token;
@@ -76,10 +76,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   free(request);
   fuzz_expect(!got || !strncmp(scene.answer, "HTTP/1.", 7), "an answer");
   fuzz_expect(has_token || got < 12 || scene.answer[9] == '4' ||
-              scene.answer[9] == '5' || scene.answer[9] == '1',
+                scene.answer[9] == '5' || scene.answer[9] == '1',
               "strangers are refused");
   fuzz_expect(!memmem(scene.answer, got, PORTAL_SECRET,
-                      sizeof PORTAL_SECRET - 1), "nothing from outside");
+                      sizeof PORTAL_SECRET - 1),
+              "nothing from outside");
   fuzz_expect(count_other() == other, "nothing to outside");
   return 0;
 }

@@ -18,7 +18,7 @@ static void record(const char *text, size_t size)
     return;
   }
   fuzz_expect(run.project != NULL && run.state < VG_SERVE_STATES &&
-              run.ranks > 0 && run.nodes > 0 && run.cpus > 0,
+                run.ranks > 0 && run.nodes > 0 && run.cpus > 0,
               "a record is whole");
   fuzz_expect(strspn(run.job, "0123456789_") == strlen(run.job),
               "jobs are numbers");
@@ -42,9 +42,10 @@ static void rows(const char *text, size_t size, int kind)
   vg_status st;
 
   vg_settings_default(&s);
-  st = copy ? vg_rows_read(copy, VG_TABLE_PATCHES + (enum vg_table_kind)
-                           (kind % 3), &s, &err)
-            : VG_OK;
+  st = copy
+       ? vg_rows_read(copy, VG_TABLE_PATCHES + (enum vg_table_kind)(kind % 3),
+                      &s, &err)
+       : VG_OK;
   fuzz_expect(st >= 0 || *err.text, "a failure has a message");
   vg_settings_release(&s);
   free(copy);
@@ -52,8 +53,10 @@ static void rows(const char *text, size_t size, int kind)
 
 static void squeue(const char *text, size_t size)
 {
-  struct vg_serve_run run = { .is_slurm = 1, .state = VG_SERVE_RUNNING,
-                              .job = "12", .dir = (char *)"/nowhere",
+  struct vg_serve_run run = { .is_slurm = 1,
+                              .state = VG_SERVE_RUNNING,
+                              .job = "12",
+                              .dir = (char *)"/nowhere",
                               .project = (char *)"" };
   struct vg_serve_run *list[] = { &run };
   struct vg_serve_runs r = { .n = 1, .item = list, .squeue_start = 1 };

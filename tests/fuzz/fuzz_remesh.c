@@ -6,7 +6,7 @@
 #include "core/surface/surface_check.h"
 #include "io/mesh/tri.h"
 
-#define LARGE 400         /* triangles: more take too long for a fuzzer */
+#define LARGE 400 /* triangles: more take too long for a fuzzer */
 
 static int is_sound(struct vg_mesh *m, int repair)
 {

@@ -31,8 +31,7 @@ static void make_path(void)
   if (made) return;
   made = 1;
   fd = mkstemp(path);
-  fuzz_expect(fd >= 0 && !close(fd) && !atexit(remove_file),
-              "a scratch file");
+  fuzz_expect(fd >= 0 && !close(fd) && !atexit(remove_file), "a scratch file");
 }
 
 static void go_round(write_mesh put, read_mesh get, const struct vg_mesh *m,
@@ -73,8 +72,8 @@ static void round_medit(write_mesh put, const struct vg_mesh *m)
 
   go_round(put, vg_medit_read, m, &back);
   same_points(m, &back);
-#define SAME(array, n) \
-  fuzz_expect(m->n == back.n, "as many: " #array); \
+#define SAME(array, n)                                                         \
+  fuzz_expect(m->n == back.n, "as many: " #array);                             \
   same_array(m->array, back.array, m->n, sizeof *m->array, #array)
   SAME(tri, n_tri);
   SAME(quad, n_quad);
@@ -85,7 +84,8 @@ static void round_medit(write_mesh put, const struct vg_mesh *m)
 #undef SAME
   for (size_t i = 0; i < m->n_tri; i++)
     fuzz_expect(m->patch[m->tri_patch[i]].id ==
-                back.patch[back.tri_patch[i]].id, "same patch numbers");
+                  back.patch[back.tri_patch[i]].id,
+                "same patch numbers");
   vg_mesh_release(&back);
 }
 
@@ -111,8 +111,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
   if (st == VG_OK && (*in.data == 'M' || *in.data < 2))
     st = vg_medit_parse(&in, &m, &err);
-  else if (st == VG_OK)
-    st = vg_obj_parse(&in, &m, &err);
+  else if (st == VG_OK) st = vg_obj_parse(&in, &m, &err);
   if (st == VG_OK) {
     make_path();
     round_medit(vg_medit_write, &m);

@@ -6,7 +6,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
   struct vg_input in = VG_INPUT_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  double (*x)[3] = NULL, *v = NULL;
+  double(*x)[3] = NULL, *v = NULL;
   size_t n = 0;
 
   if (vg_input_memory("fuzz.vtu", data, size, &in, &err) < 0) return 0;
@@ -14,7 +14,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_expect(n > 0 && x && v, "points and values");
     for (size_t i = 0; i < n; i++)
       fuzz_expect(isfinite(v[i]) && isfinite(x[i][0]) && isfinite(x[i][1]) &&
-                  isfinite(x[i][2]), "finite numbers");
+                    isfinite(x[i][2]),
+                  "finite numbers");
   } else {
     fuzz_expect(err.text[0] && !x && !v, "a message, and nothing else");
   }

@@ -6,10 +6,10 @@
 #include "hostile.h"
 
 static const double t1_point[4][3] = {
-  {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}
+  { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
 };
 static const int32_t t1_tri[4][3] = {
-  {1, 3, 2}, {1, 2, 4}, {1, 4, 3}, {2, 3, 4}
+  { 1, 3, 2 }, { 1, 2, 4 }, { 1, 4, 3 }, { 2, 3, 4 }
 };
 
 /* --- STL --- */
@@ -149,8 +149,7 @@ static void make_tri_huge(const char *file)
 
 /* --- Medit --- */
 
-static void meshb(struct bytes *b, int32_t version, int32_t next,
-                  int32_t count)
+static void meshb(struct bytes *b, int32_t version, int32_t next, int32_t count)
 {
   memset(b, 0, sizeof *b);
   put_i32(b, 1);
@@ -168,8 +167,7 @@ static void meshb(struct bytes *b, int32_t version, int32_t next,
   put_i32(b, 6);
   put_i32(b, 220);
   put_i32(b, 4);
-  for (int i = 0; i < 16; i++)
-    put_i32(b, i % 4 < 3 ? t1_tri[i / 4][i % 4] : 1);
+  for (int i = 0; i < 16; i++) put_i32(b, i % 4 < 3 ? t1_tri[i / 4][i % 4] : 1);
   put_i32(b, 54);
   put_i32(b, 0);
 }
@@ -270,8 +268,7 @@ static void ugrid(struct bytes *b, int big, int32_t n_point, double x)
   put_i32(b, 0);
   put_i32(b, 1);
   for (int i = 0; i < 3; i++) put_i32(b, 0);
-  for (int i = 0; i < 12; i++)
-    put_f64(b, i == 8 ? x : t1_point[i / 3][i % 3]);
+  for (int i = 0; i < 12; i++) put_f64(b, i == 8 ? x : t1_point[i / 3][i % 3]);
   for (int i = 0; i < 12; i++) put_i32(b, t1_tri[i / 3][i % 3]);
   for (int i = 0; i < 4; i++) put_i32(b, 1);
   for (int i = 0; i < 4; i++) put_i32(b, tet[i]);
@@ -437,67 +434,83 @@ static void make_cogsg_text(const char *file)
 }
 
 const struct hostile hostile_binaries[] = {
-  { .file = "truncated_binary.stl", .phrase = "50 x 4",
+  { .file = "truncated_binary.stl",
+    .phrase = "50 x 4",
     .make = make_stl_truncated },
-  { .file = "huge_binary.stl", .phrase = "50 x 4294967295",
+  { .file = "huge_binary.stl",
+    .phrase = "50 x 4294967295",
     .make = make_stl_huge },
   { .file = "nan_binary.stl", .phrase = "facet 3", .make = make_stl_nan },
-  { .file = "big_endian.stl", .phrase = "neither text nor binary",
+  { .file = "big_endian.stl",
+    .phrase = "neither text nor binary",
     .make = make_stl_big_endian },
-  { .file = "noise.stl", .phrase = "neither text nor binary",
+  { .file = "noise.stl",
+    .phrase = "neither text nor binary",
     .make = make_stl_noise },
   { .file = "noise.obj", .phrase = "binary", .make = make_stl_noise },
   { .file = "noise.tri", .phrase = "neither text nor", .make = make_stl_noise },
-  { .file = "noise.meshb", .phrase = "neither text nor",
+  { .file = "noise.meshb",
+    .phrase = "neither text nor",
     .make = make_stl_noise },
   { .file = "noise.front", .phrase = "binary", .make = make_stl_noise },
-  { .file = "binary_range.tri", .phrase = "vertex 1000000",
+  { .file = "binary_range.tri",
+    .phrase = "vertex 1000000",
     .make = make_tri_range },
-  { .file = "binary_infinite.tri", .phrase = "point 2",
+  { .file = "binary_infinite.tri",
+    .phrase = "point 2",
     .make = make_tri_infinite },
-  { .file = "binary_truncated.tri", .phrase = "triangles",
+  { .file = "binary_truncated.tri",
+    .phrase = "triangles",
     .make = make_tri_truncated },
-  { .file = "binary_marker.tri", .phrase = "vertices",
+  { .file = "binary_marker.tri",
+    .phrase = "vertices",
     .make = make_tri_marker },
   { .file = "binary_huge.tri", .phrase = "truncated", .make = make_tri_huge },
-  { .file = "loop.meshb", .phrase = "before it begins",
+  { .file = "loop.meshb",
+    .phrase = "before it begins",
     .make = make_meshb_loop },
   { .file = "far.meshb", .phrase = "beyond the end", .make = make_meshb_far },
   { .file = "count.meshb", .phrase = "truncated", .make = make_meshb_count },
-  { .file = "version.meshb", .phrase = "version",
-    .make = make_meshb_version },
-  { .file = "truncated.meshb", .phrase = "beyond the end",
+  { .file = "version.meshb", .phrase = "version", .make = make_meshb_version },
+  { .file = "truncated.meshb",
+    .phrase = "beyond the end",
     .make = make_meshb_truncated },
-  { .file = "count.msh", .phrase = "beyond 32 bits",
-    .make = make_gmsh_count },
-  { .file = "order.msh", .phrase = "order of bytes",
-    .make = make_gmsh_order },
-  { .file = "wrong_end.msh", .phrase = "does not end",
-    .make = make_gmsh_end },
+  { .file = "count.msh", .phrase = "beyond 32 bits", .make = make_gmsh_count },
+  { .file = "order.msh", .phrase = "order of bytes", .make = make_gmsh_order },
+  { .file = "wrong_end.msh", .phrase = "does not end", .make = make_gmsh_end },
   { .file = "endian.b8.ugrid", .phrase = "lb8", .make = make_ugrid_endian },
   { .file = "huge.b8.ugrid", .phrase = "cannot hold", .make = make_ugrid_huge },
-  { .file = "negative.b8.ugrid", .phrase = "negative",
+  { .file = "negative.b8.ugrid",
+    .phrase = "negative",
     .make = make_ugrid_negative },
   { .file = "nan.lb8.ugrid", .phrase = "point 3", .make = make_ugrid_nan },
-  { .file = "truncated.lb8.ugrid", .phrase = "truncated",
+  { .file = "truncated.lb8.ugrid",
+    .phrase = "truncated",
     .make = make_ugrid_truncated },
   { .file = "text.lb8.ugrid", .phrase = "text", .make = make_ugrid_text },
-  { .file = "binary_as_text.ugrid", .phrase = "binary data",
+  { .file = "binary_as_text.ugrid",
+    .phrase = "binary data",
     .make = make_ugrid_as_text },
-  { .file = "no_bc_file.cogsg", .phrase = "no_bc_file.bc",
+  { .file = "no_bc_file.cogsg",
+    .phrase = "no_bc_file.bc",
     .make = make_cogsg_alone },
-  { .file = "truncated.cogsg", .phrase = "truncated",
+  { .file = "truncated.cogsg",
+    .phrase = "truncated",
     .make = make_cogsg_truncated },
-  { .file = "huge_points.cogsg", .phrase = "truncated",
+  { .file = "huge_points.cogsg",
+    .phrase = "truncated",
     .make = make_cogsg_points },
-  { .file = "huge_cells.cogsg", .phrase = "not a .cogsg",
+  { .file = "huge_cells.cogsg",
+    .phrase = "not a .cogsg",
     .make = make_cogsg_cells },
   { .file = "range.cogsg", .phrase = "point 5", .make = make_cogsg_range },
   { .file = "bc_range.cogsg", .phrase = "99", .make = make_bc_range },
   { .file = "bc_huge.cogsg", .phrase = "too short", .make = make_bc_huge },
-  { .file = "bc_binary.cogsg", .phrase = "bc_binary.bc",
+  { .file = "bc_binary.cogsg",
+    .phrase = "bc_binary.bc",
     .make = make_bc_binary },
-  { .file = "text_bc.cogsg", .phrase = "not a .cogsg",
+  { .file = "text_bc.cogsg",
+    .phrase = "not a .cogsg",
     .make = make_cogsg_text },
   { 0 }
 };

@@ -8,29 +8,29 @@
 
 /** How `vanguard` is to meet the file. */
 enum hostile_verdict {
-  REFUSED,    /* exit status 1, stderr names the file */
-  MENDED      /* `check` repairs it without a guess, says so, status 0 */
+  REFUSED, /* exit status 1, stderr names the file */
+  MENDED   /* `check` repairs it without a guess, says so, status 0 */
 };
 
 /** One case. Exactly one of `text` and `make` is set. */
 struct hostile {
-  const char *file;         /* what is put behind the command */
-  const char *phrase;       /* that the program's answer must hold */
+  const char *file;   /* what is put behind the command */
+  const char *phrase; /* that the program's answer must hold */
   enum hostile_verdict verdict;
-  const char *text;         /* the file itself */
+  const char *text;               /* the file itself */
   void (*make)(const char *file); /* writes it, and files beside it */
-  const char *command;      /* subcommand and options; NULL: "check" */
+  const char *command;            /* subcommand and options; NULL: "check" */
 };
 
 extern const struct hostile hostile_texts[], hostile_binaries[],
-    hostile_volumes[], hostile_shapes[],
-    hostile_projects[];     /* each ends with file NULL */
+  hostile_volumes[], hostile_shapes[],
+  hostile_projects[]; /* each ends with file NULL */
 
 /** Bytes of a binary file under construction. */
 struct bytes {
   unsigned char b[8192];
   size_t n;
-  int big;                  /* byte order of what is put */
+  int big; /* byte order of what is put */
 };
 void put_raw(struct bytes *b, const void *data, size_t n);
 void put_i32(struct bytes *b, int32_t v);

@@ -8,7 +8,7 @@
 struct shape {
   size_t n_point, n_tri;
   double point[200][3];
-  int tri[300][3];          /* 0-based */
+  int tri[300][3]; /* 0-based */
 };
 
 static int add_point(struct shape *s, double x, double y, double z)
@@ -34,10 +34,9 @@ static void add_tri(struct shape *s, int a, int b, int c)
 static void add_box(struct shape *s, double lo, double hi, double dx,
                     int inward)
 {
-  static const int quad[6][4] = {
-    {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2},
-    {1, 3, 7, 5}
-  };
+  static const int quad[6][4] = { { 0, 2, 3, 1 }, { 4, 5, 7, 6 },
+                                  { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
+                                  { 0, 4, 6, 2 }, { 1, 3, 7, 5 } };
   int first = (int)s->n_point;
 
   for (int i = 0; i < 8; i++)
@@ -236,14 +235,13 @@ static void make_repeated_node(const char *file)
  * way to turn them makes sides of it. */
 static void make_one_sided(const char *file)
 {
-  static const int tri[10][3] = {
-    {1, 2, 3}, {1, 3, 4}, {1, 4, 5}, {1, 5, 6}, {1, 2, 6}, {2, 3, 5},
-    {3, 4, 6}, {4, 5, 2}, {5, 6, 3}, {6, 2, 4}
-  };
-  static const double at[6][3] = {
-    {0, 0, 2}, {2, 0, 0.1}, {0.5, 2, 0.2}, {-1.5, 1, 0.3}, {-1, -1.5, 0.4},
-    {1, -2, 0.5}
-  };
+  static const int tri[10][3] = { { 1, 2, 3 }, { 1, 3, 4 }, { 1, 4, 5 },
+                                  { 1, 5, 6 }, { 1, 2, 6 }, { 2, 3, 5 },
+                                  { 3, 4, 6 }, { 4, 5, 2 }, { 5, 6, 3 },
+                                  { 6, 2, 4 } };
+  static const double at[6][3] = { { 0, 0, 2 },       { 2, 0, 0.1 },
+                                   { 0.5, 2, 0.2 },   { -1.5, 1, 0.3 },
+                                   { -1, -1.5, 0.4 }, { 1, -2, 0.5 } };
   struct shape s = { 0 };
 
   for (int i = 0; i < 6; i++) add_point(&s, at[i][0], at[i][1], at[i][2]);
@@ -327,41 +325,56 @@ static void make_unused(const char *file)
 const struct hostile hostile_shapes[] = {
   { .file = "open.stl", .phrase = "open edge", .make = make_open },
   { .file = "single.stl", .phrase = "open edge", .make = make_single },
-  { .file = "not_quite_closed.stl", .phrase = "but for rounding",
+  { .file = "not_quite_closed.stl",
+    .phrase = "but for rounding",
     .verdict = MENDED,
     .make = make_not_quite_closed },
-  { .file = "common_edge.stl", .phrase = "non-manifold",
+  { .file = "common_edge.stl",
+    .phrase = "non-manifold",
     .make = make_common_edge },
-  { .file = "common_face.stl", .verdict = MENDED,
+  { .file = "common_face.stl",
+    .verdict = MENDED,
     .phrase = "4 triangles of walls that touching bodies shared removed",
     .make = make_common_face },
-  { .file = "inner_wall.stl", .phrase = "non-manifold",
+  { .file = "inner_wall.stl",
+    .phrase = "non-manifold",
     .make = make_inner_wall },
   { .file = "crossing.tri", .phrase = "intersection", .make = make_crossing },
-  { .file = "through_itself.tri", .phrase = "intersection",
+  { .file = "through_itself.tri",
+    .phrase = "intersection",
     .make = make_through_itself },
-  { .file = "touching.tri", .phrase = "intersection",
+  { .file = "touching.tri",
+    .phrase = "intersection",
     .make = make_touching_point },
   { .file = "flat.tri", .phrase = "duplicate triangle", .make = make_flat },
   { .file = "line.tri", .phrase = "no surface is left", .make = make_line },
-  { .file = "one_place.tri", .phrase = "degenerate",
-    .make = make_one_place },
+  { .file = "one_place.tri", .phrase = "degenerate", .make = make_one_place },
   { .file = "zero_area.tri", .phrase = "degenerate", .make = make_zero_area },
-  { .file = "repeated_node.tri", .phrase = "open edge",
+  { .file = "repeated_node.tri",
+    .phrase = "open edge",
     .make = make_repeated_node },
-  { .file = "one_sided.tri", .phrase = "orientation",
-    .make = make_one_sided },
+  { .file = "one_sided.tri", .phrase = "orientation", .make = make_one_sided },
   { .file = "far_away.tri", .phrase = "beyond 1e+60", .make = make_far_away },
   { .file = "tiny.tri", .phrase = "degenerate", .make = make_tiny },
-  { .file = "inside_out.tri", .phrase = "turned", .verdict = MENDED,
+  { .file = "inside_out.tri",
+    .phrase = "turned",
+    .verdict = MENDED,
     .make = make_inside_out },
-  { .file = "all_inward.tri", .phrase = "--flow internal", .verdict = REFUSED,
+  { .file = "all_inward.tri",
+    .phrase = "--flow internal",
+    .verdict = REFUSED,
     .make = make_all_inward },
-  { .file = "turned.tri", .phrase = "turned", .verdict = MENDED,
+  { .file = "turned.tri",
+    .phrase = "turned",
+    .verdict = MENDED,
     .make = make_turned },
-  { .file = "doubled.tri", .phrase = "removed", .verdict = MENDED,
+  { .file = "doubled.tri",
+    .phrase = "removed",
+    .verdict = MENDED,
     .make = make_doubled },
-  { .file = "unused.tri", .phrase = "accepts", .verdict = MENDED,
+  { .file = "unused.tri",
+    .phrase = "accepts",
+    .verdict = MENDED,
     .make = make_unused },
   { 0 }
 };

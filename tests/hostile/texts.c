@@ -4,15 +4,15 @@
 
 #include "hostile.h"
 
-#define FACET(x) \
-  "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex " x "\n" \
+#define FACET(x)                                                               \
+  "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex " x "\n"               \
   "vertex 0 1 0\nendloop\nendfacet\n"
 #define T1 "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
 #define GMSH "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
-#define POINTER \
-  "version https://git-lfs.github.com/spec/v1\n" \
-  "oid sha256:4d7a214614ab2935c943f9e0ff69d22e" \
-  "adbb8f32b1258daaa5e2ca24d17e2393" \
+#define POINTER                                                                \
+  "version https://git-lfs.github.com/spec/v1\n"                               \
+  "oid sha256:4d7a214614ab2935c943f9e0ff69d22e"                                \
+  "adbb8f32b1258daaa5e2ca24d17e2393"                                           \
   "\nsize 12345\n"
 #define MARK "\xef\xbb\xbf"
 #define MEDIT "MeshVersionFormatted 2\nDimension 3\n"
@@ -49,8 +49,8 @@ static void make_gzip(const char *file, const char *text, size_t cut)
   save(file, packed, n);
 }
 
-static const char gzip_text[] =
-  "solid a\n" FACET("1 0 0") FACET("2 0 0") FACET("3 0 0.123456789") "endsolid";
+static const char gzip_text[] = "solid a\n" FACET("1 0 0") FACET("2 0 0")
+  FACET("3 0 0.123456789") "endsolid";
 
 static void make_cut_gzip(const char *file)
 {
@@ -97,24 +97,32 @@ const struct hostile hostile_texts[] = {
   { .file = "pointer.stl", .phrase = "git lfs pull", .text = POINTER },
   { .file = "pointer.cgns", .phrase = "git lfs pull", .text = POINTER },
   { .file = "pointer.step", .phrase = "git lfs pull", .text = POINTER },
-  { .file = "pointer.lb8.ugrid", .phrase = "git lfs pull",
+  { .file = "pointer.lb8.ugrid",
+    .phrase = "git lfs pull",
     .text = MARK POINTER },
   { .file = "blank.obj", .phrase = "no faces", .text = " \n\n\t\r\n" },
   { .file = "word.xyz", .phrase = "stl", .text = "hello\n" },
-  { .file = "no_facets.stl", .phrase = "no facets",
+  { .file = "no_facets.stl",
+    .phrase = "no facets",
     .text = "solid a\nendsolid a\n" },
-  { .file = "cut_in_number.stl", .phrase = "cut_in_number.stl:5",
+  { .file = "cut_in_number.stl",
+    .phrase = "cut_in_number.stl:5",
     .text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
             "vertex 1 0" },
-  { .file = "no_endsolid.stl", .phrase = "endsolid",
+  { .file = "no_endsolid.stl",
+    .phrase = "endsolid",
     .text = "solid a\n" FACET("1 0 0") },
-  { .file = "nan.stl", .phrase = "'nan'",
+  { .file = "nan.stl",
+    .phrase = "'nan'",
     .text = "solid a\n" FACET("nan 0 0") "endsolid a\n" },
-  { .file = "infinite.stl", .phrase = "'inf'",
+  { .file = "infinite.stl",
+    .phrase = "'inf'",
     .text = "solid a\n" FACET("1 inf 0") "endsolid a\n" },
-  { .file = "overflow.stl", .phrase = "1e400",
+  { .file = "overflow.stl",
+    .phrase = "1e400",
     .text = "solid a\n" FACET("1e400 0 0") "endsolid a\n" },
-  { .file = "four_corners.stl", .phrase = "triangles only",
+  { .file = "four_corners.stl",
+    .phrase = "triangles only",
     .text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
             "vertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\n"
             "endsolid\n" },
@@ -123,76 +131,105 @@ const struct hostile hostile_texts[] = {
   { .file = "broken.stl.gz", .phrase = "gzip", .make = make_broken_gzip },
   { .file = "zero.tri", .phrase = "no surface", .text = "0 0\n" },
   { .file = "negative.tri", .phrase = "-4", .text = "-4 4\n" T1 },
-  { .file = "huge.tri", .phrase = "truncated",
+  { .file = "huge.tri",
+    .phrase = "truncated",
     .text = "4000000000 4000000000\n" T1 },
-  { .file = "huge64.tri", .phrase = "32-bit",
+  { .file = "huge64.tri",
+    .phrase = "32-bit",
     .text = "9223372036854775807 9223372036854775807\n" T1 },
-  { .file = "range.tri", .phrase = "vertex 5",
+  { .file = "range.tri",
+    .phrase = "vertex 5",
     .text = "4 4\n" T1 "1 3 2\n1 2 5\n1 4 3\n2 3 4\n" },
-  { .file = "index_zero.tri", .phrase = "vertex 0",
+  { .file = "index_zero.tri",
+    .phrase = "vertex 0",
     .text = "4 4\n" T1 "1 3 2\n1 2 0\n1 4 3\n2 3 4\n" },
-  { .file = "cut_components.tri", .phrase = "component",
+  { .file = "cut_components.tri",
+    .phrase = "component",
     .text = "4 4\n" T1 "1 3 2\n1 2 4\n1 4 3\n2 3 4\n1\n1\n" },
   { .file = "letters.tri", .phrase = "'four'", .text = "four 4\n" T1 },
-  { .file = "range.obj", .phrase = "vertex 9",
+  { .file = "range.obj",
+    .phrase = "vertex 9",
     .text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n" },
-  { .file = "negative_range.obj", .phrase = "out of range",
+  { .file = "negative_range.obj",
+    .phrase = "out of range",
     .text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -9\n" },
-  { .file = "two_corners.obj", .phrase = "three corners",
+  { .file = "two_corners.obj",
+    .phrase = "three corners",
     .text = "v 0 0 0\nv 1 0 0\nf 1 2\n" },
-  { .file = "short_vertex.obj", .phrase = "three finite coordinates",
+  { .file = "short_vertex.obj",
+    .phrase = "three finite coordinates",
     .text = "v 0 0\nv 1 0 0\nf 1 2 2\n" },
-  { .file = "long_token.obj", .phrase = "three finite coordinates",
+  { .file = "long_token.obj",
+    .phrase = "three finite coordinates",
     .make = make_long_token },
-  { .file = "version.mesh", .phrase = "MeshVersionFormatted",
+  { .file = "version.mesh",
+    .phrase = "MeshVersionFormatted",
     .text = "MeshVersionFormatted 9\nDimension 3\n" },
-  { .file = "plane.mesh", .phrase = "dimension 2",
+  { .file = "plane.mesh",
+    .phrase = "dimension 2",
     .text = "MeshVersionFormatted 2\nDimension 2\nEnd\n" },
-  { .file = "range.mesh", .phrase = "out of range",
+  { .file = "range.mesh",
+    .phrase = "out of range",
     .text = MEDIT "Vertices 3 0 0 0 0 1 0 0 0 0 1 0 0\n"
-            "Triangles 1 1 2 33 1\nEnd\n" },
-  { .file = "huge.mesh", .phrase = "truncated",
+                  "Triangles 1 1 2 33 1\nEnd\n" },
+  { .file = "huge.mesh",
+    .phrase = "truncated",
     .text = MEDIT "Vertices 4000000000 0 0 0 0\nEnd\n" },
-  { .file = "no_end.mesh", .phrase = "'End'",
+  { .file = "no_end.mesh",
+    .phrase = "'End'",
     .text = MEDIT "Vertices 3 0 0 0 0 1 0 0 0 0 1 0 0\n"
-            "Triangles 1 1 2 3 1\n" },
-  { .file = "huge.msh", .phrase = "truncated:",
+                  "Triangles 1 1 2 3 1\n" },
+  { .file = "huge.msh",
+    .phrase = "truncated:",
     .text = GMSH "$Nodes\n1 4000000000 1 1\n2 1 0 4000000000\n" },
-  { .file = "range.msh", .phrase = "node 77",
+  { .file = "range.msh",
+    .phrase = "node 77",
     .text = GMSH "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 0\n$EndNodes\n"
-            "$Elements\n1 1 1 1\n2 1 2 1\n1 1 1 77\n$EndElements\n" },
-  { .file = "curved.msh", .phrase = "setorder 1",
+                 "$Elements\n1 1 1 1\n2 1 2 1\n1 1 1 77\n$EndElements\n" },
+  { .file = "curved.msh",
+    .phrase = "setorder 1",
     .text = GMSH "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 0\n$EndNodes\n"
-            "$Elements\n1 1 1 1\n2 1 9 1\n1 1 1 1 1 1 1\n$EndElements\n" },
-  { .file = "old.msh", .phrase = "msh41",
-    .text = "$NOD\n3\n1 0 0 0\n" },
-  { .file = "text.cgns", .phrase = "neither HDF5 nor ADF",
+                 "$Elements\n1 1 1 1\n2 1 9 1\n1 1 1 1 1 1 1\n$EndElements\n" },
+  { .file = "old.msh", .phrase = "msh41", .text = "$NOD\n3\n1 0 0 0\n" },
+  { .file = "text.cgns",
+    .phrase = "neither HDF5 nor ADF",
     .text = "CGNS, says the name\n" },
-  { .file = "adf.cgns", .phrase = "adf2hdf",
+  { .file = "adf.cgns",
+    .phrase = "adf2hdf",
     .text = "@(#)ADF Database Version B02012>\n" },
   { .file = "is_fluent.msh", .phrase = "Fluent", .text = "(0 \"grid\")\n" },
-  { .file = "huge.ugrid", .phrase = "truncated:",
+  { .file = "huge.ugrid",
+    .phrase = "truncated:",
     .text = "4000000000 4000000000 0 4000000000 0 0 0\n" T1 },
-  { .file = "negative.ugrid", .phrase = "negative",
+  { .file = "negative.ugrid",
+    .phrase = "negative",
     .text = "4 -4 0 1 0 0 0\n" T1 },
-  { .file = "range.ugrid", .phrase = "7",
+  { .file = "range.ugrid",
+    .phrase = "7",
     .text = "4 4 0 1 0 0 0\n" T1 "1 2 3\n1 4 7\n1 3 4\n2 4 3\n1 1 1 1\n"
             "1 2 3 4\n" },
-  { .file = "nan.ugrid", .phrase = "nan",
+  { .file = "nan.ugrid",
+    .phrase = "nan",
     .text = "4 4 0 1 0 0 0\n0 0 0\n1 0 nan\n0 1 0\n0 0 1\n1 2 3\n1 4 2\n"
             "1 3 4\n2 4 3\n1 1 1 1\n1 2 3 4\n" },
-  { .file = "truncated.ugrid", .phrase = "truncated:",
+  { .file = "truncated.ugrid",
+    .phrase = "truncated:",
     .text = "4 4 0 1 0 0 0\n" T1 "1 2 3\n1 4 2\n" },
-  { .file = "bad_mapbc.tri", .phrase = "bad_mapbc.mapbc",
+  { .file = "bad_mapbc.tri",
+    .phrase = "bad_mapbc.mapbc",
     .make = make_bad_mapbc },
-  { .file = "cut_mapbc.tri", .phrase = "cut_mapbc.mapbc",
+  { .file = "cut_mapbc.tri",
+    .phrase = "cut_mapbc.mapbc",
     .make = make_cut_mapbc },
-  { .file = "no_bc.tri", .phrase = "no boundary condition",
+  { .file = "no_bc.tri",
+    .phrase = "no boundary condition",
     .make = make_no_bc },
-  { .file = "truncated.front", .phrase = "truncated:",
+  { .file = "truncated.front",
+    .phrase = "truncated:",
     .text = "npoit nelet npoif nface nboun nfacs nbouc nfaci npoiv nelev "
             "nbou0\n 4 0 4 4 4 4 4 4 0 0 4\n 1 1 2 3\n 2 1 4 2\n" },
-  { .file = "huge.front", .phrase = "truncated:",
+  { .file = "huge.front",
+    .phrase = "truncated:",
     .text = "npoit nelet npoif nface nboun nfacs nbouc nfaci npoiv nelev "
             "nbou0\n 2000000000 0 2000000000 2000000000 2000000000 "
             "2000000000 4 4 0 0 4\n 1 1 2 3\n" },

@@ -7,7 +7,7 @@
 #include "io/slices/slices.h"
 
 static char dir[4096], alone_stem[4096], all_stem[4096];
-static struct scene real;    /* read before the job begins; may be empty */
+static struct scene real; /* read before the job begins; may be empty */
 
 /* Names of this job: tests on other numbers of ranks run beside it. */
 static int set_up(void **state)
@@ -41,8 +41,10 @@ static struct mesh_digest alone(const struct scene *s,
 static void compare_with(const struct scene *s, struct vg_partition_options o,
                          int n_way)
 {
-  static const struct { int threads; uint64_t shuffle; } way[] = {
-    { 1, 0 }, { 2, 5 }, { 3, 77 } };
+  static const struct {
+    int threads;
+    uint64_t shuffle;
+  } way[] = { { 1, 0 }, { 2, 5 }, { 3, 77 } };
   struct mesh_digest expect = alone(s, &o), d;
   struct vg_partition_report r;
 
@@ -118,7 +120,8 @@ static void the_same_file(void **state)
     if (!all && !is_first()) continue;
     assert_int_equal(grow(comm, &s, &o, &p, &r, NULL), VG_OK);
     assert_int_equal(vg_slices_write(comm, vg_partition_slices(p), stem,
-                                     "lb8.ugrid", 1, NULL), VG_OK);
+                                     "lb8.ugrid", 1, NULL),
+                     VG_OK);
     vg_partition_free(p);
     o.threads = 2;
     o.shuffle = 3;
@@ -175,8 +178,7 @@ static void stopped(struct vg_comm *comm, const struct scene *s, double leaf)
 
 /* One run that goes on. Returns tasks that were found. */
 static uint64_t resumed(struct vg_comm *comm, const struct scene *s,
-                        double leaf, const struct mesh_digest *expect,
-                        int last)
+                        double leaf, const struct mesh_digest *expect, int last)
 {
   struct vg_partition_options o = options_of(leaf, 2, 5);
   struct vg_partition_report r;
@@ -223,8 +225,8 @@ static void same_everywhere(vg_status st, vg_status expect)
   assert_int_equal(n, vg_comm_size(job));
 }
 
-static void refused(const struct scene *s,
-                    const struct vg_partition_options *o, vg_status expect)
+static void refused(const struct scene *s, const struct vg_partition_options *o,
+                    vg_status expect)
 {
   struct vg_partition_report r;
   struct vg_partition *p;
@@ -250,7 +252,7 @@ static void all_ranks_hear_of_it(void **state)
   scene_demo(&s, "box", 40000);
   few.max_cells = 1000;
   refused(&s, &few, VG_ERR_UNSUPPORTED);
-  few.max_cells = 35000;     /* less than it has, not by half: seen late */
+  few.max_cells = 35000; /* less than it has, not by half: seen late */
   refused(&s, &few, VG_ERR_UNSUPPORTED);
   if (vg_comm_rank(job) == vg_comm_size(job) - 1) stop.stop.ask = at_once;
   refused(&s, &stop, VG_ERR_STOPPED);
@@ -267,8 +269,7 @@ static void all_ranks_hear_of_it(void **state)
 /* Files are unpacked by a child, which MPI does not like. */
 static void read_real(void)
 {
-  static const char name[] =
-    "simple/hemisphere_cylinder_farfield.lb8.ugrid.xz";
+  static const char name[] = "simple/hemisphere_cylinder_farfield.lb8.ugrid.xz";
 
   if (!*VG_DATA_DIR || access(VG_DATA_DIR "/simple", R_OK)) return;
   scene_file(&real, io_real(name));

@@ -102,8 +102,8 @@ static void gathers(void **state)
 
   (void)state;
   for (int k = 0; k < N_CHUNKS * N_LENGTHS; k++) {
-    struct vg_bytes out[16], mine = make(lengths[(k + rank) % N_LENGTHS],
-                                         rank, 0);
+    struct vg_bytes out[16],
+      mine = make(lengths[(k + rank) % N_LENGTHS], rank, 0);
 
     job->chunk = chunks[k / N_LENGTHS];
     assert_int_equal(vg_comm_allgather(job, &mine, out, NULL), VG_OK);
@@ -166,7 +166,8 @@ static void one_failure_is_all(void **state)
     if (on) assert_string_equal(err.text, want);
     /* nobody listens */
     assert_int_equal(vg_comm_agree(job, rank == on ? VG_ERR_MEMORY : VG_OK,
-                                   NULL), VG_ERR_MEMORY);
+                                   NULL),
+                     VG_ERR_MEMORY);
   }
 }
 
@@ -175,15 +176,17 @@ static void the_lowest_rank_speaks(void **state)
   int size = vg_comm_size(job), rank = vg_comm_rank(job);
   struct vg_error err = VG_ERROR_INIT;
   vg_status st = rank ? vg_fail(&err, rank == 1 ? VG_ERR_FORMAT : VG_ERR_IO,
-                                "reason %d", rank) : VG_OK;
+                                "reason %d", rank)
+                      : VG_OK;
 
   (void)state;
   assert_int_equal(vg_comm_agree(job, VG_OK, &err), VG_OK);
   if (rank) assert_int_equal(err.code, st);
   assert_int_equal(vg_comm_agree(job, st, &err),
                    size > 1 ? VG_ERR_FORMAT : VG_OK);
-  assert_string_equal(err.text, size == 1 ? "" : rank == 1 ? "reason 1" :
-                      "rank 1: reason 1");
+  assert_string_equal(err.text, size == 1   ? ""
+                                : rank == 1 ? "reason 1"
+                                            : "rank 1: reason 1");
 }
 
 /* The cause before its consequences, a failure before an outcome. */

@@ -9,7 +9,9 @@
 #include "base/comm_parts.h"
 
 /* Body: sender, number, then bytes that follow from both. */
-struct head { uint32_t from, number; };
+struct head {
+  uint32_t from, number;
+};
 
 static struct vg_bytes body(uint32_t from, uint32_t number, size_t n)
 {
@@ -62,8 +64,8 @@ static void meet(void)
 }
 
 /* Lengths about those at which MPI changes its ways, and ours. */
-static const size_t lengths[] = { 0, 1, 991, 992, 993, 4000, 4096, 70000,
-                                  1000000 };
+static const size_t lengths[] = { 0,    1,    991,   992,    993,
+                                  4000, 4096, 70000, 1000000 };
 enum { N_LENGTHS = sizeof lengths / sizeof *lengths };
 
 static void all_to_all(size_t chunk, uint32_t count)
@@ -80,7 +82,8 @@ static void all_to_all(size_t chunk, uint32_t count)
       struct vg_bytes b = body((uint32_t)rank, k, lengths[k % N_LENGTHS]);
 
       assert_int_equal(vg_comm_post(job, (rank + i) % size, (int)k % 7, &b,
-                                    NULL), VG_OK);
+                                    NULL),
+                       VG_OK);
       assert_null(b.data);
     }
   for (uint32_t k = 0; k < count * (uint32_t)size; k++) {
@@ -96,7 +99,7 @@ static void all_to_all(size_t chunk, uint32_t count)
   }
   meet();
   assert_int_equal(vg_comm_poll(job, &m, NULL), VG_BLOCKED);
-  meet();                    /* before anyone posts what comes next */
+  meet(); /* before anyone posts what comes next */
   job->chunk = whole;
 }
 
@@ -133,8 +136,9 @@ static void memory_of_what_was_sent_is_given_back(void **state)
 
 static void wrong_addresses_are_refused(void **state)
 {
-  static const int wrong[][2] = { { -1, 0 }, { 1000, 0 }, { 0, -1 },
-                                  { 0, 16384 } };
+  static const int wrong[][2] = {
+    { -1, 0 }, { 1000, 0 }, { 0, -1 }, { 0, 16384 }
+  };
   struct vg_bytes b = body(0, 0, 10);
 
   (void)state;
@@ -204,8 +208,7 @@ static void from_threads(void **state)
   (void)state;
   for (int i = 0; i < THREADS; i++) {
     kind[i] = i;
-    assert_int_equal(pthread_create(&thread[i], NULL, post_many, &kind[i]),
-                     0);
+    assert_int_equal(pthread_create(&thread[i], NULL, post_many, &kind[i]), 0);
   }
   for (int i = 0; i < 16; i++)
     for (int k = 0; k < THREADS; k++) next[i][k] = (uint32_t)rank;

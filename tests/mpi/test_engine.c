@@ -53,8 +53,9 @@ static uint64_t n_away;
 static void same_result(int n_tree, int threads, uint64_t shuffle, int pin,
                         double spin)
 {
-  struct forest f = { .threads = threads, .depth = 4, .pin = pin,
-                      .spin = spin };
+  struct forest f = {
+    .threads = threads, .depth = 4, .pin = pin, .spin = spin
+  };
   struct vg_spans s = VG_SPANS_INIT;
   uint64_t sum = 0;
   long n = 0;
@@ -80,7 +81,7 @@ static void all_ways(void **state)
       same_result(1, threads, shuffle, 4, 2e-4);
     }
   same_result(0, 2, 0, 0, 0);
-  same_result(2, 2, 0, 1, 0);          /* all pinned */
+  same_result(2, 2, 0, 1, 0); /* all pinned */
   if (vg_comm_size(job) > 1) assert_true(n_away > 0);
 }
 
@@ -93,8 +94,9 @@ static void homes_move(void **state)
   (void)state;
   for (int move = 3; move > 0; move -= 2)
     for (uint64_t shuffle = 0; shuffle < 2; shuffle++) {
-      struct forest f = { .threads = 2, .depth = 4, .move = move, .pin = 5,
-                          .spin = 2e-4 };
+      struct forest f = {
+        .threads = 2, .depth = 4, .move = move, .pin = 5, .spin = 2e-4
+      };
       struct vg_spans s = VG_SPANS_INIT;
       uint64_t sum = 0;
       long n = 0;
@@ -121,8 +123,7 @@ static void homes_move(void **state)
 /* Loops in tasks of several ranks; rank 0 hears who helped. */
 static void ranks_have_loops(void **state)
 {
-  struct forest f = { .threads = 2, .depth = 3, .loop = 13,
-                      .spin_item = 2e-4 };
+  struct forest f = { .threads = 2, .depth = 3, .loop = 13, .spin_item = 2e-4 };
   struct vg_spans s = VG_SPANS_INIT;
   uint64_t sum = 0, helped[2] = { 0, 0 };
   long n = 0;
@@ -149,10 +150,12 @@ static void ranks_have_loops(void **state)
 /* Moved tasks that fail, or are stopped, leave nothing on any rank. */
 static void moved_and_stopped(void **state)
 {
-  struct forest f = { .threads = 2, .depth = 4, .move = 1, .spin = 1e-4,
-                      .fail_at = "a12" };
-  struct forest g = { .threads = 2, .depth = 4, .move = 1, .spin = 1e-4,
-                      .stop_at = "a12" };
+  struct forest f = {
+    .threads = 2, .depth = 4, .move = 1, .spin = 1e-4, .fail_at = "a12"
+  };
+  struct forest g = {
+    .threads = 2, .depth = 4, .move = 1, .spin = 1e-4, .stop_at = "a12"
+  };
 
   (void)state;
   assert_true(forest_grow(&f, job, 2, 0, NULL, NULL) == VG_ERR_GEOMETRY);
@@ -172,8 +175,9 @@ static void a_failure_is_heard(void **state)
 {
   (void)state;
   for (uint64_t shuffle = 0; shuffle < 4; shuffle++) {
-    struct forest f = { .threads = 2, .depth = 4, .spin = 1e-4,
-                        .fail_at = "a12" };
+    struct forest f = {
+      .threads = 2, .depth = 4, .spin = 1e-4, .fail_at = "a12"
+    };
     struct vg_error err = VG_ERROR_INIT;
     int run_here;
 
@@ -190,8 +194,9 @@ static void a_failure_is_heard(void **state)
 static void other_failures(void **state)
 {
   struct forest f = { .threads = 1, .depth = 4, .done_fails_at = "a3" };
-  struct forest g = { .threads = 1, .depth = 4, .spin = 1e-3,
-                      .pack_fails_at = "a3" };
+  struct forest g = {
+    .threads = 1, .depth = 4, .spin = 1e-3, .pack_fails_at = "a3"
+  };
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
 
@@ -199,9 +204,9 @@ static void other_failures(void **state)
   assert_true(forest_grow(&f, job, 1, 0, NULL, &err) == VG_ERR_INPUT);
   assert_true(ends_with(err.text, "done of a3 fails"));
   check_rest(&f);
-  st = forest_grow(&g, job, 1, 0, NULL, &err);   /* it may stay at home */
-  assert_true(st == VG_OK || (st == VG_ERR_MEMORY &&
-                               ends_with(err.text, "packing fails")));
+  st = forest_grow(&g, job, 1, 0, NULL, &err); /* it may stay at home */
+  assert_true(st == VG_OK ||
+              (st == VG_ERR_MEMORY && ends_with(err.text, "packing fails")));
   check_rest(&g);
 }
 
@@ -209,8 +214,9 @@ static void it_stops(void **state)
 {
   (void)state;
   for (int threads = 1; threads < 3; threads++) {
-    struct forest f = { .threads = threads, .depth = 4, .spin = 1e-4,
-                        .stop_at = "a12" };
+    struct forest f = {
+      .threads = threads, .depth = 4, .spin = 1e-4, .stop_at = "a12"
+    };
 
     assert_true(forest_grow(&f, job, 4, 0, NULL, NULL) == VG_ERR_STOPPED);
     check_rest(&f);
@@ -240,7 +246,10 @@ static void large_inputs(void **state)
 
 /* --- tiny tasks, and the cost ------------------------------------------- */
 
-struct tiny { long n_run, n_done; double sleep; };
+struct tiny {
+  long n_run, n_done;
+  double sleep;
+};
 
 static vg_status tiny_run(void *user, const struct vg_engine *e,
                           const struct vg_task *task, int worker,
@@ -282,8 +291,8 @@ static double run_tiny(size_t n, int pinned, double sleep, long *n_run)
     task[i].pinned = pinned;
   }
   if (vg_comm_rank(job)) n = 0;
-  assert_int_equal(vg_engine_run(job, &options, &ops, &tiny, n, task, &s,
-                                 NULL), VG_OK);
+  assert_int_equal(vg_engine_run(job, &options, &ops, &tiny, n, task, &s, NULL),
+                   VG_OK);
   assert_true(tiny.n_done == (long)n);
   assert_true(total((uint64_t)tiny.n_run) == total(n));
   *n_run = tiny.n_run;
@@ -310,7 +319,7 @@ static void work_is_dealt_out(void **state)
   for (int i = 0; i < N; i++) {
     snprintf(task[i].path, sizeof task[i].path, "%02d", i);
     task[i].weight = 1;
-    if (i >= N_FREE) task[i].work = 1 + i * 7 % N;   /* all different */
+    if (i >= N_FREE) task[i].work = 1 + i * 7 % N; /* all different */
     task[i].moves = i % 2;
   }
   assert_int_equal(vg_engine_run(job, &options, &ops, &tiny,
@@ -327,7 +336,7 @@ static void work_is_dealt_out(void **state)
     for (size_t k = 0; k < s.n; k++) before += s.span[k].work > a->work;
     assert_true(a->rank == before / THREADS % vg_comm_size(job));
     assert_true(a->thread == before % THREADS);
-    if (!a->rank) assert_true(a->start >= ended);  /* clocks of ranks differ */
+    if (!a->rank) assert_true(a->start >= ended); /* clocks of ranks differ */
   }
   vg_spans_release(&s);
 }
@@ -336,10 +345,15 @@ static void work_is_dealt_out(void **state)
 static void dealing_changes_nothing(void **state)
 {
   struct forest f = { .threads = 2, .depth = 4, .spin = 1e-4, .deal = 1 };
-  struct forest g = { .threads = 2, .depth = 4, .spin = 1e-4, .deal = 1,
-                      .fail_at = "a12" };
-  struct forest h = { .threads = 2, .depth = 4, .spin = 1e-4, .deal = 1,
-                      .stop_at = "a12", .move = 3 };
+  struct forest g = {
+    .threads = 2, .depth = 4, .spin = 1e-4, .deal = 1, .fail_at = "a12"
+  };
+  struct forest h = { .threads = 2,
+                      .depth = 4,
+                      .spin = 1e-4,
+                      .deal = 1,
+                      .stop_at = "a12",
+                      .move = 3 };
   uint64_t sum = 0;
   long n = 0;
 
@@ -363,8 +377,8 @@ static void many_tiny_tasks(void **state)
   double wall = run_tiny(n, 0, 0, &n_run);
 
   (void)state;
-  printf("rank %d: %zu tiny tasks, %ld here: %.2f us/task\n",
-         vg_comm_rank(job), n, n_run, 1e6 * wall / (double)n);
+  printf("rank %d: %zu tiny tasks, %ld here: %.2f us/task\n", vg_comm_rank(job),
+         n, n_run, 1e6 * wall / (double)n);
   for (double sleep = 1e-3; sleep < 0.02; sleep *= 4) {
     size_t m = (size_t)(0.25 / sleep) * (size_t)vg_comm_size(job);
 
@@ -395,7 +409,7 @@ static void idle_ranks_sleep(void **state)
   (void)state;
   wall = run_tiny(1, 1, 1, &n_run);
   cpu = cpu_time() - cpu;
-  assert_true(wall > 0.5);   /* of a second, but for who comes late */
+  assert_true(wall > 0.5); /* of a second, but for who comes late */
   printf("rank %d: idle, %.2f %% of a core\n", vg_comm_rank(job),
          100 * cpu / wall);
   assert_true(cpu < 0.1 * wall);
@@ -444,8 +458,8 @@ static void what_was_given_ahead_comes_back(void **state)
     task[i].priority = i ? 1 : 2;
   }
   if (vg_comm_rank(job) != vg_comm_size(job) - 1) n = 0;
-  assert_int_equal(vg_engine_run(job, &options, &ops, &tiny, n, task, &s,
-                                 NULL), VG_OK);
+  assert_int_equal(vg_engine_run(job, &options, &ops, &tiny, n, task, &s, NULL),
+                   VG_OK);
   for (size_t i = 1; i < s.n && !vg_comm_rank(job); i++)
     assert_true(s.span[i].end < s.span[0].end);
   vg_spans_release(&s);

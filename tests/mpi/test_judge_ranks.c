@@ -17,7 +17,8 @@ static void check(const struct vg_mesh *m, const struct vg_sizing *sizing,
   assert_int_equal(vg_mesh_judge(m, sizing, &want, &err), VG_OK);
   cut_deal(&c, vg_comm_rank(job), vg_comm_size(job));
   assert_int_equal(vg_slices_judge(job, &c.s, 0, sizing, threads, &r, NULL,
-                                   &err), VG_OK);
+                                   &err),
+                   VG_OK);
   assert_same_report(&r, &want);
   if (part.n_tet) {
     assert_int_equal(vg_mesh_judge(m, NULL, &want, &err), VG_OK);
@@ -42,7 +43,7 @@ static void ranks_agree_with_one_piece(void **state)
     struct vg_mesh m = judge_mesh(cells ? VG_LAYER_MIXED : VG_LAYER_TETS);
     struct vg_sizing *sizing = shape_sizing(&m, 1.5, 0);
 
-    check(&m, sizing, 1, 1);      /* ranks without slices */
+    check(&m, sizing, 1, 1); /* ranks without slices */
     check(&m, sizing, 9, 1);
     check(&m, sizing, 30, 2);
     vg_sizing_free(sizing);
@@ -54,8 +55,7 @@ static void ranks_count_every_damage(void **state)
 {
   (void)state;
   for (int damage = 0; damage < JUDGE_DAMAGES; damage++) {
-    struct vg_mesh m = judge_mesh(damage % 2 ? VG_LAYER_MIXED
-                                             : VG_LAYER_TETS);
+    struct vg_mesh m = judge_mesh(damage % 2 ? VG_LAYER_MIXED : VG_LAYER_TETS);
     struct vg_mesh_report r, want;
     struct vg_error err = VG_ERROR_INIT;
     struct cut c;

@@ -101,8 +101,8 @@ static void plug_in(void **state)
     o.shuffle = 3;
     d = run_of(job, &s, &o, 0, &r);
     same_digest(&expect, &d);
-    assert_true(r.fill.n_other + r.fill.n_other_failed +
-                r.fill.n_other_wrong == r.n_leaf);
+    assert_true(r.fill.n_other + r.fill.n_other_failed + r.fill.n_other_wrong ==
+                r.n_leaf);
   }
   scene_end(&s);
   vg_mesher_close(p);

@@ -31,7 +31,7 @@ static void share_parts(int is_mapped)
     for (size_t i = 0; i < length[p]; i++) part[p].data[i] = value(p, i);
   }
   assert_int_equal(vg_comm_node_shmem(job, leads ? N_LENGTH : 0,
-                                       leads ? part : NULL, &common, NULL),
+                                      leads ? part : NULL, &common, NULL),
                    VG_OK);
   for (size_t p = 0; p < N_LENGTH && leads; p++) free(part[p].data);
   assert_int_equal(common.is_mapped, is_mapped);
@@ -78,7 +78,8 @@ static struct vg_sizing *field(void)
   const struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   const struct vg_source source[2] = {
     { .kind = VG_SOURCE_POINT, .h0 = 0.01, .p0 = { 1, 2, 3 } },
-    { .kind = VG_SOURCE_SPHERE, .h0 = 0.3, .r0 = 2, .p0 = { 9, 0, 0 } } };
+    { .kind = VG_SOURCE_SPHERE, .h0 = 0.3, .r0 = 2, .p0 = { 9, 0, 0 } }
+  };
   struct vg_sizing *s = NULL;
   struct vg_error err = VG_ERROR_INIT;
 
@@ -159,7 +160,7 @@ static void add(void *user, size_t n, const void *data)
 
 static struct vg_digest digest(const struct vg_layers *l)
 {
-  struct vg_digest d = {{0, 0}};
+  struct vg_digest d = { { 0, 0 } };
 
   vg_layers_show(l, add, &d);
   return d;
@@ -222,12 +223,11 @@ static void layers_are_in_common(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(parts_are_in_common), cmocka_unit_test(or_copied),
-    cmocka_unit_test(nothing_can_be_shared),
-    cmocka_unit_test(a_field_is_in_common),
-    cmocka_unit_test(layers_are_in_common)
-  };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(parts_are_in_common),
+                                      cmocka_unit_test(or_copied),
+                                      cmocka_unit_test(nothing_can_be_shared),
+                                      cmocka_unit_test(a_field_is_in_common),
+                                      cmocka_unit_test(layers_are_in_common) };
 
   return RUN_IN_JOB(tests);
 }

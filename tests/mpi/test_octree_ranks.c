@@ -11,8 +11,7 @@ static char dir[4096];
 static int set_up(void **state)
 {
   if (open_job(state)) return -1;
-  snprintf(dir, sizeof dir, "%s/octree_run_%d", VG_TMP_DIR,
-           vg_comm_size(job));
+  snprintf(dir, sizeof dir, "%s/octree_run_%d", VG_TMP_DIR, vg_comm_size(job));
   return 0;
 }
 

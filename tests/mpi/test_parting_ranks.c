@@ -12,8 +12,7 @@ static char dir[4096];
 static int set_up(void **state)
 {
   if (open_job(state)) return -1;
-  snprintf(dir, sizeof dir, "%s/parting_run_%d", VG_TMP_DIR,
-           vg_comm_size(job));
+  snprintf(dir, sizeof dir, "%s/parting_run_%d", VG_TMP_DIR, vg_comm_size(job));
   return 0;
 }
 
@@ -50,7 +49,7 @@ static void compare(const struct scene *s, double fail)
   struct vg_partition_report r;
 
   o.fail_leaves = fail;
-  o.fail_rounds = 1;         /* with more, all may become one void */
+  o.fail_rounds = 1; /* with more, all may become one void */
   expect = alone(s, &o);
   for (int threads = 1; threads < 3; threads++) {
     o.threads = threads;
@@ -115,7 +114,7 @@ static void stopped_and_resumed(void **state)
   o.job = job_digest(1);
   d = run_of(job, &s, &o, 0, &r);
   same_digest(&expect, &d);
-  assert_true(r.n_found >= 2);     /* the parting, and a leaf */
+  assert_true(r.n_found >= 2); /* the parting, and a leaf */
   vg_store_close(o.store, 1);
   clean();
   scene_end(&s);
@@ -124,7 +123,10 @@ static void stopped_and_resumed(void **state)
 /* The coarse mesh is made by all ranks, so all hear why there is none. */
 static void all_ranks_hear_of_it(void **state)
 {
-  static const struct { int parts, hole; const char *why; } what[] = {
+  static const struct {
+    int parts, hole;
+    const char *why;
+  } what[] = {
     { 1000000, 0, "ask for fewer parts" },
     { 4500, 0, "a smaller coarsening" },
     { 6, 1, "coarse mesh" },

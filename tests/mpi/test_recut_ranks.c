@@ -8,7 +8,7 @@ static void as_on_one(const struct scene *s, double share, int rounds)
 {
   struct vg_partition_options o = options_of(2000, 1, 0);
   struct vg_partition_report r;
-  struct mesh_digest expect = {0}, d;
+  struct mesh_digest expect = { 0 }, d;
 
   o.fail_leaves = share;
   o.fail_rounds = rounds;

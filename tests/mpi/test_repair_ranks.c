@@ -58,9 +58,10 @@ static void test_zones_as_alone(void **state)
  * before. */
 static void test_recorded(void **state)
 {
-  struct vg_spans spans = { .n_rank = vg_comm_size(job), .n_thread = 1,
+  struct vg_spans spans = { .n_rank = vg_comm_size(job),
+                            .n_thread = 1,
                             .wall = 3 };
-  int done[64] = {0};
+  int done[64] = { 0 };
   struct scene s;
 
   (void)state;

@@ -13,7 +13,7 @@
 
 enum { PIECES = 4000, THREADS = 2, TOTAL = 4000 * 3999 / 2 };
 
-static char name[256], part[300];   /* of their own for each number of ranks */
+static char name[256], part[300]; /* of their own for each number of ranks */
 
 static int open_named(void **state)
 {
@@ -39,7 +39,10 @@ static void meet(void)
 }
 
 /* Piece i has i bytes, all of them i. */
-struct writer { struct vg_shared_file *f; int number, bad; };
+struct writer {
+  struct vg_shared_file *f;
+  int number, bad;
+};
 
 static void *write_pieces(void *data)
 {
@@ -49,8 +52,9 @@ static void *write_pieces(void *data)
 
   for (int i = THREADS * vg_comm_rank(job) + w->number; i < PIECES; i += step) {
     memset(piece, i % 251, (size_t)i);
-    if (vg_shared_write(w->f, (uint64_t)i * (uint64_t)(i - 1) / 2,
-                        (uint64_t)i, piece, NULL)) w->bad++;
+    if (vg_shared_write(w->f, (uint64_t)i * (uint64_t)(i - 1) / 2, (uint64_t)i,
+                        piece, NULL))
+      w->bad++;
   }
   return NULL;
 }
@@ -62,8 +66,7 @@ static void write_by_threads(struct vg_shared_file *f)
 
   for (int i = 0; i < THREADS; i++) {
     w[i] = (struct writer){ f, i, 0 };
-    assert_int_equal(pthread_create(&thread[i], NULL, write_pieces, &w[i]),
-                     0);
+    assert_int_equal(pthread_create(&thread[i], NULL, write_pieces, &w[i]), 0);
   }
   for (int i = 0; i < THREADS; i++) {
     pthread_join(thread[i], NULL);
@@ -210,9 +213,9 @@ static void no_room_while_writing(void **state)
     fill(other);
   }
   meet();
-  st = st < 0 ? st :
-       vg_shared_write(f, (uint64_t)vg_comm_rank(job) * sizeof data,
-                       sizeof data, data, &err);
+  st = st < 0 ? st
+              : vg_shared_write(f, (uint64_t)vg_comm_rank(job) * sizeof data,
+                                sizeof data, data, &err);
   end = vg_shared_close(f, st, &err);
   meet();
   assert_false(exists(path));

@@ -11,7 +11,7 @@
 #include "io/vgrid/mapbc.h"
 
 #define N_SLICE 19
-#define N_PIECE 12           /* more than there are */
+#define N_PIECE 12 /* more than there are */
 
 static struct vg_mesh mesh[2];
 static struct vg_join_info info[2];
@@ -134,9 +134,10 @@ static int is_built(const char *form)
 
 static void any_number_of_ranks(void **state)
 {
-  static const char *const form[] = { "b8.ugrid", "lr4.ugrid", "lb8l.ugrid",
-                                      "vtu", "pvtu", "su2", "msh", "cgns",
-                                      "fluent.msh", "surface.vtu", "cogsg" };
+  static const char *const form[] = { "b8.ugrid",    "lr4.ugrid", "lb8l.ugrid",
+                                      "vtu",         "pvtu",      "su2",
+                                      "msh",         "cgns",      "fluent.msh",
+                                      "surface.vtu", "cogsg" };
 
   (void)state;
   for (size_t i = 0; i < sizeof form / sizeof *form; i++)
@@ -165,10 +166,12 @@ static void names_and_conditions(void **state)
     if (vg_slices_write(job, &c.s, all, form[i], 1, &err) != VG_OK)
       fail_msg("%s: %s", form[i], err.text);
     if (!vg_comm_rank(job)) {
-      assert_int_equal(i == 1
-        ? vg_mapbc_write(whole, &mesh[0], VG_MAPBC_FUN3D, NULL, NULL, NULL)
-        : vg_mapbc_write_output(whole, &mesh[0], strrchr(all, '/') + 1, NULL,
-                                NULL), VG_OK);
+      assert_int_equal(i == 1 ? vg_mapbc_write(whole, &mesh[0], VG_MAPBC_FUN3D,
+                                               NULL, NULL, NULL)
+                              : vg_mapbc_write_output(whole, &mesh[0],
+                                                      strrchr(all, '/') + 1,
+                                                      NULL, NULL),
+                       VG_OK);
       same_bytes(path, whole);
       unlink(path);
       unlink(whole);
@@ -220,9 +223,9 @@ static void assert_gone(const char *stem, const char *form)
 /* One slice of one rank cannot be had: all fail, nothing is left. */
 static void one_fails_all_fail(void **state)
 {
-  static const char *const form[] = { "b8.ugrid", "vtu", "pvtu", "cogsg",
-                                      "su2", "msh", "cgns", "fluent.msh",
-                                      "surface.vtu" };
+  static const char *const form[] = { "b8.ugrid", "vtu",        "pvtu",
+                                      "cogsg",    "su2",        "msh",
+                                      "cgns",     "fluent.msh", "surface.vtu" };
   const struct vg_slices_options o = { 2, 0, 0, 400 };
 
   (void)state;

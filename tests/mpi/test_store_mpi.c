@@ -10,13 +10,15 @@
 
 #define N_KEY 60
 
-static const struct vg_digest zero = {{0, 0}};
+static const struct vg_digest zero = { { 0, 0 } };
 static char dir[256];
 
 static int remove_one(const char *path, const struct stat *s, int flag,
                       struct FTW *f)
 {
-  (void)s; (void)flag; (void)f;
+  (void)s;
+  (void)flag;
+  (void)f;
   return remove(path);
 }
 
@@ -39,8 +41,11 @@ static struct vg_digest key_of(uint64_t k)
 static vg_status try_open(uint64_t run, int resume, uint64_t limit,
                           struct vg_store **s, struct vg_error *err)
 {
-  struct vg_store_options o = {.dir = dir, .job = key_of(run), .what = "a run",
-                               .resume = resume, .limit = limit};
+  struct vg_store_options o = { .dir = dir,
+                                .job = key_of(run),
+                                .what = "a run",
+                                .resume = resume,
+                                .limit = limit };
 
   *s = NULL;
   return vg_store_open(job, &o, s, err);
@@ -71,7 +76,7 @@ static void kept_by_one_found_by_all(void **state)
   vg_store_close(s, 0);
   assert_int_equal(try_open(1, 1, 0, &s, NULL), VG_OK);
   for (uint64_t k = 0; k < N_KEY; k++) {
-    struct vg_bytes b = {0, NULL};
+    struct vg_bytes b = { 0, NULL };
 
     memset(data, (int)k, sizeof data);
     assert_int_equal(vg_store_find(s, key_of(k), &b, NULL), VG_OK);
@@ -95,8 +100,7 @@ static void all_ranks_are_refused(void **state)
   assert_int_equal(try_open(1, 0, 0, &s, NULL), VG_OK);
   assert_int_equal(try_open(1, 1, 0, &again, &err), VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "under way"));
-  if (vg_comm_rank(job))
-    assert_int_equal(strncmp(err.text, "rank 0: ", 8), 0);
+  if (vg_comm_rank(job)) assert_int_equal(strncmp(err.text, "rank 0: ", 8), 0);
   assert_null(again);
   vg_store_keep(s, key_of(9), 3, "abc");
   vg_store_close(s, 0);
@@ -117,8 +121,8 @@ static void the_limit_is_for_all_together(void **state)
   (void)state;
   assert_int_equal(try_open(1, 0, limit, &s, NULL), VG_OK);
   for (uint64_t k = 0; k < 30; k++)
-    vg_store_keep(s, key_of(100 * k + (uint64_t)vg_comm_rank(job)),
-                  sizeof data, data);
+    vg_store_keep(s, key_of(100 * k + (uint64_t)vg_comm_rank(job)), sizeof data,
+                  data);
   vg_store_state(s, &r);
   assert_non_null(strstr(r.stopped, "limit of 20000 bytes over all ranks"));
   sum = sum_of(r.bytes_kept);

@@ -12,7 +12,7 @@ struct all {
   uint32_t begin[N + 1];
   uint16_t item[N];
   uint64_t chunk[N / GRAIN + 1];
-  double list[4 * N];        /* item i has i % 4 elements */
+  double list[4 * N]; /* item i has i % 4 elements */
   size_t n_done;
 };
 
@@ -49,7 +49,8 @@ static vg_status run(struct vg_team *t, struct all *a, size_t n,
   const struct vg_team_out out[] = {
     { a->item, sizeof *a->item, 0, NULL },
     { a->chunk, sizeof *a->chunk, GRAIN, NULL },
-    { a->list, sizeof *a->list, 0, a->begin } };
+    { a->list, sizeof *a->list, 0, a->begin }
+  };
 
   return vg_team_for(t, 1, n, GRAIN, body, a, 3, out, err);
 }

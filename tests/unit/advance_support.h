@@ -104,7 +104,7 @@ struct item {
 
 static inline void add_item(uint64_t sum[4], const struct item *it, int at)
 {
-  const struct vg_digest zero = {{0, 0}};
+  const struct vg_digest zero = { { 0, 0 } };
   struct vg_digest d = vg_digest_of(zero, sizeof *it, it);
 
   sum[at] += d.word[0];
@@ -123,8 +123,7 @@ static inline void add_slice(const struct vg_slice *s, uint64_t sum[4])
     add_item(sum, &it, 0);
   }
   for (size_t c = 0; c < s->n_cell[VG_SLICE_TET]; c++) {
-    struct item it = { .kind = 2,
-                       .number = s->cell_at[VG_SLICE_TET] + c };
+    struct item it = { .kind = 2, .number = s->cell_at[VG_SLICE_TET] + c };
 
     for (int i = 0; i < 4; i++) {
       uint32_t p = s->cell[VG_SLICE_TET][4 * c + (size_t)i];
@@ -147,14 +146,16 @@ static inline void check_front(const struct vg_slice *s,
 }
 
 /* Sums over all slices of all ranks: of a mesh, not of how it is kept. */
-struct mesh_digest { uint64_t n_point, n_cell, sum[4]; };
+struct mesh_digest {
+  uint64_t n_point, n_cell, sum[4];
+};
 
 static inline struct mesh_digest digest_of(struct vg_comm *comm,
                                            const struct vg_slices *s,
                                            const struct vg_mesh *front)
 {
   struct mesh_digest d = { s->n_point, s->n_cell[VG_SLICE_TET], { 0 } };
-  uint64_t seen[2] = {0, 0};
+  uint64_t seen[2] = { 0, 0 };
 
   for (size_t i = 0; i < s->n_slice; i++) {
     struct vg_slice slice;
@@ -276,7 +277,7 @@ static inline void remove_folder(const char *dir)
 
 static inline struct vg_digest job_digest(uint64_t run)
 {
-  const struct vg_digest zero = {{0, 0}};
+  const struct vg_digest zero = { { 0, 0 } };
 
   return vg_digest_of(zero, sizeof run, &run);
 }
@@ -285,15 +286,19 @@ static inline vg_status open_store(struct vg_comm *comm, const char *dir,
                                    uint64_t run, int resume,
                                    struct vg_store **s, struct vg_error *err)
 {
-  struct vg_store_options o = { .dir = dir, .job = job_digest(run),
-                                .what = "a run", .resume = resume };
+  struct vg_store_options o = {
+    .dir = dir, .job = job_digest(run), .what = "a run", .resume = resume
+  };
 
   *s = NULL;
   return vg_store_open(comm, &o, s, err);
 }
 
 /* Stop once this rank has kept so many records; 0: at once. */
-struct stopper { struct vg_store *store; uint64_t after; };
+struct stopper {
+  struct vg_store *store;
+  uint64_t after;
+};
 
 static inline int stop_after(void *user)
 {

@@ -134,7 +134,7 @@ static void add_sphere(struct shape *s, uint32_t patch, int n,
 
 static void normal_of(const struct shape *s, const uint32_t t[3], double n[3])
 {
-  double (*p)[3] = s->m.point, d[3], e[3];
+  double(*p)[3] = s->m.point, d[3], e[3];
 
   for (int k = 0; k < 3; k++) {
     d[k] = p[t[1]][k] - p[t[0]][k];
@@ -179,9 +179,13 @@ static void grow(struct shape *s, int n)
   for (size_t p = 0; p < s->m.n_point; p++) {
     if (!used[p]) continue;
     s->of_point[p] = (uint32_t)c->n_column;
-    c->column[c->n_column++] = (struct vg_column){
-      .root = (uint32_t)p, .slide = { VG_NO_INDEX, VG_NO_INDEX }, .cap = 1.3,
-      .bent = SIZE_MAX, .n = (uint16_t)n, .n_wanted = (uint16_t)n };
+    c->column[c->n_column++] = (struct vg_column){ .root = (uint32_t)p,
+                                                   .slide = { VG_NO_INDEX,
+                                                              VG_NO_INDEX },
+                                                   .cap = 1.3,
+                                                   .bent = SIZE_MAX,
+                                                   .n = (uint16_t)n,
+                                                   .n_wanted = (uint16_t)n };
   }
   for (size_t t = 0; t < s->m.n_tri; t++) {
     double normal[3];
@@ -217,8 +221,8 @@ static void add_rims(struct shape *s, uint32_t patch, double at)
     for (int k = 0; k < 3; k++) {
       uint32_t a = c->face[f][k], b = c->face[f][(k + 1) % 3];
 
-      if (s->m.point[c->column[a].root][2] != at
-          || s->m.point[c->column[b].root][2] != at)
+      if (s->m.point[c->column[a].root][2] != at ||
+          s->m.point[c->column[b].root][2] != at)
         continue;
       c->column[a].slide[0] = c->column[b].slide[0] = patch;
       c->border[c->n_border][0] = a;

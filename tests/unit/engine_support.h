@@ -31,21 +31,28 @@ struct forest {
   const char *fail_at;       /* path of a task whose run fails */
   const char *done_fails_at; /* whose done fails */
   const char *pack_fails_at;
-  const char *stop_at;       /* once run, stop() says so */
+  const char *stop_at; /* once run, stop() says so */
   atomic_int stop;
-  atomic_int in_done;        /* threads there */
-  atomic_int bad;            /* rules that were broken */
-  atomic_long alive;         /* inputs and outcomes on this rank */
+  atomic_int in_done; /* threads there */
+  atomic_int bad;     /* rules that were broken */
+  atomic_long alive;  /* inputs and outcomes on this rank */
   atomic_long n_run, n_done, n_moved;
-  atomic_int busy[64];       /* by worker */
-  atomic_int inside[64];     /* a body of a loop runs, by worker */
+  atomic_int busy[64];           /* by worker */
+  atomic_int inside[64];         /* a body of a loop runs, by worker */
   atomic_long n_body, n_foreign; /* bodies, and those in another worker */
-  uint64_t sum;              /* of all tasks' digests, in done */
+  uint64_t sum;                  /* of all tasks' digests, in done */
   double last_done, last_known;
 };
 
-struct forest_input { uint64_t digest; size_t n; unsigned char data[]; };
-struct forest_outcome { uint64_t digest; int n_child; };
+struct forest_input {
+  uint64_t digest;
+  size_t n;
+  unsigned char data[];
+};
+struct forest_outcome {
+  uint64_t digest;
+  int n_child;
+};
 
 static inline uint64_t forest_mix(uint64_t h)
 {
@@ -78,7 +85,8 @@ static inline void forest_spin(double seconds)
   clock_gettime(CLOCK_MONOTONIC, &t0);
   do clock_gettime(CLOCK_MONOTONIC, &t);
   while ((double)(t.tv_sec - t0.tv_sec) +
-         1e-9 * (double)(t.tv_nsec - t0.tv_nsec) < seconds);
+           1e-9 * (double)(t.tv_nsec - t0.tv_nsec) <
+         seconds);
 }
 
 static inline struct vg_task forest_task(struct forest *f, const char *path)
@@ -106,8 +114,8 @@ static inline struct vg_task forest_task(struct forest *f, const char *path)
 struct forest_loop {
   struct forest *f;
   const struct vg_engine *e;
-  int worker;                /* of the task */
-  int count[64];             /* by item: no lock, but for the loop's own */
+  int worker;    /* of the task */
+  int count[64]; /* by item: no lock, but for the loop's own */
 };
 
 static inline void forest_inner(void *context, size_t first, size_t end,
@@ -290,13 +298,12 @@ static inline vg_status forest_grow(struct forest *f, struct vg_comm *comm,
                                     struct vg_error *err)
 {
   static const struct vg_engine_ops ops = {
-    forest_run, forest_done, forest_pack_input, forest_unpack,
-    forest_pack_outcome, forest_unpack, forest_release, forest_release
+    forest_run,          forest_done,   forest_pack_input, forest_unpack,
+    forest_pack_outcome, forest_unpack, forest_release,    forest_release
   };
-  struct vg_engine_options options = {
-    f->threads, shuffle, f->deal, forest_progress, f,
-    { forest_stop, f }
-  };
+  struct vg_engine_options options = { f->threads, shuffle,
+                                       f->deal,    forest_progress,
+                                       f,          { forest_stop, f } };
   struct vg_task first[64];
   size_t n = 0;
 

@@ -19,7 +19,7 @@ static inline void shape_need(const void *p)
 }
 
 /* A front with patches as a mesh of the surface's patches, in this block. */
-#define FRONT_MESH(front, surface) \
+#define FRONT_MESH(front, surface)                                             \
   ((struct vg_mesh[1]){ vg_front_mesh((front), (surface)) })
 
 static inline uint32_t shape_point(struct vg_mesh *m, double x, double y,
@@ -127,7 +127,7 @@ static inline void shape_sphere(struct vg_mesh *m, int n,
     int odd = s[0] * s[1] * s[2] < 0;
 
     for (int up = 0; up < 2; up++) {
-      int corner[3][2] = {{i + up, j + up}, {i + 1, j}, {i, j + 1}};
+      int corner[3][2] = { { i + up, j + up }, { i + 1, j }, { i, j + 1 } };
       uint32_t t[3];
 
       if (i + j + up >= n) continue;
@@ -147,7 +147,8 @@ static inline void shape_sphere(struct vg_mesh *m, int n,
         if (!id[at])
           id[at] = shape_point(m, centre[0] + radius * a[0] / r,
                                centre[1] + radius * a[1] / r,
-                               centre[2] + radius * a[2] / r) + 1;
+                               centre[2] + radius * a[2] / r) +
+                   1;
         t[k] = id[at] - 1;
       }
       if (odd) shape_tri(m, t[0], t[2], t[1], patch);
@@ -158,8 +159,8 @@ static inline void shape_sphere(struct vg_mesh *m, int n,
 }
 
 /* The inside of a torus around the z axis; nu x nv quads. */
-static inline void shape_torus(struct vg_mesh *m, int nu, int nv,
-                               double big, double small)
+static inline void shape_torus(struct vg_mesh *m, int nu, int nv, double big,
+                               double small)
 {
   size_t patch = vg_mesh_add_patch(m, 1, "torus");
 

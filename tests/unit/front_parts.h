@@ -14,8 +14,8 @@
 
 /* Half edges by their lower point. */
 struct part_edges {
-  uint32_t *first;           /* [n_point + 2] */
-  uint32_t *half;            /* [3 n_face] 3 * face + corner that begins it */
+  uint32_t *first; /* [n_point + 2] */
+  uint32_t *half;  /* [3 n_face] 3 * face + corner that begins it */
 };
 
 static void part_ends_of(const struct vg_front *f, uint32_t half,
@@ -147,7 +147,7 @@ static void part_unite_around(const struct vg_front *f,
 static inline vg_status front_parts(const struct vg_front *f, uint32_t *part,
                                     size_t *n, struct vg_error *err)
 {
-  struct part_edges e = {0};
+  struct part_edges e = { 0 };
   uint32_t *parent = vg_alloc(f->n_face, sizeof *parent);
   vg_status st = VG_OK;
 
@@ -215,8 +215,7 @@ static vg_status part_take(const struct vg_front *f, size_t n,
 /* One front for each of n parts: out [n], with the points they use. */
 static inline vg_status front_split(const struct vg_front *f,
                                     const uint32_t *part, size_t n,
-                                    struct vg_front *out,
-                                    struct vg_error *err)
+                                    struct vg_front *out, struct vg_error *err)
 {
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
   uint32_t *list = vg_alloc(f->n_face, sizeof *list);
@@ -234,8 +233,8 @@ static inline vg_status front_split(const struct vg_front *f,
   for (size_t i = 0; i < f->n_face; i++)
     list[first[part[i] + 1]++] = (uint32_t)i;
   for (size_t k = 0; k < n; k++)
-    VG_TRY(part_take(f, first[k + 1] - first[k], list + first[k], to, &out[k],
-                err));
+    VG_TRY(
+      part_take(f, first[k + 1] - first[k], list + first[k], to, &out[k], err));
 done:
   for (size_t k = 0; st < 0 && k < n; k++) vg_front_release(&out[k]);
   free(to);

@@ -12,7 +12,7 @@ static inline void *grown(void *array, size_t n, size_t size)
   size_t need = (n + 1) * size;
 
   return array && malloc_usable_size(array) >= need ? array
-         : realloc(array, 2 * need);
+                                                    : realloc(array, 2 * need);
 }
 
 #define GROW(array, n) ((array) = grown((array), (n), sizeof *(array)))

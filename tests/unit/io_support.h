@@ -20,8 +20,7 @@
 
 typedef vg_status (*io_parse)(struct vg_input *, struct vg_mesh *,
                               struct vg_error *);
-typedef vg_status (*io_read)(const char *, struct vg_mesh *,
-                             struct vg_error *);
+typedef vg_status (*io_read)(const char *, struct vg_mesh *, struct vg_error *);
 
 /* Path in the folder for scratch files; valid until the next four calls. */
 static inline const char *io_temp(const char *name)
@@ -83,10 +82,10 @@ static inline void io_refuse(io_parse parse, const char *text, vg_status code,
 static inline void io_make_t1(struct vg_mesh *m, int is_volume)
 {
   static const double point[4][3] = {
-    {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}
+    { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
   };
   static const uint32_t tri[4][3] = {
-    {0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}
+    { 0, 1, 2 }, { 0, 3, 1 }, { 0, 2, 3 }, { 1, 3, 2 }
   };
 
   memset(m, 0, sizeof *m);
@@ -111,26 +110,33 @@ static inline void io_make_t1(struct vg_mesh *m, int is_volume)
  * the pyramid. Not a closed boundary; readers do not ask for one. */
 static inline void io_make_mixed(struct vg_mesh *m)
 {
-  static const double point[13][3] = {
-    {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1},
-    {2, 0.5, 0}, {2, 0.5, 1}, {0.5, 0.5, 2}, {1.5, 0.5, 1.75},
-    {1.0 / 3, -0.1, 1e-7}
-  };
+  static const double point[13][3] = { { 0, 0, 0 },
+                                       { 1, 0, 0 },
+                                       { 1, 1, 0 },
+                                       { 0, 1, 0 },
+                                       { 0, 0, 1 },
+                                       { 1, 0, 1 },
+                                       { 1, 1, 1 },
+                                       { 0, 1, 1 },
+                                       { 2, 0.5, 0 },
+                                       { 2, 0.5, 1 },
+                                       { 0.5, 0.5, 2 },
+                                       { 1.5, 0.5, 1.75 },
+                                       { 1.0 / 3, -0.1, 1e-7 } };
   static const uint32_t hex[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
   static const uint32_t pri[6] = { 1, 8, 2, 5, 9, 6 };
   /* Ring 0 3 4 1 of slots is 4 5 6 7 counter-clockwise seen from point 10. */
   static const uint32_t pyr[5] = { 4, 7, 10, 5, 6 };
   static const uint32_t tet[4] = { 5, 6, 10, 11 };
-  static const uint32_t tri[2][3] = { {1, 8, 2}, {4, 7, 10} };
-  static const uint32_t quad[3][4] = {
-    {0, 1, 2, 3}, {0, 4, 5, 1}, {0, 3, 7, 4}
-  };
+  static const uint32_t tri[2][3] = { { 1, 8, 2 }, { 4, 7, 10 } };
+  static const uint32_t quad[3][4] = { { 0, 1, 2, 3 },
+                                       { 0, 4, 5, 1 },
+                                       { 0, 3, 7, 4 } };
   static const uint32_t tri_patch[2] = { 0, 2 }, quad_patch[3] = { 0, 1, 2 };
 
   memset(m, 0, sizeof *m);
-#define FILL(array, from, n) \
-  (m->array = malloc(sizeof from), memcpy(m->array, from, sizeof from), \
+#define FILL(array, from, n)                                                   \
+  (m->array = malloc(sizeof from), memcpy(m->array, from, sizeof from),        \
    m->n = sizeof from / (sizeof *m->array))
   FILL(point, point, n_point);
   FILL(hex, hex, n_hex);
@@ -158,8 +164,8 @@ static inline void io_same_array(const void *a, const void *b, size_t n,
 static inline void io_same(const struct vg_mesh *a, const struct vg_mesh *b,
                            int with_names)
 {
-#define SAME(array, n) \
-  (assert_int_equal(a->n, b->n), \
+#define SAME(array, n)                                                         \
+  (assert_int_equal(a->n, b->n),                                               \
    io_same_array(a->array, b->array, a->n, sizeof *a->array))
   SAME(point, n_point);
   SAME(tri, n_tri);
@@ -206,7 +212,7 @@ static int io_by_edge(const void *a, const void *b)
 static inline size_t io_bad_edges(const struct vg_mesh *m)
 {
   size_t n = 3 * m->n_tri, bad = 0;
-  uint32_t (*e)[3] = malloc(n * sizeof *e);
+  uint32_t(*e)[3] = malloc(n * sizeof *e);
 
   for (size_t i = 0; i < n; i++) {
     uint32_t a = m->tri[i / 3][i % 3], b = m->tri[i / 3][(i + 1) % 3];

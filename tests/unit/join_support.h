@@ -14,7 +14,7 @@ struct model {
   size_t room_column, room_face, room_border;
 };
 
-#define MODEL_WALL 1     /* patch; 0, 2, 3, ... are those of the cone */
+#define MODEL_WALL 1 /* patch; 0, 2, 3, ... are those of the cone */
 
 static inline void model_release(struct model *m)
 {
@@ -32,7 +32,8 @@ static inline uint32_t model_column(struct model *m, uint32_t root,
   struct vg_column *column;
 
   if (vg_reserve(&c->column, &m->room_column, c->n_column + 1,
-                 sizeof *c->column)) abort();
+                 sizeof *c->column))
+    abort();
   column = &c->column[c->n_column];
   memset(column, 0, sizeof *column);
   column->root = root;
@@ -52,7 +53,8 @@ static inline void model_face(struct model *m, uint32_t a, uint32_t b,
 
   if (vg_reserve(&s->face, &room, s->n_face + 1, sizeof *s->face)) abort();
   if (vg_reserve(&s->face_tri, &m->room_face, s->n_face + 1,
-                 sizeof *s->face_tri)) abort();
+                 sizeof *s->face_tri))
+    abort();
   s->face[s->n_face][0] = a;
   s->face[s->n_face][1] = b;
   s->face[s->n_face][2] = c;
@@ -99,7 +101,7 @@ static inline int model_cmp_edge(const void *a, const void *b)
 /* Directed edges of triangles, sorted. */
 static inline uint32_t (*model_edges(size_t n, uint32_t (*tri)[3]))[2]
 {
-  uint32_t (*edge)[2] = vg_alloc(3 * n, sizeof *edge);
+  uint32_t(*edge)[2] = vg_alloc(3 * n, sizeof *edge);
 
   shape_need(edge);
   for (size_t i = 0; i < 3 * n; i++) {
@@ -111,11 +113,12 @@ static inline uint32_t (*model_edges(size_t n, uint32_t (*tri)[3]))[2]
 }
 
 /* Rims: edges of faces without a neighbour; the cone over them. */
-static inline void model_rims(struct model *m, uint32_t (*patch)(
-                                const double x[3], const double y[3]))
+static inline void model_rims(struct model *m,
+                              uint32_t (*patch)(const double x[3],
+                                                const double y[3]))
 {
   struct vg_columns *c = &m->layers.columns;
-  uint32_t (*edge)[2] = model_edges(c->n_face, c->face);
+  uint32_t(*edge)[2] = model_edges(c->n_face, c->face);
 
   m->apex = shape_point(&m->surface, 0, 0, 5);
   for (size_t i = 0; i < 3 * c->n_face; i++) {
@@ -126,10 +129,11 @@ static inline void model_rims(struct model *m, uint32_t (*patch)(
     if (bsearch(back, edge, 3 * c->n_face, sizeof *edge, model_cmp_edge))
       continue;
     q = patch(m->surface.point[a], m->surface.point[b]);
-    if (vg_reserve(&c->border, &room, c->n_border + 1,
-                   sizeof *c->border)) abort();
+    if (vg_reserve(&c->border, &room, c->n_border + 1, sizeof *c->border))
+      abort();
     if (vg_reserve(&c->border_patch, &m->room_border, c->n_border + 1,
-                   sizeof *c->border_patch)) abort();
+                   sizeof *c->border_patch))
+      abort();
     memcpy(c->border[c->n_border], e, sizeof *c->border);
     c->border_patch[c->n_border++] = q;
     if (a != b) shape_tri(&m->surface, b, a, m->apex, q);
@@ -246,8 +250,8 @@ static inline void model_front_points(struct model *m, uint32_t *top,
 
     vg_column_top(c, &m->surface, i, x);
     top[i] = c->column[i].n
-           ? model_front_point(m, x, vg_layer_top_id((uint32_t)i))
-           : point[c->column[i].root];
+             ? model_front_point(m, x, vg_layer_top_id((uint32_t)i))
+             : point[c->column[i].root];
   }
 }
 
@@ -294,7 +298,7 @@ static inline void model_front(struct model *m)
 static inline int model_front_is_manifold(const struct model *m)
 {
   const struct vg_front *f = &m->layers.front;
-  uint32_t (*edge)[2] = model_edges(f->n_face, f->face);
+  uint32_t(*edge)[2] = model_edges(f->n_face, f->face);
   int fine = 1;
 
   for (size_t i = 0; i < 3 * f->n_face; i++) {
@@ -359,8 +363,8 @@ static inline void model_sphere(struct model *m, int n, int most,
 
     for (int k = 0; k < 3; k++) dir[k] = m->surface.point[i][k] - centre[k];
     model_column(m, (uint32_t)i, dir);
-    c->column[i - first_point].n =
-      (uint16_t)(model_random(state) % (uint32_t)(most + 1));
+    c->column[i - first_point].n = (uint16_t)(model_random(state) %
+                                              (uint32_t)(most + 1));
   }
   for (size_t i = first_tri; i < m->surface.n_tri; i++) {
     const uint32_t *t = m->surface.tri[i];
@@ -373,16 +377,16 @@ static inline void model_sphere(struct model *m, int n, int most,
   model_front(m);
 }
 
-#define ROOF_MAX 9          /* points per side */
+#define ROOF_MAX 9 /* points per side */
 #define ROOF_FAN 4
 #define ROOF_SLOPE 0.6
 
 struct roof {
-  int n;                    /* squares per side, even */
-  int n_each;               /* columns of each fan; 0: different ones */
-  int fan[ROOF_MAX * ROOF_MAX][4 * ROOF_FAN];   /* columns of a point */
+  int n;      /* squares per side, even */
+  int n_each; /* columns of each fan; 0: different ones */
+  int fan[ROOF_MAX * ROOF_MAX][4 * ROOF_FAN]; /* columns of a point */
   int n_fan[ROOF_MAX * ROOF_MAX];
-  int sector[ROOF_MAX * ROOF_MAX][5];  /* where in fan each sector's is */
+  int sector[ROOF_MAX * ROOF_MAX][5]; /* where in fan each sector's is */
 };
 
 static inline uint32_t roof_side(const double x[3], const double y[3])
@@ -406,15 +410,14 @@ static inline void roof_normal(double turn, double dir[3])
 }
 
 /* Columns of grid point g, at dx, dy from the middle: east is sector 0. */
-static inline void roof_columns(struct model *m, struct roof *r, int g,
-                                int dx, int dy, uint32_t root,
-                                uint64_t *state)
+static inline void roof_columns(struct model *m, struct roof *r, int g, int dx,
+                                int dy, uint32_t root, uint64_t *state)
 {
   static const double up[3] = { 0, 0, 1 };
   double dir[3];
   int ridge = dx > 0 ? (dy > 0 ? 0 : 3) : (dy > 0 ? 1 : 2);
-  int n = r->n_each ? r->n_each
-                    : 1 + (int)(model_random(state) % ROOF_FAN), side;
+  int n = r->n_each ? r->n_each : 1 + (int)(model_random(state) % ROOF_FAN),
+      side;
 
   memset(r->sector[g], 0, sizeof r->sector[g]);
   r->n_fan[g] = 0;
@@ -442,8 +445,7 @@ static inline void roof_columns(struct model *m, struct roof *r, int g,
   side = abs(dx) > abs(dy) ? (dx > 0 ? 0 : 2) : (dy > 0 ? 1 : 3);
   if (abs(dx) != abs(dy)) roof_normal(side, dir);
   else if (dx) roof_normal(ridge + 0.5, dir);
-  r->fan[g][r->n_fan[g]++] =
-    (int)model_column(m, root, dx || dy ? dir : up);
+  r->fan[g][r->n_fan[g]++] = (int)model_column(m, root, dx || dy ? dir : up);
 }
 
 /* The columns of point g from sector k to the next, in order. */
@@ -485,14 +487,16 @@ static inline void roof_walls(struct model *m, const struct roof *r)
   for (int j = 0; j < r->n; j++)
     for (int i = 0; i < r->n; i++) {
       int up = (2 * i + 1 - r->n) * (2 * j + 1 - r->n) > 0;
-      const int q[4][2] = {{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}};
+      const int q[4][2] = {
+        { i, j }, { i + 1, j }, { i + 1, j + 1 }, { i, j + 1 }
+      };
       int t[3][2];
 
       for (int half = 0; half < 2; half++) {
         memcpy(t[0], q[up ? 0 : 1], sizeof t[0]);
         memcpy(t[1], q[up ? 1 + half : 2 + half], sizeof t[1]);
         memcpy(t[2], q[up ? 2 + half : (3 + half) % 4], sizeof t[2]);
-        roof_triangle(m, r, (const int (*)[2])t);
+        roof_triangle(m, r, (const int(*)[2])t);
       }
     }
 }
@@ -500,7 +504,7 @@ static inline void roof_walls(struct model *m, const struct roof *r)
 static inline void roof_ridges(struct model *m, const struct roof *r,
                                uint64_t *state)
 {
-  static const int step[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  static const int step[4][2] = { { 1, 1 }, { -1, 1 }, { -1, -1 }, { 1, -1 } };
   int h = r->n / 2, w = r->n + 1, middle = h + w * h;
 
   for (int k = 0; k < 4; k++)
@@ -541,16 +545,18 @@ static inline void model_roof(struct model *m, int n, int n_each, int most,
     int g = order[i], dx = g % w - n / 2, dy = g / w - n / 2;
     double x = (double)dx / n, y = (double)dy / n;
 
-    roof_columns(m, r, g, dx, dy, shape_point(&m->surface, x, y,
-                 -ROOF_SLOPE * fmax(fabs(x), fabs(y))), state);
+    roof_columns(m, r, g, dx, dy,
+                 shape_point(&m->surface, x, y,
+                             -ROOF_SLOPE * fmax(fabs(x), fabs(y))),
+                 state);
   }
   roof_walls(m, r);
   roof_ridges(m, r, state);
   model_rims(m, roof_side);
   model_law(m, 0.001);
   for (size_t i = 0; i < m->layers.columns.n_column; i++)
-    m->layers.columns.column[i].n =
-      (uint16_t)(model_random(state) % (uint32_t)(most + 1));
+    m->layers.columns.column[i].n = (uint16_t)(model_random(state) %
+                                               (uint32_t)(most + 1));
   do model_relax(m);
   while (model_even(m, n_each > 0));
 }

@@ -11,7 +11,9 @@
 
 /* --- closing ------------------------------------------------------------- */
 
-struct judge_side { uint32_t key[4], node[4]; };
+struct judge_side {
+  uint32_t key[4], node[4];
+};
 
 static inline int judge_by_key(const void *a, const void *b)
 {
@@ -64,7 +66,8 @@ static inline void judge_close(struct vg_mesh *m)
   for (size_t i = 0, j; i < n; i = j) {
     const uint32_t *v = s[i].node;
 
-    for (j = i + 1; j < n && !judge_by_key(s + i, s + j); j++) {}
+    for (j = i + 1; j < n && !judge_by_key(s + i, s + j); j++) {
+    }
     if (j - i > 1) continue;
     if (v[3] == VG_NO_NODE) {
       for (int k = 0; k < 3; k++) m->tri[m->n_tri][k] = v[2 - k];
@@ -85,13 +88,12 @@ static inline struct vg_mesh judge_mesh(enum vg_layer_cells cells)
   struct vg_join_info info;
 
   cut_mesh(&m, &info, cells);
-  m.n_quad = 0;            /* those are for writers only */
+  m.n_quad = 0; /* those are for writers only */
   return m;
 }
 
 /* A block of nx by ny by nz cubes, two prisms each, level by level. */
-static inline struct vg_mesh judge_prisms(uint32_t nx, uint32_t ny,
-                                          uint32_t nz)
+static inline struct vg_mesh judge_prisms(uint32_t nx, uint32_t ny, uint32_t nz)
 {
   uint32_t row = nx + 1, level = row * (ny + 1);
   struct vg_mesh m = VG_MESH_INIT;
@@ -103,7 +105,8 @@ static inline struct vg_mesh judge_prisms(uint32_t nx, uint32_t ny,
                 0.5 * (i / level) + 0.1 * (i % row));
   for (uint32_t c = 0; c < nx * ny * nz; c++) {
     uint32_t a = c % nx + row * (c / nx % ny) + level * (c / nx / ny);
-    uint32_t tri[2][3] = {{a, a + 1, a + 1 + row}, {a, a + 1 + row, a + row}};
+    uint32_t tri[2][3] = { { a, a + 1, a + 1 + row },
+                           { a, a + 1 + row, a + row } };
 
     for (int h = 0; h < 2; h++, m.n_pri++)
       for (int k = 0; k < 3; k++) {
@@ -144,40 +147,41 @@ static inline void judge_damage(struct vg_mesh *m, int damage, uint32_t at)
   uint32_t point = m->tet[tet][0], *t;
 
   switch (damage) {
-  case 0:                  /* a cell is missing */
+  case 0: /* a cell is missing */
     m->n_tet--;
     memmove(m->tet + tet, m->tet + tet + 1, (m->n_tet - tet) * sizeof *m->tet);
     break;
   case 1: judge_swap(&m->tet[tet][1], &m->tet[tet][2]); break;
   case 2: m->point[point][at] += 100; break;
-  case 3:                  /* two points at one place, but for signs of 0 */
+  case 3: /* two points at one place, but for signs of 0 */
     memset(m->point[point], 0, sizeof *m->point);
     m->point[m->tet[tet][1]][0] = m->point[m->tet[tet][1]][1] = 0;
     m->point[m->tet[tet][1]][2] = -0.0;
     break;
-  case 4:                  /* points without cells, three at one place */
+  case 4: /* points without cells, three at one place */
     for (int k = 0; k < 3; k++) shape_point(m, 2, 2, 2 + (int)at);
     break;
   case 5: judge_swap(&m->tri[tri][0], &m->tri[tri][1]); break;
   case 6: m->n_tri -= 1 + at; break;
-  case 7: m->tri[tri][2] = m->tri[tri][2] == point ? m->tet[tet][1] : point;
+  case 7:
+    m->tri[tri][2] = m->tri[tri][2] == point ? m->tet[tet][1] : point;
     break;
   case 8: memcpy(m->tri[tri], m->tri[tri + 1], sizeof *m->tri); break;
-  case 9:                  /* a cell hangs on another point */
+  case 9: /* a cell hangs on another point */
     m->tet[tet][3] = m->tet[tet / 2][0];
     break;
-  case 10:                 /* a cell twice, the second time among the last */
+  case 10: /* a cell twice, the second time among the last */
     memcpy(m->tet[m->n_tet - 1], m->tet[tet / 2], sizeof *m->tet);
     break;
-  case 11:                 /* a boundary face between two cells, or twice */
+  case 11: /* a boundary face between two cells, or twice */
     memcpy(m->tri[tri], m->tet[tet], sizeof *m->tri);
     if (at) memcpy(m->tri[tri + 1], m->tet[tet], sizeof *m->tri);
     break;
-  case 12:                 /* a third cell on a face, in one slice or not */
+  case 12: /* a third cell on a face, in one slice or not */
     memcpy(m->tet[m->n_tet - 1], m->tet[at ? m->n_tet - 5 : tet / 2],
            3 * sizeof **m->tet);
     break;
-  default:                 /* prisms or tetrahedra, turned over */
+  default: /* prisms or tetrahedra, turned over */
     t = m->n_pri ? m->pri[m->n_pri / (2 + at)] : m->tet[tet / 2];
     judge_swap(&t[0], &t[1]);
     if (m->n_pri) judge_swap(&t[3], &t[4]);
@@ -187,8 +191,8 @@ static inline void judge_damage(struct vg_mesh *m, int damage, uint32_t at)
 static inline size_t judge_faults(const struct vg_mesh_report *r)
 {
   return r->bad_index + r->unused_point + r->not_finite + r->duplicate_point +
-         r->not_positive + r->open_face + r->crowded_face +
-         r->same_side_face + r->orphan_boundary + r->outward_boundary;
+         r->not_positive + r->open_face + r->crowded_face + r->same_side_face +
+         r->orphan_boundary + r->outward_boundary;
 }
 
 /* --- reports ------------------------------------------------------------- */
@@ -197,11 +201,11 @@ static inline size_t judge_faults(const struct vg_mesh_report *r)
 static inline void assert_same_report(const struct vg_mesh_report *a,
                                       const struct vg_mesh_report *b)
 {
-#define SAME(x) \
-  do { \
-    if (memcmp(&a->x, &b->x, sizeof a->x)) \
-      fail_msg("reports differ in " #x ": %.17g, %.17g", (double)a->x, \
-               (double)b->x); \
+#define SAME(x)                                                                \
+  do {                                                                         \
+    if (memcmp(&a->x, &b->x, sizeof a->x))                                     \
+      fail_msg("reports differ in " #x ": %.17g, %.17g", (double)a->x,         \
+               (double)b->x);                                                  \
   } while (0)
 #define SAME_LIST(x) assert_memory_equal(a->x, b->x, sizeof a->x)
   SAME(bad_index);
@@ -248,7 +252,7 @@ static inline void assert_same_report(const struct vg_mesh_report *a,
 
 static inline int judge_is_field(size_t g)
 {
-  return g % 4 != 0;       /* as cut_get says of kinds */
+  return g % 4 != 0; /* as cut_get says of kinds */
 }
 
 static inline uint32_t judge_point(const struct cut *c, struct vg_mesh *m,

@@ -32,7 +32,7 @@ struct case_builder {
   struct case_size size;
   struct case_line *line;
   size_t n_line;
-  uint32_t (*edge)[2];      /* loops of the face at hand */
+  uint32_t (*edge)[2]; /* loops of the face at hand */
   size_t n_edge;
 };
 
@@ -54,7 +54,7 @@ static inline double case_size_at(void *user, const double x[3])
 static inline struct case_builder case_start(struct vg_mesh *m, double h)
 {
   struct case_builder b = { .m = m,
-    .size = { h, 1, h, { 0, 0, 0 }, { 0, 0, 0 } } };
+                            .size = { h, 1, h, { 0, 0, 0 }, { 0, 0, 0 } } };
 
   return b;
 }
@@ -63,8 +63,9 @@ static inline struct case_builder case_start(struct vg_mesh *m, double h)
 static inline struct case_builder case_start_body(struct vg_mesh *m, double h,
                                                   double half)
 {
-  struct case_builder b = { .m = m,
-    .size = { h, 1.3, 1, { -half, -half, -half }, { half, half, half } } };
+  struct case_builder b = {
+    .m = m, .size = { h, 1.3, 1, { -half, -half, -half }, { half, half, half } }
+  };
 
   return b;
 }
@@ -85,8 +86,9 @@ static inline uint32_t case_patch(struct vg_mesh *m, const char *name, int bc,
 
   if (p == SIZE_MAX) abort();
   m->patch[p].bc = m->patch[p].family = bc;
-  m->patch[p].bc_fun3d = bc == CASE_WALL ? 4000 :
-                         bc == CASE_FARFIELD ? 5000 : 6661 + axis;
+  m->patch[p].bc_fun3d = bc == CASE_WALL     ? 4000
+                       : bc == CASE_FARFIELD ? 5000
+                                             : 6661 + axis;
   return (uint32_t)p;
 }
 
@@ -129,8 +131,7 @@ static inline void case_divide(struct case_builder *b, struct case_line *l)
   l->point[l->n] = l->b;
 }
 
-static inline void case_edge(struct case_builder *b, uint32_t from,
-                             uint32_t to)
+static inline void case_edge(struct case_builder *b, uint32_t from, uint32_t to)
 {
   b->edge = vg_realloc(b->edge, b->n_edge + 1, sizeof *b->edge);
   shape_need(b->edge);
@@ -139,8 +140,7 @@ static inline void case_edge(struct case_builder *b, uint32_t from,
 }
 
 /* A side of the face at hand; the line is made when it is met first. */
-static inline void case_side(struct case_builder *b, uint32_t from,
-                             uint32_t to)
+static inline void case_side(struct case_builder *b, uint32_t from, uint32_t to)
 {
   size_t i = 0;
   struct case_line *l;
@@ -174,7 +174,7 @@ static inline void case_fill(struct case_builder *b, uint32_t patch)
 {
   const struct vg_size_law law = { .at = case_size_at, .user = &b->size };
 
-  if (vg_planar_patch(b->m, b->n_edge, (const uint32_t (*)[2])b->edge, &law,
+  if (vg_planar_patch(b->m, b->n_edge, (const uint32_t(*)[2])b->edge, &law,
                       patch, NULL) < 0)
     abort();
   b->n_edge = 0;
@@ -300,8 +300,9 @@ static inline uint32_t case_disc(struct vg_mesh *m, int n, uint32_t patch,
 static inline void case_slot(struct vg_mesh *m, double h, double gap)
 {
   struct case_builder b = case_start(m, h);
-  const double xz[5][2] = { { 0, 0 }, { 2.5, 0 }, { 2.5, gap }, { 1.5, gap },
-                            { 0, 1 } };
+  const double xz[5][2] = {
+    { 0, 0 }, { 2.5, 0 }, { 2.5, gap }, { 1.5, gap }, { 0, 1 }
+  };
   uint32_t below = case_patch(m, "below", CASE_WALL, 0);
   uint32_t above = case_patch(m, "above", CASE_WALL, 0);
   uint32_t in = case_patch(m, "in", CASE_FARFIELD, 0);
@@ -321,9 +322,9 @@ static inline void case_corner(struct vg_mesh *m, double h, double cosine,
 {
   struct case_builder b = case_start(m, h);
   int square = cosine == 0;
-  const double xz[4][2] = { { 0, 0 }, { 1, 0 },
-                            { square ? 1 : cosine, square ? 1 : sine },
-                            { 0, 1 } };
+  const double xz[4][2] = {
+    { 0, 0 }, { 1, 0 }, { square ? 1 : cosine, square ? 1 : sine }, { 0, 1 }
+  };
   uint32_t first = case_patch(m, "first", CASE_WALL, 0);
   uint32_t second = case_patch(m, "second", CASE_WALL, 0);
   uint32_t far = case_patch(m, "farfield", CASE_FARFIELD, 0);
@@ -353,8 +354,8 @@ static inline void case_cube(struct vg_mesh *m, double h)
 static inline void case_cubes(struct vg_mesh *m, double h, double gap)
 {
   struct case_builder b = case_start_body(m, h, 0.5);
-  const double x = 1 + gap, lo[2][3] = { { -x, -0.5, -0.5 },
-                                         { 0, -0.5, -0.5 } };
+  const double x = 1 + gap,
+               lo[2][3] = { { -x, -0.5, -0.5 }, { 0, -0.5, -0.5 } };
   const double hi[2][3] = { { -gap, 0.5, 0.5 }, { 1, 0.5, 0.5 } };
   const uint32_t wall = case_patch(m, "cubes", CASE_WALL, 0);
   const uint32_t patch[6] = { wall, wall, wall, wall, wall, wall };
@@ -385,8 +386,9 @@ static inline void case_wedge(struct vg_mesh *m, double h, double thick)
 {
   struct case_builder b = case_start_body(m, h, 0.6);
   const double lo[3] = { -3, -0.4, -3 }, hi[3] = { 3, 0.4, 3 };
-  const double xz[4][2] = { { -0.5, 0 }, { 0, -0.5 * thick }, { 0.5, 0 },
-                            { 0, 0.5 * thick } };
+  const double xz[4][2] = {
+    { -0.5, 0 }, { 0, -0.5 * thick }, { 0.5, 0 }, { 0, 0.5 * thick }
+  };
   uint32_t below = case_patch(m, "below", CASE_WALL, 0);
   uint32_t above = case_patch(m, "above", CASE_WALL, 0);
   uint32_t far = case_patch(m, "farfield", CASE_FARFIELD, 0);
@@ -398,8 +400,7 @@ static inline void case_wedge(struct vg_mesh *m, double h, double thick)
 
   case_corners(&b, lo, hi, v);
   for (uint32_t i = 0; i < 4; i++)
-    for (uint32_t e = 0; e < 2; e++)
-      w[e][i] = (uint32_t)m->n_point + 2 * i + e;
+    for (uint32_t e = 0; e < 2; e++) w[e][i] = (uint32_t)m->n_point + 2 * i + e;
   case_extrude(&b, 4, xz, side, lo[1], hi[1], none, 1);
   for (int i = 0; i < 6; i++) {
     case_box_loop(&b, v, i, 0);
@@ -410,7 +411,9 @@ static inline void case_wedge(struct vg_mesh *m, double h, double thick)
   case_end(&b);
 }
 
-struct case_cone { double radius, height; };
+struct case_cone {
+  double radius, height;
+};
 
 static inline void case_on_cone(double r, double c, double s, const void *user,
                                 double x[3])
@@ -453,13 +456,15 @@ static inline void case_sphere(struct vg_mesh *m, double h, double gap,
   m->patch[0].bc = m->patch[0].family = CASE_WALL;
   m->patch[0].bc_fun3d = 4000;
   for (int i = 0; i < 6; i++)
-    patch[i] = i == 4 ? case_patch(m, "floor", floor_bc, 2) :
-               case_patch(m, "farfield", CASE_FARFIELD, 0);
+    patch[i] = i == 4 ? case_patch(m, "floor", floor_bc, 2)
+                      : case_patch(m, "farfield", CASE_FARFIELD, 0);
   case_box(&b, lo, hi, patch, 0);
   case_end(&b);
 }
 
-struct case_post { double lean, height, radius; };
+struct case_post {
+  double lean, height, radius;
+};
 
 static inline void case_on_post(double r, double c, double s, const void *user,
                                 double x[3])

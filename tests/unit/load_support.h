@@ -13,19 +13,20 @@
 
 struct scene {
   struct vg_mesh m;
-  struct vg_front front;     /* of m, which keeps its arrays */
+  struct vg_front front; /* of m, which keeps its arrays */
   struct vg_sizing *sizing;
   double volume;
 };
 
 /* The scene takes m over, which is empty then. */
 static inline void make_sized(struct scene *s, struct vg_mesh *m,
-                       const struct vg_sizing_options *o,
-                       const struct vg_source *source)
+                              const struct vg_sizing_options *o,
+                              const struct vg_source *source)
 {
   memset(s, 0, sizeof *s);
   assert_int_equal(vg_sizing_new(o, source != NULL, source, m, &s->sizing,
-                                 NULL), VG_OK);
+                                 NULL),
+                   VG_OK);
   vg_mesh_move(&s->m, m);
   s->front = vg_front_of(&s->m);
   s->volume = vg_front_volume(&s->front);
@@ -43,8 +44,8 @@ static inline void make_scene(struct scene *s, struct vg_mesh *m, double even)
 }
 
 static inline void make_sourced(struct scene *s, const char *name,
-                                size_t n_cell,
-                         double growth, const struct vg_source *source)
+                                size_t n_cell, double growth,
+                                const struct vg_source *source)
 {
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_demo d = VG_DEMO_INIT;
@@ -56,7 +57,7 @@ static inline void make_sourced(struct scene *s, const char *name,
 }
 
 static inline void make_grown(struct scene *s, const char *name, size_t n_cell,
-                       double growth)
+                              double growth)
 {
   make_sourced(s, name, n_cell, growth, NULL);
 }
@@ -128,7 +129,7 @@ static inline void check_volume(const struct scene *s, const struct vg_load *l)
 
 static inline void compare_sourced(const char *name, size_t n_cell,
                                    double growth,
-                            const struct vg_source *source, double most)
+                                   const struct vg_source *source, double most)
 {
   struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
   struct vg_fill_report r;
@@ -154,8 +155,7 @@ static inline void compare_sourced(const char *name, size_t n_cell,
 }
 
 static inline void compare_with_mesh(const char *name, size_t n_cell,
-                                     double growth,
-                              double most)
+                                     double growth, double most)
 {
   compare_sourced(name, n_cell, growth, NULL, most);
 }

@@ -6,9 +6,23 @@
 
 #include <vanguard/mesher.h>
 
-enum { NO_SYMBOL = 1, OTHER_VERSION, DIES_LOADING, NO_MESHER, CRASHES, EXITS,
-       TURNS, SLEEPS, TOO_FEW, TWICE, OUTSIDE, NO_NUMBER, NO_POINT, NOTHING,
-       WILD };
+enum {
+  NO_SYMBOL = 1,
+  OTHER_VERSION,
+  DIES_LOADING,
+  NO_MESHER,
+  CRASHES,
+  EXITS,
+  TURNS,
+  SLEEPS,
+  TOO_FEW,
+  TWICE,
+  OUTSIDE,
+  NO_NUMBER,
+  NO_POINT,
+  NOTHING,
+  WILD
+};
 
 /* A point in the middle joined to all triangles, and what is wrong with it. */
 static int fill(const struct vg_mesher_front *f,
@@ -20,8 +34,7 @@ static int fill(const struct vg_mesher_front *f,
   out->x = calloc(2, sizeof *out->x);
   out->cell = calloc(2 * f->n_face, sizeof *out->cell);
   for (size_t i = 0; i < f->n_point; i++)
-    for (int k = 0; k < 3; k++)
-      out->x[0][k] += f->x[i][k] / (double)f->n_point;
+    for (int k = 0; k < 3; k++) out->x[0][k] += f->x[i][k] / (double)f->n_point;
   for (size_t i = 0; i < f->n_face; i++) {
     memcpy(out->cell[i], f->face[i], sizeof f->face[i]);
     out->cell[i][3] = (uint32_t)f->n_point;
@@ -30,8 +43,11 @@ static int fill(const struct vg_mesher_front *f,
   switch (BAD) {
   case CRASHES: abort();
   case EXITS: exit(0);
-  case TURNS: for (volatile int k = 0;; k++) {}
-  case SLEEPS: for (;;) pause();
+  case TURNS:
+    for (volatile int k = 0;; k++) {
+    }
+  case SLEEPS:
+    for (;;) pause();
   case TOO_FEW: out->n_cell--; break;
   case TWICE:
     memcpy(out->cell + f->n_face, out->cell, f->n_face * sizeof *out->cell);

@@ -11,21 +11,31 @@
 static const int mixed_width[4] = { 4, 5, 6, 8 };
 static const int mixed_n_face[4] = { 4, 5, 5, 6 };
 static const int mixed_face[4][6][4] = {
-  { {0, 2, 1, 1}, {0, 1, 3, 3}, {1, 2, 3, 3}, {0, 3, 2, 2} },
-  { {0, 1, 4, 3}, {0, 2, 1, 1}, {1, 2, 4, 4}, {4, 2, 3, 3}, {3, 2, 0, 0} },
-  { {0, 2, 1, 1}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5} },
-  { {0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6},
-    {3, 0, 4, 7} }
+  { { 0, 2, 1, 1 }, { 0, 1, 3, 3 }, { 1, 2, 3, 3 }, { 0, 3, 2, 2 } },
+  { { 0, 1, 4, 3 },
+    { 0, 2, 1, 1 },
+    { 1, 2, 4, 4 },
+    { 4, 2, 3, 3 },
+    { 3, 2, 0, 0 } },
+  { { 0, 2, 1, 1 },
+    { 3, 4, 5, 5 },
+    { 0, 1, 4, 3 },
+    { 1, 2, 5, 4 },
+    { 2, 0, 3, 5 } },
+  { { 0, 3, 2, 1 },
+    { 4, 5, 6, 7 },
+    { 0, 1, 5, 4 },
+    { 1, 2, 6, 5 },
+    { 2, 3, 7, 6 },
+    { 3, 0, 4, 7 } }
 };
 
 static inline const uint32_t *mixed_cell(const struct vg_mesh *m, size_t cell,
                                          int *kind)
 {
   const size_t n[4] = { m->n_tet, m->n_pyr, m->n_pri, m->n_hex };
-  const uint32_t *const list[4] = {
-    (uint32_t *)m->tet, (uint32_t *)m->pyr, (uint32_t *)m->pri,
-    (uint32_t *)m->hex
-  };
+  const uint32_t *const list[4] = { (uint32_t *)m->tet, (uint32_t *)m->pyr,
+                                    (uint32_t *)m->pri, (uint32_t *)m->hex };
 
   for (*kind = 0; cell >= n[*kind]; ++*kind) cell -= n[*kind];
   return list[*kind] + cell * (size_t)mixed_width[*kind];
@@ -36,13 +46,15 @@ static inline size_t mixed_n_cell(const struct vg_mesh *m)
   return m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
 }
 
-struct mixed_side { uint32_t key[4], node[4]; };
+struct mixed_side {
+  uint32_t key[4], node[4];
+};
 
 static inline int mixed_by_key(const void *a, const void *b)
 {
   return memcmp(((const struct mixed_side *)a)->key,
                 ((const struct mixed_side *)b)->key,
-                sizeof ((const struct mixed_side *)a)->key);
+                sizeof((const struct mixed_side *)a)->key);
 }
 
 static inline void mixed_sort(uint32_t *v, int n)
@@ -96,9 +108,11 @@ static inline void mixed_close(struct vg_mesh *m, uint32_t below,
     const uint32_t *v = s[i].node;
     int width = v[3] == UINT32_MAX ? 3 : 4;
     uint32_t patch = s[i].key[width - 1] < below ? 0
-                     : s[i].key[0] >= above ? 1 : 2;
+                   : s[i].key[0] >= above        ? 1
+                                                 : 2;
 
-    for (j = i + 1; j < n && !mixed_by_key(s + i, s + j); j++) {}
+    for (j = i + 1; j < n && !mixed_by_key(s + i, s + j); j++) {
+    }
     if (j - i == 2) continue;
     assert_int_equal(j - i, 1);
     if (width == 3) {
@@ -116,7 +130,11 @@ static inline void mixed_fill_column(struct vg_mesh *m, const uint32_t v[16],
                                      uint32_t centre)
 {
   static const int side[5][4] = { /* seen from the centre anticlockwise */
-    {0, 1, 2, 3}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}
+                                  { 0, 1, 2, 3 },
+                                  { 0, 4, 5, 1 },
+                                  { 1, 5, 6, 2 },
+                                  { 2, 6, 7, 3 },
+                                  { 3, 7, 4, 0 }
   };
   const uint32_t *low = v + 4, *high = v + 8;
 
@@ -196,8 +214,8 @@ static inline void mixed_make(struct vg_mesh *m, uint32_t nx, uint32_t ny)
  * in the order of their patches. */
 static inline void mixed_same(const struct vg_mesh *a, const struct vg_mesh *b)
 {
-#define SAME(array, n) \
-  (assert_int_equal(a->n, b->n), \
+#define SAME(array, n)                                                         \
+  (assert_int_equal(a->n, b->n),                                               \
    io_same_array(a->array, b->array, a->n, sizeof *a->array))
   SAME(point, n_point);
   SAME(tet, n_tet);

@@ -16,8 +16,9 @@ struct scene {
 static inline void scene_set(struct scene *s, double tolerance, double size)
 {
   struct vg_error err = VG_ERROR_INIT;
-  const struct vg_curves_options o = { 40, tolerance, s->m.tri_patch,
-                                       s->m.patch, NULL, NULL, NULL };
+  const struct vg_curves_options o = { 40,         tolerance, s->m.tri_patch,
+                                       s->m.patch, NULL,      NULL,
+                                       NULL };
 
   if (vg_ref_build(&s->ref, &s->m, NULL, &err) < 0) fail_msg("%s", err.text);
   if (vg_curves_find(&s->curves, &s->ref, &o, &err) < 0)
@@ -26,8 +27,12 @@ static inline void scene_set(struct scene *s, double tolerance, double size)
   for (size_t p = 0; p < s->m.n_point; p++) s->ref.size[p] = size;
   s->ref.slope = 0.2;
   vg_ref_sizes(&s->ref);
-  s->w = (struct vg_tris){ .ref = &s->ref, .curves = &s->curves,
-    .tolerance = tolerance, .relative = 1, .h_min = size, .h_max = size };
+  s->w = (struct vg_tris){ .ref = &s->ref,
+                           .curves = &s->curves,
+                           .tolerance = tolerance,
+                           .relative = 1,
+                           .h_min = size,
+                           .h_max = size };
   if (vg_tris_begin(&s->w, &err) < 0) fail_msg("%s", err.text);
 }
 
@@ -65,8 +70,9 @@ static inline void scene_expect_whole(const struct scene *s)
     n_edge += h < g;
     if (h < g && w->edge[h])
       length += w->line[w->edge[h] - 1].at[1] - w->line[w->edge[h] - 1].at[0];
-    for (uint32_t i = h % 3 ? VG_REF_NONE : w->first[h / 3];
-         i != VG_REF_NONE; i = w->follow[i]) n_listed++;
+    for (uint32_t i = h % 3 ? VG_REF_NONE : w->first[h / 3]; i != VG_REF_NONE;
+         i = w->follow[i])
+      n_listed++;
   }
   for (size_t p = 0; p < w->n_point; p++) {
     uint32_t h = w->point[p].half, ring[VG_WORK_RING];
@@ -95,8 +101,8 @@ static inline void scene_expect_near(const struct scene *s, double tolerance)
     double y[3];
 
     if (s->w.point[p].half == VG_REF_NONE) continue;
-    assert_true(vg_ref_nearest(&s->ref, s->w.point[p].x, NULL, &hint, y)
-                <= tolerance);
+    assert_true(vg_ref_nearest(&s->ref, s->w.point[p].x, NULL, &hint, y) <=
+                tolerance);
   }
 }
 
@@ -123,13 +129,13 @@ static inline int scene_change(struct vg_tris *w, uint32_t *state)
   if (kind == 3) {
     struct vg_tris_span s;
 
-    return vg_tris_span(w, vg_tris_from(w, h), &s)
-           && vg_tris_slide(w, vg_tris_from(w, h),
-                            s.lo + scene_drawn(state) * (s.hi - s.lo), 0.01);
+    return vg_tris_span(w, vg_tris_from(w, h), &s) &&
+           vg_tris_slide(w, vg_tris_from(w, h),
+                         s.lo + scene_drawn(state) * (s.hi - s.lo), 0.01);
   }
   for (int k = 0; k < 3; k++)
-    x[k] = vg_tris_at(w, vg_tris_from(w, h))[k]
-           + 0.1 * (scene_drawn(state) - 0.5);
+    x[k] = vg_tris_at(w, vg_tris_from(w, h))[k] +
+           0.1 * (scene_drawn(state) - 0.5);
   return vg_tris_move(w, vg_tris_from(w, h), x, 0.01);
 }
 

@@ -35,7 +35,8 @@ static inline void shape_tri(struct vg_mesh *m, uint32_t a, uint32_t b,
 /* Points at the same place become one, as readers of soups have it. */
 static inline void shape_weld(struct vg_mesh *m)
 {
-  struct vg_surface_check_options o = { .repair = 1, .external = 1,
+  struct vg_surface_check_options o = { .repair = 1,
+                                        .external = 1,
                                         .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -84,7 +85,7 @@ static inline void shape_ball(struct vg_mesh *m, const double r[3], uint32_t n)
   for (uint32_t j = 0; j <= n; j++)
     for (uint32_t i = 0; i < k; i++) {
       double a = M_PI * j / n, b = 2 * M_PI * i / k;
-      double s = j % n ? sin(a) : 0;   /* poles are one point */
+      double s = j % n ? sin(a) : 0; /* poles are one point */
 
       shape_point(m, r[0] * s * cos(b), r[1] * s * sin(b), r[2] * cos(a));
     }

@@ -15,7 +15,7 @@ enum { SLABS = 4 };
 
 struct scene {
   int n[3];
-  struct vg_tets t;          /* all cells, as they are before the repair */
+  struct vg_tets t; /* all cells, as they are before the repair */
   struct vg_sizing *sizing;
   struct vg_partition p;
 };
@@ -39,8 +39,9 @@ static inline double cell_shape(const struct vg_tets *t, size_t c)
 static inline void scene_new(struct scene *s, int nx, int ny, int nz)
 {
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
-  struct vg_source box = { .kind = VG_SOURCE_BOX, .h0 = 1,
-                           .p1 = {nx, ny, nz} };
+  struct vg_source box = { .kind = VG_SOURCE_BOX,
+                           .h0 = 1,
+                           .p1 = { nx, ny, nz } };
 
   memset(s, 0, sizeof *s);
   s->n[0] = nx;
@@ -95,7 +96,7 @@ static inline int slab_of_cell(const struct scene *s, size_t c)
 static inline void own_points(const struct scene *s, int *owner,
                               uint32_t *place)
 {
-  uint32_t count[SLABS] = {0};
+  uint32_t count[SLABS] = { 0 };
 
   for (size_t p = 0; p < s->t.n_point; p++) owner[p] = SLABS;
   for (size_t c = 0; c < s->t.n_cell; c++)
@@ -129,8 +130,7 @@ static inline void fill_slab(const struct scene *s, int g, const int *owner,
   for (pass = 0; pass < 2; pass++)
     for (size_t p = 0; p < t->n_point; p++) {
       if (to[p] == VG_NONE || (owner[p] == g) != pass) continue;
-      if (pass == 0)
-        q->in[q->n_in] = VG_POINT_ID(owner[p] + 1, place[p]);
+      if (pass == 0) q->in[q->n_in] = VG_POINT_ID(owner[p] + 1, place[p]);
       to[p] = (uint32_t)(q->n_in + q->n_point);
       memcpy(q->x[to[p]], t->x[p], sizeof *q->x);
       if (pass) q->n_point++;
@@ -145,8 +145,7 @@ static inline void fill_slab(const struct scene *s, int g, const int *owner,
 }
 
 /* The pieces of this rank. */
-static inline void scene_cut(struct scene *s, struct vg_comm *comm,
-                             int threads)
+static inline void scene_cut(struct scene *s, struct vg_comm *comm, int threads)
 {
   struct vg_partition *p = &s->p;
   int *owner = vg_alloc(s->t.n_point, sizeof *owner);
@@ -167,8 +166,7 @@ static inline void scene_cut(struct scene *s, struct vg_comm *comm,
     q.serial = vg_partition_serial(p);
     snprintf(q.path, sizeof q.path, "0.%dL", g);
     if (q.serial != (uint32_t)g + 1 ||
-        vg_reserve(&p->piece, &p->cap_piece, p->n_piece + 1,
-                   sizeof *p->piece))
+        vg_reserve(&p->piece, &p->cap_piece, p->n_piece + 1, sizeof *p->piece))
       abort();
     p->piece[p->n_piece++] = q;
   }
@@ -193,7 +191,10 @@ static inline void scene_end(struct scene *s)
 
 /* --- what there is ------------------------------------------------------- */
 
-struct print { char path[VG_PATH_MAX]; struct vg_digest d; };
+struct print {
+  char path[VG_PATH_MAX];
+  struct vg_digest d;
+};
 
 static inline int by_print(const void *a, const void *b)
 {
@@ -205,7 +206,7 @@ static inline int by_print(const void *a, const void *b)
 static inline struct print print_of(const struct vg_piece *q)
 {
   struct print p = { .path = "" };
-  uint64_t n[3] = {q->n_in, q->n_point, q->n_cell};
+  uint64_t n[3] = { q->n_in, q->n_point, q->n_cell };
 
   memcpy(p.path, q->path, sizeof p.path);
   p.d = vg_digest_of(p.d, sizeof n, n);
@@ -223,14 +224,13 @@ static inline struct print print_of(const struct vg_piece *q)
 static inline struct vg_digest scene_digest(const struct scene *s,
                                             struct vg_comm *comm)
 {
-  struct vg_digest d = {{0, 0}};
-  struct vg_bytes all[64], mine = {0, NULL};
+  struct vg_digest d = { { 0, 0 } };
+  struct vg_bytes all[64], mine = { 0, NULL };
   struct print *own = vg_alloc(s->p.n_piece, sizeof *own), *list;
   size_t n = 0, at = 0;
 
   if (!own || s->p.size > 64) abort();
-  for (size_t k = 0; k < s->p.n_piece; k++)
-    own[k] = print_of(&s->p.piece[k]);
+  for (size_t k = 0; k < s->p.n_piece; k++) own[k] = print_of(&s->p.piece[k]);
   mine.n = s->p.n_piece * sizeof *own;
   mine.data = (unsigned char *)own;
   if (vg_comm_allgather(comm, &mine, all, NULL) != VG_OK) abort();

@@ -14,11 +14,11 @@
 
 struct cut {
   const struct vg_mesh *mesh;
-  struct vg_mesh boundary;   /* borrows from mesh */
-  size_t n;                  /* slices of the whole cut */
-  size_t (*end)[4];          /* [n] behind the last point, tet, pyr, pri */
+  struct vg_mesh boundary; /* borrows from mesh */
+  size_t n;                /* slices of the whole cut */
+  size_t (*end)[4];        /* [n] behind the last point, tet, pyr, pri */
   int rank, size;
-  size_t bad;                /* slice that cannot be had; SIZE_MAX: none */
+  size_t bad; /* slice that cannot be had; SIZE_MAX: none */
   struct vg_slices s;
 };
 
@@ -39,7 +39,7 @@ static inline int cut_compare(const void *a, const void *b)
 
 /* One block of memory for all arrays of a slice. */
 struct cut_keep {
-  uint32_t *local;           /* [points of the mesh] + 1 */
+  uint32_t *local; /* [points of the mesh] + 1 */
   uint32_t *id, *own, *cell[3];
   double (*x)[3];
 };
@@ -74,8 +74,8 @@ static inline vg_status cut_get(const struct vg_slices *s, size_t i,
   k->x = vg_alloc(c->mesh->n_point, sizeof *k->x);
   for (int kind = 0; kind < 3; kind++) {
     size_t n = c->end[g][kind + 1] - from[kind + 1];
-    const uint32_t *node =
-      cut_cells(c->mesh, kind) + width[kind] * from[kind + 1];
+    const uint32_t *node = cut_cells(c->mesh, kind) +
+                           width[kind] * from[kind + 1];
 
     k->cell[kind] = vg_alloc(n, width[kind] * sizeof **k->cell);
     out->cell_at[kind] = from[kind + 1];
@@ -90,7 +90,7 @@ static inline vg_status cut_get(const struct vg_slices *s, size_t i,
   k->own = vg_alloc(out->n_own, sizeof *k->own);
   for (size_t j = 0; j < out->n_own; j++)
     k->own[j] = cut_local(c, k, out, (uint32_t)(from[0] + j));
-  out->x = (const double (*)[3])k->x;
+  out->x = (const double(*)[3])k->x;
   out->id = k->id;
   out->own = k->own;
   out->domain = (uint32_t)(g * 7 % 13);
@@ -128,8 +128,7 @@ static inline void cut_make(struct cut *c, const struct vg_mesh *m, size_t n,
   c->bad = SIZE_MAX;
   c->end = vg_alloc(n, sizeof *c->end);
   for (int k = 0; k < 4; k++) {
-    for (size_t i = 0; i < n; i++)
-      at[i] = model_random(&seed) % (total[k] + 1);
+    for (size_t i = 0; i < n; i++) at[i] = model_random(&seed) % (total[k] + 1);
     at[n - 1] = total[k];
     qsort(at, n, sizeof *at, cut_compare);
     for (size_t i = 0; i < n; i++) c->end[i][k] = at[i];
@@ -142,12 +141,15 @@ static inline void cut_make(struct cut *c, const struct vg_mesh *m, size_t n,
   c->boundary.tet = NULL;
   c->boundary.pyr = NULL;
   c->boundary.pri = NULL;
-  c->s = (struct vg_slices){
-    .n_point = m->n_point, .n_cell = { m->n_tet, m->n_pyr, m->n_pri },
-    .n_boundary_point = info ? info->n_boundary_point : n_boundary,
-    .boundary = &c->boundary, .n_slice = n, .get = cut_get, .put = cut_put,
-    .user = c
-  };
+  c->s = (struct vg_slices){ .n_point = m->n_point,
+                             .n_cell = { m->n_tet, m->n_pyr, m->n_pri },
+                             .n_boundary_point = info ? info->n_boundary_point
+                                                      : n_boundary,
+                             .boundary = &c->boundary,
+                             .n_slice = n,
+                             .get = cut_get,
+                             .put = cut_put,
+                             .user = c };
   if (!info) return;
   c->s.n_layer_point = info->n_layer_point;
   c->s.n_layer_cell[VG_SLICE_TET] = info->n_layer_tet;
@@ -182,8 +184,8 @@ static inline void cut_mesh(struct vg_mesh *out, struct vg_join_info *info,
 
   model_sphere(&m, 6, 6, &seed);
   sizing = shape_sizing(FRONT_MESH(&m.layers.front, &m.surface), 1.5, 0);
-  if (fill_mesh(FRONT_MESH(&m.layers.front, &m.surface), sizing, &options, &m.field, &report,
-              NULL) < 0)
+  if (fill_mesh(FRONT_MESH(&m.layers.front, &m.surface), sizing, &options,
+                &m.field, &report, NULL) < 0)
     abort();
   vg_sizing_free(sizing);
   if (vg_layers_join(&m.surface, &m.layers, &m.field, cells, 1, out, info,

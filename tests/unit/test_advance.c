@@ -12,13 +12,14 @@ static void as_filled(const struct scene *s, double leaf)
 {
   struct vg_partition_options o = options_of(leaf, 2, 0);
   struct vg_fill_options fill_options = VG_FILL_OPTIONS_INIT;
-  struct vg_fill_report fill_report = {0};
+  struct vg_fill_report fill_report = { 0 };
   struct vg_mesh mesh = VG_MESH_INIT, fill = VG_MESH_INIT;
   struct vg_partition_report r;
   struct vg_partition *p;
 
   assert_int_equal(fill_mesh(&s->m, s->sizing, &fill_options, &fill,
-                           &fill_report, NULL), VG_OK);
+                             &fill_report, NULL),
+                   VG_OK);
   assert_int_equal(grow(NULL, s, &o, &p, &r, NULL), VG_OK);
   assert_int_equal(r.n_leaf, 1);
   assert_int_equal(r.n_node + r.n_pencil + r.n_tile + r.n_outgrown, 0);
@@ -44,7 +45,7 @@ static void uncut_is_the_fill(void **state)
   (void)state;
   scene_demo(&s, "box", 20000);
   as_filled(&s, 1e9);
-  as_filled(&s, 0);          /* by levels, of which there are none */
+  as_filled(&s, 0); /* by levels, of which there are none */
   scene_end(&s);
   scene_demo(&s, "sphere", 20000);
   as_filled(&s, 1e9);
@@ -140,7 +141,8 @@ static void levels_double_the_leaves(void **state)
     o.levels = level;
     if (grow(NULL, &s, &o, &p, &r, &err) != VG_OK) fail_msg("%s", err.text);
     mean = (double)(vg_partition_slices(p)->n_cell[VG_SLICE_TET] -
-                    r.n_zone_cell) / (1 << level);
+                    r.n_zone_cell) /
+           (1 << level);
     assert_int_equal(large_leaves(p, 0.25 * mean), 1 << level);
     assert_true(r.n_leaf <= (2u << level));
     assert_int_equal(r.n_outgrown, 0);
@@ -151,8 +153,7 @@ static void levels_double_the_leaves(void **state)
 }
 
 /* Extent of each large leaf's cells along an axis, the least of all. */
-static double least_extent(const struct vg_partition *p, int axis,
-                           size_t least)
+static double least_extent(const struct vg_partition *p, int axis, size_t least)
 {
   const struct vg_slices *s = vg_partition_slices(p);
   double narrow = INFINITY;
@@ -292,7 +293,7 @@ static void too_many_cells(void **state)
 
   (void)state;
   scene_demo(&s, "box", 20000);
-  o.max_cells = 1000;        /* seen before anything is made */
+  o.max_cells = 1000; /* seen before anything is made */
   assert_int_equal(grow(NULL, &s, &o, &p, &r, &err), VG_ERR_UNSUPPORTED);
   assert_null(p);
   assert_int_equal(r.n_leaf + r.n_node, 0);
@@ -340,7 +341,7 @@ static void fronts_that_bound_nothing(void **state)
   refused(&s, 4000, 0);
   refused(&s, 1e9, 0);
   scene_turn(&s.m);
-  s.m.n_tri--;               /* a hole */
+  s.m.n_tri--; /* a hole */
   refused(&s, 4000, 1);
   refused(&s, 1e9, 0);
   s.m.n_tri++;

@@ -7,8 +7,11 @@
 
 static void any_number_in_any_order(void **state)
 {
-  static const struct { const char *name; size_t n; double leaf; } cut[] = {
-    { "box", 8000, 700 }, { "sphere", 15000, 3000 } };
+  static const struct {
+    const char *name;
+    size_t n;
+    double leaf;
+  } cut[] = { { "box", 8000, 700 }, { "sphere", 15000, 3000 } };
   static const uint64_t shuffle[] = { 5, 77 };
 
   (void)state;

@@ -23,8 +23,8 @@ static void accept_settings(settings_parse parse, const char *text,
   vg_input_release(&in);
 }
 
-static void refuse_settings(settings_parse parse, const char *text,
-                            size_t size, vg_status code, const char *phrase)
+static void refuse_settings(settings_parse parse, const char *text, size_t size,
+                            vg_status code, const char *phrase)
 {
   struct vg_input in = VG_INPUT_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -101,7 +101,8 @@ static void reads_columns_quads_and_short_lines(void **state)
   parse_both("2 1 5\r\n"
              "0 0 0 1e-5 0.25\n1 0 0 1e-5 0.25\n1 1 0 1.0d-5 .25\n"
              "0 1 0 2e-5 0.25\n2 2 2 -1 0\n\n"
-             "1 2 3 9\n3 4 1 -2 7\n\n1 2 3 4 9 7 -1\n", &m, &a);
+             "1 2 3 9\n3 4 1 -2 7\n\n1 2 3 4 9 7 -1\n",
+             &m, &a);
   assert_int_equal(m.n_quad, 1);
   assert_int_equal(m.quad[0][3], 3);
   assert_int_equal(m.n_patch, 2);
@@ -135,7 +136,8 @@ static void faces_vote_for_their_patch(void **state)
   (void)state;
   parse_both("7 0 3\n0 0 0\n1 0 0\n0 1 0\n"
              "1 2 3 1 0 -1\n1 2 3 1 0 2\n1 2 3 1 0 2\n1 2 3 1\n"
-             "1 2 3 2 0 0\n1 2 3 2 0 -1\n1 2 3 3 0 -6\n", &m, &a);
+             "1 2 3 2 0 0\n1 2 3 2 0 -1\n1 2 3 3 0 -6\n",
+             &m, &a);
   assert_int_equal(a.patch[0].flag, 2);
   assert_int_equal(a.patch[1].flag, -1);
   assert_int_equal(a.patch[2].flag, -6);
@@ -149,8 +151,11 @@ static void faces_vote_for_their_patch(void **state)
 static void refuses_broken_surfaces(void **state)
 {
 #define HEAD "1 0 3\n0 0 0\n1 0 0\n0 1 0\n"
-  static const struct { const char *text; vg_status code; const char *word; }
-  bad[] = {
+  static const struct {
+    const char *text;
+    vg_status code;
+    const char *word;
+  } bad[] = {
     { "1 0", VG_ERR_FORMAT, "number of points" },
     { "-1 0 3\n", VG_ERR_FORMAT, "number of triangles" },
     { "9999999999 0 3\n", VG_ERR_FORMAT, "possible" },
@@ -190,14 +195,15 @@ static void tags_of_every_age(void **state)
 
   (void)state;
   accept_settings(vg_aflr_tags_parse,
-    "#  Trans Initial BL\n#ID Group Visc ...\n"
-    "1 Wall 1 1 0 0 0 0 0 1.0e-6 1.0e-2 41\n"
-    "  -7 Symmetry 0 0 1 0 0 0 0 0 0 0\n\n"
-    "30 Control 0 0 0 0 0 0 1 0 0 0\n"
-    "4 FarField 0 1 0 0 0 0 0 0 0\n"
-    "5 Old 1 1 0 0 0 0 2d-5 0.5\n"
-    "6 Both 1 1 0 0 0 1 0 2d-5 0.5 3\n"
-    "# end", &a);
+                  "#  Trans Initial BL\n#ID Group Visc ...\n"
+                  "1 Wall 1 1 0 0 0 0 0 1.0e-6 1.0e-2 41\n"
+                  "  -7 Symmetry 0 0 1 0 0 0 0 0 0 0\n\n"
+                  "30 Control 0 0 0 0 0 0 1 0 0 0\n"
+                  "4 FarField 0 1 0 0 0 0 0 0 0\n"
+                  "5 Old 1 1 0 0 0 0 2d-5 0.5\n"
+                  "6 Both 1 1 0 0 0 1 0 2d-5 0.5 3\n"
+                  "# end",
+                  &a);
   assert_int_equal(a.n, 6);
   assert_string_equal(a.patch[0].name, "Wall");
   assert_int_equal(a.patch[0].is_viscous, 1);
@@ -221,8 +227,11 @@ static void tags_of_every_age(void **state)
 
 static void refuses_broken_tags(void **state)
 {
-  static const struct { const char *text; vg_status code; const char *word; }
-  bad[] = {
+  static const struct {
+    const char *text;
+    vg_status code;
+    const char *word;
+  } bad[] = {
     { "1 Wall 1 1 0 0 0 0 0 1e-6\n1 W 1\n", VG_ERR_FORMAT, "case:2:" },
     { "\nx Wall 1 1 0 0 0 0 0 1e-6 1 1\n", VG_ERR_FORMAT, "case:2:" },
     { "1 A B 1 1 0 0 0 0 0 1e-6 1 1\n", VG_ERR_FORMAT, "case:1:" },
@@ -247,7 +256,8 @@ static void conditions_by_name(void **state)
   struct vg_aflr a = VG_AFLR_INIT;
 
   (void)state;
-  accept_settings(vg_aflr_bc_parse, "farfield           1\n"
+  accept_settings(vg_aflr_bc_parse,
+                  "farfield           1\n"
                   "# wall\nbullet_total      -1   0.01 0.5\r\nfin -1 2D-3\n",
                   &a);
   assert_int_equal(a.n, 3);
@@ -258,7 +268,7 @@ static void conditions_by_name(void **state)
   assert_true(a.patch[1].spacing == 0.01 && a.patch[1].thickness == 0.5);
   assert_true(a.patch[2].spacing == 2e-3 && a.patch[2].thickness == 0);
   vg_aflr_release(&a);
-#define REFUSE(text, code, word) \
+#define REFUSE(text, code, word)                                               \
   refuse_settings(vg_aflr_bc_parse, text, strlen(text), code, word)
   REFUSE("       4       4       4       1\n Triangle\n", VG_ERR_FORMAT,
          "VGRID");
@@ -303,7 +313,8 @@ static void settings_are_applied(void **state)
   accept_settings(vg_aflr_tags_parse,
                   "9 Nobody 1 1 0 0 0 0 0 0 0 0\n"
                   "1 Wall 1 1 0 0 0 0 0 0 0 0\n2 Body 0 1 0 0 0 0 0 0 0 0\n"
-                  "3 Far 0 1 0 0 0 0 0 0 0 0\n", &a);
+                  "3 Far 0 1 0 0 0 0 0 0 0 0\n",
+                  &a);
   if (vg_aflr_apply(&a, &m, &unused, &err)) fail_msg("%s", err.text);
   assert_int_equal(unused, 1);
   assert_string_equal(m.patch[0].name, "Wall");

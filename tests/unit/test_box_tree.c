@@ -35,7 +35,8 @@ static void draw_boxes(size_t n, struct vg_box *box, uint64_t *seed)
     for (int end = 0; end < 2; end++) {
       for (int k = 0; k < 3; k++)
         x[k] = coarse ? draw_on_grid(seed)
-                      : end ? box[i].lo[k] + draw(seed) * .3 : draw(seed) * 6;
+             : end    ? box[i].lo[k] + draw(seed) * .3
+                      : draw(seed) * 6;
       vg_box_add(&box[i], x);
     }
   }
@@ -164,7 +165,7 @@ static void expect_nearest(const struct vg_box_tree *t,
 /* How often each pair was visited, by all threads. */
 struct table {
   size_t n;
-  uint8_t *seen;            /* [n n] */
+  uint8_t *seen; /* [n n] */
 };
 
 static vg_status count_pair(void *context, int worker, uint32_t a, uint32_t b)
@@ -305,7 +306,7 @@ static void one_box_far_away_does_not_spoil_the_order(void **state)
 
   (void)state;
   draw_boxes(MOST, box, &seed);
-  for (int i = 0; i < MOST; i++)   /* points: sides are those of leaves alone */
+  for (int i = 0; i < MOST; i++) /* points: sides are those of leaves alone */
     memcpy(box[i].hi, box[i].lo, sizeof box[i].hi);
   for (int far = 0; far < 3; far++) {
     struct vg_error err = VG_ERROR_INIT;
@@ -346,8 +347,10 @@ static void nodes_may_have_more_than_boxes(void **state)
   node = t.node;
   for (size_t i = 2 * t.first_leaf + 1; i-- > 0;)
     if (i < t.first_leaf) node[i].n = node[2 * i + 1].n + node[2 * i + 2].n;
-    else node[i].n = vg_box_tree_end(&t, i) > vg_box_tree_first(&t, i)
-                     ? vg_box_tree_end(&t, i) - vg_box_tree_first(&t, i) : 0;
+    else
+      node[i].n = vg_box_tree_end(&t, i) > vg_box_tree_first(&t, i)
+                  ? vg_box_tree_end(&t, i) - vg_box_tree_first(&t, i)
+                  : 0;
   assert_int_equal(node[0].n, MOST);
   for (int k = 0; k < MOST; k++) vg_box_join(&box[0], &box[k]);
   assert_memory_equal(&node[0].box, &box[0], sizeof box[0]);

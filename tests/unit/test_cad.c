@@ -10,7 +10,9 @@
 
 #define FILE_OF(name) VG_CAD_FILES "/" name
 
-struct notes { char text[8192]; };
+struct notes {
+  char text[8192];
+};
 
 static void take_note(void *user, const char *text)
 {
@@ -65,8 +67,8 @@ static void is_sound(struct vg_mesh *m, size_t shells)
   if (vg_surface_check(m, &o, &r, &err)) fail_msg("%s", err.text);
   assert_int_equal(r.n_defect, 0);
   assert_int_equal(r.n_shell, shells);
-  assert_int_equal(r.n_flipped, 0);         /* out of the solid at once */
-  assert_int_equal(m->n_point, n_point);    /* shared by topology already */
+  assert_int_equal(r.n_flipped, 0);      /* out of the solid at once */
+  assert_int_equal(m->n_point, n_point); /* shared by topology already */
   vg_surface_report_release(&r);
 }
 
@@ -88,8 +90,9 @@ static void bounds_are(const struct vg_mesh *m, double x, double y, double z)
 
 static void step_has_names_and_units(void **state)
 {
-  static const char *const name[] = { "sides", "sides", "front and back",
-                                      "front and back", "ends", "ends" };
+  static const char *const name[] = { "sides",          "sides",
+                                      "front and back", "front and back",
+                                      "ends",           "ends" };
   struct vg_mesh m = VG_MESH_INIT;
   struct notes n;
   struct vg_cad_options o = options(&n);
@@ -120,7 +123,7 @@ static void step_has_names_and_units(void **state)
   read_file(FILE_OF("loose.igs"), &o, &m);
   says(&n, "were converted to inch");
   vg_mesh_bounds(&m, lo, hi);
-  near(hi[2], 3 / 25.4, 1e-6);              /* of 3 mm, with gaps */
+  near(hi[2], 3 / 25.4, 1e-6); /* of 3 mm, with gaps */
   vg_mesh_release(&m);
 }
 
@@ -130,8 +133,10 @@ static void patches_follow_words(void **state)
     enum vg_cad_patches by;
     size_t n;
     const char *first;
-  } cases[] = { { VG_CAD_BY_FACE, 5, "upper" }, { VG_CAD_BY_NAME, 5, "upper" },
-                { VG_CAD_BY_LAYER, 2, "SKIN" }, { VG_CAD_BY_COLOUR, 2, "#" },
+  } cases[] = { { VG_CAD_BY_FACE, 5, "upper" },
+                { VG_CAD_BY_NAME, 5, "upper" },
+                { VG_CAD_BY_LAYER, 2, "SKIN" },
+                { VG_CAD_BY_COLOUR, 2, "#" },
                 { VG_CAD_BY_PART, 1, "half wing" } };
   struct notes n;
 
@@ -257,7 +262,8 @@ static void solids_that_touch_are_united(void **state)
     { FILE_OF("stacked.brep"), 10, 8, "face 6 and face 11 at" },
     { FILE_OF("glued.brep"), 10, 8, "face 6 at (0.5, 1, 3) is a wall" },
     { FILE_OF("leaning.brep"), 11, 8, "2 solids touch or overlap" },
-    { FILE_OF("crossing.brep"), 12, 10.125, "2 solids touch or overlap" } };
+    { FILE_OF("crossing.brep"), 12, 10.125, "2 solids touch or overlap" }
+  };
 
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -285,7 +291,7 @@ static void pieces_of_a_face_have_its_number(void **state)
   struct vg_cad *c = parse_file(FILE_OF("crossing.brep"), VG_CAD_BREP, &o, &s);
   struct vg_error err = VG_ERROR_INIT;
   uint32_t *tri = calloc(s.mesh.n_tri, sizeof *tri);
-  double (*x)[3] = calloc(s.mesh.n_tri, sizeof *x);
+  double(*x)[3] = calloc(s.mesh.n_tri, sizeof *x);
   double *d = calloc(s.mesh.n_tri, sizeof *d);
 
   (void)state;
@@ -313,8 +319,11 @@ static void pieces_of_a_face_have_its_number(void **state)
 /* The larger one may be the fluid: the inner one must not vanish. */
 static void a_solid_that_contains_another_stays(void **state)
 {
-  static const struct { const char *path; size_t patches; } cases[] = {
-    { FILE_OF("inside.brep"), 12 }, { FILE_OF("filled.brep"), 12 } };
+  static const struct {
+    const char *path;
+    size_t patches;
+  } cases[] = { { FILE_OF("inside.brep"), 12 },
+                { FILE_OF("filled.brep"), 12 } };
 
   (void)state;
   for (size_t i = 0; i < 2; i++) {
@@ -357,7 +366,7 @@ static void wide_gaps_are_sewn_and_faces_turned(void **state)
 
   (void)state;
   says(&n, "by sewing within 3.74e-05 24 of them found a partner, the first "
-       "at (");
+           "at (");
   says(&n, "3 faces that are not of a solid were turned");
   assert_int_equal(s.is_solid, 0);
   near(s.volume, 6, 1e-4);
@@ -367,7 +376,7 @@ static void wide_gaps_are_sewn_and_faces_turned(void **state)
   vg_surface_report_release(&r);
   vg_cad_surface_release(&s);
   o = options(&n);
-  o.tolerance = 1e-7;        /* used as given */
+  o.tolerance = 1e-7; /* used as given */
   vg_cad_close(c);
   c = parse_file(FILE_OF("gaps.brep"), VG_CAD_BREP, &o, &s);
   says(&n, "the gap is wider than 1e-07");
@@ -451,7 +460,8 @@ static void what_is_no_cad_is_refused(void **state)
   vg_input_release(&in);
   vg_cad_close(c);
   assert_int_equal(vg_cad_read("absent.step", VG_CAD_STEP, NULL, NULL, &m,
-                               &err), VG_ERR_IO);
+                               &err),
+                   VG_ERR_IO);
 }
 
 /* Text of other programs behind a BREP, as Engineering Sketch Pad writes it. */
@@ -473,7 +483,8 @@ static void text_behind_a_brep_is_no_damage(void **state)
   memcpy(text + in.size, tail, sizeof tail);
   assert_int_equal(vg_cad_open(&c, &err), VG_OK);
   assert_int_equal(vg_input_memory("case", text, in.size + sizeof tail - 1,
-                                   &all, &err), VG_OK);
+                                   &all, &err),
+                   VG_OK);
   if (vg_cad_parse(c, &all, VG_CAD_BREP, &o, &s, &err))
     fail_msg("%s", err.text);
   assert_int_equal(s.mesh.n_tri, 12);
@@ -528,8 +539,7 @@ static void what_is_cut_short_is_refused(void **state)
 /* Whatever Open CASCADE makes of damage: an answer, and a next one. */
 static void damage_gets_an_answer(void **state)
 {
-  static const char *const path[] = { FILE_OF("box.step"),
-                                      FILE_OF("loose.igs"),
+  static const char *const path[] = { FILE_OF("box.step"), FILE_OF("loose.igs"),
                                       FILE_OF("box.brep") };
   static const enum vg_cad_kind kind[] = { VG_CAD_STEP, VG_CAD_IGES,
                                            VG_CAD_BREP };
@@ -577,15 +587,17 @@ static void patience_ends(void **state)
 
   (void)state;
   o.stop.ask = at_once;
-  assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL,
-                               &m, &err), VG_ERR_STOPPED);
+  assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL, &m,
+                               &err),
+                   VG_ERR_STOPPED);
   assert_non_null(strstr(err.text, "stopped"));
   o.stop.ask = NULL;
-  o.seconds = 0.2;           /* of about a minute's work */
+  o.seconds = 0.2; /* of about a minute's work */
   o.angle = 1;
   o.chord = 1e-7;
-  assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL,
-                               &m, &err), VG_ERR_GEOMETRY);
+  assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL, &m,
+                               &err),
+                   VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "given up after 0.2 s"));
   assert_null(m.point);
 }
@@ -671,14 +683,15 @@ static void again_gives_what_parsing_gives(void **state)
     if (vg_cad_again(c, &o, &s, &err)) fail_msg("%s", err.text);
     vg_cad_close(parse_file(FILE_OF("wing.step"), VG_CAD_STEP, &o, &fresh));
     same_surface(&s, &fresh);
-    last = (uint32_t)s.mesh.n_tri - 1;   /* triangles are the new ones */
+    last = (uint32_t)s.mesh.n_tri - 1; /* triangles are the new ones */
     memcpy(x, s.mesh.point[s.mesh.tri[last][0]], sizeof x);
     if (vg_cad_project(c, VG_CAD_ON_TRIANGLES, 1, &last, &x, &d, &err))
       fail_msg("%s", err.text);
     near(d, 0, 1e-4);
     last++;
     assert_int_equal(vg_cad_project(c, VG_CAD_ON_TRIANGLES, 1, &last, &x, &d,
-                                    &err), VG_ERR_INPUT);
+                                    &err),
+                     VG_ERR_INPUT);
     vg_cad_surface_release(&s);
     vg_cad_surface_release(&fresh);
   }
@@ -686,7 +699,8 @@ static void again_gives_what_parsing_gives(void **state)
   vg_cad_close(c);
   assert_int_equal(vg_cad_open(&c, &err), VG_OK);
   assert_int_equal(vg_cad_again(c, &(struct vg_cad_options)VG_CAD_OPTIONS_INIT,
-                                &first, &err), VG_ERR_INPUT);
+                                &first, &err),
+                   VG_ERR_INPUT);
   vg_cad_close(c);
 }
 
@@ -739,8 +753,8 @@ static void rims_are_left(void **state)
   (void)state;
   o.chord = 3e-4;
   o.angle = 8;
-  vg_cad_close(parse_file(io_real("field/onera_m6_root_cap.igs.gz"),
-                          VG_CAD_IGES, &o, &s));
+  vg_cad_close(
+    parse_file(io_real("field/onera_m6_root_cap.igs.gz"), VG_CAD_IGES, &o, &s));
   assert_int_equal(vg_surface_check(&s.mesh, &check, &r, &err), VG_OK);
   for (size_t i = 0; i < r.n_defect; i++)
     for (int k = 0; k < 2; k++)
@@ -808,7 +822,7 @@ static void points_go_to_the_faces_of_a_wing(void **state)
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
   struct vg_cad *c = open_file(FILE_OF("wing.step"), VG_CAD_STEP, &s);
   const struct vg_mesh *m = &s.mesh;
-  double (*p)[3] = calloc(m->n_tri, sizeof *p), *d = calloc(m->n_tri, 8);
+  double(*p)[3] = calloc(m->n_tri, sizeof *p), *d = calloc(m->n_tri, 8);
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
@@ -817,7 +831,7 @@ static void points_go_to_the_faces_of_a_wing(void **state)
       p[i][k] = (m->point[m->tri[i][0]][k] + m->point[m->tri[i][1]][k]) / 2;
   if (vg_cad_project(c, VG_CAD_ON_FACES, m->n_tri, s.tri_face, p, d, &err))
     fail_msg("%s", err.text);
-  for (size_t i = 0; i < m->n_tri; i++) assert_true(d[i] < 5);  /* 0.5 % */
+  for (size_t i = 0; i < m->n_tri; i++) assert_true(d[i] < 5); /* 0.5 % */
   if (vg_cad_project(c, VG_CAD_ON_FACES, m->n_tri, s.tri_face, p, d, &err))
     fail_msg("%s", err.text);
   for (size_t i = 0; i < m->n_tri; i++) assert_true(d[i] < 1e-5);
@@ -833,7 +847,7 @@ static void points_go_to_faces_by_triangles(void **state)
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
   struct vg_cad *c = open_file(FILE_OF("wing.step"), VG_CAD_STEP, &s);
   const struct vg_mesh *m = &s.mesh;
-  double (*p[2])[3], *d[2];
+  double(*p[2])[3], *d[2];
   uint32_t *tri = calloc(m->n_tri, sizeof *tri);
   struct vg_error err = VG_ERROR_INIT;
 
@@ -844,20 +858,22 @@ static void points_go_to_faces_by_triangles(void **state)
     for (size_t i = 0; i < m->n_tri; i++) {
       tri[i] = (uint32_t)i;
       for (int k = 0; k < 3; k++)
-        p[j][i][k] = (m->point[m->tri[i][0]][k] + m->point[m->tri[i][1]][k]
-                      + m->point[m->tri[i][2]][k]) / 3;
+        p[j][i][k] = (m->point[m->tri[i][0]][k] + m->point[m->tri[i][1]][k] +
+                      m->point[m->tri[i][2]][k]) /
+                     3;
     }
     if (vg_cad_project(c, j ? VG_CAD_ON_TRIANGLES : VG_CAD_ON_FACES, m->n_tri,
                        j ? tri : s.tri_face, p[j], d[j], &err))
       fail_msg("%s", err.text);
   }
-  for (size_t i = 0; i < m->n_tri; i++) {     /* of 2500 mm */
+  for (size_t i = 0; i < m->n_tri; i++) { /* of 2500 mm */
     near(d[0][i], d[1][i], 1e-6);
     for (int k = 0; k < 3; k++) near(p[0][i][k], p[1][i][k], 1e-3);
   }
   tri[0] = (uint32_t)m->n_tri;
   assert_int_equal(vg_cad_project(c, VG_CAD_ON_TRIANGLES, 1, tri, p[0], d[0],
-                                  &err), VG_ERR_INPUT);
+                                  &err),
+                   VG_ERR_INPUT);
   for (int j = 0; j < 2; j++) {
     free(p[j]);
     free(d[j]);
@@ -871,7 +887,7 @@ static void points_go_to_curves(void **state)
 {
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
   struct vg_cad *c = open_file(FILE_OF("wing.step"), VG_CAD_STEP, &s);
-  double (*p)[3] = calloc(s.n_segment, sizeof *p), *d = calloc(s.n_segment, 8);
+  double(*p)[3] = calloc(s.n_segment, sizeof *p), *d = calloc(s.n_segment, 8);
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
@@ -879,11 +895,13 @@ static void points_go_to_curves(void **state)
   for (size_t i = 0; i < s.n_segment; i++)
     memcpy(p[i], s.mesh.point[s.segment[i][1]], sizeof *p);
   if (vg_cad_project(c, VG_CAD_ON_CURVES, s.n_segment, s.segment_curve, p, d,
-                     &err)) fail_msg("%s", err.text);
+                     &err))
+    fail_msg("%s", err.text);
   for (size_t i = 0; i < s.n_segment; i++) assert_true(d[i] < 1e-4);
   for (size_t i = 0; i < s.n_segment; i++) p[i][0] += 10000;
-  if (vg_cad_project(c, VG_CAD_ON_CURVES, s.n_segment, s.segment_curve, p,
-                     NULL, &err)) fail_msg("%s", err.text);
+  if (vg_cad_project(c, VG_CAD_ON_CURVES, s.n_segment, s.segment_curve, p, NULL,
+                     &err))
+    fail_msg("%s", err.text);
   for (size_t i = 0; i < s.n_segment; i++) assert_true(p[i][0] < 1101);
   free(p);
   free(d);
@@ -910,10 +928,13 @@ static void the_doubled_face_of_dlr_f6(void **state)
 
 static void real_step_files_are_closed(void **state)
 {
-  static const struct { const char *path; size_t patches; } cases[] = {
-    { "transport/onera_m6_sharp_te_farfield.stp.xz", 12 },
-    { "simple/hemisphere_cylinder_farfield.stp", 5 },
-    { "simple/cone_cone.step", 5 }, { "simple/cube_cylinder.step", 7 } };
+  static const struct {
+    const char *path;
+    size_t patches;
+  } cases[] = { { "transport/onera_m6_sharp_te_farfield.stp.xz", 12 },
+                { "simple/hemisphere_cylinder_farfield.stp", 5 },
+                { "simple/cone_cone.step", 5 },
+                { "simple/cube_cylinder.step", 7 } };
 
   (void)state;
   for (size_t i = 0; i < 4; i++)

@@ -35,9 +35,10 @@ struct batch {
  * which TetGen does not survive. */
 static struct batch *batch_new(uint64_t seed, size_t n)
 {
-  static const double at[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
-                                  {0.2, 0.2, -1}, {0.3, 0.3, 1}, {2, 2, 0.5}};
-  static const uint32_t tri[2][3] = {{0, 1, 2}, {3, 4, 5}};
+  static const double at[6][3] = { { 0, 0, 0 },     { 1, 0, 0 },
+                                   { 0, 1, 0 },     { 0.2, 0.2, -1 },
+                                   { 0.3, 0.3, 1 }, { 2, 2, 0.5 } };
+  static const uint32_t tri[2][3] = { { 0, 1, 2 }, { 3, 4, 5 } };
   struct batch *b = calloc(1, sizeof *b);
 
   assert_non_null(b);
@@ -48,8 +49,10 @@ static struct batch *batch_new(uint64_t seed, size_t n)
         seed = seed * 6364136223846793005u + 1442695040888963407u;
         b->x[k][i][axis] = 2 + (double)(seed >> 40) / (1 << 24);
       }
-    b->job[k] = (struct vg_cdt_job){.n = n, .n_tri = 1 + (k == 1), .tri = tri,
-                                    .x = (const double (*)[3])b->x[k]};
+    b->job[k] = (struct vg_cdt_job){ .n = n,
+                                     .n_tri = 1 + (k == 1),
+                                     .tri = tri,
+                                     .x = (const double(*)[3])b->x[k] };
   }
   return b;
 }
@@ -72,7 +75,8 @@ static int batches_differ(const struct batch *a, const struct batch *b)
       return 1;
     if (p->st != VG_OK) continue;
     if (memcmp(p->all, q->all, p->n_all * sizeof *p->all) ||
-        memcmp(p->tet, q->tet, p->n_tet * sizeof *p->tet)) return 1;
+        memcmp(p->tet, q->tet, p->n_tet * sizeof *p->tet))
+      return 1;
   }
   return 0;
 }
@@ -211,7 +215,7 @@ static void a_server_killed_at_any_time(void **state)
 
   (void)state;
   for (useconds_t us = 0; us < 120000; us += 12000) {
-    struct blow blow = {.after_us = us};
+    struct blow blow = { .after_us = us };
     pthread_t thread;
 
     assert_int_equal(vg_child_server_start(NULL), VG_OK);
@@ -233,15 +237,15 @@ static void a_server_killed_at_any_time(void **state)
 
 static void signals_are_left_to_the_parent(void **state)
 {
-  static const int number[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1,
-                               SIGUSR2};
+  static const int number[] = { SIGINT,  SIGTERM, SIGHUP,
+                                SIGQUIT, SIGUSR1, SIGUSR2 };
   pid_t pid;
 
   (void)state;
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
-  batch_free(answered(1, 50));     /* so it is past its beginning */
+  batch_free(answered(1, 50)); /* so it is past its beginning */
   pid = child_of(getpid());
-  assert_true(pid > 0);            /* kill would take 0 for our group */
+  assert_true(pid > 0); /* kill would take 0 for our group */
   for (size_t k = 0; k < sizeof number / sizeof *number; k++)
     assert_int_equal(kill(pid, number[k]), 0);
   batch_free(answered(1, 50));
@@ -276,7 +280,7 @@ static void it_ends_with_its_parent(void **state)
   assert_int_equal(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   assert_int_equal(pipe(ends), 0);
   pid = fork();
-  assert_true(pid >= 0);           /* kill would take -1 for everybody */
+  assert_true(pid >= 0); /* kill would take -1 for everybody */
   if (pid == 0) {
     vg_child_server_start(NULL);
     server = child_of(getpid());

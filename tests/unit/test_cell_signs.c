@@ -24,7 +24,7 @@ static unsigned sides(const double (*x)[3], const uint32_t v[4])
     uint32_t w[4] = { v[0], v[1], v[2], v[3] };
     double o;
 
-    w[i] = 4;                /* the cell with point 4 in place of vertex i */
+    w[i] = 4; /* the cell with point 4 in place of vertex i */
     o = vg_orient3d(x[w[0]], x[w[1]], x[w[2]], x[w[3]]);
     if (o > 0) signs |= VG_SIDE_IN << i;
     if (o >= 0) signs |= VG_SIDE_SEES << i;
@@ -40,7 +40,7 @@ static void compare(int n, double far, double flat)
 
   for (int round = 0; round < 100000; round++) {
     double x[5][3];
-    const double (*at)[3] = (const double (*)[3])x;
+    const double(*at)[3] = (const double(*)[3])x;
     uint32_t v[4] = { 0, 1, 2, 3 };
     vg_d2 e[3];
     unsigned right;
@@ -61,8 +61,7 @@ static void compare(int n, double far, double flat)
     assert_int_equal(vg_cell_sides(at, v, e, 0, 0), right);
     if (vg_insphere(x[v[0]], x[v[1]], x[v[2]], x[v[3]], x[4]) > 0)
       assert_int_equal(vg_cell_signs(at, v, e), VG_IN_SPHERE | right);
-    else
-      assert_int_equal(vg_cell_signs(at, v, e), 0);
+    else assert_int_equal(vg_cell_signs(at, v, e), 0);
   }
 }
 

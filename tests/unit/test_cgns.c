@@ -8,8 +8,7 @@
 
 /* --- round trips --- */
 
-static void go_round(const struct vg_mesh *m, int is_wide,
-                     struct vg_mesh *back)
+static void go_round(const struct vg_mesh *m, int is_wide, struct vg_mesh *back)
 {
   const struct vg_cgns_options o = { is_wide };
   const char *path = io_temp("round.cgns");
@@ -52,8 +51,11 @@ static void all_kinds_come_back(void **state)
 static void every_condition_comes_back(void **state)
 {
   static const int32_t code[][3] = { /* given; comes back: USM3D, FUN3D */
-    { 4, 4, 4000 }, { 44, 4, 4000 }, { 5, 5, 3000 }, { 1, 1, 6663 },
-    { 3, 3, 5000 }
+                                     { 4, 4, 4000 },
+                                     { 44, 4, 4000 },
+                                     { 5, 5, 3000 },
+                                     { 1, 1, 6663 },
+                                     { 3, 3, 5000 }
   };
   struct vg_mesh m, back = VG_MESH_INIT;
 
@@ -80,7 +82,7 @@ static void bytes_follow_from_the_mesh(void **state)
   (void)state;
   mixed_make(&m, 3, 2);
   for (int k = 0; k < 2; k++) {
-    if (k) sleep(1);         /* HDF5 counts seconds */
+    if (k) sleep(1); /* HDF5 counts seconds */
     assert_int_equal(vg_cgns_write(path[k], &m, NULL), VG_OK);
     data[k] = io_slurp(path[k], &size[k]);
     unlink(path[k]);
@@ -105,8 +107,7 @@ static void writing_fails_in_words(void **state)
   assert_int_equal(access(path, F_OK), -1);
   vg_mesh_release(&m);
   io_make_t1(&m, 1);
-  assert_int_equal(vg_cgns_write("/nowhere/at/all.cgns", &m, &err),
-                   VG_ERR_IO);
+  assert_int_equal(vg_cgns_write("/nowhere/at/all.cgns", &m, &err), VG_ERR_IO);
   assert_non_null(strstr(err.text, "/nowhere/at/all.cgns"));
   vg_mesh_release(&m);
 }
@@ -123,12 +124,14 @@ static int64_t add(struct tree *t, int64_t parent, const char *name,
                    const char *label, const char *type, int n_dim, size_t rows,
                    size_t n, const void *v)
 {
-  const struct vg_cgns_data d = { type, n_dim,
-                                  { n_dim == 2 ? rows : n, n / rows }, v };
+  const struct vg_cgns_data d = {
+    type, n_dim, { n_dim == 2 ? rows : n, n / rows }, v
+  };
   int64_t id;
 
   assert_int_equal(vg_cgns_tree_add(t->t, parent, name, label, &d, &id, NULL,
-                                    NULL), VG_OK);
+                                    NULL),
+                   VG_OK);
   return id;
 }
 
@@ -159,7 +162,7 @@ static void zone(struct tree *t, const char *name, int n, const int *which)
   static const char *const axis[3] = { "CoordinateX", "CoordinateY",
                                        "CoordinateZ" };
   static const double point[4][3] = {
-    {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}
+    { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
   };
   const int32_t size[3] = { n, 1, 0 };
   int64_t grid;
@@ -241,8 +244,8 @@ static void refuse(struct tree *t, vg_status code, const char *phrase)
 }
 
 static const int all[4] = { 0, 1, 2, 3 };
-static const int32_t t1_mixed[] = { 3, 1, 2, 5, 1, 2, 3, 5, 1, 4, 2,
-                                    5, 1, 3, 4, 5, 2, 4, 3 };
+static const int32_t t1_mixed[] = { 3, 1, 2, 5, 1, 2, 3, 5, 1, 4,
+                                    2, 5, 1, 3, 4, 5, 2, 4, 3 };
 
 /* Bars and faces in one section, with conditions by family, by their own, by
  * range and by list; the last face has none. */
@@ -260,8 +263,9 @@ static void conditions_make_patches(void **state)
   zone(&t, "Zone 1", 4, all);
   section(&t, "everything", 20, 1, 5, sizeof t1_mixed / 4, t1_mixed);
   bc = conditions(&t);
-  add_text(&t, condition(&t, bc, "bc-1", "FamilySpecified", "FaceCenter",
-                         "PointRange", 2, second),
+  add_text(&t,
+           condition(&t, bc, "bc-1", "FamilySpecified", "FaceCenter",
+                     "PointRange", 2, second),
            "FamilyName", "FamilyName_t", "/wing/skin");
   condition(&t, bc, "far", "BCFarfield", NULL, "ElementList", 2, list);
   accept(&t, &m);
@@ -510,8 +514,8 @@ static void a_layer_of_points_is_a_surface(void **state)
   /* faces count cells: the first one */
   start(&t, 3);
   block(&t, "skin", 3, &(const struct lattice){ { 3, 3, 1 }, 0, 0, 0 });
-  condition(&t, conditions(&t), "corner", "BCWall", "KFaceCenter",
-            "PointRange", 6, whole);
+  condition(&t, conditions(&t), "corner", "BCWall", "KFaceCenter", "PointRange",
+            6, whole);
   accept(&t, &m);
   assert_int_equal(m.tri_patch[1], 0);
   assert_int_equal(m.tri_patch[2], 1);
@@ -522,7 +526,8 @@ static void a_layer_of_points_is_a_surface(void **state)
  * give one triangle, or none. */
 static void collapsed_faces_are_dropped(void **state)
 {
-  static const double x[3][6] = { { 0, 0, 1, 2, 3, 3 }, { 0, 0, 0.25, 0, 0, 0 },
+  static const double x[3][6] = { { 0, 0, 1, 2, 3, 3 },
+                                  { 0, 0, 0.25, 0, 0, 0 },
                                   { 0, 0, 0, 0, 0, 0 } };
   static const double y[6] = { 0, 0, 1, 1, 0.5, 0.5 };
   static const char *const axis[3] = { "CoordinateX", "CoordinateY",
@@ -555,7 +560,8 @@ static void conditions_of_a_block_make_its_boundary(void **state)
 {
   static const int32_t range[6][6] = {
     { 1, 1, 1, 1, 4, 5 }, { 3, 1, 1, 3, 4, 5 }, { 1, 1, 1, 3, 1, 5 },
-    { 1, 4, 1, 3, 4, 5 }, { 1, 1, 1, 3, 4, 1 }, { 1, 1, 5, 3, 4, 5 } };
+    { 1, 4, 1, 3, 4, 5 }, { 1, 1, 1, 3, 4, 1 }, { 1, 1, 5, 3, 4, 5 }
+  };
   static const int32_t edge[6] = { 1, 1, 1, 3, 1, 1 };
   static const int32_t face[6] = { 1, 1, 5, 2, 3, 5 };
   char name[8];
@@ -574,8 +580,9 @@ static void conditions_of_a_block_make_its_boundary(void **state)
     for (int k = 0; k < 6; k++) {
       snprintf(name, sizeof name, "bc-%d", k);
       if (k == 5 && turn > 5)
-        condition(&t, bc, name, "BCFarfield", turn % 2 ? "FaceCenter"
-                  : "KFaceCenter", "PointRange", 6, face);
+        condition(&t, bc, name, "BCFarfield",
+                  turn % 2 ? "FaceCenter" : "KFaceCenter", "PointRange", 6,
+                  face);
       else
         condition(&t, bc, name, k ? "BCFarfield" : "BCWallViscous",
                   k % 2 ? "Vertex" : NULL, "PointRange", 6, range[k]);
@@ -656,14 +663,16 @@ static void refuses_blocks(void **state)
   refuse(&t, VG_ERR_FORMAT, "its sizes");
   for (int k = 0; k < 2; k++) {
     start(&t, 3);
-    add_text(&t, add(&t, t.base, "none", "Zone_t", "I4", 2, 3, 9,
-                     k ? huge : size), "ZoneType", "ZoneType_t", "Structured");
+    add_text(&t,
+             add(&t, t.base, "none", "Zone_t", "I4", 2, 3, 9, k ? huge : size),
+             "ZoneType", "ZoneType_t", "Structured");
     refuse(&t, VG_ERR_FORMAT, "not positive, or beyond");
   }
   start(&t, 3);
-  add_text(&t, add(&t, t.base, "bare", "Zone_t", "I4", 2, 3, 9,
-                   (const int32_t[9]){ 2, 2, 2, 1, 1, 1 }), "ZoneType",
-           "ZoneType_t", "Structured");
+  add_text(&t,
+           add(&t, t.base, "bare", "Zone_t", "I4", 2, 3, 9,
+               (const int32_t[9]){ 2, 2, 2, 1, 1, 1 }),
+           "ZoneType", "ZoneType_t", "Structured");
   refuse(&t, VG_ERR_FORMAT, "CoordinateX has 0 values for 8 points");
   one_block(&t, NULL, "PointRange", 6, out);
   refuse(&t, VG_ERR_FORMAT, "leaves the zone");

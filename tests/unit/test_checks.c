@@ -123,10 +123,14 @@ static void open_edges_are_counted(void **state)
   assert_int_equal(vg_mesh_open_edges(&m), 3);
   m.n_tri = 4;
   tri[3][0] = 0;
-  tri[3][1] = 2;             /* turned over */
+  tri[3][1] = 2; /* turned over */
   assert_int_equal(vg_mesh_open_edges(&m), 3);
-  m = (struct vg_mesh){ .n_point = 5, .n_tri = 4, .n_quad = 1, .point = point,
-                        .tri = side, .quad = quad };
+  m = (struct vg_mesh){ .n_point = 5,
+                        .n_tri = 4,
+                        .n_quad = 1,
+                        .point = point,
+                        .tri = side,
+                        .quad = quad };
   assert_int_equal(vg_mesh_open_edges(&m), 0);
   m.n_quad = 0;
   assert_int_equal(vg_mesh_open_edges(&m), 4);
@@ -135,8 +139,9 @@ static void open_edges_are_counted(void **state)
 static void nodes_and_patches_out_of_range_are_counted(void **state)
 {
   uint32_t tri[2][3] = { { 0, 1, 2 }, { 0, 2, 3 } }, patch[2] = { 0, 0 };
-  struct vg_mesh m = { .n_point = 4, .n_tri = 2, .tri = tri,
-                       .tri_patch = patch, .n_patch = 1 };
+  struct vg_mesh m = {
+    .n_point = 4, .n_tri = 2, .tri = tri, .tri_patch = patch, .n_patch = 1
+  };
 
   (void)state;
   assert_int_equal(vg_mesh_bad_faces(&m), 0);

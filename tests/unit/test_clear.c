@@ -19,7 +19,8 @@ static size_t tops(const struct shape *s, const uint8_t *is_slide,
 
   memset(bad, 7, s->c.n_column);
   assert_int_equal(vg_clear_tops(&s->m, &s->c, is_slide ? is_slide : none,
-                                 active, threads, bad, &n_bad, &err), VG_OK);
+                                 active, threads, bad, &n_bad, &err),
+                   VG_OK);
   for (size_t i = 0; i < s->c.n_column; i++) {
     assert_true(bad[i] <= 1);
     n += bad[i];
@@ -245,9 +246,10 @@ static void fan_of_columns(void **state)
   c->face_tri[1] = 1;
   for (int f = 2; f < 5; f++) c->face_tri[f] = VG_NO_INDEX;
   for (size_t i = 0; i < 7; i++) {
-    static const double dir[7][3] = {
-      { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0.1, -1 }, { -1, 0, 0 },
-      { 0, 0.1, -1 }, { 0, 0.1, -1 } };
+    static const double dir[7][3] = { { 0, 0, 1 },   { 0, 0, 1 },
+                                      { 0, 0, 1 },   { 0, 0.1, -1 },
+                                      { -1, 0, 0 },  { 0, 0.1, -1 },
+                                      { 0, 0.1, -1 } };
 
     memcpy(c->column[i].dir, dir[i], sizeof dir[i]);
   }
@@ -271,8 +273,8 @@ static struct shape *two_bars(double distance)
   const double right[3] = { distance, 1, 0 };
   const double o[3] = { -3, -3, 0 }, u[3] = { 0, 6, 0 }, v[3] = { 6, 0, 0 };
 
-  add_plate(s, 0, 8, zero, ey, up);            /* fluid towards +x */
-  add_plate(s, 0, 6, right, back, up);         /* fluid towards -x */
+  add_plate(s, 0, 8, zero, ey, up);    /* fluid towards +x */
+  add_plate(s, 0, 6, right, back, up); /* fluid towards -x */
   add_plate(s, 1, 4, o, v, u);
   s->is_wall[0] = 1;
   grow(s, 2);
@@ -324,8 +326,9 @@ static void flanks_in_a_noisy_plane(void **state)
   s->c.n_face = 0;
   for (size_t i = 0; i < s->c.n_border; i++)
     for (int k = 0; k < 2; k++)
-      s->m.point[s->c.column[s->c.border[i][k]].root][2] =
-        1e-7 * (double)(i % 5) - 2e-7;
+      s->m.point[s->c.column[s->c.border[i][k]].root][2] = 1e-7 *
+                                                             (double)(i % 5) -
+                                                           2e-7;
   assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 3;
   /* All but the ends of the rows may be lowered: both rows overlap. */
@@ -402,7 +405,8 @@ static double *ahead(struct shape *s, double reach, int threads)
 
   for (size_t i = 0; i < s->c.n_column; i++) wanted[i] = reach;
   assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, 0.4, threads, wanted,
-                                  allowed, &err), VG_OK);
+                                  allowed, &err),
+                   VG_OK);
   for (size_t i = 0; i < s->c.n_column; i++)
     assert_true(allowed[i] > 0 && allowed[i] <= reach);
   free(wanted);
@@ -433,8 +437,7 @@ static void plates_share_the_gap(void **state)
   free(allowed);
   /* Too far away to matter. */
   allowed = ahead(s, 0.05, 1);
-  for (size_t i = 0; i < s->c.n_column; i++)
-    assert_true(allowed[i] == 0.05);
+  for (size_t i = 0; i < s->c.n_column; i++) assert_true(allowed[i] == 0.05);
   free(allowed);
   shape_free(s);
 }
@@ -501,8 +504,8 @@ static void sphere_near_a_plane(void **state)
   grow(s, 1);
   for (size_t i = 0; i < s->c.n_column; i++)
     for (int k = 0; k < 3; k++)
-      s->c.column[i].dir[k] = s->m.point[s->c.column[i].root][k]
-                              - (k == 2 ? 1.2 : 0);
+      s->c.column[i].dir[k] = s->m.point[s->c.column[i].root][k] -
+                              (k == 2 ? 1.2 : 0);
   allowed = ahead(s, 0.3, 1);
   for (size_t i = 0; i < s->c.n_column; i++) {
     double g = -s->c.column[i].dir[2];
@@ -601,8 +604,7 @@ static struct shape *wedge(int n)
 
       for (uint32_t u = 0; u < 2; u++)
         for (uint32_t v = 0; v < 2; v++)
-          p[u][v] = i + u ? w * w + (j + v) * (w - 1) + i + u - 1
-                          : (j + v) * w;
+          p[u][v] = i + u ? w * w + (j + v) * (w - 1) + i + u - 1 : (j + v) * w;
       add_tri(s, 0, p[0][0], p[1][1], p[1][0]);
       add_tri(s, 0, p[0][0], p[0][1], p[1][1]);
     }
@@ -741,10 +743,12 @@ static void gap_must_leave_room(void **state)
   assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, 0, 1, h, allowed, &err),
                    VG_ERR_INPUT);
   assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, NAN, 1, h, allowed,
-                                  &err), VG_ERR_INPUT);
+                                  &err),
+                   VG_ERR_INPUT);
   /* What wants nothing gets it. */
   assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, 0.4, 1, h, allowed,
-                                  &err), VG_OK);
+                                  &err),
+                   VG_OK);
   for (size_t i = 0; i < s->c.n_column; i++) assert_true(allowed[i] == 0);
   shape_free(s);
 }

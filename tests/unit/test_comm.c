@@ -13,9 +13,13 @@
 /* The test may itself be run in a job. */
 static int forget_launcher(void **state)
 {
-  static const char *const name[] = {
-    "OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK",
-    "SLURM_STEP_ID", "SLURM_PROCID", "SLURM_STEP_NUM_TASKS" };
+  static const char *const name[] = { "OMPI_COMM_WORLD_SIZE",
+                                      "PMI_SIZE",
+                                      "PMI_RANK",
+                                      "PMIX_RANK",
+                                      "SLURM_STEP_ID",
+                                      "SLURM_PROCID",
+                                      "SLURM_STEP_NUM_TASKS" };
 
   (void)state;
   for (size_t i = 0; i < sizeof name / sizeof *name; i++) unsetenv(name[i]);
@@ -111,8 +115,7 @@ int main(void)
     cmocka_unit_test(collectives),
     cmocka_unit_test(messages_need_ranks),
     cmocka_unit_test(cores),
-    cmocka_unit_test_setup(unconnected_processes_are_refused,
-                           forget_launcher),
+    cmocka_unit_test_setup(unconnected_processes_are_refused, forget_launcher),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -47,8 +47,8 @@ static void check_closed(const struct vg_mesh *m)
 
 static double distance(const double a[3], const double b[3])
 {
-  return sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1])
-              + (b[2] - a[2]) * (b[2] - a[2]));
+  return sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) +
+              (b[2] - a[2]) * (b[2] - a[2]));
 }
 
 /* Volume enclosed, positive when triangles point into it. */
@@ -60,9 +60,9 @@ static double volume(const struct vg_mesh *m, size_t first, size_t last)
     const double *a = m->point[m->tri[i][0]], *b = m->point[m->tri[i][1]],
                  *c = m->point[m->tri[i][2]];
 
-    sum -= a[0] * (b[1] * c[2] - b[2] * c[1])
-           + a[1] * (b[2] * c[0] - b[0] * c[2])
-           + a[2] * (b[0] * c[1] - b[1] * c[0]);
+    sum -= a[0] * (b[1] * c[2] - b[2] * c[1]) +
+           a[1] * (b[2] * c[0] - b[0] * c[2]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
   }
   return sum / 6;
 }
@@ -164,8 +164,7 @@ static void half_wing_stands_on_its_plane(void **state)
     n++;
     assert_int_equal(p->bc, 1);
     assert_int_equal(p->bc_fun3d, 6662);
-    for (int k = 0; k < 3; k++)
-      assert_true(m->point[m->tri[i][k]][1] == 0);
+    for (int k = 0; k < 3; k++) assert_true(m->point[m->tri[i][k]][1] == 0);
   }
   assert_true(n > 1000);
   vg_demo_release(&d);
@@ -185,8 +184,8 @@ static void wing_follows_its_sources(void **state)
                  *b = m->point[m->tri[i / 3][(i + 1) % 3]];
     const double mid[3] = { (a[0] + b[0]) / 2, (a[1] + b[1]) / 2,
                             (a[2] + b[2]) / 2 };
-    const double r = distance(a, b) / vg_sizing_sources_at(
-      &d.sizing, d.n_source, d.source, mid);
+    const double r = distance(a, b) /
+                     vg_sizing_sources_at(&d.sizing, d.n_source, d.source, mid);
 
     sum += r;
     n_good += r > 0.7 && r < 1.5;

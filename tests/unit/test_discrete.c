@@ -22,7 +22,6 @@ struct case_of {
 
 static void case_begin(struct case_of *c, const char *name, size_t n)
 {
-
   scene_demo(&c->s, name, n);
   c->front = vg_front_of(&c->s.m);
   c->front.id = vg_alloc(c->front.n_point, sizeof *c->front.id);
@@ -31,7 +30,8 @@ static void case_begin(struct case_of *c, const char *name, size_t n)
     c->front.id[k] = VG_POINT_ID(0, k);
   memset(&c->load, 0, sizeof c->load);
   assert_int_equal(vg_load_new(&c->front, c->s.sizing, VG_LOAD_CELLS_PER_CUBE,
-                               1, &c->load, NULL), VG_OK);
+                               1, &c->load, NULL),
+                   VG_OK);
 }
 
 static void case_end(struct case_of *c)
@@ -117,8 +117,7 @@ static void interfaces_have_the_local_size(void **state)
         uint32_t a = f->face[i / 3][i % 3], b = f->face[i / 3][(i + 1) % 3];
         double r;
 
-        if (f->id[a] >> 32 != SERIAL || f->id[b] >> 32 != SERIAL)
-          continue;
+        if (f->id[a] >> 32 != SERIAL || f->id[b] >> 32 != SERIAL) continue;
         r = vg_distance(f->x[a], f->x[b]) / vg_sizing_at(c.s.sizing, f->x[a]);
         assert_true(r < 2.5);
         n_good += r > 0.67 && r < 1.5;
@@ -131,8 +130,7 @@ static void interfaces_have_the_local_size(void **state)
   case_end(&c);
 }
 
-static void coarse(const struct case_of *c, double factor,
-                   struct vg_coarse *m)
+static void coarse(const struct case_of *c, double factor, struct vg_coarse *m)
 {
   struct vg_error err = VG_ERROR_INIT;
 
@@ -154,7 +152,7 @@ static void part_ball(struct vg_coarse *m, double radius)
   assert_non_null(m->part);
   m->n_part = 2;
   for (size_t q = 0; q < m->t.n_cell; q++) {
-    double mid[3] = {0};
+    double mid[3] = { 0 };
     const double *x[4];
 
     corners(m, q, x);
@@ -182,7 +180,7 @@ static double ball(const struct vg_coarse *m)
 static void smoothing_leaves_what_is_round(void **state)
 {
   struct vg_coarse m;
-  struct vg_interface f = {0};
+  struct vg_interface f = { 0 };
   struct case_of c;
   double was;
 
@@ -230,18 +228,19 @@ static void interfaces_avoid_flat_cells(void **state)
 {
   struct vg_parting_options o = how(2, VG_PARTITIONER_METIS, 0);
   struct vg_coarse m;
-  struct vg_interface f = {0};
+  struct vg_interface f = { 0 };
   struct case_of c;
   uint64_t n_apart;
   size_t n = 0;
-  const double flat = 0.02;            /* 8 degrees */
+  const double flat = 0.02; /* 8 degrees */
 
   (void)state;
   case_begin(&c, "box", 30000);
   coarse(&c, 1, &m);
   squeeze(&m);
   assert_int_equal(vg_coarse_deal(&m, &c.load, c.s.sizing, &o, NULL, &n_apart,
-                                  NULL), VG_OK);
+                                  NULL),
+                   VG_OK);
   assert_int_equal(vg_interface_list(&m, &f, NULL), VG_OK);
   for (size_t i = 0; i < f.n_face; i++) n += shape_at(&m, f.side[i]) < flat;
   assert_true(4 * n < f.n_face);
@@ -275,21 +274,25 @@ static void what_cannot_be_parted(void **state)
   (void)state;
   case_begin(&c, "box", 5000);
   assert_int_equal(vg_discrete_part(&c.front, &c.load, c.s.sizing, &o, SERIAL,
-                                    NULL, &p, &err), VG_ERR_UNSUPPORTED);
+                                    NULL, &p, &err),
+                   VG_ERR_UNSUPPORTED);
   assert_non_null(strstr(err.text, "fewer parts"));
   assert_int_equal(p.n_part, 0);
   o.n_part = 0;
   assert_int_equal(vg_discrete_part(&c.front, &c.load, c.s.sizing, &o, SERIAL,
-                                    NULL, &p, &err), VG_ERR_INPUT);
+                                    NULL, &p, &err),
+                   VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "give 1 or more"));
-  o.n_part = 4500;           /* fewer than the mesh will have cells */
+  o.n_part = 4500; /* fewer than the mesh will have cells */
   assert_int_equal(vg_discrete_part(&c.front, &c.load, c.s.sizing, &o, SERIAL,
-                                    NULL, &p, &err), VG_ERR_UNSUPPORTED);
+                                    NULL, &p, &err),
+                   VG_ERR_UNSUPPORTED);
   assert_non_null(strstr(err.text, "smaller coarsening"));
-  c.front.n_face--;          /* a hole */
+  c.front.n_face--; /* a hole */
   o = how(4, VG_PARTITIONER_METIS, 0);
   assert_int_equal(vg_discrete_part(&c.front, &c.load, c.s.sizing, &o, SERIAL,
-                                    NULL, &p, &err), VG_ERR_GEOMETRY);
+                                    NULL, &p, &err),
+                   VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "coarse mesh"));
   c.front.n_face++;
   case_end(&c);
@@ -309,11 +312,11 @@ static void what_is_no_parting(void **state)
   case_begin(&c, "box", 5000);
   part(&c, how(3, VG_PARTITIONER_RCB, 0), &p);
   f = &p.part[0].front;
-  f->n_face--;               /* a face missing */
+  f->n_face--; /* a face missing */
   assert_int_equal(vg_parting_check(&p, &c.front, SERIAL, NULL),
                    VG_ERR_GEOMETRY);
   f->n_face++;
-  v = f->face[7][0];         /* a face turned */
+  v = f->face[7][0]; /* a face turned */
   f->face[7][0] = f->face[7][1];
   f->face[7][1] = v;
   assert_int_equal(vg_parting_check(&p, &c.front, SERIAL, NULL),
@@ -379,8 +382,9 @@ static void bisection_is_even(void **state)
     double most = 0;
 
     memset(sum, 0, sizeof sum);
-    assert_int_equal(vg_bisect(N, (const double (*)[3])x, weight, parts[t],
-                               of, NULL), VG_OK);
+    assert_int_equal(vg_bisect(N, (const double(*)[3])x, weight, parts[t], of,
+                               NULL),
+                     VG_OK);
     for (size_t k = 0; k < N; k++) {
       assert_true(of[k] < (uint32_t)parts[t]);
       sum[of[k]] += weight[k];

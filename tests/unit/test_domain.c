@@ -48,8 +48,8 @@ static void check_closed(const struct vg_mesh *m)
     const struct side back = { list[i].b, list[i].a };
 
     if (i) assert_true(side_compare(&list[i - 1], &list[i]) < 0);
-    assert_non_null(bsearch(&back, list, 3 * m->n_tri, sizeof *list,
-                            side_compare));
+    assert_non_null(
+      bsearch(&back, list, 3 * m->n_tri, sizeof *list, side_compare));
   }
   for (size_t i = 0; i < m->n_point; i++) assert_true(used[i]);
   free(list);
@@ -65,9 +65,9 @@ static double volume(const struct vg_mesh *m)
     const double *a = m->point[m->tri[i][0]], *b = m->point[m->tri[i][1]],
                  *c = m->point[m->tri[i][2]];
 
-    sum -= a[0] * (b[1] * c[2] - b[2] * c[1])
-           + a[1] * (b[2] * c[0] - b[0] * c[2])
-           + a[2] * (b[0] * c[1] - b[1] * c[0]);
+    sum -= a[0] * (b[1] * c[2] - b[2] * c[1]) +
+           a[1] * (b[2] * c[0] - b[0] * c[2]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
   }
   return sum / 6;
 }
@@ -144,7 +144,7 @@ static void makes_even_spheres(void **state)
 
       assert_true(fabs(x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - 1) < 1e-14);
     }
-    assert_true(volume(&m) < 0);   /* normals out of it */
+    assert_true(volume(&m) < 0); /* normals out of it */
     vg_mesh_release(&m);
   }
 }
@@ -184,8 +184,9 @@ static void puts_a_box_around_a_body(void **state)
 {
   struct vg_mesh m = ball(-1, 0.1);
   struct vg_sizing *s = field(&m, 1.2);
-  struct vg_farfield far = { VG_FARFIELD_BOX, 0, 0, { 0 }, 0, { -9, -5, -4 },
-                             { 7, 5, 4 }, 1, 0, 0.8, { NULL, NULL } };
+  struct vg_farfield far = { VG_FARFIELD_BOX, 0,           0, { 0 }, 0,
+                             { -9, -5, -4 },  { 7, 5, 4 }, 1, 0,     0.8,
+                             { NULL, NULL } };
   struct vg_error err = VG_ERROR_INIT;
   double body, lo[3], hi[3];
 
@@ -345,8 +346,7 @@ static vg_status close_holes(struct vg_mesh *m, int symmetry, size_t *n_hole)
   struct vg_sizing *s = field(m, 1.4);
   struct vg_error err = VG_ERROR_INIT;
   size_t n_before = m->n_tri, n_tri;
-  vg_status st = vg_domain_close_holes(m, symmetry, s, n_hole, &n_tri,
-                                       &err);
+  vg_status st = vg_domain_close_holes(m, symmetry, s, n_hole, &n_tri, &err);
 
   assert_int_equal(m->n_tri, n_before + (st < 0 ? 0 : n_tri));
   if (st < 0) assert_non_null(strstr(err.text, "the hole at"));
@@ -374,14 +374,14 @@ static void closes_holes_but_not_half_bodies(void **state)
   assert_int_equal(m.patch[2].bc, VG_BC_NONE);
   assert_true(-volume(&m) > 0.95 * whole && -volume(&m) < whole);
   vg_mesh_release(&m);
-  m = ball(-1, 0.1);                 /* open at both ends: no half model */
+  m = ball(-1, 0.1); /* open at both ends: no half model */
   cut_end(&m, 1, 1, 0.3);
   cut_end(&m, 1, -1, -0.3);
   assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 2);
   check_closed(&m);
   vg_mesh_release(&m);
-  m = ball(5, 0.1);                  /* half a ball with a hole at its end */
+  m = ball(5, 0.1); /* half a ball with a hole at its end */
   cut_end(&m, 2, 1, 0.95);
   assert_int_equal(close_holes(&m, 1, &n), VG_OK);
   assert_int_equal(n, 1);
@@ -391,7 +391,7 @@ static void closes_holes_but_not_half_bodies(void **state)
   assert_int_equal(n, 1);
   check_closed(&m);
   vg_mesh_release(&m);
-  m = ball(5, 0.1);                  /* as a section that is open at both ends */
+  m = ball(5, 0.1); /* as a section that is open at both ends */
   cut_end(&m, 2, 1, 0.95);
   assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 2);
@@ -502,7 +502,7 @@ static void refuses_bodies_it_cannot_complete(void **state)
   struct vg_mesh m = ball(-1, 0.3);
 
   (void)state;
-  m.n_tri--;   /* a hole in the middle of the surface */
+  m.n_tri--; /* a hole in the middle of the surface */
   refuses(m, &far, VG_ERR_GEOMETRY, "open edges");
   small.size = 1.02;
   refuses(ball(-1, 0.3), &small, VG_ERR_GEOMETRY, "inside the farfield");
@@ -520,7 +520,7 @@ static void refuses_bodies_it_cannot_complete(void **state)
   }
   refuses(m, &far, VG_ERR_INPUT, "into the body");
   m = ball(3, 0.3);
-  for (size_t i = 0; i < m.n_point; i++)   /* bulges through its plane */
+  for (size_t i = 0; i < m.n_point; i++) /* bulges through its plane */
     if (m.point[i][1] > 0.9) m.point[i][1] = -0.2;
   refuses(m, &far, VG_ERR_GEOMETRY, "plane");
 }
@@ -531,15 +531,16 @@ static void refuses_bodies_it_cannot_complete(void **state)
  * 1 at the corners with y = -10 and 2 at those with y = +10. */
 static void box_project(struct vg_project *p)
 {
-  static const int32_t line[12][2] = {
-    { 1, 2 }, { 2, 3 }, { 4, 3 }, { 1, 4 }, { 5, 6 }, { 7, 6 }, { 8, 7 },
-    { 5, 8 }, { 1, 5 }, { 2, 6 }, { 3, 7 }, { 4, 8 } };
-  static const int32_t loop[6][4] = {
-    { 2, -3, -4, 1 }, { 8, 7, 6, -5 }, { 9, 5, -10, -1 }, { 11, -7, -12, 3 },
-    { 4, 12, -8, -9 }, { -6, -11, -2, 10 } };
-  static const double corner[8][3] = {
-    { -10, -10, -10 }, { 10, -10, -10 }, { 10, 10, -10 }, { -10, 10, -10 },
-    { -10, -10, 10 }, { 10, -10, 10 }, { 10, 10, 10 }, { -10, 10, 10 } };
+  static const int32_t line[12][2] = { { 1, 2 }, { 2, 3 }, { 4, 3 }, { 1, 4 },
+                                       { 5, 6 }, { 7, 6 }, { 8, 7 }, { 5, 8 },
+                                       { 1, 5 }, { 2, 6 }, { 3, 7 }, { 4, 8 } };
+  static const int32_t loop[6][4] = { { 2, -3, -4, 1 },  { 8, 7, 6, -5 },
+                                      { 9, 5, -10, -1 }, { 11, -7, -12, 3 },
+                                      { 4, 12, -8, -9 }, { -6, -11, -2, 10 } };
+  static const double corner[8][3] = { { -10, -10, -10 }, { 10, -10, -10 },
+                                       { 10, 10, -10 },   { -10, 10, -10 },
+                                       { -10, -10, 10 },  { 10, -10, 10 },
+                                       { 10, 10, 10 },    { -10, 10, 10 } };
 
   memset(p, 0, sizeof *p);
   p->ifact = p->vfact = 1;
@@ -561,8 +562,7 @@ static void box_project(struct vg_project *p)
     p->curve[i].id = i + 1;
     p->curve[i].n = 2;
     p->curve[i].point = malloc(2 * sizeof(uint32_t));
-    for (int k = 0; k < 2; k++)
-      p->curve[i].point[k] = (uint32_t)line[i][k] - 1;
+    for (int k = 0; k < 2; k++) p->curve[i].point[k] = (uint32_t)line[i][k] - 1;
   }
   for (int i = 0; i < 6; i++) {
     p->shape[i].patch.id = i + 1;
@@ -576,11 +576,12 @@ static void marches_curves_as_vgrid_does(void **state)
 {
   /* x along the first curve, from the .front that VGRID 3.6 wrote */
   static const double want[] = {
-    -8.99999999417, -7.99415543241, -6.97124623625, -5.92181255177,
-    -4.83944148672, -3.72168279456, -2.57037271621, -1.39130717951,
-    -0.193415334438, 1.01231161176, 2.21395079804, 3.39981088209,
-    4.55969946316, 5.68629598072, 6.77640351223, 7.83164467197,
-    8.55442978131, 9.27721489066 };
+    -8.99999999417,  -7.99415543241, -6.97124623625, -5.92181255177,
+    -4.83944148672,  -3.72168279456, -2.57037271621, -1.39130717951,
+    -0.193415334438, 1.01231161176,  2.21395079804,  3.39981088209,
+    4.55969946316,   5.68629598072,  6.77640351223,  7.83164467197,
+    8.55442978131,   9.27721489066
+  };
   struct vg_project p;
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -653,12 +654,13 @@ static void meshes_the_box_of_vgrid(void **state)
   /* curves that carry no layers come out as VGRID's: 8 corners, 18 points on
    * each edge around the floor, 10 on each around the ceiling */
   assert_int_equal(vg_front_read(VG_DATA_DIR "/vgrid_box/box.front", NULL,
-                                 &front, &err), VG_OK);
+                                 &front, &err),
+                   VG_OK);
   for (size_t i = 0; i < 300 && i < front.n_point; i++)
     for (size_t k = 0; k < 300; k++)
-      if (fabs(front.point[i][0] - m.point[k][0]) < 1e-6
-          && fabs(front.point[i][1] - m.point[k][1]) < 1e-6
-          && fabs(front.point[i][2] - m.point[k][2]) < 1e-6)
+      if (fabs(front.point[i][0] - m.point[k][0]) < 1e-6 &&
+          fabs(front.point[i][1] - m.point[k][1]) < 1e-6 &&
+          fabs(front.point[i][2] - m.point[k][2]) < 1e-6)
         n_same++;
   assert_int_equal(n_same, 120);
   vg_mesh_release(&front);
@@ -694,9 +696,13 @@ static void keeps_corners_of_chains(void **state)
   p.source->h0 = h;
   for (uint32_t i = 0; i < 41; i++) {
     const double t = i % 10 / 10.0, u = i / 10 % 4 == 0 ? t
-                 : i / 10 % 4 == 1 ? 1 : i / 10 % 4 == 2 ? 1 - t : 0;
-    const double v = i / 10 % 4 == 0 ? 0 : i / 10 % 4 == 1 ? t
-                 : i / 10 % 4 == 2 ? 1 : 1 - t;
+                                      : i / 10 % 4 == 1 ? 1
+                                      : i / 10 % 4 == 2 ? 1 - t
+                                                        : 0;
+    const double v = i / 10 % 4 == 0 ? 0
+                   : i / 10 % 4 == 1 ? t
+                   : i / 10 % 4 == 2 ? 1
+                                     : 1 - t;
 
     p.point[i][0] = 0.6 * u;
     p.point[i][1] = v;
@@ -709,8 +715,9 @@ static void keeps_corners_of_chains(void **state)
     const double *a = m.point[m.tri[i][0]], *b = m.point[m.tri[i][1]],
                  *c = m.point[m.tri[i][2]];
 
-    area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1])
-                   - (b[1] - a[1]) * (c[0] - a[0])) / 0.6;
+    area += 0.5 *
+            ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) /
+            0.6;
   }
   assert_true(fabs(area - 1) < 1e-9);
   vg_mesh_release(&m);
@@ -718,7 +725,7 @@ static void keeps_corners_of_chains(void **state)
   assert_int_equal(vg_project_surface(&p, NULL, &stop, &m, &err), VG_OK);
   vg_mesh_release(&m);
   n_asked = SIZE_MAX - n_asked;
-  for (int last = 0; last < 2; last++) {   /* on a curve; inside the patch */
+  for (int last = 0; last < 2; last++) { /* on a curve; inside the patch */
     size_t left = last ? n_asked : 1;
 
     stop.user = &left;
@@ -726,13 +733,12 @@ static void keeps_corners_of_chains(void **state)
                      VG_ERR_STOPPED);
     assert_null(m.tri);
   }
-  p.point[5][2] += 1;   /* no longer plane */
+  p.point[5][2] += 1; /* no longer plane */
   p.point[6][2] += 1;
   assert_int_equal(vg_project_surface(&p, NULL, NULL, &m, &err),
                    VG_ERR_GEOMETRY);
   p.curve->point[3] = 77;
-  assert_int_equal(vg_project_surface(&p, NULL, NULL, &m, &err),
-                   VG_ERR_INPUT);
+  assert_int_equal(vg_project_surface(&p, NULL, NULL, &m, &err), VG_ERR_INPUT);
   assert_null(m.tri);
   vg_project_release(&p);
 }

@@ -82,22 +82,22 @@ static void edges_are_those_of_all_pairs(void **state)
         mark[t] = (uint8_t)draw(&seed, 8);
       }
       for (uint32_t h = 0; h < 3 * TRIS; h++) {
-        side[h][0] = vg_half_from((const uint32_t (*)[3])tri, h);
-        side[h][1] = vg_half_to((const uint32_t (*)[3])tri, h);
+        side[h][0] = vg_half_from((const uint32_t(*)[3])tri, h);
+        side[h][1] = vg_half_to((const uint32_t(*)[3])tri, h);
         is_out[h] = with_state && mark[h / 3] & OUT;
       }
       assert_int_equal(vg_edges_build(&e, n_point, TRIS,
-                                      (const uint32_t (*)[3])tri,
+                                      (const uint32_t(*)[3])tri,
                                       with_state ? mark : NULL, OUT, &err),
                        VG_OK);
-      expect_edges(&e, 3 * TRIS, (const uint32_t (*)[2])side, is_out);
+      expect_edges(&e, 3 * TRIS, (const uint32_t(*)[2])side, is_out);
       vg_edges_release(&e);
 
       memset(is_out, 0, sizeof is_out);
       assert_int_equal(vg_edges_build_sides(&e, n_point, 3 * TRIS,
-                                            (const uint32_t (*)[2])side, &err),
+                                            (const uint32_t(*)[2])side, &err),
                        VG_OK);
-      expect_edges(&e, 3 * TRIS, (const uint32_t (*)[2])side, is_out);
+      expect_edges(&e, 3 * TRIS, (const uint32_t(*)[2])side, is_out);
       vg_edges_release(&e);
     }
 }
@@ -122,7 +122,7 @@ static void nothing_has_no_edges(void **state)
 static void neighbours_agree_or_not(void **state)
 {
   uint32_t tri[4][3] = { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 2, 0, 3 } };
-  const uint32_t (*t)[3] = (const uint32_t (*)[3])tri;
+  const uint32_t(*t)[3] = (const uint32_t(*)[3])tri;
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;

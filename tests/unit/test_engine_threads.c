@@ -20,7 +20,7 @@ static void check_tree(int threads, uint64_t shuffle, int pin)
 
   for (int t = 0; t < 3; t++)
     forest_expect(&f, (char[]){ (char)('a' + t), 0 }, &n, &sum);
-  assert_true(n > 500);      /* else it shows nothing */
+  assert_true(n > 500); /* else it shows nothing */
   assert_int_equal(forest_grow(&f, NULL, 3, shuffle, &s, &err), VG_OK);
   assert_int_equal(f.n_done, n);
   assert_true(f.sum == sum);
@@ -112,12 +112,10 @@ static void a_failure_is_told(void **state)
   (void)state;
   for (int threads = 1; threads < 4; threads++) {
     struct forest f = { .threads = threads, .depth = 6, .fail_at = "a12" };
-    struct forest g = { .threads = threads, .depth = 6,
-                        .done_fails_at = "b2" };
+    struct forest g = { .threads = threads, .depth = 6, .done_fails_at = "b2" };
     struct vg_error err = VG_ERROR_INIT;
 
-    assert_int_equal(forest_grow(&f, NULL, 3, 0, NULL, &err),
-                     VG_ERR_GEOMETRY);
+    assert_int_equal(forest_grow(&f, NULL, 3, 0, NULL, &err), VG_ERR_GEOMETRY);
     assert_string_equal(err.text, "task a12 fails");
     assert_int_equal(f.alive, 0);
     assert_int_equal(f.n_run, f.n_done);
@@ -145,8 +143,9 @@ static void loops_are_done_once(void **state)
 {
   (void)state;
   for (int threads = 1; threads < 5; threads++) {
-    struct forest f = { .threads = threads, .depth = 4, .loop = 13,
-                        .spin_item = 2e-5 };
+    struct forest f = {
+      .threads = threads, .depth = 4, .loop = 13, .spin_item = 2e-5
+    };
     struct vg_spans s = VG_SPANS_INIT;
     uint64_t sum = 0;
     long n = 0, chunks = 13 + 7 + 4 + 2;
@@ -184,8 +183,7 @@ static void idle_workers_help(void **state)
     assert_string_equal(h->path, a->path);
     assert_true(h->rank == 0 && h->thread != a->thread);
     assert_in_range(h->thread, 0, 2);
-    assert_true(a->start <= h->start && h->start <= h->end &&
-                h->end <= a->end);
+    assert_true(a->start <= h->start && h->start <= h->end && h->end <= a->end);
     help += h->end - h->start;
   }
   wall = a->end - a->start;
@@ -200,8 +198,11 @@ static void loops_are_finished_after_a_stop(void **state)
 {
   (void)state;
   for (int threads = 1; threads < 4; threads++) {
-    struct forest f = { .threads = threads, .depth = 5, .stop_at = "a12",
-                        .loop = 9, .spin_item = 2e-5 };
+    struct forest f = { .threads = threads,
+                        .depth = 5,
+                        .stop_at = "a12",
+                        .loop = 9,
+                        .spin_item = 2e-5 };
 
     assert_int_equal(forest_grow(&f, NULL, 3, 0, NULL, NULL), VG_ERR_STOPPED);
     assert_int_equal(f.alive, 0);
@@ -223,8 +224,8 @@ static void a_loop_alone(void **state)
 }
 
 static vg_status nop_run(void *user, const struct vg_engine *e,
-                         const struct vg_task *task, int worker,
-                         void **outcome, struct vg_done *done, struct vg_error *err)
+                         const struct vg_task *task, int worker, void **outcome,
+                         struct vg_done *done, struct vg_error *err)
 {
   (void)user, (void)e, (void)task, (void)worker, (void)outcome, (void)err;
   done->n_cell = 1;
@@ -243,8 +244,7 @@ static vg_status nop_done(void *user, struct vg_engine *e,
 /* Input and outcome NULL: no callback for them is ever called. */
 static void tasks_without_input(void **state)
 {
-  static const struct vg_engine_ops ops = { .run = nop_run,
-                                            .done = nop_done };
+  static const struct vg_engine_ops ops = { .run = nop_run, .done = nop_done };
   struct vg_engine_options options = { .threads = 2 };
   struct vg_task *t = vg_calloc(5000, sizeof *t);
   long n = 0;
@@ -254,8 +254,8 @@ static void tasks_without_input(void **state)
     snprintf(t[i].path, sizeof t[i].path, "%d", i);
     t[i].pinned = i % 2;
   }
-  assert_int_equal(vg_engine_run(NULL, &options, &ops, &n, 5000, t, NULL,
-                                 NULL), VG_OK);
+  assert_int_equal(vg_engine_run(NULL, &options, &ops, &n, 5000, t, NULL, NULL),
+                   VG_OK);
   assert_int_equal(n, 5000);
   free(t);
 }
@@ -263,7 +263,8 @@ static void tasks_without_input(void **state)
 static void refuses_bad_tasks(void **state)
 {
   struct forest f = { .threads = 1 };
-  struct vg_engine_ops ops = { .run = forest_run, .done = forest_done,
+  struct vg_engine_ops ops = { .run = forest_run,
+                               .done = forest_done,
                                .release_input = forest_release };
   struct vg_engine_options options = { .threads = 1 };
   struct vg_error err = VG_ERROR_INIT;
@@ -277,8 +278,8 @@ static void refuses_bad_tasks(void **state)
     if (bad == 1) memset(t[1].path, 'x', sizeof t[1].path);
     if (bad == 2) t[1].priority = strtod("nan", NULL);
     if (bad == 3) t[1].weight = strtod("inf", NULL);
-    assert_int_equal(vg_engine_run(NULL, &options, &ops, &f, 3, t, NULL,
-                                   &err), VG_ERR_INPUT);
+    assert_int_equal(vg_engine_run(NULL, &options, &ops, &f, 3, t, NULL, &err),
+                     VG_ERR_INPUT);
     assert_int_equal(f.alive, 0);
     assert_int_equal(f.n_run, 0);
   }

@@ -130,7 +130,10 @@ static void examples_are_domains(void **state)
 
 static void real_geometry(void **state)
 {
-  static const struct { const char *name; int is_domain; } list[] = {
+  static const struct {
+    const char *name;
+    int is_domain;
+  } list[] = {
     { "transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz", 1 },
     { "transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz", 1 },
     { "highlift/30p30n_swept_wing_in_box_coarse.lb8.ugrid.xz", 1 },

@@ -338,8 +338,7 @@ static void an_empty_front_gets_no_cells(void **state)
   (void)state;
   shape_box(&s, 4, 0.5);
   sizing = shape_sizing(&s, 1.2, 0);
-  assert_int_equal(fill_mesh(&empty, sizing, &options, &m, &fill, NULL),
-                   VG_OK);
+  assert_int_equal(fill_mesh(&empty, sizing, &options, &m, &fill, NULL), VG_OK);
   assert_int_equal(m.n_tet + m.n_point, 0);
   vg_mesh_release(&m);
   vg_sizing_free(sizing);
@@ -355,20 +354,20 @@ static void what_is_not_a_boundary_is_refused(void **state)
   (void)state;
   shape_box(&s, 4, 0.5);
   sizing = shape_sizing(&s, 1.2, 0);
-  s.n_tri--;                              /* a hole */
+  s.n_tri--; /* a hole */
   refused(&s, sizing);
   s.n_tri++;
-  t = s.tri[9][0];                        /* one triangle turned over */
+  t = s.tri[9][0]; /* one triangle turned over */
   s.tri[9][0] = s.tri[9][1];
   s.tri[9][1] = t;
   refused(&s, sizing);
   t = s.tri[9][0];
   s.tri[9][0] = s.tri[9][1];
   s.tri[9][1] = t;
-  shape_point(&s, 0, 0, 0);               /* a point of no triangle */
+  shape_point(&s, 0, 0, 0); /* a point of no triangle */
   refused(&s, sizing);
   s.n_point--;
-  for (size_t i = 0; i < s.n_tri; i++) {  /* fluid outside, without end */
+  for (size_t i = 0; i < s.n_tri; i++) { /* fluid outside, without end */
     t = s.tri[i][0];
     s.tri[i][0] = s.tri[i][1];
     s.tri[i][1] = t;

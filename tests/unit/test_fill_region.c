@@ -87,9 +87,11 @@ static size_t front_components(const struct vg_front *f)
 }
 
 static const struct vg_region plane_zone = {
-  .n_plane = 1, .plane = {{{0, 0, 1}, 0.03}} };
+  .n_plane = 1, .plane = { { { 0, 0, 1 }, 0.03 } }
+};
 static const struct vg_region line_pencil = {
-  .n_plane = 2, .plane = {{{0, 0, 1}, 0.03}, {{1, 0, 0}, 0.07}} };
+  .n_plane = 2, .plane = { { { 0, 0, 1 }, 0.03 }, { { 1, 0, 0 }, 0.07 } }
+};
 
 static void a_zone_parts_the_void(void **state)
 {
@@ -112,8 +114,8 @@ static void a_zone_parts_the_void(void **state)
 
 static void an_oblique_zone_around_a_body(void **state)
 {
-  const struct vg_region zone = {
-    .n_plane = 1, .plane = {{{0.6, 0, 0.8}, 0.2}} };
+  const struct vg_region zone = { .n_plane = 1,
+                                  .plane = { { { 0.6, 0, 0.8 }, 0.2 } } };
   struct scene s;
   size_t side[3];
 
@@ -156,13 +158,14 @@ static int around_the_plate(const int at[3])
 static void many_cuts_through_a_plate(void **state)
 {
   static const struct vg_region cuts[4] = {
-    { .n_plane = 1, .plane = {{{0.6, 0, 0.8}, 4.1}} },
+    { .n_plane = 1, .plane = { { { 0.6, 0, 0.8 }, 4.1 } } },
     { .n_plane = 2,
-      .plane = {{{0, 0.8, 0.6}, 4.3}, {{0.8, -0.36, 0.48}, 2.2}} },
-    { .n_plane = 1, .plane = {{{0, 0, 1}, 2.2}} },
-    { .n_plane = 1, .plane = {{{-0.28, 0.96, 0}, 2.7}} }};
-  const int n[3] = {8, 8, 5};
-  const double lo[3] = {0, 0, 0}, hi[3] = {8, 8, 5};
+      .plane = { { { 0, 0.8, 0.6 }, 4.3 }, { { 0.8, -0.36, 0.48 }, 2.2 } } },
+    { .n_plane = 1, .plane = { { { 0, 0, 1 }, 2.2 } } },
+    { .n_plane = 1, .plane = { { { -0.28, 0.96, 0 }, 2.7 } } }
+  };
+  const int n[3] = { 8, 8, 5 };
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { 8, 8, 5 };
   struct scene s;
 
   (void)state;
@@ -183,8 +186,8 @@ static void many_cuts_through_a_plate(void **state)
 /* No face of the front is near a region outside the domain: nothing changes. */
 static void a_region_elsewhere(void **state)
 {
-  const struct vg_region away = {
-    .n_plane = 1, .plane = {{{0, 0, 1}, 3}} };
+  const struct vg_region away = { .n_plane = 1,
+                                  .plane = { { { 0, 0, 1 }, 3 } } };
   const struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct scene s;
 
@@ -223,7 +226,9 @@ static void is_empty(const struct vg_filled *f)
   assert_memory_equal(f, &empty, sizeof empty);
 }
 
-struct stop { int at, calls; };
+struct stop {
+  int at, calls;
+};
 
 static int stop_later(void *user)
 {
@@ -245,7 +250,7 @@ static void it_can_be_stopped_at_every_call(void **state)
 {
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_filled made = VG_FILLED_INIT;
-  struct stop stop = {1, 0};
+  struct stop stop = { 1, 0 };
   struct zone_part p;
   struct scene s;
   vg_status st = VG_ERR_STOPPED;
@@ -296,17 +301,17 @@ static void failures_return_nothing(void **state)
   the_rest(&s, &p);
   few.point_limit = 3;
   refused(&s, &p, &few, VG_ERR_UNSUPPORTED);
-  p.front.n_face--;                                 /* open */
+  p.front.n_face--; /* open */
   refused(&s, &p, &options, VG_ERR_GEOMETRY);
   p.front.n_face++;
   keep = p.front.face[4][1];
-  p.front.face[4][1] = (uint32_t)p.front.n_point;   /* no such point */
+  p.front.face[4][1] = (uint32_t)p.front.n_point; /* no such point */
   refused(&s, &p, &options, VG_ERR_INPUT);
   p.front.face[4][1] = keep;
   p.front.x = realloc(p.front.x, (p.front.n_point + 1) * sizeof *p.front.x);
   assert_non_null(p.front.x);
   memset(p.front.x[p.front.n_point++], 0, sizeof *p.front.x);
-  refused(&s, &p, &options, VG_ERR_INPUT);          /* a point of no face */
+  refused(&s, &p, &options, VG_ERR_INPUT); /* a point of no face */
   zone_part_release(&p);
   is_filled(&s);
   scene_end(&s);

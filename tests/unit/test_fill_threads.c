@@ -29,7 +29,7 @@ static void *work(void *data)
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
 
   j->st = fill_mesh(j->surface, j->sizing, &options, &j->mesh, &j->report,
-                  &j->err);
+                    &j->err);
   return NULL;
 }
 
@@ -71,7 +71,8 @@ static struct vg_sizing *example(const char *name, size_t n_cell,
   memset(d, 0, sizeof *d);
   assert_int_equal(vg_demo_make(name, n_cell, d, NULL), VG_OK);
   assert_int_equal(vg_sizing_new(&d->sizing, d->n_source, d->source,
-                                 &d->surface, &sizing, NULL), VG_OK);
+                                 &d->surface, &sizing, NULL),
+                   VG_OK);
   return sizing;
 }
 

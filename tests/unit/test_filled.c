@@ -47,7 +47,8 @@ static void is_refused(const void *bytes, size_t n, int cells)
  * where there are some. */
 static void wrong_numbers_are_refused(struct vg_writer *w, int cells)
 {
-  const uint64_t huge[4] = {UINT64_MAX, (uint64_t)1 << 61, UINT32_MAX, 1 << 20};
+  const uint64_t huge[4] = { UINT64_MAX, (uint64_t)1 << 61, UINT32_MAX,
+                             1 << 20 };
 
   for (size_t k = 0; k < 4; k++)
     for (int i = 0; i < 4 && (k != 1 || cells); i++) {
@@ -71,20 +72,19 @@ static void there_and_back(const struct vg_filled *f, int cells)
   assert_false(w.refused);
   r.data = w.bytes.data;
   r.n = w.bytes.n;
-  for (int k = 0; k < 2; k++) {          /* one after the other */
+  for (int k = 0; k < 2; k++) { /* one after the other */
     vg_filled_get(&r, &back, cells);
     assert_false(r.bad);
     same(f, &back, cells);
     vg_filled_release(&back);
   }
   assert_int_equal(r.at, r.n);
-  for (size_t n = 0; n < w.bytes.n / 2; n++)
-    is_refused(w.bytes.data, n, cells);
+  for (size_t n = 0; n < w.bytes.n / 2; n++) is_refused(w.bytes.data, n, cells);
   w.bytes.n /= 2;
   wrong_numbers_are_refused(&w, cells);
   vg_filled_get(&r, &back, cells);
   assert_true(r.bad);
-  r.at = 0;                              /* bad stays bad */
+  r.at = 0; /* bad stays bad */
   vg_filled_get(&r, &back, cells);
   assert_true(r.bad);
   assert_null(back.x);
@@ -93,14 +93,20 @@ static void there_and_back(const struct vg_filled *f, int cells)
 
 static void as_bytes(void **state)
 {
-  double x[2][3] = {{1, 2, 3}, {4, 5, 6}};
-  uint32_t cell[3][4] = {{0, 1, 2, 9}, {4, 5, 10, 3}, {6, 7, 9, 10}};
-  uint32_t face[3][3] = {{0, 1, 2}, {9, 8, 7}, {3, 4, 10}};
-  uint32_t consumed[4] = {1, 5, 6, 8};
-  const struct vg_filled f = { .n_point = 2, .n_cell = 3, .n_face = 3,
-                               .n_consumed = 4, .x = x, .cell = cell,
-                               .face = face, .consumed = consumed,
-                               .n_hole = 7, .volume = 0.125 };
+  double x[2][3] = { { 1, 2, 3 }, { 4, 5, 6 } };
+  uint32_t cell[3][4] = { { 0, 1, 2, 9 }, { 4, 5, 10, 3 }, { 6, 7, 9, 10 } };
+  uint32_t face[3][3] = { { 0, 1, 2 }, { 9, 8, 7 }, { 3, 4, 10 } };
+  uint32_t consumed[4] = { 1, 5, 6, 8 };
+  const struct vg_filled f = { .n_point = 2,
+                               .n_cell = 3,
+                               .n_face = 3,
+                               .n_consumed = 4,
+                               .x = x,
+                               .cell = cell,
+                               .face = face,
+                               .consumed = consumed,
+                               .n_hole = 7,
+                               .volume = 0.125 };
   const struct vg_filled empty = VG_FILLED_INIT;
 
   (void)state;
@@ -178,16 +184,16 @@ static void open_fronts_are_seen(void **state)
 
   (void)state;
   zone_of_box(&s, &p, &f);
-  f.n_face--;                            /* a new face is missing */
+  f.n_face--; /* a new face is missing */
   assert_int_equal(vg_filled_defects(&p.front, &f, 1), 3);
   f.n_face++;
-  swap(&f.face[9][0], &f.face[9][2]);    /* one is turned over */
+  swap(&f.face[9][0], &f.face[9][2]); /* one is turned over */
   assert_int_equal(vg_filled_defects(&p.front, &f, 1), 3);
   swap(&f.face[9][0], &f.face[9][2]);
-  f.n_consumed--;                        /* one is not consumed */
+  f.n_consumed--; /* one is not consumed */
   assert_int_equal(vg_filled_defects(&p.front, &f, 1), 3);
   f.n_consumed++;
-  keep = f.face[9][1];                   /* no such point */
+  keep = f.face[9][1]; /* no such point */
   f.face[9][1] = (uint32_t)(p.front.n_point + f.n_point);
   assert_true(vg_filled_defects(&p.front, &f, 1) > 0);
   f.face[9][1] = keep;
@@ -255,7 +261,7 @@ static void bad_lists_are_seen(void **state)
 static void nothing_is_left_without_a_region(void **state)
 {
   const struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
-  uint32_t face[1][3] = {{0, 1, 2}}, consumed[2] = {0, 1};
+  uint32_t face[1][3] = { { 0, 1, 2 } }, consumed[2] = { 0, 1 };
   struct vg_filled f = VG_FILLED_INIT;
   struct zone_part p;
   struct scene s;

@@ -58,7 +58,7 @@ static void add_ball(struct vg_mesh *m, double x, double y, double z, double r,
   vg_border_release(&border);
 }
 
-static int box_edges = 4;           /* along the longest side of a box */
+static int box_edges = 4; /* along the longest side of a box */
 
 /* A box with six patches, normals inward; open as in vg_add_box. */
 static void add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
@@ -78,10 +78,10 @@ static void add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
 }
 
 static const char *const bare[6] = { "", "", "", "", "", "" };
-static const char *const ends[6] = { "inlet", "outlet", "wall", "wall", "wall",
-                                     "wall" };
-static const char *const hull[6] = { "wall", "wall", "wall", "wall", "wall",
-                                     "wall" };
+static const char *const ends[6] = { "inlet", "outlet", "wall",
+                                     "wall",  "wall",   "wall" };
+static const char *const hull[6] = { "wall", "wall", "wall",
+                                     "wall", "wall", "wall" };
 
 static void add_cube(struct vg_mesh *m, double half, const char *const name[6],
                      const int32_t *bc)
@@ -101,9 +101,9 @@ static double volume(const struct vg_mesh *m)
     const double *a = m->point[m->tri[i][0]], *b = m->point[m->tri[i][1]],
                  *c = m->point[m->tri[i][2]];
 
-    sum += a[0] * (b[1] * c[2] - b[2] * c[1])
-           + a[1] * (b[2] * c[0] - b[0] * c[2])
-           + a[2] * (b[0] * c[1] - b[1] * c[0]);
+    sum += a[0] * (b[1] * c[2] - b[2] * c[1]) +
+           a[1] * (b[2] * c[0] - b[0] * c[2]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
   }
   return sum / 6;
 }
@@ -112,14 +112,15 @@ struct answer {
   vg_status st;
   struct vg_flow flow;
   struct vg_error err;
-  double volume;            /* of the remaining triangles, by their normals */
+  double volume; /* of the remaining triangles, by their normals */
 };
 
 /* m is released. */
 static struct answer ask_with(struct vg_mesh *m,
                               const struct vg_flow_options *o)
 {
-  const struct vg_surface_check_options c = { .repair = 1, .external = -1,
+  const struct vg_surface_check_options c = { .repair = 1,
+                                              .external = -1,
                                               .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct answer a = { .flow = VG_FLOW_INIT, .err = VG_ERROR_INIT };
@@ -129,8 +130,9 @@ static struct answer ask_with(struct vg_mesh *m,
   a.volume = volume(m);
   if (a.st == VG_OK) {
     const int known = a.flow.kind != VG_FLOW_UNKNOWN && a.flow.axis < 0;
-    const struct vg_surface_check_options last = { .threads = 1,
-      .external = a.flow.kind == VG_FLOW_EXTERNAL };
+    const struct vg_surface_check_options last = {
+      .threads = 1, .external = a.flow.kind == VG_FLOW_EXTERNAL
+    };
 
     /* The check agrees with the triangles that were turned and dropped. */
     assert_int_equal(vg_surface_check(m, &last, &r, &a.err), VG_OK);
@@ -185,7 +187,8 @@ static void a_body_is_never_meshed_inside(void **state)
 /* Formats that define the orientation say where the fluid is. */
 static void orientation_counts_where_it_is_defined(void **state)
 {
-  const struct vg_flow_options trust = { .repair = 1, .threads = 1,
+  const struct vg_flow_options trust = { .repair = 1,
+                                         .threads = 1,
                                          .side = VG_SIDE_USUAL };
   const int32_t walls[6] = { 4, 4, 4, 4, 4, 4 };
   struct vg_mesh m = VG_MESH_INIT;
@@ -208,7 +211,8 @@ static void orientation_counts_where_it_is_defined(void **state)
 
 static void sealed_cavities_are_left_out(void **state)
 {
-  const struct vg_flow_options all = { .repair = 1, .threads = 1,
+  const struct vg_flow_options all = { .repair = 1,
+                                       .threads = 1,
                                        .all_regions = 1 };
 
   (void)state;
@@ -226,7 +230,7 @@ static void sealed_cavities_are_left_out(void **state)
     is_kind(&a, VG_FLOW_EXTERNAL);
     assert_int_equal(a.flow.n_cavity, 1);
     assert_true(a.flow.cavity_volume > 2 && a.flow.cavity_volume < 3.1);
-    assert_true(a.volume > 3.5);        /* the skin alone */
+    assert_true(a.volume > 3.5); /* the skin alone */
   }
   {
     struct vg_mesh m = VG_MESH_INIT;
@@ -237,7 +241,7 @@ static void sealed_cavities_are_left_out(void **state)
     a = ask_with(&m, &all);
     is_kind(&a, VG_FLOW_EXTERNAL);
     assert_int_equal(a.flow.n_cavity, 0);
-    assert_true(a.volume > 0.5 && a.volume < 1.5);   /* skin less cavity */
+    assert_true(a.volume > 0.5 && a.volume < 1.5); /* skin less cavity */
   }
 }
 
@@ -271,10 +275,12 @@ static void a_tunnel_keeps_its_ball(void **state)
 /* Few triangles that enclose next to nothing are a fault of the surface. */
 static void bubbles_are_left_out(void **state)
 {
-  static const double x[4][3] = { { 0, 0, 0 }, { .01, 0, 0 }, { 0, .01, 0 },
-                                  { 0, 0, .01 } };
-  static const uint32_t t[4][3] = { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 },
-                                    { 0, 3, 2 } };
+  static const double x[4][3] = {
+    { 0, 0, 0 }, { .01, 0, 0 }, { 0, .01, 0 }, { 0, 0, .01 }
+  };
+  static const uint32_t t[4][3] = {
+    { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 0, 3, 2 }
+  };
   struct vg_mesh m = VG_MESH_INIT;
   struct answer a;
   uint32_t p;
@@ -307,7 +313,8 @@ static void a_room_keeps_its_block(void **state)
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct vg_flow f = VG_FLOW_INIT;
-  const struct vg_surface_check_options c = { .repair = 1, .external = -1,
+  const struct vg_surface_check_options c = { .repair = 1,
+                                              .external = -1,
                                               .threads = 1 };
   struct vg_error err = VG_ERROR_INIT;
   uint32_t block;
@@ -345,10 +352,14 @@ static void a_room_keeps_its_block(void **state)
 /* A thick hollow block, or a box with something large in it. */
 static void doubtful_contents_are_refused(void **state)
 {
-  const struct vg_flow_options external = { .repair = 1, .threads = 1,
-    .kind = VG_FLOW_EXTERNAL, .asked_by = "flow external" };
-  const struct vg_flow_options internal = { .repair = 1, .threads = 1,
-    .kind = VG_FLOW_INTERNAL, .asked_by = "flow internal" };
+  const struct vg_flow_options external = { .repair = 1,
+                                            .threads = 1,
+                                            .kind = VG_FLOW_EXTERNAL,
+                                            .asked_by = "flow external" };
+  const struct vg_flow_options internal = { .repair = 1,
+                                            .threads = 1,
+                                            .kind = VG_FLOW_INTERNAL,
+                                            .asked_by = "flow internal" };
   struct vg_mesh m = VG_MESH_INIT;
   struct answer a;
 
@@ -376,11 +387,14 @@ static void doubtful_contents_are_refused(void **state)
 /* Conditions of both solvers, and names, count alike. */
 static void ducts_are_internal(void **state)
 {
-  static const int32_t code[][6] = {
-    { VG_BC_NONE, VG_BC_NONE, VG_BC_NONE, VG_BC_NONE, VG_BC_NONE, VG_BC_NONE },
-    { 102, 101, 4, 4, 4, 4 }, { 7011, 7012, 4000, 4000, 4000, 4000 },
-    { 7036, 5051, 4000, 4000, 4000, 4000 }, { 103, 1002, 4, 4, 4, 4 },
-    { 3, 3, 4, 4, 4, 4 }, { 5000, 5000, 4000, 4000, 4000, 4000 } };
+  static const int32_t code[][6] = { { VG_BC_NONE, VG_BC_NONE, VG_BC_NONE,
+                                       VG_BC_NONE, VG_BC_NONE, VG_BC_NONE },
+                                     { 102, 101, 4, 4, 4, 4 },
+                                     { 7011, 7012, 4000, 4000, 4000, 4000 },
+                                     { 7036, 5051, 4000, 4000, 4000, 4000 },
+                                     { 103, 1002, 4, 4, 4, 4 },
+                                     { 3, 3, 4, 4, 4, 4 },
+                                     { 5000, 5000, 4000, 4000, 4000, 4000 } };
 
   (void)state;
   for (size_t i = 0; i < sizeof code / sizeof *code; i++) {
@@ -398,8 +412,8 @@ static void ducts_are_internal(void **state)
 
 static void walls_with_bare_ends_are_refused(void **state)
 {
-  static const char *const some[6] = { "", "cap_1", "wall", "wall", "wall",
-                                       "wall" };
+  static const char *const some[6] = { "",     "cap_1", "wall",
+                                       "wall", "wall",  "wall" };
   struct vg_mesh m = VG_MESH_INIT;
   struct answer a;
 
@@ -427,13 +441,14 @@ static void engine_faces_are_no_duct(void **state)
   assert_int_equal(vg_flow_judge(&s, 0, why), VG_FLOW_EITHER);
   s.n_opening_end = 2;
   assert_int_equal(vg_flow_judge(&s, 0, why), VG_FLOW_OUTER);
-  s.n_opening = s.n_opening_end = 1;       /* the nozzle of a rocket */
+  s.n_opening = s.n_opening_end = 1; /* the nozzle of a rocket */
   assert_int_equal(vg_flow_judge(&s, 0, why), VG_FLOW_EITHER);
 }
 
 static void several_regions_are_refused(void **state)
 {
-  const struct vg_flow_options all = { .repair = 1, .threads = 1,
+  const struct vg_flow_options all = { .repair = 1,
+                                       .threads = 1,
                                        .all_regions = 1 };
   const double lo[3] = { 5, 5, 5 }, hi[3] = { 6, 6, 6 };
 
@@ -477,7 +492,7 @@ static void open_half_models_are_turned(void **state)
       is_kind(&a, VG_FLOW_EXTERNAL);
       assert_int_equal(a.flow.axis, half / 2);
       assert_true(a.flow.at == 0 && a.flow.n_body == 1);
-      assert_true(a.volume > 0);    /* the cut passes through the origin */
+      assert_true(a.volume > 0); /* the cut passes through the origin */
     }
 }
 
@@ -534,7 +549,7 @@ static struct vg_mesh half_room(double r)
                    VG_OK);
   h = 2;
   p = patch_of(&m, "", VG_BC_NONE);
-  if (vg_planar_patch(&m, border.n, (const uint32_t (*)[2])border.edge, &law, p,
+  if (vg_planar_patch(&m, border.n, (const uint32_t(*)[2])border.edge, &law, p,
                       &err) < 0)
     fail_msg("%s", err.text);
   vg_border_release(&border);
@@ -566,8 +581,8 @@ static struct vg_mesh capped(int32_t bc)
 {
   struct vg_mesh m = VG_MESH_INIT;
   const double lo[3] = { -1, 0, -1 }, hi[3] = { 1, 3, 1 };
-  const int32_t code[6] = { VG_BC_NONE, VG_BC_NONE, bc, VG_BC_NONE, VG_BC_NONE,
-                            VG_BC_NONE };
+  const int32_t code[6] = { VG_BC_NONE, VG_BC_NONE, bc,
+                            VG_BC_NONE, VG_BC_NONE, VG_BC_NONE };
 
   add_box(&m, lo, hi, -1, bare, code);
   return m;
@@ -588,7 +603,7 @@ static void a_cap_is_named_or_removed(void **state)
   a = ask_with(&m, &o);
   is_kind(&a, VG_FLOW_EXTERNAL);
   assert_true(a.flow.axis == 1 && a.flow.n_cap_tri > 0);
-  m = capped(1);                     /* a symmetry condition does the same */
+  m = capped(1); /* a symmetry condition does the same */
   a = ask(&m);
   is_kind(&a, VG_FLOW_EXTERNAL);
   assert_true(a.flow.axis == 1 && a.flow.n_cap_tri > 0);
@@ -597,7 +612,7 @@ static void a_cap_is_named_or_removed(void **state)
   a = ask_with(&m, &o);
   is_kind(&a, VG_FLOW_EXTERNAL);
   assert_int_equal(a.flow.axis, -1);
-  add_ball(&m, 0, 0, 0, 1, -1, "");  /* nothing to remove */
+  add_ball(&m, 0, 0, 0, 1, -1, ""); /* nothing to remove */
   o.half = VG_HALF_Y;
   a = ask_with(&m, &o);
   assert_int_equal(a.st, VG_ERR_INPUT);
@@ -633,9 +648,10 @@ static void open_tubes_are_not_decided(void **state)
 
   (void)state;
   add_box(&m, lo, hi, 0, bare, NULL);
-  for (size_t t = 0; t < m.n_tri; t++) {       /* and at the other end */
-    if (m.point[m.tri[t][0]][0] == 5 && m.point[m.tri[t][1]][0] == 5
-        && m.point[m.tri[t][2]][0] == 5) continue;
+  for (size_t t = 0; t < m.n_tri; t++) { /* and at the other end */
+    if (m.point[m.tri[t][0]][0] == 5 && m.point[m.tri[t][1]][0] == 5 &&
+        m.point[m.tri[t][2]][0] == 5)
+      continue;
     memmove(m.tri[n], m.tri[t], sizeof *m.tri);
     m.tri_patch[n++] = m.tri_patch[t];
   }
@@ -684,8 +700,9 @@ static void random_surfaces_are_read_or_refused(void **state)
       add_ball(&m, 0.5 * size * (k - 1), 0, 0,
                0.2 * size * (0.1 + 0.9 * chance()),
                half && (kind == 0 || kind == 4) ? 3 : -1, "");
-      if (kind == 4) add_ball(&m, 0.5 * size * (k - 1), 0, 0, 1e-3 * size,
-                              half ? 3 : -1, "");
+      if (kind == 4)
+        add_ball(&m, 0.5 * size * (k - 1), 0, 0, 1e-3 * size, half ? 3 : -1,
+                 "");
       if (chance() < 0.5) turn(&m, from);
     }
     a = ask(&m);
@@ -703,7 +720,7 @@ static void random_surfaces_are_read_or_refused(void **state)
     assert_int_equal(a.flow.n_body, n);
     assert_true(a.flow.n_evidence > 0);
   }
-  assert_true(n_read > 100);   /* or nothing was tested */
+  assert_true(n_read > 100); /* or nothing was tested */
 }
 
 int main(void)

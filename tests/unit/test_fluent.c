@@ -4,7 +4,11 @@
 
 #include "io/mesh/fluent.h"
 
-struct reader { FILE *file; struct mixed_side *side; size_t n_side; };
+struct reader {
+  FILE *file;
+  struct mixed_side *side;
+  size_t n_side;
+};
 
 /* What the file must go on with, blanks and line ends aside. */
 static void expect(struct reader *r, const char *text)
@@ -175,8 +179,7 @@ static void all_kinds_of_cells(void **state)
   total = hex(&r);
   expect(&r, "00))");
   n = read_zone(&r, &m, 3, 0, 2);
-  for (uint32_t p = 0; p < 3; p++)
-    n += read_zone(&r, &m, 4 + p, n, type[p]);
+  for (uint32_t p = 0; p < 3; p++) n += read_zone(&r, &m, 4 + p, n, type[p]);
   assert_int_equal(n, total);
   compare_sides(&r, &m);
   expect(&r, "(45(2fluidfluid)())(45(3interiorinterior)())");

@@ -10,7 +10,7 @@
 struct foam {
   size_t n_point, n_face, n_inner, n_cell;
   double (*point)[3];
-  uint32_t (*face)[5];      /* width, nodes */
+  uint32_t (*face)[5]; /* width, nodes */
   uint32_t *owner, *neighbour;
   char *boundary;
 };
@@ -27,8 +27,7 @@ static const char *in_case(const char *dir, const char *file)
 
 /* The file and the place behind its head; *n is the length of the list that
  * stands there, *at its first byte. */
-static char *open_list(const char *dir, const char *file, size_t *n,
-                       char **at)
+static char *open_list(const char *dir, const char *file, size_t *n, char **at)
 {
   char name[64];
   size_t size;
@@ -127,8 +126,8 @@ static void load(const char *dir, int is_ascii, struct foam *f)
   f->n_cell = 0;
   for (size_t i = 0; i < n; i++)
     if (f->owner[i] >= f->n_cell) f->n_cell = f->owner[i] + 1;
-  f->boundary = (char *)io_slurp(
-      in_case(dir, "constant/polyMesh/boundary"), &size);
+  f->boundary = (char *)io_slurp(in_case(dir, "constant/polyMesh/boundary"),
+                                 &size);
 }
 
 static void unload(struct foam *f)
@@ -175,7 +174,7 @@ static void area(const struct foam *f, size_t i, double n[3], double *volume)
  * positive, so the faces point out; all volumes add up to `total`. */
 static void closed_and_positive(const struct foam *f, double total)
 {
-  double (*sum)[4] = calloc(f->n_cell, sizeof *sum), all = 0;
+  double(*sum)[4] = calloc(f->n_cell, sizeof *sum), all = 0;
 
   for (size_t i = 0; i < f->n_face; i++) {
     double n[3], v;
@@ -224,14 +223,15 @@ static int patch_is(const struct foam *f, const char *name, const char *type,
 {
   char text[400];
 
-  snprintf(text, sizeof text, "    %s\n    {\n        type            %s;\n%s"
-           "%s%s        nFaces ", name, type,
-           *physical ? "        physicalType    " : "", physical,
+  snprintf(text, sizeof text,
+           "    %s\n    {\n        type            %s;\n%s"
+           "%s%s        nFaces ",
+           name, type, *physical ? "        physicalType    " : "", physical,
            *physical ? ";\n" : "");
   return strstr(f->boundary, text) != NULL;
 }
 
-static const struct vg_foam_options as[2] = { {0}, {1} };
+static const struct vg_foam_options as[2] = { { 0 }, { 1 } };
 
 static void write_case(const char *dir, const struct vg_mesh *m, int is_ascii)
 {
@@ -240,18 +240,20 @@ static void write_case(const char *dir, const struct vg_mesh *m, int is_ascii)
   if (vg_foam_write(dir, m, as + is_ascii, &err)) fail_msg("%s", err.text);
 }
 
-static int exists(const char *path) { return !access(path, F_OK); }
+static int exists(const char *path)
+{
+  return !access(path, F_OK);
+}
 
 /* --- tests --- */
 
 /* The two tetrahedra of formats.md 4.3. */
 static void two_tetrahedra_as_documented(void **state)
 {
-  static const double fifth[3] = {1, 1, 1};
-  static const uint32_t tri[6][3] = {
-    {0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 4, 2}, {1, 3, 4}, {2, 4, 3}
-  };
-  static const uint32_t owner[7] = {0, 0, 0, 0, 1, 1, 1};
+  static const double fifth[3] = { 1, 1, 1 };
+  static const uint32_t tri[6][3] = { { 0, 1, 2 }, { 0, 3, 1 }, { 0, 2, 3 },
+                                      { 1, 4, 2 }, { 1, 3, 4 }, { 2, 4, 3 } };
+  static const uint32_t owner[7] = { 0, 0, 0, 0, 1, 1, 1 };
   const char *dir = io_temp("two.openfoam");
   struct vg_mesh m;
   struct foam f;
@@ -364,11 +366,12 @@ static void names_and_types(void **state)
   static const struct {
     const char *name;
     int32_t bc, fun3d;
-  } given[] = {
-    {"wing upper/lower;{x}", 4, 4000}, {"wing upper/lower (x)", 5, 3000},
-    {"3rd", 3, 5000}, {"sym", 1, 6662}, {"roof", VG_BC_NONE, 6663},
-    {"wing_upper_lower__x_", VG_BC_NONE, VG_BC_NONE}
-  };
+  } given[] = { { "wing upper/lower;{x}", 4, 4000 },
+                { "wing upper/lower (x)", 5, 3000 },
+                { "3rd", 3, 5000 },
+                { "sym", 1, 6662 },
+                { "roof", VG_BC_NONE, 6663 },
+                { "wing_upper_lower__x_", VG_BC_NONE, VG_BC_NONE } };
   const char *dir = io_temp("names.openfoam");
   struct vg_mesh m;
   struct foam f;
@@ -389,8 +392,7 @@ static void names_and_types(void **state)
   load(dir, 0, &f);
   assert_int_equal(count_text(f.boundary, "    {\n"), 6);
   assert_true(patch_is(&f, "wing_upper_lower__x_", "wall", "viscousWall"));
-  assert_true(patch_is(&f, "wing_upper_lower__x__12", "wall",
-                       "inviscidWall"));
+  assert_true(patch_is(&f, "wing_upper_lower__x__12", "wall", "inviscidWall"));
   assert_true(patch_is(&f, "patch_3rd", "patch", "farfield"));
   assert_true(patch_is(&f, "sym", "symmetry", "symmetry"));
   assert_true(patch_is(&f, "roof", "symmetryPlane", "symmetry"));
@@ -446,8 +448,8 @@ static void unwritable_places_are_told(void **state)
   assert_int_equal(vg_foam_write(file, &m, NULL, &err), VG_ERR_IO);
   assert_non_null(strstr(err.text, "occupied.openfoam"));
   unlink(file);
-  assert_int_equal(vg_foam_write(io_temp("none/such.openfoam"), &m, NULL,
-                                 &err), VG_ERR_IO);
+  assert_int_equal(vg_foam_write(io_temp("none/such.openfoam"), &m, NULL, &err),
+                   VG_ERR_IO);
   vg_mesh_release(&m);
 }
 
@@ -455,14 +457,12 @@ static void unwritable_places_are_told(void **state)
 static void a_case_is_remeshed_in_place(void **state)
 {
   const char *dir = io_temp("again.openfoam");
-  static const char *const stale[] = {
-    "constant/polyMesh/cellZones", "constant/polyMesh/points.gz",
-    "constant/polyMesh/sets/bad"
-  };
-  static const char *const kept[] = {
-    "constant/polyMesh/blockMeshDict", "constant/transportProperties",
-    "system/controlDict", "0/U"
-  };
+  static const char *const stale[] = { "constant/polyMesh/cellZones",
+                                       "constant/polyMesh/points.gz",
+                                       "constant/polyMesh/sets/bad" };
+  static const char *const kept[] = { "constant/polyMesh/blockMeshDict",
+                                      "constant/transportProperties",
+                                      "system/controlDict", "0/U" };
   struct vg_mesh one, many;
   struct vg_error err = VG_ERROR_INIT;
   unsigned char *data;
@@ -612,7 +612,7 @@ static void a_point_of_many_cells(void **state)
 
 static void words(void **state)
 {
-  struct vg_foam_options o = {7};
+  struct vg_foam_options o = { 7 };
 
   (void)state;
   assert_false(vg_foam_word("openfoam", &o));

@@ -17,7 +17,7 @@
 struct scene {
   struct vg_demo demo;
   struct vg_sizing *sizing;
-  struct vg_front front;     /* of the demo's surface */
+  struct vg_front front; /* of the demo's surface */
   struct vg_load load;
 };
 
@@ -29,10 +29,12 @@ static void make(struct scene *s, const char *name, size_t n_cell)
   assert_int_equal(vg_demo_make(name, n_cell, &s->demo, NULL), VG_OK);
   m = &s->demo.surface;
   assert_int_equal(vg_sizing_new(&s->demo.sizing, s->demo.n_source,
-                                 s->demo.source, m, &s->sizing, NULL), VG_OK);
+                                 s->demo.source, m, &s->sizing, NULL),
+                   VG_OK);
   s->front = vg_front_of(m);
   assert_int_equal(vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
-                               &s->load, NULL), VG_OK);
+                               &s->load, NULL),
+                   VG_OK);
 }
 
 static void release(struct scene *s)
@@ -56,7 +58,8 @@ static struct vg_forecast look(const struct scene *s, struct vg_cut_rule rule,
   struct vg_error err = VG_ERROR_INIT;
 
   if (vg_forecast_new(&s->front, &s->load, &rule, levels, &vg_rates_measured,
-                      &o, &err) < 0) fail_msg("%s", err.text);
+                      &o, &err) < 0)
+    fail_msg("%s", err.text);
   return o;
 }
 
@@ -91,8 +94,8 @@ static void few_leaves_have_whole_planes(void **state)
  * it; a part that may be cut has the tasks that it would have by itself. */
 static void parts_follow_their_maker(void **state)
 {
-  static const struct vg_parting_rate rate = { 2e-6, 3e-6, 5e-6, 0.25, 1e-6,
-                                                4e-6 };
+  static const struct vg_parting_rate rate = { 2e-6, 3e-6, 5e-6,
+                                               0.25, 1e-6, 4e-6 };
   struct vg_forecast_part part[3];
   struct vg_forecast_parting all = { &rate, 7000, 1100, 3, part };
   struct vg_forecast o = VG_FORECAST_INIT, alone;
@@ -110,7 +113,8 @@ static void parts_follow_their_maker(void **state)
     part[k] = (struct vg_forecast_part){ s.front, &s.load, k == 2 };
   alone = look(&s, rule, 0);
   assert_int_equal(vg_forecast_parted(&s.front, &s.load, &all, &rule, 0,
-                                      &vg_rates_measured, &o, NULL), VG_OK);
+                                      &vg_rates_measured, &o, NULL),
+                   VG_OK);
   assert_int_equal(o.n_leaf, 2 + alone.n_leaf);
   assert_int_equal(o.n_tile, alone.n_tile);
   assert_int_equal(o.node[0].n_child, 3);
@@ -155,7 +159,7 @@ static void a_box_has_a_regular_tree(void **state)
   o = look(&s, rule, 3);
   assert_int_equal(o.n_leaf, 8);
   assert_int_equal(o.n_node, 9);
-  assert_int_equal(o.n_tile, 12 + 1);       /* a place where three meet */
+  assert_int_equal(o.n_tile, 12 + 1); /* a place where three meet */
   assert_int_equal(o.n_pencil, 5);
   assert_int_equal(o.node[0].n_child, 8);
   assert_true(o.node[0].parent == SIZE_MAX);
@@ -248,8 +252,7 @@ static void threads_share_joins(void **state)
   ranks.ranks = threads.threads = 16;
   ranks.latency = threads.latency = 0;
   assert_int_equal(vg_model_replay(&o.spans, &ranks, &f, NULL, NULL), VG_OK);
-  assert_int_equal(vg_model_replay(&o.spans, &threads, &g, NULL, NULL),
-                   VG_OK);
+  assert_int_equal(vg_model_replay(&o.spans, &threads, &g, NULL, NULL), VG_OK);
   assert_true(fabs(g.work - f.work) < 1e-9 * f.work);
   assert_true(g.critical < f.critical && g.wall < f.wall);
   vg_forecast_release(&o);
@@ -341,7 +344,8 @@ static void a_faster_core_needs_less(void **state)
   half.leaf.face /= 2;
   a = look(&s, rule, 0);
   assert_int_equal(vg_forecast_new(&s.front, &s.load, &rule, 0, &half, &b,
-                                   NULL), VG_OK);
+                                   NULL),
+                   VG_OK);
   assert_int_equal(a.spans.n, b.spans.n);
   for (size_t i = 0; i < a.spans.n; i++) {
     double twice = b.spans.span[i].cpu;
@@ -416,7 +420,8 @@ static void a_run_has_these_tasks(void **state)
   o = look(&s, p.rule, 0);
   assert_int_equal(vg_comm_open(&comm, NULL), VG_OK);
   assert_int_equal(vg_partition_grow(comm, &s.demo.surface, s.sizing, &p,
-                                     &grown, &r, &spans, NULL), VG_OK);
+                                     &grown, &r, &spans, NULL),
+                   VG_OK);
   assert_int_equal(r.n_pencil, o.n_pencil);
   assert_int_equal(r.n_tile, o.n_tile);
   for (size_t i = 0; i < o.spans.n; i++)

@@ -5,13 +5,29 @@
 
 static void suffixes_are_known(void **state)
 {
-  static const struct { const char *name; size_t length; } cases[] = {
-    {"wing.stl", 4}, {"dir.x/wing.lb8.ugrid", 10}, {"wing.ugrid", 6},
-    {"wing.B8.UGRID.gz", 12}, {"a.b.meshb", 6}, {"wing.b8.ugrid64", 11},
-    {"x.cogsg", 6}, {"x.front.gz", 9}, {"wing", 0}, {"wing.gz", 0},
-    {"wing.stl.bak", 0}, {"stl", 0}, {"", 0}, {".stl", 4}, {"x.vtu", 4},
-    {"x.y8.ugrid", 6}, {"x.surf.gz", 8}, {"a.fluent.msh", 11}, {"fluent.msh", 4}, {"x.openfoam", 9}
-  };
+  static const struct {
+    const char *name;
+    size_t length;
+  } cases[] = { { "wing.stl", 4 },
+                { "dir.x/wing.lb8.ugrid", 10 },
+                { "wing.ugrid", 6 },
+                { "wing.B8.UGRID.gz", 12 },
+                { "a.b.meshb", 6 },
+                { "wing.b8.ugrid64", 11 },
+                { "x.cogsg", 6 },
+                { "x.front.gz", 9 },
+                { "wing", 0 },
+                { "wing.gz", 0 },
+                { "wing.stl.bak", 0 },
+                { "stl", 0 },
+                { "", 0 },
+                { ".stl", 4 },
+                { "x.vtu", 4 },
+                { "x.y8.ugrid", 6 },
+                { "x.surf.gz", 8 },
+                { "a.fluent.msh", 11 },
+                { "fluent.msh", 4 },
+                { "x.openfoam", 9 } };
   size_t n = 0;
 
   (void)state;
@@ -57,12 +73,15 @@ static void unknown_suffixes_list_the_known(void **state)
  * for volumes its cell too. */
 static void every_format_round_trips(void **state)
 {
-  static const struct { const char *suffix; int volume, patches; } cases[] = {
-    {"stl", 0, 4}, {"tri", 0, 4}, {"obj", 0, 4}, {"mesh", 1, 4},
-    {"meshb", 1, 4}, {"ugrid", 1, 4}, {"b8.ugrid", 1, 4},
-    {"lb8l.ugrid", 1, 4}, {"r4.ugrid", 1, 4}, {"msh", 1, 4},
-    {"cogsg", 1, 4}
-  };
+  static const struct {
+    const char *suffix;
+    int volume, patches;
+  } cases[] = { { "stl", 0, 4 },      { "tri", 0, 4 },
+                { "obj", 0, 4 },      { "mesh", 1, 4 },
+                { "meshb", 1, 4 },    { "ugrid", 1, 4 },
+                { "b8.ugrid", 1, 4 }, { "lb8l.ugrid", 1, 4 },
+                { "r4.ugrid", 1, 4 }, { "msh", 1, 4 },
+                { "cogsg", 1, 4 } };
   const char *stem = io_temp("format_t1");
   struct vg_mesh t1;
 
@@ -175,10 +194,10 @@ static void the_mapbc_of_a_run_is_no_input(void **state)
 static void surfaces_leave_inner_points_out(void **state)
 {
   static const double point[5][3] = {
-    {0.1, 0.1, 0.1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}
+    { 0.1, 0.1, 0.1 }, { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
   };
   static const uint32_t tri[4][3] = {
-    {1, 2, 3}, {1, 4, 2}, {1, 3, 4}, {2, 4, 3}
+    { 1, 2, 3 }, { 1, 4, 2 }, { 1, 3, 4 }, { 2, 4, 3 }
   };
   const char *path = io_temp("format_inner.b8.ugrid");
   struct vg_mesh m, back = VG_MESH_INIT;
@@ -201,8 +220,7 @@ static void surfaces_leave_inner_points_out(void **state)
   assert_int_equal(back.n_point, 4);
   assert_int_equal(back.n_tet, 0);
   for (int f = 0; f < 4; f++)
-    for (int k = 0; k < 3; k++)
-      assert_int_equal(back.tri[f][k], tri[f][k] - 1);
+    for (int k = 0; k < 3; k++) assert_int_equal(back.tri[f][k], tri[f][k] - 1);
   assert_memory_equal(back.point, point + 1, 4 * sizeof *point);
   unlink(path);
   vg_mesh_release(&m);
@@ -235,7 +253,7 @@ static void reads_real_surfaces(void **state)
     "dirty/toy_airplane_with_holes.obj.xz", "simple/cape_bullet.tri.xz",
     "simple/cube_sphere_uniform_volume.meshb.xz"
   };
-  static const size_t n_tri[] = {17064, 11280, 16747, 4890, 700};
+  static const size_t n_tri[] = { 17064, 11280, 16747, 4890, 700 };
 
   (void)state;
   for (size_t i = 0; i < 5; i++) {

@@ -97,7 +97,7 @@ static void accept_d3m(const char *text, struct vg_project *p)
 static void check_t1(const struct vg_project *p)
 {
   static const int32_t loop[4][3] = {
-    {1, 2, -3}, {4, -5, -1}, {3, 6, -4}, {5, -6, -2}
+    { 1, 2, -3 }, { 4, -5, -1 }, { 3, 6, -4 }, { 5, -6, -2 }
   };
   const struct vg_source *s = p->source;
 
@@ -181,30 +181,30 @@ static void bad_projects_are_named(void **state)
     const char *from, *to, *phrase;
     vg_status code;
   } cases[] = {
-    {"             100 (nlayr)", "many", "nlayr", VG_ERR_FORMAT},
-    {"               1 (ifact)", " 0 ", "ifact must be positive",
-     VG_ERR_FORMAT},
-    {"               4 (npoli)", " 999999999999 ", "npoli", VG_ERR_FORMAT},
-    {"               6 (nline)", " -6 ", "nline", VG_ERR_FORMAT},
-    {"               6 (nline)", " 7 ", "curve", VG_ERR_FORMAT},
-    {"\n4                0", "\n3                0", "occurs twice",
-     VG_ERR_INPUT},
-    {"       6       2       3       4", " 6 2 3 9 ", "point 9",
-     VG_ERR_FORMAT},
-    {"       6       2       3       4", " 6 1 3 ", "curve 6 has 1",
-     VG_ERR_FORMAT},
-    {"       6       2       3       4", " 6 99999999 3 ", "curve 6",
-     VG_ERR_FORMAT},
-    {"1       2      -3", "1       2       3", "does not close",
-     VG_ERR_FORMAT},
-    {"1       2      -3", "1       2      -8", "curve -8", VG_ERR_FORMAT},
-    {"0.2              0.3", "0 0", "must be positive", VG_ERR_FORMAT},
-    {"1                0                0                (an", "0 0 0 (an",
-     "an must be positive", VG_ERR_FORMAT},
-    {"0                0                                 (type", "2 0 (type",
-     "type 2", VG_ERR_UNSUPPORTED},
-    {"source_number", "sauce", "source_number", VG_ERR_FORMAT},
-    {"1.0000000e+00\n#", "nan\n#", "coordinate", VG_ERR_FORMAT},
+    { "             100 (nlayr)", "many", "nlayr", VG_ERR_FORMAT },
+    { "               1 (ifact)", " 0 ", "ifact must be positive",
+      VG_ERR_FORMAT },
+    { "               4 (npoli)", " 999999999999 ", "npoli", VG_ERR_FORMAT },
+    { "               6 (nline)", " -6 ", "nline", VG_ERR_FORMAT },
+    { "               6 (nline)", " 7 ", "curve", VG_ERR_FORMAT },
+    { "\n4                0", "\n3                0", "occurs twice",
+      VG_ERR_INPUT },
+    { "       6       2       3       4", " 6 2 3 9 ", "point 9",
+      VG_ERR_FORMAT },
+    { "       6       2       3       4", " 6 1 3 ", "curve 6 has 1",
+      VG_ERR_FORMAT },
+    { "       6       2       3       4", " 6 99999999 3 ", "curve 6",
+      VG_ERR_FORMAT },
+    { "1       2      -3", "1       2       3", "does not close",
+      VG_ERR_FORMAT },
+    { "1       2      -3", "1       2      -8", "curve -8", VG_ERR_FORMAT },
+    { "0.2              0.3", "0 0", "must be positive", VG_ERR_FORMAT },
+    { "1                0                0                (an", "0 0 0 (an",
+      "an must be positive", VG_ERR_FORMAT },
+    { "0                0                                 (type", "2 0 (type",
+      "type 2", VG_ERR_UNSUPPORTED },
+    { "source_number", "sauce", "source_number", VG_ERR_FORMAT },
+    { "1.0000000e+00\n#", "nan\n#", "coordinate", VG_ERR_FORMAT },
   };
 
   (void)state;
@@ -269,20 +269,21 @@ static void faces_get_the_patches_of_the_project(void **state)
 static void patches_inside_one_loop_are_told_apart(void **state)
 {
   static const double at[4][3] = {
-    {-1, 0, 0}, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}
+    { -1, 0, 0 }, { 0, -1, 0 }, { 1, 0, 0 }, { 0, 1, 0 }
   };
   /* Upper side 7, lower side 9; curve 1 by point 1, curve 2 by point 3. */
-  uint32_t curve[2][3] = {{0, 1, 2}, {0, 3, 2}};
-  int32_t loop[2][2] = {{1, -2}, {2, -1}};
-  double point[5][3] = {{-1, 0, 0}, {0, -1, 0}, {1, 0, 0}, {0, 1, 0},
-                        {0, 0, 0.1}};
-  uint32_t tri[6][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4},
-                        {0, 3, 2}, {0, 2, 1}};
-  uint32_t edge[4][2] = {{0, 1}, {1, 2}, {0, 3}, {3, 2}}, patch[6];
-  struct vg_curve curves[2] = {{1, 3, curve[0]}, {2, 3, curve[1]}};
+  uint32_t curve[2][3] = { { 0, 1, 2 }, { 0, 3, 2 } };
+  int32_t loop[2][2] = { { 1, -2 }, { 2, -1 } };
+  double point[5][3] = {
+    { -1, 0, 0 }, { 0, -1, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 0.1 }
+  };
+  uint32_t tri[6][3] = { { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 },
+                         { 3, 0, 4 }, { 0, 3, 2 }, { 0, 2, 1 } };
+  uint32_t edge[4][2] = { { 0, 1 }, { 1, 2 }, { 0, 3 }, { 3, 2 } }, patch[6];
+  struct vg_curve curves[2] = { { 1, 3, curve[0] }, { 2, 3, curve[1] } };
   struct vg_patch_shape shape[2] = {
-    {.patch = {.id = 7}, .n = 2, .curve = loop[0]},
-    {.patch = {.id = 9}, .n = 2, .curve = loop[1]}
+    { .patch = { .id = 7 }, .n = 2, .curve = loop[0] },
+    { .patch = { .id = 9 }, .n = 2, .curve = loop[1] }
   };
   struct vg_project p = VG_PROJECT_INIT;
   struct vg_mesh m = VG_MESH_INIT;
@@ -290,7 +291,7 @@ static void patches_inside_one_loop_are_told_apart(void **state)
 
   (void)state;
   p.n_point = 4;
-  p.point = (double (*)[3])at;
+  p.point = (double(*)[3])at;
   p.n_curve = 2;
   p.curve = curves;
   p.n_shape = 2;
@@ -300,7 +301,7 @@ static void patches_inside_one_loop_are_told_apart(void **state)
   m.n_tri = 6;
   m.tri = tri;
   m.tri_patch = malloc(sizeof patch);
-  if (vg_front_patches(&m, 4, (const uint32_t (*)[2])edge, &p, "case", &err))
+  if (vg_front_patches(&m, 4, (const uint32_t(*)[2])edge, &p, "case", &err))
     fail_msg("%s", err.text);
   assert_int_equal(m.n_patch, 2);
   for (int f = 0; f < 6; f++)
@@ -316,25 +317,25 @@ static void bad_fronts_are_named(void **state)
     const char *from, *to, *phrase;
     vg_status code;
   } cases[] = {
-    {"          4          0        4        4", "4 9 4 4",
-     "front of a volume run", VG_ERR_UNSUPPORTED},
-    {"          4          0        4        4", "4 0 0 0", "run",
-     VG_ERR_UNSUPPORTED},
-    {"          4          0        4        4", "x 0 4 4", "counts",
-     VG_ERR_FORMAT},
-    {"          4          0        4        4        4        4",
-     "4 0 4 99999999 4 99999999", "truncated", VG_ERR_FORMAT},
-    {"       2       1       4       2", " 2 1 5 2", "node of a face is 5",
-     VG_ERR_INPUT},
-    {"       2  0.1000", "       3  0.1000", "point 2 should stand",
-     VG_ERR_FORMAT},
-    {"       6\n", "       0\n", "0 curve edges", VG_ERR_FORMAT},
-    {"       6\n", "99999999\n", "99999999 curve edges", VG_ERR_FORMAT},
-    {"       1       2       1       1       2       3       2",
-     "       1       2       1       1       2       1       2",
-     "do not belong together", VG_ERR_INPUT},
-    {"0.100000000000E+01\n       1       1", "0.110000000000E+01\n 1 1",
-     "end of curve 4", VG_ERR_INPUT},
+    { "          4          0        4        4", "4 9 4 4",
+      "front of a volume run", VG_ERR_UNSUPPORTED },
+    { "          4          0        4        4", "4 0 0 0", "run",
+      VG_ERR_UNSUPPORTED },
+    { "          4          0        4        4", "x 0 4 4", "counts",
+      VG_ERR_FORMAT },
+    { "          4          0        4        4        4        4",
+      "4 0 4 99999999 4 99999999", "truncated", VG_ERR_FORMAT },
+    { "       2       1       4       2", " 2 1 5 2", "node of a face is 5",
+      VG_ERR_INPUT },
+    { "       2  0.1000", "       3  0.1000", "point 2 should stand",
+      VG_ERR_FORMAT },
+    { "       6\n", "       0\n", "0 curve edges", VG_ERR_FORMAT },
+    { "       6\n", "99999999\n", "99999999 curve edges", VG_ERR_FORMAT },
+    { "       1       2       1       1       2       3       2",
+      "       1       2       1       1       2       1       2",
+      "do not belong together", VG_ERR_INPUT },
+    { "0.100000000000E+01\n       1       1", "0.110000000000E+01\n 1 1",
+      "end of curve 4", VG_ERR_INPUT },
   };
   struct vg_project p = VG_PROJECT_INIT;
 
@@ -360,8 +361,7 @@ static void survives_damage(void **state)
   struct vg_project p = VG_PROJECT_INIT, q = VG_PROJECT_INIT;
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  char work[sizeof t1_d3m > sizeof t1_front ? sizeof t1_d3m
-                                            : sizeof t1_front];
+  char work[sizeof t1_d3m > sizeof t1_front ? sizeof t1_d3m : sizeof t1_front];
   uint32_t seed = 3;
 
   (void)state;
@@ -403,7 +403,7 @@ static int compare_face(const void *a, const void *b)
 /* Nodes rotated so that the lowest stands first, and the patch number. */
 static uint32_t (*sorted_faces(const struct vg_mesh *m))[4]
 {
-  uint32_t (*face)[4] = malloc(m->n_tri * sizeof *face);
+  uint32_t(*face)[4] = malloc(m->n_tri * sizeof *face);
 
   for (size_t f = 0; f < m->n_tri; f++) {
     const uint32_t *t = m->tri[f];
@@ -424,8 +424,8 @@ static void patches_of_the_real_front_are_those_of_its_bc(void **state)
   struct vg_project p = VG_PROJECT_INIT;
   struct vg_mesh surface = VG_MESH_INIT, volume = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  uint32_t (*a)[4], (*b)[4];
-  size_t n_common = 0, per_patch[7] = {0}, in_bc[7] = {0};
+  uint32_t(*a)[4], (*b)[4];
+  size_t n_common = 0, per_patch[7] = { 0 }, in_bc[7] = { 0 };
 
   (void)state;
   snprintf(d3m, sizeof d3m, "%s", io_real("vgrid_box/box.d3m"));

@@ -18,8 +18,8 @@ static void add_box(struct vg_mesh *m, const double size[3],
     shape_point(m, b.point[p][0] + x, b.point[p][1],
                 b.point[p][2] + size[2] + gap);
   for (size_t t = 0; t < b.n_tri; t++)
-    shape_tri(m, b.tri[t][0] + first, b.tri[t][1] + first,
-              b.tri[t][2] + first, b.tri_patch[t]);
+    shape_tri(m, b.tri[t][0] + first, b.tri[t][1] + first, b.tri[t][2] + first,
+              b.tri_patch[t]);
   vg_mesh_release(&b);
 }
 
@@ -49,8 +49,9 @@ static void measures_a_slot(void **unused)
   for (size_t i = 0; i < g.n; i++) {
     assert_float_equal(g.h[i], gap / edges, 1e-12);
     assert_true(g.x[i][0] >= 0.5 && g.x[i][0] <= 1);
-    assert_float_equal(g.x[i][2], g.x[i ^ 1][2] > g.x[i][2] ? size[2]
-                       : size[2] + gap, 1e-12);
+    assert_float_equal(g.x[i][2],
+                       g.x[i ^ 1][2] > g.x[i][2] ? size[2] : size[2] + gap,
+                       1e-12);
   }
   /* An area of 2 x 0.5, seen from both sides, in right triangles with an
    * hypotenuse of gap / sqrt 2 to gap: of gap^2 / 8 to gap^2 / 4. */
@@ -75,10 +76,10 @@ static void leaves_the_rest_alone(void **unused)
   assert_int_equal(g.n, 0);
   vg_mesh_release(&m);
   shape_box(&m, size, n);
-  add_box(&m, size, n, 0, 0.25);     /* 4 x 0.04 x 0.65 is less than it */
+  add_box(&m, size, n, 0, 0.25); /* 4 x 0.04 x 0.65 is less than it */
   find(&m, 4, 1, &g);
   assert_int_equal(g.n, 0);
-  find(&m, 8, 1, &g);                /* 8 x 0.04 is more than it */
+  find(&m, 8, 1, &g); /* 8 x 0.04 is more than it */
   assert_true(g.n > 0);
   vg_gaps_release(&g);
   vg_mesh_release(&m);
@@ -100,8 +101,8 @@ static void follows_round_sides(void **unused)
   for (size_t p = 0; p < b.n_point; p++)
     shape_point(&m, b.point[p][0] + 1 + gap, b.point[p][1], b.point[p][2]);
   for (size_t t = 0; t < b.n_tri; t++)
-    shape_tri(&m, b.tri[t][0] + first, b.tri[t][1] + first,
-              b.tri[t][2] + first, 0);
+    shape_tri(&m, b.tri[t][0] + first, b.tri[t][1] + first, b.tri[t][2] + first,
+              0);
   find(&m, 3, 1, &g);
   assert_true(g.n > 0);
   /* Facets are inside of the circles by 0.5 (1 - cos(pi / 80)). */
@@ -141,8 +142,9 @@ static void makes_edges_as_short(void **unused)
   shape_box(&m, size, n);
   add_box(&m, size, n, 0.6, gap);
   find(&m, edges, 1, &g);
-  assert_int_equal(vg_size_samples_new(g.n, (const double (*)[3])g.x, g.h, 1.2,
-                                       1, &samples, &err), VG_OK);
+  assert_int_equal(vg_size_samples_new(g.n, (const double(*)[3])g.x, g.h, 1.2,
+                                       1, &samples, &err),
+                   VG_OK);
   o.map = vg_size_samples_map(samples);
   o.h_max = 0.1;
   if (vg_remesh(&m, &o, NULL, &err) < 0) fail_msg("%s", err.text);
@@ -165,8 +167,9 @@ static void makes_edges_as_short(void **unused)
   vg_mesh_release(&m);
 }
 
-/* The plates of measures_a_slot: the forecast of places is right within a factor of 2 and that of triangles
- * follows from the area of the gap; nothing is made where it is too high. */
+/* The plates of measures_a_slot: the forecast of places is right within a
+ * factor of 2 and that of triangles follows from the area of the gap; nothing
+ * is made where it is too high. */
 static void forecasts(void **unused)
 {
   const double size[3] = { 1, 1, 0.2 }, gap = 0.02, edges = 4;

@@ -6,7 +6,9 @@
 
 /* --- files as Gmsh lays them out, written apart from the library --- */
 
-struct layout { int version, binary, big, wide; };
+struct layout {
+  int version, binary, big, wide;
+};
 
 struct file {
   const struct layout *l;
@@ -29,8 +31,7 @@ static void text(struct file *f, const char *s)
 static void word(struct file *f, uint64_t v, int size)
 {
   for (int i = 0; i < size; i++) {
-    unsigned char c =
-      (unsigned char)(v >> 8 * (f->l->big ? size - 1 - i : i));
+    unsigned char c = (unsigned char)(v >> 8 * (f->l->big ? size - 1 - i : i));
 
     put_bytes(f, &c, 1);
   }
@@ -48,7 +49,10 @@ static void number(struct file *f, int64_t v, int size)
   text(f, s);
 }
 
-static void put_int(struct file *f, int64_t v) { number(f, v, 4); }
+static void put_int(struct file *f, int64_t v)
+{
+  number(f, v, 4);
+}
 
 static void put_count(struct file *f, int64_t v)
 {
@@ -81,17 +85,17 @@ static void start(struct file *f, const struct layout *l)
   if (l->binary) word(f, 1, 4);
   text(f, l->binary ? "\n$EndMeshFormat\n" : "$EndMeshFormat\n");
   text(f, "$PhysicalNames\n3\n2 7 \"left wing\"\n1 7 \"an edge\"\n"
-       "3 1 \"fluid\"\n$EndPhysicalNames\n");
+          "3 1 \"fluid\"\n$EndPhysicalNames\n");
 }
 
 static const double t1_point[5][3] = {
-  {9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}
+  { 9, 9, 9 }, { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
 };
 /* Numbers of the nodes: neither in order nor without gaps; the first is of no
  * face. */
 static const int64_t t1_tag[5] = { 3, 40, 20, 30, 10 };
 static const int64_t t1_face[4][3] = {
-  {40, 20, 30}, {40, 10, 20}, {40, 30, 10}, {20, 10, 30}
+  { 40, 20, 30 }, { 40, 10, 20 }, { 40, 30, 10 }, { 20, 10, 30 }
 };
 
 /* Surfaces 5 (in group 7, turned round), 6 (in none); points and lines. */
@@ -181,11 +185,11 @@ static void make_2(struct file *f, const struct layout *l)
   text(f, "\n$EndElements\n$NodeData\n1\n\"$Nodes of a kind\"\n$EndNodeData\n");
 }
 
-static const struct layout layouts[] = {
-  { 2, 0, 0, 0 }, { 2, 1, 0, 0 }, { 2, 1, 1, 0 },
-  { 4, 0, 0, 1 }, { 4, 1, 0, 1 }, { 4, 1, 1, 1 }, { 4, 1, 0, 0 },
-  { 4, 1, 1, 0 }, { 4, 0, 0, 0 }
-};
+static const struct layout layouts[] = { { 2, 0, 0, 0 }, { 2, 1, 0, 0 },
+                                         { 2, 1, 1, 0 }, { 4, 0, 0, 1 },
+                                         { 4, 1, 0, 1 }, { 4, 1, 1, 1 },
+                                         { 4, 1, 0, 0 }, { 4, 1, 1, 0 },
+                                         { 4, 0, 0, 0 } };
 
 static void make_file(struct file *f, const struct layout *l)
 {
@@ -218,8 +222,7 @@ static void every_layout_is_read(void **state)
     assert_int_equal(m.patch[1].id, 7);
     assert_string_equal(m.patch[1].name, "left wing");
     assert_int_equal(m.patch[1].bc, VG_BC_NONE);
-    for (size_t k = 0; k < 4; k++)
-      assert_int_equal(m.tri_patch[k], k < 2);
+    for (size_t k = 0; k < 4; k++) assert_int_equal(m.tri_patch[k], k < 2);
     vg_mesh_release(&m);
   }
   vg_mesh_release(&t1);
@@ -253,7 +256,8 @@ static void no_damage_is_swallowed(void **state)
 }
 
 #define HEAD "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
-#define NODES "$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n" \
+#define NODES                                                                  \
+  "$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n"                   \
   "$EndNodes\n"
 
 static void surfaces_where_there_are_no_groups(void **state)
@@ -261,8 +265,10 @@ static void surfaces_where_there_are_no_groups(void **state)
   struct vg_mesh m = VG_MESH_INIT;
 
   (void)state;
-  io_accept(vg_gmsh_parse, HEAD NODES "$Elements\n2 2 1 2\n2 12 2 1\n1 1 2 3\n"
-            "2 11 2 1\n2 1 3 2\n$EndElements\n", &m);
+  io_accept(vg_gmsh_parse,
+            HEAD NODES "$Elements\n2 2 1 2\n2 12 2 1\n1 1 2 3\n"
+                       "2 11 2 1\n2 1 3 2\n$EndElements\n",
+            &m);
   assert_int_equal(m.n_patch, 2);
   assert_int_equal(m.patch[0].id, 11);
   assert_int_equal(m.patch[m.tri_patch[0]].id, 12);
@@ -271,8 +277,11 @@ static void surfaces_where_there_are_no_groups(void **state)
 
 static void refusals(void **state)
 {
-  static const struct { const char *text; vg_status code; const char *phrase; }
-  bad[] = {
+  static const struct {
+    const char *text;
+    vg_status code;
+    const char *phrase;
+  } bad[] = {
     { "(0 \"fluent\")\n", VG_ERR_FORMAT, "Fluent" },
     { "solid x\n", VG_ERR_FORMAT, "$MeshFormat" },
     { "\n", VG_ERR_FORMAT, "no $MeshFormat" },
@@ -299,14 +308,15 @@ static void refusals(void **state)
       VG_ERR_FORMAT, "given twice" },
     { HEAD "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 nan\n$EndNodes\n", VG_ERR_FORMAT,
       "nan" },
-    { HEAD "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 0 7 7\n$EndNodes\n",
-      VG_ERR_FORMAT, "does not end" },
+    { HEAD "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 0 7 7\n$EndNodes\n", VG_ERR_FORMAT,
+      "does not end" },
     { HEAD NODES "$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 4\n$EndElements\n",
       VG_ERR_INPUT, "node 4" },
     { HEAD NODES "$Elements\n1 1 1 1\n2 1 9 1\n1 1 2 3 1 2 3\n$EndElements\n",
       VG_ERR_UNSUPPORTED, "setorder 1" },
     { HEAD NODES "$Elements\n1 1 1 1\n2 3000000000 2 1\n1 1 2 3\n"
-      "$EndElements\n", VG_ERR_UNSUPPORTED, "32 bits" },
+                 "$EndElements\n",
+      VG_ERR_UNSUPPORTED, "32 bits" },
   };
 
   (void)state;

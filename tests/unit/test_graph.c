@@ -60,7 +60,7 @@ static size_t n_cut(const struct vg_graph *g, const uint32_t *part)
 /* Vertices of its part that are reached from the first one of each part. */
 static size_t n_reached(const struct vg_graph *g, const uint32_t *part, int n)
 {
-  uint8_t seen[N] = {0};
+  uint8_t seen[N] = { 0 };
   uint32_t stack[N];
   size_t n_stack = 0, all = 0;
 
@@ -89,7 +89,7 @@ static size_t n_reached(const struct vg_graph *g, const uint32_t *part, int n)
 
 static void parts_are_even_and_hang_together(void **state)
 {
-  static const int n[] = {1, 2, 7, 16, 40};
+  static const int n[] = { 1, 2, 7, 16, 40 };
   struct vg_graph g = square();
   uint32_t part[N], again[N];
 
@@ -131,7 +131,7 @@ static void prices_count(void **state)
   uint32_t part[N];
 
   (void)state;
-  for (size_t k = 0; k < N; k++)     /* rows hold together */
+  for (size_t k = 0; k < N; k++) /* rows hold together */
     for (uint64_t j = g.begin[k]; j < g.begin[k + 1]; j++)
       price[j] = g.to[j] / SIDE == k / SIDE ? 1000 : 1;
   g.edge = price;
@@ -146,7 +146,7 @@ static void what_cannot_be_is_refused(void **state)
   struct vg_graph_options o = { N + 1, 1.03, 0, NULL };
   struct vg_graph g = square();
   struct vg_error err = VG_ERROR_INIT;
-  uint32_t part[N] = {7};
+  uint32_t part[N] = { 7 };
 
   (void)state;
   assert_int_equal(vg_graph_part(&g, &o, part, &err), VG_ERR_INPUT);
@@ -171,7 +171,8 @@ static void bisection_is_even(void **state)
     weight[i] = 1 + 0.001 * x[i][1];
     all += weight[i];
   }
-  assert_int_equal(vg_bisect(POINTS, (const double (*)[3])x, weight, 7, part, NULL),
+  assert_int_equal(vg_bisect(POINTS, (const double(*)[3])x, weight, 7, part,
+                             NULL),
                    VG_OK);
   for (int i = 0; i < POINTS; i++) {
     assert_true(part[i] < 7);
@@ -180,11 +181,11 @@ static void bisection_is_even(void **state)
       assert_false(x[i][1] < x[j][1] && part[i] > part[j]);
   }
   for (int k = 0; k < 7; k++) assert_true(fabs(sum[k] * 7 / all - 1) < 0.02);
-  assert_int_equal(vg_bisect(5, (const double (*)[3])x, weight, 5, part, NULL),
+  assert_int_equal(vg_bisect(5, (const double(*)[3])x, weight, 5, part, NULL),
                    VG_OK);
   for (int i = 0; i < 5; i++)
     for (int j = 0; j < i; j++) assert_int_not_equal(part[i], part[j]);
-  assert_int_equal(vg_bisect(5, (const double (*)[3])x, weight, 6, part, NULL),
+  assert_int_equal(vg_bisect(5, (const double(*)[3])x, weight, 6, part, NULL),
                    VG_ERR_INPUT);
 }
 

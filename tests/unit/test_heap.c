@@ -13,7 +13,10 @@
 
 enum { MOST = 500 };
 
-struct item { double key; uint32_t number; };
+struct item {
+  double key;
+  uint32_t number;
+};
 
 static int before(const struct item *a, const struct item *b)
 {
@@ -72,8 +75,11 @@ static void leave_sorted(void **state)
       size_t n = 0;
 
       for (uint32_t i = 0; i < most; i++)
-        item_push(heap, &n, (struct item){ kind == 0 ? i : kind == 1 ? -1. * i
-                                           : 0, i });
+        item_push(heap, &n,
+                  (struct item){ kind == 0   ? i
+                                 : kind == 1 ? -1. * i
+                                             : 0,
+                                 i });
       last = item_pop(heap, &n);
       while (n) {
         struct item next = item_pop(heap, &n);

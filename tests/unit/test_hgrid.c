@@ -90,12 +90,12 @@ static void lists_what_a_search_finds(void **state)
     int n;
 
     for (int k = 0; k < 3; k++) c[k] = 15.0 * rand() / RAND_MAX;
-    n = count_within(N, (const double (*)[3])x, c, r);
+    n = count_within(N, (const double(*)[3])x, c, r);
     if (n < 0) continue;
     q++;
     vg_hgrid_gather(s, c, spacing(c), r);
     assert_int_equal(s->n, n);
-    are_those_within(s, N, (const double (*)[3])x, c, r);
+    are_those_within(s, N, (const double(*)[3])x, c, r);
     n_listed += s->n;
   }
   assert_true(n_listed > 5 * 300);

@@ -42,7 +42,7 @@ static void random_points(void **state)
   (void)state;
   for (int i = 0; i < N; i++)
     for (int k = 0; k < 3; k++) x[i][k] = 2 * tets_random(&seed) - 1;
-  insert_cloud(N, (const double (*)[3])x, 1.5);
+  insert_cloud(N, (const double(*)[3])x, 1.5);
 }
 
 /* Each cube of the grid has eight points on one sphere. */
@@ -53,13 +53,13 @@ static void a_grid_of_points(void **state)
 
   (void)state;
   for (int i = 0; i < N; i++) {
-    int p = i * 100 % N;     /* 100 and 729 have no common factor */
+    int p = i * 100 % N; /* 100 and 729 have no common factor */
 
     x[i][0] = p % SIDE - 4;
     x[i][1] = p / SIDE % SIDE - 4;
     x[i][2] = p / SIDE / SIDE - 4;
   }
-  insert_cloud(N, (const double (*)[3])x, 6);
+  insert_cloud(N, (const double(*)[3])x, 6);
 }
 
 /* Integer points with x^2 + y^2 + z^2 = 1105: exactly on one sphere. */
@@ -78,7 +78,7 @@ static void points_on_one_sphere(void **state)
           x[n++][2] = k;
         }
   assert_in_range(n, 100, 4096);
-  insert_cloud(n, (const double (*)[3])x, 40);
+  insert_cloud(n, (const double(*)[3])x, 40);
 }
 
 static void points_on_a_line_and_a_plane(void **state)
@@ -91,9 +91,9 @@ static void points_on_a_line_and_a_plane(void **state)
     x[i][1] = i < 20 ? x[i][0] : (i / 20 - 10) / 32.0;
     x[i][2] = i < 20 ? x[i][0] : 0.125;
   }
-  for (int i = 20; i < 400; i++)        /* not twice the same point */
+  for (int i = 20; i < 400; i++) /* not twice the same point */
     if (x[i][0] == 0.125 && x[i][1] == 0.125) x[i][2] = -0.5;
-  insert_cloud(400, (const double (*)[3])x, 1);
+  insert_cloud(400, (const double(*)[3])x, 1);
 }
 
 /* Thirteen orders of magnitude between the smallest and the largest step. */
@@ -105,9 +105,8 @@ static void points_that_crowd_together(void **state)
 
   (void)state;
   for (int i = 0; i < 1000; i++, r *= 0.97)
-    for (int k = 0; k < 3; k++)
-      x[i][k] = r * (2 * tets_random(&seed) - 1);
-  insert_cloud(1000, (const double (*)[3])x, 1.5);
+    for (int k = 0; k < 3; k++) x[i][k] = r * (2 * tets_random(&seed) - 1);
+  insert_cloud(1000, (const double(*)[3])x, 1.5);
 }
 
 /* --- refusal ------------------------------------------------------------ */
@@ -136,7 +135,7 @@ static void is_unchanged(const struct vg_tets *t, struct vg_tets *c)
 static void refused(struct vg_inserter *s, double x, double y, double z,
                     double clearance, double nearest)
 {
-  const double at[3] = {x, y, z};
+  const double at[3] = { x, y, z };
   size_t n = s->t->n_point;
   struct vg_tets c;
 
@@ -149,7 +148,7 @@ static void refused(struct vg_inserter *s, double x, double y, double z,
 static void taken(struct vg_inserter *s, double x, double y, double z,
                   double clearance, double nearest)
 {
-  const double at[3] = {x, y, z};
+  const double at[3] = { x, y, z };
 
   assert_int_equal(tets_insert(s, at, clearance, nearest), VG_OK);
   assert_int_equal(vg_tets_defects(s->t), 0);
@@ -165,8 +164,7 @@ static void duplicates_change_nothing(void **state)
   tets_box(&t, 0, 1);
   assert_int_equal(vg_inserter_init(&s, &t, NULL), VG_OK);
   for (int i = 0; i < 200; i++)
-    taken(&s, tets_random(&seed), tets_random(&seed), tets_random(&seed), 0,
-          0);
+    taken(&s, tets_random(&seed), tets_random(&seed), tets_random(&seed), 0, 0);
   for (size_t p = 0; p < 208; p++)
     refused(&s, t.x[p][0], t.x[p][1], t.x[p][2], 0, 0);
   vg_inserter_release(&s);
@@ -219,7 +217,7 @@ static int in_plane(const struct vg_tets *t, size_t c, int i)
 /* 5 x 5 x 4 cubes with the faces at z = 2 fixed and what lies below outside. */
 static void start_layers(struct vg_tets *t)
 {
-  const int n[3] = {5, 5, 4};
+  const int n[3] = { 5, 5, 4 };
 
   tets_grid(t, n);
   for (size_t c = 0; c < t->n_cell; c++)
@@ -264,15 +262,15 @@ static void constrained_faces_stay(void **state)
   layers_are_kept(&t);
   assert_int_equal(vg_inserter_init(&s, &t, NULL), VG_OK);
   for (int i = 0; i < 800; i++) {
-    const double x[3] = {5 * tets_random(&seed), 5 * tets_random(&seed),
-                         4 * tets_random(&seed)};
+    const double x[3] = { 5 * tets_random(&seed), 5 * tets_random(&seed),
+                          4 * tets_random(&seed) };
 
     n_taken += tets_insert(&s, x, 0, 0) == VG_OK;
   }
   assert_int_equal(n_taken, 800);
   layers_are_kept(&t);
   assert_int_equal(tets_not_delaunay(&t), 0);
-  refused(&s, 2.5, 2.25, 2, 0, 0);      /* in a constrained face */
+  refused(&s, 2.5, 2.25, 2, 0, 0); /* in a constrained face */
   vg_inserter_release(&s);
   vg_tets_release(&t);
 }
@@ -288,10 +286,10 @@ static void clearance_over_constrained_faces(void **state)
   assert_int_equal(vg_inserter_init(&s, &t, NULL), VG_OK);
   refused(&s, 2.3, 2.1, 2.01, 0.3, 0);
   refused(&s, 2.3, 2.1, 2.33, 0.3, 0);
-  refused(&s, 2.3, 2.1, 1.67, 0.3, 0);  /* the same from below */
+  refused(&s, 2.3, 2.1, 1.67, 0.3, 0); /* the same from below */
   taken(&s, 2.3, 2.1, 2.36, 0.3, 0);
   taken(&s, 3.7, 3.2, 2.01, 0, 0);
-  taken(&s, 1.3, 1.2, 3.9, 0.3, 0);     /* the hull is not constrained */
+  taken(&s, 1.3, 1.2, 3.9, 0.3, 0); /* the hull is not constrained */
   layers_are_kept(&t);
   vg_inserter_release(&s);
   vg_tets_release(&t);
@@ -300,7 +298,7 @@ static void clearance_over_constrained_faces(void **state)
 /* Every face between the first cells is fixed: each point stays at home. */
 static void a_point_shut_in(void **state)
 {
-  const int n[3] = {2, 2, 2};
+  const int n[3] = { 2, 2, 2 };
   struct vg_tets t = VG_TETS_INIT;
   struct vg_inserter s;
   uint64_t seed = 11;
@@ -310,7 +308,7 @@ static void a_point_shut_in(void **state)
   memset(t.flag, VG_FIXED_FACES, t.n_cell);
   assert_int_equal(vg_inserter_init(&s, &t, NULL), VG_OK);
   for (size_t c = 0; c < 48; c++) {
-    double x[3] = {0};
+    double x[3] = { 0 };
     uint32_t v[4];
 
     memcpy(v, t.cell[c].v, sizeof v);
@@ -321,8 +319,8 @@ static void a_point_shut_in(void **state)
   }
   assert_int_equal(tets_live(&t), 4 * 48);
   for (int k = 0; k < 100; k++) {
-    const double x[3] = {2 * tets_random(&seed), 2 * tets_random(&seed),
-                         2 * tets_random(&seed)};
+    const double x[3] = { 2 * tets_random(&seed), 2 * tets_random(&seed),
+                          2 * tets_random(&seed) };
 
     assert_int_equal(tets_insert(&s, x, 0, 0), VG_OK);
   }
@@ -334,7 +332,7 @@ static void a_point_shut_in(void **state)
 
 static void the_same_bytes_again(void **state)
 {
-  struct vg_tets t[2] = {VG_TETS_INIT, VG_TETS_INIT};
+  struct vg_tets t[2] = { VG_TETS_INIT, VG_TETS_INIT };
 
   (void)state;
   for (int run = 0; run < 2; run++) {
@@ -344,8 +342,8 @@ static void the_same_bytes_again(void **state)
     start_layers(&t[run]);
     assert_int_equal(vg_inserter_init(&s, &t[run], NULL), VG_OK);
     for (int i = 0; i < 500; i++) {
-      const double x[3] = {5 * tets_random(&seed), 5 * tets_random(&seed),
-                           4 * tets_random(&seed)};
+      const double x[3] = { 5 * tets_random(&seed), 5 * tets_random(&seed),
+                            4 * tets_random(&seed) };
 
       assert_true(tets_insert(&s, x, 0.2, 0.05) >= 0);
     }

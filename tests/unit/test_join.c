@@ -32,10 +32,12 @@ static double volume6(const struct vg_mesh *m, uint32_t a, uint32_t b,
 static size_t count_flat(const struct vg_mesh *m,
                          const struct vg_join_info *info)
 {
-  static const uint8_t prism[6][4] = {{0, 1, 2, 3}, {1, 2, 0, 4},
-    {2, 0, 1, 5}, {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}};
-  static const uint8_t pyramid[4][4] = {{0, 3, 4, 2}, {0, 4, 1, 2},
-    {0, 3, 1, 2}, {3, 4, 1, 2}};
+  static const uint8_t prism[6][4] = { { 0, 1, 2, 3 }, { 1, 2, 0, 4 },
+                                       { 2, 0, 1, 5 }, { 3, 5, 4, 0 },
+                                       { 4, 3, 5, 1 }, { 5, 4, 3, 2 } };
+  static const uint8_t pyramid[4][4] = {
+    { 0, 3, 4, 2 }, { 0, 4, 1, 2 }, { 0, 3, 1, 2 }, { 3, 4, 1, 2 }
+  };
   size_t n = 0;
 
   for (size_t i = 0; i < info->n_layer_tet; i++) {
@@ -59,8 +61,7 @@ static size_t count_flat(const struct vg_mesh *m,
 }
 
 /* All that concerns how cells meet; volumes of the cone are its own affair. */
-static void assert_conforming(const struct vg_mesh *m,
-                              struct vg_mesh_report *r)
+static void assert_conforming(const struct vg_mesh *m, struct vg_mesh_report *r)
 {
   assert_int_equal(vg_mesh_judge(m, NULL, r, NULL), VG_OK);
   assert_int_equal(r->bad_index, 0);
@@ -111,7 +112,7 @@ static size_t count_lifts(const struct vg_columns *c)
       for (int r = 0; r < 3; r++) {
         if (c->column[c->face[i][order[r]]].n <= l) continue;
         n += low[0] != low[1] && low[1] != low[2] && low[2] != low[0];
-        low[order[r]] = new--;
+        low[order[r]] = new --;
       }
   }
   return n;
@@ -147,11 +148,12 @@ static size_t check_model(const struct model *m)
     const struct vg_join_info *info = k ? &b : &a;
     uint64_t n;
 
-    assert_int_equal(vg_layers_count(&m->layers, k ? VG_LAYER_MIXED
-                                                   : VG_LAYER_TETS, 1, &n,
-                                     NULL), VG_OK);
-    assert_int_equal(n, info->n_layer_tet + info->n_layer_pyr
-                        + info->n_layer_pri);
+    assert_int_equal(vg_layers_count(&m->layers,
+                                     k ? VG_LAYER_MIXED : VG_LAYER_TETS, 1, &n,
+                                     NULL),
+                     VG_OK);
+    assert_int_equal(n,
+                     info->n_layer_tet + info->n_layer_pyr + info->n_layer_pri);
   }
   assert_int_equal(tets.n_tet, a.n_layer_tet + m->field.n_tet);
   assert_int_equal(mixed.n_tet, b.n_layer_tet + m->field.n_tet);
@@ -174,7 +176,7 @@ static void check_wall_cells(const struct model *m)
   const struct vg_columns *c = &m->layers.columns;
   struct vg_mesh mesh = VG_MESH_INIT;
   struct vg_join_info info;
-  size_t n[7] = {0}, at[7] = {0};
+  size_t n[7] = { 0 }, at[7] = { 0 };
 
   join_model(m, VG_LAYER_MIXED, 1, &mesh, &info);
   for (size_t i = 0; i < c->n_face; i++) {
@@ -215,8 +217,7 @@ static void check_nothing_grown(const struct model *m)
   assert_int_equal(info.n_layer_tet + info.n_layer_pyr + info.n_layer_pri, 0);
   assert_int_equal(info.n_layer_point, m->surface.n_point);
   assert_int_equal(mesh.n_tri, m->surface.n_tri);
-  assert_memory_equal(mesh.tri, m->surface.tri,
-                      mesh.n_tri * sizeof *mesh.tri);
+  assert_memory_equal(mesh.tri, m->surface.tri, mesh.n_tri * sizeof *mesh.tri);
   assert_memory_equal(mesh.tri_patch, m->surface.tri_patch,
                       mesh.n_tri * sizeof *mesh.tri_patch);
   vg_mesh_release(&mesh);
@@ -234,8 +235,9 @@ static uint32_t one_side(const double x[3], const double y[3])
 static void make_ridge(struct model *m, int np, int nq, const int order[4],
                        uint32_t turn)
 {
-  static const double x[4][3] = {{-0.5, 0, 0}, {0.5, 0, 0}, {0.1, 1, -0.5},
-                                 {-0.1, -1, -0.5}};
+  static const double x[4][3] = {
+    { -0.5, 0, 0 }, { 0.5, 0, 0 }, { 0.1, 1, -0.5 }, { -0.1, -1, -0.5 }
+  };
   uint32_t fan[4][3];
   const int count[4] = { np, nq, 1, 1 };
 
@@ -303,8 +305,9 @@ static size_t all_levels(struct model *m, size_t high, size_t *n_flat)
 
 static void a_ridge_in_all_ways(void **state)
 {
-  static const int order[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 1, 3, 0},
-                                  {3, 2, 0, 1}};
+  static const int order[4][4] = {
+    { 0, 1, 2, 3 }, { 1, 0, 3, 2 }, { 2, 1, 3, 0 }, { 3, 2, 0, 1 }
+  };
   size_t n_done = 0, n_flat = 0;
 
   (void)state;
@@ -340,7 +343,7 @@ static void check_roofs(int n_each, int n_model)
       model_field(&m);
       n_flat = check_model(&m);
       if (i % 7 == 0) check_nothing_grown(&m);
-      if (i % 7 == 1) check_wall_cells(&m);   /* one level at most */
+      if (i % 7 == 1) check_wall_cells(&m); /* one level at most */
       /* heights that differ within a fan may twist its cells flat */
       if (n_each) assert_int_equal(n_flat, 0);
       n_done++;
@@ -365,12 +368,14 @@ static void roofs_with_equal_fans(void **state)
 static void fill_model(struct model *m)
 {
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
-  struct vg_sizing *sizing = shape_sizing(FRONT_MESH(&m->layers.front, &m->surface), 1.5, 0);
+  struct vg_sizing *sizing = shape_sizing(FRONT_MESH(&m->layers.front,
+                                                     &m->surface),
+                                          1.5, 0);
   struct vg_fill_report report;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (fill_mesh(FRONT_MESH(&m->layers.front, &m->surface), sizing, &options, &m->field, &report,
-              &err) != VG_OK)
+  if (fill_mesh(FRONT_MESH(&m->layers.front, &m->surface), sizing, &options,
+                &m->field, &report, &err) != VG_OK)
     fail_msg("%s", err.text);
   vg_sizing_free(sizing);
 }
@@ -494,7 +499,9 @@ static void any_number_of_threads(void **state)
   (void)state;
   model_sphere(&m, 40, 6, &seed);
   assert_true(m.layers.columns.n_face > 6000);
-  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field,
+                                FRONT_MESH(&m.layers.front, &m.surface), NULL),
+                   VG_OK);
   for (int cells = 0; cells < 2; cells++) {
     struct vg_mesh mesh[3] = { VG_MESH_INIT, VG_MESH_INIT, VG_MESH_INIT };
     struct vg_join_info info;
@@ -530,7 +537,9 @@ static void refuses_what_does_not_fit(void **state)
                                   VG_LAYER_TETS, 1, &mesh, NULL, &err),
                    VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "does not fill"));
-  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field,
+                                FRONT_MESH(&m.layers.front, &m.surface), NULL),
+                   VG_OK);
   model_column(&m, 0, (const double[3]){ 0, 0, 1 });
   m.layers.columns.column[7].n = 1;
   m.layers.columns.column[m.layers.columns.n_column - 1].n = 1;

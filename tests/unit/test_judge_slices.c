@@ -197,7 +197,7 @@ static void points_that_are_nowhere(void **state)
   vg_mesh_release(&m);
 }
 
-static struct cut *inner;    /* what spoil_get spoils */
+static struct cut *inner; /* what spoil_get spoils */
 
 static vg_status spoil_get(const struct vg_slices *s, size_t i,
                            struct vg_slice *out, struct vg_error *err)
@@ -289,11 +289,13 @@ static void others_are_shown_each_slice(void **state)
   assert_non_null(n);
   cut_make(&c, &m, 6, 0, NULL, 5);
   assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, count_cells, n,
-                                        &r, NULL, &err), VG_OK);
+                                        &r, NULL, &err),
+                   VG_OK);
   assert_true(r.is_valid);
   for (size_t i = 0; i < m.n_tet; i++) assert_int_equal(n[i], 1);
   assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, count_cells, n,
-                                        &r, NULL, &err), VG_ERR_IO);
+                                        &r, NULL, &err),
+                   VG_ERR_IO);
   assert_string_equal(err.text, "no more room");
   cut_release(&c);
   vg_mesh_release(&m);
@@ -318,8 +320,8 @@ static void nothing_is_not_valid(void **state)
 
 static void sums_are_exact(void **state)
 {
-  static const double x[] = { 1, 1e-300, 1e300, -1e300, 5e-324, 0.1, -1,
-                              -5e-324, 3, -0.1, 1e-300 };
+  static const double x[] = { 1,  1e-300,  1e300, -1e300, 5e-324, 0.1,
+                              -1, -5e-324, 3,     -0.1,   1e-300 };
   struct vg_exact s = { .n_odd = 0 }, t = { .n_odd = 0 };
   size_t n = sizeof x / sizeof *x;
 

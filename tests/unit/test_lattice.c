@@ -19,7 +19,8 @@ static void scene_of(struct scene *s, struct vg_mesh *m, double growth,
   s->load = (struct vg_load)VG_LOAD_INIT;
   s->sizing = shape_sizing(m, growth, h_max);
   assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
-                               &s->load, NULL), VG_OK);
+                               &s->load, NULL),
+                   VG_OK);
   vg_mesh_release(m);
 }
 
@@ -34,8 +35,8 @@ static void box_scene(struct scene *s, int n)
 
 static void block_scene(struct scene *s, int nx, int ny, int nz)
 {
-  const int n[3] = {nx, ny, nz};
-  const double lo[3] = {0, 0, 0}, hi[3] = {nx, ny, nz};
+  const int n[3] = { nx, ny, nz };
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { nx, ny, nz };
   struct vg_mesh m = VG_MESH_INIT;
 
   shape_block(&m, n, lo, hi, shape_all);
@@ -45,7 +46,7 @@ static void block_scene(struct scene *s, int nx, int ny, int nz)
 /* Cells are dense around the body, which is off the middle. */
 static void sphere_scene(struct scene *s)
 {
-  const double centre[3] = {4, -3, 2};
+  const double centre[3] = { 4, -3, 2 };
   struct vg_mesh m = VG_MESH_INIT;
 
   shape_box(&m, 6, 10);
@@ -152,7 +153,7 @@ static void planes_keep_their_distance(void **state)
   struct scene s;
 
   (void)state;
-  box_scene(&s, 24);         /* a quarter of it is 6 */
+  box_scene(&s, 24); /* a quarter of it is 6 */
   assert_int_equal(vg_lattice_plan(&s.load, &rule, 6, 0, &l), 3);
   planes_are(&l, 1, 1, 1);
   scene_end(&s);
@@ -171,7 +172,7 @@ static void planes_keep_their_distance(void **state)
 static void the_cheapest_axis_is_cut(void **state)
 {
   const struct vg_cut_rule rule = { 0, -1, 0 };
-  static const int size[3][3] = {{40, 8, 12}, {12, 40, 8}, {8, 12, 40}};
+  static const int size[3][3] = { { 40, 8, 12 }, { 12, 40, 8 }, { 8, 12, 40 } };
 
   (void)state;
   for (int axis = 0; axis < 3; axis++) {
@@ -213,8 +214,11 @@ static void an_axis_can_be_asked_for(void **state)
  * them. */
 static void leaves_have_their_size(void **state)
 {
-  static const struct { double leaves; int planes; } is[] = {
-    {1, 0}, {1.2, 0}, {1.3, 1}, {2, 1}, {4, 1}, {12, 1}, {64, 1}, {90, 6}};
+  static const struct {
+    double leaves;
+    int planes;
+  } is[] = { { 1, 0 }, { 1.2, 0 }, { 1.3, 1 }, { 2, 1 },
+             { 4, 1 }, { 12, 1 },  { 64, 1 },  { 90, 6 } };
   struct vg_lattice l;
   struct scene s;
 
@@ -223,8 +227,7 @@ static void leaves_have_their_size(void **state)
   for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
     struct vg_cut_rule rule = { s.load.cells / is[k].leaves, -1, 0 };
 
-    assert_int_equal(vg_lattice_plan(&s.load, &rule, 0, 0, &l),
-                     is[k].planes);
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, 0, 0, &l), is[k].planes);
   }
   scene_end(&s);
 }
@@ -245,8 +248,7 @@ static void attempts_differ(void **state)
     planes_are(&l, 0, 0, 1);
     at[k] = l.at[2][0];
     assert_true(fabs(at[k]) < 0.2);
-    for (int j = 0; j < k; j++)
-      assert_true(fabs(at[k] - at[j]) > 1.0 / 48);
+    for (int j = 0; j < k; j++) assert_true(fabs(at[k] - at[j]) > 1.0 / 48);
   }
   scene_end(&s);
 }
@@ -296,8 +298,11 @@ static void one_plane(const struct scene *s, struct vg_lattice *l)
  * edge of it, and the ribs of a tile may be 12 % of it. */
 static void large_tiles_are_parted(void **state)
 {
-  static const struct { int nx, ny, pieces; } is[] = {
-    {32, 32, 1}, {64, 64, 4}, {60, 20, 1}, {200, 16, 3}, {16, 120, 2} };
+  static const struct {
+    int nx, ny, pieces;
+  } is[] = {
+    { 32, 32, 1 }, { 64, 64, 4 }, { 60, 20, 1 }, { 200, 16, 3 }, { 16, 120, 2 }
+  };
 
   (void)state;
   for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
@@ -314,8 +319,7 @@ static void large_tiles_are_parted(void **state)
       double length = across ? is[k].ny : is[k].nx;
 
       assert_int_equal(l.rib[i].tile, 0);
-      if (is[k].nx != is[k].ny)
-        assert_true(l.rib[i].plane.normal[across] == 1);
+      if (is[k].nx != is[k].ny) assert_true(l.rib[i].plane.normal[across] == 1);
       /* shares of cubes of up to 3 spacings, counted by their middles */
       if (fabs(l.rib[i].plane.offset - length * (i + 1) / is[k].pieces) > 3)
         fail_msg("rib %d of %d x %d is at %g", i, is[k].nx, is[k].ny,
@@ -329,9 +333,11 @@ static void large_tiles_are_parted(void **state)
 /* A fifth of a leaf to a piece, from 4,000 to 12,000. */
 static void small_leaves_have_small_pieces(void **state)
 {
-  static const struct { double leaf; int pieces; } is[] = {
-    {0, 3}, {1e6, 3}, {60000, 3}, {40000, 5}, {32000, 6}, {20000, 8},
-    {5000, 8} };
+  static const struct {
+    double leaf;
+    int pieces;
+  } is[] = { { 0, 3 },     { 1e6, 3 },   { 60000, 3 }, { 40000, 5 },
+             { 32000, 6 }, { 20000, 8 }, { 5000, 8 } };
   struct vg_lattice l;
   struct scene s;
 
@@ -341,8 +347,8 @@ static void small_leaves_have_small_pieces(void **state)
   for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
     ribs_for(&s, is[k].leaf, &l);
     if (l.n_rib + 1 != is[k].pieces)
-      fail_msg("leaves of %g: %d pieces instead of %d", is[k].leaf,
-               l.n_rib + 1, is[k].pieces);
+      fail_msg("leaves of %g: %d pieces instead of %d", is[k].leaf, l.n_rib + 1,
+               is[k].pieces);
   }
   vg_lattice_release(&l);
   scene_end(&s);
@@ -362,23 +368,31 @@ static void small_tiles_stay_whole(void **state)
 
 /* --- regions ------------------------------------------------------------- */
 
-static const struct vg_lattice two = {
-  .n = {1, 1, 1}, .at = {{0.1}, {-0.2}, {0.15}} };
-static const struct vg_lattice once = {
-  .n = {1, 1, 1}, .lines_at_once = 1, .at = {{0.1}, {-0.2}, {0.15}} };
+static const struct vg_lattice two = { .n = { 1, 1, 1 },
+                                       .at = { { 0.1 }, { -0.2 }, { 0.15 } } };
+static const struct vg_lattice once = { .n = { 1, 1, 1 },
+                                        .lines_at_once = 1,
+                                        .at = { { 0.1 }, { -0.2 }, { 0.15 } } };
 static const struct vg_lattice four = {
-  .n = {3, 3, 3},
-  .at = {{-0.5, 0.1, 0.45}, {-0.6, -0.2, 0.5}, {-0.4, 0, 0.55}} };
+  .n = { 3, 3, 3 },
+  .at = { { -0.5, 0.1, 0.45 }, { -0.6, -0.2, 0.5 }, { -0.4, 0, 0.55 } }
+};
 static const struct vg_lattice flat = {
-  .n = {2, 1, 0}, .at = {{-0.3, 0.4}, {0.1}, {0}} };
+  .n = { 2, 1, 0 }, .at = { { -0.3, 0.4 }, { 0.1 }, { 0 } }
+};
 /* Tiles in pieces: one of `flat`'s by two parallel ribs, and one by a fan. */
 static const struct vg_lattice ribbed = {
-  .n = {2, 1, 0}, .at = {{-0.3, 0.4}, {0.1}, {0}}, .n_rib = 4,
-  .rib = (struct vg_rib[]){
-    {1, {{0, 0, 1}, -0.5}}, {1, {{0, 0, 1}, 0.4}},
-    {3, {{0, -0.6, 0.8}, -0.86}}, {3, {{0, -0.8, 0.6}, -0.68}} } };
+  .n = { 2, 1, 0 },
+  .at = { { -0.3, 0.4 }, { 0.1 }, { 0 } },
+  .n_rib = 4,
+  .rib = (struct vg_rib[]){ { 1, { { 0, 0, 1 }, -0.5 } },
+                            { 1, { { 0, 0, 1 }, 0.4 } },
+                            { 3, { { 0, -0.6, 0.8 }, -0.86 } },
+                            { 3, { { 0, -0.8, 0.6 }, -0.68 } } }
+};
 static const struct vg_lattice row = {
-  .n = {0, 7, 0}, .at = {{0}, {-.6, -.4, -.2, 0, .2, .4, .6}, {0}} };
+  .n = { 0, 7, 0 }, .at = { { 0 }, { -.6, -.4, -.2, 0, .2, .4, .6 }, { 0 } }
+};
 
 static void counts_are(const struct vg_lattice *l, size_t lines,
                        size_t segments, size_t tiles)
@@ -535,8 +549,9 @@ static void nothing_is_left_out(const struct vg_lattice *l)
 
 static void regions_are_apart_and_complete(void **state)
 {
-  const struct vg_lattice *all[6] = { &two, &once, &four, &flat, &row,
-                                      &ribbed };
+  const struct vg_lattice *all[6] = {
+    &two, &once, &four, &flat, &row, &ribbed
+  };
 
   (void)state;
   for (int k = 0; k < 6; k++) {
@@ -557,7 +572,7 @@ static void points_have_blocks(void **state)
   assert_int_equal(vg_lattice_blocks(&four), 64);
   assert_int_equal(vg_lattice_blocks(&flat), 6);
   for (int i = 0; i < 1000; i++) {
-    uint32_t want[2] = {0, 0}, step = 1;
+    uint32_t want[2] = { 0, 0 }, step = 1;
     double x[3];
 
     sample(&four, &seed, x);
@@ -575,7 +590,7 @@ static void points_have_blocks(void **state)
  * patches of boxes beside each other do not overlap. */
 static void patches_end_with_their_box(void **state)
 {
-  const double lo[3] = {-0.2, -0.3, 0.1}, hi[3] = {0.4, 0.3, 0.6};
+  const double lo[3] = { -0.2, -0.3, 0.1 }, hi[3] = { 0.4, 0.3, 0.6 };
   struct vg_region r;
   uint64_t seed = 4;
 

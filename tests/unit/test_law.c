@@ -24,10 +24,9 @@ static const struct vg_law laws[] = {
  * printed there (6 decimals) and from the formula with libm. */
 static void vgrid_box(void **state)
 {
-  static const double printed[12] = {
-    0.001, 0.002153, 0.003489, 0.005047, 0.006873, 0.009024, 0.011575,
-    0.014618, 0.018270, 0.022681, 0.028042, 0.034603
-  };
+  static const double printed[12] = { 0.001,    0.002153, 0.003489, 0.005047,
+                                      0.006873, 0.009024, 0.011575, 0.014618,
+                                      0.018270, 0.022681, 0.028042, 0.034603 };
   double d[31], sum = 0;
 
   (void)state;
@@ -173,12 +172,14 @@ static void a_rate_for_the_total(void **state)
 /* Levels of a column, and a coordinate that its direction leaves alone. */
 static void columns_have_points(void **state)
 {
-  double point[1][3] = {{ 0.1, 1.0 / 3, -7 }}, d[VG_LEVELS_MAX + 1], x[6][3];
+  double point[1][3] = { { 0.1, 1.0 / 3, -7 } }, d[VG_LEVELS_MAX + 1], x[6][3];
   struct vg_law law = { 0.25, 0.2, 0, 1.3, 1 };
-  struct vg_column column = { .dir = { 0, 0, 2 }, .cap = INFINITY,
-                              .bent = SIZE_MAX, .n = 5 };
-  struct vg_columns c = { .n_column = 1, .n_law = 1, .column = &column,
-                          .law = &law };
+  struct vg_column column = {
+    .dir = { 0, 0, 2 }, .cap = INFINITY, .bent = SIZE_MAX, .n = 5
+  };
+  struct vg_columns c = {
+    .n_column = 1, .n_law = 1, .column = &column, .law = &law
+  };
   struct vg_mesh m = { .n_point = 1, .point = point };
   double top[3];
 

@@ -12,7 +12,7 @@
 #include "fill_shapes.h"
 #include "layers/measure/measure.h"
 
-enum { SIDE = 8 };          /* the plate is SIDE x SIDE squares of size 1 */
+enum { SIDE = 8 }; /* the plate is SIDE x SIDE squares of size 1 */
 
 /* A plate z = 0 with its fluid above; its left half is patch 0, its right
  * half patch 1. */
@@ -48,10 +48,13 @@ static void stand(struct vg_columns *c, const struct vg_mesh *m,
   shape_need(c->law);
   c->law[0] = (struct vg_law){ 1e-5, 0.2, 0, INFINITY, 1 };
   for (size_t i = 0; i < c->n_column; i++) {
-    c->column[i] = (struct vg_column){
-      .root = (uint32_t)i, .slide = { VG_NO_INDEX, VG_NO_INDEX },
-      .cap = INFINITY, .bent = SIZE_MAX, .n = (uint16_t)n,
-      .n_wanted = (uint16_t)n, .cause = VG_CAUSE_SIZE };
+    c->column[i] = (struct vg_column){ .root = (uint32_t)i,
+                                       .slide = { VG_NO_INDEX, VG_NO_INDEX },
+                                       .cap = INFINITY,
+                                       .bent = SIZE_MAX,
+                                       .n = (uint16_t)n,
+                                       .n_wanted = (uint16_t)n,
+                                       .cause = VG_CAUSE_SIZE };
     memcpy(c->column[i].dir, dir, 3 * sizeof *dir);
   }
   memcpy(c->face, m->tri, m->n_tri * sizeof *m->tri);
@@ -99,7 +102,8 @@ static struct vg_layer_judgement judge(const struct plate *p)
   struct vg_layer_judgement r;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_layers_judge(&p->m, &p->c, 1, NULL, &r, &err) < 0) fail_msg("%s", err.text);
+  if (vg_layers_judge(&p->m, &p->c, 1, NULL, &r, &err) < 0)
+    fail_msg("%s", err.text);
   return r;
 }
 
@@ -179,7 +183,7 @@ static void the_first_height_in_a_corner(void **state)
   for (size_t i = 0; i < w.n; i++) {
     const double *x = p->m.point[i];
 
-    if (x[0] == 0 || x[2] == SIDE / 2) continue;   /* leaves the plate */
+    if (x[0] == 0 || x[2] == SIDE / 2) continue; /* leaves the plate */
     /* 1e-5 on coordinates of up to 8: 1e-15 / 1e-5 */
     assert_true(fabs(w.first[i] - 1e-5) < 1e-10 * 1e-5);
     assert_true(fabs(w.total[i] - d[30]) < 1e-10 * d[30]);
@@ -226,7 +230,7 @@ static void a_point_says_the_worst_of_its_columns(void **state)
 static void statistics_by_patch(void **state)
 {
   struct plate *p = *state;
-  const double half = SIDE * SIDE;   /* triangles of each patch */
+  const double half = SIDE * SIDE; /* triangles of each patch */
   struct vg_patch_layers *list = NULL, all;
   struct vg_wall_fields w;
   size_t n = 0;
@@ -239,7 +243,8 @@ static void statistics_by_patch(void **state)
   p->c.column[p->c.n_column - 1].squeezed = VG_CAUSE_CORNER;
   w = fields(p);
   assert_int_equal(vg_layers_patches(&p->m, &p->c, &w, 5e6, 1, &n, &list, &all,
-                                     NULL), VG_OK);
+                                     NULL),
+                   VG_OK);
   assert_int_equal(n, 2);
   assert_int_equal(list[0].patch, 0);
   assert_int_equal(list[1].patch, 1);
@@ -266,7 +271,8 @@ static void statistics_by_patch(void **state)
   assert_true(fabs(all.y_plus.mean / vg_y_plus(1e-5, 5e6, 1) - 1) < 1e-12);
   free(list);
   assert_int_equal(vg_layers_patches(&p->m, &p->c, &w, 0, 0, &n, &list, NULL,
-                                     NULL), VG_OK);
+                                     NULL),
+                   VG_OK);
   assert_true(list[0].y_plus.max == 0);
   free(list);
   vg_wall_fields_release(&w);
@@ -301,7 +307,7 @@ static void a_level_less_makes_pyramids(void **state)
   p->c.column[0].n = 28;
   r = judge(p);
   assert_int_equal(r.n_cell, 3 * 30 * p->m.n_tri - 4);
-  assert_int_equal(r.n_step, 3);   /* edges, not faces */
+  assert_int_equal(r.n_step, 3); /* edges, not faces */
   assert_int_equal(r.n_negative, 0);
 }
 
@@ -350,8 +356,7 @@ static void points_that_leave_a_slide_plane(void **state)
   side = p->m.n_point;
   shape_point(&p->m, 0, 0, -1);
   shape_tri(&p->m, 0, (uint32_t)side, SIDE + 1, 2);
-  for (uint32_t i = 0; i <= SIDE; i++)
-    p->c.column[i * (SIDE + 1)].slide[0] = 2;
+  for (uint32_t i = 0; i <= SIDE; i++) p->c.column[i * (SIDE + 1)].slide[0] = 2;
   r = judge(p);
   assert_int_equal(r.n_off_plane, 0);
   p->c.column[SIDE + 1].dir[1] = 1e-12;
@@ -370,7 +375,7 @@ static void make_ridge(struct plate *p, int n)
   vg_mesh_release(&p->m);
   vg_columns_release(c);
   vg_mesh_add_patch(&p->m, 5, "both");
-  for (int j = 0; j <= n; j++) {   /* ridge, top, side */
+  for (int j = 0; j <= n; j++) { /* ridge, top, side */
     shape_point(&p->m, 0, j, 0);
     shape_point(&p->m, -1, j, 0);
     shape_point(&p->m, 0, j, -1);
@@ -393,8 +398,12 @@ static void make_ridge(struct plate *p, int n)
   for (size_t i = 0; i < c->n_column; i++) {
     c->column[i] = (struct vg_column){
       .root = (uint32_t)(i / 4 * 3 + (i % 4 > 1 ? i % 4 - 1 : 0)),
-      .slide = { VG_NO_INDEX, VG_NO_INDEX }, .cap = INFINITY,
-      .bent = SIZE_MAX, .n = 3, .n_wanted = 3 };
+      .slide = { VG_NO_INDEX, VG_NO_INDEX },
+      .cap = INFINITY,
+      .bent = SIZE_MAX,
+      .n = 3,
+      .n_wanted = 3
+    };
     c->column[i].dir[i % 2 ? 0 : 2] = 1;
   }
   c->face = vg_realloc(c->face, 6 * (size_t)n, sizeof *c->face);
@@ -441,8 +450,7 @@ static void virtual_faces_of_a_ridge(void **state)
   assert_int_equal(r.n_bad_pyramid + r.n_bad_wall_tet + r.n_step, 0);
   w = fields(p);
   assert_int_equal(w.n, 15);
-  for (size_t i = 0; i < w.n; i++)
-    assert_true(fabs(w.first[i] - 0.1) < 1e-14);
+  for (size_t i = 0; i < w.n; i++) assert_true(fabs(w.first[i] - 0.1) < 1e-14);
   vg_wall_fields_release(&w);
   /* turned over they are all wrong */
   for (size_t f = 16; f < p->c.n_face; f++) {
@@ -473,7 +481,8 @@ static void any_number_of_threads(void **state)
     p.c.column[i].dir[0] = (double)(i % 7);
   }
   for (int t = 0; t < 3; t++) {
-    assert_int_equal(vg_layers_judge(&p.m, &p.c, t + 1, NULL, &r[t], NULL), VG_OK);
+    assert_int_equal(vg_layers_judge(&p.m, &p.c, t + 1, NULL, &r[t], NULL),
+                     VG_OK);
     assert_int_equal(vg_layers_fields(&p.m, &p.c, t + 1, &w[t], NULL), VG_OK);
     assert_memory_equal(&r[t], &r[0], sizeof r[0]);
     assert_memory_equal(w[t].first, w[0].first, w[0].n * sizeof *w[0].first);
@@ -494,7 +503,8 @@ static void too_many_levels_are_refused(void **state)
   struct vg_error err = VG_ERROR_INIT;
 
   p->c.column[3].n = VG_LEVELS_MAX + 1;
-  assert_int_equal(vg_layers_judge(&p->m, &p->c, 1, NULL, &r, &err), VG_ERR_INPUT);
+  assert_int_equal(vg_layers_judge(&p->m, &p->c, 1, NULL, &r, &err),
+                   VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "column 4"));
   assert_int_equal(r.n_cell, 7);
   assert_int_equal(vg_layers_fields(&p->m, &p->c, 1, &w, &err), VG_ERR_INPUT);

@@ -23,10 +23,10 @@
 struct server {
   const struct vg_mesh *m;
   size_t n_front;
-  size_t n_piece;        /* of the cells and of the points that are not the
-                            front's */
+  size_t n_piece; /* of the cells and of the points that are not the
+                     front's */
   size_t rank, size;
-  int apart;             /* the front's points are in a slice of their own */
+  int apart; /* the front's points are in a slice of their own */
   int fails;
 };
 
@@ -35,7 +35,10 @@ struct piece {
   uint32_t *id, *own, (*tet)[4];
 };
 
-static size_t share(size_t n, size_t i, size_t of) { return n * i / of; }
+static size_t share(size_t n, size_t i, size_t of)
+{
+  return n * i / of;
+}
 
 static void serve_put(const struct vg_slices *s, struct vg_slice *slice)
 {
@@ -75,9 +78,15 @@ static void serve_points(const struct vg_mesh *m, size_t first, size_t end,
     else p->own[i - 4 * n_tet] = local[v];
   }
   free(local);
-  *out = (struct vg_slice){ .n_point = n, .x = (const double (*)[3])p->x,
-    .id = p->id, .point_at = first, .n_own = end - first, .own = p->own,
-    .domain = 7, .kind = 1, .keep = p };
+  *out = (struct vg_slice){ .n_point = n,
+                            .x = (const double(*)[3])p->x,
+                            .id = p->id,
+                            .point_at = first,
+                            .n_own = end - first,
+                            .own = p->own,
+                            .domain = 7,
+                            .kind = 1,
+                            .keep = p };
   out->cell_at[VG_SLICE_TET] = first_tet;
   out->n_cell[VG_SLICE_TET] = n_tet;
   out->cell[VG_SLICE_TET] = (const uint32_t *)p->tet;
@@ -106,8 +115,11 @@ static vg_status serve_get(const struct vg_slices *s, size_t i,
 static struct vg_slices serve(struct server *v)
 {
   size_t n = v->n_piece + (size_t)v->apart;
-  struct vg_slices s = { .n_point = v->m->n_point, .boundary = v->m,
-    .get = serve_get, .put = serve_put, .user = v };
+  struct vg_slices s = { .n_point = v->m->n_point,
+                         .boundary = v->m,
+                         .get = serve_get,
+                         .put = serve_put,
+                         .user = v };
 
   s.n_cell[VG_SLICE_TET] = v->m->n_tet;
   s.n_boundary_point = v->n_front;
@@ -122,14 +134,15 @@ static const size_t n_node[VG_SLICE_KINDS] = { 4, 5, 6 };
 struct check {
   const struct vg_mesh *m;
   const struct vg_slices *s;
-  uint8_t *point, *cell[VG_SLICE_KINDS];   /* seen how often */
-  size_t *wrong;           /* by slice */
+  uint8_t *point, *cell[VG_SLICE_KINDS]; /* seen how often */
+  size_t *wrong;                         /* by slice */
 };
 
 static size_t count_of(const struct vg_mesh *m, int kind)
 {
-  return kind == VG_SLICE_TET ? m->n_tet : kind == VG_SLICE_PYR ? m->n_pyr
-                                                                : m->n_pri;
+  return kind == VG_SLICE_TET ? m->n_tet
+       : kind == VG_SLICE_PYR ? m->n_pyr
+                              : m->n_pri;
 }
 
 static const uint32_t *cells_of(const struct vg_mesh *m, int kind)
@@ -166,8 +179,8 @@ static size_t compare(const struct check *c, const struct vg_slice *s)
     if (s->cell_at[k] + s->n_cell[k] > count_of(c->m, k)) return wrong + 1;
     for (size_t i = 0; i < s->n_cell[k] * n_node[k]; i++)
       if (s->cell[k][i] >= s->n_point) return wrong + 1;
-      else wrong += s->id[s->cell[k][i]] !=
-                    whole[s->cell_at[k] * n_node[k] + i];
+      else
+        wrong += s->id[s->cell[k][i]] != whole[s->cell_at[k] * n_node[k] + i];
     for (size_t i = 0; i < s->n_cell[k]; i++) c->cell[k][s->cell_at[k] + i]++;
   }
   return wrong;
@@ -219,8 +232,7 @@ static void same_boundary(const struct vg_mesh *a, const struct vg_mesh *b)
 }
 
 static void same_counts(const struct vg_mesh *m, const struct vg_join_info *a,
-                        const struct vg_slices *s,
-                        const struct vg_join_info *b)
+                        const struct vg_slices *s, const struct vg_join_info *b)
 {
   const size_t n_layer[VG_SLICE_KINDS] = { a->n_layer_tet, a->n_layer_pyr,
                                            a->n_layer_pri };
@@ -256,7 +268,11 @@ static void share_unevenly(struct vg_layer_slices *keep, int size,
 /* --- volumes across the tops --------------------------------------------- */
 
 /* A triangle of a cell. */
-struct side { uint32_t v[3]; int is_field; double volume; };
+struct side {
+  uint32_t v[3];
+  int is_field;
+  double volume;
+};
 
 static int by_index(const void *a, const void *b)
 {
@@ -297,7 +313,7 @@ static size_t list_sides(const struct vg_mesh *m, const size_t n_layer[3],
         for (int j = 0; j < 3; j++) side[n].v[j] = node[f->node[k][j]];
         qsort(side[n].v, 3, sizeof *side[n].v, by_index);
         side[n].is_field = i >= n_layer[kind];
-        side[n].volume = vg_cell_volume((const double (*)[3])m->point, kind,
+        side[n].volume = vg_cell_volume((const double(*)[3])m->point, kind,
                                         node);
       }
     }
@@ -309,8 +325,8 @@ static size_t list_sides(const struct vg_mesh *m, const size_t n_layer[3],
 static void check_tops(const struct vg_mesh *m, const struct vg_join_info *info,
                        size_t n_face, double *ratio)
 {
-  const size_t n_layer[VG_SLICE_KINDS] = {
-    info->n_layer_tet, info->n_layer_pyr, info->n_layer_pri };
+  const size_t n_layer[VG_SLICE_KINDS] = { info->n_layer_tet, info->n_layer_pyr,
+                                           info->n_layer_pri };
   struct side *side = vg_alloc(4 * (m->n_tet + m->n_pyr + m->n_pri),
                                sizeof *side);
   size_t n = list_sides(m, n_layer, side), n_top = 0;
@@ -321,7 +337,8 @@ static void check_tops(const struct vg_mesh *m, const struct vg_join_info *info,
     const struct side *a = &side[i - 1], *b = &side[i];
 
     if (memcmp(a->v, b->v, sizeof a->v) || a->is_field == b->is_field ||
-        !(a->volume > 0)) continue;
+        !(a->volume > 0))
+      continue;
     assert_true(n_top < n_face);
     want[n_top++] = a->volume > b->volume ? a->volume / b->volume
                                           : b->volume / a->volume;
@@ -359,15 +376,20 @@ static size_t check_split(const struct model *m, const struct vg_mesh *whole,
 
   check_start(&c, whole);
   for (int rank = 0; rank < size; rank++) {
-    struct server server = { &m->field, m->layers.front.n_point, n_piece,
-                             (size_t)rank, (size_t)size, apart, 0 };
+    struct server server = { &m->field,
+                             m->layers.front.n_point,
+                             n_piece,
+                             (size_t)rank,
+                             (size_t)size,
+                             apart,
+                             0 };
     struct vg_slices field = serve(&server), s;
     struct vg_layer_slices *keep;
     struct vg_join_info again;
     struct vg_error err = VG_ERROR_INIT;
 
-    if (vg_layer_slices_open(&m->surface, &m->layers, &field, cells, rank,
-                             size, threads, &s, &keep, &again, &err) < 0)
+    if (vg_layer_slices_open(&m->surface, &m->layers, &field, cells, rank, size,
+                             threads, &s, &keep, &again, &err) < 0)
       fail_msg("%s", err.text);
     if (unevenly) share_unevenly(keep, size, &s);
     same_counts(whole, info, &s, &again);
@@ -394,14 +416,14 @@ static void check_blocks(const struct model *m, const struct vg_mesh *whole,
 {
   struct vg_join_plan plan;
   struct check c;
-  const size_t n_layer[VG_SLICE_KINDS] = {
-    info->n_layer_tet, info->n_layer_pyr, info->n_layer_pri };
+  const size_t n_layer[VG_SLICE_KINDS] = { info->n_layer_tet, info->n_layer_pyr,
+                                           info->n_layer_pri };
 
   check_start(&c, whole);
   assert_int_equal(vg_join_plan_open(&plan, &m->surface, &m->layers,
-                                     m->field.n_point -
-                                     m->layers.front.n_point, cells, 1,
-                                     NULL), VG_OK);
+                                     m->field.n_point - m->layers.front.n_point,
+                                     cells, 1, NULL),
+                   VG_OK);
   for (size_t b = 0; b < plan.expand.n_block; b++) {
     struct vg_layer_slice at = { .is_field = 0 };
     struct vg_slice s = { .n_point = 0 };
@@ -418,8 +440,7 @@ static void check_blocks(const struct model *m, const struct vg_mesh *whole,
   for (size_t i = info->n_boundary_point; i < info->n_layer_point; i++)
     assert_int_equal(c.point[i], 1);
   for (int k = 0; k < VG_SLICE_KINDS; k++) {
-    for (size_t i = 0; i < n_layer[k]; i++)
-      assert_int_equal(c.cell[k][i], 1);
+    for (size_t i = 0; i < n_layer[k]; i++) assert_int_equal(c.cell[k][i], 1);
     free(c.cell[k]);
   }
   free(c.point);
@@ -436,11 +457,11 @@ static size_t check_model(const struct model *m, int most)
     struct vg_join_info info;
 
     assert_int_equal(vg_layers_join(&m->surface, &m->layers, &m->field, cells,
-                                    1, &whole, &info, NULL), VG_OK);
+                                    1, &whole, &info, NULL),
+                     VG_OK);
     for (int size = 1; size <= most; size++)
-      n_slice[i] = check_split(m, &whole, &info, cells,
-                               (size_t)(2 * size - 1), size % 2, size,
-                               1 + size % 3, i);
+      n_slice[i] = check_split(m, &whole, &info, cells, (size_t)(2 * size - 1),
+                               size % 2, size, 1 + size % 3, i);
     check_blocks(m, &whole, &info, cells);
     vg_mesh_release(&whole);
   }
@@ -458,8 +479,7 @@ static void roofs_with_fans(void **state)
   for (int i = 0; i < 60; i++) {
     struct model m;
 
-    model_roof(&m, 2 + 2 * (i % 4), i % 3 ? 0 : 1 + i % ROOF_FAN, i % 7,
-               &seed);
+    model_roof(&m, 2 + 2 * (i % 4), i % 3 ? 0 : 1 + i % ROOF_FAN, i % 7, &seed);
     model_front(&m);
     if (model_front_is_manifold(&m)) {
       model_field(&m);
@@ -480,7 +500,9 @@ static void many_slices(void **state)
   (void)state;
   model_sphere(&m, 66, 70, &seed);
   assert_true(m.surface.n_point > 16384);
-  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field,
+                                FRONT_MESH(&m.layers.front, &m.surface), NULL),
+                   VG_OK);
   assert_true(check_model(&m, 4) >= 4);
   model_release(&m);
 }
@@ -492,7 +514,9 @@ static void without_layers(void **state)
 
   (void)state;
   model_sphere(&m, 5, 0, &seed);
-  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field,
+                                FRONT_MESH(&m.layers.front, &m.surface), NULL),
+                   VG_OK);
   assert_int_equal(check_model(&m, 3), 1);
   vg_columns_release(&m.layers.columns);
   assert_int_equal(check_model(&m, 3), 1);
@@ -523,8 +547,8 @@ static void check_grown(struct model *m, double h)
     fail_msg("%s", err.text);
   vg_sizing_free(sizing);
   sizing = shape_sizing(FRONT_MESH(&m->layers.front, &m->surface), 1.3, 0);
-  if (fill_mesh(FRONT_MESH(&m->layers.front, &m->surface), sizing, &fill, &m->field, &filled,
-              &err) < 0)
+  if (fill_mesh(FRONT_MESH(&m->layers.front, &m->surface), sizing, &fill,
+                &m->field, &filled, &err) < 0)
     fail_msg("%s", err.text);
   vg_sizing_free(sizing);
   assert_true(m->field.n_point > m->layers.front.n_point);
@@ -558,22 +582,27 @@ static void refusals(void **state)
   server.m = &m.field;
   field = serve(&server);
   assert_int_equal(vg_layer_slices_open(&m.surface, &m.layers, &field,
-                                        VG_LAYER_TETS, 0, 1, 1, &s, &keep,
-                                        NULL, &err), VG_ERR_INPUT);
+                                        VG_LAYER_TETS, 0, 1, 1, &s, &keep, NULL,
+                                        &err),
+                   VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "does not fill"));
-  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field,
+                                FRONT_MESH(&m.layers.front, &m.surface), NULL),
+                   VG_OK);
   server.n_front = m.field.n_point;
   field = serve(&server);
   field.n_point += UINT32_MAX;
   assert_int_equal(vg_layer_slices_open(&m.surface, &m.layers, &field,
-                                        VG_LAYER_TETS, 0, 1, 1, &s, &keep,
-                                        NULL, &err), VG_ERR_UNSUPPORTED);
+                                        VG_LAYER_TETS, 0, 1, 1, &s, &keep, NULL,
+                                        &err),
+                   VG_ERR_UNSUPPORTED);
   field.n_point -= UINT32_MAX;
   assert_int_equal(s.n_slice, 77);
   assert_null(keep);
   assert_int_equal(vg_layer_slices_open(&m.surface, &m.layers, &field,
-                                        VG_LAYER_TETS, 0, 1, 1, &s, &keep,
-                                        NULL, &err), VG_OK);
+                                        VG_LAYER_TETS, 0, 1, 1, &s, &keep, NULL,
+                                        &err),
+                   VG_OK);
   server.fails = 1;
   slice.n_point = 5;
   assert_int_equal(s.get(&s, s.n_slice - 1, &slice, &err), VG_ERR_MEMORY);
@@ -586,10 +615,8 @@ static void refusals(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(roofs_with_fans),
-    cmocka_unit_test(many_slices),
-    cmocka_unit_test(without_layers),
-    cmocka_unit_test(a_wedge_between_planes),
+    cmocka_unit_test(roofs_with_fans), cmocka_unit_test(many_slices),
+    cmocka_unit_test(without_layers),  cmocka_unit_test(a_wedge_between_planes),
     cmocka_unit_test(refusals),
   };
 

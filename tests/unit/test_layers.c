@@ -94,7 +94,8 @@ static void cells_are_valid(const struct bench *b)
   struct vg_layer_judgement r;
 
   assert_int_equal(vg_layers_judge(&b->surface, &b->layers.columns, 1, NULL, &r,
-                                   NULL), VG_OK);
+                                   NULL),
+                   VG_OK);
   assert_int_equal(r.n_negative, 0);
   assert_int_equal(r.n_bad_corner, 0);
   assert_int_equal(r.n_bad_pyramid, 0);
@@ -125,14 +126,13 @@ static void tops_are_no_steeper(const struct bench *b)
       const struct vg_column *high = &c->column[f[(i + !turn) % 3]];
       const double *x = b->surface.point[low->root];
       double most = b->options.slope *
-                    vg_distance(x, b->surface.point[high->root]) +
+                      vg_distance(x, b->surface.point[high->root]) +
                     c->law[low->law].delta1;
 
       if (low->squeezed == VG_CAUSE_NONE) continue;
       if (height_of(c, high) - height_of(c, low) > most * (1 + 1e-9))
         fail_msg("tops %g and %g at (%g, %g, %g), %g at most",
-                 height_of(c, low), height_of(c, high), x[0], x[1], x[2],
-                 most);
+                 height_of(c, low), height_of(c, high), x[0], x[1], x[2], most);
     }
 }
 
@@ -150,8 +150,8 @@ static void heights_are_kept(const struct bench *b)
     const double *x = b->surface.point[w.point[i]];
 
     if (w.asked[i] > 0 && !(fabs(w.first[i] / w.asked[i] - 1) < 0.01))
-      fail_msg("first height %g for %g at (%g, %g, %g)", w.first[i],
-               w.asked[i], x[0], x[1], x[2]);
+      fail_msg("first height %g for %g at (%g, %g, %g)", w.first[i], w.asked[i],
+               x[0], x[1], x[2]);
     if (!(w.growth[i] < 1.25 + 1e-9))
       fail_msg("growth %g at (%g, %g, %g)", w.growth[i], x[0], x[1], x[2]);
   }
@@ -160,8 +160,7 @@ static void heights_are_kept(const struct bench *b)
 
 static int is_limit(int cause)
 {
-  return cause != VG_CAUSE_NONE && cause != VG_CAUSE_SIZE &&
-         cause < VG_CAUSE_N;
+  return cause != VG_CAUSE_NONE && cause != VG_CAUSE_SIZE && cause < VG_CAUSE_N;
 }
 
 /* Fewer levels than wanted, or less growth than the law's: both say why. */
@@ -200,7 +199,8 @@ static long double volume_of(const double a[3], const double b[3],
   minus(d, a, w);
   return ((u[1] * v[2] - u[2] * v[1]) * w[0] +
           (u[2] * v[0] - u[0] * v[2]) * w[1] +
-          (u[0] * v[1] - u[1] * v[0]) * w[2]) / 6;
+          (u[0] * v[1] - u[1] * v[0]) * w[2]) /
+         6;
 }
 
 static long double enclosed(const struct vg_mesh *m)
@@ -293,7 +293,8 @@ static void front_is_what_it_says(const struct bench *b)
  * cover as much less as the flanks took. */
 static void planes_stay_planes(const struct bench *b)
 {
-  const struct vg_mesh *s = &b->surface, *f = FRONT_MESH(&b->layers.front, &b->surface);
+  const struct vg_mesh *s = &b->surface,
+                       *f = FRONT_MESH(&b->layers.front, &b->surface);
 
   for (size_t p = 0; p < s->n_patch; p++)
     for (int k = 0; k < 3; k++) {
@@ -389,8 +390,7 @@ static void join_and_judge(const struct bench *b, const struct vg_mesh *field,
   assert_true(fabs(r.volume - (double)whole) < 1e-9 * (double)whole);
   if (cells == VG_LAYER_TETS)
     assert_int_equal(info[0].n_layer_tet, b->report.n_cell);
-  else
-    assert_true(info[0].n_layer_pri > 0);
+  else assert_true(info[0].n_layer_pri > 0);
   same(m[0].point, m[1].point, m[0].n_point, sizeof *m[0].point);
   same(m[0].tet, m[1].tet, m[0].n_tet, sizeof *m[0].tet);
   same(m[0].pri, m[1].pri, m[0].n_pri, sizeof *m[0].pri);
@@ -425,9 +425,11 @@ static void at_least(const struct bench *b, double full, double unsqueezed,
   size_t n;
 
   assert_int_equal(vg_layers_fields(&b->surface, &b->layers.columns, 1, &w,
-                                    NULL), VG_OK);
+                                    NULL),
+                   VG_OK);
   assert_int_equal(vg_layers_patches(&b->surface, &b->layers.columns, &w, 0, 0,
-                                     &n, &list, &all, NULL), VG_OK);
+                                     &n, &list, &all, NULL),
+                   VG_OK);
   assert_int_equal(all.n_face, b->report.n_wall_tri);
   if (all.full < full || all.unsqueezed < unsqueezed || all.any < any)
     fail_msg("%g %% full, %g %% unsqueezed, %g %% any", all.full,
@@ -446,9 +448,9 @@ static void all_of_it(struct bench *b, double h)
 /* --- what must hold at a place ------------------------------------------- */
 
 struct place_figures {
-  size_t n, n_full, n_loose, n_none;   /* columns: all, full, not squeezed,
-                                          without a level */
-  double top_max;                      /* highest, by wall distance */
+  size_t n, n_full, n_loose, n_none; /* columns: all, full, not squeezed,
+                                        without a level */
+  double top_max;                    /* highest, by wall distance */
 };
 
 /* Columns with a root in a box. */
@@ -537,8 +539,7 @@ static void fans_without_levels(void **state)
   case_cubes(&b.surface, 0.125, 0.002);
   start(&b, 0.125);
   b.options.fan_angle = 60;
-  for (size_t p = 0; p < b.surface.n_patch; p++)
-    b.request[p].law.delta1 = 1e-3;
+  for (size_t p = 0; p < b.surface.n_patch; p++) b.request[p].law.delta1 = 1e-3;
   grow_and_check(&b);
   assert_true(b.report.n_virtual_face > 0);
   assert_true(b.report.cause[VG_CAUSE_PROXIMITY] > 0);
@@ -628,7 +629,7 @@ static void a_sphere_over_a_wall(void **state)
   case_sphere(&b.surface, 0.1, 0.02, CASE_WALL);
   all_of_it(&b, 0.1);
   at_least(&b, 100, 5, 100);
-  is_full(&b, -0.2, 0.2, -0.2, 0.2, 0.9, 1.1);   /* the sphere's far side */
+  is_full(&b, -0.2, 0.2, -0.2, 0.2, 0.9, 1.1); /* the sphere's far side */
   p = look(&b, (const double[3]){ -0.02, -0.02, 0 },
            (const double[3]){ 0.02, 0.02, 0.1 });
   assert_true(p.top_max < 0.01 + 1e-12);
@@ -805,8 +806,7 @@ static void a_point_that_sees_nothing_with_fans(void **state)
   case_octants(&b.surface);
   start(&b, 1.0 / 6);
   b.options.fan_angle = 60;
-  for (size_t p = 0; p < b.surface.n_patch; p++)
-    b.request[p].law.delta1 = 1e-6;
+  for (size_t p = 0; p < b.surface.n_patch; p++) b.request[p].law.delta1 = 1e-6;
   grow_and_check(&b);
   fill_and_join(&b);
   at_least(&b, 0, 0, 90);
@@ -835,8 +835,9 @@ static void levels_and_height_as_asked(void **state)
     b.request[p].total = 0.05;
   }
   grow_and_check(&b);
-  assert_true(look(&b, (const double[3]){ -1, -1, 0.2 },
-                   (const double[3]){ 1, 1, 0.4 }).top_max <= 0.05);
+  assert_true(
+    look(&b, (const double[3]){ -1, -1, 0.2 }, (const double[3]){ 1, 1, 0.4 })
+      .top_max <= 0.05);
   finish(&b);
 }
 
@@ -890,13 +891,15 @@ static void refusals_leave_nothing(void **state)
   start(&b, 0.2);
   b.request[0].law.delta1 = 0;
   assert_int_equal(vg_layers_grow(&b.surface, b.sizing, &b.options, &b.layers,
-                                  &b.report, &err), VG_ERR_INPUT);
+                                  &b.report, &err),
+                   VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "patch 21"));
   assert_null(b.layers.columns.column);
   b.request[0].law.delta1 = 2e-4;
   b.options.stop.ask = stop_at_once;
   assert_int_equal(vg_layers_grow(&b.surface, b.sizing, &b.options, &b.layers,
-                                  &b.report, &err), VG_ERR_STOPPED);
+                                  &b.report, &err),
+                   VG_ERR_STOPPED);
   assert_null(b.layers.columns.column);
   assert_null(b.layers.front.x);
   finish(&b);

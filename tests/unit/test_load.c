@@ -7,9 +7,12 @@
 
 static void demos_keep_their_volume(void **state)
 {
-  static const struct { const char *name; size_t n_cell; } list[] = {
-    { "box", 200000 }, { "sphere", 1000000 }, { "wing-half", 100000 }
-  };
+  static const struct {
+    const char *name;
+    size_t n_cell;
+  } list[] = { { "box", 200000 },
+               { "sphere", 1000000 },
+               { "wing-half", 100000 } };
 
   (void)state;
   for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
@@ -88,10 +91,14 @@ static void expects_what_is_made(void **state)
 /* What is so small that no sample of a wide cube would meet it. */
 static void small_sources_count(void **state)
 {
-  const struct vg_source line = { .kind = VG_SOURCE_LINE, .h0 = 0.001,
-    .h1 = 0.001, .p0 = { 0.2, 0.3, 0.25 }, .p1 = { 0.8, 0.62, 0.7 } };
-  const struct vg_source ball = { .kind = VG_SOURCE_SPHERE, .h0 = 0.02,
-    .r0 = 0.2, .p0 = { 9.3, 4, 3 } };
+  const struct vg_source line = { .kind = VG_SOURCE_LINE,
+                                  .h0 = 0.001,
+                                  .h1 = 0.001,
+                                  .p0 = { 0.2, 0.3, 0.25 },
+                                  .p1 = { 0.8, 0.62, 0.7 } };
+  const struct vg_source ball = {
+    .kind = VG_SOURCE_SPHERE, .h0 = 0.02, .r0 = 0.2, .p0 = { 9.3, 4, 3 }
+  };
 
   (void)state;
   compare_sourced("box", 20000, 2, &line, 1.15);
@@ -180,8 +187,7 @@ static void children_get_their_share(void **state)
     assert_true(fabs(sampled(&part[c]) / volume - 1) < 0.1);
     assert_true(fabs(fitted(&part[c]) / volume - 1) < 1e-5);
     /* even spacing, so cells go by volume, but for the rounding of numbers */
-    assert_true(fabs(part[c].cells / (1.5 * l.cells * volume / 3) - 1)
-                < 1e-4);
+    assert_true(fabs(part[c].cells / (1.5 * l.cells * volume / 3) - 1) < 1e-4);
     vg_mesh_release(&m[c]);
     vg_load_release(&part[c]);
   }
@@ -227,7 +233,7 @@ static void tiny_and_empty_children(void **state)
   make_bar(&s);
   estimate(&s, 1, &l);
   shape_sphere(&m, 3, at, 1e-3, 1);
-  for (size_t i = 0; i < m.n_tri; i++) {   /* its inside */
+  for (size_t i = 0; i < m.n_tri; i++) { /* its inside */
     const uint32_t a = m.tri[i][0];
 
     m.tri[i][0] = m.tri[i][1];
@@ -263,7 +269,8 @@ static void sizes_in_another_unit_are_named(void **state)
   make_scene(&s, &m, 1e-6);
   for (int threads = 1; threads <= 2; threads++) {
     assert_int_equal(vg_load_new(&s.front, s.sizing, VG_LOAD_CELLS_PER_CUBE,
-                                 threads, &l, &err), VG_ERR_UNSUPPORTED);
+                                 threads, &l, &err),
+                     VG_ERR_UNSUPPORTED);
     assert_non_null(strstr(err.text, "10 billion cells"));
     assert_null(l.cube);
   }
@@ -292,9 +299,8 @@ static void a_small_void_has_cubes(void **state)
 
 static void two_cubes(struct vg_load *l)
 {
-  static struct vg_load_cube cube[2] = {
-    { { 1, 5, 0 }, 1, 0.5f, 1, 300 }, { { 4, 5, 0 }, 2, 1, 1, 100 }
-  };
+  static struct vg_load_cube cube[2] = { { { 1, 5, 0 }, 1, 0.5f, 1, 300 },
+                                         { { 4, 5, 0 }, 2, 1, 1, 100 } };
 
   *l = (struct vg_load){ .n = 2, .cube = cube, .cells = 400, .unit = 1 };
   assert_int_equal(vg_load_index(l, 1, NULL), VG_OK);
@@ -311,7 +317,7 @@ static void answers_on_two_cubes(void **state)
   struct vg_load l;
 
   (void)state;
-  two_cubes(&l);      /* x: 300 cells in 0 .. 2, 100 in 2 .. 6 */
+  two_cubes(&l); /* x: 300 cells in 0 .. 2, 100 in 2 .. 6 */
   assert_true(fabs(vg_load_quantile(&l, 0, 0.375) - 1) < 1e-3);
   assert_true(fabs(vg_load_quantile(&l, 0, 0.875) - 4) < 1e-3);
   assert_true(fabs(vg_load_quantile(&l, 0, 0) - 0) < 1e-12);
@@ -352,8 +358,7 @@ static double cells_below(const struct vg_load *l, int axis, double x)
     const double half = (double)l->cube[i].half;
     const double s = (x - (double)l->cube[i].at[axis]) / half;
 
-    sum += (double)l->cube[i].cells * (s < -1 ? 0 : s > 1 ? 1
-                                                         : 0.5 * (1 + s));
+    sum += (double)l->cube[i].cells * (s < -1 ? 0 : s > 1 ? 1 : 0.5 * (1 + s));
   }
   return sum;
 }
@@ -390,10 +395,9 @@ static void bins_answer_as_cubes_do(void **state)
       assert_true(fabs(cells_below(&l, axis, x) / l.cells - i / 32.) < 2e-3);
       assert_true(fabs(vg_load_zone(&l, axis, x, 1) / all - 1) < 0.15);
       for (size_t k = 0; k < l.n; k++)
-        if (fabs((double)l.cube[k].at[axis] - x)
-            < 0.97 * (double)l.cube[k].half)
-          assert_true((double)l.cube[k].h
-                      <= vg_load_coarsest(&l, axis, x));
+        if (fabs((double)l.cube[k].at[axis] - x) <
+            0.97 * (double)l.cube[k].half)
+          assert_true((double)l.cube[k].h <= vg_load_coarsest(&l, axis, x));
     }
   vg_load_release(&l);
   release_scene(&s);
@@ -414,8 +418,9 @@ static void blocks_share_a_load(void **state)
   (void)state;
   make_bar(&s);
   estimate(&s, 1, &l);
-  assert_int_equal(vg_load_split_blocks(&l, planes, places, 0, 1.5, NULL,
-                                        part, NULL), VG_OK);
+  assert_int_equal(vg_load_split_blocks(&l, planes, places, 0, 1.5, NULL, part,
+                                        NULL),
+                   VG_OK);
   for (int b = 0; b < 12; b++) {
     const double wide[3] = { 0.93, 0.78, 1.29 };
     const double y = b / 3 % 2 ? 0.53 : 0.47, z = b / 6 ? 0.39 : 0.61;
@@ -424,7 +429,7 @@ static void blocks_share_a_load(void **state)
     cells += part[b].cells;
     /* even spacing; cubes along the walls hold what samples found */
     assert_true(fabs(part[b].cells / expected - 1) < 0.05);
-    if (b % 3)               /* nothing is beyond the plane */
+    if (b % 3) /* nothing is beyond the plane */
       assert_true(vg_load_quantile(&part[b], 0, 0) >= across[0][b % 3 - 1]);
     vg_load_release(&part[b]);
   }
@@ -445,8 +450,9 @@ static void zones_belong_to_no_block(void **state)
   (void)state;
   make_bar(&s);
   estimate(&s, 1, &l);
-  assert_int_equal(vg_load_split_blocks(&l, planes, places, 1.2, 1, NULL,
-                                        part, NULL), VG_OK);
+  assert_int_equal(vg_load_split_blocks(&l, planes, places, 1.2, 1, NULL, part,
+                                        NULL),
+                   VG_OK);
   for (int b = 0; b < 12; b++) {
     cells += part[b].cells;
     vg_load_release(&part[b]);
@@ -464,7 +470,7 @@ static void quantiles_halve_a_mesh(void **state)
   (void)state;
   make_bar(&s);
   estimate(&s, 1, &l);
-  for (int i = 1; i < 10; i++)   /* even spacing: to a part of an edge, 0.05 */
+  for (int i = 1; i < 10; i++) /* even spacing: to a part of an edge, 0.05 */
     assert_true(fabs(vg_load_quantile(&l, 0, i / 10.) - 0.3 * i) < 0.05);
   assert_true(fabs(vg_load_quantile(&l, 1, 0.5) - 0.5) < 0.02);
   vg_load_release(&l);
@@ -493,7 +499,7 @@ static void places_find_their_cubes(void **state)
         x[k] = (double)c->at[k] + (corner >> k & 1 ? off : -off);
       assert_int_equal(vg_load_find(f, x), i);
     }
-  for (int k = 0; k < 3; k++) x[k] = 0;       /* in the body */
+  for (int k = 0; k < 3; k++) x[k] = 0; /* in the body */
   assert_true(vg_load_find(f, x) == SIZE_MAX);
   for (size_t i = 0; i < l.n; i++)
     outside = fmax(outside, fabs((double)l.cube[i].at[0]));
@@ -524,12 +530,12 @@ static void messages_come_back(void **state)
     shorter = (struct vg_bytes){ n, bytes.data };
     assert_int_equal(vg_load_unpack(&shorter, &back, NULL), VG_ERR_FORMAT);
   }
-  for (size_t i = 0; i < 16; i++) {   /* name and count */
+  for (size_t i = 0; i < 16; i++) { /* name and count */
     bytes.data[i] ^= 0x40;
     assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_ERR_FORMAT);
     bytes.data[i] ^= 0x40;
   }
-  memset(bytes.data + bytes.n - 28, 0xff, 28);   /* a cube of NaN */
+  memset(bytes.data + bytes.n - 28, 0xff, 28); /* a cube of NaN */
   assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_ERR_FORMAT);
   assert_null(back.cube);
   free(bytes.data);

@@ -39,8 +39,8 @@ static void check_real(const char *name)
   }
   make_scene(&s, &m, 0);
   estimate(&s, 2, &l);
-  print_message("%s: %zu triangles, %zu cubes, %.0f cells, volume %.4f\n",
-                name, s.front.n_face, l.n, l.cells, sampled(&l) / s.volume);
+  print_message("%s: %zu triangles, %zu cubes, %.0f cells, volume %.4f\n", name,
+                s.front.n_face, l.n, l.cells, sampled(&l) / s.volume);
   check_volume(&s, &l);
   vg_load_release(&l);
   release_scene(&s);

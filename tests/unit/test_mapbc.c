@@ -89,15 +89,18 @@ static void reads_variations(void **state)
 
 static void refuses_what_is_wrong(void **state)
 {
-  static const struct { const char *text, *phrase; vg_status code; } cases[] = {
-    {"", "empty", VG_ERR_FORMAT},
-    {"a\nb\nc\nd\n", "no patch line", VG_ERR_FORMAT},
-    {"3\n1 4000 wall\n2 5000 far\n", "announces 3", VG_ERR_FORMAT},
-    {"2\n1 4000 wall\nx 5000 far\n", "case:3", VG_ERR_FORMAT},
-    {"a\nb\nc\nd\n1 4 4 0 0 w\n2\n", "case:6", VG_ERR_FORMAT},
-    {"a\nb\nc\nd\n1 99999999999 4 0 0 w\n", "case:5", VG_ERR_FORMAT},
-    {"a\nb\nc\nd\n1 4 4 0 0 w\n1 3 3 0 0 w\n", "listed twice", VG_ERR_INPUT},
-    {"a\001b\nc\n", "binary", VG_ERR_FORMAT},
+  static const struct {
+    const char *text, *phrase;
+    vg_status code;
+  } cases[] = {
+    { "", "empty", VG_ERR_FORMAT },
+    { "a\nb\nc\nd\n", "no patch line", VG_ERR_FORMAT },
+    { "3\n1 4000 wall\n2 5000 far\n", "announces 3", VG_ERR_FORMAT },
+    { "2\n1 4000 wall\nx 5000 far\n", "case:3", VG_ERR_FORMAT },
+    { "a\nb\nc\nd\n1 4 4 0 0 w\n2\n", "case:6", VG_ERR_FORMAT },
+    { "a\nb\nc\nd\n1 99999999999 4 0 0 w\n", "case:5", VG_ERR_FORMAT },
+    { "a\nb\nc\nd\n1 4 4 0 0 w\n1 3 3 0 0 w\n", "listed twice", VG_ERR_INPUT },
+    { "a\001b\nc\n", "binary", VG_ERR_FORMAT },
   };
 
   (void)state;
@@ -113,10 +116,9 @@ static void refuses_what_is_wrong(void **state)
 
 static void translates_codes(void **state)
 {
-  static const int32_t both[][2] = {
-    {0, 5050}, {2, 5026}, {3, 5000}, {4, 4000}, {5, 3000}, {101, 5051},
-    {102, 7011}, {103, 7036}
-  };
+  static const int32_t both[][2] = { { 0, 5050 },   { 2, 5026 },  { 3, 5000 },
+                                     { 4, 4000 },   { 5, 3000 },  { 101, 5051 },
+                                     { 102, 7011 }, { 103, 7036 } };
 
   (void)state;
   for (size_t i = 0; i < sizeof both / sizeof *both; i++) {
@@ -145,7 +147,8 @@ static void applies_to_a_mesh(void **state)
   (void)state;
   io_make_t1(&m, 0);
   accept("1\n2\n3\n4\n9 3 3 0 0 unused\n3 1 1 0 0 plane\n1 1 1 0 0 floor\n"
-         "4 1 1 0 0 skew\n8 3 3 0 0 unused\n", &b);
+         "4 1 1 0 0 skew\n8 3 3 0 0 unused\n",
+         &b);
   assert_int_equal(vg_mapbc_apply(&b, &m, &match, &err), VG_OK);
   assert_int_equal(match.n_missing, 1);
   assert_int_equal(match.first_missing, 2);
@@ -174,8 +177,9 @@ static void writes_samples_byte_for_byte(void **state)
   io_make_t1(&m, 0);
   accept(vgrid_sample, &b);
   assert_int_equal(vg_mapbc_apply(&b, &m, NULL, &err), VG_OK);
-  assert_int_equal(vg_mapbc_write(path, &m, VG_MAPBC_VGRID, "case T1",
-                                  &n_unset, &err), VG_OK);
+  assert_int_equal(vg_mapbc_write(path, &m, VG_MAPBC_VGRID, "case T1", &n_unset,
+                                  &err),
+                   VG_OK);
   assert_int_equal(n_unset, 0);
   data = io_slurp(path, &size);
   assert_string_equal((char *)data, vgrid_sample);
@@ -205,7 +209,8 @@ static void writes_patches_without_a_condition(void **state)
   m.patch[3].bc = 44;
   for (int layout = 0; layout < 2; layout++) {
     assert_int_equal(vg_mapbc_write(path, &m, (enum vg_mapbc_layout)layout,
-                                    NULL, &n_unset, &err), VG_OK);
+                                    NULL, &n_unset, &err),
+                     VG_OK);
     assert_int_equal(n_unset, 2);
     if (vg_mapbc_read(path, &b, &err)) fail_msg("%s", err.text);
     assert_int_equal(b.layout, layout);
@@ -265,7 +270,7 @@ static void an_output_is_known_again(void **state)
 
 static void survives_damage(void **state)
 {
-  static const char *const sample[2] = {vgrid_sample, fun3d_sample};
+  static const char *const sample[2] = { vgrid_sample, fun3d_sample };
   uint32_t seed = 5;
 
   (void)state;

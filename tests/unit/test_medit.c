@@ -30,7 +30,7 @@ static void reads_the_sample(void **state)
 
 static void turns_cells_and_faces(void **state)
 {
-  static const uint32_t tri[2][3] = { {0, 1, 2}, {0, 3, 1} };
+  static const uint32_t tri[2][3] = { { 0, 1, 2 }, { 0, 3, 1 } };
   struct vg_mesh m = VG_MESH_INIT;
 
   (void)state;
@@ -54,23 +54,23 @@ static void turns_cells_and_faces(void **state)
  * pyramid is no face of it: it stays as it was read. */
 static void crossed_quads_are_kept(void **state)
 {
-  static const uint32_t quad[4] = {2, 0, 1, 3};
+  static const uint32_t quad[4] = { 2, 0, 1, 3 };
   struct vg_mesh m = VG_MESH_INIT;
 
   (void)state;
   for (int crossed = 0; crossed < 2; crossed++) {
-    io_accept(vg_medit_parse, crossed ?
-              "MeshVersionFormatted 2 Dimension 3 Vertices 5 0 0 0 0 1 0 0 0 "
-              "1 1 0 0 0 1 0 0 .5 .5 1 0 Quadrilaterals 1 3 1 2 4 1 "
-              "Pyramids 1 1 2 3 4 5 0 End" :
-              "MeshVersionFormatted 2 Dimension 3 Vertices 5 0 0 0 0 1 0 0 0 "
-              "1 1 0 0 0 1 0 0 .5 .5 1 0 Quadrilaterals 1 1 4 3 2 1 "
-              "Pyramids 1 1 2 3 4 5 0 End", &m);
+    io_accept(
+      vg_medit_parse,
+      crossed ? "MeshVersionFormatted 2 Dimension 3 Vertices 5 0 0 0 0 1 0 0 0 "
+                "1 1 0 0 0 1 0 0 .5 .5 1 0 Quadrilaterals 1 3 1 2 4 1 "
+                "Pyramids 1 1 2 3 4 5 0 End"
+              : "MeshVersionFormatted 2 Dimension 3 Vertices 5 0 0 0 0 1 0 0 0 "
+                "1 1 0 0 0 1 0 0 .5 .5 1 0 Quadrilaterals 1 1 4 3 2 1 "
+                "Pyramids 1 1 2 3 4 5 0 End",
+      &m);
     assert_int_equal(m.n_quad, 1);
-    if (crossed)
-      assert_memory_equal(m.quad[0], quad, sizeof quad);
-    else
-      assert_int_equal(m.quad[0][1], 1); /* turned into the pyramid */
+    if (crossed) assert_memory_equal(m.quad[0], quad, sizeof quad);
+    else assert_int_equal(m.quad[0][1], 1); /* turned into the pyramid */
     vg_mesh_release(&m);
   }
 }
@@ -83,7 +83,8 @@ static void surfaces_are_kept(void **state)
   (void)state;
   io_accept(vg_medit_parse,
             "MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 0 0 1 0 0 0 "
-            "0 1 0 0 Triangles 1 1 3 2 -5 End", &m);
+            "0 1 0 0 Triangles 1 1 3 2 -5 End",
+            &m);
   assert_memory_equal(m.tri[0], tri, sizeof tri);
   assert_int_equal(m.patch[0].id, -5);
   vg_mesh_release(&m);
@@ -194,8 +195,7 @@ static void refuses_broken_text(void **state)
 {
   (void)state;
   io_refuse(vg_medit_parse, "hello", VG_ERR_FORMAT, "not a Medit file");
-  io_refuse(vg_medit_parse, "MeshVersionFormatted 7", VG_ERR_FORMAT,
-            "version");
+  io_refuse(vg_medit_parse, "MeshVersionFormatted 7", VG_ERR_FORMAT, "version");
   io_refuse(vg_medit_parse, "MeshVersionFormatted 2 Dimension 2 End",
             VG_ERR_UNSUPPORTED, "plane");
   io_refuse(vg_medit_parse, "MeshVersionFormatted 2 " THREE "End",
@@ -203,15 +203,15 @@ static void refuses_broken_text(void **state)
   io_refuse(vg_medit_parse, HEAD THREE "End", VG_ERR_INPUT, "no triangles");
   io_refuse(vg_medit_parse, HEAD THREE "Triangles 1 1 2 3 1", VG_ERR_FORMAT,
             "no 'End'");
-  io_refuse(vg_medit_parse, HEAD THREE "Triangles 1 1 2 4 1 End",
-            VG_ERR_INPUT, "vertex 4 is out of range");
-  io_refuse(vg_medit_parse, HEAD THREE "Triangles 1 0 2 3 1 End",
-            VG_ERR_INPUT, "vertex 0 is out of range");
+  io_refuse(vg_medit_parse, HEAD THREE "Triangles 1 1 2 4 1 End", VG_ERR_INPUT,
+            "vertex 4 is out of range");
+  io_refuse(vg_medit_parse, HEAD THREE "Triangles 1 0 2 3 1 End", VG_ERR_INPUT,
+            "vertex 0 is out of range");
   io_refuse(vg_medit_parse, HEAD THREE THREE "End", VG_ERR_FORMAT, "twice");
   io_refuse(vg_medit_parse, HEAD THREE "Triangles 1 1 2 3 3000000000 End",
             VG_ERR_UNSUPPORTED, "reference");
-  io_refuse(vg_medit_parse, HEAD "Vertices 2000000000 0 0 0 0",
-            VG_ERR_FORMAT, "truncated");
+  io_refuse(vg_medit_parse, HEAD "Vertices 2000000000 0 0 0 0", VG_ERR_FORMAT,
+            "truncated");
   io_refuse(vg_medit_parse, HEAD "Vertices -1", VG_ERR_FORMAT, "negative");
   io_refuse(vg_medit_parse, HEAD "Vertices 1 0 nan 0 0 Triangles 1 1 1 1 1",
             VG_ERR_FORMAT, "'nan'");
@@ -241,8 +241,8 @@ static void refuses_broken_binary(void **state)
     if (st == VG_OK) assert_int_equal(n, 220);
     vg_mesh_release(&out);
   }
-#define BREAK(at, value, code, phrase) \
-  (memcpy(copy, data, size), memcpy(copy + (at), &value, sizeof value), \
+#define BREAK(at, value, code, phrase)                                         \
+  (memcpy(copy, data, size), memcpy(copy + (at), &value, sizeof value),        \
    io_refuse_bytes(vg_medit_parse, copy, size, code, phrase))
   BREAK(24, far, VG_ERR_FORMAT, "truncated");
   BREAK(24, back, VG_ERR_FORMAT, "before it begins");

@@ -21,7 +21,7 @@
 
 static struct vg_sizing *sizing;
 static struct vg_mesh surface[2];
-static struct vg_front box, hollow;     /* a box; one around a sphere */
+static struct vg_front box, hollow; /* a box; one around a sphere */
 
 static int set_up(void **state)
 {
@@ -111,8 +111,8 @@ static const char *check(struct sample *s)
 {
   const char *wrong;
   vg_status st = vg_mesher_check(s->n_front, hollow.n_face,
-                                 (const uint32_t (*)[3])hollow.face, &s->n,
-                                 s->x, s->n_cell, s->cell, &wrong, NULL);
+                                 (const uint32_t(*)[3])hollow.face, &s->n, s->x,
+                                 s->n_cell, s->cell, &wrong, NULL);
 
   assert_int_equal(st, wrong ? VG_NOT_BETTER : VG_OK);
   return wrong;
@@ -126,7 +126,7 @@ static void takes_what_fills_the_front(void **state)
   (void)state;
   take_sample(&s);
   n = s.n;
-  for (size_t c = 0; c < s.n_cell; c += 3) {   /* the other way round */
+  for (size_t c = 0; c < s.n_cell; c += 3) { /* the other way round */
     uint32_t t = s.cell[c][1];
 
     s.cell[c][1] = s.cell[c][2];
@@ -140,8 +140,7 @@ static void takes_what_fills_the_front(void **state)
   for (size_t c = 0; c < s.n_cell; c++)
     for (int k = 0; k < 4; k++) s.cell[c][k] += s.cell[c][k] >= s.n_front;
   s.x = realloc(s.x, (n + 1) * sizeof *s.x);
-  memmove(s.x + s.n_front + 1, s.x + s.n_front,
-          (n - s.n_front) * sizeof *s.x);
+  memmove(s.x + s.n_front + 1, s.x + s.n_front, (n - s.n_front) * sizeof *s.x);
   s.n = n + 1;
   assert_null(check(&s));
   assert_int_equal(s.n, n);
@@ -179,10 +178,11 @@ static void refuses_what_does_not(void **state)
 /* A front as a tetrahedron filled from outside: all faces match. */
 static void refuses_the_outside(void **state)
 {
-  static const uint32_t face[4][3] = { {1, 2, 3}, {0, 3, 2}, {0, 1, 3},
-                                       {0, 2, 1} };
-  double x[4][3] = { {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1} };
-  uint32_t cell[1][4] = { {0, 1, 2, 3} };
+  static const uint32_t face[4][3] = {
+    { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 }
+  };
+  double x[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+  uint32_t cell[1][4] = { { 0, 1, 2, 3 } };
   const char *wrong;
   size_t n = 4;
 
@@ -201,7 +201,7 @@ static void the_example_fills_a_box(void **state)
   struct vg_filled f;
 
   (void)state;
-  for (int k = 0; k < 3; k++) {          /* the process is used again */
+  for (int k = 0; k < 3; k++) { /* the process is used again */
     assert_int_equal(fill(p, &box, NULL, &f, &r), VG_OK);
     assert_int_equal(f.n_cell, box.n_face);
     assert_int_equal(f.n_point, 1);
@@ -272,27 +272,27 @@ static void hxt_does_where_it_is(void **state)
  * what lies between two triangles. */
 static void tells_shells_that_touch(void **state)
 {
-  static const uint32_t tet[4][3] = { {1, 2, 3}, {0, 3, 2}, {0, 1, 3},
-                                      {0, 2, 1} };
-  double x[6][3] = { {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
-                     {0, -1, 0}, {0, 0, -1} };
+  static const uint32_t tet[4][3] = {
+    { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 }
+  };
+  double x[6][3] = { { 0, 0, 0 }, { 1, 0, 0 },  { 0, 1, 0 },
+                     { 0, 0, 1 }, { 0, -1, 0 }, { 0, 0, -1 } };
   uint32_t face[8][3];
-  struct vg_mesher_front f = { 6, 8, (const double (*)[3])x,
-                               (const uint32_t (*)[3])face };
-  static const uint32_t name[2][4] = { {0, 1, 2, 3}, {0, 1, 4, 5} };
+  struct vg_mesher_front f = { 6, 8, (const double(*)[3])x,
+                               (const uint32_t(*)[3])face };
+  static const uint32_t name[2][4] = { { 0, 1, 2, 3 }, { 0, 1, 4, 5 } };
   struct vg_mesher_shells s;
 
   (void)state;
-  for (int i = 0; i < 8; i++)          /* into the tetrahedra */
-    for (int k = 0; k < 3; k++)
-      face[i][k] = name[i / 4][tet[i % 4][2 - k]];
+  for (int i = 0; i < 8; i++) /* into the tetrahedra */
+    for (int k = 0; k < 3; k++) face[i][k] = name[i / 4][tet[i % 4][2 - k]];
   assert_int_equal(vg_mesher_find_shells(&f, &s), 0);
   assert_int_equal(s.n, 2);
   assert_int_equal(s.n_hollow, 0);
   assert_int_equal(s.n_piece, 2);
   for (int i = 0; i < 8; i++) assert_int_equal(s.of[i], i / 4);
   vg_mesher_shells_release(&s);
-  for (int i = 0; i < 8; i++) {        /* out of them: they are the hollows */
+  for (int i = 0; i < 8; i++) { /* out of them: they are the hollows */
     uint32_t t = face[i][0];
 
     face[i][0] = face[i][1];
@@ -309,9 +309,12 @@ static void tells_shells_that_touch(void **state)
 
 static void refuses_plugins_that_are_none(void **state)
 {
-  static const struct { int number; const char *word; } row[] = {
-    { 1, "vg_mesher_plugin" }, { 2, "version 2" },
-    { 3, "ended" }, { 4, "returns no mesher" }, { 99, "cannot be loaded" },
+  static const struct {
+    int number;
+    const char *word;
+  } row[] = {
+    { 1, "vg_mesher_plugin" },  { 2, "version 2" },         { 3, "ended" },
+    { 4, "returns no mesher" }, { 99, "cannot be loaded" },
   };
   struct vg_mesher_pool *p = NULL;
 
@@ -354,7 +357,7 @@ static int at_once(void *user)
 
 static void stops_and_keeps_limits(void **state)
 {
-  struct vg_mesher_pool *p = open_mesher(bad(8));   /* sleeps */
+  struct vg_mesher_pool *p = open_mesher(bad(8)); /* sleeps */
   struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
   struct vg_fill_report r = { 0 };
   struct vg_filled f;
@@ -377,10 +380,10 @@ static void *answer(void *fd)
   struct vg_mesher_word w;
 
   while (vg_child_get(*(int *)fd, &w, sizeof w)) {
-    double (*x)[3] = malloc(w.n * sizeof *x), *h = malloc(w.n * sizeof *h);
+    double(*x)[3] = malloc(w.n * sizeof *x), *h = malloc(w.n * sizeof *h);
 
     vg_child_get(*(int *)fd, x, w.n * sizeof *x);
-    vg_sizing_eval(sizing, w.n, (const double (*)[3])x, h);
+    vg_sizing_eval(sizing, w.n, (const double(*)[3])x, h);
     vg_child_put(*(int *)fd, h, w.n * sizeof *h);
     free(x);
     free(h);
@@ -393,7 +396,8 @@ static void *answer(void *fd)
 static void sizes_are_those_of_the_field(void **state)
 {
   const struct vg_mesher_front f = { hollow.n_point, hollow.n_face,
-    (const double (*)[3])hollow.x, (const uint32_t (*)[3])hollow.face };
+                                     (const double(*)[3])hollow.x,
+                                     (const uint32_t(*)[3])hollow.face };
   struct vg_child_sizes *s;
   pthread_t thread;
   uint32_t seed = 1;
@@ -411,7 +415,7 @@ static void sizes_are_those_of_the_field(void **state)
       seed = seed * 1664525 + 1013904223;
       x[0][k] = 6 * (seed >> 8) / 16777216.0 - 3;
     }
-    vg_child_sizes_at(s, 1, (const double (*)[3])x, &h);
+    vg_child_sizes_at(s, 1, (const double(*)[3])x, &h);
     want = vg_sizing_at(sizing, x[0]);
     if (!(fabs(h - want) < 0.12 * want)) fail_msg("%g for %g", h, want);
   }

@@ -32,7 +32,7 @@ static void lengths_follow_the_direction(void **unused)
 static void an_edge_has_the_mean_of_its_ends(void **unused)
 {
   struct vg_metric a = { 0.1, { 0 } }, b = { 0.3, { 0 } };
-  const double e[3] = { 0.1, 0.2, 0.2 };    /* 0.3 long */
+  const double e[3] = { 0.1, 0.2, 0.2 }; /* 0.3 long */
 
   (void)unused;
   vg_form_stretch(a.form, oblique, 3);
@@ -83,8 +83,7 @@ static void falling(const void *unused, const double x[3], double size,
 {
   (void)unused;
   (void)size;
-  vg_form_stretch(form, (const double[3]){ 1, 0, 0 },
-                  fmax(1, 10 - 3 * x[0]));
+  vg_form_stretch(form, (const double[3]){ 1, 0, 0 }, fmax(1, 10 - 3 * x[0]));
 }
 
 static void change(struct scene *s)
@@ -96,8 +95,8 @@ static void change(struct scene *s)
   if (vg_pass_divide(w, 1, &err) < 0) fail_msg("%s", err.text);
   vg_pass_curves(w);
   for (int i = 0; i < 5; i++) {
-    assert_int_equal(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n,
-                                      &err), VG_OK);
+    assert_int_equal(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n, &err),
+                     VG_OK);
     assert_int_equal(vg_pass_split(w, VG_WORK_LONG, 0, &n, &err), VG_OK);
     vg_pass_smooth(w, 2);
   }
@@ -139,11 +138,11 @@ static void a_plate_gets_the_triangles_of_its_metric(void **unused)
   }
   /* The integral of 1 / (0.1 (10 - 3 x)) is 7.7 edges along x up to 3; there
    * are 10 from there on; instead of 40. */
-  wanted = (log(10) / 3 + 1) * 10 * (2 * 20 + 2 * 2) / 0.4330127 + 2 * 40
-           / 0.4330127;
+  wanted = (log(10) / 3 + 1) * 10 * (2 * 20 + 2 * 2) / 0.4330127 +
+           2 * 40 / 0.4330127;
   assert_true((double)n_tri > 0.85 * wanted && (double)n_tri < 1.2 * wanted);
   assert_true((double)n_fit > 0.9 * (double)n_edge);
-  assert_true(worst > 0.179);      /* 25 degrees */
+  assert_true(worst > 0.179); /* 25 degrees */
   scene_release(&s);
 }
 

@@ -395,7 +395,7 @@ static void joins_wait_for_their_rank(void **state)
       last = one->start;
     }
   vg_spans_release(&t);
-  m.joins_roam = 1;      /* four by four, then the tile */
+  m.joins_roam = 1; /* four by four, then the tile */
   assert_true(replay(&s, &m, NULL).wall == 11);
   s.span[1].cpu = 1;
   assert_true(replay(&s, &m, NULL).wall == 4);
@@ -435,7 +435,7 @@ static void what_is_outside_the_tasks_is_shared(void **state)
   assert_true(vg_model_outside(&m) == 1 + 2 + 4);
   f = replay(&s, &m, NULL);
   assert_true(f.wall == 13 && f.critical == 13 && f.work == 47);
-  m.ranks = m.threads = 1;           /* a node has one rank of the two */
+  m.ranks = m.threads = 1; /* a node has one rank of the two */
   assert_true(vg_model_outside(&m) == 41);
   m.rate = 2;
   assert_true(vg_model_outside(&m) == 20.5);
@@ -452,7 +452,7 @@ static void idle_workers_help(void **state)
   (void)state;
   add(&s, "0J0", "", 10);
   s.span[0].loops = 8;
-  f = replay(&s, &m, &t);            /* 2 + 8 / 4 */
+  f = replay(&s, &m, &t); /* 2 + 8 / 4 */
   assert_true(f.wall == 4 && f.critical == 4 && f.cuts_wall == 4);
   assert_true(f.work == 10 && f.speedup == 2.5 && f.cuts == 1);
   assert_true(f.idle == 1 - 10.0 / 16 && f.imbalance == 4 / 2.5);
@@ -465,10 +465,10 @@ static void idle_workers_help(void **state)
   }
   assert_true(vg_spans_busy(&t) == 10.0 / 16);
   vg_spans_release(&t);
-  m.loop_threads = 2;                /* 2 + 8 / 2 */
+  m.loop_threads = 2; /* 2 + 8 / 2 */
   f = replay(&s, &m, NULL);
   assert_true(f.wall == 6 && f.critical == 6 && f.imbalance == 6 / 2.5);
-  m = machine_of(4, 1);              /* other ranks cannot help */
+  m = machine_of(4, 1); /* other ranks cannot help */
   f = replay(&s, &m, NULL);
   assert_true(f.wall == 10 && f.critical == 10);
   m = machine_of(1, 4);
@@ -555,7 +555,7 @@ static void the_same_record_gives_the_same(void **state)
   m.ranks = 3;
   m.threads = 2;
   add_fork_join(&s, 50);
-  for (size_t i = s.n; i-- > 0; ) {
+  for (size_t i = s.n; i-- > 0;) {
     struct vg_span one = s.span[i];
 
     one.rank = one.thread = 7;

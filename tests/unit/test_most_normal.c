@@ -78,9 +78,9 @@ static void is_the_shortest(void **state)
     int got;
 
     make_normals(k, round % 4 ? 0.3 * (round % 9) + 0.01 : 3, n);
-    least = search(k, (const double (*)[3])n, best);
-    got = vg_most_normal(k, (const double (*)[3])n, w);
-    if (least > 1e4) continue;   /* hardly seen, or not at all */
+    least = search(k, (const double(*)[3])n, best);
+    got = vg_most_normal(k, (const double(*)[3])n, w);
+    if (least > 1e4) continue; /* hardly seen, or not at all */
     assert_true(got);
     n_some++;
     assert_true(fabs(vg_norm(w) / least - 1) < 1e-7);
@@ -92,7 +92,7 @@ static void is_the_shortest(void **state)
 
     vg_unit(n[0]);
     for (int x = 0; x < 3; x++) n[1][x] = -n[0][x];
-    n_none += !vg_most_normal(2, (const double (*)[3])n, w);
+    n_none += !vg_most_normal(2, (const double(*)[3])n, w);
   }
   assert_true(n_some > 2000);
   assert_int_equal(n_none, 1000);

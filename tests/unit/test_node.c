@@ -15,7 +15,7 @@ struct scene {
   struct vg_partition p;
   struct vg_sizing *sizing;
   struct vg_node *n;
-  struct vg_front was;       /* a copy of the front */
+  struct vg_front was; /* a copy of the front */
 };
 
 static void copy_front(struct vg_front *to, const struct vg_front *from)
@@ -50,7 +50,8 @@ static void scene_of(struct scene *s, struct vg_mesh *m)
   s->n = vg_node_new("0", &f);
   assert_non_null(s->n);
   assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
-                               &s->n->load, NULL), VG_OK);
+                               &s->n->load, NULL),
+                   VG_OK);
   s->n->lattice.n[0] = s->n->lattice.n[1] = 1;
   vg_mesh_release(m);
 }
@@ -65,9 +66,9 @@ static void scene_end(struct scene *s)
 
 static void add_box(struct vg_mesh *m, int n, double x, double y, double half)
 {
-  const int count[3] = {n, n, n};
-  const double lo[3] = {x - half, y - half, -half};
-  const double hi[3] = {x + half, y + half, half};
+  const int count[3] = { n, n, n };
+  const double lo[3] = { x - half, y - half, -half };
+  const double hi[3] = { x + half, y + half, half };
 
   shape_block(m, count, lo, hi, shape_all);
 }
@@ -94,7 +95,7 @@ static void dealt_out(const struct scene *s, const struct vg_front *was,
                       const int child[4])
 {
   const struct vg_node *n = s->n;
-  size_t at[4] = {0}, seen[4] = {0};
+  size_t at[4] = { 0 }, seen[4] = { 0 };
 
   for (size_t i = 0; i < was->n_face; i++) {
     const uint32_t *v = was->face[i];
@@ -124,7 +125,7 @@ static void dealt_out(const struct scene *s, const struct vg_front *was,
 
 static int crosses(const struct vg_front *f, size_t i)
 {
-  int below[2] = {0, 0};
+  int below[2] = { 0, 0 };
 
   if (f->face[i][0] == VG_FACE_GONE) return 0;
   for (int axis = 0; axis < 2; axis++)
@@ -155,7 +156,7 @@ static void lists_open(struct vg_node *n)
 /* n 20: 19,200 faces, several chunks of each loop. */
 static void falls_into_blocks(void **state)
 {
-  const int child[4] = {0, 1, 2, 3};
+  const int child[4] = { 0, 1, 2, 3 };
 
   (void)state;
   for (int n = 4; n <= 20; n += 16) {
@@ -175,8 +176,8 @@ static void falls_into_blocks(void **state)
 
       assert_int_equal(c->path[2], '0' + k);
       assert_true(fabs(vg_front_volume(&c->front) / pow(n, 3) - 1) < 1e-12);
-      assert_true(fabs(c->load.cells / pow(n, 3) / VG_LOAD_CELLS_PER_CUBE - 1)
-                  < 0.1);
+      assert_true(fabs(c->load.cells / pow(n, 3) / VG_LOAD_CELLS_PER_CUBE - 1) <
+                  0.1);
     }
     scene_end(&s);
   }
@@ -185,7 +186,7 @@ static void falls_into_blocks(void **state)
 /* Blocks 0 and 1, one void now, have a load by their fronts. */
 static void what_hangs_together_stays(void **state)
 {
-  const int child[4] = {0, 0, 1, 2};
+  const int child[4] = { 0, 0, 1, 2 };
   struct vg_mesh m;
   struct scene s;
 
@@ -202,8 +203,9 @@ static void what_hangs_together_stays(void **state)
   for (int k = 0; k < 3; k++) {
     double volume = vg_front_volume(&s.n->child[k]->front);
 
-    assert_true(fabs(s.n->child[k]->load.cells / volume /
-                     VG_LOAD_CELLS_PER_CUBE - 1) < 0.1);
+    assert_true(
+      fabs(s.n->child[k]->load.cells / volume / VG_LOAD_CELLS_PER_CUBE - 1) <
+      0.1);
   }
   scene_end(&s);
 }
@@ -223,8 +225,7 @@ static void covered(const struct vg_node *n, const struct vg_region *r,
       int within = 1;
 
       for (int j = 0; j < 3; j++)
-        within &= vg_region_within(&r[k],
-                                   n->front.x[n->front.face[i][j]]);
+        within &= vg_region_within(&r[k], n->front.x[n->front.face[i][j]]);
       found += within;
     }
     assert_int_equal(found, 1);
@@ -248,7 +249,8 @@ static void places_are_found(void **state)
   assert_int_equal(vg_node_put(&s.p, s.n, NULL, NULL), VG_OK);
   for (int axis = -1; axis < 1; axis++) {
     assert_int_equal(vg_node_open_places(&s.p, s.n, axis, NULL, &r, &n_region,
-                                         NULL), VG_OK);
+                                         NULL),
+                     VG_OK);
     assert_int_equal(n_region, 2);
     covered(s.n, r, n_region);
     for (size_t k = 0; k < n_region; k++)
@@ -257,7 +259,8 @@ static void places_are_found(void **state)
   }
   for (int axis = 1; axis < 3; axis++) {
     assert_int_equal(vg_node_open_places(&s.p, s.n, axis, NULL, &r, &n_region,
-                                         NULL), VG_OK);
+                                         NULL),
+                     VG_OK);
     assert_int_equal(n_region, 0);
     free(r);
   }
@@ -267,7 +270,8 @@ static void places_are_found(void **state)
     if (s.n->front.x[v[0]][1] < 0) v[0] = VG_FACE_GONE;
   }
   assert_int_equal(vg_node_open_places(&s.p, s.n, -1, NULL, &r, &n_region,
-                                       NULL), VG_OK);
+                                       NULL),
+                   VG_OK);
   assert_int_equal(n_region, 1);
   covered(s.n, r, n_region);
   free(r);
@@ -279,7 +283,7 @@ static void places_are_found(void **state)
  * patches. */
 static void full_places_stay_open(void **state)
 {
-  const double at[3] = {0.1 + 1.3, -5 + 1.9, 1.9};
+  const double at[3] = { 0.1 + 1.3, -5 + 1.9, 1.9 };
   struct vg_region *r;
   struct vg_mesh m;
   struct scene s;
@@ -294,10 +298,12 @@ static void full_places_stay_open(void **state)
     struct vg_load_cube *c = &s.n->load.cube[0];
 
     if (k)
-      *c = (struct vg_load_cube){ {(float)at[0], (float)at[1], (float)at[2]},
-                                  0.1f, 0.01f, 1, 1e6f };
+      *c = (struct vg_load_cube){
+        { (float)at[0], (float)at[1], (float)at[2] }, 0.1f, 0.01f, 1, 1e6f
+      };
     assert_int_equal(vg_node_open_places(&s.p, s.n, k > 1 ? 0 : -1, NULL, &r,
-                                         &n_region, NULL), VG_OK);
+                                         &n_region, NULL),
+                     VG_OK);
     assert_int_equal(n_region, k != 1);
     free(r);
   }
@@ -308,15 +314,18 @@ static void full_places_stay_open(void **state)
 
 /* Work i has given a cell to face `gone` of the front and put a new point
  * above it, with the three other faces of that cell. */
-static void cell_on(struct vg_node *n, size_t i, uint32_t gone,
-                    uint32_t serial)
+static void cell_on(struct vg_node *n, size_t i, uint32_t gone, uint32_t serial)
 {
   struct vg_change *c = &n->change[i];
   struct vg_filled *f = &c->made;
 
-  *c = (struct vg_change){ .serial = serial, .n_part = 3,
-                           .made = { .n_point = 1, .n_face = 3, .n_cell = 1,
-                                     .n_consumed = 1, .volume = 0.25 } };
+  *c = (struct vg_change){ .serial = serial,
+                           .n_part = 3,
+                           .made = { .n_point = 1,
+                                     .n_face = 3,
+                                     .n_cell = 1,
+                                     .n_consumed = 1,
+                                     .volume = 0.25 } };
   n->point[i] = vg_alloc(3, sizeof **n->point);
   n->face[i] = vg_alloc(1, sizeof **n->face);
   f->x = vg_calloc(1, sizeof *f->x);
@@ -329,8 +338,7 @@ static void cell_on(struct vg_node *n, size_t i, uint32_t gone,
     f->face[k][0] = (uint32_t)k;
     f->face[k][1] = (uint32_t)(k + 1) % 3;
     f->face[k][2] = 3;
-    for (int j = 0; j < 3; j++)
-      f->x[0][j] += n->front.x[n->point[i][k]][j] / 3;
+    for (int j = 0; j < 3; j++) f->x[0][j] += n->front.x[n->point[i][k]][j] / 3;
   }
 }
 
@@ -430,7 +438,7 @@ static uint32_t face_towards(const struct vg_front *f)
 static void put_long_cell(struct scene *s, double x, double y, double z,
                           const struct vg_region *region)
 {
-  const double tip[3] = {x, y, z};
+  const double tip[3] = { x, y, z };
   struct vg_node *n = s->n;
 
   works_of(n, 2);
@@ -446,7 +454,7 @@ static void put_long_cell(struct scene *s, double x, double y, double z,
  * change of the stage is, and both where nothing is crossed. */
 static void what_crosses_stays_out(void **state)
 {
-  const struct vg_region r = { .n_plane = 1, .plane = {{{0, 1, 0}, -1}} };
+  const struct vg_region r = { .n_plane = 1, .plane = { { { 0, 1, 0 }, -1 } } };
 
   (void)state;
   for (int is_crossing = 0; is_crossing < 2; is_crossing++) {
@@ -479,15 +487,18 @@ static void what_crosses_stays_out(void **state)
  * it all the same, or just beside. */
 static void what_holds_a_body_stays_out(void **state)
 {
-  static const struct { double half, aside[2]; int is_limited; } is[] = {
-    { 0.05, {0, 0}, 1 }, { 1e-3, {0, 0}, 1 }, { 1e-3, {0.1, 0.1}, 1 },
-    { 1e-3, {0.5, 0}, 0 }, { 1e-3, {-0.4, 0.4}, 0 }, { 1e-3, {0, -0.9}, 0 } };
-  const struct vg_region r = { .n_plane = 1, .plane = {{{0, 1, 0}, -1}} };
+  static const struct {
+    double half, aside[2];
+    int is_limited;
+  } is[] = { { 0.05, { 0, 0 }, 1 },      { 1e-3, { 0, 0 }, 1 },
+             { 1e-3, { 0.1, 0.1 }, 1 },  { 1e-3, { 0.5, 0 }, 0 },
+             { 1e-3, { -0.4, 0.4 }, 0 }, { 1e-3, { 0, -0.9 }, 0 } };
+  const struct vg_region r = { .n_plane = 1, .plane = { { { 0, 1, 0 }, -1 } } };
 
   (void)state;
   for (size_t k = 0; k < sizeof is / sizeof *is; k++) {
     struct scene s;
-    double tip[2] = {0, 0};
+    double tip[2] = { 0, 0 };
     uint32_t gone;
 
     coarse_and_fine(&s, is[k].half);
@@ -559,7 +570,8 @@ static void arrays_keep_what_is_in_use(void **state)
     for (; n < need; n++) a[n] = 5 * (uint32_t)n;
   }
   assert_int_equal(vg_engine_reserve(NULL, &a, &cap, n, SIZE_MAX / 2,
-                                     sizeof *a), -1);
+                                     sizeof *a),
+                   -1);
   assert_true(a[n - 1] == 5 * (uint32_t)(n - 1));
   vg_engine_free(NULL, 1, (void *const[]){ a });
 }

@@ -2,8 +2,7 @@
 
 #include "io/mesh/obj.h"
 
-static const char sample[] =
-  "v 0 0 0\nv 1 0 0\nv 0 1 0\ng floor\nf 1 3 2\n";
+static const char sample[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\ng floor\nf 1 3 2\n";
 
 static const char everything[] =
   "# comment\nmtllib a.mtl\no body\nv 0 0 0 1.0\nvt 0 0\nvn 0 0 1\n"
@@ -29,7 +28,7 @@ static void reads_the_sample(void **state)
 static void reads_polygons_and_groups(void **state)
 {
   static const uint32_t tri[5][3] = {
-    {0, 1, 2}, {0, 2, 4}, {0, 4, 3}, {0, 1, 2}, {0, 1, 5}
+    { 0, 1, 2 }, { 0, 2, 4 }, { 0, 4, 3 }, { 0, 1, 2 }, { 0, 1, 5 }
   };
   static const uint32_t patch[5] = { 0, 0, 0, 1, 0 };
   struct vg_mesh m = VG_MESH_INIT;

@@ -12,7 +12,7 @@ enum { SERIAL = 7 };
 
 struct parted {
   struct scene s;
-  struct vg_front front;     /* points and faces of the scene */
+  struct vg_front front; /* points and faces of the scene */
   struct vg_load load;
   struct vg_parting p;
 };
@@ -28,8 +28,8 @@ static void enter(struct parted *q)
   for (size_t k = 0; k < q->front.n_point; k++)
     q->front.id[k] = VG_POINT_ID(0, k);
   q->load = (struct vg_load)VG_LOAD_INIT;
-  if (vg_load_new(&q->front, q->s.sizing, VG_LOAD_CELLS_PER_CUBE, 1,
-                  &q->load, &err) < 0)
+  if (vg_load_new(&q->front, q->s.sizing, VG_LOAD_CELLS_PER_CUBE, 1, &q->load,
+                  &err) < 0)
     fail_msg("%s", err.text);
   q->p = (struct vg_parting)VG_PARTING_INIT;
 }
@@ -62,8 +62,9 @@ static void part(struct parted *q, struct vg_parting_options o)
 static void graded_scene(struct scene *s, size_t n_cell)
 {
   struct vg_demo d = VG_DEMO_INIT;
-  struct vg_source source = { .kind = VG_SOURCE_POINT, .p0 = {0.5, 0.47, 0.52},
-                              .h0 = 0.004, .r0 = 0.01 };
+  struct vg_source source = {
+    .kind = VG_SOURCE_POINT, .p0 = { 0.5, 0.47, 0.52 }, .h0 = 0.004, .r0 = 0.01
+  };
   struct vg_error err = VG_ERROR_INIT;
 
   memset(s, 0, sizeof *s);
@@ -79,7 +80,10 @@ static void graded_scene(struct scene *s, size_t n_cell)
 
 /* --- what must hold ------------------------------------------------------ */
 
-struct side { uint64_t name[3]; int turn; };
+struct side {
+  uint64_t name[3];
+  int turn;
+};
 
 static int by_names(const void *p, const void *q)
 {
@@ -122,8 +126,8 @@ static void check_faces(const struct parted *q)
   }
   qsort(side, n, sizeof *side, by_names);
   for (size_t i = 0; i < n; i++) {
-    if (i + 1 < n && !memcmp(side[i].name, side[i + 1].name,
-                             sizeof side->name)) {
+    if (i + 1 < n &&
+        !memcmp(side[i].name, side[i + 1].name, sizeof side->name)) {
       assert_int_not_equal(side[i].turn, side[i + 1].turn);
       n_pair++;
       i++;
@@ -196,7 +200,8 @@ static double most_cells(const struct parted *q, size_t n, double *mean)
     struct vg_load l = VG_LOAD_INIT;
 
     assert_int_equal(vg_load_new(&q->p.part[k].front, q->s.sizing,
-                                 VG_LOAD_CELLS_PER_CUBE, 1, &l, NULL), VG_OK);
+                                 VG_LOAD_CELLS_PER_CUBE, 1, &l, NULL),
+                     VG_OK);
     if (l.cells > most) most = l.cells;
     sum += l.cells;
     vg_load_release(&l);
@@ -273,16 +278,16 @@ static void octants_are_balanced_and_off_the_front(void **state)
   (void)state;
   graded_scene(&q.s, 20000);
   enter(&q);
-  if (vg_octants_make(&q.front, &q.load, q.s.sizing, 4, NULL, &t,
-                      &err) != VG_OK)
+  if (vg_octants_make(&q.front, &q.load, q.s.sizing, 4, NULL, &t, &err) !=
+      VG_OK)
     fail_msg("%s", err.text);
   for (size_t f = 0; f < t.n_face; f++) {
     const struct vg_octant *a = &t.octant[t.face[f].leaf[0]];
     const struct vg_octant *b = &t.octant[t.face[f].leaf[1]];
 
     assert_in_range(a->level - b->level + 1, 0, 2);
-    assert_int_equal(t.face[f].side, vg_octant_side(a->level > b->level ? a
-                                                                        : b));
+    assert_int_equal(t.face[f].side,
+                     vg_octant_side(a->level > b->level ? a : b));
     n_step += a->level != b->level;
   }
   assert_true(n_step > 100);
@@ -392,8 +397,10 @@ static void it_is_the_same_every_time(void **state)
 
 static void absurd_options_are_refused(void **state)
 {
-  static const struct { struct vg_parting_options o; const char *word; }
-  bad[] = {
+  static const struct {
+    struct vg_parting_options o;
+    const char *word;
+  } bad[] = {
     { { .n_part = 0 }, "0 parts" },
     { { .n_part = -3 }, "-3 parts" },
     { { .n_part = 4, .coarsening = 1 }, "coarsening of 1" },
@@ -427,7 +434,8 @@ static void open_fronts_are_refused(void **state)
   enter(&q);
   q.front.n_face -= 3;
   assert_int_equal(try(&q, (struct vg_parting_options){ .n_part = 4 }, &q.p,
-                       &err), VG_ERR_GEOMETRY);
+                       &err),
+                   VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "closed"));
   assert_null(q.p.part);
   leave(&q);

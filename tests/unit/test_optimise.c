@@ -17,7 +17,7 @@
 
 /* sin^2 of the smallest dihedral angle, or of the largest. */
 static const double ten_degrees = 0.03015;
-static const double aim = 0.1786;      /* 25: above it shapes may be traded */
+static const double aim = 0.1786; /* 25: above it shapes may be traded */
 
 /* --- meshes ------------------------------------------------------------- */
 
@@ -38,16 +38,16 @@ static void box_subject(struct subject *s, int n)
   shape_box(&s->m, n, 0.5);
   s->sizing = shape_sizing(&s->m, 1.2, 0);
   assert_int_equal(vg_boundary_tets(s->m.n_point,
-                                    (const double (*)[3])s->m.point,
-                                    s->m.n_tri,
-                                    (const uint32_t (*)[3])s->m.tri, &s->t,
-                                    &r, NULL), VG_OK);
+                                    (const double(*)[3])s->m.point, s->m.n_tri,
+                                    (const uint32_t(*)[3])s->m.tri, &s->t, &r,
+                                    NULL),
+                   VG_OK);
   assert_int_equal(vg_inserter_init(&s->s, &s->t, NULL), VG_OK);
 }
 
 static void put(struct subject *s, double x, double y, double z)
 {
-  const double at[3] = {x, y, z};
+  const double at[3] = { x, y, z };
 
   assert_int_equal(tets_insert(&s->s, at, 0, 0), VG_OK);
 }
@@ -68,8 +68,7 @@ static void subject_end(struct subject *s)
 }
 
 /* Points anywhere: cells of every shape, slivers among them. */
-static void random_subject(struct subject *s, int n, int n_point,
-                           uint64_t seed)
+static void random_subject(struct subject *s, int n, int n_point, uint64_t seed)
 {
   box_subject(s, n);
   for (int i = 0; i < n_point; i++) {
@@ -120,7 +119,7 @@ static int by_corners(const void *a, const void *b)
  * The caller frees. */
 static uint32_t (*fixed_faces(const struct vg_tets *t, size_t *n))[3]
 {
-  uint32_t (*face)[3] = vg_alloc(4 * t->n_cell, sizeof *face);
+  uint32_t(*face)[3] = vg_alloc(4 * t->n_cell, sizeof *face);
 
   assert_non_null(face);
   *n = 0;
@@ -145,8 +144,8 @@ static struct vg_optimise_report optimise(struct vg_tets *t, size_t n_fixed,
 {
   struct vg_optimise_report r;
   size_t n_face, n_after, n_point = t->n_point;
-  uint32_t (*face)[3] = fixed_faces(t, &n_face), (*after)[3];
-  double (*x)[3] = vg_alloc(n_fixed, sizeof *x);
+  uint32_t(*face)[3] = fixed_faces(t, &n_face), (*after)[3];
+  double(*x)[3] = vg_alloc(n_fixed, sizeof *x);
   double before = worst(t), volume = tets_volume(t), limit;
 
   assert_non_null(x);
@@ -234,7 +233,8 @@ static void the_same_bytes_again(void **state)
 static void points_in_a_line_are_flat(void **state)
 {
   static const int turn[4][4] = {
-    {0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
+    { 0, 1, 2, 3 }, { 1, 0, 3, 2 }, { 2, 3, 0, 1 }, { 3, 2, 1, 0 }
+  };
   uint64_t seed = 5;
 
   (void)state;
@@ -264,17 +264,23 @@ static void points_in_a_line_are_flat(void **state)
  * leaves cells that are all better, but one after the other they go. */
 static void flat_cells_side_by_side_go(void **state)
 {
-  static const double at[8][3] = {
-    {0, 0, -1}, {0, 0, 1}, {1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0},
-    {1e-17, -1e-18, -0.3}, {1e-17, 1e-18, 0.3}};
+  static const double at[8][3] = { { 0, 0, -1 },
+                                   { 0, 0, 1 },
+                                   { 1, 1, 0 },
+                                   { -1, 1, 0 },
+                                   { -1, -1, 0 },
+                                   { 1, -1, 0 },
+                                   { 1e-17, -1e-18, -0.3 },
+                                   { 1e-17, 1e-18, 0.3 } };
   enum { A, B, R, C = 6, D };
   static const uint32_t v[11][4] = {
-    {A, B, R, R + 1}, {A, B, R + 1, R + 2}, {A, B, R + 2, R + 3},
-    {A, C, R, R + 3}, {C, D, R, R + 3}, {D, B, R, R + 3},
-    {A, C, D, R}, {A, D, B, R}, {A, C, B, R + 3}, {C, D, B, R + 3},
-    {A, C, D, B}};
+    { A, B, R, R + 1 }, { A, B, R + 1, R + 2 }, { A, B, R + 2, R + 3 },
+    { A, C, R, R + 3 }, { C, D, R, R + 3 },     { D, B, R, R + 3 },
+    { A, C, D, R },     { A, D, B, R },         { A, C, B, R + 3 },
+    { C, D, B, R + 3 }, { A, C, D, B }
+  };
   struct vg_tets t = VG_TETS_INIT;
-  double (*x)[3] = vg_alloc(8, sizeof *x);
+  double(*x)[3] = vg_alloc(8, sizeof *x);
 
   (void)state;
   assert_non_null(x);
@@ -296,7 +302,7 @@ static void flat_cells_side_by_side_go(void **state)
  * little: the Delaunay cell between them is flat. */
 static void a_sliver_is_removed(void **state)
 {
-  static const double lift[4] = {1e-2, 1e-4, 1e-6, 1e-9};
+  static const double lift[4] = { 1e-2, 1e-4, 1e-6, 1e-9 };
 
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -326,7 +332,7 @@ static void a_shaken_grid(void **state)
   (void)state;
   box_subject(&s, 6);
   for (int i = 0; i < 125; i++) {
-    double x[3] = {i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2};
+    double x[3] = { i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2 };
 
     for (int k = 0; k < 3; k++)
       x[k] = x[k] / 6 + 1e-7 * (tets_random(&seed) - 0.5);
@@ -378,7 +384,7 @@ static double smooth_points(int by_size, double *mean)
 
   box_subject(&s, 6);
   for (int i = 0; i < 125; i++) {
-    double x[3] = {i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2};
+    double x[3] = { i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2 };
 
     for (int k = 0; k < 3; k++)
       x[k] = x[k] / 6 + 0.06 * (tets_random(&seed) - 0.5);
@@ -396,8 +402,8 @@ static double smooth_points(int by_size, double *mean)
   for (size_t p = s.m.n_point; p < s.t.n_point; p++) point[n++] = (uint32_t)p;
   for (int k = 0; k < 3; k++)
     assert_int_equal(vg_optimise_points(&s.t, n, point, 0.7f,
-                                        by_size ? s.sizing : NULL, q, &r,
-                                        NULL), VG_OK);
+                                        by_size ? s.sizing : NULL, q, &r, NULL),
+                     VG_OK);
   assert_true(worst(&s.t) >= fmin(before, aim) * (1 - 1e-6));
   *mean = 0;
   for (size_t c = 0; c < s.t.n_cell; c++) *mean += q[c] / (double)s.t.n_cell;
@@ -463,8 +469,7 @@ static void cells_outside_stay(void **state)
   before = vg_alloc(s.t.n_cell, sizeof *before);
   assert_non_null(before);
   memcpy(before, s.t.cell, s.t.n_cell * sizeof *before);
-  for (size_t c = 0; c < s.t.n_cell; c++)
-    n_out += !!(s.t.flag[c] & VG_OUTSIDE);
+  for (size_t c = 0; c < s.t.n_cell; c++) n_out += !!(s.t.flag[c] & VG_OUTSIDE);
   assert_true(n_out > 100);
   optimise(&s.t, s.m.n_point + 8, 2);
   for (size_t c = 0; c < s.t.n_cell; c++)
@@ -480,7 +485,7 @@ static void cells_outside_stay(void **state)
 /* A plane of fixed faces through the fluid is not crossed. */
 static void a_fixed_plane_stays(void **state)
 {
-  const int n[3] = {4, 4, 4};
+  const int n[3] = { 4, 4, 4 };
   struct vg_tets t = VG_TETS_INIT;
   struct vg_inserter s;
   uint64_t seed = 31;
@@ -497,8 +502,8 @@ static void a_fixed_plane_stays(void **state)
     }
   assert_int_equal(vg_inserter_init(&s, &t, NULL), VG_OK);
   for (int i = 0; i < 150; i++) {
-    const double x[3] = {4 * tets_random(&seed), 4 * tets_random(&seed),
-                         4 * tets_random(&seed)};
+    const double x[3] = { 4 * tets_random(&seed), 4 * tets_random(&seed),
+                          4 * tets_random(&seed) };
 
     assert_true(tets_insert(&s, x, 0.1, 0.2) >= 0);
   }
@@ -534,9 +539,9 @@ static void all_points_fixed(void **state)
 /* One cell that cannot be helped. */
 static void a_single_cell(void **state)
 {
-  const uint32_t v[1][4] = {{0, 1, 2, 3}};
+  const uint32_t v[1][4] = { { 0, 1, 2, 3 } };
   struct vg_tets t = VG_TETS_INIT;
-  double (*x)[3] = vg_calloc(4, sizeof *x);
+  double(*x)[3] = vg_calloc(4, sizeof *x);
 
   (void)state;
   assert_non_null(x);

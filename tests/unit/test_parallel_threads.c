@@ -14,9 +14,9 @@
 
 struct tally {
   size_t n, grain;
-  unsigned char *seen;      /* [n] */
-  int threads, *worker;     /* [n] */
-  int bad[64];              /* by worker */
+  unsigned char *seen;  /* [n] */
+  int threads, *worker; /* [n] */
+  int bad[64];          /* by worker */
 };
 
 static void visit(void *context, size_t first, size_t end, int worker)
@@ -71,8 +71,7 @@ static void loops_in_several_threads(void **state)
 
   (void)state;
   for (int i = 0; i < 3; i++)
-    assert_int_equal(pthread_create(&thread[i], NULL, loop_in_thread, NULL),
-                     0);
+    assert_int_equal(pthread_create(&thread[i], NULL, loop_in_thread, NULL), 0);
   for (int i = 0; i < 3; i++)
     assert_int_equal(pthread_join(thread[i], NULL), 0);
 }
@@ -87,7 +86,7 @@ static void inner(void *context, size_t first, size_t end, int worker)
 
 static void outer(void *context, size_t first, size_t end, int worker)
 {
-  size_t (*sum)[100] = context;
+  size_t(*sum)[100] = context;
 
   (void)worker;
   for (size_t i = first; i < end; i++)
@@ -124,14 +123,17 @@ static void layers_are_joined(void **state)
 
   (void)state;
   model_sphere(&m, 40, 4, &seed);
-  assert_int_equal(vg_mesh_copy(&m.field, FRONT_MESH(&m.layers.front, &m.surface), NULL), VG_OK);
+  assert_int_equal(vg_mesh_copy(&m.field,
+                                FRONT_MESH(&m.layers.front, &m.surface), NULL),
+                   VG_OK);
   for (int cells = VG_LAYER_TETS; cells <= VG_LAYER_MIXED; cells++) {
     struct vg_mesh mesh[3] = { VG_MESH_INIT, VG_MESH_INIT, VG_MESH_INIT };
 
     for (int i = 0; i < 3; i++) {
       assert_int_equal(vg_layers_join(&m.surface, &m.layers, &m.field,
                                       (enum vg_layer_cells)cells, i + 1,
-                                      &mesh[i], NULL, NULL), VG_OK);
+                                      &mesh[i], NULL, NULL),
+                       VG_OK);
       assert_int_equal(mesh[i].n_tet, mesh[0].n_tet);
       assert_int_equal(mesh[i].n_pri, mesh[0].n_pri);
       assert_int_equal(mesh[i].n_pyr, mesh[0].n_pyr);

@@ -28,10 +28,10 @@ static void scene_of(struct scene *s, double growth, double h_max)
   memset(&s->t, 0, sizeof s->t);
   s->sizing = shape_sizing(&s->m, growth, h_max);
   assert_int_equal(vg_boundary_tets(s->m.n_point,
-                                    (const double (*)[3])s->m.point,
-                                    s->m.n_tri,
-                                    (const uint32_t (*)[3])s->m.tri, &s->t,
-                                    &r, NULL), VG_OK);
+                                    (const double(*)[3])s->m.point, s->m.n_tri,
+                                    (const uint32_t(*)[3])s->m.tri, &s->t, &r,
+                                    NULL),
+                   VG_OK);
 }
 
 static void box_scene(struct scene *s, int n, double h_max)
@@ -43,7 +43,7 @@ static void box_scene(struct scene *s, int n, double h_max)
 
 static void sphere_scene(struct scene *s)
 {
-  const double centre[3] = {0, 0, 0};
+  const double centre[3] = { 0, 0, 0 };
 
   memset(&s->m, 0, sizeof s->m);
   shape_box(&s->m, 5, 4);
@@ -86,7 +86,7 @@ static int in_fluid(const struct vg_tets *t, const double x[3])
 static struct vg_placed place(const struct scene *s,
                               const struct vg_region *region, size_t limit)
 {
-  struct vg_placed out = {0};
+  struct vg_placed out = { 0 };
 
   assert_int_equal(vg_place(&s->t, s->sizing, region, limit, &out, NULL),
                    VG_OK);
@@ -102,9 +102,9 @@ static void keep_their_distance(const struct scene *s,
     double h = vg_sizing_at(s->sizing, p->x[i]);
 
     assert_true(in_fluid(&s->t, p->x[i]));
-    assert_true(nearest(i, (const double (*)[3])p->x, p->x[i]) > share * h);
-    assert_true(nearest(s->m.n_point, (const double (*)[3])s->m.point,
-                        p->x[i]) > share * h);
+    assert_true(nearest(i, (const double(*)[3])p->x, p->x[i]) > share * h);
+    assert_true(nearest(s->m.n_point, (const double(*)[3])s->m.point, p->x[i]) >
+                share * h);
   }
 }
 
@@ -122,15 +122,15 @@ static void leave_no_gap(const struct scene *s, const struct vg_placed *p,
     for (int k = 0; k < 3; k++)
       x[k] = lo[k] + (hi[k] - lo[k]) * tets_random(&seed);
     if (!in_fluid(&s->t, x)) continue;
-    a = nearest(p->n, (const double (*)[3])p->x, x);
-    b = nearest(s->m.n_point, (const double (*)[3])s->m.point, x);
+    a = nearest(p->n, (const double(*)[3])p->x, x);
+    b = nearest(s->m.n_point, (const double(*)[3])s->m.point, x);
     assert_true((a < b ? a : b) < 1.1 * vg_sizing_at(s->sizing, x));
   }
 }
 
 static void a_level_field(void **state)
 {
-  const double lo[3] = {-0.5, -0.5, -0.5}, hi[3] = {0.5, 0.5, 0.5};
+  const double lo[3] = { -0.5, -0.5, -0.5 }, hi[3] = { 0.5, 0.5, 0.5 };
   struct scene s;
   struct vg_placed p;
 
@@ -147,7 +147,7 @@ static void a_level_field(void **state)
 
 static void a_graded_field(void **state)
 {
-  const double lo[3] = {-4, -4, -4}, hi[3] = {4, 4, 4};
+  const double lo[3] = { -4, -4, -4 }, hi[3] = { 4, 4, 4 };
   struct scene s;
   struct vg_placed p;
 
@@ -158,9 +158,9 @@ static void a_graded_field(void **state)
   keep_their_distance(&s, &p, 0.6);
   leave_no_gap(&s, &p, lo, hi);
   for (size_t i = 0; i < p.n; i++) {
-    const double zero[3] = {0, 0, 0};
+    const double zero[3] = { 0, 0, 0 };
 
-    assert_true(distance(p.x[i], zero) > 1);  /* none in the body */
+    assert_true(distance(p.x[i], zero) > 1); /* none in the body */
   }
   free(p.x);
   scene_end(&s);
@@ -185,7 +185,7 @@ static void the_same_bytes_again(void **state)
 static void the_limit_is_exact(void **state)
 {
   struct scene s;
-  struct vg_placed p, q, none = {0};
+  struct vg_placed p, q, none = { 0 };
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
@@ -232,9 +232,9 @@ static void points_that_stand_count(void **state)
 
 static void a_slab_gets_its_points_only(void **state)
 {
-  const struct vg_region zone = {
-    .n_plane = 1, .plane = {{{0, 0, 1}, 0.1}} };
-  const double lo[3] = {-0.5, -0.5, 0.0}, hi[3] = {0.5, 0.5, 0.2};
+  const struct vg_region zone = { .n_plane = 1,
+                                  .plane = { { { 0, 0, 1 }, 0.1 } } };
+  const double lo[3] = { -0.5, -0.5, 0.0 }, hi[3] = { 0.5, 0.5, 0.2 };
   struct scene s;
   struct vg_placed p, all;
 
@@ -258,8 +258,8 @@ static double least_within(const struct scene *s,
                            const struct vg_region *region)
 {
   struct vg_placed p = place(s, region, 0);
-  const double (*x)[3] = (const double (*)[3])p.x;
-  const double (*front)[3] = (const double (*)[3])s->m.point;
+  const double(*x)[3] = (const double(*)[3])p.x;
+  const double(*front)[3] = (const double(*)[3])s->m.point;
   double least = INFINITY;
   size_t n = 0;
 
@@ -279,9 +279,9 @@ static double least_within(const struct scene *s,
  * 0.66; the field is so gentle that it matters little where it is read. */
 static void regions_keep_more_distance(void **state)
 {
-  const struct vg_region zone = {
-    .n_plane = 1, .plane = {{{0, 0, 1}, 0.3}} };
-  const double centre[3] = {0, 0, 0};
+  const struct vg_region zone = { .n_plane = 1,
+                                  .plane = { { { 0, 0, 1 }, 0.3 } } };
+  const double centre[3] = { 0, 0, 0 };
   struct scene s;
 
   (void)state;
@@ -297,11 +297,12 @@ static void regions_keep_more_distance(void **state)
 /* The spacing is 0.25 everywhere: a reach of 1 is 0.25. */
 static void cells_of_regions(void **state)
 {
-  const double a[3] = {0, 0, 0}, b[3] = {1, 0, 0}, c[3] = {0, 1, 0};
-  const double d[3] = {0, 0, 1};
+  const double a[3] = { 0, 0, 0 }, b[3] = { 1, 0, 0 }, c[3] = { 0, 1, 0 };
+  const double d[3] = { 0, 0, 1 };
   struct vg_region all = VG_REGION_ALL;
   struct vg_region r = {
-    .n_plane = 1, .plane = {{{0, 0, 1}, 0.5}, {{1, 0, 0}, 0.5}} };
+    .n_plane = 1, .plane = { { { 0, 0, 1 }, 0.5 }, { { 1, 0, 0 }, 0.5 } }
+  };
   struct scene s;
 
   (void)state;
@@ -309,7 +310,7 @@ static void cells_of_regions(void **state)
   assert_true(fabs(vg_sizing_at(s.sizing, a) - 0.25) < 1e-3);
   assert_true(vg_region_has_cell(&all, s.sizing, a, b, c, d));
   assert_true(vg_region_has_cell(&r, s.sizing, a, b, c, d));
-  r.plane[0].offset = 1;     /* touches at d */
+  r.plane[0].offset = 1; /* touches at d */
   assert_true(vg_region_has_cell(&r, s.sizing, a, b, c, d));
   r.plane[0].offset = 1.25;
   assert_false(vg_region_has_cell(&r, s.sizing, a, b, c, d));
@@ -331,17 +332,19 @@ static void cells_of_regions(void **state)
 /* A cell belongs when all its corners are within all walls. */
 static void walls_of_regions(void **state)
 {
-  const double a[3] = {0, 0, 0}, b[3] = {0.2, 0, 0}, c[3] = {0, 0.2, 0};
-  const double d[3] = {0, 0, 0.2};
-  struct vg_region r = { .n_plane = 1, .plane = {{{0, 0, 1}, 0.1}},
-                         .n_wall = 1, .wall = {{{1, 0, 0}, -0.1}} };
+  const double a[3] = { 0, 0, 0 }, b[3] = { 0.2, 0, 0 }, c[3] = { 0, 0.2, 0 };
+  const double d[3] = { 0, 0, 0.2 };
+  struct vg_region r = { .n_plane = 1,
+                         .plane = { { { 0, 0, 1 }, 0.1 } },
+                         .n_wall = 1,
+                         .wall = { { { 1, 0, 0 }, -0.1 } } };
   struct scene s;
 
   (void)state;
   box_scene(&s, 4, 0.25);
   assert_true(vg_region_within(&r, a));
   assert_true(vg_region_has_cell(&r, s.sizing, a, b, c, d));
-  r.wall[0].offset = 0;      /* a, c and d are on it: not within */
+  r.wall[0].offset = 0; /* a, c and d are on it: not within */
   assert_false(vg_region_within(&r, a));
   assert_true(vg_region_within(&r, b));
   assert_false(vg_region_has_cell(&r, s.sizing, a, b, c, d));
@@ -357,26 +360,26 @@ static void walls_of_regions(void **state)
 
 static void seeds_are_few_and_spread(void **state)
 {
-  const struct vg_region zone = {
-    .n_plane = 1, .plane = {{{0, 0, 1}, 0}} };
+  const struct vg_region zone = { .n_plane = 1,
+                                  .plane = { { { 0, 0, 1 }, 0 } } };
   struct scene s;
-  struct vg_placed p = {0}, q = {0}, some = {0};
-  const double (*x)[3];
+  struct vg_placed p = { 0 }, q = { 0 }, some = { 0 };
+  const double(*x)[3];
 
   (void)state;
   box_scene(&s, 24, 1.0 / 24);
-  x = (const double (*)[3])s.m.point;
+  x = (const double(*)[3])s.m.point;
   assert_int_equal(vg_place_seeds(s.m.n_point, x, s.sizing, NULL, &p, NULL),
                    VG_OK);
   assert_int_equal(vg_place_seeds(s.m.n_point, x, s.sizing, NULL, &q, NULL),
                    VG_OK);
-  assert_in_range(p.n, 8, 512);         /* 4^3: one for each 6^3 spacings */
+  assert_in_range(p.n, 8, 512); /* 4^3: one for each 6^3 spacings */
   assert_int_equal(p.n, q.n);
   assert_memory_equal(p.x, q.x, p.n * sizeof *p.x);
   for (size_t i = 0; i < p.n; i++)
     for (int k = 0; k < 3; k++) assert_true(fabs(p.x[i][k]) < 0.5);
-  assert_int_equal(vg_place_seeds(s.m.n_point, x, s.sizing, &zone, &some,
-                                  NULL), VG_OK);
+  assert_int_equal(vg_place_seeds(s.m.n_point, x, s.sizing, &zone, &some, NULL),
+                   VG_OK);
   assert_true(some.n > 0 && some.n < p.n);
   for (size_t i = 0; i < some.n; i++) assert_true(fabs(some.x[i][2]) < 1e-9);
   free(p.x);
@@ -394,15 +397,16 @@ static struct vg_placed seeds_of(const struct vg_source *source, double growth,
 {
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_sizing *sizing = NULL;
-  struct vg_placed p = {0};
+  struct vg_placed p = { 0 };
   struct vg_mesh m;
 
   memset(&m, 0, sizeof m);
   shape_box(&m, 16, 0.5);
   o.growth = growth;
   assert_int_equal(vg_sizing_new(&o, 1, source, &m, &sizing, NULL), VG_OK);
-  assert_int_equal(vg_place_seeds(m.n_point, (const double (*)[3])m.point,
-                                  sizing, region, &p, NULL), VG_OK);
+  assert_int_equal(vg_place_seeds(m.n_point, (const double(*)[3])m.point,
+                                  sizing, region, &p, NULL),
+                   VG_OK);
   for (size_t i = 0; region && i < p.n; i++)
     assert_true(vg_region_near(region, sizing, p.x[i], VG_BAND_PLACE));
   vg_sizing_free(sizing);
@@ -415,7 +419,7 @@ static double seed_near(const struct vg_source *source, double growth,
                         const struct vg_region *region, const double x[3])
 {
   struct vg_placed p = seeds_of(source, growth, region);
-  double d = nearest(p.n, (const double (*)[3])p.x, x);
+  double d = nearest(p.n, (const double(*)[3])p.x, x);
 
   free(p.x);
   return d;
@@ -426,17 +430,22 @@ static double seed_near(const struct vg_source *source, double growth,
  * the points that are placed along it, but not farther off. */
 static void steep_places_have_seeds(void **state)
 {
-  const struct vg_source source = { .kind = VG_SOURCE_SPHERE, .h0 = 0.001,
-    .r0 = 0.02, .p0 = {0.187, -0.083, 0.289} };
-  static const struct { double at; int is_near; } list[] = {
-    {0.187, 1}, {0.2, 1}, {0.25, 1}, {0.13, 1}, {0.35, 0}, {0, 0} };
+  const struct vg_source source = { .kind = VG_SOURCE_SPHERE,
+                                    .h0 = 0.001,
+                                    .r0 = 0.02,
+                                    .p0 = { 0.187, -0.083, 0.289 } };
+  static const struct {
+    double at;
+    int is_near;
+  } list[] = { { 0.187, 1 }, { 0.2, 1 },  { 0.25, 1 },
+               { 0.13, 1 },  { 0.35, 0 }, { 0, 0 } };
 
   (void)state;
   assert_true(seed_near(&source, 4, NULL, source.p0) < 0.021);
   assert_true(seed_near(&source, 2, NULL, source.p0) < 0.021);
   for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
-    const struct vg_region zone = {
-      .n_plane = 1, .plane = {{{1, 0, 0}, list[i].at}} };
+    const struct vg_region zone = { .n_plane = 1,
+                                    .plane = { { { 1, 0, 0 }, list[i].at } } };
 
     assert_int_equal(seed_near(&source, 4, &zone, source.p0) < 0.021,
                      list[i].is_near);
@@ -447,10 +456,13 @@ static void steep_places_have_seeds(void **state)
  * and a pencil too. */
 static void thin_lines_have_seeds(void **state)
 {
-  const struct vg_source source = { .kind = VG_SOURCE_LINE, .h0 = 5e-4,
-    .h1 = 5e-4, .p0 = {-0.31, -0.17, -0.23}, .p1 = {0.29, 0.15, 0.33} };
-  const struct vg_region zone = {
-    .n_plane = 1, .plane = {{{0, 0, 1}, 0.05}} };
+  const struct vg_source source = { .kind = VG_SOURCE_LINE,
+                                    .h0 = 5e-4,
+                                    .h1 = 5e-4,
+                                    .p0 = { -0.31, -0.17, -0.23 },
+                                    .p1 = { 0.29, 0.15, 0.33 } };
+  const struct vg_region zone = { .n_plane = 1,
+                                  .plane = { { { 0, 0, 1 }, 0.05 } } };
   struct vg_region pencil = zone;
   struct vg_placed p;
   double x[3];
@@ -460,15 +472,14 @@ static void thin_lines_have_seeds(void **state)
   for (int i = 0; i < 200; i++) {
     for (int k = 0; k < 3; k++)
       x[k] = source.p0[k] + (i + 0.5) / 200 * (source.p1[k] - source.p0[k]);
-    assert_true(nearest(p.n, (const double (*)[3])p.x, x) <
-                8 * 1.8 * source.h0);
+    assert_true(nearest(p.n, (const double(*)[3])p.x, x) < 8 * 1.8 * source.h0);
   }
   free(p.x);
   for (int k = 0; k < 3; k++)
     x[k] = source.p0[k] + 0.5 * (source.p1[k] - source.p0[k]);
   assert_true(seed_near(&source, 3, &zone, x) < 2 * source.h0);
   pencil.n_plane = 2;
-  pencil.plane[1] = (struct vg_plane){{1, 0, 0}, x[0] + source.h0};
+  pencil.plane[1] = (struct vg_plane){ { 1, 0, 0 }, x[0] + source.h0 };
   assert_true(seed_near(&source, 3, &pencil, x) < 3 * source.h0);
 }
 

@@ -117,9 +117,9 @@ static vg_status run(struct plane *s, const struct law *l)
 {
   const struct vg_planar_law law = { .at = size_of, .user = (void *)l };
 
-  return vg_planar_mesh(s->n, (const double (*)[2])s->p, s->n_edge,
-                        (const uint32_t (*)[2])s->edge, &law, &s->n_new,
-                        &s->add, &s->n_tri, &s->tri, &s->err);
+  return vg_planar_mesh(s->n, (const double(*)[2])s->p, s->n_edge,
+                        (const uint32_t(*)[2])s->edge, &law, &s->n_new, &s->add,
+                        &s->n_tri, &s->tri, &s->err);
 }
 
 static const double *at(const struct plane *s, uint32_t i)
@@ -395,15 +395,22 @@ static void refuses_bad_loops(void **state)
     for (int i = 0; i < 4; i++) put(&s, corner[i][0], corner[i][1]);
     close_from(&s, 0);
     switch (flaw) {
-    case 0: s.n_edge = 3; break;                      /* open */
+    case 0: s.n_edge = 3; break; /* open */
     case 1: s.p[2][0] = NAN; break;
-    case 2: s.edge[1][1] = 9; break;                  /* out of range */
-    case 3: s.p[2][0] = s.p[1][0]; s.p[2][1] = 0; break; /* coincident */
-    case 4: put(&s, 0.5, 0.25); join(&s, 4, 1);       /* on a segment */
-            join(&s, 0, 4); s.p[4][1] = 0; break;
+    case 2: s.edge[1][1] = 9; break; /* out of range */
+    case 3:
+      s.p[2][0] = s.p[1][0];
+      s.p[2][1] = 0;
+      break; /* coincident */
+    case 4:
+      put(&s, 0.5, 0.25);
+      join(&s, 4, 1); /* on a segment */
+      join(&s, 0, 4);
+      s.p[4][1] = 0;
+      break;
     case 5: s.edge[1][1] = s.edge[1][0]; break;
     case 6: s.n_edge = 0; break;
-    case 7:                                           /* clockwise */
+    case 7: /* clockwise */
       for (size_t i = 0; i < 4; i++) {
         const uint32_t a = s.edge[i][0];
 
@@ -457,9 +464,9 @@ static void stops_when_asked(void **state)
     square(&s, &border, 1);
     if (pass) p.most = pass == 1 ? 0 : pass == 2 ? n_asked / 2 : n_asked - 1;
     p.n_size = p.n_asked = 0;
-    st = vg_planar_mesh(s.n, (const double (*)[2])s.p, s.n_edge,
-                        (const uint32_t (*)[2])s.edge, &law, &s.n_new,
-                        &s.add, &s.n_tri, &s.tri, &s.err);
+    st = vg_planar_mesh(s.n, (const double(*)[2])s.p, s.n_edge,
+                        (const uint32_t(*)[2])s.edge, &law, &s.n_new, &s.add,
+                        &s.n_tri, &s.tri, &s.err);
     assert_int_equal(st, pass ? VG_ERR_STOPPED : VG_OK);
     if (!pass) {
       n_size = p.n_size;

@@ -135,8 +135,7 @@ static void check_insphere(double p[5][3])
 
 static void check_plane(double p[4][3])
 {
-  assert_int_equal(sign(vg_orient2d(p[0], p[1], p[2])),
-                   det_sign(3, 2, p, 0));
+  assert_int_equal(sign(vg_orient2d(p[0], p[1], p[2])), det_sign(3, 2, p, 0));
   assert_int_equal(sign(vg_incircle(p[0], p[1], p[2], p[3])),
                    det_sign(4, 2, p, 1));
 }
@@ -232,8 +231,8 @@ static void is_exact_near_a_plane(void **unused)
       for (int k = 0; k < 3; k++)
         p[i][k] = whole(&s, i == n % 3 ? bits : 2 + bits / 2);
     for (int k = 0; k < 3; k++)
-      p[3][k] = rounded(p[0][k] + u * (p[1][k] - p[0][k]) / 2
-                        + v * (p[2][k] - p[0][k]) / 2);
+      p[3][k] = rounded(p[0][k] + u * (p[1][k] - p[0][k]) / 2 +
+                        v * (p[2][k] - p[0][k]) / 2);
     check_orient3d(p);
     check_plane(p);
     for (int k = 0; k < 2; k++) /* and c on the line of a b */
@@ -274,8 +273,9 @@ static void is_exact_near_a_sphere(void **unused)
 /* Nearly cospherical far from the origin of coordinates. */
 static void is_exact_after_translation(void **unused)
 {
-  const double unit[5][3] = { { 3, 4, 0 }, { -5, 0, 0 }, { 0, 3, -4 },
-                              { 4, 0, 3 }, { 0, 0, 5 } };
+  const double unit[5][3] = {
+    { 3, 4, 0 }, { -5, 0, 0 }, { 0, 3, -4 }, { 4, 0, 3 }, { 0, 0, 5 }
+  };
   uint64_t s = 3;
   double p[5][3];
 
@@ -416,14 +416,15 @@ static void is_antisymmetric(void **unused)
       int q[5] = { code % 5, code / 5 % 5, code / 25 % 5, code / 125, 0 };
 
       q[4] = 10 - q[0] - q[1] - q[2] - q[3];
-      if (q[4] < 0 || (1 << q[0] | 1 << q[1] | 1 << q[2] | 1 << q[3]
-                       | 1 << q[4]) != 31)
+      if (q[4] < 0 ||
+          (1 << q[0] | 1 << q[1] | 1 << q[2] | 1 << q[3] | 1 << q[4]) != 31)
         continue;
       assert_int_equal(sign(vg_insphere(p[q[0]], p[q[1]], p[q[2]], p[q[3]],
-                                        p[q[4]])), want5 * parity(q, 5));
+                                        p[q[4]])),
+                       want5 * parity(q, 5));
       if (q[4] == 4)
-        assert_int_equal(sign(vg_orient3d(p[q[0]], p[q[1]], p[q[2]],
-                                          p[q[3]])), want4 * parity(q, 4));
+        assert_int_equal(sign(vg_orient3d(p[q[0]], p[q[1]], p[q[2]], p[q[3]])),
+                         want4 * parity(q, 4));
     }
   }
 }

@@ -9,8 +9,9 @@ static void put_back(struct vg_mesh *m, double (*to)[3], uint8_t *stays,
 {
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_remesh_put_back(m, (const double (*)[3])to, 1, NULL, stays, n_refused,
-                         &err) < 0) fail_msg("%s", err.text);
+  if (vg_remesh_put_back(m, (const double(*)[3])to, 1, NULL, stays, n_refused,
+                         &err) < 0)
+    fail_msg("%s", err.text);
 }
 
 /* Half a ball as large again: all of it moves, what stays is kept. */
@@ -18,7 +19,7 @@ static void moves_all(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
   struct vg_mesh m = VG_MESH_INIT;
-  double (*to)[3];
+  double(*to)[3];
   uint8_t *stays;
   size_t n_refused = 1;
 
@@ -45,7 +46,7 @@ static void refuses_folds(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
   struct vg_mesh m = VG_MESH_INIT;
-  double (*to)[3];
+  double(*to)[3];
   uint8_t *stays;
   size_t n_refused = 0, p = 0;
 
@@ -75,7 +76,7 @@ static void refuses_meeting(void **unused)
   const uint32_t n[3] = { 8, 8, 1 };
   struct vg_mesh m = VG_MESH_INIT, old = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  double (*to)[3];
+  double(*to)[3];
   uint8_t *stays;
   size_t n_refused = 0;
 
@@ -108,7 +109,7 @@ static void keeps_conflicts_local(void **unused)
   const double size[3] = { 1, 1, 0.01 };
   const uint32_t n[3] = { 24, 24, 1 };
   struct vg_mesh m = VG_MESH_INIT;
-  double (*to)[3];
+  double(*to)[3];
   uint8_t *stays;
   size_t n_refused = 0, n_inside = 0;
 
@@ -144,11 +145,11 @@ static void locates(void **unused)
   struct vg_mesh m = VG_MESH_INIT, none = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
   uint32_t *tri[2];
-  double (*foot)[3];
+  double(*foot)[3];
 
   (void)unused;
   shape_box(&m, size, n);
-  for (size_t t = 0; t < m.n_tri; t += 2) {   /* neighbours disagree */
+  for (size_t t = 0; t < m.n_tri; t += 2) { /* neighbours disagree */
     uint32_t a = m.tri[t][0];
 
     m.tri[t][0] = m.tri[t][1];
@@ -158,8 +159,9 @@ static void locates(void **unused)
   for (int k = 0; k < 2; k++) {
     tri[k] = calloc(m.n_point, sizeof *tri[k]);
     assert_int_equal(vg_remesh_locate(&m, m.n_point,
-                                      (const double (*)[3])m.point, 1 + 3 * k,
-                                      NULL, tri[k], foot, &err), VG_OK);
+                                      (const double(*)[3])m.point, 1 + 3 * k,
+                                      NULL, tri[k], foot, &err),
+                     VG_OK);
   }
   assert_memory_equal(tri[0], tri[1], m.n_point * sizeof **tri);
   for (size_t p = 0; p < m.n_point; p++) {
@@ -168,8 +170,7 @@ static void locates(void **unused)
     assert_true(v[0] == p || v[1] == p || v[2] == p);
     assert_float_equal(vg_distance(foot[p], m.point[p]), 0, 1e-15);
   }
-  assert_int_equal(vg_remesh_locate(&none, 0, NULL, 1, NULL, NULL, NULL,
-                                    &err),
+  assert_int_equal(vg_remesh_locate(&none, 0, NULL, 1, NULL, NULL, NULL, &err),
                    VG_ERR_INPUT);
   free(tri[0]);
   free(tri[1]);
@@ -180,10 +181,8 @@ static void locates(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(moves_all),
-    cmocka_unit_test(refuses_folds),
-    cmocka_unit_test(refuses_meeting),
-    cmocka_unit_test(keeps_conflicts_local),
+    cmocka_unit_test(moves_all),       cmocka_unit_test(refuses_folds),
+    cmocka_unit_test(refuses_meeting), cmocka_unit_test(keeps_conflicts_local),
     cmocka_unit_test(locates),
   };
 

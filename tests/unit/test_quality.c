@@ -10,17 +10,16 @@
 #include "io/vgrid/vgrid.h"
 #include "io_support.h"
 
-#define N 4   /* cells per side of the test cube */
+#define N 4 /* cells per side of the test cube */
 #define P (N + 1)
 
 /* Nodes along the six paths of a cube from corner to opposite corner (Kuhn);
  * the last three paths are odd and turn the tetrahedron over. */
-static const int path[6][3] =
-  {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-static const size_t stride[3] = { 1, P, P * P };
+static const int path[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 },
+                                { 0, 2, 1 }, { 2, 1, 0 }, { 1, 0, 2 } };
+static const size_t stride[3] = { 1, P, P *P };
 
-#define assert_near(a, b, tolerance) \
-  assert_true(fabs((a) - (b)) <= (tolerance))
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static void *room(size_t n, size_t size)
 {
@@ -102,10 +101,9 @@ static struct vg_mesh_report judge(const struct vg_mesh *m)
 /* Sum of everything that has to be zero, apart from the volume. */
 static size_t faults(const struct vg_mesh_report *r)
 {
-  return r->bad_index + r->unused_point + r->not_finite +
-         r->duplicate_point + r->not_positive + r->open_face +
-         r->crowded_face + r->same_side_face + r->orphan_boundary +
-         r->outward_boundary;
+  return r->bad_index + r->unused_point + r->not_finite + r->duplicate_point +
+         r->not_positive + r->open_face + r->crowded_face + r->same_side_face +
+         r->orphan_boundary + r->outward_boundary;
 }
 
 static void a_cube_is_valid(void **state)
@@ -126,12 +124,11 @@ static void a_cube_is_valid(void **state)
   assert_near(r.angle_min, 45, 1e-9);
   assert_near(r.angle_max, 90, 1e-9);
   assert_near(r.angle_min_p1, 45, 0.011);
-  assert_near(r.radius_ratio_mean,
-                      3 * (0.5 / (1 + sqrt(2.))) / (sqrt(3.) / 2), 1e-12);
+  assert_near(r.radius_ratio_mean, 3 * (0.5 / (1 + sqrt(2.))) / (sqrt(3.) / 2),
+              1e-12);
   assert_near(r.radius_ratio_min, r.radius_ratio_mean, 1e-12);
   assert_near(r.mean_ratio_mean, 12 * cbrt(0.25) / 10, 1e-12);
-  for (int k = 0; k < 3; k++)
-    assert_near(r.volume_ratio[k], 1, 1. / 256);
+  for (int k = 0; k < 3; k++) assert_near(r.volume_ratio[k], 1, 1. / 256);
   assert_true(r.below[4] == 0 && r.above[0] == 0);
   assert_int_equal(r.n_worst, VG_WORST);
   vg_mesh_release(&m);
@@ -139,8 +136,9 @@ static void a_cube_is_valid(void **state)
 
 static struct vg_mesh one_tet(const double x[4][3])
 {
-  static const uint32_t face[4][3] =
-    {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}};
+  static const uint32_t face[4][3] = {
+    { 0, 1, 2 }, { 0, 3, 1 }, { 1, 3, 2 }, { 0, 2, 3 }
+  };
   struct vg_mesh m = VG_MESH_INIT;
 
   m.n_point = 4;
@@ -158,8 +156,9 @@ static struct vg_mesh one_tet(const double x[4][3])
 
 static void a_regular_tetrahedron_has_the_known_figures(void **state)
 {
-  static const double x[4][3] =
-    {{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}};
+  static const double x[4][3] = {
+    { 1, 1, 1 }, { -1, 1, -1 }, { 1, -1, -1 }, { -1, -1, 1 }
+  };
   struct vg_mesh m = one_tet(x);
   struct vg_mesh_report r = judge(&m);
   float angle, ratio;
@@ -183,10 +182,12 @@ static void a_regular_tetrahedron_has_the_known_figures(void **state)
 
 static void a_flat_cell_is_not_positive(void **state)
 {
-  static const double x[4][3] =
-    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.25, 0.5, 0}};
-  static const double up[4][3] =
-    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.25, 0.5, -1e-3}};
+  static const double x[4][3] = {
+    { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.25, 0.5, 0 }
+  };
+  static const double up[4][3] = {
+    { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.25, 0.5, -1e-3 }
+  };
   struct vg_mesh m = one_tet(x);
   struct vg_mesh_report r = judge(&m);
 
@@ -208,16 +209,17 @@ static void a_flat_cell_is_not_positive(void **state)
 static void signs_are_exact(void **state)
 {
   const double e = ldexp(1, -30);
-  double x[4][3] = {{1, 1, 1}, {1 + e, 1, 1}, {1, 1 + e, 1},
-                    {1 + e, 1 + e, 1 + e}};
-  struct vg_mesh m = one_tet((const double (*)[3])x);
+  double x[4][3] = {
+    { 1, 1, 1 }, { 1 + e, 1, 1 }, { 1, 1 + e, 1 }, { 1 + e, 1 + e, 1 + e }
+  };
+  struct vg_mesh m = one_tet((const double(*)[3])x);
   struct vg_mesh_report r = judge(&m);
 
   (void)state;
   assert_int_equal(r.not_positive, 0);
   vg_mesh_release(&m);
   x[3][2] = 1;
-  m = one_tet((const double (*)[3])x);
+  m = one_tet((const double(*)[3])x);
   r = judge(&m);
   assert_int_equal(r.not_positive, 1);
   vg_mesh_release(&m);
@@ -261,7 +263,7 @@ static void unused_and_coincident_points_are_counted(void **state)
   m.point = vg_realloc(m.point, m.n_point + 2, sizeof *m.point);
   assert_non_null(m.point);
   for (int k = 0; k < 3; k++) {
-    m.point[m.n_point][k] = -0.0;     /* the corner, but for the sign of 0 */
+    m.point[m.n_point][k] = -0.0; /* the corner, but for the sign of 0 */
     m.point[m.n_point + 1][k] = 7;
   }
   m.n_point += 2;
@@ -345,8 +347,9 @@ static void boundary_faces_are_matched(void **state)
 
 static void two_neighbours_on_one_side_are_found(void **state)
 {
-  static const double x[4][3] =
-    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  static const double x[4][3] = {
+    { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
+  };
   struct vg_mesh m = one_tet(x);
   struct vg_mesh_report r;
 
@@ -399,20 +402,19 @@ static void an_empty_mesh_is_not_valid(void **state)
  * volumes 1, 1/2 and 1/3. */
 static struct vg_mesh mixed(void)
 {
-  static const double x[11][3] = {
-    {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1},
-    {2, 0, 0}, {2, 0, 1}, {0.5, 0.5, 2}
-  };
-  static const uint32_t hex[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-  static const uint32_t pri[6] = {1, 8, 2, 5, 9, 6};
-  static const uint32_t pyr[5] = {4, 7, 10, 5, 6};
-  static const uint32_t quad[6][4] = {
-    {0, 1, 2, 3}, {0, 4, 5, 1}, {2, 6, 7, 3}, {3, 7, 4, 0},
-    {1, 5, 9, 8}, {8, 9, 6, 2}
-  };
+  static const double x[11][3] = { { 0, 0, 0 }, { 1, 0, 0 },    { 1, 1, 0 },
+                                   { 0, 1, 0 }, { 0, 0, 1 },    { 1, 0, 1 },
+                                   { 1, 1, 1 }, { 0, 1, 1 },    { 2, 0, 0 },
+                                   { 2, 0, 1 }, { 0.5, 0.5, 2 } };
+  static const uint32_t hex[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  static const uint32_t pri[6] = { 1, 8, 2, 5, 9, 6 };
+  static const uint32_t pyr[5] = { 4, 7, 10, 5, 6 };
+  static const uint32_t quad[6][4] = { { 0, 1, 2, 3 }, { 0, 4, 5, 1 },
+                                       { 2, 6, 7, 3 }, { 3, 7, 4, 0 },
+                                       { 1, 5, 9, 8 }, { 8, 9, 6, 2 } };
   static const uint32_t tri[6][3] = {
-    {1, 8, 2}, {5, 6, 9}, {4, 10, 5}, {5, 10, 6}, {6, 10, 7}, {7, 10, 4}
+    { 1, 8, 2 },  { 5, 6, 9 },  { 4, 10, 5 },
+    { 5, 10, 6 }, { 6, 10, 7 }, { 7, 10, 4 }
   };
   struct vg_mesh m = VG_MESH_INIT;
 
@@ -463,16 +465,16 @@ static void inverted_mixed_cells_are_found(void **state)
   struct vg_mesh_report r;
 
   (void)state;
-  m.point[10][2] = 0.5;      /* the apex below its base */
+  m.point[10][2] = 0.5; /* the apex below its base */
   r = judge(&m);
   assert_int_equal(r.not_positive, 1);
   m.point[10][2] = 2;
-  m.point[8][0] = 0.5;       /* a prism turned over */
+  m.point[8][0] = 0.5; /* a prism turned over */
   m.point[9][0] = 0.5;
   r = judge(&m);
   assert_int_equal(r.not_positive, 1);
   m.point[8][0] = m.point[9][0] = 2;
-  m.point[4][2] = -0.5;      /* one corner of the hexahedron */
+  m.point[4][2] = -0.5; /* one corner of the hexahedron */
   r = judge(&m);
   assert_true(r.not_positive >= 1);
   vg_mesh_release(&m);
@@ -483,7 +485,8 @@ static void edges_are_measured_against_the_field(void **state)
 {
   struct vg_mesh m = cube();
   struct vg_sizing_options options = VG_SIZING_OPTIONS_INIT;
-  struct vg_source source = { .kind = VG_SOURCE_SPHERE, .h0 = 1. / N,
+  struct vg_source source = { .kind = VG_SOURCE_SPHERE,
+                              .h0 = 1. / N,
                               .r0 = 100 };
   struct vg_sizing *sizing = NULL;
   struct vg_mesh_report r;
@@ -501,10 +504,12 @@ static void edges_are_measured_against_the_field(void **state)
   assert_int_equal(total, axis + face + body);
   /* lengths 1, sqrt 2 and sqrt 3 times the spacing */
   assert_near(r.edge_mean,
-                      ((double)axis + sqrt(2.) * (double)face +
-                       sqrt(3.) * (double)body) / (double)total, 1e-9);
-  assert_near(r.edge_within,
-                      100. * (double)(axis + face) / (double)total, 1e-9);
+              ((double)axis + sqrt(2.) * (double)face +
+               sqrt(3.) * (double)body) /
+                (double)total,
+              1e-9);
+  assert_near(r.edge_within, 100. * (double)(axis + face) / (double)total,
+              1e-9);
   vg_sizing_free(sizing);
   vg_mesh_release(&m);
 }
@@ -557,8 +562,8 @@ static void a_hub_is_matched(void **state)
   m.point[1][2] = 1;
   for (uint32_t i = 0; i < RING; i++) {
     uint32_t a = 2 + i, b = 2 + (i + 1) % RING;
-    const uint32_t t[4] = {0, a, b, 1};
-    const uint32_t f[2][3] = {{0, a, b}, {1, b, a}};
+    const uint32_t t[4] = { 0, a, b, 1 };
+    const uint32_t f[2][3] = { { 0, a, b }, { 1, b, a } };
 
     m.point[a][0] = cos(2 * M_PI * i / RING);
     m.point[a][1] = sin(2 * M_PI * i / RING);

@@ -49,14 +49,15 @@ static void turn_over(uint32_t t[4])
  * second ones come when all first ones wait, and the boundary after them. */
 static struct vg_mesh pairs_apart(uint32_t n)
 {
-  static const double x[5][3] =
-    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
-  static const uint32_t tri[6][3] =
-    {{0, 3, 1}, {1, 3, 2}, {2, 3, 0}, {0, 1, 4}, {1, 2, 4}, {2, 0, 4}};
+  static const double x[5][3] = {
+    { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 0, 0, -1 }
+  };
+  static const uint32_t tri[6][3] = { { 0, 3, 1 }, { 1, 3, 2 }, { 2, 3, 0 },
+                                      { 0, 1, 4 }, { 1, 2, 4 }, { 2, 0, 4 } };
   struct vg_mesh m = room_for(5 * n, 2 * n, 6 * n);
 
   for (uint32_t i = 0; i < n; i++) {
-    const uint32_t first[4] = {0, 1, 2, 3}, second[4] = {0, 2, 1, 4};
+    const uint32_t first[4] = { 0, 1, 2, 3 }, second[4] = { 0, 2, 1, 4 };
 
     for (uint32_t k = 0; k < 5; k++)
       for (int d = 0; d < 3; d++)
@@ -88,7 +89,7 @@ static void many_faces_may_wait(void **state)
   assert_int_equal(r.same_side_face, 1);
   assert_int_equal(r.outward_boundary, 3);
   assert_int_equal(r.n_component, n);
-  m.n_tri -= 4;                          /* of the last pair */
+  m.n_tri -= 4; /* of the last pair */
   r = judge(&m);
   assert_int_equal(r.open_face, 4);
   vg_mesh_release(&m);
@@ -102,8 +103,8 @@ static void many_faces_may_wait(void **state)
 static struct vg_mesh column(uint32_t by)
 {
   struct vg_mesh m = room_for(21, RAISED, 2 * RAISED + 2);
-  uint32_t top[3] = {0, by % 21, 2 * by % 21};
-  uint32_t (*t)[3] = m.tri;
+  uint32_t top[3] = { 0, by % 21, 2 * by % 21 };
+  uint32_t(*t)[3] = m.tri;
 
   for (uint32_t i = 0; i < 21; i++) {
     double *x = m.point[i * by % 21];

@@ -18,8 +18,9 @@ static int near(double a, double b)
 static void add(struct vg_spans *s, char kind, uint64_t cells, uint64_t faces,
                 double cpu)
 {
-  struct vg_span one = { .kind = kind, .n_cell = cells, .n_face = faces,
-                         .cpu = cpu };
+  struct vg_span one = {
+    .kind = kind, .n_cell = cells, .n_face = faces, .cpu = cpu
+  };
   struct vg_error err = VG_ERROR_INIT;
 
   snprintf(one.path, sizeof one.path, "0%zu%c", s->n, kind);
@@ -31,11 +32,12 @@ static void add_tasks(struct vg_spans *s, char kind, int n, double a, double b,
                       double off)
 {
   for (int i = 0; i < n; i++) {
-    uint64_t cells = 1000 * (uint64_t)(1 + i * i % 17), faces = 300 + 77 *
-                     (uint64_t)(i * 5 % 11);
+    uint64_t cells = 1000 * (uint64_t)(1 + i * i % 17),
+             faces = 300 + 77 * (uint64_t)(i * 5 % 11);
 
-    add(s, kind, cells, faces, (1 + (i % 2 ? off : -off)) * 1e-6 *
-                               (a * (double)cells + b * (double)faces));
+    add(s, kind, cells, faces,
+        (1 + (i % 2 ? off : -off)) * 1e-6 *
+          (a * (double)cells + b * (double)faces));
   }
 }
 
@@ -109,7 +111,7 @@ static void few_tasks_say_nothing(void **state)
   (void)state;
   add_tasks(&s, 'L', 12, 1.25, 0.75, 0);
   add_tasks(&s, 'T', 3, 9, 9, 0);
-  add(&s, 'P', 0, 10, 1);    /* made nothing */
+  add(&s, 'P', 0, 10, 1); /* made nothing */
   assert_int_equal(vg_rates_of(&s, f, &r, &err), VG_OK);
   assert_true(f[0].n == 12 && f[1].n == 0 && f[2].n == 0);
   assert_true(near(r.leaf.even, 1.25e-6) && near(r.leaf.graded, 1.25e-6));

@@ -18,8 +18,8 @@
 #include "fill_shapes.h"
 #include "tets_support.h"
 
-#define TRI(m) (const uint32_t (*)[3])(m)->tri
-#define POINT(m) (const double (*)[3])(m)->point
+#define TRI(m) (const uint32_t(*)[3])(m)->tri
+#define POINT(m) (const double(*)[3])(m)->point
 
 /* --- surfaces ----------------------------------------------------------- */
 
@@ -42,7 +42,7 @@ static int turn_edge(struct vg_mesh *m, size_t i, int k)
 {
   uint32_t a = m->tri[i][k], b = m->tri[i][(k + 1) % 3];
   uint32_t c = m->tri[i][(k + 2) % 3], d;
-  double (*x)[3] = m->point, far[3];
+  double(*x)[3] = m->point, far[3];
   int other = 0;
   size_t j = tri_of_edge(m, b, a, &other);
 
@@ -53,10 +53,10 @@ static int turn_edge(struct vg_mesh *m, size_t i, int k)
        axis++)
     far[axis] += 1;
   if (vg_orient3d(x[a], x[b], x[c], far) > 0
-          ? vg_orient3d(x[a], x[d], x[c], far) <= 0 ||
-                vg_orient3d(x[d], x[b], x[c], far) <= 0
-          : vg_orient3d(x[a], x[d], x[c], far) >= 0 ||
-                vg_orient3d(x[d], x[b], x[c], far) >= 0)
+        ? vg_orient3d(x[a], x[d], x[c], far) <= 0 ||
+            vg_orient3d(x[d], x[b], x[c], far) <= 0
+        : vg_orient3d(x[a], x[d], x[c], far) >= 0 ||
+            vg_orient3d(x[d], x[b], x[c], far) >= 0)
     return 0;
   m->tri[i][0] = a;
   m->tri[i][1] = d;
@@ -100,12 +100,13 @@ static void twisted_prism(struct vg_mesh *m, double twist)
 
 static double enclosed(const struct vg_mesh *m)
 {
-  const double zero[3] = {0, 0, 0};
+  const double zero[3] = { 0, 0, 0 };
   double sum = 0;
 
   for (size_t i = 0; i < m->n_tri; i++)
     sum -= vg_orient3d(zero, m->point[m->tri[i][0]], m->point[m->tri[i][1]],
-                       m->point[m->tri[i][2]]) / 6;
+                       m->point[m->tri[i][2]]) /
+           6;
   return sum;
 }
 
@@ -128,8 +129,8 @@ static void put_face(uint32_t (*list)[3], size_t n, const uint32_t v[3])
 /* The fixed faces of fluid cells are exactly the triangles, as they turn. */
 static void faces_are(const struct vg_tets *t, const struct vg_mesh *m)
 {
-  uint32_t (*want)[3] = vg_alloc(m->n_tri, sizeof *want);
-  uint32_t (*have)[3] = vg_alloc(4 * t->n_cell, sizeof *have);
+  uint32_t(*want)[3] = vg_alloc(m->n_tri, sizeof *want);
+  uint32_t(*have)[3] = vg_alloc(4 * t->n_cell, sizeof *have);
   size_t n = 0;
 
   assert_true(want && have);
@@ -179,21 +180,20 @@ static struct vg_boundary_report recovered(struct vg_mesh *m)
 
 static void nothing_is_lost_of_an_octahedron(void **state)
 {
-  const double centre[3] = {0, 0, 0};
+  const double centre[3] = { 0, 0, 0 };
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_boundary_report r;
 
   (void)state;
   shape_sphere(&m, 1, centre, 1, 1);
-  for (size_t i = 0; i < m.n_tri; i++) {      /* fluid inside */
+  for (size_t i = 0; i < m.n_tri; i++) { /* fluid inside */
     uint32_t keep = m.tri[i][0];
 
     m.tri[i][0] = m.tri[i][1];
     m.tri[i][1] = keep;
   }
   r = recovered(&m);
-  assert_int_equal(r.n_face_lost + r.n_pocket + r.n_pocket_cell + r.n_retry,
-                   0);
+  assert_int_equal(r.n_face_lost + r.n_pocket + r.n_pocket_cell + r.n_retry, 0);
   assert_int_equal(r.n_steiner, 0);
   assert_int_equal(r.whole_void, 0);
 }
@@ -202,7 +202,7 @@ static void nothing_is_lost_of_an_octahedron(void **state)
 
 static void diagonals_turned_at_random(void **state)
 {
-  static const int turns[4] = {1, 20, 150, 600};
+  static const int turns[4] = { 1, 20, 150, 600 };
 
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -251,7 +251,7 @@ static void a_pocket_that_tetgen_does_not_end(void **state)
 
 static void a_twisted_prism_gets_a_point(void **state)
 {
-  static const double twist[3] = {0.2, 0.5, 0.9};
+  static const double twist[3] = { 0.2, 0.5, 0.9 };
 
   (void)state;
   for (int k = 0; k < 3; k++) {
@@ -268,8 +268,8 @@ static void a_twisted_prism_gets_a_point(void **state)
 /* A bar 300 long, 2 wide and 0.02 thick, its flat sides cut anyhow. */
 static void long_slivers(void **state)
 {
-  const int n[3] = {30, 2, 1};
-  const double lo[3] = {0, 0, 0}, hi[3] = {300, 2, 0.02};
+  const int n[3] = { 30, 2, 1 };
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { 300, 2, 0.02 };
 
   (void)state;
   for (uint64_t seed = 1; seed < 5; seed++) {
@@ -283,7 +283,7 @@ static void long_slivers(void **state)
 
 static void a_body_with_turned_diagonals(void **state)
 {
-  const double centre[3] = {0.05, 0, 0};
+  const double centre[3] = { 0.05, 0, 0 };
   struct vg_mesh m = VG_MESH_INIT;
 
   (void)state;
@@ -298,7 +298,7 @@ static void the_lost_are_counted(void **state)
 {
   struct vg_tets t = VG_TETS_INIT;
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_boundary_report r = {0};
+  struct vg_boundary_report r = { 0 };
   struct vg_inserter s;
   uint8_t *missing;
   size_t n, again = 0, n_point;
@@ -312,7 +312,7 @@ static void the_lost_are_counted(void **state)
     assert_int_equal(tets_insert(&s, m.point[p], 0, 0), VG_OK);
   vg_inserter_release(&s);
   for (size_t i = 0; i < m.n_tri; i++)
-    for (int k = 0; k < 3; k++) m.tri[i][k] += 8;   /* after the corners */
+    for (int k = 0; k < 3; k++) m.tri[i][k] += 8; /* after the corners */
   missing = vg_alloc(m.n_tri, 1);
   assert_non_null(missing);
   assert_int_equal(vg_boundary_fix(&t, m.n_tri, TRI(&m), missing, &n, NULL),
@@ -330,8 +330,8 @@ static void the_lost_are_counted(void **state)
   assert_int_equal(vg_boundary_fix(&t, m.n_tri, TRI(&m), missing, &n, NULL),
                    VG_OK);
   assert_int_equal(n, 0);
-  assert_int_equal(vg_boundary_sides(&t, m.n_tri, TRI(&m), NULL, 0,
-                                     NULL, NULL), VG_OK);
+  assert_int_equal(vg_boundary_sides(&t, m.n_tri, TRI(&m), NULL, 0, NULL, NULL),
+                   VG_OK);
   faces_are(&t, &m);
   assert_true(fabs(tets_volume(&t) - 1) < 1e-12);
   free(missing);
@@ -342,7 +342,7 @@ static void the_lost_are_counted(void **state)
 static void the_same_bytes_again(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_tets t[2] = {VG_TETS_INIT, VG_TETS_INIT};
+  struct vg_tets t[2] = { VG_TETS_INIT, VG_TETS_INIT };
   struct vg_boundary_report r[2];
 
   (void)state;
@@ -350,7 +350,8 @@ static void the_same_bytes_again(void **state)
   turn_edges(&m, 300, 21);
   for (int k = 0; k < 2; k++)
     assert_int_equal(vg_boundary_tets(m.n_point, POINT(&m), m.n_tri, TRI(&m),
-                                      &t[k], &r[k], NULL), VG_OK);
+                                      &t[k], &r[k], NULL),
+                     VG_OK);
   assert_int_equal(t[0].n_cell, t[1].n_cell);
   assert_int_equal(t[0].n_point, t[1].n_point);
   assert_memory_equal(t[0].flag, t[1].flag, t[0].n_cell);
@@ -431,7 +432,7 @@ static void one_triangle_turned_over(void **state)
 
 static void fluid_without_end(void **state)
 {
-  const double centre[3] = {0, 0, 0};
+  const double centre[3] = { 0, 0, 0 };
   struct vg_mesh m = VG_MESH_INIT;
 
   (void)state;
@@ -452,8 +453,8 @@ static void two_points_in_one_place(void **state)
 /* A box through the wall of another. */
 static void crossing_boxes(void **state)
 {
-  const int n[3] = {3, 3, 3};
-  const double lo[3] = {0.1, 0.13, -0.21}, hi[3] = {1.1, 0.33, 0.17};
+  const int n[3] = { 3, 3, 3 };
+  const double lo[3] = { 0.1, 0.13, -0.21 }, hi[3] = { 1.1, 0.33, 0.17 };
   struct vg_mesh m = VG_MESH_INIT;
 
   (void)state;
@@ -469,7 +470,7 @@ static void many_crossing_spheres(void **state)
   (void)state;
   shape_box(&m, 4, 3);
   for (int k = 0; k < 6; k++) {
-    const double centre[3] = {0.3 * k - 1, 0.1 * k, 0.05 * k * k};
+    const double centre[3] = { 0.3 * k - 1, 0.1 * k, 0.05 * k * k };
 
     shape_sphere(&m, 4, centre, 1, 20 + k);
   }
@@ -480,15 +481,17 @@ static void many_crossing_spheres(void **state)
 
 static void tetgen_fails_alone(void **state)
 {
-  static const double x[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
-                                 {0.2, 0.2, -1}, {0.3, 0.3, 1}, {2, 2, 0.5}};
-  static const uint32_t crossing[2][3] = {{0, 1, 2}, {3, 4, 5}};
-  static const uint32_t fine[1][3] = {{0, 1, 2}};
+  static const double x[6][3] = { { 0, 0, 0 },     { 1, 0, 0 },
+                                  { 0, 1, 0 },     { 0.2, 0.2, -1 },
+                                  { 0.3, 0.3, 1 }, { 2, 2, 0.5 } };
+  static const uint32_t crossing[2][3] = { { 0, 1, 2 }, { 3, 4, 5 } };
+  static const uint32_t fine[1][3] = { { 0, 1, 2 } };
   struct vg_cdt_job job[4] = {
-    {.n = 6, .n_tri = 1, .x = x, .tri = fine},
-    {.n = 6, .n_tri = 2, .x = x, .tri = crossing},
-    {.n = 3, .n_tri = 1, .x = x, .tri = fine},      /* flat: no cell at all */
-    {.n = 6, .n_tri = 1, .x = x, .tri = fine}};
+    { .n = 6, .n_tri = 1, .x = x, .tri = fine },
+    { .n = 6, .n_tri = 2, .x = x, .tri = crossing },
+    { .n = 3, .n_tri = 1, .x = x, .tri = fine }, /* flat: no cell at all */
+    { .n = 6, .n_tri = 1, .x = x, .tri = fine }
+  };
   FILE *to;
   int kept = divert(&to);
   vg_status st = vg_cdt_tetgen(4, job, NULL);

@@ -33,8 +33,8 @@ static void start(struct vg_tets *t, uint64_t seed)
   assert_int_equal(tets_not_delaunay(t), 0);
 }
 
-static double side(const struct vg_tets *t, uint32_t a, uint32_t b,
-                   uint32_t c, uint32_t d)
+static double side(const struct vg_tets *t, uint32_t a, uint32_t b, uint32_t c,
+                   uint32_t d)
 {
   return vg_orient3d(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
@@ -68,7 +68,7 @@ static void spoil(struct vg_tets *t, uint64_t seed)
     old[0] = c;
     old[1] = t->cell[c].link[i] >> 2;
     assert_int_equal(vg_cavity_reserve(t, 2, 3), 0);
-    vg_cavity_refill(t, 2, old, 3, (const uint32_t (*)[4])v, slot);
+    vg_cavity_refill(t, 2, old, 3, (const uint32_t(*)[4])v, slot);
     n++;
   }
 }
@@ -154,7 +154,9 @@ static size_t count_fixed(const struct vg_tets *t)
   return n;
 }
 
-struct face { uint32_t v[3]; };
+struct face {
+  uint32_t v[3];
+};
 
 /* Every tenth face of the spoilt cells, fixed on both sides. */
 static size_t fix_some(struct vg_tets *t, struct face *face)
@@ -213,7 +215,7 @@ static void fixed_faces_stay(void **state)
  * be flipped, whatever the rounding of sums. */
 static void equals_stay(void **state)
 {
-  static const int n[3] = {4, 4, 4};
+  static const int n[3] = { 4, 4, 4 };
   struct vg_tets t = VG_TETS_INIT;
   size_t n_flip;
 

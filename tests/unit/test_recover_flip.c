@@ -31,13 +31,13 @@ static void insert_all(struct vg_tets *t, size_t n, const double (*x)[3])
 static void random_points(struct vg_tets *t, size_t n, double height,
                           uint64_t seed)
 {
-  double (*x)[3] = vg_alloc(n, sizeof *x);
+  double(*x)[3] = vg_alloc(n, sizeof *x);
 
   assert_non_null(x);
   for (size_t k = 0; k < n; k++)
     for (int i = 0; i < 3; i++)
       x[k][i] = tets_random(&seed) * (i == 2 ? height : 1);
-  insert_all(t, n, (const double (*)[3])x);
+  insert_all(t, n, (const double(*)[3])x);
   free(x);
 }
 
@@ -73,8 +73,7 @@ static size_t missing_of(struct vg_tets *t, size_t n, const uint32_t (*tri)[3],
   size_t m = 0, n_missing;
 
   assert_non_null(is);
-  for (size_t c = 0; c < t->n_cell; c++)
-    t->flag[c] &= (uint8_t)~VG_FIXED_FACES;
+  for (size_t c = 0; c < t->n_cell; c++) t->flag[c] &= (uint8_t)~VG_FIXED_FACES;
   assert_int_equal(vg_boundary_fix(t, n, tri, is, &n_missing, NULL), VG_OK);
   for (size_t k = 0; k < n; k++)
     if (is[k]) missing[m++] = (uint32_t)k;
@@ -133,18 +132,18 @@ static void triangles_among_points(double height, double near)
 
   for (uint64_t k = 0; k < 30; k++) {
     struct vg_tets t = VG_TETS_INIT;
-    struct vg_boundary_report r = {0};
+    struct vg_boundary_report r = { 0 };
     uint32_t v[1][3];
     size_t lost;
 
     random_points(&t, N_POINT, height, 100 + k);
     choose(&t, near, &seed, v[0]);
-    n_left += left_of(&t, 1, (const uint32_t (*)[3])v, &lost);
+    n_left += left_of(&t, 1, (const uint32_t(*)[3])v, &lost);
     n_lost += lost;
-    assert_int_equal(vg_recover(&t, 1, (const uint32_t (*)[3])v, &r, NULL),
+    assert_int_equal(vg_recover(&t, 1, (const uint32_t(*)[3])v, &r, NULL),
                      VG_OK);
     is_sound(&t);
-    assert_int_equal(missing_of(&t, 1, (const uint32_t (*)[3])v, v[0]), 0);
+    assert_int_equal(missing_of(&t, 1, (const uint32_t(*)[3])v, v[0]), 0);
     vg_tets_release(&t);
   }
   assert_true(n_lost > 10);
@@ -176,7 +175,7 @@ static void triangles_in_a_thin_sheet(void **state)
 static size_t sheet(struct vg_tets *t, int nu, int nv, double bend,
                     uint32_t (*tri)[3])
 {
-  double (*x)[3] = vg_alloc((size_t)(nu * nv), sizeof *x);
+  double(*x)[3] = vg_alloc((size_t)(nu * nv), sizeof *x);
   size_t n = 0;
 
   assert_non_null(x);
@@ -188,12 +187,12 @@ static size_t sheet(struct vg_tets *t, int nu, int nv, double bend,
       x[i * nv + j][1] = v + 0.6 * u;
       x[i * nv + j][2] = bend * (u - 0.3) * v + bend * u * u;
     }
-  insert_all(t, (size_t)(nu * nv), (const double (*)[3])x);
+  insert_all(t, (size_t)(nu * nv), (const double(*)[3])x);
   for (int i = 0; i + 1 < nu; i++)
     for (int j = 0; j + 1 < nv; j++) {
       uint32_t a = 8 + (uint32_t)(i * nv + j), b = a + (uint32_t)nv;
-      uint32_t v[2][3] = {{a, b, b + 1}, {a, b + 1, a + 1}};
-      uint32_t w[2][3] = {{a, b, a + 1}, {b, b + 1, a + 1}};
+      uint32_t v[2][3] = { { a, b, b + 1 }, { a, b + 1, a + 1 } };
+      uint32_t w[2][3] = { { a, b, a + 1 }, { b, b + 1, a + 1 } };
 
       memcpy(tri[n], (i + j) % 2 ? v : w, sizeof v);
       n += 2;
@@ -204,7 +203,7 @@ static size_t sheet(struct vg_tets *t, int nu, int nv, double bend,
 
 static void a_stretched_sheet(void **state)
 {
-  static const double bend[3] = {0, 0.02, 0.3};
+  static const double bend[3] = { 0, 0.02, 0.3 };
   static uint32_t tri[2 * 5 * 59][3];
 
   (void)state;
@@ -212,7 +211,7 @@ static void a_stretched_sheet(void **state)
     struct vg_tets t = VG_TETS_INIT;
     size_t n = sheet(&t, 6, 60, bend[k], tri), lost, left;
 
-    left = left_of(&t, n, (const uint32_t (*)[3])tri, &lost);
+    left = left_of(&t, n, (const uint32_t(*)[3])tri, &lost);
     assert_true(4 * lost > n);
     assert_true(20 * left <= lost);
     vg_tets_release(&t);
@@ -224,7 +223,7 @@ static void twisted_prisms_are_handed_on(void **state)
 {
   static uint32_t tri[5 * 8][3];
   struct vg_tets t = VG_TETS_INIT;
-  struct vg_boundary_report r = {0};
+  struct vg_boundary_report r = { 0 };
   double x[5 * 6][3];
   size_t n = 0, n_point, lost, left;
 
@@ -239,7 +238,7 @@ static void twisted_prisms_are_handed_on(void **state)
     }
     for (uint32_t i = 0; i < 3; i++) {
       uint32_t a = 8 + 6 * k + i, b = 8 + 6 * k + (i + 1) % 3;
-      uint32_t v[2][3] = {{a, b + 3, b}, {a, a + 3, b + 3}};
+      uint32_t v[2][3] = { { a, b + 3, b }, { a, a + 3, b + 3 } };
 
       memcpy(tri[n], v, sizeof v);
       n += 2;
@@ -248,12 +247,12 @@ static void twisted_prisms_are_handed_on(void **state)
       for (uint32_t m = 0; m < 3; m++)
         tri[n][m] = 8 + 6 * k + 3 * i + (i ? 2 - m : m);
   }
-  insert_all(&t, 30, (const double (*)[3])x);
+  insert_all(&t, 30, (const double(*)[3])x);
   n_point = t.n_point;
-  left = left_of(&t, n, (const uint32_t (*)[3])tri, &lost);
+  left = left_of(&t, n, (const uint32_t(*)[3])tri, &lost);
   assert_in_range(left, 5, lost);
   assert_int_equal(t.n_point, n_point);
-  assert_int_equal(vg_recover(&t, n, (const uint32_t (*)[3])tri, &r, NULL),
+  assert_int_equal(vg_recover(&t, n, (const uint32_t(*)[3])tri, &r, NULL),
                    VG_OK);
   assert_true(r.n_face_left > 0 && r.n_steiner >= 5);
   is_sound(&t);
@@ -263,13 +262,13 @@ static void twisted_prisms_are_handed_on(void **state)
 static void the_same_cells_again(void **state)
 {
   static uint32_t tri[2 * 7 * 39][3];
-  struct vg_tets t[2] = {VG_TETS_INIT, VG_TETS_INIT};
+  struct vg_tets t[2] = { VG_TETS_INIT, VG_TETS_INIT };
 
   (void)state;
   for (int k = 0; k < 2; k++) {
     size_t n = sheet(&t[k], 8, 40, 0.1, tri), lost;
 
-    left_of(&t[k], n, (const uint32_t (*)[3])tri, &lost);
+    left_of(&t[k], n, (const uint32_t(*)[3])tri, &lost);
     assert_true(lost > 100);
   }
   assert_int_equal(t[0].n_cell, t[1].n_cell);
@@ -283,13 +282,14 @@ static void the_same_cells_again(void **state)
 
 static void signs_of_what_is_in_the_way(void **state)
 {
-  static double x[9][3] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0},  /* triangle */
-                           {1, 1, -1}, {1, 1, 1},            /* through it */
-                           {5, 5, 1},                        /* beside it */
-                           {2, 0, 0},                        /* on its edge */
-                           {1, 1, 0}, {8, 8, 0}};            /* in its plane */
-  struct vg_tets t = {.n_point = 9, .x = x};
-  struct vg_flipper f = {.t = &t};
+  static double x[9][3] = { { 0, 0, 0 },  { 4, 0, 0 },
+                            { 0, 4, 0 },                 /* triangle */
+                            { 1, 1, -1 }, { 1, 1, 1 },   /* through it */
+                            { 5, 5, 1 },                 /* beside it */
+                            { 2, 0, 0 },                 /* on its edge */
+                            { 1, 1, 0 },  { 8, 8, 0 } }; /* in its plane */
+  struct vg_tets t = { .n_point = 9, .x = x };
+  struct vg_flipper f = { .t = &t };
 
   (void)state;
   f.n_target = 3;
@@ -307,13 +307,13 @@ static void signs_of_what_is_in_the_way(void **state)
   assert_true(vg_flip_obstructs(&f, 2, 1, 0));
   assert_false(vg_flip_obstructs(&f, 3, 4, 5));
   assert_false(vg_flip_obstructs(&f, 0, 1, 6));
-  f.target[0] = 0;              /* from a corner, through 1 2 in their plane */
+  f.target[0] = 0; /* from a corner, through 1 2 in their plane */
   f.target[1] = 8;
   assert_true(vg_flip_obstructs(&f, 0, 1, 2));
   assert_true(vg_flip_obstructs(&f, 2, 0, 1));
-  f.target[1] = 7;              /* ends before it */
+  f.target[1] = 7; /* ends before it */
   assert_false(vg_flip_obstructs(&f, 0, 1, 2));
-  f.target[1] = 4;              /* leaves the plane */
+  f.target[1] = 4; /* leaves the plane */
   assert_false(vg_flip_obstructs(&f, 0, 1, 2));
 }
 

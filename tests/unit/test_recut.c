@@ -13,7 +13,8 @@
 static struct vg_piece piece_of(size_t n_cell, const uint32_t (*cell)[4])
 {
   static const double x[5][3] = {
-    {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, -1} };
+    { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1, -1 }
+  };
   struct vg_piece q = { .serial = 7, .n_in = 5, .n_cell = n_cell };
 
   q.in = vg_alloc(5, sizeof *q.in);
@@ -29,7 +30,7 @@ static struct vg_piece piece_of(size_t n_cell, const uint32_t (*cell)[4])
 /* Of one piece, and put together from two in either order, the same. */
 static void what_bounds_cells(void **state)
 {
-  static const uint32_t cell[2][4] = { {0, 1, 2, 3}, {0, 2, 1, 4} };
+  static const uint32_t cell[2][4] = { { 0, 1, 2, 3 }, { 0, 2, 1, 4 } };
   struct vg_piece both = piece_of(2, cell);
   struct vg_front whole = VG_FRONT_INIT;
 
@@ -150,7 +151,8 @@ static void what_can_never_be_filled(void **state)
   o.fail_leaves = 0.04;
   o.fail_rounds = 1000;
   assert_int_equal(vg_partition_grow(NULL, &s.m, s.sizing, &o, &p, &r, NULL,
-                                     &err), VG_ERR_GEOMETRY);
+                                     &err),
+                   VG_ERR_GEOMETRY);
   assert_null(p);
   assert_non_null(strstr(err.text, "on purpose"));
   scene_end(&s);
@@ -172,7 +174,8 @@ static void the_record_is_one(void **state)
   o.fail_leaves = 0.04;
   o.fail_rounds = 2;
   assert_int_equal(vg_partition_grow(NULL, &s.m, s.sizing, &o, &p, &r, &spans,
-                                     NULL), VG_OK);
+                                     NULL),
+                   VG_OK);
   for (size_t k = 0; k < spans.n; k++) {
     const struct vg_span *t = &spans.span[k];
 

@@ -13,9 +13,9 @@
 static struct vg_sizing *graded(void)
 {
   struct vg_source far[2] = {
-    { .kind = VG_SOURCE_POINT, .p0 = {-5, 1, 0}, .h0 = 0.05, .growth = 1.3 },
-    { .kind = VG_SOURCE_POINT, .p0 = {-40, -40, -40}, .h0 = 8,
-      .growth = 1.3 } };
+    { .kind = VG_SOURCE_POINT, .p0 = { -5, 1, 0 }, .h0 = 0.05, .growth = 1.3 },
+    { .kind = VG_SOURCE_POINT, .p0 = { -40, -40, -40 }, .h0 = 8, .growth = 1.3 }
+  };
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_sizing *s = NULL;
 
@@ -27,8 +27,8 @@ static struct vg_sizing *graded(void)
 static int ruled(const struct vg_region *r, const struct vg_sizing *s,
                  const double (*x)[3], double band)
 {
-  static const uint32_t v[3] = {0, 1, 2};
-  struct vg_region_cache cache = {0};
+  static const uint32_t v[3] = { 0, 1, 2 };
+  struct vg_region_cache cache = { 0 };
   int is;
 
   assert_int_equal(vg_region_cache_init(&cache, r, s, 3, x, NULL), VG_OK);
@@ -51,12 +51,15 @@ static int met(const struct vg_region *r, const struct vg_sizing *s,
 /* A line along x, one unit above a plane of symmetry: near it by the spacing
  * at x = -12, not by that at x = -5. */
 static const struct vg_region line = {
-  .n_plane = 2, .plane = { { {0, 1, 0}, 1 }, { {0, 0, 1}, 0 } } };
+  .n_plane = 2, .plane = { { { 0, 1, 0 }, 1 }, { { 0, 0, 1 }, 0 } }
+};
 
 /* The middle of what the triangle has near the line lies where it is fine. */
 static void test_large_by_a_corner(void **state)
 {
-  static const double x[3][3] = {{-12, 0, 0}, {97, -93, 135}, {97, -93, -136}};
+  static const double x[3][3] = { { -12, 0, 0 },
+                                  { 97, -93, 135 },
+                                  { 97, -93, -136 } };
   struct vg_sizing *s = graded();
 
   (void)state;
@@ -68,10 +71,12 @@ static void test_large_by_a_corner(void **state)
 
 static void test_large_but_far(void **state)
 {
-  static const double x[3][3] = {{-5, -1, 0}, {97, -93, 135},
-                                 {97, -93, -136}};
-  static const double behind[3][3] = {{-12, 0, 30}, {-12, -9, 90},
-                                      {-1, -9, 90}};
+  static const double x[3][3] = { { -5, -1, 0 },
+                                  { 97, -93, 135 },
+                                  { 97, -93, -136 } };
+  static const double behind[3][3] = { { -12, 0, 30 },
+                                       { -12, -9, 90 },
+                                       { -1, -9, 90 } };
   struct vg_sizing *s = graded();
 
   (void)state;
@@ -84,15 +89,16 @@ static void test_large_but_far(void **state)
 /* A corner that is beyond a wall is not within reach of the region. */
 static void test_large_beyond_a_wall(void **state)
 {
-  static const double x[3][3] = {{-12, 0, 0}, {-97, -93, 135},
-                                 {-97, -93, -136}};
+  static const double x[3][3] = { { -12, 0, 0 },
+                                  { -97, -93, 135 },
+                                  { -97, -93, -136 } };
   struct vg_region r = line;
   struct vg_sizing *s = graded();
 
   (void)state;
   assert_true(met(&r, s, x, VG_BAND_PLACE));
   r.n_wall = 1;
-  r.wall[0] = (struct vg_plane){ {1, 0, 0}, 20 };
+  r.wall[0] = (struct vg_plane){ { 1, 0, 0 }, 20 };
   assert_false(met(&r, s, x, VG_BAND_PLACE));
   vg_sizing_free(s);
 }
@@ -100,10 +106,12 @@ static void test_large_beyond_a_wall(void **state)
 /* A triangle of the size of the cells counts as a whole. */
 static void test_small(void **state)
 {
-  static const double x[3][3] = {{-12, 0.5, 0}, {-11.5, 1.2, 0},
-                                 {-11.5, 0.5, 0.5}};
-  static const double off[3][3] = {{-12, 40.5, 0}, {-11.5, 41.2, 0},
-                                   {-11.5, 40.5, 0.5}};
+  static const double x[3][3] = { { -12, 0.5, 0 },
+                                  { -11.5, 1.2, 0 },
+                                  { -11.5, 0.5, 0.5 } };
+  static const double off[3][3] = { { -12, 40.5, 0 },
+                                    { -11.5, 41.2, 0 },
+                                    { -11.5, 40.5, 0.5 } };
   struct vg_sizing *s = graded();
 
   (void)state;

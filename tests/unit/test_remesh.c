@@ -78,7 +78,7 @@ static void edges_go_across_strips(void **unused)
     struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
 
     shape_box(&m, size, n);
-    o.h_max = 0.5;             /* 0.02 of it is as wide as the strip */
+    o.h_max = 0.5; /* 0.02 of it is as wide as the strip */
     o.h_min = 1e-4;
     o.across = i ? across : NULL;
     remesh(&m, &o, NULL);
@@ -117,7 +117,7 @@ static void makes_needles_good(void **unused)
   assert_true(q.angle_min_p1 >= 42);
   assert_true(edge_within(&r) > 0.95);
   assert_int_equal(r.n_bad, 0);
-  for (size_t p = 0; p < 6; p++)   /* planes: areas but for rounding */
+  for (size_t p = 0; p < 6; p++) /* planes: areas but for rounding */
     assert_float_equal(shape_area(&m, p), shape_area(&old, p), 1e-9);
   assert_true(apart(&m, &old) < 1e-9);
   vg_remesh_report_release(&r);
@@ -208,7 +208,8 @@ static void follows_strips(void **unused)
  * end, `to` at the other. */
 static void shape_chamfered(struct vg_mesh *m, double from, double to)
 {
-  const struct vg_patch patch = { .id = 1, .bc = VG_BC_NONE,
+  const struct vg_patch patch = { .id = 1,
+                                  .bc = VG_BC_NONE,
                                   .bc_fun3d = VG_BC_NONE };
   uint32_t p[2][5];
 
@@ -216,8 +217,9 @@ static void shape_chamfered(struct vg_mesh *m, double from, double to)
   m->patch[m->n_patch++] = patch;
   for (int end = 0; end < 2; end++) {
     double w = (end ? to : from) / sqrt(2), x = 2. * end;
-    const double at[5][2] = { { 0, 0 }, { 1, 0 }, { 1, 1 - w }, { 1 - w, 1 },
-                              { 0, 1 } };
+    const double at[5][2] = {
+      { 0, 0 }, { 1, 0 }, { 1, 1 - w }, { 1 - w, 1 }, { 0, 1 }
+    };
 
     for (int k = 0; k < 5; k++)
       p[end][k] = shape_point(m, x, at[k][0], at[k][1]);
@@ -317,17 +319,17 @@ static void keeps_open_rims(void **unused)
   (void)unused;
   shape_box(&m, size, n);
   for (size_t t = 0; t < m.n_tri; t++) {
-    if (m.tri_patch[t] == 2) continue;      /* y = 0 */
+    if (m.tri_patch[t] == 2) continue; /* y = 0 */
     memmove(m.tri[keep], m.tri[t], sizeof *m.tri);
     m.tri_patch[keep++] = m.tri_patch[t];
   }
   m.n_tri = keep;
-  shape_weld(&m);                           /* points of the side go */
+  shape_weld(&m); /* points of the side go */
   o.h_max = 0.1;
   remesh(&m, &o, &r);
   shape_expect_sound(&m, 1);
   for (size_t p = 0; p < m.n_point; p++) n_rim += m.point[p][1] == 0;
-  assert_true(n_rim >= 36 && n_rim <= 60);  /* a length of 4 by 0.1 */
+  assert_true(n_rim >= 36 && n_rim <= 60); /* a length of 4 by 0.1 */
   vg_remesh_report_release(&r);
   vg_mesh_release(&m);
 }
@@ -336,8 +338,9 @@ static void obeys_sources(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
   const uint32_t n[3] = { 2, 2, 2 };
-  const struct vg_source s = { .kind = VG_SOURCE_POINT, .p0 = { 1, .5, .5 },
-                               .h0 = 0.01, .h1 = 0.01 };
+  const struct vg_source s = {
+    .kind = VG_SOURCE_POINT, .p0 = { 1, .5, .5 }, .h0 = 0.01, .h1 = 0.01
+  };
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
   struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
@@ -366,15 +369,25 @@ static void obeys_the_field_of_the_volume(void **unused)
 {
   const double size[3] = { 4, 4, 1 };
   const uint32_t n[3] = { 4, 4, 1 };
-  const struct vg_source s[3] = {
-    { .kind = VG_SOURCE_VGRID_NODE, .p0 = { 0, 0, 1 }, .h0 = 0.05, .h1 = 0.05,
-      .an = 1 },
-    { .kind = VG_SOURCE_VGRID_NODE, .p0 = { 4, 4, 1 }, .h0 = 0.4, .h1 = 0.4,
-      .an = 1 },
-    { .kind = VG_SOURCE_SPHERE, .p0 = { 3, 1, 1 }, .r0 = 0.3, .h0 = 0.04,
-      .h1 = 0.04, .growth = 1.3 } };
-  const struct vg_sizing_options of = { .h_max = 0.3, .growth = 1.2,
-    .scale = 1.2, .threads = 1, .coarseness = 1 };
+  const struct vg_source s[3] = { { .kind = VG_SOURCE_VGRID_NODE,
+                                    .p0 = { 0, 0, 1 },
+                                    .h0 = 0.05,
+                                    .h1 = 0.05,
+                                    .an = 1 },
+                                  { .kind = VG_SOURCE_VGRID_NODE,
+                                    .p0 = { 4, 4, 1 },
+                                    .h0 = 0.4,
+                                    .h1 = 0.4,
+                                    .an = 1 },
+                                  { .kind = VG_SOURCE_SPHERE,
+                                    .p0 = { 3, 1, 1 },
+                                    .r0 = 0.3,
+                                    .h0 = 0.04,
+                                    .h1 = 0.04,
+                                    .growth = 1.3 } };
+  const struct vg_sizing_options of = {
+    .h_max = 0.3, .growth = 1.2, .scale = 1.2, .threads = 1, .coarseness = 1
+  };
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -414,8 +427,11 @@ static void obeys_the_field_of_the_volume(void **unused)
 static void scales_all_sizes(void **unused)
 {
   const double size[3] = { 1, 0.6, 0.3 };
-  const struct vg_source s = { .kind = VG_SOURCE_POINT, .p0 = { 1, 0, 0 },
-                               .r0 = 0.1, .h0 = 0.04, .h1 = 0.04 };
+  const struct vg_source s = { .kind = VG_SOURCE_POINT,
+                               .p0 = { 1, 0, 0 },
+                               .r0 = 0.1,
+                               .h0 = 0.04,
+                               .h1 = 0.04 };
   struct vg_surface_quality q[2];
   struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
 
@@ -541,7 +557,7 @@ static void random_search(void **unused)
     if (i % 2) shape_box(&m, size, n);
     else shape_ball(&m, size, 4 + n[0]);
     first = m.n_point;
-    if (i % 3 == 0) {           /* beside it, a box as high */
+    if (i % 3 == 0) { /* beside it, a box as high */
       struct vg_mesh b = VG_MESH_INIT;
 
       shape_box(&b, size, n);
@@ -550,8 +566,8 @@ static void random_search(void **unused)
                     b.point[p][2]);
       for (size_t t = 0; t < b.n_tri; t++)
         shape_tri(&m, b.tri[t][0] + (uint32_t)first,
-                  b.tri[t][1] + (uint32_t)first,
-                  b.tri[t][2] + (uint32_t)first, 0);
+                  b.tri[t][1] + (uint32_t)first, b.tri[t][2] + (uint32_t)first,
+                  0);
       vg_mesh_release(&b);
     }
     assert_int_equal(vg_mesh_copy(&old, &m, &err), VG_OK);
@@ -566,7 +582,7 @@ static void random_search(void **unused)
     shape_expect_sound(&m, 0);
     /* over the cosine of half the ridge angle */
     assert_true(apart(&m, &old) <= 1.065 * o.tolerance);
-    if (i % 2)                  /* straight ones */
+    if (i % 2) /* straight ones */
       assert_float_equal(r.line_length[1], r.line_length[0], 1e-9);
     vg_remesh_report_release(&r);
     vg_mesh_release(&m);
@@ -728,7 +744,8 @@ static void measures_in_any_order(void **unused)
       double most = 0;
 
       assert_int_equal(vg_remesh_measure(&m[0], &m[1], threads, NULL, face, d,
-                                         &err), VG_OK);
+                                         &err),
+                       VG_OK);
       for (size_t t = 0; t < m[0].n_tri; t++) most = fmax(most, face[t]);
       assert_float_equal(d[0].most, 0.2, 1e-12);
       assert_float_equal(d[1].most, 0.2, 1e-12);

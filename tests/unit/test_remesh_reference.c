@@ -24,8 +24,8 @@ static uint32_t divide(struct vg_mesh *m, size_t t, double a, double b,
   uint32_t p;
 
   for (int k = 0; k < 3; k++)
-    x[k] = a * m->point[v[0]][k] + b * m->point[v[1]][k]
-           + c * m->point[v[2]][k];
+    x[k] = a * m->point[v[0]][k] + b * m->point[v[1]][k] +
+           c * m->point[v[2]][k];
   p = shape_point(m, x[0], x[1], x[2]);
   m->tri[t][2] = p;
   shape_tri(m, v[1], v[2], p, patch);
@@ -130,8 +130,8 @@ static void refuses_large_crossings(void **unused)
     shape_point(&m, b.point[p][0] + 0.31, b.point[p][1] + 0.31,
                 b.point[p][2] + 0.31);
   for (size_t t = 0; t < b.n_tri; t++)
-    shape_tri(&m, b.tri[t][0] + first, b.tri[t][1] + first,
-              b.tri[t][2] + first, 0);
+    shape_tri(&m, b.tri[t][0] + first, b.tri[t][1] + first, b.tri[t][2] + first,
+              0);
   vg_mesh_release(&b);
   n_tri = m.n_tri;
   o.h_max = 0.2;
@@ -179,8 +179,8 @@ static void shape_prism(struct vg_mesh *m, const double (*at)[2], uint32_t n)
 static void cuts_long_lines(void **unused)
 {
   const double c = 0.01;
-  const double at[][2] = { { c, 0 }, { 4 - c, 0 }, { 4, c }, { 4, 1 },
-                           { 0, 1 }, { 0, c } };
+  const double at[][2] = { { c, 0 }, { 4 - c, 0 }, { 4, c },
+                           { 4, 1 }, { 0, 1 },     { 0, c } };
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
   struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
@@ -192,8 +192,8 @@ static void cuts_long_lines(void **unused)
   remesh(&m, &o, &r);
   shape_expect_sound(&m, 0);
   for (size_t p = 0; p < m.n_point; p++)
-    n_middle += fabs(m.point[p][1]) + fabs(m.point[p][2]) < 1e-9
-                && fabs(m.point[p][0] - 2) < 1;
+    n_middle += fabs(m.point[p][1]) + fabs(m.point[p][2]) < 1e-9 &&
+                fabs(m.point[p][0] - 2) < 1;
   /* Two lengths at sizes of 0.2 and more; at the chamfers' it would be 140. */
   assert_true(n_middle > 2 && n_middle < 14);
   assert_true(r.angle_min > 15);
@@ -210,8 +210,7 @@ static double uniform(uint32_t *seed)
 }
 
 /* A lens with a knife's edge all around, of this thickness there. */
-static void shape_lens(struct vg_mesh *m, double thick, double edge,
-                       uint32_t n)
+static void shape_lens(struct vg_mesh *m, double thick, double edge, uint32_t n)
 {
   const double r[3] = { 1, 1, 1 };
 
@@ -221,15 +220,15 @@ static void shape_lens(struct vg_mesh *m, double thick, double edge,
     const double q = x[0] * x[0] + x[1] * x[1];
 
     x[2] = (x[2] > 1e-9) - (x[2] < -1e-9)
-           ? (x[2] > 0 ? 1 : -1) * (thick * (1 - q) + edge / 2) : 0;
+           ? (x[2] > 0 ? 1 : -1) * (thick * (1 - q) + edge / 2)
+           : 0;
   }
 }
 
 static void disturb(struct vg_mesh *m, double by, uint32_t *seed)
 {
   for (size_t p = 0; p < m->n_point; p++)
-    for (int k = 0; k < 3; k++)
-      m->point[p][k] += by * (2 * uniform(seed) - 1);
+    for (int k = 0; k < 3; k++) m->point[p][k] += by * (2 * uniform(seed) - 1);
 }
 
 /* Whatever is wrong, it ends in a sound surface within the tolerance, or in a
@@ -253,8 +252,8 @@ static void random_faults(void **unused)
                8 + (uint32_t)(8 * uniform(&seed)));
     n = m.n_tri;
     for (int k = 0; k < 6; k++)
-      divide(&m, (size_t)((double)n * uniform(&seed)),
-             i % 2 ? -0.01 : 1e-8, 0.5, i % 2 ? 0.51 : 0.5 - 1e-8);
+      divide(&m, (size_t)((double)n * uniform(&seed)), i % 2 ? -0.01 : 1e-8,
+             0.5, i % 2 ? 0.51 : 0.5 - 1e-8);
     disturb(&m, noise, &seed);
     assert_int_equal(vg_mesh_copy(&old, &m, &err), VG_OK);
     o.h_max = 0.15 + 0.2 * uniform(&seed);

@@ -14,8 +14,7 @@ static vg_status draw_changes(void *user, struct vg_tris *w,
   size_t n = 0;
 
   (void)err;
-  for (int i = 0; i < 400; i++)
-    n += (size_t)scene_change(w, &state);
+  for (int i = 0; i < 400; i++) n += (size_t)scene_change(w, &state);
   __atomic_add_fetch((size_t *)user, n, __ATOMIC_RELAXED);
   return VG_OK;
 }
@@ -127,7 +126,8 @@ static void fails_with_the_first(void **unused)
   scene_set(&s, TOLERANCE, 0.2);
   for (int i = 0; i < 2; i++)
     assert_int_equal(vg_blocks_run(&s.w, 6, 0, 1 + 2 * i, fail_where_large,
-                                   NULL, &err[i]), VG_ERR_GEOMETRY);
+                                   NULL, &err[i]),
+                     VG_ERR_GEOMETRY);
   assert_string_equal(err[0].text, err[1].text);
   scene_release(&s);
 }

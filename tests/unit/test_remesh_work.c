@@ -38,7 +38,7 @@ static void any_sequence_on_a_box(void **unused)
   (void)unused;
   shape_box(&s.m, size, n);
   scene_set(&s, 1e-3, 0.1);
-  any_sequence(&s, 1e-9);     /* its sides are planes */
+  any_sequence(&s, 1e-9); /* its sides are planes */
   scene_release(&s);
 }
 
@@ -48,15 +48,17 @@ static void any_sequence_on_a_box(void **unused)
 static void knife(struct vg_mesh *m)
 {
   enum { P0, P1, P2, P3, Q, A, B, C, D, E, F };
-  static const double at[11][2] = { { 0.05, 0.5 }, { 0.09, 0.5 },
-    { 0.02, 0.45 }, { 0.02, 0.55 }, { 0.021, 0.5 }, { 0, 0 }, { 0, 1 },
-    { 1, 0 }, { 1, 1 }, { 1, 0 }, { 1, 1 } };
+  static const double at[11][2] = {
+    { 0.05, 0.5 },  { 0.09, 0.5 }, { 0.02, 0.45 }, { 0.02, 0.55 },
+    { 0.021, 0.5 }, { 0, 0 },      { 0, 1 },       { 1, 0 },
+    { 1, 1 },       { 1, 0 },      { 1, 1 }
+  };
   static const uint32_t tri[][3] = {
-    { P0, P1, P2 }, { P1, P0, P3 }, { P2, Q, P0 }, { Q, P3, P0 },
-    { A, Q, P2 }, { A, B, Q }, { B, P3, Q }, { A, P2, P1 }, { A, P1, C },
-    { C, P1, D }, { D, P1, B }, { B, P1, P3 },
-    { A, E, F }, { A, F, B }, { C, D, F }, { C, F, E }, { A, C, E },
-    { B, F, D } };
+    { P0, P1, P2 }, { P1, P0, P3 }, { P2, Q, P0 }, { Q, P3, P0 }, { A, Q, P2 },
+    { A, B, Q },    { B, P3, Q },   { A, P2, P1 }, { A, P1, C },  { C, P1, D },
+    { D, P1, B },   { B, P1, P3 },  { A, E, F },   { A, F, B },   { C, D, F },
+    { C, F, E },    { A, C, E },    { B, F, D }
+  };
 
   vg_mesh_add_patch(m, 1, NULL);
   for (uint32_t i = 0; i < 11; i++)
@@ -75,7 +77,7 @@ static void does_not_fold(void **unused)
   knife(&s.m);
   scene_set(&s, 0.1, 1);
   while (vg_tris_from(w, h) != 0 || vg_tris_to(w, h) != 1) h++;
-  assert_true(vg_tris_tri_shape(w, h / 3) < 0.2);   /* worth a swap */
+  assert_true(vg_tris_tri_shape(w, h / 3) < 0.2); /* worth a swap */
   assert_false(vg_tris_swap(w, h));
   scene_expect_whole(&s);
   scene_release(&s);
@@ -100,8 +102,8 @@ static void corners_and_ridges_stay(void **unused)
     if (kind == VG_WORK_CORNER || (kind == VG_WORK_CURVE && !on_line))
       assert_false(vg_tris_collapse(w, h, 1e9, 0));
     else if (kind != VG_WORK_FACE && on_line) continue;
-    assert_false(kind != VG_WORK_FACE
-                 && vg_tris_move(w, p, (double[3]){ 0, 0, 0 }, 0));
+    assert_false(kind != VG_WORK_FACE &&
+                 vg_tris_move(w, p, (double[3]){ 0, 0, 0 }, 0));
     if (w->edge[h]) assert_false(vg_tris_swap(w, h));
   }
   scene_expect_whole(&s);
@@ -136,8 +138,7 @@ static void points_slide_along_ridges(void **unused)
     if (!vg_tris_slide(w, p, (3 * a.lo + a.hi) / 4, 0)) continue;
     n_slid++;
     assert_true(vg_tris_span(w, p, &b));
-    assert_true(b.lo == a.lo && b.hi == a.hi
-                && b.at == (3 * a.lo + a.hi) / 4);
+    assert_true(b.lo == a.lo && b.hi == a.hi && b.at == (3 * a.lo + a.hi) / 4);
     vg_curve_at(w->curves, w->ref, b.curve, b.at, x);
     assert_true(vg_distance(x, vg_tris_at(w, p)) == 0);
   }

@@ -42,8 +42,8 @@ static size_t index_of(const struct scene *s, uint64_t name, size_t n_hull)
 static void whole(const struct scene *s, struct vg_tets *t)
 {
   size_t n_hull = s->t.n_point, n = n_hull, n_cell = count_cells(s), at = 0;
-  double (*x)[3];
-  uint32_t (*cell)[4] = vg_alloc(n_cell, sizeof *cell);
+  double(*x)[3];
+  uint32_t(*cell)[4] = vg_alloc(n_cell, sizeof *cell);
 
   for (size_t k = 0; k < s->p.n_piece; k++) n += s->p.piece[k].n_point;
   x = vg_calloc(n, sizeof *x);
@@ -62,8 +62,9 @@ static void whole(const struct scene *s, struct vg_tets *t)
     for (size_t c = 0; c < q->n_cell; c++, at++)
       for (int i = 0; i < 4; i++) {
         uint32_t v = q->cell[c][i];
-        size_t p = index_of(s, v < q->n_in ? q->in[v]
-                              : VG_POINT_ID(q->serial, v - q->n_in),
+        size_t p = index_of(s,
+                            v < q->n_in ? q->in[v]
+                                        : VG_POINT_ID(q->serial, v - q->n_in),
                             n_hull);
 
         cell[at][i] = (uint32_t)p;
@@ -72,8 +73,8 @@ static void whole(const struct scene *s, struct vg_tets *t)
   }
   memset(t, 0, sizeof *t);
   assert_int_equal(vg_tets_from_cells(t, n, x, n_cell,
-                                      (const uint32_t (*)[4])cell, NULL),
-                                          VG_OK);
+                                      (const uint32_t(*)[4])cell, NULL),
+                   VG_OK);
   assert_int_equal(vg_tets_defects(t), 0);
   free(cell);
 }
@@ -120,7 +121,7 @@ static void check_volume(const struct scene *s, const struct vg_tets *t)
  * sides of it are bad. */
 static void bad_scene(struct scene *s, int n)
 {
-  const double by[3] = {0.1, 0.72, -0.12};
+  const double by[3] = { 0.1, 0.72, -0.12 };
 
   scene_new(s, 16, n, n);
   assert_true(scene_move(s, scene_point(s, 8, n / 2, n / 2), by, 1e-6));
@@ -149,8 +150,8 @@ static void test_mends_across(void **state)
   q = &s.p.piece[SLABS];
   assert_string_equal(q->path, "R000000");
   assert_int_equal(q->kind, VG_SPAN_REPAIR);
-  assert_int_equal(q->n_cell, s.p.report.n_repair_cell + count_cells(&s) -
-                              s.t.n_cell);
+  assert_int_equal(q->n_cell,
+                   s.p.report.n_repair_cell + count_cells(&s) - s.t.n_cell);
   vg_tets_release(&t);
   scene_end(&s);
 }
@@ -195,7 +196,7 @@ static void test_border_stays(void **state)
  * others stay. What swaps make fits together. */
 static void test_smooths(void **state)
 {
-  static const int wide[] = {16, 4};
+  static const int wide[] = { 16, 4 };
 
   (void)state;
   for (int k = 0; k < 2; k++) {
@@ -261,7 +262,7 @@ static void test_nothing_bad(void **state)
 /* What is bad inside a piece was its own task's to mend. */
 static void test_inside_is_left(void **state)
 {
-  const double by[3] = {0.05, 0.72, -0.12};
+  const double by[3] = { 0.05, 0.72, -0.12 };
   struct scene s;
 
   (void)state;
@@ -288,7 +289,7 @@ static void test_hopeless(void **state)
   assert_true(worst_of(&s.t) < aim);
   scene_cut(&s, NULL, 1);
   unchanged(&s);
-  assert_int_equal(s.p.report.n_repair, 2);  /* tried again */
+  assert_int_equal(s.p.report.n_repair, 2); /* tried again */
   assert_true(s.p.report.repair_worst_left == s.p.report.repair_worst);
   assert_int_equal(s.p.report.n_repair_bad_left, s.p.report.n_repair_bad);
   scene_end(&s);
@@ -375,7 +376,7 @@ static void test_balls(void **state)
 static void test_balls_capped(void **state)
 {
   static struct vg_spot spot[N_BALL];
-  size_t size[N_BALL] = {0}, left = 0;
+  size_t size[N_BALL] = { 0 }, left = 0;
   struct vg_spot_grid b;
 
   (void)state;
@@ -426,16 +427,11 @@ static void test_thin(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_mends_across),
-    cmocka_unit_test(test_border_stays),
-    cmocka_unit_test(test_smooths),
-    cmocka_unit_test(test_nothing_bad),
-    cmocka_unit_test(test_inside_is_left),
-    cmocka_unit_test(test_hopeless),
-    cmocka_unit_test(test_many),
-    cmocka_unit_test(test_balls),
-    cmocka_unit_test(test_balls_capped),
-    cmocka_unit_test(test_thin),
+    cmocka_unit_test(test_mends_across),   cmocka_unit_test(test_border_stays),
+    cmocka_unit_test(test_smooths),        cmocka_unit_test(test_nothing_bad),
+    cmocka_unit_test(test_inside_is_left), cmocka_unit_test(test_hopeless),
+    cmocka_unit_test(test_many),           cmocka_unit_test(test_balls),
+    cmocka_unit_test(test_balls_capped),   cmocka_unit_test(test_thin),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

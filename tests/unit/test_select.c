@@ -23,15 +23,14 @@ static void front_of(const struct vg_mesh *m, struct vg_front *f)
   assert_non_null(f->face);
   memcpy(f->x, m->point, m->n_point * sizeof *f->x);
   memcpy(f->face, m->tri, m->n_tri * sizeof *f->face);
-  for (size_t k = 0; k < m->n_point; k++)
-    f->id[k] = VG_POINT_ID(3, 7 * k);
+  for (size_t k = 0; k < m->n_point; k++) f->id[k] = VG_POINT_ID(3, 7 * k);
   assert_int_equal(vg_select_sort(f, NULL), VG_OK);
 }
 
 /* Of the box [0, 1]^3 or the sphere's, [-20, 20]^3. */
 static struct vg_lattice lattice_of(double lo, double hi)
 {
-  struct vg_lattice l = { .n = {3, 1, 2} };
+  struct vg_lattice l = { .n = { 3, 1, 2 } };
 
   for (int axis = 0; axis < 3; axis++)
     for (int i = 0; i < l.n[axis]; i++)
@@ -196,7 +195,7 @@ static void same_boxes(const struct vg_select *a, const struct vg_select *b)
  * from one face on, over several levels. */
 static void added_in_pieces(void **state)
 {
-  const size_t upto[] = {1, 15, 16, 17, 128, 130, 2000, 2048, 4001};
+  const size_t upto[] = { 1, 15, 16, 17, 128, 130, 2000, 2048, 4001 };
   struct vg_select s, once;
   struct vg_front f;
   struct scene scene;
@@ -272,8 +271,8 @@ static void nothing_near(void **state)
   front_of(&scene.m, &f);
   vg_select_init(&s, &f, scene.sizing);
   assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
-  r.plane[0] = (struct vg_plane){ {0, 0, 1}, 0.5 };
-  r.wall[r.n_wall++] = (struct vg_plane){ {1, 0, 0}, 3 };
+  r.plane[0] = (struct vg_plane){ { 0, 0, 1 }, 0.5 };
+  r.wall[r.n_wall++] = (struct vg_plane){ { 1, 0, 0 }, 3 };
   select_part(&s, &r, &p);
   assert_int_equal(p.f.n_face, 0);
   assert_int_equal(p.f.n_point, 0);
@@ -294,10 +293,10 @@ struct lone {
 };
 
 static void lone_face(struct lone *t, const struct scene *scene,
-                      const struct vg_region *r, double a, double b,
-                      double c, double beside)
+                      const struct vg_region *r, double a, double b, double c,
+                      double beside)
 {
-  const double middle[3] = {0.5, 0.5, 0.5}, z[3] = {a, b, c};
+  const double middle[3] = { 0.5, 0.5, 0.5 }, z[3] = { a, b, c };
   double h = vg_region_spacing(r, scene->sizing, middle);
 
   memset(t, 0, sizeof *t);
@@ -307,15 +306,16 @@ static void lone_face(struct lone *t, const struct scene *scene,
     t->x[k][2] = 0.5 + z[k] * h;
     t->face[0][k] = (uint32_t)k;
   }
-  t->f = (struct vg_front){ .n_point = 3, .x = t->x, .id = t->name,
-                            .n_face = 1, .face = t->face };
+  t->f = (struct vg_front){
+    .n_point = 3, .x = t->x, .id = t->name, .n_face = 1, .face = t->face
+  };
   vg_select_init(&t->select, &t->f, scene->sizing);
   assert_int_equal(vg_select_update(&t->select, NULL, NULL), VG_OK);
 }
 
 /* What a region that had another width before is told. */
-static double width_for(const struct scene *scene, struct vg_region r,
-                        double a, double b, double c, double beside)
+static double width_for(const struct scene *scene, struct vg_region r, double a,
+                        double b, double c, double beside)
 {
   struct lone t;
 
@@ -341,7 +341,7 @@ static void long_faces_widen(void **state)
 
   (void)state;
   scene_demo(&scene, "box", 20000);
-  zone.plane[0] = (struct vg_plane){ {0, 0, 1}, 0.5 };
+  zone.plane[0] = (struct vg_plane){ { 0, 0, 1 }, 0.5 };
   is_about(width_for(&scene, zone, -0.5, 0.6, -0.4, 0), 0);
   is_about(width_for(&scene, zone, 0.1 - VG_BAND_FLUID, 0.6, 0, 0), 0);
   is_about(width_for(&scene, zone, -3, 0.6, -0.4, 0), 3 + 1.5 - VG_BAND_FLUID);
@@ -349,13 +349,13 @@ static void long_faces_widen(void **state)
   is_about(width_for(&scene, zone, 0.08, 0.3, 4, 0), 4 + 1.5 - VG_BAND_FLUID);
   is_about(width_for(&scene, zone, 0.15, 0.3, 4, 0), 0);
 
-  walled = zone;                       /* beyond what a wall ends */
-  walled.wall[walled.n_wall++] = (struct vg_plane){ {1, 0, 0}, 0.9 };
+  walled = zone; /* beyond what a wall ends */
+  walled.wall[walled.n_wall++] = (struct vg_plane){ { 1, 0, 0 }, 0.9 };
   is_about(width_for(&scene, walled, -3, 0.6, -0.4, 0), 0);
 
-  pencil = zone;                       /* however thick it is */
+  pencil = zone; /* however thick it is */
   pencil.reach = 1.3;
-  pencil.plane[pencil.n_plane++] = (struct vg_plane){ {1, 0, 0}, 0.5 };
+  pencil.plane[pencil.n_plane++] = (struct vg_plane){ { 1, 0, 0 }, 0.5 };
   is_about(width_for(&scene, pencil, -3, 0.6, -0.4, -0.5),
            3 + 1.5 - VG_BAND_FLUID);
   is_about(width_for(&scene, pencil, -3, 0.6, -0.4, 1), 0);
@@ -365,12 +365,13 @@ static void long_faces_widen(void **state)
 /* Of many faces the longest counts, and none that is gone. */
 static void the_longest_face_counts(void **state)
 {
-  const struct vg_region r = { .n_plane = 1, .plane = {{{0, 0, 1}, 0.5}} };
+  const struct vg_region r = { .n_plane = 1,
+                               .plane = { { { 0, 0, 1 }, 0.5 } } };
   struct vg_region none = r, some = r;
   struct vg_select s;
   struct scene scene;
   struct lone t;
-  uint32_t face[3][3] = { {0, 1, 2}, {3, 4, 5}, {VG_FACE_GONE, 7, 8} };
+  uint32_t face[3][3] = { { 0, 1, 2 }, { 3, 4, 5 }, { VG_FACE_GONE, 7, 8 } };
   double x[9][3];
   static const double z[9] = { -1, 1, 0, -4, 1, 0, -6, 1, 0 };
 
@@ -389,7 +390,7 @@ static void the_longest_face_counts(void **state)
   vg_select_init(&s, &t.f, scene.sizing);
   none.wide = 7;
   assert_int_equal(vg_select_widen(&s, &none, NULL), VG_OK);
-  assert_true(none.wide == 0);         /* nothing was looked at yet */
+  assert_true(none.wide == 0); /* nothing was looked at yet */
   assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
   assert_int_equal(vg_select_widen(&s, &some, NULL), VG_OK);
   is_about(some.wide, 4 + 1.5 - VG_BAND_FLUID);
@@ -436,8 +437,7 @@ static void any_triangle(struct vg_front *f, uint64_t *state, int how)
   for (int k = 0; k < 3; k++) f->x[f->n_point][k] = any(state, -15, 15);
   for (size_t i = 1; i < 3; i++)
     for (int k = 0; k < 3; k++)
-      f->x[f->n_point + i][k] = f->x[f->n_point][k] +
-                                size * any(state, -1, 1);
+      f->x[f->n_point + i][k] = f->x[f->n_point][k] + size * any(state, -1, 1);
   for (int i = 0; i < 3 && how % 4 == 1; i++)
     f->x[f->n_point + (size_t)i][how % 5 % 3] = f->x[0][how % 5 % 3];
 }
@@ -462,7 +462,7 @@ static void all_that_a_triangle_meets(void **state)
   vg_select_init(&s, &f, scene.sizing);
   assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
   for (int n = 0; n < 300; n++) {
-    const uint32_t p = (uint32_t)f.n_point, v[3] = {p, p + 1, p + 2};
+    const uint32_t p = (uint32_t)f.n_point, v[3] = { p, p + 1, p + 2 };
     const double *x[3];
     size_t stopped = 0, here = 0;
 
@@ -474,8 +474,8 @@ static void all_that_a_triangle_meets(void **state)
       int is_gone = f.face[i][0] == VG_FACE_GONE;
 
       assert_true(seen.face[i] <= !is_gone);
-      if (is_gone || !vg_triangles_meet((const double (*)[3])f.x, v,
-                                        f.face[i], v, f.face[i]))
+      if (is_gone || !vg_triangles_meet((const double(*)[3])f.x, v, f.face[i],
+                                        v, f.face[i]))
         continue;
       assert_int_equal(seen.face[i], 1);
       here++;

@@ -117,8 +117,7 @@ static void says_what_and_why(void **state)
   assert_null(f);
   assert_non_null(strstr(err.text, "/no/folder.part: "));
   assert_non_null(strstr(err.text, strerror(ENOENT)));
-  assert_int_equal(vg_shared_open(NULL, NAME, UINT64_MAX, &f, &err),
-                   VG_ERR_IO);
+  assert_int_equal(vg_shared_open(NULL, NAME, UINT64_MAX, &f, &err), VG_ERR_IO);
   assert_null(f);
   assert_int_equal(vg_shared_open(NULL, NAME, 4, &f, &err), VG_OK);
   assert_int_equal(vg_shared_write(f, 2, 3, "abc", &err), VG_ERR_IO);
@@ -193,7 +192,10 @@ static void a_full_disk(void **state)
 
 enum { PIECES = 2000, PIECE = 333, THREADS = 4 };
 
-struct writer { struct vg_shared_file *f; int number, bad; };
+struct writer {
+  struct vg_shared_file *f;
+  int number, bad;
+};
 
 static void *write_pieces(void *data)
 {
@@ -216,20 +218,17 @@ static void from_threads(void **state)
   pthread_t thread[THREADS];
 
   (void)state;
-  assert_int_equal(vg_shared_open(NULL, NAME, PIECES * PIECE, &f, NULL),
-                   VG_OK);
+  assert_int_equal(vg_shared_open(NULL, NAME, PIECES * PIECE, &f, NULL), VG_OK);
   for (int i = 0; i < THREADS; i++) {
     w[i] = (struct writer){ f, i, 0 };
-    assert_int_equal(pthread_create(&thread[i], NULL, write_pieces, &w[i]),
-                     0);
+    assert_int_equal(pthread_create(&thread[i], NULL, write_pieces, &w[i]), 0);
   }
   for (int i = 0; i < THREADS; i++) {
     pthread_join(thread[i], NULL);
     assert_int_equal(w[i].bad, 0);
   }
   assert_int_equal(vg_shared_close(f, VG_OK, NULL), VG_OK);
-  assert_int_equal(contents(NAME, got, (PIECES + 1) * PIECE),
-                   PIECES * PIECE);
+  assert_int_equal(contents(NAME, got, (PIECES + 1) * PIECE), PIECES * PIECE);
   for (int i = 0; i < PIECES * PIECE; i++)
     assert_int_equal(got[i], i / PIECE % 251);
   free(got);

@@ -10,8 +10,7 @@
 
 #include "core/sizing/sizing_parts.h"
 
-#define assert_near(a, b, tolerance) \
-  assert_true(fabs((a) - (b)) <= (tolerance))
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static const struct vg_sizing_options plain = VG_SIZING_OPTIONS_INIT;
 
@@ -80,8 +79,9 @@ static struct vg_sizing *field(const struct vg_sizing_options *o, size_t n,
 
 static struct vg_source node(double x, double y, double z, double h)
 {
-  struct vg_source s = { .kind = VG_SOURCE_VGRID_NODE, .p0 = { x, y, z },
-                         .h0 = h, .an = 1 };
+  struct vg_source s = {
+    .kind = VG_SOURCE_VGRID_NODE, .p0 = { x, y, z }, .h0 = h, .an = 1
+  };
 
   return s;
 }
@@ -99,8 +99,8 @@ static void box_sources(struct vg_source s[8])
 static void vgrid_nodes_march_as_vgrid_does(void **state)
 {
   static const double low[4] = { 1.0058, 1.0229, 1.0494, 1.0824 };
-  static const double high[8] = { 2, 1.9772, 1.9209, 1.8595, 1.8146, 1.7949,
-                                  1.8018, 1.8343 };
+  static const double high[8] = { 2,      1.9772, 1.9209, 1.8595,
+                                  1.8146, 1.7949, 1.8018, 1.8343 };
   struct vg_source s[8];
   double x[3] = { -10, -10, -10 };
 
@@ -136,7 +136,7 @@ static void vgrid_weights_multiply(void **state)
   /* weights 1 / 1 and 8 / 4 */
   assert_near(vg_sizing_sources_at(&plain, 2, s, x), 3, 1e-14);
   assert_near(vg_sizing_sources_at(&twice, 2, s, x), 6, 1e-14);
-  twice.h_max = 2.5;  /* times scale, too */
+  twice.h_max = 2.5; /* times scale, too */
   assert_near(vg_sizing_sources_at(&twice, 2, s, x), 5, 0);
 }
 
@@ -146,8 +146,13 @@ static void scale_makes_a_similar_field(void **state)
 {
   struct vg_source s[2] = {
     { .kind = VG_SOURCE_POINT, .h0 = 0.1, .r0 = 0.5, .an = 1 },
-    { .kind = VG_SOURCE_SPHERE, .p0 = { 8, 0, 0 }, .h0 = 0.3, .r0 = 0.5,
-      .growth = 1.4, .an = 1 } };
+    { .kind = VG_SOURCE_SPHERE,
+      .p0 = { 8, 0, 0 },
+      .h0 = 0.3,
+      .r0 = 0.5,
+      .growth = 1.4,
+      .an = 1 }
+  };
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_sizing *f[2];
   struct vg_error err = VG_ERROR_INIT;
@@ -173,8 +178,11 @@ static void scale_makes_a_similar_field(void **state)
 /* The closed form against the midpoint rule, whose error is 1e-8 here. */
 static void vgrid_lines_integrate_the_kernel(void **state)
 {
-  static const double at[5][3] = { { 0.3, 0.2, 0.1 }, { -2, 0, 0 },
-    { 5, 1e-9, 0 }, { 1.4, 0.9, -7 }, { 300, 200, 100 } };
+  static const double at[5][3] = { { 0.3, 0.2, 0.1 },
+                                   { -2, 0, 0 },
+                                   { 5, 1e-9, 0 },
+                                   { 1.4, 0.9, -7 },
+                                   { 300, 200, 100 } };
   struct vg_source s[2] = { node(0, 0, 1, 5), node(0, 0, 0, 1) };
   const int n = 20000;
 
@@ -200,8 +208,8 @@ static void vgrid_lines_integrate_the_kernel(void **state)
     assert_near(vg_sizing_sources_at(&plain, 2, s, x), top / bottom, 2e-7);
   }
   /* on the line its own spacing, at an end that of the end */
-  assert_near(vg_sizing_sources_at(&plain, 2, s,
-                                   (double[3]){ 1, 0.5, 0 }), 2, 1e-9);
+  assert_near(vg_sizing_sources_at(&plain, 2, s, (double[3]){ 1, 0.5, 0 }), 2,
+              1e-9);
   assert_near(vg_sizing_sources_at(&plain, 2, s, s[1].p1), 3, 1e-9);
 }
 
@@ -214,8 +222,9 @@ static double one(const struct vg_source *s, double x, double y, double z)
 
 static void bounded_sources_grow_from_their_shapes(void **state)
 {
-  struct vg_source s = { .kind = VG_SOURCE_POINT, .p0 = { 1, 0, 0 },
-                         .h0 = 0.1, .r0 = 2 };
+  struct vg_source s = {
+    .kind = VG_SOURCE_POINT, .p0 = { 1, 0, 0 }, .h0 = 0.1, .r0 = 2
+  };
 
   (void)state;
   assert_near(one(&s, 2, 1, 0), 0.1, 0);
@@ -225,33 +234,40 @@ static void bounded_sources_grow_from_their_shapes(void **state)
   s.kind = VG_SOURCE_SPHERE;
   assert_near(one(&s, 1, 0, -5), 0.1 + 0.5 * 3, 1e-15);
 
-  s = (struct vg_source){ .kind = VG_SOURCE_LINE, .p1 = { 4, 0, 0 },
-                          .h0 = 1, .h1 = 2, .r0 = 0.5 };
+  s = (struct vg_source){
+    .kind = VG_SOURCE_LINE, .p1 = { 4, 0, 0 }, .h0 = 1, .h1 = 2, .r0 = 0.5
+  };
   assert_near(one(&s, 1, 0.4, 0), 1.25, 1e-15);
   assert_near(one(&s, 2, 0, 1.5), 1.5 + 0.2, 1e-15);
   assert_near(one(&s, 7, 4, 0), 2 + 0.2 * 4.5, 1e-15);
 
-  s = (struct vg_source){ .kind = VG_SOURCE_TRIANGLE, .p1 = { 3, 0, 0 },
-                          .p2 = { 0, 3, 0 }, .h0 = 1 };
+  s = (struct vg_source){
+    .kind = VG_SOURCE_TRIANGLE, .p1 = { 3, 0, 0 }, .p2 = { 0, 3, 0 }, .h0 = 1
+  };
   assert_near(one(&s, 1, 1, -2), 1.4, 1e-15);
   assert_near(one(&s, -3, 1, 4), 2, 1e-15);
   assert_near(one(&s, 3, 3, 0), 1 + 0.2 * 1.5 * sqrt(2), 1e-15);
   assert_near(one(&s, 6, -4, 0), 2, 1e-15);
 
-  s = (struct vg_source){ .kind = VG_SOURCE_BOX, .p0 = { 1, 1, 1 },
-                          .p1 = { -1, -1, 0 }, .h0 = 1 };
+  s = (struct vg_source){
+    .kind = VG_SOURCE_BOX, .p0 = { 1, 1, 1 }, .p1 = { -1, -1, 0 }, .h0 = 1
+  };
   assert_near(one(&s, 0.9, -0.9, 0.5), 1, 0);
   assert_near(one(&s, 4, 5, 0.5), 2, 1e-15);
 }
 
 static void cones_grow_from_side_and_caps(void **state)
 {
-  struct vg_source s = { .kind = VG_SOURCE_CYLINDER, .p1 = { 0, 0, 4 },
-                         .h0 = 1, .h1 = 3, .r0 = 2, .r1 = 5 };
+  struct vg_source s = { .kind = VG_SOURCE_CYLINDER,
+                         .p1 = { 0, 0, 4 },
+                         .h0 = 1,
+                         .h1 = 3,
+                         .r0 = 2,
+                         .r1 = 5 };
 
   (void)state;
-  assert_near(one(&s, 0, 3, 2), 2, 1e-15);         /* inside, half way up */
-  assert_near(one(&s, 1, 0, -3), 1 + 0.2 * 3, 1e-15);  /* below the disc */
+  assert_near(one(&s, 0, 3, 2), 2, 1e-15);            /* inside, half way up */
+  assert_near(one(&s, 1, 0, -3), 1 + 0.2 * 3, 1e-15); /* below the disc */
   assert_near(one(&s, 0, 0, 9), 3 + 0.2 * 5, 1e-15);
   /* the side runs from (0, 2) to (4, 5): normal (-3, 4) / 5; one from the
    * middle (2, 3.5) outwards, where the foot on the axis is at 1.4 of 4 */
@@ -314,11 +330,19 @@ static void two_sizes(struct vg_mesh *m)
 static void gradients_are_bounded(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_source source[4] = { node(3, 0, 0, 0.02), node(-3, 1, 0, 2),
-    { .kind = VG_SOURCE_LINE, .p0 = { -2, 4, 3 }, .p1 = { 1, 4, 3 },
-      .h0 = 0.05, .h1 = 1, .growth = 2 },
-    { .kind = VG_SOURCE_BOX, .p0 = { 2, 2, 2 }, .p1 = { 3, 3, 2.1 },
-      .h0 = 0.1, .growth = 1.1 } };
+  struct vg_source source[4] = { node(3, 0, 0, 0.02),
+                                 node(-3, 1, 0, 2),
+                                 { .kind = VG_SOURCE_LINE,
+                                   .p0 = { -2, 4, 3 },
+                                   .p1 = { 1, 4, 3 },
+                                   .h0 = 0.05,
+                                   .h1 = 1,
+                                   .growth = 2 },
+                                 { .kind = VG_SOURCE_BOX,
+                                   .p0 = { 2, 2, 2 },
+                                   .p1 = { 3, 3, 2.1 },
+                                   .h0 = 0.1,
+                                   .growth = 1.1 } };
   uint64_t seed = 1;
   int beyond = 0;
   const int n = 200000;
@@ -354,7 +378,8 @@ static void gradients_are_bounded(void **state)
 static void leaves_join_continuously(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_source source = { .kind = VG_SOURCE_POINT, .p0 = { 5, 1, -2 },
+  struct vg_source source = { .kind = VG_SOURCE_POINT,
+                              .p0 = { 5, 1, -2 },
                               .h0 = 0.01 };
   struct vg_sizing *s;
   uint64_t seed = 1;
@@ -386,13 +411,24 @@ static void the_cache_follows_the_law(void **state)
 {
   const struct vg_source source[5] = {
     { .kind = VG_SOURCE_SPHERE, .p0 = { 0, 0, 0 }, .r0 = 1, .h0 = 0.1 },
-    { .kind = VG_SOURCE_BOX, .p0 = { 3, 3, 3 }, .p1 = { 5, 4, 3.5 },
+    { .kind = VG_SOURCE_BOX,
+      .p0 = { 3, 3, 3 },
+      .p1 = { 5, 4, 3.5 },
       .h0 = 0.3 },
-    { .kind = VG_SOURCE_TRIANGLE, .p0 = { -3, 0, 0 }, .p1 = { -3, 4, 0 },
-      .p2 = { -4, 2, 3 }, .h0 = 0.2 },
-    { .kind = VG_SOURCE_CYLINDER, .p0 = { 0, -5, 0 }, .p1 = { 4, -5, 1 },
-      .h0 = 0.2, .h1 = 0.2, .r0 = 0.5, .r1 = 1 },
-    { .kind = VG_SOURCE_POINT, .p0 = { 1.7, 2.3, -4.1 }, .h0 = 0.001 } };
+    { .kind = VG_SOURCE_TRIANGLE,
+      .p0 = { -3, 0, 0 },
+      .p1 = { -3, 4, 0 },
+      .p2 = { -4, 2, 3 },
+      .h0 = 0.2 },
+    { .kind = VG_SOURCE_CYLINDER,
+      .p0 = { 0, -5, 0 },
+      .p1 = { 4, -5, 1 },
+      .h0 = 0.2,
+      .h1 = 0.2,
+      .r0 = 0.5,
+      .r1 = 1 },
+    { .kind = VG_SOURCE_POINT, .p0 = { 1.7, 2.3, -4.1 }, .h0 = 0.001 }
+  };
   struct vg_sizing_options o = plain;
   struct vg_sizing *s;
   uint64_t seed = 1;
@@ -430,8 +466,8 @@ static void vgrid_sources_alone_define_a_field(void **state)
   for (int i = 0; i < 20000; i++) {
     random_in(x, 10, &seed);
     /* this mean is nowhere steeper than the growth rate */
-    assert_near(vg_sizing_at(s, x),
-                vg_sizing_sources_at(&plain, 8, source, x), 0.06);
+    assert_near(vg_sizing_at(s, x), vg_sizing_sources_at(&plain, 8, source, x),
+                0.06);
   }
   vg_sizing_free(s);
 }
@@ -441,8 +477,9 @@ static void vgrid_sources_alone_define_a_field(void **state)
 static void the_surface_prevails_on_itself(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
-  struct vg_source source = { .kind = VG_SOURCE_SPHERE, .p0 = { 3, 3, 3 },
-                              .r0 = 2, .h0 = 0.02 };
+  struct vg_source source = {
+    .kind = VG_SOURCE_SPHERE, .p0 = { 3, 3, 3 }, .r0 = 2, .h0 = 0.02
+  };
   const double h = sqrt(2);
   struct vg_sizing *s;
 
@@ -496,8 +533,8 @@ static void sizes_may_span_five_decades(void **state)
   double lo, hi, x[3];
 
   (void)state;
-  add_octahedron(&m, off, 1e-3, 14);         /* edges 1.01e-4 */
-  add_octahedron(&m, origin, 100, 14);       /* edges 10.1 */
+  add_octahedron(&m, off, 1e-3, 14);   /* edges 1.01e-4 */
+  add_octahedron(&m, origin, 100, 14); /* edges 10.1 */
   s = field(&plain, 0, NULL, &m);
   vg_sizing_range(s, &lo, &hi);
   assert_near(lo, sqrt(2) * 1e-3 / 14, 2e-6);
@@ -599,16 +636,16 @@ static void the_same_input_gives_the_same_bytes(void **state)
   (void)state;
   two_sizes(&m);
   box_sources(source);
-  source[8] = (struct vg_source){ .kind = VG_SOURCE_SPHERE, .r0 = 2,
-                                  .p0 = { 4, 4, 1 }, .h0 = 0.1 };
+  source[8] = (struct vg_source){
+    .kind = VG_SOURCE_SPHERE, .r0 = 2, .p0 = { 4, 4, 1 }, .h0 = 0.1
+  };
   for (int i = 0; i < N; i++) random_in(x[i], 13, &seed);
   for (int i = 0; i < 2; i++) {
     s[i] = field(&plain, 9, source, &m);
-    vg_sizing_eval(s[i], N, (const double (*)[3])x, h[i]);
+    vg_sizing_eval(s[i], N, (const double(*)[3])x, h[i]);
   }
   assert_memory_equal(h[0], h[1], sizeof h[0]);
-  for (int i = 0; i < N; i++)
-    assert_true(h[0][i] == vg_sizing_at(s[1], x[i]));
+  for (int i = 0; i < N; i++) assert_true(h[0][i] == vg_sizing_at(s[1], x[i]));
   vg_sizing_free(s[0]);
   vg_sizing_free(s[1]);
   vg_mesh_release(&m);
@@ -622,11 +659,15 @@ static void busy_field(struct vg_mesh *m, struct vg_source source[9])
   two_sizes(m);
   add_octahedron(m, centre, 0.5, 60);
   box_sources(source);
-  source[7] = (struct vg_source){ .kind = VG_SOURCE_LINE, .p0 = { -5, 2, 1 },
-                                  .p1 = { -4, 2, 1 }, .h0 = 0.02, .h1 = 1,
+  source[7] = (struct vg_source){ .kind = VG_SOURCE_LINE,
+                                  .p0 = { -5, 2, 1 },
+                                  .p1 = { -4, 2, 1 },
+                                  .h0 = 0.02,
+                                  .h1 = 1,
                                   .growth = 1.9 };
-  source[8] = (struct vg_source){ .kind = VG_SOURCE_SPHERE, .r0 = 2,
-                                  .p0 = { 4, 4, 1 }, .h0 = 0.1 };
+  source[8] = (struct vg_source){
+    .kind = VG_SOURCE_SPHERE, .r0 = 2, .p0 = { 4, 4, 1 }, .h0 = 0.1
+  };
 }
 
 static void threads_give_the_same_bytes(void **state)
@@ -677,8 +718,7 @@ static void the_least_of_a_cube_is_found(void **state)
     assert_true(vg_sizing_at(s, at) <= (1 + 1e-6) * least);
     if (i % 2) assert_near(vg_sizing_at(s, at), least, 1e-6 * least);
     for (int j = 0; j < 500; j++) {
-      for (int k = 0; k < 3; k++)
-        x[k] = lo[k] + side * random_unit(&seed);
+      for (int k = 0; k < 3; k++) x[k] = lo[k] + side * random_unit(&seed);
       assert_true(vg_sizing_at(s, x) >= (1 - 1e-6) * least);
     }
   }
@@ -705,7 +745,9 @@ static void refused(const struct vg_sizing_options *o, size_t n,
 static void bad_sources_are_named(void **state)
 {
   const struct vg_source bad[] = {
-    node(NAN, 0, 0, 1), node(0, 0, 0, 0), node(0, 0, 0, -1),
+    node(NAN, 0, 0, 1),
+    node(0, 0, 0, 0),
+    node(0, 0, 0, -1),
     node(0, 0, 0, INFINITY),
     { .kind = VG_SOURCE_VGRID_NODE, .h0 = 1, .an = 0 },
     { .kind = VG_SOURCE_VGRID_LINE, .h0 = 1, .an = 1, .h1 = 0 },
@@ -715,7 +757,8 @@ static void bad_sources_are_named(void **state)
     { .kind = VG_SOURCE_POINT, .h0 = 1, .growth = NAN },
     { .kind = VG_SOURCE_SPHERE, .h0 = 1, .r0 = -1 },
     { .kind = VG_SOURCE_CYLINDER, .h0 = 1, .h1 = 1, .r0 = 1, .r1 = 1 },
-    { .kind = (enum vg_source_kind)99, .h0 = 1, .an = 1 } };
+    { .kind = (enum vg_source_kind)99, .h0 = 1, .an = 1 }
+  };
   struct vg_source two[2] = { node(0, 0, 0, 1), node(0, 0, 0, 1) };
 
   (void)state;
@@ -800,7 +843,7 @@ int main(void)
     cmocka_unit_test(the_same_input_gives_the_same_bytes),
     cmocka_unit_test(threads_give_the_same_bytes),
     cmocka_unit_test(the_least_of_a_cube_is_found),
-        cmocka_unit_test(bad_sources_are_named),
+    cmocka_unit_test(bad_sources_are_named),
     cmocka_unit_test(bad_options_and_surfaces_are_refused),
     cmocka_unit_test(degenerate_faces_are_passed_over)
   };

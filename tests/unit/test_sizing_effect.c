@@ -11,8 +11,7 @@
 #include "core/sizing/sizing_effect.h"
 #include "core/sizing/sizing_probes.h"
 
-#define assert_near(a, b, tolerance) \
-  assert_true(fabs((a) - (b)) <= (tolerance))
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static const struct vg_sizing_options plain = VG_SIZING_OPTIONS_INIT;
 
@@ -38,7 +37,8 @@ static void add_cube(struct vg_mesh *m, const double c[3], double r, int n,
         for (int k = 0; k < 3; k++) p[k] = c[k] + r * u[k];
         if (i == n || j == n) continue;
         uint32_t v = (uint32_t)(at + (size_t)f * side) +
-                     (uint32_t)(j * (n + 1) + i), w = v + (uint32_t)n + 1;
+                     (uint32_t)(j * (n + 1) + i),
+                 w = v + (uint32_t)n + 1;
         uint32_t t[2][3] = { { v, v + 1, w }, { v + 1, w + 1, w } };
 
         for (int q = 0; q < 2; q++) {
@@ -80,9 +80,11 @@ static struct vg_effects look(size_t n, const struct vg_source *source,
 /* Rays through corners and along edges of the body too. */
 static void places_know_their_side(void **state)
 {
-  static const double at[][3] = { { -10, 0, 0 }, { -10, 1, 1 }, { 0, 0, 0 },
-    { -10, 1, 0.2 }, { -10, -1, -1 }, { 0.3, 0.2, 0.2 }, { -21, 0, 0 },
-    { 21, 0, 0 }, { -10, 20.5, 0 }, { 0, 10, 10 }, { -19.99, 4, 8 } };
+  static const double at[][3] = {
+    { -10, 0, 0 },    { -10, 1, 1 },     { 0, 0, 0 },     { -10, 1, 0.2 },
+    { -10, -1, -1 },  { 0.3, 0.2, 0.2 }, { -21, 0, 0 },   { 21, 0, 0 },
+    { -10, 20.5, 0 }, { 0, 10, 10 },     { -19.99, 4, 8 }
+  };
   static const int in_void[] = { 1, 1, 0, 1, 1, 0, 0, 0, 0, 1, 1 };
   enum { N = sizeof in_void / sizeof *in_void };
   struct vg_mesh m = VG_MESH_INIT;
@@ -115,11 +117,14 @@ static void places_are_in_the_shape(void **state)
     { .kind = VG_SOURCE_VGRID_LINE, .p1 = { 1, 2, 3 } },
     { .kind = VG_SOURCE_POINT, .r0 = 2 },
     { .kind = VG_SOURCE_LINE, .p1 = { 0, 3, 4 }, .r0 = 0.5 },
-    { .kind = VG_SOURCE_TRIANGLE, .p1 = { 1, 0, 0 }, .p2 = { 0, 1, 0 },
+    { .kind = VG_SOURCE_TRIANGLE,
+      .p1 = { 1, 0, 0 },
+      .p2 = { 0, 1, 0 },
       .r0 = 0.3 },
     { .kind = VG_SOURCE_BOX, .p0 = { 1, 1, 1 }, .p1 = { -1, 2, 0 } },
     { .kind = VG_SOURCE_SPHERE, .r0 = 2 },
-    { .kind = VG_SOURCE_CYLINDER, .p1 = { 0, 0, 2 }, .r0 = 1, .r1 = 3 } };
+    { .kind = VG_SOURCE_CYLINDER, .p1 = { 0, 0, 2 }, .r0 = 1, .r1 = 3 }
+  };
 
   (void)state;
   for (uint32_t i = 0; i < sizeof shape / sizeof *shape; i++)
@@ -145,12 +150,18 @@ static void free_sources_are_no_news(void **state)
 {
   const struct vg_source source[] = {
     { .kind = VG_SOURCE_SPHERE, .r0 = 1.5, .h0 = 0.2 }, /* around the body */
-    { .kind = VG_SOURCE_CYLINDER, .p0 = { 0, 0, 0 }, .p1 = { 5, 0, 0 },
-      .h0 = 0.1, .h1 = 0.1, .r0 = 0.3, .r1 = 0.3 },     /* from its middle */
+    { .kind = VG_SOURCE_CYLINDER,
+      .p0 = { 0, 0, 0 },
+      .p1 = { 5, 0, 0 },
+      .h0 = 0.1,
+      .h1 = 0.1,
+      .r0 = 0.3,
+      .r1 = 0.3 }, /* from its middle */
     { .kind = VG_SOURCE_POINT, .p0 = { 1, 0, 0 }, .h0 = 0.2 },
     { .kind = VG_SOURCE_POINT, .p0 = { 0, 0.9, 0 }, .h0 = 0.2 },
     { .kind = VG_SOURCE_VGRID_NODE, .p0 = { 0, 4, 0 }, .h0 = 0.3, .an = 1 },
-    { .kind = VG_SOURCE_VGRID_NODE, .p0 = { 19, 0, 0 }, .h0 = 5, .an = 1 } };
+    { .kind = VG_SOURCE_VGRID_NODE, .p0 = { 19, 0, 0 }, .h0 = 5, .an = 1 }
+  };
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_effects h;
 
@@ -168,8 +179,12 @@ static void held_sources_are_found(void **state)
   const struct vg_source source[] = {
     { .kind = VG_SOURCE_POINT, .p0 = { 3, 0, 0 }, .h0 = 0.1 },
     { .kind = VG_SOURCE_POINT, .p0 = { 0, 14, 1 }, .h0 = 0.1 },
-    { .kind = VG_SOURCE_LINE, .p0 = { 2, 0, 0 }, .p1 = { 19, 0, 0 },
-      .h0 = 0.2, .h1 = 0.2 } };
+    { .kind = VG_SOURCE_LINE,
+      .p0 = { 2, 0, 0 },
+      .p1 = { 19, 0, 0 },
+      .h0 = 0.2,
+      .h1 = 0.2 }
+  };
   struct vg_mesh m = VG_MESH_INIT;
   const struct vg_limited_source *a, *b;
   struct vg_effects h;
@@ -187,7 +202,7 @@ static void held_sources_are_found(void **state)
   assert_near(a->asked, 0.1, 1e-12);
   assert_true(a->got > 1 && a->got < 4);
   assert_true(a->at[0] == 0 && a->at[1] == 14 && a->at[2] == 1);
-  assert_true(a->face < 1200);           /* of the outer cube */
+  assert_true(a->face < 1200); /* of the outer cube */
   assert_near(m.point[m.tri[a->face][0]][1], 20, 1e-12);
   assert_near(a->edge, (8 + 4 * sqrt(2)) / 3, 1e-9);
   assert_true(a->distance >= 6 && a->distance < 6.7);
@@ -208,8 +223,8 @@ static void lost_sources_are_told_apart(void **state)
   const struct vg_source source[] = {
     { .kind = VG_SOURCE_POINT, .p0 = { 0, 0, 0 }, .h0 = 0.1 },
     { .kind = VG_SOURCE_POINT, .p0 = { 5, 0, 0 }, .h0 = 0.3 },
-    { .kind = VG_SOURCE_BOX, .p0 = { 30, 0, 0 }, .p1 = { 40, 1, 1 },
-      .h0 = 0.5 } };
+    { .kind = VG_SOURCE_BOX, .p0 = { 30, 0, 0 }, .p1 = { 40, 1, 1 }, .h0 = 0.5 }
+  };
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_effects h;
 
@@ -236,7 +251,7 @@ static vg_status half_of(const struct vg_slices *s, size_t i,
   (void)err;
   memset(out, 0, sizeof *out);
   out->n_point = i ? m->n_point - half : half;
-  out->x = (const double (*)[3])m->point + i * half;
+  out->x = (const double(*)[3])m->point + i * half;
   return VG_OK;
 }
 
@@ -253,11 +268,13 @@ static void what_a_mesh_does_not_meet_is_told(void **state)
   const struct vg_source source[] = {
     { .kind = VG_SOURCE_POINT, .p0 = { 5, 0, 0 }, .h0 = 0.01 },
     { .kind = VG_SOURCE_POINT, .p0 = { 0, 5, 0 }, .h0 = 0.01 },
-    { .kind = VG_SOURCE_SPHERE, .p0 = { 0, 0, 9 }, .r0 = 2, .h0 = 0.2 } };
+    { .kind = VG_SOURCE_SPHERE, .p0 = { 0, 0, 9 }, .r0 = 2, .h0 = 0.2 }
+  };
   double point[3][3] = { { 5.015, 0, 0 }, { 0, 5.03, 0 }, { 7, 7, 7 } };
   struct vg_mesh points = { .n_point = 3, .point = point };
-  const struct vg_slices slices = { .n_slice = 2, .get = half_of,
-                                    .put = put_half, .user = &points };
+  const struct vg_slices slices = {
+    .n_slice = 2, .get = half_of, .put = put_half, .user = &points
+  };
   struct vg_sizing_options steep = plain;
   struct vg_sizing *s = NULL;
   struct vg_mesh m = VG_MESH_INIT;
@@ -266,7 +283,7 @@ static void what_a_mesh_does_not_meet_is_told(void **state)
   (void)state;
   make_domain(&m);
   h = look(3, source, &m);
-  assert_int_equal(h.n_place, 0);        /* cells follow growth of 1.2 */
+  assert_int_equal(h.n_place, 0); /* cells follow growth of 1.2 */
   vg_effects_release(&h);
   steep.growth = 3;
   assert_int_equal(vg_sizing_new(&steep, 3, source, &m, &s, NULL), VG_OK);

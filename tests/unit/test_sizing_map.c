@@ -131,8 +131,9 @@ static void points_are_cones(void **state)
     for (int k = 0; k < 3; k++) x[i][k] = 10 * random_unit(&seed);
     h[i] = 0.3 + random_unit(&seed);
   }
-  assert_int_equal(vg_size_samples_new(N, (const double (*)[3])x, h, GROWTH, 1,
-                                       &samples, &err), VG_OK);
+  assert_int_equal(vg_size_samples_new(N, (const double(*)[3])x, h, GROWTH, 1,
+                                       &samples, &err),
+                   VG_OK);
   one = field(vg_size_samples_map(samples), 1);
   four = field(vg_size_samples_map(samples), 4);
   for (int i = 0; i < 1000; i++) {
@@ -161,21 +162,25 @@ static void bad_points_are_named(void **state)
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
-  assert_int_equal(vg_size_samples_check("f", 3, (const double (*)[3])x, h,
-                                         &err), VG_ERR_INPUT);
+  assert_int_equal(vg_size_samples_check("f", 3, (const double(*)[3])x, h,
+                                         &err),
+                   VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "f: the edge length at point 2, (1, 2, 3), "
-                         "is -1"));
+                                   "is -1"));
   h[1] = INFINITY;
-  assert_int_equal(vg_size_samples_check("f", 3, (const double (*)[3])x, h,
-                                         &err), VG_ERR_INPUT);
+  assert_int_equal(vg_size_samples_check("f", 3, (const double(*)[3])x, h,
+                                         &err),
+                   VG_ERR_INPUT);
   h[1] = 1;
   x[2][0] = NAN;
-  assert_int_equal(vg_size_samples_check("f", 3, (const double (*)[3])x, h,
-                                         &err), VG_ERR_INPUT);
+  assert_int_equal(vg_size_samples_check("f", 3, (const double(*)[3])x, h,
+                                         &err),
+                   VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "f: point 3 is not finite"));
   x[2][0] = 0;
-  assert_int_equal(vg_size_samples_check("f", 3, (const double (*)[3])x, h,
-                                         &err), VG_OK);
+  assert_int_equal(vg_size_samples_check("f", 3, (const double(*)[3])x, h,
+                                         &err),
+                   VG_OK);
 }
 
 int main(void)

@@ -100,8 +100,8 @@ static void write_slices(struct cut *c, const char *form,
 {
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_slices_write_with(NULL, &c->s, io_temp("slices_cut"), form, o, &err)
-      != VG_OK)
+  if (vg_slices_write_with(NULL, &c->s, io_temp("slices_cut"), form, o, &err) !=
+      VG_OK)
     fail_msg("%s: %s", form, err.text);
 }
 
@@ -130,9 +130,9 @@ static void collect_is_the_mesh(void **state)
 static void every_kind_of_ugrid(void **state)
 {
   static const char *const form[] = {
-    "b8.ugrid", "lb8.ugrid", "b4.ugrid", "lb4.ugrid", "r8.ugrid", "lr8.ugrid",
-    "r4.ugrid", "lr4.ugrid", "b8l.ugrid", "lb8l.ugrid", "b8.ugrid64",
-    "lb8.ugrid64"
+    "b8.ugrid",  "lb8.ugrid",  "b4.ugrid",   "lb4.ugrid",
+    "r8.ugrid",  "lr8.ugrid",  "r4.ugrid",   "lr4.ugrid",
+    "b8l.ugrid", "lb8l.ugrid", "b8.ugrid64", "lb8.ugrid64"
   };
 
   (void)state;
@@ -149,7 +149,8 @@ static void every_kind_of_ugrid(void **state)
     same_file(whole, cut_file(f));
     o.tail = 1;
     assert_int_equal(vg_ugrid_write_tail(whole, &mesh[k], info[k].n_layer_tet,
-                                         NULL), VG_OK);
+                                         NULL),
+                     VG_OK);
     write_slices(&c, f, &o);
     same_file(whole, cut_file(f));
     unlink(whole);
@@ -164,8 +165,10 @@ static void others_are_those_of_the_whole_mesh(void **state)
     const char *form;
     vg_status (*write)(const char *path, const struct vg_mesh *m,
                        struct vg_error *err);
-  } other[] = { { "su2", vg_su2_write }, { "msh", vg_gmsh_write },
-              { "fluent.msh", vg_fluent_write }, { "cgns", vg_cgns_write } };
+  } other[] = { { "su2", vg_su2_write },
+                { "msh", vg_gmsh_write },
+                { "fluent.msh", vg_fluent_write },
+                { "cgns", vg_cgns_write } };
   const char *whole = whole_file();
 
   (void)state;
@@ -228,7 +231,8 @@ static void rounding_that_spoils_cells_is_refused(void **state)
     rounded_message(&far, want, sizeof want);
     cut_make(&c, &far, N_SLICE, 0, &info[i % 2], i);
     assert_int_equal(vg_slices_write_with(NULL, &c.s, io_temp("slices_cut"), f,
-                                          &o, &err), VG_ERR_GEOMETRY);
+                                          &o, &err),
+                     VG_ERR_GEOMETRY);
     assert_non_null(strstr(err.text, want));
     snprintf(instead, sizeof instead, "as .%.*s8.", (int)strlen(f) - 7, f);
     assert_non_null(strstr(err.text, instead));
@@ -239,7 +243,8 @@ static void rounding_that_spoils_cells_is_refused(void **state)
                         (size_t)(strstr(err.text, ")") - err.text));
     assert_absent(ugrid_file(f));
     assert_int_equal(vg_slices_write_with(NULL, &c.s, io_temp("slices_cut"),
-                                          "lb8.ugrid", &o, &err), VG_OK);
+                                          "lb8.ugrid", &o, &err),
+                     VG_OK);
     unlink(cut_file("lb8.ugrid"));
     cut_release(&c);
     vg_mesh_release(&far);
@@ -250,19 +255,26 @@ static void rounding_that_spoils_cells_is_refused(void **state)
  * that were the same before are no fault of the file. */
 static void rounding_that_joins_points_is_refused(void **state)
 {
-  static const uint32_t face[4][3] = { {0, 1, 2}, {0, 3, 1}, {1, 3, 2},
-                                       {0, 2, 3} };
+  static const uint32_t face[4][3] = {
+    { 0, 1, 2 }, { 0, 3, 1 }, { 1, 3, 2 }, { 0, 2, 3 }
+  };
 
   (void)state;
   for (int thin = 0; thin < 2; thin++) {
-    double x[8][3] = { {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 0, 2},
-                       {0, 0, 1}, {0, 1, 1}, {1, 0, 1}, {0, 0, 0} };
-    uint32_t tet[2][4] = { {0, 1, 2, 3}, {4, 5, 6, 7} }, tri[8][3];
+    double x[8][3] = { { 0, 0, 1 }, { 1, 0, 1 }, { 0, 1, 1 }, { 0, 0, 2 },
+                       { 0, 0, 1 }, { 0, 1, 1 }, { 1, 0, 1 }, { 0, 0, 0 } };
+    uint32_t tet[2][4] = { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } }, tri[8][3];
     uint32_t of[8] = { 0 };
     struct vg_patch patch = { .id = 1 };
-    struct vg_mesh m = { .n_point = 8, .point = x, .n_tet = 2, .tet = tet,
-                         .n_tri = 8, .tri = tri, .tri_patch = of,
-                         .n_patch = 1, .patch = &patch };
+    struct vg_mesh m = { .n_point = 8,
+                         .point = x,
+                         .n_tet = 2,
+                         .tet = tet,
+                         .n_tri = 8,
+                         .tri = tri,
+                         .tri_patch = of,
+                         .n_patch = 1,
+                         .patch = &patch };
     const struct vg_slices_options o = { .threads = 1 };
     struct vg_join_info none = { 0 };
     struct vg_error err = VG_ERROR_INIT;
@@ -278,7 +290,8 @@ static void rounding_that_joins_points_is_refused(void **state)
                      thin ? VG_ERR_GEOMETRY : VG_OK);
     assert_true(exists(cut_file("lb4.ugrid")) == !thin);
     if (thin)
-      assert_non_null(strstr(err.text, "would make 3 points one with others, "
+      assert_non_null(strstr(err.text,
+                             "would make 3 points one with others, "
                              "the first point 5 (0, 0, 0.999999999)"));
     assert_int_equal(vg_ugrid_write(cut_file("lb4.ugrid"), &m, &err),
                      thin ? VG_ERR_GEOMETRY : VG_OK);
@@ -393,7 +406,8 @@ static void cogsg_and_what_belongs_to_it(void **state)
   (void)state;
   /* VGRID's order is another than the mesh's here ... */
   assert_int_equal(vg_vgrid_order(&mesh[0], &new_to_old, &old_to_new, &n_curve,
-                                  &n_boundary, NULL), VG_OK);
+                                  &n_boundary, NULL),
+                   VG_OK);
   assert_non_null(new_to_old);
   free(new_to_old);
   free(old_to_new);
@@ -402,7 +416,8 @@ static void cogsg_and_what_belongs_to_it(void **state)
   /* ... and the same where there is one patch. */
   memset(mesh[0].tri_patch, 0, mesh[0].n_tri * sizeof *mesh[0].tri_patch);
   assert_int_equal(vg_vgrid_order(&mesh[0], &new_to_old, &old_to_new, &n_curve,
-                                  &n_boundary, NULL), VG_OK);
+                                  &n_boundary, NULL),
+                   VG_OK);
   assert_null(new_to_old);
   cogsg_case(&mesh[0], &info[0], 0, 9);
 }
@@ -450,10 +465,12 @@ static void what_shows_the_boundary(void **state)
                    VG_OK);
   same_file(whole, cut_file("surface.vtu"));
   assert_int_equal(vg_mapbc_write(whole, &mesh[1], VG_MAPBC_FUN3D, NULL, NULL,
-                                  NULL), VG_OK);
+                                  NULL),
+                   VG_OK);
   same_file(whole, cut_file("fun3d.mapbc"));
   assert_int_equal(vg_mapbc_write_output(whole, &mesh[1], "slices_cut", NULL,
-                                         NULL), VG_OK);
+                                         NULL),
+                   VG_OK);
   same_file(whole, cut_file("mapbc"));
   unlink(whole);
   unlink(cut_file("surface.vtu"));
@@ -464,7 +481,7 @@ static void what_shows_the_boundary(void **state)
 
 /* Data of the n-th array of a .vtu, aligned; to be freed. */
 static void *array_of(const unsigned char *data, size_t size, int n,
-                            uint64_t *bytes)
+                      uint64_t *bytes)
 {
   const char *at = (const char *)data;
   const unsigned char *base = memmem(data, size, "<AppendedData", 13);
@@ -482,9 +499,9 @@ static void *array_of(const unsigned char *data, size_t size, int n,
 }
 
 /* Slots of VTK that hold our nodes. */
-static const int to_vtk[3][6] = {
-  { 0, 1, 2, 3 }, { 1, 0, 3, 4, 2 }, { 1, 0, 2, 4, 3, 5 }
-};
+static const int to_vtk[3][6] = { { 0, 1, 2, 3 },
+                                  { 1, 0, 3, 4, 2 },
+                                  { 1, 0, 2, 4, 3, 5 } };
 
 /* The cells of slices g and on, as long as they are in this piece, must have
  * the coordinates of those of the mesh. Returns the next slice. */
@@ -494,7 +511,7 @@ static size_t check_piece(const struct cut *c, const char *path, size_t g)
   size_t size, n = 0;
   uint64_t b;
   unsigned char *data = io_slurp(path, &size);
-  double (*x)[3] = array_of(data, size, 0, &b);
+  double(*x)[3] = array_of(data, size, 0, &b);
   int64_t *first = array_of(data, size, 1, &b), *node = first;
   int64_t *end = array_of(data, size, 2, &b);
   unsigned char *types = array_of(data, size, 3, &b);
@@ -510,8 +527,8 @@ static size_t check_piece(const struct cut *c, const char *path, size_t g)
 
         assert_true(n < n_cell);
         for (int j = 0; j < width[k]; j++)
-          assert_memory_equal(x[node[j]],
-                              c->mesh->point[cell[to_vtk[k][j]]], sizeof *x);
+          assert_memory_equal(x[node[j]], c->mesh->point[cell[to_vtk[k][j]]],
+                              sizeof *x);
         node += width[k];
         assert_true(end[n] == node - first);
         assert_int_equal(types[n], type[k]);
@@ -552,7 +569,7 @@ static void pieces_are_the_mesh(void **state)
       free(path);
     }
     assert_true(n > 2);
-    while (g < c.n)             /* empty ones at the end */
+    while (g < c.n) /* empty ones at the end */
       for (int i = 1; i < 4 && g < c.n; i++) {
         assert_int_equal(c.end[g][i], c.end[c.n - 1][i]);
         if (i == 3) g++;
@@ -563,9 +580,9 @@ static void pieces_are_the_mesh(void **state)
   }
 }
 
-static const char *const all_forms[] = { "b8.ugrid", "r8.ugrid", "cogsg",
-                                         "vtu", "pvtu", "su2", "msh",
-                                         "fluent.msh", "cgns" };
+static const char *const all_forms[] = { "b8.ugrid", "r8.ugrid",   "cogsg",
+                                         "vtu",      "pvtu",       "su2",
+                                         "msh",      "fluent.msh", "cgns" };
 /* the last needs HDF5 */
 #define N_FORM (sizeof all_forms / sizeof *all_forms - !vg_cgns_is_built())
 
@@ -630,12 +647,15 @@ static void refuses_what_a_form_cannot_hold(void **state)
   assert_false(vg_slices_can_write("foam"));
   assert_false(vg_slices_can_write(""));
   assert_int_equal(vg_slices_write(NULL, &c.s, io_temp("slices_cut"), "ugrid",
-                                   1, &err), VG_ERR_UNSUPPORTED);
+                                   1, &err),
+                   VG_ERR_UNSUPPORTED);
   assert_int_equal(vg_slices_write(NULL, &c.s, io_temp("slices_cut"), "cogsg",
-                                   1, &err), VG_ERR_UNSUPPORTED);
+                                   1, &err),
+                   VG_ERR_UNSUPPORTED);
   c.s.n_point = (uint64_t)1 << 31;
   assert_int_equal(vg_slices_write(NULL, &c.s, io_temp("slices_cut"),
-                                   "b8.ugrid", 1, &err), VG_ERR_UNSUPPORTED);
+                                   "b8.ugrid", 1, &err),
+                   VG_ERR_UNSUPPORTED);
   assert_non_null(strstr(err.text, "b8l.ugrid"));
   assert_absent(cut_file("b8.ugrid"));
   assert_absent(cut_file("cogsg"));

@@ -28,7 +28,8 @@ struct grid {
 static uint32_t add_point(struct grid *g, double x, double y, double z)
 {
   assert_int_equal(vg_reserve(&g->m.point, &g->cap_point, g->m.n_point + 1,
-                              sizeof *g->m.point), 0);
+                              sizeof *g->m.point),
+                   0);
   g->m.point[g->m.n_point][0] = x;
   g->m.point[g->m.n_point][1] = y;
   g->m.point[g->m.n_point][2] = z;
@@ -40,10 +41,11 @@ static void add_tri(struct grid *g, uint32_t a, uint32_t b, uint32_t c,
 {
   const size_t t = g->m.n_tri;
 
-  assert_int_equal(vg_reserve(&g->m.tri, &g->cap_tri, t + 1,
-                              sizeof *g->m.tri), 0);
+  assert_int_equal(vg_reserve(&g->m.tri, &g->cap_tri, t + 1, sizeof *g->m.tri),
+                   0);
   assert_int_equal(vg_reserve(&g->m.tri_patch, &g->cap_patch, t + 1,
-                              sizeof *g->m.tri_patch), 0);
+                              sizeof *g->m.tri_patch),
+                   0);
   g->m.tri[t][0] = a;
   g->m.tri[t][1] = b;
   g->m.tri[t][2] = c;
@@ -149,8 +151,8 @@ static void make_duct(struct grid *g, double r0, double r1, int n, int n_y)
                plane[1][(j + 1) * n + k], plane[1][j * n + k], 2);
     }
     for (int j = 0; j < n_y; j++) {
-      add_quad(g, body[j * n + i], body[(j + 1) * n + i],
-               body[(j + 1) * n + k], body[j * n + k], 0);
+      add_quad(g, body[j * n + i], body[(j + 1) * n + i], body[(j + 1) * n + k],
+               body[j * n + k], 0);
       add_quad(g, duct[j * n + i], duct[j * n + k], duct[(j + 1) * n + k],
                duct[(j + 1) * n + i], 3);
     }
@@ -184,9 +186,9 @@ static void make_dome(struct grid *g, int n, int n_up, int n_out)
         const double a = 2 * M_PI * i / n, b = M_PI / 2 * j / n_up;
 
         ring[f][j * n + i] = j == 0
-          ? ring[1][(f ? n_out : 0) * n + i]
-          : add_point(g, r * cos(a) * cos(b), r * sin(a) * cos(b),
-                      r * sin(b));
+                             ? ring[1][(f ? n_out : 0) * n + i]
+                             : add_point(g, r * cos(a) * cos(b),
+                                         r * sin(a) * cos(b), r * sin(b));
       }
     top = add_point(g, 0, 0, r);
     for (int i = 0; i < n; i++) {
@@ -311,7 +313,8 @@ static void make_columns(struct made *a, int n)
   uint32_t *column_of = vg_calloc(m->n_point, sizeof *column_of);
 
   assert_int_equal(vg_slides_find(m, a->is_wall, &a->n_slide, &a->slide,
-                                  &a->err), VG_OK);
+                                  &a->err),
+                   VG_OK);
   for (size_t t = 0; t < m->n_tri; t++)
     for (int k = 0; k < 3 && a->is_wall[m->tri_patch[t]]; k++)
       column_of[m->tri[t][k]] = 1;
@@ -393,9 +396,12 @@ static void assert_sound(struct made *a)
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   char text[200];
 
-  assert_int_equal(vg_surface_check(FRONT_MESH(&a->front, &a->g.m), &o, &r, &a->err), VG_OK);
+  assert_int_equal(vg_surface_check(FRONT_MESH(&a->front, &a->g.m), &o, &r,
+                                    &a->err),
+                   VG_OK);
   for (size_t i = 0; i < r.n_defect && i < 4; i++) {
-    vg_defect_text(FRONT_MESH(&a->front, &a->g.m), &r.defect[i], text, sizeof text);
+    vg_defect_text(FRONT_MESH(&a->front, &a->g.m), &r.defect[i], text,
+                   sizeof text);
     print_message("%s\n", text);
   }
   assert_int_equal(r.n_defect, 0);
@@ -442,8 +448,8 @@ static void assert_plane(struct made *a, size_t s, double min_angle)
   for (size_t t = 0; t < m->n_tri; t++) {
     if (m->tri_patch[t] != sl->patch) continue;
     for (int k = 0; k < 3 && sl->axis >= 0; k++)
-      assert_true(m->point[m->tri[t][k]][sl->axis]
-                  == sl->at * sl->normal[sl->axis]);
+      assert_true(m->point[m->tri[t][k]][sl->axis] ==
+                  sl->at * sl->normal[sl->axis]);
     triangle(m, t, n);
     assert_true(vg_dot(n, sl->normal) > 0);
     area += vg_dot(n, sl->normal);
@@ -504,8 +510,7 @@ static void assert_same_again(struct made *a)
   assert_int_equal(front(a), VG_OK);
   assert_int_equal(first.n_face, a->front.n_face);
   assert_int_equal(first.n_point, a->front.n_point);
-  assert_memory_equal(first.x, a->front.x,
-                      first.n_point * sizeof *first.x);
+  assert_memory_equal(first.x, a->front.x, first.n_point * sizeof *first.x);
   assert_memory_equal(first.face, a->front.face,
                       first.n_face * sizeof *first.face);
   vg_front_release(&first);
@@ -522,7 +527,8 @@ static void finds_planes_and_normals(void **state)
   make_dome(&a.g, 24, 6, 10);
   a.is_wall[0] = 1;
   assert_int_equal(vg_slides_find(&a.g.m, a.is_wall, &a.n_slide, &a.slide,
-                                  &a.err), VG_OK);
+                                  &a.err),
+                   VG_OK);
   assert_int_equal(a.n_slide, 1);
   assert_int_equal(a.slide[0].patch, 1);
   assert_true(a.slide[0].is_plane);
@@ -534,7 +540,8 @@ static void finds_planes_and_normals(void **state)
   a.is_wall[0] = 0;
   a.is_wall[1] = 1;
   assert_int_equal(vg_slides_find(&a.g.m, a.is_wall, &a.n_slide, &a.slide,
-                                  &a.err), VG_OK);
+                                  &a.err),
+                   VG_OK);
   assert_int_equal(a.n_slide, 2);
   assert_false(a.slide[0].is_plane);
   for (uint32_t p = 0; p < 24; p++) {
@@ -568,8 +575,7 @@ static void normals_go_by_angle(void **state)
   add_tri(&g, 0, 5, 6, 0);
   add_patches(&g, 1);
   vg_slide_normal(&s, &g.m, 0, n);
-  for (int k = 0; k < 3; k++)
-    assert_true(fabs(n[k] - 1 / sqrt(3)) < 1e-12);
+  for (int k = 0; k < 3; k++) assert_true(fabs(n[k] - 1 / sqrt(3)) < 1e-12);
   vg_mesh_release(&g.m);
 }
 
@@ -584,7 +590,8 @@ static void noise_is_still_a_plane(void **state)
     if (a.g.m.point[i][0] == 0)
       a.g.m.point[i][0] = 2e-7 * (double)((int)(i * 7 % 5) - 2);
   assert_int_equal(vg_slides_find(&a.g.m, a.is_wall, &a.n_slide, &a.slide,
-                                  &a.err), VG_OK);
+                                  &a.err),
+                   VG_OK);
   assert_int_equal(a.n_slide, 4);
   assert_int_equal(a.slide[2].patch, 4);
   assert_true(a.slide[2].is_plane);
@@ -615,12 +622,12 @@ static void body_between_planes(void **state)
   static const double r[3][2] = { { 1, 1 }, { 1.2, 0.6227 }, { 0.6, 1.55 } };
 
   (void)state;
-  for (int i = 0; i < 3; i++) {   /* met at 90, 60 and 120, 136 and 44 */
+  for (int i = 0; i < 3; i++) { /* met at 90, 60 and 120, 136 and 44 */
     struct made a = { 0 };
 
     make_duct(&a.g, r[i][0], r[i][1], 36, 6);
     grow(&a, 0, 0, i == 2 ? 8 : 12);
-    for (size_t j = 0; j < a.c.n_column; j++) {   /* along the planes */
+    for (size_t j = 0; j < a.c.n_column; j++) { /* along the planes */
       a.c.column[j].dir[1] = 0;
       vg_unit(a.c.column[j].dir);
     }
@@ -648,16 +655,15 @@ static void levels_climb_from_nothing(void **state)
     const double *x = a.g.m.point[a.c.column[i].root];
     const int sector = (int)lround(atan2(x[2], x[0]) * 18 / M_PI);
 
-    a.c.column[i].n = (uint16_t)(sector > 0 ? sector > 9 ? 18 - sector
-                                                         : sector : 0);
+    a.c.column[i].n = (uint16_t)(sector > 0 ? sector > 9 ? 18 - sector : sector
+                                            : 0);
   }
   assert_int_equal(front(&a), VG_OK);
   assert_sound(&a);
   assert_points(&a);
   assert_plane(&a, 0, 8);
   for (size_t t = 0; t < a.front.n_face; t++)
-    n_wall += a.front.patch[t] == 0
-              && a.front.face_id[t] == VG_NO_INDEX;
+    n_wall += a.front.patch[t] == 0 && a.front.face_id[t] == VG_NO_INDEX;
   assert_true(n_wall > 36 * 6 / 2);
   release(&a);
 }
@@ -671,8 +677,7 @@ static void nothing_grows_nothing_changes(void **state)
   grow(&a, 0, 0, 0);
   assert_int_equal(front(&a), VG_OK);
   assert_int_equal(a.front.n_face, a.g.m.n_tri);
-  assert_memory_equal(a.front.face, a.g.m.tri,
-                      a.g.m.n_tri * sizeof *a.g.m.tri);
+  assert_memory_equal(a.front.face, a.g.m.tri, a.g.m.n_tri * sizeof *a.g.m.tri);
   release(&a);
 }
 
@@ -722,7 +727,7 @@ static void tilted_floor(void **state)
 /* Floor and roof: both ends of the vertical edges are swallowed. */
 static void floor_and_roof(void **state)
 {
-  static const int n[3] = { 3, 10, 14 };  /* heights 0.04, 0.26, 0.59 */
+  static const int n[3] = { 3, 10, 14 }; /* heights 0.04, 0.26, 0.59 */
 
   (void)state;
   for (int i = 0; i < 3; i++) {
@@ -756,7 +761,7 @@ static void too_high_is_failure(void **state)
   for (size_t i = 0; i < a.c.n_column; i++) {
     const double *x = a.g.m.point[a.c.column[i].root];
 
-    if (x[0] > 0.99 && x[1] == 0) a.c.column[i].n = 30;  /* 11.8 high */
+    if (x[0] > 0.99 && x[1] == 0) a.c.column[i].n = 30; /* 11.8 high */
   }
   assert_int_equal(front(&a), VG_BLOCKED);
   assert_true(a.failure.n > 0 && a.failure.n < 10);
@@ -794,12 +799,12 @@ static void gently_curved_side(void **state)
   assert_points(&a);
   for (size_t i = 0; i < a.c.n_column; i++) {
     const struct vg_column *c = &a.c.column[i];
-    const double (*x)[3];
+    const double(*x)[3];
 
     if (c->slide[0] != 4 && c->slide[1] != 4) continue;
     n_bent += c->bent != SIZE_MAX;
     if (c->bent == SIZE_MAX) continue;
-    x = (const double (*)[3])(a.c.path + c->bent);
+    x = (const double(*)[3])(a.c.path + c->bent);
     assert_memory_equal(x[0], a.g.m.point[c->root], sizeof *x);
     assert_true(fabs(vg_distance(x[1], x[0]) - 0.01) < 1e-8);
   }
@@ -919,8 +924,8 @@ static void fan_at_the_plane(void **state)
       for (int k = 0; k < 2; k++)
         z += a.g.m.point[c->column[c->border[i][k]].root][2];
       for (int k = 0; k < 2; k++)
-        c->border[i][k] = to[c->border[i][k]] + (c->border[i][k] % 36 == 0 &&
-                                                 z > 0);
+        c->border[i][k] = to[c->border[i][k]] +
+                          (c->border[i][k] % 36 == 0 && z > 0);
     }
     free(c->column);
     c->column = more;
@@ -1064,8 +1069,8 @@ static void only_the_surroundings(void **state)
     for (size_t u = 0; u < a.front.n_face; u++) {
       const uint32_t *f = a.front.face[u];
 
-      n_same += a.front.id[f[0]] == v[0] && a.front.id[f[1]] == v[1]
-                && a.front.id[f[2]] == v[2];
+      n_same += a.front.id[f[0]] == v[0] && a.front.id[f[1]] == v[1] &&
+                a.front.id[f[2]] == v[2];
     }
   }
   assert_true(n_same > n_patch / 10 && n_same < n_patch);

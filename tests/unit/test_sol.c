@@ -25,7 +25,7 @@ static vg_status parse(const void *data, size_t size, size_t *n, double **v,
 static void reads_text(void **state)
 {
   const char text[] = "MeshVersionFormatted\n2\n# sizes\nDimension 3\n"
-    "Iterations 1 7\nSolAtVertices 3 1 1 0.5 1d-3\n2\nEnd\n";
+                      "Iterations 1 7\nSolAtVertices 3 1 1 0.5 1d-3\n2\nEnd\n";
   struct vg_error err = VG_ERROR_INIT;
   double *v;
   size_t n;
@@ -39,7 +39,10 @@ static void reads_text(void **state)
 
 /* --- binary, as libMeshb writes it --- */
 
-struct bytes { size_t n; unsigned char data[256]; };
+struct bytes {
+  size_t n;
+  unsigned char data[256];
+};
 
 static void put(struct bytes *b, const void *v, size_t size, int big)
 {
@@ -70,8 +73,10 @@ static struct bytes binary(int version, int big, int64_t n)
   put_int(&b, 8 + head + 4, wide, big);
   put_int(&b, 3, 0, big);
   put_int(&b, 62, 0, big);
-  put_int(&b, (int64_t)b.n - 4 + head + (version == 4 ? 8 : 4) + 8 +
-          3 * (version == 1 ? 4 : 8), wide, big);
+  put_int(&b,
+          (int64_t)b.n - 4 + head + (version == 4 ? 8 : 4) + 8 +
+            3 * (version == 1 ? 4 : 8),
+          wide, big);
   put_int(&b, n, version == 4, big);
   put_int(&b, 1, 0, big);
   put_int(&b, 1, 0, big);

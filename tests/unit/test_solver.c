@@ -31,13 +31,17 @@ static void make(struct made *m, enum vg_layer_cells cells, double growth)
 
   memset(m, 0, sizeof *m);
   model_sphere(&m->model, 6, 6, &seed);
-  sizing = shape_sizing(FRONT_MESH(&m->model.layers.front, &m->model.surface), growth, 0);
-  assert_int_equal(fill_mesh(FRONT_MESH(&m->model.layers.front, &m->model.surface), sizing, &options,
-                           &m->model.field, &report, NULL), VG_OK);
+  sizing = shape_sizing(FRONT_MESH(&m->model.layers.front, &m->model.surface),
+                        growth, 0);
+  assert_int_equal(fill_mesh(FRONT_MESH(&m->model.layers.front,
+                                        &m->model.surface),
+                             sizing, &options, &m->model.field, &report, NULL),
+                   VG_OK);
   vg_sizing_free(sizing);
   assert_int_equal(vg_layers_join(&m->model.surface, &m->model.layers,
-                                  &m->model.field, cells, 1, &m->mesh,
-                                  &m->info, NULL), VG_OK);
+                                  &m->model.field, cells, 1, &m->mesh, &m->info,
+                                  NULL),
+                   VG_OK);
   m->n_cell = m->mesh.n_tet + m->mesh.n_pyr + m->mesh.n_pri;
   m->part = vg_alloc(m->n_cell, sizeof *m->part);
 }
@@ -51,8 +55,7 @@ static void release(struct made *m)
 
 /* Cells of each kind that stand on a face of these columns, as columns.h has
  * it: none of them share a root here. */
-static void stands_on(const struct made *m, size_t face, int mixed,
-                      size_t n[3])
+static void stands_on(const struct made *m, size_t face, int mixed, size_t n[3])
 {
   const struct vg_columns *c = &m->model.layers.columns;
   size_t low = SIZE_MAX, high = 0, sum = 0;
@@ -110,8 +113,10 @@ static int by_nodes(const void *a, const void *b)
 /* Faces between parts, found by sorting all faces. */
 static uint64_t count_cut(const struct vg_mesh *m, const uint32_t *part)
 {
-  static const int side[4][3] = { {1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2} };
-  uint32_t (*f)[5] = vg_alloc(4 * m->n_tet, sizeof *f);
+  static const int side[4][3] = {
+    { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0, 1, 2 }
+  };
+  uint32_t(*f)[5] = vg_alloc(4 * m->n_tet, sizeof *f);
   uint64_t n = 0;
 
   for (size_t i = 0; i < 4 * m->n_tet; i++) {
@@ -276,14 +281,15 @@ static void refuses_parts_that_cannot_be(void **state)
   assert_int_equal(vg_solver_part(&m.mesh, NULL, &o, "x", m.part, &r, &err),
                    VG_OK);
   for (size_t i = 0; i < m.n_cell; i++) assert_int_equal(m.part[i], 0);
-  o.n_part = 50;   /* METIS may leave some empty; here none may be */
+  o.n_part = 50; /* METIS may leave some empty; here none may be */
   assert_int_equal(vg_solver_part(&m.mesh, NULL, &o, "x", m.part, &r, &err),
                    VG_OK);
   assert_true(r.least_cells > 0);
   m.mesh.n_tri--;
   o.n_part = 2;
   assert_int_equal(vg_solver_part(&m.mesh, NULL, &o, "open.ugrid", m.part, &r,
-                                  &err), VG_ERR_INPUT);
+                                  &err),
+                   VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "open.ugrid"));
   m.mesh.n_tri++;
   release(&m);
@@ -364,8 +370,7 @@ static void hexahedra_stand_on_walls(void **state)
   assert_int_equal(r.n_vertex, SIDE * SIDE);
   for (int i = SIDE * SIDE; i < N_HEX; i++)
     assert_int_equal(part[i], part[i % (SIDE * SIDE)]);
-  assert_int_equal(vg_solver_part(&m, NULL, &o, "cube", part, &r, NULL),
-                   VG_OK);
+  assert_int_equal(vg_solver_part(&m, NULL, &o, "cube", part, &r, NULL), VG_OK);
   assert_int_equal(r.n_stack, 0);
   assert_int_equal(r.n_vertex, N_HEX);
   vg_mesh_release(&m);
@@ -444,8 +449,9 @@ static void reads_how_many_tetrahedra_are_in_layers(void **state)
     assert_int_equal(is_known, 0);
     unlink(path);
   }
-  assert_int_equal(vg_format_layer_tets(io_temp("none.b8.ugrid"), &is_known,
-                                        &n, NULL), VG_ERR_IO);
+  assert_int_equal(vg_format_layer_tets(io_temp("none.b8.ugrid"), &is_known, &n,
+                                        NULL),
+                   VG_ERR_IO);
   vg_mesh_release(&m);
 }
 

@@ -136,16 +136,22 @@ static void refuses_what_is_broken(void **state)
 
   (void)state;
   io_refuse(vg_stl_parse, "solid x\nendsolid x\n", VG_ERR_INPUT, "no facets");
-  io_refuse(vg_stl_parse, "solid x\nfacet normal 0 0 1\nouter loop\n"
-            "vertex 0 0 0\nvertex 1 0", VG_ERR_FORMAT, "case:5");
-  io_refuse(vg_stl_parse, "solid x\nfacet normal 0 0 1 outer loop vertex 0 0 "
-            "0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n", VG_ERR_FORMAT,
-            "truncated");
-  io_refuse(vg_stl_parse, "solid x\nfacet normal 0 0 1 outer loop vertex 0 0 "
+  io_refuse(vg_stl_parse,
+            "solid x\nfacet normal 0 0 1\nouter loop\n"
+            "vertex 0 0 0\nvertex 1 0",
+            VG_ERR_FORMAT, "case:5");
+  io_refuse(vg_stl_parse,
+            "solid x\nfacet normal 0 0 1 outer loop vertex 0 0 "
+            "0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n",
+            VG_ERR_FORMAT, "truncated");
+  io_refuse(vg_stl_parse,
+            "solid x\nfacet normal 0 0 1 outer loop vertex 0 0 "
             "0 vertex 1 0 0 vertex 0 1 0 vertex 1 1 0 endloop endfacet\n",
             VG_ERR_FORMAT, "more than three");
-  io_refuse(vg_stl_parse, "solid x\nfacet normal 0 0 1 outer loop vertex 0 "
-            "nan 0 vertex", VG_ERR_FORMAT, "'nan'");
+  io_refuse(vg_stl_parse,
+            "solid x\nfacet normal 0 0 1 outer loop vertex 0 "
+            "nan 0 vertex",
+            VG_ERR_FORMAT, "'nan'");
   io_refuse(vg_stl_parse, "4 4\n0 0 0\n", VG_ERR_FORMAT, "'solid'");
   binary[80] = 2; /* two facets, room for one */
   io_refuse_bytes(vg_stl_parse, binary, sizeof binary, VG_ERR_FORMAT,
@@ -163,8 +169,7 @@ static void reads_a_real_file(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  const char *path =
-      io_real("dirty/f16_components_overlapping.stl.xz");
+  const char *path = io_real("dirty/f16_components_overlapping.stl.xz");
 
   (void)state;
   if (vg_stl_read(path, &m, &err) != VG_OK) fail_msg("%s", err.text);

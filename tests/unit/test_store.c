@@ -25,14 +25,16 @@
 
 #define RUN_DIR VG_TMP_DIR "/store_run"
 
-static const struct vg_digest zero = {{0, 0}};
+static const struct vg_digest zero = { { 0, 0 } };
 
 /* --- support ------------------------------------------------------------- */
 
 static int remove_one(const char *path, const struct stat *s, int flag,
                       struct FTW *f)
 {
-  (void)s; (void)flag; (void)f;
+  (void)s;
+  (void)flag;
+  (void)f;
   return remove(path);
 }
 
@@ -50,9 +52,10 @@ static struct vg_digest key_of(uint64_t k)
 
 static struct vg_store_options options_of(uint64_t job, int resume)
 {
-  return (struct vg_store_options){.dir = RUN_DIR, .job = key_of(job),
-                                   .what = job == 1 ? "first" : "second",
-                                   .resume = resume};
+  return (struct vg_store_options){ .dir = RUN_DIR,
+                                    .job = key_of(job),
+                                    .what = job == 1 ? "first" : "second",
+                                    .resume = resume };
 }
 
 static struct vg_store *opened(uint64_t job, int resume)
@@ -79,13 +82,12 @@ static void refused(const struct vg_store_options *o, vg_status st,
     if (!strstr(err.text, *word))
       fail_msg("'%s' is not in: %s", *word, err.text);
 }
-#define REFUSED(o, st, ...) \
-  refused(o, st, (const char *const[]){__VA_ARGS__, NULL})
+#define REFUSED(o, st, ...)                                                    \
+  refused(o, st, (const char *const[]){ __VA_ARGS__, NULL })
 
-static int is_there(struct vg_store *s, uint64_t k, size_t n,
-                    const void *data)
+static int is_there(struct vg_store *s, uint64_t k, size_t n, const void *data)
 {
-  struct vg_bytes b = {0, NULL};
+  struct vg_bytes b = { 0, NULL };
   vg_status st = vg_store_find(s, key_of(k), &b, NULL);
   int same = st == VG_OK && b.n == n && !memcmp(b.data, data, n);
 
@@ -171,9 +173,9 @@ static void digest_depends_on_all(void **state)
     other = vg_digest_of(seed, sizeof data, data);
     assert_true(d.word[0] != other.word[0] && d.word[1] != other.word[1]);
   }
-  assert_false(digests_equal(
-      vg_digest_of(vg_digest_of(zero, 2, "ab"), 1, "c"),
-      vg_digest_of(vg_digest_of(zero, 1, "a"), 2, "bc")));
+  assert_false(
+    digests_equal(vg_digest_of(vg_digest_of(zero, 2, "ab"), 1, "c"),
+                  vg_digest_of(vg_digest_of(zero, 1, "a"), 2, "bc")));
   assert_false(digests_equal(vg_digest_of(zero, 0, NULL), zero));
 }
 
@@ -191,7 +193,7 @@ static void kept_and_found(void **state)
     assert_false(is_there(s, k, 0, data));
     vg_store_keep(s, key_of(k), (size_t)(k * 233), data);
   }
-  vg_store_keep(s, key_of(5), 1165, data);       /* again */
+  vg_store_keep(s, key_of(5), 1165, data); /* again */
   for (uint64_t k = 0; k < 300; k++)
     assert_true(is_there(s, k, (size_t)(k * 233), data));
   assert_int_equal(report_of(s).n_kept, 301);
@@ -285,13 +287,13 @@ static void another_run_is_refused(void **state)
   (void)state;
   vg_store_keep(s, key_of(7), 3, "abc");
   vg_store_close(s, 0);
-  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "second", "another run",
-          "choose", "1 finished");
+  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "second", "another run", "choose",
+          "1 finished");
   o.resume = 1;
   REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "second", "changed", "restore");
   o = options_of(1, 0);
   REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "resume it", "very run");
-  s = opened(1, 1);          /* still there after all this */
+  s = opened(1, 1); /* still there after all this */
   assert_true(is_there(s, 7, 3, "abc"));
   vg_store_close(s, 1);
 }
@@ -318,15 +320,19 @@ static void nothing_to_resume(void **state)
   assert_int_equal(access(RUN_DIR, F_OK), -1);
   assert_int_equal(mkdir(RUN_DIR, 0777), 0);
   REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "holds no run", "without resuming");
-  assert_int_equal(rmdir(RUN_DIR), 0);      /* nothing was left in it */
+  assert_int_equal(rmdir(RUN_DIR), 0); /* nothing was left in it */
 }
 
 static void a_damaged_note(void **state)
 {
   static const char *const text[] = {
-    "", "\n", "vanguard run 1\n", "vanguard run 1\njob=0123\nwhat=x\n",
+    "",
+    "\n",
+    "vanguard run 1\n",
+    "vanguard run 1\njob=0123\nwhat=x\n",
     "vanguard run 2\njob=00112233445566778899aabbccddeeff\nwhat=x\n",
-    "vanguard run 1\njob=00112233445566778899aabbccddeeff\nwhat=x"};
+    "vanguard run 1\njob=00112233445566778899aabbccddeeff\nwhat=x"
+  };
   struct vg_store_options o = options_of(1, 1);
 
   (void)state;
@@ -389,7 +395,7 @@ static void settings_side_by_side(void **state)
     snprintf(many + strlen(many), 30, "name%d=value\n", k);
   o.settings = many;
   REFUSED(&o, VG_ERR_INPUT, "name0 was", "more; choose another directory");
-  o = options_of(1, 1);          /* whatever the lines say, jobs decide */
+  o = options_of(1, 1); /* whatever the lines say, jobs decide */
   o.settings = "growth=3";
   assert_int_equal(vg_store_open(NULL, &o, &s, NULL), VG_OK);
   vg_store_close(s, 1);
@@ -412,7 +418,7 @@ static void folders_above_and_other_files(void **state)
   assert_int_equal(access(RUN_DIR "/a/b/run.txt", F_OK), -1);
   assert_int_equal(access(RUN_DIR "/a/b/run.lock", F_OK), -1);
   assert_int_equal(unlink(RUN_DIR "/a/b/records/notes"), 0);
-  assert_int_equal(rmdir(RUN_DIR "/a/b/records"), 0);  /* no record is left */
+  assert_int_equal(rmdir(RUN_DIR "/a/b/records"), 0); /* no record is left */
   assert_int_equal(unlink(RUN_DIR "/a/b/notes"), 0);
 }
 
@@ -430,7 +436,7 @@ static void one_run_at_a_time(void **state)
   (void)state;
   assert_int_equal(pipe(ends), 0);
   pid = fork();
-  assert_true(pid >= 0);           /* kill would take -1 for everybody */
+  assert_true(pid >= 0); /* kill would take -1 for everybody */
   if (pid == 0) {
     s = opened(1, 0);
     vg_store_keep(s, key_of(1), 3, "abc");

@@ -88,10 +88,10 @@ static void drops_the_byte_order_mark_of_a_text(void **state)
   vg_input_release(&in);
 }
 
-#define POINTER \
-  "version https://git-lfs.github.com/spec/v1\n" \
-  "oid sha256:4d7a214614ab2935c943f9e0ff69d22e" \
-  "adbb8f32b1258daaa5e2ca24d17e2393" \
+#define POINTER                                                                \
+  "version https://git-lfs.github.com/spec/v1\n"                               \
+  "oid sha256:4d7a214614ab2935c943f9e0ff69d22e"                                \
+  "adbb8f32b1258daaa5e2ca24d17e2393"                                           \
   "\nsize 12345\n"
 
 static void names_a_pointer_of_git_lfs(void **state)
@@ -101,7 +101,8 @@ static void names_a_pointer_of_git_lfs(void **state)
 
   (void)state;
   io_write_file(path, POINTER, sizeof POINTER - 1);
-  refuse_open(path, VG_ERR_FORMAT, "is a Git LFS pointer, not the file "
+  refuse_open(path, VG_ERR_FORMAT,
+              "is a Git LFS pointer, not the file "
               "itself; run `git lfs pull` in its repository");
   io_write_file(path, MARK POINTER, sizeof POINTER + 2);
   refuse_open(path, VG_ERR_FORMAT, "Git LFS pointer");
@@ -185,8 +186,8 @@ static void refuses_gzip_that_explodes(void **state)
 static void reads_numbers_of_both_orders(void **state)
 {
   static const unsigned char data[] = {
-    0, 0, 1, 2,  2, 1, 0, 0,  0x3f, 0xf0, 0, 0, 0, 0, 0, 0,
-    0, 0, 0xc0, 0x3f,  0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xfe
+    0, 0, 1, 2, 2,    1,    0,    0,    0x3f, 0xf0, 0,    0,    0,    0,
+    0, 0, 0, 0, 0xc0, 0x3f, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xfe
   };
   struct vg_input in = VG_INPUT_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -214,8 +215,7 @@ static void reads_numbers_of_both_orders(void **state)
   assert_int_equal(vg_input_i64(&in, 1, &l, "e", &err), VG_OK);
   assert_int_equal(l, -2);
   assert_int_equal(vg_input_left(&in), 0);
-  assert_int_equal(vg_input_need(&in, UINT64_MAX, 8, "f", &err),
-                   VG_ERR_FORMAT);
+  assert_int_equal(vg_input_need(&in, UINT64_MAX, 8, "f", &err), VG_ERR_FORMAT);
   vg_input_release(&in);
 }
 
@@ -223,15 +223,15 @@ static void reads_numbers_of_both_orders(void **state)
 static void cuts_records_as_gfortran(void **state)
 {
   static const unsigned char markers[6][4] = {
-    {0xff, 0xff, 0xff, 0xec}, {0, 0, 0, 20}, {0xff, 0xff, 0xff, 0xec},
-    {0xff, 0xff, 0xff, 0xec}, {0, 0, 0, 8}, {0xff, 0xff, 0xff, 0xf8}
+    { 0xff, 0xff, 0xff, 0xec }, { 0, 0, 0, 20 }, { 0xff, 0xff, 0xff, 0xec },
+    { 0xff, 0xff, 0xff, 0xec }, { 0, 0, 0, 8 },  { 0xff, 0xff, 0xff, 0xf8 }
   };
-  static const size_t place[6] = {0, 24, 28, 52, 56, 68};
+  static const size_t place[6] = { 0, 24, 28, 52, 56, 68 };
   const char *path = io_temp("stream_record");
   struct vg_output out = VG_OUTPUT_INIT;
   struct vg_input in = VG_INPUT_INIT, record;
   struct vg_error err = VG_ERROR_INIT;
-  double v[6] = {1, 2, 3, 4, 5, 6}, back[6];
+  double v[6] = { 1, 2, 3, 4, 5, 6 }, back[6];
   unsigned char *data;
   size_t size;
 
@@ -267,10 +267,10 @@ static void cuts_records_as_gfortran(void **state)
 static void refuses_records_with_wrong_markers(void **state)
 {
   static const unsigned char cases[4][12] = {
-    {0, 0, 0, 4, 1, 1, 1, 1, 0, 0, 0, 5},             /* other length */
-    {0, 0, 0, 4, 1, 1, 1, 1, 0xff, 0xff, 0xff, 0xfc}, /* other sign */
-    {0x7f, 0, 0, 4, 1, 1, 1, 1, 0, 0, 0, 4},          /* too long */
-    {0x80, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 4},          /* INT32_MIN */
+    { 0, 0, 0, 4, 1, 1, 1, 1, 0, 0, 0, 5 },             /* other length */
+    { 0, 0, 0, 4, 1, 1, 1, 1, 0xff, 0xff, 0xff, 0xfc }, /* other sign */
+    { 0x7f, 0, 0, 4, 1, 1, 1, 1, 0, 0, 0, 4 },          /* too long */
+    { 0x80, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 4 },          /* INT32_MIN */
   };
   struct vg_input in = VG_INPUT_INIT, record;
   struct vg_error err = VG_ERROR_INIT;
@@ -302,8 +302,7 @@ static void reads_tokens_and_lines(void **state)
                    VG_OK);
   in.comment = '#';
   assert_true(vg_input_token(&in, &t, &n) && vg_token_is(t, n, "one"));
-  assert_true(vg_input_token_in_line(&in, &t, &n) &&
-              vg_token_is(t, n, "two"));
+  assert_true(vg_input_token_in_line(&in, &t, &n) && vg_token_is(t, n, "two"));
   assert_false(vg_input_token_in_line(&in, &t, &n));
   assert_int_equal(in.line, 1);
   assert_true(vg_input_token(&in, &t, &n) && vg_token_is(t, n, "three"));
@@ -338,10 +337,17 @@ static void notices_binary_data(void **state)
 
 static void parses_integers_with_care(void **state)
 {
-  static const char *const bad[] = {
-    "", "-", "+", "1.0", "1e3", "0x10", "12a", "9223372036854775808",
-    "99999999999999999999", "--1", " 1"
-  };
+  static const char *const bad[] = { "",
+                                     "-",
+                                     "+",
+                                     "1.0",
+                                     "1e3",
+                                     "0x10",
+                                     "12a",
+                                     "9223372036854775808",
+                                     "99999999999999999999",
+                                     "--1",
+                                     " 1" };
   int64_t v;
 
   (void)state;
@@ -354,22 +360,32 @@ static void parses_integers_with_care(void **state)
 
 static void parses_reals_with_care(void **state)
 {
-  static const char *const bad[] = {
-    "", ".", "-", "e5", "1e", "1e+", "1.2.3", "nan", "inf", "-inf", "1e400",
-    "0x1p3", "1,5", "1e5x", "1d", "1d+-3", "--1"
-  };
-  static const struct { const char *text; double v; } good[] = {
-    {"1.5D-3", 1.5e-3}, {"1.5d+2", 150}, {"0.1-100", 0.1e-100},
-    {"1+2", 100}, {".5", 0.5}, {"5.", 5}, {"-0", -0.0}, {"1e-400", 0},
-    {"0.000000000000000000000000000001", 1e-30},
-    {"123456789012345678901234567890", 123456789012345678901234567890.0},
-    {"4.9406564584124654e-324", 4.9406564584124654e-324},
-    {"1.7976931348623157e308", 1.7976931348623157e308},
-    {"2.2250738585072011e-308", 2.2250738585072011e-308},
+  static const char *const bad[] = { "",      ".",     "-",   "e5",   "1e",
+                                     "1e+",   "1.2.3", "nan", "inf",  "-inf",
+                                     "1e400", "0x1p3", "1,5", "1e5x", "1d",
+                                     "1d+-3", "--1" };
+  static const struct {
+    const char *text;
+    double v;
+  } good[] = {
+    { "1.5D-3", 1.5e-3 },
+    { "1.5d+2", 150 },
+    { "0.1-100", 0.1e-100 },
+    { "1+2", 100 },
+    { ".5", 0.5 },
+    { "5.", 5 },
+    { "-0", -0.0 },
+    { "1e-400", 0 },
+    { "0.000000000000000000000000000001", 1e-30 },
+    { "123456789012345678901234567890", 123456789012345678901234567890.0 },
+    { "4.9406564584124654e-324", 4.9406564584124654e-324 },
+    { "1.7976931348623157e308", 1.7976931348623157e308 },
+    { "2.2250738585072011e-308", 2.2250738585072011e-308 },
     /* Exactly half-way between two doubles: to even, and just above. */
-    {"9007199254740993", 9007199254740992.0},
-    {"9007199254740993.0000000000000000000000001", 9007199254740994.0},
-    {"0e99999999", 0}, {"0.0000000000000000000000000000000000000000e+10", 0}
+    { "9007199254740993", 9007199254740992.0 },
+    { "9007199254740993.0000000000000000000000001", 9007199254740994.0 },
+    { "0e99999999", 0 },
+    { "0.0000000000000000000000000000000000000000e+10", 0 }
   };
   double v;
 
@@ -410,11 +426,19 @@ static void parses_as_the_c_library(void **state)
 
 static void written_reals_read_back(void **state)
 {
-  static const struct { double v; const char *text; } known[] = {
-    {0.1, "0.1"}, {-2, "-2"}, {0, "0"}, {-0.0, "-0"}, {1e-4, "0.0001"},
-    {1.0 / 3, "0.33333333333333331"}, {123456.75, "123456.75"},
-    {1e20, "1e+20"}, {0.3, "0.3"}, {5e-324, "4.94065645841247e-324"}
-  };
+  static const struct {
+    double v;
+    const char *text;
+  } known[] = { { 0.1, "0.1" },
+                { -2, "-2" },
+                { 0, "0" },
+                { -0.0, "-0" },
+                { 1e-4, "0.0001" },
+                { 1.0 / 3, "0.33333333333333331" },
+                { 123456.75, "123456.75" },
+                { 1e20, "1e+20" },
+                { 0.3, "0.3" },
+                { 5e-324, "4.94065645841247e-324" } };
   uint64_t seed = 7;
   char text[32];
   double v, back;
@@ -442,8 +466,8 @@ static void written_reals_read_back(void **state)
 
 static void no_locale_shows(void **state)
 {
-  static const char *const name[] = {"de_DE.UTF-8", "de_DE.utf8",
-                                     "fr_FR.UTF-8"};
+  static const char *const name[] = { "de_DE.UTF-8", "de_DE.utf8",
+                                      "fr_FR.UTF-8" };
   char text[32];
   double v;
   int found = 0;
@@ -497,7 +521,7 @@ static void output_errors_are_reported(void **state)
   struct vg_output out = VG_OUTPUT_INIT;
   struct vg_error err = VG_ERROR_INIT;
   const char *path = io_temp("stream_no_folder/x");
-  int32_t v[2] = {1, 2};
+  int32_t v[2] = { 1, 2 };
 
   (void)state;
   assert_int_equal(vg_output_open(path, &out, &err), VG_ERR_IO);

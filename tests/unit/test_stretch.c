@@ -113,7 +113,7 @@ static void wing(struct vg_mesh *m)
     for (uint32_t j = 0; j <= SPAN; j++)
       for (uint32_t i = 0; i <= CHORD; i++) {
         double y = 4. * j / SPAN, u = (double)i / CHORD, chord = 1 - 0.1 * y;
-        double z = 0.15 * u * (1 - u * u);   /* of x = u^2: round in front */
+        double z = 0.15 * u * (1 - u * u); /* of x = u^2: round in front */
 
         shape_point(m, 0.2 * y + chord * u * u, y, (side ? -z : z) * chord);
       }
@@ -141,8 +141,8 @@ static int is_leading(const struct vg_mesh *m, const uint32_t *tri, int k)
 {
   const double *a = m->point[tri[k]], *b = m->point[tri[(k + 1) % 3]];
 
-  return fabs(a[0] - 0.2 * a[1]) < 1e-6 && fabs(b[0] - 0.2 * b[1]) < 1e-6
-         && fabs(a[1] - b[1]) > 1e-9;
+  return fabs(a[0] - 0.2 * a[1]) < 1e-6 && fabs(b[0] - 0.2 * b[1]) < 1e-6 &&
+         fabs(a[1] - b[1]) > 1e-9;
 }
 
 static double *along_leading_edge(const struct vg_mesh *m, double by)
@@ -180,8 +180,7 @@ static void make_wing(struct vg_mesh *m, double by, double h_max, int threads,
   o.threads = threads;
   if (vg_remesh(m, &o, r, &err) < 0) fail_msg("%s", err.text);
   shape_expect_sound(m, 0);
-  assert_int_equal(vg_remesh_measure(m, &given, 1, NULL, NULL, d, &err),
-                   VG_OK);
+  assert_int_equal(vg_remesh_measure(m, &given, 1, NULL, NULL, d, &err), VG_OK);
   /* between samples up to twice as far as in them, as remesh.h says */
   assert_true(fmax(d[0].most, d[1].most) < 2 * r->tolerance);
   assert_float_equal(shape_area(m, 2), shape_area(&given, 2), 0.02 * 0.1);

@@ -5,7 +5,10 @@
 
 /* --- a reader of what was written, apart from the writer --- */
 
-struct reader { FILE *file; char word[200]; };
+struct reader {
+  FILE *file;
+  char word[200];
+};
 
 static void expect(struct reader *r, const char *key)
 {
@@ -22,15 +25,39 @@ static size_t number(struct reader *r)
 }
 
 /* Faces by VTK's kinds of cells; a triangle repeats its last node. */
-static const struct vtk_kind { size_t code; int n_node, n_face, face[6][4]; }
-vtk_kinds[] = {
-  { 10, 4, 4, { {0, 1, 3, 3}, {1, 2, 3, 3}, {2, 0, 3, 3}, {0, 2, 1, 1} } },
-  { 14, 5, 5, { {0, 3, 2, 1}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4},
-                {3, 0, 4, 4} } },
-  { 13, 6, 5, { {0, 1, 2, 2}, {3, 5, 4, 4}, {0, 3, 4, 1}, {1, 4, 5, 2},
-                {2, 5, 3, 0} } },
-  { 12, 8, 6, { {0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2},
-                {0, 3, 2, 1}, {4, 5, 6, 7} } },
+static const struct vtk_kind {
+  size_t code;
+  int n_node, n_face, face[6][4];
+} vtk_kinds[] = {
+  { 10,
+    4,
+    4,
+    { { 0, 1, 3, 3 }, { 1, 2, 3, 3 }, { 2, 0, 3, 3 }, { 0, 2, 1, 1 } } },
+  { 14,
+    5,
+    5,
+    { { 0, 3, 2, 1 },
+      { 0, 1, 4, 4 },
+      { 1, 2, 4, 4 },
+      { 2, 3, 4, 4 },
+      { 3, 0, 4, 4 } } },
+  { 13,
+    6,
+    5,
+    { { 0, 1, 2, 2 },
+      { 3, 5, 4, 4 },
+      { 0, 3, 4, 1 },
+      { 1, 4, 5, 2 },
+      { 2, 5, 3, 0 } } },
+  { 12,
+    8,
+    6,
+    { { 0, 4, 7, 3 },
+      { 1, 2, 6, 5 },
+      { 0, 1, 5, 4 },
+      { 3, 7, 6, 2 },
+      { 0, 3, 2, 1 },
+      { 4, 5, 6, 7 } } },
 };
 
 static void take_side(const uint32_t *node, const int *face,

@@ -107,8 +107,8 @@ static void check(struct vg_mesh *m, int repair, int external,
   for (size_t i = 1; i < r->n_defect; i++) {
     const struct vg_defect *d = &r->defect[i];
 
-    assert_true(d[-1].kind < d->kind
-                || (d[-1].kind == d->kind && d[-1].face[0] <= d->face[0]));
+    assert_true(d[-1].kind < d->kind ||
+                (d[-1].kind == d->kind && d[-1].face[0] <= d->face[0]));
   }
   check_texts(m, r);
 }
@@ -133,9 +133,9 @@ static void done(struct vg_mesh *m, struct vg_surface_report *r)
   vg_surface_report_release(r);
 }
 
-#define NEW                                                                   \
-  struct vg_mesh m = VG_MESH_INIT;                                            \
-  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;                        \
+#define NEW                                                                    \
+  struct vg_mesh m = VG_MESH_INIT;                                             \
+  struct vg_surface_report r = VG_SURFACE_REPORT_INIT;                         \
   (void)unused
 
 /* --- edges and orientation ----------------------------------------------- */
@@ -190,8 +190,8 @@ static void accepts_a_double_cone(void **unused)
   assert_none(&r);
   assert_int_equal(r.n_flipped, n / 2);
   /* Polygon of n corners, base of two cones of height 1. */
-  assert_true(fabs(r.shell[0].volume
-                   - n * sin(2 * 3.14159265358979 / n) / 3) < 1e-12);
+  assert_true(fabs(r.shell[0].volume - n * sin(2 * 3.14159265358979 / n) / 3) <
+              1e-12);
   done(&m, &r);
 }
 
@@ -224,7 +224,8 @@ static void reports_the_edges_of_a_hole(void **unused)
     assert_true(r.defect[i].at[2] == 1);
   }
   vg_defect_text(&m, &r.defect[2], text, sizeof text);
-  assert_string_equal(text,
+  assert_string_equal(
+    text,
     "open edge: patch 1 (box), face 11; points 8 and 5 at (0.5, 0.5, 1): "
     "only one face has this edge; close the gap, or weld the points with a "
     "tolerance");
@@ -331,8 +332,8 @@ static void welds_a_soup(void **unused)
       /* 0 and -0 are one coordinate */
       add_point(&m, p[0], t & 1 && p[1] == 0 ? -0.0 : p[1], p[2]);
     }
-    add_tri(&m, (uint32_t)(3 * t), (uint32_t)(3 * t + 1),
-            (uint32_t)(3 * t + 2), 0);
+    add_tri(&m, (uint32_t)(3 * t), (uint32_t)(3 * t + 1), (uint32_t)(3 * t + 2),
+            0);
   }
   check(&m, 0, 1, &r);
   assert_only(&r, VG_DEFECT_DUPLICATE_POINT, 28);
@@ -495,8 +496,10 @@ static void unites_bodies_that_share_a_wall(void **unused)
 static void add_cell(struct vg_mesh *m, int x, int y, int z, int outward)
 {
   static const uint32_t quad[6][4] = { /* lowest, .., highest, .. */
-    { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
-    { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+                                       { 0, 4, 6, 2 }, { 1, 3, 7, 5 },
+                                       { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
+                                       { 0, 2, 3, 1 }, { 4, 5, 7, 6 }
+  };
   uint32_t first = (uint32_t)m->n_point;
   uint32_t patch = (uint32_t)vg_mesh_add_patch(m, (int32_t)m->n_patch + 1, "");
 
@@ -526,10 +529,10 @@ static void unites_many_bodies(void **unused)
       n_side += i % 3 != 1;
     check(&m, 1, 1, &r);
     assert_none(&r);
-    assert_int_equal(m.n_tri, left_out < 0 ? 108
-                     : 108 - 2 * n_side + 2 * (6 - n_side));
-    assert_int_equal(r.n_removed_wall, left_out < 0 ? 216
-                     : 216 - 4 * (6 - n_side));
+    assert_int_equal(m.n_tri,
+                     left_out < 0 ? 108 : 108 - 2 * n_side + 2 * (6 - n_side));
+    assert_int_equal(r.n_removed_wall,
+                     left_out < 0 ? 216 : 216 - 4 * (6 - n_side));
     assert_int_equal(r.n_shell, left_out >= 0 && !n_side ? 2 : 1);
     assert_true(r.shell[0].volume == (left_out >= 0 && n_side ? 26 : 27));
     done(&m, &r);
@@ -610,8 +613,9 @@ static void reports_quadrilaterals(void **unused)
 
 static void asks_for_boundary_conditions(void **unused)
 {
-  struct vg_surface_check_options o = { .repair = 1, .require_bc = 1,
-                                        .external = 1, .threads = 1 };
+  struct vg_surface_check_options o = {
+    .repair = 1, .require_bc = 1, .external = 1, .threads = 1
+  };
   NEW;
 
   add_box(&m, 0, 1, 1);
@@ -715,8 +719,8 @@ static int reference_folded(const vec *p, const vec *q)
   cross(u, v, n[0]);
   cross(u, w, n[1]);
   cross(n[0], n[1], x);
-  return !x[0] && !x[1] && !x[2]
-         && n[0][0] * n[1][0] + n[0][1] * n[1][1] + n[0][2] * n[1][2] > 0;
+  return !x[0] && !x[1] && !x[2] &&
+         n[0][0] * n[1][0] + n[0][1] * n[1][1] + n[0][2] * n[1][2] > 0;
 }
 
 static int reference(const vec *p, const vec *q, int shared)
@@ -778,12 +782,13 @@ static void agrees_with_separating_planes(void **unused)
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++)
         coincide |= equal(p[i], q[j]) && !(i == j && i < shared);
-    meet = vg_triangles_meet((const double (*)[3])point, ids[0], ids[1],
-                             ids[0], ids[1]);
-    assert_int_equal(vg_triangles_meet((const double (*)[3])point, ids[1],
-                                       ids[0], ids[1], ids[0]), meet);
-    assert_int_equal(meet, coincide || reference((const vec *)p,
-                                                 (const vec *)q, shared));
+    meet = vg_triangles_meet((const double(*)[3])point, ids[0], ids[1], ids[0],
+                             ids[1]);
+    assert_int_equal(vg_triangles_meet((const double(*)[3])point, ids[1],
+                                       ids[0], ids[1], ids[0]),
+                     meet);
+    assert_int_equal(meet, coincide ||
+                             reference((const vec *)p, (const vec *)q, shared));
     n_meet[shared] += (size_t)meet;
     n_all[shared]++;
   }
@@ -1014,8 +1019,8 @@ static void reference_weld(const struct vg_mesh *m, double tolerance,
         double d2 = 0;
 
         for (int k = 0; k < 3; k++)
-          d2 += (m->point[i][k] - m->point[j][k])
-                * (m->point[i][k] - m->point[j][k]);
+          d2 += (m->point[i][k] - m->point[j][k]) *
+                (m->point[i][k] - m->point[j][k]);
         if (d2 <= tolerance * tolerance && root[i] != root[j]) {
           uint32_t low = root[i] < root[j] ? root[i] : root[j];
 
@@ -1038,11 +1043,10 @@ static void welds_as_the_definition_says(void **unused)
     uint32_t root[400], next = 0;
 
     for (int i = 0; i < 400; i++)
-      add_point(&m, draw(&s, 24) - 12., draw(&s, 24) - 12.,
-                draw(&s, 24) - 12.);
+      add_point(&m, draw(&s, 24) - 12., draw(&s, 24) - 12., draw(&s, 24) - 12.);
     vg_mesh_add_patch(&m, 1, "");
-    for (uint32_t i = 0; i < 400; i++) add_tri(&m, i, (i + 1) % 400,
-                                               (i + 2) % 400, 0);
+    for (uint32_t i = 0; i < 400; i++)
+      add_tri(&m, i, (i + 1) % 400, (i + 2) % 400, 0);
     struct vg_mesh w = VG_MESH_INIT;
     assert_int_equal(vg_mesh_copy(&w, &m, NULL), VG_OK);
     reference_weld(&m, tolerance[n], root);
@@ -1058,8 +1062,7 @@ static void welds_as_the_definition_says(void **unused)
 
       if (a == b || b == c || c == a) continue;
       assert_memory_equal(w.point[w.tri[t][0]], m.point[a], sizeof *m.point);
-      assert_memory_equal(w.point[w.tri[t++][2]], m.point[c],
-                          sizeof *m.point);
+      assert_memory_equal(w.point[w.tri[t++][2]], m.point[c], sizeof *m.point);
     }
     vg_mesh_release(&w);
     vg_mesh_release(&m);

@@ -32,8 +32,8 @@ static void read_real(const char *name, struct vg_mesh *m)
 }
 
 struct figures {
-  const char *name;         /* in VG_DATA_DIR */
-  int is_domain;            /* complete boundary, else bodies */
+  const char *name; /* in VG_DATA_DIR */
+  int is_domain;    /* complete boundary, else bodies */
   size_t n_piece, open, nonmanifold, orientation, meet, duplicate;
 };
 
@@ -47,8 +47,8 @@ static const struct figures clean[] = {
   { "supersonic/concorde_full.lb8.ugrid.xz", 0, 7, 0, 0, 0, 0, 0 },
   { "supersonic/f16_full.lb8.ugrid.xz", 0, 1, 0, 0, 0, 0, 0 },
   { "supersonic/tmx1242_wing_body.lb8.ugrid.xz", 0, 1, 0, 0, 0, 0, 0 },
-  { "highlift/30p30n_swept_wing_in_box_coarse.lb8.ugrid.xz", 1, 1, 0, 0, 0,
-    0, 0 },
+  { "highlift/30p30n_swept_wing_in_box_coarse.lb8.ugrid.xz", 1, 1, 0, 0, 0, 0,
+    0 },
   { "simple/cube_sphere_coarse_volume.meshb.xz", 1, 1, 0, 0, 0, 0, 0 },
   { "simple/cape_bullet.tri.xz", 0, 1, 0, 0, 0, 0, 0 },
   { "simple/cape_cigar_viscous_volume.lb8.ugrid.xz", 1, 2, 0, 0, 0, 0, 0 },
@@ -136,7 +136,8 @@ static void gives_the_figures_of_dirty_data(void **unused)
 /* The seams of the F-16's parts close within 1e-6, as its notes say. */
 static void closes_seams_within_a_tolerance(void **unused)
 {
-  struct vg_surface_check_options o = { .repair = 1, .external = 1,
+  struct vg_surface_check_options o = { .repair = 1,
+                                        .external = 1,
                                         .threads = 1 };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   struct vg_mesh m = VG_MESH_INIT;
@@ -159,7 +160,8 @@ static void closes_seams_within_a_tolerance(void **unused)
 /* The same surface gives the same report, byte for byte. */
 static void repeats_itself(void **unused)
 {
-  struct vg_surface_check_options o = { .repair = 1, .external = 1,
+  struct vg_surface_check_options o = { .repair = 1,
+                                        .external = 1,
                                         .threads = 1 };
   struct vg_surface_report r[2];
   struct vg_mesh m[2];

@@ -13,16 +13,18 @@
 static void known_triangles(void **state)
 {
   const double base = 2 * tan(M_PI / 36000);
-  double point[][3] = {
-    { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, sqrt(3) / 2, 0 },
-    { 0, 0, 5 }, { 1, 0, 5 }, { 0, 1, 5 },
-    { 0, 0, 9 }, { 2, 0, 9 }, { 1, 1e-3, 9 },
-    { 0, 0, 7 }, { base, 0, 7 }, { base / 2, 1, 7 }, { NAN, 0, 0 } };
-  uint32_t tri[][3] = { { 0, 1, 2 }, { 3, 4, 5 }, { 6, 7, 8 }, { 9, 10, 11 },
-                        { 0, 1, 12 } };
+  double point[][3] = { { 0, 0, 0 },  { 1, 0, 0 },    { 0.5, sqrt(3) / 2, 0 },
+                        { 0, 0, 5 },  { 1, 0, 5 },    { 0, 1, 5 },
+                        { 0, 0, 9 },  { 2, 0, 9 },    { 1, 1e-3, 9 },
+                        { 0, 0, 7 },  { base, 0, 7 }, { base / 2, 1, 7 },
+                        { NAN, 0, 0 } };
+  uint32_t tri[][3] = {
+    { 0, 1, 2 }, { 3, 4, 5 }, { 6, 7, 8 }, { 9, 10, 11 }, { 0, 1, 12 }
+  };
   uint32_t patch[5] = { 0 };
-  struct vg_mesh m = { .n_point = 13, .point = point, .n_tri = 5, .tri = tri,
-                       .tri_patch = patch };
+  struct vg_mesh m = {
+    .n_point = 13, .point = point, .n_tri = 5, .tri = tri, .tri_patch = patch
+  };
   struct vg_surface_quality q;
   double flat = atan(1e-3) * 180 / M_PI;
 
@@ -55,8 +57,9 @@ static void the_worst_of_many(void **state)
   enum { N = 40 };
   double point[3 * N][3];
   uint32_t tri[N][3], patch[N] = { 0 };
-  struct vg_mesh m = { .n_point = 3 * N, .point = point, .n_tri = N,
-                       .tri = tri, .tri_patch = patch };
+  struct vg_mesh m = {
+    .n_point = 3 * N, .point = point, .n_tri = N, .tri = tri, .tri_patch = patch
+  };
   struct vg_surface_quality q;
 
   (void)state;

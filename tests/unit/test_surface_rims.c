@@ -47,8 +47,7 @@ static void make_parts(struct vg_mesh *m, size_t n_patch, double step)
 }
 
 /* Open edges, by the check. */
-static size_t count_open(const struct vg_mesh *m,
-                         struct vg_surface_report *r)
+static size_t count_open(const struct vg_mesh *m, struct vg_surface_report *r)
 {
   struct vg_surface_check_options o = { .external = 1, .threads = 1 };
   struct vg_error err = VG_ERROR_INIT;
@@ -81,7 +80,7 @@ static size_t weld(struct vg_mesh *m, double tolerance)
 
 static void halves_become_a_ball(void **state)
 {
-  static const double share[] = { 1e-10, 1e-7, 1e-3 };  /* of the length */
+  static const double share[] = { 1e-10, 1e-7, 1e-3 }; /* of the length */
 
   (void)state;
   for (size_t i = 0; i < sizeof share / sizeof *share; i++) {
@@ -152,7 +151,7 @@ static void a_hole_stays_open(void **state)
   vg_mesh_release(&m);
 
   make_parts(&m, 2, 2e-6);
-  for (size_t t = 0; t < m.n_tri; t++)   /* the last that has a seam's point */
+  for (size_t t = 0; t < m.n_tri; t++) /* the last that has a seam's point */
     for (int k = 0; k < 3; k++)
       if (m.tri_patch[t] == 0 && fabs(m.point[m.tri[t][k]][0]) < 1e-9) most = t;
   drop_tri(&m, most);

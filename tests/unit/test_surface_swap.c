@@ -87,8 +87,8 @@ static uint32_t split(struct vg_mesh *m, size_t t, double u, double v,
   double x[3];
 
   for (int k = 0; k < 3; k++)
-    x[k] = m->point[a][k] + u * (m->point[b][k] - m->point[a][k])
-           + v * (m->point[c][k] - m->point[a][k]);
+    x[k] = m->point[a][k] + u * (m->point[b][k] - m->point[a][k]) +
+           v * (m->point[c][k] - m->point[a][k]);
   p = add_point(m, x[0], x[1], x[2] + raise);
   m->tri[t][2] = p;
   add_tri(m, b, c, p, m->tri_patch[t]);
@@ -131,7 +131,7 @@ static void make_drum(struct vg_mesh *m, int patches)
 
 static double volume_of(const struct vg_mesh *m)
 {
-  const double (*x)[3] = (const double (*)[3])m->point;
+  const double(*x)[3] = (const double(*)[3])m->point;
   double sum = 0;
 
   for (size_t t = 0; t < m->n_tri; t++) {
@@ -202,7 +202,7 @@ static double angle_at(const double *c, const double *a, const double *b)
 /* Largest sum of the two angles opposite an edge within a patch. */
 static double worst_sum(const struct vg_mesh *m)
 {
-  const double (*x)[3] = (const double (*)[3])m->point;
+  const double(*x)[3] = (const double(*)[3])m->point;
   struct vg_faces s = VG_FACES_INIT;
   struct vg_edges e = VG_EDGES_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -244,8 +244,7 @@ static void leaves_a_cube(void **unused)
   assert_int_equal(vg_mesh_copy(&old, &m, &err), VG_OK);
   r = run(&m, 1);
   assert_int_equal(r.n_swapped + r.n_collapsed + r.n_kept, 0);
-  assert_int_equal(r.n_cap[0] + r.n_cap[1] + r.n_needle[0] + r.n_needle[1],
-                   0);
+  assert_int_equal(r.n_cap[0] + r.n_cap[1] + r.n_needle[0] + r.n_needle[1], 0);
   assert_true(r.moved == 0 && r.moved_relative == 0);
   assert_int_equal(m.n_tri, old.n_tri);
   assert_memory_equal(m.tri, old.tri, m.n_tri * sizeof *m.tri);
@@ -286,8 +285,8 @@ static void keeps_ridges(void **unused)
     for (int k = 0; k < 3; k++) {
       double a = m.point[m.tri[t][0]][k];
 
-      in_side |= (a == 0 || a == 1) && m.point[m.tri[t][1]][k] == a
-                 && m.point[m.tri[t][2]][k] == a;
+      in_side |= (a == 0 || a == 1) && m.point[m.tri[t][1]][k] == a &&
+                 m.point[m.tri[t][2]][k] == a;
     }
     assert_true(in_side);
   }
@@ -504,9 +503,9 @@ static void refuses_other_elements(void **unused)
 static void refuses_bad_options(void **unused)
 {
   static const struct vg_swap_options bad[] = {
-    { -1, 10, 1, .02 }, { NAN, 10, 1, .02 }, { INFINITY, 10, 1, .02 },
+    { -1, 10, 1, .02 },   { NAN, 10, 1, .02 },  { INFINITY, 10, 1, .02 },
     { 1e-3, 90, 1, .02 }, { 1e-3, -1, 1, .02 }, { 1e-3, NAN, 1, .02 },
-    { 1e-3, 10, 1, 1 }, { 1e-3, 10, 1, -.1 }, { 1e-3, 10, 1, NAN },
+    { 1e-3, 10, 1, 1 },   { 1e-3, 10, 1, -.1 }, { 1e-3, 10, 1, NAN },
   };
   struct vg_mesh m = VG_MESH_INIT;
 
@@ -532,8 +531,8 @@ static void accepts_nothing(void **unused)
 
 struct real {
   const char *name;
-  double volume;            /* largest relative change of it */
-  double slivers;           /* largest part of the slivers that remains */
+  double volume;  /* largest relative change of it */
+  double slivers; /* largest part of the slivers that remains */
 };
 
 /* The volume of the low boom aircraft is of triangles of 1 to 6 m length, to
@@ -550,7 +549,8 @@ static const struct real real[] = {
 
 static void improve(const struct real *x)
 {
-  struct vg_surface_check_options o = { .repair = 1, .external = 1,
+  struct vg_surface_check_options o = { .repair = 1,
+                                        .external = 1,
                                         .threads = 1 };
   struct vg_surface_report s = VG_SURFACE_REPORT_INIT;
   struct vg_mesh m = VG_MESH_INIT, twin = VG_MESH_INIT;
@@ -571,8 +571,8 @@ static void improve(const struct real *x)
   r = run(&m, 1);
   assert_int_equal(m.n_point + r.n_collapsed, n);
   assert_true(fabs(volume_of(&m) - volume) < x->volume * fabs(volume));
-  assert_true((double)(r.n_cap[1] + r.n_needle[1])
-              <= x->slivers * (double)(r.n_cap[0] + r.n_needle[0]));
+  assert_true((double)(r.n_cap[1] + r.n_needle[1]) <=
+              x->slivers * (double)(r.n_cap[0] + r.n_needle[0]));
   run(&twin, 1);
   assert_int_equal(m.n_tri, twin.n_tri);
   assert_memory_equal(m.tri, twin.tri, m.n_tri * sizeof *m.tri);

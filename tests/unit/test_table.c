@@ -17,7 +17,7 @@ enum { KEYS = 3000 };
 struct keys {
   uint64_t key[KEYS];
   uint32_t n;
-  int crowded;               /* all keys have the same hash */
+  int crowded; /* all keys have the same hash */
 };
 
 static uint64_t hash_of(const void *of, uint32_t item)
@@ -147,9 +147,18 @@ static void reach_slots(uint64_t (*key)(uint64_t i))
   assert_true(n > 0.8 * 6447);
 }
 
-static uint64_t rising(uint64_t i) { return i; }
-static uint64_t edges(uint64_t i) { return i << 32 | (i + 1); }
-static uint64_t names(uint64_t i) { return (i >> 7) << 32 | (i & 127); }
+static uint64_t rising(uint64_t i)
+{
+  return i;
+}
+static uint64_t edges(uint64_t i)
+{
+  return i << 32 | (i + 1);
+}
+static uint64_t names(uint64_t i)
+{
+  return (i >> 7) << 32 | (i & 127);
+}
 
 static uint64_t cubes(uint64_t i)
 {

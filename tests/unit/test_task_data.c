@@ -30,8 +30,8 @@ static struct vg_front front_of(struct vg_mesh *m)
 
 static struct vg_front block(int nx, int ny, int nz, int (*in)(const int at[3]))
 {
-  const int n[3] = {nx, ny, nz};
-  const double lo[3] = {0, 0, 0}, hi[3] = {nx, ny, nz};
+  const int n[3] = { nx, ny, nz };
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { nx, ny, nz };
   struct vg_mesh m = VG_MESH_INIT;
 
   shape_block(&m, n, lo, hi, in);
@@ -70,7 +70,7 @@ static uint32_t *parts_of(const struct vg_front *f, size_t *n)
 
   assert_non_null(part);
   assert_int_equal(front_parts(f, part, n, NULL), VG_OK);
-  for (size_t i = 0; i < f->n_face; i++) {     /* by their first faces */
+  for (size_t i = 0; i < f->n_face; i++) { /* by their first faces */
     assert_true(part[i] <= next);
     next += part[i] == next;
   }
@@ -153,7 +153,7 @@ static void parts_that_touch(void **state)
 static void bodies_that_touch(void **state)
 {
   struct vg_front f = block(4, 4, 3, around_two_bodies);
-  size_t n, size[2] = {0, 0};
+  size_t n, size[2] = { 0, 0 };
   uint32_t *part = parts_of(&f, &n);
 
   (void)state;
@@ -166,7 +166,7 @@ static void bodies_that_touch(void **state)
 
 static void a_sphere_in_a_box(void **state)
 {
-  const double centre[3] = {0.1, 0, 0};
+  const double centre[3] = { 0.1, 0, 0 };
   struct vg_mesh m = VG_MESH_INIT;
 
   (void)state;
@@ -195,7 +195,7 @@ static int by_name(const void *a, const void *b)
 /* Faces by the names of their points, the least first, sorted. */
 static uint64_t (*named(const struct vg_front *f))[3]
 {
-  uint64_t (*t)[3] = vg_alloc(f->n_face, sizeof *t);
+  uint64_t(*t)[3] = vg_alloc(f->n_face, sizeof *t);
 
   assert_non_null(t);
   for (size_t i = 0; i < f->n_face; i++) {
@@ -211,7 +211,7 @@ static uint64_t (*named(const struct vg_front *f))[3]
 
 static void same_front(const struct vg_front *a, const struct vg_front *b)
 {
-  uint64_t (*s)[3] = named(a), (*t)[3] = named(b);
+  uint64_t(*s)[3] = named(a), (*t)[3] = named(b);
 
   assert_int_equal(a->n_face, b->n_face);
   assert_int_equal(a->n_point, b->n_point);
@@ -278,7 +278,7 @@ static void split_and_join(struct vg_front f)
 
 static void parts_are_split_and_joined(void **state)
 {
-  const double centre[3] = {0.1, 0, 0};
+  const double centre[3] = { 0.1, 0, 0 };
   struct vg_mesh m = VG_MESH_INIT;
 
   (void)state;
@@ -286,7 +286,7 @@ static void parts_are_split_and_joined(void **state)
   shape_sphere(&m, 6, centre, 1, 7);
   split_and_join(front_of(&m));
   split_and_join(block(2, 2, 1, two_at_an_edge));
-  split_and_join(block(4, 4, 4, every_other));   /* points of 8 parts */
+  split_and_join(block(4, 4, 4, every_other)); /* points of 8 parts */
   split_and_join(block(4, 4, 3, around_two_bodies));
 }
 
@@ -336,7 +336,7 @@ static void a_check_names_what_is_wrong(void **state)
   f.face[4][1] = UINT32_MAX;
   check_says(&f, "triangle 5 ");
   f.face[4][1] = keep;
-  for (size_t i = 0; i < n; i++)          /* point 7 is point 8 */
+  for (size_t i = 0; i < n; i++) /* point 7 is point 8 */
     for (int k = 0; k < 3; k++) f.face[i][k] += f.face[i][k] == 6;
   check_says(&f, "point 7 ");
   f.n_face = 0;
@@ -358,7 +358,7 @@ static void open_edges_are_counted(void **state)
   f.n_face--;
   assert_int_equal(vg_front_open_edges(&f), 3);
   f.n_face++;
-  f.face[9][0] = f.face[9][1];            /* turned over */
+  f.face[9][0] = f.face[9][1]; /* turned over */
   f.face[9][1] = keep;
   assert_int_equal(vg_front_open_edges(&f), 3);
   vg_front_release(&f);
@@ -369,7 +369,7 @@ static void open_edges_are_counted(void **state)
 
 static void volumes(void **state)
 {
-  const double centre[3] = {0.3, 0.2, -0.1};
+  const double centre[3] = { 0.3, 0.2, -0.1 };
   struct vg_mesh box = VG_MESH_INIT, body = VG_MESH_INIT;
   struct vg_front f = block(2, 3, 4, shape_all), g;
 
@@ -403,7 +403,7 @@ static void equal_fronts(const struct vg_front *a, const struct vg_front *b,
 static void is_refused(const void *bytes, size_t n, int names)
 {
   const struct vg_front empty = VG_FRONT_INIT;
-  unsigned char *copy = vg_alloc(n, 1);        /* reads beyond are seen */
+  unsigned char *copy = vg_alloc(n, 1); /* reads beyond are seen */
   struct vg_reader r = { .n = n };
   struct vg_front f;
 
@@ -418,8 +418,9 @@ static void is_refused(const void *bytes, size_t n, int names)
 
 static void fronts_as_bytes(void **state)
 {
-  const uint64_t huge[4] = {UINT64_MAX, (uint64_t)1 << 61, UINT32_MAX, 1 << 20};
-  const uint32_t beyond[2] = {UINT32_MAX, 8};
+  const uint64_t huge[4] = { UINT64_MAX, (uint64_t)1 << 61, UINT32_MAX,
+                             1 << 20 };
+  const uint32_t beyond[2] = { UINT32_MAX, 8 };
   struct vg_front f = block(1, 1, 1, shape_all), back;
 
   (void)state;
@@ -465,7 +466,8 @@ static void fronts_as_bytes(void **state)
 static void several_in_a_row(void **state)
 {
   struct vg_front f[3] = { block(1, 1, 1, shape_all), VG_FRONT_INIT,
-                           block(2, 2, 1, two_at_an_edge) }, back;
+                           block(2, 2, 1, two_at_an_edge) },
+                  back;
   struct vg_writer w = { .cap = 0 };
   struct vg_reader r = { .bad = 0 };
 
@@ -482,7 +484,7 @@ static void several_in_a_row(void **state)
   assert_int_equal(r.at, r.n);
   vg_front_get(&r, &back, 1);
   assert_true(r.bad);
-  r.at = 0;                  /* bad stays bad */
+  r.at = 0; /* bad stays bad */
   vg_front_get(&r, &back, 1);
   assert_true(r.bad);
   assert_null(back.x);
@@ -492,13 +494,20 @@ static void several_in_a_row(void **state)
 
 static void changes_as_bytes(void **state)
 {
-  double x[2][3] = {{1, 2, 3}, {4, 5, 6}};
-  uint32_t face[3][3] = {{0, 1, 2}, {9, 8, 7}, {3, 4, 10}};
-  uint32_t consumed[4] = {1, 5, 6, 8};
-  struct vg_change c = { .blocked = 1, .serial = 77, .n_part = 9,
-                         .made = { .n_point = 2, .n_face = 3, .n_consumed = 4,
-                                   .n_cell = 12, .n_hole = 3, .volume = 0.125,
-                                   .x = x, .face = face,
+  double x[2][3] = { { 1, 2, 3 }, { 4, 5, 6 } };
+  uint32_t face[3][3] = { { 0, 1, 2 }, { 9, 8, 7 }, { 3, 4, 10 } };
+  uint32_t consumed[4] = { 1, 5, 6, 8 };
+  struct vg_change c = { .blocked = 1,
+                         .serial = 77,
+                         .n_part = 9,
+                         .made = { .n_point = 2,
+                                   .n_face = 3,
+                                   .n_consumed = 4,
+                                   .n_cell = 12,
+                                   .n_hole = 3,
+                                   .volume = 0.125,
+                                   .x = x,
+                                   .face = face,
                                    .consumed = consumed } };
   const struct vg_change empty = VG_CHANGE_INIT;
   struct vg_change back;
@@ -551,8 +560,8 @@ static void an_empty_change(void **state)
   assert_false(r.bad);
   assert_int_equal(r.at, r.n);
   assert_int_equal(back.blocked, 1);
-  assert_int_equal(back.made.n_point + back.made.n_face +
-                   back.made.n_consumed, 0);
+  assert_int_equal(back.made.n_point + back.made.n_face + back.made.n_consumed,
+                   0);
   vg_change_release(&back);
   free(w.bytes.data);
 }

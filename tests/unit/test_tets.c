@@ -11,7 +11,7 @@
 
 #include "tets_support.h"
 
-static const int four_cubed[3] = {4, 4, 4};
+static const int four_cubed[3] = { 4, 4, 4 };
 
 /* Does cell c contain x, faces included? */
 static int holds(const struct vg_tets *t, uint32_t c, const double x[3])
@@ -46,10 +46,10 @@ static void a_face_sees_its_vertex(void **state)
 static void adopted_cells_are_turned_and_linked(void **state)
 {
   struct vg_tets t = VG_TETS_INIT;
-  int n_inner[5] = {0};
+  int n_inner[5] = { 0 };
 
   (void)state;
-  tets_box(&t, 0, 1);        /* given in either orientation */
+  tets_box(&t, 0, 1); /* given in either orientation */
   assert_int_equal(t.n_cell, 5);
   assert_int_equal(t.n_point, 8);
   assert_int_equal(vg_tets_defects(&t), 0);
@@ -63,7 +63,7 @@ static void adopted_cells_are_turned_and_linked(void **state)
 
 static void a_grid_is_linked_face_by_face(void **state)
 {
-  const int n[3] = {7, 5, 3};
+  const int n[3] = { 7, 5, 3 };
   struct vg_tets t = VG_TETS_INIT;
   size_t n_hull = 0;
 
@@ -79,25 +79,25 @@ static void a_grid_is_linked_face_by_face(void **state)
 
 static void a_flat_cell_is_refused(void **state)
 {
-  const uint32_t v[2][4] = {{0, 1, 2, 4}, {0, 1, 2, 3}};
+  const uint32_t v[2][4] = { { 0, 1, 2, 4 }, { 0, 1, 2, 3 } };
   struct vg_tets t = VG_TETS_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  double (*x)[3] = vg_calloc(5, sizeof *x);
+  double(*x)[3] = vg_calloc(5, sizeof *x);
 
   (void)state;
   assert_non_null(x);
   x[1][0] = x[2][1] = x[3][0] = x[3][1] = x[4][2] = 1;
   assert_int_equal(vg_tets_from_cells(&t, 5, x, 2, v, &err), VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "flat"));
-  vg_tets_release(&t);       /* x is t's, also now: a leak otherwise */
+  vg_tets_release(&t); /* x is t's, also now: a leak otherwise */
 }
 
 static void three_cells_on_a_face_are_refused(void **state)
 {
-  const uint32_t v[3][4] = {{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 2, 5}};
+  const uint32_t v[3][4] = { { 0, 1, 2, 3 }, { 0, 1, 2, 4 }, { 0, 1, 2, 5 } };
   struct vg_tets t = VG_TETS_INIT;
   struct vg_error err = VG_ERROR_INIT;
-  double (*x)[3] = vg_calloc(6, sizeof *x);
+  double(*x)[3] = vg_calloc(6, sizeof *x);
 
   (void)state;
   assert_non_null(x);
@@ -128,10 +128,10 @@ static void defects_are_seen(void **state)
   t.cell[4].link[1] = t.cell[4].link[2];
   assert_true(vg_tets_defects(&t) > 0);
   t.cell[4].link[1] = keep;
-  t.flag[4] |= 4;            /* constrained on one side only */
+  t.flag[4] |= 4; /* constrained on one side only */
   assert_int_equal(vg_tets_defects(&t), 2);
   t.flag[4] = 0;
-  t.flag[0] = VG_DEAD;       /* somebody's neighbour still */
+  t.flag[0] = VG_DEAD; /* somebody's neighbour still */
   assert_int_equal(vg_tets_defects(&t), 1);
   vg_tets_release(&t);
 }
@@ -146,8 +146,8 @@ static void dead_slots_are_used_last_in_first_out(void **state)
   (void)state;
   tets_grid(&t, four_cubed);
   cap = t.cap_cell;
-  for (uint32_t c = 3; c < 9; c++) assert_int_equal(vg_tets_free_cell(&t, c),
-                                                    0);
+  for (uint32_t c = 3; c < 9; c++)
+    assert_int_equal(vg_tets_free_cell(&t, c), 0);
   assert_int_equal(t.n_free, 6);
   for (uint32_t c = 3; c < 9; c++) assert_int_equal(t.flag[c], VG_DEAD);
   assert_int_equal(vg_tets_reserve_cells(&t, 6), 0);
@@ -293,21 +293,21 @@ static void tidy_keeps_what_is_inside(void **state)
  * through all of them, each step into a box that shares a face. */
 static void walk_the_curve(int shift, double box)
 {
-  const double lo[3] = {0, 0, 0};
-  int where[512][3], seen[512] = {0};
+  const double lo[3] = { 0, 0, 0 };
+  int where[512][3], seen[512] = { 0 };
   uint64_t first = UINT64_MAX;
 
   for (int i = 0; i < 512; i++) {
-    double x[3] = {(i % 8 + 0.5) * box, (i / 8 % 8 + 0.5) * box,
-                   (i / 64 + 0.5) * box};
+    double x[3] = { (i % 8 + 0.5) * box, (i / 8 % 8 + 0.5) * box,
+                    (i / 64 + 0.5) * box };
     uint64_t key = vg_hilbert_key(x, lo, 1) >> shift;
 
     first = key < first ? key : first;
   }
   for (int i = 0; i < 512; i++) {
-    int at[3] = {i % 8, i / 8 % 8, i / 64};
-    double x[3] = {(at[0] + 0.5) * box, (at[1] + 0.5) * box,
-                   (at[2] + 0.5) * box};
+    int at[3] = { i % 8, i / 8 % 8, i / 64 };
+    double x[3] = { (at[0] + 0.5) * box, (at[1] + 0.5) * box,
+                    (at[2] + 0.5) * box };
     uint64_t key = (vg_hilbert_key(x, lo, 1) >> shift) - first;
 
     assert_true(key < 512);
@@ -316,8 +316,9 @@ static void walk_the_curve(int shift, double box)
   }
   for (int k = 1; k < 512; k++)
     assert_int_equal(abs(where[k][0] - where[k - 1][0]) +
-                     abs(where[k][1] - where[k - 1][1]) +
-                     abs(where[k][2] - where[k - 1][2]), 1);
+                       abs(where[k][1] - where[k - 1][1]) +
+                       abs(where[k][2] - where[k - 1][2]),
+                     1);
 }
 
 static void the_curve_steps_to_neighbours(void **state)
@@ -329,9 +330,10 @@ static void the_curve_steps_to_neighbours(void **state)
 
 static void keys_are_clamped(void **state)
 {
-  const double lo[3] = {0, 0, 0}, below[3] = {-5, -1e300, NAN};
+  const double lo[3] = { 0, 0, 0 }, below[3] = { -5, -1e300, NAN };
   const double end = (1 << 20) - 1;
-  const double top[3] = {end, end, end}, above[3] = {1e9, INFINITY, end + 7};
+  const double top[3] = { end, end, end },
+               above[3] = { 1e9, INFINITY, end + 7 };
 
   (void)state;
   assert_true(vg_hilbert_key(below, lo, 1) == vg_hilbert_key(lo, lo, 1));
@@ -372,10 +374,11 @@ static void sort_both(size_t n, uint64_t mask, uint64_t seed)
 
 static void the_sort_is_that_of_qsort(void **state)
 {
-  static const uint64_t mask[7] = {
-    UINT64_MAX, 0, 1, 0xff00000000000000u, 0x7ff, 0x00fff00000001000u,
-    0xffffffffu};
-  static const size_t n[6] = {0, 1, 2, 3, 100, 20000};
+  static const uint64_t mask[7] = { UINT64_MAX, 0,
+                                    1,          0xff00000000000000u,
+                                    0x7ff,      0x00fff00000001000u,
+                                    0xffffffffu };
+  static const size_t n[6] = { 0, 1, 2, 3, 100, 20000 };
 
   (void)state;
   for (int i = 0; i < 7; i++)
@@ -389,8 +392,8 @@ static double path(size_t n, const double (*x)[3], const uint32_t *order)
   for (size_t i = 1; i < n; i++) {
     const double *a = x[order[i - 1]], *b = x[order[i]];
 
-    sum += sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1])
-                + (a[2] - b[2]) * (a[2] - b[2]));
+    sum += sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                (a[2] - b[2]) * (a[2] - b[2]));
   }
   return sum;
 }
@@ -410,7 +413,7 @@ static void is_permutation(size_t n, const uint32_t *order)
 static void orders_are_permutations_of_short_path(void **state)
 {
   enum { N = 8000 };
-  double (*x)[3] = vg_alloc(N, sizeof *x);
+  double(*x)[3] = vg_alloc(N, sizeof *x);
   uint32_t *order = vg_alloc(N, sizeof *order);
   uint32_t *again = vg_alloc(N, sizeof *again);
   uint64_t seed = 5;
@@ -420,19 +423,19 @@ static void orders_are_permutations_of_short_path(void **state)
   for (int i = 0; i < N; i++)
     for (int k = 0; k < 3; k++) x[i][k] = 7 + 20 * tets_random(&seed);
   for (size_t n = 0; n <= N; n = n ? 20 * n : 1) {
-    assert_int_equal(vg_hilbert_order(n, (const double (*)[3])x, order, NULL),
+    assert_int_equal(vg_hilbert_order(n, (const double(*)[3])x, order, NULL),
                      VG_OK);
     is_permutation(n, order);
-    assert_int_equal(
-        vg_insertion_order(n, (const double (*)[3])x, again, NULL), VG_OK);
+    assert_int_equal(vg_insertion_order(n, (const double(*)[3])x, again, NULL),
+                     VG_OK);
     is_permutation(n, again);
   }
   /* Mean distance of neighbours is about 20 / N^(1/3) = 1, of two points at
    * random 13. */
-  assert_true(path(N, (const double (*)[3])x, order) < 2 * N);
-  assert_true(path(N, (const double (*)[3])x, again) < 2 * N);
+  assert_true(path(N, (const double(*)[3])x, order) < 2 * N);
+  assert_true(path(N, (const double(*)[3])x, again) < 2 * N);
   for (int i = 0; i < N; i++) memcpy(x[i], x[0], sizeof *x); /* one place */
-  assert_int_equal(vg_hilbert_order(N, (const double (*)[3])x, order, NULL),
+  assert_int_equal(vg_hilbert_order(N, (const double(*)[3])x, order, NULL),
                    VG_OK);
   for (uint32_t i = 0; i < N; i++) assert_int_equal(order[i], i);
   free(x);
@@ -445,16 +448,16 @@ static void orders_are_permutations_of_short_path(void **state)
 static void early_rounds_are_spread(void **state)
 {
   enum { N = 32768 };
-  double (*x)[3] = vg_alloc(N, sizeof *x);
+  double(*x)[3] = vg_alloc(N, sizeof *x);
   uint32_t *order = vg_alloc(N, sizeof *order);
   uint64_t seed = 6;
-  int count[8] = {0};
+  int count[8] = { 0 };
 
   (void)state;
   assert_true(x && order);
   for (int i = 0; i < N; i++)
     for (int k = 0; k < 3; k++) x[i][k] = tets_random(&seed);
-  assert_int_equal(vg_insertion_order(N, (const double (*)[3])x, order, NULL),
+  assert_int_equal(vg_insertion_order(N, (const double(*)[3])x, order, NULL),
                    VG_OK);
   for (int i = 0; i < N / 8 - 100; i++) {
     const double *at = x[order[i]];

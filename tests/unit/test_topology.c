@@ -23,7 +23,10 @@ struct made {
   struct vg_columns c;
   struct vg_topology t;
 };
-#define MADE_INIT { VG_MESH_INIT, 0, NULL, VG_COLUMNS_INIT, VG_TOPOLOGY_INIT }
+#define MADE_INIT                                                              \
+  {                                                                            \
+    VG_MESH_INIT, 0, NULL, VG_COLUMNS_INIT, VG_TOPOLOGY_INIT                   \
+  }
 
 static void made_release(struct made *s)
 {
@@ -43,8 +46,8 @@ static void build(struct made *s, unsigned walls, unsigned slides,
   size_t n = 0;
 
   for (size_t i = 0; i < s->m.n_patch; i++) is_wall[i] = walls >> i & 1;
-  assert_int_equal(vg_slides_find(&s->m, is_wall, &s->n_slide, &s->slide,
-                                  &err), VG_OK);
+  assert_int_equal(vg_slides_find(&s->m, is_wall, &s->n_slide, &s->slide, &err),
+                   VG_OK);
   for (size_t i = 0; i < s->n_slide; i++)
     if (slides >> s->slide[i].patch & 1) s->slide[n++] = s->slide[i];
   s->n_slide = n;
@@ -85,8 +88,8 @@ static int check_complex(const struct vg_columns *c)
 
   assert_non_null(e);
   for (uint32_t h = 0; h < n; h++)
-    e[h] = (struct edge){ c->face[h / 3][h % 3],
-                          c->face[h / 3][(h + 1) % 3], h / 3 };
+    e[h] = (struct edge){ c->face[h / 3][h % 3], c->face[h / 3][(h + 1) % 3],
+                          h / 3 };
   qsort(e, n, sizeof *e, by_ends);
   for (size_t i = 0; i < n; i++) {
     struct edge back = { e[i].b, e[i].a, 0 };
@@ -175,21 +178,21 @@ static void direct(struct made *s)
       }
       k++;
     }
-    assert_true(vg_most_normal(k, (const double (*)[3])n, v));
+    assert_true(vg_most_normal(k, (const double(*)[3])n, v));
     vg_unit(v);
     memcpy(col->dir, v, sizeof v);
   }
 }
 
 struct tri {
-  uint32_t v[3];            /* sorted */
+  uint32_t v[3]; /* sorted */
   int sign;
 };
 
 static int by_points(const void *x, const void *y)
 {
   return memcmp(((const struct tri *)x)->v, ((const struct tri *)y)->v,
-                sizeof ((const struct tri *)x)->v);
+                sizeof((const struct tri *)x)->v);
 }
 
 static void add_tri(struct tri *list, size_t *n, uint32_t a, uint32_t b,
@@ -215,8 +218,8 @@ static uint32_t stand(const struct vg_columns *c, uint32_t column, int level)
                : c->column[column].root;
 }
 
-static void place(const struct made *s, uint32_t column, int level,
-                  double step, double x[3])
+static void place(const struct made *s, uint32_t column, int level, double step,
+                  double x[3])
 {
   const struct vg_column *col = &s->c.column[column];
 
@@ -310,8 +313,8 @@ static void set_levels(struct made *s, int low)
   for (size_t i = 0; i < s->c.n_column; i++) {
     size_t seed = s->c.column[i].root;
 
-    s->c.column[i].n = (uint16_t)((size_t)low + (seed * seed * 7 + seed / 3)
-                                  % 2);
+    s->c.column[i].n = (uint16_t)((size_t)low +
+                                  (seed * seed * 7 + seed / 3) % 2);
   }
 }
 
@@ -333,8 +336,8 @@ static int check(struct made *s, double step)
   direct(s);
   set_full(s);
   for (size_t i = 0; i < s->c.n_border; i++)
-    n_flank -= s->c.column[s->c.border[i][0]].root
-               == s->c.column[s->c.border[i][1]].root;
+    n_flank -= s->c.column[s->c.border[i][0]].root ==
+               s->c.column[s->c.border[i][1]].root;
   assert_int_equal(check_cells(s, step, &volume), n_flank);
   assert_true(volume > 0);
   for (int low = 0; low < LEVELS; low++) {
@@ -375,7 +378,7 @@ static void a_half_body_slides_on_its_plane(void **state)
 
   (void)state;
   ring(16, at);
-  extrude(&s.m, 16, (const double (*)[2])at, 4, 1, 0);
+  extrude(&s.m, 16, (const double(*)[2])at, 4, 1, 0);
   build(&s, 1, ~0u, 180);
   assert_int_equal(s.c.n_column, 16 * 5 + 1);
   assert_int_equal(s.c.n_border, 16);
@@ -427,7 +430,7 @@ static void the_edge_to_an_inert_patch_is_blocked(void **state)
 
   (void)state;
   shape_box(&s.m, 4, 1);
-  build(&s, 1u << 4, 1u << 0 | 1u << 2, 180);   /* x = 1, y = 1 do not slide */
+  build(&s, 1u << 4, 1u << 0 | 1u << 2, 180); /* x = 1, y = 1 do not slide */
   assert_int_equal(s.c.n_border, 8);
   for (size_t i = 0; i < s.c.n_column; i++) {
     const double *x = s.m.point[s.c.column[i].root];
@@ -441,7 +444,7 @@ static void the_edge_to_an_inert_patch_is_blocked(void **state)
 static void a_pinched_point_is_blocked(void **state)
 {
   struct made s = MADE_INIT;
-  const double at[2][3] = {{-1, 0, 0}, {1, 0, 0}};
+  const double at[2][3] = { { -1, 0, 0 }, { 1, 0, 0 } };
   uint32_t keep = VG_NO_INDEX;
   size_t n = 0;
 
@@ -449,8 +452,8 @@ static void a_pinched_point_is_blocked(void **state)
   shape_sphere(&s.m, 1, at[0], 1, 1);
   shape_sphere(&s.m, 1, at[1], 1, 1);
   for (uint32_t i = 0; i < s.m.n_point; i++)
-    if (fabs(s.m.point[i][0]) < 0.5 && fabs(s.m.point[i][1]) < 0.5
-        && fabs(s.m.point[i][2]) < 0.5) {
+    if (fabs(s.m.point[i][0]) < 0.5 && fabs(s.m.point[i][1]) < 0.5 &&
+        fabs(s.m.point[i][2]) < 0.5) {
       for (size_t t = 0; keep != VG_NO_INDEX && t < s.m.n_tri; t++)
         for (int k = 0; k < 3; k++)
           if (s.m.tri[t][k] == i) s.m.tri[t][k] = keep;
@@ -499,7 +502,7 @@ static void fans_fill_the_space_about_an_edge(void **state)
   struct made s = MADE_INIT;
   const double h = LEVELS * 0.01;
   const double area = 2 * 4 + 4 * 2, edges = 4 * (2 + 2 + 1);
-  const double quarter = 1.5 * sin(M_PI / 6);   /* three chords, radius 1 */
+  const double quarter = 1.5 * sin(M_PI / 6); /* three chords, radius 1 */
   double volume;
 
   (void)state;
@@ -599,12 +602,14 @@ static void a_ridge_that_ends_tapers(void **state)
 static void a_base_that_closes_needs_no_centre(void **state)
 {
   static const double at[9][3] = {
-    {0, -1, 1}, {0, 1, 1}, {0, 1, -1}, {0, -1, -1}, {1, -1, 0.05},
-    {1, -1, -0.05}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0} };
-  static const uint32_t tri[14][3] = {
-    {0, 4, 6}, {0, 6, 1}, {1, 6, 7}, {3, 6, 5}, {3, 2, 6}, {2, 7, 6},
-    {4, 5, 6}, {1, 7, 2}, {0, 3, 5}, {0, 5, 4}, {8, 0, 1}, {8, 1, 2},
-    {8, 2, 3}, {8, 3, 0} };
+    { 0, -1, 1 },     { 0, 1, 1 }, { 0, 1, -1 }, { 0, -1, -1 }, { 1, -1, 0.05 },
+    { 1, -1, -0.05 }, { 1, 0, 0 }, { 1, 1, 0 },  { 0, 0, 0 }
+  };
+  static const uint32_t tri[14][3] = { { 0, 4, 6 }, { 0, 6, 1 }, { 1, 6, 7 },
+                                       { 3, 6, 5 }, { 3, 2, 6 }, { 2, 7, 6 },
+                                       { 4, 5, 6 }, { 1, 7, 2 }, { 0, 3, 5 },
+                                       { 0, 5, 4 }, { 8, 0, 1 }, { 8, 1, 2 },
+                                       { 8, 2, 3 }, { 8, 3, 0 } };
   struct made s = MADE_INIT;
 
   (void)state;
@@ -639,10 +644,10 @@ static void a_cone_has_a_fan_about_its_base(void **state)
 
   (void)state;
   ring(24, at);
-  extrude(&s.m, 24, (const double (*)[2])at, 1, 0, 1);
+  extrude(&s.m, 24, (const double(*)[2])at, 1, 0, 1);
   build(&s, 1, ~0u, 60);
   assert_int_equal(columns_at(&s, 0, 1, 0), 1);
-  assert_int_equal(columns_at(&s, 1, 0, 0), 5);   /* 135 degrees: 4 steps */
+  assert_int_equal(columns_at(&s, 1, 0, 0), 5); /* 135 degrees: 4 steps */
   assert_int_equal(check(&s, 0.02), 2);
   made_release(&s);
 }
@@ -670,7 +675,8 @@ static int same(const void *a, const void *b, size_t n, size_t size)
 static void fans_stand_where_they_are_needed(void **state)
 {
   static const double slender[4][2] = {
-    {-0.01, -0.01}, {-0.01, 0.01}, {0.01, 0.01}, {0.01, -0.01} };
+    { -0.01, -0.01 }, { -0.01, 0.01 }, { 0.01, 0.01 }, { 0.01, -0.01 }
+  };
 
   (void)state;
   for (int k = 0; k < 2; k++) {
@@ -718,10 +724,11 @@ static void bad_angles_are_refused(void **state)
 
   (void)state;
   shape_box(&s.m, 2, 1);
-  assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, -1, &s.c, &s.t,
-                                     &err), VG_ERR_INPUT);
+  assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, -1, &s.c, &s.t, &err),
+                   VG_ERR_INPUT);
   assert_int_equal(vg_topology_build(&s.m, wall, 0, NULL, NAN, &s.c, &s.t,
-                                     &err), VG_ERR_INPUT);
+                                     &err),
+                   VG_ERR_INPUT);
   assert_null(s.c.column);
   made_release(&s);
 }

@@ -15,7 +15,7 @@ static const char t1_triq[] =
 static void reads_the_sample(void **state)
 {
   static const uint32_t tri[4][3] = {
-    {0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}
+    { 0, 2, 1 }, { 0, 1, 3 }, { 0, 3, 2 }, { 1, 2, 3 }
   };
   struct vg_mesh m = VG_MESH_INIT;
 
@@ -130,12 +130,12 @@ static void reads_streams_without_records(void **state)
 
 static void refuses_what_is_broken(void **state)
 {
-  static const unsigned char negative[24] = {
-    0, 0, 0, 8, 0xff, 0xff, 0xff, 0xff, 0, 0, 0, 4, 0, 0, 0, 8
-  };
-  static const unsigned char huge[24] = {
-    0, 0, 0, 8, 0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff, 0, 0, 0, 8
-  };
+  static const unsigned char negative[24] = { 0,    0,    0, 8, 0xff, 0xff,
+                                              0xff, 0xff, 0, 0, 0,    4,
+                                              0,    0,    0, 8 };
+  static const unsigned char huge[24] = { 0,    0,    0,    8,    0x7f, 0xff,
+                                          0xff, 0xff, 0x7f, 0xff, 0xff, 0xff,
+                                          0,    0,    0,    8 };
 
   (void)state;
   io_refuse(vg_tri_parse, "0 0\n", VG_ERR_INPUT, "no surface");
@@ -152,8 +152,7 @@ static void refuses_what_is_broken(void **state)
   io_refuse(vg_tri_parse, "3 1\n0 0 0 1 0 0 0 1 0\n1 2\n", VG_ERR_FORMAT,
             "ends where");
   io_refuse(vg_tri_parse, "3 2\n0 0 0 1 0 0 0 1 0\n1 2 3 2 1 3\n1",
-            VG_ERR_FORMAT,
-            "component");
+            VG_ERR_FORMAT, "component");
   io_refuse(vg_tri_parse, "hello world", VG_ERR_FORMAT, "hello");
   io_refuse_bytes(vg_tri_parse, negative, sizeof negative, VG_ERR_INPUT,
                   "no surface");

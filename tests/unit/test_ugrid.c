@@ -2,11 +2,11 @@
 
 #include "io/mesh/ugrid.h"
 
-static const char *const suffix[] = {
-  "ugrid", "b8.ugrid", "lb8.ugrid", "b4.ugrid", "lb4.ugrid", "r8.ugrid",
-  "lr8.ugrid", "r4.ugrid", "lr4.ugrid", "b8l.ugrid", "lb8l.ugrid",
-  "b8.ugrid64", "lb8.ugrid64"
-};
+static const char *const suffix[] = { "ugrid",      "b8.ugrid",   "lb8.ugrid",
+                                      "b4.ugrid",   "lb4.ugrid",  "r8.ugrid",
+                                      "lr8.ugrid",  "r4.ugrid",   "lr4.ugrid",
+                                      "b8l.ugrid",  "lb8l.ugrid", "b8.ugrid64",
+                                      "lb8.ugrid64" };
 #define N_SUFFIX (sizeof suffix / sizeof suffix[0])
 
 static const char t1_text[] =
@@ -83,16 +83,16 @@ static void writes_t1_byte_for_byte(void **state)
   io_make_t1(&t1, 1);
   for (int big = 0; big < 2; big++) {
     const char *path = path_of("t1", big ? "b8.ugrid" : "lb8.ugrid");
-    static const int32_t counts[7] = {4, 4, 0, 1, 0, 0, 0};
-    static const int32_t tail[20] = {1, 2, 3, 1, 4, 2, 1, 3, 4, 2, 4, 3,
-                                     1, 2, 3, 4, 1, 2, 3, 4};
+    static const int32_t counts[7] = { 4, 4, 0, 1, 0, 0, 0 };
+    static const int32_t tail[20] = { 1, 2, 3, 1, 4, 2, 1, 3, 4, 2,
+                                      4, 3, 1, 2, 3, 4, 1, 2, 3, 4 };
     unsigned char want[28 + 96 + 80];
     size_t n = 0;
 
     for (int k = 0; k < 7; k++, n += 4)
       for (int b = 0; b < 4; b++)
-        want[n + (size_t)b] =
-            (unsigned char)((uint32_t)counts[k] >> 8 * (big ? 3 - b : b));
+        want[n + (size_t)b] = (unsigned char)((uint32_t)counts[k] >>
+                                              8 * (big ? 3 - b : b));
     for (int k = 0; k < 12; k++, n += 8) {
       uint64_t bits;
 
@@ -102,8 +102,8 @@ static void writes_t1_byte_for_byte(void **state)
     }
     for (int k = 0; k < 20; k++, n += 4)
       for (int b = 0; b < 4; b++)
-        want[n + (size_t)b] =
-            (unsigned char)((uint32_t)tail[k] >> 8 * (big ? 3 - b : b));
+        want[n + (size_t)b] = (unsigned char)((uint32_t)tail[k] >>
+                                              8 * (big ? 3 - b : b));
     assert_int_equal(vg_ugrid_write(path, &t1, &err), VG_OK);
     data = io_slurp(path, &size);
     assert_int_equal(size, sizeof want);
@@ -196,16 +196,18 @@ static void mirrored_cells_and_faces_are_turned(void **state)
 
 static void a_wrong_name_is_told_the_right_one(void **state)
 {
-  static const struct { const char *as, *named, *phrase; } cases[] = {
-    {"lb8.ugrid", "b8.ugrid", "rename it to .lb8.ugrid"},
-    {"b8.ugrid", "lb8.ugrid", "rename it to .b8.ugrid"},
-    {"b8.ugrid", "b4.ugrid", "rename it to .b8.ugrid"},
-    {"lb4.ugrid", "lb8.ugrid", "rename it to .lb4.ugrid"},
-    {"r8.ugrid", "b8.ugrid", "rename it to .r8.ugrid"},
-    {"b8.ugrid", "r8.ugrid", "rename it to .b8.ugrid"},
-    {"b8l.ugrid", "b8.ugrid", "rename it to .b8l.ugrid"},
-    {"ugrid", "b8.ugrid", "holds text"},
-    {"b8.ugrid", "ugrid", "binary"},
+  static const struct {
+    const char *as, *named, *phrase;
+  } cases[] = {
+    { "lb8.ugrid", "b8.ugrid", "rename it to .lb8.ugrid" },
+    { "b8.ugrid", "lb8.ugrid", "rename it to .b8.ugrid" },
+    { "b8.ugrid", "b4.ugrid", "rename it to .b8.ugrid" },
+    { "lb4.ugrid", "lb8.ugrid", "rename it to .lb4.ugrid" },
+    { "r8.ugrid", "b8.ugrid", "rename it to .r8.ugrid" },
+    { "b8.ugrid", "r8.ugrid", "rename it to .b8.ugrid" },
+    { "b8l.ugrid", "b8.ugrid", "rename it to .b8l.ugrid" },
+    { "ugrid", "b8.ugrid", "holds text" },
+    { "b8.ugrid", "ugrid", "binary" },
   };
   struct vg_mesh m, back = VG_MESH_INIT;
 
@@ -260,12 +262,14 @@ static void tails_are_ignored(void **state)
  * and records, and readers do not mind. */
 static void the_number_of_layer_tetrahedra_follows(void **state)
 {
-  static const struct { const char *suffix; size_t size, at; int big; } kind[] =
-  {
-    {"b8.ugrid", 4, 0, 1}, {"lb8.ugrid", 4, 0, 0}, {"lb4.ugrid", 4, 0, 0},
-    {"b8l.ugrid", 8, 0, 1}, {"lb8l.ugrid", 8, 0, 0}, {"r8.ugrid", 12, 4, 1},
-    {"lr4.ugrid", 12, 4, 0}, {"ugrid", 3, 0, 0}
-  };
+  static const struct {
+    const char *suffix;
+    size_t size, at;
+    int big;
+  } kind[] = { { "b8.ugrid", 4, 0, 1 },   { "lb8.ugrid", 4, 0, 0 },
+               { "lb4.ugrid", 4, 0, 0 },  { "b8l.ugrid", 8, 0, 1 },
+               { "lb8l.ugrid", 8, 0, 0 }, { "r8.ugrid", 12, 4, 1 },
+               { "lr4.ugrid", 12, 4, 0 }, { "ugrid", 3, 0, 0 } };
   struct vg_mesh m, back = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
@@ -286,8 +290,8 @@ static void the_number_of_layer_tetrahedra_follows(void **state)
       assert_string_equal((char *)b + plain, "11\n");
     } else {
       for (size_t k = 0; k < width; k++)
-        value = value << 8 | b[plain + kind[i].at +
-                               (kind[i].big ? k : width - 1 - k)];
+        value = value << 8 |
+                b[plain + kind[i].at + (kind[i].big ? k : width - 1 - k)];
       assert_int_equal(value, 11);
     }
     if (vg_ugrid_read(path, &back, NULL, &err)) fail_msg("%s", err.text);
@@ -298,7 +302,8 @@ static void the_number_of_layer_tetrahedra_follows(void **state)
     unlink(path);
   }
   assert_int_equal(vg_ugrid_write_tail(path_of("tail", "b8.ugrid"), &m, 13,
-                                       &err), VG_ERR_INPUT);
+                                       &err),
+                   VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "13 tetrahedra"));
   assert_true(access(path_of("tail", "b8.ugrid"), F_OK) != 0);
   vg_mesh_release(&m);
@@ -451,8 +456,7 @@ static void many_tags_cost_no_quadratic_time(void **state)
   assert_int_equal(m.n_patch, n);
   for (size_t i = 0; i < n; i++)
     assert_int_equal(m.patch[m.tri_patch[i]].id, tag[i]);
-  for (size_t i = 1; i < n; i++)
-    assert_true(m.patch[i].id > m.patch[i - 1].id);
+  for (size_t i = 1; i < n; i++) assert_true(m.patch[i].id > m.patch[i - 1].id);
   m.n_tri = 0;
   vg_mesh_release(&m);
   free(tag);
@@ -464,21 +468,21 @@ static void reads_real_files(void **state)
     const char *name;
     size_t n_tri, n_tet, n_pri;
   } files[] = {
-    {"transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz", 33298, 0, 0},
-    {"transport/dlr_f6_wbnp_half_medium.lb8.ugrid.xz", 111410, 0, 0},
-    {"transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz", 22278, 0, 0},
-    {"bizjet/falcon_full_mirrored.lb8.ugrid.xz", 74754, 0, 0},
-    {"bizjet/p180_avanti_full.lb8.ugrid.xz", 72546, 0, 0},
-    {"supersonic/low_boom_sst_full.lb8.ugrid.xz", 42832, 0, 0},
-    {"supersonic/concorde_full.lb8.ugrid.xz", 67102, 0, 0},
-    {"supersonic/f16_full.lb8.ugrid.xz", 72718, 0, 0},
-    {"supersonic/tmx1242_wing_body.lb8.ugrid.xz", 30856, 0, 0},
-    {"supersonic/tnd6480_delta_wing_body.lb8.ugrid.xz", 91444, 0, 0},
-    {"highlift/30p30n_swept_wing_in_box_coarse.lb8.ugrid.xz", 34688, 0, 0},
-    {"highlift/30p30n_swept_wing_in_box_medium.lb8.ugrid.xz", 109758, 0, 0},
-    {"simple/hemisphere_cylinder_farfield.lb8.ugrid.xz", 5308, 0, 0},
-    {"simple/cone_cone.lb8.ugrid.xz", 1682, 0, 0},
-    {"simple/cape_cigar_viscous_volume.lb8.ugrid.xz", 2710, 38604, 85900},
+    { "transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz", 33298, 0, 0 },
+    { "transport/dlr_f6_wbnp_half_medium.lb8.ugrid.xz", 111410, 0, 0 },
+    { "transport/onera_m6_sharp_te_farfield.lb8.ugrid.xz", 22278, 0, 0 },
+    { "bizjet/falcon_full_mirrored.lb8.ugrid.xz", 74754, 0, 0 },
+    { "bizjet/p180_avanti_full.lb8.ugrid.xz", 72546, 0, 0 },
+    { "supersonic/low_boom_sst_full.lb8.ugrid.xz", 42832, 0, 0 },
+    { "supersonic/concorde_full.lb8.ugrid.xz", 67102, 0, 0 },
+    { "supersonic/f16_full.lb8.ugrid.xz", 72718, 0, 0 },
+    { "supersonic/tmx1242_wing_body.lb8.ugrid.xz", 30856, 0, 0 },
+    { "supersonic/tnd6480_delta_wing_body.lb8.ugrid.xz", 91444, 0, 0 },
+    { "highlift/30p30n_swept_wing_in_box_coarse.lb8.ugrid.xz", 34688, 0, 0 },
+    { "highlift/30p30n_swept_wing_in_box_medium.lb8.ugrid.xz", 109758, 0, 0 },
+    { "simple/hemisphere_cylinder_farfield.lb8.ugrid.xz", 5308, 0, 0 },
+    { "simple/cone_cone.lb8.ugrid.xz", 1682, 0, 0 },
+    { "simple/cape_cigar_viscous_volume.lb8.ugrid.xz", 2710, 38604, 85900 },
   };
 
   (void)state;

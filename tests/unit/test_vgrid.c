@@ -4,30 +4,26 @@
 
 /* T1 as formats.md 1.2 prints it, with VGRID's one trailing record. */
 static const unsigned char t1_cogsg[172] = {
-  0, 0, 0, 0x30,
-  0xff, 0xff, 0xff, 0xff, 0, 0, 0, 1, 0, 0, 0, 4, 0, 0, 0, 4, 0, 0, 0, 0,
-  0, 0, 0, 0,  0, 0, 0, 0, 0, 0, 0, 0,
-  0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 4,
-  0, 0, 0, 0x30,
-  0, 0, 0, 0x60,
-  0, 0, 0, 0, 0, 0, 0, 0, 0x3f, 0xf0, 0, 0, 0, 0, 0, 0,
-  0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-  0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-  0x3f, 0xf0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-  0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-  0, 0, 0, 0, 0, 0, 0, 0, 0x3f, 0xf0, 0, 0, 0, 0, 0, 0,
-  0, 0, 0, 0x60,
-  0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0, 4
+  0, 0, 0, 0x30, 0xff, 0xff, 0xff, 0xff, 0, 0, 0, 1,    0,    0,    0, 4,
+  0, 0, 0, 4,    0,    0,    0,    0,    0, 0, 0, 0,    0,    0,    0, 0,
+  0, 0, 0, 0,    0,    0,    0,    1,    0, 0, 0, 2,    0,    0,    0, 3,
+  0, 0, 0, 4,    0,    0,    0,    0x30, 0, 0, 0, 0x60, 0,    0,    0, 0,
+  0, 0, 0, 0,    0x3f, 0xf0, 0,    0,    0, 0, 0, 0,    0,    0,    0, 0,
+  0, 0, 0, 0,    0,    0,    0,    0,    0, 0, 0, 0,    0,    0,    0, 0,
+  0, 0, 0, 0,    0,    0,    0,    0,    0, 0, 0, 0,    0x3f, 0xf0, 0, 0,
+  0, 0, 0, 0,    0,    0,    0,    0,    0, 0, 0, 0,    0,    0,    0, 0,
+  0, 0, 0, 0,    0,    0,    0,    0,    0, 0, 0, 0,    0,    0,    0, 0,
+  0, 0, 0, 0,    0x3f, 0xf0, 0,    0,    0, 0, 0, 0,    0,    0,    0, 0x60,
+  0, 0, 0, 4,    0,    0,    0,    0,    0, 0, 0, 4
 };
 
 /* The same mesh; four patches of one face, so that all points are shared. */
-static const char t1_bc[] =
-  "       4       4       4       1\n"
-  " Triangle   Surface Patch       Nodes\n"
-  "       1       1       1       2       3\n"
-  "       2       2       1       4       2\n"
-  "       3       3       1       3       4\n"
-  "       4       4       2       4       3\n";
+static const char t1_bc[] = "       4       4       4       1\n"
+                            " Triangle   Surface Patch       Nodes\n"
+                            "       1       1       1       2       3\n"
+                            "       2       2       1       4       2\n"
+                            "       3       3       1       3       4\n"
+                            "       4       4       2       4       3\n";
 
 static vg_status parse_pair(const void *cogsg, size_t n, const void *bc,
                             size_t n_bc, struct vg_mesh *m,
@@ -45,7 +41,7 @@ static vg_status parse_pair(const void *cogsg, size_t n, const void *bc,
 
 static void unlink_triple(const char *stem)
 {
-  static const char *const part[] = {"cogsg", "bc", "mapbc"};
+  static const char *const part[] = { "cogsg", "bc", "mapbc" };
   char name[4200];
 
   for (int i = 0; i < 3; i++) {
@@ -149,7 +145,7 @@ static void reads_other_layouts(void **state)
   for (int turn = 0; turn < 16; turn++) {
     int big = turn & 1, marker = turn & 2 ? 8 : 4, tc = turn & 4 ? 4 : 8;
     int real = turn & 8 ? 4 : 8;
-    static const uint32_t head[10] = {UINT32_MAX, 1, 4, 4, 0, 0};
+    static const uint32_t head[10] = { UINT32_MAX, 1, 4, 4, 0, 0 };
     unsigned char data[400], *at = data;
     struct vg_mesh m = VG_MESH_INIT;
     struct vg_error err = VG_ERROR_INIT;
@@ -164,8 +160,8 @@ static void reads_other_layouts(void **state)
     for (int k = 0; k < 3; k++)
       for (int i = 0; i < 4; i++) put_real(&at, t1.point[i][k], real, big);
     put(&at, second, marker, big);
-    if (parse_pair(data, (size_t)(at - data), t1_bc, sizeof t1_bc - 1, &m,
-                   NULL, &err))
+    if (parse_pair(data, (size_t)(at - data), t1_bc, sizeof t1_bc - 1, &m, NULL,
+                   &err))
       fail_msg("turn %d: %s", turn, err.text);
     io_same(&t1, &m, 1);
     vg_mesh_release(&m);
@@ -177,9 +173,9 @@ static void reads_other_layouts(void **state)
  * points are numbered in scrambled order when stride is not 1. */
 static void make_box(struct vg_mesh *m, uint32_t n, uint32_t stride)
 {
-  static const int order[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
-                                  {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-  uint32_t w = n + 1, count = w * w * w, step[3] = {1, w, w * w};
+  static const int order[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 },
+                                   { 0, 2, 1 }, { 2, 1, 0 }, { 1, 0, 2 } };
+  uint32_t w = n + 1, count = w * w * w, step[3] = { 1, w, w * w };
   size_t n_tet = 6 * (size_t)n * n * n, n_tri = 12 * (size_t)n * n, t = 0;
 
   memset(m, 0, sizeof *m);
@@ -188,7 +184,7 @@ static void make_box(struct vg_mesh *m, uint32_t n, uint32_t stride)
   m->tri = malloc(n_tri * sizeof *m->tri);
   m->tri_patch = malloc(n_tri * sizeof *m->tri_patch);
   m->n_point = count;
-#define AT(i) ((uint32_t)((uint64_t)(i) * stride % count))
+#define AT(i) ((uint32_t)((uint64_t)(i)*stride % count))
   for (uint32_t i = 0; i < count; i++) {
     m->point[AT(i)][0] = i % w;
     m->point[AT(i)][1] = i / w % w;
@@ -212,7 +208,7 @@ static void make_box(struct vg_mesh *m, uint32_t n, uint32_t stride)
   for (uint32_t axis = 0; axis < 3; axis++)
     for (uint32_t side = 0; side < 2; side++)
       for (uint32_t i = 0; i < count; i++) {
-        uint32_t p[3] = {i % w, i / w % w, i / w / w};
+        uint32_t p[3] = { i % w, i / w % w, i / w / w };
         uint32_t u = step[(axis + 1) % 3], v = step[(axis + 2) % 3];
 
         if (p[axis] != side * n || p[(axis + 1) % 3] == n ||
@@ -243,13 +239,15 @@ static void same_geometry(const struct vg_mesh *a, const struct vg_mesh *b)
   for (size_t i = 0; i < a->n_tet; i++)
     for (int k = 0; k < 4; k++)
       assert_int_equal(compare_point(a->point[a->tet[i][k]],
-                                     b->point[b->tet[i][k]]), 0);
+                                     b->point[b->tet[i][k]]),
+                       0);
   for (size_t i = 0; i < a->n_tri; i++) {
     assert_int_equal(a->patch[a->tri_patch[i]].id,
                      b->patch[b->tri_patch[i]].id);
     for (int k = 0; k < 3; k++)
       assert_int_equal(compare_point(a->point[a->tri[i][k]],
-                                     b->point[b->tri[i][k]]), 0);
+                                     b->point[b->tri[i][k]]),
+                       0);
   }
 }
 
@@ -280,8 +278,10 @@ static void points_are_put_in_vgrids_order(void **state)
   assert_int_equal(info.n_boundary, 216 - 64);
   same_geometry(&m, &back);
   for (size_t i = 0; i < back.n_point; i++)
-    assert_int_equal(n_side(back.point[i], 5),
-                     i < 8 ? 3 : i < 56 ? 2 : i < 152 ? 1 : 0);
+    assert_int_equal(n_side(back.point[i], 5), i < 8     ? 3
+                                               : i < 56  ? 2
+                                               : i < 152 ? 1
+                                                         : 0);
   /* Along a curve each point is next to the one before it; twelve curves
    * begin next to a corner. */
   int starts = 0;
@@ -298,7 +298,8 @@ static void points_are_put_in_vgrids_order(void **state)
   assert_int_equal(vg_cogsg_write(stem, &back, NULL, 0, NULL, &err), VG_OK);
   assert_int_equal(vg_cogsg_read(stem, &again, &info2, NULL, &err), VG_ERR_IO);
   assert_int_equal(vg_cogsg_read(with(stem, ".cogsg"), &again, &info2, NULL,
-                                 &err), VG_OK);
+                                 &err),
+                   VG_OK);
   io_same(&back, &again, 1);
   unlink_triple(stem);
   vg_mesh_release(&m);
@@ -392,15 +393,18 @@ static void bad_headers_are_named(void **state)
 
 static void bad_bc_files_are_named(void **state)
 {
-  static const struct { const char *bc, *phrase; vg_status code; } cases[] = {
-    {"wall 1 0.1\n", "AFLR", VG_ERR_FORMAT},
-    {"4 4 4\n1\n", "four integers", VG_ERR_FORMAT},
-    {"4 4 4 1\ntitle\n1 1 1 2 3\n", "truncated", VG_ERR_FORMAT},
-    {"99999999999 4 4 1\ntitle\n1 1 1 2 3\n", "truncated", VG_ERR_FORMAT},
-    {"-1 4 4 1\ntitle\n1 1 1 2 3\n", "truncated", VG_ERR_FORMAT},
-    {"1 4 4 1\ntitle\n1 1 1 2 5\n", "face 1 refers to point 5", VG_ERR_INPUT},
-    {"1 4 4 1\ntitle\n1 1 1 2 x\n", "case.bc:3:", VG_ERR_FORMAT},
-    {"1 4 4 1\ntitle\n1 5000000000 1 2 3\n", "32 bits", VG_ERR_FORMAT},
+  static const struct {
+    const char *bc, *phrase;
+    vg_status code;
+  } cases[] = {
+    { "wall 1 0.1\n", "AFLR", VG_ERR_FORMAT },
+    { "4 4 4\n1\n", "four integers", VG_ERR_FORMAT },
+    { "4 4 4 1\ntitle\n1 1 1 2 3\n", "truncated", VG_ERR_FORMAT },
+    { "99999999999 4 4 1\ntitle\n1 1 1 2 3\n", "truncated", VG_ERR_FORMAT },
+    { "-1 4 4 1\ntitle\n1 1 1 2 3\n", "truncated", VG_ERR_FORMAT },
+    { "1 4 4 1\ntitle\n1 1 1 2 5\n", "face 1 refers to point 5", VG_ERR_INPUT },
+    { "1 4 4 1\ntitle\n1 1 1 2 x\n", "case.bc:3:", VG_ERR_FORMAT },
+    { "1 4 4 1\ntitle\n1 5000000000 1 2 3\n", "32 bits", VG_ERR_FORMAT },
   };
 
   (void)state;

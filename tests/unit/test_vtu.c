@@ -6,7 +6,7 @@
  * offsets that they declare. */
 struct vtu {
   unsigned char *data;
-  size_t size, raw;         /* raw: first byte behind the '_' */
+  size_t size, raw; /* raw: first byte behind the '_' */
 };
 
 static struct vtu load(const char *path)
@@ -32,8 +32,7 @@ static const void *array(const struct vtu *v, const char *type,
   uint64_t n;
   size_t offset;
 
-  snprintf(text, sizeof text, "<DataArray type=\"%s\" Name=\"%s\"", type,
-           name);
+  snprintf(text, sizeof text, "<DataArray type=\"%s\" Name=\"%s\"", type, name);
   at = strstr((const char *)v->data, text);
   if (!at) fail_msg("no array %s %s", type, name);
   at = strstr(at, "offset=\"");
@@ -69,7 +68,7 @@ static void writes_the_documented_layout(void **state)
   assert_int_equal(vg_vtu_write(path, &m, NULL, 0, &err), VG_OK);
   v = load(path);
   assert_non_null(strstr((char *)v.data, "NumberOfPoints=\"4\" "
-                         "NumberOfCells=\"1\""));
+                                         "NumberOfCells=\"1\""));
   assert_non_null(strstr((char *)v.data, "header_type=\"UInt64\""));
   assert_non_null(strstr((char *)v.data, "offset=\"104\""));
   assert_non_null(strstr((char *)v.data, "offset=\"144\""));
@@ -84,12 +83,9 @@ static void writes_the_documented_layout(void **state)
 
 static void writes_every_cell_in_vtk_order(void **state)
 {
-  static const int64_t connectivity[23] = {
-    5, 6, 10, 11,
-    7, 4, 5, 6, 10,
-    8, 1, 2, 9, 5, 6,
-    0, 1, 2, 3, 4, 5, 6, 7
-  };
+  static const int64_t connectivity[23] = { 5,  6, 10, 11, 7, 4, 5, 6,
+                                            10, 8, 1,  2,  9, 5, 6, 0,
+                                            1,  2, 3,  4,  5, 6, 7 };
   static const int64_t offsets[4] = { 4, 9, 15, 23 };
   static const unsigned char types[4] = { 10, 14, 13, 12 };
   static const float quality[4] = { 0.25f, 1, 2, 3 };
@@ -108,8 +104,7 @@ static void writes_every_cell_in_vtk_order(void **state)
   (void)state;
   for (int i = 0; i < 39; i++) vector[i / 3][i % 3] = i * 0.1;
   io_make_mixed(&m);
-  if (vg_vtu_write(path, &m, field, 3, &err) != VG_OK)
-    fail_msg("%s", err.text);
+  if (vg_vtu_write(path, &m, field, 3, &err) != VG_OK) fail_msg("%s", err.text);
   v = load(path);
   expect_array(&v, "Int64", "connectivity", connectivity, sizeof connectivity);
   expect_array(&v, "Int64", "offsets", offsets, sizeof offsets);
@@ -124,17 +119,15 @@ static void writes_every_cell_in_vtk_order(void **state)
 /* Points that no boundary face uses are left out, also of point fields. */
 static void writes_the_boundary_alone(void **state)
 {
-  static const int64_t connectivity[18] = {
-    1, 7, 2, 4, 6, 8, 0, 1, 2, 3, 0, 4, 5, 1, 0, 3, 6, 4
-  };
+  static const int64_t connectivity[18] = { 1, 7, 2, 4, 6, 8, 0, 1, 2,
+                                            3, 0, 4, 5, 1, 0, 3, 6, 4 };
   static const int32_t patch[5] = { -7, 20, -7, 3, 20 };
   static const unsigned char types[5] = { 5, 5, 9, 9, 9 };
   /* Points 6, 9, 11, 12 are not used: 7, 8, 10 become 6, 7, 8. */
   static const int32_t kept[9] = { 0, 1, 2, 3, 4, 5, 7, 8, 10 };
   int32_t number[13];
-  struct vg_vtu_field field = {
-    "number", VG_VTU_POINT, VG_VTU_INT32, 1, number
-  };
+  struct vg_vtu_field field = { "number", VG_VTU_POINT, VG_VTU_INT32, 1,
+                                number };
   struct vg_mesh m;
   struct vg_error err = VG_ERROR_INIT;
   const char *path = io_temp("boundary.vtu");
@@ -174,24 +167,24 @@ static void a_surface_is_written_as_such(void **state)
 
 static void writes_loose_triangles(void **state)
 {
-  static const double point[3][3] = { {0, 0, 0}, {1, 0, 0}, {0, 1, 0} };
-  static const uint32_t tri[1][3] = { {0, 1, 2} };
+  static const double point[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } };
+  static const uint32_t tri[1][3] = { { 0, 1, 2 } };
   static const int32_t kind[1] = { 7 };
-  struct vg_vtu_field field = {
-    "kind", VG_VTU_CELL, VG_VTU_INT32, 1, kind
-  };
+  struct vg_vtu_field field = { "kind", VG_VTU_CELL, VG_VTU_INT32, 1, kind };
   struct vg_error err = VG_ERROR_INIT;
   const char *path = io_temp("loose.vtu");
   struct vtu v;
 
   (void)state;
   assert_int_equal(vg_vtu_write_triangles(path, 3, point, 1, tri, &field, 1,
-                                          &err), VG_OK);
+                                          &err),
+                   VG_OK);
   v = load(path);
   expect_array(&v, "Int32", "kind", kind, sizeof kind);
   free(v.data);
   assert_int_equal(vg_vtu_write_triangles(path, 0, NULL, 0, NULL, NULL, 0,
-                                          &err), VG_OK);
+                                          &err),
+                   VG_OK);
   v = load(path);
   free(v.data);
 }
@@ -199,9 +192,7 @@ static void writes_loose_triangles(void **state)
 static void refuses_bad_names_and_places(void **state)
 {
   static const int32_t kind[1] = { 7 };
-  struct vg_vtu_field field = {
-    "a\"b", VG_VTU_CELL, VG_VTU_INT32, 1, kind
-  };
+  struct vg_vtu_field field = { "a\"b", VG_VTU_CELL, VG_VTU_INT32, 1, kind };
   struct vg_mesh m;
   struct vg_error err = VG_ERROR_INIT;
 
@@ -214,7 +205,8 @@ static void refuses_bad_names_and_places(void **state)
                    VG_ERR_INPUT);
   assert_int_equal(access(io_temp("name.vtu"), F_OK), -1);
   assert_int_equal(vg_vtu_write(io_temp("no/such/folder.vtu"), &m, NULL, 0,
-                                &err), VG_ERR_IO);
+                                &err),
+                   VG_ERR_IO);
   vg_mesh_release(&m);
 }
 

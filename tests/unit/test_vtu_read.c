@@ -15,11 +15,15 @@
 
 enum { N = 5 };
 
-static const double point[N][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 },
-                                    { 0, 0, 1 }, { 0.25, 0.5, -2 } };
+static const double point[N][3] = {
+  { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 0.25, 0.5, -2 }
+};
 static const double size_of[N] = { 0.5, 0.25, 2, 1, 0.125 };
 
-struct bytes { size_t n; unsigned char data[4096]; };
+struct bytes {
+  size_t n;
+  unsigned char data[4096];
+};
 
 static void put(struct bytes *b, const void *v, size_t n)
 {
@@ -36,14 +40,16 @@ static void put_text(struct bytes *b, const char *s)
 static void put_number(struct bytes *b, uint64_t v, int wide, int big)
 {
   for (int k = 0; k < (wide ? 8 : 4); k++)
-    put(b, &(unsigned char){ (unsigned char)(v >> 8 *
-        (big ? (wide ? 7 : 3) - k : k)) }, 1);
+    put(b,
+        &(unsigned char){
+          (unsigned char)(v >> 8 * (big ? (wide ? 7 : 3) - k : k)) },
+        1);
 }
 
 static void put_base64(struct bytes *b, const struct bytes *from)
 {
   static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-    "abcdefghijklmnopqrstuvwxyz0123456789+/";
+                              "abcdefghijklmnopqrstuvwxyz0123456789+/";
 
   for (size_t i = 0; i < from->n; i += 3) {
     uint32_t bits = 0;
@@ -56,7 +62,9 @@ static void put_base64(struct bytes *b, const struct bytes *from)
 }
 
 /* A way to write. */
-struct way { int width, wide, big, packed, base64, appended; };
+struct way {
+  int width, wide, big, packed, base64, appended;
+};
 
 static void put_values(struct bytes *b, const struct way *w, size_t n,
                        const double *v)
@@ -77,7 +85,7 @@ static void encode(struct bytes *b, const struct way *w, size_t n,
                    const double *v)
 {
   struct bytes raw = { .n = 0 }, head = { .n = 0 }, data = { .n = 0 };
-  size_t block = 24;             /* bytes, to have several blocks */
+  size_t block = 24; /* bytes, to have several blocks */
 
   put_values(&raw, w, n, v);
   if (w->packed) {
@@ -114,10 +122,11 @@ static void put_array(struct bytes *b, const struct way *w, const char *name,
 {
   char text[300];
 
-  snprintf(text, sizeof text, "<DataArray type=\"Float%d\" Name=\"%s\" "
+  snprintf(text, sizeof text,
+           "<DataArray type=\"Float%d\" Name=\"%s\" "
            "NumberOfComponents=\"%d\" format=\"%s\" offset=\"%zu\"",
-           8 * w->width, name, components,
-           w->appended ? "appended" : "binary", appended->n);
+           8 * w->width, name, components, w->appended ? "appended" : "binary",
+           appended->n);
   put_text(b, text);
   put_text(b, w->appended ? "/>\n" : ">\n  ");
   encode(w->appended ? appended : b, w, N * (size_t)components, v);
@@ -130,12 +139,12 @@ static struct bytes write_file(const struct way *w)
   char text[400];
   double other[N] = { 7, 7, 7, 7, 7 };
 
-  snprintf(text, sizeof text, "<?xml version=\"1.0\"?>\n<VTKFile "
+  snprintf(text, sizeof text,
+           "<?xml version=\"1.0\"?>\n<VTKFile "
            "type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"%s\" "
            "header_type=\"%s\"%s>\n<UnstructuredGrid>\n"
            "<Piece NumberOfPoints=\"%d\" NumberOfCells=\"0\">\n<PointData>\n",
-           w->big ? "BigEndian" : "LittleEndian",
-           w->wide ? "UInt64" : "UInt32",
+           w->big ? "BigEndian" : "LittleEndian", w->wide ? "UInt64" : "UInt32",
            w->packed ? " compressor=\"vtkZLibDataCompressor\"" : "", N);
   put_text(&b, text);
   put_array(&b, w, "other size", 1, other, &appended);
@@ -169,7 +178,7 @@ static vg_status parse(const void *data, size_t size, size_t *n,
 static void accept(const struct bytes *b)
 {
   struct vg_error err = VG_ERROR_INIT;
-  double (*x)[3], *v;
+  double(*x)[3], *v;
   size_t n;
 
   if (parse(b->data, b->n, &n, &x, &v, &err) < 0) fail_msg("%s", err.text);
@@ -184,21 +193,23 @@ static void reads_every_way(void **state)
 {
   (void)state;
   for (int i = 0; i < 64; i++) {
-    struct way w = { i & 1 ? 8 : 4, i >> 1 & 1, i >> 2 & 1, i >> 3 & 1,
-                     i >> 4 & 1, i >> 5 & 1 };
+    struct way w = { i & 1 ? 8 : 4, i >> 1 & 1, i >> 2 & 1,
+                     i >> 3 & 1,    i >> 4 & 1, i >> 5 & 1 };
     struct bytes b;
 
-    if (!w.appended && !w.base64) continue;   /* raw is appended only */
+    if (!w.appended && !w.base64) continue; /* raw is appended only */
     b = write_file(&w);
     accept(&b);
   }
 }
 
 #define HEAD "<VTKFile byte_order=\"LittleEndian\"><Piece NumberOfPoints=\"5\">"
-#define POINTS "<Points><DataArray type=\"Float32\" format=\"ascii\" " \
-  "NumberOfComponents=\"3\"> 0 0 0 1 0 0\n0 1 0 0 0 1 .25 .5 -2 " \
+#define POINTS                                                                 \
+  "<Points><DataArray type=\"Float32\" format=\"ascii\" "                      \
+  "NumberOfComponents=\"3\"> 0 0 0 1 0 0\n0 1 0 0 0 1 .25 .5 -2 "              \
   "</DataArray></Points>"
-#define SIZES(text) "<PointData><DataArray type=\"Float64\" Name=\"size\" " \
+#define SIZES(text)                                                            \
+  "<PointData><DataArray type=\"Float64\" Name=\"size\" "                      \
   "format=\"ascii\">" text "</DataArray></PointData>"
 
 static void reads_text(void **state)
@@ -216,12 +227,13 @@ static void reads_what_is_written_here(void **state)
                                       size_of };
   const uint32_t tri[1][3] = { { 0, 1, 2 } };
   struct vg_error err = VG_ERROR_INIT;
-  double (*x)[3], *v;
+  double(*x)[3], *v;
   size_t n;
 
   (void)state;
   assert_int_equal(vg_vtu_write_triangles(VG_TMP_DIR "/sizes.vtu", N, point, 1,
-                                          tri, &field, 1, &err), VG_OK);
+                                          tri, &field, 1, &err),
+                   VG_OK);
   if (vg_vtu_points_read(VG_TMP_DIR "/sizes.vtu", "size", &n, &x, &v, &err) < 0)
     fail_msg("%s", err.text);
   assert_int_equal(n, N);
@@ -240,7 +252,7 @@ static void no_damage_is_taken_for_data(void **state)
     struct bytes b = write_file(&w);
 
     for (size_t size = 1; size + 40 < b.n; size += 3) {
-      double (*x)[3], *v;
+      double(*x)[3], *v;
       size_t n;
 
       if (parse(b.data, size, &n, &x, &v, &err) < 0) {
@@ -249,7 +261,7 @@ static void no_damage_is_taken_for_data(void **state)
       }
       free(x);
       free(v);
-      assert_true(size + 120 > b.n);   /* all arrays were whole */
+      assert_true(size + 120 > b.n); /* all arrays were whole */
     }
   }
 }
@@ -257,7 +269,7 @@ static void no_damage_is_taken_for_data(void **state)
 static void refuses(const char *text, vg_status want, const char *word)
 {
   struct vg_error err = VG_ERROR_INIT;
-  double (*x)[3], *v;
+  double(*x)[3], *v;
   size_t n;
 
   assert_int_equal(parse(text, strlen(text), &n, &x, &v, &err), want);
@@ -282,16 +294,17 @@ static void refuses_what_it_cannot_take(void **state)
   refuses(HEAD POINTS SIZES("1 1 1 1"), VG_ERR_FORMAT, "number 5 of 5");
   refuses(HEAD POINTS SIZES("1 1 nan 1 1"), VG_ERR_FORMAT, "number 3 of 5");
   refuses(HEAD POINTS "<PointData><DataArray type=\"Int32\" Name=\"size\" "
-          "format=\"ascii\">1 1 1 1 1</DataArray></PointData>",
+                      "format=\"ascii\">1 1 1 1 1</DataArray></PointData>",
           VG_ERR_UNSUPPORTED, "'Int32'");
-  refuses(HEAD POINTS "<PointData><DataArray type=\"Float64\" Name=\"size\" "
+  refuses(HEAD POINTS
+          "<PointData><DataArray type=\"Float64\" Name=\"size\" "
           "NumberOfComponents=\"3\" format=\"ascii\"></DataArray></PointData>",
           VG_ERR_FORMAT, "3 components");
   refuses(HEAD POINTS "<PointData><DataArray type=\"Float64\" Name=\"size\" "
-          "format=\"appended\" offset=\"9\"/></PointData>",
+                      "format=\"appended\" offset=\"9\"/></PointData>",
           VG_ERR_FORMAT, "nowhere");
   refuses(HEAD POINTS "<PointData><DataArray type=\"Float64\" Name=\"size\" "
-          "format=\"binary\">AAAA</DataArray></PointData>",
+                      "format=\"binary\">AAAA</DataArray></PointData>",
           VG_ERR_FORMAT, "not as long");
 }
 

@@ -19,10 +19,10 @@ static int needs_cgal(void **state)
  * own; `n` triangles of it. */
 static void add_brick(struct vg_mesh *m, double lo, size_t n)
 {
-  static const uint32_t tri[12][3] = {
-    { 0, 2, 3 }, { 0, 3, 1 }, { 4, 5, 7 }, { 4, 7, 6 }, { 0, 1, 5 },
-    { 0, 5, 4 }, { 2, 6, 7 }, { 2, 7, 3 }, { 0, 4, 6 }, { 0, 6, 2 },
-    { 1, 3, 7 }, { 1, 7, 5 } };
+  static const uint32_t tri[12][3] = { { 0, 2, 3 }, { 0, 3, 1 }, { 4, 5, 7 },
+                                       { 4, 7, 6 }, { 0, 1, 5 }, { 0, 5, 4 },
+                                       { 2, 6, 7 }, { 2, 7, 3 }, { 0, 4, 6 },
+                                       { 0, 6, 2 }, { 1, 3, 7 }, { 1, 7, 5 } };
   size_t first = m->n_point, patch;
 
   m->point = realloc(m->point, (first + 8) * sizeof *m->point);
@@ -124,7 +124,7 @@ static void crossing_bricks(void **state)
   assert_true(r.n_fit > 0.8 * (double)r.n_point);
   for (size_t i = 0; i < m.n_point; i++)
     n_edge += fabs(m.point[i][0]) < 1e-9 && fabs(m.point[i][1]) < 1e-9;
-  assert_true(n_edge >= 5);   /* of a length of 1 in edges of about 0.1 */
+  assert_true(n_edge >= 5); /* of a length of 1 in edges of about 0.1 */
   for (size_t i = 0; i < m.n_tri; i++) {
     double c = 0;
 
@@ -168,18 +168,18 @@ static void a_small_hole_is_bridged_a_large_one_refused(void **state)
   struct vg_wrap_report r;
 
   (void)state;
-  add_brick(&m, 0, 10);      /* one side is missing */
+  add_brick(&m, 0, 10); /* one side is missing */
   wrap(&m, 2, &r);
   is_sound(&m);
-  assert_true(r.distance > 0.1);    /* the lid */
+  assert_true(r.distance > 0.1); /* the lid */
   vg_mesh_release(&m);
   add_brick(&m, 0, 10);
-  refuses(&m, 0.3, VG_ERR_GEOMETRY, "close_holes yes");  /* after the wrap */
+  refuses(&m, 0.3, VG_ERR_GEOMETRY, "close_holes yes"); /* after the wrap */
   refuses(&m, 0.3, VG_ERR_GEOMETRY, "up to 1 wide");
-  refuses(&m, 0.1, VG_ERR_GEOMETRY, "would go through");  /* before */
+  refuses(&m, 0.1, VG_ERR_GEOMETRY, "would go through"); /* before */
   vg_mesh_release(&m);
   add_brick(&m, 0, 10);
-  wrap(&m, 1.01, &r);        /* as the message says */
+  wrap(&m, 1.01, &r); /* as the message says */
   assert_int_equal(is_sound(&m), 1);
   vg_mesh_release(&m);
 }
@@ -234,12 +234,12 @@ static void shells_that_bound_no_body_go(void **state)
 
   (void)state;
   add_brick(&m, 5, 12);
-  scale_last(&m, 0.009);     /* less than 0.01^3 */
+  scale_last(&m, 0.009); /* less than 0.01^3 */
   add_brick(&m, 0, 12);
   add_brick(&m, 0.3, 12);
-  scale_last(&m, 0.4);       /* a cavity */
+  scale_last(&m, 0.4); /* a cavity */
   add_brick(&m, 0.4, 12);
-  scale_last(&m, 0.1);       /* in it */
+  scale_last(&m, 0.1); /* in it */
   add_brick(&m, 2, 12);
   if (vg_wrap_prune(&m, NULL, &r, &err)) fail_msg("%s", err.text);
   assert_int_equal(r.n_crumb, 1);
@@ -274,7 +274,7 @@ static void outer_boundaries_are_kept(void **state)
 
   (void)state;
   add_tunnel(&m, 0, keep);
-  add_brick(&m, 0.5, 12);    /* another one that crosses the first */
+  add_brick(&m, 0.5, 12); /* another one that crosses the first */
   if (vg_wrap(&m, &o, &r, &err)) fail_msg("%s", err.text);
   assert_int_equal(r.n_kept, 12);
   assert_int_equal(r.n_before, 24);
@@ -299,10 +299,10 @@ static void bodies_that_leave_the_tunnel_are_refused(void **state)
   const struct vg_wrap_options o = { .size = 0.2, .keep = keep };
 
   (void)state;
-  add_tunnel(&m, 5.5, keep);   /* through the wall at 6 */
+  add_tunnel(&m, 5.5, keep); /* through the wall at 6 */
   refuses_options(&m, &o, VG_ERR_GEOMETRY, "meets the outer boundary");
   vg_mesh_release(&m);
-  add_tunnel(&m, 6.001, keep);   /* outside */
+  add_tunnel(&m, 6.001, keep); /* outside */
   refuses_options(&m, &o, VG_ERR_GEOMETRY, "outside the outer boundary");
   memset(keep, 1, sizeof keep);
   refuses_options(&m, &o, VG_ERR_INPUT, "nothing to wrap");
@@ -326,7 +326,8 @@ static void progress_has_a_share(void **state)
   struct vg_wrap_forecast f;
   struct vg_wrap_report r;
   size_t seen[2] = { 0, 0 };
-  const struct vg_wrap_options o = { .size = 0.04, .progress = count_up,
+  const struct vg_wrap_options o = { .size = 0.04,
+                                     .progress = count_up,
                                      .user = seen };
 
   (void)state;
@@ -355,7 +356,7 @@ static void suggestions_work(void **state)
 
     add_brick(&m, 0, n);
     scale_last(&m, 100);
-    for (size_t p = 0; p < 8; p++)     /* a hole of 20 x 20 at an end */
+    for (size_t p = 0; p < 8; p++) /* a hole of 20 x 20 at an end */
       for (int k = 1; k < 3; k++) m.point[p][k] *= 0.2;
     if (vg_wrap_suggest(&m, NULL, &size, &reason, &err))
       fail_msg("%s", err.text);
@@ -375,7 +376,7 @@ static void knives_come_back(void **state)
   size_t n_knife = 0;
 
   (void)state;
-  add_brick(&m, 0, 12);        /* 0.1 high at x = 0, nothing at x = 1 */
+  add_brick(&m, 0, 12); /* 0.1 high at x = 0, nothing at x = 1 */
   for (size_t p = 0; p < 8; p++)
     m.point[p][2] = 0.1 * m.point[p][2] * (1 - m.point[p][0]);
   wrap(&m, 0.1, &r);
@@ -386,12 +387,12 @@ static void knives_come_back(void **state)
     assert_true(m.point[p][0] < 1 + 1e-9);
     n_knife += m.point[p][0] > 1 - 1e-9;
   }
-  assert_true(n_knife >= 6);   /* of a length of 1 in edges of about 0.1 */
+  assert_true(n_knife >= 6); /* of a length of 1 in edges of about 0.1 */
   for (size_t t = 0; t < m.n_tri; t++) {
     size_t on = 0;
 
     for (int k = 0; k < 3; k++) on += m.point[m.tri[t][k]][0] > 1 - 1e-9;
-    assert_true(on < 3);       /* no end is left between them */
+    assert_true(on < 3); /* no end is left between them */
   }
   vg_mesh_release(&m);
 }
@@ -432,11 +433,11 @@ static void the_same_twice(void **state)
 
   (void)state;
   for (int i = 0; i < 2; i++) {
-    void *hole = malloc(12345);   /* other addresses */
+    void *hole = malloc(12345); /* other addresses */
 
     add_brick(&m[i], 0, 12);
     add_brick(&m[i], 0.7, 11);
-    scale_last(&m[i], 0.2);       /* the rim lies inside the first one */
+    scale_last(&m[i], 0.2); /* the rim lies inside the first one */
     wrap(&m[i], 0.15, &r);
     free(hole);
   }
@@ -500,8 +501,7 @@ static vg_status shape(size_t lo, const char *walls, struct vg_error *err)
   p.asked.wrap = 0.2;
   snprintf(p.asked.layer.walls, sizeof p.asked.layer.walls, "%s", walls);
   st = vg_problem_given(&p, "bricks", &m, err);
-  if (st >= 0) st = vg_boundary_shape(&p.read, &o, &show, &p.boundary,
-                                      err);
+  if (st >= 0) st = vg_boundary_shape(&p.read, &o, &show, &p.boundary, err);
   vg_problem_release(&p);
   return st;
 }
@@ -520,10 +520,12 @@ static void walls_do_not_vanish(void **state)
 /* 704 intersections, 11 overlapping components, open edges. */
 static void real_soups_become_sound(void **state)
 {
-  static const struct { const char *path; double size; } cases[] = {
-    { "dirty/three_plugs.bin.tri.xz", 4 },
-    { "dirty/toy_airplane_with_holes.obj.xz", 0.6 },
-    { "dirty/f16_components_overlapping.stl.xz", 0.3 } };
+  static const struct {
+    const char *path;
+    double size;
+  } cases[] = { { "dirty/three_plugs.bin.tri.xz", 4 },
+                { "dirty/toy_airplane_with_holes.obj.xz", 0.6 },
+                { "dirty/f16_components_overlapping.stl.xz", 0.3 } };
 
   (void)state;
   for (size_t i = 0; i < 3; i++) {
@@ -667,7 +669,7 @@ static void draw_boxes(struct vg_mesh *m, uint32_t *seed, double lo[3],
       a[k] = between(seed, -0.5, 1.5);
       b[k] = a[k] + between(seed, 0.1, 1);
     }
-    if (!draw(seed, 4)) b[2] = a[2];        /* no thickness */
+    if (!draw(seed, 4)) b[2] = a[2]; /* no thickness */
     add_box(m, a, b, 1 + draw(seed, 4), 0, (int)draw(seed, 2));
   }
 }

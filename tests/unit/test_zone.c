@@ -84,13 +84,13 @@ static void planes_through_points(void **state)
 /* x cuts the body, y misses it, z cuts what is left of it. */
 static void zones_around_a_sphere(void **state)
 {
-  static const double at[3] = {0.15, 1.6, -0.3};
-  static const size_t want[3] = {2, 4, 8};
+  static const double at[3] = { 0.15, 1.6, -0.3 };
+  static const size_t want[3] = { 2, 4, 8 };
   struct scene s;
 
   (void)state;
   sphere_scene(&s);
-  parts_are(&s, 2);       /* outside and body */
+  parts_are(&s, 2); /* outside and body */
   for (int axis = 0; axis < 3; axis++) {
     struct vg_region r = plane_at(axis, at[axis]);
 
@@ -125,8 +125,8 @@ static void a_zone_beside_the_sphere(void **state)
 static void zone_of_tower(int n, struct vg_filled *z, size_t *n_point,
                           size_t *n_face)
 {
-  const int count[3] = {6, 6, n};
-  const double lo[3] = {0, 0, 0}, hi[3] = {6, 6, n};
+  const int count[3] = { 6, 6, n };
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { 6, 6, n };
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_region r = plane_at(2, 5.3);
   struct zone_part p;
@@ -227,7 +227,7 @@ static void what_a_zone_says_of_itself(void **state)
       assert_true(used[z.face[i][k]]);
     }
   for (size_t q = 0; q < z.n_point; q++) assert_true(used[p.front.n_point + q]);
-  for (size_t i = 0; i < z.n_consumed; i++) {   /* a set of faces, ascending */
+  for (size_t i = 0; i < z.n_consumed; i++) { /* a set of faces, ascending */
     assert_true(z.consumed[i] < p.front.n_face);
     if (i) assert_true(z.consumed[i - 1] < z.consumed[i]);
   }
@@ -251,7 +251,7 @@ static void what_a_zone_says_of_itself(void **state)
 
 static int passes(const struct scene *s, size_t c, const struct vg_region *r)
 {
-  const double (*x)[3] = (const double (*)[3])s->front.x;
+  const double(*x)[3] = (const double(*)[3])s->front.x;
   const uint32_t *v = s->cell[c];
   struct vg_region line = *r;
 
@@ -288,11 +288,14 @@ static double longest_edge(const struct scene *s, const struct vg_region *r)
 static void a_pencil_leaves_a_plume(void **state)
 {
   const struct vg_source plume = { .kind = VG_SOURCE_CYLINDER,
-                                   .p0 = {1, 0, 0}, .p1 = {11, 0, 0},
-                                   .r0 = 0.25, .r1 = 1,
-                                   .h0 = 0.041, .h1 = 0.041 };
-  const int count[3] = {40, 40, 40};
-  const double lo[3] = {-9, -11, -11}, hi[3] = {71, 69, 69};
+                                   .p0 = { 1, 0, 0 },
+                                   .p1 = { 11, 0, 0 },
+                                   .r0 = 0.25,
+                                   .r1 = 1,
+                                   .h0 = 0.041,
+                                   .h1 = 0.041 };
+  const int count[3] = { 40, 40, 40 };
+  const double lo[3] = { -9, -11, -11 }, hi[3] = { 71, 69, 69 };
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_region line = line_at(0, 8.276, 1, 0.0562);
   struct scene s;
@@ -334,8 +337,8 @@ static void a_pencil_is_thin(void **state)
 
 static void a_real_surface(void **state)
 {
-  const char *path =
-      io_real("simple/hemisphere_cylinder_farfield.lb8.ugrid.xz");
+  const char *path = io_real(
+    "simple/hemisphere_cylinder_farfield.lb8.ugrid.xz");
   struct vg_error err = VG_ERROR_INIT;
   double lo[3], hi[3];
   struct scene s;
@@ -344,7 +347,7 @@ static void a_real_surface(void **state)
   memset(&s, 0, sizeof s);
   if (vg_ugrid_read(path, &s.m, NULL, &err) < 0) fail_msg("%s", err.text);
   remove(path);
-  for (size_t i = 0; i < s.m.n_tri; i++) {     /* normals point outwards */
+  for (size_t i = 0; i < s.m.n_tri; i++) { /* normals point outwards */
     uint32_t keep = s.m.tri[i][0];
 
     s.m.tri[i][0] = s.m.tri[i][1];
@@ -420,8 +423,7 @@ static void a_plane_outside(void **state)
 
 /* A front that is not what it should be: no crash, nothing made or a status.
  * A face on the plane that is turned over contradicts its neighbours. */
-static int is_below_and_above(const struct zone_part *p, size_t face,
-                              double at)
+static int is_below_and_above(const struct zone_part *p, size_t face, double at)
 {
   int below = 0, above = 0;
 
@@ -460,7 +462,9 @@ static void a_damaged_front(void **state)
   scene_end(&s);
 }
 
-struct stop { int at, calls; };
+struct stop {
+  int at, calls;
+};
 
 static int stop_later(void *user)
 {
@@ -474,7 +478,7 @@ static void it_can_be_stopped_at_every_call(void **state)
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_region r = plane_at(2, 0.03);
   struct vg_filled z = VG_FILLED_INIT;
-  struct stop stop = {1, 0};
+  struct stop stop = { 1, 0 };
   struct zone_part p;
   struct scene s;
   vg_status st = VG_BLOCKED;

@@ -48,8 +48,7 @@ static size_t join_stage(struct scene *s, struct stage *g)
     zone_add(s, &g->part[k], made, is_gone);
     for (; c < s->n_cell; c++)
       for (int i = 0; i < 4; i++)
-        assert_true(vg_region_within(&g->region[k],
-                                     s->front.x[s->cell[c][i]]));
+        assert_true(vg_region_within(&g->region[k], s->front.x[s->cell[c][i]]));
     vg_filled_release(&g->made[k]);
     zone_part_release(&g->part[k]);
   }
@@ -76,9 +75,10 @@ static void cut_by(struct scene *s, const struct vg_lattice *l,
 
 static void two_planes_at_once(void **state)
 {
-  const struct vg_lattice l = { .n = {0, 0, 2}, .at = {{0}, {0}, {2.7, 9.2}} };
-  const int count[3] = {6, 6, 12};
-  const double lo[3] = {0, 0, 0}, hi[3] = {6, 6, 12};
+  const struct vg_lattice l = { .n = { 0, 0, 2 },
+                                .at = { { 0 }, { 0 }, { 2.7, 9.2 } } };
+  const int count[3] = { 6, 6, 12 };
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { 6, 6, 12 };
   size_t made[VG_LATTICE_STAGES];
   struct scene s;
 
@@ -96,7 +96,8 @@ static void two_planes_at_once(void **state)
 /* A line along z first, then four tiles at the same time. */
 static void a_pencil_and_four_tiles(void **state)
 {
-  const struct vg_lattice l = { .n = {1, 1, 0}, .at = {{0.03}, {-0.04}, {0}} };
+  const struct vg_lattice l = { .n = { 1, 1, 0 },
+                                .at = { { 0.03 }, { -0.04 }, { 0 } } };
   size_t made[VG_LATTICE_STAGES];
   struct scene s;
 
@@ -116,8 +117,8 @@ static void a_pencil_and_four_tiles(void **state)
 /* One line along z, four segments, twelve tiles, eight blocks. */
 static void a_lattice_in_a_box(void **state)
 {
-  const struct vg_lattice l = { .n = {1, 1, 1},
-                                .at = {{0.02}, {0.01}, {-0.03}} };
+  const struct vg_lattice l = { .n = { 1, 1, 1 },
+                                .at = { { 0.02 }, { 0.01 }, { -0.03 } } };
   size_t made[VG_LATTICE_STAGES];
   struct scene s;
 
@@ -137,8 +138,8 @@ static void a_lattice_in_a_box(void **state)
 /* Likewise through a sphere and around it: lines start and end on the body. */
 static void a_lattice_around_a_sphere(void **state)
 {
-  const struct vg_lattice l = { .n = {1, 1, 1},
-                                .at = {{0.2}, {-0.1}, {0.07}} };
+  const struct vg_lattice l = { .n = { 1, 1, 1 },
+                                .at = { { 0.2 }, { -0.1 }, { 0.07 } } };
   size_t made[VG_LATTICE_STAGES];
   struct scene s;
 
@@ -157,8 +158,9 @@ static void a_lattice_around_a_sphere(void **state)
 /* Planes that meet in the body: six segments at the same time. */
 static void all_lines_at_once(void **state)
 {
-  const struct vg_lattice l = { .n = {1, 1, 1}, .lines_at_once = 1,
-                                .at = {{0.2}, {-0.1}, {0.07}} };
+  const struct vg_lattice l = { .n = { 1, 1, 1 },
+                                .lines_at_once = 1,
+                                .at = { { 0.2 }, { -0.1 }, { 0.07 } } };
   size_t made[VG_LATTICE_STAGES];
   struct scene s;
 
@@ -177,10 +179,12 @@ static void all_lines_at_once(void **state)
 /* A plane in three pieces, two ribs first: as if it were whole. */
 static void a_plane_in_pieces(void **state)
 {
-  const struct vg_lattice l = {
-    .n = {0, 0, 1}, .at = {{0}, {0}, {0.03}}, .n_rib = 2,
-    .rib = (struct vg_rib[]){{0, {{1, 0, 0}, -0.18}},
-                             {0, {{1, 0, 0}, 0.17}}} };
+  const struct vg_lattice l = { .n = { 0, 0, 1 },
+                                .at = { { 0 }, { 0 }, { 0.03 } },
+                                .n_rib = 2,
+                                .rib = (struct vg_rib[]){
+                                  { 0, { { 1, 0, 0 }, -0.18 } },
+                                  { 0, { { 1, 0, 0 }, 0.17 } } } };
   size_t made[VG_LATTICE_STAGES];
   struct scene s;
 
@@ -199,9 +203,10 @@ static void a_plane_in_pieces(void **state)
 static void ribs_from_a_body(void **state)
 {
   const double u = 0.7071067811865476;
-  struct vg_rib rib[12] = {{0}};
-  struct vg_lattice l = { .n = {1, 1, 1}, .lines_at_once = 1, .n_rib = 12,
-                          .rib = rib };
+  struct vg_rib rib[12] = { { 0 } };
+  struct vg_lattice l = {
+    .n = { 1, 1, 1 }, .lines_at_once = 1, .n_rib = 12, .rib = rib
+  };
   size_t made[VG_LATTICE_STAGES];
   struct scene s;
 
@@ -230,7 +235,7 @@ static void planes_close_what_is_left(void **state)
 {
   (void)state;
   for (int q = 0; q < 5; q++) {
-    struct vg_lattice l = { .n = {1, 1, 1} };
+    struct vg_lattice l = { .n = { 1, 1, 1 } };
     size_t made[VG_LATTICE_STAGES], n_tile, more = 0;
     struct scene s;
 

@@ -22,9 +22,12 @@ static inline double tets_random(uint64_t *seed)
 /* The eight corners of the cube from lo to hi, and five cells. */
 static inline void tets_box(struct vg_tets *t, double lo, double hi)
 {
-  static const uint32_t cell[5][4] = {
-    {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}, {1, 2, 4, 7}};
-  double (*x)[3] = vg_alloc(8, sizeof *x);
+  static const uint32_t cell[5][4] = { { 0, 1, 2, 4 },
+                                       { 3, 2, 1, 7 },
+                                       { 5, 4, 7, 1 },
+                                       { 6, 7, 4, 2 },
+                                       { 1, 2, 4, 7 } };
+  double(*x)[3] = vg_alloc(8, sizeof *x);
 
   if (!x) abort();
   for (int p = 0; p < 8; p++)
@@ -36,13 +39,13 @@ static inline void tets_box(struct vg_tets *t, double lo, double hi)
  * common: all corners of a cube lie on one sphere. */
 static inline void tets_grid(struct vg_tets *t, const int n[3])
 {
-  static const int path[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
-                                 {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
-  int step[3] = {1, n[0] + 1, (n[0] + 1) * (n[1] + 1)};
+  static const int path[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 },
+                                  { 0, 2, 1 }, { 2, 1, 0 }, { 1, 0, 2 } };
+  int step[3] = { 1, n[0] + 1, (n[0] + 1) * (n[1] + 1) };
   size_t np = (size_t)(step[2] * (n[2] + 1));
   size_t nc = 6 * (size_t)(n[0] * n[1] * n[2]), at = 0;
-  double (*x)[3] = vg_alloc(np, sizeof *x);
-  uint32_t (*v)[4] = vg_alloc(nc, sizeof *v);
+  double(*x)[3] = vg_alloc(np, sizeof *x);
+  uint32_t(*v)[4] = vg_alloc(nc, sizeof *v);
 
   if (!x || !v) abort();
   for (int p = 0; p < (int)np; p++) {
@@ -59,7 +62,7 @@ static inline void tets_grid(struct vg_tets *t, const int n[3])
         if (i < 3) p += step[path[k][i]];
       }
     }
-  if (vg_tets_from_cells(t, np, x, nc, (const uint32_t (*)[4])v, NULL) != VG_OK)
+  if (vg_tets_from_cells(t, np, x, nc, (const uint32_t(*)[4])v, NULL) != VG_OK)
     abort();
   free(v);
 }

@@ -39,8 +39,7 @@ static inline void extrude(struct vg_mesh *m, int n, const double (*at)[2],
     return;
   }
   low = (uint32_t)m->n_point;
-  for (int i = 0; i < n; i++)
-    shape_point(m, 20 * at[i][0], 0, 20 * at[i][1]);
+  for (int i = 0; i < n; i++) shape_point(m, 20 * at[i][0], 0, 20 * at[i][1]);
   far = shape_point(m, 0, 20, 0);
   for (int i = 0; i < n; i++) {
     uint32_t a = (uint32_t)i, b = (uint32_t)((i + 1) % n);
@@ -59,11 +58,17 @@ static inline void ring(int n, double (*at)[2])
   }
 }
 
-static const double square[4][2] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};
+static const double square[4][2] = {
+  { -1, -1 }, { -1, 1 }, { 1, 1 }, { 1, -1 }
+};
 static const double plate[4][2] = {
-  {-1, -0.005}, {-1, 0.005}, {1, 0.005}, {1, -0.005} };
-static const double wedge[8][2] = {   /* 6 degrees at x = 1.5 */
-  {-1, -0.12}, {-1.2, 0}, {-1, 0.12}, {-0.5, 0.1048}, {0.5, 0.0524}, {1.5, 0},
-  {0.5, -0.0524}, {-0.5, -0.1048} };
+  { -1, -0.005 }, { -1, 0.005 }, { 1, 0.005 }, { 1, -0.005 }
+};
+static const double wedge[8][2] = { /* 6 degrees at x = 1.5 */
+                                    { -1, -0.12 },    { -1.2, 0 },
+                                    { -1, 0.12 },     { -0.5, 0.1048 },
+                                    { 0.5, 0.0524 },  { 1.5, 0 },
+                                    { 0.5, -0.0524 }, { -0.5, -0.1048 }
+};
 
 #endif

@@ -37,7 +37,7 @@ static inline void box_scene(struct scene *s, int n)
 
 static inline void sphere_scene(struct scene *s)
 {
-  const double centre[3] = {0.1, 0, 0};
+  const double centre[3] = { 0.1, 0, 0 };
 
   memset(s, 0, sizeof *s);
   shape_box(&s->m, 8, 3);
@@ -77,7 +77,7 @@ static inline struct vg_region line_at(int a, double at, int b, double there)
 
 static inline double volume_of_cell(const struct scene *s, size_t c)
 {
-  const double (*x)[3] = (const double (*)[3])s->front.x;
+  const double(*x)[3] = (const double(*)[3])s->front.x;
   const double *a = x[s->cell[c][0]];
   double e[3][3];
 
@@ -85,7 +85,8 @@ static inline double volume_of_cell(const struct scene *s, size_t c)
     for (int k = 0; k < 3; k++) e[i][k] = x[s->cell[c][i + 1]][k] - a[k];
   return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
           e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / 6;
+          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
+         6;
 }
 
 /* A closed front, positive cells, and together the volume of the domain. */
@@ -178,7 +179,7 @@ static inline size_t cut(struct scene *s, const struct vg_region *region)
 }
 
 static inline void unit_normal(const double a[3], const double b[3],
-                        const double c[3], double n[3])
+                               const double c[3], double n[3])
 {
   double u[3], v[3], l;
 
@@ -195,8 +196,10 @@ static inline void unit_normal(const double a[3], const double b[3],
 /* The smallest dihedral angle of the cells from `first` on, in degrees. */
 static inline double smallest_angle(const struct scene *s, size_t first)
 {
-  static const int face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  const double (*x)[3] = (const double (*)[3])s->front.x;
+  static const int face[4][3] = {
+    { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 }
+  };
+  const double(*x)[3] = (const double(*)[3])s->front.x;
   double least = 180;
 
   for (size_t c = first; c < s->n_cell; c++) {

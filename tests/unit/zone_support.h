@@ -11,22 +11,22 @@
 #include "core/fill/fill.h"
 
 struct scene {
-  struct vg_mesh m;          /* The surface of the domain. */
+  struct vg_mesh m; /* The surface of the domain. */
   struct vg_sizing *sizing;
-  struct vg_front front;     /* The front of the void that is left, with all
-                                points: those of m, then new ones. */
+  struct vg_front front; /* The front of the void that is left, with all
+                            points: those of m, then new ones. */
   size_t cap_point, cap_face;
   size_t n_cell, cap_cell;
-  uint32_t (*cell)[4];       /* [n_cell] The cells made so far. */
+  uint32_t (*cell)[4]; /* [n_cell] The cells made so far. */
   struct vg_fill_report report;
-  double volume;             /* The volume of the domain. */
+  double volume; /* The volume of the domain. */
 };
 
 /* The part of a scene's front that a region needs. */
 struct zone_part {
   struct vg_front front;
-  uint32_t *point;           /* [front.n_point] Points of the scene's front. */
-  uint32_t *from;            /* [front.n_face] Faces of the scene's front. */
+  uint32_t *point; /* [front.n_point] Points of the scene's front. */
+  uint32_t *from;  /* [front.n_face] Faces of the scene's front. */
 };
 
 static inline void zone_part_release(struct zone_part *p)
@@ -90,8 +90,7 @@ static inline vg_status zone_make(struct scene *s, const struct zone_part *p,
                                   const struct vg_fill_options *options,
                                   struct vg_filled *made, struct vg_error *err)
 {
-  return vg_fill_front(&p->front, r, s->sizing, options, made, &s->report,
-                       err);
+  return vg_fill_front(&p->front, r, s->sizing, options, made, &s->report, err);
 }
 
 /* Numbers in the scene of n corners, whose new points begin at `base`. */
@@ -100,8 +99,8 @@ static inline void zone_number(const struct zone_part *p, size_t base, size_t n,
 {
   for (size_t i = 0; i < n; i++)
     to[i] = from[i] < p->front.n_point
-              ? p->point[from[i]]
-              : (uint32_t)(base + from[i] - p->front.n_point);
+            ? p->point[from[i]]
+            : (uint32_t)(base + from[i] - p->front.n_point);
 }
 
 /* Append what was made, and flag the faces that have a cell now: they are

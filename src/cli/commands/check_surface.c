@@ -12,13 +12,13 @@
 #include "run/settings/plan_options.h"
 
 struct findings {
-  int has_lines;            /* 1: the surface has no defects that keep its lines
-                               from being followed */
+  int has_lines; /* 1: the surface has no defects that keep its lines
+                    from being followed */
   struct vg_remesh_report lines;
-  struct vg_mesh other;     /* the surface to compare with */
-  struct vg_remesh_distance off[2];  /* this surface from the other, and the
-                               other from this one */
-  double *face;             /* [n_tri] distance of each triangle; or NULL */
+  struct vg_mesh other;             /* the surface to compare with */
+  struct vg_remesh_distance off[2]; /* this surface from the other, and the
+                              other from this one */
+  double *face; /* [n_tri] distance of each triangle; or NULL */
 };
 
 static void release(struct findings *f)
@@ -32,8 +32,7 @@ static void release(struct findings *f)
 static int can_be_followed(const struct vg_mesh *m,
                            const struct vg_surface_report *r)
 {
-  return m->n_tri && !m->n_quad &&
-         r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
+  return m->n_tri && !m->n_quad && r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
 }
 
 /* A surface may be sound and yet beyond what the remesher can be asked for. */
@@ -64,13 +63,13 @@ static vg_status compare(const struct vg_check_surface *a,
   if (!a->against) return VG_OK;
   VG_TRY(vg_surface_read(a->against, &f->other, &info, err));
   if (f->other.n_quad || m->n_quad)
-    VG_TRY(vg_fail(err, VG_ERR_INPUT, "%s: distances are measured between "
+    VG_TRY(vg_fail(err, VG_ERR_INPUT,
+                   "%s: distances are measured between "
                    "triangles; a surface here has quadrilaterals",
                    a->against));
   f->face = vg_alloc(m->n_tri, sizeof *f->face);
   if (!f->face) VG_TRY(vg_fail_memory(err, "the distances"));
-  VG_TRY(vg_remesh_measure(m, &f->other, 0, NULL, f->face, f->off,
-                           err));
+  VG_TRY(vg_remesh_measure(m, &f->other, 0, NULL, f->face, f->off, err));
 done:
   return st;
 }
@@ -84,13 +83,16 @@ static vg_status write_vtu(const struct vg_check_surface *a,
   struct vg_vtu_field field[3] = {
     { "smallest_angle", VG_VTU_CELL, VG_VTU_FLOAT64, 1, NULL },
     { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT64, 1, NULL },
-    { "distance", VG_VTU_CELL, VG_VTU_FLOAT64, 1, f->face } };
+    { "distance", VG_VTU_CELL, VG_VTU_FLOAT64, 1, f->face }
+  };
   vg_status st;
 
   if (!a->vtu) return VG_OK;
   if (m->n_quad)
-    return vg_fail(err, VG_ERR_INPUT, "%s: the quality of triangles is "
-                   "written; %s has quadrilaterals", a->vtu, a->file);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the quality of triangles is "
+                   "written; %s has quadrilaterals",
+                   a->vtu, a->file);
   angle = vg_alloc(2 * m->n_tri, sizeof *angle);
   if (!angle) return vg_fail_memory(err, "the angles");
   vg_surface_shapes(m, angle, angle + m->n_tri);
@@ -98,8 +100,7 @@ static vg_status write_vtu(const struct vg_check_surface *a,
   field[1].data = angle + m->n_tri;
   vg_display_end_at_once(0);
   st = vg_vtu_write_boundary(a->vtu, m, field, f->face ? 3 : 2, err);
-  if (st >= 0 && !a->json)
-    printf("  quality of each triangle: %s\n", a->vtu);
+  if (st >= 0 && !a->json) printf("  quality of each triangle: %s\n", a->vtu);
   free(angle);
   return st;
 }
@@ -131,8 +132,8 @@ static json_t *notes_json(const struct vg_notes *notes)
 /* Whether vanguard mesh adds a farfield to a surface like this. */
 static int adds_farfield(const struct vg_boundary *b)
 {
-  return b->flow.kind == VG_FLOW_EXTERNAL
-         && b->read->settings.farfield.kind != VG_DOMAIN_NONE;
+  return b->flow.kind == VG_FLOW_EXTERNAL &&
+         b->read->settings.farfield.kind != VG_DOMAIN_NONE;
 }
 
 static void print_json(const struct vg_check_surface *a,
@@ -140,14 +141,14 @@ static void print_json(const struct vg_check_surface *a,
                        const json_t *body, vg_status st,
                        const struct vg_error *err)
 {
-  json_t *o = json_pack("{s:o s:b s:o s:O s:o s:o s:o s:o}", "file",
-    vg_text_json(a->file), "ok", st >= 0, "flow",
-    vg_report_flow_json(&b->flow, adds_farfield(b)), "surface", body, "remesh",
-    vg_report_remesh_json(&b->renewal, &b->surface), "notes",
+  json_t *o = json_pack(
+    "{s:o s:b s:o s:O s:o s:o s:o s:o}", "file", vg_text_json(a->file), "ok",
+    st >= 0, "flow", vg_report_flow_json(&b->flow, adds_farfield(b)), "surface",
+    body, "remesh", vg_report_remesh_json(&b->renewal, &b->surface), "notes",
     notes_json(b->notes), "lines",
     f->has_lines ? vg_report_lines_json(&f->lines, a->has_deck) : json_null(),
-    "against", a->against ? vg_report_distances_json(a->against, f->off)
-                          : json_null());
+    "against",
+    a->against ? vg_report_distances_json(a->against, f->off) : json_null());
 
   if (st < 0) json_object_set_new(o, "error", vg_text_json(err->text));
   json_object_set_new(o, "patches", vg_report_patches_json(&b->surface));

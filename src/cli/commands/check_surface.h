@@ -11,7 +11,7 @@
 struct vg_check_surface {
   const char *file, *defects, *against, *vtu;
   int json;
-  int has_deck;             /* settings are a deck's, sizes are asked for */
+  int has_deck; /* settings are a deck's, sizes are asked for */
 };
 
 /** Take the path of vanguard mesh up to the closed boundary of the fluid, and

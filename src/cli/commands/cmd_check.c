@@ -59,8 +59,7 @@ static void print_json(json_t *o)
 /* Cells that were the wrong way round are mirrored on reading. In a mesh that
  * is not valid, those of a file of 4-byte reals may be what rounding made. */
 static vg_status not_valid(const struct arguments *a,
-                           const struct vg_turned *turned,
-                           struct vg_error *err)
+                           const struct vg_turned *turned, struct vg_error *err)
 {
   struct vg_ugrid_kind kind;
   char cells[80] = "";
@@ -69,12 +68,13 @@ static vg_status not_valid(const struct arguments *a,
     return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid",
                    a->one.file);
   if (turned->cell)
-    snprintf(cells, sizeof cells, " (inverted cells in it: %zu)",
-             turned->cell);
-  return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid%s; its "
+    snprintf(cells, sizeof cells, " (inverted cells in it: %zu)", turned->cell);
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "%s: the mesh is not valid%s; its "
                  "coordinates are 4-byte reals: where it was valid before it "
                  "was written, rounding spoilt it; write 8-byte reals, as "
-                 ".lb8.ugrid has", a->one.file, cells);
+                 ".lb8.ugrid has",
+                 a->one.file, cells);
 }
 
 static vg_status check_mesh(const struct arguments *a,
@@ -90,12 +90,11 @@ static vg_status check_mesh(const struct arguments *a,
   VG_TRY(field(a, s, m, &sizing, err));
   VG_TRY(vg_mesh_judge(m, sizing, &r, err));
   if (a->one.json) {
-    print_json(json_pack("{s:o s:b s:I s:o s:o s:o}", "file",
-                         vg_text_json(a->one.file), "ok", r.is_valid,
-                         "cells_turned", (json_int_t)turned->cell, "size",
-                         vg_report_size_json(m), "patches",
-                         vg_report_patches_json(m), "mesh",
-                         vg_report_mesh_json(&r)));
+    print_json(
+      json_pack("{s:o s:b s:I s:o s:o s:o}", "file", vg_text_json(a->one.file),
+                "ok", r.is_valid, "cells_turned", (json_int_t)turned->cell,
+                "size", vg_report_size_json(m), "patches",
+                vg_report_patches_json(m), "mesh", vg_report_mesh_json(&r)));
   } else {
     printf("%s: volume mesh\n", a->one.file);
     vg_report_size_text(stdout, m);
@@ -131,9 +130,9 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
 {
   struct vg_problem p = VG_PROBLEM_INIT;
   struct vg_display show;
-  const struct vg_check_surface surface = {
-    a->one.file, a->defects, a->against, a->vtu, a->one.json,
-    a->deck != NULL };
+  const struct vg_check_surface surface = { a->one.file, a->defects,
+                                            a->against,  a->vtu,
+                                            a->one.json, a->deck != NULL };
   vg_status st;
 
   vg_display_init(&show, a->one.quiet);
@@ -149,7 +148,7 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
   }
   VG_TRY(vg_problem_read(&p, NULL, &show, err));
   st = p.read.has_cells ? check_volume(a, &p, &show, err)
-                   : vg_check_surface(&surface, &p, &show, err);
+                        : vg_check_surface(&surface, &p, &show, err);
 done:
   vg_display_clear(&show);
   vg_problem_release(&p);
@@ -159,27 +158,39 @@ done:
 int vg_cmd_check(int argc, char **argv)
 {
   const struct argp_option own[] = {
-    { "deck", 'd', "FILE", 0, "settings, patches and sources [default "
+    { "deck", 'd', "FILE", 0,
+      "settings, patches and sources [default "
       "STEM.deck where that exists]; the edges of a mesh, and of a "
-      "surface, are compared with the sizes of a deck that is given", 1 },
-    { "defects", 'f', "FILE", 0, "write all faces with a defect to this .vtu "
-      "file", 1 },
-    { "against", 'a', "FILE", 0, "measure how far a surface is from this one, "
-      "and this one from it", 1 },
-    { "vtu", 'v', "FILE", 0, "write the triangles of a surface with angles, "
-      "2 r/R and distance to this .vtu file", 1 },
+      "surface, are compared with the sizes of a deck that is given",
+      1 },
+    { "defects", 'f', "FILE", 0,
+      "write all faces with a defect to this .vtu "
+      "file",
+      1 },
+    { "against", 'a', "FILE", 0,
+      "measure how far a surface is from this one, "
+      "and this one from it",
+      1 },
+    { "vtu", 'v', "FILE", 0,
+      "write the triangles of a surface with angles, "
+      "2 r/R and distance to this .vtu file",
+      1 },
     { "json", 'j', NULL, 0, "report as JSON", 1 },
     { "quiet", 'q', NULL, 0, "no progress", 1 },
     { 0 }
   };
   struct vg_cli_options options;
-  struct argp argp = { .parser = option, .args_doc = "FILE",
-    .doc = "Judge FILE. A volume mesh: validity, dihedral angles, radius "
+  struct argp argp = {
+    .parser = option,
+    .args_doc = "FILE",
+    .doc =
+      "Judge FILE. A volume mesh: validity, dihedral angles, radius "
       "ratio, histograms, worst cells. A surface: what 'vanguard mesh' with "
       "the same options would do with it: flow domain, patches, repairs, "
       "remeshing, and every defect for which it would be refused.\v"
       "Exit status 0 when the mesh is valid or the surface accepted, 1 "
-      "otherwise." };
+      "otherwise."
+  };
   struct arguments a = { 0 };
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;

@@ -58,8 +58,7 @@ static vg_status to_stdout(const struct vg_settings *s, struct vg_error *err)
   size_t n;
   vg_status st;
 
-  if (fd < 0) return vg_fail(err, VG_ERR_IO, "cannot write in "
-                            P_tmpdir);
+  if (fd < 0) return vg_fail(err, VG_ERR_IO, "cannot write in " P_tmpdir);
   close(fd);
   st = vg_deck_write(path, s, NULL, 1, err);
   f = st < 0 ? NULL : fopen(path, "r");
@@ -73,14 +72,16 @@ static vg_status to_stdout(const struct vg_settings *s, struct vg_error *err)
 int vg_cmd_deck(int argc, char **argv)
 {
   const struct argp_option options[] = {
-    { "output", 'o', "FILE", 0, "file to write [default standard output]",
-      0 },
+    { "output", 'o', "FILE", 0, "file to write [default standard output]", 0 },
     { 0 }
   };
-  const struct argp argp = { .options = options, .parser = option,
+  const struct argp argp = {
+    .options = options,
+    .parser = option,
     .args_doc = "[SURFACE]",
     .doc = "Write a run deck with every setting, its unit and its default, "
-      "and the patch table of SURFACE (a file or the stem of a project)." };
+           "and the patch table of SURFACE (a file or the stem of a project)."
+  };
   struct vg_settings s;
   struct vg_error err = VG_ERROR_INIT;
   struct arguments a = { 0 };
@@ -91,8 +92,10 @@ int vg_cmd_deck(int argc, char **argv)
   snprintf(s.title, sizeof s.title, "Run deck");
   if (a.surface) st = describe(a.surface, &s, &err);
   if (st >= 0 && a.output && access(a.output, F_OK) == 0)
-    st = vg_fail(&err, VG_ERR_INPUT, "%s exists and is not overwritten; "
-                 "remove it or choose another name", a.output);
+    st = vg_fail(&err, VG_ERR_INPUT,
+                 "%s exists and is not overwritten; "
+                 "remove it or choose another name",
+                 a.output);
   if (st >= 0)
     st = a.output ? vg_deck_write(a.output, &s, NULL, 1, &err)
                   : to_stdout(&s, &err);

@@ -64,8 +64,10 @@ static const struct rans {
   const char *name;
   double y_plus, reynolds, length;
 } rans_cases[] = {
-  { "wing", 1, 5e6, 0.7 }, { "wing-half", 1, 5e6, 0.7 },
-  { "wing-sharp", 1, 5e6, 0.7 }, { "wing-sharp-half", 1, 5e6, 0.7 },
+  { "wing", 1, 5e6, 0.7 },
+  { "wing-half", 1, 5e6, 0.7 },
+  { "wing-sharp", 1, 5e6, 0.7 },
+  { "wing-sharp-half", 1, 5e6, 0.7 },
 };
 
 static const char layer_comment[] =
@@ -115,14 +117,15 @@ static vg_status new_path(const char *stem, const char *suffix, char **out,
     return vg_fail_memory(err, "a path");
   }
   if (access(*out, F_OK)) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "%s exists and is not overwritten; remove "
-                 "it or choose another folder with --out", *out);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s exists and is not overwritten; remove "
+                 "it or choose another folder with --out",
+                 *out);
 }
 
 static vg_status write_project(char *const path[3], const char *stem,
                                const char *name, size_t wanted,
-                               const struct vg_demo *demo,
-                               struct vg_error *err)
+                               const struct vg_demo *demo, struct vg_error *err)
 {
   char points[32], triangles[32], cells[32];
   struct vg_settings s = VG_SETTINGS_INIT;
@@ -131,8 +134,8 @@ static vg_status write_project(char *const path[3], const char *stem,
 
   VG_TRY(settings_of(name, demo, &s, err));
   VG_TRY(vg_format_write(path[0], &demo->surface, err));
-  VG_TRY(vg_mapbc_write(path[1], &demo->surface, VG_MAPBC_VGRID, name, NULL,
-                        err));
+  VG_TRY(
+    vg_mapbc_write(path[1], &demo->surface, VG_MAPBC_VGRID, name, NULL, err));
   has_layers = set_layers(name, &s);
   VG_TRY(vg_deck_write(path[2], &s, has_layers ? layer_comment : NULL,
                        has_layers, err));
@@ -181,17 +184,24 @@ done:
 int vg_cmd_demo(int argc, char **argv)
 {
   const struct argp_option options[] = {
-    { "cells", 'c', "N", 0, "wanted number of cells, without layers [default "
-      "by case]", 0 },
-    { "out", 'o', "DIR", 0, "folder for the project, made where absent "
-      "[default here]", 0 },
+    { "cells", 'c', "N", 0,
+      "wanted number of cells, without layers [default "
+      "by case]",
+      0 },
+    { "out", 'o', "DIR", 0,
+      "folder for the project, made where absent "
+      "[default here]",
+      0 },
     { "list", 'l', NULL, 0, "list the cases", 0 },
     { 0 }
   };
-  const struct argp argp = { .options = options, .parser = option,
+  const struct argp argp = {
+    .options = options,
+    .parser = option,
     .args_doc = "NAME",
     .doc = "Write the project NAME: NAME.lb8.ugrid (surface), NAME.mapbc "
-      "(conditions) and NAME.deck (settings), ready for vanguard mesh." };
+           "(conditions) and NAME.deck (settings), ready for vanguard mesh."
+  };
   struct arguments a = { 0 };
   struct vg_error err = VG_ERROR_INIT;
 

@@ -27,7 +27,7 @@ struct arguments {
   int argc;
   char **argv;
   int json, quiet, timeline;
-  double every;                    /* s between lines of progress; 0: 10 */
+  double every; /* s between lines of progress; 0: 10 */
   struct vg_run_options run;
   struct vg_cli_overrides kept;
 };
@@ -42,10 +42,19 @@ struct run {
 };
 
 /* Options that are no settings: they do not change the mesh. */
-enum { KEY_TIMELINE = 1, KEY_LOG, KEY_PROGRESS, KEY_RUN_DIR, KEY_RESUME,
-       KEY_KEEP, KEY_LIMIT,
-       KEY_SHUFFLE, KEY_NODE_RANKS, KEY_DIFFER,
-       KEY_FAIL };
+enum {
+  KEY_TIMELINE = 1,
+  KEY_LOG,
+  KEY_PROGRESS,
+  KEY_RUN_DIR,
+  KEY_RESUME,
+  KEY_KEEP,
+  KEY_LIMIT,
+  KEY_SHUFFLE,
+  KEY_NODE_RANKS,
+  KEY_DIFFER,
+  KEY_FAIL
+};
 
 static error_t limit(const char *text, uint64_t *to,
                      const struct argp_state *state)
@@ -118,13 +127,11 @@ static error_t option(int key, char *arg, struct argp_state *state)
     a->project = arg;
     return 0;
   case ARGP_KEY_END:
-    if (!a->project)
-      argp_error(state, "which project? give -p PROJECT");
+    if (!a->project) argp_error(state, "which project? give -p PROJECT");
     if (a->run.resume && !a->run.dir)
       argp_error(state, "--resume needs the --run-dir of the run");
     return 0;
-  default:
-    break;
+  default: break;
   }
   return vg_cli_add_override(&a->kept, key, arg, state);
 }
@@ -225,14 +232,13 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "title", vg_text_json(p->asked.title));
   json_object_set_new(o, "ok", json_boolean(ok));
   if (!ok) json_object_set_new(o, "error", vg_text_json(err->text));
-  json_object_set_new(o, "flow", vg_report_flow_json(&b->flow,
-                                                     b->domain.added_farfield));
+  json_object_set_new(o, "flow",
+                      vg_report_flow_json(&b->flow, b->domain.added_farfield));
   json_object_set_new(o, "input", vg_report_size_json(m));
   json_object_set_new(o, "patches", vg_report_patches_json(m));
-  json_object_set_new(o, "surface", vg_report_surface_json(m,
-                      &b->check, VG_LISTED_DEFECTS));
-  json_object_set_new(o, "remesh", vg_report_remesh_json(&b->renewal,
-                                                         m));
+  json_object_set_new(o, "surface",
+                      vg_report_surface_json(m, &b->check, VG_LISTED_DEFECTS));
+  json_object_set_new(o, "remesh", vg_report_remesh_json(&b->renewal, m));
   json_object_set_new(o, "domain", vg_report_domain_json(&b->domain));
   json_object_set_new(o, "notes", strings(&p->notes));
   if (ok) {
@@ -247,27 +253,25 @@ static json_t *report_json(const struct run *r, int ok,
     if (r->layers.is_on) {
       json_object_set_new(o, "field",
                           vg_report_mesh_json(&r->mesh.field_judge));
-      json_object_set_new(o, "layers",
-                          vg_report_layers_json(&r->layers, m));
+      json_object_set_new(o, "layers", vg_report_layers_json(&r->layers, m));
     }
     if (r->mesh.parts)
       json_object_set_new(o, "solver_parts",
                           vg_report_solver_json(&r->mesh.solver));
     json_object_set_new(o, "files", files_json(r));
   }
-  json_object_set_new(o, "seconds", json_pack(
-    "{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}",
-    "read", r->time_read, "check", r->time_check, "sizes", r->mesh.time_size,
-    "layers", r->mesh.time_layers, "fill", r->mesh.time_fill,
-    "number", r->mesh.partition.number,
-    "judge", r->mesh.time_judge, "parts", r->mesh.time_parts,
-    "write", r->time_write,
-    "digest", r->time_digest, "pictures",
-    r->mesh.pictures.time + r->time_page, "total",
-    vg_display_now() - r->start));
+  json_object_set_new(
+    o, "seconds",
+    json_pack("{s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f s:f}", "read",
+              r->time_read, "check", r->time_check, "sizes", r->mesh.time_size,
+              "layers", r->mesh.time_layers, "fill", r->mesh.time_fill,
+              "number", r->mesh.partition.number, "judge", r->mesh.time_judge,
+              "parts", r->mesh.time_parts, "write", r->time_write, "digest",
+              r->time_digest, "pictures", r->mesh.pictures.time + r->time_page,
+              "total", vg_display_now() - r->start));
   json_object_set_new(o, "peak_memory_bytes",
                       json_real(r->mesh.memory > 0 ? r->mesh.memory
-                                : vg_report_peak_memory()));
+                                                   : vg_report_peak_memory()));
   return o;
 }
 
@@ -314,7 +318,8 @@ static vg_status write_page(struct run *r, struct vg_error *err)
 {
   struct vg_timeline t = timeline_of(r);
   double start = vg_display_now();
-  struct vg_html page = { .problem = &r->problem, .layers = &r->layers,
+  struct vg_html page = { .problem = &r->problem,
+                          .layers = &r->layers,
                           .run = &r->mesh };
   char *path = NULL, *svg = NULL;
   json_t *report = NULL;
@@ -402,7 +407,7 @@ static void print_surface(FILE *to, const struct run *r)
   vg_report_size_text(to, m);
   if (b->n_welded || b->n_dropped)
     fprintf(to, "  welded: %zu points merged, %zu triangles dropped\n",
-           b->n_welded, b->n_dropped);
+            b->n_welded, b->n_dropped);
   vg_report_remesh_text(to, &b->renewal);
   vg_report_domain_text(to, &b->domain);
   vg_report_surface_text(to, m, &b->check, VG_SHOWN_DEFECTS);
@@ -418,15 +423,15 @@ static void print_count(FILE *to, const char *name, size_t n)
 static void print_times(FILE *to, const struct run *r)
 {
   fprintf(to, "\nTime in seconds: read %.2f, check %.2f, sizes %.2f, ",
-         r->time_read, r->time_check, r->mesh.time_size);
+          r->time_read, r->time_check, r->mesh.time_size);
   if (r->layers.is_on) fprintf(to, "layers %.2f, ", r->mesh.time_layers);
   fprintf(to, "fill %.2f, number %.2f, judge %.2f, ", r->mesh.time_fill,
           r->mesh.partition.number, r->mesh.time_judge);
   if (r->mesh.parts) fprintf(to, "parts %.2f, ", r->mesh.time_parts);
   fprintf(to, "write %.2f, total %.2f\n", r->time_write,
           vg_display_now() - r->start);
-  fprintf(to, "Peak memory%s: %.0f MB\n",
-         r->mesh.size > 1 ? " of a rank" : "", r->mesh.memory / 1e6);
+  fprintf(to, "Peak memory%s: %.0f MB\n", r->mesh.size > 1 ? " of a rank" : "",
+          r->mesh.memory / 1e6);
 }
 
 static void print_files(FILE *to, const struct run *r)
@@ -436,7 +441,7 @@ static void print_files(FILE *to, const struct run *r)
     char *path = vg_outputs_final(&r->outputs, r->outputs.file[i].suffix);
 
     fprintf(to, "  %s%s\n", path ? path : "",
-           r->outputs.file[i].keep_old ? "  (input, kept)" : "");
+            r->outputs.file[i].keep_old ? "  (input, kept)" : "");
     free(path);
   }
 }
@@ -490,8 +495,7 @@ static void show_defects(struct run *r, const struct arguments *a)
   if (!path) return;
   if (vg_write_defects(path, &b->surface, &b->check, &err) < 0)
     vg_cli_fail(&err);
-  else if (!a->json)
-    printf("  all faces with a defect: %s\n", path);
+  else if (!a->json) printf("  all faces with a defect: %s\n", path);
   free(path);
 }
 
@@ -613,37 +617,63 @@ static int run(const struct arguments *a)
 }
 
 static const struct argp_option own[] = {
-  { "project", 'p', "PROJECT", 0, "stem of the project files, or the full "
-    "name of a surface file", 1 },
-  { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if there is "
-    "one]", 1 },
-  { "out", 'o', "DIR", 0, "folder for the results [default beside the "
-    "input]", 1 },
+  { "project", 'p', "PROJECT", 0,
+    "stem of the project files, or the full "
+    "name of a surface file",
+    1 },
+  { "deck", 'd', "FILE", 0,
+    "run deck [default PROJECT.deck if there is "
+    "one]",
+    1 },
+  { "out", 'o', "DIR", 0,
+    "folder for the results [default beside the "
+    "input]",
+    1 },
   { "json", 'j', NULL, 0, "report as JSON on standard output", 1 },
   { "quiet", 'q', NULL, 0, "no progress", 1 },
-  { "progress", KEY_PROGRESS, "SECONDS", 0, "between lines of progress where "
-    "standard error is no terminal [default 10]", 1 },
-  { "timeline", KEY_TIMELINE, NULL, 0, "write what each worker did when, "
+  { "progress", KEY_PROGRESS, "SECONDS", 0,
+    "between lines of progress where "
+    "standard error is no terminal [default 10]",
+    1 },
+  { "timeline", KEY_TIMELINE, NULL, 0,
+    "write what each worker did when, "
     "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'; the "
-    "report then tells of cells near interfaces", 1 },
-  { "log", KEY_LOG, "FILE", 0, "write all that is said into FILE as well, "
-    "with versions, host, ranks and threads, and settings", 1 },
-  { "run-dir", KEY_RUN_DIR, "DIR", 0, "keep finished tasks here, so that a "
-    "run that is stopped or killed can be resumed; removed at success", 1 },
-  { "resume", KEY_RESUME, NULL, 0, "go on with what is kept in --run-dir, "
-    "on any number of ranks and threads", 1 },
+    "report then tells of cells near interfaces",
+    1 },
+  { "log", KEY_LOG, "FILE", 0,
+    "write all that is said into FILE as well, "
+    "with versions, host, ranks and threads, and settings",
+    1 },
+  { "run-dir", KEY_RUN_DIR, "DIR", 0,
+    "keep finished tasks here, so that a "
+    "run that is stopped or killed can be resumed; removed at success",
+    1 },
+  { "resume", KEY_RESUME, NULL, 0,
+    "go on with what is kept in --run-dir, "
+    "on any number of ranks and threads",
+    1 },
   { "keep-run", KEY_KEEP, NULL, 0, "keep --run-dir at success", 1 },
-  { "run-limit", KEY_LIMIT, "BYTES", 0, "keep no more in --run-dir, over all "
-    "ranks [default 0: no limit]", 1 },
-  { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0, "do tasks in another order; "
-    "the files stay the same (a test) [default 0: heaviest first]", 1 },
-  { "test-node-ranks", KEY_NODE_RANKS, "N", OPTION_HIDDEN, "take N ranks "
-    "that follow each other for those of a node (a test)", 1 },
-  { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN, "the last node takes "
-    "its surface, layers or sizes for changed (a test)", 1 },
-  { "test-fail-leaves", KEY_FAIL, "SHARE[,ROUNDS]", OPTION_HIDDEN, "this "
+  { "run-limit", KEY_LIMIT, "BYTES", 0,
+    "keep no more in --run-dir, over all "
+    "ranks [default 0: no limit]",
+    1 },
+  { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0,
+    "do tasks in another order; "
+    "the files stay the same (a test) [default 0: heaviest first]",
+    1 },
+  { "test-node-ranks", KEY_NODE_RANKS, "N", OPTION_HIDDEN,
+    "take N ranks "
+    "that follow each other for those of a node (a test)",
+    1 },
+  { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN,
+    "the last node takes "
+    "its surface, layers or sizes for changed (a test)",
+    1 },
+  { "test-fail-leaves", KEY_FAIL, "SHARE[,ROUNDS]", OPTION_HIDDEN,
+    "this "
     "share of the leaves is not filled at the first ROUNDS attempts (a "
-    "test)", 1 },
+    "test)",
+    1 },
   { NULL, 't', "N", 0, "the same as --threads", 1 },
   { NULL, 'L', "N", 0, "the same as --levels", 1 },
   { 0 }
@@ -652,8 +682,11 @@ static const struct argp_option own[] = {
 int vg_cmd_mesh(int argc, char **argv)
 {
   struct vg_cli_options options;
-  struct argp argp = { .parser = option, .args_doc = "-p PROJECT",
-    .doc = "Mesh the volume of a project: viscous layers on its walls "
+  struct argp argp = {
+    .parser = option,
+    .args_doc = "-p PROJECT",
+    .doc =
+      "Mesh the volume of a project: viscous layers on its walls "
       "where they are asked for, tetrahedra in the rest.\v"
       "A project is a VGRID project (PROJECT.d3m with PROJECT.front, or "
       "planar patches alone) or a surface (UGRID, AFLR, STL, Cart3D, OBJ, "
@@ -669,8 +702,10 @@ int vg_cmd_mesh(int argc, char **argv)
       "all ranks mesh together; the files are the same, byte for byte, for "
       "any number of ranks and threads. Exit status: 0 "
       "done, 1 failed, 2 wrong usage, 4 done but a limit on the layers "
-      "(--min-full, ...) is not met." };
-  struct arguments a = { .argc = argc, .argv = argv,
+      "(--min-full, ...) is not met."
+  };
+  struct arguments a = { .argc = argc,
+                         .argv = argv,
                          .run = { .change = VG_AGREE_NOTHING } };
   int status;
 

@@ -60,13 +60,17 @@ static void read_weights(struct arguments *a, const char *list,
     while (k < VG_SOLVER_KINDS && (strncmp(at, kind[k], 3) || at[3] != '='))
       k++;
     if (k == VG_SOLVER_KINDS)
-      argp_error(state, "--weights %s: kinds are tet, pyr, pri and hex, as in "
-                 "tet=1,pri=1.5", list);
+      argp_error(state,
+                 "--weights %s: kinds are tet, pyr, pri and hex, as in "
+                 "tet=1,pri=1.5",
+                 list);
     a->options.weight[k] = strtod(at + 4, &end);
     if (end == at + 4 || (*end && *end != ',') ||
         !(a->options.weight[k] >= 1e-3 && a->options.weight[k] <= 1e3))
-      argp_error(state, "--weights %s: a weight is a number from 0.001 to "
-                 "1000", list);
+      argp_error(state,
+                 "--weights %s: a weight is a number from 0.001 to "
+                 "1000",
+                 list);
     at = *end ? end + 1 : end;
   }
 }
@@ -82,8 +86,11 @@ static void read_forms(struct arguments *a, const char *list,
     if (!strcmp(word, "part")) a->to_part = 1;
     else if (!strcmp(word, "vtu")) a->to_vtu = 1;
     else if (vg_foam_word(word, &a->foam)) a->to_foam = 1;
-    else argp_error(state, "--write %s: known are part, vtu, foam and "
-                    "foam-ascii", list);
+    else
+      argp_error(state,
+                 "--write %s: known are part, vtu, foam and "
+                 "foam-ascii",
+                 list);
 }
 
 static void read_count(struct arguments *a, const char *text,
@@ -127,12 +134,14 @@ static vg_status read_mesh(struct run *r, struct vg_error *err)
   VG_TRY(vg_mesh_read(path, m, NULL, err));
   r->n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
   if (!r->n_cell) {
-    st = vg_fail(err, VG_ERR_INPUT, "%s: a surface; parts are made of the "
-                 "cells of a volume mesh", path);
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: a surface; parts are made of the "
+                 "cells of a volume mesh",
+                 path);
     goto done;
   }
-  VG_TRY(vg_format_layer_tets(path, &r->layers.is_known, &r->layers.n_tet,
-                              err));
+  VG_TRY(
+    vg_format_layer_tets(path, &r->layers.is_known, &r->layers.n_tet, err));
   r->is_wall = vg_calloc(m->n_patch, 1);
   r->part = vg_alloc(r->n_cell, sizeof *r->part);
   if (!r->is_wall || !r->part) {
@@ -170,8 +179,9 @@ static vg_status write_foam(const struct run *r, const char *path,
 {
   vg_status st = vg_foam_write(path, &r->mesh, &r->a->foam, err);
 
-  return st < 0 ? st : vg_foam_write_parts(path, r->n_cell, r->part,
-                                           r->report.n_part, err);
+  return st < 0
+         ? st
+         : vg_foam_write_parts(path, r->n_cell, r->part, r->report.n_part, err);
 }
 
 static vg_status write_files(struct run *r, struct vg_error *err)
@@ -223,10 +233,11 @@ static void print_json(const struct run *r)
 
   for (size_t i = 0; i < r->n_file; i++)
     json_array_append_new(files, vg_text_json(r->file[i]));
-  o = json_pack("{s:o s:o s:f s:f s:f s:o}", "file", vg_text_json(r->a->one.file),
-                "solver_parts", vg_report_solver_json(&r->report),
-                "seconds_read", r->time_read, "seconds_write", r->time_write,
-                "peak_memory_bytes", vg_report_peak_memory(), "files", files);
+  o = json_pack("{s:o s:o s:f s:f s:f s:o}", "file",
+                vg_text_json(r->a->one.file), "solver_parts",
+                vg_report_solver_json(&r->report), "seconds_read", r->time_read,
+                "seconds_write", r->time_write, "peak_memory_bytes",
+                vg_report_peak_memory(), "files", files);
   json_dumpf(o, stdout, JSON_INDENT(2));
   printf("\n");
   json_decref(o);
@@ -255,28 +266,38 @@ int vg_cmd_partition(int argc, char **argv)
 {
   const struct argp_option options[] = {
     { "parts", 'n', "N", 0, "number of parts", 0 },
-    { "out", 'o', "STEM", 0, "first part of the names of files [default that "
-      "of MESH]", 0 },
-    { "write", KEY_WRITE, "LIST", 0, "what to write: part (STEM.part.N, a line "
+    { "out", 'o', "STEM", 0,
+      "first part of the names of files [default that "
+      "of MESH]",
+      0 },
+    { "write", KEY_WRITE, "LIST", 0,
+      "what to write: part (STEM.part.N, a line "
       "with the part of each cell, as METIS has it), vtu (STEM.vtu with cell "
       "data solver_part), foam or foam-ascii (the case STEM.openfoam with "
-      "constant/cellDecomposition) [default part]", 0 },
-    { "weights", KEY_WEIGHTS, "LIST", 0, "work of a cell by its kind, as in "
-      "tet=1,pyr=1.2,pri=1.5,hex=2 [default 1 for all]", 0 },
+      "constant/cellDecomposition) [default part]",
+      0 },
+    { "weights", KEY_WEIGHTS, "LIST", 0,
+      "work of a cell by its kind, as in "
+      "tet=1,pyr=1.2,pri=1.5,hex=2 [default 1 for all]",
+      0 },
     { "json", 'j', NULL, 0, "report as JSON", 0 },
     { "quiet", 'q', NULL, 0, "no progress", 0 },
     { 0 }
   };
-  const struct argp argp = { .options = options, .parser = option,
+  const struct argp argp = {
+    .options = options,
+    .parser = option,
     .args_doc = "MESH",
-    .doc = "Share the cells of MESH out to N processes of a solver: parts of "
+    .doc =
+      "Share the cells of MESH out to N processes of a solver: parts of "
       "equal work with few faces between them, none of which cuts a stack of "
       "layer cells.\vStacks are those of prisms, of hexahedra on viscous "
       "walls, and of Vanguard's layer tetrahedra where the file tells their "
       "number (.cogsg, and .ugrid written with --ugrid-tail). OpenFOAM takes "
       "the parts by decomposePar with the method manual, for which the case "
       "has a decomposeParDict. 'vanguard mesh --solver-parts N' does the same "
-      "to the mesh that it makes." };
+      "to the mesh that it makes."
+  };
   struct arguments a = { .options = VG_SOLVER_OPTIONS_INIT, .to_part = 1 };
   struct run r = { .a = &a };
   struct vg_display show;

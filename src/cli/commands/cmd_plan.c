@@ -9,9 +9,20 @@
 #include "cli/plan/plan.h"
 #include "io/stream/stream.h"
 
-enum { KEY_RANKS_PER_NODE = 300, KEY_LATENCY, KEY_BANDWIDTH, KEY_RATE,
-       KEY_SERIAL, KEY_ROAM, KEY_LOOPS, KEY_PLOT, KEY_TARGET, KEY_DEPTH,
-       KEY_RATES, KEY_CORES };
+enum {
+  KEY_RANKS_PER_NODE = 300,
+  KEY_LATENCY,
+  KEY_BANDWIDTH,
+  KEY_RATE,
+  KEY_SERIAL,
+  KEY_ROAM,
+  KEY_LOOPS,
+  KEY_PLOT,
+  KEY_TARGET,
+  KEY_DEPTH,
+  KEY_RATES,
+  KEY_CORES
+};
 
 enum { DEPTH_MAX = 40 };
 
@@ -19,8 +30,7 @@ static void number(const char *name, const char *text, double lo, double *out,
                    const struct argp_state *state)
 {
   if (!vg_parse_real(text, strlen(text), out) || *out < lo)
-    argp_error(state, "--%s takes a number from %g, not '%s'", name, lo,
-               text);
+    argp_error(state, "--%s takes a number from %g, not '%s'", name, lo, text);
 }
 
 static void range(const char *name, const char *text, struct vg_range_list *out,
@@ -56,22 +66,22 @@ static void check_end(const struct vg_plan_options *o,
 {
   if (!o->replay && !o->project)
     argp_error(state, "which run? give -p PROJECT, or --replay "
-               "FILE.timeline.json");
+                      "FILE.timeline.json");
   if (o->replay && o->project)
     argp_error(state, "either a project or a --replay, not both");
   if (o->replay && o->rates)
     argp_error(state, "--rates are for a project: a --replay has its own "
-               "times");
+                      "times");
   if (o->replay && o->cores)
     argp_error(state, "--cores are for a project: a --replay takes --ranks, "
-               "--threads and --ranks-per-node");
-  if (o->cores && (o->threads.v[o->threads.n - 1] > 1 ||
-                   o->machine.ranks_per_node > 1))
+                      "--threads and --ranks-per-node");
+  if (o->cores &&
+      (o->threads.v[o->threads.n - 1] > 1 || o->machine.ranks_per_node > 1))
     argp_error(state, "--cores tries all ranks per node and threads that fill "
-               "a node: leave --threads and --ranks-per-node out");
+                      "a node: leave --threads and --ranks-per-node out");
   if (o->replay && (!is_schedule(&o->kept) || o->deck || o->target > 0))
     argp_error(state, "a --replay takes no settings, deck or target, but for "
-               "--schedule: the tasks are those of the record");
+                      "--schedule: the tasks are those of the record");
 }
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -91,9 +101,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
     o->machine.ranks_per_node = whole("ranks-per-node", arg, 1,
                                       VG_MODEL_WORKERS_MAX, state);
     return 0;
-  case KEY_CORES:
-    o->cores = whole("cores", arg, 1, 4096, state);
-    return 0;
+  case KEY_CORES: o->cores = whole("cores", arg, 1, 4096, state); return 0;
   case KEY_DEPTH: o->depth = whole("depth", arg, 0, DEPTH_MAX, state); return 0;
   case KEY_TARGET: number("target", arg, 1e-3, &o->target, state); return 0;
   case KEY_LATENCY:
@@ -122,49 +130,76 @@ static error_t option(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_option own[] = {
-  { "project", 'p', "PROJECT", 0, "path and name without extension, or one "
-    "surface file, as for 'vanguard mesh'", 1 },
-  { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if it exists]",
+  { "project", 'p', "PROJECT", 0,
+    "path and name without extension, or one "
+    "surface file, as for 'vanguard mesh'",
     1 },
-  { "replay", 'r', "FILE", 0, "record of a run, as 'vanguard mesh "
-    "--timeline' writes it", 1 },
-  { "ranks", 'n', "LIST", 0, "numbers of ranks: 1,2,4 or 3:7 or 1:64:x2 "
-    "[default 1:512:x2]", 1 },
-  { "threads", 't', "LIST", 0, "threads of each rank [default 1]; those "
+  { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if it exists]", 1 },
+  { "replay", 'r', "FILE", 0,
+    "record of a run, as 'vanguard mesh "
+    "--timeline' writes it",
+    1 },
+  { "ranks", 'n', "LIST", 0,
+    "numbers of ranks: 1,2,4 or 3:7 or 1:64:x2 "
+    "[default 1:512:x2]",
+    1 },
+  { "threads", 't', "LIST", 0,
+    "threads of each rank [default 1]; those "
     "that are idle help with joins, so that a node's cores as one rank do "
-    "more than as ranks of one thread", 1 },
-  { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0, "ranks that share a "
-    "node: no latency between them, check, sizes and layers made together "
-    "[default 1]", 1 },
-  { "cores", KEY_CORES, "N", 0, "cores of a node: --ranks are numbers of "
-    "nodes, and of all ways to share their cores among ranks and threads "
-    "the best is named with its mpirun line; of a project only", 1 },
-  { "latency", KEY_LATENCY, "S", 0, "seconds per message [default 2e-6]",
+    "more than as ranks of one thread",
     1 },
-  { "bandwidth", KEY_BANDWIDTH, "B", 0, "bytes per second of a rank's link "
-    "[default 1e10]", 1 },
-  { "rate", KEY_RATE, "X", 0, "speed of a core over the recorded one; "
+  { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0,
+    "ranks that share a "
+    "node: no latency between them, check, sizes and layers made together "
+    "[default 1]",
+    1 },
+  { "cores", KEY_CORES, "N", 0,
+    "cores of a node: --ranks are numbers of "
+    "nodes, and of all ways to share their cores among ranks and threads "
+    "the best is named with its mpirun line; of a project only",
+    1 },
+  { "latency", KEY_LATENCY, "S", 0, "seconds per message [default 2e-6]", 1 },
+  { "bandwidth", KEY_BANDWIDTH, "B", 0,
+    "bytes per second of a rank's link "
+    "[default 1e10]",
+    1 },
+  { "rate", KEY_RATE, "X", 0,
+    "speed of a core over the recorded one; "
     "without a record over the one that the times were measured on "
-    "[default 1]", 1 },
-  { "rates", KEY_RATES, "FILE", 0, "take the seconds per cell and face of "
+    "[default 1]",
+    1 },
+  { "rates", KEY_RATES, "FILE", 0,
+    "take the seconds per cell and face of "
     "this machine from the record of a run on it, by least squares "
     "[default: those of the machine that docs/performance-parallel.md "
-    "names]", 1 },
-  { "target", KEY_TARGET, "S", 0, "find the smallest machine that needs no "
+    "names]",
+    1 },
+  { "target", KEY_TARGET, "S", 0,
+    "find the smallest machine that needs no "
     "more than S seconds; of a project only, a --replay shows all of "
     "--ranks and --threads [default: the largest that is 80 % efficient]",
     1 },
-  { "serial", KEY_SERIAL, "S", 0, "seconds outside the tasks, which no "
+  { "serial", KEY_SERIAL, "S", 0,
+    "seconds outside the tasks, which no "
     "workers share [default: phases of the record, shared by a node or by "
-    "all; without one by the times of reading, checking and sizes now]", 1 },
-  { "joins-roam", KEY_ROAM, NULL, 0, "joins are done by any rank, not at "
-    "their home", 1 },
-  { "loop-threads", KEY_LOOPS, "N", 0, "most threads that make loops of "
-    "joins faster, since they share the memory of a rank [default 16]", 1 },
-  { "json", 'j', NULL, 0, "forecast as JSON on standard output, with "
-    "the whole tree", 1 },
-  { "depth", KEY_DEPTH, "N", 0, "levels of the tree of cuts that are shown "
-    "[default 2]", 1 },
+    "all; without one by the times of reading, checking and sizes now]",
+    1 },
+  { "joins-roam", KEY_ROAM, NULL, 0,
+    "joins are done by any rank, not at "
+    "their home",
+    1 },
+  { "loop-threads", KEY_LOOPS, "N", 0,
+    "most threads that make loops of "
+    "joins faster, since they share the memory of a rank [default 16]",
+    1 },
+  { "json", 'j', NULL, 0,
+    "forecast as JSON on standard output, with "
+    "the whole tree",
+    1 },
+  { "depth", KEY_DEPTH, "N", 0,
+    "levels of the tree of cuts that are shown "
+    "[default 2]",
+    1 },
   { "quiet", 'q', NULL, 0, "no progress", 1 },
   { "plot", KEY_PLOT, "FILE", 0, "figure of the speed-up (SVG)", 1 },
   { NULL, 'L', "N", 0, "the same as --levels", 1 },
@@ -174,9 +209,11 @@ static const struct argp_option own[] = {
 int vg_cmd_plan(int argc, char **argv)
 {
   struct vg_cli_options options;
-  struct argp argp = { .parser = option,
+  struct argp argp = {
+    .parser = option,
     .args_doc = "-p PROJECT\n--replay FILE [--schedule dynamic|cyclic]",
-    .doc = "Forecast the mesh of a project and the time of its run before "
+    .doc =
+      "Forecast the mesh of a project and the time of its run before "
       "anything is meshed, or the time of a recorded run on other machines. "
       "Tasks are simulated: who is idle takes the next one, cuts before "
       "fills, heavy ones first.\v"
@@ -185,8 +222,10 @@ int vg_cmd_plan(int argc, char **argv)
       "such ranks can go below; cuts end is when the last cut has been made, "
       "cuts the share of the work that cuts are, extra the share beyond what "
       "their cells "
-      "would have taken in leaves." };
-  struct vg_plan_options o = { .machine = VG_MACHINE_INIT, .serial = -1,
+      "would have taken in leaves."
+  };
+  struct vg_plan_options o = { .machine = VG_MACHINE_INIT,
+                               .serial = -1,
                                .depth = 2 };
   struct vg_error err = VG_ERROR_INIT;
   int status;

@@ -22,8 +22,8 @@ static int64_t number(const char *option, const char *text, int64_t lo,
   int64_t v = 0;
 
   if (!vg_parse_count(text, strlen(text), &v) || v < lo || v > hi)
-    argp_error(state, "--%s takes a number from %lld to %lld, not '%s'",
-               option, (long long)lo, (long long)hi, text);
+    argp_error(state, "--%s takes a number from %lld to %lld, not '%s'", option,
+               (long long)lo, (long long)hi, text);
   return v;
 }
 
@@ -42,8 +42,10 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_LAUNCHER: o->launcher = arg; return 0;
   case KEY_PROGRAM: o->program = arg; return 0;
   case ARGP_KEY_ARG:
-    argp_error(state, "what is '%s'? the folder of the projects comes after "
-               "--root", arg);
+    argp_error(state,
+               "what is '%s'? the folder of the projects comes after "
+               "--root",
+               arg);
     return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
@@ -61,16 +63,18 @@ static int run(const struct vg_portal_options *o)
   printf("%s\n", vg_portal_url(p));
   fflush(stdout);
   fprintf(stderr, "Open this address in a browser; whoever has it can start "
-          "runs as you. Ctrl-C\nends the portal, not its runs.\n");
+                  "runs as you. Ctrl-C\nends the portal, not its runs.\n");
   if (o->host)
     fprintf(stderr, "vanguard: --host: others on the network can read what is "
-            "sent, the token too:\nHTTP is not encrypted\n");
+                    "sent, the token too:\nHTTP is not encrypted\n");
   while (st >= 0 && !vg_display_interrupted())
     st = vg_portal_step(p, STEP_MS, &err);
   n = vg_portal_active(p);
   if (st >= 0 && n)
-    fprintf(stderr, "%d run%s wait or go on; a portal in the same folder shows "
-            "them again\n", n, n > 1 ? "s" : "");
+    fprintf(stderr,
+            "%d run%s wait or go on; a portal in the same folder shows "
+            "them again\n",
+            n, n > 1 ? "s" : "");
 done:
   vg_portal_close(p);
   return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
@@ -79,33 +83,51 @@ done:
 int vg_cmd_serve(int argc, char **argv)
 {
   const struct argp_option options[] = {
-    { "port", 'p', "N", 0, "port to listen on, 0 for any that is free [default "
-      "8765]", 1 },
-    { "root", 'r', "DIR", 0, "folder of the projects, out of which no path "
-      "leads; runs are in DIR/vanguard-runs [default: the current one]", 1 },
-    { "host", KEY_HOST, "ADDRESS", 0, "address to listen on, for other "
+    { "port", 'p', "N", 0,
+      "port to listen on, 0 for any that is free [default "
+      "8765]",
+      1 },
+    { "root", 'r', "DIR", 0,
+      "folder of the projects, out of which no path "
+      "leads; runs are in DIR/vanguard-runs [default: the current one]",
+      1 },
+    { "host", KEY_HOST, "ADDRESS", 0,
+      "address to listen on, for other "
       "machines to reach; nothing is encrypted [default 127.0.0.1: this "
-      "machine alone]", 1 },
-    { "jobs", KEY_JOBS, "N", 0, "runs on this machine at a time, others wait "
-      "[default 1]", 1 },
-    { "max-upload", KEY_UPLOAD, "BYTES", 0, "largest file that a browser may "
-      "bring [default 1e9]", 1 },
-    { "launcher", KEY_LAUNCHER, "COMMAND", 0, "how ranks are started, as for "
+      "machine alone]",
+      1 },
+    { "jobs", KEY_JOBS, "N", 0,
+      "runs on this machine at a time, others wait "
+      "[default 1]",
+      1 },
+    { "max-upload", KEY_UPLOAD, "BYTES", 0,
+      "largest file that a browser may "
+      "bring [default 1e9]",
+      1 },
+    { "launcher", KEY_LAUNCHER, "COMMAND", 0,
+      "how ranks are started, as for "
       "vanguard sweep [default 'mpirun -n {ranks} --bind-to none', nothing for "
-      "one rank]", 1 },
-    { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN, "instead of this "
-      "program", 1 },
+      "one rank]",
+      1 },
+    { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN,
+      "instead of this "
+      "program",
+      1 },
     { 0 }
   };
-  const struct argp argp = { .options = options, .parser = option,
-    .doc = "Serve a page on this machine from which runs are started, watched, "
+  const struct argp argp = {
+    .options = options,
+    .parser = option,
+    .doc =
+      "Serve a page on this machine from which runs are started, watched, "
       "stopped and resumed: projects below a folder, a form of all settings, "
       "runs here or through Slurm, with progress, log and report.\v"
       "Prints the address of the page, with a token that lets in; it is in "
       "DIR/vanguard-runs/portal.url, too, until the end. From another machine: "
       "ssh -L 8765:127.0.0.1:8765 MACHINE. Each run is a process of its own "
       "in a folder of DIR/vanguard-runs and goes on when the portal ends. "
-      "Exit status: 0 ended by a signal, 1 failed, 2 wrong usage." };
+      "Exit status: 0 ended by a signal, 1 failed, 2 wrong usage."
+  };
   struct vg_portal_options o = VG_PORTAL_OPTIONS_INIT;
 
   vg_cli_parse(&argp, argc, argv, &o);

@@ -68,8 +68,10 @@ static vg_status add_file(struct files *f, const char *suffix,
   if (asprintf(&path, "%s.%s", f->stem, suffix) < 0)
     return vg_fail_memory(err, "a path");
   if (!access(path, F_OK))
-    st = vg_fail(err, VG_ERR_INPUT, "%s exists and is not overwritten; remove "
-                 "it or choose another folder with --out", path);
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s exists and is not overwritten; remove "
+                 "it or choose another folder with --out",
+                 path);
   free(path);
   return st;
 }
@@ -92,8 +94,10 @@ static vg_status plan_files(const struct vg_problem *p,
   VG_TRY(vg_write_list(p->asked.write, &f->n_item, f->item, err));
   for (size_t i = 0; i < f->n_item; i++) {
     if (!strcmp(f->item[i], "cogsg") || !strcmp(f->item[i], "openfoam"))
-      VG_TRY(vg_fail(err, VG_ERR_INPUT, "%s is for volume meshes; write the "
-                     "surface as lb8.ugrid, stl, ...", f->item[i]));
+      VG_TRY(vg_fail(err, VG_ERR_INPUT,
+                     "%s is for volume meshes; write the "
+                     "surface as lb8.ugrid, stl, ...",
+                     f->item[i]));
     VG_TRY(add_file(f, f->item[i], err));
   }
   VG_TRY(add_file(f, "mapbc", err));
@@ -114,7 +118,8 @@ static vg_status write_vtu(const char *path, const struct vg_boundary *b,
   const struct vg_vtu_field field[3] = {
     { "smallest_angle", VG_VTU_CELL, VG_VTU_FLOAT64, 1, angle },
     { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT64, 1, angle + n },
-    { "distance", VG_VTU_CELL, VG_VTU_FLOAT64, 1, b->renewal.face } };
+    { "distance", VG_VTU_CELL, VG_VTU_FLOAT64, 1, b->renewal.face }
+  };
   vg_status st;
 
   if (!angle) return vg_fail_memory(err, "the angles");
@@ -130,7 +135,8 @@ static char *path_of(const struct files *f, size_t i)
   char *path;
 
   return asprintf(&path, "%s.%s", f->stem, f->outputs.file[i].suffix) < 0
-         ? NULL : path;
+         ? NULL
+         : path;
 }
 
 static json_t *report(const struct vg_problem *p, const struct files *f)
@@ -170,8 +176,7 @@ static vg_status write_file(const struct vg_problem *p, struct files *f,
     st = write_vtu(path, &p->boundary, err);
   else if (!strcmp(suffix, "surface.json"))
     st = vg_json_write(path, o, "the report", err);
-  else
-    st = vg_format_write(path, m, err);
+  else st = vg_format_write(path, m, err);
   free(path);
   return st;
 }
@@ -249,7 +254,7 @@ static vg_status run(const struct arguments *a, struct vg_display *show,
   json_t *o = NULL;
   vg_status st;
 
-  vg_display_end_at_once(1);     /* nothing is written yet */
+  vg_display_end_at_once(1); /* nothing is written yet */
   vg_display_update(show, "read", 0, 0);
   VG_TRY(read_settings(a, &p, err));
   VG_TRY(plan_files(&p, a, &f, err));
@@ -277,21 +282,29 @@ done:
 int vg_cmd_surface(int argc, char **argv)
 {
   const struct argp_option own[] = {
-    { "deck", 'd', "FILE", 0, "settings, patches and sources [default "
-      "STEM.deck where that exists]", 0 },
-    { "out", 'o', "DIR", 0, "folder for the files, made where absent; they "
-      "have the name of the input [default beside it, as STEM.new]", 0 },
+    { "deck", 'd', "FILE", 0,
+      "settings, patches and sources [default "
+      "STEM.deck where that exists]",
+      0 },
+    { "out", 'o', "DIR", 0,
+      "folder for the files, made where absent; they "
+      "have the name of the input [default beside it, as STEM.new]",
+      0 },
     { "json", 'j', NULL, 0, "report as JSON", 0 },
     { "quiet", 'q', NULL, 0, "no progress", 0 },
     { NULL, 't', "N", 0, "as --threads", 0 },
     { 0 }
   };
   struct vg_cli_options options;
-  struct argp argp = { .parser = option, .args_doc = "INPUT",
-    .doc = "Make the triangles of a surface anew, as long as its shape and "
+  struct argp argp = {
+    .parser = option,
+    .args_doc = "INPUT",
+    .doc =
+      "Make the triangles of a surface anew, as long as its shape and "
       "sources ask for. Ridges, corners and patches stay. Written are the "
       "surface (--write, default lb8.ugrid), its conditions (.mapbc), quality "
-      "and distance (.surface.vtu) and the report (.surface.json)." };
+      "and distance (.surface.vtu) and the report (.surface.json)."
+  };
   struct arguments a = { 0 };
   struct vg_display show;
   struct vg_error err = VG_ERROR_INIT;

@@ -15,26 +15,37 @@
 #include "run/input/input.h"
 #include "run/settings/deck.h"
 
-enum { KEY_LEAF_CELLS = 300, KEY_REPEAT, KEY_LAUNCHER, KEY_KEEP,
-       KEY_PROGRAM, KEY_DECOMPOSE, KEY_PARTS, KEY_FAMILY };
+enum {
+  KEY_LEAF_CELLS = 300,
+  KEY_REPEAT,
+  KEY_LAUNCHER,
+  KEY_KEEP,
+  KEY_PROGRAM,
+  KEY_DECOMPOSE,
+  KEY_PARTS,
+  KEY_FAMILY
+};
 
 /* Lists, from an option or from the deck. */
 enum { RANKS, THREADS, LEVELS, LEAF_CELLS, PARTS, FAMILY, N_LIST };
 static const struct {
   const char *option, *column;
   int64_t lo, hi;
-} lists[N_LIST] = {
-  { "--ranks", "ranks", 1, 1000000 }, { "--threads", "threads", 1, 1000 },
-  { "--levels", "levels", 0, 40 },
-  { "--leaf-cells", "leaf_cells", 1, 1000000000000 },
-  { "--parts", "parts", 1, 1000000 },
-  { "--family", "family", 1, 100 } };
+} lists[N_LIST] = { { "--ranks", "ranks", 1, 1000000 },
+                    { "--threads", "threads", 1, 1000 },
+                    { "--levels", "levels", 0, 40 },
+                    { "--leaf-cells", "leaf_cells", 1, 1000000000000 },
+                    { "--parts", "parts", 1, 1000000 },
+                    { "--family", "family", 1, 100 } };
 
 static struct vg_range_list *list_of(struct vg_sweep_options *o, int k)
 {
-  return k == RANKS ? &o->ranks : k == THREADS ? &o->threads
-       : k == LEVELS ? &o->levels : k == LEAF_CELLS ? &o->leaf_cells
-       : k == FAMILY ? &o->family : &o->parts;
+  return k == RANKS      ? &o->ranks
+       : k == THREADS    ? &o->threads
+       : k == LEVELS     ? &o->levels
+       : k == LEAF_CELLS ? &o->leaf_cells
+       : k == FAMILY     ? &o->family
+                         : &o->parts;
 }
 
 static void range(int k, const char *text, struct vg_sweep_options *o,
@@ -84,8 +95,11 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'j': o->json = 1; return 0;
   case 'q': o->quiet = 1; return 0;
   case ARGP_KEY_ARG:
-    if (o->project) argp_error(state, "one project at a time: %s; options "
-                               "for vanguard mesh come after '--'", arg);
+    if (o->project)
+      argp_error(state,
+                 "one project at a time: %s; options "
+                 "for vanguard mesh come after '--'",
+                 arg);
     o->project = arg;
     return 0;
   case ARGP_KEY_END:
@@ -113,15 +127,16 @@ static vg_status take_list(const char *deck, int k, const char *text,
 static vg_status take_row(const char *deck, const struct vg_sweep_row *row,
                           struct vg_sweep_options *o, struct vg_error *err)
 {
-  const char *text[N_LIST] = { row->ranks, row->threads, row->levels,
-                               row->leaf_cells, row->parts, row->family };
+  const char *text[N_LIST] = { row->ranks,      row->threads, row->levels,
+                               row->leaf_cells, row->parts,   row->family };
   char what[400];
   int given[N_LIST];
   vg_status st = VG_OK;
 
   for (int k = 0; k < N_LIST; k++) given[k] = list_of(o, k)->n > 0;
-  given[LEVELS] = given[LEAF_CELLS] = given[PARTS] =
-    given[LEVELS] || given[LEAF_CELLS] || given[PARTS] || o->n_way;
+  given[LEVELS] = given[LEAF_CELLS] = given[PARTS] = given[LEVELS] ||
+                                                     given[LEAF_CELLS] ||
+                                                     given[PARTS] || o->n_way;
   snprintf(what, sizeof what, "%.300s: sweep: decompose", deck);
   if (!given[PARTS] && *row->decompose)
     st = vg_sweep_ways(what, row->decompose, o, err);
@@ -143,8 +158,7 @@ static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
     deck = p.read.files.deck;
   if (deck && *deck) st = vg_deck_read(deck, &p.asked, err);
   o->scale = p.asked.scale;
-  if (st >= 0 && p.asked.n_sweep)
-    st = take_row(deck, &p.asked.sweep, o, err);
+  if (st >= 0 && p.asked.n_sweep) st = take_row(deck, &p.asked.sweep, o, err);
   if (st >= 0 && !o->ranks.n)
     st = vg_range_parse("--ranks", "1", 1, 1, &o->ranks, err);
   if (st >= 0 && !o->threads.n)
@@ -174,11 +188,12 @@ static int name_width(const struct vg_sweep *s)
 static void print_head(int width)
 {
   printf("%-*s ranks threads   seconds speed-up  eff. %% cut+fill imbal. "
-         "idle %%       cells digest\n", width, "case");
+         "idle %%       cells digest\n",
+         width, "case");
 }
 
-static void print_case(const struct vg_sweep *s,
-                       const struct vg_sweep_case *c, int width)
+static void print_case(const struct vg_sweep *s, const struct vg_sweep_case *c,
+                       int width)
 {
   double seconds = c->is_done ? vg_sweep_seconds(c) : NAN;
   double speedup = vg_sweep_speedup(s, seconds);
@@ -205,7 +220,8 @@ static void print_case(const struct vg_sweep *s,
 static void print_parts(const struct vg_sweep *s, int width)
 {
   printf("\n%-*s  parts balance   parting cut+fill critical  idle %%    cells "
-         "/ adv.  1st perc. near  of all\n", width, "case");
+         "/ adv.  1st perc. near  of all\n",
+         width, "case");
   for (size_t i = 0; i < s->n; i++) {
     const struct vg_sweep_case *c = &s->item[i];
     const struct vg_sweep_parts *m = &c->parts_made;
@@ -243,11 +259,13 @@ static int conclude(const struct vg_sweep *s)
     return VG_EXIT_LIMIT;
   }
   if (compared)
-    fprintf(to, "Digests agree: equal mesh options gave the same files "
-            "(%zu compared)\n", compared);
+    fprintf(to,
+            "Digests agree: equal mesh options gave the same files "
+            "(%zu compared)\n",
+            compared);
   else
     fprintf(to, "Digests were not compared: no two cases with equal mesh "
-            "options gave digests\n");
+                "options gave digests\n");
   return n_done == s->n ? VG_EXIT_DONE : VG_EXIT_FAILED;
 }
 
@@ -258,8 +276,7 @@ static vg_status run_all(struct vg_sweep *s, struct vg_error *err)
   for (size_t i = 0; i < s->n && st >= 0; i++) {
     struct vg_sweep_case *c = &s->item[i];
 
-    if (!s->o->quiet)
-      fprintf(stderr, "%zu of %zu: %s\n", i + 1, s->n, c->name);
+    if (!s->o->quiet) fprintf(stderr, "%zu of %zu: %s\n", i + 1, s->n, c->name);
     st = vg_sweep_run(s->o, c, err);
     if (c->is_run) vg_sweep_collect(s->o, c);
   }
@@ -299,51 +316,75 @@ done:
 
 static const struct argp_option options[] = {
   { "project", 'p', "PROJECT", 0, "as for vanguard mesh", 1 },
-  { "deck", 'd', "FILE", 0, "run deck, for vanguard mesh too; lists that no "
+  { "deck", 'd', "FILE", 0,
+    "run deck, for vanguard mesh too; lists that no "
     "option gives come from its table sweep [default PROJECT.deck if there "
-    "is one]", 1 },
-  { "levels", 'L', "LIST", 0, "levels of bisection: 1,2,4 or 3:7 or "
-    "2:10:2", 2 },
-  { "leaf-cells", KEY_LEAF_CELLS, "LIST", 0, "cells to a leaf; both lists "
-    "make cases of their own [default as vanguard mesh has it]", 2 },
-  { "decompose", KEY_DECOMPOSE, "LIST", 0, "ways to decompose: advancing,"
+    "is one]",
+    1 },
+  { "levels", 'L', "LIST", 0,
+    "levels of bisection: 1,2,4 or 3:7 or "
+    "2:10:2",
+    2 },
+  { "leaf-cells", KEY_LEAF_CELLS, "LIST", 0,
+    "cells to a leaf; both lists "
+    "make cases of their own [default as vanguard mesh has it]",
+    2 },
+  { "decompose", KEY_DECOMPOSE, "LIST", 0,
+    "ways to decompose: advancing,"
     "discrete,octree; each with all --parts, as cases of their own [default "
-    "as vanguard mesh has it]", 2 },
+    "as vanguard mesh has it]",
+    2 },
   { "parts", KEY_PARTS, "LIST", 0, "numbers of parts", 2 },
   { "ranks", 'n', "LIST", 0, "numbers of ranks [default 1]", 2 },
   { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 2 },
-  { "family", KEY_FAMILY, "LIST", 0, "levels of a grid family, as in 1:3: "
+  { "family", KEY_FAMILY, "LIST", 0,
+    "levels of a grid family, as in 1:3: "
     "all sizes times 2/(level + 1), layers by the Drag Prediction "
-    "Workshops' rule (--scale, --scale-layers workshop)", 2 },
-  { "repeat", KEY_REPEAT, "K", 0, "times that each case is run [default "
-    "1]", 2 },
-  { "launcher", KEY_LAUNCHER, "COMMAND", 0, "how ranks are started, e.g. "
+    "Workshops' rule (--scale, --scale-layers workshop)",
+    2 },
+  { "repeat", KEY_REPEAT, "K", 0,
+    "times that each case is run [default "
+    "1]",
+    2 },
+  { "launcher", KEY_LAUNCHER, "COMMAND", 0,
+    "how ranks are started, e.g. "
     "'srun -n {ranks} -c {threads}' [default 'mpirun -n {ranks} --bind-to "
-    "none', nothing for one rank]", 3 },
-  { "out", 'o', "DIR", 0, "folder for tables, figures and a folder for "
-    "each case [default sweep]", 3 },
-  { "keep", KEY_KEEP, NULL, 0, "keep all meshes [default: reports, records "
-    "and logs only]", 3 },
+    "none', nothing for one rank]",
+    3 },
+  { "out", 'o', "DIR", 0,
+    "folder for tables, figures and a folder for "
+    "each case [default sweep]",
+    3 },
+  { "keep", KEY_KEEP, NULL, 0,
+    "keep all meshes [default: reports, records "
+    "and logs only]",
+    3 },
   { "json", 'j', NULL, 0, "table as JSON on standard output", 3 },
   { "quiet", 'q', NULL, 0, "no progress", 3 },
-  { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN, "instead of this "
-    "program", 3 },
+  { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN,
+    "instead of this "
+    "program",
+    3 },
   { 0 }
 };
 
 int vg_cmd_sweep(int argc, char **argv)
 {
-  const struct argp argp = { .options = options, .parser = option,
+  const struct argp argp = {
+    .options = options,
+    .parser = option,
     .args_doc = "-p PROJECT [-- MESH-OPTION...]",
-    .doc = "Run vanguard mesh for all combinations of levels, leaf sizes or ways "
+    .doc =
+      "Run vanguard mesh for all combinations of levels, leaf sizes or ways "
       "to decompose, ranks and threads, and compare: sweep.csv and "
-      "sweep.json with times, balance and digests, figures of speed-up, phases, each run's timeline "
-      "and sizes of its leaves.\v"
+      "sweep.json with times, balance and digests, figures of speed-up, "
+      "phases, each run's timeline and sizes of its leaves.\v"
       "Options after '--' go to vanguard mesh. Speed-ups are against the "
       "first case on one worker; if none is, those of the fewest stand for "
       "it. A case that fails is listed with its "
       "message; its log is DIR/CASE/run.log. Exit status: 0 done, 1 a case "
-      "failed, 2 wrong usage, 4 equal mesh options gave different files." };
+      "failed, 2 wrong usage, 4 equal mesh options gave different files."
+  };
   struct vg_sweep_options o = { .dir = "sweep" };
   int status;
 

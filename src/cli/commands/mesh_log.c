@@ -17,8 +17,9 @@ static void put_command(FILE *to, int argc, char **argv)
 
   fprintf(to, "command  ");
   for (int i = 0; i < argc; i++)
-    fprintf(to, i && strpbrk(argv[i], " \t\n\"'$*?;&|<>()\\")
-            ? "%s'%s'" : "%s%s", i ? " " : "", argv[i]);
+    fprintf(to,
+            i && strpbrk(argv[i], " \t\n\"'$*?;&|<>()\\") ? "%s'%s'" : "%s%s",
+            i ? " " : "", argv[i]);
   fprintf(to, "\nfolder   %s\n", cwd ? cwd : "?");
   free(cwd);
 }
@@ -45,28 +46,29 @@ void vg_mesh_log_start(const struct vg_run *r, int argc, char **argv)
 void vg_mesh_log_settings(const struct vg_run *r,
                           const struct vg_settings *asked)
 {
-  static const enum vg_table_kind table[] = { VG_TABLE_PATCHES,
-    VG_TABLE_LAYERS, VG_TABLE_SURFACE, VG_TABLE_SOURCES };
+  static const enum vg_table_kind table[] = { VG_TABLE_PATCHES, VG_TABLE_LAYERS,
+                                              VG_TABLE_SURFACE,
+                                              VG_TABLE_SOURCES };
   const struct vg_param *p;
   const char *name;
   char value[2 * VG_LIST_MAX + 4];
-  struct vg_settings view = *asked, *s = &view;   /* tables are borrowed */
+  struct vg_settings view = *asked, *s = &view; /* tables are borrowed */
   FILE *to = vg_log();
   int in_farfield;
 
   if (!to) return;
   vg_resolve_write(asked, view.write);
-  fprintf(to, "threads  %d of each rank\nsettings\n", s->threads
-          ? (int)s->threads : vg_comm_default_threads(r->comm));
+  fprintf(to, "threads  %d of each rank\nsettings\n",
+          s->threads ? (int)s->threads : vg_comm_default_threads(r->comm));
   for (size_t i = 0; (p = vg_settings_name(i, &name, &in_farfield)); i++) {
-    vg_param_format(p, in_farfield ? (const void *)&s->farfield
-                                   : (const void *)s, value, sizeof value);
+    vg_param_format(p,
+                    in_farfield ? (const void *)&s->farfield : (const void *)s,
+                    value, sizeof value);
     fprintf(to, "  %-20s %s\n", name, value);
   }
   for (size_t i = 0; i < sizeof table / sizeof *table; i++)
     if (vg_settings_rows(s, table[i]))
       fprintf(to, "  %-20s %zu in its table\n",
-              vg_settings_table(table[i])->name,
-              vg_settings_rows(s, table[i]));
+              vg_settings_table(table[i])->name, vg_settings_rows(s, table[i]));
   fprintf(to, "\n");
 }

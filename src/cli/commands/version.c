@@ -20,8 +20,9 @@ static void put(FILE *to, const struct vg_library *l)
 void vg_version_libraries(FILE *to)
 {
   static void (*const say[])(struct vg_library *) = {
-    vg_library_mpi, vg_library_hwloc, vg_library_tetgen, vg_library_metis,
-    vg_library_xxhash, vg_library_zlib };
+    vg_library_mpi,   vg_library_hwloc,  vg_library_tetgen,
+    vg_library_metis, vg_library_xxhash, vg_library_zlib
+  };
   struct vg_library l;
 
   for (size_t i = 0; i < sizeof say / sizeof *say; i++) {
@@ -36,8 +37,8 @@ void vg_version_libraries(FILE *to)
 void vg_version_print(FILE *to, int verbose)
 {
   fprintf(to, "vanguard " VG_VERSION "\n"
-          "Licence AGPL-3.0-or-later: "
-          "https://www.gnu.org/licenses/agpl-3.0.html\n");
+              "Licence AGPL-3.0-or-later: "
+              "https://www.gnu.org/licenses/agpl-3.0.html\n");
   if (!verbose) return;
   fprintf(to, "source   %s\ncompiler %s\nlibraries\n", vg_source_digest,
           __VERSION__);

@@ -12,12 +12,11 @@
 void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input)
 {
   argp_err_exit_status = VG_EXIT_USAGE;
-  if (argp_parse(argp, argc, argv, 0, NULL, input))
-    exit(VG_EXIT_USAGE);
+  if (argp_parse(argp, argc, argv, 0, NULL, input)) exit(VG_EXIT_USAGE);
 }
 
-error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key,
-                   char *arg, const struct argp_state *state)
+error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key, char *arg,
+                   const struct argp_state *state)
 {
   switch (key) {
   case 'j': one->json = 1; return 0;
@@ -57,12 +56,13 @@ static int add_option(struct vg_cli_options *o, const struct vg_param *p,
   keep(o, help);
   to->name = long_name;
   to->key = key;
-  to->arg = p->argument ? p->argument
-          : p->type == VG_PARAM_TEXT ? "LIST"
-          : p->type == VG_PARAM_WORD ? "KIND"
-          : p->type == VG_PARAM_FLAG ? "yes|no"
-          : p->type == VG_PARAM_COUNT ? "N"
-          : strcmp(p->unit, "length") == 0 ? "LENGTH" : "NUMBER";
+  to->arg = p->argument                    ? p->argument
+          : p->type == VG_PARAM_TEXT       ? "LIST"
+          : p->type == VG_PARAM_WORD       ? "KIND"
+          : p->type == VG_PARAM_FLAG       ? "yes|no"
+          : p->type == VG_PARAM_COUNT      ? "N"
+          : strcmp(p->unit, "length") == 0 ? "LENGTH"
+                                           : "NUMBER";
   to->doc = help;
   to->group = 2;
   o->n++;
@@ -134,8 +134,7 @@ static vg_status set_option(int key, const char *text, struct vg_settings *s,
 }
 
 error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,
-                            const char *text,
-                            const struct argp_state *state)
+                            const char *text, const struct argp_state *state)
 {
   struct vg_settings scratch;
   struct vg_error err = VG_ERROR_INIT;
@@ -154,8 +153,7 @@ error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,
 }
 
 vg_status vg_cli_apply(const struct vg_cli_overrides *kept,
-                       struct vg_settings *s,
-                       struct vg_error *err)
+                       struct vg_settings *s, struct vg_error *err)
 {
   vg_status st = VG_OK;
 

@@ -18,8 +18,8 @@ struct vg_cli_one {
   const char *file;
   int json, quiet;
 };
-error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key,
-                   char *arg, const struct argp_state *state);
+error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key, char *arg,
+                   const struct argp_state *state);
 
 /** Help line "[unit; default x]" parts for the settings and their options.
  *
@@ -28,7 +28,7 @@ error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key,
  * owned by the table, freed by vg_cli_options_free. */
 #define VG_KEY_SETTING 1000
 struct vg_cli_options {
-  struct argp_option *option;      /* NULL-ended */
+  struct argp_option *option; /* NULL-ended */
   char **text;
   size_t n, n_text;
 };
@@ -46,20 +46,21 @@ int vg_cli_option_key(const char *name);
  * which they win over. */
 struct vg_cli_overrides {
   size_t n, cap;
-  struct { int key; const char *text; } *set;   /* text is argv's */
+  struct {
+    int key;
+    const char *text;
+  } * set; /* text is argv's */
 };
 
 /** Keep what the option with `key` sets. A value that cannot be is wrong usage,
  * known before anything is read. For a parser: ARGP_ERR_UNKNOWN when the key
  * is no setting's. */
 error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,
-                            const char *text,
-                            const struct argp_state *state);
+                            const char *text, const struct argp_state *state);
 
 /** Set all of them, and check that the settings go together: VG_ERR_USAGE
  * where those of the deck alone did. */
 vg_status vg_cli_apply(const struct vg_cli_overrides *kept,
-                       struct vg_settings *s,
-                       struct vg_error *err);
+                       struct vg_settings *s, struct vg_error *err);
 
 #endif

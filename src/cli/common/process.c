@@ -48,7 +48,7 @@ static char *fill_in(const char *word, size_t len, int ranks, int threads)
   char *out = vg_alloc(len * 4 + 32, 1);
   size_t at = 0;
 
-  for (size_t i = 0; out && i < len; ) {
+  for (size_t i = 0; out && i < len;) {
     if (len - i >= 7 && !strncmp(word + i, "{ranks}", 7)) {
       at += (size_t)snprintf(out + at, 16, "%d", ranks);
       i += 7;
@@ -63,13 +63,12 @@ static char *fill_in(const char *word, size_t len, int ranks, int threads)
   return out;
 }
 
-vg_status vg_words_launcher(struct vg_words *w, const char *launcher,
-                            int ranks, int threads, struct vg_error *err)
+vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
+                            int threads, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
-  if (!launcher)
-    launcher = ranks > 1 ? "mpirun -n {ranks} --bind-to none" : "";
+  if (!launcher) launcher = ranks > 1 ? "mpirun -n {ranks} --bind-to none" : "";
   while (st >= 0) {
     size_t len;
 
@@ -101,8 +100,9 @@ void vg_failure_note(const char *path, char *note, size_t size)
 
   snprintf(note, size, "see %.200s", path);
   while (f && getline(&line, &cap, f) > 0) {
-    size_t ours = !strncmp(line, "vanguard: ", 10) ? 10
-                : !strncmp(line, "vanguard mesh: ", 15) ? 15 : 0;
+    size_t ours = !strncmp(line, "vanguard: ", 10)      ? 10
+                : !strncmp(line, "vanguard mesh: ", 15) ? 15
+                                                        : 0;
 
     line[strcspn(line, "\r\n")] = 0;
     if (kept == LAST && !strncmp(line, "-----", 5)) kept = RULE;

@@ -9,8 +9,14 @@
 #include "base/status.h"
 
 /** A command line; word is NULL-ended once something was added. */
-struct vg_words { size_t n, cap; char **word; };
-#define VG_WORDS_INIT { 0, 0, NULL }
+struct vg_words {
+  size_t n, cap;
+  char **word;
+};
+#define VG_WORDS_INIT                                                          \
+  {                                                                            \
+    0, 0, NULL                                                                 \
+  }
 
 void vg_words_release(struct vg_words *w);
 
@@ -25,8 +31,8 @@ vg_status vg_words_pair(struct vg_words *w, const char *name, int64_t v,
 
 /** Add the words of a launcher, parted by blanks, with {ranks} and {threads}
  * filled in. NULL: mpirun, nothing for one rank. */
-vg_status vg_words_launcher(struct vg_words *w, const char *launcher,
-                            int ranks, int threads, struct vg_error *err);
+vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
+                            int threads, struct vg_error *err);
 
 /** Path of this program; the caller frees it. NULL: no memory. */
 char *vg_own_path(void);

@@ -9,7 +9,7 @@
 #include "cli/examples/demo_parts.h"
 #include "core/domain/farfield.h"
 
-#define FARFIELD 20.0      /* radius or half width, body lengths or chords */
+#define FARFIELD 20.0 /* radius or half width, body lengths or chords */
 /* Largest factor on the spacings below that still resolves the geometry. */
 #define FACTOR_MAX 12.0
 /* The estimate comes this close to the number wanted, within these turns. */
@@ -37,8 +37,8 @@ static const struct entry {
   enum kind kind;
   struct vg_demo_wing wing;
 } entries[N_ENTRY] = {
-  { BOX, { 0, 0 } }, { SPHERE, { 0, 0 } }, { WING, { 0, 0 } },
-  { WING, { 0, 1 } }, { WING, { 1, 0 } }, { WING, { 1, 1 } },
+  { BOX, { 0, 0 } },  { SPHERE, { 0, 0 } }, { WING, { 0, 0 } },
+  { WING, { 0, 1 } }, { WING, { 1, 0 } },   { WING, { 1, 1 } },
 };
 
 const struct vg_demo_case *vg_demo_cases(size_t *n)
@@ -76,7 +76,7 @@ struct estimate {
 /* Halve a block until it is at most this many edges long, then take two Gauss
  * points along each axis: over such a block h changes by as much as itself. */
 #define BLOCK_EDGES 3.0
-#define GAUSS 0.28867513459481288225   /* 1 / (2 sqrt(3)) */
+#define GAUSS 0.28867513459481288225 /* 1 / (2 sqrt(3)) */
 
 static double count_leaf(const struct estimate *e, const double mid[3],
                          const double size[3])
@@ -136,7 +136,7 @@ struct scaled {
   const struct entry *entry;
   double factor;
   struct vg_demo_law law;
-  struct vg_sizing *field;   /* borrowed; while its cells are counted */
+  struct vg_sizing *field; /* borrowed; while its cells are counted */
 };
 
 static void make_law(struct scaled *s)
@@ -200,8 +200,8 @@ static double n_cell_of(struct scaled *s,
                          -FARFIELD };
   const double hi[3] = { FARFIELD, FARFIELD, FARFIELD };
 
-  return VG_DEMO_CELLS_PER_CUBE * VG_DEMO_GRADED
-         * cubes(lo, hi, size, in_fluid, s);
+  return VG_DEMO_CELLS_PER_CUBE * VG_DEMO_GRADED *
+         cubes(lo, hi, size, in_fluid, s);
 }
 
 static double law_estimate(struct scaled *s)
@@ -249,8 +249,7 @@ static double fit_factor(struct scaled *s, double n_cell)
 /* --- surfaces ------------------------------------------------------------ */
 
 static vg_status name_patch(struct vg_mesh *m, int32_t id, const char *name,
-                            int32_t bc, int32_t bc_fun3d,
-                            struct vg_error *err)
+                            int32_t bc, int32_t bc_fun3d, struct vg_error *err)
 {
   const size_t at = vg_mesh_add_patch(m, id, name);
 
@@ -263,8 +262,8 @@ static vg_status name_patch(struct vg_mesh *m, int32_t id, const char *name,
 static vg_status box_surface(const struct scaled *s, struct vg_mesh *m,
                              struct vg_error *err)
 {
-  static const char *const name[6] = { "x-min", "x-max", "y-min", "y-max",
-                                       "z-min", "z-max" };
+  static const char *const name[6] = { "x-min", "x-max", "y-min",
+                                       "y-max", "z-min", "z-max" };
   const double lo[3] = { 0, 0, 0 }, hi[3] = { 1, 1, 1 };
   const uint32_t patch[6] = { 0, 1, 2, 3, 4, 5 };
   const struct vg_size_law law = { .at = vg_demo_size,
@@ -286,8 +285,7 @@ static vg_status sphere_surface(const struct scaled *s, struct vg_mesh *m,
                                    .user = (void *)&s->law };
   vg_status st = name_patch(m, 1, "sphere", 4, 4000, err);
 
-  if (st == VG_OK)
-    st = vg_add_sphere(m, centre, 1, -1, 0, &law, 0, NULL, err);
+  if (st == VG_OK) st = vg_add_sphere(m, centre, 1, -1, 0, &law, 0, NULL, err);
   return st;
 }
 
@@ -392,8 +390,10 @@ vg_status vg_demo_make(const char *name, size_t n_cell, struct vg_demo *out,
     if (!strcmp(cases[i].name, name)) s.entry = &entries[i];
   if (!s.entry) return unknown(name, err);
   if (n_cell > 2000000000)
-    return vg_fail(err, VG_ERR_INPUT, "%zu cells are more than one mesh can "
-                   "number; ask for 2000000000 at most", n_cell);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%zu cells are more than one mesh can "
+                   "number; ask for 2000000000 at most",
+                   n_cell);
   if (!n_cell) n_cell = cases[s.entry - entries].n_cell;
   st = make(&s, (double)n_cell, &d, err);
   if (st == VG_OK) {

@@ -21,9 +21,9 @@
 
 /** A case of the list. */
 struct vg_demo_case {
-  const char *name;        /* as on the command line */
-  const char *summary;     /* one line */
-  size_t n_cell;           /* default size */
+  const char *name;    /* as on the command line */
+  const char *summary; /* one line */
+  size_t n_cell;       /* default size */
 };
 
 /** All cases. *n out: their number. Static. */
@@ -31,16 +31,19 @@ const struct vg_demo_case *vg_demo_cases(size_t *n);
 
 /** A case ready to be meshed. */
 struct vg_demo {
-  struct vg_mesh surface;  /* closed, triangles point into the fluid; patches
-                              named, with conditions of both solvers */
-  size_t n_body_tri;       /* of surface.tri, the first ones: the body; 0
-                              where there is none */
-  struct vg_sizing_options sizing;  /* recommended, with from_surface */
+  struct vg_mesh surface; /* closed, triangles point into the fluid; patches
+                             named, with conditions of both solvers */
+  size_t n_body_tri;      /* of surface.tri, the first ones: the body; 0
+                             where there is none */
+  struct vg_sizing_options sizing; /* recommended, with from_surface */
   size_t n_source;
   struct vg_source *source;
-  double n_cell;           /* estimated size of the mesh: within 5 % of it */
+  double n_cell; /* estimated size of the mesh: within 5 % of it */
 };
-#define VG_DEMO_INIT { .n_body_tri = 0 }
+#define VG_DEMO_INIT                                                           \
+  {                                                                            \
+    .n_body_tri = 0                                                            \
+  }
 
 /** Make a case.
  *

@@ -15,11 +15,11 @@
 #include "core/geometry/graded.h"
 
 /* Lengths in root chords. */
-#define SPAN 2.5           /* of one side */
+#define SPAN 2.5 /* of one side */
 #define TAPER 0.4
-#define SWEEP 0.5          /* tangent of the leading edge's sweep: 26.6 deg */
+#define SWEEP 0.5 /* tangent of the leading edge's sweep: 26.6 deg */
 #define THICK 0.12
-#define BASE 0.01          /* height of the blunt trailing edge per chord */
+#define BASE 0.01 /* height of the blunt trailing edge per chord */
 
 /* Spacings at factor 1, per local chord. */
 #define H_NOSE 0.006
@@ -31,7 +31,7 @@
 #define H_NOSE_MAX 0.03
 #define H_BASE_MAX (3 * BASE)
 
-enum { N_TABLE = 16384 };  /* intervals of the unrolled section */
+enum { N_TABLE = 16384 }; /* intervals of the unrolled section */
 
 static double least(double a, double b)
 {
@@ -56,20 +56,20 @@ void vg_demo_wing_law(const struct vg_demo_wing *w, double factor,
 
   law->n = 5;
   s[0].kind = s[1].kind = s[2].kind = VG_SOURCE_LINE;
-  put3(s[0].p1, tip_x, SPAN, 0);                        /* leading edge */
+  put3(s[0].p1, tip_x, SPAN, 0); /* leading edge */
   s[0].h0 = nose;
   s[0].h1 = nose * TAPER;
   s[0].r0 = s[0].r1 = 0.01 * TAPER;
-  put3(s[1].p0, 1, 0, 0);                               /* trailing edge */
+  put3(s[1].p0, 1, 0, 0); /* trailing edge */
   put3(s[1].p1, tip_x + TAPER, SPAN, 0);
   s[1].h0 = tail;
   s[1].h1 = tail * TAPER;
   s[1].r0 = s[1].r1 = 0.5 * BASE;
-  put3(s[2].p0, tip_x, SPAN, 0);                        /* tip */
+  put3(s[2].p0, tip_x, SPAN, 0); /* tip */
   put3(s[2].p1, tip_x + TAPER, SPAN, 0);
   s[2].h0 = s[2].h1 = tip;
   s[2].r0 = s[2].r1 = 0.25 * THICK * TAPER;
-  s[3].kind = s[4].kind = VG_SOURCE_TRIANGLE;           /* planform */
+  s[3].kind = s[4].kind = VG_SOURCE_TRIANGLE; /* planform */
   put3(s[3].p1, 1, 0, 0);
   put3(s[3].p2, tip_x + TAPER, SPAN, 0);
   put3(s[4].p1, tip_x + TAPER, SPAN, 0);
@@ -77,7 +77,7 @@ void vg_demo_wing_law(const struct vg_demo_wing *w, double factor,
   s[3].h0 = s[4].h0 = least(factor * H_WING, 0.25);
   s[3].r0 = s[4].r0 = 0.5 * THICK;
   if (w->is_half) return;
-  for (int i = 0; i < 5; i++) {   /* the other side */
+  for (int i = 0; i < 5; i++) { /* the other side */
     struct vg_source *t = &s[law->n++];
 
     *t = s[i];
@@ -89,11 +89,12 @@ void vg_demo_wing_law(const struct vg_demo_wing *w, double factor,
 
 /* --- section and cone ---------------------------------------------------- */
 
-static double thickness(int is_sharp, double a)   /* a = |u| */
+static double thickness(int is_sharp, double a) /* a = |u| */
 {
   const double x = a * a;
-  const double y = 5 * THICK * (0.2969 * a + x * (-0.1260 + x * (-0.3516
-                   + x * (0.2843 - 0.1036 * x))));
+  const double y = 5 * THICK *
+                   (0.2969 * a +
+                    x * (-0.1260 + x * (-0.3516 + x * (0.2843 - 0.1036 * x))));
 
   if (a >= 1) return is_sharp ? 0 : 0.5 * BASE;
   return is_sharp ? y : y + 0.5 * BASE * x;
@@ -106,15 +107,15 @@ int vg_demo_wing_holds(const struct vg_demo_wing *w, const double x[3])
 
   if (y > SPAN) return 0;
   at = (x[0] - SWEEP * y) / chord;
-  return at > 0 && at < 1
-         && fabs(x[2]) < chord * thickness(w->is_sharp, sqrt(at));
+  return at > 0 && at < 1 &&
+         fabs(x[2]) < chord * thickness(w->is_sharp, sqrt(at));
 }
 
 struct cone {
   int is_sharp;
   double apex[3];
   const struct vg_demo_law *law;
-  double (*w)[2];          /* [N_TABLE + 1] unrolled directions, unit */
+  double (*w)[2]; /* [N_TABLE + 1] unrolled directions, unit */
 };
 
 static double table_u(int i)
@@ -134,8 +135,7 @@ static void cone_point(const struct cone *c, double u, double scale,
                        double x[3])
 {
   root_point(c, u, x);
-  for (int k = 0; k < 3; k++)
-    x[k] = c->apex[k] + scale * (x[k] - c->apex[k]);
+  for (int k = 0; k < 3; k++) x[k] = c->apex[k] + scale * (x[k] - c->apex[k]);
 }
 
 static double ray_length(const struct cone *c, double u)
@@ -143,8 +143,7 @@ static double ray_length(const struct cone *c, double u)
   double x[3], rr = 0;
 
   root_point(c, u, x);
-  for (int k = 0; k < 3; k++)
-    rr += (x[k] - c->apex[k]) * (x[k] - c->apex[k]);
+  for (int k = 0; k < 3; k++) rr += (x[k] - c->apex[k]) * (x[k] - c->apex[k]);
   return sqrt(rr);
 }
 
@@ -181,8 +180,7 @@ static int unroll(struct cone *c)
   return 0;
 }
 
-static void to_plane(const struct cone *c, double u, double scale,
-                     double p[2])
+static void to_plane(const struct cone *c, double u, double scale, double p[2])
 {
   const double t = 0.5 * (u + 1) * N_TABLE;
   const int i = t >= N_TABLE ? N_TABLE - 1 : (int)t;
@@ -233,7 +231,7 @@ static double size_on_cone(void *user, const double p[2])
 struct side {
   const struct cone *c;
   double scale;
-  double *along;           /* [N_TABLE / 2 + 1] from the tail to the nose */
+  double *along; /* [N_TABLE / 2 + 1] from the tail to the nose */
   int at;
 };
 
@@ -288,7 +286,7 @@ static vg_status divide_side(const struct cone *c, double scale, size_t *n,
 
 struct tail {
   const struct cone *c;
-  double length;           /* of the ray, root to apex */
+  double length; /* of the ray, root to apex */
 };
 
 static double size_on_tail(void *user, double s)
@@ -314,8 +312,7 @@ struct frame {
 
 static uint32_t add_point(struct frame *f, const double x[3])
 {
-  if (vg_reserve(&f->m->point, &f->cap, f->m->n_point + 1,
-                 sizeof *f->m->point))
+  if (vg_reserve(&f->m->point, &f->cap, f->m->n_point + 1, sizeof *f->m->point))
     return UINT32_MAX;
   memcpy(f->m->point[f->m->n_point], x, sizeof *f->m->point);
   return (uint32_t)f->m->n_point++;
@@ -452,8 +449,8 @@ static vg_status fill_skin(struct frame *f, struct vg_error *err)
   struct vg_mesh *m = f->m;
   struct outline o = { 0 };
   size_t n_new = 0, n_tri = 0;
-  double (*add)[2] = NULL;
-  uint32_t (*tri)[3] = NULL, first;
+  double(*add)[2] = NULL;
+  uint32_t(*tri)[3] = NULL, first;
   const struct vg_planar_law law = { .at = size_on_cone, .user = &f->c };
   vg_status st = VG_OK;
 
@@ -461,8 +458,8 @@ static vg_status fill_skin(struct frame *f, struct vg_error *err)
     st = vg_fail_memory(err, "the wing");
     goto done;
   }
-  VG_TRY(vg_planar_mesh(o.n, (const double (*)[2])o.p, o.n,
-                        (const uint32_t (*)[2])o.edge, &law, &n_new, &add,
+  VG_TRY(vg_planar_mesh(o.n, (const double(*)[2])o.p, o.n,
+                        (const uint32_t(*)[2])o.edge, &law, &n_new, &add,
                         &n_tri, &tri, err));
   first = (uint32_t)m->n_point;
   m->tri_patch = vg_calloc(n_tri, sizeof *m->tri_patch);
@@ -507,20 +504,20 @@ static vg_status fill_caps(struct frame *f, struct vg_error *err)
   const struct vg_size_law law = { .at = vg_demo_size,
                                    .user = (void *)f->c.law };
   const size_t room = 2 * f->n_side[1] + 2 * f->n_tail + 2 * f->n_base;
-  uint32_t (*edge)[2] = vg_alloc(room, sizeof *edge);
+  uint32_t(*edge)[2] = vg_alloc(room, sizeof *edge);
   size_t n;
   vg_status st;
 
   if (!edge) return vg_fail_memory(err, "the wing tip");
   n = chain(f->curve[1], 2 * f->n_side[1], 0, edge);
   if (!f->c.is_sharp) n += chain(f->base[1], f->n_base, 0, edge + n);
-  VG_TRY(vg_planar_patch(f->m, n, (const uint32_t (*)[2])edge, &law, 1, err));
+  VG_TRY(vg_planar_patch(f->m, n, (const uint32_t(*)[2])edge, &law, 1, err));
   if (f->c.is_sharp) goto done;
   n = chain(f->lower, f->n_tail, 0, edge);
   n += chain(f->base[1], f->n_base, 1, edge + n);
   n += chain(f->upper, f->n_tail, 1, edge + n);
   n += chain(f->base[0], f->n_base, 0, edge + n);
-  st = vg_planar_patch(f->m, n, (const uint32_t (*)[2])edge, &law, 2, err);
+  st = vg_planar_patch(f->m, n, (const uint32_t(*)[2])edge, &law, 2, err);
 done:
   free(edge);
   return st;
@@ -531,8 +528,8 @@ static vg_status mirror(struct vg_mesh *m, struct vg_error *err)
 {
   const size_t n = m->n_point, n_tri = m->n_tri;
   uint32_t *other = vg_alloc(n, sizeof *other), *of;
-  double (*point)[3] = vg_realloc(m->point, 2 * n, sizeof *point);
-  uint32_t (*tri)[3];
+  double(*point)[3] = vg_realloc(m->point, 2 * n, sizeof *point);
+  uint32_t(*tri)[3];
 
   if (point) m->point = point;
   tri = vg_realloc(m->tri, 2 * n_tri, sizeof *tri);
@@ -580,8 +577,9 @@ vg_status vg_demo_wing_surface(const struct vg_demo_wing *w,
 {
   const double reach = SPAN / (1 - TAPER);
   struct vg_mesh m = VG_MESH_INIT;
-  struct frame f = { .c = { w->is_sharp, { SWEEP * reach, reach, 0 }, law,
-                            NULL }, .m = &m };
+  struct frame f = {
+    .c = { w->is_sharp, { SWEEP * reach, reach, 0 }, law, NULL }, .m = &m
+  };
   vg_status st;
 
   VG_TRY(add_patches(&m, w->is_sharp, err));

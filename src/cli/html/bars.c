@@ -3,16 +3,22 @@
 
 #include "cli/html/page.h"
 
-enum { WIDTH = 460, HEIGHT = 210, LEFT = 52, RIGHT = 10, TOP = 14,
-       BOTTOM = 34 };
+enum {
+  WIDTH = 460,
+  HEIGHT = 210,
+  LEFT = 52,
+  RIGHT = 10,
+  TOP = 14,
+  BOTTOM = 34
+};
 
 /* The logarithm, exact at whole digits and straight between them: the same on
  * every machine, and good enough to draw by. v >= 1. */
 static double decades_of(double v)
 {
-  static const double log_digit[10] = {
-    0, 0.30103, 0.47712, 0.60206, 0.69897, 0.77815, 0.8451, 0.90309, 0.95424,
-    1 };
+  static const double log_digit[10] = { 0,       0.30103, 0.47712, 0.60206,
+                                        0.69897, 0.77815, 0.8451,  0.90309,
+                                        0.95424, 1 };
   double n = 0;
   int digit;
 
@@ -25,12 +31,12 @@ static double decades_of(double v)
 /* Counts are drawn by their logarithm: what matters is rare. */
 static double height_of(double count, double decades)
 {
-  return count >= 1 ? (HEIGHT - TOP - BOTTOM) * (decades_of(count) + 0.3) /
-                      (decades + 0.3) : 0;
+  return count >= 1
+         ? (HEIGHT - TOP - BOTTOM) * (decades_of(count) + 0.3) / (decades + 0.3)
+         : 0;
 }
 
-static void axes(struct page *p, const struct bars *b, size_t n,
-                 double decades)
+static void axes(struct page *p, const struct bars *b, size_t n, double decades)
 {
   double wide = (WIDTH - LEFT - RIGHT) / (double)n;
   size_t each = n > 20 ? 6 : 4;
@@ -39,12 +45,13 @@ static void axes(struct page *p, const struct bars *b, size_t n,
   for (int d = 0; d <= (int)decades; d++, at *= 10) {
     int y = (int)(HEIGHT - BOTTOM - height_of(at, decades));
 
-    vg_page_format(p, "<path class=\"grid\" d=\"M%d %dH%d\"/>"
-                   "<text x=\"%d\" y=\"%d\" class=\"end\">", LEFT, y,
-                   WIDTH - RIGHT, LEFT - 6, y + 4);
+    vg_page_format(p,
+                   "<path class=\"grid\" d=\"M%d %dH%d\"/>"
+                   "<text x=\"%d\" y=\"%d\" class=\"end\">",
+                   LEFT, y, WIDTH - RIGHT, LEFT - 6, y + 4);
     if (d < 4) vg_page_format(p, "%.0f</text>", at);
-    else vg_page_format(p, "10<tspan dy=\"-4\" class=\"up\">%d</tspan></text>",
-                        d);
+    else
+      vg_page_format(p, "10<tspan dy=\"-4\" class=\"up\">%d</tspan></text>", d);
   }
   for (size_t i = 0; i <= n; i += each) {
     vg_page_format(p, "<text x=\"%d\" y=\"%d\" class=\"middle\">",
@@ -91,12 +98,15 @@ void vg_html_bars(struct page *p, const struct bars *b, const json_t *counts)
   for (size_t i = 0; i < n; i++)
     most = fmax(most, json_number_value(json_array_get(counts, i)));
   decades = fmax(1, decades_of(most));
-  vg_page_format(p, "<figure class=\"chart\"><svg viewBox=\"0 0 %d %d\" "
-                 "role=\"img\" aria-label=\"%s\">\n", WIDTH, HEIGHT, b->alt);
+  vg_page_format(p,
+                 "<figure class=\"chart\"><svg viewBox=\"0 0 %d %d\" "
+                 "role=\"img\" aria-label=\"%s\">\n",
+                 WIDTH, HEIGHT, b->alt);
   axes(p, b, n, decades);
   for (size_t i = 0; i < n; i++)
     bar(p, b, i, n, json_number_value(json_array_get(counts, i)), decades);
-  vg_page_format(p, "<path class=\"axis\" d=\"M%d %dH%d\"/></svg>\n"
-                 "<figcaption>%s</figcaption></figure>\n", LEFT,
-                 HEIGHT - BOTTOM, WIDTH - RIGHT, b->title);
+  vg_page_format(p,
+                 "<path class=\"axis\" d=\"M%d %dH%d\"/></svg>\n"
+                 "<figcaption>%s</figcaption></figure>\n",
+                 LEFT, HEIGHT - BOTTOM, WIDTH - RIGHT, b->title);
 }

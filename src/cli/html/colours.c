@@ -2,30 +2,38 @@
 #include "cli/html/page.h"
 
 const uint8_t vg_patch_colour[PATCH_COLOURS][3] = {
-  { 108, 162, 214 }, { 240, 166, 92 }, { 116, 184, 118 }, { 216, 112, 112 },
+  { 108, 162, 214 }, { 240, 166, 92 },  { 116, 184, 118 }, { 216, 112, 112 },
   { 164, 140, 206 }, { 186, 148, 122 }, { 228, 144, 194 }, { 186, 186, 84 },
-  { 92, 190, 198 }, { 246, 204, 112 }, { 142, 170, 156 }, { 150, 160, 226 } };
+  { 92, 190, 198 },  { 246, 204, 112 }, { 142, 170, 156 }, { 150, 160, 226 }
+};
 
 /* From few to many: dark blue over green to yellow, as bright as many. */
 const uint8_t vg_level_colour[LEVEL_COLOURS][3] = {
-  { 68, 1, 84 }, { 72, 26, 108 }, { 71, 47, 125 }, { 65, 68, 135 },
-  { 57, 86, 140 }, { 49, 104, 142 }, { 42, 120, 142 }, { 35, 136, 142 },
+  { 68, 1, 84 },    { 72, 26, 108 },  { 71, 47, 125 },  { 65, 68, 135 },
+  { 57, 86, 140 },  { 49, 104, 142 }, { 42, 120, 142 }, { 35, 136, 142 },
   { 31, 152, 139 }, { 34, 168, 132 }, { 53, 183, 121 }, { 84, 197, 104 },
-  { 122, 209, 81 }, { 165, 219, 54 }, { 210, 226, 27 }, { 253, 231, 37 } };
+  { 122, 209, 81 }, { 165, 219, 54 }, { 210, 226, 27 }, { 253, 231, 37 }
+};
 
 const uint8_t vg_cause_colour[VG_CAUSE_N][3] = {
   { 176, 208, 190 }, { 176, 208, 190 }, { 230, 159, 0 }, { 160, 110, 190 },
-  { 200, 40, 50 }, { 130, 70, 40 }, { 0, 114, 178 }, { 240, 100, 150 } };
+  { 200, 40, 50 },   { 130, 70, 40 },   { 0, 114, 178 }, { 240, 100, 150 }
+};
 
 const uint8_t vg_beside_colour[3] = { 231, 231, 239 };
 
 const char *vg_cause_words(enum vg_layer_cause cause)
 {
   static const char *const words[VG_CAUSE_N] = {
-    "all layers asked for", "ended as thick as the local cells, as intended",
-    "another surface stands in front", "columns converge in a corner",
-    "no direction sees all faces", "a cell would be inverted or flat",
-    "tops or flanks would cross", "meets a slide patch too flat" };
+    "all layers asked for",
+    "ended as thick as the local cells, as intended",
+    "another surface stands in front",
+    "columns converge in a corner",
+    "no direction sees all faces",
+    "a cell would be inverted or flat",
+    "tops or flanks would cross",
+    "meets a slide patch too flat"
+  };
 
   return words[cause];
 }

@@ -11,9 +11,10 @@
 /* Scripts at the end: the page is there before they run, and without them. */
 static void scripts(struct page *p)
 {
-  vg_page_markup(p, "<!-- regl 2.1.1, https://github.com/regl-project/regl, "
-    "copyright 2016 Mikola Lysenko, MIT license: share/html/regl.LICENSE of "
-    "Vanguard -->\n<script>\n");
+  vg_page_markup(
+    p, "<!-- regl 2.1.1, https://github.com/regl-project/regl, "
+       "copyright 2016 Mikola Lysenko, MIT license: share/html/regl.LICENSE of "
+       "Vanguard -->\n<script>\n");
   vg_output_bytes(&p->out, vg_asset_regl_min_js, vg_asset_regl_min_js_size);
   vg_page_markup(p, "\n</script>\n<script>\n");
   vg_output_bytes(&p->out, vg_asset_report_js, vg_asset_report_js_size);
@@ -23,11 +24,12 @@ static void scripts(struct page *p)
 static void foot(struct page *p)
 {
   vg_page_markup(p, "</main>\n<footer><p>Made by Vanguard " VG_VERSION
-    ", source ");
+                    ", source ");
   vg_page_format(p, "%.12s", vg_source_digest);
-  vg_page_markup(p, ". This page loads nothing. The same figures, and more, "
-    "are in PROJECT.report.json. The view to turn uses regl (MIT license, "
-    "copyright 2016 Mikola Lysenko).</p></footer>\n");
+  vg_page_markup(
+    p, ". This page loads nothing. The same figures, and more, "
+       "are in PROJECT.report.json. The view to turn uses regl (MIT license, "
+       "copyright 2016 Mikola Lysenko).</p></footer>\n");
   scripts(p);
   vg_page_markup(p, "</body>\n</html>\n");
 }
@@ -58,14 +60,14 @@ vg_status vg_html_write(const char *path, const struct vg_html *h,
                         struct vg_error *err)
 {
   const struct vg_mesh *m = &h->problem->boundary.surface;
-  struct page p = { .out = VG_OUTPUT_INIT, .h = h,
+  struct page p = { .out = VG_OUTPUT_INIT,
+                    .h = h,
                     .has_layers = h->layers->is_on };
   vg_status st;
 
   p.body = vg_alloc(m->n_patch, 1);
   if (!p.body) return vg_fail_memory(err, "the report");
-  vg_body_patches(m, p.has_layers ? &h->layers->layers.columns : NULL,
-                  p.body);
+  vg_body_patches(m, p.has_layers ? &h->layers->layers.columns : NULL, p.body);
   VG_TRY(vg_html_draw(&p, err));
   VG_TRY(vg_output_open(path, &p.out, err));
   VG_TRY(sections(&p, err));

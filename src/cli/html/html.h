@@ -11,7 +11,7 @@
 
 /** What a page is made of; borrowed. */
 struct vg_html {
-  const json_t *report;     /* as STEM.report.json */
+  const json_t *report; /* as STEM.report.json */
   const struct vg_problem *problem;
   const struct vg_layer_stage *layers;
   const struct vg_run *run; /* with its pictures */

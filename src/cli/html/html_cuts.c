@@ -33,8 +33,8 @@ static void figure(struct page *p, size_t i, int picture, const char *what)
   const struct vg_cut *c = &plan->cut[i];
   char alt[160], id[24];
 
-  snprintf(alt, sizeof alt, "%s, cut across %s: %s.",
-           view_words(plan->view[i]), axis_name[c->axis], what);
+  snprintf(alt, sizeof alt, "%s, cut across %s: %s.", view_words(plan->view[i]),
+           axis_name[c->axis], what);
   snprintf(id, sizeof id, "cut%zu", i);
   vg_page_figure(p, picture, picture < PICTURE_ANGLE ? id : NULL, alt);
   vg_page_markup(p, view_words(plan->view[i]));
@@ -45,13 +45,12 @@ static void figure(struct page *p, size_t i, int picture, const char *what)
 
 static void kind_keys(struct page *p)
 {
-  static const char *const name[VG_CUT_KINDS] = {
-    "tetrahedra of the field", "tetrahedra of the layers", "pyramids",
-    "prisms" };
+  static const char *const name[VG_CUT_KINDS] = { "tetrahedra of the field",
+                                                  "tetrahedra of the layers",
+                                                  "pyramids", "prisms" };
   const uint64_t *layer = p->h->run->slices.n_layer_cell;
   const uint64_t n[VG_CUT_KINDS] = { 1, layer[VG_SLICE_TET],
-                                     layer[VG_SLICE_PYR],
-                                     layer[VG_SLICE_PRI] };
+                                     layer[VG_SLICE_PYR], layer[VG_SLICE_PRI] };
 
   vg_page_markup(p, "<p class=\"keys\">");
   for (int k = 0; k < VG_CUT_KINDS; k++)
@@ -80,9 +79,10 @@ void vg_html_cuts(struct page *p)
   const struct vg_cut_plan *plan = &p->h->run->pictures.plan;
 
   vg_page_section(p, "cuts", "Cuts through the mesh");
-  vg_page_markup(p, "<p>Each picture shows the cells that a plane meets, as "
-    "they are in the files. Lines around cells fade where cells are thinner "
-    "than a line.</p>\n<div class=\"pair\">\n");
+  vg_page_markup(
+    p, "<p>Each picture shows the cells that a plane meets, as "
+       "they are in the files. Lines around cells fade where cells are thinner "
+       "than a line.</p>\n<div class=\"pair\">\n");
   for (size_t i = 0; i < plan->n; i++)
     figure(p, i, PICTURE_CUT + (int)i, "cells by their kind");
   vg_page_markup(p, "</div>\n");
@@ -101,8 +101,11 @@ void vg_html_angles(struct page *p)
 
 void vg_html_partition(struct page *p)
 {
-  static const struct { const char *name, *path; } row[] = {
-    { "cuts", "partition.cuts" }, { "zones along lines", "partition.pencils" },
+  static const struct {
+    const char *name, *path;
+  } row[] = {
+    { "cuts", "partition.cuts" },
+    { "zones along lines", "partition.pencils" },
     { "zones in planes", "partition.tiles" },
     { "cells of zones", "partition.zone_cells" },
     { "subdomains", "partition.leaves" },
@@ -110,8 +113,7 @@ void vg_html_partition(struct page *p)
     { "cuts repeated elsewhere", "partition.cuts_repeated" },
     { "subdomains cut again", "partition.leaves_cut_again" },
     { "subdomains left larger than asked", "partition.leaves_left_large" },
-    { "parts filled again with their neighbours",
-      "partition.parts_widened" },
+    { "parts filled again with their neighbours", "partition.parts_widened" },
     { "regions at interfaces that were bad", "partition.regions_bad" },
     { "of these improved", "partition.regions_repaired" },
   };
@@ -119,7 +121,8 @@ void vg_html_partition(struct page *p)
   vg_page_section(p, "partition", "How the field was cut up");
   vg_page_markup(p, "<div class=\"pair\">\n");
   if (p->h->run->pictures.plan.n)
-    figure(p, p->part_cut, PICTURE_PART, "cells by the subdomain in which "
+    figure(p, p->part_cut, PICTURE_PART,
+           "cells by the subdomain in which "
            "they were made");
   vg_page_markup(p, "<div><table class=\"facts\">\n");
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)

@@ -35,9 +35,9 @@ void vg_html_head(struct page *p)
   const struct vg_problem *q = p->h->problem;
 
   vg_page_markup(p, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
-    "<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-    "content=\"width=device-width, initial-scale=1\">\n"
-    "<meta name=\"color-scheme\" content=\"light dark\">\n");
+                    "<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+                    "content=\"width=device-width, initial-scale=1\">\n"
+                    "<meta name=\"color-scheme\" content=\"light dark\">\n");
   vg_page_markup(p, policy);
   vg_page_markup(p, "<meta name=\"generator\" content=\"Vanguard " VG_VERSION
                     "\">\n<title>");
@@ -49,11 +49,13 @@ void vg_html_head(struct page *p)
   vg_page_text(p, q->asked.title);
   vg_page_markup(p, "</h1>\n<p class=\"badges\">");
   vg_page_markup(p, json_is_true(vg_page_json(p, "mesh.valid"))
-    ? "<span class=\"badge good\">valid mesh</span>"
-    : "<span class=\"badge bad\">not valid</span>");
+                      ? "<span class=\"badge good\">valid mesh</span>"
+                      : "<span class=\"badge bad\">not valid</span>");
   if (p->h->layers->n_missed)
-    vg_page_format(p, " <span class=\"badge bad\">%zu limit%s on the layers "
-                   "not met</span>", p->h->layers->n_missed,
+    vg_page_format(p,
+                   " <span class=\"badge bad\">%zu limit%s on the layers "
+                   "not met</span>",
+                   p->h->layers->n_missed,
                    p->h->layers->n_missed > 1 ? "s" : "");
   vg_page_markup(p, "</p>\n");
   flow(p);
@@ -65,7 +67,11 @@ void vg_html_head(struct page *p)
 /* The list is written weight by weight: a line of another one is not begun. */
 enum weight { WEIGHT_BAD, WEIGHT_LOOK, WEIGHT_CHANGED, WEIGHT_NOTE, WEIGHTS };
 
-struct list { struct page *p; enum weight now; int n; };
+struct list {
+  struct page *p;
+  enum weight now;
+  int n;
+};
 
 static int begin(struct list *l, enum weight weight)
 {
@@ -112,8 +118,9 @@ static void missed(struct list *l)
     patch_words(l->p, m->patch);
     vg_page_format(l->p, ": %s is ", m->name);
     vg_page_real(l->p, m->wanted, 10);
-    vg_page_format(l->p, m->is_bare ? "%s, but it has no layers"
-                                    : "%s, reached ", m->unit);
+    vg_page_format(l->p,
+                   m->is_bare ? "%s, but it has no layers" : "%s, reached ",
+                   m->unit);
     if (!m->is_bare) {
       vg_page_real(l->p, m->got, 10);
       vg_page_markup(l->p, m->unit);
@@ -171,8 +178,7 @@ static void added(struct list *l)
   if (!begin(l, WEIGHT_CHANGED)) return;
   vg_page_markup(l->p, "to the body were added: ");
   if (d->added_symmetry) {
-    vg_page_format(l->p, "a symmetry plane at %c = ",
-                   "xyz"[d->symmetry_axis]);
+    vg_page_format(l->p, "a symmetry plane at %c = ", "xyz"[d->symmetry_axis]);
     vg_page_real(l->p, d->symmetry_at, 6);
     if (d->added_farfield) vg_page_markup(l->p, " and ");
   }
@@ -189,15 +195,19 @@ static void surface_changed(struct list *l)
   uint64_t flipped = (uint64_t)vg_page_number(l->p, "surface.flipped");
   int all = flipped >= q->surface.n_tri;
 
-  count_line(l, WEIGHT_CHANGED, q->n_dropped, "triangle of the input was "
-             "dropped by the weld", "triangles of the input were dropped by "
+  count_line(l, WEIGHT_CHANGED, q->n_dropped,
+             "triangle of the input was "
+             "dropped by the weld",
+             "triangles of the input were dropped by "
              "the weld");
   count_line(l, WEIGHT_CHANGED, removed, "triangle was removed by the repair",
              "triangles were removed by the repair");
   count_line(l, all ? WEIGHT_NOTE : WEIGHT_CHANGED, flipped,
-             "triangle was turned over", all
-             ? "triangles were turned over: all, so that they point into the "
-               "fluid" : "triangles were turned over");
+             "triangle was turned over",
+             all
+               ? "triangles were turned over: all, so that they point into the "
+                 "fluid"
+               : "triangles were turned over");
   count_line(l, WEIGHT_NOTE, q->n_welded, "point was merged with another",
              "points were merged with others");
   added(l);
@@ -211,8 +221,10 @@ static void mesh_lines(struct list *l)
 
   if (r->below[0] > 0 && begin(l, WEIGHT_LOOK)) {
     vg_page_real(p, r->below[0], 3);
-    vg_page_format(p, " %% of the %s have an angle below 5 degrees, the "
-                   "smallest is ", p->has_layers ? "field's cells" : "cells");
+    vg_page_format(p,
+                   " %% of the %s have an angle below 5 degrees, the "
+                   "smallest is ",
+                   p->has_layers ? "field's cells" : "cells");
     vg_page_real(p, r->angle_min, 3);
     vg_page_markup(p, "&deg;; <a href=\"#worst\">the worst are shown</a>");
     end(l);
@@ -220,10 +232,10 @@ static void mesh_lines(struct list *l)
   count_line(l, WEIGHT_NOTE,
              (uint64_t)vg_page_number(p, "partition.parts_widened"),
              "part of the field could not be filled, and was filled together "
-             "with what is beside it", "parts of the field could not be "
+             "with what is beside it",
+             "parts of the field could not be "
              "filled, and were filled together with what is beside them");
-  count_line(l, WEIGHT_NOTE,
-             (uint64_t)vg_page_number(p, "fill.steiner_points"),
+  count_line(l, WEIGHT_NOTE, (uint64_t)vg_page_number(p, "fill.steiner_points"),
              "point was added to recover the boundary",
              "points were added to recover the boundary");
 }
@@ -299,8 +311,7 @@ void vg_html_tiles(struct page *p)
   tile_begin(p);
   vg_page_real(p, r->angle_min, 3);
   vg_page_markup(p, "&deg;");
-  tile_end(p, p->has_layers ? "smallest angle of the field"
-                            : "smallest angle");
+  tile_end(p, p->has_layers ? "smallest angle of the field" : "smallest angle");
   tile_begin(p);
   vg_page_fixed(p, r->radius_ratio_mean, 3);
   tile_end(p, "radius ratio, mean");

@@ -41,9 +41,10 @@ static void cell_real(struct page *p, double v)
 
 static void row(struct page *p, const struct vg_patch_layers *w)
 {
-  const struct vg_patch *patch =
-    w->patch == VG_NO_INDEX ? NULL
-                            : &p->h->problem->boundary.surface.patch[w->patch];
+  const struct vg_patch *patch = w->patch == VG_NO_INDEX
+                                 ? NULL
+                                 : &p->h->problem->boundary.surface
+                                      .patch[w->patch];
 
   vg_page_markup(p, patch ? "<tr><th scope=\"row\">"
                           : "<tr class=\"all\"><th scope=\"row\">");
@@ -83,7 +84,9 @@ void vg_html_layers(struct page *p)
 
   if (!p->has_layers) return;
   vg_page_section(p, "layers", "Viscous layers");
-  vg_page_markup(p, "<div class=\"wide\"><table>\n<thead><tr>"
+  vg_page_markup(
+    p,
+    "<div class=\"wide\"><table>\n<thead><tr>"
     "<th scope=\"col\">wall</th><th scope=\"col\">faces</th>"
     "<th scope=\"col\">full&nbsp;%</th><th scope=\"col\">any&nbsp;%</th>"
     "<th scope=\"col\">levels</th><th scope=\"col\">mean</th>"
@@ -96,7 +99,9 @@ void vg_html_layers(struct page *p)
     "</tr></thead>\n<tbody>\n");
   for (size_t i = 0; i < s->n_wall; i++) row(p, &s->wall[i]);
   if (s->n_wall > 1) row(p, &s->all);
-  vg_page_markup(p, "</tbody></table></div>\n<p class=\"note\">Full: all "
+  vg_page_markup(
+    p,
+    "</tbody></table></div>\n<p class=\"note\">Full: all "
     "levels that the law and the size of the local cells ask for. Heights are "
     "measured on the points. Volume ratio: what 5 % of the faces exceed "
     "between the last layer and the field.</p>\n<dl class=\"causes\">");

@@ -12,24 +12,26 @@ static void patches(struct page *p)
   const struct vg_mesh *m = &p->h->problem->boundary.surface;
   const json_t *list = vg_page_json(p, "patches");
 
-  vg_page_markup(p, "<div class=\"wide\"><table>\n<thead><tr>"
-    "<th scope=\"col\">patch</th><th scope=\"col\">triangles</th>"
-    "<th scope=\"col\">USM3D</th><th scope=\"col\">FUN3D</th>"
-    "<th scope=\"col\" class=\"words\">layers, by</th></tr></thead>\n"
-    "<tbody>\n");
+  vg_page_markup(
+    p, "<div class=\"wide\"><table>\n<thead><tr>"
+       "<th scope=\"col\">patch</th><th scope=\"col\">triangles</th>"
+       "<th scope=\"col\">USM3D</th><th scope=\"col\">FUN3D</th>"
+       "<th scope=\"col\" class=\"words\">layers, by</th></tr></thead>\n"
+       "<tbody>\n");
   for (size_t i = 0; i < m->n_patch; i++) {
     const struct vg_patch *patch = &m->patch[i];
 
     vg_page_format(p, "<tr><th scope=\"row\">%d ", (int)patch->id);
     vg_page_text(p, patch->name);
     vg_page_markup(p, "</th><td>");
-    vg_page_count(p, (uint64_t)json_integer_value(json_object_get(
-                       json_array_get(list, i), "faces")));
+    vg_page_count(p, (uint64_t)json_integer_value(
+                       json_object_get(json_array_get(list, i), "faces")));
     vg_page_markup(p, "</td>");
     code(p, patch->bc);
     code(p, patch->bc_fun3d);
-    vg_page_format(p, "<td class=\"words\">%s</td></tr>\n", p->has_layers
-                   ? vg_wall_reason_name(p->h->layers->reason[i]) : "no");
+    vg_page_format(p, "<td class=\"words\">%s</td></tr>\n",
+                   p->has_layers ? vg_wall_reason_name(p->h->layers->reason[i])
+                                 : "no");
   }
   vg_page_markup(p, "</tbody></table></div>\n");
 }

@@ -17,12 +17,10 @@ static void thinner(struct palette *to)
 void vg_html_palette(enum by by, struct palette *to)
 {
   memset(to, 0, sizeof *to);
-  if (by == BY_PATCH)
-    memcpy(to->rgb, vg_patch_colour, sizeof vg_patch_colour);
+  if (by == BY_PATCH) memcpy(to->rgb, vg_patch_colour, sizeof vg_patch_colour);
   else if (by == BY_LEVEL)
     memcpy(to->rgb, vg_level_colour, sizeof vg_level_colour);
-  else
-    memcpy(to->rgb, vg_cause_colour, sizeof vg_cause_colour);
+  else memcpy(to->rgb, vg_cause_colour, sizeof vg_cause_colour);
   if (by == BY_CAUSE) thinner(to);
   memcpy(to->rgb[GREY], vg_beside_colour, sizeof vg_beside_colour);
 }
@@ -35,8 +33,7 @@ static double faces_y(const struct vg_mesh *m)
 
   for (size_t t = 0; t < m->n_tri; t++) {
     const uint32_t *n = m->tri[t];
-    const double *a = m->point[n[0]], *b = m->point[n[1]],
-                 *c = m->point[n[2]];
+    const double *a = m->point[n[0]], *b = m->point[n[1]], *c = m->point[n[2]];
 
     if (m->patch[m->tri_patch[t]].bc == 1)
       sum += (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]);
@@ -80,8 +77,8 @@ static vg_status surface(const struct drawing *d, int k, struct vg_image *to,
 
   if (by != BY_PATCH && !d->p->has_layers) return VG_BLOCKED;
   vg_html_palette(by, &palette);
-  return vg_shot_image(&d->shot[k % VIEWS], d->p->walls.by[by], palette.rgb,
-                       to, err);
+  return vg_shot_image(&d->shot[k % VIEWS], d->p->walls.by[by], palette.rgb, to,
+                       err);
 }
 
 static vg_status cut(const struct drawing *d, int k, struct vg_image *to,
@@ -89,12 +86,15 @@ static vg_status cut(const struct drawing *d, int k, struct vg_image *to,
 {
   const struct vg_run_pictures *r = &d->p->h->run->pictures;
   size_t i = k < PICTURE_ANGLE ? (size_t)(k - PICTURE_CUT)
-             : k == PICTURE_PART ? d->p->part_cut : 0;
+           : k == PICTURE_PART ? d->p->part_cut
+                               : 0;
 
   if (i >= r->plan.n) return VG_BLOCKED;
-  return vg_cuts_image(r->cuts, i, k == PICTURE_ANGLE ? VG_CUT_BY_ANGLE
-                                   : k == PICTURE_PART ? VG_CUT_BY_PART
-                                   : VG_CUT_BY_KIND, to, err);
+  return vg_cuts_image(r->cuts, i,
+                       k == PICTURE_ANGLE  ? VG_CUT_BY_ANGLE
+                       : k == PICTURE_PART ? VG_CUT_BY_PART
+                                           : VG_CUT_BY_KIND,
+                       to, err);
 }
 
 /* Memory is all that can be missing; the message is the caller's. */
@@ -107,8 +107,7 @@ static void draw(void *context, size_t first, size_t end, int worker)
     struct vg_image image = VG_IMAGE_INIT;
 
     d->st[k] = (k < PICTURE_CUT ? surface : cut)(d, (int)k, &image, NULL);
-    if (d->st[k] == VG_OK)
-      d->st[k] = vg_image_png(&image, &d->p->png[k], NULL);
+    if (d->st[k] == VG_OK) d->st[k] = vg_image_png(&image, &d->p->png[k], NULL);
     vg_image_release(&image);
   }
 }
@@ -140,8 +139,8 @@ vg_status vg_html_draw(struct page *p, struct vg_error *err)
   VG_TRY(choose_views(p, err));
   choose_part_cut(p);
   for (int k = 0; k < VIEWS; k++)
-    VG_TRY(vg_shot_take(m, p->walls.is_seen, &p->camera[k], threads,
-                        &d.shot[k], err));
+    VG_TRY(vg_shot_take(m, p->walls.is_seen, &p->camera[k], threads, &d.shot[k],
+                        err));
   vg_parallel_for(threads, PICTURES, 1, draw, &d);
   for (int k = 0; k < PICTURES && st >= 0; k++)
     if (d.st[k] < 0) st = vg_fail_memory(err, "the pictures");

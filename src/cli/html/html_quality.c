@@ -34,8 +34,7 @@ static double item(const struct page *p, const char *name, size_t i)
 
 static void shares(struct page *p)
 {
-  static const int below[] = { 5, 10, 15, 20, 30 }, above[] = { 150, 160,
-                                                               170 };
+  static const int below[] = { 5, 10, 15, 20, 30 }, above[] = { 150, 160, 170 };
   char name[60];
 
   for (size_t i = 0; i < 5; i++) {
@@ -70,36 +69,57 @@ static void facts(struct page *p)
     fact(p, "edge over target, mean",
          json_number_value(json_object_get(edges, "mean")), 3, "");
     fact(p, "edges within 0.7 to 1.5 of it",
-         json_number_value(json_object_get(edges, "percent_within")), 2,
-         " %");
+         json_number_value(json_object_get(edges, "percent_within")), 2, " %");
   }
   vg_page_markup(p, "</table>\n");
 }
 
 void vg_html_quality(struct page *p)
 {
-  static const struct bars least = { "Smallest dihedral angle of each cell",
-    "degrees", "Histogram of the smallest dihedral angle of each cell.", 0, 5,
-    10, 1e9 };
-  static const struct bars most = { "Largest dihedral angle of each cell",
-    "degrees", "Histogram of the largest dihedral angle of each cell.", 0, 5,
-    0, 160 };
+  static const struct bars least = {
+    "Smallest dihedral angle of each cell",
+    "degrees",
+    "Histogram of the smallest dihedral angle of each cell.",
+    0,
+    5,
+    10,
+    1e9
+  };
+  static const struct bars most = {
+    "Largest dihedral angle of each cell",
+    "degrees",
+    "Histogram of the largest dihedral angle of each cell.",
+    0,
+    5,
+    0,
+    160
+  };
   static const struct bars ratio = { "Radius ratio, 3 inradius / "
-    "circumradius", "1: regular", "Histogram of radius ratios.", 1, 0.05,
-    0.1, 1e9 };
+                                     "circumradius",
+                                     "1: regular",
+                                     "Histogram of radius ratios.",
+                                     1,
+                                     0.05,
+                                     0.1,
+                                     1e9 };
   static const struct bars edge = { "Edges over the size asked for there",
-    "1: as asked", "Histogram of edge lengths over target.", 1, 0.1, 0.4,
-    1.8 };
+                                    "1: as asked",
+                                    "Histogram of edge lengths over target.",
+                                    1,
+                                    0.1,
+                                    0.4,
+                                    1.8 };
   const json_t *edges = block(p, "edges");
 
   vg_page_section(p, "quality", "Quality of the cells");
-  vg_page_markup(p, p->has_layers
-    ? "<p>Of the field. Cells of the layers are flat by intent; their "
-      "heights and volumes are judged above.</p>\n"
-    : "");
+  vg_page_markup(
+    p, p->has_layers
+         ? "<p>Of the field. Cells of the layers are flat by intent; their "
+           "heights and volumes are judged above.</p>\n"
+         : "");
   vg_page_markup(p, "<p>Counts are drawn by their logarithm, as what matters "
-    "is rare; bars of cells to look at are red.</p>\n"
-    "<div class=\"charts\">\n");
+                    "is rare; bars of cells to look at are red.</p>\n"
+                    "<div class=\"charts\">\n");
   vg_html_bars(p, &least, block(p, "histogram_angle_min"));
   vg_html_bars(p, &most, block(p, "histogram_angle_max"));
   vg_html_bars(p, &ratio, block(p, "histogram_radius_ratio"));

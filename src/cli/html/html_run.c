@@ -7,8 +7,8 @@
 
 static void times(struct page *p)
 {
-  static const char *const phase[] = { "read", "check", "sizes", "layers",
-                                       "fill", "number", "judge", "parts",
+  static const char *const phase[] = { "read",  "check",  "sizes", "layers",
+                                       "fill",  "number", "judge", "parts",
                                        "write", "digest" };
   const json_t *seconds = vg_page_json(p, "seconds");
   double total = vg_page_number(p, "seconds.total");
@@ -70,7 +70,7 @@ static vg_status timeline(struct page *p, struct vg_error *err)
     vg_output_bytes(&p->out, svg,
                     in.size - (size_t)(svg - (const char *)in.data));
     vg_page_markup(p, "<figcaption>Who did what when: a lane for each thread "
-      "of each rank</figcaption></figure>\n");
+                      "of each rank</figcaption></figure>\n");
   }
   vg_input_release(&in);
   return VG_OK;
@@ -80,9 +80,10 @@ static void files(struct page *p)
 {
   const json_t *list = vg_page_json(p, "files");
 
-  vg_page_markup(p, "<div class=\"wide\"><table>\n<thead><tr>"
-    "<th scope=\"col\">file</th><th scope=\"col\">bytes</th>"
-    "<th scope=\"col\">XXH3 digest</th></tr></thead>\n<tbody>\n");
+  vg_page_markup(p,
+                 "<div class=\"wide\"><table>\n<thead><tr>"
+                 "<th scope=\"col\">file</th><th scope=\"col\">bytes</th>"
+                 "<th scope=\"col\">XXH3 digest</th></tr></thead>\n<tbody>\n");
   for (size_t i = 0; i < json_array_size(list); i++) {
     const json_t *f = json_array_get(list, i);
     const char *digest = json_string_value(json_object_get(f, "xxh3"));
@@ -91,8 +92,8 @@ static void files(struct page *p)
     vg_page_text(p, json_string_value(json_object_get(f, "path")));
     vg_page_markup(p, "</th><td>");
     if (digest)
-      vg_page_count(p, (uint64_t)json_integer_value(
-                         json_object_get(f, "bytes")));
+      vg_page_count(p,
+                    (uint64_t)json_integer_value(json_object_get(f, "bytes")));
     vg_page_format(p, "</td><td><code>%s</code></td></tr>\n",
                    digest ? digest : "");
   }

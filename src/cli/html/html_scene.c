@@ -11,12 +11,12 @@
 #include "run/common/text.h"
 #include "run/picture/decimate.h"
 
-#define MOST 120000        /* triangles (V1) */
+#define MOST 120000 /* triangles (V1) */
 
 /* Triangles sorted by patch: those of patch i are first[i] .. first[i + 1]. */
 struct scene {
   struct vg_decimated coarse;
-  size_t *first, *order;    /* [n_patch + 1], [n_tri] */
+  size_t *first, *order;             /* [n_patch + 1], [n_tri] */
   double centre[3], half[3], radius; /* of the body's box */
 };
 
@@ -102,16 +102,14 @@ static vg_status pack(const struct page *p, const struct scene *s,
 
   if (!data) return vg_fail_memory(err, "the scene");
   for (size_t i = 0; i < c->n_point; i++)
-    for (int k = 0; k < 3; k++)
-      put_float(&to, c->point[i][k] - s->centre[k]);
+    for (int k = 0; k < 3; k++) put_float(&to, c->point[i][k] - s->centre[k]);
   for (size_t i = 0; i < c->n_tri; i++)
     for (int k = 0; k < 3; k++) {
       put32(&to, c->tri[s->order[i]][k] - last);
       last = c->tri[s->order[i]][k];
     }
   for (int k = 0; k < 3; k++)
-    for (size_t i = 0; i < c->n_tri; i++)
-      *to++ = by[k][c->from[s->order[i]]];
+    for (size_t i = 0; i < c->n_tri; i++) *to++ = by[k][c->from[s->order[i]]];
   st = vg_deflate(data, n, out, err);
   free(data);
   return st;
@@ -148,17 +146,17 @@ static json_t *patches(const struct page *p, const struct scene *s)
     const uint8_t *rgb = p->body[i] ? vg_patch_colour[i % PATCH_COLOURS]
                                     : vg_beside_colour;
 
-    snprintf(name, sizeof name, "%d %s", (int)m->patch[i].id,
-             m->patch[i].name);
+    snprintf(name, sizeof name, "%d %s", (int)m->patch[i].id, m->patch[i].name);
     /* "</script>" in a name must not end the script */
     vg_text_clean(name, clean, sizeof clean);
     for (char *c = clean; *c; c++)
       if (*c == '<') *c = '(';
-    json_array_append_new(list, json_pack(
-      "{s:s s:b s:I s:I s:[i,i,i]}", "name", clean, "body", p->body[i],
-      "first", (json_int_t)s->first[i], "count",
-      (json_int_t)(s->first[i + 1] - s->first[i]), "colour", rgb[0], rgb[1],
-      rgb[2]));
+    json_array_append_new(list,
+                          json_pack("{s:s s:b s:I s:I s:[i,i,i]}", "name",
+                                    clean, "body", p->body[i], "first",
+                                    (json_int_t)s->first[i], "count",
+                                    (json_int_t)(s->first[i + 1] - s->first[i]),
+                                    "colour", rgb[0], rgb[1], rgb[2]));
   }
   return list;
 }
@@ -173,11 +171,12 @@ static json_t *cuts(const struct page *p, const struct scene *s)
     int u = c->axis == 0 ? 1 : 0, v = c->axis == 2 ? 1 : 2;
 
     if (plan->view[i] != VG_VIEW_BODY) continue;
-    json_array_append_new(list, json_pack(
-      "{s:i s:i s:f s:[f,f] s:[f,f]}", "picture", (int)i, "axis", c->axis,
-      "at", c->at - s->centre[c->axis], "centre",
-      c->centre[0] - s->centre[u], c->centre[1] - s->centre[v], "half",
-      c->width / 2, c->width * VG_CUT_HEIGHT / VG_CUT_WIDTH / 2));
+    json_array_append_new(
+      list, json_pack("{s:i s:i s:f s:[f,f] s:[f,f]}", "picture", (int)i,
+                      "axis", c->axis, "at", c->at - s->centre[c->axis],
+                      "centre", c->centre[0] - s->centre[u],
+                      c->centre[1] - s->centre[v], "half", c->width / 2,
+                      c->width * VG_CUT_HEIGHT / VG_CUT_WIDTH / 2));
   }
   return list;
 }
@@ -198,12 +197,11 @@ static json_t *facts(const struct page *p, const struct scene *s)
   json_t *o = json_object(), *names = json_array();
 
   for (int c = 0; c < VG_CAUSE_N; c++)
-    json_array_append_new(names, json_string(
-      vg_layer_cause_name((enum vg_layer_cause)c)));
-  json_object_set_new(o, "points", json_integer((json_int_t)
-                                                s->coarse.n_point));
-  json_object_set_new(o, "triangles", json_integer((json_int_t)
-                                                   s->coarse.n_tri));
+    json_array_append_new(names, json_string(vg_layer_cause_name(
+                                   (enum vg_layer_cause)c)));
+  json_object_set_new(o, "points", json_integer((json_int_t)s->coarse.n_point));
+  json_object_set_new(o, "triangles",
+                      json_integer((json_int_t)s->coarse.n_tri));
   json_object_set_new(o, "merged", json_boolean(s->coarse.step > 0));
   json_object_set_new(o, "layers", json_boolean(p->has_layers));
   json_object_set_new(o, "levels", json_integer(p->walls.level_most));
@@ -213,10 +211,9 @@ static json_t *facts(const struct page *p, const struct scene *s)
   json_object_set_new(o, "patches", patches(p, s));
   json_object_set_new(o, "cuts", cuts(p, s));
   json_object_set_new(o, "worst", worst(p, s));
-  json_object_set_new(o, "levelColours", colours(vg_level_colour,
-                                                 LEVEL_COLOURS));
-  json_object_set_new(o, "causeColours", colours(vg_cause_colour,
-                                                 VG_CAUSE_N));
+  json_object_set_new(o, "levelColours",
+                      colours(vg_level_colour, LEVEL_COLOURS));
+  json_object_set_new(o, "causeColours", colours(vg_cause_colour, VG_CAUSE_N));
   json_object_set_new(o, "causes", names);
   return o;
 }
@@ -228,7 +225,9 @@ static void words(struct page *p, const struct scene *s)
   const struct vg_mesh *m = &p->h->problem->boundary.surface;
 
   vg_page_section(p, "turn", "To turn and to look into");
-  vg_page_markup(p, "<div id=\"view\" hidden>\n<div id=\"controls\"></div>\n"
+  vg_page_markup(
+    p,
+    "<div id=\"view\" hidden>\n<div id=\"controls\"></div>\n"
     "<canvas id=\"canvas\" tabindex=\"0\" role=\"img\" aria-label=\"The "
     "surface in three dimensions. Arrow keys turn it, plus and minus bring it "
     "nearer or farther; the pictures below show the same.\"></canvas>\n"

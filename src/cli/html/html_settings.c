@@ -49,8 +49,7 @@ static size_t rows(struct page *p, const struct vg_settings *usual,
                    enum which which)
 {
   const struct vg_problem *q = p->h->problem;
-  const struct vg_settings *of[3] = { usual, &q->asked,
-                                      &q->resolved.settings };
+  const struct vg_settings *of[3] = { usual, &q->asked, &q->resolved.settings };
   const struct vg_param *param;
   char value[3][2 * VG_LIST_MAX + 4];
   const void *base;
@@ -59,7 +58,7 @@ static size_t rows(struct page *p, const struct vg_settings *usual,
 
   for (size_t i = 0; (param = param_of(usual, i, &far, &base)); i++) {
     if (!strcmp(param->name, "threads") || !strcmp(param->name, "schedule"))
-      continue;            /* no part of what the mesh follows from */
+      continue; /* no part of what the mesh follows from */
     for (int k = 0; k < 3; k++) {
       param_of(of[k], i, &far, &base);
       vg_param_format(param, base, value[k], sizeof value[k]);
@@ -75,8 +74,7 @@ static void table(struct page *p, const struct vg_settings *usual,
                   enum which which, const char *none)
 {
   vg_page_markup(p, "<div class=\"wide\"><table class=\"settings\">\n");
-  if (!rows(p, usual, which))
-    vg_page_format(p, "<tr><td>%s</td></tr>\n", none);
+  if (!rows(p, usual, which)) vg_page_format(p, "<tr><td>%s</td></tr>\n", none);
   vg_page_markup(p, "</table></div>\n");
 }
 
@@ -92,9 +90,11 @@ void vg_html_settings(struct page *p)
   vg_page_markup(p, "<h3>Settled by the program</h3>\n");
   table(p, &usual, SETTLED, "Nothing.");
   if (s->n_source)
-    vg_page_format(p, "<p>Sources of spacing: %zu. They are listed in "
+    vg_page_format(p,
+                   "<p>Sources of spacing: %zu. They are listed in "
                    "PROJECT.resolved.deck, as is every setting of single "
-                   "patches.</p>\n", s->n_source);
+                   "patches.</p>\n",
+                   s->n_source);
   vg_page_markup(p, "<details><summary>All other settings, at their "
                     "defaults</summary>\n");
   table(p, &usual, REST, "None.");

@@ -32,8 +32,7 @@ static void patch_keys(struct page *p)
       continue;
     }
     n++;
-    snprintf(word, sizeof word, "%d %s", (int)m->patch[i].id,
-             m->patch[i].name);
+    snprintf(word, sizeof word, "%d %s", (int)m->patch[i].id, m->patch[i].name);
     vg_page_key(p, vg_patch_colour[i % PATCH_COLOURS], word);
   }
   if (rest) vg_page_format(p, "and %zu more; ", rest);
@@ -66,8 +65,7 @@ static void cause_keys(struct page *p)
       if (!p->walls.cause[thin][c]) continue;
       snprintf(word, sizeof word, "%s: %s (%zu triangles)",
                thin ? "thinner" : "fewer",
-               vg_cause_words((enum vg_layer_cause)c),
-               p->walls.cause[thin][c]);
+               vg_cause_words((enum vg_layer_cause)c), p->walls.cause[thin][c]);
       vg_page_key(p, palette.rgb[c + thin * VG_CAUSE_N], word);
     }
 }

@@ -36,8 +36,7 @@ static void look(const double (*x)[3], struct vg_camera *c)
   for (int k = 0; k < 3; k++) c->toward[k] += normal[k];
   vg_unit(c->toward);
   vg_cross(normal, c->toward, c->right);
-  if (!(vg_unit(c->right) > 0))
-    memcpy(c->right, longest, sizeof longest);
+  if (!(vg_unit(c->right) > 0)) memcpy(c->right, longest, sizeof longest);
   vg_cross(c->toward, c->right, c->up);
 }
 
@@ -47,8 +46,7 @@ static void frame(const double (*x)[3], struct vg_camera *c)
 
   for (int k = 0; k < 3; k++)
     c->centre[k] = (x[0][k] + x[1][k] + x[2][k] + x[3][k]) / 4;
-  for (int i = 0; i < 4; i++)
-    size = fmax(size, vg_distance(x[i], c->centre));
+  for (int i = 0; i < 4; i++) size = fmax(size, vg_distance(x[i], c->centre));
   c->width = c->height = SIZE;
   c->scale = size > 0 ? 0.24 * SIZE / size : 1;
 }
@@ -68,8 +66,8 @@ static void put_point(struct page *p, const struct vg_camera *c,
 static void edges(struct page *p, const struct vg_camera *c,
                   const double (*x)[3])
 {
-  static const int pair[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 },
-                                  { 1, 3 }, { 2, 3 } };
+  static const int pair[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 },
+                                  { 1, 2 }, { 1, 3 }, { 2, 3 } };
 
   for (int e = 0; e < 6; e++) {
     put_point(p, c, x[pair[e][0]], "M");
@@ -82,14 +80,15 @@ static void drawing(struct page *p, const struct vg_around *a, size_t k,
 {
   struct vg_camera c;
 
-  look((const double (*)[3])a->cell[0], &c);
-  frame((const double (*)[3])a->cell[0], &c);
-  vg_page_format(p, "<figure class=\"cell\"><svg viewBox=\"0 0 %d %d\" "
+  look((const double(*)[3])a->cell[0], &c);
+  frame((const double(*)[3])a->cell[0], &c);
+  vg_page_format(p,
+                 "<figure class=\"cell\"><svg viewBox=\"0 0 %d %d\" "
                  "role=\"img\" aria-label=\"Worst cell %zu among its "
-                 "neighbours.\">\n<path class=\"around\" d=\"", SIZE, SIZE,
-                 k + 1);
+                 "neighbours.\">\n<path class=\"around\" d=\"",
+                 SIZE, SIZE, k + 1);
   for (size_t i = 1; i < a->n; i++)
-    edges(p, &c, (const double (*)[3])a->cell[i]);
+    edges(p, &c, (const double(*)[3])a->cell[i]);
   vg_page_markup(p, "\"/>\n<path class=\"worst\" d=\"");
   for (int f = 0; f < 4; f++)
     for (int i = 0; i < 3; i++)
@@ -103,8 +102,7 @@ static void drawing(struct page *p, const struct vg_around *a, size_t k,
 void vg_html_worst(struct page *p)
 {
   const struct vg_run *r = p->h->run;
-  const struct vg_mesh_report *m = p->has_layers ? &r->field_judge
-                                                 : &r->judge;
+  const struct vg_mesh_report *m = p->has_layers ? &r->field_judge : &r->judge;
 
   if (!m->n_worst) return;
   vg_page_section(p, "worst", "The worst cells");
@@ -113,7 +111,9 @@ void vg_html_worst(struct page *p)
   for (size_t k = 0; k < VG_RUN_WORST; k++)
     if (r->pictures.worst[k].n)
       drawing(p, &r->pictures.worst[k], k, &m->worst[k]);
-  vg_page_markup(p, "</div>\n<div class=\"wide\"><table>\n<thead><tr>"
+  vg_page_markup(
+    p,
+    "</div>\n<div class=\"wide\"><table>\n<thead><tr>"
     "<th scope=\"col\"></th><th scope=\"col\">cell</th>"
     "<th scope=\"col\">smallest angle</th><th scope=\"col\">x</th>"
     "<th scope=\"col\">y</th><th scope=\"col\">z</th></tr></thead>\n<tbody>");

@@ -93,8 +93,10 @@ void vg_page_key(struct page *p, const uint8_t rgb[3], const char *word)
 
 void vg_page_section(struct page *p, const char *id, const char *title)
 {
-  vg_page_format(p, "<section id=\"%s\" aria-labelledby=\"%s-title\">\n"
-                 "<h2 id=\"%s-title\">%s</h2>\n", id, id, id, title);
+  vg_page_format(p,
+                 "<section id=\"%s\" aria-labelledby=\"%s-title\">\n"
+                 "<h2 id=\"%s-title\">%s</h2>\n",
+                 id, id, id, title);
 }
 
 void vg_page_end_section(struct page *p)

@@ -11,13 +11,18 @@
  * views, cuts, two of them in other colours. */
 enum { VIEWS = 2 };
 enum by { BY_PATCH, BY_LEVEL, BY_CAUSE, BY_N };
-enum { PICTURE_SURFACE = 0, PICTURE_CUT = BY_N * VIEWS,
-       PICTURE_ANGLE = PICTURE_CUT + VG_CUTS_MAX, PICTURE_PART, PICTURES };
+enum {
+  PICTURE_SURFACE = 0,
+  PICTURE_CUT = BY_N * VIEWS,
+  PICTURE_ANGLE = PICTURE_CUT + VG_CUTS_MAX,
+  PICTURE_PART,
+  PICTURES
+};
 
 /* Triangles of the surface: their colours, GREY where it is no wall, and which
  * are seen in its pictures. walls.c */
 struct walls {
-  uint8_t *by[BY_N], *by_share, *is_seen;  /* [surface.n_tri] */
+  uint8_t *by[BY_N], *by_share, *is_seen; /* [surface.n_tri] */
   int level_most;
   size_t cause[2][VG_CAUSE_N]; /* triangles: fewer, thinner */
 };
@@ -26,18 +31,18 @@ struct page {
   struct vg_output out;
   const struct vg_html *h;
   int has_layers;
-  uint8_t *body;            /* [surface.n_patch] run/picture/body.h */
+  uint8_t *body; /* [surface.n_patch] run/picture/body.h */
   struct walls walls;
   struct vg_camera camera[VIEWS];
-  struct vg_bytes png[PICTURES];   /* empty where there is none */
-  size_t part_cut;          /* cut of PICTURE_PART */
+  struct vg_bytes png[PICTURES]; /* empty where there is none */
+  size_t part_cut;               /* cut of PICTURE_PART */
 };
 
 /* page.c: text with markup escaped; printf without reals; markup as it is. */
 void vg_page_text(struct page *p, const char *text);
 void vg_page_markup(struct page *p, const char *markup);
 void vg_page_format(struct page *p, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+  __attribute__((format(printf, 2, 3)));
 
 /* A count with separators; a real with so many significant digits; with so
  * many decimals; "-" where it is not finite. */
@@ -78,11 +83,13 @@ const char *vg_page_judged(const struct page *p);
 
 /* html_pictures.c: makes all pictures, and their colours by number. */
 vg_status vg_html_draw(struct page *p, struct vg_error *err);
-struct palette { uint8_t rgb[256][3]; };
+struct palette {
+  uint8_t rgb[256][3];
+};
 void vg_html_palette(enum by by, struct palette *to);
 
 /* Sections, in this order. */
-void vg_html_head(struct page *p);          /* html_head.c */
+void vg_html_head(struct page *p); /* html_head.c */
 void vg_html_first(struct page *p);
 void vg_html_tiles(struct page *p);
 vg_status vg_html_scene(struct page *p, struct vg_error *err);
@@ -93,7 +100,7 @@ void vg_html_quality(struct page *p);
 void vg_html_worst(struct page *p);
 void vg_html_settings(struct page *p);
 void vg_html_patches(struct page *p);
-void vg_html_partition(struct page *p);     /* html_cuts.c */
+void vg_html_partition(struct page *p); /* html_cuts.c */
 vg_status vg_html_run(struct page *p, struct vg_error *err);
 
 /* html_cuts.c: a cut by the angles of its cells. */
@@ -109,8 +116,7 @@ struct bars {
 void vg_html_bars(struct page *p, const struct bars *b, const json_t *counts);
 
 /* colours.c */
-enum { PATCH_COLOURS = 12, LEVEL_COLOURS = 16,
-       GREY = VG_SHOT_BEHIND };
+enum { PATCH_COLOURS = 12, LEVEL_COLOURS = 16, GREY = VG_SHOT_BEHIND };
 extern const uint8_t vg_patch_colour[PATCH_COLOURS][3];
 extern const uint8_t vg_level_colour[LEVEL_COLOURS][3];
 extern const uint8_t vg_cause_colour[VG_CAUSE_N][3];

@@ -9,21 +9,21 @@
 #include "run/common/ranges.h"
 
 struct vg_plan_options {
-  const char *replay;           /* a .timeline.json, or NULL */
-  const char *project, *deck;   /* without a replay */
-  const char *rates;            /* a .timeline.json of this machine, or NULL */
+  const char *replay;         /* a .timeline.json, or NULL */
+  const char *project, *deck; /* without a replay */
+  const char *rates;          /* a .timeline.json of this machine, or NULL */
   struct vg_cli_overrides kept;
-  double target;                /* s; 0: none */
-  int cores;                    /* of a node: ranks are numbers of nodes, with
-                                   all ways to share its cores; 0: as ranks and
-                                   threads say */
-  int depth;                    /* of the tree as text */
+  double target; /* s; 0: none */
+  int cores;     /* of a node: ranks are numbers of nodes, with
+                    all ways to share its cores; 0: as ranks and
+                    threads say */
+  int depth;     /* of the tree as text */
   struct vg_range_list ranks, threads;
-  struct vg_machine machine;    /* all but ranks, threads and what is
-                                   outside the tasks */
-  double serial;                /* s that nobody shares; below 0: phases as
-                                   in the record */
-  const char *plot;             /* file for a figure of speed-up, or NULL */
+  struct vg_machine machine; /* all but ranks, threads and what is
+                                outside the tasks */
+  double serial;             /* s that nobody shares; below 0: phases as
+                                in the record */
+  const char *plot;          /* file for a figure of speed-up, or NULL */
   int json, quiet;
 };
 

@@ -23,9 +23,9 @@
 #define COARSENESS 2
 
 /* Seconds of one core; docs/performance-parallel.md, "Model". */
-static const double spread_per_cell = 0.35e-6;  /* number, judge, encode */
-static const double digest_per_byte = 0.4e-9;   /* the files once more */
-static const double layer_per_cell = 0.1e-6;    /* growing and measuring */
+static const double spread_per_cell = 0.35e-6; /* number, judge, encode */
+static const double digest_per_byte = 0.4e-9;  /* the files once more */
+static const double layer_per_cell = 0.1e-6;   /* growing and measuring */
 
 /* Bytes: of a field in pieces, and of a void that is filled, per cell; of
  * layers, per point; per triangle of the front, and where columns stand per
@@ -43,11 +43,11 @@ struct lift {
   const struct vg_layer_stage *s;
   const struct vg_mesh *m;
   const struct vg_sizing *sizing;
-  double (*normal)[3];          /* [n_point] */
-  double *edge;                 /* [n_point] sum, then mean of edges at it */
-  uint32_t *n_edge;             /* [n_point] */
-  uint32_t *patch;              /* [n_point] the wall whose law rules */
-  uint16_t *level;              /* [n_point] */
+  double (*normal)[3]; /* [n_point] */
+  double *edge;        /* [n_point] sum, then mean of edges at it */
+  uint32_t *n_edge;    /* [n_point] */
+  uint32_t *patch;     /* [n_point] the wall whose law rules */
+  uint16_t *level;     /* [n_point] */
 };
 
 static int is_wall(const struct lift *l, size_t tri)
@@ -71,8 +71,8 @@ static void add_triangle(struct lift *l, size_t i)
     uint32_t *rules = &l->patch[t[k]];
 
     for (int j = 0; j < 3; j++) l->normal[t[k]][j] += n[j];
-    if (*rules == VG_NO_INDEX ||
-        q[patch].law.delta1 < q[*rules].law.delta1) *rules = patch;
+    if (*rules == VG_NO_INDEX || q[patch].law.delta1 < q[*rules].law.delta1)
+      *rules = patch;
   }
 }
 
@@ -91,14 +91,14 @@ static void lift_point(struct lift *l, size_t i, double x[3])
   length = vg_norm(v);
   if (!(length > 0) || !(law.delta1 > 0)) return;
   vg_law_heights(&law, INFINITY, most, d);
-  while (n < most &&
-         (q->n_exact || d[n + 1] - d[n] <= o->end * l->edge[i]) &&
-         !(q->total > 0 && d[n + 1] > q->total)) n++;
+  while (n < most && (q->n_exact || d[n + 1] - d[n] <= o->end * l->edge[i]) &&
+         !(q->total > 0 && d[n + 1] > q->total))
+    n++;
   for (;; n--) {
-    for (int k = 0; k < 3; k++)
-      x[k] = l->m->point[i][k] + v[k] / length * d[n];
+    for (int k = 0; k < 3; k++) x[k] = l->m->point[i][k] + v[k] / length * d[n];
     if (n == 0 || q->n_exact ||
-        d[n] - d[n - 1] <= o->end * vg_sizing_at(l->sizing, x)) break;
+        d[n] - d[n - 1] <= o->end * vg_sizing_at(l->sizing, x))
+      break;
   }
   l->level[i] = (uint16_t)n;
 }
@@ -232,8 +232,7 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
   start = vg_clock_process();
   if (p->is_grown) {
     p->layers.options.threads = 0;
-    VG_TRY(vg_layer_stage_grow(&p->layers, surface, p->sizing, &p->show,
-                               err));
+    VG_TRY(vg_layer_stage_grow(&p->layers, surface, p->sizing, &p->show, err));
     p->layer_tet = (double)p->layers.report.n_cell;
     p->layer_point = (double)p->layers.report.n_layer_point;
     p->grown = vg_front_mesh(&p->layers.layers.front, surface);
@@ -258,8 +257,7 @@ static void count_mesh(struct vg_plan *p)
   p->tet = field;
   if (p->problem.resolved.settings.cells == VG_LAYER_MIXED)
     p->prism = p->layer_tet / 3;
-  else
-    p->tet += p->layer_tet;
+  else p->tet += p->layer_tet;
   p->cell = p->tet + p->prism;
   p->point = vg_forecast_points(field, faces) + p->layer_point;
 }
@@ -271,7 +269,8 @@ static double bytes_written(const struct vg_plan *p)
 
   memcpy(list, p->problem.resolved.settings.write, sizeof list);
   for (char *word = strtok_r(list, " ,", &save); word;
-       word = strtok_r(NULL, " ,", &save)) sum += vg_plan_bytes(p, word);
+       word = strtok_r(NULL, " ,", &save))
+    sum += vg_plan_bytes(p, word);
   return sum;
 }
 
@@ -386,8 +385,7 @@ static void choose(struct vg_plan *p)
   p->best = SIZE_MAX;
   for (size_t i = 0; i < p->n_row; i++) {
     const struct vg_plan_row *r = &p->row[i];
-    const struct vg_plan_row *b = p->best == SIZE_MAX ? NULL
-                                                      : &p->row[p->best];
+    const struct vg_plan_row *b = p->best == SIZE_MAX ? NULL : &p->row[p->best];
     long n = (long)r->ranks * r->threads;
     long most = b ? (long)b->ranks * b->threads : 0;
     int fits = target > 0 ? r->wall <= target : r->efficiency >= EFFICIENT;
@@ -401,18 +399,19 @@ static void choose(struct vg_plan *p)
 /* Other leaf sizes on the machine that was chosen, or on the largest. */
 static vg_status try_leaves(struct vg_plan *p, struct vg_error *err)
 {
-  static const double sizes[VG_PLAN_LEAVES] = { 4e4, 7e4, 1e5, 1.5e5, 2e5, 3e5,
-                                                4.5e5, 7e5 };
-  const struct vg_plan_row *at = &p->row[p->best == SIZE_MAX ? p->n_row - 1
-                                                             : p->best];
+  static const double sizes[VG_PLAN_LEAVES] = { 4e4, 7e4, 1e5,   1.5e5,
+                                                2e5, 3e5, 4.5e5, 7e5 };
+  const struct vg_plan_row
+    *at = &p->row[p->best == SIZE_MAX ? p->n_row - 1 : p->best];
   vg_status st = VG_OK;
 
   for (int i = 0; st >= 0 && i < VG_PLAN_LEAVES; i++) {
     struct vg_forecast o = VG_FORECAST_INIT;
 
     st = forecast(p, sizes[i], &o, err);
-    if (st >= 0) st = run_on(p, &o, at->ranks, at->threads, at->ranks_per_node,
-                             &p->leaf[p->n_leaf].row, err);
+    if (st >= 0)
+      st = run_on(p, &o, at->ranks, at->threads, at->ranks_per_node,
+                  &p->leaf[p->n_leaf].row, err);
     p->leaf[p->n_leaf].cells = sizes[i];
     p->leaf[p->n_leaf].n = o.n_leaf;
     vg_forecast_release(&o);
@@ -463,8 +462,9 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   VG_TRY(read_project(p, err));
   p->front = &p->problem.boundary.surface;
   if (p->layers.is_on) VG_TRY(make_layers(p, err));
-  else VG_TRY(measure_sizes(p, p->front, COARSENESS, COARSENESS * COARSENESS,
-                            err));
+  else
+    VG_TRY(
+      measure_sizes(p, p->front, COARSENESS, COARSENESS * COARSENESS, err));
   VG_TRY(vg_boundary_effects(&p->problem.boundary, p->front, p->sizing,
                              &p->effects, err));
   vg_effects_note(&p->effects, p->front, &p->problem.resolved.settings,
@@ -479,9 +479,11 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
     p->phase[VG_PHASE_READ] = p->o->serial;
   }
   p->rule = vg_options_cuts(s);
-  p->rule.leaf_cells = vg_parting_leaf_cells(
-    p->load.cells, vg_options_parting(s).n_part,
-    vg_ways[s->decompose].maker != NULL, p->rule.leaf_cells);
+  p->rule.leaf_cells = vg_parting_leaf_cells(p->load.cells,
+                                             vg_options_parting(s).n_part,
+                                             vg_ways[s->decompose].maker !=
+                                               NULL,
+                                             p->rule.leaf_cells);
   VG_TRY(forecast(p, p->rule.leaf_cells, &p->forecast, err));
   count_mesh(p);
   count_memory(p);

@@ -17,7 +17,7 @@ enum { VG_PLAN_LEAVES = 8 };
 /** A whole run on a machine. */
 struct vg_plan_row {
   int ranks, threads, ranks_per_node;
-  struct vg_model_result tasks;     /* cutting and filling alone */
+  struct vg_model_result tasks; /* cutting and filling alone */
   double wall;                  /* s, of everything */
   double speedup, efficiency;   /* of everything, against one worker */
   double memory;                /* bytes of a rank */
@@ -25,12 +25,12 @@ struct vg_plan_row {
 
 /** What the field is parted into before it is filled. */
 struct vg_plan_parting {
-  size_t n_part;                /* 0: not parted */
-  size_t n_whole;               /* of these, filled as they are */
-  double cells, most;           /* expected in all of these, in one at most */
+  size_t n_part;      /* 0: not parted */
+  size_t n_whole;     /* of these, filled as they are */
+  double cells, most; /* expected in all of these, in one at most */
   double seconds;
   struct vg_parting made;
-  struct vg_load *load;         /* [n_part] */
+  struct vg_load *load; /* [n_part] */
 };
 
 struct vg_plan {
@@ -38,34 +38,37 @@ struct vg_plan {
   struct vg_display show;
   struct vg_problem problem;
   struct vg_layer_stage layers;
-  struct vg_mesh lifted;        /* the surface on top of estimated layers */
-  struct vg_mesh grown;         /* the front above layers that were grown;
-                                   borrowed from layers and problem */
-  const struct vg_mesh *front;  /* what bounds the field; borrowed */
-  struct vg_sizing *sizing;     /* over the front */
+  struct vg_mesh lifted;       /* the surface on top of estimated layers */
+  struct vg_mesh grown;        /* the front above layers that were grown;
+                                  borrowed from layers and problem */
+  const struct vg_mesh *front; /* what bounds the field; borrowed */
+  struct vg_sizing *sizing;    /* over the front */
   struct vg_effects effects;
   struct vg_load load;
   struct vg_plan_parting parting;
   struct vg_cut_rule rule;
   struct vg_rates rates;
-  struct vg_rate_fit fit[VG_RATE_FITS];   /* n is 0: not fitted */
-  double spread_per_cell;       /* s */
+  struct vg_rate_fit fit[VG_RATE_FITS]; /* n is 0: not fitted */
+  double spread_per_cell;               /* s */
   struct vg_forecast forecast;
-  int is_grown;                 /* layers were; else they are estimated */
+  int is_grown; /* layers were; else they are estimated */
   size_t n_wall_point;
-  double layer_tet, layer_point;   /* if all are tetrahedra */
-  double cell, point, prism, tet;  /* of the mesh; cell: of all kinds */
-  double phase[VG_PHASE_N];     /* s of one core, outside the tasks; judging
-                                   includes the files written with it, writing
-                                   those that follow */
-  double shared, per_cell, per_thread;  /* bytes: of any rank; of the mesh,
-                                   the mean of field and layers; of a leaf */
+  double layer_tet, layer_point;  /* if all are tetrahedra */
+  double cell, point, prism, tet; /* of the mesh; cell: of all kinds */
+  double phase[VG_PHASE_N];       /* s of one core, outside the tasks; judging
+                                     includes the files written with it, writing
+                                     those that follow */
+  double shared, per_cell, per_thread; /* bytes: of any rank; of the mesh,
+                                  the mean of field and layers; of a leaf */
   size_t n_row;
-  struct vg_plan_row *row;      /* [n_row] */
-  size_t best;                  /* row; SIZE_MAX: none reaches the target */
+  struct vg_plan_row *row; /* [n_row] */
+  size_t best;             /* row; SIZE_MAX: none reaches the target */
   size_t n_leaf;
-  struct { double cells; size_t n; struct vg_plan_row row; }
-    leaf[VG_PLAN_LEAVES];       /* other leaf sizes at the best row */
+  struct {
+    double cells;
+    size_t n;
+    struct vg_plan_row row;
+  } leaf[VG_PLAN_LEAVES]; /* other leaf sizes at the best row */
   size_t best_leaf;
 };
 

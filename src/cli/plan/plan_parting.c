@@ -84,13 +84,13 @@ vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_front *v,
   struct vg_forecast_parting all = {
     s->decompose == VG_DECOMPOSE_OCTREE ? &p->rates.octree : &p->rates.discrete,
     (double)q->made.report.n_coarse, (double)q->made.report.n_face, q->n_part,
-    part };
+    part
+  };
   vg_status st;
 
   if (!part) return vg_fail_memory(err, "the forecast");
   for (size_t k = 0; k < q->n_part; k++)
-    part[k] = (struct vg_forecast_part){ q->made.part[k].front,
-                                         &q->load[k],
+    part[k] = (struct vg_forecast_part){ q->made.part[k].front, &q->load[k],
                                          q->made.part[k].may_cut };
   st = vg_forecast_parted(v, &p->load, &all, rule, (int)s->levels, &p->rates,
                           out, err);

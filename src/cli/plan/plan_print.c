@@ -24,16 +24,16 @@ static const struct form {
   const char *word;
   double point, tet, prism, face;
 } forms[] = {
-  { "b8.ugrid", 24, 16, 24, 16 }, { "lb8.ugrid", 24, 16, 24, 16 },
-  { "r8.ugrid", 24, 16, 24, 16 }, { "lr8.ugrid", 24, 16, 24, 16 },
-  { "b4.ugrid", 12, 16, 24, 16 }, { "lb4.ugrid", 12, 16, 24, 16 },
-  { "r4.ugrid", 12, 16, 24, 16 }, { "lr4.ugrid", 12, 16, 24, 16 },
-  { "b8l.ugrid", 24, 32, 48, 32 }, { "lb8l.ugrid", 24, 32, 48, 32 },
+  { "b8.ugrid", 24, 16, 24, 16 },   { "lb8.ugrid", 24, 16, 24, 16 },
+  { "r8.ugrid", 24, 16, 24, 16 },   { "lr8.ugrid", 24, 16, 24, 16 },
+  { "b4.ugrid", 12, 16, 24, 16 },   { "lb4.ugrid", 12, 16, 24, 16 },
+  { "r4.ugrid", 12, 16, 24, 16 },   { "lr4.ugrid", 12, 16, 24, 16 },
+  { "b8l.ugrid", 24, 32, 48, 32 },  { "lb8l.ugrid", 24, 32, 48, 32 },
   { "b8.ugrid64", 24, 32, 48, 32 }, { "lb8.ugrid64", 24, 32, 48, 32 },
-  { "ugrid", 51, 28, 42, 24 }, { "cogsg", 24, 16, 0, 41 },
-  { "vtu", 24, 49, 57, 49 }, { "pvtu", 28, 49, 57, 0 },
-  { "meshb", 28, 20, 28, 16 }, { "mesh", 56, 30, 44, 26 },
-  { "su2", 85, 43, 58, 26 }, { "msh", 32, 40, 56, 32 },
+  { "ugrid", 51, 28, 42, 24 },      { "cogsg", 24, 16, 0, 41 },
+  { "vtu", 24, 49, 57, 49 },        { "pvtu", 28, 49, 57, 0 },
+  { "meshb", 28, 20, 28, 16 },      { "mesh", 56, 30, 44, 26 },
+  { "su2", 85, 43, 58, 26 },        { "msh", 32, 40, 56, 32 },
   { "cgns", 24, 16, 24, 12 },
 };
 
@@ -45,8 +45,8 @@ static double fluent_bytes(const struct vg_plan *p)
                  0.5 * (double)p->problem.boundary.surface.n_tri;
 
   for (double n = p->tet + p->prism; n >= 16; n /= 16) width++;
-  return 76 * p->point + faces * ((is_mixed ? 6 : 5) * (width + 1) + 1 +
-                                  is_mixed) +
+  return 76 * p->point +
+         faces * ((is_mixed ? 6 : 5) * (width + 1) + 1 + is_mixed) +
          (is_mixed ? 2 * (p->tet + p->prism) : 0);
 }
 
@@ -110,8 +110,8 @@ static void print_mesh(const struct vg_plan *p)
          count((double)p->front->n_tri, a));
   for (size_t i = 0; i < notes->n; i++) printf("  note: %s\n", notes->text[i]);
   printf("\nMemory\n  shared, on every rank %s; cells of a rank %.0f B each; "
-         "a thread %s\n", bytes(p->shared, a), p->per_cell,
-         bytes(p->per_thread, b));
+         "a thread %s\n",
+         bytes(p->shared, a), p->per_cell, bytes(p->per_thread, b));
 }
 
 static void print_files(const struct vg_plan *p)
@@ -153,8 +153,8 @@ static void print_leaves(const struct vg_forecast *o, size_t parent, int indent)
     n++;
   }
   if (!n) return;
-  printf("  %*s%zu %s %s", 2 * indent, "", n, n > 1 ? "leaves:" : "leaf:",
-         count(least, a));
+  printf("  %*s%zu %s %s", 2 * indent, "", n,
+         n > 1 ? "leaves:" : "leaf:", count(least, a));
   if (n > 1) printf(" to %s", count(most, b));
   printf(" cells\n");
 }
@@ -175,7 +175,8 @@ static double balance(const struct vg_forecast *o)
     size_t length = strlen(c->path);
 
     if (!vg_forecast_is_leaf(c) ||
-        (length > 2 && !strcmp(c->path + length - 2, ".r"))) continue;
+        (length > 2 && !strcmp(c->path + length - 2, ".r")))
+      continue;
     most = fmax(most, c->cells);
     sum += c->cells;
     n++;
@@ -259,8 +260,7 @@ static void print_best(const struct vg_plan *p)
   if (p->best == SIZE_MAX) {
     if (p->o->target > 0)
       printf("\nNo machine of the list takes %g s or less.\n", p->o->target);
-    else
-      printf("\nNo machine of the list keeps 80 %% efficiency.\n");
+    else printf("\nNo machine of the list keeps 80 %% efficiency.\n");
     r = &p->row[p->n_row - 1];
     snprintf(text, sizeof text, "With");
   } else {
@@ -273,11 +273,12 @@ static void print_best(const struct vg_plan *p)
   }
   if (p->o->cores)
     printf("Start: mpirun -n %d --map-by ppr:%d:node:PE=%d vanguard mesh -p %s "
-           "--threads %d\n", r->ranks, r->ranks_per_node, r->threads,
-           p->o->project, r->threads);
+           "--threads %d\n",
+           r->ranks, r->ranks_per_node, r->threads, p->o->project, r->threads);
   if (!p->n_leaf) return;
   printf("%s %d x %d by leaf size:\n   leaf cells  leaves       time      tasks"
-         "\n", text, r->ranks, r->threads);
+         "\n",
+         text, r->ranks, r->threads);
   for (size_t i = 0; i < p->n_leaf; i++)
     printf("  %11s %7zu %10.2f %10.2f%s\n", count(p->leaf[i].cells, cells),
            p->leaf[i].n, p->leaf[i].row.wall, p->leaf[i].row.tasks.wall,
@@ -300,7 +301,8 @@ static const char *limit_of(const double parts[3])
 static const char *limit_of_tasks(const struct vg_plan_row *r)
 {
   return r->tasks.critical > 0.8 * r->tasks.wall ? "a chain of tasks"
-         : r->tasks.idle > 0.2 ? "tasks too few or too large" : "all cores";
+       : r->tasks.idle > 0.2                     ? "tasks too few or too large"
+                                                 : "all cores";
 }
 
 static const struct vg_plan_row *row_of_limits(const struct vg_plan *p)
@@ -313,7 +315,8 @@ static void print_limits(const struct vg_plan *p)
   const struct vg_plan_row *r = row_of_limits(p);
 
   printf("\nPhases with %d x %d\n  phase       one core, s   there, s  "
-         "limited by\n", r->ranks, r->threads);
+         "limited by\n",
+         r->ranks, r->threads);
   for (int k = 0; k < VG_PHASE_N; k++) {
     double parts[3], there = vg_plan_phase(p, r, (enum vg_phase)k, parts);
 
@@ -328,8 +331,9 @@ static void print_limits(const struct vg_plan *p)
 
 static const char *kind_name(char kind)
 {
-  return kind == VG_SPAN_LEAF ? "leaves"
-         : kind == VG_SPAN_PENCIL ? "pencils" : "tiles";
+  return kind == VG_SPAN_LEAF   ? "leaves"
+       : kind == VG_SPAN_PENCIL ? "pencils"
+                                : "tiles";
 }
 
 static void print_rates(const struct vg_plan *p)
@@ -341,10 +345,10 @@ static void print_rates(const struct vg_plan *p)
 
     if (f->n)
       printf("  %-8s %.3f us per cell, %.3f us per face of the front; %zu "
-             "tasks, error %.0f %%\n", kind_name(f->kind), 1e6 * f->cell,
-             1e6 * f->face, f->n, 100 * f->error);
-    else
-      printf("  %-8s too few in the record\n", kind_name(f->kind));
+             "tasks, error %.0f %%\n",
+             kind_name(f->kind), 1e6 * f->cell, 1e6 * f->face, f->n,
+             100 * f->error);
+    else printf("  %-8s too few in the record\n", kind_name(f->kind));
   }
 }
 
@@ -363,10 +367,11 @@ void vg_plan_text(const struct vg_plan *p)
   print_parting(p);
   print_tree(p);
   print_rates(p);
-  printf("\nForecast: on one core %.2f s outside the tasks, %.2f s of tasks, of "
-         "which %.2f s in loops\n  of joins that idle threads of a rank help "
-         "with\n", outside(p), p->forecast.spans.wall,
-         vg_spans_loops(&p->forecast.spans));
+  printf(
+    "\nForecast: on one core %.2f s outside the tasks, %.2f s of tasks, of "
+    "which %.2f s in loops\n  of joins that idle threads of a rank help "
+    "with\n",
+    outside(p), p->forecast.spans.wall, vg_spans_loops(&p->forecast.spans));
   printf("  ranks threads workers       time  speed-up  efficiency      tasks "
          " speed-up   critical  cuts end  cuts extra    a rank\n");
   printf("                               s                     %%          s  "
@@ -381,15 +386,15 @@ void vg_plan_text(const struct vg_plan *p)
 static json_t *row_json(const struct vg_plan_row *r)
 {
   return json_pack("{s:i s:i s:i s:i s:f s:f s:f s:f s:{s:f s:f s:f s:f s:f "
-                   "s:f s:f s:f}}", "ranks", r->ranks, "threads", r->threads,
-                   "ranks_per_node", r->ranks_per_node, "workers", r->ranks * r->threads, "seconds", r->wall,
-                   "speedup", r->speedup, "efficiency", r->efficiency,
-                   "memory_bytes", r->memory, "tasks", "seconds",
+                   "s:f s:f s:f}}",
+                   "ranks", r->ranks, "threads", r->threads, "ranks_per_node",
+                   r->ranks_per_node, "workers", r->ranks * r->threads,
+                   "seconds", r->wall, "speedup", r->speedup, "efficiency",
+                   r->efficiency, "memory_bytes", r->memory, "tasks", "seconds",
                    r->tasks.wall, "speedup", r->tasks.speedup, "critical",
-                   r->tasks.critical, "cuts", r->tasks.cuts,
-                   "cuts_extra", r->tasks.cuts_extra, "cuts_end",
-                   r->tasks.cuts_wall, "idle", r->tasks.idle, "bytes_sent",
-                   r->tasks.bytes);
+                   r->tasks.critical, "cuts", r->tasks.cuts, "cuts_extra",
+                   r->tasks.cuts_extra, "cuts_end", r->tasks.cuts_wall, "idle",
+                   r->tasks.idle, "bytes_sent", r->tasks.bytes);
 }
 
 static json_t *node_json(const struct vg_forecast_node *n)
@@ -422,10 +427,11 @@ static json_t *mesh_json(const struct vg_plan *p)
                         "field_cells", p->load.cells);
 
   if (!p->layers.is_on) return o;
-  json_object_set_new(o, "layers", json_pack("{s:f s:f s:s s:I}", "tetrahedra",
-    p->layer_tet, "points", p->layer_point, "source",
-    p->is_grown ? "grown" : "estimated", "wall_points",
-    (json_int_t)p->n_wall_point));
+  json_object_set_new(o, "layers",
+                      json_pack("{s:f s:f s:s s:I}", "tetrahedra", p->layer_tet,
+                                "points", p->layer_point, "source",
+                                p->is_grown ? "grown" : "estimated",
+                                "wall_points", (json_int_t)p->n_wall_point));
   return o;
 }
 
@@ -446,13 +452,14 @@ static json_t *parting_json(const struct vg_plan *p)
   const struct vg_plan_parting *q = &p->parting;
 
   return json_pack("{s:s s:I s:I s:I s:f s:f s:f s:I s:I s:f}", "way",
-    vg_ways[p->problem.resolved.settings.decompose].name,
-    "parts", (json_int_t)q->n_part, "whole_parts", (json_int_t)q->n_whole,
-    "gap_parts", (json_int_t)q->made.report.n_gap, "whole_cells", q->cells,
-    "most_cells", q->most, "coarsening", q->made.report.coarsening,
-    "coarse_cells", (json_int_t)q->made.report.n_coarse,
-    "interface_triangles", (json_int_t)q->made.report.n_face,
-    "seconds", q->seconds);
+                   vg_ways[p->problem.resolved.settings.decompose].name,
+                   "parts", (json_int_t)q->n_part, "whole_parts",
+                   (json_int_t)q->n_whole, "gap_parts",
+                   (json_int_t)q->made.report.n_gap, "whole_cells", q->cells,
+                   "most_cells", q->most, "coarsening",
+                   q->made.report.coarsening, "coarse_cells",
+                   (json_int_t)q->made.report.n_coarse, "interface_triangles",
+                   (json_int_t)q->made.report.n_face, "seconds", q->seconds);
 }
 
 static json_t *tree_json(const struct vg_plan *p)
@@ -461,8 +468,8 @@ static json_t *tree_json(const struct vg_plan *p)
   json_t *o = json_pack("{s:f s:I s:I s:I s:I s:f}", "balance", balance(t),
                         "cuts", (json_int_t)cuts(p), "leaves",
                         (json_int_t)t->n_leaf, "pencils",
-                        (json_int_t)t->n_pencil, "tiles",
-                        (json_int_t)t->n_tile, "zone_cells", t->zone_cells);
+                        (json_int_t)t->n_pencil, "tiles", (json_int_t)t->n_tile,
+                        "zone_cells", t->zone_cells);
   json_t *list = json_array();
 
   for (size_t i = 0; i < t->n_node; i++)
@@ -478,9 +485,11 @@ static json_t *rates_json(const struct vg_plan *p)
   for (int k = 0; k < VG_RATE_FITS; k++)
     if (p->fit[k].n)
       json_array_append_new(list, json_pack("{s:s s:I s:f s:f s:f}", "tasks",
-        kind_name(p->fit[k].kind), "n", (json_int_t)p->fit[k].n,
-        "seconds_per_cell", p->fit[k].cell, "seconds_per_face",
-        p->fit[k].face, "error", p->fit[k].error));
+                                            kind_name(p->fit[k].kind), "n",
+                                            (json_int_t)p->fit[k].n,
+                                            "seconds_per_cell", p->fit[k].cell,
+                                            "seconds_per_face", p->fit[k].face,
+                                            "error", p->fit[k].error));
   return list;
 }
 
@@ -490,8 +499,10 @@ static json_t *leaves_json(const struct vg_plan *p)
 
   for (size_t i = 0; i < p->n_leaf; i++)
     json_array_append_new(list, json_pack("{s:f s:I s:f s:f}", "leaf_cells",
-      p->leaf[i].cells, "leaves", (json_int_t)p->leaf[i].n, "seconds",
-      p->leaf[i].row.wall, "tasks_seconds", p->leaf[i].row.tasks.wall));
+                                          p->leaf[i].cells, "leaves",
+                                          (json_int_t)p->leaf[i].n, "seconds",
+                                          p->leaf[i].row.wall, "tasks_seconds",
+                                          p->leaf[i].row.tasks.wall));
   return list;
 }
 
@@ -506,10 +517,12 @@ static json_t *limits_json(const struct vg_plan *p)
     int tasks = k == VG_PHASE_ENGINE;
 
     if (!tasks && !(p->phase[k] > 0)) continue;
-    json_array_append_new(list, json_pack("{s:s s:f s:f s:s}", "phase",
-      vg_phase_name((enum vg_phase)k), "one_core", tasks ? r->tasks.work
-      : p->phase[k], "seconds", tasks ? r->tasks.wall : there, "limited_by",
-      tasks ? limit_of_tasks(r) : limit_of(parts)));
+    json_array_append_new(
+      list,
+      json_pack("{s:s s:f s:f s:s}", "phase", vg_phase_name((enum vg_phase)k),
+                "one_core", tasks ? r->tasks.work : p->phase[k], "seconds",
+                tasks ? r->tasks.wall : there, "limited_by",
+                tasks ? limit_of_tasks(r) : limit_of(parts)));
   }
   return list;
 }
@@ -525,15 +538,17 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
                       vg_effects_json(&p->effects, p->front,
                                       &p->problem.resolved.settings));
   json_object_set_new(o, "files", files_json(p));
-  json_object_set_new(o, "memory", json_pack("{s:f s:f s:f}", "shared",
-    p->shared, "per_cell", p->per_cell, "per_thread", p->per_thread));
-  if (p->parting.n_part)
-    json_object_set_new(o, "parting", parting_json(p));
+  json_object_set_new(o, "memory",
+                      json_pack("{s:f s:f s:f}", "shared", p->shared,
+                                "per_cell", p->per_cell, "per_thread",
+                                p->per_thread));
+  if (p->parting.n_part) json_object_set_new(o, "parting", parting_json(p));
   json_object_set_new(o, "tree", tree_json(p));
   json_object_set_new(o, "rates", rates_json(p));
-  json_object_set_new(o, "one_core", json_pack("{s:f s:f s:f}", "outside",
-    outside(p), "tasks", p->forecast.spans.wall, "loops",
-    vg_spans_loops(&p->forecast.spans)));
+  json_object_set_new(o, "one_core",
+                      json_pack("{s:f s:f s:f}", "outside", outside(p), "tasks",
+                                p->forecast.spans.wall, "loops",
+                                vg_spans_loops(&p->forecast.spans)));
   json_object_set_new(o, "phases", limits_json(p));
   for (size_t i = 0; i < p->n_row; i++)
     json_array_append_new(rows, row_json(&p->row[i]));

@@ -13,20 +13,23 @@
 #include "run/common/text.h"
 #include "run/report/report.h"
 
-struct row { int ranks, threads; struct vg_model_result f; };
+struct row {
+  int ranks, threads;
+  struct vg_model_result f;
+};
 
 struct plan {
   const struct vg_plan_options *o;
   struct vg_timeline t;
   struct vg_machine machine;
-  struct row recorded;          /* the machine of the record, replayed */
-  double measured;              /* s, what the record took in all */
+  struct row recorded; /* the machine of the record, replayed */
+  double measured;     /* s, what the record took in all */
   size_t n;
-  struct row *row;              /* [n] */
+  struct row *row; /* [n] */
 };
 
-static vg_status replay(struct plan *p, int ranks, int threads,
-                        struct row *row, struct vg_error *err)
+static vg_status replay(struct plan *p, int ranks, int threads, struct row *row,
+                        struct vg_error *err)
 {
   struct vg_error why = VG_ERROR_INIT;
   vg_status st;
@@ -67,19 +70,18 @@ static vg_status replay_all(struct plan *p, struct vg_error *err)
   p->machine.serial = o->serial;
   if (o->serial < 0) vg_timeline_outside(&p->t, &p->machine);
   p->machine.ranks_per_node = p->t.spans.n_rank;
-  VG_TRY(replay(p, p->t.spans.n_rank, p->t.spans.n_thread, &p->recorded,
-                err));
-  p->measured = o->serial >= 0 ? p->t.spans.wall + o->serial
-                               : fmax(p->t.spans.wall,
-                                      p->t.seconds[VG_PHASE_TOTAL]);
+  VG_TRY(replay(p, p->t.spans.n_rank, p->t.spans.n_thread, &p->recorded, err));
+  p->measured = o->serial >= 0
+                ? p->t.spans.wall + o->serial
+                : fmax(p->t.spans.wall, p->t.seconds[VG_PHASE_TOTAL]);
   p->machine.ranks_per_node = per_node;
   p->machine.cyclic = cyclic;
   p->row = vg_alloc(o->ranks.n * o->threads.n, sizeof *p->row);
   if (!p->row) return vg_fail_memory(err, "the forecast");
   for (size_t t = 0; t < o->threads.n; t++)
     for (size_t r = 0; r < o->ranks.n; r++) {
-      VG_TRY(replay(p, (int)o->ranks.v[r], (int)o->threads.v[t],
-                    &p->row[p->n], err));
+      VG_TRY(replay(p, (int)o->ranks.v[r], (int)o->threads.v[t], &p->row[p->n],
+                    err));
       p->n++;
     }
 done:
@@ -109,18 +111,19 @@ static void print_text(const struct plan *p)
          p->recorded.f.wall, p->measured, error_percent(p));
   printf("\nForecast%s\n  ranks threads workers       time  speed-up  "
          "efficiency   critical   cuts end  cuts extra  idle  imbalance   sent"
-         "\n", p->machine.cyclic ? ", leaves dealt out in turn" : "");
+         "\n",
+         p->machine.cyclic ? ", leaves dealt out in turn" : "");
   printf("                               s                     %%          s"
          "          s     %%     %%     %%                MB\n");
   for (size_t i = 0; i < p->n; i++) {
     const struct row *r = &p->row[i];
 
     printf("  %5d %7d %7d %10.3f %9.2f %11.1f %10.3f %10.3f %5.1f %5.1f "
-           "%5.1f %10.3f %6.0f\n", r->ranks, r->threads, r->ranks * r->threads,
-           r->f.wall, r->f.speedup, 100 * r->f.efficiency, r->f.critical,
-           r->f.cuts_wall, 100 * r->f.cuts, 100 * r->f.cuts_extra,
-           100 * r->f.idle, r->f.imbalance,
-           r->f.bytes / 1e6);
+           "%5.1f %10.3f %6.0f\n",
+           r->ranks, r->threads, r->ranks * r->threads, r->f.wall, r->f.speedup,
+           100 * r->f.efficiency, r->f.critical, r->f.cuts_wall,
+           100 * r->f.cuts, 100 * r->f.cuts_extra, 100 * r->f.idle,
+           r->f.imbalance, r->f.bytes / 1e6);
   }
 }
 
@@ -132,8 +135,8 @@ static json_t *row_json(const struct row *r)
                    r->f.work, "speedup", r->f.speedup, "efficiency",
                    r->f.efficiency, "critical", r->f.critical, "cuts",
                    r->f.cuts, "cuts_extra", r->f.cuts_extra, "cuts_end",
-                   r->f.cuts_wall, "idle", r->f.idle,
-                   "imbalance", r->f.imbalance, "bytes_sent", r->f.bytes);
+                   r->f.cuts_wall, "idle", r->f.idle, "imbalance",
+                   r->f.imbalance, "bytes_sent", r->f.bytes);
 }
 
 static vg_status print_json(const struct plan *p, struct vg_error *err)
@@ -148,16 +151,20 @@ static vg_status print_json(const struct plan *p, struct vg_error *err)
   json_object_set_new(o, "by_node", json_real(p->machine.by_node));
   json_object_set_new(o, "by_all", json_real(p->machine.by_all));
   json_object_set_new(o, "loops", json_real(vg_spans_loops(&p->t.spans)));
-  json_object_set_new(o, "machine", json_pack("{s:i s:f s:f s:f s:b s:b s:i}",
-    "ranks_per_node", p->machine.ranks_per_node, "latency",
-    p->machine.latency, "bandwidth", p->machine.bandwidth, "rate",
-    p->machine.rate, "joins_roam", p->machine.joins_roam, "cyclic",
-    p->machine.cyclic, "loop_threads",
-    p->machine.loop_threads));
-  json_object_set_new(o, "recorded", json_pack("{s:i s:i s:f s:f s:f}",
-    "ranks", p->recorded.ranks, "threads", p->recorded.threads, "measured",
-    p->measured, "replayed", p->recorded.f.wall, "error_percent",
-    error_percent(p)));
+  json_object_set_new(o, "machine",
+                      json_pack("{s:i s:f s:f s:f s:b s:b s:i}",
+                                "ranks_per_node", p->machine.ranks_per_node,
+                                "latency", p->machine.latency, "bandwidth",
+                                p->machine.bandwidth, "rate", p->machine.rate,
+                                "joins_roam", p->machine.joins_roam, "cyclic",
+                                p->machine.cyclic, "loop_threads",
+                                p->machine.loop_threads));
+  json_object_set_new(o, "recorded",
+                      json_pack("{s:i s:i s:f s:f s:f}", "ranks",
+                                p->recorded.ranks, "threads",
+                                p->recorded.threads, "measured", p->measured,
+                                "replayed", p->recorded.f.wall, "error_percent",
+                                error_percent(p)));
   for (size_t i = 0; i < p->n; i++)
     json_array_append_new(list, row_json(&p->row[i]));
   json_object_set_new(o, "forecast", list);

@@ -19,7 +19,10 @@
 /* Workers in loops of another one's task: joins only have any. */
 #define HELP 'h'
 
-static const struct { char kind; const char *name, *colour; } kinds[] = {
+static const struct {
+  char kind;
+  const char *name, *colour;
+} kinds[] = {
   { VG_SPAN_JOIN, "join", VG_SVG_RED },
   { VG_SPAN_PENCIL, "pencil", VG_SVG_BLUE },
   { VG_SPAN_TILE, "tile", VG_SVG_SKY },
@@ -31,15 +34,18 @@ static const struct { char kind; const char *name, *colour; } kinds[] = {
 #define N_KIND (sizeof kinds / sizeof *kinds)
 
 /* A worker busy: with a task or in help. */
-struct mark { size_t kind, lane; double start, end; };
+struct mark {
+  size_t kind, lane;
+  double start, end;
+};
 
 struct lanes {
   const struct vg_timeline *t;
   size_t n_mark;
-  struct mark *mark;         /* [n_mark] in lanes that exist */
-  size_t n;                  /* workers */
-  double offset, end;        /* s: the engine's start; all */
-  double top, height;        /* of one lane */
+  struct mark *mark;  /* [n_mark] in lanes that exist */
+  size_t n;           /* workers */
+  double offset, end; /* s: the engine's start; all */
+  double top, height; /* of one lane */
   struct vg_axis axis;
 };
 
@@ -109,8 +115,7 @@ static void draw_stages(struct vg_svg *svg, const struct lanes *l)
 
   for (int i = 0; i < VG_PHASE_TOTAL; i++) {
     const char *name = vg_phase_name((enum vg_phase)i);
-    double took = i == VG_PHASE_ENGINE ? l->t->spans.wall
-                                       : l->t->seconds[i];
+    double took = i == VG_PHASE_ENGINE ? l->t->spans.wall : l->t->seconds[i];
     double x = vg_axis_at(&l->axis, at), w;
 
     at += took;
@@ -137,8 +142,7 @@ static void draw_tasks(struct vg_svg *svg, const struct lanes *l)
       double w = vg_axis_at(&l->axis, l->offset + one->end) - x;
 
       if (one->kind != k) continue;
-      if (!any++)
-        vg_svg_boxes_begin(svg, kinds[k].colour, gap ? 0.3 : 0);
+      if (!any++) vg_svg_boxes_begin(svg, kinds[k].colour, gap ? 0.3 : 0);
       vg_svg_box(svg, x, l->top + l->height * (double)one->lane + gap,
                  w > 0.2 ? w : 0.2, l->height - 2 * gap);
     }
@@ -168,7 +172,7 @@ static vg_status draw_names(struct vg_svg *svg, const struct lanes *l,
     busy[l->mark[i].lane] += l->mark[i].end - l->mark[i].start;
   if (every > 1 && s->n_thread > 1)
     every = (every + (size_t)s->n_thread - 1) / (size_t)s->n_thread *
-      (size_t)s->n_thread;
+            (size_t)s->n_thread;
   for (size_t i = 0; i < l->n; i += every) {
     double y = l->top + l->height * ((double)i + 0.5) + 4;
     size_t threads = (size_t)s->n_thread;
@@ -231,7 +235,8 @@ vg_status vg_plot_timeline(const char *path, const struct vg_timeline *t,
 
   VG_TRY(measure(t, &l, err));
   bottom = l.top + l.height * (double)l.n;
-  snprintf(subtitle, sizeof subtitle, "%d rank%s x %d thread%s, %s cells, %zu "
+  snprintf(subtitle, sizeof subtitle,
+           "%d rank%s x %d thread%s, %s cells, %zu "
            "tasks; cut and fill %s s, workers %d %% busy, imbalance %s",
            (int)t->spans.n_rank, t->spans.n_rank > 1 ? "s" : "",
            (int)t->spans.n_thread, t->spans.n_thread > 1 ? "s" : "",
@@ -239,8 +244,7 @@ vg_status vg_plot_timeline(const char *path, const struct vg_timeline *t,
            two_decimals(t->spans.wall, wall),
            percent(vg_spans_busy(&t->spans), 1),
            two_decimals(vg_spans_imbalance(&t->spans), imbalance));
-  VG_TRY(vg_svg_open(path, WIDTH, bottom + 48, t->title, subtitle, &svg,
-                     err));
+  VG_TRY(vg_svg_open(path, WIDTH, bottom + 48, t->title, subtitle, &svg, err));
   draw_keys(&svg, &l);
   draw_stages(&svg, &l);
   vg_axis_draw_x(&svg, &l.axis, bottom, l.top, "seconds");
@@ -255,7 +259,10 @@ done:
 
 /* --- sizes --------------------------------------------------------------- */
 
-struct sizes { size_t n; double *cells, sum; };
+struct sizes {
+  size_t n;
+  double *cells, sum;
+};
 
 static int by_size(const void *a, const void *b)
 {
@@ -294,8 +301,7 @@ static void mark(struct vg_svg *svg, const struct vg_axis *x, double v,
               right ? VG_SVG_START : VG_SVG_END, colour, text);
 }
 
-static void draw_bins(struct vg_svg *svg, const struct sizes *z,
-                      double target)
+static void draw_bins(struct vg_svg *svg, const struct sizes *z, double target)
 {
   double most = z->n ? z->cells[z->n - 1] : 1, width;
   struct vg_axis x, y;
@@ -319,12 +325,12 @@ static void draw_bins(struct vg_svg *svg, const struct sizes *z,
     double top = vg_axis_at(&y, (double)bin[k]);
 
     if (bin[k])
-      vg_svg_rect(svg, from + 0.5, top, vg_axis_at(&x, (k + 1) * width) -
-                  from - 1, 370 - top, VG_SVG_ORANGE);
+      vg_svg_rect(svg, from + 0.5, top,
+                  vg_axis_at(&x, (k + 1) * width) - from - 1, 370 - top,
+                  VG_SVG_ORANGE);
   }
   if (z->n)
-    mark(svg, &x, floor(z->sum / (double)z->n + 0.5), 105, VG_SVG_BLUE,
-         "mean");
+    mark(svg, &x, floor(z->sum / (double)z->n + 0.5), 105, VG_SVG_BLUE, "mean");
   if (target > 0) mark(svg, &x, target, 89, VG_SVG_RED, "asked for");
 }
 
@@ -338,8 +344,10 @@ vg_status vg_plot_sizes(const char *path, const struct vg_timeline *t,
 
   VG_TRY(leaf_sizes(&t->spans, &z, err));
   if (z.n)
-    snprintf(subtitle, sizeof subtitle, "%zu leaves: smallest %s cells, "
-             "median %s, largest %s", z.n, vg_svg_number(z.cells[0], low),
+    snprintf(subtitle, sizeof subtitle,
+             "%zu leaves: smallest %s cells, "
+             "median %s, largest %s",
+             z.n, vg_svg_number(z.cells[0], low),
              vg_svg_number(z.cells[z.n / 2], middle),
              vg_svg_number(z.cells[z.n - 1], high));
   else snprintf(subtitle, sizeof subtitle, "no leaves");

@@ -23,7 +23,7 @@ struct vg_plot_series {
   const char *label;
   int colour, is_model;
   size_t n;
-  const double *workers, *speedup;   /* [n], workers rising */
+  const double *workers, *speedup; /* [n], workers rising */
 };
 
 /** Speed-up over workers, with the ideal line. Logarithmic beyond 16. */
@@ -32,11 +32,13 @@ vg_status vg_plot_speedup(const char *path, const char *title,
                           const struct vg_plot_series *series,
                           struct vg_error *err);
 
-struct vg_plot_bar { const char *label; const double *seconds; };
+struct vg_plot_bar {
+  const char *label;
+  const double *seconds;
+};
 
 /** A bar for each run, its parts the phases ([VG_PHASE_N] each). */
 vg_status vg_plot_phases(const char *path, const char *title, size_t n,
-                         const struct vg_plot_bar *bar,
-                         struct vg_error *err);
+                         const struct vg_plot_bar *bar, struct vg_error *err);
 
 #endif

@@ -10,19 +10,22 @@
 
 #define LABEL_HEIGHT 15.0
 
-static const char *const colours[] = {
-  VG_SVG_BLUE, VG_SVG_RED, VG_SVG_GREEN, VG_SVG_PURPLE, VG_SVG_ORANGE,
-  VG_SVG_SKY, "#000000"
-};
+static const char *const colours[] = { VG_SVG_BLUE,   VG_SVG_RED,
+                                       VG_SVG_GREEN,  VG_SVG_PURPLE,
+                                       VG_SVG_ORANGE, VG_SVG_SKY,
+                                       "#000000" };
 #define N_COLOUR (sizeof colours / sizeof *colours)
 
 static const char *const phase_colours[VG_PHASE_TOTAL] = {
-  "#c8c8c8", VG_SVG_GREY, VG_SVG_YELLOW, VG_SVG_ORANGE, VG_SVG_BLUE,
-  VG_SVG_SKY, VG_SVG_PURPLE, VG_SVG_GREEN
+  "#c8c8c8",   VG_SVG_GREY, VG_SVG_YELLOW, VG_SVG_ORANGE,
+  VG_SVG_BLUE, VG_SVG_SKY,  VG_SVG_PURPLE, VG_SVG_GREEN
 };
 
 /* Text at the end of a line. */
-struct label { double y; const char *text, *colour; };
+struct label {
+  double y;
+  const char *text, *colour;
+};
 
 static int by_height(const void *a, const void *b)
 {
@@ -36,9 +39,8 @@ static void spread(size_t n, struct label *l, double bottom)
 {
   qsort(l, n, sizeof *l, by_height);
   for (size_t i = 1; i < n; i++)
-    if (l[i].y < l[i - 1].y + LABEL_HEIGHT)
-      l[i].y = l[i - 1].y + LABEL_HEIGHT;
-  for (size_t i = n; i-- > 0; ) {
+    if (l[i].y < l[i - 1].y + LABEL_HEIGHT) l[i].y = l[i - 1].y + LABEL_HEIGHT;
+  for (size_t i = n; i-- > 0;) {
     double limit = i + 1 < n ? l[i + 1].y - LABEL_HEIGHT : bottom;
 
     if (l[i].y > limit) l[i].y = limit;
@@ -56,7 +58,7 @@ static void draw_series(struct vg_svg *svg, const struct vg_plot_series *s,
     at[i][1] = vg_axis_at(y, s->speedup[i]);
   }
   if (s->n > 1)
-    vg_svg_polyline(svg, s->n, (const double (*)[2])at, colour,
+    vg_svg_polyline(svg, s->n, (const double(*)[2])at, colour,
                     s->is_model ? 1.5 : 2, s->is_model);
   for (size_t i = 0; i < s->n && !s->is_model; i++)
     vg_svg_dot(svg, at[i][0], at[i][1], 4, colour);
@@ -109,11 +111,9 @@ vg_status vg_plot_speedup(const char *path, const char *title,
     goto done;
   }
   VG_TRY(vg_svg_open(path, 760, 520, title, subtitle, &svg, err));
-  x = most > 16 ? vg_axis_log(most, 70, 560)
-                : vg_axis_linear(most, 8, 70, 560);
+  x = most > 16 ? vg_axis_log(most, 70, 560) : vg_axis_linear(most, 8, 70, 560);
   if (!x.is_log && x.step < 1) x = vg_axis_linear(most, (int)most, 70, 560);
-  y = most > 16 ? vg_axis_log(high, 460, 64)
-                : vg_axis_linear(high, 8, 460, 64);
+  y = most > 16 ? vg_axis_log(high, 460, 64) : vg_axis_linear(high, 8, 460, 64);
   vg_axis_draw_y(&svg, &y, 70, 560, "speed-up");
   vg_axis_draw_x(&svg, &x, 460, 64, "workers (ranks x threads)");
   draw_ideal(&svg, &x, &y, most, &label[0]);
@@ -163,8 +163,7 @@ static void draw_bar(struct vg_svg *svg, const struct vg_plot_bar *bar,
 
     at += bar->seconds[i];
     if (bar->seconds[i] > 0)
-      vg_svg_rect(svg, from, y, vg_axis_at(x, at) - from, 20,
-                  phase_colours[i]);
+      vg_svg_rect(svg, from, y, vg_axis_at(x, at) - from, 20, phase_colours[i]);
   }
   snprintf(text, sizeof text, "%s s", vg_svg_number(length(bar), number));
   vg_svg_text(svg, end + 6, y + 14, 11.5, VG_SVG_START, VG_SVG_TEXT, text);

@@ -9,7 +9,7 @@
 
 #define FONT "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\""
 #define LABEL_SIZE 11.0
-#define COORDINATE_MAX 1e9      /* pixels: what is beyond comes to here */
+#define COORDINATE_MAX 1e9 /* pixels: what is beyond comes to here */
 
 /* A coordinate with at most two decimals. */
 static void put(struct vg_svg *s, double v)
@@ -52,7 +52,7 @@ vg_status vg_svg_open(const char *path, double w, double h, const char *title,
 
   if (st < 0) return st;
   vg_output_text(&s->out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                 "<svg xmlns=\"http://www.w3.org/2000/svg\" " FONT);
+                          "<svg xmlns=\"http://www.w3.org/2000/svg\" " FONT);
   attribute(s, "width", w);
   attribute(s, "height", h);
   vg_output_text(&s->out, " viewBox=\"0 0 ");
@@ -68,8 +68,7 @@ vg_status vg_svg_open(const char *path, double w, double h, const char *title,
     vg_svg_text(s, 16, 26, 15, VG_SVG_START, VG_SVG_TEXT, title);
     vg_output_text(&s->out, "</g>\n");
   }
-  if (*subtitle)
-    vg_svg_text(s, 16, 44, 12, VG_SVG_START, "#666666", subtitle);
+  if (*subtitle) vg_svg_text(s, 16, 44, 12, VG_SVG_START, "#666666", subtitle);
   return VG_OK;
 }
 
@@ -119,7 +118,7 @@ void vg_svg_polyline(struct vg_svg *s, size_t n, const double (*at)[2],
                      const char *stroke, double width, int dashed)
 {
   vg_output_text(&s->out, "<polyline fill=\"none\" stroke-linejoin=\"round\" "
-                 "points=\"");
+                          "points=\"");
   for (size_t i = 0; i < n; i++) {
     if (i) vg_output_text(&s->out, " ");
     put(s, at[i][0]);
@@ -141,8 +140,7 @@ void vg_svg_dot(struct vg_svg *s, double x, double y, double radius,
 }
 
 void vg_svg_text(struct vg_svg *s, double x, double y, double size,
-                 enum vg_svg_anchor anchor, const char *fill,
-                 const char *text)
+                 enum vg_svg_anchor anchor, const char *fill, const char *text)
 {
   static const char *const names[] = { "start", "middle", "end" };
 
@@ -150,8 +148,8 @@ void vg_svg_text(struct vg_svg *s, double x, double y, double size,
   attribute(s, "x", x);
   attribute(s, "y", y);
   attribute(s, "font-size", size);
-  vg_output_format(&s->out, " text-anchor=\"%s\" fill=\"%s\">",
-                   names[anchor], fill);
+  vg_output_format(&s->out, " text-anchor=\"%s\" fill=\"%s\">", names[anchor],
+                   fill);
   put_text(s, text);
   vg_output_text(&s->out, "</text>\n");
 }
@@ -212,8 +210,7 @@ double vg_svg_key(struct vg_svg *s, double x, double y, const char *fill,
                   const char *text)
 {
   vg_svg_rect(s, x, y - 9, 10, 10, fill);
-  vg_svg_text(s, x + 15, y, LABEL_SIZE + 0.5, VG_SVG_START, VG_SVG_TEXT,
-              text);
+  vg_svg_text(s, x + 15, y, LABEL_SIZE + 0.5, VG_SVG_START, VG_SVG_TEXT, text);
   return x + 15 + vg_svg_width(text, LABEL_SIZE + 0.5) + 16;
 }
 
@@ -229,8 +226,10 @@ struct vg_axis vg_axis_linear(double most, int n, double from, double to)
   wanted = most / n;
   while (step > wanted) step /= 10;
   while (step * 10 <= wanted) step *= 10;
-  a.step = wanted <= step ? step : wanted <= 2 * step ? 2 * step
-         : wanted <= 5 * step ? 5 * step : 10 * step;
+  a.step = wanted <= step     ? step
+         : wanted <= 2 * step ? 2 * step
+         : wanted <= 5 * step ? 5 * step
+                              : 10 * step;
   a.hi = a.step * ceil(most / a.step * (1 - 1e-9));
   return a;
 }
@@ -271,10 +270,10 @@ void vg_axis_draw_x(struct vg_svg *s, const struct vg_axis *a, double y,
     vg_svg_text(s, x, y + 15, LABEL_SIZE, VG_SVG_MIDDLE, VG_SVG_TEXT,
                 vg_svg_number(v, text));
   }
-  vg_svg_line(s, (const double[2]){ a->from, y },
-              (const double[2]){ a->to, y }, VG_SVG_AXIS, 1, 0);
-  vg_svg_text(s, (a->from + a->to) / 2, y + 33, 12, VG_SVG_MIDDLE,
-              VG_SVG_TEXT, label);
+  vg_svg_line(s, (const double[2]){ a->from, y }, (const double[2]){ a->to, y },
+              VG_SVG_AXIS, 1, 0);
+  vg_svg_text(s, (a->from + a->to) / 2, y + 33, 12, VG_SVG_MIDDLE, VG_SVG_TEXT,
+              label);
 }
 
 void vg_axis_draw_y(struct vg_svg *s, const struct vg_axis *a, double x,
@@ -296,8 +295,13 @@ void vg_axis_draw_y(struct vg_svg *s, const struct vg_axis *a, double x,
 
 char *vg_svg_number(double v, char *text)
 {
-  static const struct { double unit; const char *letter; } units[] = {
-    { 1e9, "G" }, { 1e6, "M" }, { 1e4, "k" },
+  static const struct {
+    double unit;
+    const char *letter;
+  } units[] = {
+    { 1e9, "G" },
+    { 1e6, "M" },
+    { 1e4, "k" },
   };
   const char *letter = "";
   double milli;

@@ -25,8 +25,13 @@
 
 enum vg_svg_anchor { VG_SVG_START, VG_SVG_MIDDLE, VG_SVG_END };
 
-struct vg_svg { struct vg_output out; };
-#define VG_SVG_INIT { VG_OUTPUT_INIT }
+struct vg_svg {
+  struct vg_output out;
+};
+#define VG_SVG_INIT                                                            \
+  {                                                                            \
+    VG_OUTPUT_INIT                                                             \
+  }
 
 /** Start a figure of w x h pixels on white, with a title (also for screen
  * readers) and a line below it, either may be "". */
@@ -49,8 +54,7 @@ void vg_svg_polyline(struct vg_svg *s, size_t n, const double (*at)[2],
 void vg_svg_dot(struct vg_svg *s, double x, double y, double radius,
                 const char *fill);
 void vg_svg_text(struct vg_svg *s, double x, double y, double size,
-                 enum vg_svg_anchor anchor, const char *fill,
-                 const char *text);
+                 enum vg_svg_anchor anchor, const char *fill, const char *text);
 
 /** Many boxes of one colour in one element; gap: width of the white line
  * around each. */
@@ -67,7 +71,10 @@ double vg_svg_width(const char *text, double size);
 
 /* An axis maps lo .. hi to pixels from .. to; ticks at multiples of step, or
  * at powers of 2 where it is logarithmic (then lo >= 1). */
-struct vg_axis { double lo, hi, step, from, to; int is_log; };
+struct vg_axis {
+  double lo, hi, step, from, to;
+  int is_log;
+};
 
 /** An axis from 0 to `most` or a little beyond, with about n ticks. */
 struct vg_axis vg_axis_linear(double most, int n, double from, double to);

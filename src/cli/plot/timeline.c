@@ -10,18 +10,36 @@
 
 #define SECONDS_MAX 1e9
 #define WORK_MAX 1e300
-#define ROUNDED 2e-6             /* twice half of what times are kept to */
-#define COUNT_MAX ((json_int_t)1 << 53)   /* integers that a double holds */
+#define ROUNDED 2e-6 /* twice half of what times are kept to */
+#define COUNT_MAX ((json_int_t)1 << 53) /* integers that a double holds */
 
 enum column {
-  COLUMN_PATH, COLUMN_AFTER, COLUMN_KIND, COLUMN_RANK, COLUMN_THREAD,
-  COLUMN_HOME, COLUMN_START, COLUMN_END, COLUMN_CPU, COLUMN_ESTIMATE,
-  COLUMN_CELLS, COLUMN_BYTES_IN, COLUMN_BYTES_OUT, COLUMN_LOOPS, COLUMN_FACES,
-  COLUMN_WORK, COLUMN_N
+  COLUMN_PATH,
+  COLUMN_AFTER,
+  COLUMN_KIND,
+  COLUMN_RANK,
+  COLUMN_THREAD,
+  COLUMN_HOME,
+  COLUMN_START,
+  COLUMN_END,
+  COLUMN_CPU,
+  COLUMN_ESTIMATE,
+  COLUMN_CELLS,
+  COLUMN_BYTES_IN,
+  COLUMN_BYTES_OUT,
+  COLUMN_LOOPS,
+  COLUMN_FACES,
+  COLUMN_WORK,
+  COLUMN_N
 };
 
 enum help_column {
-  HELP_PATH, HELP_RANK, HELP_THREAD, HELP_START, HELP_END, HELP_N
+  HELP_PATH,
+  HELP_RANK,
+  HELP_THREAD,
+  HELP_START,
+  HELP_END,
+  HELP_N
 };
 
 /* A list of rows, and the list that names their columns, of which the last
@@ -33,15 +51,18 @@ struct table {
 };
 
 static const struct table span_table = {
-  "spans", "span", "columns", COLUMN_N, COLUMN_LOOPS,
+  "spans",
+  "span",
+  "columns",
+  COLUMN_N,
+  COLUMN_LOOPS,
   { "path", "after", "kind", "rank", "thread", "home", "start", "end", "cpu",
-    "estimate", "cells", "bytes_in", "bytes_out", "loops",
-    "faces", "work" }
+    "estimate", "cells", "bytes_in", "bytes_out", "loops", "faces", "work" }
 };
 
 static const struct table help_table = {
-  "help", "help", "help_columns", HELP_N, HELP_N,
-  { "path", "rank", "thread", "start", "end" }
+  "help", "help", "help_columns",
+  HELP_N, HELP_N, { "path", "rank", "thread", "start", "end" }
 };
 
 /* The keys of phases in the facts, and the parts of them that one thread does,
@@ -121,7 +142,8 @@ static void put_facts(struct vg_output *out, const struct vg_timeline *t)
 {
   vg_output_text(out, "{\"vanguard_timeline\": 1,\n\"facts\": {\"title\": ");
   put_string(out, t->title);
-  vg_output_format(out, ", \"ranks\": %d, \"threads\": %d, \"cells\": %llu, "
+  vg_output_format(out,
+                   ", \"ranks\": %d, \"threads\": %d, \"cells\": %llu, "
                    "\"points\": %llu, \"cyclic\": %d,\n \"digest\": ",
                    (int)t->spans.n_rank, (int)t->spans.n_thread,
                    (unsigned long long)t->n_cell,
@@ -234,8 +256,10 @@ static vg_status get_text(const struct place *at, const json_t *o,
                           struct vg_error *err)
 {
   if (!json_is_string(o) || json_string_length(o) >= size)
-    return bad_value(at, what, "a text, or longer than any that vanguard "
-                     "writes", err);
+    return bad_value(at, what,
+                     "a text, or longer than any that vanguard "
+                     "writes",
+                     err);
   memcpy(out, json_string_value(o), json_string_length(o) + 1);
   return VG_OK;
 }
@@ -285,9 +309,10 @@ static vg_status get_facts(const char *name, const json_t *root,
   VG_TRY(get_count(&at, json_object_get(facts, "threads"), "threads",
                    VG_TIMELINE_MAX, &threads, err));
   if (!ranks || !threads || ranks * threads > VG_TIMELINE_MAX)
-    return vg_fail(err, VG_ERR_FORMAT, "%s: %llu ranks with %llu threads: "
-                   "from 1 to %d workers can be read", name,
-                   (unsigned long long)ranks, (unsigned long long)threads,
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: %llu ranks with %llu threads: "
+                   "from 1 to %d workers can be read",
+                   name, (unsigned long long)ranks, (unsigned long long)threads,
                    VG_TIMELINE_MAX);
   t->spans.n_rank = (int32_t)ranks;
   t->spans.n_thread = (int32_t)threads;
@@ -304,8 +329,7 @@ static vg_status get_facts(const char *name, const json_t *root,
   t->cyclic = (int)cyclic;
   for (int i = 0; i < VG_PHASE_N; i++)
     if ((o = json_object_get(facts, phases[i].key)))
-      VG_TRY(get_real(&at, o, phases[i].key, SECONDS_MAX, &t->seconds[i],
-                      err));
+      VG_TRY(get_real(&at, o, phases[i].key, SECONDS_MAX, &t->seconds[i], err));
   t->spans.wall = t->seconds[VG_PHASE_ENGINE];
 done:
   return st;
@@ -327,8 +351,8 @@ static vg_status get_columns(const char *name, const json_t *root,
       if (word && !strcmp(word, t->column[c])) break;
     }
     if (i == n_word && c < t->n_must)
-      return vg_fail(err, VG_ERR_FORMAT, "%s: no column \"%s\" in \"%s\"",
-                     name, t->column[c], t->columns);
+      return vg_fail(err, VG_ERR_FORMAT, "%s: no column \"%s\" in \"%s\"", name,
+                     t->column[c], t->columns);
     place[c] = i < n_word ? i : SIZE_MAX;
   }
   return VG_OK;
@@ -336,15 +360,16 @@ static vg_status get_columns(const char *name, const json_t *root,
 
 /* The values of a row by column; NULL for one that is absent. */
 static vg_status get_row(const struct place *at, const json_t *row,
-                         const struct table *t, const size_t *place,
-                         json_t **v, struct vg_error *err)
+                         const struct table *t, const size_t *place, json_t **v,
+                         struct vg_error *err)
 {
   for (int c = 0; c < t->n; c++) {
     v[c] = place[c] == SIZE_MAX ? NULL : json_array_get(row, place[c]);
     if (!v[c] && place[c] != SIZE_MAX)
-      return vg_fail(err, VG_ERR_FORMAT, "%s: %s %zu has no \"%s\": it is "
-                     "not a list as long as \"%s\"", at->name, at->list,
-                     at->number, t->column[c], t->columns);
+      return vg_fail(err, VG_ERR_FORMAT,
+                     "%s: %s %zu has no \"%s\": it is "
+                     "not a list as long as \"%s\"",
+                     at->name, at->list, at->number, t->column[c], t->columns);
   }
   return VG_OK;
 }
@@ -398,19 +423,17 @@ static vg_status get_numbers(const struct place *at, json_t *const *v,
   s->rank = who[0];
   s->thread = who[1];
   s->home = (int32_t)home;
-  VG_TRY(get_times(at, v[COLUMN_START], v[COLUMN_END], &s->start, &s->end,
-                   err));
+  VG_TRY(
+    get_times(at, v[COLUMN_START], v[COLUMN_END], &s->start, &s->end, err));
   VG_TRY(get_real(at, v[COLUMN_CPU], "cpu", SECONDS_MAX, &s->cpu, err));
-  VG_TRY(get_real(at, v[COLUMN_ESTIMATE], "estimate", 1e15, &s->estimate,
-                  err));
+  VG_TRY(get_real(at, v[COLUMN_ESTIMATE], "estimate", 1e15, &s->estimate, err));
   VG_TRY(get_count(at, v[COLUMN_CELLS], "cells", COUNT_MAX, &s->n_cell, err));
-  VG_TRY(get_count(at, v[COLUMN_BYTES_IN], "bytes_in", COUNT_MAX,
-                   &s->bytes_in, err));
+  VG_TRY(get_count(at, v[COLUMN_BYTES_IN], "bytes_in", COUNT_MAX, &s->bytes_in,
+                   err));
   VG_TRY(get_count(at, v[COLUMN_BYTES_OUT], "bytes_out", COUNT_MAX,
                    &s->bytes_out, err));
   if (v[COLUMN_FACES])
-    VG_TRY(get_count(at, v[COLUMN_FACES], "faces", COUNT_MAX, &s->n_face,
-                     err));
+    VG_TRY(get_count(at, v[COLUMN_FACES], "faces", COUNT_MAX, &s->n_face, err));
   if (v[COLUMN_WORK])
     VG_TRY(get_real(at, v[COLUMN_WORK], "work", WORK_MAX, &s->work, err));
   if (!v[COLUMN_LOOPS]) goto done;
@@ -475,8 +498,7 @@ static vg_status get_rows(const char *name, const json_t *root,
 
   VG_TRY(get_columns(name, root, t, place, err));
   if (!json_is_array(list))
-    return vg_fail(err, VG_ERR_FORMAT, "%s: \"%s\" is missing", name,
-                   t->rows);
+    return vg_fail(err, VG_ERR_FORMAT, "%s: \"%s\" is missing", name, t->rows);
   for (size_t i = 0; i < json_array_size(list); i++) {
     struct place at = { name, t->row, i + 1, NULL };
 
@@ -496,10 +518,11 @@ vg_status vg_timeline_parse(const char *name, const void *data, size_t size,
   vg_status st;
 
   if (!root)
-    return vg_fail(err, VG_ERR_FORMAT, "%s:%d: not JSON: %s", name,
-                   where.line, where.text);
+    return vg_fail(err, VG_ERR_FORMAT, "%s:%d: not JSON: %s", name, where.line,
+                   where.text);
   if (json_integer_value(json_object_get(root, "vanguard_timeline")) != 1) {
-    st = vg_fail(err, VG_ERR_FORMAT, "%s: not a timeline of vanguard mesh "
+    st = vg_fail(err, VG_ERR_FORMAT,
+                 "%s: not a timeline of vanguard mesh "
                  "(\"vanguard_timeline\" is not 1): give the "
                  ".timeline.json that 'vanguard mesh --timeline' wrote",
                  name);

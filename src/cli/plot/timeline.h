@@ -27,9 +27,16 @@
 
 /* Phases of a run in their order. VG_PHASE_ENGINE is cutting and filling. */
 enum vg_phase {
-  VG_PHASE_READ, VG_PHASE_CHECK, VG_PHASE_SIZES, VG_PHASE_LAYERS,
-  VG_PHASE_ENGINE, VG_PHASE_NUMBER, VG_PHASE_JUDGE, VG_PHASE_WRITE,
-  VG_PHASE_TOTAL, VG_PHASE_N
+  VG_PHASE_READ,
+  VG_PHASE_CHECK,
+  VG_PHASE_SIZES,
+  VG_PHASE_LAYERS,
+  VG_PHASE_ENGINE,
+  VG_PHASE_NUMBER,
+  VG_PHASE_JUDGE,
+  VG_PHASE_WRITE,
+  VG_PHASE_TOTAL,
+  VG_PHASE_N
 };
 
 /** "read", "check", "sizes", "layers", "cut+fill", "number", "judge", "write",
@@ -45,13 +52,16 @@ void vg_phase_shares(enum vg_phase phase, double *alone, double *by_node);
 
 struct vg_timeline {
   char title[128];
-  double seconds[VG_PHASE_N];   /* [VG_PHASE_ENGINE] is spans.wall */
-  uint64_t n_cell, n_point;     /* of the mesh */
-  char digest[64];              /* of the files written; "" if not known */
-  int cyclic;                   /* 1: leaves were dealt out beforehand */
-  struct vg_spans spans;        /* ranks, threads and wall too */
+  double seconds[VG_PHASE_N]; /* [VG_PHASE_ENGINE] is spans.wall */
+  uint64_t n_cell, n_point;   /* of the mesh */
+  char digest[64];            /* of the files written; "" if not known */
+  int cyclic;                 /* 1: leaves were dealt out beforehand */
+  struct vg_spans spans;      /* ranks, threads and wall too */
 };
-#define VG_TIMELINE_INIT { .title = "" }
+#define VG_TIMELINE_INIT                                                       \
+  {                                                                            \
+    .title = ""                                                                \
+  }
 
 void vg_timeline_release(struct vg_timeline *t);
 

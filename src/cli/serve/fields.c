@@ -36,9 +36,8 @@ static vg_status begin(struct vg_fields *f, const char *name,
   return VG_OK;
 }
 
-vg_status vg_fields_put(struct vg_fields *f, const char *name,
-                        const char *data, size_t offset, size_t size,
-                        struct vg_error *err)
+vg_status vg_fields_put(struct vg_fields *f, const char *name, const char *data,
+                        size_t offset, size_t size, struct vg_error *err)
 {
   struct vg_form_field *at;
   size_t more = size + (offset ? 0 : strlen(name));
@@ -85,8 +84,10 @@ vg_status vg_fields_count(const struct vg_fields *f, const char *name,
   int64_t v = otherwise;
 
   if (*text && (!vg_parse_int(text, strlen(text), &v) || v < lo || v > hi))
-    return vg_fail(err, VG_ERR_INPUT, "%s takes a number from %d to %d, not "
-                   "'%.40s'", what, lo, hi, text);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s takes a number from %d to %d, not "
+                   "'%.40s'",
+                   what, lo, hi, text);
   *out = (int)v;
   return VG_OK;
 }

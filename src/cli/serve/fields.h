@@ -12,18 +12,23 @@ enum { VG_FIELDS_MAX = 400, VG_FIELDS_BYTES = 1 << 20 };
 
 struct vg_fields {
   size_t n, cap, bytes;
-  struct vg_form_field { char *name, *value; size_t size; } *item;
+  struct vg_form_field {
+    char *name, *value;
+    size_t size;
+  } * item;
 };
-#define VG_FIELDS_INIT { 0, 0, 0, NULL }
+#define VG_FIELDS_INIT                                                         \
+  {                                                                            \
+    0, 0, 0, NULL                                                              \
+  }
 
 void vg_fields_release(struct vg_fields *f);
 
 /** Add size bytes at `offset` of the value of `name`; offset 0 begins another
  * field. VG_ERR_INPUT: more than the limits, a piece that does not follow the
  * one before, or a zero byte. */
-vg_status vg_fields_put(struct vg_fields *f, const char *name,
-                        const char *data, size_t offset, size_t size,
-                        struct vg_error *err);
+vg_status vg_fields_put(struct vg_fields *f, const char *name, const char *data,
+                        size_t offset, size_t size, struct vg_error *err);
 
 /** The first value of `name`; NULL: there is none. Borrowed. */
 const char *vg_fields_get(const struct vg_fields *f, const char *name);

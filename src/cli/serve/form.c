@@ -13,8 +13,7 @@
 /* Values at `base` by fields "PREFIX.NAME". */
 static vg_status take_params(const struct vg_fields *f, const char *prefix,
                              const struct vg_param *p, size_t n, void *base,
-                             const void *defaults,
-                             struct vg_error *err)
+                             const void *defaults, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
@@ -48,7 +47,8 @@ static int is_given(const struct vg_setting_table *t, const void *row,
 static vg_status take_values(const struct vg_fields *f, struct vg_settings *s,
                              struct vg_error *err)
 {
-  const struct vg_setting_table *farfield = vg_settings_table(VG_TABLE_FARFIELD);
+  const struct vg_setting_table *farfield = vg_settings_table(
+    VG_TABLE_FARFIELD);
   const struct vg_setting_table *sweep = vg_settings_table(VG_TABLE_SWEEP);
   struct vg_settings defaults;
   size_t n;
@@ -70,7 +70,8 @@ static vg_status take_tables(const struct vg_fields *f, struct vg_settings *s,
                              struct vg_error *err)
 {
   static const enum vg_table_kind tables[] = { VG_TABLE_PATCHES,
-    VG_TABLE_LAYERS, VG_TABLE_SOURCES };
+                                               VG_TABLE_LAYERS,
+                                               VG_TABLE_SOURCES };
   vg_status st = VG_OK;
 
   for (size_t i = 0; i < sizeof tables / sizeof *tables && st >= 0; i++) {
@@ -91,9 +92,11 @@ static vg_status take_title(const struct vg_fields *f, struct vg_settings *s,
   const char *title = vg_fields_text(f, "title");
 
   if (strlen(title) > VG_TITLE_MAX || strpbrk(title, "\r\n\t"))
-    return vg_fail(err, VG_ERR_INPUT, "the title is one line of at most %d "
-                   "bytes", VG_TITLE_MAX);
-  title += strspn(title, " #");   /* a deck's title is no comment */
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the title is one line of at most %d "
+                   "bytes",
+                   VG_TITLE_MAX);
+  title += strspn(title, " #"); /* a deck's title is no comment */
   if (*title) snprintf(s->title, sizeof s->title, "%s", title);
   return VG_OK;
 }
@@ -112,10 +115,11 @@ static vg_status check_path(const char *root, const char *setting,
   st = vg_inside(root, name, &real, err);
   if (st < 0) return st;
   if (strlen(real) >= VG_LIST_MAX)
-    st = vg_fail(err, VG_ERR_INPUT, "%s: the path %.100s... is longer than %d "
-                 "bytes", setting, real, VG_LIST_MAX - 1);
-  else
-    strcpy(to, real);
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: the path %.100s... is longer than %d "
+                 "bytes",
+                 setting, real, VG_LIST_MAX - 1);
+  else strcpy(to, real);
   free(real);
   return st;
 }
@@ -128,7 +132,8 @@ static vg_status check_paths(const char *root, struct vg_settings *s,
 
   if (strcmp(s->mesher, "builtin") != 0 && strcmp(s->mesher, "tetgen") != 0 &&
       strcmp(s->mesher, "hxt") != 0)
-    return vg_fail(err, VG_ERR_INPUT, "mesher: a plug-in is a program, which "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "mesher: a plug-in is a program, which "
                    "a portal does not start; it takes builtin, tetgen or hxt");
   VG_TRY(check_path(root, "sizes", s->sizes, err));
   VG_TRY(check_path(root, "mapbc", s->mapbc, err));
@@ -176,15 +181,18 @@ vg_status vg_form_run(const struct vg_fields *f, struct vg_serve_run *run,
   run->is_sweep = !strcmp(vg_fields_text(f, "what"), "sweep");
   run->is_slurm = !strcmp(where, "slurm");
   if (!run->is_slurm && *where && strcmp(where, "here") != 0)
-    return vg_fail(err, VG_ERR_INPUT, "a run is here or in slurm, not in "
-                   "'%.40s'", where);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "a run is here or in slurm, not in "
+                   "'%.40s'",
+                   where);
   if (run->is_slurm && run->is_sweep)
-    return vg_fail(err, VG_ERR_INPUT, "sweeps run on this machine; in a job of "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "sweeps run on this machine; in a job of "
                    "your own, 'vanguard sweep --launcher' does the same");
   VG_TRY(vg_fields_count(f, "ranks", "ranks", 1, 100000, 1, &run->ranks, err));
   VG_TRY(vg_fields_count(f, "nodes", "nodes", 1, 100000, 1, &run->nodes, err));
-  VG_TRY(vg_fields_count(f, "cpus", "CPUs per rank", 1, 4096, 1, &run->cpus,
-                         err));
+  VG_TRY(
+    vg_fields_count(f, "cpus", "CPUs per rank", 1, 4096, 1, &run->cpus, err));
   VG_TRY(take_word(f, "time", "the time limit", "0123456789:-", run->time,
                    sizeof run->time, err));
   st = take_word(f, "partition", "the partition", letters, run->partition,

@@ -16,8 +16,10 @@ static size_t host_length(const char *host)
 
   if (n > strlen(host)) return 0;
   if (!host[n]) return n;
-  return host[n] == ':' && strspn(host + n + 1, "0123456789") ==
-         strlen(host + n + 1) ? n : 0;
+  return host[n] == ':' &&
+             strspn(host + n + 1, "0123456789") == strlen(host + n + 1)
+         ? n
+         : 0;
 }
 
 int vg_gate_host(const struct vg_portal *p, const char *host)
@@ -63,21 +65,24 @@ int vg_gate(const struct vg_portal *p, const struct vg_request *r,
     return 0;
   }
   if (!is_token(p, path, n)) {
-    vg_reply_text(a, 403, "Open the address that vanguard serve has printed; "
-                   "it holds a token, which this one lacks.");
+    vg_reply_text(a, 403,
+                  "Open the address that vanguard serve has printed; "
+                  "it holds a token, which this one lacks.");
     return 0;
   }
   *rest = path + n;
   most = !strcmp(*rest, "/upload") ? p->o.max_upload + FORM_AROUND
                                    : VG_FIELDS_BYTES;
   if (is_post && !is_own_origin(r)) {
-    vg_reply_text(a, 403, "Forms are taken from the portal's own pages only "
-                   "(header Origin).");
+    vg_reply_text(a, 403,
+                  "Forms are taken from the portal's own pages only "
+                  "(header Origin).");
     return 0;
   }
   if (r->length > (is_post ? most : 0)) {
-    vg_reply_text(a, 413, "That is more than is taken: a form has at most "
-                   "1 MB, a file as much as --max-upload says.");
+    vg_reply_text(a, 413,
+                  "That is more than is taken: a form has at most "
+                  "1 MB, a file as much as --max-upload says.");
     return 0;
   }
   return 1;

@@ -15,12 +15,13 @@
 
 /* Loaded when a portal is opened, and only then: the library brings GnuTLS
  * along, which every start of the program would pay for. */
-#define FUNCTIONS(f) f(MHD_start_daemon) f(MHD_stop_daemon) \
-  f(MHD_add_connection) f(MHD_run_wait) f(MHD_lookup_connection_value) \
-  f(MHD_get_connection_values) f(MHD_create_post_processor) \
-  f(MHD_post_process) f(MHD_destroy_post_processor) \
-  f(MHD_create_response_from_buffer) f(MHD_create_response_from_fd64) \
-  f(MHD_add_response_header) f(MHD_queue_response) f(MHD_destroy_response)
+#define FUNCTIONS(f)                                                           \
+  f(MHD_start_daemon) f(MHD_stop_daemon) f(MHD_add_connection) f(MHD_run_wait) \
+    f(MHD_lookup_connection_value) f(MHD_get_connection_values)                \
+      f(MHD_create_post_processor) f(MHD_post_process)                         \
+        f(MHD_destroy_post_processor) f(MHD_create_response_from_buffer)       \
+          f(MHD_create_response_from_fd64) f(MHD_add_response_header)          \
+            f(MHD_queue_response) f(MHD_destroy_response)
 
 struct library {
   void *handle;
@@ -41,7 +42,8 @@ struct call {
   struct MHD_PostProcessor *post;
 };
 
-static const char own_policy[] = "default-src 'none'; img-src data:; "
+static const char own_policy[] =
+  "default-src 'none'; img-src data:; "
   "style-src 'self'; "
   "script-src 'self'; connect-src 'self'; form-action 'self'; "
   "frame-ancestors 'none'; base-uri 'none'";
@@ -51,14 +53,15 @@ static vg_status load(struct library *lib, struct vg_error *err)
   int missing = 0;
 
   lib->handle = dlopen(VG_MICROHTTPD, RTLD_NOW | RTLD_LOCAL);
-#define FIND(name) \
-  if (lib->handle) { \
-    lib->name = (__typeof__(&name))dlsym(lib->handle, #name); \
-    missing |= !lib->name; \
+#define FIND(name)                                                             \
+  if (lib->handle) {                                                           \
+    lib->name = (__typeof__(&name))dlsym(lib->handle, #name);                  \
+    missing |= !lib->name;                                                     \
   }
   FUNCTIONS(FIND)
   if (lib->handle && !missing) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "a portal needs " VG_MICROHTTPD
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "a portal needs " VG_MICROHTTPD
                  ", which is not here: install libmicrohttpd12");
 }
 
@@ -72,8 +75,7 @@ static enum MHD_Result take_query(void *user, enum MHD_ValueKind kind,
   (void)kind;
   if (!value) value = "";
   if (r->body >= 0)
-    r->body = vg_fields_put(&r->query, key, value, 0, strlen(value),
-                            &r->error);
+    r->body = vg_fields_put(&r->query, key, value, 0, strlen(value), &r->error);
   return r->body < 0 ? MHD_NO : MHD_YES;
 }
 
@@ -120,8 +122,8 @@ static struct call *begin_call(struct vg_http *http,
   if (!c->r.host) c->r.host = "";
   if (!c->r.origin) c->r.origin = "";
   c->r.length = length ? strtoll(length, NULL, 10) : -1;
-  lib->MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND,
-                                 take_query, &c->r);
+  lib->MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, take_query,
+                                 &c->r);
   return c;
 }
 
@@ -164,10 +166,11 @@ static struct MHD_Response *response_of(const struct library *lib,
 
 /* Pages may not be framed, kept, or believed to be of another type. */
 static void add_headers(const struct library *lib,
-                        struct MHD_Response *response,
-                        const struct vg_reply *a)
+                        struct MHD_Response *response, const struct vg_reply *a)
 {
-  const struct { const char *name, *value; } fixed[] = {
+  const struct {
+    const char *name, *value;
+  } fixed[] = {
     { "Content-Type", a->type ? a->type : "text/html; charset=utf-8" },
     { "Content-Security-Policy", a->policy ? a->policy : own_policy },
     { "X-Content-Type-Options", "nosniff" },
@@ -175,7 +178,8 @@ static void add_headers(const struct library *lib,
     { "Referrer-Policy", "same-origin" },
     { "Cross-Origin-Resource-Policy", "same-origin" },
     { "Cross-Origin-Opener-Policy", "same-origin" },
-    { "Cache-Control", "no-store" } };
+    { "Cache-Control", "no-store" }
+  };
   char *save;
 
   for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++)
@@ -227,13 +231,13 @@ static enum MHD_Result too_many_headers(const struct vg_http *http,
 
 /* Its head is there. */
 static enum MHD_Result head(struct vg_http *http,
-                            struct MHD_Connection *connection,
-                            const char *path, const char *method, void **state)
+                            struct MHD_Connection *connection, const char *path,
+                            const char *method, void **state)
 {
   struct vg_reply a = VG_REPLY_INIT;
   struct call *c;
-  int n = http->lib.MHD_get_connection_values(connection, MHD_HEADER_KIND,
-                                              NULL, NULL);
+  int n = http->lib.MHD_get_connection_values(connection, MHD_HEADER_KIND, NULL,
+                                              NULL);
 
   if (n > VG_HTTP_HEADERS) return too_many_headers(http, connection);
   c = begin_call(http, connection, path, method);
@@ -241,9 +245,9 @@ static enum MHD_Result head(struct vg_http *http,
   *state = c;
   if (http->h->begin(http->h->user, &c->r, &a))
     return answer(http, connection, &a);
-  if (!strcmp(method, "POST"))   /* NULL: no form, as where there is no body */
-    c->post = http->lib.MHD_create_post_processor(connection, 65536,
-                                                  take_field, c);
+  if (!strcmp(method, "POST")) /* NULL: no form, as where there is no body */
+    c->post = http->lib.MHD_create_post_processor(connection, 65536, take_field,
+                                                  c);
   return MHD_YES;
 }
 
@@ -265,12 +269,13 @@ static enum MHD_Result handle(void *user, struct MHD_Connection *connection,
         (!c->post ||
          http->lib.MHD_post_process(c->post, data, *size) == MHD_NO) &&
         c->r.body >= 0)
-      c->r.body = vg_fail(&c->r.error, VG_ERR_INPUT, "the body is no form, or "
+      c->r.body = vg_fail(&c->r.error, VG_ERR_INPUT,
+                          "the body is no form, or "
                           "a damaged one");
     *size = 0;
     return MHD_YES;
   }
-  if (c->post) {   /* it may hold a last piece back */
+  if (c->post) { /* it may hold a last piece back */
     http->lib.MHD_destroy_post_processor(c->post);
     c->post = NULL;
   }
@@ -298,9 +303,9 @@ vg_status vg_http_open(int fd, const struct vg_http_handler *h,
   if (st < 0 && fd >= 0) close(fd);
   if (st < 0) goto done;
   if (fd < 0) flags |= MHD_USE_NO_LISTEN_SOCKET;
-  http->daemon = http->lib.MHD_start_daemon(flags, 0, NULL, NULL, handle,
-    http, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL,
-    MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
+  http->daemon = http->lib.MHD_start_daemon(
+    flags, 0, NULL, NULL, handle, http, MHD_OPTION_EXTERNAL_LOGGER, say_nothing,
+    NULL, MHD_OPTION_NOTIFY_COMPLETED, completed, NULL,
     MHD_OPTION_CONNECTION_LIMIT, (unsigned)VG_HTTP_CONNECTIONS,
     MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)VG_HTTP_SILENCE_S,
     MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)VG_HTTP_HEAD_BYTES,

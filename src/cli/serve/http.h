@@ -11,31 +11,38 @@
 
 /* What a client may take: connections, seconds of silence, bytes of a request
  * line with its headers, and headers. */
-enum { VG_HTTP_CONNECTIONS = 64, VG_HTTP_SILENCE_S = 30,
-       VG_HTTP_HEAD_BYTES = 32768, VG_HTTP_HEADERS = 64 };
+enum {
+  VG_HTTP_CONNECTIONS = 64,
+  VG_HTTP_SILENCE_S = 30,
+  VG_HTTP_HEAD_BYTES = 32768,
+  VG_HTTP_HEADERS = 64
+};
 
 struct vg_request {
-  const char *method, *path;   /* path: decoded, without the query */
-  const char *host, *origin;   /* headers; "" where absent */
-  int64_t length;              /* of the body, as announced; -1: not said */
+  const char *method, *path; /* path: decoded, without the query */
+  const char *host, *origin; /* headers; "" where absent */
+  int64_t length;            /* of the body, as announced; -1: not said */
   struct vg_fields query, form;
   struct vg_upload upload;
-  vg_status body;              /* < 0: the body was refused, error says why */
+  vg_status body; /* < 0: the body was refused, error says why */
   struct vg_error error;
 };
 
 /** What is answered: body of size bytes (malloc), or an open file. */
 struct vg_reply {
   int status;
-  const char *type;            /* media type; NULL: HTML */
-  const char *policy;          /* of content; NULL: the portal's own */
-  char *location;              /* to go to, malloc; NULL */
-  char *download;              /* name to save under, malloc; NULL: to show */
+  const char *type;   /* media type; NULL: HTML */
+  const char *policy; /* of content; NULL: the portal's own */
+  char *location;     /* to go to, malloc; NULL */
+  char *download;     /* name to save under, malloc; NULL: to show */
   char *body;
   size_t size;
-  int fd;                      /* -1: body */
+  int fd; /* -1: body */
 };
-#define VG_REPLY_INIT { 200, NULL, NULL, NULL, NULL, NULL, 0, -1 }
+#define VG_REPLY_INIT                                                          \
+  {                                                                            \
+    200, NULL, NULL, NULL, NULL, NULL, 0, -1                                   \
+  }
 
 /** Called for each request: `begin` when its head is there (1: it is answered
  * before the body is read), `end` when all is. Pieces of files go through

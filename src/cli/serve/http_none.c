@@ -5,7 +5,8 @@
 
 static vg_status absent(struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "this build has no portal: install "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "this build has no portal: install "
                  "libmicrohttpd-dev and configure again");
 }
 

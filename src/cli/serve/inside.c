@@ -47,8 +47,10 @@ vg_status vg_inside(const char *root, const char *name, char **out,
   char *path, *real;
 
   if (!is_clean(name) || !has_plain_parts(name))
-    return vg_fail(err, VG_ERR_INPUT, "'" SHOWN "' is no path below the "
-                   "folder of the projects", is_clean(name) ? name : "?");
+    return vg_fail(err, VG_ERR_INPUT,
+                   "'" SHOWN "' is no path below the "
+                   "folder of the projects",
+                   is_clean(name) ? name : "?");
   if (asprintf(&path, "%s/%s", root, name) < 0)
     return vg_fail_memory(err, "a path");
   real = realpath(path, NULL);
@@ -57,8 +59,10 @@ vg_status vg_inside(const char *root, const char *name, char **out,
     return vg_fail(err, VG_ERR_IO, "'" SHOWN "': %s", name, strerror(errno));
   if (!vg_inside_holds(root, real)) {
     free(real);
-    return vg_fail(err, VG_ERR_INPUT, "'" SHOWN "' leads out of the folder of "
-                   "the projects", name);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "'" SHOWN "' leads out of the folder of "
+                   "the projects",
+                   name);
   }
   *out = real;
   return VG_OK;
@@ -68,7 +72,8 @@ vg_status vg_inside_name(const char *name, struct vg_error *err)
 {
   if (!*name || *name == '.' || *name == '-' || strpbrk(name, "/\\") ||
       strlen(name) > 200 || !is_clean(name))
-    return vg_fail(err, VG_ERR_INPUT, "'" SHOWN "' is no name for a file "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "'" SHOWN "' is no name for a file "
                    "here: give one without '/', not beginning with '.' or '-'",
                    is_clean(name) ? name : "?");
   return VG_OK;

@@ -20,8 +20,8 @@
 static void become(const char *dir, char *const *word, const char *output,
                    char *const *env)
 {
-  static const int ours[] = { SIGPIPE, SIGXFSZ, SIGINT, SIGTERM, SIGHUP,
-                              SIGUSR1, SIGCHLD };
+  static const int ours[] = { SIGPIPE, SIGXFSZ, SIGINT, SIGTERM,
+                              SIGHUP,  SIGUSR1, SIGCHLD };
   sigset_t none;
   int in, out;
 
@@ -84,8 +84,10 @@ unsigned long long vg_process_start(pid_t pid)
   /* Behind the name, which may hold blanks and parentheses: state is the third
    * value, start time the 22nd. */
   at = strrchr(text, ')');
-  if (!at || sscanf(at + 1, " %c %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s "
-                    "%*s %*s %*s %*s %*s %*s %*s %llu", &state, &start) != 2)
+  if (!at || sscanf(at + 1,
+                    " %c %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s "
+                    "%*s %*s %*s %*s %*s %*s %*s %llu",
+                    &state, &start) != 2)
     return 0;
   return state == 'Z' || state == 'X' ? 0 : start;
 }
@@ -94,8 +96,8 @@ unsigned long long vg_process_start(pid_t pid)
 
 /* The project as vanguard takes it: of VGRID's the stem. */
 static vg_status add_project(const struct vg_serve_runs *r,
-                             const struct vg_serve_run *run,
-                             struct vg_words *w, struct vg_error *err)
+                             const struct vg_serve_run *run, struct vg_words *w,
+                             struct vg_error *err)
 {
   size_t n = strlen(run->project);
   char *path;
@@ -107,11 +109,13 @@ static vg_status add_project(const struct vg_serve_runs *r,
 }
 
 static vg_status mesh_line(const struct vg_serve_runs *r,
-                           const struct vg_serve_run *run,
-                           struct vg_words *w, struct vg_error *err)
+                           const struct vg_serve_run *run, struct vg_words *w,
+                           struct vg_error *err)
 {
-  static const char *const words[] = { "-d", "run.deck", "-o", "mesh",
-    "--log", "run.log", "--progress", "1", "--run-dir", "kept" };
+  static const char *const words[] = { "-d",         "run.deck", "-o",
+                                       "mesh",       "--log",    "run.log",
+                                       "--progress", "1",        "--run-dir",
+                                       "kept" };
   vg_status st;
 
   VG_TRY(vg_words_launcher(w, r->o->launcher, run->ranks, run->cpus, err));
@@ -127,8 +131,8 @@ done:
 }
 
 static vg_status sweep_line(const struct vg_serve_runs *r,
-                            const struct vg_serve_run *run,
-                            struct vg_words *w, struct vg_error *err)
+                            const struct vg_serve_run *run, struct vg_words *w,
+                            struct vg_error *err)
 {
   static const char *const words[] = { "-d", "run.deck", "-o", "sweep" };
   vg_status st;
@@ -184,8 +188,7 @@ void vg_run_launch(struct vg_serve_runs *r, struct vg_serve_run *run)
   run->told_to_stop = 0;
   run->tell = nothing;
   run->note[0] = 0;
-  st = run->is_slurm ? vg_slurm_submit(r, run, &err)
-                     : start_here(r, run, &err);
+  st = run->is_slurm ? vg_slurm_submit(r, run, &err) : start_here(r, run, &err);
   if (st < 0) {
     run->state = VG_SERVE_FAILED;
     snprintf(run->note, sizeof run->note, "%.250s", err.text);
@@ -201,8 +204,8 @@ void vg_run_launch(struct vg_serve_runs *r, struct vg_serve_run *run)
 void vg_run_stop(struct vg_serve_runs *r, struct vg_serve_run *run, int hard)
 {
   struct vg_error err;
-  int is_alive = run->pid > 1 &&
-    (run->is_child || vg_process_start(run->pid) == run->pid_start);
+  int is_alive = run->pid > 1 && (run->is_child ||
+                                  vg_process_start(run->pid) == run->pid_start);
   int with_ranks = !run->is_sweep && (run->ranks > 1 || r->o->launcher);
 
   if (!vg_run_is_active(run)) return;

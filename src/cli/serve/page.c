@@ -19,7 +19,8 @@ static void print_head(const struct vg_portal *p, int may_reload, FILE *to)
         "<title>Vanguard</title>\n"
         "<link rel=\"stylesheet\" href=\"portal.css\">\n"
         "<link rel=\"icon\" href=\"data:,\">\n"
-        "<script src=\"portal.js\" defer></script>\n", to);
+        "<script src=\"portal.js\" defer></script>\n",
+        to);
   if (may_reload && vg_portal_active(p))
     fputs("<noscript><meta http-equiv=\"refresh\" content=\"5\"></noscript>\n",
           to);
@@ -34,10 +35,12 @@ static void print_upload(const struct vg_portal *p, FILE *to)
   fputs("<form class=\"upload\" method=\"post\" action=\"upload\" "
         "enctype=\"multipart/form-data\">\n<label>Folder <input "
         "name=\"folder\" placeholder=\"that of all projects\" "
-        "autocomplete=\"off\"></label>\n<label>Files, at most ", to);
+        "autocomplete=\"off\"></label>\n<label>Files, at most ",
+        to);
   vg_markup_size(to, p->o.max_upload);
   fputs(" <input type=\"file\" name=\"file\" multiple required></label>\n"
-        "<button>Upload</button>\n</form>\n", to);
+        "<button>Upload</button>\n</form>\n",
+        to);
 }
 
 static void print_projects(const struct vg_portal *p, const char *chosen,
@@ -52,8 +55,10 @@ static void print_projects(const struct vg_portal *p, const char *chosen,
     vg_markup(to, err.text);
     fputs("</p>\n", to);
   }
-  fputs(list.n ? "<ul>\n" : "<p class=\"about\">No surface and no .d3m is "
-        "here: upload one, or write an example with 'vanguard demo'.</p>\n",
+  fputs(list.n
+          ? "<ul>\n"
+          : "<p class=\"about\">No surface and no .d3m is "
+            "here: upload one, or write an example with 'vanguard demo'.</p>\n",
         to);
   for (size_t i = 0; i < list.n; i++) {
     int is_it = chosen && !strcmp(chosen, list.item[i].name);
@@ -84,8 +89,8 @@ static void print_message(const char *message, FILE *to)
 }
 
 /* The settings of a run come from its deck, those of a project from its. */
-static void print_form(const struct vg_portal *p,
-                       const struct vg_page_view *v, FILE *to)
+static void print_form(const struct vg_portal *p, const struct vg_page_view *v,
+                       FILE *to)
 {
   static const struct vg_fields nothing = VG_FIELDS_INIT;
   struct vg_settings s = VG_SETTINGS_INIT;
@@ -110,8 +115,7 @@ static void print_form(const struct vg_portal *p,
   fputs("</section>\n", to);
 }
 
-void vg_page(const struct vg_portal *p, const struct vg_page_view *v,
-             FILE *to)
+void vg_page(const struct vg_portal *p, const struct vg_page_view *v, FILE *to)
 {
   print_head(p, !v->project, to);
   fputs("<main>\n<div class=\"side\">\n", to);

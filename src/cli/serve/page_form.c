@@ -11,10 +11,14 @@
 
 /* Settings follow each other in the order of their table; a group begins at
  * the one that is named here. */
-static const struct group { const char *first, *title; int is_open; }
-groups[] = {
-  { "scale", "Sizes", 1 }, { "unit", "CAD", 0 },
-  { "weld", "Surface", 0 }, { "optimise", "Cells and files", 0 },
+static const struct group {
+  const char *first, *title;
+  int is_open;
+} groups[] = {
+  { "scale", "Sizes", 1 },
+  { "unit", "CAD", 0 },
+  { "weld", "Surface", 0 },
+  { "optimise", "Cells and files", 0 },
   { "mesher", "Parts, ranks and threads", 0 },
   { "layers", "Viscous layers", 1 },
   { "min_full", "Limits on the layers", 0 },
@@ -33,12 +37,10 @@ static void value_of(const struct vg_param *p, const void *base, char *text)
   if (p->type == VG_PARAM_TEXT)
     snprintf(text, VALUE_SIZE, "%.*s", VALUE_SIZE - 1,
              (const char *)base + p->offset);
-  else
-    vg_param_format(p, base, text, VALUE_SIZE);
+  else vg_param_format(p, base, text, VALUE_SIZE);
 }
 
-static void print_choice(FILE *to, const char *const *words,
-                         const char *value)
+static void print_choice(FILE *to, const char *const *words, const char *value)
 {
   for (size_t i = 0; words[i]; i++) {
     fprintf(to, "<option%s>", strcmp(words[i], value) ? "" : " selected");
@@ -47,23 +49,23 @@ static void print_choice(FILE *to, const char *const *words,
   }
 }
 
-static void print_control(FILE *to, const struct vg_param *p,
-                          const char *name, const char *value,
-                          const char *otherwise)
+static void print_control(FILE *to, const struct vg_param *p, const char *name,
+                          const char *value, const char *otherwise)
 {
   static const char *const yes_no[] = { "no", "yes", NULL };
   int is_choice = p->type == VG_PARAM_FLAG || p->type == VG_PARAM_WORD;
 
-  fputs(is_choice ? "<select" : "<input autocomplete=\"off\" "
-                    "spellcheck=\"false\"", to);
+  fputs(is_choice ? "<select"
+                  : "<input autocomplete=\"off\" "
+                    "spellcheck=\"false\"",
+        to);
   vg_markup_attribute(to, "id", name);
   vg_markup_attribute(to, "name", name);
   vg_markup_attribute(to, "data-default", otherwise);
   if (!is_choice) {
     vg_markup_attribute(to, "value", value);
     vg_markup_attribute(to, "placeholder", otherwise);
-    if (p->type != VG_PARAM_TEXT)
-      fputs(" class=\"number\"", to);
+    if (p->type != VG_PARAM_TEXT) fputs(" class=\"number\"", to);
   }
   fputs(">", to);
   if (!is_choice) return;
@@ -72,9 +74,9 @@ static void print_control(FILE *to, const struct vg_param *p,
 }
 
 /* name, control, unit, help and default. */
-static void print_param(FILE *to, const struct vg_param *p,
-                        const char *prefix, const void *base,
-                        const void *defaults, const struct vg_fields *posted)
+static void print_param(FILE *to, const struct vg_param *p, const char *prefix,
+                        const void *base, const void *defaults,
+                        const struct vg_fields *posted)
 {
   char name[64], value[VALUE_SIZE], otherwise[VALUE_SIZE];
   const char *sent;
@@ -136,7 +138,10 @@ static void print_row(FILE *to, enum vg_table_kind kind, const char *title,
                       const struct vg_fields *posted)
 {
   const struct vg_setting_table *t = vg_settings_table(kind);
-  union { struct vg_farfield_row f; struct vg_sweep_row w; } defaults;
+  union {
+    struct vg_farfield_row f;
+    struct vg_sweep_row w;
+  } defaults;
 
   vg_settings_row_default(kind, &defaults);
   begin_group(to, title, 0, t->help);
@@ -157,13 +162,12 @@ static void print_table(FILE *to, enum vg_table_kind kind, const char *title,
   const struct vg_setting_table *t = vg_settings_table(kind);
   const char *sent = vg_fields_get(posted, t->name);
 
-  begin_group(to, title, (sent && *sent) || vg_settings_rows(s, kind),
-              t->help);
+  begin_group(to, title, (sent && *sent) || vg_settings_rows(s, kind), t->help);
   fputs("<textarea rows=\"6\" spellcheck=\"false\" wrap=\"off\"", to);
   vg_markup_attribute(to, "name", t->name);
   vg_markup_attribute(to, "aria-label", title);
   vg_markup_attribute(to, "placeholder", example);
-  fputs(">\n", to);   /* browsers drop the first line end */
+  fputs(">\n", to); /* browsers drop the first line end */
   if (sent) vg_markup(to, sent);
   else vg_rows_print(to, s, kind);
   fputs("</textarea>\n<dl class=\"columns\">", to);
@@ -186,8 +190,10 @@ static void print_number(FILE *to, const char *name, const char *label,
 {
   const char *sent = vg_fields_get(posted, name);
 
-  fprintf(to, "<label>%s <input class=\"number\" autocomplete=\"off\" "
-          "name=\"%s\"", label, name);
+  fprintf(to,
+          "<label>%s <input class=\"number\" autocomplete=\"off\" "
+          "name=\"%s\"",
+          label, name);
   vg_markup_attribute(to, "value", sent ? sent : otherwise);
   fputs("></label>\n", to);
 }
@@ -196,12 +202,16 @@ static void print_where(FILE *to, const struct vg_fields *posted, int slurm)
 {
   int is_slurm = !strcmp(vg_fields_text(posted, "where"), "slurm");
 
-  fprintf(to, "<fieldset class=\"where\"><legend>Where</legend>\n"
+  fprintf(to,
+          "<fieldset class=\"where\"><legend>Where</legend>\n"
           "<label><input type=\"radio\" name=\"where\" value=\"here\"%s> this "
-          "machine</label>\n", is_slurm ? "" : " checked");
+          "machine</label>\n",
+          is_slurm ? "" : " checked");
   if (slurm)
-    fprintf(to, "<label><input type=\"radio\" name=\"where\" value=\"slurm\""
-            "%s> Slurm</label>\n", is_slurm ? " checked" : "");
+    fprintf(to,
+            "<label><input type=\"radio\" name=\"where\" value=\"slurm\""
+            "%s> Slurm</label>\n",
+            is_slurm ? " checked" : "");
   print_number(to, "ranks", slurm ? "ranks (of Slurm: on each node)" : "ranks",
                posted, "1");
   if (slurm) {
@@ -216,7 +226,8 @@ static void print_where(FILE *to, const struct vg_fields *posted, int slurm)
         "class=\"main\">Start the run</button> <button name=\"what\" "
         "value=\"sweep\">Start the sweep</button> <span class=\"about\">The "
         "sweep runs the settings with all ranks, threads and leaf sizes of "
-        "its table, on this machine.</span></p>\n", to);
+        "its table, on this machine.</span></p>\n",
+        to);
 }
 
 void vg_form_print(FILE *to, const char *project, const struct vg_settings *s,
@@ -225,7 +236,8 @@ void vg_form_print(FILE *to, const char *project, const struct vg_settings *s,
   const char *title = vg_fields_get(posted, "title");
 
   fputs("<form id=\"settings\" method=\"post\" action=\"runs\">\n"
-        "<input type=\"hidden\" name=\"project\"", to);
+        "<input type=\"hidden\" name=\"project\"",
+        to);
   vg_markup_attribute(to, "value", project);
   fputs(">\n<p class=\"title\"><label for=\"title\">Title</label> <input "
         "id=\"title\" name=\"title\" maxlength=\"80\" autocomplete=\"off\"",
@@ -234,8 +246,8 @@ void vg_form_print(FILE *to, const char *project, const struct vg_settings *s,
   fputs("></p>\n", to);
   print_settings(to, s, posted);
   print_row(to, VG_TABLE_FARFIELD, "Farfield", s, posted);
-  print_table(to, VG_TABLE_PATCHES, "Patches",
-              "id  bc  name\n1   4   wing", s, posted);
+  print_table(to, VG_TABLE_PATCHES, "Patches", "id  bc  name\n1   4   wing", s,
+              posted);
   print_table(to, VG_TABLE_LAYERS, "Layers of single patches",
               "id  grow  first  min_full\n1   yes   1e-5   98", s, posted);
   print_table(to, VG_TABLE_SOURCES, "Sources",

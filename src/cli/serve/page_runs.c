@@ -12,8 +12,7 @@
 #include "run/common/text.h"
 
 /* What a page shows: runs, the end of a log, files of a run. */
-enum { RUNS_SHOWN = 60, TAIL_BYTES = 3000, TAIL_LINES = 14,
-       FILES_SHOWN = 60 };
+enum { RUNS_SHOWN = 60, TAIL_BYTES = 3000, TAIL_LINES = 14, FILES_SHOWN = 60 };
 
 static void print_time(FILE *to, int64_t when)
 {
@@ -59,8 +58,8 @@ static void print_about(FILE *to, const struct vg_serve_run *run)
     fputs(" &middot; took ", to);
     print_duration(to, run->ended - run->started);
   }
-  if (run->exit_status > 0) fprintf(to, " &middot; exit status %d",
-                                    run->exit_status);
+  if (run->exit_status > 0)
+    fprintf(to, " &middot; exit status %d", run->exit_status);
   fputs("</p>\n", to);
 }
 
@@ -69,8 +68,7 @@ static void print_progress(FILE *to, const struct vg_serve_run *run)
 {
   const struct vg_tell *t = &run->tell;
 
-  if (run->state != VG_SERVE_RUNNING && run->state != VG_SERVE_STOPPING)
-    return;
+  if (run->state != VG_SERVE_RUNNING && run->state != VG_SERVE_STOPPING) return;
   fputs("<div class=\"progress\"><progress max=\"100\"", to);
   if (t->share >= 0) fprintf(to, " value=\"%d\"", (int)(100 * t->share));
   fputs("></progress> <span><b>", to);
@@ -89,8 +87,10 @@ static void print_progress(FILE *to, const struct vg_serve_run *run)
 static void print_button(FILE *to, const struct vg_serve_run *run,
                          const char *what, const char *label)
 {
-  fprintf(to, "<form method=\"post\" action=\"runs/%d/%s\"><button>%s</button>"
-          "</form>\n", run->id, what, label);
+  fprintf(to,
+          "<form method=\"post\" action=\"runs/%d/%s\"><button>%s</button>"
+          "</form>\n",
+          run->id, what, label);
 }
 
 static void print_buttons(FILE *to, const struct vg_serve_run *run)
@@ -101,10 +101,11 @@ static void print_buttons(FILE *to, const struct vg_serve_run *run)
   if (vg_run_can_resume(run))
     print_button(to, run, "resume",
                  vg_run_has_kept(run) ? "Resume" : "Start again");
-  fprintf(to, "<a href=\"?from=%d#form\">Settings</a> <a href=\"runs/%d/log\">"
+  fprintf(to,
+          "<a href=\"?from=%d#form\">Settings</a> <a href=\"runs/%d/log\">"
           "Log</a> <a href=\"runs/%d/output\">Output</a> <a "
-          "href=\"runs/%d/deck\">Deck</a>\n", run->id, run->id, run->id,
-          run->id);
+          "href=\"runs/%d/deck\">Deck</a>\n",
+          run->id, run->id, run->id, run->id);
 }
 
 /* --- results ------------------------------------------------------------- */
@@ -145,7 +146,8 @@ static void print_file(FILE *to, const struct vg_serve_run *run,
   known = !stat(path, &s);
   fprintf(to, "<a%s href=\"runs/%d/file/%s/",
           is_report ? " class=\"report\" target=\"_blank\" rel=\"noopener\""
-                    : "", run->id, folder);
+                    : "",
+          run->id, folder);
   vg_markup_path(to, name);
   fputs("\">", to);
   vg_markup(to, is_report ? "Report" : name);
@@ -180,20 +182,21 @@ static void print_tail(FILE *to, const struct vg_serve_run *run)
 {
   char path[4096], text[TAIL_BYTES], *at = text;
   int64_t whole;
-  size_t n = vg_file_tail(vg_run_path(run, "run.log", path), text,
-                          sizeof text, &whole), lines = 0;
+  size_t n = vg_file_tail(vg_run_path(run, "run.log", path), text, sizeof text,
+                          &whole),
+         lines = 0;
 
   if (!n || run->is_sweep)
     n = vg_file_tail(vg_run_path(run, "output.log", path), text, sizeof text,
                      &whole);
   if (!n) return;
-  for (size_t i = n; i-- > 0; )
+  for (size_t i = n; i-- > 0;)
     if (text[i] == '\n' && i + 1 < n && ++lines == TAIL_LINES) {
       at = text + i + 1;
       break;
     }
-  fprintf(to, "<details id=\"log-%d\"%s><summary>Log</summary><pre>\n",
-          run->id, vg_run_is_active(run) ? " open" : "");
+  fprintf(to, "<details id=\"log-%d\"%s><summary>Log</summary><pre>\n", run->id,
+          vg_run_is_active(run) ? " open" : "");
   vg_markup_bytes(to, at, n - (size_t)(at - text));
   fputs("</pre></details>\n", to);
 }
@@ -202,8 +205,10 @@ static void print_run(FILE *to, const struct vg_serve_run *run)
 {
   const char *word = vg_run_state_word(run->state);
 
-  fprintf(to, "<article id=\"run-%d\" class=\"run %s\" data-state=\"%s\">\n"
-          "<h3><span class=\"id\">%d</span> ", run->id, word, word, run->id);
+  fprintf(to,
+          "<article id=\"run-%d\" class=\"run %s\" data-state=\"%s\">\n"
+          "<h3><span class=\"id\">%d</span> ",
+          run->id, word, word, run->id);
   vg_markup(to, run->title);
   fprintf(to, " <span class=\"state\">%s</span></h3>\n",
           run->state == VG_SERVE_LIMIT ? "done, limit not met" : word);
@@ -239,13 +244,14 @@ void vg_page_runs(const struct vg_portal *p, FILE *to)
     for (size_t i = 0; i < r->n; i++) {
       const struct vg_serve_run *run = r->item[r->n - 1 - i];
 
-      if (is_at_work(run) == at_work &&
-          (i < n || vg_run_is_active(run)))
+      if (is_at_work(run) == at_work && (i < n || vg_run_is_active(run)))
         print_run(to, run);
     }
   if (n < r->n)
-    fprintf(to, "<p class=\"about\">Of %zu runs these are the last ones and "
-            "those at work; all are in vanguard-runs.</p>\n", r->n);
+    fprintf(to,
+            "<p class=\"about\">Of %zu runs these are the last ones and "
+            "those at work; all are in vanguard-runs.</p>\n",
+            r->n);
   fputs("</div>\n", to);
 }
 
@@ -259,16 +265,16 @@ static json_t *json_of(const struct vg_serve_run *run)
   json_object_set_new(o, "state", json_string(vg_run_state_word(run->state)));
   json_object_set_new(o, "project", vg_text_json(run->project));
   json_object_set_new(o, "title", vg_text_json(run->title));
-  json_object_set_new(o, "kind", json_string(run->is_sweep ? "sweep"
-                                                           : "mesh"));
-  json_object_set_new(o, "where", json_string(run->is_slurm ? "slurm"
-                                                            : "here"));
+  json_object_set_new(o, "kind", json_string(run->is_sweep ? "sweep" : "mesh"));
+  json_object_set_new(o, "where",
+                      json_string(run->is_slurm ? "slurm" : "here"));
   json_object_set_new(o, "job", json_string(run->job));
   json_object_set_new(o, "exit_status", json_integer(run->exit_status));
   json_object_set_new(o, "note", vg_text_json(run->note));
   json_object_set_new(o, "stage", vg_text_json(run->tell.stage));
-  json_object_set_new(o, "share", run->tell.share >= 0
-                      ? json_real(run->tell.share) : json_null());
+  json_object_set_new(o, "share",
+                      run->tell.share >= 0 ? json_real(run->tell.share)
+                                           : json_null());
   json_object_set_new(o, "left", vg_text_json(run->tell.left));
   return o;
 }

@@ -41,7 +41,8 @@ static vg_status file(void *user, struct vg_request *r, const char *name,
 
   if (!vg_gate(p, r, &rest, &a) || strcmp(rest, "/upload") != 0) {
     free(a.body);
-    return vg_fail(err, VG_ERR_INPUT, "files are brought by the form for "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "files are brought by the form for "
                    "them");
   }
   if (!goes_on)
@@ -88,18 +89,24 @@ static vg_status take_folder(struct vg_portal *p, struct vg_error *err)
     return vg_fail_memory(err, "a path");
   if ((mkdir(p->dir, 0777) && errno != EEXIST) || lstat(p->dir, &s) ||
       !S_ISDIR(s.st_mode))
-    st = vg_fail(err, VG_ERR_IO, "%s: this folder for the runs cannot be "
-                 "made; give --root a folder that you can write to", p->dir);
+    st = vg_fail(err, VG_ERR_IO,
+                 "%s: this folder for the runs cannot be "
+                 "made; give --root a folder that you can write to",
+                 p->dir);
   else if (s.st_uid != geteuid())
-    st = vg_fail(err, VG_ERR_IO, "%s belongs to another user; give --root a "
-                 "folder of your own", p->dir);
+    st = vg_fail(err, VG_ERR_IO,
+                 "%s belongs to another user; give --root a "
+                 "folder of your own",
+                 p->dir);
   if (st >= 0) {
     p->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (p->lock < 0)
       st = vg_fail(err, VG_ERR_IO, "%s: %s", path, strerror(errno));
     else if (flock(p->lock, LOCK_EX | LOCK_NB))
-      st = vg_fail(err, VG_ERR_IO, "another portal has %s; its address is in "
-                   "portal.url there", p->dir);
+      st = vg_fail(err, VG_ERR_IO,
+                   "another portal has %s; its address is in "
+                   "portal.url there",
+                   p->dir);
   }
   free(path);
   return st;
@@ -139,14 +146,14 @@ static vg_status listen_on(const struct vg_portal *p, int *out,
 {
   const char *host = p->o.host ? p->o.host : "127.0.0.1";
   struct addrinfo want = { .ai_socktype = SOCK_STREAM,
-                           .ai_flags = AI_NUMERICSERV }, *list;
+                           .ai_flags = AI_NUMERICSERV },
+                  *list;
   char port[16];
   int fd = -1, on = 1, why, failed = 0;
 
   snprintf(port, sizeof port, "%d", p->o.port);
   why = getaddrinfo(host, port, &want, &list);
-  if (why)
-    return vg_fail(err, VG_ERR_IO, "%s: %s", host, gai_strerror(why));
+  if (why) return vg_fail(err, VG_ERR_IO, "%s: %s", host, gai_strerror(why));
   for (struct addrinfo *a = list; a && fd < 0; a = a->ai_next) {
     fd = socket(a->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (fd < 0) continue;
@@ -158,16 +165,20 @@ static vg_status listen_on(const struct vg_portal *p, int *out,
   }
   freeaddrinfo(list);
   if (fd < 0)
-    return vg_fail(err, VG_ERR_IO, "port %s of %s cannot be had: %s; give "
-                   "--port another one, or 0 for any", port, host,
-                   strerror(failed));
+    return vg_fail(err, VG_ERR_IO,
+                   "port %s of %s cannot be had: %s; give "
+                   "--port another one, or 0 for any",
+                   port, host, strerror(failed));
   *out = fd;
   return VG_OK;
 }
 
 static int port_of(int fd)
 {
-  union { struct sockaddr any; struct sockaddr_storage room; } a;
+  union {
+    struct sockaddr any;
+    struct sockaddr_storage room;
+  } a;
   socklen_t size = sizeof a;
   char port[16] = "0";
 
@@ -202,8 +213,7 @@ static int has_program(const char *name)
   char file[4096];
 
   for (; path && *path; path += strcspn(path, ":"), path += *path == ':') {
-    snprintf(file, sizeof file, "%.*s/%s", (int)strcspn(path, ":"), path,
-             name);
+    snprintf(file, sizeof file, "%.*s/%s", (int)strcspn(path, ":"), path, name);
     if (!access(file, X_OK)) return 1;
   }
   return 0;
@@ -266,8 +276,7 @@ int vg_portal_active(const struct vg_portal *p)
 {
   int n = 0;
 
-  for (size_t i = 0; i < p->runs.n; i++)
-    n += vg_run_is_active(p->runs.item[i]);
+  for (size_t i = 0; i < p->runs.n; i++) n += vg_run_is_active(p->runs.item[i]);
   return n;
 }
 

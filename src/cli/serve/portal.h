@@ -11,15 +11,18 @@
 #include "base/status.h"
 
 struct vg_portal_options {
-  const char *root;        /* folder of the projects */
-  const char *host;        /* address to listen on; NULL: 127.0.0.1 */
-  int port;                /* 0: any that is free */
-  int64_t max_upload;      /* bytes of a file that is brought */
-  int jobs;                /* runs on this machine at a time */
-  const char *launcher;    /* of ranks, as for vanguard sweep; NULL: mpirun */
-  const char *program;     /* that meshes; NULL: this one */
+  const char *root;     /* folder of the projects */
+  const char *host;     /* address to listen on; NULL: 127.0.0.1 */
+  int port;             /* 0: any that is free */
+  int64_t max_upload;   /* bytes of a file that is brought */
+  int jobs;             /* runs on this machine at a time */
+  const char *launcher; /* of ranks, as for vanguard sweep; NULL: mpirun */
+  const char *program;  /* that meshes; NULL: this one */
 };
-#define VG_PORTAL_OPTIONS_INIT { ".", NULL, 8765, 1000000000, 1, NULL, NULL }
+#define VG_PORTAL_OPTIONS_INIT                                                 \
+  {                                                                            \
+    ".", NULL, 8765, 1000000000, 1, NULL, NULL                                 \
+  }
 
 struct vg_portal;
 
@@ -46,8 +49,7 @@ int vg_portal_active(const struct vg_portal *p);
 
 /** Take a connected stream socket as if it had come in; it is closed at its
  * end. For tests. */
-vg_status vg_portal_connect(struct vg_portal *p, int fd,
-                            struct vg_error *err);
+vg_status vg_portal_connect(struct vg_portal *p, int fd, struct vg_error *err);
 
 /** Runs go on; a portal opened in the same folder has them again. Accepts
  * NULL. */

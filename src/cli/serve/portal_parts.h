@@ -12,10 +12,10 @@ enum { VG_TOKEN_DIGITS = 32 };
 
 struct vg_portal {
   struct vg_portal_options o;
-  char *root, *dir;            /* real paths: projects, runs */
+  char *root, *dir; /* real paths: projects, runs */
   char token[VG_TOKEN_DIGITS + 1];
   char *url, *url_file;
-  char *host[6];               /* names by which it may be called */
+  char *host[6]; /* names by which it may be called */
   int n_host, lock, has_slurm;
   struct vg_http *http;
   struct vg_http_handler handler;
@@ -35,13 +35,12 @@ int vg_gate_host(const struct vg_portal *p, const char *host);
 /** reply.c: an answer of one line; a page of a message; the address to go
  * to. */
 void vg_reply_text(struct vg_reply *a, int status, const char *text);
-void vg_reply_go(const struct vg_portal *p, struct vg_reply *a,
-                  const char *to);
+void vg_reply_go(const struct vg_portal *p, struct vg_reply *a, const char *to);
 
 /** A file of a run, which stays open until it is sent: `name` relative to its
  * folder. */
 void vg_reply_file(const struct vg_serve_run *run, const char *name,
-                    struct vg_reply *a);
+                   struct vg_reply *a);
 
 /** routes.c: what is asked for. */
 void vg_route(struct vg_portal *p, struct vg_request *r, const char *rest,
@@ -55,8 +54,7 @@ struct vg_page_view {
   const struct vg_fields *posted;
   const struct vg_serve_run *from;
 };
-void vg_page(const struct vg_portal *p, const struct vg_page_view *v,
-             FILE *to);
+void vg_page(const struct vg_portal *p, const struct vg_page_view *v, FILE *to);
 void vg_page_runs(const struct vg_portal *p, FILE *to);
 char *vg_page_runs_json(const struct vg_portal *p);
 

@@ -95,8 +95,7 @@ static vg_status look_at(const char *root, int dir, const char *under,
   vg_status st = VG_OK;
   int fd;
 
-  if (*name == '.' || fstatat(dir, name, &s, AT_SYMLINK_NOFOLLOW))
-    return VG_OK;
+  if (*name == '.' || fstatat(dir, name, &s, AT_SYMLINK_NOFOLLOW)) return VG_OK;
   if (asprintf(&path, "%s%s%s", under, *under ? "/" : "", name) < 0)
     return vg_fail_memory(err, "a path");
   if (S_ISLNK(s.st_mode) && fstatat(dir, name, &s, 0)) s.st_mode = 0;
@@ -172,15 +171,17 @@ static vg_status check_inside(const char *root, const char *path,
   ok = real && vg_inside_holds(root, real);
   free(real);
   if (ok) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "%.200s leads out of the folder of the "
-                 "projects", path);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%.200s leads out of the folder of the "
+                 "projects",
+                 path);
 }
 
 static vg_status check_files(const char *root, const struct vg_input_files *f,
                              struct vg_error *err)
 {
-  const char *const path[] = { f->d3m, f->front, f->surface, f->mapbc, f->deck,
-                               f->tags, f->aflr };
+  const char *const path[] = { f->d3m,  f->front, f->surface, f->mapbc,
+                               f->deck, f->tags,  f->aflr };
   vg_status st = VG_OK;
 
   for (size_t i = 0; i < sizeof path / sizeof *path && st >= 0; i++)
@@ -199,8 +200,10 @@ vg_status vg_project_settings(const char *root, const char *name,
 
   VG_TRY(vg_inside(root, name, &real, err));
   if (!vg_projects_is_name(name)) {
-    st = vg_fail(err, VG_ERR_INPUT, "'%.100s' is neither a surface nor a "
-                 ".d3m", name);
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "'%.100s' is neither a surface nor a "
+                 ".d3m",
+                 name);
     goto done;
   }
   if (is_d3m(name)) n -= 4;

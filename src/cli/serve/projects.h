@@ -9,17 +9,26 @@
 #include "run/settings/settings.h"
 
 /* How much of the folder is looked at. */
-enum { VG_PROJECTS_MAX = 500, VG_PROJECTS_DEPTH = 4,
-       VG_PROJECTS_LOOKED_AT = 20000 };
+enum {
+  VG_PROJECTS_MAX = 500,
+  VG_PROJECTS_DEPTH = 4,
+  VG_PROJECTS_LOOKED_AT = 20000
+};
 
 #define VG_RUNS_FOLDER "vanguard-runs"
 
 struct vg_projects {
   size_t n, cap, looked_at;
-  struct vg_project_file { char *name; int64_t size; } *item;
-  int is_cut;                /* there may be more */
+  struct vg_project_file {
+    char *name;
+    int64_t size;
+  } * item;
+  int is_cut; /* there may be more */
 };
-#define VG_PROJECTS_INIT { 0, 0, 0, NULL, 0 }
+#define VG_PROJECTS_INIT                                                       \
+  {                                                                            \
+    0, 0, 0, NULL, 0                                                           \
+  }
 
 /** Surfaces and VGRID projects (NAME.d3m) below root, in the order of their
  * names, which are relative to it. Hidden folders, links to folders, folders of

@@ -28,8 +28,7 @@ static json_t *record_of(const struct vg_serve_run *run)
   json_object_set_new(o, "partition", vg_text_json(run->partition));
   json_object_set_new(o, "job", vg_text_json(run->job));
   json_object_set_new(o, "pid", json_integer(run->pid));
-  json_object_set_new(o, "pid_start",
-                      json_integer((json_int_t)run->pid_start));
+  json_object_set_new(o, "pid_start", json_integer((json_int_t)run->pid_start));
   json_object_set_new(o, "exit_status", json_integer(run->exit_status));
   json_object_set_new(o, "created", json_integer(run->created));
   json_object_set_new(o, "started", json_integer(run->started));
@@ -38,8 +37,7 @@ static json_t *record_of(const struct vg_serve_run *run)
   return o;
 }
 
-vg_status vg_record_write(const struct vg_serve_run *run,
-                          struct vg_error *err)
+vg_status vg_record_write(const struct vg_serve_run *run, struct vg_error *err)
 {
   json_t *o = record_of(run);
   char path[4096];
@@ -61,8 +59,8 @@ static int take_text(const json_t *o, const char *key, char *to, size_t size)
   return 1;
 }
 
-static int take_number(const json_t *o, const char *key, int64_t lo,
-                       int64_t hi, int64_t *to)
+static int take_number(const json_t *o, const char *key, int64_t lo, int64_t hi,
+                       int64_t *to)
 {
   const json_t *v = json_object_get(o, key);
 
@@ -123,18 +121,17 @@ vg_status vg_record_parse(const char *name, const char *data, size_t size,
   const char *project = json_string_value(json_object_get(o, "project"));
   char *copy = NULL;
   int ok = project && take_state(o, &to) && take_numbers(o, &to) &&
-    take_text(o, "title", to.title, sizeof to.title) &&
-    take_text(o, "time", to.time, sizeof to.time) &&
-    take_text(o, "partition", to.partition, sizeof to.partition) &&
-    take_text(o, "job", to.job, sizeof to.job) && is_job(to.job) &&
-    take_text(o, "note", to.note, sizeof to.note);
+           take_text(o, "title", to.title, sizeof to.title) &&
+           take_text(o, "time", to.time, sizeof to.time) &&
+           take_text(o, "partition", to.partition, sizeof to.partition) &&
+           take_text(o, "job", to.job, sizeof to.job) && is_job(to.job) &&
+           take_text(o, "note", to.note, sizeof to.note);
 
   to.is_sweep = json_is_true(json_object_get(o, "sweep"));
   to.is_slurm = json_is_true(json_object_get(o, "slurm"));
   if (ok) copy = strdup(project);
   json_decref(o);
-  if (!ok)
-    return vg_fail(err, VG_ERR_FORMAT, "%s: no record of a run", name);
+  if (!ok) return vg_fail(err, VG_ERR_FORMAT, "%s: no record of a run", name);
   if (!copy) return vg_fail_memory(err, "the record of a run");
   free(run->project);
   to.project = copy;

@@ -12,13 +12,16 @@
 
 /* What a run has written is shown as of an origin of its own, so that no script
  * in it can use the portal; it loads nothing. */
-#define BOXED "default-src 'none'; img-src data:; style-src 'unsafe-inline'; " \
+#define BOXED                                                                  \
+  "default-src 'none'; img-src data:; style-src 'unsafe-inline'; "             \
   "frame-ancestors 'none'; base-uri 'none'; form-action 'none'; "
 static const char page_policy[] = BOXED "script-src 'unsafe-inline' "
-  "'unsafe-eval'; sandbox allow-scripts";
+                                        "'unsafe-eval'; sandbox allow-scripts";
 static const char still_policy[] = BOXED "sandbox";
 
-static const struct { const char *end, *type, *policy; } shown[] = {
+static const struct {
+  const char *end, *type, *policy;
+} shown[] = {
   { ".report.html", "text/html; charset=utf-8", page_policy },
   { ".svg", "image/svg+xml", still_policy },
   { ".png", "image/png", still_policy },
@@ -40,8 +43,7 @@ void vg_reply_text(struct vg_reply *a, int status, const char *text)
   a->size = a->body ? strlen(a->body) : 0;
 }
 
-void vg_reply_go(const struct vg_portal *p, struct vg_reply *a,
-                  const char *to)
+void vg_reply_go(const struct vg_portal *p, struct vg_reply *a, const char *to)
 {
   vg_reply_text(a, 303, "see there");
   if (asprintf(&a->location, "/%s/%s", p->token, to) < 0) a->location = NULL;
@@ -76,7 +78,7 @@ static void choose_type(const char *name, struct vg_reply *a)
 }
 
 void vg_reply_file(const struct vg_serve_run *run, const char *name,
-                    struct vg_reply *a)
+                   struct vg_reply *a)
 {
   struct vg_error err;
   struct stat s;

@@ -39,9 +39,8 @@ static void answer_bytes(struct vg_reply *a, const char *type,
 }
 
 /* What `print` writes, as a page. */
-static void answer_page(const struct vg_portal *p,
-                        const struct vg_page_view *v, int status,
-                        struct vg_reply *a)
+static void answer_page(const struct vg_portal *p, const struct vg_page_view *v,
+                        int status, struct vg_reply *a)
 {
   FILE *to = open_memstream(&a->body, &a->size);
 
@@ -80,10 +79,10 @@ static void get_of_run(const struct vg_portal *p, const char *path,
                        struct vg_reply *a)
 {
   static const char *const names[][2] = { { "log", "run.log" },
-    { "output", "output.log" }, { "deck", "run.deck" } };
+                                          { "output", "output.log" },
+                                          { "deck", "run.deck" } };
   const char *what = "";
-  const struct vg_serve_run *run = vg_runs_find(&p->runs,
-                                                take_id(path, &what));
+  const struct vg_serve_run *run = vg_runs_find(&p->runs, take_id(path, &what));
 
   if (!run) {
     not_there(a);
@@ -133,7 +132,8 @@ static vg_status make_run(struct vg_portal *p, const struct vg_fields *f,
   VG_TRY(vg_form_settings(f, p->root, &s, err));
   VG_TRY(vg_form_run(f, &given, err));
   if (given.is_slurm && !p->has_slurm) {
-    st = vg_fail(err, VG_ERR_INPUT, "there is no Slurm here: sbatch and squeue "
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "there is no Slurm here: sbatch and squeue "
                  "are not in the PATH of the portal");
     goto done;
   }
@@ -156,7 +156,7 @@ static vg_status make_run(struct vg_portal *p, const struct vg_fields *f,
   strcpy(run->partition, given.partition);
   st = vg_deck_write(vg_run_path(run, "run.deck", path), &s, NULL, 0, err);
   if (st >= 0) st = vg_record_write(run, err);
-  if (st < 0) {   /* it stays in the list, with the reason */
+  if (st < 0) { /* it stays in the list, with the reason */
     run->state = VG_SERVE_FAILED;
     snprintf(run->note, sizeof run->note, "%.250s", err->text);
   }
@@ -167,8 +167,8 @@ done:
   return st;
 }
 
-static void go_to_run(const struct vg_portal *p,
-                      const struct vg_serve_run *run, struct vg_reply *a)
+static void go_to_run(const struct vg_portal *p, const struct vg_serve_run *run,
+                      struct vg_reply *a)
 {
   char to[32];
 
@@ -196,7 +196,7 @@ static void post_run(struct vg_portal *p, struct vg_request *r,
     return;
   }
   if (run->is_slurm) vg_run_launch(&p->runs, run);
-  else vg_runs_watch(&p->runs);   /* at once, if it is its turn */
+  else vg_runs_watch(&p->runs); /* at once, if it is its turn */
   go_to_run(p, run, a);
 }
 
@@ -256,8 +256,7 @@ static void post_upload(struct vg_portal *p, struct vg_request *r,
   }
   to = open_memstream(&address, &size);
   if (to) {
-    fputs(vg_projects_is_name(r->upload.name) ? "?project=" : "?uploaded=",
-          to);
+    fputs(vg_projects_is_name(r->upload.name) ? "?project=" : "?uploaded=", to);
     vg_markup_path(to, under);
     if (*under) fputs("/", to);
     vg_markup_path(to, r->upload.name);
@@ -282,7 +281,7 @@ static void post(struct vg_portal *p, struct vg_request *r, const char *path,
 void vg_route(struct vg_portal *p, struct vg_request *r, const char *rest,
               struct vg_reply *a)
 {
-  if (!*rest) vg_reply_go(p, a, "");   /* relative addresses need the '/' */
+  if (!*rest) vg_reply_go(p, a, ""); /* relative addresses need the '/' */
   else if (!strcmp(r->method, "POST")) post(p, r, rest + 1, a);
   else get(p, r, rest + 1, a);
 }

@@ -10,7 +10,10 @@
 
 /* --- reading ------------------------------------------------------------- */
 
-struct words { size_t n; const char *word[MOST_COLUMNS]; };
+struct words {
+  size_t n;
+  const char *word[MOST_COLUMNS];
+};
 
 /* One value, ended in place; *is_quoted: it stood in quotes. NULL: a quote is
  * not closed. */
@@ -26,7 +29,10 @@ static char *take_word(char **at, int *is_quoted)
       break;
     }
     if (*is_quoted && *p == '"') {
-      if (p[1] != '"') { p++; break; }
+      if (p[1] != '"') {
+        p++;
+        break;
+      }
       p++;
     } else if (!*is_quoted && strchr(" \t#", *p)) {
       if (*p == '#') *p = 0;
@@ -65,8 +71,8 @@ static vg_status add_row(const char *table, const struct words *names,
   size_t n = 0;
 
   if (values->n != names->n)
-    return vg_fail(err, VG_ERR_INPUT, "%zu values below %zu columns",
-                   values->n, names->n);
+    return vg_fail(err, VG_ERR_INPUT, "%zu values below %zu columns", values->n,
+                   names->n);
   for (size_t i = 0; i < names->n; i++) {
     if (!names->word[i])
       return vg_fail(err, VG_ERR_INPUT, "a column cannot be called -");
@@ -92,8 +98,7 @@ static vg_status take_line(char *line, const char *table, struct words *names,
   line[strcspn(line, "\r")] = 0;
   bad = split(line, is_head ? names : &values);
   if (bad) return vg_fail(err, VG_ERR_INPUT, "%s", bad);
-  return is_head || !values.n ? VG_OK
-                              : add_row(table, names, &values, s, err);
+  return is_head || !values.n ? VG_OK : add_row(table, names, &values, s, err);
 }
 
 vg_status vg_rows_read(const char *text, enum vg_table_kind kind,
@@ -120,8 +125,11 @@ vg_status vg_rows_read(const char *text, enum vg_table_kind kind,
 
 /* --- printing ------------------------------------------------------------ */
 
-union row { struct vg_patch_row p; struct vg_layer_row l;
-            struct vg_source s; };
+union row {
+  struct vg_patch_row p;
+  struct vg_layer_row l;
+  struct vg_source s;
+};
 
 /* Width of a column; 0: it says nothing. */
 static size_t width_of(const struct vg_settings *s, enum vg_table_kind kind,

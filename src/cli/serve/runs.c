@@ -57,21 +57,21 @@ int vg_run_has_kept(const struct vg_serve_run *run)
 
 const char *vg_run_state_word(enum vg_serve_state state)
 {
-  static const char *const words[VG_SERVE_STATES] = { "queued", "submitted",
-    "pending", "running", "stopping", "stopped", "done", "limit", "failed" };
+  static const char *const words[VG_SERVE_STATES] = {
+    "queued",  "submitted", "pending", "running", "stopping",
+    "stopped", "done",      "limit",   "failed"
+  };
 
   return words[state];
 }
 
-char *vg_run_path(const struct vg_serve_run *run, const char *name,
-                  char *path)
+char *vg_run_path(const struct vg_serve_run *run, const char *name, char *path)
 {
   snprintf(path, 4096, "%s/%s", run->dir, name);
   return path;
 }
 
-size_t vg_file_tail(const char *path, char *text, size_t size,
-                    int64_t *whole)
+size_t vg_file_tail(const char *path, char *text, size_t size, int64_t *whole)
 {
   int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   struct stat s;
@@ -130,8 +130,10 @@ vg_status vg_runs_new(struct vg_serve_runs *r, struct vg_serve_run **out,
 
   for (size_t i = 0; i < r->n; i++) n_active += vg_run_is_active(r->item[i]);
   if (n_active >= VG_SERVE_ACTIVE_MAX)
-    return vg_fail(err, VG_ERR_INPUT, "%d runs wait or are at work; let some "
-                   "of them end first", n_active);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%d runs wait or are at work; let some "
+                   "of them end first",
+                   n_active);
   /* Folders that are no runs of ours are left alone. */
   for (; id <= VG_SERVE_RUNS_MAX; id++) {
     run = blank(r, id);
@@ -149,8 +151,10 @@ vg_status vg_runs_new(struct vg_serve_runs *r, struct vg_serve_run **out,
     }
     release_run(run);
   }
-  return vg_fail(err, VG_ERR_INPUT, "%s has %d runs; move some away, and start "
-                 "the portal again", r->dir, VG_SERVE_RUNS_MAX);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s has %d runs; move some away, and start "
+                 "the portal again",
+                 r->dir, VG_SERVE_RUNS_MAX);
 }
 
 /* --- those of earlier portals -------------------------------------------- */
@@ -166,8 +170,7 @@ static int by_id(const void *a, const void *b)
 /* "0012": 12; 0: another name. */
 static int id_of(const char *name)
 {
-  return strlen(name) == 4 && strspn(name, "0123456789") == 4 ? atoi(name)
-                                                              : 0;
+  return strlen(name) == 4 && strspn(name, "0123456789") == 4 ? atoi(name) : 0;
 }
 
 /* A process that bears the number and has the start time is the run's. */
@@ -189,7 +192,7 @@ static vg_status load(struct vg_serve_runs *r, int id, struct vg_error *err)
   struct vg_error why = VG_ERROR_INIT;
 
   if (!run) return vg_fail_memory(err, "a run");
-  if (vg_record_read(run, &why) < 0) {   /* none of ours, or damaged */
+  if (vg_record_read(run, &why) < 0) { /* none of ours, or damaged */
     release_run(run);
     return why.code == VG_ERR_MEMORY ? vg_fail_memory(err, "a run") : VG_OK;
   }
@@ -203,8 +206,7 @@ vg_status vg_runs_open(struct vg_serve_runs *r, struct vg_error *err)
   struct dirent *e;
   vg_status st = VG_OK;
 
-  if (!d)
-    return vg_fail(err, VG_ERR_IO, "%s: %s", r->dir, strerror(errno));
+  if (!d) return vg_fail(err, VG_ERR_IO, "%s: %s", r->dir, strerror(errno));
   while (st >= 0 && (e = readdir(d)))
     if (id_of(e->d_name)) st = load(r, id_of(e->d_name), err);
   closedir(d);

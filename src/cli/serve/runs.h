@@ -18,47 +18,47 @@
 #include "cli/serve/tell.h"
 
 enum vg_serve_state {
-  VG_SERVE_QUEUED,       /* waits for its turn on this machine */
-  VG_SERVE_SUBMITTED,    /* sbatch is at work */
-  VG_SERVE_PENDING,      /* waits in Slurm's queue */
+  VG_SERVE_QUEUED,    /* waits for its turn on this machine */
+  VG_SERVE_SUBMITTED, /* sbatch is at work */
+  VG_SERVE_PENDING,   /* waits in Slurm's queue */
   VG_SERVE_RUNNING,
-  VG_SERVE_STOPPING,     /* was told to stop */
+  VG_SERVE_STOPPING, /* was told to stop */
   VG_SERVE_STOPPED,
   VG_SERVE_DONE,
-  VG_SERVE_LIMIT,        /* done, but exit status 4 */
+  VG_SERVE_LIMIT, /* done, but exit status 4 */
   VG_SERVE_FAILED,
   VG_SERVE_STATES
 };
 
 struct vg_serve_run {
   int id;
-  char *dir, *project;         /* its folder; below the root */
+  char *dir, *project; /* its folder; below the root */
   char title[84];
   int is_sweep, is_slurm;
-  int ranks, nodes, cpus;      /* cpus and what follows: of Slurm */
+  int ranks, nodes, cpus; /* cpus and what follows: of Slurm */
   char time[24], partition[64], job[24];
   enum vg_serve_state state;
-  pid_t pid;                   /* of the process, or of sbatch; 0: none */
-  unsigned long long pid_start; /* in clock ticks since the system's start */
-  int is_child;                /* of this process: it can be waited for */
-  int exit_status;             /* 128 + n: ended by signal n; -1: none */
+  pid_t pid;                       /* of the process, or of sbatch; 0: none */
+  unsigned long long pid_start;    /* in clock ticks since the system's start */
+  int is_child;                    /* of this process: it can be waited for */
+  int exit_status;                 /* 128 + n: ended by signal n; -1: none */
   int64_t created, started, ended; /* s since 1970, for people; 0: not yet */
   char note[256];
   /* Not in the record: */
   struct vg_tell tell;
-  int64_t output_size;         /* of output.log when `tell` was read */
-  double told_to_stop;         /* by vg_display_now */
+  int64_t output_size; /* of output.log when `tell` was read */
+  double told_to_stop; /* by vg_display_now */
   double submitted;
-  pid_t helper;                /* scancel, until it ends */
+  pid_t helper; /* scancel, until it ends */
 };
 
 struct vg_serve_runs {
   const struct vg_portal_options *o;
-  const char *root;            /* real paths */
+  const char *root; /* real paths */
   char *dir, *program;
   size_t n, cap;
-  struct vg_serve_run **item;  /* [n] owned, by rising id */
-  pid_t squeue;                /* at work; 0: none */
+  struct vg_serve_run **item; /* [n] owned, by rising id */
+  pid_t squeue;               /* at work; 0: none */
   double squeue_start;
 };
 
@@ -88,13 +88,11 @@ int vg_run_has_kept(const struct vg_serve_run *run);
 const char *vg_run_state_word(enum vg_serve_state state);
 
 /** path[4096] of a file of a run. */
-char *vg_run_path(const struct vg_serve_run *run, const char *name,
-                  char *path);
+char *vg_run_path(const struct vg_serve_run *run, const char *name, char *path);
 
 /** record.c: run.json. vg_record_parse fills all but dir, which stays; *run is
  * untouched on failure. VG_ERR_FORMAT names `name`. */
-vg_status vg_record_write(const struct vg_serve_run *run,
-                          struct vg_error *err);
+vg_status vg_record_write(const struct vg_serve_run *run, struct vg_error *err);
 vg_status vg_record_parse(const char *name, const char *data, size_t size,
                           struct vg_serve_run *run, struct vg_error *err);
 vg_status vg_record_read(struct vg_serve_run *run, struct vg_error *err);
@@ -143,7 +141,6 @@ void vg_slurm_watch(struct vg_serve_runs *r);
 
 /** The last bytes of a file, at most size - 1, into text[size] with a zero
  * behind; their count, 0 where there is no file. *whole: its size. */
-size_t vg_file_tail(const char *path, char *text, size_t size,
-                    int64_t *whole);
+size_t vg_file_tail(const char *path, char *text, size_t size, int64_t *whole);
 
 #endif

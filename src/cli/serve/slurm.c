@@ -26,8 +26,7 @@ static vg_status write_script(const struct vg_serve_run *run,
   char path[4096];
   vg_status st;
 
-  VG_TRY(vg_output_open(vg_run_path(run, "vanguard.sbatch", path), &out,
-                        err));
+  VG_TRY(vg_output_open(vg_run_path(run, "vanguard.sbatch", path), &out, err));
   vg_output_bytes(&out, vg_asset_vanguard_sbatch,
                   vg_asset_vanguard_sbatch_size);
   st = vg_output_commit(&out, err);
@@ -36,14 +35,18 @@ done:
   return st;
 }
 
-static vg_status sbatch_line(const struct vg_serve_run *run,
-                             struct vg_words *w, struct vg_error *err)
+static vg_status sbatch_line(const struct vg_serve_run *run, struct vg_words *w,
+                             struct vg_error *err)
 {
-  const struct { const char *option, *value; } texts[] = {
-    { "--time", run->time }, { "--partition", run->partition } };
-  const struct { const char *option; int value; } numbers[] = {
-    { "--nodes", run->nodes }, { "--ntasks-per-node", run->ranks },
-    { "--cpus-per-task", run->cpus } };
+  const struct {
+    const char *option, *value;
+  } texts[] = { { "--time", run->time }, { "--partition", run->partition } };
+  const struct {
+    const char *option;
+    int value;
+  } numbers[] = { { "--nodes", run->nodes },
+                  { "--ntasks-per-node", run->ranks },
+                  { "--cpus-per-task", run->cpus } };
   char *word;
   vg_status st;
 
@@ -68,11 +71,13 @@ done:
 
 /* What the script takes from its environment; a job runs in its folder. */
 static vg_status environment(const struct vg_serve_runs *r,
-                             const struct vg_serve_run *run,
-                             struct vg_words *w, struct vg_error *err)
+                             const struct vg_serve_run *run, struct vg_words *w,
+                             struct vg_error *err)
 {
-  static const char *const fixed[] = { "OUT=mesh", "RUN_DIR=kept",
-    "OPTIONS=--deck run.deck --log run.log --progress 1" };
+  static const char *const fixed[] = {
+    "OUT=mesh", "RUN_DIR=kept",
+    "OPTIONS=--deck run.deck --log run.log --progress 1"
+  };
   size_t n = strlen(run->project);
   char *word;
   vg_status st;
@@ -101,8 +106,8 @@ vg_status vg_slurm_submit(struct vg_serve_runs *r, struct vg_serve_run *run,
   VG_TRY(write_script(run, err));
   VG_TRY(sbatch_line(run, &line, err));
   VG_TRY(environment(r, run, &env, err));
-  st = vg_run_start(run, line.word, "sbatch.txt", env.word,
-                    VG_SERVE_SUBMITTED, err);
+  st = vg_run_start(run, line.word, "sbatch.txt", env.word, VG_SERVE_SUBMITTED,
+                    err);
 done:
   vg_words_release(&line);
   vg_words_release(&env);
@@ -131,8 +136,7 @@ void vg_slurm_submitted(struct vg_serve_run *run, int exit_status)
   int64_t whole;
   int told = run->state == VG_SERVE_STOPPING;
 
-  vg_file_tail(vg_run_path(run, "sbatch.txt", path), text, sizeof text,
-               &whole);
+  vg_file_tail(vg_run_path(run, "sbatch.txt", path), text, sizeof text, &whole);
   run->pid = 0;
   run->is_child = 0;
   run->submitted = vg_display_now();
@@ -157,7 +161,7 @@ void vg_slurm_stop(struct vg_serve_run *run, int hard)
   char *end[] = { "scancel", run->job, NULL };
   pid_t child;
 
-  if (run->helper) return;   /* told just now */
+  if (run->helper) return; /* told just now */
   if (run->state == VG_SERVE_PENDING) hard = 1;
   child = vg_run_spawn(run->dir, hard ? end : soft, "sbatch.txt", NULL);
   if (child > 0) run->helper = child;
@@ -171,7 +175,7 @@ static const char *find_state(const char *data, size_t size, const char *job,
 {
   size_t n = strlen(job);
 
-  for (const char *at = data, *end = data + size; at < end; ) {
+  for (const char *at = data, *end = data + size; at < end;) {
     const char *eol = memchr(at, '\n', (size_t)(end - at));
 
     if (!eol) eol = end;
@@ -189,8 +193,7 @@ static int is_word(const char *text, size_t len, const char *word)
   return len == strlen(word) && !strncmp(text, word, len);
 }
 
-void vg_runs_take_squeue(struct vg_serve_runs *r, const char *data,
-                         size_t size)
+void vg_runs_take_squeue(struct vg_serve_runs *r, const char *data, size_t size)
 {
   for (size_t i = 0; i < r->n; i++) {
     struct vg_serve_run *run = r->item[i];
@@ -208,7 +211,8 @@ void vg_runs_take_squeue(struct vg_serve_runs *r, const char *data,
       continue;
     }
     now = is_word(word, len, "RUNNING") || is_word(word, len, "COMPLETING")
-          ? VG_SERVE_RUNNING : VG_SERVE_PENDING;
+          ? VG_SERVE_RUNNING
+          : VG_SERVE_PENDING;
     if (run->state == now || run->state == VG_SERVE_STOPPING) continue;
     run->state = now;
     vg_record_write(run, &err);

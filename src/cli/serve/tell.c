@@ -89,7 +89,7 @@ int vg_tell_line(const char *line, size_t n, struct vg_tell *out)
   text[n] = 0;
   if (strlen(text) != n) return 0;
   if (!sweep_line(text, &t)) {
-    for (stage = 0; text[stage] && !isdigit((unsigned char)text[stage]); )
+    for (stage = 0; text[stage] && !isdigit((unsigned char)text[stage]);)
       stage++;
     if (text[stage] && !counts(text + stage, &t)) return 0;
     while (stage && text[stage - 1] == ' ') stage--;
@@ -104,7 +104,7 @@ int vg_tell_tail(const char *data, size_t n, struct vg_tell *out)
 {
   int found = 0;
 
-  for (size_t at = 0; at < n; ) {
+  for (size_t at = 0; at < n;) {
     const char *end = memchr(data + at, '\n', n - at);
 
     if (!end) break;

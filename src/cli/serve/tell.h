@@ -7,11 +7,14 @@
 /** The last line of progress. Texts are "" where the line does not say. */
 struct vg_tell {
   char stage[40];
-  double share;               /* of the stage, 0 to 1; -1: not known */
-  char count[72];             /* "12,345 of 27,000" */
-  char rate[32], left[32];    /* "350,000/s", "2 min 10 s" */
+  double share;            /* of the stage, 0 to 1; -1: not known */
+  char count[72];          /* "12,345 of 27,000" */
+  char rate[32], left[32]; /* "350,000/s", "2 min 10 s" */
 };
-#define VG_TELL_INIT { .share = -1 }
+#define VG_TELL_INIT                                                           \
+  {                                                                            \
+    .share = -1                                                                \
+  }
 
 /** A line as vanguard mesh or vanguard sweep puts it on standard error where
  * that is no terminal. 1: it was one, *out is replaced; 0: something else. */

@@ -13,8 +13,10 @@
 
 static vg_status there_already(const char *name, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_INPUT, "'%.80s' is there already, and stays as it "
-                 "is; give the file another name", name);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "'%.80s' is there already, and stays as it "
+                 "is; give the file another name",
+                 name);
 }
 
 static void forget(struct vg_upload *u)
@@ -38,8 +40,8 @@ static vg_status make(struct vg_upload *u, const char *folder,
   if (!lstat(u->path, &s)) return there_already(u->name, err);
   u->fd = mkostemp(u->temporary, O_CLOEXEC);
   if (u->fd >= 0) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "'%.80s' cannot be written there: %s",
-                 u->name, strerror(errno));
+  return vg_fail(err, VG_ERR_IO, "'%.80s' cannot be written there: %s", u->name,
+                 strerror(errno));
 }
 
 vg_status vg_upload_begin(struct vg_upload *u, const char *root,
@@ -64,8 +66,10 @@ vg_status vg_upload_put(struct vg_upload *u, const char *data, size_t size,
                         uint64_t most, struct vg_error *err)
 {
   if (size > most || u->size > most - size)
-    return vg_fail(err, VG_ERR_INPUT, "the file has more than the %llu bytes "
-                   "that --max-upload allows", (unsigned long long)most);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the file has more than the %llu bytes "
+                   "that --max-upload allows",
+                   (unsigned long long)most);
   while (size) {
     ssize_t n = write(u->fd, data, size);
 
@@ -92,11 +96,10 @@ static int give_mode(int fd)
 /* To its name, unless that has been taken meanwhile. */
 static vg_status give_name(struct vg_upload *u, struct vg_error *err)
 {
-  if (!renameat2(AT_FDCWD, u->temporary, AT_FDCWD, u->path,
-                 RENAME_NOREPLACE))
+  if (!renameat2(AT_FDCWD, u->temporary, AT_FDCWD, u->path, RENAME_NOREPLACE))
     return VG_OK;
   if (errno != EEXIST && !link(u->temporary, u->path)) {
-    unlink(u->temporary);   /* a file system without that; link refuses, too */
+    unlink(u->temporary); /* a file system without that; link refuses, too */
     return VG_OK;
   }
   if (errno == EEXIST) return there_already(u->name, err);

@@ -10,13 +10,16 @@
 #include "base/status.h"
 
 struct vg_upload {
-  int fd;                      /* of the file under way; -1: none */
-  char *name, *path;           /* of it, or of the last one */
-  char *temporary;             /* what it is called so far; NULL: none */
-  uint64_t size;               /* of all files */
-  int n_whole;                 /* files that are there */
+  int fd;            /* of the file under way; -1: none */
+  char *name, *path; /* of it, or of the last one */
+  char *temporary;   /* what it is called so far; NULL: none */
+  uint64_t size;     /* of all files */
+  int n_whole;       /* files that are there */
 };
-#define VG_UPLOAD_INIT { -1, NULL, NULL, NULL, 0, 0 }
+#define VG_UPLOAD_INIT                                                         \
+  {                                                                            \
+    -1, NULL, NULL, NULL, 0, 0                                                 \
+  }
 
 /** Begin a file `name` in the folder `under` below root; one that is under way
  * is committed.

@@ -17,8 +17,8 @@ static int logged_status(const struct vg_serve_run *run)
 {
   char path[4096], text[4096];
   int64_t whole;
-  size_t n = vg_file_tail(vg_run_path(run, "run.log", path), text,
-                          sizeof text, &whole);
+  size_t n = vg_file_tail(vg_run_path(run, "run.log", path), text, sizeof text,
+                          &whole);
 
   return vg_tell_status(text, n);
 }
@@ -33,14 +33,16 @@ static void note_failure(struct vg_serve_run *run)
   if (!strncmp(text, "see /", 5))
     snprintf(text, sizeof text, "it said nothing");
   if (run->exit_status > 128)
-    snprintf(run->note, sizeof run->note, "ended by signal %d (%s); last "
-             "line: %.180s", run->exit_status - 128,
-             strsignal(run->exit_status - 128), text);
+    snprintf(run->note, sizeof run->note,
+             "ended by signal %d (%s); last "
+             "line: %.180s",
+             run->exit_status - 128, strsignal(run->exit_status - 128), text);
   else if (run->exit_status < 0)
-    snprintf(run->note, sizeof run->note, "gone without an exit status: "
-             "killed, or the machine went down; last line: %.160s", text);
-  else
-    snprintf(run->note, sizeof run->note, "%.250s", text);
+    snprintf(run->note, sizeof run->note,
+             "gone without an exit status: "
+             "killed, or the machine went down; last line: %.160s",
+             text);
+  else snprintf(run->note, sizeof run->note, "%.250s", text);
 }
 
 void vg_run_ended(struct vg_serve_run *run, int exit_status)
@@ -56,18 +58,20 @@ void vg_run_ended(struct vg_serve_run *run, int exit_status)
     run->state = VG_SERVE_DONE;
   } else if (run->exit_status == VG_EXIT_LIMIT) {
     run->state = VG_SERVE_LIMIT;
-    snprintf(run->note, sizeof run->note, "%s", run->is_sweep
-             ? "equal mesh options gave different files"
-             : "a limit on the layers is not met; the mesh is whole");
+    snprintf(run->note, sizeof run->note, "%s",
+             run->is_sweep
+               ? "equal mesh options gave different files"
+               : "a limit on the layers is not met; the mesh is whole");
   } else {
     note_failure(run);
     run->state = run->state == VG_SERVE_STOPPING ||
-      !strncmp(run->note, "interrupted", 11) ? VG_SERVE_STOPPED
-                                             : VG_SERVE_FAILED;
+                     !strncmp(run->note, "interrupted", 11)
+                 ? VG_SERVE_STOPPED
+                 : VG_SERVE_FAILED;
     if (run->state == VG_SERVE_STOPPED && !run->is_sweep)
-      snprintf(run->note, sizeof run->note, "%s", vg_run_has_kept(run)
-               ? "finished tasks are kept"
-               : "nothing was finished yet");
+      snprintf(run->note, sizeof run->note, "%s",
+               vg_run_has_kept(run) ? "finished tasks are kept"
+                                    : "nothing was finished yet");
   }
   vg_record_write(run, &err);
 }
@@ -86,8 +90,7 @@ static int is_gone(struct vg_serve_run *run, int *exit_status)
   pid_t got;
 
   *exit_status = -1;
-  if (!run->is_child)
-    return vg_process_start(run->pid) != run->pid_start;
+  if (!run->is_child) return vg_process_start(run->pid) != run->pid_start;
   got = waitpid(run->pid, &status, WNOHANG);
   if (got == run->pid) *exit_status = status_of(status);
   return got == run->pid || (got < 0 && errno != EINTR);

@@ -14,37 +14,41 @@
 
 struct vg_sweep_options {
   const char *project, *dir;
-  const char *deck;              /* NULL: PROJECT.deck where there is one */
-  const char *launcher;          /* words with {ranks}, {threads}; NULL:
-                                    mpirun from 2 ranks on */
-  const char *program;           /* NULL: this one */
+  const char *deck;     /* NULL: PROJECT.deck where there is one */
+  const char *launcher; /* words with {ranks}, {threads}; NULL:
+                           mpirun from 2 ranks on */
+  const char *program;  /* NULL: this one */
   struct vg_range_list levels, leaf_cells, ranks, threads, parts;
-  int n_way, way[VG_DECOMPOSITIONS];  /* [n_way] enum vg_decomposition */
-  struct vg_range_list family;   /* levels of a grid family; none: no family */
-  double scale;                  /* of its first level */
+  int n_way, way[VG_DECOMPOSITIONS]; /* [n_way] enum vg_decomposition */
+  struct vg_range_list family; /* levels of a grid family; none: no family */
+  double scale;                /* of its first level */
   int repeat, keep, json, quiet;
   int n_extra;
-  char **extra;                  /* [n_extra] for vanguard mesh */
+  char **extra; /* [n_extra] for vanguard mesh */
 };
 
 /* What is compared along a family; NAN: not known. */
 enum vg_member_figure {
-  VG_MEMBER_CELLS, VG_MEMBER_SURFACE, VG_MEMBER_FIELD, VG_MEMBER_FIRST,
-  VG_MEMBER_LEVELS, VG_MEMBER_N  /* cells; mean edges on the surface and in the
-                                    field; mean first height; mean layers */
+  VG_MEMBER_CELLS,
+  VG_MEMBER_SURFACE,
+  VG_MEMBER_FIELD,
+  VG_MEMBER_FIRST,
+  VG_MEMBER_LEVELS,
+  VG_MEMBER_N /* cells; mean edges on the surface and in the
+                 field; mean first height; mean layers */
 };
 
 struct vg_sweep_case {
-  int64_t levels, leaf_cells, parts;   /* -1: not given */
-  int way;                       /* enum vg_decomposition; -1: not given */
-  int64_t family;                /* level from 1; 0: none */
+  int64_t levels, leaf_cells, parts; /* -1: not given */
+  int way;                           /* enum vg_decomposition; -1: not given */
+  int64_t family;                    /* level from 1; 0: none */
   double member[VG_MEMBER_N];
   int ranks, threads, repeat;
   char name[96], *dir;
   int is_run, is_done;
-  int exit_status;               /* 128 + n: ended by signal n */
-  char note[256];                /* why it failed */
-  double wall;                   /* s, from start to exit */
+  int exit_status; /* 128 + n: ended by signal n */
+  char note[256];  /* why it failed */
+  double wall;     /* s, from start to exit */
   int has_timeline;
   struct vg_timeline t;
   double angle_min, peak_memory; /* NAN where the report does not say */
@@ -55,15 +59,15 @@ struct vg_sweep_case {
     double near_p1, all_p1;      /* 1st percentiles of the smallest angles, near
                                     interfaces and of all outside the layers */
   } parts_made;
-  double critical;               /* s; NAN without a record */
-  char *files;                   /* "name digest" lines, or NULL */
-  char digest[40];               /* of all files, or "" */
+  double critical; /* s; NAN without a record */
+  char *files;     /* "name digest" lines, or NULL */
+  char digest[40]; /* of all files, or "" */
 };
 
 struct vg_sweep {
   const struct vg_sweep_options *o;
   size_t n;
-  struct vg_sweep_case *item;    /* [n] */
+  struct vg_sweep_case *item; /* [n] */
 };
 
 void vg_sweep_release(struct vg_sweep *s);

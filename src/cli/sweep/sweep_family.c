@@ -8,7 +8,8 @@
 #include "io/stream/stream.h"
 
 static const char *const names[VG_MEMBER_N] = { "cells", "surface_edge",
-  "field_edge", "first_height", "layers" };
+                                                "field_edge", "first_height",
+                                                "layers" };
 
 double vg_sweep_scale(int64_t level)
 {
@@ -55,10 +56,11 @@ static const struct vg_sweep_case *before(const struct vg_sweep *s, size_t i)
 
   while (i--) {
     p = &s->item[i];
-    if (p->is_done && p->family != c->family && p->levels == c->levels
-        && p->leaf_cells == c->leaf_cells && p->way == c->way
-        && p->parts == c->parts && p->ranks == c->ranks
-        && p->threads == c->threads && p->repeat == c->repeat) return p;
+    if (p->is_done && p->family != c->family && p->levels == c->levels &&
+        p->leaf_cells == c->leaf_cells && p->way == c->way &&
+        p->parts == c->parts && p->ranks == c->ranks &&
+        p->threads == c->threads && p->repeat == c->repeat)
+      return p;
   }
   return NULL;
 }
@@ -67,8 +69,7 @@ static const struct vg_sweep_case *before(const struct vg_sweep *s, size_t i)
 static void text_of(FILE *to, const struct vg_sweep_case *c,
                     const struct vg_sweep_case *p)
 {
-  fprintf(to, "%-6lld %6.4f", (long long)c->family,
-          vg_sweep_scale(c->family));
+  fprintf(to, "%-6lld %6.4f", (long long)c->family, vg_sweep_scale(c->family));
   for (int k = 0; k < VG_MEMBER_N; k++)
     fprintf(to, isfinite(c->member[k]) ? " %12.6g" : "            -",
             c->member[k]);

@@ -47,8 +47,9 @@ static double number_at(const json_t *o, const char *key)
 /* "files": paths alone, or objects with path and digest. */
 static const char *file_name(const json_t *file)
 {
-  const char *path = json_is_string(file) ? json_string_value(file)
-    : json_string_value(json_object_get(file, "path"));
+  const char *path = json_is_string(file)
+                     ? json_string_value(file)
+                     : json_string_value(json_object_get(file, "path"));
 
   if (!path) return NULL;
   return strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
@@ -62,7 +63,8 @@ static void take_digests(const json_t *files, struct vg_sweep_case *c)
   FILE *to = open_memstream(&c->files, &size);
 
   if (!to) return;
-  json_array_foreach(files, i, file) {
+  json_array_foreach(files, i, file)
+  {
     const char *name = file_name(file);
     const char *xxh3 = json_string_value(json_object_get(file, "xxh3"));
 
@@ -85,7 +87,8 @@ static void remove_meshes(const json_t *files, const char *dir)
   const json_t *file;
   size_t i;
 
-  json_array_foreach(files, i, file) {
+  json_array_foreach(files, i, file)
+  {
     const char *name = file_name(file);
     char *path;
 
@@ -152,8 +155,7 @@ static double critical_of(const struct vg_timeline *t)
   return vg_model_replay(&t->spans, &m, &f, NULL, NULL) < 0 ? NAN : f.critical;
 }
 
-void vg_sweep_collect(const struct vg_sweep_options *o,
-                      struct vg_sweep_case *c)
+void vg_sweep_collect(const struct vg_sweep_options *o, struct vg_sweep_case *c)
 {
   char *path = find_file(c->dir, ".timeline.json");
   struct vg_error err = VG_ERROR_INIT;
@@ -161,8 +163,7 @@ void vg_sweep_collect(const struct vg_sweep_options *o,
   read_report(o, c);
   if (path && c->is_done) {
     c->has_timeline = vg_timeline_read(path, &c->t, &err) >= 0;
-    if (!c->has_timeline)
-      snprintf(c->note, sizeof c->note, "%.250s", err.text);
+    if (!c->has_timeline) snprintf(c->note, sizeof c->note, "%.250s", err.text);
   }
   if (c->has_timeline) c->critical = critical_of(&c->t);
   if (c->has_timeline && !c->digest[0])
@@ -187,8 +188,7 @@ const struct vg_sweep_case *vg_sweep_base(const struct vg_sweep *s)
     if (s->item[i].ranks * s->item[i].threads < fewest)
       fewest = s->item[i].ranks * s->item[i].threads;
   for (size_t i = 0; i < s->n; i++)
-    if (s->item[i].is_done &&
-        s->item[i].ranks * s->item[i].threads == fewest)
+    if (s->item[i].is_done && s->item[i].ranks * s->item[i].threads == fewest)
       return &s->item[i];
   return NULL;
 }
@@ -205,8 +205,7 @@ int vg_sweep_same_mesh(const struct vg_sweep_case *a,
                        const struct vg_sweep_case *b)
 {
   return a->levels == b->levels && a->leaf_cells == b->leaf_cells &&
-    a->way == b->way && a->parts == b->parts &&
-    a->family == b->family;
+         a->way == b->way && a->parts == b->parts && a->family == b->family;
 }
 
 double vg_sweep_field_cells(const struct vg_sweep_case *c)
@@ -214,7 +213,7 @@ double vg_sweep_field_cells(const struct vg_sweep_case *c)
   double sum = 0;
 
   if (!c->has_timeline) return NAN;
-  for (size_t i = 0; i < c->t.spans.n; i++)   /* repairs change them only */
+  for (size_t i = 0; i < c->t.spans.n; i++) /* repairs change them only */
     if (c->t.spans.span[i].kind != VG_SPAN_REPAIR)
       sum += (double)c->t.spans.span[i].n_cell;
   return sum;

@@ -41,15 +41,16 @@ vg_status vg_sweep_ways(const char *what, const char *text,
                         struct vg_sweep_options *o, struct vg_error *err)
 {
   o->n_way = 0;
-  for (const char *at = text; at; at = strchr(at, ',') ? strchr(at, ',') + 1
-                                                       : NULL) {
+  for (const char *at = text; at;
+       at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
     size_t len = strcspn(at, ",");
     int way = way_of(at, len), is_there = 0;
 
     if (way < 0)
-      return vg_fail(err, VG_ERR_INPUT, "%s takes advancing, discrete or "
-                     "octree, with commas between, not '%.*s'", what,
-                     (int)len, at);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s takes advancing, discrete or "
+                     "octree, with commas between, not '%.*s'",
+                     what, (int)len, at);
     for (int k = 0; k < o->n_way; k++) is_there |= o->way[k] == way;
     if (!is_there) o->way[o->n_way++] = way;
   }
@@ -74,8 +75,7 @@ static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
     snprintf(part + at, sizeof part - at, "%s-", vg_ways[c->way].name);
   if (c->parts >= 0)
     snprintf(part + strlen(part), 24, "p%lld-", (long long)c->parts);
-  snprintf(to->name, sizeof to->name, "%sn%d-t%d", part, c->ranks,
-           c->threads);
+  snprintf(to->name, sizeof to->name, "%sn%d-t%d", part, c->ranks, c->threads);
   if (s->o->repeat > 1)
     snprintf(to->name + strlen(to->name), 16, "-r%d", c->repeat);
   to->angle_min = to->peak_memory = to->critical = NAN;
@@ -109,9 +109,10 @@ static vg_status check_extra(const struct vg_sweep_options *o,
                              struct vg_error *err)
 {
   for (int i = 0; o->family.n && i < o->n_extra; i++)
-    if (!strcmp(o->extra[i], "--scale")
-        || !strncmp(o->extra[i], "--scale=", strlen("--scale=")))
-      return vg_fail(err, VG_ERR_INPUT, "--scale after '--' would take the "
+    if (!strcmp(o->extra[i], "--scale") ||
+        !strncmp(o->extra[i], "--scale=", strlen("--scale=")))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "--scale after '--' would take the "
                      "place of the scales of --family: give that of the first "
                      "level in the deck");
   return VG_OK;
@@ -141,8 +142,9 @@ vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
   if (!s->item) return vg_fail_memory(err, "the cases");
   for (int k = 1; k <= o->repeat; k++)
     for (size_t at = 0; at < n_mesh * n_member; at++) {
-      struct vg_sweep_case c = { .levels = -1, .leaf_cells = -1, .parts = -1,
-                                 .way = -1, .repeat = k };
+      struct vg_sweep_case c = {
+        .levels = -1, .leaf_cells = -1, .parts = -1, .way = -1, .repeat = k
+      };
       size_t i = at / n_member;
 
       if (o->family.n) c.family = o->family.v[at % n_member];
@@ -161,8 +163,7 @@ done:
 /* What comes after '--' may have another rule for the layers. */
 static vg_status add_member(struct vg_words *w,
                             const struct vg_sweep_options *o,
-                            const struct vg_sweep_case *c,
-                            struct vg_error *err)
+                            const struct vg_sweep_case *c, struct vg_error *err)
 {
   char text[40];
   vg_status st;
@@ -177,14 +178,14 @@ done:
 }
 
 static vg_status command_line(const struct vg_sweep_options *o,
-                              const struct vg_sweep_case *c,
-                              struct vg_words *w, struct vg_error *err)
+                              const struct vg_sweep_case *c, struct vg_words *w,
+                              struct vg_error *err)
 {
   vg_status st;
 
   VG_TRY(vg_words_launcher(w, o->launcher, c->ranks, c->threads, err));
-  VG_TRY(vg_words_take(w, o->program ? strdup(o->program) : vg_own_path(),
-                       err));
+  VG_TRY(
+    vg_words_take(w, o->program ? strdup(o->program) : vg_own_path(), err));
   VG_TRY(vg_words_add(w, "mesh", err));
   VG_TRY(vg_words_add(w, "-p", err));
   VG_TRY(vg_words_add(w, o->project, err));
@@ -305,14 +306,13 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
   }
   log = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (log < 0) {
-    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", path,
-                 strerror(errno));
+    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", path, strerror(errno));
     goto done;
   }
   VG_TRY(spawn(c, w.word, log, err));
   /* Missed limits on the layers leave a mesh that is whole. */
   c->is_done = c->exit_status == VG_EXIT_DONE ||
-    c->exit_status == VG_EXIT_LIMIT;
+               c->exit_status == VG_EXIT_LIMIT;
   if (!c->is_done) vg_failure_note(path, c->note, sizeof c->note);
   if (vg_display_interrupted())
     st = vg_fail(err, VG_ERR_IO, "interrupted during %s", c->name);

@@ -16,8 +16,8 @@
 #include "run/common/text.h"
 #include "run/report/report.h"
 
-static vg_status path_of(const struct vg_sweep *s, const char *name,
-                         char **out, struct vg_error *err)
+static vg_status path_of(const struct vg_sweep *s, const char *name, char **out,
+                         struct vg_error *err)
 {
   if (asprintf(out, "%s/%s", s->o->dir, name) >= 0) return VG_OK;
   *out = NULL;
@@ -27,12 +27,28 @@ static vg_status path_of(const struct vg_sweep *s, const char *name,
 /* --- numbers of a case --------------------------------------------------- */
 
 enum { N_VALUE = 22 };
-static const char *const value_names[N_VALUE] = {
-  "seconds", "wall", "speedup", "efficiency", "busy", "imbalance", "tasks",
-  "leaves", "cells", "points", "angle_min", "peak_memory_bytes", "parts_asked",
-  "parts", "field_cells", "cells_ratio", "parting_seconds", "balance", "critical",
-  "near_cells", "near_angle_min_p1", "angle_min_p1"
-};
+static const char *const value_names[N_VALUE] = { "seconds",
+                                                  "wall",
+                                                  "speedup",
+                                                  "efficiency",
+                                                  "busy",
+                                                  "imbalance",
+                                                  "tasks",
+                                                  "leaves",
+                                                  "cells",
+                                                  "points",
+                                                  "angle_min",
+                                                  "peak_memory_bytes",
+                                                  "parts_asked",
+                                                  "parts",
+                                                  "field_cells",
+                                                  "cells_ratio",
+                                                  "parting_seconds",
+                                                  "balance",
+                                                  "critical",
+                                                  "near_cells",
+                                                  "near_angle_min_p1",
+                                                  "angle_min_p1" };
 
 static size_t leaf_count(const struct vg_spans *s)
 {
@@ -132,7 +148,7 @@ static vg_status write_csv(const struct vg_sweep *s, struct vg_error *err)
   VG_TRY(path_of(s, "sweep.csv", &path, err));
   VG_TRY(vg_output_open(path, &out, err));
   vg_output_text(&out, "case,levels,leaf_cells,ranks,threads,workers,repeat,"
-                 "state,exit");
+                       "state,exit");
   for (int i = 0; i < N_VALUE; i++)
     vg_output_format(&out, ",%s", value_names[i]);
   for (int i = 0; i < VG_PHASE_N; i++)
@@ -170,9 +186,10 @@ static json_t *rates_json(const struct vg_sweep_case *c)
     struct vg_rate_fit f;
 
     if (vg_rates_fit(&c->t.spans, kinds[k], &f, &err) < 0 || !f.n) continue;
-    json_object_set_new(o, name, json_pack("{s:I s:f s:f s:f}", "tasks",
-      (json_int_t)f.n, "per_cell", f.cell, "per_face", f.face, "error",
-      f.error));
+    json_object_set_new(o, name,
+                        json_pack("{s:I s:f s:f s:f}", "tasks", (json_int_t)f.n,
+                                  "per_cell", f.cell, "per_face", f.face,
+                                  "error", f.error));
   }
   return o;
 }
@@ -187,8 +204,9 @@ static json_t *case_json(const struct vg_sweep *s,
   json_object_set_new(o, "case", vg_text_json(c->name));
   json_object_set_new(o, "levels", whole_or_null(c->levels));
   json_object_set_new(o, "leaf_cells", whole_or_null(c->leaf_cells));
-  json_object_set_new(o, "decompose", c->way < 0 ? json_null()
-                      : json_string(vg_ways[c->way].name));
+  json_object_set_new(o, "decompose",
+                      c->way < 0 ? json_null()
+                                 : json_string(vg_ways[c->way].name));
   json_object_set_new(o, "ranks", json_integer(c->ranks));
   json_object_set_new(o, "threads", json_integer(c->threads));
   json_object_set_new(o, "repeat", json_integer(c->repeat));
@@ -218,8 +236,10 @@ static vg_status write_json(const struct vg_sweep *s, struct vg_error *err)
   for (size_t i = 0; i < s->n; i++)
     json_array_append_new(list, case_json(s, &s->item[i]));
   json_object_set_new(root, "project", vg_text_json(s->o->project));
-  json_object_set_new(root, "digests", json_string(differ ? "differ"
-    : compared ? "agree" : "not compared"));
+  json_object_set_new(root, "digests",
+                      json_string(differ     ? "differ"
+                                  : compared ? "agree"
+                                             : "not compared"));
   json_object_set_new(root, "cases", list);
   VG_TRY(path_of(s, "sweep.json", &path, err));
   VG_TRY(vg_json_write(path, root, "the table of cases", err));
@@ -291,10 +311,10 @@ done:
 /* A line of the speed-up figure being put together. */
 struct line {
   const struct vg_sweep_case *mesh;
-  int colour;                  /* a model has that of what it models */
+  int colour; /* a model has that of what it models */
   char label[64];
   size_t n;
-  double *workers, *speedup;   /* [VG_RANGE_MAX at most] */
+  double *workers, *speedup; /* [VG_RANGE_MAX at most] */
 };
 
 struct lines {
@@ -324,13 +344,12 @@ static int same_point(const struct vg_sweep_case *a,
                       const struct vg_sweep_case *b)
 {
   return vg_sweep_same_mesh(a, b) && a->ranks == b->ranks &&
-    a->threads == b->threads;
+         a->threads == b->threads;
 }
 
 /* Median time of all repeats of a case; NAN when none is done. */
-static vg_status median(const struct vg_sweep *s,
-                        const struct vg_sweep_case *c, double *out,
-                        struct vg_error *err)
+static vg_status median(const struct vg_sweep *s, const struct vg_sweep_case *c,
+                        double *out, struct vg_error *err)
 {
   double *v = vg_alloc(s->n, sizeof *v);
   size_t n = 0;
@@ -346,8 +365,7 @@ static vg_status median(const struct vg_sweep *s,
 }
 
 static vg_status new_line(struct lines *l, const struct vg_sweep_case *mesh,
-                          size_t room, struct line **out,
-                          struct vg_error *err)
+                          size_t room, struct line **out, struct vg_error *err)
 {
   struct line *to;
 
@@ -379,12 +397,10 @@ static void add_point(struct line *l, double workers, double speedup)
 
 static void name_mesh(const struct vg_sweep_case *c, char *text, size_t size)
 {
-  if (c->levels >= 0)
-    snprintf(text, size, "%lld levels", (long long)c->levels);
+  if (c->levels >= 0) snprintf(text, size, "%lld levels", (long long)c->levels);
   else if (c->leaf_cells >= 0)
     snprintf(text, size, "leaves of %lld", (long long)c->leaf_cells);
-  else if (c->way >= 0)
-    snprintf(text, size, "%s", vg_ways[c->way].name);
+  else if (c->way >= 0) snprintf(text, size, "%s", vg_ways[c->way].name);
   else snprintf(text, size, "measured");
   if (c->parts >= 0)
     snprintf(text + strlen(text), size - strlen(text), ", %lld parts",
@@ -445,7 +461,7 @@ static vg_status add_model(const struct vg_sweep *s,
     }
   name_mesh(mesh, to->label, sizeof to->label - 8);
   snprintf(to->label + strlen(to->label), 8, ", model");
-  for (int n = 1; n <= most && to->n < 64; n = most > 16 ? 2 * n : n + 1) {
+  for (int n = 1; n <= most && to->n<64; n = most> 16 ? 2 * n : n + 1) {
     struct vg_machine m = VG_MACHINE_INIT;
     struct vg_model_result f;
 
@@ -484,7 +500,7 @@ static vg_status draw_speedup(const struct vg_sweep *s, struct vg_error *err)
   if (!base) return VG_OK;
   VG_TRY(median(s, base, &time, err));
   seconds[vg_format_real(floor(time * 100 + 0.5) / 100, seconds)] = 0;
-  time *= base->ranks * base->threads;   /* of one worker */
+  time *= base->ranks * base->threads; /* of one worker */
   for (size_t i = 0; i < s->n; i++) {
     double workers = s->item[i].ranks * s->item[i].threads;
 
@@ -503,10 +519,10 @@ static vg_status draw_speedup(const struct vg_sweep *s, struct vg_error *err)
   }
   for (size_t i = 0; i < l.n; i++)
     l.series[i] = (struct vg_plot_series){
-      l.line[i].label, l.line[i].colour, i >= n_measured,
-      l.line[i].n, l.line[i].workers, l.line[i].speedup };
-  snprintf(subtitle, sizeof subtitle, "against %s: %s s", base->name,
-           seconds);
+      l.line[i].label, l.line[i].colour,  i >= n_measured,
+      l.line[i].n,     l.line[i].workers, l.line[i].speedup
+    };
+  snprintf(subtitle, sizeof subtitle, "against %s: %s s", base->name, seconds);
   VG_TRY(path_of(s, "speedup.svg", &path, err));
   VG_TRY(vg_plot_speedup(path, s->o->project, subtitle, l.n, l.series, err));
 done:

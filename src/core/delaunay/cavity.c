@@ -12,8 +12,8 @@
 static int is_odd(const struct vg_cell *c, uint32_t from, uint32_t to,
                   uint32_t a, uint32_t b)
 {
-  uint32_t want[4] = {from, to, a, b};
-  int place[4] = {0}, odd = 0;
+  uint32_t want[4] = { from, to, a, b };
+  int place[4] = { 0 }, odd = 0;
 
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++)
@@ -44,7 +44,8 @@ int vg_cavity_ring(const struct vg_tets *t, uint32_t c, uint32_t a, uint32_t b,
     if (n == most) return 0;
     cell[n] = c;
     ring[n++] = from;
-    for (i = 0; at->v[i] != from; i++) {}
+    for (i = 0; at->v[i] != from; i++) {
+    }
     if (t->flag[c] >> i & 1 && !fixed) return 0;
     link = at->link[i];
     if (link == VG_NONE) return 0;
@@ -57,7 +58,7 @@ int vg_cavity_ring(const struct vg_tets *t, uint32_t c, uint32_t a, uint32_t b,
 
 /* --- replacing cells ----------------------------------------------------- */
 
-struct border {                 /* a face of the cavity, or a face waiting */
+struct border { /* a face of the cavity, or a face waiting */
   uint32_t v[3], link;
   uint8_t fixed;
 };
@@ -113,9 +114,10 @@ int vg_cavity_reserve(struct vg_tets *t, int n_old, int n_new)
 {
   assert(n_old > 0 && n_new > 0);
   return vg_tets_reserve_cells(t, (size_t)n_new) ||
-                 vg_reserve(&t->free, &t->cap_free, t->n_free + (size_t)n_old,
-                            sizeof *t->free)
-           ? -1 : 0;
+             vg_reserve(&t->free, &t->cap_free, t->n_free + (size_t)n_old,
+                        sizeof *t->free)
+         ? -1
+         : 0;
 }
 
 void vg_cavity_refill(struct vg_tets *t, int n_old, const uint32_t *old,

@@ -31,6 +31,6 @@ unsigned vg_cell_signs_exact(const double (*x)[3], const uint32_t v[4],
     return 0;
   in = vg_lanes2(even > flat) | vg_lanes2(odd > flat) << 2;
   out = vg_lanes2(even < -flat) | vg_lanes2(odd < -flat) << 2;
-  return VG_IN_SPHERE | vg_cell_sides(x, v, e, vg_lane_faces(in),
-                                      vg_lane_faces(out));
+  return VG_IN_SPHERE |
+         vg_cell_sides(x, v, e, vg_lane_faces(in), vg_lane_faces(out));
 }

@@ -19,10 +19,10 @@
 typedef double vg_d2 __attribute__((vector_size(16)));
 typedef int64_t vg_l2 __attribute__((vector_size(16)));
 
-enum {                       /* what is told of a point and a positive cell */
-  VG_SIDE_IN = 0x01,         /* times 1 << i: on the inner side of face i */
-  VG_SIDE_SEES = 0x10,       /* likewise: there or in the plane of the face */
-  VG_IN_SPHERE = 0x100       /* strictly; where it is not, nothing is told */
+enum {                      /* what is told of a point and a positive cell */
+       VG_SIDE_IN = 0x01,   /* times 1 << i: on the inner side of face i */
+       VG_SIDE_SEES = 0x10, /* likewise: there or in the plane of the face */
+       VG_IN_SPHERE = 0x100 /* strictly; where it is not, nothing is told */
 };
 
 /* Faces from the order of the lanes, 0 2 1 3. */

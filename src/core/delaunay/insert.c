@@ -11,7 +11,7 @@
 #include "core/delaunay/cell_signs.h"
 #include "core/geometry/vector.h"
 
-enum { CUT_MAX = 16 };       /* K5: times a cavity may be cut back */
+enum { CUT_MAX = 16 }; /* K5: times a cavity may be cut back */
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
                            struct vg_error *err)
@@ -40,14 +40,12 @@ void vg_inserter_release(struct vg_inserter *s)
 static int make_room(struct vg_inserter *s)
 {
   return (s->n_cell + 4 > s->cap_cell &&
-          vg_reserve(&s->cell, &s->cap_cell, s->n_cell + 4,
-                     sizeof *s->cell)) ||
+          vg_reserve(&s->cell, &s->cap_cell, s->n_cell + 4, sizeof *s->cell)) ||
          (s->n_tried + 4 > s->cap_tried &&
           vg_reserve(&s->tried, &s->cap_tried, s->n_tried + 4,
                      sizeof *s->tried)) ||
          (s->n_face + 4 > s->cap_face &&
-          vg_reserve(&s->face, &s->cap_face, s->n_face + 4,
-                     sizeof *s->face));
+          vg_reserve(&s->face, &s->cap_face, s->n_face + 4, sizeof *s->face));
 }
 
 static int add_tried(struct vg_inserter *s, uint32_t c)
@@ -90,8 +88,7 @@ static void drop_faces(struct vg_inserter *s, size_t first)
   for (size_t k = first; k < s->n_face; k++) {
     struct vg_cavity_face f = s->face[k];
 
-    if (f.fixed || f.link == VG_NONE ||
-        !(s->t->flag[f.link >> 2] & VG_MARK))
+    if (f.fixed || f.link == VG_NONE || !(s->t->flag[f.link >> 2] & VG_MARK))
       s->face[n++] = f;
   }
   s->n_face = n;
@@ -104,10 +101,10 @@ static void drop_faces(struct vg_inserter *s, size_t first)
  * running all over them. */
 static int flood(struct vg_inserter *s, const vg_d2 p[3])
 {
-  const double (*x)[3] = (const double (*)[3])s->t->x;
+  const double(*x)[3] = (const double(*)[3])s->t->x;
   const struct vg_cell *cells = s->t->cell;
   uint8_t *flag = s->t->flag;
-  size_t late = SIZE_MAX;    /* the first face that may yet turn out inside */
+  size_t late = SIZE_MAX; /* the first face that may yet turn out inside */
 
   for (size_t k = 0; k < s->n_cell; k++) {
     struct vg_cavity_cell c = s->cell[k];
@@ -141,10 +138,9 @@ static int flood(struct vg_inserter *s, const vg_d2 p[3])
   return 0;
 }
 
-static int start_flood(struct vg_inserter *s, uint32_t seed,
-                       const vg_d2 p[3])
+static int start_flood(struct vg_inserter *s, uint32_t seed, const vg_d2 p[3])
 {
-  const double (*x)[3] = (const double (*)[3])s->t->x;
+  const double(*x)[3] = (const double(*)[3])s->t->x;
   const uint32_t *v = s->t->cell[seed].v;
   unsigned told = vg_cell_signs(x, v, p);
 
@@ -254,7 +250,7 @@ static int too_low(const double a[3], const double b[3], const double c[3],
 static int too_near(const struct vg_inserter *s, const double x[3],
                     double nearest)
 {
-  const double (*at)[3] = (const double (*)[3])s->t->x;
+  const double(*at)[3] = (const double(*)[3])s->t->x;
   double least = nearest * nearest;
 
   for (uint32_t i = 0; i < s->n_vertex; i++)
@@ -301,8 +297,7 @@ static void make_cells(struct vg_inserter *s, uint32_t p)
     assert(f->v[0] != p && f->v[1] != p && f->v[2] != p && !f->hidden);
     t->flag[c] = (uint8_t)(f->outside | f->fixed << 3);
     cell->link[3] = f->link;
-    if (f->link != VG_NONE)
-      t->cell[f->link >> 2].link[f->link & 3] = 4 * c + 3;
+    if (f->link != VG_NONE) t->cell[f->link >> 2].link[f->link & 3] = 4 * c + 3;
     f->link = c;
     s->last = c;
   }
@@ -382,11 +377,10 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
     state = cut == CUT_MAX ? 1 : cut_back(s, both);
   }
   if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
-  if (!state &&
-      ((!s->n_vertex && vg_table_init(&edge, 2 * s->n_face)) ||
-       vg_tets_reserve_cells(t, s->n_face) ||
-       vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
-                  sizeof *t->free)))
+  if (!state && ((!s->n_vertex && vg_table_init(&edge, 2 * s->n_face)) ||
+                 vg_tets_reserve_cells(t, s->n_face) ||
+                 vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
+                            sizeof *t->free)))
     state = -1;
   if (state) {
     vg_table_release(&edge);

@@ -18,11 +18,11 @@
 /** One face of the cavity, seen from inside. */
 struct vg_cavity_face {
   uint32_t v[3];
-  uint32_t link;             /* what lies behind, VG_NONE at the hull */
-  uint8_t fixed;             /* constrained */
-  uint8_t hidden;            /* not strictly visible from the point */
-  uint8_t outside;           /* of the cell in front */
-  uint8_t at[3];             /* numbers of v within the cavity */
+  uint32_t link;   /* what lies behind, VG_NONE at the hull */
+  uint8_t fixed;   /* constrained */
+  uint8_t hidden;  /* not strictly visible from the point */
+  uint8_t outside; /* of the cell in front */
+  uint8_t at[3];   /* numbers of v within the cavity */
 };
 
 /* Cavities of up to so many vertices are linked by a table. */
@@ -30,20 +30,20 @@ enum { VG_CAVITY_TABLE = 64 };
 
 /** Scratch of insertions, reused from one to the next; one per thread. */
 struct vg_inserter {
-  struct vg_tets *t;         /* borrowed */
+  struct vg_tets *t; /* borrowed */
   size_t n_cell, cap_cell, n_face, cap_face, n_tried, cap_tried;
-  struct vg_cavity_cell {    /* the cavity; signs: core/delaunay/cell_signs.h */
+  struct vg_cavity_cell { /* the cavity; signs: core/delaunay/cell_signs.h */
     uint32_t at, signs;
-  } *cell;
-  uint32_t *tried;           /* cells found not to be in it */
+  } * cell;
+  uint32_t *tried; /* cells found not to be in it */
   struct vg_cavity_face *face;
   size_t cap_local;
-  uint32_t *local;           /* [points] number within the cavity, sure where
-                                vertex[] tells the same */
-  uint32_t n_vertex;         /* 0: of too many */
+  uint32_t *local;   /* [points] number within the cavity, sure where
+                        vertex[] tells the same */
+  uint32_t n_vertex; /* 0: of too many */
   uint32_t vertex[VG_CAVITY_TABLE];
-  uint32_t table[VG_CAVITY_TABLE][VG_CAVITY_TABLE];  /* link of an edge */
-  uint32_t last;             /* a cell made by the last insertion */
+  uint32_t table[VG_CAVITY_TABLE][VG_CAVITY_TABLE]; /* link of an edge */
+  uint32_t last; /* a cell made by the last insertion */
 };
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,

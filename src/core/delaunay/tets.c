@@ -11,7 +11,9 @@
 #include "core/geometry/hilbert.h"
 #include "core/geometry/predicates.h"
 
-const uint8_t vg_face[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
+const uint8_t vg_face[4][3] = {
+  { 1, 3, 2 }, { 0, 2, 3 }, { 0, 3, 1 }, { 0, 1, 2 }
+};
 
 void vg_tets_release(struct vg_tets *t)
 {
@@ -199,7 +201,7 @@ static vg_status order_points(struct vg_tets *t, size_t n_keep, uint32_t *to,
 {
   size_t n = t->n_point - n_keep, used = n_keep;
   uint32_t *order = vg_alloc(n, sizeof *order);
-  double (*x)[3] = vg_alloc(n, sizeof *x);
+  double(*x)[3] = vg_alloc(n, sizeof *x);
   vg_status st = VG_OK;
 
   if (!order || !x) st = vg_fail_memory(err, "renumbering points");
@@ -209,7 +211,7 @@ static vg_status order_points(struct vg_tets *t, size_t n_keep, uint32_t *to,
   for (size_t p = 0; st == VG_OK && p < n_keep; p++) to[p] = (uint32_t)p;
   if (st == VG_OK) {
     memcpy(x, t->x + n_keep, n * sizeof *x);
-    st = vg_hilbert_order(n, (const double (*)[3])x, order, err);
+    st = vg_hilbert_order(n, (const double(*)[3])x, order, err);
   }
   for (size_t k = 0; st == VG_OK && k < n; k++) {
     size_t p = n_keep + order[k];

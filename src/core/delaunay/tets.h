@@ -23,24 +23,27 @@ struct vg_cell {
   uint32_t link[4];
 };
 
-enum {                       /* bits of vg_tets.flag */
-  VG_FIXED_FACES = 0x0f,     /* bit i: face i is constrained */
-  VG_OUTSIDE = 0x10,         /* not in the fluid */
-  VG_DEAD = 0x20,            /* slot on the free list */
-  VG_MARK = 0x40,            /* scratch of one operation, else clear */
-  VG_TRIED = 0x80            /* likewise */
+enum {                        /* bits of vg_tets.flag */
+       VG_FIXED_FACES = 0x0f, /* bit i: face i is constrained */
+       VG_OUTSIDE = 0x10,     /* not in the fluid */
+       VG_DEAD = 0x20,        /* slot on the free list */
+       VG_MARK = 0x40,        /* scratch of one operation, else clear */
+       VG_TRIED = 0x80        /* likewise */
 };
 
 struct vg_tets {
   size_t n_point, cap_point;
-  double (*x)[3];            /* [n_point] */
-  size_t n_cell, cap_cell;   /* slots, dead ones included */
+  double (*x)[3];          /* [n_point] */
+  size_t n_cell, cap_cell; /* slots, dead ones included */
   struct vg_cell *cell;
-  uint8_t *flag;             /* [n_cell] */
+  uint8_t *flag; /* [n_cell] */
   size_t n_free, cap_free;
-  uint32_t *free;            /* dead slots, used last in first out */
+  uint32_t *free; /* dead slots, used last in first out */
 };
-#define VG_TETS_INIT { 0 }
+#define VG_TETS_INIT                                                           \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /* Vertices of face i in the order that sees vertex i on its positive side. */
 extern const uint8_t vg_face[4][3];

@@ -18,24 +18,23 @@
 
 /* Part of a farfield's radius that the body may reach: chords of the
  * triangulated sphere come this near. */
-#define FARFIELD_ROOM 0.9   /* S10 */
+#define FARFIELD_ROOM 0.9 /* S10 */
 
 struct domain {
   struct vg_mesh m;
   const struct vg_farfield *farfield;
   const struct vg_size_law *law;
-  double lo[3], hi[3], length;   /* of the body */
+  double lo[3], hi[3], length; /* of the body */
   double centre[3], radius;
-  int axis, side;                /* symmetry; axis -1: none; side 1: above */
+  int axis, side; /* symmetry; axis -1: none; side 1: above */
   double at;
-  struct vg_border open;            /* as the new surface runs along them */
+  struct vg_border open; /* as the new surface runs along them */
 };
 
 static void measure(struct domain *d)
 {
   vg_mesh_bounds(&d->m, d->lo, d->hi);
-  for (int k = 0; k < 3; k++)
-    d->length = fmax(d->length, d->hi[k] - d->lo[k]);
+  for (int k = 0; k < 3; k++) d->length = fmax(d->length, d->hi[k] - d->lo[k]);
 }
 
 /* --- the symmetry plane -------------------------------------------------- */
@@ -59,12 +58,12 @@ static int symmetry_axis(const struct domain *d)
   const double tol = VG_PLANE_TOLERANCE * d->length;
 
   for (int i = 0; i < 3; i++) {
-    const int k = (i + 1) % 3;   /* y first: the usual one */
+    const int k = (i + 1) % 3; /* y first: the usual one */
     double lo, hi;
 
     open_range(d, k, &lo, &hi);
-    if (hi - lo <= tol && d->hi[k] - d->lo[k] > 4 * tol
-        && (lo - d->lo[k] <= tol || d->hi[k] - hi <= tol))
+    if (hi - lo <= tol && d->hi[k] - d->lo[k] > 4 * tol &&
+        (lo - d->lo[k] <= tol || d->hi[k] - hi <= tol))
       return k;
   }
   return -1;
@@ -80,12 +79,13 @@ static vg_status refuse_hole(const struct domain *d, struct vg_error *err)
     centre[k] = 0.5 * (lo[k] + hi[k]);
     width = fmax(width, hi[k] - lo[k]);
   }
-  return vg_fail(err, VG_ERR_GEOMETRY, "the surface has a hole: %zu open edges "
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "the surface has a hole: %zu open edges "
                  "around (%.9g, %.9g, %.9g), %.4g wide, in a body %.4g long; "
                  "close it (close_holes yes). Should the body be half of a "
                  "symmetric one, cut at %c = %.9g, say so (half yes)",
                  d->open.n, centre[0], centre[1], centre[2], width, d->length,
-                 "xyz"[d->axis], d->at);
+                 "xyz"[d->axis], d -> at);
 }
 
 /* The plane of the open edges: axis, -1 where there is none, and at. */
@@ -108,11 +108,13 @@ static vg_status find_symmetry(struct domain *d, struct vg_error *err)
   if (!d->open.n) return VG_OK;
   x = d->m.point[d->open.edge[0][0]];
   if (d->axis < 0)
-    return vg_fail(err, VG_ERR_GEOMETRY, "the surface has %zu open edges that "
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "the surface has %zu open edges that "
                    "do not lie in one coordinate plane at an end of the body "
                    "(one starts at (%.9g, %.9g, %.9g)); close the surface "
                    "(close_holes yes), or cut a half model along x, y or z = "
-                   "constant", d->open.n, x[0], x[1], x[2]);
+                   "constant",
+                   d->open.n, x[0], x[1], x[2]);
   if (d->farfield->symmetry < 0 ||
       (!d->farfield->symmetry &&
        !vg_is_symmetry(&d->m, &d->open, d->axis, d->at)))
@@ -123,18 +125,18 @@ static vg_status find_symmetry(struct domain *d, struct vg_error *err)
   for (size_t i = 0; i < d->m.n_point; i++) {
     x = d->m.point[i];
     if (d->side ? x[d->axis] < d->at : x[d->axis] > d->at)
-      return vg_fail(err, VG_ERR_GEOMETRY, "point %zu (%.9g, %.9g, %.9g) lies "
+      return vg_fail(err, VG_ERR_GEOMETRY,
+                     "point %zu (%.9g, %.9g, %.9g) lies "
                      "beyond the symmetry plane %c = %.9g that the open edges "
-                     "are in; move it onto the plane or cut it off", i + 1,
-                     x[0], x[1], x[2], "xyz"[d->axis], d->at);
+                     "are in; move it onto the plane or cut it off",
+                     i + 1, x[0], x[1], x[2], "xyz"[d->axis], d -> at);
   }
   return VG_OK;
 }
 
 /* Fluid lies outside a body: six times the volume behind its triangles, seen
  * from a point of the symmetry plane, must be positive. */
-static vg_status check_orientation(const struct domain *d,
-                                   struct vg_error *err)
+static vg_status check_orientation(const struct domain *d, struct vg_error *err)
 {
   const struct vg_mesh *m = &d->m;
   double sum = 0, o[3];
@@ -142,8 +144,7 @@ static vg_status check_orientation(const struct domain *d,
   for (int k = 0; k < 3; k++) o[k] = 0.5 * (d->lo[k] + d->hi[k]);
   if (d->axis >= 0) o[d->axis] = d->at;
   for (size_t i = 0; i < m->n_tri + 2 * m->n_quad; i++) {
-    const uint32_t *q = i < m->n_tri ? m->tri[i]
-                                     : m->quad[(i - m->n_tri) / 2];
+    const uint32_t *q = i < m->n_tri ? m->tri[i] : m->quad[(i - m->n_tri) / 2];
     const int second = i >= m->n_tri && (i - m->n_tri) % 2;
     const double *p[3] = { m->point[q[0]], m->point[q[second ? 2 : 1]],
                            m->point[q[second ? 3 : 2]] };
@@ -151,7 +152,8 @@ static vg_status check_orientation(const struct domain *d,
     sum += vg_tri_cone(o, p[0], p[1], p[2]);
   }
   if (sum > 0) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "the triangles of the surface point into "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "the triangles of the surface point into "
                  "the body, not into the fluid: either it already is a whole "
                  "flow domain, which takes no farfield (farfield none), or it "
                  "has to be turned inside out");
@@ -177,30 +179,33 @@ static vg_status place_farfield(struct domain *d, struct vg_error *err)
 {
   const struct vg_farfield *f = d->farfield;
 
-  if (!(f->size >= 0) || !isfinite(f->size)
-      || (f->size == 0 && !(f->lengths > 0 && isfinite(f->lengths))))
-    return vg_fail(err, VG_ERR_INPUT, "farfield: size %g, %g body lengths; "
-                   "one of them must be a positive number", f->size,
-                   f->lengths);
+  if (!(f->size >= 0) || !isfinite(f->size) ||
+      (f->size == 0 && !(f->lengths > 0 && isfinite(f->lengths))))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "farfield: size %g, %g body lengths; "
+                   "one of them must be a positive number",
+                   f->size, f->lengths);
   if (!(f->spacing >= 0) || (f->spacing == 0 && !d->law))
-    return vg_fail(err, VG_ERR_INPUT, "farfield: the spacing %g is not a "
-                   "positive length", f->spacing);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "farfield: the spacing %g is not a "
+                   "positive length",
+                   f->spacing);
   d->radius = f->size > 0 ? f->size : f->lengths * d->length;
   for (int k = 0; k < 3; k++)
-    d->centre[k] = f->has_centre ? f->centre[k]
-                                 : 0.5 * (d->lo[k] + d->hi[k]);
+    d->centre[k] = f->has_centre ? f->centre[k] : 0.5 * (d->lo[k] + d->hi[k]);
   if (d->axis >= 0) d->centre[d->axis] = d->at;
   return VG_OK;
 }
 
-static vg_status outside(const struct domain *d, size_t i,
-                         struct vg_error *err)
+static vg_status outside(const struct domain *d, size_t i, struct vg_error *err)
 {
   const double *x = d->m.point[i];
 
-  return vg_fail(err, VG_ERR_GEOMETRY, "point %zu (%.9g, %.9g, %.9g) of the "
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "point %zu (%.9g, %.9g, %.9g) of the "
                  "body is not well inside the farfield; enlarge it (body "
-                 "length %.9g)", i + 1, x[0], x[1], x[2], d->length);
+                 "length %.9g)",
+                 i + 1, x[0], x[1], x[2], d->length);
 }
 
 static vg_status add_sphere(struct domain *d, uint32_t patch,
@@ -218,8 +223,8 @@ static vg_status add_sphere(struct domain *d, uint32_t patch,
     if (!(rr < most * most)) return outside(d, i, err);
   }
   return vg_add_sphere(&d->m, d->centre, d->radius,
-                       d->axis < 0 ? -1 : 2 * d->axis + d->side, 1, &law,
-                       patch, border, err);
+                       d->axis < 0 ? -1 : 2 * d->axis + d->side, 1, &law, patch,
+                       border, err);
 }
 
 static vg_status add_box(struct domain *d, uint32_t patch,
@@ -239,16 +244,18 @@ static vg_status add_box(struct domain *d, uint32_t patch,
     hi[k] = f->has_box ? f->hi[k] : d->centre[k] + half;
     if (k == d->axis) *(d->side ? &lo[k] : &hi[k]) = d->at;
     if (!(hi[k] > lo[k]))
-      return vg_fail(err, VG_ERR_INPUT, "farfield box: %c from %g to %g is "
-                     "empty", "xyz"[k], lo[k], hi[k]);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "farfield box: %c from %g to %g is "
+                     "empty",
+                     "xyz"[k], lo[k], hi[k]);
     d->radius = fmin(d->radius, 0.5 * (hi[k] - lo[k]));
   }
   for (size_t i = 0; i < d->m.n_point; i++)
     for (int k = 0; k < 3; k++) {
       const double x = d->m.point[i][k];
 
-      if ((open != 2 * k && !(x > lo[k])) || (open != 2 * k + 1
-                                              && !(x < hi[k])))
+      if ((open != 2 * k && !(x > lo[k])) ||
+          (open != 2 * k + 1 && !(x < hi[k])))
         return outside(d, i, err);
     }
   return vg_add_box(&d->m, lo, hi, open, &law, of, border, err);
@@ -257,8 +264,7 @@ static vg_status add_box(struct domain *d, uint32_t patch,
 /* --- patches ------------------------------------------------------------- */
 
 static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
-                           int32_t bc_fun3d, uint32_t *at,
-                           struct vg_error *err)
+                           int32_t bc_fun3d, uint32_t *at, struct vg_error *err)
 {
   int32_t id = 0;
   size_t i;
@@ -266,8 +272,10 @@ static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
   for (i = 0; i < m->n_patch; i++)
     if (m->patch[i].id > id) id = m->patch[i].id;
   if (id == INT32_MAX)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "patch number %" PRId32 " leaves "
-                   "none for the %s; renumber the patches", id, name);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "patch number %" PRId32 " leaves "
+                   "none for the %s; renumber the patches",
+                   id, name);
   i = vg_mesh_add_patch(m, id + 1, name);
   if (i == SIZE_MAX) return vg_fail_memory(err, "a patch");
   m->patch[i].bc = m->patch[i].family = bc;
@@ -287,12 +295,11 @@ static vg_status add_symmetry(struct domain *d, struct vg_border *border,
   VG_TRY(add_patch(&d->m, "symmetry", 1, 6661 + d->axis, &patch, err));
   for (size_t i = 0; i < d->open.n; i++)
     VG_TRY(vg_border_add(border, d->open.edge[i][0], d->open.edge[i][1], err));
-  st = vg_planar_patch(&d->m, border->n, (const uint32_t (*)[2])border->edge,
-                       &law,
-                       patch, &inner);
+  st = vg_planar_patch(&d->m, border->n, (const uint32_t(*)[2])border->edge,
+                       &law, patch, &inner);
   if (st < 0)
     st = vg_fail(err, st, "symmetry plane %c = %.9g: %s", "xyz"[d->axis],
-                 d->at, inner.text);
+                 d -> at, inner.text);
 done:
   return st;
 }
@@ -315,16 +322,16 @@ static vg_status build(struct domain *d, struct vg_error *err)
   VG_TRY(place_farfield(d, err));
   VG_TRY(add_patch(&d->m, "farfield", 3, 5000, &patch, err));
   VG_TRY(d->farfield->kind == VG_FARFIELD_SPHERE
-           ? add_sphere(d, patch, &border, err) : add_box(d, patch, &border,
-                                                          err));
+           ? add_sphere(d, patch, &border, err)
+           : add_box(d, patch, &border, err));
   if (d->axis >= 0) VG_TRY(add_symmetry(d, &border, err));
 done:
   vg_border_release(&border);
   return st;
 }
 
-vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry,
-                         int *axis, double *at, struct vg_error *err)
+vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry, int *axis,
+                         double *at, struct vg_error *err)
 {
   assert(symmetry >= -1 && symmetry <= 1 && axis && at);
 
@@ -336,9 +343,8 @@ vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry,
   find_plane(&d);
   *at = d.at;
   *axis = d.axis;
-  if (symmetry < 0
-      || (!symmetry && d.axis >= 0
-          && !vg_is_symmetry(&d.m, &d.open, d.axis, d.at)))
+  if (symmetry < 0 || (!symmetry && d.axis >= 0 &&
+                       !vg_is_symmetry(&d.m, &d.open, d.axis, d.at)))
     *axis = -1;
 done:
   vg_border_release(&d.open);
@@ -356,7 +362,8 @@ vg_status vg_domain_complete_by(struct vg_mesh *surface,
 
   assert(law || farfield->spacing > 0 || farfield->kind == VG_FARFIELD_NONE);
   if (!surface->n_tri && !surface->n_quad)
-    return vg_fail(err, VG_ERR_INPUT, "the surface has no triangles: there is "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the surface has no triangles: there is "
                    "no body to put a farfield around");
   VG_TRY(vg_mesh_copy(&d.m, surface, err));
   measure(&d);
@@ -384,6 +391,6 @@ vg_status vg_domain_complete(struct vg_mesh *surface,
 {
   const struct vg_size_law law = vg_size_law_of(sizing);
 
-  return vg_domain_complete_by(surface, farfield, sizing ? &law : NULL,
-                               report, err);
+  return vg_domain_complete_by(surface, farfield, sizing ? &law : NULL, report,
+                               err);
 }

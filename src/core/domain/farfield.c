@@ -28,7 +28,7 @@ vg_status vg_border_add(struct vg_border *r, uint32_t a, uint32_t b,
 
 static vg_status add_points(struct vg_mesh *m, size_t n, struct vg_error *err)
 {
-  double (*point)[3];
+  double(*point)[3];
 
   if (n > UINT32_MAX - 1 - m->n_point)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "surface: too many points");
@@ -40,9 +40,8 @@ static vg_status add_points(struct vg_mesh *m, size_t n, struct vg_error *err)
 
 /* vg_graded_steps; of a law that stops sizes are 0, which ends the division. */
 static vg_status divide(double len, double (*size)(void *user, double s),
-                        void *user, const struct vg_size_law *law,
-                        size_t least, size_t *n, double **s,
-                        struct vg_error *err)
+                        void *user, const struct vg_size_law *law, size_t least,
+                        size_t *n, double **s, struct vg_error *err)
 {
   vg_status st = vg_graded_steps(len, size, user, least, n, s, err);
 
@@ -59,7 +58,7 @@ static vg_status divide(double len, double (*size)(void *user, double s),
 struct half_sphere {
   const double *centre;
   double radius;
-  int axis, iu, iv, side;   /* side +1 or -1 */
+  int axis, iu, iv, side; /* side +1 or -1 */
   const struct vg_size_law *size;
 };
 
@@ -79,8 +78,8 @@ static double size_on_disc(void *user, const double p[2])
   double x[3];
 
   to_sphere(s, p, x);
-  return s->size->at(s->size->user, x)
-         * (1 + p[0] * p[0] + p[1] * p[1]) / (2 * s->radius);
+  return s->size->at(s->size->user, x) * (1 + p[0] * p[0] + p[1] * p[1]) /
+         (2 * s->radius);
 }
 
 /* Point of the unit circle, turn in quarters, 0 <= turn < 4. */
@@ -138,11 +137,10 @@ static vg_status add_half(struct vg_mesh *m, const struct half_sphere *s,
 {
   size_t n_new = 0, n_tri = 0;
   const int swap = inward ? s->side > 0 : s->side < 0;
-  double (*add)[2] = NULL;
-  uint32_t (*edge)[2] = vg_alloc(n, sizeof *edge), (*tri)[3] = NULL;
-  uint32_t (*list)[3], *of, base;
-  const struct vg_planar_law law = { size_on_disc, (void *)s,
-                                     s->size->stop };
+  double(*add)[2] = NULL;
+  uint32_t(*edge)[2] = vg_alloc(n, sizeof *edge), (*tri)[3] = NULL;
+  uint32_t(*list)[3], *of, base;
+  const struct vg_planar_law law = { size_on_disc, (void *)s, s->size->stop };
   vg_status st = VG_OK;
 
   if (!edge) {
@@ -153,7 +151,7 @@ static vg_status add_half(struct vg_mesh *m, const struct half_sphere *s,
     edge[i][0] = i;
     edge[i][1] = i + 1 < n ? i + 1 : 0;
   }
-  VG_TRY(vg_planar_mesh(n, disc, n, (const uint32_t (*)[2])edge, &law, &n_new,
+  VG_TRY(vg_planar_mesh(n, disc, n, (const uint32_t(*)[2])edge, &law, &n_new,
                         &add, &n_tri, &tri, err));
   VG_TRY(add_points(m, n_new, err));
   list = vg_realloc(m->tri, m->n_tri + n_tri, sizeof *list);
@@ -193,19 +191,23 @@ vg_status vg_add_sphere(struct vg_mesh *m, const double centre[3],
 
   const int axis = half < 0 ? 2 : half / 2;
   const uint32_t first = (uint32_t)m->n_point;
-  struct half_sphere s = { centre, radius, axis, (axis + 1) % 3,
-                           (axis + 2) % 3, half >= 0 && half % 2 == 0 ? -1 : 1,
+  struct half_sphere s = { centre,
+                           radius,
+                           axis,
+                           (axis + 1) % 3,
+                           (axis + 2) % 3,
+                           half >= 0 && half % 2 == 0 ? -1 : 1,
                            size };
-  double (*disc)[2] = NULL;
+  double(*disc)[2] = NULL;
   size_t n = 0;
   vg_status st;
 
   VG_TRY(add_equator(m, &s, &disc, &n, err));
-  VG_TRY(add_half(m, &s, n, (const double (*)[2])disc, first, inward, patch,
-                  err));
+  VG_TRY(
+    add_half(m, &s, n, (const double(*)[2])disc, first, inward, patch, err));
   if (half < 0) {
     s.side = -s.side;
-    st = add_half(m, &s, n, (const double (*)[2])disc, first, inward, patch,
+    st = add_half(m, &s, n, (const double(*)[2])disc, first, inward, patch,
                   err);
     goto done;
   }
@@ -315,10 +317,10 @@ done:
   return st;
 }
 
-vg_status vg_add_box(struct vg_mesh *m, const double lo[3],
-                     const double hi[3], int open,
-                     const struct vg_size_law *size, const uint32_t patch[6],
-                     struct vg_border *border, struct vg_error *err)
+vg_status vg_add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
+                     int open, const struct vg_size_law *size,
+                     const uint32_t patch[6], struct vg_border *border,
+                     struct vg_error *err)
 {
   assert(lo[0] < hi[0] && lo[1] < hi[1] && lo[2] < hi[2]);
   assert(open >= -1 && open < 6 && (border || open < 0));
@@ -345,8 +347,8 @@ vg_status vg_add_box(struct vg_mesh *m, const double lo[3],
     for (size_t i = 0; face == open && i < loop.n; i++)
       VG_TRY(vg_border_add(border, loop.edge[i][0], loop.edge[i][1], err));
     if (face != open)
-      VG_TRY(vg_planar_patch(m, loop.n, (const uint32_t (*)[2])loop.edge,
-                             size, patch[face], err));
+      VG_TRY(vg_planar_patch(m, loop.n, (const uint32_t(*)[2])loop.edge, size,
+                             patch[face], err));
   }
 done:
   for (int i = 0; i < 12; i++) free(edge[i].point);

@@ -12,7 +12,10 @@ struct vg_border {
   size_t n, cap;
   uint32_t (*edge)[2];
 };
-#define VG_BORDER_INIT { 0 }
+#define VG_BORDER_INIT                                                         \
+  {                                                                            \
+    0                                                                          \
+  }
 
 void vg_border_release(struct vg_border *r);
 vg_status vg_border_add(struct vg_border *r, uint32_t a, uint32_t b,
@@ -36,10 +39,10 @@ vg_status vg_add_sphere(struct vg_mesh *m, const double centre[3],
  * @param open  face left out: 2 * axis + side, or -1
  * @param patch index in m->patch for the faces x-, x+, y-, y+, z-, z+
  * @param border   out: edges of the open face, appended */
-vg_status vg_add_box(struct vg_mesh *m, const double lo[3],
-                     const double hi[3], int open,
-                     const struct vg_size_law *size, const uint32_t patch[6],
-                     struct vg_border *border, struct vg_error *err);
+vg_status vg_add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
+                     int open, const struct vg_size_law *size,
+                     const uint32_t patch[6], struct vg_border *border,
+                     struct vg_error *err);
 
 /** vg_domain_complete with any law of sizes in place of a field; law may be
  * NULL where farfield->spacing is given. */

@@ -12,16 +12,20 @@
 #include "core/geometry/vector.h"
 
 #define HOLE_FLATNESS 0.05 /* S11 */
-#define OPPOSITE 0.1       /* S11: of the extent: rims so near to an end are of
-                              that end */
+#define OPPOSITE                                                               \
+  0.1 /* S11: of the extent: rims so near to an end are of                     \
+         that end */
 
 struct holes {
   struct vg_mesh m;
   struct vg_border open;
-  uint32_t *next;            /* [n_point] along the rim, or UINT32_MAX */
-  uint32_t *loop;            /* [n_point] number of its rim */
+  uint32_t *next; /* [n_point] along the rim, or UINT32_MAX */
+  uint32_t *loop; /* [n_point] number of its rim */
   uint32_t n_loop;
-  struct rim { uint32_t first; int stays; } *rim;
+  struct rim {
+    uint32_t first;
+    int stays;
+  } * rim;
   double lo[3], hi[3], tolerance;
 };
 
@@ -34,9 +38,11 @@ static vg_status follow_rims(struct holes *h, struct vg_error *err)
     const double *x = h->m.point[e[0]];
 
     if (h->next[e[0]] != UINT32_MAX)
-      return vg_fail(err, VG_ERR_GEOMETRY, "two holes of the surface meet at "
+      return vg_fail(err, VG_ERR_GEOMETRY,
+                     "two holes of the surface meet at "
                      "(%.9g, %.9g, %.9g), so that it is not clear how to close "
-                     "them", x[0], x[1], x[2]);
+                     "them",
+                     x[0], x[1], x[2]);
     h->next[e[0]] = e[1];
   }
   for (size_t i = 0; i < h->open.n; i++) {
@@ -83,8 +89,7 @@ static vg_status is_cut(const struct holes *h, int symmetry, int axis,
 
   for (uint32_t k = 0; k < h->n_loop; k++)
     if (is_in_plane(h, k, axis, at)) VG_TRY(list_edges(h, k, &some, err));
-  *cut = some.n
-         && (symmetry > 0 || vg_is_symmetry(&h->m, &some, axis, at));
+  *cut = some.n && (symmetry > 0 || vg_is_symmetry(&h->m, &some, axis, at));
 done:
   vg_border_release(&some);
   return st;
@@ -112,19 +117,18 @@ static vg_status keep_symmetry(struct holes *h, int symmetry,
   vg_status st = VG_OK;
 
   for (int i = 0; i < 3 && symmetry >= 0 && !found; i++) {
-    const int axis = (i + 1) % 3;      /* y first: the usual one */
+    const int axis = (i + 1) % 3; /* y first: the usual one */
     int lo, hi;
 
     VG_TRY(is_cut(h, symmetry, axis, h->lo[axis], &lo, err));
     VG_TRY(is_cut(h, symmetry, axis, h->hi[axis], &hi, err));
-    if (lo && hi && symmetry > 0) {   /* the end that looks like a cut */
+    if (lo && hi && symmetry > 0) { /* the end that looks like a cut */
       VG_TRY(is_cut(h, 0, axis, h->lo[axis], &lo, err));
       VG_TRY(is_cut(h, 0, axis, h->hi[axis], &hi, err));
     }
     found = lo != hi && (symmetry > 0 || !is_open_opposite(h, axis, lo));
     for (uint32_t k = 0; found && k < h->n_loop; k++)
-      h->rim[k].stays = is_in_plane(h, k, axis, lo ? h->lo[axis]
-                                                   : h->hi[axis]);
+      h->rim[k].stays = is_in_plane(h, k, axis, lo ? h->lo[axis] : h->hi[axis]);
   }
 done:
   return st;
@@ -141,7 +145,8 @@ static vg_status add_cap(struct holes *h, size_t n, uint32_t *patch,
   for (size_t i = 0; i < h->m.n_patch; i++)
     if (h->m.patch[i].id > id) id = h->m.patch[i].id;
   if (id == INT32_MAX)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "no patch number is left for a "
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "no patch number is left for a "
                    "cap; renumber the patches");
   snprintf(name, sizeof name, "cap_%zu", n);
   at = vg_mesh_add_patch(&h->m, id + 1, name);
@@ -159,11 +164,13 @@ static vg_status close_rim(struct holes *h, uint32_t k, uint32_t patch,
   vg_status st;
 
   VG_TRY(list_edges(h, k, &rim, err));
-  st = vg_planar_patch_near(&h->m, rim.n, (const uint32_t (*)[2])rim.edge,
-                            law, HOLE_FLATNESS, patch, &inner);
+  st = vg_planar_patch_near(&h->m, rim.n, (const uint32_t(*)[2])rim.edge, law,
+                            HOLE_FLATNESS, patch, &inner);
   if (st < 0)
-    st = vg_fail(err, st, "the hole at (%.9g, %.9g, %.9g), of %zu edges, "
-                 "cannot be closed: %s", x[0], x[1], x[2], rim.n, inner.text);
+    st = vg_fail(err, st,
+                 "the hole at (%.9g, %.9g, %.9g), of %zu edges, "
+                 "cannot be closed: %s",
+                 x[0], x[1], x[2], rim.n, inner.text);
 done:
   vg_border_release(&rim);
   return st;
@@ -198,9 +205,8 @@ static void release(struct holes *h)
 }
 
 vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
-                                const struct vg_sizing *sizing,
-                                size_t *n_hole, size_t *n_tri,
-                                struct vg_error *err)
+                                const struct vg_sizing *sizing, size_t *n_hole,
+                                size_t *n_tri, struct vg_error *err)
 {
   assert(sizing && n_hole && n_tri);
 
@@ -262,7 +268,7 @@ vg_status vg_domain_rims(const struct vg_mesh *surface, size_t *n,
   for (uint32_t k = 0; k < h.n_loop; k++) (*rim)[k] = measure_rim(&h, k);
   *n = h.n_loop;
 done:
-  h.m = (struct vg_mesh)VG_MESH_INIT;   /* borrowed */
+  h.m = (struct vg_mesh)VG_MESH_INIT; /* borrowed */
   release(&h);
   return st;
 }

@@ -26,10 +26,11 @@ static void list_sides(const struct vg_mesh *m, uint32_t (*side)[2])
 static vg_status refuse(const double x[3], const double y[3],
                         struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_GEOMETRY, "edge from (%.9g, %.9g, %.9g) to "
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "edge from (%.9g, %.9g, %.9g) to "
                  "(%.9g, %.9g, %.9g): its triangles run the same way; "
-                 "run `vanguard check` on the surface", x[0], x[1], x[2],
-                 y[0], y[1], y[2]);
+                 "run `vanguard check` on the surface",
+                 x[0], x[1], x[2], y[0], y[1], y[2]);
 }
 
 /* Edges whose sides do not run both ways as often. */
@@ -38,18 +39,18 @@ vg_status vg_open_edges(const struct vg_mesh *m, struct vg_border *open,
 {
   assert(m && open);
 
-  uint32_t (*side)[2] = vg_alloc(n_side(m), sizeof *side);
+  uint32_t(*side)[2] = vg_alloc(n_side(m), sizeof *side);
   struct vg_edges e = VG_EDGES_INIT;
   vg_status st;
 
   if (!side) return vg_fail_memory(err, "the edges of the surface");
   list_sides(m, side);
   st = vg_edges_build_sides(&e, m->n_point, n_side(m),
-                            (const uint32_t (*)[2])side, err);
+                            (const uint32_t(*)[2])side, err);
   for (size_t i = 0; st == VG_OK && i < e.n; i++) {
     const uint32_t *s = side[vg_edges_at(&e, i)[0]];
     const uint32_t lo = s[0] < s[1] ? s[0] : s[1], hi = s[0] ^ s[1] ^ lo;
-    int sum = 0;               /* sides up from the lower point, less others */
+    int sum = 0; /* sides up from the lower point, less others */
 
     for (uint32_t k = 0; k < vg_edges_count(&e, i); k++)
       sum += side[vg_edges_at(&e, i)[k]][0] < hi ? 1 : -1;

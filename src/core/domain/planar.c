@@ -15,7 +15,7 @@
 
 enum {
   N_SWEEP = 8,
-  LEFT = 8   /* flag bit LEFT + k: half-edge k is a given segment */
+  LEFT = 8 /* flag bit LEFT + k: half-edge k is a given segment */
 };
 
 struct region {
@@ -28,8 +28,10 @@ struct region {
 static vg_status check_input(const struct region *r, struct vg_error *err)
 {
   if (r->n_edge < 3)
-    return vg_fail(err, VG_ERR_INPUT, "plane region: %zu boundary segments; "
-                   "a closed loop needs at least 3", r->n_edge);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "plane region: %zu boundary segments; "
+                   "a closed loop needs at least 3",
+                   r->n_edge);
   if (r->n > VG_T2_POINT_MAX / 2)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "plane region: %zu points are too many", r->n);
@@ -38,12 +40,14 @@ static vg_status check_input(const struct region *r, struct vg_error *err)
       const uint32_t v = r->edge[i][k];
 
       if (v >= r->n)
-        return vg_fail(err, VG_ERR_INPUT, "plane region: segment %zu names "
-                       "point %" PRIu32 " of %zu", i + 1, v + 1, r->n);
+        return vg_fail(err, VG_ERR_INPUT,
+                       "plane region: segment %zu names "
+                       "point %" PRIu32 " of %zu",
+                       i + 1, v + 1, r->n);
       if (!isfinite(r->p[v][0]) || !isfinite(r->p[v][1]))
-        return vg_fail(err, VG_ERR_INPUT, "plane region: point %" PRIu32
-                       " (%g, %g) is not finite", v + 1, r->p[v][0],
-                       r->p[v][1]);
+        return vg_fail(err, VG_ERR_INPUT,
+                       "plane region: point %" PRIu32 " (%g, %g) is not finite",
+                       v + 1, r->p[v][0], r->p[v][1]);
     }
   return VG_OK;
 }
@@ -62,15 +66,16 @@ static vg_status insert_points(struct region *r, struct vg_error *err)
     alias[r->edge[i / 2][i % 2]] = 0;
   for (uint32_t i = 0; st == VG_OK && i < r->n; i++)
     if (!alias[i]) list[n++] = i;
-  if (st == VG_OK && (vg_tri2_init(&r->t, r->n, r->p)
-                      || vg_tri2_insert_all(&r->t, n, list, alias)))
+  if (st == VG_OK && (vg_tri2_init(&r->t, r->n, r->p) ||
+                      vg_tri2_insert_all(&r->t, n, list, alias)))
     st = vg_fail_memory(err, "a plane triangulation");
   for (size_t i = 0; st == VG_OK && i < n; i++) {
     const uint32_t v = list[i];
 
     if (alias[v] != v)
-      st = vg_fail(err, VG_ERR_GEOMETRY, "plane region: points %" PRIu32
-                   " and %" PRIu32 " coincide at (%.9g, %.9g); weld them",
+      st = vg_fail(err, VG_ERR_GEOMETRY,
+                   "plane region: points %" PRIu32 " and %" PRIu32
+                   " coincide at (%.9g, %.9g); weld them",
                    alias[v] + 1, v + 1, r->p[v][0], r->p[v][1]);
   }
   free(alias);
@@ -81,8 +86,8 @@ static vg_status insert_points(struct region *r, struct vg_error *err)
 static size_t segment_between(const struct region *r, uint32_t a, uint32_t b)
 {
   for (size_t i = 0; i < r->n_edge; i++)
-    if ((r->edge[i][0] == a && r->edge[i][1] == b)
-        || (r->edge[i][0] == b && r->edge[i][1] == a))
+    if ((r->edge[i][0] == a && r->edge[i][1] == b) ||
+        (r->edge[i][0] == b && r->edge[i][1] == a))
       return i;
   return r->n_edge;
 }
@@ -93,15 +98,18 @@ static vg_status crossing(const struct region *r, size_t i, int hit,
   const double *a = r->p[r->edge[i][0]], *b = r->p[r->edge[i][1]];
 
   if (hit == 1)
-    return vg_fail(err, VG_ERR_GEOMETRY, "plane region: point %" PRIu32
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "plane region: point %" PRIu32
                    " (%.9g, %.9g) lies on segment %zu, from (%.9g, %.9g) to "
-                   "(%.9g, %.9g); split the segment there", at[0] + 1,
-                   r->p[at[0]][0], r->p[at[0]][1], i + 1, a[0], a[1], b[0],
-                   b[1]);
-  return vg_fail(err, VG_ERR_GEOMETRY, "plane region: segments %zu and %zu "
+                   "(%.9g, %.9g); split the segment there",
+                   at[0] + 1, r->p[at[0]][0], r->p[at[0]][1], i + 1, a[0], a[1],
+                   b[0], b[1]);
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "plane region: segments %zu and %zu "
                  "cross near (%.9g, %.9g) - (%.9g, %.9g); correct the curves "
-                 "or make them finer", segment_between(r, at[0], at[1]) + 1,
-                 i + 1, a[0], a[1], b[0], b[1]);
+                 "or make them finer",
+                 segment_between(r, at[0], at[1]) + 1, i + 1, a[0], a[1], b[0],
+                 b[1]);
 }
 
 static vg_status insert_segments(struct region *r, struct vg_error *err)
@@ -113,8 +121,10 @@ static vg_status insert_segments(struct region *r, struct vg_error *err)
     vg_status st;
 
     if (a == b)
-      return vg_fail(err, VG_ERR_INPUT, "plane region: segment %zu joins "
-                     "point %" PRIu32 " to itself", i + 1, a + 1);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "plane region: segment %zu joins "
+                     "point %" PRIu32 " to itself",
+                     i + 1, a + 1);
     st = vg_tri2_constrain(&r->t, a, b, &hit, at);
     if (st == VG_ERR_GEOMETRY) return crossing(r, i, hit, at, err);
     if (st != VG_OK) return vg_fail_memory(err, "a plane triangulation");
@@ -138,8 +148,8 @@ static int flood(struct vg_tri2 *t, uint32_t from)
     for (uint32_t k = 0; k < 3; k++) {
       const uint32_t o = t->face[at].adj[k];
 
-      if (o == VG_T2_NONE || vg_t2_is_fixed(t, 4 * at + k)
-          || t->face[o >> 2].flag & VG_T2_INSIDE)
+      if (o == VG_T2_NONE || vg_t2_is_fixed(t, 4 * at + k) ||
+          t->face[o >> 2].flag & VG_T2_INSIDE)
         continue;
       t->face[o >> 2].flag |= VG_T2_INSIDE;
       if (vg_reserve(&t->stack, &t->cap_stack, n + 1, sizeof *t->stack))
@@ -161,8 +171,10 @@ static vg_status mark_inside(struct region *r, struct vg_error *err)
     const uint32_t bit = 1u << (LEFT + (e & 3));
 
     if (t->face[e >> 2].flag & bit)
-      return vg_fail(err, VG_ERR_INPUT, "plane region: segment %zu appears "
-                     "twice", i + 1);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "plane region: segment %zu appears "
+                     "twice",
+                     i + 1);
     t->face[e >> 2].flag |= bit;
     if (flood(t, e >> 2)) return vg_fail_memory(err, "a plane region");
   }
@@ -172,19 +184,19 @@ static vg_status mark_inside(struct region *r, struct vg_error *err)
       const uint32_t v = t->face[i].v[k], e = 4 * i + k;
 
       if (v >= r->n && v < r->n + 3)
-        return vg_fail(err, VG_ERR_INPUT, "plane region: the boundary loops "
+        return vg_fail(err, VG_ERR_INPUT,
+                       "plane region: the boundary loops "
                        "do not close, or the outer one runs clockwise");
-      if (vg_t2_is_fixed(t, e)
-          && !(t->face[i].flag >> (LEFT + k) & 1))
-        return vg_fail(err, VG_ERR_INPUT, "plane region: segment %zu at "
+      if (vg_t2_is_fixed(t, e) && !(t->face[i].flag >> (LEFT + k) & 1))
+        return vg_fail(err, VG_ERR_INPUT,
+                       "plane region: segment %zu at "
                        "(%.9g, %.9g) has the region on its right; its loop "
                        "is reversed or open",
-                       segment_between(r, v, vg_t2_to(t, e)) + 1,
-                       t->x[v][0], t->x[v][1]);
+                       segment_between(r, v, vg_t2_to(t, e)) + 1, t->x[v][0],
+                       t->x[v][1]);
     }
   }
-  for (uint32_t i = 0; i < t->n_face; i++)
-    t->face[i].flag &= ~(7u << LEFT);
+  for (uint32_t i = 0; i < t->n_face; i++) t->face[i].flag &= ~(7u << LEFT);
   return vg_tri2_carve(t) ? vg_fail_memory(err, "a plane region") : VG_OK;
 }
 
@@ -210,14 +222,14 @@ static vg_status boundary_size(struct region *r, struct vg_error *err)
   return VG_OK;
 }
 
-static vg_status hand_over(struct region *r, size_t *n_new,
-                           double (**add)[2], size_t *n_tri,
-                           uint32_t (**tri)[3], struct vg_error *err)
+static vg_status hand_over(struct region *r, size_t *n_new, double (**add)[2],
+                           size_t *n_tri, uint32_t (**tri)[3],
+                           struct vg_error *err)
 {
   const struct vg_tri2 *t = &r->t;
   uint32_t *number = vg_calloc(t->n_point, sizeof *number);
-  double (*x)[2] = vg_alloc(t->n_point, sizeof *x);
-  uint32_t (*list)[3];
+  double(*x)[2] = vg_alloc(t->n_point, sizeof *x);
+  uint32_t(*list)[3];
   size_t n = 0, n_added = 0, n_live = 0;
 
   for (size_t i = 0; i < t->n_face; i++)
@@ -252,8 +264,8 @@ static vg_status hand_over(struct region *r, size_t *n_new,
 vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
                          const uint32_t (*edge)[2],
                          const struct vg_planar_law *law, size_t *n_new,
-                         double (**add)[2], size_t *n_tri,
-                         uint32_t (**tri)[3], struct vg_error *err)
+                         double (**add)[2], size_t *n_tri, uint32_t (**tri)[3],
+                         struct vg_error *err)
 {
   struct region r = { .n = n, .n_edge = n_edge, .p = p, .edge = edge };
   int bad;
@@ -272,9 +284,11 @@ vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
     goto done;
   }
   if (bad) {
-    st = vg_fail(err, VG_ERR_MEMORY, "plane region with %zu boundary segments: "
+    st = vg_fail(err, VG_ERR_MEMORY,
+                 "plane region with %zu boundary segments: "
                  "not enough memory, or more than %u points; the spacing may "
-                 "be far too small in it", n_edge, VG_T2_POINT_MAX);
+                 "be far too small in it",
+                 n_edge, VG_T2_POINT_MAX);
     goto done;
   }
   VG_CHECK("the triangulation of a plane region", vg_tri2_defects(&r.t));

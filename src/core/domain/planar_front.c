@@ -17,7 +17,7 @@
 
 /* A triangle is done when its circumradius is below this times its target
  * edge length (1 / sqrt(3) where it is equilateral and exact). */
-#define DONE_RADIUS 0.80   /* S6 */
+#define DONE_RADIUS 0.80 /* S6 */
 /* A new point sees no fixed edge under a cosine below this (110 deg): a
  * flatter triangle would stay, since fixed edges are never split. */
 #define FLAT_COSINE (-0.342)
@@ -28,13 +28,15 @@
  * about as long as the boundary's, they fall in one list. */
 enum { N_BUCKET = 2200, BUCKET_ZERO = 1100 };
 
-struct entry { uint32_t face, stamp; };
+struct entry {
+  uint32_t face, stamp;
+};
 
 struct front {
   struct vg_tri2 *t;
   const struct vg_planar_law *law;
-  struct entry *entry;                 /* [n] Items of the queue. */
-  uint32_t *free;                      /* [n_free] Entries that have left it. */
+  struct entry *entry; /* [n] Items of the queue. */
+  uint32_t *free;      /* [n_free] Entries that have left it. */
   size_t n, cap, n_free, cap_free;
   struct vg_buckets queue;
   double scale;
@@ -75,8 +77,8 @@ static int is_done(const struct vg_tri2 *t, uint32_t at)
   const double h = (t->h[v[0]] + t->h[v[1]] + t->h[v[2]]) / 3;
   double centre[2];
 
-  return circumcircle(t->x[v[0]], t->x[v[1]], t->x[v[2]], centre)
-         < DONE_RADIUS * h;
+  return circumcircle(t->x[v[0]], t->x[v[1]], t->x[v[2]], centre) <
+         DONE_RADIUS * h;
 }
 
 /* Shortest edge of an unfinished triangle on the front; NONE if none is. */
@@ -89,8 +91,8 @@ static uint32_t front_edge(const struct vg_tri2 *t, uint32_t at, double *len)
     const uint32_t e = 4 * at + k, o = vg_t2_twin(t, e);
     double l;
 
-    if (!vg_t2_is_fixed(t, e) && o != VG_T2_NONE
-        && !(t->face[o >> 2].flag & VG_T2_DONE))
+    if (!vg_t2_is_fixed(t, e) && o != VG_T2_NONE &&
+        !(t->face[o >> 2].flag & VG_T2_DONE))
       continue;
     l = distance(t->x[vg_t2_from(t, e)], t->x[vg_t2_to(t, e)]);
     if (l < *len) {
@@ -112,10 +114,10 @@ static int push(struct front *f, uint32_t at)
   if (f->n_free) {
     slot = f->free[--f->n_free];
   } else {
-    if (f->n >= VG_T2_NONE - 1
-        || vg_reserve(&f->entry, &f->cap, f->n + 1, sizeof *f->entry)
-        || vg_reserve(&f->free, &f->cap_free, f->n + 1, sizeof *f->free)
-        || vg_buckets_reserve(&f->queue, f->n + 1))
+    if (f->n >= VG_T2_NONE - 1 ||
+        vg_reserve(&f->entry, &f->cap, f->n + 1, sizeof *f->entry) ||
+        vg_reserve(&f->free, &f->cap_free, f->n + 1, sizeof *f->free) ||
+        vg_buckets_reserve(&f->queue, f->n + 1))
       return -1;
     slot = (uint32_t)f->n++;
   }
@@ -133,8 +135,8 @@ static uint32_t pop(struct front *f)
     const struct entry e = f->entry[slot];
 
     f->free[f->n_free++] = slot;
-    if (f->t->face[e.face].stamp == e.stamp
-        && !(f->t->face[e.face].flag & (VG_T2_DONE | VG_T2_DEAD)))
+    if (f->t->face[e.face].stamp == e.stamp &&
+        !(f->t->face[e.face].flag & (VG_T2_DONE | VG_T2_DEAD)))
       return e.face;
   }
   return VG_T2_NONE;
@@ -194,8 +196,8 @@ static int is_flat(const struct vg_tri2 *t, const double x[2])
     ax = a[0] - x[0], ay = a[1] - x[1];
     bx = b[0] - x[0], by = b[1] - x[1];
     dot = ax * bx + ay * by;
-    if (dot < 0 && dot < FLAT_COSINE * sqrt(ax * ax + ay * ay)
-                         * sqrt(bx * bx + by * by))
+    if (dot < 0 &&
+        dot < FLAT_COSINE * sqrt(ax * ax + ay * ay) * sqrt(bx * bx + by * by))
       return 1;
   }
   return 0;
@@ -214,8 +216,8 @@ static int classify(struct front *f)
 
     if (!(t->face[at].flag & VG_T2_DONE)) {
       if (push(f, at)) return -1;
-    } else if (out != VG_T2_NONE && !t->border[i].constrained
-               && !(t->face[out >> 2].flag & VG_T2_DONE) && push(f, out >> 2))
+    } else if (out != VG_T2_NONE && !t->border[i].constrained &&
+               !(t->face[out >> 2].flag & VG_T2_DONE) && push(f, out >> 2))
       return -1;
   }
   return 0;
@@ -236,8 +238,7 @@ static int insert(struct front *f, const double x[2], double h)
     return ok < 0 ? -1 : 0;
   }
   p = vg_tri2_add_point(t, x, h);
-  if (p == VG_T2_NONE || vg_tri2_commit(t, p, VG_T2_INSIDE)
-      || classify(f))
+  if (p == VG_T2_NONE || vg_tri2_commit(t, p, VG_T2_INSIDE) || classify(f))
     return -1;
   return 1;
 }
@@ -249,8 +250,8 @@ static int give_up(struct front *f, uint32_t at)
   for (int k = 0; k < 3; k++) {
     const uint32_t o = f->t->face[at].adj[k];
 
-    if (o != VG_T2_NONE && !vg_t2_is_fixed(f->t, 4 * at + (uint32_t)k)
-        && !(f->t->face[o >> 2].flag & VG_T2_DONE) && push(f, o >> 2))
+    if (o != VG_T2_NONE && !vg_t2_is_fixed(f->t, 4 * at + (uint32_t)k) &&
+        !(f->t->face[o >> 2].flag & VG_T2_DONE) && push(f, o >> 2))
       return -1;
   }
   return 0;
@@ -282,8 +283,8 @@ static double shortest_fixed(const struct vg_tri2 *t)
   for (uint32_t i = 0; i < t->n_face; i++)
     for (uint32_t e = 4 * i; e < 4 * i + 3; e++)
       if (!(t->face[i].flag & VG_T2_DEAD) && vg_t2_is_fixed(t, e))
-        least = fmin(least, distance(t->x[vg_t2_from(t, e)],
-                                     t->x[vg_t2_to(t, e)]));
+        least = fmin(least,
+                     distance(t->x[vg_t2_from(t, e)], t->x[vg_t2_to(t, e)]));
   return least;
 }
 
@@ -291,7 +292,8 @@ int vg_tri2_fill(struct vg_tri2 *t, const struct vg_planar_law *law)
 {
   assert(law->at);
 
-  struct front f = { .t = t, .law = law,
+  struct front f = { .t = t,
+                     .law = law,
                      .scale = 1.41421356 / shortest_fixed(t) };
   int bad = vg_buckets_init(&f.queue, N_BUCKET);
 

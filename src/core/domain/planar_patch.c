@@ -29,7 +29,7 @@ struct vg_size_law vg_size_law_of(const struct vg_sizing *sizing)
 struct frame {
   int axis, iu, iv;
   double at, o[3], u[3], v[3], n[3];
-  double flatness;           /* how far points may be off, of the extent */
+  double flatness; /* how far points may be off, of the extent */
   const struct vg_size_law *size;
 };
 
@@ -54,8 +54,7 @@ static void to_space(const struct frame *f, const double p[2], double x[3])
     x[f->iv] = p[1];
     return;
   }
-  for (int k = 0; k < 3; k++)
-    x[k] = f->o[k] + p[0] * f->u[k] + p[1] * f->v[k];
+  for (int k = 0; k < 3; k++) x[k] = f->o[k] + p[0] * f->u[k] + p[1] * f->v[k];
 }
 
 static double size_in_plane(void *user, const double p[2])
@@ -74,8 +73,8 @@ static int shared_axis(const struct vg_mesh *m, size_t n_edge,
   for (int k = 0; k < 3; k++) {
     size_t i = 0;
 
-    while (i < n_edge && m->point[edge[i][0]][k] == m->point[edge[0][0]][k]
-           && m->point[edge[i][1]][k] == m->point[edge[0][0]][k])
+    while (i < n_edge && m->point[edge[i][0]][k] == m->point[edge[0][0]][k] &&
+           m->point[edge[i][1]][k] == m->point[edge[0][0]][k])
       i++;
     if (i == n_edge && fabs(n[k]) > 0.5) return k;
   }
@@ -90,7 +89,7 @@ static vg_status make_frame(const struct vg_mesh *m, size_t n_edge,
   int low;
 
   memcpy(f->o, m->point[edge[0][0]], sizeof f->o);
-  for (size_t i = 0; i < n_edge; i++) {   /* Newell: twice the area vector */
+  for (size_t i = 0; i < n_edge; i++) { /* Newell: twice the area vector */
     double a[3], b[3];
 
     for (int k = 0; k < 3; k++) {
@@ -103,9 +102,10 @@ static vg_status make_frame(const struct vg_mesh *m, size_t n_edge,
   }
   len = sqrt(vg_dot(n, n));
   if (!(len > 0))
-    return vg_fail(err, VG_ERR_GEOMETRY, "plane patch near (%.9g, %.9g, "
-                   "%.9g): its boundary encloses no area", f->o[0], f->o[1],
-                   f->o[2]);
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "plane patch near (%.9g, %.9g, "
+                   "%.9g): its boundary encloses no area",
+                   f->o[0], f->o[1], f->o[2]);
   for (int k = 0; k < 3; k++) f->n[k] = n[k] / len;
   f->axis = shared_axis(m, n_edge, edge, f->n);
   if (f->axis >= 0) {
@@ -131,7 +131,8 @@ static vg_status make_frame(const struct vg_mesh *m, size_t n_edge,
     const double d[3] = { x[0] - f->o[0], x[1] - f->o[1], x[2] - f->o[2] };
 
     if (fabs(vg_dot(d, f->n)) > f->flatness * extent)
-      return vg_fail(err, VG_ERR_GEOMETRY, "patch with a curved boundary: "
+      return vg_fail(err, VG_ERR_GEOMETRY,
+                     "patch with a curved boundary: "
                      "point (%.9g, %.9g, %.9g) is %.3g off its plane; only "
                      "planar patches are triangulated, give a surface mesh",
                      x[0], x[1], x[2], fabs(vg_dot(d, f->n)));
@@ -176,8 +177,8 @@ static vg_status append(struct vg_mesh *m, const struct frame *f,
                         const uint32_t (*tri)[3], uint32_t patch,
                         struct vg_error *err)
 {
-  double (*point)[3];
-  uint32_t (*list)[3], *of;
+  double(*point)[3];
+  uint32_t(*list)[3], *of;
 
   if (n_new > UINT32_MAX - 1 - m->n_point)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "surface: too many points");
@@ -188,13 +189,12 @@ static vg_status append(struct vg_mesh *m, const struct frame *f,
   of = vg_realloc(m->tri_patch, m->n_tri + n_tri, sizeof *of);
   if (of) m->tri_patch = of;
   if (!point || !list || !of) return vg_fail_memory(err, "a plane patch");
-  for (size_t i = 0; i < n_new; i++)
-    to_space(f, add[i], point[m->n_point + i]);
+  for (size_t i = 0; i < n_new; i++) to_space(f, add[i], point[m->n_point + i]);
   for (size_t i = 0; i < n_tri; i++) {
     for (int k = 0; k < 3; k++)
       list[m->n_tri + i][k] = tri[i][k] < l->n
-        ? l->to_mesh[tri[i][k]]
-        : (uint32_t)(m->n_point + (tri[i][k] - l->n));
+                              ? l->to_mesh[tri[i][k]]
+                              : (uint32_t)(m->n_point + (tri[i][k] - l->n));
     of[m->n_tri + i] = patch;
   }
   m->n_point += n_new;
@@ -213,30 +213,31 @@ vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
 
 vg_status vg_planar_patch_near(struct vg_mesh *m, size_t n_edge,
                                const uint32_t (*edge)[2],
-                               const struct vg_size_law *size,
-                               double flatness, uint32_t patch,
-                               struct vg_error *err)
+                               const struct vg_size_law *size, double flatness,
+                               uint32_t patch, struct vg_error *err)
 {
   vg_status st;
   struct frame f = { .size = size, .flatness = flatness };
   const struct vg_planar_law law = { size_in_plane, &f, size->stop };
   struct local l = { 0 };
   size_t n_new = 0, n_tri = 0;
-  double (*add)[2] = NULL;
-  uint32_t (*tri)[3] = NULL;
+  double(*add)[2] = NULL;
+  uint32_t(*tri)[3] = NULL;
 
   assert((edge || !n_edge) && size->at && flatness >= 0);
   assert(patch < m->n_patch);
   if (n_edge < 3)
-    return vg_fail(err, VG_ERR_INPUT, "plane patch with %zu boundary "
-                   "segments; a closed loop needs at least 3", n_edge);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "plane patch with %zu boundary "
+                   "segments; a closed loop needs at least 3",
+                   n_edge);
   VG_TRY(make_frame(m, n_edge, edge, &f, err));
   VG_TRY(make_local(m, n_edge, edge, &f, &l, err));
-  VG_TRY(vg_planar_mesh(l.n, (const double (*)[2])l.p, n_edge,
-                        (const uint32_t (*)[2])l.edge, &law, &n_new, &add,
+  VG_TRY(vg_planar_mesh(l.n, (const double(*)[2])l.p, n_edge,
+                        (const uint32_t(*)[2])l.edge, &law, &n_new, &add,
                         &n_tri, &tri, err));
-  st = append(m, &f, &l, n_new, (const double (*)[2])add, n_tri,
-              (const uint32_t (*)[3])tri, patch, err);
+  st = append(m, &f, &l, n_new, (const double(*)[2])add, n_tri,
+              (const uint32_t(*)[3])tri, patch, err);
 done:
   free(l.number);
   free(l.to_mesh);

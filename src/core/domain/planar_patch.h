@@ -13,7 +13,7 @@
 struct vg_size_law {
   double (*at)(void *user, const double x[3]);
   void *user;
-  struct vg_stop stop;     /* asked now and then */
+  struct vg_stop stop; /* asked now and then */
 };
 
 struct vg_sizing;
@@ -40,8 +40,7 @@ vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
  * extent: they stay where they are, new ones lie in that plane. */
 vg_status vg_planar_patch_near(struct vg_mesh *m, size_t n_edge,
                                const uint32_t (*edge)[2],
-                               const struct vg_size_law *size,
-                               double flatness, uint32_t patch,
-                               struct vg_error *err);
+                               const struct vg_size_law *size, double flatness,
+                               uint32_t patch, struct vg_error *err);
 
 #endif

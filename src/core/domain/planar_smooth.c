@@ -12,7 +12,7 @@ enum { RING_MAX = 32, N_LIFT = 4 };
 
 /* Vertices of triangles with a smaller angle, by its sine (36 degrees), are
  * moved once more, for that angle alone. */
-#define LIFT_BELOW 0.588   /* S7 */
+#define LIFT_BELOW 0.588 /* S7 */
 
 /* (sum of squared edges / area)^2 summed over the ring; INFINITY when a
  * triangle is not positive. */
@@ -36,7 +36,7 @@ static double badness(int n, double (*ring)[2], const double x[2])
 static void ideal(int n, double (*ring)[2], double x[2])
 {
   double sx = 0, sy = 0;
-  const double tall = 0.86602540378443864676;   /* sqrt(3) / 2 */
+  const double tall = 0.86602540378443864676; /* sqrt(3) / 2 */
 
   for (int i = 0; i < n; i++) {
     const double *a = ring[i], *b = ring[i + 1 < n ? i + 1 : 0];
@@ -114,8 +114,7 @@ static double least_sine(int n, double (*ring)[2], const double x[2])
 /* Try ever smaller steps along the axes while the smallest angle grows. */
 static int lift_vertex(struct vg_tri2 *t, uint32_t v)
 {
-  static const double way[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 },
-                                    { 0, -1 } };
+  static const double way[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 } };
   double ring[RING_MAX][2], x[2], step, best;
   const int n = get_ring(t, v, ring);
   int moved = 0;

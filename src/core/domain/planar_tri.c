@@ -26,10 +26,10 @@ uint32_t vg_tri2_add_point(struct vg_tri2 *t, const double x[2], double h)
 {
   size_t n = t->n_point;
 
-  if (n >= VG_T2_POINT_MAX
-      || vg_reserve(&t->x, &t->cap_point, n + 1, sizeof *t->x)
-      || vg_reserve(&t->h, &t->cap_h, n + 1, sizeof *t->h)
-      || vg_reserve(&t->vt, &t->cap_vt, n + 1, sizeof *t->vt))
+  if (n >= VG_T2_POINT_MAX ||
+      vg_reserve(&t->x, &t->cap_point, n + 1, sizeof *t->x) ||
+      vg_reserve(&t->h, &t->cap_h, n + 1, sizeof *t->h) ||
+      vg_reserve(&t->vt, &t->cap_vt, n + 1, sizeof *t->vt))
     return VG_T2_NONE;
   t->x[n][0] = x[0];
   t->x[n][1] = x[1];
@@ -41,8 +41,8 @@ uint32_t vg_tri2_add_point(struct vg_tri2 *t, const double x[2], double h)
 static uint32_t take_slot(struct vg_tri2 *t)
 {
   if (t->n_unused) return t->unused[--t->n_unused];
-  if (t->n_face >= VG_T2_NONE / 4 - 1
-      || vg_reserve(&t->face, &t->cap_face, t->n_face + 1, sizeof *t->face))
+  if (t->n_face >= VG_T2_NONE / 4 - 1 ||
+      vg_reserve(&t->face, &t->cap_face, t->n_face + 1, sizeof *t->face))
     return VG_T2_NONE;
   t->face[t->n_face].stamp = 0;
   return (uint32_t)t->n_face++;
@@ -90,8 +90,7 @@ int vg_tri2_init(struct vg_tri2 *t, size_t n, const double (*p)[2])
 /* Visibility walk. Which edge is tried first changes with every step, so that
  * a walk cannot run in circles for ever where constraints bend the
  * triangulation. */
-uint32_t vg_tri2_locate(struct vg_tri2 *t, const double x[2],
-                        int stop_at_fixed)
+uint32_t vg_tri2_locate(struct vg_tri2 *t, const double x[2], int stop_at_fixed)
 {
   uint32_t at = t->walk, came = VG_T2_NONE, turn = 1;
 
@@ -109,8 +108,8 @@ uint32_t vg_tri2_locate(struct vg_tri2 *t, const double x[2],
         go = e;
     }
     if (go == VG_T2_NONE) break;
-    if (vg_t2_twin(t, go) == VG_T2_NONE
-        || (stop_at_fixed && vg_t2_is_fixed(t, go)))
+    if (vg_t2_twin(t, go) == VG_T2_NONE ||
+        (stop_at_fixed && vg_t2_is_fixed(t, go)))
       return VG_T2_NONE;
     came = vg_t2_twin(t, go);
     at = came >> 2;
@@ -159,8 +158,8 @@ int vg_tri2_cavity(struct vg_tri2 *t, const double x[2], uint32_t at)
 
   assert(at < t->n_face && !(t->face[at].flag & VG_T2_DEAD));
   t->n_cavity = t->n_border = 0;
-  if (vg_reserve(&t->stack, &t->cap_stack, 8, sizeof *t->stack)
-      || cavity_add(t, at))
+  if (vg_reserve(&t->stack, &t->cap_stack, 8, sizeof *t->stack) ||
+      cavity_add(t, at))
     return -1;
   for (uint32_t k = 0; k < 3; k++) t->stack[k] = 4 * at + 2 - k;
   while (n) {
@@ -169,8 +168,8 @@ int vg_tri2_cavity(struct vg_tri2 *t, const double x[2], uint32_t at)
     if (out != VG_T2_NONE && !vg_t2_is_fixed(t, e)) {
       if (t->face[out >> 2].flag & VG_T2_CAVITY) return 0;
       if (in_circle(t, out >> 2, x)) {
-        if (vg_reserve(&t->stack, &t->cap_stack, n + 2, sizeof *t->stack)
-            || cavity_add(t, out >> 2))
+        if (vg_reserve(&t->stack, &t->cap_stack, n + 2, sizeof *t->stack) ||
+            cavity_add(t, out >> 2))
           return -1;
         t->stack[n++] = vg_t2_prev(out);
         t->stack[n++] = vg_t2_next(out);
@@ -254,8 +253,8 @@ static uint32_t round_of(uint32_t i)
   return h ? (uint32_t)__builtin_ctz(h) : 32;
 }
 
-static void make_order(const struct vg_tri2 *t, size_t n,
-                       const uint32_t *list, struct order *order)
+static void make_order(const struct vg_tri2 *t, size_t n, const uint32_t *list,
+                       struct order *order)
 {
   double lo[2], hi[2];
 
@@ -272,8 +271,9 @@ static void make_order(const struct vg_tri2 *t, size_t n,
     for (int k = 0; k < 2; k++) {
       const double w = hi[k] > lo[k] ? hi[k] - lo[k] : 1;
 
-      key |= vg_interleave2((uint64_t)((t->x[list[i]][k] - lo[k]) / w *
-                                       4294967295.0)) << k;
+      key |= vg_interleave2(
+               (uint64_t)((t->x[list[i]][k] - lo[k]) / w * 4294967295.0))
+          << k;
     }
     order[i] = (struct order){ key, 32 - round_of(list[i]), list[i] };
   }
@@ -318,7 +318,7 @@ uint32_t vg_tri2_find(const struct vg_tri2 *t, uint32_t a, uint32_t b)
   } while (e != first && e != VG_T2_NONE);
   if (e == first) return VG_T2_NONE;
   for (e = first; (e = vg_t2_twin(t, e)) != VG_T2_NONE;) {
-    e = vg_t2_next(e);   /* a vertex of the border: turn back clockwise */
+    e = vg_t2_next(e); /* a vertex of the border: turn back clockwise */
     if (vg_t2_to(t, e) == b) return e;
   }
   return VG_T2_NONE;
@@ -351,8 +351,7 @@ static void flip(struct vg_tri2 *t, uint32_t e)
   fr->flag = (fr->flag & ~(uint32_t)VG_T2_EDGE) | fixed[2] | fixed[3] << 2;
   for (int k = 0; k < 4; k++) {
     t->face[mine[k] >> 2].adj[mine[k] & 3] = out[k];
-    if (out[k] != VG_T2_NONE)
-      t->face[out[k] >> 2].adj[out[k] & 3] = mine[k];
+    if (out[k] != VG_T2_NONE) t->face[out[k] >> 2].adj[out[k] & 3] = mine[k];
   }
   fl->stamp++;
   fr->stamp++;
@@ -367,8 +366,8 @@ static int is_convex(const struct vg_tri2 *t, uint32_t e)
   const uint32_t a = vg_t2_from(t, e), b = vg_t2_to(t, e);
   const uint32_t c = vg_t2_apex(t, e), d = vg_t2_apex(t, vg_t2_twin(t, e));
 
-  return vg_orient2d(t->x[d], t->x[c], t->x[a]) > 0
-         && vg_orient2d(t->x[c], t->x[d], t->x[b]) > 0;
+  return vg_orient2d(t->x[d], t->x[c], t->x[a]) > 0 &&
+         vg_orient2d(t->x[c], t->x[d], t->x[b]) > 0;
 }
 
 /* Where the ray a -> b leaves the ring of a: the crossed half-edge; NONE with
@@ -383,8 +382,8 @@ static uint32_t leave_ring(const struct vg_tri2 *t, uint32_t a, uint32_t b,
   do {
     const uint32_t v1 = vg_t2_to(t, e), v2 = vg_t2_apex(t, e);
     const double o = vg_orient2d(pa, pb, t->x[v1]);
-    const int k = (pb[0] > pa[0] ? pb[0] - pa[0] : pa[0] - pb[0])
-                  < (pb[1] > pa[1] ? pb[1] - pa[1] : pa[1] - pb[1]);
+    const int k = (pb[0] > pa[0] ? pb[0] - pa[0] : pa[0] - pb[0]) <
+                  (pb[1] > pa[1] ? pb[1] - pa[1] : pa[1] - pb[1]);
 
     if (v1 == b || (o == 0 && (pb[k] > pa[k]) == (t->x[v1][k] > pa[k]))) {
       *on = v1;
@@ -431,8 +430,7 @@ static vg_status collect_crossed(struct vg_tri2 *t, uint32_t a, uint32_t b,
       at[1] = vg_t2_to(t, e);
       return VG_ERR_GEOMETRY;
     }
-    if (pair_push(list, vg_t2_from(t, e), vg_t2_to(t, e)))
-      return VG_ERR_MEMORY;
+    if (pair_push(list, vg_t2_from(t, e), vg_t2_to(t, e))) return VG_ERR_MEMORY;
     o = vg_t2_twin(t, e);
     w = vg_t2_apex(t, o);
     if (w == b) return VG_OK;
@@ -458,8 +456,8 @@ static void fix_edge(struct vg_tri2 *t, uint32_t e)
 /* Flips crossed edges whose quadrilateral is convex until none is crossed
  * (Sloan, "A fast algorithm for generating constrained Delaunay
  * triangulations", Comput. Struct. 47, 1993). */
-vg_status vg_tri2_constrain(struct vg_tri2 *t, uint32_t a, uint32_t b,
-                            int *hit, uint32_t at[2])
+vg_status vg_tri2_constrain(struct vg_tri2 *t, uint32_t a, uint32_t b, int *hit,
+                            uint32_t at[2])
 {
   assert(a != b && a < t->n_point && b < t->n_point && hit);
 
@@ -480,9 +478,9 @@ vg_status vg_tri2_constrain(struct vg_tri2 *t, uint32_t a, uint32_t b,
     d = vg_t2_apex(t, vg_t2_twin(t, e));
     flip(t, e);
     if (c == a || c == b || d == a || d == b) continue;
-    if ((vg_orient2d(t->x[a], t->x[b], t->x[c]) > 0)
-        != (vg_orient2d(t->x[a], t->x[b], t->x[d]) > 0)
-        && pair_push(&list, c, d))
+    if ((vg_orient2d(t->x[a], t->x[b], t->x[c]) > 0) !=
+          (vg_orient2d(t->x[a], t->x[b], t->x[d]) > 0) &&
+        pair_push(&list, c, d))
       st = VG_ERR_MEMORY;
   }
   if (st == VG_OK) fix_edge(t, vg_tri2_find(t, a, b));
@@ -494,8 +492,8 @@ static int is_illegal(const struct vg_tri2 *t, uint32_t e)
 {
   const uint32_t o = vg_t2_twin(t, e);
 
-  return o != VG_T2_NONE && !vg_t2_is_fixed(t, e)
-         && in_circle(t, e >> 2, t->x[vg_t2_apex(t, o)]);
+  return o != VG_T2_NONE && !vg_t2_is_fixed(t, e) &&
+         in_circle(t, e >> 2, t->x[vg_t2_apex(t, o)]);
 }
 
 /* Flip e and whatever becomes illegal by it. */
@@ -507,8 +505,7 @@ static long settle(struct vg_tri2 *t, uint32_t e)
   if (vg_reserve(&t->stack, &t->cap_stack, 1, sizeof *t->stack)) return -1;
   t->stack[0] = e;
   while (n) {
-    const uint32_t at = t->stack[--n], l = at >> 2,
-                   r = vg_t2_twin(t, at) >> 2;
+    const uint32_t at = t->stack[--n], l = at >> 2, r = vg_t2_twin(t, at) >> 2;
 
     if (!is_illegal(t, at)) continue;
     flip(t, at);
@@ -538,7 +535,7 @@ long vg_tri2_legalise(struct vg_tri2 *t)
       flips = settle(t, e);
       if (flips < 0) return -1;
       total += flips;
-      k = UINT32_MAX;   /* the face has changed: look at all its edges */
+      k = UINT32_MAX; /* the face has changed: look at all its edges */
     }
   }
   return total;

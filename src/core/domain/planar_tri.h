@@ -22,38 +22,38 @@
 #define VG_T2_POINT_MAX 100000000u
 
 enum {
-  VG_T2_EDGE = 7,      /* bits 0..2: half-edge k is constrained */
+  VG_T2_EDGE = 7, /* bits 0..2: half-edge k is constrained */
   VG_T2_INSIDE = 8,
   VG_T2_DEAD = 16,
-  VG_T2_DONE = 32,     /* the front will not subdivide it */
-  VG_T2_CAVITY = 64    /* in the cavity under construction */
+  VG_T2_DONE = 32,  /* the front will not subdivide it */
+  VG_T2_CAVITY = 64 /* in the cavity under construction */
 };
 
 struct vg_t2_face {
   uint32_t v[3], flag;
-  uint32_t adj[3], stamp;   /* stamp changes whenever the slot is rewritten */
+  uint32_t adj[3], stamp; /* stamp changes whenever the slot is rewritten */
 };
 
 /* A directed edge on the border of a cavity: cavity on its left. */
 struct vg_t2_border {
-  uint32_t a, b, outer;     /* outer: half-edge b -> a outside, or NONE */
+  uint32_t a, b, outer; /* outer: half-edge b -> a outside, or NONE */
   uint32_t constrained;
 };
 
 struct vg_tri2 {
   size_t n_point, cap_point, cap_h, cap_vt;
   double (*x)[2];
-  double *h;                /* target edge length at each point */
-  uint32_t *vt;             /* a half-edge leaving each point, or NONE */
+  double *h;    /* target edge length at each point */
+  uint32_t *vt; /* a half-edge leaving each point, or NONE */
   size_t n_face, cap_face;
   struct vg_t2_face *face;
-  uint32_t *unused;         /* dead slots, a stack */
+  uint32_t *unused; /* dead slots, a stack */
   size_t n_unused, cap_unused;
   uint32_t *cavity, *stack;
   size_t n_cavity, cap_cavity, cap_stack;
   struct vg_t2_border *border;
   size_t n_border, cap_border;
-  uint32_t walk;            /* where the next location starts */
+  uint32_t walk; /* where the next location starts */
 };
 
 static inline uint32_t vg_t2_next(uint32_t e)
@@ -114,8 +114,8 @@ int vg_tri2_insert_all(struct vg_tri2 *t, size_t n, const uint32_t *list,
 /** Make the segment a -> b an edge and fix it.
  * VG_ERR_GEOMETRY: *hit is 1 when point at[0] lies on it, 2 when it crosses
  * the fixed edge at[0] at[1]. */
-vg_status vg_tri2_constrain(struct vg_tri2 *t, uint32_t a, uint32_t b,
-                            int *hit, uint32_t at[2]);
+vg_status vg_tri2_constrain(struct vg_tri2 *t, uint32_t a, uint32_t b, int *hit,
+                            uint32_t at[2]);
 
 /** The half-edge a -> b, or NONE. */
 uint32_t vg_tri2_find(const struct vg_tri2 *t, uint32_t a, uint32_t b);

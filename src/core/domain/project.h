@@ -15,16 +15,16 @@
 struct vg_curve {
   int32_t id;
   size_t n;
-  uint32_t *point;        /* [n] indices into vg_project.point; owned */
+  uint32_t *point; /* [n] indices into vg_project.point; owned */
 };
 
 /** A patch bounded by one closed loop of curves, inward by the right hand. */
 struct vg_patch_shape {
-  struct vg_patch patch;  /* number, name; bc from .mapbc where known */
+  struct vg_patch patch; /* number, name; bc from .mapbc where known */
   int32_t type, rotation, n_side;
-  int32_t meshing_class;  /* .d3m "bc" column: 2 grows layers */
+  int32_t meshing_class; /* .d3m "bc" column: 2 grows layers */
   size_t n;
-  int32_t *curve;         /* [n] 1-based index into curve[], < 0 reversed */
+  int32_t *curve; /* [n] 1-based index into curve[], < 0 reversed */
 };
 
 /** Layer law of VGRID: formats.md 1.8. */
@@ -35,17 +35,20 @@ struct vg_layer_law {
 
 struct vg_project {
   char name[VG_NAME_MAX];
-  int32_t grid;           /* 0 Euler, 1 uniform layer law, 2 law by source */
+  int32_t grid; /* 0 Euler, 1 uniform layer law, 2 law by source */
   struct vg_layer_law layer;
   int32_t restart, stretch, n_background;
-  double ifact, vfact;    /* spacing factors of field and layers */
+  double ifact, vfact; /* spacing factors of field and layers */
   size_t n_point, n_curve, n_shape, n_source;
   double (*point)[3];
   struct vg_curve *curve;
   struct vg_patch_shape *shape;
   struct vg_source *source;
 };
-#define VG_PROJECT_INIT { .ifact = 1, .vfact = 1 }
+#define VG_PROJECT_INIT                                                        \
+  {                                                                            \
+    .ifact = 1, .vfact = 1                                                     \
+  }
 
 /** Free everything and leave *p empty. */
 void vg_project_release(struct vg_project *p);

@@ -22,11 +22,11 @@ struct builder {
   struct vg_stop stop;
   struct vg_mesh m;
   size_t cap_point;
-  uint32_t *corner;        /* [project n_point] mesh point, or UINT32_MAX */
-  struct trace {           /* mesh points along a curve, ends included */
+  uint32_t *corner; /* [project n_point] mesh point, or UINT32_MAX */
+  struct trace {    /* mesh points along a curve, ends included */
     uint32_t *point;
     size_t n, cap;
-  } *trace;                /* [project n_curve] */
+  } * trace; /* [project n_curve] */
 };
 
 static double size_at(void *user, const double x[3])
@@ -36,17 +36,15 @@ static double size_at(void *user, const double x[3])
 
   if (b->sizing) return vg_sizing_at(b->sizing, x);
   o.scale = b->project->ifact;
-  return vg_sizing_sources_at(&o, b->project->n_source, b->project->source,
-                              x);
+  return vg_sizing_sources_at(&o, b->project->n_source, b->project->source, x);
 }
 
 static uint32_t add_point(struct builder *b, const double x[3])
 {
   struct vg_mesh *m = &b->m;
 
-  if (m->n_point >= UINT32_MAX - 1
-      || vg_reserve(&m->point, &b->cap_point, m->n_point + 1,
-                    sizeof *m->point))
+  if (m->n_point >= UINT32_MAX - 1 ||
+      vg_reserve(&m->point, &b->cap_point, m->n_point + 1, sizeof *m->point))
     return UINT32_MAX;
   memcpy(m->point[m->n_point], x, sizeof *m->point);
   return (uint32_t)m->n_point++;
@@ -63,24 +61,27 @@ static int is_corner(const struct vg_project *p, const struct vg_curve *c,
   return dot < CORNER_COSINE * vg_distance(x, y) * vg_distance(y, z);
 }
 
-static vg_status check_project(const struct vg_project *p,
-                               struct vg_error *err)
+static vg_status check_project(const struct vg_project *p, struct vg_error *err)
 {
   if (!p->n_shape || !p->n_curve)
-    return vg_fail(err, VG_ERR_INPUT, "%s: the project has %zu curves and "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the project has %zu curves and "
                    "%zu patches; a surface needs both, or a .front file",
                    p->name, p->n_curve, p->n_shape);
   for (size_t i = 0; i < p->n_curve; i++) {
     const struct vg_curve *c = &p->curve[i];
 
     if (c->n < 2)
-      return vg_fail(err, VG_ERR_INPUT, "%s: curve %" PRId32 " has %zu "
-                     "points; it needs at least 2", p->name, c->id, c->n);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: curve %" PRId32 " has %zu "
+                     "points; it needs at least 2",
+                     p->name, c->id, c->n);
     for (size_t k = 0; k < c->n; k++)
-      if (c->point[k] >= p->n_point
-          || (k && !(vg_distance(p->point[c->point[k - 1]],
+      if (c->point[k] >= p->n_point ||
+          (k && !(vg_distance(p->point[c->point[k - 1]],
                               p->point[c->point[k]]) > 0)))
-        return vg_fail(err, VG_ERR_INPUT, "%s: curve %" PRId32 ": point %zu "
+        return vg_fail(err, VG_ERR_INPUT,
+                       "%s: curve %" PRId32 ": point %zu "
                        "of it does not exist or repeats the one before",
                        p->name, c->id, k + 1);
   }
@@ -88,11 +89,11 @@ static vg_status check_project(const struct vg_project *p,
     for (size_t k = 0; k < p->shape[i].n; k++) {
       const int32_t c = p->shape[i].curve[k];
 
-      if (c == 0 || c == INT32_MIN
-          || (size_t)(c < 0 ? -c : c) > p->n_curve)
-        return vg_fail(err, VG_ERR_INPUT, "%s: patch %" PRId32 " names "
-                       "curve %" PRId32 " of %zu", p->name,
-                       p->shape[i].patch.id, c, p->n_curve);
+      if (c == 0 || c == INT32_MIN || (size_t)(c < 0 ? -c : c) > p->n_curve)
+        return vg_fail(err, VG_ERR_INPUT,
+                       "%s: patch %" PRId32 " names "
+                       "curve %" PRId32 " of %zu",
+                       p->name, p->shape[i].patch.id, c, p->n_curve);
     }
   return VG_OK;
 }
@@ -123,9 +124,9 @@ static vg_status place_corners(struct builder *b, struct vg_error *err)
 /* Part of a curve between two kept points, by distance along it. */
 struct run {
   const struct vg_project *p;
-  const uint32_t *point;     /* [n] */
-  const double *along;       /* [n] */
-  size_t n, at;              /* at: segment of the last look-up */
+  const uint32_t *point; /* [n] */
+  const double *along;   /* [n] */
+  size_t n, at;          /* at: segment of the last look-up */
 };
 
 static void run_point(struct run *r, double s, double x[3])
@@ -138,7 +139,7 @@ static void run_point(struct run *r, double s, double x[3])
   a = r->p->point[r->point[r->at]];
   b = r->p->point[r->point[r->at + 1]];
   w = (s - r->along[r->at]) / (r->along[r->at + 1] - r->along[r->at]);
-  for (int k = 0; k < 3; k++)   /* exact where both ends agree */
+  for (int k = 0; k < 3; k++) /* exact where both ends agree */
     x[k] = a[k] == b[k] ? a[k] : a[k] + w * (b[k] - a[k]);
 }
 
@@ -164,8 +165,8 @@ static int march(struct builder *b, struct run *r, double **step, size_t *n)
   /* *n steps, the last one cut off by the end */
   keep = *n > 3 ? *n - 3 : 0;
   for (size_t i = keep; i < *n; i++)
-    (*step)[i] = (*step)[keep] + (len - (*step)[keep])
-                 * ((double)(i - keep) / (double)(*n - keep));
+    (*step)[i] = (*step)[keep] + (len - (*step)[keep]) *
+                                   ((double)(i - keep) / (double)(*n - keep));
   return 0;
 }
 
@@ -178,14 +179,14 @@ static vg_status trace_run(struct builder *b, size_t curve, struct run *r,
   const int bad = march(b, r, &step, &n);
   vg_status st = VG_OK;
 
-  if (bad == 2)
-    st = vg_fail(err, VG_ERR_STOPPED, "interrupted");
+  if (bad == 2) st = vg_fail(err, VG_ERR_STOPPED, "interrupted");
   else if (bad > 0)
-    st = vg_fail(err, VG_ERR_INPUT, "%s: curve %" PRId32 " is more than 1e9 "
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: curve %" PRId32 " is more than 1e9 "
                  "times longer than the spacing on it; check the sources",
                  b->project->name, b->project->curve[curve].id);
-  else if (bad || vg_reserve(&t->point, &t->cap, t->n + n + 1,
-                             sizeof *t->point))
+  else if (bad ||
+           vg_reserve(&t->point, &t->cap, t->n + n + 1, sizeof *t->point))
     st = vg_fail_memory(err, "the curves");
   for (size_t i = 1; st == VG_OK && i < n; i++) {
     double x[3];
@@ -199,8 +200,7 @@ static vg_status trace_run(struct builder *b, size_t curve, struct run *r,
   return st;
 }
 
-static vg_status trace_curve(struct builder *b, size_t i,
-                             struct vg_error *err)
+static vg_status trace_curve(struct builder *b, size_t i, struct vg_error *err)
 {
   const struct vg_curve *c = &b->project->curve[i];
   struct trace *t = &b->trace[i];
@@ -216,10 +216,10 @@ static vg_status trace_curve(struct builder *b, size_t i,
   along[0] = 0;
   for (size_t k = 1; st == VG_OK && k < c->n; k++) {
     along[k] = along[k - 1] + vg_distance(b->project->point[c->point[k - 1]],
-                                       b->project->point[c->point[k]]);
+                                          b->project->point[c->point[k]]);
     if (b->corner[c->point[k]] != UINT32_MAX) {
-      struct run r = { b->project, c->point + from, along + from,
-                       k - from + 1, 0 };
+      struct run r = { b->project, c->point + from, along + from, k - from + 1,
+                       0 };
 
       st = trace_run(b, i, &r, err);
       from = k;
@@ -234,7 +234,7 @@ static vg_status fill_shape(struct builder *b, size_t i, struct vg_error *err)
 {
   const struct vg_patch_shape *shape = &b->project->shape[i];
   const struct vg_size_law law = { size_at, b, b->stop };
-  uint32_t (*edge)[2];
+  uint32_t(*edge)[2];
   size_t n = 0;
   struct vg_error inner = VG_ERROR_INIT;
   vg_status st;
@@ -252,8 +252,8 @@ static vg_status fill_shape(struct builder *b, size_t i, struct vg_error *err)
       edge[n][shape->curve[k] > 0] = t->point[j + 1];
     }
   }
-  st = vg_planar_patch(&b->m, n, (const uint32_t (*)[2])edge, &law,
-                       (uint32_t)i, &inner);
+  st = vg_planar_patch(&b->m, n, (const uint32_t(*)[2])edge, &law, (uint32_t)i,
+                       &inner);
   free(edge);
   if (st < 0)
     return vg_fail(err, st, "%s: patch %" PRId32 " %s: %s", b->project->name,
@@ -275,8 +275,8 @@ static vg_status copy_patches(struct builder *b, struct vg_error *err)
 
 vg_status vg_project_surface(const struct vg_project *project,
                              const struct vg_sizing *sizing,
-                             const struct vg_stop *stop,
-                             struct vg_mesh *out, struct vg_error *err)
+                             const struct vg_stop *stop, struct vg_mesh *out,
+                             struct vg_error *err)
 {
   struct builder b = { .project = project, .sizing = sizing };
   vg_status st;
@@ -286,10 +286,8 @@ vg_status vg_project_surface(const struct vg_project *project,
   VG_TRY(check_project(project, err));
   VG_TRY(copy_patches(&b, err));
   VG_TRY(place_corners(&b, err));
-  for (size_t i = 0; i < project->n_curve; i++)
-    VG_TRY(trace_curve(&b, i, err));
-  for (size_t i = 0; i < project->n_shape; i++)
-    VG_TRY(fill_shape(&b, i, err));
+  for (size_t i = 0; i < project->n_curve; i++) VG_TRY(trace_curve(&b, i, err));
+  for (size_t i = 0; i < project->n_shape; i++) VG_TRY(fill_shape(&b, i, err));
   vg_mesh_move(out, &b.m);
 done:
   vg_mesh_release(&b.m);

@@ -6,11 +6,11 @@
 #include "core/geometry/vector.h"
 
 /* S9 */
-#define STEEP 0.7          /* cosine of normal and axis: 45 degrees */
-#define MOSTLY 0.7         /* of the length of the open edges */
-#define SPAN 0.5           /* of the body's extent */
-#define DEEP 1.5           /* times the width of the opening */
-#define NEAR_ZERO 1e-3     /* of the body's length */
+#define STEEP 0.7      /* cosine of normal and axis: 45 degrees */
+#define MOSTLY 0.7     /* of the length of the open edges */
+#define SPAN 0.5       /* of the body's extent */
+#define DEEP 1.5       /* times the width of the opening */
+#define NEAR_ZERO 1e-3 /* of the body's length */
 
 /* Length of the sides of a triangle that lie in the plane, and whether the
  * triangle meets it steeply. */

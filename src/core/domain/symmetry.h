@@ -6,7 +6,7 @@
 #include "core/domain/farfield.h"
 
 /* Open edges this close to a coordinate plane, in body lengths, are in it. */
-#define VG_PLANE_TOLERANCE 1e-5   /* S5 */
+#define VG_PLANE_TOLERANCE 1e-5 /* S5 */
 
 /** Whether open edges in the plane x[axis] = at can be where the rest of a
  * symmetric body was cut off, and not a face that is missing. All must hold:

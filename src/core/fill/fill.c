@@ -23,17 +23,16 @@ static void add_boundary(struct vg_fill_report *to,
 static vg_status recover(struct vg_filling *g, struct vg_error *err)
 {
   const struct vg_front *f = g->front;
-  const double (*x)[3] = (const double (*)[3])f->x;
-  const uint32_t (*face)[3] = (const uint32_t (*)[3])f->face;
-  struct vg_boundary_report b = {0};
+  const double(*x)[3] = (const double(*)[3])f->x;
+  const uint32_t(*face)[3] = (const uint32_t(*)[3])f->face;
+  struct vg_boundary_report b = { 0 };
   double t0 = vg_clock();
   vg_status st;
 
   if (g->region)
     st = vg_boundary_open(f->n_point, x, f->n_face, face, g->region, g->sizing,
                           &g->t, &b, err);
-  else
-    st = vg_boundary_tets(f->n_point, x, f->n_face, face, &g->t, &b, err);
+  else st = vg_boundary_tets(f->n_point, x, f->n_face, face, &g->t, &b, err);
   add_boundary(g->report, &b);
   g->report->time_boundary += vg_clock() - t0;
   if (st != VG_ERR_GEOMETRY || !g->region) return st;
@@ -78,8 +77,8 @@ vg_status vg_fill_front(const struct vg_front *front,
                         struct vg_filled *out, struct vg_fill_report *report,
                         struct vg_error *err)
 {
-  struct vg_filling g = { front, region, sizing, options, report,
-                          VG_TETS_INIT, VG_FILLED_INIT };
+  struct vg_filling g = { front,  region,       sizing,        options,
+                          report, VG_TETS_INIT, VG_FILLED_INIT };
   double t0 = vg_clock();
   vg_status st;
 

@@ -8,11 +8,11 @@
 /* A front that is being filled. */
 struct vg_filling {
   const struct vg_front *front;
-  const struct vg_region *region;    /* NULL: everywhere */
+  const struct vg_region *region; /* NULL: everywhere */
   const struct vg_sizing *sizing;
   const struct vg_fill_options *options;
   struct vg_fill_report *report;
-  struct vg_tets t;          /* the front's points are its first ones */
+  struct vg_tets t; /* the front's points are its first ones */
   struct vg_filled out;
 };
 

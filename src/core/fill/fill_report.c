@@ -1,7 +1,7 @@
 /* The fields of the kernel's report. */
 #include "core/fill/fill.h"
 
-#define ROW(name, member, kind) \
+#define ROW(name, member, kind)                                                \
   VG_ENTRY(name, struct vg_fill_report, member, kind, SUM)
 
 static const struct vg_entry entry[] = {

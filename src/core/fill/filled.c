@@ -1,5 +1,5 @@
-/* The result of the kernel: the cells that are kept, and the change of the front
- * around them. */
+/* The result of the kernel: the cells that are kept, and the change of the
+ * front around them. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +20,8 @@ void vg_filled_release(struct vg_filled *f)
 
 void vg_filled_put(struct vg_writer *w, const struct vg_filled *f, int cells)
 {
-  uint64_t count[5] = {f->n_point, f->n_cell, f->n_face, f->n_consumed,
-                       f->n_hole};
+  uint64_t count[5] = { f->n_point, f->n_cell, f->n_face, f->n_consumed,
+                        f->n_hole };
 
   assert(w && f);
   assert(!cells || f->cell || !f->n_cell);
@@ -35,7 +35,7 @@ void vg_filled_put(struct vg_writer *w, const struct vg_filled *f, int cells)
 
 void vg_filled_get(struct vg_reader *r, struct vg_filled *f, int cells)
 {
-  uint64_t count[5] = {0};
+  uint64_t count[5] = { 0 };
 
   assert(r && f);
   memset(f, 0, sizeof *f);
@@ -101,9 +101,9 @@ static vg_status take_cells(struct vg_filling *g, const uint32_t *number,
 /* Faces of the front by their lowest point. */
 struct lookup {
   const struct vg_front *front;
-  uint32_t *first;           /* [front->n_point + 2] where a point's faces
-                                begin */
-  uint32_t *face;            /* [front->n_face] */
+  uint32_t *first; /* [front->n_point + 2] where a point's faces
+                      begin */
+  uint32_t *face;  /* [front->n_face] */
 };
 
 static uint32_t lowest(const uint32_t v[3])
@@ -162,8 +162,7 @@ static vg_status take_faces(struct vg_filling *g, const struct lookup *l,
 
       if (link != VG_NONE && t->flag[link >> 2] & VG_MARK && !is_fixed)
         continue;
-      for (int k = 0; k < 3; k++)
-        v[k] = number[t->cell[c].v[vg_face[i][k]]];
+      for (int k = 0; k < 3; k++) v[k] = number[t->cell[c].v[vg_face[i][k]]];
       f = is_fixed ? lookup_find(l, v) : VG_NONE;
       if (f != VG_NONE) {
         is_consumed[f] = 1;
@@ -184,7 +183,7 @@ static vg_status close_front(struct vg_filling *g, const uint32_t *number,
   struct vg_filled *f = &g->out;
   size_t n_face = g->front->n_face;
   uint8_t *is_consumed = vg_calloc(n_face, 1);
-  struct lookup l = {0};
+  struct lookup l = { 0 };
   vg_status st;
 
   f->consumed = vg_alloc(n_face, sizeof *f->consumed);

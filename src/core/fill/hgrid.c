@@ -15,9 +15,9 @@
 #define VG_NONE UINT32_MAX
 
 /* Level k has cells of side 2^k, between half of this and this, in spacings. */
-static const double widest_cell = 2.8;   /* K39 */
+static const double widest_cell = 2.8; /* K39 */
 /* A search expects the spacing to change by no more than this share. */
-static const double largest_change = 0.6;   /* K39 */
+static const double largest_change = 0.6; /* K39 */
 
 static int level_of(double h)
 {
@@ -31,8 +31,9 @@ static int level_of(double h)
  * memory, so that a query touches few of them. */
 static uint64_t hash(int level, const int64_t block[3])
 {
-  return vg_hash_1(vg_hash_3((uint64_t)block[0], (uint64_t)block[1],
-                             (uint64_t)block[2]) + (uint64_t)level);
+  return vg_hash_1(
+    vg_hash_3((uint64_t)block[0], (uint64_t)block[1], (uint64_t)block[2]) +
+    (uint64_t)level);
 }
 
 static uint64_t block_hash(const void *grid, uint32_t block)
@@ -85,8 +86,7 @@ static uint32_t *cell_head(struct vg_hgrid *s, int level, const int64_t i[3])
   if (vg_table_reserve(&s->table, s->n_block + 1, block_hash, s)) return NULL;
   slot = find_slot(s, level, at);
   if (*slot == VG_TABLE_FREE) {
-    if (vg_reserve(&s->block, &s->cap_block, s->n_block + 1,
-                   sizeof *s->block))
+    if (vg_reserve(&s->block, &s->cap_block, s->n_block + 1, sizeof *s->block))
       return NULL;
     block = &s->block[s->n_block];
     memset(block, 0xff, sizeof *block);
@@ -217,8 +217,8 @@ static double gap(double d, double side)
 }
 
 struct query {
-  double c[3], side, r2;     /* centre, side of a cell, radius squared */
-  int64_t lo[3], hi[3];      /* cells in question */
+  double c[3], side, r2; /* centre, side of a cell, radius squared */
+  int64_t lo[3], hi[3];  /* cells in question */
 };
 
 /* Along axis k, from cell i: its corner relative to the centre, and the square
@@ -247,8 +247,7 @@ static void find_in_block(struct vg_hgrid *s, const struct query *q,
     for (int i = from[k]; i <= to[k]; i++)
       g[k][i] = along(s, q, k, 4 * b[k] + i, q->side, &d[k][i]);
   }
-  for (left = block->used & cells_between(from, to); left;
-       left &= left - 1) {
+  for (left = block->used & cells_between(from, to); left; left &= left - 1) {
     int at = __builtin_ctzll(left), x = at >> 4, y = at >> 2 & 3, z = at & 3;
 
     if (g[0][x] + g[1][y] + g[2][z] > q->r2) continue;
@@ -260,8 +259,9 @@ static void find_level(struct vg_hgrid *s, const double c[3], double r,
                        int level)
 {
   double inverse = ldexp(1, -level), d;
-  struct query q = { { c[0], c[1], c[2] }, ldexp(1, level), r * r, { 0 },
-                     { 0 } };
+  struct query q = {
+    { c[0], c[1], c[2] }, ldexp(1, level), r * r, { 0 }, { 0 }
+  };
   int64_t b[3];
 
   for (int k = 0; k < 3; k++) {
@@ -294,8 +294,7 @@ void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
   double change = fmin(s->slope * r, largest_change * h);
 
   s->n = s->n_cell = 0;
-  for (int level = level_of(h - change); level <= level_of(h + change);
-       level++)
+  for (int level = level_of(h - change); level <= level_of(h + change); level++)
     if (level >= s->level_lo && level <= s->level_hi)
       find_level(s, c, r, level);
   for (size_t k = 0; k < s->n_cell; k++)

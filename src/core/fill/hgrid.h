@@ -15,30 +15,33 @@
 
 enum { VG_HGRID_MAX = 2048, VG_HGRID_CELLS = 4096, VG_HGRID_PAGE = 8 };
 
-struct vg_hgrid_page {        /* some points of a cell, from its corner; what
-                                is not used is 0 */
+struct vg_hgrid_page { /* some points of a cell, from its corner; what
+                         is not used is 0 */
   uint32_t next, n;
   float x[3][VG_HGRID_PAGE];
 };
 
 struct vg_hgrid {
-  double lo[3];              /* origin of the cells */
-  double slope;              /* bound on the gradient of the spacing */
-  int level_lo, level_hi;    /* levels that the spacing can ask for */
-  struct vg_table table;     /* blocks by level and place */
+  double lo[3];           /* origin of the cells */
+  double slope;           /* bound on the gradient of the spacing */
+  int level_lo, level_hi; /* levels that the spacing can ask for */
+  struct vg_table table;  /* blocks by level and place */
   size_t n_block, cap_block;
-  struct vg_hgrid_block {     /* 4 x 4 x 4 cells */
-    uint64_t used;           /* bit i: cell i has points */
-    int64_t at[3];           /* place on its level, in 4 cells */
+  struct vg_hgrid_block { /* 4 x 4 x 4 cells */
+    uint64_t used;        /* bit i: cell i has points */
+    int64_t at[3];        /* place on its level, in 4 cells */
     int level;
-    uint32_t page[64];       /* first of each cell */
-  } *block;
+    uint32_t page[64]; /* first of each cell */
+  } * block;
   size_t n_page, cap_page;
   struct vg_hgrid_page *page;
-  size_t n_cell;             /* cells of the query under way */
-  struct vg_hgrid_cell { uint32_t page; float d[3]; } cell[VG_HGRID_CELLS];
-  size_t n_cut;              /* queries whose list was cut short */
-  size_t n;                  /* the list: [3][n], relative to the centre */
+  size_t n_cell; /* cells of the query under way */
+  struct vg_hgrid_cell {
+    uint32_t page;
+    float d[3];
+  } cell[VG_HGRID_CELLS];
+  size_t n_cut; /* queries whose list was cut short */
+  size_t n;     /* the list: [3][n], relative to the centre */
   float x[3][VG_HGRID_MAX + VG_HGRID_PAGE];
 };
 

@@ -14,38 +14,38 @@
 
 /* Side of the cubic pattern over the spacing: mean edge of a body-centred
  * lattice of side 1 is (8 sqrt(3)/2 + 6) / 14 = 0.923. */
-static const double lattice = 1.083;   /* K9 */
+static const double lattice = 1.083; /* K9 */
 /* Least distance between points over the spacing of the later one. */
-static const double exclusion = 0.66;   /* K10 */
+static const double exclusion = 0.66; /* K10 */
 /* The same in a region, where fronts from all sides meet after a few steps and
  * leave cells shorter than a void's; but not where the front itself proposes:
  * beside its long faces a point that is missing makes a bad cell. */
-static const double exclusion_region = 0.68;   /* K11 */
+static const double exclusion_region = 0.68; /* K11 */
 /* Proposals that lead from the front to where it counts. */
 static const int far_from_front = 2;
 /* The same between points of the lattice and others, where it is level. */
-static const double exclusion_level = 0.72;   /* K12 */
+static const double exclusion_level = 0.72; /* K12 */
 /* Height of the apex over a surface face: regular tetrahedron. */
 static const double apex = 0.8165;
 
 /* How much farther than points are placed, in spacings, others may stand that
  * propose them: steps of the pattern lead so far across planes of the axes. */
-static const double sideways = 0.65;   /* K13 */
+static const double sideways = 0.65; /* K13 */
 
 /* A field that changes less than this over one edge counts as level. */
-static const double level_within = 1e-3;   /* K14 */
+static const double level_within = 1e-3; /* K14 */
 
 /* A place within this share of the exclusion is rejected before the spacing
  * there is evaluated. */
-static const double exclusion_early = 0.9;   /* K35 */
+static const double exclusion_early = 0.9; /* K35 */
 /* Square of the distance, in halves of the pattern's side, within which a point
  * proposes sites of the lattice: neighbours are at sqrt(3) and 2 of them. */
-static const double neighbour2 = 4.84;   /* K36: 2.2 of them */
+static const double neighbour2 = 4.84; /* K36: 2.2 of them */
 /* Range of the displacements that shake the lattice, in halves of its side. */
-static const double shaken = 2e-4;   /* K37 */
+static const double shaken = 2e-4; /* K37 */
 /* Radius of the list of surroundings, over the step to a place and the
  * exclusion there: from a point where the field is level, from a face. */
-static const double list_level = 1.05, list_face = 1.1;   /* K38 */
+static const double list_level = 1.05, list_face = 1.1; /* K38 */
 
 enum { N_BUCKET = 8192, BUCKET_ZERO = 4096 };
 
@@ -54,19 +54,19 @@ struct placer {
   const struct vg_sizing *sizing;
   const struct vg_region *region;
   size_t n, cap, cap_h, cap_cell, cap_steps;
-  double (*x)[3];            /* surface points first */
+  double (*x)[3]; /* surface points first */
   float *h;
-  uint32_t *cell;            /* cell of t that holds the point */
-  uint8_t *steps;            /* proposals that lead to the point from points
-                                of the front or from what its faces propose,
-                                which have 0; UINT8_MAX: that many or more */
-  struct vg_buckets queue;   /* faces of the surface, then points */
+  uint32_t *cell;          /* cell of t that holds the point */
+  uint8_t *steps;          /* proposals that lead to the point from points
+                              of the front or from what its faces propose,
+                              which have 0; UINT8_MAX: that many or more */
+  struct vg_buckets queue; /* faces of the surface, then points */
   size_t n_face;
-  uint32_t *face;            /* links 4 * cell + face of the surface */
+  uint32_t *face; /* links 4 * cell + face of the surface */
   struct vg_hgrid near;
-  int is_listed;             /* near has what is around the growing point */
-  int now;                   /* steps of what is proposed now */
-  struct vg_sites sites;     /* that stand or never will */
+  int is_listed;         /* near has what is around the growing point */
+  int now;               /* steps of what is proposed now */
+  struct vg_sites sites; /* that stand or never will */
 };
 
 /* --- queue --------------------------------------------------------------- */
@@ -74,9 +74,14 @@ struct placer {
 /* Eight buckets per doubling of the spacing, first in first out. */
 static int bucket_of(double h)
 {
-  static const double step[8] = {0.5, 0.5452538663326288, 0.5946035575013605,
-    0.6484197773255048, 0.7071067811865476, 0.7711054127039704,
-    0.8408964152537145, 0.9170040432046712};
+  static const double step[8] = { 0.5,
+                                  0.5452538663326288,
+                                  0.5946035575013605,
+                                  0.6484197773255048,
+                                  0.7071067811865476,
+                                  0.7711054127039704,
+                                  0.8408964152537145,
+                                  0.9170040432046712 };
   int e, k = 7;
   double m = frexp(h, &e);
 
@@ -113,7 +118,7 @@ static int is_wanted(const struct placer *p, const double x[3], double h,
 static int stand(struct placer *p, const double c[3], const double d[3],
                  double h, double off, uint32_t start)
 {
-  double x[3] = {c[0] + d[0], c[1] + d[1], c[2] + d[2]};
+  double x[3] = { c[0] + d[0], c[1] + d[1], c[2] + d[2] };
   uint32_t cell, point = (uint32_t)p->n;
 
   if (!is_wanted(p, x, h, off)) return 0;
@@ -160,9 +165,10 @@ static int propose(struct placer *p, const double c[3], const double unit[3],
   return stand(p, c, d, there, fabs(there - h), start);
 }
 
-static const double pattern[8][3] = {
-  {.5, .5, .5}, {-.5, -.5, -.5}, {.5, .5, -.5}, {-.5, -.5, .5},
-  {.5, -.5, .5}, {-.5, .5, -.5}, {-.5, .5, .5}, {.5, -.5, -.5}};
+static const double pattern[8][3] = { { .5, .5, .5 },  { -.5, -.5, -.5 },
+                                      { .5, .5, -.5 }, { -.5, -.5, .5 },
+                                      { .5, -.5, .5 }, { -.5, .5, -.5 },
+                                      { -.5, .5, .5 }, { .5, -.5, -.5 } };
 
 static int is_level(const struct placer *p, const double x[3], double h)
 {
@@ -176,7 +182,7 @@ static int level_around(const struct placer *p, const double c[3], double h)
 
   for (int k = 0; k < 3; k++)
     for (int side = -1; side <= 1; side += 2) {
-      double x[3] = {c[0], c[1], c[2]};
+      double x[3] = { c[0], c[1], c[2] };
 
       x[k] += side * h;
       n += is_level(p, x, h);
@@ -189,8 +195,8 @@ static int level_around(const struct placer *p, const double c[3], double h)
  * every predicate would have to be exact. */
 static double shake(const int64_t i[3], int k)
 {
-  uint64_t mix = vg_hash_mix(vg_hash_3((uint64_t)i[0], (uint64_t)i[1],
-                                       (uint64_t)i[2]) + (uint64_t)k);
+  uint64_t mix = vg_hash_mix(
+    vg_hash_3((uint64_t)i[0], (uint64_t)i[1], (uint64_t)i[2]) + (uint64_t)k);
 
   return ((double)(mix & 0xffff) / 65536 - 0.5) * shaken;
 }
@@ -264,9 +270,10 @@ static int grow_site(struct placer *p, const double c[3], double h,
                      const int64_t base[3], uint32_t start, int everywhere)
 {
   static const int8_t step[14][3] = {
-    {-2, 0, 0}, {-1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {-1, 1, 1},
-    {0, -2, 0}, {0, 0, -2}, {0, 0, 2}, {0, 2, 0},
-    {1, -1, -1}, {1, -1, 1}, {1, 1, -1}, {1, 1, 1}, {2, 0, 0}};
+    { -2, 0, 0 }, { -1, -1, -1 }, { -1, -1, 1 }, { -1, 1, -1 }, { -1, 1, 1 },
+    { 0, -2, 0 }, { 0, 0, -2 },   { 0, 0, 2 },   { 0, 2, 0 },   { 1, -1, -1 },
+    { 1, -1, 1 }, { 1, 1, -1 },   { 1, 1, 1 },   { 2, 0, 0 }
+  };
   struct vg_site_block *b = NULL;
 
   for (int j = 0; j < 14; j++) {
@@ -330,7 +337,7 @@ static int grow_face(struct placer *p, uint32_t link)
   if (find_site(v[0], h, site) && find_site(v[1], h, site) &&
       find_site(v[2], h, site))
     return 0;
-  if (p->region) {           /* saves the search where nothing is wanted */
+  if (p->region) { /* saves the search where nothing is wanted */
     double d[3], there = aim(p, c, unit, h, d);
 
     for (int k = 0; k < 3; k++) d[k] += c[k];
@@ -344,10 +351,10 @@ static int grow_face(struct placer *p, uint32_t link)
 /* --- seeds --------------------------------------------------------------- */
 
 /* Side of the cells that get one seed, over the spacing: from half of it. */
-static const double seed_cell = 8;   /* K15 */
+static const double seed_cell = 8; /* K15 */
 /* Fronts come to all places of finer spacing while that falls by no more than
  * this for each length. They step over what is steeper ... */
-static const double steepest = 0.5;   /* K16 */
+static const double steepest = 0.5; /* K16 */
 /* ... so where the spacing is less than this share of what the seed of a cell
  * has, it gets seeds of its own, but not on the way down to what is finer
  * still: where it falls by this share over half of itself. */
@@ -430,8 +437,7 @@ static int seed(struct seeder *s, const double lo[3], double side)
 }
 
 /* May points be wanted in the cube? */
-static int near_region(const struct seeder *s, const double mid[3],
-                       double side)
+static int near_region(const struct seeder *s, const double mid[3], double side)
 {
   const struct vg_region *r = s->region;
   double foot[3], least, most, h, reach;
@@ -460,7 +466,7 @@ static int is_dip(const struct seeder *s, const double x[3], double h)
     return 0;
   for (int k = 0; k < 3; k++)
     for (int side = -1; side <= 1; side += 2) {
-      double y[3] = {x[0], x[1], x[2]};
+      double y[3] = { x[0], x[1], x[2] };
 
       y[k] += 0.5 * side * h;
       if (vg_sizing_at(s->sizing, y) < (1 - falls) * h) return 0;
@@ -502,11 +508,11 @@ static int seed_hidden(struct seeder *s, const double lo[3], double side,
 
 vg_status vg_place_seeds(size_t n, const double (*x)[3],
                          const struct vg_sizing *sizing,
-                         const struct vg_region *region,
-                         struct vg_placed *out, struct vg_error *err)
+                         const struct vg_region *region, struct vg_placed *out,
+                         struct vg_error *err)
 {
-  struct seeder s = {sizing, region, out, 0};
-  double lo[3] = {0}, side = 0;
+  struct seeder s = { sizing, region, out, 0 };
+  double lo[3] = { 0 }, side = 0;
 
   assert(sizing && out && (x || !n));
   memset(out, 0, sizeof *out);
@@ -521,9 +527,8 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
     if (hi - lo[k] > side) side = hi - lo[k];
   }
   if (!(side > 0) ||
-      (!seed(&s, lo, side) &&
-       (vg_sizing_slope(sizing) <= steepest ||
-        seed_hidden(&s, lo, side, 0) >= 0)))
+      (!seed(&s, lo, side) && (vg_sizing_slope(sizing) <= steepest ||
+                               seed_hidden(&s, lo, side, 0) >= 0)))
     return VG_OK;
   free(out->x);
   memset(out, 0, sizeof *out);
@@ -595,7 +600,7 @@ static int push_faces(struct placer *p)
 {
   for (uint32_t i = 0; i < p->n_face; i++) {
     const struct vg_cell *cell = &p->t->cell[p->face[i] >> 2];
-    double c[3] = {0}, h;
+    double c[3] = { 0 }, h;
 
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++)
@@ -624,7 +629,7 @@ static struct placer *start(const struct vg_tets *t,
                             const struct vg_region *region)
 {
   struct placer *p = vg_calloc(1, sizeof *p);
-  double origin[3] = {0}, h_min, h_max;
+  double origin[3] = { 0 }, h_min, h_max;
 
   if (!p) return NULL;
   p->t = t;
@@ -633,8 +638,7 @@ static struct placer *start(const struct vg_tets *t,
   if (t->n_point) memcpy(origin, t->x[0], sizeof origin);
   vg_sizing_range(sizing, &h_min, &h_max);
   if (vg_buckets_init(&p->queue, N_BUCKET) ||
-      vg_hgrid_init(&p->near, origin, h_min, h_max,
-                    vg_sizing_slope(sizing)) ||
+      vg_hgrid_init(&p->near, origin, h_min, h_max, vg_sizing_slope(sizing)) ||
       start_faces(p) || push_faces(p) || start_points(p)) {
     release(p);
     return NULL;
@@ -663,7 +667,8 @@ vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,
     return bad ? vg_fail_memory(err, "placing points")
                : vg_fail(err, VG_ERR_UNSUPPORTED,
                          "more than %zu field points are needed; use a "
-                         "coarser spacing or raise the limit", limit);
+                         "coarser spacing or raise the limit",
+                         limit);
   }
   out->n = p->n - t->n_point;
   out->n_cut = p->near.n_cut;

@@ -21,8 +21,8 @@
 
 struct vg_placed {
   size_t n;
-  double (*x)[3];            /* [n], owned by the receiver */
-  size_t n_cut;              /* lists of surroundings cut short (hgrid.h) */
+  double (*x)[3]; /* [n], owned by the receiver */
+  size_t n_cut;   /* lists of surroundings cut short (hgrid.h) */
 };
 
 /** A sparse set of points, one for every few hundred of the field, to stand
@@ -34,8 +34,8 @@ struct vg_placed {
  * @param out  owned by the caller: free(out->x); some may lie outside */
 vg_status vg_place_seeds(size_t n, const double (*x)[3],
                          const struct vg_sizing *sizing,
-                         const struct vg_region *region,
-                         struct vg_placed *out, struct vg_error *err);
+                         const struct vg_region *region, struct vg_placed *out,
+                         struct vg_error *err);
 
 /** Place field points into the fluid cells of t, besides those it has.
  * @param region  NULL: everywhere

@@ -15,13 +15,13 @@
 /* Least distance of a new point to any other, over the spacing, and least
  * height over a front face, over its mean edge: points that fail would make
  * cells worse than those of the coarser mesh without them. */
-static const double least_distance = 0.5;   /* K6 */
+static const double least_distance = 0.5; /* K6 */
 static const double least_height = 0.3;
 /* Cells so near to those of a region, in spacings, are optimised too: what is
  * bad there would be left as a notch in the front. */
-static const double margin = 0.3;   /* K8 */
+static const double margin = 0.3; /* K8 */
 /* The first points of all keep farther off: the front decides near it. */
-static const double seed_distance = 0.8;   /* K7 */
+static const double seed_distance = 0.8; /* K7 */
 
 enum { STOP_STEP = 1 << 15 };
 
@@ -35,14 +35,14 @@ static vg_status insert_one(struct vg_filling *g, struct vg_inserter *s,
 
   c = vg_tets_locate(t, *at, x);
   if (c == VG_NONE) return VG_BLOCKED;
-  *at = c;                   /* the next one is near here, taken or not */
+  *at = c; /* the next one is near here, taken or not */
   if (t->flag[c] & VG_OUTSIDE) return VG_BLOCKED;
   if (vg_tets_reserve_points(t, 1))
     return vg_fail_memory(err, "the points of the mesh");
   memcpy(t->x[p], x, sizeof *t->x);
   t->n_point++;
-  st = vg_insert(s, p, c, least_height,
-                 nearest * vg_sizing_at(g->sizing, x), err);
+  st = vg_insert(s, p, c, least_height, nearest * vg_sizing_at(g->sizing, x),
+                 err);
   if (st == VG_OK) *at = s->last;
   else t->n_point--;
   return st;
@@ -81,8 +81,8 @@ static vg_status insert_placed(struct vg_filling *g, struct vg_placed *placed,
     st = vg_fail_memory(err, "ordering points");
     goto done;
   }
-  VG_TRY(vg_insertion_order(placed->n, (const double (*)[3])placed->x, order,
-                            err));
+  VG_TRY(
+    vg_insertion_order(placed->n, (const double(*)[3])placed->x, order, err));
   st = insert_all(g, placed, order, nearest, err);
 done:
   free(order);
@@ -94,18 +94,18 @@ done:
 
 vg_status vg_filling_populate(struct vg_filling *g, struct vg_error *err)
 {
-  struct vg_placed placed = {0};
+  struct vg_placed placed = { 0 };
   double t0;
   vg_status st;
 
   assert(g->t.n_point >= g->front->n_point);
-  VG_TRY(vg_place_seeds(g->front->n_point, (const double (*)[3])g->t.x,
+  VG_TRY(vg_place_seeds(g->front->n_point, (const double(*)[3])g->t.x,
                         g->sizing, g->region, &placed, err));
   st = insert_placed(g, &placed, seed_distance, err);
   if (st != VG_OK) goto done;
   t0 = vg_clock();
-  VG_TRY(vg_place(&g->t, g->sizing, g->region, g->options->point_limit,
-                  &placed, err));
+  VG_TRY(vg_place(&g->t, g->sizing, g->region, g->options->point_limit, &placed,
+                  err));
   g->report->n_list_cut += placed.n_cut;
   g->report->time_place += vg_clock() - t0;
   st = insert_placed(g, &placed, least_distance, err);
@@ -115,8 +115,8 @@ done:
 
 vg_status vg_filling_improve(struct vg_filling *g, struct vg_error *err)
 {
-  struct vg_optimise_report r = {0};
-  struct vg_region near = {0};
+  struct vg_optimise_report r = { 0 };
+  struct vg_region near = { 0 };
   double t0 = vg_clock();
   vg_status st = VG_OK;
 

@@ -16,8 +16,8 @@ void vg_sites_release(struct vg_sites *s)
 
 static uint64_t hash(const int32_t at[3])
 {
-  return vg_hash_1(vg_hash_3((uint32_t)at[0], (uint32_t)at[1],
-                             (uint32_t)at[2]));
+  return vg_hash_1(
+    vg_hash_3((uint32_t)at[0], (uint32_t)at[1], (uint32_t)at[2]));
 }
 
 static uint64_t block_hash(const void *sites, uint32_t block)
@@ -27,8 +27,7 @@ static uint64_t block_hash(const void *sites, uint32_t block)
   return hash(s->block[block].at);
 }
 
-static int is_block(const struct vg_site_block *b, const int32_t at[3],
-                    float h)
+static int is_block(const struct vg_site_block *b, const int32_t at[3], float h)
 {
   return b->h == h && !memcmp(b->at, at, sizeof b->at);
 }

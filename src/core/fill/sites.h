@@ -13,10 +13,10 @@ struct vg_sites {
   struct vg_table table;
   size_t n, cap;
   struct vg_site_block {
-    int32_t at[3];           /* of the block, in 8 half sides */
-    float h;                 /* spacing that the lattice is of */
+    int32_t at[3]; /* of the block, in 8 half sides */
+    float h;       /* spacing that the lattice is of */
     uint64_t bit[8];
-  } *block;                  /* [n] */
+  } * block; /* [n] */
 };
 
 void vg_sites_release(struct vg_sites *s);

@@ -14,18 +14,18 @@
 static const double whole_band = VG_BAND_FRONT - 0.2;
 /* Dents are not filled with cells worse than this (dihedral angles of about
  * 30 and 150 degrees). */
-static const double dent = 0.25;   /* K20 */
+static const double dent = 0.25; /* K20 */
 /* A cell of this shape (angles of 1 and 179 degrees) on the front, under one
  * that becomes final, would be all that can fill the slit between the two. */
-static const double slit = 0.0003;   /* K34 */
+static const double slit = 0.0003; /* K34 */
 /* Edges of more than so many spacings stay out of a pencil. */
-static const double overlong = 4;   /* K21 */
+static const double overlong = 4; /* K21 */
 
 struct zone {
   struct vg_filling *g;
-  uint8_t *at;               /* [t.n_point] bits 2 i and 2 i + 1: the point is
-                                not below and not above plane i; NULL: cells
-                                within reach belong to the region too */
+  uint8_t *at; /* [t.n_point] bits 2 i and 2 i + 1: the point is
+                  not below and not above plane i; NULL: cells
+                  within reach belong to the region too */
 };
 
 static int is_corner(const struct zone *z, uint32_t p)
@@ -65,7 +65,7 @@ static int is_overlong(const struct zone *z, uint32_t c)
 {
   const struct vg_tets *t = &z->g->t;
   const uint32_t *v = t->cell[c].v;
-  double most = 0, middle[3] = {0}, h;
+  double most = 0, middle[3] = { 0 }, h;
   int is_new = 0;
 
   for (int i = 0; i < 4; i++)
@@ -94,8 +94,8 @@ static int belongs(const struct zone *z, uint32_t c)
   if (at && (at[v[0]] | at[v[1]] | at[v[2]] | at[v[3]]) !=
               (1 << 2 * z->g->region->n_plane) - 1)
     return 0;
-  if (!vg_region_has_cell(&r, z->g->sizing, t->x[v[0]], t->x[v[1]],
-                          t->x[v[2]], t->x[v[3]]))
+  if (!vg_region_has_cell(&r, z->g->sizing, t->x[v[0]], t->x[v[1]], t->x[v[2]],
+                          t->x[v[3]]))
     return 0;
   if (!(r.reach > 0) || !is_overlong(z, c)) return 1;
   r.reach = 0;
@@ -188,7 +188,7 @@ static double shape_of(const struct vg_tets *t, uint32_t c)
  * that should be there. */
 static int is_settled(const struct zone *z, uint32_t c)
 {
-  const double (*x)[3] = (const double (*)[3])z->g->t.x;
+  const double(*x)[3] = (const double(*)[3])z->g->t.x;
   const uint32_t *v = z->g->t.cell[c].v;
   const struct vg_region *region = z->g->region;
   double e[3][3], n[3][3], d2[3], det, r2 = 0, r, middle[3];

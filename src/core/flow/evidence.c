@@ -38,8 +38,9 @@ static void find_crossed(struct vg_flow_evidence *e)
     const size_t *f = r->defect[i].face;
     uint32_t a, b;
 
-    if (r->defect[i].kind != VG_DEFECT_INTERSECTION || f[0] >= e->m->n_tri
-        || f[1] >= e->m->n_tri) continue;
+    if (r->defect[i].kind != VG_DEFECT_INTERSECTION || f[0] >= e->m->n_tri ||
+        f[1] >= e->m->n_tri)
+      continue;
     a = r->tri_shell[f[0]];
     b = r->tri_shell[f[1]];
     if (a != UINT32_MAX && b != UINT32_MAX && a != b)
@@ -50,17 +51,16 @@ static void find_crossed(struct vg_flow_evidence *e)
 /* The outermost closed shell around shell i: itself for most. A shell that is
  * not closed has no nesting; with by_box the largest closed shell counts whose
  * box contains that of shell i. */
-static size_t top_of(const struct vg_flow_evidence *e, size_t i,
-                     size_t largest)
+static size_t top_of(const struct vg_flow_evidence *e, size_t i, size_t largest)
 {
   const struct vg_surface_report *r = e->r;
   size_t top = i;
 
-  if (!r->shell[i].is_closed && largest != SIZE_MAX && largest != i
-      && box_contains(&r->shell[largest], &r->shell[i]))
+  if (!r->shell[i].is_closed && largest != SIZE_MAX && largest != i &&
+      box_contains(&r->shell[largest], &r->shell[i]))
     return largest;
-  while (r->shell[top].is_closed && r->shell[top].depth > 0
-         && r->shell[top].parent != SIZE_MAX && !e->crossed[top])
+  while (r->shell[top].is_closed && r->shell[top].depth > 0 &&
+         r->shell[top].parent != SIZE_MAX && !e->crossed[top])
     top = r->shell[top].parent;
   return top;
 }
@@ -70,9 +70,8 @@ static size_t largest_closed(const struct vg_surface_report *r)
   size_t largest = SIZE_MAX;
 
   for (size_t i = 0; i < r->n_shell; i++)
-    if (r->shell[i].is_closed && !r->shell[i].depth
-        && (largest == SIZE_MAX
-            || box_contains(&r->shell[i], &r->shell[largest])))
+    if (r->shell[i].is_closed && !r->shell[i].depth &&
+        (largest == SIZE_MAX || box_contains(&r->shell[i], &r->shell[largest])))
       largest = i;
   return largest;
 }
@@ -86,8 +85,11 @@ static void list_shells(struct vg_flow_evidence *e, int by_box)
   for (uint32_t i = 0; i < r->n_shell; i++) {
     if (top_of(e, i, largest) != i) continue;
     e->slot[i] = (uint32_t)e->n_shell;
-    e->shell[e->n_shell++] = (struct vg_flow_shell){ .shell = i,
-      .is_closed = r->shell[i].is_closed, .points_in = r->shell[i].volume < 0 };
+    e->shell[e->n_shell++] = (struct vg_flow_shell){
+      .shell = i,
+      .is_closed = r->shell[i].is_closed,
+      .points_in = r->shell[i].volume < 0
+    };
   }
   for (uint32_t i = 0; i < r->n_shell; i++) {
     const size_t top = top_of(e, i, largest);

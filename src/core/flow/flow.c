@@ -16,16 +16,16 @@
 #include "core/flow/verdict.h"
 
 /* What becomes of a shell. */
-enum fate { KEEP_OUT, KEEP_IN, DROP };   /* normals out of it, into it */
+enum fate { KEEP_OUT, KEEP_IN, DROP }; /* normals out of it, into it */
 
 struct settle {
   const struct vg_flow_options *o;
-  struct vg_mesh *m;            /* as given, without a cap */
-  struct vg_surface_report *r;  /* on m */
-  struct vg_mesh whole;         /* m with its mirror image; empty: m is whole */
+  struct vg_mesh *m;           /* as given, without a cap */
+  struct vg_surface_report *r; /* on m */
+  struct vg_mesh whole;        /* m with its mirror image; empty: m is whole */
   struct vg_surface_report whole_r;
-  struct vg_flow_evidence e;    /* on the whole */
-  enum vg_flow_verdict *verdict;   /* [e.n_shell] */
+  struct vg_flow_evidence e;     /* on the whole */
+  enum vg_flow_verdict *verdict; /* [e.n_shell] */
   struct vg_flow out;
 };
 
@@ -38,8 +38,8 @@ static void release(struct settle *s)
   s->verdict = NULL;
 }
 
-static __attribute__((format(printf, 2, 3)))
-void tell(struct vg_flow *f, const char *format, ...)
+static __attribute__((format(printf, 2, 3))) void tell(struct vg_flow *f,
+                                                       const char *format, ...)
 {
   va_list args;
 
@@ -56,8 +56,10 @@ static vg_status drop(struct settle *s, const uint8_t *gone, int external,
                       struct vg_error *err)
 {
   const struct vg_surface_check_options o = { .repair = s->o->repair,
-    .require_bc = s->o->require_bc, .external = external,
-    .threads = s->o->threads, .stop = s->o->stop };
+                                              .require_bc = s->o->require_bc,
+                                              .external = external,
+                                              .threads = s->o->threads,
+                                              .stop = s->o->stop };
   struct vg_mesh *m = s->m;
   size_t n = 0;
 
@@ -86,11 +88,12 @@ static vg_status look_for_cap(struct settle *s, int *removed,
   VG_TRY(vg_flow_find_cap(s->m, half, &cap, &by_condition, err));
   if (cap.axis < 0) {
     if (half >= VG_HALF_X)
-      st = vg_fail(err, VG_ERR_INPUT, "half %c: the surface is closed and has "
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "half %c: the surface is closed and has "
                    "no flat cap at an end in %c that could be removed; give "
                    "the half model open along its symmetry plane, or leave the "
-                   "option half out", "xyz"[half - VG_HALF_X],
-                   "xyz"[half - VG_HALF_X]);
+                   "option half out",
+                   "xyz"[half - VG_HALF_X], "xyz"[half - VG_HALF_X]);
     goto done;
   }
   s->out.cap_axis = cap.axis;
@@ -112,8 +115,8 @@ done:
  * itself by less than the tolerance of the surface that is made from it. */
 static int has_rims(const struct vg_surface_report *r)
 {
-  return r->count[VG_DEFECT_OPEN_EDGE] && !r->count[VG_DEFECT_ORIENTATION]
-         && !r->count[VG_DEFECT_NONMANIFOLD_EDGE];
+  return r->count[VG_DEFECT_OPEN_EDGE] && !r->count[VG_DEFECT_ORIENTATION] &&
+         !r->count[VG_DEFECT_NONMANIFOLD_EDGE];
 }
 
 /* An open surface may be a half model. */
@@ -121,7 +124,8 @@ static vg_status look_for_rims(struct settle *s, struct vg_error *err)
 {
   const enum vg_flow_half half = s->o->half;
   const int symmetry = half == VG_HALF_AUTO && !s->out.n_cap_tri ? 0
-                       : half == VG_HALF_NO ? -1 : 1;
+                     : half == VG_HALF_NO                        ? -1
+                                                                 : 1;
   int axis;
   double at;
   vg_status st;
@@ -130,21 +134,25 @@ static vg_status look_for_rims(struct settle *s, struct vg_error *err)
   VG_TRY(vg_domain_half(s->m, symmetry, &axis, &at, err));
   if (axis < 0) goto done;
   if (half >= VG_HALF_X && axis != (int)half - VG_HALF_X) {
-    st = vg_fail(err, VG_ERR_INPUT, "half %c: the open edges of the surface "
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "half %c: the open edges of the surface "
                  "lie in the plane %c = %g; give half %c, or close them "
-                 "(close_holes yes)", "xyz"[half - VG_HALF_X], "xyz"[axis], at,
-                 "xyz"[axis]);
+                 "(close_holes yes)",
+                 "xyz"[half - VG_HALF_X], "xyz"[axis], at, "xyz"[axis]);
     goto done;
   }
   s->out.axis = axis;
   s->out.at = at;
   if (!s->out.n_cap_tri)
-    tell(&s->out, "all %zu open edges lie in the plane %c = %g at an end of "
+    tell(&s->out,
+         "all %zu open edges lie in the plane %c = %g at an end of "
          "the surface: half of a symmetric model",
          s->r->count[VG_DEFECT_OPEN_EDGE], "xyz"[axis], at);
   VG_TRY(vg_flow_mirror(s->m, axis, at, &s->whole, err));
-  VG_TRY(vg_surface_check(&s->whole, &(struct vg_surface_check_options){
-    .external = -1, .threads = s->o->threads, .stop = s->o->stop },
+  VG_TRY(vg_surface_check(
+    &s->whole,
+    &(struct vg_surface_check_options){
+      .external = -1, .threads = s->o->threads, .stop = s->o->stop },
     &s->whole_r, err));
 done:
   return st;
@@ -154,10 +162,12 @@ done:
 
 static vg_status two_readings(const char *why, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_INPUT, "the flow domain can be read in two ways: "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "the flow domain can be read in two ways: "
                  "%s. Choose with --flow external (the surface is a body, the "
                  "fluid is outside) or --flow internal (the surface bounds the "
-                 "fluid inside it), or give boundary conditions", why);
+                 "fluid inside it), or give boundary conditions",
+                 why);
 }
 
 static vg_status judge_shells(struct settle *s, struct vg_error *err)
@@ -175,10 +185,8 @@ static vg_status judge_shells(struct settle *s, struct vg_error *err)
     if (s->o->kind != VG_FLOW_UNKNOWN)
       s->verdict[i] = s->o->kind == VG_FLOW_EXTERNAL ? VG_FLOW_BODY
                                                      : VG_FLOW_OUTER;
-    else if (s->verdict[i] == VG_FLOW_EITHER)
-      return two_readings(why, err);
-    else if (e->n_shell == 1)
-      tell(&s->out, "%s", why);
+    else if (s->verdict[i] == VG_FLOW_EITHER) return two_readings(why, err);
+    else if (e->n_shell == 1) tell(&s->out, "%s", why);
     else if (i < 3 || s->verdict[i] == VG_FLOW_OUTER)
       tell(&s->out, "shell %u: %s", e->shell[i].shell + 1, why);
     s->out.n_outer += s->verdict[i] == VG_FLOW_OUTER;
@@ -197,12 +205,14 @@ static vg_status check_inner(const struct settle *s, struct vg_error *err)
   for (size_t i = 0; i < e->m->n_patch; i++) {
     const struct vg_flow_patch *p = &e->patch[i];
 
-    if (!p->is_used || p->shell == UINT32_MAX || !e->depth[p->shell]
-        || (p->role != VG_ROLE_FARFIELD && p->role != VG_ROLE_INLET
-            && p->role != VG_ROLE_OUTLET)
-        || (e->depth[p->shell] == 1
-            && s->verdict[e->slot[p->shell]] == VG_FLOW_OUTER)) continue;
-    return vg_fail(err, VG_ERR_INPUT, "patch %d%s%.40s has the condition or "
+    if (!p->is_used || p->shell == UINT32_MAX || !e->depth[p->shell] ||
+        (p->role != VG_ROLE_FARFIELD && p->role != VG_ROLE_INLET &&
+         p->role != VG_ROLE_OUTLET) ||
+        (e->depth[p->shell] == 1 &&
+         s->verdict[e->slot[p->shell]] == VG_FLOW_OUTER))
+      continue;
+    return vg_fail(err, VG_ERR_INPUT,
+                   "patch %d%s%.40s has the condition or "
                    "name of an outer boundary or an opening, but its shell "
                    "lies inside a body: either it bounds a second region of "
                    "fluid (--regions all meshes it too), or it is a sealed "
@@ -222,16 +232,19 @@ static vg_status combine(struct settle *s, struct vg_error *err)
   VG_TRY(check_inner(s, err));
   f->kind = f->n_outer ? VG_FLOW_INTERNAL : VG_FLOW_EXTERNAL;
   if (f->n_outer && f->n_outer < s->e.n_shell) {
-    st = vg_fail(err, VG_ERR_INPUT, "the flow domain can be read in two ways: "
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "the flow domain can be read in two ways: "
                  "%zu of %zu outermost shells are outer boundaries of a fluid "
                  "inside them, and the others are bodies that stand outside "
                  "these. Choose with --flow external or --flow internal, or "
                  "remove the shells that do not belong to the domain",
                  f->n_outer, s->e.n_shell);
   } else if (f->n_outer > 1 && !s->o->all_regions) {
-    st = vg_fail(err, VG_ERR_INPUT, "the surface bounds %zu regions of fluid "
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "the surface bounds %zu regions of fluid "
                  "that are not connected. Mesh them one by one, or all of them "
-                 "together with --regions all", f->n_outer);
+                 "together with --regions all",
+                 f->n_outer);
   }
 done:
   return st;
@@ -253,9 +266,8 @@ static enum fate fate_of(const struct settle *s, uint32_t shell)
 /* The shell goes on into its mirror image. */
 static int is_joined(const struct settle *s, const struct vg_shell *x)
 {
-  return s->out.axis >= 0
-         && s->e.r->tri_shell[x->face]
-            == s->e.r->tri_shell[x->face + s->m->n_tri];
+  return s->out.axis >= 0 &&
+         s->e.r->tri_shell[x->face] == s->e.r->tri_shell[x->face + s->m->n_tri];
 }
 
 static void count_shell(struct settle *s, uint32_t shell, double *largest)
@@ -269,8 +281,7 @@ static void count_shell(struct settle *s, uint32_t shell, double *largest)
   s->out.cavity_volume += volume;
   if (volume <= *largest) return;
   *largest = volume;
-  for (int k = 0; k < 3; k++)
-    s->out.cavity_at[k] = 0.5 * (x->lo[k] + x->hi[k]);
+  for (int k = 0; k < 3; k++) s->out.cavity_at[k] = 0.5 * (x->lo[k] + x->hi[k]);
 }
 
 /* Patches of the outer boundary; those that stand in its pocket are not: more
@@ -278,7 +289,7 @@ static void count_shell(struct settle *s, uint32_t shell, double *largest)
 static vg_status mark_outer(struct settle *s, struct vg_error *err)
 {
   const struct vg_flow_evidence *e = &s->e;
-  size_t (*n)[2] = vg_calloc(e->m->n_patch, sizeof *n);
+  size_t(*n)[2] = vg_calloc(e->m->n_patch, sizeof *n);
 
   if (!n) return vg_fail_memory(err, "the patches");
   for (size_t t = 0; t < e->m->n_tri && e->in_pocket; t++)
@@ -286,9 +297,9 @@ static vg_status mark_outer(struct settle *s, struct vg_error *err)
   for (size_t i = 0; i < e->m->n_patch; i++) {
     const struct vg_flow_patch *p = &e->patch[i];
 
-    s->out.on_outer[i] = p->is_used && p->shell != UINT32_MAX
-                         && !e->depth[p->shell] && n[i][1] <= n[i][0]
-                         && s->verdict[e->slot[p->shell]] == VG_FLOW_OUTER;
+    s->out.on_outer[i] = p->is_used && p->shell != UINT32_MAX &&
+                         !e->depth[p->shell] && n[i][1] <= n[i][0] &&
+                         s->verdict[e->slot[p->shell]] == VG_FLOW_OUTER;
   }
   free(n);
   return VG_OK;
@@ -350,8 +361,8 @@ static vg_status apply(struct settle *s, struct vg_error *err)
     fate = fate_of(s, shell);
     gone[t] = fate == DROP;
     n_gone += gone[t];
-    turned[s->r->tri_shell[t]] |= (whole->shell[shell].volume > 0)
-                                  != (fate == KEEP_OUT);
+    turned[s->r->tri_shell[t]] |= (whole->shell[shell].volume > 0) !=
+                                  (fate == KEEP_OUT);
   }
   for (size_t i = 0; i < s->r->n_shell; i++) n_turned += turned[i];
   if (n_turned && s->o->repair) turn(s, turned);
@@ -367,9 +378,9 @@ static int is_judged(const struct settle *s)
 {
   const struct vg_surface_report *r = s->e.r;
 
-  return s->m->n_tri && !r->count[VG_DEFECT_ORIENTATION]
-         && !r->count[VG_DEFECT_NONMANIFOLD_EDGE]
-         && !r->count[VG_DEFECT_OPEN_EDGE];
+  return s->m->n_tri && !r->count[VG_DEFECT_ORIENTATION] &&
+         !r->count[VG_DEFECT_NONMANIFOLD_EDGE] &&
+         !r->count[VG_DEFECT_OPEN_EDGE];
 }
 
 void vg_flow_release(struct vg_flow *f)
@@ -459,8 +470,8 @@ vg_status vg_flow_outer(const struct vg_mesh *m,
   for (size_t t = 0; t < m->n_tri; t++) {
     const uint32_t shell = r->tri_shell[t];
 
-    outer[t] = shell != UINT32_MAX && !s.e.depth[shell]
-               && s.verdict[s.e.slot[shell]] == VG_FLOW_OUTER;
+    outer[t] = shell != UINT32_MAX && !s.e.depth[shell] &&
+               s.verdict[s.e.slot[shell]] == VG_FLOW_OUTER;
   }
   *n = s.out.n_outer;
 done:
@@ -473,20 +484,23 @@ void vg_flow_statement(const struct vg_flow *f, int adds_farfield, char *out)
   char half[80] = "", bodies[80] = "";
 
   if (f->axis >= 0)
-    snprintf(half, sizeof half, ", half of it, cut at %c = %g",
-             "xyz"[f->axis], f->at);
+    snprintf(half, sizeof half, ", half of it, cut at %c = %g", "xyz"[f->axis],
+             f -> at);
   if (f->n_body)
     snprintf(bodies, sizeof bodies, " around %zu closed bod%s", f->n_body,
              f->n_body > 1 ? "ies" : "y");
   if (f->kind == VG_FLOW_EXTERNAL)
     snprintf(out, VG_FLOW_TEXT, "External flow%s%s%s", bodies, half,
-             !adds_farfield ? "" : f->axis < 0 ? "; farfield added"
-             : "; symmetry plane and half a farfield added");
+             !adds_farfield ? ""
+             : f->axis < 0  ? "; farfield added"
+                            : "; symmetry plane and half a farfield added");
   else if (f->kind != VG_FLOW_INTERNAL)
     snprintf(out, VG_FLOW_TEXT, "Not decided");
   else if (f->n_inlet + f->n_outlet)
-    snprintf(out, VG_FLOW_TEXT, "Internal flow in a closed duct%s%s: inlet "
-             "%zu, outlet %zu", bodies, half, f->n_inlet, f->n_outlet);
+    snprintf(out, VG_FLOW_TEXT,
+             "Internal flow in a closed duct%s%s: inlet "
+             "%zu, outlet %zu",
+             bodies, half, f->n_inlet, f->n_outlet);
   else
     snprintf(out, VG_FLOW_TEXT, "Flow inside %s given outer boundar%s%s%s",
              f->n_outer > 1 ? "several" : "a", f->n_outer > 1 ? "ies" : "y",

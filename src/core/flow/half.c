@@ -9,8 +9,8 @@
 #include "core/domain/planar.h"
 #include "core/geometry/vector.h"
 
-#define NEAR 1e-5         /* S5: of the length: points so near are in a plane */
-#define ZERO 1e-3         /* F4: of the length: a plane so near is at 0 */
+#define NEAR 1e-5 /* S5: of the length: points so near are in a plane */
+#define ZERO 1e-3 /* F4: of the length: a plane so near is at 0 */
 
 void vg_flow_cap_release(struct vg_flow_cap *cap)
 {
@@ -19,7 +19,9 @@ void vg_flow_cap_release(struct vg_flow_cap *cap)
   cap->axis = -1;
 }
 
-struct box { double lo[3], hi[3], length; };
+struct box {
+  double lo[3], hi[3], length;
+};
 
 static struct box box_of(const struct vg_mesh *m)
 {
@@ -48,18 +50,18 @@ static void mark_cap(const struct vg_mesh *m, int axis, double at, double near,
   cap->at = at;
   cap->n_tri = 0;
   for (size_t t = 0; t < m->n_tri; t++) {
-    cap->tri[t] = is_in_plane(m, t, axis, at, near)
-                  && (!symmetry_only
-                      || vg_flow_role_of(&m->patch[m->tri_patch[t]])
-                         == VG_ROLE_SYMMETRY);
+    cap->tri[t] = is_in_plane(m, t, axis, at, near) &&
+                  (!symmetry_only ||
+                   vg_flow_role_of(&m->patch[m->tri_patch[t]]) ==
+                     VG_ROLE_SYMMETRY);
     cap->n_tri += cap->tri[t];
   }
 }
 
 /* m without the cap; points stay. */
 static vg_status without_cap(const struct vg_mesh *m,
-                             const struct vg_flow_cap *cap,
-                             struct vg_mesh *out, struct vg_error *err)
+                             const struct vg_flow_cap *cap, struct vg_mesh *out,
+                             struct vg_error *err)
 {
   size_t n = 0;
   vg_status st = vg_mesh_copy(out, m, err);
@@ -96,8 +98,8 @@ done:
 static int has_symmetry(const struct vg_mesh *m, const struct vg_flow_cap *cap)
 {
   for (size_t t = 0; t < m->n_tri; t++)
-    if (!cap->tri[t] && vg_flow_role_of(&m->patch[m->tri_patch[t]])
-                        == VG_ROLE_SYMMETRY)
+    if (!cap->tri[t] &&
+        vg_flow_role_of(&m->patch[m->tri_patch[t]]) == VG_ROLE_SYMMETRY)
       return 0;
   return cap->n_tri > 0;
 }
@@ -118,7 +120,7 @@ vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
   if (!cap->tri) VG_TRY(vg_fail_memory(err, "the cap of a half model"));
   for (int pass = 0; pass < 2 && !found; pass++)
     for (int end = 0; end < 6 && !found; end++) {
-      const int axis = (end / 2 + 1) % 3;   /* y first: the usual one */
+      const int axis = (end / 2 + 1) % 3; /* y first: the usual one */
       double at = end % 2 ? b.hi[axis] : b.lo[axis];
 
       if (fabs(at) <= near) at = 0;

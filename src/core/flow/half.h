@@ -13,10 +13,10 @@
 
 /** A flat cap in a coordinate plane at an end of the surface. */
 struct vg_flow_cap {
-  int axis;                     /* -1: no cap was found */
+  int axis; /* -1: no cap was found */
   double at;
   size_t n_tri;
-  uint8_t *tri;                 /* [m->n_tri] 1: triangle of the cap; owned */
+  uint8_t *tri; /* [m->n_tri] 1: triangle of the cap; owned */
 };
 
 /** Find the cap that may close a half model.

@@ -9,11 +9,12 @@
 #include "core/mesh/edges.h"
 
 /* F1 */
-#define FLAT 1e-4         /* of the shell's length: deviation of a flat patch */
-#define STEEP 0.7         /* cosine between a wall and the plane of an end */
-#define MOSTLY 0.7        /* share of the border that meets it so steeply */
-#define LARGE 1e-3        /* of the area of all patches: a plain patch that is
-                             smaller is no opening */
+#define FLAT 1e-4  /* of the shell's length: deviation of a flat patch */
+#define STEEP 0.7  /* cosine between a wall and the plane of an end */
+#define MOSTLY 0.7 /* share of the border that meets it so steeply */
+#define LARGE                                                                  \
+  1e-3 /* of the area of all patches: a plain patch that is                    \
+          smaller is no opening */
 
 static void normal_of(const struct vg_mesh *m, size_t t, double n[3])
 {
@@ -41,7 +42,9 @@ static void add_normals(const struct vg_mesh *m,
 }
 
 /* Range of the points of patches, and of their shells, along their normals. */
-struct range { double lo, hi, shell_lo, shell_hi; };
+struct range {
+  double lo, hi, shell_lo, shell_hi;
+};
 
 static void widen(double x, double *lo, double *hi)
 {
@@ -76,12 +79,14 @@ static void measure_flat(const struct vg_mesh *m,
   }
   p->is_flat = g.hi - g.lo <= FLAT * length;
   p->plane = 0.5 * (g.lo + g.hi);
-  p->is_end = p->is_flat && (g.shell_hi - p->plane <= FLAT * length
-                             || p->plane - g.shell_lo <= FLAT * length);
+  p->is_end = p->is_flat && (g.shell_hi - p->plane <= FLAT * length ||
+                             p->plane - g.shell_lo <= FLAT * length);
 }
 
 /* Length of the borders of patches, and of the steep part of them. */
-struct border { double all, steep; };
+struct border {
+  double all, steep;
+};
 
 static void add_border(const struct vg_mesh *m, size_t at, size_t beside,
                        double length, const struct vg_flow_patch *patch,
@@ -93,8 +98,8 @@ static void add_border(const struct vg_mesh *m, size_t at, size_t beside,
   if (!patch[own].is_end) return;
   normal_of(m, beside, n);
   border[own].all += length;
-  if (fabs(vg_dot(n, patch[own].normal))
-      <= STEEP * vg_norm(n) * vg_norm(patch[own].normal))
+  if (fabs(vg_dot(n, patch[own].normal)) <=
+      STEEP * vg_norm(n) * vg_norm(patch[own].normal))
     border[own].steep += length;
 }
 
@@ -102,7 +107,7 @@ static void add_border(const struct vg_mesh *m, size_t at, size_t beside,
 static vg_status find_ends(const struct vg_mesh *m, struct vg_flow_patch *patch,
                            struct vg_error *err)
 {
-  const uint32_t (*tri)[3] = (const uint32_t (*)[3])m->tri;
+  const uint32_t(*tri)[3] = (const uint32_t(*)[3])m->tri;
   struct border *border = vg_calloc(m->n_patch, sizeof *border);
   struct vg_edges e = VG_EDGES_INIT;
   vg_status st = VG_OK;
@@ -122,8 +127,8 @@ static vg_status find_ends(const struct vg_mesh *m, struct vg_flow_patch *patch,
       add_border(m, t, s, length, patch, border);
     }
   for (size_t i = 0; i < m->n_patch; i++)
-    patch[i].is_end &= border[i].all > 0
-                       && border[i].steep >= MOSTLY * border[i].all;
+    patch[i].is_end &= border[i].all > 0 &&
+                       border[i].steep >= MOSTLY * border[i].all;
 done:
   vg_edges_release(&e);
   free(border);
@@ -135,11 +140,12 @@ done:
  * flat patch is the length of the sum of its normals. */
 static int may_be_end(const struct vg_flow_patch *p, int has_walls, double area)
 {
-  if (!p->is_used || p->shell == UINT32_MAX
-      || vg_norm(p->normal) < 2 * p->area * (1 - FLAT)) return 0;
+  if (!p->is_used || p->shell == UINT32_MAX ||
+      vg_norm(p->normal) < 2 * p->area * (1 - FLAT))
+    return 0;
   if (p->role == VG_ROLE_NONE) return has_walls && p->area >= LARGE * area;
-  return p->role == VG_ROLE_INLET || p->role == VG_ROLE_OUTLET
-         || p->role == VG_ROLE_SYMMETRY;
+  return p->role == VG_ROLE_INLET || p->role == VG_ROLE_OUTLET ||
+         p->role == VG_ROLE_SYMMETRY;
 }
 
 vg_status vg_flow_patches(const struct vg_mesh *m,
@@ -157,8 +163,8 @@ vg_status vg_flow_patches(const struct vg_mesh *m,
     struct vg_flow_patch *p = &patch[i];
 
     p->role = vg_flow_role_of(&m->patch[i]);
-    p->has_condition = m->patch[i].bc != VG_BC_NONE
-                       || m->patch[i].bc_fun3d != VG_BC_NONE;
+    p->has_condition = m->patch[i].bc != VG_BC_NONE ||
+                       m->patch[i].bc_fun3d != VG_BC_NONE;
     has_walls |= p->is_used && p->role == VG_ROLE_WALL;
     area += p->area;
   }

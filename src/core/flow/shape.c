@@ -12,10 +12,10 @@
 #include "core/surface/envelope.h"
 
 /* F2 */
-#define BOX_SHARE 0.98    /* of a box's area on its bounding box */
-#define BOX_NEAR 1e-4     /* of its length: points so near are on it */
-#define ROUND 0.02        /* of a sphere's radius: points so near are on it */
-#define DEEP 1e-3         /* of the length: a body reaches deeper than this */
+#define BOX_SHARE 0.98 /* of a box's area on its bounding box */
+#define BOX_NEAR 1e-4  /* of its length: points so near are on it */
+#define ROUND 0.02     /* of a sphere's radius: points so near are on it */
+#define DEEP 1e-3      /* of the length: a body reaches deeper than this */
 
 /* One shell as a mesh of its own. */
 static vg_status take_shell(const struct vg_flow_evidence *e, uint32_t s,
@@ -51,8 +51,8 @@ done:
 
 struct hull {
   const struct vg_mesh *m;
-  const uint8_t *outer;     /* [n_tri] 1: part of the outer boundary; NULL: all
-                               triangles are */
+  const uint8_t *outer; /* [n_tri] 1: part of the outer boundary; NULL: all
+                           triangles are */
   double lo[3], hi[3], length;
   double centre[3], radius; /* of the sphere; radius 0: none */
 };
@@ -105,8 +105,8 @@ static int is_box(const struct hull *h)
  * bounding box. */
 static int is_free(const struct hull *h, size_t t, int k)
 {
-  return (!h->outer || h->outer[t])
-         && off_box(h, h->m->point[h->m->tri[t][k]]) > BOX_NEAR * h->length;
+  return (!h->outer || h->outer[t]) &&
+         off_box(h, h->m->point[h->m->tri[t][k]]) > BOX_NEAR * h->length;
 }
 
 /* Gauss's elimination with pivots; 0 where the system is singular. */
@@ -169,9 +169,9 @@ static int is_round(struct hull *h)
   if (!fit_sphere(h)) return 0;
   for (size_t t = 0; t < h->m->n_tri; t++)
     for (int k = 0; k < 3; k++)
-      if (is_free(h, t, k)
-          && fabs(vg_distance(h->m->point[h->m->tri[t][k]], h->centre)
-                  - h->radius) > ROUND * h->radius) {
+      if (is_free(h, t, k) &&
+          fabs(vg_distance(h->m->point[h->m->tri[t][k]], h->centre) -
+               h->radius) > ROUND * h->radius) {
         h->radius = 0;
         return 0;
       }
@@ -188,8 +188,7 @@ static double depth(const struct hull *h)
       const double *x = h->m->point[h->m->tri[t][k]];
       double d = off_box(h, x);
 
-      if (h->radius > 0)
-        d = fmin(d, h->radius - vg_distance(x, h->centre));
+      if (h->radius > 0) d = fmin(d, h->radius - vg_distance(x, h->centre));
       most = fmax(most, d);
     }
   return most;

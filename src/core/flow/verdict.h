@@ -6,9 +6,9 @@
 #include "core/flow/evidence.h"
 
 enum vg_flow_verdict {
-  VG_FLOW_BODY,                 /* the fluid is outside */
-  VG_FLOW_OUTER,                /* the fluid is inside */
-  VG_FLOW_EITHER                /* both readings are plausible */
+  VG_FLOW_BODY,  /* the fluid is outside */
+  VG_FLOW_OUTER, /* the fluid is inside */
+  VG_FLOW_EITHER /* both readings are plausible */
 };
 
 /** Judge one shell. The rules, the first that applies decides:

@@ -21,7 +21,7 @@ void vg_front_release(struct vg_front *f)
 
 void vg_front_put(struct vg_writer *w, const struct vg_front *f, int ids)
 {
-  uint64_t count[2] = {f->n_point, f->n_face};
+  uint64_t count[2] = { f->n_point, f->n_face };
 
   assert(w && f);
   assert(!ids || f->id || !f->n_point);
@@ -40,7 +40,7 @@ static int all_below(size_t n, const uint32_t *v, size_t limit)
 
 void vg_front_get(struct vg_reader *r, struct vg_front *f, int ids)
 {
-  uint64_t count[2] = {0, 0};
+  uint64_t count[2] = { 0, 0 };
 
   assert(r && f);
   memset(f, 0, sizeof *f);
@@ -50,8 +50,7 @@ void vg_front_get(struct vg_reader *r, struct vg_front *f, int ids)
   f->x = vg_get_array(r, f->n_point, sizeof *f->x);
   f->face = vg_get_array(r, f->n_face, sizeof *f->face);
   if (ids) f->id = vg_get_array(r, f->n_point, sizeof *f->id);
-  if (!r->bad && !all_below(3 * f->n_face, f->face[0], f->n_point))
-    r->bad = 1;
+  if (!r->bad && !all_below(3 * f->n_face, f->face[0], f->n_point)) r->bad = 1;
   if (r->bad) vg_front_release(f);
 }
 
@@ -62,8 +61,10 @@ static vg_status mark_points(const struct vg_front *f, uint8_t *used,
   for (size_t i = 0; i < f->n_face; i++)
     for (int k = 0; k < 3; k++) {
       if (f->face[i][k] >= f->n_point)
-        return vg_fail(err, VG_ERR_INPUT, "triangle %zu refers to point %u of "
-                       "%zu", i + 1, f->face[i][k] + 1, f->n_point);
+        return vg_fail(err, VG_ERR_INPUT,
+                       "triangle %zu refers to point %u of "
+                       "%zu",
+                       i + 1, f->face[i][k] + 1, f->n_point);
       used[f->face[i][k]] = 1;
     }
   return VG_OK;
@@ -114,8 +115,8 @@ static vg_status find_twins(const struct vg_front *f, uint32_t *to,
     key[k] = (struct vg_key){ f->id[k], (uint32_t)k };
   st = vg_sort_keys(f->n_point, key, err);
   for (size_t k = 0; st == VG_OK && k < f->n_point; k++)
-    to[key[k].index] = k && key[k].key == key[k - 1].key
-                         ? to[key[k - 1].index] : key[k].index;
+    to[key[k].index] = k && key[k].key == key[k - 1].key ? to[key[k - 1].index]
+                                                         : key[k].index;
   free(key);
   return st;
 }
@@ -157,13 +158,11 @@ vg_status vg_front_join(struct vg_front *to, const struct vg_front *from,
     return vg_fail_memory(err, "a front");
   if (from->n_point) {
     memcpy(to->x + to->n_point, from->x, from->n_point * sizeof *to->x);
-    memcpy(to->id + to->n_point, from->id,
-           from->n_point * sizeof *to->id);
+    memcpy(to->id + to->n_point, from->id, from->n_point * sizeof *to->id);
   }
   for (size_t i = 0; i < from->n_face; i++)
     for (int k = 0; k < 3; k++)
-      to->face[to->n_face + i][k] =
-        (uint32_t)to->n_point + from->face[i][k];
+      to->face[to->n_face + i][k] = (uint32_t)to->n_point + from->face[i][k];
   to->n_point = np;
   to->n_face = nf;
   return VG_OK;

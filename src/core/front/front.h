@@ -25,16 +25,19 @@
 
 struct vg_front {
   size_t n_point, n_face;
-  double (*x)[3];            /* [n_point] coordinates */
-  uint64_t *id;              /* [n_point] ids that points keep when the front
-                                is cut or sent; NULL: the points have none */
-  uint32_t (*face)[3];       /* [n_face] indices of the corners */
-  uint32_t *patch;           /* [n_face] patches that the faces belong to; NULL:
-                                not known, as in fronts that tasks are given */
-  uint32_t *face_id;         /* [n_face] ids of the faces; NULL: the faces have
-                                none */
+  double (*x)[3];      /* [n_point] coordinates */
+  uint64_t *id;        /* [n_point] ids that points keep when the front
+                          is cut or sent; NULL: the points have none */
+  uint32_t (*face)[3]; /* [n_face] indices of the corners */
+  uint32_t *patch;     /* [n_face] patches that the faces belong to; NULL:
+                          not known, as in fronts that tasks are given */
+  uint32_t *face_id;   /* [n_face] ids of the faces; NULL: the faces have
+                          none */
 };
-#define VG_FRONT_INIT { 0 }
+#define VG_FRONT_INIT                                                          \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /** Frees the arrays. *f is empty then. */
 void vg_front_release(struct vg_front *f);
@@ -43,8 +46,10 @@ void vg_front_release(struct vg_front *f);
  * borrowed from m: do not release the front. */
 static inline struct vg_front vg_front_of(const struct vg_mesh *m)
 {
-  return (struct vg_front){ .n_point = m->n_point, .n_face = m->n_tri,
-                            .x = m->point, .face = m->tri,
+  return (struct vg_front){ .n_point = m->n_point,
+                            .n_face = m->n_tri,
+                            .x = m->point,
+                            .face = m->tri,
                             .patch = m->tri_patch };
 }
 
@@ -53,8 +58,10 @@ static inline struct vg_front vg_front_of(const struct vg_mesh *m)
 static inline struct vg_mesh vg_front_mesh(const struct vg_front *f,
                                            const struct vg_mesh *surface)
 {
-  return (struct vg_mesh){ .n_point = f->n_point, .point = f->x,
-                           .n_tri = f->n_face, .tri = f->face,
+  return (struct vg_mesh){ .n_point = f->n_point,
+                           .point = f->x,
+                           .n_tri = f->n_face,
+                           .tri = f->face,
                            .tri_patch = f->patch,
                            .n_patch = surface->n_patch,
                            .patch = surface->patch };
@@ -68,8 +75,9 @@ vg_status vg_front_check(const struct vg_front *f, struct vg_error *err);
  * closed front. SIZE_MAX when memory is refused. O(n log n). */
 static inline size_t vg_front_open_edges(const struct vg_front *f)
 {
-  const struct vg_mesh m = { .n_point = f->n_point, .point = f->x,
-                             .n_tri = f->n_face, .tri = f->face };
+  const struct vg_mesh m = {
+    .n_point = f->n_point, .point = f->x, .n_tri = f->n_face, .tri = f->face
+  };
 
   return vg_mesh_open_edges(&m);
 }

@@ -186,14 +186,16 @@ static double longest(const double *const corner[3])
  * most: of its corners and its middle. */
 static int large_meets(const struct vg_region *r,
                        const struct vg_sizing *sizing,
-                       const double *const corner[3], double most,
-                       double band, int is_sure)
+                       const double *const corner[3], double most, double band,
+                       int is_sure)
 {
   double middle[3];
 
   if (!reaches(r, corner, vg_region_band(r, band) * most, middle)) return 0;
-  return !is_sure || reaches(r, corner, vg_region_band(r, band) *
-                               vg_region_spacing(r, sizing, middle), middle);
+  return !is_sure ||
+         reaches(r, corner,
+                 vg_region_band(r, band) * vg_region_spacing(r, sizing, middle),
+                 middle);
 }
 
 static double spacing_amid(const struct vg_region *r,
@@ -227,7 +229,7 @@ int vg_region_meets(const struct vg_region *r, const struct vg_sizing *sizing,
                     const double a[3], const double b[3], const double c[3],
                     double band)
 {
-  const double *corner[3] = {a, b, c};
+  const double *corner[3] = { a, b, c };
 
   return meets(r, sizing, corner, band, 1);
 }
@@ -236,7 +238,7 @@ int vg_region_may_meet(const struct vg_region *r,
                        const struct vg_sizing *sizing, const double a[3],
                        const double b[3], const double c[3], double band)
 {
-  const double *corner[3] = {a, b, c};
+  const double *corner[3] = { a, b, c };
 
   return meets(r, sizing, corner, band, 0);
 }
@@ -265,11 +267,10 @@ static int has_corner(const struct vg_region *r, const struct vg_sizing *sizing,
 
 int vg_region_has_cell(const struct vg_region *r,
                        const struct vg_sizing *sizing, const double a[3],
-                       const double b[3], const double c[3],
-                       const double d[3])
+                       const double b[3], const double c[3], const double d[3])
 {
-  const double *corner[4] = {a, b, c, d};
-  double far[4] = {0};
+  const double *corner[4] = { a, b, c, d };
+  double far[4] = { 0 };
   int crosses = 1;
 
   for (int i = 0; i < r->n_plane; i++) {
@@ -303,8 +304,9 @@ vg_status vg_region_cache_init(struct vg_region_cache *cache,
   assert(cache && sizing && (x || !n));
   assert(vg_region_is_sound(region));
   vg_sizing_range(sizing, &least, &most);
-  *cache = (struct vg_region_cache){region, sizing, x, vg_sizing_slope(sizing),
-                             most - least, m, NULL, NULL};
+  *cache = (struct vg_region_cache){
+    region, sizing, x, vg_sizing_slope(sizing), most - least, m, NULL, NULL
+  };
   cache->side = vg_alloc(n, (size_t)(m ? m : 1) * sizeof *cache->side);
   cache->spacing = vg_alloc(n, sizeof *cache->spacing);
   if (!cache->side || !cache->spacing)
@@ -374,8 +376,8 @@ static int cache_meets(const struct vg_region_cache *cache, const uint32_t v[3],
                        double band, int is_sure)
 {
   const struct vg_region *r = cache->region;
-  const double (*x)[3] = cache->x;
-  const double *corner[3] = {x[v[0]], x[v[1]], x[v[2]]};
+  const double(*x)[3] = cache->x;
+  const double *corner[3] = { x[v[0]], x[v[1]], x[v[2]] };
   const double *h = cache->spacing;
   double least = h[v[0]] < h[v[1]] ? h[v[0]] : h[v[1]];
   double most = h[v[0]] < h[v[1]] ? h[v[1]] : h[v[0]];
@@ -398,16 +400,14 @@ static int cache_meets(const struct vg_region_cache *cache, const uint32_t v[3],
 }
 
 int vg_region_cache_meets(const struct vg_region_cache *cache,
-                          const uint32_t v[3],
-                          double band)
+                          const uint32_t v[3], double band)
 {
   assert(cache->region && cache->side && cache->spacing);
   return cache_meets(cache, v, band, 1);
 }
 
 int vg_region_cache_may_meet(const struct vg_region_cache *cache,
-                             const uint32_t v[3],
-                             double band)
+                             const uint32_t v[3], double band)
 {
   assert(cache->region && cache->side && cache->spacing);
   return cache_meets(cache, v, band, 0);

@@ -14,40 +14,45 @@
 #include "base/status.h"
 #include "core/sizing/sizing.h"
 
-struct vg_plane { double normal[3], offset; };  /* normal . x = offset */
+struct vg_plane {
+  double normal[3], offset;
+}; /* normal . x = offset */
 
 enum { VG_REGION_WALLS = 12 };
 
 struct vg_region {
-  int n_plane;               /* 0: everything */
+  int n_plane; /* 0: everything */
   int n_wall;
-  struct vg_plane plane[2];  /* unit normals, here and below; at right
-                                angles */
-  double reach;              /* cells within so many spacings belong to it,
-                                besides those that cross every plane */
-  double wide;               /* the front must be known, and cells are told
-                                from outside, so many spacings farther than
-                                elsewhere: triangles reach far beyond */
-  struct vg_plane wall[VG_REGION_WALLS];  /* [n_wall] convex: all corners of a
-                                cell must have normal . x > offset. Regions
-                                with walls between them cannot overlap */
+  struct vg_plane plane[2]; /* unit normals, here and below; at right
+                               angles */
+  double reach;             /* cells within so many spacings belong to it,
+                               besides those that cross every plane */
+  double wide;              /* the front must be known, and cells are told
+                               from outside, so many spacings farther than
+                               elsewhere: triangles reach far beyond */
+  struct vg_plane wall[VG_REGION_WALLS]; /* [n_wall] convex: all corners of a
+                               cell must have normal . x > offset. Regions
+                               with walls between them cannot overlap */
 };
-#define VG_REGION_ALL { 0 }
+#define VG_REGION_ALL                                                          \
+  {                                                                            \
+    0                                                                          \
+  }
 _Static_assert(sizeof(struct vg_region) ==
-               24 + (2 + VG_REGION_WALLS) * sizeof(struct vg_plane),
+                 24 + (2 + VG_REGION_WALLS) * sizeof(struct vg_plane),
                "regions have no padding: they are sent, and keys, as bytes");
 
 /* Beyond the reach, in spacings at the foot: how far points are placed, so
  * that the region's cells get their final shape; how far cells are told from
  * outside; how far front faces must be known. */
-#define VG_BAND_PLACE 1.3   /* K17 */
-#define VG_BAND_FLUID 1.9   /* K18 */
+#define VG_BAND_PLACE 1.3 /* K17 */
+#define VG_BAND_FLUID 1.9 /* K18 */
 #define VG_BAND_FRONT 2.6
 
 /* The share of it all beyond walls. No cell may cross them, so only what is
  * next to them matters; farther off is what other regions have made, whose
  * other side would have to be told from outside through them. */
-#define VG_BEYOND_WALLS 0.5   /* K19 */
+#define VG_BEYOND_WALLS 0.5 /* K19 */
 
 /** What the members above promise: numbers of planes and walls in range, unit
  * normals, planes at right angles, no negative distance. For assertions. */
@@ -100,14 +105,14 @@ int vg_region_may_meet(const struct vg_region *r,
 /** Distances of many points from a region, measured once: questions about
  * their triangles then cost no look-up of sizes. */
 struct vg_region_cache {
-  const struct vg_region *region;    /* borrowed, as the next two */
+  const struct vg_region *region; /* borrowed, as the next two */
   const struct vg_sizing *sizing;
   const double (*x)[3];
-  double slope, range;       /* of the sizing: bounds of its change with the
-                                distance, and of any */
-  int n_side;                /* of a point: of all planes, then all walls */
-  double *side;              /* [points][n_side] */
-  double *spacing;           /* [points] at the foot */
+  double slope, range; /* of the sizing: bounds of its change with the
+                          distance, and of any */
+  int n_side;          /* of a point: of all planes, then all walls */
+  double *side;        /* [points][n_side] */
+  double *spacing;     /* [points] at the foot */
 };
 
 /** VG_ERR_MEMORY on refusal. Call vg_region_cache_release in any case. */
@@ -119,19 +124,16 @@ void vg_region_cache_release(struct vg_region_cache *cache);
 
 /** vg_region_meets of points by their numbers. */
 int vg_region_cache_meets(const struct vg_region_cache *cache,
-                          const uint32_t v[3],
-                          double band);
+                          const uint32_t v[3], double band);
 
 /** vg_region_may_meet likewise. */
 int vg_region_cache_may_meet(const struct vg_region_cache *cache,
-                             const uint32_t v[3],
-                             double band);
+                             const uint32_t v[3], double band);
 
 /** Does the cell a b c d, within the walls, cross every plane or have a corner
  * within reach? */
 int vg_region_has_cell(const struct vg_region *r,
                        const struct vg_sizing *sizing, const double a[3],
-                       const double b[3], const double c[3],
-                       const double d[3]);
+                       const double b[3], const double c[3], const double d[3]);
 
 #endif

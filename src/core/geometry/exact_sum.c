@@ -32,11 +32,11 @@ static void add_scaled(struct vg_exact *s, unsigned e, int64_t m)
   uint64_t minus = m < 0 ? UINT64_MAX : 0;
   unsigned at = e ? e - 1 : 0;
   unsigned __int128 v = (unsigned __int128)(((uint64_t)m ^ minus) - minus)
-                        << (at & 31);
+                     << (at & 31);
 
   for (unsigned k = 0; k < 3; k++, v >>= 32)
-    s->limb[(at >> 5) + k] += (((uint64_t)v & UINT64_C(0xFFFFFFFF)) ^ minus)
-                              - minus;
+    s->limb[(at >> 5) + k] += (((uint64_t)v & UINT64_C(0xFFFFFFFF)) ^ minus) -
+                              minus;
 }
 
 static void add_some(struct vg_exact *s, size_t n, const double *x)
@@ -97,6 +97,7 @@ double vg_exact_value(const struct vg_exact *s)
   low = i - 2;
   for (int k = i; k >= low; k--) top = top << 32 | limb[k];
   /* What is below only says on which side of a tie the sum is. */
-  for (int k = 0; k < low; k++) if (limb[k]) top |= 1;
+  for (int k = 0; k < low; k++)
+    if (limb[k]) top |= 1;
   return ldexp(negative ? -(double)top : (double)top, 32 * low - 1074);
 }

@@ -18,8 +18,8 @@
 
 /** Zeroed: the sum of nothing. For up to 2^30 summands. */
 struct vg_exact {
-  uint64_t limb[VG_EXACT_LIMBS];  /* two's complement */
-  uint64_t n_odd;                 /* summands that were not finite */
+  uint64_t limb[VG_EXACT_LIMBS]; /* two's complement */
+  uint64_t n_odd;                /* summands that were not finite */
 };
 
 static inline void vg_exact_add(struct vg_exact *s, double x)

@@ -6,15 +6,15 @@
 
 #include "base/memory.h"
 
-enum { PER_STEP = 4 };   /* samples of the size per step */
+enum { PER_STEP = 4 }; /* samples of the size per step */
 
 struct sampled {
   size_t n, cap_s, cap_f;
-  double *s, *f;   /* f: number of steps up to s, as a real number */
+  double *s, *f; /* f: number of steps up to s, as a real number */
 };
 
-static vg_status sample(double len, double (*size)(void *, double),
-                        void *user, struct sampled *a, struct vg_error *err)
+static vg_status sample(double len, double (*size)(void *, double), void *user,
+                        struct sampled *a, struct vg_error *err)
 {
   double s = 0, f = 0, h = size(user, 0);
 
@@ -22,10 +22,12 @@ static vg_status sample(double len, double (*size)(void *, double),
     double ds = h / PER_STEP, next, h_next;
 
     if (!(h > len * 1e-8))
-      return vg_fail(err, VG_ERR_INPUT, "a curve of length %g would need "
-                     "edges of length %g; check the spacing there", len, h);
-    if (vg_reserve(&a->s, &a->cap_s, a->n + 1, sizeof *a->s)
-        || vg_reserve(&a->f, &a->cap_f, a->n + 1, sizeof *a->f))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "a curve of length %g would need "
+                     "edges of length %g; check the spacing there",
+                     len, h);
+    if (vg_reserve(&a->s, &a->cap_s, a->n + 1, sizeof *a->s) ||
+        vg_reserve(&a->f, &a->cap_f, a->n + 1, sizeof *a->f))
       return vg_fail_memory(err, "the points of a curve");
     a->s[a->n] = s;
     a->f[a->n++] = f;
@@ -65,8 +67,8 @@ vg_status vg_graded_steps(double len, double (*size)(void *user, double s),
     const double f = total * ((double)i / (double)count);
 
     while (k + 2 < a.n && a.f[k + 1] <= f) k++;
-    out[i] = a.s[k] + (a.s[k + 1] - a.s[k]) * (f - a.f[k])
-                      / (a.f[k + 1] - a.f[k]);
+    out[i] = a.s[k] +
+             (a.s[k + 1] - a.s[k]) * (f - a.f[k]) / (a.f[k + 1] - a.f[k]);
   }
   out[0] = 0;
   out[count] = len;

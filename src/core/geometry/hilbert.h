@@ -8,7 +8,10 @@
 
 #include "base/status.h"
 
-struct vg_key { uint64_t key; uint32_t index; };
+struct vg_key {
+  uint64_t key;
+  uint32_t index;
+};
 
 /** Spread the 21 bits of q so that two clear bits follow each of them. Three
  * such numbers make a Morton code, x | y << 1 | z << 2 (Morton, IBM Ltd.,

@@ -247,8 +247,7 @@ double vg_orient3d_exact(const double a[3], const double b[3],
     int i = (k + 1) % 3, j = (k + 2) % 3;
 
     det = dd_add(det, dd_mul(r[k], dd_minor(p[i], q[j], p[j], q[i])));
-    per += fabs(r[k].hi) * (fabs(p[i].hi * q[j].hi)
-                            + fabs(p[j].hi * q[i].hi));
+    per += fabs(r[k].hi) * (fabs(p[i].hi * q[j].hi) + fabs(p[j].hi * q[i].hi));
   }
   if (per == 0) return 0;
   /* To first order 8 + 4 + 8 + 3 * 4 = 32 u^2 per; doubled. */
@@ -414,10 +413,10 @@ static double insphere_64(const double *const p[5])
   da = v[3][0] * v[0][1] - v[0][0] * v[3][1];
   ac = v[0][0] * v[2][1] - v[2][0] * v[0][1];
   bd = v[1][0] * v[3][1] - v[3][0] * v[1][1];
-  return (double)((l[2] * (v[3][2] * ab + v[0][2] * bd + v[1][2] * da)
-                   - l[3] * (v[0][2] * bc - v[1][2] * ac + v[2][2] * ab))
-                  + (l[0] * (v[1][2] * cd - v[2][2] * bd + v[3][2] * bc)
-                     - l[1] * (v[2][2] * da + v[3][2] * ac + v[0][2] * cd)));
+  return (double)((l[2] * (v[3][2] * ab + v[0][2] * bd + v[1][2] * da) -
+                   l[3] * (v[0][2] * bc - v[1][2] * ac + v[2][2] * ab)) +
+                  (l[0] * (v[1][2] * cd - v[2][2] * bd + v[3][2] * bc) -
+                   l[1] * (v[2][2] * da + v[3][2] * ac + v[0][2] * cd)));
 }
 #endif
 
@@ -472,8 +471,7 @@ static int lift2(int m, const double *e, const struct vec *p, double *h)
   for (int k = 0; k < 2; k++) {
     int ns = ex_mul(m, e, p->n[k], p->e[k], s), nt[2] = { 0, 0 };
 
-    for (int i = 0; i < p->n[k]; i++)
-      nt[i] = ex_scale(ns, s, p->e[k][i], t[i]);
+    for (int i = 0; i < p->n[k]; i++) nt[i] = ex_scale(ns, s, p->e[k][i], t[i]);
     n[k] = ex_sum(nt[0], t[0], nt[1], t[1], u[k]);
   }
   return ex_sum(n[0], u[0], n[1], u[1], h);

@@ -51,9 +51,9 @@ static inline double vg_orient3d(const double a[3], const double b[3],
   double det = dx * (yz - zy) + dy * (zx - xz) + dz * (xy - yx);
   /* Error: 8 roundings of u = 2^-53 each on any path, 8 u = 8.882e-16. One
    * comparison, since a branch on the sign itself is hard to predict. */
-  double bound = 8.9e-16 * (fabs(dx) * (fabs(yz) + fabs(zy))
-                            + fabs(dy) * (fabs(zx) + fabs(xz))
-                            + fabs(dz) * (fabs(xy) + fabs(yx)));
+  double bound = 8.9e-16 * (fabs(dx) * (fabs(yz) + fabs(zy)) +
+                            fabs(dy) * (fabs(zx) + fabs(xz)) +
+                            fabs(dz) * (fabs(xy) + fabs(yx)));
 
   if (fabs(det) > bound) return det;
   return vg_orient3d_exact(a, b, c, d);
@@ -74,10 +74,10 @@ static inline double vg_insphere(const double a[3], const double b[3],
   double ac = ax * cy - cx * ay, bd = bx * dy - dx * by;
   double al = ax * ax + ay * ay + az * az, bl = bx * bx + by * by + bz * bz;
   double cl = cx * cx + cy * cy + cz * cz, dl = dx * dx + dy * dy + dz * dz;
-  double det = (cl * (dz * ab + az * bd + bz * da)
-                - dl * (az * bc - bz * ac + cz * ab))
-               + (al * (bz * cd - cz * bd + dz * bc)
-                  - bl * (cz * da + dz * ac + az * cd));
+  double det = (cl * (dz * ab + az * bd + bz * da) -
+                dl * (az * bc - bz * ac + cz * ab)) +
+               (al * (bz * cd - cz * bd + dz * bc) -
+                bl * (cz * da + dz * ac + az * cd));
   double mx = vg_max3_abs(ax, bx, cx), my = vg_max3_abs(ay, by, cy);
   double mz = vg_max3_abs(az, bz, cz), ml = vg_max3_abs(al, bl, cl), bound;
 
@@ -114,12 +114,12 @@ static inline double vg_incircle(const double a[2], const double b[2],
   double cx = c[0] - d[0], cy = c[1] - d[1];
   double al = ax * ax + ay * ay, bl = bx * bx + by * by;
   double cl = cx * cx + cy * cy;
-  double det = al * (bx * cy - cx * by) + bl * (cx * ay - ax * cy)
-               + cl * (ax * by - bx * ay);
+  double det = al * (bx * cy - cx * by) + bl * (cx * ay - ax * cy) +
+               cl * (ax * by - bx * ay);
   /* (10 + 96 u) u times the permanent, at most 3 lifts times 2 products:
    * 60 u = 6.662e-15. */
-  double bound = 6.67e-15 * vg_max3_abs(ax, bx, cx)
-                 * vg_max3_abs(ay, by, cy) * vg_max3_abs(al, bl, cl);
+  double bound = 6.67e-15 * vg_max3_abs(ax, bx, cx) * vg_max3_abs(ay, by, cy) *
+                 vg_max3_abs(al, bl, cl);
 
   if (fabs(det) > bound) return det;
   return vg_incircle_exact(a, b, c, d);

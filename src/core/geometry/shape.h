@@ -46,8 +46,8 @@ static inline double vg_shape(const double a[3], const double b[3],
   next = (rx * rx + ry * ry + rz * rz) * nc * nd;
   least = next < least ? next : least;
   next = na * nb * nc * nd;
-  return next > 0 && fabs(square) > 1e-24 * uu * vv * ww
-         ? square * least / next : 0;
+  return next > 0 && fabs(square) > 1e-24 * uu * vv * ww ? square * least / next
+                                                         : 0;
 }
 
 /** Below this a cell counts as flat: its sign in plain arithmetic, and its

@@ -44,8 +44,8 @@ static struct plane plane_of(const double *const t[3])
   for (int k = 0; k < 3; k++) {
     int i = list[k].i, j = list[k].j;
 
-    size[k] = fabs((t[1][i] - t[0][i]) * (t[2][j] - t[0][j])
-                   - (t[1][j] - t[0][j]) * (t[2][i] - t[0][i]));
+    size[k] = fabs((t[1][i] - t[0][i]) * (t[2][j] - t[0][j]) -
+                   (t[1][j] - t[0][j]) * (t[2][i] - t[0][i]));
     if (size[k] > size[most]) most = k;
   }
   for (int k = 0; k < 2 && !turn(list[most], t[0], t[1], t[2]); k++)
@@ -72,8 +72,8 @@ static int segments_meet(struct plane e, const double *a, const double *b,
   int cda = turn(e, c, d, a), cdb = turn(e, c, d, b);
 
   if (!abc && !abd)
-    return on_segment(e, a, b, c) || on_segment(e, a, b, d)
-           || on_segment(e, c, d, a);
+    return on_segment(e, a, b, c) || on_segment(e, a, b, d) ||
+           on_segment(e, c, d, a);
   return abc * abd <= 0 && cda * cdb <= 0;
 }
 
@@ -111,8 +111,8 @@ static int edge_parts(struct plane e, const double *const a[3],
   for (int k = 0; k < 3; k++) {
     const double *p = a[k], *q = a[(k + 1) % 3];
 
-    if (own * turn(e, p, q, b[0]) < 0 && own * turn(e, p, q, b[1]) < 0
-        && own * turn(e, p, q, b[2]) < 0)
+    if (own * turn(e, p, q, b[0]) < 0 && own * turn(e, p, q, b[1]) < 0 &&
+        own * turn(e, p, q, b[2]) < 0)
       return 1;
   }
   return 0;
@@ -135,15 +135,15 @@ static int line_parts(struct plane e, const double *const a[3], int far,
   int t = own * turn(e, a[0], a[far], b[2]);
 
   if (!own || s > 0 || t > 0 || (!s && !t)) return 0;
-  return !(!s && on_ray(e, a[0], a[far], b[1]))
-         && !(!t && on_ray(e, a[0], a[far], b[2]));
+  return !(!s && on_ray(e, a[0], a[far], b[1])) &&
+         !(!t && on_ray(e, a[0], a[far], b[2]));
 }
 
 static int node_parts(struct plane e, const double *const a[3],
                       const double *const b[3])
 {
-  return line_parts(e, a, 1, b) || line_parts(e, a, 2, b)
-         || line_parts(e, b, 1, a) || line_parts(e, b, 2, a);
+  return line_parts(e, a, 1, b) || line_parts(e, a, 2, b) ||
+         line_parts(e, b, 1, a) || line_parts(e, b, 2, a);
 }
 
 /* --- in space ------------------------------------------------------------ */
@@ -197,8 +197,8 @@ static int at_node_meet(const double *const a[3], const double *const b[3])
   sa1 = side(b[0], b[1], b[2], a[1]);
   sa2 = side(b[0], b[1], b[2], a[2]);
   if (sa1 * sa2 > 0) return 0;
-  return segment_meets(b[1], b[2], sb1, sb2, a)
-         || segment_meets(a[1], a[2], sa1, sa2, b);
+  return segment_meets(b[1], b[2], sb1, sb2, a) ||
+         segment_meets(a[1], a[2], sa1, sa2, b);
 }
 
 /* Common edge a[0] a[1]: they overlap if folded flat onto each other. */
@@ -206,8 +206,8 @@ static int at_edge_meet(const double *const a[3], const double *const b[3])
 {
   struct plane e = plane_of(a);
 
-  return turn(e, a[0], a[1], a[2]) == turn(e, a[0], a[1], b[2])
-         && !side(a[0], a[1], a[2], b[2]);
+  return turn(e, a[0], a[1], a[2]) == turn(e, a[0], a[1], b[2]) &&
+         !side(a[0], a[1], a[2], b[2]);
 }
 
 int vg_triangles_meet(const double (*point)[3], const uint32_t a[3],

@@ -20,8 +20,7 @@ static inline void vg_sub(const double a[3], const double b[3], double out[3])
   for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
 }
 
-static inline void vg_cross(const double a[3], const double b[3],
-                            double out[3])
+static inline void vg_cross(const double a[3], const double b[3], double out[3])
 {
   out[0] = a[1] * b[2] - a[2] * b[1];
   out[1] = a[2] * b[0] - a[0] * b[2];
@@ -43,7 +42,8 @@ static inline double vg_unit(double a[3])
 {
   double l = vg_norm(a);
 
-  if (l > 0) for (int k = 0; k < 3; k++) a[k] /= l;
+  if (l > 0)
+    for (int k = 0; k < 3; k++) a[k] /= l;
   return l;
 }
 
@@ -88,7 +88,7 @@ static inline double vg_off_corner(const double p[3], const double a[3],
   vg_cross(edge[1], n, in);
   side[1] = vg_dot(v, in);
   if (side[0] >= 0 && side[1] >= 0) return vg_dot(v, n);
-  for (int s = 0; s < 2; s++) {   /* beside it: its edges */
+  for (int s = 0; s < 2; s++) { /* beside it: its edges */
     double along = vg_dot(v, edge[s]);
     double off = along > 0 ? sqrt(fmax(0, 1 - along * along)) : 1;
 

@@ -28,7 +28,8 @@ static inline double vg_quad_cone(const double o[3], const double a[3],
                                   const double d[3])
 {
   return (vg_tri_cone(o, a, b, c) + vg_tri_cone(o, a, c, d) +
-          vg_tri_cone(o, a, b, d) + vg_tri_cone(o, b, c, d)) / 2;
+          vg_tri_cone(o, a, b, d) + vg_tri_cone(o, b, c, d)) /
+         2;
 }
 
 /** Six times the volume that triangles tri[n] with corners in x enclose, if

@@ -69,10 +69,11 @@ static void match_face(const struct vg_slices_judgement *j,
   if (!n_seen) return;
   if (q == VG_JUDGED_WHOLE && (n_seen != 2 || !n_cell)) suspect(w, f);
   if (j->sizing && j->edges_of == q &&
-      (q == VG_JUDGED_FIELD ? n_cell == 1 : n_boundary > 0)) bar_edges(w, f);
+      (q == VG_JUDGED_FIELD ? n_cell == 1 : n_boundary > 0))
+    bar_edges(w, f);
   if (!vg_stats_face(w->figures[q], n_cell, n_boundary,
-                     !((pair[0]->flags ^ pair[1]->flags) &
-                       VG_FACE_WINDING))) return;
+                     !((pair[0]->flags ^ pair[1]->flags) & VG_FACE_WINDING)))
+    return;
   vg_union(w->parent[q], pair[0]->component, pair[1]->component);
   vg_stats_ratio(w->figures[q], pair[0]->volume, pair[1]->volume);
 }
@@ -162,13 +163,15 @@ static void number_components(struct vg_slices_judgement *j)
   }
 }
 
-static vg_status meet_faces(struct vg_slices_judgement *j,
-                            struct vg_error *err)
+static vg_status meet_faces(struct vg_slices_judgement *j, struct vg_error *err)
 {
-  struct vg_rendezvous m = {
-    j->comm, j->threads, sizeof(struct vg_face_item), 4 * sizeof(uint32_t),
-    meet_face, j, is_whole_face
-  };
+  struct vg_rendezvous m = { j->comm,
+                             j->threads,
+                             sizeof(struct vg_face_item),
+                             4 * sizeof(uint32_t),
+                             meet_face,
+                             j,
+                             is_whole_face };
   vg_status st;
 
   number_components(j);
@@ -192,8 +195,7 @@ static void meet_edge(void *context, const unsigned char *item, size_t n,
 
   for (size_t i = 1; i < n; i++)
     if (e[i].ratio < least) least = e[i].ratio;
-  if (least >= 0)
-    vg_stats_edge(j->worker[worker].figures[j->edges_of], least);
+  if (least >= 0) vg_stats_edge(j->worker[worker].figures[j->edges_of], least);
 }
 
 static void meet_place(void *context, const unsigned char *item, size_t n,
@@ -219,13 +221,15 @@ static void meet_place_key(void *context, const unsigned char *item, size_t n,
   else w->st = vg_fail_memory(&w->err, "points at one place");
 }
 
-static vg_status meet_edges(struct vg_slices_judgement *j,
-                            struct vg_error *err)
+static vg_status meet_edges(struct vg_slices_judgement *j, struct vg_error *err)
 {
-  struct vg_rendezvous m = {
-    j->comm, j->threads, sizeof(struct vg_edge_item), 2 * sizeof(uint32_t),
-    meet_edge, j, NULL
-  };
+  struct vg_rendezvous m = { j->comm,
+                             j->threads,
+                             sizeof(struct vg_edge_item),
+                             2 * sizeof(uint32_t),
+                             meet_edge,
+                             j,
+                             NULL };
 
   return vg_rendezvous_run(&m, &j->worker[0].edge, (size_t)j->n_worker,
                            sizeof *j->worker, err);
@@ -273,7 +277,7 @@ done:
 /* Places themselves, of the points that may be at one with another. */
 struct crowd {
   struct vg_slices_judgement *j;
-  const struct vg_bytes *key;    /* n keys, sorted */
+  const struct vg_bytes *key; /* n keys, sorted */
   struct vg_items place;
 };
 
@@ -298,10 +302,13 @@ static vg_status count_duplicates(struct vg_slices_judgement *j,
                                   const struct vg_bytes *key,
                                   struct vg_error *err)
 {
-  struct vg_rendezvous m = {
-    j->comm, j->threads, sizeof(struct vg_place_item),
-    sizeof(struct vg_place_item), meet_place, j, NULL
-  };
+  struct vg_rendezvous m = { j->comm,
+                             j->threads,
+                             sizeof(struct vg_place_item),
+                             sizeof(struct vg_place_item),
+                             meet_place,
+                             j,
+                             NULL };
   struct crowd c = { j, key, { 0 } };
   vg_status st = vg_slices_each(j->s, 1, list_crowded, &c, err);
 
@@ -319,7 +326,7 @@ static vg_status meet_places(struct vg_slices_judgement *j,
 {
   struct vg_rendezvous m = {
     j->comm, j->threads, sizeof(uint64_t), sizeof(uint64_t), meet_place_key,
-    j, NULL
+    j,       NULL
   };
   struct vg_bytes crowd = { 0, NULL };
   vg_status st;
@@ -347,7 +354,9 @@ done:
 
 /* --- components ---------------------------------------------------------- */
 
-struct link { uint32_t a, b; };
+struct link {
+  uint32_t a, b;
+};
 
 /* Links that the ranks found: what joins components of slices. */
 static vg_status list_links(const struct vg_slices_judgement *j, int q,

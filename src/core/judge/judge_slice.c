@@ -9,10 +9,10 @@ struct work {
   struct vg_slices_judgement *j;
   struct vg_judge_worker *w;
   const struct vg_slice *slice;
-  struct vg_mesh view;       /* of the slice: borrowed points and cells */
+  struct vg_mesh view; /* of the slice: borrowed points and cells */
   struct vg_stats *f;
   struct vg_unpaired unpaired;
-  size_t at, n_cell;         /* number of the slice; its cells */
+  size_t at, n_cell; /* number of the slice; its cells */
   int is_field;
 };
 
@@ -26,7 +26,8 @@ void vg_face_item_set(struct vg_face_item *f, const uint32_t node[4])
   int n = node[3] == VG_NO_NODE ? 3 : 4, low = 0;
   uint32_t next, last;
 
-  for (int i = 1; i < n; i++) if (node[i] < node[low]) low = i;
+  for (int i = 1; i < n; i++)
+    if (node[i] < node[low]) low = i;
   next = node[(low + 1) % n];
   last = node[(low + n - 1) % n];
   f->node[0] = node[low];
@@ -57,8 +58,8 @@ static int is_suspect(const void *context, const uint32_t local[4])
   struct vg_face_item f;
 
   item_of_local(k, local, &f);
-  return bsearch(f.node, k->j->suspect, k->j->n_suspect,
-                 sizeof *k->j->suspect, vg_face_key_order) != NULL;
+  return bsearch(f.node, k->j->suspect, k->j->n_suspect, sizeof *k->j->suspect,
+                 vg_face_key_order) != NULL;
 }
 
 /* The arrays of a mesh are not const, but none of the judges writes. */
@@ -187,8 +188,8 @@ static vg_status judge_cells(struct work *k, struct vg_error *err)
 
   if (!volume) return vg_fail_memory(err, "the volumes of the cells");
   vg_judge_shape(&k->view, k->slice->cell_at[VG_SLICE_TET], volume, k->f);
-  VG_TRY(vg_judge_faces(&k->view, volume, k->f, &k->unpaired, &n_component,
-                        err));
+  VG_TRY(
+    vg_judge_faces(&k->view, volume, k->f, &k->unpaired, &n_component, err));
   j->n_component[k->at] = (uint32_t)n_component;
   if (k->is_field) k->w->n_field_component += n_component;
   if (j->sizing && (k->is_field || j->edges_of == VG_JUDGED_WHOLE))

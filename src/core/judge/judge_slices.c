@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "core/judge/judge_slices_parts.h"
 
-#define MOST_WORKERS 256     /* of vg_parallel_for */
+#define MOST_WORKERS 256 /* of vg_parallel_for */
 
 /* Slices on one rank, by the bits left for their number. */
 #define MOST_SLICES ((size_t)1 << (32 - VG_FACE_BITS))
@@ -73,9 +73,11 @@ static vg_status prepare(struct vg_slices_judgement *j, struct vg_error *err)
   vg_status st;
 
   if (j->s->n_slice >= MOST_SLICES || j->s->n_point > UINT32_MAX)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu slices of %llu points are "
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%zu slices of %llu points are "
                    "too many for the check of the mesh (limits 2^29 and "
-                   "2^32)", j->s->n_slice, (unsigned long long)j->s->n_point);
+                   "2^32)",
+                   j->s->n_slice, (unsigned long long)j->s->n_point);
   VG_TRY(make_workers(j, err));
   VG_TRY(make_places(j, err));
   j->n_word = (size_t)(j->s->n_point / 64 + 1);
@@ -84,8 +86,7 @@ static vg_status prepare(struct vg_slices_judgement *j, struct vg_error *err)
     j->used[q] = vg_calloc(j->n_word, sizeof *j->used[q]);
     if (!j->used[q]) st = VG_ERR_MEMORY;
   }
-  if (!j->n_component || st < 0)
-    st = vg_fail_memory(err, "the points in use");
+  if (!j->n_component || st < 0) st = vg_fail_memory(err, "the points in use");
 done:
   return st;
 }
@@ -148,8 +149,8 @@ static vg_status take_census(struct vg_slices_judgement *j, struct census *c,
 
     b.n_point = (size_t)s->n_point;
     b.n_tet = b.n_pyr = b.n_pri = b.n_hex = 0;
-    j->worker[0].figures[VG_JUDGED_WHOLE]->n.bad_index +=
-      vg_count_bad_index(&b);
+    j->worker[0].figures[VG_JUDGED_WHOLE]->n.bad_index += vg_count_bad_index(
+      &b);
   }
   for (int i = 0; i < j->n_worker; i++) {
     const struct vg_judge_worker *w = &j->worker[i];
@@ -163,18 +164,17 @@ static vg_status take_census(struct vg_slices_judgement *j, struct census *c,
   st = vg_comm_sum(j->comm, sizeof *c / sizeof(uint64_t), (uint64_t *)c, err);
   if (st < 0) return st;
   if (c->n_point == s->n_point &&
-      !memcmp(c->n_cell, s->n_cell, sizeof c->n_cell)) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "the slices own %llu points, %llu "
-                 "tetrahedra, %llu pyramids and %llu prisms, but the mesh has "
-                 "%llu, %llu, %llu and %llu",
-                 (unsigned long long)c->n_point,
-                 (unsigned long long)c->n_cell[0],
-                 (unsigned long long)c->n_cell[1],
-                 (unsigned long long)c->n_cell[2],
-                 (unsigned long long)s->n_point,
-                 (unsigned long long)s->n_cell[0],
-                 (unsigned long long)s->n_cell[1],
-                 (unsigned long long)s->n_cell[2]);
+      !memcmp(c->n_cell, s->n_cell, sizeof c->n_cell))
+    return VG_OK;
+  return vg_fail(
+    err, VG_ERR_INPUT,
+    "the slices own %llu points, %llu "
+    "tetrahedra, %llu pyramids and %llu prisms, but the mesh has "
+    "%llu, %llu, %llu and %llu",
+    (unsigned long long)c->n_point, (unsigned long long)c->n_cell[0],
+    (unsigned long long)c->n_cell[1], (unsigned long long)c->n_cell[2],
+    (unsigned long long)s->n_point, (unsigned long long)s->n_cell[0],
+    (unsigned long long)s->n_cell[1], (unsigned long long)s->n_cell[2]);
 }
 
 /* Turns numbers of components of each slice into the number of the first,
@@ -199,7 +199,8 @@ static vg_status number_slices(struct vg_slices_judgement *j,
   }
   j->n_all_field = n[size];
   if (j->n_all > UINT32_MAX) {
-    st = vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh falls into too many "
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the mesh falls into too many "
                  "parts for its check (limit 2^32)");
     goto done;
   }
@@ -268,8 +269,7 @@ done:
   return st;
 }
 
-static vg_status count_used(struct vg_slices_judgement *j,
-                            struct vg_error *err)
+static vg_status count_used(struct vg_slices_judgement *j, struct vg_error *err)
 {
   int me = vg_comm_rank(j->comm);
   size_t first = first_word(j, me), end = first_word(j, me + 1);
@@ -339,8 +339,8 @@ static vg_status sum_stats(struct vg_slices_judgement *j, int q,
   extreme[0] = -f->angle_min;
   extreme[1] = f->angle_max;
   extreme[2] = -f->radius_ratio_min;
-  VG_TRY(vg_comm_sum(j->comm, sizeof f->n / sizeof(uint64_t),
-                     (uint64_t *)&f->n, err));
+  VG_TRY(vg_comm_sum(j->comm, sizeof f->n / sizeof(uint64_t), (uint64_t *)&f->n,
+                     err));
   VG_TRY(vg_comm_max(j->comm, 3, extreme, err));
   VG_TRY(gather_worst(j->comm, f, err));
   f->angle_min = -extreme[0];
@@ -372,9 +372,9 @@ done:
   return st;
 }
 
-static void report_all(struct vg_slices_judgement *j,
-                       const size_t *n_component, uint64_t front_faces,
-                       double enclosed, struct vg_mesh_report *r)
+static void report_all(struct vg_slices_judgement *j, const size_t *n_component,
+                       uint64_t front_faces, double enclosed,
+                       struct vg_mesh_report *r)
 {
   for (int q = 0; q < j->n_judged; q++)
     vg_stats_report(j->worker[0].figures[q], n_component[q],
@@ -384,16 +384,15 @@ static void report_all(struct vg_slices_judgement *j,
   if (j->n_judged == 1) return;
   r += VG_JUDGED_FIELD;
   r->open_face = (size_t)(r->open_face > front_faces
-                          ? r->open_face - front_faces
-                          : front_faces - r->open_face);
+                            ? r->open_face - front_faces
+                            : front_faces - r->open_face);
   r->enclosed = r->volume;
   vg_report_conclude(r);
 }
 
 /* Without indices and places nothing else means anything. */
 static vg_status report_unsound(struct vg_slices_judgement *j,
-                                struct vg_mesh_report *r,
-                                struct vg_error *err)
+                                struct vg_mesh_report *r, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
@@ -421,8 +420,7 @@ static vg_status judge(struct vg_slices_judgement *j, uint64_t front_faces,
 
   VG_TRY(vg_comm_agree(j->comm, st, err));
   VG_TRY(take_census(j, &c, err));
-  if (c.bad_index || c.not_finite ||
-      !(c.n_cell[0] + c.n_cell[1] + c.n_cell[2]))
+  if (c.bad_index || c.not_finite || !(c.n_cell[0] + c.n_cell[1] + c.n_cell[2]))
     return report_unsound(j, r, err);
   VG_TRY(number_slices(j, err));
   st = make_parents(j, err);
@@ -475,8 +473,7 @@ static vg_status unpack_suspects(const struct vg_bytes *all, size_t size,
 
 /* Of all ranks. Each is named once: its items met on one rank. */
 static vg_status gather_suspects(struct vg_slices_judgement *j, size_t *n,
-                                 struct vg_face_key **key,
-                                 struct vg_error *err)
+                                 struct vg_face_key **key, struct vg_error *err)
 {
   size_t size = (size_t)vg_comm_size(j->comm);
   struct vg_bytes mine = { 0, NULL };
@@ -500,10 +497,12 @@ static vg_status judge_again(struct vg_slices_judgement *j,
                              uint64_t front_faces, struct vg_mesh_report *r,
                              struct vg_error *err)
 {
-  struct vg_slices_judgement again = {
-    .comm = j->comm, .s = j->s, .sizing = j->sizing, .threads = j->threads,
-    .n_judged = j->n_judged, .edges_of = j->edges_of
-  };
+  struct vg_slices_judgement again = { .comm = j->comm,
+                                       .s = j->s,
+                                       .sizing = j->sizing,
+                                       .threads = j->threads,
+                                       .n_judged = j->n_judged,
+                                       .edges_of = j->edges_of };
   vg_status st;
 
   VG_TRY(gather_suspects(j, &again.n_suspect, &again.suspect, err));
@@ -521,12 +520,11 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           int threads, struct vg_mesh_report *whole,
                           struct vg_mesh_report *field, struct vg_error *err)
 {
-  return vg_slices_judge_with(comm, s, front_faces, sizing, threads, NULL,
-                              NULL, whole, field, err);
+  return vg_slices_judge_with(comm, s, front_faces, sizing, threads, NULL, NULL,
+                              whole, field, err);
 }
 
-vg_status vg_slices_judge_with(struct vg_comm *comm,
-                               const struct vg_slices *s,
+vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
                                uint64_t front_faces,
                                const struct vg_sizing *sizing, int threads,
                                vg_slice_body body, void *context,
@@ -536,12 +534,15 @@ vg_status vg_slices_judge_with(struct vg_comm *comm,
 {
   assert(s->boundary && whole);
   assert(threads >= 0);
-  struct vg_slices_judgement j = {
-    .comm = comm, .s = s, .sizing = sizing, .threads = threads,
-    .body = body, .context = context,
-    .n_judged = field ? VG_JUDGED : 1,
-    .edges_of = field ? VG_JUDGED_FIELD : VG_JUDGED_WHOLE
-  };
+  struct vg_slices_judgement j = { .comm = comm,
+                                   .s = s,
+                                   .sizing = sizing,
+                                   .threads = threads,
+                                   .body = body,
+                                   .context = context,
+                                   .n_judged = field ? VG_JUDGED : 1,
+                                   .edges_of = field ? VG_JUDGED_FIELD
+                                                     : VG_JUDGED_WHOLE };
   struct vg_mesh_report r[VG_JUDGED];
   vg_status st = prepare(&j, err);
 

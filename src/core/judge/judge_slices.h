@@ -45,8 +45,7 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
  * hand, once if the mesh is valid: so a slice needs to be made once only. As
  * in vg_slices_each; where its indices are bad or places not finite a slice is
  * left out. A failure of body fails the call, on all ranks. */
-vg_status vg_slices_judge_with(struct vg_comm *comm,
-                               const struct vg_slices *s,
+vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
                                uint64_t front_faces,
                                const struct vg_sizing *sizing, int threads,
                                vg_slice_body body, void *context,

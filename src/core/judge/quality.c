@@ -14,12 +14,28 @@
 
 /* Inward faces of formats.md 2.3, each turned around. */
 const struct vg_cell_faces vg_cell_faces[VG_CELL_KINDS] = {
-  { 4, 4, 4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}} },
-  { 5, 5, 4, {{0, 2, 1}, {1, 2, 4}, {2, 3, 4}, {0, 3, 2}, {0, 1, 4, 3}} },
-  { 6, 5, 2, {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4},
-              {0, 3, 5, 2}} },
-  { 8, 6, 0, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5},
-              {2, 3, 7, 6}, {0, 4, 7, 3}} },
+  { 4, 4, 4, { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 0, 3, 2 } } },
+  { 5,
+    5,
+    4,
+    { { 0, 2, 1 }, { 1, 2, 4 }, { 2, 3, 4 }, { 0, 3, 2 }, { 0, 1, 4, 3 } } },
+  { 6,
+    5,
+    2,
+    { { 0, 2, 1 },
+      { 3, 4, 5 },
+      { 0, 1, 4, 3 },
+      { 1, 2, 5, 4 },
+      { 0, 3, 5, 2 } } },
+  { 8,
+    6,
+    0,
+    { { 0, 3, 2, 1 },
+      { 4, 5, 6, 7 },
+      { 0, 1, 5, 4 },
+      { 1, 2, 6, 5 },
+      { 2, 3, 7, 6 },
+      { 0, 4, 7, 3 } } },
 };
 
 struct vg_cells vg_mesh_cells(const struct vg_mesh *m, int kind)
@@ -97,8 +113,8 @@ static int same_place(const double a[3], const double b[3])
 
 /* Points at the place of an earlier one. Points that coincide with one in the
  * table are not entered, so a crowd at one place stays cheap. */
-static vg_status count_duplicates(const struct vg_mesh *m,
-                                  struct vg_counts *n, struct vg_error *err)
+static vg_status count_duplicates(const struct vg_mesh *m, struct vg_counts *n,
+                                  struct vg_error *err)
 {
   struct vg_table t;
 
@@ -120,7 +136,7 @@ static vg_status count_duplicates(const struct vg_mesh *m,
 double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
                           const double hi[3])
 {
-  const double (*x)[3] = (const double (*)[3])m->point;
+  const double(*x)[3] = (const double(*)[3])m->point;
   struct vg_exact sum = { .n_odd = 0 };
   double o[3];
 
@@ -133,16 +149,14 @@ double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
   for (size_t i = 0; i < m->n_quad; i++) {
     const uint32_t *n = m->quad[i];
 
-    vg_exact_add(&sum, -vg_quad_cone(o, x[n[0]], x[n[1]], x[n[2]],
-                                     x[n[3]]));
+    vg_exact_add(&sum, -vg_quad_cone(o, x[n[0]], x[n[1]], x[n[2]], x[n[3]]));
   }
   return vg_exact_value(&sum) / 6;
 }
 
 static vg_status judge_all(const struct vg_mesh *m,
-                           const struct vg_sizing *sizing,
-                           struct vg_stats *f, size_t *n_component,
-                           struct vg_error *err)
+                           const struct vg_sizing *sizing, struct vg_stats *f,
+                           size_t *n_component, struct vg_error *err)
 {
   float *volume = NULL;
   vg_status st;
@@ -180,7 +194,7 @@ vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
   f->n.n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
   f->n.bad_index = vg_count_bad_index(m);
   f->n.not_finite = vg_count_not_finite(m->n_point,
-                                        (const double (*)[3])m->point);
+                                        (const double(*)[3])m->point);
   /* Without indices and places nothing else means anything. */
   sound = !f->n.bad_index && !f->n.not_finite && f->n.n_cell;
   if (sound) VG_TRY(judge_all(m, sizing, f, &n_component, err));

@@ -9,46 +9,46 @@
 #include "core/mesh/mesh.h"
 #include "core/sizing/sizing.h"
 
-#define VG_HIST_ANGLE 36     /* bins of 5 degrees */
-#define VG_HIST_UNIT 20      /* bins of 0.05 */
+#define VG_HIST_ANGLE 36 /* bins of 5 degrees */
+#define VG_HIST_UNIT 20  /* bins of 0.05 */
 #define VG_WORST 10
 
 struct vg_worst_cell {
-  size_t cell;               /* 0-based: tets, pyramids, prisms, hexes */
-  double value, at[3];       /* minimum dihedral in degrees, centroid */
+  size_t cell;         /* 0-based: tets, pyramids, prisms, hexes */
+  double value, at[3]; /* minimum dihedral in degrees, centroid */
 };
 
 struct vg_mesh_report {
   /* validity: all zero in a valid mesh */
   size_t bad_index, unused_point, not_finite, duplicate_point;
-  size_t not_positive;       /* cells of zero or negative volume */
-  size_t open_face;          /* cell faces without neighbour or boundary */
-  size_t crowded_face;       /* faces of more than two cells */
-  size_t same_side_face;     /* neighbours on the same side of their face */
-  size_t orphan_boundary;    /* boundary faces without a cell */
-  size_t outward_boundary;   /* boundary faces that point out of the fluid */
-  size_t n_component;        /* face-connected components of cells */
+  size_t not_positive;     /* cells of zero or negative volume */
+  size_t open_face;        /* cell faces without neighbour or boundary */
+  size_t crowded_face;     /* faces of more than two cells */
+  size_t same_side_face;   /* neighbours on the same side of their face */
+  size_t orphan_boundary;  /* boundary faces without a cell */
+  size_t outward_boundary; /* boundary faces that point out of the fluid */
+  size_t n_component;      /* face-connected components of cells */
   double volume, enclosed, volume_error;
   int is_valid;
   /* size */
   size_t n_point, n_cell, n_inner_face;
   /* quality, over tetrahedra; angles are dihedral, in degrees */
   double angle_min, angle_max;
-  double angle_min_p1;       /* 1st percentile of the smallest per cell */
-  double below[5];           /* % of cells with min below 5 10 15 20 30 */
-  double above[3];           /* % of cells with max above 150 160 170 */
+  double angle_min_p1; /* 1st percentile of the smallest per cell */
+  double below[5];     /* % of cells with min below 5 10 15 20 30 */
+  double above[3];     /* % of cells with max above 150 160 170 */
   double radius_ratio_mean, radius_ratio_min; /* 3 r_in / R_circ */
-  double mean_ratio_mean;    /* 12 (3V)^(2/3) / sum of squared edges */
-  double edge_length;        /* mean over cells of the root mean square edge */
-  double volume_ratio[3];    /* face neighbours: median, 95 %, maximum */
+  double mean_ratio_mean; /* 12 (3V)^(2/3) / sum of squared edges */
+  double edge_length;     /* mean over cells of the root mean square edge */
+  double volume_ratio[3]; /* face neighbours: median, 95 %, maximum */
   size_t hist_angle_min[VG_HIST_ANGLE], hist_angle_max[VG_HIST_ANGLE];
   size_t hist_radius_ratio[VG_HIST_UNIT];
   struct vg_worst_cell worst[VG_WORST];
   size_t n_worst;
   /* interior edges against the field (has_sizing) */
   int has_sizing;
-  double edge_mean;          /* mean of length / target */
-  double edge_within;        /* % within [0.7, 1.5] of the target */
+  double edge_mean;               /* mean of length / target */
+  double edge_within;             /* % within [0.7, 1.5] of the target */
   size_t hist_edge[VG_HIST_UNIT]; /* length / target, bins of 0.1 */
 };
 

@@ -21,30 +21,35 @@
 struct edges {
   const struct vg_mesh *m;
   const struct vg_sizing *sizing;
-  uint32_t *count;       /* [n_point] entries by lower node; then ends */
-  uint32_t *n_boundary;  /* [n_point] of these from boundary faces */
-  uint32_t *mark;        /* [n_point] lower node + 1 of the last edge here */
+  uint32_t *count;      /* [n_point] entries by lower node; then ends */
+  uint32_t *n_boundary; /* [n_point] of these from boundary faces */
+  uint32_t *mark;       /* [n_point] lower node + 1 of the last edge here */
   uint32_t *entry;
   uint32_t lo, n;
-  int pass;              /* 0 counts, 1 enters */
+  int pass; /* 0 counts, 1 enters */
   struct vg_stats *f;
-  struct vg_unpaired *unpaired;  /* NULL: m has its boundary */
-  int refused;           /* memory for unpaired edges */
+  struct vg_unpaired *unpaired; /* NULL: m has its boundary */
+  int refused;                  /* memory for unpaired edges */
   uint32_t pair[GROUP][2];
   size_t n_group;
 };
 
-static const uint8_t tet_edge[6][2] =
-  {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-static const uint8_t pyr_edge[8][2] =
-  {{0, 3}, {3, 4}, {4, 1}, {1, 0}, {0, 2}, {3, 2}, {4, 2}, {1, 2}};
-static const uint8_t pri_edge[9][2] =
-  {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
-static const uint8_t hex_edge[12][2] =
-  {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4},
-   {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-static const uint8_t tri_edge[3][2] = {{0, 1}, {1, 2}, {2, 0}};
-static const uint8_t quad_edge[4][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+static const uint8_t tet_edge[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 },
+                                        { 1, 2 }, { 1, 3 }, { 2, 3 } };
+static const uint8_t pyr_edge[8][2] = {
+  { 0, 3 }, { 3, 4 }, { 4, 1 }, { 1, 0 }, { 0, 2 }, { 3, 2 }, { 4, 2 }, { 1, 2 }
+};
+static const uint8_t pri_edge[9][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 },
+                                        { 3, 4 }, { 4, 5 }, { 5, 3 },
+                                        { 0, 3 }, { 1, 4 }, { 2, 5 } };
+static const uint8_t hex_edge[12][2] = {
+  { 0, 1 }, { 1, 2 }, { 2, 3 }, { 3, 0 }, { 4, 5 }, { 5, 6 },
+  { 6, 7 }, { 7, 4 }, { 0, 4 }, { 1, 5 }, { 2, 6 }, { 3, 7 }
+};
+static const uint8_t tri_edge[3][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 } };
+static const uint8_t quad_edge[4][2] = {
+  { 0, 1 }, { 1, 2 }, { 2, 3 }, { 3, 0 }
+};
 
 static void enter_all(struct edges *e, const uint32_t *node, size_t n_cell,
                       size_t width, const uint8_t (*edge)[2], int n_edge)
@@ -90,8 +95,7 @@ static void count_entries(struct edges *e)
   e->lo = 0;
   e->n = (uint32_t)e->m->n_point;
   enter_boundary(e);
-  for (size_t i = 0; i < e->m->n_point; i++)
-    e->n_boundary[i] = e->count[i];
+  for (size_t i = 0; i < e->m->n_point; i++) e->n_boundary[i] = e->count[i];
   enter_cells(e);
   e->pass = 1;
 }
@@ -115,7 +119,7 @@ static void measure(const struct vg_mesh *m, const struct vg_sizing *sizing,
     }
     ratio[i] = sqrt(sum);
   }
-  vg_sizing_eval(sizing, n, (const double (*)[3])mid, target);
+  vg_sizing_eval(sizing, n, (const double(*)[3])mid, target);
   for (size_t i = 0; i < n; i++) ratio[i] /= target[i];
 }
 
@@ -123,7 +127,7 @@ static void flush(struct edges *e)
 {
   double ratio[GROUP];
 
-  measure(e->m, e->sizing, e->n_group, (const uint32_t (*)[2])e->pair, ratio);
+  measure(e->m, e->sizing, e->n_group, (const uint32_t(*)[2])e->pair, ratio);
   for (size_t i = 0; i < e->n_group; i++) vg_stats_edge(e->f, ratio[i]);
   e->n_group = 0;
 }
@@ -159,7 +163,7 @@ static void measure_unpaired(struct edges *e)
     if (n > GROUP) n = GROUP;
     for (size_t i = 0; i < n; i++)
       for (int k = 0; k < 2; k++) pair[i][k] = edge[i].node[k];
-    measure(e->m, e->sizing, n, (const uint32_t (*)[2])pair, ratio);
+    measure(e->m, e->sizing, n, (const uint32_t(*)[2])pair, ratio);
     for (size_t i = 0; i < n; i++) edge[i].ratio = ratio[i];
   }
 }
@@ -227,9 +231,8 @@ static vg_status prepare(struct edges *e, size_t *room, struct vg_error *err)
 }
 
 vg_status vg_judge_edges(const struct vg_mesh *m,
-                         const struct vg_sizing *sizing,
-                         struct vg_stats *f, struct vg_unpaired *unpaired,
-                         struct vg_error *err)
+                         const struct vg_sizing *sizing, struct vg_stats *f,
+                         struct vg_unpaired *unpaired, struct vg_error *err)
 {
   assert(sizing && f);
 

@@ -26,26 +26,32 @@
 #define SMALL_BUCKET 48
 
 struct record {
-  uint32_t a, b, c;    /* the other nodes; c only of quads, else VG_NO_NODE */
-  uint32_t owner;      /* 2 * (cell, or n_cell + boundary face) + winding */
+  uint32_t a, b, c; /* the other nodes; c only of quads, else VG_NO_NODE */
+  uint32_t owner;   /* 2 * (cell, or n_cell + boundary face) + winding */
 };
 
 struct table {
   const struct vg_mesh *m;
-  uint32_t *start;         /* [n_point + 1] faces by lowest node; then the
-                              end of each bucket of the present range */
+  uint32_t *start; /* [n_point + 1] faces by lowest node; then the
+                      end of each bucket of the present range */
   struct record *record;
-  uint32_t lo, n;          /* nodes of the present range: lo .. lo + n - 1 */
+  uint32_t lo, n; /* nodes of the present range: lo .. lo + n - 1 */
   size_t n_cell;
-  uint32_t *parent;        /* [n_cell] components */
+  uint32_t *parent; /* [n_cell] components */
   const float *volume;
   struct vg_stats *f;
-  struct vg_unpaired *unpaired;  /* NULL: m is a whole mesh */
-  int refused;             /* memory for unpaired faces */
+  struct vg_unpaired *unpaired; /* NULL: m is a whole mesh */
+  int refused;                  /* memory for unpaired faces */
 };
 
-static uint32_t lower(uint32_t a, uint32_t b) { return a < b ? a : b; }
-static uint32_t upper(uint32_t a, uint32_t b) { return a < b ? b : a; }
+static uint32_t lower(uint32_t a, uint32_t b)
+{
+  return a < b ? a : b;
+}
+static uint32_t upper(uint32_t a, uint32_t b)
+{
+  return a < b ? b : a;
+}
 
 static void put(struct table *t, uint32_t lowest, uint32_t a, uint32_t b,
                 uint32_t c, uint32_t owner)
@@ -78,7 +84,8 @@ static void put_quad(struct table *t, const uint32_t n[4], uint32_t owner)
   int s = 0;
   uint32_t next, last;
 
-  for (int i = 1; i < 4; i++) if (n[i] < n[s]) s = i;
+  for (int i = 1; i < 4; i++)
+    if (n[i] < n[s]) s = i;
   if (n[s] - t->lo >= t->n) return;
   next = n[(s + 1) & 3];
   last = n[(s + 3) & 3];
@@ -95,8 +102,8 @@ static void put_tets(struct table *t)
     uint32_t owner = (uint32_t)i;
     uint32_t ab = lower(n[0], n[1]), cd = lower(n[2], n[3]);
     uint32_t low = lower(ab, cd);
-    uint32_t second = lower(upper(ab, cd), lower(upper(n[0], n[1]),
-                                                 upper(n[2], n[3])));
+    uint32_t second = lower(upper(ab, cd),
+                            lower(upper(n[0], n[1]), upper(n[2], n[3])));
 
     /* three faces start at the lowest node, the fourth at the next */
     if (low - t->lo >= t->n && second - t->lo >= t->n) continue;
@@ -136,8 +143,7 @@ static void put_range(struct table *t)
   size_t owner = t->n_cell;
 
   put_tets(t);
-  for (int kind = VG_CELL_PYR; kind < VG_CELL_KINDS; kind++)
-    put_mixed(t, kind);
+  for (int kind = VG_CELL_PYR; kind < VG_CELL_KINDS; kind++) put_mixed(t, kind);
   for (size_t i = 0; i < m->n_tri; i++, owner++)
     put_tri(t, m->tri[i][0], m->tri[i][1], m->tri[i][2], (uint32_t)owner);
   for (size_t i = 0; i < m->n_quad; i++, owner++)
@@ -289,8 +295,7 @@ static void match_range(struct table *t)
     while (begin < end) {
       size_t next = begin + 1;
 
-      while (next < end && !order(t->record + begin, t->record + next))
-        next++;
+      while (next < end && !order(t->record + begin, t->record + next)) next++;
       match(t, t->lo + v, t->record + begin, next - begin);
       begin = next;
     }
@@ -397,16 +402,16 @@ vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
   assert(f && n_component);
 
   struct table t = { .m = m, .volume = volume, .f = f, .unpaired = unpaired };
-  size_t n_record = 4 * m->n_tet + 5 * (m->n_pyr + m->n_pri) +
-                    6 * m->n_hex + m->n_tri + m->n_quad;
+  size_t n_record = 4 * m->n_tet + 5 * (m->n_pyr + m->n_pri) + 6 * m->n_hex +
+                    m->n_tri + m->n_quad;
   vg_status st = VG_BLOCKED;
 
   t.n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
-  if (t.n_cell + m->n_tri + m->n_quad > UINT32_MAX / 2 ||
-      n_record > UINT32_MAX)
+  if (t.n_cell + m->n_tri + m->n_quad > UINT32_MAX / 2 || n_record > UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "a mesh of %zu cells is too large for the check of its "
-                   "faces (limit 2^30); check its parts", t.n_cell);
+                   "faces (limit 2^30); check its parts",
+                   t.n_cell);
   t.parent = vg_alloc(t.n_cell, sizeof *t.parent);
   if (!t.parent) return vg_fail_memory(err, "the faces of the mesh");
   part_cells(&t);

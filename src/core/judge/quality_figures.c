@@ -54,8 +54,7 @@ void vg_stats_add(struct vg_stats *f, const struct vg_stats *more)
   if (more->angle_max > f->angle_max) f->angle_max = more->angle_max;
   if (more->radius_ratio_min < f->radius_ratio_min)
     f->radius_ratio_min = more->radius_ratio_min;
-  for (size_t i = 0; i < more->n_worst; i++)
-    vg_stats_worst(f, &more->worst[i]);
+  for (size_t i = 0; i < more->n_worst; i++) vg_stats_worst(f, &more->worst[i]);
 }
 
 int vg_stats_face(struct vg_stats *f, size_t n_cell, size_t n_boundary,
@@ -68,7 +67,7 @@ int vg_stats_face(struct vg_stats *f, size_t n_cell, size_t n_boundary,
   if (!n_cell) n->orphan_boundary += n_boundary;
   else if (n_cell + n_boundary > 2) n->crowded_face++;
   else if (n_cell + n_boundary == 1) n->open_face++;
-  else if (n_boundary)   /* inwards: winds against its cell's outward face */
+  else if (n_boundary) /* inwards: winds against its cell's outward face */
     n->outward_boundary += same_side;
   else {
     n->n_inner_face++;
@@ -105,8 +104,7 @@ static void copy(size_t *to, const uint64_t *from, size_t n)
   for (size_t i = 0; i < n; i++) to[i] = (size_t)from[i];
 }
 
-static void report_validity(const struct vg_counts *n,
-                            struct vg_mesh_report *r)
+static void report_validity(const struct vg_counts *n, struct vg_mesh_report *r)
 {
   r->bad_index = n->bad_index;
   r->unused_point = n->unused_point;

@@ -7,8 +7,9 @@
  * which never gets there. This takes less than two thirds of the time of
  * quality_faces.c, which sees all sides of a face together.
  *
- * Items cannot leave a table of base/table.h. For 2,076,831 tetrahedra of a wing
- * it would have 67 MB of slots for 4.2 million faces; these buckets take 2.1 MB.
+ * Items cannot leave a table of base/table.h. For 2,076,831 tetrahedra of a
+ * wing it would have 67 MB of slots for 4.2 million faces; these buckets
+ * take 2.1 MB.
  *
  * What it does not see is a face with four sides, two and two. If cells are
  * positive and their faces leave in pairs of opposite sides, then they cover
@@ -31,28 +32,28 @@
 #define AHEAD 16
 
 struct face {
-  uint64_t key;              /* lowest node << 32 | next */
+  uint64_t key; /* lowest node << 32 | next */
   uint32_t high, owner;
 };
 
 /* Faces that wait, side by side in one line of the cache. */
 struct bucket {
-  uint64_t key[SLOTS];       /* lowest node << 32 | next; or VACANT */
-  uint32_t high[SLOTS];      /* highest node */
-  uint32_t owner[SLOTS];     /* 2 * (cell, or n_cell + boundary face) + side */
+  uint64_t key[SLOTS];   /* lowest node << 32 | next; or VACANT */
+  uint32_t high[SLOTS];  /* highest node */
+  uint32_t owner[SLOTS]; /* 2 * (cell, or n_cell + boundary face) + side */
 };
 
 struct pairing {
   const struct vg_mesh *m;
   const float *volume;
   struct vg_stats *f;
-  uint32_t *parent;          /* [n_cell] components */
+  uint32_t *parent; /* [n_cell] components */
   size_t n_cell;
-  size_t n, mask;            /* faces that wait; buckets - 1 */
+  size_t n, mask; /* faces that wait; buckets - 1 */
   unsigned shift;
   struct bucket *bucket;
-  uint8_t *is_over;          /* [buckets] had one that waits in the next */
-  int refused, is_odd;       /* memory; a boundary face met another */
+  uint8_t *is_over;    /* [buckets] had one that waits in the next */
+  int refused, is_odd; /* memory; a boundary face met another */
 };
 
 static size_t home(const struct pairing *p, uint64_t key, uint32_t high)
@@ -143,8 +144,7 @@ static void come(struct pairing *p, const struct face *f)
   size_t first = home(p, f->key, f->high), i = first;
   unsigned found;
 
-  while (!(found = that_have(&p->bucket[i], f->key, f->high)) &&
-         p->is_over[i])
+  while (!(found = that_have(&p->bucket[i], f->key, f->high)) && p->is_over[i])
     i = (i + 1) & p->mask;
   if (found) {
     found = (unsigned)__builtin_ctz(found);
@@ -184,8 +184,8 @@ static struct face face_of_tri(const uint32_t n[3], uint32_t owner)
 static struct face *opposite(struct face f[4], const uint32_t n[4],
                              uint32_t node)
 {
-  return f + 3 - ((n[0] < node) + (n[1] < node) + (n[2] < node) +
-                  (n[3] < node));
+  return f + 3 -
+         ((n[0] < node) + (n[1] < node) + (n[2] < node) + (n[3] < node));
 }
 
 /* In a column a cell stands on the one before: two nodes stay in their places
@@ -240,13 +240,15 @@ static vg_status list_unpaired(const struct pairing *p,
   for (size_t i = 0; i <= p->mask; i++)
     for (unsigned k = 0; k < SLOTS; k++) {
       const struct bucket *b = &p->bucket[i];
-      uint32_t cell = b->owner[k] >> 1, node[2] = { (uint32_t)b->key[k],
-                                                    b->high[k] };
+      uint32_t cell = b->owner[k] >> 1,
+               node[2] = { (uint32_t)b->key[k], b->high[k] };
 
       if (b->key[k] == VACANT) continue;
       unpaired->face[unpaired->n_face++] = (struct vg_unpaired_face){
         { (uint32_t)(b->key[k] >> 32), node[b->owner[k] & 1],
-          node[~b->owner[k] & 1], VG_NO_NODE }, cell, p->volume[cell]
+          node[~b->owner[k] & 1], VG_NO_NODE },
+        cell,
+        p->volume[cell]
       };
     }
   return VG_OK;
@@ -266,8 +268,9 @@ vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
   assert(vg_faces_can_pair(m, unpaired));
   assert(parent || !m->n_tet);
 
-  struct pairing p = { .m = m, .volume = volume, .parent = parent,
-                       .n_cell = m->n_tet };
+  struct pairing p = {
+    .m = m, .volume = volume, .parent = parent, .n_cell = m->n_tet
+  };
   vg_status st = VG_OK;
 
   p.f = vg_stats_new();

@@ -39,7 +39,7 @@ struct vg_counts {
 struct vg_stats {
   struct vg_counts n;
   double angle_min, angle_max, radius_ratio_min;
-  struct vg_worst_cell worst[VG_WORST];  /* by angle, then by cell */
+  struct vg_worst_cell worst[VG_WORST]; /* by angle, then by cell */
   size_t n_worst;
 };
 
@@ -112,11 +112,14 @@ void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
 
 /** Faces of a part of a mesh that have no, or too many, neighbours in it. */
 struct vg_unpaired_face {
-  uint32_t node[4];        /* outwards around the face; VG_NO_NODE: no quad */
-  uint32_t component;      /* of its cell: 0 .. n_component - 1 */
-  float volume;            /* of its cell */
+  uint32_t node[4];   /* outwards around the face; VG_NO_NODE: no quad */
+  uint32_t component; /* of its cell: 0 .. n_component - 1 */
+  float volume;       /* of its cell */
 };
-struct vg_unpaired_edge { uint32_t node[2]; double ratio; };
+struct vg_unpaired_edge {
+  uint32_t node[2];
+  double ratio;
+};
 
 struct vg_unpaired {
   size_t n_face, cap_face, n_edge, cap_edge;
@@ -154,8 +157,7 @@ vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
 /** Edges against the field: those that are not of boundary faces. With unpaired
  * faces: those that are not of these, whose edges are listed. */
 vg_status vg_judge_edges(const struct vg_mesh *m,
-                         const struct vg_sizing *sizing,
-                         struct vg_stats *f, struct vg_unpaired *unpaired,
-                         struct vg_error *err);
+                         const struct vg_sizing *sizing, struct vg_stats *f,
+                         struct vg_unpaired *unpaired, struct vg_error *err);
 
 #endif

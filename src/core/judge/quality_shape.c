@@ -25,14 +25,14 @@ typedef double lanes[GROUP];
 
 /* Of GROUP tetrahedra. */
 struct tet_shapes {
-  lanes cos_max, cos_min;    /* of the smallest and largest dihedral angle */
-  lanes volume6;             /* |6 V| */
+  lanes cos_max, cos_min; /* of the smallest and largest dihedral angle */
+  lanes volume6;          /* |6 V| */
   lanes radius_ratio, edge2_sum;
 };
 
 /* Of up to BATCH. */
 struct batch {
-  double least[BATCH], most[BATCH];  /* angles */
+  double least[BATCH], most[BATCH]; /* angles */
   double volume[BATCH];
   double radius_ratio[BATCH], mean_ratio[BATCH], edge[BATCH];
 };
@@ -84,7 +84,8 @@ WITHIN void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
   }
   for (int t = 0; t < GROUP; t++) {
     if (length[0][t] > 0 && length[1][t] > 0 && length[2][t] > 0 &&
-        length[3][t] > 0) continue;
+        length[3][t] > 0)
+      continue;
     s->cos_max[t] = 1;
     s->cos_min[t] = -1;
     area2[t] = 0;
@@ -138,14 +139,14 @@ WITHIN void measure_lanes(lanes x[4][3], struct tet_shapes *s)
     double ratio = area2[t] * sqrt(qq[t]);
 
     s->volume6[t] = fabs(s->volume6[t]);
-    s->radius_ratio[t] = ratio > 0
-                         ? 6 * s->volume6[t] * s->volume6[t] / ratio : ratio;
+    s->radius_ratio[t] = ratio > 0 ? 6 * s->volume6[t] * s->volume6[t] / ratio
+                                   : ratio;
   }
 }
 
 #if defined __x86_64__
-static __attribute__((target("avx2"))) void
-measure_wide(lanes x[4][3], struct tet_shapes *s)
+static __attribute__((target("avx2"))) void measure_wide(lanes x[4][3],
+                                                         struct tet_shapes *s)
 {
   measure_lanes(x, s);
 }
@@ -219,8 +220,8 @@ static void count_ratios(struct vg_stats *f, size_t n, const double *ratio)
   }
 }
 
-static void note_worst(struct vg_stats *f, const struct vg_mesh *m,
-                       size_t i, size_t cell, double angle)
+static void note_worst(struct vg_stats *f, const struct vg_mesh *m, size_t i,
+                       size_t cell, double angle)
 {
   struct vg_worst_cell w = { .cell = cell, .value = angle };
 
@@ -245,7 +246,8 @@ static void measure_group(const struct vg_mesh *m, size_t first, size_t n,
     /* (3 V)^2 = volume6^2 / 4 */
     mean_ratio[t] = s.edge2_sum[t] > 0
                     ? 12 * cbrt(s.volume6[t] * s.volume6[t] / 4) /
-                      s.edge2_sum[t] : 0;
+                        s.edge2_sum[t]
+                    : 0;
     edge[t] = sqrt(s.edge2_sum[t] / 6);
   }
 }
@@ -274,8 +276,7 @@ static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
   for (size_t i = 0; i < n; i++) volume[first + i] = (float)b.volume[i];
   for (size_t i = 0; i < n; i += GROUP)
     measure_group(m, first + i, n - i < GROUP ? n - i : GROUP, b.least + i,
-                  b.most + i, b.radius_ratio + i, b.mean_ratio + i,
-                  b.edge + i);
+                  b.most + i, b.radius_ratio + i, b.mean_ratio + i, b.edge + i);
   f->n.n_tet += n;
   count_angles(f, n, b.least, b.most);
   count_ratios(f, n, b.radius_ratio);
@@ -289,25 +290,26 @@ static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
 
 /* A corner tetrahedron of a prism, pyramid or hexahedron is spanned by a node
  * and its three neighbours; a cell is sound when all of them are positive. */
-static const uint8_t pri_corner[6][4] = {
-  {0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5},
-  {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}
-};
+static const uint8_t pri_corner[6][4] = { { 0, 1, 2, 3 }, { 1, 2, 0, 4 },
+                                          { 2, 0, 1, 5 }, { 3, 5, 4, 0 },
+                                          { 4, 3, 5, 1 }, { 5, 4, 3, 2 } };
 static const uint8_t pyr_corner[4][4] = { /* of the base, with the apex */
-  {0, 3, 1, 2}, {3, 4, 0, 2}, {4, 1, 3, 2}, {1, 0, 4, 2}
+                                          { 0, 3, 1, 2 },
+                                          { 3, 4, 0, 2 },
+                                          { 4, 1, 3, 2 },
+                                          { 1, 0, 4, 2 }
 };
-static const uint8_t hex_corner[8][4] = {
-  {0, 1, 3, 4}, {1, 2, 0, 5}, {2, 3, 1, 6}, {3, 0, 2, 7},
-  {4, 7, 5, 0}, {5, 4, 6, 1}, {6, 5, 7, 2}, {7, 6, 4, 3}
-};
+static const uint8_t hex_corner[8][4] = { { 0, 1, 3, 4 }, { 1, 2, 0, 5 },
+                                          { 2, 3, 1, 6 }, { 3, 0, 2, 7 },
+                                          { 4, 7, 5, 0 }, { 5, 4, 6, 1 },
+                                          { 6, 5, 7, 2 }, { 7, 6, 4, 3 } };
 
-static int corners_positive(const double (*x)[3], int kind,
-                            const uint32_t *n)
+static int corners_positive(const double (*x)[3], int kind, const uint32_t *n)
 {
   static const int count[VG_CELL_KINDS] = { 0, 4, 6, 8 };
-  static const uint8_t (*const corner[VG_CELL_KINDS])[4] = {
-    NULL, pyr_corner, pri_corner, hex_corner
-  };
+  static const uint8_t(*const corner[VG_CELL_KINDS])[4] = { NULL, pyr_corner,
+                                                            pri_corner,
+                                                            hex_corner };
 
   for (int i = 0; i < count[kind]; i++) {
     const uint8_t *c = corner[kind][i];
@@ -348,7 +350,7 @@ int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *n)
 static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
                         struct vg_stats *f)
 {
-  const double (*x)[3] = (const double (*)[3])m->point;
+  const double(*x)[3] = (const double(*)[3])m->point;
   struct vg_cells c = vg_mesh_cells(m, kind);
   size_t width = (size_t)vg_cell_faces[kind].n_node;
 

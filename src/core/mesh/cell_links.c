@@ -4,9 +4,9 @@
  * waits in a chain; its entry of link[] holds the next in the chain until the
  * mate comes, then the mate. So the heads, 16 bytes a point or 3 for each of
  * its tetrahedra, are all that the table costs; base/table.h would take 16 to
- * 32 bytes a tetrahedron. Heads lie near the number of the face's lowest point: cells that
- * are numbered near each other share cache lines, and a point with very many
- * faces spreads over a window of heads. */
+ * 32 bytes a tetrahedron. Heads lie near the number of the face's lowest point:
+ * cells that are numbered near each other share cache lines, and a point with
+ * very many faces spreads over a window of heads. */
 #include "core/mesh/cell_links.h"
 
 #include <assert.h>
@@ -18,14 +18,14 @@
 #include "core/mesh/cell_faces.h"
 
 #define NONE UINT32_MAX
-#define HEADS 4u        /* per point */
+#define HEADS 4u /* per point */
 #define WINDOW_BITS 12u
 #define WINDOW (1u << WINDOW_BITS)
 /* 8 * cell + face stays below NONE. */
 #define MAX_CELL ((UINT32_MAX >> 3) - 1)
 
 struct heads {
-  uint32_t *head;       /* [n] */
+  uint32_t *head; /* [n] */
   size_t n;
 };
 
@@ -74,7 +74,7 @@ int vg_half_face_nodes(const struct vg_cell_links *f, uint32_t code,
   assert(code >> 3 < f->n_cell);
   assert((int)(code & 7) < vg_half_faces(f, code >> 3));
 
-  const unsigned char (*face)[4], *q;
+  const unsigned char(*face)[4], *q;
   int n_face, width;
   const uint32_t *c = cell_nodes(f, code >> 3, &face, &n_face);
 
@@ -109,7 +109,7 @@ static inline size_t slot_of(const uint32_t key[4])
 static inline int has_key(const struct vg_cell_links *f, uint32_t code,
                           const uint32_t key[4])
 {
-  const unsigned char (*face)[4];
+  const unsigned char(*face)[4];
   uint32_t other[4];
   int n_face;
   const uint32_t *c = cell_nodes(f, code >> 3, &face, &n_face);
@@ -143,7 +143,7 @@ static inline uint32_t take(const struct vg_cell_links *f, struct heads *h,
 static void pass_cells(struct vg_cell_links *f, struct heads *h)
 {
   for (uint32_t cell = 0; cell < f->n_cell; cell++) {
-    const unsigned char (*face)[4];
+    const unsigned char(*face)[4];
     int n_face;
     const uint32_t *c = cell_nodes(f, cell, &face, &n_face);
     uint32_t *link = f->link + vg_first_half(f, cell);
@@ -191,15 +191,15 @@ static vg_status loose_face(const struct vg_mesh *m, size_t face,
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: boundary %s %zu of the mesh, at (%g, %g, %g), is the "
                  "face of no cell, or of one that has another; the mesh is "
-                 "not closed: see `vanguard check`", name,
-                 width == 3 ? "triangle" : "quadrilateral",
+                 "not closed: see `vanguard check`",
+                 name, width == 3 ? "triangle" : "quadrilateral",
                  (width == 3 ? face : face - m->n_tri) + 1, p[0], p[1], p[2]);
 }
 
 static vg_status pass_boundary(struct vg_cell_links *f, struct heads *h,
                                const char *name, struct vg_error *err)
 {
-  static const unsigned char tri[4] = {0, 1, 2, 2}, quad[4] = {0, 1, 2, 3};
+  static const unsigned char tri[4] = { 0, 1, 2, 2 }, quad[4] = { 0, 1, 2, 3 };
 
   for (size_t i = 0; i < f->m->n_tri + f->m->n_quad; i++) {
     int width;
@@ -245,8 +245,8 @@ static vg_status check_left(const struct vg_cell_links *f,
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: the face of points %u, %u, %u at (%g, %g, %g) of %s %u "
                  "meets neither one other cell nor a boundary face; the mesh "
-                 "is not closed: see `vanguard check`", name,
-                 node[0] + 1, node[1] + 1, node[2] + 1, p[0], p[1], p[2],
+                 "is not closed: see `vanguard check`",
+                 name, node[0] + 1, node[1] + 1, node[2] + 1, p[0], p[1], p[2],
                  kind, cell + 1);
 }
 
@@ -270,8 +270,8 @@ static vg_status make_room(struct vg_cell_links *f, struct heads *h,
   if (n_cell > MAX_CELL || m->n_point > INT32_MAX || n_face > INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "%s: %llu cells and %zu points are beyond labels of 32 bits "
-                   "for their faces", name, (unsigned long long)n_cell,
-                   m->n_point);
+                   "for their faces",
+                   name, (unsigned long long)n_cell, m->n_point);
   f->m = m;
   f->n_cell = (uint32_t)n_cell;
   f->end_tet = (uint32_t)m->n_tet;
@@ -292,7 +292,7 @@ vg_status vg_cell_links_build(struct vg_cell_links *f, const struct vg_mesh *m,
                               struct vg_error *err)
 {
   struct vg_cell_links made = VG_CELL_LINKS_INIT;
-  struct heads h = {NULL, 0};
+  struct heads h = { NULL, 0 };
   vg_status st;
 
   assert(f && m && name);

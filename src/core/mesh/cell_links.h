@@ -13,17 +13,20 @@
 #include "core/mesh/mesh.h"
 
 struct vg_cell_links {
-  const struct vg_mesh *m;      /* borrowed */
+  const struct vg_mesh *m;                    /* borrowed */
   uint32_t n_cell, end_tet, end_pyr, end_pri; /* numbers behind each kind */
-  uint32_t *link;               /* [half-faces] code of the mate, or
-                                   VG_NO_CELL */
-  uint32_t *boundary;           /* [n_tri + n_quad] half-face on each; NULL when
-                                   boundary faces were not looked at */
-  uint64_t n_internal;          /* faces between two cells */
-  uint64_t n_corner;            /* nodes of all faces that are internal or on
-                                   the boundary */
+  uint32_t *link;      /* [half-faces] code of the mate, or
+                          VG_NO_CELL */
+  uint32_t *boundary;  /* [n_tri + n_quad] half-face on each; NULL when
+                          boundary faces were not looked at */
+  uint64_t n_internal; /* faces between two cells */
+  uint64_t n_corner;   /* nodes of all faces that are internal or on
+                          the boundary */
 };
-#define VG_CELL_LINKS_INIT { .m = NULL }
+#define VG_CELL_LINKS_INIT                                                     \
+  {                                                                            \
+    .m = NULL                                                                  \
+  }
 #define VG_NO_CELL UINT32_MAX
 
 void vg_cell_links_release(struct vg_cell_links *l);
@@ -48,8 +51,7 @@ int vg_half_face_nodes(const struct vg_cell_links *l, uint32_t code,
 
 /** Place of a cell's first half-face in link[]; its others follow. With the
  * number of all cells, the length of link[]. */
-static inline size_t vg_first_half(const struct vg_cell_links *l,
-                                   uint32_t cell)
+static inline size_t vg_first_half(const struct vg_cell_links *l, uint32_t cell)
 {
   assert(cell <= l->n_cell);
   if (cell < l->end_tet) return 4 * (size_t)cell;

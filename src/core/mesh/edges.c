@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 
-#define FEW 24             /* keys that are sorted by insertion */
+#define FEW 24 /* keys that are sorted by insertion */
 
 /* The half-edges to pair: of triangles, or sides. */
 struct halves {
@@ -84,8 +84,7 @@ static void number_edges(struct vg_edges *e, const struct halves *s,
   for (size_t p = 0; p < s->n_point; p++) {
     sort_keys(key + i, end[p] - i);
     for (uint32_t first = i; i < end[p]; i++) {
-      if (i == first || key[i] >> 32 != key[i - 1] >> 32)
-        e->start[e->n++] = i;
+      if (i == first || key[i] >> 32 != key[i - 1] >> 32) e->start[e->n++] = i;
       e->half[i] = (uint32_t)key[i];
     }
   }
@@ -130,8 +129,9 @@ vg_status vg_edges_build(struct vg_edges *e, size_t n_point, size_t n_tri,
                          const uint32_t (*tri)[3], const uint8_t *state,
                          uint8_t out, struct vg_error *err)
 {
-  const struct halves s = { .n_point = n_point, .n = 3 * n_tri, .tri = tri,
-                            .state = state, .out = out };
+  const struct halves s = {
+    .n_point = n_point, .n = 3 * n_tri, .tri = tri, .state = state, .out = out
+  };
 
   return build(e, &s, err);
 }

@@ -40,12 +40,15 @@ static inline uint32_t vg_half_to(const uint32_t (*tri)[3], uint32_t h)
  * half-edges half[start[i]] .. half[start[i + 1] - 1], by rising number. */
 struct vg_edges {
   size_t n;
-  uint32_t *start;          /* [n + 1] */
-  uint32_t *half;           /* [start[n]] */
-  uint32_t *of_half;        /* [half-edges] edge of each, UINT32_MAX for those
-                               of triangles that are left out */
+  uint32_t *start;   /* [n + 1] */
+  uint32_t *half;    /* [start[n]] */
+  uint32_t *of_half; /* [half-edges] edge of each, UINT32_MAX for those
+                        of triangles that are left out */
 };
-#define VG_EDGES_INIT { 0 }
+#define VG_EDGES_INIT                                                          \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /** Find the edges of n_tri triangles.
  *

@@ -50,7 +50,7 @@ vg_status vg_mesh_copy(struct vg_mesh *to, const struct vg_mesh *from,
   assert(to != from);
   assert(!to->n_point && !to->point && !to->patch);
   *to = *from;
-#define COPY(array, n) \
+#define COPY(array, n)                                                         \
   to->array = copy(from->array, from->n, sizeof *from->array, &bad)
   COPY(point, n_point);
   COPY(tri, n_tri);

@@ -24,27 +24,30 @@
 
 /** A named part of the boundary. */
 struct vg_patch {
-  int32_t id;               /* number in the files, any value, unique */
-  int32_t bc;               /* USM3D code (formats.md 1.4), or VG_BC_NONE */
-  int32_t bc_fun3d;         /* FUN3D code, or VG_BC_NONE */
-  int32_t family;           /* VGRID family column; bc where unknown */
-  char name[VG_NAME_MAX];   /* "" where the file gives none */
+  int32_t id;             /* number in the files, any value, unique */
+  int32_t bc;             /* USM3D code (formats.md 1.4), or VG_BC_NONE */
+  int32_t bc_fun3d;       /* FUN3D code, or VG_BC_NONE */
+  int32_t family;         /* VGRID family column; bc where unknown */
+  char name[VG_NAME_MAX]; /* "" where the file gives none */
 };
 
 struct vg_mesh {
   size_t n_point, n_tri, n_quad, n_tet, n_pyr, n_pri, n_hex, n_patch;
-  double (*point)[3];       /* [n_point], length unit of the input */
-  uint32_t (*tri)[3];       /* [n_tri] boundary triangles */
-  uint32_t (*quad)[4];      /* [n_quad] boundary quadrilaterals */
-  uint32_t *tri_patch;      /* [n_tri] index into patch[] */
-  uint32_t *quad_patch;     /* [n_quad] index into patch[] */
-  uint32_t (*tet)[4];       /* [n_tet] */
-  uint32_t (*pyr)[5];       /* [n_pyr] */
-  uint32_t (*pri)[6];       /* [n_pri] */
-  uint32_t (*hex)[8];       /* [n_hex] */
-  struct vg_patch *patch;   /* [n_patch] */
+  double (*point)[3];     /* [n_point], length unit of the input */
+  uint32_t (*tri)[3];     /* [n_tri] boundary triangles */
+  uint32_t (*quad)[4];    /* [n_quad] boundary quadrilaterals */
+  uint32_t *tri_patch;    /* [n_tri] index into patch[] */
+  uint32_t *quad_patch;   /* [n_quad] index into patch[] */
+  uint32_t (*tet)[4];     /* [n_tet] */
+  uint32_t (*pyr)[5];     /* [n_pyr] */
+  uint32_t (*pri)[6];     /* [n_pri] */
+  uint32_t (*hex)[8];     /* [n_hex] */
+  struct vg_patch *patch; /* [n_patch] */
 };
-#define VG_MESH_INIT { 0 }  /* releasing this is a no-op */
+#define VG_MESH_INIT                                                           \
+  {                                                                            \
+    0                                                                          \
+  } /* releasing this is a no-op */
 
 /** Free all arrays and leave *m empty. Accepts an empty mesh. */
 void vg_mesh_release(struct vg_mesh *m);

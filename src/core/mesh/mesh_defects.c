@@ -33,7 +33,7 @@ static size_t add_sides(const uint32_t *node, int n, uint32_t (*side)[2])
   size_t n_side = 0;
 
   for (int k = 0; k < n; k++) {
-    if (node[k] == node[(k + 1) % n]) continue;    /* an error elsewhere */
+    if (node[k] == node[(k + 1) % n]) continue; /* an error elsewhere */
     side[n_side][0] = node[k];
     side[n_side++][1] = node[(k + 1) % n];
   }
@@ -42,16 +42,15 @@ static size_t add_sides(const uint32_t *node, int n, uint32_t (*side)[2])
 
 size_t vg_mesh_open_edges(const struct vg_mesh *m)
 {
-  uint32_t (*side)[2] = vg_alloc(3 * m->n_tri + 4 * m->n_quad, sizeof *side);
+  uint32_t(*side)[2] = vg_alloc(3 * m->n_tri + 4 * m->n_quad, sizeof *side);
   struct vg_edges e = VG_EDGES_INIT;
   size_t n = 0, bad = 0;
 
   if (!side) return SIZE_MAX;
-  for (size_t i = 0; i < m->n_tri; i++)
-    n += add_sides(m->tri[i], 3, side + n);
+  for (size_t i = 0; i < m->n_tri; i++) n += add_sides(m->tri[i], 3, side + n);
   for (size_t i = 0; i < m->n_quad; i++)
     n += add_sides(m->quad[i], 4, side + n);
-  if (vg_edges_build_sides(&e, m->n_point, n, (const uint32_t (*)[2])side,
+  if (vg_edges_build_sides(&e, m->n_point, n, (const uint32_t(*)[2])side,
                            NULL) < 0)
     bad = SIZE_MAX;
   for (size_t i = 0; i < e.n; i++) {

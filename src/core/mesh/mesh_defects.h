@@ -1,5 +1,5 @@
-/* core/mesh/mesh_defects.h: checks of a mesh that a stage of the program has made
- * (base/checks.h). Files are checked where they are read. Uses mesh.h. */
+/* core/mesh/mesh_defects.h: checks of a mesh that a stage of the program has
+ * made (base/checks.h). Files are checked where they are read. Uses mesh.h. */
 #ifndef VG_CORE_MESH_DEFECTS_H
 #define VG_CORE_MESH_DEFECTS_H
 

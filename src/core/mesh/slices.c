@@ -12,8 +12,8 @@ struct each {
   const struct vg_slices *s;
   vg_slice_body body;
   void *context;
-  atomic_flag busy;         /* noting a failure, which happens rarely */
-  atomic_size_t first;      /* slice that failed; n_slice: none */
+  atomic_flag busy;    /* noting a failure, which happens rarely */
+  atomic_size_t first; /* slice that failed; n_slice: none */
   vg_status status;
   struct vg_error err;
 };
@@ -21,7 +21,8 @@ struct each {
 static void note_failure(struct each *e, size_t i, vg_status st,
                          const struct vg_error *err)
 {
-  while (atomic_flag_test_and_set(&e->busy)) {}
+  while (atomic_flag_test_and_set(&e->busy)) {
+  }
   if (i < e->first) {
     e->first = i;
     e->status = st;
@@ -56,8 +57,8 @@ vg_status vg_slices_each(const struct vg_slices *s, int threads,
   assert(s->get && s->put && body);
   assert(threads >= 0);
 
-  struct each e = { s, body, context, ATOMIC_FLAG_INIT, s->n_slice, VG_OK,
-                    VG_ERROR_INIT };
+  struct each e = { s,          body,  context,      ATOMIC_FLAG_INIT,
+                    s->n_slice, VG_OK, VG_ERROR_INIT };
 
   vg_parallel_for(threads, s->n_slice, 1, each_slice, &e);
   if (e.status < 0 && err) *err = e.err;
@@ -96,7 +97,8 @@ vg_status vg_slices_collect(const struct vg_slices *s, int threads,
 
   assert(s->boundary && out);
   if (s->n_point >= UINT32_MAX)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%llu points are too many for a "
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%llu points are too many for a "
                    "mesh in one piece; write b8l.ugrid or pvtu",
                    (unsigned long long)s->n_point);
   VG_TRY(vg_mesh_copy(&m, s->boundary, err));
@@ -110,15 +112,17 @@ vg_status vg_slices_collect(const struct vg_slices *s, int threads,
   m.pri = vg_alloc(m.n_pri, sizeof *m.pri);
   if (!m.point || !m.tet || !m.pyr || !m.pri)
     st = vg_fail_memory(err, "the mesh as a whole");
-  else
-    st = vg_slices_each(s, threads, collect_slice, &m, err);
+  else st = vg_slices_each(s, threads, collect_slice, &m, err);
   if (st >= 0) vg_mesh_move(out, &m);
 done:
   vg_mesh_release(&m);
   return st;
 }
 
-struct parts { const struct vg_slices *s; uint32_t *part; };
+struct parts {
+  const struct vg_slices *s;
+  uint32_t *part;
+};
 
 static vg_status collect_parts(void *context, const struct vg_slice *slice,
                                struct vg_error *err)

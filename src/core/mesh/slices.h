@@ -17,50 +17,49 @@
 enum { VG_SLICE_TET, VG_SLICE_PYR, VG_SLICE_PRI, VG_SLICE_KINDS };
 
 struct vg_slice {
-  size_t n_point;            /* local points */
-  const double (*x)[3];      /* [n_point] */
-  const uint32_t *id;        /* [n_point] index in the mesh */
+  size_t n_point;       /* local points */
+  const double (*x)[3]; /* [n_point] */
+  const uint32_t *id;   /* [n_point] index in the mesh */
   /* Points that this slice owns: the mesh's point_at + k is local point
    * own[k]. Every point of the mesh is owned by one slice. */
   uint64_t point_at;
   size_t n_own;
-  const uint32_t *own;       /* [n_own] */
-  uint64_t cell_at[VG_SLICE_KINDS];  /* index among the cells of the kind */
+  const uint32_t *own;              /* [n_own] */
+  uint64_t cell_at[VG_SLICE_KINDS]; /* index among the cells of the kind */
   size_t n_cell[VG_SLICE_KINDS];
   const uint32_t *cell[VG_SLICE_KINDS]; /* [n_cell][4, 5, 6] local points, in
                                            the node order of core/mesh/mesh.h */
   const uint32_t *part[VG_SLICE_KINDS]; /* [n_cell] for the solver, < n_part;
                                            NULL where slices have no n_part */
-  uint32_t domain;           /* number of the subdomain; 0 for layers */
-  uint8_t kind;              /* 0: layers, 1: leaf, 2: zone, 3: repair */
-  void *keep;                /* the server's */
+  uint32_t domain; /* number of the subdomain; 0 for layers */
+  uint8_t kind;    /* 0: layers, 1: leaf, 2: zone, 3: repair */
+  void *keep;      /* the server's */
 };
 
 struct vg_slices {
   /* counts of the mesh */
   uint64_t n_point, n_cell[VG_SLICE_KINDS];
-  uint64_t n_boundary_point; /* they come first */
-  uint64_t n_layer_point;    /* index behind the last layer point */
+  uint64_t n_boundary_point;             /* they come first */
+  uint64_t n_layer_point;                /* index behind the last layer point */
   uint64_t n_layer_cell[VG_SLICE_KINDS]; /* first of their kind */
-  uint32_t n_part;           /* parts for the solver; 0: none */
+  uint32_t n_part;                       /* parts for the solver; 0: none */
   /* Its boundary on every rank: patches, triangles and quadrilaterals with
    * indices of the mesh; no points, no cells. */
   const struct vg_mesh *boundary;
-  size_t n_slice;            /* served by this rank */
-  uint64_t n_served;         /* cells of all kinds in them */
+  size_t n_slice;    /* served by this rank */
+  uint64_t n_served; /* cells of all kinds in them */
   /** Make slice i at hand; it stays valid until put. Threads: any number of
    * slices at once, each by one thread. VG_ERR_MEMORY. */
   vg_status (*get)(const struct vg_slices *s, size_t i, struct vg_slice *out,
                    struct vg_error *err);
   void (*put)(const struct vg_slices *s, struct vg_slice *slice);
-  void *user;                /* the server's */
+  void *user; /* the server's */
 };
 
 /** Call body for each slice that this rank serves, in threads. Returns the
  * failure of the first slice that failed; those after a failure may be left
  * out. */
-typedef vg_status (*vg_slice_body)(void *context,
-                                   const struct vg_slice *slice,
+typedef vg_status (*vg_slice_body)(void *context, const struct vg_slice *slice,
                                    struct vg_error *err);
 vg_status vg_slices_each(const struct vg_slices *s, int threads,
                          vg_slice_body body, void *context,

@@ -1,7 +1,7 @@
 /* Does what a mesher returned fill the front? With positive cells, faces that
  * two cells have from opposite sides, and the front's own covered once from
- * within, every place inside lies in as many cells as the front winds around it:
- * one. Volumes are compared besides. */
+ * within, every place inside lies in as many cells as the front winds around
+ * it: one. Volumes are compared besides. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,9 +15,8 @@
 /* Sums of volumes differ by rounding alone: some 1e-16 of the terms. */
 static const double tolerance = 1e-10;
 
-static const char *check_numbers(size_t n_front, size_t n,
-                                 const double (*x)[3], size_t n_cell,
-                                 const uint32_t (*cell)[4])
+static const char *check_numbers(size_t n_front, size_t n, const double (*x)[3],
+                                 size_t n_cell, const uint32_t (*cell)[4])
 {
   for (size_t i = n_front; i < n; i++)
     for (int k = 0; k < 3; k++)
@@ -51,7 +50,8 @@ static int turns_alike(const uint32_t a[3], const uint32_t b[3])
   return a[0] == b[k] && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3];
 }
 
-/* Half-faces have their normals out of their cell, the front's faces into it. */
+/* Half-faces have their normals out of their cell, the front's faces into it.
+ */
 static const char *check_sides(const struct vg_cell_links *l,
                                const uint32_t (*face)[3], size_t n_face)
 {
@@ -93,8 +93,8 @@ static const char *check_volume(const double (*x)[3], const uint32_t (*face)[3],
 
     cells += vg_orient3d(x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
   }
-  return fabs(fabs(front) - cells) <= tolerance * sum
-           ? NULL : "volumes do not add up";
+  return fabs(fabs(front) - cells) <= tolerance * sum ? NULL
+                                                      : "volumes do not add up";
 }
 
 static vg_status drop_unused(size_t n_front, size_t *n, double (*x)[3],
@@ -120,22 +120,23 @@ static vg_status drop_unused(size_t n_front, size_t *n, double (*x)[3],
 }
 
 vg_status vg_mesher_check(size_t n_front, size_t n_face,
-                          const uint32_t (*face)[3], size_t *n,
-                          double (*x)[3], size_t n_cell, uint32_t (*cell)[4],
+                          const uint32_t (*face)[3], size_t *n, double (*x)[3],
+                          size_t n_cell, uint32_t (*cell)[4],
                           const char **wrong, struct vg_error *err)
 {
-  struct vg_mesh m = { .n_point = *n, .point = x, .n_tri = n_face,
-                       .n_tet = n_cell, .tet = cell };
+  struct vg_mesh m = {
+    .n_point = *n, .point = x, .n_tri = n_face, .n_tet = n_cell, .tet = cell
+  };
   struct vg_cell_links l = VG_CELL_LINKS_INIT;
   vg_status st;
 
   assert(wrong && *n >= n_front);
   assert(face || !n_face);
   assert(cell || !n_cell);
-  memcpy(&m.tri, &face, sizeof m.tri);   /* read only */
-  *wrong = check_numbers(n_front, *n, (const double (*)[3])x, n_cell,
-                         (const uint32_t (*)[4])cell);
-  if (!*wrong) *wrong = turn_cells((const double (*)[3])x, n_cell, cell);
+  memcpy(&m.tri, &face, sizeof m.tri); /* read only */
+  *wrong = check_numbers(n_front, *n, (const double(*)[3])x, n_cell,
+                         (const uint32_t(*)[4])cell);
+  if (!*wrong) *wrong = turn_cells((const double(*)[3])x, n_cell, cell);
   if (*wrong) return VG_NOT_BETTER;
   st = vg_cell_links_build(&l, &m, 0, "a void", err);
   if (st == VG_ERR_INPUT || st == VG_ERR_UNSUPPORTED) {
@@ -146,8 +147,8 @@ vg_status vg_mesher_check(size_t n_front, size_t n_face,
   *wrong = check_sides(&l, face, n_face);
   vg_cell_links_release(&l);
   if (!*wrong)
-    *wrong = check_volume((const double (*)[3])x, face, n_face, n_cell,
-                          (const uint32_t (*)[4])cell);
+    *wrong = check_volume((const double(*)[3])x, face, n_face, n_cell,
+                          (const uint32_t(*)[4])cell);
   if (*wrong) return VG_NOT_BETTER;
   return drop_unused(n_front, n, x, n_cell, cell, err);
 }

@@ -45,18 +45,21 @@ static const struct vg_mesher *load_plugin(const char *path, char *why,
   }
   get = (plugin *)(uintptr_t)dlsym(library, VG_MESHER_SYMBOL);
   if (!get) {
-    snprintf(why, size, "it does not export the function %s, as a plug-in for "
-             "meshing does (vanguard/mesher.h)", VG_MESHER_SYMBOL);
+    snprintf(why, size,
+             "it does not export the function %s, as a plug-in for "
+             "meshing does (vanguard/mesher.h)",
+             VG_MESHER_SYMBOL);
     return NULL;
   }
   m = get();
   if (m && m->version == VG_MESHER_VERSION && m->fill) return m;
   if (m && m->version != VG_MESHER_VERSION)
-    snprintf(why, size, "it is made for version %u of the interface, this "
+    snprintf(why, size,
+             "it is made for version %u of the interface, this "
              "program has version %d; compile it with this program's "
-             "vanguard/mesher.h", (unsigned)m->version, VG_MESHER_VERSION);
-  else
-    snprintf(why, size, "its %s returns no mesher", VG_MESHER_SYMBOL);
+             "vanguard/mesher.h",
+             (unsigned)m->version, VG_MESHER_VERSION);
+  else snprintf(why, size, "its %s returns no mesher", VG_MESHER_SYMBOL);
   return NULL;
 }
 
@@ -85,12 +88,12 @@ static void set_end(double seconds)
 static int get_front(int fd, const struct vg_mesher_job *job,
                      struct vg_mesher_front *f)
 {
-  double (*x)[3] = vg_alloc(job->n_point, sizeof *x);
-  uint32_t (*face)[3] = vg_alloc(job->n_face, sizeof *face);
+  double(*x)[3] = vg_alloc(job->n_point, sizeof *x);
+  uint32_t(*face)[3] = vg_alloc(job->n_face, sizeof *face);
 
   *f = (struct vg_mesher_front){ job->n_point, job->n_face,
-                                 (const double (*)[3])x,
-                                 (const uint32_t (*)[3])face };
+                                 (const double(*)[3])x,
+                                 (const uint32_t(*)[3])face };
   return x && face && vg_child_get(fd, x, job->n_point * sizeof *x) &&
          vg_child_get(fd, face, job->n_face * sizeof *face);
 }
@@ -104,9 +107,8 @@ static int put_cells(int fd, const struct vg_mesher_cells *c)
          vg_child_put(fd, c->cell, c->n_cell * sizeof *c->cell);
 }
 
-__attribute__((noreturn))
-static void fill(int fd, const struct vg_mesher *m,
-                 const struct vg_mesher_job *job)
+__attribute__((noreturn)) static void fill(int fd, const struct vg_mesher *m,
+                                           const struct vg_mesher_job *job)
 {
   static const struct vg_mesher_word none = { VG_WORD_NONE, 0, 0 };
   struct vg_mesher_cells cells = { 0, 0, NULL, NULL };
@@ -117,9 +119,9 @@ static void fill(int fd, const struct vg_mesher *m,
   if (!get_front(fd, job, &front)) _exit(1);
   sizes.user = vg_child_sizes_new(fd, &front);
   if (!sizes.user) _exit(1);
-  if (m->fill(&front, &sizes, &cells)) _exit(!vg_child_put(fd, &none,
-                                                           sizeof none));
-  _exit(!put_cells(fd, &cells));   /* and so nothing is to be released */
+  if (m->fill(&front, &sizes, &cells))
+    _exit(!vg_child_put(fd, &none, sizeof none));
+  _exit(!put_cells(fd, &cells)); /* and so nothing is to be released */
 }
 
 /* --- one process for each ------------------------------------------------ */

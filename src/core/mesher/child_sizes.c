@@ -1,8 +1,8 @@
 /* Sizes on the other side of a socket. To ask for each would take longer than
  * the meshing: so they are kept on an octree over the front's box, whose cells
  * are split where they are longer than their least corner's size, and read from
- * it trilinearly. A cell's children are asked for at once, when a point in it is
- * first looked up. */
+ * it trilinearly. A cell's children are asked for at once, when a point in it
+ * is first looked up. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,11 +13,11 @@
 #include "base/memory.h"
 #include "core/mesher/mesher_parts.h"
 
-#define DEPTH 40             /* more than doubles can tell apart */
+#define DEPTH 40 /* more than doubles can tell apart */
 
 struct node {
-  uint32_t child;            /* the first of eight; 0: not split (yet) */
-  float h[8];                /* at its corners, x first */
+  uint32_t child; /* the first of eight; 0: not split (yet) */
+  float h[8];     /* at its corners, x first */
 };
 
 struct vg_child_sizes {
@@ -32,7 +32,8 @@ static void ask(int fd, size_t n, const double (*x)[3], double *h)
   const struct vg_mesher_word w = { VG_WORD_SIZES, n, 0 };
 
   if (!vg_child_put(fd, &w, sizeof w) || !vg_child_put(fd, x, n * sizeof *x) ||
-      !vg_child_get(fd, h, n * sizeof *h)) _exit(1);
+      !vg_child_get(fd, h, n * sizeof *h))
+    _exit(1);
 }
 
 static void find_box(struct vg_child_sizes *s, const struct vg_mesher_front *f)
@@ -68,9 +69,8 @@ struct vg_child_sizes *vg_child_sizes_new(int fd,
   s->fd = fd;
   find_box(s, f);
   for (int c = 0; c < 8; c++)
-    for (int k = 0; k < 3; k++)
-      x[c][k] = s->lo[k] + (c >> k & 1) * s->side;
-  ask(fd, 8, (const double (*)[3])x, h);
+    for (int k = 0; k < 3; k++) x[c][k] = s->lo[k] + (c >> k & 1) * s->side;
+  ask(fd, 8, (const double(*)[3])x, h);
   s->n = 1;
   s->node[0].child = 0;
   for (int c = 0; c < 8; c++) s->node[0].h[c] = (float)h[c];
@@ -95,17 +95,18 @@ static void split(struct vg_child_sizes *s, uint32_t node, const double lo[3],
     c = i;
     for (int k = 0; k < 3; k++, c /= 3) x[i][k] = lo[k] + c % 3 * (side / 2);
   }
-  ask(s->fd, 27, (const double (*)[3])x, h);
+  ask(s->fd, 27, (const double(*)[3])x, h);
   if (s->n > UINT32_MAX - 8 ||
-      vg_reserve(&s->node, &s->room, s->n + 8, sizeof *s->node)) _exit(1);
+      vg_reserve(&s->node, &s->room, s->n + 8, sizeof *s->node))
+    _exit(1);
   for (int c = 0; c < 8; c++) {
     struct node *to = &s->node[s->n + (size_t)c];
 
     to->child = 0;
     for (int v = 0; v < 8; v++)
-      to->h[v] = (float)h[(c & 1) + (v & 1) +
-                          3 * ((c >> 1 & 1) + (v >> 1 & 1)) +
-                          9 * ((c >> 2) + (v >> 2))];
+      to->h[v] = (float)
+        h[(c & 1) + (v & 1) + 3 * ((c >> 1 & 1) + (v >> 1 & 1)) +
+          9 * ((c >> 2) + (v >> 2))];
   }
   s->node[node].child = (uint32_t)s->n;
   s->n += 8;

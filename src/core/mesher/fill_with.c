@@ -15,17 +15,17 @@
 #include "core/mesher/mesher_parts.h"
 
 /* Slow ones make a thousand cells a second, and some ten for each triangle. */
-static const double patience = 600, patience_each = 0.05;   /* K31 */
-static const double silence = 10;   /* times that, without a sign of life */
+static const double patience = 600, patience_each = 0.05; /* K31 */
+static const double silence = 10; /* times that, without a sign of life */
 
-static const uint64_t n_max = UINT32_MAX / 8 - 1;   /* cell_links.h */
+static const uint64_t n_max = UINT32_MAX / 8 - 1; /* cell_links.h */
 
 struct vg_mesher_pool {
   struct vg_mesher_spec spec;
   double patience, patience_each;
   pthread_mutex_t lock;
   size_t n, room;
-  struct vg_child *idle;     /* [n] that have loaded it and have nothing to do */
+  struct vg_child *idle; /* [n] that have loaded it and have nothing to do */
 };
 
 /* --- processes ----------------------------------------------------------- */
@@ -40,9 +40,11 @@ static vg_status start(struct vg_mesher_pool *p, struct vg_child *c,
     return vg_fail_memory(err, "a process for a mesher");
   if (!vg_child_put(c->fd, &p->spec, sizeof p->spec) ||
       !vg_child_get(c->fd, &hello, sizeof hello))
-    st = vg_fail(err, VG_ERR_UNSUPPORTED, "mesher %s: the process that loads "
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "mesher %s: the process that loads "
                  "it ended; it crashes when it is loaded or asked for its "
-                 "mesher", p->spec.name);
+                 "mesher",
+                 p->spec.name);
   else if (!hello.is_ready)
     st = vg_fail(err, VG_ERR_UNSUPPORTED, "mesher %s: %.500s", p->spec.name,
                  hello.text);
@@ -87,8 +89,10 @@ vg_status vg_mesher_open(const char *name, struct vg_mesher_pool **out,
   p->patience_each = patience_each;
   if ((size_t)snprintf(p->spec.name, sizeof p->spec.name, "%s", name) >=
       sizeof p->spec.name) {
-    st = vg_fail(err, VG_ERR_UNSUPPORTED, "mesher %.60s...: the path is too "
-                 "long", name);
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "mesher %.60s...: the path is too "
+                 "long",
+                 name);
   } else {
     st = start(p, &c, err);
   }
@@ -129,7 +133,7 @@ struct filling {
   const struct vg_fill_options *options;
   double seconds;
   size_t n, n_cell;
-  double (*x)[3];            /* [n] the front's points first */
+  double (*x)[3]; /* [n] the front's points first */
   uint32_t (*cell)[4];
 };
 
@@ -166,7 +170,7 @@ static int answer_sizes(const struct filling *f, uint64_t n)
   for (size_t here; n; n -= here) {
     here = n < 64 ? n : 64;
     if (!vg_child_get(f->fd, x, here * sizeof *x)) return 0;
-    vg_sizing_eval(f->sizing, here, (const double (*)[3])x, h);
+    vg_sizing_eval(f->sizing, here, (const double(*)[3])x, h);
     if (!vg_child_put(f->fd, h, here * sizeof *h)) return 0;
   }
   return 1;
@@ -230,8 +234,8 @@ static vg_status judge(struct filling *f, struct vg_filled *out,
   const struct vg_front *front = f->front;
   const char *wrong;
   vg_status st = vg_mesher_check(front->n_point, front->n_face,
-                                 (const uint32_t (*)[3])front->face, &f->n,
-                                 f->x, f->n_cell, f->cell, &wrong, err);
+                                 (const uint32_t(*)[3])front->face, &f->n, f->x,
+                                 f->n_cell, f->cell, &wrong, err);
 
   if (st == VG_NOT_BETTER) r->n_other_wrong++;
   if (st != VG_OK) return st;
@@ -250,8 +254,11 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
                          struct vg_filled *out, struct vg_fill_report *report,
                          struct vg_error *err)
 {
-  struct filling f = { .front = front, .sizing = sizing, .options = options,
-    .seconds = p->patience + p->patience_each * (double)front->n_face };
+  struct filling f = { .front = front,
+                       .sizing = sizing,
+                       .options = options,
+                       .seconds = p->patience +
+                                  p->patience_each * (double)front->n_face };
   double t = vg_clock();
   struct vg_child c;
   enum outcome o;

@@ -28,8 +28,8 @@ void vg_mesher_close(struct vg_mesher_pool *p);
  * front the face of one cell on its inner side, every other face that of two
  * cells on both sides of it, all volumes positive (exactly), their sum that of
  * the front.
- * Returns VG_NOT_BETTER when the cells do not pass, or the mesher made none: *out is
- * untouched, and *report counts why (n_other_...); VG_ERR_STOPPED;
+ * Returns VG_NOT_BETTER when the cells do not pass, or the mesher made none:
+ * *out is untouched, and *report counts why (n_other_...); VG_ERR_STOPPED;
  * VG_ERR_UNSUPPORTED beyond options->point_limit.
  * Threads: any number of voids at a time. */
 vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
@@ -51,8 +51,8 @@ void vg_mesher_patience(struct vg_mesher_pool *p, double seconds,
  * @param wrong    out: what is wrong with them, a static string; NULL: nothing
  * Returns VG_OK, or VG_NOT_BETTER when something is; VG_ERR_MEMORY. O(n). */
 vg_status vg_mesher_check(size_t n_front, size_t n_face,
-                          const uint32_t (*face)[3], size_t *n,
-                          double (*x)[3], size_t n_cell, uint32_t (*cell)[4],
+                          const uint32_t (*face)[3], size_t *n, double (*x)[3],
+                          size_t n_cell, uint32_t (*cell)[4],
                           const char **wrong, struct vg_error *err);
 
 #endif

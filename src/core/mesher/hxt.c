@@ -16,7 +16,7 @@ static const char library_name[] = "libgmsh.so.4.8";
 
 /* Asked for sizes, HXT makes edges that are 1.47 times as long on average; with
  * this factor they are as long as wanted. */
-static const double stretch = 0.68;   /* K33 */
+static const double stretch = 0.68; /* K33 */
 
 static struct {
   void (*initialize)(int argc, char **argv, int read_config, int *ierr);
@@ -29,9 +29,9 @@ static struct {
   int (*add_loop)(int *surfaces, size_t n, int tag, int *ierr);
   int (*add_volume)(int *loops, size_t n, int tag, int *ierr);
   void (*synchronize)(int *ierr);
-  void (*set_sizes)(double (*at)(int dim, int tag, double x, double y,
-                                 double z, void *data), void *data,
-                    int *ierr);
+  void (*set_sizes)(double (*at)(int dim, int tag, double x, double y, double z,
+                                 void *data),
+                    void *data, int *ierr);
   void (*generate)(int dim, int *ierr);
   void (*get_nodes)(size_t **tags, size_t *n_tag, double **x, size_t *n_x,
                     double **u, size_t *n_u, int dim, int tag,
@@ -43,7 +43,10 @@ static struct {
 
 static int load(char *why, size_t size)
 {
-  const struct { const char *name; void *at; } function[] = {
+  const struct {
+    const char *name;
+    void *at;
+  } function[] = {
     { "gmshInitialize", &gmsh.initialize },
     { "gmshOptionSetNumber", &gmsh.set_number },
     { "gmshModelAddDiscreteEntity", &gmsh.add_discrete },
@@ -60,9 +63,10 @@ static int load(char *why, size_t size)
   void *library = vg_mesher_library(library_name);
 
   if (!library) {
-    snprintf(why, size, "gmsh's library %s cannot be loaded (%s); install it "
-             "(Debian: libgmsh4.8), or use another mesher", library_name,
-             dlerror());
+    snprintf(why, size,
+             "gmsh's library %s cannot be loaded (%s); install it "
+             "(Debian: libgmsh4.8), or use another mesher",
+             library_name, dlerror());
     return 0;
   }
   for (size_t i = 0; i < sizeof function / sizeof *function; i++) {
@@ -93,11 +97,18 @@ static double size_at(int dim, int tag, double x, double y, double z,
 
 static int set_options(void)
 {
-  static const struct { const char *name; double value; } option[] = {
-    { "General.Terminal", 0 }, { "General.NumThreads", 1 },
-    { "Mesh.Algorithm3D", 10 }, { "Mesh.Optimize", 1 },
-    { "Mesh.MeshSizeExtendFromBoundary", 0 }, { "Mesh.MeshSizeFromPoints", 0 },
-    { "Mesh.MeshSizeFromCurvature", 0 }, { "Mesh.Renumber", 0 },
+  static const struct {
+    const char *name;
+    double value;
+  } option[] = {
+    { "General.Terminal", 0 },
+    { "General.NumThreads", 1 },
+    { "Mesh.Algorithm3D", 10 },
+    { "Mesh.Optimize", 1 },
+    { "Mesh.MeshSizeExtendFromBoundary", 0 },
+    { "Mesh.MeshSizeFromPoints", 0 },
+    { "Mesh.MeshSizeFromCurvature", 0 },
+    { "Mesh.Renumber", 0 },
   };
   int bad = 0;
 
@@ -132,8 +143,7 @@ static int put_points(const struct vg_mesher_front *f,
     node[n++] = (size_t)v + 1;
   }
   if (!bad) gmsh.add_discrete(2, (int)piece + 1, NULL, 0, &bad);
-  if (!bad)
-    gmsh.add_nodes(2, (int)piece + 1, node, n, x, 3 * n, NULL, 0, &bad);
+  if (!bad) gmsh.add_nodes(2, (int)piece + 1, node, n, x, 3 * n, NULL, 0, &bad);
   free(node);
   free(x);
   return bad;
@@ -195,7 +205,7 @@ static int put_front(const struct vg_mesher_front *f)
     bad = put_triangles(f, &s, k);
   if (!bad) bad = put_volumes(&s);
   free(is_put);
-  return bad;                /* the process ends soon, and frees the rest */
+  return bad; /* the process ends soon, and frees the rest */
 }
 
 /* --- the cells ----------------------------------------------------------- */

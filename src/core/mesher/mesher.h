@@ -51,19 +51,18 @@ struct vg_mesher_sizes {
  * release. */
 struct vg_mesher_cells {
   size_t n_point, n_cell;
-  double (*x)[3];            /* [n_point] new points, inside */
-  uint32_t (*cell)[4];       /* [n_cell] the front's points, then n_point more
-                                that are new; in either orientation */
+  double (*x)[3];      /* [n_point] new points, inside */
+  uint32_t (*cell)[4]; /* [n_cell] the front's points, then n_point more
+                          that are new; in either orientation */
 };
 
 struct vg_mesher {
-  uint32_t version;          /* VG_MESHER_VERSION */
+  uint32_t version; /* VG_MESHER_VERSION */
   const char *name;
   /** 0: filled. Anything else: could not; out is not looked at. */
   int (*fill)(const struct vg_mesher_front *front,
-              const struct vg_mesher_sizes *sizes,
-              struct vg_mesher_cells *out);
-  void (*release)(struct vg_mesher_cells *cells);   /* may be NULL */
+              const struct vg_mesher_sizes *sizes, struct vg_mesher_cells *out);
+  void (*release)(struct vg_mesher_cells *cells); /* may be NULL */
 };
 
 /** What a plug-in exports. The mesher lasts as long as the process. */

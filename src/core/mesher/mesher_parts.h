@@ -20,11 +20,21 @@
 extern "C" {
 #endif
 
-struct vg_mesher_spec { char name[4096]; };
-struct vg_mesher_hello { int32_t is_ready; char text[508]; };
-struct vg_mesher_job { uint64_t n_point, n_face; double seconds; };
+struct vg_mesher_spec {
+  char name[4096];
+};
+struct vg_mesher_hello {
+  int32_t is_ready;
+  char text[508];
+};
+struct vg_mesher_job {
+  uint64_t n_point, n_face;
+  double seconds;
+};
 enum { VG_WORD_SIZES = 1, VG_WORD_CELLS, VG_WORD_NONE };
-struct vg_mesher_word { uint64_t what, n, n_cell; };
+struct vg_mesher_word {
+  uint64_t what, n, n_cell;
+};
 
 /** The child: a vg_child_body. */
 void vg_mesher_serve(int fd);
@@ -45,10 +55,10 @@ void *vg_mesher_library(const char *path);
  * triangles meet at an edge. */
 struct vg_mesher_shells {
   size_t n, n_hollow, n_piece;
-  uint32_t *of, *piece;      /* [n_face] */
-  uint32_t *shell_of;        /* [n_piece] */
-  unsigned char *is_hollow;  /* [n] */
-  size_t *largest;           /* [n] the largest triangle */
+  uint32_t *of, *piece;     /* [n_face] */
+  uint32_t *shell_of;       /* [n_piece] */
+  unsigned char *is_hollow; /* [n] */
+  size_t *largest;          /* [n] the largest triangle */
 };
 /** 0, or -1 where memory is refused. */
 int vg_mesher_find_shells(const struct vg_mesher_front *f,
@@ -65,8 +75,7 @@ struct vg_child_sizes;
 void vg_child_sizes_free(struct vg_child_sizes *s);
 struct vg_child_sizes *vg_child_sizes_new(int fd,
                                           const struct vg_mesher_front *f);
-void vg_child_sizes_at(void *sizes, size_t n, const double (*x)[3],
-                       double *h);
+void vg_child_sizes_at(void *sizes, size_t n, const double (*x)[3], double *h);
 
 #ifdef __cplusplus
 }

@@ -11,16 +11,16 @@
 #include "core/mesher/mesher_parts.h"
 
 struct edge {
-  uint32_t v[2], face;       /* v[0] < v[1] */
-  int is_along;              /* the face goes from v[0] to v[1] */
-  double angle;              /* of edges of more than two: 0 to 4, as turns from
-                                the first, quarters being 1 */
+  uint32_t v[2], face; /* v[0] < v[1] */
+  int is_along;        /* the face goes from v[0] to v[1] */
+  double angle;        /* of edges of more than two: 0 to 4, as turns from
+                          the first, quarters being 1 */
 };
 
 struct work {
   const struct vg_mesher_front *f;
-  struct edge *edge;         /* [3 n_face] */
-  uint32_t *shell, *piece;   /* [n_face] base/union_find.h */
+  struct edge *edge;       /* [3 n_face] */
+  uint32_t *shell, *piece; /* [n_face] base/union_find.h */
 };
 
 void vg_mesher_shells_release(struct vg_mesher_shells *s)
@@ -33,8 +33,7 @@ void vg_mesher_shells_release(struct vg_mesher_shells *s)
   memset(s, 0, sizeof *s);
 }
 
-void vg_mesher_normal(const struct vg_mesher_front *f, size_t face,
-                      double n[3])
+void vg_mesher_normal(const struct vg_mesher_front *f, size_t face, double n[3])
 {
   const double *a = f->x[f->face[face][0]], *b = f->x[f->face[face][1]];
   const double *c = f->x[f->face[face][2]];
@@ -126,15 +125,18 @@ static void join(const struct work *w)
   for (size_t i = 0; i < n; i++) {
     uint32_t a = w->f->face[i / 3][i % 3], b = w->f->face[i / 3][(i + 1) % 3];
 
-    w->edge[i] = (struct edge){ { a < b ? a : b, a < b ? b : a },
-                                (uint32_t)(i / 3), a < b, 0 };
+    w->edge[i] = (struct edge){
+      { a < b ? a : b, a < b ? b : a }, (uint32_t)(i / 3), a < b, 0
+    };
   }
   qsort(w->edge, n, sizeof *w->edge, by_points);
   for (size_t i = 0; i < n; i = end) {
     struct edge *e = w->edge + i;
 
     for (end = i + 1; end < n && w->edge[end].v[0] == e->v[0] &&
-                      w->edge[end].v[1] == e->v[1]; end++) {}
+                      w->edge[end].v[1] == e->v[1];
+         end++) {
+    }
     if (end > i + 2) {
       pair_around(w, e, end - i);
     } else if (end == i + 2) {
@@ -158,8 +160,8 @@ static size_t number(uint32_t *up, size_t n, uint32_t *to)
 }
 
 /* Normals point into what is to be filled: out of a hollow. */
-static void measure(const struct vg_mesher_front *f,
-                    struct vg_mesher_shells *s, double (*sum)[2])
+static void measure(const struct vg_mesher_front *f, struct vg_mesher_shells *s,
+                    double (*sum)[2])
 {
   for (size_t i = 0; i < f->n_face; i++) {
     const double *a = f->x[f->face[i][0]];
@@ -182,7 +184,7 @@ static void measure(const struct vg_mesher_front *f,
 
 static int describe(const struct work *w, struct vg_mesher_shells *s)
 {
-  double (*sum)[2];
+  double(*sum)[2];
 
   join(w);
   s->n = number(w->shell, w->f->n_face, s->of);

@@ -8,12 +8,13 @@
 #include "core/mesher/mesher_parts.h"
 #include "core/recover/tetgen_input.h"
 
-namespace {
+namespace
+{
 
 /* A cell is split whose volume is more than this many times that of a regular
  * one with the edges wanted at its middle: as many cells then as of our own
  * kernel. */
-const double largest = 1.3;   /* K32 */
+const double largest = 1.3; /* K32 */
 
 const vg_mesher_sizes *sizes;
 
@@ -30,13 +31,14 @@ bool is_too_large(REAL *a, REAL *b, REAL *c, REAL *d, REAL *, REAL)
   sizes->at(sizes->user, 1, x, &h);
   volume = std::fabs(u[0] * (v[1] * w[2] - v[2] * w[1]) +
                      u[1] * (v[2] * w[0] - v[0] * w[2]) +
-                     u[2] * (v[0] * w[1] - v[1] * w[0])) / 6;
+                     u[2] * (v[0] * w[1] - v[1] * w[0])) /
+           6;
   return volume > largest * h * h * h / (6 * std::sqrt(2.0));
 }
 
 /* A point within each hollow, closely behind the largest triangle. Where it
- * misses, cells are made in the hollow that nobody wants, or none where they are
- * wanted, which is noticed. */
+ * misses, cells are made in the hollow that nobody wants, or none where they
+ * are wanted, which is noticed. */
 void put_holes(tetgenio &in, const vg_mesher_front &f,
                const vg_mesher_shells &shells)
 {
@@ -52,10 +54,12 @@ void put_holes(tetgenio &in, const vg_mesher_front &f,
     if (!shells.is_hollow[s]) continue;
     vg_mesher_normal(&f, shells.largest[s], n);
     for (int k = 0; k < 3; k++) length += n[k] * n[k];
-    length = std::sqrt(std::sqrt(length));   /* about an edge */
+    length = std::sqrt(std::sqrt(length)); /* about an edge */
     for (int k = 0; k < 3; k++)
       in.holelist[at++] = (f.x[face[0]][k] + f.x[face[1]][k] +
-                           f.x[face[2]][k]) / 3 - 1e-4 * n[k] / length;
+                           f.x[face[2]][k]) /
+                            3 -
+                          1e-4 * n[k] / length;
   }
 }
 
@@ -70,22 +74,26 @@ void put_front(tetgenio &in, const vg_mesher_front &f)
 
 /* Cells that are joined to the inner side of a face of the front, from
  * neighbour to neighbour; others stand in hollows. */
-class inside {
+class inside
+{
 public:
   inside(const tetgenio &out, const vg_mesher_front &f)
-    : io(out), is_in(static_cast<size_t>(out.numberoftetrahedra))
+      : io(out), is_in(static_cast<size_t>(out.numberoftetrahedra))
   {
     mark_front(f);
     for (size_t c = 0; c < is_in.size(); c++)
       if (is_in[c] == start) spread(c);
   }
-  bool has(size_t cell) const { return is_in[cell] != 0; }
+  bool has(size_t cell) const
+  {
+    return is_in[cell] != 0;
+  }
 
 private:
   enum { start = 1, reached = 2 };
   const tetgenio &io;
   std::vector<char> is_in;
-  std::vector<std::vector<uint32_t>> face_at;  /* by its lowest point */
+  std::vector<std::vector<uint32_t>> face_at; /* by its lowest point */
   const vg_mesher_front *front = nullptr;
 
   static uint32_t lowest(const uint32_t v[3])
@@ -116,8 +124,9 @@ private:
 
   void sides(size_t cell, int s[4]) const
   {
-    static const int face[4][3] = { {1, 3, 2}, {0, 2, 3}, {0, 3, 1},
-                                    {0, 1, 2} };
+    static const int face[4][3] = {
+      { 1, 3, 2 }, { 0, 2, 3 }, { 0, 3, 1 }, { 0, 1, 2 }
+    };
     const int *v = &io.tetrahedronlist[4 * cell];
     const REAL *x[4];
     bool turned;
@@ -157,7 +166,8 @@ private:
       face_at[lowest(f.face[i])].push_back(static_cast<uint32_t>(i));
     for (size_t c = 0; c < is_in.size(); c++) {
       sides(c, s);
-      for (int i = 0; i < 4; i++) if (s[i] > 0) is_in[c] = start;
+      for (int i = 0; i < 4; i++)
+        if (s[i] > 0) is_in[c] = start;
     }
   }
 
@@ -191,10 +201,10 @@ bool take_cells(const tetgenio &out, const vg_mesher_front &f,
   inside in(out, f);
 
   to->n_point = static_cast<size_t>(out.numberofpoints) - f.n_point;
-  to->x = static_cast<double(*)[3]>(std::malloc((to->n_point + 1) *
-                                                sizeof *to->x));
-  to->cell = static_cast<uint32_t(*)[4]>(std::malloc((n + 1) *
-                                                     sizeof *to->cell));
+  to->x = static_cast<double(*)[3]>(
+    std::malloc((to->n_point + 1) * sizeof *to->x));
+  to->cell = static_cast<uint32_t(*)[4]>(
+    std::malloc((n + 1) * sizeof *to->cell));
   if (!to->x || !to->cell) return false;
   for (size_t i = 0; i < to->n_point; i++)
     for (int k = 0; k < 3; k++)
@@ -203,9 +213,8 @@ bool take_cells(const tetgenio &out, const vg_mesher_front &f,
   for (size_t c = 0; c < n; c++) {
     if (!in.has(c)) continue;
     for (int k = 0; k < 4; k++)
-      to->cell[to->n_cell][k] =
-        static_cast<uint32_t>(out.tetrahedronlist[4 * c +
-                                                  static_cast<size_t>(k)]);
+      to->cell[to->n_cell][k] = static_cast<uint32_t>(
+        out.tetrahedronlist[4 * c + static_cast<size_t>(k)]);
     to->n_cell++;
   }
   return true;
@@ -238,7 +247,7 @@ int fill(const vg_mesher_front *front, const vg_mesher_sizes *wanted,
 
 const vg_mesher tetgen = { VG_MESHER_VERSION, "TetGen", fill, nullptr };
 
-}  // namespace
+} // namespace
 
 extern "C" const vg_mesher *vg_mesher_tetgen(void)
 {

@@ -13,12 +13,12 @@
  * degrees) are worked on one by one; sweeps swap below `fair` (30, 150);
  * `good` (45, 135) cells are not touched. */
 static const double aim = VG_SHAPE_TARGET;
-static const float fair = 0.25, good = VG_SHAPE_GOOD;   /* K24 */
+static const float fair = 0.25, good = VG_SHAPE_GOOD; /* K24 */
 /* Below this (15, 165) points are taken away or put in. */
-static const double desperate = 0.067;   /* K25 */
+static const double desperate = 0.067; /* K25 */
 
 /* Rounds of mending, ended early when less than a hundredth got better. */
-enum { ROUNDS = 8, CLASSES = 8 };   /* K26 */
+enum { ROUNDS = 8, CLASSES = 8 }; /* K26 */
 
 static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
                        struct vg_error *err)
@@ -93,8 +93,7 @@ static void worst_around(const struct vg_optimiser *o, float *least)
   for (uint32_t c = 0; c < t->n_cell; c++)
     if (is_live(t, c) && o->q[c] < good && concerns(o, c))
       for (int i = 0; i < 4; i++)
-        if (o->q[c] < least[t->cell[c].v[i]])
-          least[t->cell[c].v[i]] = o->q[c];
+        if (o->q[c] < least[t->cell[c].v[i]]) least[t->cell[c].v[i]] = o->q[c];
 }
 
 /* Swaps first: a sliver that is smoothed spoils its neighbours. Points whose
@@ -122,8 +121,8 @@ static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
 /* A cell on which everything failed is flagged VG_TRIED until it changes. */
 static int wants_mending(const struct vg_optimiser *o, uint32_t c)
 {
-  return is_live(o->t, c) && o->q[c] < aim &&
-         !(o->t->flag[c] & VG_TRIED) && concerns(o, c);
+  return is_live(o->t, c) && o->q[c] < aim && !(o->t->flag[c] & VG_TRIED) &&
+         concerns(o, c);
 }
 
 /* The cells that want mending: the worst first in a few classes, and within
@@ -134,8 +133,7 @@ static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
   size_t k = 0, n_cell = o->t->n_cell;
 
   *n = 0;
-  for (uint32_t c = 0; c < n_cell; c++)
-    *n += (size_t)wants_mending(o, c);
+  for (uint32_t c = 0; c < n_cell; c++) *n += (size_t)wants_mending(o, c);
   *list = vg_alloc(*n, sizeof **list);
   if (!*list) return vg_fail_memory(err, "optimisation");
   for (uint32_t c = 0; c < n_cell; c++)
@@ -192,8 +190,8 @@ static size_t count_left(const struct vg_optimiser *o)
   return n;
 }
 
-static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t,
-                          int sweeps, struct vg_error *err)
+static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
+                          struct vg_error *err)
 {
   int again = 1;
   vg_status st = start(o, t, err);

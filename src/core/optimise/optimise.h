@@ -11,8 +11,8 @@
 
 struct vg_optimise_report {
   size_t n_smoothed, n_flip, n_collapse, n_split;
-  size_t n_left;            /* bad cells into which no point was tried to be put
-                               any more: enough had been spent on others */
+  size_t n_left; /* bad cells into which no point was tried to be put
+                    any more: enough had been spent on others */
 };
 
 /** Improve the cells of t in place: smoothing, swaps, insertion, removal.
@@ -56,14 +56,13 @@ vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
  * has all its cells there, none of them with a fixed face.
  * q in, out: [t.n_cell] shapes (vg_shape) of the cells
  * Deterministic. VG_ERR_MEMORY on refusal. */
-vg_status vg_optimise_points(struct vg_tets *t, size_t n,
-                             const uint32_t *point, float below,
-                             const struct vg_sizing *sizing, float *q,
-                             struct vg_optimise_report *report,
+vg_status vg_optimise_points(struct vg_tets *t, size_t n, const uint32_t *point,
+                             float below, const struct vg_sizing *sizing,
+                             float *q, struct vg_optimise_report *report,
                              struct vg_error *err);
 
 /** A cell of a shape (core/geometry/shape.h) below this is one that is worked
  * on. */
-#define VG_SHAPE_TARGET 0.1786   /* K23 */
+#define VG_SHAPE_TARGET 0.1786 /* K23 */
 
 #endif

@@ -9,7 +9,7 @@
 
 /* Shares of vg_ball_other: of volume^2 / E^3 over a regular cell's, of what
  * sizes are off, squared; and in slopes, beside the logarithm of the shape. */
-static const double round_share = 0.3, size_share = 0.5;   /* K28 */
+static const double round_share = 0.3, size_share = 0.5; /* K28 */
 static const double round_slope = 1.2, size_slope = 0.5;
 
 void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
@@ -56,7 +56,9 @@ void vg_ball_target(const struct vg_sizing *sizing, const double x[3],
 
 /* Of cell k with the point at x: edges to the corners of the face, and of the
  * faces between them, each opposite a corner, normals and their squares. */
-struct cone { double u[3][3], l[3], n[3][3], s[3], det; };
+struct cone {
+  double u[3][3], l[3], n[3][3], s[3], det;
+};
 
 static inline void raise(const struct vg_ball_faces *b, size_t k,
                          const double x[3], struct cone *c)
@@ -81,7 +83,10 @@ static inline void raise(const struct vg_ball_faces *b, size_t k,
              c->u[0][2] * b->normal[2][k]);
 }
 
-static inline double least_of(double a, double b) { return a < b ? a : b; }
+static inline double least_of(double a, double b)
+{
+  return a < b ? a : b;
+}
 
 enum { BLOCK = 8 };
 
@@ -98,16 +103,18 @@ int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
 
       raise(b, k, x, &c);
       least = least_of(least_of(c.l[0] * c.s[0], c.l[1] * c.s[1]),
-                       c.l[2] * c.s[2]) * s;
+                       c.l[2] * c.s[2]) *
+              s;
       least = least_of(least, b->edge2[0][k] * c.s[1] * c.s[2]);
       least = least_of(least, b->edge2[1][k] * c.s[2] * c.s[0]);
       least = least_of(least, b->edge2[2][k] * c.s[0] * c.s[1]);
       all = c.s[0] * c.s[1] * c.s[2] * s;
       square = c.det * fabs(c.det);
       /* As vg_shape: not 0 only where rounding has no say in the sign. */
-      q[k] = ((all > 0) & (fabs(square) > 1e-24 * c.l[0] * b->edge2[0][k] *
-                                          b->edge2[1][k]))
-             ? square * least / all : 0;
+      q[k] = ((all > 0) &
+              (fabs(square) > 1e-24 * c.l[0] * b->edge2[0][k] * b->edge2[1][k]))
+             ? square * least / all
+             : 0;
     }
     for (size_t k = at; k < end; k++) worst = least_of(worst, q[k]);
     if (worst <= stop) return 0;
@@ -141,8 +148,8 @@ double vg_ball_other(const struct vg_ball_faces *b, const double x[3])
 void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
                    const double x[3], double to[3])
 {
-  static const double height = 0.81649658092772603;  /* regular: of an edge */
-  double sum[3] = {0}, total = 0;
+  static const double height = 0.81649658092772603; /* regular: of an edge */
+  double sum[3] = { 0 }, total = 0;
 
   assert(b->n > 0);
   for (size_t k = 0; k < b->n; k++) {
@@ -183,8 +190,7 @@ static inline void slope_of(const struct vg_ball_faces *b, size_t k,
          2 * size_slope * b->per * (edges2 * b->per - 1);
   high = (1 + round_slope) / c.det;
   for (int a = 0; a < 3; a++)
-    g[a] = high * b->normal[a][k] +
-           wide * (c.u[0][a] + c.u[1][a] + c.u[2][a]);
+    g[a] = high * b->normal[a][k] + wide * (c.u[0][a] + c.u[1][a] + c.u[2][a]);
   for (int i = 0; i < 3; i++) {
     const double *p = c.u[(i + 1) % 3], *r = c.u[(i + 2) % 3];
     double edge = up[i] / c.l[i];

@@ -8,14 +8,14 @@
 
 struct vg_ball_faces {
   size_t n;
-  double x[3][3][VG_BALL_MAX];    /* [corner][axis][n] */
-  double normal[3][VG_BALL_MAX];  /* twice the area, towards the point */
-  double area2[VG_BALL_MAX];      /* its square */
-  double edge2[3][VG_BALL_MAX];   /* squares of the edges, each opposite the
-                                     corner of that number */
-  double border2[VG_BALL_MAX];       /* their sum */
-  double per;                     /* 1 / (6 squares of the length that edges
-                                     should have); 0: any */
+  double x[3][3][VG_BALL_MAX];   /* [corner][axis][n] */
+  double normal[3][VG_BALL_MAX]; /* twice the area, towards the point */
+  double area2[VG_BALL_MAX];     /* its square */
+  double edge2[3][VG_BALL_MAX];  /* squares of the edges, each opposite the
+                                    corner of that number */
+  double border2[VG_BALL_MAX];   /* their sum */
+  double per;                    /* 1 / (6 squares of the length that edges
+                                    should have); 0: any */
 };
 
 /** All but `per`. link: [n <= VG_BALL_MAX] 4 * cell + index of the point. */

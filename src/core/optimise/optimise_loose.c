@@ -11,9 +11,9 @@
 
 /* Balls of the points, one after the other. */
 struct balls {
-  uint32_t *slot;            /* [t.n_point] place in the list, or VG_NONE */
-  size_t *first;             /* [n + 2] */
-  uint32_t *link;            /* 4 * cell + index of the point */
+  uint32_t *slot; /* [t.n_point] place in the list, or VG_NONE */
+  size_t *first;  /* [n + 2] */
+  uint32_t *link; /* 4 * cell + index of the point */
 };
 
 static void balls_release(struct balls *b)
@@ -25,8 +25,8 @@ static void balls_release(struct balls *b)
 
 /* Place in the list of the points that have a cell below. */
 static vg_status find_slots(const struct vg_tets *t, size_t n,
-                            const uint32_t *point, float below,
-                            const float *q, uint32_t *slot)
+                            const uint32_t *point, float below, const float *q,
+                            uint32_t *slot)
 {
   uint8_t *wants = vg_calloc(t->n_point, 1);
 
@@ -72,7 +72,7 @@ static vg_status balls_new(const struct vg_tets *t, size_t n,
  * else is to be said for the place. */
 struct stand {
   double x[3], q[VG_BALL_MAX], worst, sum;
-  size_t at;                 /* the worst cell */
+  size_t at; /* the worst cell */
 };
 
 struct mover {
@@ -124,9 +124,9 @@ static int move(struct mover *m, const double g[3], double length)
     return 0;
   weigh(&to, m->faces.n);
   to.sum += vg_ball_other(&m->faces, to.x);
-  if (to.worst < aim ? to.worst <= m->now.worst * VG_GAIN_WORST + VG_SHAPE_FLAT
-                     : m->now.worst >= aim &&
-                       to.sum <= m->now.sum * VG_GAIN_SUM)
+  if (to.worst < aim
+        ? to.worst <= m->now.worst * VG_GAIN_WORST + VG_SHAPE_FLAT
+        : m->now.worst >= aim && to.sum <= m->now.sum * VG_GAIN_SUM)
     return 0;
   m->now = to;
   return 1;
@@ -178,10 +178,9 @@ static int improve(struct mover *m)
   return better;
 }
 
-vg_status vg_optimise_points(struct vg_tets *t, size_t n,
-                             const uint32_t *point, float below,
-                             const struct vg_sizing *sizing, float *q,
-                             struct vg_optimise_report *report,
+vg_status vg_optimise_points(struct vg_tets *t, size_t n, const uint32_t *point,
+                             float below, const struct vg_sizing *sizing,
+                             float *q, struct vg_optimise_report *report,
                              struct vg_error *err)
 {
   assert((point || !n) && (q || !t->n_cell) && report);
@@ -197,7 +196,8 @@ vg_status vg_optimise_points(struct vg_tets *t, size_t n,
     const uint32_t *link = b.link + b.first[k];
 
     if (!take_ball(m, t, b.first[k + 1] - b.first[k], link, point[k], below,
-                   sizing, q) || !improve(m))
+                   sizing, q) ||
+        !improve(m))
       continue;
     memcpy(t->x[point[k]], m->now.x, sizeof m->now.x);
     for (size_t c = 0; c < m->faces.n; c++)

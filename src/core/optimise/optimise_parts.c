@@ -25,8 +25,7 @@ int vg_ball(struct vg_optimiser *o, uint32_t p)
       uint32_t link = t->cell[at].link[i], other = link >> 2, j = 0;
 
       if (i == centre) continue;
-      if (link == VG_NONE || t->flag[at] >> i & 1 ||
-          o->n_ball == VG_BALL_MAX) {
+      if (link == VG_NONE || t->flag[at] >> i & 1 || o->n_ball == VG_BALL_MAX) {
         whole = 0;
         break;
       }

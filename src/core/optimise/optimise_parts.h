@@ -6,33 +6,38 @@
 #include "core/geometry/shape.h"
 #include "core/optimise/optimise.h"
 
-enum { VG_BALL_MAX = 256, VG_SHELL_MAX = 10, VG_NEW_MAX = VG_CAVITY_MAX,
-       VG_OLD_MAX = VG_CAVITY_MAX };
+enum {
+  VG_BALL_MAX = 256,
+  VG_SHELL_MAX = 10,
+  VG_NEW_MAX = VG_CAVITY_MAX,
+  VG_OLD_MAX = VG_CAVITY_MAX
+};
 
-enum {  /* what was tried without success, until a change */
-  VG_FAILED_SMOOTH = 1, VG_FAILED_COLLAPSE = 2,   /* of a point */
-  VG_FAILED_SPLIT = 4,                       /* of a cell */
-  VG_NOT_IN_REGION = 8          /* likewise: does not belong to the region */
+enum { /* what was tried without success, until a change */
+       VG_FAILED_SMOOTH = 1,
+       VG_FAILED_COLLAPSE = 2, /* of a point */
+       VG_FAILED_SPLIT = 4,    /* of a cell */
+       VG_NOT_IN_REGION = 8    /* likewise: does not belong to the region */
 };
 
 struct vg_optimiser {
   struct vg_tets *t;
-  size_t n_fixed;            /* points below stay */
-  size_t n_keep;             /* points below are not taken away */
-  const struct vg_region *region;  /* NULL: all cells matter */
-  const struct vg_sizing *sizing;  /* of the region */
-  float *q;                  /* [cap_cell] shape of each cell */
+  size_t n_fixed;                 /* points below stay */
+  size_t n_keep;                  /* points below are not taken away */
+  const struct vg_region *region; /* NULL: all cells matter */
+  const struct vg_sizing *sizing; /* of the region */
+  float *q;                       /* [cap_cell] shape of each cell */
   size_t cap_q;
-  uint8_t *failed_cell;        /* [cap_cell] steps of no use to each cell */
+  uint8_t *failed_cell; /* [cap_cell] steps of no use to each cell */
   size_t cap_failed_cell;
-  uint32_t *star;            /* [n_point] a cell of each point, or VG_NONE */
+  uint32_t *star; /* [n_point] a cell of each point, or VG_NONE */
   size_t cap_star;
-  uint8_t *failed;             /* [n_point] and to each point, until a change */
+  uint8_t *failed; /* [n_point] and to each point, until a change */
   size_t cap_failed;
   size_t n_ball;
-  uint32_t ball[VG_BALL_MAX];  /* links 4 * cell + index of the centre */
-  int refused;               /* memory was refused */
-  size_t spent, budget;      /* cells looked at to put points in */
+  uint32_t ball[VG_BALL_MAX]; /* links 4 * cell + index of the centre */
+  int refused;                /* memory was refused */
+  size_t spent, budget;       /* cells looked at to put points in */
   struct vg_optimise_report *report;
 };
 

@@ -62,8 +62,8 @@ static int plan_merge(const struct vg_optimiser *o, uint32_t to, double need,
  * if they are positive at all. That undoes several flat cells side by side,
  * as there are between points in a line, one by one. Their number, or `most`
  * when it is not to be. */
-static int plan_flat_merge(const struct vg_optimiser *o, uint32_t to,
-                           int most, struct merger *m)
+static int plan_flat_merge(const struct vg_optimiser *o, uint32_t to, int most,
+                           struct merger *m)
 {
   const struct vg_tets *t = o->t;
   int n_flat = 0;
@@ -76,8 +76,8 @@ static int plan_flat_merge(const struct vg_optimiser *o, uint32_t to,
     if (!move_cell(o, k, to, m->v[m->n_new], &q)) continue;
     n_flat += q < VG_SHAPE_FLAT;
     if (n_flat >= most ||
-        (q < VG_SHAPE_FLAT && !(vg_orient3d(t->x[w[0]], t->x[w[1]],
-                                            t->x[w[2]], t->x[w[3]]) > 0)))
+        (q < VG_SHAPE_FLAT &&
+         !(vg_orient3d(t->x[w[0]], t->x[w[1]], t->x[w[2]], t->x[w[3]]) > 0)))
       return most;
     m->q[m->n_new++] = (float)q;
   }
@@ -134,7 +134,7 @@ static int merge_point(struct vg_optimiser *o, uint32_t p)
   }
   if (best < 0) return 0;
   if (vg_replace(o, (int)o->n_ball, old, plan[best].n_new,
-                 (const uint32_t (*)[4])plan[best].v, plan[best].q, NULL))
+                 (const uint32_t(*)[4])plan[best].v, plan[best].q, NULL))
     return 0;
   o->star[p] = VG_NONE;
   o->report->n_collapse++;
@@ -155,12 +155,12 @@ int vg_collapse(struct vg_optimiser *o, uint32_t c)
 /* --- putting a point in -------------------------------------------------- */
 
 /* Over stretched boundary triangles a point needs a large cavity. */
-enum { CAVITY_MAX = 44 };   /* K27 */
+enum { CAVITY_MAX = 44 }; /* K27 */
 
 /* Cells that are looked at to put points in, for each cell there is and beyond
  * these. Aircraft with needles take 20 (F-16) to 16 (low-boom), others hardly
  * any, an aerofoil of needles alone 340. */
-enum { SPEND_PER_CELL = 24, SPEND_FREELY = 100000 };   /* K30 */
+enum { SPEND_PER_CELL = 24, SPEND_FREELY = 100000 }; /* K30 */
 
 /* As vg_shape: angles below 10 or above 170 degrees. */
 static const float worst_of_all = 0.03F;
@@ -275,7 +275,7 @@ static int put_point(struct vg_optimiser *o, const double x[3],
   }
   memcpy(t->x[p], x, sizeof *t->x);
   for (int k = 0; k < h->n_new; k++) h->v[k][3] = p;
-  if (vg_replace(o, h->n_old, h->old, h->n_new, (const uint32_t (*)[4])h->v,
+  if (vg_replace(o, h->n_old, h->old, h->n_new, (const uint32_t(*)[4])h->v,
                  h->q, NULL))
     return 0;
   t->n_point++;
@@ -291,8 +291,8 @@ static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
   h.n_old = 1;
   h.old[0] = c;
   if (!open_cavity(o, x, worth(o->q[c]), &h) || !put_point(o, x, &h)) return 0;
-  for (int k = 0;
-       k < 3 && vg_smooth(o, (uint32_t)o->t->n_point - 1, aim); k++) {
+  for (int k = 0; k < 3 && vg_smooth(o, (uint32_t)o->t->n_point - 1, aim);
+       k++) {
   }
   return 1;
 }
@@ -345,9 +345,10 @@ static int split_above(struct vg_optimiser *o, uint32_t c, double aim)
 int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
 {
   assert(c < o->t->n_cell && !(o->t->flag[c] & VG_DEAD));
-  static const double share[7][4] = {
-    {.25, .25, .25, .25}, {.5, .5, 0, 0}, {.5, 0, .5, 0}, {.5, 0, 0, .5},
-    {0, .5, .5, 0}, {0, .5, 0, .5}, {0, 0, .5, .5}};
+  static const double share[7][4] = { { .25, .25, .25, .25 }, { .5, .5, 0, 0 },
+                                      { .5, 0, .5, 0 },       { .5, 0, 0, .5 },
+                                      { 0, .5, .5, 0 },       { 0, .5, 0, .5 },
+                                      { 0, 0, .5, .5 } };
   int n = o->q[c] < worst_of_all ? 7 : 1;
   double x[3];
 

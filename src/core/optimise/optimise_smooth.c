@@ -16,8 +16,8 @@ struct ball_state {
 };
 
 /* The shapes around p if it stood at x; stops below `stop`. */
-static int try_at(const struct vg_optimiser *o, const double x[3],
-                  double stop, float *q, struct ball_state *s)
+static int try_at(const struct vg_optimiser *o, const double x[3], double stop,
+                  float *q, struct ball_state *s)
 {
   const struct vg_tets *t = o->t;
 
@@ -64,7 +64,7 @@ static void target(const struct vg_optimiser *o, const double x[3],
                    double to[3])
 {
   const struct vg_tets *t = o->t;
-  double sum[3] = {0}, total = 0;
+  double sum[3] = { 0 }, total = 0;
 
   for (size_t k = 0; k < o->n_ball; k++) {
     const uint32_t *v = t->cell[o->ball[k] >> 2].v;
@@ -129,8 +129,8 @@ static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
 
   for (size_t k = 1; k < o->n_ball; k++)
     if (o->q[o->ball[k] >> 2] < o->q[o->ball[worst] >> 2]) worst = k;
-  other = o->t->x[o->t->cell[o->ball[worst] >> 2]
-                      .v[vg_face[o->ball[worst] & 3][0]]];
+  other =
+    o->t->x[o->t->cell[o->ball[worst] >> 2].v[vg_face[o->ball[worst] & 3][0]]];
   for (int i = 0; i < 3; i++) {
     double d = other[i] - o->t->x[p][i];
 

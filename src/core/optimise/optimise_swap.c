@@ -14,7 +14,7 @@ static double shape_of(const struct vg_tets *t, uint32_t a, uint32_t b,
 }
 
 /* Gain that is worth the work; also keeps rounding from swapping for ever. */
-static const double gain = 1.0001;   /* K41 */
+static const double gain = 1.0001; /* K41 */
 
 static double worth(double old)
 {
@@ -26,7 +26,7 @@ static double worth(double old)
 static int swap_face(struct vg_optimiser *o, uint32_t c, int i)
 {
   const struct vg_tets *t = o->t;
-  uint32_t link = t->cell[c].link[i], other = link >> 2, old[2] = {c, other};
+  uint32_t link = t->cell[c].link[i], other = link >> 2, old[2] = { c, other };
   uint32_t a, b, v[3][4];
   double need;
   float q[3];
@@ -47,7 +47,7 @@ static int swap_face(struct vg_optimiser *o, uint32_t c, int i)
     v[k][2] = b;
     v[k][3] = a;
   }
-  if (vg_replace(o, 2, old, 3, (const uint32_t (*)[4])v, q, NULL)) return 0;
+  if (vg_replace(o, 2, old, 3, (const uint32_t(*)[4])v, q, NULL)) return 0;
   o->report->n_flip++;
   return 1;
 }
@@ -58,7 +58,7 @@ struct ring_plan {
   const struct vg_tets *t;
   uint32_t a, b, ring[VG_SHELL_MAX];
   double need;
-  double best[VG_SHELL_MAX][VG_SHELL_MAX];  /* of the polygon i..j */
+  double best[VG_SHELL_MAX][VG_SHELL_MAX]; /* of the polygon i..j */
   int split[VG_SHELL_MAX][VG_SHELL_MAX];
   int n_new;
   uint32_t v[2 * VG_SHELL_MAX][4];
@@ -144,7 +144,7 @@ static int remove_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
   if (!plan_ring(&r, n)) return 0;
   r.n_new = 0;
   emit_polygon(&r, 0, n - 1);
-  if (vg_replace(o, n, cell, r.n_new, (const uint32_t (*)[4])r.v, r.q, NULL))
+  if (vg_replace(o, n, cell, r.n_new, (const uint32_t(*)[4])r.v, r.q, NULL))
     return 0;
   o->report->n_flip++;
   return 1;

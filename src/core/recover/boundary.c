@@ -83,7 +83,7 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
       uint32_t link = t->cell[c].link[i], v[3], at;
       int sense;
 
-      if (link < 4 * c + i) continue;    /* seen from there */
+      if (link < 4 * c + i) continue; /* seen from there */
       for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
       at = tri_table_find(&table, v, &sense);
       if (at == VG_NONE) continue;
@@ -106,17 +106,17 @@ enum { SIDE_UNKNOWN, SIDE_FLUID, SIDE_SOLID };
 
 struct sides {
   struct vg_tets *t;
-  const struct vg_region_cache *cache;      /* NULL: everywhere */
-  double band;               /* sides are told so near the region */
-  int is_strict;             /* 1: a contradiction is an error */
-  uint32_t corner;           /* first of the box */
-  int is_local;              /* 1: not over cells with a corner of the box */
-  uint8_t *side;             /* [n_cell] */
-  uint8_t *front;            /* [n_cell] bit i: face i is a triangle that faces
-                                the cell; bit 4 + i: that faces away */
-  uint8_t *near;             /* [n_cell] bit i: face i was found to lie in the
-                                band; bit 4 + i: not to */
-  uint32_t *queue;           /* [n_cell] cells with a side, as they got it */
+  const struct vg_region_cache *cache; /* NULL: everywhere */
+  double band;                         /* sides are told so near the region */
+  int is_strict;                       /* 1: a contradiction is an error */
+  uint32_t corner;                     /* first of the box */
+  int is_local;    /* 1: not over cells with a corner of the box */
+  uint8_t *side;   /* [n_cell] */
+  uint8_t *front;  /* [n_cell] bit i: face i is a triangle that faces
+                      the cell; bit 4 + i: that faces away */
+  uint8_t *near;   /* [n_cell] bit i: face i was found to lie in the
+                      band; bit 4 + i: not to */
+  uint32_t *queue; /* [n_cell] cells with a side, as they got it */
   size_t n_queue, next;
 };
 
@@ -125,7 +125,7 @@ static int matters(const struct sides *s, uint32_t c, int i)
 {
   const uint32_t *v = s->t->cell[c].v;
   const uint8_t *f = vg_face[i];
-  uint32_t tri[3] = {v[f[0]], v[f[1]], v[f[2]]}, link = s->t->cell[c].link[i];
+  uint32_t tri[3] = { v[f[0]], v[f[1]], v[f[2]] }, link = s->t->cell[c].link[i];
   int known = s->cache ? s->near[c] >> i & 0x11 : 1;
 
   if (known) return known & 1;
@@ -162,8 +162,7 @@ static void find_front(struct sides *s, const struct tri_table *table)
       if (tri_table_find(table, v, &sense) == VG_NONE) continue;
       s->front[c] |= (uint8_t)((sense > 0 ? 1 : 0x10) << i);
       if (link != VG_NONE)
-        s->front[link >> 2] |=
-          (uint8_t)((sense > 0 ? 0x10 : 1) << (link & 3));
+        s->front[link >> 2] |= (uint8_t)((sense > 0 ? 0x10 : 1) << (link & 3));
     }
 }
 
@@ -181,10 +180,11 @@ static vg_status seed_sides(struct sides *s, struct vg_error *err)
           !matters(s, c, i))
         continue;
       if (s->side[c] == SIDE_UNKNOWN) set_side(s, c, is);
-      else if (s->side[c] != is && s->is_strict) return vg_fail(
-          err, VG_ERR_GEOMETRY, "the surface turns inside out at point %u "
-          "(%g %g %g); run 'vanguard check' on it",
-          t->cell[c].v[vg_face[i][0]] + 1, x[0], x[1], x[2]);
+      else if (s->side[c] != is && s->is_strict)
+        return vg_fail(err, VG_ERR_GEOMETRY,
+                       "the surface turns inside out at point %u "
+                       "(%g %g %g); run 'vanguard check' on it",
+                       t->cell[c].v[vg_face[i][0]] + 1, x[0], x[1], x[2]);
     }
   return VG_OK;
 }
@@ -218,11 +218,12 @@ static vg_status spread_over(struct sides *s, uint32_t c, int i,
   if (link == VG_NONE)
     return vg_fail(err, VG_ERR_GEOMETRY,
                    "the fluid is not enclosed near (%g %g %g): the outer "
-                   "boundary must point inward", x[0], x[1], x[2]);
+                   "boundary must point inward",
+                   x[0], x[1], x[2]);
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "fluid and solid meet without a surface between them near "
-                 "(%g %g %g); run 'vanguard check' on the surface", x[0], x[1],
-                 x[2]);
+                 "(%g %g %g); run 'vanguard check' on the surface",
+                 x[0], x[1], x[2]);
 }
 
 static vg_status spread_sides(struct sides *s, struct vg_error *err)
@@ -245,8 +246,10 @@ static vg_status spread_in_bands(struct sides *s, struct vg_error *err)
 
   for (int k = 1; k <= BANDS; k++) {
     /* the first may be narrower than the last one was */
-    set_band(s, k < BANDS ? (reach + VG_BAND_FLUID) * k / BANDS - reach
-                          : VG_BAND_FLUID, k == 1 ? 0 : 0x0f);
+    set_band(s,
+             k < BANDS ? (reach + VG_BAND_FLUID) * k / BANDS - reach
+                       : VG_BAND_FLUID,
+             k == 1 ? 0 : 0x0f);
     s->next = 0;
     VG_TRY(seed_sides(s, err));
     VG_TRY(spread_sides(s, err));
@@ -316,9 +319,10 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
                             const struct vg_sizing *sizing,
                             struct vg_error *err)
 {
-  struct tri_table table = {0};
-  struct vg_region_cache cache = {0};
-  struct sides s = { .t = t, .cache = region ? &cache : NULL,
+  struct tri_table table = { 0 };
+  struct vg_region_cache cache = { 0 };
+  struct sides s = { .t = t,
+                     .cache = region ? &cache : NULL,
                      .corner = (uint32_t)corner };
   size_t n_fluid = 0;
   vg_status st = VG_OK;
@@ -334,7 +338,7 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   if (st == VG_OK) st = tri_table_init(&table, n_tri, tri, err);
   if (st == VG_OK && region)
     st = vg_region_cache_init(&cache, region, sizing, t->n_point,
-                              (const double (*)[3])t->x, err);
+                              (const double(*)[3])t->x, err);
   if (st == VG_OK) find_front(&s, &table);
   if (st == VG_OK) st = tell_sides(&s, err);
   if (st == VG_OK && region) wall_off(&s);
@@ -357,10 +361,11 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
 
 /* The five tetrahedra of a box with corner bits x, y, z = 1, 2, 4. */
 static const uint32_t box_cell[5][4] = {
-  {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}, {1, 2, 4, 7}};
+  { 0, 1, 2, 4 }, { 3, 2, 1, 7 }, { 5, 4, 7, 1 }, { 6, 7, 4, 2 }, { 1, 2, 4, 7 }
+};
 
-static vg_status start_in_box(struct vg_tets *t, size_t n,
-                              const double (*x)[3], struct vg_error *err)
+static vg_status start_in_box(struct vg_tets *t, size_t n, const double (*x)[3],
+                              struct vg_error *err)
 {
   double lo[3], hi[3], side = 0;
 
@@ -380,8 +385,7 @@ static vg_status start_in_box(struct vg_tets *t, size_t n,
     for (int k = 0; k < 3; k++)
       t->x[n + corner][k] = corner >> k & 1 ? hi[k] + side : lo[k] - side;
   for (int c = 0; c < 5; c++) {
-    for (int i = 0; i < 4; i++)
-      t->cell[c].v[i] = (uint32_t)n + box_cell[c][i];
+    for (int i = 0; i < 4; i++) t->cell[c].v[i] = (uint32_t)n + box_cell[c][i];
     t->flag[c] = 0;
   }
   t->n_cell = 5;
@@ -391,7 +395,7 @@ static vg_status start_in_box(struct vg_tets *t, size_t n,
 static vg_status delaunay(struct vg_tets *t, size_t n, const double (*x)[3],
                           struct vg_error *err)
 {
-  struct vg_inserter s = {0};
+  struct vg_inserter s = { 0 };
   uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
   vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
 
@@ -405,8 +409,9 @@ static vg_status delaunay(struct vg_tets *t, size_t n, const double (*x)[3],
     if (st == VG_BLOCKED)
       st = vg_fail(err, VG_ERR_GEOMETRY,
                    "point %u (%.17g %.17g %.17g) coincides with another; "
-                   "weld the surface", order[i] + 1, x[order[i]][0],
-                   x[order[i]][1], x[order[i]][2]);
+                   "weld the surface",
+                   order[i] + 1, x[order[i]][0], x[order[i]][1],
+                   x[order[i]][2]);
   }
   vg_inserter_release(&s);
   free(order);
@@ -420,7 +425,7 @@ static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
                             struct vg_boundary_report *report,
                             struct vg_error *err)
 {
-  struct vg_cdt_job job = {.n = n, .n_tri = n_tri, .x = x, .tri = tri};
+  struct vg_cdt_job job = { .n = n, .n_tri = n_tri, .x = x, .tri = tri };
   size_t n_missing = n_tri;
   vg_status st;
 
@@ -431,7 +436,7 @@ static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
     report->n_pocket = 1;
     report->n_pocket_cell = job.n_tet;
     st = vg_tets_from_cells(out, job.n_all, job.all, job.n_tet,
-                            (const uint32_t (*)[4])job.tet, err);
+                            (const uint32_t(*)[4])job.tet, err);
     free(job.tet);
     VG_TRY(st);
     VG_TRY(vg_boundary_fix(out, n_tri, tri, NULL, &n_missing, err));
@@ -439,7 +444,8 @@ static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
   if (n_missing)
     st = vg_fail(err, VG_ERR_GEOMETRY,
                  "%zu of %zu surface triangles could not be recovered; run "
-                 "'vanguard check' on the surface", n_missing, n_tri);
+                 "'vanguard check' on the surface",
+                 n_missing, n_tri);
 done:
   return st;
 }
@@ -450,8 +456,8 @@ static size_t not_fixed(struct vg_tets *t, size_t n_tri,
 {
   size_t n_missing = SIZE_MAX;
 
-  return vg_boundary_fix(t, n_tri, tri, NULL, &n_missing, NULL) < 0
-         ? SIZE_MAX : n_missing;
+  return vg_boundary_fix(t, n_tri, tri, NULL, &n_missing, NULL) < 0 ? SIZE_MAX
+                                                                    : n_missing;
 }
 
 vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
@@ -482,8 +488,7 @@ done:
 vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
                            const uint32_t (*tri)[3],
                            const struct vg_region *region,
-                           const struct vg_sizing *sizing,
-                           struct vg_tets *out,
+                           const struct vg_sizing *sizing, struct vg_tets *out,
                            struct vg_boundary_report *report,
                            struct vg_error *err)
 {

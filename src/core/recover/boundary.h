@@ -11,11 +11,11 @@
 #include "core/front/region.h"
 
 struct vg_boundary_report {
-  size_t n_face_lost;              /* not in the Delaunay tetrahedra */
-  size_t n_face_left;              /* of these, what flips did not bring in */
-  size_t n_pocket, n_pocket_cell;  /* regions that TetGen closed */
-  size_t n_retry;                  /* pockets that had to grow */
-  size_t n_restored;               /* flips back towards Delaunay cells */
+  size_t n_face_lost;             /* not in the Delaunay tetrahedra */
+  size_t n_face_left;             /* of these, what flips did not bring in */
+  size_t n_pocket, n_pocket_cell; /* regions that TetGen closed */
+  size_t n_retry;                 /* pockets that had to grow */
+  size_t n_restored;              /* flips back towards Delaunay cells */
   int whole_void;
   size_t n_steiner;
 };
@@ -61,8 +61,7 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
 vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
                            const uint32_t (*tri)[3],
                            const struct vg_region *region,
-                           const struct vg_sizing *sizing,
-                           struct vg_tets *out,
+                           const struct vg_sizing *sizing, struct vg_tets *out,
                            struct vg_boundary_report *report,
                            struct vg_error *err);
 

@@ -12,12 +12,13 @@
 #include "base/child.h"
 #include "core/recover/tetgen_input.h"
 
-namespace {
+namespace
+{
 
 /* On some input TetGen turns in circles. A job is given up after so many calls
  * of its predicates, and so many more for each triangle: dozens of times what
  * pockets need. A count, unlike a clock, is the same on any machine. */
-const uint64_t patience = 20000000, patience_each = 50000;   /* K4 */
+const uint64_t patience = 20000000, patience_each = 50000; /* K4 */
 
 /* It may also turn without asking a predicate, for ever: a job is given up too
  * when so many seconds on the processor, and more for each triangle, pass
@@ -50,16 +51,16 @@ template <typename function> function original(const char *name)
 }
 
 /* On the socket, in the byte order of the machine: */
-struct question {            /* before x and tri */
-  uint64_t n, n_tri, way;    /* way: first of those below to be tried */
+struct question {         /* before x and tri */
+  uint64_t n, n_tri, way; /* way: first of those below to be tried */
 };
-struct answer {              /* before the added points and the tetrahedra */
+struct answer { /* before the added points and the tetrahedra */
   uint64_t n_added, n_tet;
 };
 
-const uint64_t n_max = 1u << 31;   /* TetGen counts in int */
+const uint64_t n_max = 1u << 31; /* TetGen counts in int */
 
-const uint64_t ways = 2;     /* for TetGen to do a job */
+const uint64_t ways = 2; /* for TetGen to do a job */
 
 /* --- in the child -------------------------------------------------------- */
 
@@ -69,9 +70,10 @@ bool take_input(tetgenio &in, const question &q, int from)
 
   vg_tetgen_points(in, q.n);
   if (!vg_child_get(from, in.pointlist, 3 * q.n * sizeof(REAL)) ||
-      !vg_child_get(from, tri.data(), tri.size() * sizeof tri[0])) return false;
+      !vg_child_get(from, tri.data(), tri.size() * sizeof tri[0]))
+    return false;
   vg_tetgen_triangles(in, q.n_tri,
-                      reinterpret_cast<const uint32_t (*)[3]>(tri.data()));
+                      reinterpret_cast<const uint32_t(*)[3]>(tri.data()));
   return true;
 }
 
@@ -96,7 +98,7 @@ bool give_output(const tetgenio &out, const question &q, int to)
  * often succeeds. */
 bool run(const question &q, int fd)
 {
-  char switches[ways][16] = {"pYcMQT1e-13", "pY/2cMQT1e-13"};
+  char switches[ways][16] = { "pYcMQT1e-13", "pY/2cMQT1e-13" };
   tetgenio in;
 
   if (!take_input(in, q, fd)) return false;
@@ -119,7 +121,7 @@ void be_patient(size_t n_tri)
   calls_seen = 0;
   signal(SIGPROF, look);
   time.it_value.tv_sec = static_cast<time_t>(
-      silence + silence_each * static_cast<double>(n_tri));
+    silence + silence_each * static_cast<double>(n_tri));
   time.it_interval = time.it_value;
   setitimer(ITIMER_PROF, &time, nullptr);
 }
@@ -128,7 +130,7 @@ void be_patient(size_t n_tri)
 
 bool ask(const vg_cdt_job &job, uint64_t way, int to)
 {
-  question q = {job.n, job.n_tri, way};
+  question q = { job.n, job.n_tri, way };
 
   return vg_child_put(to, &q, sizeof q) &&
          vg_child_put(to, job.x, job.n * sizeof *job.x) &&
@@ -145,9 +147,9 @@ bool receive(vg_cdt_job &job, int from)
   job.n_all = job.n + a.n_added;
   job.n_tet = a.n_tet;
   job.all = static_cast<double(*)[3]>(
-      std::malloc((job.n_all + 1) * sizeof *job.all));
+    std::malloc((job.n_all + 1) * sizeof *job.all));
   job.tet = static_cast<uint32_t(*)[4]>(
-      std::malloc((job.n_tet + 1) * sizeof *job.tet));
+    std::malloc((job.n_tet + 1) * sizeof *job.tet));
   if (job.all && job.tet) {
     std::memcpy(job.all, job.x, job.n * sizeof *job.all);
     if (vg_child_get(from, job.all + job.n, a.n_added * sizeof *job.all) &&
@@ -195,13 +197,13 @@ long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
   return done;
 }
 
-}  // namespace
+} // namespace
 
 /* The dynamic linker takes these for TetGen's. */
 REAL orient3d(REAL *a, REAL *b, REAL *c, REAL *d)
 {
   static const auto real = original<REAL (*)(REAL *, REAL *, REAL *, REAL *)>(
-      "_Z8orient3dPdS_S_S_");
+    "_Z8orient3dPdS_S_S_");
 
   count_call();
   return real(a, b, c, d);
@@ -209,9 +211,8 @@ REAL orient3d(REAL *a, REAL *b, REAL *c, REAL *d)
 
 REAL insphere(REAL *a, REAL *b, REAL *c, REAL *d, REAL *e)
 {
-  static const auto real =
-      original<REAL (*)(REAL *, REAL *, REAL *, REAL *, REAL *)>(
-          "_Z8inspherePdS_S_S_S_");
+  static const auto real = original<REAL (*)(REAL *, REAL *, REAL *, REAL *,
+                                             REAL *)>("_Z8inspherePdS_S_S_S_");
 
   count_call();
   return real(a, b, c, d, e);
@@ -228,8 +229,10 @@ extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
     job[k].all = nullptr;
     job[k].tet = nullptr;
     if (job[k].n > 100000000 || job[k].n_tri > 200000000)
-      return vg_fail(err, VG_ERR_UNSUPPORTED, "boundary recovery of %zu points "
-                     "exceeds TetGen's indices", job[k].n);
+      return vg_fail(err, VG_ERR_UNSUPPORTED,
+                     "boundary recovery of %zu points "
+                     "exceeds TetGen's indices",
+                     job[k].n);
   }
   while (next < n_job) {
     long done = run_child(n_job - next, job + next, 0);
@@ -249,5 +252,5 @@ extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
 extern "C" void vg_library_tetgen(struct vg_library *out)
 {
   out->name = "TetGen";
-  std::strcpy(out->version, "1.5");   /* tetgen.h has no constant for it */
+  std::strcpy(out->version, "1.5"); /* tetgen.h has no constant for it */
 }

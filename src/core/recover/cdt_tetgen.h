@@ -19,13 +19,13 @@ extern "C" {
 #endif
 
 struct vg_cdt_job {
-  size_t n, n_tri;           /* in */
-  const double (*x)[3];      /* in: [n] */
-  const uint32_t (*tri)[3];  /* in: [n_tri], any orientation, no two crossing */
-  vg_status st;              /* out: VG_OK, VG_ERR_GEOMETRY: TetGen failed */
-  size_t n_all, n_tet;       /* out: points in all, >= n; tetrahedra */
-  double (*all)[3];          /* out: [n_all], the first n equal to x */
-  uint32_t (*tet)[4];        /* out: [n_tet], in either orientation */
+  size_t n, n_tri;          /* in */
+  const double (*x)[3];     /* in: [n] */
+  const uint32_t (*tri)[3]; /* in: [n_tri], any orientation, no two crossing */
+  vg_status st;             /* out: VG_OK, VG_ERR_GEOMETRY: TetGen failed */
+  size_t n_all, n_tet;      /* out: points in all, >= n; tetrahedra */
+  double (*all)[3];         /* out: [n_all], the first n equal to x */
+  uint32_t (*tet)[4];       /* out: [n_tet], in either orientation */
 };
 
 /** For each job the constrained Delaunay tetrahedra of the convex hull of its

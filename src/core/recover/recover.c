@@ -15,19 +15,19 @@
 /* A pocket with more triangles is no pocket: where flips leave that many, the
  * triangles of the surface are easier to recover than the border of what they
  * made of Delaunay tetrahedra. Some of 10,000 triangles were worth it. */
-enum { ROUNDS = 4, POCKET_MAX = 40000 };   /* K1 */
+enum { ROUNDS = 4, POCKET_MAX = 40000 }; /* K1 */
 
 struct recovery {
   struct vg_tets *t;
   size_t n_tri;
   const uint32_t (*tri)[3];
   size_t n_missing;
-  uint32_t *missing;         /* [n_missing] triangles not in t */
-  uint32_t *parent;          /* [n_missing] pockets, as a union-find forest */
-  uint32_t *owner;           /* [cells] missing triangle of each cell */
-  uint32_t *star;            /* [points] a cell of each point */
+  uint32_t *missing; /* [n_missing] triangles not in t */
+  uint32_t *parent;  /* [n_missing] pockets, as a union-find forest */
+  uint32_t *owner;   /* [cells] missing triangle of each cell */
+  uint32_t *star;    /* [points] a cell of each point */
   size_t n_cell, cap_cell;
-  uint32_t *cell;            /* cells of all pockets, as they are found */
+  uint32_t *cell; /* cells of all pockets, as they are found */
   struct vg_boundary_report *report;
 };
 
@@ -78,7 +78,10 @@ static int claim(struct recovery *r, uint32_t c, uint32_t k)
 }
 
 /* Cells seen for one triangle, flagged VG_MARK while it is searched. */
-struct visit { size_t n, cap; uint32_t *cell; };
+struct visit {
+  size_t n, cap;
+  uint32_t *cell;
+};
 
 static int visit(struct recovery *r, struct visit *list, uint32_t c)
 {
@@ -153,8 +156,7 @@ struct pocket {
 
 static int add_tri(struct pocket *p, const uint32_t v[3])
 {
-  if (vg_reserve(&p->tri, &p->cap_tri, p->n_tri + 1, sizeof *p->tri))
-    return -1;
+  if (vg_reserve(&p->tri, &p->cap_tri, p->n_tri + 1, sizeof *p->tri)) return -1;
   memcpy(p->tri[p->n_tri++], v, 3 * sizeof *v);
   return 0;
 }
@@ -193,8 +195,7 @@ static int number_points(const struct vg_tets *t, struct pocket *p)
   p->point = vg_alloc(4 * p->n_cell, sizeof *p->point);
   if (!p->point) return -1;
   for (size_t m = 0; m < p->n_cell; m++)
-    for (int i = 0; i < 4; i++)
-      p->point[n++] = t->cell[p->cell[m].index].v[i];
+    for (int i = 0; i < 4; i++) p->point[n++] = t->cell[p->cell[m].index].v[i];
   qsort(p->point, n, sizeof *p->point, by_number);
   for (size_t m = 0; m < n; m++)
     if (!m || p->point[m] != p->point[m - 1])
@@ -204,7 +205,7 @@ static int number_points(const struct vg_tets *t, struct pocket *p)
       const uint32_t *at = bsearch(&p->tri[m][k], p->point, p->n_point,
                                    sizeof *at, by_number);
 
-      if (!at) return 1;     /* a corner outside: the pocket is too small */
+      if (!at) return 1; /* a corner outside: the pocket is too small */
       p->tri[m][k] = (uint32_t)(at - p->point);
     }
   return 0;
@@ -233,7 +234,7 @@ static int is_folded(const struct vg_tets *t)
 static vg_status verify(struct vg_tets *local, const struct pocket *p,
                         struct vg_error *err)
 {
-  const uint32_t (*tri)[3] = (const uint32_t (*)[3])p->tri;
+  const uint32_t(*tri)[3] = (const uint32_t(*)[3])p->tri;
   size_t n_missing;
   vg_status st = vg_boundary_fix(local, p->n_border, tri, NULL, &n_missing,
                                  err);
@@ -271,7 +272,7 @@ static vg_status replace(struct recovery *r, const struct pocket *p,
       uint32_t v = local->cell[c].v[i];
 
       t->cell[slot].v[i] = v < p->n_point ? p->point[v]
-                                    : (uint32_t)(first + v - p->n_point);
+                                          : (uint32_t)(first + v - p->n_point);
     }
     t->flag[slot] = 0;
   }
@@ -286,7 +287,7 @@ static vg_status replace(struct recovery *r, const struct pocket *p,
 static vg_status describe(struct recovery *r, struct pocket *p, size_t n_tri,
                           const struct vg_key *tri, struct vg_error *err)
 {
-  double (*x)[3] = NULL;
+  double(*x)[3] = NULL;
   int bad;
 
   for (size_t m = 0; m < p->n_cell; m++)
@@ -301,8 +302,8 @@ static vg_status describe(struct recovery *r, struct pocket *p, size_t n_tri,
     x = vg_alloc(p->n_point, sizeof *x);
     bad = x ? 0 : -1;
   }
-  if (bad) return bad > 0 ? VG_BLOCKED
-                          : vg_fail_memory(err, "boundary recovery");
+  if (bad)
+    return bad > 0 ? VG_BLOCKED : vg_fail_memory(err, "boundary recovery");
   for (size_t k = 0; k < p->n_point; k++)
     memcpy(x[k], r->t->x[p->point[k]], sizeof *x);
   p->x = x;
@@ -318,7 +319,7 @@ static vg_status accept(struct recovery *r, struct pocket *p,
 
   if (st == VG_OK)
     st = vg_tets_from_cells(&local, job->n_all, job->all, job->n_tet,
-                            (const uint32_t (*)[4])job->tet, err);
+                            (const uint32_t(*)[4])job->tet, err);
   if (st == VG_OK) st = verify(&local, p, err);
   if (st == VG_OK) st = replace(r, p, &local, err);
   vg_tets_release(&local);
@@ -347,13 +348,14 @@ static vg_status describe_all(struct recovery *r, const struct vg_key *cell,
     memset(p, 0, sizeof *p);
     while (c1 < r->n_cell && cell[c1].key == id) c1++;
     while (k < r->n_missing && tri[k].key < id) k++;
-    for (k1 = k; k1 < r->n_missing && tri[k1].key == id; k1++) {}
+    for (k1 = k; k1 < r->n_missing && tri[k1].key == id; k1++) {
+    }
     p->cell = cell + c;
     p->n_cell = c1 - c;
     ++*n_pocket;
     st = describe(r, p, k1 - k, tri + k, err);
     if (st == VG_BLOCKED) {
-      p->n_tri = 0;          /* not closed in this round */
+      p->n_tri = 0; /* not closed in this round */
       r->report->n_retry++;
       st = VG_OK;
     }
@@ -362,14 +364,16 @@ static vg_status describe_all(struct recovery *r, const struct vg_key *cell,
   }
   for (size_t m = 0; st == VG_OK && m < *n_pocket; m++)
     if (pocket[m].n_tri > POCKET_MAX)
-      st = vg_fail(err, VG_ERR_GEOMETRY, "%zu of %zu surface triangles are "
-                   "missing, too many for pockets", r->n_missing, r->n_tri);
+      st = vg_fail(err, VG_ERR_GEOMETRY,
+                   "%zu of %zu surface triangles are "
+                   "missing, too many for pockets",
+                   r->n_missing, r->n_tri);
   return st;
 }
 
 /* A pocket that TetGen refuses waits for the next round. */
-static vg_status close_all(struct recovery *r, size_t n,
-                           struct pocket *pocket, struct vg_error *err)
+static vg_status close_all(struct recovery *r, size_t n, struct pocket *pocket,
+                           struct vg_error *err)
 {
   struct vg_cdt_job *job = vg_calloc(n, sizeof *job);
   size_t n_job = 0;
@@ -379,9 +383,11 @@ static vg_status close_all(struct recovery *r, size_t n,
   for (size_t k = 0; k < n; k++)
     if (pocket[k].x)
       job[n_job++] = (struct vg_cdt_job){
-        .n = pocket[k].n_point, .n_tri = pocket[k].n_tri,
-        .x = (const double (*)[3])pocket[k].x,
-        .tri = (const uint32_t (*)[3])pocket[k].tri};
+        .n = pocket[k].n_point,
+        .n_tri = pocket[k].n_tri,
+        .x = (const double(*)[3])pocket[k].x,
+        .tri = (const uint32_t(*)[3])pocket[k].tri
+      };
   st = vg_cdt_tetgen(n_job, job, err);
   n_job = 0;
   for (size_t k = 0; k < n; k++) {
@@ -433,7 +439,7 @@ static vg_status close_pockets(struct recovery *r, struct vg_error *err)
 static vg_status find_pockets(struct recovery *r, int rings,
                               struct vg_error *err)
 {
-  struct visit list = {0};
+  struct visit list = { 0 };
   struct vg_tets *t = r->t;
   int bad = 0;
 
@@ -473,8 +479,8 @@ static vg_status list_missing(struct recovery *r, uint8_t *missing,
  * triangles are there, if each comes once. */
 static int is_complete(const struct recovery *r)
 {
-  static const uint8_t bits[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3,
-                                   4};
+  static const uint8_t bits[16] = { 0, 1, 1, 2, 1, 2, 2, 3,
+                                    1, 2, 2, 3, 2, 3, 3, 4 };
   size_t n = 0;
 
   for (size_t c = 0; c < r->t->n_cell; c++)
@@ -508,7 +514,7 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
 {
   assert(t->n_cell > 0 && (tri || !n_tri) && report);
 
-  struct recovery r = {0};
+  struct recovery r = { 0 };
   struct vg_cell *before = NULL;
   size_t n_before = 0;
   uint8_t *missing = vg_alloc(n_tri, 1);
@@ -538,12 +544,13 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
     if (st == VG_OK) st = list_missing(&r, missing, err);
   }
   if (st == VG_OK && r.n_missing)
-    st = vg_fail(err, VG_ERR_GEOMETRY, "%zu surface triangles could not be "
-                 "recovered in pockets", r.n_missing);
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "%zu surface triangles could not be "
+                 "recovered in pockets",
+                 r.n_missing);
   if (st == VG_OK && report->n_face_lost)
     st = vg_recover_delaunay(t, n_before, before, &report->n_restored, err);
-  if (st == VG_OK)
-    VG_CHECK("the recovery of faces", vg_tets_defects(t));
+  if (st == VG_OK) VG_CHECK("the recovery of faces", vg_tets_defects(t));
   free(before);
   free(missing);
   free(r.missing);

@@ -21,7 +21,7 @@ enum { RING = 10, NEW_MAX = 2 * (RING - 2), ROUNDS = 64 };
 
 /* An edge goes if that lowers the paraboloid by this share of what it is at
  * least: the sum is not exact. */
-static const double gain = 1e-9;   /* K3 */
+static const double gain = 1e-9; /* K3 */
 
 /* Flips for each face that is listed at first, and 100 more: front of aircraft
  * take 0.4 to 0.9, small parts up to 4. Where a whole ring is flat, sums are
@@ -29,17 +29,20 @@ static const double gain = 1e-9;   /* K3 */
  * them: what is left then is valid, but not Delaunay. */
 static const size_t flips_each = 8;
 
-struct faces { size_t n, cap; uint32_t *link; };
+struct faces {
+  size_t n, cap;
+  uint32_t *link;
+};
 
 struct restorer {
   struct vg_tets *t;
-  struct faces next;         /* to be looked at in the next round */
+  struct faces next; /* to be looked at in the next round */
   size_t n_flip;
   int refused;
 };
 
-static double side(const struct vg_tets *t, uint32_t a, uint32_t b,
-                   uint32_t c, uint32_t d)
+static double side(const struct vg_tets *t, uint32_t a, uint32_t b, uint32_t c,
+                   uint32_t d)
 {
   return vg_orient3d(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
@@ -85,8 +88,8 @@ struct ring {
   const struct vg_tets *t;
   uint32_t a, b;
   int n;
-  uint32_t cell[RING], v[RING];      /* as of vg_cavity_ring */
-  double cost[RING][RING];   /* of the polygon i..j; INFINITY: none */
+  uint32_t cell[RING], v[RING]; /* as of vg_cavity_ring */
+  double cost[RING][RING];      /* of the polygon i..j; INFINITY: none */
   int split[RING][RING];
 };
 
@@ -95,7 +98,7 @@ struct ring {
 static double lifted(const struct ring *r, uint32_t p, uint32_t q, uint32_t s,
                      uint32_t u)
 {
-  const uint32_t v[4] = {p, q, s, u};
+  const uint32_t v[4] = { p, q, s, u };
   const double *o = r->t->x[r->a];
   double e[4][3], sum = 0;
 
@@ -167,7 +170,7 @@ static int remove_edge(struct restorer *f, uint32_t c, uint32_t a, uint32_t b)
   plan(&r);
   if (!(r.cost[0][r.n - 1] < (1 - gain) * before)) return 0;
   return replace(f, r.n, r.cell, emit(&r, 0, r.n - 1, 0, v),
-                 (const uint32_t (*)[4])v);
+                 (const uint32_t(*)[4])v);
 }
 
 /* --- faces --------------------------------------------------------------- */
@@ -177,20 +180,20 @@ static int remove_edge(struct restorer *f, uint32_t c, uint32_t a, uint32_t b)
 static void restore_face(struct restorer *r, uint32_t c, int i)
 {
   const struct vg_tets *t = r->t;
-  uint32_t link = t->cell[c].link[i], old[2] = {c, link >> 2};
+  uint32_t link = t->cell[c].link[i], old[2] = { c, link >> 2 };
   uint32_t a = t->cell[c].v[i], b = t->cell[link >> 2].v[link & 3];
   uint32_t v[3], new[3][4];
   int is_in[3];
 
   for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
   for (int k = 0; k < 3; k++) {
-    uint32_t w[4] = {v[k], v[(k + 1) % 3], b, a};
+    uint32_t w[4] = { v[k], v[(k + 1) % 3], b, a };
 
     is_in[k] = side(t, w[0], w[1], w[2], w[3]) > 0;
     memcpy(new[k], w, sizeof w);
   }
   if (is_in[0] && is_in[1] && is_in[2]) {
-    replace(r, 2, old, 3, (const uint32_t (*)[4])new);
+    replace(r, 2, old, 3, (const uint32_t(*)[4]) new);
     return;
   }
   for (int k = 0; k < 3; k++)
@@ -215,8 +218,8 @@ static void list_wrong(struct restorer *r, size_t n,
     for (int i = 0; i < 4 && !(t->flag[c] & VG_DEAD); i++) {
       uint32_t other = t->cell[c].link[i] >> 2;
 
-      if (other > c &&
-          !(is_old && is_as_before(t, n, before, other)) && is_wrong(t, c, i))
+      if (other > c && !(is_old && is_as_before(t, n, before, other)) &&
+          is_wrong(t, c, i))
         add(r, 4 * c + (uint32_t)i);
     }
   }
@@ -227,7 +230,7 @@ vg_status vg_recover_delaunay(struct vg_tets *t, size_t n_before,
                               struct vg_error *err)
 {
   struct restorer r = { .t = t };
-  struct faces now = {0};
+  struct faces now = { 0 };
   size_t limit;
 
   assert((before || !n_before) && n_flip);

@@ -11,11 +11,11 @@ enum { NEW_MAX = 2 * VG_FLIP_RING };
 struct ring {
   uint32_t a, b;
   int n;
-  uint32_t cell[VG_FLIP_RING];  /* holds a, b, v[k], v[k + 1] */
-  uint32_t v[VG_FLIP_RING];     /* v[k], v[k + 1], a, b is positive */
+  uint32_t cell[VG_FLIP_RING]; /* holds a, b, v[k], v[k + 1] */
+  uint32_t v[VG_FLIP_RING];    /* v[k], v[k + 1], a, b is positive */
 };
 
-struct change {              /* cells that go, cells that come */
+struct change { /* cells that go, cells that come */
   int n_old, n_new;
   const uint32_t *old;
   uint32_t v[NEW_MAX][4];
@@ -35,8 +35,7 @@ static void fix_inside(struct vg_flipper *f, int n, const uint32_t *slot)
 
       if (link == VG_NONE || !(t->flag[link >> 2] & VG_MARK)) continue;
       vg_cavity_face(&t->cell[slot[k]], i, v);
-      if (vg_flip_is_tri(&f->front, v))
-        t->flag[slot[k]] |= (uint8_t)(1 << i);
+      if (vg_flip_is_tri(&f->front, v)) t->flag[slot[k]] |= (uint8_t)(1 << i);
     }
   for (int k = 0; k < n; k++) t->flag[slot[k]] &= (uint8_t)~VG_MARK;
 }
@@ -49,8 +48,8 @@ static int replace(struct vg_flipper *f, const struct change *g)
     f->refused = 1;
     return 0;
   }
-  vg_cavity_refill(f->t, g->n_old, g->old, g->n_new,
-                   (const uint32_t (*)[4])g->v, slot);
+  vg_cavity_refill(f->t, g->n_old, g->old, g->n_new, (const uint32_t(*)[4])g->v,
+                   slot);
   for (int k = 0; k < g->n_new; k++)
     for (int i = 0; i < 4; i++) f->star[g->v[k][i]] = slot[k];
   fix_inside(f, g->n_new, slot);
@@ -69,8 +68,8 @@ static void come(struct change *g, uint32_t a, uint32_t b, uint32_t c,
   v[3] = d;
 }
 
-static double side(const struct vg_tets *t, uint32_t a, uint32_t b,
-                   uint32_t c, uint32_t d)
+static double side(const struct vg_tets *t, uint32_t a, uint32_t b, uint32_t c,
+                   uint32_t d)
 {
   return vg_orient3d(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
@@ -83,8 +82,8 @@ int vg_flip_face(struct vg_flipper *f, uint32_t c, int i)
   assert(!(f->t->flag[c] & VG_DEAD));
 
   const struct vg_tets *t = f->t;
-  uint32_t link = t->cell[c].link[i], old[2] = {c, link >> 2}, v[3], a, b;
-  struct change g = {.n_old = 2, .old = old};
+  uint32_t link = t->cell[c].link[i], old[2] = { c, link >> 2 }, v[3], a, b;
+  struct change g = { .n_old = 2, .old = old };
   int before, after;
 
   if (link == VG_NONE || t->flag[c] >> i & 1) return 0;
@@ -117,8 +116,8 @@ static int in_the_way(const struct vg_flipper *f, const struct ring *r)
 struct plan {
   const struct vg_flipper *f;
   const struct ring *r;
-  int most;                  /* may be in the way of the target */
-  int cost[VG_FLIP_RING][VG_FLIP_RING];  /* of polygon i..j; INT_MAX: none */
+  int most;                             /* may be in the way of the target */
+  int cost[VG_FLIP_RING][VG_FLIP_RING]; /* of polygon i..j; INT_MAX: none */
   double worst[VG_FLIP_RING][VG_FLIP_RING];
   int split[VG_FLIP_RING][VG_FLIP_RING];
 };
@@ -229,7 +228,10 @@ static int turn_ring(struct ring *r, uint32_t ear)
 
 /* ear: VG_NONE, or a corner of the ring that only one triangle may have.
  * gain: by how much less must be in the way. */
-struct removal { uint32_t a, b, ear; int depth, gain; };
+struct removal {
+  uint32_t a, b, ear;
+  int depth, gain;
+};
 
 static int remove_edge(struct vg_flipper *f, uint32_t c,
                        const struct removal *m);
@@ -265,7 +267,7 @@ static int reduce_ring(struct vg_flipper *f, const struct ring *r,
 
     for (int end = 0; end < 2 && p != m->ear; end++) {
       uint32_t q = end ? r->b : r->a, c;
-      struct removal sub = {p, q, end ? r->a : r->b, m->depth - 1, 0};
+      struct removal sub = { p, q, end ? r->a : r->b, m->depth - 1, 0 };
       double see = end ? side(t, from, p, to, q) : side(t, from, to, p, q);
       int is_gone = see <= 0 && remove_edge(f, r->cell[k], &sub);
 
@@ -281,12 +283,11 @@ static int reduce_ring(struct vg_flipper *f, const struct ring *r,
 static int remove_edge(struct vg_flipper *f, uint32_t c,
                        const struct removal *m)
 {
-  struct ring r = {.a = m->a, .b = m->b};
-  struct plan p = {.f = f, .r = &r};
-  struct change g = {.n_old = 0};
+  struct ring r = { .a = m->a, .b = m->b };
+  struct plan p = { .f = f, .r = &r };
+  struct change g = { .n_old = 0 };
 
-  if (f->budget <= 0 ||
-      vg_flip_edge_at(&f->front, m->a, m->b) != VG_NONE)
+  if (f->budget <= 0 || vg_flip_edge_at(&f->front, m->a, m->b) != VG_NONE)
     return 0;
   f->budget--;
   r.n = vg_cavity_ring(f->t, c, m->a, m->b, VG_FLIP_RING, 1, r.cell, r.v);
@@ -308,7 +309,7 @@ int vg_flip_edge(struct vg_flipper *f, uint32_t c, uint32_t a, uint32_t b,
   assert(c < f->t->n_cell && a != b && depth >= 0);
   assert(!(f->t->flag[c] & VG_DEAD));
 
-  struct removal m = {a, b, VG_NONE, depth, 1};
+  struct removal m = { a, b, VG_NONE, depth, 1 };
   size_t before = f->n_change;
 
   return remove_edge(f, c, &m) || f->n_change > before;

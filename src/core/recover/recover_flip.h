@@ -17,28 +17,28 @@
 #include "base/status.h"
 #include "core/delaunay/tets.h"
 
-enum { VG_FLIP_RING = 24 };  /* cells around an edge that can be removed */
+enum { VG_FLIP_RING = 24 }; /* cells around an edge that can be removed */
 
-struct vg_flip_front {       /* edges and triangles by their lowest point */
+struct vg_flip_front { /* edges and triangles by their lowest point */
   size_t n_point;
   const uint32_t (*tri)[3];
-  uint32_t *first_edge;      /* [n_point + 1] */
-  uint32_t *edge;            /* higher ends */
-  uint32_t *first_tri;       /* [n_point + 1] */
-  uint32_t *of_point;        /* triangles */
+  uint32_t *first_edge; /* [n_point + 1] */
+  uint32_t *edge;       /* higher ends */
+  uint32_t *first_tri;  /* [n_point + 1] */
+  uint32_t *of_point;   /* triangles */
 };
 
 struct vg_flipper {
   struct vg_tets *t;
   struct vg_flip_front front;
-  uint32_t *star;            /* [front.n_point] a cell of each point */
-  int n_target;                 /* 2: an edge, 3: a triangle is to appear */
+  uint32_t *star; /* [front.n_point] a cell of each point */
+  int n_target;   /* 2: an edge, 3: a triangle is to appear */
   uint32_t target[3];
-  int budget;                /* rings that may still be looked at */
-  size_t n_change;           /* flips so far */
-  int refused;               /* memory was refused */
+  int budget;      /* rings that may still be looked at */
+  size_t n_change; /* flips so far */
+  int refused;     /* memory was refused */
   size_t n_seen, cap_seen;
-  uint32_t *seen;            /* cells of one search, flagged VG_TRIED */
+  uint32_t *seen; /* cells of one search, flagged VG_TRIED */
 };
 
 /* --- the surface (recover_front.c) --------------------------------------- */
@@ -49,8 +49,7 @@ vg_status vg_flip_front_init(struct vg_flip_front *s, size_t n_point,
 void vg_flip_front_release(struct vg_flip_front *s);
 
 /** Place of an edge in s->edge, VG_NONE where there is none. */
-uint32_t vg_flip_edge_at(const struct vg_flip_front *s, uint32_t a,
-                         uint32_t b);
+uint32_t vg_flip_edge_at(const struct vg_flip_front *s, uint32_t a, uint32_t b);
 int vg_flip_is_tri(const struct vg_flip_front *s, const uint32_t v[3]);
 
 /** Is triangle x y z in the way of the edge that is to appear: does that meet
@@ -79,8 +78,7 @@ int vg_flip_edge(struct vg_flipper *f, uint32_t c, uint32_t a, uint32_t b,
 int vg_flip_has_edge(const struct vg_flipper *f, uint32_t a, uint32_t b);
 
 /** 1 when the edge is there now. depth: as for vg_flip_edge, at most 3. */
-int vg_flip_make_edge(struct vg_flipper *f, uint32_t a, uint32_t b,
-                      int depth);
+int vg_flip_make_edge(struct vg_flipper *f, uint32_t a, uint32_t b, int depth);
 
 /** 1 when the triangle is there now; its edges must be. */
 int vg_flip_make_tri(struct vg_flipper *f, const uint32_t v[3], int depth);

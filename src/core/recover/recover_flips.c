@@ -10,8 +10,8 @@
 
 /* Depth of each round. A round over what was left by one before finds other
  * cells there, and brings in more. */
-static const int edge_round[] = {0, 1, 1, 2, 2, 3, 3};
-static const int tri_round[] = {0, 1, 2, 3};
+static const int edge_round[] = { 0, 1, 1, 2, 2, 3, 3 };
+static const int tri_round[] = { 0, 1, 2, 3 };
 
 /* The edges of the missing triangles, each once. Returns their number, or
  * SIZE_MAX when memory is refused. */
@@ -94,8 +94,8 @@ vg_status vg_recover_flips(struct vg_tets *t, size_t n_tri,
 {
   assert(n_missing && *n_missing <= n_tri && missing);
 
-  struct vg_flipper f = {0};
-  uint32_t (*edge)[2] = vg_alloc(3 * *n_missing, sizeof *edge);
+  struct vg_flipper f = { 0 };
+  uint32_t(*edge)[2] = vg_alloc(3 * *n_missing, sizeof *edge);
   size_t n = SIZE_MAX;
   vg_status st = flipper_init(&f, t, n_tri, tri, err);
 

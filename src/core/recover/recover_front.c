@@ -18,8 +18,7 @@ static uint32_t find(const uint32_t *list, uint32_t from, uint32_t to,
   return from < to ? from : VG_NONE;
 }
 
-uint32_t vg_flip_edge_at(const struct vg_flip_front *s, uint32_t a,
-                         uint32_t b)
+uint32_t vg_flip_edge_at(const struct vg_flip_front *s, uint32_t a, uint32_t b)
 {
   uint32_t low = a < b ? a : b, high = a < b ? b : a;
 
@@ -117,8 +116,8 @@ void vg_flip_front_release(struct vg_flip_front *s)
 
 /* --- what is in the way -------------------------------------------------- */
 
-static double side(const struct vg_tets *t, uint32_t a, uint32_t b,
-                   uint32_t c, uint32_t d)
+static double side(const struct vg_tets *t, uint32_t a, uint32_t b, uint32_t c,
+                   uint32_t d)
 {
   return vg_orient3d(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
@@ -129,7 +128,7 @@ static double side(const struct vg_tets *t, uint32_t a, uint32_t b,
 static int crosses_in_plane(const struct vg_tets *t, uint32_t end,
                             uint32_t other, uint32_t y, uint32_t z)
 {
-  const double *x[4] = {t->x[end], t->x[other], t->x[y], t->x[z]};
+  const double *x[4] = { t->x[end], t->x[other], t->x[y], t->x[z] };
   double p[4][2], most = -1, turn, left, right, beyond;
   int u = 0, v = 1;
 
@@ -162,7 +161,7 @@ int vg_flip_obstructs(const struct vg_flipper *f, uint32_t x, uint32_t y,
   assert(f->n_target == 2 || f->n_target == 3);
 
   const struct vg_tets *t = f->t;
-  uint32_t a = f->target[0], b = f->target[1], v[3] = {x, y, z};
+  uint32_t a = f->target[0], b = f->target[1], v[3] = { x, y, z };
   double above, below, s[3];
   int n_end = 0, end = 0;
 

@@ -4,17 +4,19 @@
 
 #include "core/recover/recover_flip.h"
 
-
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 
 enum { SEEN_MAX = 4096, HINDRANCE_MAX = 64, WALK_MAX = 1000 };
 
 /* Rings looked at for one edge or triangle, by depth. */
-static const int budget[4] = {60, 200, 600, 2000};   /* K2 */
+static const int budget[4] = { 60, 200, 600, 2000 }; /* K2 */
 
 /* A face of a cell, or an edge of it. */
-struct hindrance { uint32_t c, a, b; int i; };
+struct hindrance {
+  uint32_t c, a, b;
+  int i;
+};
 
 struct hindrances {
   int n;
@@ -59,8 +61,8 @@ static uint32_t towards(const struct vg_flipper *f, uint32_t p, uint32_t q)
       const uint8_t *g = vg_face[i];
 
       if (at->v[i] == p) continue;
-      if (vg_orient3d(t->x[at->v[g[0]]], t->x[at->v[g[1]]],
-                      t->x[at->v[g[2]]], t->x[q]) >= 0)
+      if (vg_orient3d(t->x[at->v[g[0]]], t->x[at->v[g[1]]], t->x[at->v[g[2]]],
+                      t->x[q]) >= 0)
         continue;
       if (at->link[i] == VG_NONE) return VG_NONE;
       c = at->link[i] >> 2;
@@ -119,7 +121,7 @@ static void faces_in_the_way(struct vg_flipper *f, struct hindrances *h)
         continue;
       see(f, at->link[i]);
       if (4 * c + (uint32_t)i < at->link[i])
-        h->list[h->n++] = (struct hindrance){.c = c, .i = i};
+        h->list[h->n++] = (struct hindrance){ .c = c, .i = i };
     }
   }
 }
@@ -131,7 +133,7 @@ static void add_edge(struct hindrances *h, uint32_t c, uint32_t a, uint32_t b)
         (h->list[k].a == b && h->list[k].b == a))
       return;
   if (h->n < HINDRANCE_MAX)
-    h->list[h->n++] = (struct hindrance){.c = c, .a = a, .b = b};
+    h->list[h->n++] = (struct hindrance){ .c = c, .a = a, .b = b };
 }
 
 /* Edges that pierce the triangle. */
@@ -165,8 +167,8 @@ static int flip_faces(struct vg_flipper *f, const struct hindrances *h)
   return 0;
 }
 
-static int flip_edges_of_faces(struct vg_flipper *f,
-                               const struct hindrances *h, int depth)
+static int flip_edges_of_faces(struct vg_flipper *f, const struct hindrances *h,
+                               int depth)
 {
   for (int k = 0; k < h->n; k++) {
     uint32_t c = h->list[k].c, v[3];
@@ -203,8 +205,7 @@ static int make(struct vg_flipper *f, int depth)
     if (there) break;
     if (f->n_target == 2)
       changed = flip_faces(f, &h) || flip_edges_of_faces(f, &h, depth);
-    else
-      changed = flip_edges(f, &h, depth);
+    else changed = flip_edges(f, &h, depth);
   }
   return there == 1;
 }
@@ -218,8 +219,7 @@ int vg_flip_has_edge(const struct vg_flipper *f, uint32_t a, uint32_t b)
   return c != VG_NONE && has(&f->t->cell[c], b);
 }
 
-int vg_flip_make_edge(struct vg_flipper *f, uint32_t a, uint32_t b,
-                      int depth)
+int vg_flip_make_edge(struct vg_flipper *f, uint32_t a, uint32_t b, int depth)
 {
   assert(a != b && depth >= 0 && depth <= 3);
   f->n_target = 2;

@@ -14,12 +14,12 @@
 struct blocks {
   const struct vg_tris *w;
   size_t n;
-  struct vg_block *block;   /* [n] */
-  uint32_t *of;             /* [n_tri] block of each triangle */
-  uint32_t *tri;            /* [n_tri] triangles by block */
-  uint32_t *local;          /* [n_tri] number of a triangle in its block */
-  uint32_t *map;            /* [workers][n_point] numbers in a block;
-                               VG_REF_NONE between blocks */
+  struct vg_block *block; /* [n] */
+  uint32_t *of;           /* [n_tri] block of each triangle */
+  uint32_t *tri;          /* [n_tri] triangles by block */
+  uint32_t *local;        /* [n_tri] number of a triangle in its block */
+  uint32_t *map;          /* [workers][n_point] numbers in a block;
+                             VG_REF_NONE between blocks */
   vg_block_body body;
   void *user;
 };
@@ -31,12 +31,22 @@ static vg_status room(struct vg_block *b, const struct vg_tris *w,
 {
   struct vg_tris *l = &b->w;
 
-  *l = (struct vg_tris){ .ref = w->ref, .curves = w->curves,
-    .tolerance = w->tolerance, .relative = w->relative, .far = w->far,
-    .other_size = w->other_size, .user = w->user, .form = w->form,
-    .of_form = w->of_form, .h_min = w->h_min, .h_max = w->h_max,
-    .follow = w->follow, .is_sample = w->is_sample, .is_block = 1,
-    .clock = 1, .stop = w->stop };
+  *l = (struct vg_tris){ .ref = w->ref,
+                         .curves = w->curves,
+                         .tolerance = w->tolerance,
+                         .relative = w->relative,
+                         .far = w->far,
+                         .other_size = w->other_size,
+                         .user = w->user,
+                         .form = w->form,
+                         .of_form = w->of_form,
+                         .h_min = w->h_min,
+                         .h_max = w->h_max,
+                         .follow = w->follow,
+                         .is_sample = w->is_sample,
+                         .is_block = 1,
+                         .clock = 1,
+                         .stop = w->stop };
   b->origin = vg_alloc(3 * b->n_tri, sizeof *b->origin);
   if (!b->origin) return vg_fail_memory(err, "a block of the surface");
   return vg_tris_room(l, b->n_tri, err);
@@ -68,7 +78,7 @@ static vg_status take_points(struct vg_block *b, const struct vg_tris *w,
 
     *p = w->point[b->origin[i]];
     p->half = VG_REF_NONE;
-    p->changed = p->changed != 0;   /* on the block's own clock */
+    p->changed = p->changed != 0; /* on the block's own clock */
     p->tried = !p->changed;
   }
   for (uint32_t h = 0; h < 3 * l->n_tri; h++)
@@ -108,8 +118,8 @@ static vg_status take_edges(const struct blocks *s, struct vg_block *b,
 
     l->mate[h] = inside ? 3 * s->local[g / 3] + g % 3 : VG_REF_NONE;
     if (g != VG_REF_NONE && !inside)
-      l->point[vg_tris_from(l, h)].frozen
-        = l->point[vg_tris_to(l, h)].frozen = VG_WORK_FROZEN;
+      l->point[vg_tris_from(l, h)].frozen = l->point[vg_tris_to(l, h)]
+                                              .frozen = VG_WORK_FROZEN;
     if (!w->edge[from]) continue;
     if (inside && l->mate[h] < h) l->edge[h] = l->edge[l->mate[h]];
     else VG_TRY(take_line(l, w, w->edge[from] - 1, map, &l->edge[h], err));

@@ -10,17 +10,18 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 
-#define BLOCK 6000.0      /* S29: triangles, about: small enough for a cache */
-#define OLD 0.25          /* a triangle that is there counts as so many new
-                             ones */
+#define BLOCK 6000.0 /* S29: triangles, about: small enough for a cache */
+#define OLD                                                                    \
+  0.25 /* a triangle that is there counts as so many new                       \
+          ones */
 #define BINS 1024
 
 struct cutting {
   const struct vg_tris *w;
   int phase;
-  double *weight;           /* [n_tri] */
-  double (*middle)[3];      /* [n_tri] */
-  uint32_t *list, *spare;   /* [n_tri] triangles, by block */
+  double *weight;         /* [n_tri] */
+  double (*middle)[3];    /* [n_tri] */
+  uint32_t *list, *spare; /* [n_tri] triangles, by block */
   uint32_t *block;
 };
 
@@ -56,8 +57,8 @@ static size_t first_side(size_t k, int phase)
   return n ? n : 1;
 }
 
-static int longest_side(const struct cutting *c, const uint32_t *list,
-                        size_t n, double *lo, double *hi)
+static int longest_side(const struct cutting *c, const uint32_t *list, size_t n,
+                        double *lo, double *hi)
 {
   double a[3] = { INFINITY, INFINITY, INFINITY };
   double b[3] = { -INFINITY, -INFINITY, -INFINITY };
@@ -134,9 +135,10 @@ vg_status vg_blocks_cut(const struct vg_tris *w, size_t k, int phase,
     if (vg_tris_removed(w, t)) continue;
     c.weight[t] = weight_of(w, t);
     for (int d = 0; d < 3; d++)
-      c.middle[t][d] = (vg_tris_at(w, w->tri[t][0])[d]
-                        + vg_tris_at(w, w->tri[t][1])[d]
-                        + vg_tris_at(w, w->tri[t][2])[d]) / 3;
+      c.middle[t][d] = (vg_tris_at(w, w->tri[t][0])[d] +
+                        vg_tris_at(w, w->tri[t][1])[d] +
+                        vg_tris_at(w, w->tri[t][2])[d]) /
+                       3;
     c.list[n++] = t;
   }
   bisect(&c, c.list, n, 0, k);

@@ -11,12 +11,12 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-#define BAD2 0.25         /* S29: (sin 30 degrees)^2 */
+#define BAD2 0.25 /* S29: (sin 30 degrees)^2 */
 
 struct joining {
   struct vg_tris made;
   struct vg_block *block;
-  uint32_t *number;         /* [n_point before] of points that stay */
+  uint32_t *number; /* [n_point before] of points that stay */
 };
 
 /* Old points that stay keep their order and come first, then new ones. */
@@ -40,16 +40,18 @@ static vg_status number(const struct vg_tris *w, size_t n, struct joining *j,
     b->first_line = n_line;
     for (size_t p = b->n_origin; p < b->w.n_point; p++)
       n_point += b->w.point[p].half != VG_REF_NONE;
-    for (size_t t = 0; t < b->w.n_tri; t++)
-      n_tri += !vg_tris_removed(&b->w, t);
+    for (size_t t = 0; t < b->w.n_tri; t++) n_tri += !vg_tris_removed(&b->w, t);
     n_line += b->w.n_line;
   }
   j->made.n_point = j->made.cap_point = n_point;
   j->made.n_tri = n_tri;
   j->made.n_line = j->made.cap_line = n_line;
-  return n_point < UINT32_MAX - 2 && n_tri < UINT32_MAX / 3 ? VG_OK
-         : vg_fail(err, VG_ERR_UNSUPPORTED, "%zu triangles of the new surface "
-                   "are too many; ask for larger sizes", n_tri);
+  return n_point < UINT32_MAX - 2 && n_tri < UINT32_MAX / 3
+         ? VG_OK
+         : vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%zu triangles of the new surface "
+                   "are too many; ask for larger sizes",
+                   n_tri);
 }
 
 static vg_status room(struct joining *j, struct vg_error *err)
@@ -77,7 +79,7 @@ static void put_points(struct joining *j, struct vg_block *b)
     b->point[p] = VG_REF_NONE;
     if (q->half == VG_REF_NONE) continue;
     b->point[p] = p < b->n_origin ? j->number[b->origin[p]] : next++;
-    if (q->frozen) continue;    /* others have it, too */
+    if (q->frozen) continue; /* others have it, too */
     q->changed = q->tried = 0;
     j->made.point[b->point[p]] = *q;
   }
@@ -98,9 +100,9 @@ static void put_tris(struct joining *j, const struct vg_block *b)
 
       m->tri[to][k] = b->point[l->tri[t][k]];
       m->mate[3 * to + k] = g == VG_REF_NONE ? VG_REF_NONE
-                            : 3 * b->place[g / 3] + g % 3;
-      m->edge[3 * to + k] = l->edge[h]
-                            ? l->edge[h] + (uint32_t)b->first_line : 0;
+                                             : 3 * b->place[g / 3] + g % 3;
+      m->edge[3 * to + k] = l->edge[h] ? l->edge[h] + (uint32_t)b->first_line
+                                       : 0;
     }
   }
 }
@@ -130,7 +132,7 @@ static void put(void *context, size_t first, size_t end, int worker)
       for (int e = 0; e < 2; e++)
         if (b->point[line.end[e]] != VG_REF_NONE)
           line.end[e] = b->point[line.end[e]];
-        else line.end[e] = 0;   /* of a line that is no more */
+        else line.end[e] = 0; /* of a line that is no more */
       j->made.line[b->first_line + k] = line;
     }
   }
@@ -153,8 +155,8 @@ static vg_status list_sides(const struct joining *j, size_t n, struct sides *s,
     for (uint32_t h = 0; h < 3 * b->w.n_tri; h++) {
       if (b->place[h / 3] == VG_REF_NONE || !vg_tris_is_border(&b->w, h))
         continue;
-      if (vg_reserve(&s->half, &s->cap_half, s->n + 1, sizeof *s->half)
-          || vg_reserve(&s->end, &s->cap_end, s->n + 1, sizeof *s->end))
+      if (vg_reserve(&s->half, &s->cap_half, s->n + 1, sizeof *s->half) ||
+          vg_reserve(&s->end, &s->cap_end, s->n + 1, sizeof *s->end))
         return vg_fail_memory(err, "the borders of blocks");
       s->end[s->n][0] = b->point[vg_tris_from(&b->w, h)];
       s->end[s->n][1] = b->point[vg_tris_to(&b->w, h)];
@@ -173,7 +175,7 @@ static vg_status join_sides(struct joining *j, size_t n, struct vg_error *err)
 
   VG_TRY(list_sides(j, n, &s, err));
   VG_TRY(vg_edges_build_sides(&e, j->made.n_point, s.n,
-                              (const uint32_t (*)[2])s.end, err));
+                              (const uint32_t(*)[2])s.end, err));
   for (size_t i = 0; i < e.n; i++)
     for (uint32_t k = 1; k < vg_edges_count(&e, i); k++) {
       const uint32_t *at = vg_edges_at(&e, i) + k - 1;

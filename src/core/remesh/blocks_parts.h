@@ -7,13 +7,13 @@
 
 struct vg_block {
   size_t n_tri;
-  const uint32_t *tri;      /* [n_tri] of the whole, rising */
+  const uint32_t *tri; /* [n_tri] of the whole, rising */
   struct vg_tris w;
   size_t n_origin;
-  uint32_t *origin;         /* [n_origin] points of the whole that its first
-                               ones are */
-  uint32_t *point, *place;  /* points and triangles of the whole that those of
-                               the block become */
+  uint32_t *origin;        /* [n_origin] points of the whole that its first
+                              ones are */
+  uint32_t *point, *place; /* points and triangles of the whole that those of
+                              the block become */
   size_t first_point, first_tri, first_line;
   vg_status st;
   struct vg_error err;

@@ -13,27 +13,28 @@
 #include "core/geometry/vector.h"
 #include "core/surface/surface_check.h"
 
-#define SHORT 0.02        /* S46: of the tolerance: no new edge is near */
-#define FLAT 0.02         /* S46: the same: lower triangles are flat */
-#define CROSSED 1.0       /* the same, at triangles that intersect */
+#define SHORT 0.02  /* S46: of the tolerance: no new edge is near */
+#define FLAT 0.02   /* S46: the same: lower triangles are flat */
+#define CROSSED 1.0 /* the same, at triangles that intersect */
 #define SWEEPS 24
-#define CLEARINGS 14      /* searches for intersections */
-#define DEEPEST 0.25      /* S46: of the tolerance: deeper ones are not moved
-                             apart */
-#define CLEAR 1e-4        /* of the tolerance: how far beyond, at least */
-#define RING 256          /* triangles at a point that may be collapsed */
+#define CLEARINGS 14 /* searches for intersections */
+#define DEEPEST                                                                \
+  0.25             /* S46: of the tolerance: deeper ones are not moved         \
+                      apart */
+#define CLEAR 1e-4 /* of the tolerance: how far beyond, at least */
+#define RING 256   /* triangles at a point that may be collapsed */
 
 /* --- what is around a point ---------------------------------------------- */
 
 struct sweep {
   struct vg_mesh *m;
-  struct vg_ref ref;        /* faces of m */
-  uint32_t *start, *half;   /* half-edges that leave each point */
-  uint8_t *hard;            /* [n_point] on a rim or a hard border */
-  uint8_t *busy;            /* [n_tri] changed in this sweep */
-  uint8_t *gone;            /* [n_tri] */
-  size_t *left;             /* [n_patch] triangles */
-  double limit2;            /* square of the height of sound triangles */
+  struct vg_ref ref;      /* faces of m */
+  uint32_t *start, *half; /* half-edges that leave each point */
+  uint8_t *hard;          /* [n_point] on a rim or a hard border */
+  uint8_t *busy;          /* [n_tri] changed in this sweep */
+  uint8_t *gone;          /* [n_tri] */
+  size_t *left;           /* [n_patch] triangles */
+  double limit2;          /* square of the height of sound triangles */
 };
 
 struct candidate {
@@ -85,8 +86,9 @@ done:
 static int is_neighbour(const struct sweep *s, uint32_t p, uint32_t q)
 {
   for (uint32_t i = s->start[p]; i < s->start[p + 1]; i++)
-    if (vg_ref_to(&s->ref, s->half[i]) == q
-        || vg_ref_from(&s->ref, vg_half_prev(s->half[i])) == q) return 1;
+    if (vg_ref_to(&s->ref, s->half[i]) == q ||
+        vg_ref_from(&s->ref, vg_half_prev(s->half[i])) == q)
+      return 1;
   return 0;
 }
 
@@ -99,8 +101,9 @@ static int link_fits(const struct sweep *s, uint32_t h)
   const uint32_t o = vg_ref_from(r, vg_half_prev(h));
   const uint32_t q = g == VG_REF_NONE ? o : vg_ref_from(r, vg_half_prev(g));
 
-  if (s->start[v + 1] - s->start[v] > RING
-      || s->start[u + 1] - s->start[u] > RING) return 0;
+  if (s->start[v + 1] - s->start[v] > RING ||
+      s->start[u + 1] - s->start[u] > RING)
+    return 0;
   for (int k = 0; k < 2; k++) {
     const uint32_t p = k ? u : v;
 
@@ -144,8 +147,7 @@ static void cross_of(const double *a, const double *b, const double *c,
 
 static double longest2(const double *a, const double *b, const double *c)
 {
-  return fmax(vg_distance2(a, b), fmax(vg_distance2(b, c),
-                                       vg_distance2(c, a)));
+  return fmax(vg_distance2(a, b), fmax(vg_distance2(b, c), vg_distance2(c, a)));
 }
 
 /* No triangle of a height that counts turns over. */
@@ -184,8 +186,9 @@ static int collapse(struct sweep *s, uint32_t h)
   const struct vg_ref *r = &s->ref;
   const uint32_t v = vg_ref_from(r, h), u = vg_ref_to(r, h), g = r->mate[h];
 
-  if (!link_fits(s, h) || !leaves_surface(s, h) || !patches_stay(s, h)
-      || !keeps_sides(s, h)) return 0;
+  if (!link_fits(s, h) || !leaves_surface(s, h) || !patches_stay(s, h) ||
+      !keeps_sides(s, h))
+    return 0;
   for (int k = 0; k < 2; k++) {
     const uint32_t p = k ? u : v;
 
@@ -244,8 +247,7 @@ static vg_status list_short(const struct sweep *s, const uint8_t *crossed,
     if (g != VG_REF_NONE && g < h) continue;
     if (crossed && (crossed[h / 3] || (g != VG_REF_NONE && crossed[g / 3])))
       most = longer;
-    l2 = vg_distance2(r->point[vg_ref_from(r, h)],
-                      r->point[vg_ref_to(r, h)]);
+    l2 = vg_distance2(r->point[vg_ref_from(r, h)], r->point[vg_ref_to(r, h)]);
     if (!(l2 < most * most)) continue;
     if (vg_reserve(list, &cap, *n + 1, sizeof **list))
       return vg_fail_memory(err, "short edges of the surface");
@@ -310,8 +312,7 @@ static vg_status collapse_short(struct vg_clean *c,
     lines.stretch = NULL;
     own.lines = &lines;
     st = begin_sweep(&s, &own, err);
-    if (st >= 0)
-      st = list_short(&s, crossed, limit, longer, &list, &n, err);
+    if (st >= 0) st = list_short(&s, crossed, limit, longer, &list, &n, err);
     for (size_t k = 0; st >= 0 && k < n; k++)
       if (!s.gone[list[k].half / 3])
         done += (size_t)collapse_edge(&s, &own, list[k].half);
@@ -321,8 +322,9 @@ static vg_status collapse_short(struct vg_clean *c,
     release_sweep(&s);
     n = 0;
     if (st >= 0)
-      st = vg_flat_swap(&c->mesh, &(struct vg_flat_limit){
-        FLAT * o->tolerance, 0 }, &n, err);
+      st = vg_flat_swap(&c->mesh,
+                        &(struct vg_flat_limit){ FLAT * o->tolerance, 0 }, &n,
+                        err);
     c->n_swap += n;
     if (!done && !n) break;
   }
@@ -365,8 +367,8 @@ static double reach(const double h[3])
 
 static int is_pair(const struct vg_defect *d)
 {
-  return d->kind == VG_DEFECT_INTERSECTION && d->face[0] != SIZE_MAX
-         && d->face[1] != SIZE_MAX;
+  return d->kind == VG_DEFECT_INTERSECTION && d->face[0] != SIZE_MAX &&
+         d->face[1] != SIZE_MAX;
 }
 
 /* Set depth and place of the deepest intersection. */
@@ -411,10 +413,9 @@ static void push(const struct vg_mesh *m, size_t a, size_t b, double tolerance,
 /* Move points of intersecting triangles along the normals there, so that the
  * two sheets of a thin place come apart. */
 static vg_status part(struct vg_mesh *m, const struct vg_surface_report *r,
-                      double tolerance, size_t *n_moved,
-                      struct vg_error *err)
+                      double tolerance, size_t *n_moved, struct vg_error *err)
 {
-  double (*move)[3] = vg_calloc(m->n_point, sizeof *move);
+  double(*move)[3] = vg_calloc(m->n_point, sizeof *move);
 
   *n_moved = 0;
   if (!move) return vg_fail_memory(err, "intersections of the surface");
@@ -454,8 +455,8 @@ static vg_status clear_crossings(struct vg_clean *c,
     memset(crossed, 0, c->mesh.n_tri);
     for (size_t k = 0; k < r.n_defect; k++)
       for (int j = 0; j < 2; j++)
-        if (r.defect[k].kind == VG_DEFECT_INTERSECTION
-            && r.defect[k].face[j] != SIZE_MAX)
+        if (r.defect[k].kind == VG_DEFECT_INTERSECTION &&
+            r.defect[k].face[j] != SIZE_MAX)
           crossed[r.defect[k].face[j]] = 1;
     VG_TRY(collapse_short(c, o, crossed, longer, err));
     if (c->n_collapse == n && longer >= CROSSED * o->tolerance)
@@ -473,8 +474,8 @@ done:
 /* --- flaps --------------------------------------------------------------- */
 
 struct face {
-  uint32_t node[3], tri;    /* nodes rising */
-  int turned;               /* an odd number of exchanges sorts them */
+  uint32_t node[3], tri; /* nodes rising */
+  int turned;            /* an odd number of exchanges sorts them */
 };
 
 static int by_nodes(const void *pa, const void *pb)
@@ -520,9 +521,9 @@ static vg_status drop_flaps(struct vg_clean *c, double tolerance,
   for (uint32_t t = 0; t < m->n_tri; t++) f[t] = face_of(m, t);
   qsort(f, m->n_tri, sizeof *f, by_nodes);
   for (size_t i = 0; i + 1 < m->n_tri; i++) {
-    if (memcmp(f[i].node, f[i + 1].node, sizeof f[i].node)
-        || f[i].turned == f[i + 1].turned
-        || !is_thin(m, f[i].tri, tolerance)) continue;
+    if (memcmp(f[i].node, f[i + 1].node, sizeof f[i].node) ||
+        f[i].turned == f[i + 1].turned || !is_thin(m, f[i].tri, tolerance))
+      continue;
     s.gone[f[i].tri] = s.gone[f[i + 1].tri] = 1;
     i++;
     n++;
@@ -563,7 +564,7 @@ vg_status vg_clean_find(const struct vg_mesh *m,
   VG_TRY(drop_flaps(c, o->tolerance, err));
   st = collapse_short(c, o, NULL, 0, err);
   if (st == VG_ERR_INPUT) {
-    vg_clean_release(c);    /* not a surface: others say so with the place */
+    vg_clean_release(c); /* not a surface: others say so with the place */
     return VG_OK;
   }
   VG_TRY(st);

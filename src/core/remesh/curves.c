@@ -13,20 +13,21 @@
 #include "core/geometry/graded.h"
 #include "core/geometry/vector.h"
 
-#define LEAD 0.6          /* S24: of the angle: where a ridge may go on */
-#define TURN 50.0         /* degrees: more is a corner */
-#define JAG 8.0           /* tolerances along the line: turns are measured on */
-#define THIN 8            /* S32: triangles lower than the tolerance, at most,
-                             that are passed over */
-#define SPECK 20.0        /* tolerances: shorter loose pieces are dropped */
+#define LEAD 0.6  /* S24: of the angle: where a ridge may go on */
+#define TURN 50.0 /* degrees: more is a corner */
+#define JAG 8.0   /* tolerances along the line: turns are measured on */
+#define THIN                                                                   \
+  8                /* S32: triangles lower than the tolerance, at most,        \
+                      that are passed over */
+#define SPECK 20.0 /* tolerances: shorter loose pieces are dropped */
 
 struct finder {
   struct vg_curves *c;
   const struct vg_ref *r;
   const struct vg_curves_options *o;
-  uint32_t *start, *half;   /* half-edges of each point, both ways */
-  uint8_t *degree;          /* lines at a point, 255 at most */
-  double sharp, lead;       /* cosines */
+  uint32_t *start, *half; /* half-edges of each point, both ways */
+  uint8_t *degree;        /* lines at a point, 255 at most */
+  double sharp, lead;     /* cosines */
 };
 
 double vg_cosine(double degrees)
@@ -71,8 +72,9 @@ static uint32_t face_beside(const struct finder *f, uint32_t h)
 
     room -= height(r, h);
     if (length2(r, b) > length2(r, a)) a = b;
-    if (!(room > 0) || length2(r, h) < length2(r, a) / 4
-        || r->mate[a] == VG_REF_NONE) break;
+    if (!(room > 0) || length2(r, h) < length2(r, a) / 4 ||
+        r->mate[a] == VG_REF_NONE)
+      break;
     h = r->mate[a];
   }
   return h / 3;
@@ -94,8 +96,8 @@ static double cosine(const struct finder *f, uint32_t h)
   return fmax(c, vg_dot(a, b));
 }
 
-int vg_curves_is_hard(const struct vg_curves_options *o,
-                      const struct vg_ref *r, uint32_t h)
+int vg_curves_is_hard(const struct vg_curves_options *o, const struct vg_ref *r,
+                      uint32_t h)
 {
   uint32_t p, q;
 
@@ -104,8 +106,8 @@ int vg_curves_is_hard(const struct vg_curves_options *o,
   q = o->tri_patch[r->mate[h] / 3];
   if (p == q) return 0;
   if (o->hard && (o->hard[p] || o->hard[q])) return 1;
-  return o->patch[p].bc != o->patch[q].bc
-         || o->patch[p].bc_fun3d != o->patch[q].bc_fun3d;
+  return o->patch[p].bc != o->patch[q].bc ||
+         o->patch[p].bc_fun3d != o->patch[q].bc_fun3d;
 }
 
 static void set_line(struct finder *f, uint32_t h, int on)
@@ -134,8 +136,9 @@ static void find_lines(struct finder *f)
     uint32_t m = f->r->mate[h];
 
     if (m != VG_REF_NONE && m < h) continue;
-    if (vg_curves_is_hard(f->o, f->r, h)
-        || (!is_closed(f, h) && cosine(f, h) < f->sharp)) set_line(f, h, 1);
+    if (vg_curves_is_hard(f->o, f->r, h) ||
+        (!is_closed(f, h) && cosine(f, h) < f->sharp))
+      set_line(f, h, 1);
   }
 }
 
@@ -210,8 +213,9 @@ static void lead_on(struct finder *f, uint32_t p)
       double s;
 
       if (is_closed(f, h)) return;
-      if (f->c->line[h] || f->r->mate[h] == VG_REF_NONE
-          || cosine(f, h) > f->lead) continue;
+      if (f->c->line[h] || f->r->mate[h] == VG_REF_NONE ||
+          cosine(f, h) > f->lead)
+        continue;
       s = straight(f->r, before, p, other_end(f->r, h, p));
       if (s > most) most = s, best = h;
     }
@@ -273,8 +277,8 @@ static int turns(const struct finder *f, uint32_t p)
   for (uint32_t k = f->start[p]; k < f->start[p + 1]; k++)
     if (f->c->line[f->half[k]]) h = f->half[k];
   g = line_on(f, p, h);
-  return straight(f->r, along(f, p, h, reach), p, along(f, p, g, reach))
-         < vg_cosine(TURN);
+  return straight(f->r, along(f, p, h, reach), p, along(f, p, g, reach)) <
+         vg_cosine(TURN);
 }
 
 static vg_status add_point(struct vg_curves *c, const struct vg_ref *r,
@@ -283,12 +287,12 @@ static vg_status add_point(struct vg_curves *c, const struct vg_ref *r,
   struct vg_feature_curve *k = &c->curve[c->n_curve - 1];
   double s = 0;
 
-  if (vg_reserve(&c->point, &c->cap_point, c->n_point + 1, sizeof *c->point)
-      || vg_reserve(&c->at, &c->cap_at, c->n_point + 1, sizeof *c->at))
+  if (vg_reserve(&c->point, &c->cap_point, c->n_point + 1, sizeof *c->point) ||
+      vg_reserve(&c->at, &c->cap_at, c->n_point + 1, sizeof *c->at))
     return vg_fail_memory(err, "the ridges of the surface");
   if (k->n)
-    s = c->at[c->n_point - 1]
-        + vg_distance(r->point[c->point[c->n_point - 1]], r->point[p]);
+    s = c->at[c->n_point - 1] +
+        vg_distance(r->point[c->point[c->n_point - 1]], r->point[p]);
   c->point[c->n_point] = p;
   c->at[c->n_point++] = s;
   k->n++;
@@ -360,7 +364,10 @@ vg_status vg_curves_find(struct vg_curves *c, const struct vg_ref *r,
 {
   assert(!c->line && !c->corner);
 
-  struct finder f = { .c = c, .r = r, .o = o, .sharp = vg_cosine(o->angle),
+  struct finder f = { .c = c,
+                      .r = r,
+                      .o = o,
+                      .sharp = vg_cosine(o->angle),
                       .lead = vg_cosine(LEAD * o->angle) };
   vg_status st = VG_OK;
 
@@ -456,8 +463,8 @@ double vg_curve_chord(const struct vg_curves *c, const struct vg_ref *r,
   vg_curve_at(c, r, i, s1, b);
   vg_sub(b, a, u);
   uu = vg_dot(u, u);
-  for (size_t k = before(c, i, s0) + 1; c->at[k] < s1
-       && k < c->curve[i].first + c->curve[i].n; k++) {
+  for (size_t k = before(c, i, s0) + 1;
+       c->at[k] < s1 && k < c->curve[i].first + c->curve[i].n; k++) {
     double d[3], t;
 
     vg_sub(r->point[c->point[k]], a, d);

@@ -10,18 +10,18 @@
 #include "core/remesh/reference.h"
 
 #define GRAIN 1024
-#define PER_FACE 3        /* samples: middles of edges */
+#define PER_FACE 3 /* samples: middles of edges */
 
 /* One way. Samples are the points, then those of each triangle. */
 struct measuring {
   const struct vg_mesh *from;
-  struct vg_ref ref;        /* of it */
+  struct vg_ref ref; /* of it */
   const struct vg_ref *to;
-  uint32_t *by;             /* [from->n_point] triangle that measures there;
-                               VG_REF_NONE: it is of none */
-  uint32_t *order;          /* [from->n_tri] triangles, near ones together */
-  double *d;                /* [n_point + PER_FACE n_tri] */
-  double *face;             /* [n_tri] or NULL */
+  uint32_t *by;    /* [from->n_point] triangle that measures there;
+                      VG_REF_NONE: it is of none */
+  uint32_t *order; /* [from->n_tri] triangles, near ones together */
+  double *d;       /* [n_point + PER_FACE n_tri] */
+  double *face;    /* [n_tri] or NULL */
   struct vg_remesh_distance *out;
   const struct vg_stop *stop;
   vg_status st;
@@ -61,7 +61,7 @@ static void at_face(const struct measuring *m, size_t t, uint32_t *hint)
     face_sample(from, t, i, x[n]);
     slot[n++] = slot_of(from, t, (size_t)i);
   }
-  vg_ref_distances(m->to, n, (const double (*)[3])x, hint, d);
+  vg_ref_distances(m->to, n, (const double(*)[3])x, hint, d);
   for (size_t i = 0; i < n; i++) m->d[slot[i]] = d[i];
 }
 
@@ -82,7 +82,7 @@ static void arrange(struct measuring *m)
   size_t n = 0;
 
   memset(m->by, 0xff, from->n_point * sizeof *m->by);
-  memset(m->d, 0, from->n_tri * sizeof *m->d);   /* 1: is there */
+  memset(m->d, 0, from->n_tri * sizeof *m->d); /* 1: is there */
   for (size_t i = 0; i < m->ref.tree.n; i++) {
     uint32_t t = m->ref.tree.item[i];
 
@@ -101,8 +101,8 @@ static void share(const struct measuring *m)
     size_t g = m->ref.mate[h];
 
     if (g < h)
-      m->d[slot_of(m->from, h / 3, h % 3)]
-        = m->d[slot_of(m->from, g / 3, g % 3)];
+      m->d[slot_of(m->from, h / 3, h % 3)] =
+        m->d[slot_of(m->from, g / 3, g % 3)];
   }
 }
 
@@ -135,7 +135,7 @@ static void find_most(const struct measuring *m)
 
     for (int i = 0; i < 3 + PER_FACE; i++) {
       size_t s = i < 3 ? from->tri[t][i]
-                 : from->n_point + PER_FACE * t + (size_t)i - 3;
+                       : from->n_point + PER_FACE * t + (size_t)i - 3;
 
       most = fmax(most, m->d[s]);
       if (!(m->d[s] > d->most)) continue;
@@ -183,8 +183,7 @@ static void end_both(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) {
     share(&m[i]);
     find_most(&m[i]);
-    m[i].st = find_99(n_samples(&m[i]), m[i].d, &m[i].out->most_99,
-                      &m[i].err);
+    m[i].st = find_99(n_samples(&m[i]), m[i].d, &m[i].out->most_99, &m[i].err);
   }
 }
 
@@ -202,14 +201,17 @@ static vg_status run(struct measuring m[2], int threads, vg_loop_body body,
 
 vg_status vg_remesh_measure(const struct vg_mesh *a, const struct vg_mesh *b,
                             int threads, const struct vg_stop *stop,
-                            double *face,
-                            struct vg_remesh_distance d[2],
+                            double *face, struct vg_remesh_distance d[2],
                             struct vg_error *err)
 {
-  struct measuring m[2] = { { .from = a, .face = face, .out = &d[0],
-                              .stop = stop, .err = VG_ERROR_INIT },
-                            { .from = b, .out = &d[1],
-                              .stop = stop, .err = VG_ERROR_INIT } };
+  struct measuring m[2] = {
+    { .from = a,
+      .face = face,
+      .out = &d[0],
+      .stop = stop,
+      .err = VG_ERROR_INIT },
+    { .from = b, .out = &d[1], .stop = stop, .err = VG_ERROR_INIT }
+  };
   vg_status st;
 
   memset(d, 0, 2 * sizeof *d);
@@ -235,12 +237,12 @@ done:
 /* --- the order that suits it ---------------------------------------------- */
 
 struct arranging {
-  double (*middle)[3];      /* [n_tri] */
-  uint32_t *order;          /* [n_tri] */
+  double (*middle)[3]; /* [n_tri] */
+  uint32_t *order;     /* [n_tri] */
   uint32_t (*tri)[3];
   uint32_t *patch;
   double (*point)[3];
-  uint32_t *number;         /* [n_point] new ones */
+  uint32_t *number; /* [n_point] new ones */
 };
 
 static void release_arranging(struct arranging *a)
@@ -253,8 +255,8 @@ static void release_arranging(struct arranging *a)
   free(a->number);
 }
 
-static void put_point(struct arranging *a, const struct vg_mesh *m,
-                      uint32_t p, uint32_t *n)
+static void put_point(struct arranging *a, const struct vg_mesh *m, uint32_t p,
+                      uint32_t *n)
 {
   if (a->number[p] != UINT32_MAX) return;
   memcpy(a->point[*n], m->point[p], sizeof *a->point);
@@ -297,10 +299,11 @@ vg_status vg_remesh_arrange(struct vg_mesh *m, struct vg_error *err)
     VG_TRY(vg_fail_memory(err, "the order of the surface"));
   for (size_t t = 0; t < m->n_tri; t++)
     for (int d = 0; d < 3; d++)
-      a.middle[t][d] = (m->point[m->tri[t][0]][d] + m->point[m->tri[t][1]][d]
-                        + m->point[m->tri[t][2]][d]) / 3;
-  VG_TRY(vg_hilbert_order(m->n_tri, (const double (*)[3])a.middle, a.order,
-                          err));
+      a.middle[t][d] = (m->point[m->tri[t][0]][d] + m->point[m->tri[t][1]][d] +
+                        m->point[m->tri[t][2]][d]) /
+                       3;
+  VG_TRY(
+    vg_hilbert_order(m->n_tri, (const double(*)[3])a.middle, a.order, err));
   put(&a, m);
 done:
   release_arranging(&a);

@@ -9,15 +9,16 @@
 #include "core/remesh/metric.h"
 #include "core/remesh/reference.h"
 
-#define FLAT2 7.596e-3    /* S50: (sin 5 degrees)^2 */
-#define OUTER 1e-3        /* of the longest edge: height of a flat triangle of
-                             the outer boundary */
+#define FLAT2 7.596e-3 /* S50: (sin 5 degrees)^2 */
+#define OUTER                                                                  \
+  1e-3 /* of the longest edge: height of a flat triangle of                    \
+          the outer boundary */
 #define SWEEPS 12
-#define TURN 0.9          /* cosine between new triangles and the neighbour */
+#define TURN 0.9 /* cosine between new triangles and the neighbour */
 
 struct flat {
-  double shape;             /* squared sine of the smallest angle */
-  uint32_t half;            /* the longest edge */
+  double shape;  /* squared sine of the smallest angle */
+  uint32_t half; /* the longest edge */
 };
 
 static int by_shape(const void *pa, const void *pb)
@@ -59,8 +60,8 @@ static uint32_t longest(const struct vg_mesh *m, uint32_t t, double *height,
   }
   *height = most > 0 ? normal_of(m, m->tri[t], n) / sqrt(most) : 0;
   /* An angle above 120 degrees. */
-  *is_cap = l[0] + l[1] + l[2] < 2 * most - sqrt(l[(at + 1) % 3]
-                                                 * l[(at + 2) % 3]);
+  *is_cap = l[0] + l[1] + l[2] <
+            2 * most - sqrt(l[(at + 1) % 3] * l[(at + 2) % 3]);
   return 3 * t + at;
 }
 
@@ -98,9 +99,9 @@ static vg_status list_flat(const struct vg_mesh *m,
 
 struct swapper {
   struct vg_mesh *m;
-  struct vg_ref ref;        /* faces as they were when the sweep began */
-  uint8_t *busy;            /* [n_tri] changed, or next to one that was */
-  size_t *count;            /* [n_patch] triangles */
+  struct vg_ref ref; /* faces as they were when the sweep began */
+  uint8_t *busy;     /* [n_tri] changed, or next to one that was */
+  size_t *count;     /* [n_patch] triangles */
 };
 
 /* May there be an edge from the start of h to q? Not where one is already, nor
@@ -141,9 +142,9 @@ static int is_better(const struct vg_mesh *m, uint32_t t, uint32_t u,
 
   if (!(normal_of(m, m->tri[u], n) > 0)) return 0;
   for (int k = 0; k < 2; k++)
-    if (!(shape_of(m, made[k]) > before)
-        || !(normal_of(m, made[k], made_n) > 0)
-        || !(vg_dot(n, made_n) > TURN)) return 0;
+    if (!(shape_of(m, made[k]) > before) ||
+        !(normal_of(m, made[k], made_n) > 0) || !(vg_dot(n, made_n) > TURN))
+      return 0;
   return 1;
 }
 

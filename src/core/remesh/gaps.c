@@ -10,19 +10,20 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/reference.h"
 
-#define GRAIN 256         /* triangles of a block */
+#define GRAIN 256 /* triangles of a block */
 #define DEPTH 64
-#define FACING -0.7       /* S40: cosine between the two sides of a gap */
-#define H_MIN 2e-5        /* of the length */
+#define FACING -0.7 /* S40: cosine between the two sides of a gap */
+#define H_MIN 2e-5  /* of the length */
 #define H_MAX 0.04
-#define MOST 1e8          /* places */
+#define MOST 1e8 /* places */
 /* S60: samples of a forecast, and where gaps are narrow */
 #define SAMPLES 1e5
 #define SAMPLES_MOST 1e6
-#define FINE 1e4          /* the limit over what one sample may count for */
-#define TRIANGLE 0.433    /* area of a triangle of edge 1 */
-#define PLACE 0.15        /* area for each of the two places of a gap, over the
-                             square of its width */
+#define FINE 1e4       /* the limit over what one sample may count for */
+#define TRIANGLE 0.433 /* area of a triangle of edge 1 */
+#define PLACE                                                                  \
+  0.15 /* area for each of the two places of a gap, over the                   \
+          square of its width */
 
 /* Places of some triangles, or a forecast of them. */
 struct block {
@@ -37,7 +38,7 @@ struct search {
   const struct vg_ref *ref;
   const struct vg_mesh *m;
   double edges, h_min, h_max;
-  double coarse, fine;      /* edges of a forecast's samples */
+  double coarse, fine; /* edges of a forecast's samples */
   double most_tri, most_place;
   struct block *block;
   const struct vg_stop *stop;
@@ -88,8 +89,7 @@ static void halve(double p[3][3], int edge, int side, double half[3][3])
 {
   double mid[3];
 
-  for (int k = 0; k < 3; k++)
-    mid[k] = (p[edge][k] + p[(edge + 1) % 3][k]) / 2;
+  for (int k = 0; k < 3; k++) mid[k] = (p[edge][k] + p[(edge + 1) % 3][k]) / 2;
   memcpy(half, p, 9 * sizeof **p);
   memcpy(half[(edge + side) % 3], mid, sizeof mid);
 }
@@ -187,8 +187,7 @@ static void each_triangle(const struct search *s, size_t i,
   }
 }
 
-static void forecast_blocks(void *context, size_t first, size_t end,
-                            int worker)
+static void forecast_blocks(void *context, size_t first, size_t end, int worker)
 {
   const struct search *s = context;
 
@@ -264,9 +263,10 @@ static vg_status settle(const struct vg_mesh *m, const struct vg_gap_options *o,
   double lo[3], hi[3], length = 0, area = 0;
 
   if (!(o->edges > 0 && o->edges <= 1e4 && o->h_min >= 0 && o->h_max >= 0))
-    return vg_fail(err, VG_ERR_INPUT, "%g edges across gaps, sizes %g to %g: "
-                   "one of them is out of range", o->edges, o->h_min,
-                   o->h_max);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%g edges across gaps, sizes %g to %g: "
+                   "one of them is out of range",
+                   o->edges, o->h_min, o->h_max);
   vg_mesh_bounds(m, lo, hi);
   for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
   s->edges = o->edges;
@@ -284,7 +284,8 @@ static vg_status settle(const struct vg_mesh *m, const struct vg_gap_options *o,
   s->most_tri = o->most_tri > 0 ? o->most_tri : INFINITY;
   s->most_place = o->most_place > 0 ? o->most_place : INFINITY;
   if (area < MOST * s->h_max * s->h_max) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "gaps would be looked for at some %.2g "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "gaps would be looked for at some %.2g "
                  "places; are sizes in the unit of the surface?",
                  area / (s->h_max * s->h_max));
 }

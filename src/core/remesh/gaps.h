@@ -16,27 +16,30 @@
 #include "core/mesh/mesh.h"
 
 struct vg_gap_options {
-  double edges;             /* > 0, asked for across a gap */
-  double h_min, h_max;      /* no size below; none above is asked for, so that
-                               gaps wider than edges * h_max are none. h_min 0:
-                               2e-5 of the surface's length, h_max 0: 0.04 */
-  double most_tri;          /* triangles of the new surface in gaps that are
-                               too many; 0: any number goes */
-  double most_place;        /* places that are too many; 0: any number goes */
-  int threads;              /* 0: one per core; the same bytes for any */
+  double edges;        /* > 0, asked for across a gap */
+  double h_min, h_max; /* no size below; none above is asked for, so that
+                          gaps wider than edges * h_max are none. h_min 0:
+                          2e-5 of the surface's length, h_max 0: 0.04 */
+  double most_tri;     /* triangles of the new surface in gaps that are
+                          too many; 0: any number goes */
+  double most_place;   /* places that are too many; 0: any number goes */
+  int threads;         /* 0: one per core; the same bytes for any */
   struct vg_stop stop;
 };
 
 struct vg_gaps {
-  size_t n;                 /* places, in pairs: both sides of a gap */
-  double (*x)[3], *h;       /* [n] owned; size there: width / edges */
-  double narrowest, at[3];  /* of all, and one side of it; n 0: not set, but
-                               where the forecast is too high */
-  uint32_t patch[2];        /* of both sides of it */
-  double n_tri, n_place;    /* forecast: triangles of size h in gaps, and
-                               places */
+  size_t n;                /* places, in pairs: both sides of a gap */
+  double (*x)[3], *h;      /* [n] owned; size there: width / edges */
+  double narrowest, at[3]; /* of all, and one side of it; n 0: not set, but
+                              where the forecast is too high */
+  uint32_t patch[2];       /* of both sides of it */
+  double n_tri, n_place;   /* forecast: triangles of size h in gaps, and
+                              places */
 };
-#define VG_GAPS_INIT { 0 }
+#define VG_GAPS_INIT                                                           \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /** Find them. A forecast from some 1e5 samples, a million where gaps are
  * narrow, comes first.

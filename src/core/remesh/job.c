@@ -15,18 +15,20 @@
 #include "core/sizing/sizing_source.h"
 #include "core/surface/envelope.h"
 
-#define TOLERANCE 1e-4    /* S20: of the body's length */
-#define CHORD 0.6         /* of the tolerance: what sizes allow for arcs */
-#define NOISE 3.0         /* S43: of the accuracy of the given surface: sizes
-                             that follow from it alone */
-#define H_MAX 0.02        /* of the length */
-#define H_MIN 2e-4        /* twice the tolerance */
-#define H_OUTER 0.04      /* of the domain's length */
-#define OUTER 0.9         /* S27: of the triangles of a patch: all of it is */
-#define LEAP 10.0         /* S47: of the size in the middle of an edge: what
-                             sizes grown from its ends would allow */
-#define CUTS 256          /* pieces of such an edge, at most */
-#define TRIANGLES 3e8     /* more are refused */
+#define TOLERANCE 1e-4 /* S20: of the body's length */
+#define CHORD 0.6      /* of the tolerance: what sizes allow for arcs */
+#define NOISE                                                                  \
+  3.0                /* S43: of the accuracy of the given surface: sizes       \
+                        that follow from it alone */
+#define H_MAX 0.02   /* of the length */
+#define H_MIN 2e-4   /* twice the tolerance */
+#define H_OUTER 0.04 /* of the domain's length */
+#define OUTER 0.9    /* S27: of the triangles of a patch: all of it is */
+#define LEAP                                                                   \
+  10.0                /* S47: of the size in the middle of an edge: what       \
+                         sizes grown from its ends would allow */
+#define CUTS 256      /* pieces of such an edge, at most */
+#define TRIANGLES 3e8 /* more are refused */
 
 static double length_of(const struct vg_mesh *m, const uint8_t *outer)
 {
@@ -48,7 +50,7 @@ static double length_of(const struct vg_mesh *m, const uint8_t *outer)
 static vg_status complete_outer(const struct vg_mesh *m, uint8_t *outer,
                                 struct vg_error *err)
 {
-  size_t (*n)[2] = vg_calloc(m->n_patch, sizeof *n);
+  size_t(*n)[2] = vg_calloc(m->n_patch, sizeof *n);
 
   if (!n) return vg_fail_memory(err, "the patches");
   for (size_t t = 0; t < m->n_tri; t++) n[m->tri_patch[t]][!!outer[t]]++;
@@ -78,7 +80,7 @@ static vg_status settle(struct vg_remesh_job *j, struct vg_error *err)
   r->length = e.is_domain ? length_of(m, outer) : whole;
   if (!(r->length > 0)) r->length = whole;
   j->jag = j->o->tolerance > 0 ? j->o->tolerance
-           : fmax(TOLERANCE * r->length, j->o->accuracy);
+                               : fmax(TOLERANCE * r->length, j->o->accuracy);
   r->tolerance = j->jag * j->o->scale * fmax(j->o->scale, 1);
   r->h_max = j->o->h_max > 0 ? j->o->h_max : H_MAX * r->length;
   if (e.is_domain) {
@@ -110,13 +112,16 @@ static vg_status check_number(const struct vg_remesh_job *j,
     double x[3];
 
     vg_cross(r->shape[t].u, r->shape[t].v, x);
-    size = (r->size[r->tri[t][0]] + r->size[r->tri[t][1]]
-            + r->size[r->tri[t][2]]) / 3;
+    size = (r->size[r->tri[t][0]] + r->size[r->tri[t][1]] +
+            r->size[r->tri[t][2]]) /
+           3;
     n += vg_norm(x) / (0.8660254037844386 * size * size);
   }
   if (n < TRIANGLES) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "the new surface would have some %.2g "
-                 "triangles; are sizes and tolerance in its unit?", n);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "the new surface would have some %.2g "
+                 "triangles; are sizes and tolerance in its unit?",
+                 n);
 }
 
 static const double *cap_of(const struct vg_remesh_job *j)
@@ -145,12 +150,15 @@ static vg_status find_sizes(struct vg_remesh_job *j, struct vg_error *err)
 
   VG_TRY(vg_ref_add_tree(&j->ref, &o->stop, err));
   VG_TRY(vg_stopped(&o->stop, err));
-  VG_TRY(vg_sizes_make(&j->ref, &j->curves, &(struct vg_sizes_options){
-    o->per_turn / o->scale, CHORD * j->jag * o->scale * o->scale, o->scale,
-    j->r.h_min, j->r.h_max, NOISE * o->accuracy * o->scale,
-    vg_scaled_growth(o->growth, o->scale), cap_of(j),
-    j->point_cap ? j->point_cap : o->cap, o->across, j->given->tri_patch,
-    o->stop }, err));
+  VG_TRY(vg_sizes_make(&j->ref, &j->curves,
+                       &(struct vg_sizes_options){
+                         o->per_turn / o->scale,
+                         CHORD * j->jag * o->scale * o->scale, o->scale,
+                         j->r.h_min, j->r.h_max, NOISE * o->accuracy * o->scale,
+                         vg_scaled_growth(o->growth, o->scale), cap_of(j),
+                         j->point_cap ? j->point_cap : o->cap, o->across,
+                         j->given->tri_patch, o->stop },
+                       err));
 done:
   return st;
 }
@@ -192,14 +200,14 @@ static vg_status extend_stretch(struct vg_remesh_job *j, struct vg_error *err)
 
 /* Where strips are closed, lines are found again without them. */
 static vg_status close_strips(struct vg_remesh_job *j,
-                              struct vg_curves_options *c,
-                              struct vg_error *err)
+                              struct vg_curves_options *c, struct vg_error *err)
 {
   vg_status st;
 
   VG_TRY(vg_strips_find(&j->ref, &j->curves, j->given,
-    &(struct vg_strips_options){ j->r.tolerance, j->o->across, c },
-    &j->strips, err));
+                        &(struct vg_strips_options){ j->r.tolerance,
+                                                     j->o->across, c },
+                        &j->strips, err));
   if (!j->strips.n) goto done;
   VG_TRY(extend_caps(j, err));
   VG_TRY(extend_stretch(j, err));
@@ -231,8 +239,10 @@ vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
                                struct vg_error *err)
 {
   const struct vg_remesh_options *o = j->o;
-  struct vg_curves_options c = { o->ridge_angle, j->jag, j->whole->tri_patch,
-    j->whole->patch, o->hard, o->stretch, NULL };
+  struct vg_curves_options c = {
+    o->ridge_angle, j->jag, j->whole->tri_patch, j->whole->patch, o->hard,
+    o->stretch,     NULL
+  };
   vg_status st;
 
   VG_TRY(find_lines(j, &c, err));
@@ -271,7 +281,7 @@ static vg_status adopt(struct vg_remesh_job *j, struct vg_mesh *m,
     of_tri[t] = j->cap[tri_from[t]];
   for (size_t h = 0; stretch && h < n; h++) {
     const uint32_t from = half_from ? half_from[h]
-                          : 3 * tri_from[h / 3] + (uint32_t)(h % 3);
+                                    : 3 * tri_from[h / 3] + (uint32_t)(h % 3);
 
     if (from != VG_REF_NONE) stretch[h] = j->o->stretch[from];
   }
@@ -296,14 +306,18 @@ done:
 static vg_status clean(struct vg_remesh_job *j, struct vg_error *err)
 {
   const struct vg_remesh_options *o = j->o;
-  const struct vg_curves_options lines = { o->ridge_angle, j->jag,
-    j->whole->tri_patch, j->whole->patch, o->hard, NULL, NULL };
+  const struct vg_curves_options lines = {
+    o->ridge_angle, j->jag, j->whole->tri_patch, j->whole->patch, o->hard,
+    NULL,           NULL
+  };
   struct vg_clean c = VG_CLEAN_INIT;
   double *cap = NULL;
   vg_status st;
 
-  VG_TRY(vg_clean_find(j->whole, &(struct vg_clean_options){ j->r.tolerance,
-    &lines, o->threads, o->stop }, &c, err));
+  VG_TRY(vg_clean_find(j->whole,
+                       &(struct vg_clean_options){ j->r.tolerance, &lines,
+                                                   o->threads, o->stop },
+                       &c, err));
   j->r.n_clean = c.n_collapse;
   memcpy(j->r.n_crossing, c.n_crossing, sizeof c.n_crossing);
   j->r.crossing_depth = c.depth;
@@ -349,8 +363,9 @@ static size_t count_pieces(const struct vg_remesh_job *j, uint16_t *n)
     uint32_t from = j->strips.n ? j->strips.half_from[h] : h;
     int k;
 
-    if (!j->curves.line[h] || (g != VG_REF_NONE && g < h)
-        || from == VG_REF_NONE) continue;
+    if (!j->curves.line[h] || (g != VG_REF_NONE && g < h) ||
+        from == VG_REF_NONE)
+      continue;
     k = pieces(j, h);
     if (k <= n[from] || k < 2) continue;
     sum++;

@@ -7,15 +7,15 @@
 #include "core/remesh/remesh.h"
 #include "core/remesh/strips.h"
 
-#define VG_JOB_RELATIVE 0.05  /* of the size: tolerance */
+#define VG_JOB_RELATIVE 0.05 /* of the size: tolerance */
 
 struct vg_remesh_job {
-  const struct vg_mesh *whole;  /* as given, or without its small faults */
-  const struct vg_mesh *given;  /* the same, or with strips that are closed */
+  const struct vg_mesh *whole; /* as given, or without its small faults */
+  const struct vg_mesh *given; /* the same, or with strips that are closed */
   const struct vg_remesh_options *o;
-  struct vg_remesh_options own;  /* of the surface without faults */
+  struct vg_remesh_options own; /* of the surface without faults */
   double *own_cap, *own_stretch;
-  struct vg_mesh base;      /* that of `whole`, once changed */
+  struct vg_mesh base; /* that of `whole`, once changed */
   struct vg_remesh_report r;
   struct vg_ref ref;
   struct vg_curves curves;
@@ -29,18 +29,18 @@ struct vg_remesh_job {
                                0: no outer boundary */
   struct vg_source *source; /* those of the options, then spots */
   size_t n_source, cap_source;
-  uint8_t *keep;            /* [whole->n_point] corners of given triangles that
-                               stay as they are; NULL: none. Strips are then
-                               not closed */
-  size_t n_keep;            /* such points */
-  int is_all_kept;          /* there is nothing more to keep where triangles
-                               meet */
-  size_t n_flat;            /* edges of flat triangles that were swapped */
-  size_t n_fault[2];        /* intersections of the new surface, last time and
-                               now */
-  int is_cut;               /* long edges of lines are cut */
-  int no_cuts;              /* they are not to be cut any more */
-  int looks;                /* nothing is changed */
+  uint8_t *keep;     /* [whole->n_point] corners of given triangles that
+                        stay as they are; NULL: none. Strips are then
+                        not closed */
+  size_t n_keep;     /* such points */
+  int is_all_kept;   /* there is nothing more to keep where triangles
+                        meet */
+  size_t n_flat;     /* edges of flat triangles that were swapped */
+  size_t n_fault[2]; /* intersections of the new surface, last time and
+                        now */
+  int is_cut;        /* long edges of lines are cut */
+  int no_cuts;       /* they are not to be cut any more */
+  int looks;         /* nothing is changed */
 };
 
 /** Settle lengths and sources, and build the reference. VG_ERR_INPUT for a
@@ -66,8 +66,8 @@ void vg_job_release(struct vg_remesh_job *j);
 /* --- faults of the given surface and the new one (clean.c, flat.c) ------- */
 
 struct vg_clean_options {
-  double tolerance;         /* largest distance between the surfaces */
-  const struct vg_curves_options *lines;  /* which edges are hard */
+  double tolerance; /* largest distance between the surfaces */
+  const struct vg_curves_options *lines; /* which edges are hard */
   int threads;
   struct vg_stop stop;
 };
@@ -75,21 +75,24 @@ struct vg_clean_options {
 /* The reference without its small faults. Points and triangles keep their
  * order. */
 struct vg_clean {
-  struct vg_mesh mesh;      /* empty: nothing was changed */
-  uint32_t *point_from;     /* [mesh.n_point] number before */
-  uint32_t *tri_from;       /* [mesh.n_tri] the same; corners keep their
-                               places */
-  size_t n_swap;            /* longest edges of flat triangles that were
-                               swapped */
-  size_t n_flap;            /* pairs of opposite triangles on the same points
-                               that were dropped */
-  size_t n_collapse;        /* edges that were collapsed */
-  size_t n_crossing[2];     /* pairs of triangles that intersect each other,
-                               before and after */
-  double depth, at[3];      /* the deepest such pair before: how far the two
-                               triangles reach through each other, and where */
+  struct vg_mesh mesh;  /* empty: nothing was changed */
+  uint32_t *point_from; /* [mesh.n_point] number before */
+  uint32_t *tri_from;   /* [mesh.n_tri] the same; corners keep their
+                           places */
+  size_t n_swap;        /* longest edges of flat triangles that were
+                           swapped */
+  size_t n_flap;        /* pairs of opposite triangles on the same points
+                           that were dropped */
+  size_t n_collapse;    /* edges that were collapsed */
+  size_t n_crossing[2]; /* pairs of triangles that intersect each other,
+                           before and after */
+  double depth, at[3];  /* the deepest such pair before: how far the two
+                           triangles reach through each other, and where */
 };
-#define VG_CLEAN_INIT { .mesh = VG_MESH_INIT }
+#define VG_CLEAN_INIT                                                          \
+  {                                                                            \
+    .mesh = VG_MESH_INIT                                                       \
+  }
 
 /** Repair a surface that has faults, as far as the tolerance hides it. Thin
  * triangles that lie back to back are dropped. Edges far below the tolerance
@@ -109,10 +112,10 @@ vg_status vg_clean_find(const struct vg_mesh *m,
 void vg_clean_release(struct vg_clean *c);
 
 struct vg_flat_limit {
-  double height;            /* largest height of a triangle that is flat */
-  double far;               /* longer edges are on an outer boundary, where
-                               the height is a share of the edge; 0: there is
-                               none */
+  double height; /* largest height of a triangle that is flat */
+  double far;    /* longer edges are on an outer boundary, where
+                    the height is a share of the edge; 0: there is
+                    none */
 };
 
 /** Swap the longest edge of triangles whose three corners are nearly on a line.

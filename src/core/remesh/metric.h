@@ -13,10 +13,10 @@
 #include "core/geometry/vector.h"
 
 struct vg_metric {
-  double size;              /* least of all directions */
-  double form[6];           /* xx, yy, zz, xy, yz, zx; its largest eigenvalue is
-                               1. An edge e is as long as asked where e form e
-                               is the squared size */
+  double size;    /* least of all directions */
+  double form[6]; /* xx, yy, zz, xy, yz, zx; its largest eigenvalue is
+                     1. An edge e is as long as asked where e form e
+                     is the squared size */
 };
 
 /** a form b. */
@@ -24,10 +24,10 @@ static inline double vg_form_dot(const double *form, const double a[3],
                                  const double b[3])
 {
   if (!form) return vg_dot(a, b);
-  return form[0] * a[0] * b[0] + form[1] * a[1] * b[1] + form[2] * a[2] * b[2]
-         + form[3] * (a[0] * b[1] + a[1] * b[0])
-         + form[4] * (a[1] * b[2] + a[2] * b[1])
-         + form[5] * (a[2] * b[0] + a[0] * b[2]);
+  return form[0] * a[0] * b[0] + form[1] * a[1] * b[1] + form[2] * a[2] * b[2] +
+         form[3] * (a[0] * b[1] + a[1] * b[0]) +
+         form[4] * (a[1] * b[2] + a[2] * b[1]) +
+         form[5] * (a[2] * b[0] + a[0] * b[2]);
 }
 
 static inline double vg_form_norm(const double *form, const double a[3])
@@ -43,12 +43,12 @@ static inline double vg_form_area2(const double *form, const double n[3])
 
   if (!f) return vg_dot(n, n);
   /* by the cofactors */
-  return (f[1] * f[2] - f[4] * f[4]) * n[0] * n[0]
-         + (f[0] * f[2] - f[5] * f[5]) * n[1] * n[1]
-         + (f[0] * f[1] - f[3] * f[3]) * n[2] * n[2]
-         + 2 * ((f[4] * f[5] - f[3] * f[2]) * n[0] * n[1]
-                + (f[3] * f[5] - f[4] * f[0]) * n[1] * n[2]
-                + (f[3] * f[4] - f[5] * f[1]) * n[2] * n[0]);
+  return (f[1] * f[2] - f[4] * f[4]) * n[0] * n[0] +
+         (f[0] * f[2] - f[5] * f[5]) * n[1] * n[1] +
+         (f[0] * f[1] - f[3] * f[3]) * n[2] * n[2] +
+         2 * ((f[4] * f[5] - f[3] * f[2]) * n[0] * n[1] +
+              (f[3] * f[5] - f[4] * f[0]) * n[1] * n[2] +
+              (f[3] * f[4] - f[5] * f[1]) * n[2] * n[0]);
 }
 
 /** Square of the sine of the smallest angle of a triangle, as measured by the

@@ -11,20 +11,22 @@
 #include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
 
-#define ANGLE2 0.0669873  /* (sin 15 degrees)^2: no collapse below */
-#define FINE2 0.45        /* (sin 42 degrees)^2: good enough */
+#define ANGLE2 0.0669873 /* (sin 15 degrees)^2: no collapse below */
+#define FINE2 0.45       /* (sin 42 degrees)^2: good enough */
 #define ROUNDS 12
 /* S72: another round of collapses follows if one in 8 of the short edges
  * collapsed, another round of swaps after one swap in 200 hundred triangles. */
 #define COLLAPSED_OF 8
 #define SWAPPED_OF 200
-#define GIVEN_WITHIN 0.02 /* S73: of a step: a given point stays in its place */
-#define LONGEST 0.999     /* S74: of the length: sides that are no longer */
+#define GIVEN_WITHIN                                                           \
+  0.02                /* S73: of a step: a given point stays in its place      \
+                       */
+#define LONGEST 0.999 /* S74: of the length: sides that are no longer */
 /* S75: smoothing. The weight of a triangle is 1 over its shape and this. */
 #define SHAPE_FLOOR 0.05
-#define STEP_GOOD 0.1     /* of the size: least step among good triangles */
-#define STEP_BAD 0.02     /* and where one of them is not good */
-#define SHAPE_GAIN 0.02   /* of 1 - worst shape: least gain there */
+#define STEP_GOOD 0.1   /* of the size: least step among good triangles */
+#define STEP_BAD 0.02   /* and where one of them is not good */
+#define SHAPE_GAIN 0.02 /* of 1 - worst shape: least gain there */
 
 /* --- curves -------------------------------------------------------------- */
 
@@ -71,8 +73,7 @@ static uint32_t half_of(const struct vg_tris *w, uint32_t i)
 
     for (size_t j = 0; j < n; j++) {
       if (w->edge[ring[j]] == i + 1) return ring[j];
-      if (w->edge[vg_half_prev(ring[j])] == i + 1)
-        return vg_half_prev(ring[j]);
+      if (w->edge[vg_half_prev(ring[j])] == i + 1) return vg_half_prev(ring[j]);
     }
   }
   return VG_REF_NONE;
@@ -81,14 +82,14 @@ static uint32_t half_of(const struct vg_tris *w, uint32_t i)
 /* Where curve i is to be divided, by the sizes along it. */
 struct steps {
   size_t n;
-  double *s;                /* [n + 1] */
+  double *s; /* [n + 1] */
   vg_status st;
   struct vg_error err;
 };
 
 struct dividing {
   const struct vg_tris *w;
-  struct steps *of;         /* [n_curve] */
+  struct steps *of; /* [n_curve] */
 };
 
 static int is_loop(const struct vg_tris *w, size_t i)
@@ -134,7 +135,7 @@ static void divide(struct vg_tris *w, const struct steps *of, uint32_t first,
       uint32_t n_line = (uint32_t)w->n_line;
 
       m = vg_tris_split(w, h, &s[k]);
-      if (m != VG_REF_NONE) cur = n_line;   /* the second half */
+      if (m != VG_REF_NONE) cur = n_line; /* the second half */
     }
     if (m != VG_REF_NONE) w->point[m].goes = 0;
   }
@@ -194,8 +195,9 @@ void vg_pass_curves(struct vg_tris *w)
   for (int round = 0; n && round < 4; round++) {
     n = 0;
     for (uint32_t p = 0; p < w->n_point && !w->ends; p++)
-      if (w->point[p].goes && w->point[p].half != VG_REF_NONE
-          && w->point[p].kind == VG_WORK_CURVE) n += (size_t)take_away(w, p);
+      if (w->point[p].goes && w->point[p].half != VG_REF_NONE &&
+          w->point[p].kind == VG_WORK_CURVE)
+        n += (size_t)take_away(w, p);
     n += vg_pass_swap(w);
   }
 }
@@ -239,8 +241,7 @@ static vg_status edges_by_ratio(struct vg_tris *w, int look, double lo,
 
     for (int k = 0; k < 3; k++)
       is_new[k] = w->point[w->tri[t][k]].changed > since;
-    if (!(is_new[0] | is_new[1] | is_new[2]) || vg_tris_removed(w, t))
-      continue;
+    if (!(is_new[0] | is_new[1] | is_new[2]) || vg_tris_removed(w, t)) continue;
     for (uint32_t k = 0; k < 3; k++)
       if (is_new[k] || is_new[(k + 1) % 3])
         failed |= list_edge(w, 3 * t + k, lo, hi, falls, &l);
@@ -267,8 +268,8 @@ static int try_collapse(struct vg_tris *w, uint32_t h, double most)
       g = k;
     }
   }
-  return vg_tris_collapse(w, h, most, ANGLE2)
-         || (g != VG_REF_NONE && vg_tris_collapse(w, g, most, ANGLE2));
+  return vg_tris_collapse(w, h, most, ANGLE2) ||
+         (g != VG_REF_NONE && vg_tris_collapse(w, g, most, ANGLE2));
 }
 
 vg_status vg_pass_collapse(struct vg_tris *w, double least, double most,
@@ -308,8 +309,9 @@ static int is_longest(const struct vg_tris *w, uint32_t h)
 
   for (int side = 0; side < 2; side++, h = w->mate[h]) {
     if (h == VG_REF_NONE) break;
-    if (vg_tris_ratio(w, vg_half_next(h)) > l
-        || vg_tris_ratio(w, vg_half_prev(h)) > l) return 0;
+    if (vg_tris_ratio(w, vg_half_next(h)) > l ||
+        vg_tris_ratio(w, vg_half_prev(h)) > l)
+      return 0;
   }
   return 1;
 }
@@ -331,8 +333,9 @@ vg_status vg_pass_split(struct vg_tris *w, double most, int across, size_t *n,
     for (size_t i = 0; i < n_key && !w->ends; i++) {
       uint32_t h = key[i].index;
 
-      if (vg_tris_removed(w, h / 3) || vg_tris_ratio(w, h) <= most
-          || (across && !is_longest(w, h))) continue;
+      if (vg_tris_removed(w, h / 3) || vg_tris_ratio(w, h) <= most ||
+          (across && !is_longest(w, h)))
+        continue;
       done += vg_tris_split(w, h, NULL) != VG_REF_NONE;
     }
     *n += done;
@@ -360,8 +363,9 @@ size_t vg_pass_swap(struct vg_tris *w)
       for (uint32_t h = 3 * t; h < 3 * t + 3; h++) {
         uint32_t g = w->mate[h];
 
-        if (g == VG_REF_NONE || w->edge[h]
-            || (g < h && w->stamp[g / 3] > before)) continue;
+        if (g == VG_REF_NONE || w->edge[h] ||
+            (g < h && w->stamp[g / 3] > before))
+          continue;
         now += (size_t)vg_tris_swap(w, h);
       }
     }
@@ -427,11 +431,12 @@ static int smooth_point(struct vg_tris *w, uint32_t p)
 
     for (int k = 0; k < 3; k++) y[k] = o[k] + step * (x[k] - o[k]);
     vg_sub(y, o, d);
-    if (vg_form_norm(vg_tris_form(w, p), d)
-        < (worst > FINE2 ? STEP_GOOD : STEP_BAD) * w->point[p].asked.size)
+    if (vg_form_norm(vg_tris_form(w, p), d) <
+        (worst > FINE2 ? STEP_GOOD : STEP_BAD) * w->point[p].asked.size)
       return 0;
-    if (vg_tris_move(w, p, y, worst > FINE2 ? worst
-                     : worst + SHAPE_GAIN * (1 - worst))) return 1;
+    if (vg_tris_move(w, p, y,
+                     worst > FINE2 ? worst : worst + SHAPE_GAIN * (1 - worst)))
+      return 1;
   }
   return 0;
 }
@@ -443,7 +448,7 @@ size_t vg_pass_smooth(struct vg_tris *w, int sweeps)
   assert(sweeps >= 0);
   for (int i = 0; i < sweeps; i++)
     for (uint32_t p = 0; p < w->n_point && !w->ends; p++)
-      if (w->point[p].half != VG_REF_NONE
-          && w->point[p].kind == VG_WORK_FACE) n += (size_t)smooth_point(w, p);
+      if (w->point[p].half != VG_REF_NONE && w->point[p].kind == VG_WORK_FACE)
+        n += (size_t)smooth_point(w, p);
   return n;
 }

@@ -9,22 +9,22 @@
 
 #include "core/geometry/vector.h"
 
-#define LONGEST 1.7       /* sizes: longer edges come from no collapse */
-#define MOST 16           /* triangles around a point that is moved */
-#define STEP 0.2          /* of the size: the first of a search */
-#define LEAST 0.01        /* the last */
-#define GAIN 1.01         /* of a move, in squares of sines, around the point */
-#define BETTER 1.01       /* of the triangle */
+#define LONGEST 1.7 /* sizes: longer edges come from no collapse */
+#define MOST 16     /* triangles around a point that is moved */
+#define STEP 0.2    /* of the size: the first of a search */
+#define LEAST 0.01  /* the last */
+#define GAIN 1.01   /* of a move, in squares of sines, around the point */
+#define BETTER 1.01 /* of the triangle */
 
 /* A point and those around it. */
 struct ring {
-  size_t n;                 /* triangles */
+  size_t n; /* triangles */
   int is_stretched;
   uint32_t half[VG_WORK_RING];
-  const struct vg_tris_point *at[MOST + 1];   /* the first one again at the
-                                                 end, but on a rim */
-  double form[MOST][6];     /* of the triangles, where edges are stretched */
-  double rim2[MOST];        /* squared lengths of the edges between them */
+  const struct vg_tris_point *at[MOST + 1]; /* the first one again at the
+                                               end, but on a rim */
+  double form[MOST][6]; /* of the triangles, where edges are stretched */
+  double rim2[MOST];    /* squared lengths of the edges between them */
 };
 
 static const double *form_of(const struct ring *r, size_t i)
@@ -45,8 +45,9 @@ static int take_ring(const struct vg_tris *w, uint32_t p, struct ring *r)
   const double *own = w->point[p].asked.form;
   int open;
 
-  if (w->point[p].kind == VG_WORK_CORNER || w->point[p].frozen
-      || w->point[p].kept) return 0;
+  if (w->point[p].kind == VG_WORK_CORNER || w->point[p].frozen ||
+      w->point[p].kept)
+    return 0;
   r->n = vg_tris_ring(w, p, r->half, &open);
   if (!r->n || r->n > MOST) return 0;
   r->is_stretched = w->form != NULL;
@@ -117,17 +118,17 @@ static int tangents(const struct vg_tris *w, const struct ring *r, uint32_t p,
 /* Where a point is to go, and the least shape around it then; 0: nowhere. */
 struct place {
   uint32_t p;
-  double shape, x[3];       /* of a face */
-  double at;                /* of a curve: length along it */
+  double shape, x[3]; /* of a face */
+  double at;          /* of a curve: length along it */
 };
 
 /* Where the smallest angle is largest, step by step across the normal. */
 static void search_face(const struct vg_tris *w, const struct ring *r,
                         struct place *to)
 {
-  static const double way[8][2] = {
-    { 1, 0 }, { -1, 0 }, { 0, 1 }, { 0, -1 }, { 0.7, 0.7 }, { -0.7, 0.7 },
-    { 0.7, -0.7 }, { -0.7, -0.7 } };
+  static const double way[8][2] = { { 1, 0 },      { -1, 0 },     { 0, 1 },
+                                    { 0, -1 },     { 0.7, 0.7 },  { -0.7, 0.7 },
+                                    { 0.7, -0.7 }, { -0.7, -0.7 } };
   const double size = w->point[to->p].asked.size;
   double u[3], v[3];
 
@@ -176,8 +177,7 @@ static void search_curve(const struct vg_tris *w, const struct ring *r,
   }
 }
 
-static void search_place(const struct vg_tris *w, uint32_t p,
-                         struct place *to)
+static void search_place(const struct vg_tris *w, uint32_t p, struct place *to)
 {
   struct ring r;
   double before;
@@ -204,8 +204,9 @@ static int move_corner(struct vg_tris *w, uint32_t t, double shape)
       if (to[k].shape > best->shape) best = &to[k];
     if (!(best->shape > BETTER * shape)) return 0;
     if (w->point[best->p].kind == VG_WORK_FACE
-        ? vg_tris_move(w, best->p, best->x, 1)
-        : vg_tris_slide(w, best->p, best->at, 1)) return 1;
+          ? vg_tris_move(w, best->p, best->x, 1)
+          : vg_tris_slide(w, best->p, best->at, 1))
+      return 1;
     best->shape = 0;
   }
 }
@@ -241,8 +242,7 @@ static int take_away(struct vg_tris *w, uint32_t p)
 
     if (s > best) best = s, at = i;
   }
-  return at != SIZE_MAX
-         && vg_tris_collapse(w, r.half[at], VG_WORK_LONG, 1);
+  return at != SIZE_MAX && vg_tris_collapse(w, r.half[at], VG_WORK_LONG, 1);
 }
 
 static void sort_edges(const struct vg_tris *w, uint32_t *order)
@@ -272,8 +272,8 @@ static int polish_tri(struct vg_tris *w, uint32_t t)
     uint32_t h = order[k], g = w->mate[h];
 
     if (vg_tris_ratio(w, h) > 1) break;
-    if (vg_tris_collapse(w, h, LONGEST, 1)
-        || (g != VG_REF_NONE && vg_tris_collapse(w, g, LONGEST, 1)))
+    if (vg_tris_collapse(w, h, LONGEST, 1) ||
+        (g != VG_REF_NONE && vg_tris_collapse(w, g, LONGEST, 1)))
       return 1;
   }
   return 0;
@@ -289,7 +289,8 @@ vg_status vg_pass_polish(struct vg_tris *w, double shape, size_t *n,
   *n = 0;
   w->looked[VG_WORK_POLISH] = w->clock;
   for (uint32_t t = 0; t < w->n_tri && !w->ends; t++)
-    if (w->stamp[t] > before && !vg_tris_removed(w, t)
-        && vg_tris_tri_shape(w, t) < shape) *n += (size_t)polish_tri(w, t);
+    if (w->stamp[t] > before && !vg_tris_removed(w, t) &&
+        vg_tris_tri_shape(w, t) < shape)
+      *n += (size_t)polish_tri(w, t);
   return vg_tris_status(w, err);
 }

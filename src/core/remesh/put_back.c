@@ -16,13 +16,15 @@
 #include "core/surface/surface_check.h"
 
 #define GRAIN 1024
-#define TURN 0.5          /* S28: cosine: no triangle turns by more */
-#define SLIVER 0.12       /* (sin 20 degrees)^2: smaller angles may not become
-                             smaller yet by LOSS */
-#define LOSS 0.7          /* of the square of the sine */
-#define TIGHT 3           /* rounds that return the points of meeting triangles
-                             alone; each further round doubles the rings */
-#define ROUNDS 9          /* then all points return */
+#define TURN 0.5 /* S28: cosine: no triangle turns by more */
+#define SLIVER                                                                 \
+  0.12           /* (sin 20 degrees)^2: smaller angles may not become          \
+                    smaller yet by LOSS */
+#define LOSS 0.7 /* of the square of the sine */
+#define TIGHT                                                                  \
+  3              /* rounds that return the points of meeting triangles         \
+                    alone; each further round doubles the rings */
+#define ROUNDS 9 /* then all points return */
 
 /* --- where they are ------------------------------------------------------ */
 
@@ -73,8 +75,8 @@ struct moving {
   struct vg_mesh *m;
   const double (*from)[3];
   uint8_t *stays;
-  uint8_t *ring;            /* [n_point] number of the ring around triangles
-                               that meet, from 1; 0: in none */
+  uint8_t *ring; /* [n_point] number of the ring around triangles
+                    that meet, from 1; 0: in none */
   size_t n_refused;
 };
 
@@ -102,8 +104,9 @@ static void return_rings(struct moving *k, uint8_t n)
     for (size_t t = 0; t < k->m->n_tri; t++) {
       const uint32_t *v = k->m->tri[t];
 
-      if (k->ring[v[0]] != ring && k->ring[v[1]] != ring
-          && k->ring[v[2]] != ring) continue;
+      if (k->ring[v[0]] != ring && k->ring[v[1]] != ring &&
+          k->ring[v[2]] != ring)
+        continue;
       for (int i = 0; i < 3; i++)
         if (!k->ring[v[i]]) k->ring[v[i]] = (uint8_t)(ring + 1);
     }
@@ -123,7 +126,7 @@ static void normal(const double (*x)[3], const uint32_t *v, double n[3])
 static int is_bad(const struct moving *k, size_t t)
 {
   const uint32_t *v = k->m->tri[t];
-  const double (*x)[3] = (const double (*)[3])k->m->point;
+  const double(*x)[3] = (const double(*)[3])k->m->point;
   double before[3], after[3], was, is;
 
   if (k->stays[v[0]] && k->stays[v[1]] && k->stays[v[2]]) return 0;
@@ -149,8 +152,9 @@ static vg_status return_meeting(struct moving *k, int rings, int threads,
                                 const struct vg_stop *stop, size_t *n,
                                 struct vg_error *err)
 {
-  const struct vg_surface_check_options o = { .threads = threads,
-    .stop = stop ? *stop : (struct vg_stop){ NULL, NULL } };
+  const struct vg_surface_check_options o = {
+    .threads = threads, .stop = stop ? *stop : (struct vg_stop){ NULL, NULL }
+  };
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
   vg_status st = vg_surface_check(k->m, &o, &r, err);
 
@@ -160,11 +164,12 @@ static vg_status return_meeting(struct moving *k, int rings, int threads,
     for (int j = 0; j < 2; j++) {
       const size_t f = r.defect[i].face[j];
 
-      if ((r.defect[i].kind != VG_DEFECT_INTERSECTION
-           && r.defect[i].kind != VG_DEFECT_DEGENERATE_TRIANGLE
-           && r.defect[i].kind != VG_DEFECT_NONMANIFOLD_EDGE
-           && r.defect[i].kind != VG_DEFECT_DUPLICATE_TRIANGLE)
-          || f == SIZE_MAX) continue;
+      if ((r.defect[i].kind != VG_DEFECT_INTERSECTION &&
+           r.defect[i].kind != VG_DEFECT_DEGENERATE_TRIANGLE &&
+           r.defect[i].kind != VG_DEFECT_NONMANIFOLD_EDGE &&
+           r.defect[i].kind != VG_DEFECT_DUPLICATE_TRIANGLE) ||
+          f == SIZE_MAX)
+        continue;
       *n += return_corners(k, f);
       for (int c = 0; c < 3; c++) k->ring[k->m->tri[f][c]] = 1;
     }
@@ -181,8 +186,8 @@ vg_status vg_remesh_put_back(struct vg_mesh *m, const double (*to)[3],
   assert((to && stays) || !m->n_point);
   assert(n_refused && threads >= 0);
 
-  double (*from)[3] = vg_alloc(m->n_point, sizeof *from);
-  struct moving k = { m, (const double (*)[3])from, stays,
+  double(*from)[3] = vg_alloc(m->n_point, sizeof *from);
+  struct moving k = { m, (const double(*)[3])from, stays,
                       vg_alloc(m->n_point, 1), 0 };
   size_t n = 1;
   vg_status st = VG_OK;

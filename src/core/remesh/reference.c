@@ -9,12 +9,13 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-#define FLAT 1e-9         /* height over edge, below which a normal is noise */
-#define PIECE 2.0         /* mean edges, about: longer triangles are cut up */
-#define PIECES 64         /* at most */
-#define GRAIN 256         /* leaves */
-#define OPPOSED 0.03      /* cosine: both may be taken to face a way and its
-                             opposite, by S22 */
+#define FLAT 1e-9 /* height over edge, below which a normal is noise */
+#define PIECE 2.0 /* mean edges, about: longer triangles are cut up */
+#define PIECES 64 /* at most */
+#define GRAIN 256 /* leaves */
+#define OPPOSED                                                                \
+  0.03 /* cosine: both may be taken to face a way and its                      \
+          opposite, by S22 */
 
 /* --- building ------------------------------------------------------------ */
 
@@ -24,7 +25,8 @@ static vg_status refuse(const struct vg_ref *r, uint32_t h, const char *what,
   const uint32_t a = vg_ref_from(r, h), b = vg_ref_to(r, h);
   const double *x = r->point[a < b ? a : b];
 
-  return vg_fail(err, VG_ERR_INPUT, "triangle %zu of the surface, at (%g, %g, "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "triangle %zu of the surface, at (%g, %g, "
                  "%g): %s; vanguard check names all such places",
                  (size_t)h / 3 + 1, x[0], x[1], x[2], what);
 }
@@ -38,8 +40,7 @@ static vg_status find_mates(struct vg_ref *r, struct vg_error *err)
   for (size_t i = 0; i < e.n && st >= 0; i++) {
     const uint32_t n = vg_edges_count(&e, i), *h = vg_edges_at(&e, i);
 
-    if (n > 2)
-      st = refuse(r, h[0], "an edge of it has three triangles", err);
+    if (n > 2) st = refuse(r, h[0], "an edge of it has three triangles", err);
     if (n != 2) continue;
     if (vg_edges_disagree(&e, r->tri, i))
       st = refuse(r, h[0], "it is turned the other way than its neighbour",
@@ -51,8 +52,8 @@ static vg_status find_mates(struct vg_ref *r, struct vg_error *err)
   return st;
 }
 
-void vg_ref_tri_make(struct vg_ref_tri *t, const double a[3],
-                     const double b[3], const double c[3])
+void vg_ref_tri_make(struct vg_ref_tri *t, const double a[3], const double b[3],
+                     const double c[3])
 {
   memcpy(t->a, a, sizeof t->a);
   vg_sub(b, a, t->u);
@@ -132,8 +133,8 @@ static struct vg_box box_piece(const struct vg_ref *r, size_t t, int edge,
       if (!((s[k] - cut) * (s[m] - cut) < 0)) continue;
       u = (cut - s[k]) / (s[m] - s[k]);
       for (int d = 0; d < 3; d++)
-        x[d] = r->point[r->tri[t][k]][d]
-               + u * (r->point[r->tri[t][m]][d] - r->point[r->tri[t][k]][d]);
+        x[d] = r->point[r->tri[t][k]][d] +
+               u * (r->point[r->tri[t][m]][d] - r->point[r->tri[t][k]][d]);
       vg_box_add(&b, x);
     }
   return b;
@@ -157,8 +158,8 @@ static vg_status make_pieces(const struct vg_ref *r, struct pieces *p,
     double parts = ceil(longest_edge(r, t, &edge) / step);
     int k = parts > 1 ? parts < PIECES ? (int)parts : PIECES : 1;
 
-    if (vg_reserve(&p->box, &p->cap_box, p->n + (size_t)k, sizeof *p->box)
-        || vg_reserve(&p->tri, &p->cap_tri, p->n + (size_t)k, sizeof *p->tri))
+    if (vg_reserve(&p->box, &p->cap_box, p->n + (size_t)k, sizeof *p->box) ||
+        vg_reserve(&p->tri, &p->cap_tri, p->n + (size_t)k, sizeof *p->tri))
       return vg_fail_memory(err, "the tree of the surface");
     for (int i = 0; i < k; i++) {
       p->box[p->n] = box_piece(r, t, edge, i ? (double)i / k : -1,
@@ -242,9 +243,10 @@ static vg_status set_faces(struct vg_ref *r, const struct vg_mesh *m,
                            int with_mates, const struct vg_stop *stop,
                            struct vg_error *err)
 {
-  struct vg_ref made = { .n_point = m->n_point, .n_tri = m->n_tri,
-    .point = (const double (*)[3])m->point,
-    .tri = (const uint32_t (*)[3])m->tri };
+  struct vg_ref made = { .n_point = m->n_point,
+                         .n_tri = m->n_tri,
+                         .point = (const double(*)[3])m->point,
+                         .tri = (const uint32_t(*)[3])m->tri };
   vg_status st = VG_OK;
 
   if (with_mates) made.mate = vg_alloc(3 * m->n_tri, sizeof *made.mate);
@@ -346,8 +348,8 @@ static int apart(const struct vg_ref_tri *a, const struct vg_ref_tri *b,
   o = vg_dot(d, a->n);
   u = o + vg_dot(b->u, a->n);
   v = o + vg_dot(b->v, a->n);
-  return (o > distance && u > distance && v > distance)
-         || (o < -distance && u < -distance && v < -distance);
+  return (o > distance && u > distance && v > distance) ||
+         (o < -distance && u < -distance && v < -distance);
 }
 
 static int boxes_apart(const struct vg_ref_tri *a, const struct vg_ref_tri *b,
@@ -372,10 +374,10 @@ static int opposes(const struct vg_ref *r, uint32_t t, uint32_t u,
   const struct vg_ref_tri *a = &r->shape[t], *b = &r->shape[u];
   const double c = vg_dot(a->n, b->n);
 
-  return t != u && (c < OPPOSED || vg_dot(a->n, a->n) == 0
-                    || vg_dot(b->n, b->n) == 0)
-         && !apart(a, b, distance) && !apart(b, a, distance)
-         && !boxes_apart(a, b, distance);
+  return t != u &&
+         (c < OPPOSED || vg_dot(a->n, a->n) == 0 || vg_dot(b->n, b->n) == 0) &&
+         !apart(a, b, distance) && !apart(b, a, distance) &&
+         !boxes_apart(a, b, distance);
 }
 
 static int is_outer(const struct thinning *c, uint32_t t)
@@ -403,8 +405,7 @@ static void thin_leaf(const struct thinning *c, size_t leaf, double distance,
   size_t first = vg_box_tree_first(&r->tree, node);
 
   if (as == VG_REF_THIN_FAR)
-    while (first < end && !is_outer(c, item[first]))
-      mark(c, item[first++], as);
+    while (first < end && !is_outer(c, item[first])) mark(c, item[first++], as);
   if (first == end) return;
   n = vg_ref_around(r, vg_box_tree_node(&r->tree, node), distance, cap, near);
   for (size_t i = first; i < end; i++) {

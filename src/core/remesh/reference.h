@@ -14,23 +14,23 @@
 #include "core/search/box_tree.h"
 
 #define VG_REF_NONE UINT32_MAX
-#define VG_REF_GROUP 8    /* points that are asked for at once */
+#define VG_REF_GROUP 8 /* points that are asked for at once */
 
 enum { VG_REF_STRIP = 1, VG_REF_CLOSED };
 enum { VG_REF_THIN = 1, VG_REF_THIN_FAR = 2 };
 
 struct vg_ref_tri {
-  double a[3], u[3], v[3];  /* a corner, the edges from there */
-  double n[3];              /* unit normal; 0: too flat to have one */
-  double uu, uv, vv;        /* their products */
-  double far;               /* of the points, from the corner */
+  double a[3], u[3], v[3]; /* a corner, the edges from there */
+  double n[3];             /* unit normal; 0: too flat to have one */
+  double uu, uv, vv;       /* their products */
+  double far;              /* of the points, from the corner */
 };
 
-struct vg_ref_node {        /* of the tree of boxes */
+struct vg_ref_node { /* of the tree of boxes */
   struct vg_box box;
-  double size;              /* least below */
-  int8_t normal[2][3];      /* the box of the normals below, outward to whole
-                               numbers of VG_REF_NORMAL */
+  double size;         /* least below */
+  int8_t normal[2][3]; /* the box of the normals below, outward to whole
+                          numbers of VG_REF_NORMAL */
 };
 #define VG_REF_NORMAL 127
 
@@ -52,7 +52,10 @@ struct vg_ref {
   struct vg_box_tree tree;  /* of struct vg_ref_node; its items are triangles,
                                long ones in pieces, more than once */
 };
-#define VG_REF_INIT { 0 }
+#define VG_REF_INIT                                                            \
+  {                                                                            \
+    0                                                                          \
+  }
 
 static inline struct vg_ref_node *vg_ref_node(const struct vg_ref *r, size_t i)
 {
@@ -113,15 +116,14 @@ void vg_ref_release(struct vg_ref *r);
 /** Is a triangle that faces the way of n (a unit vector; NULL: any) within
  * the distance of x? *hint: one to begin with, from which neighbours are
  * tried before the tree; out: the one found, at the squared distance *d2. */
-int vg_ref_within(const struct vg_ref *r, const double x[3],
-                  const double n[3], double distance, uint32_t *hint,
-                  double *d2);
+int vg_ref_within(const struct vg_ref *r, const double x[3], const double n[3],
+                  double distance, uint32_t *hint, double *d2);
 
 /** Is the segment from a, which is on the surface, to b farther than that from
- * one of the edges below it, as it is followed from triangle to triangle? x out:
- * where. Two surfaces of triangles are farthest from each other at points of
- * one of them, or where their edges cross. hint: a triangle near a. 0 where it
- * cannot be followed: beyond a rim, and where no triangle faces the way of
+ * one of the edges below it, as it is followed from triangle to triangle? x
+ * out: where. Two surfaces of triangles are farthest from each other at points
+ * of one of them, or where their edges cross. hint: a triangle near a. 0 where
+ * it cannot be followed: beyond a rim, and where no triangle faces the way of
  * n. */
 int vg_ref_leaves(const struct vg_ref *r, const double a[3], const double b[3],
                   const double n[3], double distance, uint32_t hint,
@@ -167,8 +169,8 @@ size_t vg_ref_around(const struct vg_ref *r, const struct vg_box *box,
                      double distance, size_t cap, uint32_t *tri);
 
 /** All of a triangle but its normal. */
-void vg_ref_tri_make(struct vg_ref_tri *t, const double a[3],
-                     const double b[3], const double c[3]);
+void vg_ref_tri_make(struct vg_ref_tri *t, const double a[3], const double b[3],
+                     const double c[3]);
 
 /** Barycentric coordinates (of u and v) of the point of a triangle that is
  * nearest to x; returns the squared distance. */

@@ -6,11 +6,11 @@
 
 #include "core/geometry/vector.h"
 
-#define FACING 0.7        /* S22: cosine between what faces the same way */
-#define WALK 24           /* triangles that are tried before the tree */
-#define FOLLOW 64         /* S30: triangles that an edge is followed over */
-#define START 1e-6        /* of the squared distance: its start is found */
-#define AROUND 48         /* leaves around points that are asked for at once */
+#define FACING 0.7 /* S22: cosine between what faces the same way */
+#define WALK 24    /* triangles that are tried before the tree */
+#define FOLLOW 64  /* S30: triangles that an edge is followed over */
+#define START 1e-6 /* of the squared distance: its start is found */
+#define AROUND 48  /* leaves around points that are asked for at once */
 
 static double clamp(double x)
 {
@@ -60,8 +60,7 @@ double vg_ref_tri_nearest(const struct vg_ref_tri *t, const double x[3],
     b /= det;
   } else {
     const int flat = !(det > 0);
-    const int beyond[3] = { b < 0 || flat, a < 0 || flat,
-                            a + b > det || flat };
+    const int beyond[3] = { b < 0 || flat, a < 0 || flat, a + b > det || flat };
     double best = INFINITY, p, q, e2;
 
     a = b = 0;
@@ -145,17 +144,18 @@ static double walk(const struct vg_ref *r, const double x[3], const double *n,
 struct finding {
   const struct vg_ref *r;
   const double *x, *n;
-  double best;              /* squared distance: limit, or of `at` */
-  double s, q;              /* barycentric coordinates of the point found */
-  uint32_t at;              /* the triangle found, VG_REF_NONE: none yet */
+  double best; /* squared distance: limit, or of `at` */
+  double s, q; /* barycentric coordinates of the point found */
+  uint32_t at; /* the triangle found, VG_REF_NONE: none yet */
 };
 
 static inline int enter_within(void *context, size_t node)
 {
   const struct finding *f = context;
 
-  return vg_box_distance2(vg_box_tree_node(&f->r->tree, node), f->x) <= f->best
-         && may_face(f->r, node, f->n);
+  return vg_box_distance2(vg_box_tree_node(&f->r->tree, node), f->x) <=
+           f->best &&
+         may_face(f->r, node, f->n);
 }
 
 static inline int find_within(void *context, size_t node)
@@ -178,9 +178,8 @@ static inline int find_within(void *context, size_t node)
   return 0;
 }
 
-int vg_ref_within(const struct vg_ref *r, const double x[3],
-                  const double n[3], double distance, uint32_t *hint,
-                  double *d2)
+int vg_ref_within(const struct vg_ref *r, const double x[3], const double n[3],
+                  double distance, uint32_t *hint, double *d2)
 {
   struct finding f = { r, x, n, distance * distance, 0, 0, VG_REF_NONE };
 
@@ -228,8 +227,8 @@ static inline void find_nearer(void *context, size_t node)
   }
 }
 
-static double search(const struct vg_ref *r, const double x[3],
-                     const double *n, uint32_t *hint, double out[3])
+static double search(const struct vg_ref *r, const double x[3], const double *n,
+                     uint32_t *hint, double out[3])
 {
   struct finding f = { r, x, n, INFINITY, 0, 0, VG_REF_NONE };
 
@@ -243,8 +242,8 @@ static double search(const struct vg_ref *r, const double x[3],
   if (f.at == VG_REF_NONE) return INFINITY;
   *hint = f.at;
   for (int k = 0; k < 3; k++)
-    out[k] = r->shape[f.at].a[k] + f.s * r->shape[f.at].u[k]
-             + f.q * r->shape[f.at].v[k];
+    out[k] = r->shape[f.at].a[k] + f.s * r->shape[f.at].u[k] +
+             f.q * r->shape[f.at].v[k];
   return sqrt(f.best);
 }
 
@@ -289,15 +288,16 @@ int vg_ref_leaves(const struct vg_ref *r, const double a[3], const double b[3],
   assert(distance >= 0 && hint < r->n_tri);
   vg_sub(b, a, e);
   /* On a line the hint may be on its other side. */
-  if (!(walk(r, a, n, START * limit, &t, &s, &q) <= limit)
-      && !(search(r, a, n, &t, x) < INFINITY)) return 0;
+  if (!(walk(r, a, n, START * limit, &t, &s, &q) <= limit) &&
+      !(search(r, a, n, &t, x) < INFINITY))
+    return 0;
   for (int i = 0; i < FOLLOW; i++) {
     uint32_t out = 3, g;
     double end = 1;
 
     weights(&r->shape[t], a, e, f, df);
     for (uint32_t k = 0; k < 3; k++) {
-      const uint32_t c = (k + 2) % 3;   /* opposite edge k */
+      const uint32_t c = (k + 2) % 3; /* opposite edge k */
 
       if (k == entry || !(df[c] < 0) || !(-f[c] > end * df[c])) continue;
       end = -f[c] / df[c];
@@ -336,10 +336,10 @@ double vg_ref_project(const struct vg_ref *r, const double x[3],
 struct around {
   const struct vg_ref *r;
   const struct vg_box *box;
-  double limit;             /* squared distance */
-  size_t n, cap;            /* found so far; the first cap are kept */
-  size_t *leaf;             /* [cap] leaves, or */
-  uint32_t *tri;            /* [cap] triangles */
+  double limit;  /* squared distance */
+  size_t n, cap; /* found so far; the first cap are kept */
+  size_t *leaf;  /* [cap] leaves, or */
+  uint32_t *tri; /* [cap] triangles */
 };
 
 static inline int enter_around(void *context, size_t node)
@@ -450,8 +450,8 @@ double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3])
   const uint32_t *c = r->tri[t];
   double s, q, h, d = sqrt(vg_ref_tri_nearest(&r->shape[t], x, &s, &q));
 
-  h = (1 - s - q) * r->size[c[0]] + s * r->size[c[1]] + q * r->size[c[2]]
-      + r->slope * d;
+  h = (1 - s - q) * r->size[c[0]] + s * r->size[c[1]] + q * r->size[c[2]] +
+      r->slope * d;
   for (int k = 0; k < 3; k++) {
     double own = r->size[c[k]];
 
@@ -480,8 +480,8 @@ static int may_ask(const struct vg_ref *r, uint32_t t, const double x[3],
 struct asking {
   const struct vg_ref *r;
   const double *x;
-  double h;                 /* the least so far */
-  uint32_t by;              /* the triangle that asks for it */
+  double h;    /* the least so far */
+  uint32_t by; /* the triangle that asks for it */
 };
 
 static inline int enter_smaller(void *context, size_t node, double d2)
@@ -587,8 +587,8 @@ static inline int ray_leaf(void *context, size_t node)
 uint32_t vg_ref_ray(const struct vg_ref *r, const double x[3],
                     const double d[3], double most, double *far)
 {
-  struct ray ray = { r, x, d, { 1 / d[0], 1 / d[1], 1 / d[2] }, most,
-                     VG_REF_NONE };
+  struct ray ray = { r,    x,          d, { 1 / d[0], 1 / d[1], 1 / d[2] },
+                     most, VG_REF_NONE };
 
   vg_box_tree_visit(&r->tree, ray_enters, ray_leaf, &ray);
   *far = ray.reach;

@@ -22,22 +22,27 @@
 #include "core/sizing/sizing_source.h"
 #include "core/surface/surface_check.h"
 
-#define ROUNDS 2          /* S31: from the beginning, until triangles no longer
-                             meet; 1 of a reference with faults */
-#define KEEPS 7           /* S48: then, each time keeping the given triangles of
-                             twice as wide a neighbourhood */
-#define MENDS 4           /* in each: more and more triangles where they do */
-#define SPOTS 256         /* of them at a time */
+#define ROUNDS                                                                 \
+  2 /* S31: from the beginning, until triangles no longer                      \
+       meet; 1 of a reference with faults */
+#define KEEPS                                                                  \
+  7               /* S48: then, each time keeping the given triangles of       \
+                     twice as wide a neighbourhood */
+#define MENDS 4   /* in each: more and more triangles where they do */
+#define SPOTS 256 /* of them at a time */
 #define SPOT_LEAST 0.0625 /* S34: of h_min: sizes there */
-#define FLAT 0.1          /* of the tolerance: height of flat triangles that are
-                             swapped at the end */
-#define BAD 0.005         /* S47: of the triangles below VG_REMESH_BAD: more are
-                             worse than small sizes all along an edge */
-#define PHASES 2          /* of blocks, then the whole */
-#define HALVINGS 16       /* of needles, at most */
-#define POLISH2 0.46      /* S21: (sin 42.7 degrees)^2: below, triangles are
-                             polished one by one */
-#define POLISHES 2        /* and once more after the last smoothing */
+#define FLAT                                                                   \
+  0.1 /* of the tolerance: height of flat triangles that are                   \
+         swapped at the end */
+#define BAD                                                                    \
+  0.005             /* S47: of the triangles below VG_REMESH_BAD: more are     \
+                       worse than small sizes all along an edge */
+#define PHASES 2    /* of blocks, then the whole */
+#define HALVINGS 16 /* of needles, at most */
+#define POLISH2                                                                \
+  0.46             /* S21: (sin 42.7 degrees)^2: below, triangles are          \
+                      polished one by one */
+#define POLISHES 2 /* and once more after the last smoothing */
 
 static const char *const cause_names[] = { "corner", "strip", "line",
                                            "surface" };
@@ -58,43 +63,57 @@ void vg_remesh_report_release(struct vg_remesh_report *r)
 static vg_status check_surface(const struct vg_mesh *m, struct vg_error *err)
 {
   if (!m->n_tri || m->n_quad)
-    return vg_fail(err, VG_ERR_INPUT, "a surface of triangles is needed: this "
-                   "has %zu, and %zu quadrilaterals", m->n_tri, m->n_quad);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "a surface of triangles is needed: this "
+                   "has %zu, and %zu quadrilaterals",
+                   m->n_tri, m->n_quad);
   if (m->n_tri > UINT32_MAX / 24)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu triangles are too many to be "
-                   "made anew", m->n_tri);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%zu triangles are too many to be "
+                   "made anew",
+                   m->n_tri);
   for (size_t i = 0; i < m->n_point; i++)
     if (!isfinite(m->point[i][0] + m->point[i][1] + m->point[i][2]))
-      return vg_fail(err, VG_ERR_INPUT, "point %zu of the surface is not "
-                     "finite; repair the surface", i + 1);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "point %zu of the surface is not "
+                     "finite; repair the surface",
+                     i + 1);
   for (size_t i = 0; i < 3 * m->n_tri; i++)
     if (m->tri[i / 3][i % 3] >= m->n_point)
-      return vg_fail(err, VG_ERR_INPUT, "triangle %zu of the surface uses "
-                     "point %zu of %zu; repair the surface", i / 3 + 1,
-                     (size_t)m->tri[i / 3][i % 3] + 1, m->n_point);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "triangle %zu of the surface uses "
+                     "point %zu of %zu; repair the surface",
+                     i / 3 + 1, (size_t)m->tri[i / 3][i % 3] + 1, m->n_point);
   return VG_OK;
 }
 
 static vg_status check_options(const struct vg_remesh_options *o,
                                struct vg_error *err)
 {
-  if (!(o->tolerance >= 0 && o->accuracy >= 0 && o->h_min >= 0
-        && o->h_max >= 0
-        && isfinite(o->tolerance + o->accuracy + o->h_min + o->h_max)))
-    return vg_fail(err, VG_ERR_INPUT, "tolerance %g, accuracy %g and sizes %g, "
+  if (!(o->tolerance >= 0 && o->accuracy >= 0 && o->h_min >= 0 &&
+        o->h_max >= 0 &&
+        isfinite(o->tolerance + o->accuracy + o->h_min + o->h_max)))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "tolerance %g, accuracy %g and sizes %g, "
                    "%g of the new surface must be lengths; 0: by the body",
                    o->tolerance, o->accuracy, o->h_min, o->h_max);
   if (!(o->scale > 0 && o->scale <= 1e4))
-    return vg_fail(err, VG_ERR_INPUT, "scale %g of sizes is out of range (0 "
-                   "to 1e4)", o->scale);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "scale %g of sizes is out of range (0 "
+                   "to 1e4)",
+                   o->scale);
   if (o->h_max > 0 && o->h_min > o->h_max)
-    return vg_fail(err, VG_ERR_INPUT, "smallest size %g is above the largest, "
-                   "%g; exchange them", o->h_min, o->h_max);
-  if (!(o->ridge_angle >= 5 && o->ridge_angle <= 170 && o->per_turn >= 3
-        && o->per_turn <= 1e4 && o->growth > 1 && o->growth <= 10))
-    return vg_fail(err, VG_ERR_INPUT, "ridge angle %g (5 to 170 degrees), %g "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "smallest size %g is above the largest, "
+                   "%g; exchange them",
+                   o->h_min, o->h_max);
+  if (!(o->ridge_angle >= 5 && o->ridge_angle <= 170 && o->per_turn >= 3 &&
+        o->per_turn <= 1e4 && o->growth > 1 && o->growth <= 10))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "ridge angle %g (5 to 170 degrees), %g "
                    "edges per turn (3 to 10000) or growth %g (1 to 10) is out "
-                   "of range", o->ridge_angle, o->per_turn, o->growth);
+                   "of range",
+                   o->ridge_angle, o->per_turn, o->growth);
   return VG_OK;
 }
 
@@ -103,10 +122,11 @@ static vg_status check_stretch(const struct vg_mesh *m, const double *stretch,
 {
   for (size_t h = 0; stretch && h < 3 * m->n_tri; h++)
     if (!(stretch[h] >= 0 && stretch[h] <= VG_REMESH_STRETCH))
-      return vg_fail(err, VG_ERR_INPUT, "edges along edge %zu of triangle %zu "
+      return vg_fail(err, VG_ERR_INPUT,
+                     "edges along edge %zu of triangle %zu "
                      "are to be %g times as long as across it: 1 to %d is "
-                     "possible", h % 3 + 1, h / 3 + 1, stretch[h],
-                     VG_REMESH_STRETCH);
+                     "possible",
+                     h % 3 + 1, h / 3 + 1, stretch[h], VG_REMESH_STRETCH);
   return VG_OK;
 }
 
@@ -157,16 +177,15 @@ done:
 
 /* What is near the border of a block in one phase is inside one in the next;
  * what is near both is left to one thread. */
-static vg_status run(struct vg_remesh_job *j,
-                     struct vg_tris *w, vg_block_body body,
-                     struct vg_error *err)
+static vg_status run(struct vg_remesh_job *j, struct vg_tris *w,
+                     vg_block_body body, struct vg_error *err)
 {
   const size_t n = vg_blocks_number(w);
   vg_status st;
 
   for (int phase = 0; n > 1 && phase < PHASES; phase++)
-    VG_TRY(vg_blocks_run(w, n + (size_t)phase, phase, j->o->threads, body, j,
-                         err));
+    VG_TRY(
+      vg_blocks_run(w, n + (size_t)phase, phase, j->o->threads, body, j, err));
   VG_TRY(body(j, w, err));
 done:
   return st;
@@ -174,8 +193,8 @@ done:
 
 /* Edges are halved everywhere before anything else is done: beside large
  * triangles, where borders are, points would come and go. */
-static vg_status change(struct vg_remesh_job *j,
-                        struct vg_tris *w, struct vg_error *err)
+static vg_status change(struct vg_remesh_job *j, struct vg_tris *w,
+                        struct vg_error *err)
 {
   vg_status st;
 
@@ -195,14 +214,13 @@ static double source_size(const void *user, const double x[3])
 
 static int is_fault(const struct vg_defect *d)
 {
-  return d->kind != VG_DEFECT_OPEN_EDGE && d->kind != VG_DEFECT_SHELL
-         && d->kind != VG_DEFECT_NO_BC;
+  return d->kind != VG_DEFECT_OPEN_EDGE && d->kind != VG_DEFECT_SHELL &&
+         d->kind != VG_DEFECT_NO_BC;
 }
 
 /* Ask for smaller triangles where face f is. */
-static vg_status add_spot(struct vg_remesh_job *j,
-                          const struct vg_mesh *m, size_t f,
-                          struct vg_error *err)
+static vg_status add_spot(struct vg_remesh_job *j, const struct vg_mesh *m,
+                          size_t f, struct vg_error *err)
 {
   struct vg_source s = { .kind = VG_SOURCE_POINT };
   const double *p[3];
@@ -281,22 +299,23 @@ static vg_status refuse(const struct vg_remesh_job *j,
                         const struct vg_defect *d, struct vg_error *err)
 {
   if (j->r.n_crossing[1])
-    return vg_fail(err, VG_ERR_GEOMETRY, "near (%g, %g, %g) the surface "
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "near (%g, %g, %g) the surface "
                    "intersects itself (%s) by more than the new surface's "
                    "tolerance, %g, hides: repair the model there",
                    d->at[0], d->at[1], d->at[2], vg_defect_name(d->kind),
                    j->r.tolerance);
-  return vg_fail(err, VG_ERR_GEOMETRY, "near (%g, %g, %g) new triangles meet "
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "near (%g, %g, %g) new triangles meet "
                  "however small they are (%s): give a smaller "
-                 "surface_tolerance, or mesh the surface as it is", d->at[0],
-                 d->at[1], d->at[2], vg_defect_name(d->kind));
+                 "surface_tolerance, or mesh the surface as it is",
+                 d->at[0], d->at[1], d->at[2], vg_defect_name(d->kind));
 }
 
 /* Whether the new surface is as sound as the one given. If it is not, spots are
  * added there, or, with rings > 0, given triangles are kept. */
-static vg_status is_sound(struct vg_remesh_job *j, struct vg_mesh *m,
-                          int last, double rings, int *sound,
-                          struct vg_error *err)
+static vg_status is_sound(struct vg_remesh_job *j, struct vg_mesh *m, int last,
+                          double rings, int *sound, struct vg_error *err)
 {
   struct vg_surface_check_options o = { .threads = j->o->threads,
                                         .stop = j->o->stop };
@@ -330,10 +349,14 @@ static void clear_report(struct vg_remesh_report *r)
 
   free(r->bad);
   *r = (struct vg_remesh_report){ .length = kept.length,
-    .tolerance = kept.tolerance, .h_min = kept.h_min, .h_max = kept.h_max,
-    .n_round = kept.n_round + 1, .n_clean = kept.n_clean,
-    .n_crossing = { kept.n_crossing[0], kept.n_crossing[1] },
-    .crossing_depth = kept.crossing_depth };
+                                  .tolerance = kept.tolerance,
+                                  .h_min = kept.h_min,
+                                  .h_max = kept.h_max,
+                                  .n_round = kept.n_round + 1,
+                                  .n_clean = kept.n_clean,
+                                  .n_crossing = { kept.n_crossing[0],
+                                                  kept.n_crossing[1] },
+                                  .crossing_depth = kept.crossing_depth };
   memcpy(r->kept_at, kept.kept_at, sizeof r->kept_at);
   memcpy(r->crossing_at, kept.crossing_at, sizeof r->crossing_at);
 }
@@ -344,8 +367,8 @@ static vg_status ask_sources(const struct vg_remesh_job *j, struct vg_tris *w,
                              struct vg_source_set *set, struct vg_error *err)
 {
   const struct vg_sizing_options s = {
-    .growth = vg_scaled_growth(j->o->growth, j->o->scale),
-    .scale = j->o->scale };
+    .growth = vg_scaled_growth(j->o->growth, j->o->scale), .scale = j->o->scale
+  };
   vg_status st = VG_OK;
 
   vg_source_release(set);
@@ -376,8 +399,8 @@ static void narrow(struct vg_tris *w)
     q->changed = ++w->clock;
   }
   for (uint32_t t = 0; t < w->n_tri; t++)
-    if (!vg_tris_is_old(w, 3 * t, w->looked[VG_WORK_POLISH])
-        || !vg_tris_is_old(w, 3 * t + 1, w->looked[VG_WORK_POLISH]))
+    if (!vg_tris_is_old(w, 3 * t, w->looked[VG_WORK_POLISH]) ||
+        !vg_tris_is_old(w, 3 * t + 1, w->looked[VG_WORK_POLISH]))
       w->stamp[t] = w->clock;
 }
 
@@ -387,7 +410,7 @@ static double angle_of(const struct vg_mesh *m, size_t t)
                                      m->point[m->tri[t][1]],
                                      m->point[m->tri[t][2]]);
 
-  return asin(fmin(sqrt(sine2), 1)) * (180 / M_PI);   /* for the report only */
+  return asin(fmin(sqrt(sine2), 1)) * (180 / M_PI); /* for the report only */
 }
 
 /* Take flat triangles out of the new surface, and bring the report up to
@@ -400,8 +423,8 @@ static vg_status swap_flat(struct vg_remesh_job *j, struct vg_mesh *m,
   vg_status st;
 
   if (j->stretch || j->o->stretch) return VG_OK;
-  VG_TRY(vg_flat_swap(m, &(struct vg_flat_limit){ FLAT * r->tolerance,
-    j->far }, &j->n_flat, err));
+  VG_TRY(vg_flat_swap(m, &(struct vg_flat_limit){ FLAT * r->tolerance, j->far },
+                      &j->n_flat, err));
   if (!j->n_flat) goto done;
   r->angle_min = 60;
   for (size_t t = 0; t < m->n_tri; t++)
@@ -427,17 +450,21 @@ struct attempt {
 
 /* Triangles that meet are made smaller; if that does not help, *sound is 0. */
 static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
-                      const struct attempt *a, int *sound,
-                      struct vg_error *err)
+                      const struct attempt *a, int *sound, struct vg_error *err)
 {
   struct vg_source_set set = VG_SOURCE_SET_INIT;
-  struct vg_stretch stretch = {
-    .by = j->stretch ? j->stretch : j->o->stretch };
+  struct vg_stretch stretch = { .by = j->stretch ? j->stretch : j->o->stretch };
   struct vg_remesh_report *r = &j->r;
-  struct vg_tris w = { .ref = &j->ref, .curves = &j->curves,
-    .tolerance = r->tolerance, .relative = VG_JOB_RELATIVE, .far = j->far,
-    .h_min = r->h_min, .h_max = r->h_max, .threads = j->o->threads,
-    .keep = j->keep, .stop = j->o->stop };
+  struct vg_tris w = { .ref = &j->ref,
+                       .curves = &j->curves,
+                       .tolerance = r->tolerance,
+                       .relative = VG_JOB_RELATIVE,
+                       .far = j->far,
+                       .h_min = r->h_min,
+                       .h_max = r->h_max,
+                       .threads = j->o->threads,
+                       .keep = j->keep,
+                       .stop = j->o->stop };
   vg_status st;
 
   if (stretch.by) w.stretch = &stretch;
@@ -459,8 +486,8 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
     VG_TRY(vg_result_store(&w, j->given, out, r, err));
     if (j->looks) break;
     VG_TRY(swap_flat(j, out, err));
-    VG_TRY(is_sound(j, out, a->last && is_end, is_end ? a->rings : 0, sound,
-                    err));
+    VG_TRY(
+      is_sound(j, out, a->last && is_end, is_end ? a->rings : 0, sound, err));
     if (!mend || *sound || j->n_fault[1] <= j->n_fault[0]) continue;
     /* Smaller triangles make it worse. */
     if (a->rings > 0 && !is_end)
@@ -521,8 +548,8 @@ done:
 }
 
 static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
-                        const struct vg_remesh_options *o,
-                        struct vg_mesh *out, struct vg_error *err)
+                        const struct vg_remesh_options *o, struct vg_mesh *out,
+                        struct vg_error *err)
 {
   const int rounds = j->r.n_crossing[0] ? 1 : ROUNDS;
   const int hopeless = j->r.n_crossing[1] > 0;
@@ -597,8 +624,7 @@ done:
 
 vg_status vg_remesh_judge(const struct vg_mesh *m,
                           const struct vg_remesh_options *o,
-                          struct vg_remesh_report *report,
-                          struct vg_error *err)
+                          struct vg_remesh_report *report, struct vg_error *err)
 {
   struct vg_remesh_job j = { .whole = m, .given = m, .o = o, .looks = 1 };
   struct vg_mesh out = VG_MESH_INIT;

@@ -11,7 +11,7 @@
 #include "core/geometry/vector.h"
 #include "core/mesh/mesh_defects.h"
 
-#define SWEEPS 8          /* over zigzags of soft borders */
+#define SWEEPS 8 /* over zigzags of soft borders */
 #define NEAR_SQRT2 1.4142135623730951
 
 /* --- patches ------------------------------------------------------------- */
@@ -35,8 +35,7 @@ static uint32_t patch_of(const struct vg_tris *w, size_t t,
   vg_sub(vg_tris_at(w, w->tri[t][1]), vg_tris_at(w, w->tri[t][0]), u);
   vg_sub(vg_tris_at(w, w->tri[t][2]), vg_tris_at(w, w->tri[t][0]), v);
   vg_cross(u, v, n);
-  if (!(vg_unit(n) > 0)
-      || !(vg_ref_project(w->ref, x, n, &hint, y) < INFINITY))
+  if (!(vg_unit(n) > 0) || !(vg_ref_project(w->ref, x, n, &hint, y) < INFINITY))
     vg_ref_nearest(w->ref, x, NULL, &hint, y);
   return patch[hint];
 }
@@ -85,8 +84,8 @@ static void keep_patches(const struct vg_tris *w, const struct vg_mesh *given,
 
     if (count[p]) continue;
     for (int d = 0; d < 3; d++)
-      x[d] = w->ref->shape[i].a[d]
-             + (w->ref->shape[i].u[d] + w->ref->shape[i].v[d]) / 3;
+      x[d] = w->ref->shape[i].a[d] +
+             (w->ref->shape[i].u[d] + w->ref->shape[i].v[d]) / 3;
     for (size_t t = 0; t < w->n_tri; t++) {
       if (vg_tris_removed(w, t) || count[label[t]] < 2) continue;
       middle(w, t, y);
@@ -101,7 +100,7 @@ static void keep_patches(const struct vg_tris *w, const struct vg_mesh *given,
 
 struct labelling {
   const struct vg_tris *w;
-  const uint32_t *patch;    /* of the given triangles */
+  const uint32_t *patch; /* of the given triangles */
   uint32_t *label;
 };
 
@@ -115,9 +114,8 @@ static void find_labels(void *context, size_t first, size_t end, int worker)
     if (!vg_tris_removed(l->w, t)) l->label[t] = patch_of(l->w, t, l->patch);
 }
 
-static vg_status label_all(const struct vg_tris *w,
-                           const struct vg_mesh *given, uint32_t *label,
-                           struct vg_error *err)
+static vg_status label_all(const struct vg_tris *w, const struct vg_mesh *given,
+                           uint32_t *label, struct vg_error *err)
 {
   struct labelling l = { w, given->tri_patch, label };
   size_t *count = vg_calloc(given->n_patch, sizeof *count);
@@ -170,8 +168,9 @@ static void count_aspect(const struct vg_tris *w, size_t t,
   vg_sub(p[2]->x, p[0]->x, v);
   vg_cross(u, v, n);
   for (int k = 0; k < 6; k++)
-    form[k] = (p[0]->asked.form[k] + p[1]->asked.form[k]
-               + p[2]->asked.form[k]) / 3;
+    form[k] = (p[0]->asked.form[k] + p[1]->asked.form[k] +
+               p[2]->asked.form[k]) /
+              3;
   aspect = vg_form_aspect(form, n);
   for (; i + 1 < VG_REMESH_ASPECTS && aspect > upto; upto *= 2) i++;
   r->n_aspect[i]++;
@@ -185,10 +184,10 @@ static vg_status list_bad(const struct vg_tris *w, size_t t, size_t face,
   const double sine = sqrt(vg_tris_tri_shape(w, t));
   struct vg_remesh_bad b = { .face = face };
 
-  b.angle = asin(fmin(sine, 1)) * (180 / M_PI);   /* for the report only */
+  b.angle = asin(fmin(sine, 1)) * (180 / M_PI); /* for the report only */
   if (!face || b.angle < r->angle_min) r->angle_min = b.angle;
   if (w->form) count_aspect(w, t, r);
-  if (sine >= 0.34202014332566873) return VG_OK;  /* of VG_REMESH_BAD */
+  if (sine >= 0.34202014332566873) return VG_OK; /* of VG_REMESH_BAD */
   if (vg_reserve(&r->bad, cap, r->n_bad + 1, sizeof *r->bad))
     return vg_fail_memory(err, "the list of bad triangles");
   b.cause = cause_of(w, t);
@@ -203,8 +202,9 @@ static void count_edges(const struct vg_tris *w, struct vg_remesh_report *r)
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     double ratio;
 
-    if (vg_tris_removed(w, h / 3)
-        || (w->mate[h] != VG_REF_NONE && w->mate[h] < h)) continue;
+    if (vg_tris_removed(w, h / 3) ||
+        (w->mate[h] != VG_REF_NONE && w->mate[h] < h))
+      continue;
     ratio = vg_tris_ratio(w, h);
     r->n_edge++;
     r->n_edge_fit += ratio <= NEAR_SQRT2 && ratio >= 1 / NEAR_SQRT2;
@@ -291,8 +291,9 @@ vg_status vg_result_store(const struct vg_tris *w, const struct vg_mesh *given,
   out->tri = vg_alloc(w->n_tri, sizeof *out->tri);
   out->tri_patch = vg_alloc(w->n_tri, sizeof *out->tri_patch);
   out->patch = vg_alloc(given->n_patch, sizeof *out->patch);
-  if (!map || !label || !out->point || !out->tri || !out->tri_patch
-      || !out->patch) VG_TRY(vg_fail_memory(err, "the new surface"));
+  if (!map || !label || !out->point || !out->tri || !out->tri_patch ||
+      !out->patch)
+    VG_TRY(vg_fail_memory(err, "the new surface"));
   memcpy(out->patch, given->patch, given->n_patch * sizeof *out->patch);
   out->n_patch = given->n_patch;
   VG_TRY(label_all(w, given, label, err));

@@ -9,9 +9,9 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/strips.h"
 
-#define SMOOTH 2          /* averages of the curvature over neighbours */
-#define AROUND 3          /* S36: triangles around a strip that is closed */
-#define FLOOR 0.02        /* S26: of the size without strips: never finer */
+#define SMOOTH 2   /* averages of the curvature over neighbours */
+#define AROUND 3   /* S36: triangles around a strip that is closed */
+#define FLOOR 0.02 /* S26: of the size without strips: never finer */
 
 /* Curvature tensor of a triangle, summed over its edges, with its area. */
 struct bend {
@@ -48,7 +48,7 @@ static void add_edge(const struct vg_ref *r, uint32_t h, struct bend *bend)
   vg_cross(n, m, w);
   angle = angle_of(vg_norm(w), vg_dot(n, m));
   if (vg_dot(w, e) < 0) angle = -angle;
-  k = angle * l / 2;        /* half of it to either side */
+  k = angle * l / 2; /* half of it to either side */
   for (int i = 0; i < 2; i++) {
     double *t = bend[side[i]].t;
 
@@ -131,8 +131,7 @@ static vg_status by_triangles(struct vg_ref *r, const struct vg_curves *c,
 
     add_bend(&sum[p], &bend[h / 3], 1);
     if (c->line[h])
-      r->size[p] = fmin(r->size[p], arc_size(o, sector(r, c, bend, h),
-                                             far[p]));
+      r->size[p] = fmin(r->size[p], arc_size(o, sector(r, c, bend, h), far[p]));
   }
   for (size_t p = 0; p < r->n_point; p++) {
     if (!(r->size[p] < INFINITY))
@@ -144,8 +143,8 @@ static vg_status by_triangles(struct vg_ref *r, const struct vg_curves *c,
 }
 
 static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
-                          const struct vg_sizes_options *o,
-                          const uint8_t *far, struct vg_error *err)
+                          const struct vg_sizes_options *o, const uint8_t *far,
+                          struct vg_error *err)
 {
   struct bend *b = vg_calloc(r->n_tri, sizeof *b);
   struct bend *s = vg_alloc(r->n_tri, sizeof *s), *swap;
@@ -159,8 +158,9 @@ static vg_status by_faces(struct vg_ref *r, const struct vg_curves *c,
     b[t].area = vg_norm(n) / 2;
   }
   for (uint32_t h = 0; h < 3 * r->n_tri; h++)
-    if (r->mate[h] != VG_REF_NONE && h < r->mate[h] && !c->line[h]
-        && !(c->closed && c->closed[h])) add_edge(r, h, b);
+    if (r->mate[h] != VG_REF_NONE && h < r->mate[h] && !c->line[h] &&
+        !(c->closed && c->closed[h]))
+      add_edge(r, h, b);
   for (int i = 0; i < SMOOTH; i++) {
     spread(r, c, b, s);
     swap = b;
@@ -211,13 +211,13 @@ static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
   for (int i = 0; i < 3; i++) {
     double x[3], w, most = fmax(r->plain[end[0]], r->plain[end[1]]);
 
-    for (int k = 0; k < 3; k++)
-      x[k] = a[k] + share[i] * (b[k] - a[k]);
+    for (int k = 0; k < 3; k++) x[k] = a[k] + share[i] * (b[k] - a[k]);
     w = factor * vg_strip_width(r, c, h, x, most / factor, NULL);
     for (int k = 0; k < 2; k++)
       if (i != (k ? 0 : 2) && w < r->size[end[k]])
         r->size[end[k]] = fmax(w, fmin(r->plain[end[k]],
-          fmax(FLOOR * r->plain[end[k]], h_shape) / across));
+                                       fmax(FLOOR * r->plain[end[k]], h_shape) /
+                                         across));
   }
 }
 
@@ -258,8 +258,7 @@ static vg_status mark_strips(struct vg_ref *r, const struct vg_curves *c,
 }
 
 vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
-                        const struct vg_sizes_options *o,
-                        struct vg_error *err)
+                        const struct vg_sizes_options *o, struct vg_error *err)
 {
   assert(o->h_min > 0 && o->h_max >= o->h_min && isfinite(o->h_max));
   assert(o->growth >= 1);

@@ -6,18 +6,18 @@
 #include "core/remesh/curves.h"
 
 struct vg_sizes_options {
-  double per_turn;          /* edges round a full circle */
-  double chord;             /* largest distance of an edge from its arc */
-  double strip;             /* size on a strip over its width */
-  double h_min, h_max;      /* bounds, > 0 and finite */
-  double h_shape;           /* the shape asks for no less */
+  double per_turn;     /* edges round a full circle */
+  double chord;        /* largest distance of an edge from its arc */
+  double strip;        /* size on a strip over its width */
+  double h_min, h_max; /* bounds, > 0 and finite */
+  double h_shape;      /* the shape asks for no less */
   double growth;
-  const double *cap;        /* [n_tri] largest size on it, or NULL; INFINITY:
-                               on an outer boundary, whose chords do not
-                               matter */
-  const double *point_cap;  /* [n_point] largest size there, or NULL */
-  const double *across;     /* [n_patch] edges across strips; NULL: 1 */
-  const uint32_t *tri_patch;  /* [n_tri] for across */
+  const double *cap;         /* [n_tri] largest size on it, or NULL; INFINITY:
+                                on an outer boundary, whose chords do not
+                                matter */
+  const double *point_cap;   /* [n_point] largest size there, or NULL */
+  const double *across;      /* [n_patch] edges across strips; NULL: 1 */
+  const uint32_t *tri_patch; /* [n_tri] for across */
   struct vg_stop stop;
 };
 
@@ -25,7 +25,6 @@ struct vg_sizes_options {
  * the width of strips between two curves. O(n). VG_ERR_MEMORY,
  * VG_ERR_STOPPED. */
 vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
-                        const struct vg_sizes_options *o,
-                        struct vg_error *err);
+                        const struct vg_sizes_options *o, struct vg_error *err);
 
 #endif

@@ -10,10 +10,11 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/work_parts.h"
 
-#define CHORD 0.6         /* S45: of the tolerance: what edges may leave of the
-                             line */
-#define BEND 0.033        /* of an edge: its chord where 24 go round a circle */
-#define SHORTER 0.8       /* an edge whose chord is too far, again and again */
+#define CHORD                                                                  \
+  0.6               /* S45: of the tolerance: what edges may leave of the      \
+                       line */
+#define BEND 0.033  /* of an edge: its chord where 24 go round a circle */
+#define SHORTER 0.8 /* an edge whose chord is too far, again and again */
 
 /* --- making -------------------------------------------------------------- */
 
@@ -50,22 +51,21 @@ static struct vg_stretch_place place_at(const struct vg_stretch *s,
   double a[3], b[3];
 
   q.along = fmax(fmin(p->by * size, s->h_max), size);
-  while (q.along > size
-         && chord(p, at, q.along) > fmin(room, BEND * q.along))
+  while (q.along > size && chord(p, at, q.along) > fmin(room, BEND * q.along))
     q.along = fmax(SHORTER * q.along, size);
   vg_curve_at(p->w->curves, p->w->ref, p->curve, at, q.x);
   vg_curve_at(p->w->curves, p->w->ref, p->curve,
               fmax(at - q.along / 2, p->from), a);
-  vg_curve_at(p->w->curves, p->w->ref, p->curve,
-              fmin(at + q.along / 2, p->to), b);
+  vg_curve_at(p->w->curves, p->w->ref, p->curve, fmin(at + q.along / 2, p->to),
+              b);
   vg_sub(b, a, q.way);
   vg_unit(q.way);
   return q;
 }
 
 /* The tree of the pieces of a run. */
-static vg_status make_tree(const struct vg_stretch *s,
-                           struct vg_stretch_run *r, struct vg_error *err)
+static vg_status make_tree(const struct vg_stretch *s, struct vg_stretch_run *r,
+                           struct vg_error *err)
 {
   const struct vg_stretch_place *p = s->place + r->first;
   const size_t n = r->n - 1;
@@ -93,12 +93,11 @@ static void grade(const struct vg_stretch *s, struct vg_stretch_run *r)
   struct vg_stretch_place *p = s->place + r->first;
 
   for (size_t i = 1; i < r->n; i++)
-    p[i].along = fmin(p[i].along, p[i - 1].along
-                                  + s->slope * (p[i].at - p[i - 1].at));
+    p[i].along = fmin(p[i].along,
+                      p[i - 1].along + s->slope * (p[i].at - p[i - 1].at));
   for (size_t i = r->n - 1; i > 0; i--)
-    p[i - 1].along = fmin(p[i - 1].along, p[i].along
-                                          + s->slope * (p[i].at
-                                                        - p[i - 1].at));
+    p[i - 1].along = fmin(p[i - 1].along,
+                          p[i].along + s->slope * (p[i].at - p[i - 1].at));
   for (size_t i = 0; i < r->n; i++) r->most = fmax(r->most, p[i].along);
 }
 
@@ -112,8 +111,9 @@ static vg_status add_run(struct vg_stretch *s, struct part *p,
 
   VG_TRY(vg_graded_steps(p->to - p->from, size_at, p, 1, &n, &step, err));
   r.n = n + 1;
-  if (vg_reserve(&s->place, &s->cap_place, s->n_place + r.n, sizeof *s->place)
-      || vg_reserve(&s->run, &s->cap_run, s->n_run + 1, sizeof *s->run))
+  if (vg_reserve(&s->place, &s->cap_place, s->n_place + r.n,
+                 sizeof *s->place) ||
+      vg_reserve(&s->run, &s->cap_run, s->n_run + 1, sizeof *s->run))
     VG_TRY(vg_fail_memory(err, "the stretched lines"));
   for (size_t i = 0; i < r.n; i++)
     s->place[s->n_place++] = place_at(s, p, p->from + step[i]);
@@ -130,7 +130,7 @@ vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_tris *w,
 {
   assert(s->by && !s->run && !s->place);
 
-  double *by = vg_calloc(w->n_line, sizeof *by);   /* of each line */
+  double *by = vg_calloc(w->n_line, sizeof *by); /* of each line */
   vg_status st = VG_OK;
 
   if (!by) return vg_fail_memory(err, "the stretched lines");
@@ -142,8 +142,10 @@ vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_tris *w,
     const struct vg_tris_line *l = &w->line[i];
     struct part p = { w, l->curve, l->at[0], l->at[1], by[i], VG_REF_NONE };
 
-    for (end = i + 1; end < w->n_line && w->line[end].curve == p.curve
-         && by[end] == p.by; end++) p.to = w->line[end].at[1];
+    for (end = i + 1;
+         end < w->n_line && w->line[end].curve == p.curve && by[end] == p.by;
+         end++)
+      p.to = w->line[end].at[1];
     if (p.by > 1) VG_TRY(add_run(s, &p, err));
   }
 done:
@@ -178,12 +180,12 @@ static double piece2(const struct vg_stretch_place *p, const double x[3],
 
 /* A search for the piece of a run that is nearest to x. */
 struct finding {
-  const struct vg_stretch_place *place;   /* of the run */
+  const struct vg_stretch_place *place; /* of the run */
   const struct vg_box_tree *tree;
   const double *x;
-  double d2;                /* squared distance: limit, or of `best` */
-  double t;                 /* how far on the piece, 0 to 1 */
-  size_t best;              /* the piece; SIZE_MAX: none yet */
+  double d2;   /* squared distance: limit, or of `best` */
+  double t;    /* how far on the piece, 0 to 1 */
+  size_t best; /* the piece; SIZE_MAX: none yet */
 };
 
 static inline int enter_nearer(void *context, size_t node, double d2)
@@ -214,8 +216,8 @@ static double ask(const struct vg_stretch *s, const struct vg_stretch_run *r,
                   const double x[3], double size, double way[3])
 {
   const double reach = (r->most - size) / s->slope;
-  struct finding f = { s->place + r->first, &r->tree, x, reach * reach, 0,
-                       SIZE_MAX };
+  struct finding f = { s->place + r->first, &r->tree, x,
+                       reach * reach,       0,        SIZE_MAX };
   const struct vg_stretch_place *p;
   double along;
 
@@ -225,8 +227,7 @@ static double ask(const struct vg_stretch *s, const struct vg_stretch_run *r,
   p = f.place + f.best;
   for (int k = 0; k < 3; k++)
     way[k] = p[0].way[k] + f.t * (p[1].way[k] - p[0].way[k]);
-  along = p[0].along + f.t * (p[1].along - p[0].along)
-          - s->slope * sqrt(f.d2);
+  along = p[0].along + f.t * (p[1].along - p[0].along) - s->slope * sqrt(f.d2);
   return vg_unit(way) > 0 ? fmin(along / size, r->by) : 1;
 }
 

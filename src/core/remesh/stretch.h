@@ -14,20 +14,20 @@
 #include "core/search/box_tree.h"
 
 struct vg_stretch_place {
-  double x[3], way[3];      /* a place on a line, its direction there */
-  double at, along;         /* length of the curve; edges asked for */
+  double x[3], way[3]; /* a place on a line, its direction there */
+  double at, along;    /* length of the curve; edges asked for */
 };
 
-struct vg_stretch_run {     /* along a curve, between places one another */
-  size_t first, n;          /* its places; at least 2 */
-  struct vg_box_tree tree;  /* of the pieces between its places, in order */
-  double by, most;          /* times; largest `along` */
+struct vg_stretch_run {    /* along a curve, between places one another */
+  size_t first, n;         /* its places; at least 2 */
+  struct vg_box_tree tree; /* of the pieces between its places, in order */
+  double by, most;         /* times; largest `along` */
 };
 
 struct vg_stretch {
-  const double *by;         /* [3 n_tri] borrowed: along half-edges of the
-                               reference, on both sides of an edge; 1 or less:
-                               not */
+  const double *by; /* [3 n_tri] borrowed: along half-edges of the
+                       reference, on both sides of an edge; 1 or less:
+                       not */
   double slope, h_max;
   size_t n_run, cap_run, n_place, cap_place;
   struct vg_stretch_run *run;

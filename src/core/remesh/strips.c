@@ -12,16 +12,17 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/strips_cut.h"
 
-#define STEPS 400         /* triangles that a walk across a strip crosses */
-#define ALONG 0.94        /* cosine: lines more oblique make a wedge */
-#define CLOSED 1.0        /* S35: of the tolerance: narrower strips go */
-#define SLENDER 3.0       /* S35: widths of it: shorter stretches stay */
-#define APART 4.0         /* tolerances: places along a line, at most PLACES
-                             to a piece of it */
+#define STEPS 400   /* triangles that a walk across a strip crosses */
+#define ALONG 0.94  /* cosine: lines more oblique make a wedge */
+#define CLOSED 1.0  /* S35: of the tolerance: narrower strips go */
+#define SLENDER 3.0 /* S35: widths of it: shorter stretches stay */
+#define APART                                                                  \
+  4.0 /* tolerances: places along a line, at most PLACES                       \
+         to a piece of it */
 #define PLACES 256
-#define LINES 8           /* closed ones that a walk crosses */
+#define LINES 8 /* closed ones that a walk crosses */
 #define BISECTIONS 24
-#define INSET 0.02        /* of a piece, or APART: its first and last place */
+#define INSET 0.02 /* of a piece, or APART: its first and last place */
 
 /* --- the width ----------------------------------------------------------- */
 
@@ -87,7 +88,7 @@ double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
     a = vg_dot(d, e);
     h = r->mate[g];
     if (!frame(r, h, e, in)) return INFINITY;
-    a = -a;                 /* along the mate's own direction */
+    a = -a; /* along the mate's own direction */
     for (int k = 0; k < 3; k++)
       d[k] = a * e[k] + sqrt(fmax(0, 1 - a * a)) * in[k];
   }
@@ -98,12 +99,12 @@ double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
 
 /* A stretch along a curve. */
 struct stretch {
-  double from, to;          /* lengths */
-  double width;             /* of the strip, largest */
+  double from, to; /* lengths */
+  double width;    /* of the strip, largest */
 };
 
 struct claim {
-  int stays;                /* whatever is near */
+  int stays; /* whatever is near */
   double length;
   size_t curve;
 };
@@ -112,12 +113,12 @@ struct finder {
   const struct vg_ref *r;
   const struct vg_curves *c;
   const struct vg_strips_options *o;
-  uint32_t (*side)[2];      /* [lines] half-edge along it, and against it */
-  struct claim *claim;      /* [n_curve] the last to go comes first */
-  size_t *rank;             /* [n_curve] where it is among these */
-  struct stretch *found;    /* closed ones, rising along each curve */
+  uint32_t (*side)[2];   /* [lines] half-edge along it, and against it */
+  struct claim *claim;   /* [n_curve] the last to go comes first */
+  size_t *rank;          /* [n_curve] where it is among these */
+  struct stretch *found; /* closed ones, rising along each curve */
   size_t n_found, cap_found;
-  size_t *first, *end;      /* [n_curve] among them */
+  size_t *first, *end; /* [n_curve] among them */
   struct vg_strips *s;
 };
 
@@ -181,8 +182,8 @@ static int is_closed(const struct finder *f, size_t curve, double s)
 
 /* Is the strip on this side of the curve narrow at the place t of its piece k,
  * up to a line that stays? *width out. */
-static int is_narrow(const struct finder *f, size_t curve, size_t k,
-                     uint32_t h, double t, double *width)
+static int is_narrow(const struct finder *f, size_t curve, size_t k, uint32_t h,
+                     double t, double *width)
 {
   const struct vg_curves *c = f->c;
   const double *a = f->r->point[c->point[k]];
@@ -202,8 +203,7 @@ static int is_narrow(const struct finder *f, size_t curve, size_t k,
     if (!l) return 0;
     j = vg_curve_of(c, l);
     if (j == curve) return 0;
-    s = c->at[l - 1 + j]
-        + vg_distance(end.x, f->r->point[c->point[l - 1 + j]]);
+    s = c->at[l - 1 + j] + vg_distance(end.x, f->r->point[c->point[l - 1 + j]]);
     if (!is_closed(f, j, s)) return f->rank[j] < f->rank[curve];
     h = f->r->mate[end.half];
     memcpy(x, end.x, sizeof x);
@@ -296,8 +296,9 @@ static void merge(struct finder *f, size_t first)
   for (size_t k = first; k < f->n_found; k++) {
     const struct stretch *s = &f->found[k];
 
-    if (s->to - s->from < SLENDER * s->width
-        || s->to - s->from < f->o->tolerance) continue;
+    if (s->to - s->from < SLENDER * s->width ||
+        s->to - s->from < f->o->tolerance)
+      continue;
     if (n > first && s->from <= f->found[n - 1].to) {
       f->found[n - 1].to = fmax(f->found[n - 1].to, s->to);
       f->found[n - 1].width = fmax(f->found[n - 1].width, s->width);
@@ -306,8 +307,7 @@ static void merge(struct finder *f, size_t first)
   f->n_found = n;
 }
 
-static vg_status look_at_curve(struct finder *f, size_t i,
-                               struct vg_error *err)
+static vg_status look_at_curve(struct finder *f, size_t i, struct vg_error *err)
 {
   const struct vg_feature_curve *curve = &f->c->curve[i];
   const double *across = f->o->across;
@@ -379,8 +379,8 @@ done:
 
 vg_status vg_strips_find(const struct vg_ref *r, const struct vg_curves *c,
                          const struct vg_mesh *m,
-                         const struct vg_strips_options *o,
-                         struct vg_strips *s, struct vg_error *err)
+                         const struct vg_strips_options *o, struct vg_strips *s,
+                         struct vg_error *err)
 {
   struct finder f = { .r = r, .c = c, .o = o, .s = s };
   vg_status st;
@@ -389,8 +389,7 @@ vg_status vg_strips_find(const struct vg_ref *r, const struct vg_curves *c,
   VG_TRY(list_sides(&f, err));
   VG_TRY(rank_curves(&f, err));
   for (size_t i = 0; i < c->n_curve; i++)
-    if (!f.claim[i].stays)
-      VG_TRY(look_at_curve(&f, f.claim[i].curve, err));
+    if (!f.claim[i].stays) VG_TRY(look_at_curve(&f, f.claim[i].curve, err));
   if (f.n_found) VG_TRY(close_all(&f, m, err));
 done:
   free(f.side);

@@ -6,11 +6,11 @@
 
 #include "base/memory.h"
 
-#define END 1e-3          /* of an edge: nearer to its ends nothing is cut */
+#define END 1e-3 /* of an edge: nearer to its ends nothing is cut */
 
 vg_status vg_strip_cutter_begin(struct vg_strip_cutter *c,
-                                const struct vg_ref *r,
-                                const struct vg_mesh *m, struct vg_error *err)
+                                const struct vg_ref *r, const struct vg_mesh *m,
+                                struct vg_error *err)
 {
   struct vg_strips *s = c->s;
   const size_t n = 3 * m->n_tri;
@@ -49,14 +49,14 @@ static vg_status make_room(struct vg_strip_cutter *c, struct vg_error *err)
 
   if (m->n_point >= UINT32_MAX || 3 * n >= UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "the surface is too large");
-  if (vg_reserve(&m->point, &c->cap_point, m->n_point + 1, sizeof *m->point)
-      || vg_reserve(&m->tri, &c->cap_tri, n, sizeof *m->tri)
-      || vg_reserve(&m->tri_patch, &c->cap_patch, n, sizeof *m->tri_patch)
-      || vg_reserve(&s->tri_from, &c->cap_from, n, sizeof *s->tri_from)
-      || vg_reserve(&s->closed, &c->cap_closed, 3 * n, 1)
-      || vg_reserve(&c->mate, &c->cap_mate, 3 * n, sizeof *c->mate)
-      || vg_reserve(&s->half_from, &c->cap_half, 3 * n, sizeof *s->half_from)
-      || vg_reserve(&s->ends, &c->cap_ends, s->n_new + 1, sizeof *s->ends))
+  if (vg_reserve(&m->point, &c->cap_point, m->n_point + 1, sizeof *m->point) ||
+      vg_reserve(&m->tri, &c->cap_tri, n, sizeof *m->tri) ||
+      vg_reserve(&m->tri_patch, &c->cap_patch, n, sizeof *m->tri_patch) ||
+      vg_reserve(&s->tri_from, &c->cap_from, n, sizeof *s->tri_from) ||
+      vg_reserve(&s->closed, &c->cap_closed, 3 * n, 1) ||
+      vg_reserve(&c->mate, &c->cap_mate, 3 * n, sizeof *c->mate) ||
+      vg_reserve(&s->half_from, &c->cap_half, 3 * n, sizeof *s->half_from) ||
+      vg_reserve(&s->ends, &c->cap_ends, s->n_new + 1, sizeof *s->ends))
     return vg_fail_memory(err, "narrow strips");
   return VG_OK;
 }

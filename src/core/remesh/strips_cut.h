@@ -9,18 +9,18 @@
  * surface began with. */
 struct vg_strip_cutter {
   struct vg_strips *s;
-  size_t cap_point, cap_tri, cap_patch, cap_from, cap_ends, cap_mate,
-         cap_half, cap_closed;
-  uint32_t *mate;           /* [3 n_tri] */
-  uint32_t *where;          /* [3 n_tri at the beginning] */
-  uint32_t edge;            /* cut last: where[edge] is what is left of it */
-  double begun;             /* from there on */
+  size_t cap_point, cap_tri, cap_patch, cap_from, cap_ends, cap_mate, cap_half,
+    cap_closed;
+  uint32_t *mate;  /* [3 n_tri] */
+  uint32_t *where; /* [3 n_tri at the beginning] */
+  uint32_t edge;   /* cut last: where[edge] is what is left of it */
+  double begun;    /* from there on */
 };
 
 /** Begin with the mesh that r was built on. VG_ERR_MEMORY. */
 vg_status vg_strip_cutter_begin(struct vg_strip_cutter *c,
-                                const struct vg_ref *r,
-                                const struct vg_mesh *m, struct vg_error *err);
+                                const struct vg_ref *r, const struct vg_mesh *m,
+                                struct vg_error *err);
 
 /** Mark half-edge h of the beginning as closed from t0 to t1 of it: below 0 and
  * above 1 are its ends. Calls for one edge come one after the other, in the

@@ -10,11 +10,12 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-#define TRIFLE 1e-4       /* of the squared tolerance: on the reference */
-#define ON 0.04           /* of the squared tolerance: as good as on a
-                             triangle */
-#define FLAT 1e-3         /* S33: tolerances: lower triangles face any way */
-#define SWEEPS 8          /* in which sizes are passed on to neighbours */
+#define TRIFLE 1e-4 /* of the squared tolerance: on the reference */
+#define ON                                                                     \
+  0.04            /* of the squared tolerance: as good as on a                 \
+                     triangle */
+#define FLAT 1e-3 /* S33: tolerances: lower triangles face any way */
+#define SWEEPS 8  /* in which sizes are passed on to neighbours */
 
 /* --- making -------------------------------------------------------------- */
 
@@ -31,8 +32,11 @@ static vg_status make_lines(struct vg_tris *w, struct vg_error *err)
     size_t k = c->curve[i].first;
 
     for (; k + 1 < c->curve[i].first + c->curve[i].n; k++)
-      w->line[w->n_line++] = (struct vg_tris_line){ (uint32_t)i,
-        { c->point[k], c->point[k + 1] }, { c->at[k], c->at[k + 1] } };
+      w->line[w->n_line++] = (struct vg_tris_line){
+        (uint32_t)i,
+        { c->point[k], c->point[k + 1] },
+        { c->at[k], c->at[k + 1] }
+      };
   }
   memcpy(w->edge, c->line, 3 * w->n_tri * sizeof *w->edge);
   return VG_OK;
@@ -92,8 +96,9 @@ static void pass_sizes_on(struct vg_tris *w)
       struct vg_tris_point *b = &w->point[vg_tris_to(w, h)];
       double gap = b->asked.size - a->asked.size, asked;
 
-      if (!(gap > 0) || gap * gap <= w->ref->slope * w->ref->slope
-                                     * vg_distance2(a->x, b->x)) continue;
+      if (!(gap > 0) ||
+          gap * gap <= w->ref->slope * w->ref->slope * vg_distance2(a->x, b->x))
+        continue;
       asked = vg_ref_size_by(w->ref, a->by, b->x);
       if (!(asked < b->asked.size)) continue;
       b->asked.size = asked;
@@ -113,8 +118,9 @@ static void find_sizes(void *context, size_t first, size_t end, int worker)
     struct vg_tris_point *q = &w->point[p];
 
     q->by = q->home;
-    vg_tris_ask(w, q, bounded(w, q->x, vg_ref_size(w->ref, q->x,
-                                                   q->asked.size, &q->by)));
+    vg_tris_ask(w, q,
+                bounded(w, q->x,
+                        vg_ref_size(w->ref, q->x, q->asked.size, &q->by)));
   }
 }
 
@@ -143,8 +149,10 @@ static vg_status make_points(struct vg_tris *w, struct vg_error *err)
   for (size_t p = 0; p < w->n_point; p++) {
     if (w->curves->corner[p]) w->point[p].kind = VG_WORK_CORNER;
     if (w->point[p].half == VG_REF_NONE)
-      return vg_fail(err, VG_ERR_INPUT, "point %zu of the surface is used by "
-                     "no triangle; repair it", p + 1);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "point %zu of the surface is used by "
+                     "no triangle; repair it",
+                     p + 1);
     w->point[p].by = w->point[p].home;
     w->point[p].asked.size = r->size[p];
   }
@@ -161,7 +169,8 @@ static vg_status make_samples(struct vg_tris *w, struct vg_error *err)
   w->follow = vg_alloc(n, sizeof *w->follow);
   w->is_sample = vg_calloc(n, 1);
   return w->follow && w->is_sample
-         ? VG_OK : vg_fail_memory(err, "the samples of the surface");
+         ? VG_OK
+         : vg_fail_memory(err, "the samples of the surface");
 }
 
 vg_status vg_tris_room(struct vg_tris *w, size_t n, struct vg_error *err)
@@ -174,7 +183,8 @@ vg_status vg_tris_room(struct vg_tris *w, size_t n, struct vg_error *err)
   w->stamp = vg_calloc(n, sizeof *w->stamp);
   w->first = vg_alloc(n, sizeof *w->first);
   return w->tri && w->mate && w->edge && w->stamp && w->first
-         ? VG_OK : vg_fail_memory(err, "the new surface");
+         ? VG_OK
+         : vg_fail_memory(err, "the new surface");
 }
 
 vg_status vg_tris_begin(struct vg_tris *w, struct vg_error *err)
@@ -305,8 +315,8 @@ void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p)
   if (r->strip && r->strip[p->by]) {
     const uint32_t *q = r->tri[p->home];
 
-    size = fmax(size, fmin(r->plain[q[0]],
-                           fmin(r->plain[q[1]], r->plain[q[2]])));
+    size = fmax(size,
+                fmin(r->plain[q[0]], fmin(r->plain[q[1]], r->plain[q[2]])));
   }
   p->room = vg_tris_tolerance(w, size);
 }
@@ -330,8 +340,8 @@ void vg_cavity_narrow(const struct vg_tris *w, struct vg_cavity *c,
 }
 
 void vg_cavity_add(struct vg_cavity *c, const struct vg_tris_point *x,
-                   const struct vg_tris_point *y,
-                   const struct vg_tris_point *z, int edges)
+                   const struct vg_tris_point *y, const struct vg_tris_point *z,
+                   int edges)
 {
   c->corner[c->n_new][0] = x;
   c->corner[c->n_new][1] = y;
@@ -356,16 +366,15 @@ static int sample_near(const struct vg_tris *w, struct vg_cavity *c,
                        const double x[3], const double n[3])
 {
   const double back[3] = { -n[0], -n[1], -n[2] };
-  const int near = c->tolerance <= w->tolerance ? VG_REF_THIN
-                                                : VG_REF_THIN_FAR;
+  const int near = c->tolerance <= w->tolerance ? VG_REF_THIN : VG_REF_THIN_FAR;
   double d2, o2, y[3];
   uint32_t other = VG_REF_NONE;
 
   if (!vg_ref_within(w->ref, x, n, c->tolerance, &c->hint, &d2)) return 0;
   if (w->ref->thin && !(w->ref->thin[c->hint] & near)) return 1;
-  if (d2 <= TRIFLE * c->tolerance * c->tolerance
-      || !vg_ref_within(w->ref, x, back, VG_WORK_NEARER * sqrt(d2), &other,
-                        &o2)) return 1;
+  if (d2 <= TRIFLE * c->tolerance * c->tolerance ||
+      !vg_ref_within(w->ref, x, back, VG_WORK_NEARER * sqrt(d2), &other, &o2))
+    return 1;
   /* What was found is not the nearest. */
   d2 = vg_ref_nearest(w->ref, x, n, &c->hint, y);
   other = VG_REF_NONE;
@@ -392,25 +401,25 @@ static int tri_fits(const struct vg_tris *w, struct vg_cavity *c, size_t i)
 
 /* Where new edges cross those of the reference they may be farther from it than
  * in their middles. */
-static int crossings_fit(const struct vg_tris *w, struct vg_cavity *c,
-                         size_t i)
+static int crossings_fit(const struct vg_tris *w, struct vg_cavity *c, size_t i)
 {
   const struct vg_tris_point *const *p = c->corner[i];
   const double *n = c->made[i].n;
   double x[3];
 
   for (int e = 0; e < 3; e++)
-    if (c->edges[i] >> e & 1
-        && vg_ref_leaves(w->ref, p[e]->x, p[(e + 1) % 3]->x, n, c->tolerance,
-                         p[e]->home, x)
-        && !sample_near(w, c, x, n)) return 0;
+    if (c->edges[i] >> e & 1 &&
+        vg_ref_leaves(w->ref, p[e]->x, p[(e + 1) % 3]->x, n, c->tolerance,
+                      p[e]->home, x) &&
+        !sample_near(w, c, x, n))
+      return 0;
   return 1;
 }
 
 /* Goes to the nearest of the new triangles, or one that is as good as on it,
  * from the one in the place of the old on. */
-static int sample_fits(const struct vg_tris *w, struct vg_cavity *c,
-                       uint32_t s, size_t old)
+static int sample_fits(const struct vg_tris *w, struct vg_cavity *c, uint32_t s,
+                       size_t old)
 {
   const double most = c->tolerance * c->tolerance;
   double best = INFINITY;
@@ -463,8 +472,9 @@ static int faces_as_before(const struct vg_tris *w, const struct vg_cavity *c)
   for (size_t i = 0; i < c->n_new; i++) {
     double n[3];
 
-    if (facing(w, c->old[c->was[i]], n) > FLAT * c->tolerance
-        && !(vg_dot(c->made[i].n, n) > 0)) return 0;
+    if (facing(w, c->old[c->was[i]], n) > FLAT * c->tolerance &&
+        !(vg_dot(c->made[i].n, n) > 0))
+      return 0;
   }
   return 1;
 }
@@ -495,8 +505,7 @@ int vg_cavity_fits(const struct vg_tris *w, struct vg_cavity *c)
   if (!make_triangles(c, sum) || !is_unfolded(w, c, sum)) return 0;
   if (c->fresh != VG_REF_NONE && !sample_fits(w, c, c->fresh, 0)) return 0;
   for (size_t i = 0; i < c->n_old; i++)
-    for (uint32_t s = w->first[c->old[i]]; s != VG_REF_NONE;
-         s = w->follow[s])
+    for (uint32_t s = w->first[c->old[i]]; s != VG_REF_NONE; s = w->follow[s])
       if (!sample_fits(w, c, s, i)) return 0;
   for (size_t i = 0; i < c->n_new; i++)
     if (!tri_fits(w, c, i)) return 0;

@@ -9,10 +9,10 @@
 #include "core/remesh/curves.h"
 #include "core/remesh/metric.h"
 
-#define VG_WORK_RING 256       /* triangles around a point that may change */
-#define VG_WORK_NEARER 1.5     /* S25: than another sheet */
-#define VG_WORK_SHORT 0.7      /* S21: sizes: shorter edges go */
-#define VG_WORK_LONG 1.4       /* longer ones are split */
+#define VG_WORK_RING 256   /* triangles around a point that may change */
+#define VG_WORK_NEARER 1.5 /* S25: than another sheet */
+#define VG_WORK_SHORT 0.7  /* S21: sizes: shorter edges go */
+#define VG_WORK_LONG 1.4   /* longer ones are split */
 
 enum { VG_WORK_FACE, VG_WORK_CURVE, VG_WORK_CORNER };
 
@@ -20,32 +20,38 @@ enum { VG_WORK_FREE, VG_WORK_FROZEN, VG_WORK_FANS };
 
 struct vg_tris_point {
   double x[3];
-  double room;              /* vg_tris_find_room: largest distance there */
-  uint32_t half;            /* one that leaves it; VG_REF_NONE: removed */
-  uint32_t home;            /* triangle of the reference near it */
-  uint32_t by;              /* that which asks for its size */
-  uint32_t given;           /* its sample, once removed; VG_REF_NONE: none */
+  double room;    /* vg_tris_find_room: largest distance there */
+  uint32_t half;  /* one that leaves it; VG_REF_NONE: removed */
+  uint32_t home;  /* triangle of the reference near it */
+  uint32_t by;    /* that which asks for its size */
+  uint32_t given; /* its sample, once removed; VG_REF_NONE: none */
   uint8_t kind;
-  uint8_t goes;             /* a point of a curve that is to be taken away */
-  uint8_t frozen;           /* on the border of a block: stays, and no edges
-                               are made to others; FANS: none to it at all, as
-                               its triangles in the block do not hang together
-                               */
-  uint8_t kept;             /* point of given triangles that stay as they are */
-  uint64_t changed;         /* when triangles at it changed */
-  struct vg_metric asked;   /* form: not set where the surface has none */
-  uint64_t tried;           /* when it was last looked at */
+  uint8_t goes;           /* a point of a curve that is to be taken away */
+  uint8_t frozen;         /* on the border of a block: stays, and no edges
+                             are made to others; FANS: none to it at all, as
+                             its triangles in the block do not hang together
+                             */
+  uint8_t kept;           /* point of given triangles that stay as they are */
+  uint64_t changed;       /* when triangles at it changed */
+  struct vg_metric asked; /* form: not set where the surface has none */
+  uint64_t tried;         /* when it was last looked at */
 };
 
-enum { VG_WORK_SWAPS, VG_WORK_COLLAPSES, VG_WORK_ACROSS, VG_WORK_SPLITS,
-       VG_WORK_POLISH, VG_WORK_LOOKS };
+enum {
+  VG_WORK_SWAPS,
+  VG_WORK_COLLAPSES,
+  VG_WORK_ACROSS,
+  VG_WORK_SPLITS,
+  VG_WORK_POLISH,
+  VG_WORK_LOOKS
+};
 
-struct vg_stretch;          /* stretch.h */
+struct vg_stretch; /* stretch.h */
 
 /* Edge along a curve. */
 struct vg_tris_line {
   uint32_t curve, end[2];
-  double at[2];             /* lengths along the curve, rising */
+  double at[2]; /* lengths along the curve, rising */
 };
 
 /* Half-edge 3 t + k runs from corner k of triangle t to the next one. */
@@ -53,10 +59,10 @@ struct vg_tris {
   const struct vg_ref *ref;
   const struct vg_curves *curves;
   double tolerance, relative; /* largest distance, and in parts of the size */
-  double far;               /* where sizes are larger only the latter holds; 0:
-                               nowhere */
+  double far; /* where sizes are larger only the latter holds; 0:
+                 nowhere */
   double (*other_size)(const void *user, const double x[3]);
-  const void *user;         /* of other_size */
+  const void *user; /* of other_size */
   /* The form at x, where edges are `size` long across what stretches them;
    * NULL: they are as long in all directions */
   void (*form)(const void *of_form, const double x[3], double size,
@@ -64,33 +70,33 @@ struct vg_tris {
   const void *of_form;
   struct vg_stretch *stretch; /* made to begin with, for the form; or NULL */
   double h_min, h_max;
-  int threads;              /* to begin with */
-  const uint8_t *keep;      /* [points of ref] given triangles of three such
-                               points stay as they are; NULL: none */
+  int threads;         /* to begin with */
+  const uint8_t *keep; /* [points of ref] given triangles of three such
+                          points stay as they are; NULL: none */
   size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first,
-         cap_stamp;
+    cap_stamp;
   size_t n_line, cap_line;
   struct vg_tris_point *point;
-  uint32_t (*tri)[3];       /* removed: three times the same point */
-  uint32_t *mate;           /* VG_REF_NONE: open rim */
-  uint32_t *edge;           /* [3 n_tri] line + 1 of it; 0: none */
-  uint64_t *stamp;          /* [n_tri] when it changed */
+  uint32_t (*tri)[3]; /* removed: three times the same point */
+  uint32_t *mate;     /* VG_REF_NONE: open rim */
+  uint32_t *edge;     /* [3 n_tri] line + 1 of it; 0: none */
+  uint64_t *stamp;    /* [n_tri] when it changed */
   struct vg_tris_line *line;
   /* Samples: points of the reference that are none of this surface's any more
    * are each kept with the triangle near them, which keeps the given surface
    * near this one. */
-  uint32_t *first;          /* [n_tri] VG_REF_NONE: none */
-  uint32_t *follow;         /* [points of ref] the next one of the triangle */
-  uint8_t *is_sample;       /* [the same] */
-  int is_block;             /* follow and is_sample are another's */
-  uint32_t *spare;          /* removed triangles */
+  uint32_t *first;    /* [n_tri] VG_REF_NONE: none */
+  uint32_t *follow;   /* [points of ref] the next one of the triangle */
+  uint8_t *is_sample; /* [the same] */
+  int is_block;       /* follow and is_sample are another's */
+  uint32_t *spare;    /* removed triangles */
   size_t n_spare, cap_spare;
   size_t n_split, n_collapse, n_swap, n_move, n_refused;
-  uint64_t clock;           /* counts changes */
-  uint64_t looked[VG_WORK_LOOKS];  /* when all was last looked at */
-  int failed;               /* no memory */
+  uint64_t clock;                 /* counts changes */
+  uint64_t looked[VG_WORK_LOOKS]; /* when all was last looked at */
+  int failed;                     /* no memory */
   struct vg_stop stop;
-  int ends;                 /* it said so: nothing is changed any more */
+  int ends; /* it said so: nothing is changed any more */
 };
 
 static inline int vg_tris_ends(struct vg_tris *w)
@@ -129,23 +135,23 @@ static inline int vg_tris_removed(const struct vg_tris *w, size_t t)
 static inline int vg_tris_is_old(const struct vg_tris *w, uint32_t h,
                                  uint64_t since)
 {
-  return w->point[vg_tris_from(w, h)].changed <= since
-         && w->point[vg_tris_to(w, h)].changed <= since;
+  return w->point[vg_tris_from(w, h)].changed <= since &&
+         w->point[vg_tris_to(w, h)].changed <= since;
 }
 
 /** An edge of the border of a block, which stays as it is. */
 static inline int vg_tris_is_border(const struct vg_tris *w, uint32_t h)
 {
-  return w->mate[h] == VG_REF_NONE && w->point[vg_tris_from(w, h)].frozen
-         && w->point[vg_tris_to(w, h)].frozen;
+  return w->mate[h] == VG_REF_NONE && w->point[vg_tris_from(w, h)].frozen &&
+         w->point[vg_tris_to(w, h)].frozen;
 }
 
 /** An edge that stays as it is: of the border of a block, or of given triangles
  * that are kept. */
 static inline int vg_tris_stays(const struct vg_tris *w, uint32_t h)
 {
-  return vg_tris_is_border(w, h) || (w->point[vg_tris_from(w, h)].kept
-                                     && w->point[vg_tris_to(w, h)].kept);
+  return vg_tris_is_border(w, h) ||
+         (w->point[vg_tris_from(w, h)].kept && w->point[vg_tris_to(w, h)].kept);
 }
 
 /** May there be a new edge between a and b? */
@@ -192,8 +198,8 @@ double vg_tris_size_near(const struct vg_tris *w, const double x[3],
 void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p);
 
 /** Let q, which is in its place, with home and by, ask for this size. */
-static inline void vg_tris_ask(const struct vg_tris *w,
-                               struct vg_tris_point *q, double size)
+static inline void vg_tris_ask(const struct vg_tris *w, struct vg_tris_point *q,
+                               double size)
 {
   q->asked.size = size;
   if (w->form) w->form(w->of_form, q->x, size, q->asked.form);
@@ -252,7 +258,7 @@ int vg_tris_move(struct vg_tris *w, uint32_t p, const double x[3],
 /* The two lines at a point of a curve: lengths along it of their ends. */
 struct vg_tris_span {
   uint32_t line[2], curve;
-  double lo, at, hi;        /* the point is at `at` */
+  double lo, at, hi; /* the point is at `at` */
 };
 
 /** That of p; 0 where it has none, or may not move. */

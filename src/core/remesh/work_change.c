@@ -11,23 +11,27 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 
-#define GAIN 1.02         /* of a swap, in squares of sines */
-#define STUCK 3.0         /* S37: sizes: edges as long are split within the
-                             tolerance alone */
-#define NEARBY 2.5        /* sizes: ends of shorter edges know the size between
-                             them */
-#define STRAY 0.1         /* of the edge or size: farther from it, steps along
-                             the reference have lost their way */
-#define ALMOST 0.95       /* of the shape, before a point is on the surface */
-#define FLAT2 1e-8        /* S33: (sin 0.006 degrees)^2: flatter ones come from
-                             no split */
-#define SPLIT_LOSS 0.2    /* S23: least shape after a split, of what was
-                             before */
+#define GAIN 1.02 /* of a swap, in squares of sines */
+#define STUCK                                                                  \
+  3.0 /* S37: sizes: edges as long are split within the                        \
+         tolerance alone */
+#define NEARBY                                                                 \
+  2.5 /* sizes: ends of shorter edges know the size between                    \
+         them */
+#define STRAY                                                                  \
+  0.1               /* of the edge or size: farther from it, steps along       \
+                       the reference have lost their way */
+#define ALMOST 0.95 /* of the shape, before a point is on the surface */
+#define FLAT2                                                                  \
+  1e-8 /* S33: (sin 0.006 degrees)^2: flatter ones come from                   \
+          no split */
+#define SPLIT_LOSS                                                             \
+  0.2 /* S23: least shape after a split, of what was                           \
+         before */
 
 /* --- bookkeeping --------------------------------------------------------- */
 
-static void attach(struct vg_tris *w, uint32_t h, uint32_t mate,
-                   uint32_t edge)
+static void attach(struct vg_tris *w, uint32_t h, uint32_t mate, uint32_t edge)
 {
   w->mate[h] = mate;
   w->edge[h] = edge;
@@ -54,15 +58,11 @@ static uint32_t new_tri(struct vg_tris *w)
   uint32_t t;
 
   if (w->n_spare) return w->spare[--w->n_spare];
-  if (vg_reserve(&w->tri, &w->cap_tri, w->n_tri + 1, sizeof *w->tri)
-      || vg_reserve(&w->mate, &w->cap_mate, 3 * w->n_tri + 3,
-                    sizeof *w->mate)
-      || vg_reserve(&w->edge, &w->cap_edge, 3 * w->n_tri + 3,
-                    sizeof *w->edge)
-      || vg_reserve(&w->stamp, &w->cap_stamp, w->n_tri + 1,
-                    sizeof *w->stamp)
-      || vg_reserve(&w->first, &w->cap_first, w->n_tri + 1,
-                    sizeof *w->first)) {
+  if (vg_reserve(&w->tri, &w->cap_tri, w->n_tri + 1, sizeof *w->tri) ||
+      vg_reserve(&w->mate, &w->cap_mate, 3 * w->n_tri + 3, sizeof *w->mate) ||
+      vg_reserve(&w->edge, &w->cap_edge, 3 * w->n_tri + 3, sizeof *w->edge) ||
+      vg_reserve(&w->stamp, &w->cap_stamp, w->n_tri + 1, sizeof *w->stamp) ||
+      vg_reserve(&w->first, &w->cap_first, w->n_tri + 1, sizeof *w->first)) {
     w->failed = 1;
     return VG_REF_NONE;
   }
@@ -73,8 +73,8 @@ static uint32_t new_tri(struct vg_tris *w)
 
 static void remove_tri(struct vg_tris *w, uint32_t t)
 {
-  if (vg_reserve(&w->spare, &w->cap_spare, w->n_spare + 1,
-                 sizeof *w->spare)) w->failed = 1;
+  if (vg_reserve(&w->spare, &w->cap_spare, w->n_spare + 1, sizeof *w->spare))
+    w->failed = 1;
   else w->spare[w->n_spare++] = t;
   w->tri[t][1] = w->tri[t][2] = w->tri[t][0];
 }
@@ -110,8 +110,8 @@ static void middle_of(const struct vg_tris *w, uint32_t h, const double *at,
   normal_of(w, w->mate[h] / 3, n);
   for (int k = 0; k < 3; k++) x[k] = (a[k] + b[k]) / 2;
   n_or_any = vg_unit(n) > 0 ? n : NULL;
-  if (!(vg_ref_project(w->ref, x, n_or_any, &p->home, p->x)
-        <= STRAY * vg_distance(a, b)))
+  if (!(vg_ref_project(w->ref, x, n_or_any, &p->home, p->x) <=
+        STRAY * vg_distance(a, b)))
     vg_ref_nearest(w->ref, x, n_or_any, &p->home, p->x);
 }
 
@@ -141,8 +141,8 @@ static int split_fits(const struct vg_tris *w, uint32_t h,
   vg_cavity_measure(w, c);
   if (ratio > STUCK) c->tolerance = fmax(c->tolerance, w->tolerance);
   /* A line that is not split where it is needed stays too long for good. */
-  return c->shape > (face ? SPLIT_LOSS : 0.01) * shape
-         && (!face || c->shape >= fmin(shape, FLAT2)) && vg_cavity_fits(w, c);
+  return c->shape > (face ? SPLIT_LOSS : 0.01) * shape &&
+         (!face || c->shape >= fmin(shape, FLAT2)) && vg_cavity_fits(w, c);
 }
 
 /* Of a long edge, something finer may lie between its ends. */
@@ -151,16 +151,16 @@ static void size_between(const struct vg_tris *w, uint32_t h,
 {
   const uint32_t end[2] = { vg_tris_from(w, h), vg_tris_to(w, h) };
 
-  vg_tris_ask(w, p, vg_tris_ratio(w, h) < NEARBY
-              ? vg_tris_size_near(w, p->x, p->home, 2, end, &p->by)
-              : vg_tris_size(w, p->x, &p->by));
+  vg_tris_ask(w, p,
+              vg_tris_ratio(w, h) < NEARBY
+                ? vg_tris_size_near(w, p->x, p->home, 2, end, &p->by)
+                : vg_tris_size(w, p->x, &p->by));
 }
 
 static uint32_t add_point(struct vg_tris *w, const struct vg_tris_point *p)
 {
-  if (w->n_point > UINT32_MAX - 2
-      || vg_reserve(&w->point, &w->cap_point, w->n_point + 1,
-                    sizeof *w->point)) {
+  if (w->n_point > UINT32_MAX - 2 ||
+      vg_reserve(&w->point, &w->cap_point, w->n_point + 1, sizeof *w->point)) {
     w->failed = 1;
     return VG_REF_NONE;
   }
@@ -170,8 +170,8 @@ static uint32_t add_point(struct vg_tris *w, const struct vg_tris_point *p)
 
 /* Divide the line of h at length s by point m: returns the line of the first
  * half of h; the other is *second. */
-static uint32_t split_line(struct vg_tris *w, uint32_t h, uint32_t m,
-                           double s, uint32_t *second)
+static uint32_t split_line(struct vg_tris *w, uint32_t h, uint32_t m, double s,
+                           uint32_t *second)
 {
   uint32_t i = w->edge[h] - 1, j = (uint32_t)w->n_line;
   int forward = w->line[i].end[0] == vg_tris_from(w, h);
@@ -186,8 +186,8 @@ static uint32_t split_line(struct vg_tris *w, uint32_t h, uint32_t m,
 
 /* Put m into the edge of h: t[0], t[1] are the halves of its triangle, t[2] and
  * t[3] those of the other, in the order in which they run along their edge. */
-static void stitch(struct vg_tris *w, uint32_t h, uint32_t m,
-                   const uint32_t *t, const uint32_t *e)
+static void stitch(struct vg_tris *w, uint32_t h, uint32_t m, const uint32_t *t,
+                   const uint32_t *e)
 {
   const uint32_t end[2] = { vg_tris_from(w, h), vg_tris_to(w, h) };
   const uint32_t half[2] = { h, w->mate[h] };
@@ -234,8 +234,9 @@ uint32_t vg_tris_split(struct vg_tris *w, uint32_t h, const double *at)
     p.asked.form[k] = (p.asked.form[k] + w->point[b].asked.form[k]) / 2;
   c.hint = p.home;
   if (!split_fits(w, h, &p, &c)) return VG_REF_NONE;
-  if (w->edge[h] && vg_reserve(&w->line, &w->cap_line, w->n_line + 1,
-                               sizeof *w->line)) w->failed = 1;
+  if (w->edge[h] &&
+      vg_reserve(&w->line, &w->cap_line, w->n_line + 1, sizeof *w->line))
+    w->failed = 1;
   size_between(w, h, &p);
   m = w->failed ? VG_REF_NONE : add_point(w, &p);
   for (size_t i = 0; i < c.n_old; i++) {
@@ -267,8 +268,8 @@ static uint32_t other_line(const struct vg_tris *w, const uint32_t *ring,
 }
 
 /* A point of a curve goes along it only, where the chord stays near it. */
-static int curve_fits(const struct vg_tris *w, uint32_t h,
-                      const uint32_t *ring, size_t n, double tolerance)
+static int curve_fits(const struct vg_tris *w, uint32_t h, const uint32_t *ring,
+                      size_t n, double tolerance)
 {
   const struct vg_tris_line *a, *b;
   uint32_t u = vg_tris_to(w, h), other;
@@ -278,16 +279,16 @@ static int curve_fits(const struct vg_tris *w, uint32_t h,
   if (!other) return 0;
   a = &w->line[w->edge[h] - 1];
   b = &w->line[other - 1];
-  if (a->curve != b->curve || b->end[0] == u || b->end[1] == u
-      || a->end[0] == a->end[1] || b->end[0] == b->end[1]) return 0;
-  return vg_curve_chord(w->curves, w->ref, a->curve,
-                        fmin(a->at[0], b->at[0]), fmax(a->at[1], b->at[1]))
-         <= tolerance;
+  if (a->curve != b->curve || b->end[0] == u || b->end[1] == u ||
+      a->end[0] == a->end[1] || b->end[0] == b->end[1])
+    return 0;
+  return vg_curve_chord(w->curves, w->ref, a->curve, fmin(a->at[0], b->at[0]),
+                        fmax(a->at[1], b->at[1])) <= tolerance;
 }
 
 /* The ends have only the nodes opposite the edge as common neighbours. */
-static int link_fits(const struct vg_tris *w, uint32_t h,
-                     const uint32_t *ring, size_t n, int open)
+static int link_fits(const struct vg_tris *w, uint32_t h, const uint32_t *ring,
+                     size_t n, int open)
 {
   uint32_t u = vg_tris_to(w, h), other[VG_WORK_RING];
   size_t n_other, common = 0, wanted = w->mate[h] == VG_REF_NONE ? 1 : 2;
@@ -302,17 +303,17 @@ static int link_fits(const struct vg_tris *w, uint32_t h,
       int found = 0;
 
       for (size_t k = 0; k < n_other && !found; k++)
-        found = vg_tris_to(w, other[k]) == p
-                || (other_open && k + 1 == n_other
-                    && vg_tris_from(w, vg_half_prev(other[k])) == p);
+        found = vg_tris_to(w, other[k]) == p ||
+                (other_open && k + 1 == n_other &&
+                 vg_tris_from(w, vg_half_prev(other[k])) == p);
       common += (size_t)found;
     }
   return common == wanted;
 }
 
 /* Edges from u to the neighbours of v that are new may be made. */
-static int joins_fit(const struct vg_tris *w, uint32_t h,
-                     const uint32_t *ring, size_t n, int open)
+static int joins_fit(const struct vg_tris *w, uint32_t h, const uint32_t *ring,
+                     size_t n, int open)
 {
   const uint32_t u = vg_tris_to(w, h), g = w->mate[h];
   const uint32_t o = vg_tris_from(w, vg_half_prev(h));
@@ -378,7 +379,7 @@ static void collapse(struct vg_tris *w, uint32_t h, const uint32_t *ring,
     b = &w->line[other_line(w, ring, n, w->edge[h]) - 1];
     b->end[last] = u;
     b->at[last] = a->at[last];
-    a->end[0] = a->end[1] = u;    /* no more */
+    a->end[0] = a->end[1] = u; /* no more */
     a->at[0] = a->at[1];
   }
   for (size_t i = 0; i < n; i++) {
@@ -399,8 +400,7 @@ static void collapse(struct vg_tris *w, uint32_t h, const uint32_t *ring,
     if (p != VG_REF_NONE) attach(w, p, q, edge);
     else attach(w, q, p, edge);
   }
-  for (uint32_t i = 0; i < n_keep; i++)
-    w->tri[keep[i] / 3][keep[i] % 3] = u;
+  for (uint32_t i = 0; i < n_keep; i++) w->tri[keep[i] / 3][keep[i] % 3] = u;
   for (uint32_t i = 0; i < n_keep; i++) {
     uint32_t f = keep[i] / 3;
 
@@ -422,25 +422,29 @@ int vg_tris_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
   size_t n;
   int open;
 
-  if (vg_tris_ends(w) || w->point[v].kind == VG_WORK_CORNER
-      || w->point[v].frozen || w->point[v].kept) return 0;
+  if (vg_tris_ends(w) || w->point[v].kind == VG_WORK_CORNER ||
+      w->point[v].frozen || w->point[v].kept)
+    return 0;
   n = vg_tris_ring(w, v, ring, &open);
   if (!n) return 0;
   if (w->edge[h] && w->point[v].kind == VG_WORK_FACE) return 0;
   vg_cavity_begin(w, &c, v);
-  if (w->point[v].kind == VG_WORK_CURVE
-      && !curve_fits(w, h, ring, n, c.tolerance)) return 0;
+  if (w->point[v].kind == VG_WORK_CURVE &&
+      !curve_fits(w, h, ring, n, c.tolerance))
+    return 0;
   /* Both other sides on curves would become one edge of two. */
   for (int side = 0; side < 2 && k != VG_REF_NONE; side++, k = g) {
     uint32_t p = vg_half_next(k), q = vg_half_prev(k);
 
     if (w->edge[p] && w->edge[q]) return 0;
-    if ((vg_tris_is_border(w, p) && w->edge[q])
-        || (vg_tris_is_border(w, q) && w->edge[p])) return 0;
+    if ((vg_tris_is_border(w, p) && w->edge[q]) ||
+        (vg_tris_is_border(w, q) && w->edge[p]))
+      return 0;
     if (w->mate[p] == VG_REF_NONE && w->mate[q] == VG_REF_NONE) return 0;
   }
-  if (!joins_fit(w, h, ring, n, open) || !link_fits(w, h, ring, n, open)
-      || !collapse_fits(w, h, ring, n, most, shape, &c)) return 0;
+  if (!joins_fit(w, h, ring, n, open) || !link_fits(w, h, ring, n, open) ||
+      !collapse_fits(w, h, ring, n, most, shape, &c))
+    return 0;
   collapse(w, h, ring, n, &c);
   return 1;
 }
@@ -459,8 +463,8 @@ int vg_tris_swap(struct vg_tris *w, uint32_t h)
   size_t n;
   int open;
 
-  if (vg_tris_ends(w) || g == VG_REF_NONE || w->edge[h]
-      || vg_tris_stays(w, h)) return 0;
+  if (vg_tris_ends(w) || g == VG_REF_NONE || w->edge[h] || vg_tris_stays(w, h))
+    return 0;
   p[0] = vg_tris_from(w, h);
   p[1] = vg_tris_to(w, h);
   p[2] = vg_tris_from(w, vg_half_prev(h));
@@ -475,19 +479,21 @@ int vg_tris_swap(struct vg_tris *w, uint32_t h)
   before = fmin(vg_tris_shape(w, x[0], x[1], x[2]),
                 vg_tris_shape(w, x[0], x[1], x[3]));
   vg_cavity_measure(w, &c);
-  if (!(c.shape > GAIN * before) || p[2] == p[3]
-      || !vg_tris_may_join(w, p[2], p[3])) return 0;
+  if (!(c.shape > GAIN * before) || p[2] == p[3] ||
+      !vg_tris_may_join(w, p[2], p[3]))
+    return 0;
   n = vg_tris_ring(w, p[2], ring, &open);
   if (!n || n + 1 >= VG_WORK_RING) return 0;
   for (size_t i = 0; i < n; i++)
-    if (vg_tris_to(w, ring[i]) == p[3]
-        || vg_tris_from(w, vg_half_prev(ring[i])) == p[3]) return 0;
+    if (vg_tris_to(w, ring[i]) == p[3] ||
+        vg_tris_from(w, vg_half_prev(ring[i])) == p[3])
+      return 0;
   n = vg_tris_ring(w, p[3], ring, &open);
   if (!n || n + 1 >= VG_WORK_RING || !vg_cavity_fits(w, &c)) return 0;
-  out[0] = vg_half_next(h);    /* 1 2 */
-  out[1] = vg_half_prev(h);    /* 2 0 */
-  out[2] = vg_half_next(g);    /* 0 3 */
-  out[3] = vg_half_prev(g);    /* 3 1 */
+  out[0] = vg_half_next(h); /* 1 2 */
+  out[1] = vg_half_prev(h); /* 2 0 */
+  out[2] = vg_half_next(g); /* 0 3 */
+  out[3] = vg_half_prev(g); /* 3 1 */
   for (int k = 0; k < 4; k++) m[k] = w->mate[out[k]], e[k] = w->edge[out[k]];
   set_tri(w, t[0], p[2], p[0], p[3]);
   set_tri(w, t[1], p[3], p[1], p[2]);
@@ -545,8 +551,7 @@ static double move_cavity(const struct vg_tris *w, uint32_t p, size_t n,
   return before;
 }
 
-int vg_tris_move(struct vg_tris *w, uint32_t p, const double x[3],
-                 double shape)
+int vg_tris_move(struct vg_tris *w, uint32_t p, const double x[3], double shape)
 {
   assert(p < w->n_point);
 
@@ -557,18 +562,19 @@ int vg_tris_move(struct vg_tris *w, uint32_t p, const double x[3],
   size_t n_ring;
   int open;
 
-  if (vg_tris_ends(w) || w->point[p].kind != VG_WORK_FACE
-      || w->point[p].frozen || w->point[p].kept) return 0;
+  if (vg_tris_ends(w) || w->point[p].kind != VG_WORK_FACE ||
+      w->point[p].frozen || w->point[p].kept)
+    return 0;
   n_ring = vg_tris_ring(w, p, ring, &open);
   if (!n_ring) return 0;
   for (size_t i = 0; i < n_ring; i++) normal_of(w, ring[i] / 3, n);
   if (!(vg_unit(n) > 0)) return 0;
   memcpy(q.x, x, sizeof q.x);
   before = fmin(shape, move_cavity(w, p, n_ring, ring, &q, &c));
-  vg_cavity_measure(w, &c);  /* roughly, which costs little, then exactly */
-  if (!(c.shape > ALMOST * before)
-      || !(vg_ref_project(w->ref, x, n, &q.home, q.x)
-           <= STRAY * q.asked.size)) return 0;
+  vg_cavity_measure(w, &c); /* roughly, which costs little, then exactly */
+  if (!(c.shape > ALMOST * before) ||
+      !(vg_ref_project(w->ref, x, n, &q.home, q.x) <= STRAY * q.asked.size))
+    return 0;
   c.hint = q.home;
   vg_cavity_measure(w, &c);
   if (!(c.shape > before) || !vg_cavity_fits(w, &c)) return 0;
@@ -592,8 +598,8 @@ static int lines_at(const struct vg_tris *w, uint32_t p, size_t n,
   line[a->end[0] != p] = second - 1;
   a = &w->line[line[0]];
   b = &w->line[line[1]];
-  return a->curve == b->curve && a->end[1] == p && b->end[0] == p
-         && a->end[0] != p && b->end[1] != p && a->at[1] == b->at[0];
+  return a->curve == b->curve && a->end[1] == p && b->end[0] == p &&
+         a->end[0] != p && b->end[1] != p && a->at[1] == b->at[0];
 }
 
 int vg_tris_span(const struct vg_tris *w, uint32_t p, struct vg_tris_span *s)
@@ -603,8 +609,9 @@ int vg_tris_span(const struct vg_tris *w, uint32_t p, struct vg_tris_span *s)
   int open;
 
   assert(p < w->n_point && s);
-  if (w->point[p].kind != VG_WORK_CURVE || w->point[p].frozen
-      || w->point[p].kept) return 0;
+  if (w->point[p].kind != VG_WORK_CURVE || w->point[p].frozen ||
+      w->point[p].kept)
+    return 0;
   n = vg_tris_ring(w, p, ring, &open);
   if (!n || !lines_at(w, p, n, ring, s->line)) return 0;
   s->curve = w->line[s->line[0]].curve;
@@ -630,15 +637,14 @@ int vg_tris_slide(struct vg_tris *w, uint32_t p, double at, double shape)
   n = vg_tris_ring(w, p, ring, &open);
   vg_curve_at(w->curves, w->ref, s.curve, at, q.x);
   before = fmin(shape, move_cavity(w, p, n, ring, &q, &c));
-  if (open)
-    vg_cavity_narrow(w, &c, vg_tris_from(w, vg_half_prev(ring[n - 1])));
+  if (open) vg_cavity_narrow(w, &c, vg_tris_from(w, vg_half_prev(ring[n - 1])));
   c.on_curve = 1;
   vg_cavity_measure(w, &c);
-  if (!(c.shape > before)
-      || !(vg_curve_chord(w->curves, w->ref, s.curve, s.lo, at)
-           <= c.tolerance)
-      || !(vg_curve_chord(w->curves, w->ref, s.curve, at, s.hi)
-           <= c.tolerance) || !vg_cavity_fits(w, &c)) return 0;
+  if (!(c.shape > before) ||
+      !(vg_curve_chord(w->curves, w->ref, s.curve, s.lo, at) <= c.tolerance) ||
+      !(vg_curve_chord(w->curves, w->ref, s.curve, at, s.hi) <= c.tolerance) ||
+      !vg_cavity_fits(w, &c))
+    return 0;
   vg_ref_nearest(w->ref, q.x, NULL, &q.home, foot);
   settle_move(w, p, ring, &c, &q);
   w->line[s.line[0]].at[1] = w->line[s.line[1]].at[0] = at;

@@ -11,20 +11,20 @@
 /* A part of the surface that is to be replaced. */
 struct vg_cavity {
   size_t n_old, n_new, n_sample;
-  uint32_t old[VG_WORK_NEW];          /* triangles */
+  uint32_t old[VG_WORK_NEW]; /* triangles */
   const struct vg_tris_point *corner[VG_WORK_NEW][3];
-  uint8_t edges[VG_WORK_NEW];         /* bit k: edge k is new, and not on a
-                                         curve */
-  uint16_t was[VG_WORK_NEW];          /* on a curve: of the old ones, that
-                                         which the new one takes the place of */
-  int on_curve;                       /* the triangles are on two sides of it */
-  double tolerance, shape;            /* out: of the new ones, the least */
+  uint8_t edges[VG_WORK_NEW]; /* bit k: edge k is new, and not on a
+                                 curve */
+  uint16_t was[VG_WORK_NEW];  /* on a curve: of the old ones, that
+                                 which the new one takes the place of */
+  int on_curve;               /* the triangles are on two sides of it */
+  double tolerance, shape;    /* out: of the new ones, the least */
   uint32_t hint;
-  struct vg_ref_tri made[VG_WORK_NEW];  /* of the new ones, for samples */
-  uint32_t fresh;                     /* sample that a point is which goes;
-                                         VG_REF_NONE: none */
+  struct vg_ref_tri made[VG_WORK_NEW]; /* of the new ones, for samples */
+  uint32_t fresh;                      /* sample that a point is which goes;
+                                          VG_REF_NONE: none */
   uint32_t sample[VG_WORK_SAMPLES];
-  uint16_t goes[VG_WORK_SAMPLES];     /* to which new one */
+  uint16_t goes[VG_WORK_SAMPLES]; /* to which new one */
 };
 
 void vg_cavity_begin(const struct vg_tris *w, struct vg_cavity *c,
@@ -36,8 +36,8 @@ void vg_cavity_narrow(const struct vg_tris *w, struct vg_cavity *c,
 
 /** Add a triangle that will be there. */
 void vg_cavity_add(struct vg_cavity *c, const struct vg_tris_point *x,
-                   const struct vg_tris_point *y,
-                   const struct vg_tris_point *z, int edges);
+                   const struct vg_tris_point *y, const struct vg_tris_point *z,
+                   int edges);
 
 /** Tolerance at points of this size. */
 double vg_tris_tolerance(const struct vg_tris *w, double size);

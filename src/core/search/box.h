@@ -4,10 +4,17 @@
 
 #include <math.h>
 
-struct vg_box { double lo[3], hi[3]; };
+struct vg_box {
+  double lo[3], hi[3];
+};
 
-#define VG_BOX_EMPTY { { INFINITY, INFINITY, INFINITY }, \
-                       { -INFINITY, -INFINITY, -INFINITY } }
+#define VG_BOX_EMPTY                                                           \
+  {                                                                            \
+    { INFINITY, INFINITY, INFINITY },                                          \
+    {                                                                          \
+      -INFINITY, -INFINITY, -INFINITY                                          \
+    }                                                                          \
+  }
 
 /** Enlarge a box so that it holds the point x. */
 static inline void vg_box_add(struct vg_box *b, const double x[3])
@@ -30,15 +37,13 @@ static inline void vg_box_join(struct vg_box *a, const struct vg_box *b)
 /** The boxes share a point. Empty boxes touch nothing. */
 static inline int vg_box_touch(const struct vg_box *a, const struct vg_box *b)
 {
-  return a->lo[0] <= b->hi[0] && b->lo[0] <= a->hi[0]
-         && a->lo[1] <= b->hi[1] && b->lo[1] <= a->hi[1]
-         && a->lo[2] <= b->hi[2] && b->lo[2] <= a->hi[2];
+  return a->lo[0] <= b->hi[0] && b->lo[0] <= a->hi[0] && a->lo[1] <= b->hi[1] &&
+         b->lo[1] <= a->hi[1] && a->lo[2] <= b->hi[2] && b->lo[2] <= a->hi[2];
 }
 
 /** Squared distance of the point x from the box, INFINITY if the box is empty.
  * Rounding is monotone: it is never less for a box within another. */
-static inline double vg_box_distance2(const struct vg_box *b,
-                                      const double x[3])
+static inline double vg_box_distance2(const struct vg_box *b, const double x[3])
 {
   double sum = 0;
 
@@ -52,8 +57,7 @@ static inline double vg_box_distance2(const struct vg_box *b,
 }
 
 /** Squared distance between two boxes. */
-static inline double vg_box_gap2(const struct vg_box *a,
-                                 const struct vg_box *b)
+static inline double vg_box_gap2(const struct vg_box *a, const struct vg_box *b)
 {
   double sum = 0;
 

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-#define TASKS 1024     /* pairs of nodes that are searched at the same time */
+#define TASKS 1024 /* pairs of nodes that are searched at the same time */
 
 /* Items below node a with those below node b; the same node: within it. */
 struct task {
@@ -19,7 +19,7 @@ struct pairs {
   void *context;
   size_t n_task, cap_task;
   struct task *task;
-  int status;                /* of a visit that failed */
+  int status; /* of a visit that failed */
 };
 
 static vg_status leaf_pairs(const struct pairs *p, int worker, struct task of)
@@ -79,16 +79,14 @@ static int parts_of(const struct pairs *p, struct task of, struct task out[3])
   return 2;
 }
 
-static vg_status pairs_below(const struct pairs *p, int worker,
-                             struct task of)
+static vg_status pairs_below(const struct pairs *p, int worker, struct task of)
 {
   struct task part[3];
   int n = parts_of(p, of, part);
   vg_status st = VG_OK;
 
   if (n < 0) return leaf_pairs(p, worker, of);
-  for (int i = 0; i < n && st >= 0; i++)
-    st = pairs_below(p, worker, part[i]);
+  for (int i = 0; i < n && st >= 0; i++) st = pairs_below(p, worker, part[i]);
   return st;
 }
 

@@ -10,15 +10,15 @@ static void find_middle(const struct vg_box *b, double x[3])
   for (int k = 0; k < 3; k++) x[k] = .5 * b->lo[k] + .5 * b->hi[k];
 }
 
-static vg_status order_items(size_t n, const struct vg_box *box,
-                             uint32_t *item, struct vg_error *err)
+static vg_status order_items(size_t n, const struct vg_box *box, uint32_t *item,
+                             struct vg_error *err)
 {
-  double (*middle)[3] = vg_alloc(n, sizeof *middle);
+  double(*middle)[3] = vg_alloc(n, sizeof *middle);
   vg_status st;
 
   if (!middle) return vg_fail_memory(err, "a tree of boxes");
   for (size_t i = 0; i < n; i++) find_middle(&box[i], middle[i]);
-  st = vg_hilbert_order(n, (const double (*)[3])middle, item, err);
+  st = vg_hilbert_order(n, (const double(*)[3])middle, item, err);
   free(middle);
   return st;
 }
@@ -94,8 +94,7 @@ vg_status vg_box_tree_build(struct vg_box_tree *t, size_t n,
   made.first_leaf = n_leaf - 1;
   made.item = vg_alloc(n, sizeof *made.item);
   made.node = vg_alloc(2 * n_leaf - 1, stride);
-  if (!made.item || !made.node)
-    VG_TRY(vg_fail_memory(err, "a tree of boxes"));
+  if (!made.item || !made.node) VG_TRY(vg_fail_memory(err, "a tree of boxes"));
   if (!order) VG_TRY(order_items(n, box, made.item, err));
   for (size_t i = 0; order && i < n; i++) made.item[i] = order[i];
   make_boxes(&made, box);
@@ -108,8 +107,7 @@ done:
 
 vg_status vg_box_tree_build_items(struct vg_box_tree *t, size_t n,
                                   const struct vg_box *box,
-                                  const uint32_t *order,
-                                  struct vg_error *err)
+                                  const uint32_t *order, struct vg_error *err)
 {
   struct vg_box *kept = vg_alloc(n, sizeof *kept);
   vg_status st;

@@ -22,20 +22,23 @@
 #include "base/status.h"
 #include "core/search/box.h"
 
-#define VG_BOX_LEAF 4       /* items of a leaf */
-#define VG_BOX_DEPTH 64     /* levels at most */
+#define VG_BOX_LEAF 4   /* items of a leaf */
+#define VG_BOX_DEPTH 64 /* levels at most */
 
 struct vg_box_tree {
-  size_t n;                 /* items */
-  size_t first_leaf;        /* nodes before the leaves: leaves less one */
-  size_t stride;            /* bytes from node to node */
-  void *node;               /* [2 first_leaf + 1] owned; each begins with a
-                               struct vg_box */
-  uint32_t *item;           /* [n] owned; items in the order of the leaves */
-  struct vg_box *box;       /* [n] owned; their boxes in that order, or NULL:
-                               vg_box_tree_build_items keeps them */
+  size_t n;           /* items */
+  size_t first_leaf;  /* nodes before the leaves: leaves less one */
+  size_t stride;      /* bytes from node to node */
+  void *node;         /* [2 first_leaf + 1] owned; each begins with a
+                         struct vg_box */
+  uint32_t *item;     /* [n] owned; items in the order of the leaves */
+  struct vg_box *box; /* [n] owned; their boxes in that order, or NULL:
+                         vg_box_tree_build_items keeps them */
 };
-#define VG_BOX_TREE_INIT { 0 }
+#define VG_BOX_TREE_INIT                                                       \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /** Box of node i. */
 static inline struct vg_box *vg_box_tree_node(const struct vg_box_tree *t,
@@ -45,8 +48,7 @@ static inline struct vg_box *vg_box_tree_node(const struct vg_box_tree *t,
 }
 
 /** Index of the first item of leaf `node` in t->item. */
-static inline size_t vg_box_tree_first(const struct vg_box_tree *t,
-                                       size_t node)
+static inline size_t vg_box_tree_first(const struct vg_box_tree *t, size_t node)
 {
   return VG_BOX_LEAF * (node - t->first_leaf);
 }
@@ -90,8 +92,7 @@ vg_status vg_box_tree_build(struct vg_box_tree *t, size_t n,
  * t->box, for searches that test them. */
 vg_status vg_box_tree_build_items(struct vg_box_tree *t, size_t n,
                                   const struct vg_box *box,
-                                  const uint32_t *order,
-                                  struct vg_error *err);
+                                  const uint32_t *order, struct vg_error *err);
 
 void vg_box_tree_release(struct vg_box_tree *t);
 
@@ -111,10 +112,9 @@ int vg_box_tree_touched(const struct vg_box_tree *t, const struct vg_box *box,
  * @param leaf   gets a node that is a leaf; nonzero ends the search
  *
  * Returns what the last call of `leaf` returned. */
-static inline __attribute__((always_inline)) int
-vg_box_tree_visit(const struct vg_box_tree *t,
-                  int (*enter)(void *context, size_t node),
-                  int (*leaf)(void *context, size_t node), void *context)
+static inline __attribute__((always_inline)) int vg_box_tree_visit(
+  const struct vg_box_tree *t, int (*enter)(void *context, size_t node),
+  int (*leaf)(void *context, size_t node), void *context)
 {
   size_t stack[VG_BOX_DEPTH];
   int top = 0, found = 0;
@@ -141,12 +141,15 @@ vg_box_tree_visit(const struct vg_box_tree *t,
  *               It is asked when its turn comes, so that it can compare with
  *               the best that was found meanwhile
  * @param leaf   gets a node that is a leaf */
-static inline __attribute__((always_inline)) void
-vg_box_tree_approach(const struct vg_box_tree *t, const double x[3],
-                     int (*enter)(void *context, size_t node, double d2),
-                     void (*leaf)(void *context, size_t node), void *context)
+static inline __attribute__((always_inline)) void vg_box_tree_approach(
+  const struct vg_box_tree *t, const double x[3],
+  int (*enter)(void *context, size_t node, double d2),
+  void (*leaf)(void *context, size_t node), void *context)
 {
-  struct { size_t i; double d2; } stack[VG_BOX_DEPTH];
+  struct {
+    size_t i;
+    double d2;
+  } stack[VG_BOX_DEPTH];
   int top = 0;
 
   if (!t->n) return;

@@ -25,22 +25,26 @@ static vg_status check_options(const struct vg_sizing_options *o,
   if (!isfinite(o->scale) || o->scale <= 0)
     return vg_fail(err, VG_ERR_INPUT,
                    "scale %g of source spacings is not positive; 1 leaves "
-                   "them as they are", o->scale);
+                   "them as they are",
+                   o->scale);
   if (!(isfinite(o->coarseness) && o->coarseness >= 1))
-    return vg_fail(err, VG_ERR_INPUT, "coarseness %g of a field of sizes is "
-                   "below 1", o->coarseness);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "coarseness %g of a field of sizes is "
+                   "below 1",
+                   o->coarseness);
   if (!isfinite(o->h_min) || o->h_min < 0)
     return vg_fail(err, VG_ERR_INPUT,
-                   "smallest size %g is not a length; 0 means none",
-                   o->h_min);
+                   "smallest size %g is not a length; 0 means none", o->h_min);
   if (!(o->h_max >= 0))
     return vg_fail(err, VG_ERR_INPUT,
                    "largest size %g is not a length; 0 means the largest "
-                   "of the input", o->h_max);
+                   "of the input",
+                   o->h_max);
   if (o->h_max > 0 && o->h_min > o->h_max)
     return vg_fail(err, VG_ERR_INPUT,
                    "smallest size %g is above the largest, %g; exchange "
-                   "them", o->h_min, o->h_max);
+                   "them",
+                   o->h_min, o->h_max);
   return VG_OK;
 }
 
@@ -65,8 +69,7 @@ static double largest(const struct vg_source_set *set,
 /* Cube around the surface, or around the sources where there is none; a bit
  * larger, so that no point of the domain is beyond it by rounding. */
 static double root_cube(const struct vg_mesh *surface,
-                        const struct vg_source_set *set, double h,
-                        double lo[3])
+                        const struct vg_source_set *set, double h, double lo[3])
 {
   double hi[3] = { 0, 0, 0 }, side = 0, far = 0;
   int on_surface = surface && surface->n_point;
@@ -114,7 +117,8 @@ static vg_status build(const struct vg_sizing_options *o,
   if (!isfinite(side) || !isfinite(lo[0] + lo[1] + lo[2]))
     return vg_fail(err, VG_ERR_INPUT,
                    "coordinates are too large for a field of sizes (extent "
-                   "%g); use another unit of length", side);
+                   "%g); use another unit of length",
+                   side);
   f->slope = o->growth - 1;
   f->h_min = o->h_min;
   f->h_max = o->h_max > 0 ? o->h_max : n ? cap : INFINITY;
@@ -123,8 +127,8 @@ static vg_status build(const struct vg_sizing_options *o,
   s->cap = o->h_max > 0 ? o->h_max : f->set.n_mean ? cap : INFINITY;
   if (n < (VG_OCTREE_LEAF - LEAF_BASE) / LEAF_PER_SAMPLE)
     limit += n * LEAF_PER_SAMPLE;
-  return vg_octree_build(f, lo, side, o->coarseness, limit, o->threads,
-                         o->team, &s->octree, err);
+  return vg_octree_build(f, lo, side, o->coarseness, limit, o->threads, o->team,
+                         &s->octree, err);
 }
 
 /* The growth of the surface from above or from below. */
@@ -136,10 +140,10 @@ static vg_status make_near(const struct vg_sizing_options *o,
   struct vg_samples s = VG_SAMPLES_INIT;
   vg_status st;
 
-  VG_TRY(vg_samples_thin(surface, all, o->growth - 1, below, o->threads, &s,
-                         err));
-  st = vg_bvh_new(s.n, (const double (*)[3])s.p, s.h, o->growth - 1,
-                  o->threads, out, err);
+  VG_TRY(
+    vg_samples_thin(surface, all, o->growth - 1, below, o->threads, &s, err));
+  st = vg_bvh_new(s.n, (const double(*)[3])s.p, s.h, o->growth - 1, o->threads,
+                  out, err);
 done:
   vg_samples_release(&s);
   return st;
@@ -148,9 +152,10 @@ done:
 static vg_status check_map(const struct vg_map_fault *f, struct vg_error *err)
 {
   if (!f->n) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "the edge length given for the point "
-                 "(%.9g, %.9g, %.9g) is %g; it must be above 0", f->x[0],
-                 f->x[1], f->x[2], f->h);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "the edge length given for the point "
+                 "(%.9g, %.9g, %.9g) is %g; it must be above 0",
+                 f->x[0], f->x[1], f->x[2], f->h);
 }
 
 /* All but the sources' own, which their laws multiply. */
@@ -166,8 +171,8 @@ static struct vg_sizing_options scaled(const struct vg_sizing_options *options)
 
 vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
                         const struct vg_source *source,
-                        const struct vg_mesh *surface,
-                        struct vg_sizing **out, struct vg_error *err)
+                        const struct vg_mesh *surface, struct vg_sizing **out,
+                        struct vg_error *err)
 {
   assert(given && out && (source || !n));
 
@@ -305,8 +310,7 @@ size_t vg_sizing_leaves(const struct vg_sizing *s)
 }
 
 double vg_sizing_sources_at(const struct vg_sizing_options *options, size_t n,
-                            const struct vg_source *source,
-                            const double x[3])
+                            const struct vg_source *source, const double x[3])
 {
   const struct vg_sizing_options o = scaled(options);
   struct vg_source_set set = VG_SOURCE_SET_INIT;

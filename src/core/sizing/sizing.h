@@ -29,24 +29,24 @@
 #include "core/mesh/mesh.h"
 
 enum vg_source_kind {
-  VG_SOURCE_VGRID_NODE,  /* at p0, spacing h0, weight a */
-  VG_SOURCE_VGRID_LINE,  /* p0 to p1, spacing h0 to h1, weight a */
-  VG_SOURCE_POINT,       /* p0; h0 within radius r0 */
-  VG_SOURCE_LINE,        /* segment p0 p1; h0 to h1, within radius r0 */
-  VG_SOURCE_TRIANGLE,    /* p0 p1 p2; h0 within distance r0 */
-  VG_SOURCE_BOX,         /* corners p0, p1 (axis-aligned); h0 inside */
-  VG_SOURCE_SPHERE,      /* centre p0, radius r0; h0 inside */
-  VG_SOURCE_CYLINDER     /* axis p0 p1, radii r0 at p0, r1 at p1 (a cone
-                            where they differ); h0 to h1 along the axis */
+  VG_SOURCE_VGRID_NODE, /* at p0, spacing h0, weight a */
+  VG_SOURCE_VGRID_LINE, /* p0 to p1, spacing h0 to h1, weight a */
+  VG_SOURCE_POINT,      /* p0; h0 within radius r0 */
+  VG_SOURCE_LINE,       /* segment p0 p1; h0 to h1, within radius r0 */
+  VG_SOURCE_TRIANGLE,   /* p0 p1 p2; h0 within distance r0 */
+  VG_SOURCE_BOX,        /* corners p0, p1 (axis-aligned); h0 inside */
+  VG_SOURCE_SPHERE,     /* centre p0, radius r0; h0 inside */
+  VG_SOURCE_CYLINDER    /* axis p0 p1, radii r0 at p0, r1 at p1 (a cone
+                           where they differ); h0 to h1 along the axis */
 };
 
 struct vg_source {
   enum vg_source_kind kind;
   double p0[3], p1[3], p2[3];
-  double h0, h1;         /* spacing, length unit of the input, > 0 */
-  double r0, r1;         /* radii, >= 0 */
-  double growth;         /* per-source growth rate > 1; 0: the global one */
-  double an, bn, alpha;  /* VGRID intensities; an > 0; bn, alpha as read */
+  double h0, h1;        /* spacing, length unit of the input, > 0 */
+  double r0, r1;        /* radii, >= 0 */
+  double growth;        /* per-source growth rate > 1; 0: the global one */
+  double an, bn, alpha; /* VGRID intensities; an > 0; bn, alpha as read */
   double stretch, sp0, sp1, u[3], p[3]; /* VGRID stretching data, as read */
   double layer0[3], layer1[3]; /* delta1 rate1 rate2 at p0 and p1 (grid=2) */
   char group[32];
@@ -63,28 +63,31 @@ struct vg_size_map {
    * smaller than a 32nd of the domain's box is found only where another size
    * is small. */
   double (*least)(void *user, const double lo[3], const double hi[3]);
-  double most;           /* the largest it asks for; 0: not known */
+  double most; /* the largest it asks for; 0: not known */
   void *user;
 };
 
 struct vg_sizing_options {
-  double h_min;          /* no size below this; 0: none */
-  double h_max;          /* no size above this; INFINITY: no limit; 0: within
-                            a surface the largest one that the surface or a
-                            source asks for, elsewhere no limit */
-  double growth;         /* growth rate g > 1 of neighbouring edges away from
-                            the surface; default 1.2 */
-  double scale;          /* multiplies h_min, h_max, growth - 1 and, of every
-                            source, spacing and growth - 1 (VGRID's ifact): a
-                            similar field, but for what the surface says */
-  int from_surface;      /* 1: boundary edges are sources (default) */
-  int threads;           /* 0: one per core; default 1 */
-  double coarseness;     /* >= 1: how much larger the finest cells of what is
-                            evaluated are; default 1 */
-  struct vg_team *team;  /* that makes it together (base/team.h), or NULL */
+  double h_min;         /* no size below this; 0: none */
+  double h_max;         /* no size above this; INFINITY: no limit; 0: within
+                           a surface the largest one that the surface or a
+                           source asks for, elsewhere no limit */
+  double growth;        /* growth rate g > 1 of neighbouring edges away from
+                           the surface; default 1.2 */
+  double scale;         /* multiplies h_min, h_max, growth - 1 and, of every
+                           source, spacing and growth - 1 (VGRID's ifact): a
+                           similar field, but for what the surface says */
+  int from_surface;     /* 1: boundary edges are sources (default) */
+  int threads;          /* 0: one per core; default 1 */
+  double coarseness;    /* >= 1: how much larger the finest cells of what is
+                           evaluated are; default 1 */
+  struct vg_team *team; /* that makes it together (base/team.h), or NULL */
   const struct vg_size_map *map; /* NULL: none; borrowed for the call */
 };
-#define VG_SIZING_OPTIONS_INIT { 0, 0, 1.2, 1, 1, 1, 1, NULL, NULL }
+#define VG_SIZING_OPTIONS_INIT                                                 \
+  {                                                                            \
+    0, 0, 1.2, 1, 1, 1, 1, NULL, NULL                                          \
+  }
 
 /** The growth rate of a field whose sizes are `scale` times as large. */
 static inline double vg_scaled_growth(double growth, double scale)
@@ -92,7 +95,7 @@ static inline double vg_scaled_growth(double growth, double scale)
   return 1 + scale * (growth - 1);
 }
 
-struct vg_sizing;        /* opaque, read-only after vg_sizing_new */
+struct vg_sizing; /* opaque, read-only after vg_sizing_new */
 
 /** Build the field over the bounding box of `surface` (and of the sources).
  *
@@ -105,8 +108,8 @@ struct vg_sizing;        /* opaque, read-only after vg_sizing_new */
  * Result depends on the arguments only, bit by bit, and not on threads. */
 vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
                         const struct vg_source *source,
-                        const struct vg_mesh *surface,
-                        struct vg_sizing **out, struct vg_error *err);
+                        const struct vg_mesh *surface, struct vg_sizing **out,
+                        struct vg_error *err);
 
 /** A field of its own: the sizes of another times a factor >= 1, but no more
  * than `most` has there. Cost: a copy, and an evaluation of `most` for each
@@ -175,7 +178,6 @@ size_t vg_sizing_leaves(const struct vg_sizing *s);
 /** The exact source law at x, clamped, without octree, surface or bound on
  * the gradient. Cost O(n) and an allocation. INFINITY when n is 0. */
 double vg_sizing_sources_at(const struct vg_sizing_options *options, size_t n,
-                            const struct vg_source *source,
-                            const double x[3]);
+                            const struct vg_source *source, const double x[3]);
 
 #endif

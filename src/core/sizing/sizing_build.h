@@ -7,23 +7,23 @@
 #include "core/sizing/sizing_octree.h"
 
 #define VG_OCTREE_TOP (1u << VG_OCTREE_DEPTH) /* side of the root cube */
-#define VG_OCTREE_GRAIN 128    /* cells or points for a thread at a time */
+#define VG_OCTREE_GRAIN 128 /* cells or points for a thread at a time */
 
 struct vg_octree_cell {
-  uint32_t at[3];       /* lower corner, in units of the finest cell */
-  uint32_t corner[8];   /* points */
-  uint32_t child;       /* first of eight; 0: leaf */
-  uint32_t hint;        /* for the search of near samples */
-  float floor;          /* no value within is smaller */
-  float rest;           /* no cell below this times its side is split */
+  uint32_t at[3];     /* lower corner, in units of the finest cell */
+  uint32_t corner[8]; /* points */
+  uint32_t child;     /* first of eight; 0: leaf */
+  uint32_t hint;      /* for the search of near samples */
+  float floor;        /* no value within is smaller */
+  float rest;         /* no cell below this times its side is split */
 };
 
 struct vg_octree_point {
-  uint32_t at[3];       /* in units of the finest cell */
-  uint32_t parent[4];   /* of a middle: ends of the edge, corners of the face */
+  uint32_t at[3];     /* in units of the finest cell */
+  uint32_t parent[4]; /* of a middle: ends of the edge, corners of the face */
   uint32_t hint;
   float h;
-  uint8_t n_parent;     /* 0: corner of the root or centre; 2 or 4 */
+  uint8_t n_parent; /* 0: corner of the root or centre; 2 or 4 */
   uint8_t hangs;
 };
 
@@ -36,7 +36,7 @@ struct vg_octree_build {
   size_t level[VG_OCTREE_DEPTH + 2]; /* first cell of each; n_cell behind */
   int n_level;
   double lo[3], unit, floor;
-  float surface;        /* times floor where the surface rules, not sources */
+  float surface; /* times floor where the surface rules, not sources */
   int threads;
   struct vg_team *team;
 };
@@ -62,8 +62,7 @@ static inline float vg_octree_hang(const struct vg_octree_build *b,
 {
   double sum = 0;
 
-  for (int k = 0; k < p->n_parent; k++)
-    sum += (double)b->point[p->parent[k]].h;
+  for (int k = 0; k < p->n_parent; k++) sum += (double)b->point[p->parent[k]].h;
   return (float)(sum / p->n_parent);
 }
 

@@ -145,8 +145,7 @@ static void halve_body(void *context, size_t first, size_t end, int worker)
     up->n = r->n - lane / 2 * r->unit;
     r->n -= up->n;
     up->key = r->key + r->n;
-    select_keys(r->key, r->n + up->n, r->n,
-                longest_side(r->key, r->n + up->n));
+    select_keys(r->key, r->n + up->n, r->n, longest_side(r->key, r->n + up->n));
   }
 }
 
@@ -155,8 +154,7 @@ static void order_body(void *context, size_t first, size_t end, int worker)
   struct range *r = context;
 
   (void)worker;
-  for (size_t i = first; i < end; i++)
-    order_keys(r[i].key, r[i].n, r[i].unit);
+  for (size_t i = first; i < end; i++) order_keys(r[i].key, r[i].n, r[i].unit);
 }
 
 /* Ranges are spread over the array for the next round, from the end. */
@@ -267,7 +265,7 @@ struct filling {
   size_t n;
   struct vg_bvh_block *block;
   struct vg_bvh_group *group;
-  struct bound *bound, *up;     /* of what goes in, and of what comes out */
+  struct bound *bound, *up; /* of what goes in, and of what comes out */
 };
 
 /* The last block is padded by repeating its last sample. */
@@ -287,8 +285,7 @@ static void block_body(void *context, size_t first, size_t end, int worker)
       b->p[k][lane] = (float)(f->p[from][k] - b->origin[k]);
     }
   }
-  for (size_t i = first; i < end; i++)
-    bound_block(f->block + i, f->up + i);
+  for (size_t i = first; i < end; i++) bound_block(f->block + i, f->up + i);
 }
 
 static void group_body(void *context, size_t first, size_t end, int worker)
@@ -332,13 +329,16 @@ static void fill_tree(struct filling *f, struct vg_bvh_tree *t, int threads)
   f->up = bound;
 }
 
-static int fill_trees(struct vg_bvh *t, const double (*p)[3],
-                      const double *h, struct key *key,
-                      const size_t count[VG_BVH_CLASSES],
+static int fill_trees(struct vg_bvh *t, const double (*p)[3], const double *h,
+                      struct key *key, const size_t count[VG_BVH_CLASSES],
                       struct bound *bound, int threads)
 {
-  struct filling f = { .p = p, .h = h, .key = key, .block = t->block,
-                       .group = t->group, .up = bound };
+  struct filling f = { .p = p,
+                       .h = h,
+                       .key = key,
+                       .block = t->block,
+                       .group = t->group,
+                       .up = bound };
 
   for (int c = 0; c < VG_BVH_CLASSES; c++) {
     if (!count[c]) continue;

@@ -21,7 +21,7 @@
 
 #include "base/status.h"
 
-#define VG_BVH_PLATEAU 0.25   /* H3 */
+#define VG_BVH_PLATEAU 0.25 /* H3 */
 #define VG_BVH_OFFSET 0.05
 #define VG_BVH_KNEE 1.5
 #define VG_BVH_STEEP 0.5
@@ -33,7 +33,7 @@ struct vg_bvh;
 static inline double vg_bvh_offset(double slope)
 {
   return slope * VG_BVH_PLATEAU < VG_BVH_OFFSET ? slope * VG_BVH_PLATEAU
-                                                  : VG_BVH_OFFSET;
+                                                : VG_BVH_OFFSET;
 }
 
 /** The slope from below beyond the knee, at least that before it. */
@@ -45,8 +45,7 @@ static inline double vg_bvh_steep(double slope)
 /** What size h gives from below beyond the knee, less vg_bvh_steep d, in h. */
 static inline double vg_bvh_rise(double slope)
 {
-  return 1 + vg_bvh_offset(slope) +
-         (vg_bvh_steep(slope) - slope) * VG_BVH_KNEE;
+  return 1 + vg_bvh_offset(slope) + (vg_bvh_steep(slope) - slope) * VG_BVH_KNEE;
 }
 
 /** Build over n >= 1 samples; p [n][3] and h [n] are copied. threads: as
@@ -72,7 +71,7 @@ double vg_bvh_above(const struct vg_bvh *t, const double lo[3],
  * of use. is_known is 0 at first. */
 struct vg_bvh_reach {
   double mid[3];
-  float trifle;            /* less than that need not be known */
+  float trifle; /* less than that need not be known */
   int is_known;
   float most[VG_BVH_CLASSES];
 };
@@ -83,14 +82,12 @@ struct vg_bvh_reach {
  * @param reach  for speed, or NULL
  * @param by     out: the size of the sample that gives it, 0 where none
  *               exceeds `above` */
-double vg_bvh_below(const struct vg_bvh *t, const double x[3],
-                    double above, double enough,
-                    struct vg_bvh_reach *reach, double *by);
+double vg_bvh_below(const struct vg_bvh *t, const double x[3], double above,
+                    double enough, struct vg_bvh_reach *reach, double *by);
 
 /** A sample of size `by` gives v from below somewhere: how much more than by
  * s `far` that falls over a distance of `far` at most. 0 if by is. */
-double vg_bvh_falls(const struct vg_bvh *t, double by, double v,
-                    double far);
+double vg_bvh_falls(const struct vg_bvh *t, double by, double v, double far);
 
 /** What a sample of size `by` gives from below at its knee. */
 double vg_bvh_knee(const struct vg_bvh *t, double by);

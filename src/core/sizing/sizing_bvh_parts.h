@@ -17,7 +17,7 @@
 #define VG_BVH_LANES 8
 #define VG_BVH_LEVELS 12
 #define VG_BVH_MARGIN 2e-6f
-#define VG_BVH_NEVER 1e38f  /* a size that none has */
+#define VG_BVH_NEVER 1e38f /* a size that none has */
 
 struct vg_bvh_block {
   double origin[3];
@@ -40,12 +40,12 @@ struct vg_bvh_tree {
 };
 
 struct vg_bvh {
-  struct vg_bvh_block *block;  /* of all trees, one after the other */
+  struct vg_bvh_block *block; /* of all trees, one after the other */
   struct vg_bvh_group *group;
   struct vg_bvh_tree tree[VG_BVH_CLASSES];
   int n_tree;
   float slope, offset;
-  float steep, rise;            /* from below, beyond the knee */
+  float steep, rise; /* from below, beyond the knee */
 };
 
 #endif

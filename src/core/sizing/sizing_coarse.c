@@ -19,8 +19,8 @@ static float size_at(const struct coarsening *c, const double x[3], float h)
 }
 
 /* Entry e of the tree, the cube at lo; the least size in it. */
-static float coarsen(const struct coarsening *c, uint32_t e,
-                     const double lo[3], double side)
+static float coarsen(const struct coarsening *c, uint32_t e, const double lo[3],
+                     double side)
 {
   float least = INFINITY;
   double x[3];

@@ -8,8 +8,8 @@
 #include "base/memory.h"
 #include "core/sizing/sizing_probes.h"
 
-#define NEARBY 3        /* spacings around a source that has no place */
-#define MANY 200        /* more sources are looked at in less detail */
+#define NEARBY 3 /* spacings around a source that has no place */
+#define MANY 200 /* more sources are looked at in less detail */
 
 struct finder {
   const struct vg_sizing_options *options;
@@ -23,7 +23,9 @@ struct finder {
 /* Faces that hold a source back. */
 struct holders {
   size_t n, cap;
-  struct holder { double edge, distance; } *item;
+  struct holder {
+    double edge, distance;
+  } * item;
 };
 
 void vg_effects_release(struct vg_effects *h)
@@ -74,8 +76,7 @@ static void measure(const struct vg_mesh *m, size_t tri, const double x[3],
 static int find_faces(const struct finder *f, struct vg_limited_source *h,
                       struct holders *all)
 {
-  const double growth = vg_scaled_growth(f->options->growth,
-                                         f->options->scale);
+  const double growth = vg_scaled_growth(f->options->growth, f->options->scale);
   double most = 0;
 
   h->face = SIZE_MAX;
@@ -104,7 +105,8 @@ static int lets_go(const struct holders *all, double growth, double asked)
 {
   for (size_t i = 0; i < all->n; i++)
     if (vg_sizing_below(growth, all->item[i].edge, all->item[i].distance) >
-        asked) return 0;
+        asked)
+      return 0;
   return 1;
 }
 
@@ -160,8 +162,7 @@ static int is_limited(const struct vg_limited_source *h, int is_wide)
 
 /* Keep a place around which sizes are more than twice as large, four of them
  * off. */
-static int keep_place(struct finder *f, size_t i, const double x[3],
-                      double got)
+static int keep_place(struct finder *f, size_t i, const double x[3], double got)
 {
   struct vg_steep_place p = { .got = got, .source = i };
   int is_small = 0;
@@ -173,8 +174,7 @@ static int keep_place(struct finder *f, size_t i, const double x[3],
     is_small = vg_sizing_at(f->sizing, p.x) > 2 * got;
   }
   if (!is_small) return 0;
-  if (vg_reserve(&f->out->place, &f->cap_place, f->out->n_place + 1,
-                 sizeof p))
+  if (vg_reserve(&f->out->place, &f->cap_place, f->out->n_place + 1, sizeof p))
     return -1;
   memcpy(p.x, x, sizeof p.x);
   f->out->place[f->out->n_place++] = p;
@@ -295,8 +295,9 @@ static vg_status list_outside(struct finder *f, const struct vg_probes *p,
     if (vg_reserve(&f->out->outside, &f->cap_outside, f->out->n_outside + 1,
                    sizeof *f->out->outside))
       return vg_fail_memory(err, "the sources");
-    f->out->outside[f->out->n_outside++] =
-      (struct vg_outside_source){ i, is_beyond(p, j, end, lo, hi) };
+    f->out->outside[f->out->n_outside++] = (struct vg_outside_source){
+      i, is_beyond(p, j, end, lo, hi)
+    };
   }
   return VG_OK;
 }
@@ -337,13 +338,15 @@ vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
                           const struct vg_mesh *front,
                           const struct vg_mesh *surface,
                           const struct vg_sizing *sizing,
-                          struct vg_effects *out,
-                          struct vg_error *err)
+                          struct vg_effects *out, struct vg_error *err)
 {
   struct vg_probes p = VG_PROBES_INIT, wide = VG_PROBES_INIT;
   struct vg_effects found = VG_EFFECTS_INIT;
-  struct finder f = { .options = options, .source = source, .front = front,
-                      .sizing = sizing, .out = &found };
+  struct finder f = { .options = options,
+                      .source = source,
+                      .front = front,
+                      .sizing = sizing,
+                      .out = &found };
   uint8_t *is_met;
   vg_status st;
 
@@ -352,10 +355,8 @@ vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
   is_met = vg_calloc(n, 1);
   for (size_t i = 0; i < n; i++)
     vg_probes_shape(&p, source + i, (uint32_t)i, n <= MANY);
-  if (!is_met || p.refused)
-    st = vg_fail_memory(err, "the places of sources");
-  else
-    st = find(&f, &p, &wide, is_met, surface, err);
+  if (!is_met || p.refused) st = vg_fail_memory(err, "the places of sources");
+  else st = find(&f, &p, &wide, is_met, surface, err);
   vg_probes_release(&p);
   vg_probes_release(&wide);
   free(is_met);

@@ -13,7 +13,7 @@
 #include "core/sizing/sizing.h"
 
 /** Held back: sizes above this times what the source asks for ... */
-#define VG_LIMITED_RATIO 1.5   /* H5 */
+#define VG_LIMITED_RATIO 1.5 /* H5 */
 /** ... in this share of the places looked at, or more. */
 #define VG_LIMITED_SHARE 0.25
 
@@ -22,7 +22,7 @@
 #define VG_MET_STEEP 0.5
 
 struct vg_limited_source {
-  size_t source;         /* its index */
+  size_t source;             /* its index */
   size_t n_place, n_limited; /* in the void; of them with too large a size */
   double at[3];          /* where it gets least, if all are held back: its best
                             place; else the one where most is amiss */
@@ -37,7 +37,7 @@ struct vg_limited_source {
 /** A source without any place in the fluid, nor one three spacings away. */
 struct vg_outside_source {
   size_t source;
-  int is_beyond;         /* outside the box of the surface */
+  int is_beyond; /* outside the box of the surface */
 };
 
 /** A place of a source, and the size there, which is much less than around
@@ -50,18 +50,21 @@ struct vg_steep_place {
 /** A source that the mesh does not meet in VG_LIMITED_SHARE of such places. */
 struct vg_unmet_source {
   size_t source, n_place, n_unmet;
-  struct vg_steep_place place;          /* the first of them */
+  struct vg_steep_place place; /* the first of them */
 };
 
 struct vg_effects {
   size_t n, n_outside, n_place, n_unmet;
-  struct vg_limited_source *item;  /* [n], in the order of the sources */
-  struct vg_outside_source *outside;  /* [n_outside], likewise */
+  struct vg_limited_source *item;    /* [n], in the order of the sources */
+  struct vg_outside_source *outside; /* [n_outside], likewise */
   struct vg_steep_place *place;  /* [n_place], likewise; where sizes may change
                                    by more than VG_MET_STEEP over a length */
   struct vg_unmet_source *unmet; /* [n_unmet], likewise */
 };
-#define VG_EFFECTS_INIT { 0 }
+#define VG_EFFECTS_INIT                                                        \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /** Find the sources that are held back, and those that are outside.
  *
@@ -77,8 +80,7 @@ vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
                           const struct vg_mesh *front,
                           const struct vg_mesh *surface,
                           const struct vg_sizing *sizing,
-                          struct vg_effects *out,
-                          struct vg_error *err);
+                          struct vg_effects *out, struct vg_error *err);
 
 /** Find what a mesh does not meet. Collective; h: of rank 0, as found before
  * the mesh was made; elsewhere empty, and filled likewise, but for item and

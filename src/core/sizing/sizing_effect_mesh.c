@@ -9,7 +9,7 @@
 
 struct meeting {
   const struct vg_effects *effects;
-  atomic_uchar *is_met;      /* [n_place] */
+  atomic_uchar *is_met; /* [n_place] */
 };
 
 static void box_of(const struct vg_slice *s, double lo[3], double hi[3])
@@ -88,9 +88,9 @@ vg_status vg_effects_in_mesh(struct vg_comm *c, const struct vg_slices *s,
   m.is_met = vg_calloc(h->n_place, sizeof *m.is_met);
   met = vg_calloc(h->n_place, sizeof *met);
   h->unmet = vg_calloc(h->n_place, sizeof *h->unmet);
-  st = m.is_met && met && h->unmet ? vg_slices_each(s, threads, meet_slice,
-                                                    &m, err)
-                                   : vg_fail_memory(err, "the sources");
+  st = m.is_met && met && h->unmet
+       ? vg_slices_each(s, threads, meet_slice, &m, err)
+       : vg_fail_memory(err, "the sources");
   VG_TRY(vg_comm_agree(c, st, err));
   for (size_t i = 0; i < h->n_place; i++) met[i] = m.is_met[i];
   VG_TRY(vg_comm_sum(c, h->n_place, met, err));

@@ -14,8 +14,8 @@ double vg_stat_clamp(const struct vg_stat *f, double h)
 /* Where the upper bound is below the sources it holds, and the lower one,
  * which costs most, need not be known. */
 double vg_stat_combine(const struct vg_stat *f, const double x[3],
-                        double source, struct vg_bvh_reach *reach,
-                        uint32_t *hint)
+                       double source, struct vg_bvh_reach *reach,
+                       uint32_t *hint)
 {
   double h = source < f->h_max ? source : f->h_max, most, by;
 
@@ -29,14 +29,14 @@ double vg_stat_combine(const struct vg_stat *f, const double x[3],
 }
 
 double vg_stat_at(const struct vg_stat *f, const double x[3],
-                   struct vg_bvh_reach *reach, uint32_t *hint)
+                  struct vg_bvh_reach *reach, uint32_t *hint)
 {
   return vg_stat_combine(f, x, vg_source_at(&f->set, x), reach, hint);
 }
 
-double vg_stat_floor(const struct vg_stat *f, const double lo[3],
-                      double side, struct vg_bvh_reach *reach,
-                      uint32_t *hint, int *by_sources)
+double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
+                     struct vg_bvh_reach *reach, uint32_t *hint,
+                     int *by_sources)
 {
   const double far = 0.8660254037844387 * side;
   double hi[3], mid[3], h, most, below, by, more, fall = far * f->slope;

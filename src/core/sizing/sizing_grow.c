@@ -21,11 +21,11 @@
  * Cells know those around them by their parents', so a middle that several
  * cells have belongs to the first of them, and each counts its own: no table
  * of points is searched, and threads share nothing. */
-#define TOLERANCE 0.03   /* H1 */
-#define MAP_CELLS 32       /* H7 */
+#define TOLERANCE 0.03 /* H1 */
+#define MAP_CELLS 32   /* H7 */
 #define NONE UINT32_MAX
 #define POINT_MAX (UINT32_MAX - 1)
-#define FAMILIES 16     /* of eight cells, for a thread at a time */
+#define FAMILIES 16 /* of eight cells, for a thread at a time */
 
 /* Room from the beginning. Blocks of tens of megabytes grow by new addresses,
  * smaller ones by copies, which one thread would make. */
@@ -39,18 +39,18 @@ struct share {
 
 struct level {
   struct vg_octree_build *b;
-  size_t first, n;      /* cells */
-  uint32_t half;        /* of the side */
+  size_t first, n; /* cells */
+  uint32_t half;   /* of the side */
   double side;
-  uint8_t *mark;        /* [n] split */
-  float *centre;        /* [n] the field there, NAN where not asked for */
+  uint8_t *mark; /* [n] split */
+  float *centre; /* [n] the field there, NAN where not asked for */
   size_t n_split;
-  uint32_t *which;      /* [n_split] cells */
-  uint32_t (*around)[27];       /* [n_split] cells by direction, itself at
-                                   13; only across faces and edges */
-  const uint32_t (*above)[27];  /* the same of their parents */
-  uint32_t *own;        /* [n_split] middles that it owns */
-  uint32_t *base;       /* [n_split + 1] the first point of each */
+  uint32_t *which;             /* [n_split] cells */
+  uint32_t (*around)[27];      /* [n_split] cells by direction, itself at
+                                  13; only across faces and edges */
+  const uint32_t (*above)[27]; /* the same of their parents */
+  uint32_t *own;               /* [n_split] middles that it owns */
+  uint32_t *base;              /* [n_split + 1] the first point of each */
   struct share share[27];
 };
 
@@ -66,7 +66,7 @@ static void coordinates(int i, int at[3])
 struct family {
   const struct level *l;
   struct vg_bvh_reach reach;
-  float face[125];      /* field at the centres of their faces; NAN */
+  float face[125]; /* field at the centres of their faces; NAN */
 };
 
 /* Cells around this one are next. */
@@ -145,8 +145,8 @@ static int is_unsampled(const struct vg_octree_build *b, double side)
   return map && !map->least && MAP_CELLS * side > VG_OCTREE_TOP * b->unit;
 }
 
-static int wants_split(struct family *y, struct vg_octree_cell *c,
-                       int sibling, float *centre)
+static int wants_split(struct family *y, struct vg_octree_cell *c, int sibling,
+                       float *centre)
 {
   const struct level *l = y->l;
   const struct vg_octree_build *b = l->b;
@@ -159,11 +159,10 @@ static int wants_split(struct family *y, struct vg_octree_cell *c,
   vg_octree_place(b, c->at, lo);
   for (int k = 0; k < 3; k++) hi[k] = lo[k] + l->side;
   c->floor = (float)vg_stat_floor(b->f, lo, l->side, &y->reach, &c->hint,
-                                   &by_sources);
+                                  &by_sources);
   c->rest = by_sources ? c->floor : c->floor * b->surface;
   if (l->side <= b->floor * (double)c->rest) return 0;
-  if (!b->f->set.n_mean && b->f->h_max <= c->floor * (1 + TOLERANCE))
-    return 0;
+  if (!b->f->set.n_mean && b->f->h_max <= c->floor * (1 + TOLERANCE)) return 0;
   for (int i = 0; i < 8; i++) {
     h[i] = b->point[c->corner[i]].h;
     if (h[i] < low) low = h[i];
@@ -200,7 +199,8 @@ static vg_status decide(struct level *l, struct vg_error *err)
   const struct vg_team_out out[] = {
     { b->cell + l->first, 8 * sizeof *b->cell, 0, NULL },
     { l->mark, 8 * sizeof *l->mark, 0, NULL },
-    { l->centre, 8 * sizeof *l->centre, 0, NULL } };
+    { l->centre, 8 * sizeof *l->centre, 0, NULL }
+  };
   vg_status st;
   size_t n = 0;
 
@@ -290,7 +290,7 @@ static void make_shares(struct level *l)
 /* Splits that have middle i of split s, and the first of them. */
 struct sharing {
   size_t first;
-  int at;               /* the middle in its lattice */
+  int at; /* the middle in its lattice */
   unsigned n;
 };
 
@@ -349,8 +349,8 @@ static unsigned full_count(const struct vg_octree_point *p)
 
 /* Middle i that split s owns. Its parents are what its odd coordinates span:
  * points of levels before, known by now. */
-static void make_point(const struct level *l, struct family *y, size_t s,
-                       int i, unsigned n_cell, struct vg_octree_point *p)
+static void make_point(const struct level *l, struct family *y, size_t s, int i,
+                       unsigned n_cell, struct vg_octree_point *p)
 {
   struct vg_octree_build *b = l->b;
   const struct vg_octree_cell *c = b->cell + l->which[s];
@@ -359,8 +359,7 @@ static void make_point(const struct level *l, struct family *y, size_t s,
 
   coordinates(i, at);
   *p = (struct vg_octree_point){ .hint = c->hint };
-  for (int k = 0; k < 3; k++)
-    p->at[k] = c->at[k] + l->half * (uint32_t)at[k];
+  for (int k = 0; k < 3; k++) p->at[k] = c->at[k] + l->half * (uint32_t)at[k];
   for (int j = 0; j < 8 && i != 13; j++) {
     int on = 1;
 
@@ -414,7 +413,7 @@ static void split_body(void *context, size_t first, size_t end, int worker)
       if (is_corner(i)) continue;
       all = find_sharing(l, s, i);
       id[i] = l->base[all.first] + (uint32_t)__builtin_popcount(
-                l->own[all.first] & ((1u << all.at) - 1));
+                                     l->own[all.first] & ((1u << all.at) - 1));
       if (all.first != s) continue;
       make_point(l, &y, s, i, all.n, b->point + next++);
     }
@@ -450,10 +449,10 @@ static vg_status split(struct level *l, struct vg_error *err)
   struct vg_octree_build *b = l->b;
   const struct vg_team_out out[] = {
     { b->cell + b->n_cell, 8 * sizeof *b->cell, 0, NULL },
-    { b->point, sizeof *b->point, 0, l->base } };
+    { b->point, sizeof *b->point, 0, l->base }
+  };
   vg_status st = vg_team_for(b->team, b->threads, l->n_split, FAMILIES,
-                             split_body, l, sizeof out / sizeof *out, out,
-                             err);
+                             split_body, l, sizeof out / sizeof *out, out, err);
 
   b->n_cell += 8 * l->n_split;
   return st;
@@ -470,8 +469,7 @@ static vg_status split_level(struct level *l, struct vg_error *err)
   l->base = vg_alloc(l->n_split + 1, sizeof *l->base);
   if (!l->which || !l->around || !l->own || !l->base || number_splits(l))
     st = vg_fail_memory(err, "the octree of sizes");
-  else
-    st = split(l, err);
+  else st = split(l, err);
   free(l->which);
   free(l->own);
   free(l->base);
@@ -484,11 +482,14 @@ static vg_status grow_level(struct vg_octree_build *b, int level,
 {
   size_t first = b->level[level], n = b->level[level + 1] - first;
   uint32_t half = VG_OCTREE_TOP >> (level + 1);
-  struct level l = { .b = b, .first = first, .n = n, .half = half,
+  struct level l = { .b = b,
+                     .first = first,
+                     .n = n,
+                     .half = half,
                      .side = b->unit * 2 * half,
                      .mark = vg_alloc(n, sizeof *l.mark),
                      .centre = vg_alloc(n, sizeof *l.centre),
-                     .above = (const uint32_t (*)[27])*above };
+                     .above = (const uint32_t(*)[27]) * above };
   vg_status st;
 
   make_shares(&l);
@@ -523,7 +524,7 @@ static int make_root(struct vg_octree_build *b)
 
 vg_status vg_octree_grow(struct vg_octree_build *b, struct vg_error *err)
 {
-  uint32_t (*above)[27] = NULL;
+  uint32_t(*above)[27] = NULL;
   vg_status st = VG_OK;
 
   if (make_root(b)) return vg_fail_memory(err, "the octree of sizes");

@@ -14,8 +14,8 @@
  * one of them asks for it. */
 struct limit {
   struct vg_octree_build *b;
-  _Atomic uint32_t *bits;  /* [n_point] of floats above 0: in their order */
-  float *before;           /* [n_point] */
+  _Atomic uint32_t *bits;    /* [n_point] of floats above 0: in their order */
+  float *before;             /* [n_point] */
   _Atomic uint8_t *round_of; /* [n_point] when it was lowered last */
   uint8_t round;
   int backwards;
@@ -47,12 +47,12 @@ static int lower(_Atomic uint32_t *at, float h)
   while (bits < old &&
          !atomic_compare_exchange_weak_explicit(at, &old, bits,
                                                 memory_order_relaxed,
-                                                memory_order_relaxed));
+                                                memory_order_relaxed))
+    ;
   return bits < old;
 }
 
-static int lower_corners(const struct limit *l,
-                         const struct vg_octree_cell *c)
+static int lower_corners(const struct limit *l, const struct vg_octree_cell *c)
 {
   static const unsigned char apart[8] = { 0, 1, 1, 2, 1, 2, 2, 3 };
   const struct vg_octree_build *b = l->b;
@@ -61,8 +61,8 @@ static int lower_corners(const struct limit *l,
   int changed = 0;
 
   for (int i = 0; i < 8; i++) {
-    h[i] = value(atomic_load_explicit(l->bits + c->corner[i],
-                                      memory_order_relaxed));
+    h[i] = value(
+      atomic_load_explicit(l->bits + c->corner[i], memory_order_relaxed));
     low = h[i] < low ? h[i] : low;
     high = h[i] > high ? h[i] : high;
   }
@@ -157,12 +157,13 @@ static void renew(struct limit *l)
 
 vg_status vg_octree_limit(struct vg_octree_build *b, struct vg_error *err)
 {
-  struct limit l = { .b = b, .bits = vg_alloc(b->n_point, sizeof *l.bits),
+  struct limit l = { .b = b,
+                     .bits = vg_alloc(b->n_point, sizeof *l.bits),
                      .before = vg_alloc(b->n_point, sizeof *l.before),
-                     .round_of = vg_calloc(b->n_point, 1), .round = 1 };
-  const struct vg_team_out out[] = {
-    { l.bits, sizeof *l.bits, 0, NULL },
-    { l.before, sizeof *l.before, 0, NULL } };
+                     .round_of = vg_calloc(b->n_point, 1),
+                     .round = 1 };
+  const struct vg_team_out out[] = { { l.bits, sizeof *l.bits, 0, NULL },
+                                     { l.before, sizeof *l.before, 0, NULL } };
   vg_status st = VG_OK;
   int any = -1;
 

@@ -21,9 +21,11 @@ vg_status vg_size_samples_check(const char *name, size_t n,
       return vg_fail(err, VG_ERR_INPUT, "%s: point %zu is not finite", name,
                      i + 1);
     if (!(h[i] > 0 && isfinite(h[i])))
-      return vg_fail(err, VG_ERR_INPUT, "%s: the edge length at point %zu, "
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: the edge length at point %zu, "
                      "(%.9g, %.9g, %.9g), is %g; it must be above 0 and "
-                     "finite", name, i + 1, x[i][0], x[i][1], x[i][2], h[i]);
+                     "finite",
+                     name, i + 1, x[i][0], x[i][1], x[i][2], h[i]);
   }
   return VG_OK;
 }

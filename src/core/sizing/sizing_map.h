@@ -5,7 +5,7 @@
 
 #include "core/sizing/sizing.h"
 
-struct vg_size_samples;      /* opaque, read-only */
+struct vg_size_samples; /* opaque, read-only */
 
 /** Refuse what has no meaning: VG_ERR_INPUT names the first point (from 1) that
  * is not finite or has a size that is not above 0 and finite. */

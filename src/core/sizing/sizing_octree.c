@@ -12,8 +12,8 @@
 /* Cells are not split below FLOOR times the size (H2), where the surface rules
  * SURFACE times as much (H6), unless sizes grow by more than STEEP. */
 #define FLOOR 1.25
-#define FLOOR_SLOPE 0.2   /* H11: FLOOR holds here, else with 1 / sqrt(slope) */
-#define FLOOR_MOST 2      /* and is no more than this */
+#define FLOOR_SLOPE 0.2 /* H11: FLOOR holds here, else with 1 / sqrt(slope) */
+#define FLOOR_MOST 2    /* and is no more than this */
 #define SURFACE 2
 #define STEEP 0.5
 
@@ -28,9 +28,9 @@ struct span {
 
 struct compaction {
   const struct vg_octree_build *b;
-  struct span *span;    /* [n_cell] how many below, then first of them */
+  struct span *span; /* [n_cell] how many below, then first of them */
   struct vg_octree *t;
-  size_t first;         /* cell of the level */
+  size_t first; /* cell of the level */
 };
 
 static void count_body(void *context, size_t first, size_t end, int worker)
@@ -81,7 +81,8 @@ static void emit_body(void *context, size_t first, size_t end, int worker)
       struct span below = m->span[child + j];
 
       m->t->child[m->span[i].split][j] = m->b->cell[child + j].child
-        ? next.split : VG_OCTREE_LEAF | next.leaf;
+                                         ? next.split
+                                         : VG_OCTREE_LEAF | next.leaf;
       next.least = below.least;
       m->span[child + j] = next;
       next.leaf += below.leaf;
@@ -125,8 +126,10 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
                           int threads, struct vg_team *team,
                           struct vg_octree *out, struct vg_error *err)
 {
-  struct vg_octree_build b = { .f = f, .unit = side / VG_OCTREE_TOP,
-                               .max_cell = max_leaf, .threads = threads,
+  struct vg_octree_build b = { .f = f,
+                               .unit = side / VG_OCTREE_TOP,
+                               .max_cell = max_leaf,
+                               .threads = threads,
                                .team = team };
   vg_status st;
 
@@ -140,8 +143,7 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
   for (int k = 0; k < 3; k++) b.lo[k] = out->lo[k] = lo[k];
   out->side = side;
   st = vg_octree_grow(&b, err);
-  if (st >= 0 && vg_source_any(&f->set))
-    st = vg_octree_limit(&b, err);
+  if (st >= 0 && vg_source_any(&f->set)) st = vg_octree_limit(&b, err);
   if (st >= 0 && compact(&b, out))
     st = vg_fail_memory(err, "the octree of sizes");
   free(b.cell);
@@ -208,15 +210,14 @@ struct search {
 };
 
 /* Trilinear: least at a corner of what the box has of the leaf. */
-static void search_leaf(struct search *s, const float h[8],
-                        const double at[3], double side)
+static void search_leaf(struct search *s, const float h[8], const double at[3],
+                        double side)
 {
   for (int i = 0; i < 8; i++) {
     double x[3], f[3], v;
 
     for (int k = 0; k < 3; k++) {
-      x[k] = i >> k & 1 ? fmin(s->hi[k], at[k] + side)
-                        : fmax(s->lo[k], at[k]);
+      x[k] = i >> k & 1 ? fmin(s->hi[k], at[k] + side) : fmax(s->lo[k], at[k]);
       f[k] = (x[k] - at[k]) / side;
     }
     v = trilinear(h, f);

@@ -16,43 +16,46 @@ struct vg_stat {
   const struct vg_bvh *near;  /* from above; NULL: no surface */
   const struct vg_bvh *under; /* from below; NULL: nor any source */
   struct vg_source_set set;
-  double slope;                /* growth - 1 */
-  atomic_int *is_steep;        /* out: faces hold sources back beyond the knee
-                                  somewhere (sizing_bvh.h) */
-  double h_min, h_max;         /* clamp, 0 and INFINITY for none */
+  double slope;         /* growth - 1 */
+  atomic_int *is_steep; /* out: faces hold sources back beyond the knee
+                           somewhere (sizing_bvh.h) */
+  double h_min, h_max;  /* clamp, 0 and INFINITY for none */
 };
 
 #define VG_OCTREE_LEAF 0x80000000u
-#define VG_OCTREE_DEPTH 28     /* levels below the root */
+#define VG_OCTREE_DEPTH 28 /* levels below the root */
 
 struct vg_octree {
-  double lo[3], side;          /* root cube */
-  uint32_t root;               /* as an entry of child */
-  uint32_t (*child)[8];        /* [n_split] VG_OCTREE_LEAF | leaf, or split */
-  float *least;                /* [n_split] of the corners below */
-  float (*leaf)[8];            /* [n_leaf] corner sizes; x fastest, then y */
+  double lo[3], side;   /* root cube */
+  uint32_t root;        /* as an entry of child */
+  uint32_t (*child)[8]; /* [n_split] VG_OCTREE_LEAF | leaf, or split */
+  float *least;         /* [n_split] of the corners below */
+  float (*leaf)[8];     /* [n_leaf] corner sizes; x fastest, then y */
   size_t n_split, n_leaf;
 };
-#define VG_OCTREE_INIT { 0 }
+#define VG_OCTREE_INIT                                                         \
+  {                                                                            \
+    0                                                                          \
+  }
 
 double vg_stat_clamp(const struct vg_stat *f, double h);
 
 /** Value of the field at x before its gradient is limited. reach, hint: for
  * the searches (sizing_bvh.h), without influence. */
 double vg_stat_at(const struct vg_stat *f, const double x[3],
-                   struct vg_bvh_reach *reach, uint32_t *hint);
+                  struct vg_bvh_reach *reach, uint32_t *hint);
 
 /** The surface's bounds applied to the sources' size at x. */
 double vg_stat_combine(const struct vg_stat *f, const double x[3],
-                        double source, struct vg_bvh_reach *reach,
-                        uint32_t *hint);
+                       double source, struct vg_bvh_reach *reach,
+                       uint32_t *hint);
 
 /** Lower bound of the field within a cube; of VGRID's mean an estimate from
  * the centre, which is good in a cube that resolves its sources.
  * by_sources out: 1: they ask for less than the surface does. */
-double vg_stat_floor(const struct vg_stat *f, const double lo[3],
-                      double side, struct vg_bvh_reach *reach,
-                      uint32_t *hint, int *by_sources);
+double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
+                     struct vg_bvh_reach *reach, uint32_t *hint,
+                     int *by_sources);
 
 /** Build over the cube lo, side with about max_leaf leaves at most. *out is
  * empty before, and on failure. threads: as vg_parallel_for's; the same tree
@@ -65,7 +68,8 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
 void vg_octree_release(struct vg_octree *t);
 
 /** Number of entries that are out of range or do not point down the tree, and
- * of sizes that are negative or no numbers; a check of stages (base/checks.h). */
+ * of sizes that are negative or no numbers; a check of stages (base/checks.h).
+ */
 size_t vg_octree_defects(const struct vg_octree *t);
 
 /** Trilinear size at x; outside the cube at the nearest point of it, and

@@ -8,9 +8,9 @@
 
 struct vg_sizing {
   struct vg_octree octree;
-  double growth, cap;      /* of sizes outside the octree; growth: rate - 1 */
-  double slope;            /* bound on the gradient in it */
-  double least, most;      /* over the octree */
+  double growth, cap;     /* of sizes outside the octree; growth: rate - 1 */
+  double slope;           /* bound on the gradient in it */
+  double least, most;     /* over the octree */
   struct vg_shmem common; /* where the octree's arrays are, if anywhere */
 };
 

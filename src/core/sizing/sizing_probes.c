@@ -47,8 +47,8 @@ static void make_way(int i, double way[3])
   }
 }
 
-static void put_ball(struct vg_probes *p, const struct vg_source *s,
-                     uint32_t i, int is_fine)
+static void put_ball(struct vg_probes *p, const struct vg_source *s, uint32_t i,
+                     int is_fine)
 {
   put_at(p, i, s->p0);
   for (int w = 0; w < (is_fine ? 14 : 6) && s->r0 > 0; w++) {
@@ -82,8 +82,8 @@ static void cross_ways(const double d[3], double way[2][3])
   }
 }
 
-static void put_tube(struct vg_probes *p, const struct vg_source *s,
-                     uint32_t i, int is_fine)
+static void put_tube(struct vg_probes *p, const struct vg_source *s, uint32_t i,
+                     int is_fine)
 {
   int is_cone = s->kind == VG_SOURCE_CYLINDER, n = is_fine ? 16 : 4;
   double d[3], way[2][3];
@@ -128,8 +128,8 @@ static void put_triangle(struct vg_probes *p, const struct vg_source *s,
     }
 }
 
-static void put_box(struct vg_probes *p, const struct vg_source *s,
-                    uint32_t i, int is_fine)
+static void put_box(struct vg_probes *p, const struct vg_source *s, uint32_t i,
+                    int is_fine)
 {
   const int n = is_fine ? 5 : 3;
 
@@ -146,8 +146,8 @@ static void put_box(struct vg_probes *p, const struct vg_source *s,
   }
 }
 
-void vg_probes_shape(struct vg_probes *p, const struct vg_source *s,
-                     uint32_t i, int is_fine)
+void vg_probes_shape(struct vg_probes *p, const struct vg_source *s, uint32_t i,
+                     int is_fine)
 {
   switch (s->kind) {
   case VG_SOURCE_VGRID_NODE: put_at(p, i, s->p0); break;
@@ -238,7 +238,8 @@ static void cross_face(struct vg_probes *p, const struct ray *ray,
 
     if (ray[i].y >= hi[1]) break;
     if (ray[i].z < lo[2] || ray[i].z > hi[2] || q->x[0] > hi[0] ||
-        !is_hit(v, ray + i)) continue;
+        !is_hit(v, ray + i))
+      continue;
     side = vg_orient3d(v[0], v[1], v[2], q->x);
     from_behind = vg_orient2d(v[0] + 1, v[1] + 1, v[2] + 1) > 0;
     if (from_behind && side < 0) q->crossings++;
@@ -260,9 +261,8 @@ vg_status vg_probes_cross(struct vg_probes *p, const struct vg_mesh *m,
   }
   qsort(ray, p->n, sizeof *ray, by_y);
   for (size_t i = 0; i < m->n_tri; i++) {
-    const double *const v[3] = { m->point[m->tri[i][0]],
-                                      m->point[m->tri[i][1]],
-                                      m->point[m->tri[i][2]] };
+    const double *const v[3] = { m->point[m->tri[i][0]], m->point[m->tri[i][1]],
+                                 m->point[m->tri[i][2]] };
 
     cross_face(p, ray, v);
   }

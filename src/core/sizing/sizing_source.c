@@ -49,7 +49,8 @@ static const char *defect(const struct vg_source *s)
     return "its kind is unknown; use one of the documented kinds";
   if (!is_finite3(s->p0)) return "point 1 is not finite; give numbers";
   if ((has_axis(s->kind) || s->kind == VG_SOURCE_TRIANGLE ||
-       s->kind == VG_SOURCE_BOX) && !is_finite3(s->p1))
+       s->kind == VG_SOURCE_BOX) &&
+      !is_finite3(s->p1))
     return "point 2 is not finite; give numbers";
   if (s->kind == VG_SOURCE_TRIANGLE && !is_finite3(s->p2))
     return "point 3 is not finite; give numbers";
@@ -59,7 +60,8 @@ static const char *defect(const struct vg_source *s)
     return "its spacing at point 2 is not positive; give a length above zero";
   if (is_vgrid(s->kind))
     return !isfinite(s->an) || s->an <= 0
-             ? "its intensity an is not positive; 1 is usual" : NULL;
+           ? "its intensity an is not positive; 1 is usual"
+           : NULL;
   if (!isfinite(s->r0) || s->r0 < 0)
     return "its radius is negative or not finite; give zero or more";
   if (s->growth != 0 && !(isfinite(s->growth) && s->growth > 1))
@@ -79,10 +81,9 @@ vg_status vg_source_check(size_t n, const struct vg_source *source,
     const char *what = defect(s);
 
     if (!what) continue;
-    return vg_fail(err, VG_ERR_INPUT,
-                   "source %zu%s%.32s%s at (%g, %g, %g): %s", i + 1,
-                   s->group[0] ? " (" : "", s->group, s->group[0] ? ")" : "",
-                   s->p0[0], s->p0[1], s->p0[2], what);
+    return vg_fail(err, VG_ERR_INPUT, "source %zu%s%.32s%s at (%g, %g, %g): %s",
+                   i + 1, s->group[0] ? " (" : "", s->group,
+                   s->group[0] ? ")" : "", s->p0[0], s->p0[1], s->p0[2], what);
   }
   return VG_OK;
 }
@@ -96,8 +97,7 @@ static double atan_ratio(double z)
 {
   double w = z, sum = 0, y;
 
-  if (z > 1)
-    return (1.57079632679489661923 - atan_ratio(1 / z) / z) / z;
+  if (z > 1) return (1.57079632679489661923 - atan_ratio(1 / z) / z) / z;
   for (int k = 0; k < 2; k++) w = w / (1 + sqrt(1 + w * w));
   y = -w * w;
   for (int k = 12; k >= 0; k--) sum = sum * y + 1.0 / (2 * k + 1);
@@ -158,15 +158,16 @@ static int line_kernel(const struct vg_source *s, const double x[3],
   r0 = c * c + q;
   r1 = (1 - c) * (1 - c) + q;
   cosine = q + c * (c - 1);
-  if (cosine > 0)
-    j = atan_ratio(sqrt(q) / cosine) / cosine;
+  if (cosine > 0) j = atan_ratio(sqrt(q) / cosine) / cosine;
   else
     j = (3.14159265358979323846 -
          (cosine < 0 ? atan_ratio(sqrt(q) / -cosine) * (sqrt(q) / -cosine)
-                     : 1.57079632679489661923)) / sqrt(q);
+                     : 1.57079632679489661923)) /
+        sqrt(q);
   *weight = j / len2;
   *size = ((s->h0 + c * (s->h1 - s->h0)) * j +
-           0.5 * (s->h1 - s->h0) * log_ratio(r1, r0)) / len2;
+           0.5 * (s->h1 - s->h0) * log_ratio(r1, r0)) /
+          len2;
   return 1;
 }
 
@@ -301,18 +302,10 @@ static double bounded_at(const struct vg_bounded *b, const double x[3])
 
   switch (s->kind) {
   case VG_SOURCE_VGRID_LINE:
-  case VG_SOURCE_LINE:
-    d = segment_distance(s->p0, s->p1, x, &t) - s->r0;
-    break;
-  case VG_SOURCE_TRIANGLE:
-    d = triangle_distance(s, x, way) - s->r0;
-    break;
-  case VG_SOURCE_BOX:
-    d = box_distance(s->p0, s->p1, x);
-    break;
-  case VG_SOURCE_CYLINDER:
-    d = cone_distance(s, x, &t);
-    break;
+  case VG_SOURCE_LINE: d = segment_distance(s->p0, s->p1, x, &t) - s->r0; break;
+  case VG_SOURCE_TRIANGLE: d = triangle_distance(s, x, way) - s->r0; break;
+  case VG_SOURCE_BOX: d = box_distance(s->p0, s->p1, x); break;
+  case VG_SOURCE_CYLINDER: d = cone_distance(s, x, &t); break;
   case VG_SOURCE_VGRID_NODE:
   case VG_SOURCE_POINT:
   case VG_SOURCE_SPHERE:
@@ -342,18 +335,15 @@ static double bounded_floor(const struct vg_bounded *b, const double mid[3],
 
   if (s->kind == VG_SOURCE_BOX || s->kind == VG_SOURCE_CYLINDER)
     return bounded_at(b, mid) - b->steep * sqrt(vg_dot(half, half));
-  if (s->kind == VG_SOURCE_TRIANGLE)
-    d = triangle_distance(s, mid, way);
-  else
-    d = segment_way(s->p0, is_line ? s->p1 : s->p0, mid, &t, way);
+  if (s->kind == VG_SOURCE_TRIANGLE) d = triangle_distance(s, mid, way);
+  else d = segment_way(s->p0, is_line ? s->p1 : s->p0, mid, &t, way);
   if (is_line) {
     double len;
 
     vg_sub(s->p1, s->p0, axis);
     len = sqrt(vg_dot(axis, axis));
     h += t * (s->h1 - s->h0);
-    if (len > 0)
-      h -= fabs(s->h1 - s->h0) / len * reach_along(axis, half);
+    if (len > 0) h -= fabs(s->h1 - s->h0) / len * reach_along(axis, half);
   }
   d -= s->r0 + reach_along(way, half);
   return most(h, b->least) + b->slope * most(d, 0);
@@ -393,8 +383,8 @@ static void prepare_bounded(const struct vg_sizing_options *o,
   b->law.h0 *= o->scale;
   b->law.h1 = has_axis(s->kind) ? s->h1 * o->scale : b->law.h0;
   if (is_vgrid(s->kind)) b->law.r0 = b->law.r1 = 0;
-  b->slope = !is_vgrid(s->kind) && s->growth > 0
-             ? o->scale * (s->growth - 1) : o->growth - 1;
+  b->slope = !is_vgrid(s->kind) && s->growth > 0 ? o->scale * (s->growth - 1)
+                                                 : o->growth - 1;
   b->least = least(b->law.h0, b->law.h1);
   b->steep = b->slope;
   bound_shape(b);
@@ -430,7 +420,7 @@ static void prepare_mean(const struct vg_sizing_options *o,
   m->h0 = 0.5 * (m->h0 + m->h1);
 }
 
-#define REACH 0.25   /* H10: that fraction */
+#define REACH 0.25 /* H10: that fraction */
 
 /* The mean varies next to a node over a fraction of the distance to the next
  * source, next to a line over a fraction of its length. Quadratic, as is the
@@ -449,8 +439,8 @@ static void find_reach(struct vg_source_set *set)
         int is_line = o->kind == VG_SOURCE_VGRID_LINE;
 
         if (j == i) continue;
-        d = least(d, segment_distance(o->p0, is_line ? o->p1 : o->p0, s->p0,
-                                      &t));
+        d = least(d,
+                  segment_distance(o->p0, is_line ? o->p1 : o->p0, s->p0, &t));
       }
     set->reach[i] = REACH * d;
   }
@@ -471,8 +461,7 @@ vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
   for (size_t i = 0; i < n; i++)
     if (is_vgrid(source[i].kind))
       prepare_mean(options, source + i, set->mean + set->n_mean++);
-    else
-      prepare_bounded(options, source + i, set->bounded + set->n_bounded++);
+    else prepare_bounded(options, source + i, set->bounded + set->n_bounded++);
   for (size_t i = 0; cones && i < n; i++)
     if (is_vgrid(source[i].kind))
       prepare_bounded(options, source + i, set->bounded + set->n_bounded++);
@@ -497,7 +486,8 @@ static int is_before(const double a[3], const double b[3])
 
 static double note_fault(struct vg_map_fault *f, const double x[3], double h)
 {
-  while (atomic_flag_test_and_set(&f->busy)) {}
+  while (atomic_flag_test_and_set(&f->busy)) {
+  }
   if (!f->n++ || is_before(x, f->x)) {
     memcpy(f->x, x, sizeof f->x);
     f->h = h;

@@ -12,11 +12,11 @@
 
 /** A bounded-growth source with what a quick rejection needs. */
 struct vg_bounded {
-  struct vg_source law;   /* spacings scaled, corners of a box ordered */
-  double slope;           /* growth away from the shape */
-  double steep;           /* Lipschitz constant of the law, >= slope */
-  double least;           /* smallest spacing */
-  double lo[3], hi[3];    /* box around all points of the shape */
+  struct vg_source law; /* spacings scaled, corners of a box ordered */
+  double slope;         /* growth away from the shape */
+  double steep;         /* Lipschitz constant of the law, >= slope */
+  double least;         /* smallest spacing */
+  double lo[3], hi[3];  /* box around all points of the shape */
 };
 
 /** Where a map gave what is no size; of several places that of the least x, y,
@@ -37,9 +37,12 @@ struct vg_source_set {
                                  next to the source */
   size_t n_bounded, n_mean;
   const struct vg_size_map *map; /* NULL: none; neither scaled nor owned */
-  struct vg_map_fault *fault;  /* of the map */
+  struct vg_map_fault *fault;    /* of the map */
 };
-#define VG_SOURCE_SET_INIT { 0 }
+#define VG_SOURCE_SET_INIT                                                     \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /** Refuse what has no meaning, naming the source (1-based) and its group. */
 vg_status vg_source_check(size_t n, const struct vg_source *source,

@@ -10,11 +10,11 @@
 #include "core/geometry/vector.h"
 #include "core/sizing/sizing_bvh.h"
 
-#define GRAIN 4096      /* points or faces for a thread at a time */
+#define GRAIN 4096 /* points or faces for a thread at a time */
 
 /* Ratio of the longest edge to the size above which the centroid of a face
  * is no sample. */
-#define STRETCHED 3.0   /* H4 */
+#define STRETCHED 3.0 /* H4 */
 
 /* 4 / sqrt(3): squared edge of the equilateral triangle of area 1. */
 #define EQUILATERAL 2.3094010767585034
@@ -33,22 +33,23 @@ vg_status vg_samples_check(const struct vg_mesh *m, struct vg_error *err)
     if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])) continue;
     return vg_fail(err, VG_ERR_INPUT,
                    "surface point %zu is at (%g, %g, %g): not finite; "
-                   "repair the surface", i + 1, p[0], p[1], p[2]);
+                   "repair the surface",
+                   i + 1, p[0], p[1], p[2]);
   }
   for (size_t i = 0; i < m->n_tri; i++)
     for (int k = 0; k < 3; k++)
       if (m->tri[i][k] >= m->n_point)
         return vg_fail(err, VG_ERR_INPUT,
                        "surface triangle %zu uses point %zu of %zu; repair "
-                       "the surface", i + 1, (size_t)m->tri[i][k] + 1,
-                       m->n_point);
+                       "the surface",
+                       i + 1, (size_t)m->tri[i][k] + 1, m->n_point);
   for (size_t i = 0; i < m->n_quad; i++)
     for (int k = 0; k < 4; k++)
       if (m->quad[i][k] >= m->n_point)
         return vg_fail(err, VG_ERR_INPUT,
                        "surface quadrilateral %zu uses point %zu of %zu; "
-                       "repair the surface", i + 1,
-                       (size_t)m->quad[i][k] + 1, m->n_point);
+                       "repair the surface",
+                       i + 1, (size_t)m->quad[i][k] + 1, m->n_point);
   return VG_OK;
 }
 
@@ -69,8 +70,8 @@ static void add_face(const struct vg_mesh *m, const uint32_t *v, int n,
   double whole = area(m->point[v[0]], m->point[v[1]], m->point[v[2]]);
 
   if (n == 4) /* as two triangles; each point then sees half of it */
-    whole = 0.5 * (whole +
-                   area(m->point[v[0]], m->point[v[2]], m->point[v[3]]));
+    whole = 0.5 *
+            (whole + area(m->point[v[0]], m->point[v[2]], m->point[v[3]]));
   for (int i = 0; i < n; i++) {
     struct sum *a = sum + v[i], *b = sum + v[(i + 1) % n];
     double edge = vg_distance(m->point[v[i]], m->point[v[(i + 1) % n]]);
@@ -185,8 +186,8 @@ struct thinning {
   const struct vg_mesh *m;
   const struct vg_samples *s;
   _Atomic unsigned char *idle;
-  double slope, keep;       /* of the growth, and share of h at its tip */
-  double steep, rise;       /* from below beyond the knee; else as these */
+  double slope, keep; /* of the growth, and share of h at its tip */
+  double steep, rise; /* from below beyond the knee; else as these */
 };
 
 static void compare(const struct thinning *t, size_t i, size_t j)
@@ -221,14 +222,15 @@ static void thin_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-vg_status vg_samples_thin(const struct vg_mesh *m,
-                          const struct vg_samples *all, double slope,
-                          int below, int threads, struct vg_samples *out,
-                          struct vg_error *err)
+vg_status vg_samples_thin(const struct vg_mesh *m, const struct vg_samples *all,
+                          double slope, int below, int threads,
+                          struct vg_samples *out, struct vg_error *err)
 {
   double offset = vg_bvh_offset(slope);
-  struct thinning t = { m, all, vg_calloc(all->n, sizeof *t.idle), slope,
-                        1 - offset, slope, 1 - offset };
+  struct thinning t = {
+    m,     all,       vg_calloc(all->n, sizeof *t.idle), slope, 1 - offset,
+    slope, 1 - offset
+  };
 
   if (below) {
     t.keep = 1 + offset;

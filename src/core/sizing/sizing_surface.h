@@ -9,9 +9,12 @@
 struct vg_samples {
   double (*p)[3], *h;
   size_t n;
-  size_t n_sized;          /* the others have size 0 and are none */
+  size_t n_sized; /* the others have size 0 and are none */
 };
-#define VG_SAMPLES_INIT { 0 }
+#define VG_SAMPLES_INIT                                                        \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /** Refuse points that are not finite and faces of points that do not exist. */
 vg_status vg_samples_check(const struct vg_mesh *m, struct vg_error *err);
@@ -33,10 +36,9 @@ vg_status vg_samples_make(const struct vg_mesh *m, int threads,
 /** Those of all samples of a surface that the growth (sizing_bvh.h) by slope
  * from above, or from below, can depend on: one whose size differs from a
  * neighbour's by more than the growth between them is never felt. */
-vg_status vg_samples_thin(const struct vg_mesh *m,
-                          const struct vg_samples *all, double slope,
-                          int below, int threads, struct vg_samples *out,
-                          struct vg_error *err);
+vg_status vg_samples_thin(const struct vg_mesh *m, const struct vg_samples *all,
+                          double slope, int below, int threads,
+                          struct vg_samples *out, struct vg_error *err);
 
 void vg_samples_release(struct vg_samples *s);
 

@@ -84,8 +84,7 @@ static inline float least_lane(lanes v)
 /* Distances between a box x +- reach and four boxes mid +- half (NULL:
  * points); lanes of axis k are `step` floats behind those of k - 1. */
 static inline lanes distances(const float x[3], const float reach[3],
-                              const float *mid, const float *half,
-                              size_t step)
+                              const float *mid, const float *half, size_t step)
 {
   lanes sum = { 0 };
 
@@ -210,8 +209,8 @@ double vg_bvh_above(const struct vg_bvh *t, const double lo[3],
 {
   assert(hint && lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]);
 
-  const float start = below < 0.1 * (double)VG_BVH_NEVER
-                    ? (float)below : 0.1f * VG_BVH_NEVER;
+  const float start = below < 0.1 * (double)VG_BVH_NEVER ? (float)below
+                                                         : 0.1f * VG_BVH_NEVER;
   struct search q = { .t = t, .best = start, .hint = *hint };
 
   set_box(&q, lo, hi);
@@ -261,8 +260,7 @@ static void descend_below(struct search *q, int level, size_t at)
     bound[j] = lanes_choose((masks)(d > 0),
                             -(lanes)(((masks)d & ~7) | child[j]), none);
   }
-  while (q->best < q->enough &&
-         (i = take_least(bound, -q->best)) < LANES) {
+  while (q->best < q->enough && (i = take_least(bound, -q->best)) < LANES) {
     if (level) descend_below(q, level - 1, at * LANES + i);
     else visit_below(q, q->tree->block + at * LANES + i);
   }
@@ -271,7 +269,9 @@ static void descend_below(struct search *q, int level, size_t at)
 static void know_reach(const struct vg_bvh *t, struct vg_bvh_reach *r)
 {
   for (int c = 0; c < t->n_tree; c++) {
-    struct search q = { .t = t, .tree = t->tree + c, .best = r->trifle,
+    struct search q = { .t = t,
+                        .tree = t->tree + c,
+                        .best = r->trifle,
                         .enough = INFINITY,
                         .mid = { r->mid[0], r->mid[1], r->mid[2] } };
 
@@ -281,13 +281,14 @@ static void know_reach(const struct vg_bvh *t, struct vg_bvh_reach *r)
   r->is_known = 1;
 }
 
-double vg_bvh_below(const struct vg_bvh *t, const double x[3],
-                    double above, double enough,
-                    struct vg_bvh_reach *reach, double *by)
+double vg_bvh_below(const struct vg_bvh *t, const double x[3], double above,
+                    double enough, struct vg_bvh_reach *reach, double *by)
 {
   assert(by);
 
-  struct search q = { .t = t, .best = (float)above, .enough = (float)enough,
+  struct search q = { .t = t,
+                      .best = (float)above,
+                      .enough = (float)enough,
                       .mid = { x[0], x[1], x[2] } };
   float more = 0;
 

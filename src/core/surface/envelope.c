@@ -15,10 +15,10 @@
 #include "core/geometry/vector.h"
 #include "core/mesh/edges.h"
 
-#define REACH 3         /* directions: the integer points of a cube's faces */
+#define REACH 3 /* directions: the integer points of a cube's faces */
 #define N_DIRECTION (7 * 7 * 7 - 5 * 5 * 5)
-#define BOX 64          /* points */
-#define SLACK 0.1       /* of the longest edge: rounding, chords, diagonals */
+#define BOX 64    /* points */
+#define SLACK 0.1 /* of the longest edge: rounding, chords, diagonals */
 
 struct piece {
   double area, vector[3];
@@ -29,10 +29,10 @@ struct envelope {
   const struct vg_mesh *m;
   size_t n_extreme;
   uint32_t extreme[N_DIRECTION];
-  uint8_t *on;            /* [n_tri] on the hull */
-  uint32_t *root;         /* [n_tri] union-find, then piece of the triangle */
-  struct piece *piece;    /* [n_tri] at the roots */
-  double sign;            /* -1 where normals point inward */
+  uint8_t *on;         /* [n_tri] on the hull */
+  uint32_t *root;      /* [n_tri] union-find, then piece of the triangle */
+  struct piece *piece; /* [n_tri] at the roots */
+  double sign;         /* -1 where normals point inward */
 };
 
 /* Twice the vector area, turned outward; returns the longest edge, squared. */
@@ -98,7 +98,7 @@ static vg_status find_extremes(struct envelope *e, struct vg_error *err)
 {
   const size_t n = (e->m->n_point + BOX - 1) / BOX;
   struct box *box = vg_alloc(n, sizeof *box);
-  uint32_t at = 0;            /* is near the next one, too */
+  uint32_t at = 0; /* is near the next one, too */
 
   if (!box) return vg_fail_memory(err, "the pieces of the surface");
   find_boxes(e->m, n, box);
@@ -142,8 +142,7 @@ static vg_status join_pieces(struct envelope *e, struct vg_error *err)
 {
   struct vg_edges edges = VG_EDGES_INIT;
   vg_status st = vg_edges_build(&edges, e->m->n_point, e->m->n_tri,
-                                (const uint32_t (*)[3])e->m->tri, NULL, 0,
-                                err);
+                                (const uint32_t(*)[3])e->m->tri, NULL, 0, err);
 
   if (st < 0) return st;
   for (size_t i = 0; i < edges.n; i++)
@@ -224,7 +223,7 @@ static double least_cover(const struct envelope *e, uint32_t piece)
       p[i][1] = e->m->point[e->extreme[i]][(k + 2) % 3];
     }
     qsort(p, e->n_extreme, sizeof *p, by_position);
-    area = hull_area(e->n_extreme, (const double (*)[2])p);
+    area = hull_area(e->n_extreme, (const double(*)[2])p);
     for (int s = 0; s < 2; s++)
       if (!(seen[2 * k + s] >= least * area))
         least = area > 0 ? seen[2 * k + s] / area : 0;
@@ -254,8 +253,8 @@ static void judge(const struct envelope *e, uint8_t *outer,
   if (main == UINT32_MAX) return;
   out->n_outer = e->piece[main].n;
   out->covered = least_cover(e, main);
-  out->is_domain = out->covered >= VG_ENVELOPE_COVERED
-                   && out->depth >= VG_ENVELOPE_DEPTH;
+  out->is_domain = out->covered >= VG_ENVELOPE_COVERED &&
+                   out->depth >= VG_ENVELOPE_DEPTH;
 }
 
 /* Six times the volume behind the triangles, about the first point. */

@@ -13,20 +13,20 @@
  * into pockets, each closed by a lid: the surface that its border would span.
  * */
 struct vg_envelope {
-  size_t n_outer;        /* triangles of the outer part */
-  size_t n_pocket_tri;   /* triangles of the deepest pocket */
-  double covered;        /* share of the hull's silhouette that the outer part
-                            covers, least of the six views along the axes */
-  double depth;          /* area of a pocket over that of its lid, largest; 0:
-                            none. A dent has 1 and a little, half a body on a
-                            plane 1.5 and more */
-  int is_domain;         /* covered and depth are those of a flow domain */
+  size_t n_outer;      /* triangles of the outer part */
+  size_t n_pocket_tri; /* triangles of the deepest pocket */
+  double covered;      /* share of the hull's silhouette that the outer part
+                          covers, least of the six views along the axes */
+  double depth;        /* area of a pocket over that of its lid, largest; 0:
+                          none. A dent has 1 and a little, half a body on a
+                          plane 1.5 and more */
+  int is_domain;       /* covered and depth are those of a flow domain */
 };
 
 /* A farfield, box or tunnel is its own convex hull, but for the footprint of
  * a half body; an aircraft covers little of its hull. What stands in a flow
  * domain has more surface than the hole that it leaves. */
-#define VG_ENVELOPE_COVERED 0.7   /* S4 */
+#define VG_ENVELOPE_COVERED 0.7 /* S4 */
 #define VG_ENVELOPE_DEPTH 1.3
 
 /** Measure one closed, consistently oriented shell of triangles.

@@ -16,17 +16,17 @@ struct check {
   const struct vg_surface_check_options *o;
   struct vg_surface_report *r;
   struct vg_error *err;
-  uint32_t *same;           /* [n_point] lowest point with the coordinates */
-  uint32_t *owner;          /* [n_point] lowest face, UINT32_MAX: none */
+  uint32_t *same;  /* [n_point] lowest point with the coordinates */
+  uint32_t *owner; /* [n_point] lowest face, UINT32_MAX: none */
   struct vg_faces s;
   struct vg_edges e;
   struct vg_box_tree tree;
   struct vg_crossing cross;
-  uint32_t *first;          /* [s.n] lowest face with the same nodes */
-  uint8_t *copy;            /* [s.n] enum vg_copy; NULL: no face is a copy */
-  uint32_t (*fan)[3];       /* [s.n] */
-  uint8_t *flip;            /* [s.n] faces to turn */
-  uint32_t *shell;          /* [s.n] */
+  uint32_t *first;    /* [s.n] lowest face with the same nodes */
+  uint8_t *copy;      /* [s.n] enum vg_copy; NULL: no face is a copy */
+  uint32_t (*fan)[3]; /* [s.n] */
+  uint8_t *flip;      /* [s.n] faces to turn */
+  uint32_t *shell;    /* [s.n] */
   uint8_t *shell_state, *shell_turn;
 };
 
@@ -92,11 +92,11 @@ static void list_superfluous(const struct vg_mesh *m, const struct vg_faces *s,
 {
   for (size_t t = 0; t < m->n_tri; t++) {
     uint32_t f = first[t];
-    int is_wall = copy && copy[t] == VG_COPY_WALL && f < m->n_tri
-                  && !has_cells(m);
-    int is_copy = copy && f != t
-                  && (copy[t] == VG_COPY_SKIN
-                      || vg_faces_same_side(s->node[f], s->node[t]));
+    int is_wall = copy && copy[t] == VG_COPY_WALL && f < m->n_tri &&
+                  !has_cells(m);
+    int is_copy = copy && f != t &&
+                  (copy[t] == VG_COPY_SKIN ||
+                   vg_faces_same_side(s->node[f], s->node[t]));
 
     drop[t] = s->state[t] & VG_FACE_COLLAPSED || is_wall || is_copy;
     r->n_removed_wall += is_wall;
@@ -143,7 +143,7 @@ static vg_status tidy(struct vg_mesh *m, struct vg_surface_report *r,
   mark(used, (uint32_t *)m->tri, 3 * m->n_tri);
   mark(used, (uint32_t *)m->quad, 4 * m->n_quad);
   mark_cells(used, m);
-  for (size_t i = n_point; i--; )
+  for (size_t i = n_point; i--;)
     if (used[i]) used[map[i]] = 1;
   vg_mesh_renumber(m, map, used);
   r->n_removed_point = n_point - m->n_point;
@@ -186,8 +186,7 @@ static void centre(const struct check *c, size_t f, double at[3])
 {
   for (int k = 0; k < 3; k++) {
     at[k] = 0;
-    for (int i = 0; i < 3; i++)
-      at[k] += c->s.point[c->s.node[f][i]][k] / 3;
+    for (int i = 0; i < 3; i++) at[k] += c->s.point[c->s.node[f][i]][k] / 3;
   }
 }
 
@@ -231,8 +230,10 @@ static vg_status look_at_faces(struct check *c)
       VG_TRY(add(c, VG_DEFECT_DEGENERATE_TRIANGLE, g, SIZE_MAX, SIZE_MAX,
                  SIZE_MAX, at));
     if (first[f] != f && !(c->s.state[f] & VG_FACE_COLLAPSED))
-      VG_TRY(add(c, c->copy[f] == VG_COPY_WALL || c->copy[f] == VG_COPY_PART
-                    ? VG_DEFECT_SHARED_WALL : VG_DEFECT_DUPLICATE_TRIANGLE,
+      VG_TRY(add(c,
+                 c->copy[f] == VG_COPY_WALL || c->copy[f] == VG_COPY_PART
+                   ? VG_DEFECT_SHARED_WALL
+                   : VG_DEFECT_DUPLICATE_TRIANGLE,
                  source(c, first[f]), g, SIZE_MAX, SIZE_MAX, at));
   }
 done:
@@ -253,8 +254,8 @@ static vg_status add_edge(struct check *c, enum vg_defect_kind kind,
   for (uint32_t i = from; i < to; i++)
     c->r->face_kinds[source(c, c->e.half[i] / 3)] |= 1u << kind;
   return add(c, kind, source(c, g / 3),
-             to - from > 1 ? source(c, c->e.half[from + 1] / 3) : SIZE_MAX,
-             a, b, at);
+             to - from > 1 ? source(c, c->e.half[from + 1] / 3) : SIZE_MAX, a,
+             b, at);
 }
 
 static vg_status look_at_edges(struct check *c)
@@ -268,8 +269,8 @@ static vg_status look_at_edges(struct check *c)
       VG_TRY(add_edge(c, VG_DEFECT_OPEN_EDGE, i));
     } else if (n > 2) {
       VG_TRY(add_edge(c, VG_DEFECT_NONMANIFOLD_EDGE, i));
-    } else if (vg_faces_disagree(&c->s, &c->e, i)
-               ^ c->flip[c->e.half[at] / 3] ^ c->flip[c->e.half[at + 1] / 3]) {
+    } else if (vg_faces_disagree(&c->s, &c->e, i) ^ c->flip[c->e.half[at] / 3] ^
+               c->flip[c->e.half[at + 1] / 3]) {
       VG_TRY(add_edge(c, VG_DEFECT_ORIENTATION, i));
     }
   }
@@ -314,8 +315,7 @@ static vg_status look_at_crossings(struct check *c)
     VG_TRY(add_meeting(c, x->pair[i][0], x->pair[i][1]));
   if (x->n_listed < x->n_pair)
     for (uint32_t f = 0; f < c->s.n; f++)
-      if (x->partner[f] != UINT32_MAX)
-        VG_TRY(add_meeting(c, f, x->partner[f]));
+      if (x->partner[f] != UINT32_MAX) VG_TRY(add_meeting(c, f, x->partner[f]));
   c->r->count[VG_DEFECT_INTERSECTION] = x->n_pair;
 done:
   return st;
@@ -332,8 +332,8 @@ static vg_status look_at_shells(struct check *c)
     size_t around = SIZE_MAX;
     double at[3];
 
-    if (!x->is_closed || state & VG_SHELL_MIXED || !isfinite(x->volume)
-        || !(state & (VG_SHELL_FLAT | VG_SHELL_REVERSED | VG_SHELL_STRAY)))
+    if (!x->is_closed || state & VG_SHELL_MIXED || !isfinite(x->volume) ||
+        !(state & (VG_SHELL_FLAT | VG_SHELL_REVERSED | VG_SHELL_STRAY)))
       continue;
     if (state & VG_SHELL_STRAY && x->parent != SIZE_MAX)
       around = r->shell[x->parent].face;
@@ -393,10 +393,10 @@ static vg_status list_owners(struct check *c)
   c->owner = vg_alloc(m->n_point, sizeof *c->owner);
   if (!c->owner) return vg_fail_memory(c->err, "the faces of the points");
   memset(c->owner, 0xff, m->n_point * sizeof *c->owner);
-  for (size_t q = m->n_quad; q--; )
+  for (size_t q = m->n_quad; q--;)
     for (int k = 0; k < 4; k++)
       c->owner[m->quad[q][k]] = (uint32_t)(m->n_tri + q);
-  for (size_t t = m->n_tri; t--; )
+  for (size_t t = m->n_tri; t--;)
     for (int k = 0; k < 3; k++) c->owner[m->tri[t][k]] = (uint32_t)t;
   return VG_OK;
 }
@@ -462,8 +462,8 @@ static vg_status find_copies(struct check *c)
   if (!has_copies(s, c->first)) goto done;
   VG_TRY(vg_faces_copies(s, c->first, &c->copy, c->err));
   for (size_t f = 0; f < s->n; f++)
-    if (c->copy[f] == VG_COPY_WALL
-        || (c->copy[f] == VG_COPY_SKIN && c->first[f] != f))
+    if (c->copy[f] == VG_COPY_WALL ||
+        (c->copy[f] == VG_COPY_SKIN && c->first[f] != f))
       s->state[f] |= VG_FACE_COPY;
 done:
   return st;
@@ -481,8 +481,7 @@ static vg_status build(struct check *c)
   VG_TRY(find_copies(c));
   c->flip = vg_calloc(c->s.n, 1);
   c->shell = vg_alloc(c->s.n, sizeof *c->shell);
-  r->face_kinds = vg_calloc(c->m->n_tri + c->m->n_quad,
-                            sizeof *r->face_kinds);
+  r->face_kinds = vg_calloc(c->m->n_tri + c->m->n_quad, sizeof *r->face_kinds);
   r->tri_shell = vg_alloc(c->m->n_tri, sizeof *r->tri_shell);
   if (!c->flip || !c->shell || !r->face_kinds || !r->tri_shell)
     VG_TRY(vg_fail_memory(c->err, "the surface check"));
@@ -506,10 +505,10 @@ static vg_status build_shells(struct check *c)
   VG_TRY(vg_measure_shells(r->shell, c->shell_state, r->n_shell, &c->s, &c->e,
                            c->shell, c->flip, c->err));
   VG_TRY(vg_find_crossings(&c->cross, &c->s, c->first,
-                           (const uint32_t (*)[3])c->fan, &c->tree, c->shell,
+                           (const uint32_t(*)[3])c->fan, &c->tree, c->shell,
                            r->n_shell, c->o->threads, &c->o->stop, c->err));
-  VG_TRY(vg_nest_shells(r->shell, r->n_shell, &c->s, &c->tree, c->shell,
-                        c->err));
+  VG_TRY(
+    vg_nest_shells(r->shell, r->n_shell, &c->s, &c->tree, c->shell, c->err));
   VG_TRY(vg_orient_shells(r->shell, c->shell_state, r->n_shell, c->o->external,
                           c->o->repair, c->cross.other_shell, c->shell_turn,
                           c->err));
@@ -574,8 +573,8 @@ static vg_status run(struct check *c)
   VG_TRY(look_at_crossings(c));
   VG_TRY(look_at_shells(c));
   if (c->o->require_bc) VG_TRY(look_at_conditions(c));
-  r->is_closed = c->s.n && !r->count[VG_DEFECT_OPEN_EDGE]
-                 && !r->count[VG_DEFECT_NONMANIFOLD_EDGE];
+  r->is_closed = c->s.n && !r->count[VG_DEFECT_OPEN_EDGE] &&
+                 !r->count[VG_DEFECT_NONMANIFOLD_EDGE];
   if (r->n_defect)
     qsort(r->defect, r->n_defect, sizeof *r->defect, compare_defect);
   apply_flips(c);

@@ -9,20 +9,20 @@
 #include "core/mesh/mesh.h"
 
 enum vg_defect_kind {
-  VG_DEFECT_OPEN_EDGE,          /* an edge with one triangle */
-  VG_DEFECT_NONMANIFOLD_EDGE,   /* an edge with three or more */
-  VG_DEFECT_ORIENTATION,        /* neighbours that disagree, not repaired */
-  VG_DEFECT_DUPLICATE_POINT,    /* two points at the same coordinates */
+  VG_DEFECT_OPEN_EDGE,        /* an edge with one triangle */
+  VG_DEFECT_NONMANIFOLD_EDGE, /* an edge with three or more */
+  VG_DEFECT_ORIENTATION,      /* neighbours that disagree, not repaired */
+  VG_DEFECT_DUPLICATE_POINT,  /* two points at the same coordinates */
   VG_DEFECT_UNUSED_POINT,
-  VG_DEFECT_DEGENERATE_TRIANGLE,/* repeated node or exactly zero area */
+  VG_DEFECT_DEGENERATE_TRIANGLE, /* repeated node or exactly zero area */
   VG_DEFECT_DUPLICATE_TRIANGLE,
-  VG_DEFECT_SHARED_WALL,        /* two triangles of touching bodies have the
-                                   same points */
-  VG_DEFECT_INTERSECTION,       /* two triangles cross or overlap */
-  VG_DEFECT_SHELL,              /* nesting of closed shells is wrong */
-  VG_DEFECT_NO_BC,              /* patch without boundary condition */
-  VG_DEFECT_NOT_FINITE,         /* NaN or infinite coordinate */
-  VG_DEFECT_QUAD,               /* quadrilateral: the fill takes triangles */
+  VG_DEFECT_SHARED_WALL,  /* two triangles of touching bodies have the
+                             same points */
+  VG_DEFECT_INTERSECTION, /* two triangles cross or overlap */
+  VG_DEFECT_SHELL,        /* nesting of closed shells is wrong */
+  VG_DEFECT_NO_BC,        /* patch without boundary condition */
+  VG_DEFECT_NOT_FINITE,   /* NaN or infinite coordinate */
+  VG_DEFECT_QUAD,         /* quadrilateral: the fill takes triangles */
   VG_DEFECT_N
 };
 
@@ -32,59 +32,65 @@ struct vg_defect {
   enum vg_defect_kind kind;
   size_t face[2];
   size_t point[2];
-  double at[3];                 /* where */
+  double at[3]; /* where */
 };
 
-struct vg_shell {               /* one edge-connected component */
-  size_t n_tri;                 /* a quadrilateral counts as two */
-  size_t face;                  /* the first of its faces */
-  int is_closed;                /* every edge has exactly two faces; parent and
-                                   depth are found among closed shells only */
-  double volume;                /* signed; > 0: normals point out of it */
-  size_t parent;                /* shell directly around it; SIZE_MAX: none */
-  int depth;                    /* 0 outermost */
+struct vg_shell { /* one edge-connected component */
+  size_t n_tri;   /* a quadrilateral counts as two */
+  size_t face;    /* the first of its faces */
+  int is_closed;  /* every edge has exactly two faces; parent and
+                     depth are found among closed shells only */
+  double volume;  /* signed; > 0: normals point out of it */
+  size_t parent;  /* shell directly around it; SIZE_MAX: none */
+  int depth;      /* 0 outermost */
   double lo[3], hi[3];
 };
 
 struct vg_surface_report {
-  size_t count[VG_DEFECT_N];    /* all findings by kind, in the mesh as the
-                                   repair leaves it */
+  size_t count[VG_DEFECT_N]; /* all findings by kind, in the mesh as the
+                                repair leaves it */
   size_t n_defect, cap_defect;
-  struct vg_defect *defect;     /* every finding, sorted by kind, then face;
-                                   but beyond VG_SURFACE_PAIR_MAX intersecting
-                                   pairs one per face that intersects, with
-                                   its first partner: count stays true */
-  uint32_t *face_kinds;         /* [n_tri + n_quad] bit 1 << kind for every
-                                   finding that touches the face */
-  size_t n_flipped;             /* triangles turned by the repair */
+  struct vg_defect *defect; /* every finding, sorted by kind, then face;
+                               but beyond VG_SURFACE_PAIR_MAX intersecting
+                               pairs one per face that intersects, with
+                               its first partner: count stays true */
+  uint32_t *face_kinds;     /* [n_tri + n_quad] bit 1 << kind for every
+                               finding that touches the face */
+  size_t n_flipped;         /* triangles turned by the repair */
   size_t n_removed_point, n_removed_tri; /* removed by the repair */
-  size_t n_removed_wall;        /* triangles of walls that touching bodies
-                                   shared, removed by the repair */
-  int turned_inside_out;        /* every closed shell was turned as a whole */
-  size_t n_piece;               /* components connected by nodes */
-  size_t n_shell;               /* components connected by edges */
+  size_t n_removed_wall; /* triangles of walls that touching bodies
+                            shared, removed by the repair */
+  int turned_inside_out; /* every closed shell was turned as a whole */
+  size_t n_piece;        /* components connected by nodes */
+  size_t n_shell;        /* components connected by edges */
   struct vg_shell *shell;
-  uint32_t *tri_shell;          /* [n_tri] */
-  int is_closed;                /* no open or non-manifold edge */
+  uint32_t *tri_shell; /* [n_tri] */
+  int is_closed;       /* no open or non-manifold edge */
 };
-#define VG_SURFACE_REPORT_INIT { 0 }
+#define VG_SURFACE_REPORT_INIT                                                 \
+  {                                                                            \
+    0                                                                          \
+  }
 #define VG_SURFACE_PAIR_MAX 262144
 
 struct vg_surface_check_options {
-  int repair;                   /* orient, drop unused/duplicate points and
-                                   triangles where no guess is needed */
-  int require_bc;               /* report patches without a condition */
-  int external;                 /* the closed shells are bodies in a fluid
-                                   that a farfield will enclose: an outermost
-                                   shell must have its normals outward (into
-                                   the fluid). 0: outermost shells bound the
-                                   fluid from outside (normals inward). -1: not
-                                   known, the sides of shells are neither
-                                   judged nor changed */
-  int threads;                  /* 0: one per core; the same result for any */
+  int repair;     /* orient, drop unused/duplicate points and
+                     triangles where no guess is needed */
+  int require_bc; /* report patches without a condition */
+  int external;   /* the closed shells are bodies in a fluid
+                     that a farfield will enclose: an outermost
+                     shell must have its normals outward (into
+                     the fluid). 0: outermost shells bound the
+                     fluid from outside (normals inward). -1: not
+                     known, the sides of shells are neither
+                     judged nor changed */
+  int threads;    /* 0: one per core; the same result for any */
   struct vg_stop stop;
 };
-#define VG_SURFACE_CHECK_OPTIONS_INIT { .repair = 1, .threads = 1 }
+#define VG_SURFACE_CHECK_OPTIONS_INIT                                          \
+  {                                                                            \
+    .repair = 1, .threads = 1                                                  \
+  }
 
 /** Find (and with `repair` fix) the defects of the boundary faces of m.
  *
@@ -115,7 +121,8 @@ struct vg_surface_check_options {
  * the repair not counted.
  * Returns VG_OK also when defects remain: look at report->n_defect.
  * VG_ERR_INPUT for a node or patch index out of range, VG_ERR_UNSUPPORTED
- * beyond 1.4e9 triangles, VG_ERR_STOPPED, VG_ERR_MEMORY. Threads: re-entrant. */
+ * beyond 1.4e9 triangles, VG_ERR_STOPPED, VG_ERR_MEMORY. Threads: re-entrant.
+ */
 vg_status vg_surface_check(struct vg_mesh *m,
                            const struct vg_surface_check_options *options,
                            struct vg_surface_report *report,
@@ -136,9 +143,8 @@ const char *vg_defect_name(enum vg_defect_kind kind);
  * Counts may be NULL. O(n). On failure m is untouched: VG_ERR_INPUT for a
  * tolerance that is negative or not finite or an index out of range,
  * VG_ERR_MEMORY. */
-vg_status vg_surface_weld(struct vg_mesh *m, double tolerance,
-                          size_t *n_merged, size_t *n_dropped,
-                          struct vg_error *err);
+vg_status vg_surface_weld(struct vg_mesh *m, double tolerance, size_t *n_merged,
+                          size_t *n_dropped, struct vg_error *err);
 
 /** Gaps between parts of a surface that coincide but for rounding: open edges
  * of which both ends lie next to the ends of another open edge, and nearer than
@@ -148,8 +154,8 @@ vg_status vg_surface_weld(struct vg_mesh *m, double tolerance,
  * @param gap     out: smallest tolerance at which vg_surface_weld_rims closes
  *                all of them (rounded up by 1e-9 of itself); 0: no partners
  * @param n_edge  out: open edges that have a partner
- * O(n log n). On failure outputs are untouched: VG_ERR_INPUT for an index out of
- * range, VG_ERR_UNSUPPORTED, VG_ERR_MEMORY. */
+ * O(n log n). On failure outputs are untouched: VG_ERR_INPUT for an index out
+ * of range, VG_ERR_UNSUPPORTED, VG_ERR_MEMORY. */
 vg_status vg_surface_rim_gap(const struct vg_mesh *m,
                              const struct vg_surface_report *r, double *gap,
                              size_t *n_edge, struct vg_error *err);

@@ -12,20 +12,20 @@
 
 /* Edges of a region's border, and kinds of its groups; bits. */
 enum {
-  BORDER_NONE = 1,          /* an edge without any other face */
+  BORDER_NONE = 1, /* an edge without any other face */
   BORDER_ONE = 2,
   BORDER_TWO = 4,
   BORDER_MORE = 8,
-  NOT_PAIRS = 16,           /* three faces or more with the same nodes */
-  OPPOSITE = 32             /* two faces that look to opposite sides */
+  NOT_PAIRS = 16, /* three faces or more with the same nodes */
+  OPPOSITE = 32   /* two faces that look to opposite sides */
 };
 
 struct regions {
   const struct vg_faces *s;
   const uint32_t *first;
-  uint32_t *n;              /* [s->n] faces with the nodes of a first face */
-  uint32_t *up;             /* [s->n] union of first faces */
-  uint8_t *border;          /* [s->n] bits above, by root */
+  uint32_t *n;     /* [s->n] faces with the nodes of a first face */
+  uint32_t *up;    /* [s->n] union of first faces */
+  uint8_t *border; /* [s->n] bits above, by root */
 };
 
 static int is_multiple(const struct regions *x, uint32_t h)
@@ -72,8 +72,8 @@ static void look_at_edge(struct regions *x, const struct vg_edges *e,
 
 static enum vg_copy class_of(uint8_t bits)
 {
-  const uint8_t border = bits & (BORDER_NONE | BORDER_ONE | BORDER_TWO |
-                                 BORDER_MORE);
+  const uint8_t border = bits &
+                         (BORDER_NONE | BORDER_ONE | BORDER_TWO | BORDER_MORE);
 
   if (border == BORDER_TWO && !(bits & NOT_PAIRS)) return VG_COPY_WALL;
   if (border & (BORDER_TWO | BORDER_MORE))

@@ -53,11 +53,12 @@ vg_status vg_faces_build(struct vg_faces *s, const struct vg_mesh *m,
   size_t n;
 
   assert(!s->node && !s->state && same);
-  if (m->n_tri > UINT32_MAX / 3 || m->n_quad > UINT32_MAX / 3
-      || m->n_tri + 2 * m->n_quad > UINT32_MAX / 3 - 1)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu triangles and %zu "
-                   "quadrilaterals: the limit is %u triangles", m->n_tri,
-                   m->n_quad, (unsigned)(UINT32_MAX / 3 - 1));
+  if (m->n_tri > UINT32_MAX / 3 || m->n_quad > UINT32_MAX / 3 ||
+      m->n_tri + 2 * m->n_quad > UINT32_MAX / 3 - 1)
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%zu triangles and %zu "
+                   "quadrilaterals: the limit is %u triangles",
+                   m->n_tri, m->n_quad, (unsigned)(UINT32_MAX / 3 - 1));
   n = m->n_tri + 2 * m->n_quad;
   s->node = vg_alloc(n, sizeof *s->node);
   s->state = vg_alloc(n, sizeof *s->state);
@@ -68,7 +69,7 @@ vg_status vg_faces_build(struct vg_faces *s, const struct vg_mesh *m,
   s->n = n;
   s->n_tri = m->n_tri;
   s->n_point = m->n_point;
-  s->point = (const double (*)[3])m->point;
+  s->point = (const double(*)[3])m->point;
   for (size_t f = 0; f < n; f++) {
     uint32_t node[3];
 

@@ -23,7 +23,7 @@ struct search {
   const uint32_t (*fan)[3];
   const uint32_t *shell;
   const struct vg_stop *stop;
-  struct found *found;      /* by worker */
+  struct found *found; /* by worker */
 };
 
 /* The least of all that threads come with: whatever their order. */
@@ -31,9 +31,10 @@ static void note_partner(struct vg_crossing *c, uint32_t f, uint32_t g)
 {
   uint32_t *at = &c->partner[f], now = __atomic_load_n(at, __ATOMIC_RELAXED);
 
-  while (g < now && !__atomic_compare_exchange_n(at, &now, g, 0,
-                                                 __ATOMIC_RELAXED,
-                                                 __ATOMIC_RELAXED)) {}
+  while (g < now &&
+         !__atomic_compare_exchange_n(at, &now, g, 0, __ATOMIC_RELAXED,
+                                      __ATOMIC_RELAXED)) {
+  }
 }
 
 static vg_status list_pair(struct found *p, uint32_t f, uint32_t g)
@@ -52,10 +53,10 @@ static vg_status check_pair(void *context, int worker, uint32_t f, uint32_t g)
   struct vg_crossing *c = x->c;
 
   if (vg_stops(x->stop)) return VG_ERR_STOPPED;
-  if (x->first[f] != f || x->first[g] != g
-      || vg_faces_source(x->s, f) == vg_faces_source(x->s, g)
-      || !vg_triangles_meet(x->s->point, x->s->node[f], x->s->node[g],
-                            x->fan[f], x->fan[g]))
+  if (x->first[f] != f || x->first[g] != g ||
+      vg_faces_source(x->s, f) == vg_faces_source(x->s, g) ||
+      !vg_triangles_meet(x->s->point, x->s->node[f], x->s->node[g], x->fan[f],
+                         x->fan[g]))
     return VG_OK;
   x->found[worker].n_pair++;
   note_partner(c, f, g);
@@ -96,16 +97,16 @@ static vg_status gather_pairs(struct vg_crossing *c, const struct found *found,
 
 vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
                             const uint32_t *first, const uint32_t (*fan)[3],
-                            const struct vg_box_tree *t,
-                            const uint32_t *shell, size_t n_shell,
-                            int threads, const struct vg_stop *stop,
-                            struct vg_error *err)
+                            const struct vg_box_tree *t, const uint32_t *shell,
+                            size_t n_shell, int threads,
+                            const struct vg_stop *stop, struct vg_error *err)
 {
   assert(!c->pair && !c->partner && threads >= 0);
 
   int n_found = vg_box_tree_workers(threads);
-  struct search x = { c, s, first, fan, shell, stop,
-                      vg_calloc((size_t)n_found, sizeof *x.found) };
+  struct search x = {
+    c, s, first, fan, shell, stop, vg_calloc((size_t)n_found, sizeof *x.found)
+  };
   vg_status st = VG_ERR_MEMORY;
 
   c->partner = vg_alloc(s->n, sizeof *c->partner);

@@ -37,8 +37,7 @@ static size_t walk(const struct vg_faces *s, const struct vg_edges *e,
       uint8_t want;
 
       if (h == UINT32_MAX) continue;
-      want = turn[g / 3]
-             ^ (s->node[g / 3][g % 3] == s->node[h / 3][h % 3]);
+      want = turn[g / 3] ^ (s->node[g / 3][g % 3] == s->node[h / 3][h % 3]);
       if (turn[h / 3] == 2) {
         turn[h / 3] = want;
         queue[n++] = h / 3;
@@ -105,7 +104,7 @@ vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
     }
   }
   for (uint32_t i = 0; i < 3 * s->n; i++) up[i] = vg_root_of(up, i);
-  *fan = (uint32_t (*)[3])up;
+  *fan = (uint32_t(*)[3])up;
   return VG_OK;
 }
 

@@ -13,16 +13,19 @@
 struct vg_faces {
   size_t n, n_tri, n_point;
   const double (*point)[3];
-  uint32_t (*node)[3];      /* [n] */
-  uint8_t *state;           /* [n] bits below */
+  uint32_t (*node)[3]; /* [n] */
+  uint8_t *state;      /* [n] bits below */
 };
-#define VG_FACES_INIT { 0 }
+#define VG_FACES_INIT                                                          \
+  {                                                                            \
+    0                                                                          \
+  }
 
 enum {
-  VG_FACE_COLLAPSED = 1,    /* a repeated node */
-  VG_FACE_FLAT = 2,         /* exactly zero area, nodes distinct */
+  VG_FACE_COLLAPSED = 1, /* a repeated node */
+  VG_FACE_FLAT = 2,      /* exactly zero area, nodes distinct */
   VG_FACE_NOT_FINITE = 4,
-  VG_FACE_COPY = 8,         /* a copy that is reported as such */
+  VG_FACE_COPY = 8, /* a copy that is reported as such */
   VG_FACE_OUT = VG_FACE_COLLAPSED | VG_FACE_COPY /* no part of the topology */
 };
 
@@ -43,10 +46,9 @@ void vg_faces_release(struct vg_faces *s);
 
 /** Edges of the faces that are part of the topology. */
 static inline vg_status vg_faces_edges(const struct vg_faces *s,
-                                       struct vg_edges *e,
-                                       struct vg_error *err)
+                                       struct vg_edges *e, struct vg_error *err)
 {
-  return vg_edges_build(e, s->n_point, s->n, (const uint32_t (*)[3])s->node,
+  return vg_edges_build(e, s->n_point, s->n, (const uint32_t(*)[3])s->node,
                         s->state, VG_FACE_OUT, err);
 }
 
@@ -54,7 +56,7 @@ static inline vg_status vg_faces_edges(const struct vg_faces *s,
 static inline int vg_faces_disagree(const struct vg_faces *s,
                                     const struct vg_edges *e, size_t i)
 {
-  return vg_edges_disagree(e, (const uint32_t (*)[3])s->node, i);
+  return vg_edges_disagree(e, (const uint32_t(*)[3])s->node, i);
 }
 
 /** Faces of the same three nodes: (*first)[f] is the lowest such face, f
@@ -69,12 +71,12 @@ int vg_faces_same_side(const uint32_t a[3], const uint32_t b[3]);
 
 /* What faces with the same three nodes are. */
 enum vg_copy {
-  VG_COPY_NONE,             /* no other face has the nodes */
-  VG_COPY_SKIN,             /* a piece of a skin that is there twice or more */
-  VG_COPY_WALL,             /* a wall that two bodies share: without both faces
-                               every edge of its border has two faces */
-  VG_COPY_PART,             /* such a wall, but the border has other edges */
-  VG_COPY_OTHER             /* a wall without thickness */
+  VG_COPY_NONE, /* no other face has the nodes */
+  VG_COPY_SKIN, /* a piece of a skin that is there twice or more */
+  VG_COPY_WALL, /* a wall that two bodies share: without both faces
+                   every edge of its border has two faces */
+  VG_COPY_PART, /* such a wall, but the border has other edges */
+  VG_COPY_OTHER /* a wall without thickness */
 };
 
 /** (*copy)[f], an enum vg_copy, for each face; the caller frees it.
@@ -91,7 +93,8 @@ vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
                          struct vg_error *err);
 
 /** (*near)[p] is the lowest index of the points that are connected with p by
- * steps of at most `tolerance` (0: equal coordinates). The caller frees it. O(n). */
+ * steps of at most `tolerance` (0: equal coordinates). The caller frees it.
+ * O(n). */
 vg_status vg_points_near(const struct vg_mesh *m, double tolerance,
                          uint32_t **near, struct vg_error *err);
 
@@ -100,8 +103,9 @@ vg_status vg_points_near(const struct vg_mesh *m, double tolerance,
 vg_status vg_mesh_check_index(const struct vg_mesh *m, struct vg_error *err);
 
 /** Replace node p by map[p] everywhere, drop the points with keep[p] == 0
- * (none is used any more; keep NULL: all stay) and close the gaps. Cannot fail; map is used as
- * scratch and holds the new index of every kept point afterwards. */
+ * (none is used any more; keep NULL: all stay) and close the gaps. Cannot fail;
+ * map is used as scratch and holds the new index of every kept point
+ * afterwards. */
 void vg_mesh_renumber(struct vg_mesh *m, uint32_t *map, const uint8_t *keep);
 
 /** Drop the triangles with drop[t] != 0, keeping the order of the others. */
@@ -144,21 +148,23 @@ vg_status vg_faces_tree(struct vg_box_tree *t, const struct vg_faces *s,
 
 struct vg_crossing {
   size_t n_pair;
-  size_t n_listed;          /* n_pair, or 0 beyond VG_SURFACE_PAIR_MAX */
-  uint32_t (*pair)[2];      /* [n_listed] lower face first, sorted */
-  uint32_t *partner;        /* [n_face] lowest face met, UINT32_MAX: none */
-  uint8_t *other_shell;     /* [n_shell] meets another shell */
+  size_t n_listed;      /* n_pair, or 0 beyond VG_SURFACE_PAIR_MAX */
+  uint32_t (*pair)[2];  /* [n_listed] lower face first, sorted */
+  uint32_t *partner;    /* [n_face] lowest face met, UINT32_MAX: none */
+  uint8_t *other_shell; /* [n_shell] meets another shell */
 };
-#define VG_CROSSING_INIT { 0 }
+#define VG_CROSSING_INIT                                                       \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /** @param first  as from vg_faces_duplicate: of faces with the same nodes only
  *                the first takes part; the others are duplicates */
 vg_status vg_find_crossings(struct vg_crossing *c, const struct vg_faces *s,
                             const uint32_t *first, const uint32_t (*fan)[3],
-                            const struct vg_box_tree *t,
-                            const uint32_t *shell, size_t n_shell,
-                            int threads, const struct vg_stop *stop,
-                            struct vg_error *err);
+                            const struct vg_box_tree *t, const uint32_t *shell,
+                            size_t n_shell, int threads,
+                            const struct vg_stop *stop, struct vg_error *err);
 
 void vg_crossing_release(struct vg_crossing *c);
 
@@ -166,10 +172,10 @@ void vg_crossing_release(struct vg_crossing *c);
 
 /* What is known of a shell, or wrong with it; bits. */
 enum {
-  VG_SHELL_FLAT = 1,        /* encloses no volume */
-  VG_SHELL_MIXED = 2,       /* neighbours disagree: it has no sides */
-  VG_SHELL_REVERSED = 4,    /* solid and fluid exchanged */
-  VG_SHELL_STRAY = 8        /* within another, solid on the same side */
+  VG_SHELL_FLAT = 1,     /* encloses no volume */
+  VG_SHELL_MIXED = 2,    /* neighbours disagree: it has no sides */
+  VG_SHELL_REVERSED = 4, /* solid and fluid exchanged */
+  VG_SHELL_STRAY = 8     /* within another, solid on the same side */
 };
 
 /** All of shell[] but parent and depth, and state[] (FLAT and MIXED); faces

@@ -6,7 +6,7 @@
 
 #include "core/surface/surface_swap_parts.h"
 
-#define BINS 600             /* of 0.1 degrees */
+#define BINS 600 /* of 0.1 degrees */
 
 /* 2 r / R of a triangle: 16 A^2 over perimeter and product of its edges. */
 static double ratio_of(const struct vg_tri_shape *s)
@@ -65,8 +65,8 @@ void vg_surface_quality(const struct vg_mesh *m, struct vg_surface_quality *q)
     q->n++;
     q->angle_min = fmin(q->angle_min, angle);
     q->ratio_mean += ratio_of(&s);
-    q->edge_mean += (sqrt(s.longest2) + sqrt(s.middle2)
-                     + sqrt(s.shortest2)) / 3;
+    q->edge_mean += (sqrt(s.longest2) + sqrt(s.middle2) + sqrt(s.shortest2)) /
+                    3;
     bin[(int)fmin(10 * angle, BINS - 1)]++;
     for (int k = 0; k < 4; k++) below[k] += angle < limit[k];
     if (vg_tri_shape_sound(&s)) continue;

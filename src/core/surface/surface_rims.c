@@ -17,26 +17,27 @@
 #include "base/union_find.h"
 #include "core/geometry/vector.h"
 
-#define SHARE 0.1           /* S61: largest gap over the shortest edge there */
-#define LEVEL_LEAST 1e-15   /* first tolerance over the largest coordinate,
-                               which has no digits for less */
+#define SHARE 0.1 /* S61: largest gap over the shortest edge there */
+#define LEVEL_LEAST                                                            \
+  1e-15 /* first tolerance over the largest coordinate,                        \
+           which has no digits for less */
 #define LEVEL_STEP 10
 
 struct rim_edge {
-  uint32_t end[2];          /* points of the mesh */
-  uint32_t key[2];          /* groups of its ends on the current level */
+  uint32_t end[2]; /* points of the mesh */
+  uint32_t key[2]; /* groups of its ends on the current level */
 };
 
 struct rims {
   const struct vg_mesh *m;
-  uint32_t *up;             /* [n_point] sets of points that become one */
-  double *shortest;         /* [n_point] shortest edge there */
-  struct rim_edge *edge;    /* [n_edge] still open */
+  uint32_t *up;          /* [n_point] sets of points that become one */
+  double *shortest;      /* [n_point] shortest edge there */
+  struct rim_edge *edge; /* [n_edge] still open */
   size_t n_edge, n_matched;
-  double least;             /* first tolerance */
-  double gap;               /* largest distance of ends that became one */
-  uint8_t *used;            /* [n_point] on the current level */
-  uint32_t *near;           /* [n_point] group on the current level */
+  double least;   /* first tolerance */
+  double gap;     /* largest distance of ends that became one */
+  uint8_t *used;  /* [n_point] on the current level */
+  uint32_t *near; /* [n_point] group on the current level */
 };
 
 static void rims_release(struct rims *r)
@@ -197,8 +198,7 @@ static size_t sort_edges(struct rims *r)
 static void match(struct rims *r, const struct rim_edge *e,
                   const struct rim_edge *f)
 {
-  int turned = vg_root_of(r->near, e->end[0]) !=
-               vg_root_of(r->near, f->end[0]);
+  int turned = vg_root_of(r->near, e->end[0]) != vg_root_of(r->near, f->end[0]);
 
   for (int k = 0; k < 2; k++) {
     uint32_t a = e->end[k], b = f->end[k ^ turned];
@@ -236,8 +236,7 @@ static vg_status match_level(struct rims *r, double tolerance,
 }
 
 /* Levels up to `most`, which is the last one. */
-static vg_status match_levels(struct rims *r, double most,
-                              struct vg_error *err)
+static vg_status match_levels(struct rims *r, double most, struct vg_error *err)
 {
   double t = r->least;
   vg_status st = VG_OK;
@@ -286,8 +285,10 @@ vg_status vg_surface_weld_rims(struct vg_mesh *m, double tolerance,
   vg_status st;
 
   if (!(tolerance > 0) || isinf(tolerance))
-    return vg_fail(err, VG_ERR_INPUT, "weld tolerance %g: give a positive "
-                   "distance", tolerance);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "weld tolerance %g: give a positive "
+                   "distance",
+                   tolerance);
   VG_TRY(rims_init(&r, m, err));
   VG_TRY(match_levels(&r, tolerance, err));
   if (r.n_matched) {

@@ -70,10 +70,9 @@ static void measure_extent(struct vg_shell *shell, uint8_t *state,
       uint32_t edge = e->of_half[3 * f + k], at = e->start[edge];
 
       grow_box(x, s->point[s->node[f][k]]);
-      if (e->start[edge + 1] - at != 2)
-        x->is_closed = 0;
-      else if (vg_faces_disagree(s, e, edge) ^ flip[e->half[at] / 3]
-               ^ flip[e->half[at + 1] / 3])
+      if (e->start[edge + 1] - at != 2) x->is_closed = 0;
+      else if (vg_faces_disagree(s, e, edge) ^ flip[e->half[at] / 3] ^
+               flip[e->half[at + 1] / 3])
         state[of_face[f]] |= VG_SHELL_MIXED;
     }
   }
@@ -99,8 +98,8 @@ vg_status vg_measure_shells(struct vg_shell *shell, uint8_t *state,
 
     /* From a corner of the box: small numbers, wherever the body is. */
     if (i != UINT32_MAX)
-      add_volume(&sum[i], shell[i].lo, s->point[n[0]],
-                 s->point[n[1 + flip[f]]], s->point[n[2 - flip[f]]]);
+      add_volume(&sum[i], shell[i].lo, s->point[n[0]], s->point[n[1 + flip[f]]],
+                 s->point[n[2 - flip[f]]]);
   }
   for (size_t i = 0; i < n_shell; i++) {
     double total = sum[i].sum + sum[i].low;
@@ -147,20 +146,20 @@ struct ray {
   const struct vg_shell *shell;
   const uint32_t *of_face;
   const double *from;
-  uint32_t own;             /* shell that the ray starts on */
-  uint32_t *hit;            /* [n] shells crossed, as often as crossed */
+  uint32_t own;  /* shell that the ray starts on */
+  uint32_t *hit; /* [n] shells crossed, as often as crossed */
   size_t n, cap;
 };
 
 static int note_hit(void *context, uint32_t f)
 {
   struct ray *r = context;
-  const double (*p)[3] = r->s->point;
+  const double(*p)[3] = r->s->point;
   const uint32_t *n = r->s->node[f];
   uint32_t i = r->of_face[f];
 
-  if (i == r->own || !r->shell[i].is_closed
-      || !ray_crosses(p[n[0]], p[n[1]], p[n[2]], r->from))
+  if (i == r->own || !r->shell[i].is_closed ||
+      !ray_crosses(p[n[0]], p[n[1]], p[n[2]], r->from))
     return VG_OK;
   if (vg_reserve(&r->hit, &r->cap, r->n + 1, sizeof *r->hit))
     return VG_ERR_MEMORY;
@@ -182,16 +181,17 @@ static size_t keep_odd(uint32_t *id, size_t n)
 
   if (n) qsort(id, n, sizeof *id, compare_id);
   for (size_t i = 0, j; i < n; i = j) {
-    for (j = i; j < n && id[j] == id[i]; j++) { }
+    for (j = i; j < n && id[j] == id[i]; j++) {
+    }
     if ((j - i) & 1) id[kept++] = id[i];
   }
   return kept;
 }
 
 struct nest {
-  uint32_t *foot;           /* [n_shell] node of least x, so short rays */
-  size_t *start;            /* [n_shell + 1] into list */
-  uint32_t *list;           /* shells around each shell */
+  uint32_t *foot; /* [n_shell] node of least x, so short rays */
+  size_t *start;  /* [n_shell + 1] into list */
+  uint32_t *list; /* shells around each shell */
   size_t n, cap;
 };
 
@@ -263,9 +263,9 @@ vg_status vg_nest_shells(struct vg_shell *shell, size_t n_shell,
       size_t around = x.list[k];
 
       /* Shells that cross can each have a node within the other. */
-      if (shell[around].depth < shell[i].depth
-          && (shell[i].parent == SIZE_MAX
-              || shell[around].depth > shell[shell[i].parent].depth))
+      if (shell[around].depth < shell[i].depth &&
+          (shell[i].parent == SIZE_MAX ||
+           shell[around].depth > shell[shell[i].parent].depth))
         shell[i].parent = around;
     }
 done:
@@ -279,11 +279,11 @@ done:
 /* --- sides --------------------------------------------------------------- */
 
 struct sides {
-  size_t *order;            /* [n] closed shells, outer before inner */
+  size_t *order; /* [n] closed shells, outer before inner */
   size_t n;
-  uint8_t *wrong;           /* [n_shell] not the side its depth asks for */
-  uint8_t *all_wrong;       /* [n_shell] nor any shell within */
-  uint8_t *whole;           /* [n_shell] turned with all within */
+  uint8_t *wrong;     /* [n_shell] not the side its depth asks for */
+  uint8_t *all_wrong; /* [n_shell] nor any shell within */
+  uint8_t *whole;     /* [n_shell] turned with all within */
 };
 
 /* By rising depth, then number (counting sort; depths are below n_shell). */
@@ -313,7 +313,7 @@ static void judge(struct sides *x, const struct vg_shell *shell, int external)
     x->wrong[x->order[i]] = outward != (s->volume > 0);
     x->all_wrong[x->order[i]] = x->wrong[x->order[i]];
   }
-  for (size_t i = x->n; i--; ) {
+  for (size_t i = x->n; i--;) {
     size_t s = x->order[i], p = shell[s].parent;
 
     if (p != SIZE_MAX && !x->all_wrong[s]) x->all_wrong[p] = 0;
@@ -329,8 +329,8 @@ static void settle(struct sides *x, const struct vg_shell *shell,
 {
   for (size_t i = 0; i < x->n; i++) {
     size_t s = x->order[i], p = shell[s].parent;
-    int is_certain = shell[s].depth <= !external
-                     && (!shell[s].depth || !crossed[s]);
+    int is_certain = shell[s].depth <= !external &&
+                     (!shell[s].depth || !crossed[s]);
 
     if (p != SIZE_MAX && x->whole[p]) {
       turn[s] = x->whole[s] = 1;

@@ -15,19 +15,19 @@
 #include "core/surface/surface_parts.h"
 #include "core/surface/surface_swap_parts.h"
 
-#define ROUNDS 16           /* then the surface stays as it is */
-#define PASSES 8            /* of collapses, each followed by swaps */
+#define ROUNDS 16 /* then the surface stays as it is */
+#define PASSES 8  /* of collapses, each followed by swaps */
 
 struct job {
   struct vg_swapper w;
   const struct vg_mesh *m;
   struct vg_error *err;
-  uint32_t *same;           /* [n_point] every point is itself */
+  uint32_t *same; /* [n_point] every point is itself */
   struct vg_faces s;
   struct vg_edges e;
   struct vg_box_tree tree;
   uint32_t (*fan)[3];
-  size_t n_locked;          /* points locked in this round */
+  size_t n_locked; /* points locked in this round */
 };
 
 static void release_topology(struct job *j)
@@ -74,14 +74,19 @@ static vg_status check_options(const struct vg_swap_options *o,
                                struct vg_error *err)
 {
   if (!(o->distance >= 0) || isinf(o->distance))
-    return vg_fail(err, VG_ERR_INPUT, "swaps may move the surface by %g of "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "swaps may move the surface by %g of "
                    "the length of a triangle: give 0 or a small positive "
-                   "number", o->distance);
+                   "number",
+                   o->distance);
   if (!(o->angle >= 0 && o->angle < 90))
-    return vg_fail(err, VG_ERR_INPUT, "swaps may turn normals by %g degrees: "
-                   "give 0 or more and less than 90", o->angle);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "swaps may turn normals by %g degrees: "
+                   "give 0 or more and less than 90",
+                   o->angle);
   if (!(o->short_edge >= 0 && o->short_edge < 1))
-    return vg_fail(err, VG_ERR_INPUT, "edges count as short below %g of their "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "edges count as short below %g of their "
                    "neighbours: give 0 or more and less than 1",
                    o->short_edge);
   return VG_OK;
@@ -90,11 +95,13 @@ static vg_status check_options(const struct vg_swap_options *o,
 static vg_status check_kind(const struct vg_mesh *m, struct vg_error *err)
 {
   if (m->n_quad)
-    return vg_fail(err, VG_ERR_INPUT, "the surface has %zu quadrilaterals: "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the surface has %zu quadrilaterals: "
                    "only triangles can be swapped, split them first",
                    m->n_quad);
   if (m->n_tet || m->n_pyr || m->n_pri || m->n_hex)
-    return vg_fail(err, VG_ERR_INPUT, "the mesh has cells: the triangles of "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the mesh has cells: the triangles of "
                    "its boundary cannot be swapped");
   return vg_mesh_check_index(m, err);
 }
@@ -114,9 +121,8 @@ static vg_status allocate(struct job *j)
   w->removed = vg_alloc(w->n_point, 1);
   w->mark = vg_calloc(w->n_point, sizeof *w->mark);
   j->same = vg_alloc(w->n_point, sizeof *j->same);
-  if (!w->tri || !w->mate || !w->moved || !w->changed || !w->queue
-      || !w->queued || !w->locked || !w->removed || !w->mark
-      || !j->same)
+  if (!w->tri || !w->mate || !w->moved || !w->changed || !w->queue ||
+      !w->queued || !w->locked || !w->removed || !w->mark || !j->same)
     return vg_fail_memory(j->err, "the swaps of the surface");
   for (size_t p = 0; p < w->n_point; p++) j->same[p] = (uint32_t)p;
   return VG_OK;
@@ -142,13 +148,14 @@ static vg_status refuse_edge(const struct job *j, size_t edge, uint32_t n)
   const double *p = j->m->point[vg_swap_from(&j->w, h)];
   const double *q = j->m->point[vg_swap_from(&j->w, vg_half_next(h))];
 
-  return vg_fail(j->err, VG_ERR_INPUT, "triangle %u: its edge at (%g %g %g) "
+  return vg_fail(j->err, VG_ERR_INPUT,
+                 "triangle %u: its edge at (%g %g %g) "
                  "%s: repair the surface before its triangles are swapped",
                  (unsigned)(h / 3 + 1), .5 * p[0] + .5 * q[0],
                  .5 * p[1] + .5 * q[1], .5 * p[2] + .5 * q[2],
-                 n == 1 ? "has no neighbour" : n == 2
-                 ? "has a neighbour of other orientation"
-                 : "has more than one neighbour");
+                 n == 1   ? "has no neighbour"
+                 : n == 2 ? "has a neighbour of other orientation"
+                          : "has more than one neighbour");
 }
 
 static vg_status check_faces(const struct job *j)
@@ -157,11 +164,13 @@ static vg_status check_faces(const struct job *j)
     if (j->s.state[t] & (VG_FACE_COLLAPSED | VG_FACE_NOT_FINITE)) {
       const double *p = j->m->point[j->m->tri[t][0]];
 
-      return vg_fail(j->err, VG_ERR_INPUT, "triangle %zu at (%g %g %g) %s: "
+      return vg_fail(j->err, VG_ERR_INPUT,
+                     "triangle %zu at (%g %g %g) %s: "
                      "repair the surface before its triangles are swapped",
                      t + 1, p[0], p[1], p[2],
                      j->s.state[t] & VG_FACE_COLLAPSED
-                     ? "has a node twice" : "has a node that is not finite");
+                       ? "has a node twice"
+                       : "has a node that is not finite");
     }
   return VG_OK;
 }
@@ -214,7 +223,7 @@ static void lock(struct job *j, uint32_t t)
 static vg_status test_pair(void *context, int worker, uint32_t f, uint32_t g)
 {
   struct job *j = context;
-  const uint32_t (*fan)[3] = (const uint32_t (*)[3])j->fan;
+  const uint32_t(*fan)[3] = (const uint32_t(*)[3])j->fan;
 
   (void)worker;
   if (!j->w.changed[f] && !j->w.changed[g]) return VG_OK;
@@ -362,7 +371,7 @@ vg_status vg_surface_swap(struct vg_mesh *m, const struct vg_swap_options *o,
   j.w.cosine = cosine_of(o->angle);
   j.w.n_point = m->n_point;
   j.w.n_tri = m->n_tri;
-  j.w.point = (const double (*)[3])m->point;
+  j.w.point = (const double(*)[3])m->point;
   j.w.patch = m->tri_patch;
   VG_TRY(allocate(&j));
   if (m->n_tri) {

@@ -15,31 +15,37 @@
 #include "core/mesh/mesh.h"
 
 struct vg_swap_options {
-  double distance;          /* how far the surface may move in all, in parts
-                               of the length there: of the longest edges at
-                               a cap, of the mean of the edges at a short
-                               edge, elsewhere of 0.3 of the shortest */
-  double angle;             /* how far normals may turn, degrees, < 90 */
-  int collapse;             /* collapse short edges too */
-  double short_edge;        /* short: below this part of the mean length of
-                               the other edges at both ends, < 1 */
+  double distance;   /* how far the surface may move in all, in parts
+                        of the length there: of the longest edges at
+                        a cap, of the mean of the edges at a short
+                        edge, elsewhere of 0.3 of the shortest */
+  double angle;      /* how far normals may turn, degrees, < 90 */
+  int collapse;      /* collapse short edges too */
+  double short_edge; /* short: below this part of the mean length of
+                        the other edges at both ends, < 1 */
 };
-#define VG_SWAP_OPTIONS_INIT { 1e-3, 10, 1, 0.02 }   /* S1 */
+#define VG_SWAP_OPTIONS_INIT                                                   \
+  {                                                                            \
+    1e-3, 10, 1, 0.02                                                          \
+  } /* S1 */
 
 /* Triangles lower than this part of their longest edge are caps when they
  * have an angle over 120 degrees, else needles. */
-#define VG_SWAP_SLIVER 0.02   /* S2 */
+#define VG_SWAP_SLIVER 0.02 /* S2 */
 
 struct vg_swap_report {
   size_t n_swapped, n_collapsed;
-  double moved;             /* bound of how far the surface moved */
-  double moved_relative;    /* the same, in parts of the length there */
+  double moved;                 /* bound of how far the surface moved */
+  double moved_relative;        /* the same, in parts of the length there */
   size_t n_cap[2], n_needle[2]; /* before, after */
-  size_t n_kept;            /* points whose triangles stay as they are, since
-                               better ones met another part of the surface;
-                               all when no way was found to avoid that */
+  size_t n_kept; /* points whose triangles stay as they are, since
+                    better ones met another part of the surface;
+                    all when no way was found to avoid that */
 };
-#define VG_SWAP_REPORT_INIT { 0 }
+#define VG_SWAP_REPORT_INIT                                                    \
+  {                                                                            \
+    0                                                                          \
+  }
 
 /** Swap the edges of a closed surface until it is as nearly Delaunay (its
  * smallest angles as large) as its shape permits, and collapse short edges.

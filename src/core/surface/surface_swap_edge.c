@@ -9,7 +9,7 @@
 
 /* Least gain of the square of the sine: rounding and the two diagonals of a
  * square must not count. */
-#define GAIN 1.01   /* S3 */
+#define GAIN 1.01 /* S3 */
 
 /* Pairs without a cap may use this part of the distance only: there is less
  * to be gained, and on a curved surface all of them together count. */
@@ -41,8 +41,7 @@ void vg_tri_shape_of(const double *a, const double *b, const double *c,
     s->middle2 = s->shortest2;
     s->shortest2 = ww;
   }
-  s->sine2 = s->area > 0
-             ? s->area / s->longest2 * (s->area / s->middle2) : 0;
+  s->sine2 = s->area > 0 ? s->area / s->longest2 * (s->area / s->middle2) : 0;
 }
 
 int vg_tri_shape_agree(const struct vg_swapper *w, const struct vg_tri_shape *a,
@@ -85,8 +84,8 @@ static int joined(const struct vg_swapper *w, uint32_t c, uint32_t d)
   do {
     i = vg_half_turn(w, i);
     j = vg_half_turn(w, j);
-    if (vg_swap_from(w, w->mate[i]) == from_d
-        || vg_swap_from(w, w->mate[j]) == from_c)
+    if (vg_swap_from(w, w->mate[i]) == from_d ||
+        vg_swap_from(w, w->mate[j]) == from_c)
       return 1;
   } while (i != c && j != d);
   return 0;
@@ -182,22 +181,23 @@ static void try_swap(struct vg_swapper *w, uint32_t f)
   uint32_t c = vg_swap_from(w, hc), d = vg_swap_from(w, hd);
   struct vg_tri_shape before[2], after[2];
 
-  if (w->patch[f / 3] != w->patch[g / 3] || c == d || w->locked[a]
-      || w->locked[b] || w->locked[c] || w->locked[d])
+  if (w->patch[f / 3] != w->patch[g / 3] || c == d || w->locked[a] ||
+      w->locked[b] || w->locked[c] || w->locked[d])
     return;
   vg_tri_shape_of(at(w, a), at(w, b), at(w, c), &before[0]);
   vg_tri_shape_of(at(w, b), at(w, a), at(w, d), &before[1]);
-  if (w->caps_only && !vg_tri_shape_cap(&before[0])
-      && !vg_tri_shape_cap(&before[1]))
+  if (w->caps_only && !vg_tri_shape_cap(&before[0]) &&
+      !vg_tri_shape_cap(&before[1]))
     return;
   vg_tri_shape_of(at(w, a), at(w, d), at(w, c), &after[0]);
   vg_tri_shape_of(at(w, d), at(w, b), at(w, c), &after[1]);
-  if (!(fmin(after[0].sine2, after[1].sine2)
-        > GAIN * fmin(before[0].sine2, before[1].sine2))
-      || !normals_fit(w, before, after) || joined(w, hc, hd))
+  if (!(fmin(after[0].sine2, after[1].sine2) >
+        GAIN * fmin(before[0].sine2, before[1].sine2)) ||
+      !normals_fit(w, before, after) || joined(w, hc, hd))
     return;
-  if (!may_move(w, f / 3, g / 3, distance(at(w, a), at(w, b), at(w, c),
-                                          at(w, d)), length_of(before)))
+  if (!may_move(w, f / 3, g / 3,
+                distance(at(w, a), at(w, b), at(w, c), at(w, d)),
+                length_of(before)))
     return;
   w->changed[f / 3] = w->changed[g / 3] = 1;
   w->n_swapped++;

@@ -13,23 +13,23 @@
  * tri[t][(k + 1) % 3]; every one has a mate that runs the other way. */
 struct vg_swapper {
   const struct vg_swap_options *o;
-  double cosine;            /* of the angle of the options */
+  double cosine; /* of the angle of the options */
   size_t n_point, n_tri;
   const double (*point)[3];
-  const uint32_t *patch;    /* [n_tri] */
-  uint32_t (*tri)[3];       /* [n_tri] removed: three times the same node */
-  uint32_t *mate;           /* [3 n_tri] */
-  double *moved;            /* [n_tri] bound of how far it is from where the
-                               surface was */
-  uint8_t *changed;         /* [n_tri] */
-  uint8_t *locked;          /* [n_point] faces at it must stay */
-  uint8_t *removed;         /* [n_point] */
-  uint32_t *queue;          /* [3 n_tri] ring of half-edges to look at */
-  uint8_t *queued;          /* [3 n_tri] */
+  const uint32_t *patch; /* [n_tri] */
+  uint32_t (*tri)[3];    /* [n_tri] removed: three times the same node */
+  uint32_t *mate;        /* [3 n_tri] */
+  double *moved;         /* [n_tri] bound of how far it is from where the
+                            surface was */
+  uint8_t *changed;      /* [n_tri] */
+  uint8_t *locked;       /* [n_point] faces at it must stay */
+  uint8_t *removed;      /* [n_point] */
+  uint32_t *queue;       /* [3 n_tri] ring of half-edges to look at */
+  uint8_t *queued;       /* [3 n_tri] */
   size_t head, n_queue;
-  int caps_only;            /* leave pairs without a cap */
-  uint32_t *mark;           /* [n_point] last turn in which it was a */
-  uint32_t turn;            /* neighbour of the point to be removed */
+  int caps_only;  /* leave pairs without a cap */
+  uint32_t *mark; /* [n_point] last turn in which it was a */
+  uint32_t turn;  /* neighbour of the point to be removed */
   size_t n_swapped, n_collapsed;
   double moved_max, moved_relative;
 };
@@ -61,11 +61,11 @@ static inline int vg_tri_removed(const struct vg_swapper *w, size_t t)
 
 /* Measures of a triangle. */
 struct vg_tri_shape {
-  double normal[3];         /* length: twice the area */
-  double area;              /* that length */
+  double normal[3];                    /* length: twice the area */
+  double area;                         /* that length */
   double longest2, middle2, shortest2; /* squares of the edges' lengths */
-  double sine2;             /* square of the sine of the smallest angle; 0
-                               for degenerate ones */
+  double sine2; /* square of the sine of the smallest angle; 0
+                   for degenerate ones */
 };
 
 void vg_tri_shape_of(const double *a, const double *b, const double *c,
@@ -89,8 +89,8 @@ static inline int vg_tri_shape_cap(const struct vg_tri_shape *s)
 {
   double rest = s->longest2 - s->middle2 - s->shortest2;
 
-  return !vg_tri_shape_sound(s) && rest > 0
-         && rest * rest > s->middle2 * s->shortest2;
+  return !vg_tri_shape_sound(s) && rest > 0 &&
+         rest * rest > s->middle2 * s->shortest2;
 }
 
 /* surface_swap_edge.c: swap what is in the queue, and what becomes worth it

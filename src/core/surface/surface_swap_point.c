@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 
-#define RING 64             /* points with more edges stay */
+#define RING 64 /* points with more edges stay */
 
 /* The half-edges away from a point, beginning with the one to collapse. */
 struct ring {
@@ -88,7 +88,7 @@ static int edge_fits(const struct vg_swapper *w, const struct ring *r,
  * says nothing of the surface, but its neighbour may. */
 static int normal_fits(const struct vg_swapper *w, uint32_t i,
                        const struct vg_tri_shape *old,
-                           const struct vg_tri_shape *now)
+                       const struct vg_tri_shape *now)
 {
   uint32_t across = w->mate[vg_half_next(i)];
   struct vg_tri_shape s;
@@ -109,8 +109,8 @@ static double price(struct vg_swapper *w, uint32_t h, double length)
   struct vg_tri_shape old, now;
   double worst = INFINITY, worst_now = INFINITY, by, most = 0;
 
-  if (!collect(w, h, &r) || !collect(w, w->mate[h], &other)
-      || !edge_fits(w, &r, &by) || !link_fits(w, &r, &other))
+  if (!collect(w, h, &r) || !collect(w, w->mate[h], &other) ||
+      !edge_fits(w, &r, &by) || !link_fits(w, &r, &other))
     return INFINITY;
   for (size_t i = 0; i < r.n; i++) {
     const double *x = from(w, w->mate[r.half[i]]);
@@ -154,8 +154,7 @@ static void collapse(struct vg_swapper *w, uint32_t f, double moved)
     vg_swap_push(w, vg_half_next(r.half[i]));
     vg_swap_push(w, vg_half_prev(r.half[i]));
   }
-  for (int k = 0; k < 3; k++)
-    w->tri[f / 3][k] = w->tri[g / 3][k] = b;
+  for (int k = 0; k < 3; k++) w->tri[f / 3][k] = w->tri[g / 3][k] = b;
   w->removed[a] = 1;
   w->n_collapsed++;
 }
@@ -177,8 +176,8 @@ static void measure(const struct vg_swapper *w, double *sum, uint32_t *n)
 {
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
     if (vg_tri_removed(w, h / 3)) continue;
-    sum[vg_swap_from(w, h)] += sqrt(vg_distance2(from(w, h), from(w,
-                                                                  w->mate[h])));
+    sum[vg_swap_from(w, h)] += sqrt(
+      vg_distance2(from(w, h), from(w, w->mate[h])));
     n[vg_swap_from(w, h)]++;
   }
 }
@@ -214,8 +213,7 @@ vg_status vg_swap_points(struct vg_swapper *w, size_t *n_removed,
     b = vg_swap_from(w, w->mate[h]);
     own = sqrt(vg_distance2(w->point[a], w->point[b]));
     mean = (sum[a] + sum[b] - 2 * own) / (double)(n[a] + n[b] - 2);
-    if (own < w->o->short_edge * mean || at_cap(w, h)
-        || at_cap(w, w->mate[h]))
+    if (own < w->o->short_edge * mean || at_cap(w, h) || at_cap(w, w->mate[h]))
       *n_removed += (size_t)try_collapse(w, h, mean);
   }
   free(sum);

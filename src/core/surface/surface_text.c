@@ -7,10 +7,10 @@
 const char *vg_defect_name(enum vg_defect_kind kind)
 {
   static const char *const name[VG_DEFECT_N] = {
-    "open edge",            "non-manifold edge",  "orientation",
-    "duplicate point",      "unused point",       "degenerate triangle",
-    "duplicate triangle",   "shared wall",        "self-intersection",
-    "shell nesting",        "no boundary condition", "coordinate not finite",
+    "open edge",          "non-manifold edge",     "orientation",
+    "duplicate point",    "unused point",          "degenerate triangle",
+    "duplicate triangle", "shared wall",           "self-intersection",
+    "shell nesting",      "no boundary condition", "coordinate not finite",
     "quadrilateral"
   };
 
@@ -29,9 +29,8 @@ static void face_text(const struct vg_mesh *m, size_t f, char *text,
   if (f == SIZE_MAX || (!is_tri && q >= m->n_quad)) return;
   p = &m->patch[is_tri ? m->tri_patch[f] : m->quad_patch[q]];
   snprintf(text, size, "patch %d%s%.*s%s, %s %zu", (int)p->id,
-           p->name[0] ? " (" : "", VG_NAME_MAX, p->name,
-           p->name[0] ? ")" : "", is_tri ? "face" : "quadrilateral",
-           is_tri ? f + 1 : q + 1);
+           p->name[0] ? " (" : "", VG_NAME_MAX, p->name, p->name[0] ? ")" : "",
+           is_tri ? "face" : "quadrilateral", is_tri ? f + 1 : q + 1);
 }
 
 static void where(const double at[3], char *text, size_t size)
@@ -72,8 +71,7 @@ static const char *remedy(const struct vg_defect *d)
            "the surface (a one-sided surface bounds no volume)";
   case VG_DEFECT_DUPLICATE_POINT:
     return "two points have the same coordinates; weld the surface";
-  case VG_DEFECT_UNUSED_POINT:
-    return "no face uses this point; remove it";
+  case VG_DEFECT_UNUSED_POINT: return "no face uses this point; remove it";
   case VG_DEFECT_DEGENERATE_TRIANGLE:
     return "the triangle has no area; remove it by swapping or collapsing an "
            "edge";
@@ -86,8 +84,7 @@ static const char *remedy(const struct vg_defect *d)
   case VG_DEFECT_INTERSECTION:
     return "these faces cross, overlap or touch; unite the bodies or "
            "move the surface apart there";
-  case VG_DEFECT_SHELL:
-    return shell_text(d);
+  case VG_DEFECT_SHELL: return shell_text(d);
   case VG_DEFECT_NO_BC:
     return "this patch has no boundary condition; give it one in the .mapbc "
            "file or the deck";
@@ -95,8 +92,7 @@ static const char *remedy(const struct vg_defect *d)
     return "a coordinate is NaN or infinite; repair the file";
   case VG_DEFECT_QUAD:
     return "the surface may have triangles only; split the quadrilateral";
-  default:
-    return "";
+  default: return "";
   }
 }
 

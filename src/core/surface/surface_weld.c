@@ -38,14 +38,15 @@ static uint32_t *find(const struct vg_table *t, const double (*key)[3],
 vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
                          struct vg_error *err)
 {
-  const double (*point)[3] = (const double (*)[3])m->point;
+  const double(*point)[3] = (const double(*)[3])m->point;
   struct vg_table t;
   uint32_t *map;
 
   if (m->n_point >= NONE)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu points: the limit is %u",
                    m->n_point, (unsigned)NONE - 1);
-  if (vg_table_init(&t, m->n_point)) return vg_fail_memory(err, "a point table");
+  if (vg_table_init(&t, m->n_point))
+    return vg_fail_memory(err, "a point table");
   map = vg_alloc(m->n_point, sizeof *map);
   if (!map) {
     vg_table_release(&t);
@@ -70,17 +71,17 @@ vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
 /* Cells of which the tolerance is the diagonal, and blocks of BLOCK^3 cells,
  * which tell at once of most cells that nothing is near. */
 #define BLOCK 16
-#define REACH 2             /* cells that may hold a point within reach */
-#define CROWD 62            /* cells in reach, half of them: one side looks */
+#define REACH 2  /* cells that may hold a point within reach */
+#define CROWD 62 /* cells in reach, half of them: one side looks */
 
 struct grid {
   struct vg_table cell, block; /* first point of each */
-  double (*key)[3];         /* [n] cell of each point, whole numbers */
-  double (*block_key)[3];   /* [n] block, of points that are first in theirs */
-  uint32_t *next;           /* [n] in the same cell */
-  uint32_t *next_cell;      /* [n] first point of the next cell in the block */
-  uint32_t *n_cell;         /* [n] > 0 for the first point of a cell; of a
-                               block's first, number of cells in the block */
+  double (*key)[3];            /* [n] cell of each point, whole numbers */
+  double (*block_key)[3]; /* [n] block, of points that are first in theirs */
+  uint32_t *next;         /* [n] in the same cell */
+  uint32_t *next_cell;    /* [n] first point of the next cell in the block */
+  uint32_t *n_cell;       /* [n] > 0 for the first point of a cell; of a
+                             block's first, number of cells in the block */
   const double (*point)[3];
   double limit2;
 };
@@ -108,7 +109,7 @@ static void link_by_cell(const struct grid *g, uint32_t *map, uint32_t a)
     const double *k = g->key[a];
     double x[3] = { k[0] + o / 25 - REACH, k[1] + o / 5 % 5 - REACH,
                     k[2] + o % 5 - REACH };
-    uint32_t b = *find(&g->cell, (const double (*)[3])g->key, x);
+    uint32_t b = *find(&g->cell, (const double(*)[3])g->key, x);
 
     if (b != NONE) link_cells(g, map, a, b);
   }
@@ -116,8 +117,8 @@ static void link_by_cell(const struct grid *g, uint32_t *map, uint32_t a)
 
 static int in_reach(const double a[3], const double b[3])
 {
-  return fabs(a[0] - b[0]) <= REACH && fabs(a[1] - b[1]) <= REACH
-         && fabs(a[2] - b[2]) <= REACH;
+  return fabs(a[0] - b[0]) <= REACH && fabs(a[1] - b[1]) <= REACH &&
+         fabs(a[2] - b[2]) <= REACH;
 }
 
 /* Block o (0..7) of those that the reach of cell `key` extends to; 0 when it
@@ -146,7 +147,7 @@ static void link_neighbours(const struct grid *g, uint32_t *map, uint32_t a)
     uint32_t b;
 
     if (!block_in_reach(g->key[a], o, x)) continue;
-    b = *find(&g->block, (const double (*)[3])g->block_key, x);
+    b = *find(&g->block, (const double(*)[3])g->block_key, x);
     if (b == NONE) continue;
     if (g->n_cell[b] > CROWD) {
       link_by_cell(g, map, a);
@@ -163,10 +164,8 @@ static void enter_block(struct grid *g, uint32_t i)
 {
   uint32_t *slot;
 
-  for (int k = 0; k < 3; k++)
-    g->block_key[i][k] = floor(g->key[i][k] / BLOCK);
-  slot = find(&g->block, (const double (*)[3])g->block_key,
-                    g->block_key[i]);
+  for (int k = 0; k < 3; k++) g->block_key[i][k] = floor(g->key[i][k] / BLOCK);
+  slot = find(&g->block, (const double(*)[3])g->block_key, g->block_key[i]);
   g->next_cell[i] = NONE;
   g->n_cell[i] = 1;
   if (*slot == VG_TABLE_FREE) {
@@ -187,7 +186,7 @@ static void link_grid(struct grid *g, uint32_t *map, size_t n, double side)
 
     if (map[i] != i || !finite3(g->point[i])) continue;
     for (int k = 0; k < 3; k++) g->key[i][k] = floor(g->point[i][k] / side);
-    slot = find(&g->cell, (const double (*)[3])g->key, g->key[i]);
+    slot = find(&g->cell, (const double(*)[3])g->key, g->key[i]);
     g->next[i] = NONE;
     if (*slot == VG_TABLE_FREE) {
       *slot = i;
@@ -226,7 +225,7 @@ static vg_status link_near(const struct vg_mesh *m, double tolerance,
   /* Coordinates have no digits for such a distance. */
   if (tolerance < 1e-15 * largest_coordinate(m)) return VG_OK;
   memset(&g, 0, sizeof g);
-  g.point = (const double (*)[3])m->point;
+  g.point = (const double(*)[3])m->point;
   g.limit2 = tolerance * tolerance;
   g.key = vg_alloc(n, sizeof *g.key);
   g.block_key = vg_alloc(n, sizeof *g.block_key);
@@ -236,8 +235,7 @@ static vg_status link_near(const struct vg_mesh *m, double tolerance,
   bad = vg_table_init(&g.cell, n) + vg_table_init(&g.block, n);
   if (bad || !g.key || !g.block_key || !g.next || !g.next_cell || !g.n_cell)
     st = vg_fail_memory(err, "the weld grid");
-  else
-    link_grid(&g, map, n, 0.577 * tolerance); /* 1 / sqrt(3), rounded down */
+  else link_grid(&g, map, n, 0.577 * tolerance); /* 1 / sqrt(3), rounded down */
   free(g.key);
   free(g.block_key);
   free(g.next);
@@ -291,17 +289,20 @@ vg_status vg_mesh_check_index(const struct vg_mesh *m, struct vg_error *err)
     size_t at = bad_index(list[k].node, list[k].n, list[k].width, m->n_point);
 
     if (at != SIZE_MAX)
-      return vg_fail(err, VG_ERR_INPUT, "%s %zu has a node that is none of "
-                     "the %zu points: the file is damaged", list[k].name,
-                     at + 1, m->n_point);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s %zu has a node that is none of "
+                     "the %zu points: the file is damaged",
+                     list[k].name, at + 1, m->n_point);
   }
   for (size_t i = 0; i < m->n_tri + m->n_quad; i++) {
     int is_tri = i < m->n_tri;
     uint32_t p = is_tri ? m->tri_patch[i] : m->quad_patch[i - m->n_tri];
 
     if (p >= m->n_patch)
-      return vg_fail(err, VG_ERR_INPUT, "%s %zu belongs to none of the %zu "
-                     "patches", is_tri ? "triangle" : "quadrilateral",
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s %zu belongs to none of the %zu "
+                     "patches",
+                     is_tri ? "triangle" : "quadrilateral",
                      is_tri ? i + 1 : i - m->n_tri + 1, m->n_patch);
   }
   return VG_OK;
@@ -351,9 +352,8 @@ size_t vg_mesh_drop_tri(struct vg_mesh *m, const uint8_t *drop)
   return before - n;
 }
 
-vg_status vg_surface_weld(struct vg_mesh *m, double tolerance,
-                          size_t *n_merged, size_t *n_dropped,
-                          struct vg_error *err)
+vg_status vg_surface_weld(struct vg_mesh *m, double tolerance, size_t *n_merged,
+                          size_t *n_dropped, struct vg_error *err)
 {
   uint32_t *map = NULL;
   uint8_t *drop = NULL;
@@ -361,8 +361,10 @@ vg_status vg_surface_weld(struct vg_mesh *m, double tolerance,
   vg_status st = VG_OK;
 
   if (!(tolerance >= 0) || isinf(tolerance))
-    return vg_fail(err, VG_ERR_INPUT, "weld tolerance %g: give 0 (points with "
-                   "equal coordinates) or a positive distance", tolerance);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "weld tolerance %g: give 0 (points with "
+                   "equal coordinates) or a positive distance",
+                   tolerance);
   VG_TRY(vg_mesh_check_index(m, err));
   VG_TRY(vg_points_near(m, tolerance, &map, err));
   drop = vg_alloc(m->n_tri, 1);

@@ -11,7 +11,7 @@
 #include "core/mesh/mesh_defects.h"
 #include "core/wrap/wrap_parts.h"
 
-#define REACH 1.5         /* S41: of the offset: farther, a gap was bridged */
+#define REACH 1.5 /* S41: of the offset: farther, a gap was bridged */
 
 static vg_status check(const struct vg_mesh *m, double size,
                        struct vg_error *err)
@@ -26,8 +26,10 @@ static vg_status check(const struct vg_mesh *m, double size,
 
     for (int k = 0; k < 3; k++) good &= m->tri[i][k] < m->n_point;
     if (!good)
-      return vg_fail(err, VG_ERR_INPUT, "triangle %zu: an index is out of "
-                     "range", i + 1);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "triangle %zu: an index is out of "
+                     "range",
+                     i + 1);
   }
   return VG_OK;
 }
@@ -39,12 +41,15 @@ static vg_status check_number(const struct vg_wrap_rims *rims, double size,
   struct vg_wrap_forecast f = vg_wrap_count(rims, size);
 
   if (f.triangles <= VG_WRAP_MOST) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "a wrap of size %g would have some %.2g "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "a wrap of size %g would have some %.2g "
                  "triangles%s, and %.2g are the most; is it in the unit of "
-                 "the surface? Sizes from %.2g on will do", size, f.triangles,
+                 "the surface? Sizes from %.2g on will do",
+                 size, f.triangles,
                  f.n_open ? ", as it may go through holes and lie on both "
-                 "sides of the surface" : "", VG_WRAP_MOST,
-                 1.05 * size * sqrt(f.triangles / VG_WRAP_MOST));
+                            "sides of the surface"
+                          : "",
+                 VG_WRAP_MOST, 1.05 * size * sqrt(f.triangles / VG_WRAP_MOST));
 }
 
 /* Patches that had triangles, and have none. */
@@ -70,7 +75,7 @@ static vg_status label(const struct vg_mesh *m, struct vg_mesh *out,
                        struct vg_error *err)
 {
   size_t n = out->n_point + out->n_tri;
-  double (*x)[3] = vg_alloc(2 * n, sizeof *x);
+  double(*x)[3] = vg_alloc(2 * n, sizeof *x);
   uint32_t *near = vg_alloc(n, sizeof *near);
   vg_status st;
 
@@ -78,11 +83,11 @@ static vg_status label(const struct vg_mesh *m, struct vg_mesh *out,
   memcpy(x, out->point, out->n_point * sizeof *x);
   for (size_t i = 0; i < out->n_tri; i++)
     for (int k = 0; k < 3; k++)
-      x[out->n_point + i][k] = (out->point[out->tri[i][0]][k]
-                                + out->point[out->tri[i][1]][k]
-                                + out->point[out->tri[i][2]][k]) / 3;
-  VG_TRY(vg_wrap_nearest(m, n, (const double (*)[3])x, stop, x + n, near,
-                         err));
+      x[out->n_point + i][k] = (out->point[out->tri[i][0]][k] +
+                                out->point[out->tri[i][1]][k] +
+                                out->point[out->tri[i][2]][k]) /
+                               3;
+  VG_TRY(vg_wrap_nearest(m, n, (const double(*)[3])x, stop, x + n, near, err));
   for (size_t i = 0; i < n; i++) {
     double d = vg_distance(x[i], x[n + i]);
 
@@ -104,16 +109,16 @@ static vg_status fit(const struct vg_mesh *m, struct vg_mesh *out,
                      struct vg_error *err)
 {
   const double most = REACH * r->offset;
-  double (*near)[3] = vg_alloc(out->n_point, sizeof *near);
+  double(*near)[3] = vg_alloc(out->n_point, sizeof *near);
   uint32_t *tri = vg_alloc(out->n_point, sizeof *tri);
   vg_status st;
 
   if (!near || !tri) VG_TRY(vg_fail_memory(err, "a wrap"));
-  VG_TRY(vg_wrap_nearest(m, out->n_point, (const double (*)[3])out->point,
-                         stop, near, tri, err));
+  VG_TRY(vg_wrap_nearest(m, out->n_point, (const double(*)[3])out->point, stop,
+                         near, tri, err));
   VG_TRY(vg_wrap_zip(out, near, most, stop, &r->n_zip, err));
-  VG_TRY(vg_wrap_fit(out, (const double (*)[3])near, most, stop, &r->n_fit,
-                     err));
+  VG_TRY(
+    vg_wrap_fit(out, (const double(*)[3])near, most, stop, &r->n_fit, err));
 done:
   free(near);
   free(tri);
@@ -132,7 +137,8 @@ static vg_status take_bodies(const struct vg_mesh *m, const uint8_t *keep,
   VG_TRY(vg_mesh_copy(in, m, err));
   VG_TRY(vg_wrap_select(in, stays, err));
   if (!in->n_tri)
-    st = vg_fail(err, VG_ERR_INPUT, "nothing to wrap: all triangles belong to "
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "nothing to wrap: all triangles belong to "
                  "an outer boundary");
 done:
   free(stays);
@@ -156,7 +162,7 @@ static vg_status make(const struct vg_mesh *in, const struct vg_wrap_options *o,
   r->widest = f.widest;
   memcpy(r->widest_at, f.at, sizeof f.at);
   VG_TRY(vg_wrap_cgal(in, o, (size_t)f.triangles / 2, out, err));
-  out->patch = in->patch;     /* borrowed, for checks */
+  out->patch = in->patch; /* borrowed, for checks */
   out->n_patch = in->n_patch;
   st = vg_wrap_prune(out, stop, r, err);
   if (st >= 0 && out->n_tri) st = fit(in, out, stop, r, err);
@@ -165,7 +171,8 @@ static vg_status make(const struct vg_mesh *in, const struct vg_wrap_options *o,
   out->n_patch = 0;
   if (st < 0) goto done;
   if (!out->n_tri) {
-    st = vg_fail(err, VG_ERR_GEOMETRY, "nothing is left of a wrap of size %g: "
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "nothing is left of a wrap of size %g: "
                  "it goes through the surface's holes; take a larger one",
                  o->size);
     goto done;

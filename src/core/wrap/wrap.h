@@ -22,68 +22,68 @@ extern "C" {
 #endif
 
 /* Distance of the wrap from the input over its size. */
-#define VG_WRAP_OFFSET (1.0 / 30)   /* S12 */
-#define VG_WRAP_MOST 4e6            /* triangles; more are refused */
+#define VG_WRAP_OFFSET (1.0 / 30) /* S12 */
+#define VG_WRAP_MOST 4e6          /* triangles; more are refused */
 
 struct vg_wrap_options {
-  double size;               /* > 0: the smallest gap that the wrap enters, and
-                                about its longest edge, in the unit of m */
-  const uint8_t *keep;       /* [n_tri] 1: the triangle belongs to an outer
-                                boundary, which stays as it is; NULL: all
-                                triangles are wrapped */
-  uint8_t *empty;            /* out: [n_patch] 1: the patch had triangles and
-                                has none after the wrap; may be NULL */
-  struct vg_stop stop;       /* asked for every facet */
+  double size;         /* > 0: the smallest gap that the wrap enters, and
+                          about its longest edge, in the unit of m */
+  const uint8_t *keep; /* [n_tri] 1: the triangle belongs to an outer
+                          boundary, which stays as it is; NULL: all
+                          triangles are wrapped */
+  uint8_t *empty;      /* out: [n_patch] 1: the patch had triangles and
+                          has none after the wrap; may be NULL */
+  struct vg_stop stop; /* asked for every facet */
   void (*progress)(void *user, size_t done, size_t expected);
-                             /* points inserted, and their forecast; may be
-                                NULL */
-  void *user;                /* for progress */
+  /* points inserted, and their forecast; may be
+     NULL */
+  void *user; /* for progress */
 };
 
 struct vg_wrap_report {
-  double offset;             /* size * VG_WRAP_OFFSET */
-  size_t n_before;           /* triangles that were wrapped */
-  size_t n_kept;             /* triangles of outer boundaries, as they were */
-  size_t n_fit, n_point;     /* points that lie on the input; all */
-  size_t n_zip;              /* points removed where two sides of the wrap meet
-                                in an edge of the input */
-  size_t n_cavity;           /* shells removed because they lie inside the
-                                wrap */
-  size_t n_crumb;            /* shells removed because they enclose less than
-                                offset^3 */
-  size_t n_empty;            /* patches that had triangles and have none */
-  double distance;           /* largest distance of the wrap from the input,
-                                over its corners and the centroids of its
-                                triangles */
-  double at[3];              /* place of that distance */
-  double missing;            /* largest distance of the input outside the wrap,
-                                over its points, middles of edges and centroids
-                                of pieces no longer than size */
-  double missing_at[3];      /* place of that distance */
-  double inside;             /* share of the input's area that lies deeper than
-                                1.5 offsets inside the wrap */
-  double sheet;              /* share of the other area that has fluid on both
-                                sides and no thickness */
-  double widest;             /* as in vg_wrap_forecast */
-  double widest_at[3];       /* middle of that rim */
+  double offset;         /* size * VG_WRAP_OFFSET */
+  size_t n_before;       /* triangles that were wrapped */
+  size_t n_kept;         /* triangles of outer boundaries, as they were */
+  size_t n_fit, n_point; /* points that lie on the input; all */
+  size_t n_zip;          /* points removed where two sides of the wrap meet
+                            in an edge of the input */
+  size_t n_cavity;       /* shells removed because they lie inside the
+                            wrap */
+  size_t n_crumb;        /* shells removed because they enclose less than
+                            offset^3 */
+  size_t n_empty;        /* patches that had triangles and have none */
+  double distance;       /* largest distance of the wrap from the input,
+                            over its corners and the centroids of its
+                            triangles */
+  double at[3];          /* place of that distance */
+  double missing;        /* largest distance of the input outside the wrap,
+                            over its points, middles of edges and centroids
+                            of pieces no longer than size */
+  double missing_at[3];  /* place of that distance */
+  double inside;         /* share of the input's area that lies deeper than
+                            1.5 offsets inside the wrap */
+  double sheet;          /* share of the other area that has fluid on both
+                            sides and no thickness */
+  double widest;         /* as in vg_wrap_forecast */
+  double widest_at[3];   /* middle of that rim */
 };
 
 /** The cost of a wrap, and the rims of its input. */
 struct vg_wrap_forecast {
-  double area;               /* of the triangles to wrap */
+  double area; /* of the triangles to wrap */
   double triangles, seconds;
-  double widest;             /* width of the widest rim of a surface that would
-                                bound a body if its rims were closed; 0: no
-                                surface is such a one */
-  double at[3];              /* middle of that rim */
-  size_t n_part, n_open;     /* parts connected by edges; those with rims */
+  double widest;         /* width of the widest rim of a surface that would
+                            bound a body if its rims were closed; 0: no
+                            surface is such a one */
+  double at[3];          /* middle of that rim */
+  size_t n_part, n_open; /* parts connected by edges; those with rims */
 };
 
 enum vg_wrap_reason {
-  VG_WRAP_FITS,              /* the surface closes at the size */
-  VG_WRAP_HOLES,             /* finer wraps go through its holes */
-  VG_WRAP_SHEETS             /* no size will do: the surface consists of sheets
-                                without thickness that bound no body */
+  VG_WRAP_FITS,  /* the surface closes at the size */
+  VG_WRAP_HOLES, /* finer wraps go through its holes */
+  VG_WRAP_SHEETS /* no size will do: the surface consists of sheets
+                    without thickness that bound no body */
 };
 
 /** 1 when this build can wrap. */

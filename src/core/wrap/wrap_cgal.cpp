@@ -11,7 +11,8 @@ extern "C" int vg_wrap_is_built(void)
 
 static vg_status not_built(struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "this build of vanguard cannot wrap: "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "this build of vanguard cannot wrap: "
                  "install CGAL (Debian's libcgal-dev) and configure again, or "
                  "repair the surface elsewhere");
 }
@@ -32,8 +33,7 @@ extern "C" vg_status vg_wrap_outside(const struct vg_mesh *, size_t,
 }
 
 extern "C" vg_status vg_wrap_crossings(const struct vg_mesh *, size_t,
-                                       const double (*)[3],
-                                       const double (*)[3],
+                                       const double (*)[3], const double (*)[3],
                                        const struct vg_stop *, uint32_t *,
                                        struct vg_error *err)
 {
@@ -63,13 +63,14 @@ extern "C" vg_status vg_wrap_nearest(const struct vg_mesh *, size_t,
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
 
-namespace {
+namespace
+{
 
 typedef CGAL::Exact_predicates_inexact_constructions_kernel Kernel;
 typedef Kernel::Point_3 Point;
 typedef std::vector<Kernel::Triangle_3> Triangles;
 typedef CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>
-    Primitive;
+  Primitive;
 typedef CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> Tree;
 typedef CGAL::Surface_mesh<Point> Mesh;
 
@@ -112,8 +113,10 @@ struct Input {
   Tree tree;
 };
 
-struct Stopped {};
-struct TooMany {};
+struct Stopped {
+};
+struct TooMany {
+};
 
 void ask(const vg_stop *stop)
 {
@@ -124,7 +127,9 @@ void ask(const vg_stop *stop)
  * 256th point. */
 struct Visitor : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
   Visitor(const vg_wrap_options *options, size_t forecast)
-      : o(options), expected(forecast) {}
+      : o(options), expected(forecast)
+  {
+  }
 
   template <typename Wrapper, typename Gate>
   void before_facet_treatment(const Wrapper &, const Gate &) const
@@ -154,7 +159,7 @@ void wrap(const vg_mesh *m, const vg_wrap_options *o, size_t expected,
   for (size_t i = 0; i < m->n_point; i++)
     points.push_back(point_of(m, static_cast<uint32_t>(i)));
   for (size_t i = 0; i < m->n_tri; i++)
-    faces.push_back({m->tri[i][0], m->tri[i][1], m->tri[i][2]});
+    faces.push_back({ m->tri[i][0], m->tri[i][1], m->tri[i][2] });
   CGAL::alpha_wrap_3(points, faces, o->size, o->size * VG_WRAP_OFFSET, out,
                      CGAL::parameters::default_values(),
                      CGAL::parameters::visitor(Visitor(o, expected)));
@@ -163,11 +168,11 @@ void wrap(const vg_mesh *m, const vg_wrap_options *o, size_t expected,
 bool allocate(size_t n_point, size_t n_tri, vg_mesh *out)
 {
   out->point = static_cast<double(*)[3]>(
-      std::malloc((n_point + 1) * sizeof *out->point));
+    std::malloc((n_point + 1) * sizeof *out->point));
   out->tri = static_cast<uint32_t(*)[3]>(
-      std::malloc((n_tri + 1) * sizeof *out->tri));
+    std::malloc((n_tri + 1) * sizeof *out->tri));
   out->tri_patch = static_cast<uint32_t *>(
-      std::malloc((n_tri + 1) * sizeof *out->tri_patch));
+    std::malloc((n_tri + 1) * sizeof *out->tri_patch));
   return out->point && out->tri && out->tri_patch;
 }
 
@@ -179,8 +184,7 @@ void give(const Mesh &from, vg_mesh *out)
     throw std::bad_alloc();
   for (Mesh::Vertex_index v : from.vertices()) {
     place[v] = static_cast<uint32_t>(out->n_point);
-    for (int k = 0; k < 3; k++)
-      out->point[out->n_point][k] = from.point(v)[k];
+    for (int k = 0; k < 3; k++) out->point[out->n_point][k] = from.point(v)[k];
     out->n_point++;
   }
   for (Mesh::Face_index f : from.faces()) {
@@ -197,12 +201,12 @@ void find_nearest(const Input &in, size_t n, const double (*x)[3],
 {
   for (size_t i = 0; i < n; i++) {
     auto hit = in.tree.closest_point_and_primitive(
-        Point(x[i][0], x[i][1], x[i][2]));
+      Point(x[i][0], x[i][1], x[i][2]));
 
     ask(stop);
     for (int k = 0; k < 3; k++) foot[i][k] = hit.first[k];
     tri[i] = static_cast<uint32_t>(
-        in.number[static_cast<size_t>(hit.second - in.triangle.cbegin())]);
+      in.number[static_cast<size_t>(hit.second - in.triangle.cbegin())]);
   }
 }
 
@@ -229,8 +233,8 @@ void find_crossings(const Input &in, size_t n, const double (*a)[3],
   for (size_t i = 0; i < n; i++) {
     ask(stop);
     count[i] = static_cast<uint32_t>(in.tree.number_of_intersected_primitives(
-        Kernel::Segment_3(Point(a[i][0], a[i][1], a[i][2]),
-                          Point(b[i][0], b[i][1], b[i][2]))));
+      Kernel::Segment_3(Point(a[i][0], a[i][1], a[i][2]),
+                        Point(b[i][0], b[i][1], b[i][2]))));
   }
 }
 
@@ -243,17 +247,21 @@ vg_status guarded(const vg_stop *stop, vg_error *err, Body body)
   } catch (const Stopped &) {
     return vg_stopped(stop, err);
   } catch (const TooMany &) {
-    return vg_fail(err, VG_ERR_INPUT, "a wrap came to %.2g triangles and was "
-                   "not done: take a larger size", VG_WRAP_MOST);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "a wrap came to %.2g triangles and was "
+                   "not done: take a larger size",
+                   VG_WRAP_MOST);
   } catch (const std::bad_alloc &) {
     return vg_fail_memory(err, "a wrap; take a larger size");
   } catch (const std::exception &e) {
-    return vg_fail(err, VG_ERR_GEOMETRY, "CGAL could not wrap the surface: "
-                   "%.300s", e.what());
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "CGAL could not wrap the surface: "
+                   "%.300s",
+                   e.what());
   }
 }
 
-}  // namespace
+} // namespace
 
 extern "C" int vg_wrap_is_built(void)
 {

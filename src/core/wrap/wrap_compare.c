@@ -9,25 +9,26 @@
 #include "core/geometry/vector.h"
 #include "core/wrap/wrap_parts.h"
 
-#define REACH 1.5         /* offsets: input deeper inside is enclosed */
-#define PIECES 8          /* of an edge, at most */
-#define SIDES 20000       /* samples whose sides are examined, about */
-#define STAND_OFF 5.0     /* S70: offsets: from a sample to its sides */
-#define START 0.01        /* offsets: where the segment to a side begins */
-#define HOLLOW 0.5        /* S70: share of sheets that makes a hollow shell */
-#define LEAK 0.2          /* S70: the same of a part that should be a body */
-#define LEAK_WIDE 0.03    /* S70: and of one that is open by WIDE of its area */
+#define REACH 1.5      /* offsets: input deeper inside is enclosed */
+#define PIECES 8       /* of an edge, at most */
+#define SIDES 20000    /* samples whose sides are examined, about */
+#define STAND_OFF 5.0  /* S70: offsets: from a sample to its sides */
+#define START 0.01     /* offsets: where the segment to a side begins */
+#define HOLLOW 0.5     /* S70: share of sheets that makes a hollow shell */
+#define LEAK 0.2       /* S70: the same of a part that should be a body */
+#define LEAK_WIDE 0.03 /* S70: and of one that is open by WIDE of its area */
 #define WIDE 0.005
-#define COARSER 1.6       /* S71: size that is named where rims are narrow */
-#define MINOR 0.01        /* S70: share of the area; smaller parts are passed
-                             over */
+#define COARSER 1.6 /* S71: size that is named where rims are narrow */
+#define MINOR                                                                  \
+  0.01 /* S70: share of the area; smaller parts are passed                     \
+          over */
 
 /* Places of the input; the first n_centre are centroids of pieces. */
 struct samples {
   double (*x)[3], (*foot)[3];
-  uint32_t *tri, *near;   /* [n_centre] of the input; [n] of the wrap */
-  double *area;           /* [n_centre] */
-  uint8_t *state;         /* [n] */
+  uint32_t *tri, *near; /* [n_centre] of the input; [n] of the wrap */
+  double *area;         /* [n_centre] */
+  uint8_t *state;       /* [n] */
   size_t n, n_centre;
 };
 enum { ON, INSIDE, OUTSIDE };
@@ -67,8 +68,8 @@ static void place(const struct vg_mesh *m, size_t i, double a, double b,
   const uint32_t *t = m->tri[i];
 
   for (int k = 0; k < 3; k++)
-    x[k] = (1 - a - b) * m->point[t[0]][k] + a * m->point[t[1]][k]
-           + b * m->point[t[2]][k];
+    x[k] = (1 - a - b) * m->point[t[0]][k] + a * m->point[t[1]][k] +
+           b * m->point[t[2]][k];
 }
 
 /* The n^2 similar pieces of triangle i: their centroids. */
@@ -123,7 +124,7 @@ static vg_status find_states(struct samples *s, const struct vg_mesh *out,
                              double least, const struct vg_stop *stop,
                              struct vg_error *err)
 {
-  double (*x)[3] = vg_alloc(s->n, sizeof *x);
+  double(*x)[3] = vg_alloc(s->n, sizeof *x);
   uint8_t *outside = vg_alloc(s->n, 1);
   size_t n = 0;
   vg_status st;
@@ -132,7 +133,7 @@ static vg_status find_states(struct samples *s, const struct vg_mesh *out,
   for (size_t i = 0; i < s->n; i++)
     if (vg_distance(s->x[i], s->foot[i]) > least)
       memcpy(x[n++], s->x[i], sizeof *x);
-  VG_TRY(vg_wrap_outside(out, n, (const double (*)[3])x, stop, outside, err));
+  VG_TRY(vg_wrap_outside(out, n, (const double(*)[3])x, stop, outside, err));
   n = 0;
   for (size_t i = 0; i < s->n; i++)
     if (vg_distance(s->x[i], s->foot[i]) > least)
@@ -164,11 +165,11 @@ static void sum_up(const struct samples *s, double reach,
 
 /* Both sides of every step-th sample: places near it and at a distance. */
 struct sides {
-  double (*from)[3], (*to)[3];   /* [2 n] two for each sample */
-  uint8_t *outside;              /* [2 n] */
-  uint32_t *blocked, *twice;     /* [2 n], [n] triangles that the segments from
-                                    `from` to `to`, and from one side to the
-                                    other, meet */
+  double (*from)[3], (*to)[3]; /* [2 n] two for each sample */
+  uint8_t *outside;            /* [2 n] */
+  uint32_t *blocked, *twice;   /* [2 n], [n] triangles that the segments from
+                                  `from` to `to`, and from one side to the
+                                  other, meet */
   size_t n, step;
 };
 
@@ -234,16 +235,16 @@ static vg_status find_sheets(const struct vg_wrap_rims *rims,
 
   VG_TRY(allocate_sides(s, &x, err));
   place_sides(m, s, offset, &x);
-  VG_TRY(vg_wrap_outside(out, 2 * x.n, (const double (*)[3])x.to, stop,
+  VG_TRY(vg_wrap_outside(out, 2 * x.n, (const double(*)[3])x.to, stop,
                          x.outside, err));
-  VG_TRY(vg_wrap_crossings(m, 2 * x.n, (const double (*)[3])x.from,
-                           (const double (*)[3])x.to, stop, x.blocked, err));
+  VG_TRY(vg_wrap_crossings(m, 2 * x.n, (const double(*)[3])x.from,
+                           (const double(*)[3])x.to, stop, x.blocked, err));
   for (size_t i = 0; i < x.n; i++) {
     memcpy(x.to[i], x.from[2 * i + 1], sizeof *x.to);
     memmove(x.from[i], x.from[2 * i], sizeof *x.from);
   }
-  VG_TRY(vg_wrap_crossings(m, x.n, (const double (*)[3])x.from,
-                           (const double (*)[3])x.to, stop, x.twice, err));
+  VG_TRY(vg_wrap_crossings(m, x.n, (const double(*)[3])x.from,
+                           (const double(*)[3])x.to, stop, x.twice, err));
   for (size_t i = 0; i < x.n; i++) {
     size_t at = i * x.step;
     int wet[2];
@@ -252,7 +253,8 @@ static vg_status find_sheets(const struct vg_wrap_rims *rims,
       wet[k] = x.outside[2 * i + k] && !x.blocked[2 * i + k];
     if (wet[0] || wet[1])
       area[rims->part_of[s->tri[at]]][!(wet[0] && wet[1]) ? BODY
-        : x.twice[i] > 1 ? DOUBLED : SHEET] += s->area[at];
+                                      : x.twice[i] > 1    ? DOUBLED
+                                                       : SHEET] += s->area[at];
   }
 done:
   sides_release(&x);
@@ -265,19 +267,22 @@ static vg_status refuse(const struct vg_wrap_rims *rims, double size,
   struct vg_wrap_forecast f = vg_wrap_count(rims, size);
 
   if (!is_pocket)
-    return vg_fail(err, VG_ERR_GEOMETRY, "the wrap of size %g is a hollow "
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "the wrap of size %g is a hollow "
                    "shell with fluid on both sides of %.0f %% of its walls: "
                    "the surface consists of sheets without thickness (parts: "
                    "%zu, open: %zu), and gaps between them are wider than the "
                    "size. Take a larger size, or give the sheets a thickness",
                    size, 100 * share, f.n_part, f.n_open);
-  return vg_fail(err, VG_ERR_GEOMETRY, "the wrap of size %g goes through the "
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "the wrap of size %g goes through the "
                  "holes of the surface and is a hollow shell with fluid inside "
                  "it, on both sides of %.0f %% of its walls: holes are up to "
                  "%.3g wide, the widest at (%.6g, %.6g, %.6g). Close them "
                  "(close_holes yes), or take a wrap of size > %.3g, which "
-                 "closes them", size, 100 * share, f.widest, f.at[0], f.at[1],
-                 f.at[2], fmax(f.widest, COARSER * size));
+                 "closes them",
+                 size, 100 * share, f.widest, f.at[0], f.at[1], f.at[2],
+                 fmax(f.widest, COARSER * size));
 }
 
 /* Hollow: half of all walls are sheets, or much of a part that should be a
@@ -315,17 +320,17 @@ vg_status vg_wrap_compare(const struct vg_wrap_rims *rims,
   assert(size > 0 && r);
 
   struct samples s = { 0 };
-  double (*area)[KINDS] = vg_calloc(rims->n_part, sizeof *area);
+  double(*area)[KINDS] = vg_calloc(rims->n_part, sizeof *area);
   vg_status st;
 
   if (!area) VG_TRY(vg_fail_memory(err, "a wrap"));
   VG_TRY(take_samples(&rims->m, size, &s, err));
-  VG_TRY(vg_wrap_nearest(out, s.n, (const double (*)[3])s.x, stop, s.foot,
+  VG_TRY(vg_wrap_nearest(out, s.n, (const double(*)[3])s.x, stop, s.foot,
                          s.near, err));
   VG_TRY(find_states(&s, out, 1e-3 * r->offset, stop, err));
   sum_up(&s, REACH * r->offset, r);
   VG_TRY(find_sheets(rims, &s, out, r->offset, stop, area, err));
-  st = judge_sheets(rims, (const double (*)[KINDS])area, size, r, err);
+  st = judge_sheets(rims, (const double(*)[KINDS])area, size, r, err);
 done:
   samples_release(&s);
   free(area);

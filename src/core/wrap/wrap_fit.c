@@ -11,15 +11,15 @@
 #include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
 
-#define ROUNDS 8          /* until triangles no longer meet */
-#define TURN 0.3          /* S41: cosine by which a triangle may turn */
-#define FLAT 0.02         /* least height over longest edge, that is left */
+#define ROUNDS 8  /* until triangles no longer meet */
+#define TURN 0.3  /* S41: cosine by which a triangle may turn */
+#define FLAT 0.02 /* least height over longest edge, that is left */
 
 struct fit {
   struct vg_mesh *m;
-  double (*old)[3];       /* [n_point] as the wrap had them */
+  double (*old)[3]; /* [n_point] as the wrap had them */
   const double (*near)[3];
-  uint8_t *moved;         /* [n_point] */
+  uint8_t *moved; /* [n_point] */
 };
 
 static void normal(const struct vg_mesh *m, const double (*x)[3], size_t t,
@@ -37,8 +37,8 @@ static int stands(const struct fit *f, size_t t)
   const struct vg_mesh *m = f->m;
   double before[3], after[3], longest2 = 0, area;
 
-  normal(m, (const double (*)[3])f->old, t, before);
-  normal(m, (const double (*)[3])m->point, t, after);
+  normal(m, (const double(*)[3])f->old, t, before);
+  normal(m, (const double(*)[3])m->point, t, after);
   for (int k = 0; k < 3; k++)
     longest2 = fmax(longest2, vg_distance2(m->point[m->tri[t][k]],
                                            m->point[m->tri[t][(k + 1) % 3]]));
@@ -115,7 +115,7 @@ vg_status vg_wrap_fit(struct vg_mesh *m, const double (*near)[3], double most,
     settle(&f);
     VG_TRY(part(&f, stop, &n, err));
   }
-  if (n)   /* as it was, without a triangle that meets another */
+  if (n) /* as it was, without a triangle that meets another */
     memcpy(m->point, f.old, m->n_point * sizeof *f.old);
   *n_fit = 0;
   for (size_t p = 0; p < m->n_point && !n; p++) *n_fit += f.moved[p];

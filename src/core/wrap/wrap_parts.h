@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-#define VG_WRAP_CLOSED 2.5   /* S44: triangles of a wrap over area / size^2 */
+#define VG_WRAP_CLOSED 2.5 /* S44: triangles of a wrap over area / size^2 */
 
 /** Points and triangles of the wrap into the empty *out, which the caller
  * releases on failure too. m is sound. expected: points of the wrap, for the
@@ -64,16 +64,16 @@ vg_status vg_wrap_prune(struct vg_mesh *m, const struct vg_stop *stop,
 /* A part of the input, connected by edges. */
 struct vg_wrap_part {
   double area;
-  double lid;            /* area that closes its rims */
-  double widest, at[3];  /* width and middle of its widest rim; 0: closed */
-  int is_pocket;         /* it would bound a body if its rims were closed */
+  double lid;           /* area that closes its rims */
+  double widest, at[3]; /* width and middle of its widest rim; 0: closed */
+  int is_pocket;        /* it would bound a body if its rims were closed */
 };
 
 /* The input, points within a crack's width welded, and its rims: edges with one
  * triangle. A sheet whose triangles occur twice has none. */
 struct vg_wrap_rims {
-  struct vg_mesh m;      /* without patches */
-  uint32_t *part_of;     /* [m.n_tri] */
+  struct vg_mesh m;  /* without patches */
+  uint32_t *part_of; /* [m.n_tri] */
   size_t n_part;
   struct vg_wrap_part *part;
 };

@@ -10,14 +10,16 @@
 #include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
 
-#define OPEN 15.0         /* S44: the same where both sides of a sheet are
-                             wrapped */
-#define SECONDS 3e-4      /* of a triangle */
-#define CRACK 1e-3        /* of the size: narrower cracks are welded */
-#define EDGE 0.05         /* of the mean edge: no wider cracks are */
-#define POCKET 1.5        /* S70: area over that of the lids; a flat sheet has
-                             1, half a sphere 2 */
-#define CERTAIN 4.0       /* S70: sizes: a ball goes through such a rim */
+#define OPEN                                                                   \
+  15.0               /* S44: the same where both sides of a sheet are          \
+                        wrapped */
+#define SECONDS 3e-4 /* of a triangle */
+#define CRACK 1e-3   /* of the size: narrower cracks are welded */
+#define EDGE 0.05    /* of the mean edge: no wider cracks are */
+#define POCKET                                                                 \
+  1.5               /* S70: area over that of the lids; a flat sheet has       \
+                       1, half a sphere 2 */
+#define CERTAIN 4.0 /* S70: sizes: a ball goes through such a rim */
 
 static uint32_t root(uint32_t *up, uint32_t i)
 {
@@ -64,8 +66,8 @@ static vg_status connect(struct vg_wrap_rims *r, uint32_t *rim, size_t *n_rim,
   struct vg_edges e = VG_EDGES_INIT;
   vg_status st;
 
-  VG_TRY(vg_edges_build(&e, m->n_point, m->n_tri,
-                        (const uint32_t (*)[3])m->tri, NULL, 0, err));
+  VG_TRY(vg_edges_build(&e, m->n_point, m->n_tri, (const uint32_t(*)[3])m->tri,
+                        NULL, 0, err));
   for (size_t i = 0; i < m->n_tri; i++) r->part_of[i] = (uint32_t)i;
   for (size_t i = 0; i < e.n; i++) {
     const uint32_t n = vg_edges_count(&e, i), *h = vg_edges_at(&e, i);
@@ -149,9 +151,10 @@ static vg_status measure_parts(struct vg_wrap_rims *r, const uint32_t *edge,
   r->part = vg_calloc(r->n_part, sizeof *r->part);
   if (!up || !rim || !r->part) VG_TRY(vg_fail_memory(err, "a wrap"));
   for (size_t i = 0; i < m->n_tri; i++)
-    r->part[r->part_of[i]].area += cross_norm(
-        m->point[m->tri[i][0]], m->point[m->tri[i][1]],
-        m->point[m->tri[i][2]]) / 2;
+    r->part[r->part_of[i]].area += cross_norm(m->point[m->tri[i][0]],
+                                              m->point[m->tri[i][1]],
+                                              m->point[m->tri[i][2]]) /
+                                   2;
   for (size_t i = 0; i < m->n_point; i++) up[i] = (uint32_t)i;
   measure_rims(m, r->part_of, edge, n, up, rim);
   for (size_t i = 0; i < m->n_point; i++)
@@ -225,15 +228,16 @@ vg_status vg_wrap_refuse_open(const struct vg_wrap_rims *r, double size,
 
   if (r->n_part != 1 || !p->is_pocket || !(p->widest > CERTAIN * size))
     return VG_OK;
-  VG_TRY(vg_wrap_nearest(&r->m, 1, (const double (*)[3])&p->at, stop, foot,
+  VG_TRY(vg_wrap_nearest(&r->m, 1, (const double(*)[3]) & p->at, stop, foot,
                          &tri, err));
   if (vg_distance(p->at, foot[0]) > size)
-    st = vg_fail(err, VG_ERR_GEOMETRY, "a wrap of size %g would go through the "
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "a wrap of size %g would go through the "
                  "holes of the surface and become a hollow shell with fluid "
                  "inside it: holes are up to %.3g wide, the widest at (%.6g, "
                  "%.6g, %.6g). Close them (close_holes yes), or take a wrap of "
-                 "size > %.3g, which closes them", size, p->widest, p->at[0],
-                 p->at[1], p->at[2], p->widest);
+                 "size > %.3g, which closes them",
+                 size, p->widest, p->at[0], p->at[1], p->at[2], p->widest);
 done:
   return st;
 }

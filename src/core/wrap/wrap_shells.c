@@ -90,8 +90,8 @@ static vg_status append(struct vg_mesh *m, const struct vg_mesh *other,
 {
   size_t n_point = m->n_point + other->n_point;
   size_t n_tri = m->n_tri + other->n_tri;
-  double (*point)[3] = vg_realloc(m->point, n_point, sizeof *point);
-  uint32_t (*tri)[3], *patch;
+  double(*point)[3] = vg_realloc(m->point, n_point, sizeof *point);
+  uint32_t(*tri)[3], *patch;
 
   if (point) m->point = point;
   tri = vg_realloc(m->tri, n_tri, sizeof *tri);
@@ -120,7 +120,8 @@ static vg_status check_meeting(const struct vg_mesh *m, size_t n,
     if (d->kind != VG_DEFECT_INTERSECTION ||
         (d->face[0] < n) == (d->face[1] < n))
       continue;
-    return vg_fail(err, VG_ERR_GEOMETRY, "the wrap meets the outer boundary "
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "the wrap meets the outer boundary "
                    "that is kept (patch %d), at (%.6g, %.6g, %.6g): take a "
                    "smaller size where a gap is left between the two, or take "
                    "the body's part outside the boundary away",
@@ -144,9 +145,11 @@ static vg_status check_leaving(const struct vg_mesh *m, size_t n,
     const double *x = m->point[m->tri[s->face][0]];
 
     if (s->face < n && s->depth % 2 == 0)
-      return vg_fail(err, VG_ERR_GEOMETRY, "a wrapped body lies outside the "
+      return vg_fail(err, VG_ERR_GEOMETRY,
+                     "a wrapped body lies outside the "
                      "outer boundary that is kept, at (%.6g, %.6g, %.6g): "
-                     "take it out of the surface", x[0], x[1], x[2]);
+                     "take it out of the surface",
+                     x[0], x[1], x[2]);
   }
   return VG_OK;
 }
@@ -163,7 +166,7 @@ vg_status vg_wrap_join(const struct vg_mesh *m, const uint8_t *keep,
   VG_TRY(vg_mesh_copy(&kept, m, err));
   VG_TRY(vg_wrap_select(&kept, keep, err));
   VG_TRY(append(out, &kept, err));
-  out->patch = m->patch;     /* borrowed, for the check */
+  out->patch = m->patch; /* borrowed, for the check */
   out->n_patch = m->n_patch;
   st = examine(out, stop, &r, err);
   if (st >= 0) st = check_meeting(out, n, &r, err);

@@ -6,9 +6,9 @@
 #include "core/geometry/vector.h"
 #include "core/wrap/wrap_parts.h"
 
-#define TRIANGLES 1e4     /* S71: of the first size tried */
-#define COARSER 1.6       /* S71: from one size to the next */
-#define COARSEST 0.25     /* S71: of the longest side: the body is lost */
+#define TRIANGLES 1e4 /* S71: of the first size tried */
+#define COARSER 1.6   /* S71: from one size to the next */
+#define COARSEST 0.25 /* S71: of the longest side: the body is lost */
 
 /* Two digits, as a person would type it. */
 static double rounded(double size)

@@ -14,17 +14,17 @@
 #include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
 
-#define FLAT 0.02         /* S42: height over longest edge: corners in a line */
-#define TURN 0.3          /* cosine by which others may turn */
+#define FLAT 0.02 /* S42: height over longest edge: corners in a line */
+#define TURN 0.3  /* cosine by which others may turn */
 #define ROUNDS 64
 
 struct zip {
   struct vg_mesh *m;
   double (*near)[3];
-  size_t *first;            /* [n_point + 1] */
-  uint32_t *at;             /* [3 n_tri] triangles by point */
-  uint8_t *busy;            /* [n_point] a triangle of it has been changed */
-  uint8_t *gone;            /* [n_tri] */
+  size_t *first; /* [n_point + 1] */
+  uint32_t *at;  /* [3 n_tri] triangles by point */
+  uint8_t *busy; /* [n_point] a triangle of it has been changed */
+  uint8_t *gone; /* [n_tri] */
   size_t n;
 };
 
@@ -43,8 +43,8 @@ static int is_flat(const struct zip *z, const uint32_t v[3])
 
   normal(z, v, n);
   for (int k = 0; k < 3; k++)
-    longest2 = fmax(longest2, vg_distance2(z->near[v[k]],
-                                           z->near[v[(k + 1) % 3]]));
+    longest2 = fmax(longest2,
+                    vg_distance2(z->near[v[k]], z->near[v[(k + 1) % 3]]));
   return vg_norm(n) <= FLAT * longest2;
 }
 
@@ -57,7 +57,7 @@ static void list_triangles(struct zip *z)
   for (size_t i = 0; i < 3 * m->n_tri; i++)
     if (!z->gone[i / 3]) z->first[m->tri[i / 3][i % 3]]++;
   for (size_t p = 0; p < m->n_point; p++) z->first[p + 1] += z->first[p];
-  for (size_t i = 3 * m->n_tri; i-- > 0;)   /* ends become beginnings */
+  for (size_t i = 3 * m->n_tri; i-- > 0;) /* ends become beginnings */
     if (!z->gone[i / 3])
       z->at[--z->first[m->tri[i / 3][i % 3]]] = (uint32_t)(i / 3);
 }
@@ -82,7 +82,7 @@ static int link_fits(const struct zip *z, uint32_t a, uint32_t b)
         found |= has(z->m->tri[z->at[j]], q);
       n += (size_t)found;
     }
-  return n == 4;            /* each is in two triangles of a */
+  return n == 4; /* each is in two triangles of a */
 }
 
 /* Triangles of b that stay, with a in its place: none folds or gets flat that
@@ -102,8 +102,8 @@ static int ring_fits(const struct zip *z, uint32_t a, uint32_t b)
     if (is_flat(z, w)) return 0;
     normal(z, v, before);
     normal(z, w, after);
-    if (!(vg_dot(before, after)
-          > TURN * vg_norm(before) * vg_norm(after))) return 0;
+    if (!(vg_dot(before, after) > TURN * vg_norm(before) * vg_norm(after)))
+      return 0;
   }
   return 1;
 }
@@ -167,7 +167,7 @@ static void compact(struct zip *z)
     if (z->gone[t]) continue;
     memmove(m->tri[n_tri++], m->tri[t], sizeof *m->tri);
   }
-  m->n_tri = n_tri;         /* patches are not known yet */
+  m->n_tri = n_tri; /* patches are not known yet */
   memset(z->busy, 0, m->n_point);
   for (size_t i = 0; i < 3 * n_tri; i++) z->busy[m->tri[i / 3][i % 3]] = 1;
   for (uint32_t p = 0; p < m->n_point; p++) {
@@ -219,9 +219,9 @@ vg_status vg_wrap_zip(struct vg_mesh *m, double (*near)[3], double most,
 
   const size_t n_point = m->n_point, n_tri = m->n_tri;
   struct zip z = { .m = m, .near = near };
-  double (*point)[3] = vg_alloc(n_point, sizeof *point);
-  double (*place)[3] = vg_alloc(n_point, sizeof *place);
-  uint32_t (*tri)[3] = vg_alloc(n_tri, sizeof *tri);
+  double(*point)[3] = vg_alloc(n_point, sizeof *point);
+  double(*place)[3] = vg_alloc(n_point, sizeof *place);
+  uint32_t(*tri)[3] = vg_alloc(n_tri, sizeof *tri);
   int sound = 1;
   vg_status st;
 

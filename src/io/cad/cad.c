@@ -17,13 +17,13 @@
 #include "io/stream/convention.h"
 
 #define POLL_MS 100
-#define TEXT_MAX 2048        /* of a message from the child */
+#define TEXT_MAX 2048 /* of a message from the child */
 
 struct vg_cad {
   struct vg_child child;
   int is_open, has_model;
-  struct vg_cad_options o;   /* of the last parse */
-  char stage[80];            /* what it is doing */
+  struct vg_cad_options o; /* of the last parse */
+  char stage[80];          /* what it is doing */
 };
 
 void vg_cad_surface_release(struct vg_cad_surface *s)
@@ -100,7 +100,8 @@ vg_status vg_cad_open(struct vg_cad **out, struct vg_error *err)
   vg_status st;
 
   if (!vg_cad_is_built())
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "this build of vanguard reads no "
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "this build of vanguard reads no "
                    "CAD: install Open CASCADE (Debian's "
                    "libocct-data-exchange-dev) and configure again, or mesh "
                    "the surface elsewhere ('gmsh -2 FILE -o NAME.stl') and "
@@ -136,10 +137,12 @@ static vg_status gone(struct call *k, struct vg_error *err)
 
   strcpy(stage, k->cad->stage);
   end_child(k->cad);
-  return vg_fail(err, VG_ERR_GEOMETRY, "%s: Open CASCADE ended without an "
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "%s: Open CASCADE ended without an "
                  "answer (a crash, or no memory left) while %s; the file may "
                  "be damaged: export it again, or try another format (STEP, "
-                 "IGES, BREP)", k->path, stage);
+                 "IGES, BREP)",
+                 k->path, stage);
 }
 
 /* Bytes to read, the end of the child, or an end to patience. */
@@ -151,13 +154,16 @@ static vg_status await(struct call *k, struct vg_error *err)
   do {
     if (o && vg_stops(&o->stop)) {
       end_child(k->cad);
-      return vg_fail(err, VG_ERR_STOPPED, "%s: stopped while reading it", k->path);
+      return vg_fail(err, VG_ERR_STOPPED, "%s: stopped while reading it",
+                     k->path);
     }
     if (o && o->seconds > 0 && vg_clock() - k->start > o->seconds) {
       end_child(k->cad);
-      return vg_fail(err, VG_ERR_GEOMETRY, "%s: Open CASCADE was given up "
+      return vg_fail(err, VG_ERR_GEOMETRY,
+                     "%s: Open CASCADE was given up "
                      "after %g s while %s (cad_seconds allows more; 0: no "
-                     "limit)", k->path, o->seconds, k->cad->stage);
+                     "limit)",
+                     k->path, o->seconds, k->cad->stage);
     }
   } while (poll(&p, 1, POLL_MS) <= 0);
   return VG_OK;
@@ -199,8 +205,9 @@ static vg_status next(struct call *k, struct vg_cad_tell *t,
     } else {
       /* it ended amid a question */
       if (t->code == VG_ERR_MEMORY) end_child(k->cad);
-      return vg_fail(err, t->code < 0 && t->code >= VG_ERR_USAGE
-                            ? (vg_status)t->code : VG_ERR_GEOMETRY,
+      return vg_fail(err,
+                     t->code < 0 && t->code >= VG_ERR_USAGE ? (vg_status)t->code
+                                                            : VG_ERR_GEOMETRY,
                      "%s: %s", k->path, text);
     }
   }
@@ -216,10 +223,12 @@ static vg_status take_array(struct call *k, uint64_t n, size_t size, void *to,
 
   if (!a) {
     end_child(k->cad);
-    return vg_fail(err, VG_ERR_MEMORY, "%s: not enough memory for %llu items "
-                   "of its surface", k->path, (unsigned long long)n);
+    return vg_fail(err, VG_ERR_MEMORY,
+                   "%s: not enough memory for %llu items "
+                   "of its surface",
+                   k->path, (unsigned long long)n);
   }
-  memcpy(to, &a, sizeof a);   /* the caller frees it, also on failure */
+  memcpy(to, &a, sizeof a); /* the caller frees it, also on failure */
   st = take(k, a, n * size, err);
   return st;
 }
@@ -283,8 +292,8 @@ static vg_status take_surface(struct call *k, struct vg_cad_surface *s,
   VG_TRY(take_array(k, n.n_tri, sizeof *m->tri_patch, &m->tri_patch, err));
   VG_TRY(take_array(k, n.n_segment, sizeof *s->segment, &s->segment, err));
   s->n_segment = n.n_segment;
-  VG_TRY(take_array(k, n.n_segment, sizeof *s->segment_curve,
-                    &s->segment_curve, err));
+  VG_TRY(take_array(k, n.n_segment, sizeof *s->segment_curve, &s->segment_curve,
+                    err));
   VG_TRY(take_patches(k, n.n_patch, m, err));
   if (!is_sound(s)) {
     st = gone(k, err);
@@ -359,7 +368,9 @@ static int is_whole(const struct vg_input *in, enum vg_cad_kind kind)
   return trimmed(in) >= n && !memcmp(end - n, step, n);
 }
 
-static const struct { const char *word, *last; } frames[] = {
+static const struct {
+  const char *word, *last;
+} frames[] = {
   [VG_CAD_STEP] = { "ISO-10303-21", "\"END-ISO-10303-21;\"" },
   [VG_CAD_IGES] = { "", "a line T (Terminate)" },
   [VG_CAD_BREP] = { "CASCADE Topology V", "the number of its shape" },
@@ -372,16 +383,20 @@ static vg_status check_frame(const struct vg_input *in, enum vg_cad_kind kind,
   size_t head = in->size < 4096 ? in->size : 4096;
 
   if (*word && !memmem(in->data, head, word, strlen(word)))
-    return vg_fail(err, VG_ERR_FORMAT, "%s: no %s file: \"%s\" should stand "
-                   "near its beginning", in->path,
-                   kind == VG_CAD_STEP ? "STEP" : "BREP", word);
-  if (kind == VG_CAD_IGES &&
-      (in->size < 80 || in->data[72] != 'S'))
-    return vg_fail(err, VG_ERR_FORMAT, "%s: no IGES file: column 73 of its "
-                   "first line should be S (Start)", in->path);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: no %s file: \"%s\" should stand "
+                   "near its beginning",
+                   in->path, kind == VG_CAD_STEP ? "STEP" : "BREP", word);
+  if (kind == VG_CAD_IGES && (in->size < 80 || in->data[72] != 'S'))
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: no IGES file: column 73 of its "
+                   "first line should be S (Start)",
+                   in->path);
   if (is_whole(in, kind)) return VG_OK;
-  return vg_fail(err, VG_ERR_FORMAT, "%s: truncated: it does not end in %s, as "
-                 "it must; export it again", in->path, frames[kind].last);
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s: truncated: it does not end in %s, as "
+                 "it must; export it again",
+                 in->path, frames[kind].last);
 }
 
 /* --- surfaces ------------------------------------------------------------ */
@@ -389,8 +404,10 @@ static vg_status check_frame(const struct vg_input *in, enum vg_cad_kind kind,
 static struct vg_cad_ask question(uint32_t what, uint32_t kind, uint64_t n,
                                   const struct vg_cad_options *o)
 {
-  return (struct vg_cad_ask){ what, kind, o->unit, o->patches, n, o->tolerance,
-                              o->chord, o->angle, o->least, 0, 0 };
+  return (struct vg_cad_ask){ what,       kind,     o->unit,
+                              o->patches, n,        o->tolerance,
+                              o->chord,   o->angle, o->least,
+                              0,          0 };
 }
 
 /* A child that does not listen may have told the reason before it ended. */
@@ -429,9 +446,9 @@ static int crashed_uniting(const struct call *k)
 {
   const struct vg_cad_options *o = k->o;
 
-  return !k->cad->is_open && !strcmp(k->cad->stage, VG_CAD_STAGE_UNITE)
-         && !(o->seconds > 0 && vg_clock() - k->start > o->seconds)
-         && !vg_stops(&o->stop);
+  return !k->cad->is_open && !strcmp(k->cad->stage, VG_CAD_STAGE_UNITE) &&
+         !(o->seconds > 0 && vg_clock() - k->start > o->seconds) &&
+         !vg_stops(&o->stop);
 }
 
 static vg_status parse(struct vg_cad *c, struct vg_input *in,
@@ -443,8 +460,8 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
   vg_status st;
 
   if (kind <= VG_CAD_NONE || kind > VG_CAD_BREP)
-    return vg_fail(err, VG_ERR_INPUT, "%s: %d is no kind of CAD file",
-                   in->path, (int)kind);
+    return vg_fail(err, VG_ERR_INPUT, "%s: %d is no kind of CAD file", in->path,
+                   (int)kind);
   VG_TRY(check_frame(in, kind, err));
   VG_TRY(start_child(c, err));
   c->has_model = 0;
@@ -454,7 +471,7 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
   if (st < 0 && crashed_uniting(&k)) {
     if (o->note)
       o->note(o->user, "Open CASCADE crashed while it united solids that touch "
-              "or overlap; the file was read again without that");
+                       "or overlap; the file was read again without that");
     VG_TRY(start_child(c, err));
     send_file(&k, in, kind, 1, with_volume);
     st = await_surface(&k, out, err);
@@ -480,8 +497,7 @@ vg_status vg_cad_again(struct vg_cad *c, const struct vg_cad_options *o,
   struct call k = { c, "the CAD model", o, vg_clock() };
 
   assert(o && out);
-  if (!c->has_model)
-    return vg_fail(err, VG_ERR_INPUT, "no CAD model was read");
+  if (!c->has_model) return vg_fail(err, VG_ERR_INPUT, "no CAD model was read");
   c->o = *o;
   if (!vg_child_put(c->child.fd, &ask, sizeof ask)) return gone(&k, err);
   return await_surface(&k, out, err);
@@ -502,8 +518,8 @@ vg_status vg_cad_read(const char *path, enum vg_cad_kind kind,
   assert(!keep || !keep->cad);
   VG_TRY(vg_input_open(path, &in, err));
   VG_TRY(vg_cad_open(&c, err));
-  VG_TRY(parse(c, &in, kind, options ? options : &plain, keep != NULL, &s,
-               err));
+  VG_TRY(
+    parse(c, &in, kind, options ? options : &plain, keep != NULL, &s, err));
   if (keep) {
     struct vg_mesh copy = VG_MESH_INIT;
 
@@ -528,19 +544,20 @@ vg_status vg_cad_project(struct vg_cad *c, enum vg_cad_on on, size_t n,
                          const uint32_t *number, double (*point)[3],
                          double *distance, struct vg_error *err)
 {
-  static const uint32_t what[] = { [VG_CAD_ON_FACES] = VG_CAD_ASK_FACES,
+  static const uint32_t what[] = {
+    [VG_CAD_ON_FACES] = VG_CAD_ASK_FACES,
     [VG_CAD_ON_CURVES] = VG_CAD_ASK_CURVES,
-    [VG_CAD_ON_TRIANGLES] = VG_CAD_ASK_TRIANGLES };
+    [VG_CAD_ON_TRIANGLES] = VG_CAD_ASK_TRIANGLES
+  };
   const struct vg_cad_ask ask = { .n = n, .what = what[on] };
   struct call k = { c, "the CAD model", &c->o, vg_clock() };
-  double (*to)[3] = NULL, *far = NULL;
+  double(*to)[3] = NULL, *far = NULL;
   struct vg_cad_tell t;
   vg_status st = VG_OK;
 
   assert(on >= VG_CAD_ON_FACES && on <= VG_CAD_ON_TRIANGLES);
   assert((number && point) || !n);
-  if (!c->has_model)
-    return vg_fail(err, VG_ERR_INPUT, "no CAD model was read");
+  if (!c->has_model) return vg_fail(err, VG_ERR_INPUT, "no CAD model was read");
   if (!n) return VG_OK;
   if (!vg_child_put(c->child.fd, &ask, sizeof ask) ||
       !vg_child_put(c->child.fd, number, n * sizeof *number) ||

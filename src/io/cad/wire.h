@@ -12,15 +12,20 @@ extern "C" {
 
 /* A question. READ is followed by n bytes of a file, AGAIN by nothing, the
  * others by n numbers (uint32_t) and n points. */
-enum { VG_CAD_ASK_READ, VG_CAD_ASK_FACES, VG_CAD_ASK_CURVES,
-       VG_CAD_ASK_TRIANGLES, VG_CAD_ASK_AGAIN };
+enum {
+  VG_CAD_ASK_READ,
+  VG_CAD_ASK_FACES,
+  VG_CAD_ASK_CURVES,
+  VG_CAD_ASK_TRIANGLES,
+  VG_CAD_ASK_AGAIN
+};
 struct vg_cad_ask {
   uint32_t what, kind;
   int32_t unit, patches;
   uint64_t n;
   double tolerance, chord, angle, least;
-  int32_t leave_apart;       /* 1: do not unite solids */
-  int32_t with_volume;       /* 1: find out is_solid and volume */
+  int32_t leave_apart; /* 1: do not unite solids */
+  int32_t with_volume; /* 1: find out is_solid and volume */
 };
 
 /* The stage in which solids are united. */
@@ -29,8 +34,13 @@ struct vg_cad_ask {
 /* Answers: any number of notes and stages (n characters), then a failure (n
  * characters; code: a vg_status), or a surface (n: 1, with its counts and
  * arrays), or points (n, and n distances). */
-enum { VG_CAD_TELL_NOTE, VG_CAD_TELL_STAGE, VG_CAD_TELL_FAIL,
-       VG_CAD_TELL_SURFACE, VG_CAD_TELL_POINTS };
+enum {
+  VG_CAD_TELL_NOTE,
+  VG_CAD_TELL_STAGE,
+  VG_CAD_TELL_FAIL,
+  VG_CAD_TELL_SURFACE,
+  VG_CAD_TELL_POINTS
+};
 struct vg_cad_tell {
   int32_t what, code;
   uint64_t n;
@@ -46,7 +56,7 @@ struct vg_cad_counts {
 
 struct vg_cad_patch {
   int32_t id;
-  char name[80];             /* ends in 0 */
+  char name[80]; /* ends in 0 */
 };
 
 /* The adapter's door, found by its name in its library. It serves questions

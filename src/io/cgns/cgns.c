@@ -19,7 +19,7 @@
 
 #define BASE "Base"
 #define BLOCK 1024
-#define SECOND "+quads"    /* behind a word: no word has a plus */
+#define SECOND "+quads" /* behind a word: no word has a plus */
 
 /* Ours to CGNS's, whose pyramid has its apex last; its codes of kinds. */
 static const struct kind {
@@ -41,7 +41,7 @@ enum what { POINTS, CELLS, FACES };
 struct vg_cgns_array {
   uint64_t at, size;
   enum what what;
-  int which;                 /* axis, kind, corners */
+  int which; /* axis, kind, corners */
   size_t first, end;
 };
 
@@ -51,7 +51,7 @@ struct layout {
   struct vg_cgns_tree *tree;
   char (*word)[VG_PATCH_WORD];
   uint64_t n_cell[VG_CGNS_KINDS];
-  uint64_t n_element;        /* of the sections so far */
+  uint64_t n_element; /* of the sections so far */
   int64_t base, zone, boundary;
 };
 
@@ -77,8 +77,7 @@ static vg_status add_text(struct layout *l, int64_t parent, const char *name,
 }
 
 static vg_status add_empty(struct layout *l, int64_t parent, const char *name,
-                           const char *label, int64_t *id,
-                           struct vg_error *err)
+                           const char *label, int64_t *id, struct vg_error *err)
 {
   const struct vg_cgns_data d = { "MT", 0, { 0, 0 }, NULL };
 
@@ -86,10 +85,10 @@ static vg_status add_empty(struct layout *l, int64_t parent, const char *name,
 }
 
 /* Indices as [rows][n / rows] of the standard; n at most 4. */
-static vg_status add_indices(struct layout *l, int64_t parent,
-                             const char *name, const char *label, int n_dim,
-                             size_t rows, size_t n, const int64_t *v,
-                             int64_t *id, struct vg_error *err)
+static vg_status add_indices(struct layout *l, int64_t parent, const char *name,
+                             const char *label, int n_dim, size_t rows,
+                             size_t n, const int64_t *v, int64_t *id,
+                             struct vg_error *err)
 {
   struct vg_cgns_data d = { index_type(l), n_dim, { n, 0 }, v };
   int32_t narrow[4];
@@ -102,8 +101,8 @@ static vg_status add_indices(struct layout *l, int64_t parent,
 
 /* A node whose data are an array of n values. */
 static vg_status add_array(struct layout *l, int64_t parent, const char *name,
-                           const char *type, uint64_t n,
-                           struct vg_cgns_array a, struct vg_error *err)
+                           const char *type, uint64_t n, struct vg_cgns_array a,
+                           struct vg_error *err)
 {
   const struct vg_cgns_data d = { type, 1, { n, 0 }, NULL };
   vg_status st = vg_cgns_tree_add(l->tree, parent, name, "DataArray_t", &d,
@@ -128,8 +127,8 @@ static vg_status add_section(struct layout *l, const char *name, int32_t code,
 
   VG_TRY(vg_cgns_tree_add(l->tree, l->zone, name, "Elements_t", &d, &section,
                           NULL, err));
-  VG_TRY(add_indices(l, section, "ElementRange", "IndexRange_t", 1, 1, 2,
-                     range, NULL, err));
+  VG_TRY(add_indices(l, section, "ElementRange", "IndexRange_t", 1, 1, 2, range,
+                     NULL, err));
   l->n_element += n;
   st = add_array(l, section, "ElementConnectivity", index_type(l),
                  n * (uint64_t)n_node, a, err);
@@ -153,8 +152,8 @@ static vg_status lay_zone(struct layout *l, int64_t root, struct vg_error *err)
                           "CGNSLibraryVersion_t", &release, NULL, NULL, err));
   VG_TRY(vg_cgns_tree_add(l->tree, root, BASE, "CGNSBase_t", &dimensions,
                           &l->base, NULL, err));
-  VG_TRY(add_indices(l, l->base, "Zone", "Zone_t", 2, 1, 3, size, &l->zone,
-                     err));
+  VG_TRY(
+    add_indices(l, l->base, "Zone", "Zone_t", 2, 1, 3, size, &l->zone, err));
   st = add_text(l, l->zone, "ZoneType", "ZoneType_t", "Unstructured", NULL,
                 err);
 done:
@@ -198,9 +197,12 @@ static vg_status lay_faces(struct layout *l, const char *word, size_t first,
   if (first == end) return VG_OK;
   snprintf(name, sizeof name, "%.*s%s", VG_CGNS_WORD_MOST, word,
            is_second ? SECOND : "");
-  return add_section(l, name, n_node == 3 ? TRI_3 : QUAD_4, end - first,
-                     n_node, (struct vg_cgns_array){ .what = FACES,
-                     .which = n_node, .first = first, .end = end }, err);
+  return add_section(l, name, n_node == 3 ? TRI_3 : QUAD_4, end - first, n_node,
+                     (struct vg_cgns_array){ .what = FACES,
+                                             .which = n_node,
+                                             .first = first,
+                                             .end = end },
+                     err);
 }
 
 static vg_status lay_condition(struct layout *l, const char *word,
@@ -215,12 +217,12 @@ static vg_status lay_condition(struct layout *l, const char *word,
   VG_TRY(add_text(l, l->boundary, word, "BC_t", "FamilySpecified", &id, err));
   VG_TRY(add_indices(l, id, "PointRange", "IndexRange_t", 2, 1, 2, range, NULL,
                      err));
-  VG_TRY(add_text(l, id, "GridLocation", "GridLocation_t", "FaceCenter", NULL,
-                  err));
+  VG_TRY(
+    add_text(l, id, "GridLocation", "GridLocation_t", "FaceCenter", NULL, err));
   VG_TRY(add_text(l, id, "FamilyName", "FamilyName_t", word, NULL, err));
   VG_TRY(add_empty(l, l->base, word, "Family_t", &id, err));
-  st = add_text(l, id, "FamilyBC", "FamilyBC_t",
-                type ? type : "UserDefined", NULL, err);
+  st = add_text(l, id, "FamilyBC", "FamilyBC_t", type ? type : "UserDefined",
+                NULL, err);
 done:
   return st;
 }
@@ -229,8 +231,7 @@ done:
 static vg_status lay_patches(struct layout *l, struct vg_error *err)
 {
   const struct vg_mesh *m = l->c->frame;
-  vg_status st = add_empty(l, l->zone, "ZoneBC", "ZoneBC_t", &l->boundary,
-                           err);
+  vg_status st = add_empty(l, l->zone, "ZoneBC", "ZoneBC_t", &l->boundary, err);
 
   for (size_t p = 0; p < m->n_patch && st >= 0; p++) {
     size_t first = l->c->face_first[p], end = l->c->face_first[p + 1];
@@ -313,9 +314,10 @@ done:
 /* Words of the patches, none of them the name of another node. */
 static vg_status make_words(struct layout *l, struct vg_error *err)
 {
-  static const char *const taken[] = {
-    "Zone", "ZoneType", "ZoneBC", "GridCoordinates", "Tetrahedra", "Pyramids",
-    "Prisms", "Hexahedra" };
+  static const char *const taken[] = { "Zone",       "ZoneType",
+                                       "ZoneBC",     "GridCoordinates",
+                                       "Tetrahedra", "Pyramids",
+                                       "Prisms",     "Hexahedra" };
   struct vg_mesh m = *l->c->frame;
 
   m.patch = vg_alloc(m.n_patch, sizeof *m.patch);
@@ -346,19 +348,21 @@ vg_status vg_cgns_plan(const char *path, const struct vg_mesh *frame,
                        const struct vg_cgns_options *o, struct vg_cgns *c,
                        struct vg_error *err)
 {
-  struct layout l = { .c = c, .n_cell = { frame->n_tet, frame->n_pyr,
-                                          frame->n_pri, frame->n_hex } };
+  struct layout l = {
+    .c = c, .n_cell = { frame->n_tet, frame->n_pyr, frame->n_pri, frame->n_hex }
+  };
   vg_status st = VG_OK;
 
   *c = (struct vg_cgns){ .frame = frame };
   c->places.is_wide = (o && o->is_wide) || needs_wide(frame, l.n_cell);
   if (!(l.n_cell[0] + l.n_cell[1] + l.n_cell[2] + l.n_cell[3])) {
-    st = vg_fail(err, VG_ERR_INPUT, "%s: the mesh has no cells; write the "
-                 "surface as .stl or .lb8.ugrid", path);
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: the mesh has no cells; write the "
+                 "surface as .stl or .lb8.ugrid",
+                 path);
     goto done;
   }
-  c->array = vg_alloc(3 + VG_CGNS_KINDS + 2 * frame->n_patch,
-                      sizeof *c->array);
+  c->array = vg_alloc(3 + VG_CGNS_KINDS + 2 * frame->n_patch, sizeof *c->array);
   if (!c->array) VG_TRY(vg_fail_memory(err, "the nodes of a CGNS file"));
   VG_TRY(make_words(&l, err));
   VG_TRY(vg_boundary_by_patch(frame, &c->face_first, &c->face, err));
@@ -419,8 +423,7 @@ void vg_cgns_put_cells(struct vg_output *out, const struct vg_cgns_places *p,
   }
 }
 
-static void put_points(struct vg_output *out, const struct vg_mesh *m,
-                       int axis)
+static void put_points(struct vg_output *out, const struct vg_mesh *m, int axis)
 {
   double x[BLOCK];
 
@@ -435,9 +438,10 @@ static void put_cells(struct vg_output *out, const struct vg_cgns *c,
                       const struct vg_cgns_array *a)
 {
   const struct vg_mesh *m = c->frame;
-  const uint32_t *const cell[VG_CGNS_KINDS] = {
-    (const uint32_t *)m->tet, (const uint32_t *)m->pyr,
-    (const uint32_t *)m->pri, (const uint32_t *)m->hex };
+  const uint32_t *const cell[VG_CGNS_KINDS] = { (const uint32_t *)m->tet,
+                                                (const uint32_t *)m->pyr,
+                                                (const uint32_t *)m->pri,
+                                                (const uint32_t *)m->hex };
   size_t n_node = (size_t)kinds[a->which].n_node;
   size_t n = (size_t)(a->size / (uint64_t)index_size(&c->places)) / n_node;
 
@@ -489,7 +493,7 @@ void vg_cgns_seek_cell(struct vg_output *out, const struct vg_cgns_places *p,
 {
   assert(kind >= 0 && kind < VG_CGNS_KINDS);
   vg_output_seek(out, p->at[kind] + cell * (uint64_t)kinds[kind].n_node *
-                 (uint64_t)index_size(p));
+                                      (uint64_t)index_size(p));
 }
 
 vg_status vg_cgns_write_with(const char *path, const struct vg_mesh *m,

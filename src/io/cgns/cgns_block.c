@@ -130,8 +130,7 @@ vg_status vg_cgns_block_surface(struct vg_cgns_block *b, int axis,
 
 /* Six times the volume between the face and the next layer, < 0 where the face
  * looks out of the block. */
-static double look(const struct vg_cgns_block *b, const int64_t at[3],
-                   int axis)
+static double look(const struct vg_cgns_block *b, const int64_t at[3], int axis)
 {
   int64_t next[3] = { at[0], at[1], at[2] };
   double d[2][3], to[3] = { 0, 0, 0 }, n[3], sum = 0;

@@ -14,16 +14,18 @@
 #include "io/stream/soup.h"
 
 struct vg_cgns_block {
-  int64_t n[3];             /* points along each index, 1 for one that the zone
-                               lacks; less than 2^32 in all */
-  double *x[3];             /* coordinates, the first index running fastest;
-                               owned */
-  uint32_t *point;          /* the same in the soup, UINT32_MAX: not in it yet;
-                               owned */
+  int64_t n[3];    /* points along each index, 1 for one that the zone
+                      lacks; less than 2^32 in all */
+  double *x[3];    /* coordinates, the first index running fastest;
+                      owned */
+  uint32_t *point; /* the same in the soup, UINT32_MAX: not in it yet;
+                      owned */
 };
 
 /* Points from lo to hi, both included, from 1 on, within the block. */
-struct vg_cgns_range { int64_t lo[3], hi[3]; };
+struct vg_cgns_range {
+  int64_t lo[3], hi[3];
+};
 
 void vg_cgns_block_release(struct vg_cgns_block *b);
 

@@ -17,21 +17,24 @@
 struct answer {
   vg_status st;
   struct vg_error err;
-  struct vg_mesh m;          /* counts; pointers mean nothing */
+  struct vg_mesh m; /* counts; pointers mean nothing */
 };
 
 /* Arrays of a mesh, in the order in which they are handed over. */
 enum { N_ARRAY = 10 };
 
-struct array { void **at; size_t n, size; };
+struct array {
+  void **at;
+  size_t n, size;
+};
 
 static void list_arrays(struct vg_mesh *m, struct array list[N_ARRAY])
 {
   const struct array all[N_ARRAY] = {
 #define ARRAY(array, count) { (void **)&m->array, m->count, sizeof *m->array }
-    ARRAY(point, n_point), ARRAY(tri, n_tri), ARRAY(quad, n_quad),
+    ARRAY(point, n_point),   ARRAY(tri, n_tri),         ARRAY(quad, n_quad),
     ARRAY(tri_patch, n_tri), ARRAY(quad_patch, n_quad), ARRAY(tet, n_tet),
-    ARRAY(pyr, n_pyr), ARRAY(pri, n_pri), ARRAY(hex, n_hex),
+    ARRAY(pyr, n_pyr),       ARRAY(pri, n_pri),         ARRAY(hex, n_hex),
     ARRAY(patch, n_patch)
 #undef ARRAY
   };
@@ -41,7 +44,9 @@ static void list_arrays(struct vg_mesh *m, struct array list[N_ARRAY])
 
 /* --- the child --- */
 
-struct question { size_t n_path, size; };
+struct question {
+  size_t n_path, size;
+};
 
 /* Path and bytes of the file. */
 static int get_input(int fd, struct vg_input *in)
@@ -87,7 +92,8 @@ __attribute__((noreturn)) static void serve(int fd)
 
 static vg_status is_lost(const char *path, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_FORMAT, "%s: the HDF5 library came to grief over "
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s: the HDF5 library came to grief over "
                  "it: the file is damaged, or there is not enough memory",
                  path);
 }
@@ -109,8 +115,7 @@ static vg_status take_answer(int fd, const char *path, struct vg_mesh *out,
   for (int i = 0; i < N_ARRAY && st == VG_OK; i++) {
     if (!list[i].n) continue;
     *list[i].at = vg_alloc(list[i].n, list[i].size);
-    if (!*list[i].at)
-      st = vg_fail_memory(err, path);
+    if (!*list[i].at) st = vg_fail_memory(err, path);
     else if (!vg_child_get(fd, *list[i].at, list[i].n * list[i].size))
       st = is_lost(path, err);
   }
@@ -127,14 +132,15 @@ static vg_status read_apart(struct vg_input *in, struct vg_mesh *out,
   vg_status st;
 
   if (vg_child_open(serve, &c) < 0)
-    return vg_fail(err, VG_ERR_MEMORY, "%s: the system refuses a process to "
-                   "read it", in->path);
+    return vg_fail(err, VG_ERR_MEMORY,
+                   "%s: the system refuses a process to "
+                   "read it",
+                   in->path);
   if (vg_child_put(c.fd, &q, sizeof q) &&
       vg_child_put(c.fd, in->path, q.n_path) &&
       vg_child_put(c.fd, in->data, q.size))
     st = take_answer(c.fd, in->path, out, err);
-  else
-    st = is_lost(in->path, err);
+  else st = is_lost(in->path, err);
   vg_child_close(&c);
   return st;
 }
@@ -156,13 +162,16 @@ vg_status vg_cgns_parse(struct vg_input *in, struct vg_mesh *out,
 
   if (is_hdf5(in)) return read_apart(in, out, err);
   if (memmem(in->data, in->size < 64 ? in->size : 64, adf, sizeof adf - 1))
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: this CGNS file is in ADF, "
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: this CGNS file is in ADF, "
                    "not in HDF5; convert it with `adf2hdf FILE NEW.cgns` "
                    "(Debian's package cgns-convert), or with `cgnsconvert -h "
                    "FILE NEW.cgns`, then give NEW.cgns in its place",
                    in->path);
-  return vg_fail(err, VG_ERR_FORMAT, "%s: not a CGNS file: neither HDF5 nor "
-                 "ADF", in->path);
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s: not a CGNS file: neither HDF5 nor "
+                 "ADF",
+                 in->path);
 }
 
 vg_status vg_cgns_read(const char *path, struct vg_mesh *out,

@@ -5,15 +5,27 @@
 #include "io/vgrid/mapbc.h"
 
 /* Of several with the same word the first is what the word becomes. */
-static const struct { int32_t code; const char *type; } known[] = {
-  { 4, "BCWallViscous" }, { 41, "BCWallViscous" }, { 44, "BCWallViscous" },
-  { 4, "BCWallViscousHeatFlux" }, { 4, "BCWallViscousIsothermal" },
-  { 5, "BCWallInviscid" }, { 55, "BCWallInviscid" },
-  { 1, "BCSymmetryPlane" }, { 3, "BCFarfield" },
-  { 0, "BCInflowSupersonic" }, { 2, "BCOutflowSupersonic" },
-  { 1001, "BCTunnelInflow" }, { 1002, "BCTunnelOutflow" },
-  { 102, "BCInflowSubsonic" }, { 103, "BCInflowSubsonic" },
-  { 101, "BCOutflowSubsonic" }, { 11002, "BCOutflowSubsonic" },
+static const struct {
+  int32_t code;
+  const char *type;
+} known[] = {
+  { 4, "BCWallViscous" },
+  { 41, "BCWallViscous" },
+  { 44, "BCWallViscous" },
+  { 4, "BCWallViscousHeatFlux" },
+  { 4, "BCWallViscousIsothermal" },
+  { 5, "BCWallInviscid" },
+  { 55, "BCWallInviscid" },
+  { 1, "BCSymmetryPlane" },
+  { 3, "BCFarfield" },
+  { 0, "BCInflowSupersonic" },
+  { 2, "BCOutflowSupersonic" },
+  { 1001, "BCTunnelInflow" },
+  { 1002, "BCTunnelOutflow" },
+  { 102, "BCInflowSubsonic" },
+  { 103, "BCInflowSubsonic" },
+  { 101, "BCOutflowSubsonic" },
+  { 11002, "BCOutflowSubsonic" },
   { 11003, "BCOutflowSubsonic" },
 };
 #define N_KNOWN (sizeof known / sizeof *known)

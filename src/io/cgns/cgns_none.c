@@ -8,7 +8,8 @@ int vg_cgns_tree_is_built(void)
 
 static vg_status absent(struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "this build has no CGNS: install "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "this build has no CGNS: install "
                  "libhdf5-dev and configure again");
 }
 
@@ -19,8 +20,10 @@ vg_status vg_cgns_tree_new(struct vg_cgns_store *store, const char *name,
   (void)store;
   (void)out;
   (void)root;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: this build cannot write CGNS: "
-                 "install libhdf5-dev and configure again", name);
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: this build cannot write CGNS: "
+                 "install libhdf5-dev and configure again",
+                 name);
 }
 
 vg_status vg_cgns_tree_add(struct vg_cgns_tree *t, int64_t parent,
@@ -37,14 +40,15 @@ vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
 {
   (void)out;
   (void)root;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: this build cannot read CGNS: "
-                 "install libhdf5-dev and configure again", in->path);
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: this build cannot read CGNS: "
+                 "install libhdf5-dev and configure again",
+                 in->path);
 }
 
 vg_status vg_cgns_tree_children(struct vg_cgns_tree *t, int64_t parent,
-                                const char *label,
-                                struct vg_cgns_node **list, size_t *n,
-                                struct vg_error *err)
+                                const char *label, struct vg_cgns_node **list,
+                                size_t *n, struct vg_error *err)
 {
   (void)t, (void)parent, (void)label, (void)list, (void)n;
   return absent(err);

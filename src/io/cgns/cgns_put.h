@@ -7,27 +7,27 @@
 #include "core/mesh/mesh.h"
 #include "io/stream/stream.h"
 
-enum { VG_CGNS_KINDS = 4 };  /* tetrahedra, pyramids, prisms, hexahedra */
+enum { VG_CGNS_KINDS = 4 }; /* tetrahedra, pyramids, prisms, hexahedra */
 
 /** Where the arrays are that slices write: plain data, to be sent. */
 struct vg_cgns_places {
-  uint64_t size;             /* of the file */
+  uint64_t size; /* of the file */
   uint64_t at_x[3], at[VG_CGNS_KINDS];
-  int32_t is_wide;           /* indices of 8 bytes */
+  int32_t is_wide; /* indices of 8 bytes */
 };
 
 /** The rest of the file: what HDF5 made, between the arrays. */
 struct vg_cgns {
   struct vg_cgns_places places;
   const struct vg_mesh *frame;
-  size_t *face_first, *face;           /* vg_boundary_by_patch */
-  struct vg_cgns_array *array;         /* [n_array] by rising place */
+  size_t *face_first, *face;   /* vg_boundary_by_patch */
+  struct vg_cgns_array *array; /* [n_array] by rising place */
   size_t n_array;
-  unsigned char *between;    /* all bytes that are in no array */
+  unsigned char *between; /* all bytes that are in no array */
 };
 
 struct vg_cgns_options {
-  int is_wide;               /* indices of 8 bytes in any case */
+  int is_wide; /* indices of 8 bytes in any case */
 };
 
 /** Lay a file out. Only who puts the frame needs it, others its places.

@@ -23,19 +23,23 @@ static const struct type {
   enum element element;
   int n_node, slot[NODES_MOST];
 } types[] = {
-  { 5, TRI, 3, { 0, 1, 2 } }, { 7, QUAD, 4, { 0, 1, 2, 3 } },
-  { 10, TET, 4, { 0, 1, 2, 3 } }, { 12, PYR, 5, { 0, 3, 4, 1, 2 } },
+  { 5, TRI, 3, { 0, 1, 2 } },
+  { 7, QUAD, 4, { 0, 1, 2, 3 } },
+  { 10, TET, 4, { 0, 1, 2, 3 } },
+  { 12, PYR, 5, { 0, 3, 4, 1, 2 } },
   { 14, PRI, 6, { 0, 1, 2, 3, 4, 5 } },
   { 17, HEX, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } },
-  { 2, PASSED, 1, { 0 } }, { 3, PASSED, 2, { 0 } }, { 4, PASSED, 3, { 0 } },
+  { 2, PASSED, 1, { 0 } },
+  { 3, PASSED, 2, { 0 } },
+  { 4, PASSED, 3, { 0 } },
 };
 
 struct vg_cgns_section {
   struct vg_cgns_node node;
-  int64_t code, first, last;           /* element numbers */
-  int64_t *v;                          /* [n_v] connectivity */
+  int64_t code, first, last; /* element numbers */
+  int64_t *v;                /* [n_v] connectivity */
   size_t n_v;
-  uint32_t *patch;                     /* [last - first + 1], NONE: no BC_t */
+  uint32_t *patch; /* [last - first + 1], NONE: no BC_t */
 };
 
 /* --- nodes --- */
@@ -165,9 +169,10 @@ vg_status vg_cgns_read_coordinates(struct vg_cgns_reader *r, double *x[3],
     if (st >= 0 && node.id >= 0)
       st = vg_cgns_tree_reals(r->tree, node.id, name[k], &x[k], &n, err);
     if (st >= 0 && (node.id < 0 || n != r->n_point))
-      st = vg_fail(err, VG_ERR_FORMAT, "%s: zone '%s': %s has %zu values for "
-                   "%zu points", r->in->path, r->zone.name, name[k], n,
-                   r->n_point);
+      st = vg_fail(err, VG_ERR_FORMAT,
+                   "%s: zone '%s': %s has %zu values for "
+                   "%zu points",
+                   r->in->path, r->zone.name, name[k], n, r->n_point);
   }
   return st;
 }
@@ -183,8 +188,8 @@ static vg_status read_points(struct vg_cgns_reader *r, struct vg_error *err)
   for (size_t i = 0; i < r->n_point; i++) {
     const double p[3] = { x[0][i], x[1][i], x[2][i] };
 
-    VG_TRY((r->n_zone > 1 ? vg_soup_weld : vg_soup_point)(
-      &r->soup, p, &r->point[i], err));
+    VG_TRY((r->n_zone > 1 ? vg_soup_weld : vg_soup_point)(&r->soup, p,
+                                                          &r->point[i], err));
   }
 done:
   for (int k = 0; k < 3; k++) free(x[k]);
@@ -204,15 +209,16 @@ static vg_status unknown_type(const struct vg_cgns_reader *r,
                               const struct vg_cgns_section *s, int64_t code,
                               struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: section '%s': elements of type "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: section '%s': elements of type "
                  "%lld are polygons, or not of first order; write TRI_3, "
-                 "QUAD_4 or MIXED", r->in->path, s->node.name,
-                 (long long)code);
+                 "QUAD_4 or MIXED",
+                 r->in->path, s->node.name, (long long)code);
 }
 
 static vg_status fail_section(const struct vg_cgns_reader *r,
-                              const struct vg_cgns_section *s,
-                              const char *what, struct vg_error *err)
+                              const struct vg_cgns_section *s, const char *what,
+                              struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_FORMAT, "%s: section '%s': %s", r->in->path,
                  s->node.name, what);
@@ -233,10 +239,9 @@ static vg_status read_section(struct vg_cgns_reader *r,
   s->code = n ? kind[0] : -1;
   t = find_type(s->code);
   if (!t && s->code != MIXED) VG_TRY(unknown_type(r, s, s->code, err));
-  VG_TRY(find_child(r, s->node.id, "IndexRange_t", "ElementRange", &node,
+  VG_TRY(find_child(r, s->node.id, "IndexRange_t", "ElementRange", &node, err));
+  VG_TRY(find_child(r, s->node.id, "DataArray_t", "ElementConnectivity", &nodes,
                     err));
-  VG_TRY(find_child(r, s->node.id, "DataArray_t", "ElementConnectivity",
-                    &nodes, err));
   if (node.id < 0 || nodes.id < 0)
     VG_TRY(fail_section(r, s, "no ElementRange or ElementConnectivity", err));
   VG_TRY(vg_cgns_tree_ints(r->tree, node.id, "ElementRange", &range, &n, err));
@@ -248,10 +253,12 @@ static vg_status read_section(struct vg_cgns_reader *r,
                            &s->n_v, err));
   /* of mixed ones the least: a type and a node each */
   n_element = (uint64_t)(s->last - s->first) + 1;
-  if (t ? s->n_v % (size_t)t->n_node ||
-          s->n_v / (size_t)t->n_node != n_element : s->n_v / 2 < n_element)
-    VG_TRY(fail_section(r, s, "ElementConnectivity has not the nodes of the "
-                        "elements in ElementRange", err));
+  if (t ? s->n_v % (size_t)t->n_node || s->n_v / (size_t)t->n_node != n_element
+        : s->n_v / 2 < n_element)
+    VG_TRY(fail_section(r, s,
+                        "ElementConnectivity has not the nodes of the "
+                        "elements in ElementRange",
+                        err));
   s->patch = vg_alloc((size_t)n_element, sizeof *s->patch);
   if (!s->patch) VG_TRY(vg_fail_memory(err, "the elements"));
   memset(s->patch, 0xff, (size_t)n_element * sizeof *s->patch);
@@ -272,8 +279,8 @@ static vg_status read_sections(struct vg_cgns_reader *r, struct vg_error *err)
 {
   struct vg_cgns_node *list;
   size_t n;
-  vg_status st = vg_cgns_tree_children(r->tree, r->zone.id, "Elements_t",
-                                       &list, &n, err);
+  vg_status st = vg_cgns_tree_children(r->tree, r->zone.id, "Elements_t", &list,
+                                       &n, err);
 
   if (st < 0) return st;
   r->section = vg_calloc(n, sizeof *r->section);
@@ -288,8 +295,10 @@ static vg_status read_sections(struct vg_cgns_reader *r, struct vg_error *err)
   qsort(r->section, n, sizeof *r->section, by_number);
   for (size_t i = 1; i < n && st >= 0; i++)
     if (r->section[i].first <= r->section[i - 1].last)
-      st = fail_section(r, &r->section[i], "its numbers are another section's "
-                        "too", err);
+      st = fail_section(r, &r->section[i],
+                        "its numbers are another section's "
+                        "too",
+                        err);
   return st;
 }
 
@@ -336,10 +345,11 @@ static vg_status is_on_elements(struct vg_cgns_reader *r,
         !strcmp(at, "CellCenter");
   /* of a surface points and edges are its border */
   if (*on || r->dimension == 2 || !strcmp(at, "EdgeCenter")) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: condition '%s' is given on "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: condition '%s' is given on "
                  "points (GridLocation %s), which does not say on which faces; "
-                 "write it with FaceCenter", r->in->path, b->name,
-                 *at ? at : "Vertex");
+                 "write it with FaceCenter",
+                 r->in->path, b->name, *at ? at : "Vertex");
 }
 
 /* Elements of a BC_t: a range or a list. */
@@ -366,8 +376,8 @@ vg_status vg_cgns_elements_of(struct vg_cgns_reader *r,
 /* The patch of a BC_t: that of its family, where it has one, else of its own
  * name. */
 vg_status vg_cgns_condition_patch(struct vg_cgns_reader *r,
-                                  const struct vg_cgns_node *b,
-                                  uint32_t *patch, struct vg_error *err)
+                                  const struct vg_cgns_node *b, uint32_t *patch,
+                                  struct vg_error *err)
 {
   char family[VG_CGNS_NAME], *type = NULL;
   size_t n;
@@ -401,8 +411,10 @@ static vg_status read_condition(struct vg_cgns_reader *r,
   VG_TRY(vg_cgns_condition_patch(r, b, &patch, err));
   if (strstr(list, "Range")) {
     if (n != 2)
-      VG_TRY(vg_fail(err, VG_ERR_FORMAT, "%s: condition '%s': its %s is no "
-                     "range", r->in->path, b->name, list));
+      VG_TRY(vg_fail(err, VG_ERR_FORMAT,
+                     "%s: condition '%s': its %s is no "
+                     "range",
+                     r->in->path, b->name, list));
     mark_range(r, v[0], v[1], patch);
   } else {
     for (size_t i = 0; i < n; i++) mark_range(r, v[i], v[i], patch);
@@ -423,8 +435,7 @@ vg_status vg_cgns_read_conditions(struct vg_cgns_reader *r,
   if (st < 0 || zone_bc.id < 0) return st;
   st = vg_cgns_tree_children(r->tree, zone_bc.id, "BC_t", &list, &n, err);
   if (st < 0) return st;
-  for (size_t i = 0; i < n && st >= 0; i++)
-    st = read(r, &list[i], err);
+  for (size_t i = 0; i < n && st >= 0; i++) st = read(r, &list[i], err);
   free(list);
   return st;
 }
@@ -437,9 +448,10 @@ static uint32_t *next_element(struct vg_cgns_reader *r, enum element e,
 {
   struct vg_mesh *m = &r->soup.m;
 
-#define NEXT(array, count) \
-  (vg_reserve(&m->array, &r->cap[e], m->count + 1, sizeof *m->array) ? NULL \
-   : m->array[m->count++])
+#define NEXT(array, count)                                                     \
+  (vg_reserve(&m->array, &r->cap[e], m->count + 1, sizeof *m->array)           \
+     ? NULL                                                                    \
+     : m->array[m->count++])
   switch (e) {
   case QUAD:
     if (vg_reserve(&m->quad_patch, &r->cap_quad_patch, m->n_quad + 1,
@@ -465,10 +477,11 @@ static vg_status take_element(struct vg_cgns_reader *r,
 
   for (int k = 0; k < t->n_node; k++) {
     if (v[k] < 1 || (uint64_t)v[k] > r->n_point)
-      return vg_fail(err, VG_ERR_INPUT, "%s: element %lld of section '%s' "
-                     "refers to point %lld of %zu", r->in->path,
-                     (long long)number, s->node.name, (long long)v[k],
-                     r->n_point);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: element %lld of section '%s' "
+                     "refers to point %lld of %zu",
+                     r->in->path, (long long)number, s->node.name,
+                     (long long)v[k], r->n_point);
     node[t->slot[k]] = r->point[v[k] - 1];
   }
   if (t->element == PASSED) return VG_OK;
@@ -481,8 +494,8 @@ static vg_status take_element(struct vg_cgns_reader *r,
 
 /* The patch of faces without a condition: made when the first is met. */
 static vg_status default_patch(struct vg_cgns_reader *r,
-                               const struct vg_cgns_section *s,
-                               uint32_t *patch, struct vg_error *err)
+                               const struct vg_cgns_section *s, uint32_t *patch,
+                               struct vg_error *err)
 {
   char family[VG_CGNS_NAME] = "";
   const char *name = s->node.name;
@@ -522,8 +535,10 @@ static vg_status take_section(struct vg_cgns_reader *r,
     at += (size_t)t->n_node;
   }
   if (st >= 0 && at != s->n_v)
-    st = fail_section(r, s, "more nodes than those of the elements in "
-                      "ElementRange", err);
+    st = fail_section(r, s,
+                      "more nodes than those of the elements in "
+                      "ElementRange",
+                      err);
   return st;
 }
 
@@ -550,7 +565,8 @@ static vg_status read_elements(struct vg_cgns_reader *r, const int64_t *size,
   vg_status st = VG_OK;
 
   if (n < 3 || size[0] < 0 || (uint64_t)size[0] >= UINT32_MAX)
-    VG_TRY(vg_cgns_fail_zone(r, err, VG_ERR_FORMAT, "its number of points is "
+    VG_TRY(vg_cgns_fail_zone(r, err, VG_ERR_FORMAT,
+                             "its number of points is "
                              "missing, negative or beyond 32 bits"));
   r->n_point = (size_t)size[0];
   VG_TRY(read_points(r, err));
@@ -571,12 +587,12 @@ static vg_status read_zone(struct vg_cgns_reader *r, struct vg_error *err)
 
   VG_TRY(vg_cgns_child_text(r, r->zone.id, "ZoneType_t", NULL, type, err));
   VG_TRY(vg_cgns_tree_ints(r->tree, r->zone.id, r->zone.name, &size, &n, err));
-  if (!strcmp(type, "Unstructured"))
-    VG_TRY(read_elements(r, size, n, err));
+  if (!strcmp(type, "Unstructured")) VG_TRY(read_elements(r, size, n, err));
   else if (!strcmp(type, "Structured"))
     VG_TRY(vg_cgns_read_block(r, size, n, err));
   else
-    VG_TRY(vg_cgns_fail_zone(r, err, VG_ERR_UNSUPPORTED, "it is neither "
+    VG_TRY(vg_cgns_fail_zone(r, err, VG_ERR_UNSUPPORTED,
+                             "it is neither "
                              "Structured nor Unstructured"));
 done:
   free(size);
@@ -588,7 +604,7 @@ done:
 
 struct base {
   int64_t id, dimension;
-  struct vg_cgns_node *zone;           /* [n_zone] */
+  struct vg_cgns_node *zone; /* [n_zone] */
   size_t n_zone;
 };
 
@@ -649,13 +665,16 @@ static vg_status read_tree(struct vg_cgns_reader *r, int64_t root,
       r->dimension = base[i].dimension;
   }
   if (!n)
-    st = vg_fail(err, VG_ERR_FORMAT, "%s: 0 bases (CGNSBase_t) in it; at least "
-                 "one is wanted", r->in->path);
+    st = vg_fail(err, VG_ERR_FORMAT,
+                 "%s: 0 bases (CGNSBase_t) in it; at least "
+                 "one is wanted",
+                 r->in->path);
   else if (r->dimension < 2)
-    st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: base '%s' has not cells of 2 or "
-                 "3 dimensions in space of 3", r->in->path, list[0].name);
-  else
-    st = read_bases(r, base, n, err);
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: base '%s' has not cells of 2 or "
+                 "3 dimensions in space of 3",
+                 r->in->path, list[0].name);
+  else st = read_bases(r, base, n, err);
 done:
   for (size_t i = 0; base && i < n; i++) free(base[i].zone);
   free(base);
@@ -683,16 +702,19 @@ static vg_status finish(struct vg_cgns_reader *r, struct vg_error *err)
   vg_status st;
 
   if (!m->n_tri && !m->n_quad && !has_cells && r->n_volume_block)
-    return vg_fail(err, VG_ERR_INPUT, "%s: no BC_t says which faces of its "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: no BC_t says which faces of its "
                    "structured blocks (%zu) bound the flow; write a BC_t with "
                    "a PointRange for each wall, or the surface as zones in a "
-                   "base of cell dimension 2", r->in->path,
-                   r->n_volume_block);
+                   "base of cell dimension 2",
+                   r->in->path, r->n_volume_block);
   if (!m->n_tri && !m->n_quad && !has_cells)
-    return vg_fail(err, VG_ERR_INPUT, "%s: no triangles, quadrilaterals or "
-                   "cells: there is nothing to mesh", r->in->path);
-  VG_TRY(vg_check_points(r->in->path, m->n_point,
-                         (const double (*)[3])m->point, err));
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: no triangles, quadrilaterals or "
+                   "cells: there is nothing to mesh",
+                   r->in->path);
+  VG_TRY(vg_check_points(r->in->path, m->n_point, (const double(*)[3])m->point,
+                         err));
   if (!has_cells) vg_mesh_keep_boundary(m);
   VG_TRY(vg_mesh_turn(m, NULL, err));
   VG_TRY(set_axes(m, err));

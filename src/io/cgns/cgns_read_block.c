@@ -14,7 +14,8 @@ static vg_status set_block(struct vg_cgns_reader *r, const int64_t *size,
 
   r->n_index = n == 3 || n == 6 || n == 9 ? (int)(n / 3) : 0;
   if (r->n_index != r->dimension)
-    return vg_cgns_fail_zone(r, err, VG_ERR_FORMAT, "its sizes are not those "
+    return vg_cgns_fail_zone(r, err, VG_ERR_FORMAT,
+                             "its sizes are not those "
                              "of a structured zone in this base");
   r->flat = -1;
   for (int k = 2; k >= 0; k--) {
@@ -22,7 +23,8 @@ static vg_status set_block(struct vg_cgns_reader *r, const int64_t *size,
     if (r->block.n[k] < 1 || r->block.n[k] >= UINT32_MAX ||
         __builtin_mul_overflow(total, (uint64_t)r->block.n[k], &total) ||
         total >= UINT32_MAX)
-      return vg_cgns_fail_zone(r, err, VG_ERR_FORMAT, "its numbers of points "
+      return vg_cgns_fail_zone(r, err, VG_ERR_FORMAT,
+                               "its numbers of points "
                                "are not positive, or beyond 32 bits");
   }
   for (int k = 0; k < 3; k++)
@@ -70,7 +72,8 @@ static int normal_of_points(const struct vg_cgns_range *range)
 }
 
 /* Points of a BC_t. Its range counts points or the faces between them. *axis
- * becomes the index direction normal to the faces; -1: the range has no faces. */
+ * becomes the index direction normal to the faces; -1: the range has no faces.
+ */
 static vg_status take_range(const struct vg_cgns_reader *r,
                             const struct vg_cgns_node *b, const int64_t *v,
                             const char *at, struct vg_cgns_range *range,
@@ -92,14 +95,17 @@ static vg_status take_range(const struct vg_cgns_reader *r,
   else if (*at >= 'I' && *at <= 'K') *axis = *at - 'I';
   else *axis = normal_of_faces(r, range);
   if (*axis == -2)
-    return fail_range(r, b, "does not say which way its faces look; write "
-                      "IFaceCenter, JFaceCenter or KFaceCenter", err);
+    return fail_range(r, b,
+                      "does not say which way its faces look; write "
+                      "IFaceCenter, JFaceCenter or KFaceCenter",
+                      err);
   for (int k = 0; k < 3 && is_face && !is_outside; k++)
     if (k != *axis) is_outside |= ++range->hi[k] > r->block.n[k];
   if (!is_outside) return VG_OK;
-  return vg_fail(err, VG_ERR_FORMAT, "%s: zone '%s': the PointRange of "
-                 "condition '%s' leaves the zone", r->in->path, r->zone.name,
-                 b->name);
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s: zone '%s': the PointRange of "
+                 "condition '%s' leaves the zone",
+                 r->in->path, r->zone.name, b->name);
 }
 
 /* Faces of a block with cells, which become triangles at once; of a surface
@@ -121,8 +127,8 @@ static vg_status read_block_condition(struct vg_cgns_reader *r,
   if (!n || !strcmp(at, "EdgeCenter")) goto done;
   if (strcmp(list, "PointRange") != 0 || n != 2 * (size_t)r->n_index ||
       (r->flat < 0 && !strcmp(at, "CellCenter")))
-    VG_TRY(fail_range(r, b, "is not given as a PointRange of points or faces",
-                      err));
+    VG_TRY(
+      fail_range(r, b, "is not given as a PointRange of points or faces", err));
   VG_TRY(take_range(r, b, v, at, &range, &axis, err));
   if (axis < 0 || (r->flat >= 0 && axis != r->flat) ||
       vg_cgns_range_is_thin(&range, axis))
@@ -131,10 +137,9 @@ static vg_status read_block_condition(struct vg_cgns_reader *r,
     VG_TRY(fail_range(r, b, "is on faces within the block", err));
   VG_TRY(vg_cgns_condition_patch(r, b, &patch, err));
   if (r->flat < 0)
-    VG_TRY(vg_cgns_block_boundary(&r->block, &range, axis, patch, &r->soup,
-                                  err));
-  else
-    vg_cgns_block_mark(&r->block, &range, axis, patch, r->cell);
+    VG_TRY(
+      vg_cgns_block_boundary(&r->block, &range, axis, patch, &r->soup, err));
+  else vg_cgns_block_mark(&r->block, &range, axis, patch, r->cell);
 done:
   free(v);
   return st;

@@ -7,30 +7,32 @@
 #include "io/cgns/cgns_tree.h"
 #include "io/stream/soup.h"
 
-#define VG_CGNS_NONE UINT32_MAX   /* an element without a patch */
+#define VG_CGNS_NONE UINT32_MAX /* an element without a patch */
 enum { VG_CGNS_N_ELEMENT = 7 };
 
-struct vg_cgns_family { char name[VG_CGNS_NAME], condition[VG_CGNS_NAME]; };
+struct vg_cgns_family {
+  char name[VG_CGNS_NAME], condition[VG_CGNS_NAME];
+};
 
 struct vg_cgns_reader {
   struct vg_input *in;
   struct vg_cgns_tree *tree;
-  int64_t dimension;                   /* of the cells: 2 or 3 */
+  int64_t dimension; /* of the cells: 2 or 3 */
   size_t n_zone, n_family, cap_family;
-  size_t n_volume_block;               /* structured zones with cells */
+  size_t n_volume_block; /* structured zones with cells */
   size_t cap_quad, cap_quad_patch, cap[VG_CGNS_N_ELEMENT];
-  struct vg_cgns_family *family;       /* by name */
+  struct vg_cgns_family *family; /* by name */
   struct vg_soup soup;
   /* of the current zone */
   struct vg_cgns_node zone;
-  uint32_t *point;                     /* [n_point] in the mesh */
+  uint32_t *point; /* [n_point] in the mesh */
   size_t n_point, n_section;
-  struct vg_cgns_section *section;     /* by rising numbers */
-  struct vg_cgns_block block;          /* of a structured zone */
-  int n_index;                         /* of a structured zone: indices */
-  int flat;                            /* the one along which a surface has a
-                                          single layer of points; -1: none */
-  uint32_t *cell;                      /* patches of the faces of a surface */
+  struct vg_cgns_section *section; /* by rising numbers */
+  struct vg_cgns_block block;      /* of a structured zone */
+  int n_index;                     /* of a structured zone: indices */
+  int flat;                        /* the one along which a surface has a
+                                      single layer of points; -1: none */
+  uint32_t *cell;                  /* patches of the faces of a surface */
 };
 
 typedef vg_status vg_cgns_read_one(struct vg_cgns_reader *r,
@@ -62,8 +64,7 @@ vg_status vg_cgns_read_coordinates(struct vg_cgns_reader *r, double *x[3],
 
 /** Call `read` for all conditions of the zone. */
 vg_status vg_cgns_read_conditions(struct vg_cgns_reader *r,
-                                  vg_cgns_read_one *read,
-                                  struct vg_error *err);
+                                  vg_cgns_read_one *read, struct vg_error *err);
 
 /** What a BC_t is on: `name` of its range or list and its *n numbers, 0: none.
  * The caller frees *v. */
@@ -75,8 +76,8 @@ vg_status vg_cgns_elements_of(struct vg_cgns_reader *r,
 /** The patch of a BC_t: that of its family, where it has one, else of its own
  * name. */
 vg_status vg_cgns_condition_patch(struct vg_cgns_reader *r,
-                                  const struct vg_cgns_node *b,
-                                  uint32_t *patch, struct vg_error *err);
+                                  const struct vg_cgns_node *b, uint32_t *patch,
+                                  struct vg_error *err);
 
 /** A structured zone of n sizes, which the caller releases. */
 vg_status vg_cgns_read_block(struct vg_cgns_reader *r, const int64_t *size,

@@ -61,8 +61,7 @@ void vg_cgns_store_get(const struct vg_cgns_store *s, uint64_t at, uint64_t n,
     part = part_of(at, n);
     if (i < s->n_page && s->page[i].number == at / VG_CGNS_PAGE)
       memcpy(out, s->page[i].byte + at % VG_CGNS_PAGE, part);
-    else
-      memset(out, 0, part);
+    else memset(out, 0, part);
   }
 }
 

@@ -11,16 +11,22 @@
 
 enum { VG_CGNS_PAGE = 4096 };
 
-struct vg_cgns_page { uint64_t number; unsigned char byte[VG_CGNS_PAGE]; };
+struct vg_cgns_page {
+  uint64_t number;
+  unsigned char byte[VG_CGNS_PAGE];
+};
 
 struct vg_cgns_store {
   const unsigned char *view; /* [size] borrowed; NULL: pages */
   uint64_t size;             /* up to where room is taken */
   struct vg_cgns_page *page; /* [n_page] by rising number */
   size_t n_page, cap_page;
-  int failed;                /* 1: memory was refused */
+  int failed; /* 1: memory was refused */
 };
-#define VG_CGNS_STORE_INIT { .view = NULL }  /* releasing this is a no-op */
+#define VG_CGNS_STORE_INIT                                                     \
+  {                                                                            \
+    .view = NULL                                                               \
+  } /* releasing this is a no-op */
 
 void vg_cgns_store_release(struct vg_cgns_store *s);
 

@@ -19,9 +19,9 @@ struct vg_cgns_tree {
   struct vg_cgns_store *store;
   struct vg_cgns_store view; /* of what is read */
   hid_t driver, file, group_plist, data_plist, string[2];
-  char *path;                /* for messages */
-  int failed;                /* 1: HDF5 refused something while writing */
-  H5E_auto2_t print;         /* how the library told of errors before */
+  char *path;        /* for messages */
+  int failed;        /* 1: HDF5 refused something while writing */
+  H5E_auto2_t print; /* how the library told of errors before */
   void *print_data;
 };
 
@@ -33,7 +33,7 @@ int vg_cgns_tree_is_built(void)
 /* --- a file that is a store, to HDF5 --- */
 
 struct file {
-  H5FD_t as_hdf5;            /* first: HDF5 writes into it */
+  H5FD_t as_hdf5; /* first: HDF5 writes into it */
   struct vg_cgns_store *store;
 };
 
@@ -87,14 +87,19 @@ static herr_t file_write(H5FD_t *f, H5FD_mem_t type, hid_t plist, haddr_t at,
   return 0;
 }
 
-static const H5FD_class_t file_class = {
-  .name = "vanguard_store", .maxaddr = INT64_MAX,
-  .fc_degree = H5F_CLOSE_STRONG,
-  .fapl_size = sizeof(struct vg_cgns_store *),
-  .open = file_open, .close = file_close, .get_eoa = file_end,
-  .set_eoa = file_set_end, .get_eof = file_end, .read = file_read,
-  .write = file_write, .fl_map = H5FD_FLMAP_SINGLE
-};
+static const H5FD_class_t file_class = { .name = "vanguard_store",
+                                         .maxaddr = INT64_MAX,
+                                         .fc_degree = H5F_CLOSE_STRONG,
+                                         .fapl_size = sizeof(
+                                           struct vg_cgns_store *),
+                                         .open = file_open,
+                                         .close = file_close,
+                                         .get_eoa = file_end,
+                                         .set_eoa = file_set_end,
+                                         .get_eof = file_end,
+                                         .read = file_read,
+                                         .write = file_write,
+                                         .fl_map = H5FD_FLMAP_SINGLE };
 
 /* --- both ways --- */
 
@@ -115,8 +120,8 @@ static struct vg_cgns_tree *make_tree(const char *path)
   struct vg_cgns_tree *t = vg_calloc(1, sizeof *t);
 
   if (!t) return NULL;
-  t->driver = t->file = t->group_plist = t->data_plist = t->string[0] = t->string[1] =
-    H5I_INVALID_HID;
+  t->driver = t->file = t->group_plist = t->data_plist = t->string[0] =
+    t->string[1] = H5I_INVALID_HID;
   t->path = strdup(path);
   if (!t->path) {
     free(t);
@@ -145,11 +150,12 @@ vg_status vg_cgns_tree_close(struct vg_cgns_tree *t, struct vg_error *err)
 
   if (!t) return VG_OK;
   if (t->file >= 0 && H5Fclose(t->file) < 0) t->failed = 1;
-  if (t->store->failed)
-    st = vg_fail_memory(err, "the nodes of a CGNS file");
+  if (t->store->failed) st = vg_fail_memory(err, "the nodes of a CGNS file");
   else if (t->failed)
-    st = vg_fail(err, VG_ERR_IO, "%s: the HDF5 library cannot write the "
-                 "nodes", t->path);
+    st = vg_fail(err, VG_ERR_IO,
+                 "%s: the HDF5 library cannot write the "
+                 "nodes",
+                 t->path);
   release(t);
   return st;
 }
@@ -199,9 +205,8 @@ static hid_t type_of(const char *type)
 static hid_t native_of(const char *type)
 {
   static const char names[] = "C1I4I8R4R8";
-  const hid_t types[] = { H5T_NATIVE_SCHAR, H5T_NATIVE_INT32,
-                          H5T_NATIVE_INT64, H5T_NATIVE_FLOAT,
-                          H5T_NATIVE_DOUBLE };
+  const hid_t types[] = { H5T_NATIVE_SCHAR, H5T_NATIVE_INT32, H5T_NATIVE_INT64,
+                          H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE };
 
   return types[(strstr(names, type) - names) / 2];
 }
@@ -234,8 +239,10 @@ static void put_data(struct vg_cgns_tree *t, hid_t to, const char *name,
 
 static vg_status refused(const struct vg_cgns_tree *t, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_IO, "%s: the HDF5 library cannot write the "
-                 "nodes", t->path);
+  return vg_fail(err, VG_ERR_IO,
+                 "%s: the HDF5 library cannot write the "
+                 "nodes",
+                 t->path);
 }
 
 /* Creation properties of groups (and the first one) and of data. */
@@ -245,7 +252,7 @@ static void set_plists(struct vg_cgns_tree *t, hid_t root_plist)
 
   for (int k = 0; k < 2; k++)
     if (H5Pset_link_creation_order(group[k], H5P_CRT_ORDER_TRACKED |
-                                   H5P_CRT_ORDER_INDEXED) < 0 ||
+                                               H5P_CRT_ORDER_INDEXED) < 0 ||
         H5Pset_obj_track_times(group[k], 0) < 0)
       t->failed = 1;
   if (H5Pset_obj_track_times(t->data_plist, 0) < 0 ||
@@ -258,10 +265,10 @@ static void set_plists(struct vg_cgns_tree *t, hid_t root_plist)
 static int64_t put_root(struct vg_cgns_tree *t)
 {
   static const char format[] = "IEEE_LITTLE_32", version[33] = "HDF5";
-  const struct vg_cgns_data formats = { "C1", 1, { sizeof format, 0 },
-                                        format };
-  const struct vg_cgns_data versions = { "C1", 1, { sizeof version, 0 },
-                                         version };
+  const struct vg_cgns_data formats = { "C1", 1, { sizeof format, 0 }, format };
+  const struct vg_cgns_data versions = {
+    "C1", 1, { sizeof version, 0 }, version
+  };
   hid_t root = H5Gopen2(t->file, "/", H5P_DEFAULT);
 
   put_string(t, root, "name", 0, "HDF5 MotherNode");
@@ -348,8 +355,10 @@ vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
   *root = t->file < 0 ? -1 : H5Gopen2(t->file, "/", H5P_DEFAULT);
   if (*root < 0) {
     vg_cgns_tree_close(t, NULL);
-    return vg_fail(err, VG_ERR_FORMAT, "%s: the HDF5 library cannot open it: "
-                   "truncated, damaged, or of a newer version", in->path);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: the HDF5 library cannot open it: "
+                   "truncated, damaged, or of a newer version",
+                   in->path);
   }
   *out = t;
   return VG_OK;
@@ -359,8 +368,8 @@ vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
 static void get_string(hid_t node, const char *name, char to[VG_CGNS_NAME])
 {
   hid_t a = H5Aexists(node, name) > 0 ? H5Aopen(node, name, H5P_DEFAULT) : -1;
-  hid_t type = a >= 0 ? H5Aget_type(a) : -1, space = a >= 0 ? H5Aget_space(a)
-                                                            : -1;
+  hid_t type = a >= 0 ? H5Aget_type(a) : -1,
+        space = a >= 0 ? H5Aget_space(a) : -1;
   hid_t as = make_string(VG_CGNS_NAME);
 
   memset(to, 0, VG_CGNS_NAME);
@@ -388,9 +397,10 @@ struct visit {
 static vg_status is_link(const struct vg_cgns_tree *t, const char *name,
                          struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: node '%.40s' is a link to "
-                 "another place; write it in one file without links", t->path,
-                 name);
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: node '%.40s' is a link to "
+                 "another place; write it in one file without links",
+                 t->path, name);
 }
 
 /* A group of the label wanted. */
@@ -423,7 +433,7 @@ static herr_t see_child(hid_t parent, const char *name, const H5L_info_t *info,
 {
   struct visit *v = visit;
 
-  if (*name == ' ') return 0;          /* data, not a node */
+  if (*name == ' ') return 0; /* data, not a node */
   v->st = info->type == H5L_TYPE_HARD ? take_child(v, parent, name)
                                       : is_link(v->t, name, v->err);
   return v->st < 0;
@@ -441,14 +451,14 @@ static H5_index_t order_of(hid_t group)
 }
 
 vg_status vg_cgns_tree_children(struct vg_cgns_tree *t, int64_t parent,
-                                const char *label,
-                                struct vg_cgns_node **list, size_t *n,
-                                struct vg_error *err)
+                                const char *label, struct vg_cgns_node **list,
+                                size_t *n, struct vg_error *err)
 {
   struct visit v = { .t = t, .label = label, .st = VG_OK, .err = err };
 
   if (H5Literate(parent, order_of(parent), H5_ITER_INC, NULL, see_child, &v) <
-      0 && v.st == VG_OK)
+        0 &&
+      v.st == VG_OK)
     v.st = vg_fail(err, VG_ERR_FORMAT, "%s: a list of nodes (%s) is damaged",
                    t->path, label);
   if (v.st < 0) {
@@ -466,7 +476,8 @@ static vg_status get_data(struct vg_cgns_tree *t, int64_t id, const char *what,
                           void **out, size_t *n, struct vg_error *err)
 {
   hid_t set = H5Lexists(id, DATA, H5P_DEFAULT) > 0
-    ? H5Dopen2(id, DATA, H5P_DEFAULT) : -1;
+              ? H5Dopen2(id, DATA, H5P_DEFAULT)
+              : -1;
   hid_t type = set >= 0 ? H5Dget_type(set) : -1;
   hid_t space = set >= 0 ? H5Dget_space(set) : -1;
   hssize_t count = space >= 0 ? H5Sget_simple_extent_npoints(space) : -1;
@@ -474,11 +485,15 @@ static vg_status get_data(struct vg_cgns_tree *t, int64_t id, const char *what,
   void *v = NULL;
 
   if (type < 0 || count < 0 || H5Tget_class(type) != class)
-    st = vg_fail(err, VG_ERR_FORMAT, "%s: %s: there are no data, or not of "
-                 "the type that they should have", t->path, what);
+    st = vg_fail(err, VG_ERR_FORMAT,
+                 "%s: %s: there are no data, or not of "
+                 "the type that they should have",
+                 t->path, what);
   else if ((uint64_t)count > INFLATED_MOST * t->view.size)
-    st = vg_fail(err, VG_ERR_FORMAT, "%s: %s: %lld values cannot be in a file "
-                 "of %llu bytes", t->path, what, (long long)count,
+    st = vg_fail(err, VG_ERR_FORMAT,
+                 "%s: %s: %lld values cannot be in a file "
+                 "of %llu bytes",
+                 t->path, what, (long long)count,
                  (unsigned long long)t->view.size);
   else if (!(v = vg_calloc((size_t)count + 1, size)))
     st = vg_fail_memory(err, what);
@@ -514,8 +529,8 @@ vg_status vg_cgns_tree_reals(struct vg_cgns_tree *t, int64_t id,
                              struct vg_error *err)
 {
   void *data;
-  vg_status st = get_data(t, id, what, H5T_FLOAT, H5T_NATIVE_DOUBLE,
-                          sizeof **v, &data, n, err);
+  vg_status st = get_data(t, id, what, H5T_FLOAT, H5T_NATIVE_DOUBLE, sizeof **v,
+                          &data, n, err);
 
   if (st >= 0) *v = data;
   return st;

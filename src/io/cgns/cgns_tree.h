@@ -15,15 +15,15 @@
 #include "io/cgns/cgns_store.h"
 #include "io/stream/stream.h"
 
-enum { VG_CGNS_NAME = 33 };  /* bytes of a name or label with its end */
+enum { VG_CGNS_NAME = 33 }; /* bytes of a name or label with its end */
 
 /* What a node holds. type: as in CGNS, "MT" nothing, "C1" characters, "I4",
  * "I8", "R4", "R8". */
 struct vg_cgns_data {
   const char *type;
-  int n_dim;                 /* 0 (MT) to 2 */
-  uint64_t dim[2];           /* in the order of the standard */
-  const void *value;         /* NULL: room is reserved, and nothing written */
+  int n_dim;         /* 0 (MT) to 2 */
+  uint64_t dim[2];   /* in the order of the standard */
+  const void *value; /* NULL: room is reserved, and nothing written */
 };
 
 struct vg_cgns_node {
@@ -51,7 +51,8 @@ vg_status vg_cgns_tree_add(struct vg_cgns_tree *t, int64_t parent,
                            const struct vg_cgns_data *d, int64_t *id,
                            uint64_t *at, struct vg_error *err);
 
-/* --- reading, in a process of its own: the library's settings are changed --- */
+/* --- reading, in a process of its own: the library's settings are changed ---
+ */
 
 /** The file in `in`, which must stay. */
 vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
@@ -61,9 +62,8 @@ vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
  * (by name, where the file does not keep that); *list to be freed.
  * VG_ERR_UNSUPPORTED: one of them is a link. */
 vg_status vg_cgns_tree_children(struct vg_cgns_tree *t, int64_t parent,
-                                const char *label,
-                                struct vg_cgns_node **list, size_t *n,
-                                struct vg_error *err);
+                                const char *label, struct vg_cgns_node **list,
+                                size_t *n, struct vg_error *err);
 
 /** Data of a node as integers, reals, text (with an end; n counts without it).
  * `what` is for messages; *v to be freed. VG_ERR_FORMAT: none, or of another

@@ -33,7 +33,7 @@ enum { TOKENS = 16 };
 struct row {
   const char *token[TOKENS];
   size_t len[TOKENS];
-  int n;                /* TOKENS + 1: more than fit */
+  int n; /* TOKENS + 1: more than fit */
   size_t line;
 };
 
@@ -197,11 +197,13 @@ vg_status vg_aflr_tags_parse(struct vg_input *in, struct vg_aflr *out,
 
   if (st < 0) return st;
   while (next_row(in, &r)) {
-    struct vg_aflr_patch p = {0};
+    struct vg_aflr_patch p = { 0 };
 
     if (!parse_tag(&r, &p)) {
-      st = bad_row(in, &r, "id group visc recon rebuild fixed source trans "
-                   "delete spacing thickness layers", err);
+      st = bad_row(in, &r,
+                   "id group visc recon rebuild fixed source trans "
+                   "delete spacing thickness layers",
+                   err);
       goto done;
     }
     VG_TRY(append(&a, &cap, &p, err));
@@ -235,16 +237,17 @@ vg_status vg_aflr_bc_parse(struct vg_input *in, struct vg_aflr *out,
 
   if (st < 0) return st;
   while (next_row(in, &r)) {
-    struct vg_aflr_patch p = {0};
+    struct vg_aflr_patch p = { 0 };
 
     if (!a.n && is_vgrid_head(&r)) {
-      st = vg_fail(err, VG_ERR_FORMAT, "%s: the triangles of a VGRID mesh, "
-                   "not a list 'name flag spacing' of AFLR's", in->path);
+      st = vg_fail(err, VG_ERR_FORMAT,
+                   "%s: the triangles of a VGRID mesh, "
+                   "not a list 'name flag spacing' of AFLR's",
+                   in->path);
       goto done;
     }
     if (r.n < 2 || r.n > 4 || !row_int(&r, 1, &p.flag) ||
-        p.flag == VG_AFLR_NONE ||
-        (r.n > 2 && !row_length(&r, 2, &p.spacing)) ||
+        p.flag == VG_AFLR_NONE || (r.n > 2 && !row_length(&r, 2, &p.spacing)) ||
         (r.n > 3 && !row_length(&r, 3, &p.thickness))) {
       st = bad_row(in, &r, "name flag [spacing [thickness]]", err);
       goto done;
@@ -274,11 +277,9 @@ int vg_aflr_is_bc(const char *path)
 
 /* --- applying --- */
 
-static const struct vg_aflr_patch *find(const struct vg_aflr_patch **list,
-                                        size_t n,
-                                        const struct vg_aflr_patch *key,
-                                        int (*compare)(const void *,
-                                                       const void *))
+static const struct vg_aflr_patch *find(
+  const struct vg_aflr_patch **list, size_t n, const struct vg_aflr_patch *key,
+  int (*compare)(const void *, const void *))
 {
   const struct vg_aflr_patch **at = bsearch(&key, list, n, sizeof *list,
                                             compare);

@@ -19,27 +19,30 @@
  * plain; 2 cuts the layers (a symmetry plane, ...); 3 source surface; 4, 5, 6
  * transparent; 7 fixed; a minus: layers grow on it. */
 struct vg_aflr_patch {
-  int32_t id;              /* 0 in a .bc, which has names only */
-  char name[VG_NAME_MAX];  /* "" in a .surf */
-  int32_t flag;            /* grid BC; .tags has properties instead, of which
-                              the last in a line counts */
-  int is_viscous;          /* layers grow here */
-  double spacing;          /* first height; 0: not given. In a .surf: where
-                              all points of the patch have the same one */
-  double thickness;        /* of all layers; as spacing */
-  int32_t n_layer;         /* 0: not given */
+  int32_t id;             /* 0 in a .bc, which has names only */
+  char name[VG_NAME_MAX]; /* "" in a .surf */
+  int32_t flag;           /* grid BC; .tags has properties instead, of which
+                             the last in a line counts */
+  int is_viscous;         /* layers grow here */
+  double spacing;         /* first height; 0: not given. In a .surf: where
+                             all points of the patch have the same one */
+  double thickness;       /* of all layers; as spacing */
+  int32_t n_layer;        /* 0: not given */
 };
 
 struct vg_aflr {
   size_t n;
-  struct vg_aflr_patch *patch;  /* [n]; .surf: one per patch of the mesh, in
-                                   its order; else in file order */
+  struct vg_aflr_patch *patch; /* [n]; .surf: one per patch of the mesh, in
+                                  its order; else in file order */
   size_t n_point;
-  double *spacing;         /* [n_point] .surf with 4 columns or more; else
-                              NULL. 0 or less: not given at this point */
-  double *thickness;       /* [n_point] .surf with 5 columns; else NULL */
+  double *spacing;   /* [n_point] .surf with 4 columns or more; else
+                        NULL. 0 or less: not given at this point */
+  double *thickness; /* [n_point] .surf with 5 columns; else NULL */
 };
-#define VG_AFLR_INIT { .n = 0 }  /* releasing this is a no-op */
+#define VG_AFLR_INIT                                                           \
+  {                                                                            \
+    .n = 0                                                                     \
+  } /* releasing this is a no-op */
 
 void vg_aflr_release(struct vg_aflr *a);
 

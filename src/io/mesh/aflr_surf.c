@@ -13,18 +13,18 @@ struct reading {
   struct vg_input *in;
   struct vg_mesh m;
   struct vg_aflr a;
-  int n_column;         /* numbers per point: 3 to 5 */
-  int32_t *tag;         /* [n_tri + n_quad] */
-  signed char *flag;    /* the same; FLAG_HIGH + 1: none */
+  int n_column;      /* numbers per point: 3 to 5 */
+  int32_t *tag;      /* [n_tri + n_quad] */
+  signed char *flag; /* the same; FLAG_HIGH + 1: none */
 };
 
 static const signed char no_flag = FLAG_HIGH + 1;
 
 static vg_status read_header(struct reading *r, struct vg_error *err)
 {
-  static const char *const name[3] = {
-    "number of triangles", "number of quadrilaterals", "number of points"
-  };
+  static const char *const name[3] = { "number of triangles",
+                                       "number of quadrilaterals",
+                                       "number of points" };
   uint64_t count[3];
 
   for (int k = 0; k < 3; k++) {
@@ -33,16 +33,20 @@ static vg_status read_header(struct reading *r, struct vg_error *err)
 
     if (st < 0) return st;
     if (v < 0 || v > (int64_t)UINT32_MAX - 2)
-      return vg_input_fail(r->in, err, "the %s is %lld; 0 to 4294967293 are "
-                           "possible", name[k], (long long)v);
+      return vg_input_fail(r->in, err,
+                           "the %s is %lld; 0 to 4294967293 are "
+                           "possible",
+                           name[k], (long long)v);
     count[k] = (uint64_t)v;
   }
   /* Two bytes a number at least, the last one perhaps one. */
   if (8 * count[0] + 10 * count[1] + 6 * count[2] >
       (uint64_t)vg_input_left(r->in) + 1)
-    return vg_input_fail(r->in, err, "truncated: %llu triangles, %llu "
+    return vg_input_fail(r->in, err,
+                         "truncated: %llu triangles, %llu "
                          "quadrilaterals and %llu points do not fit into the "
-                         "remaining %zu bytes", (unsigned long long)count[0],
+                         "remaining %zu bytes",
+                         (unsigned long long)count[0],
                          (unsigned long long)count[1],
                          (unsigned long long)count[2], vg_input_left(r->in));
   r->m.n_tri = count[0];
@@ -84,15 +88,15 @@ static vg_status count_columns(struct reading *r, struct vg_error *err)
   for (r->n_column = 1; r->n_column < 7; r->n_column++)
     if (!vg_input_token_in_line(&look, &text, &len)) break;
   if (r->n_column >= 3 && r->n_column <= 5) return VG_OK;
-  return vg_input_fail(&look, err, "the line of a point has 3 to 5 numbers: x "
+  return vg_input_fail(&look, err,
+                       "the line of a point has 3 to 5 numbers: x "
                        "y z [spacing [thickness]]");
 }
 
 static vg_status read_points(struct reading *r, struct vg_error *err)
 {
-  static const char *const name[5] = {
-    "coordinate", "coordinate", "coordinate", "spacing", "thickness"
-  };
+  static const char *const name[5] = { "coordinate", "coordinate", "coordinate",
+                                       "spacing", "thickness" };
 
   for (size_t i = 0; i < r->m.n_point; i++) {
     double v[5];
@@ -112,8 +116,10 @@ static vg_status read_points(struct reading *r, struct vg_error *err)
 static vg_status face_line(struct reading *r, const char *what, size_t face,
                            struct vg_error *err)
 {
-  return vg_input_fail(r->in, err, "the line of %s %zu is not 'points tag "
-                       "[recon [bc]]' in integers", what, face + 1);
+  return vg_input_fail(r->in, err,
+                       "the line of %s %zu is not 'points tag "
+                       "[recon [bc]]' in integers",
+                       what, face + 1);
 }
 
 static vg_status read_face(struct reading *r, const char *what, size_t face,
@@ -134,9 +140,10 @@ static vg_status read_face(struct reading *r, const char *what, size_t face,
     return face_line(r, what, face, err);
   for (int k = 0; k < width; k++) {
     if (v[k] < 1 || (uint64_t)v[k] > r->m.n_point) {
-      vg_input_fail(r->in, err, "%s %zu refers to point %lld; points are "
-                    "numbered 1 to %zu", what, face + 1, (long long)v[k],
-                    r->m.n_point);
+      vg_input_fail(r->in, err,
+                    "%s %zu refers to point %lld; points are "
+                    "numbered 1 to %zu",
+                    what, face + 1, (long long)v[k], r->m.n_point);
       if (err) err->code = VG_ERR_INPUT;
       return VG_ERR_INPUT;
     }
@@ -146,9 +153,10 @@ static vg_status read_face(struct reading *r, const char *what, size_t face,
   r->flag[place] = no_flag;
   if (n < width + 3) return VG_OK;
   if (v[width + 2] < FLAG_LOW || v[width + 2] > FLAG_HIGH)
-    return vg_input_fail(r->in, err, "%s %zu has the boundary flag %lld; -6 to "
-                         "7 are known", what, face + 1,
-                         (long long)v[width + 2]);
+    return vg_input_fail(r->in, err,
+                         "%s %zu has the boundary flag %lld; -6 to "
+                         "7 are known",
+                         what, face + 1, (long long)v[width + 2]);
   r->flag[place] = (signed char)v[width + 2];
   return VG_OK;
 }
@@ -182,7 +190,7 @@ static void set_patch(struct vg_aflr_patch *p, struct vg_patch *to,
 static vg_status set_patches(struct reading *r, struct vg_error *err)
 {
   struct vg_mesh *m = &r->m;
-  uint32_t (*count)[N_FLAG] = vg_calloc(m->n_patch, sizeof *count);
+  uint32_t(*count)[N_FLAG] = vg_calloc(m->n_patch, sizeof *count);
 
   r->a.n = m->n_patch;
   r->a.patch = vg_calloc(m->n_patch, sizeof *r->a.patch);
@@ -220,7 +228,7 @@ static void common_values(struct reading *r)
     int is_tri = i < m->n_tri;
     const uint32_t *node = is_tri ? m->tri[i] : m->quad[i - m->n_tri];
     struct vg_aflr_patch *p = a->patch + (is_tri ? m->tri_patch[i]
-                                          : m->quad_patch[i - m->n_tri]);
+                                                 : m->quad_patch[i - m->n_tri]);
 
     for (int k = 0; k < (is_tri ? 3 : 4); k++) {
       if (a->spacing) meet(&p->spacing, a->spacing[node[k]]);
@@ -231,8 +239,7 @@ static void common_values(struct reading *r)
     struct vg_aflr_patch *p = a->patch + i;
 
     if (p->spacing < 0 || p->spacing == VG_COORDINATE_MAX) p->spacing = 0;
-    if (p->thickness < 0 || p->thickness == VG_COORDINATE_MAX)
-      p->thickness = 0;
+    if (p->thickness < 0 || p->thickness == VG_COORDINATE_MAX) p->thickness = 0;
   }
 }
 
@@ -248,10 +255,9 @@ static vg_status parse(struct reading *r, struct vg_error *err)
   for (size_t i = 0; i < m->n_tri; i++)
     VG_TRY(read_face(r, "triangle", i, i, 3, m->tri[i], err));
   for (size_t i = 0; i < m->n_quad; i++)
-    VG_TRY(read_face(r, "quadrilateral", i, m->n_tri + i, 4, m->quad[i],
-                     err));
-  VG_TRY(vg_check_points(r->in->path, m->n_point,
-                         (const double (*)[3])m->point, err));
+    VG_TRY(read_face(r, "quadrilateral", i, m->n_tri + i, 4, m->quad[i], err));
+  VG_TRY(vg_check_points(r->in->path, m->n_point, (const double(*)[3])m->point,
+                         err));
   VG_TRY(vg_patches_from_tags(m, r->tag, err));
   VG_TRY(set_patches(r, err));
   common_values(r);
@@ -266,8 +272,10 @@ vg_status vg_aflr_surf_parse(struct vg_input *in, struct vg_mesh *out,
   vg_status st;
 
   if (!vg_input_is_text(in))
-    return vg_fail(err, VG_ERR_FORMAT, "%s: holds binary data; only text .surf "
-                   "files are read", in->path);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: holds binary data; only text .surf "
+                   "files are read",
+                   in->path);
   st = parse(&r, err);
   if (st == VG_OK) {
     const struct vg_aflr empty = VG_AFLR_INIT;

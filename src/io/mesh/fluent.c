@@ -22,10 +22,12 @@ static const char digit[VG_FLUENT_KINDS] = { '2', '5', '6', '4' };
 
 /* --- types of zones --- */
 
-static const struct zone_type { int code; const char *name; }
-wall = { 3, "wall" }, inlet = { 4, "pressure-inlet" },
-outlet = { 5, "pressure-outlet" }, symmetry = { 7, "symmetry" },
-far = { 9, "pressure-far-field" };
+static const struct zone_type {
+  int code;
+  const char *name;
+} wall = { 3, "wall" }, inlet = { 4, "pressure-inlet" },
+  outlet = { 5, "pressure-outlet" }, symmetry = { 7, "symmetry" },
+  far = { 9, "pressure-far-field" };
 
 static const struct zone_type *zone_type(const struct vg_patch *p)
 {
@@ -34,9 +36,16 @@ static const struct zone_type *zone_type(const struct vg_patch *p)
   if (code == VG_BC_NONE) code = vg_bc_to_usm3d(p->bc_fun3d);
   switch (code) {
   case 1: return &symmetry;
-  case 0: case 3: return &far;
-  case 102: case 103: case 1001: return &inlet;
-  case 2: case 101: case 1002: case 11002: case 11003: return &outlet;
+  case 0:
+  case 3: return &far;
+  case 102:
+  case 103:
+  case 1001: return &inlet;
+  case 2:
+  case 101:
+  case 1002:
+  case 11002:
+  case 11003: return &outlet;
   default: return &wall;
   }
 }
@@ -63,9 +72,8 @@ static uint64_t face_line(const struct vg_fluent *f, int kind)
 }
 
 /* mate: the cell that the normal points out of, from 1; 0: none. */
-static void put_face(struct vg_output *out, const struct vg_fluent *f,
-                     int kind, int n, const uint32_t *node, uint32_t cell,
-                     uint32_t mate)
+static void put_face(struct vg_output *out, const struct vg_fluent *f, int kind,
+                     int n, const uint32_t *node, uint32_t cell, uint32_t mate)
 {
   char line[LINE], *to = line;
   size_t length = (size_t)face_line(f, kind);
@@ -106,8 +114,7 @@ static int patch_kind(const struct vg_fluent *f, size_t patch)
 {
   size_t first = f->start[patch], end = f->start[patch + 1], n_quad = 0;
 
-  for (size_t i = first; i < end; i++)
-    n_quad += f->order[i] >= f->frame->n_tri;
+  for (size_t i = first; i < end; i++) n_quad += f->order[i] >= f->frame->n_tri;
   return face_kind(end - first, n_quad);
 }
 
@@ -178,8 +185,9 @@ static void put_cells(struct vg_output *out, struct vg_fluent *f, int is_whole)
   f->at_cell = out->written;
   if (kind == MIXED && !is_whole) vg_output_skip(out, 2 * f->n_cell);
   for (int k = 0; kind == MIXED && is_whole && k < VG_FLUENT_KINDS; k++)
-    put_kinds(out, f, k, 0, (k + 1 < VG_FLUENT_KINDS ? f->first[k + 1]
-                             : f->n_cell) - f->first[k]);
+    put_kinds(out, f, k, 0,
+              (k + 1 < VG_FLUENT_KINDS ? f->first[k + 1] : f->n_cell) -
+                f->first[k]);
   vg_output_text(out, kind == MIXED ? "))\n" : ")\n");
 }
 
@@ -227,8 +235,10 @@ static void put_all(struct vg_output *out, struct vg_fluent *f,
 {
   const struct vg_mesh *m = f->frame;
 
-  vg_output_format(out, "(0 \"Vanguard\")\n(2 3)\n(10 (0 1 %zx 0 3))\n"
-                   "(10 (%x 1 %zx 1 3)(\n", m->n_point, POINTS, m->n_point);
+  vg_output_format(out,
+                   "(0 \"Vanguard\")\n(2 3)\n(10 (0 1 %zx 0 3))\n"
+                   "(10 (%x 1 %zx 1 3)(\n",
+                   m->n_point, POINTS, m->n_point);
   f->at_point = out->written;
   put_points(out, f, links != NULL);
   vg_output_text(out, "))\n");
@@ -294,7 +304,7 @@ void vg_fluent_seek_boundary(struct vg_output *out, const struct vg_fluent *f,
 
   assert(at < f->frame->n_tri + f->frame->n_quad);
   vg_output_seek(out, f->at_patch[p] +
-                 (at - f->start[p]) * face_line(f, f->kind[p]));
+                        (at - f->start[p]) * face_line(f, f->kind[p]));
 }
 
 void vg_fluent_put_boundary(struct vg_output *out, const struct vg_fluent *f,
@@ -335,12 +345,15 @@ static vg_status check_counts(const char *path, const struct vg_fluent *f,
                       4 * (uint64_t)f->frame->n_quad;
 
   if (!f->n_cell)
-    return vg_fail(err, VG_ERR_INPUT, "%s: the mesh has no cells; write the "
-                   "surface as .stl", path);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the mesh has no cells; write the "
+                   "surface as .stl",
+                   path);
   if (n_corner > INT32_MAX || f->n_cell > INT32_MAX)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: %llu corners of faces are "
-                   "beyond the 32-bit labels of formats of faces", path,
-                   (unsigned long long)n_corner);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: %llu corners of faces are "
+                   "beyond the 32-bit labels of formats of faces",
+                   path, (unsigned long long)n_corner);
   return VG_OK;
 }
 
@@ -348,11 +361,12 @@ vg_status vg_fluent_plan(const char *path, const struct vg_mesh *frame,
                          uint64_t n_internal, uint64_t n_quad,
                          struct vg_fluent *f, struct vg_error *err)
 {
-  const size_t n[VG_FLUENT_KINDS] = { frame->n_tet, frame->n_pyr,
-                                      frame->n_pri, frame->n_hex };
+  const size_t n[VG_FLUENT_KINDS] = { frame->n_tet, frame->n_pyr, frame->n_pri,
+                                      frame->n_hex };
   vg_status st;
 
-  *f = (struct vg_fluent){ .frame = frame, .n_internal = n_internal,
+  *f = (struct vg_fluent){ .frame = frame,
+                           .n_internal = n_internal,
                            .n_quad = n_quad };
   for (int k = 0; k < VG_FLUENT_KINDS; k++) {
     f->first[k] = f->n_cell;

@@ -27,18 +27,18 @@ vg_status vg_fluent_write(const char *path, const struct vg_mesh *m,
 
 /* --- its parts, for the writer of meshes in slices (io/slices) --- */
 
-enum { VG_FLUENT_KINDS = 4 };  /* tetrahedra, pyramids, prisms, hexahedra */
+enum { VG_FLUENT_KINDS = 4 }; /* tetrahedra, pyramids, prisms, hexahedra */
 
 /** Layout of a file: follows from the counts. */
 struct vg_fluent {
   const struct vg_mesh *frame;
-  char (*word)[VG_PATCH_WORD];       /* [n_patch] */
-  size_t *start, *order;             /* vg_boundary_by_patch */
-  int width;                         /* columns of a number */
-  int *kind;                         /* [n_patch] 3, 4 corners, 0: both */
+  char (*word)[VG_PATCH_WORD]; /* [n_patch] */
+  size_t *start, *order;       /* vg_boundary_by_patch */
+  int width;                   /* columns of a number */
+  int *kind;                   /* [n_patch] 3, 4 corners, 0: both */
   uint64_t n_cell, first[VG_FLUENT_KINDS];
-  uint64_t n_internal, n_quad;       /* faces between cells; of four corners */
-  uint64_t at_point, at_cell, at_internal, *at_patch;  /* in the file */
+  uint64_t n_internal, n_quad; /* faces between cells; of four corners */
+  uint64_t at_point, at_cell, at_internal, *at_patch; /* in the file */
 };
 
 /** @param n_internal  faces between two cells, n_quad of them with 4 corners

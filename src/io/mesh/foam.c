@@ -41,14 +41,14 @@ static const char *patch_type(const struct vg_patch *p, int is_planar,
     int32_t code;
     const char *type, *physical;
   } known[] = {
-    {4, "wall", "viscousWall"},     {41, "wall", "viscousWall"},
-    {44, "wall", "viscousWall"},    {5, "wall", "inviscidWall"},
-    {55, "wall", "inviscidWall"},   {1, "symmetry", "symmetry"},
-    {3, "patch", "farfield"},       {0, "patch", "inflow"},
-    {2, "patch", "outflow"},        {1001, "patch", "inflow"},
-    {1002, "patch", "outflow"},     {11002, "patch", "outflow"},
-    {11003, "patch", "outflow"},    {101, "patch", "outflow"},
-    {102, "patch", "inflow"},       {103, "patch", "inflow"},
+    { 4, "wall", "viscousWall" },   { 41, "wall", "viscousWall" },
+    { 44, "wall", "viscousWall" },  { 5, "wall", "inviscidWall" },
+    { 55, "wall", "inviscidWall" }, { 1, "symmetry", "symmetry" },
+    { 3, "patch", "farfield" },     { 0, "patch", "inflow" },
+    { 2, "patch", "outflow" },      { 1001, "patch", "inflow" },
+    { 1002, "patch", "outflow" },   { 11002, "patch", "outflow" },
+    { 11003, "patch", "outflow" },  { 101, "patch", "outflow" },
+    { 102, "patch", "inflow" },     { 103, "patch", "inflow" },
   };
   int32_t code = p->bc;
 
@@ -88,7 +88,7 @@ static void unit_normal(const struct vg_mesh *m, size_t face, double n[3])
  * a face's normal and their mean exceeds 1e-15; ask for ten times less. */
 static int is_planar(const struct vg_mesh *m, const size_t *face, size_t n)
 {
-  double mean[3] = {0, 0, 0}, one[3];
+  double mean[3] = { 0, 0, 0 }, one[3];
 
   for (size_t i = 0; i < n; i++) {
     unit_normal(m, face[i], one);
@@ -136,9 +136,10 @@ vg_status vg_foam_links(struct vg_cell_links *f, const struct vg_mesh *m,
   vg_status st = vg_cell_links_build(f, m, 0, name, err);
 
   if (st < 0 || f->n_corner <= INT32_MAX) return st;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: %llu corners of faces are "
-                 "beyond the 32-bit labels of formats of faces", name,
-                 (unsigned long long)f->n_corner);
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: %llu corners of faces are "
+                 "beyond the 32-bit labels of formats of faces",
+                 name, (unsigned long long)f->n_corner);
 }
 
 /* --- lists --- */
@@ -204,7 +205,7 @@ static void put_face(struct labels *l, const struct vg_cell_links *f,
 struct writing {
   const struct vg_mesh *m;
   struct vg_cell_links faces;
-  size_t *start, *order;        /* boundary faces by patch */
+  size_t *start, *order; /* boundary faces by patch */
   const char *folder;
   int is_ascii;
   char note[160];
@@ -311,23 +312,25 @@ static vg_status put_topology(struct writing *w, struct vg_error *err)
 static vg_status put_boundary(struct writing *w, struct vg_error *err)
 {
   struct vg_output *o = w->out + BOUNDARY;
-  char (*name)[VG_PATCH_WORD] = vg_patch_words(w->m, VG_PATCH_WORD_MOST);
+  char(*name)[VG_PATCH_WORD] = vg_patch_words(w->m, VG_PATCH_WORD_MOST);
 
   if (!name) return vg_fail_memory(err, "the names of the patches");
   vg_foam_header(o, "polyBoundaryMesh", location, "boundary", 1, NULL);
   vg_output_format(o, "\n%zu\n(\n", w->m->n_patch);
   for (size_t i = 0; i < w->m->n_patch; i++) {
     size_t first = w->start[i], n = w->start[i + 1] - first;
-    const char *physical, *type = patch_type(
-        w->m->patch + i, is_planar(w->m, w->order + first, n), &physical);
+    const char *physical,
+      *type = patch_type(w->m->patch + i, is_planar(w->m, w->order + first, n),
+                         &physical);
 
-    vg_output_format(o, "    %s\n    {\n        type            %s;\n",
-                     name[i], type);
+    vg_output_format(o, "    %s\n    {\n        type            %s;\n", name[i],
+                     type);
     if (*physical)
       vg_output_format(o, "        physicalType    %s;\n", physical);
-    vg_output_format(o, "        nFaces          %zu;\n"
-                     "        startFace       %llu;\n    }\n", n,
-                     (unsigned long long)(w->faces.n_internal + first));
+    vg_output_format(o,
+                     "        nFaces          %zu;\n"
+                     "        startFace       %llu;\n    }\n",
+                     n, (unsigned long long)(w->faces.n_internal + first));
   }
   vg_output_text(o, ")\n");
   free(name);
@@ -392,7 +395,8 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
                         struct vg_error *err)
 {
   const struct vg_output none = VG_OUTPUT_INIT;
-  struct writing w = { .m = m, .faces = VG_CELL_LINKS_INIT,
+  struct writing w = { .m = m,
+                       .faces = VG_CELL_LINKS_INIT,
                        .is_ascii = options && options->is_ascii };
   char *constant = vg_foam_path(case_dir, "constant");
   vg_status st;
@@ -400,8 +404,10 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
   for (int i = 0; i < VG_FOAM_FILES; i++) w.out[i] = none;
   if (!constant) return vg_fail_memory(err, "a file name");
   if (!(m->n_tet + m->n_pyr + m->n_pri + m->n_hex)) {
-    st = vg_fail(err, VG_ERR_INPUT, "%s: a mesh without cells cannot be an "
-                 "OpenFOAM case; write the surface as .stl", case_dir);
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: a mesh without cells cannot be an "
+                 "OpenFOAM case; write the surface as .stl",
+                 case_dir);
     goto done;
   }
   VG_TRY(vg_boundary_by_patch(m, &w.start, &w.order, err));

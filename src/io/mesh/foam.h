@@ -22,7 +22,7 @@
 #define VG_FOAM_PARTS "cellDecomposition"
 
 struct vg_foam_options {
-  int is_ascii;      /* 1: text with all digits; 0: binary, host byte order */
+  int is_ascii; /* 1: text with all digits; 0: binary, host byte order */
 };
 
 /** 1 when `word` of a write list asks for a case; sets *options. */

@@ -15,20 +15,33 @@
 #include "io/stream/stream.h"
 
 /* `boundary` comes last: without it OpenFOAM reads no mesh. */
-const char *const vg_foam_file[VG_FOAM_FILES] = {
-  "points", "faces", "owner", "neighbour", "boundary"
-};
+const char *const vg_foam_file[VG_FOAM_FILES] = { "points", "faces", "owner",
+                                                  "neighbour", "boundary" };
 
 /* What belongs to a mesh beside its five files, packed or not: it would be
  * wrong with another mesh (OpenFOAM's polyMesh::removeFiles, and what its
  * refining and decomposing tools add). */
-static const char *const belongs[] = {
-  "cells", "cellZones", "faceZones", "pointZones", "meshModifiers",
-  "parallelData", "cellLevel", "pointLevel", "level0Edge", "surfaceIndex",
-  "refinementHistory", "cellDecomposition", "cellMap", "faceMap", "pointMap",
-  "cellProcAddressing", "faceProcAddressing", "pointProcAddressing",
-  "boundaryProcAddressing", "tetBasePtIs", "points0"
-};
+static const char *const belongs[] = { "cells",
+                                       "cellZones",
+                                       "faceZones",
+                                       "pointZones",
+                                       "meshModifiers",
+                                       "parallelData",
+                                       "cellLevel",
+                                       "pointLevel",
+                                       "level0Edge",
+                                       "surfaceIndex",
+                                       "refinementHistory",
+                                       "cellDecomposition",
+                                       "cellMap",
+                                       "faceMap",
+                                       "pointMap",
+                                       "cellProcAddressing",
+                                       "faceProcAddressing",
+                                       "pointProcAddressing",
+                                       "boundaryProcAddressing",
+                                       "tetBasePtIs",
+                                       "points0" };
 
 static const struct {
   const char *name, *text;
@@ -39,16 +52,14 @@ static const struct {
     "stopAt          endTime;\nendTime         1000;\ndeltaT          1;\n"
     "writeControl    timeStep;\nwriteInterval   100;\npurgeWrite      2;\n"
     "writeFormat     binary;\nwritePrecision  8;\n" },
-  { "fvSchemes",
-    "ddtSchemes      { default steadyState; }\n"
-    "gradSchemes     { default Gauss linear; }\n"
-    "divSchemes      { default none; }\n"
-    "laplacianSchemes { default Gauss linear limited 0.5; }\n"
-    "interpolationSchemes { default linear; }\n"
-    "snGradSchemes   { default limited 0.5; }\n"
-    "wallDist        { method meshWave; }\n" },
-  { "fvSolution",
-    "solvers         {}\n" }
+  { "fvSchemes", "ddtSchemes      { default steadyState; }\n"
+                 "gradSchemes     { default Gauss linear; }\n"
+                 "divSchemes      { default none; }\n"
+                 "laplacianSchemes { default Gauss linear limited 0.5; }\n"
+                 "interpolationSchemes { default linear; }\n"
+                 "snGradSchemes   { default limited 0.5; }\n"
+                 "wallDist        { method meshWave; }\n" },
+  { "fvSolution", "solvers         {}\n" }
 };
 #define N_SYSTEM (sizeof system_file / sizeof *system_file)
 
@@ -83,7 +94,8 @@ void vg_foam_header(struct vg_output *out, const char *class_name,
                     const char *location, const char *object, int is_ascii,
                     const char *note)
 {
-  vg_output_format(out, "FoamFile\n{\n    version     2.0;\n"
+  vg_output_format(out,
+                   "FoamFile\n{\n    version     2.0;\n"
                    "    format      %s;\n    class       %s;\n",
                    is_ascii ? "ascii" : "binary", class_name);
   if (!is_ascii)
@@ -156,8 +168,7 @@ vg_status vg_foam_place_mesh(const char *from, const char *to,
                    strerror(errno));
   /* Stopped from here on, a mesh without `boundary` is left, which nothing
    * reads, rather than a mixture of two. */
-  for (int i = VG_FOAM_FILES - 1; i >= 0; i--)
-    unlink_both(to, vg_foam_file[i]);
+  for (int i = VG_FOAM_FILES - 1; i >= 0; i--) unlink_both(to, vg_foam_file[i]);
   for (size_t i = 0; i < sizeof belongs / sizeof *belongs; i++)
     unlink_both(to, belongs[i]);
   empty_sets(to);
@@ -182,7 +193,8 @@ static char *marker_name(const char *case_dir)
   char *name;
 
   while (end > 1 && case_dir[end - 1] == '/') end--;
-  for (at = end; at && case_dir[at - 1] != '/'; at--) {}
+  for (at = end; at && case_dir[at - 1] != '/'; at--) {
+  }
   n = end - at;
   if (n >= sizeof tail &&
       !strncmp(case_dir + end - (sizeof tail - 1), tail, sizeof tail - 1))
@@ -256,8 +268,8 @@ static char *inside(const char *case_dir, const char *a, const char *b)
 /* Moves a file of the one case to the other, where it is absent when
  * keep_old; one that is not made leaves none when not. */
 static vg_status place_file(const char *from_case, const char *to_case,
-                            const char *folder, const char *name,
-                            int keep_old, struct vg_error *err)
+                            const char *folder, const char *name, int keep_old,
+                            struct vg_error *err)
 {
   char *from = inside(from_case, folder, name);
   char *to = inside(to_case, folder, name);
@@ -279,8 +291,9 @@ static vg_status place_parts(const char *from_case, const char *to_case,
   vg_status st = place_file(from_case, to_case, "constant", VG_FOAM_PARTS, 0,
                             err);
 
-  return st < 0 ? st : place_file(from_case, to_case, "system",
-                                  DECOMPOSE_DICT, 1, err);
+  return st < 0
+         ? st
+         : place_file(from_case, to_case, "system", DECOMPOSE_DICT, 1, err);
 }
 
 vg_status vg_foam_place(const char *from_case, const char *to_case,
@@ -341,9 +354,11 @@ static vg_status put_dict(const char *case_dir, size_t n_part,
   char *path = inside(case_dir, "system", DECOMPOSE_DICT), text[200];
   vg_status st;
 
-  snprintf(text, sizeof text, "numberOfSubdomains %zu;\n"
+  snprintf(text, sizeof text,
+           "numberOfSubdomains %zu;\n"
            "method          manual;\n"
-           "manualCoeffs    { dataFile \"" VG_FOAM_PARTS "\"; }\n", n_part);
+           "manualCoeffs    { dataFile \"" VG_FOAM_PARTS "\"; }\n",
+           n_part);
   st = path ? put_file(path, DECOMPOSE_DICT, text, err)
             : vg_fail_memory(err, "a file name");
   free(path);

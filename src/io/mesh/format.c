@@ -30,13 +30,12 @@ typedef vg_status (*reader)(const char *path, struct vg_mesh *out,
 typedef vg_status (*writer)(const char *path, const struct vg_mesh *m,
                             struct vg_error *err);
 
-#define PLAIN_READER(name)                                                  \
-  static vg_status read_##name(const char *path, struct vg_mesh *out,       \
-                               struct vg_turned *turned,                    \
-                               struct vg_error *err)                        \
-  {                                                                         \
-    (void)turned;                                                           \
-    return vg_##name##_read(path, out, err);                                \
+#define PLAIN_READER(name)                                                     \
+  static vg_status read_##name(const char *path, struct vg_mesh *out,          \
+                               struct vg_turned *turned, struct vg_error *err) \
+  {                                                                            \
+    (void)turned;                                                              \
+    return vg_##name##_read(path, out, err);                                   \
   }
 PLAIN_READER(stl)
 PLAIN_READER(tri)
@@ -68,8 +67,7 @@ static char *beside(const char *path, const char *suffix)
 
 /* STEM.suffix or STEM.suffix.gz, whichever is there; "" where neither is;
  * NULL when memory is refused. The caller frees it. */
-static char *companion(const char *path, const char *suffix,
-                       const char *packed)
+static char *companion(const char *path, const char *suffix, const char *packed)
 {
   char *name = beside(path, suffix);
 
@@ -115,7 +113,10 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
   return vg_foam_write(path, m, NULL, err);
 }
 
-#define UGRID(name) { name, vg_ugrid_read, vg_ugrid_write }
+#define UGRID(name)                                                            \
+  {                                                                            \
+    name, vg_ugrid_read, vg_ugrid_write                                        \
+  }
 
 static const struct format {
   const char *suffix;
@@ -131,10 +132,18 @@ static const struct format {
   { VG_FLUENT_SUFFIX, NULL, vg_fluent_write },
   { "msh", read_gmsh, vg_gmsh_write },
   { "cgns", read_cgns, vg_cgns_write },
-  UGRID("b8.ugrid"), UGRID("lb8.ugrid"), UGRID("b4.ugrid"),
-  UGRID("lb4.ugrid"), UGRID("r8.ugrid"), UGRID("lr8.ugrid"),
-  UGRID("r4.ugrid"), UGRID("lr4.ugrid"), UGRID("b8l.ugrid"),
-  UGRID("lb8l.ugrid"), UGRID("b8.ugrid64"), UGRID("lb8.ugrid64"),
+  UGRID("b8.ugrid"),
+  UGRID("lb8.ugrid"),
+  UGRID("b4.ugrid"),
+  UGRID("lb4.ugrid"),
+  UGRID("r8.ugrid"),
+  UGRID("lr8.ugrid"),
+  UGRID("r4.ugrid"),
+  UGRID("lr4.ugrid"),
+  UGRID("b8l.ugrid"),
+  UGRID("lb8l.ugrid"),
+  UGRID("b8.ugrid64"),
+  UGRID("lb8.ugrid64"),
   UGRID("ugrid"),
   { "cogsg", read_cogsg, write_cogsg },
   { "front", read_front, NULL },
@@ -142,16 +151,22 @@ static const struct format {
   { VG_FOAM_SUFFIX, NULL, write_foam },
   { "su2", NULL, vg_su2_write },
   { "vtu", NULL, write_vtu },
-  { "step", NULL, NULL }, { "stp", NULL, NULL }, { "iges", NULL, NULL },
-  { "igs", NULL, NULL }, { "brep", NULL, NULL }, { "egads", NULL, NULL },
+  { "step", NULL, NULL },
+  { "stp", NULL, NULL },
+  { "iges", NULL, NULL },
+  { "igs", NULL, NULL },
+  { "brep", NULL, NULL },
+  { "egads", NULL, NULL },
 };
 #define N_FORMAT (sizeof formats / sizeof formats[0])
 
 /* Those of the table that io/cad reads, with options of its own. */
-static const struct { const char *suffix; enum vg_cad_kind kind; } cad[] = {
-  { "step", VG_CAD_STEP }, { "stp", VG_CAD_STEP }, { "iges", VG_CAD_IGES },
-  { "igs", VG_CAD_IGES }, { "brep", VG_CAD_BREP },
-  { "egads", VG_CAD_BREP },
+static const struct {
+  const char *suffix;
+  enum vg_cad_kind kind;
+} cad[] = {
+  { "step", VG_CAD_STEP }, { "stp", VG_CAD_STEP },  { "iges", VG_CAD_IGES },
+  { "igs", VG_CAD_IGES },  { "brep", VG_CAD_BREP }, { "egads", VG_CAD_BREP },
 };
 
 static enum vg_cad_kind cad_kind(const struct format *f)
@@ -162,19 +177,34 @@ static enum vg_cad_kind cad_kind(const struct format *f)
 }
 
 /* Every surface suffix, plain and packed. */
-static const char *const input_suffix[] = {
-  "stl", "tri", "triq", "obj", "mesh", "meshb", "b8.ugrid", "lb8.ugrid",
-  "b4.ugrid", "lb4.ugrid", "r8.ugrid", "lr8.ugrid", "r4.ugrid", "lr4.ugrid",
-  "b8l.ugrid", "lb8l.ugrid", "b8.ugrid64", "lb8.ugrid64", "ugrid",
-  "surf", "msh", "cgns", "step", "stp", "iges", "igs", "brep",
-  "egads",
-  "stl.gz", "tri.gz", "triq.gz", "obj.gz", "mesh.gz", "meshb.gz",
-  "b8.ugrid.gz", "lb8.ugrid.gz", "b4.ugrid.gz", "lb4.ugrid.gz",
-  "r8.ugrid.gz", "lr8.ugrid.gz", "r4.ugrid.gz", "lr4.ugrid.gz",
-  "b8l.ugrid.gz", "lb8l.ugrid.gz", "b8.ugrid64.gz", "lb8.ugrid64.gz",
-  "ugrid.gz", "surf.gz", "msh.gz", "cgns.gz", "step.gz", "stp.gz", "iges.gz",
-  "igs.gz", "brep.gz", "egads.gz"
-};
+static const char *const input_suffix[] = { "stl",           "tri",
+                                            "triq",          "obj",
+                                            "mesh",          "meshb",
+                                            "b8.ugrid",      "lb8.ugrid",
+                                            "b4.ugrid",      "lb4.ugrid",
+                                            "r8.ugrid",      "lr8.ugrid",
+                                            "r4.ugrid",      "lr4.ugrid",
+                                            "b8l.ugrid",     "lb8l.ugrid",
+                                            "b8.ugrid64",    "lb8.ugrid64",
+                                            "ugrid",         "surf",
+                                            "msh",           "cgns",
+                                            "step",          "stp",
+                                            "iges",          "igs",
+                                            "brep",          "egads",
+                                            "stl.gz",        "tri.gz",
+                                            "triq.gz",       "obj.gz",
+                                            "mesh.gz",       "meshb.gz",
+                                            "b8.ugrid.gz",   "lb8.ugrid.gz",
+                                            "b4.ugrid.gz",   "lb4.ugrid.gz",
+                                            "r8.ugrid.gz",   "lr8.ugrid.gz",
+                                            "r4.ugrid.gz",   "lr4.ugrid.gz",
+                                            "b8l.ugrid.gz",  "lb8l.ugrid.gz",
+                                            "b8.ugrid64.gz", "lb8.ugrid64.gz",
+                                            "ugrid.gz",      "surf.gz",
+                                            "msh.gz",        "cgns.gz",
+                                            "step.gz",       "stp.gz",
+                                            "iges.gz",       "igs.gz",
+                                            "brep.gz",       "egads.gz" };
 
 const char *vg_format_input_suffix(size_t i)
 {
@@ -271,18 +301,20 @@ int vg_format_holds_cells(const char *path)
 
 vg_status vg_format_unknown(const char *path, struct vg_error *err)
 {
-  static const char *const native[] = { "x_t", "x_b", "catpart", "sldprt",
-                                        "prt", "jt" };
+  static const char *const native[] = { "x_t",    "x_b", "catpart",
+                                        "sldprt", "prt", "jt" };
   const struct format *f = find(path, without_gz(path));
 
   for (size_t i = 0; i < sizeof native / sizeof *native; i++)
     if (ends_in(path, without_gz(path), native[i]))
-      return vg_fail(err, VG_ERR_FORMAT, "%s: this is CAD geometry of one "
-                     "system; export it as STEP or IGES; read are %s", path,
-                     vg_format_list());
+      return vg_fail(err, VG_ERR_FORMAT,
+                     "%s: this is CAD geometry of one "
+                     "system; export it as STEP or IGES; read are %s",
+                     path, vg_format_list());
   return vg_fail(err, VG_ERR_FORMAT, "%s: %s; known are %s", path,
                  f ? "this format is written only"
-                   : "the suffix names no format", vg_format_list());
+                   : "the suffix names no format",
+                 vg_format_list());
 }
 
 static vg_status read_by_name(const char *path, struct vg_mesh *out,
@@ -304,7 +336,7 @@ static vg_status read_by_name(const char *path, struct vg_mesh *out,
 vg_status vg_format_read(const char *path, struct vg_mesh *out,
                          struct vg_error *err)
 {
-  struct vg_read_info info = {0};
+  struct vg_read_info info = { 0 };
 
   return read_by_name(path, out, &info, err);
 }
@@ -337,7 +369,7 @@ done:
 /* The members that the caller sets. */
 static struct vg_read_info asked_of(const struct vg_read_info *info)
 {
-  struct vg_read_info asked = {0};
+  struct vg_read_info asked = { 0 };
 
   if (!info) return asked;
   asked.cad = info->cad;

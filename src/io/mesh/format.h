@@ -1,9 +1,9 @@
 /* io/mesh/format.h: the table of formats. Names decide, upper or lower case, a
  * ".gz" at the end aside: .stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid
- * (and .b8.ugrid, ... , io/mesh/ugrid.h) .cogsg .front .surf and CAD (.step .stp
- * .iges .igs .brep, io/cad/cad.h) are read; .fluent.msh, .su2, .vtu and .openfoam
- * (a folder, io/mesh/foam.h) are written only, .front, .triq, .surf and CAD are
- * read only. */
+ * (and .b8.ugrid, ... , io/mesh/ugrid.h) .cogsg .front .surf and CAD (.step
+ * .stp .iges .igs .brep, io/cad/cad.h) are read; .fluent.msh, .su2, .vtu and
+ * .openfoam (a folder, io/mesh/foam.h) are written only, .front, .triq, .surf
+ * and CAD are read only. */
 #ifndef VG_IO_MESH_FORMAT_H
 #define VG_IO_MESH_FORMAT_H
 
@@ -17,19 +17,19 @@
 /** What reading found out, for a report. */
 struct vg_read_info {
   const struct vg_cad_options *cad; /* in: for CAD; NULL: its defaults */
-  struct vg_cad_model *model;     /* in: where the model of a CAD file is kept,
-                                     empty; NULL: it is not */
-  const char *mapbc;              /* in: file with conditions; NULL or "":
-                                     STEM.mapbc, but next to a surface not one
-                                     that Vanguard wrote */
-  const char *format;             /* suffix of the table; static */
-  struct vg_turned turned;        /* zero for formats without cells */
-  size_t n_cell;                  /* cells in the file */
-  int has_mapbc;                  /* a .mapbc was used */
-  int has_own_mapbc;              /* STEM.mapbc was not used, since Vanguard
-                                     wrote it */
-  enum vg_mapbc_layout layout;    /* its layout */
-  struct vg_mapbc_match match;    /* patches it lacks, entries not used */
+  struct vg_cad_model *model;  /* in: where the model of a CAD file is kept,
+                                  empty; NULL: it is not */
+  const char *mapbc;           /* in: file with conditions; NULL or "":
+                                  STEM.mapbc, but next to a surface not one
+                                  that Vanguard wrote */
+  const char *format;          /* suffix of the table; static */
+  struct vg_turned turned;     /* zero for formats without cells */
+  size_t n_cell;               /* cells in the file */
+  int has_mapbc;               /* a .mapbc was used */
+  int has_own_mapbc;           /* STEM.mapbc was not used, since Vanguard
+                                  wrote it */
+  enum vg_mapbc_layout layout; /* its layout */
+  struct vg_mapbc_match match; /* patches it lacks, entries not used */
 };
 
 /** i-th suffix, without leading dot, that a surface of a project may have

@@ -13,7 +13,8 @@ vg_status vg_gmf_fail(const struct vg_gmf *g, struct vg_error *err,
 static vg_status set_version(struct vg_gmf *g, int64_t v, struct vg_error *err)
 {
   if (v < 1 || v > 4)
-    return vg_gmf_fail(g, err, "unknown version: MeshVersionFormatted must be "
+    return vg_gmf_fail(g, err,
+                       "unknown version: MeshVersionFormatted must be "
                        "1 to 4");
   g->version = (int)v;
   return VG_OK;
@@ -43,7 +44,8 @@ static vg_status open_text(struct vg_gmf *g, struct vg_error *err)
   g->in->comment = '#';
   if (!vg_input_token(g->in, &text, &len) ||
       !vg_token_is(text, len, "MeshVersionFormatted"))
-    return vg_gmf_fail(g, err, "not a Medit file: it does not begin with "
+    return vg_gmf_fail(g, err,
+                       "not a Medit file: it does not begin with "
                        "'MeshVersionFormatted'");
   st = vg_input_int(g->in, &v, "the version", err);
   return st < 0 ? st : set_version(g, v, err);
@@ -59,7 +61,8 @@ vg_status vg_gmf_open(struct vg_gmf *g, struct vg_error *err)
   if (!g->binary && !vg_input_is_text(g->in))
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: neither text nor binary Medit: a binary file begins "
-                   "with the number 1", g->in->path);
+                   "with the number 1",
+                   g->in->path);
   if (!g->binary) return open_text(g, err);
   st = vg_input_i32(g->in, 1, &version, "the version", err);
   return st < 0 ? st : set_version(g, version, err);
@@ -81,15 +84,15 @@ vg_status vg_gmf_read_dimension(struct vg_gmf *g, struct vg_error *err)
   if (v == 2)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "%s: a plane mesh (dimension 2); only three dimensions are "
-                   "meshed", g->in->path);
-  if (v != 3)
-    return vg_gmf_fail(g, err, "the dimension is neither 2 nor 3");
+                   "meshed",
+                   g->in->path);
+  if (v != 3) return vg_gmf_fail(g, err, "the dimension is neither 2 nor 3");
   g->dimension = 3;
   return VG_OK;
 }
 
-vg_status vg_gmf_ints(struct vg_gmf *g, size_t n, int64_t *v,
-                      const char *what, struct vg_error *err)
+vg_status vg_gmf_ints(struct vg_gmf *g, size_t n, int64_t *v, const char *what,
+                      struct vg_error *err)
 {
   int32_t narrow[VG_GMF_INTS];
   vg_status st = VG_OK;
@@ -123,7 +126,8 @@ vg_status vg_gmf_keyword(struct vg_gmf *g, int32_t *code, size_t *next,
   }
   /* zero stands behind the last keyword */
   if (position && (position < 0 || (uint64_t)position > g->in->size))
-    st = vg_gmf_fail(g, err, "truncated: a section is said to end beyond the "
+    st = vg_gmf_fail(g, err,
+                     "truncated: a section is said to end beyond the "
                      "end of the file");
   else if (position && (uint64_t)position <= start)
     st = vg_gmf_fail(g, err, "a section is said to end before it begins");

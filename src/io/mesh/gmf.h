@@ -7,8 +7,8 @@
 
 struct vg_gmf {
   struct vg_input *in;
-  int binary, version;      /* version: 1 to 4 */
-  int dimension;            /* 0: not seen yet */
+  int binary, version; /* version: 1 to 4 */
+  int dimension;       /* 0: not seen yet */
 };
 
 /** Codes of keywords outside the tables of sections. */
@@ -28,8 +28,8 @@ vg_status vg_gmf_read_dimension(struct vg_gmf *g, struct vg_error *err);
 /** n whole numbers of the file's width, 8 bytes from version 4 on; at most
  * VG_GMF_INTS at once. */
 #define VG_GMF_INTS 9
-vg_status vg_gmf_ints(struct vg_gmf *g, size_t n, int64_t *v,
-                      const char *what, struct vg_error *err);
+vg_status vg_gmf_ints(struct vg_gmf *g, size_t n, int64_t *v, const char *what,
+                      struct vg_error *err);
 
 /** Binary: code of the next keyword and where the one behind it starts, 0:
  * nowhere. Positions advance, or a damaged file could be read for ever. */

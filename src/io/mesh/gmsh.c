@@ -15,10 +15,15 @@
 enum { TRIANGLE = 2, QUADRILATERAL = 3, SURFACE = 2, VOLUME = 3 };
 
 /* Ours to Gmsh's, whose pyramid has its apex last. */
-static const struct kind { int32_t type; int n_node; int order[8]; }
-kinds[VG_GMSH_KINDS] = {
-  { 4, 4, { 0, 1, 2, 3 } }, { 7, 5, { 0, 3, 4, 1, 2 } },
-  { 6, 6, { 0, 1, 2, 3, 4, 5 } }, { 5, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } },
+static const struct kind {
+  int32_t type;
+  int n_node;
+  int order[8];
+} kinds[VG_GMSH_KINDS] = {
+  { 4, 4, { 0, 1, 2, 3 } },
+  { 7, 5, { 0, 3, 4, 1, 2 } },
+  { 6, 6, { 0, 1, 2, 3, 4, 5 } },
+  { 5, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } },
 };
 
 static void put_size(struct vg_output *out, uint64_t v)
@@ -102,8 +107,8 @@ static void patch_box(const struct vg_gmsh *g, size_t patch,
   }
 }
 
-static void put_entity(struct vg_output *out, int32_t tag,
-                       const double box[6], int32_t group, uint64_t n_border)
+static void put_entity(struct vg_output *out, int32_t tag, const double box[6],
+                       int32_t group, uint64_t n_border)
 {
   vg_output_i32(out, 1, &tag);
   vg_output_f64(out, 6, box);
@@ -135,7 +140,7 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
   if (has_cells) {
     put_entity(out, 1, all, 1, g->n_surface);
     for (size_t p = 0; p < g->frame->n_patch; p++) {
-      int32_t inward = -tag_of(g, p);   /* as our faces point */
+      int32_t inward = -tag_of(g, p); /* as our faces point */
 
       if (!is_empty(g, p)) vg_output_i32(out, 1, &inward);
     }
@@ -247,9 +252,9 @@ static uint64_t cell_size(int kind)
   return 8 * (1 + (uint64_t)kinds[kind].n_node);
 }
 
-void vg_gmsh_put_cells(struct vg_output *out, const struct vg_gmsh *g,
-                       int kind, uint64_t cell, size_t n,
-                       const uint32_t *node, const uint32_t *number)
+void vg_gmsh_put_cells(struct vg_output *out, const struct vg_gmsh *g, int kind,
+                       uint64_t cell, size_t n, const uint32_t *node,
+                       const uint32_t *number)
 {
   const struct kind *k = &kinds[kind];
   size_t width = (size_t)k->n_node, most = BLOCK / (1 + width);
@@ -293,13 +298,13 @@ static void put_cells(struct vg_output *out, const struct vg_gmsh *g,
                       uint64_t at[VG_GMSH_KINDS])
 {
   const struct vg_mesh *m = g->frame;
-  const uint32_t *const cell[VG_GMSH_KINDS] = {
-    (const uint32_t *)m->tet, (const uint32_t *)m->pyr,
-    (const uint32_t *)m->pri, (const uint32_t *)m->hex };
+  const uint32_t *const cell[VG_GMSH_KINDS] = { (const uint32_t *)m->tet,
+                                                (const uint32_t *)m->pyr,
+                                                (const uint32_t *)m->pri,
+                                                (const uint32_t *)m->hex };
 
   for (int k = 0; k < VG_GMSH_KINDS; k++) {
-    if (g->n_cell[k])
-      put_block(out, VOLUME, 1, kinds[k].type, g->n_cell[k]);
+    if (g->n_cell[k]) put_block(out, VOLUME, 1, kinds[k].type, g->n_cell[k]);
     at[k] = out->written;
     if (!m->point) vg_output_skip(out, g->n_cell[k] * cell_size(k));
     else vg_gmsh_put_cells(out, g, k, 0, (size_t)g->n_cell[k], cell[k], NULL);
@@ -315,7 +320,7 @@ static void put_all(struct vg_output *out, const struct vg_gmsh *g,
   vg_output_order(out, 0);
   put_head(out, g);
   found->at_entities = out->written;
-  if (m->point) vg_gmsh_put_entities(out, g, (const double (*)[3])m->point);
+  if (m->point) vg_gmsh_put_entities(out, g, (const double(*)[3])m->point);
   else vg_output_skip(out, entities_size(g));
   put_points(out, g, &found->at_tag, &found->at_point);
   put_elements_head(out, g);
@@ -351,11 +356,15 @@ vg_status vg_gmsh_plan(const char *path, const struct vg_mesh *frame,
 {
   vg_status st;
 
-  *g = (struct vg_gmsh){ .frame = frame, .has_ids = 1, .n_cell = {
-    frame->n_tet, frame->n_pyr, frame->n_pri, frame->n_hex } };
+  *g = (struct vg_gmsh){ .frame = frame,
+                         .has_ids = 1,
+                         .n_cell = { frame->n_tet, frame->n_pyr, frame->n_pri,
+                                     frame->n_hex } };
   if (!count_faces(g) && !count_cells(g))
-    return vg_fail(err, VG_ERR_INPUT, "%s: the mesh has neither faces nor "
-                   "cells, and a .msh needs some", path);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the mesh has neither faces nor "
+                   "cells, and a .msh needs some",
+                   path);
   g->word = vg_patch_words(frame, VG_PATCH_WORD_MOST);
   if (!g->word) return vg_fail_memory(err, "the names of the patches");
   VG_TRY(vg_boundary_by_patch(frame, &g->face_first, &g->face, err));
@@ -393,8 +402,8 @@ void vg_gmsh_seek_points(struct vg_output *out, const struct vg_gmsh *g,
   vg_output_seek(out, g->at_point + 24 * point);
 }
 
-void vg_gmsh_seek_cell(struct vg_output *out, const struct vg_gmsh *g,
-                       int kind, uint64_t cell)
+void vg_gmsh_seek_cell(struct vg_output *out, const struct vg_gmsh *g, int kind,
+                       uint64_t cell)
 {
   assert(kind >= 0 && kind < VG_GMSH_KINDS);
   vg_output_seek(out, g->at[kind] + cell * cell_size(kind));

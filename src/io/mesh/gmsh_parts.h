@@ -6,12 +6,12 @@
 
 /* The name of a physical group of surfaces. */
 struct vg_gmsh_name {
-  int64_t tag;               /* number of the group */
+  int64_t tag; /* number of the group */
   char text[VG_NAME_MAX];
 };
 
-/* The surface that a face lies on, and the physical group of that surface; 0: the
- * surface is in no group. */
+/* The surface that a face lies on, and the physical group of that surface; 0:
+ * the surface is in no group. */
 struct vg_gmsh_group {
   int64_t surface, physical;
 };

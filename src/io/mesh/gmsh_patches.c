@@ -38,15 +38,16 @@ vg_status vg_gmsh_set_patches(struct vg_mesh *m,
 
   if (!tag) return vg_fail_memory(err, "the patches");
   for (int k = 0; k < 2; k++)
-    for (size_t i = 0; i < n[k]; i++)
-      has_groups |= face[k][i].physical != 0;
+    for (size_t i = 0; i < n[k]; i++) has_groups |= face[k][i].physical != 0;
   for (int k = 0; k < 2; k++)
     for (size_t i = 0; i < n[k] && st == VG_OK; i++) {
       int64_t id = patch_of(&face[k][i], has_groups);
 
       if (id < -INT32_MAX || id > INT32_MAX)
-        st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: group %lld does not fit a "
-                     "patch number of 32 bits", path, (long long)id);
+        st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                     "%s: group %lld does not fit a "
+                     "patch number of 32 bits",
+                     path, (long long)id);
       *to++ = (int32_t)id;
     }
   if (st == VG_OK) st = vg_patches_from_tags(m, tag, err);

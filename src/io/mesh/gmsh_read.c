@@ -21,31 +21,39 @@ static const struct type {
   enum element element;
   int n_node, slot[NODES_MOST];
 } types[] = {
-  { 2, TRI, 3, { 0, 1, 2 } }, { 3, QUAD, 4, { 0, 1, 2, 3 } },
-  { 4, TET, 4, { 0, 1, 2, 3 } }, { 7, PYR, 5, { 0, 3, 4, 1, 2 } },
+  { 2, TRI, 3, { 0, 1, 2 } },
+  { 3, QUAD, 4, { 0, 1, 2, 3 } },
+  { 4, TET, 4, { 0, 1, 2, 3 } },
+  { 7, PYR, 5, { 0, 3, 4, 1, 2 } },
   { 6, PRI, 6, { 0, 1, 2, 3, 4, 5 } },
   { 5, HEX, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } },
-  { 15, SKIPPED, 1, { 0 } }, { 1, SKIPPED, 2, { 0 } },
-  { 8, SKIPPED, 3, { 0 } }, { 26, SKIPPED, 4, { 0 } },
-  { 27, SKIPPED, 5, { 0 } }, { 28, SKIPPED, 6, { 0 } },
+  { 15, SKIPPED, 1, { 0 } },
+  { 1, SKIPPED, 2, { 0 } },
+  { 8, SKIPPED, 3, { 0 } },
+  { 26, SKIPPED, 4, { 0 } },
+  { 27, SKIPPED, 5, { 0 } },
+  { 28, SKIPPED, 6, { 0 } },
 };
 
-struct numbered { int64_t tag; uint32_t at; };
+struct numbered {
+  int64_t tag;
+  uint32_t at;
+};
 
 struct reader {
   struct vg_input *in;
-  int version;               /* 2 or 4; 0: not known yet */
-  int binary, wide;          /* wide: sizes have 8 bytes */
+  int version;      /* 2 or 4; 0: not known yet */
+  int binary, wide; /* wide: sizes have 8 bytes */
   struct vg_mesh m;
   size_t cap_point, cap[N_ELEMENT];
-  struct vg_gmsh_group *face[2];     /* of triangles, quadrilaterals: as `tri` */
+  struct vg_gmsh_group *face[2]; /* of triangles, quadrilaterals: as `tri` */
   size_t cap_face[2];
-  struct vg_gmsh_name *name;         /* of physical groups of surfaces */
+  struct vg_gmsh_name *name; /* of physical groups of surfaces */
   size_t n_name, cap_name;
-  struct vg_gmsh_group *group;       /* of surfaces, by rising number */
+  struct vg_gmsh_group *group; /* of surfaces, by rising number */
   size_t n_group, cap_group;
-  struct numbered *node;     /* [n_point] by rising tag */
-  int is_run;                /* tags are first_tag, first_tag + 1, ... */
+  struct numbered *node; /* [n_point] by rising tag */
+  int is_run;            /* tags are first_tag, first_tag + 1, ... */
   int seen_nodes;
 };
 
@@ -105,11 +113,14 @@ static vg_status check_count(const struct reader *r, int64_t n, size_t n_size,
                            : 2 * (n_size + n_int);
 
   if (n < 0 || n >= UINT32_MAX)
-    return vg_fail(err, VG_ERR_FORMAT, "%s: %lld %s: the count is negative "
-                   "or beyond 32 bits", r->in->path, (long long)n, what);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: %lld %s: the count is negative "
+                   "or beyond 32 bits",
+                   r->in->path, (long long)n, what);
   /* the last number of a text needs no blank behind it */
-  return n ? vg_input_need(r->in, (uint64_t)n * bytes - !r->binary, 1, what,
-                           err) : VG_OK;
+  return n
+         ? vg_input_need(r->in, (uint64_t)n * bytes - !r->binary, 1, what, err)
+         : VG_OK;
 }
 
 /* --- names, groups --- */
@@ -123,13 +134,15 @@ static vg_status read_name(struct reader *r, struct vg_error *err)
 
   for (int k = 0; k < 2; k++)
     VG_TRY(vg_input_int(r->in, &v[k], "a physical group", err));
-  if (!vg_input_line(r->in, &line, &len) ||
-      !(first = memchr(line, '"', len)))
-    return vg_input_fail(r->in, err, "a physical group without its name in "
+  if (!vg_input_line(r->in, &line, &len) || !(first = memchr(line, '"', len)))
+    return vg_input_fail(r->in, err,
+                         "a physical group without its name in "
                          "quotes");
-  for (last = line + len - 1; *last != '"'; last--) {}
+  for (last = line + len - 1; *last != '"'; last--) {
+  }
   if (last == first)
-    return vg_input_fail(r->in, err, "the name of a physical group does not "
+    return vg_input_fail(r->in, err,
+                         "the name of a physical group does not "
                          "end in a quote");
   if (v[0] != 2) return VG_OK;
   if (vg_reserve(&r->name, &r->cap_name, r->n_name + 1, sizeof *r->name))
@@ -208,8 +221,7 @@ static vg_status read_entities(struct reader *r, struct vg_error *err)
     VG_TRY(check_count(r, n[d], 0, 1, "entities", err));
     for (int64_t i = 0; i < n[d]; i++) VG_TRY(read_entity(r, d, err));
   }
-  if (r->n_group)
-    qsort(r->group, r->n_group, sizeof *r->group, by_surface);
+  if (r->n_group) qsort(r->group, r->n_group, sizeof *r->group, by_surface);
 done:
   return st;
 }
@@ -225,7 +237,8 @@ static int64_t physical_of(const struct reader *r, int64_t surface)
     else hi = mid;
   }
   return lo < r->n_group && r->group[lo].surface == surface
-    ? r->group[lo].physical : 0;
+         ? r->group[lo].physical
+         : 0;
 }
 
 /* --- nodes --- */
@@ -236,8 +249,10 @@ static vg_status reserve_points(struct reader *r, int64_t n,
   size_t need = r->m.n_point + (size_t)n, cap = r->cap_point;
 
   if (need >= UINT32_MAX)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: more points than 32 bits "
-                   "number", r->in->path);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: more points than 32 bits "
+                   "number",
+                   r->in->path);
   if (vg_reserve(&r->m.point, &cap, need, sizeof *r->m.point) ||
       vg_reserve(&r->node, &r->cap_point, need, sizeof *r->node))
     return vg_fail_memory(err, "the points");
@@ -296,7 +311,8 @@ static vg_status read_nodes_4(struct reader *r, struct vg_error *err)
     VG_TRY(check_count(r, n, 1, r->binary ? 6 : 3, "nodes", err));
     VG_TRY(reserve_points(r, n, err));
     if (entity[0] < 0 || entity[0] > 3)
-      return fail_at(r, err, "a block of nodes of an entity that has not 0 to "
+      return fail_at(r, err,
+                     "a block of nodes of an entity that has not 0 to "
                      "3 dimensions");
     for (int64_t i = 0; i < n; i++) {
       VG_TRY(read_sizes(r, 1, &tag, "the nodes", err));
@@ -306,8 +322,10 @@ static vg_status read_nodes_4(struct reader *r, struct vg_error *err)
       VG_TRY(read_point(r, entity[2] ? (int)entity[0] : 0, err));
   }
   if ((uint64_t)head[1] != r->m.n_point)
-    st = vg_fail(err, VG_ERR_FORMAT, "%s: %zu nodes in blocks, but %lld in "
-                 "all", r->in->path, r->m.n_point, (long long)head[1]);
+    st = vg_fail(err, VG_ERR_FORMAT,
+                 "%s: %zu nodes in blocks, but %lld in "
+                 "all",
+                 r->in->path, r->m.n_point, (long long)head[1]);
 done:
   return st;
 }
@@ -330,8 +348,8 @@ static vg_status read_nodes(struct reader *r, struct vg_error *err)
   st = r->version == 2 ? read_nodes_2(r, err) : read_nodes_4(r, err);
   if (st < 0) return st;
   n = r->m.n_point;
-  for (size_t i = 1; i < n; i++) is_sorted &= r->node[i - 1].tag <
-                                              r->node[i].tag;
+  for (size_t i = 1; i < n; i++)
+    is_sorted &= r->node[i - 1].tag < r->node[i].tag;
   if (!is_sorted) qsort(r->node, n, sizeof *r->node, by_tag);
   for (size_t i = 1; i < n; i++)
     if (r->node[i - 1].tag == r->node[i].tag)
@@ -376,7 +394,8 @@ static const struct type *find_type(int64_t code)
 static vg_status unknown_type(const struct reader *r, int64_t code,
                               struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: elements of Gmsh's type %lld "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: elements of Gmsh's type %lld "
                  "are not of first order, or of a kind that is not meshed; "
                  "`gmsh FILE -setorder 1 -save -format msh41 -o NEW.msh` makes "
                  "triangles, quadrilaterals and cells of first order",
@@ -389,8 +408,8 @@ static vg_status reserve_elements(struct reader *r, enum element e, int64_t n,
   struct vg_mesh *m = &r->m;
   int bad = 0;
 
-#define MORE(array, count) \
-  bad = vg_reserve(&m->array, &r->cap[e], m->count + (size_t)n, \
+#define MORE(array, count)                                                     \
+  bad = vg_reserve(&m->array, &r->cap[e], m->count + (size_t)n,                \
                    sizeof *m->array)
   switch (e) {
   case TRI: MORE(tri, n_tri); break;
@@ -416,12 +435,8 @@ static uint32_t *next_element(struct reader *r, enum element e,
   struct vg_mesh *m = &r->m;
 
   switch (e) {
-  case TRI:
-    r->face[0][m->n_tri] = group;
-    return m->tri[m->n_tri++];
-  case QUAD:
-    r->face[1][m->n_quad] = group;
-    return m->quad[m->n_quad++];
+  case TRI: r->face[0][m->n_tri] = group; return m->tri[m->n_tri++];
+  case QUAD: r->face[1][m->n_quad] = group; return m->quad[m->n_quad++];
   case TET: return m->tet[m->n_tet++];
   case PYR: return m->pyr[m->n_pyr++];
   case PRI: return m->pri[m->n_pri++];
@@ -438,9 +453,10 @@ static vg_status take_element(struct reader *r, const struct type *t,
   if (t->element == SKIPPED) return VG_OK;
   for (int k = 0; k < t->n_node; k++)
     if (!find_node(r, tag[k], &node[k]))
-      return vg_fail(err, VG_ERR_INPUT, "%s: element %lld refers to node "
-                     "%lld, which is not there", r->in->path,
-                     (long long)number, (long long)tag[k]);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "%s: element %lld refers to node "
+                     "%lld, which is not there",
+                     r->in->path, (long long)number, (long long)tag[k]);
   to = next_element(r, t->element, group);
   for (int k = 0; k < t->n_node; k++) to[t->slot[k]] = node[k];
   return VG_OK;
@@ -498,8 +514,8 @@ static vg_status read_element_2(struct reader *r, const struct type *t,
   if (n_tag > 2)
     VG_TRY(skip_ints(r, n_tag - 2, "the groups of an element", err));
   VG_TRY(read_ints(r, (size_t)t->n_node, node, "the elements", err));
-  st = take_element(r, t, number, node, (struct vg_gmsh_group){
-    tag[1], llabs(tag[0]) }, err);
+  st = take_element(r, t, number, node,
+                    (struct vg_gmsh_group){ tag[1], llabs(tag[0]) }, err);
 done:
   return st;
 }
@@ -546,8 +562,7 @@ done:
 
 static vg_status read_elements(struct reader *r, struct vg_error *err)
 {
-  if (!r->seen_nodes)
-    return fail_at(r, err, "elements stand before the nodes");
+  if (!r->seen_nodes) return fail_at(r, err, "elements stand before the nodes");
   return r->version == 2 ? read_elements_2(r, err) : read_elements_4(r, err);
 }
 
@@ -556,9 +571,11 @@ static vg_status read_elements(struct reader *r, struct vg_error *err)
 static vg_status unknown_version(const struct reader *r, const char *text,
                                  size_t len, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: .msh of version %.*s; read are "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: .msh of version %.*s; read are "
                  "4.1 and 2.x: `gmsh FILE -save -format msh41 -o NEW.msh` "
-                 "converts", r->in->path, (int)(len < 20 ? len : 20), text);
+                 "converts",
+                 r->in->path, (int)(len < 20 ? len : 20), text);
 }
 
 /* A number one behind the line shows the order of bytes. */
@@ -594,9 +611,9 @@ static vg_status read_format(struct reader *r, struct vg_error *err)
   if (version >= 2 && version < 3) r->version = 2;
   else if (vg_token_is(text, len, "4.1")) r->version = 4;
   else return unknown_version(r, text, len, err);
-  if (binary < 0 || binary > 1 || (size != 8 && (size != 4 ||
-                                                 r->version == 2)))
-    return vg_input_fail(r->in, err, "$MeshFormat must say 0 or 1 for text or "
+  if (binary < 0 || binary > 1 || (size != 8 && (size != 4 || r->version == 2)))
+    return vg_input_fail(r->in, err,
+                         "$MeshFormat must say 0 or 1 for text or "
                          "binary, and 8, the bytes of a real or size");
   r->wide = size == 8 && r->version == 4;
   vg_input_line(r->in, &line, &line_len);
@@ -630,9 +647,10 @@ static vg_status read_end(struct reader *r, const char *name, size_t len,
   if (vg_input_token(r->in, &text, &n) && n == len + 3 &&
       !memcmp(text, "$End", 4) && !memcmp(text + 4, name + 1, len - 1))
     return VG_OK;
-  return vg_fail(err, VG_ERR_FORMAT, "%s: %.*s does not end where its counts "
-                 "say (near byte %zu)", r->in->path,
-                 (int)(len < 40 ? len : 40), name, r->in->at);
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s: %.*s does not end where its counts "
+                 "say (near byte %zu)",
+                 r->in->path, (int)(len < 40 ? len : 40), name, r->in->at);
 }
 
 static vg_status read_section(struct reader *r, const char *name, size_t len,
@@ -642,16 +660,20 @@ static vg_status read_section(struct reader *r, const char *name, size_t len,
     const char *name;
     vg_status (*read)(struct reader *r, struct vg_error *err);
   } known[] = {
-    { "$PhysicalNames", read_names }, { "$Entities", read_entities },
-    { "$Nodes", read_nodes }, { "$Elements", read_elements },
+    { "$PhysicalNames", read_names },
+    { "$Entities", read_entities },
+    { "$Nodes", read_nodes },
+    { "$Elements", read_elements },
   };
   const char *line;
   size_t line_len;
   vg_status st;
 
   if (vg_token_is(name, len, "$PartitionedEntities"))
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: the mesh is partitioned; "
-                   "save it in one part", r->in->path);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: the mesh is partitioned; "
+                   "save it in one part",
+                   r->in->path);
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
     if (!vg_token_is(name, len, known[i].name)) continue;
     if (!r->version)
@@ -671,11 +693,13 @@ static vg_status read_sections(struct reader *r, struct vg_error *err)
 
   while (st == VG_OK && vg_input_token(r->in, &text, &len)) {
     if (*text != '$' || len < 2)
-      st = fail_at(r, err, r->version ? "text outside of a section"
-                   : *text == '(' ? "this is a mesh of Fluent, whose files "
-                   "are not read; Gmsh's begin with $MeshFormat"
-                   : "not a file of Gmsh: it does not begin with "
-                   "$MeshFormat");
+      st = fail_at(r, err,
+                   r->version ? "text outside of a section"
+                   : *text == '('
+                     ? "this is a mesh of Fluent, whose files "
+                       "are not read; Gmsh's begin with $MeshFormat"
+                     : "not a file of Gmsh: it does not begin with "
+                       "$MeshFormat");
     else if (vg_token_is(text, len, "$NOD"))
       st = unknown_version(r, "1", 1, err);
     else if (vg_token_is(text, len, "$MeshFormat"))
@@ -698,10 +722,12 @@ static vg_status finish(struct reader *r, struct vg_error *err)
   if (!r->version)
     return fail_at(r, err, "not a file of Gmsh: there is no $MeshFormat");
   if (!m->n_tri && !m->n_quad && !has_cells)
-    return vg_fail(err, VG_ERR_INPUT, "%s: no triangles, quadrilaterals or "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: no triangles, quadrilaterals or "
                    "cells: there is nothing to mesh; where there are physical "
-                   "groups Gmsh saves only what is in one", r->in->path);
-  VG_TRY(vg_check_points(r->in->path, m->n_point, (const double (*)[3])m->point,
+                   "groups Gmsh saves only what is in one",
+                   r->in->path);
+  VG_TRY(vg_check_points(r->in->path, m->n_point, (const double(*)[3])m->point,
                          err));
   VG_TRY(vg_gmsh_set_patches(m, r->face, r->n_name, r->name, r->in->path, err));
   if (!has_cells) vg_mesh_keep_boundary(m);

@@ -12,12 +12,11 @@ enum { VERTICES, TRIANGLES, QUADS, TETS, PYRAMIDS, PRISMS, HEXES, N_SECTION };
 
 static const struct section {
   const char *name;
-  int code, n_node;         /* n_node 0: vertices */
-} sections[N_SECTION] = {
-  { "Vertices", 4, 0 },      { "Triangles", 6, 3 }, { "Quadrilaterals", 7, 4 },
-  { "Tetrahedra", 8, 4 },    { "Pyramids", 49, 5 }, { "Prisms", 9, 6 },
-  { "Hexahedra", 10, 8 }
-};
+  int code, n_node; /* n_node 0: vertices */
+} sections[N_SECTION] = { { "Vertices", 4, 0 },       { "Triangles", 6, 3 },
+                          { "Quadrilaterals", 7, 4 }, { "Tetrahedra", 8, 4 },
+                          { "Pyramids", 49, 5 },      { "Prisms", 9, 6 },
+                          { "Hexahedra", 10, 8 } };
 
 /* Our pyramid has base ring 0 3 4 1 and apex 2, Medit's ring 0 1 2 3 and apex
  * 4: slot k of the file is our node pyramid_slot[k]. */
@@ -50,8 +49,8 @@ static uint32_t *section_get(const struct vg_mesh *m, int section, size_t *n)
 static int section_allocate(struct reader *r, int section, size_t n)
 {
   struct vg_mesh *m = &r->m;
-#define GIVE(array, count) \
-  (m->array = vg_alloc(n, sizeof *m->array), m->count = m->array ? n : 0, \
+#define GIVE(array, count)                                                     \
+  (m->array = vg_alloc(n, sizeof *m->array), m->count = m->array ? n : 0,      \
    m->array ? 0 : -1)
   switch (section) {
   case TRIANGLES:
@@ -83,8 +82,7 @@ static vg_status read_vertices(struct reader *r, struct vg_error *err)
         st = vg_input_real(r->g.in, &x[k], "a coordinate", err);
     else if (r->g.version == 1)
       st = vg_input_f32(r->g.in, 3, x, "Vertices", err);
-    else
-      st = vg_input_f64(r->g.in, 3, x, "Vertices", err);
+    else st = vg_input_f64(r->g.in, 3, x, "Vertices", err);
     if (st == VG_OK)
       st = vg_gmf_ints(&r->g, 1, &ref, "a vertex reference", err);
     if (st < 0) return st;
@@ -102,7 +100,8 @@ static vg_status read_entities(struct reader *r, int section,
   size_t n;
   uint32_t *node = section_get(&r->m, section, &n);
   int32_t *tag = section == TRIANGLES ? r->tri_tag
-                 : section == QUADS ? r->quad_tag : NULL;
+               : section == QUADS     ? r->quad_tag
+                                      : NULL;
 
   for (size_t i = 0; i < n; i++, node += n_node) {
     int64_t v[9];
@@ -120,8 +119,8 @@ static vg_status read_entities(struct reader *r, int section,
     if (v[n_node] < -INT32_MAX || v[n_node] > INT32_MAX)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
                      "%s: %s, number %zu: reference %lld does not fit a patch "
-                     "number of 32 bits", r->g.in->path, s->name, i + 1,
-                     (long long)v[n_node]);
+                     "number of 32 bits",
+                     r->g.in->path, s->name, i + 1, (long long)v[n_node]);
     tag[i] = (int32_t)v[n_node];
   }
   return VG_OK;
@@ -156,8 +155,9 @@ static vg_status read_section(struct reader *r, int section,
                    r->g.in->path, (long long)n, s->name);
   if (!n) return VG_OK;
   /* The last number of a text needs no blank behind it. */
-  VG_TRY(vg_input_need(r->g.in, (uint64_t)n * entity_size(r, s->n_node) -
-                       !r->g.binary, 1, s->name, err));
+  VG_TRY(vg_input_need(r->g.in,
+                       (uint64_t)n * entity_size(r, s->n_node) - !r->g.binary,
+                       1, s->name, err));
   if (section_allocate(r, section, (size_t)n))
     return vg_fail_memory(err, s->name);
   st = section == VERTICES ? read_vertices(r, err)
@@ -234,7 +234,8 @@ static vg_status read_binary(struct reader *r, struct vg_error *err)
     }
     if (!next || next == r->g.in->size) return VG_OK;
     if (section < N_SECTION && r->g.in->at > next)
-      return vg_gmf_fail(&r->g, err, "a section is longer than its keyword "
+      return vg_gmf_fail(&r->g, err,
+                         "a section is longer than its keyword "
                          "says");
     r->g.in->at = next;
   }
@@ -257,14 +258,15 @@ static vg_status check_nodes(const struct reader *r, struct vg_error *err)
       if (node[i] >= r->m.n_point)
         return vg_fail(err, VG_ERR_INPUT,
                        "%s: %s, number %zu: vertex %lu is out of range: there "
-                       "are %zu", r->g.in->path, sections[s].name,
-                       i / width + 1, (unsigned long)node[i] + 1,
-                       r->m.n_point);
+                       "are %zu",
+                       r->g.in->path, sections[s].name, i / width + 1,
+                       (unsigned long)node[i] + 1, r->m.n_point);
   }
   if (total) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: no triangles, quadrilaterals or cells: there is nothing "
-                 "to mesh", r->g.in->path);
+                 "to mesh",
+                 r->g.in->path);
 }
 
 static vg_status join_tags(struct reader *r, struct vg_error *err)
@@ -355,7 +357,8 @@ static void put_entities(struct writer *w, int section)
 
   for (size_t i = 0; i < n; i++, node += n_node) {
     int32_t ref = section == TRIANGLES ? m->patch[m->tri_patch[i]].id
-                  : section == QUADS ? m->patch[m->quad_patch[i]].id : 0;
+                : section == QUADS     ? m->patch[m->quad_patch[i]].id
+                                       : 0;
 
     for (int k = 0; k < n_node; k++)
       put_int(w, (int64_t)node[section == PYRAMIDS ? pyramid_slot[k] : k] + 1,
@@ -420,8 +423,7 @@ static void put_all(struct writer *w)
   if (w->binary) {
     vg_output_i32(&w->out, 1, &one);
     vg_output_i32(&w->out, 1, &version);
-    put_keyword(w, VG_GMF_DIMENSION,
-                (int64_t)(8 + keyword_size(version) + 4));
+    put_keyword(w, VG_GMF_DIMENSION, (int64_t)(8 + keyword_size(version) + 4));
     vg_output_i32(&w->out, 1, &three);
   } else {
     vg_output_text(&w->out, "MeshVersionFormatted 2\nDimension 3\n");
@@ -434,8 +436,7 @@ static void put_all(struct writer *w)
     if (w->binary)
       put_keyword(w, sections[s].code,
                   (int64_t)(w->out.written + section_size(w->m, s, version)));
-    else
-      vg_output_format(&w->out, "%s\n", sections[s].name);
+    else vg_output_format(&w->out, "%s\n", sections[s].name);
     put_int(w, (int64_t)n, 1);
     if (s == VERTICES) put_vertices(w);
     else put_entities(w, s);
@@ -477,6 +478,7 @@ vg_status vg_medit_write_binary(const char *path, const struct vg_mesh *m,
   if (version < 1 || version > 4 || !version_holds(m, version))
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "%s: .meshb version %d does not exist or cannot hold the "
-                   "mesh; use version 4", path, version);
+                   "mesh; use version 4",
+                   path, version);
   return write_file(path, &w, big_endian, err);
 }

@@ -10,9 +10,9 @@
 struct reader {
   struct vg_input *in;
   struct vg_soup s;
-  const char *name;         /* current group; points into the input */
+  const char *name; /* current group; points into the input */
   size_t name_len;
-  uint32_t patch;           /* of the group, or UINT32_MAX: no face yet */
+  uint32_t patch; /* of the group, or UINT32_MAX: no face yet */
   /* A vertex may be named before it appears, so the highest number is
    * checked at the end; this is the line where it stands. */
   uint64_t highest;
@@ -41,8 +41,9 @@ static vg_status read_vertex(struct reader *r, struct vg_error *err)
     if (!next_token(r->in, &text, &len) || !vg_parse_real(text, len, &x[k]))
       return vg_input_fail(r->in, err,
                            "vertex %zu needs three finite coordinates, '%.*s' "
-                           "is none", r->s.m.n_point + 1,
-                           (int)(len < 40 ? len : 40), text);
+                           "is none",
+                           r->s.m.n_point + 1, (int)(len < 40 ? len : 40),
+                           text);
   }
   return vg_soup_point(&r->s, x, &at, err);
 }
@@ -93,8 +94,10 @@ static vg_status read_face(struct reader *r, struct vg_error *err)
     }
   }
   if (n < 3)
-    st = vg_input_fail(r->in, err, "a face needs three corners or more, not "
-                       "%zu", n);
+    st = vg_input_fail(r->in, err,
+                       "a face needs three corners or more, not "
+                       "%zu",
+                       n);
 done:
   return st;
 }
@@ -109,8 +112,8 @@ static vg_status read_lines(struct reader *r, struct vg_error *err)
   while (st == VG_OK && vg_input_token(in, &text, &len)) {
     if (vg_token_is(text, len, "v")) st = read_vertex(r, err);
     else if (vg_token_is(text, len, "f")) st = read_face(r, err);
-    if (st == VG_OK && (vg_token_is(text, len, "g") ||
-                        vg_token_is(text, len, "o"))) {
+    if (st == VG_OK &&
+        (vg_token_is(text, len, "g") || vg_token_is(text, len, "o"))) {
       r->name = "";
       r->name_len = 0;
       r->patch = UINT32_MAX;
@@ -131,7 +134,8 @@ vg_status vg_obj_parse(struct vg_input *in, struct vg_mesh *out,
   if (!vg_input_is_text(in))
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: binary data, but OBJ is a text format; check the "
-                   "suffix", in->path);
+                   "suffix",
+                   in->path);
   in->comment = '#';
   VG_TRY(read_lines(&r, err));
   if (r.highest > r.s.m.n_point)
@@ -143,8 +147,7 @@ vg_status vg_obj_parse(struct vg_input *in, struct vg_mesh *out,
     st = vg_fail(err, VG_ERR_INPUT,
                  "%s: no faces ('f' lines): not a surface in OBJ format",
                  in->path);
-  else
-    st = vg_check_points(in->path, r.s.m.n_point, r.s.m.point, err);
+  else st = vg_check_points(in->path, r.s.m.n_point, r.s.m.point, err);
   if (st == VG_OK) vg_soup_finish(&r.s, out);
 done:
   vg_soup_release(&r.s);
@@ -197,8 +200,7 @@ vg_status vg_obj_write(const char *path, const struct vg_mesh *m,
     if (start[p] == start[p + 1]) continue;
     if (*m->patch[p].name) vg_output_format(&o, "g %s\n", m->patch[p].name);
     else vg_output_format(&o, "g patch_%d\n", (int)m->patch[p].id);
-    for (size_t i = start[p]; i < start[p + 1]; i++)
-      put_face(&o, m, order[i]);
+    for (size_t i = start[p]; i < start[p + 1]; i++) put_face(&o, m, order[i]);
   }
   st = vg_output_commit(&o, err);
 done:

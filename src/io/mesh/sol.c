@@ -15,7 +15,7 @@ enum { SCALAR = 1 };
 struct reader {
   struct vg_gmf g;
   size_t n;
-  double *value;            /* [n]; NULL: not seen yet */
+  double *value; /* [n]; NULL: not seen yet */
 };
 
 /* Of 4 bytes in all versions. */
@@ -35,8 +35,8 @@ static vg_status read_values(struct reader *r, struct vg_error *err)
   size_t size = r->g.version == 1 ? 4 : 8;
   vg_status st;
 
-  VG_TRY(vg_input_need(r->g.in, r->n, r->g.binary ? size : 2, "SolAtVertices",
-                       err));
+  VG_TRY(
+    vg_input_need(r->g.in, r->n, r->g.binary ? size : 2, "SolAtVertices", err));
   r->value = vg_alloc(r->n, sizeof *r->value);
   if (!r->value) return vg_fail_memory(err, "SolAtVertices");
   if (r->g.binary && size == 4)
@@ -46,8 +46,10 @@ static vg_status read_values(struct reader *r, struct vg_error *err)
   for (size_t i = 0; i < r->n && st >= 0; i++) {
     if (!r->g.binary) st = vg_input_real(r->g.in, &r->value[i], "a value", err);
     if (st >= 0 && !isfinite(r->value[i]))
-      st = vg_fail(err, VG_ERR_FORMAT, "%s: the value at vertex %zu is not "
-                   "finite", r->g.in->path, i + 1);
+      st = vg_fail(err, VG_ERR_FORMAT,
+                   "%s: the value at vertex %zu is not "
+                   "finite",
+                   r->g.in->path, i + 1);
   }
 done:
   return st;
@@ -63,15 +65,18 @@ static vg_status read_section(struct reader *r, struct vg_error *err)
   if (r->value) return vg_gmf_fail(&r->g, err, "SolAtVertices appears twice");
   VG_TRY(vg_gmf_ints(&r->g, 1, &n, "a count", err));
   if (n < 1 || n >= UINT32_MAX)
-    return vg_fail(err, VG_ERR_FORMAT, "%s: %lld vertices: the count is not "
-                   "positive or beyond 32 bits", r->g.in->path, (long long)n);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: %lld vertices: the count is not "
+                   "positive or beyond 32 bits",
+                   r->g.in->path, (long long)n);
   VG_TRY(read_int(r, &n_kind, err));
   if (n_kind == 1) VG_TRY(read_int(r, &kind, err));
   if (n_kind != 1 || kind != SCALAR)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: SolAtVertices must have one "
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: SolAtVertices must have one "
                    "scalar per vertex (1 1), not %lld fields, the first of "
-                   "kind %lld", r->g.in->path, (long long)n_kind,
-                   (long long)kind);
+                   "kind %lld",
+                   r->g.in->path, (long long)n_kind, (long long)kind);
   r->n = (size_t)n;
   st = read_values(r, err);
 done:

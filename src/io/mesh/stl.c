@@ -20,8 +20,8 @@ static uint32_t little32(const unsigned char *b)
 
 /* --- binary --- */
 
-static vg_status read_binary(struct vg_input *in, uint32_t n,
-                             struct vg_soup *s, struct vg_error *err)
+static vg_status read_binary(struct vg_input *in, uint32_t n, struct vg_soup *s,
+                             struct vg_error *err)
 {
   uint32_t patch, node[3];
   vg_status st = vg_soup_patch(s, "", 0, &patch, err);
@@ -36,8 +36,8 @@ static vg_status read_binary(struct vg_input *in, uint32_t n,
       if (!isfinite(v[k]))
         st = vg_fail(err, VG_ERR_INPUT,
                      "%s: facet %lu, vertex %d: a coordinate is not a finite "
-                     "number; export the surface again", in->path,
-                     (unsigned long)i + 1, k / 3);
+                     "number; export the surface again",
+                     in->path, (unsigned long)i + 1, k / 3);
     for (int k = 0; k < 3 && st == VG_OK; k++)
       st = vg_soup_weld(s, v + 3 + 3 * k, &node[k], err);
     if (st == VG_OK) st = vg_soup_triangle(s, node, patch, err);
@@ -129,7 +129,8 @@ static vg_status read_solid(struct vg_input *in, struct vg_soup *s,
     if (!is_word(text, len, "facet"))
       return vg_input_fail(in, err,
                            "'facet' or 'endsolid' should stand here, not "
-                           "'%.*s'", (int)(len < 40 ? len : 40), text);
+                           "'%.*s'",
+                           (int)(len < 40 ? len : 40), text);
     if (patch == UINT32_MAX)
       VG_TRY(vg_soup_patch(s, name, name_len, &patch, err));
     VG_TRY(read_facet(in, s, patch, err));
@@ -168,17 +169,16 @@ vg_status vg_stl_parse(struct vg_input *in, struct vg_mesh *out,
 
   if (in->size >= HEADER && in->size == HEADER + (uint64_t)FACET * n)
     st = read_binary(in, n, &s, err);
-  else if (vg_input_is_text(in))
-    st = read_text(in, &s, err);
+  else if (vg_input_is_text(in)) st = read_text(in, &s, err);
   else
     st = vg_fail(err, VG_ERR_FORMAT,
                  "%s: neither text nor binary STL: its %zu bytes are not 84 + "
                  "50 x %lu, the count of facets in its header (truncated, or "
-                 "another format)", in->path, in->size, (unsigned long)n);
+                 "another format)",
+                 in->path, in->size, (unsigned long)n);
   if (st == VG_OK && !s.m.n_tri)
     st = vg_fail(err, VG_ERR_INPUT, "%s: the surface has no facets", in->path);
-  if (st == VG_OK)
-    st = vg_check_points(in->path, s.m.n_point, s.m.point, err);
+  if (st == VG_OK) st = vg_check_points(in->path, s.m.n_point, s.m.point, err);
   if (st == VG_OK) vg_soup_finish(&s, out);
   vg_soup_release(&s);
   return st;
@@ -303,7 +303,8 @@ vg_status vg_stl_write_binary(const char *path, const struct vg_mesh *m,
   if (n > UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "%s: %llu facets are more than binary STL can count; write "
-                   "another format", path, (unsigned long long)n);
+                   "another format",
+                   path, (unsigned long long)n);
   VG_TRY(vg_output_open(path, &o, err));
   vg_output_order(&o, 0);
   vg_output_bytes(&o, header, sizeof header);

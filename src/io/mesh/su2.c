@@ -7,14 +7,19 @@
 #include "base/memory.h"
 #include "io/mesh/su2_put.h"
 
-#define REAL_WIDTH 25      /* vg_format_real needs 24 at most */
+#define REAL_WIDTH 25 /* vg_format_real needs 24 at most */
 #define LINE 256
 
 /* Ours to VTK's, as in a .vtu (io/mesh/vtu.c). */
-static const struct kind { int n_node; const char *name; int order[8]; }
-kinds[VG_SU2_KINDS] = {
-  { 4, "10", { 0, 1, 2, 3 } }, { 5, "14", { 1, 0, 3, 4, 2 } },
-  { 6, "13", { 1, 0, 2, 4, 3, 5 } }, { 8, "12", { 0, 1, 2, 3, 4, 5, 6, 7 } },
+static const struct kind {
+  int n_node;
+  const char *name;
+  int order[8];
+} kinds[VG_SU2_KINDS] = {
+  { 4, "10", { 0, 1, 2, 3 } },
+  { 5, "14", { 1, 0, 3, 4, 2 } },
+  { 6, "13", { 1, 0, 2, 4, 3, 5 } },
+  { 8, "12", { 0, 1, 2, 3, 4, 5, 6, 7 } },
 };
 
 static int digits(uint64_t n)
@@ -111,14 +116,17 @@ vg_status vg_su2_plan(const char *path, const struct vg_mesh *frame,
 {
   vg_status st;
 
-  *s = (struct vg_su2){ .frame = frame, .n_cell = {
-    frame->n_tet, frame->n_pyr, frame->n_pri, frame->n_hex } };
+  *s = (struct vg_su2){ .frame = frame,
+                        .n_cell = { frame->n_tet, frame->n_pyr, frame->n_pri,
+                                    frame->n_hex } };
   for (int k = 1; k < VG_SU2_KINDS; k++)
     s->first[k] = s->first[k - 1] + s->n_cell[k - 1];
   if (!count_of(s))
-    return vg_fail(err, VG_ERR_INPUT, "%s: the mesh has no cells; an SU2 "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the mesh has no cells; an SU2 "
                    "file of three dimensions needs some: write the surface "
-                   "as .stl or .lb8.ugrid", path);
+                   "as .stl or .lb8.ugrid",
+                   path);
   s->node_width = digits(frame->n_point - 1);
   s->cell_width = digits(count_of(s) - 1);
   s->word = vg_patch_words(frame, VG_PATCH_WORD_MOST);
@@ -220,17 +228,18 @@ static void put_markers(struct vg_output *out, const struct vg_su2 *s)
 void vg_su2_put(struct vg_output *out, const struct vg_su2 *s)
 {
   const struct vg_mesh *m = s->frame;
-  const uint32_t *const cell[VG_SU2_KINDS] = {
-    (const uint32_t *)m->tet, (const uint32_t *)m->pyr,
-    (const uint32_t *)m->pri, (const uint32_t *)m->hex };
+  const uint32_t *const cell[VG_SU2_KINDS] = { (const uint32_t *)m->tet,
+                                               (const uint32_t *)m->pyr,
+                                               (const uint32_t *)m->pri,
+                                               (const uint32_t *)m->hex };
 
   put_head(out, s);
   for (int k = 0; k < VG_SU2_KINDS; k++)
     if (!m->point) vg_output_skip(out, s->n_cell[k] * cell_line(s, k));
     else
       for (uint64_t i = 0; i < s->n_cell[k]; i++)
-        vg_su2_put_cell(out, s, k, i,
-                        cell[k] + i * (uint64_t)kinds[k].n_node, NULL);
+        vg_su2_put_cell(out, s, k, i, cell[k] + i * (uint64_t)kinds[k].n_node,
+                        NULL);
   put_points_head(out, s);
   if (!m->point) vg_output_skip(out, m->n_point * point_line(s));
   else

@@ -8,16 +8,16 @@
 #include "io/stream/patch_words.h"
 #include "io/stream/stream.h"
 
-enum { VG_SU2_KINDS = 4 };   /* tetrahedra, pyramids, prisms, hexahedra */
+enum { VG_SU2_KINDS = 4 }; /* tetrahedra, pyramids, prisms, hexahedra */
 
 /** Layout of a file: follows from the counts of the frame. */
 struct vg_su2 {
   const struct vg_mesh *frame;
-  char (*word)[VG_PATCH_WORD];       /* [n_patch] */
-  size_t *face_first, *face;         /* faces by patch, triangles first */
-  int node_width, cell_width;        /* columns of their numbers */
+  char (*word)[VG_PATCH_WORD]; /* [n_patch] */
+  size_t *face_first, *face;   /* faces by patch, triangles first */
+  int node_width, cell_width;  /* columns of their numbers */
   uint64_t n_cell[VG_SU2_KINDS], first[VG_SU2_KINDS];
-  uint64_t at[VG_SU2_KINDS], at_point;  /* where in the file they begin */
+  uint64_t at[VG_SU2_KINDS], at_point; /* where in the file they begin */
 };
 
 /** VG_ERR_INPUT: no cells. On success to be released. */

@@ -10,15 +10,15 @@
 /* What the header says, and how a binary file is laid out. */
 struct layout {
   uint64_t n_point, n_tri;
-  int is_big, is_record;    /* byte order; Fortran records or a bare stream */
-  int real_size;            /* 4 or 8 */
-  int has_scalars;          /* .triq: a third number in the header */
+  int is_big, is_record; /* byte order; Fortran records or a bare stream */
+  int real_size;         /* 4 or 8 */
+  int has_scalars;       /* .triq: a third number in the header */
 };
 
 /* Everything a file carries; both kinds of file fill it. */
 struct content {
   struct vg_mesh m;
-  int32_t *tag;             /* [n_tri] component */
+  int32_t *tag; /* [n_tri] component */
 };
 
 static vg_status check_counts(const struct vg_input *in, int64_t n_point,
@@ -28,13 +28,13 @@ static vg_status check_counts(const struct vg_input *in, int64_t n_point,
   if (n_point < 1 || n_tri < 1)
     return vg_fail(err, VG_ERR_INPUT,
                    "%s: the header announces %lld vertices and %lld "
-                   "triangles: there is no surface in it", in->path,
-                   (long long)n_point, (long long)n_tri);
+                   "triangles: there is no surface in it",
+                   in->path, (long long)n_point, (long long)n_tri);
   if (n_point >= UINT32_MAX || n_tri >= UINT32_MAX)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: the header announces %lld vertices and %lld "
-                   "triangles: beyond 32-bit numbers", in->path,
-                   (long long)n_point, (long long)n_tri);
+                   "triangles: beyond 32-bit numbers",
+                   in->path, (long long)n_point, (long long)n_tri);
   l->n_point = (uint64_t)n_point;
   l->n_tri = (uint64_t)n_tri;
   return VG_OK;
@@ -59,7 +59,8 @@ static vg_status index_error(const struct vg_input *in, size_t triangle,
 {
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: triangle %zu names vertex %lld, out of range: vertices "
-                 "run from 1 to %llu", in->path, triangle + 1, (long long)node,
+                 "run from 1 to %llu",
+                 in->path, triangle + 1, (long long)node,
                  (unsigned long long)l->n_point);
 }
 
@@ -79,8 +80,8 @@ static vg_status read_text_header(struct vg_input *in, struct layout *l,
   VG_TRY(check_counts(in, n_point, n_tri, l, err));
   /* Every number takes a digit and a blank: refuse what cannot be there
    * before allocating for it. */
-  VG_TRY(vg_input_need(in, 3 * (l->n_point + l->n_tri) - 1, 2, "the numbers",
-                       err));
+  VG_TRY(
+    vg_input_need(in, 3 * (l->n_point + l->n_tri) - 1, 2, "the numbers", err));
 done:
   return st;
 }
@@ -121,8 +122,10 @@ static vg_status read_text_tags(struct vg_input *in, struct content *c,
     st = vg_input_int(in, &tag, "a component number", err);
     if (st < 0) return st;
     if (tag < -INT32_MAX || tag > INT32_MAX)
-      return vg_input_fail(in, err, "component %lld of triangle %zu is beyond "
-                           "32 bits", (long long)tag, i + 1);
+      return vg_input_fail(in, err,
+                           "component %lld of triangle %zu is beyond "
+                           "32 bits",
+                           (long long)tag, i + 1);
     c->tag[i] = (int32_t)tag;
   }
   return VG_OK;
@@ -174,8 +177,9 @@ static int is_record_file(struct vg_input *in, struct layout *l)
    * so real*4 with components falls short). */
   reals = peek(in, 8 + (size_t)first);
   l->real_size = reals == (int64_t)(24 * l->n_point) ||
-                 (reals < 0 && in->size > 24 * l->n_point + 12 * l->n_tri)
-                 ? 8 : 4;
+                     (reals < 0 && in->size > 24 * l->n_point + 12 * l->n_tri)
+                 ? 8
+                 : 4;
   return 1;
 }
 
@@ -291,7 +295,8 @@ static vg_status read_binary(struct vg_input *in, struct content *c,
                    "%s: neither text nor a binary .tri file: it does not "
                    "begin with a Fortran record of two or three integers, and "
                    "its %zu bytes do not fit its counts (truncated, or another "
-                   "format)", in->path, in->size);
+                   "format)",
+                   in->path, in->size);
   VG_TRY(check_counts(in, (int64_t)l.n_point, (int64_t)l.n_tri, &l, err));
   VG_TRY(section(in, &l, &part, "the header", err));
   if (!l.is_record) in->at += l.has_scalars ? 12 : 8;
@@ -317,8 +322,7 @@ vg_status vg_tri_parse(struct vg_input *in, struct vg_mesh *out,
 
   if (vg_input_is_text(in)) st = read_text(in, &c, err);
   else st = read_binary(in, &c, err);
-  if (st == VG_OK)
-    st = vg_check_points(in->path, c.m.n_point, c.m.point, err);
+  if (st == VG_OK) st = vg_check_points(in->path, c.m.n_point, c.m.point, err);
   if (st == VG_OK) st = vg_patches_from_tags(&c.m, c.tag, err);
   if (st == VG_OK) vg_mesh_move(out, &c.m);
   vg_mesh_release(&c.m);
@@ -375,7 +379,8 @@ static vg_status count(const char *path, const struct vg_mesh *m, size_t *n,
   if (*n <= INT32_MAX && m->n_point <= INT32_MAX) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
                  "%s: %zu points and %zu triangles are more than .tri can "
-                 "number; write another format", path, m->n_point, *n);
+                 "number; write another format",
+                 path, m->n_point, *n);
 }
 
 vg_status vg_tri_write(const char *path, const struct vg_mesh *m,
@@ -431,8 +436,7 @@ vg_status vg_tri_write_binary(const char *path, const struct vg_mesh *m,
   vg_output_record(&o, 3 * (uint64_t)m->n_point * (real_size == 8 ? 8 : 4));
   if (m->n_point && real_size == 8)
     vg_output_f64(&o, 3 * m->n_point, m->point[0]);
-  else if (m->n_point)
-    vg_output_f32(&o, 3 * m->n_point, m->point[0]);
+  else if (m->n_point) vg_output_f32(&o, 3 * m->n_point, m->point[0]);
   vg_output_record_end(&o);
   vg_output_record(&o, 12 * (uint64_t)n);
   for (size_t i = 0; i < n; i++) {

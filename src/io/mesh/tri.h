@@ -30,7 +30,6 @@ vg_status vg_tri_write(const char *path, const struct vg_mesh *m,
  * @param little     byte order little-endian instead of big-endian
  * @param real_size  4 or 8 bytes per coordinate */
 vg_status vg_tri_write_binary(const char *path, const struct vg_mesh *m,
-                              int little, int real_size,
-                              struct vg_error *err);
+                              int little, int real_size, struct vg_error *err);
 
 #endif

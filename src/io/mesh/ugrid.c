@@ -15,20 +15,20 @@ static const struct {
   const char *name;
   struct vg_ugrid_kind kind;
 } kinds[] = {
-  {"b8", {0, 4, 8, 0, 1}},   {"lb8", {0, 4, 8, 0, 0}},
-  {"b4", {0, 4, 4, 0, 1}},   {"lb4", {0, 4, 4, 0, 0}},
-  {"r8", {0, 4, 8, 1, 1}},   {"lr8", {0, 4, 8, 1, 0}},
-  {"r4", {0, 4, 4, 1, 1}},   {"lr4", {0, 4, 4, 1, 0}},
-  {"b8l", {0, 8, 8, 0, 1}},  {"lb8l", {0, 8, 8, 0, 0}},
+  { "b8", { 0, 4, 8, 0, 1 } },  { "lb8", { 0, 4, 8, 0, 0 } },
+  { "b4", { 0, 4, 4, 0, 1 } },  { "lb4", { 0, 4, 4, 0, 0 } },
+  { "r8", { 0, 4, 8, 1, 1 } },  { "lr8", { 0, 4, 8, 1, 0 } },
+  { "r4", { 0, 4, 4, 1, 1 } },  { "lr4", { 0, 4, 4, 1, 0 } },
+  { "b8l", { 0, 8, 8, 0, 1 } }, { "lb8l", { 0, 8, 8, 0, 0 } },
 };
 #define N_KIND (sizeof kinds / sizeof kinds[0])
 
 /* Nodes of triangle, quadrilateral, tetrahedron, pyramid, prism, hexahedron,
  * in the order of the counts in the header, which starts with the points. */
-static const int element_width[6] = {3, 4, 4, 5, 6, 8};
-static const char *const element_name[6] = {
-  "triangle", "quadrilateral", "tetrahedron", "pyramid", "prism", "hexahedron"
-};
+static const int element_width[6] = { 3, 4, 4, 5, 6, 8 };
+static const char *const element_name[6] = { "triangle",    "quadrilateral",
+                                             "tetrahedron", "pyramid",
+                                             "prism",       "hexahedron" };
 
 /* The part of the name before `end` and behind the dot (or slash) before. */
 static size_t last_part(const char *name, size_t end)
@@ -44,7 +44,7 @@ static int part_is(const char *part, size_t len, const char *s)
 
 int vg_ugrid_kind(const char *name, struct vg_ugrid_kind *kind)
 {
-  static const struct vg_ugrid_kind text = {1, 8, 8, 0, 0};
+  static const struct vg_ugrid_kind text = { 1, 8, 8, 0, 0 };
   size_t end = strlen(name), at = last_part(name, end);
   int is_long;
 
@@ -155,11 +155,11 @@ static vg_status other_kind(const struct vg_input *in,
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s: is named as %s, %d-byte integers, %d-byte reals%s, but "
                  "looks %s with %d-byte integers, %d-byte reals%s; rename it "
-                 "to .%s.ugrid", in->path, order_name(kind), kind->int_size,
-                 kind->real_size, kind->is_record ? ", Fortran records" : "",
-                 order_name(found), found->int_size, found->real_size,
-                 found->is_record ? ", Fortran records" : "",
-                 kind_name(found));
+                 "to .%s.ugrid",
+                 in->path, order_name(kind), kind->int_size, kind->real_size,
+                 kind->is_record ? ", Fortran records" : "", order_name(found),
+                 found->int_size, found->real_size,
+                 found->is_record ? ", Fortran records" : "", kind_name(found));
 }
 
 static vg_status not_fitting(const struct vg_input *in,
@@ -171,22 +171,23 @@ static vg_status not_fitting(const struct vg_input *in,
   if (vg_input_is_text(in))
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: is named as a binary .%s.ugrid but holds text; rename "
-                   "it to .ugrid if it is an ASCII UGRID", in->path,
-                   kind_name(kind));
+                   "it to .ugrid if it is an ASCII UGRID",
+                   in->path, kind_name(kind));
   if (!read_counts(in, kind, c))
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: no %s.ugrid header: the file has %zu bytes%s",
-                   in->path, kind_name(kind), in->size,
+                   "%s: no %s.ugrid header: the file has %zu bytes%s", in->path,
+                   kind_name(kind), in->size,
                    kind->is_record ? " or its first Fortran marker is not "
-                   "the length of a header" : "");
+                                     "the length of a header"
+                                   : "");
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s: truncated, or not a .%s.ugrid: the header announces "
                  "%lld points, %lld triangles, %lld quadrilaterals, %lld "
                  "tetrahedra, %lld pyramids, %lld prisms, %lld hexahedra, "
-                 "which %zu bytes cannot hold", in->path, kind_name(kind),
-                 (long long)c[0], (long long)c[1], (long long)c[2],
-                 (long long)c[3], (long long)c[4], (long long)c[5],
-                 (long long)c[6], in->size);
+                 "which %zu bytes cannot hold",
+                 in->path, kind_name(kind), (long long)c[0], (long long)c[1],
+                 (long long)c[2], (long long)c[3], (long long)c[4],
+                 (long long)c[5], (long long)c[6], in->size);
 }
 
 static vg_status check_kind(const struct vg_input *in,
@@ -235,18 +236,17 @@ static vg_status make_room(struct vg_mesh *m, const uint64_t count[7],
 
 static uint32_t *nodes_of(const struct vg_mesh *m, int element)
 {
-  uint32_t *const list[6] = {
-    (uint32_t *)m->tri, (uint32_t *)m->quad, (uint32_t *)m->tet,
-    (uint32_t *)m->pyr, (uint32_t *)m->pri, (uint32_t *)m->hex
-  };
+  uint32_t *const list[6] = { (uint32_t *)m->tri, (uint32_t *)m->quad,
+                              (uint32_t *)m->tet, (uint32_t *)m->pyr,
+                              (uint32_t *)m->pri, (uint32_t *)m->hex };
 
   return list[element];
 }
 
 static size_t count_of(const struct vg_mesh *m, int element)
 {
-  const size_t list[6] = {m->n_tri, m->n_quad, m->n_tet,
-                          m->n_pyr, m->n_pri, m->n_hex};
+  const size_t list[6] = { m->n_tri, m->n_quad, m->n_tet,
+                           m->n_pyr, m->n_pri,  m->n_hex };
 
   return list[element];
 }
@@ -267,15 +267,15 @@ static vg_status read_ints(struct vg_input *in, int int_size, size_t n,
     if (st < 0) return st;
     for (size_t k = 0; k < m; k++)
       v[i + k] = block[k] < INT32_MIN || block[k] > INT32_MAX
-                     ? odd : (int32_t)block[k];
+                 ? odd
+                 : (int32_t)block[k];
   }
   return VG_OK;
 }
 
 static vg_status read_nodes(struct vg_input *in,
-                            const struct vg_ugrid_kind *kind,
-                            struct vg_mesh *m, int element,
-                            struct vg_error *err)
+                            const struct vg_ugrid_kind *kind, struct vg_mesh *m,
+                            int element, struct vg_error *err)
 {
   size_t n = count_of(m, element);
   int width = element_width[element];
@@ -289,14 +289,13 @@ static vg_status read_nodes(struct vg_input *in,
 }
 
 static vg_status read_body(struct vg_input *in,
-                           const struct vg_ugrid_kind *kind,
-                           struct vg_mesh *m, int32_t *tag,
-                           struct vg_error *err)
+                           const struct vg_ugrid_kind *kind, struct vg_mesh *m,
+                           int32_t *tag, struct vg_error *err)
 {
   size_t n_real = 3 * m->n_point;
   vg_status st = kind->real_size == 8
-    ? vg_input_f64(in, n_real, (double *)m->point, "points", err)
-    : vg_input_f32(in, n_real, (double *)m->point, "points", err);
+                 ? vg_input_f64(in, n_real, (double *)m->point, "points", err)
+                 : vg_input_f32(in, n_real, (double *)m->point, "points", err);
 
   if (st == VG_OK) st = read_nodes(in, kind, m, 0, err);
   if (st == VG_OK) st = read_nodes(in, kind, m, 1, err);
@@ -336,11 +335,11 @@ static vg_status text_header(struct vg_input *in, uint64_t count[7],
                              struct vg_error *err)
 {
   static const char *const name[7] = {
-    "number of points", "number of triangles", "number of quadrilaterals",
-    "number of tetrahedra", "number of pyramids", "number of prisms",
+    "number of points",     "number of triangles", "number of quadrilaterals",
+    "number of tetrahedra", "number of pyramids",  "number of prisms",
     "number of hexahedra"
   };
-  static const struct vg_ugrid_kind smallest = {1, 2, 2, 0, 0};
+  static const struct vg_ugrid_kind smallest = { 1, 2, 2, 0, 0 };
   int64_t v;
 
   for (int k = 0; k < 7; k++) {
@@ -348,8 +347,10 @@ static vg_status text_header(struct vg_input *in, uint64_t count[7],
 
     if (st < 0) return st;
     if (v < 0 || v > (int64_t)UINT32_MAX - 2)
-      return vg_input_fail(in, err, "the %s is %lld; 0 to 4294967293 are "
-                           "possible", name[k], (long long)v);
+      return vg_input_fail(in, err,
+                           "the %s is %lld; 0 to 4294967293 are "
+                           "possible",
+                           name[k], (long long)v);
     count[k] = (uint64_t)v;
   }
   /* Every value takes two bytes at least, the last one perhaps one. */
@@ -361,8 +362,8 @@ static vg_status text_header(struct vg_input *in, uint64_t count[7],
   return VG_OK;
 }
 
-static vg_status text_nodes(struct vg_input *in, struct vg_mesh *m,
-                            int element, struct vg_error *err)
+static vg_status text_nodes(struct vg_input *in, struct vg_mesh *m, int element,
+                            struct vg_error *err)
 {
   size_t n = count_of(m, element) * (size_t)element_width[element];
   uint32_t *node = nodes_of(m, element);
@@ -375,7 +376,8 @@ static vg_status text_nodes(struct vg_input *in, struct vg_mesh *m,
     if (v < 1 || (uint64_t)v > m->n_point) {
       vg_input_fail(in, err,
                     "%s %zu refers to point %lld; points are numbered 1 to "
-                    "%zu", element_name[element],
+                    "%zu",
+                    element_name[element],
                     i / (size_t)element_width[element] + 1, (long long)v,
                     m->n_point);
       if (err) err->code = VG_ERR_INPUT;
@@ -439,7 +441,8 @@ static vg_status not_a_name(const char *path, struct vg_error *err)
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s: not a name of a UGRID file; known are .ugrid (text), "
                  ".X.ugrid with X of b8 lb8 b4 lb4 r8 lr8 r4 lr4 b8l lb8l, "
-                 "and .b8.ugrid64, .lb8.ugrid64", path);
+                 "and .b8.ugrid64, .lb8.ugrid64",
+                 path);
 }
 
 vg_status vg_ugrid_read(const char *path, struct vg_mesh *out,
@@ -498,7 +501,7 @@ vg_status vg_ugrid_layer_tets(const char *path, int *is_known, size_t *n,
   read_counts(&in, &kind, count);
   at = body_bytes(&kind, count);
   at += 7 * (uint64_t)kind.int_size + marker_bytes(&kind, at) +
-        (kind.is_record ? 4 : 0);   /* the tail's own marker */
+        (kind.is_record ? 4 : 0); /* the tail's own marker */
   if (at + (uint64_t)kind.int_size > in.size) goto done;
   in.at = (size_t)at;
   vg_input_order(&in, kind.is_big);
@@ -526,9 +529,8 @@ static void put_ints(struct vg_output *out, int int_size, size_t n,
   vg_output_i64(out, n, wide);
 }
 
-void vg_ugrid_put_nodes(struct vg_output *out,
-                        const struct vg_ugrid_kind *kind, size_t n,
-                        const uint32_t *node)
+void vg_ugrid_put_nodes(struct vg_output *out, const struct vg_ugrid_kind *kind,
+                        size_t n, const uint32_t *node)
 {
   int32_t block[BLOCK];
 
@@ -572,8 +574,7 @@ static void put_tags(struct vg_output *out, const struct vg_mesh *m,
 static void put_body(struct vg_output *out, const struct vg_ugrid_kind *kind,
                      const struct vg_mesh *m)
 {
-  vg_ugrid_put_points(out, kind, m->n_point,
-                      (const double (*)[3])m->point);
+  vg_ugrid_put_points(out, kind, m->n_point, (const double(*)[3])m->point);
   for (int e = 0; e < 6; e++) {
     vg_ugrid_put_nodes(out, kind, count_of(m, e) * (size_t)element_width[e],
                        nodes_of(m, e));
@@ -674,12 +675,13 @@ vg_status vg_ugrid_check(const char *path, const struct vg_ugrid_kind *kind,
     if (count[k] > limit)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
                      "%s: %llu points or elements are too many for the "
-                     "integers of this kind; write .b8l.ugrid", path,
-                     (unsigned long long)count[k]);
+                     "integers of this kind; write .b8l.ugrid",
+                     path, (unsigned long long)count[k]);
   if (n_layer_tet && *n_layer_tet > m->n_tet)
-    return vg_fail(err, VG_ERR_INPUT, "%s: %zu tetrahedra are said to be in "
-                   "layers, but the mesh has %zu", path, *n_layer_tet,
-                   m->n_tet);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: %zu tetrahedra are said to be in "
+                   "layers, but the mesh has %zu",
+                   path, *n_layer_tet, m->n_tet);
   return VG_OK;
 }
 
@@ -696,9 +698,9 @@ vg_status vg_ugrid_accept(const struct vg_ugrid_kind *kind,
 static vg_status check_rounded(const struct vg_ugrid_kind *kind,
                                const struct vg_mesh *m, struct vg_error *err)
 {
-  const double (*x)[3] = (const double (*)[3])m->point;
+  const double(*x)[3] = (const double(*)[3])m->point;
   struct vg_narrow n = VG_NARROW_INIT;
-  double (*rounded)[3];
+  double(*rounded)[3];
   vg_status st;
 
   if (kind->real_size != 4) return VG_OK;
@@ -706,7 +708,7 @@ static vg_status check_rounded(const struct vg_ugrid_kind *kind,
   if (!rounded) return vg_fail_memory(err, "the points of a file");
   vg_narrow_round(m->n_point, x, rounded);
   for (int e = 2; e < 6; e++)
-    vg_narrow_cells(x, (const double (*)[3])rounded, e - 2, count_of(m, e),
+    vg_narrow_cells(x, (const double(*)[3])rounded, e - 2, count_of(m, e),
                     nodes_of(m, e), 0, &n);
   free(rounded);
   st = vg_narrow_points(m->n_point, x, &n, err);
@@ -727,14 +729,12 @@ void vg_ugrid_seek(struct vg_output *out, const struct vg_ugrid_kind *kind,
   uint64_t head = 7 * (uint64_t)kind->int_size, at;
 
   assert(!kind->is_text && (item == 0 || (item >= 3 && item <= 5)));
-  if (!item)
-    at = 3 * (uint64_t)kind->real_size * first;
+  if (!item) at = 3 * (uint64_t)kind->real_size * first;
   else
     at = nodes_at(kind, count, item - 1) +
          first * (uint64_t)(element_width[item - 1] * kind->int_size);
   vg_output_order(out, kind->is_big);
-  if (!kind->is_record)
-    vg_output_seek(out, head + at);
+  if (!kind->is_record) vg_output_seek(out, head + at);
   else
     vg_output_seek_record(out, vg_record_size(head, out->record_limit),
                           body_bytes(kind, count), at);

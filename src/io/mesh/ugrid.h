@@ -11,9 +11,9 @@
 
 struct vg_ugrid_kind {
   int is_text;
-  int int_size;      /* 4 or 8 bytes */
-  int real_size;     /* 4 or 8 bytes */
-  int is_record;     /* Fortran records */
+  int int_size;  /* 4 or 8 bytes */
+  int real_size; /* 4 or 8 bytes */
+  int is_record; /* Fortran records */
   int is_big;
 };
 

@@ -29,9 +29,8 @@ void vg_ugrid_seek(struct vg_output *out, const struct vg_ugrid_kind *kind,
                    const uint64_t count[7], int item, uint64_t first);
 
 /** n numbers of points, 0-based; NULL: skipped. */
-void vg_ugrid_put_nodes(struct vg_output *out,
-                        const struct vg_ugrid_kind *kind, size_t n,
-                        const uint32_t *node);
+void vg_ugrid_put_nodes(struct vg_output *out, const struct vg_ugrid_kind *kind,
+                        size_t n, const uint32_t *node);
 void vg_ugrid_put_points(struct vg_output *out,
                          const struct vg_ugrid_kind *kind, size_t n,
                          const double (*x)[3]);

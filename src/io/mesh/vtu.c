@@ -14,7 +14,7 @@ struct block {
   const uint32_t *node;
   size_t n;
   int n_node;
-  uint8_t type;             /* VTK's number */
+  uint8_t type; /* VTK's number */
   uint8_t slot[8];
 };
 
@@ -24,8 +24,8 @@ struct block {
 struct grid {
   size_t n_point, n_cell;
   const double (*point)[3];
-  const uint32_t *list;     /* [n_point] points to write; NULL: all */
-  const uint32_t *number;   /* number of a point in the file; NULL: same */
+  const uint32_t *list;   /* [n_point] points to write; NULL: all */
+  const uint32_t *number; /* number of a point in the file; NULL: same */
   struct block block[4];
   int n_block;
   const struct vg_vtu_field *field;
@@ -34,9 +34,18 @@ struct grid {
 };
 
 /* Ours to VTK's: pyramid and wedge differ (formats.md 2.3). */
-#define PLAIN { 0, 1, 2, 3, 4, 5, 6, 7 }
-#define PYRAMID { 1, 0, 3, 4, 2 }
-#define WEDGE { 1, 0, 2, 4, 3, 5 }
+#define PLAIN                                                                  \
+  {                                                                            \
+    0, 1, 2, 3, 4, 5, 6, 7                                                     \
+  }
+#define PYRAMID                                                                \
+  {                                                                            \
+    1, 0, 3, 4, 2                                                              \
+  }
+#define WEDGE                                                                  \
+  {                                                                            \
+    1, 0, 2, 4, 3, 5                                                           \
+  }
 
 static void add_block(struct grid *g, const uint32_t *node, size_t n,
                       const struct block *kind)
@@ -51,9 +60,11 @@ static void add_block(struct grid *g, const uint32_t *node, size_t n,
 static const struct block triangle = { NULL, 0, 3, 5, PLAIN };
 static const struct block quadrilateral = { NULL, 0, 4, 9, PLAIN };
 
-static const struct block cells[4] = {   /* as VG_SLICE_TET and so on */
-  { NULL, 0, 4, 10, PLAIN }, { NULL, 0, 5, 14, PYRAMID },
-  { NULL, 0, 6, 13, WEDGE }, { NULL, 0, 8, 12, PLAIN }
+static const struct block cells[4] = { /* as VG_SLICE_TET and so on */
+                                       { NULL, 0, 4, 10, PLAIN },
+                                       { NULL, 0, 5, 14, PYRAMID },
+                                       { NULL, 0, 6, 13, WEDGE },
+                                       { NULL, 0, 8, 12, PLAIN }
 };
 
 static void add_cells(struct grid *g, const struct vg_mesh *m)
@@ -105,10 +116,11 @@ static uint64_t connectivity_bytes(const struct grid *g)
 static void put_array(struct vg_output *o, const char *type, const char *name,
                       int n_component, uint64_t bytes, uint64_t *at)
 {
-  vg_output_format(o, "    <DataArray type=\"%s\" Name=\"%s\" "
+  vg_output_format(o,
+                   "    <DataArray type=\"%s\" Name=\"%s\" "
                    "NumberOfComponents=\"%d\" format=\"appended\" "
-                   "offset=\"%llu\"/>\n", type, name, n_component,
-                   (unsigned long long)*at);
+                   "offset=\"%llu\"/>\n",
+                   type, name, n_component, (unsigned long long)*at);
   *at += 8 + bytes;
 }
 
@@ -128,7 +140,8 @@ static void put_header(struct vg_output *o, const struct grid *g)
 {
   uint64_t at = 0;
 
-  vg_output_format(o, "<?xml version=\"1.0\"?>\n"
+  vg_output_format(o,
+                   "<?xml version=\"1.0\"?>\n"
                    "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
                    "byte_order=\"%s\" header_type=\"UInt64\">\n"
                    " <UnstructuredGrid>\n"
@@ -148,7 +161,7 @@ static void put_header(struct vg_output *o, const struct grid *g)
     put_array(o, "Int32", "patch", 1, 4 * (uint64_t)g->n_cell, &at);
   put_field_arrays(o, g, VG_VTU_CELL, &at);
   vg_output_text(o, "   </CellData>\n  </Piece>\n </UnstructuredGrid>\n"
-                 " <AppendedData encoding=\"raw\">\n_");
+                    " <AppendedData encoding=\"raw\">\n_");
 }
 
 /* --- data, in the order in which the header declares them --- */
@@ -197,8 +210,7 @@ static void put_nodes(struct vg_output *o, const struct block *k,
 static void put_connectivity(struct vg_output *o, const struct grid *g)
 {
   put_size(o, connectivity_bytes(g));
-  for (int b = 0; b < g->n_block; b++)
-    put_nodes(o, &g->block[b], g->number, 0);
+  for (int b = 0; b < g->n_block; b++) put_nodes(o, &g->block[b], g->number, 0);
 }
 
 /* Where each cell ends in the connectivity; *end: where the last one did. */
@@ -248,13 +260,11 @@ static void put_fields(struct vg_output *o, const struct grid *g,
 
     if (f->place != place) continue;
     put_size(o, field_bytes(g, f));
-    if (!data)
-      vg_output_skip(o, field_bytes(g, f));
+    if (!data) vg_output_skip(o, field_bytes(g, f));
     else if (place == VG_VTU_POINT && g->list)
       for (size_t p = 0; p < g->n_point; p++)
         vg_output_bytes(o, data + g->list[p] * size, size);
-    else if (field_bytes(g, f))
-      vg_output_bytes(o, data, field_bytes(g, f));
+    else if (field_bytes(g, f)) vg_output_bytes(o, data, field_bytes(g, f));
   }
 }
 
@@ -307,8 +317,9 @@ void vg_vtu_put(struct vg_output *out, const struct vg_mesh *frame,
                 const struct vg_vtu_field *field, size_t n)
 {
   struct grid g = { .n_point = frame->n_point,
-                    .point = (const double (*)[3])frame->point,
-                    .field = field, .n_field = n };
+                    .point = (const double(*)[3])frame->point,
+                    .field = field,
+                    .n_field = n };
 
   assert((field || !n) && n <= VG_VTU_FIELDS_MAX);
   add_cells(&g, frame);
@@ -360,8 +371,9 @@ vg_status vg_vtu_write(const char *path, const struct vg_mesh *m,
                        struct vg_error *err)
 {
   struct grid g = { .n_point = m->n_point,
-                    .point = (const double (*)[3])m->point,
-                    .field = fields, .n_field = n };
+                    .point = (const double(*)[3])m->point,
+                    .field = fields,
+                    .n_field = n };
 
   assert(fields || !n);
   add_cells(&g, m);
@@ -405,8 +417,10 @@ vg_status vg_vtu_write_boundary(const char *path, const struct vg_mesh *m,
                                 const struct vg_vtu_field *fields, size_t n,
                                 struct vg_error *err)
 {
-  struct grid g = { .point = (const double (*)[3])m->point, .field = fields,
-                    .n_field = n, .patches = m->n_patch ? m : NULL };
+  struct grid g = { .point = (const double(*)[3])m->point,
+                    .field = fields,
+                    .n_field = n,
+                    .patches = m->n_patch ? m : NULL };
   uint32_t *list = NULL, *number = NULL;
   vg_status st = number_points(m, &list, &number, &g.n_point, err);
 
@@ -428,8 +442,9 @@ vg_status vg_vtu_write_triangles(const char *path, size_t n_point,
                                  const struct vg_vtu_field *fields, size_t n,
                                  struct vg_error *err)
 {
-  struct grid g = { .n_point = n_point, .point = point, .field = fields,
-                    .n_field = n };
+  struct grid g = {
+    .n_point = n_point, .point = point, .field = fields, .n_field = n
+  };
 
   assert((point || !n_point) && (tri || !n_tri) && (fields || !n));
   add_block(&g, n_tri ? tri[0] : NULL, n_tri, &triangle);

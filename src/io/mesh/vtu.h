@@ -21,8 +21,8 @@ struct vg_vtu_field {
   const char *name;
   enum vg_vtu_place place;
   enum vg_vtu_type type;
-  int n_component;          /* 1 scalar, 3 vector, ...; 0 means 1 */
-  const void *data;         /* [entities][n_component] */
+  int n_component;  /* 1 scalar, 3 vector, ...; 0 means 1 */
+  const void *data; /* [entities][n_component] */
 };
 
 /** Write the cells of m (tetrahedra, pyramids, prisms, hexahedra, in this

@@ -26,12 +26,12 @@ void vg_vtu_find(const struct vg_mesh *frame, uint64_t file_size,
 
 /* A run of cells of one kind. */
 struct vg_vtu_cells {
-  int kind;                  /* VG_SLICE_TET, ... */
+  int kind; /* VG_SLICE_TET, ... */
   size_t n;
   const uint32_t *node;
-  const uint32_t *number;    /* of a node in the file; NULL: itself */
-  uint64_t add;              /* to that number */
-  uint64_t first, first_node;  /* place among cells, in the connectivity */
+  const uint32_t *number;     /* of a node in the file; NULL: itself */
+  uint64_t add;               /* to that number */
+  uint64_t first, first_node; /* place among cells, in the connectivity */
 };
 
 /** Connectivity, offsets and types of a run of cells. */

@@ -16,16 +16,16 @@
 
 struct file {
   struct vg_input *in;
-  const char *text, *end;      /* the XML, without what is appended */
-  const char *appended;        /* behind its '_'; NULL: nothing is */
-  int is_base64;               /* of what is appended */
+  const char *text, *end; /* the XML, without what is appended */
+  const char *appended;   /* behind its '_'; NULL: nothing is */
+  int is_base64;          /* of what is appended */
   int swaps, is_packed;
-  size_t head;                 /* bytes of a number before data: 4 or 8 */
+  size_t head; /* bytes of a number before data: 4 or 8 */
 };
 
 struct array {
-  const char *tag, *body, *end;   /* "<DataArray", behind '>', "</DataArray" */
-  size_t width;                   /* bytes of a number */
+  const char *tag, *body, *end; /* "<DataArray", behind '>', "</DataArray" */
+  size_t width;                 /* bytes of a number */
 };
 
 /* --- XML, as much as it takes --- */
@@ -33,12 +33,12 @@ struct array {
 static const char *find(const char *from, const char *end, const char *word)
 {
   return from && from < end
-    ? memmem(from, (size_t)(end - from), word, strlen(word)) : NULL;
+         ? memmem(from, (size_t)(end - from), word, strlen(word))
+         : NULL;
 }
 
 /* The next tag with this name: its '<'. */
-static const char *find_tag(const char *from, const char *end,
-                            const char *name)
+static const char *find_tag(const char *from, const char *end, const char *name)
 {
   size_t len = strlen(name);
 
@@ -87,14 +87,19 @@ static vg_status read_head(struct file *f, struct vg_error *err)
   if (!tag || tag >= f->end)
     return damaged(f, err, "not a VTK file in XML: there is no <VTKFile>");
   f->head = attribute(tag, f->end, "header_type", word, sizeof word) &&
-            !strcmp(word, "UInt64") ? 8 : 4;
+                !strcmp(word, "UInt64")
+            ? 8
+            : 4;
   f->swaps = attribute(tag, f->end, "byte_order", word, sizeof word) &&
-             !strcmp(word, "BigEndian") ? vg_host_is_little()
-                                        : !vg_host_is_little();
+                 !strcmp(word, "BigEndian")
+             ? vg_host_is_little()
+             : !vg_host_is_little();
   f->is_packed = attribute(tag, f->end, "compressor", word, sizeof word);
   if (f->is_packed && strcmp(word, "vtkZLibDataCompressor") != 0)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: packed by %s; only zlib is "
-                   "read: write it with that, or unpacked", f->in->path, word);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: packed by %s; only zlib is "
+                   "read: write it with that, or unpacked",
+                   f->in->path, word);
   if (!append) return VG_OK;
   f->is_base64 = attribute(append, end, "encoding", word, sizeof word) &&
                  !strcmp(word, "base64");
@@ -115,13 +120,16 @@ static vg_status read_piece(const struct file *f, size_t *n,
 
   if (!piece) return damaged(f, err, "there is no <Piece>");
   if (find_tag(piece + 1, f->end, "Piece"))
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: it has several pieces; merge "
-                   "them into one", f->in->path);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: it has several pieces; merge "
+                   "them into one",
+                   f->in->path);
   if (!attribute(piece, f->end, "NumberOfPoints", word, sizeof word) ||
       !vg_parse_int(word, strlen(word), &v) || v < 1 || v >= UINT32_MAX)
     return damaged(f, err, "NumberOfPoints is no number from 1 to 2^32 - 2");
   if ((uint64_t)v > (uint64_t)f->in->size * MOST_PACKED / 4)
-    return damaged(f, err, "truncated: NumberOfPoints is more than the file "
+    return damaged(f, err,
+                   "truncated: NumberOfPoints is more than the file "
                    "can hold");
   *n = (size_t)v;
   return VG_OK;
@@ -129,8 +137,8 @@ static vg_status read_piece(const struct file *f, size_t *n,
 
 /* An array of a section: the first, or the one with a name. */
 static vg_status find_array(const struct file *f, const char *section,
-                            const char *name, int components,
-                            struct array *out, struct vg_error *err)
+                            const char *name, int components, struct array *out,
+                            struct vg_error *err)
 {
   char word[256], close[32];
   const char *at = find_tag(f->text, f->end, section), *end, *stop;
@@ -145,21 +153,23 @@ static vg_status find_array(const struct file *f, const char *section,
   stop = at ? find(at, end, ">") : NULL;
   if (!stop)
     return vg_fail(err, VG_ERR_FORMAT, "%s: there is no %s%s%s in <%s>",
-                   f->in->path, name ? "array '" : "array",
-                   name ? name : "", name ? "'" : "", section);
+                   f->in->path, name ? "array '" : "array", name ? name : "",
+                   name ? "'" : "", section);
   if (attribute(at, end, "NumberOfComponents", word, sizeof word) &&
       !vg_parse_int(word, strlen(word), &n))
     n = -1;
   if (n != components)
-    return vg_fail(err, VG_ERR_FORMAT, "%s: the array in <%s> has %lld "
-                   "components, not %d", f->in->path, section, (long long)n,
-                   components);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: the array in <%s> has %lld "
+                   "components, not %d",
+                   f->in->path, section, (long long)n, components);
   if (!attribute(at, end, "type", word, sizeof word)) *word = 0;
   out->width = !strcmp(word, "Float64") ? 8 : !strcmp(word, "Float32") ? 4 : 0;
   if (!out->width)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%s: the array in <%s> is of type "
-                   "'%.20s'; Float32 and Float64 are read", f->in->path,
-                   section, word);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: the array in <%s> is of type "
+                   "'%.20s'; Float32 and Float64 are read",
+                   f->in->path, section, word);
   out->tag = at;
   out->body = stop + 1;
   out->end = stop[-1] == '/' ? stop + 1 : find(stop, f->end, "</DataArray");
@@ -168,7 +178,10 @@ static vg_status find_array(const struct file *f, const char *section,
 
 /* --- bytes, raw or in base64 --- */
 
-struct source { const char *at, *end; int is_base64; };
+struct source {
+  const char *at, *end;
+  int is_base64;
+};
 
 static int digit(char c)
 {
@@ -315,8 +328,10 @@ static vg_status read_text(const struct file *f, const struct array *a,
     while (at < a->end && isspace((unsigned char)*at)) at++;
     for (to = at; to < a->end && !isspace((unsigned char)*to);) to++;
     if (to == at || !vg_parse_real(at, (size_t)(to - at), &v[i]))
-      return vg_fail(err, VG_ERR_FORMAT, "%s: number %zu of %zu of an array is "
-                     "no number", f->in->path, i + 1, n);
+      return vg_fail(err, VG_ERR_FORMAT,
+                     "%s: number %zu of %zu of an array is "
+                     "no number",
+                     f->in->path, i + 1, n);
     at = to;
   }
   return VG_OK;
@@ -340,8 +355,10 @@ static vg_status read_bytes(const struct file *f, const struct array *a,
     else memcpy(&narrow, raw + 4 * i, 4), v[i] = (double)narrow;
   }
   free(raw);
-  return bad ? damaged(f, err, "truncated or damaged: an array is not as long "
-                       "as NumberOfPoints asks for") : VG_OK;
+  return bad ? damaged(f, err,
+                       "truncated or damaged: an array is not as long "
+                       "as NumberOfPoints asks for")
+             : VG_OK;
 }
 
 static vg_status read_array(const struct file *f, const struct array *a,
@@ -370,8 +387,10 @@ static vg_status read_array(const struct file *f, const struct array *a,
   }
   for (size_t i = 0; i < n && st >= 0; i++)
     if (!isfinite(v[i]))
-      st = vg_fail(err, VG_ERR_FORMAT, "%s: number %zu of an array is not "
-                   "finite", f->in->path, i + 1);
+      st = vg_fail(err, VG_ERR_FORMAT,
+                   "%s: number %zu of an array is not "
+                   "finite",
+                   f->in->path, i + 1);
   return st;
 }
 
@@ -399,7 +418,7 @@ vg_status vg_vtu_points_parse(struct vg_input *in, const char *name, size_t *n,
   VG_TRY(read_array(&f, &point, 3 * count, own[0], err));
   VG_TRY(read_array(&f, &scalar, count, own[1], err));
   *n = count;
-  *x = (double (*)[3])own[0];
+  *x = (double(*)[3])own[0];
   *value = own[1];
   own[0] = own[1] = NULL;
 done:

@@ -10,21 +10,23 @@
 
 #include <gp_Vec.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
-namespace {
+namespace
+{
 
 /* Height over longest edge below which a triangle counts, and by how much a
  * swap must be worth it. */
-const double flat = 1e-3, gain = 2;   /* S14 */
+const double flat = 1e-3, gain = 2; /* S14 */
 /* Nothing but rounding is below this. */
 const double straight = 1e-9;
 const int most_passes = 20;
 
 struct Edge {
-  uint32_t a, b;             /* a < b */
+  uint32_t a, b; /* a < b */
   size_t tri;
-  int side;                  /* opposite this corner */
+  int side; /* opposite this corner */
 };
 
 bool before(const Edge &e, const Edge &f)
@@ -32,10 +34,13 @@ bool before(const Edge &e, const Edge &f)
   return e.a != f.a ? e.a < f.a : e.b != f.b ? e.b < f.b : e.tri < f.tri;
 }
 
-class Caps {
+class Caps
+{
 public:
   Caps(const std::vector<double> &x, uint32_t *tri, gp_Pnt2d *uv, size_t n)
-      : x_(x), tri_(tri), uv_(uv), n_(n) {}
+      : x_(x), tri_(tri), uv_(uv), n_(n)
+  {
+  }
 
   bool pass()
   {
@@ -86,7 +91,7 @@ private:
       for (int k = 0; k < 3; k++) {
         uint32_t a = tri_[3 * t + (k + 1) % 3], b = tri_[3 * t + (k + 2) % 3];
 
-        edges_.push_back({std::min(a, b), std::max(a, b), t, k});
+        edges_.push_back({ std::min(a, b), std::max(a, b), t, k });
       }
     std::sort(edges_.begin(), edges_.end(), before);
   }
@@ -95,7 +100,8 @@ private:
   std::vector<Edge>::const_iterator find(uint32_t a, uint32_t b) const
   {
     return std::lower_bound(edges_.begin(), edges_.end(),
-                            Edge{std::min(a, b), std::max(a, b), 0, 0}, before);
+                            Edge{ std::min(a, b), std::max(a, b), 0, 0 },
+                            before);
   }
 
   bool has(uint32_t a, uint32_t b) const
@@ -111,8 +117,9 @@ private:
     const Edge *other = nullptr;
     size_t n = 0;
 
-    for (auto e = find(a, b); e != edges_.end() && e->a == std::min(a, b) &&
-                              e->b == std::max(a, b); ++e, ++n)
+    for (auto e = find(a, b);
+         e != edges_.end() && e->a == std::min(a, b) && e->b == std::max(a, b);
+         ++e, ++n)
       if (e->tri != t) other = &*e;
     return n == 2 ? other : nullptr;
   }
@@ -143,7 +150,7 @@ private:
     if (!other || touched_[other->tri]) return false;
     uint32_t *w = tri_ + 3 * other->tri, q = w[other->side];
     if (w[(other->side + 1) % 3] != b || p == q || has(p, q)) return false;
-    const uint32_t first[3] = {p, a, q}, second[3] = {p, q, b};
+    const uint32_t first[3] = { p, a, q }, second[3] = { p, q, b };
     if (!is_better(v, w, first, second, at(a).SquareDistance(at(b))))
       return false;
     touched_[t] = touched_[other->tri] = true;
@@ -169,20 +176,21 @@ private:
 
   const std::vector<double> &x_;
   uint32_t *tri_;
-  gp_Pnt2d *uv_;             /* of their corners */
+  gp_Pnt2d *uv_; /* of their corners */
   size_t n_;
   std::vector<Edge> edges_;
   std::vector<bool> touched_;
 };
 
-}  // namespace
+} // namespace
 
 void swap_caps(Surface &s, size_t from)
 {
   Caps caps(s.point, s.tri.data() + 3 * from, s.uv.data() + 3 * from,
             s.tri.size() / 3 - from);
 
-  for (int k = 0; k < most_passes && caps.pass(); k++) {}
+  for (int k = 0; k < most_passes && caps.pass(); k++) {
+  }
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

@@ -20,19 +20,21 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
-namespace {
+namespace
+{
 
 /* A face narrower than this share of the model has no area. */
-const double width_least = 1e-9;   /* S13 */
+const double width_least = 1e-9; /* S13 */
 /* Copies of a face may be other splines: candidates are those whose areas and
  * centres agree by so much; points on a grid decide. */
 const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4;
 const int copy_grid = 7;
 
 struct Measure {
-  size_t at;                 /* index of the face */
+  size_t at; /* index of the face */
   double area;
   gp_Pnt centre;
 };
@@ -42,7 +44,7 @@ Measure measure(const Model &model, size_t at)
   GProp_GProps g;
 
   BRepGProp::SurfaceProperties(model.faces[at].shape, g, area_near / 10);
-  return {at, std::fabs(g.Mass()), g.CentreOfMass()};
+  return { at, std::fabs(g.Mass()), g.CentreOfMass() };
 }
 
 /* --- faces to mend ------------------------------------------------------- */
@@ -54,7 +56,8 @@ bool lacks_curves(const TopoDS_Face &face)
 
   for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next())
     if (BRep_Tool::CurveOnSurface(TopoDS::Edge(e.Current()), face, first, last)
-            .IsNull()) return true;
+          .IsNull())
+      return true;
   return false;
 }
 
@@ -88,7 +91,7 @@ gp_Vec normal_at(const TopoDS_Face &face, const gp_Pnt &p)
 {
   Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
   gp_Pnt2d uv = ShapeAnalysis_Surface(surface).ValueOfUV(
-      p, Precision::Confusion());
+    p, Precision::Confusion());
   gp_Pnt at;
   gp_Vec du, dv;
 
@@ -114,7 +117,8 @@ void drop_copy(Model &model, size_t i, size_t j, bool again, const Talk &talk)
   Face &first = model.faces[std::min(i, j)];
 
   if (!again && first.solid >= 0 && later.solid >= 0 &&
-      first.solid != later.solid) return;
+      first.solid != later.solid)
+    return;
   talk.note(format("%s at %s repeats face %u and was dropped",
                    named(later).c_str(), place(point_of(later.shape)).c_str(),
                    first.number));
@@ -122,12 +126,12 @@ void drop_copy(Model &model, size_t i, size_t j, bool again, const Talk &talk)
 }
 
 /* Walls between solids: faces, or two copies of one. */
-class Walls {
+class Walls
+{
 public:
   Walls(Model &model, const std::vector<Measure> &list)
       : model_(model), area_(model.faces.size(), 0),
-        box_(static_cast<size_t>(model.n_solid)),
-        total_(box_.size(), 0)
+        box_(static_cast<size_t>(model.n_solid)), total_(box_.size(), 0)
   {
     for (const Measure &m : list) area_[m.at] = m.area;
     for (size_t i = 0; i < model.faces.size(); i++) {
@@ -144,8 +148,8 @@ public:
     const Face &f = model_.faces[i], &g = model_.faces[j];
     int a = f.solid, b = i == j ? f.behind : g.solid;
 
-    pairs_.push_back({i, j, std::min(a, b), std::max(a, b)});
-    shared_[{std::min(a, b), std::max(a, b)}] += area_[i];
+    pairs_.push_back({ i, j, std::min(a, b), std::max(a, b) });
+    shared_[{ std::min(a, b), std::max(a, b) }] += area_[i];
   }
 
   /* A wall goes, and its solids become one, unless one of them fills a hollow
@@ -160,16 +164,17 @@ public:
         if (p.i != p.j) drop_copy(model_, p.i, p.j, again, talk);
         continue;
       }
-      talk.note(format("%s%s at %s %s between two solids that touch and %s "
-                       "dropped", named(f).c_str(),
-                       p.i == p.j ? "" : format(" and face %u",
-                                                g.number).c_str(),
-                       place(point_of(f.shape)).c_str(),
-                       p.i == p.j ? "is a wall" : "are a wall",
-                       p.i == p.j ? "was" : "were"));
+      talk.note(
+        format("%s%s at %s %s between two solids that touch and %s "
+               "dropped",
+               named(f).c_str(),
+               p.i == p.j ? "" : format(" and face %u", g.number).c_str(),
+               place(point_of(f.shape)).c_str(),
+               p.i == p.j ? "is a wall" : "are a wall",
+               p.i == p.j ? "was" : "were"));
       f.shape.Nullify();
       g.shape.Nullify();
-      joined_.push_back({p.a, p.b});
+      joined_.push_back({ p.a, p.b });
     }
     for (const std::pair<int, int> &p : joined_) join(p.first, p.second);
   }
@@ -177,7 +182,7 @@ public:
 private:
   struct Pair {
     size_t i, j;
-    int a, b;                  /* solids, a < b */
+    int a, b; /* solids, a < b */
   };
 
   void add(size_t solid, size_t face)
@@ -197,7 +202,7 @@ private:
   bool fills_hollow(const Pair &p) const
   {
     const size_t a = static_cast<size_t>(p.a), b = static_cast<size_t>(p.b);
-    const double area = shared_.at({p.a, p.b});
+    const double area = shared_.at({ p.a, p.b });
 
     return (is_within(a, b) && area >= hollow_share * total_[a]) ||
            (is_within(b, a) && area >= hollow_share * total_[b]);
@@ -213,15 +218,15 @@ private:
     const int x = now(a), y = now(b);
 
     if (x == y) return;
-    renamed_.push_back({std::max(x, y), std::min(x, y)});
+    renamed_.push_back({ std::max(x, y), std::min(x, y) });
     for (Face &f : model_.faces)
       if (f.solid == std::max(x, y)) f.solid = std::min(x, y);
   }
 
   Model &model_;
-  std::vector<double> area_;           /* of faces */
-  std::vector<Bnd_Box> box_;           /* of solids */
-  std::vector<double> total_;          /* area of solids */
+  std::vector<double> area_;  /* of faces */
+  std::vector<Bnd_Box> box_;  /* of solids */
+  std::vector<double> total_; /* area of solids */
   std::vector<Pair> pairs_;
   std::map<std::pair<int, int>, double> shared_;
   std::vector<std::pair<int, int>> joined_, renamed_;
@@ -251,7 +256,8 @@ void drop_copies(Model &model, std::vector<Measure> &list, bool again,
       if (b.centre.X() - a.centre.X() > centre_near * std::sqrt(a.area)) break;
       if (model.faces[a.at].shape.IsNull() || is_wall[a.at]) break;
       if (model.faces[b.at].shape.IsNull() || is_wall[b.at] ||
-          !are_copies(model, a, b)) continue;
+          !are_copies(model, a, b))
+        continue;
       if (is_between(model.faces[a.at], model.faces[b.at])) {
         walls.add_pair(std::min(a.at, b.at), std::max(a.at, b.at));
         is_wall[a.at] = is_wall[b.at] = true;
@@ -272,13 +278,13 @@ std::vector<Measure> drop_slits(Model &model, const Talk &talk)
     try {
       Measure m = measure(model, i);
 
-      if (!(m.area <= width_least * model.diagonal * model.diagonal *
-                        width_least)) {
+      if (!(m.area <=
+            width_least * model.diagonal * model.diagonal * width_least)) {
         kept.push_back(m);
         continue;
       }
-      talk.note(format("%s at %s has no area and was dropped",
-                       named(f).c_str(), place(point_of(f.shape)).c_str()));
+      talk.note(format("%s at %s has no area and was dropped", named(f).c_str(),
+                       place(point_of(f.shape)).c_str()));
     } catch (const Standard_Failure &e) {
       talk.note(format("%s cannot be evaluated (%s) and was dropped",
                        named(f).c_str(), e.DynamicType()->Name()));
@@ -288,7 +294,7 @@ std::vector<Measure> drop_slits(Model &model, const Talk &talk)
   return kept;
 }
 
-}  // namespace
+} // namespace
 
 std::string named(const Face &f)
 {
@@ -339,7 +345,8 @@ void complete(Model &model, const Talk &talk)
     if (!n++)
       talk.note(format("%s lacks the curves of its rim in its plane of "
                        "parameters; they are made anew, also for others of the "
-                       "kind", named(f).c_str()));
+                       "kind",
+                       named(f).c_str()));
   }
   if (n) mend(model, talk);
   for (const Face &f : model.faces) {
@@ -351,7 +358,7 @@ void complete(Model &model, const Talk &talk)
     box.Add(one);
   }
   if (box.IsVoid() || box.IsOpen())
-    throw Failure{VG_ERR_INPUT, "a face of it reaches to infinity"};
+    throw Failure{ VG_ERR_INPUT, "a face of it reaches to infinity" };
   model.diagonal = std::sqrt(box.SquareExtent());
   std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2,
                    sizes.end());
@@ -376,4 +383,4 @@ void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)
   if (ask.with_volume) measure_volume(model);
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

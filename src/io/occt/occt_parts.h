@@ -20,7 +20,8 @@
 #include "base/status.h"
 #include "io/cad/wire.h"
 
-namespace vg_occt {
+namespace vg_occt
+{
 
 /** What ends a job, with a message for a person; the file's name is added by
  * the other end. */
@@ -29,19 +30,30 @@ struct Failure {
   std::string text;
 };
 
-std::string format(const char *text, ...)
-    __attribute__((format(printf, 1, 2)));
+std::string format(const char *text, ...) __attribute__((format(printf, 1, 2)));
 
 /** "(x, y, z)". */
 std::string place(const gp_Pnt &p);
 
 /** The way back to the parent. */
-class Talk {
+class Talk
+{
 public:
-  Talk(int fd, const vg_cad_wire *wire) : fd_(fd), wire_(wire) {}
-  void note(const std::string &text) const { say(VG_CAD_TELL_NOTE, 0, text); }
-  void stage(const std::string &text) const { say(VG_CAD_TELL_STAGE, 0, text); }
-  void fail(const Failure &f) const { say(VG_CAD_TELL_FAIL, f.code, f.text); }
+  Talk(int fd, const vg_cad_wire *wire) : fd_(fd), wire_(wire)
+  {
+  }
+  void note(const std::string &text) const
+  {
+    say(VG_CAD_TELL_NOTE, 0, text);
+  }
+  void stage(const std::string &text) const
+  {
+    say(VG_CAD_TELL_STAGE, 0, text);
+  }
+  void fail(const Failure &f) const
+  {
+    say(VG_CAD_TELL_FAIL, f.code, f.text);
+  }
   void put(const void *data, size_t size) const;
   bool get(void *data, size_t size) const;
 
@@ -54,21 +66,21 @@ private:
 /** A face of the file, or a piece of one. Words are "" where the file has
  * none. */
 struct Face {
-  uint32_t number;           /* in the file, from 1 */
-  TopoDS_Face shape;         /* oriented as in its solid; null: dropped */
-  int solid = -1;            /* number of the solid that it bounds; -1: none */
-  int behind = -1;           /* number of a second solid that has this face */
+  uint32_t number;   /* in the file, from 1 */
+  TopoDS_Face shape; /* oriented as in its solid; null: dropped */
+  int solid = -1;    /* number of the solid that it bounds; -1: none */
+  int behind = -1;   /* number of a second solid that has this face */
   std::string name, colour, layer, part;
 };
 
 struct Model {
-  std::vector<Face> faces;   /* by number; pieces of one face are neighbours */
-  int n_solid = 0;           /* of the file; those that were joined count as
-                                the first of them, the others have no faces */
-  std::vector<TopoDS_Edge> curves;     /* [number - 1], when triangulated */
-  double diagonal = 0;       /* of the box around all */
-  double face_size = 0;      /* median of the diagonals of the faces' boxes */
-  bool is_solid = false;     /* as in struct vg_cad_surface */
+  std::vector<Face> faces; /* by number; pieces of one face are neighbours */
+  int n_solid = 0;         /* of the file; those that were joined count as
+                              the first of them, the others have no faces */
+  std::vector<TopoDS_Edge> curves; /* [number - 1], when triangulated */
+  double diagonal = 0;             /* of the box around all */
+  double face_size = 0;  /* median of the diagonals of the faces' boxes */
+  bool is_solid = false; /* as in struct vg_cad_surface */
   double volume = 0;
 };
 
@@ -101,7 +113,7 @@ void heal(const vg_cad_ask &ask, Model &model, const Talk &talk);
 
 /** A solid fills a hollow of another one where its box is within that one's,
  * and both share this part of its area. */
-const double hollow_share = 0.5, box_near = 1e-3;   /* S54 */
+const double hollow_share = 0.5, box_near = 1e-3; /* S54 */
 
 /** Replace the faces of solids that touch or overlap by the outer faces of
  * their union. Solids that contain others stay as they are. */
@@ -131,16 +143,16 @@ std::string named(const Face &f);
 /** As io/cad/wire.h sends it. */
 struct Surface {
   std::vector<double> point;
-  std::vector<uint32_t> tri, face, patch, segment, curve;   /* face: number */
+  std::vector<uint32_t> tri, face, patch, segment, curve; /* face: number */
   std::vector<vg_cad_patch> patches;
   /* These stay here. */
-  std::vector<uint32_t> piece;   /* of triangles: index into Model.faces */
-  std::vector<bool> corner;      /* [points] is a vertex of the model */
-  std::vector<gp_Pnt2d> uv;  /* of each corner of the triangles, on its face */
-  std::vector<uint8_t> rim;  /* [triangles] bit k: the edge opposite corner k
-                                is on the rim of its face */
-  double bulge = 0;          /* the face's rim is no farther from such an edge,
-                                in parts of its length */
+  std::vector<uint32_t> piece; /* of triangles: index into Model.faces */
+  std::vector<bool> corner;    /* [points] is a vertex of the model */
+  std::vector<gp_Pnt2d> uv; /* of each corner of the triangles, on its face */
+  std::vector<uint8_t> rim; /* [triangles] bit k: the edge opposite corner k
+                               is on the rim of its face */
+  double bulge = 0;         /* the face's rim is no farther from such an edge,
+                               in parts of its length */
 };
 
 /** Triangles; faces that could not be are noted. */
@@ -165,13 +177,14 @@ void drop_unused(Surface &s);
 /** A triangle of a face in the plane of parameters. */
 struct Piece {
   gp_Pnt2d uv[3];
-  double least[3];           /* barycentric coordinates of places that are
-                                surely on the face are no less */
+  double least[3]; /* barycentric coordinates of places that are
+                      surely on the face are no less */
   bool holds(const gp_Pnt2d &at) const;
 };
 
 /** The nearest points of a face, again and again. */
-class Projector {
+class Projector
+{
 public:
   explicit Projector(const TopoDS_Face &face);
   ~Projector();
@@ -194,6 +207,6 @@ gp_Pnt point_of(const TopoDS_Face &face);
 /** Points inside a face, at most n * n, over its range of parameters. */
 std::vector<gp_Pnt> samples(const TopoDS_Face &face, int n);
 
-}  // namespace vg_occt
+} // namespace vg_occt
 
 #endif

@@ -15,9 +15,11 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
-namespace {
+namespace
+{
 
 const int most_steps = 15;
 /* Where the lengths of the derivatives say no more: at a pole. */
@@ -26,7 +28,7 @@ const double singular = 1e-10;
  * origin and the first step. */
 const double precise = 1e-13, relative = 1e-7;
 
-}  // namespace
+} // namespace
 
 struct Projector::State {
   explicit State(const TopoDS_Face &f)
@@ -44,7 +46,9 @@ struct Projector::State {
   std::vector<TopoDS_Edge> edges;
 };
 
-Projector::Projector(const TopoDS_Face &face) : state_(new State(face)) {}
+Projector::Projector(const TopoDS_Face &face) : state_(new State(face))
+{
+}
 
 Projector::~Projector() = default;
 
@@ -166,4 +170,4 @@ gp_Pnt point_of(const TopoDS_Face &face)
                        : gp_Pnt();
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

@@ -35,18 +35,20 @@
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
-namespace {
+namespace
+{
 
 struct Unit {
-  const char *word, *open_cascade;   /* of a report; of Interface_Static */
+  const char *word, *open_cascade; /* of a report; of Interface_Static */
   double mm;
 };
 /* In the order of enum vg_cad_unit, without the first. */
-const Unit units[] = {{"mm", "MM", 1},           {"cm", "CM", 10},
-                      {"m", "M", 1000},          {"km", "KM", 1e6},
-                      {"inch", "INCH", 25.4},    {"foot", "FT", 304.8}};
+const Unit units[] = { { "mm", "MM", 1 },        { "cm", "CM", 10 },
+                       { "m", "M", 1000 },       { "km", "KM", 1e6 },
+                       { "inch", "INCH", 25.4 }, { "foot", "FT", 304.8 } };
 const int n_unit = sizeof units / sizeof *units;
 
 TopoDS_Shape bare(const TopoDS_Shape &s)
@@ -61,7 +63,8 @@ std::string cleaned(std::string name)
     name.pop_back();
   name.erase(0, name.find_first_not_of(" \t"));
   return name == "NONE" || name == "None" || name.compare(0, 3, "=>[") == 0
-             ? "" : name;
+         ? ""
+         : name;
 }
 
 std::string text_of(const TCollection_ExtendedString &s)
@@ -73,12 +76,12 @@ std::string text_of(const TCollection_ExtendedString &s)
   return cleaned(utf8.data());
 }
 
-std::string name_of(const Handle(Standard_Transient) &entity)
+std::string name_of(const Handle(Standard_Transient) & entity)
 {
-  Handle(StepRepr_RepresentationItem) item =
-      Handle(StepRepr_RepresentationItem)::DownCast(entity);
-  Handle(IGESData_IGESEntity) iges =
-      Handle(IGESData_IGESEntity)::DownCast(entity);
+  Handle(StepRepr_RepresentationItem)
+    item = Handle(StepRepr_RepresentationItem)::DownCast(entity);
+  Handle(IGESData_IGESEntity)
+    iges = Handle(IGESData_IGESEntity)::DownCast(entity);
   Handle(TCollection_HAsciiString) name;
 
   if (!item.IsNull()) name = item->Name();
@@ -106,20 +109,24 @@ const Unit &choose_unit(const vg_cad_ask &ask, double given, const char *called,
   }
   if (!(given > 0))
     talk.note(format("the file names no unit of length; millimetres were "
-                     "assumed, the surface is in %s", to->word));
+                     "assumed, the surface is in %s",
+                     to->word));
   else if (std::fabs(to->mm - own) < 1e-6 * own)
     talk.note(format("lengths are in %s, the file's unit", to->word));
   else
     talk.note(format("lengths of the file, in %s (%.9g mm), were converted to "
-                     "%s", called, own, to->word));
+                     "%s",
+                     called, own, to->word));
   return *to;
 }
 
 double step_unit(STEPControl_Reader &reader, std::string &called)
 {
-  static const struct { const char *word; double metre; } prefix[] = {
-      {"milli", 1}, {"centi", 10}, {"deci", 100}, {"kilo", 1e6},
-      {"micro", 1e-3}, {"nano", 1e-6}};
+  static const struct {
+    const char *word;
+    double metre;
+  } prefix[] = { { "milli", 1 },  { "centi", 10 },   { "deci", 100 },
+                 { "kilo", 1e6 }, { "micro", 1e-3 }, { "nano", 1e-6 } };
   TColStd_SequenceOfAsciiString length, angle, solid;
 
   reader.FileUnits(length, angle, solid);
@@ -143,17 +150,18 @@ struct Said {
 
 /* Of all shapes at once, without their places in assemblies: looking each one
  * up in the document takes time that grows with its square. */
-class Words {
+class Words
+{
 public:
-  Words(const Handle(TDocStd_Document) &doc,
-        const Handle(XSControl_WorkSession) &session)
+  Words(const Handle(TDocStd_Document) & doc,
+        const Handle(XSControl_WorkSession) & session)
       : shapes_(XCAFDoc_DocumentTool::ShapeTool(doc->Main())),
         colours_(XCAFDoc_DocumentTool::ColorTool(doc->Main())),
         layers_(XCAFDoc_DocumentTool::LayerTool(doc->Main()))
   {
     Handle(Interface_InterfaceModel) all = session->Model();
-    Handle(Transfer_TransientProcess) done =
-        session->TransferReader()->TransientProcess();
+    Handle(Transfer_TransientProcess)
+      done = session->TransferReader()->TransientProcess();
 
     for (int k = 1; k <= all->NbEntities(); k++) {
       Handle(Standard_Transient) entity = all->Value(k);
@@ -165,7 +173,10 @@ public:
   }
 
   /* Null where nothing is said. */
-  const Said *of(const TopoDS_Shape &s) const { return said_.Seek(bare(s)); }
+  const Said *of(const TopoDS_Shape &s) const
+  {
+    return said_.Seek(bare(s));
+  }
 
   TDF_LabelSequence roots() const
   {
@@ -215,8 +226,8 @@ private:
 
   void take_label(const TDF_Label &label)
   {
-    static const XCAFDoc_ColorType kinds[] = {XCAFDoc_ColorSurf,
-                                              XCAFDoc_ColorGen};
+    static const XCAFDoc_ColorType kinds[] = { XCAFDoc_ColorSurf,
+                                               XCAFDoc_ColorGen };
     Handle(TColStd_HSequenceOfExtendedString) list;
     Handle(TDataStd_Name) text;
     Quantity_Color c;
@@ -241,9 +252,12 @@ private:
 
 /* Faces below a shape, in its order, each once; solids hand their words down
  * to faces that have none. */
-class Collector {
+class Collector
+{
 public:
-  Collector(Model &model, const Words *words) : model_(model), words_(words) {}
+  Collector(Model &model, const Words *words) : model_(model), words_(words)
+  {
+  }
 
   void add(const TopoDS_Shape &s, Face from)
   {
@@ -286,7 +300,7 @@ Handle(TDocStd_Document) new_document()
 {
   Handle(TDocStd_Document) doc;
 
-  XCAFDoc_ShapeTool::SetAutoNaming(Standard_False);   /* as in "COMPOUND" */
+  XCAFDoc_ShapeTool::SetAutoNaming(Standard_False); /* as in "COMPOUND" */
   XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", doc);
   return doc;
 }
@@ -305,11 +319,11 @@ void collect(const Words &words, Model &model)
 }
 
 /* Entities that Open CASCADE could not make shapes of. */
-void note_failures(const Handle(XSControl_WorkSession) &session,
+void note_failures(const Handle(XSControl_WorkSession) & session,
                    const Talk &talk)
 {
   Interface_CheckIterator all =
-      session->TransferReader()->TransientProcess()->CheckList(Standard_True);
+    session->TransferReader()->TransientProcess()->CheckList(Standard_True);
   Handle(Interface_InterfaceModel) model = session->Model();
   std::string first;
   size_t n = 0;
@@ -317,23 +331,25 @@ void note_failures(const Handle(XSControl_WorkSession) &session,
   for (all.Start(); all.More(); all.Next()) {
     if (!all.Value()->HasFailed() || all.Number() <= 0) continue;
     if (!n++)
-      first = format("%s: %s",
-                     model->StringLabel(model->Value(all.Number()))
-                         ->ToCString(), all.Value()->CFail(1));
+      first = format(
+        "%s: %s", model->StringLabel(model->Value(all.Number()))->ToCString(),
+        all.Value()->CFail(1));
   }
   if (n)
     talk.note(format("%zu entities of the file could not be translated, the "
-                     "first is %.300s", n, first.c_str()));
+                     "first is %.300s",
+                     n, first.c_str()));
 }
 
 void require(IFSelect_ReturnStatus got, const char *kind)
 {
   if (got == IFSelect_RetDone) return;
-  throw Failure{VG_ERR_FORMAT,
-                format("Open CASCADE cannot read this %s file (%s); it is "
-                       "damaged or none: export it again", kind,
-                       got == IFSelect_RetVoid ? "nothing is in it"
-                                               : "its syntax is wrong")};
+  throw Failure{ VG_ERR_FORMAT,
+                 format("Open CASCADE cannot read this %s file (%s); it is "
+                        "damaged or none: export it again",
+                        kind,
+                        got == IFSelect_RetVoid ? "nothing is in it"
+                                                : "its syntax is wrong") };
 }
 
 /* Open CASCADE needs 27 kB for each: 8 GB. */
@@ -342,20 +358,20 @@ const size_t MOST_FACES = 300000;
 void refuse_too_many(size_t n)
 {
   if (n <= MOST_FACES) return;
-  throw Failure{VG_ERR_UNSUPPORTED,
-                format("it has %zu faces, more than the %zu for which Open "
-                       "CASCADE's memory lasts; a tessellation that was saved "
-                       "as CAD is read as what it is from STL or OBJ",
-                       n, MOST_FACES)};
+  throw Failure{ VG_ERR_UNSUPPORTED,
+                 format("it has %zu faces, more than the %zu for which Open "
+                        "CASCADE's memory lasts; a tessellation that was saved "
+                        "as CAD is read as what it is from STL or OBJ",
+                        n, MOST_FACES) };
 }
 
 bool names_face(const std::string &word)
 {
   const std::string tail = "_FACE";
 
-  return word == "FACE_SURFACE"
-         || (word.size() > tail.size()
-             && !word.compare(word.size() - tail.size(), tail.size(), tail));
+  return word == "FACE_SURFACE" ||
+         (word.size() > tail.size() &&
+          !word.compare(word.size() - tail.size(), tail.size(), tail));
 }
 
 /* Before a STEP file is read: the reader looks through a list for each of its
@@ -377,7 +393,7 @@ size_t count_step_faces(const std::string &path)
 }
 
 /* Trimmed and bounded surfaces, faces of solids. */
-size_t count_iges_faces(const Handle(IGESData_IGESModel) &file)
+size_t count_iges_faces(const Handle(IGESData_IGESModel) & file)
 {
   size_t n = 0;
 
@@ -406,11 +422,11 @@ void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
   require(reader.ReadFile(path.c_str()), "STEP");
   given = step_unit(reader.ChangeReader(), called);
   Interface_Static::SetCVal(
-      "xstep.cascade.unit",
-      choose_unit(ask, given, called.c_str(), talk).open_cascade);
+    "xstep.cascade.unit",
+    choose_unit(ask, given, called.c_str(), talk).open_cascade);
   talk.stage("translating its entities");
   if (!reader.Transfer(doc))
-    throw Failure{VG_ERR_INPUT, "no shape could be made of this STEP file"};
+    throw Failure{ VG_ERR_INPUT, "no shape could be made of this STEP file" };
   note_failures(reader.Reader().WS(), talk);
   collect(Words(doc, reader.Reader().WS()), model);
 }
@@ -439,7 +455,7 @@ void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
   }
   talk.stage("translating its entities");
   if (!reader.Transfer(doc))
-    throw Failure{VG_ERR_INPUT, "no shape could be made of this IGES file"};
+    throw Failure{ VG_ERR_INPUT, "no shape could be made of this IGES file" };
   note_failures(reader.WS(), talk);
   collect(Words(doc, reader.WS()), model);
 }
@@ -451,7 +467,7 @@ bool load_brep(const std::string &path, TopoDS_Shape &shape)
   try {
     return BRepTools::Read(shape, path.c_str(), builder) && !shape.IsNull();
   } catch (const Standard_Failure &) {
-    return false;              /* what it says is of no use */
+    return false; /* what it says is of no use */
   }
 }
 
@@ -462,18 +478,18 @@ void read_brep(const vg_cad_ask &ask, const std::string &path, Model &model,
   TopoDS_Shape shape;
 
   if (!load_brep(path, shape))
-    throw Failure{VG_ERR_FORMAT, "Open CASCADE cannot read this BREP file; it "
-                                 "is truncated or damaged: export it again"};
+    throw Failure{ VG_ERR_FORMAT, "Open CASCADE cannot read this BREP file; it "
+                                  "is truncated or damaged: export it again" };
   refuse_too_many(count_faces(shape, MOST_FACES + 1));
   if (ask.unit)
-    throw Failure{VG_ERR_INPUT, "a BREP file has no unit of length: cad_unit "
-                                "must be file, and its numbers stay as they "
-                                "are"};
+    throw Failure{ VG_ERR_INPUT, "a BREP file has no unit of length: cad_unit "
+                                 "must be file, and its numbers stay as they "
+                                 "are" };
   talk.note("a BREP file has no unit of length: its numbers stay as they are");
   Collector(model, nullptr).add(shape, Face());
 }
 
-}  // namespace
+} // namespace
 
 void read(const vg_cad_ask &ask, const std::string &path, Model &model,
           const Talk &talk)
@@ -483,8 +499,8 @@ void read(const vg_cad_ask &ask, const std::string &path, Model &model,
   else if (ask.kind == 2) read_iges(ask, path, model, talk);
   else read_brep(ask, path, model, talk);
   if (model.faces.empty())
-    throw Failure{VG_ERR_INPUT, "there are no faces in it: points, curves or "
-                                "nothing at all; export solids or surfaces"};
+    throw Failure{ VG_ERR_INPUT, "there are no faces in it: points, curves or "
+                                 "nothing at all; export solids or surfaces" };
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

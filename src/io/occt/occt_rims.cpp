@@ -13,15 +13,17 @@
 #include <BRepAdaptor_Surface.hxx>
 #include <gp_Vec.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
-namespace {
+namespace
+{
 
 /* Squares of the cosines of angles between a triangle and its face: corners on
  * the rim, 1 degree where one neighbouring face has them all, else 30; other
  * triangles 60. */
 const double near_cap = 0.9996954, near_rim = 0.75, near_face = 0.25; /* S53 */
-const double pull[] = {0, 0.25, 0.5, 0.75};   /* from an edge into the face */
+const double pull[] = { 0, 0.25, 0.5, 0.75 }; /* from an edge into the face */
 /* Height over longest edge: below it a triangle is useless. */
 const double flat = 1e-7;
 const int most_passes = 20;
@@ -37,11 +39,15 @@ struct Tri {
   Corner v[3];
   bool is_touched, is_suspect, was_suspect, is_dead;
 
-  Tri() : is_touched(false), is_suspect(false), was_suspect(false),
-          is_dead(false) {}
+  Tri()
+      : is_touched(false), is_suspect(false), was_suspect(false), is_dead(false)
+  {
+  }
   Tri(const Corner &a, const Corner &b, const Corner &c)
-      : v{a, b, c}, is_touched(true), is_suspect(true), was_suspect(true),
-        is_dead(false) {}
+      : v{ a, b, c }, is_touched(true), is_suspect(true), was_suspect(true),
+        is_dead(false)
+  {
+  }
   int corner(uint32_t p) const
   {
     for (int k = 0; k < 3; k++)
@@ -51,9 +57,9 @@ struct Tri {
 };
 
 struct Side {
-  uint32_t a, b;             /* a < b */
+  uint32_t a, b; /* a < b */
   size_t tri;
-  int corner;                /* opposite */
+  int corner; /* opposite */
 };
 
 bool before(const Side &x, const Side &y)
@@ -63,19 +69,22 @@ bool before(const Side &x, const Side &y)
 }
 
 /* The triangles of one face. */
-class Patch {
+class Patch
+{
 public:
   Patch(Surface &s, const std::vector<std::vector<uint32_t>> &pieces,
         const Face &face, uint32_t piece)
       : s_(s), pieces_(pieces), piece_(piece), surface_(face.shape),
-        is_reversed_(face.shape.Orientation() == TopAbs_REVERSED) {}
+        is_reversed_(face.shape.Orientation() == TopAbs_REVERSED)
+  {
+  }
 
   void add(size_t t)
   {
     Tri tri;
 
     for (int k = 0; k < 3; k++)
-      tri.v[k] = {s_.tri[3 * t + k], s_.uv[3 * t + k]};
+      tri.v[k] = { s_.tri[3 * t + k], s_.uv[3 * t + k] };
     tri_.push_back(tri);
   }
 
@@ -88,7 +97,10 @@ public:
     return n_changes_ > 0;
   }
 
-  const std::vector<Tri> &triangles() const { return tri_; }
+  const std::vector<Tri> &triangles() const
+  {
+    return tri_;
+  }
 
 private:
   gp_Pnt at(uint32_t p) const
@@ -143,8 +155,8 @@ private:
     double dot = n * up, most = near_face;
 
     if (is_all_on_rim(t)) most = has_neighbour(t) ? near_cap : near_rim;
-    return dot < 0 || dot * dot < most * n.SquareMagnitude() *
-                                      up.SquareMagnitude();
+    return dot < 0 ||
+           dot * dot < most * n.SquareMagnitude() * up.SquareMagnitude();
   }
 
   /* An edge between two points of a rim that two faces have may be one of the
@@ -172,7 +184,8 @@ private:
       if (x.a != y.a || x.b != y.b) continue;
       double dot = n[x.tri] * n[y.tri];
       if (dot >= 0 && dot * dot >= near_face * n[x.tri].SquareMagnitude() *
-                                       n[y.tri].SquareMagnitude()) continue;
+                                     n[y.tri].SquareMagnitude())
+        continue;
       tri_[x.tri].is_suspect = tri_[y.tri].is_suspect = true;
     }
   }
@@ -184,8 +197,8 @@ private:
     double longest = 0;
 
     for (int k = 0; k < 3; k++)
-      longest = std::max(longest, at(t.v[k].p).SquareDistance(
-                                      at(t.v[(k + 1) % 3].p)));
+      longest = std::max(longest,
+                         at(t.v[k].p).SquareDistance(at(t.v[(k + 1) % 3].p)));
     return n.Magnitude() > flat * longest && n * normal_of_face(t) > 0 &&
            !is_bad(t);
   }
@@ -202,7 +215,7 @@ private:
       for (int k = 0; k < 3 && !tri_[t].is_dead; k++) {
         uint32_t a = tri_[t].v[(k + 1) % 3].p, b = tri_[t].v[(k + 2) % 3].p;
 
-        sides_.push_back({std::min(a, b), std::max(a, b), t, k});
+        sides_.push_back({ std::min(a, b), std::max(a, b), t, k });
       }
     std::sort(sides_.begin(), sides_.end(), before);
   }
@@ -210,7 +223,8 @@ private:
   std::vector<Side>::const_iterator find(uint32_t a, uint32_t b) const
   {
     return std::lower_bound(sides_.begin(), sides_.end(),
-                            Side{std::min(a, b), std::max(a, b), 0, 0}, before);
+                            Side{ std::min(a, b), std::max(a, b), 0, 0 },
+                            before);
   }
 
   bool is_side(uint32_t a, uint32_t b) const
@@ -229,8 +243,9 @@ private:
     const Side *other = nullptr;
     size_t n = 0;
 
-    for (auto e = find(a, b); e != sides_.end() && e->a == std::min(a, b) &&
-                              e->b == std::max(a, b); ++e, ++n)
+    for (auto e = find(a, b);
+         e != sides_.end() && e->a == std::min(a, b) && e->b == std::max(a, b);
+         ++e, ++n)
       if (e->tri != t) other = &*e;
     return n == 2 ? other : nullptr;
   }
@@ -243,12 +258,12 @@ private:
     for (Tri &t : tri_) t.is_touched = false;
     for (size_t t = 0; t < n; t++) {
       if (tri_[t].is_dead || tri_[t].is_touched || !tri_[t].is_suspect ||
-          n_changes_ > most_changes) continue;
+          n_changes_ > most_changes)
+        continue;
       tri_[t].is_suspect = is_bad(tri_[t]);
       if (!tri_[t].is_suspect) continue;
       for (int k = 0; k < 3; k++)
-        if (const Side *other = across(t, k))
-          any = spread(other->tri) || any;
+        if (const Side *other = across(t, k)) any = spread(other->tri) || any;
       if (!mend(t)) continue;
       any = true;
       n_changes_++;
@@ -305,8 +320,9 @@ private:
   /* Is there a triangle of all three? */
   bool is_third(uint32_t x, uint32_t a, uint32_t b) const
   {
-    for (auto e = find(a, b); e != sides_.end() && e->a == std::min(a, b) &&
-                              e->b == std::max(a, b); ++e)
+    for (auto e = find(a, b);
+         e != sides_.end() && e->a == std::min(a, b) && e->b == std::max(a, b);
+         ++e)
       if (tri_[e->tri].corner(x) >= 0) return true;
     return false;
   }
@@ -336,8 +352,9 @@ private:
       for (int j = 1; j < 3; j++) {
         uint32_t x = next.v[(at + j) % 3].p;
 
-        if (is_beside(x, to.p, p) || (!is_side(x, to.p) &&
-                                      may_be_double(x, to.p))) return false;
+        if (is_beside(x, to.p, p) ||
+            (!is_side(x, to.p) && may_be_double(x, to.p)))
+          return false;
       }
       next.v[at] = to;
       if (!(normal(next) * normal_of_face(next) > 0) || is_bad(next))
@@ -360,7 +377,8 @@ private:
     Tri first(p, a, q), second(p, q, b);
 
     if (p.p == q.p || is_side(p.p, q.p) || may_be_double(p.p, q.p) ||
-        !is_good(first) || !is_good(second)) return false;
+        !is_good(first) || !is_good(second))
+      return false;
     tri_[t] = first;
     tri_[other.tri] = second;
     return true;
@@ -371,9 +389,9 @@ private:
     gp_Pnt p = surface_.Value(uv.X(), uv.Y());
     uint32_t number = static_cast<uint32_t>(s_.point.size() / 3);
 
-    s_.point.insert(s_.point.end(), {p.X() + 0.0, p.Y() + 0.0, p.Z() + 0.0});
+    s_.point.insert(s_.point.end(), { p.X() + 0.0, p.Y() + 0.0, p.Z() + 0.0 });
     s_.corner.push_back(false);
-    return {number, gp_Pnt2d(uv)};
+    return { number, gp_Pnt2d(uv) };
   }
 
   void forget_point()
@@ -392,7 +410,7 @@ private:
 
     for (double part : pull) {
       Corner x = new_point((1 - part) * middle + part * q.uv.XY());
-      const Tri to[4] = {{p, a, x}, {p, x, b}, {q, b, x}, {q, x, a}};
+      const Tri to[4] = { { p, a, x }, { p, x, b }, { q, b, x }, { q, x, a } };
 
       if (all_good(to, 4)) {
         tri_[t] = to[0];
@@ -411,7 +429,7 @@ private:
   {
     const Corner a = tri_[t].v[0], b = tri_[t].v[1], c = tri_[t].v[2];
     Corner x = new_point((a.uv.XY() + b.uv.XY() + c.uv.XY()) / 3);
-    const Tri to[3] = {{a, b, x}, {b, c, x}, {c, a, x}};
+    const Tri to[3] = { { a, b, x }, { b, c, x }, { c, a, x } };
 
     if (!all_good(to, 3)) {
       forget_point();
@@ -467,7 +485,7 @@ void append(const Surface &from, size_t t, const std::vector<Tri> &patch,
   }
 }
 
-}  // namespace
+} // namespace
 
 void follow_faces(Surface &s, const Model &model)
 {
@@ -494,4 +512,4 @@ void follow_faces(Surface &s, const Model &model)
   drop_unused(s);
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

@@ -15,7 +15,8 @@
 
 #include <Standard_Failure.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
 std::string format(const char *text, ...)
 {
@@ -35,7 +36,7 @@ std::string place(const gp_Pnt &p)
 
 void Talk::put(const void *data, size_t size) const
 {
-  if (!wire_->put(fd_, data, size)) _exit(1);   /* nobody listens */
+  if (!wire_->put(fd_, data, size)) _exit(1); /* nobody listens */
 }
 
 bool Talk::get(void *data, size_t size) const
@@ -45,7 +46,7 @@ bool Talk::get(void *data, size_t size) const
 
 void Talk::say(int what, int code, std::string text) const
 {
-  vg_cad_tell t = {what, code, 0};
+  vg_cad_tell t = { what, code, 0 };
 
   for (char &c : text)
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
@@ -55,14 +56,16 @@ void Talk::say(int what, int code, std::string text) const
   put(text.data(), text.size());
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt
 
-namespace {
+namespace
+{
 
 using namespace vg_occt;
 
 /* A file in memory, with a path for libraries that open files. */
-class MemoryFile {
+class MemoryFile
+{
 public:
   MemoryFile(const Talk &talk, size_t n) : fd_(memfd_create("cad", 0))
   {
@@ -77,10 +80,16 @@ public:
       n -= part;
     }
   }
-  ~MemoryFile() { close(fd_); }
+  ~MemoryFile()
+  {
+    close(fd_);
+  }
   MemoryFile(const MemoryFile &) = delete;
   MemoryFile &operator=(const MemoryFile &) = delete;
-  std::string path() const { return format("/proc/self/fd/%d", fd_); }
+  std::string path() const
+  {
+    return format("/proc/self/fd/%d", fd_);
+  }
 
 private:
   bool keep(const char *data, size_t n)
@@ -94,10 +103,10 @@ private:
 
 void send(const Model &model, const Surface &s, const Talk &talk)
 {
-  const vg_cad_tell t = {VG_CAD_TELL_SURFACE, 0, 1};
-  const vg_cad_counts n = {s.point.size() / 3, s.tri.size() / 3,
-                           s.segment.size() / 2, s.patches.size(),
-                           model.is_solid, model.volume};
+  const vg_cad_tell t = { VG_CAD_TELL_SURFACE, 0, 1 };
+  const vg_cad_counts n = { s.point.size() / 3,   s.tri.size() / 3,
+                            s.segment.size() / 2, s.patches.size(),
+                            model.is_solid,       model.volume };
 
   talk.put(&t, sizeof t);
   talk.put(&n, sizeof n);
@@ -112,7 +121,7 @@ void send(const Model &model, const Surface &s, const Talk &talk)
 
 /* The state of the child between questions. */
 struct Held {
-  Model healed;              /* as it was before it was triangulated */
+  Model healed; /* as it was before it was triangulated */
   Model model;
   Surface surface;
 };
@@ -156,7 +165,8 @@ struct Points {
 };
 
 /* A face of the file: all of its pieces. */
-class Pieces {
+class Pieces
+{
 public:
   Pieces(const Model &model, uint32_t number)
   {
@@ -164,7 +174,10 @@ public:
       if (f.number == number && !f.shape.IsNull())
         list_.emplace_back(new Projector(f.shape));
   }
-  bool none() const { return list_.empty(); }
+  bool none() const
+  {
+    return list_.empty();
+  }
   gp_Pnt nearest(const gp_Pnt &p)
   {
     gp_Pnt best = list_[0]->nearest(p);
@@ -191,8 +204,8 @@ void put_on_faces(const Model &model, Points &p)
 
     if (!open[k]) open[k].reset(new Pieces(model, k));
     if (open[k]->none())
-      throw Failure{VG_ERR_INPUT, format("point %zu: there is no face %u",
-                                         i + 1, k)};
+      throw Failure{ VG_ERR_INPUT,
+                     format("point %zu: there is no face %u", i + 1, k) };
     p.set(i, from, open[k]->nearest(from));
   }
 }
@@ -209,10 +222,12 @@ struct Triangle {
     gp_Vec u(x[0], x[1]), v(x[0], x[2]);
     double area = u.Crossed(v).Magnitude();
     for (int i = 0; i < 3; i++)
-      if (s.rim[t] >> i & 1)   /* over the height of the corner */
+      if (s.rim[t] >> i & 1) /* over the height of the corner */
         piece.least[i] = area > 0
-            ? s.bulge * x[(i + 1) % 3].SquareDistance(x[(i + 2) % 3]) / area
-            : 2;
+                         ? s.bulge *
+                             x[(i + 1) % 3].SquareDistance(x[(i + 2) % 3]) /
+                             area
+                         : 2;
   }
 
   /* The place of p on it. */
@@ -244,8 +259,8 @@ void put_on_triangles(const Model &model, const Surface &s, Points &p)
     gp_Pnt from(p.x[3 * i], p.x[3 * i + 1], p.x[3 * i + 2]);
 
     if (t >= s.face.size())
-      throw Failure{VG_ERR_INPUT, format("point %zu: there is no triangle %u",
-                                         i + 1, t)};
+      throw Failure{ VG_ERR_INPUT,
+                     format("point %zu: there is no triangle %u", i + 1, t) };
     std::unique_ptr<Projector> &on = open[s.piece[t]];
     if (!on) on.reset(new Projector(model.faces[s.piece[t]].shape));
     const Triangle tri(s, t);
@@ -260,22 +275,23 @@ void put_on_curves(const Model &model, Points &p)
     gp_Pnt from(p.x[3 * i], p.x[3 * i + 1], p.x[3 * i + 2]);
 
     if (!k || k > model.curves.size())
-      throw Failure{VG_ERR_INPUT, format("point %zu: there is no curve %u",
-                                         i + 1, k)};
+      throw Failure{ VG_ERR_INPUT,
+                     format("point %zu: there is no curve %u", i + 1, k) };
     p.set(i, from, nearest_on_curve(model.curves[k - 1], from));
   }
 }
 
 void answer_points(const vg_cad_ask &ask, const Held &held, const Talk &talk)
 {
-  const vg_cad_tell t = {VG_CAD_TELL_POINTS, 0, ask.n};
+  const vg_cad_tell t = { VG_CAD_TELL_POINTS, 0, ask.n };
   Points p;
 
   p.number.resize(ask.n);
   p.x.resize(3 * ask.n);
   p.distance.resize(ask.n);
   if (!talk.get(p.number.data(), ask.n * sizeof p.number[0]) ||
-      !talk.get(p.x.data(), 3 * ask.n * sizeof p.x[0])) _exit(0);
+      !talk.get(p.x.data(), 3 * ask.n * sizeof p.x[0]))
+    _exit(0);
   talk.stage("putting points on its faces");
   if (ask.what == VG_CAD_ASK_FACES) put_on_faces(held.model, p);
   else if (ask.what == VG_CAD_ASK_CURVES) put_on_curves(held.model, p);
@@ -294,32 +310,32 @@ void answer(const vg_cad_ask &ask, Held &held, const Talk &talk)
   } catch (const Failure &f) {
     talk.fail(f);
   } catch (const std::bad_alloc &) {
-    talk.fail({VG_ERR_MEMORY, "not enough memory for Open CASCADE"});
-    _exit(1);                  /* the question may not have been read whole */
+    talk.fail({ VG_ERR_MEMORY, "not enough memory for Open CASCADE" });
+    _exit(1); /* the question may not have been read whole */
   } catch (const Standard_Failure &f) {
-    talk.fail({VG_ERR_GEOMETRY,
-               format("Open CASCADE could not work on it (%s: %s); the file "
-                      "may be damaged: export it again",
-                      f.DynamicType()->Name(), f.GetMessageString())});
+    talk.fail({ VG_ERR_GEOMETRY,
+                format("Open CASCADE could not work on it (%s: %s); the file "
+                       "may be damaged: export it again",
+                       f.DynamicType()->Name(), f.GetMessageString()) });
   } catch (const std::exception &f) {
-    talk.fail({VG_ERR_GEOMETRY,
-               format("Open CASCADE could not work on it (%s)", f.what())});
+    talk.fail({ VG_ERR_GEOMETRY,
+                format("Open CASCADE could not work on it (%s)", f.what()) });
   }
 }
 
 /* Whoever closes the other end wants no more: also when a call never ends. */
 void watch(int fd)
 {
-  pollfd p = {fd, POLLRDHUP, 0};
+  pollfd p = { fd, POLLRDHUP, 0 };
 
   for (;;)
     if (poll(&p, 1, -1) > 0) _exit(0);
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED 1          /* by gcc; their shadow is terabytes */
+#define SANITIZED 1 /* by gcc; their shadow is terabytes */
 #elif defined(__has_feature)
-#define SANITIZED \
+#define SANITIZED                                                              \
   (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
 #else
 #define SANITIZED 0
@@ -340,7 +356,7 @@ void limit_memory()
 #endif
 }
 
-}  // namespace
+} // namespace
 
 extern "C" vg_occt_entry vg_occt_serve;
 

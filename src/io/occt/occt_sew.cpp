@@ -16,18 +16,20 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
-namespace {
+namespace
+{
 
 /* Tolerances over the diagonal, in turn; those behind the first stay below
  * this share of the shortest edge that is longer than the first. */
-const double sequence[] = {1e-6, 1e-5, 1e-4}, share_of_edge = 0.1;   /* S52 */
+const double sequence[] = { 1e-6, 1e-5, 1e-4 }, share_of_edge = 0.1; /* S52 */
 /* More open edges than this are not compared with each other. */
 const size_t most_compared = 2000;
 const int most_places = 3;
 /* Error of a shell's volume that Open CASCADE aims at. */
-const double integral_near = 1e-6;   /* S55 */
+const double integral_near = 1e-6; /* S55 */
 
 /* An edge of a face, as the face has it. */
 struct Use {
@@ -47,8 +49,8 @@ struct Edges {
         if (BRep_Tool::Degenerated(TopoDS::Edge(e.Current()))) continue;
         size_t at = static_cast<size_t>(map.Add(e.Current()));
         if (at > uses.size()) uses.emplace_back();
-        uses[at - 1].push_back({i, e.Current().Orientation() ==
-                                       TopAbs_REVERSED});
+        uses[at - 1].push_back(
+          { i, e.Current().Orientation() == TopAbs_REVERSED });
       }
     }
     for (const std::vector<Use> &u : uses) {
@@ -72,8 +74,7 @@ std::string middle(const TopoDS_Edge &edge)
   double first, last;
   Handle(Geom_Curve) c = BRep_Tool::Curve(edge, first, last);
 
-  return c.IsNull() ? "an unknown place"
-                    : place(c->Value((first + last) / 2));
+  return c.IsNull() ? "an unknown place" : place(c->Value((first + last) / 2));
 }
 
 /* --- sewing -------------------------------------------------------------- */
@@ -82,7 +83,7 @@ struct Sewn {
   Model model;
   double tolerance;
   size_t n_open;
-  std::string places;        /* of the first edges that were joined */
+  std::string places; /* of the first edges that were joined */
   std::vector<std::string> notes;
 
   /* What sewing made of a face: itself, several, or nothing. */
@@ -97,7 +98,8 @@ struct Sewn {
     }
     if (model.faces.size() > n) return;
     notes.push_back(format("%s at %s is narrower than the tolerance of sewing "
-                           "and was dropped", named(from).c_str(),
+                           "and was dropped",
+                           named(from).c_str(),
                            place(point_of(from.shape)).c_str()));
     model.faces.push_back(from);
     model.faces.back().shape.Nullify();
@@ -151,7 +153,7 @@ double shortest_edge(const Edges &edges, double least)
 
   for (size_t i = 0; i < edges.uses.size(); i++) {
     double length = GCPnts_AbscissaPoint::Length(
-        BRepAdaptor_Curve(edges.edge(i)));
+      BRepAdaptor_Curve(edges.edge(i)));
 
     if (length > least) shortest = std::min(shortest, length);
   }
@@ -190,7 +192,8 @@ Sewn sew_best(const Model &model, const std::vector<double> &list,
 
   for (size_t i = 1; i < list.size(); i++) {
     if (!best.n_open || list[i] > most ||
-        !may_have_partner(Edges(best.model), list[i])) break;
+        !may_have_partner(Edges(best.model), list[i]))
+      break;
     Sewn next = sew_within(model, list[i], before);
     if (next.n_open < best.n_open) best = next;
   }
@@ -201,7 +204,8 @@ Sewn sew_best(const Model &model, const std::vector<double> &list,
 
 /* Faces turned like their neighbours, from the first one of each shell on;
  * those of solids come first and are never turned. */
-class Turning {
+class Turning
+{
 public:
   explicit Turning(Model &model)
       : model_(model), edges_(model), of_(model.faces.size()),
@@ -220,7 +224,8 @@ public:
     for (int solid = 1; solid >= 0; solid--)
       for (size_t i = 0; i < state_.size(); i++)
         if (state_[i] == unknown && !model_.faces[i].shape.IsNull() &&
-            (model_.faces[i].solid >= 0) == (solid == 1)) walk(i);
+            (model_.faces[i].solid >= 0) == (solid == 1))
+          walk(i);
     for (size_t i = 0; i < state_.size(); i++)
       if (state_[i] == turned) {
         model_.faces[i].shape.Reverse();
@@ -246,15 +251,16 @@ private:
         if (state_[other] != unknown) continue;
         bool agree = u[0].is_reversed != u[1].is_reversed;
         state_[other] = (state_[me] == kept) == agree ||
-                                model_.faces[other].solid >= 0
-                            ? kept : turned;
+                            model_.faces[other].solid >= 0
+                        ? kept
+                        : turned;
         todo.push_back(other);
       }
   }
 
   Model &model_;
   Edges edges_;
-  std::vector<std::vector<size_t>> of_;   /* edges of faces */
+  std::vector<std::vector<size_t>> of_; /* edges of faces */
   std::vector<char> state_;
 };
 
@@ -282,7 +288,7 @@ void note_edges(const Model &model, double tolerance, const Talk &talk)
   }
 }
 
-}  // namespace
+} // namespace
 
 std::vector<double> tolerances(const vg_cad_ask &ask, const Model &model)
 {
@@ -319,7 +325,8 @@ void orient(Model &model, double tolerance, const Talk &talk)
 {
   if (size_t n = Turning(model).run())
     talk.note(format("%zu faces that are not of a solid were turned like their "
-                     "neighbours", n));
+                     "neighbours",
+                     n));
   note_edges(model, tolerance, talk);
 }
 
@@ -374,4 +381,4 @@ void measure_volume(Model &model)
   model.volume = model.is_solid ? sum : absolute;
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

@@ -12,17 +12,20 @@
 #include <XSAlgo.hxx>
 #include <XSAlgo_AlgoContainer.hxx>
 
-namespace vg_occt {
-namespace {
+namespace vg_occt
+{
+namespace
+{
 
-const size_t MANY = 4000;  /* faces: 2 s; four times that for twice as many */
+const size_t MANY = 4000; /* faces: 2 s; four times that for twice as many */
 
-class Mending : public XSAlgo_AlgoContainer {
+class Mending : public XSAlgo_AlgoContainer
+{
 public:
   TopoDS_Shape ProcessShape(const TopoDS_Shape &shape, const double precision,
                             const double most, const char *resource,
                             const char *sequence,
-                            Handle(Standard_Transient) &info,
+                            Handle(Standard_Transient) & info,
                             const Message_ProgressRange &progress,
                             const bool non_manifold) const override;
 };
@@ -31,7 +34,7 @@ public:
 TopoDS_Shape Mending::ProcessShape(const TopoDS_Shape &shape,
                                    const double precision, const double most,
                                    const char *resource, const char *sequence,
-                                   Handle(Standard_Transient) &info,
+                                   Handle(Standard_Transient) & info,
                                    const Message_ProgressRange &progress,
                                    const bool non_manifold) const
 {
@@ -39,8 +42,8 @@ TopoDS_Shape Mending::ProcessShape(const TopoDS_Shape &shape,
     return XSAlgo_AlgoContainer::ProcessShape(shape, precision, most, resource,
                                               sequence, info, progress,
                                               non_manifold);
-  Handle(ShapeProcess_ShapeContext) context =
-      new ShapeProcess_ShapeContext(shape, "");
+  Handle(ShapeProcess_ShapeContext)
+    context = new ShapeProcess_ShapeContext(shape, "");
   Handle(ShapeFix_Shape) fix = new ShapeFix_Shape(shape);
 
   context->SetNonManifold(non_manifold);
@@ -59,7 +62,7 @@ TopoDS_Shape Mending::ProcessShape(const TopoDS_Shape &shape,
   return context->Result();
 }
 
-}  // namespace
+} // namespace
 
 size_t count_faces(const TopoDS_Shape &shape, size_t most)
 {
@@ -72,8 +75,8 @@ size_t count_faces(const TopoDS_Shape &shape, size_t most)
 
 void mend_large_shells()
 {
-  XSAlgo::Init();              /* would else put its own there later */
+  XSAlgo::Init(); /* would else put its own there later */
   XSAlgo::SetAlgoContainer(new Mending);
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

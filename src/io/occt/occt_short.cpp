@@ -6,17 +6,19 @@
 
 #include <gp_Vec.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
-namespace {
+namespace
+{
 
 const int most_passes = 10;
 /* Square of the cosine by which a triangle may turn: 60 degrees. */
-const double most_turn = 0.25;   /* S51 */
+const double most_turn = 0.25; /* S51 */
 
 struct Short {
   double length2;
-  uint32_t a, b;             /* a < b */
+  uint32_t a, b; /* a < b */
 };
 
 bool before(const Short &x, const Short &y)
@@ -39,11 +41,17 @@ void keep(std::vector<T> &list, size_t width, const std::vector<bool> &gone)
   list.resize(width * n);
 }
 
-class Collapse {
+class Collapse
+{
 public:
-  Collapse(Surface &s, double least) : s_(s), least2_(least * least) {}
+  Collapse(Surface &s, double least) : s_(s), least2_(least * least)
+  {
+  }
 
-  bool has_short() { return !list().empty(); }
+  bool has_short()
+  {
+    return !list().empty();
+  }
 
   void run()
   {
@@ -54,7 +62,8 @@ public:
       for (int k = 0; k < 3; k++) of_[s_.tri[3 * t + k]].push_back(t);
     for (size_t i = 0; i < s_.curve.size(); i++)
       for (int k = 0; k < 2; k++) near_[s_.segment[2 * i + k]].push_back(i);
-    for (int i = 0; i < most_passes && pass(); i++) {}
+    for (int i = 0; i < most_passes && pass(); i++) {
+    }
     sweep();
   }
 
@@ -74,14 +83,15 @@ private:
         uint32_t a = s_.tri[3 * t + k], b = s_.tri[3 * t + (k + 1) % 3];
         double d = at(a).SquareDistance(at(b));
 
-        if (d < least2_ && a != b) out.push_back({d, std::min(a, b),
-                                                  std::max(a, b)});
+        if (d < least2_ && a != b)
+          out.push_back({ d, std::min(a, b), std::max(a, b) });
       }
     std::sort(out.begin(), out.end(), before);
     out.erase(std::unique(out.begin(), out.end(),
                           [](const Short &x, const Short &y) {
                             return x.a == y.a && x.b == y.b;
-                          }), out.end());
+                          }),
+              out.end());
     return out;
   }
 
@@ -161,7 +171,8 @@ private:
       gp_Vec is = normal(v);
       double dot = is * was;
       if (!(dot > 0 && dot * dot >= most_turn * is.SquareMagnitude() *
-                                        was.SquareMagnitude())) return false;
+                                      was.SquareMagnitude()))
+        return false;
     }
     return true;
   }
@@ -245,11 +256,11 @@ private:
   Surface &s_;
   double least2_;
   std::vector<bool> dead_;
-  std::vector<std::vector<size_t>> of_;     /* triangles of points */
-  std::vector<std::vector<size_t>> near_;   /* segments of points */
+  std::vector<std::vector<size_t>> of_;   /* triangles of points */
+  std::vector<std::vector<size_t>> near_; /* segments of points */
 };
 
-}  // namespace
+} // namespace
 
 void drop_unused(Surface &s)
 {
@@ -275,4 +286,4 @@ void collapse_short(Surface &s, double least)
   all.run();
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

@@ -19,20 +19,26 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Vertex.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
-namespace {
+namespace
+{
 
 const uint32_t none = UINT32_MAX;
 /* Shortest edge worth having, over the diagonal and over the size of the median
  * face, which a far boundary does not change. */
-const double least_of_all = 1e-7, least_of_face = 1e-6;   /* S51 */
+const double least_of_all = 1e-7, least_of_face = 1e-6; /* S51 */
 
 /* Mark in s.rim which edges of triangles are on the rims of their faces: those
  * of one triangle only. Triangles of one face are neighbours in the list. */
 void find_rims(Surface &s)
 {
-  struct Side { uint32_t a, b; size_t tri; int corner; };
+  struct Side {
+    uint32_t a, b;
+    size_t tri;
+    int corner;
+  };
   std::vector<Side> sides;
   auto same = [](const Side &x, const Side &y) {
     return x.a == y.a && x.b == y.b;
@@ -47,7 +53,7 @@ void find_rims(Surface &s)
         uint32_t a = s.tri[3 * end + (k + 1) % 3];
         uint32_t b = s.tri[3 * end + (k + 2) % 3];
 
-        sides.push_back({std::min(a, b), std::max(a, b), end, k});
+        sides.push_back({ std::min(a, b), std::max(a, b), end, k });
       }
     std::sort(sides.begin(), sides.end(), [](const Side &x, const Side &y) {
       return x.a != y.a ? x.a < y.a : x.b < y.b;
@@ -59,9 +65,12 @@ void find_rims(Surface &s)
   }
 }
 
-class Builder {
+class Builder
+{
 public:
-  Builder(Model &model, Surface &out) : model_(model), out_(out) {}
+  Builder(Model &model, Surface &out) : model_(model), out_(out)
+  {
+  }
 
   /* Returns false for a face without triangles. */
   bool add(size_t piece, uint32_t patch)
@@ -82,7 +91,7 @@ public:
   }
 
 private:
-  static gp_Pnt node(const Handle(Poly_Triangulation) &t,
+  static gp_Pnt node(const Handle(Poly_Triangulation) & t,
                      const TopLoc_Location &at, int k)
   {
     return t->Node(k).Transformed(at.Transformation());
@@ -92,8 +101,8 @@ private:
   {
     uint32_t at = static_cast<uint32_t>(out_.point.size() / 3);
 
-    out_.point.insert(out_.point.end(), {p.X() + 0.0, p.Y() + 0.0,
-                                         p.Z() + 0.0});
+    out_.point.insert(out_.point.end(),
+                      { p.X() + 0.0, p.Y() + 0.0, p.Z() + 0.0 });
     out_.corner.push_back(false);
     return at;
   }
@@ -111,24 +120,24 @@ private:
 
   /* Points of an edge from its first parameter to its last. The face that
    * comes first says where they are; all have the same. */
-  const std::vector<uint32_t> &
-  divisions(const TopoDS_Edge &edge, const Handle(Poly_Triangulation) &t,
-            const TopLoc_Location &at, const TColStd_Array1OfInteger &nodes)
+  const std::vector<uint32_t> &divisions(const TopoDS_Edge &edge,
+                                         const Handle(Poly_Triangulation) & t,
+                                         const TopLoc_Location &at,
+                                         const TColStd_Array1OfInteger &nodes)
   {
     size_t n = static_cast<size_t>(nodes.Length());
     size_t number = static_cast<size_t>(curves_.Add(edge));
     TopoDS_Vertex first, last;
 
     if (number > curve_.size()) {
-      model_.curves.push_back(
-          TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)));
+      model_.curves.push_back(TopoDS::Edge(edge.Oriented(TopAbs_FORWARD)));
       curve_.emplace_back();
     }
     std::vector<uint32_t> &list = curve_[number - 1];
     if (list.size() == n) return list;
     if (!list.empty())
-      throw Failure{VG_ERR_GEOMETRY,
-                    format("curve %zu is divided in two ways", number)};
+      throw Failure{ VG_ERR_GEOMETRY,
+                     format("curve %zu is divided in two ways", number) };
     TopExp::Vertices(model_.curves[number - 1], first, last);
     list.resize(n);
     for (size_t k = 0; k < n; k++) {
@@ -147,16 +156,16 @@ private:
   {
     for (size_t k = 0; k + 1 < list.size(); k++) {
       if (list[k] == list[k + 1]) continue;
-      out_.segment.insert(out_.segment.end(), {list[k], list[k + 1]});
+      out_.segment.insert(out_.segment.end(), { list[k], list[k + 1] });
       out_.curve.push_back(number);
     }
   }
 
-  void add_edge(const TopoDS_Edge &edge, const Handle(Poly_Triangulation) &t,
+  void add_edge(const TopoDS_Edge &edge, const Handle(Poly_Triangulation) & t,
                 const TopLoc_Location &at)
   {
-    Handle(Poly_PolygonOnTriangulation) p =
-        BRep_Tool::PolygonOnTriangulation(edge, t, at);
+    Handle(Poly_PolygonOnTriangulation)
+      p = BRep_Tool::PolygonOnTriangulation(edge, t, at);
     TopoDS_Vertex first, last;
 
     if (p.IsNull()) return;
@@ -169,12 +178,12 @@ private:
     }
     const std::vector<uint32_t> &list = divisions(edge, t, at, nodes);
     for (size_t k = 0; k < list.size(); k++)
-      global_[static_cast<size_t>(
-          nodes(nodes.Lower() + static_cast<int>(k)))] = list[k];
+      global_[static_cast<size_t>(nodes(nodes.Lower() + static_cast<int>(k)))] =
+        list[k];
   }
 
   /* Those that a vertex took in are gone. */
-  void add_triangles(size_t piece, const Handle(Poly_Triangulation) &t,
+  void add_triangles(size_t piece, const Handle(Poly_Triangulation) & t,
                      uint32_t patch)
   {
     const Face &f = model_.faces[piece];
@@ -204,7 +213,7 @@ private:
   TopTools_IndexedMapOfShape vertices_, curves_;
   std::vector<uint32_t> vertex_;
   std::vector<std::vector<uint32_t>> curve_;
-  std::vector<uint32_t> global_;   /* of the nodes of one face */
+  std::vector<uint32_t> global_; /* of the nodes of one face */
 };
 
 /* What makes a patch, and its name. */
@@ -235,10 +244,13 @@ void set_name(vg_cad_patch &p, const std::string &name)
 
 /* The patch of a face; groups count from 1 in the order of their first
  * faces. */
-class Patches {
+class Patches
+{
 public:
   Patches(const vg_cad_ask &ask, std::vector<vg_cad_patch> &list)
-      : ask_(ask), list_(list) {}
+      : ask_(ask), list_(list)
+  {
+  }
 
   uint32_t of(const Face &f)
   {
@@ -246,8 +258,8 @@ public:
     uint32_t next = static_cast<uint32_t>(list_.size());
     vg_cad_patch p;
 
-    auto found = known_.emplace(ask_.patches ? name
-                                             : std::to_string(f.number), next);
+    auto found = known_.emplace(ask_.patches ? name : std::to_string(f.number),
+                                next);
 
     if (!found.second) return found.first->second;
     p.id = ask_.patches ? static_cast<int32_t>(next + 1)
@@ -265,8 +277,7 @@ private:
 
 /* Deflections go by the size of each edge, so that a far boundary does not
  * coarsen the body in it. One thread: the same for everybody. */
-void run_mesher(const vg_cad_ask &ask, const TopoDS_Shape &shape,
-                double least)
+void run_mesher(const vg_cad_ask &ask, const TopoDS_Shape &shape, double least)
 {
   IMeshTools_Parameters p;
 
@@ -283,11 +294,11 @@ size_t count_bare(const Model &model)
 {
   TopLoc_Location at;
 
-  return static_cast<size_t>(std::count_if(
-      model.faces.begin(), model.faces.end(), [&](const Face &f) {
-        return !f.shape.IsNull() &&
-               BRep_Tool::Triangulation(f.shape, at).IsNull();
-      }));
+  return static_cast<size_t>(
+    std::count_if(model.faces.begin(), model.faces.end(), [&](const Face &f) {
+      return !f.shape.IsNull() &&
+             BRep_Tool::Triangulation(f.shape, at).IsNull();
+    }));
 }
 
 /* Where faces stay bare, mended ones may not. */
@@ -307,7 +318,7 @@ void make_triangles(const vg_cad_ask &ask, Model &model, double least,
   else run_mesher(ask, together(model), least);
 }
 
-}  // namespace
+} // namespace
 
 void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
                  const Talk &talk)
@@ -336,13 +347,13 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
   }
   if (n_bad)
     talk.note(format("%zu faces could not be triangulated and are holes, the "
-                     "first is %s: its rim may cross itself", n_bad,
-                     bad.c_str()));
+                     "first is %s: its rim may cross itself",
+                     n_bad, bad.c_str()));
   if (out.tri.empty())
-    throw Failure{VG_ERR_GEOMETRY, "none of its faces could be triangulated"};
+    throw Failure{ VG_ERR_GEOMETRY, "none of its faces could be triangulated" };
   if (ask.least > 0) collapse_short(out, least);
   follow_faces(out, model);
   find_rims(out);
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

@@ -26,19 +26,21 @@
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
 
-namespace vg_occt {
+namespace vg_occt
+{
 
-namespace {
+namespace
+{
 
 /* Faces of all solids of a group for which the union is tried: beyond, the time
  * that it takes grows out of bounds. */
 const size_t most_faces = 5000;
 
 /* The cells of a solid have its volume, but for this share. */
-const double volume_near = 1e-2;   /* S54 */
+const double volume_near = 1e-2; /* S54 */
 
-typedef std::vector<size_t> Group;   /* of solids, by number, ascending */
-typedef std::vector<TopoDS_Shape> Solids;   /* null: no closed one */
+typedef std::vector<size_t> Group;        /* of solids, by number, ascending */
+typedef std::vector<TopoDS_Shape> Solids; /* null: no closed one */
 
 /* Has every edge an even number of these faces? */
 bool is_closed(const std::vector<TopoDS_Shape> &faces)
@@ -54,9 +56,8 @@ bool is_closed(const std::vector<TopoDS_Shape> &faces)
       if (at > n.size()) n.push_back(0);
       n[at - 1]++;
     }
-  return !n.empty() && std::all_of(n.begin(), n.end(), [](size_t k) {
-    return k % 2 == 0;
-  });
+  return !n.empty() &&
+         std::all_of(n.begin(), n.end(), [](size_t k) { return k % 2 == 0; });
 }
 
 /* The solids that the faces of the model bound. */
@@ -65,7 +66,7 @@ Solids build_solids(const Model &model)
   const std::vector<size_t> of = find_shells(model);
   std::vector<TopoDS_Shell> shell(of.size());
   std::vector<std::vector<TopoDS_Shape>> faces(
-      static_cast<size_t>(model.n_solid));
+    static_cast<size_t>(model.n_solid));
   Solids out(faces.size());
   BRep_Builder builder;
 
@@ -102,7 +103,7 @@ std::vector<Group> touching(const Solids &solids, double tolerance)
 
   for (size_t i = 0; i < box.size(); i++) {
     of[i] = i;
-    if (solids[i].IsNull()) continue;   /* its box stays void: it is out */
+    if (solids[i].IsNull()) continue; /* its box stays void: it is out */
     BRepBndLib::Add(solids[i], box[i], Standard_False);
     box[i].Enlarge(tolerance);
     for (size_t j = 0; j < i; j++)
@@ -121,7 +122,8 @@ std::vector<Group> touching(const Solids &solids, double tolerance)
 }
 
 /* The cells of a group of solids. */
-class Cells {
+class Cells
+{
 public:
   Cells(const Solids &solids, const Group &group, double tolerance)
       : group_(group)
@@ -140,7 +142,10 @@ public:
     take_faces();
   }
 
-  bool failed() const { return failed_; }
+  bool failed() const
+  {
+    return failed_;
+  }
 
   /* Does any of them touch another one? */
   bool touch() const
@@ -303,9 +308,9 @@ private:
   const Group &group_;
   BOPAlgo_Builder fuse_;
   bool failed_ = false;
-  std::vector<TopTools_IndexedMapOfShape> cells_;   /* of each solid */
+  std::vector<TopTools_IndexedMapOfShape> cells_; /* of each solid */
   TopTools_IndexedMapOfShape faces_;
-  std::vector<size_t> count_;        /* cells of each face */
+  std::vector<size_t> count_; /* cells of each face */
   std::vector<bool> taken_;
 };
 
@@ -358,25 +363,26 @@ void unite_group(const Solids &solids, Group group, double tolerance,
     Cells cells(solids, group, tolerance);
 
     if (cells.failed())
-      throw Failure{VG_ERR_GEOMETRY, "the general fuse failed"};
+      throw Failure{ VG_ERR_GEOMETRY, "the general fuse failed" };
     if (!cells.touch()) return;
     Group outer = cells.containers(), rest;
     if (outer.empty()) {
       std::string first = where(model, group[0]);
 
       if (!replace_faces(cells, group, model))
-        throw Failure{VG_ERR_GEOMETRY, "its result is not valid"};
+        throw Failure{ VG_ERR_GEOMETRY, "its result is not valid" };
       say.push_back(format("%zu solids touch or overlap and were united within "
                            "%.3g: their common walls were dropped, the first "
-                           "solid is %s", group.size(), tolerance,
-                           first.c_str()));
+                           "solid is %s",
+                           group.size(), tolerance, first.c_str()));
       return;
     }
     for (size_t k : outer)
       say.push_back(format("the solid %s contains another one; it was not "
                            "united with it. Where they touch, subtract the "
                            "inner one if the outer one is the fluid, else "
-                           "delete it", where(model, k).c_str()));
+                           "delete it",
+                           where(model, k).c_str()));
     std::set_difference(group.begin(), group.end(), outer.begin(), outer.end(),
                         std::back_inserter(rest));
     if (rest.size() < 2) return;
@@ -403,13 +409,12 @@ std::string try_to_unite(const Solids &solids, const Group &group,
 
 size_t count_faces_of(const Model &model, const Group &group)
 {
-  return static_cast<size_t>(std::count_if(
-      model.faces.begin(), model.faces.end(), [&](const Face &f) {
-        return has(group, f.solid);
-      }));
+  return static_cast<size_t>(
+    std::count_if(model.faces.begin(), model.faces.end(),
+                  [&](const Face &f) { return has(group, f.solid); }));
 }
 
-}  // namespace
+} // namespace
 
 void unite(const vg_cad_ask &ask, Model &model, const Talk &talk)
 {
@@ -427,9 +432,10 @@ void unite(const vg_cad_ask &ask, Model &model, const Talk &talk)
     if (!why.empty())
       talk.note(format("%zu solids touch or overlap, but could not be united "
                        "(%s); only walls that they share as a whole are "
-                       "dropped; the first solid is %s", group.size(),
-                       why.c_str(), where(model, group[0]).c_str()));
+                       "dropped; the first solid is %s",
+                       group.size(), why.c_str(),
+                       where(model, group[0]).c_str()));
   }
 }
 
-}  // namespace vg_occt
+} // namespace vg_occt

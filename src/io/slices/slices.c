@@ -37,8 +37,7 @@ vg_status vg_slice_file_size(const struct vg_slice_file *f, uint64_t *size,
 
 vg_status vg_slice_file_put(const struct vg_slice_file *f,
                             struct vg_shared_file *to,
-                            const struct vg_slice *slice,
-                            struct vg_error *err)
+                            const struct vg_slice *slice, struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
   vg_status st = vg_output_shared(to, &out, err);
@@ -119,7 +118,8 @@ static vg_status check_nodes(size_t n, int width, const uint32_t *node,
 {
   for (size_t i = 0; i < n * (size_t)width; i++)
     if (node[i] >= n_point)
-      return vg_fail(err, VG_ERR_INPUT, "boundary %s %zu of the mesh is on "
+      return vg_fail(err, VG_ERR_INPUT,
+                     "boundary %s %zu of the mesh is on "
                      "point %lu, but only %zu points are on the boundary",
                      what, i / (size_t)width + 1, (unsigned long)node[i] + 1,
                      n_point);
@@ -134,8 +134,9 @@ vg_status vg_slices_check_boundary(const struct vg_slices *s,
   vg_status st = check_nodes(m->n_tri, 3, (const uint32_t *)m->tri, n,
                              "triangle", err);
 
-  return st < 0 ? st : check_nodes(m->n_quad, 4, (const uint32_t *)m->quad, n,
-                                   "quadrilateral", err);
+  return st < 0 ? st
+                : check_nodes(m->n_quad, 4, (const uint32_t *)m->quad, n,
+                              "quadrilateral", err);
 }
 
 void vg_slice_points(const struct vg_slice *slice, size_t k, size_t n,
@@ -174,7 +175,10 @@ void vg_boundary_points_add(struct vg_boundary_points *b,
   }
 }
 
-struct sent_point { uint64_t at; double x[3]; };
+struct sent_point {
+  uint64_t at;
+  double x[3];
+};
 
 static vg_status pack_points(const struct vg_boundary_points *b,
                              struct vg_bytes *to, struct vg_error *err)
@@ -222,8 +226,10 @@ vg_status vg_boundary_points_share(struct vg_comm *comm,
   free(mine.data);
   for (size_t i = 0; i < b->n && st >= 0; i++)
     if (!b->known[i])
-      st = vg_fail(err, VG_ERR_INPUT, "boundary point %zu is in no slice of "
-                   "the mesh", i + 1);
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "boundary point %zu is in no slice of "
+                   "the mesh",
+                   i + 1);
   return st;
 }
 
@@ -261,8 +267,19 @@ done:
 
 /* --- forms --- */
 
-enum form { FORM_NONE, FORM_UGRID, FORM_COGSG, FORM_VTU, FORM_PVTU, FORM_SU2,
-            FORM_GMSH, FORM_CGNS, FORM_FLUENT, FORM_PART, FORM_BOUNDARY };
+enum form {
+  FORM_NONE,
+  FORM_UGRID,
+  FORM_COGSG,
+  FORM_VTU,
+  FORM_PVTU,
+  FORM_SU2,
+  FORM_GMSH,
+  FORM_CGNS,
+  FORM_FLUENT,
+  FORM_PART,
+  FORM_BOUNDARY
+};
 
 static enum form form_of(const char *word)
 {
@@ -289,23 +306,21 @@ int vg_slices_can_write(const char *form)
 }
 
 /* What shows the boundary only: by rank 0, with the writers of meshes. */
-static vg_status write_boundary(struct vg_comm *comm,
-                                const struct vg_slices *s, const char *path,
-                                const char *stem, const char *form,
-                                int threads, struct vg_error *err)
+static vg_status write_boundary(struct vg_comm *comm, const struct vg_slices *s,
+                                const char *path, const char *stem,
+                                const char *form, int threads,
+                                struct vg_error *err)
 {
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st = vg_slices_boundary(comm, s, threads, &m, err);
 
   if (st < 0) return st;
-  if (vg_comm_rank(comm))
-    st = VG_OK;
+  if (vg_comm_rank(comm)) st = VG_OK;
   else if (!strcmp(form, "mapbc"))
     st = vg_cogsg_write_mapbc(stem, &m, NULL, err);
   else if (!strcmp(form, "fun3d.mapbc"))
     st = vg_mapbc_write(path, &m, VG_MAPBC_FUN3D, NULL, NULL, err);
-  else
-    st = vg_vtu_write_boundary(path, &m, NULL, 0, err);
+  else st = vg_vtu_write_boundary(path, &m, NULL, 0, err);
   vg_mesh_release(&m);
   return vg_comm_agree(comm, st, err);
 }
@@ -323,9 +338,8 @@ static vg_status write_ugrid(struct vg_comm *comm, const struct vg_slices *s,
   return vg_slices_ugrid_close(u, st, err);
 }
 
-vg_status vg_slices_write_with(struct vg_comm *comm,
-                               const struct vg_slices *s, const char *stem,
-                               const char *form,
+vg_status vg_slices_write_with(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *stem, const char *form,
                                const struct vg_slices_options *o,
                                struct vg_error *err)
 {
@@ -338,20 +352,13 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
     st = vg_fail_memory(err, "the output paths");
   }
   st = vg_comm_agree(comm, st, err);
-  if (st >= 0)
-    switch (form_of(form)) {
-    case FORM_UGRID:
-      st = write_ugrid(comm, s, path, o, err);
-      break;
-    case FORM_COGSG:
-      st = vg_slices_write_cogsg(comm, s, stem, o, err);
-      break;
+  if (st >= 0) switch (form_of(form)) {
+    case FORM_UGRID: st = write_ugrid(comm, s, path, o, err); break;
+    case FORM_COGSG: st = vg_slices_write_cogsg(comm, s, stem, o, err); break;
     case FORM_VTU:
       st = vg_slices_write_vtu(comm, s, path, o->threads, err);
       break;
-    case FORM_PVTU:
-      st = vg_slices_write_pvtu(comm, s, stem, o, err);
-      break;
+    case FORM_PVTU: st = vg_slices_write_pvtu(comm, s, stem, o, err); break;
     case FORM_SU2:
       st = vg_slices_write_su2(comm, s, path, o->threads, err);
       break;
@@ -371,7 +378,8 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
       st = write_boundary(comm, s, path, stem, form, o->threads, err);
       break;
     default:
-      st = vg_fail(err, VG_ERR_UNSUPPORTED, "%s: a mesh in slices cannot be "
+      st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: a mesh in slices cannot be "
                    "written in this form; known are cgns, cogsg, fluent.msh, "
                    "msh, pvtu, su2, vtu and the binary kinds of .ugrid, as "
                    "lb8.ugrid",

@@ -7,19 +7,22 @@
 #include "core/mesh/slices.h"
 
 struct vg_slices_options {
-  int threads;            /* to encode with; 0: one per core at hand */
-  int tail;               /* .ugrid: with the number of layer tetrahedra, as
-                             vg_ugrid_write_tail */
-  uint32_t record_limit;  /* bytes of a Fortran subrecord; 0: 2 GB */
-  uint64_t piece_cells;   /* .pvtu: a new piece when slices begin behind
-                             another multiple of this; 0: 2 M */
+  int threads;           /* to encode with; 0: one per core at hand */
+  int tail;              /* .ugrid: with the number of layer tetrahedra, as
+                            vg_ugrid_write_tail */
+  uint32_t record_limit; /* bytes of a Fortran subrecord; 0: 2 GB */
+  uint64_t piece_cells;  /* .pvtu: a new piece when slices begin behind
+                            another multiple of this; 0: 2 M */
 };
-#define VG_SLICES_OPTIONS_INIT { .threads = 0 }
+#define VG_SLICES_OPTIONS_INIT                                                 \
+  {                                                                            \
+    .threads = 0                                                               \
+  }
 
 /** Can a mesh in slices be written in this form? The words of the run deck's
  * write list: "cogsg", every binary .ugrid ("lb8.ugrid", ...), "vtu", "pvtu",
- * "su2", "msh", "cgns", "fluent.msh", and "mapbc", "fun3d.mapbc", "surface.vtu"; and
- * "part.N". */
+ * "su2", "msh", "cgns", "fluent.msh", and "mapbc", "fun3d.mapbc",
+ * "surface.vtu"; and "part.N". */
 int vg_slices_can_write(const char *form);
 
 /** Write STEM.form, and what belongs to it: .bc and .mapbc of .cogsg (as
@@ -30,8 +33,8 @@ int vg_slices_can_write(const char *form);
  * and threads; "vtu" has fields angle_min and radius_ratio when all cells are
  * tetrahedra. Where the mesh has parts for the solver, vtu and pvtu have them
  * as cell data solver_part, and part.N, with N their number, is a METIS file
- * (io/stream/metis_part.h). A .pvtu has no such twin: a piece for every run of slices of
- * about 2 M cells, in which each slice has its own points; cell data
+ * (io/stream/metis_part.h). A .pvtu has no such twin: a piece for every run of
+ * slices of about 2 M cells, in which each slice has its own points; cell data
  * `subdomain` and `kind` of the slices.
  * Memory: a slice and 1 MB per thread; boundary points for cogsg and mapbc.
  * VG_ERR_UNSUPPORTED: another form, counts beyond it, or cells that it does
@@ -40,9 +43,8 @@ vg_status vg_slices_write(struct vg_comm *comm, const struct vg_slices *s,
                           const char *stem, const char *form, int threads,
                           struct vg_error *err);
 
-vg_status vg_slices_write_with(struct vg_comm *comm,
-                               const struct vg_slices *s, const char *stem,
-                               const char *form,
+vg_status vg_slices_write_with(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *stem, const char *form,
                                const struct vg_slices_options *o,
                                struct vg_error *err);
 
@@ -55,8 +57,8 @@ vg_status vg_slices_write_with(struct vg_comm *comm,
  * or inverted, or points one. */
 struct vg_slices_ugrid;
 int vg_slices_is_ugrid(const char *form);
-vg_status vg_slices_ugrid_open(struct vg_comm *comm,
-                               const struct vg_slices *s, const char *path,
+vg_status vg_slices_ugrid_open(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *path,
                                const struct vg_slices_options *o,
                                struct vg_slices_ugrid **out,
                                struct vg_error *err);

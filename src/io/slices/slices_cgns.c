@@ -24,8 +24,7 @@ static void put_axis(const struct vg_cgns *c, const struct vg_slice *slice,
   vg_cgns_seek_x(out, &c->places, axis, slice->point_at);
   for (size_t i = 0, n; i < slice->n_own; i += n) {
     n = slice->n_own - i < BLOCK ? slice->n_own - i : BLOCK;
-    for (size_t k = 0; k < n; k++)
-      block[k] = slice->x[slice->own[i + k]][axis];
+    for (size_t k = 0; k < n; k++) block[k] = slice->x[slice->own[i + k]][axis];
     vg_output_f64(out, n, block);
   }
 }
@@ -65,9 +64,9 @@ static vg_status share_places(struct vg_comm *comm, struct vg_cgns_places *p,
   return st;
 }
 
-vg_status vg_slices_write_cgns(struct vg_comm *comm,
-                               const struct vg_slices *s, const char *path,
-                               int threads, struct vg_error *err)
+vg_status vg_slices_write_cgns(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *path, int threads,
+                               struct vg_error *err)
 {
   const struct vg_mesh frame = vg_slices_frame(s);
   struct vg_cgns c = { .frame = &frame };

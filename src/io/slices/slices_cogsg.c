@@ -14,8 +14,8 @@
  * that own them and written by rank 0. */
 struct cogsg {
   struct vg_cogsg_info info;
-  struct vg_mesh mesh;       /* the frame */
-  uint32_t *new_to_old, *old_to_new;  /* of boundary points, or NULL */
+  struct vg_mesh mesh;               /* the frame */
+  uint32_t *new_to_old, *old_to_new; /* of boundary points, or NULL */
   struct vg_boundary_points boundary;
 };
 
@@ -53,7 +53,8 @@ static void put_axis(const struct cogsg *c, const struct vg_slice *slice,
 {
   double block[BLOCK];
   size_t at = slice->point_at < c->boundary.n
-    ? (size_t)(c->boundary.n - slice->point_at) : 0;
+              ? (size_t)(c->boundary.n - slice->point_at)
+              : 0;
 
   if (at >= slice->n_own) return;
   vg_cogsg_seek(out, c->mesh.n_tet, c->mesh.n_point, VG_COGSG_POINTS, axis,
@@ -88,8 +89,8 @@ static vg_status put_boundary(const struct cogsg *c, uint32_t record_limit,
     vg_cogsg_seek(&out, c->mesh.n_tet, c->mesh.n_point, VG_COGSG_POINTS, axis,
                   0);
     for (size_t i = 0; i < c->boundary.n; i++)
-      vg_output_f64(&out, 1, &c->boundary.x[c->new_to_old ? c->new_to_old[i]
-                                                          : i][axis]);
+      vg_output_f64(&out, 1,
+                    &c->boundary.x[c->new_to_old ? c->new_to_old[i] : i][axis]);
   }
   st = vg_output_flush(&out, err);
   vg_output_release(&out);
@@ -154,8 +155,8 @@ done:
   return st;
 }
 
-vg_status vg_slices_write_cogsg(struct vg_comm *comm,
-                                const struct vg_slices *s, const char *stem,
+vg_status vg_slices_write_cogsg(struct vg_comm *comm, const struct vg_slices *s,
+                                const char *stem,
                                 const struct vg_slices_options *o,
                                 struct vg_error *err)
 {

@@ -19,28 +19,32 @@
 
 /* Half a face that is to meet its mate. */
 struct half {
-  uint32_t node[4];          /* rising; of a triangle the last is UINT32_MAX */
-  uint32_t cell;             /* of the mesh, from 1; 0: the boundary's */
-  uint32_t rank, slice, code;  /* of the slice's cell links; of the boundary:
-                                  BOUNDARY, place in `order` */
+  uint32_t node[4];           /* rising; of a triangle the last is UINT32_MAX */
+  uint32_t cell;              /* of the mesh, from 1; 0: the boundary's */
+  uint32_t rank, slice, code; /* of the slice's cell links; of the boundary:
+                                 BOUNDARY, place in `order` */
 };
 #define BOUNDARY UINT32_MAX
 
 /* What a half is told: the cell on its other side; own: its own. From 0. */
-struct told { uint32_t slice, code, cell, own; };
+struct told {
+  uint32_t slice, code, cell, own;
+};
 
 /* Internal faces whose lower cells are of a slice and a kind. */
-struct run { uint64_t kind, cell, n, at; };
+struct run {
+  uint64_t kind, cell, n, at;
+};
 
 struct served {
   struct run run[VG_SLICE_KINDS];
-  size_t first, n;           /* told[first .. first + n - 1] is of it */
+  size_t first, n; /* told[first .. first + n - 1] is of it */
 };
 
 struct worker {
-  struct vg_items half, *told;   /* told: [size], by rank */
+  struct vg_items half, *told; /* told: [size], by rank */
   uint64_t n_quad, n_open;
-  uint32_t open[4];              /* a face that does not close */
+  uint32_t open[4]; /* a face that does not close */
   vg_status st;
   struct vg_error err;
 };
@@ -51,14 +55,14 @@ struct writing {
   int rank, size, threads;
   struct vg_mesh frame;
   struct vg_fluent layout;
-  size_t *start, *order;     /* of the boundary by patch, as in the layout */
-  uint64_t first[VG_SLICE_KINDS];    /* cell of the mesh of each kind */
+  size_t *start, *order; /* of the boundary by patch, as in the layout */
+  uint64_t first[VG_SLICE_KINDS]; /* cell of the mesh of each kind */
   uint64_t n_internal, n_quad;
-  size_t begin, end;         /* faces of the boundary that are written here */
-  uint32_t *cell;            /* [end - begin] on them, from 0 */
-  struct served *served;     /* [n_slice] */
-  struct vg_items told;      /* struct told, by slice and code */
-  struct worker *worker;     /* [threads] */
+  size_t begin, end;     /* faces of the boundary that are written here */
+  uint32_t *cell;        /* [end - begin] on them, from 0 */
+  struct served *served; /* [n_slice] */
+  struct vg_items told;  /* struct told, by slice and code */
+  struct worker *worker; /* [threads] */
   struct vg_shared_file *to;
 };
 
@@ -73,16 +77,17 @@ static vg_status link_slice(const struct vg_slice *s, struct vg_mesh *m,
   m->n_tet = s->n_cell[VG_SLICE_TET];
   m->n_pyr = s->n_cell[VG_SLICE_PYR];
   m->n_pri = s->n_cell[VG_SLICE_PRI];
-  m->tet = (uint32_t (*)[4])(uintptr_t)s->cell[VG_SLICE_TET];
-  m->pyr = (uint32_t (*)[5])(uintptr_t)s->cell[VG_SLICE_PYR];
-  m->pri = (uint32_t (*)[6])(uintptr_t)s->cell[VG_SLICE_PRI];
+  m->tet = (uint32_t(*)[4])(uintptr_t)s->cell[VG_SLICE_TET];
+  m->pyr = (uint32_t(*)[5])(uintptr_t)s->cell[VG_SLICE_PYR];
+  m->pri = (uint32_t(*)[6])(uintptr_t)s->cell[VG_SLICE_PRI];
   return vg_cell_links_build(l, m, 1, "a slice of the mesh", err);
 }
 
 static int kind_of(const struct vg_cell_links *l, uint32_t cell)
 {
-  return cell < l->end_tet ? VG_SLICE_TET : cell < l->end_pyr ? VG_SLICE_PYR
-                                                              : VG_SLICE_PRI;
+  return cell < l->end_tet ? VG_SLICE_TET
+       : cell < l->end_pyr ? VG_SLICE_PYR
+                           : VG_SLICE_PRI;
 }
 
 /* Number in the mesh of a slice's cell. */
@@ -90,8 +95,9 @@ static uint32_t number_of(const struct writing *w, const struct vg_slice *s,
                           const struct vg_cell_links *l, uint32_t cell)
 {
   int kind = kind_of(l, cell);
-  uint32_t before = kind == VG_SLICE_TET ? 0 : kind == VG_SLICE_PYR
-                    ? l->end_tet : l->end_pyr;
+  uint32_t before = kind == VG_SLICE_TET ? 0
+                  : kind == VG_SLICE_PYR ? l->end_tet
+                                         : l->end_pyr;
 
   return (uint32_t)(w->first[kind] + s->cell_at[kind] + (cell - before));
 }
@@ -190,8 +196,8 @@ static void add_boundary(struct writing *w)
   for (size_t at = w->begin; at < w->end; at++) {
     size_t i = w->order[at];
     struct half *h = i < m->n_tri
-      ? add_half(w->worker, 3, m->tri[i])
-      : add_half(w->worker, 4, m->quad[i - m->n_tri]);
+                     ? add_half(w->worker, 3, m->tri[i])
+                     : add_half(w->worker, 4, m->quad[i - m->n_tri]);
 
     if (!h) return;
     h->cell = 0;
@@ -211,8 +217,7 @@ static void tell(struct worker *w, const struct half *to,
   else w->st = vg_fail_memory(&w->err, "the faces between slices");
 }
 
-static void meet(void *context, const unsigned char *item, size_t n,
-                 int worker)
+static void meet(void *context, const unsigned char *item, size_t n, int worker)
 {
   const struct writing *w = context;
   struct worker *to = &w->worker[worker];
@@ -311,7 +316,7 @@ static int compare_run(const void *a, const void *b)
 
   if (x->kind != y->kind) return x->kind < y->kind ? -1 : 1;
   if (x->cell != y->cell) return x->cell < y->cell ? -1 : 1;
-  return (x->n > y->n) - (x->n < y->n);   /* runs without cells first */
+  return (x->n > y->n) - (x->n < y->n); /* runs without cells first */
 }
 
 /* Collective: the runs of all ranks in their order, with their places. */
@@ -504,7 +509,10 @@ static vg_status prepare(struct writing *w, struct vg_error *err)
 }
 
 /* Counts of all ranks together; that all faces close. Collective. */
-struct sums { uint64_t n_quad, n_open; uint32_t open[4]; };
+struct sums {
+  uint64_t n_quad, n_open;
+  uint32_t open[4];
+};
 
 static vg_status add_sums(struct writing *w, const char *path,
                           struct vg_error *err)
@@ -527,16 +535,17 @@ static vg_status add_sums(struct writing *w, const char *path,
     const struct sums *got = (const struct sums *)from[r].data;
 
     all.n_quad += got->n_quad;
-    if (got->n_open && !all.n_open) memcpy(all.open, got->open,
-                                           sizeof all.open);
+    if (got->n_open && !all.n_open)
+      memcpy(all.open, got->open, sizeof all.open);
     all.n_open += got->n_open;
   }
   w->n_quad = all.n_quad;
   if (all.n_open)
-    st = vg_fail(err, VG_ERR_INPUT, "%s: cells and boundary are not closed: "
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: cells and boundary are not closed: "
                  "%llu faces have no other side, or several, one of them that "
-                 "of points %lu, %lu, %lu", path,
-                 (unsigned long long)all.n_open, all.open[0] + 1ul,
+                 "of points %lu, %lu, %lu",
+                 path, (unsigned long long)all.n_open, all.open[0] + 1ul,
                  all.open[1] + 1ul, all.open[2] + 1ul);
 done:
   vg_bytes_release(from, from ? size : 0);
@@ -547,9 +556,12 @@ done:
 static vg_status match(struct writing *w, const char *path,
                        struct vg_error *err)
 {
-  const struct vg_rendezvous m = {
-    .comm = w->comm, .threads = w->threads, .size = sizeof(struct half),
-    .key = sizeof ((struct half *)0)->node, .group = meet, .context = w };
+  const struct vg_rendezvous m = { .comm = w->comm,
+                                   .threads = w->threads,
+                                   .size = sizeof(struct half),
+                                   .key = sizeof((struct half *)0)->node,
+                                   .group = meet,
+                                   .context = w };
   vg_status st;
 
   vg_parallel_for(w->threads, w->s->n_slice, 1, find_body, w);
@@ -607,7 +619,9 @@ vg_status vg_slices_write_fluent(struct vg_comm *comm,
                                  const struct vg_slices *s, const char *path,
                                  int threads, struct vg_error *err)
 {
-  struct writing w = { .comm = comm, .s = s, .rank = vg_comm_rank(comm),
+  struct writing w = { .comm = comm,
+                       .s = s,
+                       .rank = vg_comm_rank(comm),
                        .size = vg_comm_size(comm),
                        .threads = threads > 0 ? threads : vg_cores(),
                        .frame = vg_slices_frame(s) };

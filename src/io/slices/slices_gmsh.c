@@ -47,16 +47,15 @@ static vg_status put_entities(const struct gmsh *g, struct vg_shared_file *to,
   if (st < 0) return st;
   vg_output_order(&out, 0);
   vg_output_seek(&out, g->file.at_entities);
-  vg_gmsh_put_entities(&out, &g->file,
-                       (const double (*)[3])g->boundary.x);
+  vg_gmsh_put_entities(&out, &g->file, (const double(*)[3])g->boundary.x);
   st = vg_output_flush(&out, err);
   vg_output_release(&out);
   return st;
 }
 
-vg_status vg_slices_write_gmsh(struct vg_comm *comm,
-                               const struct vg_slices *s, const char *path,
-                               int threads, struct vg_error *err)
+vg_status vg_slices_write_gmsh(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *path, int threads,
+                               struct vg_error *err)
 {
   const struct vg_mesh frame = vg_slices_frame(s);
   struct gmsh g = { .boundary = { 0, NULL, NULL } };

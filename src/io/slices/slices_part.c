@@ -9,12 +9,12 @@
 
 /* Cells of one kind in a slice. */
 struct run {
-  uint64_t kind, cell_at;    /* its name and place */
-  uint64_t bytes;            /* of its lines; later where they begin */
+  uint64_t kind, cell_at; /* its name and place */
+  uint64_t bytes;         /* of its lines; later where they begin */
 };
 
 struct part_file {
-  struct run *run;           /* [n] of all ranks, in order */
+  struct run *run; /* [n] of all ranks, in order */
   size_t n;
   uint64_t size;
 };
@@ -109,8 +109,10 @@ vg_status vg_slices_write_part(struct vg_comm *comm, const struct vg_slices *s,
   vg_status st;
 
   if (!s->n_part)
-    return vg_fail(err, VG_ERR_INPUT, "%s: the mesh has no parts for a "
-                   "solver", path);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the mesh has no parts for a "
+                   "solver",
+                   path);
   st = list_all(comm, s, &f, err);
   if (st >= 0) st = vg_slice_file_write(&file, comm, s, threads, err);
   free(f.run);

@@ -22,11 +22,10 @@
 /* How a kind of file is written; `of` is its own. */
 struct vg_slice_file {
   const char *path;
-  uint32_t record_limit;     /* 0: VG_RECORD_LIMIT */
+  uint32_t record_limit; /* 0: VG_RECORD_LIMIT */
   void *of;
   void (*frame)(const void *of, struct vg_output *out);
-  void (*slice)(void *of, const struct vg_slice *slice,
-                struct vg_output *out);
+  void (*slice)(void *of, const struct vg_slice *slice, struct vg_output *out);
 };
 
 /** Bytes of the file. */
@@ -37,8 +36,7 @@ vg_status vg_slice_file_size(const struct vg_slice_file *f, uint64_t *size,
  * number at once. */
 vg_status vg_slice_file_put(const struct vg_slice_file *f,
                             struct vg_shared_file *to,
-                            const struct vg_slice *slice,
-                            struct vg_error *err);
+                            const struct vg_slice *slice, struct vg_error *err);
 
 /** Frame (by rank 0) and slices into an open file. Not collective. */
 vg_status vg_slice_file_fill(const struct vg_slice_file *f,
@@ -73,7 +71,7 @@ void vg_slice_points(const struct vg_slice *slice, size_t k, size_t n,
 struct vg_boundary_points {
   size_t n;
   double (*x)[3];
-  unsigned char *known;      /* delivered on this rank */
+  unsigned char *known; /* delivered on this rank */
 };
 vg_status vg_boundary_points_new(const struct vg_slices *s,
                                  struct vg_boundary_points *b,
@@ -87,8 +85,8 @@ vg_status vg_boundary_points_share(struct vg_comm *comm,
 
 /* --- the forms --- */
 
-vg_status vg_slices_write_cogsg(struct vg_comm *comm,
-                                const struct vg_slices *s, const char *stem,
+vg_status vg_slices_write_cogsg(struct vg_comm *comm, const struct vg_slices *s,
+                                const char *stem,
                                 const struct vg_slices_options *o,
                                 struct vg_error *err);
 vg_status vg_slices_write_vtu(struct vg_comm *comm, const struct vg_slices *s,
@@ -100,12 +98,12 @@ vg_status vg_slices_write_su2(struct vg_comm *comm, const struct vg_slices *s,
 vg_status vg_slices_write_part(struct vg_comm *comm, const struct vg_slices *s,
                                const char *path, int threads,
                                struct vg_error *err);
-vg_status vg_slices_write_gmsh(struct vg_comm *comm,
-                               const struct vg_slices *s, const char *path,
-                               int threads, struct vg_error *err);
-vg_status vg_slices_write_cgns(struct vg_comm *comm,
-                               const struct vg_slices *s, const char *path,
-                               int threads, struct vg_error *err);
+vg_status vg_slices_write_gmsh(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *path, int threads,
+                               struct vg_error *err);
+vg_status vg_slices_write_cgns(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *path, int threads,
+                               struct vg_error *err);
 vg_status vg_slices_write_fluent(struct vg_comm *comm,
                                  const struct vg_slices *s, const char *path,
                                  int threads, struct vg_error *err);

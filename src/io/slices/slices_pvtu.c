@@ -27,23 +27,23 @@ static const struct vg_vtu_field field[3] = {
 
 /* A slice that has cells, wherever it is: all ranks know all of them. */
 struct entry {
-  uint64_t before;           /* cells of the mesh before it: its name */
+  uint64_t before; /* cells of the mesh before it: its name */
   uint64_t n_point, n_cell[VG_SLICE_KINDS];
-  uint64_t piece, point_at, cell_at, node_at;  /* its place */
+  uint64_t piece, point_at, cell_at, node_at; /* its place */
 };
 
 struct piece {
   char *path;
-  struct vg_mesh mesh;       /* the frame */
+  struct vg_mesh mesh; /* the frame */
   size_t n_field;
   struct vg_vtu_places at;
   struct vg_shared_file *to;
-  int is_placed;             /* the file has its name */
+  int is_placed; /* the file has its name */
 };
 
 struct pieces {
   size_t n_entry, n_piece, n_field;
-  struct entry *entry;       /* in the order of the mesh */
+  struct entry *entry; /* in the order of the mesh */
   struct piece *piece;
 };
 
@@ -74,7 +74,7 @@ static int by_name(const void *a, const void *b)
 
 struct list {
   atomic_size_t n;
-  struct entry *entry;       /* room for all slices of this rank */
+  struct entry *entry; /* room for all slices of this rank */
 };
 
 static vg_status list_slice(void *context, const struct vg_slice *slice,
@@ -113,8 +113,8 @@ static vg_status list_all(struct vg_comm *comm, const struct vg_slices *s,
   struct list l = { 0, vg_alloc(s->n_slice, sizeof *l.entry) };
   struct vg_bytes mine, *all = vg_calloc(n_rank, sizeof *all);
   vg_status st = l.entry && all
-    ? vg_slices_each(s, threads, list_slice, &l, err)
-    : vg_fail_memory(err, "the list of slices");
+                 ? vg_slices_each(s, threads, list_slice, &l, err)
+                 : vg_fail_memory(err, "the list of slices");
 
   st = vg_comm_agree(comm, st, err);
   mine = (struct vg_bytes){ l.n * sizeof *l.entry, (unsigned char *)l.entry };
@@ -209,8 +209,9 @@ static void put_slice(const struct piece *piece, const struct entry *e,
   vg_output_seek(out, piece->at.points + 24 * e->point_at);
   vg_output_f64(out, 3 * slice->n_point, *slice->x);
   for (int k = 0; k < VG_SLICE_KINDS; k++) {
-    const struct vg_vtu_cells c = { k, slice->n_cell[k], slice->cell[k], NULL,
-                                    e->point_at, first, first_node };
+    const struct vg_vtu_cells c = { k,         slice->n_cell[k], slice->cell[k],
+                                    NULL,      e->point_at,      first,
+                                    first_node };
 
     if (c.n) vg_vtu_put_cells(out, &piece->at, &c);
     if (c.n && piece->n_field > 2) {
@@ -280,7 +281,8 @@ static vg_status write_list(const struct pieces *p, const char *stem,
   st = vg_output_open(path, &out, err);
   free(path);
   if (st < 0) return st;
-  vg_output_format(&out, "<?xml version=\"1.0\"?>\n"
+  vg_output_format(&out,
+                   "<?xml version=\"1.0\"?>\n"
                    "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" "
                    "byte_order=\"%s\" header_type=\"UInt64\">\n"
                    " <PUnstructuredGrid GhostLevel=\"0\">\n"
@@ -289,8 +291,10 @@ static vg_status write_list(const struct pieces *p, const char *stem,
                    "  </PPoints>\n  <PCellData>\n",
                    vg_host_is_little() ? "LittleEndian" : "BigEndian");
   for (size_t i = 0; i < p->n_field; i++)
-    vg_output_format(&out, "   <PDataArray type=\"Int32\" Name=\"%s\" "
-                     "NumberOfComponents=\"1\"/>\n", field[i].name);
+    vg_output_format(&out,
+                     "   <PDataArray type=\"Int32\" Name=\"%s\" "
+                     "NumberOfComponents=\"1\"/>\n",
+                     field[i].name);
   vg_output_text(&out, "  </PCellData>\n");
   for (size_t k = 0; k < p->n_piece; k++) {
     const char *slash = strrchr(p->piece[k].path, '/');

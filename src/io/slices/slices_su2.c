@@ -31,8 +31,7 @@ vg_status vg_slices_write_su2(struct vg_comm *comm, const struct vg_slices *s,
   const struct vg_mesh frame = vg_slices_frame(s);
   struct vg_su2 su2;
   const struct vg_slice_file file = { path, 0, &su2, put_frame, put_slice };
-  vg_status st = vg_comm_agree(comm, vg_su2_plan(path, &frame, &su2, err),
-                               err);
+  vg_status st = vg_comm_agree(comm, vg_su2_plan(path, &frame, &su2, err), err);
 
   if (st >= 0) st = vg_slice_file_write(&file, comm, s, threads, err);
   vg_su2_release(&su2);

@@ -11,17 +11,17 @@
 
 struct vg_slices_ugrid {
   struct vg_ugrid_kind kind;
-  struct vg_mesh mesh;       /* the frame */
+  struct vg_mesh mesh; /* the frame */
   uint64_t count[7];
   size_t n_layer_tet;
-  const size_t *tail;        /* NULL: none */
+  const size_t *tail; /* NULL: none */
   struct vg_slice_file file;
   struct vg_shared_file *to;
   struct vg_comm *comm;
   /* Of 4-byte reals: what rounding does. Points that coincide where cells stay
    * positive are on the boundary, on two sides of a thin body. */
   int is_narrow;
-  atomic_flag busy;          /* somebody adds to: */
+  atomic_flag busy; /* somebody adds to: */
   struct vg_narrow narrow;
   struct vg_boundary_points boundary;
 };
@@ -42,7 +42,7 @@ static void put_points(const struct vg_slices_ugrid *u,
   for (size_t k = 0, n; k < slice->n_own; k += n) {
     n = slice->n_own - k < BLOCK / 3 ? slice->n_own - k : BLOCK / 3;
     vg_slice_points(slice, k, n, x);
-    vg_ugrid_put_points(out, &u->kind, n, (const double (*)[3])x);
+    vg_ugrid_put_points(out, &u->kind, n, (const double(*)[3])x);
   }
 }
 
@@ -79,17 +79,17 @@ static vg_status note_rounded(struct vg_slices_ugrid *u,
                               const struct vg_slice *slice,
                               struct vg_error *err)
 {
-  double (*rounded)[3] = vg_alloc(slice->n_point, sizeof *rounded);
+  double(*rounded)[3] = vg_alloc(slice->n_point, sizeof *rounded);
   struct vg_narrow n = VG_NARROW_INIT;
 
   if (!rounded) return vg_fail_memory(err, "the points of a slice");
   vg_narrow_round(slice->n_point, slice->x, rounded);
   for (int k = 0; k < VG_SLICE_KINDS; k++)
-    vg_narrow_cells(slice->x, (const double (*)[3])rounded, k,
-                    slice->n_cell[k], slice->cell[k], slice->cell_at[k], &n);
+    vg_narrow_cells(slice->x, (const double(*)[3])rounded, k, slice->n_cell[k],
+                    slice->cell[k], slice->cell_at[k], &n);
   free(rounded);
   vg_boundary_points_add(&u->boundary, slice);
-  while (atomic_flag_test_and_set(&u->busy)) continue;   /* a few stores */
+  while (atomic_flag_test_and_set(&u->busy)) continue; /* a few stores */
   vg_narrow_add(&u->narrow, &n);
   atomic_flag_clear(&u->busy);
   return VG_OK;
@@ -102,9 +102,8 @@ static vg_status accept_rounded(struct vg_slices_ugrid *u, vg_status st,
   VG_TRY(vg_comm_agree(u->comm, st, err));
   VG_TRY(vg_narrow_share(u->comm, &u->narrow, err));
   VG_TRY(vg_boundary_points_share(u->comm, &u->boundary, err));
-  VG_TRY(vg_narrow_points(u->boundary.n, (const double (*)[3])u->boundary.x,
-                          &u->narrow,
-                          err));
+  VG_TRY(vg_narrow_points(u->boundary.n, (const double(*)[3])u->boundary.x,
+                          &u->narrow, err));
   st = vg_ugrid_accept(&u->kind, &u->narrow, err);
 done:
   return st;
@@ -154,8 +153,8 @@ static vg_status new_ugrid(const struct vg_slices *s, const char *path,
   return st;
 }
 
-vg_status vg_slices_ugrid_open(struct vg_comm *comm,
-                               const struct vg_slices *s, const char *path,
+vg_status vg_slices_ugrid_open(struct vg_comm *comm, const struct vg_slices *s,
+                               const char *path,
                                const struct vg_slices_options *o,
                                struct vg_slices_ugrid **out,
                                struct vg_error *err)
@@ -174,7 +173,7 @@ vg_status vg_slices_ugrid_open(struct vg_comm *comm,
   if (!vg_comm_rank(comm)) st = vg_slice_file_put(&u->file, u->to, NULL, err);
   st = vg_comm_agree(comm, st, err);
   if (st < 0) return vg_slices_ugrid_close(u, st, err);
-  u->file.path = NULL;       /* the caller's */
+  u->file.path = NULL; /* the caller's */
   *out = u;
   return VG_OK;
 }

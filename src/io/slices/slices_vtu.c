@@ -8,7 +8,7 @@
 static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
 
 struct whole {
-  struct vg_mesh mesh;       /* the frame */
+  struct vg_mesh mesh; /* the frame */
   struct vg_vtu_field field[VG_VTU_FIELDS_MAX];
   size_t n_field, n_quality; /* 0 or 2: quality of tetrahedra; then parts for
                                 the solver, if there are any */
@@ -30,15 +30,17 @@ static void put_quality(const struct whole *w, const struct vg_slice *slice,
 
   for (size_t i = 0; i < n; i += BLOCK) {
     const struct vg_mesh part = {
-      .n_point = slice->n_point, .point = (double (*)[3])slice->x,
+      .n_point = slice->n_point,
+      .point = (double(*)[3])slice->x,
       .n_tet = n - i < BLOCK ? n - i : BLOCK,
-      .tet = (uint32_t (*)[4])slice->cell[VG_SLICE_TET] + i
+      .tet = (uint32_t(*)[4])slice->cell[VG_SLICE_TET] + i
     };
 
     vg_mesh_cell_quality(&part, figure[0], figure[1]);
     for (int f = 0; f < 2; f++) {
-      vg_output_seek(out, w->at.field[f] + sizeof **figure *
-                     (slice->cell_at[VG_SLICE_TET] + i));
+      vg_output_seek(out,
+                     w->at.field[f] +
+                       sizeof **figure * (slice->cell_at[VG_SLICE_TET] + i));
       vg_output_bytes(out, figure[f], part.n_tet * sizeof **figure);
     }
   }
@@ -48,7 +50,7 @@ static void put_parts(const struct whole *w, const struct vg_slice *slice,
                       int kind, uint64_t first, struct vg_output *out)
 {
   vg_output_seek(out, w->at.field[w->n_quality] +
-                 sizeof(uint32_t) * (first + slice->cell_at[kind]));
+                        sizeof(uint32_t) * (first + slice->cell_at[kind]));
   vg_output_bytes(out, slice->part[kind],
                   slice->n_cell[kind] * sizeof(uint32_t));
 }
@@ -65,11 +67,14 @@ static void put_whole_slice(void *of, const struct vg_slice *slice,
   for (size_t k = 0; k < slice->n_own; k++)
     vg_output_f64(out, 3, slice->x[slice->own[k]]);
   for (int k = 0; k < VG_SLICE_KINDS; k++) {
-    const struct vg_vtu_cells c = {
-      k, slice->n_cell[k], slice->cell[k], slice->id, 0,
-      first + slice->cell_at[k],
-      first_node + slice->cell_at[k] * (uint64_t)cell_width[k]
-    };
+    const struct vg_vtu_cells c = { k,
+                                    slice->n_cell[k],
+                                    slice->cell[k],
+                                    slice->id,
+                                    0,
+                                    first + slice->cell_at[k],
+                                    first_node + slice->cell_at[k] *
+                                                   (uint64_t)cell_width[k] };
 
     if (c.n) vg_vtu_put_cells(out, &w->at, &c);
     if (c.n && w->n_field > w->n_quality) put_parts(w, slice, k, first, out);

@@ -20,8 +20,8 @@ vg_status vg_boundary_by_patch(const struct vg_mesh *m, size_t **start,
     free(o);
     return vg_fail_memory(err, "sorting faces by patch");
   }
-#define PATCH(i) \
-  ((i) < m->n_tri ? m->tri_patch[i] : m->quad_patch[(i) - m->n_tri])
+#define PATCH(i)                                                               \
+  ((i) < m->n_tri ? m->tri_patch[i] : m->quad_patch[(i)-m->n_tri])
   for (size_t i = 0; i < n; i++) s[PATCH(i) + 2]++;
   for (size_t p = 2; p < m->n_patch + 2; p++) s[p] += s[p - 1];
   for (size_t i = 0; i < n; i++) o[s[PATCH(i) + 1]++] = i;

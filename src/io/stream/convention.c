@@ -31,8 +31,8 @@ vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
       return vg_fail(err, VG_ERR_INPUT,
                      "%s: coordinate %c of point %zu is %g: beyond %g no "
                      "volume can be computed; check the byte order or use "
-                     "another unit of length", path, "xyz"[k], i + 1, x,
-                     VG_COORDINATE_MAX);
+                     "another unit of length",
+                     path, "xyz"[k], i + 1, x, VG_COORDINATE_MAX);
     }
   return VG_OK;
 }
@@ -55,7 +55,8 @@ vg_status vg_index_from_file(const char *path, const char *element, size_t n,
     if (index[i] >= limit)
       return vg_fail(err, VG_ERR_INPUT,
                      "%s: %s %zu refers to point %lld; points are numbered 1 "
-                     "to %zu", path, element, i / (size_t)width + 1,
+                     "to %zu",
+                     path, element, i / (size_t)width + 1,
                      (long long)(int32_t)(index[i] + 1), n_point);
   return VG_OK;
 }
@@ -65,7 +66,7 @@ vg_status vg_index_from_file(const char *path, const char *element, size_t n,
 struct tags {
   struct vg_table table;
   size_t n, cap;
-  int32_t *id;      /* [n] as they were found */
+  int32_t *id; /* [n] as they were found */
 };
 
 static uint64_t hash_tag(const void *of, uint32_t i)
@@ -125,7 +126,7 @@ vg_status vg_patches_from_tags(struct vg_mesh *m, const int32_t *tag,
 {
   assert(tag || !(m->n_tri + m->n_quad));
 
-  struct tags t = {0};
+  struct tags t = { 0 };
   size_t n = m->n_tri + m->n_quad;
   uint32_t *of = vg_alloc(n, sizeof *of), *rank = NULL;
   uint32_t *tri = vg_alloc(m->n_tri, sizeof *tri);
@@ -227,8 +228,8 @@ static size_t turn_cells(struct vg_mesh *m)
  * several faces on the same nodes the first is kept. */
 struct face_table {
   struct vg_table table;
-  unsigned char *found;    /* [n_tri + n_quad] */
-  unsigned char *on;       /* [n_point] the point is on the boundary */
+  unsigned char *found; /* [n_tri + n_quad] */
+  unsigned char *on;    /* [n_point] the point is on the boundary */
 };
 
 static void make_key(const uint32_t *n, int width, uint32_t key[4])
@@ -238,8 +239,7 @@ static void make_key(const uint32_t *n, int width, uint32_t key[4])
   vg_order4(key);
 }
 
-static const uint32_t *face_nodes(const struct vg_mesh *m, size_t f,
-                                  int *width)
+static const uint32_t *face_nodes(const struct vg_mesh *m, size_t f, int *width)
 {
   *width = f < m->n_tri ? 3 : 4;
   return f < m->n_tri ? m->tri[f] : m->quad[f - m->n_tri];
@@ -358,8 +358,8 @@ static void meet_cells(struct vg_mesh *m, struct face_table *t, size_t n,
 vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
                        struct vg_error *err)
 {
-  struct vg_turned result = {0, 0, 0};
-  struct face_table t = {0};
+  struct vg_turned result = { 0, 0, 0 };
+  struct face_table t = { 0 };
   vg_status st;
 
   assert(m);

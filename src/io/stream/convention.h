@@ -9,9 +9,9 @@
 #include "core/mesh/mesh.h"
 
 struct vg_turned {
-  size_t cell;        /* cells of negative volume that were mirrored */
-  size_t face;        /* boundary faces that were turned into the fluid */
-  size_t loose_face;  /* boundary faces of no cell, kept as they are */
+  size_t cell;       /* cells of negative volume that were mirrored */
+  size_t face;       /* boundary faces that were turned into the fluid */
+  size_t loose_face; /* boundary faces of no cell, kept as they are */
 };
 
 /** Make every cell positive and every boundary face of a cell point into it.

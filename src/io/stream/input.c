@@ -91,7 +91,8 @@ static vg_status gzip_error(const char *path, int code, size_t at,
   if (code == Z_BUF_ERROR)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: truncated gzip data: the file ends before its "
-                   "compressed stream does; fetch it again", path);
+                   "compressed stream does; fetch it again",
+                   path);
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s: broken gzip data near byte %zu; fetch it again", path,
                  at);
@@ -131,7 +132,7 @@ static int inflate_members(z_stream *z, const unsigned char *from, size_t size,
 static vg_status unpack(const char *path, int is_head, unsigned char **data,
                         size_t *size, struct vg_error *err)
 {
-  z_stream z = {0};
+  z_stream z = { 0 };
   unsigned char *plain = NULL;
   size_t n = 0;
   int code;
@@ -174,8 +175,10 @@ static vg_status refuse_pointer(const char *path, const unsigned char *data,
   const size_t n = sizeof start - 1;
 
   if (size < n || memcmp(data, start, n)) return VG_OK;
-  return vg_fail(err, VG_ERR_FORMAT, "%s is a Git LFS pointer, not the file "
-                 "itself; run `git lfs pull` in its repository", path);
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s is a Git LFS pointer, not the file "
+                 "itself; run `git lfs pull` in its repository",
+                 path);
 }
 
 /* Takes over `data`. */
@@ -201,8 +204,8 @@ static vg_status adopt(const char *path, int is_head, unsigned char *data,
   return VG_OK;
 }
 
-static vg_status open_file(const char *path, size_t limit,
-                           struct vg_input *in, struct vg_error *err)
+static vg_status open_file(const char *path, size_t limit, struct vg_input *in,
+                           struct vg_error *err)
 {
   unsigned char *data = NULL;
   size_t size = 0, expected = 0;
@@ -226,8 +229,7 @@ static vg_status open_file(const char *path, size_t limit,
   }
   st = read_all(fd, path, expected, limit, &data, &size, err);
   close(fd);
-  return st < 0 ? st
-                : adopt(path, limit < WHOLE, data, size, in, err);
+  return st < 0 ? st : adopt(path, limit < WHOLE, data, size, in, err);
 }
 
 vg_status vg_input_open(const char *path, struct vg_input *in,
@@ -289,8 +291,9 @@ vg_status vg_input_need(const struct vg_input *in, uint64_t n, size_t size,
     return VG_OK;
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s: truncated: %s need %llu x %zu bytes at byte %zu, but "
-                 "only %llu are left", in->path, what, (unsigned long long)n,
-                 size, in->at, (unsigned long long)left);
+                 "only %llu are left",
+                 in->path, what, (unsigned long long)n, size, in->at,
+                 (unsigned long long)left);
 }
 
 /* Written so that compilers turn each loop into vector shuffles. */
@@ -311,20 +314,20 @@ static void load64(const unsigned char *from, size_t n, uint64_t *to, int swap)
 /* Fixed-size blocks keep the temporary in cache and the types honest. */
 #define BLOCK 2048
 
-#define READ_ARRAY(type, word, load)                                       \
-  vg_status st = vg_input_need(in, n, sizeof(word), what, err);            \
-  word block[BLOCK];                                                       \
-  if (st < 0) return st;                                                   \
-  for (size_t i = 0, m; i < n; i += m) {                                   \
-    m = n - i < BLOCK ? n - i : BLOCK;                                     \
-    load(in->data + in->at, m, block, in->swap);                           \
-    in->at += m * sizeof(word);                                            \
-    for (size_t k = 0; k < m; k++) {                                       \
-      type value;                                                          \
-      memcpy(&value, &block[k], sizeof value);                             \
-      v[i + k] = value;                                                    \
-    }                                                                      \
-  }                                                                        \
+#define READ_ARRAY(type, word, load)                                           \
+  vg_status st = vg_input_need(in, n, sizeof(word), what, err);                \
+  word block[BLOCK];                                                           \
+  if (st < 0) return st;                                                       \
+  for (size_t i = 0, m; i < n; i += m) {                                       \
+    m = n - i < BLOCK ? n - i : BLOCK;                                         \
+    load(in->data + in->at, m, block, in->swap);                               \
+    in->at += m * sizeof(word);                                                \
+    for (size_t k = 0; k < m; k++) {                                           \
+      type value;                                                              \
+      memcpy(&value, &block[k], sizeof value);                                 \
+      v[i + k] = value;                                                        \
+    }                                                                          \
+  }                                                                            \
   return VG_OK
 
 vg_status vg_input_i32(struct vg_input *in, size_t n, int32_t *v,
@@ -383,8 +386,8 @@ static vg_status marker_error(const struct vg_input *in, const char *what,
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s: the Fortran record of %s at byte %zu has markers %lld "
                  "and %lld that do not fit its length or each other (wrong "
-                 "byte order or a damaged file)", in->path, what, at,
-                 (long long)first, (long long)last);
+                 "byte order or a damaged file)",
+                 in->path, what, at, (long long)first, (long long)last);
 }
 
 /* One (sub)record: its bytes are moved to *to, and *to advanced. Signs as in
@@ -406,8 +409,8 @@ static vg_status read_part(struct vg_input *in, int is_first, size_t *to,
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: the Fortran record of %s at byte %zu announces %llu "
                    "bytes, but the file ends before (truncated, wrong byte "
-                   "order, or not a Fortran file)", in->path, what, at,
-                   (unsigned long long)n);
+                   "order, or not a Fortran file)",
+                   in->path, what, at, (unsigned long long)n);
   }
   if (is_first) *to = in->at;
   else memmove(in->data + *to, in->data + in->at, n);

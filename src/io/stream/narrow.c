@@ -38,8 +38,8 @@ void vg_narrow_add(struct vg_narrow *to, const struct vg_narrow *more)
   to->n_cell += more->n_cell;
 }
 
-void vg_narrow_cells(const double (*x)[3], const double (*rounded)[3],
-                     int kind, size_t n, const uint32_t *node, uint64_t first,
+void vg_narrow_cells(const double (*x)[3], const double (*rounded)[3], int kind,
+                     size_t n, const uint32_t *node, uint64_t first,
                      struct vg_narrow *to)
 {
   assert(kind >= 0 && kind < 4 && to);
@@ -49,7 +49,8 @@ void vg_narrow_cells(const double (*x)[3], const double (*rounded)[3],
 
   for (size_t i = 0; i < n; i++) {
     const uint32_t *v = node + i * (size_t)width;
-    struct vg_narrow one = { .n_cell = 1, .kind = (uint64_t)kind,
+    struct vg_narrow one = { .n_cell = 1,
+                             .kind = (uint64_t)kind,
                              .cell = first + i };
 
     if (vg_cell_positive(rounded, kind, v) || !vg_cell_positive(x, kind, v))
@@ -60,7 +61,10 @@ void vg_narrow_cells(const double (*x)[3], const double (*rounded)[3],
   }
 }
 
-struct place { float x[3]; uint32_t point; };
+struct place {
+  float x[3];
+  uint32_t point;
+};
 
 static int by_place(const void *a, const void *b)
 {
@@ -77,8 +81,7 @@ static int is_same(const struct place *p, const struct place *q)
   return p->x[0] == q->x[0] && p->x[1] == q->x[1] && p->x[2] == q->x[2];
 }
 
-static void note_point(struct vg_narrow *to, uint32_t point,
-                       const double x[3])
+static void note_point(struct vg_narrow *to, uint32_t point, const double x[3])
 {
   if (!to->n_point++ || point < to->point) {
     to->point = point;
@@ -86,8 +89,8 @@ static void note_point(struct vg_narrow *to, uint32_t point,
   }
 }
 
-vg_status vg_narrow_points(size_t n, const double (*x)[3],
-                           struct vg_narrow *to, struct vg_error *err)
+vg_status vg_narrow_points(size_t n, const double (*x)[3], struct vg_narrow *to,
+                           struct vg_error *err)
 {
   assert((x || !n) && to);
 
@@ -142,17 +145,21 @@ vg_status vg_narrow_accept(const struct vg_narrow *n, const char *kind,
   assert(kind && instead);
   if (!n->n_cell && !n->n_point) return VG_OK;
   if (n->n_cell)
-    snprintf(cells, sizeof cells, "%" PRIu64 " cell%s flat or inverted, the "
-             "first %s %" PRIu64 " at (%.9g, %.9g, %.9g)", n->n_cell,
-             n->n_cell > 1 ? "s" : "", cell_name[n->kind], n->cell + 1,
-             n->at[0], n->at[1], n->at[2]);
+    snprintf(cells, sizeof cells,
+             "%" PRIu64 " cell%s flat or inverted, the "
+             "first %s %" PRIu64 " at (%.9g, %.9g, %.9g)",
+             n->n_cell, n->n_cell > 1 ? "s" : "", cell_name[n->kind],
+             n->cell + 1, n->at[0], n->at[1], n->at[2]);
   if (n->n_point)
-    snprintf(points, sizeof points, "%s%" PRIu64 " point%s one with others, "
+    snprintf(points, sizeof points,
+             "%s%" PRIu64 " point%s one with others, "
              "the first point %" PRIu64 " (%.9g, %.9g, %.9g)",
              n->n_cell ? ", and " : "", n->n_point, n->n_point > 1 ? "s" : "",
              n->point + 1, n->x[0], n->x[1], n->x[2]);
-  return vg_fail(err, VG_ERR_GEOMETRY, "the 4-byte reals of a .%s.ugrid would "
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "the 4-byte reals of a .%s.ugrid would "
                  "make %s%s: a solver could not use it; write 8-byte reals, "
                  "as .%s.ugrid has, or move the geometry nearer to the "
-                 "origin", kind, cells, points, instead);
+                 "origin",
+                 kind, cells, points, instead);
 }

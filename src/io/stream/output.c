@@ -59,8 +59,7 @@ vg_status vg_output_open(const char *path, struct vg_output *out,
   }
   made.fd = open(made.part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (made.fd < 0) {
-    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", path,
-                 strerror(errno));
+    st = vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", path, strerror(errno));
     vg_output_release(&made);
     return st;
   }
@@ -80,8 +79,8 @@ vg_status vg_output_shared(struct vg_shared_file *file, struct vg_output *out,
 static void flush_shared(struct vg_output *out)
 {
   if (out->shared && out->n && !out->error &&
-      vg_shared_write(out->shared, out->at, out->n, out->buffer,
-                      &out->failed) < 0)
+      vg_shared_write(out->shared, out->at, out->n, out->buffer, &out->failed) <
+        0)
     out->error = EIO;
   out->at += out->n;
   out->n = 0;
@@ -271,17 +270,17 @@ uint64_t vg_record_size(uint64_t bytes, uint32_t limit)
 }
 
 /* Values pass through a block that stays in cache: convert, swap, append. */
-#define WRITE_ARRAY(type, word, bswap)                                     \
-  word block[BLOCK];                                                       \
-  for (size_t i = 0, m; i < n; i += m) {                                   \
-    m = n - i < BLOCK ? n - i : BLOCK;                                     \
-    for (size_t k = 0; k < m; k++) {                                       \
-      type value = (type)v[i + k];                                         \
-      memcpy(&block[k], &value, sizeof value);                             \
-    }                                                                      \
-    if (out->swap)                                                         \
-      for (size_t k = 0; k < m; k++) block[k] = bswap(block[k]);           \
-    vg_output_bytes(out, block, m * sizeof(word));                         \
+#define WRITE_ARRAY(type, word, bswap)                                         \
+  word block[BLOCK];                                                           \
+  for (size_t i = 0, m; i < n; i += m) {                                       \
+    m = n - i < BLOCK ? n - i : BLOCK;                                         \
+    for (size_t k = 0; k < m; k++) {                                           \
+      type value = (type)v[i + k];                                             \
+      memcpy(&block[k], &value, sizeof value);                                 \
+    }                                                                          \
+    if (out->swap)                                                             \
+      for (size_t k = 0; k < m; k++) block[k] = bswap(block[k]);               \
+    vg_output_bytes(out, block, m * sizeof(word));                             \
   }
 
 void vg_output_i32(struct vg_output *out, size_t n, const int32_t *v)
@@ -391,9 +390,9 @@ static int seventeen_digits(double x, uint64_t *digits, int *scale)
 {
 #if LDBL_MANT_DIG == 64
   static const long double power[28] = {
-    1e0L, 1e1L, 1e2L, 1e3L, 1e4L, 1e5L, 1e6L, 1e7L, 1e8L, 1e9L, 1e10L,
-    1e11L, 1e12L, 1e13L, 1e14L, 1e15L, 1e16L, 1e17L, 1e18L, 1e19L, 1e20L,
-    1e21L, 1e22L, 1e23L, 1e24L, 1e25L, 1e26L, 1e27L
+    1e0L,  1e1L,  1e2L,  1e3L,  1e4L,  1e5L,  1e6L,  1e7L,  1e8L,  1e9L,
+    1e10L, 1e11L, 1e12L, 1e13L, 1e14L, 1e15L, 1e16L, 1e17L, 1e18L, 1e19L,
+    1e20L, 1e21L, 1e22L, 1e23L, 1e24L, 1e25L, 1e26L, 1e27L
   };
   int k = 16;
   long double y, part;
@@ -441,10 +440,10 @@ static size_t format_fixed(uint64_t digits, int scale, char *text)
 
 size_t vg_format_real(double v, char *text)
 {
-  static const double power10[23] = {
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12,
-    1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22
-  };
+  static const double power10[23] = { 1e0,  1e1,  1e2,  1e3,  1e4,  1e5,
+                                      1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                      1e12, 1e13, 1e14, 1e15, 1e16, 1e17,
+                                      1e18, 1e19, 1e20, 1e21, 1e22 };
   double x = v < 0 ? -v : v;
   uint64_t digits, fewer;
   size_t at = 0;

@@ -8,9 +8,12 @@
 
 #include "base/memory.h"
 
-#define TAIL 12            /* "_-2147483648" */
+#define TAIL 12 /* "_-2147483648" */
 
-struct named { char name[VG_PATCH_WORD]; size_t patch; };
+struct named {
+  char name[VG_PATCH_WORD];
+  size_t patch;
+};
 
 static void clean_name(const struct vg_patch *p, char name[VG_PATCH_WORD])
 {
@@ -62,7 +65,7 @@ char (*vg_patch_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD]
   assert(most >= 24 && most <= VG_PATCH_WORD_MOST);
 
   struct named *list = vg_alloc(m->n_patch, sizeof *list);
-  char (*name)[VG_PATCH_WORD] = vg_alloc(m->n_patch, sizeof *name);
+  char(*name)[VG_PATCH_WORD] = vg_alloc(m->n_patch, sizeof *name);
 
   if (list && name) {
     for (size_t i = 0; i < m->n_patch; i++) {

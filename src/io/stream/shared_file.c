@@ -22,9 +22,9 @@
 
 struct vg_shared_file {
   struct vg_comm *comm;
-  MPI_File file;             /* in a job with MPI */
-  int fd;                    /* all there is in a job without; else the way
-                                to learn why MPI could not write */
+  MPI_File file; /* in a job with MPI */
+  int fd;        /* all there is in a job without; else the way
+                    to learn why MPI could not write */
   uint64_t size;
   char *path, *part;
 };
@@ -41,16 +41,16 @@ static void release(struct vg_shared_file *f)
 static vg_status fail(const struct vg_shared_file *f, const char *what,
                       int error, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_IO, "%s: %s: %s", f->part, what,
-                 strerror(error));
+  return vg_fail(err, VG_ERR_IO, "%s: %s: %s", f->part, what, strerror(error));
 }
 
 static vg_status no_room(const struct vg_shared_file *f, int error,
                          struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_IO, "%s: no room for %" PRIu64 " bytes: %s; "
-                 "free some or write to another disk", f->part, f->size,
-                 strerror(error));
+  return vg_fail(err, VG_ERR_IO,
+                 "%s: no room for %" PRIu64 " bytes: %s; "
+                 "free some or write to another disk",
+                 f->part, f->size, strerror(error));
 }
 
 /* --- opening ------------------------------------------------------------- */
@@ -94,7 +94,8 @@ static vg_status find(struct vg_shared_file *f, struct vg_error *err)
   f->fd = open(f->part, O_WRONLY | O_CLOEXEC);
   if (f->fd >= 0) return VG_OK;
   if (errno != ENOENT) return fail(f, "cannot write", errno, err);
-  return vg_fail(err, VG_ERR_IO, "%s: made by the first rank but not found "
+  return vg_fail(err, VG_ERR_IO,
+                 "%s: made by the first rank but not found "
                  "here; write to a file system that all nodes share",
                  f->part);
 }
@@ -121,9 +122,8 @@ static vg_status open_mpi(struct vg_shared_file *f, struct vg_error *err)
   return vg_comm_agree(f->comm, rc ? fail_mpi(f, rc, err) : VG_OK, err);
 }
 
-static vg_status prepare(struct vg_comm *comm, const char *path,
-                         uint64_t size, struct vg_shared_file **out,
-                         struct vg_error *err)
+static vg_status prepare(struct vg_comm *comm, const char *path, uint64_t size,
+                         struct vg_shared_file **out, struct vg_error *err)
 {
   struct vg_shared_file *f = vg_calloc(1, sizeof *f);
 
@@ -141,9 +141,8 @@ static vg_status prepare(struct vg_comm *comm, const char *path,
   return VG_OK;
 }
 
-vg_status vg_shared_open(struct vg_comm *comm, const char *path,
-                         uint64_t size, struct vg_shared_file **out,
-                         struct vg_error *err)
+vg_status vg_shared_open(struct vg_comm *comm, const char *path, uint64_t size,
+                         struct vg_shared_file **out, struct vg_error *err)
 {
   assert(path && out);
 
@@ -176,8 +175,7 @@ static vg_status write_plain(const struct vg_shared_file *f, uint64_t at,
     ssize_t put = pwrite(f->fd, data, n < CHUNK ? n : CHUNK, (off_t)at);
 
     if (put < 0 && errno == EINTR) continue;
-    if (put <= 0)
-      return fail(f, "cannot write", put ? errno : ENOSPC, err);
+    if (put <= 0) return fail(f, "cannot write", put ? errno : ENOSPC, err);
     at += (uint64_t)put;
     data += put;
     n -= (uint64_t)put;
@@ -198,8 +196,7 @@ static vg_status write_mpi(const struct vg_shared_file *f, uint64_t at,
     MPI_Status status;
     int m = (int)(n < CHUNK ? n : CHUNK), put = 0, rc;
 
-    rc = MPI_File_write_at(f->file, (MPI_Offset)at, data, m, MPI_BYTE,
-                           &status);
+    rc = MPI_File_write_at(f->file, (MPI_Offset)at, data, m, MPI_BYTE, &status);
     if (!rc) rc = MPI_Get_count(&status, MPI_BYTE, &put);
     if (rc || put <= 0 || put > m) return write_plain(f, at, n, data, err);
     at += (uint64_t)put;
@@ -214,9 +211,10 @@ vg_status vg_shared_write(struct vg_shared_file *f, uint64_t at, uint64_t n,
 {
   assert(data || !n);
   if (at > f->size || n > f->size - at)
-    return vg_fail(err, VG_ERR_IO, "%s: %" PRIu64 " bytes at %" PRIu64 " go "
-                   "beyond the %" PRIu64 " that were announced", f->part, n,
-                   at, f->size);
+    return vg_fail(err, VG_ERR_IO,
+                   "%s: %" PRIu64 " bytes at %" PRIu64 " go "
+                   "beyond the %" PRIu64 " that were announced",
+                   f->part, n, at, f->size);
   return f->comm ? write_mpi(f, at, n, data, err)
                  : write_plain(f, at, n, data, err);
 }
@@ -234,16 +232,16 @@ static vg_status close_all(struct vg_shared_file *f, struct vg_error *err)
   return st;
 }
 
-static vg_status give_name(const struct vg_shared_file *f,
-                           struct vg_error *err)
+static vg_status give_name(const struct vg_shared_file *f, struct vg_error *err)
 {
   struct stat s;
 
   if (stat(f->part, &s)) return fail(f, "lost while written", errno, err);
   if ((uint64_t)s.st_size != f->size)
-    return vg_fail(err, VG_ERR_IO, "%s: has %" PRIu64 " bytes instead of %"
-                   PRIu64 "; does something else write to it?", f->part,
-                   (uint64_t)s.st_size, f->size);
+    return vg_fail(err, VG_ERR_IO,
+                   "%s: has %" PRIu64 " bytes instead of %" PRIu64
+                   "; does something else write to it?",
+                   f->part, (uint64_t)s.st_size, f->size);
   if (rename(f->part, f->path))
     return vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", f->path,
                    strerror(errno));
@@ -263,8 +261,7 @@ vg_status vg_shared_close(struct vg_shared_file *f, vg_status mine,
     if (is_first) closed = give_name(f, &why);
     closed = vg_comm_agree(f->comm, closed, &why);
   }
-  if (st == VG_OK && closed != VG_OK)
-    st = vg_fail(err, closed, "%s", why.text);
+  if (st == VG_OK && closed != VG_OK) st = vg_fail(err, closed, "%s", why.text);
   if (st != VG_OK && is_first) unlink(f->part);
   release(f);
   return st;

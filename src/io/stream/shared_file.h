@@ -20,9 +20,8 @@ struct vg_shared_file;
  * all ranks. VG_ERR_IO with the path and the system's reason; VG_ERR_IO too
  * when the disk has no room, since all of it is reserved now where the file
  * system can. Bytes that are never written are zero. */
-vg_status vg_shared_open(struct vg_comm *comm, const char *path,
-                         uint64_t size, struct vg_shared_file **out,
-                         struct vg_error *err);
+vg_status vg_shared_open(struct vg_comm *comm, const char *path, uint64_t size,
+                         struct vg_shared_file **out, struct vg_error *err);
 
 /** Write n bytes at offset `at`; best in pieces of 64 kB or more. Local.
  * Threads: safe on one file. */

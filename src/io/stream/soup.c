@@ -22,7 +22,8 @@ static vg_status room(void *list, size_t *cap, size_t n, size_t size,
   if (n >= UINT32_MAX - 1)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "more than 4294967294 %s: beyond 32-bit numbers; split the "
-                   "file", what);
+                   "file",
+                   what);
   if (vg_reserve(list, cap, n + 1, size)) return vg_fail_memory(err, what);
   return VG_OK;
 }
@@ -96,8 +97,8 @@ vg_status vg_soup_triangle(struct vg_soup *s, const uint32_t node[3],
                       "triangles", err);
 
   if (st == VG_OK)
-    st = room(&m->tri_patch, &s->cap_tri_patch, m->n_tri,
-              sizeof *m->tri_patch, "triangles", err);
+    st = room(&m->tri_patch, &s->cap_tri_patch, m->n_tri, sizeof *m->tri_patch,
+              "triangles", err);
   if (st < 0) return st;
   memcpy(m->tri[m->n_tri], node, sizeof *m->tri);
   m->tri_patch[m->n_tri++] = patch;

@@ -11,12 +11,15 @@
 #include "core/mesh/mesh.h"
 
 struct vg_soup {
-  struct vg_mesh m;         /* what has been collected; valid at any time */
+  struct vg_mesh m; /* what has been collected; valid at any time */
   size_t cap_point, cap_tri, cap_tri_patch, cap_patch;
-  struct vg_table weld;     /* points of vg_soup_weld */
-  struct vg_table named;    /* patches of vg_soup_named_patch */
+  struct vg_table weld;  /* points of vg_soup_weld */
+  struct vg_table named; /* patches of vg_soup_named_patch */
 };
-#define VG_SOUP_INIT { .cap_point = 0 }
+#define VG_SOUP_INIT                                                           \
+  {                                                                            \
+    .cap_point = 0                                                             \
+  }
 
 void vg_soup_release(struct vg_soup *s);
 

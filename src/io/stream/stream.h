@@ -22,17 +22,20 @@
 struct vg_shared_file;
 
 struct vg_input {
-  char *path;           /* for messages; owned */
-  unsigned char *data;  /* data[size] is a zero byte */
-  size_t size, at;      /* cursor: next byte to read */
-  size_t line;          /* 1-based line of the cursor (text reads only) */
-  int swap;             /* 1: values have the other byte order */
-  int marker8;          /* 1: Fortran markers of 8 bytes */
-  int comment;          /* a character that starts a comment reaching to the
-                           end of the line in token reads; 0: none */
-  int is_view;          /* part of another input, which owns path and data */
+  char *path;          /* for messages; owned */
+  unsigned char *data; /* data[size] is a zero byte */
+  size_t size, at;     /* cursor: next byte to read */
+  size_t line;         /* 1-based line of the cursor (text reads only) */
+  int swap;            /* 1: values have the other byte order */
+  int marker8;         /* 1: Fortran markers of 8 bytes */
+  int comment;         /* a character that starts a comment reaching to the
+                          end of the line in token reads; 0: none */
+  int is_view;         /* part of another input, which owns path and data */
 };
-#define VG_INPUT_INIT { .line = 1 }  /* releasing this is a no-op */
+#define VG_INPUT_INIT                                                          \
+  {                                                                            \
+    .line = 1                                                                  \
+  } /* releasing this is a no-op */
 
 /** Read a file into the empty *in, unpacking gzip. The byte order mark of
  * UTF-8 at the start of a text is dropped.
@@ -94,8 +97,7 @@ vg_status vg_input_record(struct vg_input *in, struct vg_input *record,
 int vg_input_token(struct vg_input *in, const char **text, size_t *len);
 
 /** Next token of the current line; 0 at its end (which is not passed). */
-int vg_input_token_in_line(struct vg_input *in, const char **text,
-                           size_t *len);
+int vg_input_token_in_line(struct vg_input *in, const char **text, size_t *len);
 
 /** Rest of the current line without its end (LF or CR LF), which is passed.
  * 0 at the end of the data. */
@@ -124,7 +126,7 @@ int vg_parse_real(const char *text, size_t len, double *v);
 /** Fail with "PATH:LINE: message" at the cursor, printf-wise. */
 vg_status vg_input_fail(const struct vg_input *in, struct vg_error *err,
                         const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+  __attribute__((format(printf, 3, 4)));
 
 /* --- output --- */
 
@@ -132,23 +134,26 @@ vg_status vg_input_fail(const struct vg_input *in, struct vg_error *err,
 #define VG_RECORD_LIMIT 2147483639u
 
 struct vg_output {
-  char *path, *part;       /* owned */
+  char *path, *part; /* owned */
   int fd;
   unsigned char *buffer;
-  size_t n;                /* bytes in the buffer */
-  uint64_t written;        /* bytes put so far, buffer included */
-  int swap;                /* 1: write the other byte order */
-  int error;               /* errno of the first failed write; 0: none */
-  uint32_t record_limit;   /* VG_RECORD_LIMIT; a test may set less */
-  uint64_t record_left;    /* data bytes the open record still expects */
+  size_t n;                     /* bytes in the buffer */
+  uint64_t written;             /* bytes put so far, buffer included */
+  int swap;                     /* 1: write the other byte order */
+  int error;                    /* errno of the first failed write; 0: none */
+  uint32_t record_limit;        /* VG_RECORD_LIMIT; a test may set less */
+  uint64_t record_left;         /* data bytes the open record still expects */
   uint32_t part_len, part_left; /* of the open subrecord */
   int record_open, part_first;
   struct vg_shared_file *shared; /* instead of fd; NULL: only measured */
-  uint64_t at;             /* shared: where in the file the buffer belongs */
-  int no_markers;          /* markers are passed over: another writes them */
-  struct vg_error failed;  /* shared: why, when error is set */
+  uint64_t at;            /* shared: where in the file the buffer belongs */
+  int no_markers;         /* markers are passed over: another writes them */
+  struct vg_error failed; /* shared: why, when error is set */
 };
-#define VG_OUTPUT_INIT { .fd = -1, .record_limit = VG_RECORD_LIMIT }
+#define VG_OUTPUT_INIT                                                         \
+  {                                                                            \
+    .fd = -1, .record_limit = VG_RECORD_LIMIT                                  \
+  }
 
 /** PATH.part, the name of a file until it is complete. NULL: no memory. */
 char *vg_output_part(const char *path);
@@ -214,7 +219,7 @@ void vg_output_text(struct vg_output *out, const char *s);
 /** A string with the characters of markup escaped. */
 void vg_output_markup(struct vg_output *out, const char *s);
 void vg_output_format(struct vg_output *out, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+  __attribute__((format(printf, 2, 3)));
 void vg_output_int(struct vg_output *out, int64_t v);
 void vg_output_real(struct vg_output *out, double v);
 

@@ -113,9 +113,9 @@ int vg_parse_int(const char *text, size_t len, int64_t *v)
 
 /* A decimal number taken apart: value = mantissa * 10^exponent. */
 struct decimal {
-  uint64_t mantissa;    /* first 19 significant digits */
+  uint64_t mantissa; /* first 19 significant digits */
   int exponent;
-  int negative, exact;  /* exact: no digit was dropped */
+  int negative, exact; /* exact: no digit was dropped */
 };
 
 static int scan_exponent(const char **s, const char *end, int *exponent)
@@ -167,10 +167,10 @@ static int scan_decimal(const char *s, const char *end, struct decimal *d)
   return scan_exponent(&s, end, &d->exponent);
 }
 
-static const double power10[23] = {
-  1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13,
-  1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22
-};
+static const double power10[23] = { 1e0,  1e1,  1e2,  1e3,  1e4,  1e5,
+                                    1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                    1e12, 1e13, 1e14, 1e15, 1e16, 1e17,
+                                    1e18, 1e19, 1e20, 1e21, 1e22 };
 
 /* Where `long double` has 64 bits, mantissa and power (5^27 < 2^64) are exact
  * in it and only one rounding happens; the second one, to double, is right
@@ -179,9 +179,9 @@ static int scale_extended(const struct decimal *d, double *v)
 {
 #if LDBL_MANT_DIG == 64
   static const long double power[28] = {
-    1e0L, 1e1L, 1e2L, 1e3L, 1e4L, 1e5L, 1e6L, 1e7L, 1e8L, 1e9L, 1e10L,
-    1e11L, 1e12L, 1e13L, 1e14L, 1e15L, 1e16L, 1e17L, 1e18L, 1e19L, 1e20L,
-    1e21L, 1e22L, 1e23L, 1e24L, 1e25L, 1e26L, 1e27L
+    1e0L,  1e1L,  1e2L,  1e3L,  1e4L,  1e5L,  1e6L,  1e7L,  1e8L,  1e9L,
+    1e10L, 1e11L, 1e12L, 1e13L, 1e14L, 1e15L, 1e16L, 1e17L, 1e18L, 1e19L,
+    1e20L, 1e21L, 1e22L, 1e23L, 1e24L, 1e25L, 1e26L, 1e27L
   };
   long double x = (long double)d->mantissa;
   uint64_t bits;
@@ -240,8 +240,8 @@ int vg_parse_real(const char *text, size_t len, double *v)
   if (!scan_decimal(text, text + len, &d)) return 0;
   if (!d.mantissa && d.exact) {
     x = 0;
-  } else if (d.exact && d.mantissa <= (uint64_t)1 << 53 &&
-             d.exponent >= -22 && d.exponent <= 22) {
+  } else if (d.exact && d.mantissa <= (uint64_t)1 << 53 && d.exponent >= -22 &&
+             d.exponent <= 22) {
     x = (double)d.mantissa;
     x = d.exponent < 0 ? x / power10[-d.exponent] : x * power10[d.exponent];
   } else if (!scale_extended(&d, &x)) {
@@ -261,7 +261,8 @@ static vg_status token_error(const struct vg_input *in, const char *text,
     if (c < 32 || c == 127)
       return vg_input_fail(in, err,
                            "binary data where %s (%s) should stand: this is "
-                           "not a text file; check its suffix", kind, what);
+                           "not a text file; check its suffix",
+                           kind, what);
   }
   return vg_input_fail(in, err, "%s (%s) should stand here, not '%.*s'", kind,
                        what, (int)(len < 40 ? len : 40), text);

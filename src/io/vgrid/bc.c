@@ -17,14 +17,16 @@ static vg_status bc_header(struct vg_input *in, int64_t head[4],
       return vg_fail(err, VG_ERR_FORMAT,
                      "%s: line 1 must hold four integers (faces, curve "
                      "points, patches, igrid); this is no VGRID .bc (AFLR "
-                     "uses the same suffix for something else)", in->path);
+                     "uses the same suffix for something else)",
+                     in->path);
   vg_input_line(in, &text, &len);
   vg_input_line(in, &text, &len); /* a title */
   /* Five numbers and five separators in each face line. */
   if (head[0] < 0 || (uint64_t)head[0] > (vg_input_left(in) + 1) / 10)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: truncated: line 1 announces %lld faces, which the "
-                   "file is too short for", in->path, (long long)head[0]);
+                   "file is too short for",
+                   in->path, (long long)head[0]);
   return VG_OK;
 }
 
@@ -37,16 +39,19 @@ static vg_status bc_face(struct vg_input *in, size_t face, size_t n_boundary,
   if (st == VG_OK) st = vg_input_int(in, &v, "patch number", err);
   if (st < 0) return st;
   if (v < -INT32_MAX || v > INT32_MAX)
-    return vg_input_fail(in, err, "patch number %lld of face %zu does not fit "
-                         "32 bits", (long long)v, face);
+    return vg_input_fail(in, err,
+                         "patch number %lld of face %zu does not fit "
+                         "32 bits",
+                         (long long)v, face);
   *tag = (int32_t)v;
   for (int k = 0; k < 3; k++) {
     st = vg_input_int(in, &v, "node of a face", err);
     if (st < 0) return st;
     if (v < 1 || (uint64_t)v > n_boundary) {
-      vg_input_fail(in, err, "face %zu refers to point %lld; boundary points "
-                    "are 1 to %zu in the .cogsg", face, (long long)v,
-                    n_boundary);
+      vg_input_fail(in, err,
+                    "face %zu refers to point %lld; boundary points "
+                    "are 1 to %zu in the .cogsg",
+                    face, (long long)v, n_boundary);
       if (err) err->code = VG_ERR_INPUT;
       return VG_ERR_INPUT;
     }
@@ -55,11 +60,10 @@ static vg_status bc_face(struct vg_input *in, size_t face, size_t n_boundary,
   return VG_OK;
 }
 
-vg_status vg_bc_parse(struct vg_input *in, size_t n_boundary,
-                      struct vg_mesh *m, struct vg_cogsg_info *info,
-                      struct vg_error *err)
+vg_status vg_bc_parse(struct vg_input *in, size_t n_boundary, struct vg_mesh *m,
+                      struct vg_cogsg_info *info, struct vg_error *err)
 {
-  uint32_t (*tri)[3] = NULL;
+  uint32_t(*tri)[3] = NULL;
   int32_t *tag = NULL;
   int64_t head[4];
   size_t n;

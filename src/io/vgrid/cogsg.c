@@ -19,10 +19,9 @@ struct layout {
 };
 
 /* In the order in which a reader should try them. */
-static const struct layout layouts[] = {
-  {1, 0, 8}, {0, 0, 8}, {1, 0, 4}, {0, 0, 4},
-  {1, 1, 8}, {0, 1, 8}, {1, 1, 4}, {0, 1, 4}
-};
+static const struct layout layouts[] = { { 1, 0, 8 }, { 0, 0, 8 }, { 1, 0, 4 },
+                                         { 0, 0, 4 }, { 1, 1, 8 }, { 0, 1, 8 },
+                                         { 1, 1, 4 }, { 0, 1, 4 } };
 
 /* Does the first marker fit the cell count behind it? A negative marker is
  * the first of several subrecords, which together must hold more. */
@@ -71,8 +70,8 @@ static vg_status bad_header(const struct vg_input *in, const struct header *h,
 {
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s: %s (header: %d cells, %d points, %d boundary points, "
-                 "npv %d, nev %d)", in->path, what, h->nc, h->npo, h->nbn,
-                 h->npv, h->nev);
+                 "npv %d, nev %d)",
+                 in->path, what, h->nc, h->npo, h->nbn, h->npv, h->nev);
 }
 
 static vg_status read_header(struct vg_input *record, const struct layout *l,
@@ -94,8 +93,10 @@ static vg_status read_header(struct vg_input *record, const struct layout *l,
   if (h->nc < 0 || h->npo < 0 || h->nbn < 0 || h->npv < 0 || h->nev < 0)
     return bad_header(record, h, "a negative count", err);
   if (vg_input_left(record) != 16 * (uint64_t)h->nc)
-    return bad_header(record, h, "the first record has another length than "
-                      "its cells need", err);
+    return bad_header(record, h,
+                      "the first record has another length than "
+                      "its cells need",
+                      err);
   if (h->nbn > h->npo)
     return bad_header(record, h, "more boundary points than points", err);
   if (h->nev > h->nc)
@@ -116,8 +117,7 @@ static vg_status read_cells(struct vg_input *record, size_t n_point,
       len = m->n_tet - i < BLOCK ? m->n_tet - i : BLOCK;
       st = vg_input_i32(record, len, block, "cells", err);
       if (st < 0) return st;
-      for (size_t k = 0; k < len; k++)
-        m->tet[i + k][slot] = (uint32_t)block[k];
+      for (size_t k = 0; k < len; k++) m->tet[i + k][slot] = (uint32_t)block[k];
     }
   return vg_index_from_file(record->path, "cell", m->n_tet, 4, n_point,
                             (uint32_t *)m->tet, err);
@@ -133,16 +133,17 @@ static vg_status read_points(struct vg_input *record, struct vg_mesh *m,
   if (left != 3 * (uint64_t)real_size * m->n_point)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: the record of the coordinates has %llu bytes; %zu "
-                   "points need %zu", record->path, (unsigned long long)left,
-                   m->n_point, 24 * m->n_point);
+                   "points need %zu",
+                   record->path, (unsigned long long)left, m->n_point,
+                   24 * m->n_point);
   for (int axis = 0; axis < 3; axis++)
     for (size_t i = 0, len; i < m->n_point; i += len) {
       vg_status st;
 
       len = m->n_point - i < BLOCK ? m->n_point - i : BLOCK;
       st = real_size == 8
-             ? vg_input_f64(record, len, block, "coordinates", err)
-             : vg_input_f32(record, len, block, "coordinates", err);
+           ? vg_input_f64(record, len, block, "coordinates", err)
+           : vg_input_f32(record, len, block, "coordinates", err);
       if (st < 0) return st;
       for (size_t k = 0; k < len; k++) m->point[i + k][axis] = block[k];
     }
@@ -254,16 +255,13 @@ static vg_status open_bc(const char *path, struct vg_input *bc,
   char *name = beside(path, ".bc"), *packed = beside(path, ".bc.gz");
   vg_status st;
 
-  if (!name || !packed)
-    st = vg_fail_memory(err, "a file name");
-  else if (!access(name, F_OK))
-    st = vg_input_open(name, bc, err);
-  else if (!access(packed, F_OK))
-    st = vg_input_open(packed, bc, err);
+  if (!name || !packed) st = vg_fail_memory(err, "a file name");
+  else if (!access(name, F_OK)) st = vg_input_open(name, bc, err);
+  else if (!access(packed, F_OK)) st = vg_input_open(packed, bc, err);
   else
     st = vg_fail(err, VG_ERR_IO,
-                 "%s: not found; the boundary triangles of %s are in it",
-                 name, path);
+                 "%s: not found; the boundary triangles of %s are in it", name,
+                 path);
   free(name);
   free(packed);
   return st;
@@ -325,17 +323,18 @@ static void put_axis(struct vg_output *out, const struct vg_mesh *m, int axis,
   }
 }
 
-#define HEAD_BYTES 32u     /* six integers and tc */
+#define HEAD_BYTES 32u /* six integers and tc */
 
 void vg_cogsg_put(struct vg_output *out, const struct vg_mesh *m,
-                  const struct vg_cogsg_info *info,
-                  const uint32_t *new_to_old, const uint32_t *old_to_new)
+                  const struct vg_cogsg_info *info, const uint32_t *new_to_old,
+                  const uint32_t *old_to_new)
 {
-  const int32_t head[6] = {
-    info->inew, (int32_t)m->n_tet, (int32_t)m->n_point,
-    (int32_t)info->n_boundary, (int32_t)info->n_layer_point,
-    (int32_t)info->n_layer_cell
-  };
+  const int32_t head[6] = { info->inew,
+                            (int32_t)m->n_tet,
+                            (int32_t)m->n_point,
+                            (int32_t)info->n_boundary,
+                            (int32_t)info->n_layer_point,
+                            (int32_t)info->n_layer_cell };
   const int32_t zero = 0;
 
   assert(!new_to_old == !old_to_new);
@@ -364,8 +363,8 @@ void vg_cogsg_seek(struct vg_output *out, uint64_t n_tet, uint64_t n_point,
   assert(first <= (part == VG_COGSG_CELLS ? n_tet : n_point));
   vg_output_order(out, 1);
   if (part == VG_COGSG_CELLS)
-    vg_output_seek_record(out, 0, cells, HEAD_BYTES +
-                          4 * ((uint64_t)column * n_tet + first));
+    vg_output_seek_record(out, 0, cells,
+                          HEAD_BYTES + 4 * ((uint64_t)column * n_tet + first));
   else
     vg_output_seek_record(out, vg_record_size(cells, out->record_limit),
                           24 * n_point,
@@ -405,18 +404,18 @@ void vg_cogsg_put_faces(struct vg_output *out, const struct vg_mesh *m,
 }
 
 vg_status vg_cogsg_check(const char *stem, const struct vg_mesh *m,
-                         const struct vg_cogsg_info *info,
-                         struct vg_error *err)
+                         const struct vg_cogsg_info *info, struct vg_error *err)
 {
   if (m->n_pyr || m->n_pri || m->n_hex || m->n_quad)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "%s.cogsg: the format holds tetrahedra and triangles only, "
-                   "the mesh also has others; write .b8.ugrid", stem);
+                   "the mesh also has others; write .b8.ugrid",
+                   stem);
   if (m->n_tet > INT32_MAX || m->n_point > INT32_MAX || m->n_tri > INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "%s.cogsg: %zu cells and %zu points are too many for its "
-                   "32-bit counts; write .b8l.ugrid", stem, m->n_tet,
-                   m->n_point);
+                   "32-bit counts; write .b8l.ugrid",
+                   stem, m->n_tet, m->n_point);
   if (info->n_layer_cell > m->n_tet || info->n_layer_point > m->n_point ||
       info->n_trailing < 0)
     return vg_fail(err, VG_ERR_INPUT,

@@ -14,8 +14,8 @@ vg_status vg_cogsg_check(const char *stem, const struct vg_mesh *m,
 
 /** A mesh, or a frame; the orders of vg_vgrid_order, or NULL. */
 void vg_cogsg_put(struct vg_output *out, const struct vg_mesh *m,
-                  const struct vg_cogsg_info *info,
-                  const uint32_t *new_to_old, const uint32_t *old_to_new);
+                  const struct vg_cogsg_info *info, const uint32_t *new_to_old,
+                  const uint32_t *old_to_new);
 
 /** Content of the .bc. */
 void vg_cogsg_put_faces(struct vg_output *out, const struct vg_mesh *m,

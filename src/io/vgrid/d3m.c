@@ -13,7 +13,10 @@
 
 struct id_map {
   size_t n;
-  struct id { int64_t id; size_t at; } *list; /* sorted by id */
+  struct id {
+    int64_t id;
+    size_t at;
+  } * list; /* sorted by id */
 };
 
 static int compare_id(const void *a, const void *b)
@@ -88,8 +91,7 @@ static vg_status values(struct vg_input *in, size_t n, double *v,
 }
 
 static vg_status count_value(struct vg_input *in, const char *what,
-                             size_t bytes_each, size_t *n,
-                             struct vg_error *err)
+                             size_t bytes_each, size_t *n, struct vg_error *err)
 {
   struct vg_input line;
   int64_t v;
@@ -98,8 +100,10 @@ static vg_status count_value(struct vg_input *in, const char *what,
   if (st == VG_OK) st = vg_input_int(&line, &v, what, err);
   if (st < 0) return st;
   if (v < 0 || (uint64_t)v > vg_input_left(in) / bytes_each + 1)
-    return vg_input_fail(&line, err, "%s is %lld, which the file is too short "
-                         "for", what, (long long)v);
+    return vg_input_fail(&line, err,
+                         "%s is %lld, which the file is too short "
+                         "for",
+                         what, (long long)v);
   *n = (size_t)v;
   return VG_OK;
 }
@@ -217,7 +221,7 @@ static vg_status read_points(struct reader *r, struct vg_error *err)
     if (id < 0)
       return vg_input_fail(&line, err, "point number %lld is negative",
                            (long long)id);
-    r->point.list[r->point.n++] = (struct id){id, i};
+    r->point.list[r->point.n++] = (struct id){ id, i };
   }
   return map_done(r, &r->point, "point", err);
 }
@@ -235,7 +239,8 @@ static vg_status read_curve(struct reader *r, size_t i, struct vg_error *err)
     return vg_input_fail(in, err, "curve number %lld is not positive",
                          (long long)id);
   if (n < 2 || (uint64_t)n > vg_input_left(in) / 2 + 1)
-    return vg_input_fail(in, err, "curve %lld has %lld points; two or more, "
+    return vg_input_fail(in, err,
+                         "curve %lld has %lld points; two or more, "
                          "and no more than the file lists, are possible",
                          (long long)id, (long long)n);
   c->id = (int32_t)id;
@@ -250,11 +255,13 @@ static vg_status read_curve(struct reader *r, size_t i, struct vg_error *err)
     if (st < 0) return st;
     at = map_find(&r->point, number);
     if (at == SIZE_MAX)
-      return vg_input_fail(in, err, "curve %lld refers to point %lld, which "
-                           "is not listed", (long long)id, (long long)number);
+      return vg_input_fail(in, err,
+                           "curve %lld refers to point %lld, which "
+                           "is not listed",
+                           (long long)id, (long long)number);
     c->point[k] = (uint32_t)at;
   }
-  r->curve.list[r->curve.n++] = (struct id){id, i};
+  r->curve.list[r->curve.n++] = (struct id){ id, i };
   return VG_OK;
 }
 
@@ -296,8 +303,10 @@ static vg_status add_loop_curve(struct reader *r, struct vg_patch_shape *s,
   size_t at = map_find(&r->curve, number < 0 ? -number : number);
 
   if (at == SIZE_MAX)
-    return vg_input_fail(line, err, "patch %d refers to curve %lld, which is "
-                         "not listed", s->patch.id, (long long)number);
+    return vg_input_fail(line, err,
+                         "patch %d refers to curve %lld, which is "
+                         "not listed",
+                         s->patch.id, (long long)number);
   if (vg_reserve(&s->curve, cap, s->n + 1, sizeof *s->curve) < 0)
     return vg_fail_memory(err, "a patch");
   s->curve[s->n++] = number < 0 ? -(int32_t)(at + 1) : (int32_t)(at + 1);
@@ -333,18 +342,18 @@ static vg_status read_loop(struct reader *r, struct vg_patch_shape *s,
         r->in->data[r->in->at] == '#')
       return vg_input_fail(&line, err,
                            "the loop of patch %d does not close: curve %d "
-                           "does not end where curve %d begins", s->patch.id,
-                           s->curve[gap - 1], s->curve[gap % s->n]);
+                           "does not end where curve %d begins",
+                           s->patch.id, s->curve[gap - 1],
+                           s->curve[gap % s->n]);
   }
 }
 
 static vg_status read_patch(struct reader *r, struct vg_patch_shape *s,
                             struct vg_error *err)
 {
-  static const char *const name[5] = {
-    "patch number", "patch type", "number of sides", "rotation",
-    "meshing class"
-  };
+  static const char *const name[5] = { "patch number", "patch type",
+                                       "number of sides", "rotation",
+                                       "meshing class" };
   struct vg_input line;
   int64_t v[5];
   vg_status st = content_line(r->in, &line, "a patch", err);
@@ -372,14 +381,14 @@ static vg_status read_patch(struct reader *r, struct vg_patch_shape *s,
 static vg_status read_patches(struct reader *r, struct vg_error *err)
 {
   struct vg_project *p = r->p;
-  struct id_map ids = {0, NULL};
+  struct id_map ids = { 0, NULL };
   vg_status st = VG_OK;
 
   ids.list = vg_alloc(p->n_shape, sizeof *ids.list);
   if (!ids.list) return vg_fail_memory(err, "the patches");
   for (size_t i = 0; i < p->n_shape && st == VG_OK; i++) {
     st = read_patch(r, p->shape + i, err);
-    ids.list[ids.n++] = (struct id){p->shape[i].patch.id, i};
+    ids.list[ids.n++] = (struct id){ p->shape[i].patch.id, i };
   }
   if (st == VG_OK) st = map_done(r, &ids, "patch", err);
   free(ids.list);
@@ -412,8 +421,10 @@ static vg_status read_source(struct reader *r, size_t i, struct vg_error *err)
   VG_TRY(content_line(in, &line, "source_number", err));
   vg_input_token(&line, &text, &len);
   if (!vg_token_is(text, len, "source_number")) {
-    st = vg_input_fail(&line, err, "'source_number' of source %zu of %zu "
-                       "should stand here", i + 1, r->p->n_source);
+    st = vg_input_fail(&line, err,
+                       "'source_number' of source %zu of %zu "
+                       "should stand here",
+                       i + 1, r->p->n_source);
     goto done;
   }
   vg_input_token_in_line(&line, &text, &len);
@@ -422,7 +433,8 @@ static vg_status read_source(struct reader *r, size_t i, struct vg_error *err)
   if (v[0] != 0 && v[0] != 1) {
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
                  "%s:%zu: source %zu has type %g; known are 0 (node) and 1 "
-                 "(line)", in->path, in->line - 1, i + 1, v[0]);
+                 "(line)",
+                 in->path, in->line - 1, i + 1, v[0]);
     goto done;
   }
   s->kind = v[0] == 0 ? VG_SOURCE_VGRID_NODE : VG_SOURCE_VGRID_LINE;
@@ -452,13 +464,13 @@ vg_status vg_d3m_parse(struct vg_input *in, struct vg_project *out,
                        struct vg_error *err)
 {
   struct vg_project p = VG_PROJECT_INIT;
-  struct reader r = {in, &p, {0, NULL}, {0, NULL}};
+  struct reader r = { in, &p, { 0, NULL }, { 0, NULL } };
   vg_status st;
 
   assert(in && out);
   if (!vg_input_is_text(in))
-    return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: holds binary data; a .d3m is text", in->path);
+    return vg_fail(err, VG_ERR_FORMAT, "%s: holds binary data; a .d3m is text",
+                   in->path);
   st = read_parameters(&r, err);
   if (st < 0) {
     p.n_curve = p.n_shape = 0; /* announced, not there */

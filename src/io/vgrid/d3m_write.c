@@ -13,8 +13,8 @@ static size_t scientific(double v, char *text, size_t size)
   int n = snprintf(text, size, "%.10e", v);
 
   for (int i = 0; i < n; i++)
-    if ((text[i] < '0' || text[i] > '9') && text[i] != '-' &&
-        text[i] != '+' && text[i] != 'e')
+    if ((text[i] < '0' || text[i] > '9') && text[i] != '-' && text[i] != '+' &&
+        text[i] != 'e')
       text[i] = '.';
   return (size_t)n;
 }
@@ -64,28 +64,37 @@ static void put_real(struct vg_output *out, double v, const char *comment)
 
 static void put_parameters(struct vg_output *out, const struct vg_project *p)
 {
-  vg_output_format(out, "#VGRID VERSION\n3.6\n#Project Name\n%s\n#\n"
+  vg_output_format(out,
+                   "#VGRID VERSION\n3.6\n#Project Name\n%s\n#\n"
                    "#-------------  Parameters  -----------------\n#\n",
                    p->name[0] ? p->name : "project");
-  put_int(out, p->grid, "grid: 0 Euler; 1 NS uniform spacing; 2 NS variable "
+  put_int(out, p->grid,
+          "grid: 0 Euler; 1 NS uniform spacing; 2 NS variable "
           "spacing");
-  put_real(out, p->layer.rate1, "rate1: uniform normal spacing growth rate "
+  put_real(out, p->layer.rate1,
+           "rate1: uniform normal spacing growth rate "
            "for NS grids");
-  put_real(out, p->layer.rate2, "rate2: uniform normal spacing growth rate "
+  put_real(out, p->layer.rate2,
+           "rate2: uniform normal spacing growth rate "
            "for NS grids");
-  put_real(out, p->layer.delta1, "delt1: uniform normal spacing for the first "
+  put_real(out, p->layer.delta1,
+           "delt1: uniform normal spacing for the first "
            "viscous layer");
   put_int(out, p->layer.n_max, "nlayr: maximum no. of viscous layers");
-  put_int(out, p->restart, "rstrt: -1 stop aft surf mesh; 1 continue; 0 no "
+  put_int(out, p->restart,
+          "rstrt: -1 stop aft surf mesh; 1 continue; 0 no "
           "rstrt");
   put_real(out, p->ifact, "ifact: >1.0 coarser Euler grid; <1.0 finer");
   put_real(out, p->vfact, "vfact: >1.0 coarser NS grid; <1.0 finer");
   put_int(out, p->stretch, "strch: 0 off; 1 on");
-  put_int(out, (int64_t)p->n_point, "npoli: no. of points defining the "
+  put_int(out, (int64_t)p->n_point,
+          "npoli: no. of points defining the "
           "configuration");
-  put_int(out, (int64_t)p->n_curve, "nline: no. of lines defining the "
+  put_int(out, (int64_t)p->n_curve,
+          "nline: no. of lines defining the "
           "configuration");
-  put_int(out, (int64_t)p->n_shape, "nptch: no. of patches defining the "
+  put_int(out, (int64_t)p->n_shape,
+          "nptch: no. of patches defining the "
           "configuration");
   put_int(out, (int64_t)p->n_source, "   ms: no. of background grid sources");
   put_int(out, p->n_background, "   ni: no. of background grid points");
@@ -96,8 +105,8 @@ static void put_parameters(struct vg_output *out, const struct vg_project *p)
 static void put_points(struct vg_output *out, const struct vg_project *p)
 {
   vg_output_text(out, "#\n#-------------  Points  ---------------------\n#\n"
-                 "#No.              X-coor            Y-Coor            "
-                 "Z-Coor\n");
+                      "#No.              X-coor            Y-Coor            "
+                      "Z-Coor\n");
   for (size_t i = 0; i < p->n_point; i++) {
     char text[40];
     int n = snprintf(text, sizeof text, "%zu", i + 1);
@@ -115,7 +124,7 @@ static void put_points(struct vg_output *out, const struct vg_project *p)
 static void put_curves(struct vg_output *out, const struct vg_project *p)
 {
   vg_output_text(out, "#\n#-------------  Curves  ---------------------\n#\n"
-                 "#no.          #pts     list of points\n");
+                      "#no.          #pts     list of points\n");
   for (size_t i = 0; i < p->n_curve; i++) {
     const struct vg_curve *c = p->curve + i;
 
@@ -129,8 +138,8 @@ static void put_curves(struct vg_output *out, const struct vg_project *p)
 static void put_patches(struct vg_output *out, const struct vg_project *p)
 {
   vg_output_text(out, "#\n#-------------  Patches  --------------------\n#\n"
-                 "#no.           type    #sides  rotation bc\n"
-                 "#              side    #curves list of curves\n");
+                      "#no.           type    #sides  rotation bc\n"
+                      "#              side    #curves list of curves\n");
   for (size_t i = 0; i < p->n_shape; i++) {
     const struct vg_patch_shape *s = p->shape + i;
 
@@ -151,9 +160,9 @@ static void put_sources(struct vg_output *out, const struct vg_project *p)
   vg_output_text(out, "#\n#-------------  Sources  --------------------\n#\n");
   for (size_t i = 0; i < p->n_source; i++) {
     const struct vg_source *s = p->source + i;
-    const double type[2] = {s->kind == VG_SOURCE_VGRID_LINE, s->stretch};
-    const double weight[3] = {s->an, s->bn, s->alpha};
-    const double size0[2] = {s->h0, s->sp0}, size1[2] = {s->h1, s->sp1};
+    const double type[2] = { s->kind == VG_SOURCE_VGRID_LINE, s->stretch };
+    const double weight[3] = { s->an, s->bn, s->alpha };
+    const double size0[2] = { s->h0, s->sp0 }, size1[2] = { s->h1, s->sp1 };
 
     vg_output_format(out, "\nsource_number    %-17zu%s\n", i + 1,
                      s->group[0] ? s->group : "all");
@@ -181,7 +190,8 @@ vg_status vg_d3m_write(const char *path, const struct vg_project *p,
         p->source[i].kind != VG_SOURCE_VGRID_LINE)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
                      "%s: source %zu is of a kind that a .d3m does not have; "
-                     "put it in the run deck", path, i + 1);
+                     "put it in the run deck",
+                     path, i + 1);
   st = vg_output_open(path, &out, err);
   if (st < 0) return st;
   put_parameters(&out, p);

@@ -8,8 +8,20 @@
 #include "io/vgrid/vgrid.h"
 
 /* Values of line 2, by place. */
-enum { NPOIT, NELET, NPOIF, NFACE, NBOUN, NFACS, NBOUC, NFACI, NPOIV, NELEV,
-       NBOU0, N_HEADER };
+enum {
+  NPOIT,
+  NELET,
+  NPOIF,
+  NFACE,
+  NBOUN,
+  NFACS,
+  NBOUC,
+  NFACI,
+  NPOIV,
+  NELEV,
+  NBOU0,
+  N_HEADER
+};
 
 static vg_status front_header(struct vg_input *in, int64_t head[N_HEADER],
                               struct vg_error *err)
@@ -20,14 +32,17 @@ static vg_status front_header(struct vg_input *in, int64_t head[N_HEADER],
 
   memset(head, 0, N_HEADER * sizeof *head);
   if (!vg_input_is_text(in))
-    return vg_fail(err, VG_ERR_FORMAT, "%s: holds binary data; a .front is "
-                   "text", in->path);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: holds binary data; a .front is "
+                   "text",
+                   in->path);
   vg_input_line(in, &text, &len);
   while (n < N_HEADER && vg_input_token_in_line(in, &text, &len) &&
          vg_parse_int(text, len, head + n))
     n++;
   if (n < NBOU0)
-    return vg_input_fail(in, err, "ten or eleven counts (npoit nelet npoif "
+    return vg_input_fail(in, err,
+                         "ten or eleven counts (npoit nelet npoif "
                          "nface ...) should stand here");
   vg_input_line(in, &text, &len);
   for (int k = 0; k < n; k++)
@@ -38,8 +53,8 @@ static vg_status front_header(struct vg_input *in, int64_t head[N_HEADER],
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "%s: the front of a volume run (%lld cells made, %lld of "
                    "%lld faces left), not a surface; run VGRID with rstrt = "
-                   "-1, or give the surface as another file", in->path,
-                   (long long)head[NELET], (long long)head[NFACE],
+                   "-1, or give the surface as another file",
+                   in->path, (long long)head[NELET], (long long)head[NFACE],
                    (long long)head[NFACS]);
   if (!head[NFACE] || !head[NPOIT])
     return vg_fail(err, VG_ERR_FORMAT, "%s: a front without faces", in->path);
@@ -116,14 +131,16 @@ static vg_status read_edges(struct vg_input *in, const struct vg_mesh *m,
                             size_t *n_edge, uint32_t (**edge)[2],
                             struct vg_error *err)
 {
-  uint32_t (*list)[2];
+  uint32_t(*list)[2];
   int64_t n;
   vg_status st = vg_input_int(in, &n, "number of curve edges", err);
 
   if (st < 0) return st;
   if (n < 1 || (uint64_t)n > vg_input_left(in) / 4 + 1)
-    return vg_input_fail(in, err, "%lld curve edges: none, or more than the "
-                         "file can hold", (long long)n);
+    return vg_input_fail(in, err,
+                         "%lld curve edges: none, or more than the "
+                         "file can hold",
+                         (long long)n);
   list = vg_alloc((size_t)n, sizeof *list);
   if (!list) return vg_fail_memory(err, "the curve edges");
   for (int side = 0; side < 2 && st == VG_OK; side++)
@@ -143,7 +160,7 @@ vg_status vg_front_parse(struct vg_input *in, const struct vg_project *project,
                          struct vg_mesh *out, struct vg_error *err)
 {
   struct vg_mesh m = VG_MESH_INIT;
-  uint32_t (*edge)[2] = NULL;
+  uint32_t(*edge)[2] = NULL;
   int64_t head[N_HEADER];
   size_t n_edge = 0;
   vg_status st;

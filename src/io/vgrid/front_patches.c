@@ -24,12 +24,12 @@
 
 #define NONE UINT32_MAX
 
-struct edge {            /* of the mesh, a < b */
+struct edge { /* of the mesh, a < b */
   uint32_t a, b;
   uint32_t face[2];
   int n_face;
   int on_curve;
-  int32_t curve;         /* 1-based, < 0: the curve runs from b to a */
+  int32_t curve; /* 1-based, < 0: the curve runs from b to a */
 };
 
 /* A curve edge seen from one end. */
@@ -44,9 +44,9 @@ struct front {
   const char *path;
   struct vg_table table; /* edges by their points */
   size_t n_edge;
-  struct edge *edge;     /* [n_edge] */
-  uint32_t *region;      /* [n_tri] */
-  uint32_t *seed;        /* [n_region] first face */
+  struct edge *edge; /* [n_edge] */
+  uint32_t *region;  /* [n_tri] */
+  uint32_t *seed;    /* [n_region] first face */
   size_t n_region, n_link;
   struct link *link;     /* [n_link] sorted by from, to */
   uint32_t (*end)[2];    /* [n_curve] points of the mesh at curve ends */
@@ -62,7 +62,7 @@ static struct edge *edge_of(struct front *w, uint32_t p, uint32_t q)
                 w->edge[*at].a == a && w->edge[*at].b == b);
   if (*at == VG_TABLE_FREE) {
     *at = (uint32_t)w->n_edge;
-    w->edge[w->n_edge++] = (struct edge){.a = a, .b = b};
+    w->edge[w->n_edge++] = (struct edge){ .a = a, .b = b };
   }
   return &w->edge[*at];
 }
@@ -90,8 +90,8 @@ static vg_status build_edges(struct front *w, size_t n_edge,
     if (!c->n_face)
       return vg_fail(err, VG_ERR_INPUT,
                      "%s: curve edge %zu joins points %u and %u, which no "
-                     "face joins; the file is damaged", w->path, i + 1,
-                     edge[i][0] + 1, edge[i][1] + 1);
+                     "face joins; the file is damaged",
+                     w->path, i + 1, edge[i][0] + 1, edge[i][1] + 1);
   }
   return VG_OK;
 }
@@ -118,8 +118,7 @@ static vg_status flood(struct front *w, struct vg_error *err)
       uint32_t f = stack[--n];
 
       for (int k = 0; k < 3; k++) {
-        const struct edge *c =
-            edge_of(w, m->tri[f][k], m->tri[f][(k + 1) % 3]);
+        const struct edge *c = edge_of(w, m->tri[f][k], m->tri[f][(k + 1) % 3]);
         uint32_t g = c->face[0] == f ? c->face[1] : c->face[0];
 
         if (c->on_curve || c->n_face != 2 || w->region[g] != NONE) continue;
@@ -157,8 +156,8 @@ static vg_status build_links(struct front *w, struct vg_error *err)
     const struct edge *c = w->edge + i;
 
     if (!c->on_curve) continue;
-    w->link[w->n_link++] = (struct link){c->a, c->b, (uint32_t)i};
-    w->link[w->n_link++] = (struct link){c->b, c->a, (uint32_t)i};
+    w->link[w->n_link++] = (struct link){ c->a, c->b, (uint32_t)i };
+    w->link[w->n_link++] = (struct link){ c->b, c->a, (uint32_t)i };
   }
   qsort(w->link, w->n_link, sizeof *w->link, compare_link);
   return VG_OK;
@@ -252,8 +251,8 @@ static vg_status find_end(struct front *w, const struct by_x *list, size_t n,
     return vg_fail(err, VG_ERR_INPUT,
                    "%s: the %s of curve %d of the project, at (%g %g %g), is "
                    "no curve point of the front; the .d3m and the .front do "
-                   "not belong together", w->path, side ? "end" : "start",
-                   c->id, at[0], at[1], at[2]);
+                   "not belong together",
+                   w->path, side ? "end" : "start", c->id, at[0], at[1], at[2]);
   w->end[curve][side] = p;
   w->is_end[p] = 1;
   return VG_OK;
@@ -275,8 +274,8 @@ static vg_status find_ends(struct front *w, struct vg_error *err)
   }
   for (size_t i = 0; i < w->n_link; i++)
     if (!i || w->link[i].from != w->link[i - 1].from)
-      list[n++] = (struct by_x){w->m->point[w->link[i].from][0],
-                                w->link[i].from};
+      list[n++] = (struct by_x){ w->m->point[w->link[i].from][0],
+                                 w->link[i].from };
   qsort(list, n, sizeof *list, compare_x);
   for (size_t c = 0; c < project->n_curve && st == VG_OK; c++)
     for (int side = 0; side < 2 && st == VG_OK; side++)
@@ -311,10 +310,10 @@ static double along(const struct vg_project *p, const struct vg_curve *c,
 }
 
 struct chain {
-  size_t n;              /* points */
+  size_t n; /* points */
   size_t cap, cap_edge;
-  uint32_t *point;       /* [n] */
-  uint32_t *edge;        /* [n - 1] */
+  uint32_t *point; /* [n] */
+  uint32_t *edge;  /* [n - 1] */
 };
 
 static int chain_add(struct chain *c, uint32_t p)
@@ -398,14 +397,12 @@ static vg_status name_chain(struct front *w, const struct ends *list,
 
     if (list[mid].lo < a || (list[mid].lo == a && list[mid].hi < b))
       lo = mid + 1;
-    else
-      hi = mid;
+    else hi = mid;
   }
   middle(w, c, x);
   for (; lo < w->project->n_curve && list[lo].lo == a && list[lo].hi == b;
        lo++) {
-    double d = along(w->project, w->project->curve + list[lo].curve, x,
-                     &where);
+    double d = along(w->project, w->project->curve + list[lo].curve, x, &where);
 
     if (d >= best) continue;
     best = d;
@@ -415,8 +412,8 @@ static vg_status name_chain(struct front *w, const struct ends *list,
     return vg_fail(err, VG_ERR_INPUT,
                    "%s: the curve edges from point %u to point %u, at (%g %g "
                    "%g), lie on no curve of the project; the .d3m and the "
-                   ".front do not belong together", w->path, p + 1, q + 1,
-                   x[0], x[1], x[2]);
+                   ".front do not belong together",
+                   w->path, p + 1, q + 1, x[0], x[1], x[2]);
   forward = is_forward(w, curve, c);
   for (size_t i = 0; i + 1 < c->n; i++) {
     struct edge *e = w->edge + c->edge[i];
@@ -430,14 +427,14 @@ static vg_status name_chain(struct front *w, const struct ends *list,
 static vg_status name_curves(struct front *w, struct vg_error *err)
 {
   struct ends *list = vg_alloc(w->project->n_curve, sizeof *list);
-  struct chain c = {0, 0, 0, NULL, NULL};
+  struct chain c = { 0, 0, 0, NULL, NULL };
   vg_status st = VG_OK;
 
   if (!list) return vg_fail_memory(err, "the curves of a front");
   for (size_t i = 0; i < w->project->n_curve; i++) {
     uint32_t p = w->end[i][0], q = w->end[i][1];
 
-    list[i] = (struct ends){p < q ? p : q, p < q ? q : p, (uint32_t)i};
+    list[i] = (struct ends){ p < q ? p : q, p < q ? q : p, (uint32_t)i };
   }
   qsort(list, w->project->n_curve, sizeof *list, compare_ends);
   for (size_t l = 0; l < w->n_link && st == VG_OK; l++) {
@@ -458,9 +455,9 @@ static vg_status name_curves(struct front *w, struct vg_error *err)
 /* --- regions and patches by their signed curves --- */
 
 struct signature {
-  const int32_t *curve;  /* [n] sorted, each once */
+  const int32_t *curve; /* [n] sorted, each once */
   size_t n;
-  uint32_t owner;        /* region or shape */
+  uint32_t owner; /* region or shape */
 };
 
 struct pair {
@@ -502,7 +499,7 @@ static void pack(struct pair *pair, size_t n_pair, int32_t *curve,
 
   qsort(pair, n_pair, sizeof *pair, compare_pair);
   for (size_t owner = 0; owner < n_owner; owner++) {
-    s[owner] = (struct signature){curve + n, 0, (uint32_t)owner};
+    s[owner] = (struct signature){ curve + n, 0, (uint32_t)owner };
     for (; i < n_pair && pair[i].owner == owner; i++) {
       if (s[owner].n && curve[n - 1] == pair[i].curve) continue;
       curve[n++] = pair[i].curve;
@@ -548,14 +545,14 @@ static vg_status signatures(struct front *w, struct matching *g,
 
       /* Three faces on a curve edge would pass the room that was made. */
       if (c->curve && n < n_max)
-        g->pair[n++] = (struct pair){w->region[f], a < b ? c->curve
-                                                         : -c->curve};
+        g->pair[n++] = (struct pair){ w->region[f],
+                                      a < b ? c->curve : -c->curve };
     }
   pack(g->pair, n, g->curve[0], g->region, w->n_region);
   n = 0;
   for (size_t i = 0; i < p->n_shape; i++)
     for (size_t k = 0; k < p->shape[i].n; k++)
-      g->pair[n++] = (struct pair){(uint32_t)i, p->shape[i].curve[k]};
+      g->pair[n++] = (struct pair){ (uint32_t)i, p->shape[i].curve[k] };
   pack(g->pair, n, g->curve[1], g->shape, p->n_shape);
   qsort(g->shape, p->n_shape, sizeof *g->shape, compare_signature_owner);
   return VG_OK;
@@ -569,8 +566,8 @@ static vg_status lost_region(const struct front *w, uint32_t region,
 
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: the region of face %u, at (%g %g %g), %s; the .d3m and "
-                 "the .front do not belong together", w->path, f + 1, x[0],
-                 x[1], x[2], why);
+                 "the .front do not belong together",
+                 w->path, f + 1, x[0], x[1], x[2], why);
 }
 
 /* shape_of[region], each shape once. */
@@ -587,11 +584,15 @@ static vg_status match_regions(struct front *w, const struct matching *g,
                                         sizeof *g->shape, compare_signature);
 
     if (!s) {
-      st = lost_region(w, (uint32_t)r, "is bounded by other curves than any "
-                       "patch of the project", err);
+      st = lost_region(w, (uint32_t)r,
+                       "is bounded by other curves than any "
+                       "patch of the project",
+                       err);
     } else if (taken[s->owner]) {
-      st = lost_region(w, (uint32_t)r, "is bounded by the curves of a patch "
-                       "that another region has already", err);
+      st = lost_region(w, (uint32_t)r,
+                       "is bounded by the curves of a patch "
+                       "that another region has already",
+                       err);
     } else {
       taken[s->owner] = 1;
       shape_of[r] = s->owner;
@@ -601,8 +602,8 @@ static vg_status match_regions(struct front *w, const struct matching *g,
     if (!taken[i])
       st = vg_fail(err, VG_ERR_INPUT,
                    "%s: no face of the front lies on patch %d of the project; "
-                   "the .d3m and the .front do not belong together", w->path,
-                   p->shape[i].patch.id);
+                   "the .d3m and the .front do not belong together",
+                   w->path, p->shape[i].patch.id);
   free(taken);
   return st;
 }
@@ -629,7 +630,7 @@ static vg_status set_patches(struct front *w, const uint32_t *shape_of,
 
 static vg_status match_project(struct front *w, struct vg_error *err)
 {
-  struct matching g = {NULL, {NULL, NULL}, NULL, NULL};
+  struct matching g = { NULL, { NULL, NULL }, NULL, NULL };
   uint32_t *shape_of = vg_alloc(w->n_region, sizeof *shape_of);
   vg_status st = VG_OK;
 
@@ -651,7 +652,7 @@ vg_status vg_front_patches(struct vg_mesh *m, size_t n_edge,
                            const struct vg_project *project, const char *path,
                            struct vg_error *err)
 {
-  struct front w = {.m = m, .project = project, .path = path};
+  struct front w = { .m = m, .project = project, .path = path };
   vg_status st;
 
   assert(edge || !n_edge);

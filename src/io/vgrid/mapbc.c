@@ -17,13 +17,14 @@
  * one (formats.md 1.5), the nearest meaning elsewhere. */
 static const struct {
   int32_t usm3d, fun3d;
-} pair[] = {
-  {1, 6662}, {1, 6661}, {1, 6663}, {0, 5050}, {2, 5026}, {3, 5000},
-  {3, 5025}, {4, 4000}, {4, 4010}, {4, 4020}, {4, 4075}, {4, 4100},
-  {4, 4110}, {4, -4000}, {4, -4100}, {4, -4110}, {41, 4030}, {44, 4000},
-  {5, 3000}, {55, 3000}, {101, 5051}, {101, 5052}, {102, 7011}, {103, 7036},
-  {1001, 7011}, {1002, 5051}, {11002, 5051}, {11003, 5052}, {101, 7012}
-};
+} pair[] = { { 1, 6662 },    { 1, 6661 },    { 1, 6663 },     { 0, 5050 },
+             { 2, 5026 },    { 3, 5000 },    { 3, 5025 },     { 4, 4000 },
+             { 4, 4010 },    { 4, 4020 },    { 4, 4075 },     { 4, 4100 },
+             { 4, 4110 },    { 4, -4000 },   { 4, -4100 },    { 4, -4110 },
+             { 41, 4030 },   { 44, 4000 },   { 5, 3000 },     { 55, 3000 },
+             { 101, 5051 },  { 101, 5052 },  { 102, 7011 },   { 103, 7036 },
+             { 1001, 7011 }, { 1002, 5051 }, { 11002, 5051 }, { 11003, 5052 },
+             { 101, 7012 } };
 #define N_PAIR (sizeof pair / sizeof pair[0])
 
 int32_t vg_bc_to_fun3d(int32_t usm3d, int axis)
@@ -45,7 +46,7 @@ int32_t vg_bc_to_usm3d(int32_t fun3d)
 vg_status vg_patch_axes(const struct vg_mesh *m, int *axis,
                         struct vg_error *err)
 {
-  double (*box)[6] = vg_alloc(m->n_patch, sizeof *box);
+  double(*box)[6] = vg_alloc(m->n_patch, sizeof *box);
   double lo[3], hi[3], size = 0;
 
   assert(axis || !m->n_patch);
@@ -94,7 +95,7 @@ void vg_mapbc_release(struct vg_mapbc *b)
 struct line {
   const char *token[N_TOKEN];
   size_t len[N_TOKEN];
-  size_t rest;        /* length from the last token to the end of the line */
+  size_t rest; /* length from the last token to the end of the line */
   int n;
   size_t number;
 };
@@ -180,7 +181,7 @@ static vg_status parse_vgrid(struct vg_input *in, struct vg_mapbc *b,
     tolerant |= is_full_row(&l);
   if (!tolerant) *in = look;
   while (next_line(in, &l)) {
-    struct vg_patch p = {0};
+    struct vg_patch p = { 0 };
     vg_status st;
 
     if (!l.n || l.token[0][0] == '#') continue;
@@ -201,9 +202,10 @@ static vg_status parse_fun3d(struct vg_input *in, struct vg_mapbc *b,
   size_t cap = 0;
   struct line l;
 
-  while (next_line(in, &l) && !l.n) {}
+  while (next_line(in, &l) && !l.n) {
+  }
   while (next_line(in, &l)) {
-    struct vg_patch p = {0};
+    struct vg_patch p = { 0 };
     vg_status st;
 
     if (!l.n) continue;
@@ -278,8 +280,8 @@ static vg_status check_entries(const struct vg_input *in,
     if (list[i]->id == list[i - 1]->id && list[i]->bc != list[i - 1]->bc)
       st = vg_fail(err, VG_ERR_INPUT,
                    "%s: patch %d is listed twice, with codes %d and %d; "
-                   "remove one line", in->path, list[i]->id,
-                   list[i - 1]->bc, list[i]->bc);
+                   "remove one line",
+                   in->path, list[i]->id, list[i - 1]->bc, list[i]->bc);
   free(list);
   return st;
 }
@@ -374,8 +376,7 @@ static void give(const struct vg_mapbc *b, const struct vg_patch *from,
   if (from->name[0]) memcpy(to->name, from->name, sizeof to->name);
 }
 
-static void count_unused(const struct vg_mapbc *b,
-                         const struct vg_patch **list,
+static void count_unused(const struct vg_mapbc *b, const struct vg_patch **list,
                          const unsigned char *used,
                          struct vg_mapbc_match *match)
 {
@@ -388,7 +389,7 @@ static void count_unused(const struct vg_mapbc *b,
 vg_status vg_mapbc_apply(const struct vg_mapbc *b, struct vg_mesh *m,
                          struct vg_mapbc_match *match, struct vg_error *err)
 {
-  struct vg_mapbc_match found = {0, 0, 0, 0};
+  struct vg_mapbc_match found = { 0, 0, 0, 0 };
   const struct vg_patch **list = sorted(b);
   unsigned char *used = vg_calloc(b->n, 1);
   int *axis = vg_alloc(m->n_patch, sizeof *axis);
@@ -397,8 +398,7 @@ vg_status vg_mapbc_apply(const struct vg_mapbc *b, struct vg_mesh *m,
   assert(b->entry || !b->n);
   if (!list || !used || !axis)
     st = vg_fail_memory(err, "the boundary conditions");
-  else
-    st = vg_patch_axes(m, axis, err);
+  else st = vg_patch_axes(m, axis, err);
   if (st == VG_OK) {
     for (size_t i = 0; i < m->n_patch; i++) {
       size_t at = find(list, b->n, m->patch[i].id);
@@ -488,8 +488,7 @@ static vg_status write_marked(const char *path, const struct vg_mesh *m,
       vg_output_format(&out, "%d %d %s\n", p->id, fun3d, name);
     else
       vg_output_format(&out, "%-14d %-14d %-14d %-12d %-8d %s\n", p->id, usm3d,
-                       p->family == VG_BC_NONE ? usm3d : p->family, 0, 0,
-                       name);
+                       p->family == VG_BC_NONE ? usm3d : p->family, 0, 0, name);
   }
   VG_TRY(vg_output_commit(&out, err));
   if (n_unset) *n_unset = unset;

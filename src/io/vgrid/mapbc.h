@@ -1,5 +1,6 @@
 /* io/vgrid/mapbc.h: boundary conditions per patch, both layouts of .mapbc,
- * USM3D's and FUN3D's (formats.md 1.4 and 1.5), and the translation of codes. */
+ * USM3D's and FUN3D's (formats.md 1.4 and 1.5), and the translation of codes.
+ */
 #ifndef VG_IO_VGRID_MAPBC_H
 #define VG_IO_VGRID_MAPBC_H
 
@@ -14,15 +15,18 @@ enum vg_mapbc_layout { VG_MAPBC_VGRID, VG_MAPBC_FUN3D };
 struct vg_mapbc {
   enum vg_mapbc_layout layout;
   size_t n;
-  struct vg_patch *entry;  /* [n] in file order; both codes are set, the one
-                              that the layout lacks by translation */
+  struct vg_patch *entry; /* [n] in file order; both codes are set, the one
+                             that the layout lacks by translation */
 };
-#define VG_MAPBC_INIT { VG_MAPBC_VGRID, 0, NULL } /* release is a no-op */
+#define VG_MAPBC_INIT                                                          \
+  {                                                                            \
+    VG_MAPBC_VGRID, 0, NULL                                                    \
+  } /* release is a no-op */
 
 struct vg_mapbc_match {
-  size_t n_missing;          /* patches of the mesh without an entry */
-  int32_t first_missing;     /* patch number of the first */
-  size_t n_unused;           /* entries that no face of the mesh uses */
+  size_t n_missing;      /* patches of the mesh without an entry */
+  int32_t first_missing; /* patch number of the first */
+  size_t n_unused;       /* entries that no face of the mesh uses */
   int32_t first_unused;
 };
 

@@ -16,16 +16,19 @@
 
 /** What the headers of .cogsg and .bc say beyond the mesh. */
 struct vg_cogsg_info {
-  int32_t inew;             /* -1 */
-  size_t n_boundary;        /* nbn: boundary points, which come first */
-  size_t n_layer_point;     /* npv: last layer point; 0: none */
-  size_t n_layer_cell;      /* nev: cells 1..nev are layer cells */
+  int32_t inew;         /* -1 */
+  size_t n_boundary;    /* nbn: boundary points, which come first */
+  size_t n_layer_point; /* npv: last layer point; 0: none */
+  size_t n_layer_cell;  /* nev: cells 1..nev are layer cells */
   double tc;
-  int n_trailing;           /* trailing records of one zero */
-  size_t n_curve_point;     /* nbc: points of two or more patches */
-  int32_t igrid;            /* 1 inviscid, 2 viscous; 0: from n_layer_cell */
+  int n_trailing;       /* trailing records of one zero */
+  size_t n_curve_point; /* nbc: points of two or more patches */
+  int32_t igrid;        /* 1 inviscid, 2 viscous; 0: from n_layer_cell */
 };
-#define VG_COGSG_INFO_INIT { -1, 0, 0, 0, 0.0, 2, 0, 0 }
+#define VG_COGSG_INFO_INIT                                                     \
+  {                                                                            \
+    -1, 0, 0, 0, 0.0, 2, 0, 0                                                  \
+  }
 
 /** Read STEM.cogsg with the boundary triangles of STEM.bc beside it.
  * Also read: little-endian, single precision, 8-byte markers, subrecords.
@@ -46,9 +49,8 @@ vg_status vg_cogsg_parse(struct vg_input *cogsg, struct vg_input *bc,
 
 /** Triangles and patch ids of a .bc into the mesh, which has points.
  * @param n_boundary  largest node number allowed */
-vg_status vg_bc_parse(struct vg_input *in, size_t n_boundary,
-                      struct vg_mesh *m, struct vg_cogsg_info *info,
-                      struct vg_error *err);
+vg_status vg_bc_parse(struct vg_input *in, size_t n_boundary, struct vg_mesh *m,
+                      struct vg_cogsg_info *info, struct vg_error *err);
 
 /** Write STEM.cogsg, STEM.bc and STEM.mapbc (VGRID layout); all or none.
  *

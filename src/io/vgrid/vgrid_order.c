@@ -17,10 +17,10 @@ struct link {
 
 struct walk {
   const struct vg_mesh *m;
-  unsigned char *class;   /* [n_point] */
+  unsigned char *class; /* [n_point] */
   uint32_t *new_to_old;
-  size_t n;               /* points placed so far */
-  struct link *link;      /* sorted by from, to */
+  size_t n;          /* points placed so far */
+  struct link *link; /* sorted by from, to */
   size_t n_link;
 };
 
@@ -90,7 +90,7 @@ static vg_status find_links(struct walk *w, struct vg_error *err)
   if (list_sides(w, &s))
     VG_TRY(vg_fail_memory(err, "the curves between patches"));
   VG_TRY(vg_edges_build_sides(&e, w->m->n_point, s.n,
-                              (const uint32_t (*)[2])s.end, err));
+                              (const uint32_t(*)[2])s.end, err));
   w->link = vg_alloc(2 * e.n, sizeof *w->link);
   if (!w->link) VG_TRY(vg_fail_memory(err, "the curves between patches"));
   for (size_t i = 0; i < e.n; i++) {
@@ -99,8 +99,8 @@ static vg_status find_links(struct walk *w, struct vg_error *err)
 
     while (k < vg_edges_count(&e, i) && s.patch[h[k]] == s.patch[h[0]]) k++;
     if (k == vg_edges_count(&e, i)) continue;
-    w->link[w->n_link++] = (struct link){end[0], end[1]};
-    w->link[w->n_link++] = (struct link){end[1], end[0]};
+    w->link[w->n_link++] = (struct link){ end[0], end[1] };
+    w->link[w->n_link++] = (struct link){ end[1], end[0] };
   }
   qsort(w->link, w->n_link, sizeof *w->link, compare_link);
 done:
@@ -194,7 +194,7 @@ static void count_classes(const struct walk *w, size_t *n_curve,
   for (size_t p = 0; p < w->m->n_point; p++) {
     *n_curve += w->class[p] == ON_CURVE;
     *n_boundary += w->class[p] != IN_FIELD;
-    if (p && w->class[p] < w->class[p - 1]) *in_order = 0;
+    if (p && w->class[p] < w -> class[p - 1]) *in_order = 0;
   }
 }
 
@@ -202,7 +202,7 @@ vg_status vg_vgrid_order(const struct vg_mesh *m, uint32_t **new_to_old,
                          uint32_t **old_to_new, size_t *n_curve_point,
                          size_t *n_boundary, struct vg_error *err)
 {
-  struct walk w = {m, NULL, NULL, 0, NULL, 0};
+  struct walk w = { m, NULL, NULL, 0, NULL, 0 };
   uint32_t *inverse = NULL;
   vg_status st = VG_OK;
   int in_order;

@@ -28,7 +28,7 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-#define FACING 0.2   /* L10 */
+#define FACING 0.2 /* L10 */
 #define SAME_STACK 0.3
 #define SQRT_2 1.41421356237309505
 
@@ -39,13 +39,13 @@ struct query {
   const struct vg_ahead *x;
   uint32_t column;
   double root[3], u[3];
-  double reach;             /* nothing beyond it matters; shrinks */
-  double lowest, highest;   /* where rays start, below and above the root */
-  double widest;            /* square of the farthest such place from it */
-  double back;              /* how far below the root a cone with all rays has
-                               its apex */
+  double reach;           /* nothing beyond it matters; shrinks */
+  double lowest, highest; /* where rays start, below and above the root */
+  double widest;          /* square of the farthest such place from it */
+  double back;            /* how far below the root a cone with all rays has
+                             its apex */
   int n_centre;
-  double centre[VG_AHEAD_FACES][3];  /* of the faces, relative to the root */
+  double centre[VG_AHEAD_FACES][3]; /* of the faces, relative to the root */
 };
 
 /* --- one triangle -------------------------------------------------------- */
@@ -140,7 +140,7 @@ static void consider(struct query *q, size_t i)
   for (int j = 0; j < 3; j++)
     for (int k = 0; k < 3; k++)
       p[j][k] = x->surface->point[t[j]][k] - q->root[k];
-  if (is_aside(q, (const double (*)[3])p)) return;
+  if (is_aside(q, (const double(*)[3])p)) return;
   for (int k = 0; k < 3; k++) {
     e[k] = p[1][k] - p[0][k];
     f[k] = p[2][k] - p[0][k];
@@ -150,14 +150,12 @@ static void consider(struct query *q, size_t i)
   if (!(l > 0)) return;
   for (int k = 0; k < 3; k++) n[k] /= l;
   near = q->reach;
-  if (x->slid[patch])
-    vg_line_hits(root, q->u, (const double (*)[3])p, n, &near);
-  else
-    near = vg_nearest_in_cone(q->u, (const double (*)[3])p, n, q->reach);
-  s = nearest_on_lines(q, (const double (*)[3])p, n);
+  if (x->slid[patch]) vg_line_hits(root, q->u, (const double(*)[3])p, n, &near);
+  else near = vg_nearest_in_cone(q->u, (const double(*)[3])p, n, q->reach);
+  s = nearest_on_lines(q, (const double(*)[3])p, n);
   if (s < near) near = s;
-  if (near < q->reach && !shares_point(q, t)
-      && !same_stack(q, x->boxes.item[i]))
+  if (near < q->reach && !shares_point(q, t) &&
+      !same_stack(q, x->boxes.item[i]))
     q->reach = near;
 }
 
@@ -175,8 +173,7 @@ static inline vg_f4 all4(float x)
 
 /* Children with a normal n for which n . u < -FACING + spread. */
 static inline vg_i4 facing4(const struct vg_normal_boxes *s, int h,
-                            const float u[3],
-                            float spread)
+                            const float u[3], float spread)
 {
   vg_f4 least = all4(0);
 
@@ -188,8 +185,8 @@ static inline vg_i4 facing4(const struct vg_normal_boxes *s, int h,
 /* Children whose balls touch the cone with its apex `back` below the root,
  * and whose boxes lie between lo and hi along it; where they begin: *first. */
 static inline vg_i4 in_cone4(const struct vg_box8 *n,
-                             const struct vg_normal_boxes *s,
-                             int h, const struct cone *c, vg_f4 *first)
+                             const struct vg_normal_boxes *s, int h,
+                             const struct cone *c, vg_f4 *first)
 {
   vg_f4 along = all4(0), half = all4(0), far = all4(0), reach;
 
@@ -206,10 +203,10 @@ static inline vg_i4 in_cone4(const struct vg_box8 *n,
   /* A point at height z and distance d from the axis is (d - z) / sqrt 2
    * away from the cone. */
   reach = along + all4(c->back) + 1.4143f * s->radius.v[h] + all4(c->slack);
-  return (along + half >= all4(c->lo)) & (*first <= all4(c->hi))
-         & (reach >= all4(0))
-         & (far - along * along <= reach * reach * 1.00001f)
-         & facing4(s, h, c->u, 0);
+  return (along + half >= all4(c->lo)) & (*first <= all4(c->hi)) &
+         (reach >= all4(0)) &
+         (far - along * along <= reach * reach * 1.00001f) &
+         facing4(s, h, c->u, 0);
 }
 
 static inline unsigned in_cone(const struct vg_ahead *x, size_t node,
@@ -257,8 +254,11 @@ static void look_into_leaf(struct query *q, size_t leaf, struct cone *c)
 static void walk(struct query *q, struct cone *c)
 {
   const struct vg_boxes *b = &q->x->boxes;
-  struct { int level; float first; size_t at; } stack[STACK] = {
-    { b->n_level - 1, -INFINITY, 0 } };
+  struct {
+    int level;
+    float first;
+    size_t at;
+  } stack[STACK] = { { b->n_level - 1, -INFINITY, 0 } };
   int depth = 1;
 
   while (depth--) {
@@ -342,8 +342,7 @@ static void end_query(const struct query *q, double wanted)
   const double *d = x->columns->column[q->column].dir;
   double h = x->gap * q->reach / sqrt(vg_dot(d, d));
 
-  if (q->reach < wanted && h < x->reach[q->column])
-    x->allowed[q->column] = h;
+  if (q->reach < wanted && h < x->reach[q->column]) x->allowed[q->column] = h;
 }
 
 /* Neighbours ask together: boxes about their cones, and directions within
@@ -400,8 +399,8 @@ static inline unsigned in_team(const struct vg_ahead *x, size_t node,
   for (int h = 0; h < 2; h++) {
     m[h] = facing4(&x->sides[node], h, t->u, t->spread);
     for (int k = 0; k < 3; k++)
-      m[h] &= (n->lo[k].v[h] <= all4(t->hi[k]))
-              & (n->hi[k].v[h] >= all4(t->lo[k]));
+      m[h] &= (n->lo[k].v[h] <= all4(t->hi[k])) &
+              (n->hi[k].v[h] >= all4(t->lo[k]));
   }
   return vg_lanes(m[0], m[1]);
 }
@@ -412,7 +411,10 @@ static int leaves_of_team(const struct vg_ahead *x, const struct team *t,
                           size_t leaf[LEAF_MAX])
 {
   const struct vg_boxes *b = &x->boxes;
-  struct { int level; size_t at; } stack[STACK] = { { b->n_level - 1, 0 } };
+  struct {
+    int level;
+    size_t at;
+  } stack[STACK] = { { b->n_level - 1, 0 } };
   int depth = 1, n = 0;
 
   while (depth--) {
@@ -479,8 +481,11 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
                          int threads, const double *reach, double *allowed,
                          struct vg_error *err)
 {
-  struct vg_ahead x = { .surface = surface, .columns = columns,
-                        .topology = topology, .gap = gap, .reach = reach,
+  struct vg_ahead x = { .surface = surface,
+                        .columns = columns,
+                        .topology = topology,
+                        .gap = gap,
+                        .reach = reach,
                         .allowed = allowed };
   vg_status st;
 
@@ -488,8 +493,10 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
   assert(allowed || !columns->n_column);
   assert(threads >= 0);
   if (!(gap > 0))
-    return vg_fail(err, VG_ERR_INPUT, "a gap of %g leaves no room for layers: "
-                   "it must be more than 0", gap);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "a gap of %g leaves no room for layers: "
+                   "it must be more than 0",
+                   gap);
   st = vg_ahead_prepare(&x, threads, err);
   if (st == VG_OK && x.boxes.n)
     vg_parallel_for(threads, columns->n_column, GRAIN, look_ahead, &x);

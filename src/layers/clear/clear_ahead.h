@@ -7,7 +7,9 @@
 
 /* Of the children of a node: half the diagonals, and boxes about the unit
  * normals of what is in them. */
-struct vg_normal_boxes { union vg_f8 radius, mid[3], half[3]; };
+struct vg_normal_boxes {
+  union vg_f8 radius, mid[3], half[3];
+};
 
 struct vg_ahead {
   const struct vg_mesh *surface;
@@ -16,13 +18,13 @@ struct vg_ahead {
   double gap;
   const double *reach;
   double *allowed;
-  uint32_t *face_of;        /* [n_tri] its face, or VG_NO_INDEX */
-  uint32_t *column_of;      /* [n_point + 1] first column of each point */
-  uint8_t *slid;            /* [n_patch] columns slide in it */
+  uint32_t *face_of;   /* [n_tri] its face, or VG_NO_INDEX */
+  uint32_t *column_of; /* [n_point + 1] first column of each point */
+  uint8_t *slid;       /* [n_patch] columns slide in it */
   struct vg_boxes boxes;
-  struct vg_normal_boxes *sides;   /* [nodes] */
-  float (*normal)[3];       /* [boxes.n] unit, 0 without an area */
-  uint32_t *order;          /* [n_column] neighbours close together */
+  struct vg_normal_boxes *sides; /* [nodes] */
+  float (*normal)[3];            /* [boxes.n] unit, 0 without an area */
+  uint32_t *order;               /* [n_column] neighbours close together */
 };
 
 /* clear_cone.c ------------------------------------------------------------*/

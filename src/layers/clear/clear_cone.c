@@ -14,8 +14,9 @@ int vg_line_hits(const double o[3], const double u[3], const double (*p)[3],
   double d = vg_dot(n, u), q[3], s;
 
   if (!(d < 0)) return 0;
-  s = (n[0] * (p[0][0] - o[0]) + n[1] * (p[0][1] - o[1])
-       + n[2] * (p[0][2] - o[2])) / d;
+  s = (n[0] * (p[0][0] - o[0]) + n[1] * (p[0][1] - o[1]) +
+       n[2] * (p[0][2] - o[2])) /
+      d;
   if (!(s >= 0 && s < *along)) return 0;
   for (int k = 0; k < 3; k++) q[k] = o[k] + s * u[k];
   for (int i = 0; i < 3; i++) {

@@ -18,17 +18,17 @@
 
 struct flanks {
   const struct vg_tops *t;
-  uint32_t (*tri)[3];       /* [2 n_border] halves, for their boxes */
+  uint32_t (*tri)[3]; /* [2 n_border] halves, for their boxes */
   struct vg_boxes boxes;
 };
 
 /* A flank in the plane: roots a and b, then the tops of b and a, without
  * repetitions. */
 struct outline {
-  int n;                    /* 2: no column has a level; 3 or 4 */
+  int n; /* 2: no column has a level; 3 or 4 */
   uint32_t node[4];
   double x[4][2];
-  int tri[2][3], n_tri;     /* split into halves that turn the same way */
+  int tri[2][3], n_tri; /* split into halves that turn the same way */
 };
 
 static int sign(double x)
@@ -82,11 +82,11 @@ static int edge_meets_half(const struct outline *p, int i,
     const double *far = at_i >= 0 ? b : a;
 
     /* From a corner of the half: into it, or along one of its edges? */
-    return own * turn(c[k], c[(k + 1) % 3], far) >= 0
-           && own * turn(c[(k + 2) % 3], c[k], far) >= 0;
+    return own * turn(c[k], c[(k + 1) % 3], far) >= 0 &&
+           own * turn(c[(k + 2) % 3], c[k], far) >= 0;
   }
-  if (own * turn(c[0], c[1], a) >= 0 && own * turn(c[1], c[2], a) >= 0
-      && own * turn(c[2], c[0], a) >= 0)
+  if (own * turn(c[0], c[1], a) >= 0 && own * turn(c[1], c[2], a) >= 0 &&
+      own * turn(c[2], c[0], a) >= 0)
     return 1;
   for (int k = 0; k < 3; k++)
     if (segments_meet(a, b, c[k], c[(k + 1) % 3])) return 1;
@@ -153,8 +153,8 @@ static int split(struct outline *o)
   return 0;
 }
 
-static int outline_of(const struct vg_tops *t, const uint32_t node[4],
-                      int axis, struct outline *o)
+static int outline_of(const struct vg_tops *t, const uint32_t node[4], int axis,
+                      struct outline *o)
 {
   int i = (axis + 1) % 3, j = (axis + 2) % 3;
 
@@ -186,8 +186,8 @@ static void mark_border(const struct vg_tops *t, size_t r)
 
 static int border_active(const struct vg_tops *t, size_t r)
 {
-  return vg_tops_active(t, t->columns->border[r][0])
-         || vg_tops_active(t, t->columns->border[r][1]);
+  return vg_tops_active(t, t->columns->border[r][0]) ||
+         vg_tops_active(t, t->columns->border[r][1]);
 }
 
 static void meet_flanks(void *context, size_t i, size_t j)
@@ -242,7 +242,8 @@ vg_status vg_clear_flanks(const struct vg_tops *t, struct vg_error *err)
 
   if (!c->n_border) return VG_OK;
   if (c->n_border > VG_NO_INDEX / 2)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu edges between walls and "
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%zu edges between walls and "
                    "slide patches are too many: use a coarser surface",
                    c->n_border);
   x.tri = vg_alloc(2 * c->n_border, sizeof *x.tri);
@@ -256,8 +257,8 @@ vg_status vg_clear_flanks(const struct vg_tops *t, struct vg_error *err)
     memcpy(x.tri[2 * r + 1], (uint32_t[3]){ node[0], node[2], node[3] },
            sizeof *x.tri);
   }
-  VG_TRY(vg_boxes_build(&x.boxes, (const double (*)[3])t->point,
-                        (const uint32_t (*)[3])x.tri, 2 * c->n_border, NULL,
+  VG_TRY(vg_boxes_build(&x.boxes, (const double(*)[3])t->point,
+                        (const uint32_t(*)[3])x.tri, 2 * c->n_border, NULL,
                         OFF_PLANE, t->threads, err));
   vg_boxes_pairs(&x.boxes, t->threads, meet_flanks, &x);
 done:

@@ -20,11 +20,16 @@
 typedef float vg_f4 __attribute__((vector_size(16)));
 typedef int32_t vg_i4 __attribute__((vector_size(16)));
 
-union vg_f8 { float f[8]; vg_f4 v[2]; };
+union vg_f8 {
+  float f[8];
+  vg_f4 v[2];
+};
 
 /* Children of a node, side by side so that all eight are tested at once.
  * Those that do not exist are empty: lo > hi. */
-struct vg_box8 { union vg_f8 lo[3], hi[3]; };
+struct vg_box8 {
+  union vg_f8 lo[3], hi[3];
+};
 
 /* Bit i: lane i of a (4 .. 7: of b) is true. */
 static inline unsigned vg_lanes(vg_i4 a, vg_i4 b)
@@ -40,32 +45,34 @@ static inline unsigned vg_lanes(vg_i4 a, vg_i4 b)
 struct vg_boxes {
   size_t n;
   double origin[3];
-  float extent;             /* largest |coordinate| */
-  uint32_t *item;           /* [n] triangle */
-  uint32_t (*tri)[3];       /* [n] its nodes */
-  struct vg_box8 *node;     /* leaves first, then their parents, ... */
-  size_t first[12];         /* node with which a level starts; node j of level
-                               l has as children nodes 8 j ... of l - 1, or
-                               items 8 j ... for l = 0 */
+  float extent;         /* largest |coordinate| */
+  uint32_t *item;       /* [n] triangle */
+  uint32_t (*tri)[3];   /* [n] its nodes */
+  struct vg_box8 *node; /* leaves first, then their parents, ... */
+  size_t first[12];     /* node with which a level starts; node j of level
+                           l has as children nodes 8 j ... of l - 1, or
+                           items 8 j ... for l = 0 */
   int n_level;
 };
-#define VG_BOXES_INIT { 0 }
+#define VG_BOXES_INIT                                                          \
+  {                                                                            \
+    0                                                                          \
+  }
 
 typedef void (*vg_boxes_visit)(void *context, size_t i, size_t j);
 
 /** Over triangles tri[id[0 .. n - 1]] (id NULL: 0 .. n - 1) with nodes in
  * point, all finite. Each box is widened by `grow` times its longest side. */
 vg_status vg_boxes_build(struct vg_boxes *b, const double (*point)[3],
-                         const uint32_t (*tri)[3], size_t n,
-                         const uint32_t *id, double grow, int threads,
-                         struct vg_error *err);
+                         const uint32_t (*tri)[3], size_t n, const uint32_t *id,
+                         double grow, int threads, struct vg_error *err);
 
 void vg_boxes_release(struct vg_boxes *b);
 
 /** visit(context, i, j), i < j, for all pairs of positions (index into item)
  * whose boxes touch, once each, from several threads. */
-void vg_boxes_pairs(const struct vg_boxes *b, int threads,
-                    vg_boxes_visit visit, void *context);
+void vg_boxes_pairs(const struct vg_boxes *b, int threads, vg_boxes_visit visit,
+                    void *context);
 
 /** visit(context, i, tag) for all positions whose box touches that about
  * triangle t. */
@@ -80,11 +87,11 @@ void vg_boxes_touch(const struct vg_boxes *b, const double (*point)[3],
 struct vg_tops {
   const struct vg_mesh *surface;
   const struct vg_columns *columns;
-  const uint8_t *active;    /* [n_column], or NULL */
-  size_t n_point;           /* of the surface */
-  double (*point)[3];       /* [n_point + n_column] */
-  uint32_t *node;           /* [n_column] */
-  uint8_t *bad;             /* [n_column] set by any thread */
+  const uint8_t *active; /* [n_column], or NULL */
+  size_t n_point;        /* of the surface */
+  double (*point)[3];    /* [n_point + n_column] */
+  uint32_t *node;        /* [n_column] */
+  uint8_t *bad;          /* [n_column] set by any thread */
   int threads;
 };
 
@@ -98,8 +105,8 @@ static inline int vg_tops_active(const struct vg_tops *t, uint32_t c)
 static inline void vg_tops_mark(const struct vg_tops *t, uint32_t c)
 {
   assert(c < t->columns->n_column);
-  if (t->columns->column[c].n) __atomic_store_n(&t->bad[c], 1,
-                                                __ATOMIC_RELAXED);
+  if (t->columns->column[c].n)
+    __atomic_store_n(&t->bad[c], 1, __ATOMIC_RELAXED);
 }
 
 /** Mark borders of one patch whose flanks overlap within it. */

@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-#define SHARP 0.5             /* L11: cosine of a column to its triangle */
+#define SHARP 0.5 /* L11: cosine of a column to its triangle */
 
 enum { GRAIN = 512 };
 
@@ -39,7 +39,7 @@ void vg_add_direction(const struct vg_column *c, double sum[3])
  * lean out of the triangle: n is turned towards them. */
 static void turn_to_edge(const struct vg_ahead *x, size_t tri, double n[3])
 {
-  double (*p)[3] = x->surface->point, out[3] = { 0, 0, 0 }, l;
+  double(*p)[3] = x->surface->point, out[3] = { 0, 0, 0 }, l;
   const uint32_t *t = x->surface->tri[tri];
   uint32_t f = x->face_of[tri];
 
@@ -50,8 +50,8 @@ static void turn_to_edge(const struct vg_ahead *x, size_t tri, double n[3])
 
     vg_add_direction(c, unit);
     for (int j = 0; j < 3; j++)
-      lean += unit[j] * (2 * p[t[k]][j] - p[t[(k + 1) % 3]][j] -
-                         p[t[(k + 2) % 3]][j]);
+      lean += unit[j] *
+              (2 * p[t[k]][j] - p[t[(k + 1) % 3]][j] - p[t[(k + 2) % 3]][j]);
     if (lean > 0 && vg_dot(unit, n) < SHARP) vg_add_direction(c, out);
   }
   for (int k = 0; k < 3; k++) n[k] += out[k];
@@ -59,11 +59,10 @@ static void turn_to_edge(const struct vg_ahead *x, size_t tri, double n[3])
   for (int k = 0; l > 0 && k < 3; k++) n[k] /= l;
 }
 
-static void measure_normals(void *context, size_t first, size_t end,
-                            int worker)
+static void measure_normals(void *context, size_t first, size_t end, int worker)
 {
   struct vg_ahead *x = context;
-  double (*p)[3] = x->surface->point;
+  double(*p)[3] = x->surface->point;
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
@@ -83,8 +82,7 @@ static void measure_normals(void *context, size_t first, size_t end,
 }
 
 static void range_of(const float *lo, const float *hi,
-                     struct vg_normal_boxes *s,
-                     int i)
+                     struct vg_normal_boxes *s, int i)
 {
   for (int k = 0; k < 3; k++) {
     s->mid[k].f[i] = 0.5f * (lo[k] + hi[k]);
@@ -112,8 +110,8 @@ static void measure_child(struct vg_ahead *x, int level, size_t j, int i)
     return;
   }
   if (level && b->first[level - 1] + child < b->first[level]) {
-    const struct vg_normal_boxes *below =
-      &x->sides[b->first[level - 1] + child];
+    const struct vg_normal_boxes
+      *below = &x->sides[b->first[level - 1] + child];
 
     for (int l = 0; l < 8; l++)
       for (int k = 0; k < 3; k++) {
@@ -126,7 +124,10 @@ static void measure_child(struct vg_ahead *x, int level, size_t j, int i)
   range_of(lo, hi, s, i);
 }
 
-struct level { struct vg_ahead *x; int level; };
+struct level {
+  struct vg_ahead *x;
+  int level;
+};
 
 static void measure_level(void *context, size_t first, size_t end, int worker)
 {
@@ -188,8 +189,7 @@ static void index_columns(struct vg_ahead *x)
   }
   for (size_t t = 0; t < m->n_tri; t++) x->face_of[t] = VG_NO_INDEX;
   for (size_t f = 0; f < c->n_face; f++)
-    if (c->face_tri[f] != VG_NO_INDEX)
-      x->face_of[c->face_tri[f]] = (uint32_t)f;
+    if (c->face_tri[f] != VG_NO_INDEX) x->face_of[c->face_tri[f]] = (uint32_t)f;
   for (i = 0; i < c->n_column; i++)
     for (int k = 0; k < 2; k++)
       if (c->column[i].slide[k] < m->n_patch)
@@ -206,9 +206,9 @@ vg_status vg_ahead_prepare(struct vg_ahead *x, int threads,
   vg_status st;
   size_t n_node;
 
-  st = vg_boxes_build(b, (const double (*)[3])m->point,
-                      (const uint32_t (*)[3])m->tri, m->n_tri, NULL, 0,
-                      threads, err);
+  st = vg_boxes_build(b, (const double(*)[3])m->point,
+                      (const uint32_t(*)[3])m->tri, m->n_tri, NULL, 0, threads,
+                      err);
   if (st < 0) return st;
   n_node = b->n ? b->first[b->n_level - 1] + 1 : 0;
   x->face_of = vg_alloc(m->n_tri, sizeof *x->face_of);
@@ -217,8 +217,8 @@ vg_status vg_ahead_prepare(struct vg_ahead *x, int threads,
   x->sides = vg_alloc(n_node, sizeof *x->sides);
   x->normal = vg_alloc(b->n, sizeof *x->normal);
   x->order = vg_alloc(x->columns->n_column, sizeof *x->order);
-  if (!x->face_of || !x->column_of || !x->slid || !x->sides || !x->normal
-      || !x->order)
+  if (!x->face_of || !x->column_of || !x->slid || !x->sides || !x->normal ||
+      !x->order)
     return vg_fail_memory(err, "what stands in front of the layers");
   index_columns(x);
   measure_sides(x, n_node, threads);

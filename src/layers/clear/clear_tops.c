@@ -17,20 +17,20 @@
 
 enum {
   GRAIN = 2048,
-  TOP_NONE = 0,             /* fallen together (virtual), or of no area */
-  TOP_STILL = 1,            /* no active column */
+  TOP_NONE = 0,  /* fallen together (virtual), or of no area */
+  TOP_STILL = 1, /* no active column */
   TOP_ACTIVE = 2
 };
 
 struct clear {
   struct vg_tops t;
   const uint8_t *is_slide;
-  uint32_t (*tri)[3];       /* [n_face] corners of tops in t.point */
-  uint8_t *state;           /* [n_face] */
-  uint8_t *covered;         /* [surface->n_tri] has a face on it */
-  uint32_t *active;         /* [n_active] faces */
+  uint32_t (*tri)[3]; /* [n_face] corners of tops in t.point */
+  uint8_t *state;     /* [n_face] */
+  uint8_t *covered;   /* [surface->n_tri] has a face on it */
+  uint32_t *active;   /* [n_active] faces */
   size_t n_active;
-  struct vg_boxes boxes;    /* about active faces */
+  struct vg_boxes boxes; /* about active faces */
 };
 
 static const uint32_t one_fan[3] = { 0, 0, 0 };
@@ -102,8 +102,8 @@ static int is_marked(const struct clear *x, size_t f)
   const uint32_t *c = x->t.columns->face[f];
 
   for (int k = 0; k < 3; k++)
-    if (x->t.columns->column[c[k]].n
-        && !__atomic_load_n(&x->t.bad[c[k]], __ATOMIC_RELAXED))
+    if (x->t.columns->column[c[k]].n &&
+        !__atomic_load_n(&x->t.bad[c[k]], __ATOMIC_RELAXED))
       return 0;
   return 1;
 }
@@ -144,8 +144,7 @@ static void classify_faces(void *context, size_t first, size_t end, int worker)
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     if (has_area(x->t.point[t[0]], x->t.point[t[1]], x->t.point[t[2]]))
       x->state[f] = active ? TOP_ACTIVE : TOP_STILL;
-    else if (active)
-      mark_face(x, f);
+    else if (active) mark_face(x, f);
   }
 }
 
@@ -159,7 +158,7 @@ static void meet_tops(void *context, size_t i, size_t j)
 
   if (!is_raised(x, a) && !is_raised(x, b)) return;
   if (is_marked(x, f) && is_marked(x, g)) return;
-  if (!vg_triangles_meet((const double (*)[3])x->t.point, a, b, one_fan,
+  if (!vg_triangles_meet((const double(*)[3])x->t.point, a, b, one_fan,
                          one_fan))
     return;
   mark_face(x, f);
@@ -175,7 +174,7 @@ static void meet_still(void *context, size_t i, size_t g)
 
   if (!is_raised(x, a) && !is_raised(x, b)) return;
   if (is_marked(x, f) && is_marked(x, g)) return;
-  if (!vg_triangles_meet((const double (*)[3])x->t.point, a, b, one_fan,
+  if (!vg_triangles_meet((const double(*)[3])x->t.point, a, b, one_fan,
                          one_fan))
     return;
   mark_face(x, f);
@@ -189,7 +188,7 @@ static void visit_still(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t g = first; g < end; g++)
     if (x->state[g] == TOP_STILL)
-      vg_boxes_touch(&x->boxes, (const double (*)[3])x->t.point, x->tri[g],
+      vg_boxes_touch(&x->boxes, (const double(*)[3])x->t.point, x->tri[g],
                      meet_still, x, g);
 }
 
@@ -214,10 +213,10 @@ static void meet_surface(void *context, size_t i, size_t s)
   uint32_t f = x->boxes.item[i], patch = m->tri_patch[s];
 
   if (!is_raised(x, x->boxes.tri[i]) || is_marked(x, f)) return;
-  if (x->is_slide[patch] && slides_in(x->t.columns, x->t.columns->face[f],
-                                      patch))
+  if (x->is_slide[patch] &&
+      slides_in(x->t.columns, x->t.columns->face[f], patch))
     return;
-  if (vg_triangles_meet((const double (*)[3])x->t.point, x->boxes.tri[i],
+  if (vg_triangles_meet((const double(*)[3])x->t.point, x->boxes.tri[i],
                         m->tri[s], one_fan, one_fan))
     mark_face(x, f);
 }
@@ -230,7 +229,7 @@ static void visit_surface(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t s = first; s < end; s++)
     if (!x->covered[s])
-      vg_boxes_touch(&x->boxes, (const double (*)[3])m->point, m->tri[s],
+      vg_boxes_touch(&x->boxes, (const double(*)[3])m->point, m->tri[s],
                      meet_surface, x, s);
 }
 
@@ -265,11 +264,10 @@ static vg_status allocate(struct clear *x, struct vg_error *err)
   x->state = vg_alloc(c->n_face, 1);
   x->covered = vg_calloc(m->n_tri, 1);
   x->active = vg_alloc(c->n_face, sizeof *x->active);
-  if (!x->t.point || !x->t.node || !x->t.bad || !x->tri || !x->state
-      || !x->covered || !x->active)
+  if (!x->t.point || !x->t.node || !x->t.bad || !x->tri || !x->state ||
+      !x->covered || !x->active)
     return vg_fail_memory(err, "the tops of the layers");
-  if (m->n_point)
-    memcpy(x->t.point, m->point, m->n_point * sizeof *m->point);
+  if (m->n_point) memcpy(x->t.point, m->point, m->n_point * sizeof *m->point);
   return VG_OK;
 }
 
@@ -293,8 +291,10 @@ vg_status vg_clear_tops(const struct vg_mesh *surface,
   assert(bad || !columns->n_column);
   assert(threads >= 0 && n_bad);
 
-  struct clear x = { .t = { .surface = surface, .columns = columns,
-                            .active = active, .n_point = surface->n_point,
+  struct clear x = { .t = { .surface = surface,
+                            .columns = columns,
+                            .active = active,
+                            .n_point = surface->n_point,
                             .threads = threads },
                      .is_slide = is_slide };
   size_t n_column = columns->n_column, count = 0;
@@ -304,8 +304,8 @@ vg_status vg_clear_tops(const struct vg_mesh *surface,
   vg_parallel_for(threads, n_column, GRAIN, place_tops, &x.t);
   vg_parallel_for(threads, columns->n_face, GRAIN, classify_faces, &x);
   list_faces(&x);
-  VG_TRY(vg_boxes_build(&x.boxes, (const double (*)[3])x.t.point,
-                        (const uint32_t (*)[3])x.tri, x.n_active, x.active, 0,
+  VG_TRY(vg_boxes_build(&x.boxes, (const double(*)[3])x.t.point,
+                        (const uint32_t(*)[3])x.tri, x.n_active, x.active, 0,
                         threads, err));
   vg_boxes_pairs(&x.boxes, threads, meet_tops, &x);
   if (x.n_active && active)

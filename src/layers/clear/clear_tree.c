@@ -43,9 +43,8 @@ static inline void tri_box(const double (*point)[3], const uint32_t t[3],
 }
 
 static inline void tri_box_float(const struct vg_boxes *b,
-                                 const double (*point)[3],
-                                 const uint32_t t[3], double grow,
-                                 float box[6])
+                                 const double (*point)[3], const uint32_t t[3],
+                                 double grow, float box[6])
 {
   double x[6], side = 0;
 
@@ -77,7 +76,10 @@ static void make_keys(void *context, size_t first, size_t end, int worker)
 
       /* 18 bits each: what is closer together than 4e-6 of the whole may
        * stay in the order given; saves one round of sorting. */
-      key |= vg_interleave3(!(q > 0) ? 0 : q >= 262143 ? 262143 : (uint64_t)q) << k;
+      key |= vg_interleave3(!(q > 0)      ? 0
+                            : q >= 262143 ? 262143
+                                          : (uint64_t)q)
+          << k;
     }
     x->key[i] = (struct vg_key){ key, t };
   }
@@ -114,7 +116,7 @@ static void make_leaves(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t j = first; j < end; j++)
     for (size_t i = 0; i < 8; i++) {
-      float box[6] = { INFINITY, INFINITY, INFINITY,
+      float box[6] = { INFINITY,  INFINITY,  INFINITY,
                        -INFINITY, -INFINITY, -INFINITY };
 
       if (8 * j + i < b->n) {
@@ -154,7 +156,7 @@ static void make_parents(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t j = first; j < end; j++)
     for (size_t i = 0; i < 8; i++) {
-      float box[6] = { INFINITY, INFINITY, INFINITY,
+      float box[6] = { INFINITY,  INFINITY,  INFINITY,
                        -INFINITY, -INFINITY, -INFINITY };
 
       if (below + 8 * j + i < own) node_box(&b->node[below + 8 * j + i], box);
@@ -166,9 +168,8 @@ static void make_parents(void *context, size_t first, size_t end, int worker)
 }
 
 vg_status vg_boxes_build(struct vg_boxes *b, const double (*point)[3],
-                         const uint32_t (*tri)[3], size_t n,
-                         const uint32_t *id, double grow, int threads,
-                         struct vg_error *err)
+                         const uint32_t (*tri)[3], size_t n, const uint32_t *id,
+                         double grow, int threads, struct vg_error *err)
 {
   struct build x = { b, point, tri, id, NULL, grow, { 0 }, 0, 0 };
   size_t count = n, total = 0, size[12];
@@ -215,9 +216,9 @@ static inline vg_i4 touch4(const struct vg_box8 *n, int h, const float q[6])
     lo[k] = (vg_f4){ q[k], q[k], q[k], q[k] };
     hi[k] = (vg_f4){ q[k + 3], q[k + 3], q[k + 3], q[k + 3] };
   }
-  return (n->lo[0].v[h] <= hi[0]) & (n->hi[0].v[h] >= lo[0])
-         & (n->lo[1].v[h] <= hi[1]) & (n->hi[1].v[h] >= lo[1])
-         & (n->lo[2].v[h] <= hi[2]) & (n->hi[2].v[h] >= lo[2]);
+  return (n->lo[0].v[h] <= hi[0]) & (n->hi[0].v[h] >= lo[0]) &
+         (n->lo[1].v[h] <= hi[1]) & (n->hi[1].v[h] >= lo[1]) &
+         (n->lo[2].v[h] <= hi[2]) & (n->hi[2].v[h] >= lo[2]);
 }
 
 /* Bit i: child i touches the box. */
@@ -244,20 +245,21 @@ static void leaf_pairs(const struct pairs *p, size_t l, size_t m)
 
     if (l == m) mask &= ~0u << (i + 1);
     for (; mask; mask &= mask - 1)
-      p->visit(p->context, 8 * l + i,
-               8 * m + (size_t)__builtin_ctz(mask));
+      p->visit(p->context, 8 * l + i, 8 * m + (size_t)__builtin_ctz(mask));
   }
 }
 
-static void pairs_of_leaves(void *context, size_t first, size_t end,
-                            int worker)
+static void pairs_of_leaves(void *context, size_t first, size_t end, int worker)
 {
   const struct pairs *p = context;
   const struct vg_boxes *b = p->b;
 
   (void)worker;
   for (size_t l = first; l < end; l++) {
-    struct { int level; size_t at; } stack[STACK] = { { b->n_level - 1, 0 } };
+    struct {
+      int level;
+      size_t at;
+    } stack[STACK] = { { b->n_level - 1, 0 } };
     int depth = 1;
     float q[6];
 
@@ -282,8 +284,8 @@ static void pairs_of_leaves(void *context, size_t first, size_t end,
   }
 }
 
-void vg_boxes_pairs(const struct vg_boxes *b, int threads,
-                    vg_boxes_visit visit, void *context)
+void vg_boxes_pairs(const struct vg_boxes *b, int threads, vg_boxes_visit visit,
+                    void *context)
 {
   struct pairs p = { b, visit, context };
 
@@ -296,7 +298,10 @@ void vg_boxes_touch(const struct vg_boxes *b, const double (*point)[3],
                     size_t tag)
 {
   assert(visit);
-  struct { int level; size_t at; } stack[STACK] = { { b->n_level - 1, 0 } };
+  struct {
+    int level;
+    size_t at;
+  } stack[STACK] = { { b->n_level - 1, 0 } };
   int depth = 1;
   float q[6];
 

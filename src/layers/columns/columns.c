@@ -6,9 +6,10 @@
 
 const char *vg_layer_cause_name(enum vg_layer_cause cause)
 {
-  static const char *const name[VG_CAUSE_N] = {
-    "none", "size", "proximity", "corner", "no_view", "cell", "collision",
-    "slide" };
+  static const char *const name[VG_CAUSE_N] = { "none",      "size",
+                                                "proximity", "corner",
+                                                "no_view",   "cell",
+                                                "collision", "slide" };
 
   return (unsigned)cause < VG_CAUSE_N ? name[cause] : "?";
 }
@@ -30,7 +31,8 @@ static void at_height(const struct vg_column *c, const double *root, double h,
 {
   for (int k = 0; k < 3; k++)
     x[k] = h == 0 || (c->dir[k] == 0 && c->shift[k] == 0)
-           ? root[k] : root[k] + (c->shift[k] + c->dir[k] * h);
+           ? root[k]
+           : root[k] + (c->shift[k] + c->dir[k] * h);
 }
 
 void vg_column_points(const struct vg_columns *c, const struct vg_mesh *m,

@@ -8,7 +8,8 @@
  * now) of positive volume: the lift rule. What is left on top is the face
  * with each column at its own n: the top, one triangle per face, so tops are
  * as conforming as the wall is. Neighbours may differ by any number of levels;
- * what is bounded is the slope of the tops between them (layers/grow/grow_parts.h).
+ * what is bounded is the slope of the tops between them
+ * (layers/grow/grow_parts.h).
  *
  * At a convex edge a point may have several columns, a fan. Between them lie
  * virtual faces: triangles of columns with two or three equal roots, of no
@@ -29,15 +30,15 @@
 
 /** Why a column has fewer or thinner layers than the law asks for. */
 enum vg_layer_cause {
-  VG_CAUSE_NONE,       /* all layers that were asked for */
-  VG_CAUSE_SIZE,       /* ended as thick as the local cell: as intended */
-  VG_CAUSE_PROXIMITY,  /* another surface stands in front of it */
-  VG_CAUSE_CORNER,     /* columns converge in a concave corner */
-  VG_CAUSE_NO_VIEW,    /* no direction sees all faces at the point */
-  VG_CAUSE_CELL,       /* a cell would be inverted or too flat */
-  VG_CAUSE_COLLISION,  /* tops or flanks would cross */
-  VG_CAUSE_SLIDE,      /* meets a slide patch at too flat an angle, or the
-                          patch could not be re-meshed around it */
+  VG_CAUSE_NONE,      /* all layers that were asked for */
+  VG_CAUSE_SIZE,      /* ended as thick as the local cell: as intended */
+  VG_CAUSE_PROXIMITY, /* another surface stands in front of it */
+  VG_CAUSE_CORNER,    /* columns converge in a concave corner */
+  VG_CAUSE_NO_VIEW,   /* no direction sees all faces at the point */
+  VG_CAUSE_CELL,      /* a cell would be inverted or too flat */
+  VG_CAUSE_COLLISION, /* tops or flanks would cross */
+  VG_CAUSE_SLIDE,     /* meets a slide patch at too flat an angle, or the
+                         patch could not be re-meshed around it */
   VG_CAUSE_N
 };
 
@@ -45,25 +46,25 @@ enum vg_layer_cause {
 const char *vg_layer_cause_name(enum vg_layer_cause cause);
 
 struct vg_column {
-  uint32_t root;       /* point of the surface */
-  uint32_t law;        /* index into vg_columns.law */
-  uint32_t slide[2];   /* patches it slides in, VG_NO_INDEX: none; [0] first */
-  double dir[3];       /* level l >= 1 stands at root + shift + dir *
-                          height(l); length 1 to 2 */
-  double shift[3];     /* what makes the first point delta1 away from the
-                          wall, in corners where dir alone does not: so the
-                          layers above may be straightened out and the first
-                          height is kept. 0 for most */
-  double cap;          /* growth of this column: the law's, or less where it
-                          was squeezed (vg_law_heights) */
-  size_t bent;         /* SIZE_MAX: straight. Else levels 0 .. n are
-                          vg_columns.path[bent ..] (curved slide patches) */
-  uint16_t n;          /* levels */
-  uint16_t n_wanted;   /* by law and local size, before anything limited it */
-  uint8_t cause;       /* enum vg_layer_cause: what set n below n_wanted */
-  uint8_t squeezed;    /* enum vg_layer_cause: what set cap below the law's;
-                          VG_CAUSE_NONE: nothing did */
-  uint8_t unused[2];   /* 0: columns are sent, and compared, as bytes */
+  uint32_t root;     /* point of the surface */
+  uint32_t law;      /* index into vg_columns.law */
+  uint32_t slide[2]; /* patches it slides in, VG_NO_INDEX: none; [0] first */
+  double dir[3];     /* level l >= 1 stands at root + shift + dir *
+                        height(l); length 1 to 2 */
+  double shift[3];   /* what makes the first point delta1 away from the
+                        wall, in corners where dir alone does not: so the
+                        layers above may be straightened out and the first
+                        height is kept. 0 for most */
+  double cap;        /* growth of this column: the law's, or less where it
+                        was squeezed (vg_law_heights) */
+  size_t bent;       /* SIZE_MAX: straight. Else levels 0 .. n are
+                        vg_columns.path[bent ..] (curved slide patches) */
+  uint16_t n;        /* levels */
+  uint16_t n_wanted; /* by law and local size, before anything limited it */
+  uint8_t cause;     /* enum vg_layer_cause: what set n below n_wanted */
+  uint8_t squeezed;  /* enum vg_layer_cause: what set cap below the law's;
+                        VG_CAUSE_NONE: nothing did */
+  uint8_t unused[2]; /* 0: columns are sent, and compared, as bytes */
 };
 _Static_assert(sizeof(struct vg_column) == 88, "columns have no padding");
 
@@ -77,15 +78,18 @@ struct vg_columns {
                                Hilbert curve), then the virtual ones */
   uint32_t *face_tri;       /* [n_face] triangle of the surface; virtual:
                                VG_NO_INDEX */
-  uint32_t (*border)[2];  /* [n_border] edges of one face, in its direction;
-                               both columns slide in ... */
-  uint32_t *border_patch;  /* [n_border] ... this patch. An edge between columns
-                               of one root is a border too where a fan meets a
-                               slide patch */
-  struct vg_law *law;       /* [n_law] */
-  double (*path)[3];        /* [n_path] */
+  uint32_t (*border)[2];    /* [n_border] edges of one face, in its direction;
+                                 both columns slide in ... */
+  uint32_t *border_patch; /* [n_border] ... this patch. An edge between columns
+                              of one root is a border too where a fan meets a
+                              slide patch */
+  struct vg_law *law;     /* [n_law] */
+  double (*path)[3];      /* [n_path] */
 };
-#define VG_COLUMNS_INIT { 0 }
+#define VG_COLUMNS_INIT                                                        \
+  {                                                                            \
+    0                                                                          \
+  }
 
 void vg_columns_release(struct vg_columns *c);
 

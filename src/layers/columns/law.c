@@ -22,8 +22,8 @@ static double bare(const struct vg_law *law, int j)
 
   if (k <= 0) return law->delta1;
   return law->delta1 *
-         power(1 + law->rate1 * (law->rate2 > 0 ? power(1 + law->rate2, k)
-                                                : 1), k);
+         power(1 + law->rate1 * (law->rate2 > 0 ? power(1 + law->rate2, k) : 1),
+               k);
 }
 
 /* The same, given that of layer j - 1: one product for a geometric law. */
@@ -85,7 +85,7 @@ double vg_law_squeeze(const struct vg_law *law, int n, double height)
     hi = 2;
     while (sum(b, hi, n) <= height) hi *= 2;
   }
-  for (int i = 0; i < 28; i++) {   /* 4e-9 of the cap */
+  for (int i = 0; i < 28; i++) { /* 4e-9 of the cap */
     double mid = 0.5 * (lo + hi);
 
     if (sum(b, mid, n) <= height) lo = mid;
@@ -102,7 +102,7 @@ static double seventh_root(double x)
   int e;
 
   frexp(x, &e);
-  next = ldexp(1, e >= 0 ? e / 7 + 1 : e / 7);   /* above the root */
+  next = ldexp(1, e >= 0 ? e / 7 + 1 : e / 7); /* above the root */
   do {
     y = next;
     next = y - (y - x / power(y, 6)) / 7;
@@ -135,8 +135,7 @@ static double total_at(double delta1, int n_constant, int n, double rate)
   return total;
 }
 
-double vg_law_rate_for_total(double delta1, int n_constant, int n,
-                             double total)
+double vg_law_rate_for_total(double delta1, int n_constant, int n, double total)
 {
   double lo = 0, hi = 1;
 
@@ -163,7 +162,7 @@ double vg_real_power(double x, double e)
 
   double whole = floor(fabs(e)), part = fabs(e) - whole, y, root = x;
 
-  if (whole > 1000) whole = 1000;    /* beyond any that could be told */
+  if (whole > 1000) whole = 1000; /* beyond any that could be told */
   y = power(x, (int)whole);
   for (int i = 0; i < 53 && part > 0; i++) {
     root = sqrt(root);

@@ -11,18 +11,21 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define VG_LEVELS_MAX 250   /* levels of a column */
+#define VG_LEVELS_MAX 250 /* levels of a column */
 
 struct vg_law {
-  double delta1;            /* first layer, length unit of the input, > 0 */
-  double rate1, rate2;      /* >= 0 */
-  double cap;               /* largest ratio of neighbouring layers, >= 1;
-                               INFINITY: none (VGRID) */
-  int64_t n_constant;       /* first layers of equal thickness, >= 1 */
+  double delta1;       /* first layer, length unit of the input, > 0 */
+  double rate1, rate2; /* >= 0 */
+  double cap;          /* largest ratio of neighbouring layers, >= 1;
+                          INFINITY: none (VGRID) */
+  int64_t n_constant;  /* first layers of equal thickness, >= 1 */
 };
 _Static_assert(sizeof(struct vg_law) == 40,
                "laws have no padding: they are sent, and compared, as bytes");
-#define VG_LAW_INIT { 0, 0.2, 0, 1.3, 1 }
+#define VG_LAW_INIT                                                            \
+  {                                                                            \
+    0, 0.2, 0, 1.3, 1                                                          \
+  }
 
 /** Wall distances d[0] = 0 .. d[n] of the layer tops, with the cap lowered to
  * `cap` (a column that had to be squeezed; INFINITY: the law's own). By
@@ -50,13 +53,13 @@ double vg_law_rate_for_total(double delta1, int n_constant, int n,
 /** Layers of a member of a grid family, in which sizes are `scale` times as
  * large as in the first one. */
 enum vg_law_rule {
-  VG_LAW_KEPT,      /* as they are */
-  VG_LAW_EVEN,      /* ratios to the power of scale: as many times more layers
-                       as there are edges along the wall */
-  VG_LAW_WORKSHOP   /* ratios as the AIAA Drag Prediction Workshops give them:
-                       of scales 1, 2/3, 1/2, 2/5, 1/3, 2/7 their logarithm is
-                       2/3 of the one before, 1.16, 1.104, 1.068, 1.045, 1.030,
-                       1.020 */
+  VG_LAW_KEPT,    /* as they are */
+  VG_LAW_EVEN,    /* ratios to the power of scale: as many times more layers
+                     as there are edges along the wall */
+  VG_LAW_WORKSHOP /* ratios as the AIAA Drag Prediction Workshops give them:
+                     of scales 1, 2/3, 1/2, 2/5, 1/3, 2/7 their logarithm is
+                     2/3 of the one before, 1.16, 1.104, 1.068, 1.045, 1.030,
+                     1.020 */
 };
 
 /** To what power ratios go: > 0, 1 for VG_LAW_KEPT. scale > 0. Plain

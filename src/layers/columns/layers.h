@@ -21,37 +21,42 @@
 
 /** What one patch asks for. */
 struct vg_layer_request {
-  int is_wall;              /* grow layers on it */
+  int is_wall; /* grow layers on it */
   struct vg_law law;
-  int n_max;                /* levels at most; 0: VG_LEVELS_MAX */
-  double total;             /* no higher than this; 0: no limit */
-  int n_exact;              /* 1: n_max levels also where the local size is
-                               reached earlier */
+  int n_max;    /* levels at most; 0: VG_LEVELS_MAX */
+  double total; /* no higher than this; 0: no limit */
+  int n_exact;  /* 1: n_max levels also where the local size is
+                   reached earlier */
 };
 
 struct vg_layer_options {
-  const struct vg_layer_request *patch;  /* [surface->n_patch] */
+  const struct vg_layer_request *patch; /* [surface->n_patch] */
   /* Law at a point of a wall (VGRID's grid=2), or NULL: the patch's. */
   void (*law_at)(void *user, const double x[3], struct vg_law *law);
   void *law_user;
-  double fan_angle;         /* edges that turn by more than this, in degrees,
-                               get fans; 180: none; 0: only points that one
-                               column cannot serve */
-  double end;               /* a column ends where its next layer would be
-                               thicker than this times the local edge */
-  double gap;               /* share of the distance to the nearest surface in
-                               front that a column may take, < 0.5 */
-  double slope;             /* by how much two columns may differ in height, of
-                               the distance of their roots; > 0 */
-  int smooth;               /* sweeps over the directions */
-  int threads;              /* 0: one per core */
-  struct vg_team *team;     /* that makes them together (base/team.h), or NULL */
+  double fan_angle;     /* edges that turn by more than this, in degrees,
+                           get fans; 180: none; 0: only points that one
+                           column cannot serve */
+  double end;           /* a column ends where its next layer would be
+                           thicker than this times the local edge */
+  double gap;           /* share of the distance to the nearest surface in
+                           front that a column may take, < 0.5 */
+  double slope;         /* by how much two columns may differ in height, of
+                           the distance of their roots; > 0 */
+  int smooth;           /* sweeps over the directions */
+  int threads;          /* 0: one per core */
+  struct vg_team *team; /* that makes them together (base/team.h), or NULL */
   struct vg_progress progress;
-  struct vg_stop stop;      /* asked between rounds */
+  struct vg_stop stop; /* asked between rounds */
 };
 /* L1 */
-#define VG_LAYER_OPTIONS_INIT { NULL, NULL, NULL, 0, 0.95, 0.4, 2, 100, \
-                                1, NULL, { NULL, NULL }, { NULL, NULL } }
+#define VG_LAYER_OPTIONS_INIT                                                  \
+  {                                                                            \
+    NULL, NULL, NULL, 0, 0.95, 0.4, 2, 100, 1, NULL, { NULL, NULL },           \
+    {                                                                          \
+      NULL, NULL                                                               \
+    }                                                                          \
+  }
 
 /** What happened. Times are wall seconds. */
 /* Faces of a column that lines start from where it looks ahead (clear.h). */
@@ -59,19 +64,19 @@ enum { VG_AHEAD_FACES = 64 };
 
 struct vg_layer_report {
   size_t n_wall_point, n_wall_tri, n_column, n_virtual_face;
-  size_t n_cell;            /* layer cells if all are tetrahedra */
-  size_t n_layer_point;     /* points above the wall, flanks included */
-  size_t cause[VG_CAUSE_N], squeezed[VG_CAUSE_N];  /* columns */
-  size_t n_round;           /* of lowering until clear */
-  size_t n_many_faces;      /* columns of more than VG_AHEAD_FACES faces */
-  size_t n_slide_patch, n_slide_tri;  /* patches next to walls; triangles they
-                                         have in the front */
+  size_t n_cell;        /* layer cells if all are tetrahedra */
+  size_t n_layer_point; /* points above the wall, flanks included */
+  size_t cause[VG_CAUSE_N], squeezed[VG_CAUSE_N]; /* columns */
+  size_t n_round;                                 /* of lowering until clear */
+  size_t n_many_faces; /* columns of more than VG_AHEAD_FACES faces */
+  size_t n_slide_patch, n_slide_tri; /* patches next to walls; triangles they
+                                        have in the front */
   double time_topology, time_direction, time_height, time_clear, time_slide,
-         time_total;
+    time_total;
 };
 
 /* Ids of the points of the front above layers. */
-#define VG_LAYER_NEW UINT64_MAX  /* a new point of a patch that was remeshed */
+#define VG_LAYER_NEW UINT64_MAX /* a new point of a patch that was remeshed */
 
 /** The top of a column of at least one level. */
 static inline uint64_t vg_layer_top_id(uint32_t column)
@@ -99,15 +104,21 @@ static inline uint32_t vg_layer_point_of(uint64_t id)
 
 struct vg_layers {
   struct vg_columns columns;
-  struct vg_front front;    /* of the void above, closed, with the patches of the
-                               surface. Ids of points: above. Ids of faces: the
-                               face of the columns of which it is the top, or
-                               VG_NO_INDEX for a triangle of a patch that is
-                               boundary of the result too */
-  struct vg_shmem common;   /* where the arrays are, if a node has them in
-                               common (layers/columns/share.h) */
+  struct vg_front front;  /* of the void above, closed, with the patches of the
+                             surface. Ids of points: above. Ids of faces: the
+                             face of the columns of which it is the top, or
+                             VG_NO_INDEX for a triangle of a patch that is
+                             boundary of the result too */
+  struct vg_shmem common; /* where the arrays are, if a node has them in
+                             common (layers/columns/share.h) */
 };
-#define VG_LAYERS_INIT { VG_COLUMNS_INIT, VG_FRONT_INIT, { 0 } }
+#define VG_LAYERS_INIT                                                         \
+  {                                                                            \
+    VG_COLUMNS_INIT, VG_FRONT_INIT,                                            \
+    {                                                                          \
+      0                                                                        \
+    }                                                                          \
+  }
 
 void vg_layers_release(struct vg_layers *l);
 

@@ -59,8 +59,9 @@ vg_status vg_expand_open(struct vg_expand *e, const struct vg_columns *columns,
     if (columns->column[i].n > VG_LEVELS_MAX)
       return vg_fail(err, VG_ERR_INPUT,
                      "the column on point %zu has %u levels; at most %d can "
-                     "be made", (size_t)columns->column[i].root + 1,
-                     columns->column[i].n, VG_LEVELS_MAX);
+                     "be made",
+                     (size_t)columns->column[i].root + 1, columns->column[i].n,
+                     VG_LEVELS_MAX);
   st = reserve(e, err);
   if (st < 0) vg_expand_close(e);
   else mark_columns(e);
@@ -158,8 +159,8 @@ void vg_expand_points(const struct vg_expand *e, const struct vg_mesh *surface,
 {
   struct points p = { e, surface, flanks_only, point };
 
-  vg_parallel_for(e->threads, e->columns->n_column, COLUMN_GRAIN,
-                  place_columns, &p);
+  vg_parallel_for(e->threads, e->columns->n_column, COLUMN_GRAIN, place_columns,
+                  &p);
 }
 
 vg_status vg_layers_count(const struct vg_layers *layers,

@@ -10,7 +10,7 @@
 
 #include "layers/columns/columns.h"
 
-enum { VG_FLANK, VG_INNER };               /* points on a slide patch, others */
+enum { VG_FLANK, VG_INNER }; /* points on a slide patch, others */
 enum { VG_KIND_TET, VG_KIND_PYR, VG_KIND_PRI, VG_N_KIND };
 
 /* Faces that are counted together. */
@@ -19,11 +19,11 @@ enum { VG_KIND_TET, VG_KIND_PYR, VG_KIND_PRI, VG_N_KIND };
 struct vg_expand {
   const struct vg_columns *columns;
   int mixed, threads;
-  size_t n_block;          /* of faces */
-  uint16_t *mark;          /* [n_column] levels, flags */
-  uint32_t *foot;          /* [n_column] index of the point at level 0 */
-  uint32_t *base;          /* [n_column] of that at level 1; those above it
-                              follow. VG_NO_INDEX: no levels */
+  size_t n_block; /* of faces */
+  uint16_t *mark; /* [n_column] levels, flags */
+  uint32_t *foot; /* [n_column] index of the point at level 0 */
+  uint32_t *base; /* [n_column] of that at level 1; those above it
+                     follow. VG_NO_INDEX: no levels */
   /* First index of what belongs to a block; behind the last is the end. */
   size_t *inner;           /* [n_block + 1] points inside that its faces are
                               the first to have */
@@ -79,10 +79,13 @@ void vg_expand_count_flank(const struct vg_expand *e, size_t r, size_t *tri,
 void vg_expand_flank(const struct vg_expand *e, size_t r, uint32_t (*tri)[3],
                      uint32_t (*quad)[4]);
 
-#define VG_MARK_FLANK 0x8000   /* has a border */
-#define VG_MARK_SHARED 0x4000  /* its root has other columns */
+#define VG_MARK_FLANK 0x8000  /* has a border */
+#define VG_MARK_SHARED 0x4000 /* its root has other columns */
 
-static inline unsigned vg_mark_n(uint16_t mark) { return mark & 0x0fff; }
+static inline unsigned vg_mark_n(uint16_t mark)
+{
+  return mark & 0x0fff;
+}
 
 static inline int vg_mark_group(uint16_t mark)
 {

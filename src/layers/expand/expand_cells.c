@@ -25,8 +25,8 @@
 /* Corners of a face by rising column, by which of f0 < f1, f1 < f2, f2 < f0
  * hold (bits 0, 1, 2; none or all cannot be). */
 static const uint8_t rising[8][3] = {
-  {0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {0, 1, 2},
-  {2, 1, 0}, {2, 0, 1}, {1, 2, 0}, {0, 1, 2},
+  { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 0, 1, 2 },
+  { 2, 1, 0 }, { 2, 0, 1 }, { 1, 2, 0 }, { 0, 1, 2 },
 };
 
 static const uint8_t *order_of(const uint32_t f[3])
@@ -328,7 +328,7 @@ static void count_blocks(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t b = first; b < end; b++) {
-    size_t count[VG_N_KIND] = {0}, i = b * VG_FACE_BLOCK;
+    size_t count[VG_N_KIND] = { 0 }, i = b * VG_FACE_BLOCK;
 
     for (; i < (b + 1) * VG_FACE_BLOCK && i < e->columns->n_face; i++)
       count_face(e, e->columns->face[i], count);
@@ -369,8 +369,7 @@ static int border_together(const struct vg_expand *e, const uint32_t border[2],
 
 /* The second column of a border rises before the first. */
 static int border_second_first(const struct vg_expand *e,
-                               const uint32_t border[2],
-                               size_t level)
+                               const uint32_t border[2], size_t level)
 {
   int late[2];
 

@@ -81,7 +81,7 @@ static int raise(struct lift *l, int i)
   for (int k = 0; k < 3; k++) memcpy(p[k], l->x[k][l->at[k]], sizeof *p);
   l->at[i]++;
   memcpy(p[3], l->x[i][l->at[i]], sizeof *p);
-  return !vanishes && !vg_cell_positive((const double (*)[3])p, 0, node);
+  return !vanishes && !vg_cell_positive((const double(*)[3])p, 0, node);
 }
 
 static size_t bad_cells(const struct vg_columns *c, const struct vg_mesh *m,
@@ -108,8 +108,7 @@ static size_t bad_cells(const struct vg_columns *c, const struct vg_mesh *m,
 size_t vg_columns_defects(const struct vg_columns *c,
                           const struct vg_mesh *surface)
 {
-  size_t bad = bad_columns(c, surface) + bad_faces(c, surface) +
-               bad_borders(c);
+  size_t bad = bad_columns(c, surface) + bad_faces(c, surface) + bad_borders(c);
 
   for (size_t i = 0; !bad && i < c->n_face; i++)
     bad += bad_cells(c, surface, c->face[i]);

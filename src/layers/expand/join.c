@@ -11,7 +11,7 @@
 #include "layers/expand/join_plan.h"
 
 #define FIELD_GRAIN 65536
-#define BLOCK_GRAIN 8      /* blocks of faces */
+#define BLOCK_GRAIN 8 /* blocks of faces */
 
 struct join {
   const struct vg_mesh *field;
@@ -62,7 +62,7 @@ static void fill_field(void *context, size_t first, size_t end, int worker)
   const struct join *j = context;
   const struct vg_join_plan *p = &j->plan;
   size_t n_front = p->front->n_point;
-  uint32_t (*tet)[4] = j->m->tet + p->expand.n_cell[VG_KIND_TET];
+  uint32_t(*tet)[4] = j->m->tet + p->expand.n_cell[VG_KIND_TET];
 
   (void)worker;
   for (size_t i = first; i < end; i++)
@@ -94,10 +94,9 @@ static vg_status make_cells(struct join *j, struct vg_error *err)
 
 vg_status vg_layers_join(const struct vg_mesh *surface,
                          const struct vg_layers *layers,
-                         const struct vg_mesh *field,
-                         enum vg_layer_cells cells, int threads,
-                         struct vg_mesh *out, struct vg_join_info *info,
-                         struct vg_error *err)
+                         const struct vg_mesh *field, enum vg_layer_cells cells,
+                         int threads, struct vg_mesh *out,
+                         struct vg_join_info *info, struct vg_error *err)
 {
   assert(threads >= 0 && out);
 

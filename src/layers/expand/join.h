@@ -8,10 +8,10 @@
 enum vg_layer_cells { VG_LAYER_TETS, VG_LAYER_MIXED };
 
 struct vg_join_info {
-  size_t n_boundary_point;  /* they come first */
-  size_t n_layer_point;     /* index behind the last layer point (npv) */
-  size_t n_layer_tet, n_layer_pyr, n_layer_pri;  /* first of their kind */
-  double time;              /* wall seconds */
+  size_t n_boundary_point; /* they come first */
+  size_t n_layer_point;    /* index behind the last layer point (npv) */
+  size_t n_layer_tet, n_layer_pyr, n_layer_pri; /* first of their kind */
+  double time;                                  /* wall seconds */
 };
 
 /** Layers and field in one mesh.
@@ -41,16 +41,15 @@ struct vg_join_info {
  * Cost: memory speed, in parallel. Same bytes for any number of threads. */
 vg_status vg_layers_join(const struct vg_mesh *surface,
                          const struct vg_layers *layers,
-                         const struct vg_mesh *field,
-                         enum vg_layer_cells cells, int threads,
-                         struct vg_mesh *out, struct vg_join_info *info,
-                         struct vg_error *err);
+                         const struct vg_mesh *field, enum vg_layer_cells cells,
+                         int threads, struct vg_mesh *out,
+                         struct vg_join_info *info, struct vg_error *err);
 
 /** A cell in the node order of its kind: corner k of the face at level 0 is
  * k, at level 1 it is 3 + k; of corners with one root the first stands for
  * all at level 0. */
 struct vg_wall_cell {
-  int n_node;               /* 4, 5 or 6 */
+  int n_node; /* 4, 5 or 6 */
   uint32_t node[6];
 };
 

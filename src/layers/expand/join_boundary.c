@@ -9,9 +9,9 @@
 struct work {
   const struct vg_join_plan *p;
   struct vg_mesh *m;
-  uint8_t *stays;          /* [surface->n_tri] */
-  uint8_t *changed;        /* [n_patch] re-meshed */
-  size_t *tri, *quad;      /* [n_patch] where the next new face goes */
+  uint8_t *stays;     /* [surface->n_tri] */
+  uint8_t *changed;   /* [n_patch] re-meshed */
+  size_t *tri, *quad; /* [n_patch] where the next new face goes */
 };
 
 /* Is front triangle f, point for point, triangle s of the surface? */
@@ -98,8 +98,7 @@ static vg_status reserve_boundary(struct vg_mesh *m, struct vg_error *err)
     m->quad = vg_alloc(m->n_quad, sizeof *m->quad);
     m->quad_patch = vg_alloc(m->n_quad, sizeof *m->quad_patch);
   }
-  if (m->tri && m->tri_patch &&
-      (!m->n_quad || (m->quad && m->quad_patch)))
+  if (m->tri && m->tri_patch && (!m->n_quad || (m->quad && m->quad_patch)))
     return VG_OK;
   return vg_fail_memory(err, "the boundary of the mesh");
 }
@@ -195,8 +194,11 @@ static vg_status copy_patches(struct work *w, struct vg_error *err)
 vg_status vg_join_boundary(struct vg_join_plan *p, struct vg_error *err)
 {
   size_t n = p->surface->n_patch;
-  struct work w = { p, &p->boundary, vg_calloc(p->surface->n_tri, 1),
-                    vg_calloc(n, 1), vg_calloc(n, sizeof *w.tri),
+  struct work w = { p,
+                    &p->boundary,
+                    vg_calloc(p->surface->n_tri, 1),
+                    vg_calloc(n, 1),
+                    vg_calloc(n, sizeof *w.tri),
                     vg_calloc(n, sizeof *w.quad) };
   vg_status st;
 

@@ -9,9 +9,9 @@
 #include "base/memory.h"
 #include "core/mesh/mesh_defects.h"
 
-vg_status vg_join_check_field(const struct vg_front *f,
-                              uint64_t n_point, uint64_t n_tri,
-                              uint64_t n_other_cell, struct vg_error *err)
+vg_status vg_join_check_field(const struct vg_front *f, uint64_t n_point,
+                              uint64_t n_tri, uint64_t n_other_cell,
+                              struct vg_error *err)
 {
   if (n_point >= f->n_point && n_tri == f->n_face && !n_other_cell)
     return VG_OK;
@@ -83,8 +83,9 @@ static vg_status number_points(struct vg_join_plan *p, uint64_t n_field_point,
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "the mesh would have %zu points, %zu of them in the "
                    "layers; at most %u can be numbered: ask for fewer layers "
-                   "or a coarser surface", p->n_point,
-                   e->n_point[VG_FLANK] + e->n_point[VG_INNER], UINT32_MAX);
+                   "or a coarser surface",
+                   p->n_point, e->n_point[VG_FLANK] + e->n_point[VG_INNER],
+                   UINT32_MAX);
   first[VG_FLANK] = p->first_flank;
   first[VG_INNER] = p->first_inner;
   st = vg_expand_number(e, p->root, first, err);

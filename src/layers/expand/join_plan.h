@@ -12,9 +12,9 @@ struct vg_join_plan {
   const struct vg_columns *columns;
   const struct vg_front *front;
   struct vg_expand expand;
-  uint32_t *root;          /* [surface->n_point] point of the mesh, or
-                              VG_NO_INDEX */
-  uint32_t *id;            /* [front n_point] point of the mesh */
+  uint32_t *root; /* [surface->n_point] point of the mesh, or
+                     VG_NO_INDEX */
+  uint32_t *id;   /* [front n_point] point of the mesh */
   /* Where points of a kind begin: those of flanks, new ones of re-meshed
    * patches, inside layers, of the field; and all. */
   size_t first_flank, first_new, first_inner, first_field, n_point;
@@ -22,9 +22,9 @@ struct vg_join_plan {
 };
 
 /** Does a mesh of these counts fill the front? VG_ERR_INPUT if not. */
-vg_status vg_join_check_field(const struct vg_front *f,
-                              uint64_t n_point, uint64_t n_tri,
-                              uint64_t n_other_cell, struct vg_error *err);
+vg_status vg_join_check_field(const struct vg_front *f, uint64_t n_point,
+                              uint64_t n_tri, uint64_t n_other_cell,
+                              struct vg_error *err);
 
 /** @param n_field_point  points of the field besides those of the front
  * Everything is borrowed until closed. On failure there is nothing to close. */

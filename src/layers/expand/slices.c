@@ -11,22 +11,23 @@
 #include "layers/expand/slices_parts.h"
 
 /* Cells that make a slice, and points of the boundary in one. */
-#define SLICE_CELLS 262144   /* L18 */
+#define SLICE_CELLS 262144 /* L18 */
 #define SLICE_POINTS 16384
 
 _Static_assert((int)VG_SLICE_TET == VG_KIND_TET &&
-               (int)VG_SLICE_PYR == VG_KIND_PYR &&
-               (int)VG_SLICE_PRI == VG_KIND_PRI, "kinds by the same number");
+                 (int)VG_SLICE_PYR == VG_KIND_PYR &&
+                 (int)VG_SLICE_PRI == VG_KIND_PRI,
+               "kinds by the same number");
 
 struct vg_layer_slices {
   struct vg_join_plan plan;
   const struct vg_slices *field;
-  double (*point)[3];      /* of the boundary */
+  double (*point)[3]; /* of the boundary */
   size_t rank, size;
-  size_t n_part;           /* of the boundary's points */
+  size_t n_part; /* of the boundary's points */
   size_t n_run, room_run;
-  size_t *run;             /* [n_run + 1] first block of faces */
-  size_t first, n_mine;    /* served here, of parts and runs */
+  size_t *run;          /* [n_run + 1] first block of faces */
+  size_t first, n_mine; /* served here, of parts and runs */
 };
 
 /* Close a run where it has its cells. Blocks at the end on which nothing
@@ -39,8 +40,7 @@ static vg_status find_runs(struct vg_layer_slices *k, struct vg_error *err)
   for (size_t b = 1; b <= e->n_block; b++) {
     size_t n = 0, n_point = e->inner[b] - e->inner[begin];
 
-    for (int i = 0; i < VG_N_KIND; i++)
-      n += e->cell[i][b] - e->cell[i][begin];
+    for (int i = 0; i < VG_N_KIND; i++) n += e->cell[i][b] - e->cell[i][begin];
     if (n < SLICE_CELLS && (b < e->n_block || !(n || n_point))) continue;
     if (vg_reserve(&k->run, &k->room_run, k->n_run + 2, sizeof *k->run))
       return vg_fail_memory(err, "the slices of the layers");
@@ -88,7 +88,7 @@ static double level_of(size_t size, const uint64_t *n_field, uint64_t n)
 {
   double level = INFINITY;
 
-  for (size_t r = 0; r < size; r++) {  /* vessels as full as r hold water */
+  for (size_t r = 0; r < size; r++) { /* vessels as full as r hold water */
     double sum = (double)n, wet = 0;
 
     for (size_t i = 0; i < size; i++) {
@@ -139,7 +139,7 @@ static vg_status get_part(const struct vg_layer_slices *k, size_t part,
   }
   s->n_point = s->n_own = n;
   s->point_at = first;
-  s->x = (const double (*)[3])(k->point + first);
+  s->x = (const double(*)[3])(k->point + first);
   s->id = at->id;
   s->own = at->own;
   return VG_OK;
@@ -205,7 +205,7 @@ static vg_status get_slice(const struct vg_slices *slices, size_t i,
                            struct vg_slice *out, struct vg_error *err)
 {
   const struct vg_layer_slices *k = slices->user;
-  size_t n = k->first + i;             /* of parts and runs */
+  size_t n = k->first + i; /* of parts and runs */
   struct vg_layer_slice *at = vg_calloc(1, sizeof *at);
   struct vg_slice s = { 0 };
   vg_status st;
@@ -215,8 +215,7 @@ static vg_status get_slice(const struct vg_slices *slices, size_t i,
   else if (n < k->n_part) st = get_part(k, n, at, &s, err);
   else {
     n -= k->n_part;
-    st = vg_layer_slice_expand(&k->plan, k->run[n], k->run[n + 1], at, &s,
-                               err);
+    st = vg_layer_slice_expand(&k->plan, k->run[n], k->run[n + 1], at, &s, err);
   }
   s.keep = at;
   if (st < 0) release(k, at);
@@ -252,8 +251,7 @@ static void describe(struct vg_layer_slices *k, struct vg_slices *out)
   out->user = k;
 }
 
-static vg_status share_equally(struct vg_layer_slices *k,
-                               struct vg_error *err)
+static vg_status share_equally(struct vg_layer_slices *k, struct vg_error *err)
 {
   uint64_t *none = vg_calloc(k->size, sizeof *none);
 
@@ -269,8 +267,7 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                                enum vg_layer_cells cells, int rank, int size,
                                int threads, struct vg_slices *out,
                                struct vg_layer_slices **keep,
-                               struct vg_join_info *info,
-                               struct vg_error *err)
+                               struct vg_join_info *info, struct vg_error *err)
 {
   assert(size > 0 && rank >= 0 && rank < size);
   assert(threads >= 0 && out && keep);
@@ -286,7 +283,8 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
   VG_TRY(vg_join_check_field(&layers->front, field->n_point,
                              field->boundary ? field->boundary->n_tri : 0,
                              field->n_cell[VG_SLICE_PYR] +
-                             field->n_cell[VG_SLICE_PRI], err));
+                               field->n_cell[VG_SLICE_PRI],
+                             err));
   VG_TRY(vg_join_plan_open(&k->plan, surface, layers,
                            field->n_point - layers->front.n_point, cells,
                            threads, err));
@@ -301,8 +299,8 @@ done:
   return st;
 }
 
-void vg_layer_slices_share(struct vg_layer_slices *k,
-                           const uint64_t *n_field, struct vg_slices *out)
+void vg_layer_slices_share(struct vg_layer_slices *k, const uint64_t *n_field,
+                           struct vg_slices *out)
 {
   assert(k && n_field && out);
   share_out(k, n_field);
@@ -310,8 +308,8 @@ void vg_layer_slices_share(struct vg_layer_slices *k,
 }
 
 vg_status vg_layer_slices_tops(struct vg_comm *comm,
-                               const struct vg_layer_slices *k,
-                               double *ratio, struct vg_error *err)
+                               const struct vg_layer_slices *k, double *ratio,
+                               struct vg_error *err)
 {
   assert(k && ratio);
   return vg_layer_tops(comm, &k->plan, k->field, ratio, err);

@@ -33,8 +33,7 @@ vg_status vg_layer_slices_open(const struct vg_mesh *surface,
                                enum vg_layer_cells cells, int rank, int size,
                                int threads, struct vg_slices *out,
                                struct vg_layer_slices **keep,
-                               struct vg_join_info *info,
-                               struct vg_error *err);
+                               struct vg_join_info *info, struct vg_error *err);
 
 /** Share the slices of the layers out anew, so that with the field's all ranks
  * take nearly as long to judge theirs. The same call on every rank.

@@ -14,14 +14,14 @@
 
 struct run {
   const struct vg_join_plan *p;
-  size_t first, end;       /* blocks */
-  size_t n_face;           /* with levels */
+  size_t first, end; /* blocks */
+  size_t n_face;     /* with levels */
   size_t n_column;
-  uint32_t *face;          /* [n_face] */
-  uint32_t (*corner)[3];   /* [n_face] local columns */
-  uint32_t *column;        /* [n_column] of the plan */
-  uint32_t *foot, *base;   /* [n_column] local points at levels 0 and 1 */
-  struct vg_table table;   /* of columns, then of feet */
+  uint32_t *face;        /* [n_face] */
+  uint32_t (*corner)[3]; /* [n_face] local columns */
+  uint32_t *column;      /* [n_column] of the plan */
+  uint32_t *foot, *base; /* [n_column] local points at levels 0 and 1 */
+  struct vg_table table; /* of columns, then of feet */
 };
 
 static int has_levels(const struct vg_expand *e, size_t face)
@@ -145,7 +145,7 @@ static vg_status reserve_slice(const struct run *r, size_t n_point,
     refused |= !at->cell[k];
     s->cell[k] = at->cell[k];
   }
-  s->x = (const double (*)[3])at->x;
+  s->x = (const double(*)[3])at->x;
   s->id = at->id;
   s->own = at->own;
   return refused ? vg_fail_memory(err, "a slice of the layers") : VG_OK;
@@ -173,9 +173,9 @@ static void place_points(const struct run *r, struct vg_layer_slice *at,
 
 static void make_cells(const struct run *r, struct vg_layer_slice *at)
 {
-  struct vg_cell_sink s = { (uint32_t (*)[4])at->cell[VG_SLICE_TET],
-                            (uint32_t (*)[5])at->cell[VG_SLICE_PYR],
-                            (uint32_t (*)[6])at->cell[VG_SLICE_PRI] };
+  struct vg_cell_sink s = { (uint32_t(*)[4])at->cell[VG_SLICE_TET],
+                            (uint32_t(*)[5])at->cell[VG_SLICE_PYR],
+                            (uint32_t(*)[6])at->cell[VG_SLICE_PRI] };
 
   for (size_t i = 0; i < r->n_face; i++) {
     const uint32_t *c = r->corner[i];

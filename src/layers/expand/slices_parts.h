@@ -8,7 +8,7 @@
 
 /** What a slice at hand owns. */
 struct vg_layer_slice {
-  struct vg_slice field;   /* of the field, to be put back; else get == 0 */
+  struct vg_slice field; /* of the field, to be put back; else get == 0 */
   int is_field;
   double (*x)[3];
   uint32_t *id, *own, *cell[VG_SLICE_KINDS];

@@ -13,15 +13,15 @@
 
 struct tops {
   const struct vg_join_plan *p;
-  struct vg_table table;     /* triangles of the front that are tops */
-  double *ratio;             /* [n_face]; a top has one cell of the field, so
-                              one thread writes it */
+  struct vg_table table; /* triangles of the front that are tops */
+  double *ratio;         /* [n_face]; a top has one cell of the field, so
+                          one thread writes it */
 };
 
 /* Where a triangle is in the table, or would go. */
 static uint32_t *find(const struct tops *t, const uint32_t v[3])
 {
-  const uint32_t (*tri)[3] = (const uint32_t (*)[3])t->p->front->face;
+  const uint32_t(*tri)[3] = (const uint32_t(*)[3])t->p->front->face;
   struct vg_tri_key key = vg_tri_key(v);
   uint32_t *at;
 
@@ -58,7 +58,7 @@ static double volume_below(const struct tops *t, size_t face)
     memcpy(x[k], column[n ? n - 1 : 0], sizeof *x);
     memcpy(x[3 + k], column[n], sizeof *x);
   }
-  return vg_cell_volume((const double (*)[3])x, n_node - 4, node);
+  return vg_cell_volume((const double(*)[3])x, n_node - 4, node);
 }
 
 static void meet(const struct tops *t, const struct vg_slice *s,
@@ -73,7 +73,7 @@ static void meet(const struct tops *t, const struct vg_slice *s,
   below = volume_below(t, f->face_id[i]);
   if (!(below > 0)) return;
   for (int k = 0; k < 4; k++) memcpy(x[k], s->x[cell[k]], sizeof *x);
-  above = vg_cell_volume((const double (*)[3])x, 0, whole);
+  above = vg_cell_volume((const double(*)[3])x, 0, whole);
   t->ratio[f->face_id[i]] = above > below ? above / below : below / above;
 }
 
@@ -81,7 +81,7 @@ static vg_status look_through(void *context, const struct vg_slice *s,
                               struct vg_error *err)
 {
   const struct tops *t = context;
-  const uint32_t (*tet)[4] = (const uint32_t (*)[4])s->cell[VG_SLICE_TET];
+  const uint32_t(*tet)[4] = (const uint32_t(*)[4])s->cell[VG_SLICE_TET];
   size_t n_front = t->p->front->n_point;
 
   (void)err;

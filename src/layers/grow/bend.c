@@ -13,11 +13,10 @@
 #include "layers/grow/direct.h"
 
 /* L4 */
-#define CONVERGE 0.75      /* a face that would shrink to less is bent apart */
+#define CONVERGE 0.75 /* a face that would shrink to less is bent apart */
 #define BEND_MAX 0.995
-#define STILL 1e-3         /* a direction that changes by less has settled */
-#define BAND 2.5           /* heights that bending reaches to */
-
+#define STILL 1e-3 /* a direction that changes by less has settled */
+#define BAND 2.5   /* heights that bending reaches to */
 
 static void mean_of_near(const struct vg_layer_work *w, size_t i,
                          double (*from)[3], double v[3])
@@ -29,7 +28,7 @@ static void mean_of_near(const struct vg_layer_work *w, size_t i,
     uint32_t o = w->t.near[j];
     double d = vg_distance(root, w->m->point[w->c->column[o].root]);
 
-    if (!(d > 0)) continue;   /* another column of the same fan */
+    if (!(d > 0)) continue; /* another column of the same fan */
     for (int k = 0; k < 3; k++) v[k] += from[o][k] / d;
   }
 }
@@ -42,8 +41,7 @@ static double top_share(const struct vg_layer_work *w, uint32_t f,
   double x[3][3], a[3], b[3], base[3], top[3], n2;
 
   for (int k = 0; k < 3; k++)
-    memcpy(x[k], w->m->point[w->c->column[w->c->face[f][k]].root],
-           sizeof x[k]);
+    memcpy(x[k], w->m->point[w->c->column[w->c->face[f][k]].root], sizeof x[k]);
   vg_sub(x[1], x[0], a);
   vg_sub(x[2], x[0], b);
   vg_cross(a, b, base);
@@ -111,8 +109,7 @@ static void relax(const struct vg_dir_sweep *l, size_t i, double (*n)[3])
   step = urge(l, i);
   for (int try = 0; try < 4; try++, step *= 0.5) {
     for (int c = 0; c < 3; c++)
-      v[c] = l->from[i][c] + step * mean[c] +
-             (1 - step) * w->root_dir[i][c];
+      v[c] = l->from[i][c] + step * mean[c] + (1 - step) * w->root_dir[i][c];
     vg_constrain(n_slide, slide, v);
     if (!(vg_unit(v) > 0)) continue;
     if (vg_least_view(k, n, v) < VG_VIEW_KEPT * w->view[i]) continue;
@@ -130,8 +127,8 @@ static void relax_body(void *context, size_t first, size_t end, int worker)
     relax(l, l->list[k], l->scratch + (size_t)worker * l->w->max_valence);
 }
 
-static vg_status sweeps(struct vg_layer_work *w, const uint32_t *list,
-                        size_t n, struct vg_error *err)
+static vg_status sweeps(struct vg_layer_work *w, const uint32_t *list, size_t n,
+                        struct vg_error *err)
 {
   struct vg_dir_sweep l = { .list = list };
   vg_status st;
@@ -166,15 +163,15 @@ static void converging(const struct vg_layer_work *w, double *reach)
     double h = tallest(w, f);
 
     if (w->c->face_tri[f] == VG_NO_INDEX ||
-        top_share(w, f, w->root_dir, h) >= CONVERGE) continue;
+        top_share(w, f, w->root_dir, h) >= CONVERGE)
+      continue;
     for (int k = 0; k < 3; k++)
       reach[w->c->face[f][k]] = fmax(reach[w->c->face[f][k]], BAND * h);
   }
 }
 
 /* What is left of the reach of column i at its neighbour. */
-static int carry(struct vg_layer_work *w, void *context, uint32_t i,
-                 uint32_t j)
+static int carry(struct vg_layer_work *w, void *context, uint32_t i, uint32_t j)
 {
   double *reach = context, left;
   uint32_t o = w->t.near[j];

@@ -12,16 +12,16 @@
 #include "layers/grow/grow_parts.h"
 
 #define GRAIN 1024
-#define FLAT (0.25 * VG_VIEW_MIN)  /* L3: least sine of a column on a layer */
-#define SHRUNK 0.04        /* least area of a layer, of that at the wall */
-#define LOWER 0.75         /* of the height allowed, when a cell is bad */
-#define RESERVE 2.0        /* times the least height of all levels */
-#define NEAR_FARTHEST 0.5  /* share of the farthest reach at a bad cell */
+#define FLAT (0.25 * VG_VIEW_MIN) /* L3: least sine of a column on a layer */
+#define SHRUNK 0.04       /* least area of a layer, of that at the wall */
+#define LOWER 0.75        /* of the height allowed, when a cell is bad */
+#define RESERVE 2.0       /* times the least height of all levels */
+#define NEAR_FARTHEST 0.5 /* share of the farthest reach at a bad cell */
 
 /* The face of one call: three columns by rising number, levels ascending. */
 struct stack {
   const struct vg_column *c[3];
-  int order[3];                         /* corners by rising column */
+  int order[3]; /* corners by rising column */
   double d[3][VG_LEVELS_MAX + 1];
   double x[3][VG_LEVELS_MAX + 1][3];
 };
@@ -29,9 +29,9 @@ struct stack {
 struct search {
   struct vg_layer_work *w;
   const uint8_t *moved;
-  int16_t *level;           /* [n_face] first bad level, -1: none */
-  uint8_t *faulty;           /* [n_face] bit k: corner k */
-  struct stack *stack;      /* [worker] */
+  int16_t *level;      /* [n_face] first bad level, -1: none */
+  uint8_t *faulty;     /* [n_face] bit k: corner k */
+  struct stack *stack; /* [worker] */
 };
 
 static int positive(double det, double area2, const double up[3])
@@ -53,7 +53,8 @@ static int lifted(const struct stack *s, int p, int l, int lq, int lr)
   double a[3], b[3], up[3], n[3];
 
   if (same_point(s, p, l, q, lq) || same_point(s, p, l, r, lr) ||
-      same_point(s, q, lq, r, lr)) return 1;
+      same_point(s, q, lq, r, lr))
+    return 1;
   vg_sub(s->x[q][lq], o, a);
   vg_sub(s->x[r][lr], o, b);
   vg_sub(s->x[p][l + 1], o, up);
@@ -106,8 +107,8 @@ static int corners(const struct stack *s, int l, const double low[3],
     double up[3];
 
     vg_sub(s->x[k][l + 1], s->x[k][l], up);
-    if (!positive(vg_dot(low, up), a, up) ||
-        !positive(vg_dot(high, up), b, up)) bad |= 1 << k;
+    if (!positive(vg_dot(low, up), a, up) || !positive(vg_dot(high, up), b, up))
+      bad |= 1 << k;
   }
   return bad;
 }
@@ -127,7 +128,7 @@ static int pyramid(const struct stack *s, int l, int k)
   const double *ring[4] = { s->x[p][l], s->x[q][l], s->x[q][l + 1],
                             s->x[p][l + 1] };
 
-  if (l == 0 && is_virtual(s)) return 1;     /* see wall_cells() */
+  if (l == 0 && is_virtual(s)) return 1; /* see wall_cells() */
   for (int i = 0; i < 4; i++)
     if (!(vg_det(ring[i], ring[(i + 1) % 4], apex, ring[(i + 3) % 4]) > 0))
       return 0;
@@ -148,8 +149,13 @@ static int wall_cells(const struct stack *s, const struct vg_columns *c,
     static const int8_t corner[3][6][4] = {
       { { 0, 1, 2, 3 } },
       { { 0, 1, 2, 3 }, { 1, 4, 2, 0 }, { 4, 3, 2, 1 }, { 3, 0, 2, 4 } },
-      { { 0, 1, 2, 3 }, { 1, 2, 0, 4 }, { 2, 0, 1, 5 }, { 3, 5, 4, 0 },
-        { 4, 3, 5, 1 }, { 5, 4, 3, 2 } } };
+      { { 0, 1, 2, 3 },
+        { 1, 2, 0, 4 },
+        { 2, 0, 1, 5 },
+        { 3, 5, 4, 0 },
+        { 4, 3, 5, 1 },
+        { 5, 4, 3, 2 } }
+    };
     static const int n_corner[3] = { 1, 4, 6 };
     int kind = cell[i].n_node - 4;
 
@@ -198,7 +204,8 @@ static int first_bad(const struct stack *s, uint8_t *faulty)
     if (!lifts(s, l)) return l;
     for (int k = 0; k < 3; k++)
       if (s->c[k]->n == l && s->c[(k + 1) % 3]->n > l &&
-          s->c[(k + 2) % 3]->n > l && !pyramid(s, l, k)) return l;
+          s->c[(k + 2) % 3]->n > l && !pyramid(s, l, k))
+        return l;
   }
   return -1;
 }
@@ -275,17 +282,15 @@ static int costs_levels(const struct vg_layer_work *w, const uint32_t face[3],
   for (int k = 0; k < 3; k++) {
     const struct vg_column *c = &w->c->column[face[k]];
 
-    if (limit[k] < RESERVE * c->n_wanted * w->c->law[c->law].delta1)
-      return 1;
+    if (limit[k] < RESERVE * c->n_wanted * w->c->law[c->law].delta1) return 1;
   }
   return 0;
 }
 
 /* A column gets the least of what its bad faces leave it, not the product.
  * turn: [n_face] out, 1 for faces whose columns are to be turned instead. */
-static void judge(struct vg_layer_work *w, const struct search *q,
-                  int may_turn, double *least, uint8_t *turn, size_t *n_bad,
-                  size_t *n_turn)
+static void judge(struct vg_layer_work *w, const struct search *q, int may_turn,
+                  double *least, uint8_t *turn, size_t *n_bad, size_t *n_turn)
 {
   for (size_t i = 0; i < w->c->n_column; i++) least[i] = INFINITY;
   for (size_t f = 0; f < w->c->n_face; f++) {
@@ -300,8 +305,7 @@ static void judge(struct vg_layer_work *w, const struct search *q,
       turn[f] = 1;
       ++*n_turn;
     } else {
-      for (int k = 0; k < 3; k++)
-        least[face[k]] = fmin(least[face[k]], l[k]);
+      for (int k = 0; k < 3; k++) least[face[k]] = fmin(least[face[k]], l[k]);
     }
   }
 }
@@ -318,8 +322,7 @@ static void stubborn(const struct vg_layer_work *w, const struct search *q,
     if (!turn[f] || turned[face[0]] || turned[face[1]] || turned[face[2]])
       continue;
     limits(w, face, q->level[f], q->faulty[f], l);
-    for (int k = 0; k < 3; k++)
-      least[face[k]] = fmin(least[face[k]], l[k]);
+    for (int k = 0; k < 3; k++) least[face[k]] = fmin(least[face[k]], l[k]);
   }
   for (size_t f = 0; f < w->c->n_face; f++)
     for (int k = 0; q->level[f] >= 0 && k < 3; k++)
@@ -329,9 +332,9 @@ static void stubborn(const struct vg_layer_work *w, const struct search *q,
 static vg_status search_all(const struct vg_layer_work *w, struct search *q,
                             int threads, struct vg_error *err)
 {
-  const struct vg_team_out out[] = {
-    { q->level, sizeof *q->level, 0, NULL },
-    { q->faulty, sizeof *q->faulty, 0, NULL } };
+  const struct vg_team_out out[] = { { q->level, sizeof *q->level, 0, NULL },
+                                     { q->faulty, sizeof *q->faulty, 0,
+                                       NULL } };
 
   return vg_team_for(w->o->team, threads, w->c->n_face, GRAIN, search_body, q,
                      sizeof out / sizeof *out, out, err);

@@ -13,14 +13,13 @@
 #include "layers/topology/most_normal.h"
 
 /* L8 */
-#define SMOOTH_WALL 0.95   /* least cosine at which the mean normal will do */
-#define CAP 0.05           /* height of a triangle over its longest edge */
-#define NOISE 0.002        /* the same, where the normal says nothing */
+#define SMOOTH_WALL 0.95 /* least cosine at which the mean normal will do */
+#define CAP 0.05         /* height of a triangle over its longest edge */
+#define NOISE 0.002      /* the same, where the normal says nothing */
 #define CAP_END 0.1
-#define SAME_PLANE 0.05    /* sine between patches that are as good as one */
+#define SAME_PLANE 0.05 /* sine between patches that are as good as one */
 
-int vg_slide_normals(const struct vg_layer_work *w, size_t i,
-                         double n[2][3])
+int vg_slide_normals(const struct vg_layer_work *w, size_t i, double n[2][3])
 {
   assert(i < w->c->n_column);
 
@@ -38,8 +37,7 @@ static void remove_part(double v[3], const double n[3])
 {
   double d = vg_dot(v, n);
 
-  for (int k = 0; k < 3; k++)
-    v[k] = fabs(n[k]) == 1 ? 0 : v[k] - d * n[k];
+  for (int k = 0; k < 3; k++) v[k] = fabs(n[k]) == 1 ? 0 : v[k] - d * n[k];
 }
 
 void vg_constrain(int n_slide, double n[2][3], double v[3])
@@ -72,8 +70,7 @@ static int counts(const struct vg_layer_work *w, size_t i, uint32_t f)
   return 1;
 }
 
-int vg_face_normals(const struct vg_layer_work *w, size_t i,
-                        double (*n)[3])
+int vg_face_normals(const struct vg_layer_work *w, size_t i, double (*n)[3])
 {
   int k = 0;
 
@@ -110,8 +107,7 @@ vg_status vg_dir_sweep_scratch(struct vg_layer_work *w, struct vg_dir_sweep *l,
 }
 
 vg_status vg_dir_sweep_new(const struct vg_layer_work *w,
-                           struct vg_dir_sweep *l,
-                           struct vg_error *err)
+                           struct vg_dir_sweep *l, struct vg_error *err)
 {
   l->from = vg_alloc(w->c->n_column, sizeof *l->from);
   l->to = vg_alloc(w->c->n_column, sizeof *l->to);
@@ -124,7 +120,7 @@ vg_status vg_dir_sweep_new(const struct vg_layer_work *w,
 
 void vg_dir_sweep_swap(struct vg_dir_sweep *l)
 {
-  double (*swap)[3] = l->from;
+  double(*swap)[3] = l->from;
 
   l->from = l->to;
   l->to = swap;
@@ -141,8 +137,7 @@ void vg_dir_sweep_free(struct vg_dir_sweep *t)
 
 /* Angle between two edges without libm's acos: the chord 2 sin(a / 2) of unit
  * vectors serves as weight just as well. */
-static double corner_weight(const struct vg_mesh *m, const uint32_t *tri,
-                            int k)
+static double corner_weight(const struct vg_mesh *m, const uint32_t *tri, int k)
 {
   double a[3], b[3];
 
@@ -166,8 +161,7 @@ static void mean_normal(const struct vg_layer_work *w, size_t i, double v[3])
   }
 }
 
-static void first_direction(struct vg_layer_work *w, size_t i,
-                            double (*n)[3])
+static void first_direction(struct vg_layer_work *w, size_t i, double (*n)[3])
 {
   struct vg_column *c = &w->c->column[i];
   double slide[2][3], v[3], best[3];
@@ -198,8 +192,7 @@ static void first_body(void *context, size_t first, size_t end, int worker)
   struct vg_dir_sweep *l = context;
 
   for (size_t i = first; i < end; i++)
-    first_direction(l->w, i,
-                    l->scratch + (size_t)worker * l->w->max_valence);
+    first_direction(l->w, i, l->scratch + (size_t)worker * l->w->max_valence);
 }
 
 /* 1 + the corner that lies on the edge across, by less than CAP of its

@@ -7,15 +7,15 @@
 #include "layers/grow/grow_parts.h"
 
 #define VG_GRAIN 2048
-#define VG_VIEW_KEPT 0.6   /* L6: share of the first view that turning leaves */
-#define VG_CAP_NOISY 4     /* bit of vg_layer_work.cap */
+#define VG_VIEW_KEPT 0.6 /* L6: share of the first view that turning leaves */
+#define VG_CAP_NOISY 4   /* bit of vg_layer_work.cap */
 
 /** Directions before and after a sweep over all columns. */
 struct vg_dir_sweep {
   struct vg_layer_work *w;
-  double (*scratch)[3];     /* [worker][max_valence] */
+  double (*scratch)[3]; /* [worker][max_valence] */
   double (*from)[3], (*to)[3];
-  const uint32_t *list;     /* columns to treat, NULL: all */
+  const uint32_t *list;   /* columns to treat, NULL: all */
   uint8_t *moves, *moved; /* [n_column] moves in this sweep, in the last */
 };
 
@@ -24,8 +24,7 @@ struct vg_dir_sweep {
 vg_status vg_dir_sweep_scratch(struct vg_layer_work *w, struct vg_dir_sweep *t,
                                struct vg_error *err);
 vg_status vg_dir_sweep_new(const struct vg_layer_work *w,
-                           struct vg_dir_sweep *t,
-                           struct vg_error *err);
+                           struct vg_dir_sweep *t, struct vg_error *err);
 void vg_dir_sweep_swap(struct vg_dir_sweep *t);
 void vg_dir_sweep_free(struct vg_dir_sweep *t);
 

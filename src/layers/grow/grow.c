@@ -13,11 +13,11 @@
 #include "layers/expand/expand_defects.h"
 #include "layers/grow/grow_parts.h"
 
-#define ROUNDS_MAX 300   /* L2 */
-#define LAST_RESORT 150  /* rounds after which what is bad gets no layers */
-#define GENTLE 40          /* sound rounds in which heights lose a share only */
+#define ROUNDS_MAX 300  /* L2 */
+#define LAST_RESORT 150 /* rounds after which what is bad gets no layers */
+#define GENTLE 40       /* sound rounds in which heights lose a share only */
 #define SHARE 0.75
-#define TURNS_MAX 12       /* rounds that may turn columns */
+#define TURNS_MAX 12 /* rounds that may turn columns */
 
 static void work_release(struct vg_layer_work *w)
 {
@@ -48,15 +48,20 @@ static vg_status check_request(const struct vg_mesh *m, size_t p,
 
   if (!r->is_wall) return VG_OK;
   if (!(l->delta1 > 0 && l->delta1 < 1e60))
-    return vg_fail(err, VG_ERR_INPUT, "patch %d: the first layer is %g thick; "
-                   "give a height above 0", (int)m->patch[p].id, l->delta1);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "patch %d: the first layer is %g thick; "
+                   "give a height above 0",
+                   (int)m->patch[p].id, l->delta1);
   if (!(l->rate1 >= 0 && l->rate1 <= 10 && l->rate2 >= 0 && l->rate2 <= 10))
-    return vg_fail(err, VG_ERR_INPUT, "patch %d: growth rates %g and %g; they "
-                   "must lie in 0 to 10", (int)m->patch[p].id, l->rate1,
-                   l->rate2);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "patch %d: growth rates %g and %g; they "
+                   "must lie in 0 to 10",
+                   (int)m->patch[p].id, l->rate1, l->rate2);
   if (!(l->cap >= 1))
-    return vg_fail(err, VG_ERR_INPUT, "patch %d: the cap on growth is %g; it "
-                   "must be 1 or more", (int)m->patch[p].id, l->cap);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "patch %d: the cap on growth is %g; it "
+                   "must be 1 or more",
+                   (int)m->patch[p].id, l->cap);
   return VG_OK;
 }
 
@@ -77,8 +82,9 @@ static vg_status roughness(struct vg_layer_work *w, struct vg_error *err)
     w->noise[s] = slide->is_plane ? 0 : INFINITY;
     for (size_t t = 0; slide->is_plane && t < w->m->n_tri; t++)
       for (int k = 0; w->m->tri_patch[t] == slide->patch && k < 3; k++)
-        w->noise[s] = fmax(w->noise[s], fabs(off_plane(slide,
-                             w->m->point[w->m->tri[t][k]])));
+        w->noise[s] = fmax(w->noise[s],
+                           fabs(
+                             off_plane(slide, w->m->point[w->m->tri[t][k]])));
   }
   return VG_OK;
 }
@@ -97,10 +103,12 @@ static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
     n += w->is_wall[p];
   }
   if (!n)
-    return vg_fail(err, VG_ERR_INPUT, "layers were asked for, but no patch is "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "layers were asked for, but no patch is "
                    "a wall that grows them");
   if (!(w->o->gap > 0 && w->o->gap < 0.5 && w->o->end > 0 && w->o->slope > 0))
-    return vg_fail(err, VG_ERR_INPUT, "the share of a gap that a layer may "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the share of a gap that a layer may "
                    "take is %g, the end of layers %g and their slope %g; the "
                    "first must lie in 0 to 0.5, the others above 0",
                    w->o->gap, w->o->end, w->o->slope);
@@ -126,7 +134,8 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   w->why = vg_calloc(n, 1);
   w->by_size = vg_calloc(n, 1);
   if (w->normal && w->cap && w->root_dir && w->view && w->edge && w->wanted &&
-      w->allowed && w->settled && w->own && w->why && w->by_size) return VG_OK;
+      w->allowed && w->settled && w->own && w->why && w->by_size)
+    return VG_OK;
   return vg_fail_memory(err, "the layers");
 }
 
@@ -183,9 +192,8 @@ static vg_status try_tops(struct vg_layer_work *w, const uint8_t *active,
   return st;
 }
 
-static vg_status try_slides(struct vg_layer_work *w,
-                            struct vg_front *front, size_t round,
-                            size_t *n_bad, struct vg_error *err)
+static vg_status try_slides(struct vg_layer_work *w, struct vg_front *front,
+                            size_t round, size_t *n_bad, struct vg_error *err)
 {
   struct vg_slide_failure failure = { 0 };
   vg_status st = vg_slide_front(w->m, w->n_slide, w->slide, w->c, w->sizing,
@@ -193,8 +201,9 @@ static vg_status try_slides(struct vg_layer_work *w,
 
   *n_bad = st == VG_BLOCKED ? failure.n : 0;
   for (size_t i = 0; st == VG_BLOCKED && i < failure.n; i++)
-    vg_heights_lower(w, failure.column[i], failure.never[i]
-                     ? 0 : lowered(w, failure.column[i], round),
+    vg_heights_lower(w, failure.column[i],
+                     failure.never[i] ? 0
+                                      : lowered(w, failure.column[i], round),
                      VG_CAUSE_SLIDE);
   free(failure.column);
   return st == VG_BLOCKED ? VG_OK : st;
@@ -245,16 +254,18 @@ static void try_sides(struct vg_layer_work *w, uint8_t *bad, size_t round,
 }
 
 /* The front as it will be filled: re-meshed patches against tops. */
-static vg_status try_front(struct vg_layer_work *w,
-                           struct vg_front *front, uint8_t *bad,
-                           size_t round, size_t *n_bad, struct vg_error *err)
+static vg_status try_front(struct vg_layer_work *w, struct vg_front *front,
+                           uint8_t *bad, size_t round, size_t *n_bad,
+                           struct vg_error *err)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
-  struct vg_mesh mesh = vg_front_mesh(front, w->m);  /* not repaired */
+  struct vg_mesh mesh = vg_front_mesh(front, w->m); /* not repaired */
   static const enum vg_defect_kind kind[] = { VG_DEFECT_INTERSECTION,
-    VG_DEFECT_DEGENERATE_TRIANGLE, VG_DEFECT_NONMANIFOLD_EDGE,
-    VG_DEFECT_DUPLICATE_TRIANGLE, VG_DEFECT_SHARED_WALL };
+                                              VG_DEFECT_DEGENERATE_TRIANGLE,
+                                              VG_DEFECT_NONMANIFOLD_EDGE,
+                                              VG_DEFECT_DUPLICATE_TRIANGLE,
+                                              VG_DEFECT_SHARED_WALL };
   size_t n_cross = 0;
   uint32_t bits = 0;
   vg_status st;
@@ -282,7 +293,8 @@ static vg_status try_front(struct vg_layer_work *w,
     ++*n_bad;
   }
   if (n_cross && !*n_bad)
-    st = vg_fail(err, VG_ERR_GEOMETRY, "the surface crosses itself where no "
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "the surface crosses itself where no "
                  "layers are; check it with `vanguard check`");
 done:
   vg_surface_report_release(&r);
@@ -310,9 +322,9 @@ static void unbend(struct vg_columns *c)
 }
 
 struct rounds {
-  uint8_t *moved, *turned, *cells, *tops, *bad;  /* cells, tops: to be looked
-                                                    at */
-  size_t sound;             /* rounds in which all cells were sound */
+  uint8_t *moved, *turned, *cells, *tops, *bad; /* cells, tops: to be looked
+                                                   at */
+  size_t sound; /* rounds in which all cells were sound */
 };
 
 static vg_status settle(struct vg_layer_work *w, struct rounds *q,
@@ -332,21 +344,20 @@ static vg_status settle(struct vg_layer_work *w, struct rounds *q,
 /* The first test that fails lowers columns, and the round begins again with
  * those that moved. Heights only ever shrink, so it ends. */
 static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
-                           struct vg_front *front,
-                           struct vg_layer_report *r, size_t *n_bad,
-                           struct vg_error *err)
+                           struct vg_front *front, struct vg_layer_report *r,
+                           size_t *n_bad, struct vg_error *err)
 {
   size_t round = q->sound;
   double t = vg_clock();
   int is_unsure = 0;
   vg_status st;
 
-  VG_TRY(vg_cells_lower(w, r->n_round ? q->cells : NULL,
-                        r->n_round < TURNS_MAX, q->turned, n_bad, err));
+  VG_TRY(vg_cells_lower(w, r->n_round ? q->cells : NULL, r->n_round < TURNS_MAX,
+                        q->turned, n_bad, err));
   memset(q->cells, 0, w->c->n_column);
   if (!*n_bad) {
-    VG_TRY(try_tops(w, q->sound ? q->tops : NULL, q->bad, q->sound, n_bad,
-                    err));
+    VG_TRY(
+      try_tops(w, q->sound ? q->tops : NULL, q->bad, q->sound, n_bad, err));
     memset(q->tops, 0, w->c->n_column);
     round = q->sound++;
   }
@@ -365,8 +376,7 @@ done:
   return st;
 }
 
-static vg_status until_clear(struct vg_layer_work *w,
-                             struct vg_front *front,
+static vg_status until_clear(struct vg_layer_work *w, struct vg_front *front,
                              struct vg_layer_report *r, struct vg_error *err)
 {
   size_t n = w->c->n_column, n_bad = 1;
@@ -391,7 +401,8 @@ static vg_status until_clear(struct vg_layer_work *w,
     VG_TRY(one_round(w, &q, front, r, &n_bad, err));
   }
   if (n_bad)
-    st = vg_fail(err, VG_ERR_GEOMETRY, "the layers could not be cleared in "
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "the layers could not be cleared in "
                  "%d rounds; please report this with the project files",
                  ROUNDS_MAX);
 done:
@@ -413,8 +424,8 @@ static size_t face_cells(const struct vg_columns *c, const uint32_t face[3])
 
   for (int i = 0; i < 3; i++) n += (k[i] = &c->column[face[i]])->n;
   for (int i = 0; i < 3; i++)
-    if (k[i]->root == k[(i + 1) % 3]->root && !k[i]->n &&
-        !k[(i + 1) % 3]->n) return 0;
+    if (k[i]->root == k[(i + 1) % 3]->root && !k[i]->n && !k[(i + 1) % 3]->n)
+      return 0;
   for (int step = 0; step < 3; step++) {
     int a = -1, q, r;
 
@@ -425,13 +436,13 @@ static size_t face_cells(const struct vg_columns *c, const uint32_t face[3])
     if (k[a]->n && ((k[q]->root == k[a]->root && !(up[q] && k[q]->n)) ||
                     (k[r]->root == k[a]->root && !(up[r] && k[r]->n)) ||
                     (k[q]->root == k[r]->root && !(up[q] && k[q]->n) &&
-                     !(up[r] && k[r]->n)))) n--;
+                     !(up[r] && k[r]->n))))
+      n--;
   }
   return n;
 }
 
-static void count(const struct vg_layer_work *w,
-                  const struct vg_front *front,
+static void count(const struct vg_layer_work *w, const struct vg_front *front,
                   struct vg_layer_report *r)
 {
   const struct vg_columns *c = w->c;
@@ -503,8 +514,11 @@ vg_status vg_layers_grow(const struct vg_mesh *surface,
   assert(sizing && options && out && report);
 
   struct vg_layers l = VG_LAYERS_INIT;
-  struct vg_layer_work w = { .m = surface, .sizing = sizing, .o = options,
-                             .c = &l.columns, .t = VG_TOPOLOGY_INIT };
+  struct vg_layer_work w = { .m = surface,
+                             .sizing = sizing,
+                             .o = options,
+                             .c = &l.columns,
+                             .t = VG_TOPOLOGY_INIT };
   struct vg_layer_report r = { 0 };
   double start = vg_clock();
   vg_status st;

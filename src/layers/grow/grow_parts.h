@@ -12,9 +12,9 @@
 #include "layers/slide/slide.h"
 #include "layers/topology/topology.h"
 
-#define VG_VIEW_MIN 0.0002    /* L5: least cosine between a column and a face */
-#define VG_FACTOR_MAX 1000.0  /* longest dir: a wedge of 0.1 degrees */
-#define VG_FACTOR_WHOLE 2.0   /* longest dir */
+#define VG_VIEW_MIN 0.0002   /* L5: least cosine between a column and a face */
+#define VG_FACTOR_MAX 1000.0 /* longest dir: a wedge of 0.1 degrees */
+#define VG_FACTOR_WHOLE 2.0  /* longest dir */
 
 struct vg_layer_work {
   const struct vg_mesh *m;
@@ -22,28 +22,28 @@ struct vg_layer_work {
   const struct vg_layer_options *o;
   size_t n_slide;
   struct vg_slide *slide;
-  uint8_t *is_wall, *is_slide;  /* [m->n_patch] */
-  double *noise;            /* [n_slide] how far points of a plane patch lie off
-                               its plane; INFINITY: it is curved */
+  uint8_t *is_wall, *is_slide; /* [m->n_patch] */
+  double *noise; /* [n_slide] how far points of a plane patch lie off
+                    its plane; INFINITY: it is curved */
   struct vg_columns *c;
   struct vg_topology t;
-  double (*normal)[3];      /* [n_face] unit; 0 for virtual faces */
-  uint8_t *cap;             /* [n_face] 1 + k: a triangle so flat that corner k
-                               lies on the edge across; bit 4: its normal is
-                               noise */
-  double (*root_dir)[3];    /* unit, before smoothing */
-  double *view;             /* least cosine to its faces that dir must keep;
-                               0: no direction sees them all */
-  double *edge;             /* local isotropic edge */
-  double *wanted;           /* height of n_wanted levels by the law */
-  double *allowed;          /* height it may take, <= wanted */
-  double *slack;            /* [like t.near] by how much `allowed` may differ */
-  double *settled;          /* `allowed` for which cap and ... */
-  uint16_t *own;            /* ... levels were found last */
-  uint8_t *why;             /* enum vg_layer_cause: what set `allowed` */
-  uint8_t *by_size;         /* n_wanted is where the local size is reached */
-  size_t max_valence;       /* faces at a column */
-  int last_resort;  /* too many rounds: what is bad loses all height */
+  double (*normal)[3];   /* [n_face] unit; 0 for virtual faces */
+  uint8_t *cap;          /* [n_face] 1 + k: a triangle so flat that corner k
+                            lies on the edge across; bit 4: its normal is
+                            noise */
+  double (*root_dir)[3]; /* unit, before smoothing */
+  double *view;          /* least cosine to its faces that dir must keep;
+                            0: no direction sees them all */
+  double *edge;          /* local isotropic edge */
+  double *wanted;        /* height of n_wanted levels by the law */
+  double *allowed;       /* height it may take, <= wanted */
+  double *slack;         /* [like t.near] by how much `allowed` may differ */
+  double *settled;       /* `allowed` for which cap and ... */
+  uint16_t *own;         /* ... levels were found last */
+  uint8_t *why;          /* enum vg_layer_cause: what set `allowed` */
+  uint8_t *by_size;      /* n_wanted is where the local size is reached */
+  size_t max_valence;    /* faces at a column */
+  int last_resort;       /* too many rounds: what is bad loses all height */
 };
 
 /** Columns first .. end - 1 have the root of column i. */
@@ -54,14 +54,13 @@ static inline void vg_root_range(const struct vg_columns *c, uint32_t i,
 
   const uint32_t root = c->column[i].root;
 
-  for (*first = i; *first > 0 && c->column[*first - 1].root == root;)
-    --*first;
+  for (*first = i; *first > 0 && c->column[*first - 1].root == root;) --*first;
   for (*end = i + 1; *end < c->n_column && c->column[*end].root == root;)
     ++*end;
 }
 
-static inline double vg_root_distance(const struct vg_layer_work *w,
-                                      uint32_t i, uint32_t j)
+static inline double vg_root_distance(const struct vg_layer_work *w, uint32_t i,
+                                      uint32_t j)
 {
   assert(i < w->c->n_column && j < w->c->n_column);
   return vg_distance(w->m->point[w->c->column[i].root],

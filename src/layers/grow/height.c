@@ -18,8 +18,8 @@
 #define GRAIN 2048
 #define EDGE_SWEEPS 3
 /* L7 */
-#define KEEP_EDGE 0.3      /* of an edge's length at the top, along itself */
-#define LEAN 0.3           /* of a triangle's height that a corner may lean */
+#define KEEP_EDGE 0.3 /* of an edge's length at the top, along itself */
+#define LEAN 0.3      /* of a triangle's height that a corner may lean */
 
 /* Edge of the equilateral triangle with the mean area of the faces. */
 static void edge_body(void *context, size_t first, size_t end, int worker)
@@ -36,10 +36,8 @@ static void edge_body(void *context, size_t first, size_t end, int worker)
       double a[3], b[3], x[3];
 
       if (tri == VG_NO_INDEX) continue;
-      vg_sub(w->m->point[w->m->tri[tri][1]], w->m->point[w->m->tri[tri][0]],
-             a);
-      vg_sub(w->m->point[w->m->tri[tri][2]], w->m->point[w->m->tri[tri][0]],
-             b);
+      vg_sub(w->m->point[w->m->tri[tri][1]], w->m->point[w->m->tri[tri][0]], a);
+      vg_sub(w->m->point[w->m->tri[tri][2]], w->m->point[w->m->tri[tri][0]], b);
       vg_cross(a, b, x);
       area += 0.5 * vg_norm(x);
       n++;
@@ -103,9 +101,10 @@ static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
 
     if (tri == VG_NO_INDEX) continue;
     p = w->m->tri_patch[tri];
-    if (best == VG_NO_INDEX || w->o->patch[p].law.delta1 <
-        w->o->patch[best].law.delta1 || (w->o->patch[p].law.delta1 ==
-        w->o->patch[best].law.delta1 && p < best)) best = p;
+    if (best == VG_NO_INDEX ||
+        w->o->patch[p].law.delta1 < w->o->patch[best].law.delta1 ||
+        (w->o->patch[p].law.delta1 == w->o->patch[best].law.delta1 && p < best))
+      best = p;
   }
   return best;
 }
@@ -115,14 +114,14 @@ static int levels(const struct vg_layer_work *w, uint32_t i,
                   const struct vg_layer_request *r, const struct vg_law *law)
 {
   const struct vg_column *c = &w->c->column[i];
-  int max = r->n_max > 0 && r->n_max < VG_LEVELS_MAX ? r->n_max
-                                                     : VG_LEVELS_MAX;
+  int max = r->n_max > 0 && r->n_max < VG_LEVELS_MAX ? r->n_max : VG_LEVELS_MAX;
   double d[VG_LEVELS_MAX + 1], end = w->o->end * w->edge[i];
   int n = 0;
 
   vg_law_heights(law, INFINITY, max, d);
   while (n < max && (r->n_exact || d[n + 1] - d[n] <= end) &&
-         !(r->total > 0 && d[n + 1] > r->total)) n++;
+         !(r->total > 0 && d[n + 1] > r->total))
+    n++;
   for (; n > 0 && !r->n_exact; n--) {
     double x[3];
 
@@ -212,7 +211,7 @@ static int lower_wanted(struct vg_layer_work *w, void *unused, uint32_t i,
 /* Columns of one root have the same levels; of others only the slope from top
  * to top is bounded, by the heights they are allowed. */
 static int lower_level(struct vg_layer_work *w, void *unused, uint32_t i,
-                        uint32_t j)
+                       uint32_t j)
 {
   uint32_t o = w->t.near[j];
   struct vg_column *a = &w->c->column[i], *b = &w->c->column[o];
@@ -244,10 +243,11 @@ static vg_status all_wanted(struct vg_layer_work *w, struct vg_error *err)
   const struct vg_team_out out[] = {
     { c->column, sizeof *c->column, 0, NULL },
     { w->by_size, sizeof *w->by_size, 0, NULL },
-    { c->law, sizeof *c->law, 0, NULL } };   /* one per column with law_at */
+    { c->law, sizeof *c->law, 0, NULL }
+  }; /* one per column with law_at */
 
-  return vg_team_for(w->o->team, w->o->threads, c->n_column, GRAIN,
-                     wanted_body, w, w->o->law_at ? 3 : 2, out, err);
+  return vg_team_for(w->o->team, w->o->threads, c->n_column, GRAIN, wanted_body,
+                     w, w->o->law_at ? 3 : 2, out, err);
 }
 
 vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
@@ -310,7 +310,7 @@ static double face_slack(const struct vg_layer_work *w, uint32_t f)
   vg_sub(x[2], x[0], across);
   vg_cross(e, across, area);
   vg_cross(n, longest, across);
-  side = fabs(vg_dot(lean, across));    /* times the longest edge */
+  side = fabs(vg_dot(lean, across)); /* times the longest edge */
   return side > 0 ? LEAN * vg_norm(area) / side : INFINITY;
 }
 
@@ -331,7 +331,8 @@ static void slack_body(void *context, size_t first, size_t end, int worker)
       for (uint32_t j = w->t.near_first[i]; j < w->t.near_first[i + 1]; j++)
         if ((w->t.near[j] == w->c->face[f][0] ||
              w->t.near[j] == w->c->face[f][1] ||
-             w->t.near[j] == w->c->face[f][2]) && s < w->slack[j])
+             w->t.near[j] == w->c->face[f][2]) &&
+            s < w->slack[j])
           w->slack[j] = s;
     }
   }
@@ -348,8 +349,8 @@ vg_status vg_heights_slack(struct vg_layer_work *w, struct vg_error *err)
 /* Ratio by which steps of height h_i, h_j along the dirs of columns i and j
  * change the edge between their roots, along itself, less 1. 0 for columns of
  * one root. */
-static double edge_change(const struct vg_layer_work *w, uint32_t i,
-                          uint32_t j, double h_i, double h_j)
+static double edge_change(const struct vg_layer_work *w, uint32_t i, uint32_t j,
+                          double h_i, double h_j)
 {
   const struct vg_column *a = &w->c->column[i], *b = &w->c->column[j];
   double e[3], l, sum = 0;
@@ -357,8 +358,7 @@ static double edge_change(const struct vg_layer_work *w, uint32_t i,
   vg_sub(w->m->point[b->root], w->m->point[a->root], e);
   l = vg_dot(e, e);
   if (!(l > 0)) return 0;
-  for (int k = 0; k < 3; k++)
-    sum += (h_j * b->dir[k] - h_i * a->dir[k]) * e[k];
+  for (int k = 0; k < 3; k++) sum += (h_j * b->dir[k] - h_i * a->dir[k]) * e[k];
   return sum / l;
 }
 
@@ -389,7 +389,7 @@ static void corner_body(void *context, size_t first, size_t end, int worker)
 
 vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err)
 {
-  struct corner c = { w, vg_alloc(w->c->n_column, sizeof (double)) };
+  struct corner c = { w, vg_alloc(w->c->n_column, sizeof(double)) };
 
   if (!c.limit) return vg_fail_memory(err, "the layers");
   vg_parallel_for(w->o->threads, w->c->n_column, GRAIN, corner_body, &c);
@@ -427,7 +427,8 @@ static void settle_body(void *context, size_t first, size_t end, int worker)
     c->n = w->own[i];
     c->squeezed = w->allowed[i] < w->wanted[i] ? w->why[i] : VG_CAUSE_NONE;
     c->cause = c->n < c->n_wanted ? w->why[i]
-             : w->by_size[i] ? VG_CAUSE_SIZE : VG_CAUSE_NONE;
+             : w->by_size[i]      ? VG_CAUSE_SIZE
+                                  : VG_CAUSE_NONE;
   }
 }
 
@@ -435,7 +436,10 @@ vg_status vg_heights_settle(struct vg_layer_work *w, uint8_t *moved,
                             struct vg_error *err)
 {
   size_t n = w->c->n_column;
-  struct { double cap; uint16_t n; } *before = vg_alloc(n, sizeof *before);
+  struct {
+    double cap;
+    uint16_t n;
+  } *before = vg_alloc(n, sizeof *before);
   vg_status st = VG_OK;
 
   if (!before) return vg_fail_memory(err, "the layers");

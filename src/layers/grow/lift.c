@@ -10,14 +10,14 @@
 #include "layers/grow/direct.h"
 
 /* L9 */
-#define VIEW_LEAST 0.2     /* share of the first view that is left where cells
-                              would be lost otherwise */
-#define CAP_SWEEPS 8       /* caps lie in chains */
+#define VIEW_LEAST                                                             \
+  0.2                /* share of the first view that is left where cells       \
+                        would be lost otherwise */
+#define CAP_SWEEPS 8 /* caps lie in chains */
 
 /* How far a small step of length 1 along v gets away from the wall: from the
  * triangles at the root, whichever columns of a fan they belong to. */
-static double gain(const struct vg_layer_work *w, uint32_t i,
-                   const double v[3])
+static double gain(const struct vg_layer_work *w, uint32_t i, const double v[3])
 {
   uint32_t first, end;
   double least = 1;
@@ -77,7 +77,8 @@ static void follow(const struct vg_dir_sweep *l, uint32_t i,
       continue;
     if (w->c->column[i].slide[0] != VG_NO_INDEX &&
         !(same_slides(&w->c->column[i], &w->c->column[a]) &&
-          same_slides(&w->c->column[i], &w->c->column[b]))) continue;
+          same_slides(&w->c->column[i], &w->c->column[b])))
+      continue;
     vg_sub(w->m->point[w->c->column[b].root], p, e);
     vg_sub(w->m->point[w->c->column[i].root], p, x);
     t = vg_dot(x, e) / vg_dot(e, e);
@@ -146,8 +147,7 @@ static void shift_body(void *context, size_t first, size_t end, int worker)
     }
     if (d * VG_FACTOR_MAX < 1) w->view[i] = 0;
     else if (fabs(d * vg_norm(c->dir) - 1) > 1e-9)
-      for (int k = 0; k < 3; k++)
-        c->shift[k] = delta1 * (v[k] / d - c->dir[k]);
+      for (int k = 0; k < 3; k++) c->shift[k] = delta1 * (v[k] / d - c->dir[k]);
   }
 }
 

@@ -24,7 +24,7 @@ vg_status vg_layers_order(const struct vg_mesh *surface, struct vg_layers *l,
 {
   struct vg_columns *c = &l->columns;
   size_t n = 0;
-  double (*x)[3];
+  double(*x)[3];
   uint32_t *order, *at, *tri, (*face)[3];
   vg_status st;
 
@@ -39,7 +39,7 @@ vg_status vg_layers_order(const struct vg_mesh *surface, struct vg_layers *l,
     goto done;
   }
   centre_faces(c, surface, n, x);
-  VG_TRY(vg_hilbert_order(n, (const double (*)[3])x, order, err));
+  VG_TRY(vg_hilbert_order(n, (const double(*)[3])x, order, err));
   for (size_t i = 0; i < n; i++) {
     memcpy(face[i], c->face[order[i]], sizeof *face);
     tri[i] = c->face_tri[order[i]];
@@ -48,8 +48,7 @@ vg_status vg_layers_order(const struct vg_mesh *surface, struct vg_layers *l,
   memcpy(c->face, face, n * sizeof *face);
   memcpy(c->face_tri, tri, n * sizeof *tri);
   for (size_t i = 0; i < l->front.n_face; i++)
-    if (l->front.face_id[i] < n)
-      l->front.face_id[i] = at[l->front.face_id[i]];
+    if (l->front.face_id[i] < n) l->front.face_id[i] = at[l->front.face_id[i]];
 done:
   free(x);
   free(order);

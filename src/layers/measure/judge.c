@@ -20,24 +20,24 @@
 
 #define DEGREE 57.295779513082320877
 
-enum { GRAIN = 1024 };      /* faces per chunk */
+enum { GRAIN = 1024 }; /* faces per chunk */
 
 /* Levels of a chunk's columns; one per worker. */
 struct chunk_points {
-  struct vg_table table;    /* columns by their numbers */
-  uint32_t *column;         /* [3 * GRAIN] as they come */
-  double (*x)[3];           /* [3 * GRAIN][job->stride] */
+  struct vg_table table; /* columns by their numbers */
+  uint32_t *column;      /* [3 * GRAIN] as they come */
+  double (*x)[3];        /* [3 * GRAIN][job->stride] */
 };
 
 struct judge_job {
   const struct vg_mesh *surface;
   const struct vg_columns *columns;
-  size_t stride;            /* levels of the highest column, + 1 */
-  struct chunk_points *scratch;     /* [workers] */
-  struct vg_layer_judgement *part;  /* [chunks] */
-  double *cosine;           /* [chunks] largest of angles of tops */
-  uint8_t *has_axis;        /* [surface->n_patch][3] coordinate in common */
-  double *axis_at;          /* [surface->n_patch][3] */
+  size_t stride;                   /* levels of the highest column, + 1 */
+  struct chunk_points *scratch;    /* [workers] */
+  struct vg_layer_judgement *part; /* [chunks] */
+  double *cosine;                  /* [chunks] largest of angles of tops */
+  uint8_t *has_axis; /* [surface->n_patch][3] coordinate in common */
+  double *axis_at;   /* [surface->n_patch][3] */
 };
 
 /* The points of column c, found or made. */
@@ -54,14 +54,14 @@ static const double (*levels_of(const struct judge_job *j,
     s->column[*at] = c;
     vg_column_points(j->columns, j->surface, c, d, s->x + *at * j->stride);
   }
-  return (const double (*)[3])(s->x + *at * j->stride);
+  return (const double(*)[3])(s->x + *at * j->stride);
 }
 
 /* A face as the lift rule sees it. */
 struct stack {
-  const double (*x[3])[3];  /* levels of its columns */
-  int n[3], level[3];       /* levels, and where each stands now */
-  int order[3];             /* corners by rising column */
+  const double (*x[3])[3]; /* levels of its columns */
+  int n[3], level[3];      /* levels, and where each stands now */
+  int order[3];            /* corners by rising column */
   uint32_t root[3];
 };
 
@@ -131,8 +131,8 @@ static void count_pyramid(const double *const base[4], const double apex[3],
   int bad = 0;
 
   for (int k = 0; k < 4; k++)
-    bad |= !(vg_orient3d(base[k], base[(k + 1) % 4], base[(k + 2) % 4],
-                         apex) > 0);
+    bad |= !(vg_orient3d(base[k], base[(k + 1) % 4], base[(k + 2) % 4], apex) >
+             0);
   r->n_pyramid++;
   r->n_bad_pyramid += bad != 0;
 }
@@ -188,8 +188,8 @@ static void judge_face(const struct judge_job *j, size_t face, struct stack *s,
                        struct vg_layer_judgement *r)
 {
   const uint32_t *v = j->columns->face[face];
-  int shared = shares_root(j->columns, v[0]) ||
-               shares_root(j->columns, v[1]) || shares_root(j->columns, v[2]);
+  int shared = shares_root(j->columns, v[0]) || shares_root(j->columns, v[1]) ||
+               shares_root(j->columns, v[2]);
 
   for (int l = 0; l < s->n[0] || l < s->n[1] || l < s->n[2]; l++) {
     int up = (s->n[0] > l) + (s->n[1] > l) + (s->n[2] > l);
@@ -201,8 +201,7 @@ static void judge_face(const struct judge_job *j, size_t face, struct stack *s,
   }
 }
 
-static double cosine_at(const double a[3], const double b[3],
-                        const double c[3])
+static double cosine_at(const double a[3], const double b[3], const double c[3])
 {
   double uu = 0, vv = 0, uv = 0;
 
@@ -281,7 +280,7 @@ static void judge_faces(void *context, size_t first, size_t end, int worker)
 static vg_status count_steps(const struct judge_job *j, size_t *n,
                              struct vg_error *err)
 {
-  uint32_t (*edge)[2];
+  uint32_t(*edge)[2];
   struct vg_edges e = VG_EDGES_INIT;
   size_t n_edge = 0, n_found = *n;
   vg_status st;
@@ -298,7 +297,7 @@ static vg_status count_steps(const struct judge_job *j, size_t *n,
       edge[n_edge++][1] = b;
     }
   st = vg_edges_build_sides(&e, j->columns->n_column, n_edge,
-                            (const uint32_t (*)[2])edge, err);
+                            (const uint32_t(*)[2])edge, err);
   if (st >= 0) *n = e.n;
   vg_edges_release(&e);
   free(edge);
@@ -313,7 +312,7 @@ static vg_status find_axes(struct judge_job *j, struct vg_error *err)
   j->has_axis = vg_alloc(m->n_patch, 3);
   j->axis_at = vg_alloc(m->n_patch, 3 * sizeof *j->axis_at);
   if (!j->has_axis || !j->axis_at) return vg_fail_memory(err, "slide planes");
-  memset(j->has_axis, 2, 3 * m->n_patch);   /* 2: no point yet */
+  memset(j->has_axis, 2, 3 * m->n_patch); /* 2: no point yet */
   for (size_t t = 0; t < m->n_tri; t++)
     for (int k = 0; k < 9; k++) {
       size_t at = 3 * (size_t)m->tri_patch[t] + (size_t)k % 3;
@@ -363,9 +362,10 @@ static vg_status prepare(struct judge_job *j, int workers, size_t n_chunk,
 
   for (size_t i = 0; i < c->n_column; i++) {
     if (c->column[i].n > VG_LEVELS_MAX)
-      return vg_fail(err, VG_ERR_INPUT, "column %zu has %d levels, more than "
-                     "the %d that are possible", i + 1, c->column[i].n,
-                     VG_LEVELS_MAX);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "column %zu has %d levels, more than "
+                     "the %d that are possible",
+                     i + 1, c->column[i].n, VG_LEVELS_MAX);
     if (c->column[i].n >= j->stride) j->stride = c->column[i].n + (size_t)1;
   }
   j->part = vg_calloc(n_chunk, sizeof *j->part);
@@ -415,9 +415,9 @@ static void add(const struct vg_layer_judgement *part,
 static vg_status judge_all(struct judge_job *j, int workers,
                            struct vg_team *team, struct vg_error *err)
 {
-  const struct vg_team_out out[] = {
-    { j->part, sizeof *j->part, GRAIN, NULL },
-    { j->cosine, sizeof *j->cosine, GRAIN, NULL } };
+  const struct vg_team_out out[] = { { j->part, sizeof *j->part, GRAIN, NULL },
+                                     { j->cosine, sizeof *j->cosine, GRAIN,
+                                       NULL } };
 
   return vg_team_for(team, workers, j->columns->n_face, GRAIN, judge_faces, j,
                      sizeof out / sizeof *out, out, err);
@@ -425,8 +425,7 @@ static vg_status judge_all(struct judge_job *j, int workers,
 
 vg_status vg_layers_judge(const struct vg_mesh *surface,
                           const struct vg_columns *columns, int threads,
-                          struct vg_team *team,
-                          struct vg_layer_judgement *out,
+                          struct vg_team *team, struct vg_layer_judgement *out,
                           struct vg_error *err)
 {
   assert(threads >= 0 && out);

@@ -15,14 +15,14 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-enum { GRAIN = 512 };       /* wall points per chunk */
+enum { GRAIN = 512 }; /* wall points per chunk */
 
 struct fields_job {
   const struct vg_mesh *surface;
   const struct vg_columns *columns;
-  size_t *tri_first;        /* [surface->n_point + 1] into tri[] */
-  uint32_t *tri;            /* wall triangles at each point, rising */
-  size_t *column_first;     /* [w->n + 1] into columns->column */
+  size_t *tri_first;    /* [surface->n_point + 1] into tri[] */
+  uint32_t *tri;        /* wall triangles at each point, rising */
+  size_t *column_first; /* [w->n + 1] into columns->column */
   struct vg_wall_fields *w;
 };
 
@@ -187,9 +187,9 @@ static void measure_column(const struct fields_job *j, size_t c, size_t i)
   vg_column_points(j->columns, j->surface, c, d, x);
   first = distance_at(j, col->root, x[1]);
   total = distance_near(j, col->root, x[col->n]);
-  growth = growth_of((const double (*)[3])x, col->n);
+  growth = growth_of((const double(*)[3])x, col->n);
   if (w->asked[i] == 0 || fabs(first - asked) * w->asked[i] >
-                          fabs(w->first[i] - w->asked[i]) * asked) {
+                            fabs(w->first[i] - w->asked[i]) * asked) {
     w->first[i] = first;
     w->asked[i] = asked;
   }
@@ -258,8 +258,7 @@ static vg_status find_triangles(struct fields_job *j, struct vg_error *err)
   if (!first || !j->tri) return vg_fail_memory(err, "triangles at the wall");
   for (size_t f = 0; f < c->n_face; f++)
     for (int k = 0; k < 3; k++)
-      if (c->face_tri[f] != VG_NO_INDEX)
-        first[m->tri[c->face_tri[f]][k] + 2]++;
+      if (c->face_tri[f] != VG_NO_INDEX) first[m->tri[c->face_tri[f]][k] + 2]++;
   for (size_t p = 2; p <= m->n_point + 1; p++) first[p] += first[p - 1];
   /* Filling moves first[p + 1] to the end of p: the start of p + 1. */
   for (size_t f = 0; f < c->n_face; f++)
@@ -279,9 +278,10 @@ static vg_status find_points(struct fields_job *j, struct vg_error *err)
   if (!j->column_first) return vg_fail_memory(err, "points of the wall");
   for (size_t i = 0; i < c->n_column; i++) {
     if (c->column[i].n > VG_LEVELS_MAX)
-      return vg_fail(err, VG_ERR_INPUT, "column %zu has %d levels, more than "
-                     "the %d that are possible", i + 1, c->column[i].n,
-                     VG_LEVELS_MAX);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "column %zu has %d levels, more than "
+                     "the %d that are possible",
+                     i + 1, c->column[i].n, VG_LEVELS_MAX);
     if (!i || c->column[i].root != c->column[i - 1].root)
       j->column_first[w->n++] = i;
   }

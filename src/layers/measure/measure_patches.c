@@ -10,15 +10,15 @@
 #include "core/geometry/vector.h"
 
 #define SHARE_BINS 1000
-#define SHARE_LOW 0.05     /* of the area */
-#define SHARE_WHOLE 0.9    /* of the law's height */
+#define SHARE_LOW 0.05  /* of the area */
+#define SHARE_WHOLE 0.9 /* of the law's height */
 
 /* Counts that become percentages, means that are sums until the end. */
 struct tally {
   struct vg_patch_layers p;
   size_t n_full, n_unsqueezed, n_any;
   double area, area_whole;
-  double bin[SHARE_BINS + 1];   /* area by share of the law's height */
+  double bin[SHARE_BINS + 1]; /* area by share of the law's height */
 };
 
 struct patches_job {
@@ -26,10 +26,10 @@ struct patches_job {
   const struct vg_columns *columns;
   const struct vg_wall_fields *w;
   double reynolds, length;
-  size_t *face_first;       /* [surface->n_patch + 1] into face[] */
-  uint32_t *face;           /* faces of triangles by patch, rising */
-  uint32_t *field;          /* [surface->n_point] index into w, or none */
-  uint32_t *seen;           /* [w->n] last patch, + 1, that counted it */
+  size_t *face_first; /* [surface->n_patch + 1] into face[] */
+  uint32_t *face;     /* faces of triangles by patch, rising */
+  uint32_t *field;    /* [surface->n_point] index into w, or none */
+  uint32_t *seen;     /* [w->n] last patch, + 1, that counted it */
 };
 
 static void note(struct vg_range *r, double x, size_t n_before)
@@ -44,8 +44,7 @@ static void finish_range(struct vg_range *r, size_t n)
   if (n) r->mean /= (double)n;
 }
 
-static void add_point(const struct vg_wall_fields *w, size_t i,
-                      struct tally *t)
+static void add_point(const struct vg_wall_fields *w, size_t i, struct tally *t)
 {
   double error;
 
@@ -111,8 +110,7 @@ static void add_face(const struct patches_job *j, size_t f, struct tally *t)
   if (worst->cause < VG_CAUSE_N) t->p.cause[worst->cause]++;
   if (tightest->squeezed < VG_CAUSE_N) t->p.squeezed[tightest->squeezed]++;
   if (any && j->reynolds > 0)
-    note(&t->p.y_plus, vg_y_plus(first / 3, j->reynolds, j->length),
-         t->n_any);
+    note(&t->p.y_plus, vg_y_plus(first / 3, j->reynolds, j->length), t->n_any);
   t->n_any += any;
   t->n_full += full;
   t->p.n_bare += full && !any;
@@ -176,8 +174,7 @@ static vg_status find_fields(struct patches_job *j, struct vg_error *err)
   j->seen = vg_calloc(j->w->n, sizeof *j->seen);
   if (!j->field || !j->seen) return vg_fail_memory(err, "points by patch");
   memset(j->field, 0xff, j->surface->n_point * sizeof *j->field);
-  for (size_t i = 0; i < j->w->n; i++)
-    j->field[j->w->point[i]] = (uint32_t)i;
+  for (size_t i = 0; i < j->w->n; i++) j->field[j->w->point[i]] = (uint32_t)i;
   return VG_OK;
 }
 
@@ -205,12 +202,13 @@ vg_status vg_layers_patches(const struct vg_mesh *surface,
                             const struct vg_wall_fields *fields,
                             double reynolds, double length, size_t *n,
                             struct vg_patch_layers **out,
-                            struct vg_patch_layers *all,
-                            struct vg_error *err)
+                            struct vg_patch_layers *all, struct vg_error *err)
 {
   vg_status st = VG_OK;
-  struct patches_job j = { .surface = surface, .columns = columns,
-                           .w = fields, .reynolds = reynolds,
+  struct patches_job j = { .surface = surface,
+                           .columns = columns,
+                           .w = fields,
+                           .reynolds = reynolds,
                            .length = length };
   struct tally sum = { .p.patch = VG_NO_INDEX };
   struct vg_patch_layers *list = NULL;

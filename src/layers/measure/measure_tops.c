@@ -6,7 +6,10 @@
 #include "base/memory.h"
 #include "layers/measure/measure.h"
 
-struct top { uint32_t patch, face; double ratio; };
+struct top {
+  uint32_t patch, face;
+  double ratio;
+};
 
 /* By patch; of one by ratio. */
 static int by_patch(const void *a, const void *b)

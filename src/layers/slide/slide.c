@@ -11,14 +11,15 @@
 #include "base/memory.h"
 #include "layers/slide/slide_parts.h"
 
-enum { TEXT = sizeof ((struct vg_slide_failure *)0)->text };
+enum { TEXT = sizeof((struct vg_slide_failure *)0)->text };
 
 vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
                              uint32_t *number)
 {
   assert(number);
   if (w->n_x >= UINT32_MAX - 1)
-    return vg_fail(w->err, VG_ERR_UNSUPPORTED, "front of the layers: too many "
+    return vg_fail(w->err, VG_ERR_UNSUPPORTED,
+                   "front of the layers: too many "
                    "points");
   if (vg_reserve(&w->x, &w->cap_x, w->n_x + 1, sizeof *w->x))
     return vg_fail_memory(w->err, "slide patches");
@@ -36,8 +37,10 @@ void vg_slide_mark_bad(struct vg_slide_work *w, uint32_t i, uint32_t patch,
 
   if (!w->c->column[i].n) return;
   if (!w->text[0])
-    snprintf(w->text, TEXT, "patch %" PRId32 " (%.60s) near (%.6g, %.6g, "
-             "%.6g): %s", p->id, p->name, x[0], x[1], x[2], what);
+    snprintf(w->text, TEXT,
+             "patch %" PRId32 " (%.60s) near (%.6g, %.6g, "
+             "%.6g): %s",
+             p->id, p->name, x[0], x[1], x[2], what);
   w->n_bad += !w->bad[i];
   if (!w->bad[i]) w->bad[i] = 1;
 }
@@ -93,9 +96,10 @@ static vg_status prepare(struct vg_slide_work *w)
   struct vg_columns *c = w->c;
 
   if (m->n_point + c->n_column >= UINT32_MAX - 1 || m->n_tri > UINT32_MAX / 3)
-    return vg_fail(w->err, VG_ERR_UNSUPPORTED, "layers: %zu wall columns on "
-                   "%zu points and %zu triangles are too many", c->n_column,
-                   m->n_point, m->n_tri);
+    return vg_fail(w->err, VG_ERR_UNSUPPORTED,
+                   "layers: %zu wall columns on "
+                   "%zu points and %zu triangles are too many",
+                   c->n_column, m->n_point, m->n_tri);
   w->slide_of = vg_alloc(m->n_patch, sizeof *w->slide_of);
   w->bad = vg_calloc(c->n_column, 1);
   w->n_x = w->cap_x = m->n_point + c->n_column;
@@ -196,7 +200,7 @@ static vg_status list_triangles(struct vg_slide_work *w, struct list *l)
 static vg_status check_roots(struct vg_slide_work *w, const struct list *l)
 {
   const struct vg_columns *c = w->c;
-  uint8_t *left = vg_calloc(w->m->n_point, 1);  /* 1: rises, 2: also stays */
+  uint8_t *left = vg_calloc(w->m->n_point, 1); /* 1: rises, 2: also stays */
 
   if (!left) return vg_fail_memory(w->err, "the front of the layers");
   for (size_t i = 0; i < c->n_column; i++)
@@ -224,8 +228,7 @@ static vg_status check_roots(struct vg_slide_work *w, const struct list *l)
 
 /* Number the points in use, in the order of the work. */
 static vg_status number_points(const struct vg_slide_work *w,
-                               const struct list *l,
-                               struct vg_front *f)
+                               const struct list *l, struct vg_front *f)
 {
   const size_t n_m = w->m->n_point, n_c = w->c->n_column;
   uint32_t *number = vg_calloc(w->n_x, sizeof *number);
@@ -245,9 +248,9 @@ static vg_status number_points(const struct vg_slide_work *w,
   for (size_t i = 0; i < w->n_x; i++) {
     if (!number[i]) continue;
     memcpy(f->x[n], w->x[i], sizeof w->x[i]);
-    f->id[n] = i < n_m         ? vg_layer_point_id((uint32_t)i)
-               : i < n_m + n_c ? vg_layer_top_id((uint32_t)(i - n_m))
-                               : VG_LAYER_NEW;
+    f->id[n] = i < n_m       ? vg_layer_point_id((uint32_t)i)
+             : i < n_m + n_c ? vg_layer_top_id((uint32_t)(i - n_m))
+                             : VG_LAYER_NEW;
     number[i] = (uint32_t)n++;
   }
   for (size_t i = 0; i < 3 * l->n; i++)
@@ -302,15 +305,17 @@ static vg_status hand_failure(const struct vg_slide_work *w,
 vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          const struct vg_slide *slide,
                          struct vg_columns *columns,
-                         const struct vg_sizing *sizing,
-                         struct vg_front *front,
-                         struct vg_slide_failure *failure,
-                         struct vg_error *err)
+                         const struct vg_sizing *sizing, struct vg_front *front,
+                         struct vg_slide_failure *failure, struct vg_error *err)
 {
   assert((slide || !n_slide) && sizing && front && failure);
-  struct vg_slide_work w = {
-    .m = surface, .sizing = sizing, .n_slide = n_slide, .slide = slide,
-    .c = columns, .text = failure->text, .err = err };
+  struct vg_slide_work w = { .m = surface,
+                             .sizing = sizing,
+                             .n_slide = n_slide,
+                             .slide = slide,
+                             .c = columns,
+                             .text = failure->text,
+                             .err = err };
   vg_status st;
 
   memset(failure, 0, sizeof *failure);

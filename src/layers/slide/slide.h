@@ -12,17 +12,17 @@
 #include "layers/columns/layers.h"
 
 struct vg_slide {
-  uint32_t patch;           /* index in surface->patch */
-  int is_plane;             /* its points lie in a plane */
-  int axis;                 /* the plane is x, y or z = at, exactly; else -1 */
-  double normal[3];         /* unit, into the fluid; mean for curved patches */
-  double at;                /* normal . x; with an axis the coordinate is
-                               at * normal[axis], exactly */
+  uint32_t patch;   /* index in surface->patch */
+  int is_plane;     /* its points lie in a plane */
+  int axis;         /* the plane is x, y or z = at, exactly; else -1 */
+  double normal[3]; /* unit, into the fluid; mean for curved patches */
+  double at;        /* normal . x; with an axis the coordinate is
+                       at * normal[axis], exactly */
   /* Curved patches: normals at their points, by rising point. Kept in the
    * block that vg_slides_find returns. 0: vg_slide_normal looks them up in
    * the surface, O(n_tri). */
   size_t n_vertex;
-  const uint32_t *vertex;   /* [n_vertex] */
+  const uint32_t *vertex; /* [n_vertex] */
   const double (*vertex_normal)[3];
 };
 
@@ -47,10 +47,10 @@ void vg_slide_normal(const struct vg_slide *s, const struct vg_mesh *surface,
 /** Where re-meshing failed, so that columns can be lowered there. */
 struct vg_slide_failure {
   size_t n;
-  uint32_t *column;         /* [n] sorted, unique; owned */
-  const uint8_t *never;     /* [n] 1: not even its first layer fits, so that
-                               only n = 0 helps; in the block of column */
-  char text[200];           /* the first failure, for the report */
+  uint32_t *column;     /* [n] sorted, unique; owned */
+  const uint8_t *never; /* [n] 1: not even its first layer fits, so that
+                           only n = 0 helps; in the block of column */
+  char text[200];       /* the first failure, for the report */
 };
 
 /** Build the front: tops, re-meshed slide patches, other patches.
@@ -82,8 +82,7 @@ struct vg_slide_failure {
 vg_status vg_slide_front(const struct vg_mesh *surface, size_t n_slide,
                          const struct vg_slide *slide,
                          struct vg_columns *columns,
-                         const struct vg_sizing *sizing,
-                         struct vg_front *front,
+                         const struct vg_sizing *sizing, struct vg_front *front,
                          struct vg_slide_failure *failure,
                          struct vg_error *err);
 

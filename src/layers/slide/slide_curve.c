@@ -11,7 +11,7 @@
 
 /* A curve that turns by more than 60 degrees at a point has a corner there,
  * which stays. */
-#define CORNER 0.5   /* L14 */
+#define CORNER 0.5 /* L14 */
 /* Points stay that are farther from a top than this share of the size ... */
 #define KEEP 0.5
 /* ... and the end of the curve must be farther than this. */
@@ -22,7 +22,7 @@
 struct chain {
   size_t n, cap, cap_s;
   uint32_t *v;
-  double *s;                /* length up to each point */
+  double *s; /* length up to each point */
   uint32_t left, right;
 };
 
@@ -49,8 +49,8 @@ static vg_status add_vertex(struct vg_slide_work *w, struct chain *c,
 {
   double step = 0;
 
-  if (vg_reserve(&c->v, &c->cap, c->n + 1, sizeof *c->v)
-      || vg_reserve(&c->s, &c->cap_s, c->n + 1, sizeof *c->s))
+  if (vg_reserve(&c->v, &c->cap, c->n + 1, sizeof *c->v) ||
+      vg_reserve(&c->s, &c->cap_s, c->n + 1, sizeof *c->s))
     return vg_fail_memory(w->err, "a curve between slide patches");
   if (c->n) step = vg_distance(w->m->point[c->v[c->n - 1]], w->m->point[v]);
   c->s[c->n] = c->n ? c->s[c->n - 1] + step : 0;
@@ -83,8 +83,8 @@ static uint32_t next_vertex(const struct vg_slide_work *w,
     if (next != VG_NO_INDEX) return VG_NO_INDEX;
     next = r;
   }
-  if (next == VG_NO_INDEX || next == c->v[0]
-      || is_corner(w->m, &c->v[c->n - 2], next))
+  if (next == VG_NO_INDEX || next == c->v[0] ||
+      is_corner(w->m, &c->v[c->n - 2], next))
     return VG_NO_INDEX;
   return next;
 }
@@ -150,8 +150,7 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
     on_chain(w, c, scale * d[l], cs->path[cs->n_path + (size_t)l]);
   col->bent = cs->n_path;
   cs->n_path += (size_t)col->n + 1;
-  memcpy(w->x[w->m->n_point + i], cs->path[cs->n_path - 1],
-         3 * sizeof(double));
+  memcpy(w->x[w->m->n_point + i], cs->path[cs->n_path - 1], 3 * sizeof(double));
   return VG_OK;
 }
 
@@ -188,10 +187,10 @@ static vg_status add_edge(struct vg_slide_work *w, const struct chain *c,
 
   if (vg_reserve(&w->edge, &w->cap_edge, w->n_edge + 2, sizeof *w->edge))
     return vg_fail_memory(w->err, "curves between slide patches");
-  w->edge[w->n_edge++]
-    = (struct vg_slide_edge){ w->part_of[left / 3], { a, b } };
-  w->edge[w->n_edge++]
-    = (struct vg_slide_edge){ w->part_of[right / 3], { b, a } };
+  w->edge[w->n_edge++] = (struct vg_slide_edge){ w->part_of[left / 3],
+                                                 { a, b } };
+  w->edge[w->n_edge++] = (struct vg_slide_edge){ w->part_of[right / 3],
+                                                 { b, a } };
   return VG_OK;
 }
 
@@ -208,7 +207,10 @@ static vg_status remove_edges(struct vg_slide_work *w, const struct chain *c,
 
 /* An end of a gap; at a top h is the length of the edges that meet there,
  * from which sizes depart at the field's slope; 0 at a point that stays. */
-struct end { uint32_t v; double s, h; };
+struct end {
+  uint32_t v;
+  double s, h;
+};
 
 /* Size along the curve. */
 static double size_at(const struct vg_slide_work *w, const struct chain *c,
@@ -295,8 +297,8 @@ static uint32_t other_end(const struct vg_slide_work *w, const struct chain *c,
   for (; lo < w->c->n_column && w->c->column[lo].root == root; lo++) {
     const struct vg_column *k = &w->c->column[lo];
 
-    if (runs[lo] && (k->slide[0] == c->left || k->slide[1] == c->left)
-        && (k->slide[0] == c->right || k->slide[1] == c->right))
+    if (runs[lo] && (k->slide[0] == c->left || k->slide[1] == c->left) &&
+        (k->slide[0] == c->right || k->slide[1] == c->right))
       return (uint32_t)lo;
   }
   return VG_NO_INDEX;
@@ -320,8 +322,8 @@ static void reverse(struct chain *c)
 
 static int is_bent(const struct vg_slide_work *w, const struct chain *c)
 {
-  return !w->slide[w->slide_of[c->left]].is_plane
-         || !w->slide[w->slide_of[c->right]].is_plane;
+  return !w->slide[w->slide_of[c->left]].is_plane ||
+         !w->slide[w->slide_of[c->right]].is_plane;
 }
 
 /* Mean length of the edges between tops at column i. */
@@ -351,8 +353,8 @@ static vg_status cut_start(struct vg_slide_work *w, const struct chain *c,
 
   if (is_bent(w, c) && bend(w, i, c, &is_short)) return VG_ERR_MEMORY;
   top->h = top_edge(w, i);
-  if (is_short || cut(w, c, x, fmin(vg_sizing_at(w->sizing, x), top->h),
-                      &top->s, keep)) {
+  if (is_short ||
+      cut(w, c, x, fmin(vg_sizing_at(w->sizing, x), top->h), &top->s, keep)) {
     vg_slide_mark_bad(w, i, c->left, w->m->point[c->v[0]],
                       "a column is longer than the curve that it follows");
     *keep = c->n;

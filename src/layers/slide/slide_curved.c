@@ -11,7 +11,7 @@
 #include "layers/slide/slide_parts.h"
 
 /* No triangle may be tilted by more than 60 degrees against the mean. */
-#define TILT 0.5   /* L16 */
+#define TILT 0.5 /* L16 */
 
 void vg_slide_graph_release(struct vg_slide_graph *g)
 {
@@ -122,8 +122,8 @@ void vg_slide_mark_steep(struct vg_slide_work *w, size_t s)
   at_roots(w, s, NULL, sum);
   never = !(vg_unit(sum) > 0) || at_roots(w, s, sum, NULL) > 0;
   vg_slide_mark_bad_all(w, s, "it is too curved to be meshed anew");
-  for (uint32_t r = w->border_first[s]; never &&
-       r < w->border_first[s + 1]; r++)
+  for (uint32_t r = w->border_first[s]; never && r < w->border_first[s + 1];
+       r++)
     for (int k = 0; k < 2; k++) {
       const uint32_t i = w->c->border[w->border[r]][k];
 
@@ -157,7 +157,7 @@ static double segment(const double a[2], const double b[2], const double p[2],
 static int visit(void *user, uint32_t i)
 {
   struct nearest *best = user;
-  const double (*q)[2] = (const double (*)[2])best->g->p[i];
+  const double(*q)[2] = (const double(*)[2])best->g->p[i];
   const double *z = best->g->height[i];
   double part[3], d2 = INFINITY, height = 0;
   int inside = 1;
@@ -168,8 +168,8 @@ static int visit(void *user, uint32_t i)
   }
   if (inside) {
     d2 = 0;
-    height = (part[0] * z[0] + part[1] * z[1] + part[2] * z[2])
-             / (part[0] + part[1] + part[2]);
+    height = (part[0] * z[0] + part[1] * z[1] + part[2] * z[2]) /
+             (part[0] + part[1] + part[2]);
   }
   for (int k = 0; !inside && k < 3; k++) {
     const int l = (k + 1) % 3;
@@ -216,8 +216,7 @@ static void follow(const struct vg_slide_graph *g, const double root[3],
 {
   const double want = vg_norm(step);
   double o[2], t = 1;
-  const double d[2] = {
-    vg_dot(step, g->frame.u), vg_dot(step, g->frame.v) };
+  const double d[2] = { vg_dot(step, g->frame.u), vg_dot(step, g->frame.v) };
 
   vg_slide_to_plane(&g->frame, root, o);
   for (int i = 0; i < 12; i++) {
@@ -251,8 +250,7 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
 
     follow(g, root, step, cs->path[cs->n_path++]);
   }
-  memcpy(w->x[w->m->n_point + i], cs->path[cs->n_path - 1],
-         3 * sizeof(double));
+  memcpy(w->x[w->m->n_point + i], cs->path[cs->n_path - 1], 3 * sizeof(double));
   return VG_OK;
 }
 

@@ -10,13 +10,13 @@
 #include "core/geometry/vector.h"
 
 /* A plane patch's points are no farther from it than this of its extent. */
-#define FLATNESS 1e-6   /* L17 */
+#define FLATNESS 1e-6 /* L17 */
 
 /* What is known of a patch after one pass over its triangles. */
 struct shape {
   double area[3], lo[3], hi[3], first[3], inside[3], weight;
   size_t n_tri;
-  int found;                  /* touches a wall */
+  int found; /* touches a wall */
 };
 
 static void area_vector(const struct vg_mesh *m, size_t t, double n[3])
@@ -109,8 +109,8 @@ static double extent_of(const struct shape *s)
 static int thin_axis(const struct shape *s)
 {
   for (int k = 0; k < 3; k++)
-    if (s->hi[k] - s->lo[k] <= FLATNESS * extent_of(s)
-        && fabs(s->area[k]) > 0.9 * s->weight)
+    if (s->hi[k] - s->lo[k] <= FLATNESS * extent_of(s) &&
+        fabs(s->area[k]) > 0.9 * s->weight)
       return k;
   return -1;
 }
@@ -128,15 +128,14 @@ static void start(const struct shape *s, uint32_t patch, struct vg_slide *out)
   out->axis = -1;
   out->is_plane = s->weight > 0;
   memcpy(out->normal, s->area, sizeof out->normal);
-  if (vg_dot(s->area, s->area) <= 1e-16 * s->weight * s->weight
-      || !(vg_unit(out->normal) > 0)) {
+  if (vg_dot(s->area, s->area) <= 1e-16 * s->weight * s->weight ||
+      !(vg_unit(out->normal) > 0)) {
     memcpy(out->normal, s->first, sizeof out->normal);
     if (!(vg_unit(out->normal) > 0)) out->normal[2] = 1;
   }
   for (int k = 0; k < 3; k++) {
     centre[k] = s->weight > 0 ? s->inside[k] / s->weight : s->lo[k];
-    if (thin >= 0)
-      out->normal[k] = k != thin ? 0 : s->area[k] < 0 ? -1 : 1;
+    if (thin >= 0) out->normal[k] = k != thin ? 0 : s->area[k] < 0 ? -1 : 1;
   }
   if (thin >= 0 && s->lo[thin] == s->hi[thin]) out->axis = thin;
   out->at = out->axis >= 0 ? out->normal[out->axis] * s->lo[out->axis]
@@ -190,8 +189,8 @@ static void check_planes(const struct vg_mesh *m, const struct shape *shape,
     if (vg_dot(n, s->normal) < 0) s->is_plane = 0;
     extent = extent_of(e);
     for (int k = 0; s->axis < 0 && k < 3; k++)
-      if (fabs(vg_dot(m->point[m->tri[t][k]], s->normal) - s->at)
-          > FLATNESS * extent)
+      if (fabs(vg_dot(m->point[m->tri[t][k]], s->normal) - s->at) >
+          FLATNESS * extent)
         s->is_plane = 0;
   }
 }
@@ -205,8 +204,10 @@ static double arc_tangent(double t)
   if (t > 1) return 1.57079632679489661923 - arc_tangent(1 / t);
   for (int i = 0; i < 3; i++) t /= 1 + sqrt(1 + t * t);
   s = t * t;
-  sum = 1 - s * (1. / 3 - s * (1. / 5 - s * (1. / 7 - s * (1. / 9
-        - s * (1. / 11 - s * (1. / 13))))));
+  sum = 1 -
+        s * (1. / 3 -
+             s * (1. / 5 -
+                  s * (1. / 7 - s * (1. / 9 - s * (1. / 11 - s * (1. / 13))))));
   return 8 * t * sum;
 }
 
@@ -223,8 +224,8 @@ static void add_corner(const struct vg_mesh *m, size_t t, int k, double n[3])
   vg_cross(a, b, c);
   area = sqrt(vg_dot(c, c));
   if (!(area > 0)) return;
-  angle = 2 * arc_tangent(area / (sqrt(vg_dot(a, a) * vg_dot(b, b))
-                                  + vg_dot(a, b)));
+  angle = 2 * arc_tangent(area /
+                          (sqrt(vg_dot(a, a) * vg_dot(b, b)) + vg_dot(a, b)));
   for (int j = 0; j < 3; j++) n[j] += angle * c[j] / area;
 }
 
@@ -267,7 +268,7 @@ static struct vg_slide *with_tables(const struct vg_mesh *m, size_t n,
 {
   size_t room = 0, at = 0;
   struct vg_slide *out;
-  double (*normal)[3];
+  double(*normal)[3];
   uint32_t *list;
 
   for (size_t i = 0; i < n; i++)
@@ -275,12 +276,12 @@ static struct vg_slide *with_tables(const struct vg_mesh *m, size_t n,
   out = vg_calloc(1, n * sizeof *out + room * (sizeof *normal + sizeof *list));
   if (!out) return NULL;
   memcpy(out, slide, n * sizeof *out);
-  normal = (double (*)[3])(void *)(out + n);
+  normal = (double(*)[3])(void *)(out + n);
   list = (uint32_t *)(void *)(normal + room);
   for (size_t i = 0; i < n; i++) {
     if (out[i].is_plane) continue;
     out[i].vertex = list + at;
-    out[i].vertex_normal = (const double (*)[3])(normal + at);
+    out[i].vertex_normal = (const double(*)[3])(normal + at);
     at += 3 * shape[out[i].patch].n_tri;
   }
   for (size_t t = 0; t < m->n_tri; t++) {
@@ -288,21 +289,19 @@ static struct vg_slide *with_tables(const struct vg_mesh *m, size_t n,
 
     if (i == VG_NO_INDEX || out[i].is_plane) continue;
     for (int k = 0; k < 3; k++)
-      list[(size_t)(out[i].vertex - list) + out[i].n_vertex++]
-        = m->tri[t][k];
+      list[(size_t)(out[i].vertex - list) + out[i].n_vertex++] = m->tri[t][k];
   }
   for (size_t i = 0; i < n; i++)
     if (!out[i].is_plane)
-      out[i].n_vertex = unique(list + (out[i].vertex - list),
-                               out[i].n_vertex);
+      out[i].n_vertex = unique(list + (out[i].vertex - list), out[i].n_vertex);
   for (size_t t = 0; t < m->n_tri; t++) {
     const uint32_t i = slide_of[m->tri_patch[t]];
 
     if (i == VG_NO_INDEX || out[i].is_plane) continue;
     for (int k = 0; k < 3; k++)
-      add_corner(m, t, k, normal[(size_t)(out[i].vertex - list)
-                                 + find(out[i].vertex, out[i].n_vertex,
-                                        m->tri[t][k])]);
+      add_corner(m, t, k,
+                 normal[(size_t)(out[i].vertex - list) +
+                        find(out[i].vertex, out[i].n_vertex, m->tri[t][k])]);
   }
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < out[i].n_vertex; j++) {
@@ -314,8 +313,7 @@ static struct vg_slide *with_tables(const struct vg_mesh *m, size_t n,
 }
 
 vg_status vg_slides_find(const struct vg_mesh *surface, const uint8_t *is_wall,
-                         size_t *n, struct vg_slide **out,
-                         struct vg_error *err)
+                         size_t *n, struct vg_slide **out, struct vg_error *err)
 {
   assert((is_wall || !surface->n_patch) && n && out);
 
@@ -367,8 +365,7 @@ void vg_slide_normal(const struct vg_slide *s, const struct vg_mesh *surface,
   if (s->n_vertex) {
     const size_t i = find(s->vertex, s->n_vertex, p);
 
-    if (i != SIZE_MAX)
-      memcpy(normal, s->vertex_normal[i], sizeof n);
+    if (i != SIZE_MAX) memcpy(normal, s->vertex_normal[i], sizeof n);
     return;
   }
   for (size_t t = 0; t < surface->n_tri; t++)

@@ -44,8 +44,8 @@ static vg_status former_edges(struct vg_slide_work *w, size_t s,
       const uint32_t twin = vg_slide_twin(w, a, b);
 
       if (twin != VG_NO_INDEX && w->part_of[twin / 3] == s) continue;
-      if (has_key(border, n_border, (uint64_t)b << 32 | a)
-          || has_key(w->gone, w->n_gone, vg_slide_key(a, b)))
+      if (has_key(border, n_border, (uint64_t)b << 32 | a) ||
+          has_key(w->gone, w->n_gone, vg_slide_key(a, b)))
         continue;
       if (add_edge(w, l, a, b)) return VG_ERR_MEMORY;
     }
@@ -62,8 +62,8 @@ static vg_status new_edges(struct vg_slide_work *w, size_t s,
     if (a != b && add_edge(w, l, b, a)) return VG_ERR_MEMORY;
   }
   for (size_t i = 0; i < w->n_edge; i++)
-    if (w->edge[i].part == s
-        && add_edge(w, l, w->edge[i].v[0], w->edge[i].v[1]))
+    if (w->edge[i].part == s &&
+        add_edge(w, l, w->edge[i].v[0], w->edge[i].v[1]))
       return VG_ERR_MEMORY;
   return VG_OK;
 }
@@ -75,8 +75,8 @@ static void mark_bad_point(struct vg_slide_work *w, size_t s, uint32_t p,
   const uint32_t i = vg_slide_column(w, p);
 
   if (i != VG_NO_INDEX) vg_slide_mark_bad(w, i, patch, w->x[p], what);
-  for (uint32_t r = w->border_first[s]; i == VG_NO_INDEX
-                                     && r < w->border_first[s + 1]; r++)
+  for (uint32_t r = w->border_first[s];
+       i == VG_NO_INDEX && r < w->border_first[s + 1]; r++)
     for (int k = 0; k < 2; k++) {
       const uint32_t j = w->c->border[w->border[r]][k];
 
@@ -120,8 +120,7 @@ static vg_status check_closed(struct vg_slide_work *w, size_t s,
     *is_closed = 0;
     if (j == l->n || (i < l->n && from[i] < to[j]))
       mark_bad_point(w, s, from[i++], what);
-    else
-      mark_bad_point(w, s, to[j++], what);
+    else mark_bad_point(w, s, to[j++], what);
   }
   if (!*is_closed && !w->n_bad) vg_slide_mark_bad_all(w, s, what);
   free(from);
@@ -144,8 +143,8 @@ vg_status vg_slide_boundary(struct vg_slide_work *w, size_t s,
   for (size_t i = 0; i < n_border; i++) {
     const uint32_t *r = w->c->border[w->border[w->border_first[s] + i]];
 
-    border[i] = (uint64_t)w->c->column[r[0]].root << 32
-             | w->c->column[r[1]].root;
+    border[i] = (uint64_t)w->c->column[r[0]].root << 32 |
+                w->c->column[r[1]].root;
   }
   qsort(border, n_border, sizeof *border, compare_key);
   VG_TRY(former_edges(w, s, border, n_border, out));
@@ -164,8 +163,8 @@ struct cross {
   size_t s, n_bad;
   const struct vg_slide_loops *l;
   const double (*p)[2];
-  uint32_t edge;            /* compared with those behind it */
-  int n;                    /* corners of the flank at hand */
+  uint32_t edge; /* compared with those behind it */
+  int n;         /* corners of the flank at hand */
   uint32_t border, corner[4];
   double q[4][2];
 };
@@ -190,15 +189,15 @@ static int touch(const double a[2], const double b[2], const double c[2],
   const int cda = sign(vg_orient2d(c, d, a)), cdb = sign(vg_orient2d(c, d, b));
 
   if (abc * abd < 0 && cda * cdb < 0) return 1;
-  return (!abc && in_box(a, b, c)) || (!abd && in_box(a, b, d))
-         || (!cda && in_box(c, d, a)) || (!cdb && in_box(c, d, b));
+  return (!abc && in_box(a, b, c)) || (!abd && in_box(a, b, d)) ||
+         (!cda && in_box(c, d, a)) || (!cdb && in_box(c, d, b));
 }
 
 /* Do a - b and a - c run the same way? */
 static int overlap(const double a[2], const double b[2], const double c[2])
 {
-  return vg_orient2d(a, b, c) == 0
-         && (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]) >= 0;
+  return vg_orient2d(a, b, c) == 0 &&
+         (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]) >= 0;
 }
 
 static int visit_edge(void *user, uint32_t j)
@@ -257,8 +256,8 @@ static int visit_flank(void *user, uint32_t j)
 }
 
 /* The point of column i at level 1, in the plane. */
-static void risen(const struct vg_slide_work *w,
-                  const struct vg_slide_frame *f, uint32_t i, double q[2])
+static void risen(const struct vg_slide_work *w, const struct vg_slide_frame *f,
+                  uint32_t i, double q[2])
 {
   const struct vg_column *c = &w->c->column[i];
   const double *root = w->m->point[c->root];
@@ -285,8 +284,7 @@ static void set_flank(struct cross *x, const struct vg_slide_frame *f,
   x->border = border;
   x->n = 0;
   for (int i = 0; i < 4; i++) {
-    if (x->n && (v[i] == x->corner[x->n - 1] || v[i] == x->corner[0]))
-      continue;
+    if (x->n && (v[i] == x->corner[x->n - 1] || v[i] == x->corner[0])) continue;
     x->corner[x->n] = v[i];
     vg_slide_to_plane(f, w->x[v[i]], x->q[x->n++]);
   }
@@ -296,8 +294,7 @@ static void set_flank(struct cross *x, const struct vg_slide_frame *f,
 static int is_convex(const struct cross *x)
 {
   for (int i = 0; i < x->n; i++)
-    if (!(vg_orient2d(x->q[i], x->q[(i + 1) % x->n], x->q[(i + 2) % x->n])
-          > 0))
+    if (!(vg_orient2d(x->q[i], x->q[(i + 1) % x->n], x->q[(i + 2) % x->n]) > 0))
       return 0;
   return 1;
 }
@@ -353,8 +350,7 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
 
     box[i] = box_of(2, q);
   }
-  if (!box)
-    VG_TRY(vg_fail_memory(w->err, "the boundary of a slide patch"));
+  if (!box) VG_TRY(vg_fail_memory(w->err, "the boundary of a slide patch"));
   VG_TRY(vg_slide_tree(&tree, loops->n, box, w->err));
   for (size_t i = 0; i < loops->n; i++) {
     x.edge = (uint32_t)i;
@@ -368,7 +364,7 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
       give_up(&x, frame);
       continue;
     }
-    b = box_of((size_t)x.n, (const double (*)[2])x.q);
+    b = box_of((size_t)x.n, (const double(*)[2])x.q);
     vg_box_tree_touched(&tree, &b, visit_flank, &x);
   }
   *n_bad = x.n_bad;

@@ -15,8 +15,7 @@
 /* slide_tree.c ------------------------------------------------------------*/
 
 /** A box in the plane: its third side has no length. */
-static inline struct vg_box vg_slide_box(const double lo[2],
-                                         const double hi[2])
+static inline struct vg_box vg_slide_box(const double lo[2], const double hi[2])
 {
   return (struct vg_box){ { lo[0], lo[1], 0 }, { hi[0], hi[1], 0 } };
 }
@@ -28,7 +27,9 @@ vg_status vg_slide_tree(struct vg_box_tree *t, size_t n,
 
 /* slide.c -----------------------------------------------------------------*/
 
-struct vg_slide_edge { uint32_t part, v[2]; };
+struct vg_slide_edge {
+  uint32_t part, v[2];
+};
 
 struct vg_slide_work {
   const struct vg_mesh *m;
@@ -36,21 +37,21 @@ struct vg_slide_work {
   size_t n_slide;
   const struct vg_slide *slide;
   struct vg_columns *c;
-  uint32_t *slide_of;       /* [m->n_patch] index into slide[] */
+  uint32_t *slide_of; /* [m->n_patch] index into slide[] */
   size_t n_x, cap_x;
-  double (*x)[3];           /* [n_x] surface, tops, new points */
-  uint32_t *local;          /* [surface, tops, curves] scratch, VG_NO_INDEX
-                               between uses */
+  double (*x)[3];  /* [n_x] surface, tops, new points */
+  uint32_t *local; /* [surface, tops, curves] scratch, VG_NO_INDEX
+                      between uses */
   /* Half-edges 3 * triangle + corner of slide patches, by first point. */
-  uint32_t *first, *half;   /* [m->n_point + 1], [first[n_point]] */
+  uint32_t *first, *half; /* [m->n_point + 1], [first[n_point]] */
   /* What is re-meshed: plane patches as a whole, of curved ones the
    * surroundings of the walls, each with its own mean normal. */
   size_t n_part, cap_part;
   struct vg_slide *part;
-  uint32_t *part_of;        /* [m->n_tri] VG_NO_INDEX: stays */
-  uint32_t *tri_first, *tri;/* [n_part + 1] into tri[]: triangles by part */
-  uint32_t *border_first, *border;/* [n_part + 1] into border[]: borders by
-                                     part */
+  uint32_t *part_of;         /* [m->n_tri] VG_NO_INDEX: stays */
+  uint32_t *tri_first, *tri; /* [n_part + 1] into tri[]: triangles by part */
+  uint32_t *border_first, *border; /* [n_part + 1] into border[]: borders by
+                                      part */
   /* Curves between slide patches: edges of the surface that are gone (both
    * points, the lower one in the high half, sorted) and those in their
    * place. */
@@ -61,9 +62,9 @@ struct vg_slide_work {
   size_t n_new, cap_new, cap_new_patch;
   uint32_t (*new_tri)[3], *new_patch;
   /* Failures. */
-  uint8_t *bad;             /* [n_column] 2: at any height */
+  uint8_t *bad; /* [n_column] 2: at any height */
   size_t n_bad, cap_path;
-  char *text;               /* [200] "" until something fails */
+  char *text; /* [200] "" until something fails */
   struct vg_error *err;
 };
 
@@ -82,7 +83,8 @@ static inline uint32_t vg_slide_column(const struct vg_slide_work *w,
                                        uint32_t p)
 {
   return p >= w->m->n_point && p - w->m->n_point < w->c->n_column
-         ? (uint32_t)(p - w->m->n_point) : VG_NO_INDEX;
+         ? (uint32_t)(p - w->m->n_point)
+         : VG_NO_INDEX;
 }
 
 static inline uint64_t vg_slide_key(uint32_t a, uint32_t b)
@@ -161,9 +163,9 @@ struct vg_slide_graph {
   const struct vg_slide_work *w;
   struct vg_slide_frame frame;
   size_t n;
-  const uint32_t *tri;      /* [n] */
-  double (*p)[3][2];        /* [n] */
-  double (*height)[3];      /* [n] above the plane */
+  const uint32_t *tri; /* [n] */
+  double (*p)[3][2];   /* [n] */
+  double (*height)[3]; /* [n] above the plane */
   struct vg_box_tree tree;
   double extent;
 };
@@ -193,10 +195,12 @@ vg_status vg_slide_bend(struct vg_slide_work *w, size_t s,
 struct vg_slide_law {
   const struct vg_sizing *sizing;
   const struct vg_slide_frame *frame;
-  const struct vg_slide_graph *graph;   /* NULL: the patch is plane */
+  const struct vg_slide_graph *graph; /* NULL: the patch is plane */
   double slope;
-  struct { double p[2], h; } *top;      /* edges finer than which it would be */
-  struct vg_box_tree tree;              /* of them, as far as they matter */
+  struct {
+    double p[2], h;
+  } * top;                 /* edges finer than which it would be */
+  struct vg_box_tree tree; /* of them, as far as they matter */
 };
 
 /** Let tops bound the size from below. */

@@ -69,8 +69,7 @@ void vg_slide_to_space(const struct vg_slide_frame *f, const double p[2],
     x[f->iv] = p[1];
     return;
   }
-  for (int k = 0; k < 3; k++)
-    x[k] = f->o[k] + p[0] * f->u[k] + p[1] * f->v[k];
+  for (int k = 0; k < 3; k++) x[k] = f->o[k] + p[0] * f->u[k] + p[1] * f->v[k];
 }
 
 /* The region in the plane, with numbers of its own: `number` is the point. */
@@ -147,9 +146,9 @@ static vg_status append(struct vg_slide_work *w, size_t s,
   uint32_t number;
 
   if (vg_reserve(&w->new_tri, &w->cap_new, w->n_new + n_tri,
-                 sizeof *w->new_tri)
-      || vg_reserve(&w->new_patch, &w->cap_new_patch, w->n_new + n_tri,
-                    sizeof *w->new_patch))
+                 sizeof *w->new_tri) ||
+      vg_reserve(&w->new_patch, &w->cap_new_patch, w->n_new + n_tri,
+                 sizeof *w->new_patch))
     return vg_fail_memory(w->err, "a slide patch");
   for (size_t i = 0; i < n_add; i++) {
     vg_status st;
@@ -161,7 +160,8 @@ static vg_status append(struct vg_slide_work *w, size_t s,
   for (size_t i = 0; i < n_tri; i++) {
     for (int k = 0; k < 3; k++)
       w->new_tri[w->n_new][k] = tri[i][k] < r->n
-        ? r->number[tri[i][k]] : (uint32_t)(base + (tri[i][k] - r->n));
+                                ? r->number[tri[i][k]]
+                                : (uint32_t)(base + (tri[i][k] - r->n));
     w->new_patch[w->n_new++] = w->part[s].patch;
   }
   return VG_OK;
@@ -171,23 +171,23 @@ static vg_status fill(struct vg_slide_work *w, size_t s,
                       struct vg_slide_law *law, const struct region *r,
                       size_t n_edge)
 {
-  double (*add)[2] = NULL;
-  uint32_t (*tri)[3] = NULL;
+  double(*add)[2] = NULL;
+  uint32_t(*tri)[3] = NULL;
   size_t n_add = 0, n_tri = 0;
   const struct vg_planar_law sizes = { .at = vg_slide_size, .user = law };
   struct vg_error err = VG_ERROR_INIT;
-  vg_status st = vg_planar_mesh(r->n, (const double (*)[2])r->p, n_edge,
-                                (const uint32_t (*)[2])r->edge, &sizes,
-                                &n_add, &add, &n_tri, &tri, &err);
+  vg_status st = vg_planar_mesh(r->n, (const double(*)[2])r->p, n_edge,
+                                (const uint32_t(*)[2])r->edge, &sizes, &n_add,
+                                &add, &n_tri, &tri, &err);
 
   if (st == VG_ERR_GEOMETRY || st == VG_ERR_INPUT) {
     vg_slide_mark_bad_all(w, s, "its new boundary encloses no region");
     return VG_OK;
   }
   if (st != VG_OK) return vg_fail(w->err, st, "%s", err.text);
-  check_slivers(w, s, r, n_tri, (const uint32_t (*)[3])tri);
-  st = append(w, s, law, r, n_add, (const double (*)[2])add, n_tri,
-              (const uint32_t (*)[3])tri);
+  check_slivers(w, s, r, n_tri, (const uint32_t(*)[3])tri);
+  st = append(w, s, law, r, n_add, (const double(*)[2])add, n_tri,
+              (const uint32_t(*)[3])tri);
   free(add);
   free(tri);
   return st;
@@ -218,8 +218,7 @@ vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s)
   VG_TRY(vg_slide_boundary(w, s, &loops));
   if (!loops.n) goto done;
   VG_TRY(make_region(w, &loops, &frame, &r));
-  VG_TRY(vg_slide_cross(w, s, &frame, &loops, (const double (*)[2])r.p,
-                        &n_bad));
+  VG_TRY(vg_slide_cross(w, s, &frame, &loops, (const double(*)[2])r.p, &n_bad));
   if (!n_bad) {
     VG_TRY(vg_slide_law_floor(w, &loops, &law));
     VG_TRY(fill(w, s, &law, &r, loops.n));

@@ -10,15 +10,14 @@
 #include "layers/slide/slide_parts.h"
 
 /* A curved patch is re-meshed as far as this many edges from the tops. */
-#define BEYOND 4   /* L15 */
+#define BEYOND 4 /* L15 */
 /* part_of[] of triangles in reach, before they are divided into parts. */
 #define MARKED (VG_NO_INDEX - 1)
 
 /* Bucket items by class: n_class + 1 offsets and the items of each, rising.
  * VG_NO_INDEX belongs to none. */
 static vg_status bucket(size_t n, const uint32_t *class_of, size_t n_class,
-                        uint32_t **first, uint32_t **item,
-                        struct vg_error *err)
+                        uint32_t **first, uint32_t **item, struct vg_error *err)
 {
   size_t total = 0;
 
@@ -46,9 +45,9 @@ static vg_status sort_half_edges(struct vg_slide_work *w)
   if (!class_of) return vg_fail_memory(w->err, "slide patches");
   for (size_t i = 0; i < 3 * m->n_tri; i++)
     class_of[i] = w->slide_of[m->tri_patch[i / 3]] == VG_NO_INDEX
-                  ? VG_NO_INDEX : m->tri[i / 3][i % 3];
-  st = bucket(3 * m->n_tri, class_of, m->n_point, &w->first, &w->half,
-              w->err);
+                  ? VG_NO_INDEX
+                  : m->tri[i / 3][i % 3];
+  st = bucket(3 * m->n_tri, class_of, m->n_point, &w->first, &w->half, w->err);
   free(class_of);
   return st;
 }
@@ -73,8 +72,8 @@ static vg_status plane_parts(struct vg_slide_work *w)
   for (size_t i = 0; i < c->n_border; i++) {
     const uint32_t s = w->slide_of[c->border_patch[i]];
 
-    if (s != VG_NO_INDEX && w->slide[s].is_plane
-        && (c->column[c->border[i][0]].n || c->column[c->border[i][1]].n))
+    if (s != VG_NO_INDEX && w->slide[s].is_plane &&
+        (c->column[c->border[i][0]].n || c->column[c->border[i][1]].n))
       part[s] = 0;
   }
   for (size_t s = 0; s < w->n_slide; s++) {
@@ -94,8 +93,8 @@ done:
 
 /* Spread from border columns over curved patches. */
 struct spread {
-  double *left;             /* [n_point] reach that is left at a point */
-  uint32_t *from;           /* [n_point] the column that left it */
+  double *left;   /* [n_point] reach that is left at a point */
+  uint32_t *from; /* [n_point] the column that left it */
   uint32_t *queue;
   size_t n, cap;
 };
@@ -108,14 +107,14 @@ static vg_status visit(struct vg_slide_work *w, struct spread *q, uint32_t v)
   const uint32_t i = q->from[v];
   const struct vg_column *c = &w->c->column[i];
   const double *root = m->point[c->root], *top = w->x[m->n_point + i];
-  const double reach = vg_distance(root, top)
-                       + BEYOND * vg_sizing_at(w->sizing, top);
+  const double reach = vg_distance(root, top) +
+                       BEYOND * vg_sizing_at(w->sizing, top);
 
   for (uint32_t j = w->first[v]; j < w->first[v + 1]; j++) {
     const uint32_t t = w->half[j] / 3, patch = m->tri_patch[t];
 
-    if ((patch != c->slide[0] && patch != c->slide[1])
-        || w->slide[w->slide_of[patch]].is_plane)
+    if ((patch != c->slide[0] && patch != c->slide[1]) ||
+        w->slide[w->slide_of[patch]].is_plane)
       continue;
     w->part_of[t] = MARKED;
     for (int k = 0; k < 3; k++) {
@@ -148,8 +147,7 @@ static vg_status spread(struct vg_slide_work *w)
     for (int k = 0; k < 2; k++) {
       const uint32_t j = c->border[i][k], s = w->slide_of[c->border_patch[i]];
 
-      if (!c->column[j].n || s == VG_NO_INDEX || w->slide[s].is_plane)
-        continue;
+      if (!c->column[j].n || s == VG_NO_INDEX || w->slide[s].is_plane) continue;
       q.from[c->column[j].root] = j;
       VG_TRY(visit(w, &q, c->column[j].root));
     }
@@ -167,8 +165,8 @@ static uint32_t neighbour(const struct vg_slide_work *w, uint32_t t, int k)
   const uint32_t *v = w->m->tri[t];
   const uint32_t h = vg_slide_twin(w, v[k], v[k < 2 ? k + 1 : 0]);
 
-  if (h == VG_NO_INDEX || w->part_of[h / 3] != MARKED
-      || w->m->tri_patch[h / 3] != w->m->tri_patch[t])
+  if (h == VG_NO_INDEX || w->part_of[h / 3] != MARKED ||
+      w->m->tri_patch[h / 3] != w->m->tri_patch[t])
     return VG_NO_INDEX;
   return h / 3;
 }
@@ -223,8 +221,8 @@ static void mean_normals(struct vg_slide_work *w)
     }
     if (!(vg_unit(sum) > 0)) continue;
     memcpy(w->part[s].normal, sum, sizeof sum);
-    w->part[s].at
-      = vg_dot(sum, w->m->point[w->m->tri[w->tri[w->tri_first[s]]][0]]);
+    w->part[s].at = vg_dot(sum,
+                           w->m->point[w->m->tri[w->tri[w->tri_first[s]]][0]]);
   }
 }
 
@@ -243,8 +241,8 @@ static uint32_t part_of_border(const struct vg_slide_work *w, size_t i)
       return w->part_of[h / 3];
   }
   for (uint32_t j = w->first[a]; j < w->first[a + 1]; j++)
-    if (w->m->tri_patch[w->half[j] / 3] == c->border_patch[i]
-        && w->part_of[w->half[j] / 3] != VG_NO_INDEX)
+    if (w->m->tri_patch[w->half[j] / 3] == c->border_patch[i] &&
+        w->part_of[w->half[j] / 3] != VG_NO_INDEX)
       return w->part_of[w->half[j] / 3];
   return VG_NO_INDEX;
 }
@@ -264,11 +262,11 @@ vg_status vg_slide_parts(struct vg_slide_work *w)
   VG_TRY(plane_parts(w));
   VG_TRY(spread(w));
   VG_TRY(split(w));
-  VG_TRY(bucket(w->m->n_tri, w->part_of, w->n_part, &w->tri_first, &w->tri,
-                w->err));
+  VG_TRY(
+    bucket(w->m->n_tri, w->part_of, w->n_part, &w->tri_first, &w->tri, w->err));
   mean_normals(w);
-  for (size_t i = 0; i < w->c->n_border; i++) class_of[i] = part_of_border(w,
-                                                                           i);
+  for (size_t i = 0; i < w->c->n_border; i++)
+    class_of[i] = part_of_border(w, i);
   st = bucket(w->c->n_border, class_of, w->n_part, &w->border_first, &w->border,
               w->err);
 done:

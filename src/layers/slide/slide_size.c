@@ -21,8 +21,8 @@ static int is_coarse(const struct vg_slide_work *w, const uint32_t e[2],
 {
   const double *a = w->x[e[0]], *b = w->x[e[1]];
 
-  if (vg_slide_column(w, e[0]) == VG_NO_INDEX
-      && vg_slide_column(w, e[1]) == VG_NO_INDEX)
+  if (vg_slide_column(w, e[0]) == VG_NO_INDEX &&
+      vg_slide_column(w, e[1]) == VG_NO_INDEX)
     return 0;
   for (int k = 0; k < 3; k++) mid[k] = 0.5 * (a[k] + b[k]);
   *h = vg_distance(a, b);

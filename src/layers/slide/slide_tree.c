@@ -1,5 +1,6 @@
 /* A tree of boxes in the plane. Their order is that of Morton's curve: which of
- * several faults of a boundary is found first, and so named, follows from it. */
+ * several faults of a boundary is found first, and so named, follows from it.
+ */
 #include <assert.h>
 #include <stdlib.h>
 
@@ -15,14 +16,14 @@ static void make_keys(size_t n, const struct vg_box *box, struct vg_key *key)
 
   for (size_t i = 0; i < n; i++) vg_box_join(&all, &box[i]);
   for (int k = 0; k < 2; k++)
-    scale[k] = all.hi[k] > all.lo[k]
-               ? 4294967295. / (all.hi[k] - all.lo[k]) : 0;
+    scale[k] = all.hi[k] > all.lo[k] ? 4294967295. / (all.hi[k] - all.lo[k])
+                                     : 0;
   for (size_t i = 0; i < n; i++) {
     uint64_t c[2];
 
     for (int k = 0; k < 2; k++)
-      c[k] = (uint64_t)((0.5 * (box[i].lo[k] + box[i].hi[k]) - all.lo[k])
-                        * scale[k]);
+      c[k] = (uint64_t)((0.5 * (box[i].lo[k] + box[i].hi[k]) - all.lo[k]) *
+                        scale[k]);
     key[i].key = vg_interleave2(c[0]) | vg_interleave2(c[1]) << 1;
     key[i].index = (uint32_t)i;
   }

@@ -11,12 +11,13 @@
 
 /* L12: As in direct.c: where all faces are seen this well the mean normal is
  * the direction, elsewhere the most normal one. */
-#define LEAST_CLEAR 0.3    /* of a step, that it leads away from the wall */
+#define LEAST_CLEAR 0.3 /* of a step, that it leads away from the wall */
 #define SMOOTH_WALL 0.95
-#define LEAST_VIEW 0.1        /* cosine between a sector's column and faces */
-#define NEEDED_ANGLE 60       /* degrees: ridges where fans are only made if one
-                                 column sees too little (L19) */
-#define NEEDED_VIEW 0.02      /* cosine between one column and all faces */
+#define LEAST_VIEW 0.1 /* cosine between a sector's column and faces */
+#define NEEDED_ANGLE                                                           \
+  60                     /* degrees: ridges where fans are only made if one    \
+                            column sees too little (L19) */
+#define NEEDED_VIEW 0.02 /* cosine between one column and all faces */
 
 struct build {
   const struct vg_wall *w;
@@ -165,15 +166,15 @@ static int direct(struct build *b, const struct vg_fan_shape *s, uint32_t h,
     for (int c = 0; c < 3; c++) dir[c] += weight * normal[c];
   }
   into_plane(s, dir);
-  if (vg_unit(dir) > 0
-      && least_view(k, (const double (*)[3])b->ring, dir) >= SMOOTH_WALL)
+  if (vg_unit(dir) > 0 &&
+      least_view(k, (const double(*)[3])b->ring, dir) >= SMOOTH_WALL)
     return 1;
   for (size_t i = 0; i < k; i++) into_plane(s, b->ring[i]);
-  if (!vg_most_normal((int)k, (const double (*)[3])b->ring, best)) return 0;
+  if (!vg_most_normal((int)k, (const double(*)[3])b->ring, best)) return 0;
   into_plane(s, best);
   if (!(vg_unit(best) > 0)) return 0;
   memcpy(dir, best, sizeof best);
-  return least_view(k, (const double (*)[3])b->ring, dir) >= least;
+  return least_view(k, (const double(*)[3])b->ring, dir) >= least;
 }
 
 /* The ring of p cut at its ridges: first corner of each sector and how many
@@ -214,8 +215,7 @@ static int one_will_do(struct build *b, const struct vg_fan_shape *s,
   return 1;
 }
 
-static void set_plane(const struct build *b, uint32_t p,
-                      struct vg_fan_shape *s)
+static void set_plane(const struct build *b, uint32_t p, struct vg_fan_shape *s)
 {
   s->has_plane = b->w->slide[p][0] != VG_NO_INDEX;
   for (size_t i = 0; s->has_plane && i < b->n_slide; i++)
@@ -228,11 +228,11 @@ static vg_status reserve(struct build *b, const struct vg_fan_shape *s,
 {
   struct vg_fans *f = b->f;
 
-  if (vg_reserve(&f->fan, &b->cap_fan, f->n_fan + 1, sizeof *f->fan) < 0
-      || vg_reserve(&f->preset, &b->cap_preset,
-                    f->n_preset + (size_t)s->n_column, sizeof *f->preset) < 0
-      || vg_reserve(&f->chain, &b->cap_chain,
-                    f->n_chain + (size_t)s->n_sector, sizeof *f->chain) < 0)
+  if (vg_reserve(&f->fan, &b->cap_fan, f->n_fan + 1, sizeof *f->fan) < 0 ||
+      vg_reserve(&f->preset, &b->cap_preset, f->n_preset + (size_t)s->n_column,
+                 sizeof *f->preset) < 0 ||
+      vg_reserve(&f->chain, &b->cap_chain, f->n_chain + (size_t)s->n_sector,
+                 sizeof *f->chain) < 0)
     return vg_fail_memory(err, "the fans at convex edges");
   return VG_OK;
 }
@@ -244,9 +244,10 @@ static void keep(struct build *b, uint32_t p, const struct vg_fan_shape *s,
   struct vg_fans *f = b->f;
   uint8_t is_sector[VG_FAN_COLUMNS] = { 0 };
 
-  f->fan[f->n_fan++] = (struct vg_fan_point){
-    p, (uint8_t)s->n_column, (uint8_t)s->n_polygon, (uint8_t)s->has_centre,
-    (uint8_t)s->is_open };
+  f->fan[f->n_fan++] = (struct vg_fan_point){ p, (uint8_t)s->n_column,
+                                              (uint8_t)s->n_polygon,
+                                              (uint8_t)s->has_centre,
+                                              (uint8_t)s->is_open };
   f->first[p + 1] = (uint32_t)s->n_column;
   for (int i = 0; i < s->n_sector; i++) {
     int o = (i + s->n_sector - 1) % s->n_sector;
@@ -257,9 +258,10 @@ static void keep(struct build *b, uint32_t p, const struct vg_fan_shape *s,
     is_sector[s->at[i]] = 1;
     if (s->is_open && i == 0) continue;
     f->chain_of[corner[i]] = (uint32_t)f->n_chain;
-    f->chain[f->n_chain++] = (struct vg_fan_chain){
-      (uint8_t)s->at[o], (uint8_t)s->at[i], (uint8_t)s->n_step[o],
-      o == s->shared };
+    f->chain[f->n_chain++] = (struct vg_fan_chain){ (uint8_t)s->at[o],
+                                                    (uint8_t)s->at[i],
+                                                    (uint8_t)s->n_step[o],
+                                                    o == s->shared };
   }
   for (int i = 0; i < s->n_column; i++) {
     struct vg_fan_preset *preset = &f->preset[f->n_preset];
@@ -330,14 +332,14 @@ static vg_status visit(struct build *b, uint32_t p, struct vg_error *err)
     vg_unit(s.ridge[i]);
   }
   if (one_will_do(b, &s, corner[0], n) || !vg_fan_spread(&s) ||
-      !is_clear(b, p, &s)) return VG_OK;
+      !is_clear(b, p, &s))
+    return VG_OK;
   if ((st = reserve(b, &s, err)) < 0) return st;
   keep(b, p, &s, corner, size);
   return VG_OK;
 }
 
-static vg_status start(struct build *b, double fan_angle,
-                       struct vg_error *err)
+static vg_status start(struct build *b, double fan_angle, struct vg_error *err)
 {
   const struct vg_wall *w = b->w;
   struct vg_fans *f = b->f;
@@ -383,9 +385,11 @@ vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
   assert(!out->first && !out->fan);
   assert(slide || !n_slide);
   if (!(fan_angle >= 0))
-    return vg_fail(err, VG_ERR_INPUT, "the fan angle is %g degrees; it has to "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the fan angle is %g degrees; it has to "
                    "be 0 (fans where one column cannot stand) or more (180: no "
-                   "fans)", fan_angle);
+                   "fans)",
+                   fan_angle);
   f.first = vg_alloc(w->n_point + 1, sizeof *f.first);
   if (!f.first) return vg_fail_memory(err, "the columns");
   for (size_t p = 0; p <= w->n_point; p++) f.first[p] = p > 0;
@@ -395,8 +399,10 @@ vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
     f.first[p] = (uint32_t)total;
   }
   if (total > UINT32_MAX / 8) {
-    st = vg_fail(err, VG_ERR_UNSUPPORTED, "%zu columns, %u at most; raise the "
-                 "fan angle or coarsen the surface", total, UINT32_MAX / 8);
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%zu columns, %u at most; raise the "
+                 "fan angle or coarsen the surface",
+                 total, UINT32_MAX / 8);
     goto done;
   }
   if (f.n_fan) VG_TRY(vg_fans_close(w, &f, err));

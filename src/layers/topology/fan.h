@@ -12,19 +12,19 @@
 
 #include "layers/topology/topology_wall.h"
 
-#define VG_FAN_SECTORS 16     /* at a point; with more it keeps one column */
-#define VG_FAN_STEPS 12       /* of a chain */
+#define VG_FAN_SECTORS 16 /* at a point; with more it keeps one column */
+#define VG_FAN_STEPS 12   /* of a chain */
 #define VG_FAN_COLUMNS (VG_FAN_SECTORS * VG_FAN_STEPS + 1)
 
 /* One point: which directions its columns get. */
 struct vg_fan_shape {
   /* in */
-  int n_sector, is_open;      /* open: one ridge less than sectors */
+  int n_sector, is_open; /* open: one ridge less than sectors */
   int has_plane;
-  double plane[3];            /* directions have to be normal to this */
-  double sector[VG_FAN_SECTORS][3];  /* unit, counter-clockwise */
-  double ridge[VG_FAN_SECTORS][3];   /* unit, away from the point, between
-                                        sectors i and i + 1 */
+  double plane[3];                  /* directions have to be normal to this */
+  double sector[VG_FAN_SECTORS][3]; /* unit, counter-clockwise */
+  double ridge[VG_FAN_SECTORS][3];  /* unit, away from the point, between
+                                       sectors i and i + 1 */
   /* out */
   int n_column;
   int shared;                 /* the ridge whose chain is those of all others,
@@ -55,32 +55,34 @@ static inline uint32_t vg_fan_at(const struct vg_fan_chain *c, uint32_t i)
 }
 
 struct vg_fan_point {
-  uint32_t point;             /* of the wall */
+  uint32_t point; /* of the wall */
   uint8_t n_column, n_polygon, has_centre, is_open;
 };
 
 struct vg_fan_preset {
   uint32_t point;
-  uint32_t at;                /* column, counted from the point's first */
+  uint32_t at; /* column, counted from the point's first */
   double dir[3];
 };
 
 struct vg_fans {
   size_t n_fan, n_preset, n_chain, n_face, n_border;
-  uint32_t *first;            /* [wall n_point + 1] first column */
-  uint8_t *at;                /* [3 * wall n_face] column of each corner from
-                                 the point's first; NULL: 0 */
-  uint32_t *chain_of;         /* [3 * wall n_face] chain across the ridge that
-                                 is this half-edge, else VG_NO_INDEX */
-  struct vg_fan_chain *chain; /* [n_chain] */
-  struct vg_fan_point *fan;   /* [n_fan] by rising point */
-  struct vg_fan_preset *preset;  /* [n_preset] by rising column */
-  uint32_t (*face)[3];        /* [n_face] virtual faces, of columns */
-  uint32_t (*border)[2];         /* [n_border] of columns */
-  uint32_t *border_patch;        /* [n_border] */
+  uint32_t *first;              /* [wall n_point + 1] first column */
+  uint8_t *at;                  /* [3 * wall n_face] column of each corner from
+                                   the point's first; NULL: 0 */
+  uint32_t *chain_of;           /* [3 * wall n_face] chain across the ridge that
+                                   is this half-edge, else VG_NO_INDEX */
+  struct vg_fan_chain *chain;   /* [n_chain] */
+  struct vg_fan_point *fan;     /* [n_fan] by rising point */
+  struct vg_fan_preset *preset; /* [n_preset] by rising column */
+  uint32_t (*face)[3];          /* [n_face] virtual faces, of columns */
+  uint32_t (*border)[2];        /* [n_border] of columns */
+  uint32_t *border_patch;       /* [n_border] */
 };
-#define VG_FANS_INIT { 0, 0, 0, 0, 0, NULL, NULL, NULL, NULL, NULL, NULL, \
-                       NULL, NULL, NULL }
+#define VG_FANS_INIT                                                           \
+  {                                                                            \
+    0, 0, 0, 0, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL        \
+  }
 
 void vg_fans_release(struct vg_fans *f);
 

@@ -50,11 +50,10 @@ static vg_status strip(struct faces *s, uint32_t h, struct vg_error *err)
     uint32_t at_p = p0 + vg_fan_at(&p, p.n_step - i);
     uint32_t at_q = q0 + vg_fan_at(&q, j);
 
-    if (j == q.n_step
-        || (i < p.n_step && (i + 1) * q.n_step <= (j + 1) * p.n_step))
+    if (j == q.n_step ||
+        (i < p.n_step && (i + 1) * q.n_step <= (j + 1) * p.n_step))
       VG_TRY(add_face(s, at_p, p0 + vg_fan_at(&p, p.n_step - ++i), at_q, err));
-    else
-      VG_TRY(add_face(s, at_p, q0 + vg_fan_at(&q, ++j), at_q, err));
+    else VG_TRY(add_face(s, at_p, q0 + vg_fan_at(&q, ++j), at_q, err));
   }
 done:
   return st;
@@ -84,9 +83,9 @@ static vg_status fan_rims(struct faces *s, const struct vg_fan_point *fan,
 
   for (uint32_t i = fan->n_column - 1u; fan->is_open && i > 0; i--) {
     if (vg_reserve(&f->border, &s->cap_border, f->n_border + 1,
-                   sizeof *f->border) < 0
-        || vg_reserve(&f->border_patch, &s->cap_patch, f->n_border + 1,
-                      sizeof *f->border_patch) < 0)
+                   sizeof *f->border) < 0 ||
+        vg_reserve(&f->border_patch, &s->cap_patch, f->n_border + 1,
+                   sizeof *f->border_patch) < 0)
       return vg_fail_memory(err, "the rims of fans");
     f->border[f->n_border][0] = o + i;
     f->border[f->n_border][1] = o + i - 1;

@@ -6,10 +6,10 @@
 #include "layers/topology/fan.h"
 #include "layers/topology/most_normal.h"
 
-#define COS_STEP 0.7660444431189780   /* L13: of 40 degrees */
-#define SLACK 1e-9            /* a turn of 40 degrees sharp takes one step */
-#define LEAST_TURN 0.1        /* of a step about its ridge, as a share */
-#define LEAST_CENTRE 0.05     /* sine between the centre and an edge's plane */
+#define COS_STEP 0.7660444431189780 /* L13: of 40 degrees */
+#define SLACK 1e-9        /* a turn of 40 degrees sharp takes one step */
+#define LEAST_TURN 0.1    /* of a step about its ridge, as a share */
+#define LEAST_CENTRE 0.05 /* sine between the centre and an edge's plane */
 
 static void into_plane(const struct vg_fan_shape *s, double v[3])
 {
@@ -130,7 +130,7 @@ static int fill_polygon(struct vg_fan_shape *s)
   }
   vg_unit(centre);
   if (!sees_polygon(s, centre)) {
-    if (!vg_most_normal(s->n_polygon, (const double (*)[3])side, centre))
+    if (!vg_most_normal(s->n_polygon, (const double(*)[3])side, centre))
       return 0;
     vg_unit(centre);
     if (!sees_polygon(s, centre)) return 0;
@@ -149,10 +149,9 @@ static int spread_pair(struct vg_fan_shape *s)
   vg_sub(s->ridge[0], s->ridge[1], along);
   if (!(vg_unit(along) > 0)) return 0;
   n = make_chain(s, s->sector[0], s->sector[1], along, s->dir);
-  if (!n || !turns_about(n, (const double (*)[3])s->dir, s->ridge[0]))
-    return 0;
+  if (!n || !turns_about(n, (const double(*)[3])s->dir, s->ridge[0])) return 0;
   for (int i = 0; i <= n; i++) memcpy(back[i], s->dir[n - i], sizeof *back);
-  if (!turns_about(n, (const double (*)[3])back, s->ridge[1])) return 0;
+  if (!turns_about(n, (const double(*)[3])back, s->ridge[1])) return 0;
   s->at[0] = 0;
   s->at[1] = n;
   s->n_step[0] = s->n_step[1] = n;
@@ -173,7 +172,7 @@ static int spread_from(struct vg_fan_shape *s, int first, int n_ridge)
     int n = make_chain(s, s->sector[at], s->sector[(at + 1) % s->n_sector],
                        s->ridge[at], chain);
 
-    if (!n || !turns_about(n, (const double (*)[3])chain, s->ridge[at]))
+    if (!n || !turns_about(n, (const double(*)[3])chain, s->ridge[at]))
       return 0;
     memcpy(s->dir + s->n_column, chain, (size_t)n * sizeof *chain);
     s->at[at] = s->n_column;
@@ -198,9 +197,8 @@ static int spread_shared(struct vg_fan_shape *s)
 
     if (!spread_from(s, (i + 1) % s->n_sector, s->n_sector - 1)) continue;
     n = s->n_column - 1;
-    for (int j = 0; j <= n; j++)
-      memcpy(back[j], s->dir[n - j], sizeof *back);
-    if (!turns_about(n, (const double (*)[3])back, s->ridge[i])) continue;
+    for (int j = 0; j <= n; j++) memcpy(back[j], s->dir[n - j], sizeof *back);
+    if (!turns_about(n, (const double(*)[3])back, s->ridge[i])) continue;
     s->shared = i;
     s->n_step[i] = n;
     return 1;

@@ -7,7 +7,7 @@
 #include "core/geometry/vector.h"
 
 #define STEPS_MAX 200
-#define SLACK 1e-9        /* of a constraint that counts as kept */
+#define SLACK 1e-9 /* of a constraint that counts as kept */
 
 /* G c = 1 for a symmetric G of order k <= 3, in c; 0 unless it is positive
  * definite. Cholesky's factors, in plain arithmetic: BLAS and LAPACK choose

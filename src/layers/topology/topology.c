@@ -54,9 +54,10 @@ static vg_status make_faces(const struct vg_wall *w, const struct vg_fans *f,
 {
   c->n_face = w->n_face + f->n_face;
   if (c->n_face > UINT32_MAX / 12)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%zu faces with fans, %u at most; "
-                   "raise the fan angle or coarsen the surface", c->n_face,
-                   UINT32_MAX / 12);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%zu faces with fans, %u at most; "
+                   "raise the fan angle or coarsen the surface",
+                   c->n_face, UINT32_MAX / 12);
   c->face = vg_alloc(c->n_face, sizeof *c->face);
   c->face_tri = vg_alloc(c->n_face, sizeof *c->face_tri);
   if (!c->face || !c->face_tri)
@@ -93,8 +94,8 @@ static vg_status make_rims(const struct vg_wall *w, const struct vg_fans *f,
 }
 
 /* Corners of each column: counting sort, so faces rise. */
-static vg_status make_corners(const struct vg_columns *c,
-                              struct vg_topology *t, struct vg_error *err)
+static vg_status make_corners(const struct vg_columns *c, struct vg_topology *t,
+                              struct vg_error *err)
 {
   size_t n = 3 * c->n_face;
 

@@ -6,20 +6,23 @@
 #include "layers/slide/slide.h"
 
 struct vg_topology {
-  uint32_t *first;          /* [n_column + 1] into corner[] */
-  uint32_t *corner;         /* 3 * face + k with face[k] the column, real and
-                               virtual faces, by rising face */
-  uint32_t *near_first;     /* [n_column + 1] into near[] */
-  uint32_t *near;           /* columns that share an edge, rising */
-  uint8_t *preset;          /* [n_column] 1: dir is given (a column inside a
-                               fan, without a triangle of its own) */
-  uint8_t *blocked;         /* [n_column] 1: no levels can stand here (n must
-                               be 0): several sheets of wall meet in the
-                               point, or it touches more than two slide
-                               patches, or a patch that is neither wall nor
-                               slide patch */
+  uint32_t *first;      /* [n_column + 1] into corner[] */
+  uint32_t *corner;     /* 3 * face + k with face[k] the column, real and
+                           virtual faces, by rising face */
+  uint32_t *near_first; /* [n_column + 1] into near[] */
+  uint32_t *near;       /* columns that share an edge, rising */
+  uint8_t *preset;      /* [n_column] 1: dir is given (a column inside a
+                           fan, without a triangle of its own) */
+  uint8_t *blocked;     /* [n_column] 1: no levels can stand here (n must
+                           be 0): several sheets of wall meet in the
+                           point, or it touches more than two slide
+                           patches, or a patch that is neither wall nor
+                           slide patch */
 };
-#define VG_TOPOLOGY_INIT { NULL, NULL, NULL, NULL, NULL, NULL }
+#define VG_TOPOLOGY_INIT                                                       \
+  {                                                                            \
+    NULL, NULL, NULL, NULL, NULL, NULL                                         \
+  }
 
 void vg_topology_release(struct vg_topology *t);
 
@@ -35,9 +38,9 @@ void vg_topology_release(struct vg_topology *t);
  * each sector has a column, and between neighbouring sectors lie as many
  * preset columns that the turning between directions is at most 40 degrees.
  * A point that one direction serves well, or that lies on one ridge end only,
- * keeps one column. With a fan_angle of 0 only points that no one direction sees
- * have fans. Virtual faces close the gaps along ridges and at points.
- * A ridge that ends at a slide patch ends in a border there.
+ * keeps one column. With a fan_angle of 0 only points that no one direction
+ * sees have fans. Virtual faces close the gaps along ridges and at points. A
+ * ridge that ends at a slide patch ends in a border there.
  *
  * All columns of one root should get the same levels and heights. Then cells
  * of virtual faces are positive as long as no column of the face is 90 degrees

@@ -10,11 +10,11 @@ enum role { INERT, WALL, SLIDE };
 
 /* All triangles around wall points, and what only the build needs. */
 struct rings {
-  uint8_t *role;            /* [n_patch] enum role */
-  uint32_t *id;             /* [surface n_point] wall point or VG_NO_INDEX */
-  uint32_t *face;           /* [surface n_tri] wall face or VG_NO_INDEX */
-  uint32_t *first;          /* [wall n_point + 1] into corner[] */
-  uint32_t *corner;         /* 3 * triangle of the surface + k */
+  uint8_t *role;    /* [n_patch] enum role */
+  uint32_t *id;     /* [surface n_point] wall point or VG_NO_INDEX */
+  uint32_t *face;   /* [surface n_tri] wall face or VG_NO_INDEX */
+  uint32_t *first;  /* [wall n_point + 1] into corner[] */
+  uint32_t *corner; /* 3 * triangle of the surface + k */
 };
 
 void vg_wall_release(struct vg_wall *w)
@@ -47,7 +47,8 @@ static vg_status find_roles(const struct vg_mesh *m, const uint8_t *is_wall,
   if (m->n_tri > UINT32_MAX / 12)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "the surface has %zu triangles, layers can have %u at "
-                   "most; coarsen the surface", m->n_tri, UINT32_MAX / 12);
+                   "most; coarsen the surface",
+                   m->n_tri, UINT32_MAX / 12);
   r->role = vg_calloc(m->n_patch, sizeof *r->role);
   r->id = vg_alloc(m->n_point, sizeof *r->id);
   r->face = vg_alloc(m->n_tri, sizeof *r->face);
@@ -81,8 +82,8 @@ static vg_status number(struct vg_wall *w, struct rings *r,
   w->slide = vg_alloc(w->n_point, sizeof *w->slide);
   w->start = vg_alloc(w->n_point, sizeof *w->start);
   w->blocked = vg_calloc(w->n_point, sizeof *w->blocked);
-  if (!w->point || !w->tri || !w->face || !w->opposite || !w->slide
-      || !w->start || !w->blocked)
+  if (!w->point || !w->tri || !w->face || !w->opposite || !w->slide ||
+      !w->start || !w->blocked)
     return vg_fail_memory(err, "the points of the walls");
   for (size_t p = 0; p < m->n_point; p++)
     if (r->id[p] == 0) {
@@ -166,10 +167,10 @@ static vg_status find_opposites(struct vg_wall *w, const struct rings *r,
     patch = m->tri_patch[g / 3];
     if (face != VG_NO_INDEX) w->opposite[h] = 3 * face + g % 3;
     if (r->role[patch] != SLIDE) continue;
-    if (vg_reserve(&w->border, &cap_half, w->n_border + 1,
-                   sizeof *w->border) < 0
-        || vg_reserve(&w->border_patch, &cap_patch, w->n_border + 1,
-                      sizeof *w->border_patch) < 0)
+    if (vg_reserve(&w->border, &cap_half, w->n_border + 1, sizeof *w->border) <
+          0 ||
+        vg_reserve(&w->border_patch, &cap_patch, w->n_border + 1,
+                   sizeof *w->border_patch) < 0)
       return vg_fail_memory(err, "the rims of the walls");
     w->border[w->n_border] = h;
     w->border_patch[w->n_border++] = patch;
@@ -210,8 +211,7 @@ static void visit_point(struct vg_wall *w, const struct rings *r, size_t p)
     if (r->face[t] == VG_NO_INDEX) continue;
     h = 3 * r->face[t] + r->corner[i] % 3;
     n_corner++;
-    if (start == VG_NO_INDEX
-        || (!is_open && w->opposite[h] == VG_NO_INDEX)) {
+    if (start == VG_NO_INDEX || (!is_open && w->opposite[h] == VG_NO_INDEX)) {
       start = h;
       is_open = w->opposite[h] == VG_NO_INDEX;
     }
@@ -224,7 +224,7 @@ static void visit_point(struct vg_wall *w, const struct rings *r, size_t p)
   if (n_seen != n_corner || (h != VG_NO_INDEX && h != start)) {
     w->blocked[p] = 1;
   } else if (h == start && n_corner < r->first[p + 1] - r->first[p]) {
-    w->blocked[p] = 1;        /* a closed ring, and another sheet touches it */
+    w->blocked[p] = 1; /* a closed ring, and another sheet touches it */
   }
 }
 

@@ -13,21 +13,23 @@
 struct vg_wall {
   const struct vg_mesh *surface;
   size_t n_point, n_face, n_border;
-  uint32_t *point;          /* [n_point] of the surface, rising */
-  uint32_t *tri;            /* [n_face] of the surface, rising */
-  uint32_t (*face)[3];      /* [n_face] wall points (indices into point[]) */
-  uint32_t *opposite;       /* [3 * n_face] half-edge of the neighbouring wall
-                               face; VG_NO_INDEX at the edge of the walls */
-  uint32_t *border;  /* [n_border] half-edges along slide patches, rising */
-  uint32_t *border_patch;      /* [n_border] */
-  uint32_t (*slide)[2];     /* [n_point] as vg_column.slide */
-  uint32_t *start;          /* [n_point] a corner at the point; where the ring
-                               of faces is open, that of its first face,
-                               counter-clockwise */
-  uint8_t *blocked;         /* [n_point] as vg_topology.blocked */
+  uint32_t *point;     /* [n_point] of the surface, rising */
+  uint32_t *tri;       /* [n_face] of the surface, rising */
+  uint32_t (*face)[3]; /* [n_face] wall points (indices into point[]) */
+  uint32_t *opposite;  /* [3 * n_face] half-edge of the neighbouring wall
+                          face; VG_NO_INDEX at the edge of the walls */
+  uint32_t *border;    /* [n_border] half-edges along slide patches, rising */
+  uint32_t *border_patch; /* [n_border] */
+  uint32_t (*slide)[2];   /* [n_point] as vg_column.slide */
+  uint32_t *start;        /* [n_point] a corner at the point; where the ring
+                             of faces is open, that of its first face,
+                             counter-clockwise */
+  uint8_t *blocked;       /* [n_point] as vg_topology.blocked */
 };
-#define VG_WALL_INIT { NULL, 0, 0, 0, NULL, NULL, NULL, NULL, NULL, NULL, \
-                       NULL, NULL, NULL }
+#define VG_WALL_INIT                                                           \
+  {                                                                            \
+    NULL, 0, 0, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL        \
+  }
 
 void vg_wall_release(struct vg_wall *w);
 

@@ -16,8 +16,8 @@
 
 /* Tasks as long as all of them plan, grow zones and join these into fronts;
  * then cells. */
-static void progress(void *user, double done_cells, double known,
-                     size_t n_done, size_t n_known)
+static void progress(void *user, double done_cells, double known, size_t n_done,
+                     size_t n_known)
 {
   struct vg_partition *p = user;
   double all = p->report.estimate;
@@ -30,8 +30,7 @@ static void progress(void *user, double done_cells, double known,
   if (done_cells > all) all = done_cells;
   if (!n_leaf && n_known > 1)
     vg_partition_tell(p, "cut and join", n_done, n_known);
-  else
-    vg_partition_tell(p, p->stage, (size_t)done_cells, (size_t)all);
+  else vg_partition_tell(p, p->stage, (size_t)done_cells, (size_t)all);
 }
 
 /* The root: the whole void, with its load. By rank 0, on the cores of its
@@ -56,14 +55,12 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
   }
   memcpy(n->front.x, m->point, m->n_point * sizeof *n->front.x);
   memcpy(n->front.face, m->tri, m->n_tri * sizeof *n->front.face);
-  for (size_t k = 0; k < m->n_point; k++)
-    n->front.id[k] = VG_POINT_ID(0, k);
+  for (size_t k = 0; k < m->n_point; k++) n->front.id[k] = VG_POINT_ID(0, k);
   n->levels = p->options.levels;
   n->per_cube = p->options.cells_per_cube;
   vg_comm_bind_node(comm, 1);
   st = vg_load_new(&n->front, p->sizing, n->per_cube,
-                   p->options.threads * vg_comm_node_size(comm), &n->load,
-                   err);
+                   p->options.threads * vg_comm_node_size(comm), &n->load, err);
   vg_comm_bind_node(comm, 0);
   VG_TRY(st);
   p->report.estimate = n->load.cells;
@@ -86,10 +83,11 @@ static vg_status within_limit(const struct vg_partition *p, double cells,
   if (p->options.layer_cells)
     snprintf(layers, sizeof layers, ", %llu of them in layers",
              (unsigned long long)p->options.layer_cells);
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh %s %.0f cells%s; %llu are "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the mesh %s %.0f cells%s; %llu are "
                  "allowed (max_cells); use a coarser spacing or raise the "
-                 "limit", how, all, layers,
-                 (unsigned long long)p->options.max_cells);
+                 "limit",
+                 how, all, layers, (unsigned long long)p->options.max_cells);
 }
 
 /* The tasks that these voids lead to; the voids are taken over. Collective. */
@@ -161,8 +159,7 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
     st = run_tasks(p, comm, root != NULL, &root, spans, err);
     root = NULL;
   }
-  if (st == VG_OK && before.n)
-    st = vg_coarse_record(&before, spans, err);
+  if (st == VG_OK && before.n) st = vg_coarse_record(&before, spans, err);
   st = vg_comm_agree(comm, st, err);
   vg_spans_release(&before);
   vg_node_free(root);
@@ -273,8 +270,7 @@ vg_status vg_partition_leaves(const struct vg_partition *p, size_t *n,
   *sizes = vg_alloc(p->n_piece, sizeof **sizes);
   if (!*sizes) return vg_fail_memory(err, "sizes of leaves");
   for (size_t k = 0; k < p->n_piece; k++)
-    if (p->piece[k].kind == VG_SPAN_LEAF)
-      (*sizes)[(*n)++] = p->piece[k].n_cell;
+    if (p->piece[k].kind == VG_SPAN_LEAF) (*sizes)[(*n)++] = p->piece[k].n_cell;
   return VG_OK;
 }
 

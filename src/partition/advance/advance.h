@@ -22,8 +22,8 @@
 
 /** Fill what the triangles of `front` enclose. Collective.
  *
- * @param front  closed, free of intersections, the same on every rank; its arrays
- *               are borrowed until vg_partition_free
+ * @param front  closed, free of intersections, the same on every rank; its
+ * arrays are borrowed until vg_partition_free
  * @param spans  see vg_engine_run
  * The cells follow from front, sizing, rule, levels and sweeps alone.
  * Returns on all ranks alike: VG_ERR_STOPPED as asked; VG_ERR_GEOMETRY;

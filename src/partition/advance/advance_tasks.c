@@ -16,9 +16,9 @@
 /* What a task's home hears. */
 struct outcome {
   int what;
-  struct vg_node *node;      /* START, and LEAF that outgrew: owned; JOIN, ZONE:
-                                borrowed, at home only, */
-  uint64_t home_node;        /* elsewhere its number there */
+  struct vg_node *node; /* START, and LEAF that outgrew: owned; JOIN, ZONE:
+                           borrowed, at home only, */
+  uint64_t home_node;   /* elsewhere its number there */
   size_t index;
   struct vg_change change;
 };
@@ -103,9 +103,12 @@ static vg_status submit(struct vg_engine *e, const char *path, char kind,
                         int pinned, int moves, double estimate,
                         struct vg_work *w, struct vg_error *err)
 {
-  struct vg_task t = { .kind = kind, .pinned = pinned, .moves = moves,
+  struct vg_task t = { .kind = kind,
+                       .pinned = pinned,
+                       .moves = moves,
                        .priority = vg_model_priority(kind, estimate),
-                       .weight = estimate, .input = w };
+                       .weight = estimate,
+                       .input = w };
 
   if (kind == VG_SPAN_LEAF) t.work = work_of(w->node);
 
@@ -283,8 +286,7 @@ static vg_status leaf_done(struct vg_partition *p, struct vg_engine *e,
   pthread_mutex_unlock(&p->lock);
   more = VG_OUTGROWN * (n->load.cells > leaf ? n->load.cells : leaf) /
          (n->load.cells > 1 ? n->load.cells : 1);
-  for (size_t k = 0; k < n->load.n; k++)
-    n->load.cube[k].cells *= (float)more;
+  for (size_t k = 0; k < n->load.n; k++) n->load.cube[k].cells *= (float)more;
   n->load.cells *= more;
   n->is_planned = 0;
   snprintf(n->path + strlen(n->path), sizeof n->path - strlen(n->path), "+");
@@ -307,7 +309,7 @@ static vg_status done(void *user, struct vg_engine *e,
   } else if (o->what == VG_WORK_LEAF) {
     st = leaf_done(p, e, o, err);
   } else {
-    o->node = NULL;          /* goes on by itself */
+    o->node = NULL; /* goes on by itself */
     if (o->what == VG_WORK_START) hold(p, n);
     st = follow(p, e, n, err);
   }
@@ -328,16 +330,17 @@ static vg_status packed(struct vg_writer *w, struct vg_bytes *out,
   return VG_OK;
 }
 
-enum { N_NUMBER = 10 };      /* of a node */
+enum { N_NUMBER = 10 }; /* of a node */
 
 static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
                           struct vg_error *err)
 {
   const struct vg_lattice *l = &n->lattice;
-  int32_t number[N_NUMBER] = {n->levels, n->retry, n->is_final, n->is_planned,
-                              n->n_bisection, l->n[0], l->n[1], l->n[2],
-                              l->lines_at_once, n->to_part};
-  struct vg_bytes load = {0, NULL};
+  int32_t number[N_NUMBER] = { n->levels,     n->retry,       n->is_final,
+                               n->is_planned, n->n_bisection, l->n[0],
+                               l->n[1],       l->n[2],        l->lines_at_once,
+                               n->to_part };
+  struct vg_bytes load = { 0, NULL };
   uint64_t size;
   vg_status st = vg_load_pack(&n->load, &load, err);
 
@@ -345,7 +348,7 @@ static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
   size = load.n;
   vg_put(w, sizeof n->path, 1, n->path);
   vg_put(w, N_NUMBER, sizeof *number, number);
-  vg_put(w, 1, sizeof l->at, l->at);  /* ribs are made where it is cut */
+  vg_put(w, 1, sizeof l->at, l->at); /* ribs are made where it is cut */
   vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
   vg_put(w, 1, sizeof size, &size);
   vg_put(w, load.n, 1, load.data);
@@ -358,8 +361,8 @@ static struct vg_node *get_node(struct vg_reader *r)
 {
   struct vg_front empty = VG_FRONT_INIT;
   struct vg_node *n = vg_node_new("", &empty);
-  int32_t number[N_NUMBER] = {0};
-  struct vg_bytes load = {0, NULL};
+  int32_t number[N_NUMBER] = { 0 };
+  struct vg_bytes load = { 0, NULL };
   uint64_t size = 0;
 
   if (!n) return NULL;
@@ -386,13 +389,13 @@ static struct vg_node *get_node(struct vg_reader *r)
   return NULL;
 }
 
-static vg_status pack_input(void *user, const void *input,
-                            struct vg_bytes *out, struct vg_error *err)
+static vg_status pack_input(void *user, const void *input, struct vg_bytes *out,
+                            struct vg_error *err)
 {
   const struct vg_work *k = input;
   struct vg_writer w = { .cap = 0 };
   int32_t what = k->what;
-  uint64_t home[2] = {k->node ? k->node->number : 0, k->index};
+  uint64_t home[2] = { k->node ? k->node->number : 0, k->index };
 
   (void)user;
   vg_put(&w, 1, sizeof what, &what);
@@ -420,7 +423,7 @@ static vg_status unpack_input(void *user, const struct vg_bytes *in,
   struct vg_reader r = { .data = in->data, .n = in->n };
   struct vg_work *k = new_work(0, NULL);
   int32_t what = 0;
-  uint64_t home[2] = {0, 0};
+  uint64_t home[2] = { 0, 0 };
 
   (void)user;
   if (!k) return vg_fail_memory(err, "a message");
@@ -451,9 +454,9 @@ static vg_status pack_outcome(void *user, const void *outcome,
 {
   const struct outcome *o = outcome;
   struct vg_writer w = { .cap = 0 };
-  uint64_t home[2] = {o->home_node, o->index};
+  uint64_t home[2] = { o->home_node, o->index };
 
-  (void)user;                /* only those of zones travel */
+  (void)user; /* only those of zones travel */
   vg_put(&w, 2, sizeof *home, home);
   vg_change_put(&w, &o->change);
   return packed(&w, out, err);
@@ -464,7 +467,7 @@ static vg_status unpack_outcome(void *user, const struct vg_bytes *in,
 {
   struct vg_reader r = { .data = in->data, .n = in->n };
   struct outcome *o = vg_calloc(1, sizeof *o);
-  uint64_t home[2] = {0, 0};
+  uint64_t home[2] = { 0, 0 };
 
   (void)user;
   if (!o) return vg_fail_memory(err, "a message");
@@ -495,9 +498,10 @@ static void release_outcome(void *user, void *outcome)
 
 /* --- for the engine ------------------------------------------------------ */
 
-const struct vg_engine_ops vg_tasks_ops = {
-  run, done, pack_input, unpack_input, pack_outcome, unpack_outcome,
-  release_input, release_outcome };
+const struct vg_engine_ops vg_tasks_ops = { run,           done,
+                                            pack_input,    unpack_input,
+                                            pack_outcome,  unpack_outcome,
+                                            release_input, release_outcome };
 
 vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
                          struct vg_task *t, struct vg_error *err)
@@ -512,10 +516,13 @@ vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
   }
   /* a void that is parted stays where its coarse mesh is */
   *t = (struct vg_task){ .kind = cut ? VG_SPAN_JOIN : VG_SPAN_LEAF,
-                         .moves = !n->to_part, .pinned = n->to_part, .weight = n->load.cells, .input = w };
+                         .moves = !n->to_part,
+                         .pinned = n->to_part,
+                         .weight = n->load.cells,
+                         .input = w };
   t->priority = vg_model_priority(t->kind, t->weight);
-  snprintf(t->path, sizeof t->path, cut ? "%.*sJ0" : "%.*sL",
-           VG_PATH_MAX - 3, n->path);
+  snprintf(t->path, sizeof t->path, cut ? "%.*sJ0" : "%.*sL", VG_PATH_MAX - 3,
+           n->path);
   if (cut) return VG_OK;
   w->serial = n->serial ? n->serial : vg_partition_serial(p);
   t->work = work_of(n);

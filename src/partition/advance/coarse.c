@@ -12,19 +12,21 @@
 
 /* Cells to a leaf of the coarse mesh: small ones, of which there are some for
  * every worker, since all wait for it. */
-static const double leaf_cells = 20000;   /* D10 */
+static const double leaf_cells = 20000; /* D10 */
 
 /* --- to rank 0 ----------------------------------------------------------- */
 
 /* Of one slice; then come its points and its cells. */
-struct head { uint64_t point_at, n_point, cell_at, n_cell; };
+struct head {
+  uint64_t point_at, n_point, cell_at, n_cell;
+};
 
 static vg_status pack_slice(const struct vg_slice *s, struct vg_writer *w,
                             struct vg_error *err)
 {
   const struct head h = { s->point_at, s->n_own, s->cell_at[VG_SLICE_TET],
                           s->n_cell[VG_SLICE_TET] };
-  uint32_t (*cell)[4] = vg_alloc(h.n_cell, sizeof *cell);
+  uint32_t(*cell)[4] = vg_alloc(h.n_cell, sizeof *cell);
 
   if (!cell) return vg_fail_memory(err, "the coarse mesh");
   for (size_t k = 0; k < 4 * h.n_cell; k++)
@@ -66,8 +68,7 @@ static vg_status unpack(const struct vg_bytes *b, struct vg_coarse_cells *c,
   while (!r.bad && r.at < r.n) {
     vg_get(&r, 1, sizeof h, &h);
     if (r.bad || h.n_point > c->n_point || h.n_cell > c->n_cell ||
-        h.point_at > c->n_point - h.n_point ||
-        h.cell_at > c->n_cell - h.n_cell)
+        h.point_at > c->n_point - h.n_point || h.cell_at > c->n_cell - h.n_cell)
       return vg_fail_damaged(err, "the coarse mesh");
     vg_get(&r, h.n_point, sizeof *c->x, c->x + h.point_at);
     vg_get(&r, h.n_cell, sizeof *c->cell, c->cell + h.cell_at);
@@ -110,7 +111,7 @@ static vg_status renumber(const struct vg_front *f, size_t n_boundary,
 {
   uint32_t *to = vg_alloc(n_boundary, sizeof *to);
   size_t n = f->n_point + c->n_point - n_boundary;
-  double (*x)[3] = vg_alloc(n, sizeof *x);
+  double(*x)[3] = vg_alloc(n, sizeof *x);
 
   if (!to || !x) {
     free(to);
@@ -248,10 +249,9 @@ vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
   VG_TRY(vg_comm_max(comm, 1, &factor, err));
   st = grow(p, comm, factor, &made, spans, err);
   if (spans) rename_tasks(spans);
-  if (st != VG_OK) goto done;          /* or stopped */
+  if (st != VG_OK) goto done; /* or stopped */
   VG_TRY(gather(p, comm, vg_partition_slices(made), c, err));
-  if (root)
-    st = renumber(&root->front, p->boundary->n_point, c, err);
+  if (root) st = renumber(&root->front, p->boundary->n_point, c, err);
   c->seconds = vg_clock() - t;
   st = vg_comm_agree(comm, st, err);
 done:

@@ -6,7 +6,7 @@
 
 struct vg_way {
   const char *name;
-  vg_parting_maker *maker;   /* NULL: cut by planes of final cells */
+  vg_parting_maker *maker; /* NULL: cut by planes of final cells */
 };
 
 /** By enum vg_decomposition. */

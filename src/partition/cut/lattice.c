@@ -7,18 +7,18 @@
 
 /* Cells within so many spacings of a line belong to its pencil: more than
  * tiles are thick, so that tiles end at pencils and not at each other. */
-static const double pencil_reach = 1.3;   /* C4 */
+static const double pencil_reach = 1.3; /* C4 */
 /* Parallel planes are this many of the largest spacings on them apart. */
-static const double apart = 10;   /* C5 */
+static const double apart = 10; /* C5 */
 /* Where a second and a third attempt put a plane, as shares of the load. */
-static const double other_share[] = {0, 0.07, -0.07, 0.15, -0.15};
+static const double other_share[] = { 0, 0.07, -0.07, 0.15, -0.15 };
 /* Blocks that may exceed the leaf size by this need no further cut. */
-static const double leaf_slack = 1.25;   /* C2 */
+static const double leaf_slack = 1.25; /* C2 */
 
 /* Below so many leaves planes are grown whole, one after another, which costs
  * least: lattices have pencils, and tiles more border. With more leaves more
  * workers are expected, who would wait for single planes. */
-static const double few_leaves = 80;   /* C3 */
+static const double few_leaves = 80; /* C3 */
 
 enum { HALVINGS = 6, PER_AXIS = 2 };
 
@@ -37,12 +37,12 @@ static double plane_at(const struct vg_load *load, int axis, int k, int n,
   int most = (int)(sizeof other_share / sizeof *other_share);
   double share = (double)(k + 1) / (n + 1);
 
-  return vg_load_quantile(load, axis, share + other_share[retry % most] /
-                                                  (n + 1));
+  return vg_load_quantile(load, axis,
+                          share + other_share[retry % most] / (n + 1));
 }
 
-static void place_planes(const struct vg_load *load, int axis, int n,
-                         int retry, struct vg_lattice *l)
+static void place_planes(const struct vg_load *load, int axis, int n, int retry,
+                         struct vg_lattice *l)
 {
   l->n[axis] = n;
   for (int k = 0; k < n; k++)
@@ -64,10 +64,9 @@ static int is_roomy(const struct vg_load *load, int axis,
 
 /* Cells in the zones of n planes across the axis, infinite where there is no
  * room for them. */
-static double zone_cost(const struct vg_load *load, int axis, int n,
-                        int retry)
+static double zone_cost(const struct vg_load *load, int axis, int n, int retry)
 {
-  struct vg_lattice l = {0};
+  struct vg_lattice l = { 0 };
   double sum = 0;
 
   place_planes(load, axis, n, retry, &l);
@@ -89,17 +88,16 @@ static int bisections_wanted(const struct vg_load *load,
   if (!(rule->leaf_cells > 0)) return levels < HALVINGS ? levels : HALVINGS;
   if (load->cells < few_leaves * rule->leaf_cells)
     return load->cells > leaf_slack * rule->leaf_cells;
-  while (n < HALVINGS && load->cells > leaf_slack * rule->leaf_cells *
-                                           (double)(1 << n))
+  while (n < HALVINGS &&
+         load->cells > leaf_slack * rule->leaf_cells * (double)(1 << n))
     n++;
   return n;
 }
 
 /* The axis to halve the blocks of next: that which adds the fewest cells to
  * zones. */
-static int next_axis(const struct vg_load *load,
-                     const struct vg_cut_rule *rule, const int half[3],
-                     int retry)
+static int next_axis(const struct vg_load *load, const struct vg_cut_rule *rule,
+                     const int half[3], int retry)
 {
   double least = INFINITY;
   int best = -1;
@@ -142,7 +140,7 @@ static int is_outside(const struct vg_load *load, const double x[3])
 static int are_lines_apart(const struct vg_load *load,
                            const struct vg_lattice *l)
 {
-  const double x[3] = {l->at[0][0], l->at[1][0], l->at[2][0]};
+  const double x[3] = { l->at[0][0], l->at[1][0], l->at[2][0] };
 
   return l->n[0] == 1 && l->n[1] == 1 && l->n[2] == 1 && is_outside(load, x);
 }
@@ -151,7 +149,7 @@ int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
                     int levels, int retry, struct vg_lattice *out)
 {
   int want = bisections_wanted(load, rule, levels), used = 0;
-  int half[3] = {0, 0, 0};
+  int half[3] = { 0, 0, 0 };
 
   assert(load && retry >= 0 && out);
   assert(rule->first_axis >= -1 && rule->first_axis < 3);
@@ -172,8 +170,7 @@ int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
 
 /* --- regions ------------------------------------------------------------- */
 
-static void add_wall(struct vg_region *r, const double normal[3],
-                     double offset)
+static void add_wall(struct vg_region *r, const double normal[3], double offset)
 {
   memcpy(r->wall[r->n_wall].normal, normal, 3 * sizeof *normal);
   r->wall[r->n_wall++].offset = offset;
@@ -182,7 +179,7 @@ static void add_wall(struct vg_region *r, const double normal[3],
 /* sign (x[axis] - at) > 0 */
 static void bound(struct vg_region *r, int axis, int sign, double at)
 {
-  double normal[3] = {0};
+  double normal[3] = { 0 };
 
   normal[axis] = sign;
   add_wall(r, normal, sign * at);
@@ -207,7 +204,7 @@ static void roof(struct vg_region *r, int across, double at, int along,
                  int sign, double end)
 {
   for (int side = -1; side <= 1; side += 2) {
-    double normal[3] = {0};
+    double normal[3] = { 0 };
 
     normal[along] = slope * sign;
     normal[across] = slope * side;

@@ -17,8 +17,8 @@
 enum {
   VG_LATTICE_PLANES = 7,
   VG_LATTICE_STAGES = 4,
-  VG_LATTICE_TILES = 3,      /* the stage of tiles; those before: pencils */
-  VG_LATTICE_BLOCKS = 512    /* (VG_LATTICE_PLANES + 1)^3 */
+  VG_LATTICE_TILES = 3,   /* the stage of tiles; those before: pencils */
+  VG_LATTICE_BLOCKS = 512 /* (VG_LATTICE_PLANES + 1)^3 */
 };
 
 /* What cutting and its forecast have in common. */
@@ -37,26 +37,26 @@ enum { VG_RETRIES = 5 };
 
 /* A line across a tile. */
 struct vg_rib {
-  int tile;                  /* whole ones count */
-  struct vg_plane plane;     /* at right angles to the tile's */
+  int tile;              /* whole ones count */
+  struct vg_plane plane; /* at right angles to the tile's */
 };
 
 struct vg_lattice {
-  int n[3];                  /* planes across each axis */
-  int lines_at_once;         /* 1: n is 1 1 1, and the planes meet in a body */
+  int n[3];          /* planes across each axis */
+  int lines_at_once; /* 1: n is 1 1 1, and the planes meet in a body */
   double at[3][VG_LATTICE_PLANES];
   int n_rib;
-  struct vg_rib *rib;        /* [n_rib] rising by tile; of a tile in order,
-                                normals towards the next one; owned */
+  struct vg_rib *rib; /* [n_rib] rising by tile; of a tile in order,
+                         normals towards the next one; owned */
 };
 
 /** Without ribs. */
 void vg_lattice_release(struct vg_lattice *l);
 
 struct vg_cut_rule {
-  double leaf_cells;         /* cut while more are expected; 0: by levels */
-  int first_axis;            /* 0 to 2: cut across this one first; -1: best */
-  int constant;              /* 1: across first_axis only */
+  double leaf_cells; /* cut while more are expected; 0: by levels */
+  int first_axis;    /* 0 to 2: cut across this one first; -1: best */
+  int constant;      /* 1: across first_axis only */
 };
 
 /** Planes for a void, without ribs yet.

@@ -19,7 +19,7 @@ static const double piece_share = 0.2, least_piece = 4000, most_piece = 12000;
 /* Cells of its ribs to those of a tile. */
 static const double rib_share = 0.12;
 /* A rib is this many spacings from what keeps it apart from the next one. */
-static const double room = 2.5;   /* C7 */
+static const double room = 2.5; /* C7 */
 
 enum { MOST_PIECES = 8 };
 
@@ -27,19 +27,21 @@ enum { MOST_PIECES = 8 };
 struct dot {
   size_t tile, number;
   double x[2], half, h, cells;
-  double key;                /* lines of constant key are tried */
+  double key; /* lines of constant key are tried */
 };
 
 struct tile {
-  int plane;                 /* the axis across it */
-  int axis[2];               /* its own */
+  int plane;   /* the axis across it */
+  int axis[2]; /* its own */
   double lo[2], hi[2];
   size_t n;
-  struct dot *dot;           /* [n] */
+  struct dot *dot; /* [n] */
 };
 
 /* a x[0] + b x[1] = offset, towards higher keys */
-struct line { double normal[2], offset; };
+struct line {
+  double normal[2], offset;
+};
 
 /* How keys are: along axis `way` of two, or, from 2 on, by the angle at a
  * corner: share of the way from the one side of the tile to the other. */
@@ -47,14 +49,14 @@ enum { WAYS = 6 };
 
 /* What is being added to. */
 struct ribs {
-  double piece_cells;        /* of a tile to a piece */
+  double piece_cells; /* of a tile to a piece */
   size_t cap;
   struct vg_lattice *lattice;
   struct vg_error *err;
 };
 
 struct lines {
-  double cost;               /* cells, infinite without room */
+  double cost; /* cells, infinite without room */
   int n;
   struct line line[MOST_PIECES - 1];
 };
@@ -83,7 +85,7 @@ static double key_of(const struct tile *t, int way, const double x[2])
 
 static struct line line_of(const struct tile *t, int way, double key)
 {
-  struct line l = { {way == 0, way == 1}, key };
+  struct line l = { { way == 0, way == 1 }, key };
   double at[2], sign[2], length;
 
   if (way < 2) return l;
@@ -168,8 +170,8 @@ static void lines_of(const struct tile *t, int way, int n, double cells,
   for (size_t i = 0; i + 1 < t->n && out->n + 1 < n; i++) {
     sum += t->dot[i].cells;
     if (sum * n < cells * (out->n + 1)) continue;
-    out->line[out->n++] =
-      line_of(t, way, 0.5 * (t->dot[i].key + t->dot[i + 1].key));
+    out->line[out->n++] = line_of(t, way,
+                                  0.5 * (t->dot[i].key + t->dot[i + 1].key));
   }
   look_at(t, way, out);
 }
@@ -247,7 +249,7 @@ static vg_status find_dots(const struct vg_load *load,
   for (size_t k = 0; k < load->n; k++) {
     const struct vg_load_cube *q = &load->cube[k];
     double half = (double)q->half, h = (double)q->h;
-    double x[2] = {(double)q->at[b], (double)q->at[c]};
+    double x[2] = { (double)q->at[b], (double)q->at[c] };
 
     if (fabs((double)q->at[axis] - l->at[axis][i]) > half) continue;
     if (vg_reserve(dot, &cap, *n + 1, sizeof **dot))
@@ -255,8 +257,12 @@ static vg_status find_dots(const struct vg_load *load,
     (*dot)[*n] = (struct dot){
       .tile = (size_t)(interval_of(l, b, x[0]) +
                        (l->n[b] + 1) * interval_of(l, c, x[1])),
-      .number = k, .x = {x[0], x[1]}, .half = half, .h = h,
-      .cells = (double)q->cells * fmin(VG_TILE_REACH * h / half, 1) };
+      .number = k,
+      .x = { x[0], x[1] },
+      .half = half,
+      .h = h,
+      .cells = (double)q->cells * fmin(VG_TILE_REACH * h / half, 1)
+    };
     ++*n;
   }
   qsort(*dot, *n, sizeof **dot, by_tile);
@@ -285,7 +291,8 @@ static vg_status part_plane(struct ribs *to, const struct vg_load *load,
                             int axis, int i, int first)
 {
   const struct vg_lattice *l = to->lattice;
-  struct tile t = { axis, {(axis + 1) % 3, (axis + 2) % 3}, {0}, {0}, 0, NULL };
+  struct tile t = { axis, { (axis + 1) % 3, (axis + 2) % 3 }, { 0 }, { 0 }, 0,
+                    NULL };
   struct dot *dot = NULL;
   size_t n = 0, at = 0;
   vg_status st = find_dots(load, l, axis, i, &n, &dot, to->err);

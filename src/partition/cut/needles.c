@@ -6,8 +6,8 @@
 #include "core/geometry/vector.h"
 
 /* C19 */
-#define ASPECT 100.0       /* longest side over the height upon it */
-#define MANY 0.1           /* of all faces, that cross one plane */
+#define ASPECT 100.0 /* longest side over the height upon it */
+#define MANY 0.1     /* of all faces, that cross one plane */
 
 static int is_needle(const double *const x[3])
 {
@@ -32,8 +32,7 @@ static int planes_below(const struct vg_lattice *l, int axis, double x)
   return k;
 }
 
-int vg_crosses_needles(const struct vg_front *front,
-                       const struct vg_lattice *l)
+int vg_crosses_needles(const struct vg_front *front, const struct vg_lattice *l)
 {
   size_t count[3][VG_LATTICE_PLANES] = { { 0 } };
 

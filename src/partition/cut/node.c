@@ -103,8 +103,7 @@ static vg_status make_room(struct vg_node *n, size_t n_work,
   n->point = vg_calloc(n_work, sizeof *n->point);
   n->face = vg_calloc(n_work, sizeof *n->face);
   n->change = vg_calloc(n_work, sizeof *n->change);
-  if (n->work && n->region && n->point && n->face && n->change)
-    return VG_OK;
+  if (n->work && n->region && n->point && n->face && n->change) return VG_OK;
   return vg_fail_memory(err, "cutting a front");
 }
 
@@ -117,7 +116,7 @@ static size_t number_of(struct vg_node *n, size_t k)
 }
 
 /* More faces than this cost more than the patches that they save. */
-enum { MOST_WIDE = 100000 };   /* C9 */
+enum { MOST_WIDE = 100000 }; /* C9 */
 
 /* The part of the front for work i, which is to know the front as far as the
  * faces reach that cross the lattice's planes there. */
@@ -160,7 +159,7 @@ static vg_status find_part(struct vg_node *n, struct vg_work *w, size_t i)
 
 struct stage {
   struct vg_node *n;
-  const struct vg_region *region;  /* [n->n_work] of the works */
+  const struct vg_region *region; /* [n->n_work] of the works */
 };
 
 /* What of the front each region needs. On failure n->work[k] is NULL. */
@@ -178,10 +177,8 @@ static void make_works(void *context, size_t first, size_t end, int worker)
     w->kind = n->stage < VG_LATTICE_TILES ? VG_SPAN_PENCIL : VG_SPAN_TILE;
     w->node = n;
     w->region = s->region[k];
-    if (find_part(n, w, k) < 0)
-      vg_work_free(w);
-    else
-      n->work[k] = w;
+    if (find_part(n, w, k) < 0) vg_work_free(w);
+    else n->work[k] = w;
   }
 }
 
@@ -241,8 +238,8 @@ static void estimate_works(struct vg_node *n)
     }
     cells = vg_load_zone(&n->load, axis, plane->offset, 1);
     w->estimate = w->kind == VG_SPAN_TILE
-                    ? cells / ((n->lattice.n[b] + 1) * (n->lattice.n[c] + 1))
-                    : 0.1 * cells / (n->lattice.n[b] + n->lattice.n[c] + 1);
+                  ? cells / ((n->lattice.n[b] + 1) * (n->lattice.n[c] + 1))
+                  : 0.1 * cells / (n->lattice.n[b] + n->lattice.n[c] + 1);
   }
 }
 
@@ -265,8 +262,7 @@ static vg_status list_regions(struct vg_partition *p, struct vg_node *n,
 }
 
 static vg_status prepare_stage(struct vg_partition *p, struct vg_node *n,
-                               const struct vg_engine *e,
-                               struct vg_error *err)
+                               const struct vg_engine *e, struct vg_error *err)
 {
   struct vg_region *region;
   size_t count;

@@ -16,7 +16,7 @@
 
 /* A leaf that needs this many times the points that were expected is cut
  * again, as is one beyond this many times the leaf size. */
-#define VG_OUTGROWN 2.0   /* C8 */
+#define VG_OUTGROWN 2.0 /* C8 */
 
 struct vg_work;
 
@@ -26,48 +26,48 @@ struct vg_work;
 typedef char vg_path[VG_PATH_MAX];
 
 struct vg_node {
-  struct vg_node *next, **link;  /* nodes being cut on this rank */
-  uint64_t number;           /* among these, for messages */
+  struct vg_node *next, **link; /* nodes being cut on this rank */
+  uint64_t number;              /* among these, for messages */
   char path[VG_PATH_MAX];
   struct vg_front front;
   struct vg_load load;
-  double per_cube;           /* cells per cube of the spacing, as the zones of
-                                its ancestors turned out */
-  int levels;                /* bisections left, in a partition by levels */
-  int retry;                 /* attempts that failed */
-  int is_final;              /* a leaf whatever it needs */
-  double fill_work;          /* of a leaf, see vg_front_work; 0: not known */
-  int to_part;               /* by a maker of partings, not by planes */
-  double elsewhere;          /* s of processor time that this took in other
-                                processes */
-  uint32_t serial;           /* of its leaf; 0: none yet */
+  double per_cube;  /* cells per cube of the spacing, as the zones of
+                       its ancestors turned out */
+  int levels;       /* bisections left, in a partition by levels */
+  int retry;        /* attempts that failed */
+  int is_final;     /* a leaf whatever it needs */
+  double fill_work; /* of a leaf, see vg_front_work; 0: not known */
+  int to_part;      /* by a maker of partings, not by planes */
+  double elsewhere; /* s of processor time that this took in other
+                       processes */
+  uint32_t serial;  /* of its leaf; 0: none yet */
   /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
-  size_t cap_x, cap_name, cap_face;  /* of the front; 0: just its size */
+  size_t cap_x, cap_name, cap_face; /* of the front; 0: just its size */
   struct vg_select select;
   size_t n_block, cap_block;
-  uint16_t *block;           /* [n_block] of the front's points: the block that
-                                each is in, with VG_ON_PLANE or not */
-  size_t n_seen;             /* faces that were looked at for the next list */
+  uint16_t *block; /* [n_block] of the front's points: the block that
+                      each is in, with VG_ON_PLANE or not */
+  size_t n_seen;   /* faces that were looked at for the next list */
   size_t n_open, cap_open;
-  uint32_t *open;            /* [n_open] faces that lie in no block, rising;
-                                of those seen, some may be gone */
-  int is_planned;            /* the next two are of this load, this retry */
+  uint32_t *open; /* [n_open] faces that lie in no block, rising;
+                     of those seen, some may be gone */
+  int is_planned; /* the next two are of this load, this retry */
   int n_bisection;
   struct vg_lattice lattice;
   int n_join;
-  int stage;                 /* the next one to be looked at */
-  size_t n_work, n_left;     /* of this stage; not yet done */
-  struct vg_work **work;     /* [n_work] until submitted */
-  struct vg_region *region;  /* [n_work] theirs */
-  uint32_t **point, **face;  /* [n_work] what of the front each was given */
-  struct vg_change *change;  /* [n_work] what came of it */
+  int stage;                /* the next one to be looked at */
+  size_t n_work, n_left;    /* of this stage; not yet done */
+  struct vg_work **work;    /* [n_work] until submitted */
+  struct vg_region *region; /* [n_work] theirs */
+  uint32_t **point, **face; /* [n_work] what of the front each was given */
+  struct vg_change *change; /* [n_work] what came of it */
   double zone_cells, zone_volume;
-  size_t n_pencil;           /* pencils so far: numbers go on */
-  size_t n_patch;            /* boxes that closed what was left, likewise */
-  size_t n_blocked;          /* works that made nothing, or what crosses the
-                                front */
+  size_t n_pencil;  /* pencils so far: numbers go on */
+  size_t n_patch;   /* boxes that closed what was left, likewise */
+  size_t n_blocked; /* works that made nothing, or what crosses the
+                       front */
   size_t n_child;
-  struct vg_node **child;    /* [n_child] what it fell into */
+  struct vg_node **child; /* [n_child] what it fell into */
 };
 
 /* What a task is given. */
@@ -75,10 +75,10 @@ enum { VG_WORK_START, VG_WORK_JOIN, VG_WORK_ZONE, VG_WORK_LEAF };
 
 struct vg_work {
   int what;
-  struct vg_node *node;      /* START, LEAF: owned; JOIN, ZONE: borrowed, at
-                                its home only, */
-  uint64_t home_node;        /* elsewhere its number there */
-  uint32_t serial;           /* ZONE, LEAF */
+  struct vg_node *node; /* START, LEAF: owned; JOIN, ZONE: borrowed, at
+                           its home only, */
+  uint64_t home_node;   /* elsewhere its number there */
+  uint32_t serial;      /* ZONE, LEAF */
   /* ZONE */
   char path[VG_PATH_MAX];
   char kind;
@@ -90,32 +90,38 @@ struct vg_work {
 
 struct vg_partition {
   int rank, size;
-  struct vg_mesh front;      /* of the whole void; its arrays are borrowed */
-  const struct vg_mesh *boundary;  /* the same */
+  struct vg_mesh front; /* of the whole void; its arrays are borrowed */
+  const struct vg_mesh *boundary; /* the same */
   const struct vg_sizing *sizing;
   struct vg_partition_options options;
-  const char *stage;         /* for progress: "fill", "recut" */
+  const char *stage; /* for progress: "fill", "recut" */
   atomic_uint_fast32_t n_serial;
-  pthread_mutex_t lock;      /* of what follows */
+  pthread_mutex_t lock; /* of what follows */
   size_t n_piece, cap_piece;
-  struct vg_piece *piece;    /* what this rank made */
+  struct vg_piece *piece; /* what this rank made */
   size_t n_drop, cap_drop;
-  uint32_t *drop;            /* serials of the zones of nodes of this rank whose
-                                changes were not put in */
+  uint32_t *drop; /* serials of the zones of nodes of this rank whose
+                     changes were not put in */
   size_t n_unfilled, cap_unfilled;
-  struct { struct vg_node *node; struct vg_error why; } *unfilled;
+  struct {
+    struct vg_node *node;
+    struct vg_error why;
+  } * unfilled;
   struct vg_partition_report report;
-  struct vg_node *cutting;   /* what a stopped job leaves */
-  uint64_t n_cutting;        /* numbers given to these so far */
+  struct vg_node *cutting; /* what a stopped job leaves */
+  uint64_t n_cutting;      /* numbers given to these so far */
   /* numbering */
   struct vg_slices slices;
   size_t n_place;
-  struct vg_place_of { uint32_t serial; uint64_t point; } *place; /* by serial
-                                                                     */
+  struct vg_place_of {
+    uint32_t serial;
+    uint64_t point;
+  } * place;                     /* by serial
+                                  */
   uint64_t *point_at, *cell_at;  /* [n_piece] */
-  uint32_t *domain;          /* [n_piece] */
-  uint32_t *front_id;        /* [boundary->n_point] 0, 1, ... */
-  struct vg_mesh boundary_faces;        /* the boundary without points */
+  uint32_t *domain;              /* [n_piece] */
+  uint32_t *front_id;            /* [boundary->n_point] 0, 1, ... */
+  struct vg_mesh boundary_faces; /* the boundary without points */
 };
 
 /** Tell the options' progress, on rank 0. */
@@ -277,8 +283,8 @@ vg_status vg_work_zone(struct vg_partition *p, const struct vg_work *w,
                        struct vg_change *change, const struct vg_engine *e,
                        struct vg_error *err);
 vg_status vg_work_leaf(struct vg_partition *p, const struct vg_work *w,
-                       int *outgrown, size_t *n_cell,
-                       const struct vg_engine *e, struct vg_error *err);
+                       int *outgrown, size_t *n_cell, const struct vg_engine *e,
+                       struct vg_error *err);
 
 /** Number what all ranks made, and serve it as slices. Collective.
  * (number.c) */

@@ -18,7 +18,7 @@
 #include "partition/cut/node.h"
 
 /* A box ends so many spacings beyond the faces that it is made for. */
-static const double margin = 1.5, patch_margin = 2.5;   /* C11 */
+static const double margin = 1.5, patch_margin = 2.5; /* C11 */
 /* Larger places, in cubes of their spacing, are not filled. */
 static const double most_volume = 1500;
 /* There is more in a box where spacings below this share of its own are. */
@@ -30,26 +30,29 @@ static const double most_cells = 20000;
  * together all along a body; more places: the planes do not suit this void. */
 enum { MOST_FACES = 4000, MOST_PLACES = 512, MOST_TOUCHING = 16384 };
 
-struct touching { int plane; uint32_t face; };
+struct touching {
+  int plane;
+  uint32_t face;
+};
 
 struct place {
-  int plane;                 /* of a patch, across the axis */
-  size_t n_face;             /* 0: became part of another one */
-  uint32_t first;            /* of its faces */
-  double spacing;            /* the least at them */
-  double wide;               /* most spacings from the plane, of a patch */
+  int plane;      /* of a patch, across the axis */
+  size_t n_face;  /* 0: became part of another one */
+  uint32_t first; /* of its faces */
+  double spacing; /* the least at them */
+  double wide;    /* most spacings from the plane, of a patch */
   double lo[3], hi[3];
 };
 
 struct search {
   const struct vg_node *n;
   const struct vg_sizing *sizing;
-  int axis;                  /* across which patches are; -1: boxes */
+  int axis; /* across which patches are; -1: boxes */
   double margin;
-  int is_cut;                /* a limit was met */
+  int is_cut; /* a limit was met */
   size_t n_touching, cap_touching;
   struct touching *touching;
-  uint32_t *parent;          /* [n_touching] those with a point in common */
+  uint32_t *parent; /* [n_touching] those with a point in common */
   size_t n_place, cap_place;
   struct place *place;
 };
@@ -160,7 +163,7 @@ static double width_of(const struct search *s, const struct touching *t)
 
   for (int k = 0; k < 3; k++) {
     const double *x = f->x[f->face[t->face][k]];
-    double foot[3] = {x[0], x[1], x[2]};
+    double foot[3] = { x[0], x[1], x[2] };
 
     foot[s->axis] = at;
     most = fmax(most, fabs(x[s->axis] - at) / vg_sizing_at(s->sizing, foot));
@@ -252,7 +255,7 @@ static int by_spacing(const void *a, const void *b)
 static int absorb(const struct search *s, struct place *list, size_t *n,
                   struct place *p)
 {
-  uint8_t is_taken[MOST_PLACES] = {0};
+  uint8_t is_taken[MOST_PLACES] = { 0 };
   size_t left = 0;
   struct place all = *p;
   int again = 1;
@@ -349,7 +352,9 @@ vg_status vg_node_open_places(struct vg_partition *p, struct vg_node *n,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err)
 {
-  struct search s = { .n = n, .sizing = p->sizing, .axis = axis,
+  struct search s = { .n = n,
+                      .sizing = p->sizing,
+                      .axis = axis,
                       .margin = axis < 0 ? margin : patch_margin };
   vg_status st;
 

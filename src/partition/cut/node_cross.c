@@ -26,7 +26,7 @@
 struct band {
   const struct vg_region *region;
   const struct vg_sizing *sizing;
-  double width, slope;       /* in spacings; of the sizing */
+  double width, slope; /* in spacings; of the sizing */
   double x[3], h;
 };
 
@@ -41,8 +41,7 @@ static int is_within(const struct band *b, const double *const x[3],
   for (int i = 0; i < 3; i++) {
     double d2 = 0;
 
-    for (int k = 0; k < 3; k++)
-      d2 += (x[i][k] - b->x[k]) * (x[i][k] - b->x[k]);
+    for (int k = 0; k < 3; k++) d2 += (x[i][k] - b->x[k]) * (x[i][k] - b->x[k]);
     far2 = fmax(far2, d2);
   }
   return most <= b->width * (b->h - b->slope * sqrt(far2));
@@ -67,9 +66,9 @@ static int stays(struct band *b, const double *const x[3])
 
 struct crossing {
   const struct vg_node *n;
-  size_t work, first;        /* its new points are there in the front */
-  const struct vg_filled *made;  /* what the work made */
-  uint32_t v[3];             /* the face at hand */
+  size_t work, first;           /* its new points are there in the front */
+  const struct vg_filled *made; /* what the work made */
+  uint32_t v[3];                /* the face at hand */
 };
 
 /* Faces around the cells: new ones, then consumed ones. */
@@ -107,7 +106,7 @@ static int crosses(void *context, uint32_t face)
 
   for (int k = 0; k < 9; k++) common += v[k / 3] == w[k % 3];
   return common < 3 &&
-         vg_triangles_meet((const double (*)[3])f->x, v, w, v, w) &&
+         vg_triangles_meet((const double(*)[3])f->x, v, w, v, w) &&
          !is_gone(c, face);
 }
 
@@ -116,8 +115,8 @@ static int crosses(void *context, uint32_t face)
 /* No way out is longer. */
 static double size_of(const struct crossing *c)
 {
-  double lo[3] = {INFINITY, INFINITY, INFINITY};
-  double hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+  double lo[3] = { INFINITY, INFINITY, INFINITY };
+  double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
 
   for (size_t k = 0; k < n_around(c); k++) {
     uint32_t v[3];
@@ -134,24 +133,27 @@ static double size_of(const struct crossing *c)
 /* Faces around the cells, seen along a way out: by the cells of a grid across
  * it that they may lie in. */
 struct shadow {
-  double lo[2], per[2];      /* corner; grid cells to a length */
+  double lo[2], per[2]; /* corner; grid cells to a length */
   uint32_t n[2];
-  uint32_t *first, *face;    /* of grid cell i: first[i] to first[i + 1] */
+  uint32_t *first, *face; /* of grid cell i: first[i] to first[i + 1] */
 };
 
 struct body {
   const struct crossing *c;
   struct shadow shadow;
-  double lo[3], hi[3];       /* where it may lie */
-  double size;               /* of what is around the cells */
-  uint8_t *is_beside;        /* [points of the front] 1: was given, or is known
-                                to be outside the cells */
+  double lo[3], hi[3]; /* where it may lie */
+  double size;         /* of what is around the cells */
+  uint8_t *is_beside;  /* [points of the front] 1: was given, or is known
+                          to be outside the cells */
 };
 
 /* Ways out. Aslant, so that they seldom touch an edge. Of the first one, which
  * nearly always will do, the shadow is kept; its third part is 1. */
-static const double way[][3] = { {0.4142, -0.2718, 1}, {-1.1, 0.5, 0.3},
-  {0.3, -0.9, -0.8}, {1.1, -0.2, 0.6}, {-0.6, -0.5, 1.2} };
+static const double way[][3] = { { 0.4142, -0.2718, 1 },
+                                 { -1.1, 0.5, 0.3 },
+                                 { 0.3, -0.9, -0.8 },
+                                 { 1.1, -0.2, 0.6 },
+                                 { -0.6, -0.5, 1.2 } };
 
 static void across(const double x[3], double u[2])
 {
@@ -163,7 +165,8 @@ static void across(const double x[3], double u[2])
 static void shadow_of(const struct crossing *c, const struct shadow *s,
                       size_t k, uint32_t lo[2], uint32_t hi[2])
 {
-  double from[2] = {INFINITY, INFINITY}, to[2] = {-INFINITY, -INFINITY}, u[2];
+  double from[2] = { INFINITY, INFINITY }, to[2] = { -INFINITY, -INFINITY },
+         u[2];
   uint32_t v[3];
 
   face_around(c, k, v);
@@ -182,7 +185,7 @@ static void shadow_of(const struct crossing *c, const struct shadow *s,
 
 static void measure_shadow(const struct crossing *c, struct shadow *s)
 {
-  double hi[2] = {-INFINITY, -INFINITY}, u[2];
+  double hi[2] = { -INFINITY, -INFINITY }, u[2];
   double side = sqrt((double)n_around(c)) / 2 + 1;
 
   s->lo[0] = s->lo[1] = INFINITY;
@@ -269,8 +272,8 @@ static int passes(const double x[3], const double y[3],
 
 /* Faces around the cells that the way from x to y passes; -1: it cannot be
  * told. list: [n] of them to be looked at, NULL: the first n. */
-static int n_passed(const struct body *b, const double x[3],
-                    const double y[3], size_t n, const uint32_t *list)
+static int n_passed(const struct body *b, const double x[3], const double y[3],
+                    size_t n, const uint32_t *list)
 {
   int sum = 0;
 
@@ -332,8 +335,7 @@ static int is_body(void *context, uint32_t face)
     const double *x = f->x[p];
     int is_beside = b->is_beside[p];
 
-    for (int j = 0; j < 3; j++)
-      is_beside |= x[j] < b->lo[j] || x[j] > b->hi[j];
+    for (int j = 0; j < 3; j++) is_beside |= x[j] < b->lo[j] || x[j] > b->hi[j];
     if (is_beside) continue;
     if (is_within_cells(b, x)) return 1;
     b->is_beside[p] = 1;
@@ -345,7 +347,8 @@ static int is_body(void *context, uint32_t face)
 static int holds_body(struct body *b, const struct vg_region *r,
                       const double *const x[3])
 {
-  const double *box[3] = {b->lo, b->hi, b->lo};  /* flat: only its box counts */
+  const double *box[3] = { b->lo, b->hi,
+                           b->lo }; /* flat: only its box counts */
 
   for (int k = 0; k < 3; k++) {
     b->lo[k] = fmin(x[0][k], fmin(x[1][k], x[2][k]));
@@ -369,11 +372,13 @@ int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
 {
   const struct vg_sizing *sizing = n->select.sizing;
   const struct vg_region *r = &n->region[i];
-  struct crossing c = { .n = n, .work = i, .first = first,
-                        .made = &n->change[i].made };
+  struct crossing c = {
+    .n = n, .work = i, .first = first, .made = &n->change[i].made
+  };
   struct body body = { .c = &c };
   int found = 0;
-  struct band b = { .region = r, .sizing = sizing,
+  struct band b = { .region = r,
+                    .sizing = sizing,
                     .width = vg_region_band(r, VG_BAND_FRONT) };
 
   assert(i < n->n_work && first <= n->front.n_point);
@@ -385,13 +390,10 @@ int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
     face_around(&c, k, c.v);
     for (int j = 0; j < 3; j++) x[j] = n->front.x[c.v[j]];
     if (stays(&b, x)) continue;
-    if (k < c.made->n_face &&
-        vg_select_touched(&n->select, x, crosses, &c))
+    if (k < c.made->n_face && vg_select_touched(&n->select, x, crosses, &c))
       found = 1;
-    else if (!body.is_beside && prepare(&body))
-      found = -1;
-    else
-      found = holds_body(&body, r, x);
+    else if (!body.is_beside && prepare(&body)) found = -1;
+    else found = holds_body(&body, r, x);
   }
   free(body.is_beside);
   free(body.shadow.first);

@@ -28,7 +28,7 @@ static struct vg_digest key_of(const struct vg_partition *p,
 static int find(struct vg_partition *p, struct vg_digest key, uint32_t serial,
                 struct vg_parting *out)
 {
-  struct vg_bytes b = {0, NULL};
+  struct vg_bytes b = { 0, NULL };
   struct vg_reader r;
 
   if (vg_store_find(p->options.store, key, &b, NULL) != VG_OK) return 0;
@@ -44,8 +44,7 @@ static void keep(struct vg_partition *p, struct vg_digest key, uint32_t serial,
   struct vg_writer w = { .cap = 0 };
 
   vg_parting_put(&w, made, serial);
-  if (!w.refused)
-    vg_store_keep(p->options.store, key, w.bytes.n, w.bytes.data);
+  if (!w.refused) vg_store_keep(p->options.store, key, w.bytes.n, w.bytes.data);
   free(w.bytes.data);
 }
 
@@ -66,7 +65,7 @@ static vg_status find_or_make(struct vg_partition *p, struct vg_node *n,
                               struct vg_parting *out, struct vg_error *err)
 {
   struct vg_parting_options o = vg_node_parting(p, n);
-  struct vg_digest key = {{0, 0}};
+  struct vg_digest key = { { 0, 0 } };
   int is_found = 0;
   vg_status st = VG_OK;
 
@@ -96,11 +95,11 @@ enum { NOBODY = UINT32_MAX };
 
 struct shares {
   struct vg_parting *parting;
-  uint32_t serial;           /* of the parting's points */
-  uint32_t *owner;           /* [n_point] part that has each */
-  uint32_t *number;          /* [n_point] among its owner's */
-  uint32_t *of;              /* [n_part] serials of the parts' leaves; 0: it
-                                may be cut, and owns none */
+  uint32_t serial;  /* of the parting's points */
+  uint32_t *owner;  /* [n_point] part that has each */
+  uint32_t *number; /* [n_point] among its owner's */
+  uint32_t *of;     /* [n_part] serials of the parts' leaves; 0: it
+                       may be cut, and owns none */
 };
 
 /* The first part with the point, of those that are filled or of those that may
@@ -154,7 +153,7 @@ static vg_status rename_front(const struct shares *s, size_t part,
 {
   struct vg_front *f = &s->parting->part[part].front;
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
-  double (*x)[3] = vg_alloc(f->n_point, sizeof *x);
+  double(*x)[3] = vg_alloc(f->n_point, sizeof *x);
   uint64_t *name = vg_alloc(f->n_point, sizeof *name);
   size_t n = f->n_point;
 
@@ -165,8 +164,7 @@ static vg_status rename_front(const struct shares *s, size_t part,
     return vg_fail_memory(err, "the parts of a void");
   }
   for (size_t v = 0; v < f->n_point; v++)
-    n -= f->id[v] >> 32 == s->serial &&
-         s->owner[(uint32_t)f->id[v]] == part;
+    n -= f->id[v] >> 32 == s->serial && s->owner[(uint32_t)f->id[v]] == part;
   for (size_t v = 0, other = 0; v < f->n_point; v++) {
     uint32_t q = (uint32_t)f->id[v], owner = NOBODY;
     size_t at;
@@ -190,8 +188,8 @@ static vg_status rename_front(const struct shares *s, size_t part,
 
 /* --- children ------------------------------------------------------------ */
 
-static vg_status make_child(const struct shares *s, struct vg_node *n,
-                            size_t k, struct vg_error *err)
+static vg_status make_child(const struct shares *s, struct vg_node *n, size_t k,
+                            struct vg_error *err)
 {
   struct vg_part *q = &s->parting->part[k];
   char path[VG_PATH_MAX];
@@ -220,7 +218,7 @@ vg_status vg_node_part(struct vg_partition *p, struct vg_node *n,
 
   assert(n->to_part && p->options.maker && !n->n_child);
   st = find_or_make(p, n, s.serial, e, &parting, err);
-  if (st != VG_OK) goto done;          /* or stopped */
+  if (st != VG_OK) goto done; /* or stopped */
   if (!parting.n_part) {
     st = vg_fail(err, VG_ERR_GEOMETRY, "a void fell into no parts");
     goto done;

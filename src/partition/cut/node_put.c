@@ -17,8 +17,10 @@ enum { CHUNK = 8192 };
 
 struct put {
   struct vg_node *n;
-  struct place { size_t point, face; } *at;  /* [n->n_work] of what is new */
-  int8_t *crosses;           /* [n->n_work] the front */
+  struct place {
+    size_t point, face;
+  } * at;          /* [n->n_work] of what is new */
+  int8_t *crosses; /* [n->n_work] the front */
 };
 
 /* Its points; then faces can be tested, while all of the front is there. */
@@ -32,8 +34,7 @@ static void test_part(void *context, size_t first, size_t end, int worker)
     const struct vg_change *c = &p->n->change[i];
 
     if (c->made.n_point)
-      memcpy(f->x + p->at[i].point, c->made.x,
-             c->made.n_point * sizeof *f->x);
+      memcpy(f->x + p->at[i].point, c->made.x, c->made.n_point * sizeof *f->x);
     for (size_t k = 0; k < c->made.n_point; k++)
       f->id[p->at[i].point + k] = VG_POINT_ID(c->serial, k);
     p->crosses[i] = (int8_t)vg_node_crosses(p->n, i, p->at[i].point);
@@ -53,9 +54,9 @@ static void put_change(struct vg_node *n, size_t i, const struct place *at,
     f->face[n->face[i][c->made.consumed[k]]][0] = VG_FACE_GONE;
   for (size_t k = 0; k < c->made.n_face; k++)
     for (int j = 0; j < 3; j++)
-      f->face[at->face + k][j] =
-        crosses ? VG_FACE_GONE
-                : vg_node_point(n, i, at->point, c->made.face[k][j]);
+      f->face[at->face + k][j] = crosses ? VG_FACE_GONE
+                                         : vg_node_point(n, i, at->point,
+                                                         c->made.face[k][j]);
 }
 
 static void put_part(void *context, size_t first, size_t end, int worker)
@@ -179,8 +180,8 @@ vg_status vg_node_put(struct vg_partition *p, struct vg_node *n,
 /* Each chunk lists from the place of its first face on. */
 struct look {
   const struct vg_node *n;
-  uint32_t *face;            /* [faces not yet seen] */
-  size_t *count;             /* [chunks] */
+  uint32_t *face; /* [faces not yet seen] */
+  size_t *count;  /* [chunks] */
 };
 
 static void look_part(void *context, size_t first, size_t end, int worker)

@@ -23,14 +23,14 @@ enum { NONE = 0xffff };
 struct split {
   struct vg_node *n;
   const struct vg_engine *e;
-  size_t n_block, n_chunk;   /* chunks of faces */
-  uint32_t *count;           /* [n_chunk][n_block] faces, then where the first
-                                of a child goes: at the child's first block */
-  uint32_t root[VG_LATTICE_BLOCKS];   /* of blocks (base/union_find.h) */
-  uint16_t child[VG_LATTICE_BLOCKS];  /* of a root, or NONE */
+  size_t n_block, n_chunk; /* chunks of faces */
+  uint32_t *count;         /* [n_chunk][n_block] faces, then where the first
+                              of a child goes: at the child's first block */
+  uint32_t root[VG_LATTICE_BLOCKS];  /* of blocks (base/union_find.h) */
+  uint16_t child[VG_LATTICE_BLOCKS]; /* of a root, or NONE */
   int is_merged;
   size_t n_part;
-  struct vg_front *part;     /* [n_part] of the children, in their order */
+  struct vg_front *part; /* [n_part] of the children, in their order */
 };
 
 /* --- blocks that hang together -------------------------------------------- */
@@ -48,8 +48,8 @@ static void unite_corners(struct split *s, const uint32_t v[3])
     s->is_merged |= vg_union(s->root, block_of(s, v[k]), block_of(s, v[0]));
     if (n->block[v[k]] & VG_ON_PLANE)
       s->is_merged |= vg_union(s->root, block_of(s, v[k]),
-                               vg_lattice_block(&n->lattice,
-                                                n->front.x[v[k]], 1));
+                               vg_lattice_block(&n->lattice, n->front.x[v[k]],
+                                                1));
   }
 }
 
@@ -67,8 +67,7 @@ static void count_part(void *context, size_t first, size_t end, int worker)
 }
 
 /* Faces of each chunk and block, those of all chunks in sum[]. */
-static vg_status count_faces(struct split *s, size_t *sum,
-                             struct vg_error *err)
+static vg_status count_faces(struct split *s, size_t *sum, struct vg_error *err)
 {
   s->n_block = vg_lattice_blocks(&s->n->lattice);
   s->n_chunk = (s->n->front.n_face + CHUNK - 1) / CHUNK;
@@ -92,8 +91,7 @@ static void number_children(struct split *s, const size_t *n_face)
   for (uint32_t b = 0; b < s->n_block; b++) {
     uint32_t r = vg_root_of(s->root, b);
 
-    if (n_face[b] && s->child[r] == NONE)
-      s->child[r] = (uint16_t)s->n_part++;
+    if (n_face[b] && s->child[r] == NONE) s->child[r] = (uint16_t)s->n_part++;
   }
   for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++)
     s->child[b] = s->child[vg_root_of(s->root, b)];
@@ -101,7 +99,7 @@ static void number_children(struct split *s, const size_t *n_face)
 
 static vg_status find_children(struct split *s, struct vg_error *err)
 {
-  size_t n_face[VG_LATTICE_BLOCKS] = {0};
+  size_t n_face[VG_LATTICE_BLOCKS] = { 0 };
   vg_status st;
 
   VG_TRY(vg_node_list_open(s->n, s->e, err));
@@ -120,11 +118,11 @@ done:
 /* Where each chunk puts its first face of each child. */
 static void place_chunks(struct split *s)
 {
-  uint32_t at[VG_LATTICE_BLOCKS] = {0};
+  uint32_t at[VG_LATTICE_BLOCKS] = { 0 };
 
   for (size_t c = 0; c < s->n_chunk; c++) {
     uint32_t *count = s->count + c * s->n_block;
-    uint32_t n[VG_LATTICE_BLOCKS] = {0};
+    uint32_t n[VG_LATTICE_BLOCKS] = { 0 };
 
     for (size_t b = 0; b < s->n_block; b++)
       if (count[b]) n[s->child[b]] += count[b];
@@ -137,8 +135,8 @@ static void place_chunks(struct split *s)
 
 struct deal {
   struct split *s;
-  uint32_t *number;          /* [points of the front] in their child */
-  int *is_short;             /* [n_part] of memory */
+  uint32_t *number; /* [points of the front] in their child */
+  int *is_short;    /* [n_part] of memory */
 };
 
 /* Children are not more than blocks, so count[] has their places. */
@@ -234,9 +232,9 @@ static vg_status split_front(struct split *s, struct vg_error *err)
                     vg_calloc(s->n_part, sizeof *d.is_short) };
   struct vg_front *f = &s->n->front;
   vg_status st = d.number && d.is_short
-                   ? deal_out(&d, err)
-                   : vg_fail_memory(err, "the parts of a front");
-  void *const whole[] = {f->x, f->id, f->face, d.number, d.is_short};
+                 ? deal_out(&d, err)
+                 : vg_fail_memory(err, "the parts of a front");
+  void *const whole[] = { f->x, f->id, f->face, d.number, d.is_short };
 
   vg_engine_free(s->e, sizeof whole / sizeof *whole, whole);
   memset(f, 0, sizeof *f);
@@ -245,7 +243,7 @@ static vg_status split_front(struct split *s, struct vg_error *err)
 
 struct volumes {
   const struct split *s;
-  double *of;                /* [n_part] */
+  double *of; /* [n_part] */
 };
 
 static void measure_part(void *context, size_t first, size_t end, int worker)
@@ -479,8 +477,7 @@ vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
   VG_TRY(bundle(p, n, err));
   vg_node_plan_children(p, n, e);
 done:
-  for (size_t k = 0; s.part && k < s.n_part; k++)
-    vg_front_release(&s.part[k]);
+  for (size_t k = 0; s.part && k < s.n_part; k++) vg_front_release(&s.part[k]);
   free(s.part);
   free(s.count);
   return st;

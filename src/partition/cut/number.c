@@ -10,7 +10,7 @@
 /* One task's share, as the ranks tell each other. */
 struct share {
   char path[VG_PATH_MAX];
-  uint32_t serial, index;    /* index: among the pieces of its rank */
+  uint32_t serial, index; /* index: among the pieces of its rank */
   uint64_t n_point, n_cell;
   uint64_t rank;
 };
@@ -53,7 +53,7 @@ static vg_status list_own(const struct vg_partition *p, struct vg_bytes *out,
 static vg_status gather(const struct vg_partition *p, struct vg_comm *comm,
                         struct share **out, size_t *n, struct vg_error *err)
 {
-  struct vg_bytes mine = {0, NULL};
+  struct vg_bytes mine = { 0, NULL };
   struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
   size_t bytes = 0;
   vg_status st = all ? list_own(p, &mine, err)
@@ -79,8 +79,8 @@ static vg_status gather(const struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
-static vg_status number(struct vg_partition *p, size_t n,
-                        const struct share *s, struct vg_error *err)
+static vg_status number(struct vg_partition *p, size_t n, const struct share *s,
+                        struct vg_error *err)
 {
   uint64_t point = p->boundary->n_point, cell = 0;
 
@@ -106,7 +106,8 @@ static vg_status number(struct vg_partition *p, size_t n,
   p->slices.n_point = point;
   p->slices.n_cell[VG_SLICE_TET] = cell;
   if (point <= UINT32_MAX) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "the mesh would have %llu points; "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the mesh would have %llu points; "
                  "at most %u can be numbered: use a coarser spacing",
                  (unsigned long long)point, UINT32_MAX);
 }
@@ -132,7 +133,7 @@ static int kind_of(char kind)
 static void serve_front(const struct vg_partition *p, struct vg_slice *out)
 {
   out->n_point = out->n_own = p->boundary->n_point;
-  out->x = (const double (*)[3])p->boundary->point;
+  out->x = (const double(*)[3])p->boundary->point;
   out->id = out->own = p->front_id;
 }
 
@@ -159,7 +160,7 @@ static vg_status serve(const struct vg_slices *s, size_t i,
     id[piece->n_in + k] = (uint32_t)(p->point_at[i] + k);
     own[k] = (uint32_t)(piece->n_in + k);
   }
-  out->x = (const double (*)[3])piece->x;
+  out->x = (const double(*)[3])piece->x;
   out->id = out->keep = id;
   out->own = own;
   out->point_at = p->point_at[i];
@@ -182,7 +183,7 @@ static vg_status open_slices(struct vg_partition *p, struct vg_error *err)
 {
   struct vg_slices *s = &p->slices;
 
-  p->boundary_faces = *p->boundary;     /* arrays borrowed */
+  p->boundary_faces = *p->boundary; /* arrays borrowed */
   p->boundary_faces.n_point = 0;
   p->boundary_faces.point = NULL;
   p->front_id = vg_alloc(p->boundary->n_point, sizeof *p->front_id);

@@ -10,8 +10,7 @@
 
 void vg_parting_release(struct vg_parting *p)
 {
-  for (size_t k = 0; k < p->n_part; k++)
-    vg_front_release(&p->part[k].front);
+  for (size_t k = 0; k < p->n_part; k++) vg_front_release(&p->part[k].front);
   free(p->part);
   free(p->x);
   memset(p, 0, sizeof *p);
@@ -32,7 +31,7 @@ int vg_parting_parts(double cells, double leaf_cells)
 }
 
 /* The smallest leaves that were found to be worth a cut. */
-static const double least_leaf = 14000;   /* C1 */
+static const double least_leaf = 14000; /* C1 */
 
 double vg_parting_leaf_cells(double cells, int n_part, int is_parted,
                              double leaf_cells)
@@ -51,9 +50,11 @@ vg_status vg_parting_check_options(const struct vg_parting_options *o,
     return vg_fail(err, VG_ERR_INPUT, "%d parts are asked for; give 1 or more",
                    o->n_part);
   if (o->n_part > 1 && o->n_part > cells)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "%d parts of a void in which "
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%d parts of a void in which "
                    "%.0f cells are expected; ask for fewer parts, or leave "
-                   "them to leaf_cells", o->n_part, cells);
+                   "them to leaf_cells",
+                   o->n_part, cells);
   return VG_OK;
 }
 
@@ -62,19 +63,20 @@ vg_status vg_parting_check_options(const struct vg_parting_options *o,
 /* A face by the names of its corners, rising. */
 struct side {
   uint64_t name[3];
-  const double *x;           /* of one of them */
-  int8_t sense;              /* 1 or -1, as they were turned */
-  int8_t is_part;            /* 0: of the void's front */
+  const double *x; /* of one of them */
+  int8_t sense;    /* 1 or -1, as they were turned */
+  int8_t is_part;  /* 0: of the void's front */
 };
 
 static struct side side_of(const struct vg_front *f, const uint32_t v[3],
                            int is_part)
 {
-  struct side s = { { f->id[v[0]], f->id[v[1]], f->id[v[2]] },
-                    f->x[v[0]], 1, (int8_t)is_part };
+  struct side s = {
+    { f->id[v[0]], f->id[v[1]], f->id[v[2]] }, f->x[v[0]], 1, (int8_t)is_part
+  };
 
   for (int k = 0; k < 3; k++) {
-    int i = k % 2;           /* 0 1, 1 2, 0 1 */
+    int i = k % 2; /* 0 1, 1 2, 0 1 */
     uint64_t swap = s.name[i];
 
     if (swap < s.name[i + 1]) continue;
@@ -94,8 +96,7 @@ static int by_corners(const void *a, const void *b)
   return 0;
 }
 
-static void append_sides(const struct vg_front *f, int is_part,
-                         struct side *to)
+static void append_sides(const struct vg_front *f, int is_part, struct side *to)
 {
   for (size_t k = 0; k < f->n_face; k++)
     to[k] = side_of(f, f->face[k], is_part);
@@ -105,10 +106,9 @@ static void append_sides(const struct vg_front *f, int is_part,
  * once. */
 static int is_right(size_t n, const struct side *s)
 {
-  int over[2] = {0, 0};
+  int over[2] = { 0, 0 };
 
-  for (size_t k = 0; k < n; k++)
-    over[s[k].sense > 0] += s[k].is_part ? 1 : -1;
+  for (size_t k = 0; k < n; k++) over[s[k].sense > 0] += s[k].is_part ? 1 : -1;
   return over[0] == over[1] && (over[0] == 0 || over[0] == 1);
 }
 
@@ -123,11 +123,11 @@ static vg_status check_names(const struct vg_parting *p, uint32_t serial,
       uint32_t at = (uint32_t)f->id[v];
 
       if (f->id[v] >> 32 != serial) continue;
-      if (at < p->n_point && !memcmp(p->x[at], f->x[v], sizeof *f->x))
-        continue;
-      return vg_fail(err, VG_ERR_GEOMETRY, "part %zu of %zu has a point at "
-                     "(%g, %g, %g) that no interface has", k + 1, p->n_part,
-                     f->x[v][0], f->x[v][1], f->x[v][2]);
+      if (at < p->n_point && !memcmp(p->x[at], f->x[v], sizeof *f->x)) continue;
+      return vg_fail(err, VG_ERR_GEOMETRY,
+                     "part %zu of %zu has a point at "
+                     "(%g, %g, %g) that no interface has",
+                     k + 1, p->n_part, f->x[v][0], f->x[v][1], f->x[v][2]);
     }
   }
   return VG_OK;
@@ -156,9 +156,10 @@ vg_status vg_parting_check(const struct vg_parting *p,
   for (size_t k = 0; st == VG_OK && k < n; k = end) {
     for (end = k + 1; end < n && !by_corners(&s[k], &s[end]);) end++;
     if (!is_right(end - k, s + k))
-      st = vg_fail(err, VG_ERR_GEOMETRY, "the %zu parts of a void do not fit "
-                   "together at (%g, %g, %g)", p->n_part, s[k].x[0],
-                   s[k].x[1], s[k].x[2]);
+      st = vg_fail(err, VG_ERR_GEOMETRY,
+                   "the %zu parts of a void do not fit "
+                   "together at (%g, %g, %g)",
+                   p->n_part, s[k].x[0], s[k].x[1], s[k].x[2]);
   }
   free(s);
   return st;
@@ -173,14 +174,12 @@ static const uint32_t any_serial = UINT32_MAX;
 static void give_names(struct vg_front *f, uint32_t from, uint32_t to)
 {
   for (size_t k = 0; k < f->n_point; k++)
-    if (f->id[k] >> 32 == from)
-      f->id[k] = VG_POINT_ID(to, f->id[k]);
+    if (f->id[k] >> 32 == from) f->id[k] = VG_POINT_ID(to, f->id[k]);
 }
 
-void vg_parting_put(struct vg_writer *w, struct vg_parting *p,
-                    uint32_t serial)
+void vg_parting_put(struct vg_writer *w, struct vg_parting *p, uint32_t serial)
 {
-  uint64_t count[2] = {p->n_point, p->n_part};
+  uint64_t count[2] = { p->n_point, p->n_part };
 
   assert(w && (p->part || !p->n_part));
   vg_put(w, 2, sizeof *count, count);
@@ -196,10 +195,9 @@ void vg_parting_put(struct vg_writer *w, struct vg_parting *p,
   }
 }
 
-void vg_parting_get(struct vg_reader *r, uint32_t serial,
-                    struct vg_parting *p)
+void vg_parting_get(struct vg_reader *r, uint32_t serial, struct vg_parting *p)
 {
-  uint64_t count[2] = {0, 0};
+  uint64_t count[2] = { 0, 0 };
 
   assert(r && p);
   memset(p, 0, sizeof *p);

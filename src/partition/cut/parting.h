@@ -1,7 +1,7 @@
 /* partition/cut/parting.h: a void that was parted by interfaces before any of
  * it is filled: what the discrete and the octree-guided decomposition make. The
- * parts are filled, or cut further, like the children of a cut. Uses task_data.h,
- * load.h, engine.h. */
+ * parts are filled, or cut further, like the children of a cut. Uses
+ * task_data.h, load.h, engine.h. */
 #ifndef VG_PARTITION_CUT_PARTING_H
 #define VG_PARTITION_CUT_PARTING_H
 
@@ -14,49 +14,57 @@ enum vg_partitioner { VG_PARTITIONER_METIS, VG_PARTITIONER_RCB };
 /* A coarse mesh of a void: the points of its front first, in their order. */
 struct vg_coarse_cells {
   size_t n_point, n_cell;
-  double (*x)[3];            /* [n_point] */
-  uint32_t (*cell)[4];       /* [n_cell] in either orientation */
-  double seconds;            /* that it took */
+  double (*x)[3];      /* [n_point] */
+  uint32_t (*cell)[4]; /* [n_cell] in either orientation */
+  double seconds;      /* that it took */
 };
 
 void vg_coarse_cells_release(struct vg_coarse_cells *c);
 
 struct vg_parting_options {
-  int n_part;                /* at least 1 when a maker is asked; before, 0:
-                                by the rule's leaf_cells */
-  int partitioner;           /* enum vg_partitioner */
-  double coarsening;         /* sizes of the coarse mesh or octree over those of
-                                the mesh; 0: chosen */
-  int h_refine;              /* 1: interfaces get their size by halving edges */
-  double cells_per_cube;     /* as of vg_load_new */
-  const struct vg_coarse_cells *coarse;  /* made before by all workers, for the
-                                discrete maker; borrowed. NULL: it makes one */
+  int n_part;            /* at least 1 when a maker is asked; before, 0:
+                            by the rule's leaf_cells */
+  int partitioner;       /* enum vg_partitioner */
+  double coarsening;     /* sizes of the coarse mesh or octree over those of
+                            the mesh; 0: chosen */
+  int h_refine;          /* 1: interfaces get their size by halving edges */
+  double cells_per_cube; /* as of vg_load_new */
+  const struct vg_coarse_cells *coarse; /* made before by all workers, for the
+                               discrete maker; borrowed. NULL: it makes one */
 };
-#define VG_PARTING_OPTIONS_INIT { 0, VG_PARTITIONER_METIS, 0, 0, \
-  VG_LOAD_CELLS_PER_CUBE, NULL }
+#define VG_PARTING_OPTIONS_INIT                                                \
+  {                                                                            \
+    0, VG_PARTITIONER_METIS, 0, 0, VG_LOAD_CELLS_PER_CUBE, NULL                \
+  }
 
 /* In the order of the setting's words. */
-enum vg_decomposition { VG_DECOMPOSE_ADVANCING, VG_DECOMPOSE_DISCRETE,
-  VG_DECOMPOSE_OCTREE, VG_DECOMPOSITIONS };
+enum vg_decomposition {
+  VG_DECOMPOSE_ADVANCING,
+  VG_DECOMPOSE_DISCRETE,
+  VG_DECOMPOSE_OCTREE,
+  VG_DECOMPOSITIONS
+};
 
 /* Steps of a maker whose seconds are told. */
-enum { VG_PARTING_COARSE,    /* coarse mesh or octree */
-       VG_PARTING_GRAPH,     /* its cells dealt out to parts */
-       VG_PARTING_SMOOTH,    /* interfaces smoothed */
-       VG_PARTING_FACES,     /* interfaces brought to the local size */
-       VG_PARTING_STEPS };
+enum {
+  VG_PARTING_COARSE, /* coarse mesh or octree */
+  VG_PARTING_GRAPH,  /* its cells dealt out to parts */
+  VG_PARTING_SMOOTH, /* interfaces smoothed */
+  VG_PARTING_FACES,  /* interfaces brought to the local size */
+  VG_PARTING_STEPS
+};
 
 struct vg_parting_report {
-  double coarsening;         /* that was used */
-  uint64_t n_coarse;         /* coarse cells or octants */
-  double coarse_cells;       /* expected in the octants */
-  uint64_t n_gap;            /* parts at the front, without octants; 0: there
-                                are none */
-  uint64_t n_apart;          /* parts beyond n_part: pieces that hung apart */
-  uint64_t n_asked;          /* parts asked for; of octants fewer may be made */
-  uint64_t n_face;           /* triangles of interfaces */
+  double coarsening;   /* that was used */
+  uint64_t n_coarse;   /* coarse cells or octants */
+  double coarse_cells; /* expected in the octants */
+  uint64_t n_gap;      /* parts at the front, without octants; 0: there
+                          are none */
+  uint64_t n_apart;    /* parts beyond n_part: pieces that hung apart */
+  uint64_t n_asked;    /* parts asked for; of octants fewer may be made */
+  uint64_t n_face;     /* triangles of interfaces */
   double time[VG_PARTING_STEPS];
-  double elsewhere;          /* s of processor time in other processes */
+  double elsewhere; /* s of processor time in other processes */
 };
 
 struct vg_writer;
@@ -64,20 +72,23 @@ struct vg_reader;
 
 struct vg_parting {
   size_t n_point;
-  double (*x)[3];            /* [n_point] points of interfaces, none of them on
-                                the front */
+  double (*x)[3]; /* [n_point] points of interfaces, none of them on
+                     the front */
   size_t n_part;
   struct vg_part {
-    struct vg_front front;   /* closed, into the part; names: of the void's own
-                                points as they were, of x[k] VG_POINT_ID(
-                                serial of the parting, k) */
-    int may_cut;             /* 1: the advancing partition may cut it further,
-                                if each of its interface points is on a part,
-                                too, that it may not cut; else it is filled */
-  } *part;                   /* [n_part], in an order that follows from input */
+    struct vg_front front; /* closed, into the part; names: of the void's own
+                              points as they were, of x[k] VG_POINT_ID(
+                              serial of the parting, k) */
+    int may_cut;           /* 1: the advancing partition may cut it further,
+                              if each of its interface points is on a part,
+                              too, that it may not cut; else it is filled */
+  } * part;                /* [n_part], in an order that follows from input */
   struct vg_parting_report report;
 };
-#define VG_PARTING_INIT { 0 }
+#define VG_PARTING_INIT                                                        \
+  {                                                                            \
+    0                                                                          \
+  }
 
 void vg_parting_release(struct vg_parting *p);
 
@@ -106,8 +117,8 @@ vg_status vg_parting_check_options(const struct vg_parting_options *o,
  * @param out     empty; untouched on failure
  * Follows from the arguments alone, e and the serial aside, bit by bit.
  * Threads: several may run at once.
- * VG_ERR_STOPPED: as asked; VG_ERR_GEOMETRY, VG_ERR_UNSUPPORTED: it cannot be parted
- * so, with the reason and a remedy; VG_ERR_MEMORY. */
+ * VG_ERR_STOPPED: as asked; VG_ERR_GEOMETRY, VG_ERR_UNSUPPORTED: it cannot be
+ * parted so, with the reason and a remedy; VG_ERR_MEMORY. */
 typedef vg_status vg_parting_maker(const struct vg_front *front,
                                    const struct vg_load *load,
                                    const struct vg_sizing *sizing,
@@ -126,9 +137,7 @@ vg_status vg_parting_check(const struct vg_parting *p,
 /** Bytes of a parting and back, for the store, whatever its serial is then;
  * *p is as it was. Sets r->bad, and leaves *p empty, where the data cannot
  * be. */
-void vg_parting_put(struct vg_writer *w, struct vg_parting *p,
-                    uint32_t serial);
-void vg_parting_get(struct vg_reader *r, uint32_t serial,
-                    struct vg_parting *p);
+void vg_parting_put(struct vg_writer *w, struct vg_parting *p, uint32_t serial);
+void vg_parting_get(struct vg_reader *r, uint32_t serial, struct vg_parting *p);
 
 #endif

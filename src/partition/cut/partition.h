@@ -14,42 +14,44 @@
 #include "partition/store/store.h"
 
 /** Cells to a leaf, by default: measured, docs/performance-parallel.md. */
-#define VG_LEAF_CELLS 300000.0   /* C1 */
+#define VG_LEAF_CELLS 300000.0 /* C1 */
 
 struct vg_partition_options {
   struct vg_cut_rule rule;
-  int levels;                /* bisections, where rule.leaf_cells is 0 */
-  vg_parting_maker *maker;   /* parts the void before any of it is filled, by
-                                the options behind; NULL: planes cut it */
+  int levels;              /* bisections, where rule.leaf_cells is 0 */
+  vg_parting_maker *maker; /* parts the void before any of it is filled, by
+                              the options behind; NULL: planes cut it */
   struct vg_parting_options parting;
-  double cells_per_cube;     /* expected (load.h); what zones hold corrects it,
-                                and leaves that outgrow it are cut again */
+  double cells_per_cube; /* expected (load.h); what zones hold corrects it,
+                            and leaves that outgrow it are cut again */
   int threads;
-  int cyclic;                /* 1: leaves are dealt out beforehand (engine.h),
-                                by vg_front_work */
-  int sweeps;                /* of optimisation */
+  int cyclic; /* 1: leaves are dealt out beforehand (engine.h),
+                 by vg_front_work */
+  int sweeps; /* of optimisation */
   struct vg_mesher_pool *mesher; /* for leaves; NULL: the built-in kernel */
-  uint64_t max_cells;        /* refuse to make more; 0: no limit */
-  uint64_t layer_cells;      /* cells that the mesh has besides, which count
-                                for max_cells */
-  uint64_t shuffle;          /* see engine.h */
-  struct vg_store *store;    /* may be NULL */
-  struct vg_digest job;      /* of size field and options, for the store */
-  double fail_leaves;        /* share of the leaves that are not filled, by
-                                their paths, nor in the first fail_rounds - 1
-                                larger attempts: for tests; 0 */
+  uint64_t max_cells;            /* refuse to make more; 0: no limit */
+  uint64_t layer_cells;          /* cells that the mesh has besides, which count
+                                    for max_cells */
+  uint64_t shuffle;              /* see engine.h */
+  struct vg_store *store;        /* may be NULL */
+  struct vg_digest job;          /* of size field and options, for the store */
+  double fail_leaves;            /* share of the leaves that are not filled, by
+                                    their paths, nor in the larger attempts
+                                    before fail_rounds: for tests; 0 */
   int fail_rounds;
-  struct vg_progress progress;  /* on rank 0; cells done, expected */
-  struct vg_stop stop;       /* asked on every rank */
+  struct vg_progress progress; /* on rank 0; cells done, expected */
+  struct vg_stop stop;         /* asked on every rank */
 };
-#define VG_PARTITION_OPTIONS_INIT \
-  { .rule = { VG_LEAF_CELLS, -1, 0 }, .threads = 1, .sweeps = 2, \
-    .parting = VG_PARTING_OPTIONS_INIT, \
-    .cells_per_cube = VG_LOAD_CELLS_PER_CUBE }
+#define VG_PARTITION_OPTIONS_INIT                                              \
+  {                                                                            \
+    .rule = { VG_LEAF_CELLS, -1, 0 }, .threads = 1, .sweeps = 2,               \
+    .parting = VG_PARTING_OPTIONS_INIT,                                        \
+    .cells_per_cube = VG_LOAD_CELLS_PER_CUBE                                   \
+  }
 
 /** What happened, summed over all ranks. */
 struct vg_partition_report {
-  struct vg_fill_report fill;  /* times are seconds of all workers together */
+  struct vg_fill_report fill; /* times are seconds of all workers together */
   uint64_t n_node, n_pencil, n_tile, n_leaf;
   uint64_t n_zone_cell;      /* cells of pencils and tiles */
   uint64_t n_blocked;        /* pencils and tiles that could not be grown */
@@ -69,24 +71,25 @@ struct vg_partition_report {
   uint64_t n_repair;         /* bad regions at interfaces; those that got
                                 better */
   uint64_t n_repaired;
-  uint64_t n_repair_cell;    /* cells in all those regions */
+  uint64_t n_repair_cell; /* cells in all those regions */
   uint64_t n_repair_bad;  /* below VG_SHAPE_TARGET among them, before, after */
   uint64_t n_repair_bad_left;
-  double repair_worst;       /* and the worst one (core/geometry/shape.h) */
+  double repair_worst; /* and the worst one (core/geometry/shape.h) */
   double repair_worst_left;
-  double repair;             /* seconds of repairs */
-  uint64_t n_widened;        /* parts that could not be filled, and were filled
-                                together with what is beside them */
-  uint64_t n_widened_cell;   /* cells there, made for nothing */
-  double widened;            /* seconds, in wall */
-  uint64_t n_part;           /* that a maker made; 0: there was none */
+  double repair;           /* seconds of repairs */
+  uint64_t n_widened;      /* parts that could not be filled, and were filled
+                              together with what is beside them */
+  uint64_t n_widened_cell; /* cells there, made for nothing */
+  double widened;          /* seconds, in wall */
+  uint64_t n_part;         /* that a maker made; 0: there was none */
   struct vg_parting_report parting;
-  double estimate;           /* cells expected at the start */
-  double wall;               /* seconds of the engine */
-  double number;             /* seconds of numbering */
+  double estimate; /* cells expected at the start */
+  double wall;     /* seconds of the engine */
+  double number;   /* seconds of numbering */
 };
 
-/** Fields of it, and of its parting, that ranks combine (partition_report.c). */
+/** Fields of it, and of its parting, that ranks combine (partition_report.c).
+ */
 extern const struct vg_entries vg_partition_entries, vg_parting_entries;
 
 /** The cells of a void, on the ranks that made them. */

@@ -2,9 +2,9 @@
  * are numbered. Repairs combine theirs before (repair/repair.c). */
 #include "partition/cut/partition.h"
 
-#define COUNT(name, member) \
+#define COUNT(name, member)                                                    \
   VG_ENTRY(name, struct vg_partition_report, member, COUNT, SUM)
-#define PARTING(name, member, kind, rule) \
+#define PARTING(name, member, kind, rule)                                      \
   VG_ENTRY(name, struct vg_parting_report, member, kind, rule)
 
 static const struct vg_entry count[] = {
@@ -27,7 +27,7 @@ static const struct vg_entry count[] = {
 };
 
 const struct vg_entries vg_partition_entries = { sizeof count / sizeof *count,
-                                               count };
+                                                 count };
 
 static const struct vg_entry parting[] = {
   PARTING("parts_asked", n_asked, COUNT, SUM),
@@ -44,4 +44,4 @@ static const struct vg_entry parting[] = {
 };
 
 const struct vg_entries vg_parting_entries = { sizeof parting / sizeof *parting,
-                                             parting };
+                                               parting };

@@ -41,36 +41,37 @@ vg_status vg_recut_note_leaf(struct vg_partition *p, struct vg_node *n,
 
 void vg_recut_release(struct vg_partition *p)
 {
-  for (size_t k = 0; k < p->n_unfilled; k++)
-    vg_node_free(p->unfilled[k].node);
+  for (size_t k = 0; k < p->n_unfilled; k++) vg_node_free(p->unfilled[k].node);
   p->n_unfilled = 0;
   free(p->unfilled);
 }
 
 /* --- voids that were not filled, known to all ranks ---------------------- */
 
-struct corners { uint64_t name[3]; };    /* of a face, rising */
+struct corners {
+  uint64_t name[3];
+}; /* of a face, rising */
 
 struct unfilled {
   char path[VG_PATH_MAX];
   struct vg_error why;
   struct vg_box box;
   size_t n_face;
-  struct corners *face;      /* [n_face] in order */
+  struct corners *face; /* [n_face] in order */
 };
 
 /* Where pieces and voids go. */
 struct parcels {
   struct vg_partition *p;
   size_t n;
-  struct unfilled *of;       /* [n] by path */
-  uint32_t *up;              /* [n] those that meet (base/union_find.h); the
-                                root's rank is root % size */
-  uint32_t *near;            /* [p->n_piece] a void beside it, or n: none */
+  struct unfilled *of; /* [n] by path */
+  uint32_t *up;        /* [n] those that meet (base/union_find.h); the
+                          root's rank is root % size */
+  uint32_t *near;      /* [p->n_piece] a void beside it, or n: none */
   size_t n_gone, cap_gone;
-  uint32_t *gone;            /* [n_gone] serials of what this rank takes back,
-                                and of voids that were not filled */
-  struct vg_writer *to;      /* [size] */
+  uint32_t *gone;       /* [n_gone] serials of what this rank takes back,
+                           and of voids that were not filled */
+  struct vg_writer *to; /* [size] */
 };
 
 static int by_path(const void *a, const void *b)
@@ -109,8 +110,7 @@ static void put_void(struct vg_writer *w, const struct vg_node *n,
   vg_put(w, 1, sizeof n_face, &n_face);
   for (size_t k = 0; k < f->n_face; k++) {
     const uint32_t *v = f->face[k];
-    struct corners c = corners_of(f->id[v[0]], f->id[v[1]],
-                                  f->id[v[2]]);
+    struct corners c = corners_of(f->id[v[0]], f->id[v[1]], f->id[v[2]]);
 
     vg_put(w, 3, sizeof *c.name, c.name);
   }
@@ -180,7 +180,7 @@ done:
  * taken at once. */
 enum { NO_LEAF, ONE_LEAF, ALL_LEAVES };
 
-enum { ONE_BY_ONE = 3 };     /* C17 */
+enum { ONE_BY_ONE = 3 }; /* C17 */
 
 static int leaves_taken(const struct unfilled *u)
 {
@@ -229,7 +229,10 @@ static void take_back(struct parcels *q, size_t piece, uint32_t from)
 }
 
 /* The leaf that has most faces in common with a void. */
-struct best { uint64_t n; vg_path path; };
+struct best {
+  uint64_t n;
+  vg_path path;
+};
 
 static int is_better(const struct best *a, const struct best *b)
 {
@@ -239,8 +242,7 @@ static int is_better(const struct best *a, const struct best *b)
 /* Pieces of this rank that are beside voids, and voids that meet in one.
  * best: [q->n] zeros; of this rank's leaves, where one may be taken; n_zone:
  * [q->n] zeros; of this rank's zones. */
-static void look_around(struct parcels *q, struct best *best,
-                        uint64_t *n_zone)
+static void look_around(struct parcels *q, struct best *best, uint64_t *n_zone)
 {
   for (size_t k = 0; k < q->p->n_piece; k++) {
     const struct vg_piece *piece = &q->p->piece[k];
@@ -323,7 +325,7 @@ static vg_status agree_on_groups(struct parcels *q, struct vg_comm *comm,
   for (size_t k = 0; k < q->p->n_piece; k++)
     if (q->near[k] < q->n) beside[vg_root_of(q->up, q->near[k])]++;
   for (uint32_t k = 0; k < q->n; k++)
-    beside[k] += vg_root_of(q->up, k) != k;    /* goes into another one */
+    beside[k] += vg_root_of(q->up, k) != k; /* goes into another one */
   VG_TRY(vg_comm_sum(comm, q->n, beside, err));
   for (size_t k = 0; k < q->n; k++) {
     if (beside[k] && strlen(q->of[k].path) + 2 < VG_PATH_MAX) continue;
@@ -380,8 +382,8 @@ static vg_status send_unfilled(struct parcels *q, struct vg_error *err)
 
 /* Pieces beside voids are sent as what bounds them, and forgotten. path:
  * theirs. */
-static vg_status send_pieces(struct parcels *q, vg_path *path,
-                             size_t *n_path, struct vg_error *err)
+static vg_status send_pieces(struct parcels *q, vg_path *path, size_t *n_path,
+                             struct vg_error *err)
 {
   struct vg_partition *p = q->p;
   size_t left = 0;
@@ -409,7 +411,10 @@ static vg_status send_pieces(struct parcels *q, vg_path *path,
 }
 
 /* A void in the making, on the rank that fills it. */
-struct wider { struct vg_front front; double per_cube; };
+struct wider {
+  struct vg_front front;
+  double per_cube;
+};
 
 static vg_status receive(const struct parcels *q, struct wider *wider,
                          const struct vg_bytes *b, struct vg_error *err)

@@ -10,11 +10,14 @@
 #include "partition/cut/node.h"
 
 /* A face by its corners, rising; sense: 1 or -1, as they were turned. */
-struct side { uint32_t v[3]; int32_t sense; };
+struct side {
+  uint32_t v[3];
+  int32_t sense;
+};
 
 static struct side side_of(const uint32_t v[3])
 {
-  struct side s = { {v[0], v[1], v[2]}, 1 };
+  struct side s = { { v[0], v[1], v[2] }, 1 };
 
   if (vg_order3(s.v)) s.sense = -1;
   return s;
@@ -46,7 +49,8 @@ static vg_status cancel(struct vg_front *f, struct vg_error *err)
       sum += s[end].sense;
     if (!sum) continue;
     if (abs(sum) > 1)
-      st = vg_fail(err, VG_ERR_GEOMETRY, "a void that was cut has a face "
+      st = vg_fail(err, VG_ERR_GEOMETRY,
+                   "a void that was cut has a face "
                    "twice");
     f->face[left][0] = s[k].v[0];
     f->face[left][1] = s[k].v[sum > 0 ? 1 : 2];
@@ -57,7 +61,11 @@ static vg_status cancel(struct vg_front *f, struct vg_error *err)
   return st;
 }
 
-struct spot { double x[3]; uint64_t name; uint32_t was; };
+struct spot {
+  double x[3];
+  uint64_t name;
+  uint32_t was;
+};
 
 /* By their places: names depend on timing. No two have one place, but for
  * points of the boundary, whose names do not. */
@@ -122,8 +130,7 @@ vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
   if (!f->x || !f->id || !f->face) return vg_fail_memory(err, "a front");
   memcpy(f->x, q->x, f->n_point * sizeof *f->x);
   for (size_t k = 0; k < f->n_point; k++)
-    f->id[k] = k < q->n_in ? q->in[k]
-                             : VG_POINT_ID(q->serial, k - q->n_in);
+    f->id[k] = k < q->n_in ? q->in[k] : VG_POINT_ID(q->serial, k - q->n_in);
   for (size_t k = 0; k < f->n_face; k++)
     for (int i = 0; i < 3; i++)
       f->face[k][i] = q->cell[k / 4][vg_face[k % 4][i]];

@@ -10,9 +10,14 @@
 #include "partition/cut/node.h"
 
 /* A name that the node of void k (by its rank) has on its front. */
-struct claim { uint64_t name; uint64_t k; };
+struct claim {
+  uint64_t name;
+  uint64_t k;
+};
 
-struct rename { uint64_t from, to; };
+struct rename {
+  uint64_t from, to;
+};
 
 static int by_value(const void *a, const void *b)
 {
@@ -37,8 +42,8 @@ static int by_from(const void *a, const void *b)
 }
 
 /* What all ranks have of items of a size, in one list. Collective. */
-static vg_status gather(struct vg_partition *p, struct vg_comm *comm,
-                        size_t n, size_t size, const void *mine, void **out,
+static vg_status gather(struct vg_partition *p, struct vg_comm *comm, size_t n,
+                        size_t size, const void *mine, void **out,
                         size_t *n_out, struct vg_error *err)
 {
   struct vg_bytes own = { n * size, NULL };
@@ -50,16 +55,18 @@ static vg_status gather(struct vg_partition *p, struct vg_comm *comm,
   *n_out = 0;
   own.data = vg_alloc(own.n, 1);
   if (own.data && own.n) memcpy(own.data, mine, own.n);
-  VG_TRY(vg_comm_agree(comm, all && own.data ? VG_OK
-                             : vg_fail_memory(err, "names of points"), err));
+  VG_TRY(vg_comm_agree(comm,
+                       all && own.data ? VG_OK
+                                       : vg_fail_memory(err, "names of points"),
+                       err));
   VG_TRY(vg_comm_allgather(comm, &own, all, err));
   for (int r = 0; r < p->size; r++) bytes += all[r].n;
   *out = vg_alloc(bytes, 1);
-  VG_TRY(vg_comm_agree(comm, *out ? VG_OK
-                             : vg_fail_memory(err, "names of points"), err));
+  VG_TRY(vg_comm_agree(comm,
+                       *out ? VG_OK : vg_fail_memory(err, "names of points"),
+                       err));
   for (int r = 0; r < p->size; r++) {
-    if (all[r].n)
-      memcpy((char *)*out + *n_out * size, all[r].data, all[r].n);
+    if (all[r].n) memcpy((char *)*out + *n_out * size, all[r].data, all[r].n);
     *n_out += all[r].n / size;
   }
 done:
@@ -111,7 +118,7 @@ static vg_status adopt(struct vg_node *node, uint32_t k, size_t n_claim,
 {
   struct vg_front *f = &node->front;
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
-  double (*x)[3] = vg_alloc(f->n_point, sizeof *x);
+  double(*x)[3] = vg_alloc(f->n_point, sizeof *x);
   uint64_t *name = vg_alloc(f->n_point, sizeof *name);
   size_t n = 0, n_own = 0;
   vg_status st = VG_OK;
@@ -171,23 +178,22 @@ vg_status vg_recut_adopt(struct vg_partition *p, struct vg_comm *comm,
   vg_status st;
 
   assert((own || !n_own) && ((node && k) || !n));
-  VG_TRY(gather(p, comm, n_own, sizeof *own, own, (void **)&gone, &n_gone,
-                err));
+  VG_TRY(
+    gather(p, comm, n_own, sizeof *own, own, (void **)&gone, &n_gone, err));
   if (n_gone) qsort(gone, n_gone, sizeof *gone, by_value);
   st = list_claims(n_gone, gone, n, node, k, &claim, &n_claim, err);
   VG_TRY(vg_comm_agree(comm, st, err));
-  VG_TRY(gather(p, comm, n_claim, sizeof *claim, claim, (void **)&all, &n_all,
-                err));
+  VG_TRY(
+    gather(p, comm, n_claim, sizeof *claim, claim, (void **)&all, &n_all, err));
   if (n_all) qsort(all, n_all, sizeof *all, by_claim);
   for (size_t i = 0; i < n && st == VG_OK; i++)
     st = adopt(node[i], k[i], n_all, all, &map, &n_map, &cap_map, err);
   VG_TRY(vg_comm_agree(comm, st, err));
-  VG_TRY(gather(p, comm, n_map, sizeof *map, map, (void **)&every, &n_every,
-                err));
+  VG_TRY(
+    gather(p, comm, n_map, sizeof *map, map, (void **)&every, &n_every, err));
   if (n_every) qsort(every, n_every, sizeof *every, by_from);
   for (size_t i = 0; i < p->n_piece; i++)
-    rename_all(n_every, every, n_gone, gone, p->piece[i].n_in,
-               p->piece[i].in);
+    rename_all(n_every, every, n_gone, gone, p->piece[i].n_in, p->piece[i].in);
   for (size_t i = 0; i < n; i++)
     rename_all(n_every, every, n_gone, gone, node[i]->front.n_point,
                node[i]->front.id);

@@ -17,7 +17,7 @@ enum { RUN = 16, FAN = 8, CHUNK = 512 };
 
 /* Spacings: so near a plane a face counts as crossing it; so far beyond the
  * faces that cross it what is around them is to be known. */
-static const double crossing = 0.1, margin = 1.5;   /* K22 */
+static const double crossing = 0.1, margin = 1.5; /* K22 */
 
 void vg_select_init(struct vg_select *s, const struct vg_front *front,
                     const struct vg_sizing *sizing)
@@ -111,8 +111,8 @@ vg_status vg_select_update(struct vg_select *s, const struct vg_engine *e,
 struct list {
   const struct vg_select *s;
   const struct vg_region *region;
-  double band, least;        /* in spacings, the region's reach included; the
-                                least spacing anywhere */
+  double band, least; /* in spacings, the region's reach included; the
+                         least spacing anywhere */
   size_t n, cap;
   uint32_t *face;
 };
@@ -152,8 +152,8 @@ static double distance(const struct vg_region *r, const struct vg_box *b,
   double far = 0;
 
   for (int i = 0; i < r->n_plane && far <= enough; i++)
-    far = fmax(far, fmax(beyond(&r->plane[i], 1, b),
-                         beyond(&r->plane[i], -1, b)));
+    far = fmax(far,
+               fmax(beyond(&r->plane[i], 1, b), beyond(&r->plane[i], -1, b)));
   for (int i = 0; i < r->n_wall && far <= enough; i++)
     far = fmax(far, beyond(&r->wall[i], 1, b) / VG_BEYOND_WALLS);
   return far;
@@ -163,7 +163,9 @@ static double distance(const struct vg_region *r, const struct vg_box *b,
  * normal . x < least for all corners. */
 struct limits {
   int n;
-  struct { double normal[3], least; } of[2 * 2 + VG_REGION_WALLS];
+  struct {
+    double normal[3], least;
+  } of[2 * 2 + VG_REGION_WALLS];
 };
 
 static void add_limit(struct limits *l, const struct vg_plane *p, double sign,
@@ -185,8 +187,8 @@ static int is_far(const struct limits *l, const double *const x[3])
     const double *n = l->of[i].normal;
     int k = 0;
 
-    while (k < 3 && n[0] * x[k][0] + n[1] * x[k][1] + n[2] * x[k][2] <
-                      l->of[i].least)
+    while (k < 3 &&
+           n[0] * x[k][0] + n[1] * x[k][1] + n[2] * x[k][2] < l->of[i].least)
       k++;
     if (k == 3) return 1;
   }
@@ -255,8 +257,8 @@ static int list_faces(struct list *l)
  * over all points would be as long as the front, in each thread. */
 struct numbers {
   struct vg_table table;
-  size_t n;                  /* points listed */
-  uint32_t *point;           /* [n] */
+  size_t n;        /* points listed */
+  uint32_t *point; /* [n] */
 };
 
 static uint64_t hash_of(const void *numbers, uint32_t k)
@@ -266,8 +268,8 @@ static uint64_t hash_of(const void *numbers, uint32_t k)
 
 /* Number the corners of the faces listed, by first use; to: [n] these faces in
  * the new numbers. */
-static int number_points(struct numbers *t, const uint32_t (*from)[3],
-                         size_t n, const uint32_t *face, uint32_t (*to)[3])
+static int number_points(struct numbers *t, const uint32_t (*from)[3], size_t n,
+                         const uint32_t *face, uint32_t (*to)[3])
 {
   if (vg_table_init(&t->table, n / 2 + 8)) return -1;
   for (size_t i = 0; i < n; i++) {
@@ -300,21 +302,19 @@ static int gather(const struct vg_front *f, const struct numbers *t,
   return 0;
 }
 
-static vg_status take(const struct vg_front *f, size_t n,
-                      const uint32_t *face, struct vg_front *part,
-                      uint32_t **point, struct vg_error *err)
+static vg_status take(const struct vg_front *f, size_t n, const uint32_t *face,
+                      struct vg_front *part, uint32_t **point,
+                      struct vg_error *err)
 {
   struct numbers t = { .n = 0 };
   int bad;
 
   memset(part, 0, sizeof *part);
-  t.point = vg_alloc(3 * n < f->n_point ? 3 * n : f->n_point,
-                     sizeof *t.point);
+  t.point = vg_alloc(3 * n < f->n_point ? 3 * n : f->n_point, sizeof *t.point);
   part->face = vg_alloc(n, sizeof *part->face);
   part->n_face = n;
   bad = !t.point || !part->face ||
-        number_points(&t, (const uint32_t (*)[3])f->face, n, face,
-                      part->face) ||
+        number_points(&t, (const uint32_t(*)[3])f->face, n, face, part->face) ||
         gather(f, &t, part);
   vg_table_release(&t.table);
   if (!bad) {
@@ -338,11 +338,12 @@ static uint32_t *shrunk(struct list *l)
 }
 
 vg_status vg_select_part(const struct vg_select *s,
-                         const struct vg_region *region,
-                         struct vg_front *part, uint32_t **point,
-                         uint32_t **face, struct vg_error *err)
+                         const struct vg_region *region, struct vg_front *part,
+                         uint32_t **point, uint32_t **face,
+                         struct vg_error *err)
 {
-  struct list l = { .s = s, .region = region,
+  struct list l = { .s = s,
+                    .region = region,
                     .band = vg_region_band(region, VG_BAND_FRONT) };
   vg_status st;
 
@@ -350,8 +351,7 @@ vg_status vg_select_part(const struct vg_select *s,
   memset(part, 0, sizeof *part);
   *point = *face = NULL;
   st = list_faces(&l) ? vg_fail_memory(err, "cutting a front") : VG_OK;
-  if (st == VG_OK)
-    st = take(s->front, l.n, l.face, part, point, err);
+  if (st == VG_OK) st = take(s->front, l.n, l.face, part, point, err);
   if (st == VG_OK) *face = shrunk(&l);
   else free(l.face);
   return st;
@@ -381,7 +381,8 @@ vg_status vg_select_widen(const struct vg_select *s, struct vg_region *region,
                           struct vg_error *err)
 {
   double band = crossing - region->reach;
-  struct list l = { .s = s, .region = region,
+  struct list l = { .s = s,
+                    .region = region,
                     .band = vg_region_band(region, band) };
   vg_status st = VG_OK;
   double most = 0;
@@ -409,7 +410,7 @@ static vg_status list_near(const struct vg_front *part,
 {
   struct vg_region_cache cache = { .spacing = NULL };
   vg_status st = vg_region_cache_init(&cache, region, sizing, part->n_point,
-                                      (const double (*)[3])part->x, err);
+                                      (const double(*)[3])part->x, err);
 
   *n = 0;
   for (size_t i = 0; st == VG_OK && i < part->n_face; i++)
@@ -452,7 +453,7 @@ struct touch {
   const struct vg_select *s;
   const double *const *x;
   double lo[3], hi[3], normal[3];
-  double size, most;         /* no side is longer; no coordinate is more */
+  double size, most; /* no side is longer; no coordinate is more */
   int (*visit)(void *context, uint32_t face);
   void *context;
 };
@@ -494,8 +495,7 @@ static int is_beside(const struct touch *t, const double lo[3],
 static int touch_run(const struct touch *t, size_t run)
 {
   const struct vg_front *f = t->s->front;
-  size_t end = (run + 1) * RUN < t->s->n_face ? (run + 1) * RUN
-                                              : t->s->n_face;
+  size_t end = (run + 1) * RUN < t->s->n_face ? (run + 1) * RUN : t->s->n_face;
 
   for (size_t i = run * RUN; i < end; i++) {
     struct vg_box b = VG_BOX_EMPTY;
@@ -526,8 +526,7 @@ static int touch_box(const struct touch *t, int level, size_t b)
 }
 
 int vg_select_touched(const struct vg_select *s, const double *const x[3],
-                      int (*visit)(void *context, uint32_t face),
-                      void *context)
+                      int (*visit)(void *context, uint32_t face), void *context)
 {
   struct touch t = { .s = s, .x = x, .visit = visit, .context = context };
   int top = VG_SELECT_LEVELS - 1, found = 0;
@@ -542,9 +541,9 @@ int vg_select_touched(const struct vg_select *s, const double *const x[3],
 
 vg_status vg_select_sort(struct vg_front *f, struct vg_error *err)
 {
-  double (*middle)[3] = vg_alloc(f->n_face, sizeof *middle);
+  double(*middle)[3] = vg_alloc(f->n_face, sizeof *middle);
   uint32_t *order = vg_alloc(f->n_face, sizeof *order);
-  uint32_t (*face)[3] = vg_alloc(f->n_face, sizeof *face);
+  uint32_t(*face)[3] = vg_alloc(f->n_face, sizeof *face);
   vg_status st = VG_OK;
 
   if (!middle || !order || !face) {
@@ -554,9 +553,9 @@ vg_status vg_select_sort(struct vg_front *f, struct vg_error *err)
   for (size_t i = 0; i < f->n_face; i++)
     for (int k = 0; k < 3; k++)
       middle[i][k] = (f->x[f->face[i][0]][k] + f->x[f->face[i][1]][k] +
-                      f->x[f->face[i][2]][k]) / 3;
-  VG_TRY(vg_hilbert_order(f->n_face, (const double (*)[3])middle, order,
-                          err));
+                      f->x[f->face[i][2]][k]) /
+                     3;
+  VG_TRY(vg_hilbert_order(f->n_face, (const double(*)[3])middle, order, err));
   for (size_t i = 0; i < f->n_face; i++)
     memcpy(face[i], f->face[order[i]], sizeof *face);
   free(f->face);

@@ -15,7 +15,7 @@ enum { VG_SELECT_LEVELS = 12 };
 struct vg_select {
   const struct vg_front *front;   /* borrowed */
   const struct vg_sizing *sizing; /* borrowed */
-  size_t n_face;             /* so many have boxes */
+  size_t n_face;                  /* so many have boxes */
   struct vg_select_level {
     size_t n, cap;
     struct vg_box *box;
@@ -38,9 +38,9 @@ vg_status vg_select_update(struct vg_select *s, const struct vg_engine *e,
  * of the whole they are; all to be freed by the caller. Threads: safe.
  * O(part + log front). */
 vg_status vg_select_part(const struct vg_select *s,
-                         const struct vg_region *region,
-                         struct vg_front *part, uint32_t **point,
-                         uint32_t **face, struct vg_error *err);
+                         const struct vg_region *region, struct vg_front *part,
+                         uint32_t **point, uint32_t **face,
+                         struct vg_error *err);
 
 /** As wide as the faces ask for that cross the region's planes: the cells at
  * one that is much longer than the cells around it have corners far from the

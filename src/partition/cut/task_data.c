@@ -43,7 +43,7 @@ void vg_change_release(struct vg_change *c)
 
 void vg_change_put(struct vg_writer *w, const struct vg_change *c)
 {
-  uint64_t head[3] = {(uint64_t)c->blocked, c->serial, c->n_part};
+  uint64_t head[3] = { (uint64_t)c->blocked, c->serial, c->n_part };
 
   assert(w && c);
   vg_put(w, 3, sizeof *head, head);
@@ -52,7 +52,7 @@ void vg_change_put(struct vg_writer *w, const struct vg_change *c)
 
 void vg_change_get(struct vg_reader *r, struct vg_change *c)
 {
-  uint64_t head[3] = {0};
+  uint64_t head[3] = { 0 };
 
   assert(r && c);
   memset(c, 0, sizeof *c);

@@ -30,26 +30,32 @@ double vg_front_work(const struct vg_front *f);
 /** What tasks that make cells leave on the rank that did them. */
 struct vg_piece {
   char path[64];
-  char kind;                 /* VG_SPAN_... */
+  char kind; /* VG_SPAN_... */
   uint32_t serial;
   size_t n_in, n_point, n_cell;
-  size_t n_adopted;          /* of n_point: a leaf's that others have too */
-  uint64_t *in;              /* [n_in] names of points of others */
-  double (*x)[3];            /* [n_in + n_point] theirs, then its own */
-  uint32_t (*cell)[4];       /* [n_cell] indices into x */
+  size_t n_adopted;    /* of n_point: a leaf's that others have too */
+  uint64_t *in;        /* [n_in] names of points of others */
+  double (*x)[3];      /* [n_in + n_point] theirs, then its own */
+  uint32_t (*cell)[4]; /* [n_cell] indices into x */
 };
-#define VG_PIECE_INIT { .n_in = 0 }
+#define VG_PIECE_INIT                                                          \
+  {                                                                            \
+    .n_in = 0                                                                  \
+  }
 
 void vg_piece_release(struct vg_piece *p);
 
 /** What its home hears of a zone: the change of the front. */
 struct vg_change {
-  int blocked;               /* nothing was made */
-  uint32_t serial;           /* of the zone's task */
-  size_t n_part;             /* points of the front that the zone was given */
-  struct vg_filled made;     /* without cells, which stay with the piece */
+  int blocked;           /* nothing was made */
+  uint32_t serial;       /* of the zone's task */
+  size_t n_part;         /* points of the front that the zone was given */
+  struct vg_filled made; /* without cells, which stay with the piece */
 };
-#define VG_CHANGE_INIT { 0 }
+#define VG_CHANGE_INIT                                                         \
+  {                                                                            \
+    0                                                                          \
+  }
 
 struct vg_writer;
 struct vg_reader;

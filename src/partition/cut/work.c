@@ -10,16 +10,19 @@
 #include "partition/cut/node.h"
 
 /* Points to a cell in a field; a bound for the first, not an estimate. */
-static const double cells_per_point = 5.5;   /* C12 */
+static const double cells_per_point = 5.5; /* C12 */
 
 /* What a task made, as the store keeps it. It depends on no id or serial. */
 struct made {
-  int is_blocked;            /* no cells can be made along the zone's region */
-  struct vg_filled filled;   /* the front's points are the task's */
-  struct vg_fill_report report;  /* without times where it comes from the
-                                    store */
+  int is_blocked;          /* no cells can be made along the zone's region */
+  struct vg_filled filled; /* the front's points are the task's */
+  struct vg_fill_report report; /* without times where it comes from the
+                                   store */
 };
-#define MADE_INIT { .is_blocked = 0 }
+#define MADE_INIT                                                              \
+  {                                                                            \
+    .is_blocked = 0                                                            \
+  }
 
 /* The report too, so that a resumed run reports on the whole mesh. */
 static void made_put(struct vg_writer *w, const struct made *m)
@@ -52,7 +55,7 @@ static struct vg_digest key_of(const struct vg_partition *p,
                                const struct vg_region *region, size_t limit)
 {
   struct vg_digest d = p->options.job;
-  uint64_t number[2] = {f->n_point, limit};
+  uint64_t number[2] = { f->n_point, limit };
 
   d = vg_digest_of(d, sizeof number, number);
   d = vg_digest_of(d, f->n_point * sizeof *f->x, f->x);
@@ -63,7 +66,7 @@ static struct vg_digest key_of(const struct vg_partition *p,
 static int find(struct vg_partition *p, struct vg_digest key, struct made *m,
                 struct vg_error *err)
 {
-  struct vg_bytes b = {0, NULL};
+  struct vg_bytes b = { 0, NULL };
   struct vg_reader r;
 
   if (!p->options.store ||
@@ -86,8 +89,7 @@ static void keep(struct vg_partition *p, struct vg_digest key,
 
   if (!p->options.store) return;
   made_put(&w, m);
-  if (!w.refused) vg_store_keep(p->options.store, key, w.bytes.n,
-                                w.bytes.data);
+  if (!w.refused) vg_store_keep(p->options.store, key, w.bytes.n, w.bytes.data);
   free(w.bytes.data);
 }
 
@@ -98,8 +100,7 @@ static int add_piece(struct vg_partition *p, const struct vg_piece *piece)
   int bad;
 
   pthread_mutex_lock(&p->lock);
-  bad = vg_reserve(&p->piece, &p->cap_piece, p->n_piece + 1,
-                   sizeof *p->piece);
+  bad = vg_reserve(&p->piece, &p->cap_piece, p->n_piece + 1, sizeof *p->piece);
   if (!bad) p->piece[p->n_piece++] = *piece;
   pthread_mutex_unlock(&p->lock);
   return bad;
@@ -149,8 +150,9 @@ static vg_status to_piece(struct vg_partition *p, struct vg_filled *m,
                           const struct vg_front *f, uint32_t serial,
                           const char *path, char kind, struct vg_error *err)
 {
-  struct vg_piece piece = { .kind = kind, .serial = serial,
-                            .n_point = m->n_point, .n_cell = m->n_cell };
+  struct vg_piece piece = {
+    .kind = kind, .serial = serial, .n_point = m->n_point, .n_cell = m->n_cell
+  };
   uint32_t *number;
   size_t n_used;
 
@@ -211,7 +213,7 @@ static vg_status find_or_make(struct vg_partition *p, const struct vg_front *f,
                               struct made *m, const struct vg_engine *e,
                               struct vg_error *err)
 {
-  struct vg_digest key = {{0, 0}};
+  struct vg_digest key = { { 0, 0 } };
   vg_status st = VG_OK;
 
   if (p->options.store) key = key_of(p, f, region, limit);
@@ -231,8 +233,7 @@ vg_status vg_work_zone(struct vg_partition *p, const struct vg_work *w,
   vg_status st = VG_OK;
 
   assert(w->what == VG_WORK_ZONE && change);
-  if (w->part.n_face)
-    st = find_or_make(p, &w->part, &w->region, 0, &m, e, err);
+  if (w->part.n_face) st = find_or_make(p, &w->part, &w->region, 0, &m, e, err);
   if (st == VG_OK)
     st = to_piece(p, &m.filled, &w->part, w->serial, w->path, w->kind, err);
   if (st < 0) {
@@ -266,13 +267,12 @@ static int fails_on_purpose(const struct vg_partition *p, const char *path)
   }
   h ^= h >> 29;
   return rounds < p->options.fail_rounds &&
-         (double)(h * VG_GOLDEN >> 11) * 0x1p-53 <
-           p->options.fail_leaves;
+         (double)(h * VG_GOLDEN >> 11) * 0x1p-53 < p->options.fail_leaves;
 }
 
 vg_status vg_work_leaf(struct vg_partition *p, const struct vg_work *w,
-                       int *outgrown, size_t *n_cell,
-                       const struct vg_engine *e, struct vg_error *err)
+                       int *outgrown, size_t *n_cell, const struct vg_engine *e,
+                       struct vg_error *err)
 {
   const struct vg_node *n = w->node;
   struct made m = MADE_INIT;

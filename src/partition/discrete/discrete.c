@@ -11,7 +11,7 @@
 
 /* Coarse cells to a part, were all sizes multiplied: few enough to be made
  * quickly, many enough for even parts. And bounds of the factor. */
-static const double cells_per_part = 150;   /* D1 */
+static const double cells_per_part = 150; /* D1 */
 static const double least_factor = 1.5, most_factor = 6;
 
 double vg_discrete_coarsening(double cells, const struct vg_parting_options *o)
@@ -32,10 +32,10 @@ struct fill {
   const struct vg_interface *f;
   const struct vg_sheets *s;
   uint32_t serial;
-  size_t n_all;              /* points of coarse mesh and sheets */
-  uint32_t *name;            /* [n_all] number among the points of interfaces,
-                                or VG_NONE */
-  uint32_t *number;          /* [n_all] in a front */
+  size_t n_all;     /* points of coarse mesh and sheets */
+  uint32_t *name;   /* [n_all] number among the points of interfaces,
+                       or VG_NONE */
+  uint32_t *number; /* [n_all] in a front */
 };
 
 static const double *point_of(const struct fill *a, size_t k)
@@ -137,8 +137,8 @@ static vg_status make_points(const struct fill *a, struct vg_front *f,
     if (a->number[v] == VG_NONE) {
       memcpy(f->x[f->n_point], point_of(a, v), sizeof *f->x);
       f->id[f->n_point] = v < a->c->n_front
-                              ? a->front->id[v]
-                              : VG_POINT_ID(a->serial, a->name[v]);
+                          ? a->front->id[v]
+                          : VG_POINT_ID(a->serial, a->name[v]);
       a->number[v] = (uint32_t)f->n_point++;
     }
     f->face[k / 3][k % 3] = a->number[v];
@@ -169,13 +169,15 @@ static vg_status make_parts(struct fill *a, struct vg_parting *out,
 vg_status vg_discrete_refuse(vg_status st, const char *why, double factor,
                              struct vg_error *err)
 {
-  char text[300];            /* why may be in *err */
+  char text[300]; /* why may be in *err */
 
   assert(st < 0 && why);
   snprintf(text, sizeof text, "%s", why);
-  return vg_fail(err, st, "no coarse mesh for the discrete decomposition "
+  return vg_fail(err, st,
+                 "no coarse mesh for the discrete decomposition "
                  "(%s); try another coarsening than %g, or decompose by "
-                 "advancing", text, factor);
+                 "advancing",
+                 text, factor);
 }
 
 static vg_status coarse(const struct vg_front *front,
@@ -196,21 +198,23 @@ static vg_status coarse(const struct vg_front *front,
   }
   r->n_coarse = c->t.n_cell;
   if (c->t.n_cell >= (size_t)o->n_part) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "%d parts of a coarse mesh of %zu "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%d parts of a coarse mesh of %zu "
                  "cells; ask for fewer parts, or for a smaller coarsening "
-                 "than %g", o->n_part, c->t.n_cell, r->coarsening);
+                 "than %g",
+                 o->n_part, c->t.n_cell, r->coarsening);
 }
 
 vg_status vg_discrete_part(const struct vg_front *front,
                            const struct vg_load *load,
                            const struct vg_sizing *sizing,
-                           const struct vg_parting_options *o,
-                           uint32_t serial, const struct vg_engine *e,
-                           struct vg_parting *out, struct vg_error *err)
+                           const struct vg_parting_options *o, uint32_t serial,
+                           const struct vg_engine *e, struct vg_parting *out,
+                           struct vg_error *err)
 {
-  struct vg_coarse c = {0};
-  struct vg_interface f = {0};
-  struct vg_sheets s = {0};
+  struct vg_coarse c = { 0 };
+  struct vg_interface f = { 0 };
+  struct vg_sheets s = { 0 };
   struct vg_parting made = VG_PARTING_INIT;
   struct vg_parting_report *r = &made.report;
   struct fill a = { front, &c, &f, &s, serial, 0, NULL, NULL };

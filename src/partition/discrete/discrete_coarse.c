@@ -20,7 +20,7 @@ void vg_coarse_release(struct vg_coarse *c)
 /* Sizes of the coarse mesh grow from the front's own edges by this much for
  * each length: cells there are well shaped, and interfaces leave the front at
  * good angles. */
-static const double growth = 1.6;   /* D9 */
+static const double growth = 1.6; /* D9 */
 /* The field of these sizes is as coarse. */
 static const double coarseness = 3;
 
@@ -37,8 +37,7 @@ vg_status vg_discrete_sizes(const struct vg_mesh *front,
   o.coarseness = coarseness;
   o.h_max = INFINITY;
   st = vg_sizing_new(&o, 0, NULL, front, &most, err);
-  if (st == VG_OK)
-    st = vg_sizing_coarsened(sizing, factor, most, out, err);
+  if (st == VG_OK) st = vg_sizing_coarsened(sizing, factor, most, out, err);
   vg_sizing_free(most);
   return st;
 }
@@ -63,10 +62,12 @@ static vg_status fill(const struct vg_front *f, const struct vg_sizing *sizing,
                       double factor, const struct vg_engine *e,
                       struct vg_coarse_cells *out, struct vg_error *err)
 {
-  struct vg_mesh m = { .n_point = f->n_point, .point = f->x,   /* borrowed */
-                       .n_tri = f->n_face, .tri = f->face };
+  struct vg_mesh m = { .n_point = f->n_point,
+                       .point = f->x, /* borrowed */
+                       .n_tri = f->n_face,
+                       .tri = f->face };
   struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
-  struct vg_fill_report report = {0};
+  struct vg_fill_report report = { 0 };
   struct vg_filled made = VG_FILLED_INIT;
   struct vg_sizing *coarse = NULL;
   vg_status st;
@@ -96,7 +97,9 @@ static vg_status copy_points(const struct vg_coarse_cells *given,
 /* --- which of its faces are the front's ---------------------------------- */
 
 /* A face of the front, corners turned such that the first is the lowest. */
-struct known { uint32_t v[3], face; };
+struct known {
+  uint32_t v[3], face;
+};
 
 static struct known known_of(const uint32_t v[3], uint32_t face)
 {
@@ -108,7 +111,7 @@ static struct known known_of(const uint32_t v[3], uint32_t face)
 static int by_corners(const void *a, const void *b)
 {
   return memcmp(((const struct known *)a)->v, ((const struct known *)b)->v,
-                sizeof ((const struct known *)a)->v);
+                sizeof((const struct known *)a)->v);
 }
 
 static vg_status find_front(const struct vg_front *f, struct vg_coarse *c,
@@ -153,7 +156,7 @@ vg_status vg_coarse_fill(const struct vg_front *front,
                : fill(front, sizing, factor, e, &all, err));
   c->n_front = front->n_point;
   st = vg_tets_from_cells(&c->t, all.n_point, all.x, all.n_cell,
-                          (const uint32_t (*)[4])all.cell, err);
+                          (const uint32_t(*)[4])all.cell, err);
   all.x = NULL;
   if (st == VG_OK) st = find_front(front, c, err);
 done:

@@ -12,17 +12,17 @@
 #include "partition/graph/graph.h"
 
 /* Most over mean that METIS is asked for. */
-static const double imbalance = 1.03;   /* D2 */
+static const double imbalance = 1.03; /* D2 */
 /* Pieces that hang apart with less than this share of a part's weight go to the
  * part beside them. */
-static const double small_piece = 0.1;   /* D4 */
+static const double small_piece = 0.1; /* D4 */
 /* Most over mean while cells change sides, and how often all are looked at. */
-static const double evened = 1.04;   /* D5 */
+static const double evened = 1.04; /* D5 */
 enum { EVEN_SWEEPS = 6 };
 /* A face of a flat coarse cell counts for so many triangles more, less where
  * angles are larger, up to those with this sine: interfaces through flat cells
  * leave slits, and cells of few degrees fill these. */
-static const double flat_costs = 10, flat_sine = 0.5;   /* D11 */
+static const double flat_costs = 10, flat_sine = 0.5; /* D11 */
 
 /* --- weights ------------------------------------------------------------- */
 
@@ -32,12 +32,12 @@ struct weights {
   struct vg_load_finder *finder;
   const struct vg_sizing *sizing;
   double per_cube;
-  double *flat;              /* [c->t.n_cell] out: triangles that each adds to
-                                the cost of its faces */
+  double *flat; /* [c->t.n_cell] out: triangles that each adds to
+                   the cost of its faces */
 };
 
-/* D3: cells to a volume, as the load has them; where it has no cube, as at a wall,
- * by the size. */
+/* D3: cells to a volume, as the load has them; where it has no cube, as at a
+ * wall, by the size. */
 static double density_at(const struct weights *w, const double x[3])
 {
   size_t k = vg_load_find(w->finder, x);
@@ -69,8 +69,9 @@ static double density(const struct weights *w, double *const x[4])
   for (int a = 0; a <= N; a++)
     for (int b = 0; a + b <= N; b++)
       for (int c = 0; a + b + c <= N; c++) {
-        double share[4] = { a + 0.25, b + 0.25, c + 0.25, N - a - b - c + 0.25 };
-        double at[3] = {0, 0, 0};
+        double share[4] = { a + 0.25, b + 0.25, c + 0.25,
+                            N - a - b - c + 0.25 };
+        double at[3] = { 0, 0, 0 };
 
         for (int i = 0; i < 4; i++)
           for (int k = 0; k < 3; k++) at[k] += share[i] / (N + 1) * x[i][k];
@@ -158,7 +159,7 @@ static vg_status make_dual(const struct weights *w, struct dual *d,
       double cost;
 
       if (link == VG_NONE) continue;
-      if (link >> 2 < q) {             /* the same sum from both sides */
+      if (link >> 2 < q) { /* the same sum from both sides */
         low = link >> 2;
         face = (int)(link & 3);
       }
@@ -190,8 +191,7 @@ static uint32_t find_pieces(const struct dual *d, const uint32_t *part,
     piece[s] = n_piece;
     queue[n++] = (uint32_t)s;
     for (size_t at = 0; at < n; at++)
-      for (uint64_t k = d->begin[queue[at]]; k < d->begin[queue[at] + 1];
-           k++) {
+      for (uint64_t k = d->begin[queue[at]]; k < d->begin[queue[at] + 1]; k++) {
         uint32_t q = d->to[k];
 
         if (piece[q] != VG_NONE || part[q] != part[s]) continue;
@@ -222,12 +222,16 @@ static uint32_t part_beside(const struct dual *d, const uint32_t *part,
   return best;
 }
 
-struct piece { double weight; size_t first; uint32_t part; };
+struct piece {
+  double weight;
+  size_t first;
+  uint32_t part;
+};
 
 /* Small pieces beside a larger one of their part go to the part beside them. */
 static int give_away(const struct dual *d, struct vg_coarse *c,
-                     uint32_t n_piece, const uint32_t *piece,
-                     struct piece *of, double *common)
+                     uint32_t n_piece, const uint32_t *piece, struct piece *of,
+                     double *common)
 {
   double mean = 0, *best = vg_calloc(c->n_part, sizeof *best);
   uint32_t n_given = 0;
@@ -245,8 +249,8 @@ static int give_away(const struct dual *d, struct vg_coarse *c,
   for (uint32_t k = 0; k < n_piece; k++) {
     uint32_t to;
 
-    if (of[k].weight >= best[of[k].part] ||
-        of[k].weight >= small_piece * mean) continue;
+    if (of[k].weight >= best[of[k].part] || of[k].weight >= small_piece * mean)
+      continue;
     to = part_beside(d, c->part, piece, of[k].first, k, common, c->n_part);
     if (to == VG_NONE) continue;
     for (size_t q = of[k].first; q < d->g.n; q++)
@@ -319,8 +323,8 @@ static vg_status even_out(const struct dual *d, struct vg_coarse *c,
           best = p;
         }
       }
-      if (!(most > here) ||
-          sum[best] + c->weight[q] > evened * all / c->n_part) continue;
+      if (!(most > here) || sum[best] + c->weight[q] > evened * all / c->n_part)
+        continue;
       sum[own] -= c->weight[q];
       sum[best] += c->weight[q];
       c->part[q] = best;
@@ -335,7 +339,7 @@ static vg_status even_out(const struct dual *d, struct vg_coarse *c,
 
 static vg_status bisect(struct vg_coarse *c, int n_part, struct vg_error *err)
 {
-  double (*mid)[3] = vg_calloc(c->t.n_cell, sizeof *mid);
+  double(*mid)[3] = vg_calloc(c->t.n_cell, sizeof *mid);
   vg_status st;
 
   if (!mid) return vg_fail_memory(err, "dealing out the coarse mesh");
@@ -343,7 +347,7 @@ static vg_status bisect(struct vg_coarse *c, int n_part, struct vg_error *err)
     for (int i = 0; i < 4; i++)
       for (int k = 0; k < 3; k++)
         mid[q][k] += 0.25 * c->t.x[c->t.cell[q].v[i]][k];
-  st = vg_bisect(c->t.n_cell, (const double (*)[3])mid, c->weight, n_part,
+  st = vg_bisect(c->t.n_cell, (const double(*)[3])mid, c->weight, n_part,
                  c->part, err);
   free(mid);
   return st;
@@ -365,8 +369,7 @@ static int hangs_together(const struct dual *d, uint32_t *part,
 }
 
 static vg_status deal(struct vg_coarse *c, const struct dual *d,
-                      const struct vg_parting_options *o,
-                      struct vg_error *err)
+                      const struct vg_parting_options *o, struct vg_error *err)
 {
   struct vg_graph_options how = { o->n_part, imbalance, 0, &c->elsewhere };
   vg_status st = VG_OK;
@@ -382,7 +385,11 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
                          const struct vg_engine *e, uint64_t *n_apart,
                          struct vg_error *err)
 {
-  struct weights w = { c, load, NULL, sizing, o->cells_per_cube,
+  struct weights w = { c,
+                       load,
+                       NULL,
+                       sizing,
+                       o->cells_per_cube,
                        vg_alloc(c->t.n_cell, sizeof *w.flat) };
   struct dual d = { .begin = NULL };
   vg_status st = VG_OK;
@@ -401,8 +408,8 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
   VG_TRY(deal(c, &d, o, err));
   VG_TRY(even_out(&d, c, err));
   VG_TRY(settle_pieces(&d, c, err));
-  *n_apart = c->n_part > (uint32_t)o->n_part
-               ? c->n_part - (uint32_t)o->n_part : 0;
+  *n_apart = c->n_part > (uint32_t)o->n_part ? c->n_part - (uint32_t)o->n_part
+                                             : 0;
 done:
   free(w.flat);
   vg_load_finder_free(w.finder);

@@ -25,14 +25,16 @@ void vg_sheets_release(struct vg_sheets *s)
 /* --- edges --------------------------------------------------------------- */
 
 /* Points inside an edge: new[from ... from + n - 1], from its lower end on. */
-struct divided { uint32_t from, n; };
+struct divided {
+  uint32_t from, n;
+};
 
 /* Segments of the edge a b, by the sum of ds / h; cut out: [*n - 1] where they
  * meet, as shares of the edge. Owned by the caller. */
 static int divide(const struct vg_sizing *sizing, const double a[3],
                   const double b[3], size_t *n, double **cut)
 {
-  double sum[STEPS + 1] = {0}, length = vg_distance(a, b), x[3];
+  double sum[STEPS + 1] = { 0 }, length = vg_distance(a, b), x[3];
   size_t k = 1;
   int i = 0;
 
@@ -75,11 +77,11 @@ static void mark_rim(const struct vg_coarse *c, const struct vg_interface *f,
     if (c->on[q / 4][q % 4] == VG_NONE) continue;
     for (int k = 0; k < 3; k++) {
       uint32_t key[2] = { v[face[k]], v[face[(k + 1) % 3]] };
-      const uint32_t (*at)[2];
+      const uint32_t(*at)[2];
 
       vg_order2(&key[0], &key[1]);
       at = bsearch(key, f->end, f->n_edge, sizeof *f->end, by_ends);
-      if (at) is_rim[at - (const uint32_t (*)[2])f->end] = 1;
+      if (at) is_rim[at - (const uint32_t(*)[2])f->end] = 1;
     }
   }
 }
@@ -129,7 +131,7 @@ static vg_status divide_edges(const struct vg_coarse *c,
  * corner round, then `add`. */
 struct facet {
   size_t n_side, n_add, n_tri;
-  uint32_t *side;            /* [n_side] */
+  uint32_t *side; /* [n_side] */
   double (*add)[3];
   uint32_t (*tri)[3];
   vg_status st;
@@ -142,7 +144,7 @@ struct facets {
   const struct vg_sizing *sizing;
   const struct vg_sheets *s;
   const struct divided *d;
-  struct facet *of;          /* [n_face] */
+  struct facet *of; /* [n_face] */
 };
 
 /* The plane of a face; in it, coordinates along u and v. */
@@ -203,8 +205,8 @@ static int list_side(const struct facets *a, size_t i, const uint32_t v[3],
     first[k] = at;
     o->side[at++] = v[k];
     for (uint32_t j = 0; j < d->n; j++)
-      o->side[at++] = n + d->from + (a->f->end[e][0] == v[k] ? j
-                                                            : d->n - 1 - j);
+      o->side[at++] = n + d->from +
+                      (a->f->end[e][0] == v[k] ? j : d->n - 1 - j);
   }
   o->n_side = at;
   return 0;
@@ -228,8 +230,8 @@ static int zip(struct facet *o, const size_t first[3])
   if (!o->tri) return -1;
   for (o->n_tri = 0; o->n_tri < n - 2; o->n_tri++) {
     uint32_t *v = o->tri[o->n_tri];
-    uint32_t a = (uint32_t)((best + low) % n);        /* along the side */
-    uint32_t b = (uint32_t)((best + n - from) % n);   /* back along others */
+    uint32_t a = (uint32_t)((best + low) % n);      /* along the side */
+    uint32_t b = (uint32_t)((best + n - from) % n); /* back along others */
     int up = low + 1 < most && (from + 1 >= n - most ||
                                 (low + 1) * (n - most) <= (from + 1) * most);
 
@@ -252,8 +254,8 @@ static vg_status mesh_face(const struct facets *a, const double *const x[3],
 {
   struct plane p = { .sizing = a->sizing };
   const struct vg_planar_law law = { .at = size_at, .user = &p };
-  double (*at)[2] = vg_alloc(o->n_side, sizeof *at), (*add)[2] = NULL;
-  uint32_t (*edge)[2] = vg_alloc(o->n_side, sizeof *edge);
+  double(*at)[2] = vg_alloc(o->n_side, sizeof *at), (*add)[2] = NULL;
+  uint32_t(*edge)[2] = vg_alloc(o->n_side, sizeof *edge);
   vg_status st = at && edge ? VG_OK : vg_fail_memory(&o->err, "interfaces");
 
   plane_of(x, &p);
@@ -267,8 +269,8 @@ static vg_status mesh_face(const struct facets *a, const double *const x[3],
     edge[k][1] = (uint32_t)((k + 1) % o->n_side);
   }
   if (st == VG_OK)
-    st = vg_planar_mesh(o->n_side, (const double (*)[2])at, o->n_side,
-                        (const uint32_t (*)[2])edge, &law, &o->n_add, &add,
+    st = vg_planar_mesh(o->n_side, (const double(*)[2])at, o->n_side,
+                        (const uint32_t(*)[2])edge, &law, &o->n_add, &add,
                         &o->n_tri, &o->tri, &o->err);
   if (st == VG_OK) {
     o->add = vg_alloc(o->n_add, sizeof *o->add);
@@ -337,8 +339,7 @@ static vg_status collect(const struct facets *a, struct vg_sheets *s,
         s->tri[n_tri][j] = q < o->n_side ? o->side[q]
                                          : base + q - (uint32_t)o->n_side;
       }
-    if (o->n_add)
-      memcpy(s->x + s->n_point, o->add, o->n_add * sizeof *s->x);
+    if (o->n_add) memcpy(s->x + s->n_point, o->add, o->n_add * sizeof *s->x);
     s->n_point += o->n_add;
     base += (uint32_t)o->n_add;
   }
@@ -353,8 +354,7 @@ vg_status vg_sheets_remesh(const struct vg_coarse *c,
                            struct vg_error *err)
 {
   struct divided *d = vg_calloc(f->n_edge, sizeof *d);
-  struct facets a = { c, f, sizing, s, d,
-                      vg_calloc(f->n_face, sizeof *a.of) };
+  struct facets a = { c, f, sizing, s, d, vg_calloc(f->n_face, sizeof *a.of) };
   vg_status st = d && a.of ? VG_OK : vg_fail_memory(err, "the interfaces");
 
   assert(!s->n_point && !s->x && !s->begin && !s->tri);

@@ -18,8 +18,7 @@ void vg_interface_release(struct vg_interface *f)
 }
 
 void vg_interface_corners(const struct vg_coarse *c,
-                          const struct vg_interface *f, size_t i,
-                          uint32_t v[3])
+                          const struct vg_interface *f, size_t i, uint32_t v[3])
 {
   const struct vg_cell *cell = &c->t.cell[f->side[i] >> 2];
 
@@ -50,7 +49,7 @@ static vg_status number_edges(struct vg_interface *f,
                               const uint32_t (*corner)[3], struct vg_edges *e,
                               struct vg_error *err)
 {
-  f->edge = (uint32_t (*)[3])e->of_half;
+  f->edge = (uint32_t(*)[3])e->of_half;
   e->of_half = NULL;
   f->n_edge = e->n;
   f->end = vg_alloc(e->n, sizeof *f->end);
@@ -67,11 +66,11 @@ static vg_status number_edges(struct vg_interface *f,
   return VG_OK;
 }
 
-vg_status vg_interface_list(const struct vg_coarse *c,
-                            struct vg_interface *f, struct vg_error *err)
+vg_status vg_interface_list(const struct vg_coarse *c, struct vg_interface *f,
+                            struct vg_error *err)
 {
   struct vg_edges e = VG_EDGES_INIT;
-  uint32_t (*corner)[3] = NULL;
+  uint32_t(*corner)[3] = NULL;
   vg_status st;
 
   assert(c->part && !f->n_edge && !f->edge && !f->end && !f->n_around);
@@ -81,8 +80,8 @@ vg_status vg_interface_list(const struct vg_coarse *c,
   for (size_t i = 0; i < f->n_face; i++)
     vg_interface_corners(c, f, i, corner[i]);
   VG_TRY(vg_edges_build(&e, c->t.n_point, f->n_face,
-                        (const uint32_t (*)[3])corner, NULL, 0, err));
-  st = number_edges(f, (const uint32_t (*)[3])corner, &e, err);
+                        (const uint32_t(*)[3])corner, NULL, 0, err));
+  st = number_edges(f, (const uint32_t(*)[3])corner, &e, err);
 done:
   vg_edges_release(&e);
   free(corner);

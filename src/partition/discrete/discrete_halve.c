@@ -12,7 +12,7 @@
 #include "partition/discrete/discrete_parts.h"
 
 /* An edge is halved while longer than this many of the size at its middle. */
-static const double longest = 1.5;   /* D8 */
+static const double longest = 1.5; /* D8 */
 /* A coarse edge is halved a few times; one beyond that has no sensible size. */
 enum { ROUNDS = 60 };
 
@@ -21,11 +21,11 @@ struct halving {
   const struct vg_sizing *sizing;
   struct vg_sheets *s;
   size_t n;
-  uint32_t (*tri)[3];        /* [n] Triangles, by rising face. */
-  uint32_t *face;            /* [n] The face that each triangle is part of. */
-  double *reach;             /* [c.n_front] square of the longest edge of the
-                                front at a point */
-  uint32_t *middle;          /* [n][3] of edges that were halved, or VG_NONE */
+  uint32_t (*tri)[3]; /* [n] Triangles, by rising face. */
+  uint32_t *face;     /* [n] The face that each triangle is part of. */
+  double *reach;      /* [c.n_front] square of the longest edge of the
+                         front at a point */
+  uint32_t *middle;   /* [n][3] of edges that were halved, or VG_NONE */
 };
 
 static const double *point_of(const struct halving *h, uint32_t k)
@@ -60,7 +60,7 @@ static vg_status find_reach(struct halving *h, struct vg_error *err)
 
 static double length2(const struct halving *h, uint32_t half)
 {
-  const uint32_t (*tri)[3] = (const uint32_t (*)[3])h->tri;
+  const uint32_t(*tri)[3] = (const uint32_t(*)[3])h->tri;
 
   return vg_distance2(point_of(h, vg_half_from(tri, half)),
                       point_of(h, vg_half_to(tri, half)));
@@ -77,7 +77,7 @@ static int is_longer(const struct halving *h, const struct vg_edges *e,
 
 static int is_too_long(const struct halving *h, uint32_t half)
 {
-  const uint32_t (*tri)[3] = (const uint32_t (*)[3])h->tri;
+  const uint32_t(*tri)[3] = (const uint32_t(*)[3])h->tri;
   const uint32_t end[2] = { vg_half_from(tri, half), vg_half_to(tri, half) };
   const double *a = point_of(h, end[0]), *b = point_of(h, end[1]);
   double mid[3], most;
@@ -114,7 +114,7 @@ static vg_status add_middles(struct halving *h, const struct vg_edges *e,
                              uint32_t *middle, size_t *n_halved,
                              struct vg_error *err)
 {
-  const uint32_t (*tri)[3] = (const uint32_t (*)[3])h->tri;
+  const uint32_t(*tri)[3] = (const uint32_t(*)[3])h->tri;
 
   *n_halved = 0;
   for (size_t k = 0; k < e->n; k++) {
@@ -125,9 +125,9 @@ static vg_status add_middles(struct halving *h, const struct vg_edges *e,
                    sizeof *h->s->x))
       return vg_fail_memory(err, "the interfaces");
     for (int i = 0; i < 3; i++)
-      h->s->x[h->s->n_point][i] =
-        0.5 * (point_of(h, vg_half_from(tri, half))[i] +
-               point_of(h, vg_half_to(tri, half))[i]);
+      h->s->x[h->s->n_point][i] = 0.5 *
+                                  (point_of(h, vg_half_from(tri, half))[i] +
+                                   point_of(h, vg_half_to(tri, half))[i]);
     middle[k] = (uint32_t)(h->c->t.n_point + h->s->n_point++);
     ++*n_halved;
   }
@@ -145,7 +145,7 @@ static vg_status halve_edges(struct halving *h, size_t *n_halved,
   free(h->middle);
   h->middle = vg_alloc(3 * h->n, sizeof *h->middle);
   if (!h->middle) VG_TRY(vg_fail_memory(err, "the interfaces"));
-  VG_TRY(vg_edges_build(&e, n_point, h->n, (const uint32_t (*)[3])h->tri, NULL,
+  VG_TRY(vg_edges_build(&e, n_point, h->n, (const uint32_t(*)[3])h->tri, NULL,
                         0, err));
   middle = vg_alloc(e.n, sizeof *middle);
   if (!middle) VG_TRY(vg_fail_memory(err, "the interfaces"));
@@ -177,7 +177,7 @@ static int fall(const struct halving *h, const uint32_t v[3],
     return 4;
   }
   while (n == 1 ? m[k] == VG_NONE : m[k] != VG_NONE) k++;
-  {                          /* k: the edge that is halved, or is not */
+  { /* k: the edge that is halved, or is not */
     uint32_t a = v[k], b = v[(k + 1) % 3], c = v[(k + 2) % 3];
     uint32_t p = m[(k + 1) % 3], q = m[(k + 2) % 3];
 
@@ -201,7 +201,7 @@ static int fall(const struct halving *h, const uint32_t v[3],
 
 static vg_status fall_all(struct halving *h, struct vg_error *err)
 {
-  uint32_t (*to)[3] = vg_alloc(4 * h->n, sizeof *to);
+  uint32_t(*to)[3] = vg_alloc(4 * h->n, sizeof *to);
   uint32_t *face = vg_alloc(4 * h->n, sizeof *face);
   size_t n = 0;
 
@@ -240,8 +240,8 @@ static vg_status hand_over(const struct halving *h, size_t n_face,
 
 vg_status vg_sheets_halve(const struct vg_coarse *c,
                           const struct vg_interface *f,
-                          const struct vg_sizing *sizing,
-                          struct vg_sheets *s, struct vg_error *err)
+                          const struct vg_sizing *sizing, struct vg_sheets *s,
+                          struct vg_error *err)
 {
   struct halving h = { .c = c, .sizing = sizing, .s = s, .n = f->n_face };
   size_t n_halved = 1;

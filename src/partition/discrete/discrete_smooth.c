@@ -15,13 +15,16 @@ enum { SWEEPS = 8, TRIES = 3 };
  * evens what is rough without making what is round smaller: a part inside would
  * lose cells to those around it. After Taubin, "A signal processing approach to
  * fair surface design", SIGGRAPH 1995. */
-static const double share[2] = { 0.6, -0.63 };   /* D6 */
+static const double share[2] = { 0.6, -0.63 }; /* D6 */
 /* A cell must not get worse than this (core/geometry/shape.h), or than it was.
  */
-static const double least_shape = 0.03;   /* D7 */
+static const double least_shape = 0.03; /* D7 */
 
 /* Lists by point. */
-struct lists { size_t *begin; uint32_t *of; };
+struct lists {
+  size_t *begin;
+  uint32_t *of;
+};
 
 static vg_status lists_new(struct lists *l, size_t n, size_t n_all,
                            struct vg_error *err)
@@ -125,8 +128,7 @@ static void move(struct vg_coarse *c, const struct lists *cells, size_t p,
   memcpy(x, was, sizeof was);
 }
 
-vg_status vg_interface_smooth(struct vg_coarse *c,
-                              const struct vg_interface *f,
+vg_status vg_interface_smooth(struct vg_coarse *c, const struct vg_interface *f,
                               struct vg_error *err)
 {
   struct lists cells = { NULL, NULL }, edges = { NULL, NULL };
@@ -139,8 +141,7 @@ vg_status vg_interface_smooth(struct vg_coarse *c,
     for (size_t p = c->n_front; p < c->t.n_point; p++) {
       double to[3];
 
-      if (edges.begin[p] < edges.begin[p + 1] &&
-          middle(c, f, &edges, p, to))
+      if (edges.begin[p] < edges.begin[p + 1] && middle(c, f, &edges, p, to))
         move(c, &cells, p, to, share[sweep % 2]);
     }
 done:

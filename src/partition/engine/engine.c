@@ -82,8 +82,10 @@ vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
 
   assert(e && task);
   if (!legal(task)) {
-    st = vg_fail(err, VG_ERR_INPUT, "task '%.*s': no path, or a priority or "
-                 "weight that is not a number", VG_PATH_MAX - 1, task->path);
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "task '%.*s': no path, or a priority or "
+                 "weight that is not a number",
+                 VG_PATH_MAX - 1, task->path);
   } else {
     vg_engine_lock(e);
     bad = make_room(e);
@@ -101,14 +103,13 @@ vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
   j->lane = VG_LANE_ANY;
   j->place.path = j->task.path;
   j->place.key = e->options->shuffle ? draw(task->path, e->options->shuffle)
-                                    : task->priority;
+                                     : task->priority;
   e->new_task[e->n_new++] = j;
   return VG_OK;
 }
 
 static vg_status submit_first(struct vg_engine *e, size_t n,
-                              const struct vg_task *first,
-                              struct vg_error *err)
+                              const struct vg_task *first, struct vg_error *err)
 {
   vg_status st = VG_OK;
   size_t i;
@@ -182,7 +183,8 @@ static vg_status start(struct vg_engine *e, int threads, struct vg_error *err)
   }
   e->threads = n;
   if (n) return VG_OK;
-  return vg_fail(err, VG_ERR_MEMORY, "no thread can be started; raise the "
+  return vg_fail(err, VG_ERR_MEMORY,
+                 "no thread can be started; raise the "
                  "limit of processes (ulimit -u) or of memory");
 }
 
@@ -193,8 +195,7 @@ static void stop_threads(struct vg_engine *e)
   pthread_cond_broadcast(&e->work);
   pthread_cond_broadcast(&e->handler);
   vg_engine_unlock(e);
-  for (int i = 0; i < e->threads; i++)
-    pthread_join(e->worker[i].thread, NULL);
+  for (int i = 0; i < e->threads; i++) pthread_join(e->worker[i].thread, NULL);
   if (e->handler_index) pthread_join(e->worker[e->handler_index].thread, NULL);
   e->threads = e->handler_index = 0;
 }
@@ -249,8 +250,7 @@ done:
 static vg_status gather(struct vg_engine *e, struct vg_error *err)
 {
   struct vg_spans *s = &e->spans;
-  vg_status st = gather_list(e, &s->span, &s->n, &s->cap, sizeof *s->span,
-                             err);
+  vg_status st = gather_list(e, &s->span, &s->n, &s->cap, sizeof *s->span, err);
 
   if (st) return st;
   return gather_list(e, &s->help, &s->n_help, &s->cap_help, sizeof *s->help,
@@ -301,9 +301,12 @@ vg_status vg_engine_run(struct vg_comm *comm,
   assert(first || !n_first);
 
   struct vg_spans none = VG_SPANS_INIT;
-  struct vg_engine e = { .comm = comm, .rank = vg_comm_rank(comm),
-                         .size = vg_comm_size(comm), .options = options,
-                         .ops = ops, .user = user };
+  struct vg_engine e = { .comm = comm,
+                         .rank = vg_comm_rank(comm),
+                         .size = vg_comm_size(comm),
+                         .options = options,
+                         .ops = ops,
+                         .user = user };
   double n_thread = options->threads > 1 ? options->threads : 1;
   vg_status st = begin(&e, n_first, first, &n_thread, err);
 

@@ -22,29 +22,29 @@
 #include "partition/engine/spans.h"
 
 struct vg_task {
-  char path[VG_PATH_MAX];    /* unique; decides between equal priorities */
-  char kind;                 /* VG_SPAN_...; for records, and 'A'..'Z' */
-  int pinned;                /* 1: to be done by its home rank */
-  int moves;                 /* 1: wherever it is done becomes its home: its
-                                outcome stays there, and `done` is called
-                                there */
-  double priority;           /* higher first */
-  double weight;             /* expected work, in cells, for progress */
-  double work;               /* > 0: what it is dealt out by, where tasks are;
-                                0: never dealt out */
-  void *input;               /* owned by the engine once submitted; may be
-                                NULL, and is in `done` */
+  char path[VG_PATH_MAX]; /* unique; decides between equal priorities */
+  char kind;              /* VG_SPAN_...; for records, and 'A'..'Z' */
+  int pinned;             /* 1: to be done by its home rank */
+  int moves;              /* 1: wherever it is done becomes its home: its
+                             outcome stays there, and `done` is called
+                             there */
+  double priority;        /* higher first */
+  double weight;          /* expected work, in cells, for progress */
+  double work;            /* > 0: what it is dealt out by, where tasks are;
+                             0: never dealt out */
+  void *input;            /* owned by the engine once submitted; may be
+                             NULL, and is in `done` */
 };
 
 /* What a task did. */
 struct vg_done {
-  size_t n_cell;             /* cells made */
-  size_t n_face;             /* faces of the front that it was given */
-  double elsewhere;          /* s of processor time in processes that it had
-                                work for it meanwhile */
+  size_t n_cell;    /* cells made */
+  size_t n_face;    /* faces of the front that it was given */
+  double elsewhere; /* s of processor time in processes that it had
+                       work for it meanwhile */
 };
 
-struct vg_engine;            /* one per rank while vg_engine_run runs */
+struct vg_engine; /* one per rank while vg_engine_run runs */
 
 /** What tasks are. All but `done` may run in several threads at once. */
 struct vg_engine_ops {
@@ -61,15 +61,14 @@ struct vg_engine_ops {
    * submit what follows. One call at a time per rank, in a thread of the
    * engine that need not be a worker; keep it short. Called for every task
    * that was done, also after a stop or a failure. rank: which rank ran it. */
-  vg_status (*done)(void *user, struct vg_engine *e,
-                    const struct vg_task *task, void *outcome, int rank,
-                    struct vg_error *err);
+  vg_status (*done)(void *user, struct vg_engine *e, const struct vg_task *task,
+                    void *outcome, int rank, struct vg_error *err);
   /** For the way to another rank and back: never called in a job of one rank,
    * nor for what is NULL. unpack makes what release_input / done frees. */
   vg_status (*pack_input)(void *user, const void *input, struct vg_bytes *out,
                           struct vg_error *err);
-  vg_status (*unpack_input)(void *user, const struct vg_bytes *in,
-                            void **input, struct vg_error *err);
+  vg_status (*unpack_input)(void *user, const struct vg_bytes *in, void **input,
+                            struct vg_error *err);
   vg_status (*pack_outcome)(void *user, const void *outcome,
                             struct vg_bytes *out, struct vg_error *err);
   vg_status (*unpack_outcome)(void *user, const struct vg_bytes *in,
@@ -79,20 +78,20 @@ struct vg_engine_ops {
 };
 
 struct vg_engine_options {
-  int threads;               /* workers on this rank, at least 1 */
-  uint64_t shuffle;          /* 0: by priority; else: in an order drawn from
-                                this number, to show that order is no matter */
-  int cyclic;                /* 1: tasks with a `work` wait until no other one
-                                is left, and are dealt out to all workers in
-                                turn, most work first: a worker does those it
-                                was dealt, and none of others */
+  int threads;      /* workers on this rank, at least 1 */
+  uint64_t shuffle; /* 0: by priority; else: in an order drawn from
+                       this number, to show that order is no matter */
+  int cyclic;       /* 1: tasks with a `work` wait until no other one
+                       is left, and are dealt out to all workers in
+                       turn, most work first: a worker does those it
+                       was dealt, and none of others */
   /** Called on rank 0 now and then: cells done and known so far, tasks done
    * and known. May be NULL. */
   void (*progress)(void *user, double done, double known, size_t n_done,
                    size_t n_known);
-  void *user;                /* of progress */
-  struct vg_stop stop;       /* asked on every rank; stops all ranks after the
-                                tasks under way */
+  void *user;          /* of progress */
+  struct vg_stop stop; /* asked on every rank; stops all ranks after the
+                          tasks under way */
 };
 
 /** Run until no task is left anywhere. Collective.

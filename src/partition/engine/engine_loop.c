@@ -12,14 +12,14 @@ struct vg_loop {
   size_t n, grain, n_chunk;
   vg_loop_body body;
   void *context;
-  atomic_size_t next;        /* chunk */
+  atomic_size_t next; /* chunk */
   /* guarded by the engine's lock: */
-  const char *path;          /* of the task that it is in */
-  size_t free_slots;               /* helpers that may still come */
-  int n_helper;              /* who are there */
-  double helped;             /* s of processor time of those that have left */
-  pthread_cond_t left;       /* the last of them has */
-  struct vg_loop *other;     /* the next open one */
+  const char *path;      /* of the task that it is in */
+  size_t free_slots;     /* helpers that may still come */
+  int n_helper;          /* who are there */
+  double helped;         /* s of processor time of those that have left */
+  pthread_cond_t left;   /* the last of them has */
+  struct vg_loop *other; /* the next open one */
 };
 
 /* Which worker a thread is: a loop's caller has no other way to tell. */
@@ -96,8 +96,8 @@ int vg_loop_help(struct vg_worker *w)
   double cpu;
   size_t n;
 
-  while (l && (!l->free_slots ||
-               atomic_load(&l->next) >= l->n_chunk)) l = l->other;
+  while (l && (!l->free_slots || atomic_load(&l->next) >= l->n_chunk))
+    l = l->other;
   if (!l) return 0;
   memset(&h, 0, sizeof h);
   memcpy(h.path, l->path, sizeof h.path);
@@ -127,8 +127,9 @@ void vg_engine_loop(const struct vg_engine *e, size_t n, size_t grain,
   assert(body || !n);
 
   struct vg_worker *w = e && self && self->e == e ? self : NULL;
-  struct vg_loop l = { .n = n, .grain = grain ? grain : 1, .body = body,
-                       .context = context };
+  struct vg_loop l = {
+    .n = n, .grain = grain ? grain : 1, .body = body, .context = context
+  };
   double cpu;
   int shared;
 

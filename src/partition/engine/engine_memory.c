@@ -6,9 +6,12 @@
 #include "base/memory.h"
 
 /* Bytes to a chunk; arrays of fewer are left to realloc. */
-enum { CHUNK = 1 << 18, LARGE = 1 << 20 };   /* E3 */
+enum { CHUNK = 1 << 18, LARGE = 1 << 20 }; /* E3 */
 
-struct copy { char *to; const char *from; };
+struct copy {
+  char *to;
+  const char *from;
+};
 
 static void copy_part(void *context, size_t first, size_t end, int worker)
 {

@@ -110,8 +110,8 @@ void vg_notify_free(struct vg_engine *e)
 void vg_notify_moved(struct vg_engine *e, int to, int ok)
 {
   if (!e->rank) vg_schedule_moved(e, 0, to, ok);
-  else vg_engine_send(e, 0, VG_MSG_MOVED,
-                      (struct vg_msg){ .to = to, .ok = ok });
+  else
+    vg_engine_send(e, 0, VG_MSG_MOVED, (struct vg_msg){ .to = to, .ok = ok });
 }
 
 void vg_notify_fail(struct vg_engine *e, vg_status status, const char *path,

@@ -35,8 +35,16 @@
 #include "partition/engine/engine.h"
 
 enum {
-  VG_MSG_UPDATE = 1, VG_MSG_FREE, VG_MSG_MOVED, VG_MSG_FAIL, VG_MSG_BYE,
-  VG_MSG_ASSIGN, VG_MSG_RECALL, VG_MSG_DRAIN, VG_MSG_END, VG_MSG_INPUT,
+  VG_MSG_UPDATE = 1,
+  VG_MSG_FREE,
+  VG_MSG_MOVED,
+  VG_MSG_FAIL,
+  VG_MSG_BYE,
+  VG_MSG_ASSIGN,
+  VG_MSG_RECALL,
+  VG_MSG_DRAIN,
+  VG_MSG_END,
+  VG_MSG_INPUT,
   VG_MSG_OUTCOME
 };
 
@@ -48,8 +56,8 @@ enum {
  * 2 + threads queues before a task is accepted; this one takes 32 bytes of each
  * task. */
 struct vg_heap {
-  double key;                /* higher first */
-  const char *path;          /* lower first, where keys are equal */
+  double key;       /* higher first */
+  const char *path; /* lower first, where keys are equal */
   struct vg_heap *child, *next;
 };
 
@@ -65,18 +73,18 @@ enum { VG_LANE_ANY = -1 };
 
 /* FREE, MOVED, BYE, ASSIGN, RECALL, DRAIN. */
 struct vg_msg {
-  uint64_t handle;           /* ASSIGN: of the task; BYE: as END's sent */
-  int32_t to;                /* ASSIGN, RECALL, MOVED: to which rank */
-  int32_t lane;              /* ASSIGN: by which worker; VG_LANE_ANY */
-  int32_t ok;                /* MOVED: there was one to give */
+  uint64_t handle; /* ASSIGN: of the task; BYE: as END's sent */
+  int32_t to;      /* ASSIGN, RECALL, MOVED: to which rank */
+  int32_t lane;    /* ASSIGN: by which worker; VG_LANE_ANY */
+  int32_t ok;      /* MOVED: there was one to give */
 };
 
 /* UPDATE, followed by `n` notices. */
 struct vg_update {
-  double weight;             /* of the task that ended */
+  double weight; /* of the task that ended */
   uint64_t n_cell;
-  int32_t ended;             /* 1: of a task; 0: of a rank that begins */
-  int32_t threads;           /* of that rank */
+  int32_t ended;   /* 1: of a task; 0: of a rank that begins */
+  int32_t threads; /* of that rank */
   uint64_t n;
 };
 
@@ -90,8 +98,8 @@ struct vg_task_notice {
 /* FAIL and END. */
 struct vg_final_status {
   int32_t status, from;
-  uint64_t sent;             /* END: messages sent to this rank, this too */
-  char path[VG_PATH_MAX];    /* of the task that failed */
+  uint64_t sent;          /* END: messages sent to this rank, this too */
+  char path[VG_PATH_MAX]; /* of the task that failed */
   char text[1024];
 };
 
@@ -100,8 +108,8 @@ struct vg_input_trailer {
   char path[VG_PATH_MAX], after[VG_PATH_MAX];
   double key, priority, weight, work;
   uint64_t handle;
-  int32_t home, kind, has, moves;   /* has: not NULL */
-  int32_t lane, unused;             /* 0: sent as bytes */
+  int32_t home, kind, has, moves; /* has: not NULL */
+  int32_t lane, unused;           /* 0: sent as bytes */
 };
 
 struct vg_outcome_trailer {
@@ -114,24 +122,26 @@ struct vg_outcome_trailer {
 /* A task: one at its home until it has ended, another one where it is done.
  * Its way: new -> [schedule] -> queue (or out) -> run -> ended. */
 struct vg_task_state {
-  struct vg_heap place;      /* in queue; must be first */
+  struct vg_heap place; /* in queue; must be first */
   struct vg_task task;
   char after[VG_PATH_MAX];
-  uint64_t handle;           /* its number at home */
+  uint64_t handle; /* its number at home */
   int home, runner, to;
-  int lane;                  /* the worker it was dealt to, or VG_LANE_ANY */
-  int packed;                /* bytes hold the input, or the outcome */
+  int lane;   /* the worker it was dealt to, or VG_LANE_ANY */
+  int packed; /* bytes hold the input, or the outcome */
   struct vg_bytes bytes;
   void *outcome;
   uint64_t n_cell;
-  struct vg_task_state *next;       /* in ended, out */
+  struct vg_task_state *next; /* in ended, out */
 };
 
-struct vg_task_fifo { struct vg_task_state *first, *last; };
+struct vg_task_fifo {
+  struct vg_task_state *first, *last;
+};
 
 /* A task that waits in the schedule. */
 struct vg_ready {
-  struct vg_heap place;      /* must be first */
+  struct vg_heap place; /* must be first */
   char path[VG_PATH_MAX];
   uint64_t handle;
   double work;
@@ -139,16 +149,16 @@ struct vg_ready {
 };
 
 struct vg_schedule {
-  struct vg_heap **ready;    /* [size] free tasks, by home */
+  struct vg_heap **ready; /* [size] free tasks, by home */
   size_t n_held, cap_held;
-  struct vg_ready **held;    /* [n_held] to be dealt out */
-  int *threads, *load;       /* [size] workers; tasks it has, pinned too */
-  unsigned char *asked;      /* [size] see recall */
+  struct vg_ready **held; /* [n_held] to be dealt out */
+  int *threads, *load;    /* [size] workers; tasks it has, pinned too */
+  unsigned char *asked;   /* [size] see recall */
   size_t n_ready, n_joined;
-  size_t n_worker, n_underloaded;   /* workers; ranks with fewer tasks than
-                                       workers */
-  uint64_t n_known, n_done, n_out;  /* out: known to be with some rank */
-  double cells, open;        /* done; expected of what is not */
+  size_t n_worker, n_underloaded;  /* workers; ranks with fewer tasks than
+                                      workers */
+  uint64_t n_known, n_done, n_out; /* out: known to be with some rank */
+  double cells, open;              /* done; expected of what is not */
   int draining, ended;
   struct vg_final_status final_status;
 };
@@ -156,54 +166,54 @@ struct vg_schedule {
 struct vg_worker {
   struct vg_engine *e;
   int number;
-  int unreported;                  /* has not said yet that it is free */
-  struct vg_heap *dealt;     /* jobs that are its own */
-  const char *doing;         /* path of its task */
-  double loops, helped;      /* s of processor time that its task has had in
-                                loops, and of these in other threads */
-  int in_loop;               /* a body runs */
+  int unreported;        /* has not said yet that it is free */
+  struct vg_heap *dealt; /* jobs that are its own */
+  const char *doing;     /* path of its task */
+  double loops, helped;  /* s of processor time that its task has had in
+                            loops, and of these in other threads */
+  int in_loop;           /* a body runs */
   pthread_t thread;
 };
 
-struct vg_loop;              /* engine_loop.c */
+struct vg_loop; /* engine_loop.c */
 
 struct vg_engine {
   struct vg_comm *comm;
-  int rank, size, threads;   /* threads: as started */
+  int rank, size, threads; /* threads: as started */
   const struct vg_engine_options *options;
   const struct vg_engine_ops *ops;
   void *user;
-  double begin;              /* s on the monotonic clock */
+  double begin; /* s on the monotonic clock */
 
   pthread_mutex_t lock;
   pthread_cond_t work, handler, serve;
-  struct vg_worker *worker;  /* [threads], and the handler */
-  int handler_index;            /* in worker[]; 0: none, in a job of one rank */
+  struct vg_worker *worker; /* [threads], and the handler */
+  int handler_index;        /* in worker[]; 0: none, in a job of one rank */
   atomic_int stopping;
-  int over;                  /* threads are to leave */
-  int ending;                /* END has been said (rank 0) or heard */
-  int poll_soon;                 /* something was posted: poll soon */
+  int over;      /* threads are to leave */
+  int ending;    /* END has been said (rank 0) or heard */
+  int poll_soon; /* something was posted: poll soon */
 
   struct vg_heap *queue[2];  /* jobs to be done here by any worker: free,
                                 pinned */
   struct vg_loop *loops;     /* that workers may help with */
   size_t n_idle;             /* workers that sleep */
-  struct vg_task_fifo ended;      /* home tasks, for `done` */
-  struct vg_task_fifo out;        /* jobs whose input goes to job->to */
+  struct vg_task_fifo ended; /* home tasks, for `done` */
+  struct vg_task_fifo out;   /* jobs whose input goes to job->to */
   int in_done;               /* a thread is there, or first tasks are made */
   char doing[VG_PATH_MAX];   /* the task whose `done` runs */
-  struct vg_task_state **new_task;     /* [n_new] submitted, not sent yet */
+  struct vg_task_state **new_task; /* [n_new] submitted, not sent yet */
   size_t n_new, cap_new;
-  struct vg_task_notice *notice;  /* [cap_notice] for new tasks */
+  struct vg_task_notice *notice; /* [cap_notice] for new tasks */
   size_t cap_notice;
-  struct vg_task_state **home;      /* [n_home] by handle; NULL when ended */
+  struct vg_task_state **home; /* [n_home] by handle; NULL when ended */
   size_t n_home, cap_home;
   struct vg_spans spans;
 
   uint64_t *sent, *received; /* [size] messages to and from each rank */
   uint64_t *said;            /* [size] messages a rank says it has sent */
   struct vg_final_status final_status; /* as heard */
-  struct vg_schedule schedule;       /* rank 0 */
+  struct vg_schedule schedule;         /* rank 0 */
 };
 
 /* All below want the lock to be held, unless said otherwise. */
@@ -228,14 +238,14 @@ void vg_notify_fail(struct vg_engine *e, vg_status status, const char *path,
 /* engine_work.c */
 void vg_work_queue(struct vg_engine *e, struct vg_task_state *j);
 void vg_work_end(struct vg_engine *e, struct vg_task_state *j);
-void vg_work_drop(struct vg_engine *e, struct vg_task_state *j);  /* without
-                                                                     lock */
+void vg_work_drop(struct vg_engine *e, struct vg_task_state *j); /* without
+                                                                    lock */
 void *vg_work_thread(void *worker);
 void *vg_work_handler(void *worker);
 
 /* engine_loop.c */
-void vg_loop_enter(struct vg_worker *w);      /* without lock: this thread */
-int vg_loop_help(struct vg_worker *w);        /* 1: it did; lock left for it */
+void vg_loop_enter(struct vg_worker *w); /* without lock: this thread */
+int vg_loop_help(struct vg_worker *w);   /* 1: it did; lock left for it */
 
 /* engine_serve.c: what the schedule says, and the loop (without lock). */
 void vg_serve_assign(struct vg_engine *e, uint64_t handle, int to, int lane);

@@ -19,7 +19,7 @@
 
 /* Tasks of a rank's own are preferred while their priority is within this
  * factor of the highest: saves two messages and an input on its way. */
-#define NEARLY 0.9   /* E1 */
+#define NEARLY 0.9 /* E1 */
 
 /* What the list knows of RECALL to a rank. */
 enum { NOT_ASKED, ASKED, DECLINED };
@@ -75,8 +75,8 @@ static int most_free_slots(const struct vg_schedule *l, int size, int ahead)
 
   if (!ahead && !l->n_underloaded) return -1;
   for (int r = 0; r < size; r++)
-    if (free_slots(l, r, ahead) > (best < 0 ? 0 : free_slots(l, best,
-                                                             ahead))) best = r;
+    if (free_slots(l, r, ahead) > (best < 0 ? 0 : free_slots(l, best, ahead)))
+      best = r;
   return best;
 }
 
@@ -85,8 +85,8 @@ static int first_home(const struct vg_schedule *l, int size)
   int best = -1;
 
   for (int r = 0; r < size; r++)
-    if (l->ready[r] && (best < 0 || vg_heap_before(l->ready[r],
-                                                   l->ready[best])))
+    if (l->ready[r] &&
+        (best < 0 || vg_heap_before(l->ready[r], l->ready[best])))
       best = r;
   return best;
 }
@@ -98,15 +98,16 @@ static int nearly(double key, double best)
 }
 
 /* A task that waited is with this rank from now on, for a worker of it. */
-static void assign(struct vg_engine *e, struct vg_ready *task, int home,
-                   int to, int lane)
+static void assign(struct vg_engine *e, struct vg_ready *task, int home, int to,
+                   int lane)
 {
   e->schedule.n_out++;
   add_load(&e->schedule, to, 1);
   if (home == e->rank) vg_serve_assign(e, task->handle, to, lane);
-  else vg_engine_send(e, home, VG_MSG_ASSIGN,
-                      (struct vg_msg){ .handle = task->handle, .to = to,
-                                       .lane = lane });
+  else
+    vg_engine_send(e, home, VG_MSG_ASSIGN,
+                   (struct vg_msg){
+                     .handle = task->handle, .to = to, .lane = lane });
   free(task);
 }
 
@@ -118,8 +119,8 @@ static int give(struct vg_engine *e, int ahead)
   struct vg_ready *task;
 
   if (home < 0) return 0;
-  to = free_slots(l, home, ahead) > 0 ? home : most_free_slots(l, e->size,
-                                                               ahead);
+  to = free_slots(l, home, ahead) > 0 ? home
+                                      : most_free_slots(l, e->size, ahead);
   if (to < 0) return 0;
   if (!e->options->shuffle && l->ready[to] &&
       nearly(l->ready[to]->key, l->ready[home]->key))
@@ -201,11 +202,13 @@ static void dispatch(struct vg_engine *e)
 
   if (l->ended) return;
   if (!l->draining) {
-    while (l->n_ready && l->n_underloaded && give(e, 0)) ;
-    while (e->size > 1 && l->n_ready >= 2 * l->n_worker && give(e, 1)) ;
+    while (l->n_ready && l->n_underloaded && give(e, 0))
+      ;
+    while (e->size > 1 && l->n_ready >= 2 * l->n_worker && give(e, 1))
+      ;
     if (e->size > 1 && !l->n_ready && l->n_underloaded) recall(e);
-    if (l->n_held && !l->n_ready && !l->n_out &&
-        l->n_joined == (size_t)e->size) deal_out(e);
+    if (l->n_held && !l->n_ready && !l->n_out && l->n_joined == (size_t)e->size)
+      deal_out(e);
   }
   if (!l->ended && l->n_joined == (size_t)e->size && !l->n_out &&
       (l->draining || !(l->n_ready + l->n_held)))
@@ -224,8 +227,8 @@ static void add_ready(struct vg_engine *e, int from,
   struct vg_schedule *l = &e->schedule;
   struct vg_ready *task = vg_alloc(1, sizeof *task);
 
-  if (!task || vg_reserve(&l->held, &l->cap_held, l->n_held + 1,
-                          sizeof *l->held)) {
+  if (!task ||
+      vg_reserve(&l->held, &l->cap_held, l->n_held + 1, sizeof *l->held)) {
     struct vg_error err = VG_ERROR_INIT;
 
     vg_fail_memory(&err, "the list of tasks");
@@ -233,7 +236,8 @@ static void add_ready(struct vg_engine *e, int from,
     free(task);
     return;
   }
-  *task = (struct vg_ready){ .handle = n->handle, .work = n->work,
+  *task = (struct vg_ready){ .handle = n->handle,
+                             .work = n->work,
                              .home = from };
   memcpy(task->path, n->path, sizeof task->path);
   task->place.key = n->key;

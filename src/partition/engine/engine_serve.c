@@ -18,15 +18,15 @@
 #include "partition/engine/engine_parts.h"
 
 /* Seconds. */
-#define SLEEP_MIN 50e-6      /* E2: and as much again, by the kernel's slack */
+#define SLEEP_MIN 50e-6 /* E2: and as much again, by the kernel's slack */
 #define SLEEP_MORE 1.5
-#define SLEEP_LOW 300e-6     /* bounds of the longest sleep */
+#define SLEEP_LOW 300e-6 /* bounds of the longest sleep */
 #define SLEEP_HIGH 5e-3
 #define SLEEP_ALONE 20e-3
 #define SHARE 0.005
 #define STOP_EVERY 20e-3
 #define PROGRESS_EVERY 0.2
-#define PATIENCE 30.0         /* with a mailbox that fails */
+#define PATIENCE 30.0 /* with a mailbox that fails */
 
 static void push_out(struct vg_engine *e, struct vg_task_state *j, int to)
 {
@@ -232,9 +232,7 @@ static void take_short(struct vg_engine *e, const struct vg_message *m)
   switch (m->kind) {
   case VG_MSG_FREE: vg_schedule_free(e, m->from); break;
   case VG_MSG_MOVED: vg_schedule_moved(e, m->from, msg.to, msg.ok); break;
-  case VG_MSG_ASSIGN:
-    vg_serve_assign(e, msg.handle, msg.to, msg.lane);
-    break;
+  case VG_MSG_ASSIGN: vg_serve_assign(e, msg.handle, msg.to, msg.lane); break;
   case VG_MSG_RECALL: vg_serve_recall(e, msg.to); break;
   case VG_MSG_DRAIN: vg_serve_drain(e); break;
   case VG_MSG_BYE: e->said[m->from] = msg.handle; break;
@@ -256,12 +254,13 @@ static void take(struct vg_engine *e, struct vg_message *m)
   e->received[m->from]++;
   if (!m->bytes.data) lose(e, m);
   else switch (m->kind) {
-  case VG_MSG_UPDATE: take_update(e, m->from, &m->bytes); break;
-  case VG_MSG_INPUT: take_input(e, &m->bytes); break;
-  case VG_MSG_OUTCOME: take_outcome(e, m->from, &m->bytes); break;
-  case VG_MSG_FAIL: case VG_MSG_END: take_final_status(e, m); break;
-  default: take_short(e, m);
-  }
+    case VG_MSG_UPDATE: take_update(e, m->from, &m->bytes); break;
+    case VG_MSG_INPUT: take_input(e, &m->bytes); break;
+    case VG_MSG_OUTCOME: take_outcome(e, m->from, &m->bytes); break;
+    case VG_MSG_FAIL:
+    case VG_MSG_END: take_final_status(e, m); break;
+    default: take_short(e, m);
+    }
   vg_engine_unlock(e);
   free(m->bytes.data);
 }
@@ -331,9 +330,9 @@ static int all_over(const struct vg_engine *e)
 }
 
 struct pace {
-  double sleep, longest;     /* s */
-  double cpu;                /* of this thread, when counting began */
-  int n;                     /* polls in vain since */
+  double sleep, longest; /* s */
+  double cpu;            /* of this thread, when counting began */
+  int n;                 /* polls in vain since */
 };
 
 static void set_pace(struct pace *p, int active)
@@ -351,8 +350,8 @@ static void set_pace(struct pace *p, int active)
   if (p->n % SAMPLE) return;
   cpu = vg_clock_thread();
   if (p->n)
-    p->longest = fmax(SLEEP_LOW, fmin((cpu - p->cpu) / (SAMPLE * SHARE),
-                                      SLEEP_HIGH));
+    p->longest = fmax(SLEEP_LOW,
+                      fmin((cpu - p->cpu) / (SAMPLE * SHARE), SLEEP_HIGH));
   p->cpu = cpu;
   p->n = 0;
 }

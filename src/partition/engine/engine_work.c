@@ -7,7 +7,8 @@
 #include "base/memory.h"
 #include "partition/engine/engine_parts.h"
 
-/* Of sleeping workers a signal wakes any: not always the one it was dealt to. */
+/* Of sleeping workers a signal wakes any: not always the one it was dealt to.
+ */
 void vg_work_queue(struct vg_engine *e, struct vg_task_state *j)
 {
   assert(j->lane >= VG_LANE_ANY && j->lane < e->threads);
@@ -119,14 +120,13 @@ static vg_status run(struct vg_worker *w, struct vg_task_state *j,
                      struct vg_span *span, struct vg_error *err)
 {
   struct vg_engine *e = w->e;
-  struct vg_done done = {0};
+  struct vg_done done = { 0 };
   vg_status st;
 
   if (j->home != e->rank) span->bytes_in = j->bytes.n;
   st = unpack(e, j, err);
   if (!st)
-    st = e->ops->run(e->user, e, &j->task, w->number, &j->outcome, &done,
-                     err);
+    st = e->ops->run(e->user, e, &j->task, w->number, &j->outcome, &done, err);
   j->n_cell = done.n_cell;
   span->n_face = done.n_face;
   span->cpu = done.elsewhere;
@@ -144,8 +144,7 @@ static vg_status run(struct vg_worker *w, struct vg_task_state *j,
 
 /* To be stopped is no failure; unasked, it stops the job. */
 static void fail(struct vg_engine *e, const struct vg_task_state *j,
-                 vg_status st,
-                 const struct vg_error *err)
+                 vg_status st, const struct vg_error *err)
 {
   vg_engine_lock(e);
   if (st != VG_ERR_STOPPED) vg_notify_fail(e, st, j->task.path, err);
@@ -180,7 +179,7 @@ static void do_job(struct vg_worker *w, struct vg_task_state *j)
     vg_notify_fail(e, err.code, j->task.path, &err);
   if (stays(e, j)) {
     j->runner = e->rank;
-    vg_work_end(e, j);       /* whoever calls done frees it */
+    vg_work_end(e, j); /* whoever calls done frees it */
     j = NULL;
   } else {
     vg_engine_post(e, j->home, VG_MSG_OUTCOME, &j->bytes);

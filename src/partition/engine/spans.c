@@ -93,11 +93,11 @@ static void busy(const struct vg_spans *s, double *sum, double *most)
 
   *sum = *most = 0;
   for (size_t i = 0; time && i < s->n; i++)
-    time[s->span[i].rank * s->n_thread + s->span[i].thread] +=
-      s->span[i].end - s->span[i].start;
+    time[s->span[i].rank * s->n_thread + s->span[i].thread] += s->span[i].end -
+                                                               s->span[i].start;
   for (size_t i = 0; time && i < s->n_help; i++)
-    time[s->help[i].rank * s->n_thread + s->help[i].thread] +=
-      s->help[i].end - s->help[i].start;
+    time[s->help[i].rank * s->n_thread + s->help[i].thread] += s->help[i].end -
+                                                               s->help[i].start;
   for (size_t i = 0; time && i < n; i++) {
     *sum += time[i];
     if (time[i] > *most) *most = time[i];

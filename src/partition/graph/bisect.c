@@ -5,7 +5,10 @@
 
 #include "base/memory.h"
 
-struct item { double at; uint32_t k; };
+struct item {
+  double at;
+  uint32_t k;
+};
 
 struct bisection {
   const double (*x)[3];

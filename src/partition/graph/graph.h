@@ -10,21 +10,22 @@
 #include "base/library.h"
 #include "base/status.h"
 
-/** Both directions of an edge are there, with one weight; no loops. Borrowed. */
+/** Both directions of an edge are there, with one weight; no loops. Borrowed.
+ */
 struct vg_graph {
   size_t n;
-  const uint64_t *begin;     /* [n + 1] of the neighbours of each vertex */
-  const uint32_t *to;        /* [begin[n]] */
-  const double *weight;      /* [n] > 0, finite: work; NULL: all alike */
-  const int32_t *edge;       /* [begin[n]] > 0: price of being cut; NULL: 1 */
+  const uint64_t *begin; /* [n + 1] of the neighbours of each vertex */
+  const uint32_t *to;    /* [begin[n]] */
+  const double *weight;  /* [n] > 0, finite: work; NULL: all alike */
+  const int32_t *edge;   /* [begin[n]] > 0: price of being cut; NULL: 1 */
 };
 
 struct vg_graph_options {
   int n_part;
-  double imbalance;          /* most over mean allowed, > 1: a wish */
-  int contiguous;            /* parts hang together, if the graph does */
-  double *seconds;           /* processor time that METIS took is added, which
-                                this process does not have; NULL: not */
+  double imbalance; /* most over mean allowed, > 1: a wish */
+  int contiguous;   /* parts hang together, if the graph does */
+  double *seconds;  /* processor time that METIS took is added, which
+                       this process does not have; NULL: not */
 };
 
 /** Part of every vertex, 0 .. n_part - 1; some may stay empty when parts have

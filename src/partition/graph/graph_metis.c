@@ -34,8 +34,8 @@ static idx_t *get_array(int fd, size_t n)
   return a;
 }
 
-static int run_metis(struct question *q, idx_t *begin, idx_t *to,
-                     idx_t *weight, idx_t *edge, idx_t *part)
+static int run_metis(struct question *q, idx_t *begin, idx_t *to, idx_t *weight,
+                     idx_t *edge, idx_t *part)
 {
   idx_t options[METIS_NOPTIONS], n_con = 1, cut;
 
@@ -45,8 +45,8 @@ static int run_metis(struct question *q, idx_t *begin, idx_t *to,
   options[METIS_OPTION_UFACTOR] = q->imbalance;
   if (q->n_part <= MOST_BISECTED && !q->contiguous)
     return METIS_PartGraphRecursive(&q->n, &n_con, begin, to, weight, NULL,
-                                    edge, &q->n_part, NULL, NULL, options,
-                                    &cut, part);
+                                    edge, &q->n_part, NULL, NULL, options, &cut,
+                                    part);
   options[METIS_OPTION_CONTIG] = q->contiguous;
   return METIS_PartGraphKway(&q->n, &n_con, begin, to, weight, NULL, edge,
                              &q->n_part, NULL, NULL, options, &cut, part);
@@ -112,12 +112,15 @@ static int ask(int fd, const struct vg_graph *g,
 {
   double over = 1000 * (o->imbalance - 1);
   size_t n_edge = g->begin[g->n];
-  struct question q = { (idx_t)g->n, (idx_t)n_edge, o->n_part,
-                        g->edge != NULL, o->contiguous != 0,
-                        over < 1 ? 1 : over > 1000 ? 1000 : (idx_t)over };
+  struct question q = {
+    (idx_t)g->n,        (idx_t)n_edge,
+    o->n_part,          g->edge != NULL,
+    o->contiguous != 0, over < 1 ? 1 : over > 1000 ? 1000 : (idx_t)over
+  };
 
   return vg_child_put(fd, &q, sizeof q) && send_begins(fd, g) &&
-         vg_child_put(fd, g->to, n_edge * sizeof *g->to) && send_weights(fd, g) &&
+         vg_child_put(fd, g->to, n_edge * sizeof *g->to) &&
+         send_weights(fd, g) &&
          (!g->edge || vg_child_put(fd, g->edge, n_edge * sizeof *g->edge));
 }
 
@@ -131,12 +134,16 @@ vg_status vg_graph_part(const struct vg_graph *g,
 
   assert(g && o && (part || !g->n));
   if (o->n_part < 1 || (size_t)o->n_part > g->n)
-    return vg_fail(err, VG_ERR_INPUT, "%d parts of %zu vertices: there must be "
-                   "at least one part, and a vertex for each", o->n_part, g->n);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%d parts of %zu vertices: there must be "
+                   "at least one part, and a vertex for each",
+                   o->n_part, g->n);
   /* half of what its 4-byte integers hold is left for the weights */
   if (g->n > 500000000 || g->begin[g->n] > INT32_MAX)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "a graph of %zu vertices is beyond "
-                   "METIS with indices of 4 bytes", g->n);
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "a graph of %zu vertices is beyond "
+                   "METIS with indices of 4 bytes",
+                   g->n);
   memset(part, 0, g->n * sizeof *part);
   if (o->n_part == 1) return VG_OK;
   if (vg_child_open(serve, &c) < 0)
@@ -146,8 +153,10 @@ vg_status vg_graph_part(const struct vg_graph *g,
   vg_child_close(&c);
   for (size_t k = 0; ok && k < g->n; k++) ok = part[k] < (uint32_t)o->n_part;
   if (!ok)
-    return vg_fail(err, VG_ERR_MEMORY, "METIS did not part a graph of %zu "
-                   "vertices; it may lack memory", g->n);
+    return vg_fail(err, VG_ERR_MEMORY,
+                   "METIS did not part a graph of %zu "
+                   "vertices; it may lack memory",
+                   g->n);
   if (o->seconds) *o->seconds += seconds;
   return VG_OK;
 }

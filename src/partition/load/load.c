@@ -14,7 +14,7 @@
 #include "partition/load/load_tree.h"
 
 /* Widest cube in target edges, free and where the front passes. */
-#define WIDE_FREE 3.0   /* C14 */
+#define WIDE_FREE 3.0 /* C14 */
 #define WIDE_FRONT 2.0
 /* In large meshes they are wider, to have about this many cubes, or one for so
  * many cubes of the target edge. Nodes this wide tell how large a mesh is; a
@@ -29,10 +29,10 @@
 #define FEW_CUBES 64
 #define LEAST 1.0
 /* From this gradient on VG_LOAD_GRADED counts in full. */
-#define GRADIENT 0.05   /* C15 */
+#define GRADIENT 0.05 /* C15 */
 /* Where h changes by more than this times itself across a cube, the cube's
  * parts are added up, to this depth. */
-#define STEEP 1.2   /* C16 */
+#define STEEP 1.2 /* C16 */
 #define STEEP_DEPTH 4
 /* A field whose gradient is more than HIDES can have edges that no sample of a
  * cube shows: it is looked at closer while the least is below this share. */
@@ -63,25 +63,27 @@ struct cubes {
 struct maker {
   const struct vg_load_tree *tree;
   const struct vg_sizing *sizing;
-  const struct vg_sizing *pace;  /* what cells next to the front can follow,
-                                where the field is steeper; else NULL */
-  int is_steep;              /* the field is, somewhere */
+  const struct vg_sizing *pace; /* what cells next to the front can follow,
+                               where the field is steeper; else NULL */
+  int is_steep;                 /* the field is, somewhere */
   double per_cube;
-  double narrow, wide;       /* divides, multiplies the widths allowed */
+  double narrow, wide; /* divides, multiplies the widths allowed */
   size_t n_branch, cap_branch, large;
-  _Atomic size_t *emitted;   /* cubes of all branches */
+  _Atomic size_t *emitted; /* cubes of all branches */
   struct branch {
     struct vg_load_node node;
-    uint32_t *item;          /* [node.n] */
+    uint32_t *item; /* [node.n] */
     struct cubes out;
-    double crossed;          /* sum of squares of volumes, cubes crossed */
+    double crossed; /* sum of squares of volumes, cubes crossed */
     int refused;
-  } *branch;
+  } * branch;
 };
 
 /* Of a node: mean of 1 / h^3, that times the correction for a gradient, and
  * the gradient. */
-struct density { double cubes, cells, slope; };
+struct density {
+  double cubes, cells, slope;
+};
 
 static double edge_at(const struct maker *m, const double x[3])
 {
@@ -91,11 +93,12 @@ static double edge_at(const struct maker *m, const double x[3])
 }
 
 /* Of a cube around mid. A rule of four points, exact for quadratics. */
-static struct density density_around(const struct maker *m,
-                                     const double mid[3], double half)
+static struct density density_around(const struct maker *m, const double mid[3],
+                                     double half)
 {
-  static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1},
-                                 {-1, -1, 1}};
+  static const int sign[4][3] = {
+    { 1, 1, 1 }, { 1, -1, -1 }, { -1, 1, -1 }, { -1, -1, 1 }
+  };
   const double off = 0.57735026918962576 * half;
   double sum = 0, g[3] = { 0, 0, 0 }, gg = 0, slope, graded;
 
@@ -110,8 +113,8 @@ static struct density density_around(const struct maker *m,
   for (int k = 0; k < 3; k++) gg += g[k] * g[k];
   slope = sqrt(gg) / (4 * off);
   sum /= 4;
-  graded = fmin(slope / GRADIENT, 1)
-           * fmax(0, fmin((PACE - slope) / (PACE - PACE_FROM), 1));
+  graded = fmin(slope / GRADIENT, 1) *
+           fmax(0, fmin((PACE - slope) / (PACE - PACE_FROM), 1));
   return (struct density){ sum, sum * (1 + VG_LOAD_GRADED * graded), slope };
 }
 
@@ -122,8 +125,7 @@ static double middle_of(const struct maker *m, const struct vg_load_node *node,
   const struct vg_load_tree *t = m->tree;
   const double half = 0.5 * vg_load_side(node) * t->unit;
 
-  for (int k = 0; k < 3; k++)
-    mid[k] = t->lo[k] + node->at[k] * t->unit + half;
+  for (int k = 0; k < 3; k++) mid[k] = t->lo[k] + node->at[k] * t->unit + half;
   return half;
 }
 
@@ -289,16 +291,14 @@ static int emit(const struct maker *m, struct branch *b,
   if (node->n) b->crossed += volume * volume;
   if (!inside) return 0;
   if (atomic_fetch_add(m->emitted, 1) >= CUBES_MOST) return -1;
-  if (vg_reserve(&b->out.cube, &b->out.cap, b->out.n + 1, sizeof *c))
-    return -1;
+  if (vg_reserve(&b->out.cube, &b->out.cap, b->out.n + 1, sizeof *c)) return -1;
   c = &b->out.cube[b->out.n++];
   for (int k = 0; k < 3; k++)
     c->at[k] = (float)(t->lo[k] + node->at[k] * t->unit + 0.5 * side);
   c->half = (float)(0.5 * side);
   c->h = (float)(1 / cube_root(density.cubes));
   c->part = (float)inside / VG_LOAD_SAMPLES;
-  c->cells = (float)(m->per_cube * density.cells * volume
-                     * (double)c->part);
+  c->cells = (float)(m->per_cube * density.cells * volume * (double)c->part);
   return 0;
 }
 
@@ -307,9 +307,8 @@ static int is_leaf(const struct maker *m, const struct vg_load_node *node,
 {
   const double side = vg_load_side(node) * m->tree->unit;
 
-  return node->level >= VG_LOAD_LEVELS
-         || (node->n <= CROWD
-             && side * side * side * density <= most_in(m, node));
+  return node->level >= VG_LOAD_LEVELS ||
+         (node->n <= CROWD && side * side * side * density <= most_in(m, node));
 }
 
 static int refine(const struct maker *m, struct branch *b,
@@ -382,8 +381,8 @@ static int plan(struct maker *m, struct vg_load_stack *s,
   int bad = 0;
 
   if (!node->n && node->owner < 1) return 0;
-  if ((node->n <= m->large && node->level)
-      || is_leaf(m, node, mean_density(m, node).cubes))
+  if ((node->n <= m->large && node->level) ||
+      is_leaf(m, node, mean_density(m, node).cubes))
     return add_branch(m, s, node);
   if (vg_load_octants(m->tree, s, node, part, threads)) return -1;
   for (int o = 0; o < 8 && !bad; o++) bad = plan(m, s, &part[o], threads);
@@ -407,9 +406,9 @@ static int plan_all(struct maker *m, int threads)
 
 struct rough_job {
   const struct maker *m;
-  double *sum;               /* [branch] */
-  _Atomic uint64_t seen;     /* whole cubes of all; from ROUGH_MOST on no more
-                                are looked for: widths would be the same */
+  double *sum;           /* [branch] */
+  _Atomic uint64_t seen; /* whole cubes of all; from ROUGH_MOST on no more
+                            are looked for: widths would be the same */
 };
 #define ROUGH_MOST (MANY_CUBES * EDGES_MOST)
 
@@ -423,9 +422,9 @@ static double rough(struct rough_job *job, const struct vg_load_node *node)
   double sum = 0, mid[3], half;
 
   half = middle_of(m, node, mid);
-  if (node->level >= VG_LOAD_LEVELS
-      || (n <= WIDE_ROUGH * WIDE_ROUGH * WIDE_ROUGH
-          && !hides(m, mid, half, n / (side * side * side), WIDE_ROUGH))) {
+  if (node->level >= VG_LOAD_LEVELS ||
+      (n <= WIDE_ROUGH * WIDE_ROUGH * WIDE_ROUGH &&
+       !hides(m, mid, half, n / (side * side * side), WIDE_ROUGH))) {
     atomic_fetch_add(&job->seen, (uint64_t)fmin(n, ROUGH_MOST));
     return n;
   }
@@ -514,10 +513,9 @@ static int make(struct maker *m, int threads, struct vg_load *out,
 static void place_root(struct vg_load_tree *t, const double lo[3],
                        const double hi[3], int place)
 {
-  static const double room[PLACES][3] = {
-    { 0.381966, 0.414214, 0.302776 }, { 0.618034, 0.236068, 0.561553 },
-    { 0.192582, 0.732051, 0.449490 }
-  };
+  static const double room[PLACES][3] = { { 0.381966, 0.414214, 0.302776 },
+                                          { 0.618034, 0.236068, 0.561553 },
+                                          { 0.192582, 0.732051, 0.449490 } };
   double extent = 0, side;
   int e;
 
@@ -562,9 +560,11 @@ static vg_status refused(const struct maker *m, struct vg_error *err)
 {
   if (atomic_load(m->emitted) <= CUBES_MOST)
     return vg_fail_memory(err, "the estimate of cells");
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "the sizes ask for more than %.0f "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the sizes ask for more than %.0f "
                  "billion cells; are hmin, hmax and the sources in the unit of "
-                 "the surface?", CUBES_MOST * EDGES_MOST * m->per_cube * 1e-9);
+                 "the surface?",
+                 CUBES_MOST * EDGES_MOST * m->per_cube * 1e-9);
 }
 
 /* The best of several places of the root cube; nearly always the first. */
@@ -644,9 +644,11 @@ vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
   struct vg_load_tree t = { .unit = 1 };
   _Atomic size_t emitted = 0;
   struct vg_sizing *pace = NULL;
-  struct maker m = { .tree = &t, .sizing = sizing,
+  struct maker m = { .tree = &t,
+                     .sizing = sizing,
                      .is_steep = vg_sizing_slope(sizing) > HIDES,
-                     .per_cube = cells_per_cube, .narrow = 1,
+                     .per_cube = cells_per_cube,
+                     .narrow = 1,
                      .emitted = &emitted };
   struct vg_load l = VG_LOAD_INIT;
   const double volume = vg_load_volume(v);

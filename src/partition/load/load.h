@@ -18,19 +18,19 @@
 /** Cells per cube of the target edge where spacing is even, measured over
  * boxes (docs/performance-parallel.md); corrected by what a void's zones turned
  * out. */
-#define VG_LOAD_CELLS_PER_CUBE 9.0   /* C13 */
+#define VG_LOAD_CELLS_PER_CUBE 9.0 /* C13 */
 
 /** Where the target edge varies, cells are more by this share, and cost more:
  * nearly the same for growth rates from 1.1 to 1.35, while even spacing allows
  * regular cells. */
-#define VG_LOAD_GRADED 0.21   /* C15 */
+#define VG_LOAD_GRADED 0.21 /* C15 */
 
 struct vg_load_cube {
-  float at[3], half;         /* centre, half the side */
-  float h;                   /* target edge, averaged like 1 / h^3 */
-  float part;                /* of the cube in the void, > 0; such that all
-                                make up the volume that the front encloses */
-  float cells;               /* expected in that part */
+  float at[3], half; /* centre, half the side */
+  float h;           /* target edge, averaged like 1 / h^3 */
+  float part;        /* of the cube in the void, > 0; such that all
+                        make up the volume that the front encloses */
+  float cells;       /* expected in that part */
 };
 
 struct vg_load_index;
@@ -45,7 +45,10 @@ struct vg_load {
   double from[3], to[3];     /* between planes that pass cubes */
   struct vg_load_index *index;
 };
-#define VG_LOAD_INIT { .n = 0 }
+#define VG_LOAD_INIT                                                           \
+  {                                                                            \
+    .n = 0                                                                     \
+  }
 
 void vg_load_release(struct vg_load *l);
 
@@ -110,8 +113,7 @@ double vg_load_quantile(const struct vg_load *l, int axis, double part);
 
 /** Cells expected within `width` target edges on each side of the plane
  * x[axis] = at: what a zone costs. As dense as on the plane. */
-double vg_load_zone(const struct vg_load *l, int axis, double at,
-                    double width);
+double vg_load_zone(const struct vg_load *l, int axis, double at, double width);
 
 /** Largest target edge met on the plane (0: the plane misses the void). */
 double vg_load_coarsest(const struct vg_load *l, int axis, double at);
@@ -125,8 +127,7 @@ struct vg_load_finder;
 
 /** O(cubes log cubes). VG_ERR_MEMORY. */
 vg_status vg_load_finder_new(const struct vg_load *l,
-                             struct vg_load_finder **out,
-                             struct vg_error *err);
+                             struct vg_load_finder **out, struct vg_error *err);
 /** Accepts NULL. */
 void vg_load_finder_free(struct vg_load_finder *f);
 

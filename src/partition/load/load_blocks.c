@@ -22,7 +22,7 @@ struct deal {
   const double *const *at;
   double reach, correction;
   size_t n_block, n_chunk;
-  size_t *count;             /* [n_chunk][n_block] cubes, then their places */
+  size_t *count; /* [n_chunk][n_block] cubes, then their places */
   struct vg_load *out;
   int is_counting;
 };
@@ -187,7 +187,10 @@ static struct vg_load *deal_out(struct deal *d, const struct vg_engine *e)
   return NULL;
 }
 
-struct finish { struct vg_load *l; int *bad; };
+struct finish {
+  struct vg_load *l;
+  int *bad;
+};
 
 static void finish_part(void *context, size_t first, size_t end, int worker)
 {
@@ -222,8 +225,9 @@ vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],
   assert(n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && out);
   assert(reach >= 0 && correction > 0);
 
-  struct deal d = { .parent = parent, .n = n, .at = at, .reach = reach,
-                    .correction = correction };
+  struct deal d = {
+    .parent = parent, .n = n, .at = at, .reach = reach, .correction = correction
+  };
   struct vg_load *made = deal_out(&d, e);
 
   if (!made || finish(made, d.n_block, e)) {

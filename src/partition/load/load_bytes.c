@@ -23,7 +23,8 @@ vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,
 {
   assert(out);
 
-  struct head h = { .n = l->n, .unit = l->unit,
+  struct head h = { .n = l->n,
+                    .unit = l->unit,
                     .is_block = (uint64_t)l->is_block };
   const size_t cubes = l->n * sizeof *l->cube;
   unsigned char *data = vg_alloc(sizeof h + cubes, 1);
@@ -44,9 +45,9 @@ static int is_sound(const struct vg_load_cube *c)
 {
   for (int k = 0; k < 3; k++)
     if (!isfinite(c->at[k])) return 0;
-  return isfinite(c->half) && c->half > 0 && isfinite(c->h) && c->h > 0
-         && isfinite(c->part) && c->part > 0 && isfinite(c->cells)
-         && c->cells >= 0;
+  return isfinite(c->half) && c->half > 0 && isfinite(c->h) && c->h > 0 &&
+         isfinite(c->part) && c->part > 0 && isfinite(c->cells) &&
+         c->cells >= 0;
 }
 
 vg_status vg_load_unpack(const struct vg_bytes *in, struct vg_load *out,
@@ -58,10 +59,10 @@ vg_status vg_load_unpack(const struct vg_bytes *in, struct vg_load *out,
   assert(in && out);
   if (in->n < sizeof h) goto damaged;
   memcpy(&h, in->data, sizeof h);
-  if (memcmp(h.magic, magic, sizeof magic)
-      || h.n != (in->n - sizeof h) / sizeof *l.cube
-      || (in->n - sizeof h) % sizeof *l.cube || !isfinite(h.unit)
-      || !isfinite(h.lo[0] + h.lo[1] + h.lo[2]) || h.is_block > 1)
+  if (memcmp(h.magic, magic, sizeof magic) ||
+      h.n != (in->n - sizeof h) / sizeof *l.cube ||
+      (in->n - sizeof h) % sizeof *l.cube || !isfinite(h.unit) ||
+      !isfinite(h.lo[0] + h.lo[1] + h.lo[2]) || h.is_block > 1)
     goto damaged;
   for (int k = 0; k < 3; k++)
     if (h.is_block && !(h.from[k] < h.to[k])) goto damaged;
@@ -86,6 +87,7 @@ vg_status vg_load_unpack(const struct vg_bytes *in, struct vg_load *out,
   return VG_OK;
 damaged:
   vg_load_release(&l);
-  return vg_fail(err, VG_ERR_FORMAT, "a message with a load is damaged; the "
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "a message with a load is damaged; the "
                  "ranks must run the same build of vanguard");
 }

@@ -11,14 +11,14 @@
 
 /* A cube in the lattice of the octree. */
 struct place {
-  uint32_t at[3], side;      /* lower corner */
+  uint32_t at[3], side; /* lower corner */
   uint32_t cube;
 };
 
 struct vg_load_finder {
   double lo[3], unit;
   size_t n;
-  struct place *place;       /* [n] in the order of the octree */
+  struct place *place; /* [n] in the order of the octree */
 };
 
 void vg_load_finder_free(struct vg_load_finder *f)
@@ -38,7 +38,7 @@ static int by_order(const uint32_t a[3], const uint32_t b[3])
   for (int k = 0; k < 3; k++) {
     const uint32_t d = a[k] ^ b[k];
 
-    if (d >= most || d >= (most ^ d)) {   /* its first bit is not below */
+    if (d >= most || d >= (most ^ d)) { /* its first bit is not below */
       most = d;
       axis = k;
     }
@@ -87,7 +87,8 @@ vg_status vg_load_finder_new(const struct vg_load *l,
   }
   memcpy(f->lo, l->lo, sizeof f->lo);
   f->unit = l->unit;
-  for (size_t i = 0; i < l->n; i++) f->n += place_of(l, i, &f->place[f->n]) != 0;
+  for (size_t i = 0; i < l->n; i++)
+    f->n += place_of(l, i, &f->place[f->n]) != 0;
   if (f->n) qsort(f->place, f->n, sizeof *f->place, by_place);
   *out = f;
   return VG_OK;
@@ -106,7 +107,7 @@ size_t vg_load_find(const struct vg_load_finder *f, const double x[3])
     if (!(p >= 0 && p < 0x1p31)) return SIZE_MAX;
     at[k] = (uint32_t)p;
   }
-  while (low < high) {       /* the last one that is not behind it */
+  while (low < high) { /* the last one that is not behind it */
     const size_t mid = low + (high - low) / 2;
 
     if (by_order(f->place[mid].at, at) <= 0) low = mid + 1;

@@ -19,15 +19,17 @@ enum { SAMPLE = 256, FEW = 32, ONE_OF = 8 };
 #define ONE_EDGE 0.01
 
 struct axis {
-  size_t n;                  /* bins */
-  double *edge, *below;      /* [n + 1] bounds; cells below */
-  double *dense;             /* [n] cells by target edge per length */
-  float *most;               /* [n] largest target edge */
-  size_t *first;             /* [2 n + 1] edges before an even slot */
-  double scale;              /* slots per length */
+  size_t n;             /* bins */
+  double *edge, *below; /* [n + 1] bounds; cells below */
+  double *dense;        /* [n] cells by target edge per length */
+  float *most;          /* [n] largest target edge */
+  size_t *first;        /* [2 n + 1] edges before an even slot */
+  double scale;         /* slots per length */
 };
 
-struct vg_load_index { struct axis axis[3]; };
+struct vg_load_index {
+  struct axis axis[3];
+};
 
 static void release_axis(struct axis *a)
 {
@@ -64,7 +66,9 @@ static void reach_of(const struct vg_load *l, const struct vg_load_cube *c,
 
 /* --- bins ---------------------------------------------------------------- */
 
-struct mark { double x, near; };
+struct mark {
+  double x, near;
+};
 
 static int by_place(const void *a, const void *b)
 {
@@ -140,9 +144,9 @@ static size_t bin_of(const struct axis *a, double x)
 /* --- what is in them ----------------------------------------------------- */
 
 struct sums {
-  double *cells, *weight;    /* [n] whole sums: of cells, and times h */
-  double *rate[2];           /* [n + 1] both per length; differences */
-  float *most;               /* [levels][n] of runs of 2^level bins */
+  double *cells, *weight; /* [n] whole sums: of cells, and times h */
+  double *rate[2];        /* [n + 1] both per length; differences */
+  float *most;            /* [levels][n] of runs of 2^level bins */
   int levels;
 };
 
@@ -170,8 +174,8 @@ static void add_cells(struct sums *s, size_t bin, double cells, double h)
   s->weight[bin] += cells * h;
 }
 
-static void add_cube(const struct axis *a, struct sums *s, double lo,
-                     double hi, const struct vg_load_cube *c)
+static void add_cube(const struct axis *a, struct sums *s, double lo, double hi,
+                     const struct vg_load_cube *c)
 {
   const double near = 2 * ONE_EDGE * (double)c->half;
   const double h = (double)c->h, cells = (double)c->cells;
@@ -315,7 +319,7 @@ double vg_load_quantile(const struct vg_load *l, int axis, double part)
   if (!(part < 1)) return a->edge[a->n];
   target = part * a->below[a->n];
   hi = a->n - 1;
-  while (lo < hi) {          /* first bin that ends at the target or later */
+  while (lo < hi) { /* first bin that ends at the target or later */
     const size_t m = lo + (hi - lo) / 2;
 
     if (a->below[m + 1] < target) lo = m + 1;
@@ -339,8 +343,7 @@ static int bins_at(const struct vg_load *l, int axis, double x, size_t bin[2])
   return 1 + (bin[0] > 0 && !(x > a->edge[bin[0]]));
 }
 
-double vg_load_zone(const struct vg_load *l, int axis, double at,
-                    double width)
+double vg_load_zone(const struct vg_load *l, int axis, double at, double width)
 {
   assert(axis >= 0 && axis < 3 && width >= 0);
 
@@ -377,9 +380,9 @@ double vg_load_within(const struct vg_load *l, const double lo[3],
       double from, to;
 
       reach_of(l, &l->cube[i], k, &from, &to);
-      part *= to > from ? fmax(fmin(to, hi[k]) - fmax(from, lo[k]), 0) /
-                            (to - from)
-                        : 0;
+      part *= to > from
+              ? fmax(fmin(to, hi[k]) - fmax(from, lo[k]), 0) / (to - from)
+              : 0;
     }
     sum += part;
   }

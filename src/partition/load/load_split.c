@@ -24,7 +24,7 @@ struct split {
   struct vg_load_tree tree;
   struct vg_load_stack stack;
   size_t n_share, cap_share;
-  struct share *share;       /* by cube */
+  struct share *share; /* by cube */
 };
 
 static int add_share(struct split *s, size_t cube, int samples)
@@ -86,13 +86,13 @@ static size_t first_of(const struct split *s, size_t a, size_t b,
 static int is_cube(const struct split *s, const struct vg_load_node *node,
                    size_t a, size_t b)
 {
-  return node->level >= VG_LOAD_LEVELS
-         || (b - a == 1 && vg_load_side(node) * s->tree.unit
-                           < 2.5 * (double)s->parent->cube[a].half);
+  return node->level >= VG_LOAD_LEVELS ||
+         (b - a == 1 && vg_load_side(node) * s->tree.unit <
+                          2.5 * (double)s->parent->cube[a].half);
 }
 
-static int descend(struct split *s, const struct vg_load_node *node,
-                   size_t a, size_t b)
+static int descend(struct split *s, const struct vg_load_node *node, size_t a,
+                   size_t b)
 {
   const size_t keep = s->stack.n;
   struct vg_load_node part[8];
@@ -224,8 +224,8 @@ static int lone_cube(const struct split *s, const struct vg_front *v,
   c->half = (float)(0.5 * side);
   c->h = near->h;
   c->part = (float)(volume / (side * side * side));
-  c->cells = (float)(correction * (double)near->cells * volume
-                     / (old * old * old * (double)near->part));
+  c->cells = (float)(correction * (double)near->cells * volume /
+                     (old * old * old * (double)near->part));
   out->cube = c;
   out->n = 1;
   out->cells = (double)c->cells;
@@ -240,8 +240,8 @@ static void take_share(const struct split *s, const struct share *from,
 
   *to = *c;
   to->part = (float)from->part;
-  to->cells = (float)(correction * (double)c->cells * from->part
-                      / (double)c->part);
+  to->cells = (float)(correction * (double)c->cells * from->part /
+                      (double)c->part);
 }
 
 static int deal(const struct split *s, const struct vg_front *child,
@@ -296,8 +296,7 @@ vg_status vg_load_split(const struct vg_load *parent, size_t n,
                         const struct vg_engine *e, struct vg_load *out,
                         struct vg_error *err)
 {
-  struct children w = { parent, child, correction,
-                        vg_calloc(n, sizeof *w.made),
+  struct children w = { parent, child, correction, vg_calloc(n, sizeof *w.made),
                         vg_calloc(n, sizeof *w.bad) };
   int bad = !w.made || !w.bad;
 

@@ -30,8 +30,9 @@ double vg_load_volume(const struct vg_front *v)
   const double *o = v->n_face ? v->x[v->face[0][0]] : NULL;
 
   /* Normals point inwards. */
-  return -vg_enclosed6(v->n_face, (const uint32_t (*)[3])v->face,
-                       (const double (*)[3])v->x, o) / 6;
+  return -vg_enclosed6(v->n_face, (const uint32_t(*)[3])v->face,
+                       (const double(*)[3])v->x, o) /
+         6;
 }
 
 void vg_load_box(const struct vg_front *v, double lo[3], double hi[3])
@@ -51,7 +52,11 @@ void vg_load_box(const struct vg_front *v, double lo[3], double hi[3])
     }
 }
 
-struct enter_job { const struct vg_load_tree *t; uint32_t child; size_t at; };
+struct enter_job {
+  const struct vg_load_tree *t;
+  uint32_t child;
+  size_t at;
+};
 
 static uint32_t to_lattice(double x)
 {
@@ -96,7 +101,8 @@ vg_status vg_load_tree_new(struct vg_load_tree *t, size_t n,
   t->n_tri = 0;
   for (size_t c = 0; c < n; c++) t->n_tri += child[c].n_face;
   t->tri = t->n_tri < UINT32_MAX && n < INT32_MAX
-           ? vg_alloc(t->n_tri, sizeof *t->tri) : NULL;
+           ? vg_alloc(t->n_tri, sizeof *t->tri)
+           : NULL;
   if (!t->tri) return vg_fail_memory(err, "the estimate of cells");
   for (size_t c = 0; c < n; c++) {
     job.child = (uint32_t)c;
@@ -136,9 +142,8 @@ static int side_of(const double *a, const double *b, const double p[2], int u,
 
 /* The step from lattice point p to the same with p[axis] = to, across one
  * triangle: +1 into the void, -1 out of it, 0 none. */
-static int crossing(const struct vg_load_tree *t,
-                    const struct vg_load_tri *tri, int axis,
-                    const uint32_t p[3], uint32_t to)
+static int crossing(const struct vg_load_tree *t, const struct vg_load_tri *tri,
+                    int axis, const uint32_t p[3], uint32_t to)
 {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   const struct vg_front *f = &t->child[tri->child];
@@ -170,9 +175,8 @@ static int32_t along(const struct vg_load_tree *t, const uint32_t *list,
   for (size_t i = 0; i < n; i++) {
     const struct vg_load_tri *tri = &t->tri[list[i]];
 
-    if (tri->lo[u] > p[u] || tri->hi[u] < p[u] || tri->lo[v] > p[v]
-        || tri->hi[v] < p[v] || tri->lo[axis] > to
-        || tri->hi[axis] < p[axis])
+    if (tri->lo[u] > p[u] || tri->hi[u] < p[u] || tri->lo[v] > p[v] ||
+        tri->hi[v] < p[v] || tri->lo[axis] > to || tri->hi[axis] < p[axis])
       continue;
     sum += crossing(t, tri, axis, p, to) * (int32_t)(tri->child + 1);
   }
@@ -182,8 +186,7 @@ static int32_t along(const struct vg_load_tree *t, const uint32_t *list,
 /* --- nodes --------------------------------------------------------------- */
 
 /* Octants that a triangle's box touches: bit of each axis's side. */
-static uint8_t octant_mask(const struct vg_load_tri *tri,
-                           const uint32_t mid[3])
+static uint8_t octant_mask(const struct vg_load_tri *tri, const uint32_t mid[3])
 {
   static const uint8_t low[3] = { 0x55, 0x33, 0x0f };
   uint8_t mask = 0xff;
@@ -238,8 +241,8 @@ static int distribute(const struct vg_load_tree *t, struct vg_load_stack *s,
 }
 
 int vg_load_octants(const struct vg_load_tree *t, struct vg_load_stack *s,
-                    const struct vg_load_node *node,
-                    struct vg_load_node out[8], int threads)
+                    const struct vg_load_node *node, struct vg_load_node out[8],
+                    int threads)
 {
   const uint32_t half = vg_load_side(node) / 2;
 
@@ -255,9 +258,9 @@ int vg_load_octants(const struct vg_load_tree *t, struct vg_load_stack *s,
   for (int o = 1; o < 8; o++) {
     const int axis = o >> 2 ? 2 : o >> 1 ? 1 : 0, from = o ^ 1 << axis;
 
-    out[o].owner = out[from].owner
-                   + along(t, s->item + out[from].first, out[from].n, axis,
-                           out[from].at, out[o].at[axis]);
+    out[o].owner = out[from].owner + along(t, s->item + out[from].first,
+                                           out[from].n, axis, out[from].at,
+                                           out[o].at[axis]);
   }
   return 0;
 }
@@ -279,8 +282,7 @@ static uint64_t scatter(const struct vg_load_node *node)
   return z;
 }
 
-void vg_load_sample(const struct vg_load_tree *t,
-                    const struct vg_load_stack *s,
+void vg_load_sample(const struct vg_load_tree *t, const struct vg_load_stack *s,
                     const struct vg_load_node *node,
                     int32_t owner[VG_LOAD_SAMPLES], uint32_t at[3])
 {
@@ -305,8 +307,7 @@ void vg_load_sample(const struct vg_load_tree *t,
     uint32_t q[3];
 
     for (int k = 0; k < 3; k++) q[k] = p[k] + (from >> k & 1 ? half : 0);
-    owner[o] = owner[from]
-               + along(t, list, node->n, axis, q, q[axis] + half);
+    owner[o] = owner[from] + along(t, list, node->n, axis, q, q[axis] + half);
   }
 }
 

@@ -18,7 +18,7 @@
 enum { VG_LOAD_BITS = 31, VG_LOAD_LEVELS = 24, VG_LOAD_SAMPLES = 8 };
 
 struct vg_load_tri {
-  uint32_t lo[3], hi[3];     /* box, rounded down */
+  uint32_t lo[3], hi[3]; /* box, rounded down */
   uint32_t child, face;
 };
 
@@ -26,7 +26,7 @@ struct vg_load_tree {
   double lo[3], unit;
   const struct vg_front *child;
   size_t n_tri;
-  struct vg_load_tri *tri;   /* [n_tri] of all children */
+  struct vg_load_tri *tri; /* [n_tri] of all children */
 };
 
 /** A node, the triangles that touch it and who owns its lower corner: 0
@@ -34,9 +34,9 @@ struct vg_load_tree {
  * anything else shows that a front is not closed.) */
 struct vg_load_node {
   uint32_t at[3];
-  int level;                 /* side: 1 << (VG_LOAD_BITS - level) */
+  int level; /* side: 1 << (VG_LOAD_BITS - level) */
   int32_t owner;
-  size_t first, n;           /* triangles: in the stack */
+  size_t first, n; /* triangles: in the stack */
 };
 
 /** Lists of triangles of the nodes that are open. */
@@ -45,7 +45,10 @@ struct vg_load_stack {
   uint32_t *item;
   uint8_t *mask;
 };
-#define VG_LOAD_STACK_INIT { 0, 0, 0, NULL, NULL }
+#define VG_LOAD_STACK_INIT                                                     \
+  {                                                                            \
+    0, 0, 0, NULL, NULL                                                        \
+  }
 
 static inline uint32_t vg_load_side(const struct vg_load_node *node)
 {
@@ -68,15 +71,14 @@ void vg_load_stack_release(struct vg_load_stack *s);
 /** The eight parts of a node; lists are pushed: restore s->n afterwards.
  * Returns -1 when memory is refused. */
 int vg_load_octants(const struct vg_load_tree *t, struct vg_load_stack *s,
-                    const struct vg_load_node *node,
-                    struct vg_load_node out[8], int threads);
+                    const struct vg_load_node *node, struct vg_load_node out[8],
+                    int threads);
 
 /** Who owns each of 2 x 2 x 2 points of a node. They are shifted by an amount
  * that follows from the node, so that errors of neighbours along a plane wall
  * do not add up. at out: the first of them; the others are half a node on,
  * x first. */
-void vg_load_sample(const struct vg_load_tree *t,
-                    const struct vg_load_stack *s,
+void vg_load_sample(const struct vg_load_tree *t, const struct vg_load_stack *s,
                     const struct vg_load_node *node,
                     int32_t owner[VG_LOAD_SAMPLES], uint32_t at[3]);
 

@@ -22,22 +22,22 @@ const struct vg_rates vg_rates_measured = {
   .join = { 0, 0, 0, 0.04e-6, 0, 0.12e-6, 0.98 },
   .close = { 0, 0, 0, 0.025e-6, 0.3e-3, 0, 0.98 },
   .split = { 0, 0, 0, 0.045e-6, 0, 0, 0.98 },
-  .discrete = { 0, 3.3e-6, 3.5e-6, 0.47, 6.7e-6, 5e-6 },   /* M9 */
+  .discrete = { 0, 3.3e-6, 3.5e-6, 0.47, 6.7e-6, 5e-6 }, /* M9 */
   .octree = { 1.6e-6, 23e-6, 1.9e-6, 0.45, 9.5e-6, 0 },
 };
 
 /* Loops over fewer faces are of one chunk or two (node_split.c). */
-static const double loop_faces = 5000;   /* M2 */
+static const double loop_faces = 5000; /* M2 */
 
 /* Where three planes meet, so many places are left where parts hang together,
  * with so many faces beside them; their cells, about 200, are the tiles'. */
-static const double places_per_corner = 0.5, place_faces = 900;   /* M3 */
+static const double places_per_corner = 0.5, place_faces = 900; /* M3 */
 
 /* Bytes of a front per face: three indices, half a point and its name. */
 static const double bytes_per_face = 28;
 
 /* Cells of a leaf of a coarse mesh (advance/coarse.c). */
-static const double coarse_leaf = 20000;   /* D10 */
+static const double coarse_leaf = 20000; /* D10 */
 
 static const struct vg_task_rate no_time = { .task = 0 };
 
@@ -46,9 +46,9 @@ static const double least_void = 1;
 
 struct forecast {
   struct vg_forecast *out;
-  double n_handed, handed;   /* tasks since the last join, faces they got */
-  struct vg_amount zones;       /* made by pencils and tiles */
-  char leaf[VG_PATH_MAX];    /* one of the leaves */
+  double n_handed, handed; /* tasks since the last join, faces they got */
+  struct vg_amount zones;  /* made by pencils and tiles */
+  char leaf[VG_PATH_MAX];  /* one of the leaves */
   const struct vg_cut_rule *rule;
   const struct vg_rates *rates;
   struct vg_error *err;
@@ -73,7 +73,7 @@ double vg_forecast_points(double cells, double faces)
 
 static struct vg_amount amount_of(const struct vg_load *l)
 {
-  struct vg_amount a = {0, 0};
+  struct vg_amount a = { 0, 0 };
 
   for (size_t i = 0; i < l->n; i++) vg_amount_add(&a, &l->cube[i], 1);
   return a;
@@ -98,7 +98,7 @@ static vg_status add_task(struct forecast *c, const char *path,
 
   snprintf(span.path, sizeof span.path, "%s", path);
   snprintf(span.after, sizeof span.after, "%s", after);
-  span.cpu = seconds(rate, makes ? a : (struct vg_amount){0, 0}, faces);
+  span.cpu = seconds(rate, makes ? a : (struct vg_amount){ 0, 0 }, faces);
   if (faces > loop_faces)
     span.loops = rate->loops * (1 - loop_faces / faces) * span.cpu;
   if (makes) span.n_cell = (uint64_t)(a.cells + 0.5);
@@ -192,7 +192,7 @@ static vg_status add_repairs(struct forecast *c,
 
   for (size_t k = 0; st >= 0 && k < n && c->leaf[0]; k++) {
     struct vg_amount a = { c->zones.cells / (double)n,
-                        c->zones.graded / (double)n };
+                           c->zones.graded / (double)n };
 
     snprintf(path, sizeof path, "0R%zu", k);
     st = add_task(c, path, c->leaf, VG_SPAN_REPAIR, &c->rates->repair, a,
@@ -201,7 +201,7 @@ static vg_status add_repairs(struct forecast *c,
   for (size_t k = 0; st >= 0 && k < n_part && c->leaf[0]; k++) {
     snprintf(path, sizeof path, "0R%zu", n + k);
     st = add_task(c, path, c->leaf, VG_SPAN_REPAIR, &side,
-                  (struct vg_amount){0, 0}, q->sides / (double)n_part, 0);
+                  (struct vg_amount){ 0, 0 }, q->sides / (double)n_part, 0);
   }
   return st;
 }
@@ -215,8 +215,8 @@ static vg_status add_join(struct forecast *c, const struct vg_subdomain *p,
 
   snprintf(path, sizeof path, "%.*sJ%d", VG_PATH_MAX - 14, p->path, number);
   st = add_task(c, path, after, VG_SPAN_JOIN, rate,
-                (struct vg_amount){p->load.cells, 0}, vg_bins_faces(&p->front),
-                (double)p->load.n);
+                (struct vg_amount){ p->load.cells, 0 },
+                vg_bins_faces(&p->front), (double)p->load.n);
   memcpy(after, path, sizeof path);
   c->n_handed = c->handed = 0;
   return st;
@@ -249,8 +249,8 @@ static vg_status grow_stage(struct forecast *c, struct vg_subdomain *p,
   for (size_t k = 0; k < count; k++) {
     char kind = stage < VG_LATTICE_TILES ? VG_SPAN_PENCIL : VG_SPAN_TILE;
     const struct vg_task_rate *rate = kind == VG_SPAN_TILE ? &c->rates->tile
-                                      : stage < 2 ? &c->rates->pencil
-                                                  : &c->rates->rib;
+                                    : stage < 2            ? &c->rates->pencil
+                                                           : &c->rates->rib;
     struct vg_amount a;
     struct vg_region r;
     double faces;
@@ -299,7 +299,7 @@ static vg_status close_places(struct forecast *c, const struct vg_subdomain *p,
     snprintf(path, sizeof path, "%.*sT%zu", VG_PATH_MAX - 24, p->path,
              vg_lattice_count(l, VG_LATTICE_STAGES - 1) + k);
     st = add_task(c, path, maker, VG_SPAN_TILE, &c->rates->closing,
-                  (struct vg_amount){0, 0}, place_faces, 0);
+                  (struct vg_amount){ 0, 0 }, place_faces, 0);
     memcpy(after, path, sizeof path);
     c->n_handed++;
     c->out->n_tile++;
@@ -326,9 +326,9 @@ static vg_status grow_zones(struct forecast *c, struct vg_subdomain *p,
     else VG_TRY(close_places(c, p, l, after));
     if (c->out->spans.n == n) continue;
     pay_tasks(c, join, last);
-    last = stage + 1 < VG_LATTICE_STAGES ? &r->join
-           : stage < VG_LATTICE_STAGES && has_corners ? &r->close
-                                                      : &r->split;
+    last = stage + 1 < VG_LATTICE_STAGES            ? &r->join
+         : stage < VG_LATTICE_STAGES && has_corners ? &r->close
+                                                    : &r->split;
     join = c->out->spans.n;
     VG_TRY(add_join(c, p, n_join++, last, after));
   }
@@ -345,12 +345,11 @@ static vg_status add_rest(struct forecast *c, const struct vg_subdomain *from,
                           const char *after)
 {
   struct vg_subdomain rest = { .parent = parent, .depth = from->depth + 1 };
-  struct vg_amount a = {0, 0};
+  struct vg_amount a = { 0, 0 };
   double volume = 0;
   vg_status st = VG_OK;
 
-  snprintf(rest.path, sizeof rest.path, "%.*s.r", VG_PATH_MAX - 8,
-           from->path);
+  snprintf(rest.path, sizeof rest.path, "%.*s.r", VG_PATH_MAX - 8, from->path);
   memcpy(rest.lo, from->lo, sizeof rest.lo);
   memcpy(rest.hi, from->hi, sizeof rest.hi);
   for (size_t i = 0; st >= 0 && i < b->n; i++) {
@@ -375,8 +374,8 @@ static vg_status add_children(struct forecast *c,
                               const struct vg_subdomain *from, size_t parent,
                               struct vg_blocks *b, int used, const char *after)
 {
-  double sum = 0, least = fmax(VG_SMALL_SHARE * c->rule->leaf_cells,
-                               least_void);
+  double sum = 0,
+         least = fmax(VG_SMALL_SHARE * c->rule->leaf_cells, least_void);
   size_t number = 0;
   vg_status st = VG_OK;
 
@@ -385,8 +384,8 @@ static vg_status add_children(struct forecast *c,
     struct vg_subdomain *p = &b->part[i];
 
     if (!(p->load.cells > 0)) continue;
-    snprintf(p->path, sizeof p->path, "%.*s.%zu", VG_PATH_MAX - 24,
-             from->path, number++);
+    snprintf(p->path, sizeof p->path, "%.*s.%zu", VG_PATH_MAX - 24, from->path,
+             number++);
     if (p->load.cells < least) continue;
     p->parent = parent;
     p->depth = from->depth + 1;
@@ -462,8 +461,7 @@ static vg_status add_surface(const struct vg_front *v, struct vg_subdomain *p,
     struct vg_bin *f = &p->front.bit[i];
     double u[3], w[3], n[3];
 
-    for (int k = 0; k < 3; k++)
-      f->x[k] = (float)((a[k] + b[k] + d[k]) / 3);
+    for (int k = 0; k < 3; k++) f->x[k] = (float)((a[k] + b[k] + d[k]) / 3);
     vg_sub(b, a, u);
     vg_sub(d, a, w);
     vg_cross(u, w, n);
@@ -483,8 +481,7 @@ static vg_status add_load(const struct vg_load *load, struct vg_subdomain *p,
     p->load.n = 0;
     return vg_fail_memory(err, "a forecast");
   }
-  if (load->n)
-    memcpy(p->load.cube, load->cube, load->n * sizeof *load->cube);
+  if (load->n) memcpy(p->load.cube, load->cube, load->n * sizeof *load->cube);
   for (int k = 0; k < 3; k++) {
     p->lo[k] = INFINITY;
     p->hi[k] = -INFINITY;
@@ -514,10 +511,10 @@ static vg_status add_coarse(struct forecast *c,
   for (size_t k = 0; k < n; k++) {
     snprintf(path, sizeof path, "1.%zuL", k);
     VG_TRY(add_task(c, path, "1J0", VG_SPAN_LEAF, &rate, a, 0, 0));
-    c->out->spans.span[c->out->spans.n - 1].n_cell = 0;   /* of the mesh */
+    c->out->spans.span[c->out->spans.n - 1].n_cell = 0; /* of the mesh */
   }
   st = add_task(c, "1R0", "1.0L", VG_SPAN_REPAIR, &no_time,
-                (struct vg_amount){0, 0}, 0, 0);
+                (struct vg_amount){ 0, 0 }, 0, 0);
 done:
   return st;
 }
@@ -532,7 +529,7 @@ static vg_status add_maker(struct forecast *c, const struct vg_subdomain *root,
 
   if (st >= 0)
     st = add_task(c, "0J0", has_mesh ? "1R0" : "", VG_SPAN_JOIN, &no_time,
-                  (struct vg_amount){root->load.cells, 0},
+                  (struct vg_amount){ root->load.cells, 0 },
                   vg_bins_faces(&root->front), (double)root->load.n);
   if (st < 0) return st;
   made = &c->out->spans.span[c->out->spans.n - 1];
@@ -551,9 +548,9 @@ static vg_status add_part(struct forecast *c, const struct vg_subdomain *root,
   snprintf(p.path, sizeof p.path, "0.%zu", number);
   VG_TRY(add_load(from->load, &p, c->err));
   VG_TRY(add_surface(&from->v, &p, c->err));
-  st = from->may_cut ? go_down(c, &p, "0J0")
-                     : add_leaf(c, &p, amount_of(&p.load), volume_of(&p.load),
-                                "0J0");
+  st = from->may_cut
+       ? go_down(c, &p, "0J0")
+       : add_leaf(c, &p, amount_of(&p.load), volume_of(&p.load), "0J0");
 done:
   vg_subdomain_release(&p);
   return st;
@@ -582,7 +579,8 @@ vg_status vg_forecast_parted(const struct vg_front *v,
 {
   struct vg_forecast o = VG_FORECAST_INIT;
   struct forecast c = { .out = &o, .rule = rule, .rates = rates, .err = err };
-  struct vg_subdomain root = { .path = "0", .parent = SIZE_MAX,
+  struct vg_subdomain root = { .path = "0",
+                               .parent = SIZE_MAX,
                                .levels = levels };
   vg_status st;
 

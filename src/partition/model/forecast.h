@@ -17,21 +17,25 @@
  * joins, per task that it makes and per face of the fronts of these, and the
  * share of their time, where fronts are large, in loops that idle threads of
  * the rank help with. */
-struct vg_task_rate { double task, even, graded, face, made, hand, loops; };
+struct vg_task_rate {
+  double task, even, graded, face, made, hand, loops;
+};
 
 /** Seconds of one core that a maker of partings takes (cut/parting.h), per face
  * of the front, coarse cell or octant, and triangle of interfaces; the share of
- * them in loops; of repairs at interfaces, per triangle of these; and per coarse
- * cell of a mesh that all workers make first. */
-struct vg_parting_rate { double face, coarse, side, loops, repair, mesh; };
+ * them in loops; of repairs at interfaces, per triangle of these; and per
+ * coarse cell of a mesh that all workers make first. */
+struct vg_parting_rate {
+  double face, coarse, side, loops, repair, mesh;
+};
 
 struct vg_rates {
   struct vg_task_rate pencil, rib, tile, leaf;
-  struct vg_task_rate closing;   /* where parts still hang together */
-  struct vg_task_rate repair;    /* at interfaces, per cell of a zone */
-  struct vg_task_rate plan, join, close, split;  /* joins: the first of a node,
-                                    those between stages, the one that looks
-                                    for such places, the last */
+  struct vg_task_rate closing; /* where parts still hang together */
+  struct vg_task_rate repair;  /* at interfaces, per cell of a zone */
+  struct vg_task_rate plan, join, close, split; /* joins: the first of a node,
+                                   those between stages, the one that looks
+                                   for such places, the last */
   struct vg_parting_rate discrete, octree;
 };
 
@@ -41,7 +45,7 @@ extern const struct vg_rates vg_rates_measured;
 /** A void of the tree. */
 struct vg_forecast_node {
   char path[VG_PATH_MAX];
-  size_t parent;             /* SIZE_MAX: the root */
+  size_t parent; /* SIZE_MAX: the root */
   int depth;
   double lo[3], hi[3];       /* between the planes that cut it out */
   double cells;              /* expected, zones to come included */
@@ -60,14 +64,17 @@ static inline int vg_forecast_is_leaf(const struct vg_forecast_node *n)
 }
 
 struct vg_forecast {
-  double cells, zone_cells;  /* of all; of pencils and tiles */
+  double cells, zone_cells; /* of all; of pencils and tiles */
   size_t n_node, cap_node;
-  struct vg_forecast_node *node;  /* [n_node] parents first, the whole is [0] */
+  struct vg_forecast_node *node; /* [n_node] parents first, the whole is [0] */
   size_t n_leaf, n_pencil, n_tile;
-  struct vg_spans spans;     /* bytes_in: of the front handed over; start and
-                                end: one after the other on one core */
+  struct vg_spans spans; /* bytes_in: of the front handed over; start and
+                            end: one after the other on one core */
 };
-#define VG_FORECAST_INIT { .n_node = 0 }
+#define VG_FORECAST_INIT                                                       \
+  {                                                                            \
+    .n_node = 0                                                                \
+  }
 
 void vg_forecast_release(struct vg_forecast *o);
 
@@ -86,17 +93,17 @@ vg_status vg_forecast_new(const struct vg_front *v, const struct vg_load *load,
 
 /** A part of a void that is parted before it is filled (cut/parting.h). */
 struct vg_forecast_part {
-  struct vg_front v;          /* its front */
+  struct vg_front v; /* its front */
   const struct vg_load *load;
-  int may_cut;               /* 1: planes may cut it further */
+  int may_cut; /* 1: planes may cut it further */
 };
 
 /** What a maker of partings does. */
 struct vg_forecast_parting {
   const struct vg_parting_rate *rate;
-  double coarse, sides;      /* coarse cells or octants; triangles */
+  double coarse, sides; /* coarse cells or octants; triangles */
   size_t n;
-  const struct vg_forecast_part *part;   /* [n] */
+  const struct vg_forecast_part *part; /* [n] */
 };
 
 /** As vg_forecast_new, of a void that is parted so. All is borrowed. Nodes: the

@@ -14,8 +14,8 @@ static int side_of(const struct vg_lattice *l, int axis, double x)
 
 static struct vg_subdomain *block_at(struct vg_blocks *b, const int at[3])
 {
-  return &b->part[at[0] + (b->l->n[0] + 1) *
-                  (at[1] + (b->l->n[1] + 1) * at[2])];
+  return &b->part[at[0] +
+                  (b->l->n[0] + 1) * (at[1] + (b->l->n[1] + 1) * at[2])];
 }
 
 static vg_status share_load(struct vg_blocks *b, const struct vg_load *load,

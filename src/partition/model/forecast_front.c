@@ -11,7 +11,7 @@
 /* Cells of a pencil reach this many spacings to each side of both of its
  * planes, as VG_TILE_FILLED, those of a rib: as measured over boxes and
  * spheres. */
-static const double pencil_reach = 1.9, rib_reach = 0.5;   /* M4 */
+static const double pencil_reach = 1.9, rib_reach = 0.5; /* M4 */
 
 void vg_subdomain_release(struct vg_subdomain *p)
 {
@@ -84,19 +84,19 @@ static double overlap(const struct vg_load_cube *c, const struct vg_plane *p,
 /* Spacings from its planes that a zone's cells reach. */
 static double reach_of(const struct vg_region *r)
 {
-  return r->n_plane == 1 ? VG_TILE_FILLED : r->reach > 0 ? pencil_reach
-                                                     : rib_reach;
+  return r->n_plane == 1 ? VG_TILE_FILLED
+       : r->reach > 0    ? pencil_reach
+                         : rib_reach;
 }
 
 /* Is the foot of x on the planes within the walls, moved out by `band`? */
 static int is_over(const struct vg_region *r, const float x[3], double band)
 {
-  double at[3] = {(double)x[0], (double)x[1], (double)x[2]}, foot[3];
+  double at[3] = { (double)x[0], (double)x[1], (double)x[2] }, foot[3];
 
   vg_region_foot(r, at, foot);
   for (int k = 0; k < r->n_wall; k++)
-    if (!(vg_dot(r->wall[k].normal, foot) > r->wall[k].offset - band))
-      return 0;
+    if (!(vg_dot(r->wall[k].normal, foot) > r->wall[k].offset - band)) return 0;
   return 1;
 }
 
@@ -121,7 +121,7 @@ static vg_status add_sides(const struct vg_load_cube *c,
 
   memcpy(b.x, c->at, sizeof b.x);
   if (r->n_plane > 1) {
-    double at[3] = {(double)b.x[0], (double)b.x[1], (double)b.x[2]}, foot[3];
+    double at[3] = { (double)b.x[0], (double)b.x[1], (double)b.x[2] }, foot[3];
 
     vg_region_foot(r, at, foot);
     for (int k = 0; k < 3; k++) b.x[k] = (float)foot[k];
@@ -131,8 +131,8 @@ static vg_status add_sides(const struct vg_load_cube *c,
   }
   b.n = (float)(area * VG_FACES_PER_SQUARE / (h * h));
   for (int sign = -1; st >= 0 && sign <= 1; sign += 2) {
-    b.x[axis_of(&r->plane[0])] =
-      (float)(r->plane[0].offset + sign * 1.01 * reach);
+    b.x[axis_of(&r->plane[0])] = (float)(r->plane[0].offset +
+                                         sign * 1.01 * reach);
     st = vg_bins_add(f, &b, err);
   }
   return st;
@@ -177,7 +177,7 @@ vg_status vg_bins_take(struct vg_subdomain *p, const struct vg_region *r,
 {
   vg_status st = VG_OK;
 
-  *a = (struct vg_amount){0, 0};
+  *a = (struct vg_amount){ 0, 0 };
   for (size_t i = 0; st >= 0 && i < p->load.n; i++) {
     struct vg_load_cube *c = &p->load.cube[i];
     double reach = reach_of(r), share = 1;

@@ -13,12 +13,19 @@
 #define VG_FACES_PER_SQUARE 2.309
 
 /* A stretch of front: n faces about x. */
-struct vg_bin { float x[3], h, n; };
+struct vg_bin {
+  float x[3], h, n;
+};
 
-struct vg_bins { size_t n, cap; struct vg_bin *bit; };
+struct vg_bins {
+  size_t n, cap;
+  struct vg_bin *bit;
+};
 
 /* Cells, and how many of them lie where spacing varies. */
-struct vg_amount { double cells, graded; };
+struct vg_amount {
+  double cells, graded;
+};
 
 /* A void of the forecast, which cuts divide further. */
 struct vg_subdomain {
@@ -58,9 +65,9 @@ double vg_bins_near(const struct vg_bins *f, size_t n,
 /* --- blocks (forecast_blocks.c) ------------------------------------------- */
 
 struct vg_blocks {
-  const struct vg_lattice *l;    /* borrowed */
+  const struct vg_lattice *l; /* borrowed */
   size_t n;
-  struct vg_subdomain *part;          /* [n] x first */
+  struct vg_subdomain *part; /* [n] x first */
 };
 
 /** Load, front and box of p divided among the blocks of a lattice. Call

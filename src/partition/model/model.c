@@ -16,45 +16,54 @@
 /* Bytes of a void's front per cells^(2/3): a cube of m target edges a side has
  * 9 m^3 cells and 6 m^2 * 4 / sqrt(3) triangles of 24 bytes each, half a
  * point and three numbers. */
-#define FRONT_BYTES 77.0   /* M5 */
+#define FRONT_BYTES 77.0 /* M5 */
 /* What comes back from a task that leaves no front. */
 #define SMALL_BYTES 1024.0
 
 enum event_kind { EVENT_COMPUTED, EVENT_ENDED };
 
-struct event { double time; uint32_t task; enum event_kind kind; };
+struct event {
+  double time;
+  uint32_t task;
+  enum event_kind kind;
+};
 
 /* Heap of ready tasks by their places in the order of priority. */
-struct ready { size_t n, cap; uint32_t *place; };
+struct ready {
+  size_t n, cap;
+  uint32_t *place;
+};
 
 /* A worker without a task is in two lists, that of all and that of its rank,
  * the longest idle first. Index n_worker + rank, and n_worker + ranks for all,
  * are the lists' heads. */
-struct links { uint32_t *prev, *next; };
+struct links {
+  uint32_t *prev, *next;
+};
 
 struct sim {
   const struct vg_machine *machine;
   struct vg_model_graph g;
   uint32_t n_worker;
-  uint32_t *order, *place;   /* [n] tasks by priority; and the inverse */
-  uint32_t *left;            /* [n_group] members that have not ended */
+  uint32_t *order, *place;     /* [n] tasks by priority; and the inverse */
+  uint32_t *left;              /* [n_group] members that have not ended */
   double *chain, *group_chain; /* longest chain up to a task's or group's end */
-  double *in, *out;          /* [n] bytes to and from a rank */
-  uint32_t *worker;          /* [n] who does it */
-  struct ready ready;        /* Tasks that any rank may do. */
-  struct ready *joins;       /* [ranks] Joins that wait for their rank. */
+  double *in, *out;            /* [n] bytes to and from a rank */
+  uint32_t *worker;            /* [n] who does it */
+  struct ready ready;          /* Tasks that any rank may do. */
+  struct ready *joins;         /* [ranks] Joins that wait for their rank. */
   struct vg_dealt dealt;
-  uint32_t *home;            /* [n] where it was made, then where it belongs */
+  uint32_t *home; /* [n] where it was made, then where it belongs */
   struct links all, own;
-  uint32_t *n_idle;          /* [ranks] */
-  uint32_t *n_looping;       /* [ranks] tasks with loops under way */
-  uint32_t n_started, *started;  /* [n_started] handed out at this moment */
-  struct vg_spans *helps;    /* who helped; may be NULL */
-  struct event *event;       /* heap by time, kind, task */
+  uint32_t *n_idle;             /* [ranks] */
+  uint32_t *n_looping;          /* [ranks] tasks with loops under way */
+  uint32_t n_started, *started; /* [n_started] handed out at this moment */
+  struct vg_spans *helps;       /* who helped; may be NULL */
+  struct event *event;          /* heap by time, kind, task */
   size_t n_event;
   uint32_t n_ended;
-  double *sent, *received;   /* [ranks] until when a rank's link is in use */
-  double *busy;              /* [n_worker] */
+  double *sent, *received; /* [ranks] until when a rank's link is in use */
+  double *busy;            /* [n_worker] */
   /* Ranks that may hand joins out: [n_touched], each once. */
   uint32_t n_touched, *touched;
   unsigned char *is_touched; /* [ranks] */
@@ -78,8 +87,7 @@ double vg_model_priority(char kind, double estimate)
 
 static int is_cut(char kind)
 {
-  return kind == VG_SPAN_PENCIL || kind == VG_SPAN_TILE ||
-    kind == VG_SPAN_JOIN;
+  return kind == VG_SPAN_PENCIL || kind == VG_SPAN_TILE || kind == VG_SPAN_JOIN;
 }
 
 static double front_of(const struct vg_span *s)
@@ -113,8 +121,7 @@ static void find_bytes(struct sim *s)
     s->in[i] = (double)one->bytes_in;
     s->out[i] = (double)one->bytes_out;
     if (one->bytes_in || one->bytes_out) continue;
-    s->in[i] = size * (front[kind] > 0 ? in[kind] / front[kind]
-                                       : FRONT_BYTES);
+    s->in[i] = size * (front[kind] > 0 ? in[kind] / front[kind] : FRONT_BYTES);
     if (front[kind] > 0) s->out[i] = size * out[kind] / front[kind];
     else s->out[i] = is_cut(one->kind) ? size * FRONT_BYTES : SMALL_BYTES;
     if (s->g.moves[i]) s->out[i] = 0;
@@ -303,8 +310,7 @@ static vg_status set_durations(struct sim *s, struct vg_error *err)
   return st;
 }
 
-static vg_status make_ready(struct sim *s, uint32_t task,
-                            struct vg_error *err)
+static vg_status make_ready(struct sim *s, uint32_t task, struct vg_error *err)
 {
   const struct vg_span *span = &s->g.span[task];
   uint32_t after = s->g.after[task], *home = &s->home[task];
@@ -315,8 +321,7 @@ static vg_status make_ready(struct sim *s, uint32_t task,
     s->dealt.held[s->dealt.n_held++] = task;
     return VG_OK;
   }
-  if (span->kind != VG_SPAN_JOIN || s->g.moves[task] ||
-      s->machine->joins_roam)
+  if (span->kind != VG_SPAN_JOIN || s->g.moves[task] || s->machine->joins_roam)
     return ready_push(&s->ready, s->place[task], err);
   touch(s, *home);
   return ready_push(&s->joins[*home], s->place[task], err);
@@ -385,8 +390,7 @@ static vg_status end_task(struct sim *s, uint32_t task, struct vg_error *err)
     for (uint32_t j = g->dep_first[group]; j < g->dep_first[group + 1]; j++) {
       uint32_t next = g->dep[j];
 
-      s->chain[next] = s->group_chain[group] +
-        least_time(s, &g->span[next]);
+      s->chain[next] = s->group_chain[group] + least_time(s, &g->span[next]);
       VG_TRY(make_ready(s, next, err));
     }
   }
@@ -402,12 +406,9 @@ static void computed(struct sim *s, uint32_t task)
   set_idle(s, s->worker[task]);
   s->dealt.woken[s->dealt.n_woken++] = s->worker[task];
   s->n_looping[rank] -= span->loops > 0;
-  if (is_cut(span->kind) && s->cuts_wall < span->end)
-    s->cuts_wall = span->end;
-  if (rank == home)
-    add_event(s, s->now, EVENT_ENDED, task);
-  else
-    add_event(s, send(s, rank, home, s->out[task]), EVENT_ENDED, task);
+  if (is_cut(span->kind) && s->cuts_wall < span->end) s->cuts_wall = span->end;
+  if (rank == home) add_event(s, s->now, EVENT_ENDED, task);
+  else add_event(s, send(s, rank, home, s->out[task]), EVENT_ENDED, task);
 }
 
 /* --- a run --------------------------------------------------------------- */
@@ -475,13 +476,16 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
   if (!s->order || !s->place || !s->left || !s->chain || !s->group_chain ||
       !s->in || !s->out || !s->worker || !s->home || !s->joins ||
       !s->all.prev || !s->all.next || !s->own.prev || !s->own.next ||
-      !s->n_idle || !s->n_looping || !s->started || !s->event ||
-      !s->sent || !s->received || !s->busy || !s->touched || !s->is_touched)
+      !s->n_idle || !s->n_looping || !s->started || !s->event || !s->sent ||
+      !s->received || !s->busy || !s->touched || !s->is_touched)
     return vg_fail_memory(err, "the simulation");
   return vg_dealt_new(&s->dealt, s->g.n, s->n_worker, err);
 }
 
-struct ranked { double priority; uint32_t task; };
+struct ranked {
+  double priority;
+  uint32_t task;
+};
 
 static int by_priority(const void *a, const void *b)
 {
@@ -550,8 +554,10 @@ static vg_status simulate(struct sim *s, struct vg_error *err)
   }
   for (uint32_t i = 0; i < s->g.n && s->n_ended < s->g.n; i++)
     if (s->left[i])
-      return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record waits for "
-                     "tasks that wait for it", s->g.span[i].path);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "task '%s' of the record waits for "
+                     "tasks that wait for it",
+                     s->g.span[i].path);
 done:
   return st;
 }
@@ -571,12 +577,12 @@ double vg_model_outside(const struct vg_machine *m)
   return (m->serial + m->by_node / node + m->by_all / all) / m->rate;
 }
 
-static vg_status check_machine(const struct vg_machine *m,
-                               struct vg_error *err)
+static vg_status check_machine(const struct vg_machine *m, struct vg_error *err)
 {
   if (m->ranks < 1 || m->threads < 1 ||
       m->threads > VG_MODEL_WORKERS_MAX / m->ranks)
-    return vg_fail(err, VG_ERR_INPUT, "a machine of %d ranks with %d threads "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "a machine of %d ranks with %d threads "
                    "each cannot be simulated: from 1 to %d workers in all",
                    m->ranks, m->threads, VG_MODEL_WORKERS_MAX);
   if (m->ranks_per_node < 1)
@@ -588,7 +594,8 @@ static vg_status check_machine(const struct vg_machine *m,
   if (!(m->latency >= 0) || !(m->bandwidth > 0) || !(m->rate > 0) ||
       !(m->serial >= 0) || !(m->by_node >= 0) || !(m->by_all >= 0) ||
       isinf(m->latency) || isinf(once(m)))
-    return vg_fail(err, VG_ERR_INPUT, "latency %g s, bandwidth %g bytes/s, "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "latency %g s, bandwidth %g bytes/s, "
                    "rate %g and serial time %g s do not make a machine: "
                    "bandwidth and rate are above 0, the others not below it",
                    m->latency, m->bandwidth, m->rate, once(m));
@@ -636,7 +643,7 @@ static struct vg_model_result judge(const struct sim *s)
     f.cuts_extra = extra_of_cuts(s, cuts) / sum;
     f.imbalance = most * workers / sum;
     f.idle = 1 - sum / (s->now * workers);
-    if (f.idle < 0) f.idle = 0;            /* of rounding */
+    if (f.idle < 0) f.idle = 0; /* of rounding */
   }
   return f;
 }
@@ -664,8 +671,7 @@ static void hand_over(struct sim *s, struct vg_spans *timeline)
 vg_status vg_model_replay(const struct vg_spans *spans,
                           const struct vg_machine *machine,
                           struct vg_model_result *out,
-                              struct vg_spans *timeline,
-                          struct vg_error *err)
+                          struct vg_spans *timeline, struct vg_error *err)
 {
   struct vg_spans helps = VG_SPANS_INIT;
   struct sim s = { .machine = machine, .helps = timeline ? &helps : NULL };

@@ -44,39 +44,42 @@
 #define VG_MODEL_WORKERS_MAX (1 << 20)
 
 struct vg_machine {
-  int ranks, threads;        /* threads per rank */
-  int ranks_per_node;        /* messages within a node are free of latency */
-  double latency;            /* s per message; default 2e-6 */
-  double bandwidth;          /* bytes/s of a rank's link, each way; 1e10.
-                                Messages of a rank wait for each other */
-  double rate;               /* speed of a core over the recorded one; 1 */
-  double serial;             /* s of the recorded core, before the first and
-                                after the last task, done once */
-  double by_node;            /* the same, shared by the workers of a node
-                                (check, sizes, layers) */
-  double by_all;             /* the same, shared by all (judge, files) */
-  int joins_roam;            /* 1: all joins are done by any rank */
-  int cyclic;                /* 1: leaves are dealt out beforehand */
-  int loop_threads;          /* most that a loop is sped up by more workers:
-                                they share the rank's memory; 16 */
+  int ranks, threads; /* threads per rank */
+  int ranks_per_node; /* messages within a node are free of latency */
+  double latency;     /* s per message; default 2e-6 */
+  double bandwidth;   /* bytes/s of a rank's link, each way; 1e10.
+                         Messages of a rank wait for each other */
+  double rate;        /* speed of a core over the recorded one; 1 */
+  double serial;      /* s of the recorded core, before the first and
+                         after the last task, done once */
+  double by_node;     /* the same, shared by the workers of a node
+                         (check, sizes, layers) */
+  double by_all;      /* the same, shared by all (judge, files) */
+  int joins_roam;     /* 1: all joins are done by any rank */
+  int cyclic;         /* 1: leaves are dealt out beforehand */
+  int loop_threads;   /* most that a loop is sped up by more workers:
+                         they share the rank's memory; 16 */
 };
-#define VG_MACHINE_INIT { .ranks = 1, .threads = 1, .ranks_per_node = 1, \
-  .latency = 2e-6, .bandwidth = 1e10, .rate = 1, .loop_threads = 16 }
+#define VG_MACHINE_INIT                                                        \
+  {                                                                            \
+    .ranks = 1, .threads = 1, .ranks_per_node = 1, .latency = 2e-6,            \
+    .bandwidth = 1e10, .rate = 1, .loop_threads = 16                           \
+  }
 
 struct vg_model_result {
-  double wall;               /* s, what is outside the tasks included */
-  double work;               /* s of all that on one worker */
-  double speedup, efficiency;/* work / wall; over workers */
-  double critical;           /* s, longest chain of tasks, loops with all the
-                                help they may have, and what is outside */
-  double cuts;               /* share of the busy time spent on P, T and J */
-  double cuts_extra;         /* share of it that their final cells would
-                                not have cost in leaves: what cutting costs */
-  double cuts_wall;          /* s, from the first task's start until the last
-                                of P, T and J has ended */
-  double idle;               /* share of the workers' time */
-  double imbalance;          /* max / mean of busy time per worker */
-  double bytes;              /* sent between ranks */
+  double wall;                /* s, what is outside the tasks included */
+  double work;                /* s of all that on one worker */
+  double speedup, efficiency; /* work / wall; over workers */
+  double critical;            /* s, longest chain of tasks, loops with all the
+                                 help they may have, and what is outside */
+  double cuts;                /* share of the busy time spent on P, T and J */
+  double cuts_extra;          /* share of it that their final cells would
+                                 not have cost in leaves: what cutting costs */
+  double cuts_wall;           /* s, from the first task's start until the last
+                                 of P, T and J has ended */
+  double idle;                /* share of the workers' time */
+  double imbalance;           /* max / mean of busy time per worker */
+  double bytes;               /* sent between ranks */
 };
 
 /** Which task made which is in span.after; span.cpu is its duration without
@@ -89,12 +92,12 @@ struct vg_model_result {
  * @param timeline  out: where each span ran on the machine, by path; help, as
  *                  if helpers had come at the start; may be NULL
  * VG_ERR_INPUT when the record contradicts itself (names the path), for a
- * machine that cannot be, or a cyclic one where leaves have no `work`. Deterministic. O(n log n). */
+ * machine that cannot be, or a cyclic one where leaves have no `work`.
+ * Deterministic. O(n log n). */
 vg_status vg_model_replay(const struct vg_spans *spans,
                           const struct vg_machine *machine,
                           struct vg_model_result *out,
-                              struct vg_spans *timeline,
-                          struct vg_error *err);
+                          struct vg_spans *timeline, struct vg_error *err);
 
 /** Seconds that the machine takes outside the tasks. */
 double vg_model_outside(const struct vg_machine *machine);

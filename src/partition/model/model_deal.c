@@ -30,8 +30,7 @@ vg_status vg_dealt_new(struct vg_dealt *d, uint32_t n, uint32_t n_worker,
   d->last = vg_alloc(n_worker, sizeof *d->last);
   d->woken = vg_alloc(n_worker, sizeof *d->woken);
   d->is_idle = vg_calloc(n_worker, sizeof *d->is_idle);
-  if (!d->held || !d->next || !d->first || !d->last || !d->woken ||
-      !d->is_idle)
+  if (!d->held || !d->next || !d->first || !d->last || !d->woken || !d->is_idle)
     return vg_fail_memory(err, "the simulation");
   for (uint32_t w = 0; w < n_worker; w++) d->first[w] = NONE;
   return VG_OK;
@@ -47,9 +46,11 @@ vg_status vg_dealt_check(const struct vg_model_graph *g, struct vg_error *err)
     leaf = &g->span[i];
   }
   if (!leaf) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record does not say by "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "task '%s' of the record does not say by "
                  "what it is dealt out, nor do others: record the run anew, or "
-                 "replay it with a dynamic schedule", leaf->path);
+                 "replay it with a dynamic schedule",
+                 leaf->path);
 }
 
 static void append(struct vg_dealt *d, uint32_t worker, uint32_t task)
@@ -60,7 +61,10 @@ static void append(struct vg_dealt *d, uint32_t worker, uint32_t task)
   d->last[worker] = task;
 }
 
-struct held { double work; uint32_t task; };
+struct held {
+  double work;
+  uint32_t task;
+};
 
 static int by_work(const void *a, const void *b)
 {

@@ -12,9 +12,14 @@
 #define LOOPS_ROUNDED 2e-6
 
 /* A task in a group: a pair that is sorted into lists later. */
-struct member { uint32_t task, group; };
+struct member {
+  uint32_t task, group;
+};
 
-struct members { size_t n, cap; struct member *item; };
+struct members {
+  size_t n, cap;
+  struct member *item;
+};
 
 /* A stage is told by who made it, its node and its class. A node is the first
  * `len` bytes of a path. */
@@ -25,7 +30,10 @@ struct key {
   const char *path;
 };
 
-struct keys { size_t n; struct key *item; };
+struct keys {
+  size_t n;
+  struct key *item;
+};
 
 void vg_model_graph_release(struct vg_model_graph *g)
 {
@@ -87,17 +95,24 @@ static vg_status check_span(const struct vg_span *s, struct vg_error *err)
 {
   if (!s->path[0] || !memchr(s->path, 0, sizeof s->path) ||
       !memchr(s->after, 0, sizeof s->after))
-    return vg_fail(err, VG_ERR_INPUT, "a task of the record has no path, or "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "a task of the record has no path, or "
                    "one without an end");
   if (!(s->cpu >= 0 && s->cpu <= 1e9))
-    return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record took %g "
-                   "seconds", s->path, s->cpu);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "task '%s' of the record took %g "
+                   "seconds",
+                   s->path, s->cpu);
   if (!(s->loops >= 0 && s->loops <= s->cpu + LOOPS_ROUNDED))
-    return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record took %g "
-                   "seconds, of which %g in loops", s->path, s->cpu, s->loops);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "task '%s' of the record took %g "
+                   "seconds, of which %g in loops",
+                   s->path, s->cpu, s->loops);
   if (s->home < 0)
-    return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record has the home "
-                   "rank %d", s->path, (int)s->home);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "task '%s' of the record has the home "
+                   "rank %d",
+                   s->path, (int)s->home);
   return VG_OK;
 }
 
@@ -107,8 +122,10 @@ static vg_status copy_spans(const struct vg_spans *spans,
   vg_status st = VG_OK;
 
   if (spans->n >= NONE / 4)
-    return vg_fail(err, VG_ERR_INPUT, "a record of %zu tasks is more than "
-                   "can be replayed", spans->n);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "a record of %zu tasks is more than "
+                   "can be replayed",
+                   spans->n);
   g->n = (uint32_t)spans->n;
   g->span = vg_alloc(g->n, sizeof *g->span);
   if (!g->span) return vg_fail_memory(err, "the tasks of the record");
@@ -123,8 +140,10 @@ static vg_status copy_spans(const struct vg_spans *spans,
   qsort(g->span, g->n, sizeof *g->span, by_path);
   for (uint32_t i = 1; i < g->n; i++)
     if (!strcmp(g->span[i - 1].path, g->span[i].path))
-      return vg_fail(err, VG_ERR_INPUT, "task '%s' is in the record more "
-                     "than once", g->span[i].path);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "task '%s' is in the record more "
+                     "than once",
+                     g->span[i].path);
   return VG_OK;
 }
 
@@ -138,9 +157,10 @@ static vg_status find_after(struct vg_model_graph *g, struct vg_error *err)
     memcpy(wanted.path, g->span[i].after, sizeof wanted.path);
     found = bsearch(&wanted, g->span, g->n, sizeof *g->span, by_path);
     if (!found)
-      return vg_fail(err, VG_ERR_INPUT, "task '%s' of the record was made by "
-                     "'%s', which is not in it", g->span[i].path,
-                     g->span[i].after);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "task '%s' of the record was made by "
+                     "'%s', which is not in it",
+                     g->span[i].path, g->span[i].after);
     g->after[i] = (uint32_t)(found - g->span);
   }
   return VG_OK;
@@ -163,8 +183,10 @@ static vg_status find_circles(struct vg_model_graph *g, struct vg_error *err)
       at = g->after[at];
     }
     if (at != NONE && walk[at] == i + 1)
-      st = vg_fail(err, VG_ERR_INPUT, "task '%s' of the record comes after "
-                   "itself", g->span[at].path);
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "task '%s' of the record comes after "
+                   "itself",
+                   g->span[at].path);
   }
   free(walk);
   return st;
@@ -182,7 +204,8 @@ static vg_status add_member(struct members *m, uint32_t task, uint32_t group,
 
 static struct key key_of(const struct vg_model_graph *g, uint32_t task)
 {
-  struct key k = { .after = g->after[task], .task = task,
+  struct key k = { .after = g->after[task],
+                   .task = task,
                    .class = class_of(g->span[task].kind),
                    .len = node_length(g->span[task].path),
                    .path = g->span[task].path };
@@ -220,7 +243,7 @@ static vg_status find_stages(struct vg_model_graph *g, uint32_t *stage,
 static int is_above(const struct key *a, const struct key *b)
 {
   return a->len <= b->len && !memcmp(a->path, b->path, a->len) &&
-    (a->len == b->len || b->path[a->len] == '.');
+         (a->len == b->len || b->path[a->len] == '.');
 }
 
 /* Repairs that wait for all leaves of a node: their nodes, sorted, each once;
@@ -337,8 +360,9 @@ static void list_pairs(size_t n, const struct member *pair, int by_group,
     sum += count;
   }
   for (size_t i = 0; i < n; i++)
-    list[first[by_group ? pair[i].group : pair[i].task]++] =
-      by_group ? pair[i].task : pair[i].group;
+    list[first[by_group ? pair[i].group : pair[i].task]++] = by_group
+                                                             ? pair[i].task
+                                                             : pair[i].group;
   for (uint32_t i = n_row; i > 0; i--) first[i] = first[i - 1];
   first[0] = 0;
 }

@@ -25,12 +25,12 @@ void vg_model_graph_release(struct vg_model_graph *g);
 /* Leaves of a cyclic machine, and whose they are. */
 struct vg_dealt {
   uint32_t n_worker;
-  uint32_t n_held, *held;    /* [n_held] tasks to be dealt out */
-  uint32_t *first, *last;    /* [n_worker] of each, or NONE */
-  uint32_t *next;            /* [n] of the same worker, or NONE */
-  uint32_t n_woken, *woken;  /* [n_woken] workers that became idle since some
-                                were handed out */
-  unsigned char *is_idle;    /* [n_worker] */
+  uint32_t n_held, *held;   /* [n_held] tasks to be dealt out */
+  uint32_t *first, *last;   /* [n_worker] of each, or NONE */
+  uint32_t *next;           /* [n] of the same worker, or NONE */
+  uint32_t n_woken, *woken; /* [n_woken] workers that became idle since some
+                               were handed out */
+  unsigned char *is_idle;   /* [n_worker] */
 };
 
 /** For n tasks. */
@@ -47,7 +47,6 @@ vg_status vg_dealt_check(const struct vg_model_graph *g, struct vg_error *err);
 
 /** VG_ERR_INPUT names the path of what contradicts itself. */
 vg_status vg_model_graph_new(const struct vg_spans *spans,
-                             struct vg_model_graph *out,
-                             struct vg_error *err);
+                             struct vg_model_graph *out, struct vg_error *err);
 
 #endif

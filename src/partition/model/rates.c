@@ -8,18 +8,21 @@
 
 #include "base/memory.h"
 
-enum { LEAST = 4 };          /* tasks; fewer say nothing */
+enum { LEAST = 4 }; /* tasks; fewer say nothing */
 
 /* Rows of 1 = cell * cells / seconds + face * faces / seconds, by columns. */
-struct rows { size_t n; double *a, *b; };
+struct rows {
+  size_t n;
+  double *a, *b;
+};
 
 static int counts(const struct vg_span *s, char kind)
 {
   return s->kind == kind && s->cpu > 0 && s->n_cell > 0;
 }
 
-static vg_status list_rows(const struct vg_spans *s, char kind,
-                           struct rows *r, struct vg_error *err)
+static vg_status list_rows(const struct vg_spans *s, char kind, struct rows *r,
+                           struct vg_error *err)
 {
   size_t m = 0;
 
@@ -108,8 +111,10 @@ vg_status vg_rates_fit(const struct vg_spans *s, char kind,
   if (r.n < LEAST) goto done;
   dgels = load_dgels();
   if (!dgels) {
-    st = vg_fail(err, VG_ERR_UNSUPPORTED, "the LAPACK that fits the times of "
-                 "tasks cannot be loaded: %s", dlerror());
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the LAPACK that fits the times of "
+                 "tasks cannot be loaded: %s",
+                 dlerror());
     goto done;
   }
   found = both(&r, dgels, &cell, &face);
@@ -117,7 +122,7 @@ vg_status vg_rates_fit(const struct vg_spans *s, char kind,
     st = vg_fail_memory(err, "the rates of a machine");
     goto done;
   }
-  if (!found) {              /* one of them explains nothing, or worse */
+  if (!found) { /* one of them explains nothing, or worse */
     double c = alone(&r, r.a), f = alone(&r, r.a + r.n);
     int by_face = f > 0 && error_of(&r, 0, f) < error_of(&r, c, 0);
 

@@ -9,9 +9,9 @@
 /** Tasks of one kind: seconds of one core = cell * cells + face * faces. */
 struct vg_rate_fit {
   char kind;
-  size_t n;                  /* tasks that it was found from; 0: too few */
-  double cell, face;         /* s, >= 0 */
-  double error;              /* root mean square of the relative errors */
+  size_t n;          /* tasks that it was found from; 0: too few */
+  double cell, face; /* s, >= 0 */
+  double error;      /* root mean square of the relative errors */
 };
 
 /** Fit the tasks of a kind. Each counts by its relative error, so that large

@@ -11,7 +11,7 @@
 
 /* Room between an octant and the front, in sizes, for cells that are graded
  * from the one to the other. */
-#define ROOM 1.5   /* O1 */
+#define ROOM 1.5 /* O1 */
 
 enum { MOST = 1 << 24 };
 
@@ -36,8 +36,10 @@ void vg_octants_release(struct vg_octants *t)
 
 static vg_status too_many(const struct maker *m, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "an octree of %g sizes has more than "
-                 "%d octants; raise the coarsening", m->coarsening, (int)MOST);
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "an octree of %g sizes has more than "
+                 "%d octants; raise the coarsening",
+                 m->coarsening, (int)MOST);
 }
 
 /* Eight leaves below the leaf i, which have its state. */
@@ -81,10 +83,10 @@ static vg_status refine(struct maker *m, uint32_t i,
   struct vg_octant *o = &m->t->octant[i];
   vg_status st = VG_OK;
 
-  o->state = node->n ? VG_OCTANT_GAP
-                     : node->owner < 1 ? VG_OCTANT_OUT : VG_OCTANT_FREE;
-  if (o->state == VG_OCTANT_OUT || o->level == VG_LOAD_LEVELS ||
-      !is_wide(m, o))
+  o->state = node->n         ? VG_OCTANT_GAP
+           : node->owner < 1 ? VG_OCTANT_OUT
+                             : VG_OCTANT_FREE;
+  if (o->state == VG_OCTANT_OUT || o->level == VG_LOAD_LEVELS || !is_wide(m, o))
     return VG_OK;
   if (m->engine && vg_engine_stopping(m->engine)) return VG_ERR_STOPPED;
   if (vg_load_octants(&m->triangles, &m->stack, node, part, 1))
@@ -155,7 +157,7 @@ static vg_status balance(struct maker *m, struct vg_error *err)
       if (b->state == VG_OCTANT_OUT || b->level + 1 >= o->level) continue;
       st = split(m, at, err);
       if (st < 0) return st;
-      d--;                   /* once more */
+      d--; /* once more */
     }
   return VG_OK;
 }
@@ -230,8 +232,7 @@ static void list_leaves(struct vg_octants *t, uint32_t i)
 {
   const struct vg_octant *o = &t->octant[i];
 
-  if (!o->child && o->state != VG_OCTANT_OUT)
-    t->leaf[t->n_leaf++] = i;
+  if (!o->child && o->state != VG_OCTANT_OUT) t->leaf[t->n_leaf++] = i;
   for (uint32_t c = 0; o->child && c < 8; c++) list_leaves(t, o->child + c);
 }
 
@@ -264,12 +265,15 @@ static vg_status list_faces(struct vg_octants *t, struct vg_error *err)
 }
 
 vg_status vg_octants_make(const struct vg_front *v, const struct vg_load *load,
-                         const struct vg_sizing *sizing, double coarsening,
-                         const struct vg_engine *e, struct vg_octants *t,
-                         struct vg_error *err)
+                          const struct vg_sizing *sizing, double coarsening,
+                          const struct vg_engine *e, struct vg_octants *t,
+                          struct vg_error *err)
 {
-  struct maker m = { .sizing = sizing, .engine = e, .coarsening = coarsening,
-                     .stack = VG_LOAD_STACK_INIT, .t = t };
+  struct maker m = { .sizing = sizing,
+                     .engine = e,
+                     .coarsening = coarsening,
+                     .stack = VG_LOAD_STACK_INIT,
+                     .t = t };
   vg_status st;
 
   assert(coarsening >= 2 && t);

@@ -15,10 +15,10 @@
 
 /* Of the mean part: a place off the front with less is left to the gap, a piece
  * of a part that hangs apart joins what is beside it. */
-#define SMALL 0.3   /* O2 */
+#define SMALL 0.3 /* O2 */
 
 /* The gradient from which on cells are more by VG_LOAD_GRADED, as in loads. */
-#define GRADIENT 0.05   /* C15 */
+#define GRADIENT 0.05 /* C15 */
 
 /* METIS may make parts so much larger than the mean. */
 #define IMBALANCE 1.05
@@ -27,13 +27,13 @@ struct chooser {
   struct vg_octants *t;
   const struct vg_sizing *sizing;
   const struct vg_parting_options *options;
-  double *cells;             /* [n_leaf] of free leaves, in the list's order */
-  double *edge;              /* [n_leaf] size in the middle */
-  uint32_t *up;              /* [n_leaf] what hangs together */
-  uint32_t *local;           /* [n_leaf] scratch */
-  double *sum;               /* [n_leaf] scratch: of sets, at their roots */
-  double per_cube;           /* cells expected per cube of the size */
-  size_t n_asked;            /* parts */
+  double *cells;   /* [n_leaf] of free leaves, in the list's order */
+  double *edge;    /* [n_leaf] size in the middle */
+  uint32_t *up;    /* [n_leaf] what hangs together */
+  uint32_t *local; /* [n_leaf] scratch */
+  double *sum;     /* [n_leaf] scratch: of sets, at their roots */
+  double per_cube; /* cells expected per cube of the size */
+  size_t n_asked;  /* parts */
 };
 
 static struct vg_octant *leaf_of(const struct chooser *c, size_t l)
@@ -76,8 +76,8 @@ static void weigh(struct chooser *c, size_t l)
 
 /* While ids are the numbers of leaves: sets of those that have a face in
  * common and are alike. */
-static void unite(struct chooser *c, int (*alike)(const struct chooser *c,
-                                                  size_t a, size_t b))
+static void unite(struct chooser *c,
+                  int (*alike)(const struct chooser *c, size_t a, size_t b))
 {
   const struct vg_octants *t = c->t;
 
@@ -125,7 +125,8 @@ static double drop_small(struct chooser *c, double least)
   const size_t n = c->t->n_leaf;
   double most = 0;
 
-  for (size_t l = 0; l < n; l++) if (c->sum[l] > most) most = c->sum[l];
+  for (size_t l = 0; l < n; l++)
+    if (c->sum[l] > most) most = c->sum[l];
   if (least > most) least = most;
   for (size_t l = 0; l < n; l++)
     if (is_free(c, l) && c->sum[vg_root_of(c->up, (uint32_t)l)] < least)
@@ -138,9 +139,9 @@ static double drop_small(struct chooser *c, double least)
 /* The leaves of one set. */
 struct set {
   size_t n;
-  uint32_t *leaf;            /* [n] numbers of leaves */
-  double *weight;            /* [n] cells */
-  double (*x)[3];            /* [n] their middles */
+  uint32_t *leaf; /* [n] numbers of leaves */
+  double *weight; /* [n] cells */
+  double (*x)[3]; /* [n] their middles */
 };
 
 static void set_release(struct set *s)
@@ -234,16 +235,14 @@ static vg_status part_set(struct chooser *c, uint32_t root, size_t n_leaf,
 {
   struct set s = { 0 };
   struct vg_graph g = { 0 };
-  struct vg_graph_options o = { (int)n, IMBALANCE, 1,
-                                &c->t->elsewhere };
+  struct vg_graph_options o = { (int)n, IMBALANCE, 1, &c->t->elsewhere };
   uint32_t *part = vg_calloc(n_leaf, sizeof *part);
   vg_status st = part ? VG_OK : vg_fail_memory(err, "the parts of octants");
 
   if (st == VG_OK) st = set_make(c, root, n_leaf, &s, err);
   if (st == VG_OK && n > 1) {
     if (c->options->partitioner == VG_PARTITIONER_RCB) {
-      st = vg_bisect(s.n, (const double (*)[3])s.x, s.weight, (int)n, part,
-                     err);
+      st = vg_bisect(s.n, (const double(*)[3])s.x, s.weight, (int)n, part, err);
     } else {
       st = set_graph(c, &s, &g, err);
       if (st == VG_OK) st = vg_graph_part(&g, &o, part, err);
@@ -284,9 +283,9 @@ static vg_status part_sets(struct chooser *c, double mean, struct vg_error *err)
 
 /* Scratch for pieces that join parts: at roots. */
 struct pieces {
-  uint32_t *largest;         /* [parts] the root of its largest piece */
-  uint32_t *into;            /* the part that a piece joins */
-  double *shared;            /* what they share */
+  uint32_t *largest; /* [parts] the root of its largest piece */
+  uint32_t *into;    /* the part that a piece joins */
+  double *shared;    /* what they share */
 };
 
 static void pieces_release(struct pieces *p)
@@ -426,8 +425,7 @@ static vg_status give_ids(struct chooser *c, const struct vg_front *v,
   for (size_t i = 0; i < v->n_face; i++)
     if (gap[i] != UINT32_MAX) gap[i] = id[vg_root_of(c->up, gap[i])];
   for (uint32_t l = 0; l < n; l++)
-    leaf_of(c, l)->id = is_free(c, l) ? c->local[l]
-                                      : id[vg_root_of(c->up, l)];
+    leaf_of(c, l)->id = is_free(c, l) ? c->local[l] : id[vg_root_of(c->up, l)];
   free(id);
   return VG_OK;
 }
@@ -458,12 +456,13 @@ static vg_status choose(struct chooser *c, const struct vg_front *v,
 }
 
 vg_status vg_octants_part(struct vg_octants *t, const struct vg_front *v,
-                                const struct vg_sizing *sizing, double cells,
-                                const struct vg_parting_options *o,
-                                uint32_t *gap, struct vg_error *err)
+                          const struct vg_sizing *sizing, double cells,
+                          const struct vg_parting_options *o, uint32_t *gap,
+                          struct vg_error *err)
 {
-  struct chooser c = { .t = t, .sizing = sizing, .options = o,
-                       .per_cube = o->cells_per_cube };
+  struct chooser c = {
+    .t = t, .sizing = sizing, .options = o, .per_cube = o->cells_per_cube
+  };
   const size_t n = t->n_leaf;
   vg_status st;
 
@@ -475,8 +474,7 @@ vg_status vg_octants_part(struct vg_octants *t, const struct vg_front *v,
   c.sum = vg_alloc(n, sizeof *c.sum);
   if (!c.cells || !c.edge || !c.up || !c.local || !c.sum)
     st = vg_fail_memory(err, "the parts of octants");
-  else
-    st = choose(&c, v, cells, gap, err);
+  else st = choose(&c, v, cells, gap, err);
   free(c.cells);
   free(c.edge);
   free(c.up);

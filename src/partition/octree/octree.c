@@ -13,7 +13,7 @@
 #include "partition/octree/octree_parts.h"
 
 /* Widest octants in sizes, where it is chosen; and as many as are worth it. */
-#define NARROW 4.0   /* O3 */
+#define NARROW 4.0 /* O3 */
 #define MANY 5e5
 /* Narrower ones have sides of hardly a triangle. */
 #define LEAST 2.0
@@ -30,11 +30,11 @@ struct maker {
   const struct vg_engine *engine;
   uint32_t serial;
   struct vg_octants t;
-  uint32_t *gap;             /* [front->n_face] */
+  uint32_t *gap; /* [front->n_face] */
   struct vg_patches patches;
   struct vg_interfaces faces;
   struct vg_parting out;
-  double spent;              /* clock at the end of the step before */
+  double spent; /* clock at the end of the step before */
 };
 
 /* Seconds since the step before. */
@@ -77,7 +77,8 @@ static vg_status make_octants(struct maker *m, struct vg_error *err)
   vg_status st;
 
   m->out.report.coarsening = wide;
-  st = vg_octants_make(m->front, m->load, m->sizing, wide, m->engine, &m->t, err);
+  st = vg_octants_make(m->front, m->load, m->sizing, wide, m->engine, &m->t,
+                       err);
   note_time(m, VG_PARTING_COARSE);
   if (st != VG_OK) return st;
   st = vg_octants_part(&m->t, m->front, m->sizing, m->load->cells, m->options,
@@ -91,8 +92,8 @@ static vg_status make_octants(struct maker *m, struct vg_error *err)
 struct filler {
   struct maker *m;
   struct vg_part *part;
-  uint32_t *own, *new;       /* [front, interface points] their numbers in the
-                                part, or VG_OCTANT_NONE */
+  uint32_t *own, *new; /* [front, interface points] their numbers in the
+                          part, or VG_OCTANT_NONE */
 };
 
 static uint32_t take_point(struct filler *f, uint32_t *number,
@@ -117,7 +118,7 @@ static vg_status make_room(struct vg_part *p, size_t n_face,
   to->x = vg_alloc(n_face, 3 * sizeof *to->x);
   to->id = vg_alloc(n_face, 3 * sizeof *to->id);
   return to->face && to->x && to->id ? VG_OK
-                                       : vg_fail_memory(err, "a part's front");
+                                     : vg_fail_memory(err, "a part's front");
 }
 
 static void give_back(struct vg_front *f)
@@ -162,13 +163,13 @@ static void take_triangle(struct filler *f, size_t i)
 
 /* Lists of the patches, then triangles, of each part. */
 struct bounds {
-  size_t *begin;             /* [parts + 2] */
-  uint32_t *item;            /* patches: 2 i + 1 where the part is above;
-                                after them triangles, 2 (patches + i) */
+  size_t *begin;  /* [parts + 2] */
+  uint32_t *item; /* patches: 2 i + 1 where the part is above;
+                     after them triangles, 2 (patches + i) */
 };
 
-static vg_status list_bounds(const struct maker *m, size_t n,
-                             struct bounds *b, struct vg_error *err)
+static vg_status list_bounds(const struct maker *m, size_t n, struct bounds *b,
+                             struct vg_error *err)
 {
   const size_t n_patch = m->patches.n;
 
@@ -185,12 +186,13 @@ static vg_status list_bounds(const struct maker *m, size_t n,
       }
     for (size_t i = 0; i < m->front->n_face; i++) {
       if (m->gap[i] == UINT32_MAX)
-        return vg_fail(err, VG_ERR_GEOMETRY, "triangle %zu of the front lies "
-                       "in no octant", i + 1);
+        return vg_fail(err, VG_ERR_GEOMETRY,
+                       "triangle %zu of the front lies "
+                       "in no octant",
+                       i + 1);
       if (fill)
         b->item[b->begin[m->gap[i] + 1]++] = (uint32_t)(2 * (n_patch + i));
-      else
-        b->begin[m->gap[i] + 2]++;
+      else b->begin[m->gap[i] + 2]++;
     }
     for (size_t k = 2; !fill && k < n + 2; k++) b->begin[k] += b->begin[k - 1];
   }
@@ -284,17 +286,22 @@ static vg_status check(const struct maker *m, struct vg_error *err)
 
     sum += volume;
     if (bad)
-      st = vg_fail(err, VG_ERR_GEOMETRY, "part %zu of %zu around octants is "
-                   "not closed at %zu edges; is the front?", k + 1, p->n_part, bad);
+      st = vg_fail(err, VG_ERR_GEOMETRY,
+                   "part %zu of %zu around octants is "
+                   "not closed at %zu edges; is the front?",
+                   k + 1, p->n_part, bad);
     else if (k < m->t.n_part ? fabs(volume - octants[k]) > ROUNDING * whole
                              : !(volume > -ROUNDING * whole))
-      st = vg_fail(err, VG_ERR_GEOMETRY, "part %zu of %zu around octants has a "
-                   "volume of %g, not %g; is the front closed?", k + 1,
-                   p->n_part, volume, octants[k]);
+      st = vg_fail(err, VG_ERR_GEOMETRY,
+                   "part %zu of %zu around octants has a "
+                   "volume of %g, not %g; is the front closed?",
+                   k + 1, p->n_part, volume, octants[k]);
   }
   if (st == VG_OK && !(fabs(sum - whole) <= ROUNDING * whole))
-    st = vg_fail(err, VG_ERR_GEOMETRY, "parts around octants have a volume of "
-                 "%.9g, the void has %.9g; is its front closed?", sum, whole);
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "parts around octants have a volume of "
+                 "%.9g, the void has %.9g; is its front closed?",
+                 sum, whole);
   free(octants);
   return st;
 }
@@ -305,11 +312,13 @@ static vg_status check_options(const struct vg_parting_options *o,
                                struct vg_error *err)
 {
   if (o->h_refine)
-    return vg_fail(err, VG_ERR_INPUT, "octants have no coarse faces whose "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "octants have no coarse faces whose "
                    "edges could be halved; leave interfaces at remesh");
   if (o->coarsening != 0 &&
       !(o->coarsening >= LEAST && isfinite(o->coarsening)))
-    return vg_fail(err, VG_ERR_INPUT, "a coarsening of %g: octants are at "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "a coarsening of %g: octants are at "
                    "least %g sizes wide; leave it out to have it chosen",
                    o->coarsening, LEAST);
   return VG_OK;
@@ -354,16 +363,21 @@ vg_status vg_octree_part(const struct vg_front *front,
                          const struct vg_engine *e, struct vg_parting *out,
                          struct vg_error *err)
 {
-  struct maker m = { .front = front, .load = load,
-                     .sizing = sizing, .options = o, .engine = e,
+  struct maker m = { .front = front,
+                     .load = load,
+                     .sizing = sizing,
+                     .options = o,
+                     .engine = e,
                      .serial = serial };
   vg_status st = check_options(o, err);
 
   assert(front && sizing && !out->n_point && !out->n_part && !out->part);
   if (st < 0) return st;
   if (!(load->cells > 0) || !(load->unit > 0))
-    return vg_fail(err, VG_ERR_GEOMETRY, "the void of %zu triangles encloses "
-                   "nothing", front->n_face);
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "the void of %zu triangles encloses "
+                   "nothing",
+                   front->n_face);
   st = vg_parting_check_options(o, load->cells, err);
   if (st < 0) return st;
   st = make(&m, err);

@@ -13,11 +13,11 @@
 
 /* A curve or a patch, on its way through a loop. */
 struct piece {
-  size_t n_step;             /* curves */
-  double *step;              /* [n_step + 1] */
-  size_t at;                 /* the first of its points, in all */
-  size_t n, n_new, n_tri;    /* patches */
-  uint32_t *point;           /* [n] on its border, rising */
+  size_t n_step;          /* curves */
+  double *step;           /* [n_step + 1] */
+  size_t at;              /* the first of its points, in all */
+  size_t n, n_new, n_tri; /* patches */
+  uint32_t *point;        /* [n] on its border, rising */
   double (*add)[2];
   uint32_t (*tri)[3];
 };
@@ -29,8 +29,8 @@ struct mesher {
   const struct vg_engine *engine;
   struct vg_interfaces *out;
   struct piece *curve, *patch;
-  pthread_mutex_t lock;      /* of what follows */
-  size_t failed;             /* the first one that did, in its loop */
+  pthread_mutex_t lock; /* of what follows */
+  size_t failed;        /* the first one that did, in its loop */
   vg_status st;
   struct vg_error err;
 };
@@ -107,8 +107,10 @@ static void divide_curves(void *context, size_t first, size_t end, int worker)
 
     place_corner(m, c->end[0], l.from);
     place_corner(m, c->end[1], to);
-    note(m, i, vg_graded_steps(to[c->axis] - l.from[c->axis], size_on_line, &l,
-                               1, &q->n_step, &q->step, &why), &why);
+    note(m, i,
+         vg_graded_steps(to[c->axis] - l.from[c->axis], size_on_line, &l, 1,
+                         &q->n_step, &q->step, &why),
+         &why);
   }
 }
 
@@ -116,7 +118,7 @@ static void divide_curves(void *context, size_t first, size_t end, int worker)
 static vg_status add_room(struct vg_interfaces *out, size_t more,
                           struct vg_error *err)
 {
-  double (*x)[3];
+  double(*x)[3];
 
   if (out->n_point + more >= UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED, "interfaces of more than %u points",
@@ -229,12 +231,12 @@ static vg_status fill_patch(const struct mesher *m, size_t i, struct piece *q,
 {
   struct plane pl = { m, &m->p->patch[i],
                       vg_octants_place(m->t, m->p->patch[i].axis,
-                                      m->p->patch[i].at) };
+                                       m->p->patch[i].at) };
   const struct vg_planar_law law = { size_in_plane, &pl,
                                      vg_engine_stop(m->engine) };
   const size_t n = walk_border(m, i, NULL);
-  uint32_t (*edge)[2] = vg_alloc(n, sizeof *edge);
-  double (*y)[2] = vg_alloc(2 * n, sizeof *y);
+  uint32_t(*edge)[2] = vg_alloc(n, sizeof *edge);
+  double(*y)[2] = vg_alloc(2 * n, sizeof *y);
   vg_status st = VG_OK;
 
   q->point = vg_alloc(2 * n, sizeof *q->point);
@@ -252,8 +254,8 @@ static vg_status fill_patch(const struct mesher *m, size_t i, struct piece *q,
         y[k][d] = m->out->x[q->point[k]][(pl.patch->axis + 1 + d) % 3];
     for (size_t k = 0; k < n; k++)
       for (int d = 0; d < 2; d++) edge[k][d] = number_of(q, edge[k][d]);
-    st = vg_planar_mesh(q->n, (const double (*)[2])y, n,
-                        (const uint32_t (*)[2])edge, &law, &q->n_new, &q->add,
+    st = vg_planar_mesh(q->n, (const double(*)[2])y, n,
+                        (const uint32_t(*)[2])edge, &law, &q->n_new, &q->add,
                         &q->n_tri, &q->tri, err);
   }
   free(edge);
@@ -294,10 +296,10 @@ static vg_status place_patches(struct mesher *m, struct vg_error *err)
   out->begin[0] = 0;
   for (size_t i = 0; i < p->n; i++) {
     struct piece *q = &m->patch[i];
-    struct plane pl = { m, &p->patch[i],
-                        vg_octants_place(m->t, p->patch[i].axis,
-                                        p->patch[i].at) };
-    uint32_t (*tri)[3] = out->tri + out->begin[i];
+    struct plane pl = {
+      m, &p->patch[i], vg_octants_place(m->t, p->patch[i].axis, p->patch[i].at)
+    };
+    uint32_t(*tri)[3] = out->tri + out->begin[i];
 
     for (size_t k = 0; k < q->n_tri; k++)
       for (int j = 0; j < 3; j++) {
@@ -330,8 +332,9 @@ vg_status vg_interfaces_make(const struct vg_octants *t,
                              const struct vg_engine *e,
                              struct vg_interfaces *out, struct vg_error *err)
 {
-  struct mesher m = { .t = t, .p = p, .sizing = sizing, .engine = e,
-                      .out = out };
+  struct mesher m = {
+    .t = t, .p = p, .sizing = sizing, .engine = e, .out = out
+  };
   vg_status st;
 
   assert(t && p && (p->patch || !p->n) && out);

@@ -12,9 +12,9 @@
 
 /* An edge of a square, before and after it was divided. */
 struct edge {
-  uint8_t axis;              /* that it runs along */
-  uint8_t is_right;          /* the square is on its right, seen from above */
-  uint32_t line[2];          /* where, along the two axes that follow */
+  uint8_t axis;     /* that it runs along */
+  uint8_t is_right; /* the square is on its right, seen from above */
+  uint32_t line[2]; /* where, along the two axes that follow */
   uint32_t from, to;
   uint32_t square;
 };
@@ -29,15 +29,17 @@ struct builder {
   const struct vg_octants *t;
   struct vg_patches *p;
   size_t n_square;
-  uint32_t *square;          /* [n_square] faces between ids, by number */
-  uint32_t *up;              /* [n_square] sets: patches */
+  uint32_t *square; /* [n_square] faces between ids, by number */
+  uint32_t *up;     /* [n_square] sets: patches */
   size_t n_edge, cap_edge;
-  struct edge *edge;         /* [n_edge] divided, sorted */
+  struct edge *edge; /* [n_edge] divided, sorted */
   size_t n_segment;
-  struct segment *segment;   /* [n_segment] that bound patches, sorted */
+  struct segment *segment; /* [n_segment] that bound patches, sorted */
   size_t n_end;
-  struct end { uint32_t at[3], segment; } *end;  /* [n_end] of segments, by
-                                their place */
+  struct end {
+    uint32_t at[3], segment;
+  } * end; /* [n_end] of segments, by
+their place */
 };
 
 static void builder_release(struct builder *b)
@@ -212,13 +214,14 @@ static vg_status list_segments(struct builder *b, struct vg_error *err)
   for (size_t i = 0, end; i < b->n_edge; i = end) {
     struct segment s = { .first = i };
 
-    for (end = i + 1; end < b->n_edge && same_line(&b->edge[i], &b->edge[end])
-                      && b->edge[i].from == b->edge[end].from;) end++;
+    for (end = i + 1; end < b->n_edge &&
+                      same_line(&b->edge[i], &b->edge[end]) &&
+                      b->edge[i].from == b->edge[end].from;)
+      end++;
     s.end = end;
     if (is_inside(b, &s))
       vg_union(b->up, b->edge[i].square, b->edge[end - 1].square);
-    else
-      b->segment[b->n_segment++] = s;
+    else b->segment[b->n_segment++] = s;
   }
   return VG_OK;
 }
@@ -243,7 +246,8 @@ static int goes_on(const struct builder *b, size_t i)
 {
   const struct edge *e = &b->edge[b->segment[i].first];
   const struct edge *next = i + 1 < b->n_segment
-                              ? &b->edge[b->segment[i + 1].first] : NULL;
+                            ? &b->edge[b->segment[i + 1].first]
+                            : NULL;
 
   return next && same_line(e, next) && e->to == next->from;
 }
@@ -269,14 +273,14 @@ static vg_status list_corners(struct builder *b, struct vg_error *err)
     const struct end *e = &b->end[i];
     uint32_t number = (uint32_t)p->n_corner;
 
-    for (end = i + 1; end < b->n_end &&
-                      !memcmp(e->at, b->end[end].at, sizeof e->at);) end++;
+    for (end = i + 1;
+         end < b->n_end && !memcmp(e->at, b->end[end].at, sizeof e->at);)
+      end++;
     if (end - i == 2 && e->segment / 2 + 1 == b->end[i + 1].segment / 2 &&
         goes_on(b, e->segment / 2) && (e->segment & 1) &&
         !(b->end[i + 1].segment & 1))
       number = VG_OCTANT_NONE;
-    else
-      memcpy(p->corner[p->n_corner++], e->at, sizeof *p->corner);
+    else memcpy(p->corner[p->n_corner++], e->at, sizeof *p->corner);
     for (size_t k = i; k < end; k++)
       b->segment[b->end[k].segment / 2].corner[b->end[k].segment & 1] = number;
   }
@@ -299,7 +303,8 @@ static vg_status list_patches(struct builder *b, uint32_t *number,
     if (vg_root_of(b->up, s) != s) continue;
     number[s] = (uint32_t)p->n;
     p->patch[p->n++] = (struct vg_plane_patch){
-      f->axis, f->at[f->axis], { id_of(b, s, 0), id_of(b, s, 1) } };
+      f->axis, f->at[f->axis], { id_of(b, s, 0), id_of(b, s, 1) }
+    };
   }
   p->begin = vg_calloc(p->n + 2, sizeof *p->begin);
   return p->begin ? VG_OK : vg_fail_memory(err, "the faces of parts");
@@ -314,10 +319,11 @@ static void list_curves(struct builder *b)
     const struct segment *s = &b->segment[i];
 
     if (s->corner[0] != VG_OCTANT_NONE) {
-      b->segment[p->n_curve].first = s->first;   /* of segments that start */
+      b->segment[p->n_curve].first = s->first; /* of segments that start */
       b->segment[p->n_curve].end = s->end;
       p->curve[p->n_curve++] = (struct vg_patch_curve){
-        b->edge[s->first].axis, { s->corner[0], s->corner[1] } };
+        b->edge[s->first].axis, { s->corner[0], s->corner[1] }
+      };
     } else {
       p->curve[p->n_curve - 1].end[1] = s->corner[1];
     }
@@ -340,8 +346,7 @@ static vg_status list_borders(struct builder *b, const uint32_t *number,
 
         if (fill)
           p->border[p->begin[k + 1]++] = (uint32_t)(2 * i) + at->is_right;
-        else
-          p->begin[k + 2]++;
+        else p->begin[k + 2]++;
       }
     if (fill) break;
     for (size_t k = 2; k < p->n + 2; k++) p->begin[k] += p->begin[k - 1];

@@ -15,9 +15,9 @@ enum { PER_DEGREE = 100, N_BIN = 180 * PER_DEGREE + 1 };
 
 struct census {
   const struct vg_partition *p;
-  uint64_t *count;           /* [threads][N_BIN] */
-  double *least;             /* [threads] degrees */
-  atomic_int failed;         /* memory was refused */
+  uint64_t *count;   /* [threads][N_BIN] */
+  double *least;     /* [threads] degrees */
+  atomic_int failed; /* memory was refused */
 };
 
 /* Points of other tasks, and those that it has for others: the boundary's are
@@ -53,7 +53,7 @@ static void list_near(const struct vg_piece *q, uint8_t *ring,
 static void count(struct census *c, const struct vg_piece *q, int worker)
 {
   uint8_t *ring = vg_alloc(q->n_in + q->n_point, 1);
-  uint32_t (*cell)[4] = vg_alloc(q->n_cell, sizeof *cell);
+  uint32_t(*cell)[4] = vg_alloc(q->n_cell, sizeof *cell);
   float *angle = vg_alloc(q->n_cell, sizeof *angle);
   struct vg_mesh near = VG_MESH_INIT;
   uint64_t *bin = c->count + (size_t)worker * N_BIN;

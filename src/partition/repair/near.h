@@ -6,11 +6,11 @@
 #include "partition/cut/node.h"
 
 struct vg_near_report {
-  uint64_t n_cell;           /* with a corner on an interface, or beside a cell
-                                that has one; those of zones and repairs, which
-                                are interfaces, all */
-  double angle_min;          /* degrees, of the least dihedral angle of each */
-  double angle_min_p1;       /* 1st percentile of these */
+  uint64_t n_cell;     /* with a corner on an interface, or beside a cell
+                          that has one; those of zones and repairs, which
+                          are interfaces, all */
+  double angle_min;    /* degrees, of the least dihedral angle of each */
+  double angle_min_p1; /* 1st percentile of these */
 };
 
 /** Look at all cells that were made. Collective; after repairs.

@@ -16,15 +16,15 @@
 
 /* Balls to a cluster: a few hundred cells each. What is left over is done in
  * further rounds. */
-enum { MOST_BALLS = 100, ROUNDS = 3 };   /* R6 */
+enum { MOST_BALLS = 100, ROUNDS = 3 }; /* R6 */
 
 /* Cells of a piece that clusters have. */
 struct picks {
   size_t n, cap;
-  struct vg_key *at;         /* [n] cells by cluster */
+  struct vg_key *at; /* [n] cells by cluster */
   size_t n_taken, cap_taken;
-  struct vg_key *taken;      /* [n_taken] cells with a corner in the balls of a
-                                further cluster, by the one that has them */
+  struct vg_key *taken; /* [n_taken] cells with a corner in the balls of a
+                           further cluster, by the one that has them */
   vg_status st;
 };
 
@@ -40,19 +40,19 @@ struct repair {
   struct vg_partition *p;
   struct vg_owners owners;
   struct vg_spot_grid balls;
-  struct picks *pick;        /* [n_piece] */
+  struct picks *pick; /* [n_piece] */
   size_t n_block, cap_block;
-  struct vg_cluster_cells *block;  /* of the clusters of this rank, by cluster
-                                and path */
-  struct vg_repair_boundary boundary;  /* between their points */
+  struct vg_cluster_cells *block; /* of the clusters of this rank, by cluster
+                               and path */
+  struct vg_repair_boundary boundary; /* between their points */
   size_t n_job;
-  size_t *first;             /* [n_job + 1] block */
-  struct vg_repaired *repaired;  /* [n_job] */
-  struct vg_span *span;      /* [n_job] */
-  vg_status *st;             /* [n_job] */
-  uint64_t *better;          /* [n_cluster] on all ranks */
-  size_t number;             /* clusters of earlier rounds */
-  struct vg_spans *spans;    /* tasks of this rank */
+  size_t *first;                /* [n_job + 1] block */
+  struct vg_repaired *repaired; /* [n_job] */
+  struct vg_span *span;         /* [n_job] */
+  vg_status *st;                /* [n_job] */
+  uint64_t *better;             /* [n_cluster] on all ranks */
+  size_t number;                /* clusters of earlier rounds */
+  struct vg_spans *spans;       /* tasks of this rank */
 };
 
 static void repair_free(struct repair *r)
@@ -123,8 +123,7 @@ static void pick_body(void *context, size_t first, size_t end, int worker)
       all &= in[i];
     }
     if (!in) r->pick[k].st = VG_ERR_MEMORY;
-    else if (all != VG_NO_CLUSTER)
-      r->pick[k].st = pick_in(q, in, &r->pick[k]);
+    else if (all != VG_NO_CLUSTER) r->pick[k].st = pick_in(q, in, &r->pick[k]);
     free(in);
   }
 }
@@ -158,9 +157,11 @@ static void put_taken(struct repair *r, const struct vg_piece *q,
     uint32_t cluster = vg_spot_grid_at(&r->balls, q->x[v]);
     uint64_t name = name_of(q, v);
     uint8_t hold = 1;
-    struct vg_cluster_cells b = { .cluster = cluster, .n_point = 1,
+    struct vg_cluster_cells b = { .cluster = cluster,
+                                  .n_point = 1,
                                   .name = &name,
-                          .x = &q->x[v], .hold = &hold };
+                                  .x = &q->x[v],
+                                  .hold = &hold };
 
     if (cluster == VG_NO_CLUSTER || cluster == taken->key) continue;
     memcpy(b.path, q->path, sizeof b.path);
@@ -213,8 +214,7 @@ static vg_status put_piece(struct repair *r, size_t k, struct vg_outbox *post,
   }
   memset(number, 0xff, n_point * sizeof *number);
   for (size_t first = 0, end; first < s->n; first = end) {
-    for (end = first; end < s->n && s->at[end].key == s->at[first].key;
-         end++) {
+    for (end = first; end < s->n && s->at[end].key == s->at[first].key; end++) {
     }
     fill_block(q, end - first, &s->at[first], number, &b);
     vg_cluster_cells_put(&post->to[b.cluster % (uint32_t)r->p->size], &b);
@@ -251,8 +251,7 @@ static vg_status take_blocks(struct repair *r, const struct vg_bytes *from,
       r->n_block++;
     }
   }
-  if (r->n_block)
-    qsort(r->block, r->n_block, sizeof *r->block, by_path);
+  if (r->n_block) qsort(r->block, r->n_block, sizeof *r->block, by_path);
   r->first = vg_alloc(r->n_block + 1, sizeof *r->first);
   if (!r->first) return vg_fail_memory(err, "repairs");
   for (size_t k = 0; k < r->n_block; k++)
@@ -294,7 +293,7 @@ static void cluster_body(void *context, size_t first, size_t end, int worker)
     vg_repair_begin(&r->span[k], worker);
     r->st[k] = vg_repair_cluster(r->first[k + 1] - r->first[k], b, &r->balls,
                                  &r->boundary, r->p->sizing, &r->repaired[k],
-                                     NULL);
+                                 NULL);
     vg_repair_end(&r->span[k], "", r->number + b->cluster,
                   r->repaired[k].n_cell);
   }
@@ -309,8 +308,10 @@ static vg_status repair_clusters(struct repair *r, struct vg_error *err)
   vg_parallel_for(r->p->options.threads, r->n_job, 1, cluster_body, r);
   for (size_t k = 0; k < r->n_job; k++) {
     if (r->st[k] < 0)
-      return vg_fail(err, r->st[k], "cells beside interfaces could not be "
-                     "mended: %s", vg_status_name(r->st[k]));
+      return vg_fail(err, r->st[k],
+                     "cells beside interfaces could not be "
+                     "mended: %s",
+                     vg_status_name(r->st[k]));
     VG_TRY(vg_spans_add(r->spans, &r->span[k], err));
   }
 done:
@@ -342,8 +343,7 @@ static vg_status share_outcomes(struct repair *r, struct vg_comm *comm,
   }
   if (n) st = vg_comm_sum(comm, n, r->better, err);
   to->n_repair += n;
-  for (size_t k = 0; st == VG_OK && k < n; k++)
-    to->n_repaired += r->better[k];
+  for (size_t k = 0; st == VG_OK && k < n; k++) to->n_repaired += r->better[k];
   return st;
 }
 
@@ -379,7 +379,10 @@ static vg_status remove_cells(struct repair *r, struct vg_error *err)
 }
 
 /* Points that moved, to those who own them. */
-struct move { uint64_t name; double x[3]; };
+struct move {
+  uint64_t name;
+  double x[3];
+};
 
 static void put_moves(const struct repair *r, struct vg_outbox *post)
 {
@@ -458,11 +461,10 @@ static vg_status put_back(struct repair *r, struct vg_comm *comm,
 static vg_status round_of(struct repair *r, struct vg_comm *comm, size_t n,
                           const struct vg_spot *spot, struct vg_error *err)
 {
-  vg_status st = vg_comm_agree(comm, vg_spot_grid_new(n, spot, MOST_BALLS,
-                                                      &r->balls, err), err);
+  vg_status st = vg_comm_agree(
+    comm, vg_spot_grid_new(n, spot, MOST_BALLS, &r->balls, err), err);
 
-  if (st == VG_OK)
-    st = vg_comm_agree(comm, send_cells(r, comm, err), err);
+  if (st == VG_OK) st = vg_comm_agree(comm, send_cells(r, comm, err), err);
   if (st == VG_OK) st = vg_comm_agree(comm, repair_clusters(r, err), err);
   if (st == VG_OK) st = share_outcomes(r, comm, err);
   return st == VG_OK ? put_back(r, comm, err) : st;
@@ -517,15 +519,12 @@ static vg_status all_rounds(struct vg_partition *p, struct vg_comm *comm,
 }
 
 /* What ranks combine: sums and extremes. */
-#define ROW(member, kind, rule) \
+#define ROW(member, kind, rule)                                                \
   VG_ENTRY(NULL, struct vg_partition_report, member, kind, rule)
 static const struct vg_entry entry[] = {
-  ROW(n_repair_cell, COUNT, SUM),
-  ROW(n_repair_bad, COUNT, SUM),
-  ROW(n_repair_bad_left, COUNT, SUM),
-  ROW(n_repair_moved, COUNT, SUM),
-  ROW(n_repair_swapped, COUNT, SUM),
-  ROW(repair_worst, REAL, LEAST),
+  ROW(n_repair_cell, COUNT, SUM),      ROW(n_repair_bad, COUNT, SUM),
+  ROW(n_repair_bad_left, COUNT, SUM),  ROW(n_repair_moved, COUNT, SUM),
+  ROW(n_repair_swapped, COUNT, SUM),   ROW(repair_worst, REAL, LEAST),
   ROW(repair_worst_left, REAL, LEAST),
 };
 static const struct vg_entries fields = { sizeof entry / sizeof *entry, entry };
@@ -544,8 +543,8 @@ static size_t bad_cells(const struct vg_partition *p)
       int is_in = 1;
 
       for (int i = 0; i < 4; i++) is_in &= v[i] < q->n_in + q->n_point;
-      bad += !is_in || !(vg_orient3d(q->x[v[0]], q->x[v[1]], q->x[v[2]],
-                                     q->x[v[3]]) > 0);
+      bad += !is_in ||
+             !(vg_orient3d(q->x[v[0]], q->x[v[1]], q->x[v[2]], q->x[v[3]]) > 0);
     }
   }
   return bad;

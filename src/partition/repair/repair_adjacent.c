@@ -11,15 +11,15 @@
 struct strip {
   const struct vg_piece *q;
   size_t n_hit;
-  const uint32_t *hit;       /* [n_hit] cells with a corner on an interface */
-  const uint8_t *shared;     /* [q.n_point] that stay; or NULL: none */
-  uint8_t *moves;            /* [q.n_in + q.n_point] */
+  const uint32_t *hit;   /* [n_hit] cells with a corner on an interface */
+  const uint8_t *shared; /* [q.n_point] that stay; or NULL: none */
+  uint8_t *moves;        /* [q.n_in + q.n_point] */
   size_t n;
-  uint32_t *point;           /* [n] that may move */
-  struct vg_tets t;          /* cells around them, without links; x is q's */
+  uint32_t *point;  /* [n] that may move */
+  struct vg_tets t; /* cells around them, without links; x is q's */
   size_t cap_flag, cap_shape, cap_on;
-  float *shape, *old;        /* [t.n_cell] now, before */
-  uint8_t *on;               /* [t.n_cell] has a corner on an interface */
+  float *shape, *old; /* [t.n_cell] now, before */
+  uint8_t *on;        /* [t.n_cell] has a corner on an interface */
 };
 
 static vg_status find_points(struct strip *s)
@@ -44,7 +44,7 @@ static vg_status find_points(struct strip *s)
 
 static int add_cell(struct strip *s, const uint32_t *v, int on)
 {
-  double (*x)[3] = s->t.x;
+  double(*x)[3] = s->t.x;
   size_t n = s->t.n_cell;
 
   if (vg_reserve(&s->t.cell, &s->t.cap_cell, n + 1, sizeof *s->t.cell) ||
@@ -69,8 +69,7 @@ static vg_status take_cells(struct strip *s)
     const uint32_t *v = q->cell[c];
 
     while (k < s->n_hit && s->hit[k] < c) k++;
-    if ((s->moves[v[0]] | s->moves[v[1]] | s->moves[v[2]] |
-         s->moves[v[3]]) &&
+    if ((s->moves[v[0]] | s->moves[v[1]] | s->moves[v[2]] | s->moves[v[3]]) &&
         add_cell(s, v, k < s->n_hit && s->hit[k] == c))
       return VG_ERR_MEMORY;
   }

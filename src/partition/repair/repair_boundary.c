@@ -55,8 +55,7 @@ vg_status vg_repair_boundary_new(const struct vg_mesh *boundary, size_t n,
   for (size_t k = 0; k < n; k++)
     for (size_t i = 0; i < block[k].n_point; i++)
       if (block[k].name[i] < n_point) any = in[block[k].name[i]] = 1;
-  if (any && list(boundary, in, out) < 0)
-    st = vg_fail_memory(err, "repairs");
+  if (any && list(boundary, in, out) < 0) st = vg_fail_memory(err, "repairs");
   free(in);
   return st;
 }

@@ -11,7 +11,7 @@
 #include "partition/repair/repair_parts.h"
 
 /* As vg_shape: what stays below 5 degrees, or above 175, is tried again. */
-static const double hopeless = 0.0076;   /* R7 */
+static const double hopeless = 0.0076; /* R7 */
 
 /* --- as they travel ------------------------------------------------------ */
 
@@ -26,7 +26,7 @@ void vg_cluster_cells_release(struct vg_cluster_cells *b)
 
 void vg_cluster_cells_put(struct vg_writer *w, const struct vg_cluster_cells *b)
 {
-  uint64_t count[2] = {b->n_point, b->n_cell};
+  uint64_t count[2] = { b->n_point, b->n_cell };
 
   vg_put(w, 1, sizeof b->cluster, &b->cluster);
   vg_put(w, 1, sizeof b->path, b->path);
@@ -39,7 +39,7 @@ void vg_cluster_cells_put(struct vg_writer *w, const struct vg_cluster_cells *b)
 
 void vg_cluster_cells_get(struct vg_reader *r, struct vg_cluster_cells *b)
 {
-  uint64_t count[2] = {0, 0};
+  uint64_t count[2] = { 0, 0 };
 
   memset(b, 0, sizeof *b);
   vg_get(r, 1, sizeof b->cluster, &b->cluster);
@@ -75,10 +75,10 @@ struct joint {
   uint64_t *name;
   double (*x)[3];
   uint8_t *fixed;
-  uint32_t *number;          /* [n_point] in the tetrahedra, fixed ones first */
-  uint32_t *point;           /* [n_point] and back */
-  struct vg_table table;     /* points by their names */
-  uint32_t **local;          /* [n_block][block.n_point] */
+  uint32_t *number;      /* [n_point] in the tetrahedra, fixed ones first */
+  uint32_t *point;       /* [n_point] and back */
+  struct vg_table table; /* points by their names */
+  uint32_t **local;      /* [n_block][block.n_point] */
   struct vg_tets t;
 };
 
@@ -109,8 +109,8 @@ static vg_status joint_new(struct joint *j, struct vg_error *err)
   j->number = vg_alloc(n, sizeof *j->number);
   j->point = vg_alloc(n, sizeof *j->point);
   j->local = vg_calloc(j->n_block, sizeof *j->local);
-  if (!j->name || !j->x || !j->fixed || !j->number || !j->point ||
-      !j->local || vg_table_init(&j->table, n))
+  if (!j->name || !j->x || !j->fixed || !j->number || !j->point || !j->local ||
+      vg_table_init(&j->table, n))
     return vg_fail_memory(err, "repairs");
   for (size_t k = 0; k < j->n_block; k++) {
     j->local[k] = vg_alloc(j->block[k].n_point, sizeof **j->local);
@@ -189,8 +189,8 @@ static void fix_faces(struct joint *j)
 
 static vg_status join_cells(struct joint *j, struct vg_error *err)
 {
-  double (*x)[3] = vg_alloc(j->n_point, sizeof *x);
-  uint32_t (*cell)[4] = vg_alloc(j->n_cell, sizeof *cell);
+  double(*x)[3] = vg_alloc(j->n_point, sizeof *x);
+  uint32_t(*cell)[4] = vg_alloc(j->n_cell, sizeof *cell);
   size_t n = 0;
   vg_status st;
 
@@ -205,7 +205,7 @@ static vg_status join_cells(struct joint *j, struct vg_error *err)
     for (size_t c = 0; c < j->block[k].n_cell; c++, n++)
       for (int i = 0; i < 4; i++)
         cell[n][i] = j->number[j->local[k][j->block[k].cell[c][i]]];
-  st = vg_tets_from_cells(&j->t, j->n_point, x, n, (const uint32_t (*)[4])cell,
+  st = vg_tets_from_cells(&j->t, j->n_point, x, n, (const uint32_t(*)[4])cell,
                           err);
   free(cell);
   if (st == VG_OK) fix_faces(j);
@@ -224,7 +224,7 @@ struct tally {
 
 static struct tally measure(const struct vg_tets *t)
 {
-  static const double below[CLASSES] = {0.0076, 0.03, VG_SHAPE_TARGET};
+  static const double below[CLASSES] = { 0.0076, 0.03, VG_SHAPE_TARGET };
   struct tally s = { .worst = 2 };
 
   for (size_t c = 0; c < t->n_cell; c++) {
@@ -273,8 +273,7 @@ static int number_points(const struct joint *j, struct vg_piece *piece,
     else if (q >= j->n_fixed) return 0;
   }
   for (size_t q = j->n_point; q < t->n_point; q++)
-    if (to[q] != VG_NONE)
-      to[q] = (uint32_t)(piece->n_in + piece->n_point++);
+    if (to[q] != VG_NONE) to[q] = (uint32_t)(piece->n_in + piece->n_point++);
   return 1;
 }
 
@@ -363,8 +362,9 @@ vg_status vg_repair_cluster(size_t n, const struct vg_cluster_cells *block,
 {
   assert(n > 0 && block && balls && boundary && out);
 
-  struct joint j = { .n_block = n, .block = block, .balls = balls,
-                     .boundary = boundary };
+  struct joint j = {
+    .n_block = n, .block = block, .balls = balls, .boundary = boundary
+  };
   struct vg_optimise_report r;
   struct vg_repaired m = { .better = 0 };
   struct tally old;

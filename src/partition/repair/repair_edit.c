@@ -25,7 +25,7 @@ static vg_status edit_cells(struct vg_piece *q, const struct vg_edit *c)
     kept++;
   }
   if (kept + c->n_cell > q->n_cell) {
-    uint32_t (*cell)[4] = vg_alloc(kept + c->n_cell, sizeof *cell);
+    uint32_t(*cell)[4] = vg_alloc(kept + c->n_cell, sizeof *cell);
 
     if (!cell) return VG_ERR_MEMORY;
     if (kept) memcpy(cell, q->cell, kept * sizeof *cell);
@@ -42,7 +42,7 @@ static vg_status make_room(struct vg_piece *q, size_t more)
 {
   size_t n = q->n_in + q->n_point;
   uint64_t *in;
-  double (*x)[3];
+  double(*x)[3];
 
   if (!more) return VG_OK;
   in = vg_alloc(q->n_in + more, sizeof *in);

@@ -11,8 +11,9 @@
 /* R10: the worse a cell, the larger its ball: `reach` local spacings, and
  * `most` times as far as its own corners. A cell that stayed bad needs much
  * room, next to long triangles of a sharp edge. */
-static const struct { double reach, most; } ball[VG_SPOT_SIZES] = {
-  { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };
+static const struct {
+  double reach, most;
+} ball[VG_SPOT_SIZES] = { { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };
 
 /* --- owners -------------------------------------------------------------- */
 
@@ -24,7 +25,10 @@ static int by_serial(const void *a, const void *b)
 }
 
 /* As it travels. */
-struct listed { struct vg_owner o; char path[VG_PATH_MAX]; };
+struct listed {
+  struct vg_owner o;
+  char path[VG_PATH_MAX];
+};
 
 static int by_listed_path(const void *a, const void *b)
 {
@@ -65,17 +69,19 @@ vg_status vg_owners_gather(const struct vg_partition *p, struct vg_comm *comm,
 {
   struct listed *own = vg_calloc(p->n_piece, sizeof *own);
   struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
-  struct vg_bytes mine = {p->n_piece * sizeof *own, (unsigned char *)own};
+  struct vg_bytes mine = { p->n_piece * sizeof *own, (unsigned char *)own };
   vg_status st = own && all ? VG_OK : vg_fail_memory(err, "repairs");
 
   memset(out, 0, sizeof *out);
   for (size_t k = 0; st == VG_OK && k < p->n_piece; k++) {
     const struct vg_piece *q = &p->piece[k];
 
-    own[k].o = (struct vg_owner){
-      .serial = q->serial, .rank = (uint32_t)p->rank, .piece = (uint32_t)k,
-      .is_zone = q->kind == VG_SPAN_PENCIL || q->kind == VG_SPAN_TILE ||
-                 q->n_adopted > 0 };
+    own[k].o = (struct vg_owner){ .serial = q->serial,
+                                  .rank = (uint32_t)p->rank,
+                                  .piece = (uint32_t)k,
+                                  .is_zone = q->kind == VG_SPAN_PENCIL ||
+                                             q->kind == VG_SPAN_TILE ||
+                                             q->n_adopted > 0 };
     memcpy(own[k].path, q->path, sizeof own[k].path);
   }
   st = vg_comm_agree(comm, st, err);
@@ -107,8 +113,7 @@ vg_status vg_outbox_new(struct vg_outbox *post, int size, struct vg_error *err)
 
 void vg_outbox_release(struct vg_outbox *post)
 {
-  for (int r = 0; post->to && r < post->size; r++)
-    free(post->to[r].bytes.data);
+  for (int r = 0; post->to && r < post->size; r++) free(post->to[r].bytes.data);
   free(post->to);
   post->to = NULL;
 }
@@ -150,7 +155,8 @@ static void keep_small(const struct vg_sizing *sizing, struct vg_spot *s)
 
     for (int k = 0; k < 3; k++) lo[k] = s->at[k] - s->radius;
     if (vg_sizing_least(sizing, lo, 2 * s->radius, x) >=
-        least_spacing * s->radius) return;
+        least_spacing * s->radius)
+      return;
   }
 }
 
@@ -179,8 +185,9 @@ vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
 {
   if (vg_reserve(&s->at, &s->cap, s->n + 1, sizeof *s->at))
     return VG_ERR_MEMORY;
-  s->at[s->n++] = vg_spot_around(
-      sizing, x, shape < VG_SHAPE_BAD ? VG_SPOT_MIDDLE : VG_SPOT_SMALL);
+  s->at[s->n++] = vg_spot_around(sizing, x,
+                                 shape < VG_SHAPE_BAD ? VG_SPOT_MIDDLE
+                                                      : VG_SPOT_SMALL);
   return VG_OK;
 }
 
@@ -196,16 +203,17 @@ static int by_place(const void *a, const void *b)
 }
 
 vg_status vg_spots_gather(struct vg_writer *w, int n_rank, struct vg_comm *comm,
-                          size_t *n, struct vg_spot **out,
-                          struct vg_error *err)
+                          size_t *n, struct vg_spot **out, struct vg_error *err)
 {
   struct vg_bytes *all = vg_calloc((size_t)n_rank, sizeof *all);
   size_t bytes = 0, at = 0;
   vg_status st;
 
   *out = NULL;
-  st = vg_comm_agree(comm, w->refused || !all ? vg_fail_memory(err, "repairs")
-                                              : VG_OK, err);
+  st = vg_comm_agree(comm,
+                     w->refused || !all ? vg_fail_memory(err, "repairs")
+                                        : VG_OK,
+                     err);
   if (st == VG_OK) st = vg_comm_allgather(comm, &w->bytes, all, err);
   for (int r = 0; st == VG_OK && r < n_rank; r++) bytes += all[r].n;
   if (st == VG_OK && !(*out = vg_alloc(bytes, 1)))

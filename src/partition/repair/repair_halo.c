@@ -25,7 +25,7 @@ enum { N_HEAD = 8 };
 
 void vg_halo_put(struct vg_writer *w, const struct vg_halo *s)
 {
-  uint32_t head[N_HEAD] = { s->owner, s->to, s->from, s->rank,
+  uint32_t head[N_HEAD] = { s->owner, s->to,      s->from,    s->rank,
                             s->order, s->n_known, s->n_other, s->n_cell };
 
   vg_put(w, N_HEAD, sizeof *head, head);
@@ -40,13 +40,17 @@ void vg_halo_put(struct vg_writer *w, const struct vg_halo *s)
 
 void vg_halo_get(struct vg_reader *r, struct vg_halo *s)
 {
-  uint32_t head[N_HEAD] = {0};
+  uint32_t head[N_HEAD] = { 0 };
 
   vg_get(r, N_HEAD, sizeof *head, head);
-  *s = (struct vg_halo){
-    .owner = head[0], .to = head[1], .from = head[2], .rank = head[3],
-    .order = head[4], .n_known = head[5], .n_other = head[6],
-    .n_cell = head[7] };
+  *s = (struct vg_halo){ .owner = head[0],
+                         .to = head[1],
+                         .from = head[2],
+                         .rank = head[3],
+                         .order = head[4],
+                         .n_known = head[5],
+                         .n_other = head[6],
+                         .n_cell = head[7] };
   s->known = vg_get_array(r, s->n_known, sizeof *s->known);
   s->vertex = vg_get_array(r, s->n_known, sizeof *s->vertex);
   s->x = vg_get_array(r, s->n_other, sizeof *s->x);
@@ -60,22 +64,24 @@ void vg_halo_get(struct vg_reader *r, struct vg_halo *s)
 /* --- the halos of a piece ------------------------------------------------ */
 
 /* A cell with a corner among the points of an owner. */
-struct hit { uint32_t cell, owner; };
+struct hit {
+  uint32_t cell, owner;
+};
 
 /* A piece, and those whose points it uses. */
 struct user {
   const struct vg_piece *q;
   const struct vg_owner *self;
   size_t n_owner, cap_owner;
-  const struct vg_owner **owner;  /* [n_owner] in the order of first use */
-  uint32_t *of;              /* [n_in] place in owner, VG_NO_CLUSTER: the
-                                boundary's */
+  const struct vg_owner **owner; /* [n_owner] in the order of first use */
+  uint32_t *of;                  /* [n_in] place in owner, VG_NO_CLUSTER: the
+                                    boundary's */
   size_t n_hit, cap_hit;
-  struct hit *hit;           /* [n_hit] by cell */
-  size_t *first;             /* [n_owner + 2] cells of each owner's halo */
+  struct hit *hit; /* [n_hit] by cell */
+  size_t *first;   /* [n_owner + 2] cells of each owner's halo */
   uint32_t *cell;
-  uint32_t *number;          /* [n_in + n_point] scratch */
-  uint32_t *list;            /* vertices of a halo */
+  uint32_t *number; /* [n_in + n_point] scratch */
+  uint32_t *list;   /* vertices of a halo */
 };
 
 static void user_release(struct user *u)
@@ -102,7 +108,8 @@ static vg_status find_owners(struct user *u, const struct vg_owners *owners)
     if (last == VG_NO_CLUSTER || u->owner[last]->serial != q->in[i] >> 32) {
       o = vg_owners_find(owners, q->in[i]);
       if (!o) continue;
-      for (last = 0; last < u->n_owner && u->owner[last] != o; last++) {}
+      for (last = 0; last < u->n_owner && u->owner[last] != o; last++) {
+      }
       if (last == u->n_owner) {
         if (vg_reserve(&u->owner, &u->cap_owner, u->n_owner + 1,
                        sizeof *u->owner))
@@ -204,9 +211,12 @@ static vg_status fill_halo(struct user *u, uint32_t owner, size_t n,
   const struct vg_owner *o = u->owner[owner];
   size_t n_list;
 
-  *s = (struct vg_halo){
-    .owner = o->piece, .to = o->rank, .from = u->self->piece,
-    .rank = u->self->rank, .order = u->self->order, .n_cell = (uint32_t)n };
+  *s = (struct vg_halo){ .owner = o->piece,
+                         .to = o->rank,
+                         .from = u->self->piece,
+                         .rank = u->self->rank,
+                         .order = u->self->order,
+                         .n_cell = (uint32_t)n };
   n_list = number_vertices(u, owner, n, cell, s);
   s->known = vg_alloc(s->n_known, sizeof *s->known);
   s->vertex = vg_alloc(n_list, sizeof *s->vertex);
@@ -215,8 +225,8 @@ static vg_status fill_halo(struct user *u, uint32_t owner, size_t n,
   s->zone = vg_alloc(s->n_other, sizeof *s->zone);
   s->cell = vg_alloc(n, sizeof *s->cell);
   s->place = vg_alloc(n, sizeof *s->place);
-  if (!s->known || !s->vertex || !s->x || !s->name || !s->zone ||
-      !s->cell || !s->place)
+  if (!s->known || !s->vertex || !s->x || !s->name || !s->zone || !s->cell ||
+      !s->place)
     return VG_ERR_MEMORY;
   memcpy(s->vertex, u->list, n_list * sizeof *s->vertex);
   for (size_t k = 0; k < s->n_known; k++)
@@ -225,14 +235,12 @@ static vg_status fill_halo(struct user *u, uint32_t owner, size_t n,
     uint32_t v = u->list[s->n_known + k];
 
     memcpy(s->x[k], q->x[v], sizeof *s->x);
-    s->name[k] = v < q->n_in ? q->in[v]
-                             : VG_POINT_ID(q->serial, v - q->n_in);
+    s->name[k] = v < q->n_in ? q->in[v] : VG_POINT_ID(q->serial, v - q->n_in);
     s->zone[k] = zone_of(u, v);
   }
   for (size_t c = 0; c < n; c++) {
     s->place[c] = cell[c];
-    for (int i = 0; i < 4; i++)
-      s->cell[c][i] = u->number[q->cell[cell[c]][i]];
+    for (int i = 0; i < 4; i++) s->cell[c][i] = u->number[q->cell[cell[c]][i]];
   }
   for (size_t k = 0; k < n_list; k++) u->number[u->list[k]] = VG_NO_CLUSTER;
   return VG_OK;
@@ -249,8 +257,7 @@ static vg_status fill_halos(struct user *u, size_t *n, struct vg_halo *out)
   for (uint32_t k = 0; k < u->n_owner; k++) {
     size_t many = u->first[k + 1] - u->first[k];
 
-    if (many && fill_halo(u, k, many, u->cell + u->first[k],
-                          &out[(*n)++]) < 0)
+    if (many && fill_halo(u, k, many, u->cell + u->first[k], &out[(*n)++]) < 0)
       return VG_ERR_MEMORY;
   }
   return VG_OK;
@@ -275,8 +282,7 @@ vg_status vg_halos_of(const struct vg_partition *p, size_t k,
 
   const struct vg_piece *q = &p->piece[k];
   struct user u = { .q = q,
-                    .self = vg_owners_find(owners,
-                                           VG_POINT_ID(q->serial, 0)) };
+                    .self = vg_owners_find(owners, VG_POINT_ID(q->serial, 0)) };
   vg_status st;
 
   *n = *n_hit = 0;

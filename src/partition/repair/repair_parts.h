@@ -13,22 +13,27 @@
 
 struct vg_owner {
   uint32_t serial, rank, piece;
-  uint32_t order;            /* in the order of the paths */
-  int is_zone;               /* its points may have cells elsewhere */
+  uint32_t order; /* in the order of the paths */
+  int is_zone;    /* its points may have cells elsewhere */
 };
 
-struct vg_owners { size_t n; struct vg_owner *at; };  /* by serial */
+struct vg_owners {
+  size_t n;
+  struct vg_owner *at;
+}; /* by serial */
 
 /** Pieces of all ranks. Collective. */
 vg_status vg_owners_gather(const struct vg_partition *p, struct vg_comm *comm,
                            struct vg_owners *out, struct vg_error *err);
 
 /** Whose point is this? NULL: the boundary's. */
-const struct vg_owner *vg_owners_find(const struct vg_owners *o,
-                                      uint64_t name);
+const struct vg_owner *vg_owners_find(const struct vg_owners *o, uint64_t name);
 
 /** A list for each of the ranks. */
-struct vg_outbox { int size; struct vg_writer *to; };
+struct vg_outbox {
+  int size;
+  struct vg_writer *to;
+};
 
 vg_status vg_outbox_new(struct vg_outbox *post, int size, struct vg_error *err);
 void vg_outbox_release(struct vg_outbox *post);
@@ -42,30 +47,39 @@ vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
 /* --- where (repair_smooth.c, repair_spots.c) ----------------------------- */
 
 /* A ball around a bad cell. */
-struct vg_spot { double at[3], radius; };
+struct vg_spot {
+  double at[3], radius;
+};
 
 /* For cells that are not good, bad ones, and what stayed bad. */
-enum vg_spot_size { VG_SPOT_SMALL, VG_SPOT_MIDDLE, VG_SPOT_LARGE,
-                    VG_SPOT_SIZES };
+enum vg_spot_size {
+  VG_SPOT_SMALL,
+  VG_SPOT_MIDDLE,
+  VG_SPOT_LARGE,
+  VG_SPOT_SIZES
+};
 
 /** A ball around a cell: a few spacings, and all of the cell. */
 struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
                               const double *const x[4], enum vg_spot_size k);
 
 /** Add one around a cell of a shape below VG_SHAPE_TARGET. */
-struct vg_spots { size_t n, cap; struct vg_spot *at; };
+struct vg_spots {
+  size_t n, cap;
+  struct vg_spot *at;
+};
 vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
                        const double *const x[4], double shape);
 
 /** The balls that ranks wrote, on all of them: in an order that does not
  * depend on ranks, thinned. out: owned by the caller, also on failure.
  * Collective. */
-vg_status vg_spots_gather(struct vg_writer *w, int n_rank,
-                          struct vg_comm *comm, size_t *n,
-                          struct vg_spot **out, struct vg_error *err);
+vg_status vg_spots_gather(struct vg_writer *w, int n_rank, struct vg_comm *comm,
+                          size_t *n, struct vg_spot **out,
+                          struct vg_error *err);
 
 /** As vg_shape: dihedral angles below 18 or above 162 degrees. */
-#define VG_SHAPE_BAD 0.0955   /* R4 */
+#define VG_SHAPE_BAD 0.0955 /* R4 */
 
 /** Swap and smooth across interfaces, and list balls around the cells with a
  * corner there that stay bad, of all ranks, by their coordinates. Collective.
@@ -78,20 +92,20 @@ vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
 /* Cells of one piece that have a corner among the points of another, as its
  * owner needs them. (repair_halo.c) */
 struct vg_halo {
-  uint32_t owner, to;        /* whose points: piece and rank */
-  uint32_t from, rank;       /* who has the cells: likewise */
-  uint32_t order;            /* of its path */
+  uint32_t owner, to;  /* whose points: piece and rank */
+  uint32_t from, rank; /* who has the cells: likewise */
+  uint32_t order;      /* of its path */
   uint32_t n_known, n_other, n_cell;
-  uint32_t *known;           /* [n_known] places of the owner's points */
-  uint32_t *vertex;          /* [n_known] in the piece that has the cells;
-                                not sent: [n_known + n_other] */
-  double (*x)[3];            /* [n_other] corners that are not the owner's */
-  uint64_t *name;            /* [n_other] */
-  uint32_t *zone;            /* [n_other] order of the zone whose they are */
-  uint32_t (*cell)[4];       /* [n_cell] 0 ... n_known - 1 known, then other */
-  uint32_t *place;           /* [n_cell] in the piece that has them */
-  uint32_t n_gone;           /* not sent. place [n_gone] once all is done:
-                                those that the owner has others for */
+  uint32_t *known;     /* [n_known] places of the owner's points */
+  uint32_t *vertex;    /* [n_known] in the piece that has the cells;
+                          not sent: [n_known + n_other] */
+  double (*x)[3];      /* [n_other] corners that are not the owner's */
+  uint64_t *name;      /* [n_other] */
+  uint32_t *zone;      /* [n_other] order of the zone whose they are */
+  uint32_t (*cell)[4]; /* [n_cell] 0 ... n_known - 1 known, then other */
+  uint32_t *place;     /* [n_cell] in the piece that has them */
+  uint32_t n_gone;     /* not sent. place [n_gone] once all is done:
+                          those that the owner has others for */
 };
 #define VG_NO_ZONE UINT32_MAX
 
@@ -113,9 +127,9 @@ void vg_halo_refresh(const struct vg_piece *q, struct vg_halo *s);
 /** As vg_shape. Points with a cell below the first (42 degrees) around them
  * are smoothed in the first round, below the second (48) in the second and
  * as adjacent points; cells below the third (39) are swapped. */
-#define VG_SHAPE_LEVEL 0.45f   /* R1 */
-#define VG_SHAPE_ADJACENT 0.55f   /* R2 */
-#define VG_SHAPE_SWAP 0.4f   /* R3 */
+#define VG_SHAPE_LEVEL 0.45f    /* R1 */
+#define VG_SHAPE_ADJACENT 0.55f /* R2 */
+#define VG_SHAPE_SWAP 0.4f      /* R3 */
 
 /** Smooth the points of a piece that are corners of the cells hit [n], which
  * are those with a corner on an interface in rising order; but not those that
@@ -126,32 +140,33 @@ vg_status vg_repair_adjacent(const struct vg_piece *q,
                              const uint32_t *hit, const uint8_t *shared,
                              struct vg_spots *out);
 
-enum {                       /* what is known of a cell in it */
-  VG_OVERLAP_CLAIMED = 1,         /* an earlier owner looks at it */
-  VG_OVERLAP_LATER = 2,        /* an earlier owner may move a point of it */
-  VG_OVERLAP_NEW = 4 };
+enum {                         /* what is known of a cell in it */
+       VG_OVERLAP_CLAIMED = 1, /* an earlier owner looks at it */
+       VG_OVERLAP_LATER = 2,   /* an earlier owner may move a point of it */
+       VG_OVERLAP_NEW = 4
+};
 
 /* All cells with a corner among an owner's points on interfaces.
  * (repair_overlap.c) */
 struct vg_overlap {
   const struct vg_piece *q;
   const struct vg_owner *self;
-  int first;                 /* as below */
+  int first; /* as below */
   size_t n_halo;
   struct vg_halo *const *halo;
-  uint8_t *shared;           /* [q.n_point] on an interface */
-  uint8_t *stays;            /* [q.n_point] an earlier owner's point is near */
-  size_t n_base, n_other;    /* vertices of q, then those of the halos */
-  uint64_t *other;           /* [n_other] their names */
-  struct vg_table table;     /* vertices by their names */
-  size_t n_own;              /* cells of q come first */
-  uint32_t *place;           /* [n_own] in q */
-  struct vg_tets t;          /* without links */
+  uint8_t *shared;        /* [q.n_point] on an interface */
+  uint8_t *stays;         /* [q.n_point] an earlier owner's point is near */
+  size_t n_base, n_other; /* vertices of q, then those of the halos */
+  uint64_t *other;        /* [n_other] their names */
+  struct vg_table table;  /* vertices by their names */
+  size_t n_own;           /* cells of q come first */
+  uint32_t *place;        /* [n_own] in q */
+  struct vg_tets t;       /* without links */
   size_t cap_kind, cap_shape;
-  uint8_t *kind;             /* [t.n_cell] */
-  float *shape;              /* [t.n_cell] */
+  uint8_t *kind; /* [t.n_cell] */
+  float *shape;  /* [t.n_cell] */
   size_t n_point;
-  uint32_t *point;           /* [n_point] that may move */
+  uint32_t *point; /* [n_point] that may move */
 };
 
 /** first: those who come first in the order may move points; or who come
@@ -162,11 +177,11 @@ void vg_overlap_release(struct vg_overlap *f);
 
 /* Cells of a piece that others take the place of. */
 struct vg_edit {
-  uint8_t *gone;             /* [q.n_cell] or NULL: none */
+  uint8_t *gone; /* [q.n_cell] or NULL: none */
   size_t n_cell, n_point;
-  uint32_t (*cell)[4];       /* [n_cell] vertices of q, then further ones: */
-  uint64_t *name;            /* [n_point] */
-  double (*x)[3];            /* [n_point] */
+  uint32_t (*cell)[4]; /* [n_cell] vertices of q, then further ones: */
+  uint64_t *name;      /* [n_point] */
+  double (*x)[3];      /* [n_point] */
 };
 
 void vg_edit_release(struct vg_edit *c);
@@ -192,13 +207,13 @@ enum { VG_LEVEL_MAX = 64 };
  * slots. A slot can list balls of other cells; their distance excludes them. */
 struct vg_spot_grid {
   size_t n;
-  const struct vg_spot *spot;  /* [n] borrowed */
-  uint32_t *cluster;         /* [n] or VG_NO_CLUSTER: to be done later */
+  const struct vg_spot *spot; /* [n] borrowed */
+  uint32_t *cluster;          /* [n] or VG_NO_CLUSTER: to be done later */
   size_t n_cluster;
-  int n_level, level[VG_LEVEL_MAX];  /* binary exponents of the radii */
-  double share[VG_LEVEL_MAX];  /* grid cells of each level to a length */
-  unsigned shift;            /* 64 minus the logarithm of the slots */
-  uint32_t *first, *ball;    /* [slots + 2] into ball, by hash of grid cells */
+  int n_level, level[VG_LEVEL_MAX]; /* binary exponents of the radii */
+  double share[VG_LEVEL_MAX];       /* grid cells of each level to a length */
+  unsigned shift;                   /* 64 minus the logarithm of the slots */
+  uint32_t *first, *ball; /* [slots + 2] into ball, by hash of grid cells */
 };
 
 /** Leave out balls around what is deep in others. */
@@ -218,13 +233,13 @@ uint32_t vg_spot_grid_at(const struct vg_spot_grid *b, const double x[3]);
 /* Cells of one piece for a cluster, as they travel. */
 struct vg_cluster_cells {
   uint32_t cluster;
-  char path[VG_PATH_MAX];    /* of the piece */
+  char path[VG_PATH_MAX]; /* of the piece */
   uint64_t n_point, n_cell;
-  uint64_t *name;            /* [n_point] */
-  double (*x)[3];            /* [n_point] */
-  uint8_t *hold;             /* [n_point] 1: in a ball, but not all its cells
-                                are the cluster's */
-  uint32_t (*cell)[4];       /* [n_cell] */
+  uint64_t *name;      /* [n_point] */
+  double (*x)[3];      /* [n_point] */
+  uint8_t *hold;       /* [n_point] 1: in a ball, but not all its cells
+                          are the cluster's */
+  uint32_t (*cell)[4]; /* [n_cell] */
 };
 
 void vg_cluster_cells_release(struct vg_cluster_cells *b);
@@ -240,7 +255,7 @@ void vg_cluster_cells_get(struct vg_reader *r, struct vg_cluster_cells *b);
  * alone. */
 struct vg_repair_boundary {
   size_t n;
-  uint32_t (*tri)[3];        /* [n] smallest point first, in rising order */
+  uint32_t (*tri)[3]; /* [n] smallest point first, in rising order */
 };
 
 /** Triangles between the points of block [n]; boundary may be NULL. */
@@ -258,16 +273,16 @@ int vg_repair_boundary_has(const struct vg_repair_boundary *r,
 
 /* What became of a cluster. */
 struct vg_repaired {
-  int better;                /* 0: the cells stay as they were */
-  uint64_t n_cell;           /* of the cluster */
-  uint64_t n_bad, n_bad_left;  /* cells below VG_SHAPE_TARGET before, after */
-  double worst, worst_left;  /* as vg_shape */
-  struct vg_piece piece;     /* without path and serial */
+  int better;                 /* 0: the cells stay as they were */
+  uint64_t n_cell;            /* of the cluster */
+  uint64_t n_bad, n_bad_left; /* cells below VG_SHAPE_TARGET before, after */
+  double worst, worst_left;   /* as vg_shape */
+  struct vg_piece piece;      /* without path and serial */
   size_t n_moved;
-  uint64_t *moved;           /* [n_moved] points of others that moved */
-  double (*x)[3];            /* [n_moved] to here */
+  uint64_t *moved; /* [n_moved] points of others that moved */
+  double (*x)[3];  /* [n_moved] to here */
   size_t n_spot, cap_spot;
-  struct vg_spot *spot;      /* [n_spot] around cells that stayed bad */
+  struct vg_spot *spot; /* [n_spot] around cells that stayed bad */
 };
 
 void vg_repaired_release(struct vg_repaired *m);

@@ -47,8 +47,7 @@ static vg_status collect(const struct vg_partition *p, struct vg_comm *comm,
   st = vg_comm_agree(comm, st, err);
   if (st == VG_OK) st = vg_comm_allgather(comm, &mine, all, err);
   for (int r = 0; st == VG_OK && r < p->size; r++)
-    for (size_t at = 0; at < all[r].n && st == VG_OK;
-         at += sizeof *own->span) {
+    for (size_t at = 0; at < all[r].n && st == VG_OK; at += sizeof *own->span) {
       struct vg_span s;
 
       if (p->rank && r != p->rank) break;
@@ -73,8 +72,7 @@ vg_status vg_repair_record(const struct vg_partition *p, struct vg_comm *comm,
     s->start += spans->wall;
     s->end += spans->wall;
     if (s->thread >= spans->n_thread) s->thread = spans->n_thread - 1;
-    if (leaf < first) memcpy(s->after, spans->span[leaf].path,
-                             sizeof s->after);
+    if (leaf < first) memcpy(s->after, spans->span[leaf].path, sizeof s->after);
   }
   spans->wall += vg_clock() - begin;
   vg_spans_sort(spans);

@@ -22,37 +22,37 @@
 
 /* A field is level when fewer than one in so many cells beside interfaces
  * would be swapped: it is one in 50 on a box, one in 8 where sizes vary. */
-enum { LEVEL = 30 };   /* R5 */
+enum { LEVEL = 30 }; /* R5 */
 
 enum { FIND, SMOOTH, ADJACENT, SWAP, N_SPAN };
 
 /* What came of a piece. */
 struct outcome {
   size_t n_halo;
-  struct vg_halo *halo;      /* [n_halo] its cells around others' points */
+  struct vg_halo *halo; /* [n_halo] its cells around others' points */
   size_t n_hit;
-  uint32_t *hit;             /* [n_hit] those with a corner on an interface */
-  uint8_t *moved;            /* [n_point] or NULL: no halos */
-  uint8_t *shared;           /* [n_point] of a zone, or NULL */
+  uint32_t *hit;   /* [n_hit] those with a corner on an interface */
+  uint8_t *moved;  /* [n_point] or NULL: no halos */
+  uint8_t *shared; /* [n_point] of a zone, or NULL */
   struct vg_spots bad;
   size_t n_moved, n_swap;
-  size_t n_cell, n_fair;     /* around its points; below VG_SHAPE_SWAP */
-  struct vg_edit edit;       /* cells swapped */
-  struct vg_span span[N_SPAN];  /* what is done for it, in turn */
+  size_t n_cell, n_fair;       /* around its points; below VG_SHAPE_SWAP */
+  struct vg_edit edit;         /* cells swapped */
+  struct vg_span span[N_SPAN]; /* what is done for it, in turn */
   vg_status st;
 };
 
 struct smoothing {
   struct vg_partition *p;
   const struct vg_owners *owners;
-  int first;                 /* the first time of two */
-  struct outcome *out;       /* [n_piece] */
+  int first;           /* the first time of two */
+  struct outcome *out; /* [n_piece] */
   size_t n_far, cap_far;
-  struct vg_halo *far;       /* [n_far] that came from other ranks */
+  struct vg_halo *far; /* [n_far] that came from other ranks */
   size_t n_halo;
-  struct vg_halo **halo;     /* [n_halo] around points of this rank, by owner
-                                and the path of those who have the cells */
-  size_t *first_halo;        /* [n_piece + 1] halo */
+  struct vg_halo **halo; /* [n_halo] around points of this rank, by owner
+                            and the path of those who have the cells */
+  size_t *first_halo;    /* [n_piece + 1] halo */
 };
 
 static void smoothing_free(struct smoothing *s)
@@ -173,7 +173,7 @@ static vg_status sort_halos(struct smoothing *s, struct vg_error *err)
 static vg_status send_halos(struct smoothing *s, struct vg_comm *comm,
                             struct vg_error *err)
 {
-  struct vg_outbox post = {0};
+  struct vg_outbox post = { 0 };
   struct vg_bytes *from = NULL;
   vg_status st = make_halos(s, &post, err);
 
@@ -196,8 +196,8 @@ static vg_status smooth(struct vg_overlap *f, const struct vg_sizing *sizing,
   f->t.flag = vg_calloc(f->t.n_cell, 1);
   if (!f->t.flag ||
       vg_optimise_points(&f->t, f->n_point, f->point,
-                         f->first ? VG_SHAPE_LEVEL : VG_SHAPE_ADJACENT,
-                         sizing, f->shape, &r, NULL) < 0)
+                         f->first ? VG_SHAPE_LEVEL : VG_SHAPE_ADJACENT, sizing,
+                         f->shape, &r, NULL) < 0)
     return VG_ERR_MEMORY;
   for (size_t i = 0; i < f->n_point; i++) {
     uint32_t v = f->point[i];
@@ -222,8 +222,8 @@ static vg_status list_bad(const struct vg_overlap *f,
     const double *x[4];
 
     out->n_fair += f->shape[c] < VG_SHAPE_SWAP;
-    if (f->kind[c] & VG_OVERLAP_CLAIMED ||
-        f->shape[c] >= VG_SHAPE_TARGET) continue;
+    if (f->kind[c] & VG_OVERLAP_CLAIMED || f->shape[c] >= VG_SHAPE_TARGET)
+      continue;
     for (int i = 0; i < 4; i++) x[i] = f->t.x[v[i]];
     if (vg_spots_add(&out->bad, sizing, x, f->shape[c]) < 0)
       return VG_ERR_MEMORY;
@@ -259,10 +259,11 @@ static vg_status smooth_piece(const struct smoothing *s, size_t k,
                               struct outcome *out)
 {
   const struct vg_piece *q = &s->p->piece[k];
-  struct vg_overlap f = {
-    .q = q, .halo = s->halo + s->first_halo[k],
-    .n_halo = s->first_halo[k + 1] - s->first_halo[k],
-    .self = vg_owners_find(s->owners, VG_POINT_ID(q->serial, 0)) };
+  struct vg_overlap f = { .q = q,
+                          .halo = s->halo + s->first_halo[k],
+                          .n_halo = s->first_halo[k + 1] - s->first_halo[k],
+                          .self = vg_owners_find(s->owners,
+                                                 VG_POINT_ID(q->serial, 0)) };
   vg_status st;
 
   free(out->moved);
@@ -298,7 +299,10 @@ static void smooth_body(void *context, size_t first, size_t end, int worker)
 /* --- back to those who use the points ------------------------------------ */
 
 /* A point of a piece that is another's, and where it is now. */
-struct update { uint32_t piece, vertex; double x[3]; };
+struct update {
+  uint32_t piece, vertex;
+  double x[3];
+};
 
 /* What the owner says of a halo: the points that moved, and the cells that it
  * has others for. */
@@ -307,7 +311,7 @@ static void put_updates(const struct smoothing *s, const struct vg_halo *halo,
 {
   const struct vg_piece *q = &s->p->piece[halo->owner];
   const uint8_t *moved = s->out[halo->owner].moved;
-  uint32_t head[3] = {halo->from, 0, halo->n_gone};
+  uint32_t head[3] = { halo->from, 0, halo->n_gone };
 
   for (size_t i = 0; i < halo->n_known; i++) head[1] += moved[halo->known[i]];
   if (!head[1] && !head[2]) return;
@@ -347,7 +351,7 @@ static vg_status take_updates(struct smoothing *s, const struct vg_bytes *from,
     struct vg_reader in = { .data = from[r].data, .n = from[r].n };
 
     while (in.at < in.n) {
-      uint32_t head[3] = {0}, *cell;
+      uint32_t head[3] = { 0 }, *cell;
       struct update n;
       vg_status st;
 
@@ -390,7 +394,7 @@ static void put_back_body(void *context, size_t first, size_t end, int worker)
 static vg_status send_back(struct smoothing *s, struct vg_comm *comm,
                            vg_status st, struct vg_error *err)
 {
-  struct vg_outbox post = {0};
+  struct vg_outbox post = { 0 };
   struct vg_bytes *from = NULL;
 
   if (st == VG_OK) st = vg_outbox_new(&post, s->p->size, err);
@@ -403,8 +407,8 @@ static vg_status send_back(struct smoothing *s, struct vg_comm *comm,
   vg_bytes_release(from, (size_t)s->p->size);
   for (size_t k = 0; st == VG_OK && k < s->n_halo; k++)
     if (s->halo[k]->rank == (uint32_t)s->p->rank &&
-        drop_cells(s, s->halo[k]->from, s->halo[k]->n_gone,
-                   s->halo[k]->place) < 0)
+        drop_cells(s, s->halo[k]->from, s->halo[k]->n_gone, s->halo[k]->place) <
+          0)
       st = vg_fail_memory(err, "repairs");
   return st;
 }
@@ -432,7 +436,7 @@ static void adjacent_body(void *context, size_t first, size_t end, int worker)
 /* Halos of a rank came in the order in which it has them. */
 static vg_status refresh_far(struct smoothing *s, const struct vg_bytes *from)
 {
-  struct vg_reader in = {0};
+  struct vg_reader in = { 0 };
 
   for (size_t i = 0; i < s->n_far; i++) {
     struct vg_halo *halo = &s->far[i];
@@ -449,7 +453,7 @@ static vg_status refresh_far(struct smoothing *s, const struct vg_bytes *from)
 static vg_status go_between(struct smoothing *s, struct vg_comm *comm,
                             struct vg_error *err)
 {
-  struct vg_outbox post = {0};
+  struct vg_outbox post = { 0 };
   struct vg_bytes *from = NULL;
   vg_status st;
 
@@ -497,7 +501,7 @@ static vg_status once(struct smoothing *s, int first, struct vg_comm *comm,
 static vg_status is_level(const struct smoothing *s, struct vg_comm *comm,
                           int *level, struct vg_error *err)
 {
-  uint64_t n[2] = {0, 0};
+  uint64_t n[2] = { 0, 0 };
   vg_status st;
 
   for (size_t k = 0; k < s->p->n_piece; k++) {

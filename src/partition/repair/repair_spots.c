@@ -12,7 +12,10 @@
 
 /* Grid cells to a length. A ball of a level is smaller than a cell of its
  * grid: in 8 of them at the most. */
-static double share(int level) { return ldexp(0.5, -level); }
+static double share(int level)
+{
+  return ldexp(0.5, -level);
+}
 
 static int level_of(double radius)
 {
@@ -37,8 +40,7 @@ static uint64_t hash(int level, int64_t i, int64_t j, int64_t k)
 /* Slots of the cells of a level's grid that a ball meets: [8]; returns how
  * many. radius: at most that of the level's balls. */
 static int slots(const struct vg_spot_grid *b, const struct vg_spot *s,
-                 int level,
-                 uint64_t *slot)
+                 int level, uint64_t *slot)
 {
   int64_t lo[3], hi[3];
   double m = share(level);
@@ -95,7 +97,8 @@ uint32_t vg_spot_grid_at(const struct vg_spot_grid *b, const double x[3])
   for (int l = 0; l < b->n_level; l++) {
     double m = b->share[l];
     uint64_t s = hash(b->level[l], grid(x[0], m), grid(x[1], m),
-                      grid(x[2], m)) >> b->shift;
+                      grid(x[2], m)) >>
+                 b->shift;
 
     for (uint32_t k = b->first[s]; k < b->first[s + 1]; k++) {
       const struct vg_spot *t = &b->spot[b->ball[k]];
@@ -111,8 +114,8 @@ uint32_t vg_spot_grid_at(const struct vg_spot_grid *b, const double x[3])
 /* --- clusters ------------------------------------------------------------ */
 
 struct forest {
-  uint32_t *up, *size;       /* [n] */
-  uint32_t *near;            /* roots beside a ball */
+  uint32_t *up, *size; /* [n] */
+  uint32_t *near;      /* roots beside a ball */
   size_t n_near, cap_near;
 };
 
@@ -124,7 +127,10 @@ static int overlaps(const struct vg_spot *a, const struct vg_spot *b)
 }
 
 /* Pairs of balls that overlap, the later one first. */
-struct pairs { size_t n, cap; uint64_t *at; };
+struct pairs {
+  size_t n, cap;
+  uint64_t *at;
+};
 
 /* Each ball finds those of its level and of higher ones. */
 static vg_status add_pairs(const struct vg_spot_grid *b, uint32_t i,
@@ -212,7 +218,8 @@ static vg_status join_all(struct vg_spot_grid *b, struct forest *f,
   }
   if (p->n) qsort(p->at, p->n, sizeof *p->at, by_value);
   for (uint32_t i = 0; i < b->n; i++, first = end) {
-    for (end = first; end < p->n && p->at[end] >> 32 == i; end++) {}
+    for (end = first; end < p->n && p->at[end] >> 32 == i; end++) {
+    }
     if (vg_reserve(&f->near, &f->cap_near, end - first + 1, sizeof *f->near))
       return vg_fail_memory(err, "repairs");
     join(b, f, i, end - first, p->at + first, most);
@@ -225,8 +232,8 @@ vg_status vg_spot_grid_new(size_t n, const struct vg_spot *spot, size_t most,
                            struct vg_spot_grid *out, struct vg_error *err)
 {
   struct vg_spot_grid b = { .n = n, .spot = spot };
-  struct forest f = {0};
-  struct pairs p = {0};
+  struct forest f = { 0 };
+  struct pairs p = { 0 };
   vg_status st;
 
   assert((spot || !n) && most > 0);
@@ -261,7 +268,8 @@ static int is_covered(const struct vg_spot_grid *b, uint32_t i)
   for (int l = 0; l < b->n_level; l++) {
     double m = b->share[l];
     uint64_t at = hash(b->level[l], grid(s->at[0], m), grid(s->at[1], m),
-                       grid(s->at[2], m)) >> b->shift;
+                       grid(s->at[2], m)) >>
+                  b->shift;
 
     for (uint32_t k = b->first[at]; k < b->first[at + 1]; k++) {
       const struct vg_spot *t = &b->spot[b->ball[k]];

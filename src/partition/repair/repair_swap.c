@@ -7,15 +7,15 @@
 
 struct patch {
   struct vg_overlap *f;
-  uint8_t *mark;             /* [f.t.n_point] corner of a cell to be swapped */
+  uint8_t *mark; /* [f.t.n_point] corner of a cell to be swapped */
   size_t n;
-  uint32_t *cell;            /* [n] of the field */
-  uint32_t *number;          /* [f.t.n_point] in the patch, VG_NONE */
-  uint32_t *vertex;          /* [t.n_point] and back */
+  uint32_t *cell;   /* [n] of the field */
+  uint32_t *number; /* [f.t.n_point] in the patch, VG_NONE */
+  uint32_t *vertex; /* [t.n_point] and back */
   struct vg_tets t;
-  uint32_t (*old)[4];        /* [n] vertices as they were */
-  float *q;                  /* [t.n_cell] */
-  uint8_t *gone;             /* [f.t.n_cell] */
+  uint32_t (*old)[4]; /* [n] vertices as they were */
+  float *q;           /* [t.n_cell] */
+  uint8_t *gone;      /* [f.t.n_cell] */
 };
 
 static void patch_release(struct patch *p)
@@ -110,7 +110,7 @@ static vg_status make_room(struct patch *p)
 static vg_status link_cells(struct patch *p)
 {
   const struct vg_overlap *f = p->f;
-  double (*x)[3];
+  double(*x)[3];
   size_t n_point = 0;
   vg_status st;
 
@@ -128,8 +128,8 @@ static vg_status link_cells(struct patch *p)
   if (!x) return VG_ERR_MEMORY;
   for (size_t v = 0; v < n_point; v++)
     memcpy(x[v], f->t.x[p->vertex[v]], sizeof *x);
-  st = vg_tets_from_cells(&p->t, n_point, x, p->n,
-                          (const uint32_t (*)[4])p->old, NULL);
+  st = vg_tets_from_cells(&p->t, n_point, x, p->n, (const uint32_t(*)[4])p->old,
+                          NULL);
   if (st < 0) return st;
   for (size_t k = 0; k < p->n; k++) {
     memcpy(p->old[k], p->t.cell[k].v, sizeof *p->old);
@@ -213,7 +213,7 @@ vg_status vg_overlap_swap(struct vg_overlap *f, struct vg_edit *out,
                           size_t *n_swap)
 {
   struct patch p = { .f = f };
-  struct vg_optimise_report r = {0};
+  struct vg_optimise_report r = { 0 };
   vg_status st = choose(&p);
 
   *n_swap = 0;
@@ -257,8 +257,8 @@ vg_status vg_overlap_take(const struct vg_overlap *f, struct vg_edit *out)
         out->name[out->n_point] = f->other[k];
         memcpy(out->x[out->n_point++], f->t.x[v], sizeof *out->x);
       }
-      out->cell[out->n_cell][i] =
-          v < f->n_base ? v : (uint32_t)f->n_base + to[k];
+      out->cell[out->n_cell][i] = v < f->n_base ? v
+                                                : (uint32_t)f->n_base + to[k];
     }
   free(to);
   return VG_OK;

@@ -15,28 +15,33 @@
 #include "base/rendezvous.h"
 #include "partition/solver/solver_parts.h"
 
-struct unit_sum { double weight; uint64_t cells; };
+struct unit_sum {
+  double weight;
+  uint64_t cells;
+};
 
 /* A slice that this rank serves. */
 struct at {
-  uint64_t place;            /* cells of all kinds before it: slices follow each
-                                other in every kind */
+  uint64_t place; /* cells of all kinds before it: slices follow each
+                     other in every kind */
   size_t n_cell[VG_SLICE_KINDS], n_unit;
   uint64_t first;            /* number of its first unit */
   uint32_t *of;              /* [cells] unit, later part */
   struct unit_sum *sum;      /* [n_unit] */
   struct vg_unit_pair *pair; /* [n_pair] units of its own, numbered from 0 */
   size_t n_pair;
-  struct vg_items rim;       /* struct rim_face */
+  struct vg_items rim; /* struct rim_face */
   uint64_t n_stack, n_stack_cell, most_stack;
 };
 
-struct rim_face { uint32_t node[4], unit; };
+struct rim_face {
+  uint32_t node[4], unit;
+};
 
 struct vg_solver_slices {
   const struct vg_slices *s;
   size_t n;
-  struct at *at;             /* [n] */
+  struct at *at; /* [n] */
 };
 
 struct sliced {
@@ -45,9 +50,9 @@ struct sliced {
   struct vg_solver_slices *k;
   int threads;
   size_t cluster;
-  uint64_t n_unit;           /* of all ranks */
-  struct vg_items *across;   /* [threads] struct vg_unit_pair, numbered */
-  int refused;               /* memory, in a rendezvous */
+  uint64_t n_unit;         /* of all ranks */
+  struct vg_items *across; /* [threads] struct vg_unit_pair, numbered */
+  int refused;             /* memory, in a rendezvous */
 };
 
 static void release_lists(struct at *a)
@@ -94,8 +99,8 @@ static vg_status keep_pairs(struct at *a, const struct vg_unit_graph *g,
   for (uint32_t k = 0; k < g->n; k++)
     for (uint64_t i = g->begin[k]; i < g->begin[k + 1]; i++)
       if (g->to[i] > k)
-        a->pair[a->n_pair++] = (struct vg_unit_pair){
-          k, g->to[i], (uint32_t)g->faces[i] };
+        a->pair[a->n_pair++] = (struct vg_unit_pair){ k, g->to[i],
+                                                      (uint32_t)g->faces[i] };
   return VG_OK;
 }
 
@@ -115,7 +120,7 @@ static vg_status keep_rim(struct at *a, const struct vg_slice *s,
       n = vg_half_face_nodes(l, cell << 3 | (uint32_t)i, node);
       f->node[3] = UINT32_MAX;
       f->unit = u->of[cell];
-      for (int k = 0; k < n; k++) {   /* by rising number */
+      for (int k = 0; k < n; k++) { /* by rising number */
         uint32_t v = s->id[node[k]];
         int c = k;
 
@@ -148,8 +153,9 @@ static vg_status keep_sums(struct at *a, struct vg_units *u,
 static struct vg_unit_options unit_options(const struct sliced *w,
                                            const struct vg_slice *s)
 {
-  struct vg_unit_options u = { .is_known = 1, .is_ours = 1,
-                               .cluster = w->cluster, .weight = w->o->weight };
+  struct vg_unit_options u = {
+    .is_known = 1, .is_ours = 1, .cluster = w->cluster, .weight = w->o->weight
+  };
 
   for (int k = 0; k < VG_SLICE_KINDS; k++) {
     uint64_t end = w->k->s->n_layer_cell[k];
@@ -187,7 +193,11 @@ done:
   return st;
 }
 
-struct looking { const struct sliced *w; vg_status *st; struct vg_error *err; };
+struct looking {
+  const struct sliced *w;
+  vg_status *st;
+  struct vg_error *err;
+};
 
 static void look_at_some(void *context, size_t first, size_t end, int worker)
 {
@@ -226,7 +236,9 @@ static vg_status look_at_all(struct sliced *w, struct vg_error *err)
 
 /* --- numbers ------------------------------------------------------------- */
 
-struct counted { uint64_t place, n_unit; };
+struct counted {
+  uint64_t place, n_unit;
+};
 
 static int by_place(const void *a, const void *b)
 {
@@ -265,7 +277,8 @@ static vg_status order_slices(struct sliced *w, const struct vg_bytes *all,
   *out = c;
   *n_out = n;
   if (sum < UINT32_MAX) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "parts for the solver: %llu stacks "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "parts for the solver: %llu stacks "
                  "and cells are beyond 32-bit numbers",
                  (unsigned long long)sum);
 }
@@ -303,30 +316,31 @@ static vg_status number(struct sliced *w, struct vg_error *err)
 
 /* --- pairs across slices ------------------------------------------------- */
 
-static void meet(void *context, const unsigned char *item, size_t n,
-                 int worker)
+static void meet(void *context, const unsigned char *item, size_t n, int worker)
 {
   struct sliced *w = context;
   struct vg_unit_pair *p;
   uint32_t unit[2];
 
-  if (n != 2) return;        /* on the boundary */
+  if (n != 2) return; /* on the boundary */
   for (size_t k = 0; k < 2; k++)
-    memcpy(&unit[k], item + k * sizeof(struct rim_face) +
-                       offsetof(struct rim_face, unit), sizeof *unit);
+    memcpy(&unit[k],
+           item + k * sizeof(struct rim_face) + offsetof(struct rim_face, unit),
+           sizeof *unit);
   p = vg_items_add(&w->across[worker], sizeof *p);
   if (!p) __atomic_store_n(&w->refused, 1, __ATOMIC_RELAXED);
-  else if (unit[0] < unit[1])
-    *p = (struct vg_unit_pair){ unit[0], unit[1], 1 };
-  else
-    *p = (struct vg_unit_pair){ unit[1], unit[0], 1 };
+  else if (unit[0] < unit[1]) *p = (struct vg_unit_pair){ unit[0], unit[1], 1 };
+  else *p = (struct vg_unit_pair){ unit[1], unit[0], 1 };
 }
 
 static vg_status match_rims(struct sliced *w, struct vg_error *err)
 {
-  const struct vg_rendezvous m = {
-    .comm = w->comm, .threads = w->threads, .size = sizeof(struct rim_face),
-    .key = sizeof ((struct rim_face *)0)->node, .group = meet, .context = w };
+  const struct vg_rendezvous m = { .comm = w->comm,
+                                   .threads = w->threads,
+                                   .size = sizeof(struct rim_face),
+                                   .key = sizeof((struct rim_face *)0)->node,
+                                   .group = meet,
+                                   .context = w };
   struct vg_items none = { 0, 0, NULL };
   vg_status st;
 
@@ -364,8 +378,7 @@ static void pack(const struct sliced *w, struct vg_writer *to)
     uint64_t head[3] = { 0, 0, w->across[k].n };
 
     vg_put(to, 3, sizeof *head, head);
-    vg_put(to, w->across[k].n, sizeof(struct vg_unit_pair),
-           w->across[k].data);
+    vg_put(to, w->across[k].n, sizeof(struct vg_unit_pair), w->across[k].data);
     vg_items_release(&w->across[k]);
   }
 }
@@ -439,8 +452,7 @@ static vg_status tally(const struct vg_unit_graph *g,
     vg_tally_cells(t, part[k], sum[k].cells, sum[k].weight);
     for (uint64_t i = g->begin[k]; i < g->begin[k + 1] && !bad; i++)
       if (g->to[i] > k)
-        bad = vg_tally_faces(t, part[k], part[g->to[i]],
-                             (uint64_t)g->faces[i]);
+        bad = vg_tally_faces(t, part[k], part[g->to[i]], (uint64_t)g->faces[i]);
   }
   if (!bad) vg_tally_report(t, r);
   vg_tally_free(t);
@@ -463,8 +475,7 @@ static vg_status part_units(const struct sliced *w, struct collected *c,
   free(c->pair);
   c->pair = NULL;
   r->time_graph = vg_clock() - r->time_graph;
-  if (st >= 0)
-    st = vg_unit_graph_part(&g, weight, w->o->n_part, part, r, err);
+  if (st >= 0) st = vg_unit_graph_part(&g, weight, w->o->n_part, part, r, err);
   if (st >= 0) st = tally(&g, c->sum, part, w->o->n_part, r, err);
   vg_unit_graph_release(&g);
   free(weight);
@@ -493,8 +504,7 @@ static vg_status share_parts(struct sliced *w, struct collected *c,
     told.data = vg_alloc(1, sizeof *r);
     if (!parts.data || !told.data)
       st = vg_fail_memory(err, "the parts of a mesh");
-    else
-      st = part_units(w, c, (uint32_t *)(void *)parts.data, r, err);
+    else st = part_units(w, c, (uint32_t *)(void *)parts.data, r, err);
     told.n = sizeof *r;
     if (told.data) memcpy(told.data, r, sizeof *r);
   }
@@ -579,8 +589,7 @@ static size_t cluster_of(const struct vg_slices *s,
   return vg_unit_cluster(o, n);
 }
 
-vg_status vg_solver_part_slices(struct vg_comm *comm,
-                                const struct vg_slices *s,
+vg_status vg_solver_part_slices(struct vg_comm *comm, const struct vg_slices *s,
                                 const struct vg_solver_options *o,
                                 struct vg_slices *out,
                                 struct vg_solver_slices **keep,
@@ -590,7 +599,9 @@ vg_status vg_solver_part_slices(struct vg_comm *comm,
   assert(o && out && keep && report);
 
   struct vg_solver_report r = { .time_graph = vg_clock() };
-  struct sliced w = { .comm = comm, .o = o, .k = new_slices(s),
+  struct sliced w = { .comm = comm,
+                      .o = o,
+                      .k = new_slices(s),
                       .threads = o->threads > 0 ? o->threads : vg_cores(),
                       .cluster = cluster_of(s, o) };
   struct collected c = { NULL, NULL, 0, 0 };

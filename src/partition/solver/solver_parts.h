@@ -13,25 +13,28 @@
 
 struct vg_units {
   size_t n_unit;
-  uint32_t *of;              /* [n_cell] unit of each cell */
-  double *weight;            /* [n_unit] */
-  unsigned char *alone;      /* [n_unit] 1: no stack; its cells are of the
-                                field */
+  uint32_t *of;         /* [n_cell] unit of each cell */
+  double *weight;       /* [n_unit] */
+  unsigned char *alone; /* [n_unit] 1: no stack; its cells are of the
+                           field */
   uint64_t n_stack, n_stack_cell, most_stack;
   int has_loose;
 };
-#define VG_UNITS_INIT { 0 }
+#define VG_UNITS_INIT                                                          \
+  {                                                                            \
+    0                                                                          \
+  }
 
 void vg_units_release(struct vg_units *u);
 
 /* Which cells stand in layers, by their numbers. */
 struct vg_unit_options {
-  int is_known, is_ours;     /* n_layer tells; and is beyond doubt */
-  uint64_t n_layer[3];       /* cells in layers of each kind: its first ones;
-                                prisms all stand in layers, always */
-  const unsigned char *is_wall;  /* as of vg_solver_layers */
-  size_t cluster;            /* cells of the field to be gathered; 1: none */
-  const double *weight;      /* [VG_SOLVER_KINDS] */
+  int is_known, is_ours;        /* n_layer tells; and is beyond doubt */
+  uint64_t n_layer[3];          /* cells in layers of each kind: its first ones;
+                                   prisms all stand in layers, always */
+  const unsigned char *is_wall; /* as of vg_solver_layers */
+  size_t cluster;               /* cells of the field to be gathered; 1: none */
+  const double *weight;         /* [VG_SOLVER_KINDS] */
 };
 
 /** Units in the order of their first cells. */
@@ -45,13 +48,15 @@ size_t vg_unit_cluster(const struct vg_solver_options *o, uint64_t n_field);
 /* --- unit_graph.c: the graph of the units, from pairs that share a face --- */
 
 /* A pair of units with n common faces; a < b. */
-struct vg_unit_pair { uint32_t a, b, n; };
+struct vg_unit_pair {
+  uint32_t a, b, n;
+};
 
 struct vg_unit_graph {
   size_t n;
-  uint64_t *begin;           /* [n + 1] */
-  uint32_t *to;              /* [begin[n]] rising in each row */
-  int32_t *faces;            /* [begin[n]] */
+  uint64_t *begin; /* [n + 1] */
+  uint32_t *to;    /* [begin[n]] rising in each row */
+  int32_t *faces;  /* [begin[n]] */
 };
 
 void vg_unit_graph_release(struct vg_unit_graph *g);

@@ -9,7 +9,7 @@
 
 /* Most over mean weight that METIS is asked for: its own default for parts of
  * which there are many. */
-static const double imbalance = 1.03;   /* P2 */
+static const double imbalance = 1.03; /* P2 */
 
 void vg_unit_graph_release(struct vg_unit_graph *g)
 {
@@ -131,7 +131,10 @@ vg_status vg_unit_graph_of_links(const struct vg_cell_links *l,
 
 /* --- from pairs ---------------------------------------------------------- */
 
-struct entry { uint32_t to; int32_t faces; };
+struct entry {
+  uint32_t to;
+  int32_t faces;
+};
 
 static int by_unit(const void *a, const void *b)
 {
@@ -215,7 +218,8 @@ static vg_status fill_empty(size_t n, uint64_t n_part, uint32_t *part,
     size_t k = 0;
 
     if (have[p]) continue;
-    for (uint32_t q = 1; q < n_part; q++) if (have[q] > have[most]) most = q;
+    for (uint32_t q = 1; q < n_part; q++)
+      if (have[q] > have[most]) most = q;
     while (part[k] != most) k++;
     part[k] = p;
     have[most]--;
@@ -239,9 +243,11 @@ vg_status vg_unit_graph_part(const struct vg_unit_graph *g,
   vg_status st;
 
   if (n_part < 1 || n_part > g->n || n_part > INT32_MAX)
-    return vg_fail(err, VG_ERR_INPUT, "%llu parts for the solver, but the mesh "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%llu parts for the solver, but the mesh "
                    "has %zu stacks and cells to be shared out; ask for 1 to "
-                   "%zu parts", (unsigned long long)n_part, g->n,
+                   "%zu parts",
+                   (unsigned long long)n_part, g->n,
                    g->n < INT32_MAX ? g->n : (size_t)INT32_MAX);
   st = vg_graph_part(&graph, &o, part, err);
   if (st >= 0) st = fill_empty(g->n, n_part, part, r, err);

@@ -30,8 +30,9 @@ size_t vg_unit_cluster(const struct vg_solver_options *o, uint64_t n_field)
 {
   assert(o);
 
-  uint64_t n = o->cluster_above ? (n_field + o->cluster_above - 1) /
-                                    o->cluster_above : 1;
+  uint64_t n = o->cluster_above
+               ? (n_field + o->cluster_above - 1) / o->cluster_above
+               : 1;
 
   return n < 1 ? 1 : n > MOST_CLUSTER ? MOST_CLUSTER : (size_t)n;
 }
@@ -39,8 +40,8 @@ size_t vg_unit_cluster(const struct vg_solver_options *o, uint64_t n_field)
 struct work {
   const struct vg_cell_links *l;
   const struct vg_unit_options *o;
-  uint32_t *up;              /* [n_cell] stacks, as of base/union_find.h */
-  unsigned char *stands;     /* [n_cell] bits: in a stack or alone in a layer */
+  uint32_t *up;          /* [n_cell] stacks, as of base/union_find.h */
+  unsigned char *stands; /* [n_cell] bits: in a stack or alone in a layer */
   struct vg_units *u;
 };
 
@@ -48,8 +49,10 @@ enum kind { TET, PYR, PRI, HEX };
 
 static enum kind kind_of(const struct vg_cell_links *l, uint32_t cell)
 {
-  return cell < l->end_tet ? TET : cell < l->end_pyr ? PYR
-         : cell < l->end_pri ? PRI : HEX;
+  return cell < l->end_tet ? TET
+       : cell < l->end_pyr ? PYR
+       : cell < l->end_pri ? PRI
+                           : HEX;
 }
 
 /* --- stacks -------------------------------------------------------------- */
@@ -83,9 +86,9 @@ static int may_carry(const struct vg_cell_links *l, uint32_t code)
 
 enum footing { FIRM, ASIDE, NOWHERE };
 
-/* A cell onto what carries it. FIRM: a wall, or a cell; a tetrahedron on the one
- * before it, as they follow in a stack. ASIDE: on the flank of another stack, as
- * those between the columns of a fan begin. NOWHERE: where no cell of
+/* A cell onto what carries it. FIRM: a wall, or a cell; a tetrahedron on the
+ * one before it, as they follow in a stack. ASIDE: on the flank of another
+ * stack, as those between the columns of a fan begin. NOWHERE: where no cell of
  * Vanguard's layers stands. */
 static enum footing stand(struct work *w, uint32_t cell)
 {
@@ -94,7 +97,8 @@ static enum footing stand(struct work *w, uint32_t cell)
   if (below == NONE) return FIRM;
   if (!is_layer(w, below >> 3)) return NOWHERE;
   if (kind_of(w->l, cell) == TET && kind_of(w->l, below >> 3) == TET &&
-      (below >> 3) + 1 != cell) return ASIDE;
+      (below >> 3) + 1 != cell)
+    return ASIDE;
   if (may_carry(w->l, below)) vg_union(w->up, cell, below >> 3);
   return FIRM;
 }
@@ -109,8 +113,8 @@ static void join_prisms(struct work *w)
       uint32_t mate = vg_mate(l, cell << 3 | face);
 
       w->stands[cell] = 1;
-      if (mate != NONE && mate >> 3 < cell &&
-          kind_of(l, mate >> 3) == PRI && (mate & 7) >= 3)
+      if (mate != NONE && mate >> 3 < cell && kind_of(l, mate >> 3) == PRI &&
+          (mate & 7) >= 3)
         vg_union(w->up, cell, mate >> 3);
     }
 }
@@ -161,8 +165,7 @@ static void join_hexahedra(struct work *w)
 
   if (!w->o->is_wall || !w->l->boundary) return;
   for (size_t i = 0; i < m->n_quad; i++)
-    if (w->o->is_wall[m->quad_patch[i]])
-      climb(w, w->l->boundary[m->n_tri + i]);
+    if (w->o->is_wall[m->quad_patch[i]]) climb(w, w->l->boundary[m->n_tri + i]);
 }
 
 static void join_all(struct work *w)
@@ -228,7 +231,7 @@ static void number(struct work *w)
 
   for (uint32_t cell = 0; cell < w->l->n_cell; cell++) {
     if (u->of[cell] != NONE) continue;
-    if (w->stands[cell]) {   /* roots are the lowest cells of their stacks */
+    if (w->stands[cell]) { /* roots are the lowest cells of their stacks */
       uint32_t root = vg_root_of(w->up, cell);
 
       u->of[cell] = root == cell ? next++ : u->of[root];

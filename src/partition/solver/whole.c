@@ -10,21 +10,23 @@
 /* Where cells of the field came in clusters, borders between parts follow the
  * clusters' ragged ones; so many rounds of moving single cells straighten
  * them. */
-#define ROUNDS 4   /* P3 */
+#define ROUNDS 4 /* P3 */
 
 struct smoothing {
   const struct vg_cell_links *l;
   const struct vg_units *u;
-  const double *weight;        /* of kinds */
-  double *load;                /* [n_part] */
-  double most;                 /* that a part may have */
-  uint32_t *part;              /* [n_cell] */
+  const double *weight; /* of kinds */
+  double *load;         /* [n_part] */
+  double most;          /* that a part may have */
+  uint32_t *part;       /* [n_cell] */
 };
 
 static int kind_of(const struct vg_cell_links *l, uint32_t cell)
 {
-  return cell < l->end_tet ? 0 : cell < l->end_pyr ? 1
-         : cell < l->end_pri ? 2 : 3;
+  return cell < l->end_tet ? 0
+       : cell < l->end_pyr ? 1
+       : cell < l->end_pri ? 2
+                           : 3;
 }
 
 /* The part that most of a cell's neighbours are in; its own for want of a
@@ -43,7 +45,7 @@ static uint32_t better(const struct smoothing *s, uint32_t cell)
     if (mate == VG_NO_CELL) continue;
     p = s->part[mate >> 3];
     while (k < n && part[k] != p) k++;
-    if (k == 6) continue;      /* a hexahedron among seven parts */
+    if (k == 6) continue; /* a hexahedron among seven parts */
     if (k == n) {
       part[n] = p;
       faces[n++] = 0;
@@ -52,8 +54,8 @@ static uint32_t better(const struct smoothing *s, uint32_t cell)
   }
   most = faces[0];
   for (int k = 1; k < n; k++)
-    if (faces[k] > most || (faces[k] == most && best != own &&
-                            part[k] < best)) {
+    if (faces[k] > most ||
+        (faces[k] == most && best != own && part[k] < best)) {
       most = faces[k];
       best = part[k];
     }
@@ -97,9 +99,8 @@ static vg_status straighten(const struct vg_cell_links *l,
 }
 
 static vg_status tally(const struct vg_cell_links *l,
-                       const struct vg_solver_options *o,
-                       const uint32_t *part, struct vg_solver_report *r,
-                       struct vg_error *err)
+                       const struct vg_solver_options *o, const uint32_t *part,
+                       struct vg_solver_report *r, struct vg_error *err)
 {
   struct vg_tally *t = vg_tally_new(o->n_part);
   int bad = !t;
@@ -174,8 +175,7 @@ vg_status vg_solver_part(const struct vg_mesh *m,
   VG_TRY(vg_cell_links_build(&l, m, 0, name, err));
   VG_TRY(vg_units_make(&l, &uo, &u, err));
   VG_TRY(part_units(&l, &u, o, part, &r, err));
-  if (uo.cluster > 1)
-    VG_TRY(straighten(&l, &u, o, part, err));
+  if (uo.cluster > 1) VG_TRY(straighten(&l, &u, o, part, err));
   VG_TRY(tally(&l, o, part, &r, err));
   r.n_stack = u.n_stack;
   r.n_stack_cell = u.n_stack_cell;

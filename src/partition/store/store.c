@@ -45,7 +45,8 @@ static vg_status enter(struct vg_store *s, int resume, struct vg_error *err)
   int error = open_directory(s);
 
   if (error == ENOENT && resume)
-    return vg_fail(err, VG_ERR_INPUT, "%s: there is no such run directory to "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: there is no such run directory to "
                    "resume from; check its name, or start without resuming",
                    s->dir);
   if (error == ENOENT) {
@@ -53,20 +54,23 @@ static vg_status enter(struct vg_store *s, int resume, struct vg_error *err)
     if (!error) error = open_directory(s);
   }
   if (!error) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "%s: cannot be used as run directory: %s; "
-                 "choose another one", s->dir,
-                 strerror_r(error, text, sizeof text));
+  return vg_fail(err, VG_ERR_IO,
+                 "%s: cannot be used as run directory: %s; "
+                 "choose another one",
+                 s->dir, strerror_r(error, text, sizeof text));
 }
 
 static vg_status no_run(const struct vg_store *s, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_INPUT, "%s: holds no run that could be resumed; "
-                 "check its name, or start without resuming", s->dir);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: holds no run that could be resumed; "
+                 "check its name, or start without resuming",
+                 s->dir);
 }
 
 vg_status vg_store_has_run(const char *dir, struct vg_error *err)
 {
-  struct vg_store s = {.dir = (char *)dir};
+  struct vg_store s = { .dir = (char *)dir };
   struct vg_store_run run;
   vg_status st = enter(&s, 1, err);
 
@@ -87,30 +91,32 @@ static vg_status compare(const struct vg_store *s,
   char differ[400] = "";
 
   if (o->resume && same) return VG_OK;
-  if (!same)
-    vg_store_compare_settings(s, o->settings, differ, sizeof differ);
+  if (!same) vg_store_compare_settings(s, o->settings, differ, sizeof differ);
   if (o->resume)
-    return vg_fail(err, VG_ERR_INPUT, "%s: cannot be resumed: input or "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: cannot be resumed: input or "
                    "options have changed since; its run was: %s; this one "
                    "is: %s; %srestore what changed, or start without resuming "
-                   "in another directory", s->dir, there->what, ours->what,
-                   differ);
-  if (!n_record) return VG_OK;     /* nothing would be lost */
+                   "in another directory",
+                   s->dir, there->what, ours->what, differ);
+  if (!n_record) return VG_OK; /* nothing would be lost */
   if (same)
-    return vg_fail(err, VG_ERR_INPUT, "%s: holds %llu finished tasks of this "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: holds %llu finished tasks of this "
                    "very run (%s); resume it, remove the directory to start "
-                   "anew, or choose another one", s->dir,
-                   (unsigned long long)n_record, there->what);
-  return vg_fail(err, VG_ERR_INPUT, "%s: holds %llu finished tasks of another "
+                   "anew, or choose another one",
+                   s->dir, (unsigned long long)n_record, there->what);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: holds %llu finished tasks of another "
                  "run; it was: %s; this one is: %s; %schoose another "
-                 "directory, or remove this one", s->dir,
-                 (unsigned long long)n_record, there->what, ours->what,
+                 "directory, or remove this one",
+                 s->dir, (unsigned long long)n_record, there->what, ours->what,
                  differ);
 }
 
 static struct vg_store_run run_of(const struct vg_store_options *o)
 {
-  struct vg_store_run run = {.job = o->job};
+  struct vg_store_run run = { .job = o->job };
 
   snprintf(run.what, sizeof run.what, "%s", o->what ? o->what : "");
   for (char *c = run.what; *c; c++)
@@ -131,9 +137,11 @@ static vg_status claim(struct vg_store *s, const struct vg_store_options *o,
     st = compare(s, o, &there, &ours, tally->n, err);
     if (st < 0) return st;
   } else if (tally->n) {
-    return vg_fail(err, VG_ERR_INPUT, "%s: holds %llu finished tasks without "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: holds %llu finished tasks without "
                    "a note of whose they are; remove the directory or choose "
-                   "another one", s->dir, (unsigned long long)tally->n);
+                   "another one",
+                   s->dir, (unsigned long long)tally->n);
   }
   st = vg_store_write_settings(s, o->settings, err);
   return st < 0 ? st : vg_store_write_run(s, &ours, err);
@@ -142,7 +150,7 @@ static vg_status claim(struct vg_store *s, const struct vg_store_options *o,
 static vg_status take(struct vg_store *s, const struct vg_store_options *o,
                       uint64_t *bytes, struct vg_error *err)
 {
-  struct vg_store_tally tally = {0, 0};
+  struct vg_store_tally tally = { 0, 0 };
   struct vg_store_run there;
   vg_status st = enter(s, o->resume, err);
 
@@ -174,10 +182,13 @@ static vg_status follow(struct vg_store *s, const struct vg_store_options *o,
   struct vg_store_run there;
 
   if (!open_directory(s) && vg_store_read_run(s, &there, NULL) == VG_OK &&
-      !memcmp(&there.job, &o->job, sizeof o->job)) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "%s: this rank does not see the run "
+      !memcmp(&there.job, &o->job, sizeof o->job))
+    return VG_OK;
+  return vg_fail(err, VG_ERR_IO,
+                 "%s: this rank does not see the run "
                  "directory that rank 0 made; choose one on a file system "
-                 "that all nodes share", s->dir);
+                 "that all nodes share",
+                 s->dir);
 }
 
 /* What is there already counts as well. */
@@ -189,8 +200,9 @@ static vg_status divide(struct vg_store *s, uint64_t there,
   if (st < 0) return st;
   s->share = UINT64_MAX;
   if (s->limit)
-    s->share = there < s->limit ? (s->limit - there) /
-                                  (uint64_t)vg_comm_size(s->comm) : 0;
+    s->share = there < s->limit
+               ? (s->limit - there) / (uint64_t)vg_comm_size(s->comm)
+               : 0;
   return VG_OK;
 }
 
@@ -259,7 +271,7 @@ void vg_store_close(struct vg_store *s, int remove)
     vg_store_walk(s->fd, 1);
     vg_store_remove_run(s);
     vg_store_unlock(s, 1);
-    rmdir(s->dir);           /* refused while something else is in it */
+    rmdir(s->dir); /* refused while something else is in it */
   }
   release(s);
 }

@@ -18,7 +18,9 @@
 /* XXH3, 128 bits. Equal digests are taken as equal input: among 10^9 tasks the
  * chance of an accident is below 10^-20. It is no defence against records that
  * somebody forges. */
-struct vg_digest { uint64_t word[2]; };
+struct vg_digest {
+  uint64_t word[2];
+};
 
 /** Digest of n bytes, continuing from `seed` (zeroed at the start). Where a
  * chain is cut into calls counts: "ab" "c" differs from "a" "bc". */
@@ -32,20 +34,20 @@ int vg_digest_file(int fd, struct vg_digest *d, uint64_t *bytes);
 struct vg_store;
 
 struct vg_store_options {
-  const char *dir;           /* the run directory, made when absent */
-  struct vg_digest job;      /* of input and options of the whole run */
-  const char *what;          /* a line that says what the run is, for people:
-                                kept in the directory, shown in refusals; cut
-                                after 199 bytes */
-  const char *settings;      /* lines of name=value, kept in the directory, so
-                                that a refusal can say what differs; may be
-                                NULL */
-  int resume;                /* 1: records must be there and fit; 0: the
-                                directory must hold none, not even of the same
-                                job (they might be there by mistake) */
-  uint64_t limit;            /* bytes to keep at most, over all ranks, with
-                                what is there; tasks beyond it are not kept;
-                                each rank has an equal share; 0: no limit */
+  const char *dir;      /* the run directory, made when absent */
+  struct vg_digest job; /* of input and options of the whole run */
+  const char *what;     /* a line that says what the run is, for people:
+                           kept in the directory, shown in refusals; cut
+                           after 199 bytes */
+  const char *settings; /* lines of name=value, kept in the directory, so
+                           that a refusal can say what differs; may be
+                           NULL */
+  int resume;           /* 1: records must be there and fit; 0: the
+                           directory must hold none, not even of the same
+                           job (they might be there by mistake) */
+  uint64_t limit;       /* bytes to keep at most, over all ranks, with
+                           what is there; tasks beyond it are not kept;
+                           each rank has an equal share; 0: no limit */
 };
 
 /** Open or make the run directory. Collective; rank 0 decides.
@@ -75,8 +77,8 @@ void vg_store_keep(struct vg_store *s, struct vg_digest key, size_t n,
                    const void *data);
 
 struct vg_store_report {
-  uint64_t n_found, n_kept, n_damaged, bytes_kept;  /* of this rank */
-  char stopped[256];         /* why keeping stopped; "" if it did not */
+  uint64_t n_found, n_kept, n_damaged, bytes_kept; /* of this rank */
+  char stopped[256]; /* why keeping stopped; "" if it did not */
 };
 void vg_store_state(const struct vg_store *s, struct vg_store_report *r);
 

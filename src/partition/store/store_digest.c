@@ -14,7 +14,7 @@ static struct vg_digest hash(const void *data, size_t n)
 {
   XXH128_hash_t h = XXH3_128bits(data, n);
 
-  return (struct vg_digest){{h.high64, h.low64}};
+  return (struct vg_digest){ { h.high64, h.low64 } };
 }
 
 enum { PART = 1 << 20 };
@@ -35,7 +35,7 @@ static int digest_parts(int fd, XXH3_state_t *state, char *part,
     *bytes += (uint64_t)n;
   }
   h = XXH3_128bits_digest(state);
-  *d = (struct vg_digest){{h.high64, h.low64}};
+  *d = (struct vg_digest){ { h.high64, h.low64 } };
   return 0;
 }
 
@@ -55,10 +55,9 @@ int vg_digest_file(int fd, struct vg_digest *d, uint64_t *bytes)
 
 /* XXH3 takes seeds of 64 bits only, so that a chain through them would come
  * down to 64; and its state for streams would show in the interface. */
-struct vg_digest vg_digest_of(struct vg_digest seed, size_t n,
-                              const void *data)
+struct vg_digest vg_digest_of(struct vg_digest seed, size_t n, const void *data)
 {
-  struct vg_digest both[2] = {seed, hash(data, n)};
+  struct vg_digest both[2] = { seed, hash(data, n) };
 
   assert(data || !n);
   return hash(both, sizeof both);
@@ -73,7 +72,7 @@ void vg_digest_text(struct vg_digest d, char text[VG_DIGEST_TEXT])
 
 int vg_digest_parse(const char *text, struct vg_digest *d)
 {
-  struct vg_digest v = {{0, 0}};
+  struct vg_digest v = { { 0, 0 } };
 
   for (int k = 0; k < 32; k++) {
     char c = text[k];

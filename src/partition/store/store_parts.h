@@ -10,22 +10,22 @@
 #include "partition/store/store.h"
 
 #define VG_STORE_RECORDS "records"
-#define VG_STORE_NAME 96             /* room for a name and its ".part" */
-#define VG_DIGEST_TEXT 33            /* a digest as text, with its end */
+#define VG_STORE_NAME 96  /* room for a name and its ".part" */
+#define VG_DIGEST_TEXT 33 /* a digest as text, with its end */
 
 struct vg_store {
   struct vg_comm *comm;
-  char *dir;                         /* for messages */
-  int fd;                            /* the directory */
-  int lock;                          /* of rank 0; -1: none */
-  int made, fresh;                   /* 1: the directory, the run in it was
-                                        not there before */
-  uint64_t limit;                    /* as asked for */
-  uint64_t share;                    /* bytes that this rank may keep */
-  pthread_mutex_t mutex;             /* for all below */
-  uint64_t used;                     /* of the share, with what is being
-                                        written */
-  uint64_t n_part;                   /* temporary names so far */
+  char *dir;             /* for messages */
+  int fd;                /* the directory */
+  int lock;              /* of rank 0; -1: none */
+  int made, fresh;       /* 1: the directory, the run in it was
+                            not there before */
+  uint64_t limit;        /* as asked for */
+  uint64_t share;        /* bytes that this rank may keep */
+  pthread_mutex_t mutex; /* for all below */
+  uint64_t used;         /* of the share, with what is being
+                            written */
+  uint64_t n_part;       /* temporary names so far */
   struct vg_store_report report;
 };
 
@@ -41,14 +41,19 @@ int vg_store_put(int fd, const void *data, size_t n);
 
 /** Go through the records: count them, or remove them and their folders.
  * What an interrupted write left is removed in either case. */
-struct vg_store_tally { uint64_t n, bytes; };
+struct vg_store_tally {
+  uint64_t n, bytes;
+};
 struct vg_store_tally vg_store_walk(int dir, int remove);
 
 /** run.txt: whose records these are. VG_BLOCKED: there is none. `what` is cut
  * to fit. */
-struct vg_store_run { struct vg_digest job; char what[200]; };
-vg_status vg_store_read_run(const struct vg_store *s,
-                            struct vg_store_run *run, struct vg_error *err);
+struct vg_store_run {
+  struct vg_digest job;
+  char what[200];
+};
+vg_status vg_store_read_run(const struct vg_store *s, struct vg_store_run *run,
+                            struct vg_error *err);
 vg_status vg_store_write_run(const struct vg_store *s,
                              const struct vg_store_run *run,
                              struct vg_error *err);

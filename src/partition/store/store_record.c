@@ -16,17 +16,16 @@
  * of the machine leaves undone shows in `check`. */
 struct header {
   char magic[8];
-  uint64_t n;                /* bytes that follow */
+  uint64_t n; /* bytes that follow */
   struct vg_digest key;
-  struct vg_digest check;    /* of all before it and of what follows */
+  struct vg_digest check; /* of all before it and of what follows */
 };
 #define MAGIC "VGREC\r\n\001"
 
-static struct header header_of(struct vg_digest key, size_t n,
-                               const void *data)
+static struct header header_of(struct vg_digest key, size_t n, const void *data)
 {
-  struct header h = {.n = n, .key = key};
-  struct vg_digest start = {{0, 0}};
+  struct header h = { .n = n, .key = key };
+  struct vg_digest start = { { 0, 0 } };
 
   memcpy(h.magic, MAGIC, sizeof h.magic);
   start = vg_digest_of(start, offsetof(struct header, check), &h);
@@ -52,15 +51,17 @@ static int read_record(int fd, struct vg_digest key, struct vg_bytes *out)
   unsigned char *data;
 
   if (fstat(fd, &info) || !S_ISREG(info.st_mode) ||
-      info.st_size < (off_t)sizeof h) return 0;
+      info.st_size < (off_t)sizeof h)
+    return 0;
   if (vg_store_get(fd, &h, sizeof h) ||
-      h.n != (uint64_t)info.st_size - sizeof h) return 0;
+      h.n != (uint64_t)info.st_size - sizeof h)
+    return 0;
   data = vg_alloc(h.n, 1);
   if (!data) return -1;
   if (!vg_store_get(fd, data, h.n)) {
     expected = header_of(key, h.n, data);
     if (!memcmp(&h, &expected, sizeof h)) {
-      *out = (struct vg_bytes){h.n, data};
+      *out = (struct vg_bytes){ h.n, data };
       return 1;
     }
   }
@@ -83,8 +84,7 @@ vg_status vg_store_find(struct vg_store *s, struct vg_digest key,
     close(fd);
     if (!found) unlinkat(s->fd, name, 0);
   }
-  if (found < 0)
-    return vg_fail_memory(err, "the record of a task");
+  if (found < 0) return vg_fail_memory(err, "the record of a task");
   pthread_mutex_lock(&s->mutex);
   if (found) s->report.n_found++;
   else s->report.n_damaged++;
@@ -174,8 +174,8 @@ void vg_store_keep(struct vg_store *s, struct vg_digest key, size_t n,
   if (!reserve(s, size, &number)) return;
   h = header_of(key, n, data);
   name_of(key, name);
-  snprintf(part, sizeof part, "%s.%d.%llu.part", name,
-           vg_comm_rank(s->comm), (unsigned long long)number);
+  snprintf(part, sizeof part, "%s.%d.%llu.part", name, vg_comm_rank(s->comm),
+           (unsigned long long)number);
   account(s, size, write_record(s->fd, part, name, &h, data));
 }
 
@@ -204,7 +204,7 @@ static void walk_folder(int folder, int remove, struct vg_store_tally *t)
     struct stat info;
     size_t length = strlen(e->d_name);
 
-    if (!vg_digest_parse(e->d_name, &key)) continue;  /* not ours */
+    if (!vg_digest_parse(e->d_name, &key)) continue; /* not ours */
     if (length > 32 && strcmp(e->d_name + length - 5, ".part")) continue;
     if (remove || length > 32) {
       unlinkat(folder, e->d_name, 0);
@@ -218,7 +218,7 @@ static void walk_folder(int folder, int remove, struct vg_store_tally *t)
 
 struct vg_store_tally vg_store_walk(int dir, int remove)
 {
-  struct vg_store_tally t = {0, 0};
+  struct vg_store_tally t = { 0, 0 };
   char name[sizeof VG_STORE_RECORDS + 3];
 
   for (unsigned k = 0; k < 256; k++) {

@@ -48,9 +48,10 @@ static vg_status cannot_write(const struct vg_store *s, int error,
 {
   char text[64];
 
-  return vg_fail(err, VG_ERR_IO, "%s: the run directory cannot be written: "
-                 "%s; choose another one", s->dir,
-                 strerror_r(error, text, sizeof text));
+  return vg_fail(err, VG_ERR_IO,
+                 "%s: the run directory cannot be written: "
+                 "%s; choose another one",
+                 s->dir, strerror_r(error, text, sizeof text));
 }
 
 /* --- run.txt ------------------------------------------------------------- */
@@ -84,8 +85,8 @@ static int parse_run(const char *text, struct vg_store_run *run)
   return 1;
 }
 
-vg_status vg_store_read_run(const struct vg_store *s,
-                            struct vg_store_run *run, struct vg_error *err)
+vg_status vg_store_read_run(const struct vg_store *s, struct vg_store_run *run,
+                            struct vg_error *err)
 {
   int fd = openat(s->fd, RUN, O_RDONLY | O_CLOEXEC), error = errno;
   char text[512], reason[64];
@@ -96,15 +97,18 @@ vg_status vg_store_read_run(const struct vg_store *s,
   if (n < 0) {
     if (fd >= 0) error = errno;
     if (fd >= 0) close(fd);
-    return vg_fail(err, VG_ERR_IO, "%s/" RUN ": cannot be read: %s; mend "
-                   "that, or choose another run directory", s->dir,
-                   strerror_r(error, reason, sizeof reason));
+    return vg_fail(err, VG_ERR_IO,
+                   "%s/" RUN ": cannot be read: %s; mend "
+                   "that, or choose another run directory",
+                   s->dir, strerror_r(error, reason, sizeof reason));
   }
   close(fd);
   if (parse_run(text, run)) return VG_OK;
-  return vg_fail(err, VG_ERR_FORMAT, "%s/" RUN ": is damaged, or was not "
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s/" RUN ": is damaged, or was not "
                  "written by this program; remove the directory and start "
-                 "anew, or choose another one", s->dir);
+                 "anew, or choose another one",
+                 s->dir);
 }
 
 vg_status vg_store_write_run(const struct vg_store *s,
@@ -143,7 +147,8 @@ static vg_status under_way(const struct vg_store *s, int fd,
   if (read_text(fd, text, sizeof text) <= 0)
     strcpy(text, "of an unknown process");
   text[strcspn(text, "\n")] = 0;
-  return vg_fail(err, VG_ERR_INPUT, "%s: a run is under way in this "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: a run is under way in this "
                  "directory (%s); wait for its end or choose another "
                  "directory (if that host is no more, remove %s/" LOCK ")",
                  s->dir, text, s->dir);

@@ -26,9 +26,10 @@ vg_status vg_store_write_settings(const struct vg_store *s, const char *text,
   if (!error && text) error = vg_store_put(fd, text, strlen(text));
   if (fd >= 0 && close(fd) && !error && errno != EINTR) error = errno;
   if (!error) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "%s: the run directory cannot be written: "
-                 "%s; choose another one", s->dir,
-                 strerror_r(error, reason, sizeof reason));
+  return vg_fail(err, VG_ERR_IO,
+                 "%s: the run directory cannot be written: "
+                 "%s; choose another one",
+                 s->dir, strerror_r(error, reason, sizeof reason));
 }
 
 void vg_store_remove_settings(const struct vg_store *s)
@@ -68,10 +69,14 @@ static const char *value_in(const char *text, const char *line, size_t name,
   return NULL;
 }
 
-struct list { char *at; size_t size; int more; };
+struct list {
+  char *at;
+  size_t size;
+  int more;
+};
 
-static void add(struct list *to, size_t n_name, const char *name,
-                size_t n_was, const char *was, size_t n_is, const char *is)
+static void add(struct list *to, size_t n_name, const char *name, size_t n_was,
+                const char *was, size_t n_is, const char *is)
 {
   enum { SHOWN = 60 };
   int n;
@@ -80,8 +85,8 @@ static void add(struct list *to, size_t n_name, const char *name,
     to->more++;
     return;
   }
-  n = snprintf(to->at, to->size, "%.*s was %.*s, is %.*s; ", (int)n_name,
-               name, n_was < SHOWN ? (int)n_was : SHOWN, was,
+  n = snprintf(to->at, to->size, "%.*s was %.*s, is %.*s; ", (int)n_name, name,
+               n_was < SHOWN ? (int)n_was : SHOWN, was,
                n_is < SHOWN ? (int)n_is : SHOWN, is);
   if (n < 0 || (size_t)n >= to->size) {
     *to->at = 0;
@@ -101,14 +106,14 @@ void vg_store_compare_settings(const struct vg_store *s, const char *ours,
   char *there = read_settings(s);
 
   *out = 0;
-  for (const char *line = ours; there && line && *line; ) {
+  for (const char *line = ours; there && line && *line;) {
     size_t n = strcspn(line, "\n"), name = strcspn(line, "=\n"), n_was = 0;
     const char *was = value_in(there, line, name, &n_was);
 
     if (name < n && !was)
       add(&to, name, line, 9, "not known", n - name - 1, line + name + 1);
-    else if (name < n && (n_was != n - name - 1 ||
-                          strncmp(was, line + name + 1, n_was)))
+    else if (name < n &&
+             (n_was != n - name - 1 || strncmp(was, line + name + 1, n_was)))
       add(&to, name, line, n_was, was, n - name - 1, line + name + 1);
     line += n + (line[n] == '\n');
   }

@@ -20,7 +20,7 @@ vg_status vg_make_folder(const char *path, struct vg_error *err)
   char *part = strdup(path);
   vg_status st = part ? VG_OK : vg_fail_memory(err, "a path");
 
-  for (char *end = part; st >= 0 && *end; ) {
+  for (char *end = part; st >= 0 && *end;) {
     char kept;
 
     while (*end == '/') end++;

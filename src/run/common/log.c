@@ -25,8 +25,10 @@ static int is_foreign(const char *path)
 vg_status vg_log_open(const char *path, struct vg_error *err)
 {
   if (is_foreign(path))
-    return vg_fail(err, VG_ERR_INPUT, "%s: this file is there and is no log; "
-                   "give --log another name", path);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: this file is there and is no log; "
+                   "give --log another name",
+                   path);
   log_path = strdup(path);
   if (!log_path) return vg_fail_memory(err, "a path");
   log_file = fopen(path, "we");

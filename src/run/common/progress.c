@@ -24,7 +24,7 @@
 #define SAME_WISH_MS 1000
 
 static volatile sig_atomic_t interrupted, ends_at_once, shows_line, posted,
-                             is_urgent;
+  is_urgent;
 static atomic_llong interrupted_ms;
 
 /* In a signal's handler: only what is safe there. */
@@ -53,7 +53,7 @@ static long long now_ms(void)
 /* Held while the outcome is put into its place, and while the process ends. */
 static pthread_mutex_t ending = PTHREAD_MUTEX_INITIALIZER;
 static char temporary[4096];
-static double deadline;      /* s; 0: none */
+static double deadline; /* s; 0: none */
 static int is_committed;
 static sem_t asked;
 
@@ -82,9 +82,11 @@ static void wait_for_more(long long ms)
 static void *wait_for_deadline(void *unused)
 {
   (void)unused;
-  while (sem_wait(&asked)) {}
-  for (long long left; !is_urgent &&
-         (left = interrupted_ms + (long long)(1000 * deadline) - now_ms()) > 0;)
+  while (sem_wait(&asked)) {
+  }
+  for (long long left;
+       !is_urgent &&
+       (left = interrupted_ms + (long long)(1000 * deadline) - now_ms()) > 0;)
     wait_for_more(left);
   pthread_mutex_lock(&ending);
   for (int k = 0; k < 3 && !is_committed && *temporary; k++)
@@ -102,7 +104,7 @@ void vg_display_deadline(double seconds)
 
   if (deadline > 0 || sem_init(&asked, 0, 0)) return;
   deadline = seconds;
-  sigfillset(&all);          /* signals are for other threads */
+  sigfillset(&all); /* signals are for other threads */
   pthread_sigmask(SIG_SETMASK, &all, &before);
   if (pthread_create(&thread, NULL, wait_for_deadline, NULL)) deadline = 0;
   else pthread_detach(thread);

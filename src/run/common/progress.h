@@ -11,22 +11,26 @@
 
 /* Exit statuses of the program. VG_EXIT_LIMIT: all is written, but a limit on
  * the layers is not met. */
-enum { VG_EXIT_DONE = 0, VG_EXIT_FAILED = 1, VG_EXIT_USAGE = 2,
-       VG_EXIT_LIMIT = 4 };
+enum {
+  VG_EXIT_DONE = 0,
+  VG_EXIT_FAILED = 1,
+  VG_EXIT_USAGE = 2,
+  VG_EXIT_LIMIT = 4
+};
 
 struct vg_display {
-  int quiet, live, open;    /* open: a live line stands without its end */
-  int logs;                 /* lines go into the log (log.h), too */
+  int quiet, live, open; /* open: a live line stands without its end */
+  int logs;              /* lines go into the log (log.h), too */
   double start, stage_start, last_shown, last_logged;
-  double every;             /* s between plain lines; init: 10 */
+  double every; /* s between plain lines; init: 10 */
   char stage[40];
-  size_t done, expected;    /* of the stage; they never go back */
-  size_t logged;            /* the last that was done */
+  size_t done, expected; /* of the stage; they never go back */
+  size_t logged;         /* the last that was done */
   double share;
   /* Told besides, and asks to stop by anything but 0; NULL. */
   int (*tell)(void *user, const char *stage, size_t done, size_t expected);
   void *user;
-  atomic_int asked;         /* to stop, by whom it tells or another thread */
+  atomic_int asked; /* to stop, by whom it tells or another thread */
 };
 
 /** Take note of signals from now on; before anything that takes time. Once. */

@@ -8,7 +8,10 @@
 #include "base/memory.h"
 #include "io/stream/stream.h"
 
-struct span { int64_t first, last, step; int is_factor; };
+struct span {
+  int64_t first, last, step;
+  int is_factor;
+};
 
 void vg_range_release(struct vg_range_list *r)
 {
@@ -40,15 +43,14 @@ static int parse_one(const char *text, size_t len, struct span *s)
   }
   second = memchr(colon + 1, ':', (size_t)(end - colon) - 1);
   if (!vg_parse_count(text, (size_t)(colon - text), &s->first) ||
-      !vg_parse_count(colon + 1,
-                      (size_t)((second ? second : end) - colon) - 1,
+      !vg_parse_count(colon + 1, (size_t)((second ? second : end) - colon) - 1,
                       &s->last))
     return 0;
   if (!second++) return 1;
   s->is_factor = second < end && *second == 'x';
   second += s->is_factor;
   return vg_parse_count(second, (size_t)(end - second), &s->step) &&
-    s->step > s->is_factor;
+         s->step > s->is_factor;
 }
 
 static vg_status add(const char *what, struct vg_range_list *r, int64_t v,
@@ -67,19 +69,20 @@ static vg_status add(const char *what, struct vg_range_list *r, int64_t v,
 
 static vg_status add_all(const char *what, const struct span *s, int64_t lo,
                          int64_t hi, struct vg_range_list *r,
-                             struct vg_error *err)
+                         struct vg_error *err)
 {
   vg_status st = VG_OK;
 
   if (s->first < lo || s->last > hi || s->last < s->first)
-    return vg_fail(err, VG_ERR_INPUT, "%s takes numbers from %lld to %lld, "
-                   "the lower one first; not %lld to %lld", what,
-                   (long long)lo, (long long)hi, (long long)s->first,
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s takes numbers from %lld to %lld, "
+                   "the lower one first; not %lld to %lld",
+                   what, (long long)lo, (long long)hi, (long long)s->first,
                    (long long)s->last);
   if (s->is_factor && s->first < 1)
     return vg_fail(err, VG_ERR_INPUT, "%s: %lld times a factor leads nowhere",
                    what, (long long)s->first);
-  for (int64_t v = s->first; st >= 0; ) {
+  for (int64_t v = s->first; st >= 0;) {
     st = add(what, r, v, err);
     if (s->is_factor ? v > s->last / s->step : v > s->last - s->step) break;
     v = s->is_factor ? v * s->step : v + s->step;
@@ -100,9 +103,10 @@ vg_status vg_range_parse(const char *what, const char *text, int64_t lo,
     struct span s;
 
     if (!parse_one(text, len, &s)) {
-      st = vg_fail(err, VG_ERR_INPUT, "%s takes numbers as 1,2,4 or ranges as "
-                   "3:7, 0:100:20 or 1:64:x2, not '%.*s'", what, (int)len,
-                   text);
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "%s takes numbers as 1,2,4 or ranges as "
+                   "3:7, 0:100:20 or 1:64:x2, not '%.*s'",
+                   what, (int)len, text);
       goto done;
     }
     VG_TRY(add_all(what, &s, lo, hi, &r, err));

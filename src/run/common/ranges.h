@@ -12,8 +12,14 @@
 /** Most numbers in a list. */
 #define VG_RANGE_MAX 4096
 
-struct vg_range_list { size_t n, cap; int64_t *v; };
-#define VG_RANGE_INIT { 0, 0, NULL }
+struct vg_range_list {
+  size_t n, cap;
+  int64_t *v;
+};
+#define VG_RANGE_INIT                                                          \
+  {                                                                            \
+    0, 0, NULL                                                                 \
+  }
 
 /** A whole number, also as 2e6 or 1.5e6: 1 on success. */
 int vg_parse_count(const char *text, size_t len, int64_t *out);

@@ -41,10 +41,11 @@ size_t vg_text_character(const char *text)
  * to the letters and signs of East Asia. */
 static size_t width(uint32_t c)
 {
-  static const struct { uint32_t from, to; } wide[] = {
-    {0x1100, 0x115f}, {0x2e80, 0xa4cf}, {0xac00, 0xd7a3}, {0xf900, 0xfaff},
-    {0xfe30, 0xfe6f}, {0xff00, 0xff60}, {0xffe0, 0xffe6}, {0x1f300, 0x1faff},
-    {0x20000, 0x3fffd} };
+  static const struct {
+    uint32_t from, to;
+  } wide[] = { { 0x1100, 0x115f }, { 0x2e80, 0xa4cf },   { 0xac00, 0xd7a3 },
+               { 0xf900, 0xfaff }, { 0xfe30, 0xfe6f },   { 0xff00, 0xff60 },
+               { 0xffe0, 0xffe6 }, { 0x1f300, 0x1faff }, { 0x20000, 0x3fffd } };
 
   if ((c >= 0x300 && c <= 0x36f) || (c >= 0x200b && c <= 0x200f)) return 0;
   for (size_t i = 0; i < sizeof wide / sizeof *wide; i++)
@@ -58,7 +59,7 @@ static size_t put(const char *text, size_t columns, char *out, size_t size,
 {
   size_t at = 0;
 
-  for (*used = 0; *text; ) {
+  for (*used = 0; *text;) {
     size_t n = vg_text_character(text), take = n ? n : 1;
     uint32_t code = n ? code_of(text, n) : '?';
 

@@ -33,22 +33,25 @@ static void note_cavities(struct vg_boundary *b)
   const struct vg_flow *f = &b->flow;
 
   if (f->n_cavity)
-    vg_note(b->notes, "sealed cavities inside the bodies are not meshed: %zu, "
+    vg_note(b->notes,
+            "sealed cavities inside the bodies are not meshed: %zu, "
             "volume %.4g, the largest around (%.6g, %.6g, %.6g) (--regions all "
-            "meshes them)", f->n_cavity, f->cavity_volume, f->cavity_at[0],
-            f->cavity_at[1], f->cavity_at[2]);
+            "meshes them)",
+            f->n_cavity, f->cavity_volume, f->cavity_at[0], f->cavity_at[1],
+            f->cavity_at[2]);
 }
 
 static void note_cap(struct vg_boundary *b)
 {
   const struct vg_flow *f = &b->flow;
 
-  if (f->cap_axis >= 0 && !f->n_cap_tri && f->kind == VG_FLOW_EXTERNAL
-      && b->read->settings.half == VG_HALF_AUTO)
-    vg_note(b->notes, "flat cap at %c = %g: is this a half model? --half %c "
+  if (f->cap_axis >= 0 && !f->n_cap_tri && f->kind == VG_FLOW_EXTERNAL &&
+      b->read->settings.half == VG_HALF_AUTO)
+    vg_note(b->notes,
+            "flat cap at %c = %g: is this a half model? --half %c "
             "removes the cap and adds the symmetry plane; --half no settles "
-            "that it is a whole body", "xyz"[f->cap_axis], f->cap_at,
-            "xyz"[f->cap_axis]);
+            "that it is a whole body",
+            "xyz"[f->cap_axis], f -> cap_at, "xyz"[f->cap_axis]);
 }
 
 vg_status vg_boundary_decide(struct vg_boundary *b, struct vg_display *show,
@@ -59,9 +62,9 @@ vg_status vg_boundary_decide(struct vg_boundary *b, struct vg_display *show,
   vg_status st = vg_flow_settle(&b->surface, &b->check, &o, &b->flow, &why);
 
   if (st < 0)
-    return st == VG_ERR_INPUT ? vg_fail(err, st, "%s: %s", b->read->files.stem,
-                                        why.text)
-                              : vg_fail(err, st, "%s", why.text);
+    return st == VG_ERR_INPUT
+           ? vg_fail(err, st, "%s: %s", b->read->files.stem, why.text)
+           : vg_fail(err, st, "%s", why.text);
   note_cap(b);
   note_cavities(b);
   return VG_OK;
@@ -83,9 +86,11 @@ static void list_rims(const struct vg_rim *rim, size_t n, char *text,
 
   *text = 0;
   for (size_t i = 0; i < n && i < SHOWN_RIMS && at + 120 < size; i++)
-    at += (size_t)snprintf(text + at, size - at, "%s%.4g wide, %zu edges, "
-                           "around (%.6g, %.6g, %.6g)", i ? "; " : "", rim[i].width,
-                           rim[i].n_edge, rim[i].centre[0], rim[i].centre[1],
+    at += (size_t)snprintf(text + at, size - at,
+                           "%s%.4g wide, %zu edges, "
+                           "around (%.6g, %.6g, %.6g)",
+                           i ? "; " : "", rim[i].width, rim[i].n_edge,
+                           rim[i].centre[0], rim[i].centre[1],
                            rim[i].centre[2]);
   if (n > SHOWN_RIMS) snprintf(text + at, size - at, "; ...");
 }
@@ -101,10 +106,11 @@ vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
 
   if (b->rim_gap > 0) {
     free(rim);
-    return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open, but open "
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "%s: the surface is open, but open "
                    "edges lie next to each other, %.3g apart at most: --weld "
-                   "%.2g closes these gaps", b->read->files.stem, b->rim_gap,
-                   1.05 * b->rim_gap);
+                   "%.2g closes these gaps",
+                   b->read->files.stem, b->rim_gap, 1.05 * b->rim_gap);
   }
   if (st == VG_ERR_GEOMETRY) {
     vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
@@ -114,15 +120,21 @@ vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
   if (st < 0) return vg_fail(err, st, "%s", why.text);
   list_rims(rim, n, list, sizeof list);
   if (n == 1 && rim[0].axis >= 0)
-    snprintf(half, sizeof half, ". Should it be half of a symmetric model, cut "
-             "at %c = %g, give --half %c", "xyz"[rim[0].axis],
-             rim[0].centre[rim[0].axis], "xyz"[rim[0].axis]);
-  st = vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface is open: %zu rim%s (%s). "
+    snprintf(half, sizeof half,
+             ". Should it be half of a symmetric model, cut "
+             "at %c = %g, give --half %c",
+             "xyz"[rim[0].axis], rim[0].centre[rim[0].axis],
+             "xyz"[rim[0].axis]);
+  st = vg_fail(err, VG_ERR_GEOMETRY,
+               "%s: the surface is open: %zu rim%s (%s). "
                "--close-holes yes closes each with a flat cap in a patch of "
-               "its own (cap_1%s%s)%s", b->read->files.stem, n, n > 1 ? "s" : "",
-               list,
-               n > 1 ? ", cap_2, ..." : "", n > 1 ? "; in a duct with --flow "
-               "internal" : "", half);
+               "its own (cap_1%s%s)%s",
+               b->read->files.stem, n, n > 1 ? "s" : "", list,
+               n > 1 ? ", cap_2, ..." : "",
+               n > 1 ? "; in a duct with --flow "
+                       "internal"
+                     : "",
+               half);
   free(rim);
   return st;
 }
@@ -147,15 +159,17 @@ static vg_status check_farfield(const struct vg_boundary *b,
   /* The area of a sphere over that of a triangle. */
   n = edge > 0 ? 29 * (size / edge) * (size / edge) : 0;
   if (far->kind == VG_FARFIELD_NONE || n < FARFIELD_TRIANGLES) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "a farfield of size %g with edges of %g "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "a farfield of size %g with edges of %g "
                  "has some %.2g triangles; are its spacing and hmax in the "
-                 "unit of the surface?", size, edge, n);
+                 "unit of the surface?",
+                 size, edge, n);
 }
 
 /* Of the flow that was decided, where settings leave it open. */
 static struct vg_farfield decided_farfield(const struct vg_boundary *b)
 {
-  struct vg_settings view = b->read->settings;   /* tables are borrowed */
+  struct vg_settings view = b->read->settings; /* tables are borrowed */
 
   vg_resolve_flow(&view, (int)b->flow.kind, b->flow.axis);
   return vg_options_farfield(&view);
@@ -176,8 +190,8 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
    * for it. */
   if (!(options.h_max > 0)) options.h_max = INFINITY;
   options.threads = b->threads;
-  VG_TRY(vg_sizing_new(&options, s->n_source, s->source, &b->surface, &sizing,
-                       err));
+  VG_TRY(
+    vg_sizing_new(&options, s->n_source, s->source, &b->surface, &sizing, err));
   far.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(vg_domain_complete(&b->surface, &far, sizing, &b->domain, err));
 done:

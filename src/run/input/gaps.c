@@ -15,8 +15,8 @@
 
 struct vg_gap_sizes {
   struct vg_size_samples *samples;
-  const struct vg_size_map *gaps, *other;  /* other: NULL, there were none */
-  struct vg_size_map map;                  /* the less of both */
+  const struct vg_size_map *gaps, *other; /* other: NULL, there were none */
+  struct vg_size_map map;                 /* the less of both */
 };
 
 static double at(void *user, const double x[3])
@@ -41,9 +41,12 @@ static void join_maps(struct vg_gap_sizes *g, const struct vg_size_map *other)
   g->other = other;
   g->map = *g->gaps;
   if (!other) return;
-  g->map = (struct vg_size_map){ .at = at, .user = g,
-    .least = other->least ? least : NULL,
-    .most = other->most > 0 ? fmax(other->most, g->gaps->most) : 0 };
+  g->map = (struct vg_size_map){ .at = at,
+                                 .user = g,
+                                 .least = other->least ? least : NULL,
+                                 .most = other->most > 0
+                                         ? fmax(other->most, g->gaps->most)
+                                         : 0 };
 }
 
 static vg_status make(struct vg_boundary *b, const struct vg_gaps *found,
@@ -54,9 +57,8 @@ static vg_status make(struct vg_boundary *b, const struct vg_gaps *found,
   vg_status st;
 
   if (!g) return vg_fail_memory(err, "the gaps");
-  st = vg_size_samples_new(found->n, (const double (*)[3])found->x, found->h,
-                           vg_options_growth(s), b->threads, &g->samples,
-                           err);
+  st = vg_size_samples_new(found->n, (const double(*)[3])found->x, found->h,
+                           vg_options_growth(s), b->threads, &g->samples, err);
   if (st < 0) {
     free(g);
     return st;
@@ -82,7 +84,8 @@ static vg_status too_many(const struct vg_boundary *b, const struct vg_gaps *g,
 
   patch_text(&b->surface.patch[g->patch[0]], one, sizeof one);
   patch_text(&b->surface.patch[g->patch[1]], two, sizeof two);
-  return vg_fail(err, VG_ERR_INPUT, "gap_edges %g needs some %.2g %s in gaps, "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "gap_edges %g needs some %.2g %s in gaps, "
                  "%.9g are the limit%s; the narrowest gap is %.4g wide, "
                  "between patches %s and %s at (%.6g, %.6g, %.6g). Lower "
                  "gap_edges, raise hmin, or close the gap (--wrap)%s",
@@ -110,13 +113,16 @@ vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(vg_gaps_find(&b->surface, &o, &found, err));
   if (st == VG_BLOCKED) VG_TRY(too_many(b, &found, o.most_tri, err));
   if (found.n)
-    vg_note(b->notes, "gap_edges %g: sizes from %zu places in gaps, the "
-            "narrowest %.4g wide at (%.6g, %.6g, %.6g)%s", s->gap_edges,
-            found.n, found.narrowest, found.at[0], found.at[1], found.at[2],
-            b->is_remeshed ? "" : "; the surface stays as it is given, and "
-            "cells between coarse faces cannot be small (remesh_surface)");
-  else
-    vg_note(b->notes, "without effect, for no gap is narrow: gap_edges");
+    vg_note(b->notes,
+            "gap_edges %g: sizes from %zu places in gaps, the "
+            "narrowest %.4g wide at (%.6g, %.6g, %.6g)%s",
+            s->gap_edges, found.n, found.narrowest, found.at[0], found.at[1],
+            found.at[2],
+            b->is_remeshed
+              ? ""
+              : "; the surface stays as it is given, and "
+                "cells between coarse faces cannot be small (remesh_surface)");
+  else vg_note(b->notes, "without effect, for no gap is narrow: gap_edges");
   if (found.n) VG_TRY(make(b, &found, err));
   st = vg_display_stopped(show, err);
 done:

@@ -33,11 +33,9 @@ void vg_note(struct vg_notes *notes, const char *format, ...)
   n = vasprintf(&text, format, args);
   va_end(args);
   if (n < 0) return;
-  if (vg_reserve(&notes->text, &notes->cap, notes->n + 1,
-                 sizeof *notes->text))
+  if (vg_reserve(&notes->text, &notes->cap, notes->n + 1, sizeof *notes->text))
     free(text);
-  else
-    notes->text[notes->n++] = text;
+  else notes->text[notes->n++] = text;
 }
 
 void vg_notes_release(struct vg_notes *notes)
@@ -140,8 +138,10 @@ static vg_status find_surface(const char *stem, char **out,
     } else if (!*path || vg_format_holds_cells(path)) {
       free(path);
     } else if (found) {
-      st = vg_fail(err, VG_ERR_INPUT, "both %s and %s may be the surface; "
-                   "give the full name of one", found, path);
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "both %s and %s may be the surface; "
+                   "give the full name of one",
+                   found, path);
       free(path);
     } else {
       found = path;
@@ -203,10 +203,12 @@ static vg_status find_stem(const char *name, struct vg_input_files *f,
   if (st < 0 || *f->surface || *f->d3m) return st;
   if (has_mode(name, S_IFREG)) return vg_format_unknown(name, err);
   if (has_mode(name, S_IFDIR))
-    return vg_fail(err, VG_ERR_INPUT, "%s: this is a folder; give the stem of "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: this is a folder; give the stem of "
                    "a project, or the full name of a surface file, in it",
                    name);
-  return vg_fail(err, VG_ERR_INPUT, "%s: no project here: neither %s.d3m nor "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: no project here: neither %s.d3m nor "
                  "%s.front nor a surface such as %s.lb8.ugrid or %s.stl; give "
                  "the stem of a project or the full name of a surface file",
                  name, name, name, name, name);
@@ -255,27 +257,28 @@ vg_status vg_problem_open(struct vg_problem *p, const char *name,
   return st < 0 ? st : vg_problem_open_deck(p, err);
 }
 
-static void note_unused(struct vg_read *r,
-                        const struct vg_mapbc_match *match)
+static void note_unused(struct vg_read *r, const struct vg_mapbc_match *match)
 {
   if (match->n_unused)
-    vg_note(r->notes, "%s lists %zu patches that the surface does not "
-            "have (the first is %d)", r->files.mapbc, match->n_unused,
-            (int)match->first_unused);
+    vg_note(r->notes,
+            "%s lists %zu patches that the surface does not "
+            "have (the first is %d)",
+            r->files.mapbc, match->n_unused, (int)match->first_unused);
 }
 
 static enum vg_flow_side side_of(const char *format)
 {
   if (!strncmp(format, "cogsg", 5)) return VG_SIDE_DEFINED;
-  return strstr(format, "ugrid") || !strncmp(format, "surf", 4)
-         ? VG_SIDE_USUAL : VG_SIDE_FREE;
+  return strstr(format, "ugrid") || !strncmp(format, "surf", 4) ? VG_SIDE_USUAL
+                                                                : VG_SIDE_FREE;
 }
 
 void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n)
 {
-  vg_note(notes, "%.*s.mapbc was written by an earlier run of Vanguard and was "
-          "not read; give --mapbc %.*s.mapbc to use it", (int)n, stem, (int)n,
-          stem);
+  vg_note(notes,
+          "%.*s.mapbc was written by an earlier run of Vanguard and was "
+          "not read; give --mapbc %.*s.mapbc to use it",
+          (int)n, stem, (int)n, stem);
 }
 
 /* The .mapbc of an earlier run is no input, and may be overwritten. */
@@ -310,7 +313,8 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
   const int is_remeshed = vg_read_is_remeshed(r, &r->surface);
   struct vg_cad_options cad = vg_options_cad(&r->settings, is_remeshed);
   struct vg_read_info info = { .cad = &cad,
-    .model = is_remeshed ? &r->model : NULL, .mapbc = r->settings.mapbc };
+                               .model = is_remeshed ? &r->model : NULL,
+                               .mapbc = r->settings.mapbc };
   const char *path = r->files.surface;
   vg_status st = name_mapbc(r, err);
 
@@ -325,11 +329,15 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
   r->has_cells = info.n_cell > 0;
   r->side = side_of(info.format);
   if (info.n_cell)
-    vg_note(r->notes, "%s is a volume mesh: its boundary is meshed anew, its "
-            "%zu cells are not used", path, info.n_cell);
+    vg_note(r->notes,
+            "%s is a volume mesh: its boundary is meshed anew, its "
+            "%zu cells are not used",
+            path, info.n_cell);
   if (info.turned.face)
-    vg_note(r->notes, "%s: %zu boundary faces pointed out of their cells and "
-            "were turned", path, info.turned.face);
+    vg_note(r->notes,
+            "%s: %zu boundary faces pointed out of their cells and "
+            "were turned",
+            path, info.turned.face);
   if (info.turned.loose_face)
     vg_note(r->notes, "%s: %zu boundary faces belong to no cell", path,
             info.turned.loose_face);
@@ -350,7 +358,8 @@ static vg_status mesh_patches(struct vg_read *r, struct vg_display *show,
   vg_status st;
 
   if (!r->project.n_shape)
-    return vg_fail(err, VG_ERR_INPUT, "%s: no patches in it and no surface "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: no patches in it and no surface "
                    "beside it; add a .front or a surface file",
                    r->files.d3m);
   VG_TRY(vg_sizing_new(&options, r->settings.n_source, r->settings.source,
@@ -412,8 +421,8 @@ static void set_condition(struct vg_patch *p, int32_t code, int axis)
 
 int vg_boundary_is_cap(const struct vg_boundary *b, size_t i)
 {
-  return b->n_given_patch && i >= b->n_given_patch
-         && !strncmp(b->surface.patch[i].name, "cap_", 4);
+  return b->n_given_patch && i >= b->n_given_patch &&
+         !strncmp(b->surface.patch[i].name, "cap_", 4);
 }
 
 /* The table wins over the .mapbc. */
@@ -447,10 +456,10 @@ static vg_status apply_patch_table(struct vg_read *r, struct vg_error *err)
 {
   vg_status st = vg_patch_rows_resolve(&r->settings, &r->surface, err);
 
-  return st < 0 ? st : vg_patch_table_apply(r->settings.n_patch,
-                                            r->settings.patch,
-                                            r->settings.close_holes,
-                                            &r->surface, err);
+  return st < 0
+         ? st
+         : vg_patch_table_apply(r->settings.n_patch, r->settings.patch,
+                                r->settings.close_holes, &r->surface, err);
 }
 
 static vg_status apply_conditions(struct vg_read *r, struct vg_error *err)
@@ -473,8 +482,8 @@ done:
 
 int vg_read_is_by_first(const struct vg_read *r, struct vg_comm *comm)
 {
-  return vg_comm_size(comm) > 1 && !*r->files.front
-         && vg_format_is_cad(r->files.surface);
+  return vg_comm_size(comm) > 1 && !*r->files.front &&
+         vg_format_is_cad(r->files.surface);
 }
 
 /* st: of this rank so far. Collective. */
@@ -516,9 +525,10 @@ static void merge_layers(struct vg_read *r)
   const struct vg_project *d = &r->project;
 
   if (!l->from_files || !d->grid || l->grow == VG_ANSWER_NO) return;
-  vg_note(r->notes, "layers as the .d3m says (grid = %d): first %g, rates %g "
-          "and %g, at most %d layers, vfact %g", (int)d->grid,
-          d->layer.delta1, d->layer.rate1, d->layer.rate2,
+  vg_note(r->notes,
+          "layers as the .d3m says (grid = %d): first %g, rates %g "
+          "and %g, at most %d layers, vfact %g",
+          (int)d->grid, d->layer.delta1, d->layer.rate1, d->layer.rate2,
           (int)d->layer.n_max, d->vfact);
   if (l->first == 0 && l->y_plus == 0) {
     l->first = d->layer.delta1 > 0 ? d->layer.delta1 : 0;
@@ -555,13 +565,12 @@ static vg_status merge_aflr_patch(struct vg_settings *s,
   const struct vg_layer_settings *l = &s->layer;
   struct vg_layer_row *row;
 
-  if (!a->is_viscous ||
-      !(a->spacing > 0 || a->thickness > 0 || a->n_layer > 0))
+  if (!a->is_viscous || !(a->spacing > 0 || a->thickness > 0 || a->n_layer > 0))
     return VG_OK;
   row = layer_row(s, id);
   if (!row) return vg_fail_memory(err, "the layers table");
-  if (a->spacing > 0 && l->first == 0 && l->y_plus == 0 &&
-      isnan(row->first) && isnan(row->y_plus))
+  if (a->spacing > 0 && l->first == 0 && l->y_plus == 0 && isnan(row->first) &&
+      isnan(row->y_plus))
     row->first = a->spacing;
   if (a->thickness > 0 && l->total == 0 && isnan(row->total))
     row->total = a->thickness;
@@ -572,8 +581,8 @@ static vg_status merge_aflr_patch(struct vg_settings *s,
 }
 
 /* AFLR's .tags go by number, its .bc by name. */
-static vg_status apply_aflr(struct vg_read *r, const char *path,
-                            int by_name, struct vg_error *err)
+static vg_status apply_aflr(struct vg_read *r, const char *path, int by_name,
+                            struct vg_error *err)
 {
   struct vg_aflr a = VG_AFLR_INIT;
   const struct vg_mesh *m = &r->surface;
@@ -593,8 +602,8 @@ static vg_status apply_aflr(struct vg_read *r, const char *path,
     for (size_t j = 0; j < m->n_patch; j++)
       if (by_name ? strcmp(m->patch[j].name, a.patch[i].name) == 0
                   : m->patch[j].id == a.patch[i].id)
-        VG_TRY(merge_aflr_patch(&r->settings, &a.patch[i], m->patch[j].id,
-                                err));
+        VG_TRY(
+          merge_aflr_patch(&r->settings, &a.patch[i], m->patch[j].id, err));
 done:
   vg_aflr_release(&a);
   return st;
@@ -657,8 +666,7 @@ static vg_status read_heights(struct vg_read *r, struct vg_error *err)
     to->first = a.spacing[i];
     r->heights.n++;
   }
-  qsort(r->heights.item, r->heights.n, sizeof *r->heights.item,
-        compare_height);
+  qsort(r->heights.item, r->heights.n, sizeof *r->heights.item, compare_height);
 done:
   vg_mesh_release(&m);
   vg_aflr_release(&a);
@@ -680,14 +688,14 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
 {
   struct vg_read *r = &p->read;
   struct vg_input_files *f = &r->files;
-  char **path[] = { &f->d3m, &f->front, &f->surface, &f->mapbc, &f->deck,
-                    &f->tags, &f->aflr };
+  char **path[] = { &f->d3m,  &f->front, &f->surface, &f->mapbc,
+                    &f->deck, &f->tags,  &f->aflr };
   vg_status st;
   int bad = 0;
 
   r->notes = &p->notes;
   vg_mesh_move(&r->surface, surface);
-  r->side = VG_SIDE_DEFINED;       /* as the interface has it */
+  r->side = VG_SIDE_DEFINED; /* as the interface has it */
   VG_TRY(begin(&p->asked, r, err));
   f->stem = strdup(name);
   for (size_t i = 0; i < sizeof path / sizeof *path; i++)
@@ -701,8 +709,8 @@ done:
 }
 
 /* Read the project, its sources and the file of sizes. */
-static vg_status read_asides(const struct vg_settings *asked,
-                             struct vg_read *r, struct vg_error *err)
+static vg_status read_asides(const struct vg_settings *asked, struct vg_read *r,
+                             struct vg_error *err)
 {
   vg_status st;
 

@@ -18,9 +18,9 @@
 
 /** Paths of what exists; "" where a part is absent. */
 struct vg_input_files {
-  char *stem;                  /* folder and project name, no extension */
+  char *stem; /* folder and project name, no extension */
   char *d3m, *front, *surface, *mapbc, *deck;
-  char *tags, *aflr;           /* of AFLR: .tags, .bc */
+  char *tags, *aflr; /* of AFLR: .tags, .bc */
 };
 
 /** Notes for the report, in the order in which they came up. */
@@ -32,7 +32,9 @@ struct vg_notes {
 /** First heights at points of a .surf, by rising x, y, z. */
 struct vg_point_heights {
   size_t n;
-  struct vg_point_height { double x[3], first; } *item;
+  struct vg_point_height {
+    double x[3], first;
+  } * item;
 };
 
 /** The height at x, NULL where none is given. O(log n). */
@@ -63,9 +65,9 @@ struct vg_renewal {
   double *area;                     /* [n_patch][2] of patches, before, after */
   double seconds;
   struct vg_put_back back;
-  double volume[2];                 /* enclosed by the new surface, and by the
-                                       CAD model as Open CASCADE integrates it;
-                                       NAN where one of them is not closed */
+  double volume[2]; /* enclosed by the new surface, and by the
+                       CAD model as Open CASCADE integrates it;
+                       NAN where one of them is not closed */
 };
 
 /** 1. The contents of a project's files. Made by vg_problem_read or
@@ -79,45 +81,45 @@ struct vg_read {
   struct vg_size_samples *samples; /* of the setting `sizes`; NULL */
   struct vg_project project;       /* empty without a .d3m */
   struct vg_mesh surface;
-  struct vg_cad_model model;       /* of a CAD file whose surface is remeshed,
-                                      on the first rank; else empty */
+  struct vg_cad_model model; /* of a CAD file whose surface is remeshed,
+                                on the first rank; else empty */
   struct vg_point_heights heights;
-  enum vg_flow_side side;          /* to which the format of the surface has
-                                      triangles point */
-  int has_cells;                   /* 1: the surface is the boundary of a volume
-                                      mesh */
-  struct vg_notes *notes;          /* of the problem; borrowed */
+  enum vg_flow_side side; /* to which the format of the surface has
+                             triangles point */
+  int has_cells;          /* 1: the surface is the boundary of a volume
+                             mesh */
+  struct vg_notes *notes; /* of the problem; borrowed */
 };
 
 /** 2. The surface, checked, closed and remeshed (vg_boundary_shape), and 3. the
  * boundary of the fluid, which a farfield and a symmetry plane complete
  * (vg_boundary_close). Layers give conditions to its patches. */
 struct vg_boundary {
-  const struct vg_read *read;      /* borrowed */
-  struct vg_notes *notes;          /* borrowed */
-  int threads;                     /* 0: one per core */
+  const struct vg_read *read; /* borrowed */
+  struct vg_notes *notes;     /* borrowed */
+  int threads;                /* 0: one per core */
   struct vg_mesh surface;
-  struct vg_shmem common;          /* memory of its arrays, if the ranks of a
-                                      node share them */
-  struct vg_cad_model model;       /* as in struct vg_read */
-  const struct vg_size_map *map;   /* sizes besides sources: those that were
-                                      read and those of gaps; NULL: none */
-  struct vg_gap_sizes *gaps;       /* of gap_edges; NULL */
-  size_t n_welded, n_dropped;      /* by the weld */
+  struct vg_shmem common;        /* memory of its arrays, if the ranks of a
+                                    node share them */
+  struct vg_cad_model model;     /* as in struct vg_read */
+  const struct vg_size_map *map; /* sizes besides sources: those that were
+                                    read and those of gaps; NULL: none */
+  struct vg_gap_sizes *gaps;     /* of gap_edges; NULL */
+  size_t n_welded, n_dropped;    /* by the weld */
   struct vg_surface_report check;
-  int require_bc;                  /* the input gives conditions */
-  int is_remeshed;                 /* settings remesh the surface */
-  struct vg_flow flow;             /* what was decided of the flow domain */
-  double rim_gap;                  /* weld tolerance at which open edges find
-                                      partners; 0: no partners */
-  size_t n_given_patch;            /* patches before holes were closed; the caps
-                                      follow them; 0: none were closed */
-  size_t n_row;                    /* patches before the domain was completed */
-  struct vg_patch_row *row;        /* [n_row] owned: their names, conditions and
-                                      hard borders */
+  int require_bc;           /* the input gives conditions */
+  int is_remeshed;          /* settings remesh the surface */
+  struct vg_flow flow;      /* what was decided of the flow domain */
+  double rim_gap;           /* weld tolerance at which open edges find
+                               partners; 0: no partners */
+  size_t n_given_patch;     /* patches before holes were closed; the caps
+                               follow them; 0: none were closed */
+  size_t n_row;             /* patches before the domain was completed */
+  struct vg_patch_row *row; /* [n_row] owned: their names, conditions and
+                               hard borders */
   struct vg_renewal renewal;
   struct vg_domain_report domain;
-  int is_swapped;                  /* edges of the surface were swapped */
+  int is_swapped; /* edges of the surface were swapped */
 };
 
 /** The values of a run up to its mesh. All commands and the library make them
@@ -132,14 +134,18 @@ struct vg_boundary {
  *   vg_problem_settle    slivers swapped; resolved settings
  */
 struct vg_problem {
-  struct vg_settings asked;        /* not written after parsing */
+  struct vg_settings asked; /* not written after parsing */
   struct vg_read read;
   struct vg_boundary boundary;
   struct vg_resolved resolved;
-  struct vg_notes notes;           /* of all of them */
+  struct vg_notes notes; /* of all of them */
 };
-#define VG_PROBLEM_INIT { .read = { .project = VG_PROJECT_INIT }, \
-  .boundary = { .flow = VG_FLOW_INIT } }
+#define VG_PROBLEM_INIT                                                        \
+  {                                                                            \
+    .read = { .project = VG_PROJECT_INIT }, .boundary = {                      \
+      .flow = VG_FLOW_INIT                                                     \
+    }                                                                          \
+  }
 
 void vg_problem_release(struct vg_problem *p);
 
@@ -151,7 +157,7 @@ void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n);
 
 /** Add a line for the report; loses it when memory is refused. */
 void vg_note(struct vg_notes *notes, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+  __attribute__((format(printf, 2, 3)));
 
 /** Find the files of `name`: a stem without extension, or the full name of a
  * surface file. deck: NULL for STEM.deck where that exists.
@@ -187,11 +193,11 @@ int vg_read_is_by_first(const struct vg_read *read, struct vg_comm *comm);
 struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b);
 
 struct vg_shape_options {
-  int threads;                     /* 0: one per core */
-  int remesh_open;                 /* 1: remesh an open surface, too, that is no
-                                      half model */
-  int has_maker;                   /* 1: another rank remeshes this surface,
-                                      which is CAD's (vg_problem_share) */
+  int threads;     /* 0: one per core */
+  int remesh_open; /* 1: remesh an open surface, too, that is no
+                      half model */
+  int has_maker;   /* 1: another rank remeshes this surface,
+                      which is CAD's (vg_problem_share) */
 };
 
 /** Weld, check and repair the surface of `read`, and remesh it where settings

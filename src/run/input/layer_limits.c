@@ -26,7 +26,8 @@ static vg_status check_patch(struct vg_layer_stage *s, uint32_t i,
     { i, "min_any", " %", 1, bare, l->min_any, 0 },
     { i, "min_height", " %", 1, bare, l->min_height, 0 },
     { i, "max_first_error", " %", 0, bare, l->max_first_error, 0 },
-    { i, "max_top_ratio", "", 0, bare, l->max_top_ratio, 0 } };
+    { i, "max_top_ratio", "", 0, bare, l->max_top_ratio, 0 }
+  };
 
   if (!w) w = &none;
   limit[0].got = w->full;
@@ -52,13 +53,15 @@ vg_status vg_layer_stage_finish(struct vg_layer_stage *s,
   vg_status st;
 
   assert(s->is_on && s->top);
-  VG_TRY(vg_layers_tops(surface, &s->layers.columns, s->top, s->n_wall,
-                        s->wall, &s->all, err));
+  VG_TRY(vg_layers_tops(surface, &s->layers.columns, s->top, s->n_wall, s->wall,
+                        &s->all, err));
   for (uint32_t i = 0; i < s->n_patch; i++) { /* s->wall is by rising patch */
     while (at < s->n_wall && s->wall[at].patch < i) at++;
     if (s->reason[i] == VG_WALL_NOT) continue;
-    VG_TRY(check_patch(s, i, at < s->n_wall && s->wall[at].patch == i
-                             ? &s->wall[at] : NULL, err));
+    VG_TRY(check_patch(s, i,
+                       at < s->n_wall && s->wall[at].patch == i ? &s->wall[at]
+                                                                : NULL,
+                       err));
   }
 done:
   return st;

@@ -9,7 +9,7 @@
 #include "layers/grow/grow.h"
 #include "run/settings/plan_options.h"
 
-#define DEFAULT_RATE 0.2   /* RANS practice; growth 1.2 */
+#define DEFAULT_RATE 0.2 /* RANS practice; growth 1.2 */
 #define SHOWN_PATCHES 20
 
 /* By source: first height and rates. Each is the mean that the spacing would
@@ -17,14 +17,14 @@
  * weights, by the same code. By point: the first height of a .surf, the rest by
  * patch. */
 struct vg_layer_laws {
-  struct vg_point_heights at;   /* first heights; none: by source */
+  struct vg_point_heights at; /* first heights; none: by source */
   size_t n;
-  struct vg_source *source[3];  /* [n] h0, h1: delta1, rate1, rate2 */
-  double constant[3];           /* one value at all sources, or NAN */
-  double shift[3];              /* added, since no spacing may be 0 */
+  struct vg_source *source[3]; /* [n] h0, h1: delta1, rate1, rate2 */
+  double constant[3];          /* one value at all sources, or NAN */
+  double shift[3];             /* added, since no spacing may be 0 */
   double cap;
   int n_constant;
-  enum vg_law_rule rule;        /* of a grid family, with its scale */
+  enum vg_law_rule rule; /* of a grid family, with its scale */
   double scale;
 };
 
@@ -53,8 +53,9 @@ void vg_layer_stage_release(struct vg_layer_stage *s)
 static void law_at(void *user, const double x[3], struct vg_law *law)
 {
   const struct vg_layer_laws *l = user;
-  const struct vg_sizing_options o = { 0, INFINITY, 1.2, 1, 0, 1, 1, NULL,
-                                       NULL };
+  const struct vg_sizing_options o = {
+    0, INFINITY, 1.2, 1, 0, 1, 1, NULL, NULL
+  };
   double v[3];
 
   for (int k = 0; k < 3; k++)
@@ -89,8 +90,9 @@ static void put_values(struct vg_layer_laws *l, int k)
   double least = INFINITY, most = -INFINITY;
 
   for (size_t i = 0; i < l->n; i++) {
-    const double *end = s[i].kind == VG_SOURCE_VGRID_LINE &&
-                        s[i].layer1[0] > 0 ? s[i].layer1 : s[i].layer0;
+    const double *end = s[i].kind == VG_SOURCE_VGRID_LINE && s[i].layer1[0] > 0
+                        ? s[i].layer1
+                        : s[i].layer0;
 
     s[i].h0 = s[i].layer0[k];
     s[i].h1 = end[k];
@@ -127,7 +129,8 @@ static vg_status make_laws(const struct vg_settings *s, double cap,
     if (st >= 0 && l->n) put_values(l, k);
   }
   if (st >= 0 && !l->n)
-    st = vg_fail(err, VG_ERR_INPUT, "layer_sources: no VGRID source has a "
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "layer_sources: no VGRID source has a "
                  "first height (delta1_0); give first and set layer_sources "
                  "to no");
   l->cap = cap;
@@ -167,14 +170,18 @@ static vg_status rate_for_total(const struct vg_layer_request *q, int32_t id,
   r = vg_law_rate_for_total(q->law.delta1, q->law.n_constant, q->n_max,
                             q->total);
   if (r < 0)
-    return vg_fail(err, VG_ERR_INPUT, "layers of patch %d: %d layers of %g "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "layers of patch %d: %d layers of %g "
                    "are together higher than %g; lower the number or the "
-                   "first height", (int)id, q->n_max, q->law.delta1, q->total);
+                   "first height",
+                   (int)id, q->n_max, q->law.delta1, q->total);
   if (1 + r > q->law.cap)
-    return vg_fail(err, VG_ERR_INPUT, "layers of patch %d: %d layers from %g "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "layers of patch %d: %d layers from %g "
                    "to %g grow by %.4f, above layer_cap %g; give more layers "
-                   "or raise the cap", (int)id, q->n_max, q->law.delta1,
-                   q->total, 1 + r, q->law.cap);
+                   "or raise the cap",
+                   (int)id, q->n_max, q->law.delta1, q->total, 1 + r,
+                   q->law.cap);
   *rate = r;
   return VG_OK;
 }
@@ -206,8 +213,7 @@ static vg_status set_rates(const struct vg_settings *s,
 
 static vg_status make_request(const struct vg_settings *s,
                               const struct vg_layer_row *r,
-                              struct vg_layer_request *q,
-                              struct vg_error *err)
+                              struct vg_layer_request *q, struct vg_error *err)
 {
   const struct vg_layer_settings *l = &s->layer;
   int64_t count = r->count == VG_COUNT_NONE ? l->count : r->count;
@@ -227,29 +233,32 @@ static vg_status make_request(const struct vg_settings *s,
 static vg_status no_first(const struct vg_mesh *m, size_t i,
                           struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_INPUT, "layers on patch %d %s: no first height "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "layers on patch %d %s: no first height "
                  "is known; give --first, or --y-plus with --reynolds and "
-                 "--reference-length (or --layers no)", (int)m->patch[i].id,
-                 m->patch[i].name);
+                 "--reference-length (or --layers no)",
+                 (int)m->patch[i].id, m->patch[i].name);
 }
 
 /* Own laws cannot hold where the sources give the law. */
 static vg_status check_row(const struct vg_layer_row *r, int by_source,
                            struct vg_error *err)
 {
-  if (!by_source || (isnan(r->first) && isnan(r->y_plus) &&
-                     isnan(r->ratio) && isnan(r->rate1) && isnan(r->rate2) &&
-                     isnan(r->cap) && r->constant == VG_COUNT_NONE))
+  if (!by_source || (isnan(r->first) && isnan(r->y_plus) && isnan(r->ratio) &&
+                     isnan(r->rate1) && isnan(r->rate2) && isnan(r->cap) &&
+                     r->constant == VG_COUNT_NONE))
     return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "layers: patch %d has a law of its own, "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "layers: patch %d has a law of its own, "
                  "but layer_sources takes the law from the sources; set it "
-                 "to no or remove the values", (int)r->id);
+                 "to no or remove the values",
+                 (int)r->id);
 }
 
 /* First heights at points. */
 struct by_point {
-  double *least;                /* [n_patch] 0 where a patch uses none */
-  struct vg_point_heights at;   /* 0 where a patch has a height of its own */
+  double *least;              /* [n_patch] 0 where a patch uses none */
+  struct vg_point_heights at; /* 0 where a patch has a height of its own */
 };
 
 /* The laws take the heights over. */
@@ -283,27 +292,28 @@ static struct vg_layer_limits limits_of(const struct vg_layer_limits *own,
     .min_any = choose(own->min_any, global->min_any),
     .min_height = choose(own->min_height, global->min_height),
     .max_first_error = choose(own->max_first_error, global->max_first_error),
-    .max_top_ratio = choose(own->max_top_ratio, global->max_top_ratio) };
+    .max_top_ratio = choose(own->max_top_ratio, global->max_top_ratio)
+  };
 }
 
 static vg_status make_requests(struct vg_layer_stage *s,
-                               const struct vg_boundary *b,
-                               struct by_point *h, struct vg_error *err)
+                               const struct vg_boundary *b, struct by_point *h,
+                               struct vg_error *err)
 {
   const struct vg_settings *set = &b->read->settings;
   const struct vg_layer_settings *l = &set->layer;
   const struct vg_mesh *m = &b->surface;
   vg_status st = VG_OK;
 
-  if (l->by_source)
-    VG_TRY(make_laws(set, law_cap(l->cap), &s->laws, err));
+  if (l->by_source) VG_TRY(make_laws(set, law_cap(l->cap), &s->laws, err));
   for (size_t i = 0; i < m->n_patch; i++) {
     struct vg_layer_row row = vg_settings_layer_row(set, m->patch[i].id);
     struct vg_layer_request *q = &s->request[i];
 
     s->limit[i] = limits_of(&row.limit, &l->limit);
     if (s->reason[i] == VG_WALL_NOT && vg_has_limits(&row.limit))
-      st = vg_fail(err, VG_ERR_INPUT, "layers: patch %d has a limit, but it "
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "layers: patch %d has a limit, but it "
                    "is no wall; set grow to yes or remove the limit",
                    (int)row.id);
     if (st < 0) break;
@@ -327,8 +337,8 @@ done:
 static int uses_points(const struct vg_layer_settings *l,
                        const struct vg_layer_row *r)
 {
-  return !l->by_source && l->first == 0 && l->y_plus == 0 &&
-         isnan(r->first) && isnan(r->y_plus);
+  return !l->by_source && l->first == 0 && l->y_plus == 0 && isnan(r->first) &&
+         isnan(r->y_plus);
 }
 
 /* Heights at points of patches that have their own are dropped; the least of
@@ -378,8 +388,8 @@ static int first_is_known(const struct vg_layer_stage *s,
   const struct vg_layer_settings *l = &b->read->settings.layer;
 
   for (size_t i = 0; i < s->n_patch && !l->by_source; i++) {
-    struct vg_layer_row row =
-      vg_settings_layer_row(&b->read->settings, b->surface.patch[i].id);
+    struct vg_layer_row row = vg_settings_layer_row(&b->read->settings,
+                                                    b->surface.patch[i].id);
 
     if (s->reason[i] != VG_WALL_NOT && !(first_height(l, &row) > 0) &&
         !(least[i] > 0))
@@ -416,10 +426,11 @@ static void note_missing(const struct vg_layer_stage *s, struct vg_boundary *b)
   char list[12 * SHOWN_PATCHES + 24];
   size_t n_wall = wall_numbers(s, &b->surface, 0, list, sizeof list);
 
-  vg_note(b->notes, "no layers on %zu viscous wall%s (patch%s%s), for no "
+  vg_note(b->notes,
+          "no layers on %zu viscous wall%s (patch%s%s), for no "
           "first height is known: give --first, or --y-plus with --reynolds "
-          "and --reference-length", n_wall, n_wall > 1 ? "s" : "",
-          n_wall > 1 ? "es" : "", list);
+          "and --reference-length",
+          n_wall, n_wall > 1 ? "s" : "", n_wall > 1 ? "es" : "", list);
 }
 
 /* A wall with layers and without a condition is a viscous one; left open, it
@@ -440,9 +451,10 @@ static void give_conditions(const struct vg_layer_stage *s,
     n++;
   }
   if (n)
-    vg_note(b->notes, "%zu patch%s with layers, but without a boundary "
-            "condition, %s written as viscous (4, FUN3D 4000)", n,
-            n > 1 ? "es" : "", n > 1 ? "are" : "is");
+    vg_note(b->notes,
+            "%zu patch%s with layers, but without a boundary "
+            "condition, %s written as viscous (4, FUN3D 4000)",
+            n, n > 1 ? "es" : "", n > 1 ? "are" : "is");
 }
 
 static void note_choice(const struct vg_layer_stage *s, struct vg_boundary *b)
@@ -454,24 +466,31 @@ static void note_choice(const struct vg_layer_stage *s, struct vg_boundary *b)
 
   for (size_t i = 0; i < s->n_patch; i++) n += s->reason[i] == VG_WALL_BODY;
   if (n_odd)
-    vg_note(b->notes, "%zu patch%s layers, but a condition that is not "
-            "viscous: number%s", n_odd, n_odd > 1 ? "es have" : " has", list);
+    vg_note(b->notes,
+            "%zu patch%s layers, but a condition that is not "
+            "viscous: number%s",
+            n_odd, n_odd > 1 ? "es have" : " has", list);
   if (n && b->flow.kind == VG_FLOW_INTERNAL)
-    vg_note(b->notes, "no patch has a condition: layers grow on %zu of %zu "
+    vg_note(b->notes,
+            "no patch has a condition: layers grow on %zu of %zu "
             "patches, not on inlets, outlets, caps, and outer boundaries "
-            "around bodies (--walls, --slip or the table layers settle it)", n,
-            s->n_patch);
+            "around bodies (--walls, --slip or the table layers settle it)",
+            n, s->n_patch);
   else if (n)
     vg_note(b->notes, "no patch has a condition: layers grow on the whole "
-            "body (--walls, --slip or the table layers settle it)");
+                      "body (--walls, --slip or the table layers settle it)");
   if (!l->by_source && l->y_plus > 0)
-    vg_note(b->notes, "y+ %g at Reynolds number %g of length %g: first "
-            "height %.6g", l->y_plus, l->reynolds, l->length,
+    vg_note(b->notes,
+            "y+ %g at Reynolds number %g of length %g: first "
+            "height %.6g",
+            l->y_plus, l->reynolds, l->length,
             vg_first_height(l->y_plus, l->reynolds, l->length));
   if (l->scale_rule != VG_LAW_KEPT)
-    vg_note(b->notes, "scale_layers: first heights times %.4g, growth of the "
+    vg_note(b->notes,
+            "scale_layers: first heights times %.4g, growth of the "
             "layers to the power of %.4g, numbers of layers over it, constant "
-            "ones over %.4g", b->read->settings.scale,
+            "ones over %.4g",
+            b->read->settings.scale,
             vg_law_power((enum vg_law_rule)l->scale_rule,
                          b->read->settings.scale),
             b->read->settings.scale);
@@ -500,7 +519,8 @@ static vg_status allocate(struct vg_layer_stage *s, size_t n,
   s->request = vg_calloc(n, sizeof *s->request);
   s->limit = vg_calloc(n, sizeof *s->limit);
   return s->reason && s->request && s->limit
-         ? VG_OK : vg_fail_memory(err, "the patches");
+         ? VG_OK
+         : vg_fail_memory(err, "the patches");
 }
 
 /* A limit would be met by nothing. */
@@ -512,7 +532,8 @@ static vg_status refuse_limits(const struct vg_settings *s,
   for (size_t i = 0; i < s->n_layer; i++)
     found |= vg_has_limits(&s->layer_row[i].limit);
   if (!found) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "layers is no, but a limit on layers is "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "layers is no, but a limit on layers is "
                  "set (min_full, min_any, min_height, max_first_error or "
                  "max_top_ratio); remove the limit or let layers grow");
 }
@@ -534,7 +555,7 @@ static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
   if (!n_wall) {
     if (vg_walls_asked(set))
       vg_note(b->notes, "layers are asked for, but no patch has a viscous "
-              "condition: there are none (--walls names walls)");
+                        "condition: there are none (--walls names walls)");
     return VG_OK;
   }
   VG_TRY(make_requests(s, b, h, err));
@@ -557,7 +578,8 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
   if (st >= 0) st = allocate(s, b->surface.n_patch, err);
   if (st >= 0)
     st = b->read->settings.layer.grow == VG_ANSWER_NO
-         ? refuse_limits(&b->read->settings, err) : plan_walls(s, b, &h, err);
+         ? refuse_limits(&b->read->settings, err)
+         : plan_walls(s, b, &h, err);
   free(h.least);
   free(h.at.item);
   return st;
@@ -577,8 +599,8 @@ static vg_status list_grows(const struct vg_layer_stage *s,
     size_t at = vg_mesh_find_patch(&b->surface, b->row[i].id);
 
     if (at != SIZE_MAX)
-      list[(*n)++] = (struct vg_patch_grows){
-        b->row[i].id, s->reason[at] != VG_WALL_NOT };
+      list[(*n)++] = (struct vg_patch_grows){ b->row[i].id,
+                                              s->reason[at] != VG_WALL_NOT };
   }
   *out = list;
   return VG_OK;
@@ -595,20 +617,25 @@ vg_status vg_problem_settle(struct vg_problem *p,
 
   VG_TRY(vg_walls_swap(b, s->is_on ? s->reason : NULL, err));
   VG_TRY(list_grows(s, b, &grows, &n, err));
-  st = vg_resolve(&p->read.settings, &(struct vg_decisions){
-    .is_remeshed = b->is_remeshed, .is_swapped = b->is_swapped,
-    .flow = (int)b->flow.kind, .axis = b->flow.axis, .n_patch = b->n_row,
-    .patch = b->row, .has_layers = s->is_on, .n_grows = n, .grows = grows },
-    &p->resolved, err);
+  st = vg_resolve(&p->read.settings,
+                  &(struct vg_decisions){ .is_remeshed = b->is_remeshed,
+                                          .is_swapped = b->is_swapped,
+                                          .flow = (int)b->flow.kind,
+                                          .axis = b->flow.axis,
+                                          .n_patch = b->n_row,
+                                          .patch = b->row,
+                                          .has_layers = s->is_on,
+                                          .n_grows = n,
+                                          .grows = grows },
+                  &p->resolved, err);
 done:
   free(grows);
   return st;
 }
 
 /* Patches without layers that share an edge with a wall. */
-static void mark_beside(const struct vg_layer_stage *s,
-                        const struct vg_mesh *m, uint8_t *on_wall,
-                        uint8_t *beside)
+static void mark_beside(const struct vg_layer_stage *s, const struct vg_mesh *m,
+                        uint8_t *on_wall, uint8_t *beside)
 {
   for (size_t i = 0; i < m->n_tri; i++)
     for (int k = 0; k < 3 && s->reason[m->tri_patch[i]] != VG_WALL_NOT; k++)
@@ -623,8 +650,8 @@ static void mark_beside(const struct vg_layer_stage *s,
 }
 
 vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
-                               const struct vg_boundary *b,
-                               struct vg_mesh *out, struct vg_error *err)
+                               const struct vg_boundary *b, struct vg_mesh *out,
+                               struct vg_error *err)
 {
   const struct vg_mesh *m = &b->surface;
   int is_front = *b->read->files.front && b->read->project.grid > 0;
@@ -661,7 +688,8 @@ static vg_status judge(struct vg_layer_stage *s, const struct vg_mesh *surface,
                                  &s->judgement, err);
 
   if (st < 0 || !(j->n_negative + j->n_off_plane)) return st;
-  return vg_fail(err, VG_ERR_GEOMETRY, "the layers did not pass their own "
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "the layers did not pass their own "
                  "check (%zu negative cells, %zu columns off their plane) "
                  "and nothing was written; please report this with the "
                  "project files, and try --layers no",
@@ -688,9 +716,8 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
   VG_TRY(judge(s, surface, err));
   VG_TRY(vg_layers_fields(surface, &s->layers.columns, s->options.threads,
                           &s->fields, err));
-  VG_TRY(vg_layers_patches(surface, &s->layers.columns, &s->fields,
-                           s->reynolds, s->length, &s->n_wall, &s->wall,
-                           &s->all, err));
+  VG_TRY(vg_layers_patches(surface, &s->layers.columns, &s->fields, s->reynolds,
+                           s->length, &s->n_wall, &s->wall, &s->all, err));
   s->time_measure = vg_display_now() - t;
 done:
   return st;

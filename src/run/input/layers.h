@@ -14,23 +14,23 @@
 #define VG_LAYERS_COARSENESS 4
 
 struct vg_limit_missed {
-  uint32_t patch;           /* index in the surface */
-  const char *name, *unit;  /* of the limit; static */
-  int is_least;             /* a least value, not a largest */
-  int is_bare;              /* the patch has no layers: got means nothing */
+  uint32_t patch;          /* index in the surface */
+  const char *name, *unit; /* of the limit; static */
+  int is_least;            /* a least value, not a largest */
+  int is_bare;             /* the patch has no layers: got means nothing */
   double wanted, got;
 };
 
-struct vg_layer_laws;       /* laws by source, private to run/input/layers.c */
+struct vg_layer_laws; /* laws by source, private to run/input/layers.c */
 
 struct vg_layer_stage {
-  int is_on;                /* layers are grown */
+  int is_on; /* layers are grown */
   size_t n_patch;
-  enum vg_wall_reason *reason;       /* [n_patch] */
-  struct vg_layer_request *request;  /* [n_patch] */
-  struct vg_layer_limits *limit;     /* [n_patch] */
-  struct vg_layer_laws *laws;        /* NULL: by patch */
-  double reynolds, length;           /* 0: no y+ */
+  enum vg_wall_reason *reason;      /* [n_patch] */
+  struct vg_layer_request *request; /* [n_patch] */
+  struct vg_layer_limits *limit;    /* [n_patch] */
+  struct vg_layer_laws *laws;       /* NULL: by patch */
+  double reynolds, length;          /* 0: no y+ */
   struct vg_layer_options options;
   struct vg_layers layers;
   struct vg_layer_report report;
@@ -41,11 +41,14 @@ struct vg_layer_stage {
   size_t n_missed, cap_missed;
   struct vg_limit_missed *missed;
   struct vg_join_info join;
-  double *top;                       /* [columns.n_face] volume ratio across
-                                        the top, of vg_layer_slices_tops */
+  double *top; /* [columns.n_face] volume ratio across
+                  the top, of vg_layer_slices_tops */
   double time_measure;
 };
-#define VG_LAYER_STAGE_INIT { .is_on = 0 }
+#define VG_LAYER_STAGE_INIT                                                    \
+  {                                                                            \
+    .is_on = 0                                                                 \
+  }
 
 void vg_layer_stage_release(struct vg_layer_stage *s);
 
@@ -55,8 +58,8 @@ void vg_layer_stage_release(struct vg_layer_stage *s);
 vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
                               struct vg_error *err);
 
-/** Swap slivers of the surface as settings say, and make p->resolved: a run with
- * these settings makes the same mesh. */
+/** Swap slivers of the surface as settings say, and make p->resolved: a run
+ * with these settings makes the same mesh. */
 vg_status vg_problem_settle(struct vg_problem *p,
                             const struct vg_layer_stage *s,
                             struct vg_error *err);
@@ -68,8 +71,8 @@ vg_status vg_problem_settle(struct vg_problem *p,
  * @param out  borrows points and patches of the surface; tri and tri_patch
  *             are its own: free them, nothing else */
 vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
-                               const struct vg_boundary *b,
-                               struct vg_mesh *out, struct vg_error *err);
+                               const struct vg_boundary *b, struct vg_mesh *out,
+                               struct vg_error *err);
 
 /** What bounds the field: the front above the layers, or, without layers, the
  * surface. Borrowed from both. */
@@ -95,7 +98,7 @@ vg_status vg_layer_stage_finish(struct vg_layer_stage *s,
 /** Triangles of the walls with, per point, levels, heights and causes, and
  * the volume ratio across their top. */
 vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
-                               const struct vg_mesh *surface,
-                               const char *path, struct vg_error *err);
+                               const struct vg_mesh *surface, const char *path,
+                               struct vg_error *err);
 
 #endif

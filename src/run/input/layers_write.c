@@ -9,9 +9,9 @@
 /* Triangles of the walls, for pictures. */
 struct wall_tris {
   size_t n;
-  uint32_t (*tri)[3];        /* points of the fields */
+  uint32_t (*tri)[3]; /* points of the fields */
   int32_t *patch;
-  double *top;               /* volume ratio across the top, 0: none */
+  double *top; /* volume ratio across the top, 0: none */
 };
 
 static vg_status write_walls(const struct vg_layer_stage *s,
@@ -33,14 +33,14 @@ static vg_status write_walls(const struct vg_layer_stage *s,
     { "patch", VG_VTU_CELL, VG_VTU_INT32, 1, t->patch },
     { "top_volume_ratio", VG_VTU_CELL, VG_VTU_FLOAT64, 1, t->top },
   };
-  double (*point)[3] = vg_alloc(w->n, sizeof *point);
+  double(*point)[3] = vg_alloc(w->n, sizeof *point);
   vg_status st;
 
   if (!point) return vg_fail_memory(err, "the walls");
   for (size_t i = 0; i < w->n; i++)
     memcpy(point[i], surface->point[w->point[i]], sizeof *point);
-  st = vg_vtu_write_triangles(path, w->n, (const double (*)[3])point, t->n,
-                              (const uint32_t (*)[3])t->tri, field,
+  st = vg_vtu_write_triangles(path, w->n, (const double(*)[3])point, t->n,
+                              (const uint32_t(*)[3])t->tri, field,
                               sizeof field / sizeof *field, err);
   free(point);
   return st;
@@ -66,15 +66,14 @@ static void list_walls(const struct vg_layer_stage *s,
 }
 
 vg_status vg_layer_stage_write(const struct vg_layer_stage *s,
-                               const struct vg_mesh *surface,
-                               const char *path, struct vg_error *err)
+                               const struct vg_mesh *surface, const char *path,
+                               struct vg_error *err)
 {
   uint32_t *index = vg_alloc(surface->n_point, sizeof *index);
   uint32_t *place = vg_alloc(surface->n_tri, sizeof *place);
-  struct wall_tris t = {
-    .tri = vg_alloc(surface->n_tri, sizeof *t.tri),
-    .patch = vg_alloc(surface->n_tri, sizeof *t.patch),
-    .top = vg_calloc(surface->n_tri, sizeof *t.top) };
+  struct wall_tris t = { .tri = vg_alloc(surface->n_tri, sizeof *t.tri),
+                         .patch = vg_alloc(surface->n_tri, sizeof *t.patch),
+                         .top = vg_calloc(surface->n_tri, sizeof *t.top) };
   vg_status st;
 
   if (!index || !place || !t.tri || !t.patch || !t.top) {

@@ -1,8 +1,8 @@
 /* A surface that was remeshed from CAD is put back on its faces and curves.
  *
  * Samples are the points and the centroids of the new triangles: each is near a
- * triangle of CAD's, which has a face; points on an edge of it that is part of a
- * curve belong to the curve. Points are put back; where that leaves centroids
+ * triangle of CAD's, which has a face; points on an edge of it that is part of
+ * a curve belong to the curve. Points are put back; where that leaves centroids
  * is measured. */
 #include <math.h>
 #include <stdlib.h>
@@ -13,9 +13,11 @@
 #include "core/remesh/put_back.h"
 #include "run/input/shape_parts.h"
 
-#define ON_EDGE 1e-6      /* of its length: a point this near is on it */
+#define ON_EDGE 1e-6 /* of its length: a point this near is on it */
 
-struct segment { uint32_t end[2], curve; };
+struct segment {
+  uint32_t end[2], curve;
+};
 
 struct samples {
   size_t n, n_point;        /* points come first */
@@ -26,7 +28,9 @@ struct samples {
   uint8_t *stays;           /* [n_point] is not put back */
 };
 
-struct range { size_t first, end; };
+struct range {
+  size_t first, end;
+};
 
 static void release(struct samples *s)
 {
@@ -63,9 +67,10 @@ static void take_centroids(struct samples *s, const struct vg_mesh *m)
 {
   for (size_t t = 0; t < m->n_tri; t++)
     for (int d = 0; d < 3; d++)
-      s->x[s->n_point + t][d] = (m->point[m->tri[t][0]][d]
-                                 + m->point[m->tri[t][1]][d]
-                                 + m->point[m->tri[t][2]][d]) / 3;
+      s->x[s->n_point + t][d] = (m->point[m->tri[t][0]][d] +
+                                 m->point[m->tri[t][1]][d] +
+                                 m->point[m->tri[t][2]][d]) /
+                                3;
 }
 
 /* --- curves -------------------------------------------------------------- */
@@ -134,7 +139,7 @@ static vg_status ask(struct samples *s, struct vg_cad *cad, struct range of_all,
   const size_t most = of_all.end - of_all.first;
   uint32_t *number = vg_alloc(most, sizeof *number);
   size_t *of = vg_alloc(most, sizeof *of), n = 0;
-  double (*x)[3] = vg_alloc(most, sizeof *x);
+  double(*x)[3] = vg_alloc(most, sizeof *x);
   double *far = vg_alloc(most, sizeof *far);
   vg_status st = VG_OK;
 
@@ -148,8 +153,8 @@ static vg_status ask(struct samples *s, struct vg_cad *cad, struct range of_all,
     memcpy(x[n], s->x[i], sizeof *x);
     of[n++] = i;
   }
-  VG_TRY(vg_cad_project(cad, on_curves ? VG_CAD_ON_CURVES
-                        : VG_CAD_ON_TRIANGLES, n, number, x, far, err));
+  VG_TRY(vg_cad_project(cad, on_curves ? VG_CAD_ON_CURVES : VG_CAD_ON_TRIANGLES,
+                        n, number, x, far, err));
   for (size_t i = 0; i < n; i++) {
     memcpy(s->to[of[i]], x[i], sizeof *x);
     s->distance[of[i]] = far[i];
@@ -200,8 +205,8 @@ static vg_status locate(struct samples *s, const struct vg_boundary *b,
   struct segment *list = NULL;
   vg_status st;
 
-  VG_TRY(vg_remesh_locate(&c->mesh, s->n, (const double (*)[3])s->x,
-                          b->threads, &stop, s->tri, s->to, err));
+  VG_TRY(vg_remesh_locate(&c->mesh, s->n, (const double(*)[3])s->x, b->threads,
+                          &stop, s->tri, s->to, err));
   for (size_t i = 0; i < s->n; i++)
     s->distance[i] = vg_distance(s->x[i], s->to[i]) <= limit ? 0 : INFINITY;
   VG_TRY(list_segments(c, &list, err));
@@ -213,8 +218,7 @@ done:
 
 /* Where the points belong. */
 static vg_status find_places(struct samples *s, struct vg_cad *cad,
-                             struct vg_remesh_distance *d,
-                             struct vg_error *err)
+                             struct vg_remesh_distance *d, struct vg_error *err)
 {
   const struct range points = { 0, s->n_point };
   vg_status st;
@@ -283,8 +287,8 @@ static vg_status move(struct vg_boundary *b, struct samples *s,
     s->stays[i] = !(s->distance[i] < INFINITY);
   }
   back->n_point = s->n_point - back->n_cap;
-  return vg_remesh_put_back(&b->surface, (const double (*)[3])s->to,
-                            b->threads, &stop, s->stays, &back->n_refused, err);
+  return vg_remesh_put_back(&b->surface, (const double(*)[3])s->to, b->threads,
+                            &stop, s->stays, &back->n_refused, err);
 }
 
 /* The largest of each triangle's own samples, where it has a place there. */
@@ -294,8 +298,7 @@ static void by_face(const struct samples *s, const struct vg_mesh *m,
   for (size_t t = 0; t < m->n_tri; t++) {
     double most = s->distance[s->n_point + t];
 
-    for (int k = 0; k < 3; k++)
-      most = fmax(most, s->distance[m->tri[t][k]]);
+    for (int k = 0; k < 3; k++) most = fmax(most, s->distance[m->tri[t][k]]);
     if (most < INFINITY) face[t] = most;
   }
 }
@@ -319,15 +322,19 @@ vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err)
   by_face(&s, &b->surface, r->face);
   back->seconds = vg_display_now() - t;
   back->is_done = 1;
-  vg_note(b->notes, "points were put back on the CAD model: %zu, %zu of them "
-          "on its curves, from at most %.3g off it; middles of triangles, "
-          "which are flat, are at most %.3g off; refused, since triangles would fold "
-          "or meet: %zu", back->n_point - back->n_far - back->n_refused,
-          back->n_curve,
-          back->off[0].most, back->off[1].most, back->n_refused);
+  vg_note(
+    b->notes,
+    "points were put back on the CAD model: %zu, %zu of them "
+    "on its curves, from at most %.3g off it; middles of triangles, "
+    "which are flat, are at most %.3g off; refused, since triangles would fold "
+    "or meet: %zu",
+    back->n_point - back->n_far - back->n_refused, back->n_curve,
+    back->off[0].most, back->off[1].most, back->n_refused);
   if (back->n_far)
-    vg_note(b->notes, "%zu points lie farther than %.3g from the CAD model "
-            "and were left where they are", back->n_far, r->report.tolerance);
+    vg_note(b->notes,
+            "%zu points lie farther than %.3g from the CAD model "
+            "and were left where they are",
+            back->n_far, r->report.tolerance);
 done:
   release(&s);
   return st;

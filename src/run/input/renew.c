@@ -13,15 +13,16 @@
 #include "run/input/share.h"
 #include "run/settings/plan_options.h"
 
-#define SLIVER2 0.03015369  /* S49: (sin 10 degrees)^2 */
-#define NEEDLE 5.0        /* S56: degrees */
-#define MANY 1e-3         /* of the triangles: a larger share of needles is
-                             repaired */
-#define MOST 0.5          /* of the triangles: then most of them are slivers */
+#define SLIVER2 0.03015369 /* S49: (sin 10 degrees)^2 */
+#define NEEDLE 5.0         /* S56: degrees */
+#define MANY                                                                   \
+  1e-3           /* of the triangles: a larger share of needles is             \
+                    repaired */
+#define MOST 0.5 /* of the triangles: then most of them are slivers */
 
 /* S49: tessellations after the first, as factors on its chord and angle:
- * coarser ones, whose sheets do not cross at cusps, then a finer one, whose sheets come
- * apart where chords are larger than a body is thick. */
+ * coarser ones, whose sheets do not cross at cusps, then a finer one, whose
+ * sheets come apart where chords are larger than a body is thick. */
 static const double again[][2] = { { 7, 2 }, { 30, 3 }, { 0.1, 0.6 } };
 #define TRIES (sizeof again / sizeof *again)
 
@@ -52,8 +53,8 @@ static double sliver_share(const struct vg_mesh *m)
 
 static int is_tessellation(const struct vg_read *r)
 {
-  return !*r->files.front && !(r->settings.wrap > 0) && !r->heights.n
-         && *r->files.surface && vg_format_is_tessellation(r->files.surface);
+  return !*r->files.front && !(r->settings.wrap > 0) && !r->heights.n &&
+       *r->files.surface && vg_format_is_tessellation(r->files.surface);
 }
 
 int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
@@ -61,8 +62,8 @@ int vg_read_is_remeshed(const struct vg_read *r, const struct vg_mesh *surface)
   if (r->settings.remesh != VG_ANSWER_AUTO)
     return r->settings.remesh == VG_ANSWER_YES;
   if (is_tessellation(r)) return sliver_share(surface) > MOST;
-  return !*r->files.front && vg_format_is_cad(r->files.surface)
-         && !(r->settings.wrap > 0);
+  return !*r->files.front && vg_format_is_cad(r->files.surface) &&
+         !(r->settings.wrap > 0);
 }
 
 void vg_boundary_note_slivers(struct vg_boundary *b)
@@ -71,13 +72,17 @@ void vg_boundary_note_slivers(struct vg_boundary *b)
 
   if (b->read->settings.remesh != VG_ANSWER_AUTO || !(share > MOST)) return;
   if (b->is_remeshed)
-    vg_note(b->notes, "%.0f %% of the triangles have an angle below 10 "
+    vg_note(b->notes,
+            "%.0f %% of the triangles have an angle below 10 "
             "degrees: the surface is taken for a tessellation and is remeshed "
-            "(--remesh-surface no: as given)", 100 * share);
+            "(--remesh-surface no: as given)",
+            100 * share);
   else if (!(b->read->settings.wrap > 0))
-    vg_note(b->notes, "%.0f %% of the triangles have an angle below 10 "
+    vg_note(b->notes,
+            "%.0f %% of the triangles have an angle below 10 "
             "degrees, and so will cells on them: --remesh-surface yes remeshes "
-            "the surface", 100 * share);
+            "the surface",
+            100 * share);
 }
 
 /* --- the new surface ----------------------------------------------------- */
@@ -134,15 +139,16 @@ static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
 static void take_volumes(struct vg_boundary *b)
 {
   const struct vg_mesh *m = &b->surface;
-  const int is_whole = b->flow.kind != VG_FLOW_UNKNOWN && b->flow.axis < 0
-                       && !b->flow.n_cavity && !b->n_given_patch;
+  const int is_whole = b->flow.kind != VG_FLOW_UNKNOWN && b->flow.axis < 0 &&
+                       !b->flow.n_cavity && !b->n_given_patch;
 
   b->renewal.volume[0] = b->renewal.volume[1] = NAN;
   if (!b->model.cad || !is_whole || !m->n_tri) return;
   b->renewal.volume[0] = fabs(vg_enclosed6(m->n_tri,
-                                           (const uint32_t (*)[3])m->tri,
-                                           (const double (*)[3])m->point,
-                                           m->point[0])) / 6;
+                                           (const uint32_t(*)[3])m->tri,
+                                           (const double(*)[3])m->point,
+                                           m->point[0])) /
+                         6;
   b->renewal.volume[1] = b->model.surface.volume;
 }
 
@@ -162,16 +168,16 @@ static vg_status remesh_cad(struct vg_boundary *b, const struct vg_mesh *given,
                             const struct vg_surface_sizes *sizes,
                             struct vg_display *show, struct vg_error *err)
 {
-  const int has_defects =
-    b->check.n_defect > b->check.count[VG_DEFECT_OPEN_EDGE];
+  const int has_defects = b->check.n_defect >
+                          b->check.count[VG_DEFECT_OPEN_EDGE];
   struct vg_remesh_report first = VG_REMESH_REPORT_INIT;
   struct vg_mesh made = VG_MESH_INIT;
   vg_status st;
 
   VG_TRY(remesh(b, hard, sizes, has_defects, show, err));
-  if (has_defects || !b->model.cad
-      || (double)n_needle(&b->renewal.report)
-         <= MANY * (double)b->surface.n_tri) goto done;
+  if (has_defects || !b->model.cad ||
+      (double)n_needle(&b->renewal.report) <= MANY * (double)b->surface.n_tri)
+    goto done;
   vg_mesh_move(&made, &b->surface);
   first = b->renewal.report;
   b->renewal.report = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
@@ -214,15 +220,17 @@ static void note_faults(struct vg_boundary *b)
   const struct vg_remesh_report *r = &b->renewal.report;
 
   if (r->n_crossing[0])
-    vg_note(b->notes, "the surface as given intersects itself in %zu pairs of "
+    vg_note(b->notes,
+            "the surface as given intersects itself in %zu pairs of "
             "triangles, by %.3g at most, at (%.6g, %.6g, %.6g); the new "
-            "surface, which is within %.3g of it, does not", r->n_crossing[0],
-            r->crossing_depth, r->crossing_at[0], r->crossing_at[1],
-            r->crossing_at[2], r->tolerance);
+            "surface, which is within %.3g of it, does not",
+            r->n_crossing[0], r->crossing_depth, r->crossing_at[0],
+            r->crossing_at[1], r->crossing_at[2], r->tolerance);
   if (r->n_kept)
-    vg_note(b->notes, "%zu triangles stay as given, since new ones met there; "
-            "the first are near (%.6g, %.6g, %.6g)", r->n_kept, r->kept_at[0],
-            r->kept_at[1], r->kept_at[2]);
+    vg_note(b->notes,
+            "%zu triangles stay as given, since new ones met there; "
+            "the first are near (%.6g, %.6g, %.6g)",
+            r->n_kept, r->kept_at[0], r->kept_at[1], r->kept_at[2]);
 }
 
 vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
@@ -236,7 +244,8 @@ vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
   vg_status st;
 
   if (b->read->heights.n)
-    return vg_fail(err, VG_ERR_INPUT, "first heights are given at points of "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "first heights are given at points of "
                    "the surface, which remesh_surface would take away: give "
                    "them by patch instead, or keep the surface");
   vg_display_update(show, "remesh", b->surface.n_tri, 0);
@@ -252,7 +261,8 @@ vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
   take_volumes(b);
   areas(&b->surface, 1, r->area);
   note_faults(b);
-  vg_note(b->notes, "the surface was remeshed (remesh_surface): %zu "
+  vg_note(b->notes,
+          "the surface was remeshed (remesh_surface): %zu "
           "triangles, before %zu, at most %.3g from it, tolerance %.3g",
           r->report.n_tri[1], r->report.n_tri[0],
           r->off[0].most > r->off[1].most ? r->off[0].most : r->off[1].most,
@@ -301,9 +311,11 @@ vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
   b->model.surface = fresh;
   vg_renewal_release(&b->renewal);
   while (b->notes->n > n_note) free(b->notes->text[--b->notes->n]);
-  vg_note(b->notes, "the first tessellation of the CAD model led to no sound "
+  vg_note(b->notes,
+          "the first tessellation of the CAD model led to no sound "
           "surface; this one has chord %.2g and angle %.3g (cad_chord, "
-          "cad_angle)", cad.chord, cad.angle);
+          "cad_angle)",
+          cad.chord, cad.angle);
   return VG_OK;
 done:
   vg_cad_surface_release(&fresh);
@@ -325,8 +337,8 @@ vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
   const struct vg_read *read = &p->read;
   struct vg_boundary *b = &p->boundary;
 
-  if (!vg_read_is_by_first(read, comm)
-      || !vg_read_is_remeshed(read, vg_problem_surface(p)))
+  if (!vg_read_is_by_first(read, comm) ||
+      !vg_read_is_remeshed(read, vg_problem_surface(p)))
     return vg_comm_agree(comm, st, err);
   st = vg_surface_bcast(comm, is_maker, st, &b->surface, err);
   if (st >= 0 && vg_comm_rank(comm)) b->renewal.is_done = is_maker;

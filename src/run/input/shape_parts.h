@@ -31,10 +31,10 @@ vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
 
 /** Sizes by the table `surface`. NULL, NULL: it is empty. */
 struct vg_surface_sizes {
-  double *cap;                      /* [n_point] largest size; INFINITY: none */
-  double *across;                   /* [n_patch] edges across strips */
-  double *stretch;                  /* [3 n_tri] as vg_remesh_options has it;
-                                       NULL where nothing is stretched */
+  double *cap;     /* [n_point] largest size; INFINITY: none */
+  double *across;  /* [n_patch] edges across strips */
+  double *stretch; /* [3 n_tri] as vg_remesh_options has it;
+                      NULL where nothing is stretched */
 };
 
 /** From the settings, for the surface as it is now. VG_ERR_INPUT for patches

@@ -5,7 +5,9 @@
 
 #include "base/bytes.h"
 
-struct head { uint64_t n_point, n_tri, n_patch, number; };
+struct head {
+  uint64_t n_point, n_tri, n_patch, number;
+};
 
 /* --- in common ----------------------------------------------------------- */
 
@@ -64,10 +66,11 @@ vg_status vg_surface_pack(const struct vg_mesh *m, uint64_t number,
   struct head h = { m->n_point, m->n_tri, m->n_patch, number };
   struct vg_writer w = { { 0, NULL }, 0, 0 };
 
-  w.refused = vg_reserve(&w.bytes.data, &w.cap, sizeof h +
-                         m->n_point * sizeof *m->point +
-                         m->n_tri * (sizeof *m->tri + sizeof *m->tri_patch) +
-                         m->n_patch * sizeof *m->patch, 1) != 0;
+  w.refused = vg_reserve(&w.bytes.data, &w.cap,
+                         sizeof h + m->n_point * sizeof *m->point +
+                           m->n_tri * (sizeof *m->tri + sizeof *m->tri_patch) +
+                           m->n_patch * sizeof *m->patch,
+                         1) != 0;
   vg_put(&w, 1, sizeof h, &h);
   vg_put(&w, m->n_point, sizeof *m->point, m->point);
   vg_put(&w, m->n_tri, sizeof *m->tri, m->tri);
@@ -111,8 +114,10 @@ vg_status vg_surface_unpack(const struct vg_bytes *bytes, struct vg_mesh *m,
   got.patch = vg_get_array(&r, h.n_patch, sizeof *got.patch);
   if (r.bad || r.at != r.n || !is_sound(&got)) {
     vg_mesh_release(&got);
-    return vg_fail(err, VG_ERR_FORMAT, "%zu bytes are no surface, or memory "
-                   "is short; run again", bytes->n);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%zu bytes are no surface, or memory "
+                   "is short; run again",
+                   bytes->n);
   }
   *number = h.number;
   vg_mesh_move(m, &got);

@@ -37,8 +37,8 @@ static void add(struct samples *s, const double x[3], double h)
   s->h[s->n++] = h;
 }
 
-static void add_between(struct samples *s, const double a[3],
-                        const double b[3], double ha, double hb)
+static void add_between(struct samples *s, const double a[3], const double b[3],
+                        double ha, double hb)
 {
   double d2 = 0, least = ha < hb ? ha : hb, ratio, x[3];
   int parts;
@@ -93,15 +93,18 @@ static vg_status find_mesh(const char *path, char **out, struct vg_error *err)
     } else if (access(name, F_OK)) {
       free(name);
     } else if (found) {
-      st = vg_fail(err, VG_ERR_INPUT, "%s: both %s and %s may be the mesh of "
-                   "these sizes; leave one beside it", path, found, name);
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "%s: both %s and %s may be the mesh of "
+                   "these sizes; leave one beside it",
+                   path, found, name);
       free(name);
     } else {
       found = name;
     }
   }
   if (st >= 0 && !found)
-    st = vg_fail(err, VG_ERR_INPUT, "%s: there is no mesh %.*s.mesh, .meshb, "
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: there is no mesh %.*s.mesh, .meshb, "
                  ".b8.ugrid, ... beside it, at whose points its sizes are",
                  path, (int)(dot - path), path);
   if (st < 0) free(found);
@@ -120,7 +123,7 @@ static int ends_in(const char *path, const char *suffix)
 static vg_status read_vtk(const char *path, struct vg_mesh *m, double **h,
                           struct vg_error *err)
 {
-  double (*x)[3];
+  double(*x)[3];
   size_t n;
   vg_status st = vg_vtu_points_read(path, "size", &n, &x, h, err);
 
@@ -140,9 +143,11 @@ static vg_status read_values(const char *path, struct vg_mesh *m, double **h,
   if (ends_in(path, ".vtu") || ends_in(path, ".vtp"))
     return read_vtk(path, m, h, err);
   if (!ends_in(path, ".sol") && !ends_in(path, ".solb"))
-    return vg_fail(err, VG_ERR_FORMAT, "%s: sizes are read from Medit's .sol "
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: sizes are read from Medit's .sol "
                    "and .solb beside a mesh, and from a point array 'size' of "
-                   "VTK's .vtu", path);
+                   "VTK's .vtu",
+                   path);
   VG_TRY(vg_sol_read(path, &n, h, err));
   VG_TRY(find_mesh(path, &mesh, err));
   VG_TRY(vg_format_read(mesh, m, err));
@@ -164,13 +169,15 @@ vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err)
 
   if (!*set->sizes || r->samples) return VG_OK;
   if (r->map)
-    return vg_fail(err, VG_ERR_INPUT, "sizes are given by the file %s and by "
-                   "the program; give one", set->sizes);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "sizes are given by the file %s and by "
+                   "the program; give one",
+                   set->sizes);
   VG_TRY(read_values(set->sizes, &m, &h, err));
   VG_TRY(vg_size_samples_check(set->sizes, m.n_point,
-                               (const double (*)[3])m.point, h, err));
+                               (const double(*)[3])m.point, h, err));
   VG_TRY(make_samples(&m, h, &s, err));
-  VG_TRY(vg_size_samples_new(s.n, (const double (*)[3])s.x, s.h,
+  VG_TRY(vg_size_samples_new(s.n, (const double(*)[3])s.x, s.h,
                              vg_options_growth(set), (int)set->threads,
                              &r->samples, err));
   r->map = vg_size_samples_map(r->samples);

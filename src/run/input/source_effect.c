@@ -10,24 +10,25 @@
 vg_status vg_boundary_effects(const struct vg_boundary *b,
                               const struct vg_mesh *front,
                               const struct vg_sizing *sizing,
-                              struct vg_effects *out,
-                              struct vg_error *err)
+                              struct vg_effects *out, struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
   const struct vg_sizing_options o = vg_options_sizing(s, NULL);
 
-  return vg_effects_find(&o, s->n_source, s->source, front, &b->surface,
-                         sizing, out, err);
+  return vg_effects_find(&o, s->n_source, s->source, front, &b->surface, sizing,
+                         out, err);
 }
 
 static const char *kind_of(const struct vg_source *s)
 {
-  static const char *const name[] = {
-    [VG_SOURCE_VGRID_NODE] = "vgrid_node",
-    [VG_SOURCE_VGRID_LINE] = "vgrid_line", [VG_SOURCE_POINT] = "point",
-    [VG_SOURCE_LINE] = "line", [VG_SOURCE_TRIANGLE] = "triangle",
-    [VG_SOURCE_BOX] = "box", [VG_SOURCE_SPHERE] = "sphere",
-    [VG_SOURCE_CYLINDER] = "cylinder" };
+  static const char *const name[] = { [VG_SOURCE_VGRID_NODE] = "vgrid_node",
+                                      [VG_SOURCE_VGRID_LINE] = "vgrid_line",
+                                      [VG_SOURCE_POINT] = "point",
+                                      [VG_SOURCE_LINE] = "line",
+                                      [VG_SOURCE_TRIANGLE] = "triangle",
+                                      [VG_SOURCE_BOX] = "box",
+                                      [VG_SOURCE_SPHERE] = "sphere",
+                                      [VG_SOURCE_CYLINDER] = "cylinder" };
 
   return name[s->kind];
 }
@@ -36,7 +37,8 @@ static const struct vg_patch *patch_of(const struct vg_limited_source *h,
                                        const struct vg_mesh *front)
 {
   return h->face == SIZE_MAX || !front->tri_patch
-    ? NULL : front->patch + front->tri_patch[h->face];
+         ? NULL
+         : front->patch + front->tri_patch[h->face];
 }
 
 static int is_wholly(const struct vg_limited_source *h)
@@ -52,23 +54,24 @@ static void explain(const struct vg_limited_source *h,
   int n;
 
   if (!patch) {
-    snprintf(text, size, "no face is to blame: the octree of sizes is at its "
+    snprintf(text, size,
+             "no face is to blame: the octree of sizes is at its "
              "limit; fewer or coarser sources would help");
     return;
   }
-  n = snprintf(text, size, "faces with edges of %.3g on patch %d%s%.40s%s, "
+  n = snprintf(text, size,
+               "faces with edges of %.3g on patch %d%s%.40s%s, "
                "%.3g away, hold it back; make them no longer than %.3g there",
-               h->edge, (int)patch->id, patch->name[0] ? " (" : "",
-               patch->name, patch->name[0] ? ")" : "", h->distance,
-               h->edge_wanted);
+               h->edge, (int)patch->id, patch->name[0] ? " (" : "", patch->name,
+               patch->name[0] ? ")" : "", h->distance, h->edge_wanted);
   if (h->growth_wanted > 0 && n > 0 && (size_t)n < size)
     snprintf(text + n, size - (size_t)n, ", or set growth to %.3g",
              h->growth_wanted);
 }
 
 static void note_limited(const struct vg_limited_source *h,
-                         const struct vg_mesh *front,
-                         const struct vg_source *s, struct vg_notes *notes)
+                         const struct vg_mesh *front, const struct vg_source *s,
+                         struct vg_notes *notes)
 {
   char name[160], why[320];
 
@@ -77,25 +80,29 @@ static void note_limited(const struct vg_limited_source *h,
            s->p0[0], s->p0[1], s->p0[2]);
   explain(h, front, why, sizeof why);
   if (is_wholly(h))
-    vg_note(notes, "%s gets nowhere what it asks for: %.3g at best where "
-            "it asks for %.3g, at %.4g %.4g %.4g, where %s", name, h->got,
-            h->asked, h->at[0], h->at[1], h->at[2], why);
+    vg_note(notes,
+            "%s gets nowhere what it asks for: %.3g at best where "
+            "it asks for %.3g, at %.4g %.4g %.4g, where %s",
+            name, h->got, h->asked, h->at[0], h->at[1], h->at[2], why);
   else
-    vg_note(notes, "%s is held back in %zu of %zu places: at %.4g %.4g "
-            "%.4g it asks for %.3g and gets %.3g, where %s", name, h->n_limited,
-            h->n_place, h->at[0], h->at[1], h->at[2], h->asked, h->got, why);
+    vg_note(notes,
+            "%s is held back in %zu of %zu places: at %.4g %.4g "
+            "%.4g it asks for %.3g and gets %.3g, where %s",
+            name, h->n_limited, h->n_place, h->at[0], h->at[1], h->at[2],
+            h->asked, h->got, why);
 }
 
 static void note_unmet(const struct vg_unmet_source *u,
                        const struct vg_source *s, struct vg_notes *notes)
 {
-  vg_note(notes, "source %zu (%s%s%.32s) has no effect in %zu of %zu "
+  vg_note(notes,
+          "source %zu (%s%s%.32s) has no effect in %zu of %zu "
           "places: at %.4g %.4g %.4g the size is %.3g, and no point of the "
           "mesh is within twice that, for sizes grow faster around it than "
           "cells can; a larger radius or growth of 2 or less would help",
           u->source + 1, kind_of(s), s->group[0] ? " of " : "", s->group,
-          u->n_unmet, u->n_place, u->place.x[0], u->place.x[1],
-          u->place.x[2], u->place.got);
+          u->n_unmet, u->n_place, u->place.x[0], u->place.x[1], u->place.x[2],
+          u->place.got);
 }
 
 static void note_outside(const struct vg_effects *h, int is_beyond,
@@ -114,9 +121,10 @@ static void note_outside(const struct vg_effects *h, int is_beyond,
       at += (size_t)snprintf(list + at, sizeof list - at, " ...");
   }
   if (!n) return;
-  vg_note(notes, "%zu source%s (number%s%s) %s wholly %s: of %s no more "
-          "than the growth is felt", n, n > 1 ? "s" : "", n > 1 ? "s" : "",
-          list, n > 1 ? "lie" : "lies",
+  vg_note(notes,
+          "%zu source%s (number%s%s) %s wholly %s: of %s no more "
+          "than the growth is felt",
+          n, n > 1 ? "s" : "", n > 1 ? "s" : "", list, n > 1 ? "lie" : "lies",
           is_beyond ? "outside the domain"
                     : "inside a body, or beyond the boundary",
           n > 1 ? "them" : "it");
@@ -128,31 +136,32 @@ void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
   for (size_t i = 0; i < h->n && i < VG_SHOWN_LIMITED; i++)
     note_limited(h->item + i, front, s->source + h->item[i].source, notes);
   if (h->n > VG_SHOWN_LIMITED)
-    vg_note(notes, "%zu more sources are held back; the JSON report has "
-            "them all", h->n - VG_SHOWN_LIMITED);
+    vg_note(notes,
+            "%zu more sources are held back; the JSON report has "
+            "them all",
+            h->n - VG_SHOWN_LIMITED);
   for (size_t i = 0; i < h->n_unmet && i < VG_SHOWN_LIMITED; i++)
     note_unmet(h->unmet + i, s->source + h->unmet[i].source, notes);
   if (h->n_unmet > VG_SHOWN_LIMITED)
-    vg_note(notes, "%zu more sources have no effect; the JSON report has "
-            "them all", h->n_unmet - VG_SHOWN_LIMITED);
+    vg_note(notes,
+            "%zu more sources have no effect; the JSON report has "
+            "them all",
+            h->n_unmet - VG_SHOWN_LIMITED);
   note_outside(h, 0, notes);
   note_outside(h, 1, notes);
 }
 
 static json_t *item_json(const struct vg_limited_source *h,
-                         const struct vg_mesh *front,
-                         const struct vg_source *s)
+                         const struct vg_mesh *front, const struct vg_source *s)
 {
   const struct vg_patch *patch = patch_of(h, front);
   json_t *o = json_pack("{s:I s:s s:b s:I s:I s:[f,f,f] s:f s:f}", "source",
-                        (json_int_t)h->source + 1, "kind", kind_of(s),
-                        "wholly", is_wholly(h), "places",
-                        (json_int_t)h->n_place, "places_held",
-                        (json_int_t)h->n_limited, "at", h->at[0], h->at[1],
-                        h->at[2], "asks", h->asked, "gets", h->got);
+                        (json_int_t)h->source + 1, "kind", kind_of(s), "wholly",
+                        is_wholly(h), "places", (json_int_t)h->n_place,
+                        "places_held", (json_int_t)h->n_limited, "at", h->at[0],
+                        h->at[1], h->at[2], "asks", h->asked, "gets", h->got);
 
-  if (s->group[0])
-    json_object_set_new(o, "group", vg_text_json(s->group));
+  if (s->group[0]) json_object_set_new(o, "group", vg_text_json(s->group));
   if (!patch) return o;
   json_object_set_new(o, "patch", json_integer(patch->id));
   json_object_set_new(o, "patch_name", vg_text_json(patch->name));
@@ -180,12 +189,14 @@ json_t *vg_effects_json(const struct vg_effects *h, const struct vg_mesh *front,
   for (size_t i = 0; i < h->n_unmet; i++) {
     const struct vg_unmet_source *u = h->unmet + i;
 
-    json_array_append_new(unmet, json_pack(
-      "{s:I s:s s:I s:I s:[f,f,f] s:f}", "source",
-      (json_int_t)u->source + 1, "kind", kind_of(s->source + u->source),
-      "places", (json_int_t)u->n_place, "places_unmet",
-      (json_int_t)u->n_unmet, "at", u->place.x[0], u->place.x[1],
-      u->place.x[2], "gets", u->place.got));
+    json_array_append_new(unmet,
+                          json_pack("{s:I s:s s:I s:I s:[f,f,f] s:f}", "source",
+                                    (json_int_t)u->source + 1, "kind",
+                                    kind_of(s->source + u->source), "places",
+                                    (json_int_t)u->n_place, "places_unmet",
+                                    (json_int_t)u->n_unmet, "at", u->place.x[0],
+                                    u->place.x[1], u->place.x[2], "gets",
+                                    u->place.got));
   }
   json_object_set_new(o, "held", held);
   json_object_set_new(o, "unmet", unmet);

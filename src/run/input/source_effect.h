@@ -12,8 +12,7 @@
 vg_status vg_boundary_effects(const struct vg_boundary *b,
                               const struct vg_mesh *front,
                               const struct vg_sizing *sizing,
-                              struct vg_effects *out,
-                              struct vg_error *err);
+                              struct vg_effects *out, struct vg_error *err);
 
 /** A note for each source that is held back, or that the mesh does not meet,
  * the first VG_SHOWN_LIMITED of them, and one for all that are outside. front:

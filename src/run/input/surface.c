@@ -12,9 +12,10 @@
 #include "run/settings/deck.h"
 #include "run/settings/plan_options.h"
 
-#define SHOWN_PATCHES 20   /* numbers in a note */
-#define ROUNDING 1e-9      /* S62: of the length: gaps between rims that are
-                              rounding of coordinates */
+#define SHOWN_PATCHES 20 /* numbers in a note */
+#define ROUNDING                                                               \
+  1e-9 /* S62: of the length: gaps between rims that are                       \
+          rounding of coordinates */
 
 /* Then all patches should have one. */
 static int has_conditions(const struct vg_mesh *m)
@@ -29,7 +30,7 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
                              struct vg_error *err)
 {
   size_t n = m->n_tri + 2 * m->n_quad;
-  uint32_t (*tri)[3], *patch;
+  uint32_t(*tri)[3], *patch;
 
   if (!m->n_quad) return VG_OK;
   tri = vg_realloc(m->tri, n, sizeof *tri);
@@ -45,8 +46,10 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
     patch[m->n_tri] = patch[m->n_tri + 1] = m->quad_patch[i];
     m->n_tri += 2;
   }
-  vg_note(notes, "%zu quadrilaterals of the surface were split into "
-          "triangles", m->n_quad);
+  vg_note(notes,
+          "%zu quadrilaterals of the surface were split into "
+          "triangles",
+          m->n_quad);
   free(m->quad);
   free(m->quad_patch);
   m->quad = NULL;
@@ -59,7 +62,8 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
 static void note_removed(struct vg_boundary *b)
 {
   if (b->check.n_removed_wall)
-    vg_note(b->notes, "%zu triangles of walls that touching bodies shared "
+    vg_note(b->notes,
+            "%zu triangles of walls that touching bodies shared "
             "were removed, so that the bodies have one skin",
             b->check.n_removed_wall);
   if (b->check.n_removed_tri)
@@ -90,20 +94,22 @@ static vg_status defects(const struct vg_boundary *b, struct vg_display *show,
   char remedy[120];
 
   if (!b->check.n_defect && !b->surface.n_tri)
-    return vg_fail(err, VG_ERR_GEOMETRY, "%s: no surface is left: all its "
-                   "triangles are degenerate", b->read->files.stem);
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "%s: no surface is left: all its "
+                   "triangles are degenerate",
+                   b->read->files.stem);
   if (!b->check.n_defect) return VG_OK;
   vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
-  return vg_fail(err, VG_ERR_GEOMETRY, "%s: the surface has %zu defects and "
-                 "cannot bound a mesh%s", b->read->files.stem,
-                 b->check.n_defect, remedy);
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "%s: the surface has %zu defects and "
+                 "cannot bound a mesh%s",
+                 b->read->files.stem, b->check.n_defect, remedy);
 }
 
 /* The rows of n patches as they are now; what is added later comes by itself
  * when the run is repeated. Borders are hard as the n rows of `old` say. */
 static vg_status take_rows(struct vg_boundary *b, size_t n,
-                           const struct vg_patch_row *old,
-                           struct vg_error *err)
+                           const struct vg_patch_row *old, struct vg_error *err)
 {
   struct vg_settings view = VG_SETTINGS_INIT;
   vg_status st = vg_deck_patches_of(&b->surface, &view, err);
@@ -129,22 +135,25 @@ void vg_boundary_note_unset(struct vg_boundary *b)
   size_t n = 0, at = 0;
   uint8_t *has_faces = vg_calloc(b->surface.n_patch, 1);
 
-  if (!has_faces) return;   /* as a note for which there is no memory */
+  if (!has_faces) return; /* as a note for which there is no memory */
   for (size_t i = 0; i < b->surface.n_tri; i++)
     has_faces[b->surface.tri_patch[i]] = 1;
   for (size_t i = 0; i < b->surface.n_patch; i++) {
     const struct vg_patch *patch = &b->surface.patch[i];
 
-    if (patch->bc != VG_BC_NONE || patch->bc_fun3d != VG_BC_NONE
-        || !has_faces[i]) continue;
+    if (patch->bc != VG_BC_NONE || patch->bc_fun3d != VG_BC_NONE ||
+        !has_faces[i])
+      continue;
     if (n++ < SHOWN_PATCHES)
       at += (size_t)snprintf(list + at, sizeof list - at, " %d",
                              (int)patch->id);
   }
   if (n)
-    vg_note(b->notes, "%zu patch%s no boundary condition (number%s%s), "
+    vg_note(b->notes,
+            "%zu patch%s no boundary condition (number%s%s), "
             "written as inviscid (5, FUN3D 3000): give conditions in a .mapbc "
-            "file or the deck", n, n > 1 ? "es have" : " has", list,
+            "file or the deck",
+            n, n > 1 ? "es have" : " has", list,
             n > SHOWN_PATCHES ? " ..." : "");
   free(has_faces);
 }
@@ -168,10 +177,11 @@ static vg_status close_holes(struct vg_boundary *b, struct vg_error *err)
                                vg_options_farfield(&b->read->settings).symmetry,
                                sizing, &n_hole, &n_tri, err));
   if (n_hole)
-    vg_note(b->notes, "holes of the surface that were closed (close_holes): "
+    vg_note(b->notes,
+            "holes of the surface that were closed (close_holes): "
             "%zu, with %zu triangles in patches %d to %d, named cap_1 to "
-            "cap_%zu", n_hole, n_tri,
-            (int)b->surface.patch[b->n_given_patch].id,
+            "cap_%zu",
+            n_hole, n_tri, (int)b->surface.patch[b->n_given_patch].id,
             (int)b->surface.patch[b->surface.n_patch - 1].id, n_hole);
 done:
   vg_sizing_free(sizing);
@@ -215,8 +225,10 @@ static vg_status weld_rims(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(vg_surface_weld_rims(&b->surface, ROUNDING * length, &n_point, &n_edge,
                               err));
   if (!n_point) goto done;
-  vg_note(b->notes, "%zu open edges coincide with others but for rounding: "
-          "they were welded, %zu points merged", n_edge, n_point);
+  vg_note(b->notes,
+          "%zu open edges coincide with others but for rounding: "
+          "they were welded, %zu points merged",
+          n_edge, n_point);
   VG_TRY(check(b, -1, show, err));
   VG_TRY(vg_surface_rim_gap(&b->surface, &b->check, &b->rim_gap, &n_edge, err));
 done:
@@ -231,8 +243,8 @@ static vg_status close_surface(struct vg_boundary *b, struct vg_display *show,
   vg_status st = VG_OK;
 
   if (s->weld > 0)
-    VG_TRY(vg_surface_weld(&b->surface, s->weld, &b->n_welded, &b->n_dropped,
-                           err));
+    VG_TRY(
+      vg_surface_weld(&b->surface, s->weld, &b->n_welded, &b->n_dropped, err));
   VG_TRY(check(b, -1, show, err));
   VG_TRY(weld_rims(b, show, err));
   if (s->close_holes && b->check.count[VG_DEFECT_OPEN_EDGE]) {
@@ -256,11 +268,10 @@ static int is_reference(const struct vg_surface_report *r)
 {
   const size_t n_double = r->count[VG_DEFECT_DUPLICATE_TRIANGLE];
 
-  return r->n_defect == r->count[VG_DEFECT_OPEN_EDGE]
-                        + r->count[VG_DEFECT_INTERSECTION]
-                        + r->count[VG_DEFECT_DEGENERATE_TRIANGLE]
-                        + r->count[VG_DEFECT_SHELL] + n_double
-                        + (n_double ? r->count[VG_DEFECT_NONMANIFOLD_EDGE] : 0);
+  return r->n_defect ==
+         r->count[VG_DEFECT_OPEN_EDGE] + r->count[VG_DEFECT_INTERSECTION] +
+           r->count[VG_DEFECT_DEGENERATE_TRIANGLE] + r->count[VG_DEFECT_SHELL] +
+           n_double + (n_double ? r->count[VG_DEFECT_NONMANIFOLD_EDGE] : 0);
 }
 
 /* Open, and no half model. */
@@ -269,8 +280,8 @@ static int is_open_for_good(const struct vg_boundary *b,
 {
   const size_t *n = b->check.count;
 
-  return !o->remesh_open && b->flow.axis < 0 && n[VG_DEFECT_OPEN_EDGE]
-         && !n[VG_DEFECT_NONMANIFOLD_EDGE] && !n[VG_DEFECT_ORIENTATION];
+  return !o->remesh_open && b->flow.axis < 0 && n[VG_DEFECT_OPEN_EDGE] &&
+         !n[VG_DEFECT_NONMANIFOLD_EDGE] && !n[VG_DEFECT_ORIENTATION];
 }
 
 /* One tessellation of the surface: closed, decided, remeshed. */
@@ -306,7 +317,7 @@ done:
 /* Names and conditions before the first tessellation, for the next one. */
 struct given {
   size_t n_note, n_patch;
-  struct vg_patch *patch;   /* [n_patch] owned */
+  struct vg_patch *patch; /* [n_patch] owned */
 };
 
 static vg_status take_given(const struct vg_boundary *b, struct given *g,
@@ -334,8 +345,8 @@ static vg_status try_shapes(struct vg_boundary *b,
   for (size_t i = 0; st == VG_ERR_GEOMETRY && !is_open_for_good(b, o); i++) {
     struct vg_error again = VG_ERROR_INIT;
 
-    next = vg_boundary_tessellate(b, i, g.patch, g.n_patch, g.n_note,
-                                  show, &again);
+    next = vg_boundary_tessellate(b, i, g.patch, g.n_patch, g.n_note, show,
+                                  &again);
     if (next == VG_BLOCKED) break;
     if (next < 0) {
       st = vg_fail(err, next, "%s", again.text);
@@ -394,8 +405,11 @@ static vg_status check_again(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err)
 {
   if (!b->renewal.is_done) return VG_OK;
-  return check(b, b->flow.kind == VG_FLOW_UNKNOWN ? -1
-               : b->flow.kind == VG_FLOW_EXTERNAL, show, err);
+  return check(b,
+               b->flow.kind == VG_FLOW_UNKNOWN
+                 ? -1
+                 : b->flow.kind == VG_FLOW_EXTERNAL,
+               show, err);
 }
 
 vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
@@ -406,14 +420,11 @@ vg_status vg_boundary_close(struct vg_boundary *b, struct vg_display *show,
 
   VG_TRY(check_again(b, show, err));
   is_open = vg_is_only_open(&b->check);
-  if (is_open && b->flow.axis < 0)
-    st = vg_boundary_refuse_open(b, show, err);
-  else if (b->check.n_defect && !is_open)
-    st = defects(b, show, err);
+  if (is_open && b->flow.axis < 0) st = vg_boundary_refuse_open(b, show, err);
+  else if (b->check.n_defect && !is_open) st = defects(b, show, err);
   else if (b->flow.kind == VG_FLOW_EXTERNAL || is_open)
     st = complete(b, show, err);
-  else
-    st = defects(b, show, err);
+  else st = defects(b, show, err);
 done:
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
@@ -457,7 +468,7 @@ vg_status vg_write_defects(const char *path, const struct vg_mesh *m,
                            struct vg_error *err)
 {
   size_t room = 4 * r->n_defect, n = 0;
-  uint32_t (*tri)[3] = vg_alloc(room, sizeof *tri);
+  uint32_t(*tri)[3] = vg_alloc(room, sizeof *tri);
   int32_t *kind = vg_alloc(room, sizeof *kind);
   int32_t *patch = vg_alloc(room, sizeof *patch);
   vg_status st = VG_OK;
@@ -474,8 +485,9 @@ vg_status vg_write_defects(const char *path, const struct vg_mesh *m,
       count = face_triangles(m, f, tri + n);
       for (; count; count--, n++) {
         kind[n] = (int32_t)r->defect[i].kind;
-        patch[n] = m->patch[f < m->n_tri ? m->tri_patch[f]
-                                         : m->quad_patch[f - m->n_tri]].id;
+        patch[n] =
+          m->patch[f < m->n_tri ? m->tri_patch[f] : m->quad_patch[f - m->n_tri]]
+            .id;
       }
     }
   {
@@ -484,9 +496,8 @@ vg_status vg_write_defects(const char *path, const struct vg_mesh *m,
       { "patch", VG_VTU_CELL, VG_VTU_INT32, 1, patch },
     };
 
-    st = vg_vtu_write_triangles(path, m->n_point,
-                                (const double (*)[3])m->point, n,
-                                (const uint32_t (*)[3])tri, field, 2, err);
+    st = vg_vtu_write_triangles(path, m->n_point, (const double(*)[3])m->point,
+                                n, (const uint32_t(*)[3])tri, field, 2, err);
   }
 done:
   free(tri);

@@ -11,7 +11,7 @@
 #include "run/settings/patch_names.h"
 #include "run/settings/surface_table.h"
 
-#define SECTIONS 256      /* along the span of a patch */
+#define SECTIONS 256 /* along the span of a patch */
 
 static void lower(double *cap, uint32_t p, double size)
 {
@@ -20,7 +20,9 @@ static void lower(double *cap, uint32_t p, double size)
 
 /* --- curves -------------------------------------------------------------- */
 
-struct side { uint32_t lo, hi, patch, half; };
+struct side {
+  uint32_t lo, hi, patch, half;
+};
 
 static int by_ends(const void *pa, const void *pb)
 {
@@ -58,8 +60,8 @@ static vg_status size_curve(const struct vg_mesh *m, const uint8_t (*on)[2],
     }
   qsort(s, n, sizeof *s, by_ends);
   for (size_t i = 1; i < n; i++)
-    if (s[i].lo == s[i - 1].lo && s[i].hi == s[i - 1].hi
-        && is_between(on, s[i].patch, s[i - 1].patch)) {
+    if (s[i].lo == s[i - 1].lo && s[i].hi == s[i - 1].hi &&
+        is_between(on, s[i].patch, s[i - 1].patch)) {
       lower(to->cap, s[i].lo, size);
       lower(to->cap, s[i].hi, size);
       for (size_t j = i - 1; stretch > 0 && j <= i; j++)
@@ -123,8 +125,8 @@ static void cut(struct sections *s, const struct vg_mesh *m, size_t patch)
 }
 
 /* Chord of the patch where x is, and how far x is behind its front. */
-static int chord_at(const struct sections *s, const double x[3],
-                    double *chord, double *behind)
+static int chord_at(const struct sections *s, const double x[3], double *chord,
+                    double *behind)
 {
   double at = (x[s->axis] - s->from) / s->step - 0.5, t;
   size_t i = at > 0 ? (size_t)at : 0;
@@ -134,8 +136,8 @@ static int chord_at(const struct sections *s, const double x[3],
   t = at - (double)i;
   if (!(s->hi[i] >= s->lo[i] && s->hi[i + 1] >= s->lo[i + 1])) return 0;
   *behind = x[0] - (s->lo[i] + t * (s->lo[i + 1] - s->lo[i]));
-  *chord = s->hi[i] - s->lo[i]
-           + t * (s->hi[i + 1] - s->lo[i + 1] - s->hi[i] + s->lo[i]);
+  *chord = s->hi[i] - s->lo[i] +
+           t * (s->hi[i + 1] - s->lo[i + 1] - s->hi[i] + s->lo[i]);
   return *chord > 0;
 }
 
@@ -158,9 +160,8 @@ static void size_lead(const struct vg_mesh *m, size_t patch, double share,
 /* --- all ----------------------------------------------------------------- */
 
 static vg_status take_curve(const struct vg_mesh *m,
-                            const struct vg_surface_row *row,
-                            uint8_t (*on)[2], struct vg_surface_sizes *s,
-                            struct vg_error *err)
+                            const struct vg_surface_row *row, uint8_t (*on)[2],
+                            struct vg_surface_sizes *s, struct vg_error *err)
 {
   const double size = row->size > 0 ? row->size : INFINITY;
   char one[2 * VG_NAME_MAX + 4], two[2 * VG_NAME_MAX + 4];
@@ -171,13 +172,15 @@ static vg_status take_curve(const struct vg_mesh *m,
     s->stretch = vg_calloc(3 * m->n_tri, sizeof *s->stretch);
     if (!s->stretch) return vg_fail_memory(err, "the stretched edges");
   }
-  st = size_curve(m, (const uint8_t (*)[2])on, size, row->stretch, s, &n_edge,
+  st = size_curve(m, (const uint8_t(*)[2])on, size, row->stretch, s, &n_edge,
                   err);
   if (st < 0 || n_edge) return st;
   vg_param_format(&vg_surface_table.column[0], row, one, sizeof one);
   vg_param_format(&vg_surface_table.column[1], row, two, sizeof two);
-  return vg_fail(err, VG_ERR_INPUT, "surface: patches %s and %s share no edge, so "
-                 "there is no curve between them", one, two);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "surface: patches %s and %s share no edge, so "
+                 "there is no curve between them",
+                 one, two);
 }
 
 static void take_patch(const struct vg_boundary *b, size_t patch,

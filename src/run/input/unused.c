@@ -11,10 +11,16 @@
 
 /* Why settings that need it had no effect; in the order of enum vg_use. */
 static const char *const reason[VG_USE_N] = {
-  "", "", "there is no .d3m", "no CAD file was read",
-  "the surface was not made anew (remesh_surface)", "no layers grow",
-  "no farfield was made", "no planes cut what is parted otherwise (decompose)",
-  "the space was cut by planes (decompose)" };
+  "",
+  "",
+  "there is no .d3m",
+  "no CAD file was read",
+  "the surface was not made anew (remesh_surface)",
+  "no layers grow",
+  "no farfield was made",
+  "no planes cut what is parted otherwise (decompose)",
+  "the space was cut by planes (decompose)"
+};
 
 static unsigned in_use(const struct vg_problem *p, int layers_on)
 {
@@ -23,13 +29,12 @@ static unsigned in_use(const struct vg_problem *p, int layers_on)
   int planes = p->read.settings.decompose != VG_DECOMPOSE_DISCRETE;
   int cad = !*f->front && *f->surface && vg_format_is_cad(f->surface);
 
-  return 1u << VG_USE_ALWAYS | (unsigned)(*f->d3m != 0) << VG_USE_D3M
-         | (unsigned)cad << VG_USE_CAD
-         | (unsigned)p->boundary.renewal.is_done << VG_USE_REMESH
-         | (unsigned)layers_on << VG_USE_LAYERS
-         | (unsigned)p->boundary.domain.added_farfield << VG_USE_FARFIELD
-         | (unsigned)planes << VG_USE_PLANES
-         | (unsigned)parted << VG_USE_PARTS;
+  return 1u << VG_USE_ALWAYS | (unsigned)(*f->d3m != 0) << VG_USE_D3M |
+         (unsigned)cad << VG_USE_CAD |
+         (unsigned)p->boundary.renewal.is_done << VG_USE_REMESH |
+         (unsigned)layers_on << VG_USE_LAYERS |
+         (unsigned)p->boundary.domain.added_farfield << VG_USE_FARFIELD |
+         (unsigned)planes << VG_USE_PLANES | (unsigned)parted << VG_USE_PARTS;
 }
 
 /* Sizes of a surface that is made here are scaled, too. */
@@ -68,15 +73,17 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
   unsigned missing = judged & ~in_use(p, layers_on);
   size_t n_hard = 0;
 
-  if (!given) return;   /* as a note for which there is no memory */
+  if (!given) return; /* as a note for which there is no memory */
   for (int use = VG_USE_D3M; use < VG_USE_N; use++)
     if (missing >> use & 1) note_use(p, given, (enum vg_use)use);
   free(given);
   if (layers_on && s->layer.scale_rule && s->scale == 1)
     vg_note(&p->notes, "without effect, for scale is 1: scale_layers");
   if (s->scale != 1 && missing >> VG_USE_REMESH & 1 && is_given(&p->read.files))
-    vg_note(&p->notes, "scale %g acts on sizes in space alone: the surface "
-            "stays as it is given (remesh_surface makes it anew)", s->scale);
+    vg_note(&p->notes,
+            "scale %g acts on sizes in space alone: the surface "
+            "stays as it is given (remesh_surface makes it anew)",
+            s->scale);
   for (size_t i = 0; i < b->n_row; i++) n_hard += b->row[i].hard != 0;
   if (n_hard && missing >> VG_USE_REMESH & 1)
     vg_note(&p->notes, "without effect, for %s: hard, in %zu rows of patches",

@@ -14,8 +14,8 @@
 #include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
 
-#define MESHING_WALL 2     /* class of a .d3m patch that grows layers */
-#define FLAT 1e-4         /* S50: height over the longest edge: 0.006 degrees */
+#define MESHING_WALL 2 /* class of a .d3m patch that grows layers */
+#define FLAT 1e-4      /* S50: height over the longest edge: 0.006 degrees */
 
 const char *vg_wall_reason_name(enum vg_wall_reason reason)
 {
@@ -34,17 +34,15 @@ int vg_is_viscous(const struct vg_patch *p)
 
   if (bc == VG_BC_NONE && p->bc_fun3d != VG_BC_NONE)
     bc = vg_bc_to_usm3d(p->bc_fun3d);
-  if (bc == VG_BC_NONE)
-    return strncasecmp(p->name, "BCWallViscous", 13) == 0;
+  if (bc == VG_BC_NONE) return strncasecmp(p->name, "BCWallViscous", 13) == 0;
   return bc == 4 || bc == 41 || bc == 44 || (bc >= 4000 && bc < 5000) ||
          (bc <= -4000 && bc > -5000);
 }
 
 int vg_has_limits(const struct vg_layer_limits *l)
 {
-  return !isnan(l->min_full) || !isnan(l->min_any) ||
-         !isnan(l->min_height) || !isnan(l->max_first_error) ||
-         !isnan(l->max_top_ratio);
+  return !isnan(l->min_full) || !isnan(l->min_any) || !isnan(l->min_height) ||
+         !isnan(l->max_first_error) || !isnan(l->max_top_ratio);
 }
 
 int vg_walls_asked(const struct vg_settings *s)
@@ -57,7 +55,7 @@ int vg_walls_asked(const struct vg_settings *s)
         vg_has_limits(&s->layer_row[i].limit))
       return 1;
   return l->grow == VG_ANSWER_YES || l->first > 0 || l->y_plus > 0 ||
-         *l->walls || vg_has_limits(&l->limit);
+       *l->walls || vg_has_limits(&l->limit);
 }
 
 /* Meshing class of patch id in the project, 0 where it says nothing. */
@@ -99,9 +97,11 @@ static vg_status refuse_added(const struct vg_boundary *b, const char *what,
   char list[600];
 
   vg_patch_list_text(&b->surface, n_own(b), list, sizeof list);
-  return vg_fail(err, VG_ERR_INPUT, "%s: patch %d is the %s that was added to "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: patch %d is the %s that was added to "
                  "the surface, on which no layers grow; leave it out. Patches: "
-                 "%s", what, (int)patch->id,
+                 "%s",
+                 what, (int)patch->id,
                  patch->bc == 1 ? "symmetry plane" : "farfield", list);
 }
 
@@ -128,10 +128,12 @@ static vg_status refuse_empty(const struct vg_mesh *m, const uint8_t *has_faces,
 {
   for (size_t i = 0; i < m->n_patch; i++)
     if (reason[i] == VG_WALL_SETTING && !has_faces[i])
-      return vg_fail(err, VG_ERR_INPUT, "layers are asked for on patch %d%s%s, "
+      return vg_fail(err, VG_ERR_INPUT,
+                     "layers are asked for on patch %d%s%s, "
                      "but none of its faces is left (the repair, or wrap, "
-                     "removed them); leave it out", (int)m->patch[i].id,
-                     *m->patch[i].name ? " " : "", m->patch[i].name);
+                     "removed them); leave it out",
+                     (int)m->patch[i].id, *m->patch[i].name ? " " : "",
+                     m->patch[i].name);
   return VG_OK;
 }
 
@@ -166,24 +168,28 @@ static enum vg_wall_reason by_input(const struct vg_boundary *b, size_t i,
 }
 
 static vg_status apply_row(const struct vg_boundary *b,
-                           const struct vg_layer_row *row,
-                           const uint8_t *wall, const uint8_t *slip,
-                           enum vg_wall_reason *reason, struct vg_error *err)
+                           const struct vg_layer_row *row, const uint8_t *wall,
+                           const uint8_t *slip, enum vg_wall_reason *reason,
+                           struct vg_error *err)
 {
   size_t i = vg_mesh_find_patch(&b->surface, row->id);
 
   if (i == SIZE_MAX)
-    return vg_patch_ref_mark("layers", row->id, "", &b->surface, n_own(b),
-                             NULL, err);
-  if (i >= n_own(b) && (row->grow == VG_ANSWER_YES ||
-                        vg_has_limits(&row->limit)))
+    return vg_patch_ref_mark("layers", row->id, "", &b->surface, n_own(b), NULL,
+                             err);
+  if (i >= n_own(b) &&
+      (row->grow == VG_ANSWER_YES || vg_has_limits(&row->limit)))
     return refuse_added(b, "layers", i, err);
   if (row->grow == VG_ANSWER_NO && wall[i])
-    return vg_fail(err, VG_ERR_INPUT, "patch %d is in the list walls, but the "
-                   "table layers says grow no; remove one", (int)row->id);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "patch %d is in the list walls, but the "
+                   "table layers says grow no; remove one",
+                   (int)row->id);
   if (row->grow == VG_ANSWER_YES && slip[i])
-    return vg_fail(err, VG_ERR_INPUT, "patch %d is in the list slip, but the "
-                   "table layers says grow yes; remove one", (int)row->id);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "patch %d is in the list slip, but the "
+                   "table layers says grow yes; remove one",
+                   (int)row->id);
   if (row->grow == VG_ANSWER_YES) reason[i] = VG_WALL_SETTING;
   if (row->grow == VG_ANSWER_NO) reason[i] = VG_WALL_NOT;
   return VG_OK;
@@ -202,8 +208,10 @@ static vg_status by_settings(const struct vg_boundary *b, uint8_t *wall,
   VG_TRY(vg_patch_list_mark("slip", s->layer.slip, m, m->n_patch, slip, err));
   for (size_t i = 0; i < m->n_patch; i++) {
     if (wall[i] && slip[i]) {
-      st = vg_fail(err, VG_ERR_INPUT, "patch %d is in both lists, walls and "
-                   "slip; remove one", (int)m->patch[i].id);
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "patch %d is in both lists, walls and "
+                   "slip; remove one",
+                   (int)m->patch[i].id);
       goto done;
     }
     if (wall[i]) reason[i] = VG_WALL_SETTING;
@@ -230,10 +238,13 @@ static vg_status no_walls(const struct vg_boundary *b, struct vg_error *err)
   char list[600];
 
   vg_patch_list_text(&b->surface, n_own(b), list, sizeof list);
-  return vg_fail(err, VG_ERR_INPUT, "%s: layers are asked for, but no patch "
-                 "is known to be a wall; name them with --walls (as in "
-                 "--walls 3-12,wing*), give condition 4 in a .mapbc or the deck, "
-                 "or say --layers no. Patches: %s", b->read->files.stem, list);
+  return vg_fail(
+    err, VG_ERR_INPUT,
+    "%s: layers are asked for, but no patch "
+    "is known to be a wall; name them with --walls (as in "
+    "--walls 3-12,wing*), give condition 4 in a .mapbc or the deck, "
+    "or say --layers no. Patches: %s",
+    b->read->files.stem, list);
 }
 
 vg_status vg_walls_find(const struct vg_boundary *b,
@@ -253,8 +264,7 @@ vg_status vg_walls_find(const struct vg_boundary *b,
     reason[i] = by_input(b, i, has_faces[i]);
   VG_TRY(by_settings(b, mark_of, mark_of + m->n_patch, reason, err));
   VG_TRY(refuse_empty(m, has_faces, reason, err));
-  for (size_t i = 0; i < m->n_patch; i++)
-    *n_wall += reason[i] != VG_WALL_NOT;
+  for (size_t i = 0; i < m->n_patch; i++) *n_wall += reason[i] != VG_WALL_NOT;
   /* A whole domain in which conditions say that nothing is viscous is left
    * as it is, unless somebody insists. */
   if (!*n_wall && vg_walls_asked(&b->read->settings) &&
@@ -266,8 +276,7 @@ done:
 }
 
 /* Lower than this share of its longest edge. */
-static int is_sliver(const struct vg_mesh *m, const uint32_t t[3],
-                     double share)
+static int is_sliver(const struct vg_mesh *m, const uint32_t t[3], double share)
 {
   double e[3][3], n[3], longest = 0;
 
@@ -292,8 +301,7 @@ static int has_slivers(const struct vg_mesh *m,
 }
 
 vg_status vg_walls_swap(struct vg_boundary *b,
-                        const enum vg_wall_reason *reason,
-                        struct vg_error *err)
+                        const enum vg_wall_reason *reason, struct vg_error *err)
 {
   const struct vg_swap_options o = VG_SWAP_OPTIONS_INIT;
   struct vg_swap_report r = VG_SWAP_REPORT_INIT;
@@ -305,10 +313,11 @@ vg_status vg_walls_swap(struct vg_boundary *b,
   if (!b->is_swapped) return VG_OK;
   st = vg_surface_swap(&b->surface, &o, &r, err);
   if (st < 0) return st;
-  vg_note(b->notes, "slivers of the surface: caps %zu, now %zu, needles %zu, "
+  vg_note(b->notes,
+          "slivers of the surface: caps %zu, now %zu, needles %zu, "
           "now %zu, by %zu swaps and %zu collapses of edges that move it by "
-          "%.2g at most (--surface-swap no: as given)", r.n_cap[0],
-          r.n_cap[1], r.n_needle[0], r.n_needle[1], r.n_swapped,
+          "%.2g at most (--surface-swap no: as given)",
+          r.n_cap[0], r.n_cap[1], r.n_needle[0], r.n_needle[1], r.n_swapped,
           r.n_collapsed, r.moved);
   return st;
 }

@@ -9,7 +9,7 @@
 #include "run/settings/plan_options.h"
 #include "run/settings/patch_names.h"
 
-#define LONG 60.0          /* seconds that are announced */
+#define LONG 60.0 /* seconds that are announced */
 
 /* asked: [n_patch] 1: walls or the table layers name the patch. */
 static vg_status find_asked(const struct vg_boundary *b, uint8_t *asked,
@@ -19,8 +19,8 @@ static vg_status find_asked(const struct vg_boundary *b, uint8_t *asked,
   const struct vg_mesh *m = &b->surface;
   vg_status st;
 
-  VG_TRY(vg_patch_list_mark("walls", s->layer.walls, m, m->n_patch, asked,
-                            err));
+  VG_TRY(
+    vg_patch_list_mark("walls", s->layer.walls, m, m->n_patch, asked, err));
   for (size_t i = 0; i < s->n_layer; i++) {
     const struct vg_layer_row *row = &s->layer_row[i];
 
@@ -37,16 +37,19 @@ static vg_status check_empty(const struct vg_boundary *b, const uint8_t *empty,
 {
   for (size_t i = 0; i < b->surface.n_patch; i++)
     if (empty[i] && asked[i])
-      return vg_fail(err, VG_ERR_INPUT, "wrap: nothing of patch %d is left, "
+      return vg_fail(err, VG_ERR_INPUT,
+                     "wrap: nothing of patch %d is left, "
                      "though walls or the table layers name it: it lies inside "
                      "others, or is smaller than the size; remove it there, or "
-                     "take a smaller size", (int)b->surface.patch[i].id);
+                     "take a smaller size",
+                     (int)b->surface.patch[i].id);
   return VG_OK;
 }
 
 static void note_wrap(struct vg_boundary *b, const struct vg_wrap_report *r)
 {
-  vg_note(b->notes, "the surface was wrapped: %zu triangles by %zu; of %zu "
+  vg_note(b->notes,
+          "the surface was wrapped: %zu triangles by %zu; of %zu "
           "points %zu lie on them, others about %.3g away; put together where "
           "two sides meet in an edge: %zu; gaps narrower than %g were bridged; "
           "the farthest point of the wrap is %.3g away, at (%.6g, %.6g, %.6g); "
@@ -54,26 +57,34 @@ static void note_wrap(struct vg_boundary *b, const struct vg_wrap_report *r)
           r->n_before, b->surface.n_tri - r->n_kept, r->n_point, r->n_fit,
           r->offset, r->n_zip, b->read->settings.wrap, r->distance, r->at[0],
           r->at[1], r->at[2], r->n_empty);
-  vg_note(b->notes, "what the wrap leaves out: no point of the input lies "
+  vg_note(b->notes,
+          "what the wrap leaves out: no point of the input lies "
           "farther than %.3g outside it (at %.6g, %.6g, %.6g); %.1f %% of the "
           "input's area lies inside it, within other parts or behind gaps "
-          "narrower than its size", r->missing, r->missing_at[0],
-          r->missing_at[1], r->missing_at[2], 100 * r->inside);
+          "narrower than its size",
+          r->missing, r->missing_at[0], r->missing_at[1], r->missing_at[2],
+          100 * r->inside);
   if (r->sheet > 0)
-    vg_note(b->notes, "%.1f %% of the wrapped area are sheets: they have "
+    vg_note(b->notes,
+            "%.1f %% of the wrapped area are sheets: they have "
             "fluid on both sides, closer together than %.3g",
             100 * r->sheet, 10 * r->offset);
   if (r->sheet > 0 && r->widest > b->read->settings.wrap)
-    vg_note(b->notes, "the surface has holes wider than the wrap, up to %.3g, "
+    vg_note(b->notes,
+            "the surface has holes wider than the wrap, up to %.3g, "
             "at (%.6g, %.6g, %.6g): a part that should be solid may have fluid "
-            "inside it (--close-holes yes, or a larger wrap)", r->widest,
-            r->widest_at[0], r->widest_at[1], r->widest_at[2]);
+            "inside it (--close-holes yes, or a larger wrap)",
+            r->widest, r->widest_at[0], r->widest_at[1], r->widest_at[2]);
   if (r->n_cavity || r->n_crumb)
-    vg_note(b->notes, "shells of the wrap that were removed: inside it %zu, "
-            "of negligible volume %zu", r->n_cavity, r->n_crumb);
+    vg_note(b->notes,
+            "shells of the wrap that were removed: inside it %zu, "
+            "of negligible volume %zu",
+            r->n_cavity, r->n_crumb);
   if (r->n_kept)
-    vg_note(b->notes, "triangles of outer boundaries that were not wrapped: "
-            "%zu", r->n_kept);
+    vg_note(b->notes,
+            "triangles of outer boundaries that were not wrapped: "
+            "%zu",
+            r->n_kept);
 }
 
 /* What takes minutes says so before it begins. */
@@ -90,8 +101,10 @@ static vg_status announce(struct vg_boundary *b,
   snprintf(stage, sizeof stage, "wrap: %s triangles, %d min", count,
            (int)(f.seconds / 60 + 0.5));
   vg_display_update(show, stage, 0, 0);
-  vg_note(b->notes, "forecast of the wrap: %s triangles, %.0f minutes; twice "
-          "the size takes a quarter of them", count, f.seconds / 60);
+  vg_note(b->notes,
+          "forecast of the wrap: %s triangles, %.0f minutes; twice "
+          "the size takes a quarter of them",
+          count, f.seconds / 60);
   return VG_OK;
 }
 
@@ -137,13 +150,15 @@ void vg_boundary_suggest_wrap(const struct vg_boundary *b,
   double wrap = 0;
 
   *text = 0;
-  if (!vg_wrap_is_built() || b->read->settings.wrap > 0
-      || b->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE]
-      || n[VG_DEFECT_NO_BC] == b->check.n_defect) return;
+  if (!vg_wrap_is_built() || b->read->settings.wrap > 0 ||
+      b->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE] ||
+      n[VG_DEFECT_NO_BC] == b->check.n_defect)
+    return;
   vg_display_update(show, "wrap that would do", 0, 0);
   if (vg_wrap_suggest(&b->surface, &stop, &wrap, &reason, &why) < 0) return;
   if (reason == VG_WRAP_SHEETS)
-    snprintf(text, size, "; its sheets without thickness bound no body, so "
+    snprintf(text, size,
+             "; its sheets without thickness bound no body, so "
              "that no wrap will do");
   else
     snprintf(text, size, "; --wrap %.2g puts a closed surface around it%s",

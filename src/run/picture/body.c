@@ -10,10 +10,10 @@
 /* Planes stand a little off the middle, where symmetric bodies have points and
  * edges (V4). */
 #define MIDDLE 0.4871
-#define TRIED 7            /* planes */
-#define AROUND 1.3         /* window of a section over its extent */
-#define CLOSE 5            /* window close to a wall, in heights of layers */
-#define CLOSE_BARE 14      /* as much in edges, without layers */
+#define TRIED 7       /* planes */
+#define AROUND 1.3    /* window of a section over its extent */
+#define CLOSE 5       /* window close to a wall, in heights of layers */
+#define CLOSE_BARE 14 /* as much in edges, without layers */
 
 static int is_wall(const struct vg_patch *p)
 {
@@ -48,8 +48,8 @@ void vg_body_patches(const struct vg_mesh *surface,
 struct body {
   const struct vg_mesh *m;
   const struct vg_columns *columns;
-  uint8_t *on;              /* patches */
-  double *height;           /* [n_point] of the layers; NULL: none */
+  uint8_t *on;    /* patches */
+  double *height; /* [n_point] of the layers; NULL: none */
   double lo[3], hi[3];
 };
 
@@ -68,8 +68,14 @@ static void box_of(struct body *b)
     }
 }
 
-static int first_of(int axis) { return axis == 0 ? 1 : 0; }
-static int second_of(int axis) { return axis == 2 ? 1 : 2; }
+static int first_of(int axis)
+{
+  return axis == 0 ? 1 : 0;
+}
+static int second_of(int axis)
+{
+  return axis == 2 ? 1 : 2;
+}
 
 static void add(struct vg_cut_plan *plan, enum vg_cut_view view,
                 const struct vg_cut *cut)
@@ -84,25 +90,28 @@ static struct vg_cut window(const double lo[3], const double hi[3], int axis,
                             double at, double around)
 {
   int u = first_of(axis), v = second_of(axis);
-  struct vg_cut c = { .axis = axis, .at = at,
-    .centre = { (lo[u] + hi[u]) / 2, (lo[v] + hi[v]) / 2 } };
+  struct vg_cut c = { .axis = axis,
+                      .at = at,
+                      .centre = { (lo[u] + hi[u]) / 2, (lo[v] + hi[v]) / 2 } };
 
-  c.width = around * fmax(hi[u] - lo[u], (hi[v] - lo[v]) * VG_CUT_WIDTH /
-                                         VG_CUT_HEIGHT);
+  c.width = around *
+            fmax(hi[u] - lo[u], (hi[v] - lo[v]) * VG_CUT_WIDTH / VG_CUT_HEIGHT);
   return c;
 }
 
 /* What a plane cuts of the body: its box, and its ends in the first of the
  * axes with what is to be seen there, the layers or some edges. */
-struct section { double lo[3], hi[3], at[2][2], size[2]; };
+struct section {
+  double lo[3], hi[3], at[2][2], size[2];
+};
 
 static double size_at(const struct body *b, const uint32_t *t)
 {
   double edge = 0, height = 0;
 
   for (int k = 0; k < 3; k++) {
-    edge = fmax(edge, vg_distance(b->m->point[t[k]],
-                                  b->m->point[t[(k + 1) % 3]]));
+    edge = fmax(edge,
+                vg_distance(b->m->point[t[k]], b->m->point[t[(k + 1) % 3]]));
     if (b->height) height = fmax(height, b->height[t[k]]);
   }
   return fmax(CLOSE * height, height > 0 ? edge : CLOSE_BARE * edge);
@@ -144,8 +153,7 @@ static double cut_body(const struct body *b, int axis, double at,
     s->hi[k] = -INFINITY;
   }
   for (size_t i = 0; i < b->m->n_tri; i++)
-    if (b->on[b->m->tri_patch[i]])
-      cut_triangle(b, b->m->tri[i], axis, at, s);
+    if (b->on[b->m->tri_patch[i]]) cut_triangle(b, b->m->tri[i], axis, at, s);
   return s->hi[u] > s->lo[u] ? (s->hi[u] - s->lo[u]) * (s->hi[v] - s->lo[v])
                              : 0;
 }
@@ -245,9 +253,13 @@ vg_status vg_cut_plan(const struct vg_mesh *surface,
                       struct vg_cut_plan *plan, struct vg_error *err)
 {
   static const int axes[3] = { 1, 0, 2 };
-  struct body b = { surface, columns, vg_alloc(surface->n_patch, 1),
+  struct body b = { surface,
+                    columns,
+                    vg_alloc(surface->n_patch, 1),
                     columns ? vg_calloc(surface->n_point, sizeof *b.height)
-                            : NULL, { 0 }, { 0 } };
+                            : NULL,
+                    { 0 },
+                    { 0 } };
   double lo[3], hi[3];
   vg_status st = VG_OK;
 
@@ -264,8 +276,8 @@ vg_status vg_cut_plan(const struct vg_mesh *surface,
     struct section s;
     double at = choose_plane(&b, axes[k], &s);
     int met = s.hi[0] >= s.lo[0];
-    struct vg_cut c = window(met ? s.lo : b.lo, met ? s.hi : b.hi, axes[k],
-                             at, AROUND);
+    struct vg_cut c = window(met ? s.lo : b.lo, met ? s.hi : b.hi, axes[k], at,
+                             AROUND);
 
     add(plan, VG_VIEW_BODY, &c);
     if (k) continue;

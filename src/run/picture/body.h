@@ -16,11 +16,11 @@ void vg_body_patches(const struct vg_mesh *surface,
 
 /** What a cut shows, for its words. */
 enum vg_cut_view {
-  VG_VIEW_BODY,             /* the body's section */
-  VG_VIEW_DOMAIN,           /* the whole domain */
-  VG_VIEW_FIRST,            /* close to the section's end of least u */
-  VG_VIEW_LAST,             /* ... of largest u */
-  VG_VIEW_POOREST           /* where layers lack most of their levels */
+  VG_VIEW_BODY,   /* the body's section */
+  VG_VIEW_DOMAIN, /* the whole domain */
+  VG_VIEW_FIRST,  /* close to the section's end of least u */
+  VG_VIEW_LAST,   /* ... of largest u */
+  VG_VIEW_POOREST /* where layers lack most of their levels */
 };
 
 struct vg_cut_plan {

@@ -14,20 +14,39 @@ const int vg_cut_angle[VG_CUT_ANGLES] = { 5, 10, 20, 30, 40 };
 /* Cosines of these angles. */
 static const double cosine[VG_CUT_ANGLES] = {
   0.99619469809174555, 0.98480775301220802, 0.93969262078590843,
-  0.86602540378443871, 0.76604444311897801 };
+  0.86602540378443871, 0.76604444311897801
+};
 
 static const uint8_t corners[VG_SLICE_KINDS] = { 4, 5, 6 };
 static const uint8_t n_edge[VG_SLICE_KINDS] = { 6, 8, 9 };
 static const uint8_t edge[VG_SLICE_KINDS][9][2] = {
-  [VG_SLICE_TET] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 },
+  [VG_SLICE_TET] = { { 0, 1 },
+                     { 0, 2 },
+                     { 0, 3 },
+                     { 1, 2 },
+                     { 1, 3 },
                      { 2, 3 } },
-  [VG_SLICE_PYR] = { { 0, 3 }, { 3, 4 }, { 4, 1 }, { 1, 0 }, { 0, 2 },
-                     { 1, 2 }, { 3, 2 }, { 4, 2 } },
-  [VG_SLICE_PRI] = { { 0, 1 }, { 1, 2 }, { 2, 0 }, { 3, 4 }, { 4, 5 },
-                     { 5, 3 }, { 0, 3 }, { 1, 4 }, { 2, 5 } } };
+  [VG_SLICE_PYR] = { { 0, 3 },
+                     { 3, 4 },
+                     { 4, 1 },
+                     { 1, 0 },
+                     { 0, 2 },
+                     { 1, 2 },
+                     { 3, 2 },
+                     { 4, 2 } },
+  [VG_SLICE_PRI] = { { 0, 1 },
+                     { 1, 2 },
+                     { 2, 0 },
+                     { 3, 4 },
+                     { 4, 5 },
+                     { 5, 3 },
+                     { 0, 3 },
+                     { 1, 4 },
+                     { 2, 5 } }
+};
 
-vg_status vg_cuts_new(size_t n, const struct vg_cut *cut,
-                      struct vg_cuts **out, struct vg_error *err)
+vg_status vg_cuts_new(size_t n, const struct vg_cut *cut, struct vg_cuts **out,
+                      struct vg_error *err)
 {
   struct vg_cuts *c = vg_calloc(1, sizeof *c);
 
@@ -152,12 +171,13 @@ static uint16_t code_of(const struct vg_slice *s, int kind,
   int part = PART_LAYER;
 
   if (s->kind == 0)
-    return CODE(kind == VG_SLICE_TET ? VG_CUT_LAYER_TET
-                : kind == VG_SLICE_PYR ? VG_CUT_PYRAMID : VG_CUT_PRISM, 0,
-                VG_CUT_ANGLES, PART_LAYER);
+    return CODE(kind == VG_SLICE_TET   ? VG_CUT_LAYER_TET
+                : kind == VG_SLICE_PYR ? VG_CUT_PYRAMID
+                                       : VG_CUT_PRISM,
+                0, VG_CUT_ANGLES, PART_LAYER);
   for (int k = 0; k < 4; k++) x[k] = s->x[node[k]];
   part = s->kind == 2 ? PART_ZONE
-         : PART_FIRST + (int)(s->domain % (PARTS - PART_FIRST));
+                      : PART_FIRST + (int)(s->domain % (PARTS - PART_FIRST));
   return CODE(VG_CUT_FIELD, 0, angle_step(x), part);
 }
 
@@ -173,8 +193,7 @@ static vg_status cut_cell(const struct drawing *d, size_t j, int kind,
     int up = d->above[a] >> j & 1;
 
     if (up != (d->above[b] >> j & 1))
-      meet(&d->c->cut[i], d->s->x[up ? b : a], d->s->x[up ? a : b],
-           g.p[g.n++]);
+      meet(&d->c->cut[i], d->s->x[up ? b : a], d->s->x[up ? a : b], g.p[g.n++]);
   }
   return vg_cuts_draw(d->c->at + i * TILES, &g, code, err);
 }
@@ -233,7 +252,10 @@ vg_status vg_cuts_put(void *cuts, const struct vg_slice *slice,
 /* --- ranks ----------------------------------------------------------------*/
 
 /* Tiles as they are sent: where, then the samples. */
-struct sent { uint32_t at; uint16_t code[TILE * TILE]; };
+struct sent {
+  uint32_t at;
+  uint16_t code[TILE * TILE];
+};
 
 static vg_status pack(const struct vg_cuts *c, struct vg_bytes *b,
                       struct vg_error *err)

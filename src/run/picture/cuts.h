@@ -17,17 +17,17 @@ enum { VG_CUTS_MAX = 12, VG_CUT_WIDTH = 864, VG_CUT_HEIGHT = 576 }; /* V2 */
 
 /** A plane and a window in it. */
 struct vg_cut {
-  int axis;                 /* normal: 0 x, 1 y, 2 z */
-  double at;                /* where on it */
-  double centre[2];         /* of the window, in the other axes as they rise */
-  double width;             /* of the window, length; it is two thirds high */
+  int axis;         /* normal: 0 x, 1 y, 2 z */
+  double at;        /* where on it */
+  double centre[2]; /* of the window, in the other axes as they rise */
+  double width;     /* of the window, length; it is two thirds high */
 };
 
 /** What colours tell. */
 enum vg_cut_colours {
-  VG_CUT_BY_KIND,           /* prisms, pyramids, tetrahedra; layers or field */
-  VG_CUT_BY_PART,           /* the subdomain that a cell was made in */
-  VG_CUT_BY_ANGLE           /* smallest dihedral angle, of the field's */
+  VG_CUT_BY_KIND, /* prisms, pyramids, tetrahedra; layers or field */
+  VG_CUT_BY_PART, /* the subdomain that a cell was made in */
+  VG_CUT_BY_ANGLE /* smallest dihedral angle, of the field's */
 };
 
 /** Bounds of the steps of VG_CUT_BY_ANGLE, degrees, and colours for keys. */
@@ -36,8 +36,13 @@ extern const int vg_cut_angle[VG_CUT_ANGLES];
 extern const uint8_t vg_cut_angle_colour[VG_CUT_ANGLES + 1][3];
 
 /** Colours of VG_CUT_BY_KIND, in the order of enum vg_cut_kind. */
-enum vg_cut_kind { VG_CUT_FIELD, VG_CUT_LAYER_TET, VG_CUT_PYRAMID,
-                   VG_CUT_PRISM, VG_CUT_KINDS };
+enum vg_cut_kind {
+  VG_CUT_FIELD,
+  VG_CUT_LAYER_TET,
+  VG_CUT_PYRAMID,
+  VG_CUT_PRISM,
+  VG_CUT_KINDS
+};
 extern const uint8_t vg_cut_kind_colour[VG_CUT_KINDS][3];
 
 /** Colour of cells of zones in VG_CUT_BY_PART; layers are grey. */
@@ -47,8 +52,8 @@ struct vg_cuts;
 
 /** @param n    of cuts, at most VG_CUTS_MAX
  * VG_ERR_MEMORY. */
-vg_status vg_cuts_new(size_t n, const struct vg_cut *cut,
-                      struct vg_cuts **out, struct vg_error *err);
+vg_status vg_cuts_new(size_t n, const struct vg_cut *cut, struct vg_cuts **out,
+                      struct vg_error *err);
 
 /** Accepts NULL. */
 void vg_cuts_free(struct vg_cuts *c);

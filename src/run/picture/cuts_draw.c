@@ -6,11 +6,17 @@
 #include "base/memory.h"
 #include "run/picture/cuts_parts.h"
 
-#define PEN 1.2            /* samples from an edge that it darkens */
-#define THIN (4 * PEN)     /* polygons thinner than this have fainter edges */
+#define PEN 1.2        /* samples from an edge that it darkens */
+#define THIN (4 * PEN) /* polygons thinner than this have fainter edges */
 
-static double least(double a, double b) { return a < b ? a : b; }
-static double most(double a, double b) { return a > b ? a : b; }
+static double least(double a, double b)
+{
+  return a < b ? a : b;
+}
+static double most(double a, double b)
+{
+  return a > b ? a : b;
+}
 
 /* The tile, made if it is not there; NULL: no memory. */
 static struct tile *touch(struct tile **at)
@@ -57,8 +63,10 @@ static void order(struct polygon *g)
 }
 
 /* Lines of the edges: distance = a x + b y + c, > 0 inside. */
-struct lines { int n; double a[CORNERS_MAX], b[CORNERS_MAX], c[CORNERS_MAX],
-               pen; };
+struct lines {
+  int n;
+  double a[CORNERS_MAX], b[CORNERS_MAX], c[CORNERS_MAX], pen;
+};
 
 /* Twice the area over the circumference is about the thickness of a thin
  * polygon; black edges of such would hide what they are edges of. */
@@ -150,7 +158,9 @@ static void near_edges(uint16_t *row, int x0, int from, int to, double y,
 }
 
 /* Samples from the first to before the last that a polygon may touch. */
-struct range { int x0, y0, x1, y1; };
+struct range {
+  int x0, y0, x1, y1;
+};
 
 static struct range range_of(const struct polygon *g)
 {
@@ -161,11 +171,10 @@ static struct range range_of(const struct polygon *g)
       lo[k] = least(lo[k], g->p[i][k]);
       hi[k] = most(hi[k], g->p[i][k]);
     }
-  return (struct range){
-    whole(ceil(lo[0] - 0.5), 0, SAMPLES * VG_CUT_WIDTH),
-    whole(ceil(lo[1] - 0.5), 0, SAMPLES * VG_CUT_HEIGHT),
-    whole(ceil(hi[0] - 0.5), 0, SAMPLES * VG_CUT_WIDTH),
-    whole(ceil(hi[1] - 0.5), 0, SAMPLES * VG_CUT_HEIGHT) };
+  return (struct range){ whole(ceil(lo[0] - 0.5), 0, SAMPLES * VG_CUT_WIDTH),
+                         whole(ceil(lo[1] - 0.5), 0, SAMPLES * VG_CUT_HEIGHT),
+                         whole(ceil(hi[0] - 0.5), 0, SAMPLES * VG_CUT_WIDTH),
+                         whole(ceil(hi[1] - 0.5), 0, SAMPLES * VG_CUT_HEIGHT) };
 }
 
 /* The part of a polygon in a tile that this thread has. */
@@ -209,7 +218,8 @@ vg_status vg_cuts_draw(struct tile **tiles, struct polygon *g, uint16_t code,
       struct tile *t = touch(&tiles[ty * TILES_X + tx]);
 
       if (!t) return vg_fail_memory(err, "pictures of cuts");
-      while (__atomic_test_and_set(&t->busy, __ATOMIC_ACQUIRE)) { }
+      while (__atomic_test_and_set(&t->busy, __ATOMIC_ACQUIRE)) {
+      }
       draw_tile(t, tx, ty, &r, g, &l, code);
       __atomic_clear(&t->busy, __ATOMIC_RELEASE);
     }

@@ -6,11 +6,13 @@
 #include "run/picture/cuts_parts.h"
 
 const uint8_t vg_cut_kind_colour[VG_CUT_KINDS][3] = {
-  { 250, 236, 200 }, { 143, 202, 132 }, { 246, 166, 86 }, { 120, 178, 232 } };
+  { 250, 236, 200 }, { 143, 202, 132 }, { 246, 166, 86 }, { 120, 178, 232 }
+};
 const uint8_t vg_cut_zone_colour[3] = { 74, 80, 92 };
 const uint8_t vg_cut_angle_colour[VG_CUT_ANGLES + 1][3] = {
-  { 170, 0, 30 }, { 226, 88, 40 }, { 246, 170, 80 }, { 250, 222, 140 },
-  { 200, 224, 170 }, { 120, 186, 160 } };
+  { 170, 0, 30 },    { 226, 88, 40 },   { 246, 170, 80 },
+  { 250, 222, 140 }, { 200, 224, 170 }, { 120, 186, 160 }
+};
 
 static const uint8_t layer_grey[3] = { 214, 216, 220 };
 static const uint8_t ink[3] = { 34, 36, 46 };
@@ -19,7 +21,8 @@ static const uint8_t ink[3] = { 34, 36, 46 };
 static const uint8_t part_colour[12][3] = {
   { 141, 184, 226 }, { 244, 190, 120 }, { 150, 204, 150 }, { 232, 150, 150 },
   { 190, 170, 220 }, { 206, 174, 150 }, { 240, 180, 214 }, { 200, 200, 110 },
-  { 120, 204, 206 }, { 250, 220, 150 }, { 170, 200, 190 }, { 222, 196, 232 } };
+  { 120, 204, 206 }, { 250, 220, 150 }, { 170, 200, 190 }, { 222, 196, 232 }
+};
 
 static const uint8_t *colour_of(unsigned code, enum vg_cut_colours colours)
 {
@@ -44,7 +47,9 @@ size_t vg_cuts_in_parts(const struct vg_cuts *c, size_t i)
 }
 
 /* Sums over the samples of a pixel. */
-struct sum { int rgb[3], n; };
+struct sum {
+  int rgb[3], n;
+};
 
 /* A sample's colour, darkened as it is near an edge. */
 static struct sum shaded(unsigned code, enum vg_cut_colours colours)

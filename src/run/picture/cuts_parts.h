@@ -5,29 +5,42 @@
 #include "run/picture/cuts.h"
 
 /* Samples are kept in square tiles that come to be when they are touched. */
-enum { SAMPLES = 2, TILE = 64, TILES_X = SAMPLES * VG_CUT_WIDTH / TILE,
-       TILES_Y = SAMPLES * VG_CUT_HEIGHT / TILE, TILES = TILES_X * TILES_Y,
-       CORNERS_MAX = 8 };
+enum {
+  SAMPLES = 2,
+  TILE = 64,
+  TILES_X = SAMPLES * VG_CUT_WIDTH / TILE,
+  TILES_Y = SAMPLES * VG_CUT_HEIGHT / TILE,
+  TILES = TILES_X * TILES_Y,
+  CORNERS_MAX = 8
+};
 
 /* A sample: 0, or what is there. */
-#define CODE(kind, shade, angle, part) \
+#define CODE(kind, shade, angle, part)                                         \
   (uint16_t)(0x8000 | (kind) << 12 | (shade) << 9 | (angle) << 6 | (part))
-enum { SHADE_MAX = 7, PARTS = 64, PART_LAYER = 0, PART_ZONE = 1,
-       PART_FIRST = 2 };
+enum {
+  SHADE_MAX = 7,
+  PARTS = 64,
+  PART_LAYER = 0,
+  PART_ZONE = 1,
+  PART_FIRST = 2
+};
 
 struct tile {
   uint16_t code[TILE * TILE];
-  char busy;                /* who has set it draws */
+  char busy; /* who has set it draws */
 };
 
 struct vg_cuts {
   size_t n;
   struct vg_cut cut[VG_CUTS_MAX];
-  struct tile **at;         /* [n * TILES]; NULL: nothing is drawn there */
+  struct tile **at; /* [n * TILES]; NULL: nothing is drawn there */
 };
 
 /* In samples, from the upper left corner. */
-struct polygon { int n; double p[CORNERS_MAX][2]; };
+struct polygon {
+  int n;
+  double p[CORNERS_MAX][2];
+};
 
 /* cuts_draw.c: draw a convex polygon, its corners in any order, which they have
  * around it afterwards. code: that of an inner sample, of shade 0. */

@@ -9,8 +9,8 @@
 #include "base/table.h"
 #include "core/geometry/vector.h"
 
-#define COARSER 1.25       /* the next lattice, where one was too fine */
-#define LEFT 3             /* triangles in a square of a lattice */
+#define COARSER 1.25 /* the next lattice, where one was too fine */
+#define LEFT 3       /* triangles in a square of a lattice */
 
 void vg_decimated_release(struct vg_decimated *c)
 {
@@ -23,9 +23,9 @@ void vg_decimated_release(struct vg_decimated *c)
 /* Cubes that hold points, numbered as their first points come. */
 struct cubes {
   struct vg_table table;
-  uint64_t *key;            /* [n_cube] place on the lattice */
-  uint32_t *of;             /* [n_point] cube of each point */
-  uint32_t *count;          /* [n_cube] points */
+  uint64_t *key;   /* [n_cube] place on the lattice */
+  uint32_t *of;    /* [n_point] cube of each point */
+  uint32_t *count; /* [n_cube] points */
 };
 
 static void release(struct cubes *q)
@@ -48,7 +48,8 @@ static vg_status reserve(const struct vg_mesh *m, struct cubes *q,
   c->tri = vg_alloc(m->n_tri, sizeof *c->tri);
   c->from = vg_alloc(m->n_tri, sizeof *c->from);
   return !bad && q->key && q->of && q->count && c->point && c->tri && c->from
-         ? VG_OK : vg_fail_memory(err, "a coarser surface");
+         ? VG_OK
+         : vg_fail_memory(err, "a coarser surface");
 }
 
 static uint64_t key_of(const double x[3], const double lo[3], double step)

@@ -7,12 +7,15 @@
 
 struct vg_decimated {
   size_t n_point, n_tri;
-  double (*point)[3];       /* [n_point] */
-  uint32_t (*tri)[3];       /* [n_tri] in the order of those that they were */
-  uint32_t *from;           /* [n_tri] triangle of the surface */
-  double step;              /* edge of the cubes; 0: nothing was merged */
+  double (*point)[3]; /* [n_point] */
+  uint32_t (*tri)[3]; /* [n_tri] in the order of those that they were */
+  uint32_t *from;     /* [n_tri] triangle of the surface */
+  double step;        /* edge of the cubes; 0: nothing was merged */
 };
-#define VG_DECIMATED_INIT { .n_point = 0 }
+#define VG_DECIMATED_INIT                                                      \
+  {                                                                            \
+    .n_point = 0                                                               \
+  }
 
 /** Points in one cube of a lattice become one, at their mean; triangles that
  * lose a side go. The lattice is coarsened until at most n_most triangles

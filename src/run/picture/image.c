@@ -49,9 +49,8 @@ enum { COLOURS = 5 << 15, PALETTE = 256 };
 
 static unsigned colour_of(const uint8_t *rgba)
 {
-  return (unsigned)(rgba[3] + 32) / 64 << 15 |
-         (unsigned)(rgba[0] >> 3) << 10 | (unsigned)(rgba[1] >> 3) << 5 |
-         (unsigned)(rgba[2] >> 3);
+  return (unsigned)(rgba[3] + 32) / 64 << 15 | (unsigned)(rgba[0] >> 3) << 10 |
+         (unsigned)(rgba[1] >> 3) << 5 | (unsigned)(rgba[2] >> 3);
 }
 
 static int part_of(unsigned colour, int k)
@@ -59,7 +58,9 @@ static int part_of(unsigned colour, int k)
   return k == 3 ? (int)(colour >> 15) * 8 : (int)(colour >> (10 - 5 * k)) & 31;
 }
 
-struct used { unsigned colour, count; };
+struct used {
+  unsigned colour, count;
+};
 
 static int by_count(const void *a, const void *b)
 {
@@ -102,7 +103,8 @@ static size_t find_palette(const struct vg_image *m, uint32_t *table,
   qsort(used, n_used, sizeof *used, by_count);
   for (size_t i = 0; i < n_used; i++)
     table[used[i].colour] = i < PALETTE
-      ? (uint32_t)i : (uint32_t)nearest(used, used[i].colour);
+                            ? (uint32_t)i
+                            : (uint32_t)nearest(used, used[i].colour);
   return n_used < PALETTE ? n_used : PALETTE;
 }
 
@@ -116,8 +118,8 @@ static size_t put_head(const struct vg_image *m, size_t n,
 
   put32(head, (unsigned long)m->width);
   put32(head + 4, (unsigned long)m->height);
-  head[8] = 8;   /* bits of a place in ... */
-  head[9] = 3;   /* ... a palette */
+  head[8] = 8; /* bits of a place in ... */
+  head[9] = 3; /* ... a palette */
   at = seal(to, "IHDR", 13);
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) {
@@ -139,8 +141,8 @@ static void put_rows(const struct vg_image *m, const uint32_t *table,
                      uint8_t *to)
 {
   for (int y = 0; y < m->height; y++) {
-    const uint8_t (*row)[4] = (const uint8_t (*)[4])
-      m->rgba + (size_t)y * (size_t)m->width;
+    const uint8_t(*row)[4] = (const uint8_t(*)[4])m->rgba +
+                             (size_t)y * (size_t)m->width;
 
     *to++ = 0;
     for (int x = 0; x < m->width; x++)

@@ -11,9 +11,12 @@
 /** Rows from the top; red, green, blue, opacity. */
 struct vg_image {
   int width, height;
-  uint8_t (*rgba)[4];       /* [height * width]; owned */
+  uint8_t (*rgba)[4]; /* [height * width]; owned */
 };
-#define VG_IMAGE_INIT { 0, 0, NULL }
+#define VG_IMAGE_INIT                                                          \
+  {                                                                            \
+    0, 0, NULL                                                                 \
+  }
 
 /** Clear pixels. *m is empty. VG_ERR_MEMORY. */
 vg_status vg_image_new(int width, int height, struct vg_image *m,

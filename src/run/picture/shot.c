@@ -10,12 +10,12 @@
 #include "core/geometry/vector.h"
 
 enum { SAMPLES = 2, BAND = 60 };
-#define PEN 0.9            /* samples from an edge that it darkens */
+#define PEN 0.9 /* samples from an edge that it darkens */
 
 /* The light of a sample: brightness of the face by 63, darkness of an edge. */
 enum { LIGHT_FULL = 63, EDGE_DARK = 3 };
-#define SMALL 3.0          /* triangles lower than this have no edges, ... */
-#define LARGE 12.0         /* ... and from here on black ones */
+#define SMALL 3.0  /* triangles lower than this have no edges, ... */
+#define LARGE 12.0 /* ... and from here on black ones */
 
 /* --- camera -------------------------------------------------------------- */
 
@@ -55,8 +55,7 @@ void vg_camera_aim(const struct vg_mesh *m, const uint8_t *is_seen,
   c->scale = 0.94 * fmin(width / extent[0], height / extent[1]);
 }
 
-void vg_camera_see(const struct vg_camera *c, const double x[3],
-                   double out[3])
+void vg_camera_see(const struct vg_camera *c, const double x[3], double out[3])
 {
   double d[3];
 
@@ -74,8 +73,8 @@ struct drawing {
   const struct vg_camera *camera;
   struct vg_shot *s;
   float *depth;
-  double (*at)[3];          /* [n_point] in samples */
-  uint16_t (*row)[2];       /* [n_tri] rows from .. to - 1; none: not seen */
+  double (*at)[3];    /* [n_point] in samples */
+  uint16_t (*row)[2]; /* [n_tri] rows from .. to - 1; none: not seen */
 };
 
 static void place(void *context, size_t first, size_t end, int worker)
@@ -105,7 +104,10 @@ static double brightness(const struct drawing *d, const uint32_t *t)
 }
 
 /* Functions of the place that are 0 on an edge and 1 at the corner across. */
-struct plane { double a[3], b[3], c[3], height[3]; int bright, pen; };
+struct plane {
+  double a[3], b[3], c[3], height[3];
+  int bright, pen;
+};
 
 static double area_of(const struct drawing *d, size_t t)
 {
@@ -138,8 +140,14 @@ static void find_plane(const struct drawing *d, size_t t, struct plane *p)
   p->bright = (int)(LIGHT_FULL * brightness(d, node) + 0.5);
 }
 
-static double least(double a, double b) { return a < b ? a : b; }
-static double most(double a, double b) { return a > b ? a : b; }
+static double least(double a, double b)
+{
+  return a < b ? a : b;
+}
+static double most(double a, double b)
+{
+  return a > b ? a : b;
+}
 
 static void sample(const struct drawing *d, size_t t, const struct plane *p,
                    int x, int y)
@@ -224,7 +232,11 @@ vg_status vg_shot_take(const struct vg_mesh *m, const uint8_t *is_seen,
   size_t n = (size_t)width * (size_t)height;
   struct vg_shot made = { width, height, vg_alloc(n, sizeof *made.tri),
                           vg_calloc(n, 1) };
-  struct drawing d = { m, is_seen, c, &made, vg_alloc(n, sizeof *d.depth),
+  struct drawing d = { m,
+                       is_seen,
+                       c,
+                       &made,
+                       vg_alloc(n, sizeof *d.depth),
                        vg_alloc(m->n_point, sizeof *d.at),
                        vg_alloc(m->n_tri, sizeof *d.row) };
   vg_status st = VG_OK;
@@ -255,7 +267,9 @@ void vg_shot_release(struct vg_shot *s)
 }
 
 /* Sums over samples: colours by brightness. */
-struct sum { int rgb[3], n; };
+struct sum {
+  int rgb[3], n;
+};
 
 static struct sum shaded(const uint8_t *rgb, int light, int is_behind)
 {
@@ -307,7 +321,6 @@ vg_status vg_shot_image(const struct vg_shot *s, const uint8_t *colour,
                               err);
 
   for (int y = 0; y < out->height && st >= 0; y++)
-    pixels(s, y, colour, palette,
-           out->rgba + (size_t)y * (size_t)out->width);
+    pixels(s, y, colour, palette, out->rgba + (size_t)y * (size_t)out->width);
   return st;
 }

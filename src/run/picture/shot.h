@@ -23,15 +23,17 @@ void vg_camera_aim(const struct vg_mesh *m, const uint8_t *is_seen,
                    struct vg_camera *c);
 
 /** Where a point is, pixels from the upper left corner; out[2]: how near. */
-void vg_camera_see(const struct vg_camera *c, const double x[3],
-                   double out[3]);
+void vg_camera_see(const struct vg_camera *c, const double x[3], double out[3]);
 
 struct vg_shot {
-  int width, height;        /* samples */
-  uint32_t *tri;            /* [height * width] or VG_SHOT_NOTHING */
-  uint8_t *light;           /* [height * width], private to shot.c */
+  int width, height; /* samples */
+  uint32_t *tri;     /* [height * width] or VG_SHOT_NOTHING */
+  uint8_t *light;    /* [height * width], private to shot.c */
 };
-#define VG_SHOT_INIT { 0, 0, NULL, NULL }
+#define VG_SHOT_INIT                                                           \
+  {                                                                            \
+    0, 0, NULL, NULL                                                           \
+  }
 #define VG_SHOT_NOTHING UINT32_MAX
 #define VG_SHOT_BEHIND 255
 

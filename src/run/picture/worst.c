@@ -6,7 +6,11 @@
 
 #include "base/memory.h"
 
-struct search { size_t n; const uint64_t *id; struct vg_around *out; };
+struct search {
+  size_t n;
+  const uint64_t *id;
+  struct vg_around *out;
+};
 
 static int touches(const uint32_t *a, const uint32_t *b)
 {
@@ -24,8 +28,8 @@ static void put(const struct vg_slice *s, const uint32_t *node,
   to->n++;
 }
 
-static vg_status look(const struct vg_slice *s, size_t at,
-                      struct vg_around *to, struct vg_error *err)
+static vg_status look(const struct vg_slice *s, size_t at, struct vg_around *to,
+                      struct vg_error *err)
 {
   const uint32_t *cell = s->cell[VG_SLICE_TET], *it = cell + 4 * at;
 
@@ -60,7 +64,7 @@ static vg_status pack(size_t n, const struct vg_around *a, struct vg_bytes *b,
   size_t bytes = 0, at = 0;
 
   for (size_t k = 0; k < n; k++)
-    if (a[k].n) bytes += 2 * sizeof (size_t) + a[k].n * sizeof *a[k].cell;
+    if (a[k].n) bytes += 2 * sizeof(size_t) + a[k].n * sizeof *a[k].cell;
   b->data = vg_alloc(bytes, 1);
   if (!b->data) return vg_fail_memory(err, "the worst cells");
   b->n = bytes;
@@ -79,7 +83,7 @@ static vg_status pack(size_t n, const struct vg_around *a, struct vg_bytes *b,
 static vg_status unpack(const struct vg_bytes *b, struct vg_around *a,
                         struct vg_error *err)
 {
-  for (size_t at = 0; at < b->n; ) {
+  for (size_t at = 0; at < b->n;) {
     size_t head[2];
 
     memcpy(head, b->data + at, sizeof head);

@@ -6,12 +6,12 @@
 #include "base/comm.h"
 #include "core/mesh/slices.h"
 
-enum { VG_AROUND_MAX = 400 };   /* cells of one */
+enum { VG_AROUND_MAX = 400 }; /* cells of one */
 
 /** A tetrahedron and those that share a point with it, in its slice. */
 struct vg_around {
   size_t n;
-  double (*cell)[4][3];     /* [n], the tetrahedron first; owned */
+  double (*cell)[4][3]; /* [n], the tetrahedron first; owned */
 };
 
 /** The surroundings of tetrahedra, on rank 0; n = 0 elsewhere, and of numbers

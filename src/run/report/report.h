@@ -15,10 +15,10 @@
 #include "partition/solver/solver.h"
 #include "run/input/layers.h"
 
-#define VG_SHOWN_DEFECTS 3    /* first ones of a kind, for a person */
-#define VG_LISTED_DEFECTS 20  /* first ones of a kind, for a program */
-#define VG_SHOWN_ITEMS 20     /* shells, or numbers of patches, in one list */
-#define VG_SHOWN_FACES 3      /* as much of bad triangles */
+#define VG_SHOWN_DEFECTS 3   /* first ones of a kind, for a person */
+#define VG_LISTED_DEFECTS 20 /* first ones of a kind, for a program */
+#define VG_SHOWN_ITEMS 20    /* shells, or numbers of patches, in one list */
+#define VG_SHOWN_FACES 3     /* as much of bad triangles */
 
 /** Counts of a mesh, its box and its patches. */
 void vg_report_size_text(FILE *to, const struct vg_mesh *m);
@@ -36,8 +36,7 @@ json_t *vg_report_patches_json(const struct vg_mesh *m);
 void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
                             const struct vg_surface_report *r, size_t shown);
 json_t *vg_report_surface_json(const struct vg_mesh *m,
-                               const struct vg_surface_report *r,
-                               size_t shown);
+                               const struct vg_surface_report *r, size_t shown);
 
 /** A surface that was made anew; nothing, or null, where none was. */
 void vg_report_remesh_text(FILE *to, const struct vg_renewal *n);
@@ -64,13 +63,12 @@ void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r);
 json_t *vg_report_mesh_json(const struct vg_mesh_report *r);
 
 /** What is wrong with an invalid mesh: "3 cells not positive, ...". */
-void vg_report_faults(const struct vg_mesh_report *r, char *text,
-                      size_t size);
+void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size);
 
 /** Add the fields of a report (base/entries.h) to o in their order; times to
  * seconds, which may be o. */
 void vg_report_entries(json_t *o, json_t *seconds, const struct vg_entries *l,
-                      const void *report);
+                       const void *report);
 
 /** What the fill did and how fast. */
 void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,

@@ -6,7 +6,7 @@
 #include "run/input/layers.h"
 #include "run/report/report.h"
 
-#define FIRST_SHOWN 1e-3   /* relative difference of first heights */
+#define FIRST_SHOWN 1e-3 /* relative difference of first heights */
 
 static const struct vg_patch *patch_of(const struct vg_mesh *surface,
                                        const struct vg_patch_layers *w)
@@ -22,10 +22,8 @@ static void row_name(FILE *to, const struct vg_mesh *surface,
 
   if (surface)
     fprintf(to, "  %5d %s", (int)patch_of(surface, w)->id,
-            vg_text_column(patch_of(surface, w)->name, 16, name,
-                           sizeof name));
-  else
-    fprintf(to, "  %5s %-16s", "all", "");
+            vg_text_column(patch_of(surface, w)->name, 16, name, sizeof name));
+  else fprintf(to, "  %5s %-16s", "all", "");
 }
 
 static void row_cover(FILE *to, const struct vg_mesh *surface,
@@ -171,15 +169,15 @@ void vg_report_layers_note(const struct vg_layer_stage *s,
     if (n++ < VG_SHOWN_ITEMS)
       at += (size_t)snprintf(list + at, sizeof list - at, " %d",
                              (int)patch_of(surface, w)->id);
-    if (n == VG_SHOWN_ITEMS + 1) snprintf(list + at, sizeof list - at,
-                                            " ...");
+    if (n == VG_SHOWN_ITEMS + 1) snprintf(list + at, sizeof list - at, " ...");
     first = fmax(first, s->request[w->patch].law.delta1);
   }
   if (n)
-    vg_note(notes, "no layers on %zu of %zu walls (patch%s%s): their first "
+    vg_note(notes,
+            "no layers on %zu of %zu walls (patch%s%s): their first "
             "height, %g, is above layer_end times the edge there; is it in "
-            "the unit of the surface?", n, s->n_wall, n > 1 ? "es" : "", list,
-            first);
+            "the unit of the surface?",
+            n, s->n_wall, n > 1 ? "es" : "", list, first);
 }
 
 static void causes(FILE *to, const struct vg_layer_stage *s,
@@ -195,8 +193,9 @@ static void causes(FILE *to, const struct vg_layer_stage *s,
     for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
       sum += w->cause[c] + w->squeezed[c];
     if (!sum) continue;
-    if (!shown++) fprintf(to, "\n  faces with fewer or thinner layers, by "
-                              "cause\n");
+    if (!shown++)
+      fprintf(to, "\n  faces with fewer or thinner layers, by "
+                  "cause\n");
     row_name(to, surface, w);
     if (cause_words(to, " fewer: ", w->cause)) fprintf(to, ";");
     cause_words(to, " thinner: ", w->squeezed);
@@ -217,11 +216,13 @@ static void times(FILE *to, const struct vg_layer_stage *s)
   const struct vg_layer_report *r = &s->report;
   char a[32], b[32];
 
-  fprintf(to, "\n  seconds: topology %.2f, directions %.2f, heights %.2f, "
+  fprintf(to,
+          "\n  seconds: topology %.2f, directions %.2f, heights %.2f, "
           "clearance %.2f,\n  slide patches %.2f, total %.2f (%s columns/s, "
-          "%s layer cells/s); measure %.2f, join %.2f\n", r->time_topology,
-          r->time_direction, r->time_height, r->time_clear, r->time_slide,
-          r->time_total, vg_text_count(rate(r->n_column, r->time_total), a),
+          "%s layer cells/s); measure %.2f, join %.2f\n",
+          r->time_topology, r->time_direction, r->time_height, r->time_clear,
+          r->time_slide, r->time_total,
+          vg_text_count(rate(r->n_column, r->time_total), a),
           vg_text_count(rate(r->n_cell, r->time_total), b), s->time_measure,
           s->join.time);
 }
@@ -240,12 +241,15 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
   fprintf(to, "\n  layer cells: %s tetrahedra, %s prisms, %s pyramids\n",
           vg_text_count(j->n_layer_tet, a), vg_text_count(j->n_layer_pri, b),
           vg_text_count(j->n_layer_pyr, c));
-  fprintf(to, "  rounds of lowering until clear: %zu; patches re-meshed: %zu "
-          "with %s triangles\n", r->n_round, r->n_slide_patch,
-          vg_text_count(r->n_slide_tri, a));
+  fprintf(to,
+          "  rounds of lowering until clear: %zu; patches re-meshed: %zu "
+          "with %s triangles\n",
+          r->n_round, r->n_slide_patch, vg_text_count(r->n_slide_tri, a));
   if (r->n_many_faces)
-    fprintf(to, "  columns of more than %d faces, for which some rays are not "
-            "traced: %zu\n", VG_AHEAD_FACES, r->n_many_faces);
+    fprintf(to,
+            "  columns of more than %d faces, for which some rays are not "
+            "traced: %zu\n",
+            VG_AHEAD_FACES, r->n_many_faces);
 }
 
 void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
@@ -257,20 +261,27 @@ void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
   char a[32], b[32];
 
   sizes(to, s);
-  table(to, s, surface, "      faces  full %  as law   any %  levels: min, "
-        "mean, max", row_cover, is_any);
-  table(to, s, surface, "height over the law's: mean, 5 % below, % of area "
-        ">= 0.9, limited by", row_height, is_limited);
-  table(to, s, surface, "first asked   got: min       mean        max  "
-        "error %", row_first, is_first_special);
+  table(to, s, surface,
+        "      faces  full %  as law   any %  levels: min, "
+        "mean, max",
+        row_cover, is_any);
+  table(to, s, surface,
+        "height over the law's: mean, 5 % below, % of area "
+        ">= 0.9, limited by",
+        row_height, is_limited);
+  table(to, s, surface,
+        "first asked   got: min       mean        max  "
+        "error %",
+        row_first, is_first_special);
   table(to, s, surface, s->all.y_plus.max > 0 ? with_y_plus : without,
         row_total, is_any);
   table(to, s, surface, "volume ratio across the top: median, 95 %, largest",
         row_top, has_tops);
   causes(to, s, surface);
-  fprintf(to, "\n  smallest angle of a top %.1f degrees; whole prisms %s, "
-          "with a bad corner %s\n", s->judgement.angle_of_top_min,
-          vg_text_count(s->judgement.n_prism, a),
+  fprintf(to,
+          "\n  smallest angle of a top %.1f degrees; whole prisms %s, "
+          "with a bad corner %s\n",
+          s->judgement.angle_of_top_min, vg_text_count(s->judgement.n_prism, a),
           vg_text_count(s->judgement.n_bad_corner, b));
   times(to, s);
 }
@@ -301,8 +312,8 @@ static json_t *whole(size_t n)
 
 static json_t *range(const struct vg_range *r)
 {
-  return json_pack("{s:o s:o s:o}", "min", real(r->min), "mean",
-                   real(r->mean), "max", real(r->max));
+  return json_pack("{s:o s:o s:o}", "min", real(r->min), "mean", real(r->mean),
+                   "max", real(r->max));
 }
 
 static json_t *causes_json(const size_t *count)
@@ -317,10 +328,13 @@ static json_t *causes_json(const size_t *count)
 
 static json_t *wall_json(const struct vg_patch_layers *w)
 {
-  const struct { const char *name; const struct vg_range *r; } ranges[] = {
+  const struct {
+    const char *name;
+    const struct vg_range *r;
+  } ranges[] = {
     { "first_asked", &w->asked }, { "first", &w->first },
-    { "levels", &w->level }, { "total", &w->total },
-    { "growth", &w->growth }, { "y_plus", &w->y_plus },
+    { "levels", &w->level },      { "total", &w->total },
+    { "growth", &w->growth },     { "y_plus", &w->y_plus },
   };
   json_t *o = json_object();
 
@@ -329,16 +343,19 @@ static json_t *wall_json(const struct vg_patch_layers *w)
   json_object_set_new(o, "percent_full", real(w->full));
   json_object_set_new(o, "percent_unsqueezed", real(w->unsqueezed));
   json_object_set_new(o, "percent_any", real(w->any));
-  json_object_set_new(o, "height_over_law", json_pack(
-    "{s:o s:o s:o}", "mean", real(w->share_mean), "percentile_5",
-    real(w->share_low), "percent_area_above_0.9", real(w->share_area)));
+  json_object_set_new(o, "height_over_law",
+                      json_pack("{s:o s:o s:o}", "mean", real(w->share_mean),
+                                "percentile_5", real(w->share_low),
+                                "percent_area_above_0.9", real(w->share_area)));
   for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
     json_object_set_new(o, ranges[i].name, range(ranges[i].r));
-  json_object_set_new(o, "top_volume_ratio", json_pack(
-    "{s:o s:o s:o s:o s:[f,f,f]}", "faces", whole(w->n_top), "median",
-    real(w->top_ratio[0]), "percentile_95", real(w->top_ratio[1]), "max",
-    real(w->top_ratio[2]), "max_at", w->top_at[0], w->top_at[1],
-    w->top_at[2]));
+  json_object_set_new(o, "top_volume_ratio",
+                      json_pack("{s:o s:o s:o s:o s:[f,f,f]}", "faces",
+                                whole(w->n_top), "median",
+                                real(w->top_ratio[0]), "percentile_95",
+                                real(w->top_ratio[1]), "max",
+                                real(w->top_ratio[2]), "max_at", w->top_at[0],
+                                w->top_at[1], w->top_at[2]));
   json_object_set_new(o, "first_error_percent", real(100 * w->first_error));
   json_object_set_new(o, "fewer_by_cause", causes_json(w->cause));
   json_object_set_new(o, "thinner_by_cause", causes_json(w->squeezed));
@@ -356,8 +373,9 @@ static json_t *walls_json(const struct vg_layer_stage *s,
 
     json_object_set_new(o, "patch", json_integer(p->id));
     json_object_set_new(o, "name", vg_text_json(p->name));
-    json_object_set_new(o, "wall_by", json_string(
-      vg_wall_reason_name(s->reason[s->wall[i].patch])));
+    json_object_set_new(o, "wall_by",
+                        json_string(
+                          vg_wall_reason_name(s->reason[s->wall[i].patch])));
     json_array_append_new(list, o);
   }
   return list;
@@ -372,10 +390,12 @@ static json_t *missed_json(const struct vg_layer_stage *s,
     const struct vg_limit_missed *m = &s->missed[i];
     const struct vg_patch *p = &surface->patch[m->patch];
 
-    json_array_append_new(list, json_pack("{s:i s:o s:s s:o s:o}", "patch",
-      (int)p->id, "name", vg_text_json(p->name), "limit", m->name,
-      "wanted", real(m->wanted), "got",
-      m->is_bare ? json_null() : real(m->got)));
+    json_array_append_new(list,
+                          json_pack("{s:i s:o s:s s:o s:o}", "patch",
+                                    (int)p->id, "name", vg_text_json(p->name),
+                                    "limit", m->name, "wanted", real(m->wanted),
+                                    "got",
+                                    m->is_bare ? json_null() : real(m->got)));
   }
   return list;
 }
@@ -385,22 +405,30 @@ static json_t *seconds_json(const struct vg_layer_stage *s)
   const struct vg_layer_report *r = &s->report;
 
   return json_pack("{s:f s:f s:f s:f s:f s:f s:f s:f}", "topology",
-    r->time_topology, "directions", r->time_direction, "heights",
-    r->time_height, "clearance", r->time_clear, "slide", r->time_slide,
-    "total", r->time_total, "measure", s->time_measure, "join",
-    s->join.time);
+                   r->time_topology, "directions", r->time_direction, "heights",
+                   r->time_height, "clearance", r->time_clear, "slide",
+                   r->time_slide, "total", r->time_total, "measure",
+                   s->time_measure, "join", s->join.time);
 }
 
 json_t *vg_report_layers_json(const struct vg_layer_stage *s,
                               const struct vg_mesh *surface)
 {
   const struct vg_layer_report *r = &s->report;
-  const struct { const char *name; size_t n; } row[] = {
-    { "wall_points", r->n_wall_point }, { "wall_triangles", r->n_wall_tri },
-    { "columns", r->n_column }, { "virtual_faces", r->n_virtual_face },
-    { "points", r->n_layer_point }, { "tetrahedra", s->join.n_layer_tet },
-    { "pyramids", s->join.n_layer_pyr }, { "prisms", s->join.n_layer_pri },
-    { "tetrahedra_if_all_are", r->n_cell }, { "rounds", r->n_round },
+  const struct {
+    const char *name;
+    size_t n;
+  } row[] = {
+    { "wall_points", r->n_wall_point },
+    { "wall_triangles", r->n_wall_tri },
+    { "columns", r->n_column },
+    { "virtual_faces", r->n_virtual_face },
+    { "points", r->n_layer_point },
+    { "tetrahedra", s->join.n_layer_tet },
+    { "pyramids", s->join.n_layer_pyr },
+    { "prisms", s->join.n_layer_pri },
+    { "tetrahedra_if_all_are", r->n_cell },
+    { "rounds", r->n_round },
     { "columns_of_many_faces", r->n_many_faces },
     { "slide_patches", r->n_slide_patch },
     { "slide_triangles", r->n_slide_tri },
@@ -417,8 +445,7 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
   json_object_set_new(o, "reynolds", real(s->reynolds));
   json_object_set_new(o, "reference_length", real(s->length));
   json_object_set_new(o, "columns_by_cause", causes_json(r->cause));
-  json_object_set_new(o, "columns_squeezed_by_cause",
-                      causes_json(r->squeezed));
+  json_object_set_new(o, "columns_squeezed_by_cause", causes_json(r->squeezed));
   json_object_set_new(o, "patches", walls_json(s, surface));
   json_object_set_new(o, "all", wall_json(&s->all));
   json_object_set_new(o, "limits_met", json_boolean(!s->n_missed));

@@ -17,10 +17,12 @@ double vg_report_peak_memory(void)
 }
 
 /* The rows of validity, for both forms of the report. */
-static size_t validity(const struct vg_mesh_report *r, int i,
-                       const char **name)
+static size_t validity(const struct vg_mesh_report *r, int i, const char **name)
 {
-  const struct { const char *name; size_t n; } row[] = {
+  const struct {
+    const char *name;
+    size_t n;
+  } row[] = {
     { "indices out of range", r->bad_index },
     { "points not finite", r->not_finite },
     { "unused points", r->unused_point },
@@ -73,14 +75,16 @@ static void validity_text(FILE *to, const struct vg_mesh_report *r)
   char count[32];
 
   fprintf(to, "  validity: %s\n", r->is_valid ? "valid" : "NOT VALID");
-  for (int i = 0; ; i++) {
+  for (int i = 0;; i++) {
     size_t n = validity(r, i, &name);
 
     if (!name) break;
     if (n) fprintf(to, "    %-24s %13s\n", name, vg_text_count(n, count));
   }
-  fprintf(to, "  volume %.10g, enclosed by the boundary %.10g, difference "
-          "%.2g\n", r->volume, r->enclosed, r->volume_error);
+  fprintf(to,
+          "  volume %.10g, enclosed by the boundary %.10g, difference "
+          "%.2g\n",
+          r->volume, r->enclosed, r->volume_error);
   fprintf(to, "  connected regions: %zu\n", r->n_component);
 }
 
@@ -90,44 +94,51 @@ void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size)
   size_t at = 0;
 
   snprintf(text, size, "volumes differ by %.2g", r->volume_error);
-  for (int i = 0; ; i++) {
+  for (int i = 0;; i++) {
     size_t n = validity(r, i, &name);
 
     if (!name) break;
     if (n && at < size)
-      at += (size_t)snprintf(text + at, size - at, "%s%zu %s",
-                             at ? ", " : "", n, name);
+      at += (size_t)snprintf(text + at, size - at, "%s%zu %s", at ? ", " : "",
+                             n, name);
   }
 }
 
 static void quality_text(FILE *to, const struct vg_mesh_report *r)
 {
-  fprintf(to, "  dihedral angles: smallest %.2f, largest %.2f, 1st "
-          "percentile of the smallest %.2f degrees\n", r->angle_min,
-          r->angle_max, r->angle_min_p1);
-  fprintf(to, "  cells below  5 10 15 20 30 degrees: %.4f %.4f %.4f %.4f "
-          "%.4f %%\n", r->below[0], r->below[1], r->below[2], r->below[3],
-          r->below[4]);
+  fprintf(to,
+          "  dihedral angles: smallest %.2f, largest %.2f, 1st "
+          "percentile of the smallest %.2f degrees\n",
+          r->angle_min, r->angle_max, r->angle_min_p1);
+  fprintf(to,
+          "  cells below  5 10 15 20 30 degrees: %.4f %.4f %.4f %.4f "
+          "%.4f %%\n",
+          r->below[0], r->below[1], r->below[2], r->below[3], r->below[4]);
   fprintf(to, "  cells above  150 160 170 degrees:   %.4f %.4f %.4f %%\n",
           r->above[0], r->above[1], r->above[2]);
-  fprintf(to, "  radius ratio 3 r/R: mean %.4f, smallest %.4f; mean ratio: "
-          "mean %.4f\n", r->radius_ratio_mean, r->radius_ratio_min,
-          r->mean_ratio_mean);
-  fprintf(to, "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
-          "largest %.1f\n", r->volume_ratio[0], r->volume_ratio[1],
-          r->volume_ratio[2]);
+  fprintf(to,
+          "  radius ratio 3 r/R: mean %.4f, smallest %.4f; mean ratio: "
+          "mean %.4f\n",
+          r->radius_ratio_mean, r->radius_ratio_min, r->mean_ratio_mean);
+  fprintf(to,
+          "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
+          "largest %.1f\n",
+          r->volume_ratio[0], r->volume_ratio[1], r->volume_ratio[2]);
   fprintf(to, "  mean edge: %.6g\n", r->edge_length);
   if (r->has_sizing)
-    fprintf(to, "  edges / target spacing: mean %.3f, within 0.7 to 1.5: "
-            "%.2f %%\n", r->edge_mean, r->edge_within);
+    fprintf(to,
+            "  edges / target spacing: mean %.3f, within 0.7 to 1.5: "
+            "%.2f %%\n",
+            r->edge_mean, r->edge_within);
 }
 
 void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r)
 {
   validity_text(to, r);
-  fprintf(to, "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
-          "largest %.1f\n", r->volume_ratio[0], r->volume_ratio[1],
-          r->volume_ratio[2]);
+  fprintf(to,
+          "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
+          "largest %.1f\n",
+          r->volume_ratio[0], r->volume_ratio[1], r->volume_ratio[2]);
 }
 
 void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
@@ -193,7 +204,7 @@ static json_t *validity_json(const struct vg_mesh_report *r)
   json_t *o = json_object();
   const char *name;
 
-  for (int i = 0; ; i++) {
+  for (int i = 0;; i++) {
     size_t n = validity(r, i, &name);
 
     if (!name) break;
@@ -254,17 +265,22 @@ static void other_text(FILE *to, const struct vg_fill_report *r)
   char a[32], b[32], c[32];
 
   if (!r->n_other && !back) return;
-  fprintf(to, "  parts filled by the other mesher %s: %s cells in %.2f s (%s "
-          "cells/s)\n", vg_text_count(r->n_other, a),
-          vg_text_count(r->n_other_cell, b), r->time_other,
-          vg_text_count((unsigned long long)
-                       (r->time_other > 0 ? (double)r->n_other_cell /
-                                              r->time_other : 0), c));
+  fprintf(to,
+          "  parts filled by the other mesher %s: %s cells in %.2f s (%s "
+          "cells/s)\n",
+          vg_text_count(r->n_other, a), vg_text_count(r->n_other_cell, b),
+          r->time_other,
+          vg_text_count((unsigned long long)(r->time_other > 0
+                                               ? (double)r->n_other_cell /
+                                                   r->time_other
+                                               : 0),
+                        c));
   if (back)
-    fprintf(to, "  parts that it did not fill, and the built-in one did: %zu "
+    fprintf(to,
+            "  parts that it did not fill, and the built-in one did: %zu "
             "(%zu given back, %zu crashed\n  or without end, %zu not filled "
-            "as they should be)\n", back, r->n_other_failed,
-            r->n_other_ended, r->n_other_wrong);
+            "as they should be)\n",
+            back, r->n_other_failed, r->n_other_ended, r->n_other_wrong);
 }
 
 void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
@@ -275,33 +291,39 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
 
   fprintf(to, "  field points inserted %s, refused %s\n",
           vg_text_count(r->n_inserted, a), vg_text_count(r->n_refused, b));
-  fprintf(to, "  surface triangles recovered %s; pockets closed %s with %zu "
+  fprintf(to,
+          "  surface triangles recovered %s; pockets closed %s with %zu "
           "cells, retries %zu%s\n",
           vg_text_count(r->n_surface_face_lost, a),
           vg_text_count(r->n_pocket, b), r->n_pocket_cell, r->n_retry,
           r->whole_void ? "; a whole void was closed by TetGen" : "");
   other_text(to, r);
   if (r->n_list_cut)
-    fprintf(to, "  points with more neighbours than are looked at: %zu (some "
-            "may be too near to each other)\n", r->n_list_cut);
+    fprintf(to,
+            "  points with more neighbours than are looked at: %zu (some "
+            "may be too near to each other)\n",
+            r->n_list_cut);
   if (r->n_steiner)
-    fprintf(to, "  points added to recover the boundary: %zu\n",
-            r->n_steiner);
-  fprintf(to, "  optimisation: smoothed %s, swapped %s, collapsed %s, split "
-          "%zu\n", vg_text_count(r->n_smoothed, a),
-          vg_text_count(r->n_flip, b), vg_text_count(r->n_collapse, c),
-          r->n_split);
+    fprintf(to, "  points added to recover the boundary: %zu\n", r->n_steiner);
+  fprintf(to,
+          "  optimisation: smoothed %s, swapped %s, collapsed %s, split "
+          "%zu\n",
+          vg_text_count(r->n_smoothed, a), vg_text_count(r->n_flip, b),
+          vg_text_count(r->n_collapse, c), r->n_split);
   if (r->n_left)
-    fprintf(to, "  bad cells into which no point was tried to be put, after "
-            "enough others: %s\n", vg_text_count(r->n_left, a));
-  fprintf(to, "  seconds: boundary %.2f, place %.2f, insert %.2f, optimise "
-          "%.2f, total %.2f (%s cells/s)\n", r->time_boundary, r->time_place,
-          r->time_insert, r->time_optimise, r->time_total,
-          vg_text_count((unsigned long long)rate, a));
+    fprintf(to,
+            "  bad cells into which no point was tried to be put, after "
+            "enough others: %s\n",
+            vg_text_count(r->n_left, a));
+  fprintf(to,
+          "  seconds: boundary %.2f, place %.2f, insert %.2f, optimise "
+          "%.2f, total %.2f (%s cells/s)\n",
+          r->time_boundary, r->time_place, r->time_insert, r->time_optimise,
+          r->time_total, vg_text_count((unsigned long long)rate, a));
 }
 
 void vg_report_entries(json_t *o, json_t *seconds, const struct vg_entries *l,
-                      const void *report)
+                       const void *report)
 {
   for (size_t k = 0; k < l->n; k++) {
     const struct vg_entry *f = &l->entry[k];
@@ -311,8 +333,7 @@ void vg_report_entries(json_t *o, json_t *seconds, const struct vg_entries *l,
       json_object_set_new(f->type == VG_ENTRY_SECONDS ? seconds : o, f->name,
                           json_real(vg_entry_real(f, report)));
     else if (f->type == VG_ENTRY_FLAG)
-      json_object_set_new(o, f->name,
-                          json_boolean(vg_entry_count(f, report)));
+      json_object_set_new(o, f->name, json_boolean(vg_entry_count(f, report)));
     else
       json_object_set_new(o, f->name,
                           json_integer((json_int_t)vg_entry_count(f, report)));
@@ -326,7 +347,7 @@ json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
   vg_report_entries(o, seconds, &vg_fill_entries, r);
   json_object_set_new(o, "seconds", seconds);
   json_object_set_new(o, "cells_per_second",
-                      real(r->time_total > 0
-                           ? (double)n_cell / r->time_total : 0));
+                      real(r->time_total > 0 ? (double)n_cell / r->time_total
+                                             : 0));
   return o;
 }

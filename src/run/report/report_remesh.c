@@ -11,8 +11,8 @@ static double percent(size_t part, size_t whole)
 static void distance_text(FILE *to, const char *what,
                           const struct vg_remesh_distance *d)
 {
-  fprintf(to, "  %s: %.3g at most, at (%.6g, %.6g, %.6g); 99 %%: %.3g\n",
-          what, d->most, d->at[0], d->at[1], d->at[2], d->most_99);
+  fprintf(to, "  %s: %.3g at most, at (%.6g, %.6g, %.6g); 99 %%: %.3g\n", what,
+          d->most, d->at[0], d->at[1], d->at[2], d->most_99);
 }
 
 static void bad_text(FILE *to, const struct vg_remesh_report *r)
@@ -28,15 +28,14 @@ static void bad_text(FILE *to, const struct vg_remesh_report *r)
   for (size_t i = 0; i < r->n_bad && shown < VG_SHOWN_FACES; i++, shown++)
     fprintf(to, "    %s, face %zu, angle %.2g, at (%.6g, %.6g, %.6g)\n",
             vg_remesh_cause_name(r->bad[i].cause), r->bad[i].face + 1,
-            r->bad[i].angle, r->bad[i].at[0], r->bad[i].at[1],
-            r->bad[i].at[2]);
-  if (r->n_bad > shown) fprintf(to, "    ... and %zu more\n",
-                                r->n_bad - shown);
+            r->bad[i].angle, r->bad[i].at[0], r->bad[i].at[1], r->bad[i].at[2]);
+  if (r->n_bad > shown) fprintf(to, "    ... and %zu more\n", r->n_bad - shown);
 }
 
 static void back_text(FILE *to, const struct vg_put_back *b)
 {
-  fprintf(to, "  put back on the CAD model: %zu points, %zu of them on its "
+  fprintf(to,
+          "  put back on the CAD model: %zu points, %zu of them on its "
           "curves; refused %zu, off it %zu\n",
           b->n_point - b->n_refused - b->n_far, b->n_curve, b->n_refused,
           b->n_far);
@@ -49,11 +48,14 @@ static void stretch_text(FILE *to, const struct vg_remesh_report *r)
   const size_t *n = r->n_aspect;
 
   if (!(r->aspect_most > 0)) return;
-  fprintf(to, "  stretched: triangles by up to 1.5 times %zu, to 3 %zu, to 6 "
-          "%zu, to 12 %zu, more %zu; at most %.3g\n", n[0], n[1], n[2], n[3],
-          n[4], r->aspect_most);
-  fprintf(to, "  smallest angle %.3g, and those listed here, as if not "
-          "stretched\n", r->angle_min);
+  fprintf(to,
+          "  stretched: triangles by up to 1.5 times %zu, to 3 %zu, to 6 "
+          "%zu, to 12 %zu, more %zu; at most %.3g\n",
+          n[0], n[1], n[2], n[3], n[4], r->aspect_most);
+  fprintf(to,
+          "  smallest angle %.3g, and those listed here, as if not "
+          "stretched\n",
+          r->angle_min);
 }
 
 void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
@@ -62,20 +64,26 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
   char was[32], now[32];
 
   if (!n->is_done) return;
-  fprintf(to, "  remeshed: %s triangles, now %s; %zu corners and %zu lines "
-          "kept, length %.6g, now %.6g\n", vg_text_count(r->n_tri[0], was),
-          vg_text_count(r->n_tri[1], now), r->n_corner, r->n_line,
-          r->line_length[0], r->line_length[1]);
+  fprintf(to,
+          "  remeshed: %s triangles, now %s; %zu corners and %zu lines "
+          "kept, length %.6g, now %.6g\n",
+          vg_text_count(r->n_tri[0], was), vg_text_count(r->n_tri[1], now),
+          r->n_corner, r->n_line, r->line_length[0], r->line_length[1]);
   if (r->n_left)
-    fprintf(to, "  strips narrower than the tolerance left: %zu; triangles "
-            "met where they were closed\n", r->n_left);
+    fprintf(to,
+            "  strips narrower than the tolerance left: %zu; triangles "
+            "met where they were closed\n",
+            r->n_left);
   if (r->n_closed)
-    fprintf(to, "  strips narrower than the tolerance closed: %zu, length "
-            "%.6g, width %.3g at most, at (%g, %g, %g)\n", r->n_closed,
-            r->closed_length, r->closed_width, r->closed_at[0],
+    fprintf(to,
+            "  strips narrower than the tolerance closed: %zu, length "
+            "%.6g, width %.3g at most, at (%g, %g, %g)\n",
+            r->n_closed, r->closed_length, r->closed_width, r->closed_at[0],
             r->closed_at[1], r->closed_at[2]);
-  fprintf(to, "  sizes %.3g to %.3g; edges within a factor 1.41 of the size: "
-          "%.2f %%\n", r->h_min, r->h_max, percent(r->n_edge_fit, r->n_edge));
+  fprintf(to,
+          "  sizes %.3g to %.3g; edges within a factor 1.41 of the size: "
+          "%.2f %%\n",
+          r->h_min, r->h_max, percent(r->n_edge_fit, r->n_edge));
   fprintf(to, "  tolerance %.3g (and 0.05 of the size)\n", r->tolerance);
   distance_text(to, "new from given", &n->off[0]);
   distance_text(to, "given from new", &n->off[1]);
@@ -85,8 +93,10 @@ void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
             n->volume[0], n->volume[1],
             100 * (n->volume[0] / n->volume[1] - 1));
   if (r->n_round > 1)
-    fprintf(to, "  made %d times: triangles met, and sizes there were "
-            "halved\n", r->n_round);
+    fprintf(to,
+            "  made %d times: triangles met, and sizes there were "
+            "halved\n",
+            r->n_round);
   stretch_text(to, r);
   bad_text(to, r);
 }
@@ -101,12 +111,12 @@ static json_t *back_json(const struct vg_put_back *b)
 {
   if (!b->is_done) return json_null();
   return json_pack("{s:I s:f s:I s:I s:I s:o s:o s:f}", "points",
-    (json_int_t)b->n_point, "percent_on",
-    percent(b->n_point - b->n_far - b->n_refused, b->n_point),
-    "on_curves", (json_int_t)b->n_curve, "refused",
-    (json_int_t)b->n_refused, "off_model", (json_int_t)b->n_far, "before",
-    distance_json(&b->off[0]), "now", distance_json(&b->off[1]), "seconds",
-    b->seconds);
+                   (json_int_t)b->n_point, "percent_on",
+                   percent(b->n_point - b->n_far - b->n_refused, b->n_point),
+                   "on_curves", (json_int_t)b->n_curve, "refused",
+                   (json_int_t)b->n_refused, "off_model", (json_int_t)b->n_far,
+                   "before", distance_json(&b->off[0]), "now",
+                   distance_json(&b->off[1]), "seconds", b->seconds);
 }
 
 static json_t *volume_json(double v)
@@ -117,21 +127,22 @@ static json_t *volume_json(double v)
 static json_t *closed_json(const struct vg_remesh_report *r)
 {
   if (!r->n_closed && !r->n_left) return json_null();
-  return json_pack("{s:I s:I s:f s:f s:[fff]}",
-    "number", (json_int_t)r->n_closed, "left", (json_int_t)r->n_left,
-    "length", r->closed_length, "width", r->closed_width,
-    "at", r->closed_at[0], r->closed_at[1], r->closed_at[2]);
+  return json_pack("{s:I s:I s:f s:f s:[fff]}", "number",
+                   (json_int_t)r->n_closed, "left", (json_int_t)r->n_left,
+                   "length", r->closed_length, "width", r->closed_width, "at",
+                   r->closed_at[0], r->closed_at[1], r->closed_at[2]);
 }
 
-static json_t *patches_json(const struct vg_renewal *n,
-                            const struct vg_mesh *m)
+static json_t *patches_json(const struct vg_renewal *n, const struct vg_mesh *m)
 {
   json_t *list = json_array();
 
   for (size_t i = 0; i < n->n_patch; i++)
-    json_array_append_new(list, json_pack("{s:i s:o s:[ff]}", "id",
-      (int)m->patch[i].id, "name", vg_text_json(m->patch[i].name), "area",
-      n->area[2 * i], n->area[2 * i + 1]));
+    json_array_append_new(list,
+                          json_pack("{s:i s:o s:[ff]}", "id",
+                                    (int)m->patch[i].id, "name",
+                                    vg_text_json(m->patch[i].name), "area",
+                                    n->area[2 * i], n->area[2 * i + 1]));
   return list;
 }
 
@@ -142,9 +153,11 @@ static json_t *bad_json(const struct vg_remesh_report *r, size_t shown)
   for (size_t i = 0; i < r->n_bad && i < shown; i++) {
     const struct vg_remesh_bad *b = &r->bad[i];
 
-    json_array_append_new(list, json_pack("{s:s s:I s:f s:[fff]}", "cause",
-      vg_remesh_cause_name(b->cause), "face", (json_int_t)b->face + 1,
-      "angle", b->angle, "at", b->at[0], b->at[1], b->at[2]));
+    json_array_append_new(list,
+                          json_pack("{s:s s:I s:f s:[fff]}", "cause",
+                                    vg_remesh_cause_name(b->cause), "face",
+                                    (json_int_t)b->face + 1, "angle", b->angle,
+                                    "at", b->at[0], b->at[1], b->at[2]));
   }
   return list;
 }
@@ -155,9 +168,10 @@ static json_t *stretch_json(const struct vg_remesh_report *r)
 
   if (!(r->aspect_most > 0)) return json_null();
   return json_pack("{s:f s:f s:[IIIII]}", "most", r->aspect_most,
-    "smallest_angle", r->angle_min, "triangles_to_1.5_3_6_12_more",
-    (json_int_t)n[0], (json_int_t)n[1], (json_int_t)n[2], (json_int_t)n[3],
-    (json_int_t)n[4]);
+                   "smallest_angle", r->angle_min,
+                   "triangles_to_1.5_3_6_12_more", (json_int_t)n[0],
+                   (json_int_t)n[1], (json_int_t)n[2], (json_int_t)n[3],
+                   (json_int_t)n[4]);
 }
 
 json_t *vg_report_remesh_json(const struct vg_renewal *n,
@@ -166,34 +180,36 @@ json_t *vg_report_remesh_json(const struct vg_renewal *n,
   const struct vg_remesh_report *r = &n->report;
 
   if (!n->is_done) return json_null();
-  return json_pack("{s:[II] s:[II] s:I s:I s:[ff] s:f s:f s:f s:f s:i s:f s:o "
-                   "s:o s:o s:o s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o}",
-    "triangles", (json_int_t)r->n_tri[0], (json_int_t)r->n_tri[1],
-    "points", (json_int_t)r->n_point[0], (json_int_t)r->n_point[1],
-    "corners", (json_int_t)r->n_corner, "lines", (json_int_t)r->n_line,
-    "line_length", r->line_length[0], r->line_length[1],
-    "tolerance", r->tolerance, "body_length", r->length,
-    "size_min", r->h_min, "size_max", r->h_max, "rounds", r->n_round,
-    "percent_edges_fit", percent(r->n_edge_fit, r->n_edge),
-    "strips_closed", closed_json(r),
-    "new_from_given", distance_json(&n->off[0]),
-    "given_from_new", distance_json(&n->off[1]),
-    "cad", back_json(&n->back), "volume", volume_json(n->volume[0]),
-    "cad_volume", volume_json(n->volume[1]),
+  return json_pack(
+    "{s:[II] s:[II] s:I s:I s:[ff] s:f s:f s:f s:f s:i s:f s:o "
+    "s:o s:o s:o s:o s:o s:{s:I s:I s:I s:I} s:f s:o s:o s:o}",
+    "triangles", (json_int_t)r->n_tri[0], (json_int_t)r->n_tri[1], "points",
+    (json_int_t)r->n_point[0], (json_int_t)r->n_point[1], "corners",
+    (json_int_t)r->n_corner, "lines", (json_int_t)r->n_line, "line_length",
+    r->line_length[0], r->line_length[1], "tolerance", r->tolerance,
+    "body_length", r->length, "size_min", r->h_min, "size_max", r->h_max,
+    "rounds", r->n_round, "percent_edges_fit",
+    percent(r->n_edge_fit, r->n_edge), "strips_closed", closed_json(r),
+    "new_from_given", distance_json(&n->off[0]), "given_from_new",
+    distance_json(&n->off[1]), "cad", back_json(&n->back), "volume",
+    volume_json(n->volume[0]), "cad_volume", volume_json(n->volume[1]),
     "changes", "splits", (json_int_t)r->n_split, "collapses",
     (json_int_t)r->n_collapse, "swaps", (json_int_t)r->n_swap, "moves",
-    (json_int_t)r->n_move, "seconds", n->seconds,
-    "patches", patches_json(n, m), "below_20_degrees", bad_json(r, SIZE_MAX),
-    "stretched", stretch_json(r));
+    (json_int_t)r->n_move, "seconds", n->seconds, "patches", patches_json(n, m),
+    "below_20_degrees", bad_json(r, SIZE_MAX), "stretched", stretch_json(r));
 }
 
 void vg_report_lines_text(FILE *to, const struct vg_remesh_report *r, int fit)
 {
-  fprintf(to, "  lines (ridges, rims, borders between conditions): %zu, length "
-          "%.6g, corners %zu\n", r->n_line, r->line_length[0], r->n_corner);
+  fprintf(to,
+          "  lines (ridges, rims, borders between conditions): %zu, length "
+          "%.6g, corners %zu\n",
+          r->n_line, r->line_length[0], r->n_corner);
   if (fit)
-    fprintf(to, "  edges within a factor 1.41 of the size that shape and deck "
-            "ask for: %.2f %%\n", percent(r->n_edge_fit, r->n_edge));
+    fprintf(to,
+            "  edges within a factor 1.41 of the size that shape and deck "
+            "ask for: %.2f %%\n",
+            percent(r->n_edge_fit, r->n_edge));
   bad_text(to, r);
 }
 
@@ -205,12 +221,12 @@ json_t *vg_report_lines_json(const struct vg_remesh_report *r, int fit)
     json_object_set_new(cause, vg_remesh_cause_name((enum vg_remesh_cause)c),
                         json_integer((json_int_t)r->cause[c]));
   return json_pack("{s:I s:I s:f s:o s:I s:o s:o}", "lines",
-    (json_int_t)r->n_line,
-    "corners", (json_int_t)r->n_corner, "line_length", r->line_length[0],
-    "percent_edges_fit",
-    fit ? json_real(percent(r->n_edge_fit, r->n_edge)) : json_null(),
-    "below_20_degrees", (json_int_t)r->n_bad, "causes", cause, "first",
-    bad_json(r, VG_LISTED_DEFECTS));
+                   (json_int_t)r->n_line, "corners", (json_int_t)r->n_corner,
+                   "line_length", r->line_length[0], "percent_edges_fit",
+                   fit ? json_real(percent(r->n_edge_fit, r->n_edge))
+                       : json_null(),
+                   "below_20_degrees", (json_int_t)r->n_bad, "causes", cause,
+                   "first", bad_json(r, VG_LISTED_DEFECTS));
 }
 
 void vg_report_distances_text(FILE *to, const char *file,

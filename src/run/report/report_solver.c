@@ -14,16 +14,16 @@ void vg_report_solver_text(FILE *to, const struct vg_solver_report *r)
   char more[120];
 
   row(to, "parts", r->n_part, "");
-  row(to, "stacks of layer cells", r->n_stack, r->n_stack
-      ? ", none of them cut" : "");
+  row(to, "stacks of layer cells", r->n_stack,
+      r->n_stack ? ", none of them cut" : "");
   if (r->n_stack) {
     row(to, "cells in stacks", r->n_stack_cell, "");
     row(to, "cells in the largest", r->most_stack, "");
   }
   if (r->has_loose)
     fprintf(to, "  which tetrahedra stand in stacks is not known: the file "
-            "does not tell, or\n  they are not in Vanguard's order; only "
-            "prisms and hexahedra were kept together\n");
+                "does not tell, or\n  they are not in Vanguard's order; only "
+                "prisms and hexahedra were kept together\n");
   snprintf(more, sizeof more, ", at least %llu, most over mean by weight %.4f",
            (unsigned long long)r->least_cells, r->balance);
   row(to, "most cells of a part", r->most_cells, more);
@@ -35,26 +35,24 @@ void vg_report_solver_text(FILE *to, const struct vg_solver_report *r)
   if (r->n_moved)
     row(to, "parts METIS left empty", r->n_moved,
         ", given a stack or a cell each");
-  fprintf(to, "  METIS parted a graph of %s vertices in %.2f s; it took %.2f s "
-          "to make\n", vg_text_count(r->n_vertex, more), r->time_metis,
-          r->time_graph);
+  fprintf(to,
+          "  METIS parted a graph of %s vertices in %.2f s; it took %.2f s "
+          "to make\n",
+          vg_text_count(r->n_vertex, more), r->time_metis, r->time_graph);
 }
 
 json_t *vg_report_solver_json(const struct vg_solver_report *r)
 {
   return json_pack(
     "{s:I s:I s:I s:I s:I s:b s:I s:f s:I s:I s:I s:I s:f s:I s:f s:I s:f s:f}",
-    "parts", (json_int_t)r->n_part, "cells", (json_int_t)r->n_cell,
-    "stacks", (json_int_t)r->n_stack,
-    "stack_cells", (json_int_t)r->n_stack_cell,
-    "largest_stack", (json_int_t)r->most_stack,
-    "tetrahedra_in_stacks_known", !r->has_loose,
-    "graph_vertices", (json_int_t)r->n_vertex, "balance", r->balance,
-    "most_cells", (json_int_t)r->most_cells,
-    "least_cells", (json_int_t)r->least_cells,
-    "cut_faces", (json_int_t)r->n_cut,
-    "most_cut_faces", (json_int_t)r->most_cut,
-    "mean_cut_faces", r->mean_cut, "most_neighbours", (json_int_t)r->most_near,
-    "mean_neighbours", r->mean_near, "filled_up", (json_int_t)r->n_moved,
-    "seconds_graph", r->time_graph, "seconds_metis", r->time_metis);
+    "parts", (json_int_t)r->n_part, "cells", (json_int_t)r->n_cell, "stacks",
+    (json_int_t)r->n_stack, "stack_cells", (json_int_t)r->n_stack_cell,
+    "largest_stack", (json_int_t)r->most_stack, "tetrahedra_in_stacks_known",
+    !r->has_loose, "graph_vertices", (json_int_t)r->n_vertex, "balance",
+    r->balance, "most_cells", (json_int_t)r->most_cells, "least_cells",
+    (json_int_t)r->least_cells, "cut_faces", (json_int_t)r->n_cut,
+    "most_cut_faces", (json_int_t)r->most_cut, "mean_cut_faces", r->mean_cut,
+    "most_neighbours", (json_int_t)r->most_near, "mean_neighbours",
+    r->mean_near, "filled_up", (json_int_t)r->n_moved, "seconds_graph",
+    r->time_graph, "seconds_metis", r->time_metis);
 }

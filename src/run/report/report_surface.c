@@ -44,21 +44,21 @@ json_t *vg_report_size_json(const struct vg_mesh *m)
 
   vg_mesh_bounds(m, lo, hi);
   return json_pack("{s:I s:I s:I s:I s:I s:I s:I s:I s:I s:[fff] s:[fff]}",
-                   "points", (json_int_t)m->n_point,
-                   "triangles", (json_int_t)m->n_tri,
-                   "quadrilaterals", (json_int_t)m->n_quad,
-                   "cells", (json_int_t)n_cell(m),
-                   "tetrahedra", (json_int_t)m->n_tet,
-                   "pyramids", (json_int_t)m->n_pyr,
-                   "prisms", (json_int_t)m->n_pri,
-                   "hexahedra", (json_int_t)m->n_hex,
-                   "patches", (json_int_t)m->n_patch,
-                   "lower", lo[0], lo[1], lo[2],
+                   "points", (json_int_t)m->n_point, "triangles",
+                   (json_int_t)m->n_tri, "quadrilaterals",
+                   (json_int_t)m->n_quad, "cells", (json_int_t)n_cell(m),
+                   "tetrahedra", (json_int_t)m->n_tet, "pyramids",
+                   (json_int_t)m->n_pyr, "prisms", (json_int_t)m->n_pri,
+                   "hexahedra", (json_int_t)m->n_hex, "patches",
+                   (json_int_t)m->n_patch, "lower", lo[0], lo[1], lo[2],
                    "upper", hi[0], hi[1], hi[2]);
 }
 
 /* Faces, area and box of a patch. */
-struct extent { size_t n; double area, lo[3], hi[3]; };
+struct extent {
+  size_t n;
+  double area, lo[3], hi[3];
+};
 
 static void add_face(struct extent *e, const struct vg_mesh *m,
                      const uint32_t *node, int n)
@@ -143,18 +143,20 @@ json_t *vg_report_patches_json(const struct vg_mesh *m)
   json_t *list = json_array();
 
   for (size_t i = 0; e && i < m->n_patch; i++) {
-    json_t *one =
-      json_pack("{s:i s:o s:o s:o s:I s:f}", "id", (int)m->patch[i].id, "name",
-                vg_text_json(m->patch[i].name), "usm3d",
-                code_json(m->patch[i].bc), "fun3d",
-                code_json(m->patch[i].bc_fun3d), "faces",
-                (json_int_t)e[i].n, "area", e[i].area);
+    json_t *one = json_pack("{s:i s:o s:o s:o s:I s:f}", "id",
+                            (int)m->patch[i].id, "name",
+                            vg_text_json(m->patch[i].name), "usm3d",
+                            code_json(m->patch[i].bc), "fun3d",
+                            code_json(m->patch[i].bc_fun3d), "faces",
+                            (json_int_t)e[i].n, "area", e[i].area);
 
     if (e[i].n) {
-      json_object_set_new(one, "lower", json_pack("[fff]", e[i].lo[0],
-                                                  e[i].lo[1], e[i].lo[2]));
-      json_object_set_new(one, "upper", json_pack("[fff]", e[i].hi[0],
-                                                  e[i].hi[1], e[i].hi[2]));
+      json_object_set_new(one, "lower",
+                          json_pack("[fff]", e[i].lo[0], e[i].lo[1],
+                                    e[i].lo[2]));
+      json_object_set_new(one, "upper",
+                          json_pack("[fff]", e[i].hi[0], e[i].hi[1],
+                                    e[i].hi[2]));
     }
     json_array_append_new(list, one);
   }
@@ -171,10 +173,11 @@ static void shells_text(FILE *to, const struct vg_surface_report *r)
   for (size_t i = 0; i < r->n_shell && i < VG_SHOWN_ITEMS; i++) {
     const struct vg_shell *s = &r->shell[i];
 
-    fprintf(to, "    shell %zu: %s triangles, depth %d, volume %g, box %g %g "
-            "%g to %g %g %g\n", i + 1, vg_text_count(s->n_tri, count),
-            s->depth, s->volume, s->lo[0], s->lo[1], s->lo[2], s->hi[0],
-            s->hi[1], s->hi[2]);
+    fprintf(to,
+            "    shell %zu: %s triangles, depth %d, volume %g, box %g %g "
+            "%g to %g %g %g\n",
+            i + 1, vg_text_count(s->n_tri, count), s->depth, s->volume,
+            s->lo[0], s->lo[1], s->lo[2], s->hi[0], s->hi[1], s->hi[2]);
   }
   if (r->n_shell > VG_SHOWN_ITEMS)
     fprintf(to, "    ... and %zu more\n", r->n_shell - VG_SHOWN_ITEMS);
@@ -190,11 +193,13 @@ static void repair_text(FILE *to, const struct vg_surface_report *r)
     for (size_t i = 0; i < r->n_shell; i++) single += r->shell[i].n_tri;
     single -= r->n_flipped;
     fprintf(to, "  repaired: the whole surface was turned, so that it points "
-            "into the fluid\n");
+                "into the fluid\n");
   }
   if (single)
-    fprintf(to, "  repaired: %zu triangles turned to agree with their "
-            "neighbours\n", single);
+    fprintf(to,
+            "  repaired: %zu triangles turned to agree with their "
+            "neighbours\n",
+            single);
   if (r->n_removed_point)
     fprintf(to, "  repaired: %zu unused or duplicate points removed\n",
             r->n_removed_point);
@@ -202,8 +207,10 @@ static void repair_text(FILE *to, const struct vg_surface_report *r)
     fprintf(to, "  repaired: %zu duplicate or degenerate triangles removed\n",
             r->n_removed_tri);
   if (r->n_removed_wall)
-    fprintf(to, "  repaired: %zu triangles of walls that touching bodies "
-            "shared removed\n", r->n_removed_wall);
+    fprintf(to,
+            "  repaired: %zu triangles of walls that touching bodies "
+            "shared removed\n",
+            r->n_removed_wall);
 }
 
 /* Triangles that spoil the cells on them. */
@@ -211,19 +218,23 @@ static void slivers_text(FILE *to, const struct vg_mesh *m,
                          const struct vg_surface_quality *q)
 {
   if (!q->n_worst) return;
-  fprintf(to, "  slivers: caps (three nodes nearly on a line) %zu, needles "
+  fprintf(to,
+          "  slivers: caps (three nodes nearly on a line) %zu, needles "
           "%zu; cells on them are\n  hardly better. surface_swap removes those "
           "that it can without moving the surface\n  visibly; where they stay, "
-          "the surface needs new triangles:\n", q->n_cap, q->n_needle);
+          "the surface needs new triangles:\n",
+          q->n_cap, q->n_needle);
   for (size_t i = 0; i < q->n_worst && i < VG_SHOWN_FACES; i++) {
     const struct vg_worst_face *w = &q->worst[i];
     const struct vg_patch *p = &m->patch[m->tri_patch[w->face]];
     char name[VG_NAME_MAX];
 
-    fprintf(to, "    %s, patch %d%s%s, face %zu, angle %.2g, at (%.6g, %.6g, "
-            "%.6g)\n", w->is_cap ? "cap" : "needle", (int)p->id,
-            *p->name ? " " : "", vg_text_clean(p->name, name, sizeof name),
-            w->face + 1, w->angle, w->at[0], w->at[1], w->at[2]);
+    fprintf(to,
+            "    %s, patch %d%s%s, face %zu, angle %.2g, at (%.6g, %.6g, "
+            "%.6g)\n",
+            w->is_cap ? "cap" : "needle", (int)p->id, *p->name ? " " : "",
+            vg_text_clean(p->name, name, sizeof name), w->face + 1, w->angle,
+            w->at[0], w->at[1], w->at[2]);
   }
   if (q->n_cap + q->n_needle > VG_SHOWN_FACES)
     fprintf(to, "    ... and %zu more\n",
@@ -236,7 +247,8 @@ static void quality_text(FILE *to, const struct vg_mesh *m)
 
   vg_surface_quality(m, &q);
   if (!q.n) return;
-  fprintf(to, "  triangles: smallest angle %.2g, 1st percentile %.1f degrees; "
+  fprintf(to,
+          "  triangles: smallest angle %.2g, 1st percentile %.1f degrees; "
           "below 5 10 20 30:\n  %.4f %.4f %.4f %.4f %%; 2 r/R: mean %.3f; mean "
           "edge %.6g\n",
           q.angle_min, q.angle_min_p1, q.below[0], q.below[1], q.below[2],
@@ -253,18 +265,20 @@ static json_t *quality_json(const struct vg_mesh *m)
   for (size_t i = 0; i < q.n_worst; i++) {
     const struct vg_worst_face *w = &q.worst[i];
 
-    json_array_append_new(list, json_pack("{s:s s:I s:i s:f s:[fff]}", "kind",
-      w->is_cap ? "cap" : "needle", "face", (json_int_t)w->face + 1, "patch",
-      (int)m->patch[m->tri_patch[w->face]].id, "angle", w->angle, "at",
-      w->at[0], w->at[1], w->at[2]));
+    json_array_append_new(list,
+                          json_pack("{s:s s:I s:i s:f s:[fff]}", "kind",
+                                    w->is_cap ? "cap" : "needle", "face",
+                                    (json_int_t)w->face + 1, "patch",
+                                    (int)m->patch[m->tri_patch[w->face]].id,
+                                    "angle", w->angle, "at", w->at[0], w->at[1],
+                                    w->at[2]));
   }
   return json_pack("{s:f s:f s:[ffff] s:f s:f s:I s:I s:o}", "angle_min",
                    q.angle_min, "angle_min_percentile_1", q.angle_min_p1,
                    "percent_below_5_10_20_30", q.below[0], q.below[1],
                    q.below[2], q.below[3], "radius_ratio_mean", q.ratio_mean,
-                   "edge_mean", q.edge_mean, "caps",
-                   (json_int_t)q.n_cap, "needles",
-                   (json_int_t)q.n_needle, "worst", list);
+                   "edge_mean", q.edge_mean, "caps", (json_int_t)q.n_cap,
+                   "needles", (json_int_t)q.n_needle, "worst", list);
 }
 
 void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
@@ -308,8 +322,8 @@ static json_t *defects_json(const struct vg_mesh *m,
     one = json_pack("{s:s s:o}", "kind", vg_defect_name(d->kind), "text",
                     vg_text_json(text));
     /* NaN has no JSON form: such a defect goes without its place. */
-    json_object_set_new(one, "at", json_pack("[fff]", d->at[0], d->at[1],
-                                             d->at[2]));
+    json_object_set_new(one, "at",
+                        json_pack("[fff]", d->at[0], d->at[1], d->at[2]));
     for (int k = 0; k < 2; k++)
       if (d->face[k] != SIZE_MAX)
         json_object_set_new(one, k ? "face2" : "face",
@@ -320,8 +334,7 @@ static json_t *defects_json(const struct vg_mesh *m,
 }
 
 json_t *vg_report_surface_json(const struct vg_mesh *m,
-                               const struct vg_surface_report *r,
-                               size_t shown)
+                               const struct vg_surface_report *r, size_t shown)
 {
   json_t *counts = json_object(), *shells = json_array();
 
@@ -332,20 +345,21 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
     const struct vg_shell *s = &r->shell[i];
 
     json_array_append_new(shells,
-      json_pack("{s:I s:i s:f s:[fff] s:[fff]}", "triangles",
-                (json_int_t)s->n_tri, "depth", s->depth, "volume", s->volume,
-                "lower", s->lo[0], s->lo[1], s->lo[2],
-                "upper", s->hi[0], s->hi[1], s->hi[2]));
+                          json_pack("{s:I s:i s:f s:[fff] s:[fff]}",
+                                    "triangles", (json_int_t)s->n_tri, "depth",
+                                    s->depth, "volume", s->volume, "lower",
+                                    s->lo[0], s->lo[1], s->lo[2], "upper",
+                                    s->hi[0], s->hi[1], s->hi[2]));
   }
-  return json_pack("{s:b s:b s:I s:o s:o s:I s:I s:I s:I s:b s:o s:o}",
-                   "ok", r->n_defect == 0, "closed", r->is_closed,
-                   "defects", (json_int_t)r->n_defect, "count", counts,
-                   "shells", shells, "flipped", (json_int_t)r->n_flipped,
-                   "removed_points", (json_int_t)r->n_removed_point,
-                   "removed_triangles", (json_int_t)r->n_removed_tri,
-                   "removed_wall_triangles", (json_int_t)r->n_removed_wall,
-                   "turned_inside_out", r->turned_inside_out, "first",
-                   defects_json(m, r, shown), "quality", quality_json(m));
+  return json_pack("{s:b s:b s:I s:o s:o s:I s:I s:I s:I s:b s:o s:o}", "ok",
+                   r->n_defect == 0, "closed", r->is_closed, "defects",
+                   (json_int_t)r->n_defect, "count", counts, "shells", shells,
+                   "flipped", (json_int_t)r->n_flipped, "removed_points",
+                   (json_int_t)r->n_removed_point, "removed_triangles",
+                   (json_int_t)r->n_removed_tri, "removed_wall_triangles",
+                   (json_int_t)r->n_removed_wall, "turned_inside_out",
+                   r->turned_inside_out, "first", defects_json(m, r, shown),
+                   "quality", quality_json(m));
 }
 
 void vg_report_flow_text(FILE *to, const struct vg_flow *f, int adds_farfield)
@@ -359,7 +373,8 @@ void vg_report_flow_text(FILE *to, const struct vg_flow *f, int adds_farfield)
   if (f->kind == VG_FLOW_EXTERNAL)
     fprintf(to, "  If the fluid is inside the surface, give --flow internal\n");
   if (f->kind == VG_FLOW_INTERNAL)
-    fprintf(to, "  If the surface is a body in a fluid, give --flow external\n");
+    fprintf(to,
+            "  If the surface is a body in a fluid, give --flow external\n");
 }
 
 json_t *vg_report_flow_json(const struct vg_flow *f, int adds_farfield)
@@ -377,8 +392,11 @@ json_t *vg_report_flow_json(const struct vg_flow *f, int adds_farfield)
                    "outer_boundaries", (json_int_t)f->n_outer,
                    "sealed_cavities", (json_int_t)f->n_cavity, "inlets",
                    (json_int_t)f->n_inlet, "outlets", (json_int_t)f->n_outlet,
-                   "half", f->axis < 0 ? "no" : f->axis == 0 ? "x"
-                           : f->axis == 1 ? "y" : "z",
+                   "half",
+                   f->axis < 0    ? "no"
+                   : f->axis == 0 ? "x"
+                   : f->axis == 1 ? "y"
+                                  : "z",
                    "half_at", f->axis < 0 ? 0.0 : f->at);
 }
 
@@ -387,8 +405,8 @@ void vg_report_domain_text(FILE *to, const struct vg_domain_report *r)
   char count[32];
 
   if (r->added_symmetry)
-    fprintf(to, "  added: symmetry plane %c = %g\n",
-            "xyz"[r->symmetry_axis], r->symmetry_at);
+    fprintf(to, "  added: symmetry plane %c = %g\n", "xyz"[r->symmetry_axis],
+            r -> symmetry_at);
   if (r->added_farfield) fprintf(to, "  added: farfield\n");
   if (r->n_added_tri)
     fprintf(to, "  added: %s triangles\n",

@@ -36,8 +36,7 @@ vg_status vg_deck_read(const char *path, struct vg_settings *s,
  *                 NULL
  * @param explain  1: say what every value means, with unit and default */
 vg_status vg_deck_write(const char *path, const struct vg_settings *s,
-                        const char *comment, int explain,
-                        struct vg_error *err);
+                        const char *comment, int explain, struct vg_error *err);
 
 /** One row of the patch table for every patch of m. */
 vg_status vg_deck_patches_of(const struct vg_mesh *m, struct vg_settings *s,

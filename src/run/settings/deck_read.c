@@ -8,7 +8,7 @@
 #include "io/stream/stream.h"
 #include "run/settings/deck.h"
 
-#define MAX_TOKENS 64   /* more than any table has columns */
+#define MAX_TOKENS 64 /* more than any table has columns */
 #define TOKEN_SIZE 512
 
 struct token {
@@ -19,13 +19,13 @@ struct token {
 
 struct reader {
   struct vg_input in;
-  size_t line;                     /* of the tokens */
+  size_t line; /* of the tokens */
   struct token token[MAX_TOKENS];
   size_t n_token;
   const struct vg_param *name[MAX_TOKENS];
   size_t n_name;
-  size_t *set_at;                  /* line that set parameter i, or 0 */
-  size_t table_at[VG_TABLE_N];     /* line that began the table, or 0 */
+  size_t *set_at;              /* line that set parameter i, or 0 */
+  size_t table_at[VG_TABLE_N]; /* line that began the table, or 0 */
   struct vg_settings s;
 };
 
@@ -59,12 +59,16 @@ static vg_status scan_token(struct reader *r, const char **text,
   for (;; p++) {
     if (p == end) {
       if (t->quoted)
-        return fail(r, err, VG_ERR_FORMAT, "a quote is not closed on its "
+        return fail(r, err, VG_ERR_FORMAT,
+                    "a quote is not closed on its "
                     "line; add \"");
       break;
     }
     if (t->quoted && *p == '"') {
-      if (p + 1 == end || p[1] != '"') { p++; break; }
+      if (p + 1 == end || p[1] != '"') {
+        p++;
+        break;
+      }
       p++;
     } else if (!t->quoted && (*p == ' ' || *p == '\t' || *p == '#')) {
       break;
@@ -94,9 +98,15 @@ static vg_status next_line(struct reader *r, int *state, struct vg_error *err)
   *state = 0;
   if (!vg_input_line(&r->in, &text, &len)) return VG_OK;
   *state = 1;
-  for (end = text + len; text < end; ) {
-    if (*text == ' ' || *text == '\t') { text++; continue; }
-    if (*text == '#') { *state = r->n_token ? 3 : 2; return VG_OK; }
+  for (end = text + len; text < end;) {
+    if (*text == ' ' || *text == '\t') {
+      text++;
+      continue;
+    }
+    if (*text == '#') {
+      *state = r->n_token ? 3 : 2;
+      return VG_OK;
+    }
     if (r->n_token == MAX_TOKENS)
       return fail(r, err, VG_ERR_FORMAT, "more than 64 words on a line");
     st = scan_token(r, &text, end, err);
@@ -147,16 +157,18 @@ static vg_status unknown_name(const struct reader *r, const char *name,
   const char *near, *where = table ? table->name : "this deck";
 
   vg_settings_params(&n);
-  near = table ? vg_nearest_name(name, table->n_column, param_name,
-                                 table->column)
-               : vg_nearest_name(name, n + VG_TABLE_N, any_name, NULL);
+  near = table
+         ? vg_nearest_name(name, table->n_column, param_name, table->column)
+         : vg_nearest_name(name, n + VG_TABLE_N, any_name, NULL);
   if (near)
-    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: '%s' is not a name known in "
-                   "%s; did you mean '%s'?", r->in.path, r->line, name, where,
-                   near);
-  return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: '%s' is not a name known in %s; "
-                 "'vanguard deck' writes all names", r->in.path, r->line, name,
-                 where);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s:%zu: '%s' is not a name known in "
+                   "%s; did you mean '%s'?",
+                   r->in.path, r->line, name, where, near);
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s:%zu: '%s' is not a name known in %s; "
+                 "'vanguard deck' writes all names",
+                 r->in.path, r->line, name, where);
 }
 
 /* Tokens as names out of p[n]; table NULL: the parameters. */
@@ -171,27 +183,31 @@ static vg_status take_names(struct reader *r, const struct vg_param *p,
     double number;
 
     if (!found && vg_parse_real(text, r->token[i].len, &number))
-      return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: '%s' stands where a name "
+      return vg_fail(err, VG_ERR_FORMAT,
+                     "%s:%zu: '%s' stands where a name "
                      "should: values need a line of names above them",
                      r->in.path, r->line, text);
     if (!found) return unknown_name(r, text, table, err);
     for (size_t j = 0; j < r->n_name; j++)
       if (r->name[j] == found)
-        return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: '%s' is named twice on "
-                       "this line", r->in.path, r->line, text);
+        return vg_fail(err, VG_ERR_FORMAT,
+                       "%s:%zu: '%s' is named twice on "
+                       "this line",
+                       r->in.path, r->line, text);
     r->name[r->n_name++] = found;
   }
   return VG_OK;
 }
 
 /* Values under r->name into the struct at base. */
-static vg_status take_values(struct reader *r, void *base,
-                             struct vg_error *err)
+static vg_status take_values(struct reader *r, void *base, struct vg_error *err)
 {
   if (r->n_token != r->n_name)
-    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: %zu values for %zu names; "
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s:%zu: %zu values for %zu names; "
                    "a value with blanks needs quotes, - stands for the "
-                   "default", r->in.path, r->line, r->n_token, r->n_name);
+                   "default",
+                   r->in.path, r->line, r->n_token, r->n_name);
   for (size_t i = 0; i < r->n_token; i++) {
     const struct token *t = &r->token[i];
 
@@ -217,9 +233,10 @@ static vg_status parameters(struct reader *r, struct vg_error *err)
     size_t *at = &r->set_at[r->name[i] - p];
 
     if (*at)
-      return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: '%s' was set before (line "
-                     "%zu); remove one", r->in.path, r->line, r->name[i]->name,
-                     *at);
+      return vg_fail(err, VG_ERR_FORMAT,
+                     "%s:%zu: '%s' was set before (line "
+                     "%zu); remove one",
+                     r->in.path, r->line, r->name[i]->name, *at);
     *at = r->line;
   }
   do {
@@ -227,8 +244,10 @@ static vg_status parameters(struct reader *r, struct vg_error *err)
     if (st < 0) return st;
   } while (state == 1 || state == 2);
   if (!state)
-    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: names without a line of "
-                   "values below", r->in.path, names_at);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s:%zu: names without a line of "
+                   "values below",
+                   r->in.path, names_at);
   return take_values(r, &r->s, err);
 }
 
@@ -243,11 +262,12 @@ static int is_setting(struct reader *r, const struct vg_setting_table *table)
   p = find_param(p, n, table->name);
   if (!p || r->n_token != 1) return 0;
   vg_settings_default(&scratch);
-  return vg_param_set(p, &scratch, r->token[0].text, r->token[0].len,
-                      NULL) >= 0;
+  return vg_param_set(p, &scratch, r->token[0].text, r->token[0].len, NULL) >=
+         0;
 }
 
-static vg_status set_alone(struct reader *r, const struct vg_setting_table *table,
+static vg_status set_alone(struct reader *r,
+                           const struct vg_setting_table *table,
                            struct vg_error *err)
 {
   size_t n;
@@ -258,15 +278,18 @@ static vg_status set_alone(struct reader *r, const struct vg_setting_table *tabl
   r->n_name = 1;
   at = &r->set_at[r->name[0] - p];
   if (*at)
-    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: '%s' was set before (line "
-                   "%zu); remove one", r->in.path, r->line, table->name, *at);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s:%zu: '%s' was set before (line "
+                   "%zu); remove one",
+                   r->in.path, r->line, table->name, *at);
   *at = r->line;
   return take_values(r, &r->s, err);
 }
 
 /* Names of the columns. *is_value: it was no table, see is_setting. */
-static vg_status table_head(struct reader *r, const struct vg_setting_table *table,
-                            int *is_value, struct vg_error *err)
+static vg_status table_head(struct reader *r,
+                            const struct vg_setting_table *table, int *is_value,
+                            struct vg_error *err)
 {
   int state;
   vg_status st;
@@ -278,9 +301,10 @@ static vg_status table_head(struct reader *r, const struct vg_setting_table *tab
   *is_value = state == 3 && is_setting(r, table);
   if (*is_value) return set_alone(r, table, err);
   if (state != 3)
-    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: table '%s' needs a line of "
-                   "column names right below", r->in.path, r->line,
-                   table->name);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s:%zu: table '%s' needs a line of "
+                   "column names right below",
+                   r->in.path, r->line, table->name);
   st = take_names(r, table->column, table->n_column, table, err);
   if (st < 0) return st;
   for (size_t c = 0; c < table->n_column; c++) {
@@ -289,9 +313,10 @@ static vg_status table_head(struct reader *r, const struct vg_setting_table *tab
     for (size_t i = 0; i < r->n_name; i++)
       found |= r->name[i] == &table->column[c];
     if (!found)
-      return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: table '%s' needs a column "
-                     "'%s'", r->in.path, r->line, table->name,
-                     table->column[c].name);
+      return vg_fail(err, VG_ERR_FORMAT,
+                     "%s:%zu: table '%s' needs a column "
+                     "'%s'",
+                     r->in.path, r->line, table->name, table->column[c].name);
   }
   return VG_OK;
 }
@@ -316,9 +341,10 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
     if (st < 0 || state < 2) return st;
     if (state == 2) continue;
     if ((kind == VG_TABLE_FARFIELD || kind == VG_TABLE_SWEEP) && n_row++)
-      return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: the %s table has one line of "
-                     "values", r->in.path, r->line,
-                     vg_settings_table(kind)->name);
+      return vg_fail(err, VG_ERR_FORMAT,
+                     "%s:%zu: the %s table has one line of "
+                     "values",
+                     r->in.path, r->line, vg_settings_table(kind)->name);
     vg_settings_row_default(kind, &row);
     st = take_values(r, &row, err);
     if (st < 0) return st;
@@ -335,7 +361,8 @@ static vg_status table(struct reader *r, enum vg_table_kind kind,
   vg_status st;
 
   if (r->n_token > 1)
-    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: '%s' begins a table and "
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s:%zu: '%s' begins a table and "
                    "stands alone on its line; column names go on the next",
                    r->in.path, r->line, r->token[0].text);
   r->table_at[kind] = r->line;
@@ -346,9 +373,11 @@ static vg_status table(struct reader *r, enum vg_table_kind kind,
     return st;
   }
   if (line_before)
-    return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: table '%s' was given before "
-                   "(line %zu); join the two", r->in.path, r->table_at[kind],
-                   vg_settings_table(kind)->name, line_before);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s:%zu: table '%s' was given before "
+                   "(line %zu); join the two",
+                   r->in.path, r->table_at[kind], vg_settings_table(kind)->name,
+                   line_before);
   return table_rows(r, kind, err);
 }
 
@@ -359,8 +388,7 @@ static int looks_like_names(const struct reader *r)
   const struct vg_param *p = vg_settings_params(&n);
 
   for (size_t i = 0; i < r->n_token; i++)
-    if (!find_param(p, n, r->token[i].text) &&
-        find_table(r->token[i].text) < 0)
+    if (!find_param(p, n, r->token[i].text) && find_table(r->token[i].text) < 0)
       return 0;
   return 1;
 }
@@ -375,8 +403,10 @@ static vg_status title(struct reader *r, struct vg_error *err)
   for (;;) {
     r->line = r->in.line;
     if (!vg_input_line(&r->in, &text, &len))
-      return vg_fail(err, VG_ERR_FORMAT, "%s: no title line; the first line "
-                     "of a deck is its title", r->in.path);
+      return vg_fail(err, VG_ERR_FORMAT,
+                     "%s: no title line; the first line "
+                     "of a deck is its title",
+                     r->in.path);
     end = text + len;
     while (text < end && (*text == ' ' || *text == '\t')) text++;
     while (text < end && (end[-1] == ' ' || end[-1] == '\t')) end--;
@@ -384,11 +414,13 @@ static vg_status title(struct reader *r, struct vg_error *err)
   }
   len = (size_t)(end - text);
   if (len > VG_TITLE_MAX)
-    return fail(r, err, VG_ERR_FORMAT, "the title has more than 80 "
+    return fail(r, err, VG_ERR_FORMAT,
+                "the title has more than 80 "
                 "characters; shorten it");
   for (size_t i = 0; i < len; i++)
     if ((unsigned char)text[i] < ' ' || text[i] == 127)
-      return fail(r, err, VG_ERR_FORMAT, "the title holds a control "
+      return fail(r, err, VG_ERR_FORMAT,
+                  "the title holds a control "
                   "character: is this a text file?");
   memset(r->s.title, 0, sizeof r->s.title);
   memcpy(r->s.title, text, len);
@@ -401,7 +433,8 @@ static vg_status title(struct reader *r, struct vg_error *err)
     if (scan_token(r, &text, end, err) < 0) return VG_ERR_FORMAT;
   }
   if (looks_like_names(r))
-    return fail(r, err, VG_ERR_FORMAT, "this line holds names, but the first "
+    return fail(r, err, VG_ERR_FORMAT,
+                "this line holds names, but the first "
                 "line of a deck is its title; put a title above");
   return VG_OK;
 }
@@ -428,8 +461,7 @@ static vg_status blocks(struct reader *r, struct vg_error *err)
     if (state < 3) continue;
     if (begins_table(r))
       st = table(r, (enum vg_table_kind)find_table(r->token[0].text), err);
-    else
-      st = parameters(r, err);
+    else st = parameters(r, err);
     if (st < 0) return st;
   }
 }

@@ -11,7 +11,7 @@
 
 #define CELL_SIZE (2 * VG_LIST_MAX + 4)
 #define LINE_WIDTH 78
-#define NAME_WIDTH 18      /* the longest name and two blanks */
+#define NAME_WIDTH 18 /* the longest name and two blanks */
 
 static void pad(struct vg_output *out, const char *text, size_t width)
 {
@@ -58,8 +58,7 @@ static void explain_param(struct vg_output *out, const struct vg_param *p,
 
 /* Names p[first..last) above their values, in columns. */
 static void write_block(struct vg_output *out, const struct vg_param *p,
-                        size_t first, size_t last,
-                        const struct vg_settings *s)
+                        size_t first, size_t last, const struct vg_settings *s)
 {
   for (int line = 0; line < 2; line++) {
     for (size_t i = first; i < last; i++) {
@@ -102,9 +101,9 @@ static int is_default(const struct vg_param *p, const void *row,
 }
 
 /* Columns worth writing and their widths; 0: left out. */
-static void column_widths(const struct vg_setting_table *t, enum vg_table_kind kind,
-                          const struct vg_settings *s, const void *defaults,
-                          size_t *width)
+static void column_widths(const struct vg_setting_table *t,
+                          enum vg_table_kind kind, const struct vg_settings *s,
+                          const void *defaults, size_t *width)
 {
   char value[CELL_SIZE];
   size_t n = vg_settings_rows(s, kind);
@@ -144,9 +143,14 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
                         enum vg_table_kind kind, int explain)
 {
   const struct vg_setting_table *t = vg_settings_table(kind);
-  union { struct vg_farfield_row f; struct vg_patch_row p;
-          struct vg_layer_row l; struct vg_surface_row u; struct vg_source s;
-          struct vg_sweep_row w; } defaults;
+  union {
+    struct vg_farfield_row f;
+    struct vg_patch_row p;
+    struct vg_layer_row l;
+    struct vg_surface_row u;
+    struct vg_source s;
+    struct vg_sweep_row w;
+  } defaults;
   char value[CELL_SIZE];
   size_t width[64] = { 0 }, n = vg_settings_rows(s, kind);
 
@@ -157,8 +161,7 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
       explain_param(out, &t->column[c], &defaults);
   }
   if (!n) {
-    if (explain)
-      vg_output_text(out, example[kind]);
+    if (explain) vg_output_text(out, example[kind]);
     return;
   }
   column_widths(t, kind, s, &defaults, width);
@@ -168,8 +171,9 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
 
     for (size_t c = 0; c < t->n_column; c++) {
       if (!width[c]) continue;
-      if (i) vg_param_format(&t->column[c], vg_settings_row(s, kind, i - 1),
-                             value, sizeof value);
+      if (i)
+        vg_param_format(&t->column[c], vg_settings_row(s, kind, i - 1), value,
+                        sizeof value);
       pad(out, "", gap);
       vg_output_text(out, i ? value : t->column[c].name);
       gap = width[c] + 2 - strlen(i ? value : t->column[c].name);
@@ -180,8 +184,7 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
 }
 
 vg_status vg_deck_write(const char *path, const struct vg_settings *s,
-                        const char *comment, int explain,
-                        struct vg_error *err)
+                        const char *comment, int explain, struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
   struct vg_settings defaults;
@@ -192,7 +195,8 @@ vg_status vg_deck_write(const char *path, const struct vg_settings *s,
   vg_output_format(&out, "%s\n", s->title);
   if (comment) vg_output_text(&out, comment);
   if (explain)
-    vg_output_text(&out,
+    vg_output_text(
+      &out,
       "# A line of names stands above a line of values; the order is free.\n"
       "# A table is its name, a line of column names, then lines of values\n"
       "# up to a blank line. Lengths are in the unit of the surface.\n");

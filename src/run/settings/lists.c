@@ -36,13 +36,16 @@ static vg_status add_item(const char *name, size_t len, size_t *n,
     if (!strcmp(item[i], to)) return VG_OK;
   for (size_t i = 0; i < *n; i++)
     if (is_case(to) && is_case(item[i]))
-      return vg_fail(err, VG_ERR_INPUT, "write: foam and foam-ascii go into "
+      return vg_fail(err, VG_ERR_INPUT,
+                     "write: foam and foam-ascii go into "
                      "the same folder; name one");
   if (!is_own_item(to) && !vg_format_can_write(to))
-    return vg_fail(err, VG_ERR_INPUT, "write: '%s' is no format; known are "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "write: '%s' is no format; known are "
                    "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
                    "pvtu, foam, foam-ascii and suffixes such as b8.ugrid, "
-                   "lb8.ugrid, ugrid, cgns, su2, msh, fluent.msh, meshb", to);
+                   "lb8.ugrid, ugrid, cgns, su2, msh, fluent.msh, meshb",
+                   to);
   ++*n;
   return VG_OK;
 }
@@ -81,7 +84,9 @@ vg_status vg_mesher_name_check(const char *name, const char *mesher,
   for (size_t i = 0; i < sizeof known / sizeof *known; i++)
     if (!strcmp(mesher, known[i])) return VG_OK;
   if (strchr(mesher, '/')) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "%s: '%s' is none; known are builtin, "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: '%s' is none; known are builtin, "
                  "tetgen, hxt and paths of plug-ins, which have a '/' in them, "
-                 "as in ./it.so", name, mesher);
+                 "as in ./it.so",
+                 name, mesher);
 }

@@ -8,9 +8,13 @@
 #include "run/settings/settings.h"
 
 /* Columns of the farfield table that are settings too, with their names. */
-static const struct { const char *column, *name; } farfield_names[] = {
-  { "kind", "farfield" }, { "lengths", "farfield_lengths" },
-  { "size", "farfield_size" }, { "spacing", "farfield_spacing" },
+static const struct {
+  const char *column, *name;
+} farfield_names[] = {
+  { "kind", "farfield" },
+  { "lengths", "farfield_lengths" },
+  { "size", "farfield_size" },
+  { "spacing", "farfield_spacing" },
 };
 #define N_FARFIELD (sizeof farfield_names / sizeof *farfield_names)
 
@@ -71,8 +75,9 @@ uint8_t *vg_settings_given(const struct vg_settings *s)
   for (size_t i = 0; (p = vg_settings_name(i, &name, &far)); i++) {
     vg_param_format(p, far ? (const void *)&s->farfield : (const void *)s, a,
                     sizeof a);
-    vg_param_format(p, far ? (const void *)&plain.farfield
-                           : (const void *)&plain, b, sizeof b);
+    vg_param_format(p,
+                    far ? (const void *)&plain.farfield : (const void *)&plain,
+                    b, sizeof b);
     given[i] = strcmp(a, b) != 0;
   }
   return given;
@@ -134,8 +139,8 @@ vg_status vg_settings_get(const struct vg_settings *s, const char *name,
   const struct vg_param *p = find(name, &in_farfield, err);
 
   if (!p) return VG_ERR_INPUT;
-  vg_param_format(p, in_farfield ? (const void *)&s->farfield
-                                 : (const void *)s, out, size);
+  vg_param_format(p, in_farfield ? (const void *)&s->farfield : (const void *)s,
+                  out, size);
   return VG_OK;
 }
 
@@ -149,12 +154,14 @@ static vg_status find_table(const char *name, enum vg_table_kind *kind,
       *kind = (enum vg_table_kind)k;
       return VG_OK;
     }
-  return vg_fail(err, VG_ERR_INPUT, "no table '%s'; there are farfield, "
-                 "patches, layers, sources and sweep", name);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "no table '%s'; there are farfield, "
+                 "patches, layers, sources and sweep",
+                 name);
 }
 
-static vg_status set_columns(const struct vg_setting_table *t, void *row, size_t n,
-                             const char *const *column,
+static vg_status set_columns(const struct vg_setting_table *t, void *row,
+                             size_t n, const char *const *column,
                              const char *const *value, struct vg_error *err)
 {
   struct vg_error why = VG_ERROR_INIT;
@@ -182,8 +189,7 @@ static vg_status set_columns(const struct vg_setting_table *t, void *row, size_t
 
 vg_status vg_settings_add_named(struct vg_settings *s, const char *name,
                                 size_t n, const char *const *column,
-                                const char *const *value,
-                                struct vg_error *err)
+                                const char *const *value, struct vg_error *err)
 {
   enum vg_table_kind kind = VG_TABLE_N;
   void *row = NULL;
@@ -201,8 +207,7 @@ done:
 }
 
 vg_status vg_settings_copy(struct vg_settings *to,
-                           const struct vg_settings *from,
-                           struct vg_error *err)
+                           const struct vg_settings *from, struct vg_error *err)
 {
   struct vg_settings s = *from;
   vg_status st = VG_OK;

@@ -19,9 +19,11 @@ static vg_status out_of_range(const struct vg_param *p, const char *text,
   if (p->hi >= 1e15 && p->lo > -1e15)
     return vg_fail(err, VG_ERR_INPUT, "%s is %.*s; it must be %s %s", p->name,
                    (int)len, text, p->above_lo ? "above" : "at least", lo);
-  return vg_fail(err, VG_ERR_INPUT, "%s is %.*s; it must be %s %s and at most "
-                 "%g", p->name, (int)len, text,
-                 p->above_lo ? "above" : "at least", lo, p->hi);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s is %.*s; it must be %s %s and at most "
+                 "%g",
+                 p->name, (int)len, text, p->above_lo ? "above" : "at least",
+                 lo, p->hi);
 }
 
 static int in_range(const struct vg_param *p, double v)
@@ -29,8 +31,8 @@ static int in_range(const struct vg_param *p, double v)
   return (p->above_lo ? v > p->lo : v >= p->lo) && v <= p->hi;
 }
 
-static vg_status set_real(const struct vg_param *p, void *at,
-                          const char *text, size_t len, struct vg_error *err)
+static vg_status set_real(const struct vg_param *p, void *at, const char *text,
+                          size_t len, struct vg_error *err)
 {
   double v;
 
@@ -60,8 +62,10 @@ static vg_status set_int(const struct vg_param *p, void *at, const char *text,
 
   if (!(p->type == VG_PARAM_COUNT ? vg_parse_count : vg_parse_int)(text, len,
                                                                    &v))
-    return vg_fail(err, VG_ERR_INPUT, "%s must be a whole number, found "
-                   "'%.*s'", p->name, (int)len, text);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s must be a whole number, found "
+                   "'%.*s'",
+                   p->name, (int)len, text);
   if (!in_range(p, (double)v)) return out_of_range(p, text, len, err);
   id = (int32_t)v;
   if (p->type == VG_PARAM_COUNT) memcpy(at, &v, sizeof v);
@@ -84,8 +88,10 @@ static vg_status set_patch(const struct vg_param *p, void *base,
     return st;
   }
   if (!len || len >= VG_NAME_MAX)
-    return vg_fail(err, VG_ERR_INPUT, "%s must be the number or name of a "
-                   "patch, found '%.*s'", p->name, (int)len, text);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s must be the number or name of a "
+                   "patch, found '%.*s'",
+                   p->name, (int)len, text);
   st = check_characters(p, text, len, err);
   if (st < 0) return st;
   memcpy((char *)base + p->offset, &none, sizeof none);
@@ -120,18 +126,22 @@ static vg_status set_word(const struct vg_param *p, const char *const *words,
   snprintf(word, sizeof word, "%.*s", (int)len, text);
   near = vg_nearest_name(word, n, word_at, words);
   if (near)
-    return vg_fail(err, VG_ERR_INPUT, "%s cannot be '%s'; did you mean '%s'? "
-                   "(one of %s)", p->name, word, near, list);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s cannot be '%s'; did you mean '%s'? "
+                   "(one of %s)",
+                   p->name, word, near, list);
   return vg_fail(err, VG_ERR_INPUT, "%s cannot be '%s'; it is one of %s",
                  p->name, word, list);
 }
 
-static vg_status set_text(const struct vg_param *p, char *at,
-                          const char *text, size_t len, struct vg_error *err)
+static vg_status set_text(const struct vg_param *p, char *at, const char *text,
+                          size_t len, struct vg_error *err)
 {
   if (len >= p->size)
-    return vg_fail(err, VG_ERR_INPUT, "%s has %zu characters; at most %zu "
-                   "are kept", p->name, len, p->size - 1);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s has %zu characters; at most %zu "
+                   "are kept",
+                   p->name, len, p->size - 1);
   if (check_characters(p, text, len, err) < 0) return VG_ERR_INPUT;
   memset(at, 0, p->size);
   memcpy(at, text, len);
@@ -227,9 +237,7 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
     memcpy(&word, at, sizeof word);
     snprintf(out, size, "%s", p->words[word]);
     break;
-  case VG_PARAM_TEXT:
-    format_text(at, out, size);
-    break;
+  case VG_PARAM_TEXT: format_text(at, out, size); break;
   }
 }
 

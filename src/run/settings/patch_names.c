@@ -69,10 +69,12 @@ vg_status vg_patch_list_check(const char *name, const char *list,
 
   while (vg_patch_list_next(&at, &item)) continue;
   if (!*at) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "%s: '%s' is no list of patches; numbers, "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: '%s' is no list of patches; numbers, "
                  "ranges and names are separated by commas, as in "
                  "3-12,15,wing*; quote a name that has blanks or commas or "
-                 "begins with a digit", name, list);
+                 "begins with a digit",
+                 name, list);
 }
 
 int vg_patch_name_matches(const char *pattern, const char *name)
@@ -100,7 +102,7 @@ int vg_patch_name_matches(const char *pattern, const char *name)
 /* --- on a surface -------------------------------------------------------- */
 
 void vg_patch_list_text(const struct vg_mesh *m, size_t n, char *text,
-                    size_t size)
+                        size_t size)
 {
   size_t at = 0;
 
@@ -136,8 +138,10 @@ static vg_status no_name(const char *what, const char *name,
   vg_patch_list_text(m, n, list, sizeof list);
   if (near && *near)
     snprintf(hint, sizeof hint, "did you mean '%.*s'? ", VG_NAME_MAX, near);
-  return vg_fail(err, VG_ERR_INPUT, "%s: no patch of the surface is called "
-                 "'%s'; %sPatches: %s", what, name, hint, list);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: no patch of the surface is called "
+                 "'%s'; %sPatches: %s",
+                 what, name, hint, list);
 }
 
 static vg_status no_number(const char *what, int64_t from, int64_t to,
@@ -148,11 +152,14 @@ static vg_status no_number(const char *what, int64_t from, int64_t to,
 
   vg_patch_list_text(m, n, list, sizeof list);
   if (from == to)
-    return vg_fail(err, VG_ERR_INPUT, "%s: patch %lld is not in the surface. "
-                   "Patches: %s", what, (long long)from, list);
-  return vg_fail(err, VG_ERR_INPUT, "%s: no patch of the surface is within "
-                 "%lld-%lld. Patches: %s", what, (long long)from,
-                 (long long)to, list);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: patch %lld is not in the surface. "
+                   "Patches: %s",
+                   what, (long long)from, list);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: no patch of the surface is within "
+                 "%lld-%lld. Patches: %s",
+                 what, (long long)from, (long long)to, list);
 }
 
 static vg_status mark(const char *what, const struct vg_patch_item *item,
@@ -203,7 +210,10 @@ vg_status vg_patch_ref_mark(const char *what, int32_t id, const char *name,
 /* --- rows of tables ------------------------------------------------------ */
 
 /* The number and the name of a row of patches or of layers. */
-struct ref { int32_t *id; char *name; };
+struct ref {
+  int32_t *id;
+  char *name;
+};
 
 static struct ref ref_of(enum vg_table_kind kind, void *row)
 {
@@ -225,9 +235,10 @@ static vg_status is_twice(enum vg_table_kind kind, const struct vg_patch *p,
                   sizeof one);
   vg_param_format(&t->column[0], vg_settings_row(old, kind, b), two,
                   sizeof two);
-  return vg_fail(err, VG_ERR_INPUT, "%s: patch %d%s%s is listed twice, as %s "
-                 "and as %s; change or remove one of the lines", t->name,
-                 (int)p->id, *p->name ? " " : "", p->name, one, two);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: patch %d%s%s is listed twice, as %s "
+                 "and as %s; change or remove one of the lines",
+                 t->name, (int)p->id, *p->name ? " " : "", p->name, one, two);
 }
 
 static size_t *each_unset(size_t n)
@@ -241,10 +252,13 @@ static size_t *each_unset(size_t n)
 /* Row i of `old`, once for each patch that it names, into s. */
 static vg_status resolve_row(struct vg_settings *s, enum vg_table_kind kind,
                              const struct vg_settings *old, size_t i,
-                             const struct vg_mesh *m, uint8_t *on,
-                             size_t *of, struct vg_error *err)
+                             const struct vg_mesh *m, uint8_t *on, size_t *of,
+                             struct vg_error *err)
 {
-  union { struct vg_layer_row l; struct vg_patch_row p; } row;
+  union {
+    struct vg_layer_row l;
+    struct vg_patch_row p;
+  } row;
   const struct vg_setting_table *t = vg_settings_table(kind);
   struct ref r;
   vg_status st = VG_OK;

@@ -10,8 +10,8 @@
 
 /** One item of a list of patches. */
 struct vg_patch_item {
-  int64_t from, to;         /* numbers, inclusive, where name is empty */
-  char name[VG_NAME_MAX];   /* a name, or a pattern with * and ? */
+  int64_t from, to;       /* numbers, inclusive, where name is empty */
+  char name[VG_NAME_MAX]; /* a name, or a pattern with * and ? */
 };
 
 /** Read the next item of a list such as 3-12,wing*,"upper surface" and set
@@ -57,6 +57,6 @@ vg_status vg_patch_rows_resolve(struct vg_settings *s, const struct vg_mesh *m,
 /** Write "3 wing (bc 5), 4 tail (no condition), ..." for the first n patches
  * of m. */
 void vg_patch_list_text(const struct vg_mesh *m, size_t n, char *text,
-                    size_t size);
+                        size_t size);
 
 #endif

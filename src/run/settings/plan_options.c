@@ -6,15 +6,16 @@
 #include "partition/advance/ways.h"
 
 /* Of struct vg_cad_options, however sizes are scaled. */
-#define FINE_CHORD 3e-4   /* S15: for a surface that is remeshed */
-#define FINEST_CHORD 1e-4 /* S45: where triangles of thin tips do not cross
-                             yet */
+#define FINE_CHORD 3e-4 /* S15: for a surface that is remeshed */
+#define FINEST_CHORD                                                           \
+  1e-4 /* S45: where triangles of thin tips do not cross                       \
+          yet */
 #define FINE_ANGLE 8.0
 #define CHORD_MOST 0.5
 #define ANGLE_LEAST 1.0
 #define ANGLE_MOST 60.0
 
-#define MOST_TRI 1e8      /* S60: triangles of a new surface in gaps */
+#define MOST_TRI 1e8 /* S60: triangles of a new surface in gaps */
 
 /* --- the surface --------------------------------------------------------- */
 
@@ -37,13 +38,15 @@ struct vg_cad_options vg_options_cad(const struct vg_settings *s,
 
   if (is_remeshed && !(s->cad.chord > 0))
     chord = is_stretched(s) ? FINEST_CHORD
-            : fmax(FINEST_CHORD, FINE_CHORD * fmin(scale2, 1));
+                            : fmax(FINEST_CHORD, FINE_CHORD * fmin(scale2, 1));
   if (is_remeshed && !(s->cad.angle > 0)) angle = FINE_ANGLE;
-  return (struct vg_cad_options){ .unit = s->cad.unit,
-    .patches = s->cad.patches, .tolerance = s->cad.tolerance,
-    .chord = fmin(chord, CHORD_MOST),
-    .angle = fmin(fmax(angle, ANGLE_LEAST), ANGLE_MOST),
-    .seconds = s->cad.seconds };
+  return (
+    struct vg_cad_options){ .unit = s->cad.unit,
+                            .patches = s->cad.patches,
+                            .tolerance = s->cad.tolerance,
+                            .chord = fmin(chord, CHORD_MOST),
+                            .angle = fmin(fmax(angle, ANGLE_LEAST), ANGLE_MOST),
+                            .seconds = s->cad.seconds };
 }
 
 struct vg_surface_check_options vg_options_check(const struct vg_settings *s)
@@ -58,8 +61,9 @@ struct vg_flow_options vg_options_flow(const struct vg_settings *s,
                                        int has_cells)
 {
   struct vg_flow_options o = { .kind = (enum vg_flow_kind)s->flow,
-    .half = (enum vg_flow_half)s->half, .all_regions = s->all_regions,
-    .repair = s->repair };
+                               .half = (enum vg_flow_half)s->half,
+                               .all_regions = s->all_regions,
+                               .repair = s->repair };
 
   if (o.kind == VG_FLOW_EXTERNAL) {
     o.asked_by = "flow external";
@@ -88,7 +92,8 @@ struct vg_wrap_options vg_options_wrap(const struct vg_settings *s)
 static double largest_edge(const struct vg_settings *s)
 {
   return s->surface_size > 0 && !(s->hmax > 0 && s->hmax < s->surface_size)
-         ? s->surface_size : s->hmax;
+         ? s->surface_size
+         : s->hmax;
 }
 
 /* A surface of more triangles than cells are allowed is refused before it is
@@ -103,8 +108,9 @@ struct vg_gap_options vg_options_gaps(const struct vg_settings *s,
                                       int is_remeshed)
 {
   return (struct vg_gap_options){ .edges = s->gap_edges / s->scale,
-    .h_min = s->hmin * s->scale, .h_max = largest_edge(s) * s->scale,
-    .most_tri = most_triangles(s, is_remeshed) };
+                                  .h_min = s->hmin * s->scale,
+                                  .h_max = largest_edge(s) * s->scale,
+                                  .most_tri = most_triangles(s, is_remeshed) };
 }
 
 struct vg_remesh_options vg_options_remesh(const struct vg_settings *s)
@@ -130,7 +136,8 @@ struct vg_farfield vg_options_farfield(const struct vg_settings *s)
   struct vg_farfield f = VG_FARFIELD_INIT;
 
   f.kind = row->kind == VG_DOMAIN_NONE ? VG_FARFIELD_NONE
-         : row->kind == VG_DOMAIN_BOX ? VG_FARFIELD_BOX : VG_FARFIELD_SPHERE;
+         : row->kind == VG_DOMAIN_BOX  ? VG_FARFIELD_BOX
+                                       : VG_FARFIELD_SPHERE;
   f.lengths = row->lengths;
   f.size = row->size;
   f.spacing = row->spacing * s->scale;
@@ -184,10 +191,10 @@ struct vg_layer_options vg_options_layers(const struct vg_settings *s)
 
 struct vg_cut_rule vg_options_cuts(const struct vg_settings *s)
 {
-  return (struct vg_cut_rule){
-    .leaf_cells = s->levels ? 0 : (double)s->leaf_cells,
-    .first_axis = (int)s->split_direction - 1,
-    .constant = s->constant_direction };
+  return (struct vg_cut_rule){ .leaf_cells = s->levels ? 0
+                                                       : (double)s->leaf_cells,
+                               .first_axis = (int)s->split_direction - 1,
+                               .constant = s->constant_direction };
 }
 
 struct vg_parting_options vg_options_parting(const struct vg_settings *s)
@@ -201,8 +208,7 @@ struct vg_parting_options vg_options_parting(const struct vg_settings *s)
   return o;
 }
 
-struct vg_partition_options
-vg_options_partition(const struct vg_settings *s)
+struct vg_partition_options vg_options_partition(const struct vg_settings *s)
 {
   struct vg_partition_options o = VG_PARTITION_OPTIONS_INIT;
 

@@ -1,8 +1,8 @@
-/* run/settings/plan_options.h: from settings to the options of the modules below.
- * One function fills each structure. A caller adds what is no setting: threads,
- * callbacks, arrays of the surface. Functions on the surface take the settings
- * that were read, those on the mesh resolved ones (run/settings/resolved.h).
- * They are pure: threads may call them at once. */
+/* run/settings/plan_options.h: from settings to the options of the modules
+ * below. One function fills each structure. A caller adds what is no setting:
+ * threads, callbacks, arrays of the surface. Functions on the surface take the
+ * settings that were read, those on the mesh resolved ones
+ * (run/settings/resolved.h). They are pure: threads may call them at once. */
 #ifndef VG_RUN_SETTINGS_OPTIONS_H
 #define VG_RUN_SETTINGS_OPTIONS_H
 
@@ -62,8 +62,7 @@ struct vg_layer_options vg_options_layers(const struct vg_settings *s);
 
 /** Unset: what is no setting, and the cells of the layers. The maker is that of
  * partition/advance/ways.h. */
-struct vg_partition_options
-vg_options_partition(const struct vg_settings *s);
+struct vg_partition_options vg_options_partition(const struct vg_settings *s);
 
 /** Number of parts (0: by the size of leaves) and how they are made. */
 struct vg_parting_options vg_options_parting(const struct vg_settings *s);

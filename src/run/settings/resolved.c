@@ -26,7 +26,8 @@ double vg_settings_first(const struct vg_layer_settings *l, double first,
 {
   if (first > 0) return first;
   return y_plus > 0 && l->reynolds > 0
-         ? vg_first_height(y_plus, l->reynolds, l->length) : 0;
+         ? vg_first_height(y_plus, l->reynolds, l->length)
+         : 0;
 }
 
 void vg_resolve_flow(struct vg_settings *s, int flow, int axis)
@@ -42,8 +43,10 @@ void vg_resolve_flow(struct vg_settings *s, int flow, int axis)
 
 void vg_resolve_write(const struct vg_settings *s, char write[VG_WRITE_MAX])
 {
-  snprintf(write, VG_WRITE_MAX, "%s", strcmp(s->write, "auto") != 0 ? s->write
-           : s->cells == VG_LAYER_MIXED ? "b8.ugrid" : "cogsg,b8.ugrid");
+  snprintf(write, VG_WRITE_MAX, "%s",
+           strcmp(s->write, "auto") != 0 ? s->write
+           : s->cells == VG_LAYER_MIXED  ? "b8.ugrid"
+                                         : "cogsg,b8.ugrid");
 }
 
 /* Rows in place of those of a table. */

@@ -13,22 +13,30 @@
 #include "run/settings/settings.h"
 
 /** Resolved settings. Immutable once vg_resolve has made them. */
-struct vg_resolved { struct vg_settings settings; };
-#define VG_RESOLVED_INIT { VG_SETTINGS_INIT }
+struct vg_resolved {
+  struct vg_settings settings;
+};
+#define VG_RESOLVED_INIT                                                       \
+  {                                                                            \
+    VG_SETTINGS_INIT                                                           \
+  }
 
 /** Whether layers grow on a patch. */
-struct vg_patch_grows { int32_t id; int grows; };
+struct vg_patch_grows {
+  int32_t id;
+  int grows;
+};
 
 /** What a run decided. Arrays are borrowed. */
 struct vg_decisions {
-  int is_remeshed, is_swapped;     /* the surface */
-  int flow;                        /* enum vg_flow_kind; VG_FLOW_UNKNOWN: flow,
-                                      half and farfield stay */
-  int axis;                        /* across the symmetry plane; -1: none */
-  size_t n_patch;                  /* patches of the surface as it was given */
+  int is_remeshed, is_swapped; /* the surface */
+  int flow;                    /* enum vg_flow_kind; VG_FLOW_UNKNOWN: flow,
+                                  half and farfield stay */
+  int axis;                    /* across the symmetry plane; -1: none */
+  size_t n_patch;              /* patches of the surface as it was given */
   const struct vg_patch_row *patch;
-  int has_layers;                  /* 1: layers grow, on walls of `grows` */
-  size_t n_grows;                  /* in the order of the table to be */
+  int has_layers; /* 1: layers grow, on walls of `grows` */
+  size_t n_grows; /* in the order of the table to be */
   const struct vg_patch_grows *grows;
 };
 
@@ -53,7 +61,7 @@ void vg_resolve_write(const struct vg_settings *s, char write[VG_WRITE_MAX]);
 
 /* --- layers -------------------------------------------------------------- */
 
-#define VG_LAYER_CAP 1.3           /* where no cap is given */
+#define VG_LAYER_CAP 1.3 /* where no cap is given */
 
 /** The row of a patch in the table `layers`, or one that leaves all to the
  * settings. */

@@ -26,44 +26,47 @@ static const char *const domain_words[] = { "auto", "none", "sphere", "box",
 /* In the order of enum vg_flow_kind, enum vg_flow_half. */
 static const char *const flow_words[] = { "auto", "external", "internal",
                                           NULL };
-static const char *const half_words[] = { "auto", "no", "yes", "x", "y", "z",
-                                          NULL };
+static const char *const half_words[] = { "auto", "no", "yes", "x",
+                                          "y",    "z",  NULL };
 static const char *const region_words[] = { "one", "all", NULL };
 static const char *const answer_words[] = { "auto", "no", "yes", NULL };
 /* In the order of enum vg_cad_unit, of enum vg_cad_patches. */
-static const char *const unit_words[] = { "file", "mm", "cm", "m", "km",
-                                          "inch", "foot", NULL };
-static const char *const cad_patch_words[] = { "face", "name", "colour",
+static const char *const unit_words[] = { "file", "mm",   "cm",   "m",
+                                          "km",   "inch", "foot", NULL };
+static const char *const cad_patch_words[] = { "face",  "name", "colour",
                                                "layer", "part", NULL };
 /* In the order of enum vg_layer_cells. */
 static const char *const cell_words[] = { "tets", "mixed", NULL };
 /* In the order of enum vg_decomposition, enum vg_partitioner. */
 static const char *const decompose_words[] = { "advancing", "discrete",
-  "octree", NULL };
+                                               "octree", NULL };
 static const char *const partitioner_words[] = { "metis", "rcb", NULL };
 /* In the order of enum vg_law_rule. */
 static const char *const rule_words[] = { "no", "even", "workshop", NULL };
 static const char *const interface_words[] = { "remesh", "h-refine", NULL };
 static const char *const schedule_words[] = { "dynamic", "cyclic", NULL };
 /* In the order of enum vg_source_kind. */
-static const char *const source_words[] = {
-  "vgrid_node", "vgrid_line", "point", "line", "triangle", "box", "sphere",
-  "cylinder", NULL };
+static const char *const source_words[] = { "vgrid_node", "vgrid_line", "point",
+                                            "line",       "triangle",   "box",
+                                            "sphere",     "cylinder",   NULL };
 
 #define VG_AT_plain
 #define VG_AT_cad cad.
 #define VG_AT_layer layer.
 #define VG_AT_limit layer.limit.
-#define AT(field) .offset = offsetof(struct vg_settings, field), \
-  .size = sizeof ((struct vg_settings *)0)->field
+#define AT(field)                                                              \
+  .offset = offsetof(struct vg_settings, field),                               \
+  .size = sizeof((struct vg_settings *)0)->field
 #define LENGTH .hi = HUGE_SIZE, .unit = "length"
-#define LIMIT(least, most, units, about) \
-  .keeps_mesh = 1, .lo = least, .hi = most, .optional = 1, .unit = units, \
+#define LIMIT(least, most, units, about)                                       \
+  .keeps_mesh = 1, .lo = least, .hi = most, .optional = 1, .unit = units,      \
   .help = about ", else exit status 4; -: no limit"
-#define VG_ROW(type_, place, member, name_, initial, ...) \
-  { .name = name_, AT(VG_AT_##place member), .type = VG_PARAM_##type_, \
+#define VG_ROW(type_, place, member, name_, initial, ...)                      \
+  { .name = name_,                                                             \
+    AT(VG_AT_##place member),                                                  \
+    .type = VG_PARAM_##type_,                                                  \
     __VA_ARGS__ },
-#define VG_TEXT_ROW(place, member, size_, name_, initial, ...) \
+#define VG_TEXT_ROW(place, member, size_, name_, initial, ...)                 \
   VG_ROW(TEXT, place, member, name_, initial, __VA_ARGS__)
 
 static const struct vg_param params[] = {
@@ -73,12 +76,15 @@ static const struct vg_param params[] = {
 #undef VG_TEXT_ROW
 
 #undef AT
-#define AT(field) .offset = offsetof(struct vg_farfield_row, field), \
-  .size = sizeof ((struct vg_farfield_row *)0)->field
-#define POINT(name, field, k, about) \
-  { name, AT(field[k]), \
-    .type = VG_PARAM_REAL, .lo = -HUGE_SIZE, .hi = HUGE_SIZE, .optional = 1, \
-    .unit = "length", .help = about }
+#define AT(field)                                                              \
+  .offset = offsetof(struct vg_farfield_row, field),                           \
+  .size = sizeof((struct vg_farfield_row *)0)->field
+#define POINT(name, field, k, about)                                           \
+  {                                                                            \
+    name, AT(field[k]), .type = VG_PARAM_REAL, .lo = -HUGE_SIZE,               \
+                        .hi = HUGE_SIZE, .optional = 1, .unit = "length",      \
+                        .help = about                                          \
+  }
 
 static const struct vg_param farfield_columns[] = {
   { "kind", AT(kind), .use = VG_USE_ALWAYS, .type = VG_PARAM_WORD,
@@ -93,47 +99,60 @@ static const struct vg_param farfield_columns[] = {
   { "spacing", AT(spacing), .type = VG_PARAM_REAL, LENGTH,
     .help = "edge on the farfield; 0: what growth from the body gives" },
   POINT("x", centre, 0, "centre; -: that of the body"),
-  POINT("y", centre, 1, "centre"), POINT("z", centre, 2, "centre"),
+  POINT("y", centre, 1, "centre"),
+  POINT("z", centre, 2, "centre"),
   POINT("xlo", lo, 0, "lower corner of a box given outright"),
-  POINT("ylo", lo, 1, "lower corner"), POINT("zlo", lo, 2, "lower corner"),
-  POINT("xhi", hi, 0, "upper corner"), POINT("yhi", hi, 1, "upper corner"),
+  POINT("ylo", lo, 1, "lower corner"),
+  POINT("zlo", lo, 2, "lower corner"),
+  POINT("xhi", hi, 0, "upper corner"),
+  POINT("yhi", hi, 1, "upper corner"),
   POINT("zhi", hi, 2, "upper corner"),
 };
 
 #undef AT
-#define AT(field) .offset = offsetof(struct vg_patch_row, field), \
-  .size = sizeof ((struct vg_patch_row *)0)->field
+#define AT(field)                                                              \
+  .offset = offsetof(struct vg_patch_row, field),                              \
+  .size = sizeof((struct vg_patch_row *)0)->field
 
 static const struct vg_param patch_columns[] = {
   { "id", AT(id), VG_PATCH_COLUMN(struct vg_patch_row, id_name), .required = 1,
     .help = "patch: its number in the surface file, or its name there (* and "
             "? stand for characters)" },
-  { "bc", AT(bc), .type = VG_PARAM_ID, .lo = -9999, .hi = 99999,
-    .optional = 1, .unit = "", .help = "boundary condition, USM3D code (0 "
-    "freestream, 1 symmetry, 3 farfield, 4 viscous wall, 5 inviscid wall) or "
-    "FUN3D code (3000 to 7999, or below 0); -: as the input says" },
+  { "bc", AT(bc), .type = VG_PARAM_ID, .lo = -9999, .hi = 99999, .optional = 1,
+    .unit = "",
+    .help =
+      "boundary condition, USM3D code (0 "
+      "freestream, 1 symmetry, 3 farfield, 4 viscous wall, 5 inviscid wall) or "
+      "FUN3D code (3000 to 7999, or below 0); -: as the input says" },
   { "name", AT(name), .type = VG_PARAM_TEXT, .unit = "",
     .help = "name; \"\": as the input says" },
-  { "hard", AT(hard), .type = VG_PARAM_FLAG, .unit = "", .help = "a surface "
-    "that is made anew keeps the borders of this patch" },
+  { "hard", AT(hard), .type = VG_PARAM_FLAG, .unit = "",
+    .help = "a surface "
+            "that is made anew keeps the borders of this patch" },
 };
 
 #undef AT
-#define AT(field) .offset = offsetof(struct vg_layer_row, field), \
-  .size = sizeof ((struct vg_layer_row *)0)->field
-#define OWN(name, field, least, most, above, units, about) \
-  { name, AT(field), .type = VG_PARAM_REAL, .lo = least, .hi = most, \
-    .above_lo = above, .optional = 1, .unit = units, .help = about }
-#define OWN_LIMIT(member, least, most, units) \
-  { #member, AT(limit.member), .type = VG_PARAM_REAL, .keeps_mesh = 1, \
-    .lo = least, .hi = most, .optional = 1, .unit = units, \
-    .help = "as the setting" }
+#define AT(field)                                                              \
+  .offset = offsetof(struct vg_layer_row, field),                              \
+  .size = sizeof((struct vg_layer_row *)0)->field
+#define OWN(name, field, least, most, above, units, about)                     \
+  {                                                                            \
+    name, AT(field), .type = VG_PARAM_REAL, .lo = least, .hi = most,           \
+                     .above_lo = above, .optional = 1, .unit = units,          \
+                     .help = about                                             \
+  }
+#define OWN_LIMIT(member, least, most, units)                                  \
+  {                                                                            \
+#member, AT(limit.member), .type = VG_PARAM_REAL, .keeps_mesh = 1,         \
+                               .lo = least, .hi = most, .optional = 1,         \
+                               .unit = units, .help = "as the setting"         \
+  }
 
 static const struct vg_param layer_columns[] = {
   { "id", AT(id), VG_PATCH_COLUMN(struct vg_layer_row, id_name), .required = 1,
     .help = "number of the patch, or its name (* and ? stand for characters)" },
-  { "grow", AT(grow), .type = VG_PARAM_WORD, .words = answer_words,
-    .unit = "", .help = "layers on this patch; auto: by its condition" },
+  { "grow", AT(grow), .type = VG_PARAM_WORD, .words = answer_words, .unit = "",
+    .help = "layers on this patch; auto: by its condition" },
   OWN("first", first, 0, HUGE_SIZE, 1, "length", "as the setting"),
   OWN("y_plus", y_plus, 0, HUGE_SIZE, 1, "", "as the setting"),
   OWN("ratio", ratio, 1, 10, 0, "", "as the setting"),
@@ -157,26 +176,34 @@ static const struct vg_param layer_columns[] = {
 #undef OWN
 #undef OWN_LIMIT
 #undef POINT
-#define AT(field) .offset = offsetof(struct vg_source, field), \
-  .size = sizeof ((struct vg_source *)0)->field
-#define ANY(name, field, units, about) \
-  { name, AT(field), .type = VG_PARAM_REAL, .lo = -HUGE_SIZE, \
-    .hi = HUGE_SIZE, .unit = units, .help = about }
+#define AT(field)                                                              \
+  .offset = offsetof(struct vg_source, field),                                 \
+  .size = sizeof((struct vg_source *)0)->field
+#define ANY(name, field, units, about)                                         \
+  {                                                                            \
+    name, AT(field), .type = VG_PARAM_REAL, .lo = -HUGE_SIZE, .hi = HUGE_SIZE, \
+                     .unit = units, .help = about                              \
+  }
 /* What no law of sizes or layers takes from a source. */
-#define AS_READ(name, field, units, about) \
-  { name, AT(field), .type = VG_PARAM_REAL, .keeps_mesh = 1, \
-    .lo = -HUGE_SIZE, .hi = HUGE_SIZE, .unit = units, .help = about }
+#define AS_READ(name, field, units, about)                                     \
+  {                                                                            \
+    name, AT(field), .type = VG_PARAM_REAL, .keeps_mesh = 1, .lo = -HUGE_SIZE, \
+                     .hi = HUGE_SIZE, .unit = units, .help = about             \
+  }
 
 static const struct vg_param source_columns[] = {
-  { "kind", AT(kind), .type = VG_PARAM_WORD, .words = source_words,
-    .unit = "", .required = 1, .help = "vgrid_node and vgrid_line follow "
-    "VGRID's inverse-square law; point, line, triangle, box, sphere and "
-    "cylinder (a cone where r0 and r1 differ) grow at a bounded rate" },
+  { "kind", AT(kind), .type = VG_PARAM_WORD, .words = source_words, .unit = "",
+    .required = 1,
+    .help =
+      "vgrid_node and vgrid_line follow "
+      "VGRID's inverse-square law; point, line, triangle, box, sphere and "
+      "cylinder (a cone where r0 and r1 differ) grow at a bounded rate" },
   ANY("x0", p0[0], "length", "first point, centre or lower corner"),
   ANY("y0", p0[1], "length", "first point"),
   ANY("z0", p0[2], "length", "first point"),
-  ANY("x1", p1[0], "length", "second point (line, triangle, cylinder) or "
-                             "upper corner (box)"),
+  ANY("x1", p1[0], "length",
+      "second point (line, triangle, cylinder) or "
+      "upper corner (box)"),
   ANY("y1", p1[1], "length", "second point"),
   ANY("z1", p1[2], "length", "second point"),
   ANY("x2", p2[0], "length", "third point (triangle)"),
@@ -215,19 +242,24 @@ static const struct vg_param source_columns[] = {
 };
 
 #undef AT
-#define AT(field) .offset = offsetof(struct vg_sweep_row, field), \
-  .size = sizeof ((struct vg_sweep_row *)0)->field
-#define LIST(name, field, about) \
-  { name, AT(field), .type = VG_PARAM_TEXT, .keeps_mesh = 1, .unit = "", \
-    .help = about }
+#define AT(field)                                                              \
+  .offset = offsetof(struct vg_sweep_row, field),                              \
+  .size = sizeof((struct vg_sweep_row *)0)->field
+#define LIST(name, field, about)                                               \
+  {                                                                            \
+    name, AT(field), .type = VG_PARAM_TEXT, .keeps_mesh = 1, .unit = "",       \
+                     .help = about                                             \
+  }
 
 static const struct vg_param sweep_columns[] = {
   LIST("ranks", ranks, "numbers of ranks, as in 1,2,4 or 1:64:x2; \"\": 1"),
   LIST("threads", threads, "threads of each rank; \"\": 1"),
   LIST("levels", levels, "levels of bisection; \"\": none"),
-  LIST("leaf_cells", leaf_cells, "cells to a leaf; both lists make cases of "
+  LIST("leaf_cells", leaf_cells,
+       "cells to a leaf; both lists make cases of "
        "their own; \"\": as the setting"),
-  LIST("decompose", decompose, "ways to decompose, as in advancing,discrete; "
+  LIST("decompose", decompose,
+       "ways to decompose, as in advancing,discrete; "
        "each with all parts, beside cases of the other lists; \"\": as the "
        "setting"),
   LIST("parts", parts, "numbers of parts; \"\": as the setting"),
@@ -236,24 +268,32 @@ static const struct vg_param sweep_columns[] = {
     .unit = "times", .help = "runs of each case; 0: one" },
 };
 
-#define COUNT(a) (sizeof (a) / sizeof *(a))
+#define COUNT(a) (sizeof(a) / sizeof *(a))
 
 static const struct vg_setting_table tables[VG_TABLE_N] = {
   [VG_TABLE_FARFIELD] = { "farfield", "The outer boundary. One line.",
-    farfield_columns, COUNT(farfield_columns),
-    sizeof (struct vg_farfield_row) },
-  [VG_TABLE_PATCHES] = { "patches", "Names and boundary conditions; they win "
-    "over the .mapbc file.", patch_columns, COUNT(patch_columns),
-    sizeof (struct vg_patch_row) },
-  [VG_TABLE_LAYERS] = { "layers", "Layers of single patches. - or "
-    "no column: the global one.", layer_columns,
-    COUNT(layer_columns), sizeof (struct vg_layer_row) },
-  [VG_TABLE_SOURCES] = { "sources", "Spacing in the volume. - or no "
-    "column: the default.", source_columns,
-    COUNT(source_columns), sizeof (struct vg_source) },
-  [VG_TABLE_SWEEP] = { "sweep", "What vanguard sweep runs, of which other "
-    "commands take no notice. One line.", sweep_columns,
-    COUNT(sweep_columns), sizeof (struct vg_sweep_row) },
+                          farfield_columns, COUNT(farfield_columns),
+                          sizeof(struct vg_farfield_row) },
+  [VG_TABLE_PATCHES] = { "patches",
+                         "Names and boundary conditions; they win "
+                         "over the .mapbc file.",
+                         patch_columns, COUNT(patch_columns),
+                         sizeof(struct vg_patch_row) },
+  [VG_TABLE_LAYERS] = { "layers",
+                        "Layers of single patches. - or "
+                        "no column: the global one.",
+                        layer_columns, COUNT(layer_columns),
+                        sizeof(struct vg_layer_row) },
+  [VG_TABLE_SOURCES] = { "sources",
+                         "Spacing in the volume. - or no "
+                         "column: the default.",
+                         source_columns, COUNT(source_columns),
+                         sizeof(struct vg_source) },
+  [VG_TABLE_SWEEP] = { "sweep",
+                       "What vanguard sweep runs, of which other "
+                       "commands take no notice. One line.",
+                       sweep_columns, COUNT(sweep_columns),
+                       sizeof(struct vg_sweep_row) },
 };
 
 const struct vg_param *vg_settings_params(size_t *n)
@@ -272,16 +312,17 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
 {
   struct vg_farfield_row far = { .kind = VG_DOMAIN_AUTO, .lengths = 20 };
   struct vg_patch_row patch = { .bc = VG_BC_NONE };
-  struct vg_layer_row layer = { 0, VG_ANSWER_AUTO, NAN, NAN, NAN, NAN, NAN,
-                                VG_COUNT_NONE, VG_COUNT_NONE, NAN, NAN,
-                                VG_NO_LIMITS, "" };
+  struct vg_layer_row layer = {
+    0,   VG_ANSWER_AUTO, NAN,           NAN, NAN, NAN,
+    NAN, VG_COUNT_NONE,  VG_COUNT_NONE, NAN, NAN, VG_NO_LIMITS,
+    ""
+  };
   struct vg_surface_row surface = { .beside = VG_BC_NONE };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
 
   assert(kind < VG_TABLE_N && row);
-  for (int k = 0; k < 3; k++)
-    far.centre[k] = far.lo[k] = far.hi[k] = NAN;
+  for (int k = 0; k < 3; k++) far.centre[k] = far.lo[k] = far.hi[k] = NAN;
   switch (kind) {
   case VG_TABLE_FARFIELD: memcpy(row, &far, sizeof far); break;
   case VG_TABLE_PATCHES: memcpy(row, &patch, sizeof patch); break;
@@ -293,9 +334,9 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   }
 }
 
-#define VG_ROW(type, place, member, name, initial, ...) \
+#define VG_ROW(type, place, member, name, initial, ...)                        \
   s->VG_AT_##place member = initial;
-#define VG_TEXT_ROW(place, member, size, name, initial, ...) \
+#define VG_TEXT_ROW(place, member, size, name, initial, ...)                   \
   snprintf(s->VG_AT_##place member, size, "%s", initial);
 
 void vg_settings_default(struct vg_settings *s)
@@ -331,9 +372,7 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
 
   assert(kind < VG_TABLE_N && row);
   switch (kind) {
-  case VG_TABLE_FARFIELD:
-    memcpy(&s->farfield, row, sizeof s->farfield);
-    break;
+  case VG_TABLE_FARFIELD: memcpy(&s->farfield, row, sizeof s->farfield); break;
   case VG_TABLE_PATCHES:
     refused = vg_reserve(&s->patch, &s->cap_patch, s->n_patch + 1,
                          sizeof *s->patch);
@@ -364,8 +403,7 @@ vg_status vg_settings_add(struct vg_settings *s, enum vg_table_kind kind,
     memcpy(&s->sweep, row, sizeof s->sweep);
     s->n_sweep = 1;
     break;
-  case VG_TABLE_N:
-    break;
+  case VG_TABLE_N: break;
   }
   return refused ? vg_fail_memory(err, "the settings") : VG_OK;
 }

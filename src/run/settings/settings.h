@@ -17,35 +17,37 @@
 
 #define VG_TITLE_MAX 80
 #define VG_WRITE_MAX 160
-#define VG_MESHER_MAX 240   /* bytes of a path */
-#define VG_LIST_MAX 240    /* bytes of a list of patches; no text is longer */
+#define VG_MESHER_MAX 240 /* bytes of a path */
+#define VG_LIST_MAX 240   /* bytes of a list of patches; no text is longer */
 
 /** How the domain around the given surface is completed. */
 enum vg_domain_choice {
-  VG_DOMAIN_AUTO,      /* a farfield only where a body stands alone */
-  VG_DOMAIN_NONE, VG_DOMAIN_SPHERE, VG_DOMAIN_BOX
+  VG_DOMAIN_AUTO, /* a farfield only where a body stands alone */
+  VG_DOMAIN_NONE,
+  VG_DOMAIN_SPHERE,
+  VG_DOMAIN_BOX
 };
 
 /** The farfield table has one row. NAN: not given. */
 struct vg_farfield_row {
-  int kind;                        /* enum vg_domain_choice */
+  int kind; /* enum vg_domain_choice */
   double lengths, size, spacing;
   double centre[3], lo[3], hi[3];
 };
 
 struct vg_patch_row {
-  int32_t id, bc;                  /* bc: USM3D or FUN3D code */
-  int hard;                        /* a new surface keeps its borders */
-  char name[VG_NAME_MAX];          /* "": as the input says */
-  char id_name[VG_NAME_MAX];       /* a name or pattern in place of id; "": id
-                                      holds */
+  int32_t id, bc;            /* bc: USM3D or FUN3D code */
+  int hard;                  /* a new surface keeps its borders */
+  char name[VG_NAME_MAX];    /* "": as the input says */
+  char id_name[VG_NAME_MAX]; /* a name or pattern in place of id; "": id
+                                holds */
 };
 
 /** Largest edges of a remeshed surface on a patch, or on the curve between two
  * patches. 0: not given. */
 struct vg_surface_row {
-  int32_t patch, beside;           /* the patch, and the other patch of the
-                                      curve; VG_BC_NONE: no curve */
+  int32_t patch, beside; /* the patch, and the other patch of the
+                            curve; VG_BC_NONE: no curve */
   double size, lead, across, stretch;
   /* Names or patterns in place of patch and beside; "": the numbers hold. */
   char patch_name[VG_NAME_MAX], beside_name[VG_NAME_MAX];
@@ -54,12 +56,12 @@ struct vg_surface_row {
 /** Answers that a project may leave open. */
 enum vg_answer { VG_ANSWER_AUTO, VG_ANSWER_NO, VG_ANSWER_YES };
 
-#define VG_COUNT_NONE (-1)         /* a count that is not given */
+#define VG_COUNT_NONE (-1) /* a count that is not given */
 
 /** What layers must reach on a wall patch, as the settings of these names say;
  * NAN: nothing. */
 struct vg_layer_limits {
-  double min_full, min_any, min_height, max_first_error;  /* per cent */
+  double min_full, min_any, min_height, max_first_error; /* per cent */
   double max_top_ratio;
 };
 
@@ -68,12 +70,12 @@ struct vg_layer_limits {
 /** The layers of one patch. NAN, VG_COUNT_NONE: the global value. */
 struct vg_layer_row {
   int32_t id;
-  int grow;                        /* enum vg_answer; auto: by condition */
+  int grow; /* enum vg_answer; auto: by condition */
   double first, ratio, rate1, rate2, y_plus;
   int64_t count, constant;
   double total, cap;
   struct vg_layer_limits limit;
-  char id_name[VG_NAME_MAX];       /* as in vg_patch_row */
+  char id_name[VG_NAME_MAX]; /* as in vg_patch_row */
 };
 
 /** Lists of numbers as run/common/ranges.h takes them, for vanguard sweep
@@ -82,7 +84,7 @@ struct vg_sweep_row {
   char ranks[VG_LIST_MAX], threads[VG_LIST_MAX];
   char levels[VG_LIST_MAX], leaf_cells[VG_LIST_MAX], family[VG_LIST_MAX];
   char decompose[VG_LIST_MAX], parts[VG_LIST_MAX];
-  int64_t repeat;                  /* 0: not given */
+  int64_t repeat; /* 0: not given */
 };
 
 /* Members of the structures below: those of the rows in their place. */
@@ -90,8 +92,7 @@ struct vg_sweep_row {
 #define VG_MEMBER_COUNT int64_t
 #define VG_MEMBER_FLAG int
 #define VG_MEMBER_WORD int
-#define VG_ROW(type, place, member, ...) \
-  VG_IN_##place(VG_MEMBER_##type member;)
+#define VG_ROW(type, place, member, ...) VG_IN_##place(VG_MEMBER_##type member;)
 #define VG_TEXT_ROW(place, member, size, ...) VG_IN_##place(char member[size];)
 #define VG_IN_limit(declaration)
 
@@ -132,32 +133,42 @@ struct vg_settings {
   struct vg_layer_settings layer;
   struct vg_farfield_row farfield;
   struct vg_sweep_row sweep;
-  size_t n_sweep;                  /* 1: given */
+  size_t n_sweep; /* 1: given */
   size_t n_source, cap_source, n_patch, cap_patch, n_layer, cap_layer;
   size_t n_surface, cap_surface;
-  struct vg_source *source;        /* [n_source] owned */
-  struct vg_patch_row *patch;      /* [n_patch] owned */
-  struct vg_layer_row *layer_row;  /* [n_layer] owned */
+  struct vg_source *source;           /* [n_source] owned */
+  struct vg_patch_row *patch;         /* [n_patch] owned */
+  struct vg_layer_row *layer_row;     /* [n_layer] owned */
   struct vg_surface_row *surface_row; /* [n_surface] owned */
 };
-#define VG_SETTINGS_INIT { .n_source = 0 } /* releasing this is a no-op */
+#define VG_SETTINGS_INIT                                                       \
+  {                                                                            \
+    .n_source = 0                                                              \
+  } /* releasing this is a no-op */
 
 enum vg_param_type {
-  VG_PARAM_REAL,   /* double; "-" is NAN where `optional` */
-  VG_PARAM_COUNT,  /* int64_t; "-" is VG_COUNT_NONE where `optional` */
-  VG_PARAM_ID,     /* int32_t; "-" is VG_BC_NONE where `optional` */
-  VG_PARAM_PATCH,  /* int32_t as VG_PARAM_ID, or a name at name_at */
-  VG_PARAM_FLAG,   /* int: yes or no */
-  VG_PARAM_WORD,   /* int: position in words[] */
-  VG_PARAM_TEXT    /* char[size] */
+  VG_PARAM_REAL,  /* double; "-" is NAN where `optional` */
+  VG_PARAM_COUNT, /* int64_t; "-" is VG_COUNT_NONE where `optional` */
+  VG_PARAM_ID,    /* int32_t; "-" is VG_BC_NONE where `optional` */
+  VG_PARAM_PATCH, /* int32_t as VG_PARAM_ID, or a name at name_at */
+  VG_PARAM_FLAG,  /* int: yes or no */
+  VG_PARAM_WORD,  /* int: position in words[] */
+  VG_PARAM_TEXT   /* char[size] */
 };
 
 /** What must be part of a run for a setting to have an effect on it. */
 enum vg_use {
   VG_USE_BY_PLACE, /* CAD in vg_cad_settings, LAYERS in vg_layer_settings,
                       FARFIELD in a vg_farfield_row, else ALWAYS */
-  VG_USE_ALWAYS, VG_USE_D3M, VG_USE_CAD, VG_USE_REMESH, VG_USE_LAYERS,
-  VG_USE_FARFIELD, VG_USE_PLANES, VG_USE_PARTS, VG_USE_N
+  VG_USE_ALWAYS,
+  VG_USE_D3M,
+  VG_USE_CAD,
+  VG_USE_REMESH,
+  VG_USE_LAYERS,
+  VG_USE_FARFIELD,
+  VG_USE_PLANES,
+  VG_USE_PARTS,
+  VG_USE_N
 };
 
 /** One value: its name, where it lies, what it may be, and its help. */
@@ -179,20 +190,27 @@ struct vg_param {
                                is resumed */
   const char *const *words; /* NULL-ended, for VG_PARAM_WORD */
   /* Of a text: whether it says what it should; NULL: any will do. */
-  vg_status (*check)(const char *name, const char *text,
-                     struct vg_error *err);
-  const char *unit;         /* "" for pure numbers */
+  vg_status (*check)(const char *name, const char *text, struct vg_error *err);
+  const char *unit; /* "" for pure numbers */
   const char *help;
-  const char *argument;     /* what help calls the value; NULL: by its type */
+  const char *argument; /* what help calls the value; NULL: by its type */
 };
 
 /** Type and range of a column with a patch; `name` is the member of the row
  * that takes a name. */
-#define VG_PATCH_COLUMN(row, name) .type = VG_PARAM_PATCH, \
-  .name_at = offsetof(row, name), .lo = INT32_MIN, .hi = INT32_MAX, .unit = ""
+#define VG_PATCH_COLUMN(row, name)                                             \
+  .type = VG_PARAM_PATCH, .name_at = offsetof(row, name), .lo = INT32_MIN,     \
+  .hi = INT32_MAX, .unit = ""
 
-enum vg_table_kind { VG_TABLE_FARFIELD, VG_TABLE_PATCHES, VG_TABLE_LAYERS,
-                     VG_TABLE_SURFACE, VG_TABLE_SOURCES, VG_TABLE_SWEEP, VG_TABLE_N };
+enum vg_table_kind {
+  VG_TABLE_FARFIELD,
+  VG_TABLE_PATCHES,
+  VG_TABLE_LAYERS,
+  VG_TABLE_SURFACE,
+  VG_TABLE_SOURCES,
+  VG_TABLE_SWEEP,
+  VG_TABLE_N
+};
 
 struct vg_setting_table {
   const char *name, *help;
@@ -258,12 +276,10 @@ uint8_t *vg_settings_given(const struct vg_settings *s);
  * what is not named keeps its default. */
 vg_status vg_settings_add_named(struct vg_settings *s, const char *name,
                                 size_t n, const char *const *column,
-                                const char *const *value,
-                                struct vg_error *err);
+                                const char *const *value, struct vg_error *err);
 
 /** What holds between settings, e.g. hmin <= hmax. VG_ERR_INPUT. */
-vg_status vg_settings_check(const struct vg_settings *s,
-                            struct vg_error *err);
+vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err);
 
 /** Set the value that `p` describes in the struct at `base` from text.
  * VG_ERR_INPUT says what is wrong, without a place: the caller adds it. */

@@ -45,8 +45,10 @@ static vg_status check_numbers(const struct vg_settings *s,
     if (id[i] == id[i - 1] && id[i] != VG_BC_NONE) found = 1, twice = id[i];
   free(id);
   if (!found) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "%s: patch %d is listed twice; "
-                 "remove one of its lines", vg_settings_table(kind)->name, (int)twice);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "%s: patch %d is listed twice; "
+                 "remove one of its lines",
+                 vg_settings_table(kind)->name, (int)twice);
 }
 
 static vg_status check_layer_rows(const struct vg_settings *s,
@@ -60,23 +62,30 @@ static vg_status check_layer_rows(const struct vg_settings *s,
     vg_param_format(&vg_settings_table(VG_TABLE_LAYERS)->column[0], r, who,
                     sizeof who);
     if (!isnan(r->first) && !isnan(r->y_plus))
-      return vg_fail(err, VG_ERR_INPUT, "layers: patch %s has both first and "
-                     "y_plus; give one", who);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "layers: patch %s has both first and "
+                     "y_plus; give one",
+                     who);
     if (!isnan(r->ratio) && (!isnan(r->rate1) || !isnan(r->rate2)))
-      return vg_fail(err, VG_ERR_INPUT, "layers: patch %s has both ratio and "
-                     "rates; give one", who);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "layers: patch %s has both ratio and "
+                     "rates; give one",
+                     who);
     if (!isnan(r->y_plus) && !(s->layer.reynolds > 0))
-      return vg_fail(err, VG_ERR_INPUT, "layers: patch %s has y_plus, which "
-                     "needs reynolds and reference_length", who);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "layers: patch %s has y_plus, which "
+                     "needs reynolds and reference_length",
+                     who);
     if (!isnan(r->cap) && r->cap > 0 && r->cap < 1)
-      return vg_fail(err, VG_ERR_INPUT, "layers: cap of patch %s is %g; it "
-                     "must be at least 1, or 0 for none", who, r->cap);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "layers: cap of patch %s is %g; it "
+                     "must be at least 1, or 0 for none",
+                     who, r->cap);
   }
   return s->n_layer ? check_numbers(s, VG_TABLE_LAYERS, err) : VG_OK;
 }
 
-static vg_status check_layers(const struct vg_settings *s,
-                              struct vg_error *err)
+static vg_status check_layers(const struct vg_settings *s, struct vg_error *err)
 {
   const struct vg_layer_settings *l = &s->layer;
   double first = l->y_plus > 0 && l->reynolds > 0 && l->length > 0
@@ -84,24 +93,32 @@ static vg_status check_layers(const struct vg_settings *s,
                  : l->first;
 
   if (l->first > 0 && l->y_plus > 0)
-    return vg_fail(err, VG_ERR_INPUT, "first and y_plus are both given; give "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "first and y_plus are both given; give "
                    "one");
   if (!isnan(l->ratio) && (!isnan(l->rate1) || !isnan(l->rate2)))
-    return vg_fail(err, VG_ERR_INPUT, "ratio and rates are both given; give "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "ratio and rates are both given; give "
                    "one (ratio is 1 + rate1)");
   if ((l->reynolds > 0) != (l->length > 0))
-    return vg_fail(err, VG_ERR_INPUT, "reynolds and reference_length belong "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "reynolds and reference_length belong "
                    "together; give both or none");
   if (l->y_plus > 0 && !(l->reynolds > 0))
-    return vg_fail(err, VG_ERR_INPUT, "y_plus needs reynolds and "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "y_plus needs reynolds and "
                    "reference_length");
   if (!isnan(l->cap) && l->cap > 0 && l->cap < 1)
-    return vg_fail(err, VG_ERR_INPUT, "layer_cap is %g; it must be at least "
-                   "1, or 0 for none", l->cap);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "layer_cap is %g; it must be at least "
+                   "1, or 0 for none",
+                   l->cap);
   if (l->total > 0 && first > l->total)
-    return vg_fail(err, VG_ERR_INPUT, "the first height, %g, is above "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the first height, %g, is above "
                    "layer_total, %g: no layer has room; lower it or raise the "
-                   "total", first, l->total);
+                   "total",
+                   first, l->total);
   return check_layer_rows(s, err);
 }
 
@@ -111,38 +128,53 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
   int centre = n_given(f->centre), lo = n_given(f->lo), hi = n_given(f->hi);
 
   if (s->flow == VG_FLOW_INTERNAL && f->kind > VG_DOMAIN_NONE)
-    return vg_fail(err, VG_ERR_INPUT, "flow is internal, but farfield is %s: "
-                   "leave one of them out", kind_name(f));
+    return vg_fail(err, VG_ERR_INPUT,
+                   "flow is internal, but farfield is %s: "
+                   "leave one of them out",
+                   kind_name(f));
   if (s->flow == VG_FLOW_EXTERNAL && f->kind == VG_DOMAIN_NONE)
-    return vg_fail(err, VG_ERR_INPUT, "flow is external, but farfield is none: "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "flow is external, but farfield is none: "
                    "leave one of them out");
   if (s->constant_direction && !s->split_direction)
-    return vg_fail(err, VG_ERR_INPUT, "constant_direction needs a "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "constant_direction needs a "
                    "split_direction of 1, 2 or 3");
   if (s->coarsening != 0 && s->coarsening < 1)
-    return vg_fail(err, VG_ERR_INPUT, "coarsening is %g; it must be at least "
-                   "1, or 0 for one by the number of parts", s->coarsening);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "coarsening is %g; it must be at least "
+                   "1, or 0 for one by the number of parts",
+                   s->coarsening);
   if (s->hmin > 0 && s->hmax > 0 && s->hmin > s->hmax)
-    return vg_fail(err, VG_ERR_INPUT, "hmin %g is larger than hmax %g; "
-                   "swap them or set one to 0", s->hmin, s->hmax);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "hmin %g is larger than hmax %g; "
+                   "swap them or set one to 0",
+                   s->hmin, s->hmax);
   if (centre % 3)
-    return vg_fail(err, VG_ERR_INPUT, "farfield: x, y and z belong together; "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "farfield: x, y and z belong together; "
                    "give all three or none");
   if (lo != hi || lo % 3)
-    return vg_fail(err, VG_ERR_INPUT, "farfield: the corners xlo ylo zlo and "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "farfield: the corners xlo ylo zlo and "
                    "xhi yhi zhi belong together; give all six or none");
   for (int k = 0; lo && k < 3; k++)
     if (!(f->lo[k] < f->hi[k]))
-      return vg_fail(err, VG_ERR_INPUT, "farfield: the lower corner must be "
-                     "below the upper one in %c", "xyz"[k]);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "farfield: the lower corner must be "
+                     "below the upper one in %c",
+                     "xyz"[k]);
   if (lo && f->kind != VG_DOMAIN_BOX)
-    return vg_fail(err, VG_ERR_INPUT, "farfield: corners are given, but kind "
-                   "is %s; set kind to box", kind_name(f));
+    return vg_fail(err, VG_ERR_INPUT,
+                   "farfield: corners are given, but kind "
+                   "is %s; set kind to box",
+                   kind_name(f));
   for (size_t i = 0; i < s->n_source; i++)
     if (s->source[i].growth != 0 && !(s->source[i].growth > 1))
-      return vg_fail(err, VG_ERR_INPUT, "sources: growth of source %zu is %g; "
-                     "it must be above 1, or 0 for the global one", i + 1,
-                     s->source[i].growth);
+      return vg_fail(err, VG_ERR_INPUT,
+                     "sources: growth of source %zu is %g; "
+                     "it must be above 1, or 0 for the global one",
+                     i + 1, s->source[i].growth);
   if (vg_surface_rows_check(s, err) < 0) return VG_ERR_INPUT;
   if (s->n_patch && check_numbers(s, VG_TABLE_PATCHES, err) < 0)
     return VG_ERR_INPUT;

@@ -4,33 +4,40 @@
 
 #include "core/remesh/remesh.h"
 
-#define AT(field) .offset = offsetof(struct vg_surface_row, field), \
-  .size = sizeof ((struct vg_surface_row *)0)->field
+#define AT(field)                                                              \
+  .offset = offsetof(struct vg_surface_row, field),                            \
+  .size = sizeof((struct vg_surface_row *)0)->field
 
 static const struct vg_param columns[] = {
   { "patch", AT(patch), VG_PATCH_COLUMN(struct vg_surface_row, patch_name),
-    .required = 1, .help = "number of the patch, or its name (* and ? stand "
-    "for characters)" },
+    .required = 1,
+    .help = "number of the patch, or its name (* and ? stand "
+            "for characters)" },
   { "beside", AT(beside), VG_PATCH_COLUMN(struct vg_surface_row, beside_name),
-    .optional = 1, .help = "another patch: the size holds along the curve "
-    "between them; -: on all the patch" },
+    .optional = 1,
+    .help = "another patch: the size holds along the curve "
+            "between them; -: on all the patch" },
   { "size", AT(size), .type = VG_PARAM_REAL, .hi = 1e60, .unit = "length",
     .help = "largest edge; 0: no limit" },
   { "lead", AT(lead), .type = VG_PARAM_REAL, .hi = 1, .unit = "chords",
     .help = "edge where the patch is foremost along x, over its length along x "
-    "there; 0: no limit" },
+            "there; 0: no limit" },
   { "across", AT(across), .type = VG_PARAM_REAL, .hi = 1000, .unit = "edges",
     .help = "edges across the patch where it is a strip between two lines, "
-    "such as a blunt trailing edge; 0: 1" },
+            "such as a blunt trailing edge; 0: 1" },
   { "stretch", AT(stretch), .type = VG_PARAM_REAL, .hi = VG_REMESH_STRETCH,
-    .unit = "times", .help = "edges along the curve between patch and beside, "
-    "which stays as a line, over those across it; fades out by growth; "
-    "0: 1" },
+    .unit = "times",
+    .help = "edges along the curve between patch and beside, "
+            "which stays as a line, over those across it; fades out by growth; "
+            "0: 1" },
 };
 
-const struct vg_setting_table vg_surface_table = { "surface", "Sizes of a new surface "
-  "on patches and along the curves between them.", columns,
-  sizeof columns / sizeof *columns, sizeof (struct vg_surface_row) };
+const struct vg_setting_table vg_surface_table = {
+  "surface",
+  "Sizes of a new surface "
+  "on patches and along the curves between them.",
+  columns, sizeof columns / sizeof *columns, sizeof(struct vg_surface_row)
+};
 
 int vg_surface_row_has_beside(const struct vg_surface_row *r)
 {
@@ -47,23 +54,31 @@ static vg_status check_row(const struct vg_surface_row *r, size_t line,
   vg_param_format(&columns[0], r, one, sizeof one);
   vg_param_format(&columns[1], r, two, sizeof two);
   if (!(r->size > 0 || r->lead > 0 || r->across > 0 || r->stretch > 0))
-    return vg_fail(err, VG_ERR_INPUT, "surface: line %zu, patch %s, asks for "
-                   "nothing; give size, lead, across or stretch", line, one);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "surface: line %zu, patch %s, asks for "
+                   "nothing; give size, lead, across or stretch",
+                   line, one);
   if (beside && (r->lead > 0 || r->across > 0))
-    return vg_fail(err, VG_ERR_INPUT, "surface: the curve between patches %s "
+    return vg_fail(err, VG_ERR_INPUT,
+                   "surface: the curve between patches %s "
                    "and %s has size and stretch only; give lead and across "
-                   "on a line without beside", one, two);
+                   "on a line without beside",
+                   one, two);
   if (!beside && r->stretch > 0)
-    return vg_fail(err, VG_ERR_INPUT, "surface: line %zu, patch %s, asks for "
-                   "stretch without a curve; give the patch beside", line,
-                   one);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "surface: line %zu, patch %s, asks for "
+                   "stretch without a curve; give the patch beside",
+                   line, one);
   if (r->stretch > 0 && r->stretch < 1)
-    return vg_fail(err, VG_ERR_INPUT, "surface: stretch between patches %s "
-                   "and %s is %g; it must be at least 1", one, two,
-                   r->stretch);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "surface: stretch between patches %s "
+                   "and %s is %g; it must be at least 1",
+                   one, two, r->stretch);
   if (r->across > 0 && r->across < 1)
-    return vg_fail(err, VG_ERR_INPUT, "surface: across of patch %s is %g; it "
-                   "must be at least 1", one, r->across);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "surface: across of patch %s is %g; it "
+                   "must be at least 1",
+                   one, r->across);
   return VG_OK;
 }
 

@@ -11,7 +11,7 @@
 
 /* What a rank says; the same bytes for the same things. */
 struct claim {
-  uint64_t counts;           /* 1: the first rank of its node */
+  uint64_t counts; /* 1: the first rank of its node */
   struct vg_digest of[VG_AGREE_N];
   char host[64];
 };
@@ -71,11 +71,12 @@ static vg_status compare(int n, const struct vg_bytes *claim,
     memcpy(&other, claim[r].data, sizeof other);
     for (int k = 0; k < VG_AGREE_N && other.counts; k++)
       if (memcmp(&other.of[k], &first.of[k], sizeof other.of[k]) != 0)
-        return vg_fail(err, VG_ERR_REMOTE, "rank %d on %s made other %s than "
+        return vg_fail(err, VG_ERR_REMOTE,
+                       "rank %d on %s made other %s than "
                        "rank 0 on %s; nothing was meshed. Give all ranks the "
                        "same program, input files and libraries; if they have "
-                       "them, please report this with both processors", r,
-                       other.host, vg_agree_name((enum vg_agree)k),
+                       "them, please report this with both processors",
+                       r, other.host, vg_agree_name((enum vg_agree)k),
                        first.host);
   }
   return VG_OK;
@@ -96,8 +97,7 @@ vg_status vg_run_agree(struct vg_comm *c, const struct vg_mesh *surface,
   claim = make_claim(c, surface, layers, sizing, change);
   own = (struct vg_bytes){ sizeof claim, (unsigned char *)&claim };
   all = vg_calloc((size_t)n, sizeof *all);
-  st = vg_comm_agree(c, all ? VG_OK : vg_fail_memory(err, "a comparison"),
-                     err);
+  st = vg_comm_agree(c, all ? VG_OK : vg_fail_memory(err, "a comparison"), err);
   if (st >= 0) st = vg_comm_allgather(c, &own, all, err);
   if (st >= 0) st = compare(n, all, err);
   vg_bytes_release(all, all ? (size_t)n : 0);

@@ -9,8 +9,13 @@
 #include "layers/columns/layers.h"
 
 /* What can differ; VG_AGREE_NOTHING for the test below. */
-enum vg_agree { VG_AGREE_SURFACE, VG_AGREE_LAYERS, VG_AGREE_SIZES,
-                VG_AGREE_N, VG_AGREE_NOTHING = VG_AGREE_N };
+enum vg_agree {
+  VG_AGREE_SURFACE,
+  VG_AGREE_LAYERS,
+  VG_AGREE_SIZES,
+  VG_AGREE_N,
+  VG_AGREE_NOTHING = VG_AGREE_N
+};
 
 /** "surface", "layers", "sizes"; NULL beyond. Static. */
 const char *vg_agree_name(enum vg_agree what);

@@ -60,7 +60,9 @@ static char *join(const char *dir, const char *name, const char *suffix)
   char *path;
 
   return asprintf(&path, "%s/%s%s%s", dir, name, *suffix == '_' ? "" : ".",
-                  suffix) < 0 ? NULL : path;
+                  suffix) < 0
+         ? NULL
+         : path;
 }
 
 char *vg_outputs_temp_path(struct vg_outputs *o, const char *suffix)
@@ -76,7 +78,9 @@ char *vg_outputs_final(const struct vg_outputs *o, const char *suffix)
     char *path;
 
     return asprintf(&path, "%s%s%s", o->name, *suffix == '_' ? "" : ".",
-                    suffix) < 0 ? NULL : path;
+                    suffix) < 0
+           ? NULL
+           : path;
   }
   return join(o->dir, o->name, suffix);
 }
@@ -98,13 +102,12 @@ static int same_file(const char *a, const char *b)
 
 /* The input that writing STEM.suffix would overwrite, or NULL. */
 static const char *hits_input(const struct vg_outputs *o,
-                              const struct vg_problem *p,
-                              const char *suffix)
+                              const struct vg_problem *p, const char *suffix)
 {
   const struct vg_input_files *f = &p->read.files;
   const char *sizes = p->asked.sizes;
-  const char *input[] = { f->d3m, f->front, f->surface, f->mapbc, f->deck,
-                          f->tags, f->aflr, sizes };
+  const char *input[] = { f->d3m,  f->front, f->surface, f->mapbc,
+                          f->deck, f->tags,  f->aflr,    sizes };
   char *path = vg_outputs_final(o, suffix);
   const char *hit = NULL;
 
@@ -119,7 +122,8 @@ static vg_status refuse_mixed(const char *item, const struct vg_settings *s,
                               struct vg_error *err)
 {
   if (s->cells != VG_LAYER_MIXED || strcmp(item, "cogsg") != 0) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "write: a .cogsg holds tetrahedra only, "
+  return vg_fail(err, VG_ERR_INPUT,
+                 "write: a .cogsg holds tetrahedra only, "
                  "but cells is mixed; write b8.ugrid, or set cells to tets");
 }
 
@@ -130,8 +134,10 @@ static vg_status refuse_hit(const struct vg_outputs *o,
   const char *hit = hits_input(o, p, suffix);
 
   if (!hit) return VG_OK;
-  return vg_fail(err, VG_ERR_INPUT, "writing %s would overwrite the input "
-                 "%s; use --out DIR or another --write list", suffix, hit);
+  return vg_fail(err, VG_ERR_INPUT,
+                 "writing %s would overwrite the input "
+                 "%s; use --out DIR or another --write list",
+                 suffix, hit);
 }
 
 /* A folder where a file is to stand: found by renaming, it would leave some
@@ -143,19 +149,22 @@ static vg_status refuse_folder(const struct vg_outputs *o, const char *suffix,
   vg_status st = VG_OK;
   struct stat is;
 
-  if (!path)
-    st = vg_fail_memory(err, "the output paths");
+  if (!path) st = vg_fail_memory(err, "the output paths");
   else if (!lstat(path, &is) && S_ISDIR(is.st_mode))
-    st = vg_fail(err, VG_ERR_IO, "%s: a folder stands where a file is to be "
-                 "written; move it, or choose another --out DIR", path);
+    st = vg_fail(err, VG_ERR_IO,
+                 "%s: a folder stands where a file is to be "
+                 "written; move it, or choose another --out DIR",
+                 path);
   free(path);
   return st;
 }
 
 static vg_status cannot_write(const struct vg_outputs *o, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_IO, "%s: cannot write in this folder: %s; choose "
-                 "another one with --out", o->dir, strerror(errno));
+  return vg_fail(err, VG_ERR_IO,
+                 "%s: cannot write in this folder: %s; choose "
+                 "another one with --out",
+                 o->dir, strerror(errno));
 }
 
 vg_status vg_outputs_place(const char *stem, const char *dir,
@@ -168,13 +177,11 @@ vg_status vg_outputs_place(const char *stem, const char *dir,
   assert(!o->dir && !o->name);
   if (dir) o->dir = strdup(dir);
   else if (!slash) o->dir = strdup(".");
-  else o->dir = strndup(stem, slash == stem
-                        ? 1 : (size_t)(slash - stem));
+  else o->dir = strndup(stem, slash == stem ? 1 : (size_t)(slash - stem));
   o->name = strdup(base);
   if (!o->dir || !o->name) return vg_fail_memory(err, "the output paths");
   if (!*base)
-    return vg_fail(err, VG_ERR_INPUT, "%s: the project has no name",
-                   stem);
+    return vg_fail(err, VG_ERR_INPUT, "%s: the project has no name", stem);
   if (dir) st = vg_make_folder(dir, err);
   if (st >= 0 && access(o->dir, W_OK | X_OK)) st = cannot_write(o, err);
   return st;
@@ -183,17 +190,19 @@ vg_status vg_outputs_place(const char *stem, const char *dir,
 static vg_status refuse_absent(const char *item, struct vg_error *err)
 {
   if (strcmp(item, "cgns") != 0 || vg_cgns_is_built()) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "write: this build cannot write "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "write: this build cannot write "
                  "CGNS: install libhdf5-dev and configure again");
 }
 
-static vg_status refuse_ranks(const char *item, int ranks,
-                              struct vg_error *err)
+static vg_status refuse_ranks(const char *item, int ranks, struct vg_error *err)
 {
   if (ranks == 1 || vg_slices_can_write(item)) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED, "write: %s needs the whole mesh in "
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "write: %s needs the whole mesh in "
                  "one process; run on one rank, or write b8.ugrid and convert "
-                 "it", item);
+                 "it",
+                 item);
 }
 
 vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
@@ -206,8 +215,7 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
   for (size_t i = 0; i < o->n_item && st >= 0; i++) {
     if (strcmp(o->item[i], "mapbc") != 0)
       st = refuse_hit(o, p, o->item[i], err);
-    if (st >= 0 && !is_case(o->item[i]))
-      st = refuse_folder(o, o->item[i], err);
+    if (st >= 0 && !is_case(o->item[i])) st = refuse_folder(o, o->item[i], err);
     if (st >= 0 && !strcmp(o->item[i], "cogsg"))
       st = refuse_hit(o, p, "bc", err);
     if (st >= 0) st = refuse_mixed(o->item[i], &p->asked, err);
@@ -229,13 +237,13 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
   for (size_t i = 0; i < m->n_patch && st >= 0; i++) {
     int found = 0;
 
-    for (size_t j = 0; j < bc.n; j++)
-      found |= bc.entry[j].id == m->patch[i].id;
+    for (size_t j = 0; j < bc.n; j++) found |= bc.entry[j].id == m->patch[i].id;
     if (!found)
-      st = vg_fail(err, VG_ERR_INPUT, "%s is an input and is not overwritten, "
+      st = vg_fail(err, VG_ERR_INPUT,
+                   "%s is an input and is not overwritten, "
                    "but it lacks patch %d (%s) of the mesh; use --out DIR, or "
-                   "add the patch to it", p->read.files.mapbc,
-                   (int)m->patch[i].id, m->patch[i].name);
+                   "add the patch to it",
+                   p->read.files.mapbc, (int)m->patch[i].id, m->patch[i].name);
   }
   vg_mapbc_release(&bc);
   return st;
@@ -261,11 +269,11 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
 {
   char *copy;
 
-  for (size_t i = 0; i < o->n_file; i++)   /* cogsg brings the mapbc */
+  for (size_t i = 0; i < o->n_file; i++) /* cogsg brings the mapbc */
     if (!strcmp(o->file[i].suffix, suffix)) return VG_OK;
   copy = strdup(suffix);
-  if (!copy || vg_reserve(&o->file, &o->cap_file, o->n_file + 1,
-                          sizeof *o->file)) {
+  if (!copy ||
+      vg_reserve(&o->file, &o->cap_file, o->n_file + 1, sizeof *o->file)) {
     free(copy);
     return vg_fail_memory(err, "the output paths");
   }
@@ -277,7 +285,7 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
 vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
                            struct vg_error *err)
 {
-  struct vg_bytes name = {0, NULL};
+  struct vg_bytes name = { 0, NULL };
   vg_status st = VG_OK;
 
   assert(!o->temp_dir);
@@ -361,7 +369,7 @@ struct writing {
   struct vg_comm *comm;
   const struct vg_slices *mesh;
   int threads;
-  struct vg_mesh whole;      /* for writers of whole meshes; else empty */
+  struct vg_mesh whole; /* for writers of whole meshes; else empty */
 };
 
 static vg_status write_format(const struct writing *w, const char *path,
@@ -383,8 +391,7 @@ static vg_status write_foam_parts(const struct writing *w, const char *path,
   vg_status st = part ? vg_slices_collect_parts(w->mesh, w->threads, part, err)
                       : vg_fail_memory(err, "the parts of a mesh");
 
-  if (st >= 0)
-    st = vg_foam_write_parts(path, n, part, w->mesh->n_part, err);
+  if (st >= 0) st = vg_foam_write_parts(path, n, part, w->mesh->n_part, err);
   free(part);
   return st;
 }
@@ -431,9 +438,8 @@ static vg_status write_conditions(struct writing *w, const char *item,
   if (st >= 0 && !path) st = vg_fail_memory(err, "the output paths");
   if (st >= 0 && !w->o->is_guest)
     st = is_fun3d
-      ? vg_mapbc_write(path, &boundary, VG_MAPBC_FUN3D, NULL, NULL, err)
-      : vg_mapbc_write_output(path, &boundary, w->p->asked.title, NULL,
-                              err);
+         ? vg_mapbc_write(path, &boundary, VG_MAPBC_FUN3D, NULL, NULL, err)
+         : vg_mapbc_write_output(path, &boundary, w->p->asked.title, NULL, err);
   vg_mesh_release(&boundary);
   free(path);
   st = vg_comm_agree(w->comm, st, err);
@@ -466,7 +472,8 @@ static vg_status write_slices(struct writing *w, const char *item,
   const char *pair[] = { "vtu", "surface.vtu", NULL };
   const char *one[] = { item, NULL };
   const char **part = !strcmp(item, "cogsg") ? triple
-                    : !strcmp(item, "vtu") ? pair : one;
+                    : !strcmp(item, "vtu")   ? pair
+                                             : one;
   struct vg_slices_options o = vg_options_slices(&w->p->asked);
   char *stem;
   vg_status st;
@@ -505,9 +512,9 @@ static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
                              struct vg_error *err)
 {
   char *path = vg_outputs_temp_path(o, WALLS);
-  vg_status st = path ? vg_layer_stage_write(layers, &p->boundary.surface,
-                                             path, err)
-                      : vg_fail_memory(err, "the output paths");
+  vg_status st = path
+                 ? vg_layer_stage_write(layers, &p->boundary.surface, path, err)
+                 : vg_fail_memory(err, "the output paths");
 
   free(path);
   return st < 0 ? st : vg_outputs_add(o, WALLS, err);
@@ -519,14 +526,15 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
                             struct vg_error *err)
 {
   const struct vg_input_files *f = &p->read.files;
-  struct vg_settings settings = p->resolved.settings;   /* tables borrowed */
+  struct vg_settings settings = p->resolved.settings; /* tables borrowed */
   const char *input = *f->surface ? f->surface : f->stem;
-  const char *quote = strchr(input, ' ') ? "'" : "";   /* for a shell */
+  const char *quote = strchr(input, ' ') ? "'" : ""; /* for a shell */
   char *path = vg_outputs_temp_path(o, "resolved.deck"), *comment = NULL;
   vg_status st;
 
   if (!path ||
-      asprintf(&comment, "# Settings of a run, complete: to repeat it,\n"
+      asprintf(&comment,
+               "# Settings of a run, complete: to repeat it,\n"
                "#   vanguard mesh -p %s%s%s --deck %s%s.resolved.deck%s\n"
                "# (sources of a .d3m are listed below and not read again)\n",
                quote, input, quote, quote, o->name, quote) < 0) {
@@ -550,8 +558,7 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
 
   assert(!o->n_open && o->temp_dir);
   for (size_t i = 0; i < o->n_item && st >= 0; i++)
-    if (!vg_slices_is_ugrid(o->item[i]))
-      st = write_item(&w, o->item[i], err);
+    if (!vg_slices_is_ugrid(o->item[i])) st = write_item(&w, o->item[i], err);
   if (st >= 0 && mesh->n_part) st = write_parts(&w, err);
   if (st >= 0 && !o->is_guest && layers->is_on)
     st = write_walls(o, p, layers, err);
@@ -567,14 +574,15 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
 static vg_status digest_file(const char *path, struct vg_outputs_file *f,
                              struct vg_error *err)
 {
-  struct vg_digest d = {{0, 0}};
+  struct vg_digest d = { { 0, 0 } };
   int fd = open(path, O_RDONLY), bad = 1, why;
 
   if (fd >= 0) bad = vg_digest_file(fd, &d, &f->bytes);
   why = errno;
   if (fd >= 0) close(fd);
-  if (bad) return vg_fail(err, VG_ERR_IO, "%s: cannot be read back: %s", path,
-                          strerror(why));
+  if (bad)
+    return vg_fail(err, VG_ERR_IO, "%s: cannot be read back: %s", path,
+                   strerror(why));
   memcpy(f->digest, d.word, sizeof f->digest);
   return VG_OK;
 }
@@ -606,10 +614,8 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
     char *from = vg_outputs_temp_path(o, o->file[i].suffix);
     char *to = vg_outputs_final(o, o->file[i].suffix);
 
-    if (!from || !to)
-      st = vg_fail_memory(err, "the output paths");
-    else if (o->file[i].is_case)
-      st = vg_foam_place(from, to, err);
+    if (!from || !to) st = vg_fail_memory(err, "the output paths");
+    else if (o->file[i].is_case) st = vg_foam_place(from, to, err);
     else if (!o->file[i].keep_old && rename(from, to))
       st = vg_fail(err, VG_ERR_IO, "%s: cannot be put in place: %s", to,
                    strerror(errno));

@@ -13,13 +13,13 @@
 struct vg_slices_ugrid;
 
 struct vg_outputs {
-  char *dir, *name;           /* target folder ("." if none), base name */
-  char *temp_dir;                /* hidden folder while writing, or NULL */
-  int is_guest;               /* 1: another rank makes and removes it */
+  char *dir, *name; /* target folder ("." if none), base name */
+  char *temp_dir;   /* hidden folder while writing, or NULL */
+  int is_guest;     /* 1: another rank makes and removes it */
   size_t n_item;
   char item[VG_WRITE_ITEMS][VG_WRITE_NAME];
-  size_t n_open;              /* of `item` */
-  uint64_t put_time;          /* nanoseconds in vg_outputs_put, all threads */
+  size_t n_open;     /* of `item` */
+  uint64_t put_time; /* nanoseconds in vg_outputs_put, all threads */
   struct vg_slices_ugrid *open[VG_WRITE_ITEMS];
   size_t n_file, cap_file;
   /* is_case: a folder with an OpenFOAM mesh. A suffix that begins with '_'
@@ -28,9 +28,12 @@ struct vg_outputs {
     char *suffix;
     int keep_old, is_case;
     uint64_t bytes, digest[2]; /* vg_outputs_digest */
-  } *file;
+  } * file;
 };
-#define VG_OUTPUTS_INIT { .n_item = 0 }
+#define VG_OUTPUTS_INIT                                                        \
+  {                                                                            \
+    .n_item = 0                                                                \
+  }
 
 void vg_outputs_release(struct vg_outputs *o);
 

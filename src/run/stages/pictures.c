@@ -36,8 +36,8 @@ vg_status vg_run_pictures_put(void *pictures, const struct vg_slice *slice,
 
 vg_status vg_run_pictures_gather(struct vg_run_pictures *r,
                                  struct vg_comm *comm,
-                                 const struct vg_slices *field,
-                                 uint64_t before, int threads,
+                                 const struct vg_slices *field, uint64_t before,
+                                 int threads,
                                  const struct vg_mesh_report *report,
                                  struct vg_error *err)
 {

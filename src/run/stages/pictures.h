@@ -7,15 +7,15 @@
 #include "run/picture/body.h"
 #include "run/picture/worst.h"
 
-#define VG_RUN_WORST 3     /* cells that are drawn */
+#define VG_RUN_WORST 3 /* cells that are drawn */
 
 struct vg_run_pictures {
-  int is_on;                /* wanted; everything else is empty without */
+  int is_on; /* wanted; everything else is empty without */
   struct vg_cut_plan plan;
-  struct vg_cuts *cuts;     /* on rank 0 those of all, once gathered */
-  struct vg_around worst[VG_RUN_WORST];  /* on rank 0 */
-  uint64_t put_time;        /* nanoseconds of all threads, drawing */
-  double time;              /* seconds of this rank */
+  struct vg_cuts *cuts; /* on rank 0 those of all, once gathered */
+  struct vg_around worst[VG_RUN_WORST]; /* on rank 0 */
+  uint64_t put_time; /* nanoseconds of all threads, drawing */
+  double time;       /* seconds of this rank */
 };
 
 /** Choose cuts. Collective; the same on all ranks.
@@ -34,8 +34,8 @@ vg_status vg_run_pictures_put(void *pictures, const struct vg_slice *slice,
  *                 in the numbers of the report */
 vg_status vg_run_pictures_gather(struct vg_run_pictures *r,
                                  struct vg_comm *comm,
-                                 const struct vg_slices *field,
-                                 uint64_t before, int threads,
+                                 const struct vg_slices *field, uint64_t before,
+                                 int threads,
                                  const struct vg_mesh_report *report,
                                  struct vg_error *err);
 

@@ -12,7 +12,7 @@
  * */
 struct leaves {
   size_t n, n_fragment;
-  uint64_t *cells;           /* [n] rising; of no fragments */
+  uint64_t *cells; /* [n] rising; of no fragments */
   uint64_t fragment_cells;
 };
 
@@ -56,8 +56,8 @@ static void print_leaves(FILE *to, const struct leaves *l)
 
   fprintf(to, "leaves %s", vg_text_count(l->n, a));
   if (l->n > 1)
-    fprintf(to, " of %s to %s cells, median %s",
-            vg_text_count(l->cells[0], a), vg_text_count(l->cells[l->n - 1], b),
+    fprintf(to, " of %s to %s cells, median %s", vg_text_count(l->cells[0], a),
+            vg_text_count(l->cells[l->n - 1], b),
             vg_text_count(l->cells[(l->n - 1) / 2], c));
   fprintf(to, "\n");
   if (l->n_fragment)
@@ -99,22 +99,26 @@ static void print_parting(FILE *to, const struct vg_run *r,
   char a[32], b[32];
 
   if (!p->n_part) return;
-  fprintf(to, "  decomposed by %s: %s parts (%s asked for, %llu as pieces "
+  fprintf(to,
+          "  decomposed by %s: %s parts (%s asked for, %llu as pieces "
           "hung apart),\n  balance %.3f (most over mean of the cells made in "
-          "leaves)\n", r->decomposition, vg_text_count(p->n_part, a),
+          "leaves)\n",
+          r->decomposition, vg_text_count(p->n_part, a),
           vg_text_count(q->n_asked, b), (unsigned long long)q->n_apart,
           balance(l));
   fprintf(to, "  %s %s, coarsening %.2f, %s triangles of interfaces\n",
           vg_text_count(q->n_coarse, a), q->n_gap ? "octants" : "coarse cells",
           q->coarsening, vg_text_count(q->n_face, b));
   if (q->n_gap)
-    fprintf(to, "  %s of these parts are the gap at the front, which planes "
+    fprintf(to,
+            "  %s of these parts are the gap at the front, which planes "
             "may cut; octants hold %.1f %%\n  of the cells expected%s\n",
             vg_text_count(q->n_gap, a), 100 * q->coarse_cells / p->estimate,
             q->n_coarse ? "" : ": no octant has room off the front");
-  fprintf(to, "  seconds: %s %.2f, dealt out %.2f, interfaces smoothed "
-          "%.2f, divided %.2f\n", q->n_gap ? "octants" : "coarse cells",
-          q->time[VG_PARTING_COARSE],
+  fprintf(to,
+          "  seconds: %s %.2f, dealt out %.2f, interfaces smoothed "
+          "%.2f, divided %.2f\n",
+          q->n_gap ? "octants" : "coarse cells", q->time[VG_PARTING_COARSE],
           q->time[VG_PARTING_GRAPH], q->time[VG_PARTING_SMOOTH],
           q->time[VG_PARTING_FACES]);
 }
@@ -135,9 +139,11 @@ static void put_parting(const struct vg_run *r, const struct leaves *l,
                       json_string(r->cyclic ? "cyclic" : "dynamic"));
   json_object_set_new(o, "balance", json_real(balance(l)));
   if (r->near.n_cell)
-    json_object_set_new(o, "near_interfaces", json_pack(
-      "{s:I s:f s:f}", "cells", (json_int_t)r->near.n_cell, "angle_min",
-      r->near.angle_min, "angle_min_p1", r->near.angle_min_p1));
+    json_object_set_new(o, "near_interfaces",
+                        json_pack("{s:I s:f s:f}", "cells",
+                                  (json_int_t)r->near.n_cell, "angle_min",
+                                  r->near.angle_min, "angle_min_p1",
+                                  r->near.angle_min_p1));
   if (!p->n_part) return;
   parting = json_object();
   json_object_set_new(parting, "parts", count(p->n_part));
@@ -162,17 +168,20 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           vg_text_count(p->n_tile, c), share_of(r, p->n_zone_cell));
   print_leaves(to, &l);
   if (p->n_widened)
-    fprintf(to, "  parts that could not be filled, and were filled together "
+    fprintf(to,
+            "  parts that could not be filled, and were filled together "
             "with what is beside\n  them %s: %s cells made again, %.2f s\n",
-            vg_text_count(p->n_widened, a),
-            vg_text_count(p->n_widened_cell, b), p->widened);
+            vg_text_count(p->n_widened, a), vg_text_count(p->n_widened_cell, b),
+            p->widened);
   if (p->n_blocked || p->n_retry || p->n_uncut || p->n_outgrown)
-    fprintf(to, "  zones given up %s, cuts repeated elsewhere %s, leaves cut "
-            "again %s, left large %llu\n", vg_text_count(p->n_blocked, a),
-            vg_text_count(p->n_retry, b), vg_text_count(p->n_outgrown, c),
-            (unsigned long long)p->n_uncut);
+    fprintf(to,
+            "  zones given up %s, cuts repeated elsewhere %s, leaves cut "
+            "again %s, left large %llu\n",
+            vg_text_count(p->n_blocked, a), vg_text_count(p->n_retry, b),
+            vg_text_count(p->n_outgrown, c), (unsigned long long)p->n_uncut);
   if (p->n_open_left)
-    fprintf(to, "  stages between zones left to leaves, since the void hangs "
+    fprintf(to,
+            "  stages between zones left to leaves, since the void hangs "
             "together at too many places: %llu\n",
             (unsigned long long)p->n_open_left);
   fprintf(to, "  across interfaces: points moved %s times, %s swaps; ",
@@ -182,7 +191,8 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           vg_text_count(p->n_repaired, a), vg_text_count(p->n_repair, b),
           (long long)repair_cells(r, &l), p->repair);
   if (r->near.n_cell)
-    fprintf(to, "  %s cells within two rings of interfaces: 1st percentile of "
+    fprintf(to,
+            "  %s cells within two rings of interfaces: 1st percentile of "
             "the smallest angle\n  %.2f degrees, least %.2f\n",
             vg_text_count(r->near.n_cell, a), r->near.angle_min_p1,
             r->near.angle_min);
@@ -201,10 +211,16 @@ json_t *vg_report_partition_json(const struct vg_run *r)
 {
   const struct vg_partition_report *p = &r->partition;
   struct leaves l = leaves_of(&r->spans);
-  const struct { const char *name; uint64_t n; } row[] = {
-    { "ranks", (uint64_t)r->size }, { "threads", (uint64_t)r->threads },
-    { "leaves", l.n }, { "fragment_leaves", l.n_fragment },
-    { "fragment_cells", l.fragment_cells }, { "regions_bad", p->n_repair },
+  const struct {
+    const char *name;
+    uint64_t n;
+  } row[] = {
+    { "ranks", (uint64_t)r->size },
+    { "threads", (uint64_t)r->threads },
+    { "leaves", l.n },
+    { "fragment_leaves", l.n_fragment },
+    { "fragment_cells", l.fragment_cells },
+    { "regions_bad", p->n_repair },
     { "regions_repaired", p->n_repaired },
     { "cells_in_regions", p->n_repair_cell },
     { "points_moved_across", p->n_repair_moved },
@@ -225,9 +241,7 @@ json_t *vg_report_partition_json(const struct vg_run *r)
   json_object_set_new(o, "parts_widened_seconds", json_real(p->widened));
   json_object_set_new(o, "repair_seconds", json_real(p->repair));
   json_object_set_new(o, "busy", json_real(vg_spans_busy(&r->spans)));
-  json_object_set_new(o, "imbalance",
-                      json_real(vg_spans_imbalance(&r->spans)));
-  json_object_set_new(o, "memory_of_all_ranks_bytes",
-                      json_real(r->memory_sum));
+  json_object_set_new(o, "imbalance", json_real(vg_spans_imbalance(&r->spans)));
+  json_object_set_new(o, "memory_of_all_ranks_bytes", json_real(r->memory_sum));
   return o;
 }

@@ -58,7 +58,8 @@ static vg_status shape_surface(struct vg_run *r, struct vg_problem *p,
 {
   const struct vg_shape_options o = {
     .threads = node_threads(r, &p->asked),
-    .has_maker = r->rank && vg_read_is_by_first(&p->read, r->comm) };
+    .has_maker = r->rank && vg_read_is_by_first(&p->read, r->comm)
+  };
   vg_status st = vg_boundary_shape(&p->read, &o, show, &p->boundary, err);
 
   vg_comm_bind_node(r->comm, 0);
@@ -91,8 +92,8 @@ static vg_status await_surface(struct vg_problem *p, struct vg_error *err)
 }
 
 vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
-                         struct vg_layer_stage *layers,
-                         struct vg_display *show, struct vg_error *err)
+                         struct vg_layer_stage *layers, struct vg_display *show,
+                         struct vg_error *err)
 {
   struct vg_boundary *b = &p->boundary;
   uint64_t is_on = 0;
@@ -164,8 +165,8 @@ static vg_status look_at_sources(struct vg_run *r, const struct vg_problem *p,
   double t = vg_display_now();
   vg_status st = VG_OK;
 
-  if (!r->rank) st = vg_boundary_effects(&p->boundary, front, sizing,
-                                         &r->effects, err);
+  if (!r->rank)
+    st = vg_boundary_effects(&p->boundary, front, sizing, &r->effects, err);
   r->time_size += vg_display_now() - t;
   return vg_comm_agree(r->comm, st, err);
 }
@@ -188,14 +189,13 @@ static vg_status job_digest(const struct vg_run *r, const struct vg_problem *p,
                             struct vg_digest *out, struct vg_error *err)
 {
   const struct vg_settings *s = &p->resolved.settings;
-  struct vg_digest d = {{0, 0}};
-  struct vg_bytes all = {0, NULL};
+  struct vg_digest d = { { 0, 0 } };
+  struct vg_bytes all = { 0, NULL };
   vg_status st = VG_OK;
 
   if (!r->rank) st = vg_run_settings_digest(s, &d, err);
   VG_TRY(vg_comm_agree(r->comm, st, err));
-  if (!r->rank)
-    all = (struct vg_bytes){ sizeof d, (unsigned char *)&d };
+  if (!r->rank) all = (struct vg_bytes){ sizeof d, (unsigned char *)&d };
   VG_TRY(vg_comm_bcast(r->comm, 0, &all, err));
   if (r->rank) memcpy(&d, all.data, sizeof d);
   d = vg_digest_of(d, strlen(vg_source_digest), vg_source_digest);
@@ -225,7 +225,8 @@ static vg_status open_store(struct vg_run *r, const struct vg_problem *p,
                             struct vg_error *err)
 {
   struct vg_store_options s = { .dir = r->options.dir,
-    .resume = r->options.resume, .limit = r->options.limit };
+                                .resume = r->options.resume,
+                                .limit = r->options.limit };
   char what[200], *settings = NULL;
   vg_status st;
 
@@ -245,17 +246,21 @@ done:
 static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
 {
   if (!r->store)
-    return vg_fail(err, VG_ERR_STOPPED, "interrupted; nothing was written "
+    return vg_fail(err, VG_ERR_STOPPED,
+                   "interrupted; nothing was written "
                    "(with --run-dir a run can be resumed)");
-  return vg_fail(err, VG_ERR_STOPPED, "stopped; finished tasks are kept in %s: "
+  return vg_fail(err, VG_ERR_STOPPED,
+                 "stopped; finished tasks are kept in %s: "
                  "give the same command with --resume to go on, on any "
-                 "number of ranks", r->options.dir);
+                 "number of ranks",
+                 r->options.dir);
 }
 
 /* --- the field ----------------------------------------------------------- */
 
 /* Of the leaves, where it is not the kernel. */
-static vg_status open_mesher(const struct vg_run *r, const struct vg_settings *s,
+static vg_status open_mesher(const struct vg_run *r,
+                             const struct vg_settings *s,
                              struct vg_mesher_pool **out, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -279,7 +284,8 @@ static vg_status count_layers(const struct vg_run *r,
   st = vg_layers_count(layers, (enum vg_layer_cells)s->cells, r->threads, n,
                        err);
   if (st >= 0 && *n > (uint64_t)s->max_cells)
-    st = vg_fail(err, VG_ERR_UNSUPPORTED, "the layers alone have %llu cells; "
+    st = vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the layers alone have %llu cells; "
                  "%llu are allowed (max_cells); use a coarser surface, fewer "
                  "layers, cells mixed or raise the limit",
                  (unsigned long long)*n, (unsigned long long)s->max_cells);
@@ -320,8 +326,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   if (r->store) vg_store_state(r->store, &r->stored);
   if (st == VG_ERR_STOPPED) st = say_stopped(r, err);
   if (st >= 0)
-    r->n_field_cell =
-      vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
+    r->n_field_cell = vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
 done:
   vg_mesher_close(o.mesher);
   return st;
@@ -337,9 +342,11 @@ static vg_status accept(const struct vg_run *r, struct vg_error *err)
     return VG_OK;
   vg_report_faults(r->judge.is_valid ? &r->field_judge : &r->judge, faults,
                    sizeof faults);
-  return vg_fail(err, VG_ERR_GEOMETRY, "the mesh did not pass its own check "
+  return vg_fail(err, VG_ERR_GEOMETRY,
+                 "the mesh did not pass its own check "
                  "(%s) and was not written; please report this with the "
-                 "project files", faults);
+                 "project files",
+                 faults);
 }
 
 static vg_status put_slice(void *run, const struct vg_slice *slice,
@@ -355,8 +362,8 @@ static vg_status put_slice(void *run, const struct vg_slice *slice,
  * isotropic size to meet. A file of a mesh that is not valid goes again. */
 static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        const struct vg_layers *layers,
-                       const struct vg_sizing *sizing,
-                       struct vg_display *show, struct vg_error *err)
+                       const struct vg_sizing *sizing, struct vg_display *show,
+                       struct vg_error *err)
 {
   size_t front_faces = layers ? layers->front.n_face : 0;
   double t = vg_display_now();
@@ -370,8 +377,7 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                             r->threads, put_slice, r, &r->judge,
                             r->layers ? &r->field_judge : NULL, err);
   if (st >= 0)
-    st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects,
-                            err);
+    st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects, err);
   if (st >= 0) st = accept(r, err);
   if (st >= 0) st = vg_display_stopped(show, err);
   st = vg_outputs_close(r->outputs, st, err);
@@ -399,14 +405,13 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
 
   if (st < 0) return st;
   if (leads_node(r)) {
-    st = measure_sizes(r, p, surface, 1, node_threads(r, &p->asked), team,
-                       show, &sizing, err);
+    st = measure_sizes(r, p, surface, 1, node_threads(r, &p->asked), team, show,
+                       &sizing, err);
     st = vg_team_close(team, st, err);
     vg_comm_bind_node(r->comm, 0);
   }
   VG_TRY(share_with_node(r, st, NULL, show, &sizing, err));
-  VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change,
-                      err));
+  VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change, err));
   VG_TRY(look_at_sources(r, p, surface, sizing, err));
   VG_TRY(fill(r, p, NULL, surface, sizing, show, err));
   r->slices = *vg_partition_slices(r->field);
@@ -429,8 +434,8 @@ static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
   vg_status st;
 
   VG_TRY(vg_layer_stage_sizes(layers, &p->boundary, &view, err));
-  VG_TRY(measure_sizes(r, p, &view, VG_LAYERS_COARSENESS, threads, team,
-                       show, sizing, err));
+  VG_TRY(measure_sizes(r, p, &view, VG_LAYERS_COARSENESS, threads, team, show,
+                       sizing, err));
   t = vg_display_now();
   layers->options.threads = threads;
   layers->options.team = team;
@@ -547,7 +552,7 @@ vg_status vg_run_mesh(struct vg_run *r, const struct vg_problem *p,
   vg_status st;
 
   r->threads = p->resolved.settings.threads ? (int)p->resolved.settings.threads
-                                   : vg_comm_default_threads(r->comm);
+                                            : vg_comm_default_threads(r->comm);
   r->pictures.is_on = r->outputs && p->resolved.settings.report_html;
   st = layers->is_on ? mesh_layers(r, p, layers, show, err)
                      : mesh_plain(r, p, show, err);

@@ -21,49 +21,49 @@
 
 /** What does not change the mesh. */
 struct vg_run_options {
-  const char *dir;           /* where finished tasks are kept, or NULL */
+  const char *dir; /* where finished tasks are kept, or NULL */
   int resume, keep;
-  int near;                  /* 1: look at the cells near interfaces */
-  double fail_leaves;           /* of partition options */
+  int near;           /* 1: look at the cells near interfaces */
+  double fail_leaves; /* of partition options */
   int fail_rounds;
   uint64_t limit, shuffle;
-  uint64_t node_ranks;       /* ranks taken for a node; 0: as they are */
-  enum vg_agree change;      /* what the last node takes for changed */
+  uint64_t node_ranks;  /* ranks taken for a node; 0: as they are */
+  enum vg_agree change; /* what the last node takes for changed */
 };
 
 struct vg_run {
   struct vg_run_options options;
-  struct vg_outputs *outputs; /* written in part while the mesh is judged;
-                                NULL: none are */
+  struct vg_outputs *outputs;      /* written in part while the mesh is judged;
+                                     NULL: none are */
   struct vg_run_pictures pictures; /* drawn then too, for the outputs */
-  struct vg_comm *comm;      /* NULL: one rank without a launcher */
+  struct vg_comm *comm;            /* NULL: one rank without a launcher */
   int rank, size, threads;
   const char *decomposition; /* static; how the field was decomposed */
   int cyclic;                /* 1: its parts were dealt out beforehand */
   struct vg_partition *field;
   struct vg_partition_report partition;
-  struct vg_near_report near;   /* where asked for */
+  struct vg_near_report near; /* where asked for */
   struct vg_spans spans;
   struct vg_store *store;
   struct vg_store_report stored;
-  struct vg_layer_slices *layers;  /* NULL without layers */
-  struct vg_slices slices;   /* the mesh */
-  struct vg_slices parted;   /* with parts for the solver, where asked for */
+  struct vg_layer_slices *layers; /* NULL without layers */
+  struct vg_slices slices;        /* the mesh */
+  struct vg_slices parted; /* with parts for the solver, where asked for */
   struct vg_solver_slices *parts;
   struct vg_solver_report solver;
   uint64_t n_field_cell;
-  struct vg_mesh_report judge, field_judge;  /* of all; with layers: of the
-                                                 field */
-  struct vg_effects effects;       /* of rank 0 */
+  struct vg_mesh_report judge, field_judge; /* of all; with layers: of the
+                                                field */
+  struct vg_effects effects;                /* of rank 0 */
   double time_size, time_layers, time_judge;
-  double time_put;           /* files written while slices are judged */
-  double time_fill;          /* cuts, leaves and repairs */
-  double time_near;          /* looking at the cells near interfaces */
+  double time_put;  /* files written while slices are judged */
+  double time_fill; /* cuts, leaves and repairs */
+  double time_near; /* looking at the cells near interfaces */
   double time_parts;
-  size_t common;             /* bytes of surface, layers and sizes, one copy on
-                                the node */
-  double memory;             /* bytes, of the rank that needs most */
-  double memory_sum;         /* of all, what a node has in common once */
+  size_t common;     /* bytes of surface, layers and sizes, one copy on
+                        the node */
+  double memory;     /* bytes, of the rank that needs most */
+  double memory_sum; /* of all, what a node has in common once */
 };
 
 /** Close the surface as read, settle its layers and swap its slivers. By the
@@ -71,8 +71,8 @@ struct vg_run {
  * whether layers grow; their notes and reports are empty, and their resolved
  * settings those that were read. Collective. */
 vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
-                         struct vg_layer_stage *layers,
-                         struct vg_display *show, struct vg_error *err);
+                         struct vg_layer_stage *layers, struct vg_display *show,
+                         struct vg_error *err);
 
 /** Sizes, layers, field, judgement, and what of r->outputs is written slice
  * by slice. Collective; the mesh is r->slices.

@@ -68,7 +68,7 @@ static int digest_part(const struct vg_settings *s, enum vg_table_kind kind,
 vg_status vg_run_settings_digest(const struct vg_settings *s,
                                  struct vg_digest *d, struct vg_error *err)
 {
-  struct vg_digest all = {{0, 0}}, plugin;
+  struct vg_digest all = { { 0, 0 } }, plugin;
   int bad = 0;
 
   for (int kind = 0; kind < VG_TABLE_N; kind++)
@@ -92,7 +92,7 @@ static void put_table(FILE *to, const struct vg_settings *s,
                       enum vg_table_kind kind)
 {
   const struct vg_setting_table *t = vg_settings_table(kind);
-  struct vg_digest d = {{0, 0}};
+  struct vg_digest d = { { 0, 0 } };
   size_t n = vg_settings_rows(s, kind);
 
   if (!decides(t)) return;
@@ -104,12 +104,12 @@ static void put_table(FILE *to, const struct vg_settings *s,
 
 static void put_boundary(FILE *to, const struct vg_mesh *m)
 {
-  struct vg_digest d = {{0, 0}};
+  struct vg_digest d = { { 0, 0 } };
 
   d = vg_digest_of(d, m->n_point * sizeof *m->point, m->point);
   d = vg_digest_of(d, m->n_tri * sizeof *m->tri, m->tri);
-  fprintf(to, "boundary=%zu points, %zu triangles (digest %08x)\n",
-          m->n_point, m->n_tri, (unsigned)d.word[0]);
+  fprintf(to, "boundary=%zu points, %zu triangles (digest %08x)\n", m->n_point,
+          m->n_tri, (unsigned)d.word[0]);
 }
 
 int vg_run_mesher_digest(const struct vg_settings *s, struct vg_digest *d)
@@ -125,7 +125,7 @@ int vg_run_mesher_digest(const struct vg_settings *s, struct vg_digest *d)
 
 static void put_mesher(FILE *to, const struct vg_settings *s)
 {
-  struct vg_digest d = {{0, 0}};
+  struct vg_digest d = { { 0, 0 } };
 
   if (vg_run_mesher_digest(s, &d))
     fprintf(to, "plug-in of the mesher=digest %08x\n", (unsigned)d.word[0]);

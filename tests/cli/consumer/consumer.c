@@ -29,8 +29,12 @@ static int says(const vanguard_job *job, const char *word)
 
 enum { N = 12, SIDE = 6 * N * N };
 
-struct cube { size_t n_point; double x[8 * SIDE][3]; uint32_t tri[2 * SIDE][3];
-              int32_t patch[2 * SIDE]; };
+struct cube {
+  size_t n_point;
+  double x[8 * SIDE][3];
+  uint32_t tri[2 * SIDE][3];
+  int32_t patch[2 * SIDE];
+};
 
 static uint32_t point_of(struct cube *c, const double x[3])
 {
@@ -84,7 +88,11 @@ static vanguard_job *new_cube(void)
 
 /* --- a mesh in arrays ---------------------------------------------------- */
 
-struct arrays { struct vanguard_counts n; double *x; uint32_t *cell[3]; };
+struct arrays {
+  struct vanguard_counts n;
+  double *x;
+  uint32_t *cell[3];
+};
 
 static void take(vanguard_job *job, struct arrays *a)
 {
@@ -128,7 +136,8 @@ static double volume_of(const struct arrays *a)
                   o[k];
     sum += (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
             e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-            e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / 6;
+            e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
+           6;
   }
   return sum;
 }
@@ -211,7 +220,9 @@ static void refuses_bad_surfaces(void)
 static void gives_arrays_and_pieces(void)
 {
   vanguard_job *job = new_cube();
-  struct { struct vanguard_counts n; } old = { VANGUARD_INIT(old.n) };
+  struct {
+    struct vanguard_counts n;
+  } old = { VANGUARD_INIT(old.n) };
   struct vanguard_quality q = VANGUARD_INIT(q);
   struct vanguard_patch p = VANGUARD_INIT(p);
   struct vanguard_wall_points walls = VANGUARD_INIT(walls);
@@ -223,7 +234,7 @@ static void gives_arrays_and_pieces(void)
   CHECK(a.n.n_tet > 100 && !a.n.n_pri && a.n.n_tri == 2 * SIDE);
   CHECK(a.n.n_patch == 6 && !vanguard_patch(job, 2, &p) && p.id == 12);
   CHECK(vanguard_patch(job, 6, &p) == VANGUARD_ERR_USAGE);
-  CHECK(fabs(volume_of(&a) - 1) < 1e-12);   /* sums of some thousand terms */
+  CHECK(fabs(volume_of(&a) - 1) < 1e-12); /* sums of some thousand terms */
   CHECK(!vanguard_measure(job, &q) && fabs(q.volume - 1) < 1e-12 &&
         q.angle_min > 5 && q.angle_max < 175);
   for (size_t i = 0; i < vanguard_pieces(job); i++) {
@@ -271,7 +282,7 @@ static void tells_wall_points(vanguard_job *job, const struct arrays *a,
   for (size_t i = 0; i < p.n_point; i++) {
     if (!CHECK(p.point[i] < a->n.n_boundary_point)) return;
     CHECK(!i || p.point[i] > p.point[i - 1]);
-    CHECK(a->x[3 * p.point[i] + 2] == 0);       /* the floor is z = 0 */
+    CHECK(a->x[3 * p.point[i] + 2] == 0); /* the floor is z = 0 */
     CHECK(p.level[i] <= p.wanted[i] && p.total[i] >= p.first[i]);
     CHECK(vanguard_cause(p.cause[i]) && vanguard_cause(p.squeezed[i]));
     if (!p.level[i]) continue;
@@ -282,7 +293,7 @@ static void tells_wall_points(vanguard_job *job, const struct arrays *a,
     n++;
   }
   CHECK(n == w->n_point && first[0] == w->first[0] && first[1] == w->first[2]);
-  CHECK(fabs(level / (double)n - w->level[1]) < 1e-9);   /* order of a sum */
+  CHECK(fabs(level / (double)n - w->level[1]) < 1e-9); /* order of a sum */
 }
 
 static void names_causes(void)
@@ -344,7 +355,7 @@ static void stops(void)
           VANGUARD_ERR_STOPPED);
     CHECK(vanguard_count(job, &after.n) == VANGUARD_ERR_USAGE);
   }
-  vanguard_cancel(job);          /* nothing is at work */
+  vanguard_cancel(job); /* nothing is at work */
   CHECK(!vanguard_mesh(job, NULL, NULL));
   take(job, &after);
   CHECK(same(&before, &after));
