@@ -260,7 +260,7 @@ static vg_status mark_strips(struct vg_ref *r, const struct vg_curves *c,
 vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
                         const struct vg_sizes_options *o, struct vg_error *err)
 {
-  assert(o->h_min > 0 && o->h_max >= o->h_min && isfinite(o->h_max));
+  assert(o->h_max >= o->h_min && isfinite(o->h_max));
   assert(o->growth >= 1);
 
   uint8_t *far = vg_alloc(r->n_point, 1);
