@@ -34,7 +34,7 @@ nm -D --defined-only --with-symbol-versions "$library" |
 diff -u "$here/consumer/abi.list" "$folder/abi" ||
   fail "the library's symbols are not those of tests/cli/consumer/abi.list." \
     "What was there must stay; what is new is added to the list"
-sed -n 's/^VANGUARD_API.*\(vanguard_[a-z_]*\)(.*/\1/p' \
+sed -n '/^VANGUARD_API/ { /(/! N; s/\n/ /; s/^.*\(vanguard_[a-z_]*\)(.*/\1/p; }' \
   "$prefix/include/vanguard/vanguard.h" | LC_ALL=C sort >"$folder/declared"
 sed -n 's/\(vanguard_.*\)@@.*/\1/p' "$folder/abi" |
   diff -u "$folder/declared" - || fail "declared and exported differ"

@@ -9,7 +9,7 @@ struct vg_sizes_options {
   double per_turn;     /* edges round a full circle */
   double chord;        /* largest distance of an edge from its arc */
   double strip;        /* size on a strip over its width */
-  double h_min, h_max; /* bounds, > 0 and finite */
+  double h_min, h_max; /* bounds, finite; h_min is 0 where it underflows */
   double h_shape;      /* the shape asks for no less */
   double growth;
   const double *cap;         /* [n_tri] largest size on it, or NULL; INFINITY:
