@@ -97,11 +97,11 @@ void vg_filled_get(struct vg_reader *r, struct vg_filled *f, int cells);
 
 /** Number of defects: cells without positive volume (exact), indices out of
  * range, and, with a region, open edges of the boundary of its cells, which the
- * consumed faces and the new faces make up. A closed front stays closed exactly
- * where these edges are none. Without a region, new and consumed faces are
- * defects. 0 where all is well; SIZE_MAX when memory is refused, or where the
- * consumed faces do not ascend or are out of range. has_region: as in the call
- * that made *f, which has its cells. O(n log n). For checks. */
+ * consumed faces and the new faces make up. A closed front stays closed if and
+ * only if this boundary has no open edges. Without a region, new and consumed
+ * faces are defects. 0 where all is well; SIZE_MAX when memory is refused, or
+ * where the consumed faces do not ascend or are out of range. has_region: as in
+ * the call that made *f, which has its cells. O(n log n). For checks. */
 size_t vg_filled_defects(const struct vg_front *front,
                          const struct vg_filled *f, int has_region);
 

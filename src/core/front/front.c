@@ -62,9 +62,8 @@ static vg_status mark_points(const struct vg_front *f, uint8_t *used,
     for (int k = 0; k < 3; k++) {
       if (f->face[i][k] >= f->n_point)
         return vg_fail(err, VG_ERR_INPUT,
-                       "triangle %zu refers to point %u of "
-                       "%zu",
-                       i + 1, f->face[i][k] + 1, f->n_point);
+                       "triangle %zu refers to point %u of %zu", i + 1,
+                       f->face[i][k] + 1, f->n_point);
       used[f->face[i][k]] = 1;
     }
   return VG_OK;
@@ -72,12 +71,13 @@ static vg_status mark_points(const struct vg_front *f, uint8_t *used,
 
 vg_status vg_front_check(const struct vg_front *f, struct vg_error *err)
 {
+  assert(f && (f->x || !f->n_point) && (f->face || !f->n_face));
+
   uint8_t *used = vg_calloc(f->n_point, 1);
   size_t p = 0;
   vg_status st = used ? mark_points(f, used, err)
                       : vg_fail_memory(err, "the front");
 
-  assert(f && (f->x || !f->n_point) && (f->face || !f->n_face));
   while (st == VG_OK && p < f->n_point && used[p]) p++;
   free(used);
   if (st < 0 || p == f->n_point) return st;

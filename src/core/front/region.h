@@ -25,11 +25,12 @@ struct vg_region {
   int n_wall;
   struct vg_plane plane[2]; /* unit normals, here and below; at right
                                angles */
-  double reach;             /* cells within so many spacings belong to it,
-                               besides those that cross every plane */
-  double wide;              /* the front must be known, and cells are told
-                               from outside, so many spacings farther than
-                               elsewhere: triangles reach far beyond */
+  double reach;             /* cells within this many spacings belong to the
+                               region, in addition to those that cross every
+                               plane */
+  double wide;              /* additional spacings within which the front must
+                               be known and cells are classified, since long
+                               triangles reach that far */
   struct vg_plane wall[VG_REGION_WALLS]; /* [n_wall] convex: all corners of a
                                cell must have normal . x > offset. Regions
                                with walls between them cannot overlap */
@@ -54,8 +55,9 @@ _Static_assert(sizeof(struct vg_region) ==
  * other side would have to be told from outside through them. */
 #define VG_BEYOND_WALLS 0.5 /* K19 */
 
-/** What the members above promise: numbers of planes and walls in range, unit
- * normals, planes at right angles, no negative distance. For assertions. */
+/** Does a region keep the invariants of its members: numbers of planes and
+ * walls in range, unit normals, planes at right angles, no negative distance?
+ * For assertions. */
 int vg_region_is_sound(const struct vg_region *r);
 
 /** How far x is above the plane. */

@@ -38,7 +38,7 @@ static void progress(void *user, double done_cells, double known, size_t n_done,
 static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
                            struct vg_node **out, struct vg_error *err)
 {
-  const struct vg_mesh *m = p->boundary;
+  const struct vg_mesh *m = &p->boundary;
   struct vg_front f = VG_FRONT_INIT;
   struct vg_node *n = NULL;
   vg_status st = VG_OK;
@@ -232,8 +232,7 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   pthread_mutex_init(&p->lock, NULL);
   p->rank = vg_comm_rank(comm);
   p->size = vg_comm_size(comm);
-  p->front = *front;
-  p->boundary = &p->front;
+  p->boundary = *front;
   p->sizing = sizing;
   p->options = *options;
   if (p->options.threads < 1) p->options.threads = 1;

@@ -151,7 +151,7 @@ static vg_status sizes(const struct vg_partition *p, struct vg_comm *comm,
   vg_status st = VG_OK;
 
   if (!vg_comm_node_rank(comm))
-    st = vg_discrete_sizes(p->boundary, p->sizing, factor, out, err);
+    st = vg_discrete_sizes(&p->boundary, p->sizing, factor, out, err);
   st = vg_comm_agree(comm, st, err);
   return st == VG_OK ? vg_sizing_share(comm, out, err) : st;
 }
@@ -176,7 +176,7 @@ static vg_status grow(struct vg_partition *p, struct vg_comm *comm,
   o.job = vg_digest_of(o.job, 6, "coarse");
   o.progress = (struct vg_progress){ progress, p };
   if (st == VG_OK)
-    st = vg_partition_grow(comm, p->boundary, coarse, &o, out, &report, spans,
+    st = vg_partition_grow(comm, &p->boundary, coarse, &o, out, &report, spans,
                            err);
   if (st == VG_ERR_GEOMETRY || st == VG_ERR_UNSUPPORTED)
     vg_discrete_refuse(st, err->text, factor, err);
@@ -251,7 +251,7 @@ vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
   if (spans) rename_tasks(spans);
   if (st != VG_OK) goto done; /* or stopped */
   VG_TRY(gather(p, comm, vg_partition_slices(made), c, err));
-  if (root) st = renumber(&root->front, p->boundary->n_point, c, err);
+  if (root) st = renumber(&root->front, p->boundary.n_point, c, err);
   c->seconds = vg_clock() - t;
   st = vg_comm_agree(comm, st, err);
 done:

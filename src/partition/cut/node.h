@@ -42,7 +42,7 @@ struct vg_node {
                        processes */
   uint32_t serial;  /* of its leaf; 0: none yet */
   /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
-  size_t cap_x, cap_name, cap_face; /* of the front; 0: just its size */
+  size_t cap_x, cap_id, cap_face; /* of the front; 0: just its size */
   struct vg_select select;
   size_t n_block, cap_block;
   uint16_t *block; /* [n_block] of the front's points: the block that
@@ -90,8 +90,7 @@ struct vg_work {
 
 struct vg_partition {
   int rank, size;
-  struct vg_mesh front; /* of the whole void; its arrays are borrowed */
-  const struct vg_mesh *boundary; /* the same */
+  struct vg_mesh boundary; /* of the whole void; its arrays are borrowed */
   const struct vg_sizing *sizing;
   struct vg_partition_options options;
   const char *stage; /* for progress: "fill", "recut" */

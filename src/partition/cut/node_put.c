@@ -90,11 +90,10 @@ static vg_status make_room(struct put *p, const struct vg_engine *e,
     np += n->change[i].made.n_point;
     nf += n->change[i].made.n_face;
   }
-  if (!n->cap_x) n->cap_x = n->cap_name = f->n_point;
+  if (!n->cap_x) n->cap_x = n->cap_id = f->n_point;
   if (!n->cap_face) n->cap_face = f->n_face;
   if (vg_engine_reserve(e, &f->x, &n->cap_x, f->n_point, np, sizeof *f->x) ||
-      vg_engine_reserve(e, &f->id, &n->cap_name, f->n_point, np,
-                        sizeof *f->id) ||
+      vg_engine_reserve(e, &f->id, &n->cap_id, f->n_point, np, sizeof *f->id) ||
       vg_engine_reserve(e, &f->face, &n->cap_face, f->n_face, nf,
                         sizeof *f->face))
     return vg_fail_memory(err, "cutting a front");

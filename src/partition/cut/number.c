@@ -82,7 +82,7 @@ static vg_status gather(const struct vg_partition *p, struct vg_comm *comm,
 static vg_status number(struct vg_partition *p, size_t n, const struct share *s,
                         struct vg_error *err)
 {
-  uint64_t point = p->boundary->n_point, cell = 0;
+  uint64_t point = p->boundary.n_point, cell = 0;
 
   p->place = vg_alloc(n, sizeof *p->place);
   p->point_at = vg_alloc(p->n_piece, sizeof *p->point_at);
@@ -132,8 +132,8 @@ static int kind_of(char kind)
 /* The slice without cells that owns the points of the front. */
 static void serve_front(const struct vg_partition *p, struct vg_slice *out)
 {
-  out->n_point = out->n_own = p->boundary->n_point;
-  out->x = (const double(*)[3])p->boundary->point;
+  out->n_point = out->n_own = p->boundary.n_point;
+  out->x = (const double(*)[3])p->boundary.point;
   out->id = out->own = p->front_id;
 }
 
@@ -183,14 +183,13 @@ static vg_status open_slices(struct vg_partition *p, struct vg_error *err)
 {
   struct vg_slices *s = &p->slices;
 
-  p->boundary_faces = *p->boundary; /* arrays borrowed */
+  p->boundary_faces = p->boundary; /* arrays borrowed */
   p->boundary_faces.n_point = 0;
   p->boundary_faces.point = NULL;
-  p->front_id = vg_alloc(p->boundary->n_point, sizeof *p->front_id);
+  p->front_id = vg_alloc(p->boundary.n_point, sizeof *p->front_id);
   if (!p->front_id) return vg_fail_memory(err, "numbering the mesh");
-  for (size_t k = 0; k < p->boundary->n_point; k++)
-    p->front_id[k] = (uint32_t)k;
-  s->n_boundary_point = p->boundary->n_point;
+  for (size_t k = 0; k < p->boundary.n_point; k++) p->front_id[k] = (uint32_t)k;
+  s->n_boundary_point = p->boundary.n_point;
   s->boundary = &p->boundary_faces;
   s->n_slice = p->n_piece + (p->rank == 0);
   for (size_t k = 0; k < p->n_piece; k++) s->n_served += p->piece[k].n_cell;

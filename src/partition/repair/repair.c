@@ -301,7 +301,7 @@ static void cluster_body(void *context, size_t first, size_t end, int worker)
 
 static vg_status repair_clusters(struct repair *r, struct vg_error *err)
 {
-  vg_status st = vg_repair_boundary_new(r->p->boundary, r->n_block, r->block,
+  vg_status st = vg_repair_boundary_new(&r->p->boundary, r->n_block, r->block,
                                         &r->boundary, err);
 
   if (st < 0) return st;
