@@ -35,7 +35,7 @@
 struct options {
   const char *name, *demo, *surface, *walls, *out;
   double length, reynolds;
-  struct vg_law law;
+  struct vg_growth_law law;
   size_t n_cell;
   int domain, fill, threads, runs;
 };
@@ -383,7 +383,7 @@ int main(int argc, char **argv)
   struct bench b = { .o = { .length = 0.7,
                             .reynolds = 5e6,
                             .fill = 1,
-                            .law = VG_LAW_INIT,
+                            .law = VG_GROWTH_LAW_INIT,
                             .threads = 1,
                             .runs = 3 },
                      .sizing = VG_SIZING_OPTIONS_INIT };

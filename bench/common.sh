@@ -161,7 +161,7 @@ run_mesh() {
      peak_mb: ($s[3] / 1024), cells: $t[0].facts.cells,
      points: $t[0].facts.points, estimate: $p.estimate, leaves: $p.leaves,
      cuts: $p.cuts, tasks: ($t[0].spans | length),
-     zone_share: ($p.zone_cells / $t[0].facts.cells),
+     zone_share: ($p.separator_cells / $t[0].facts.cells),
      busy: $p.busy, imbalance: $p.imbalance,
      memory_mb: ($p.memory_of_all_ranks_bytes / 1048576),
      angle_min: ($r[0].field // $r[0].mesh).angle_min,

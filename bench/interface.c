@@ -346,10 +346,10 @@ static void decompose(int n, char **word, struct vg_partition_options *o)
 
   o->maker = vg_ways[is_octree ? VG_DECOMPOSE_OCTREE : VG_DECOMPOSE_DISCRETE]
                .maker;
-  o->parting.n_part = atoi(word[0]);
-  o->parting.h_refine = n > 1 && !strcmp(word[1], "h-refine");
+  o->decomposition.n_part = atoi(word[0]);
+  o->decomposition.h_refine = n > 1 && !strcmp(word[1], "h-refine");
   if (n > 2 && !strcmp(word[2], "rcb"))
-    o->parting.partitioner = VG_PARTITIONER_RCB;
+    o->decomposition.partitioner = VG_PARTITIONER_RCB;
 }
 
 int main(int argc, char **argv)

@@ -56,7 +56,7 @@ row() {
      per(cpu(["J"]); made(["L", "P", "T"])),
      ($r.peak_memory_bytes / 1e8 | round / 10),
      ($r.field.angle_min // $r.mesh.angle_min | . * 100 | round / 100),
-     $r.partition.parts_widened] | "| " + (map(tostring) | join(" | ")) + " |"'
+     $r.partition.subdomains_extended] | "| " + (map(tostring) | join(" | ")) + " |"'
 }
 
 mesh() {   # mesh PROJECT NAME OPTION...

@@ -41,12 +41,12 @@ need jq jq
 # Cells outside the layers, most over mean of leaves, triangles of interfaces,
 # 1st percentile of the smallest angle of these cells and of those within two
 # rings of interfaces, parts filled with others.
-row='[(.partition | (.leaf_cells | add) + .fragment_cells + .zone_cells
+row='[(.partition | (.leaf_cells | add) + .fragment_cells + .separator_cells
   + .repair_cells), (.partition.balance * 1000 | round / 1000),
-  .partition.parting.interface_triangles // 0,
+  .partition.decomposition.interface_triangles // 0,
   (.field // .mesh).angle_min_p1,
   .partition.near_interfaces.angle_min_p1 // "-",
-  .partition.parts_widened] | map(tostring) | join(" | ")'
+  .partition.subdomains_extended] | map(tostring) | join(" | ")'
 
 # try WAY OPTIONS...: mesh the case, judge it; a row of the table.
 failed=0

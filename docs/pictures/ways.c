@@ -3,8 +3,8 @@
  *
  *   ways CASE CELLS PARTS AXIS AT U V WIDTH PREFIX
  *
- * CASE and CELLS as of vanguard demo, without layers; the plane AXIS (x, y, z) =
- * AT, of which a window WIDTH wide, two thirds as high, about U V in the two
+ * CASE and CELLS as of vanguard demo, without layers; the plane AXIS (x, y, z)
+ * = AT, of which a window WIDTH wide, two thirds as high, about U V in the two
  * other coordinates is drawn to PREFIX.advancing.png and so on. Every colour is
  * a part; cells of planes that part a void are dark. */
 #include <stdio.h>
@@ -55,9 +55,10 @@ static void draw(const struct vg_demo *d, const struct vg_sizing *sizing,
   struct vg_cuts *cuts = NULL;
 
   o.maker = way->maker;
-  o.parting.n_part = parts;
+  o.decomposition.n_part = parts;
   must(vg_partition_grow(NULL, &d->surface, sizing, &o, &p, &report, NULL,
-                         &err), &err);
+                         &err),
+       &err);
   must(vg_cuts_new(1, cut, &cuts, &err), &err);
   must(vg_slices_each(vg_partition_slices(p), 1, vg_cuts_put, cuts, &err),
        &err);
@@ -81,9 +82,12 @@ int main(int argc, char **argv)
   must(vg_child_server_start(&err), &err);
   must(vg_demo_make(argv[1], (size_t)atof(argv[2]), &d, &err), &err);
   must(vg_sizing_new(&d.sizing, d.n_source, d.source, &d.surface, &sizing,
-                     &err), &err);
-  cut = (struct vg_cut){ argv[4][0] - 'x', atof(argv[5]),
-                         { atof(argv[6]), atof(argv[7]) }, atof(argv[8]) };
+                     &err),
+       &err);
+  cut = (struct vg_cut){ argv[4][0] - 'x',
+                         atof(argv[5]),
+                         { atof(argv[6]), atof(argv[7]) },
+                         atof(argv[8]) };
   for (int k = 0; k < VG_DECOMPOSITIONS; k++)
     draw(&d, sizing, &vg_ways[k], atoi(argv[3]), &cut, argv[9]);
   vg_sizing_free(sizing);

@@ -297,7 +297,7 @@ vanguard_status vanguard_wall_points(vanguard_job *job,
     p.share = w->share;
     p.growth = w->growth;
     p.cause = w->cause;
-    p.squeezed = w->squeezed;
+    p.compressed = w->compressed;
     if (!p.point) st = vg_fail_memory(&job->err, "the points of the walls");
   }
   if (st < 0) return vg_job_status(st);

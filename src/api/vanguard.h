@@ -342,14 +342,14 @@ VANGUARD_API vanguard_status vanguard_wall(vanguard_job *job, size_t i,
 struct vanguard_wall_points {
   size_t struct_size;
   size_t n_point;
-  const uint32_t *point;           /* of the mesh, rising */
-  const int32_t *level, *wanted;   /* levels; as many as law and size ask for */
-  const double *first, *asked;     /* height of the first point; as asked; 0:
-                                      there is no level */
-  const double *total;             /* height of the last */
-  const double *share;             /* height over the law's */
-  const double *growth;            /* largest ratio of neighbouring layers */
-  const int32_t *cause, *squeezed; /* of fewer levels, of thinner ones:
+  const uint32_t *point;         /* of the mesh, rising */
+  const int32_t *level, *wanted; /* levels; as many as law and size ask for */
+  const double *first, *asked;   /* height of the first point; as asked; 0:
+                                    there is no level */
+  const double *total;           /* height of the last */
+  const double *share;           /* height over the law's */
+  const double *growth;          /* largest ratio of neighbouring layers */
+  const int32_t *cause, *compressed; /* of fewer levels, of thinner ones:
                                       numbers for vanguard_cause */
 };
 
@@ -358,7 +358,7 @@ VANGUARD_API vanguard_status
 vanguard_wall_points(vanguard_job *job, struct vanguard_wall_points *out);
 
 /** A cause in a word: 0 "none", 1 "size" (the layers end as thick as the local
- * cell, as intended), "proximity", "corner", "no_view", "cell", "collision",
+ * cell, as intended), "proximity", "corner", "visibility", "cell", "collision",
  * "slide"; NULL behind the last. Static string; docs/layers.md explains. */
 VANGUARD_API const char *vanguard_cause(int32_t cause);
 

@@ -189,12 +189,12 @@ static void options_follow_from_settings(void **state)
   s.split_direction = 2;
   o = vg_options_partition(&s);
   assert_true(o.rule.leaf_cells == 7000 && o.rule.first_axis == 1);
-  assert_int_equal(o.parting.n_part, 0);
+  assert_int_equal(o.decomposition.n_part, 0);
   s.levels = 3;
   s.parts = 5;
   o = vg_options_partition(&s);
   assert_true(o.rule.leaf_cells == 0 && o.levels == 3);
-  assert_int_equal(o.parting.n_part, 5);
+  assert_int_equal(o.decomposition.n_part, 5);
   s.hmax = 0.5;
   s.surface_size = 0.2;
   s.scale = 2;

@@ -23,7 +23,7 @@ static struct vg_partition_options options(int way,
   struct vg_partition_options o = options_of(8000, threads, shuffle);
 
   o.maker = vg_ways[way].maker;
-  o.parting.n_part = 5;
+  o.decomposition.n_part = 5;
   o.mesher = mesher;
   return o;
 }

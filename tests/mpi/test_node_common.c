@@ -138,7 +138,7 @@ static void grow(const struct vg_mesh *surface, struct vg_layers *out)
   struct vg_error err = VG_ERROR_INIT;
 
   for (size_t p = 0; p < surface->n_patch; p++) {
-    struct vg_law law = VG_LAW_INIT;
+    struct vg_growth_law law = VG_GROWTH_LAW_INIT;
 
     law.delta1 = 2e-4;
     request[p].is_wall = surface->patch[p].bc == CASE_WALL;

@@ -26,8 +26,8 @@ static struct vg_partition_options parted(int partitioner, int threads,
   struct vg_partition_options o = options_of(300000, threads, shuffle);
 
   o.maker = vg_octree_part;
-  o.parting.n_part = 8;
-  o.parting.partitioner = partitioner;
+  o.decomposition.n_part = 8;
+  o.decomposition.partitioner = partitioner;
   return o;
 }
 
@@ -130,7 +130,7 @@ static void all_ranks_hear_of_it(void **state)
 
   (void)state;
   scene_demo(&s, "box", 20000);
-  o.parting.coarsening = 1.5;
+  o.decomposition.coarsening = 1.5;
   n = grow(job, &s, &o, &p, &r, &err) == VG_ERR_INPUT;
   assert_null(p);
   assert_non_null(strstr(err.text, "coarsening of 1.5"));

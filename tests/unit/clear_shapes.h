@@ -21,7 +21,7 @@ struct shape {
   struct vg_mesh m;
   struct vg_columns c;
   struct vg_topology t;
-  struct vg_law law;
+  struct vg_growth_law law;
   uint32_t of_point[MAX];
   uint8_t is_wall[PATCHES];
 };
@@ -38,7 +38,7 @@ static struct shape *shape_new(double thickness)
 {
   struct shape *s = room(1, sizeof *s);
 
-  s->law = (struct vg_law){ thickness, 0, 0, 1.3, VG_LEVELS_MAX };
+  s->law = (struct vg_growth_law){ thickness, 0, 0, 1.3, VG_LEVELS_MAX };
   s->m.n_patch = PATCHES;
   s->m.patch = room(PATCHES, sizeof *s->m.patch);
   s->m.point = room(MAX, sizeof *s->m.point);

@@ -148,7 +148,7 @@ static inline void model_law(struct model *m, double delta1)
 
   c->law = vg_alloc(1, sizeof *c->law);
   shape_need(c->law);
-  c->law[0] = (struct vg_law)VG_LAW_INIT;
+  c->law[0] = (struct vg_growth_law)VG_GROWTH_LAW_INIT;
   c->law[0].delta1 = delta1;
   c->n_law = 1;
 }

@@ -172,7 +172,7 @@ static inline void case_loop(struct case_builder *b, size_t n,
 /* Triangulate the face at hand. */
 static inline void case_fill(struct case_builder *b, uint32_t patch)
 {
-  const struct vg_size_law law = { .at = case_size_at, .user = &b->size };
+  const struct vg_size_function law = { .at = case_size_at, .user = &b->size };
 
   if (vg_planar_patch(b->m, b->n_edge, (const uint32_t(*)[2])b->edge, &law,
                       patch, NULL) < 0)

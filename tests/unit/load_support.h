@@ -79,12 +79,12 @@ static inline void estimate(const struct scene *s, int threads,
   struct vg_error err = VG_ERROR_INIT;
 
   *l = (struct vg_load)VG_LOAD_INIT;
-  if (vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_CUBE, threads, l,
+  if (vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_OCTANT, threads, l,
                   &err) < 0)
     fail_msg("%s", err.text);
 }
 
-static inline double volume_of(const struct vg_load_cube *c)
+static inline double volume_of(const struct vg_load_octant *c)
 {
   return 8 * pow((double)c->half, 3);
 }
@@ -96,7 +96,7 @@ static inline double sampled(const struct vg_load *l)
   double sum = 0;
 
   for (size_t i = 0; i < l->n; i++)
-    sum += volume_of(&l->cube[i]) * round(8 * (double)l->cube[i].part) / 8;
+    sum += volume_of(&l->octant[i]) * round(8 * (double)l->octant[i].part) / 8;
   return sum;
 }
 
@@ -105,12 +105,12 @@ static inline double fitted(const struct vg_load *l)
   double sum = 0;
 
   for (size_t i = 0; i < l->n; i++)
-    sum += volume_of(&l->cube[i]) * (double)l->cube[i].part;
+    sum += volume_of(&l->octant[i]) * (double)l->octant[i].part;
   return sum;
 }
 
 /* A branch on the wrong side would be worth many per cent, and a farfield has
- * few cubes: what three standard deviations of samples are worth, where a
+ * few octants: what three standard deviations of samples are worth, where a
  * part is known to about 0.12. */
 static inline void check_volume(const struct scene *s, const struct vg_load *l)
 {
@@ -118,12 +118,12 @@ static inline void check_volume(const struct scene *s, const struct vg_load *l)
 
   assert_true(l->n > 0);
   for (size_t i = 0; i < l->n; i++)
-    if (round(8 * (double)l->cube[i].part) < 8)
-      crossed += volume_of(&l->cube[i]) * volume_of(&l->cube[i]);
+    if (round(8 * (double)l->octant[i].part) < 8)
+      crossed += volume_of(&l->octant[i]) * volume_of(&l->octant[i]);
   if (fabs(sampled(l) - s->volume) > 0.01 * s->volume + 0.36 * sqrt(crossed))
     fail_msg("volume %g of %g", sampled(l), s->volume);
   assert_true(fabs(fitted(l) / s->volume - 1) < 1e-5);
-  for (size_t i = 0; i < l->n; i++) cells += (double)l->cube[i].cells;
+  for (size_t i = 0; i < l->n; i++) cells += (double)l->octant[i].cells;
   assert_true(fabs(cells / l->cells - 1) < 1e-9);
 }
 

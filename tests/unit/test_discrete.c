@@ -1,5 +1,5 @@
-/* The discrete decomposition: partings that fit together, meshes of them, what
- * cannot be parted. */
+/* The discrete decomposition: decompositions that fit together, meshes of them,
+ * what cannot be parted. */
 #define _GNU_SOURCE
 #include "advance_support.h"
 
@@ -7,7 +7,7 @@
 #include "base/child.h"
 #include "core/geometry/shape.h"
 #include "core/geometry/vector.h"
-#include "partition/cut/parting.h"
+#include "partition/cut/decomposition.h"
 #include "partition/discrete/discrete.h"
 #include "partition/discrete/discrete_parts.h"
 #include "partition/graph/bisect.h"
@@ -29,7 +29,7 @@ static void case_begin(struct case_of *c, const char *name, size_t n)
   for (size_t k = 0; k < c->front.n_point; k++)
     c->front.id[k] = VG_POINT_ID(0, k);
   memset(&c->load, 0, sizeof c->load);
-  assert_int_equal(vg_load_new(&c->front, c->s.sizing, VG_LOAD_CELLS_PER_CUBE,
+  assert_int_equal(vg_load_new(&c->front, c->s.sizing, VG_LOAD_CELLS_PER_OCTANT,
                                1, &c->load, NULL),
                    VG_OK);
 }
@@ -41,9 +41,10 @@ static void case_end(struct case_of *c)
   scene_end(&c->s);
 }
 
-static struct vg_parting_options how(int n_part, int partitioner, int h_refine)
+static struct vg_decomposition_options how(int n_part, int partitioner,
+                                           int h_refine)
 {
-  struct vg_parting_options o = VG_PARTING_OPTIONS_INIT;
+  struct vg_decomposition_options o = VG_DECOMPOSITION_OPTIONS_INIT;
 
   o.n_part = n_part;
   o.partitioner = partitioner;
@@ -51,19 +52,20 @@ static struct vg_parting_options how(int n_part, int partitioner, int h_refine)
   return o;
 }
 
-static void part(const struct case_of *c, struct vg_parting_options o,
-                 struct vg_parting *p)
+static void part(const struct case_of *c, struct vg_decomposition_options o,
+                 struct vg_decomposition *p)
 {
   struct vg_error err = VG_ERROR_INIT;
 
-  *p = (struct vg_parting)VG_PARTING_INIT;
+  *p = (struct vg_decomposition)VG_DECOMPOSITION_INIT;
   if (vg_discrete_part(&c->front, &c->load, c->s.sizing, &o, SERIAL, NULL, p,
                        &err) != VG_OK ||
-      vg_parting_check(p, &c->front, SERIAL, &err) != VG_OK)
+      vg_decomposition_check(p, &c->front, SERIAL, &err) != VG_OK)
     fail_msg("%s", err.text);
 }
 
-/* --- partings ------------------------------------------------------------ */
+/* --- decompositions
+ * ------------------------------------------------------------ */
 
 /* Volumes of parts are sums of some thousand roundings. */
 static void parts_make_up_the_void(void **state)
@@ -73,7 +75,7 @@ static void parts_make_up_the_void(void **state)
   (void)state;
   case_begin(&c, "sphere", 20000);
   for (int way = 0; way < 4; way++) {
-    struct vg_parting p, q;
+    struct vg_decomposition p, q;
     double volume = 0;
 
     part(&c, how(5, way & 1, way >> 1), &p);
@@ -91,8 +93,8 @@ static void parts_make_up_the_void(void **state)
     assert_true(fabs(volume - c.s.volume) < 1e-10 * c.s.volume);
     assert_int_equal(p.n_point, q.n_point);
     assert_memory_equal(p.x, q.x, p.n_point * sizeof *p.x);
-    vg_parting_release(&p);
-    vg_parting_release(&q);
+    vg_decomposition_release(&p);
+    vg_decomposition_release(&q);
   }
   case_end(&c);
 }
@@ -106,7 +108,7 @@ static void interfaces_have_the_local_size(void **state)
   (void)state;
   case_begin(&c, "box", 30000);
   for (int h = 0; h < 2; h++) {
-    struct vg_parting p;
+    struct vg_decomposition p;
     size_t n = 0, n_good = 0;
 
     part(&c, how(4, VG_PARTITIONER_METIS, h), &p);
@@ -125,7 +127,7 @@ static void interfaces_have_the_local_size(void **state)
       }
     }
     assert_true(n > 100 && 10 * n_good > (h ? 6 : 8) * n);
-    vg_parting_release(&p);
+    vg_decomposition_release(&p);
   }
   case_end(&c);
 }
@@ -226,7 +228,7 @@ static void squeeze(struct vg_coarse *m)
 
 static void interfaces_avoid_flat_cells(void **state)
 {
-  struct vg_parting_options o = how(2, VG_PARTITIONER_METIS, 0);
+  struct vg_decomposition_options o = how(2, VG_PARTITIONER_METIS, 0);
   struct vg_coarse m;
   struct vg_interface f = { 0 };
   struct case_of c;
@@ -251,7 +253,7 @@ static void interfaces_avoid_flat_cells(void **state)
 
 static void one_part_is_the_void(void **state)
 {
-  struct vg_parting p;
+  struct vg_decomposition p;
   struct case_of c;
 
   (void)state;
@@ -260,14 +262,14 @@ static void one_part_is_the_void(void **state)
   assert_int_equal(p.n_part, 1);
   assert_int_equal(p.n_point, 0);
   assert_int_equal(p.part[0].front.n_face, c.front.n_face);
-  vg_parting_release(&p);
+  vg_decomposition_release(&p);
   case_end(&c);
 }
 
 static void what_cannot_be_parted(void **state)
 {
-  struct vg_parting_options o = how(1000000, VG_PARTITIONER_RCB, 0);
-  struct vg_parting p = VG_PARTING_INIT;
+  struct vg_decomposition_options o = how(1000000, VG_PARTITIONER_RCB, 0);
+  struct vg_decomposition p = VG_DECOMPOSITION_INIT;
   struct vg_error err = VG_ERROR_INIT;
   struct case_of c;
 
@@ -300,9 +302,9 @@ static void what_cannot_be_parted(void **state)
 
 /* --- checks -------------------------------------------------------------- */
 
-static void what_is_no_parting(void **state)
+static void what_is_no_decomposition(void **state)
 {
-  struct vg_parting p;
+  struct vg_decomposition p;
   struct vg_front *f;
   struct case_of c;
   uint32_t v;
@@ -313,29 +315,29 @@ static void what_is_no_parting(void **state)
   part(&c, how(3, VG_PARTITIONER_RCB, 0), &p);
   f = &p.part[0].front;
   f->n_face--; /* a face missing */
-  assert_int_equal(vg_parting_check(&p, &c.front, SERIAL, NULL),
+  assert_int_equal(vg_decomposition_check(&p, &c.front, SERIAL, NULL),
                    VG_ERR_GEOMETRY);
   f->n_face++;
   v = f->face[7][0]; /* a face turned */
   f->face[7][0] = f->face[7][1];
   f->face[7][1] = v;
-  assert_int_equal(vg_parting_check(&p, &c.front, SERIAL, NULL),
+  assert_int_equal(vg_decomposition_check(&p, &c.front, SERIAL, NULL),
                    VG_ERR_GEOMETRY);
   f->face[7][1] = f->face[7][0];
   f->face[7][0] = v;
   name = f->id[f->face[f->n_face - 1][0]];
-  assert_int_equal(vg_parting_check(&p, &c.front, SERIAL, NULL), VG_OK);
+  assert_int_equal(vg_decomposition_check(&p, &c.front, SERIAL, NULL), VG_OK);
   f->id[f->face[f->n_face - 1][0]] = VG_POINT_ID(SERIAL, p.n_point);
-  assert_int_equal(vg_parting_check(&p, &c.front, SERIAL, NULL),
+  assert_int_equal(vg_decomposition_check(&p, &c.front, SERIAL, NULL),
                    VG_ERR_GEOMETRY);
   f->id[f->face[f->n_face - 1][0]] = name;
-  vg_parting_release(&p);
+  vg_decomposition_release(&p);
   case_end(&c);
 }
 
 static void bytes_and_back(void **state)
 {
-  struct vg_parting p, q;
+  struct vg_decomposition p, q;
   struct vg_writer w = { .cap = 0 };
   struct vg_reader r;
   struct case_of c;
@@ -343,23 +345,24 @@ static void bytes_and_back(void **state)
   (void)state;
   case_begin(&c, "box", 5000);
   part(&c, how(3, VG_PARTITIONER_METIS, 0), &p);
-  vg_parting_put(&w, &p, SERIAL);
+  vg_decomposition_put(&w, &p, SERIAL);
   assert_false(w.refused);
-  assert_int_equal(vg_parting_check(&p, &c.front, SERIAL, NULL), VG_OK);
+  assert_int_equal(vg_decomposition_check(&p, &c.front, SERIAL, NULL), VG_OK);
   r = (struct vg_reader){ .data = w.bytes.data, .n = w.bytes.n };
-  vg_parting_get(&r, SERIAL + 4, &q);
+  vg_decomposition_get(&r, SERIAL + 4, &q);
   assert_true(!r.bad && r.at == r.n);
   assert_int_equal(q.n_part, p.n_part);
-  assert_int_equal(vg_parting_check(&q, &c.front, SERIAL + 4, NULL), VG_OK);
-  vg_parting_release(&q);
+  assert_int_equal(vg_decomposition_check(&q, &c.front, SERIAL + 4, NULL),
+                   VG_OK);
+  vg_decomposition_release(&q);
   for (size_t n = 0; n < w.bytes.n; n += 1 + n / 7) {
     r = (struct vg_reader){ .data = w.bytes.data, .n = n };
-    vg_parting_get(&r, SERIAL, &q);
+    vg_decomposition_get(&r, SERIAL, &q);
     assert_true(r.bad);
     assert_null(q.part);
   }
   free(w.bytes.data);
-  vg_parting_release(&p);
+  vg_decomposition_release(&p);
   case_end(&c);
 }
 
@@ -404,7 +407,7 @@ static struct vg_partition_options mesh_options(int n_part)
   struct vg_partition_options o = options_of(3000, 1, 0);
 
   o.maker = vg_discrete_part;
-  o.parting.n_part = n_part;
+  o.decomposition.n_part = n_part;
   return o;
 }
 
@@ -456,7 +459,7 @@ int main(void)
     cmocka_unit_test(interfaces_avoid_flat_cells),
     cmocka_unit_test(one_part_is_the_void),
     cmocka_unit_test(what_cannot_be_parted),
-    cmocka_unit_test(what_is_no_parting),
+    cmocka_unit_test(what_is_no_decomposition),
     cmocka_unit_test(bytes_and_back),
     cmocka_unit_test(bisection_is_even),
     cmocka_unit_test(meshes_are_valid_in_any_order),

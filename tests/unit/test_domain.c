@@ -98,7 +98,7 @@ static struct vg_mesh ball(int half, double h)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_border border = VG_BORDER_INIT;
-  const struct vg_size_law law = { .at = even, .user = &h };
+  const struct vg_size_function law = { .at = even, .user = &h };
   const double centre[3] = { 0, 0, 0 };
   struct vg_error err = VG_ERROR_INIT;
 

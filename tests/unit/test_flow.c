@@ -48,7 +48,7 @@ static void add_ball(struct vg_mesh *m, double x, double y, double z, double r,
 {
   double h = 0.4 * r;
   const double centre[3] = { x, y, z };
-  const struct vg_size_law law = { .at = even, .user = &h };
+  const struct vg_size_function law = { .at = even, .user = &h };
   struct vg_border border = VG_BORDER_INIT;
   struct vg_error err = VG_ERROR_INIT;
   const uint32_t p = patch_of(m, name, VG_BC_NONE);
@@ -65,7 +65,7 @@ static void add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
                     int open, const char *const name[6], const int32_t *bc)
 {
   double h = 0;
-  const struct vg_size_law law = { .at = even, .user = &h };
+  const struct vg_size_function law = { .at = even, .user = &h };
   struct vg_border border = VG_BORDER_INIT;
   struct vg_error err = VG_ERROR_INIT;
   uint32_t p[6];
@@ -535,7 +535,7 @@ static struct vg_mesh half_room(double r)
 {
   const double centre[3] = { 0, 0, 0 };
   double h = 2;
-  const struct vg_size_law law = { .at = even, .user = &h };
+  const struct vg_size_function law = { .at = even, .user = &h };
   struct vg_border border = VG_BORDER_INIT;
   struct vg_error err = VG_ERROR_INIT;
   struct vg_mesh m = VG_MESH_INIT;

@@ -32,8 +32,8 @@ static void make(struct scene *s, const char *name, size_t n_cell)
                                  s->demo.source, m, &s->sizing, NULL),
                    VG_OK);
   s->front = vg_front_of(m);
-  assert_int_equal(vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
-                               &s->load, NULL),
+  assert_int_equal(vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_OCTANT,
+                               1, &s->load, NULL),
                    VG_OK);
 }
 
@@ -94,10 +94,10 @@ static void few_leaves_have_whole_planes(void **state)
  * it; a part that may be cut has the tasks that it would have by itself. */
 static void parts_follow_their_maker(void **state)
 {
-  static const struct vg_parting_rate rate = { 2e-6, 3e-6, 5e-6,
-                                               0.25, 1e-6, 4e-6 };
+  static const struct vg_decomposition_rate rate = { 2e-6, 3e-6, 5e-6,
+                                                     0.25, 1e-6, 4e-6 };
   struct vg_forecast_part part[3];
-  struct vg_forecast_parting all = { &rate, 7000, 1100, 3, part };
+  struct vg_forecast_decomposition all = { &rate, 7000, 1100, 3, part };
   struct vg_forecast o = VG_FORECAST_INIT, alone;
   struct vg_machine m = VG_MACHINE_INIT;
   struct vg_model_result f;
@@ -146,7 +146,7 @@ static void parts_follow_their_maker(void **state)
   release(&s);
 }
 
-/* Eight blocks at once; they differ by what cubes beside planes do: some per
+/* Eight blocks at once; they differ by what octants beside planes do: some per
  * cent. */
 static void a_box_has_a_regular_tree(void **state)
 {
@@ -166,7 +166,7 @@ static void a_box_has_a_regular_tree(void **state)
   for (int k = 0; k < 3; k++) assert_int_equal(o.node[0].lattice.n[k], 1);
   for (size_t i = 1; i < o.n_node; i++) {
     const struct vg_forecast_node *n = &o.node[i];
-    double even = (s.load.cells - o.zone_cells) / 8;
+    double even = (s.load.cells - o.separator_cells) / 8;
 
     assert_true(vg_forecast_is_leaf(n) && n->depth == 1 && n->parent == 0);
     assert_in_range((int)(100 * n->cells / even), 95, 125);
@@ -196,7 +196,7 @@ static void sums_are_the_loads(void **state)
     assert_true(fabs(sum_of(&o.spans, 'L') + sum_of(&o.spans, 'P') +
                      sum_of(&o.spans, 'T') - o.cells) < 1e-4 * o.cells);
     assert_true(fabs(sum_of(&o.spans, 'P') + sum_of(&o.spans, 'T') -
-                     o.zone_cells) < 1e-9 * o.cells);
+                     o.separator_cells) < 1e-9 * o.cells);
     vg_forecast_release(&o);
     release(&s);
   }
@@ -321,7 +321,7 @@ static void levels_end_where_nothing_is_left(void **state)
   assert_int_equal(o.n_leaf, 0);
   assert_in_range(o.n_node, 1 + 8 + 32, 1 + 8 + 64);
   assert_in_range(o.n_tile, 150, 220);
-  assert_true(o.zone_cells > 0.99 * s.load.cells);
+  assert_true(o.separator_cells > 0.99 * s.load.cells);
   assert_int_equal(more.n_node, o.n_node);
   assert_int_equal(more.spans.n, o.spans.n);
   vg_forecast_release(&o);
@@ -429,7 +429,7 @@ static void a_run_has_these_tasks(void **state)
         o.spans.span[i].kind != VG_SPAN_REPAIR)
       assert_true(has(&spans, &o.spans.span[i]));
   assert_true(fabs(made(&o.spans, 'L') / made(&spans, 'L') - 1) < 0.1);
-  assert_true(fabs(o.zone_cells / (double)r.n_zone_cell - 1) < 0.2);
+  assert_true(fabs(o.separator_cells / (double)r.n_zone_cell - 1) < 0.2);
   vg_partition_free(grown);
   vg_comm_close(comm);
   vg_spans_release(&spans);

@@ -18,7 +18,7 @@ static void scene_of(struct scene *s, struct vg_mesh *m, double growth,
 
   s->load = (struct vg_load)VG_LOAD_INIT;
   s->sizing = shape_sizing(m, growth, h_max);
-  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_OCTANT, 1,
                                &s->load, NULL),
                    VG_OK);
   vg_mesh_release(m);
@@ -66,7 +66,7 @@ static double share_below(const struct vg_load *l, int axis, double at)
   double sum = 0;
 
   for (size_t i = 0; i < l->n; i++) {
-    const struct vg_load_cube *c = &l->cube[i];
+    const struct vg_load_octant *c = &l->octant[i];
     double part = 0.5 + (at - (double)c->at[axis]) / (2 * (double)c->half);
 
     sum += (double)c->cells * fmax(0, fmin(1, part));
@@ -134,7 +134,7 @@ static void planes_are_at_quantiles(void **state)
       for (int k = 0; k < l.n[axis]; k++, n++) {
         double want = (k + 1.0) / (l.n[axis] + 1);
 
-        /* quantiles are read from cubes in single precision */
+        /* quantiles are read from octants in single precision */
         assert_true(fabs(share_below(&s.load, axis, l.at[axis][k]) - want) <
                     1e-3);
         assert_true(!k || l.at[axis][k] > l.at[axis][k - 1]);
@@ -320,7 +320,7 @@ static void large_tiles_are_parted(void **state)
 
       assert_int_equal(l.rib[i].tile, 0);
       if (is[k].nx != is[k].ny) assert_true(l.rib[i].plane.normal[across] == 1);
-      /* shares of cubes of up to 3 spacings, counted by their middles */
+      /* shares of octants of up to 3 spacings, counted by their middles */
       if (fabs(l.rib[i].plane.offset - length * (i + 1) / is[k].pieces) > 3)
         fail_msg("rib %d of %d x %d is at %g", i, is[k].nx, is[k].ny,
                  l.rib[i].plane.offset);

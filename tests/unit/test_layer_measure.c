@@ -46,7 +46,7 @@ static void stand(struct vg_columns *c, const struct vg_mesh *m,
   shape_need(c->face);
   shape_need(c->face_tri);
   shape_need(c->law);
-  c->law[0] = (struct vg_law){ 1e-5, 0.2, 0, INFINITY, 1 };
+  c->law[0] = (struct vg_growth_law){ 1e-5, 0.2, 0, INFINITY, 1 };
   for (size_t i = 0; i < c->n_column; i++) {
     c->column[i] = (struct vg_column){ .root = (uint32_t)i,
                                        .slide = { VG_NO_INDEX, VG_NO_INDEX },
@@ -119,7 +119,7 @@ static void heights_of_straight_columns(void **state)
   struct vg_wall_fields w = fields(p);
   double d[31];
 
-  vg_law_heights(p->c.law, INFINITY, 30, d);
+  vg_growth_law_heights(p->c.law, INFINITY, 30, d);
   assert_int_equal(w.n, p->m.n_point);
   for (size_t i = 0; i < w.n; i++) {
     assert_int_equal(w.point[i], i);
@@ -131,7 +131,7 @@ static void heights_of_straight_columns(void **state)
     /* differences of sums: the first layers lose digits */
     assert_true(fabs(w.growth[i] - 1.2) < 1e-12);
     assert_int_equal(w.cause[i], VG_CAUSE_SIZE);
-    assert_int_equal(w.squeezed[i], VG_CAUSE_NONE);
+    assert_int_equal(w.compressed[i], VG_CAUSE_NONE);
   }
   vg_wall_fields_release(&w);
 }
@@ -153,7 +153,7 @@ static void a_leaning_column_is_measured_to_the_wall(void **state)
   p->c.law[0].delta1 = 0.5;
   c->n = 2;
   p->c.law[0].rate1 = 6;
-  vg_law_heights(p->c.law, INFINITY, 2, d);
+  vg_growth_law_heights(p->c.law, INFINITY, 2, d);
   far = d[2];
   assert_true(far * c->dir[0] > 3 && far * c->dir[0] < 4);
   w = fields(p);
@@ -178,7 +178,7 @@ static void the_first_height_in_a_corner(void **state)
     }
   for (size_t i = 0; i < p->c.n_column; i++)
     memcpy(p->c.column[i].dir, diagonal, sizeof diagonal);
-  vg_law_heights(p->c.law, INFINITY, 30, d);
+  vg_growth_law_heights(p->c.law, INFINITY, 30, d);
   w = fields(p);
   for (size_t i = 0; i < w.n; i++) {
     const double *x = p->m.point[i];
@@ -204,14 +204,14 @@ static void a_point_says_the_worst_of_its_columns(void **state)
   c[1].n = 12;
   c[1].cause = VG_CAUSE_CORNER;
   c[0].cap = 1.1;
-  c[0].squeezed = VG_CAUSE_PROXIMITY;
+  c[0].compressed = VG_CAUSE_PROXIMITY;
   c[0].dir[2] = 1.05;
   w = fields(p);
   assert_int_equal(w.n, p->m.n_point - 1);
   assert_int_equal(w.level[0], 10);
   assert_int_equal(w.wanted[0], 10);
   assert_int_equal(w.cause[0], VG_CAUSE_CORNER);
-  assert_int_equal(w.squeezed[0], VG_CAUSE_PROXIMITY);
+  assert_int_equal(w.compressed[0], VG_CAUSE_PROXIMITY);
   assert_true(close_to(w.first[0], 1.05e-5));
   assert_true(fabs(w.growth[0] - 1.2) < 1e-12);
   c[0].n = 0;
@@ -238,9 +238,9 @@ static void statistics_by_patch(void **state)
   /* point 0 is a corner of 2 triangles of patch 0; the last point one of 2 of
    * patch 1 */
   p->c.column[0].n = 0;
-  p->c.column[0].cause = VG_CAUSE_NO_VIEW;
+  p->c.column[0].cause = VG_CAUSE_VISIBILITY;
   p->c.column[p->c.n_column - 1].cap = 1.1;
-  p->c.column[p->c.n_column - 1].squeezed = VG_CAUSE_CORNER;
+  p->c.column[p->c.n_column - 1].compressed = VG_CAUSE_CORNER;
   w = fields(p);
   assert_int_equal(vg_layers_patches(&p->m, &p->c, &w, 5e6, 1, &n, &list, &all,
                                      NULL),
@@ -255,15 +255,15 @@ static void statistics_by_patch(void **state)
   assert_int_equal(all.n_face, 2 * SIDE * SIDE);
   assert_true(close_to(list[0].full, 100 * (half - 2) / half));
   assert_true(close_to(list[0].any, 100 * (half - 2) / half));
-  assert_true(close_to(list[0].unsqueezed, 100 * (half - 2) / half));
+  assert_true(close_to(list[0].uncompressed, 100 * (half - 2) / half));
   assert_true(list[1].full == 100 && list[1].any == 100);
-  assert_true(close_to(list[1].unsqueezed, 100 * (half - 2) / half));
+  assert_true(close_to(list[1].uncompressed, 100 * (half - 2) / half));
   assert_true(close_to(all.full, 100 * (half - 1) / half));
-  assert_true(close_to(all.unsqueezed, 100 * (half - 2) / half));
-  assert_int_equal(list[0].cause[VG_CAUSE_NO_VIEW], 2);
+  assert_true(close_to(all.uncompressed, 100 * (half - 2) / half));
+  assert_int_equal(list[0].cause[VG_CAUSE_VISIBILITY], 2);
   assert_int_equal(list[0].cause[VG_CAUSE_SIZE], SIDE * SIDE - 2);
-  assert_int_equal(list[1].squeezed[VG_CAUSE_CORNER], 2);
-  assert_int_equal(all.squeezed[VG_CAUSE_NONE], 2 * SIDE * SIDE - 2);
+  assert_int_equal(list[1].compressed[VG_CAUSE_CORNER], 2);
+  assert_int_equal(all.compressed[VG_CAUSE_NONE], 2 * SIDE * SIDE - 2);
   assert_true(list[0].level.min == 30 && list[0].level.max == 30);
   assert_true(list[0].level.mean == 30);
   assert_true(list[1].total.min < list[1].total.max);
@@ -287,7 +287,7 @@ static void straight_columns_are_valid(void **state)
   assert_int_equal(r.n_prism, 30 * p->m.n_tri);
   assert_int_equal(r.n_negative + r.n_bad_corner + r.n_pyramid, 0);
   assert_int_equal(r.n_step + r.n_off_plane, 0);
-  assert_true(fabs(r.angle_of_top_min - 45) < 1e-6);
+  assert_true(fabs(r.top_angle_min - 45) < 1e-6);
 }
 
 /* Level 30 of one corner point less: each of its two faces loses a cell and
@@ -318,7 +318,7 @@ static void crossing_columns_are_found(void **state)
   const size_t middle = SIDE / 2 * (SIDE + 1) + SIDE / 2;
   struct vg_layer_judgement r;
 
-  p->c.law[0] = (struct vg_law){ 0.25, 0, 0, INFINITY, 1 };
+  p->c.law[0] = (struct vg_growth_law){ 0.25, 0, 0, INFINITY, 1 };
   for (size_t i = 0; i < p->c.n_column; i++) p->c.column[i].n = 5;
   p->c.column[middle].dir[0] = 1;
   r = judge(p);
@@ -523,7 +523,7 @@ static void nothing_is_nothing(void **state)
   (void)state;
   assert_int_equal(vg_layers_judge(&m, &c, 0, NULL, &r, NULL), VG_OK);
   assert_int_equal(r.n_cell, 0);
-  assert_true(r.angle_of_top_min == 180);
+  assert_true(r.top_angle_min == 180);
   assert_int_equal(vg_layers_fields(&m, &c, 0, &w, NULL), VG_OK);
   assert_int_equal(vg_layers_patches(&m, &c, &w, 0, 0, &n, &list, &all, NULL),
                    VG_OK);

@@ -537,7 +537,7 @@ static void check_grown(struct model *m, double h)
   assert_true(m->surface.n_patch <= 16);
   memset(request, 0, sizeof request);
   for (size_t p = 0; p < m->surface.n_patch; p++) {
-    request[p].law = (struct vg_law)VG_LAW_INIT;
+    request[p].law = (struct vg_growth_law)VG_GROWTH_LAW_INIT;
     request[p].law.delta1 = 1e-3 * h;
     request[p].is_wall = m->surface.patch[p].bc == CASE_WALL;
   }

@@ -40,7 +40,7 @@ static void start(struct bench *b, double h)
   assert_true(b->surface.n_patch <= 16);
   memset(b->request, 0, sizeof b->request);
   for (size_t p = 0; p < b->surface.n_patch; p++) {
-    struct vg_law law = VG_LAW_INIT;
+    struct vg_growth_law law = VG_GROWTH_LAW_INIT;
 
     law.delta1 = 1e-3 * h;
     law.rate1 = 0.25;
@@ -109,7 +109,7 @@ static double height_of(const struct vg_columns *c, const struct vg_column *v)
 {
   double d[VG_LEVELS_MAX + 1];
 
-  vg_law_heights(&c->law[v->law], v->cap, v->n, d);
+  vg_growth_law_heights(&c->law[v->law], v->cap, v->n, d);
   return d[v->n];
 }
 
@@ -129,7 +129,7 @@ static void tops_are_no_steeper(const struct bench *b)
                       vg_distance(x, b->surface.point[high->root]) +
                     c->law[low->law].delta1;
 
-      if (low->squeezed == VG_CAUSE_NONE) continue;
+      if (low->compressed == VG_CAUSE_NONE) continue;
       if (height_of(c, high) - height_of(c, low) > most * (1 + 1e-9))
         fail_msg("tops %g and %g at (%g, %g, %g), %g at most",
                  height_of(c, low), height_of(c, high), x[0], x[1], x[2], most);
@@ -167,7 +167,7 @@ static int is_limit(int cause)
 static void limits_are_explained(const struct bench *b)
 {
   const struct vg_columns *c = &b->layers.columns;
-  size_t cause[VG_CAUSE_N] = { 0 }, squeezed[VG_CAUSE_N] = { 0 };
+  size_t cause[VG_CAUSE_N] = { 0 }, compressed[VG_CAUSE_N] = { 0 };
 
   assert_int_equal(c->n_column, b->report.n_column);
   for (size_t i = 0; i < c->n_column; i++) {
@@ -175,13 +175,13 @@ static void limits_are_explained(const struct bench *b)
 
     assert_true(col->n <= col->n_wanted);
     assert_int_equal(col->n < col->n_wanted, is_limit(col->cause));
-    if (col->n && col->cap < 1.25) assert_true(is_limit(col->squeezed));
-    assert_true(col->cause < VG_CAUSE_N && col->squeezed < VG_CAUSE_N);
+    if (col->n && col->cap < 1.25) assert_true(is_limit(col->compressed));
+    assert_true(col->cause < VG_CAUSE_N && col->compressed < VG_CAUSE_N);
     cause[col->cause]++;
-    squeezed[col->squeezed]++;
+    compressed[col->compressed]++;
   }
   assert_memory_equal(cause, b->report.cause, sizeof cause);
-  assert_memory_equal(squeezed, b->report.squeezed, sizeof squeezed);
+  assert_memory_equal(compressed, b->report.compressed, sizeof compressed);
 }
 
 static void minus(const double a[3], const double b[3], long double c[3])
@@ -331,7 +331,7 @@ static void same_layers(const struct vg_layers *a, const struct vg_layers *b)
     assert_true(c->column[i].cap == d->column[i].cap);
     assert_int_equal(c->column[i].n, d->column[i].n);
     assert_int_equal(c->column[i].cause, d->column[i].cause);
-    assert_int_equal(c->column[i].squeezed, d->column[i].squeezed);
+    assert_int_equal(c->column[i].compressed, d->column[i].compressed);
   }
   same(c->path, d->path, c->n_path, sizeof *c->path);
   assert_int_equal(m->n_point, n->n_point);
@@ -417,7 +417,7 @@ static void fill_and_join(const struct bench *b)
 }
 
 /* Shares of wall faces, in per cent. */
-static void at_least(const struct bench *b, double full, double unsqueezed,
+static void at_least(const struct bench *b, double full, double uncompressed,
                      double any)
 {
   struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
@@ -431,9 +431,9 @@ static void at_least(const struct bench *b, double full, double unsqueezed,
                                      &n, &list, &all, NULL),
                    VG_OK);
   assert_int_equal(all.n_face, b->report.n_wall_tri);
-  if (all.full < full || all.unsqueezed < unsqueezed || all.any < any)
-    fail_msg("%g %% full, %g %% unsqueezed, %g %% any", all.full,
-             all.unsqueezed, all.any);
+  if (all.full < full || all.uncompressed < uncompressed || all.any < any)
+    fail_msg("%g %% full, %g %% uncompressed, %g %% any", all.full,
+             all.uncompressed, all.any);
   vg_wall_fields_release(&w);
   free(list);
 }
@@ -448,7 +448,7 @@ static void all_of_it(struct bench *b, double h)
 /* --- what must hold at a place ------------------------------------------- */
 
 struct place_figures {
-  size_t n, n_full, n_loose, n_none; /* columns: all, full, not squeezed,
+  size_t n, n_full, n_loose, n_none; /* columns: all, full, not compressed,
                                         without a level */
   double top_max;                    /* highest, by wall distance */
 };
@@ -472,7 +472,7 @@ static struct place_figures look(const struct bench *b, const double lo[3],
     for (int k = 0; k < 3; k++) d2 += (top[k] - x[k]) * (top[k] - x[k]);
     p.n++;
     p.n_full += col->n == col->n_wanted;
-    p.n_loose += col->squeezed == VG_CAUSE_NONE;
+    p.n_loose += col->compressed == VG_CAUSE_NONE;
     p.n_none += col->n == 0;
     p.top_max = fmax(p.top_max, sqrt(d2));
   }
@@ -511,7 +511,7 @@ static void two_plates_that_close_to_a_gap(void **state)
     double x = b.surface.point[c->root][0];
 
     if (x > 1.6 && x < 2.4)
-      assert_true(is_limit(c->cause) || is_limit(c->squeezed));
+      assert_true(is_limit(c->cause) || is_limit(c->compressed));
   }
   finish(&b);
 }
@@ -779,7 +779,7 @@ static void a_point_that_sees_nothing(void **state)
   p = look(&b, at, at);
   assert_int_equal(p.n, 1);
   assert_int_equal(p.n_none, 1);
-  assert_true(b.report.cause[VG_CAUSE_NO_VIEW] > 0);
+  assert_true(b.report.cause[VG_CAUSE_VISIBILITY] > 0);
   finish(&b);
 }
 
@@ -792,7 +792,7 @@ static void a_point_that_sees_nothing_gets_a_fan(void **state)
   case_octants(&b.surface);
   all_of_it(&b, 1.0 / 6);
   at_least(&b, 0, 0, 99.9);
-  assert_int_equal(b.report.cause[VG_CAUSE_NO_VIEW], 0);
+  assert_int_equal(b.report.cause[VG_CAUSE_VISIBILITY], 0);
   assert_true(b.report.n_column > b.report.n_wall_point);
   finish(&b);
 }
@@ -842,9 +842,10 @@ static void levels_and_height_as_asked(void **state)
 }
 
 /* The law changes with the place; each point gets its own first height. */
-static void law_of_the_place(void *user, const double x[3], struct vg_law *law)
+static void law_of_the_place(void *user, const double x[3],
+                             struct vg_growth_law *law)
 {
-  const struct vg_law *base = user;
+  const struct vg_growth_law *base = user;
 
   *law = *base;
   law->delta1 *= 1 + x[2];
@@ -853,7 +854,7 @@ static void law_of_the_place(void *user, const double x[3], struct vg_law *law)
 static void a_law_that_varies(void **state)
 {
   struct bench b = { .options.smooth = 0 };
-  struct vg_law base;
+  struct vg_growth_law base;
   struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
 
   (void)state;

@@ -38,7 +38,7 @@ static void a_body_is_left_out(void **state)
   make_demo(&s, "sphere", 200000);
   estimate(&s, 1, &l);
   for (size_t i = 0; i < l.n; i++) {
-    const struct vg_load_cube *c = &l.cube[i];
+    const struct vg_load_octant *c = &l.octant[i];
     double most = 0, least = 0, out = 0;
 
     for (int k = 0; k < 3; k++) {
@@ -70,7 +70,7 @@ static void threads_do_not_matter(void **state)
     estimate(&s, threads, &other);
     assert_int_equal(other.n, l.n);
     assert_true(memcmp(&other.cells, &l.cells, sizeof l.cells) == 0);
-    assert_memory_equal(other.cube, l.cube, l.n * sizeof *l.cube);
+    assert_memory_equal(other.octant, l.octant, l.n * sizeof *l.octant);
     vg_load_release(&other);
   }
   vg_load_release(&l);
@@ -88,7 +88,7 @@ static void expects_what_is_made(void **state)
   compare_with_mesh("sphere", 200000, 1.2, 1.15);
 }
 
-/* What is so small that no sample of a wide cube would meet it. */
+/* What is so small that no sample of a wide octant would meet it. */
 static void small_sources_count(void **state)
 {
   const struct vg_source line = { .kind = VG_SOURCE_LINE,
@@ -117,7 +117,7 @@ static void faces_have_cells_of_their_own(void **state)
   make_grown(&s, "sphere", 20000, 4);
   estimate(&s, 1, &l);
   assert_true(l.cells >= 1.499 * (double)s.front.n_face);
-  for (size_t i = 0; i < l.n; i++) sum += (double)l.cube[i].cells;
+  for (size_t i = 0; i < l.n; i++) sum += (double)l.octant[i].cells;
   assert_true(fabs(sum / l.cells - 1) < 1e-6);
   vg_load_release(&l);
   release_scene(&s);
@@ -183,7 +183,7 @@ static void children_get_their_share(void **state)
 
     assert_true(part[c].n > 0 && part[c].n < l.n);
     assert_true(fabs(volume / 3 - share[c]) < 1e-12);
-    /* some tens of cubes along each wall, samples of an eighth each */
+    /* some tens of octants along each wall, samples of an eighth each */
     assert_true(fabs(sampled(&part[c]) / volume - 1) < 0.1);
     assert_true(fabs(fitted(&part[c]) / volume - 1) < 1e-5);
     /* even spacing, so cells go by volume, but for the rounding of numbers */
@@ -268,17 +268,17 @@ static void sizes_in_another_unit_are_named(void **state)
   shape_box(&m, 2, 1);
   make_scene(&s, &m, 1e-6);
   for (int threads = 1; threads <= 2; threads++) {
-    assert_int_equal(vg_load_new(&s.front, s.sizing, VG_LOAD_CELLS_PER_CUBE,
+    assert_int_equal(vg_load_new(&s.front, s.sizing, VG_LOAD_CELLS_PER_OCTANT,
                                  threads, &l, &err),
                      VG_ERR_UNSUPPORTED);
     assert_non_null(strstr(err.text, "10 billion cells"));
-    assert_null(l.cube);
+    assert_null(l.octant);
   }
   release_scene(&s);
 }
 
 /* A void smaller than an edge still has a load of its volume. */
-static void a_small_void_has_cubes(void **state)
+static void a_small_void_has_octants(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_load l;
@@ -297,27 +297,27 @@ static void a_small_void_has_cubes(void **state)
 
 /* --- questions ----------------------------------------------------------- */
 
-static void two_cubes(struct vg_load *l)
+static void two_octants(struct vg_load *l)
 {
-  static struct vg_load_cube cube[2] = { { { 1, 5, 0 }, 1, 0.5f, 1, 300 },
-                                         { { 4, 5, 0 }, 2, 1, 1, 100 } };
+  static struct vg_load_octant octant[2] = { { { 1, 5, 0 }, 1, 0.5f, 1, 300 },
+                                             { { 4, 5, 0 }, 2, 1, 1, 100 } };
 
-  *l = (struct vg_load){ .n = 2, .cube = cube, .cells = 400, .unit = 1 };
+  *l = (struct vg_load){ .n = 2, .octant = octant, .cells = 400, .unit = 1 };
   assert_int_equal(vg_load_index(l, 1, NULL), VG_OK);
 }
 
 static void release_index(struct vg_load *l)
 {
-  l->cube = NULL;
+  l->octant = NULL;
   vg_load_release(l);
 }
 
-static void answers_on_two_cubes(void **state)
+static void answers_on_two_octants(void **state)
 {
   struct vg_load l;
 
   (void)state;
-  two_cubes(&l); /* x: 300 cells in 0 .. 2, 100 in 2 .. 6 */
+  two_octants(&l); /* x: 300 cells in 0 .. 2, 100 in 2 .. 6 */
   assert_true(fabs(vg_load_quantile(&l, 0, 0.375) - 1) < 1e-3);
   assert_true(fabs(vg_load_quantile(&l, 0, 0.875) - 4) < 1e-3);
   assert_true(fabs(vg_load_quantile(&l, 0, 0) - 0) < 1e-12);
@@ -332,7 +332,7 @@ static void answers_on_two_cubes(void **state)
   release_index(&l);
 }
 
-static void boxes_hold_shares_of_cubes(void **state)
+static void boxes_hold_shares_of_octants(void **state)
 {
   const double all[2][3] = { { -1, 0, -4 }, { 9, 9, 4 } };
   const double both[2][3] = { { 1, 3, 0 }, { 4, 5, 2 } };
@@ -340,7 +340,7 @@ static void boxes_hold_shares_of_cubes(void **state)
   struct vg_load l;
 
   (void)state;
-  two_cubes(&l);
+  two_octants(&l);
   assert_true(fabs(vg_load_within(&l, all[0], all[1]) - 400) < 1e-9);
   assert_true(fabs(vg_load_within(&l, both[0], both[1]) -
                    (300 / 8.0 + 100 / 8.0)) < 1e-9);
@@ -349,16 +349,18 @@ static void boxes_hold_shares_of_cubes(void **state)
   release_index(&l);
 }
 
-/* The same questions, asked of all cubes one after another. */
+/* The same questions, asked of all octants one after another. */
 static double cells_below(const struct vg_load *l, int axis, double x)
 {
   double sum = 0;
 
   for (size_t i = 0; i < l->n; i++) {
-    const double half = (double)l->cube[i].half;
-    const double s = (x - (double)l->cube[i].at[axis]) / half;
+    const double half = (double)l->octant[i].half;
+    const double s = (x - (double)l->octant[i].at[axis]) / half;
 
-    sum += (double)l->cube[i].cells * (s < -1 ? 0 : s > 1 ? 1 : 0.5 * (1 + s));
+    sum += (double)l->octant[i].cells * (s < -1  ? 0
+                                         : s > 1 ? 1
+                                                 : 0.5 * (1 + s));
   }
   return sum;
 }
@@ -369,7 +371,7 @@ static double cells_near(const struct vg_load *l, int axis, double x,
   double sum = 0;
 
   for (size_t i = 0; i < l->n; i++) {
-    const struct vg_load_cube *c = &l->cube[i];
+    const struct vg_load_octant *c = &l->octant[i];
 
     if (fabs((double)c->at[axis] - x) < (double)c->half)
       sum += (double)c->cells * width * (double)c->h / (double)c->half;
@@ -377,9 +379,9 @@ static double cells_near(const struct vg_load *l, int axis, double x,
   return sum;
 }
 
-/* Spacing varies by a factor of tens here. Bins are as wide as the cubes of a
+/* Spacing varies by a factor of tens here. Bins are as wide as the octants of a
  * sample, about a tenth of what lies around the sphere. */
-static void bins_answer_as_cubes_do(void **state)
+static void bins_answer_as_octants_do(void **state)
 {
   struct vg_load l;
   struct scene s;
@@ -395,9 +397,9 @@ static void bins_answer_as_cubes_do(void **state)
       assert_true(fabs(cells_below(&l, axis, x) / l.cells - i / 32.) < 2e-3);
       assert_true(fabs(vg_load_zone(&l, axis, x, 1) / all - 1) < 0.15);
       for (size_t k = 0; k < l.n; k++)
-        if (fabs((double)l.cube[k].at[axis] - x) <
-            0.97 * (double)l.cube[k].half)
-          assert_true((double)l.cube[k].h <= vg_load_coarsest(&l, axis, x));
+        if (fabs((double)l.octant[k].at[axis] - x) <
+            0.97 * (double)l.octant[k].half)
+          assert_true((double)l.octant[k].h <= vg_load_coarsest(&l, axis, x));
     }
   vg_load_release(&l);
   release_scene(&s);
@@ -427,7 +429,7 @@ static void blocks_share_a_load(void **state)
 
     expected = 1.5 * l.cells * wide[b % 3] / 3 * y * z;
     cells += part[b].cells;
-    /* even spacing; cubes along the walls hold what samples found */
+    /* even spacing; octants along the walls hold what samples found */
     assert_true(fabs(part[b].cells / expected - 1) < 0.05);
     if (b % 3) /* nothing is beyond the plane */
       assert_true(vg_load_quantile(&part[b], 0, 0) >= across[0][b % 3 - 1]);
@@ -477,9 +479,9 @@ static void quantiles_halve_a_mesh(void **state)
   release_scene(&s);
 }
 
-/* Every cube at its middle and near its corners (they are kept in single
+/* Every octant at its middle and near its corners (they are kept in single
  * precision); nothing outside of all. */
-static void places_find_their_cubes(void **state)
+static void places_find_their_octants(void **state)
 {
   struct vg_load_finder *f;
   struct vg_load l;
@@ -492,7 +494,7 @@ static void places_find_their_cubes(void **state)
   assert_int_equal(vg_load_finder_new(&l, &f, NULL), VG_OK);
   for (size_t i = 0; i < l.n; i++)
     for (int corner = 0; corner < 9; corner++) {
-      const struct vg_load_cube *c = &l.cube[i];
+      const struct vg_load_octant *c = &l.octant[i];
       const double off = corner < 8 ? 0.98 * (double)c->half : 0;
 
       for (int k = 0; k < 3; k++)
@@ -502,7 +504,7 @@ static void places_find_their_cubes(void **state)
   for (int k = 0; k < 3; k++) x[k] = 0; /* in the body */
   assert_true(vg_load_find(f, x) == SIZE_MAX);
   for (size_t i = 0; i < l.n; i++)
-    outside = fmax(outside, fabs((double)l.cube[i].at[0]));
+    outside = fmax(outside, fabs((double)l.octant[i].at[0]));
   x[0] = 3 * outside;
   assert_true(vg_load_find(f, x) == SIZE_MAX);
   x[0] = NAN;
@@ -519,11 +521,11 @@ static void messages_come_back(void **state)
   struct vg_load l, back = VG_LOAD_INIT;
 
   (void)state;
-  two_cubes(&l);
+  two_octants(&l);
   assert_int_equal(vg_load_pack(&l, &bytes, NULL), VG_OK);
   assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_OK);
   assert_int_equal(back.n, 2);
-  assert_memory_equal(back.cube, l.cube, 2 * sizeof *l.cube);
+  assert_memory_equal(back.octant, l.octant, 2 * sizeof *l.octant);
   assert_true(back.cells == 400 && back.unit == 1);
   vg_load_release(&back);
   for (size_t n = 0; n < bytes.n; n++) {
@@ -535,9 +537,9 @@ static void messages_come_back(void **state)
     assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_ERR_FORMAT);
     bytes.data[i] ^= 0x40;
   }
-  memset(bytes.data + bytes.n - 28, 0xff, 28); /* a cube of NaN */
+  memset(bytes.data + bytes.n - 28, 0xff, 28); /* a octant of NaN */
   assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_ERR_FORMAT);
-  assert_null(back.cube);
+  assert_null(back.octant);
   free(bytes.data);
   release_index(&l);
 }
@@ -556,14 +558,14 @@ int main(void)
     cmocka_unit_test(children_get_their_share),
     cmocka_unit_test(generations_do_not_drift),
     cmocka_unit_test(tiny_and_empty_children),
-    cmocka_unit_test(a_small_void_has_cubes),
-    cmocka_unit_test(answers_on_two_cubes),
-    cmocka_unit_test(boxes_hold_shares_of_cubes),
-    cmocka_unit_test(bins_answer_as_cubes_do),
+    cmocka_unit_test(a_small_void_has_octants),
+    cmocka_unit_test(answers_on_two_octants),
+    cmocka_unit_test(boxes_hold_shares_of_octants),
+    cmocka_unit_test(bins_answer_as_octants_do),
     cmocka_unit_test(blocks_share_a_load),
     cmocka_unit_test(zones_belong_to_no_block),
     cmocka_unit_test(quantiles_halve_a_mesh),
-    cmocka_unit_test(places_find_their_cubes),
+    cmocka_unit_test(places_find_their_octants),
     cmocka_unit_test(messages_come_back),
     cmocka_unit_test(sizes_in_another_unit_are_named),
   };

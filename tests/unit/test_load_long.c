@@ -5,7 +5,7 @@
 #include "io/mesh/ugrid.h"
 
 /* Where the field lets cells grow faster than they can, edges of the front,
- * not the size in a wide cube next to it, tell how many there are. */
+ * not the size in a wide octant next to it, tell how many there are. */
 static void steep_fields_do_not_outrun_the_front(void **state)
 {
   (void)state;
@@ -39,8 +39,8 @@ static void check_real(const char *name)
   }
   make_scene(&s, &m, 0);
   estimate(&s, 2, &l);
-  print_message("%s: %zu triangles, %zu cubes, %.0f cells, volume %.4f\n", name,
-                s.front.n_face, l.n, l.cells, sampled(&l) / s.volume);
+  print_message("%s: %zu triangles, %zu octants, %.0f cells, volume %.4f\n",
+                name, s.front.n_face, l.n, l.cells, sampled(&l) / s.volume);
   check_volume(&s, &l);
   vg_load_release(&l);
   release_scene(&s);

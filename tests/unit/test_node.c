@@ -49,7 +49,7 @@ static void scene_of(struct scene *s, struct vg_mesh *m)
   copy_front(&s->was, &f);
   s->n = vg_node_new("0", &f);
   assert_non_null(s->n);
-  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_OCTANT, 1,
                                &s->n->load, NULL),
                    VG_OK);
   s->n->lattice.n[0] = s->n->lattice.n[1] = 1;
@@ -176,8 +176,8 @@ static void falls_into_blocks(void **state)
 
       assert_int_equal(c->path[2], '0' + k);
       assert_true(fabs(vg_front_volume(&c->front) / pow(n, 3) - 1) < 1e-12);
-      assert_true(fabs(c->load.cells / pow(n, 3) / VG_LOAD_CELLS_PER_CUBE - 1) <
-                  0.1);
+      assert_true(
+        fabs(c->load.cells / pow(n, 3) / VG_LOAD_CELLS_PER_OCTANT - 1) < 0.1);
     }
     scene_end(&s);
   }
@@ -204,7 +204,7 @@ static void what_hangs_together_stays(void **state)
     double volume = vg_front_volume(&s.n->child[k]->front);
 
     assert_true(
-      fabs(s.n->child[k]->load.cells / volume / VG_LOAD_CELLS_PER_CUBE - 1) <
+      fabs(s.n->child[k]->load.cells / volume / VG_LOAD_CELLS_PER_OCTANT - 1) <
       0.1);
   }
   scene_end(&s);
@@ -295,10 +295,10 @@ static void full_places_stay_open(void **state)
   scene_of(&s, &m);
   assert_int_equal(vg_node_put(&s.p, s.n, NULL, NULL), VG_OK);
   for (int k = 0; k < 3; k++) {
-    struct vg_load_cube *c = &s.n->load.cube[0];
+    struct vg_load_octant *c = &s.n->load.octant[0];
 
     if (k)
-      *c = (struct vg_load_cube){
+      *c = (struct vg_load_octant){
         { (float)at[0], (float)at[1], (float)at[2] }, 0.1f, 0.01f, 1, 1e6f
       };
     assert_int_equal(vg_node_open_places(&s.p, s.n, k > 1 ? 0 : -1, NULL, &r,
@@ -376,7 +376,7 @@ static void changes_are_put_in(void **state)
   assert_int_equal(vg_node_put(&s.p, n, NULL, NULL), VG_OK);
   assert_int_equal(n->front.n_point, s.was.n_point + WORKS);
   assert_int_equal(n->front.n_face, s.was.n_face + 3 * WORKS);
-  assert_true(n->zone_cells == WORKS && n->zone_volume == WORKS * 0.25);
+  assert_true(n->separator_cells == WORKS && n->zone_volume == WORKS * 0.25);
   assert_int_equal(n->n_blocked, 1);
   for (uint32_t i = 0; i < WORKS; i++) {
     size_t new = s.was.n_point + i;
@@ -471,7 +471,7 @@ static void what_crosses_stays_out(void **state)
       left += s.n->front.face[i][0] != VG_FACE_GONE;
     assert_int_equal(left, s.was.n_face + (is_crossing ? 2 : 4));
     assert_int_equal(s.n->n_blocked, is_crossing);
-    assert_true(s.n->zone_cells == 2 - is_crossing);
+    assert_true(s.n->separator_cells == 2 - is_crossing);
     assert_int_equal(s.p.report.n_crossing, is_crossing);
     assert_int_equal(s.p.report.n_blocked, is_crossing);
     assert_int_equal(s.p.report.n_zone_cell, 2 - is_crossing);

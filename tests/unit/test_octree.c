@@ -14,7 +14,7 @@ struct parted {
   struct scene s;
   struct vg_front front; /* points and faces of the scene */
   struct vg_load load;
-  struct vg_parting p;
+  struct vg_decomposition p;
 };
 
 /* A front and its load of the scene, which is there. */
@@ -28,36 +28,36 @@ static void enter(struct parted *q)
   for (size_t k = 0; k < q->front.n_point; k++)
     q->front.id[k] = VG_POINT_ID(0, k);
   q->load = (struct vg_load)VG_LOAD_INIT;
-  if (vg_load_new(&q->front, q->s.sizing, VG_LOAD_CELLS_PER_CUBE, 1, &q->load,
+  if (vg_load_new(&q->front, q->s.sizing, VG_LOAD_CELLS_PER_OCTANT, 1, &q->load,
                   &err) < 0)
     fail_msg("%s", err.text);
-  q->p = (struct vg_parting)VG_PARTING_INIT;
+  q->p = (struct vg_decomposition)VG_DECOMPOSITION_INIT;
 }
 
 static void leave(struct parted *q)
 {
   free(q->front.id);
   vg_load_release(&q->load);
-  vg_parting_release(&q->p);
+  vg_decomposition_release(&q->p);
   scene_end(&q->s);
 }
 
-static vg_status try(struct parted *q, struct vg_parting_options o,
-                     struct vg_parting *p, struct vg_error *err)
+static vg_status try(struct parted *q, struct vg_decomposition_options o,
+                     struct vg_decomposition *p, struct vg_error *err)
 {
-  o.cells_per_cube = VG_LOAD_CELLS_PER_CUBE;
+  o.cells_per_octant = VG_LOAD_CELLS_PER_OCTANT;
   return vg_octree_part(&q->front, &q->load, q->s.sizing, &o, SERIAL, NULL, p,
                         err);
 }
 
-static void part(struct parted *q, struct vg_parting_options o)
+static void part(struct parted *q, struct vg_decomposition_options o)
 {
   struct vg_error err = VG_ERROR_INIT;
 
   if (try(q, o, &q->p, &err) != VG_OK) fail_msg("%s", err.text);
 }
 
-/* A cube of side 1 whose front is as fine as `cells` ask for. With a source in
+/* A leaf of side 1 whose front is as fine as `cells` ask for. With a source in
  * its middle octants of several sizes meet. */
 static void graded_scene(struct scene *s, size_t n_cell)
 {
@@ -200,7 +200,7 @@ static double most_cells(const struct parted *q, size_t n, double *mean)
     struct vg_load l = VG_LOAD_INIT;
 
     assert_int_equal(vg_load_new(&q->p.part[k].front, q->s.sizing,
-                                 VG_LOAD_CELLS_PER_CUBE, 1, &l, NULL),
+                                 VG_LOAD_CELLS_PER_OCTANT, 1, &l, NULL),
                      VG_OK);
     if (l.cells > most) most = l.cells;
     sum += l.cells;
@@ -220,8 +220,8 @@ static void check_scene(struct parted *q, size_t least, size_t most)
       double most_in, mean;
       size_t n;
 
-      part(q, (struct vg_parting_options){ .n_part = n_part,
-                                           .partitioner = partitioner });
+      part(q, (struct vg_decomposition_options){ .n_part = n_part,
+                                                 .partitioner = partitioner });
       n = check_parts(q);
       if (n_part == 16) {
         assert_in_range(n, least, most);
@@ -233,7 +233,7 @@ static void check_scene(struct parted *q, size_t least, size_t most)
         if (partitioner == VG_PARTITIONER_METIS)
           assert_true(most_in < 1.15 * mean);
       }
-      vg_parting_release(&q->p);
+      vg_decomposition_release(&q->p);
     }
   leave(q);
 }
@@ -323,7 +323,7 @@ static void parts_can_be_filled(void **state)
   (void)state;
   scene_demo(&q.s, "sphere", 30000);
   enter(&q);
-  part(&q, (struct vg_parting_options){ .n_part = 8 });
+  part(&q, (struct vg_decomposition_options){ .n_part = 8 });
   assert_true(check_parts(&q) > 1);
   for (size_t k = 0; k < q.p.n_part; k++) {
     const struct vg_front *f = &q.p.part[k].front;
@@ -347,7 +347,7 @@ static void where_no_octant_fits_all_is_gap(void **state)
   (void)state;
   scene_demo(&q.s, "box", 500);
   enter(&q);
-  part(&q, (struct vg_parting_options){ .n_part = 100 });
+  part(&q, (struct vg_decomposition_options){ .n_part = 100 });
   assert_int_equal(q.p.n_part, 1);
   assert_int_equal(q.p.part[0].may_cut, 1);
   assert_int_equal(q.p.n_point, 0);
@@ -363,7 +363,7 @@ static void one_part_is_octants_and_a_gap(void **state)
   (void)state;
   scene_demo(&q.s, "box", 100000);
   enter(&q);
-  part(&q, (struct vg_parting_options){ .n_part = 1, .coarsening = 3 });
+  part(&q, (struct vg_decomposition_options){ .n_part = 1, .coarsening = 3 });
   assert_int_equal(check_parts(&q), 1);
   assert_int_equal(q.p.n_part, 2);
   leave(&q);
@@ -371,8 +371,8 @@ static void one_part_is_octants_and_a_gap(void **state)
 
 static void it_is_the_same_every_time(void **state)
 {
-  struct vg_parting_options o = { .n_part = 16 };
-  struct vg_parting again = VG_PARTING_INIT;
+  struct vg_decomposition_options o = { .n_part = 16 };
+  struct vg_decomposition again = VG_DECOMPOSITION_INIT;
   struct parted q;
 
   (void)state;
@@ -391,14 +391,14 @@ static void it_is_the_same_every_time(void **state)
     assert_memory_equal(a->id, b->id, a->n_point * sizeof *a->id);
     assert_memory_equal(a->face, b->face, a->n_face * sizeof *a->face);
   }
-  vg_parting_release(&again);
+  vg_decomposition_release(&again);
   leave(&q);
 }
 
 static void absurd_options_are_refused(void **state)
 {
   static const struct {
-    struct vg_parting_options o;
+    struct vg_decomposition_options o;
     const char *word;
   } bad[] = {
     { { .n_part = 0 }, "0 parts" },
@@ -433,8 +433,8 @@ static void open_fronts_are_refused(void **state)
   scene_demo(&q.s, "box", 50000);
   enter(&q);
   q.front.n_face -= 3;
-  assert_int_equal(try(&q, (struct vg_parting_options){ .n_part = 4 }, &q.p,
-                       &err),
+  assert_int_equal(try(&q, (struct vg_decomposition_options){ .n_part = 4 },
+                       &q.p, &err),
                    VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "closed"));
   assert_null(q.p.part);

@@ -324,7 +324,7 @@ static void make_columns(struct made *a, int n)
   c->border = vg_calloc(3 * m->n_tri, sizeof *c->border);
   c->border_patch = vg_calloc(3 * m->n_tri, sizeof *c->border_patch);
   c->law = vg_calloc(1, sizeof *c->law);
-  c->law[0] = (struct vg_law){ 0.01, 0.2, 0, 1.3, 1 };
+  c->law[0] = (struct vg_growth_law){ 0.01, 0.2, 0, 1.3, 1 };
   c->n_law = 1;
   for (uint32_t p = 0; p < m->n_point; p++) {
     struct vg_column *col = &c->column[c->n_column];

@@ -149,7 +149,7 @@ static void accepts_a_box(void **unused)
   assert_none(&r);
   assert_true(r.is_closed);
   assert_int_equal(r.n_flipped, 0);
-  assert_int_equal(r.turned_inside_out, 0);
+  assert_int_equal(r.shells_reoriented, 0);
   assert_int_equal(r.n_removed_point + r.n_removed_tri, 0);
   assert_int_equal(r.n_shell, 1);
   assert_int_equal(r.n_piece, 1);
@@ -264,7 +264,7 @@ static void turns_a_face_back(void **unused)
   check(&m, 1, 1, &r);
   assert_none(&r);
   assert_int_equal(r.n_flipped, 1);
-  assert_int_equal(r.turned_inside_out, 0);
+  assert_int_equal(r.shells_reoriented, 0);
   assert_memory_equal(m.tri, before.tri, 12 * sizeof *m.tri);
   vg_mesh_release(&before);
   done(&m, &r);
@@ -281,10 +281,10 @@ static void turns_a_surface_inside_out(void **unused)
   check(&m, 1, 1, &r);
   assert_none(&r);
   assert_int_equal(r.n_flipped, 12);
-  assert_true(r.turned_inside_out && r.shell[0].volume == 1);
+  assert_true(r.shells_reoriented && r.shell[0].volume == 1);
   check(&m, 1, 0, &r); /* the same box as a room */
   assert_none(&r);
-  assert_true(r.turned_inside_out && r.shell[0].volume == -1);
+  assert_true(r.shells_reoriented && r.shell[0].volume == -1);
   done(&m, &r);
 }
 
@@ -895,11 +895,11 @@ static void turns_what_bounds_the_fluid(void **unused)
   check(&m, 1, 0, &r);
   assert_none(&r);
   assert_int_equal(r.n_flipped, 12);
-  assert_false(r.turned_inside_out);
+  assert_false(r.shells_reoriented);
   assert_true(r.shell[0].volume == 1);
   check(&m, 1, 1, &r); /* solid between the bodies and the big box */
   assert_none(&r);
-  assert_true(r.turned_inside_out);
+  assert_true(r.shells_reoriented);
   assert_int_equal(r.n_flipped, 36);
   done(&m, &r);
 }

@@ -178,7 +178,7 @@ one() {
   else
     judge_mesh "$d" "$mesh" "$kind"
     [ "$kind" != mixed ] || "$measure" first "$mesh" \
-      "$(json "$report" all first_asked mean)" > "$d/measured" 2>&1 ||
+      "$(json "$report" all first_requested mean)" > "$d/measured" 2>&1 ||
       bad "not measured"
     bars "$report" "$d/measured" "$kind" "$full"
   fi

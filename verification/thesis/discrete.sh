@@ -74,9 +74,9 @@ spent() {
     . * 100 | round / 100' "$1"
 }
 
-figures='(.partition.parting // {}) as $q |
+figures='(.partition.decomposition // {}) as $q |
   [(.partition.leaf_cells | add) + .partition.fragment_cells
-    + .partition.zone_cells + .partition.repair_cells,
+    + .partition.separator_cells + .partition.repair_cells,
    $q.parts // .partition.leaves,
    (.partition.balance * 1000 | round / 1000)] | map(tostring) | join(" | ")'
 
@@ -106,7 +106,7 @@ try() {   # try WAY THE_THESIS
 
 {
   echo "| case | way | cells outside layers | parts | balance |" \
-    "tasks on one core, s | parting, s | speed-up of this at $workers |" \
+    "tasks on one core, s | decomposition, s | speed-up of this at $workers |" \
     "idle, % | dealt out in turn | idle, % | of all | the thesis's |"
   echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
 } | say

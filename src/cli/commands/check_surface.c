@@ -144,7 +144,7 @@ static void print_json(const struct vg_check_surface *a,
   json_t *o = json_pack(
     "{s:o s:b s:o s:O s:o s:o s:o s:o}", "file", vg_text_json(a->file), "ok",
     st >= 0, "flow", vg_report_flow_json(&b->flow, adds_farfield(b)), "surface",
-    body, "remesh", vg_report_remesh_json(&b->renewal, &b->surface), "notes",
+    body, "remesh", vg_report_remesh_json(&b->remeshing, &b->surface), "notes",
     notes_json(b->notes), "lines",
     f->has_lines ? vg_report_lines_json(&f->lines, a->has_deck) : json_null(),
     "against",
@@ -171,7 +171,7 @@ static vg_status print_text(const struct vg_check_surface *a,
   printf("\nSurface\n");
   vg_report_size_text(stdout, &b->surface);
   VG_TRY(vg_report_patches_text(stdout, &b->surface, err));
-  vg_report_remesh_text(stdout, &b->renewal);
+  vg_report_remesh_text(stdout, &b->remeshing);
   vg_report_surface_text(stdout, &b->surface, &b->check, VG_SHOWN_DEFECTS);
   if (f->has_lines) vg_report_lines_text(stdout, &f->lines, a->has_deck);
   if (a->against) vg_report_distances_text(stdout, a->against, f->off);

@@ -238,7 +238,7 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "patches", vg_report_patches_json(m));
   json_object_set_new(o, "surface",
                       vg_report_surface_json(m, &b->check, VG_LISTED_DEFECTS));
-  json_object_set_new(o, "remesh", vg_report_remesh_json(&b->renewal, m));
+  json_object_set_new(o, "remesh", vg_report_remesh_json(&b->remeshing, m));
   json_object_set_new(o, "domain", vg_report_domain_json(&b->domain));
   json_object_set_new(o, "notes", strings(&p->notes));
   if (ok) {
@@ -408,7 +408,7 @@ static void print_surface(FILE *to, const struct run *r)
   if (b->n_welded || b->n_dropped)
     fprintf(to, "  welded: %zu points merged, %zu triangles dropped\n",
             b->n_welded, b->n_dropped);
-  vg_report_remesh_text(to, &b->renewal);
+  vg_report_remesh_text(to, &b->remeshing);
   vg_report_domain_text(to, &b->domain);
   vg_report_surface_text(to, m, &b->check, VG_SHOWN_DEFECTS);
 }

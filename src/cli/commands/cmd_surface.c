@@ -118,7 +118,7 @@ static vg_status write_vtu(const char *path, const struct vg_boundary *b,
   const struct vg_vtu_field field[3] = {
     { "smallest_angle", VG_VTU_CELL, VG_VTU_FLOAT64, 1, angle },
     { "radius_ratio", VG_VTU_CELL, VG_VTU_FLOAT64, 1, angle + n },
-    { "distance", VG_VTU_CELL, VG_VTU_FLOAT64, 1, b->renewal.face }
+    { "distance", VG_VTU_CELL, VG_VTU_FLOAT64, 1, b->remeshing.face }
   };
   vg_status st;
 
@@ -153,7 +153,7 @@ static json_t *report(const struct vg_problem *p, const struct files *f)
     free(path);
   }
   return json_pack("{s:b s:o s:o s:o s:o s:o}", "ok", 1, "remesh",
-                   vg_report_remesh_json(&b->renewal, &b->surface), "patches",
+                   vg_report_remesh_json(&b->remeshing, &b->surface), "patches",
                    vg_report_patches_json(&b->surface), "surface",
                    vg_report_surface_json(&b->surface, &b->check,
                                           VG_LISTED_DEFECTS),
@@ -201,7 +201,7 @@ static void print(const struct vg_problem *p, const struct files *f)
 {
   const struct vg_boundary *b = &p->boundary;
 
-  vg_report_remesh_text(stdout, &b->renewal);
+  vg_report_remesh_text(stdout, &b->remeshing);
   vg_report_surface_text(stdout, &b->surface, &b->check, 0);
   for (size_t i = 0; i < p->notes.n; i++)
     printf("  note: %s\n", p->notes.text[i]);

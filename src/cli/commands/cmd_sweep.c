@@ -219,9 +219,10 @@ static void print_case(const struct vg_sweep *s, const struct vg_sweep_case *c,
 /* The decompositions beside each other. */
 static void print_parts(const struct vg_sweep *s, int width)
 {
-  printf("\n%-*s  parts balance   parting cut+fill critical  idle %%    cells "
-         "/ adv.  1st perc. near  of all\n",
-         width, "case");
+  printf(
+    "\n%-*s  parts balance   decomposition cut+fill critical  idle %%    cells "
+    "/ adv.  1st perc. near  of all\n",
+    width, "case");
   for (size_t i = 0; i < s->n; i++) {
     const struct vg_sweep_case *c = &s->item[i];
     const struct vg_sweep_parts *m = &c->parts_made;

@@ -56,7 +56,7 @@ void vg_demo_release(struct vg_demo *d)
 
 double vg_demo_size(void *user, const double x[3])
 {
-  const struct vg_demo_law *law = user;
+  const struct vg_demo_spacing *law = user;
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   double h;
 
@@ -135,13 +135,13 @@ static double cubes(const double lo[3], const double hi[3],
 struct scaled {
   const struct entry *entry;
   double factor;
-  struct vg_demo_law law;
+  struct vg_demo_spacing law;
   struct vg_sizing *field; /* borrowed; while its cells are counted */
 };
 
 static void make_law(struct scaled *s)
 {
-  struct vg_demo_law *law = &s->law;
+  struct vg_demo_spacing *law = &s->law;
   const double f = s->factor;
 
   memset(law, 0, sizeof *law);
@@ -266,8 +266,8 @@ static vg_status box_surface(const struct scaled *s, struct vg_mesh *m,
                                        "y-max", "z-min", "z-max" };
   const double lo[3] = { 0, 0, 0 }, hi[3] = { 1, 1, 1 };
   const uint32_t patch[6] = { 0, 1, 2, 3, 4, 5 };
-  const struct vg_size_law law = { .at = vg_demo_size,
-                                   .user = (void *)&s->law };
+  const struct vg_size_function law = { .at = vg_demo_size,
+                                        .user = (void *)&s->law };
   vg_status st;
 
   for (int i = 0; i < 6; i++)
@@ -281,8 +281,8 @@ static vg_status sphere_surface(const struct scaled *s, struct vg_mesh *m,
                                 struct vg_error *err)
 {
   const double centre[3] = { 0, 0, 0 };
-  const struct vg_size_law law = { .at = vg_demo_size,
-                                   .user = (void *)&s->law };
+  const struct vg_size_function law = { .at = vg_demo_size,
+                                        .user = (void *)&s->law };
   vg_status st = name_patch(m, 1, "sphere", 4, 4000, err);
 
   if (st == VG_OK) st = vg_add_sphere(m, centre, 1, -1, 0, &law, 0, NULL, err);
@@ -292,8 +292,8 @@ static vg_status sphere_surface(const struct scaled *s, struct vg_mesh *m,
 static vg_status add_farfield(const struct scaled *s, struct vg_demo *d,
                               struct vg_error *err)
 {
-  const struct vg_size_law law = { .at = vg_demo_size,
-                                   .user = (void *)&s->law };
+  const struct vg_size_function law = { .at = vg_demo_size,
+                                        .user = (void *)&s->law };
   struct vg_farfield far = VG_FARFIELD_INIT;
 
   far.size = FARFIELD;

@@ -8,13 +8,14 @@
 /** Sources of a case, all spacings times `factor`. */
 enum { VG_DEMO_SOURCE_MAX = 10 };
 
-struct vg_demo_law {
+struct vg_demo_spacing {
   size_t n;
   struct vg_source source[VG_DEMO_SOURCE_MAX];
   double h_max, growth;
 };
 
-/** Spacing of a law; for vg_size_law. user: const struct vg_demo_law. */
+/** Spacing of a law; for vg_size_function. user: const struct vg_demo_spacing.
+ */
 double vg_demo_size(void *user, const double x[3]);
 
 /** A wing: all lengths in root chords. */
@@ -24,14 +25,14 @@ struct vg_demo_wing {
 
 /** Sources of the wing for a factor on all spacings. */
 void vg_demo_wing_law(const struct vg_demo_wing *w, double factor,
-                      struct vg_demo_law *law);
+                      struct vg_demo_spacing *law);
 
 /** 1 for a point in the wing, at y >= 0 where it is a half model. */
 int vg_demo_wing_holds(const struct vg_demo_wing *w, const double x[3]);
 
 /** Surface of the wing alone, closed, or open along y = 0. */
 vg_status vg_demo_wing_surface(const struct vg_demo_wing *w,
-                               const struct vg_demo_law *law,
+                               const struct vg_demo_spacing *law,
                                struct vg_mesh *out, struct vg_error *err);
 
 #endif

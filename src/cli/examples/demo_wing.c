@@ -46,7 +46,7 @@ static void put3(double to[3], double x, double y, double z)
 }
 
 void vg_demo_wing_law(const struct vg_demo_wing *w, double factor,
-                      struct vg_demo_law *law)
+                      struct vg_demo_spacing *law)
 {
   const double tail = least(factor * H_TAIL, w->is_sharp ? 0.1 : H_BASE_MAX);
   const double nose = least(factor * H_NOSE, H_NOSE_MAX);
@@ -114,7 +114,7 @@ int vg_demo_wing_holds(const struct vg_demo_wing *w, const double x[3])
 struct cone {
   int is_sharp;
   double apex[3];
-  const struct vg_demo_law *law;
+  const struct vg_demo_spacing *law;
   double (*w)[2]; /* [N_TABLE + 1] unrolled directions, unit */
 };
 
@@ -501,8 +501,8 @@ static size_t chain(const uint32_t *list, size_t n, int back,
 /* The flat tip and the blunt trailing edge. */
 static vg_status fill_caps(struct frame *f, struct vg_error *err)
 {
-  const struct vg_size_law law = { .at = vg_demo_size,
-                                   .user = (void *)f->c.law };
+  const struct vg_size_function law = { .at = vg_demo_size,
+                                        .user = (void *)f->c.law };
   const size_t room = 2 * f->n_side[1] + 2 * f->n_tail + 2 * f->n_base;
   uint32_t(*edge)[2] = vg_alloc(room, sizeof *edge);
   size_t n;
@@ -572,7 +572,7 @@ static vg_status add_patches(struct vg_mesh *m, int is_sharp,
 }
 
 vg_status vg_demo_wing_surface(const struct vg_demo_wing *w,
-                               const struct vg_demo_law *law,
+                               const struct vg_demo_spacing *law,
                                struct vg_mesh *out, struct vg_error *err)
 {
   const double reach = SPAN / (1 - TAPER);

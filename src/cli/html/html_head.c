@@ -230,7 +230,7 @@ static void mesh_lines(struct list *l)
     end(l);
   }
   count_line(l, WEIGHT_NOTE,
-             (uint64_t)vg_page_number(p, "partition.parts_widened"),
+             (uint64_t)vg_page_number(p, "partition.subdomains_extended"),
              "part of the field could not be filled, and was filled together "
              "with what is beside it",
              "parts of the field could not be "

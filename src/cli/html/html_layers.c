@@ -74,7 +74,7 @@ static void row(struct page *p, const struct vg_patch_layers *w)
   cell(p, w->n_top ? w->top_ratio[1] : NAN, 2);
   vg_page_markup(p, "<td class=\"words\">");
   causes(p, "fewer:", w->cause);
-  causes(p, "thinner:", w->squeezed);
+  causes(p, "thinner:", w->compressed);
   vg_page_markup(p, "</td></tr>\n");
 }
 
@@ -106,7 +106,7 @@ void vg_html_layers(struct page *p)
     "measured on the points. Volume ratio: what 5 % of the faces exceed "
     "between the last layer and the field.</p>\n<dl class=\"causes\">");
   for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++) {
-    if (!s->all.cause[c] && !s->all.squeezed[c]) continue;
+    if (!s->all.cause[c] && !s->all.compressed[c]) continue;
     vg_page_format(p, "<dt>%s</dt><dd>%s</dd>",
                    vg_layer_cause_name((enum vg_layer_cause)c),
                    vg_cause_words((enum vg_layer_cause)c));

@@ -49,7 +49,7 @@ static void machine(struct page *p)
                               (vg_page_number(p, "seconds.total") + 1e-9)));
   vg_page_markup(p, "</td></tr>\n");
   vg_page_fact_count(p, "tasks found of an earlier run",
-                     (uint64_t)vg_page_number(p, "partition.tasks_found"));
+                     (uint64_t)vg_page_number(p, "partition.tasks_resumed"));
   vg_page_markup(p, "</table>\n");
 }
 

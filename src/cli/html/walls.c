@@ -27,7 +27,7 @@ static int step_of(double v, double most)
 static void colour_layers(const struct vg_wall_fields *f, const uint32_t *at,
                           size_t t, struct walls *w)
 {
-  int level = f->level[at[0]], lacks = -1, cause = 0, squeezed = 0;
+  int level = f->level[at[0]], lacks = -1, cause = 0, compressed = 0;
   double share = 1;
 
   for (int k = 0; k < 3; k++) {
@@ -39,16 +39,16 @@ static void colour_layers(const struct vg_wall_fields *f, const uint32_t *at,
       lacks = lack;
       cause = f->cause[at[k]];
     }
-    if (f->squeezed[at[k]] > VG_CAUSE_SIZE) squeezed = f->squeezed[at[k]];
+    if (f->compressed[at[k]] > VG_CAUSE_SIZE) compressed = f->compressed[at[k]];
   }
   w->by[BY_LEVEL][t] = (uint8_t)step_of(level, w->level_most + 1);
   w->by_share[t] = (uint8_t)step_of(share, 1);
   if (cause > VG_CAUSE_SIZE) {
     w->by[BY_CAUSE][t] = (uint8_t)cause;
     w->cause[0][cause]++;
-  } else if (squeezed) {
-    w->by[BY_CAUSE][t] = (uint8_t)(VG_CAUSE_N + squeezed);
-    w->cause[1][squeezed]++;
+  } else if (compressed) {
+    w->by[BY_CAUSE][t] = (uint8_t)(VG_CAUSE_N + compressed);
+    w->cause[1][compressed]++;
   } else {
     w->by[BY_CAUSE][t] = 0;
   }

@@ -85,12 +85,12 @@ static void lift_point(struct lift *l, size_t i, double x[3])
   double d[VG_LEVELS_MAX + 1], *v = l->normal[i], length;
   int n = 0, most = q->n_max > 0 && q->n_max < VG_LEVELS_MAX ? q->n_max
                                                              : VG_LEVELS_MAX;
-  struct vg_law law = q->law;
+  struct vg_growth_law law = q->law;
 
   if (o->law_at) o->law_at(o->law_user, l->m->point[i], &law);
   length = vg_norm(v);
   if (!(length > 0) || !(law.delta1 > 0)) return;
-  vg_law_heights(&law, INFINITY, most, d);
+  vg_growth_law_heights(&law, INFINITY, most, d);
   while (n < most && (q->n_exact || d[n + 1] - d[n] <= o->end * l->edge[i]) &&
          !(q->total > 0 && d[n + 1] > q->total))
     n++;
@@ -302,7 +302,7 @@ static vg_status forecast(const struct vg_plan *p, double leaf_cells,
   struct vg_cut_rule rule = p->rule;
 
   rule.leaf_cells = leaf_cells;
-  if (p->parting.n_part) return vg_plan_parted(p, &v, &rule, out, err);
+  if (p->decomposition.n_part) return vg_plan_parted(p, &v, &rule, out, err);
   return vg_forecast_new(&v, &p->load, &rule,
                          (int)p->problem.resolved.settings.levels, &p->rates,
                          out, err);
@@ -445,7 +445,7 @@ static vg_status run_all(struct vg_plan *p, struct vg_error *err)
       p->n_row++;
     }
   choose(p);
-  st = p->parting.n_part ? VG_OK : try_leaves(p, err);
+  st = p->decomposition.n_part ? VG_OK : try_leaves(p, err);
 done:
   return st;
 }
@@ -471,7 +471,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
                   &p->problem.notes);
   v = vg_front_of(p->front);
   vg_display_update(&p->show, "forecast", 0, 0);
-  VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, vg_cores(),
+  VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_OCTANT, vg_cores(),
                      &p->load, err));
   VG_TRY(vg_plan_part(p, err));
   if (p->o->serial >= 0) {
@@ -479,11 +479,9 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
     p->phase[VG_PHASE_READ] = p->o->serial;
   }
   p->rule = vg_options_cuts(s);
-  p->rule.leaf_cells = vg_parting_leaf_cells(p->load.cells,
-                                             vg_options_parting(s).n_part,
-                                             vg_ways[s->decompose].maker !=
-                                               NULL,
-                                             p->rule.leaf_cells);
+  p->rule.leaf_cells = vg_decomposition_leaf_cells(
+    p->load.cells, vg_options_decomposition(s).n_part,
+    vg_ways[s->decompose].maker != NULL, p->rule.leaf_cells);
   VG_TRY(forecast(p, p->rule.leaf_cells, &p->forecast, err));
   count_mesh(p);
   count_memory(p);
@@ -497,7 +495,7 @@ done:
 static void release(struct vg_plan *p)
 {
   vg_forecast_release(&p->forecast);
-  vg_plan_parting_release(&p->parting);
+  vg_plan_decomposition_release(&p->decomposition);
   vg_load_release(&p->load);
   vg_effects_release(&p->effects);
   vg_sizing_free(p->sizing);

@@ -7,7 +7,7 @@
 
 #include "cli/plan/plan.h"
 #include "cli/plot/timeline.h"
-#include "partition/cut/parting.h"
+#include "partition/cut/decomposition.h"
 #include "partition/model/rates.h"
 #include "run/input/layers.h"
 #include "run/input/source_effect.h"
@@ -24,12 +24,12 @@ struct vg_plan_row {
 };
 
 /** What the field is parted into before it is filled. */
-struct vg_plan_parting {
+struct vg_plan_decomposition {
   size_t n_part;      /* 0: not parted */
   size_t n_whole;     /* of these, filled as they are */
   double cells, most; /* expected in all of these, in one at most */
   double seconds;
-  struct vg_parting made;
+  struct vg_decomposition made;
   struct vg_load *load; /* [n_part] */
 };
 
@@ -45,7 +45,7 @@ struct vg_plan {
   struct vg_sizing *sizing;    /* over the front */
   struct vg_effects effects;
   struct vg_load load;
-  struct vg_plan_parting parting;
+  struct vg_plan_decomposition decomposition;
   struct vg_cut_rule rule;
   struct vg_rates rates;
   struct vg_rate_fit fit[VG_RATE_FITS]; /* n is 0: not fitted */
@@ -81,11 +81,11 @@ double vg_plan_phase(const struct vg_plan *p, const struct vg_plan_row *r,
  * known. */
 double vg_plan_bytes(const struct vg_plan *p, const char *item);
 
-/** p->parting, where one is asked for. (plan_parting.c) */
+/** p->decomposition, where one is asked for. (plan_decomposition.c) */
 vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err);
-void vg_plan_parting_release(struct vg_plan_parting *q);
+void vg_plan_decomposition_release(struct vg_plan_decomposition *q);
 
-/** The forecast of the tasks of p->parting. (plan_parting.c) */
+/** The forecast of the tasks of p->decomposition. (plan_decomposition.c) */
 vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_front *v,
                          const struct vg_cut_rule *rule,
                          struct vg_forecast *out, struct vg_error *err);

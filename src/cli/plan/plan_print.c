@@ -184,10 +184,10 @@ static double balance(const struct vg_forecast *o)
   return sum > 0 ? most * n / sum : 1;
 }
 
-static void print_parting(const struct vg_plan *p)
+static void print_decomposition(const struct vg_plan *p)
 {
-  const struct vg_plan_parting *q = &p->parting;
-  const struct vg_parting_report *r = &q->made.report;
+  const struct vg_plan_decomposition *q = &p->decomposition;
+  const struct vg_decomposition_report *r = &q->made.report;
   const char *way = vg_ways[p->problem.resolved.settings.decompose].name;
   char a[32], b[32], c[32];
 
@@ -210,7 +210,7 @@ static size_t cuts(const struct vg_plan *p)
 {
   const struct vg_forecast *o = &p->forecast;
 
-  return o->n_node - o->n_leaf - (p->parting.n_part > 0);
+  return o->n_node - o->n_leaf - (p->decomposition.n_part > 0);
 }
 
 static void print_tree(const struct vg_plan *p)
@@ -227,8 +227,8 @@ static void print_tree(const struct vg_plan *p)
   printf(" and ");
   print_number(o->n_tile, "tile");
   printf(" with %s cells (%.1f %%);\n  leaves: most over mean %.2f\n",
-         count(o->zone_cells, a),
-         o->cells > 0 ? 100 * o->zone_cells / o->cells : 0, balance(o));
+         count(o->separator_cells, a),
+         o->cells > 0 ? 100 * o->separator_cells / o->cells : 0, balance(o));
   for (size_t i = 0; i < o->n_node; i++) {
     const struct vg_forecast_node *n = &o->node[i];
 
@@ -364,7 +364,7 @@ void vg_plan_text(const struct vg_plan *p)
 {
   print_mesh(p);
   print_files(p);
-  print_parting(p);
+  print_decomposition(p);
   print_tree(p);
   print_rates(p);
   printf(
@@ -400,7 +400,7 @@ static json_t *row_json(const struct vg_plan_row *r)
 static json_t *node_json(const struct vg_forecast_node *n)
 {
   json_t *o = json_pack("{s:s s:f s:f s:f s:[f,f,f] s:[f,f,f]}", "path",
-                        n->path, "cells", n->cells, "zone_cells", n->zone,
+                        n->path, "cells", n->cells, "separator_cells", n->zone,
                         "front_faces", n->faces, "lo", n->lo[0], n->lo[1],
                         n->lo[2], "hi", n->hi[0], n->hi[1], n->hi[2]);
   json_t *planes = json_object();
@@ -447,13 +447,13 @@ static json_t *files_json(const struct vg_plan *p)
   return o;
 }
 
-static json_t *parting_json(const struct vg_plan *p)
+static json_t *decomposition_json(const struct vg_plan *p)
 {
-  const struct vg_plan_parting *q = &p->parting;
+  const struct vg_plan_decomposition *q = &p->decomposition;
 
   return json_pack("{s:s s:I s:I s:I s:f s:f s:f s:I s:I s:f}", "way",
                    vg_ways[p->problem.resolved.settings.decompose].name,
-                   "parts", (json_int_t)q->n_part, "whole_parts",
+                   "parts", (json_int_t)q->n_part, "complete_subdomains",
                    (json_int_t)q->n_whole, "gap_parts",
                    (json_int_t)q->made.report.n_gap, "whole_cells", q->cells,
                    "most_cells", q->most, "coarsening",
@@ -469,7 +469,7 @@ static json_t *tree_json(const struct vg_plan *p)
                         "cuts", (json_int_t)cuts(p), "leaves",
                         (json_int_t)t->n_leaf, "pencils",
                         (json_int_t)t->n_pencil, "tiles", (json_int_t)t->n_tile,
-                        "zone_cells", t->zone_cells);
+                        "separator_cells", t->separator_cells);
   json_t *list = json_array();
 
   for (size_t i = 0; i < t->n_node; i++)
@@ -542,7 +542,8 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
                       json_pack("{s:f s:f s:f}", "shared", p->shared,
                                 "per_cell", p->per_cell, "per_thread",
                                 p->per_thread));
-  if (p->parting.n_part) json_object_set_new(o, "parting", parting_json(p));
+  if (p->decomposition.n_part)
+    json_object_set_new(o, "decomposition", decomposition_json(p));
   json_object_set_new(o, "tree", tree_json(p));
   json_object_set_new(o, "rates", rates_json(p));
   json_object_set_new(o, "one_core",

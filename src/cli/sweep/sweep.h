@@ -19,7 +19,7 @@ struct vg_sweep_options {
                            mpirun from 2 ranks on */
   const char *program;  /* NULL: this one */
   struct vg_range_list levels, leaf_cells, ranks, threads, parts;
-  int n_way, way[VG_DECOMPOSITIONS]; /* [n_way] enum vg_decomposition */
+  int n_way, way[VG_DECOMPOSITIONS]; /* [n_way] enum vg_decomposition_method */
   struct vg_range_list family; /* levels of a grid family; none: no family */
   double scale;                /* of its first level */
   int repeat, keep, json, quiet;
@@ -40,8 +40,8 @@ enum vg_member_figure {
 
 struct vg_sweep_case {
   int64_t levels, leaf_cells, parts; /* -1: not given */
-  int way;                           /* enum vg_decomposition; -1: not given */
-  int64_t family;                    /* level from 1; 0: none */
+  int way;        /* enum vg_decomposition_method; -1: not given */
+  int64_t family; /* level from 1; 0: none */
   double member[VG_MEMBER_N];
   int ranks, threads, repeat;
   char name[96], *dir;
@@ -54,10 +54,10 @@ struct vg_sweep_case {
   double angle_min, peak_memory; /* NAN where the report does not say */
   struct vg_sweep_parts {        /* the same; angles in degrees */
     double n_part, balance;      /* most over mean of the leaves' cells */
-    double seconds;              /* parting the void, before it is filled */
-    double near_cells;           /* within two rings of interfaces */
-    double near_p1, all_p1;      /* 1st percentiles of the smallest angles, near
-                                    interfaces and of all outside the layers */
+    double seconds;         /* decomposition the void, before it is filled */
+    double near_cells;      /* within two rings of interfaces */
+    double near_p1, all_p1; /* 1st percentiles of the smallest angles, near
+                               interfaces and of all outside the layers */
   } parts_made;
   double critical; /* s; NAN without a record */
   char *files;     /* "name digest" lines, or NULL */

@@ -107,7 +107,7 @@ static void take_parts(const json_t *root, struct vg_sweep_parts *to)
                                        "smooth_seconds", "divide_seconds" };
   const json_t *all = json_object_get(root, "partition");
   const json_t *near = json_object_get(all, "near_interfaces");
-  const json_t *made = json_object_get(all, "parting");
+  const json_t *made = json_object_get(all, "decomposition");
   const json_t *mesh = json_object_get(root, "field");
 
   if (!mesh) mesh = json_object_get(root, "mesh");

@@ -23,7 +23,7 @@
 struct domain {
   struct vg_mesh m;
   const struct vg_farfield *farfield;
-  const struct vg_size_law *law;
+  const struct vg_size_function *law;
   double lo[3], hi[3], length; /* of the body */
   double centre[3], radius;
   int axis, side; /* symmetry; axis -1: none; side 1: above */
@@ -211,7 +211,7 @@ static vg_status outside(const struct domain *d, size_t i, struct vg_error *err)
 static vg_status add_sphere(struct domain *d, uint32_t patch,
                             struct vg_border *border, struct vg_error *err)
 {
-  const struct vg_size_law law = { domain_size, d, d->farfield->stop };
+  const struct vg_size_function law = { domain_size, d, d->farfield->stop };
   const double most = FARFIELD_ROOM * d->radius;
 
   for (size_t i = 0; i < d->m.n_point; i++) {
@@ -231,7 +231,7 @@ static vg_status add_box(struct domain *d, uint32_t patch,
                          struct vg_border *border, struct vg_error *err)
 {
   const struct vg_farfield *f = d->farfield;
-  const struct vg_size_law law = { domain_size, d, d->farfield->stop };
+  const struct vg_size_function law = { domain_size, d, d->farfield->stop };
   const uint32_t of[6] = { patch, patch, patch, patch, patch, patch };
   const int open = d->axis < 0 ? -1 : 2 * d->axis + !d->side;
   double lo[3], hi[3];
@@ -287,7 +287,7 @@ static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
 static vg_status add_symmetry(struct domain *d, struct vg_border *border,
                               struct vg_error *err)
 {
-  const struct vg_size_law law = { domain_size, d, d->farfield->stop };
+  const struct vg_size_function law = { domain_size, d, d->farfield->stop };
   struct vg_error inner = VG_ERROR_INIT;
   uint32_t patch = 0;
   vg_status st;
@@ -353,7 +353,7 @@ done:
 
 vg_status vg_domain_complete_by(struct vg_mesh *surface,
                                 const struct vg_farfield *farfield,
-                                const struct vg_size_law *law,
+                                const struct vg_size_function *law,
                                 struct vg_domain_report *report,
                                 struct vg_error *err)
 {
@@ -389,7 +389,7 @@ vg_status vg_domain_complete(struct vg_mesh *surface,
                              struct vg_domain_report *report,
                              struct vg_error *err)
 {
-  const struct vg_size_law law = vg_size_law_of(sizing);
+  const struct vg_size_function law = vg_size_function_of(sizing);
 
   return vg_domain_complete_by(surface, farfield, sizing ? &law : NULL, report,
                                err);

@@ -40,8 +40,9 @@ static vg_status add_points(struct vg_mesh *m, size_t n, struct vg_error *err)
 
 /* vg_graded_steps; of a law that stops sizes are 0, which ends the division. */
 static vg_status divide(double len, double (*size)(void *user, double s),
-                        void *user, const struct vg_size_law *law, size_t least,
-                        size_t *n, double **s, struct vg_error *err)
+                        void *user, const struct vg_size_function *law,
+                        size_t least, size_t *n, double **s,
+                        struct vg_error *err)
 {
   vg_status st = vg_graded_steps(len, size, user, least, n, s, err);
 
@@ -59,7 +60,7 @@ struct half_sphere {
   const double *centre;
   double radius;
   int axis, iu, iv, side; /* side +1 or -1 */
-  const struct vg_size_law *size;
+  const struct vg_size_function *size;
 };
 
 static void to_sphere(const struct half_sphere *s, const double p[2],
@@ -183,7 +184,7 @@ done:
 
 vg_status vg_add_sphere(struct vg_mesh *m, const double centre[3],
                         double radius, int half, int inward,
-                        const struct vg_size_law *size, uint32_t patch,
+                        const struct vg_size_function *size, uint32_t patch,
                         struct vg_border *border, struct vg_error *err)
 {
   assert(radius > 0 && half >= -1 && half < 6);
@@ -228,7 +229,7 @@ struct line {
   const double *a;
   double len;
   int axis;
-  const struct vg_size_law *size;
+  const struct vg_size_function *size;
 };
 
 static double size_on_line(void *user, double s)
@@ -248,8 +249,8 @@ struct box_edge {
 };
 
 static vg_status add_edge(struct vg_mesh *m, uint32_t a, uint32_t b, int axis,
-                          const struct vg_size_law *size, struct box_edge *e,
-                          struct vg_error *err)
+                          const struct vg_size_function *size,
+                          struct box_edge *e, struct vg_error *err)
 {
   double from[3];
   struct line l = { from, m->point[b][axis] - m->point[a][axis], axis, size };
@@ -318,7 +319,7 @@ done:
 }
 
 vg_status vg_add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
-                     int open, const struct vg_size_law *size,
+                     int open, const struct vg_size_function *size,
                      const uint32_t patch[6], struct vg_border *border,
                      struct vg_error *err)
 {

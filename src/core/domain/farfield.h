@@ -31,7 +31,7 @@ vg_status vg_border_add(struct vg_border *r, uint32_t a, uint32_t b,
  * m is unchanged on failure, save for points without triangles. */
 vg_status vg_add_sphere(struct vg_mesh *m, const double centre[3],
                         double radius, int half, int inward,
-                        const struct vg_size_law *size, uint32_t patch,
+                        const struct vg_size_function *size, uint32_t patch,
                         struct vg_border *border, struct vg_error *err);
 
 /** Append a box with normals pointing into it.
@@ -40,7 +40,7 @@ vg_status vg_add_sphere(struct vg_mesh *m, const double centre[3],
  * @param patch index in m->patch for the faces x-, x+, y-, y+, z-, z+
  * @param border   out: edges of the open face, appended */
 vg_status vg_add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
-                     int open, const struct vg_size_law *size,
+                     int open, const struct vg_size_function *size,
                      const uint32_t patch[6], struct vg_border *border,
                      struct vg_error *err);
 
@@ -48,7 +48,7 @@ vg_status vg_add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
  * NULL where farfield->spacing is given. */
 vg_status vg_domain_complete_by(struct vg_mesh *surface,
                                 const struct vg_farfield *farfield,
-                                const struct vg_size_law *law,
+                                const struct vg_size_function *law,
                                 struct vg_domain_report *report,
                                 struct vg_error *err);
 

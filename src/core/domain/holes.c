@@ -156,7 +156,8 @@ static vg_status add_cap(struct holes *h, size_t n, uint32_t *patch,
 }
 
 static vg_status close_rim(struct holes *h, uint32_t k, uint32_t patch,
-                           const struct vg_size_law *law, struct vg_error *err)
+                           const struct vg_size_function *law,
+                           struct vg_error *err)
 {
   struct vg_border rim = VG_BORDER_INIT;
   struct vg_error inner = VG_ERROR_INIT;
@@ -211,7 +212,7 @@ vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
   assert(sizing && n_hole && n_tri);
 
   struct holes h = { .n_loop = 0 };
-  const struct vg_size_law law = vg_size_law_of(sizing);
+  const struct vg_size_function law = vg_size_function_of(sizing);
   uint32_t patch = 0;
   vg_status st;
 

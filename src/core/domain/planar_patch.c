@@ -16,9 +16,10 @@ static double size_of_field(void *user, const double x[3])
   return vg_sizing_at(user, x);
 }
 
-struct vg_size_law vg_size_law_of(const struct vg_sizing *sizing)
+struct vg_size_function vg_size_function_of(const struct vg_sizing *sizing)
 {
-  return (struct vg_size_law){ .at = size_of_field, .user = (void *)sizing };
+  return (struct vg_size_function){ .at = size_of_field,
+                                    .user = (void *)sizing };
 }
 
 /* A point off the plane by more than this part of the extent is an error. */
@@ -30,7 +31,7 @@ struct frame {
   int axis, iu, iv;
   double at, o[3], u[3], v[3], n[3];
   double flatness; /* how far points may be off, of the extent */
-  const struct vg_size_law *size;
+  const struct vg_size_function *size;
 };
 
 static void to_plane(const struct frame *f, const double x[3], double p[2])
@@ -204,7 +205,7 @@ static vg_status append(struct vg_mesh *m, const struct frame *f,
 
 vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
                           const uint32_t (*edge)[2],
-                          const struct vg_size_law *size, uint32_t patch,
+                          const struct vg_size_function *size, uint32_t patch,
                           struct vg_error *err)
 {
   assert((edge || !n_edge) && size->at && patch < m->n_patch);
@@ -213,8 +214,9 @@ vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
 
 vg_status vg_planar_patch_near(struct vg_mesh *m, size_t n_edge,
                                const uint32_t (*edge)[2],
-                               const struct vg_size_law *size, double flatness,
-                               uint32_t patch, struct vg_error *err)
+                               const struct vg_size_function *size,
+                               double flatness, uint32_t patch,
+                               struct vg_error *err)
 {
   vg_status st;
   struct frame f = { .size = size, .flatness = flatness };

@@ -10,7 +10,7 @@
 #include "core/mesh/mesh.h"
 
 /** Target edge length in space. */
-struct vg_size_law {
+struct vg_size_function {
   double (*at)(void *user, const double x[3]);
   void *user;
   struct vg_stop stop; /* asked now and then */
@@ -19,7 +19,7 @@ struct vg_size_law {
 struct vg_sizing;
 
 /** The law of a size field, borrowed. */
-struct vg_size_law vg_size_law_of(const struct vg_sizing *sizing);
+struct vg_size_function vg_size_function_of(const struct vg_sizing *sizing);
 
 /** Append the triangles of the plane region on the left of `edge` to m.
  *
@@ -33,14 +33,15 @@ struct vg_size_law vg_size_law_of(const struct vg_sizing *sizing);
  * extent, or loops that cross. VG_ERR_STOPPED. */
 vg_status vg_planar_patch(struct vg_mesh *m, size_t n_edge,
                           const uint32_t (*edge)[2],
-                          const struct vg_size_law *size, uint32_t patch,
+                          const struct vg_size_function *size, uint32_t patch,
                           struct vg_error *err);
 
 /** The same for points that are off their mean plane by up to `flatness` of the
  * extent: they stay where they are, new ones lie in that plane. */
 vg_status vg_planar_patch_near(struct vg_mesh *m, size_t n_edge,
                                const uint32_t (*edge)[2],
-                               const struct vg_size_law *size, double flatness,
-                               uint32_t patch, struct vg_error *err);
+                               const struct vg_size_function *size,
+                               double flatness, uint32_t patch,
+                               struct vg_error *err);
 
 #endif

@@ -233,7 +233,7 @@ static vg_status trace_curve(struct builder *b, size_t i, struct vg_error *err)
 static vg_status fill_shape(struct builder *b, size_t i, struct vg_error *err)
 {
   const struct vg_patch_shape *shape = &b->project->shape[i];
-  const struct vg_size_law law = { size_at, b, b->stop };
+  const struct vg_size_function law = { size_at, b, b->stop };
   uint32_t(*edge)[2];
   size_t n = 0;
   struct vg_error inner = VG_ERROR_INIT;

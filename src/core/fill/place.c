@@ -33,7 +33,7 @@ static const double apex = 0.8165;
 static const double sideways = 0.65; /* K13 */
 
 /* A field that changes less than this over one edge counts as level. */
-static const double level_within = 1e-3; /* K14 */
+static const double uniform_within = 1e-3; /* K14 */
 
 /* A place within this share of the exclusion is rejected before the spacing
  * there is evaluated. */
@@ -170,9 +170,9 @@ static const double pattern[8][3] = { { .5, .5, .5 },  { -.5, -.5, -.5 },
                                       { .5, -.5, .5 }, { -.5, .5, -.5 },
                                       { -.5, .5, .5 }, { .5, -.5, -.5 } };
 
-static int is_level(const struct placer *p, const double x[3], double h)
+static int is_uniform(const struct placer *p, const double x[3], double h)
 {
-  return fabs(vg_sizing_at(p->sizing, x) - h) <= level_within * h;
+  return fabs(vg_sizing_at(p->sizing, x) - h) <= uniform_within * h;
 }
 
 /* In how many of six directions does the field keep its value? */
@@ -185,7 +185,7 @@ static int level_around(const struct placer *p, const double c[3], double h)
       double x[3] = { c[0], c[1], c[2] };
 
       x[k] += side * h;
-      n += is_level(p, x, h);
+      n += is_uniform(p, x, h);
     }
   return n;
 }
@@ -223,7 +223,7 @@ static int propose_site(struct placer *p, const double c[3], double h,
   if (vg_dot(d, d) > neighbour2 * half * half) return 0;
   list_around(p, c, h);
   if (vg_hgrid_count(&p->near, d, exclusion_level * h)) return 1;
-  if (!everywhere && !is_level(p, x, h)) return 0;
+  if (!everywhere && !is_uniform(p, x, h)) return 0;
   return stand(p, c, d, h, 0, start) ? -1 : 1;
 }
 
@@ -257,7 +257,7 @@ static int find_site(const double x[3], double h, int64_t i[3])
   for (int k = 0; k < 3; k++) {
     double at = floor(x[k] / half + 0.5);
 
-    if (!(fabs(at) < 1e9) || fabs(x[k] - half * at) > level_within * half)
+    if (!(fabs(at) < 1e9) || fabs(x[k] - half * at) > uniform_within * half)
       return 0;
     i[k] = (int64_t)at;
   }
@@ -386,7 +386,7 @@ static void snap_to_lattice(const struct vg_sizing *sizing, double h,
     for (int side = -1; side <= 1; side += 2) {
       memcpy(step, to, sizeof step);
       step[k] += 2 * side * h;
-      if (fabs(vg_sizing_at(sizing, step) - h) > level_within * h) return;
+      if (fabs(vg_sizing_at(sizing, step) - h) > uniform_within * h) return;
     }
   memcpy(x, to, sizeof to);
 }

@@ -339,7 +339,7 @@ static void turn(struct settle *s, const uint8_t *turned)
     r->shell[i].volume = -r->shell[i].volume;
     n++;
   }
-  r->turned_inside_out = n && n == r->n_shell;
+  r->shells_reoriented = n && n == r->n_shell;
 }
 
 /* Triangles of m have the numbers that they have in the whole. */

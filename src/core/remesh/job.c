@@ -240,8 +240,8 @@ vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
 {
   const struct vg_remesh_options *o = j->o;
   struct vg_curves_options c = {
-    o->ridge_angle, j->jag, j->whole->tri_patch, j->whole->patch, o->hard,
-    o->stretch,     NULL
+    o->feature_angle, j->jag, j->whole->tri_patch, j->whole->patch, o->hard,
+    o->stretch,       NULL
   };
   vg_status st;
 
@@ -306,10 +306,13 @@ done:
 static vg_status clean(struct vg_remesh_job *j, struct vg_error *err)
 {
   const struct vg_remesh_options *o = j->o;
-  const struct vg_curves_options lines = {
-    o->ridge_angle, j->jag, j->whole->tri_patch, j->whole->patch, o->hard,
-    NULL,           NULL
-  };
+  const struct vg_curves_options lines = { o->feature_angle,
+                                           j->jag,
+                                           j->whole->tri_patch,
+                                           j->whole->patch,
+                                           o->hard,
+                                           NULL,
+                                           NULL };
   struct vg_clean c = VG_CLEAN_INIT;
   double *cap = NULL;
   vg_status st;

@@ -107,13 +107,13 @@ static vg_status check_options(const struct vg_remesh_options *o,
                    "smallest size %g is above the largest, "
                    "%g; exchange them",
                    o->h_min, o->h_max);
-  if (!(o->ridge_angle >= 5 && o->ridge_angle <= 170 && o->per_turn >= 3 &&
+  if (!(o->feature_angle >= 5 && o->feature_angle <= 170 && o->per_turn >= 3 &&
         o->per_turn <= 1e4 && o->growth > 1 && o->growth <= 10))
     return vg_fail(err, VG_ERR_INPUT,
                    "ridge angle %g (5 to 170 degrees), %g "
                    "edges per turn (3 to 10000) or growth %g (1 to 10) is out "
                    "of range",
-                   o->ridge_angle, o->per_turn, o->growth);
+                   o->feature_angle, o->per_turn, o->growth);
   return VG_OK;
 }
 

@@ -21,20 +21,20 @@
 #include "core/sizing/sizing.h"
 
 struct vg_remesh_options {
-  double tolerance;    /* largest distance between the surfaces; 0: 1e-4
-                          of the body's length; nowhere more than 0.05 of
-                          the size */
-  double accuracy;     /* how far what is given may be from the shape that
-                          it stands for: a tolerance of 0 is no less, and
-                          its shape asks for no sizes near that */
-  double ridge_angle;  /* degrees between faces, from which on their edge
-                          is a ridge and stays */
-  double per_turn;     /* edges round a full circle */
-  double h_min, h_max; /* 0: 2e-4 and 0.02 of the body's length; of the
-                          outer boundary of a whole domain, 0.04 of its
-                          own */
-  double growth;       /* > 1, of sizes along the surface */
-  size_t n_source;     /* sources of sizes, as the volume uses them */
+  double tolerance;     /* largest distance between the surfaces; 0: 1e-4
+                           of the body's length; nowhere more than 0.05 of
+                           the size */
+  double accuracy;      /* how far what is given may be from the shape that
+                           it stands for: a tolerance of 0 is no less, and
+                           its shape asks for no sizes near that */
+  double feature_angle; /* degrees between faces, from which on their edge
+                         is a ridge and stays */
+  double per_turn;      /* edges round a full circle */
+  double h_min, h_max;  /* 0: 2e-4 and 0.02 of the body's length; of the
+                           outer boundary of a whole domain, 0.04 of its
+                           own */
+  double growth;        /* > 1, of sizes along the surface */
+  size_t n_source;      /* sources of sizes, as the volume uses them */
   const struct vg_source *source;
   double scale; /* factor on all sizes: h_min, h_max, those of the
                    shape and of the sources, on growth - 1 and on
@@ -64,7 +64,8 @@ struct vg_remesh_options {
 #define VG_REMESH_STRETCH 20
 #define VG_REMESH_OPTIONS_INIT                                                 \
   {                                                                            \
-    .ridge_angle = 40, .per_turn = 24, .growth = 1.2, .scale = 1, .threads = 1 \
+    .feature_angle = 40, .per_turn = 24, .growth = 1.2, .scale = 1,            \
+    .threads = 1                                                               \
   }
 
 /* What keeps a triangle from a better shape. */

@@ -127,7 +127,7 @@ static void source_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-static void renew_body(void *context, size_t first, size_t end, int worker)
+static void remesh_body(void *context, size_t first, size_t end, int worker)
 {
   struct limit *l = context;
   struct vg_octree_build *b = l->b;
@@ -150,7 +150,7 @@ static void renew(struct limit *l)
 {
   struct vg_octree_build *b = l->b;
 
-  vg_parallel_for(b->threads, b->n_point, VG_OCTREE_GRAIN, renew_body, l);
+  vg_parallel_for(b->threads, b->n_point, VG_OCTREE_GRAIN, remesh_body, l);
   for (size_t i = 0; i < b->n_point; i++)
     if (b->point[i].hangs) b->point[i].h = vg_octree_hang(b, b->point + i);
 }

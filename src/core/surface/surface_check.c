@@ -518,7 +518,7 @@ static vg_status build_shells(struct check *c)
     n_closed += r->shell[i].is_closed != 0;
     n_turned += c->shell_turn[i];
   }
-  r->turned_inside_out = n_closed && n_turned == n_closed;
+  r->shells_reoriented = n_closed && n_turned == n_closed;
 done:
   return st;
 }

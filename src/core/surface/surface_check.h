@@ -60,7 +60,7 @@ struct vg_surface_report {
   size_t n_removed_point, n_removed_tri; /* removed by the repair */
   size_t n_removed_wall; /* triangles of walls that touching bodies
                             shared, removed by the repair */
-  int turned_inside_out; /* every closed shell was turned as a whole */
+  int shells_reoriented; /* every closed shell was turned as a whole */
   size_t n_piece;        /* components connected by nodes */
   size_t n_shell;        /* components connected by edges */
   struct vg_shell *shell;

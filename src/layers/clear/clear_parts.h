@@ -80,7 +80,7 @@ void vg_boxes_touch(const struct vg_boxes *b, const double (*point)[3],
                     const uint32_t t[3], vg_boxes_visit visit, void *context,
                     size_t tag);
 
-/* clear_flanks.c ----------------------------------------------------------*/
+/* clear_sides.c ----------------------------------------------------------*/
 
 /* Tops and the surface in one numbering: a column without a level is its
  * root, others are n_point + column. */

@@ -61,7 +61,7 @@ static void top_of(const struct vg_tops *t, size_t i, struct heights *h,
     h->law = c->law;
     h->cap = c->cap;
     h->n = c->n;
-    vg_law_heights(&t->columns->law[c->law], c->cap, c->n, h->d);
+    vg_growth_law_heights(&t->columns->law[c->law], c->cap, c->n, h->d);
   }
   for (int k = 0; k < 3; k++)
     x[k] = c->dir[k] == 0 ? root[k] : root[k] + c->dir[k] * h->d[c->n];

@@ -6,10 +6,10 @@
 
 const char *vg_layer_cause_name(enum vg_layer_cause cause)
 {
-  static const char *const name[VG_CAUSE_N] = { "none",      "size",
-                                                "proximity", "corner",
-                                                "no_view",   "cell",
-                                                "collision", "slide" };
+  static const char *const name[VG_CAUSE_N] = { "none",       "size",
+                                                "proximity",  "corner",
+                                                "visibility", "cell",
+                                                "collision",  "slide" };
 
   return (unsigned)cause < VG_CAUSE_N ? name[cause] : "?";
 }
@@ -48,7 +48,7 @@ void vg_column_points(const struct vg_columns *c, const struct vg_mesh *m,
     memcpy(x, c->path + col->bent, ((size_t)col->n + 1) * sizeof *x);
     return;
   }
-  vg_law_heights(&c->law[col->law], col->cap, col->n, d);
+  vg_growth_law_heights(&c->law[col->law], col->cap, col->n, d);
   for (int l = 0; l <= col->n; l++)
     at_height(col, m->point[col->root], d[l], x[l]);
 }
@@ -66,6 +66,6 @@ void vg_column_top(const struct vg_columns *c, const struct vg_mesh *m,
     memcpy(x, c->path[col->bent + col->n], 3 * sizeof *x);
     return;
   }
-  vg_law_heights(&c->law[col->law], col->cap, col->n, d);
+  vg_growth_law_heights(&c->law[col->law], col->cap, col->n, d);
   at_height(col, m->point[col->root], d[col->n], x);
 }

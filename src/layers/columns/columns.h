@@ -1,5 +1,5 @@
 /* layers/columns/columns.h: layers as columns. Uses core/mesh/mesh.h,
- * layers/columns/law.h.
+ * layers/columns/growth_law.h.
  *
  * A column stands on a wall point and has levels 0 (the wall) to n. Cells are
  * implied: for every face (a triangle of three columns), for levels l = 0, 1,
@@ -24,21 +24,21 @@
 #include <stdint.h>
 
 #include "core/mesh/mesh.h"
-#include "layers/columns/law.h"
+#include "layers/columns/growth_law.h"
 
 #define VG_NO_INDEX UINT32_MAX
 
 /** Why a column has fewer or thinner layers than the law asks for. */
 enum vg_layer_cause {
-  VG_CAUSE_NONE,      /* all layers that were asked for */
-  VG_CAUSE_SIZE,      /* ended as thick as the local cell: as intended */
-  VG_CAUSE_PROXIMITY, /* another surface stands in front of it */
-  VG_CAUSE_CORNER,    /* columns converge in a concave corner */
-  VG_CAUSE_NO_VIEW,   /* no direction sees all faces at the point */
-  VG_CAUSE_CELL,      /* a cell would be inverted or too flat */
-  VG_CAUSE_COLLISION, /* tops or flanks would cross */
-  VG_CAUSE_SLIDE,     /* meets a slide patch at too flat an angle, or the
-                         patch could not be re-meshed around it */
+  VG_CAUSE_NONE,       /* all layers that were asked for */
+  VG_CAUSE_SIZE,       /* ended as thick as the local cell: as intended */
+  VG_CAUSE_PROXIMITY,  /* another surface stands in front of it */
+  VG_CAUSE_CORNER,     /* columns converge in a concave corner */
+  VG_CAUSE_VISIBILITY, /* no direction sees all faces at the point */
+  VG_CAUSE_CELL,       /* a cell would be inverted or too flat */
+  VG_CAUSE_COLLISION,  /* tops or flanks would cross */
+  VG_CAUSE_SLIDE,      /* meets a slide patch at too flat an angle, or the
+                          patch could not be re-meshed around it */
   VG_CAUSE_N
 };
 
@@ -46,25 +46,25 @@ enum vg_layer_cause {
 const char *vg_layer_cause_name(enum vg_layer_cause cause);
 
 struct vg_column {
-  uint32_t root;     /* point of the surface */
-  uint32_t law;      /* index into vg_columns.law */
-  uint32_t slide[2]; /* patches it slides in, VG_NO_INDEX: none; [0] first */
-  double dir[3];     /* level l >= 1 stands at root + shift + dir *
-                        height(l); length 1 to 2 */
-  double shift[3];   /* what makes the first point delta1 away from the
-                        wall, in corners where dir alone does not: so the
-                        layers above may be straightened out and the first
-                        height is kept. 0 for most */
-  double cap;        /* growth of this column: the law's, or less where it
-                        was squeezed (vg_law_heights) */
-  size_t bent;       /* SIZE_MAX: straight. Else levels 0 .. n are
-                        vg_columns.path[bent ..] (curved slide patches) */
-  uint16_t n;        /* levels */
-  uint16_t n_wanted; /* by law and local size, before anything limited it */
-  uint8_t cause;     /* enum vg_layer_cause: what set n below n_wanted */
-  uint8_t squeezed;  /* enum vg_layer_cause: what set cap below the law's;
-                        VG_CAUSE_NONE: nothing did */
-  uint8_t unused[2]; /* 0: columns are sent, and compared, as bytes */
+  uint32_t root;      /* point of the surface */
+  uint32_t law;       /* index into vg_columns.law */
+  uint32_t slide[2];  /* patches it slides in, VG_NO_INDEX: none; [0] first */
+  double dir[3];      /* level l >= 1 stands at root + shift + dir *
+                         height(l); length 1 to 2 */
+  double shift[3];    /* what makes the first point delta1 away from the
+                         wall, in corners where dir alone does not: so the
+                         layers above may be straightened out and the first
+                         height is kept. 0 for most */
+  double cap;         /* growth of this column: the law's, or less where it
+                         was compressed (vg_growth_law_heights) */
+  size_t bent;        /* SIZE_MAX: straight. Else levels 0 .. n are
+                         vg_columns.path[bent ..] (curved slide patches) */
+  uint16_t n;         /* levels */
+  uint16_t n_wanted;  /* by law and local size, before anything limited it */
+  uint8_t cause;      /* enum vg_layer_cause: what set n below n_wanted */
+  uint8_t compressed; /* enum vg_layer_cause: what set cap below the law's;
+                       VG_CAUSE_NONE: nothing did */
+  uint8_t unused[2];  /* 0: columns are sent, and compared, as bytes */
 };
 _Static_assert(sizeof(struct vg_column) == 88, "columns have no padding");
 
@@ -83,8 +83,8 @@ struct vg_columns {
   uint32_t *border_patch; /* [n_border] ... this patch. An edge between columns
                               of one root is a border too where a fan meets a
                               slide patch */
-  struct vg_law *law;     /* [n_law] */
-  double (*path)[3];      /* [n_path] */
+  struct vg_growth_law *law; /* [n_law] */
+  double (*path)[3];         /* [n_path] */
 };
 #define VG_COLUMNS_INIT                                                        \
   {                                                                            \
@@ -106,7 +106,7 @@ static inline int vg_shares_root(const struct vg_columns *c, size_t i)
 
 /** Points of levels 0 .. column[i].n into x. Where dir and shift have a
  * component of 0, straight columns keep that of the root to the last bit.
- * d: scratch for vg_law_heights, [VG_LEVELS_MAX + 1]. */
+ * d: scratch for vg_growth_law_heights, [VG_LEVELS_MAX + 1]. */
 void vg_column_points(const struct vg_columns *c, const struct vg_mesh *m,
                       size_t i, double *d, double (*x)[3]);
 

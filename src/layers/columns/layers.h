@@ -22,7 +22,7 @@
 /** What one patch asks for. */
 struct vg_layer_request {
   int is_wall; /* grow layers on it */
-  struct vg_law law;
+  struct vg_growth_law law;
   int n_max;    /* levels at most; 0: VG_LEVELS_MAX */
   double total; /* no higher than this; 0: no limit */
   int n_exact;  /* 1: n_max levels also where the local size is
@@ -32,7 +32,7 @@ struct vg_layer_request {
 struct vg_layer_options {
   const struct vg_layer_request *patch; /* [surface->n_patch] */
   /* Law at a point of a wall (VGRID's grid=2), or NULL: the patch's. */
-  void (*law_at)(void *user, const double x[3], struct vg_law *law);
+  void (*law_at)(void *user, const double x[3], struct vg_growth_law *law);
   void *law_user;
   double fan_angle;     /* edges that turn by more than this, in degrees,
                            get fans; 180: none; 0: only points that one
@@ -66,8 +66,8 @@ struct vg_layer_report {
   size_t n_wall_point, n_wall_tri, n_column, n_virtual_face;
   size_t n_cell;        /* layer cells if all are tetrahedra */
   size_t n_layer_point; /* points above the wall, flanks included */
-  size_t cause[VG_CAUSE_N], squeezed[VG_CAUSE_N]; /* columns */
-  size_t n_round;                                 /* of lowering until clear */
+  size_t cause[VG_CAUSE_N], compressed[VG_CAUSE_N]; /* columns */
+  size_t n_round;      /* of lowering until clear */
   size_t n_many_faces; /* columns of more than VG_AHEAD_FACES faces */
   size_t n_slide_patch, n_slide_tri; /* patches next to walls; triangles they
                                         have in the front */

@@ -15,7 +15,7 @@ static size_t bad_columns(const struct vg_columns *c, const struct vg_mesh *m)
     bad += k->root >= m->n_point || k->law >= c->n_law;
     bad += i && k->root < k[-1].root;
     bad += k->n > VG_LEVELS_MAX || k->cause >= VG_CAUSE_N ||
-           k->squeezed >= VG_CAUSE_N;
+           k->compressed >= VG_CAUSE_N;
     bad += k->bent != SIZE_MAX && k->bent + k->n >= c->n_path;
     for (int s = 0; s < 2; s++)
       bad += k->slide[s] != VG_NO_INDEX && k->slide[s] >= m->n_patch;

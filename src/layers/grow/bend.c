@@ -92,8 +92,8 @@ static int is_still(const struct vg_dir_sweep *l, size_t i)
   return 1;
 }
 
-/* One damped Jacobi step; where the mean loses the faces from view, half of
- * the way to it, and so on. */
+/* One damped Jacobi step; where the mean loses the faces from visibility, half
+ * of the way to it, and so on. */
 static void relax(const struct vg_dir_sweep *l, size_t i, double (*n)[3])
 {
   const struct vg_layer_work *w = l->w;
@@ -102,7 +102,8 @@ static void relax(const struct vg_dir_sweep *l, size_t i, double (*n)[3])
 
   memcpy(l->to[i], l->from[i], sizeof *l->to);
   l->moves[i] = 0;
-  if (vg_shares_root(w->c, i) || w->view[i] == 0 || is_still(l, i)) return;
+  if (vg_shares_root(w->c, i) || w->visibility[i] == 0 || is_still(l, i))
+    return;
   mean_of_near(w, i, l->from, mean);
   if (!(vg_unit(mean) > 0)) return;
   k = vg_face_normals(w, i, n);
@@ -112,7 +113,8 @@ static void relax(const struct vg_dir_sweep *l, size_t i, double (*n)[3])
       v[c] = l->from[i][c] + step * mean[c] + (1 - step) * w->root_dir[i][c];
     vg_constrain(n_slide, slide, v);
     if (!(vg_unit(v) > 0)) continue;
-    if (vg_least_view(k, n, v) < VG_VIEW_KEPT * w->view[i]) continue;
+    if (vg_least_visibility(k, n, v) < VG_VISIBILITY_KEPT * w->visibility[i])
+      continue;
     memcpy(l->to[i], v, sizeof v);
     l->moves[i] = vg_distance(v, l->from[i]) > STILL;
     return;

@@ -12,11 +12,12 @@
 #include "layers/grow/grow_parts.h"
 
 #define GRAIN 1024
-#define FLAT (0.25 * VG_VIEW_MIN) /* L3: least sine of a column on a layer */
-#define SHRUNK 0.04       /* least area of a layer, of that at the wall */
-#define LOWER 0.75        /* of the height allowed, when a cell is bad */
-#define RESERVE 2.0       /* times the least height of all levels */
-#define NEAR_FARTHEST 0.5 /* share of the farthest reach at a bad cell */
+#define FLAT                                                                   \
+  (0.25 * VG_VISIBILITY_MIN) /* L3: least sine of a column on a layer */
+#define SHRUNK 0.04          /* least area of a layer, of that at the wall */
+#define LOWER 0.75           /* of the height allowed, when a cell is bad */
+#define RESERVE 2.0          /* times the least height of all levels */
+#define NEAR_FARTHEST 0.5    /* share of the farthest reach at a bad cell */
 
 /* The face of one call: three columns by rising number, levels ascending. */
 struct stack {
@@ -265,7 +266,7 @@ static void limits(const struct vg_layer_work *w, const uint32_t face[3],
 
     least[k] = level && !w->last_resort ? INFINITY : 0;
     if (least[k] == 0 || !(faulty >> k & 1)) continue;
-    vg_law_heights(&w->c->law[c->law], c->cap, top, d);
+    vg_growth_law_heights(&w->c->law[c->law], c->cap, top, d);
     least[k] = fmin(LOWER * w->allowed[face[k]], d[top]);
     reach[k] = d[top] * vg_norm(c->dir);
     far = fmax(far, reach[k]);

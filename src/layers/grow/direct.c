@@ -1,5 +1,5 @@
-/* Marching directions: normal to the wall where it is smooth, in view of all
- * faces at edges and corners. Declared in layers/grow/grow_parts.h. */
+/* Marching directions: normal to the wall where it is smooth, in visibility of
+ * all faces at edges and corners. Declared in layers/grow/grow_parts.h. */
 #include "layers/grow/direct.h"
 
 #include <assert.h>
@@ -83,7 +83,7 @@ int vg_face_normals(const struct vg_layer_work *w, size_t i, double (*n)[3])
   return k;
 }
 
-double vg_least_view(int k, const double (*n)[3], const double v[3])
+double vg_least_visibility(int k, const double (*n)[3], const double v[3])
 {
   double least = 1;
 
@@ -171,18 +171,18 @@ static void first_direction(struct vg_layer_work *w, size_t i, double (*n)[3])
   else mean_normal(w, i, v);
   vg_constrain(n_slide, slide, v);
   if (!(vg_unit(v) > 0)) v[0] = v[1] = v[2] = 0;
-  w->view[i] = vg_least_view(k, n, v);
-  if (!w->t.preset[i] && w->view[i] < SMOOTH_WALL) {
+  w->visibility[i] = vg_least_visibility(k, n, v);
+  if (!w->t.preset[i] && w->visibility[i] < SMOOTH_WALL) {
     for (int j = 0; j < k; j++) vg_constrain(n_slide, slide, n[j]);
     if (vg_most_normal(k, n, best)) {
       vg_constrain(n_slide, slide, best);
       vg_unit(best);
       memcpy(v, best, sizeof v);
       k = vg_face_normals(w, i, n);
-      w->view[i] = vg_least_view(k, n, v);
+      w->visibility[i] = vg_least_visibility(k, n, v);
     }
   }
-  if (!(w->view[i] >= VG_VIEW_MIN)) w->view[i] = 0;
+  if (!(w->visibility[i] >= VG_VISIBILITY_MIN)) w->visibility[i] = 0;
   memcpy(c->dir, v, sizeof v);
   memcpy(w->root_dir[i], v, sizeof v);
 }

@@ -7,8 +7,9 @@
 #include "layers/grow/grow_parts.h"
 
 #define VG_GRAIN 2048
-#define VG_VIEW_KEPT 0.6 /* L6: share of the first view that turning leaves */
-#define VG_CAP_NOISY 4   /* bit of vg_layer_work.cap */
+#define VG_VISIBILITY_KEPT                                                     \
+  0.6 /* L6: share of the first visibility that turning leaves */
+#define VG_CAP_NOISY 4 /* bit of vg_layer_work.cap */
 
 /** Directions before and after a sweep over all columns. */
 struct vg_dir_sweep {
@@ -39,6 +40,6 @@ void vg_constrain(int n_slide, double n[2][3], double v[3]);
  * virtual ones, nor of noisy caps where there is better. Their number. */
 int vg_face_normals(const struct vg_layer_work *w, size_t i, double (*n)[3]);
 
-double vg_least_view(int k, const double (*n)[3], const double v[3]);
+double vg_least_visibility(int k, const double (*n)[3], const double v[3]);
 
 #endif

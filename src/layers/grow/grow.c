@@ -29,7 +29,7 @@ static void work_release(struct vg_layer_work *w)
   free(w->normal);
   free(w->cap);
   free(w->root_dir);
-  free(w->view);
+  free(w->visibility);
   free(w->edge);
   free(w->wanted);
   free(w->allowed);
@@ -44,7 +44,7 @@ static vg_status check_request(const struct vg_mesh *m, size_t p,
                                const struct vg_layer_request *r,
                                struct vg_error *err)
 {
-  const struct vg_law *l = &r->law;
+  const struct vg_growth_law *l = &r->law;
 
   if (!r->is_wall) return VG_OK;
   if (!(l->delta1 > 0 && l->delta1 < 1e60))
@@ -125,7 +125,7 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   w->normal = vg_alloc(w->c->n_face, sizeof *w->normal);
   w->cap = vg_calloc(w->c->n_face, 1);
   w->root_dir = vg_alloc(n, sizeof *w->root_dir);
-  w->view = vg_alloc(n, sizeof *w->view);
+  w->visibility = vg_alloc(n, sizeof *w->visibility);
   w->edge = vg_alloc(n, sizeof *w->edge);
   w->wanted = vg_alloc(n, sizeof *w->wanted);
   w->allowed = vg_alloc(n, sizeof *w->allowed);
@@ -133,13 +133,13 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   w->own = vg_calloc(n, sizeof *w->own);
   w->why = vg_calloc(n, 1);
   w->by_size = vg_calloc(n, 1);
-  if (w->normal && w->cap && w->root_dir && w->view && w->edge && w->wanted &&
-      w->allowed && w->settled && w->own && w->why && w->by_size)
+  if (w->normal && w->cap && w->root_dir && w->visibility && w->edge &&
+      w->wanted && w->allowed && w->settled && w->own && w->why && w->by_size)
     return VG_OK;
   return vg_fail_memory(err, "the layers");
 }
 
-/* Allowed heights to begin with: no view, corners, what stands ahead. */
+/* Allowed heights to begin with: no visibility, corners, what stands ahead. */
 static vg_status first_allowed(struct vg_layer_work *w,
                                struct vg_layer_report *r, struct vg_error *err)
 {
@@ -149,7 +149,7 @@ static vg_status first_allowed(struct vg_layer_work *w,
 
   if (!allowed) return vg_fail_memory(err, "the layers");
   for (size_t i = 0; i < n; i++) {
-    if (w->view[i] == 0) vg_heights_lower(w, i, 0, VG_CAUSE_NO_VIEW);
+    if (w->visibility[i] == 0) vg_heights_lower(w, i, 0, VG_CAUSE_VISIBILITY);
     if (w->t.blocked && w->t.blocked[i])
       vg_heights_lower(w, i, 0, VG_CAUSE_SLIDE);
   }
@@ -174,7 +174,7 @@ static double lowered(const struct vg_layer_work *w, size_t i, size_t round)
   double d[VG_LEVELS_MAX + 1], h;
 
   if (round >= GENTLE || w->last_resort) return 0;
-  vg_law_heights(&w->c->law[c->law], c->cap, c->n, d);
+  vg_growth_law_heights(&w->c->law[c->law], c->cap, c->n, d);
   h = d[c->n] < w->allowed[i] ? d[c->n] : w->allowed[i];
   return SHARE * h;
 }
@@ -454,7 +454,7 @@ static void count(const struct vg_layer_work *w, const struct vg_front *front,
     r->n_wall_point += i == 0 || c->column[i].root != c->column[i - 1].root;
     r->n_layer_point += c->column[i].n;
     r->cause[c->column[i].cause]++;
-    r->squeezed[c->column[i].squeezed]++;
+    r->compressed[c->column[i].compressed]++;
   }
   for (size_t f = 0; f < c->n_face; f++) {
     if (c->face_tri[f] == VG_NO_INDEX) r->n_virtual_face++;

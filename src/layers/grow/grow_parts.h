@@ -12,7 +12,8 @@
 #include "layers/slide/slide.h"
 #include "layers/topology/topology.h"
 
-#define VG_VIEW_MIN 0.0002   /* L5: least cosine between a column and a face */
+#define VG_VISIBILITY_MIN                                                      \
+  0.0002                     /* L5: least cosine between a column and a face */
 #define VG_FACTOR_MAX 1000.0 /* longest dir: a wedge of 0.1 degrees */
 #define VG_FACTOR_WHOLE 2.0  /* longest dir */
 
@@ -32,8 +33,8 @@ struct vg_layer_work {
                             lies on the edge across; bit 4: its normal is
                             noise */
   double (*root_dir)[3]; /* unit, before smoothing */
-  double *view;          /* least cosine to its faces that dir must keep;
-                            0: no direction sees them all */
+  double *visibility;    /* least cosine to its faces that dir must keep;
+                      0: no direction sees them all */
   double *edge;          /* local isotropic edge */
   double *wanted;        /* height of n_wanted levels by the law */
   double *allowed;       /* height it may take, <= wanted */
@@ -69,7 +70,7 @@ static inline double vg_root_distance(const struct vg_layer_work *w, uint32_t i,
 
 /* direct.c, bend.c, lift.c ------------------------------------------------*/
 
-/** Normals of faces, first directions and their view. */
+/** Normals of faces, first directions and their visibility. */
 vg_status vg_directions_first(struct vg_layer_work *w, struct vg_error *err);
 
 /** Bend directions where columns of height `wanted` would converge. */
@@ -84,7 +85,7 @@ vg_status vg_directions_scale(struct vg_layer_work *w, struct vg_error *err);
 void vg_directions_shift(struct vg_layer_work *w, const uint8_t *which);
 
 /** Make the columns of faces with turn[f] != 0 more alike, as far as they
- * keep their view. turned out: [n_column] set to 1 where dir changed. */
+ * keep their visibility. turned out: [n_column] set to 1 where dir changed. */
 vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
                              uint8_t *turned, struct vg_error *err);
 

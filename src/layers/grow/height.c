@@ -111,14 +111,15 @@ static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
 
 /* Levels until the next would be thicker than the local cell. */
 static int levels(const struct vg_layer_work *w, uint32_t i,
-                  const struct vg_layer_request *r, const struct vg_law *law)
+                  const struct vg_layer_request *r,
+                  const struct vg_growth_law *law)
 {
   const struct vg_column *c = &w->c->column[i];
   int max = r->n_max > 0 && r->n_max < VG_LEVELS_MAX ? r->n_max : VG_LEVELS_MAX;
   double d[VG_LEVELS_MAX + 1], end = w->o->end * w->edge[i];
   int n = 0;
 
-  vg_law_heights(law, INFINITY, max, d);
+  vg_growth_law_heights(law, INFINITY, max, d);
   while (n < max && (r->n_exact || d[n + 1] - d[n] <= end) &&
          !(r->total > 0 && d[n + 1] > r->total))
     n++;
@@ -140,7 +141,7 @@ static void wanted_body(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) {
     struct vg_column *c = &w->c->column[i];
     uint32_t p = patch_of(w, (uint32_t)i);
-    struct vg_law *law;
+    struct vg_growth_law *law;
 
     c->law = w->o->law_at ? (uint32_t)i : p;
     law = &w->c->law[c->law];
@@ -266,8 +267,8 @@ vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
   for (size_t i = 0; i < c->n_column; i++) {
     double d[VG_LEVELS_MAX + 1];
 
-    vg_law_heights(&c->law[c->column[i].law], INFINITY, c->column[i].n_wanted,
-                   d);
+    vg_growth_law_heights(&c->law[c->column[i].law], INFINITY,
+                          c->column[i].n_wanted, d);
     w->wanted[i] = w->allowed[i] = d[c->column[i].n_wanted];
     w->why[i] = VG_CAUSE_NONE;
     w->settled[i] = -1;
@@ -403,13 +404,13 @@ vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err)
 static void fit(struct vg_layer_work *w, size_t i)
 {
   struct vg_column *c = &w->c->column[i];
-  const struct vg_law *law = &w->c->law[c->law];
+  const struct vg_growth_law *law = &w->c->law[c->law];
 
   w->settled[i] = w->allowed[i];
   w->own[i] = c->n_wanted;
   c->cap = law->cap;
   if (w->allowed[i] >= w->wanted[i]) return;
-  c->cap = vg_law_squeeze(law, c->n_wanted, w->allowed[i]);
+  c->cap = vg_growth_law_compress(law, c->n_wanted, w->allowed[i]);
   if (c->cap > 0) return;
   c->cap = 1;
   w->own[i] = (uint16_t)(w->allowed[i] / law->delta1);
@@ -425,7 +426,7 @@ static void settle_body(void *context, size_t first, size_t end, int worker)
 
     if (w->allowed[i] != w->settled[i]) fit(w, i);
     c->n = w->own[i];
-    c->squeezed = w->allowed[i] < w->wanted[i] ? w->why[i] : VG_CAUSE_NONE;
+    c->compressed = w->allowed[i] < w->wanted[i] ? w->why[i] : VG_CAUSE_NONE;
     c->cause = c->n < c->n_wanted ? w->why[i]
              : w->by_size[i]      ? VG_CAUSE_SIZE
                                   : VG_CAUSE_NONE;

@@ -10,8 +10,8 @@
 #include "layers/grow/direct.h"
 
 /* L9 */
-#define VIEW_LEAST                                                             \
-  0.2                /* share of the first view that is left where cells       \
+#define LEAST_VISIBILITY                                                       \
+  0.2                /* share of the first visibility that is left where cells \
                         would be lost otherwise */
 #define CAP_SWEEPS 8 /* caps lie in chains */
 
@@ -46,7 +46,7 @@ static void scale_body(void *context, size_t first, size_t end, int worker)
     double d = gain(w, (uint32_t)i, w->c->column[i].dir);
     double length = fmin(1 / d, VG_FACTOR_WHOLE);
 
-    if (d * VG_FACTOR_MAX < 1) w->view[i] = 0;
+    if (d * VG_FACTOR_MAX < 1) w->visibility[i] = 0;
     else
       for (int k = 0; k < 3; k++) w->c->column[i].dir[k] *= length;
   }
@@ -73,7 +73,8 @@ static void follow(const struct vg_dir_sweep *l, uint32_t i,
     const double *p = w->m->point[w->c->column[a].root];
     double e[3], x[3], t;
 
-    if ((w->cap[f] & 3) != 1 + k || w->view[a] == 0 || w->view[b] == 0)
+    if ((w->cap[f] & 3) != 1 + k || w->visibility[a] == 0 ||
+        w->visibility[b] == 0)
       continue;
     if (w->c->column[i].slide[0] != VG_NO_INDEX &&
         !(same_slides(&w->c->column[i], &w->c->column[a]) &&
@@ -88,8 +89,8 @@ static void follow(const struct vg_dir_sweep *l, uint32_t i,
   }
   if (!n) return;
   for (int c = 0; c < 3; c++) sum[c] /= n;
-  if (vg_least_view(vg_face_normals(w, i, normal), normal, sum) >=
-      VG_VIEW_KEPT * w->view[i] * vg_norm(sum))
+  if (vg_least_visibility(vg_face_normals(w, i, normal), normal, sum) >=
+      VG_VISIBILITY_KEPT * w->visibility[i] * vg_norm(sum))
     memcpy(l->to[i], sum, sizeof sum);
 }
 
@@ -110,7 +111,7 @@ static size_t apices(const struct vg_layer_work *w, uint32_t *list)
   for (uint32_t i = 0; i < w->c->n_column; i++) {
     int is_apex = 0;
 
-    if (w->view[i] == 0 || vg_shares_root(w->c, i)) continue;
+    if (w->visibility[i] == 0 || vg_shares_root(w->c, i)) continue;
     for (uint32_t j = w->t.first[i]; j < w->t.first[i + 1] && !is_apex; j++)
       is_apex = (w->cap[w->t.corner[j] / 3] & 3) == 1 + w->t.corner[j] % 3;
     if (is_apex) list[n++] = i;
@@ -137,7 +138,7 @@ static void shift_body(void *context, size_t first, size_t end, int worker)
 
     if (s->which && !s->which[i]) continue;
     memset(c->shift, 0, sizeof c->shift);
-    if (w->view[i] == 0) continue;
+    if (w->visibility[i] == 0) continue;
     memcpy(v, c->dir, sizeof v);
     vg_unit(v);
     d = gain(w, (uint32_t)i, v);
@@ -145,7 +146,7 @@ static void shift_body(void *context, size_t first, size_t end, int worker)
       memcpy(v, w->root_dir[i], sizeof v);
       d = gain(w, (uint32_t)i, v);
     }
-    if (d * VG_FACTOR_MAX < 1) w->view[i] = 0;
+    if (d * VG_FACTOR_MAX < 1) w->visibility[i] = 0;
     else if (fabs(d * vg_norm(c->dir) - 1) > 1e-9)
       for (int k = 0; k < 3; k++) c->shift[k] = delta1 * (v[k] / d - c->dir[k]);
   }
@@ -198,13 +199,14 @@ static int even(struct vg_layer_work *w, size_t i, const uint8_t *turn,
       n_mean++;
     }
   }
-  if (!n_mean || w->view[i] == 0 || vg_shares_root(w->c, i)) return 0;
+  if (!n_mean || w->visibility[i] == 0 || vg_shares_root(w->c, i)) return 0;
   k = vg_face_normals(w, i, n);
   for (int try = 0; try < 4; try++, step *= 0.5) {
     for (int x = 0; x < 3; x++)
       v[x] = (1 - step) * from[i][x] + step * mean[x] / n_mean;
     vg_constrain(n_slide, slide, v);
-    if (vg_least_view(k, n, v) >= VIEW_LEAST * w->view[i] * vg_norm(v))
+    if (vg_least_visibility(k, n, v) >=
+        LEAST_VISIBILITY * w->visibility[i] * vg_norm(v))
       return 1;
   }
   return 0;
@@ -225,8 +227,8 @@ vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
     }
   vg_directions_shift(w, turned);
   for (size_t i = 0; i < w->c->n_column; i++)
-    if (w->view[i] == 0 && w->allowed[i] > 0) {
-      vg_heights_lower(w, i, 0, VG_CAUSE_NO_VIEW);
+    if (w->visibility[i] == 0 && w->allowed[i] > 0) {
+      vg_heights_lower(w, i, 0, VG_CAUSE_VISIBILITY);
       turned[i] = 1;
     }
 done:

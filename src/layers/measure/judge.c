@@ -446,7 +446,7 @@ vg_status vg_layers_judge(const struct vg_mesh *surface,
   }
   VG_TRY(count_steps(&j, &sum.n_step, err));
   sum.n_off_plane = count_off_plane(&j);
-  sum.angle_of_top_min = cosine < 1 ? acos(cosine) * DEGREE : 0;
+  sum.top_angle_min = cosine < 1 ? acos(cosine) * DEGREE : 0;
   *out = sum;
 done:
   release(&j, workers);

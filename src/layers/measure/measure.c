@@ -42,7 +42,7 @@ void vg_wall_fields_release(struct vg_wall_fields *w)
   free(w->share);
   free(w->growth);
   free(w->cause);
-  free(w->squeezed);
+  free(w->compressed);
   memset(w, 0, sizeof *w);
 }
 
@@ -159,13 +159,13 @@ static double growth_of(const double (*x)[3], int n)
 }
 
 /* Of the law's height of all levels, what the column reaches. */
-static double share_of(const struct vg_law *law, const struct vg_column *c,
-                       double height)
+static double share_of(const struct vg_growth_law *law,
+                       const struct vg_column *c, double height)
 {
   double d[VG_LEVELS_MAX + 1];
 
   if (c->n >= c->n_wanted && !(c->cap < law->cap)) return 1;
-  vg_law_heights(law, INFINITY, c->n_wanted, d);
+  vg_growth_law_heights(law, INFINITY, c->n_wanted, d);
   return height < d[c->n_wanted] ? height / d[c->n_wanted] : 1;
 }
 
@@ -214,8 +214,8 @@ int vg_column_is_tighter(const struct vg_column *a, const struct vg_column *b)
 {
   assert(a && b);
 
-  int a_tight = a->squeezed != VG_CAUSE_NONE;
-  int b_tight = b->squeezed != VG_CAUSE_NONE;
+  int a_tight = a->compressed != VG_CAUSE_NONE;
+  int b_tight = b->compressed != VG_CAUSE_NONE;
 
   return a_tight != b_tight ? a_tight : a_tight && a->cap < b->cap;
 }
@@ -242,7 +242,7 @@ static void measure_points(void *context, size_t first, size_t end, int worker)
       measure_column(j, c, i);
     }
     j->w->cause[i] = worst->cause;
-    j->w->squeezed[i] = tightest->squeezed;
+    j->w->compressed[i] = tightest->compressed;
   }
 }
 
@@ -295,9 +295,9 @@ static vg_status find_points(struct fields_job *j, struct vg_error *err)
   w->share = vg_alloc(w->n, sizeof *w->share);
   w->growth = vg_alloc(w->n, sizeof *w->growth);
   w->cause = vg_alloc(w->n, sizeof *w->cause);
-  w->squeezed = vg_alloc(w->n, sizeof *w->squeezed);
+  w->compressed = vg_alloc(w->n, sizeof *w->compressed);
   if (!w->point || !w->level || !w->wanted || !w->first || !w->asked ||
-      !w->total || !w->share || !w->growth || !w->cause || !w->squeezed)
+      !w->total || !w->share || !w->growth || !w->cause || !w->compressed)
     return vg_fail_memory(err, "fields over the wall");
   return VG_OK;
 }

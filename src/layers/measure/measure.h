@@ -10,27 +10,27 @@
  * fewer levels. */
 int vg_column_is_worse(const struct vg_column *a, const struct vg_column *b);
 
-/** As much for squeezed: squeezed where the other is not, else by more. */
+/** As much for compressed: compressed where the other is not, else by more. */
 int vg_column_is_tighter(const struct vg_column *a, const struct vg_column *b);
 
 /** Per point of a wall, for pictures and reports. Arrays [n], owned. */
 struct vg_wall_fields {
   size_t n;
-  uint32_t *point;           /* point of the surface, rising */
-  int32_t *level, *wanted;   /* least over its columns */
-  double *first, *asked;     /* wall distance of the first point (to the
-                                triangles at the root, exact geometry), and the
-                                law's delta1, of the column that misses it
-                                most; 0 when no column has a level */
-  double *total;             /* wall distance of the top, least over columns:
-                                to the triangles at the root and on from there
-                                as long as they come nearer */
-  double *share;             /* height of the top over that of all levels at
-                                the law's growth, along the column; least over
-                                columns. 1 where the law asks for none */
-  double *growth;            /* largest ratio of neighbouring layers; 1 for a
-                                single layer, 0 for none */
-  int32_t *cause, *squeezed; /* of the worst column, of the tightest */
+  uint32_t *point;             /* point of the surface, rising */
+  int32_t *level, *wanted;     /* least over its columns */
+  double *first, *asked;       /* wall distance of the first point (to the
+                                  triangles at the root, exact geometry), and
+                                  the law's delta1, of the column that misses it
+                                  most; 0 when no column has a level */
+  double *total;               /* wall distance of the top, least over columns:
+                                  to the triangles at the root and on from there
+                                  as long as they come nearer */
+  double *share;               /* height of the top over that of all levels at
+                                  the law's growth, along the column; least over
+                                  columns. 1 where the law asks for none */
+  double *growth;              /* largest ratio of neighbouring layers; 1 for a
+                                  single layer, 0 for none */
+  int32_t *cause, *compressed; /* of the worst column, of the tightest */
 };
 #define VG_WALL_FIELDS_INIT                                                    \
   {                                                                            \
@@ -54,14 +54,14 @@ struct vg_range {
 struct vg_patch_layers {
   uint32_t patch;
   size_t n_face, n_point;
-  size_t n_bare;     /* faces for which law and local size ask for no
-                        level, so that they have all of them */
-  double full;       /* % of faces of which all columns have the levels
-                        that law and local size ask for; it and all
-                        other shares are 0 where no face has a level */
-  double unsqueezed; /* % of faces that are full at the law's growth */
-  double any;        /* % of faces with at least one level at all three
-                        corners */
+  size_t n_bare;       /* faces for which law and local size ask for no
+                          level, so that they have all of them */
+  double full;         /* % of faces of which all columns have the levels
+                          that law and local size ask for; it and all
+                          other shares are 0 where no face has a level */
+  double uncompressed; /* % of faces that are full at the law's growth */
+  double any;          /* % of faces with at least one level at all three
+                          corners */
   struct vg_range asked, first, level, total, growth;
   /* Height reached over the law's, by area, of a face the mean of its
    * corners: mean; what 5 % of the area stay below, to 0.001; % of the area
@@ -76,8 +76,8 @@ struct vg_patch_layers {
    * middle of the face of the largest. */
   size_t n_top;
   double top_ratio[3], top_at[3];
-  size_t cause[VG_CAUSE_N];    /* faces, by the worst of their columns */
-  size_t squeezed[VG_CAUSE_N]; /* faces, by the tightest of them */
+  size_t cause[VG_CAUSE_N];      /* faces, by the worst of their columns */
+  size_t compressed[VG_CAUSE_N]; /* faces, by the tightest of them */
 };
 
 /** All wall patches by rising patch, and the sum over all in *all. out: owned
@@ -115,10 +115,10 @@ struct vg_layer_judgement {
   size_t n_wall_tet, n_bad_wall_tet; /* what mixed output makes at level 0
                                      where columns share a root; those of no
                                      such volume */
-  size_t n_step;           /* edges whose levels differ by 2 or more */
-  size_t n_off_plane;      /* columns whose points leave a slide plane
-                              with an axis by one bit */
-  double angle_of_top_min; /* smallest angle of a top, degrees; 180
+  size_t n_step;        /* edges whose levels differ by 2 or more */
+  size_t n_off_plane;   /* columns whose points leave a slide plane
+                           with an axis by one bit */
+  double top_angle_min; /* smallest angle of a top, degrees; 180
                               when there is none */
 };
 

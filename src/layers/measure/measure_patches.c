@@ -16,7 +16,7 @@
 /* Counts that become percentages, means that are sums until the end. */
 struct tally {
   struct vg_patch_layers p;
-  size_t n_full, n_unsqueezed, n_any;
+  size_t n_full, n_uncompressed, n_any;
   double area, area_whole;
   double bin[SHARE_BINS + 1]; /* area by share of the law's height */
 };
@@ -103,18 +103,19 @@ static void add_face(const struct patches_job *j, size_t f, struct tally *t)
     if (vg_column_is_worse(c, worst)) worst = c;
     if (vg_column_is_tighter(c, tightest)) tightest = c;
     full &= c->n >= c->n_wanted;
-    loose &= c->squeezed == VG_CAUSE_NONE;
+    loose &= c->compressed == VG_CAUSE_NONE;
     any &= c->n > 0;
     first += j->w->first[j->field[c->root]];
   }
   if (worst->cause < VG_CAUSE_N) t->p.cause[worst->cause]++;
-  if (tightest->squeezed < VG_CAUSE_N) t->p.squeezed[tightest->squeezed]++;
+  if (tightest->compressed < VG_CAUSE_N)
+    t->p.compressed[tightest->compressed]++;
   if (any && j->reynolds > 0)
     note(&t->p.y_plus, vg_y_plus(first / 3, j->reynolds, j->length), t->n_any);
   t->n_any += any;
   t->n_full += full;
   t->p.n_bare += full && !any;
-  t->n_unsqueezed += full && loose;
+  t->n_uncompressed += full && loose;
   add_share(j, f, t);
   t->p.n_face++;
 }
@@ -129,7 +130,7 @@ static void finish(struct tally *t)
   struct vg_patch_layers *p = &t->p;
 
   p->full = percent(t->n_full, p->n_face);
-  p->unsqueezed = percent(t->n_unsqueezed, p->n_face);
+  p->uncompressed = percent(t->n_uncompressed, p->n_face);
   p->any = percent(t->n_any, p->n_face);
   finish_range(&p->asked, p->n_point);
   finish_range(&p->first, p->n_point);
@@ -139,7 +140,8 @@ static void finish(struct tally *t)
   finish_range(&p->y_plus, t->n_any);
   finish_share(t);
   if (!t->n_any)
-    p->full = p->unsqueezed = p->share_mean = p->share_low = p->share_area = 0;
+    p->full = p->uncompressed = p->share_mean = p->share_low = p->share_area =
+      0;
 }
 
 /* Sort the faces of triangles by patch; *n out: patches with faces. */

@@ -139,7 +139,7 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
   double d[VG_LEVELS_MAX + 1];
   const double scale = vg_norm(col->dir);
 
-  vg_law_heights(&cs->law[col->law], col->cap, col->n, d);
+  vg_growth_law_heights(&cs->law[col->law], col->cap, col->n, d);
   *is_short = !(scale * d[col->n] < c->s[c->n - 1]);
   if (*is_short) return VG_OK;
   if (vg_reserve(&cs->path, &w->cap_path, cs->n_path + col->n + 1,

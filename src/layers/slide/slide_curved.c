@@ -241,7 +241,7 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
   if (vg_reserve(&cs->path, &w->cap_path, cs->n_path + c->n + 1,
                  sizeof *cs->path))
     return vg_fail_memory(w->err, "bent columns");
-  vg_law_heights(&cs->law[c->law], c->cap, c->n, d);
+  vg_growth_law_heights(&cs->law[c->law], c->cap, c->n, d);
   c->bent = cs->n_path;
   memcpy(cs->path[cs->n_path++], root, 3 * sizeof *root);
   for (int l = 1; l <= c->n; l++) {

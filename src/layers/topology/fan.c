@@ -13,11 +13,11 @@
  * the direction, elsewhere the most normal one. */
 #define LEAST_CLEAR 0.3 /* of a step, that it leads away from the wall */
 #define SMOOTH_WALL 0.95
-#define LEAST_VIEW 0.1 /* cosine between a sector's column and faces */
+#define LEAST_VISIBILITY 0.1 /* cosine between a sector's column and faces */
 #define NEEDED_ANGLE                                                           \
-  60                     /* degrees: ridges where fans are only made if one    \
-                            column sees too little (L19) */
-#define NEEDED_VIEW 0.02 /* cosine between one column and all faces */
+  60 /* degrees: ridges where fans are only made if one                        \
+        column sees too little (L19) */
+#define NEEDED_VISIBILITY 0.02 /* cosine between one column and all faces */
 
 struct build {
   const struct vg_wall *w;
@@ -135,7 +135,8 @@ static void into_plane(const struct vg_fan_shape *s, double v[3])
     v[k] = fabs(s->plane[k]) == 1 ? 0 : v[k] - d * s->plane[k];
 }
 
-static double least_view(size_t n, const double (*normal)[3], const double *v)
+static double least_visibility(size_t n, const double (*normal)[3],
+                               const double *v)
 {
   double least = 1;
 
@@ -167,14 +168,14 @@ static int direct(struct build *b, const struct vg_fan_shape *s, uint32_t h,
   }
   into_plane(s, dir);
   if (vg_unit(dir) > 0 &&
-      least_view(k, (const double(*)[3])b->ring, dir) >= SMOOTH_WALL)
+      least_visibility(k, (const double(*)[3])b->ring, dir) >= SMOOTH_WALL)
     return 1;
   for (size_t i = 0; i < k; i++) into_plane(s, b->ring[i]);
   if (!vg_most_normal((int)k, (const double(*)[3])b->ring, best)) return 0;
   into_plane(s, best);
   if (!(vg_unit(best) > 0)) return 0;
   memcpy(dir, best, sizeof best);
-  return least_view(k, (const double(*)[3])b->ring, dir) >= least;
+  return least_visibility(k, (const double(*)[3])b->ring, dir) >= least;
 }
 
 /* The ring of p cut at its ridges: first corner of each sector and how many
@@ -209,7 +210,7 @@ static int one_will_do(struct build *b, const struct vg_fan_shape *s,
 {
   double dir[3];
 
-  if (!direct(b, s, start, n, LEAST_VIEW, dir)) return 0;
+  if (!direct(b, s, start, n, LEAST_VISIBILITY, dir)) return 0;
   for (int i = 0; i < s->n_sector; i++)
     if (vg_dot(dir, s->sector[i]) < b->cos_half) return 0;
   return 1;
@@ -304,7 +305,7 @@ static int is_needed(struct build *b, const struct vg_fan_shape *s,
 {
   double dir[3];
 
-  return !direct(b, s, start, n, NEEDED_VIEW, dir);
+  return !direct(b, s, start, n, NEEDED_VISIBILITY, dir);
 }
 
 static vg_status visit(struct build *b, uint32_t p, struct vg_error *err)
@@ -326,7 +327,7 @@ static vg_status visit(struct build *b, uint32_t p, struct vg_error *err)
   for (int i = 0; i < s.n_sector; i++) {
     uint32_t at = corner[(i + 1) % s.n_sector];
 
-    if (!direct(b, &s, corner[i], size[i], LEAST_VIEW, s.sector[i]))
+    if (!direct(b, &s, corner[i], size[i], LEAST_VISIBILITY, s.sector[i]))
       return VG_OK;
     vg_sub(wall_point(w, vg_half_next(at)), wall_point(w, at), s.ridge[i]);
     vg_unit(s.ridge[i]);

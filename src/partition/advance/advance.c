@@ -57,9 +57,9 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
   memcpy(n->front.face, m->tri, m->n_tri * sizeof *n->front.face);
   for (size_t k = 0; k < m->n_point; k++) n->front.id[k] = VG_POINT_ID(0, k);
   n->levels = p->options.levels;
-  n->per_cube = p->options.cells_per_cube;
+  n->per_octant = p->options.cells_per_octant;
   vg_comm_bind_node(comm, 1);
-  st = vg_load_new(&n->front, p->sizing, n->per_cube,
+  st = vg_load_new(&n->front, p->sizing, n->per_octant,
                    p->options.threads * vg_comm_node_size(comm), &n->load, err);
   vg_comm_bind_node(comm, 0);
   VG_TRY(st);
@@ -129,9 +129,9 @@ static vg_status cut_like_parts(struct vg_partition *p, struct vg_comm *comm,
   vg_status st = vg_comm_max(comm, 1, &cells, err);
 
   if (st < 0) return st;
-  rule->leaf_cells = vg_parting_leaf_cells(cells, p->options.parting.n_part,
-                                           p->options.maker != NULL,
-                                           rule->leaf_cells);
+  rule->leaf_cells = vg_decomposition_leaf_cells(
+    cells, p->options.decomposition.n_part, p->options.maker != NULL,
+    rule->leaf_cells);
   if (root && (root->to_part || vg_node_wants_cut(p, root)))
     st = vg_select_sort(&root->front, err);
   return vg_comm_agree(comm, st, err);
@@ -153,7 +153,7 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
   if (st == VG_OK) st = cut_like_parts(p, comm, root, err);
   if (st == VG_OK && p->options.maker == vg_discrete_part) {
     st = vg_coarse_mesh(p, comm, root, &coarse, spans ? &before : NULL, err);
-    if (root) p->options.parting.coarse = &coarse;
+    if (root) p->options.decomposition.coarse = &coarse;
   }
   if (st == VG_OK) {
     st = run_tasks(p, comm, root != NULL, &root, spans, err);
@@ -163,7 +163,7 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
   st = vg_comm_agree(comm, st, err);
   vg_spans_release(&before);
   vg_node_free(root);
-  p->options.parting.coarse = NULL;
+  p->options.decomposition.coarse = NULL;
   vg_coarse_cells_release(&coarse);
   return st;
 }
@@ -207,7 +207,8 @@ static vg_status sum_report(struct vg_partition_report *r, struct vg_comm *comm,
 
   if (st == VG_OK) st = vg_entries_agree(&vg_partition_entries, r, comm, err);
   if (st == VG_OK)
-    st = vg_entries_agree(&vg_parting_entries, &r->parting, comm, err);
+    st = vg_entries_agree(&vg_decomposition_entries, &r->decomposition, comm,
+                          err);
   return st;
 }
 

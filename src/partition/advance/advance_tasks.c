@@ -175,7 +175,8 @@ static vg_status submit_child(struct vg_partition *p, struct vg_engine *e,
   if (vg_node_wants_cut(p, c)) return submit_start(e, c, err);
   pthread_mutex_lock(&p->lock);
   p->report.n_leaf++;
-  /* parts of a parting have their serials, and are as large as was asked */
+  /* parts of a decomposition have their serials, and are as large as was asked
+   */
   p->report.n_uncut += leaf > 0 && !c->serial &&
                        c->load.cells > VG_OUTGROWN * leaf;
   pthread_mutex_unlock(&p->lock);
@@ -286,7 +287,7 @@ static vg_status leaf_done(struct vg_partition *p, struct vg_engine *e,
   pthread_mutex_unlock(&p->lock);
   more = VG_OUTGROWN * (n->load.cells > leaf ? n->load.cells : leaf) /
          (n->load.cells > 1 ? n->load.cells : 1);
-  for (size_t k = 0; k < n->load.n; k++) n->load.cube[k].cells *= (float)more;
+  for (size_t k = 0; k < n->load.n; k++) n->load.octant[k].cells *= (float)more;
   n->load.cells *= more;
   n->is_planned = 0;
   snprintf(n->path + strlen(n->path), sizeof n->path - strlen(n->path), "+");
@@ -349,7 +350,7 @@ static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
   vg_put(w, sizeof n->path, 1, n->path);
   vg_put(w, N_NUMBER, sizeof *number, number);
   vg_put(w, 1, sizeof l->at, l->at); /* ribs are made where it is cut */
-  vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
+  vg_put(w, 1, sizeof n->per_octant, &n->per_octant);
   vg_put(w, 1, sizeof size, &size);
   vg_put(w, load.n, 1, load.data);
   vg_front_put(w, &n->front, 1);
@@ -369,7 +370,7 @@ static struct vg_node *get_node(struct vg_reader *r)
   vg_get(r, sizeof n->path, 1, n->path);
   vg_get(r, N_NUMBER, sizeof *number, number);
   vg_get(r, 1, sizeof n->lattice.at, n->lattice.at);
-  vg_get(r, 1, sizeof n->per_cube, &n->per_cube);
+  vg_get(r, 1, sizeof n->per_octant, &n->per_octant);
   vg_get(r, 1, sizeof size, &size);
   n->levels = number[0];
   n->retry = number[1];

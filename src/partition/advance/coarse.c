@@ -169,7 +169,7 @@ static vg_status grow(struct vg_partition *p, struct vg_comm *comm,
   o.levels = 0;
   o.cyclic = 0;
   o.maker = NULL;
-  o.parting.n_part = 0;
+  o.decomposition.n_part = 0;
   o.mesher = NULL;
   o.max_cells = 0;
   o.fail_leaves = 0;
@@ -232,7 +232,7 @@ vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
                          const struct vg_node *root, struct vg_coarse_cells *c,
                          struct vg_spans *spans, struct vg_error *err)
 {
-  struct vg_parting_options o = VG_PARTING_OPTIONS_INIT;
+  struct vg_decomposition_options o = VG_DECOMPOSITION_OPTIONS_INIT;
   struct vg_partition *made = NULL;
   double t = vg_clock(), factor = 0;
   vg_status st = VG_OK;
@@ -241,8 +241,8 @@ vg_status vg_coarse_mesh(struct vg_partition *p, struct vg_comm *comm,
   assert(!c->n_point && !c->n_cell && !c->x && !c->cell);
   assert(!spans || !spans->n);
   if (root) {
-    o = vg_node_parting(p, root);
-    st = vg_parting_check_options(&o, root->load.cells, err);
+    o = vg_node_decomposition(p, root);
+    st = vg_decomposition_check_options(&o, root->load.cells, err);
     factor = vg_discrete_coarsening(root->load.cells, &o);
   }
   VG_TRY(vg_comm_agree(comm, st, err));

@@ -2,14 +2,14 @@
 #ifndef VG_PARTITION_ADVANCE_WAYS_H
 #define VG_PARTITION_ADVANCE_WAYS_H
 
-#include "partition/cut/parting.h"
+#include "partition/cut/decomposition.h"
 
 struct vg_way {
   const char *name;
-  vg_parting_maker *maker; /* NULL: cut by planes of final cells */
+  vg_decomposition_maker *maker; /* NULL: cut by planes of final cells */
 };
 
-/** By enum vg_decomposition. */
+/** By enum vg_decomposition_method. */
 extern const struct vg_way vg_ways[VG_DECOMPOSITIONS];
 
 #endif

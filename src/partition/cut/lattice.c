@@ -125,7 +125,7 @@ static int next_axis(const struct vg_load *load, const struct vg_cut_rule *rule,
 static int is_outside(const struct vg_load *load, const double x[3])
 {
   for (size_t i = 0; i < load->n; i++) {
-    const struct vg_load_cube *c = &load->cube[i];
+    const struct vg_load_octant *c = &load->octant[i];
     int within = 1;
 
     for (int k = 0; k < 3; k++)

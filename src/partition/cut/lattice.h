@@ -69,7 +69,7 @@ int vg_lattice_plan(const struct vg_load *load, const struct vg_cut_rule *rule,
 
 /** Ribs for large tiles, so that both sides can be grown at the same time: the
  * smaller the leaves, the more workers are expected, and the smaller are the
- * pieces. O(cubes + dots log dots) for cubes that planes pass.
+ * pieces. O(octants + dots log dots) for octants that planes pass.
  * @param l  without ribs; these are to be released (vg_lattice_release)
  * VG_ERR_MEMORY. */
 vg_status vg_lattice_add_ribs(const struct vg_load *load,

@@ -1,5 +1,5 @@
 /* Where large tiles are parted. Outline: what the tile's zone will hold is
- * read off the cubes that its plane passes, as dots of the plane. Lines that
+ * read off the octants that its plane passes, as dots of the plane. Lines that
  * share the dots out evenly are tried, parallel to each axis of the plane and
  * as fans from each corner of the tile, where the body may be that spacing
  * grows away from; those which meet the fewest cells become ribs, as many as
@@ -23,7 +23,7 @@ static const double room = 2.5; /* C7 */
 
 enum { MOST_PIECES = 8 };
 
-/* What a cube has of the zone. */
+/* What a octant has of the zone. */
 struct dot {
   size_t tile, number;
   double x[2], half, h, cells;
@@ -247,7 +247,7 @@ static vg_status find_dots(const struct vg_load *load,
   size_t cap = 0;
 
   for (size_t k = 0; k < load->n; k++) {
-    const struct vg_load_cube *q = &load->cube[k];
+    const struct vg_load_octant *q = &load->octant[k];
     double half = (double)q->half, h = (double)q->h;
     double x[2] = { (double)q->at[b], (double)q->at[c] };
 

@@ -31,16 +31,16 @@ struct vg_node {
   char path[VG_PATH_MAX];
   struct vg_front front;
   struct vg_load load;
-  double per_cube;  /* cells per cube of the spacing, as the zones of
-                       its ancestors turned out */
-  int levels;       /* bisections left, in a partition by levels */
-  int retry;        /* attempts that failed */
-  int is_final;     /* a leaf whatever it needs */
-  double fill_work; /* of a leaf, see vg_front_work; 0: not known */
-  int to_part;      /* by a maker of partings, not by planes */
-  double elsewhere; /* s of processor time that this took in other
-                       processes */
-  uint32_t serial;  /* of its leaf; 0: none yet */
+  double per_octant; /* cells per octant of the spacing, as the zones of
+                      its ancestors turned out */
+  int levels;        /* bisections left, in a partition by levels */
+  int retry;         /* attempts that failed */
+  int is_final;      /* a leaf whatever it needs */
+  double fill_work;  /* of a leaf, see vg_front_work; 0: not known */
+  int to_part;       /* by a maker of decompositions, not by planes */
+  double elsewhere;  /* s of processor time that this took in other
+                        processes */
+  uint32_t serial;   /* of its leaf; 0: none yet */
   /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
   size_t cap_x, cap_id, cap_face; /* of the front; 0: just its size */
   struct vg_select select;
@@ -61,7 +61,7 @@ struct vg_node {
   struct vg_region *region; /* [n_work] theirs */
   uint32_t **point, **face; /* [n_work] what of the front each was given */
   struct vg_change *change; /* [n_work] what came of it */
-  double zone_cells, zone_volume;
+  double separator_cells, zone_volume;
   size_t n_pencil;  /* pencils so far: numbers go on */
   size_t n_patch;   /* boxes that closed what was left, likewise */
   size_t n_blocked; /* works that made nothing, or what crosses the
@@ -217,7 +217,7 @@ vg_status vg_recut_voids(struct vg_partition *p, struct vg_comm *comm,
  * behind the others on their fronts, with names of their serials; whoever has
  * the points knows them by these names from then on. Collective.
  * own: [n_own] serials of what this rank took back; node: [n], with serials, k:
- * their numbers, the same whoever has them. (recut_names.c) */
+ * their numbers, the same whoever has them. (recut_ids.c) */
 vg_status vg_recut_adopt(struct vg_partition *p, struct vg_comm *comm,
                          size_t n_own, const uint32_t *own, size_t n,
                          struct vg_node *const *node, const uint32_t *k,
@@ -259,8 +259,8 @@ vg_status vg_node_part(struct vg_partition *p, struct vg_node *n,
                        const struct vg_engine *e, struct vg_error *err);
 
 /** What it asks a maker for. (node_part.c) */
-struct vg_parting_options vg_node_parting(const struct vg_partition *p,
-                                          const struct vg_node *n);
+struct vg_decomposition_options vg_node_decomposition(
+  const struct vg_partition *p, const struct vg_node *n);
 
 /** The children's loads, from the node's and their fronts; cells are multiplied
  * by `correction` (vg_load_split). (node_split.c) */

@@ -1,7 +1,7 @@
 /* A void that a maker parts: its parts become children, as those of a cut do.
  * Points of interfaces are on two parts and more. One that is filled as it is
  * has them for its own: its leaf adopts them, as those of larger voids do
- * (recut_names.c), wherever it is filled. */
+ * (recut_ids.c), wherever it is filled. */
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,45 +26,47 @@ static struct vg_digest key_of(const struct vg_partition *p,
 }
 
 static int find(struct vg_partition *p, struct vg_digest key, uint32_t serial,
-                struct vg_parting *out)
+                struct vg_decomposition *out)
 {
   struct vg_bytes b = { 0, NULL };
   struct vg_reader r;
 
   if (vg_store_find(p->options.store, key, &b, NULL) != VG_OK) return 0;
   r = (struct vg_reader){ .data = b.data, .n = b.n };
-  vg_parting_get(&r, serial, out);
+  vg_decomposition_get(&r, serial, out);
   free(b.data);
   return !r.bad;
 }
 
 static void keep(struct vg_partition *p, struct vg_digest key, uint32_t serial,
-                 struct vg_parting *made)
+                 struct vg_decomposition *made)
 {
   struct vg_writer w = { .cap = 0 };
 
-  vg_parting_put(&w, made, serial);
+  vg_decomposition_put(&w, made, serial);
   if (!w.refused) vg_store_keep(p->options.store, key, w.bytes.n, w.bytes.data);
   free(w.bytes.data);
 }
 
 /* As many parts as were asked for, or as there are leaves in the void. */
-struct vg_parting_options vg_node_parting(const struct vg_partition *p,
-                                          const struct vg_node *n)
+struct vg_decomposition_options vg_node_decomposition(
+  const struct vg_partition *p, const struct vg_node *n)
 {
-  struct vg_parting_options o = p->options.parting;
+  struct vg_decomposition_options o = p->options.decomposition;
 
-  o.cells_per_cube = n->per_cube;
+  o.cells_per_octant = n->per_octant;
   if (!o.n_part)
-    o.n_part = vg_parting_parts(n->load.cells, p->options.rule.leaf_cells);
+    o.n_part = vg_decomposition_parts(n->load.cells,
+                                      p->options.rule.leaf_cells);
   return o;
 }
 
 static vg_status find_or_make(struct vg_partition *p, struct vg_node *n,
                               uint32_t serial, const struct vg_engine *e,
-                              struct vg_parting *out, struct vg_error *err)
+                              struct vg_decomposition *out,
+                              struct vg_error *err)
 {
-  struct vg_parting_options o = vg_node_parting(p, n);
+  struct vg_decomposition_options o = vg_node_decomposition(p, n);
   struct vg_digest key = { { 0, 0 } };
   int is_found = 0;
   vg_status st = VG_OK;
@@ -76,12 +78,12 @@ static vg_status find_or_make(struct vg_partition *p, struct vg_node *n,
   if (!is_found)
     st = p->options.maker(&n->front, &n->load, p->sizing, &o, serial, e, out,
                           err);
-  if (st == VG_OK) st = vg_parting_check(out, &n->front, serial, err);
+  if (st == VG_OK) st = vg_decomposition_check(out, &n->front, serial, err);
   if (st == VG_OK && p->options.store && !is_found) keep(p, key, serial, out);
   pthread_mutex_lock(&p->lock);
   p->report.n_found += (uint64_t)is_found;
   if (st == VG_OK) {
-    p->report.parting = out->report;
+    p->report.decomposition = out->report;
     p->report.n_part = out->n_part;
   }
   pthread_mutex_unlock(&p->lock);
@@ -94,8 +96,8 @@ static vg_status find_or_make(struct vg_partition *p, struct vg_node *n,
 enum { NOBODY = UINT32_MAX };
 
 struct shares {
-  struct vg_parting *parting;
-  uint32_t serial;  /* of the parting's points */
+  struct vg_decomposition *decomposition;
+  uint32_t serial;  /* of the decomposition's points */
   uint32_t *owner;  /* [n_point] part that has each */
   uint32_t *number; /* [n_point] among its owner's */
   uint32_t *of;     /* [n_part] serials of the parts' leaves; 0: it
@@ -106,15 +108,15 @@ struct shares {
  * be cut. */
 static void claim(struct shares *s, int may_cut)
 {
-  for (size_t k = 0; k < s->parting->n_part; k++) {
-    const struct vg_part *q = &s->parting->part[k];
+  for (size_t k = 0; k < s->decomposition->n_part; k++) {
+    const struct vg_part *q = &s->decomposition->part[k];
 
     if (!q->may_cut != !may_cut) continue;
     for (size_t v = 0; v < q->front.n_point; v++) {
-      uint64_t name = q->front.id[v];
+      uint64_t id = q->front.id[v];
 
-      if (name >> 32 == s->serial && s->owner[(uint32_t)name] == NOBODY)
-        s->owner[(uint32_t)name] = (uint32_t)k;
+      if (id >> 32 == s->serial && s->owner[(uint32_t)id] == NOBODY)
+        s->owner[(uint32_t)id] = (uint32_t)k;
     }
   }
 }
@@ -122,7 +124,7 @@ static void claim(struct shares *s, int may_cut)
 static vg_status share_points(struct shares *s, struct vg_partition *p,
                               struct vg_error *err)
 {
-  struct vg_parting *q = s->parting;
+  struct vg_decomposition *q = s->decomposition;
   uint32_t *n = vg_calloc(q->n_part, sizeof *n);
 
   s->owner = vg_alloc(q->n_point, sizeof *s->owner);
@@ -151,16 +153,16 @@ static vg_status share_points(struct shares *s, struct vg_partition *p,
 static vg_status rename_front(const struct shares *s, size_t part,
                               struct vg_error *err)
 {
-  struct vg_front *f = &s->parting->part[part].front;
+  struct vg_front *f = &s->decomposition->part[part].front;
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
   double(*x)[3] = vg_alloc(f->n_point, sizeof *x);
-  uint64_t *name = vg_alloc(f->n_point, sizeof *name);
+  uint64_t *id = vg_alloc(f->n_point, sizeof *id);
   size_t n = f->n_point;
 
-  if (!to || !x || !name) {
+  if (!to || !x || !id) {
     free(to);
     free(x);
-    free(name);
+    free(id);
     return vg_fail_memory(err, "the parts of a void");
   }
   for (size_t v = 0; v < f->n_point; v++)
@@ -173,8 +175,8 @@ static vg_status rename_front(const struct shares *s, size_t part,
     at = owner == part ? n + s->number[q] : other++;
     to[v] = (uint32_t)at;
     memcpy(x[at], f->x[v], sizeof *x);
-    name[at] = owner == NOBODY ? f->id[v]
-                               : VG_POINT_ID(s->of[owner], s->number[q]);
+    id[at] = owner == NOBODY ? f->id[v]
+                             : VG_POINT_ID(s->of[owner], s->number[q]);
   }
   for (size_t i = 0; i < f->n_face; i++)
     for (int k = 0; k < 3; k++) f->face[i][k] = to[f->face[i][k]];
@@ -182,7 +184,7 @@ static vg_status rename_front(const struct shares *s, size_t part,
   free(f->id);
   free(to);
   f->x = x;
-  f->id = name;
+  f->id = id;
   return VG_OK;
 }
 
@@ -191,7 +193,7 @@ static vg_status rename_front(const struct shares *s, size_t part,
 static vg_status make_child(const struct shares *s, struct vg_node *n, size_t k,
                             struct vg_error *err)
 {
-  struct vg_part *q = &s->parting->part[k];
+  struct vg_part *q = &s->decomposition->part[k];
   char path[VG_PATH_MAX];
   struct vg_node *c;
   vg_status st = vg_select_sort(&q->front, err);
@@ -201,7 +203,7 @@ static vg_status make_child(const struct shares *s, struct vg_node *n, size_t k,
   snprintf(path, sizeof path, "%.*s.%zu", VG_PATH_MAX - 24, n->path, k);
   c = vg_node_new(path, &q->front);
   if (!c) return vg_fail_memory(err, "the parts of a void");
-  c->per_cube = n->per_cube;
+  c->per_octant = n->per_octant;
   c->levels = n->levels;
   c->serial = s->of[k];
   c->is_final = !q->may_cut;
@@ -212,26 +214,27 @@ static vg_status make_child(const struct shares *s, struct vg_node *n, size_t k,
 vg_status vg_node_part(struct vg_partition *p, struct vg_node *n,
                        const struct vg_engine *e, struct vg_error *err)
 {
-  struct vg_parting parting = VG_PARTING_INIT;
-  struct shares s = { &parting, vg_partition_serial(p), NULL, NULL, NULL };
+  struct vg_decomposition decomposition = VG_DECOMPOSITION_INIT;
+  struct shares s = { &decomposition, vg_partition_serial(p), NULL, NULL,
+                      NULL };
   vg_status st;
 
   assert(n->to_part && p->options.maker && !n->n_child);
-  st = find_or_make(p, n, s.serial, e, &parting, err);
+  st = find_or_make(p, n, s.serial, e, &decomposition, err);
   if (st != VG_OK) goto done; /* or stopped */
-  if (!parting.n_part) {
+  if (!decomposition.n_part) {
     st = vg_fail(err, VG_ERR_GEOMETRY, "a void fell into no parts");
     goto done;
   }
   VG_TRY(share_points(&s, p, err));
-  n->child = vg_calloc(parting.n_part, sizeof *n->child);
+  n->child = vg_calloc(decomposition.n_part, sizeof *n->child);
   if (!n->child) st = vg_fail_memory(err, "the parts of a void");
-  for (size_t k = 0; st == VG_OK && k < parting.n_part; k++)
+  for (size_t k = 0; st == VG_OK && k < decomposition.n_part; k++)
     st = make_child(&s, n, k, err);
   if (st == VG_OK) st = vg_node_share_load(n, 1, e, err);
   if (st == VG_OK) vg_node_plan_children(p, n, e);
 done:
-  vg_parting_release(&parting);
+  vg_decomposition_release(&decomposition);
   free(s.owner);
   free(s.number);
   free(s.of);

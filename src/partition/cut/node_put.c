@@ -118,7 +118,7 @@ static vg_status count_changes(const struct put *put, struct vg_partition *p,
       st = vg_partition_note_drop(p, c, err);
       continue;
     }
-    n->zone_cells += (double)c->made.n_cell;
+    n->separator_cells += (double)c->made.n_cell;
     n->zone_volume += c->made.volume;
   }
   return st;

@@ -114,14 +114,14 @@ static vg_status number(struct vg_partition *p, size_t n, const struct share *s,
 
 /* --- serving slices ------------------------------------------------------ */
 
-static uint32_t id_of(const struct vg_partition *p, uint64_t name)
+static uint32_t id_of(const struct vg_partition *p, uint64_t id)
 {
-  struct vg_place_of key = { .serial = (uint32_t)(name >> 32) };
+  struct vg_place_of key = { .serial = (uint32_t)(id >> 32) };
   const struct vg_place_of *at;
 
-  if (!key.serial) return (uint32_t)name;
+  if (!key.serial) return (uint32_t)id;
   at = bsearch(&key, p->place, p->n_place, sizeof key, by_serial);
-  return at ? (uint32_t)(at->point + (uint32_t)name) : UINT32_MAX;
+  return at ? (uint32_t)(at->point + (uint32_t)id) : UINT32_MAX;
 }
 
 static int kind_of(char kind)

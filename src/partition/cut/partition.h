@@ -10,7 +10,7 @@
 #include "core/fill/fill.h"
 #include "core/mesher/fill_with.h"
 #include "partition/cut/lattice.h"
-#include "partition/cut/parting.h"
+#include "partition/cut/decomposition.h"
 #include "partition/store/store.h"
 
 /** Cells to a leaf, by default: measured, docs/performance-parallel.md. */
@@ -18,11 +18,11 @@
 
 struct vg_partition_options {
   struct vg_cut_rule rule;
-  int levels;              /* bisections, where rule.leaf_cells is 0 */
-  vg_parting_maker *maker; /* parts the void before any of it is filled, by
-                              the options behind; NULL: planes cut it */
-  struct vg_parting_options parting;
-  double cells_per_cube; /* expected (load.h); what zones hold corrects it,
+  int levels;                    /* bisections, where rule.leaf_cells is 0 */
+  vg_decomposition_maker *maker; /* parts the void before any of it is filled,
+                              by the options behind; NULL: planes cut it */
+  struct vg_decomposition_options decomposition;
+  double cells_per_octant; /* expected (load.h); what zones hold corrects it,
                             and leaves that outgrow it are cut again */
   int threads;
   int cyclic; /* 1: leaves are dealt out beforehand (engine.h),
@@ -45,8 +45,8 @@ struct vg_partition_options {
 #define VG_PARTITION_OPTIONS_INIT                                              \
   {                                                                            \
     .rule = { VG_LEAF_CELLS, -1, 0 }, .threads = 1, .sweeps = 2,               \
-    .parting = VG_PARTING_OPTIONS_INIT,                                        \
-    .cells_per_cube = VG_LOAD_CELLS_PER_CUBE                                   \
+    .decomposition = VG_DECOMPOSITION_OPTIONS_INIT,                            \
+    .cells_per_octant = VG_LOAD_CELLS_PER_OCTANT                               \
   }
 
 /** What happened, summed over all ranks. */
@@ -82,15 +82,16 @@ struct vg_partition_report {
   uint64_t n_widened_cell; /* cells there, made for nothing */
   double widened;          /* seconds, in wall */
   uint64_t n_part;         /* that a maker made; 0: there was none */
-  struct vg_parting_report parting;
+  struct vg_decomposition_report decomposition;
   double estimate; /* cells expected at the start */
   double wall;     /* seconds of the engine */
   double number;   /* seconds of numbering */
 };
 
-/** Fields of it, and of its parting, that ranks combine (partition_report.c).
+/** Fields of it, and of its decomposition, that ranks combine
+ * (partition_report.c).
  */
-extern const struct vg_entries vg_partition_entries, vg_parting_entries;
+extern const struct vg_entries vg_partition_entries, vg_decomposition_entries;
 
 /** The cells of a void, on the ranks that made them. */
 struct vg_partition;

@@ -49,7 +49,7 @@ void vg_recut_release(struct vg_partition *p)
 /* --- voids that were not filled, known to all ranks ---------------------- */
 
 struct corners {
-  uint64_t name[3];
+  uint64_t id[3];
 }; /* of a face, rising */
 
 struct unfilled {
@@ -112,7 +112,7 @@ static void put_void(struct vg_writer *w, const struct vg_node *n,
     const uint32_t *v = f->face[k];
     struct corners c = corners_of(f->id[v[0]], f->id[v[1]], f->id[v[2]]);
 
-    vg_put(w, 3, sizeof *c.name, c.name);
+    vg_put(w, 3, sizeof *c.id, c.id);
   }
 }
 
@@ -176,8 +176,8 @@ done:
 
 /* First the zones beside a void are taken back, then, time by time, these and
  * the leaf that has most faces in common with it, in the end all that there
- * is. Where no zone is beside it, as between the parts of a parting, a leaf is
- * taken at once. */
+ * is. Where no zone is beside it, as between the parts of a decomposition, a
+ * leaf is taken at once. */
 enum { NO_LEAF, ONE_LEAF, ALL_LEAVES };
 
 enum { ONE_BY_ONE = 3 }; /* C17 */
@@ -340,7 +340,7 @@ done:
 
 /* --- to those that fill them --------------------------------------------- */
 
-static void send_front(const struct parcels *q, uint32_t of, double per_cube,
+static void send_front(const struct parcels *q, uint32_t of, double per_octant,
                        const struct vg_front *f)
 {
   uint32_t root = vg_root_of(q->up, of);
@@ -348,7 +348,7 @@ static void send_front(const struct parcels *q, uint32_t of, double per_cube,
   uint64_t head = root;
 
   vg_put(w, 1, sizeof head, &head);
-  vg_put(w, 1, sizeof per_cube, &per_cube);
+  vg_put(w, 1, sizeof per_octant, &per_octant);
   vg_front_put(w, f, 1);
 }
 
@@ -372,7 +372,7 @@ static vg_status send_unfilled(struct parcels *q, struct vg_error *err)
 
     memcpy(key.path, n->path, sizeof key.path);
     u = bsearch(&key, q->of, q->n, sizeof *q->of, by_path);
-    if (u) send_front(q, (uint32_t)(u - q->of), n->per_cube, &n->front);
+    if (u) send_front(q, (uint32_t)(u - q->of), n->per_octant, &n->front);
     if (st == VG_OK) st = add_gone(q, n->serial, err);
     vg_node_free(n);
   }
@@ -413,7 +413,7 @@ static vg_status send_pieces(struct parcels *q, vg_path *path, size_t *n_path,
 /* A void in the making, on the rank that fills it. */
 struct wider {
   struct vg_front front;
-  double per_cube;
+  double per_octant;
 };
 
 static vg_status receive(const struct parcels *q, struct wider *wider,
@@ -424,15 +424,15 @@ static vg_status receive(const struct parcels *q, struct wider *wider,
 
   while (st == VG_OK && !r.bad && r.at < r.n) {
     struct vg_front f = VG_FRONT_INIT;
-    double per_cube = 0;
+    double per_octant = 0;
     uint64_t head = 0;
 
     vg_get(&r, 1, sizeof head, &head);
-    vg_get(&r, 1, sizeof per_cube, &per_cube);
+    vg_get(&r, 1, sizeof per_octant, &per_octant);
     if (r.bad || head >= q->n) break;
     vg_front_get(&r, &f, 1);
     if (!r.bad) st = vg_front_join(&wider[head].front, &f, err);
-    wider[head].per_cube = fmax(wider[head].per_cube, per_cube);
+    wider[head].per_octant = fmax(wider[head].per_octant, per_octant);
     vg_front_release(&f);
   }
   return st == VG_OK && r.at < r.n ? vg_fail_damaged(err, "a front") : st;
@@ -492,10 +492,10 @@ static vg_status new_node(struct vg_partition *p, const char *path,
   snprintf(longer, sizeof longer, "%.*s%c", VG_PATH_MAX - 2, path, larger);
   n = *out = vg_node_new(longer, f);
   if (!n) return vg_fail_memory(err, "a void");
-  n->per_cube = wider->per_cube;
+  n->per_octant = wider->per_octant;
   n->is_final = 1;
   n->serial = vg_partition_serial(p);
-  VG_TRY(vg_load_new(&n->front, p->sizing, n->per_cube, p->options.threads,
+  VG_TRY(vg_load_new(&n->front, p->sizing, n->per_octant, p->options.threads,
                      &n->load, err));
   st = vg_select_sort(&n->front, err);
 done:

@@ -63,7 +63,7 @@ static vg_status cancel(struct vg_front *f, struct vg_error *err)
 
 struct spot {
   double x[3];
-  uint64_t name;
+  uint64_t id;
   uint32_t was;
 };
 
@@ -75,7 +75,7 @@ static int by_place(const void *a, const void *b)
 
   for (int k = 0; k < 3; k++)
     if (s->x[k] != t->x[k]) return s->x[k] < t->x[k] ? -1 : 1;
-  return s->name < t->name ? -1 : s->name > t->name;
+  return s->id < t->id ? -1 : s->id > t->id;
 }
 
 /* Only points that faces use, by their places. to: [f->n_point] scratch. */
@@ -90,14 +90,14 @@ static void place_points(struct vg_front *f, struct spot *s, uint32_t *to)
 
       if (to[v] != UINT32_MAX) continue;
       to[v] = 0;
-      s[n] = (struct spot){ .name = f->id[v], .was = v };
+      s[n] = (struct spot){ .id = f->id[v], .was = v };
       memcpy(s[n++].x, f->x[v], sizeof s->x);
     }
   if (n) qsort(s, n, sizeof *s, by_place);
   for (size_t k = 0; k < n; k++) {
     to[s[k].was] = (uint32_t)k;
     memcpy(f->x[k], s[k].x, sizeof *f->x);
-    f->id[k] = s[k].name;
+    f->id[k] = s[k].id;
   }
   f->n_point = n;
   for (size_t k = 0; k < f->n_face; k++)

@@ -165,7 +165,7 @@ static vg_status to_piece(struct vg_partition *p, struct vg_filled *m,
   piece.x = vg_alloc(n_used + m->n_point, sizeof *piece.x);
   if (!piece.in || !piece.x) goto refused;
   take_points(&piece, m, f, number, n_used);
-  /* points that a leaf adopts are the last of its front (recut_names.c) */
+  /* points that a leaf adopts are the last of its front (recut_ids.c) */
   piece.n_in = n_used;
   while (piece.n_in && piece.in[piece.n_in - 1] >> 32 == serial) piece.n_in--;
   piece.n_adopted = n_used - piece.n_in;

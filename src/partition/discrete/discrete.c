@@ -14,7 +14,8 @@
 static const double cells_per_part = 150; /* D1 */
 static const double least_factor = 1.5, most_factor = 6;
 
-double vg_discrete_coarsening(double cells, const struct vg_parting_options *o)
+double vg_discrete_coarsening(double cells,
+                              const struct vg_decomposition_options *o)
 {
   double f = least_factor;
 
@@ -46,7 +47,7 @@ static const double *point_of(const struct fill *a, size_t k)
 }
 
 /* Points of interfaces that are not the front's, in the order of all. */
-static vg_status name_points(struct fill *a, struct vg_parting *out,
+static vg_status name_points(struct fill *a, struct vg_decomposition *out,
                              struct vg_error *err)
 {
   size_t n_tri = a->s->begin[a->f->n_face];
@@ -80,7 +81,7 @@ static void parts_of(const struct fill *a, size_t i, uint32_t part[2])
   part[1] = a->c->part[a->c->t.cell[side >> 2].link[side & 3] >> 2];
 }
 
-static vg_status make_faces(const struct fill *a, struct vg_parting *out,
+static vg_status make_faces(const struct fill *a, struct vg_decomposition *out,
                             struct vg_error *err)
 {
   const struct vg_coarse *c = a->c;
@@ -146,7 +147,7 @@ static vg_status make_points(const struct fill *a, struct vg_front *f,
   return VG_OK;
 }
 
-static vg_status make_parts(struct fill *a, struct vg_parting *out,
+static vg_status make_parts(struct fill *a, struct vg_decomposition *out,
                             struct vg_error *err)
 {
   vg_status st = name_points(a, out, err);
@@ -182,9 +183,9 @@ vg_status vg_discrete_refuse(vg_status st, const char *why, double factor,
 
 static vg_status coarse(const struct vg_front *front,
                         const struct vg_sizing *sizing,
-                        const struct vg_parting_options *o,
+                        const struct vg_decomposition_options *o,
                         const struct vg_engine *e, struct vg_coarse *c,
-                        struct vg_parting_report *r, struct vg_error *err)
+                        struct vg_decomposition_report *r, struct vg_error *err)
 {
   struct vg_error why = { .text = "" };
   vg_status st = vg_coarse_fill(front, sizing, r->coarsening, o->coarse, e, c,
@@ -208,18 +209,18 @@ static vg_status coarse(const struct vg_front *front,
 vg_status vg_discrete_part(const struct vg_front *front,
                            const struct vg_load *load,
                            const struct vg_sizing *sizing,
-                           const struct vg_parting_options *o, uint32_t serial,
-                           const struct vg_engine *e, struct vg_parting *out,
-                           struct vg_error *err)
+                           const struct vg_decomposition_options *o,
+                           uint32_t serial, const struct vg_engine *e,
+                           struct vg_decomposition *out, struct vg_error *err)
 {
   struct vg_coarse c = { 0 };
   struct vg_interface f = { 0 };
   struct vg_sheets s = { 0 };
-  struct vg_parting made = VG_PARTING_INIT;
-  struct vg_parting_report *r = &made.report;
+  struct vg_decomposition made = VG_DECOMPOSITION_INIT;
+  struct vg_decomposition_report *r = &made.report;
   struct fill a = { front, &c, &f, &s, serial, 0, NULL, NULL };
-  double t[VG_PARTING_STEPS + 1];
-  vg_status st = vg_parting_check_options(o, load->cells, err);
+  double t[VG_DECOMPOSITION_STEPS + 1];
+  vg_status st = vg_decomposition_check_options(o, load->cells, err);
 
   assert(front && sizing && !out->n_point && !out->n_part && !out->part);
   if (st < 0) return st;
@@ -240,12 +241,12 @@ vg_status vg_discrete_part(const struct vg_front *front,
   r->n_face = s.begin[f.n_face];
   VG_TRY(make_parts(&a, &made, err));
   t[4] = vg_clock();
-  for (int k = 0; k < VG_PARTING_STEPS; k++) r->time[k] = t[k + 1] - t[k];
-  if (o->coarse) r->time[VG_PARTING_COARSE] += o->coarse->seconds;
+  for (int k = 0; k < VG_DECOMPOSITION_STEPS; k++) r->time[k] = t[k + 1] - t[k];
+  if (o->coarse) r->time[VG_DECOMPOSITION_COARSE] += o->coarse->seconds;
   *out = made;
   memset(&made, 0, sizeof made);
 done:
-  vg_parting_release(&made);
+  vg_decomposition_release(&made);
   vg_sheets_release(&s);
   vg_interface_release(&f);
   vg_coarse_release(&c);

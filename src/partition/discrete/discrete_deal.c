@@ -31,12 +31,12 @@ struct weights {
   const struct vg_load *load;
   struct vg_load_finder *finder;
   const struct vg_sizing *sizing;
-  double per_cube;
+  double per_octant;
   double *flat; /* [c->t.n_cell] out: triangles that each adds to
                    the cost of its faces */
 };
 
-/* D3: cells to a volume, as the load has them; where it has no cube, as at a
+/* D3: cells to a volume, as the load has them; where it has no octant, as at a
  * wall, by the size. */
 static double density_at(const struct weights *w, const double x[3])
 {
@@ -44,13 +44,13 @@ static double density_at(const struct weights *w, const double x[3])
   double h;
 
   if (k != SIZE_MAX) {
-    const struct vg_load_cube *c = &w->load->cube[k];
+    const struct vg_load_octant *c = &w->load->octant[k];
     const double half = (double)c->half;
 
     return (double)c->cells / (8 * half * half * half * (double)c->part);
   }
   h = vg_sizing_at(w->sizing, x);
-  return w->per_cube / (h * h * h);
+  return w->per_octant / (h * h * h);
 }
 
 /* The mean over a cell, at points of a lattice in it: four to an edge, or, of
@@ -369,7 +369,8 @@ static int hangs_together(const struct dual *d, uint32_t *part,
 }
 
 static vg_status deal(struct vg_coarse *c, const struct dual *d,
-                      const struct vg_parting_options *o, struct vg_error *err)
+                      const struct vg_decomposition_options *o,
+                      struct vg_error *err)
 {
   struct vg_graph_options how = { o->n_part, imbalance, 0, &c->elsewhere };
   vg_status st = VG_OK;
@@ -381,7 +382,7 @@ static vg_status deal(struct vg_coarse *c, const struct dual *d,
 
 vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
                          const struct vg_sizing *sizing,
-                         const struct vg_parting_options *o,
+                         const struct vg_decomposition_options *o,
                          const struct vg_engine *e, uint64_t *n_apart,
                          struct vg_error *err)
 {
@@ -389,7 +390,7 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
                        load,
                        NULL,
                        sizing,
-                       o->cells_per_cube,
+                       o->cells_per_octant,
                        vg_alloc(c->t.n_cell, sizeof *w.flat) };
   struct dual d = { .begin = NULL };
   vg_status st = VG_OK;

@@ -35,7 +35,7 @@ vg_status vg_coarse_fill(const struct vg_front *front,
  * (discrete_deal.c) */
 vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
                          const struct vg_sizing *sizing,
-                         const struct vg_parting_options *o,
+                         const struct vg_decomposition_options *o,
                          const struct vg_engine *e, uint64_t *n_apart,
                          struct vg_error *err);
 

@@ -1,6 +1,6 @@
 /* Outline: an octree is refined until its nodes are a few target edges wide;
  * what is wholly outside is dropped where it is found. Branches are worked on
- * by several threads; their cubes are joined in the order of the tree. */
+ * by several threads; their octants are joined in the order of the tree. */
 #include "partition/load/load.h"
 
 #include <assert.h>
@@ -13,29 +13,30 @@
 #include "base/parallel.h"
 #include "partition/load/load_tree.h"
 
-/* Widest cube in target edges, free and where the front passes. */
+/* Widest octant in target edges, free and where the front passes. */
 #define WIDE_FREE 3.0 /* C14 */
 #define WIDE_FRONT 2.0
-/* In large meshes they are wider, to have about this many cubes, or one for so
- * many cubes of the target edge. Nodes this wide tell how large a mesh is; a
- * leaf fills its width's cube on average. */
-#define MANY_CUBES 40000.0
+/* In large meshes they are wider, to have about this many octants, or one for
+ * so many octants of the target edge. Nodes this wide tell how large a mesh is;
+ * a leaf fills its width's octant on average. */
+#define MANY_OCTANTS 40000.0
 #define EDGES_MOST 280.0
 #define WIDE_ROUGH 12.0
 #define FILLED 0.35
-/* More cubes, of 2,500 cells each, are a mistake in the sizes. */
-#define CUBES_MOST 4000000
-/* With fewer cubes than this, narrower ones are tried, down to LEAST edges. */
-#define FEW_CUBES 64
+/* More octants, of 2,500 cells each, are a mistake in the sizes. */
+#define OCTANTS_MOST 4000000
+/* With fewer octants than this, narrower ones are tried, down to LEAST edges.
+ */
+#define FEW_OCTANTS 64
 #define LEAST 1.0
 /* From this gradient on VG_LOAD_GRADED counts in full. */
 #define GRADIENT 0.05 /* C15 */
-/* Where h changes by more than this times itself across a cube, the cube's
+/* Where h changes by more than this times itself across a octant, the octant's
  * parts are added up, to this depth. */
 #define STEEP 1.2 /* C16 */
 #define STEEP_DEPTH 4
 /* A field whose gradient is more than HIDES can have edges that no sample of a
- * cube shows: it is looked at closer while the least is below this share. */
+ * octant shows: it is looked at closer while the least is below this share. */
 #define HIDES 0.5
 #define HIDDEN 0.5
 /* Narrower parts, in the least edge, are never divided. */
@@ -48,16 +49,17 @@
 /* Cells for each face of the front at least: what meshes have in which hardly
  * a point is away from the front. */
 #define CELLS_PER_FACE 1.5
-/* A cube with more triangles holds details that its density need not know. */
+/* A octant with more triangles holds details that its density need not know. */
 #define CROWD 400
-/* Places of the root cube that are tried when volumes do not agree. */
+/* Places of the root octant that are tried when volumes do not agree. */
 #define PLACES 3
 
-/* --- cubes of a branch --------------------------------------------------- */
+/* --- octants of a branch ---------------------------------------------------
+ */
 
-struct cubes {
+struct octants {
   size_t n, cap;
-  struct vg_load_cube *cube;
+  struct vg_load_octant *octant;
 };
 
 struct maker {
@@ -66,15 +68,15 @@ struct maker {
   const struct vg_sizing *pace; /* what cells next to the front can follow,
                                where the field is steeper; else NULL */
   int is_steep;                 /* the field is, somewhere */
-  double per_cube;
+  double per_octant;
   double narrow, wide; /* divides, multiplies the widths allowed */
   size_t n_branch, cap_branch, large;
-  _Atomic size_t *emitted; /* cubes of all branches */
+  _Atomic size_t *emitted; /* octants of all branches */
   struct branch {
     struct vg_load_node node;
     uint32_t *item; /* [node.n] */
-    struct cubes out;
-    double crossed; /* sum of squares of volumes, cubes crossed */
+    struct octants out;
+    double crossed; /* sum of squares of volumes, octants crossed */
     int refused;
   } * branch;
 };
@@ -82,7 +84,7 @@ struct maker {
 /* Of a node: mean of 1 / h^3, that times the correction for a gradient, and
  * the gradient. */
 struct density {
-  double cubes, cells, slope;
+  double octants, cells, slope;
 };
 
 static double edge_at(const struct maker *m, const double x[3])
@@ -92,7 +94,7 @@ static double edge_at(const struct maker *m, const double x[3])
   return m->pace ? fmin(h, vg_sizing_at(m->pace, x)) : h;
 }
 
-/* Of a cube around mid. A rule of four points, exact for quadratics. */
+/* Of a octant around mid. A rule of four points, exact for quadratics. */
 static struct density density_around(const struct maker *m, const double mid[3],
                                      double half)
 {
@@ -137,16 +139,16 @@ static struct density mean_density(const struct maker *m,
   return density_around(m, mid, half);
 }
 
-/* Whether h changes so much across a cube that the rule misses what is near
+/* Whether h changes so much across a octant that the rule misses what is near
  * its finest end. */
 static int is_steep(struct density d, double half)
 {
   const double change = 2 * half * d.slope;
 
-  return change * change * change * d.cubes > STEEP * STEEP * STEEP;
+  return change * change * change * d.octants > STEEP * STEEP * STEEP;
 }
 
-/* Whether there are edges in a cube that are much finer than its density
+/* Whether there are edges in a octant that are much finer than its density
  * shows, and of which it is more than `wide` wide. */
 static int hides(const struct maker *m, const double mid[3], double half,
                  double density, double wide)
@@ -160,16 +162,16 @@ static int hides(const struct maker *m, const double mid[3], double half,
          least * least * least * density < HIDDEN * HIDDEN * HIDDEN;
 }
 
-/* The same from parts of the cube. left: cubes of the target edge that matter;
- * where there are more, the node is divided in any case. */
+/* The same from parts of the octant. left: octants of the target edge that
+ * matter; where there are more, the node is divided in any case. */
 static struct density add_up(const struct maker *m, const double mid[3],
                              double half, int depth, double *left)
 {
   struct density sum = density_around(m, mid, half);
 
   if (*left < 0 || ((depth <= 0 || !is_steep(sum, half)) &&
-                    !hides(m, mid, half, sum.cubes, CLOSE))) {
-    *left -= 8 * half * half * half * sum.cubes;
+                    !hides(m, mid, half, sum.octants, CLOSE))) {
+    *left -= 8 * half * half * half * sum.octants;
     return sum;
   }
   sum = (struct density){ 0, 0, 0 };
@@ -180,13 +182,13 @@ static struct density add_up(const struct maker *m, const double mid[3],
     for (int k = 0; k < 3; k++)
       x[k] = mid[k] + (o >> k & 1 ? 0.5 : -0.5) * half;
     d = add_up(m, x, 0.5 * half, depth - 1, left);
-    sum.cubes += d.cubes / 8;
+    sum.octants += d.octants / 8;
     sum.cells += d.cells / 8;
   }
   return sum;
 }
 
-/* Most cubes of the target edge that a leaf has. */
+/* Most octants of the target edge that a leaf has. */
 static double most_in(const struct maker *m, const struct vg_load_node *node)
 {
   const double wide = m->wide * (node->n ? WIDE_FRONT : WIDE_FREE) / m->narrow;
@@ -194,7 +196,7 @@ static double most_in(const struct maker *m, const struct vg_load_node *node)
   return wide * wide * wide;
 }
 
-/* Cube root to single precision: h is of no use beyond. */
+/* Octant root to single precision: h is of no use beyond. */
 static double cube_root(double x)
 {
   int e;
@@ -209,8 +211,8 @@ static double cube_root(double x)
   return ldexp(y, e / 3);
 }
 
-/* The parts of a cube around samples of it that lie inside, of all of one that
- * is: how many, and the density there. */
+/* The parts of a octant around samples of it that lie inside, of all of one
+ * that is: how many, and the density there. */
 static int sample_steep(const struct maker *m, const struct vg_load_node *node,
                         const int32_t owner[VG_LOAD_SAMPLES],
                         struct density *density)
@@ -230,25 +232,25 @@ static int sample_steep(const struct maker *m, const struct vg_load_node *node,
     for (int k = 0; k < 3; k++)
       x[k] = t->lo[k] + node->at[k] * t->unit + (i >> k & 1 ? 3 : 1) * half;
     d = add_up(m, x, half, STEEP_DEPTH - 1, &left);
-    sum.cubes += d.cubes;
+    sum.octants += d.octants;
     sum.cells += d.cells;
     inside++;
   }
   if (inside) {
-    sum.cubes /= inside;
+    sum.octants /= inside;
     sum.cells /= inside;
     *density = sum;
   }
   return inside;
 }
 
-/* Samples of a cube that the front passes: how many are inside, and the
- * density there. Without bias, however wide the cube is. */
+/* Samples of a octant that the front passes: how many are inside, and the
+ * density there. Without bias, however wide the octant is. */
 static int sample(const struct maker *m, const struct vg_load_stack *s,
                   const struct vg_load_node *node, struct density *density)
 {
   const struct vg_load_tree *t = m->tree;
-  const double more = density->cells / density->cubes;
+  const double more = density->cells / density->octants;
   int32_t owner[VG_LOAD_SAMPLES] = { 1, 1, 1, 1, 1, 1, 1, 1 };
   uint32_t at[3];
   double sum = 0, mid[3], half;
@@ -256,7 +258,7 @@ static int sample(const struct maker *m, const struct vg_load_stack *s,
 
   if (node->n) vg_load_sample(t, s, node, owner, at);
   half = middle_of(m, node, mid);
-  if (is_steep(*density, half) || hides(m, mid, half, density->cubes, CLOSE))
+  if (is_steep(*density, half) || hides(m, mid, half, density->octants, CLOSE))
     return sample_steep(m, node, owner, density);
   if (!node->n) return VG_LOAD_SAMPLES;
   for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
@@ -273,8 +275,8 @@ static int sample(const struct maker *m, const struct vg_load_stack *s,
     inside++;
   }
   if (inside) {
-    density->cubes = sum / inside;
-    density->cells = more * density->cubes;
+    density->octants = sum / inside;
+    density->cells = more * density->octants;
   }
   return inside;
 }
@@ -286,19 +288,20 @@ static int emit(const struct maker *m, struct branch *b,
   const struct vg_load_tree *t = m->tree;
   const double side = vg_load_side(node) * t->unit;
   const double volume = side * side * side;
-  struct vg_load_cube *c;
+  struct vg_load_octant *c;
 
   if (node->n) b->crossed += volume * volume;
   if (!inside) return 0;
-  if (atomic_fetch_add(m->emitted, 1) >= CUBES_MOST) return -1;
-  if (vg_reserve(&b->out.cube, &b->out.cap, b->out.n + 1, sizeof *c)) return -1;
-  c = &b->out.cube[b->out.n++];
+  if (atomic_fetch_add(m->emitted, 1) >= OCTANTS_MOST) return -1;
+  if (vg_reserve(&b->out.octant, &b->out.cap, b->out.n + 1, sizeof *c))
+    return -1;
+  c = &b->out.octant[b->out.n++];
   for (int k = 0; k < 3; k++)
     c->at[k] = (float)(t->lo[k] + node->at[k] * t->unit + 0.5 * side);
   c->half = (float)(0.5 * side);
-  c->h = (float)(1 / cube_root(density.cubes));
+  c->h = (float)(1 / cube_root(density.octants));
   c->part = (float)inside / VG_LOAD_SAMPLES;
-  c->cells = (float)(m->per_cube * density.cells * volume * (double)c->part);
+  c->cells = (float)(m->per_octant * density.cells * volume * (double)c->part);
   return 0;
 }
 
@@ -321,10 +324,10 @@ static int refine(const struct maker *m, struct branch *b,
 
   if (!node->n && node->owner < 1) return 0;
   density = mean_density(m, node);
-  if (is_leaf(m, node, density.cubes)) {
+  if (is_leaf(m, node, density.octants)) {
     const int inside = sample(m, s, node, &density);
 
-    if (is_leaf(m, node, density.cubes))
+    if (is_leaf(m, node, density.octants))
       return emit(m, b, node, density, inside);
   }
   if (vg_load_octants(m->tree, s, node, part, 1)) return -1;
@@ -382,7 +385,7 @@ static int plan(struct maker *m, struct vg_load_stack *s,
 
   if (!node->n && node->owner < 1) return 0;
   if ((node->n <= m->large && node->level) ||
-      is_leaf(m, node, mean_density(m, node).cubes))
+      is_leaf(m, node, mean_density(m, node).octants))
     return add_branch(m, s, node);
   if (vg_load_octants(m->tree, s, node, part, threads)) return -1;
   for (int o = 0; o < 8 && !bad; o++) bad = plan(m, s, &part[o], threads);
@@ -407,17 +410,17 @@ static int plan_all(struct maker *m, int threads)
 struct rough_job {
   const struct maker *m;
   double *sum;           /* [branch] */
-  _Atomic uint64_t seen; /* whole cubes of all; from ROUGH_MOST on no more
+  _Atomic uint64_t seen; /* whole octants of all; from ROUGH_MOST on no more
                             are looked for: widths would be the same */
 };
-#define ROUGH_MOST (MANY_CUBES * EDGES_MOST)
+#define ROUGH_MOST (MANY_OCTANTS * EDGES_MOST)
 
-/* Cubes of the target edge in a node, whatever is the void. */
+/* Octants of the target edge in a node, whatever is the void. */
 static double rough(struct rough_job *job, const struct vg_load_node *node)
 {
   const struct maker *m = job->m;
   const double side = vg_load_side(node) * m->tree->unit;
-  const double n = mean_density(m, node).cubes * side * side * side;
+  const double n = mean_density(m, node).octants * side * side * side;
   struct vg_load_node part = *node;
   double sum = 0, mid[3], half;
 
@@ -446,7 +449,7 @@ static void rough_part(void *context, size_t first, size_t end, int worker)
     job->sum[i] = rough(job, &job->m->branch[i].node);
 }
 
-/* Choose the widths for a tolerable number of cubes. */
+/* Choose the widths for a tolerable number of octants. */
 static int widen(struct maker *m, int threads)
 {
   struct rough_job job = { m, vg_alloc(m->n_branch, sizeof *job.sum), 0 };
@@ -457,13 +460,13 @@ static int widen(struct maker *m, int threads)
   for (size_t i = 0; i < m->n_branch; i++) sum += job.sum[i];
   free(job.sum);
   if ((double)job.seen >= ROUGH_MOST) sum = ROUGH_MOST;
-  sum = fmin(sum / MANY_CUBES, EDGES_MOST);
+  sum = fmin(sum / MANY_OCTANTS, EDGES_MOST);
   wide = cube_root(sum / FILLED) / WIDE_FREE;
   m->wide = wide > 1 ? wide : 1;
   return 0;
 }
 
-/* All cubes in order. crossed: see struct branch. */
+/* All octants in order. crossed: see struct branch. */
 static int join(const struct maker *m, struct vg_load *out, double *crossed)
 {
   size_t n = 0;
@@ -472,14 +475,14 @@ static int join(const struct maker *m, struct vg_load *out, double *crossed)
     if (m->branch[i].refused) return -1;
     n += m->branch[i].out.n;
   }
-  out->cube = vg_alloc(n, sizeof *out->cube);
-  if (!out->cube) return -1;
+  out->octant = vg_alloc(n, sizeof *out->octant);
+  if (!out->octant) return -1;
   out->n = 0;
   *crossed = 0;
   for (size_t i = 0; i < m->n_branch; i++) {
-    const struct cubes *c = &m->branch[i].out;
+    const struct octants *c = &m->branch[i].out;
 
-    if (c->n) memcpy(out->cube + out->n, c->cube, c->n * sizeof *c->cube);
+    if (c->n) memcpy(out->octant + out->n, c->octant, c->n * sizeof *c->octant);
     out->n += c->n;
     *crossed += m->branch[i].crossed;
   }
@@ -501,14 +504,14 @@ static int make(struct maker *m, int threads, struct vg_load *out,
   }
   for (size_t i = 0; i < m->n_branch; i++) {
     free(m->branch[i].item);
-    free(m->branch[i].out.cube);
+    free(m->branch[i].out.octant);
   }
   return bad;
 }
 
 /* --- the whole ----------------------------------------------------------- */
 
-/* A root cube with room to spare, at a place where planes of the lattice are
+/* A root octant with room to spare, at a place where planes of the lattice are
  * unlikely to lie in planes of the front. */
 static void place_root(struct vg_load_tree *t, const double lo[3],
                        const double hi[3], int place)
@@ -531,11 +534,11 @@ static void place_root(struct vg_load_tree *t, const double lo[3],
   }
 }
 
-/* A void that no sample has hit: one cube of its volume. */
-static int lone_cube(const struct maker *m, const double lo[3],
-                     const double hi[3], double volume, struct vg_load *l)
+/* A void that no sample has hit: one octant of its volume. */
+static int lone_octant(const struct maker *m, const double lo[3],
+                       const double hi[3], double volume, struct vg_load *l)
 {
-  struct vg_load_cube *c = vg_alloc(1, sizeof *c);
+  struct vg_load_octant *c = vg_alloc(1, sizeof *c);
   double x[3], side = 0, h;
 
   if (!c) return -1;
@@ -548,9 +551,9 @@ static int lone_cube(const struct maker *m, const double lo[3],
   c->half = (float)(0.5 * side);
   c->h = (float)h;
   c->part = (float)(volume / (side * side * side));
-  c->cells = (float)(m->per_cube * volume / (h * h * h));
-  free(l->cube);
-  l->cube = c;
+  c->cells = (float)(m->per_octant * volume / (h * h * h));
+  free(l->octant);
+  l->octant = c;
   l->n = 1;
   l->cells = (double)c->cells;
   return 0;
@@ -558,16 +561,16 @@ static int lone_cube(const struct maker *m, const double lo[3],
 
 static vg_status refused(const struct maker *m, struct vg_error *err)
 {
-  if (atomic_load(m->emitted) <= CUBES_MOST)
+  if (atomic_load(m->emitted) <= OCTANTS_MOST)
     return vg_fail_memory(err, "the estimate of cells");
   return vg_fail(err, VG_ERR_UNSUPPORTED,
                  "the sizes ask for more than %.0f "
                  "billion cells; are hmin, hmax and the sources in the unit of "
                  "the surface?",
-                 CUBES_MOST * EDGES_MOST * m->per_cube * 1e-9);
+                 OCTANTS_MOST * EDGES_MOST * m->per_octant * 1e-9);
 }
 
-/* The best of several places of the root cube; nearly always the first. */
+/* The best of several places of the root octant; nearly always the first. */
 static vg_status build(struct maker *m, struct vg_load_tree *t,
                        const struct vg_front *v, double volume, int threads,
                        struct vg_load *out, struct vg_error *err)
@@ -595,10 +598,10 @@ static vg_status build(struct maker *m, struct vg_load_tree *t,
       *out = l;
       best = off;
     } else vg_load_release(&l);
-    /* what samples of 1/8 of a cube may be wrong by, and a bit */
+    /* what samples of 1/8 of a octant may be wrong by, and a bit */
     if (off <= 0.01 * volume + 0.5 * sqrt(crossed)) break;
   }
-  if (!out->n && lone_cube(m, lo, hi, volume, out))
+  if (!out->n && lone_octant(m, lo, hi, volume, out))
     return vg_fail_memory(err, "the estimate of cells");
   return VG_OK;
 }
@@ -631,23 +634,23 @@ static void raise_to(struct vg_load *l, double least)
   if (!(l->cells > 0 && by > 1)) return;
   l->cells = 0;
   for (size_t i = 0; i < l->n; i++) {
-    l->cube[i].cells *= (float)by;
-    l->cells += (double)l->cube[i].cells;
+    l->octant[i].cells *= (float)by;
+    l->cells += (double)l->octant[i].cells;
   }
 }
 
 vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
-                      double cells_per_cube, int threads, struct vg_load *out,
+                      double cells_per_octant, int threads, struct vg_load *out,
                       struct vg_error *err)
 {
-  assert(sizing && out && cells_per_cube > 0 && threads >= 0);
+  assert(sizing && out && cells_per_octant > 0 && threads >= 0);
   struct vg_load_tree t = { .unit = 1 };
   _Atomic size_t emitted = 0;
   struct vg_sizing *pace = NULL;
   struct maker m = { .tree = &t,
                      .sizing = sizing,
                      .is_steep = vg_sizing_slope(sizing) > HIDES,
-                     .per_cube = cells_per_cube,
+                     .per_octant = cells_per_octant,
                      .narrow = 1,
                      .emitted = &emitted };
   struct vg_load l = VG_LOAD_INIT;
@@ -664,7 +667,7 @@ vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
   for (; st == VG_OK; m.narrow *= 2) {
     vg_load_release(&l);
     st = build(&m, &t, v, volume, threads, &l, err);
-    if (l.n >= FEW_CUBES || WIDE_FREE / m.narrow <= LEAST) break;
+    if (l.n >= FEW_OCTANTS || WIDE_FREE / m.narrow <= LEAST) break;
   }
   free(m.branch);
   vg_sizing_free(pace);

@@ -1,4 +1,4 @@
-/* Outline: cubes are assigned to the blocks of a lattice by where they are,
+/* Outline: octants are assigned to the blocks of a lattice by where they are,
  * in chunks that threads share: first all are counted, then written, so their
  * order in a block is the parent's. */
 #include <assert.h>
@@ -13,7 +13,7 @@
 
 enum { CHUNK = 4096 };
 
-/* Thinner slices of a cube are nothing. */
+/* Thinner slices of a octant are nothing. */
 #define SLICE 1e-3
 
 struct deal {
@@ -22,15 +22,16 @@ struct deal {
   const double *const *at;
   double reach, correction;
   size_t n_block, n_chunk;
-  size_t *count; /* [n_chunk][n_block] cubes, then their places */
+  size_t *count; /* [n_chunk][n_block] octants, then their places */
   struct vg_load *out;
   int is_counting;
 };
 
-/* --- cubes --------------------------------------------------------------- */
+/* --- octants ---------------------------------------------------------------
+ */
 
-/* Part of a cube's cells in block k of an axis, zones left out. */
-static double slice(const struct deal *d, const struct vg_load_cube *c,
+/* Part of a octant's cells in block k of an axis, zones left out. */
+static double slice(const struct deal *d, const struct vg_load_octant *c,
                     int axis, int k)
 {
   const struct vg_load *l = d->parent;
@@ -47,8 +48,8 @@ static double slice(const struct deal *d, const struct vg_load_cube *c,
   return hi > lo ? (to - from) / (hi - lo) : from <= to;
 }
 
-/* Blocks of an axis, first .. end - 1, that a cube touches. */
-static void find_range(const struct deal *d, const struct vg_load_cube *c,
+/* Blocks of an axis, first .. end - 1, that a octant touches. */
+static void find_range(const struct deal *d, const struct vg_load_octant *c,
                        int axis, int *first, int *end)
 {
   const double lo = (double)c->at[axis] - (double)c->half;
@@ -62,12 +63,12 @@ static void find_range(const struct deal *d, const struct vg_load_cube *c,
 }
 
 static void put(struct deal *d, size_t *count, size_t block,
-                const struct vg_load_cube *c, double part)
+                const struct vg_load_octant *c, double part)
 {
-  struct vg_load_cube *to;
+  struct vg_load_octant *to;
 
   if (!d->is_counting) {
-    to = &d->out[block].cube[count[block]];
+    to = &d->out[block].octant[count[block]];
     *to = *c;
     to->part = (float)(part * (double)c->part);
     to->cells = (float)(d->correction * part * (double)c->cells);
@@ -75,8 +76,8 @@ static void put(struct deal *d, size_t *count, size_t block,
   count[block]++;
 }
 
-static void deal_cube(struct deal *d, size_t *count,
-                      const struct vg_load_cube *c)
+static void deal_octant(struct deal *d, size_t *count,
+                        const struct vg_load_octant *c)
 {
   const size_t nx = (size_t)d->n[0] + 1, ny = (size_t)d->n[1] + 1;
   int first[3], end[3];
@@ -111,7 +112,7 @@ static void deal_part(void *context, size_t first, size_t end, int worker)
 
     if (b > d->parent->n) b = d->parent->n;
     for (; a < b; a++)
-      deal_cube(d, d->count + i * d->n_block, &d->parent->cube[a]);
+      deal_octant(d, d->count + i * d->n_block, &d->parent->octant[a]);
   }
 }
 
@@ -148,8 +149,8 @@ static int make_room(struct deal *d)
     }
     bound(d, b, l);
     if (!l->n) continue;
-    l->cube = vg_alloc(l->n, sizeof *l->cube);
-    if (!l->cube) return -1;
+    l->octant = vg_alloc(l->n, sizeof *l->octant);
+    if (!l->octant) return -1;
   }
   return 0;
 }
@@ -200,7 +201,7 @@ static void finish_part(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) {
     struct vg_load *l = &f->l[i];
 
-    for (size_t k = 0; k < l->n; k++) l->cells += (double)l->cube[k].cells;
+    for (size_t k = 0; k < l->n; k++) l->cells += (double)l->octant[k].cells;
     f->bad[i] = vg_load_index(l, 1, NULL) < 0;
   }
 }

@@ -1,4 +1,4 @@
-/* Loads as messages. The index is not sent: it follows from the cubes. */
+/* Loads as messages. The index is not sent: it follows from the octants. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -26,8 +26,8 @@ vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,
   struct head h = { .n = l->n,
                     .unit = l->unit,
                     .is_block = (uint64_t)l->is_block };
-  const size_t cubes = l->n * sizeof *l->cube;
-  unsigned char *data = vg_alloc(sizeof h + cubes, 1);
+  const size_t octants = l->n * sizeof *l->octant;
+  unsigned char *data = vg_alloc(sizeof h + octants, 1);
 
   if (!data) return vg_fail_memory(err, "a message with a load");
   memcpy(h.magic, magic, sizeof magic);
@@ -35,13 +35,13 @@ vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,
   memcpy(h.from, l->from, sizeof h.from);
   memcpy(h.to, l->to, sizeof h.to);
   memcpy(data, &h, sizeof h);
-  if (cubes) memcpy(data + sizeof h, l->cube, cubes);
-  out->n = sizeof h + cubes;
+  if (octants) memcpy(data + sizeof h, l->octant, octants);
+  out->n = sizeof h + octants;
   out->data = data;
   return VG_OK;
 }
 
-static int is_sound(const struct vg_load_cube *c)
+static int is_sound(const struct vg_load_octant *c)
 {
   for (int k = 0; k < 3; k++)
     if (!isfinite(c->at[k])) return 0;
@@ -60,8 +60,8 @@ vg_status vg_load_unpack(const struct vg_bytes *in, struct vg_load *out,
   if (in->n < sizeof h) goto damaged;
   memcpy(&h, in->data, sizeof h);
   if (memcmp(h.magic, magic, sizeof magic) ||
-      h.n != (in->n - sizeof h) / sizeof *l.cube ||
-      (in->n - sizeof h) % sizeof *l.cube || !isfinite(h.unit) ||
+      h.n != (in->n - sizeof h) / sizeof *l.octant ||
+      (in->n - sizeof h) % sizeof *l.octant || !isfinite(h.unit) ||
       !isfinite(h.lo[0] + h.lo[1] + h.lo[2]) || h.is_block > 1)
     goto damaged;
   for (int k = 0; k < 3; k++)
@@ -72,12 +72,12 @@ vg_status vg_load_unpack(const struct vg_bytes *in, struct vg_load *out,
   memcpy(l.lo, h.lo, sizeof l.lo);
   memcpy(l.from, h.from, sizeof l.from);
   memcpy(l.to, h.to, sizeof l.to);
-  l.cube = vg_alloc(l.n, sizeof *l.cube);
-  if (!l.cube) return vg_fail_memory(err, "a load from a message");
-  if (l.n) memcpy(l.cube, in->data + sizeof h, l.n * sizeof *l.cube);
+  l.octant = vg_alloc(l.n, sizeof *l.octant);
+  if (!l.octant) return vg_fail_memory(err, "a load from a message");
+  if (l.n) memcpy(l.octant, in->data + sizeof h, l.n * sizeof *l.octant);
   for (size_t i = 0; i < l.n; i++) {
-    if (!is_sound(&l.cube[i])) goto damaged;
-    l.cells += (double)l.cube[i].cells;
+    if (!is_sound(&l.octant[i])) goto damaged;
+    l.cells += (double)l.octant[i].cells;
   }
   if (vg_load_index(&l, 1, err) < 0) {
     vg_load_release(&l);

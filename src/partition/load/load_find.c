@@ -1,6 +1,6 @@
-/* Outline: cubes are in the order of an octree, in which places have an order,
- * too: that of the first bit, from the top, in which two of them differ along
- * some axis. So the cube of a place is found by bisection. */
+/* Outline: octants are in the order of an octree, in which places have an
+ * order, too: that of the first bit, from the top, in which two of them differ
+ * along some axis. So the octant of a place is found by bisection. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,10 +9,10 @@
 #include "base/memory.h"
 #include "partition/load/load_tree.h"
 
-/* A cube in the lattice of the octree. */
+/* A octant in the lattice of the octree. */
 struct place {
   uint32_t at[3], side; /* lower corner */
-  uint32_t cube;
+  uint32_t octant;
 };
 
 struct vg_load_finder {
@@ -51,18 +51,18 @@ static int by_place(const void *a, const void *b)
   return by_order(((const struct place *)a)->at, ((const struct place *)b)->at);
 }
 
-/* Cubes are kept in single precision; their sides are powers of two and their
- * corners multiples of them. 0: this is no cube of the octree. */
+/* Octants are kept in single precision; their sides are powers of two and their
+ * corners multiples of them. 0: this is no octant of the octree. */
 static int place_of(const struct vg_load *l, size_t i, struct place *p)
 {
-  const struct vg_load_cube *c = &l->cube[i];
+  const struct vg_load_octant *c = &l->octant[i];
   const double side = 2 * (double)c->half / l->unit;
   int e;
 
   if (!(side >= 1 && side < 0x1p31)) return 0;
   if (frexp(side, &e) > 0.75) e++;
   p->side = (uint32_t)1 << (e - 1);
-  p->cube = (uint32_t)i;
+  p->octant = (uint32_t)i;
   for (int k = 0; k < 3; k++) {
     const double at = ((double)c->at[k] - (double)c->half - l->lo[k]) /
                       l->unit / p->side;
@@ -117,5 +117,5 @@ size_t vg_load_find(const struct vg_load_finder *f, const double x[3])
   for (int k = 0; k < 3; k++)
     if (at[k] - f->place[low - 1].at[k] >= f->place[low - 1].side)
       return SIZE_MAX;
-  return f->place[low - 1].cube;
+  return f->place[low - 1].octant;
 }

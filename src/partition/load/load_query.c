@@ -1,7 +1,7 @@
-/* Outline: each axis is divided into bins at edges of cubes: of all of them
- * when they are few, else of a sample, so bins are narrow where cubes are.
+/* Outline: each axis is divided into bins at edges of octants: of all of them
+ * when they are few, else of a sample, so bins are narrow where octants are.
  * Bins know the cells below them, how densely cells stand on planes across
- * them, and the largest target edge. A cube that covers many bins is added in
+ * them, and the largest target edge. A octant that covers many bins is added in
  * constant time: as a difference between the first and the last of them. */
 #include <assert.h>
 #include <math.h>
@@ -12,8 +12,8 @@
 #include "base/parallel.h"
 #include "partition/load/load.h"
 
-/* Cubes whose edges become those of bins: all of few, up to SAMPLE of many.
- * Two edges nearer to each other than this share of a half cube are one
+/* Octants whose edges become those of bins: all of few, up to SAMPLE of many.
+ * Two edges nearer to each other than this share of a half octant are one
  * (coordinates are of single precision). */
 enum { SAMPLE = 256, FEW = 32, ONE_OF = 8 };
 #define ONE_EDGE 0.01
@@ -48,13 +48,13 @@ static void release_index(struct vg_load_index *index)
 
 void vg_load_release(struct vg_load *l)
 {
-  free(l->cube);
+  free(l->octant);
   release_index(l->index);
   memset(l, 0, sizeof *l);
 }
 
-/* Where a cube's cells are, along an axis. */
-static void reach_of(const struct vg_load *l, const struct vg_load_cube *c,
+/* Where a octant's cells are, along an axis. */
+static void reach_of(const struct vg_load *l, const struct vg_load_octant *c,
                      int k, double *lo, double *hi)
 {
   *lo = (double)c->at[k] - (double)c->half;
@@ -77,7 +77,7 @@ static int by_place(const void *a, const void *b)
   return (s->x > t->x) - (s->x < t->x);
 }
 
-/* Ends of the sample's cubes and of all, in order, without twins. */
+/* Ends of the sample's octants and of all, in order, without twins. */
 static size_t find_edges(const struct vg_load *l, int k, double *edge,
                          struct mark *mark)
 {
@@ -87,9 +87,9 @@ static size_t find_edges(const struct vg_load *l, int k, double *edge,
   size_t n = 0, m = 0;
 
   for (size_t i = 0; i < l->n; i++) {
-    const double near = ONE_EDGE * (double)l->cube[i].half;
+    const double near = ONE_EDGE * (double)l->octant[i].half;
 
-    reach_of(l, &l->cube[i], k, &from, &to);
+    reach_of(l, &l->octant[i], k, &from, &to);
     lo = fmin(lo, from);
     hi = fmax(hi, to);
     if (i % step) continue;
@@ -174,8 +174,8 @@ static void add_cells(struct sums *s, size_t bin, double cells, double h)
   s->weight[bin] += cells * h;
 }
 
-static void add_cube(const struct axis *a, struct sums *s, double lo, double hi,
-                     const struct vg_load_cube *c)
+static void add_octant(const struct axis *a, struct sums *s, double lo,
+                       double hi, const struct vg_load_octant *c)
 {
   const double near = 2 * ONE_EDGE * (double)c->half;
   const double h = (double)c->h, cells = (double)c->cells;
@@ -238,8 +238,8 @@ static int fill_bins(const struct vg_load *l, int k, struct axis *a)
     for (size_t i = 0; i < l->n; i++) {
       double lo, hi;
 
-      reach_of(l, &l->cube[i], k, &lo, &hi);
-      add_cube(a, &s, lo, hi, &l->cube[i]);
+      reach_of(l, &l->octant[i], k, &lo, &hi);
+      add_octant(a, &s, lo, hi, &l->octant[i]);
     }
     conclude(a, &s);
     bad = 0;
@@ -374,12 +374,12 @@ double vg_load_within(const struct vg_load *l, const double lo[3],
   double sum = 0;
 
   for (size_t i = 0; i < l->n; i++) {
-    double part = (double)l->cube[i].cells;
+    double part = (double)l->octant[i].cells;
 
     for (int k = 0; k < 3 && part > 0; k++) {
       double from, to;
 
-      reach_of(l, &l->cube[i], k, &from, &to);
+      reach_of(l, &l->octant[i], k, &from, &to);
       part *= to > from
               ? fmax(fmin(to, hi[k]) - fmax(from, lo[k]), 0) / (to - from)
               : 0;

@@ -1,8 +1,8 @@
-/* Outline: the parent's cubes are descended along with the front of each child.
- * Where no front is left in a node, all of its cubes are inside or none; in a
- * cube that the front crosses, samples are counted. The samples of a cube are
- * always the same ones, so what earlier cuts have dropped was outside the
- * children too, and errors do not pile up over generations. */
+/* Outline: the parent's octants are descended along with the front of each
+ * child. Where no front is left in a node, all of its octants are inside or
+ * none; in a octant that the front crosses, samples are counted. The samples of
+ * a octant are always the same ones, so what earlier cuts have dropped was
+ * outside the children too, and errors do not pile up over generations. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #include "partition/load/load_tree.h"
 
 struct share {
-  uint32_t cube;
+  uint32_t octant;
   double part;
 };
 
@@ -24,23 +24,23 @@ struct split {
   struct vg_load_tree tree;
   struct vg_load_stack stack;
   size_t n_share, cap_share;
-  struct share *share; /* by cube */
+  struct share *share; /* by octant */
 };
 
-static int add_share(struct split *s, size_t cube, int samples)
+static int add_share(struct split *s, size_t octant, int samples)
 {
   struct share *to;
 
   if (vg_reserve(&s->share, &s->cap_share, s->n_share + 1, sizeof *to))
     return -1;
   to = &s->share[s->n_share++];
-  to->cube = (uint32_t)cube;
+  to->octant = (uint32_t)octant;
   to->part = (double)samples / VG_LOAD_SAMPLES;
   return 0;
 }
 
-static int share_cube(struct split *s, const struct vg_load_node *node,
-                      size_t cube)
+static int share_octant(struct split *s, const struct vg_load_node *node,
+                        size_t octant)
 {
   int32_t owner[VG_LOAD_SAMPLES];
   uint32_t at[3];
@@ -48,11 +48,11 @@ static int share_cube(struct split *s, const struct vg_load_node *node,
 
   vg_load_sample(&s->tree, &s->stack, node, owner, at);
   for (int i = 0; i < VG_LOAD_SAMPLES; i++) n += owner[i] == 1;
-  return n ? add_share(s, cube, n) : 0;
+  return n ? add_share(s, octant, n) : 0;
 }
 
-/* Octant of a node whose centre is mid that holds a cube. */
-static int octant_of(const struct vg_load_cube *c, const double mid[3])
+/* Octant of a node whose centre is mid that holds a octant. */
+static int octant_of(const struct vg_load_octant *c, const double mid[3])
 {
   int o = 0;
 
@@ -69,26 +69,27 @@ static void middle(const struct split *s, const struct vg_load_node *node,
     mid[k] = s->tree.lo[k] + (node->at[k] + half) * s->tree.unit;
 }
 
-/* First of cubes a .. b - 1, sorted by octant, that is in octant o or later. */
+/* First of octants a .. b - 1, sorted by octant, that is in octant o or later.
+ */
 static size_t first_of(const struct split *s, size_t a, size_t b,
                        const double mid[3], int o)
 {
   while (a < b) {
     const size_t m = a + (b - a) / 2;
 
-    if (octant_of(&s->parent->cube[m], mid) < o) a = m + 1;
+    if (octant_of(&s->parent->octant[m], mid) < o) a = m + 1;
     else b = m;
   }
   return a;
 }
 
-/* Is the node the one cube a .. b - 1? */
-static int is_cube(const struct split *s, const struct vg_load_node *node,
-                   size_t a, size_t b)
+/* Is the node the one octant a .. b - 1? */
+static int is_octant(const struct split *s, const struct vg_load_node *node,
+                     size_t a, size_t b)
 {
   return node->level >= VG_LOAD_LEVELS ||
          (b - a == 1 && vg_load_side(node) * s->tree.unit <
-                          2.5 * (double)s->parent->cube[a].half);
+                          2.5 * (double)s->parent->octant[a].half);
 }
 
 static int descend(struct split *s, const struct vg_load_node *node, size_t a,
@@ -104,7 +105,7 @@ static int descend(struct split *s, const struct vg_load_node *node, size_t a,
     for (; a < b && !bad; a++) bad = add_share(s, a, VG_LOAD_SAMPLES);
     return bad;
   }
-  if (is_cube(s, node, a, b)) return share_cube(s, node, a);
+  if (is_octant(s, node, a, b)) return share_octant(s, node, a);
   if (vg_load_octants(&s->tree, &s->stack, node, part, 1)) return -1;
   middle(s, node, mid);
   for (int o = 0; o < 8 && !bad; o++) {
@@ -118,7 +119,7 @@ static int descend(struct split *s, const struct vg_load_node *node, size_t a,
 }
 
 /* The smallest node around the child that is no smaller than the parent's
- * cube there, and the parent's cubes a .. b - 1 in it. */
+ * octant there, and the parent's octants a .. b - 1 in it. */
 static void find_start(const struct split *s, struct vg_load_node *node,
                        size_t *a, size_t *b)
 {
@@ -135,7 +136,7 @@ static void find_start(const struct split *s, struct vg_load_node *node,
     }
   *a = 0;
   *b = s->parent->n;
-  while (!is_cube(s, node, *a, *b)) {
+  while (!is_octant(s, node, *a, *b)) {
     const uint32_t half = vg_load_side(node) / 2;
     double mid[3];
     size_t from, to;
@@ -172,10 +173,10 @@ static int share_all(struct split *s)
 
 /* --- children ------------------------------------------------------------ */
 
-/* Cells per volume and edge where the parent has a cube around x, or nearly
- * so: the cube that a descent ends in. */
-static const struct vg_load_cube *cube_at(const struct split *s,
-                                          const double x[3])
+/* Cells per volume and edge where the parent has a octant around x, or nearly
+ * so: the octant that a descent ends in. */
+static const struct vg_load_octant *octant_at(const struct split *s,
+                                              const double x[3])
 {
   struct vg_load_node node = { .level = 0 };
   size_t a = 0, b = s->parent->n;
@@ -199,16 +200,16 @@ static const struct vg_load_cube *cube_at(const struct split *s,
     a = from;
     b = to;
   }
-  return &s->parent->cube[a];
+  return &s->parent->octant[a];
 }
 
-/* A child too small for any sample: one cube around it. */
-static int lone_cube(const struct split *s, const struct vg_front *v,
-                     double volume, double correction, struct vg_load *out)
+/* A child too small for any sample: one octant around it. */
+static int lone_octant(const struct split *s, const struct vg_front *v,
+                       double volume, double correction, struct vg_load *out)
 {
   double lo[3], hi[3], x[3], side = 0, old;
-  const struct vg_load_cube *near;
-  struct vg_load_cube *c;
+  const struct vg_load_octant *near;
+  struct vg_load_octant *c;
 
   vg_load_box(v, lo, hi);
   for (int k = 0; k < 3; k++) {
@@ -218,7 +219,7 @@ static int lone_cube(const struct split *s, const struct vg_front *v,
   if (!s->parent->n || !(volume > 0) || !(side > 0)) return 0;
   c = vg_alloc(1, sizeof *c);
   if (!c) return -1;
-  near = cube_at(s, x);
+  near = octant_at(s, x);
   old = 2 * (double)near->half;
   for (int k = 0; k < 3; k++) c->at[k] = (float)x[k];
   c->half = (float)(0.5 * side);
@@ -226,7 +227,7 @@ static int lone_cube(const struct split *s, const struct vg_front *v,
   c->part = (float)(volume / (side * side * side));
   c->cells = (float)(correction * (double)near->cells * volume /
                      (old * old * old * (double)near->part));
-  out->cube = c;
+  out->octant = c;
   out->n = 1;
   out->cells = (double)c->cells;
   out->is_block = 0;
@@ -234,9 +235,9 @@ static int lone_cube(const struct split *s, const struct vg_front *v,
 }
 
 static void take_share(const struct split *s, const struct share *from,
-                       double correction, struct vg_load_cube *to)
+                       double correction, struct vg_load_octant *to)
 {
-  const struct vg_load_cube *c = &s->parent->cube[from->cube];
+  const struct vg_load_octant *c = &s->parent->octant[from->octant];
 
   *to = *c;
   to->part = (float)from->part;
@@ -251,12 +252,12 @@ static int deal(const struct split *s, const struct vg_front *child,
 
   vg_load_copy_frame(s->parent, made);
   made->n = s->n_share;
-  made->cube = made->n ? vg_alloc(made->n, sizeof *made->cube) : NULL;
-  if (made->n && !made->cube) return -1;
+  made->octant = made->n ? vg_alloc(made->n, sizeof *made->octant) : NULL;
+  if (made->n && !made->octant) return -1;
   for (size_t i = 0; i < made->n; i++)
-    take_share(s, &s->share[i], correction, &made->cube[i]);
+    take_share(s, &s->share[i], correction, &made->octant[i]);
   if (made->n) vg_load_fit(made, volume);
-  else if (lone_cube(s, child, volume, correction, made)) return -1;
+  else if (lone_octant(s, child, volume, correction, made)) return -1;
   return vg_load_index(made, 1, NULL) < 0 ? -1 : 0;
 }
 

@@ -19,7 +19,7 @@
 
 enum { GRAIN = 1 << 14, FIT_PASSES = 4 };
 
-/* A volume that is off by more is made to fit: by the cubes that the front
+/* A volume that is off by more is made to fit: by the octants that the front
  * crosses if that is possible, else by all alike. */
 #define FITS 1e-5
 
@@ -313,7 +313,7 @@ void vg_load_sample(const struct vg_load_tree *t, const struct vg_load_stack *s,
 
 /* --- volumes ------------------------------------------------------------- */
 
-static double cube_volume(const struct vg_load_cube *c)
+static double octant_volume(const struct vg_load_octant *c)
 {
   return 8 * (double)c->half * (double)c->half * (double)c->half;
 }
@@ -332,33 +332,35 @@ double vg_load_parts(const struct vg_load *l)
   double sum = 0;
 
   for (size_t i = 0; i < l->n; i++)
-    sum += cube_volume(&l->cube[i]) * (double)l->cube[i].part;
+    sum += octant_volume(&l->octant[i]) * (double)l->octant[i].part;
   return sum;
 }
 
-static void multiply(struct vg_load_cube *c, double factor)
+static void multiply(struct vg_load_octant *c, double factor)
 {
   c->part = (float)((double)c->part * factor);
   c->cells = (float)((double)c->cells * factor);
 }
 
 /* Least squares: a part p is thought to be wrong by p (1 - p) in the square,
- * so what is missing goes to each cube by its volume times that; most of it
- * to large cubes, whose errors are the large ones. */
+ * so what is missing goes to each octant by its volume times that; most of it
+ * to large octants, whose errors are the large ones. */
 static void fit_parts(struct vg_load *l, double missing)
 {
   double weight = 0;
 
   for (size_t i = 0; i < l->n; i++) {
-    const double v = cube_volume(&l->cube[i]), p = (double)l->cube[i].part;
+    const double v = octant_volume(&l->octant[i]),
+                 p = (double)l->octant[i].part;
 
     weight += v * v * p * (1 - p);
   }
   for (size_t i = 0; i < l->n && weight > 0; i++) {
-    const double v = cube_volume(&l->cube[i]), p = (double)l->cube[i].part;
+    const double v = octant_volume(&l->octant[i]),
+                 p = (double)l->octant[i].part;
     const double f = 1 + missing * v * (1 - p) / weight;
 
-    multiply(&l->cube[i], fmin(fmax(f, 0.5), 1 / p));
+    multiply(&l->octant[i], fmin(fmax(f, 0.5), 1 / p));
   }
 }
 
@@ -376,7 +378,7 @@ void vg_load_fit(struct vg_load *l, double volume)
   l->cells = 0;
   for (size_t i = 0; i < l->n; i++) {
     if (volume > 0 && fabs(volume - sum) > FITS * volume)
-      multiply(&l->cube[i], volume / sum);
-    l->cells += (double)l->cube[i].cells;
+      multiply(&l->octant[i], volume / sum);
+    l->cells += (double)l->octant[i].cells;
   }
 }

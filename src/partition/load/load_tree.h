@@ -2,7 +2,7 @@
  * they are, and tells at each node's lower corner which void it is in. For
  * load.c and load_split.c.
  *
- * Coordinates are whole numbers, 31 bits across the root cube, whose side is
+ * Coordinates are whole numbers, 31 bits across the root octant, whose side is
  * a power of two and whose corner is a multiple of the unit: so a point of the
  * lattice is a double without error, and boxes can be compared as integers. */
 #ifndef VG_PARTITION_LOAD_LOAD_TREE_H
@@ -82,7 +82,7 @@ void vg_load_sample(const struct vg_load_tree *t, const struct vg_load_stack *s,
                     const struct vg_load_node *node,
                     int32_t owner[VG_LOAD_SAMPLES], uint32_t at[3]);
 
-/** All but the cubes. */
+/** All but the octants. */
 void vg_load_copy_frame(const struct vg_load *from, struct vg_load *to);
 
 /** Volume of all parts. */

@@ -61,7 +61,7 @@ void vg_forecast_release(struct vg_forecast *o)
   memset(o, 0, sizeof *o);
 }
 
-/* Inner points have 6 cells each in the lattice that fills make (12 in a cube
+/* Inner points have 6 cells each in the lattice that fills make (12 in a octant
  * of two points), points on the boundary fewer, as measured. */
 double vg_forecast_points(double cells, double faces)
 {
@@ -75,7 +75,7 @@ static struct vg_amount amount_of(const struct vg_load *l)
 {
   struct vg_amount a = { 0, 0 };
 
-  for (size_t i = 0; i < l->n; i++) vg_amount_add(&a, &l->cube[i], 1);
+  for (size_t i = 0; i < l->n; i++) vg_amount_add(&a, &l->octant[i], 1);
   return a;
 }
 
@@ -90,7 +90,7 @@ static double seconds(const struct vg_task_rate *r, struct vg_amount a,
 static vg_status add_task(struct forecast *c, const char *path,
                           const char *after, char kind,
                           const struct vg_task_rate *rate, struct vg_amount a,
-                          double faces, double cubes)
+                          double faces, double octants)
 {
   struct vg_spans *s = &c->out->spans;
   int makes = kind != VG_SPAN_JOIN;
@@ -103,7 +103,7 @@ static vg_status add_task(struct forecast *c, const char *path,
     span.loops = rate->loops * (1 - loop_faces / faces) * span.cpu;
   if (makes) span.n_cell = (uint64_t)(a.cells + 0.5);
   span.bytes_in = (uint64_t)(bytes_per_face * faces +
-                             cubes * sizeof(struct vg_load_cube));
+                             octants * sizeof(struct vg_load_octant));
   if (kind == VG_SPAN_PENCIL || kind == VG_SPAN_TILE)
     span.bytes_out = span.bytes_in;
   return vg_spans_add(s, &span, c->err);
@@ -140,9 +140,9 @@ static double volume_of(const struct vg_load *l)
   double sum = 0;
 
   for (size_t i = 0; i < l->n; i++) {
-    double side = 2 * (double)l->cube[i].half;
+    double side = 2 * (double)l->octant[i].half;
 
-    sum += (double)l->cube[i].part * side * side * side;
+    sum += (double)l->octant[i].part * side * side * side;
   }
   return sum;
 }
@@ -183,7 +183,7 @@ done:
  * as zones, each with an equal share of their cells; one more for each part,
  * with an equal share of the triangles between these. */
 static vg_status add_repairs(struct forecast *c,
-                             const struct vg_forecast_parting *q)
+                             const struct vg_forecast_decomposition *q)
 {
   size_t n = c->out->n_pencil + c->out->n_tile, n_part = q ? q->n : 0;
   struct vg_task_rate side = { .face = q ? q->rate->repair : 0 };
@@ -268,7 +268,7 @@ static vg_status grow_stage(struct forecast *c, struct vg_subdomain *p,
     c->handed += faces;
     c->out->n_pencil += kind == VG_SPAN_PENCIL;
     c->out->n_tile += kind == VG_SPAN_TILE;
-    c->out->zone_cells += a.cells;
+    c->out->separator_cells += a.cells;
     c->zones.cells += a.cells;
     c->zones.graded += a.graded;
   }
@@ -359,7 +359,7 @@ static vg_status add_rest(struct forecast *c, const struct vg_subdomain *from,
     rest.load.cells += p->load.cells;
     volume += volume_of(&p->load);
     for (size_t k = 0; k < p->load.n; k++)
-      vg_amount_add(&a, &p->load.cube[k], 1);
+      vg_amount_add(&a, &p->load.octant[k], 1);
     rest.load.n += p->load.n;
     for (size_t k = 0; st >= 0 && k < p->front.n; k++)
       st = vg_bins_add(&rest.front, &p->front.bit[k], c->err);
@@ -404,7 +404,7 @@ static vg_status cut(struct forecast *c, struct vg_subdomain *p,
                      const struct vg_lattice *l, int used, const char *maker)
 {
   struct vg_blocks b = { .n = 0 };
-  double before = c->out->zone_cells;
+  double before = c->out->separator_cells;
   char after[VG_PATH_MAX];
   size_t index = 0;
   vg_status st;
@@ -412,7 +412,7 @@ static vg_status cut(struct forecast *c, struct vg_subdomain *p,
   snprintf(after, sizeof after, "%s", maker);
   VG_TRY(add_node(c, p, l, &index));
   VG_TRY(grow_zones(c, p, l, after));
-  c->out->node[index].zone = c->out->zone_cells - before;
+  c->out->node[index].zone = c->out->separator_cells - before;
   VG_TRY(vg_blocks_open(&b, l, p, c->err));
   vg_subdomain_release(p);
   st = add_children(c, p, index, &b, used, after);
@@ -476,19 +476,21 @@ static vg_status add_load(const struct vg_load *load, struct vg_subdomain *p,
 {
   p->load = *load;
   p->load.index = NULL;
-  p->load.cube = vg_alloc(load->n, sizeof *p->load.cube);
-  if (!p->load.cube) {
+  p->load.octant = vg_alloc(load->n, sizeof *p->load.octant);
+  if (!p->load.octant) {
     p->load.n = 0;
     return vg_fail_memory(err, "a forecast");
   }
-  if (load->n) memcpy(p->load.cube, load->cube, load->n * sizeof *load->cube);
+  if (load->n)
+    memcpy(p->load.octant, load->octant, load->n * sizeof *load->octant);
   for (int k = 0; k < 3; k++) {
     p->lo[k] = INFINITY;
     p->hi[k] = -INFINITY;
   }
   for (size_t i = 0; i < load->n; i++)
     for (int k = 0; k < 3; k++) {
-      double x = (double)load->cube[i].at[k], half = (double)load->cube[i].half;
+      double x = (double)load->octant[i].at[k],
+             half = (double)load->octant[i].half;
 
       p->lo[k] = fmin(p->lo[k], x - half);
       p->hi[k] = fmax(p->hi[k], x + half);
@@ -499,7 +501,7 @@ static vg_status add_load(const struct vg_load *load, struct vg_subdomain *p,
 /* A coarse mesh that all workers make: equal leaves, and a repair, as which it
  * is waited for. Its cuts are in the rate. */
 static vg_status add_coarse(struct forecast *c,
-                            const struct vg_forecast_parting *q)
+                            const struct vg_forecast_decomposition *q)
 {
   size_t n = (size_t)ceil(q->coarse / coarse_leaf);
   struct vg_task_rate rate = { .task = q->rate->mesh * q->coarse / (double)n };
@@ -521,7 +523,7 @@ done:
 
 /* The task that makes the parts, which no zones come from. */
 static vg_status add_maker(struct forecast *c, const struct vg_subdomain *root,
-                           const struct vg_forecast_parting *q)
+                           const struct vg_forecast_decomposition *q)
 {
   int has_mesh = q->rate->mesh > 0 && q->coarse > 0;
   struct vg_span *made;
@@ -557,7 +559,7 @@ done:
 }
 
 static vg_status add_parts(struct forecast *c, struct vg_subdomain *root,
-                           const struct vg_forecast_parting *q)
+                           const struct vg_forecast_decomposition *q)
 {
   size_t index = 0;
   vg_status st;
@@ -570,12 +572,11 @@ done:
   return st;
 }
 
-vg_status vg_forecast_parted(const struct vg_front *v,
-                             const struct vg_load *load,
-                             const struct vg_forecast_parting *parting,
-                             const struct vg_cut_rule *rule, int levels,
-                             const struct vg_rates *rates,
-                             struct vg_forecast *out, struct vg_error *err)
+vg_status vg_forecast_parted(
+  const struct vg_front *v, const struct vg_load *load,
+  const struct vg_forecast_decomposition *decomposition,
+  const struct vg_cut_rule *rule, int levels, const struct vg_rates *rates,
+  struct vg_forecast *out, struct vg_error *err)
 {
   struct vg_forecast o = VG_FORECAST_INIT;
   struct forecast c = { .out = &o, .rule = rule, .rates = rates, .err = err };
@@ -588,9 +589,9 @@ vg_status vg_forecast_parted(const struct vg_front *v,
   o.cells = load->cells;
   VG_TRY(add_load(load, &root, err));
   VG_TRY(add_surface(v, &root, err));
-  if (parting) VG_TRY(add_parts(&c, &root, parting));
+  if (decomposition) VG_TRY(add_parts(&c, &root, decomposition));
   else VG_TRY(go_down(&c, &root, ""));
-  VG_TRY(add_repairs(&c, parting));
+  VG_TRY(add_repairs(&c, decomposition));
   line_up(&o.spans);
   vg_spans_sort(&o.spans);
   o.spans.n_rank = o.spans.n_thread = 1;

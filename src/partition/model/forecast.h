@@ -21,11 +21,12 @@ struct vg_task_rate {
   double task, even, graded, face, made, hand, loops;
 };
 
-/** Seconds of one core that a maker of partings takes (cut/parting.h), per face
- * of the front, coarse cell or octant, and triangle of interfaces; the share of
- * them in loops; of repairs at interfaces, per triangle of these; and per
- * coarse cell of a mesh that all workers make first. */
-struct vg_parting_rate {
+/** Seconds of one core that a maker of decompositions takes
+ * (cut/decomposition.h), per face of the front, coarse cell or octant, and
+ * triangle of interfaces; the share of them in loops; of repairs at interfaces,
+ * per triangle of these; and per coarse cell of a mesh that all workers make
+ * first. */
+struct vg_decomposition_rate {
   double face, coarse, side, loops, repair, mesh;
 };
 
@@ -36,7 +37,7 @@ struct vg_rates {
   struct vg_task_rate plan, join, close, split; /* joins: the first of a node,
                                    those between stages, the one that looks
                                    for such places, the last */
-  struct vg_parting_rate discrete, octree;
+  struct vg_decomposition_rate discrete, octree;
 };
 
 /** As measured: forecast.c says where. */
@@ -64,7 +65,7 @@ static inline int vg_forecast_is_leaf(const struct vg_forecast_node *n)
 }
 
 struct vg_forecast {
-  double cells, zone_cells; /* of all; of pencils and tiles */
+  double cells, separator_cells; /* of all; of pencils and tiles */
   size_t n_node, cap_node;
   struct vg_forecast_node *node; /* [n_node] parents first, the whole is [0] */
   size_t n_leaf, n_pencil, n_tile;
@@ -84,23 +85,24 @@ void vg_forecast_release(struct vg_forecast *o);
  * @param load    its cells
  * @param levels  bisections, for a rule by levels
  * @param out     replaced; untouched on failure
- * Result follows from the arguments alone. O((cubes + faces) x depth), times
+ * Result follows from the arguments alone. O((octants + faces) x depth), times
  * the number of zones of a cut. VG_ERR_MEMORY. */
 vg_status vg_forecast_new(const struct vg_front *v, const struct vg_load *load,
                           const struct vg_cut_rule *rule, int levels,
                           const struct vg_rates *rates, struct vg_forecast *out,
                           struct vg_error *err);
 
-/** A part of a void that is parted before it is filled (cut/parting.h). */
+/** A part of a void that is parted before it is filled (cut/decomposition.h).
+ */
 struct vg_forecast_part {
   struct vg_front v; /* its front */
   const struct vg_load *load;
   int may_cut; /* 1: planes may cut it further */
 };
 
-/** What a maker of partings does. */
-struct vg_forecast_parting {
-  const struct vg_parting_rate *rate;
+/** What a maker of decompositions does. */
+struct vg_forecast_decomposition {
+  const struct vg_decomposition_rate *rate;
   double coarse, sides; /* coarse cells or octants; triangles */
   size_t n;
   const struct vg_forecast_part *part; /* [n] */
@@ -108,12 +110,11 @@ struct vg_forecast_parting {
 
 /** As vg_forecast_new, of a void that is parted so. All is borrowed. Nodes: the
  * whole, then its parts. */
-vg_status vg_forecast_parted(const struct vg_front *v,
-                             const struct vg_load *load,
-                             const struct vg_forecast_parting *parting,
-                             const struct vg_cut_rule *rule, int levels,
-                             const struct vg_rates *rates,
-                             struct vg_forecast *out, struct vg_error *err);
+vg_status vg_forecast_parted(
+  const struct vg_front *v, const struct vg_load *load,
+  const struct vg_forecast_decomposition *decomposition,
+  const struct vg_cut_rule *rule, int levels, const struct vg_rates *rates,
+  struct vg_forecast *out, struct vg_error *err);
 
 /** Points of a mesh of tetrahedra whose boundary has so many faces. */
 double vg_forecast_points(double cells, double faces);

@@ -37,15 +37,16 @@ vg_status vg_bins_add(struct vg_bins *f, const struct vg_bin *b,
   return VG_OK;
 }
 
-/* Of a share of a cube. */
-void vg_amount_add(struct vg_amount *a, const struct vg_load_cube *c,
+/* Of a share of a octant. */
+void vg_amount_add(struct vg_amount *a, const struct vg_load_octant *c,
                    double share)
 {
   assert(share >= 0);
 
   double side = 2 * (double)c->half / (double)c->h, cells = (double)c->cells;
-  double cubes = (double)c->part * side * side * side;
-  double more = cubes > 0 ? cells / (cubes * VG_LOAD_CELLS_PER_CUBE) - 1 : 0;
+  double octants = (double)c->part * side * side * side;
+  double more = octants > 0 ? cells / (octants * VG_LOAD_CELLS_PER_OCTANT) - 1
+                            : 0;
 
   a->cells += share * cells;
   a->graded += share * cells * fmin(fmax(more / VG_LOAD_GRADED, 0), 1);
@@ -63,16 +64,16 @@ static double side_of_plane(const struct vg_plane *p, const float x[3])
          p->normal[2] * (double)x[2] - p->offset;
 }
 
-/* Half the extent of a cube across a plane. */
-static double half_across(const struct vg_load_cube *c,
+/* Half the extent of a octant across a plane. */
+static double half_across(const struct vg_load_octant *c,
                           const struct vg_plane *p)
 {
   return (double)c->half *
          (fabs(p->normal[0]) + fabs(p->normal[1]) + fabs(p->normal[2]));
 }
 
-/* Part of the cube within `width` of the plane. */
-static double overlap(const struct vg_load_cube *c, const struct vg_plane *p,
+/* Part of the octant within `width` of the plane. */
+static double overlap(const struct vg_load_octant *c, const struct vg_plane *p,
                       double width)
 {
   double x = side_of_plane(p, c->at), half = half_across(c, p);
@@ -107,9 +108,9 @@ static int is_near(const struct vg_region *r, const float x[3], double band)
   return 1;
 }
 
-/* Faces that a zone leaves where it passes the cube: on both sides of its
+/* Faces that a zone leaves where it passes the octant: on both sides of its
  * plane, or all around a pencil. */
-static vg_status add_sides(const struct vg_load_cube *c,
+static vg_status add_sides(const struct vg_load_octant *c,
                            const struct vg_region *r, struct vg_bins *f,
                            struct vg_error *err)
 {
@@ -179,7 +180,7 @@ vg_status vg_bins_take(struct vg_subdomain *p, const struct vg_region *r,
 
   *a = (struct vg_amount){ 0, 0 };
   for (size_t i = 0; st >= 0 && i < p->load.n; i++) {
-    struct vg_load_cube *c = &p->load.cube[i];
+    struct vg_load_octant *c = &p->load.octant[i];
     double reach = reach_of(r), share = 1;
     int passes = 1;
 

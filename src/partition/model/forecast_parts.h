@@ -45,8 +45,8 @@ vg_status vg_bins_add(struct vg_bins *f, const struct vg_bin *b,
                       struct vg_error *err);
 double vg_bins_faces(const struct vg_bins *f);
 
-/** What a share of the cube holds, added to a. */
-void vg_amount_add(struct vg_amount *a, const struct vg_load_cube *c,
+/** What a share of the octant holds, added to a. */
+void vg_amount_add(struct vg_amount *a, const struct vg_load_octant *c,
                    double share);
 
 /** Cells of the region leave the load, counted in a; where it has some, the

@@ -13,8 +13,8 @@
 
 #define NONE VG_MODEL_NONE
 
-/* Bytes of a void's front per cells^(2/3): a cube of m target edges a side has
- * 9 m^3 cells and 6 m^2 * 4 / sqrt(3) triangles of 24 bytes each, half a
+/* Bytes of a void's front per cells^(2/3): a octant of m target edges a side
+ * has 9 m^3 cells and 6 m^2 * 4 / sqrt(3) triangles of 24 bytes each, half a
  * point and three numbers. */
 #define FRONT_BYTES 77.0 /* M5 */
 /* What comes back from a task that leaves no front. */

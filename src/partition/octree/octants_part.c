@@ -26,13 +26,13 @@
 struct chooser {
   struct vg_octants *t;
   const struct vg_sizing *sizing;
-  const struct vg_parting_options *options;
+  const struct vg_decomposition_options *options;
   double *cells;   /* [n_leaf] of free leaves, in the list's order */
   double *edge;    /* [n_leaf] size in the middle */
   uint32_t *up;    /* [n_leaf] what hangs together */
   uint32_t *local; /* [n_leaf] scratch */
   double *sum;     /* [n_leaf] scratch: of sets, at their roots */
-  double per_cube; /* cells expected per cube of the size */
+  double per_cube; /* cells expected per leaf of the size */
   size_t n_asked;  /* parts */
 };
 
@@ -457,11 +457,11 @@ static vg_status choose(struct chooser *c, const struct vg_front *v,
 
 vg_status vg_octants_part(struct vg_octants *t, const struct vg_front *v,
                           const struct vg_sizing *sizing, double cells,
-                          const struct vg_parting_options *o, uint32_t *gap,
-                          struct vg_error *err)
+                          const struct vg_decomposition_options *o,
+                          uint32_t *gap, struct vg_error *err)
 {
   struct chooser c = {
-    .t = t, .sizing = sizing, .options = o, .per_cube = o->cells_per_cube
+    .t = t, .sizing = sizing, .options = o, .per_cube = o->cells_per_octant
   };
   const size_t n = t->n_leaf;
   vg_status st;

@@ -26,14 +26,14 @@ struct maker {
   const struct vg_front *front;
   const struct vg_load *load;
   const struct vg_sizing *sizing;
-  const struct vg_parting_options *options;
+  const struct vg_decomposition_options *options;
   const struct vg_engine *engine;
   uint32_t serial;
   struct vg_octants t;
   uint32_t *gap; /* [front->n_face] */
   struct vg_patches patches;
   struct vg_interfaces faces;
-  struct vg_parting out;
+  struct vg_decomposition out;
   double spent; /* clock at the end of the step before */
 };
 
@@ -61,7 +61,7 @@ static size_t n_free(const struct vg_octants *t)
  * there would be too many. */
 static double choose_width(const struct maker *m)
 {
-  const double per_cube = m->options->cells_per_cube;
+  const double per_cube = m->options->cells_per_octant;
   double wide = NARROW;
 
   if (m->options->coarsening > 0) return m->options->coarsening;
@@ -79,11 +79,11 @@ static vg_status make_octants(struct maker *m, struct vg_error *err)
   m->out.report.coarsening = wide;
   st = vg_octants_make(m->front, m->load, m->sizing, wide, m->engine, &m->t,
                        err);
-  note_time(m, VG_PARTING_COARSE);
+  note_time(m, VG_DECOMPOSITION_COARSE);
   if (st != VG_OK) return st;
   st = vg_octants_part(&m->t, m->front, m->sizing, m->load->cells, m->options,
                        m->gap, err);
-  note_time(m, VG_PARTING_GRAPH);
+  note_time(m, VG_DECOMPOSITION_GRAPH);
   return st;
 }
 
@@ -228,7 +228,7 @@ static vg_status fill_part(struct filler *f, const struct bounds *b, size_t k,
 
 static vg_status fill_parts(struct maker *m, struct vg_error *err)
 {
-  struct vg_parting *out = &m->out;
+  struct vg_decomposition *out = &m->out;
   const size_t n = m->t.n_part + m->t.n_gap;
   struct bounds b = { NULL, NULL };
   struct filler f = { .m = m };
@@ -274,7 +274,7 @@ static void add_octants(const struct vg_octants *t, double *volume)
 
 static vg_status check(const struct maker *m, struct vg_error *err)
 {
-  const struct vg_parting *p = &m->out;
+  const struct vg_decomposition *p = &m->out;
   const double whole = vg_load_volume(m->front);
   double *octants = vg_calloc(p->n_part, sizeof *octants), sum = 0;
   vg_status st = octants ? VG_OK : vg_fail_memory(err, "the parts");
@@ -308,7 +308,7 @@ static vg_status check(const struct maker *m, struct vg_error *err)
 
 /* --- all ----------------------------------------------------------------- */
 
-static vg_status check_options(const struct vg_parting_options *o,
+static vg_status check_options(const struct vg_decomposition_options *o,
                                struct vg_error *err)
 {
   if (o->h_refine)
@@ -326,7 +326,7 @@ static vg_status check_options(const struct vg_parting_options *o,
 
 static void note_parts(struct maker *m)
 {
-  struct vg_parting_report *r = &m->out.report;
+  struct vg_decomposition_report *r = &m->out.report;
 
   r->n_coarse = n_free(&m->t);
   r->n_apart = m->t.n_apart;
@@ -351,7 +351,7 @@ static vg_status make(struct maker *m, struct vg_error *err)
                             err);
   if (st == VG_OK) st = fill_parts(m, err);
   if (st == VG_OK) st = check(m, err);
-  note_time(m, VG_PARTING_FACES);
+  note_time(m, VG_DECOMPOSITION_FACES);
   if (st == VG_OK) note_parts(m);
   return st;
 }
@@ -359,9 +359,9 @@ static vg_status make(struct maker *m, struct vg_error *err)
 vg_status vg_octree_part(const struct vg_front *front,
                          const struct vg_load *load,
                          const struct vg_sizing *sizing,
-                         const struct vg_parting_options *o, uint32_t serial,
-                         const struct vg_engine *e, struct vg_parting *out,
-                         struct vg_error *err)
+                         const struct vg_decomposition_options *o,
+                         uint32_t serial, const struct vg_engine *e,
+                         struct vg_decomposition *out, struct vg_error *err)
 {
   struct maker m = { .front = front,
                      .load = load,
@@ -378,11 +378,11 @@ vg_status vg_octree_part(const struct vg_front *front,
                    "the void of %zu triangles encloses "
                    "nothing",
                    front->n_face);
-  st = vg_parting_check_options(o, load->cells, err);
+  st = vg_decomposition_check_options(o, load->cells, err);
   if (st < 0) return st;
   st = make(&m, err);
   if (st == VG_OK) *out = m.out;
-  else vg_parting_release(&m.out);
+  else vg_decomposition_release(&m.out);
   vg_octants_release(&m.t);
   vg_patches_release(&m.patches);
   vg_interfaces_release(&m.faces);

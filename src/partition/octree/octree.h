@@ -7,9 +7,9 @@
 #ifndef VG_PARTITION_OCTREE_OCTREE_H
 #define VG_PARTITION_OCTREE_OCTREE_H
 
-#include "partition/cut/parting.h"
+#include "partition/cut/decomposition.h"
 
-/** Make a parting of a void; see vg_parting_maker.
+/** Make a decomposition of a void; see vg_decomposition_maker.
  *
  * front  closed; load  its own
  * o      n_part: of them all those off the front get their share, by the cells
@@ -19,12 +19,11 @@
  * out    first the parts of octants, of plane interfaces, may_cut 0; then the
  *        gap, in as many parts as it falls into, may_cut 1. Where no octant has
  *        room the gap is all there is.
- * Names of points follow vg_parting; the same for any number of threads of e,
- * which may be NULL. Cost: O(front log front + octants), and the triangulation
- * of the interfaces.
- * VG_ERR_INPUT: n_part < 1, a coarsening below 2 or not finite, h_refine;
- * VG_ERR_GEOMETRY: the front is not closed; VG_ERR_UNSUPPORTED: more than 16 M
- * octants; VG_ERR_STOPPED: as asked. */
-vg_parting_maker vg_octree_part;
+ * Names of points follow vg_decomposition; the same for any number of threads
+ * of e, which may be NULL. Cost: O(front log front + octants), and the
+ * triangulation of the interfaces. VG_ERR_INPUT: n_part < 1, a coarsening below
+ * 2 or not finite, h_refine; VG_ERR_GEOMETRY: the front is not closed;
+ * VG_ERR_UNSUPPORTED: more than 16 M octants; VG_ERR_STOPPED: as asked. */
+vg_decomposition_maker vg_octree_part;
 
 #endif

@@ -6,7 +6,7 @@
 #ifndef VG_PARTITION_OCTREE_OCTREE_PARTS_H
 #define VG_PARTITION_OCTREE_OCTREE_PARTS_H
 
-#include "partition/cut/parting.h"
+#include "partition/cut/decomposition.h"
 #include "partition/load/load_tree.h"
 
 struct vg_engine;
@@ -80,8 +80,8 @@ void vg_octants_release(struct vg_octants *t);
  * gap out: [v->n_face] the id of the gap that each triangle bounds. */
 vg_status vg_octants_part(struct vg_octants *t, const struct vg_front *v,
                           const struct vg_sizing *sizing, double cells,
-                          const struct vg_parting_options *o, uint32_t *gap,
-                          struct vg_error *err);
+                          const struct vg_decomposition_options *o,
+                          uint32_t *gap, struct vg_error *err);
 
 /* Plane patches between two parts, bounded by straight curves. */
 struct vg_patches {

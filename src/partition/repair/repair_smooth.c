@@ -498,8 +498,8 @@ static vg_status once(struct smoothing *s, int first, struct vg_comm *comm,
 }
 
 /* Where the field is level, one sweep is all that it takes. */
-static vg_status is_level(const struct smoothing *s, struct vg_comm *comm,
-                          int *level, struct vg_error *err)
+static vg_status is_uniform(const struct smoothing *s, struct vg_comm *comm,
+                            int *level, struct vg_error *err)
 {
   uint64_t n[2] = { 0, 0 };
   vg_status st;
@@ -544,7 +544,7 @@ vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
 
   *n = 0;
   if (st == VG_OK) st = once(&s, 1, comm, err);
-  if (st == VG_OK) st = is_level(&s, comm, &level, err);
+  if (st == VG_OK) st = is_uniform(&s, comm, &level, err);
   if (st == VG_OK && !level) {
     st = go_between(&s, comm, err);
     if (st == VG_OK) st = once(&s, 0, comm, err);

@@ -14,7 +14,7 @@
 #include "io/mesh/format.h"
 #include "io/vgrid/mapbc.h"
 #include "io/vgrid/vgrid.h"
-#include "layers/columns/law.h"
+#include "layers/columns/growth_law.h"
 #include "run/common/text.h"
 #include "run/input/shape_parts.h"
 #include "run/input/share.h"
@@ -65,7 +65,7 @@ void vg_boundary_release(struct vg_boundary *b)
   else vg_mesh_release(&b->surface);
   vg_surface_report_release(&b->check);
   vg_flow_release(&b->flow);
-  vg_renewal_release(&b->renewal);
+  vg_remeshing_release(&b->remeshing);
   vg_cad_model_release(&b->model);
   free(b->row);
 }

@@ -55,7 +55,7 @@ struct vg_put_back {
 };
 
 /** A surface whose triangles were made anew. */
-struct vg_renewal {
+struct vg_remeshing {
   int is_done;
   struct vg_remesh_report report;
   struct vg_remesh_distance off[2]; /* new from given, given from new */
@@ -117,7 +117,7 @@ struct vg_boundary {
   size_t n_row;             /* patches before the domain was completed */
   struct vg_patch_row *row; /* [n_row] owned: their names, conditions and
                                hard borders */
-  struct vg_renewal renewal;
+  struct vg_remeshing remeshing;
   struct vg_domain_report domain;
   int is_swapped; /* edges of the surface were swapped */
 };

@@ -24,7 +24,7 @@ struct vg_layer_laws {
   double shift[3];             /* added, since no spacing may be 0 */
   double cap;
   int n_constant;
-  enum vg_law_rule rule; /* of a grid family, with its scale */
+  enum vg_growth_law_rule rule; /* of a grid family, with its scale */
   double scale;
 };
 
@@ -50,7 +50,7 @@ void vg_layer_stage_release(struct vg_layer_stage *s)
   memset(s, 0, sizeof *s);
 }
 
-static void law_at(void *user, const double x[3], struct vg_law *law)
+static void law_at(void *user, const double x[3], struct vg_growth_law *law)
 {
   const struct vg_layer_laws *l = user;
   const struct vg_sizing_options o = {
@@ -67,10 +67,10 @@ static void law_at(void *user, const double x[3], struct vg_law *law)
   law->rate2 = v[2] > 0 ? v[2] : 0;
   law->cap = l->cap;
   law->n_constant = l->n_constant;
-  vg_law_scale(law, l->rule, l->scale, &(int){ 0 });
+  vg_growth_law_scale(law, l->rule, l->scale, &(int){ 0 });
 }
 
-static void height_at(void *user, const double x[3], struct vg_law *law)
+static void height_at(void *user, const double x[3], struct vg_growth_law *law)
 {
   const struct vg_layer_laws *l = user;
   const double *h = vg_point_height(&l->at, x);
@@ -109,8 +109,8 @@ static void put_values(struct vg_layer_laws *l, int k)
 
 static void set_scale(const struct vg_settings *s, struct vg_layer_laws *l)
 {
-  l->rule = (enum vg_law_rule)s->layer.scale_rule;
-  l->scale = l->rule == VG_LAW_KEPT ? 1 : s->scale;
+  l->rule = (enum vg_growth_law_rule)s->layer.scale_rule;
+  l->scale = l->rule == VG_GROWTH_LAW_KEPT ? 1 : s->scale;
 }
 
 static vg_status make_laws(const struct vg_settings *s, double cap,
@@ -167,8 +167,8 @@ static vg_status rate_for_total(const struct vg_layer_request *q, int32_t id,
 {
   double r;
 
-  r = vg_law_rate_for_total(q->law.delta1, q->law.n_constant, q->n_max,
-                            q->total);
+  r = vg_growth_law_rate_for_total(q->law.delta1, q->law.n_constant, q->n_max,
+                                   q->total);
   if (r < 0)
     return vg_fail(err, VG_ERR_INPUT,
                    "layers of patch %d: %d layers of %g "
@@ -193,7 +193,7 @@ static vg_status set_rates(const struct vg_settings *s,
 {
   const struct vg_layer_settings *l = &s->layer;
   double ratio = choose(r->ratio, l->ratio);
-  enum vg_law_rule rule = (enum vg_law_rule)l->scale_rule;
+  enum vg_growth_law_rule rule = (enum vg_growth_law_rule)l->scale_rule;
 
   q->law.rate1 = DEFAULT_RATE;
   q->law.rate2 = 0;
@@ -204,10 +204,10 @@ static vg_status set_rates(const struct vg_settings *s,
   } else if (!isnan(ratio)) {
     q->law.rate1 = ratio - 1;
   } else if (q->n_exact && q->total > 0) {
-    vg_law_scale(&q->law, rule, s->scale, &q->n_max);
+    vg_growth_law_scale(&q->law, rule, s->scale, &q->n_max);
     return rate_for_total(q, r->id, &q->law.rate1, err);
   }
-  vg_law_scale(&q->law, rule, s->scale, &q->n_max);
+  vg_growth_law_scale(&q->law, rule, s->scale, &q->n_max);
   return VG_OK;
 }
 
@@ -485,14 +485,14 @@ static void note_choice(const struct vg_layer_stage *s, struct vg_boundary *b)
             "height %.6g",
             l->y_plus, l->reynolds, l->length,
             vg_first_height(l->y_plus, l->reynolds, l->length));
-  if (l->scale_rule != VG_LAW_KEPT)
+  if (l->scale_rule != VG_GROWTH_LAW_KEPT)
     vg_note(b->notes,
             "scale_layers: first heights times %.4g, growth of the "
             "layers to the power of %.4g, numbers of layers over it, constant "
             "ones over %.4g",
             b->read->settings.scale,
-            vg_law_power((enum vg_law_rule)l->scale_rule,
-                         b->read->settings.scale),
+            vg_growth_law_power((enum vg_growth_law_rule)l->scale_rule,
+                                b->read->settings.scale),
             b->read->settings.scale);
   if (ratio > cap)
     vg_note(b->notes, "ratio %g is above layer_cap %g, which holds", ratio,

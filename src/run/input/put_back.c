@@ -305,7 +305,7 @@ static void by_face(const struct samples *s, const struct vg_mesh *m,
 
 vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err)
 {
-  struct vg_renewal *r = &b->renewal;
+  struct vg_remeshing *r = &b->remeshing;
   struct vg_put_back *back = &r->back;
   struct samples s = { 0 };
   double t = vg_display_now();

@@ -17,7 +17,8 @@ vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
 /** 1 when patch i of the surface is a cap that closes a hole. */
 int vg_boundary_is_cap(const struct vg_boundary *b, size_t i);
 
-/* run/input/renew.c, surface_sizes.c, put_back.c --------------------------- */
+/* run/input/remesh_boundary.c, surface_sizes.c, put_back.c
+ * --------------------------- */
 
 /** 1 where settings remesh this surface: `auto` remeshes CAD, and tessellations
  * (STL, OBJ, Cart3D) more than half of whose triangles are slivers. */
@@ -26,8 +27,8 @@ int vg_read_is_remeshed(const struct vg_read *read,
 
 /** Remesh the surface; distances are measured, notes tell. The surface is as
  * the check left it. VG_ERR_GEOMETRY where no sound surface came out. */
-vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
-                            struct vg_error *err);
+vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
+                             struct vg_error *err);
 
 /** Sizes by the table `surface`. NULL, NULL: it is empty. */
 struct vg_surface_sizes {
@@ -55,7 +56,7 @@ void vg_boundary_note_slivers(struct vg_boundary *b);
  * VG_ERR_GEOMETRY when Open CASCADE fails. */
 vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err);
 
-void vg_renewal_release(struct vg_renewal *r);
+void vg_remeshing_release(struct vg_remeshing *r);
 
 /** The surface of a CAD model, whose tessellation led to no sound surface, by
  * the next tessellation of a fixed order, with a note.

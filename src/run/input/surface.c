@@ -304,7 +304,7 @@ static vg_status shape(struct vg_boundary *b, const struct vg_shape_options *o,
   if (is_open_for_good(b, o)) return vg_boundary_refuse_open(b, show, err);
   if (!b->is_remeshed || o->has_maker) goto done;
   if (!is_reference(&b->check)) return defects(b, show, err);
-  st = vg_boundary_renew(b, show, &why);
+  st = vg_boundary_remesh(b, show, &why);
   if (st < 0) {
     if (st == VG_ERR_GEOMETRY)
       vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
@@ -404,7 +404,7 @@ done:
 static vg_status check_again(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err)
 {
-  if (!b->renewal.is_done) return VG_OK;
+  if (!b->remeshing.is_done) return VG_OK;
   return check(b,
                b->flow.kind == VG_FLOW_UNKNOWN
                  ? -1

@@ -5,7 +5,7 @@
 
 #include "run/input/input.h"
 #include "io/mesh/format.h"
-#include "partition/cut/parting.h"
+#include "partition/cut/decomposition.h"
 
 #define SHOWN 12
 
@@ -31,7 +31,7 @@ static unsigned in_use(const struct vg_problem *p, int layers_on)
 
   return 1u << VG_USE_ALWAYS | (unsigned)(*f->d3m != 0) << VG_USE_D3M |
          (unsigned)cad << VG_USE_CAD |
-         (unsigned)p->boundary.renewal.is_done << VG_USE_REMESH |
+         (unsigned)p->boundary.remeshing.is_done << VG_USE_REMESH |
          (unsigned)layers_on << VG_USE_LAYERS |
          (unsigned)p->boundary.domain.added_farfield << VG_USE_FARFIELD |
          (unsigned)planes << VG_USE_PLANES | (unsigned)parted << VG_USE_PARTS;

@@ -39,8 +39,8 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
                                const struct vg_surface_report *r, size_t shown);
 
 /** A surface that was made anew; nothing, or null, where none was. */
-void vg_report_remesh_text(FILE *to, const struct vg_renewal *n);
-json_t *vg_report_remesh_json(const struct vg_renewal *n,
+void vg_report_remesh_text(FILE *to, const struct vg_remeshing *n);
+json_t *vg_report_remesh_json(const struct vg_remeshing *n,
                               const struct vg_mesh *m);
 
 /** Lines and corners of a surface as vg_remesh_judge found them, bad triangles

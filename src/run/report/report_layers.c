@@ -33,7 +33,7 @@ static void row_cover(FILE *to, const struct vg_mesh *surface,
 
   row_name(to, surface, w);
   fprintf(to, " %11s %7.2f %7.2f %7.2f %5.0f %6.1f %4.0f\n",
-          vg_text_count(w->n_face, count), w->full, w->unsqueezed, w->any,
+          vg_text_count(w->n_face, count), w->full, w->uncompressed, w->any,
           w->level.min, w->level.mean, w->level.max);
 }
 
@@ -44,8 +44,8 @@ static const char *main_cause(const struct vg_patch_layers *w)
   size_t n = 0;
 
   for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
-    if (w->cause[c] + w->squeezed[c] > n) {
-      n = w->cause[c] + w->squeezed[c];
+    if (w->cause[c] + w->compressed[c] > n) {
+      n = w->cause[c] + w->compressed[c];
       most = c;
     }
   return n ? vg_layer_cause_name((enum vg_layer_cause)most) : "";
@@ -191,14 +191,14 @@ static void causes(FILE *to, const struct vg_layer_stage *s,
     size_t bare = w->n_bare, sum = bare;
 
     for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++)
-      sum += w->cause[c] + w->squeezed[c];
+      sum += w->cause[c] + w->compressed[c];
     if (!sum) continue;
     if (!shown++)
       fprintf(to, "\n  faces with fewer or thinner layers, by "
                   "cause\n");
     row_name(to, surface, w);
     if (cause_words(to, " fewer: ", w->cause)) fprintf(to, ";");
-    cause_words(to, " thinner: ", w->squeezed);
+    cause_words(to, " thinner: ", w->compressed);
     if (bare)
       fprintf(to, " none: %s (first height above layer_end times the edge)",
               vg_text_count(bare, count));
@@ -281,7 +281,7 @@ void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
   fprintf(to,
           "\n  smallest angle of a top %.1f degrees; whole prisms %s, "
           "with a bad corner %s\n",
-          s->judgement.angle_of_top_min, vg_text_count(s->judgement.n_prism, a),
+          s->judgement.top_angle_min, vg_text_count(s->judgement.n_prism, a),
           vg_text_count(s->judgement.n_bad_corner, b));
   times(to, s);
 }
@@ -332,18 +332,18 @@ static json_t *wall_json(const struct vg_patch_layers *w)
     const char *name;
     const struct vg_range *r;
   } ranges[] = {
-    { "first_asked", &w->asked }, { "first", &w->first },
-    { "levels", &w->level },      { "total", &w->total },
-    { "growth", &w->growth },     { "y_plus", &w->y_plus },
+    { "first_requested", &w->asked }, { "first", &w->first },
+    { "levels", &w->level },          { "total", &w->total },
+    { "growth", &w->growth },         { "y_plus", &w->y_plus },
   };
   json_t *o = json_object();
 
   json_object_set_new(o, "faces", whole(w->n_face));
   json_object_set_new(o, "points", whole(w->n_point));
   json_object_set_new(o, "percent_full", real(w->full));
-  json_object_set_new(o, "percent_unsqueezed", real(w->unsqueezed));
+  json_object_set_new(o, "percent_uncompressed", real(w->uncompressed));
   json_object_set_new(o, "percent_any", real(w->any));
-  json_object_set_new(o, "height_over_law",
+  json_object_set_new(o, "height_over_growth_law",
                       json_pack("{s:o s:o s:o}", "mean", real(w->share_mean),
                                 "percentile_5", real(w->share_low),
                                 "percent_area_above_0.9", real(w->share_area)));
@@ -358,7 +358,7 @@ static json_t *wall_json(const struct vg_patch_layers *w)
                                 w->top_at[1], w->top_at[2]));
   json_object_set_new(o, "first_error_percent", real(100 * w->first_error));
   json_object_set_new(o, "fewer_by_cause", causes_json(w->cause));
-  json_object_set_new(o, "thinner_by_cause", causes_json(w->squeezed));
+  json_object_set_new(o, "thinner_by_cause", causes_json(w->compressed));
   return o;
 }
 
@@ -427,25 +427,25 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
     { "tetrahedra", s->join.n_layer_tet },
     { "pyramids", s->join.n_layer_pyr },
     { "prisms", s->join.n_layer_pri },
-    { "tetrahedra_if_all_are", r->n_cell },
+    { "tetrahedra_if_subdivided", r->n_cell },
     { "rounds", r->n_round },
     { "columns_of_many_faces", r->n_many_faces },
     { "slide_patches", r->n_slide_patch },
     { "slide_triangles", r->n_slide_tri },
-    { "whole_prisms", s->judgement.n_prism },
+    { "complete_prisms", s->judgement.n_prism },
     { "prisms_with_bad_corner", s->judgement.n_bad_corner },
-    { "edges_with_steps_of_levels", s->judgement.n_step },
+    { "edges_with_level_steps", s->judgement.n_step },
   };
   json_t *o = json_object();
 
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     json_object_set_new(o, row[i].name, whole(row[i].n));
-  json_object_set_new(o, "angle_of_top_min",
-                      real(s->judgement.angle_of_top_min));
+  json_object_set_new(o, "top_angle_min", real(s->judgement.top_angle_min));
   json_object_set_new(o, "reynolds", real(s->reynolds));
   json_object_set_new(o, "reference_length", real(s->length));
   json_object_set_new(o, "columns_by_cause", causes_json(r->cause));
-  json_object_set_new(o, "columns_squeezed_by_cause", causes_json(r->squeezed));
+  json_object_set_new(o, "columns_compressed_by_cause",
+                      causes_json(r->compressed));
   json_object_set_new(o, "patches", walls_json(s, surface));
   json_object_set_new(o, "all", wall_json(&s->all));
   json_object_set_new(o, "limits_met", json_boolean(!s->n_missed));

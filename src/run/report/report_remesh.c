@@ -58,7 +58,7 @@ static void stretch_text(FILE *to, const struct vg_remesh_report *r)
           r->angle_min);
 }
 
-void vg_report_remesh_text(FILE *to, const struct vg_renewal *n)
+void vg_report_remesh_text(FILE *to, const struct vg_remeshing *n)
 {
   const struct vg_remesh_report *r = &n->report;
   char was[32], now[32];
@@ -133,7 +133,8 @@ static json_t *closed_json(const struct vg_remesh_report *r)
                    r->closed_at[0], r->closed_at[1], r->closed_at[2]);
 }
 
-static json_t *patches_json(const struct vg_renewal *n, const struct vg_mesh *m)
+static json_t *patches_json(const struct vg_remeshing *n,
+                            const struct vg_mesh *m)
 {
   json_t *list = json_array();
 
@@ -174,7 +175,7 @@ static json_t *stretch_json(const struct vg_remesh_report *r)
                    (json_int_t)n[4]);
 }
 
-json_t *vg_report_remesh_json(const struct vg_renewal *n,
+json_t *vg_report_remesh_json(const struct vg_remeshing *n,
                               const struct vg_mesh *m)
 {
   const struct vg_remesh_report *r = &n->report;

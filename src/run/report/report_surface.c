@@ -188,7 +188,7 @@ static void repair_text(FILE *to, const struct vg_surface_report *r)
   /* Where all was turned, those that were not had been turned before. */
   size_t single = r->n_flipped;
 
-  if (r->turned_inside_out) {
+  if (r->shells_reoriented) {
     single = 0;
     for (size_t i = 0; i < r->n_shell; i++) single += r->shell[i].n_tri;
     single -= r->n_flipped;
@@ -357,8 +357,8 @@ json_t *vg_report_surface_json(const struct vg_mesh *m,
                    "flipped", (json_int_t)r->n_flipped, "removed_points",
                    (json_int_t)r->n_removed_point, "removed_triangles",
                    (json_int_t)r->n_removed_tri, "removed_wall_triangles",
-                   (json_int_t)r->n_removed_wall, "turned_inside_out",
-                   r->turned_inside_out, "first", defects_json(m, r, shown),
+                   (json_int_t)r->n_removed_wall, "shells_reoriented",
+                   r->shells_reoriented, "first", defects_json(m, r, shown),
                    "quality", quality_json(m));
 }
 

@@ -119,7 +119,7 @@ struct vg_remesh_options vg_options_remesh(const struct vg_settings *s)
 
   o.tolerance = s->surface_tolerance;
   o.accuracy = s->wrap * VG_WRAP_OFFSET;
-  o.ridge_angle = s->ridge_angle;
+  o.feature_angle = s->feature_angle;
   o.per_turn = s->per_turn;
   o.h_min = s->hmin;
   o.h_max = largest_edge(s);
@@ -197,9 +197,10 @@ struct vg_cut_rule vg_options_cuts(const struct vg_settings *s)
                                .constant = s->constant_direction };
 }
 
-struct vg_parting_options vg_options_parting(const struct vg_settings *s)
+struct vg_decomposition_options vg_options_decomposition(
+  const struct vg_settings *s)
 {
-  struct vg_parting_options o = VG_PARTING_OPTIONS_INIT;
+  struct vg_decomposition_options o = VG_DECOMPOSITION_OPTIONS_INIT;
 
   o.n_part = s->parts == VG_COUNT_NONE ? 0 : (int)s->parts;
   o.partitioner = s->partitioner;
@@ -216,7 +217,7 @@ struct vg_partition_options vg_options_partition(const struct vg_settings *s)
   o.rule = vg_options_cuts(s);
   o.levels = (int)s->levels;
   o.maker = vg_ways[s->decompose].maker;
-  o.parting = vg_options_parting(s);
+  o.decomposition = vg_options_decomposition(s);
   o.cyclic = s->cyclic;
   o.sweeps = (int)s->optimise;
   o.max_cells = (uint64_t)s->max_cells;

@@ -65,7 +65,8 @@ struct vg_layer_options vg_options_layers(const struct vg_settings *s);
 struct vg_partition_options vg_options_partition(const struct vg_settings *s);
 
 /** Number of parts (0: by the size of leaves) and how they are made. */
-struct vg_parting_options vg_options_parting(const struct vg_settings *s);
+struct vg_decomposition_options vg_options_decomposition(
+  const struct vg_settings *s);
 
 /** Where planes cut; levels of bisection are vg_partition_options.levels. */
 struct vg_cut_rule vg_options_cuts(const struct vg_settings *s);

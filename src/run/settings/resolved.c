@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/flow/flow.h"
-#include "layers/columns/law.h"
+#include "layers/columns/growth_law.h"
 #include "layers/expand/join.h"
 
 struct vg_layer_row vg_settings_layer_row(const struct vg_settings *s,

@@ -110,7 +110,7 @@ VG_ROW(REAL, plain, surface_tolerance, "surface_tolerance", 0,
 VG_ROW(REAL, plain, surface_size, "surface_size", 0,
   .use = VG_USE_REMESH, LENGTH, .help = "largest edge of a new surface; 0: "
   "hmax, or 0.02 of the body's length (of an outer boundary, 0.04 of its own)")
-VG_ROW(REAL, plain, ridge_angle, "ridge_angle", remesh.ridge_angle,
+VG_ROW(REAL, plain, feature_angle, "feature_angle", remesh.feature_angle,
   .use = VG_USE_REMESH, .lo = 5, .hi = 170, .unit = "degrees",
   .help = "a new surface keeps edges whose faces differ by this")
 VG_ROW(REAL, plain, per_turn, "edges_per_turn", remesh.per_turn,

@@ -12,7 +12,7 @@
 #include "core/flow/flow.h"
 #include "core/remesh/remesh.h"
 #include "io/cad/cad.h"
-#include "layers/columns/law.h"
+#include "layers/columns/growth_law.h"
 #include "layers/expand/join.h"
 #include "partition/cut/partition.h"
 #include "run/settings/lists.h"
@@ -37,11 +37,11 @@ static const char *const cad_patch_words[] = { "face",  "name", "colour",
                                                "layer", "part", NULL };
 /* In the order of enum vg_layer_cells. */
 static const char *const cell_words[] = { "tets", "mixed", NULL };
-/* In the order of enum vg_decomposition, enum vg_partitioner. */
+/* In the order of enum vg_decomposition_method, enum vg_partitioner. */
 static const char *const decompose_words[] = { "advancing", "discrete",
                                                "octree", NULL };
 static const char *const partitioner_words[] = { "metis", "rcb", NULL };
-/* In the order of enum vg_law_rule. */
+/* In the order of enum vg_growth_law_rule. */
 static const char *const rule_words[] = { "no", "even", "workshop", NULL };
 static const char *const interface_words[] = { "remesh", "h-refine", NULL };
 static const char *const schedule_words[] = { "dynamic", "cyclic", NULL };

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "core/flow/flow.h"
-#include "layers/columns/law.h"
+#include "layers/columns/growth_law.h"
 #include "run/settings/settings.h"
 #include "run/settings/surface_table.h"
 

@@ -91,11 +91,11 @@ static double balance(const struct leaves *l)
 }
 
 /* A void that was parted before any of it was filled. */
-static void print_parting(FILE *to, const struct vg_run *r,
-                          const struct leaves *l)
+static void print_decomposition(FILE *to, const struct vg_run *r,
+                                const struct leaves *l)
 {
   const struct vg_partition_report *p = &r->partition;
-  const struct vg_parting_report *q = &p->parting;
+  const struct vg_decomposition_report *q = &p->decomposition;
   char a[32], b[32];
 
   if (!p->n_part) return;
@@ -118,9 +118,9 @@ static void print_parting(FILE *to, const struct vg_run *r,
   fprintf(to,
           "  seconds: %s %.2f, dealt out %.2f, interfaces smoothed "
           "%.2f, divided %.2f\n",
-          q->n_gap ? "octants" : "coarse cells", q->time[VG_PARTING_COARSE],
-          q->time[VG_PARTING_GRAPH], q->time[VG_PARTING_SMOOTH],
-          q->time[VG_PARTING_FACES]);
+          q->n_gap ? "octants" : "coarse cells",
+          q->time[VG_DECOMPOSITION_COARSE], q->time[VG_DECOMPOSITION_GRAPH],
+          q->time[VG_DECOMPOSITION_SMOOTH], q->time[VG_DECOMPOSITION_FACES]);
 }
 
 static json_t *count(uint64_t n)
@@ -128,11 +128,11 @@ static json_t *count(uint64_t n)
   return json_integer((json_int_t)n);
 }
 
-static void put_parting(const struct vg_run *r, const struct leaves *l,
-                        json_t *o)
+static void put_decomposition(const struct vg_run *r, const struct leaves *l,
+                              json_t *o)
 {
   const struct vg_partition_report *p = &r->partition;
-  json_t *parting;
+  json_t *decomposition;
 
   json_object_set_new(o, "decomposition", json_string(r->decomposition));
   json_object_set_new(o, "schedule",
@@ -145,10 +145,11 @@ static void put_parting(const struct vg_run *r, const struct leaves *l,
                                   r->near.angle_min, "angle_min_p1",
                                   r->near.angle_min_p1));
   if (!p->n_part) return;
-  parting = json_object();
-  json_object_set_new(parting, "parts", count(p->n_part));
-  vg_report_entries(parting, parting, &vg_parting_entries, &p->parting);
-  json_object_set_new(o, "parting", parting);
+  decomposition = json_object();
+  json_object_set_new(decomposition, "parts", count(p->n_part));
+  vg_report_entries(decomposition, decomposition, &vg_decomposition_entries,
+                    &p->decomposition);
+  json_object_set_new(o, "subdomains", decomposition);
 }
 
 void vg_report_partition_text(FILE *to, const struct vg_run *r)
@@ -162,7 +163,7 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           r->threads > 1 ? "s" : "",
           vg_text_count((unsigned long long)p->estimate, a),
           vg_text_count(r->n_field_cell, b));
-  print_parting(to, r, &l);
+  print_decomposition(to, r, &l);
   fprintf(to, "  cuts %s, pencils %s, tiles %s: %.1f %% of the cells; ",
           vg_text_count(p->n_node, a), vg_text_count(p->n_pencil, b),
           vg_text_count(p->n_tile, c), share_of(r, p->n_zone_cell));
@@ -220,9 +221,9 @@ json_t *vg_report_partition_json(const struct vg_run *r)
     { "leaves", l.n },
     { "fragment_leaves", l.n_fragment },
     { "fragment_cells", l.fragment_cells },
-    { "regions_bad", p->n_repair },
-    { "regions_repaired", p->n_repaired },
-    { "cells_in_regions", p->n_repair_cell },
+    { "repair_regions", p->n_repair },
+    { "repair_regions_improved", p->n_repaired },
+    { "repair_region_cells", p->n_repair_cell },
     { "points_moved_across", p->n_repair_moved },
     { "swaps_across", p->n_repair_swapped },
   };
@@ -234,11 +235,11 @@ json_t *vg_report_partition_json(const struct vg_run *r)
   vg_report_entries(o, o, &vg_partition_entries, p);
   for (size_t i = 0; i < l.n; i++)
     json_array_append_new(leaves, count(l.cells[i]));
-  put_parting(r, &l, o);
+  put_decomposition(r, &l, o);
   free(l.cells);
   json_object_set_new(o, "leaf_cells", leaves);
   json_object_set_new(o, "repair_cells", json_integer(by_repair));
-  json_object_set_new(o, "parts_widened_seconds", json_real(p->widened));
+  json_object_set_new(o, "subdomains_extended_seconds", json_real(p->widened));
   json_object_set_new(o, "repair_seconds", json_real(p->repair));
   json_object_set_new(o, "busy", json_real(vg_spans_busy(&r->spans)));
   json_object_set_new(o, "imbalance", json_real(vg_spans_imbalance(&r->spans)));

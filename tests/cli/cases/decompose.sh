@@ -56,7 +56,7 @@ says out "0 cuts into 5 leaves; 0 pencils and 0 tiles"
 lacks out "by leaf size"
 vanguard plan -q -p p/box --decompose discrete --parts 5 -n 1 -j
 says out '"leaves": 5'
-says out '"whole_parts": 5'
+says out '"complete_subdomains": 5'
 says out '"path": "0.4"'
 says out '"balance": 1.'
 

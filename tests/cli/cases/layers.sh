@@ -12,7 +12,7 @@ lacks out "y+:"
 vanguard mesh -q -p p/box --walls 5 --y-plus 1 --reynolds 1e5 \
   --reference-length 2 --json --threads 2 --out two
 exits 0
-for key in columns wall_triangles percent_full percent_any first_asked \
+for key in columns wall_triangles percent_full percent_any first_requested \
   first_error_percent levels growth y_plus fewer_by_cause proximity \
   columns_per_second cells_per_second limits_met seconds; do
   says out "\"$key\""
@@ -20,7 +20,7 @@ done
 says out '"wall_by": "setting"'
 says out '"limits_met": true'
 says out "y+ 1 at Reynolds number 100000 of length 2: first height"
-grep -q '"tetrahedra_if_all_are": [1-9]' out || fail "no layer cells"
+grep -q '"tetrahedra_if_subdivided": [1-9]' out || fail "no layer cells"
 
 # The resolved deck repeats it byte by byte, for any number of threads.
 vanguard mesh -q -p p/box --deck two/box.resolved.deck --threads 1 --out again

@@ -89,7 +89,7 @@ END
 vanguard mesh -q -p aflr/body
 exits 0
 exists aflr/body.wall.vtu
-grep -A4 '"first_asked"' aflr/body.report.json | grep -q '"min": 0.02' ||
+grep -A4 '"first_requested"' aflr/body.report.json | grep -q '"min": 0.02' ||
   fail "not the height of the .tags"
 grep -A4 '"levels"' aflr/body.report.json | grep -q '"max": 3.0' ||
   fail "not the number of the .tags"
@@ -97,7 +97,7 @@ says aflr/body.report.json '"wall_by": "condition"'
 # What is given wins.
 vanguard mesh -q -p aflr/body --first 0.01 --layer-count 2 --out given
 exits 0
-grep -A4 '"first_asked"' given/body.report.json | grep -q '"min": 0.01' ||
+grep -A4 '"first_requested"' given/body.report.json | grep -q '"min": 0.01' ||
   fail "the .tags won over --first"
 
 # An AFLR .bc by name; it is an input that a .cogsg would overwrite.
@@ -108,7 +108,7 @@ exits 1
 says err "would overwrite the input"
 vanguard mesh -q -p aflr/body --write b8.ugrid
 exits 0
-grep -A4 '"first_asked"' aflr/body.report.json | grep -q '"min": 0.02' ||
+grep -A4 '"first_requested"' aflr/body.report.json | grep -q '"min": 0.02' ||
   fail "not the height of the .bc"
 
 # A .surf: layers on flag -1, first heights by point, between 0.01 and 0.02.
@@ -132,16 +132,16 @@ cat >surf/body.surf <<'END'
 END
 vanguard mesh -q -p surf/body --out by_point
 exits 0
-grep -A4 '"first_asked"' by_point/body.report.json | grep -q '"max": 0.02' ||
+grep -A4 '"first_requested"' by_point/body.report.json | grep -q '"max": 0.02' ||
   fail "not the heights of the .surf"
-grep -A4 '"first_asked"' by_point/body.report.json | grep -q '"min": 0.01' ||
+grep -A4 '"first_requested"' by_point/body.report.json | grep -q '"min": 0.01' ||
   fail "not the heights of the .surf"
 vanguard mesh -q -p surf/body --deck by_point/body.resolved.deck --out again
 exits 0
 same by_point/body.b8.ugrid again/body.b8.ugrid
 vanguard mesh -q -p surf/body --first 0.03125 --out one_height
 exits 0
-grep -A4 '"first_asked"' one_height/body.report.json |
+grep -A4 '"first_requested"' one_height/body.report.json |
   grep -q '"max": 0.03125' || fail "--first did not win over the .surf"
 
 # Needles on a wall are removed before layers grow, and only then.

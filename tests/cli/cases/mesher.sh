@@ -13,7 +13,7 @@ for threads in 1 2; do
 done
 same t1/sphere.lb8.ugrid t2/sphere.lb8.ugrid
 says t1/sphere.resolved.deck "tetgen"
-says t1/sphere.report.json '"parts_by_other_mesher"'
+says t1/sphere.report.json '"subdomains_by_other_mesher"'
 vanguard check -q t1/sphere.lb8.ugrid
 exits 0
 
@@ -43,7 +43,7 @@ for name in star bad_5 bad_9; do
   says out "parts that it did not fill, and the built-in one did:"
   same b/sphere.lb8.ugrid $name/sphere.lb8.ugrid
 done
-says bad_5/sphere.report.json '"parts_crashed": '
+says bad_5/sphere.report.json '"subdomains_crashed": '
 [ ! -e "$plugins/mesher_bad_2.so" ] || {
   vanguard mesh -q -p p/sphere --mesher "$plugins/mesher_bad_2.so" \
     --write lb8.ugrid --out v

@@ -100,7 +100,7 @@ says err "constant_direction needs a split_direction of 1, 2 or 3"
 
 # Cells of leaves, fragments and cuts, and what repairs did, are those of the mesh.
 parts=$(sed -n '/"leaf_cells": \[/,/\]/s/^ *\([0-9]*\),*$/\1/p
-  s/.*"\(fragment_cells\|zone_cells\|repair_cells\)": \([-0-9]*\).*/\2/p' \
+  s/.*"\(fragment_cells\|separator_cells\|repair_cells\)": \([-0-9]*\).*/\2/p' \
   two/box.report.json | paste -sd+)
 cells=$(sed -n 's/^    "cells": \([0-9]*\).*/\1/p' two/box.report.json | tail -1)
 [ "$((parts))" = "$cells" ] || fail "$parts are not $cells cells"

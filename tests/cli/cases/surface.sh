@@ -68,9 +68,9 @@ exits 2
 says err "which surface?"
 vanguard surface -q none.stl
 exits 1
-vanguard surface -q bar.obj --ridge-angle 4
+vanguard surface -q bar.obj --feature-angle 4
 exits 2
-says err "ridge_angle"
+says err "feature_angle"
 vanguard surface -q bar.obj --surface-size 1e-7 --out small
 exits 1
 says err "are sizes and tolerance in its unit?"

@@ -24,10 +24,10 @@ while [ $# -gt 0 ]; do
 done
 echo "progress"
 n=$((ranks * threads))
-parting='' cells=0
+decomposition='' cells=0
 case $way in
   advancing) cells=1500 ;;
-  *) cells=750 parting=', "parting": {"parts": 5, "coarse_seconds": 1,
+  *) cells=750 decomposition=', "decomposition": {"parts": 5, "coarse_seconds": 1,
     "deal_seconds": 0.5, "smooth_seconds": 0.25, "divide_seconds": 0}' ;;
 esac
 digest=$leaf$((wrong * n))
@@ -48,7 +48,7 @@ cat >"$dir/box.report.json" <<JSON
 {"ok": true, "mesh": {"angle_min": 12.5, "angle_min_p1": 31.5},
  "peak_memory_bytes": 5e6,
  "partition": {"leaves": 2, "balance": 1.125, "near_interfaces": {"cells": 70,
-  "angle_min": 12.5, "angle_min_p1": 30.25}$parting},
+  "angle_min": 12.5, "angle_min_p1": 30.25}$decomposition},
  "files": [{"path": "$dir/box.cogsg", "bytes": 9, "xxh3": "$digest"},
   {"path": "$dir/box.report.json", "bytes": 1, "xxh3": "$RANDOM"}]}
 JSON
@@ -86,7 +86,7 @@ says ways/sweep.csv '"discrete-p4-n1-t1",,,1,1,1,1,done,0,9,'
 says ways/sweep.csv ',discrete,'
 says ways/sweep.json '"near_angle_min_p1": 30.25'
 says ways/sweep.json '"cells_ratio": 0.5'
-says ways/sweep.json '"parting_seconds": 1.75'
+says ways/sweep.json '"decomposition_seconds": 1.75'
 says ways/sweep.json '"balance": 1.125'
 says ways/speedup.svg "discrete, 16 parts"
 vanguard sweep -p box --decompose advancing,metis

@@ -9,7 +9,7 @@ says out "validity: valid"
 says out "layers as the .d3m says (grid = 1): first 0.001, rates 0.15 and 0.02"
 exists box.cogsg box.bc box.b8.ugrid box.wall.vtu
 says box.report.json '"wall_by": "meshing class"'
-grep -A6 '"first_asked":' box.report.json | grep -q '"min": 0.001' ||
+grep -A6 '"first_requested":' box.report.json | grep -q '"min": 0.001' ||
   fail "not the first height of the .d3m"
 same box.mapbc "$VG_DATA_DIR/vgrid_box/box.mapbc"
 same box.front "$VG_DATA_DIR/vgrid_box/box.front"
@@ -19,15 +19,15 @@ says out "validity: valid"
 
 # VGRID made 51,564 layer cells of 30 levels; the points that it has put on the
 # side walls already must not end ours early.
-n=$(sed -n 's/.*"tetrahedra_if_all_are": \([0-9]*\).*/\1/p' box.report.json)
+n=$(sed -n 's/.*"tetrahedra_if_subdivided": \([0-9]*\).*/\1/p' box.report.json)
 [ "$n" -gt 50533 ] && [ "$n" -lt 52595 ] ||
   fail "$n layer cells are not within 2 % of VGRID's 51,564"
 
 # The header says how many points and cells are in layers, in VGRID's order.
 count() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" box.report.json | tail -1; }
 nev=$(od -An -tu4 --endian=big -j 24 -N 4 box.cogsg | tr -d ' ')
-[ "$nev" = "$(count tetrahedra_if_all_are)" ] ||
-  fail "nev is $nev, not $(count tetrahedra_if_all_are)"
+[ "$nev" = "$(count tetrahedra_if_subdivided)" ] ||
+  fail "nev is $nev, not $(count tetrahedra_if_subdivided)"
 
 # The resolved deck needs the .d3m no more and repeats the run.
 vanguard mesh -q -p box --deck box.resolved.deck --out again
@@ -49,7 +49,7 @@ awk '/\( *grid:/ { sub(/1 \(/, "2 (") }
 cmp -s box.d3m by_source/box.d3m && fail "the .d3m was not changed"
 vanguard mesh -q -p by_source/box
 exits 0
-grep -A4 '"first_asked"' by_source/box.report.json >asked
+grep -A4 '"first_requested"' by_source/box.report.json >asked
 grep -q '"max": 0.002' asked || fail "not the law at the first source"
 grep -q '"min": 0.001,' asked || fail "not between the laws of the sources"
 vanguard mesh -q -p by_source/box --deck by_source/box.resolved.deck \

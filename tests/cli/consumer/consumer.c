@@ -284,7 +284,7 @@ static void tells_wall_points(vanguard_job *job, const struct arrays *a,
     CHECK(!i || p.point[i] > p.point[i - 1]);
     CHECK(a->x[3 * p.point[i] + 2] == 0); /* the floor is z = 0 */
     CHECK(p.level[i] <= p.wanted[i] && p.total[i] >= p.first[i]);
-    CHECK(vanguard_cause(p.cause[i]) && vanguard_cause(p.squeezed[i]));
+    CHECK(vanguard_cause(p.cause[i]) && vanguard_cause(p.compressed[i]));
     if (!p.level[i]) continue;
     CHECK(p.asked[i] == 0.01 && p.growth[i] >= 1 && p.share[i] > 0);
     first[0] = fmin(first[0], p.first[i]);

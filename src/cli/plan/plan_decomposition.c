@@ -1,5 +1,5 @@
-/* The parting of the field that vanguard mesh would begin with: made as it
- * would be, but for sizes that are as coarse as a forecast's. */
+/* The decomposition of the field that vanguard mesh would begin with: made as
+ * it would be, but for sizes that are as coarse as a forecast's. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,19 +9,20 @@
 #include "partition/advance/ways.h"
 #include "run/settings/plan_options.h"
 
-void vg_plan_parting_release(struct vg_plan_parting *q)
+void vg_plan_decomposition_release(struct vg_plan_decomposition *q)
 {
   for (size_t k = 0; q->load && k < q->n_part; k++)
     vg_load_release(&q->load[k]);
   free(q->load);
-  vg_parting_release(&q->made);
+  vg_decomposition_release(&q->made);
   memset(q, 0, sizeof *q);
 }
 
 /* Cells expected in parts: their sum, the most, of those that are filled as
  * they are. */
 static vg_status weigh_parts(const struct vg_load *load,
-                             struct vg_plan_parting *q, struct vg_error *err)
+                             struct vg_plan_decomposition *q,
+                             struct vg_error *err)
 {
   struct vg_front *v = vg_calloc(q->n_part, sizeof *v);
   vg_status st;
@@ -42,13 +43,14 @@ static vg_status weigh_parts(const struct vg_load *load,
   return st;
 }
 
-static struct vg_parting_options options_of(const struct vg_plan *p)
+static struct vg_decomposition_options options_of(const struct vg_plan *p)
 {
   const struct vg_settings *s = &p->problem.resolved.settings;
-  struct vg_parting_options o = vg_options_parting(s);
+  struct vg_decomposition_options o = vg_options_decomposition(s);
 
   if (!o.n_part)
-    o.n_part = vg_parting_parts(p->load.cells, vg_options_cuts(s).leaf_cells);
+    o.n_part = vg_decomposition_parts(p->load.cells,
+                                      vg_options_cuts(s).leaf_cells);
   return o;
 }
 
@@ -56,7 +58,7 @@ vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_way *way = &vg_ways[p->problem.resolved.settings.decompose];
   struct vg_front f = vg_front_of(p->front);
-  struct vg_parting_options o = options_of(p);
+  struct vg_decomposition_options o = options_of(p);
   double t = vg_clock();
   vg_status st;
 
@@ -64,11 +66,12 @@ vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err)
   f.id = vg_alloc(f.n_point, sizeof *f.id);
   if (!f.id) return vg_fail_memory(err, "the front");
   for (size_t k = 0; k < f.n_point; k++) f.id[k] = VG_POINT_ID(0, k);
-  st = way->maker(&f, &p->load, p->sizing, &o, 1, NULL, &p->parting.made, err);
+  st = way->maker(&f, &p->load, p->sizing, &o, 1, NULL, &p->decomposition.made,
+                  err);
   if (st == VG_OK) {
-    p->parting.n_part = p->parting.made.n_part;
-    p->parting.seconds = vg_clock() - t;
-    st = weigh_parts(&p->load, &p->parting, err);
+    p->decomposition.n_part = p->decomposition.made.n_part;
+    p->decomposition.seconds = vg_clock() - t;
+    st = weigh_parts(&p->load, &p->decomposition, err);
   }
   free(f.id);
   return st;
@@ -78,10 +81,10 @@ vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_front *v,
                          const struct vg_cut_rule *rule,
                          struct vg_forecast *out, struct vg_error *err)
 {
-  const struct vg_plan_parting *q = &p->parting;
+  const struct vg_plan_decomposition *q = &p->decomposition;
   const struct vg_settings *s = &p->problem.resolved.settings;
   struct vg_forecast_part *part = vg_calloc(q->n_part, sizeof *part);
-  struct vg_forecast_parting all = {
+  struct vg_forecast_decomposition all = {
     s->decompose == VG_DECOMPOSE_OCTREE ? &p->rates.octree : &p->rates.discrete,
     (double)q->made.report.n_coarse, (double)q->made.report.n_face, q->n_part,
     part

@@ -130,7 +130,7 @@ static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
   o.stretch = sizes->stretch;
   o.threads = b->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
-  return vg_remesh(&b->surface, &o, &b->renewal.report, err);
+  return vg_remesh(&b->surface, &o, &b->remeshing.report, err);
 }
 
 /* Volumes of the new surface and of the CAD model, where both are closed and
@@ -142,14 +142,14 @@ static void take_volumes(struct vg_boundary *b)
   const int is_whole = b->flow.kind != VG_FLOW_UNKNOWN && b->flow.axis < 0 &&
                        !b->flow.n_cavity && !b->n_given_patch;
 
-  b->renewal.volume[0] = b->renewal.volume[1] = NAN;
+  b->remeshing.volume[0] = b->remeshing.volume[1] = NAN;
   if (!b->model.cad || !is_whole || !m->n_tri) return;
-  b->renewal.volume[0] = fabs(vg_enclosed6(m->n_tri,
-                                           (const uint32_t(*)[3])m->tri,
-                                           (const double(*)[3])m->point,
-                                           m->point[0])) /
-                         6;
-  b->renewal.volume[1] = b->model.surface.volume;
+  b->remeshing.volume[0] = fabs(vg_enclosed6(m->n_tri,
+                                             (const uint32_t(*)[3])m->tri,
+                                             (const double(*)[3])m->point,
+                                             m->point[0])) /
+                           6;
+  b->remeshing.volume[1] = b->model.surface.volume;
 }
 
 static size_t n_needle(const struct vg_remesh_report *r)
@@ -176,19 +176,19 @@ static vg_status remesh_cad(struct vg_boundary *b, const struct vg_mesh *given,
 
   VG_TRY(remesh(b, hard, sizes, has_defects, show, err));
   if (has_defects || !b->model.cad ||
-      (double)n_needle(&b->renewal.report) <= MANY * (double)b->surface.n_tri)
+      (double)n_needle(&b->remeshing.report) <= MANY * (double)b->surface.n_tri)
     goto done;
   vg_mesh_move(&made, &b->surface);
-  first = b->renewal.report;
-  b->renewal.report = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
+  first = b->remeshing.report;
+  b->remeshing.report = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
   VG_TRY(vg_mesh_copy(&b->surface, given, err));
   st = remesh(b, hard, sizes, 1, show, err);
   if (st < 0 && st != VG_ERR_GEOMETRY) goto done;
-  if (st >= 0 && n_needle(&b->renewal.report) < n_needle(&first)) goto done;
+  if (st >= 0 && n_needle(&b->remeshing.report) < n_needle(&first)) goto done;
   st = VG_OK;
   vg_mesh_move(&b->surface, &made);
-  vg_remesh_report_release(&b->renewal.report);
-  b->renewal.report = first;
+  vg_remesh_report_release(&b->remeshing.report);
+  b->remeshing.report = first;
   first = (struct vg_remesh_report)VG_REMESH_REPORT_INIT;
 done:
   vg_remesh_report_release(&first);
@@ -200,7 +200,7 @@ static vg_status measure(struct vg_boundary *b, struct vg_mesh *given,
                          struct vg_display *show, struct vg_error *err)
 {
   const struct vg_stop stop = { vg_display_stop, show };
-  struct vg_renewal *r = &b->renewal;
+  struct vg_remeshing *r = &b->remeshing;
   vg_status st;
 
   r->face = vg_alloc(b->surface.n_tri, sizeof *r->face);
@@ -217,7 +217,7 @@ done:
 
 static void note_faults(struct vg_boundary *b)
 {
-  const struct vg_remesh_report *r = &b->renewal.report;
+  const struct vg_remesh_report *r = &b->remeshing.report;
 
   if (r->n_crossing[0])
     vg_note(b->notes,
@@ -233,10 +233,10 @@ static void note_faults(struct vg_boundary *b)
             r->n_kept, r->kept_at[0], r->kept_at[1], r->kept_at[2]);
 }
 
-vg_status vg_boundary_renew(struct vg_boundary *b, struct vg_display *show,
-                            struct vg_error *err)
+vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
+                             struct vg_error *err)
 {
-  struct vg_renewal *r = &b->renewal;
+  struct vg_remeshing *r = &b->remeshing;
   struct vg_surface_sizes sizes = { NULL, NULL, NULL };
   struct vg_mesh given = VG_MESH_INIT;
   uint8_t *hard = NULL;
@@ -309,7 +309,7 @@ vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
   vg_mesh_move(&b->surface, &m);
   vg_cad_surface_release(&b->model.surface);
   b->model.surface = fresh;
-  vg_renewal_release(&b->renewal);
+  vg_remeshing_release(&b->remeshing);
   while (b->notes->n > n_note) free(b->notes->text[--b->notes->n]);
   vg_note(b->notes,
           "the first tessellation of the CAD model led to no sound "
@@ -323,7 +323,7 @@ done:
   return st;
 }
 
-void vg_renewal_release(struct vg_renewal *r)
+void vg_remeshing_release(struct vg_remeshing *r)
 {
   vg_remesh_report_release(&r->report);
   free(r->face);
@@ -341,6 +341,6 @@ vg_status vg_problem_share(struct vg_problem *p, struct vg_comm *comm,
       !vg_read_is_remeshed(read, vg_problem_surface(p)))
     return vg_comm_agree(comm, st, err);
   st = vg_surface_bcast(comm, is_maker, st, &b->surface, err);
-  if (st >= 0 && vg_comm_rank(comm)) b->renewal.is_done = is_maker;
+  if (st >= 0 && vg_comm_rank(comm)) b->remeshing.is_done = is_maker;
   return st;
 }

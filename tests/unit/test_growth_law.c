@@ -9,7 +9,7 @@
 
 #include "layers/columns/columns.h"
 
-static const struct vg_law laws[] = {
+static const struct vg_growth_law laws[] = {
   { 0.001, 0.15, 0.02, INFINITY, 1 },
   { 0.001, 0.15, 0.02, 1.3, 1 },
   { 1e-5, 0.2, 0, 1.3, 1 },
@@ -30,7 +30,7 @@ static void vgrid_box(void **state)
   double d[31], sum = 0;
 
   (void)state;
-  vg_law_heights(&laws[0], INFINITY, 30, d);
+  vg_growth_law_heights(&laws[0], INFINITY, 30, d);
   assert_true(d[0] == 0);
   for (int j = 1; j <= 12; j++)
     assert_true(fabs(d[j] - printed[j - 1]) < 0.51e-6);
@@ -44,11 +44,11 @@ static void vgrid_box(void **state)
 
 static void geometric_when_r2_is_0(void **state)
 {
-  struct vg_law law = { 1e-5, 0.2, 0, INFINITY, 1 };
+  struct vg_growth_law law = { 1e-5, 0.2, 0, INFINITY, 1 };
   double d[VG_LEVELS_MAX + 1];
 
   (void)state;
-  vg_law_heights(&law, INFINITY, VG_LEVELS_MAX, d);
+  vg_growth_law_heights(&law, INFINITY, VG_LEVELS_MAX, d);
   for (int j = 1; j <= VG_LEVELS_MAX; j++) {
     double all = 1e-5 * (pow(1.2, j) - 1) / 0.2;
 
@@ -63,7 +63,7 @@ static void thickness_grows_by_cap_at_most(void **state)
 
   (void)state;
   for (size_t i = 0; i < N_LAW; i++) {
-    vg_law_heights(&laws[i], INFINITY, 60, d);
+    vg_growth_law_heights(&laws[i], INFINITY, 60, d);
     for (int j = 1; j <= 60; j++) {
       double t = d[j] - d[j - 1], slack = 1e-15 * d[j];
 
@@ -77,44 +77,44 @@ static void thickness_grows_by_cap_at_most(void **state)
 
 static void constant_layers_shift_the_law(void **state)
 {
-  struct vg_law law = { 1e-4, 0.2, 0.01, INFINITY, 1 }, late = law;
+  struct vg_growth_law law = { 1e-4, 0.2, 0.01, INFINITY, 1 }, late = law;
   double d[31], e[35];
 
   (void)state;
   late.n_constant = 5;
-  vg_law_heights(&law, INFINITY, 30, d);
-  vg_law_heights(&late, INFINITY, 34, e);
+  vg_growth_law_heights(&law, INFINITY, 30, d);
+  vg_growth_law_heights(&late, INFINITY, 34, e);
   for (int j = 1; j <= 30; j++)
     assert_true(fabs(e[j + 4] - d[j] - 4e-4) <= 1e-14 * e[j + 4]);
 }
 
-static void a_squeezed_column_fits(void **state)
+static void a_compressed_column_fits(void **state)
 {
   double d[41], whole[41];
 
   (void)state;
   for (size_t i = 0; i < N_LAW; i++) {
-    vg_law_heights(&laws[i], INFINITY, 40, whole);
+    vg_growth_law_heights(&laws[i], INFINITY, 40, whole);
     for (int part = 1; part <= 20; part++) {
       double height = whole[40] * part / 20;
-      double cap = vg_law_squeeze(&laws[i], 40, height);
+      double cap = vg_growth_law_compress(&laws[i], 40, height);
 
       if (cap == 0) {
         assert_true(40 * laws[i].delta1 > height * (1 - 1e-12));
         continue;
       }
       assert_true(cap >= 1 && cap <= laws[i].cap);
-      vg_law_heights(&laws[i], cap, 40, d);
+      vg_growth_law_heights(&laws[i], cap, 40, d);
       assert_true(d[40] <= height);
       assert_true(d[1] == laws[i].delta1);
       /* and no lower than need be: 28 halvings */
       if (cap == laws[i].cap) continue;
-      vg_law_heights(&laws[i], cap * (1 + 1e-7), 40, d);
+      vg_growth_law_heights(&laws[i], cap * (1 + 1e-7), 40, d);
       assert_true(d[40] > height);
     }
-    assert_true(vg_law_squeeze(&laws[i], 40, whole[40]) == laws[i].cap);
-    assert_true(vg_law_squeeze(&laws[i], 40, 39 * laws[i].delta1) == 0);
-    assert_true(vg_law_squeeze(&laws[i], 0, 0) == laws[i].cap);
+    assert_true(vg_growth_law_compress(&laws[i], 40, whole[40]) == laws[i].cap);
+    assert_true(vg_growth_law_compress(&laws[i], 40, 39 * laws[i].delta1) == 0);
+    assert_true(vg_growth_law_compress(&laws[i], 0, 0) == laws[i].cap);
   }
 }
 
@@ -125,8 +125,8 @@ static void a_lower_cap_is_nowhere_higher(void **state)
   (void)state;
   for (size_t i = 0; i < N_LAW; i++)
     for (double cap = 1; cap < 1.3; cap += 0.05) {
-      vg_law_heights(&laws[i], cap, 40, a);
-      vg_law_heights(&laws[i], cap + 0.05, 40, b);
+      vg_growth_law_heights(&laws[i], cap, 40, a);
+      vg_growth_law_heights(&laws[i], cap + 0.05, 40, b);
       for (int j = 0; j <= 40; j++) assert_true(a[j] <= b[j]);
     }
 }
@@ -153,27 +153,27 @@ static void a_rate_for_the_total(void **state)
   for (int n = 2; n <= 60; n += 7)
     for (int constant = 1; constant < 4; constant++)
       for (double rate = 0.01; rate < 0.6; rate *= 2) {
-        struct vg_law law = { 1e-5, rate, 0, INFINITY, constant };
+        struct vg_growth_law law = { 1e-5, rate, 0, INFINITY, constant };
         double d[61], total;
 
         if (n <= constant) continue;
-        vg_law_heights(&law, INFINITY, n, d);
+        vg_growth_law_heights(&law, INFINITY, n, d);
         total = d[n];
-        law.rate1 = vg_law_rate_for_total(1e-5, constant, n, total);
-        vg_law_heights(&law, INFINITY, n, d);
+        law.rate1 = vg_growth_law_rate_for_total(1e-5, constant, n, total);
+        vg_growth_law_heights(&law, INFINITY, n, d);
         assert_true(fabs(d[n] / total - 1) < 1e-12);
         assert_true(fabs(law.rate1 - rate) < 1e-9);
       }
-  assert_true(vg_law_rate_for_total(0.1, 1, 10, 0.9) < 0);
-  assert_true(vg_law_rate_for_total(0.1, 10, 10, 2) == INFINITY);
-  assert_true(vg_law_rate_for_total(0.1, 1, 10, 1) < 1e-12);
+  assert_true(vg_growth_law_rate_for_total(0.1, 1, 10, 0.9) < 0);
+  assert_true(vg_growth_law_rate_for_total(0.1, 10, 10, 2) == INFINITY);
+  assert_true(vg_growth_law_rate_for_total(0.1, 1, 10, 1) < 1e-12);
 }
 
 /* Levels of a column, and a coordinate that its direction leaves alone. */
 static void columns_have_points(void **state)
 {
   double point[1][3] = { { 0.1, 1.0 / 3, -7 } }, d[VG_LEVELS_MAX + 1], x[6][3];
-  struct vg_law law = { 0.25, 0.2, 0, 1.3, 1 };
+  struct vg_growth_law law = { 0.25, 0.2, 0, 1.3, 1 };
   struct vg_column column = {
     .dir = { 0, 0, 2 }, .cap = INFINITY, .bent = SIZE_MAX, .n = 5
   };
@@ -210,10 +210,10 @@ static void members_of_a_family(void **state)
   (void)state;
   for (int level = 1; level <= 6; level++) {
     const double scale = 2. / (level + 1);
-    struct vg_law law = { 1, 0.16, 0, 1.3, 2 };
+    struct vg_growth_law law = { 1, 0.16, 0, 1.3, 2 };
     int n = 40;
 
-    vg_law_scale(&law, VG_LAW_WORKSHOP, scale, &n);
+    vg_growth_law_scale(&law, VG_GROWTH_LAW_WORKSHOP, scale, &n);
     assert_float_equal(1 + law.rate1, ratio[level - 1], 0.0006);
     assert_float_equal(law.delta1, y_plus[level - 1], 0.005);
     assert_int_equal(law.n_constant, (int64_t)floor(2 / scale + 0.5));
@@ -225,25 +225,25 @@ static void members_of_a_family(void **state)
  * what the last layer may add. */
 static void an_even_family_is_as_high(void **state)
 {
-  struct vg_law law = { 1e-3, 0.2, 0, 1.3, 1 }, half = law;
+  struct vg_growth_law law = { 1e-3, 0.2, 0, 1.3, 1 }, half = law;
   double d[2][VG_LEVELS_MAX + 1];
   int n = 24;
 
   (void)state;
-  vg_law_scale(&half, VG_LAW_EVEN, 0.5, &n);
+  vg_growth_law_scale(&half, VG_GROWTH_LAW_EVEN, 0.5, &n);
   assert_int_equal(n, 48);
   assert_true(fabs(half.rate1 - (sqrt(1.2) - 1)) < 1e-14);
   assert_true(fabs(half.cap - sqrt(1.3)) < 1e-14);
   assert_int_equal(half.n_constant, 1);
-  vg_law_heights(&law, INFINITY, 24, d[0]);
-  vg_law_heights(&half, INFINITY, 48, d[1]);
+  vg_growth_law_heights(&law, INFINITY, 24, d[0]);
+  vg_growth_law_heights(&half, INFINITY, 48, d[1]);
   assert_float_equal(d[1][48] / d[0][24], 1, 0.06);
   n = 200;
-  vg_law_scale(&half, VG_LAW_EVEN, 0.5, &n);
+  vg_growth_law_scale(&half, VG_GROWTH_LAW_EVEN, 0.5, &n);
   assert_int_equal(n, VG_LEVELS_MAX);
   n = 0;
   half = law;
-  vg_law_scale(&half, VG_LAW_KEPT, 0.5, &n);
+  vg_growth_law_scale(&half, VG_GROWTH_LAW_KEPT, 0.5, &n);
   assert_int_equal(n, 0);
   assert_memory_equal(&half, &law, sizeof law);
 }
@@ -269,7 +269,7 @@ int main(void)
     cmocka_unit_test(geometric_when_r2_is_0),
     cmocka_unit_test(thickness_grows_by_cap_at_most),
     cmocka_unit_test(constant_layers_shift_the_law),
-    cmocka_unit_test(a_squeezed_column_fits),
+    cmocka_unit_test(a_compressed_column_fits),
     cmocka_unit_test(a_lower_cap_is_nowhere_higher),
     cmocka_unit_test(y_plus_there_and_back),
     cmocka_unit_test(a_rate_for_the_total),

@@ -1,4 +1,4 @@
-#include "partition/cut/parting.h"
+#include "partition/cut/decomposition.h"
 
 #include <assert.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "base/bytes.h"
 #include "base/memory.h"
 
-void vg_parting_release(struct vg_parting *p)
+void vg_decomposition_release(struct vg_decomposition *p)
 {
   for (size_t k = 0; k < p->n_part; k++) vg_front_release(&p->part[k].front);
   free(p->part);
@@ -23,7 +23,7 @@ void vg_coarse_cells_release(struct vg_coarse_cells *c)
   memset(c, 0, sizeof *c);
 }
 
-int vg_parting_parts(double cells, double leaf_cells)
+int vg_decomposition_parts(double cells, double leaf_cells)
 {
   double parts = leaf_cells > 0 ? cells / leaf_cells : 1;
 
@@ -33,8 +33,8 @@ int vg_parting_parts(double cells, double leaf_cells)
 /* The smallest leaves that were found to be worth a cut. */
 static const double least_leaf = 14000; /* C1 */
 
-double vg_parting_leaf_cells(double cells, int n_part, int is_parted,
-                             double leaf_cells)
+double vg_decomposition_leaf_cells(double cells, int n_part, int is_parted,
+                                   double leaf_cells)
 {
   double part = n_part > 0 ? cells / n_part : 0;
 
@@ -43,8 +43,8 @@ double vg_parting_leaf_cells(double cells, int n_part, int is_parted,
   return fmin(leaf_cells, fmax(part, least_leaf));
 }
 
-vg_status vg_parting_check_options(const struct vg_parting_options *o,
-                                   double cells, struct vg_error *err)
+vg_status vg_decomposition_check_options(
+  const struct vg_decomposition_options *o, double cells, struct vg_error *err)
 {
   if (o->n_part < 1)
     return vg_fail(err, VG_ERR_INPUT, "%d parts are asked for; give 1 or more",
@@ -62,7 +62,7 @@ vg_status vg_parting_check_options(const struct vg_parting_options *o,
 
 /* A face by the names of its corners, rising. */
 struct side {
-  uint64_t name[3];
+  uint64_t id[3];
   const double *x; /* of one of them */
   int8_t sense;    /* 1 or -1, as they were turned */
   int8_t is_part;  /* 0: of the void's front */
@@ -77,11 +77,11 @@ static struct side side_of(const struct vg_front *f, const uint32_t v[3],
 
   for (int k = 0; k < 3; k++) {
     int i = k % 2; /* 0 1, 1 2, 0 1 */
-    uint64_t swap = s.name[i];
+    uint64_t swap = s.id[i];
 
-    if (swap < s.name[i + 1]) continue;
-    s.name[i] = s.name[i + 1];
-    s.name[i + 1] = swap;
+    if (swap < s.id[i + 1]) continue;
+    s.id[i] = s.id[i + 1];
+    s.id[i + 1] = swap;
     s.sense = (int8_t)-s.sense;
   }
   return s;
@@ -92,7 +92,7 @@ static int by_corners(const void *a, const void *b)
   const struct side *s = a, *t = b;
 
   for (int k = 0; k < 3; k++)
-    if (s->name[k] != t->name[k]) return s->name[k] < t->name[k] ? -1 : 1;
+    if (s->id[k] != t->id[k]) return s->id[k] < t->id[k] ? -1 : 1;
   return 0;
 }
 
@@ -112,8 +112,8 @@ static int is_right(size_t n, const struct side *s)
   return over[0] == over[1] && (over[0] == 0 || over[0] == 1);
 }
 
-/* Every point of a front is the void's own, or one of the parting's. */
-static vg_status check_names(const struct vg_parting *p, uint32_t serial,
+/* Every point of a front is the void's own, or one of the decomposition's. */
+static vg_status check_names(const struct vg_decomposition *p, uint32_t serial,
                              struct vg_error *err)
 {
   for (size_t k = 0; k < p->n_part; k++) {
@@ -133,9 +133,9 @@ static vg_status check_names(const struct vg_parting *p, uint32_t serial,
   return VG_OK;
 }
 
-vg_status vg_parting_check(const struct vg_parting *p,
-                           const struct vg_front *front, uint32_t serial,
-                           struct vg_error *err)
+vg_status vg_decomposition_check(const struct vg_decomposition *p,
+                                 const struct vg_front *front, uint32_t serial,
+                                 struct vg_error *err)
 {
   size_t n = front->n_face, end;
   struct side *s;
@@ -177,7 +177,8 @@ static void give_names(struct vg_front *f, uint32_t from, uint32_t to)
     if (f->id[k] >> 32 == from) f->id[k] = VG_POINT_ID(to, f->id[k]);
 }
 
-void vg_parting_put(struct vg_writer *w, struct vg_parting *p, uint32_t serial)
+void vg_decomposition_put(struct vg_writer *w, struct vg_decomposition *p,
+                          uint32_t serial)
 {
   uint64_t count[2] = { p->n_point, p->n_part };
 
@@ -195,7 +196,8 @@ void vg_parting_put(struct vg_writer *w, struct vg_parting *p, uint32_t serial)
   }
 }
 
-void vg_parting_get(struct vg_reader *r, uint32_t serial, struct vg_parting *p)
+void vg_decomposition_get(struct vg_reader *r, uint32_t serial,
+                          struct vg_decomposition *p)
 {
   uint64_t count[2] = { 0, 0 };
 
@@ -215,5 +217,5 @@ void vg_parting_get(struct vg_reader *r, uint32_t serial, struct vg_parting *p)
     vg_front_get(r, &q->front, 1);
     give_names(&q->front, any_serial, serial);
   }
-  if (r->bad) vg_parting_release(p);
+  if (r->bad) vg_decomposition_release(p);
 }

@@ -11,7 +11,7 @@
 
 /* A name that the node of void k (by its rank) has on its front. */
 struct claim {
-  uint64_t name;
+  uint64_t id;
   uint64_t k;
 };
 
@@ -30,7 +30,7 @@ static int by_claim(const void *a, const void *b)
 {
   const struct claim *s = a, *t = b;
 
-  if (s->name != t->name) return s->name < t->name ? -1 : 1;
+  if (s->id != t->id) return s->id < t->id ? -1 : 1;
   return (s->k > t->k) - (s->k < t->k);
 }
 
@@ -75,9 +75,9 @@ done:
   return st;
 }
 
-static int is_gone(size_t n, const uint32_t *gone, uint64_t name)
+static int is_gone(size_t n, const uint32_t *gone, uint64_t id)
 {
-  uint32_t serial = (uint32_t)(name >> 32);
+  uint32_t serial = (uint32_t)(id >> 32);
 
   return serial && bsearch(&serial, gone, n, sizeof serial, by_value);
 }
@@ -92,22 +92,22 @@ static vg_status list_claims(size_t n_gone, const uint32_t *gone, size_t n,
 
   for (size_t i = 0; i < n; i++)
     for (size_t v = 0; v < node[i]->front.n_point; v++) {
-      uint64_t name = node[i]->front.id[v];
+      uint64_t id = node[i]->front.id[v];
 
-      if (!is_gone(n_gone, gone, name)) continue;
+      if (!is_gone(n_gone, gone, id)) continue;
       if (vg_reserve(out, &cap, *n_out + 1, sizeof **out))
         return vg_fail_memory(err, "names of points");
-      (*out)[(*n_out)++] = (struct claim){ name, k[i] };
+      (*out)[(*n_out)++] = (struct claim){ id, k[i] };
     }
   return VG_OK;
 }
 
-static int is_won(size_t n, const struct claim *all, uint64_t name, uint32_t k)
+static int is_won(size_t n, const struct claim *all, uint64_t id, uint32_t k)
 {
-  const struct claim key = { name, k };
+  const struct claim key = { id, k };
   const struct claim *at = bsearch(&key, all, n, sizeof key, by_claim);
 
-  return at && (at == all || at[-1].name != name);
+  return at && (at == all || at[-1].id != id);
 }
 
 /* Points that a front adopts go behind the others, in their order, with the
@@ -119,11 +119,11 @@ static vg_status adopt(struct vg_node *node, uint32_t k, size_t n_claim,
   struct vg_front *f = &node->front;
   uint32_t *to = vg_alloc(f->n_point, sizeof *to);
   double(*x)[3] = vg_alloc(f->n_point, sizeof *x);
-  uint64_t *name = vg_alloc(f->n_point, sizeof *name);
+  uint64_t *id = vg_alloc(f->n_point, sizeof *id);
   size_t n = 0, n_own = 0;
   vg_status st = VG_OK;
 
-  if (!to || !x || !name) {
+  if (!to || !x || !id) {
     st = vg_fail_memory(err, "names of points");
     goto done;
   }
@@ -132,37 +132,37 @@ static vg_status adopt(struct vg_node *node, uint32_t k, size_t n_claim,
       if (is_won(n_claim, all, f->id[v], k) != own) continue;
       to[v] = (uint32_t)n;
       memcpy(x[n], f->x[v], sizeof *x);
-      name[n] = f->id[v];
+      id[n] = f->id[v];
       if (own) {
         if (vg_reserve(map, cap_map, *n_map + 1, sizeof **map)) {
           st = vg_fail_memory(err, "names of points");
           goto done;
         }
-        name[n] = VG_POINT_ID(node->serial, n_own++);
-        (*map)[(*n_map)++] = (struct rename){ f->id[v], name[n] };
+        id[n] = VG_POINT_ID(node->serial, n_own++);
+        (*map)[(*n_map)++] = (struct rename){ f->id[v], id[n] };
       }
       n++;
     }
   memcpy(f->x, x, n * sizeof *x);
-  memcpy(f->id, name, n * sizeof *name);
+  memcpy(f->id, id, n * sizeof *id);
   for (size_t i = 0; i < f->n_face; i++)
     for (int j = 0; j < 3; j++) f->face[i][j] = to[f->face[i][j]];
 done:
   free(to);
   free(x);
-  free(name);
+  free(id);
   return st;
 }
 
 static void rename_all(size_t n_map, const struct rename *map, size_t n_gone,
-                       const uint32_t *gone, size_t n, uint64_t *name)
+                       const uint32_t *gone, size_t n, uint64_t *id)
 {
   for (size_t k = 0; k < n; k++) {
-    const struct rename key = { name[k], 0 }, *at;
+    const struct rename key = { id[k], 0 }, *at;
 
-    if (!is_gone(n_gone, gone, name[k])) continue;
+    if (!is_gone(n_gone, gone, id[k])) continue;
     at = bsearch(&key, map, n_map, sizeof key, by_from);
-    if (at) name[k] = at->to;
+    if (at) id[k] = at->to;
   }
 }
 

@@ -12,7 +12,8 @@ static char dir[4096];
 static int set_up(void **state)
 {
   if (open_job(state)) return -1;
-  snprintf(dir, sizeof dir, "%s/parting_run_%d", VG_TMP_DIR, vg_comm_size(job));
+  snprintf(dir, sizeof dir, "%s/decomposition_run_%d", VG_TMP_DIR,
+           vg_comm_size(job));
   return 0;
 }
 
@@ -27,7 +28,7 @@ static struct vg_partition_options options(int n_part, int threads,
   struct vg_partition_options o = options_of(3000, threads, shuffle);
 
   o.maker = vg_discrete_part;
-  o.parting.n_part = n_part;
+  o.decomposition.n_part = n_part;
   return o;
 }
 
@@ -56,7 +57,7 @@ static void compare(const struct scene *s, double fail)
     o.shuffle = threads == 2 ? 77 : 0;
     d = run_of(job, s, &o, threads == 2, &r);
     same_digest(&expect, &d);
-    assert_true(r.n_part >= 9 && r.parting.n_face > 0);
+    assert_true(r.n_part >= 9 && r.decomposition.n_face > 0);
     assert_true(!fail == !r.n_widened);
   }
 }
@@ -114,7 +115,7 @@ static void stopped_and_resumed(void **state)
   o.job = job_digest(1);
   d = run_of(job, &s, &o, 0, &r);
   same_digest(&expect, &d);
-  assert_true(r.n_found >= 2); /* the parting, and a leaf */
+  assert_true(r.n_found >= 2); /* the decomposition, and a leaf */
   vg_store_close(o.store, 1);
   clean();
   scene_end(&s);

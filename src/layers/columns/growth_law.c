@@ -1,4 +1,4 @@
-#include "layers/columns/law.h"
+#include "layers/columns/growth_law.h"
 
 #include <assert.h>
 #include <math.h>
@@ -16,7 +16,7 @@ static double power(double x, int n)
 }
 
 /* Thickness of layer j by the law alone. */
-static double bare(const struct vg_law *law, int j)
+static double bare(const struct vg_growth_law *law, int j)
 {
   int k = law->n_constant > 1 ? j - (int)law->n_constant : j - 1;
 
@@ -27,7 +27,7 @@ static double bare(const struct vg_law *law, int j)
 }
 
 /* The same, given that of layer j - 1: one product for a geometric law. */
-static double bare_next(const struct vg_law *law, int j, double before)
+static double bare_next(const struct vg_growth_law *law, int j, double before)
 {
   if (j <= 1 || j <= law->n_constant) return law->delta1;
   return law->rate2 > 0 ? bare(law, j) : before * (1 + law->rate1);
@@ -39,7 +39,8 @@ static double next(double bare, double cap, int j, double before)
   return j > 1 && bare > cap * before ? cap * before : bare;
 }
 
-void vg_law_heights(const struct vg_law *law, double cap, int n, double *d)
+void vg_growth_law_heights(const struct vg_growth_law *law, double cap, int n,
+                           double *d)
 {
   double t = 0, b = 0;
 
@@ -57,7 +58,7 @@ void vg_law_heights(const struct vg_law *law, double cap, int n, double *d)
 }
 
 /* Height of n layers of thickness b[1 .. n] by the law alone; adds as
- * vg_law_heights does, to the last bit. */
+ * vg_growth_law_heights does, to the last bit. */
 static double sum(const double *b, double cap, int n)
 {
   double total = 0, t = 0;
@@ -69,7 +70,8 @@ static double sum(const double *b, double cap, int n)
   return total;
 }
 
-double vg_law_squeeze(const struct vg_law *law, int n, double height)
+double vg_growth_law_compress(const struct vg_growth_law *law, int n,
+                              double height)
 {
   assert(n >= 0 && law->delta1 > 0);
 
@@ -128,14 +130,15 @@ double vg_y_plus(double y, double reynolds, double length)
 
 static double total_at(double delta1, int n_constant, int n, double rate)
 {
-  struct vg_law law = { delta1, rate, 0, INFINITY, n_constant };
+  struct vg_growth_law law = { delta1, rate, 0, INFINITY, n_constant };
   double total = 0;
 
   for (int j = 1; j <= n; j++) total += bare(&law, j);
   return total;
 }
 
-double vg_law_rate_for_total(double delta1, int n_constant, int n, double total)
+double vg_growth_law_rate_for_total(double delta1, int n_constant, int n,
+                                    double total)
 {
   double lo = 0, hi = 1;
 
@@ -174,11 +177,12 @@ double vg_real_power(double x, double e)
   return e < 0 ? 1 / y : y;
 }
 
-double vg_law_power(enum vg_law_rule rule, double scale)
+double vg_growth_law_power(enum vg_growth_law_rule rule, double scale)
 {
   assert(scale > 0);
-  if (rule == VG_LAW_KEPT) return 1;
-  return rule == VG_LAW_EVEN ? scale : vg_real_power(2. / 3, 2 / scale - 2);
+  if (rule == VG_GROWTH_LAW_KEPT) return 1;
+  return rule == VG_GROWTH_LAW_EVEN ? scale
+                                    : vg_real_power(2. / 3, 2 / scale - 2);
 }
 
 static int64_t times(int64_t n, double factor)
@@ -188,14 +192,14 @@ static int64_t times(int64_t n, double factor)
   return m < 1 ? 1 : m > VG_LEVELS_MAX ? VG_LEVELS_MAX : (int64_t)m;
 }
 
-void vg_law_scale(struct vg_law *law, enum vg_law_rule rule, double scale,
-                  int *n)
+void vg_growth_law_scale(struct vg_growth_law *law,
+                         enum vg_growth_law_rule rule, double scale, int *n)
 {
   assert(scale > 0 && n);
 
-  double e = vg_law_power(rule, scale);
+  double e = vg_growth_law_power(rule, scale);
 
-  if (rule == VG_LAW_KEPT) return;
+  if (rule == VG_GROWTH_LAW_KEPT) return;
   law->delta1 *= scale;
   law->rate1 = vg_real_power(1 + law->rate1, e) - 1;
   law->rate2 = vg_real_power(1 + law->rate2, e) - 1;
