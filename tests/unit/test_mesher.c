@@ -152,7 +152,7 @@ static void takes_what_fills_the_front(void **state)
 static void refuses_what_does_not(void **state)
 {
   static const char *const words[] = { "face to face", "not finite",
-                                       "there is not", "flat" };
+                                       "does not exist", "flat" };
 
   (void)state;
   for (int way = 0; way < 6; way++) {

@@ -6,9 +6,9 @@
 #include "base/memory.h"
 #include "base/tri_key.h"
 
-/* --- the ring around an edge --------------------------------------------- */
+/* --- the star of an edge -------------------------------------------------- */
 
-/* Is (from, to, a, b) an odd order of the corners of cell c? */
+/* Is (from, to, a, b) an odd permutation of the corners of cell c? */
 static int is_odd(const struct vg_cell *c, uint32_t from, uint32_t to,
                   uint32_t a, uint32_t b)
 {
@@ -56,9 +56,9 @@ int vg_cavity_ring(const struct vg_tets *t, uint32_t c, uint32_t a, uint32_t b,
   return n;
 }
 
-/* --- replacing cells ----------------------------------------------------- */
+/* --- replacing cells ------------------------------------------------------ */
 
-struct border { /* a face of the cavity, or a face waiting */
+struct border { /* a face of the cavity, or one that waits for its mate */
   uint32_t v[3], link;
   uint8_t fixed;
 };

@@ -1,7 +1,8 @@
-/* core/delaunay/cell_signs.h: is a point in the sphere around a cell, and on
- * which side of its faces? Both at once: the determinant of the sphere is the
- * sum of the cell's four orientations with the point, each times a squared
- * distance. As core/geometry/predicates.h decides, in pairs of lanes. Uses
+/* core/delaunay/cell_signs.h: is a point inside the circumsphere of a cell,
+ * and on which side of the cell's faces is it? Both are computed together: the
+ * insphere determinant is the sum of the cell's four orientations with the
+ * point, each multiplied by a squared distance. Decides as
+ * core/geometry/predicates.h, but in pairs of SIMD lanes. Uses
  * core/delaunay/tets.h. */
 #ifndef VG_CORE_DELAUNAY_CELL_SIGNS_H
 #define VG_CORE_DELAUNAY_CELL_SIGNS_H
@@ -15,17 +16,20 @@
 #include <emmintrin.h>
 #endif
 
-/* Two lanes, as GCC and Clang spell it for any processor. */
+/* Two lanes, in the vector syntax of GCC and Clang for any processor. */
 typedef double vg_d2 __attribute__((vector_size(16)));
 typedef int64_t vg_l2 __attribute__((vector_size(16)));
 
-enum {                      /* what is told of a point and a positive cell */
-       VG_SIDE_IN = 0x01,   /* times 1 << i: on the inner side of face i */
-       VG_SIDE_SEES = 0x10, /* likewise: there or in the plane of the face */
-       VG_IN_SPHERE = 0x100 /* strictly; where it is not, nothing is told */
+enum {                      /* result for a point and a positive cell */
+       VG_SIDE_IN = 0x01,   /* times 1 << i: strictly on the inner side of
+                               face i */
+       VG_SIDE_SEES = 0x10, /* times 1 << i: on the inner side of face i or
+                               in its plane */
+       VG_IN_SPHERE = 0x100 /* strictly inside the sphere; if this is clear,
+                               so are all others */
 };
 
-/* Faces from the order of the lanes, 0 2 1 3. */
+/* Reorder bits from lane order, 0 2 1 3, to face order. */
 static inline unsigned vg_lane_faces(unsigned m)
 {
   return (m & 9) | (m & 2) << 1 | (m & 4) >> 1;
@@ -40,7 +44,7 @@ static inline vg_d2 vg_max2(vg_d2 a, vg_d2 b)
 #endif
 }
 
-/* Bits 0 and 1: the lanes of a comparison. */
+/* Bits 0 and 1: the lanes of a comparison result. */
 static inline unsigned vg_lanes2(vg_l2 m)
 {
 #ifdef __SSE2__
@@ -50,7 +54,7 @@ static inline unsigned vg_lanes2(vg_l2 m)
 #endif
 }
 
-/* The larger magnitude of each of two pairs. */
+/* Per lane, the larger magnitude of a and b. */
 static inline vg_d2 vg_abs_max2(vg_d2 a, vg_d2 b)
 {
   const vg_l2 all = { INT64_MAX, INT64_MAX };
@@ -69,30 +73,31 @@ static inline vg_d2 vg_turn2(vg_d2 a)
   return (vg_d2)((vg_l2)vg_swap2(a) ^ (vg_l2){ INT64_MIN, 0 });
 }
 
-/* Of pairs a and b: the larger of a, the larger of b. */
+/* The larger lane of a and the larger lane of b. */
 static inline vg_d2 vg_across2(vg_d2 a, vg_d2 b)
 {
   return vg_max2((vg_d2){ a[0], b[0] }, (vg_d2){ a[1], b[1] });
 }
 
-/** Signs of a point and the faces of cell v of points x; in, out: faces that
- * it is known to be on that side of. */
+/** Signs of a point e and the faces of cell v with corners in x. in, out: faces
+ * of which e is already known to be on the inner or the outer side. */
 unsigned vg_cell_sides(const double (*x)[3], const uint32_t v[4],
                        const vg_d2 e[3], unsigned in, unsigned out);
 
-/* Where rounding leaves the sphere open. even, odd: orientations with faces
- * 0 2 and 1 3, sure where they are beyond flat. */
+/* Exact fallback if rounding leaves the sphere test undecided. even, odd:
+ * orientations with faces 0 2 and 1 3, reliable if their magnitude exceeds
+ * flat. */
 unsigned vg_cell_signs_exact(const double (*x)[3], const uint32_t v[4],
                              const vg_d2 e[3], vg_d2 even, vg_d2 odd,
                              double flat);
 
-/** Signs of a point and cell v of points x. e: its coordinates, each in both
- * lanes. */
+/** Signs of a point and cell v with corners in x. e: the coordinates of the
+ * point, each in both lanes. */
 static inline unsigned vg_cell_signs(const double (*x)[3], const uint32_t v[4],
                                      const vg_d2 e[3])
 {
   const double *a = x[v[0]], *b = x[v[1]], *c = x[v[2]], *d = x[v[3]];
-  /* Vertices 0 and 2, and 1 and 3, from e. */
+  /* Vertices 0 and 2, and 1 and 3, relative to e. */
   vg_d2 px = (vg_d2){ a[0], c[0] } - e[0], qx = (vg_d2){ b[0], d[0] } - e[0];
   vg_d2 py = (vg_d2){ a[1], c[1] } - e[1], qy = (vg_d2){ b[1], d[1] } - e[1];
   vg_d2 pz = (vg_d2){ a[2], c[2] } - e[2], qz = (vg_d2){ b[2], d[2] } - e[2];
@@ -108,9 +113,8 @@ static inline unsigned vg_cell_signs(const double (*x)[3], const uint32_t v[4],
   vg_d2 sum = pl * even + ql * odd;
   vg_d2 xy = vg_across2(vg_abs_max2(px, qx), vg_abs_max2(py, qy));
   vg_d2 most = vg_across2(vg_abs_max2(pz, qz), vg_max2(pl, ql)) * xy;
-  /* Errors are as in core/geometry/predicates.h: 384 u = 4.263e-14 of the
-   * sphere; of an orientation 8 u times at most 6 products, 48 u = 5.329e-15.
-   * */
+  /* Errors as in core/geometry/predicates.h: 384 u = 4.263e-14 for the sphere;
+   * for an orientation 8 u times at most 6 products, 48 u = 5.329e-15. */
   double det = sum[0] + sum[1], flat = 5.4e-15 * most[0] * xy[1];
   unsigned in, out;
 

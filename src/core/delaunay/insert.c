@@ -11,7 +11,7 @@
 #include "core/delaunay/cell_signs.h"
 #include "core/geometry/vector.h"
 
-enum { CUT_MAX = 16 }; /* K5: times a cavity may be cut back */
+enum { CUT_MAX = 16 }; /* K5: number of times that a cavity may be cut back */
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
                            struct vg_error *err)
@@ -34,9 +34,10 @@ void vg_inserter_release(struct vg_inserter *s)
   memset(s, 0, sizeof *s);
 }
 
-/* --- the cavity ---------------------------------------------------------- */
+/* --- the cavity ----------------------------------------------------------- */
 
-/* Room for what one cell of the cavity can add to the lists. */
+/* Reserve space for the entries that one cell of the cavity can add to the
+ * lists. */
 static int make_room(struct vg_inserter *s)
 {
   return (s->n_cell + 4 > s->cap_cell &&
@@ -57,7 +58,7 @@ static int add_tried(struct vg_inserter *s, uint32_t c)
   return 0;
 }
 
-/* Face i of a cell of the cavity with these flags and signs. */
+/* Add face i of a cell of the cavity, with the flags and signs of the cell. */
 static inline void add_face(struct vg_inserter *s, const struct vg_cell *cell,
                             int i, uint8_t flag, unsigned signs)
 {
@@ -80,7 +81,7 @@ static void clear_marks(struct vg_inserter *s)
   s->n_cell = s->n_tried = s->n_face = 0;
 }
 
-/* Leave out faces, from a first one on, that have turned out to be inside. */
+/* Remove the faces from `first` on that turned out to be inside the cavity. */
 static void drop_faces(struct vg_inserter *s, size_t first)
 {
   size_t n = first;
@@ -94,17 +95,17 @@ static void drop_faces(struct vg_inserter *s, size_t first)
   s->n_face = n;
 }
 
-/* All cells that can be reached from those in the list, and the faces around
- * them. Cells marked TRIED before stay out. Only faces that the point sees are
- * crossed: among Delaunay cells every cell of the cavity is reached so. Where
- * recovery has left slivers, whose spheres are huge, it keeps the search from
- * running all over them. */
+/* Find all cells that can be reached from those in the list, and the faces
+ * around them. Cells that were marked TRIED before stay out. The search only
+ * crosses faces that the point sees: among Delaunay cells this reaches every
+ * cell of the cavity. Where recovery has left slivers with huge circumspheres,
+ * it prevents the search from running through all of them. */
 static int flood(struct vg_inserter *s, const vg_d2 p[3])
 {
   const double(*x)[3] = (const double(*)[3])s->t->x;
   const struct vg_cell *cells = s->t->cell;
   uint8_t *flag = s->t->flag;
-  size_t late = SIZE_MAX; /* the first face that may yet turn out inside */
+  size_t late = SIZE_MAX; /* first face that may still turn out to be inside */
 
   for (size_t k = 0; k < s->n_cell; k++) {
     struct vg_cavity_cell c = s->cell[k];
@@ -170,8 +171,9 @@ static uint32_t cell_before(const struct vg_inserter *s, size_t f)
   return VG_NONE;
 }
 
-/* Leave the cells before all hidden faces out and flood again from the seed.
- * 0: done; 1: a face of the seed itself is hidden; 2: nothing was hidden. */
+/* Exclude the cells in front of all hidden faces, and flood again from the
+ * seed. Returns 0: done; 1: a face of the seed itself is hidden; 2: no face is
+ * hidden. */
 static int cut_back(struct vg_inserter *s, const vg_d2 p[3])
 {
   uint32_t seed = s->cell[0].at;
@@ -203,8 +205,8 @@ static int grow_local(struct vg_inserter *s)
   return 0;
 }
 
-/* Number the vertices of the cavity as they come; none where there are too
- * many. */
+/* Number the vertices of the cavity in the order of their appearance. n_vertex
+ * stays 0 if there are too many for the table. */
 static void number_vertices(struct vg_inserter *s)
 {
   uint32_t n = 0;
@@ -227,10 +229,11 @@ static void number_vertices(struct vg_inserter *s)
   s->n_vertex = n;
 }
 
-/* --- is the point welcome? ----------------------------------------------- */
+/* --- acceptance of the point ---------------------------------------------- */
 
-/* Height over the face, squared, against the square of its mean edge, or of
- * `most` (0: none) where that is shorter, as above a needle. */
+/* Is the height of x over the face below the clearance? Compares squares. The
+ * clearance is relative to the root mean square of the edges, or to `most` (0:
+ * no limit) if that is shorter, as it is above a needle. */
 static int too_low(const double a[3], const double b[3], const double c[3],
                    const double x[3], double clearance, double most)
 {
@@ -276,10 +279,10 @@ static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
   return 0;
 }
 
-/* --- refilling ----------------------------------------------------------- */
+/* --- refilling ------------------------------------------------------------ */
 
-/* A cell before each face of the cavity, which learns its number instead of
- * what lies behind it. */
+/* Make a cell in front of each face of the cavity. The link of the face
+ * becomes the number of that cell instead of the cell behind the face. */
 static void make_cells(struct vg_inserter *s, uint32_t p)
 {
   struct vg_tets *t = s->t;
@@ -301,13 +304,13 @@ static void make_cells(struct vg_inserter *s, uint32_t p)
     f->link = c;
     s->last = c;
   }
-  /* A star-shaped cavity of n vertices has 2n - 4 faces; with n - 3 cells or
-   * more there can be fewer faces than cells only around flat ones. */
+  /* A star-shaped cavity with n vertices has 2n - 4 faces and at least n - 3
+   * cells. There can be fewer faces than cells only around flat cells. */
   while (used < s->n_cell) vg_tets_free_cell(t, s->cell[used++].at);
 }
 
 /* Each edge of the cavity's hull has two faces, which run along it in opposite
- * senses. */
+ * directions. */
 static void link_by_table(struct vg_inserter *s)
 {
   for (size_t k = 0; k < s->n_face; k++) {
@@ -333,14 +336,14 @@ static uint64_t hull_edge(const struct vg_inserter *s, uint32_t half)
   return vg_edge_key(v[(half + 1) % 3], v[(half + 2) % 3]);
 }
 
-/* Face of a new cell at that edge, as a link. */
+/* Link to the face of a new cell at that edge. */
 static uint32_t hull_link(const struct vg_inserter *s, uint32_t half)
 {
   return 4 * s->face[half / 3].link + half % 3;
 }
 
 /* Link the new cells of a cavity with many vertices. edge: an empty table with
- * room for its edges. */
+ * enough space for the edges. */
 static void link_by_edges(struct vg_inserter *s, const struct vg_table *edge)
 {
   for (uint32_t half = 0; half < 3 * s->n_face; half++) {

@@ -54,7 +54,7 @@ int vg_tets_free_cell(struct vg_tets *t, uint32_t cell)
   return 0;
 }
 
-/* --- links --------------------------------------------------------------- */
+/* --- links ---------------------------------------------------------------- */
 
 static struct vg_tri_key face_key(const struct vg_cell *c, uint32_t i)
 {
@@ -88,7 +88,7 @@ static vg_status link_faces(struct vg_tets *t, const struct vg_table *table,
       }
       if (t->cell[*at >> 2].link[*at & 3] != VG_NONE)
         return vg_fail(err, VG_ERR_GEOMETRY,
-                       "face of points %u %u %u has more than two cells",
+                       "the face with points %u %u %u has more than two cells",
                        (uint32_t)(key.low >> 32) + 1, (uint32_t)key.low + 1,
                        key.high + 1);
       vg_tets_connect(t, *at, 4 * c + i);
@@ -97,8 +97,8 @@ static vg_status link_faces(struct vg_tets *t, const struct vg_table *table,
   return VG_OK;
 }
 
-/* Of the 4 n_cell halves one of each inner face enters the table, and all of
- * the hull. */
+/* Of the 4 n_cell halves, one of each inner face and all halves on the hull
+ * enter the table. */
 vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err)
 {
   struct vg_table table;
@@ -143,7 +143,7 @@ vg_status vg_tets_from_cells(struct vg_tets *t, size_t n_point, double (*x)[3],
   return vg_tets_link(t, err);
 }
 
-/* --- location ------------------------------------------------------------ */
+/* --- location ------------------------------------------------------------- */
 
 static uint32_t search_all(const struct vg_tets *t, const double x[3])
 {
@@ -168,8 +168,8 @@ uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
 
   uint32_t c = start, from = VG_NONE, most = 4096 + t->n_cell / 64;
 
-  /* A walk along a sheet of many points is long, but shorter than a search of
-   * all cells. */
+  /* A walk along a sheet of many points is long, but shorter than a search
+   * through all cells. */
   for (uint32_t step = 0; step < most; step++) {
     const struct vg_cell *cell = &t->cell[c];
     uint32_t turn = vg_walk_turn(step), k = 0;
@@ -192,10 +192,10 @@ uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
   return search_all(t, x);
 }
 
-/* --- housekeeping -------------------------------------------------------- */
+/* --- housekeeping --------------------------------------------------------- */
 
-/* to[old] = new number of each point, VG_NONE for unused ones from n_keep on;
- * t->x is put into the new order. */
+/* to[old] = new number of each point, VG_NONE for unused points from n_keep
+ * on. Reorders t->x accordingly. */
 static vg_status order_points(struct vg_tets *t, size_t n_keep, uint32_t *to,
                               struct vg_error *err)
 {
@@ -227,7 +227,7 @@ static vg_status order_points(struct vg_tets *t, size_t n_keep, uint32_t *to,
 }
 
 /* to[old] = new number of each cell, VG_NONE for removed ones: counting sort
- * by the highest point. Returns the number that stay. */
+ * by the highest point. Returns the number of remaining cells. */
 static size_t order_cells(const struct vg_tets *t, uint32_t *start,
                           uint32_t *to)
 {

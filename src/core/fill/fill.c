@@ -18,8 +18,8 @@ static void add_boundary(struct vg_fill_report *to,
   to->n_steiner += b->n_steiner;
 }
 
-/* A front that this region alone does not settle is no failure: the cut may be
- * made elsewhere, or the void filled as it is. */
+/* If recovery fails in a region, this is not an error: the cut may be made
+ * elsewhere, or the void filled without it. */
 static vg_status recover(struct vg_filling *g, struct vg_error *err)
 {
   const struct vg_front *f = g->front;
@@ -40,7 +40,7 @@ static vg_status recover(struct vg_filling *g, struct vg_error *err)
   return VG_BLOCKED;
 }
 
-/* VG_MARK on the cells that are kept: all, or those of a region. */
+/* Set VG_MARK on the cells that are kept: all cells, or those of a region. */
 static vg_status choose(struct vg_filling *g, struct vg_error *err)
 {
   struct vg_tets *t = &g->t;

@@ -5,34 +5,34 @@
 #include "core/delaunay/tets.h"
 #include "core/fill/fill.h"
 
-/* A front that is being filled. */
+/* State of the kernel while it fills a front. */
 struct vg_filling {
   const struct vg_front *front;
-  const struct vg_region *region; /* NULL: everywhere */
+  const struct vg_region *region; /* NULL: no restriction */
   const struct vg_sizing *sizing;
   const struct vg_fill_options *options;
   struct vg_fill_report *report;
-  struct vg_tets t; /* the front's points are its first ones */
+  struct vg_tets t; /* the points of the front come first */
   struct vg_filled out;
 };
 
-/** Place points into the fluid cells of t and insert them. (populate.c) */
+/** Place points in the fluid cells of t and insert them. (populate.c) */
 vg_status vg_filling_populate(struct vg_filling *g, struct vg_error *err);
 
-/** Drop the cells outside, put the others into a good order, optimise.
- * (populate.c) */
+/** Remove the cells outside, reorder the others, optimise. (populate.c) */
 vg_status vg_filling_improve(struct vg_filling *g, struct vg_error *err);
 
-/** With a region: only cells near it stay, none of them at a corner of the
- * box around all points; the faces around them are fixed. (zone.c) */
+/** With a region: remove all cells that are not near it or have a corner of the
+ * box around all points, and fix the faces around the remaining cells.
+ * (zone.c) */
 vg_status vg_zone_narrow(struct vg_filling *g, struct vg_error *err);
 
-/** VG_MARK on the cells that a region keeps; counts them, the holes and the
- * volume in g->out. (zone.c) */
+/** Set VG_MARK on the cells that a region keeps. Counts these cells, holes, and
+ * the volume in g->out. (zone.c) */
 vg_status vg_zone_choose(struct vg_filling *g, struct vg_error *err);
 
-/** The marked cells, their new points, and the change of the front, in g->out.
- * (filled.c) */
+/** Store the marked cells, their new points, and the change of the front in
+ * g->out. (filled.c) */
 vg_status vg_filled_take(struct vg_filling *g, struct vg_error *err);
 
 #endif

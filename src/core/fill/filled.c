@@ -1,5 +1,5 @@
-/* The result of the kernel: the cells that are kept, and the change of the
- * front around them. */
+/* The result of the kernel: the cells that are kept, and the resulting change
+ * of the front. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,10 +53,10 @@ void vg_filled_get(struct vg_reader *r, struct vg_filled *f, int cells)
   if (r->bad) vg_filled_release(f);
 }
 
-/* --- points and cells ---------------------------------------------------- */
+/* --- points and cells ----------------------------------------------------- */
 
-/* Numbers of the points of t in the result: points of the front keep theirs,
- * new points of kept cells follow, others have VG_NONE. */
+/* Index in the result of each point of t: points of the front keep theirs, new
+ * points of kept cells follow, all others have VG_NONE. */
 static vg_status number_points(struct vg_filling *g, uint32_t *number,
                                struct vg_error *err)
 {
@@ -98,11 +98,10 @@ static vg_status take_cells(struct vg_filling *g, const uint32_t *number,
 
 /* --- the change of the front ---------------------------------------------- */
 
-/* Faces of the front by their lowest point. */
+/* Faces of the front, sorted by their lowest point. */
 struct lookup {
   const struct vg_front *front;
-  uint32_t *first; /* [front->n_point + 2] where a point's faces
-                      begin */
+  uint32_t *first; /* [front->n_point + 2] first face of each point */
   uint32_t *face;  /* [front->n_face] */
 };
 
@@ -127,7 +126,7 @@ static vg_status lookup_init(struct lookup *l, const struct vg_front *f,
   return VG_OK;
 }
 
-/* The face of the front with these corners in this sense, or VG_NONE. */
+/* The face of the front with these corners and orientation, or VG_NONE. */
 static uint32_t lookup_find(const struct lookup *l, const uint32_t v[3])
 {
   uint32_t low = lowest(v);
@@ -145,8 +144,8 @@ static uint32_t lookup_find(const struct lookup *l, const uint32_t v[3])
   return VG_NONE;
 }
 
-/* Every face around the kept cells is a face of the front, which is consumed,
- * or a new face, which looks away from the cell. */
+/* Every face around the kept cells is either a face of the front, which is
+ * consumed, or a new face, which looks away from the cell. */
 static vg_status take_faces(struct vg_filling *g, const struct lookup *l,
                             const uint32_t *number, uint8_t *is_consumed,
                             struct vg_error *err)
@@ -215,7 +214,7 @@ vg_status vg_filled_take(struct vg_filling *g, struct vg_error *err)
   return st;
 }
 
-/* --- checks -------------------------------------------------------------- */
+/* --- checks --------------------------------------------------------------- */
 
 static const double *point_of(const struct vg_front *front,
                               const struct vg_filled *f, uint32_t v)
@@ -235,8 +234,9 @@ static int is_positive(const struct vg_front *front, const struct vg_filled *f,
   return vg_orient3d(x[0], x[1], x[2], x[3]) > 0;
 }
 
-/* Open edges of the boundary of a region's cells: the consumed faces of the
- * front, and the new faces seen from the cells. */
+/* Number of open edges of the boundary of a region's cells, which consists of
+ * the consumed faces of the front and the new faces seen from the cells.
+ * SIZE_MAX if the consumed faces are invalid. */
 static size_t open_edges_around(const struct vg_front *front,
                                 const struct vg_filled *f)
 {

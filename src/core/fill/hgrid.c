@@ -14,9 +14,10 @@
 
 #define VG_NONE UINT32_MAX
 
-/* Level k has cells of side 2^k, between half of this and this, in spacings. */
+/* Level k has cells of side 2^k, which is between half of this and this, in
+ * units of the spacing. */
 static const double widest_cell = 2.8; /* K39 */
-/* A search expects the spacing to change by no more than this share. */
+/* A search assumes that the spacing changes by at most this share. */
 static const double largest_change = 0.6; /* K39 */
 
 static int level_of(double h)
@@ -28,7 +29,7 @@ static int level_of(double h)
 }
 
 /* Blocks of 4 x 4 x 4 cells share an entry of the table and are contiguous in
- * memory, so that a query touches few of them. */
+ * memory, so that a query accesses few of them. */
 static uint64_t hash(int level, const int64_t block[3])
 {
   return vg_hash_1(
@@ -48,7 +49,7 @@ static uint32_t cell_in_block(const int64_t i[3])
   return (uint32_t)((i[0] & 3) << 4 | (i[1] & 3) << 2 | (i[2] & 3));
 }
 
-/* The cells of a block from `from` to `to` on each axis, 0 to 3, as bits. */
+/* Bit mask of the cells of a block from `from` to `to` on each axis, 0 to 3. */
 static uint64_t cells_between(const int from[3], const int to[3])
 {
   uint64_t x = UINT64_MAX << 16 * from[0] & UINT64_MAX >> 16 * (3 - to[0]);
@@ -65,7 +66,7 @@ static int is_block(const struct vg_hgrid_block *b, int level,
          b->level == level;
 }
 
-/* Slot of a block, or where it belongs. */
+/* Slot of a block, or the free slot for it. */
 static inline uint32_t *find_slot(const struct vg_hgrid *s, int level,
                                   const int64_t block[3])
 {
@@ -76,7 +77,8 @@ static inline uint32_t *find_slot(const struct vg_hgrid *s, int level,
   return at;
 }
 
-/* Head of the pages of cell i, made if need be; NULL: memory refused. */
+/* Head of the list of pages of cell i, created if needed. NULL if memory is
+ * refused. */
 static uint32_t *cell_head(struct vg_hgrid *s, int level, const int64_t i[3])
 {
   const int64_t at[3] = { i[0] >> 2, i[1] >> 2, i[2] >> 2 };
@@ -135,8 +137,9 @@ int vg_hgrid_add(struct vg_hgrid *s, const double x[3], double h)
   return 0;
 }
 
-/* A grid cell met by a search: its pages are on their way to the cache while
- * the other cells are looked up. x, y, z: its corner, from the centre. */
+/* Record a grid cell found by a search and prefetch its page while the other
+ * cells are looked up. x, y, z: lower corner of the cell relative to the
+ * centre. */
 static void find_cell(struct vg_hgrid *s, uint32_t page, double x, double y,
                       double z)
 {
@@ -152,7 +155,7 @@ static void find_cell(struct vg_hgrid *s, uint32_t page, double x, double y,
   s->n_cell++;
 }
 
-/* Four lanes, as GCC and Clang spell it for any processor. */
+/* Four lanes, in the vector syntax of GCC and Clang for any processor. */
 typedef float f4 __attribute__((vector_size(16)));
 typedef int32_t i4 __attribute__((vector_size(16)));
 
@@ -174,7 +177,8 @@ static inline f4 four(const float *from)
   return v;
 }
 
-/* Bit k: point k of the page, moved by d, is within a distance. */
+/* Bit k: point k of the page, translated by d, is within a distance of
+ * sqrt(r2). */
 static inline unsigned within(const struct vg_hgrid_page *page,
                               const float d[3], float r2)
 {
@@ -210,19 +214,19 @@ static void gather_cell(struct vg_hgrid *s, const struct vg_hgrid_cell *f,
   s->n = n;
 }
 
-/* Distance along one axis from the centre to a cell that starts at d. */
+/* Distance along one axis from the centre to a cell that begins at d. */
 static double gap(double d, double side)
 {
   return d > 0 ? d : d + side < 0 ? -(d + side) : 0;
 }
 
 struct query {
-  double c[3], side, r2; /* centre, side of a cell, radius squared */
-  int64_t lo[3], hi[3];  /* cells in question */
+  double c[3], side, r2; /* centre, cell side, squared radius */
+  int64_t lo[3], hi[3];  /* range of cells to examine */
 };
 
-/* Along axis k, from cell i: its corner relative to the centre, and the square
- * of its distance. */
+/* For cell i along axis k: its corner relative to the centre, and its squared
+ * distance. */
 static double along(const struct vg_hgrid *s, const struct query *q, int k,
                     int64_t i, double side, double *d)
 {
@@ -285,8 +289,8 @@ static void find_level(struct vg_hgrid *s, const double c[3], double r,
   }
 }
 
-/* All points within r of c, r about twice the spacing h there. They are on
- * the levels that the gradient of the field allows. */
+/* All points within r of c, where r is about twice the spacing h at c. They
+ * are on the levels that the gradient of the sizing field allows. */
 void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
 {
   assert(h > 0 && r >= 0);

@@ -12,39 +12,46 @@
 #include "core/fill/sites.h"
 #include "core/geometry/vector.h"
 
-/* Side of the cubic pattern over the spacing: mean edge of a body-centred
- * lattice of side 1 is (8 sqrt(3)/2 + 6) / 14 = 0.923. */
+/* Side of the cubic pattern relative to the spacing: the mean edge of a
+ * body-centred cubic lattice of side 1 is (8 sqrt(3)/2 + 6) / 14 = 0.923. */
 static const double lattice = 1.083; /* K9 */
-/* Least distance between points over the spacing of the later one. */
+/* Least distance between points, relative to the spacing of the later one. */
 static const double exclusion = 0.66; /* K10 */
-/* The same in a region, where fronts from all sides meet after a few steps and
- * leave cells shorter than a void's; but not where the front itself proposes:
- * beside its long faces a point that is missing makes a bad cell. */
+/* Least distance in a region, where fronts from all sides meet after a few
+ * steps and leave shorter cells than in a void. It does not apply to points
+ * proposed by the front itself: a missing point next to its long faces makes a
+ * bad cell. */
 static const double exclusion_region = 0.68; /* K11 */
-/* Proposals that lead from the front to where it counts. */
+/* Number of proposals from the front from which exclusion_region applies. */
 static const int far_from_front = 2;
-/* The same between points of the lattice and others, where it is level. */
+/* Least distance between points of the lattice and others, where the sizing
+ * field is uniform. */
 static const double exclusion_level = 0.72; /* K12 */
 /* Height of the apex over a surface face: regular tetrahedron. */
 static const double apex = 0.8165;
 
-/* How much farther than points are placed, in spacings, others may stand that
- * propose them: steps of the pattern lead so far across planes of the axes. */
+/* Points may propose others from this much farther away than points are
+ * placed, in spacings: steps of the pattern lead this far across planes normal
+ * to an axis. */
 static const double sideways = 0.65; /* K13 */
 
-/* A field that changes less than this over one edge counts as level. */
+/* A sizing field that changes by less than this share over one edge counts as
+ * uniform. */
 static const double uniform_within = 1e-3; /* K14 */
 
-/* A place within this share of the exclusion is rejected before the spacing
- * there is evaluated. */
+/* A proposal with a point nearer than this share of the exclusion distance is
+ * rejected before the spacing at its position is evaluated. */
 static const double exclusion_early = 0.9; /* K35 */
-/* Square of the distance, in halves of the pattern's side, within which a point
- * proposes sites of the lattice: neighbours are at sqrt(3) and 2 of them. */
-static const double neighbour2 = 4.84; /* K36: 2.2 of them */
-/* Range of the displacements that shake the lattice, in halves of its side. */
+/* Square of the distance within which a point proposes sites of the lattice,
+ * in units of half the pattern's side. The neighbours are at distances sqrt(3)
+ * and 2. */
+static const double neighbour2 = 4.84; /* K36: distance 2.2 */
+/* Range of the random displacements of lattice points, in units of half the
+ * side. */
 static const double shaken = 2e-4; /* K37 */
-/* Radius of the list of surroundings, over the step to a place and the
- * exclusion there: from a point where the field is level, from a face. */
+/* Radius of the list of surrounding points, relative to the distance to a
+ * proposed position plus the exclusion distance there: for a point where the
+ * sizing field is uniform, and for a face. */
 static const double list_level = 1.05, list_face = 1.1; /* K38 */
 
 enum { N_BUCKET = 8192, BUCKET_ZERO = 4096 };
@@ -54,24 +61,26 @@ struct placer {
   const struct vg_sizing *sizing;
   const struct vg_region *region;
   size_t n, cap, cap_h, cap_cell, cap_steps;
-  double (*x)[3]; /* surface points first */
+  double (*x)[3]; /* [n] points of t first */
   float *h;
-  uint32_t *cell;          /* cell of t that holds the point */
-  uint8_t *steps;          /* proposals that lead to the point from points
-                              of the front or from what its faces propose,
-                              which have 0; UINT8_MAX: that many or more */
-  struct vg_buckets queue; /* faces of the surface, then points */
+  uint32_t *cell;          /* cell of t that contains the point */
+  uint8_t *steps;          /* number of proposals from the front to the
+                              point. Points of the front and points proposed
+                              by its faces have 0; UINT8_MAX: that many or
+                              more */
+  struct vg_buckets queue; /* surface faces first, then points */
   size_t n_face;
-  uint32_t *face; /* links 4 * cell + face of the surface */
+  uint32_t *face; /* surface faces, as links 4 * cell + face */
   struct vg_hgrid near;
-  int is_listed;         /* near has what is around the growing point */
-  int now;               /* steps of what is proposed now */
-  struct vg_sites sites; /* that stand or never will */
+  int is_listed;         /* `near` lists the points around the present point */
+  int now;               /* steps of the points that are proposed now */
+  struct vg_sites sites; /* lattice sites that are occupied or rejected for
+                            good */
 };
 
-/* --- queue --------------------------------------------------------------- */
+/* --- queue ---------------------------------------------------------------- */
 
-/* Eight buckets per doubling of the spacing, first in first out. */
+/* Eight buckets per doubling of the spacing; first in, first out. */
 static int bucket_of(double h)
 {
   static const double step[8] = { 0.5,
@@ -94,7 +103,7 @@ static void push(struct placer *p, uint32_t item, double h)
   vg_buckets_push(&p->queue, bucket_of(h), item);
 }
 
-/* --- proposals ----------------------------------------------------------- */
+/* --- proposals ------------------------------------------------------------ */
 
 static int reserve(struct placer *p, size_t n)
 {
@@ -105,7 +114,8 @@ static int reserve(struct placer *p, size_t n)
          vg_buckets_reserve(&p->queue, p->n_face + n);
 }
 
-/* Are points to be placed at x? h: the spacing, not farther off than `off`. */
+/* Should points be placed at x? h: the spacing at a position at most `off`
+ * away from x. */
 static int is_wanted(const struct placer *p, const double x[3], double h,
                      double off)
 {
@@ -113,8 +123,8 @@ static int is_wanted(const struct placer *p, const double x[3], double h,
          vg_region_near_by(p->region, p->sizing, x, VG_BAND_PLACE, h, off);
 }
 
-/* Let a point stand at c + d with spacing h, that of a place not farther off
- * than `off`, unless it is outside. */
+/* Place a point at c + d, unless it is outside. h: its spacing, which is that
+ * of a position at most `off` away. */
 static int stand(struct placer *p, const double c[3], const double d[3],
                  double h, double off, uint32_t start)
 {
@@ -136,8 +146,8 @@ static int stand(struct placer *p, const double c[3], const double d[3],
   return 0;
 }
 
-/* d out: unit * length, with the spacing taken half way from c, where it is h.
- * Returns the spacing at the end of unit * h. */
+/* d out: unit * length, where length is the mean of the spacings at c (h) and
+ * at the end of unit * h. Returns the latter. */
 static double aim(const struct placer *p, const double c[3],
                   const double unit[3], double h, double d[3])
 {
@@ -149,7 +159,7 @@ static double aim(const struct placer *p, const double c[3],
   return there;
 }
 
-/* Propose c + unit * length(h), the spacing taken half way. */
+/* Propose the point c + unit * length, with the length as in aim(). */
 static int propose(struct placer *p, const double c[3], const double unit[3],
                    double h, uint32_t start)
 {
@@ -175,7 +185,7 @@ static int is_uniform(const struct placer *p, const double x[3], double h)
   return fabs(vg_sizing_at(p->sizing, x) - h) <= uniform_within * h;
 }
 
-/* In how many of six directions does the field keep its value? */
+/* In how many of six directions does the sizing field keep its value? */
 static int level_around(const struct placer *p, const double c[3], double h)
 {
   int n = 0;
@@ -190,9 +200,9 @@ static int level_around(const struct placer *p, const double c[3], double h)
   return n;
 }
 
-/* A displacement of up to 1e-4, fixed for each point of the lattice: without it
- * points lie on common spheres and planes while the lattice is being built, and
- * every predicate would have to be exact. */
+/* A displacement of up to 1e-4, fixed for each point of the lattice. Without
+ * it, points would lie on common spheres and planes while the lattice is being
+ * built, and every predicate would need exact arithmetic. */
 static double shake(const int64_t i[3], int k)
 {
   uint64_t mix = vg_hash_mix(
@@ -201,7 +211,7 @@ static double shake(const int64_t i[3], int k)
   return ((double)(mix & 0xffff) / 65536 - 0.5) * shaken;
 }
 
-/* What stands around point c: once for all that it proposes. */
+/* List the points around point c, once for all its proposals. */
 static void list_around(struct placer *p, const double c[3], double h)
 {
   if (p->is_listed) return;
@@ -209,8 +219,8 @@ static void list_around(struct placer *p, const double c[3], double h)
   p->is_listed = 1;
 }
 
-/* Propose site i of the lattice. Returns 1 where that need not be done again,
- * whoever proposes it: it stands, or never will. */
+/* Propose site i of the lattice. Returns 1 if the site is settled, so that no
+ * other point need propose it: it is occupied or rejected for good. */
 static int propose_site(struct placer *p, const double c[3], double h,
                         const int64_t i[3], uint32_t start, int everywhere)
 {
@@ -227,9 +237,10 @@ static int propose_site(struct placer *p, const double c[3], double h,
   return stand(p, c, d, h, 0, start) ? -1 : 1;
 }
 
-/* Where the field is level, neighbours are points of one body-centred cubic
- * lattice through the origin: fronts that started anywhere meet without a
- * fault. In units of half the side, its points are all even or all odd. */
+/* Where the sizing field is uniform, neighbours are points of one body-centred
+ * cubic lattice through the origin, so that fronts that started anywhere meet
+ * without defects. In units of half the side, the coordinates of a lattice
+ * point are all even or all odd. */
 static int grow_level(struct placer *p, const double c[3], double h,
                       uint32_t start, int everywhere)
 {
@@ -248,8 +259,8 @@ static int grow_level(struct placer *p, const double c[3], double h,
   return 0;
 }
 
-/* Index of the site at x, where the spacing is h. 0: there is none, or it is
- * farther from the origin than indices tell. */
+/* Index of the lattice site at x, where the spacing is h. Returns 0 if there
+ * is no site at x, or if it is too far from the origin for the index. */
 static int find_site(const double x[3], double h, int64_t i[3])
 {
   double half = 0.5 * lattice * h;
@@ -264,8 +275,8 @@ static int find_site(const double x[3], double h, int64_t i[3])
   return !((i[0] ^ i[1]) & 1) && !((i[0] ^ i[2]) & 1);
 }
 
-/* grow_level from a point of the lattice: of its neighbours, in the same order,
- * those that nobody has proposed for good. */
+/* As grow_level, from a point of the lattice: proposes its neighbouring sites
+ * that are not settled, in the same order. */
 static int grow_site(struct placer *p, const double c[3], double h,
                      const int64_t base[3], uint32_t start, int everywhere)
 {
@@ -316,8 +327,8 @@ static int grow_point(struct placer *p, uint32_t point)
   return 0;
 }
 
-/* A face whose corners are all of the lattice is a zone's: its points go on
- * with the lattice, an apex would only disturb it. */
+/* A face whose corners are all lattice points belongs to a separator zone. Its
+ * points continue the lattice, which an apex would only disturb. */
 static int grow_face(struct placer *p, uint32_t link)
 {
   const struct vg_cell *cell = &p->t->cell[link >> 2];
@@ -337,7 +348,7 @@ static int grow_face(struct placer *p, uint32_t link)
   if (find_site(v[0], h, site) && find_site(v[1], h, site) &&
       find_site(v[2], h, site))
     return 0;
-  if (p->region) { /* saves the search where nothing is wanted */
+  if (p->region) { /* avoids the search if no point is wanted */
     double d[3], there = aim(p, c, unit, h, d);
 
     for (int k = 0; k < 3; k++) d[k] += c[k];
@@ -348,16 +359,19 @@ static int grow_face(struct placer *p, uint32_t link)
   return propose(p, c, unit, h, link >> 2);
 }
 
-/* --- seeds --------------------------------------------------------------- */
+/* --- seeds ---------------------------------------------------------------- */
 
-/* Side of the cells that get one seed, over the spacing: from half of it. */
+/* Each cell of a grid gets one seed. The side of its cells is between half of
+ * this and this, in units of the spacing. */
 static const double seed_cell = 8; /* K15 */
-/* Fronts come to all places of finer spacing while that falls by no more than
- * this for each length. They step over what is steeper ... */
+/* The advancing points reach all finer parts of the sizing field while the
+ * spacing falls by no more than this per unit length. They step over parts
+ * with a steeper gradient. */
 static const double steepest = 0.5; /* K16 */
-/* ... so where the spacing is less than this share of what the seed of a cell
- * has, it gets seeds of its own, but not on the way down to what is finer
- * still: where it falls by this share over half of itself. */
+/* Where the spacing is less than `hidden` times that of the seed of a cell,
+ * the finer part therefore gets seeds of its own. There are no such seeds on
+ * the slope to a still finer part, where the spacing falls by `falls` over
+ * half its length. */
 static const double hidden = 0.5, falls = 0.1;
 
 struct seeder {
@@ -375,7 +389,8 @@ static int add_seed(struct seeder *s, const double x[3])
   return 0;
 }
 
-/* x moved to the lattice of spacing h when the field is level around it. */
+/* Move x to the lattice with spacing h if the sizing field is uniform around
+ * it. */
 static void snap_to_lattice(const struct vg_sizing *sizing, double h,
                             double x[3])
 {
@@ -391,8 +406,8 @@ static void snap_to_lattice(const struct vg_sizing *sizing, double h,
   memcpy(x, to, sizeof to);
 }
 
-/* Does the cube meet the planes of the region, between its walls? Then x, its
- * middle, is moved onto them. */
+/* Does the cube intersect the planes of the region, between its walls? If so,
+ * its centre x is moved onto the planes. */
 static int on_region(const struct vg_region *r, double side, double x[3])
 {
   double foot[3];
@@ -436,7 +451,7 @@ static int seed(struct seeder *s, const double lo[3], double side)
   return 0;
 }
 
-/* May points be wanted in the cube? */
+/* May the cube contain points to be placed? */
 static int near_region(const struct seeder *s, const double mid[3], double side)
 {
   const struct vg_region *r = s->region;
@@ -459,7 +474,7 @@ static int near_region(const struct seeder *s, const double mid[3], double side)
   return 1;
 }
 
-/* Is a seed wanted at x, where the spacing is h? */
+/* Is a seed needed at x, where the spacing is h? */
 static int is_dip(const struct seeder *s, const double x[3], double h)
 {
   if (s->region && !vg_region_near(s->region, s->sizing, x, VG_BAND_PLACE))
@@ -474,10 +489,11 @@ static int is_dip(const struct seeder *s, const double x[3], double h)
   return 1;
 }
 
-/* One seed in each cube that is as small as those of other seeds where the
- * field is hidden by one that is larger. below: no more than that is; 0: no
- * larger cube has its seed. Of a region the finest place may be too far off:
- * others are looked for. Returns 1 where there is one now. */
+/* Place a seed in each cube where the sizing field is hidden by a coarser one;
+ * cubes are as small as those of other seeds. below: seeds are placed where
+ * the spacing is less than this; 0: no enclosing cube has its seed yet. In a
+ * region, the position of the finest spacing may be too far away, so that
+ * other positions are tried. Returns 1 if the cube has a seed now. */
 static int seed_hidden(struct seeder *s, const double lo[3], double side,
                        double below)
 {
@@ -535,16 +551,16 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
   return vg_fail_memory(err, "placing points");
 }
 
-/* --- the front ----------------------------------------------------------- */
+/* --- the front ------------------------------------------------------------ */
 
-/* May what stands at x propose points that are near the region? */
+/* May a point or face at x propose points near the region? */
 static int may_propose(const struct placer *p, const double x[3], double h)
 {
   return !p->region || vg_region_near_by(p->region, p->sizing, x,
                                          VG_BAND_PLACE + sideways, h, 0);
 }
 
-/* Points of no face, seeds that is, count as far from the front. */
+/* Points without a face, i.e. seeds, count as far from the front. */
 static void start_steps(struct placer *p)
 {
   memset(p->steps, UINT8_MAX, p->n * sizeof *p->steps);
@@ -595,7 +611,7 @@ static int start_faces(struct placer *p)
   return reserve(p, t->n_point);
 }
 
-/* Faces come before points of equal size: they are pushed first. */
+/* Faces are pushed first, so that they come before points of equal spacing. */
 static int push_faces(struct placer *p)
 {
   for (uint32_t i = 0; i < p->n_face; i++) {

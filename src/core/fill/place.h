@@ -1,13 +1,14 @@
-/* core/fill/place.h: where the points of the field go: a front of points that
+/* core/fill/place.h: placement of field points by a front of points that
  * starts at the surface and advances by the local spacing.
  *
- * Each face of the surface proposes the apex of a well-shaped cell; each
- * point that stands proposes its neighbours in a body-centred cubic pattern.
- * A proposal stands when it lies in the fluid and no point is nearer than a
- * share of the local spacing. Smallest spacing first, then first come. The
- * proposals of one point are tested against one list of its surroundings, from
- * a spatial hash keyed by the level of the spacing: constant cost per point,
- * whatever the span of sizes. */
+ * Each face of the surface proposes the apex of a well-shaped cell. Each point
+ * that is placed proposes its neighbours in a body-centred cubic pattern. A
+ * proposal is accepted if it lies in the fluid and no point is nearer than a
+ * fraction of the local spacing. Points and faces with the smallest spacing
+ * come first; equal ones in the order of their creation. The proposals of a
+ * point are tested against one list of the points around it, from a spatial
+ * hash with the level of the spacing in its key. The cost per point is
+ * therefore constant for any range of spacings. */
 #ifndef VG_CORE_FILL_PLACE_H
 #define VG_CORE_FILL_PLACE_H
 
@@ -21,26 +22,31 @@
 
 struct vg_placed {
   size_t n;
-  double (*x)[3]; /* [n], owned by the receiver */
-  size_t n_cut;   /* lists of surroundings cut short (hgrid.h) */
+  double (*x)[3]; /* [n], owned by the caller */
+  size_t n_cut;   /* number of truncated lists of surrounding points
+                     (hgrid.h) */
 };
 
-/** A sparse set of points, one for every few hundred of the field, to stand
- * first. They break up the long cells that span a void from surface to
- * surface, across which location would walk for ever. Where the field changes
- * by more than half of a length over it, what is much finer than around it has
- * some of its own: a front of points would step over it.
+/** A sparse set of points, one for every few hundred points of the field, to be
+ * inserted first. They break up the long cells that span a void from surface
+ * to surface, across which point location would be very slow. Where the
+ * spacing has a steep gradient (it changes by more than half an edge over one
+ * edge), finer parts of the sizing field get seeds of their own, since the
+ * advancing points would step over them.
+ *
  * @param x    in: [n][3] the points that bound the void
- * @param out  owned by the caller: free(out->x); some may lie outside */
+ * @param out  owned by the caller: free(out->x); some points may lie outside */
 vg_status vg_place_seeds(size_t n, const double (*x)[3],
                          const struct vg_sizing *sizing,
                          const struct vg_region *region, struct vg_placed *out,
                          struct vg_error *err);
 
-/** Place field points into the fluid cells of t, besides those it has.
+/** Place field points in the fluid cells of t, in addition to its own points.
+ *
  * @param region  NULL: everywhere
- * @param limit   refuse to place more points; 0: none
- * Returns VG_ERR_UNSUPPORTED when the limit is passed. Deterministic. */
+ * @param limit   fail if more points are needed; 0: no limit
+ *
+ * Returns VG_ERR_UNSUPPORTED if the limit is exceeded. Deterministic. */
 vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,
                    const struct vg_region *region, size_t limit,
                    struct vg_placed *out, struct vg_error *err);

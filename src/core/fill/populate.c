@@ -1,4 +1,5 @@
-/* Points into the cells of a front, and the cells improved. */
+/* Insertion of points into the cells of a front, and improvement of the cells.
+ */
 #include "core/fill/fill_parts.h"
 
 #include <assert.h>
@@ -12,15 +13,16 @@
 #include "core/geometry/hilbert.h"
 #include "core/optimise/optimise.h"
 
-/* Least distance of a new point to any other, over the spacing, and least
- * height over a front face, over its mean edge: points that fail would make
- * cells worse than those of the coarser mesh without them. */
+/* Least distance of a new point from any other, relative to the spacing, and
+ * least height over a front face, relative to its mean edge. Other points
+ * would make worse cells than those of the coarser mesh without them. */
 static const double least_distance = 0.5; /* K6 */
 static const double least_height = 0.3;
-/* Cells so near to those of a region, in spacings, are optimised too: what is
- * bad there would be left as a notch in the front. */
+/* Cells within this many spacings of a region's cells are optimised, too: a
+ * bad cell there would leave a notch in the front. */
 static const double margin = 0.3; /* K8 */
-/* The first points of all keep farther off: the front decides near it. */
+/* Seeds keep a larger distance, because the front determines the points near
+ * it. */
 static const double seed_distance = 0.8; /* K7 */
 
 enum { STOP_STEP = 1 << 15 };
@@ -35,7 +37,8 @@ static vg_status insert_one(struct vg_filling *g, struct vg_inserter *s,
 
   c = vg_tets_locate(t, *at, x);
   if (c == VG_NONE) return VG_BLOCKED;
-  *at = c; /* the next one is near here, taken or not */
+  *at = c; /* the next point is close to this one, whether this one is
+              inserted or not */
   if (t->flag[c] & VG_OUTSIDE) return VG_BLOCKED;
   if (vg_tets_reserve_points(t, 1))
     return vg_fail_memory(err, "the points of the mesh");

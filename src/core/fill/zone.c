@@ -1,5 +1,5 @@
-/* Which cells a region keeps: those along a plane (a zone) or along a line (a
- * pencil). */
+/* Selection of the cells that a region keeps: those along a plane (a separator
+ * zone) or along a line (an edge separator, pencil). */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,23 +9,25 @@
 #include "core/geometry/shape.h"
 #include "core/geometry/vector.h"
 
-/* A plane without walls may use all that is known of the front, which large
- * triangles of the surface ask for; where others grow beside it, less. */
+/* Band for a plane without walls, which may use the whole known part of the
+ * front; large surface triangles need that. Regions with adjacent regions use
+ * a narrower band. */
 static const double whole_band = VG_BAND_FRONT - 0.2;
-/* Dents are not filled with cells worse than this (dihedral angles of about
- * 30 and 150 degrees). */
+/* Dents are not filled with cells of a worse shape than this (dihedral angles
+ * of about 30 and 150 degrees). */
 static const double dent = 0.25; /* K20 */
-/* A cell of this shape (angles of 1 and 179 degrees) on the front, under one
- * that becomes final, would be all that can fill the slit between the two. */
+/* A cell of this shape (angles of 1 and 179 degrees) on the front, below a
+ * cell that becomes final, would be the only cell that can fill the slit
+ * between the two. */
 static const double slit = 0.0003; /* K34 */
-/* Edges of more than so many spacings stay out of a pencil. */
+/* Cells with edges longer than this many spacings are kept out of a pencil. */
 static const double overlong = 4; /* K21 */
 
 struct zone {
   struct vg_filling *g;
-  uint8_t *at; /* [t.n_point] bits 2 i and 2 i + 1: the point is
-                  not below and not above plane i; NULL: cells
-                  within reach belong to the region too */
+  uint8_t *at; /* [t.n_point] bits 2 i and 2 i + 1: the point is not below
+                  and not above plane i; NULL: cells within reach belong to
+                  the region, too */
 };
 
 static int is_corner(const struct zone *z, uint32_t p)
@@ -40,7 +42,7 @@ static int all_four(const struct zone *z, const uint8_t *flag, uint32_t c)
   return flag[v[0]] && flag[v[1]] && flag[v[2]] && flag[v[3]];
 }
 
-/* On which sides of the planes the points lie now: z->at. */
+/* Set z->at: the sides of the planes on which the points are. */
 static vg_status look_at_points(struct zone *z, struct vg_error *err)
 {
   const struct vg_tets *t = &z->g->t;
@@ -58,9 +60,10 @@ static vg_status look_at_points(struct zone *z, struct vg_error *err)
   return VG_OK;
 }
 
-/* Is the longest edge of cell c much longer than the spacing along it, and not
- * one of the front? Where spacing grows away along a line, points are placed in
- * the shape of a trumpet; cells across the air beside it hold no points yet. */
+/* Is the longest edge of cell c much longer than the spacing at it, and not an
+ * edge of the front? Where the spacing grows away from a line, points are
+ * placed in the shape of a trumpet; the cells across the space around it have
+ * no points inside yet. */
 static int is_overlong(const struct zone *z, uint32_t c)
 {
   const struct vg_tets *t = &z->g->t;
@@ -82,8 +85,9 @@ static int is_overlong(const struct zone *z, uint32_t c)
   return is_new && most > overlong * overlong * h * h;
 }
 
-/* Most cells cross no plane; that is told before anything is measured. What
- * does not cross all of them, but is within reach, can wait. */
+/* Does cell c belong to the region? Most cells do not cross a plane, which is
+ * checked before any distance is computed. Overlong cells that are within
+ * reach but do not cross all planes are left to the void. */
 static int belongs(const struct zone *z, uint32_t c)
 {
   const struct vg_tets *t = &z->g->t;
@@ -103,7 +107,7 @@ static int belongs(const struct zone *z, uint32_t c)
                             t->x[v[2]], t->x[v[3]]);
 }
 
-/* The faces between cells of the fluid and the rest are fixed. */
+/* Fix the faces between fluid cells and all others. */
 static void fix_faces(struct vg_tets *t)
 {
   for (uint32_t c = 0; c < t->n_cell; c++)
@@ -183,9 +187,9 @@ static double shape_of(const struct vg_tets *t, uint32_t c)
   return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
 }
 
-/* Does the sphere around cell c lie where points are placed? One that reaches
- * farther would hold points that are placed later: the cell is larger than any
- * that should be there. */
+/* Does the circumsphere of cell c lie where points are placed? A larger sphere
+ * would contain points that are placed later, because the cell is larger than
+ * the final cells there. */
 static int is_settled(const struct zone *z, uint32_t c)
 {
   const double(*x)[3] = (const double(*)[3])z->g->t.x;
@@ -221,8 +225,8 @@ static void leave(struct zone *z, uint32_t c)
   z->g->out.volume -= shares_of_spacing(z->g->sizing, x);
 }
 
-/* What could not be mended above a flat cell on the front is left to the void,
- * which then has room there. */
+/* Leave cells above a flat cell on the front to the void if they could not be
+ * improved. The void then has room there. */
 static void leave_no_slits(struct zone *z)
 {
   struct vg_tets *t = &z->g->t;
@@ -241,9 +245,9 @@ static void leave_no_slits(struct zone *z)
   }
 }
 
-/* The cells that belong to the region, and cells that fill the dents between
- * these without a further point, which leaves a smooth front; but not the cells
- * that would leave a slit. */
+/* Keep the cells that belong to the region, and the cells that fill dents
+ * between these without a further point, which makes the front smoother. Cells
+ * that would leave a slit are not kept. */
 vg_status vg_zone_choose(struct vg_filling *g, struct vg_error *err)
 {
   struct zone z = { .g = g };

@@ -54,16 +54,17 @@ void vg_front_get(struct vg_reader *r, struct vg_front *f, int ids)
   if (r->bad) vg_front_release(f);
 }
 
-/* Marks the points that faces use. */
+/* Mark the points that faces use. */
 static vg_status mark_points(const struct vg_front *f, uint8_t *used,
                              struct vg_error *err)
 {
   for (size_t i = 0; i < f->n_face; i++)
     for (int k = 0; k < 3; k++) {
       if (f->face[i][k] >= f->n_point)
-        return vg_fail(err, VG_ERR_INPUT,
-                       "triangle %zu refers to point %u of %zu", i + 1,
-                       f->face[i][k] + 1, f->n_point);
+        return vg_fail(
+          err, VG_ERR_INPUT,
+          "triangle %zu refers to point %u, but there are %zu points", i + 1,
+          f->face[i][k] + 1, f->n_point);
       used[f->face[i][k]] = 1;
     }
   return VG_OK;
@@ -102,8 +103,8 @@ double vg_front_volume(const struct vg_front *f)
   return sum;
 }
 
-/* Points of the same id are one point: parts that were one front may touch.
- * to out: [n_point] the first point of the same id. */
+/* Points with the same id are one point: parts of a former single front may
+ * touch. to out: [n_point] the first point with the same id. */
 static vg_status find_twins(const struct vg_front *f, uint32_t *to,
                             struct vg_error *err)
 {

@@ -9,7 +9,7 @@
 
 static int is_unit(const double n[3])
 {
-  /* a rounding error of the normalisation, far below any angle that counts */
+  /* Allows for rounding of the normalisation, far below any relevant angle. */
   return fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-12;
 }
 
@@ -57,8 +57,10 @@ int vg_region_within(const struct vg_region *r, const double x[3])
   return 1;
 }
 
-/* How far n corners all lie from a plane, or beyond a wall, where distances
- * count for more: the most of these. */
+/* The largest distance from n corners to any plane or wall that they violate:
+ * a plane with all corners on one side, or a wall with all corners beyond it.
+ * The nearest corner counts. Distances beyond walls are scaled up by 1 /
+ * VG_BEYOND_WALLS. */
 static double gap(const struct vg_region *r, int n, const double *const *x)
 {
   double far = 0;
@@ -111,11 +113,11 @@ int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
   return far <= most * h_max && far <= most * vg_region_spacing(r, sizing, x);
 }
 
-/* --- triangles ----------------------------------------------------------- */
+/* --- triangles ------------------------------------------------------------ */
 
 enum { CORNERS = 3 + 2 * 2 + VG_REGION_WALLS };
 
-/* Keep what lies at sign * side <= most. Returns the corners left. */
+/* Clip a polygon to sign * side <= most. Returns the number of corners left. */
 static int clip(int n, double (*x)[3], const struct vg_plane *p, double sign,
                 double most)
 {
@@ -139,8 +141,9 @@ static int clip(int n, double (*x)[3], const struct vg_plane *p, double sign,
   return m;
 }
 
-/* Is there anything of the triangle within `most` of every plane, and of it no
- * farther beyond a wall than it may? middle out: of what there is. */
+/* Is any part of the triangle within `most` of every plane, and within
+ * VG_BEYOND_WALLS * most beyond every wall? middle out: mean of the corners of
+ * that part. */
 static int reaches(const struct vg_region *r, const double *const corner[3],
                    double most, double middle[3])
 {
@@ -178,12 +181,13 @@ static double longest(const double *const corner[3])
   return sqrt(most);
 }
 
-/* A triangle much larger than the cells here may cross the planes, and the
- * walls, each at another place, so its part within reach is cut out: by the
- * largest spacing found at it, and then, to be sure, by that found there. Where
- * sizes vary that may be elsewhere than at a corner that is within reach by
- * its own spacing, so corners are asked first.
- * most: of its corners and its middle. */
+/* Clips a triangle that is much larger than the local cells. Such a triangle
+ * may cross the planes and the walls at different places, so the part of it
+ * within reach is cut out: first with `most`, the largest spacing found at the
+ * corners and the middle of the triangle, then (is_sure) with the spacing at
+ * the middle of that part. Where the spacing varies, this middle may be far
+ * from a corner that is within reach by its own spacing, so the caller tests
+ * the corners first. */
 static int large_meets(const struct vg_region *r,
                        const struct vg_sizing *sizing,
                        const double *const corner[3], double most, double band,
@@ -243,9 +247,9 @@ int vg_region_may_meet(const struct vg_region *r,
   return meets(r, sizing, corner, band, 0);
 }
 
-/* Is a corner within reach of all planes? far: [4] how far corners are from the
- * farthest. Sizes change too little from one corner to the next for all of them
- * to be looked up. */
+/* Is a corner within reach of all planes? far: [4] distance of each corner
+ * from its farthest plane. The spacing varies so little between the corners
+ * that most of them need no look-up. */
 static int has_corner(const struct vg_region *r, const struct vg_sizing *sizing,
                       const double *const corner[4], const double far[4])
 {
@@ -291,7 +295,7 @@ int vg_region_has_cell(const struct vg_region *r,
   return crosses || has_corner(r, sizing, corner, far);
 }
 
-/* --- many points --------------------------------------------------------- */
+/* --- many points ---------------------------------------------------------- */
 
 vg_status vg_region_cache_init(struct vg_region_cache *cache,
                                const struct vg_region *region,
@@ -335,8 +339,8 @@ static const double *sides_of(const struct vg_region_cache *cache, uint32_t p)
   return cache->side + p * (size_t)cache->n_side;
 }
 
-/* As gap(), for three corners of a cache; without fmin() and fmax(), which are
- * calls. */
+/* As gap(), for three corners of a cache. Avoids fmin() and fmax(), which are
+ * function calls. */
 static double gap_of(const struct vg_region_cache *cache, const uint32_t v[3])
 {
   const double *a = sides_of(cache, v[0]), *b = sides_of(cache, v[1]);
@@ -369,9 +373,10 @@ static double gap_of_point(const struct vg_region_cache *cache, uint32_t p)
   return far;
 }
 
-/* Large triangles are looked at as in vg_region_meets once their sides do not
- * tell, by the least and the most that the spacing may be anywhere on them, or
- * at their middle, which is two thirds of an edge from the corners at most. */
+/* Large triangles that plain distances do not decide are tested as in
+ * vg_region_meets. The distances are compared using the smallest and the
+ * largest possible spacing anywhere on the triangle, or at its middle, which
+ * is at most two thirds of an edge away from the corners. */
 static int cache_meets(const struct vg_region_cache *cache, const uint32_t v[3],
                        double band, int is_sure)
 {

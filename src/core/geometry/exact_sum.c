@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-/* Summands whose mantissas of one exponent are added up in 63 bits. */
+/* Number of summands whose mantissas can be added in 63 bits, per exponent. */
 #define MOST 512
 #define N_EXPONENT 0x800
 
@@ -26,7 +26,7 @@ static int64_t mantissa(double x)
   return (int64_t)((m ^ minus) - minus);
 }
 
-/* m times the unit of mantissas of exponent e. */
+/* Add m times the unit of a mantissa with exponent e. */
 static void add_scaled(struct vg_exact *s, unsigned e, int64_t m)
 {
   uint64_t minus = m < 0 ? UINT64_MAX : 0;
@@ -67,8 +67,8 @@ void vg_exact_add_all(struct vg_exact *s, size_t n, const double *x)
     add_some(s, n - i < MOST ? n - i : MOST, x + i);
 }
 
-/* Carries all limbs into [0, 2^32); returns what is left above the last,
- * negative for a negative sum. */
+/* Propagate the carries so that every limb is in [0, 2^32). Returns the carry
+ * out of the last limb, which is negative for a negative sum. */
 static int64_t carry(const struct vg_exact *s, int negate,
                      uint64_t out[VG_EXACT_LIMBS])
 {
@@ -96,7 +96,7 @@ double vg_exact_value(const struct vg_exact *s)
   while (i > 2 && !limb[i]) i--;
   low = i - 2;
   for (int k = i; k >= low; k--) top = top << 32 | limb[k];
-  /* What is below only says on which side of a tie the sum is. */
+  /* The lower limbs only decide on which side of a tie the sum lies. */
   for (int k = 0; k < low; k++)
     if (limb[k]) top |= 1;
   return ldexp(negative ? -(double)top : (double)top, 32 * low - 1074);

@@ -1,10 +1,12 @@
-/* core/geometry/exact_sum.h: sums of doubles without rounding, so that they do
- * not depend on the order of what is added, nor on who adds it. Uses base only.
+/* core/geometry/exact_sum.h: sums of doubles without rounding errors. The
+ * result depends neither on the order of the summands nor on the thread or
+ * rank that adds them. Uses base only.
  *
- * A sum is a fixed-point number that spans all exponents, in limbs of 32 bits
- * which are each kept in 64: nothing is carried while adding (Kulisch's long
- * accumulator, with the carries put off). Two sums are added limb by limb,
- * modulo 2^64, also by what sums arrays of integers over ranks. */
+ * A sum is a fixed-point number that spans all exponents. Each limb of 32 bits
+ * is stored in 64 bits, so that no carry is needed during the additions
+ * (Kulisch's long accumulator with deferred carries). Two sums are added limb
+ * by limb, modulo 2^64; functions that sum integer arrays over ranks can do
+ * this. */
 #ifndef VG_CORE_GEOMETRY_EXACT_SUM_H
 #define VG_CORE_GEOMETRY_EXACT_SUM_H
 
@@ -12,14 +14,15 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Limb i counts multiples of 2^(32 i - 1074), the finest double for i = 0.
- * The last ones take what is carried. */
+/* Limb i counts multiples of 2^(32 i - 1074); for i = 0 this is the smallest
+ * positive double. The last limbs hold the carries. */
 #define VG_EXACT_LIMBS 67
 
-/** Zeroed: the sum of nothing. For up to 2^30 summands. */
+/** A zeroed struct is the empty sum. Holds up to 2^30 summands. */
 struct vg_exact {
-  uint64_t limb[VG_EXACT_LIMBS]; /* two's complement */
-  uint64_t n_odd;                /* summands that were not finite */
+  uint64_t limb[VG_EXACT_LIMBS]; /* limbs in two's complement */
+  uint64_t n_odd;                /* number of summands that were infinite or
+                                    NaN */
 };
 
 static inline void vg_exact_add(struct vg_exact *s, double x)
@@ -45,10 +48,10 @@ static inline void vg_exact_add(struct vg_exact *s, double x)
   limb[2] += (((m >> 1) >> (63 - shift)) ^ minus) - minus;
 }
 
-/** Add n of them: as vg_exact_add for each, in less time. */
+/** Add n numbers. Same result as vg_exact_add for each of them, but faster. */
 void vg_exact_add_all(struct vg_exact *s, size_t n, const double *x);
 
-/** The sum as the nearest double; NaN when a summand was not finite. */
+/** The sum rounded to the nearest double; NaN if any summand was not finite. */
 double vg_exact_value(const struct vg_exact *s);
 
 #endif

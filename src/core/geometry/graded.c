@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-enum { PER_STEP = 4 }; /* samples of the size per step */
+enum { PER_STEP = 4 }; /* samples of the spacing per step */
 
 struct sampled {
   size_t n, cap_s, cap_f;
@@ -24,7 +24,7 @@ static vg_status sample(double len, double (*size)(void *, double), void *user,
     if (!(h > len * 1e-8))
       return vg_fail(err, VG_ERR_INPUT,
                      "a curve of length %g would need "
-                     "edges of length %g; check the spacing there",
+                     "edges of length %g; check the spacing on it",
                      len, h);
     if (vg_reserve(&a->s, &a->cap_s, a->n + 1, sizeof *a->s) ||
         vg_reserve(&a->f, &a->cap_f, a->n + 1, sizeof *a->f))
@@ -80,8 +80,8 @@ done:
   return st;
 }
 
-/* Taylor series up to the 15th power below an eighth of a turn: the rest is
- * under 1e-17. */
+/* Taylor series up to the 15th power for angles below an eighth of a turn; the
+ * truncation error is below 1e-17. */
 static void series(double x, double *sine, double *cosine)
 {
   const double q = x * x;

@@ -9,9 +9,10 @@
 
 enum { BITS = 20 };
 
-/* The curve through the eight parts of a cube, in each of its 24 positions:
- * 8 times the position in a part, plus when it is passed. The positions of
- * Skilling's key ("Programming the Hilbert curve", 2004). */
+/* The Hilbert curve through the eight octants of a cube, for each of its 24
+ * orientations. An entry is 8 times the orientation within the octant, plus
+ * the rank of the octant along the curve. Orientations of Skilling's key
+ * ("Programming the Hilbert curve", 2004). */
 static const uint8_t passed[24][8] = {
   { 8, 17, 27, 2, 39, 46, 52, 5 },
   { 56, 71, 73, 86, 91, 20, 10, 13 },
@@ -123,7 +124,7 @@ vg_status vg_hilbert_order(size_t n, const double (*x)[3], uint32_t *order,
 }
 
 /* Round of point i: 15 with probability 7/8, 14 with 7/64, ... The mix is a
- * fixed hash of the index, so the rounds are the same on every machine. */
+ * fixed hash of the index, so that the rounds are the same on every machine. */
 static uint64_t round_of(size_t i)
 {
   uint64_t mix = vg_hash_mix((i + 1) * VG_GOLDEN), round = 15;

@@ -1,5 +1,5 @@
-/* core/geometry/hilbert.h: points in an order that keeps neighbours together.
- * */
+/* core/geometry/hilbert.h: ordering of points that keeps neighbours together.
+ */
 #ifndef VG_CORE_GEOMETRY_HILBERT_H
 #define VG_CORE_GEOMETRY_HILBERT_H
 
@@ -13,7 +13,7 @@ struct vg_key {
   uint32_t index;
 };
 
-/** Spread the 21 bits of q so that two clear bits follow each of them. Three
+/** Spread the 21 bits of q so that two zero bits follow each of them. Three
  * such numbers make a Morton code, x | y << 1 | z << 2 (Morton, IBM Ltd.,
  * 1966). */
 static inline uint64_t vg_interleave3(uint64_t q)
@@ -25,7 +25,7 @@ static inline uint64_t vg_interleave3(uint64_t q)
   return (q | q << 2) & 0x1249249249249249u;
 }
 
-/** Spread the 32 bits of q so that one clear bit follows each of them. */
+/** Spread the 32 bits of q so that one zero bit follows each of them. */
 static inline uint64_t vg_interleave2(uint64_t q)
 {
   q = (q | q << 16) & 0x0000ffff0000ffffu;
@@ -35,21 +35,22 @@ static inline uint64_t vg_interleave2(uint64_t q)
   return (q | q << 1) & 0x5555555555555555u;
 }
 
-/** Position of x along the Hilbert curve of the cube at lo with 2^20 cells
- * per side of length 1 / scale. Coordinates outside are clamped.
+/** Position of x along the Hilbert curve of the cube with lower corner lo and
+ * 2^20 cells of length 1 / scale per side. Coordinates outside are clamped.
  * (Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707, 2004.) */
 uint64_t vg_hilbert_key(const double x[3], const double lo[3], double scale);
 
-/** Sort by key, equal keys in the order given (radix sort, O(n)). */
+/** Sort by key. Equal keys keep their order (stable radix sort, O(n)). */
 vg_status vg_sort_keys(size_t n, struct vg_key *key, struct vg_error *err);
 
-/** order out: [n] the points along the curve through their bounding cube. */
+/** Order of the points along the Hilbert curve through their bounding cube.
+ * order out: [n]. */
 vg_status vg_hilbert_order(size_t n, const double (*x)[3], uint32_t *order,
                            struct vg_error *err);
 
-/** Order that makes point insertion fast: rounds of eightfold size, each along
- * the curve (Amenta, Choi, Rote, "Incremental constructions con BRIO", 2003).
- * order out: [n] a permutation of 0..n-1. */
+/** Order that makes point insertion fast: rounds that grow by a factor of
+ * eight, each along the Hilbert curve (Amenta, Choi, Rote, "Incremental
+ * constructions con BRIO", 2003). order out: [n] a permutation of 0..n-1. */
 vg_status vg_insertion_order(size_t n, const double (*x)[3], uint32_t *order,
                              struct vg_error *err);
 

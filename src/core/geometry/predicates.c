@@ -1,13 +1,14 @@
-/* The undecided calls of predicates.h, in steps:
- *   0. for spheres, the filter's own formula in numbers of 64 bits, where the
- *      target has them: points of a round surface differ from a sphere by the
- *      rounding of their coordinates, which that much settles;
- *   1. double-double arithmetic on the (exact) coordinate differences, with
- *      a bound of about 1e-30 times the permanent: what is left after it is
- *      exactly zero, or nearly always so;
- *   2. expansions: sums of doubles that do not overlap, sorted by growing
- *      magnitude, zeros dropped; the empty one is 0. Sign of the last
- *      component = sign of the whole. */
+/* Continuation of the predicates in predicates.h for the calls that their
+ * filter cannot decide, in steps:
+ *   0. For spheres: the formula of the filter in long double with a 64-bit
+ *      mantissa, where the target has it. Points on a round surface differ from
+ *      a sphere by the rounding of their coordinates, which this resolves.
+ *   1. Double-double arithmetic on the (exact) coordinate differences, with an
+ *      error bound of about 1e-30 times the permanent. A determinant below that
+ *      bound is nearly always exactly zero.
+ *   2. Expansions: sums of doubles that do not overlap, sorted by increasing
+ *      magnitude, without zeros; the empty expansion is 0. The sign of the last
+ *      component is the sign of the whole. */
 #include "core/geometry/predicates.h"
 
 #include <assert.h>
@@ -53,8 +54,9 @@ static inline void two_product(double a, double b, double *x, double *y)
   *x = p;
 }
 
-/* Double-double. Per operation, relative to the sum of the magnitudes of the
- * operands (add, sub) or to the product: error below 4 u^2 and 8 u^2. */
+/* Double-double arithmetic. Error per operation: below 4 u^2 relative to the
+ * sum of the magnitudes of the operands (add, sub), below 8 u^2 relative to
+ * the product. */
 struct dd {
   double hi, lo;
 };
@@ -101,17 +103,17 @@ static inline struct dd dd_minor(struct dd a, struct dd b, struct dd c,
   return dd_sub(dd_mul(a, b), dd_mul(c, d));
 }
 
-/* Is the next component of the merged e and f the one of e? */
+/* Does the next component of the merged expansions e and f come from e? */
 static inline int from_e(int i, int m, const double *e, int j, int n,
                          const double *f)
 {
   return j >= n || (i < m && fabs(e[i]) < fabs(f[j]));
 }
 
-/* h = e + f. Returns the length of h, at most m + n. h overlaps neither. The
- * first component starts the sum instead of being added to 0: its error is
- * not even looked at, so that the length holds when products overflowed and
- * the components are infinite or NaN. */
+/* h = e + f. Returns the length of h, at most m + n. h must not overlap e or
+ * f. The first component starts the sum instead of being added to 0, and its
+ * error term is not examined. The bound on the length therefore holds even if
+ * products overflowed and components are infinite or NaN. */
 static int ex_sum(int m, const double *e, int n, const double *f, double *h)
 {
   int i = 0, j = 0, k = 0;
@@ -163,7 +165,7 @@ static int ex_diff(double a, double b, double *h)
   return k;
 }
 
-/* h = e f with f of at most two components and e of at most 16: up to 64. */
+/* h = e f, where f has at most two components and e at most 16: up to 64. */
 static int ex_mul(int m, const double *e, int n, const double *f, double *h)
 {
   double t[2][32];
@@ -178,7 +180,7 @@ static double ex_sign(int m, const double *e)
   return m ? e[m - 1] : 0;
 }
 
-/* Coordinate differences to one point as expansions. */
+/* Coordinate differences to one point, as expansions. */
 struct vec {
   double e[3][2];
   int n[3];
@@ -227,7 +229,7 @@ static double orient3d_expansion(const double *a, const double *b,
   return ex_sign(m, h);
 }
 
-/* Are the coordinates of a point finite? For assertions. */
+/* Are all coordinates of a point finite? For assertions. */
 #define FINITE3(x) (isfinite((x)[0]) && isfinite((x)[1]) && isfinite((x)[2]))
 #define FINITE2(x) (isfinite((x)[0]) && isfinite((x)[1]))
 
@@ -250,12 +252,12 @@ double vg_orient3d_exact(const double a[3], const double b[3],
     per += fabs(r[k].hi) * (fabs(p[i].hi * q[j].hi) + fabs(p[j].hi * q[i].hi));
   }
   if (per == 0) return 0;
-  /* To first order 8 + 4 + 8 + 3 * 4 = 32 u^2 per; doubled. */
+  /* To first order 8 + 4 + 8 + 3 * 4 = 32 u^2 per; doubled for safety. */
   if (fabs(det.hi) > (64 * U * U) * per) return det.hi;
   return orient3d_expansion(a, b, c, d);
 }
 
-/* h[24] = det of the rows p q r of plain doubles. */
+/* h[24] = determinant of the rows p, q, r of plain doubles. */
 static int det3(const double *p, const double *q, const double *r, double *h)
 {
   double minor[4], s[2], t[2], term[3][8], sum[16];
@@ -285,7 +287,7 @@ static int ex_lift(int m, const double *e, const double *p, double *h)
   return ex_sum(m, u, n[2], t[2], h);
 }
 
-/* The lifted 4x4 determinant when the differences p[] are exact doubles:
+/* The lifted 4x4 determinant for differences p[] that are exact doubles,
  * expanded along the lifts. */
 static double insphere_short(double p[4][3])
 {
@@ -308,7 +310,7 @@ static double insphere_short(double p[4][3])
   return ex_sign(n, sum[now]);
 }
 
-/* h[96] = det of the rows (x y z 1) of four points. */
+/* h[96] = determinant of the rows (x y z 1) of four points. */
 static int det4(const double *const p[4], double *h)
 {
   double sum[2][96], term[24];
@@ -330,8 +332,9 @@ static int det4(const double *const p[4], double *h)
   return n;
 }
 
-/* As insphere_short for any points: 5x5 from the coordinates themselves,
- * since products of two-component differences would be longer. */
+/* As insphere_short, for arbitrary points: a 5x5 determinant of the
+ * coordinates themselves, since products of two-component differences would be
+ * longer. */
 static double insphere_long(const double *const p[5])
 {
   double minor[96], term[1152], sum[2][5760];
@@ -353,8 +356,8 @@ static double insphere_long(const double *const p[5])
   return ex_sign(n, sum[now]);
 }
 
-/* The lifted determinant, expanded along the lifts over 3x3 determinants of
- * the differences to the fifth point. */
+/* The lifted determinant in double-double arithmetic, expanded along the lifts
+ * over 3x3 determinants of the differences to the fifth point. */
 static double insphere_dd(const double *const p[5])
 {
   struct dd v[4][3], lift, det = { 0, 0 };
@@ -378,7 +381,7 @@ static double insphere_dd(const double *const p[5])
   return det.hi;
 }
 
-/* Sum over the lifts of the permanents: what the error bounds scale with. */
+/* Sum over the lifts times the permanents. The error bounds scale with it. */
 static double insphere_permanent(double v[4][3])
 {
   double per = 0;
@@ -398,7 +401,7 @@ static double insphere_permanent(double v[4][3])
 }
 
 #if LDBL_MANT_DIG == 64
-/* As in vg_insphere. */
+/* The formula of vg_insphere in long double. */
 static double insphere_64(const double *const p[5])
 {
   long double v[4][3], l[4], ab, bc, cd, da, ac, bd;
@@ -434,13 +437,14 @@ double vg_insphere_exact(const double a[3], const double b[3],
   per = insphere_permanent(v);
   if (per == 0) return 0;
 #if LDBL_MANT_DIG == 64
-  /* (16 + 224 u) u times the permanent with u = 2^-64, and what the sum of that
-   * in doubles may lack. */
+  /* (16 + 224 u) u times the permanent with u = 2^-64, with a margin for the
+   * rounding of the permanent, which is summed in double. */
   det = insphere_64(p);
   if (fabs(det) > 17 * (0x1p-64 * per)) return det;
 #endif
-  /* To first order 8 + 4 + 8 + 12 for the 3x3, 8 + 8 for the lift, 8 for
-   * their product and 16 for the sum: 72 u^2 per; tripled and more. */
+  /* To first order 8 + 4 + 8 + 12 for the 3x3 determinant, 8 + 8 for the lift,
+   * 8 for their product and 16 for the sum: 72 u^2 per; more than tripled for
+   * safety. */
   det = insphere_dd(p);
   if (fabs(det) > (256 * U * U) * per) return det;
   for (int i = 0; i < 4; i++) {

@@ -1,21 +1,22 @@
 /* core/geometry/predicates.h: signs of determinants, exact for every finite
  * input.
  *
- * An error bound, inline here, decides almost all calls. What it leaves goes
- * out of line: double-double arithmetic, then exact floating-point expansions
- * (Shewchuk, "Adaptive precision floating-point arithmetic and
- * fast robust geometric predicates", Discrete Comput. Geom. 18, 1997). No
- * global state, no initialisation call: safe from any thread. Build with
- * -ffp-contract=off (cmake/flags.cmake).
+ * An inline filter with an error bound decides almost all calls. The remaining
+ * calls go out of line to double-double arithmetic, then to exact
+ * floating-point expansions (Shewchuk, "Adaptive precision floating-point
+ * arithmetic and fast robust geometric predicates", Discrete Comput. Geom. 18,
+ * 1997). There is no global state and no initialisation call, so every thread
+ * may call them. Build with -ffp-contract=off (cmake/flags.cmake).
  *
- * Exact as long as no product under- or overflows: coordinates 0 or with
- * magnitude in [1e-85, 1e+60] (1e-45 for vg_insphere and vg_incircle). */
+ * Exact as long as no product under- or overflows: coordinates must be 0 or
+ * have a magnitude in [1e-85, 1e+60] (1e-45 for vg_insphere and vg_incircle).
+ */
 #ifndef VG_CORE_GEOMETRY_PREDICATES_H
 #define VG_CORE_GEOMETRY_PREDICATES_H
 
 #include <math.h>
 
-/* Out-of-line continuations of the filters below; not for callers. */
+/* Out-of-line continuations of the filters below. Do not call them directly. */
 double vg_orient3d_exact(const double a[3], const double b[3],
                          const double c[3], const double d[3]);
 double vg_insphere_exact(const double a[3], const double b[3],
@@ -36,10 +37,10 @@ static inline double vg_max3_abs(double x, double y, double z)
   return z > m ? z : m;
 }
 
-/** Sign of (b-a) x (c-a) . (d-a): > 0 when a, b, c turn counter-clockwise
- * seen from d, i.e. when the tetrahedron a b c d has positive volume.
- * Returns a value with the exact sign (0 only for exactly coplanar points);
- * its magnitude approximates six times the volume. */
+/** Sign of (b-a) x (c-a) . (d-a): > 0 if a, b, c turn counter-clockwise seen
+ * from d, i.e. if the tetrahedron a b c d has positive volume. Returns a value
+ * with the exact sign (0 only for exactly coplanar points); its magnitude
+ * approximates six times the volume. */
 static inline double vg_orient3d(const double a[3], const double b[3],
                                  const double c[3], const double d[3])
 {
@@ -49,8 +50,9 @@ static inline double vg_orient3d(const double a[3], const double b[3],
   double yz = by * cz, zy = bz * cy, zx = bz * cx, xz = bx * cz;
   double xy = bx * cy, yx = by * cx;
   double det = dx * (yz - zy) + dy * (zx - xz) + dz * (xy - yx);
-  /* Error: 8 roundings of u = 2^-53 each on any path, 8 u = 8.882e-16. One
-   * comparison, since a branch on the sign itself is hard to predict. */
+  /* Error: 8 roundings of u = 2^-53 each on any path, 8 u = 8.882e-16. There
+   * is only one comparison because a branch on the sign itself is hard to
+   * predict. */
   double bound = 8.9e-16 * (fabs(dx) * (fabs(yz) + fabs(zy)) +
                             fabs(dy) * (fabs(zx) + fabs(xz)) +
                             fabs(dz) * (fabs(xy) + fabs(yx)));
@@ -59,7 +61,7 @@ static inline double vg_orient3d(const double a[3], const double b[3],
   return vg_orient3d_exact(a, b, c, d);
 }
 
-/** For a positive tetrahedron a b c d: > 0 when e lies strictly inside its
+/** For a positive tetrahedron a b c d: > 0 if e lies strictly inside its
  * circumscribed sphere, 0 on it, < 0 outside. Exact sign. */
 static inline double vg_insphere(const double a[3], const double b[3],
                                  const double c[3], const double d[3],
@@ -92,7 +94,8 @@ static inline double vg_insphere(const double a[3], const double b[3],
   return vg_insphere_exact(a, b, c, d, e);
 }
 
-/** Sign of the area of a b c in the plane: > 0 counter-clockwise. Exact. */
+/** Sign of the area of the plane triangle a b c: > 0 if counter-clockwise.
+ * Exact. */
 static inline double vg_orient2d(const double a[2], const double b[2],
                                  const double c[2])
 {
@@ -104,7 +107,7 @@ static inline double vg_orient2d(const double a[2], const double b[2],
   return vg_orient2d_exact(a, b, c);
 }
 
-/** For a counter-clockwise triangle a b c: > 0 when d is strictly inside its
+/** For a counter-clockwise triangle a b c: > 0 if d lies strictly inside its
  * circumcircle. Exact sign. */
 static inline double vg_incircle(const double a[2], const double b[2],
                                  const double c[2], const double d[2])

@@ -1,26 +1,27 @@
-/* core/geometry/shape.h: how well shaped is a tetrahedron, fast. */
+/* core/geometry/shape.h: a fast quality measure of tetrahedra. */
 #ifndef VG_CORE_GEOMETRY_SHAPE_H
 #define VG_CORE_GEOMETRY_SHAPE_H
 
 #include "core/geometry/predicates.h"
 
-/** Square of the smallest sine among the six dihedral angles, with the sign
- * of the volume: 8/9 for the regular tetrahedron, 0 for a flat one. Both small
- * and large angles spoil it. Uses + - * / only.
+/** Square of the smallest sine of the six dihedral angles, with the sign of the
+ * volume: 8/9 for the regular tetrahedron, 0 for a flat one. Both small and
+ * large angles reduce it. Uses + - * / only.
  *
- * Not 0 only where the sign is the exact one, and rounding has no say in the
- * areas: 0 where the volume is that small a share of three edges' product.
- * Of points in a line all areas are rounding, and so is any sine of them.
+ * The result is nonzero only if the sign is exact and the face areas are not
+ * dominated by rounding: it is 0 if the volume is tiny compared with the
+ * product of three edge lengths. For collinear points all areas are pure
+ * rounding error, and so would be any sine computed from them.
  *
- * The sine at edge kl, between faces i and j, is det l_kl / (|n_i| |n_j|)
- * with det six times the volume and n twice the area vectors. */
+ * The sine at edge kl, between faces i and j, is det l_kl / (|n_i| |n_j|),
+ * where det is six times the volume and n is twice the area vector. */
 static inline double vg_shape(const double a[3], const double b[3],
                               const double c[3], const double d[3])
 {
   double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
   double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
   double wx = d[0] - a[0], wy = d[1] - a[1], wz = d[2] - a[2];
-  /* area vectors of the faces opposite d (u v), b (v w), c (w u), a (sum) */
+  /* Area vectors of the faces opposite d (u v), b (v w), c (w u), a (sum). */
   double dx = uy * vz - uz * vy, dy = uz * vx - ux * vz, dz = ux * vy - uy * vx;
   double bx = vy * wz - vz * wy, by = vz * wx - vx * wz, bz = vx * wy - vy * wx;
   double cx = wy * uz - wz * uy, cy = wz * ux - wx * uz, cz = wx * uy - wy * ux;
@@ -50,8 +51,9 @@ static inline double vg_shape(const double a[3], const double b[3],
                                                          : 0;
 }
 
-/** Below this a cell counts as flat: its sign in plain arithmetic, and its
- * angles, mean nothing. Cells that improve nothing better are left alone. */
+/** Cells with a smaller shape count as flat: neither their sign in plain
+ * arithmetic nor their angles are meaningful. Such cells are left alone if no
+ * change improves them by more. */
 #define VG_SHAPE_FLAT 1e-12
 
 #endif

@@ -1,6 +1,7 @@
-/* By signs of determinants alone (the idea of Guigue and Devillers, J. Graphics
- * Tools 8, 2003): two triangles meet exactly when an edge of one meets the
- * other. Common nodes are taken out first, by number. */
+/* Uses signs of determinants only (the idea of Guigue and Devillers, J.
+ * Graphics Tools 8, 2003): two triangles intersect if and only if an edge of
+ * one intersects the other. Shared nodes are recognised first, by their
+ * indices. */
 #include "core/geometry/triangles.h"
 
 #include <assert.h>
@@ -18,10 +19,10 @@ static int side(const double *a, const double *b, const double *c,
   return sign(vg_orient3d(a, b, c, d));
 }
 
-/* --- in a common plane --------------------------------------------------- */
+/* --- coplanar triangles --------------------------------------------------- */
 
 struct plane {
-  int i, j; /* the coordinates kept */
+  int i, j; /* coordinates kept by the projection */
 };
 
 static int turn(struct plane e, const double *a, const double *b,
@@ -33,8 +34,8 @@ static int turn(struct plane e, const double *a, const double *b,
   return sign(vg_orient2d(p, q, r));
 }
 
-/* The projection in which the triangle looks largest, rounding aside; one in
- * which it keeps an area. */
+/* The coordinate projection in which the triangle has the largest area, up to
+ * rounding; always one in which its area is nonzero. */
 static struct plane plane_of(const double *const t[3])
 {
   static const struct plane list[3] = { { 1, 2 }, { 2, 0 }, { 0, 1 } };
@@ -58,7 +59,7 @@ static int between(double a, double b, double x)
   return a < b ? a <= x && x <= b : b <= x && x <= a;
 }
 
-/* x lies on the line of a b: is it within? */
+/* Is x, which lies on the line through a and b, within the segment? */
 static int on_segment(struct plane e, const double *a, const double *b,
                       const double *x)
 {
@@ -96,13 +97,15 @@ static int segment_in_plane(const double *p, const double *q,
   return 0;
 }
 
-/* --- apart in a projection ----------------------------------------------- */
+/* --- separation in a projection ------------------------------------------- */
 
-/* Triangles whose projections are apart are apart. This decides most pairs
- * on a smooth surface at less cost than planes in space do, and nearly all
- * on a flat one, where determinants in space are exactly zero and dear. */
+/* Triangles whose projections are disjoint are disjoint. This test decides
+ * most pairs on a smooth surface more cheaply than orientation tests in space.
+ * It also decides nearly all pairs on a flat surface, where the determinants
+ * in space are exactly zero and therefore expensive. */
 
-/* An edge of a with a on one side and b strictly on the other. */
+/* Does an edge of a separate the triangles, with a on one side and b strictly
+ * on the other? */
 static int edge_parts(struct plane e, const double *const a[3],
                       const double *const b[3])
 {
@@ -118,15 +121,17 @@ static int edge_parts(struct plane e, const double *const a[3],
   return 0;
 }
 
-/* Is x on the ray from o to p? All three are on one line. */
+/* Is x on the ray from o through p? All three points are collinear. */
 static int on_ray(struct plane e, const double *o, const double *p,
                   const double *x)
 {
   return !on_segment(e, p, x, o);
 }
 
-/* The line through the common node a[0] = b[0] and a[1] has a[2] strictly on
- * one side and b on the other, but for a corner of b beyond the node. */
+/* Does the line through the shared node a[0] = b[0] and a[far] separate the
+ * triangles? The third corner of a must be strictly on one side and b on the
+ * other. A corner of b may lie on the line if it is on the opposite side of
+ * the shared node. */
 static int line_parts(struct plane e, const double *const a[3], int far,
                       const double *const b[3])
 {
@@ -146,10 +151,10 @@ static int node_parts(struct plane e, const double *const a[3],
          line_parts(e, b, 1, a) || line_parts(e, b, 2, a);
 }
 
-/* --- in space ------------------------------------------------------------ */
+/* --- in space ------------------------------------------------------------- */
 
-/* Does the closed segment p q meet the closed triangle t; sp and sq are the
- * sides of its plane on which p and q lie. */
+/* Does the closed segment p q intersect the closed triangle t? sp and sq are
+ * the sides of the plane of t on which p and q lie. */
 static int segment_meets(const double *p, const double *q, int sp, int sq,
                          const double *const t[3])
 {
@@ -164,7 +169,7 @@ static int segment_meets(const double *p, const double *q, int sp, int sq,
   return a * c >= 0 && b * c >= 0;
 }
 
-/* No common node. */
+/* Triangles without a shared node. */
 static int apart_meet(const double *const a[3], const double *const b[3])
 {
   struct plane e = plane_of(a);
@@ -184,8 +189,9 @@ static int apart_meet(const double *const a[3], const double *const b[3])
   return 0;
 }
 
-/* Common node a[0] = b[0]. What they share is convex and contains it; if it
- * is more, it reaches the far edge of one of them. */
+/* Triangles that share the node a[0] = b[0]. Their intersection is convex and
+ * contains this node. If it is more than the node, it reaches the edge of a or
+ * of b that is opposite the node. */
 static int at_node_meet(const double *const a[3], const double *const b[3])
 {
   int sa1, sa2, sb1, sb2;
@@ -201,7 +207,8 @@ static int at_node_meet(const double *const a[3], const double *const b[3])
          segment_meets(a[1], a[2], sa1, sa2, b);
 }
 
-/* Common edge a[0] a[1]: they overlap if folded flat onto each other. */
+/* Triangles that share the edge a[0] a[1]. They overlap if they are folded
+ * flat onto each other. */
 static int at_edge_meet(const double *const a[3], const double *const b[3])
 {
   struct plane e = plane_of(a);
@@ -219,8 +226,9 @@ int vg_triangles_meet(const double (*point)[3], const uint32_t a[3],
 
   assert(a[0] != a[1] && a[1] != a[2] && a[2] != a[0]);
   assert(b[0] != b[1] && b[1] != b[2] && b[2] != b[0]);
-  /* Common corners to the front, in the order of a. A node of both that is
-   * no common corner is a place where they touch. */
+  /* Move shared corners to the front, in the order of a. A node of both
+   * triangles whose umbrellas differ is a point where two sheets touch, so the
+   * triangles intersect. */
   for (int k = 0; k < 3; k++)
     for (int l = 0; l < 3; l++) {
       if (a[k] != b[l]) continue;

@@ -1,5 +1,5 @@
-/* core/geometry/vector.h: three-vectors in plain arithmetic. Where a sign must
- * be right, core/geometry/predicates.h. */
+/* core/geometry/vector.h: three-dimensional vectors in plain floating-point
+ * arithmetic. Use core/geometry/predicates.h where a sign must be exact. */
 #ifndef VG_CORE_GEOMETRY_VECTOR_H
 #define VG_CORE_GEOMETRY_VECTOR_H
 
@@ -37,7 +37,8 @@ static inline double vg_triple(const double a[3], const double b[3],
   return vg_dot(a, n);
 }
 
-/** Scale to length 1; the length it had (0: left as it is). */
+/** Scale a to length 1. Returns its original length; a zero vector is left
+ * unchanged. */
 static inline double vg_unit(double a[3])
 {
   double l = vg_norm(a);
@@ -72,8 +73,9 @@ static inline double vg_det(const double o[3], const double a[3],
   return vg_triple(w, u, v);
 }
 
-/** Distance of p + v (v a unit vector) from the triangle p, a, b with unit
- * normal n, as if the triangle went on for ever. */
+/** Distance of the point p + v (v a unit vector) from the corner at p of the
+ * triangle p, a, b with unit normal n. The triangle is extended to infinity,
+ * beyond its edge a b. */
 static inline double vg_off_corner(const double p[3], const double a[3],
                                    const double b[3], const double n[3],
                                    const double v[3])
@@ -88,7 +90,8 @@ static inline double vg_off_corner(const double p[3], const double a[3],
   vg_cross(edge[1], n, in);
   side[1] = vg_dot(v, in);
   if (side[0] >= 0 && side[1] >= 0) return vg_dot(v, n);
-  for (int s = 0; s < 2; s++) { /* beside it: its edges */
+  for (int s = 0; s < 2; s++) { /* v projects outside the corner: distance
+                                   from its edges */
     double along = vg_dot(v, edge[s]);
     double off = along > 0 ? sqrt(fmax(0, 1 - along * along)) : 1;
 

@@ -1,5 +1,6 @@
-/* core/geometry/volume.h: volumes by cones from a point over faces. Plain sums,
- * in the order of the faces; core/judge has exact ones. */
+/* core/geometry/volume.h: volumes as sums of cones from a point over faces.
+ * The sums are in plain arithmetic, in the order of the faces; core/judge has
+ * exact ones. */
 #ifndef VG_CORE_GEOMETRY_VOLUME_H
 #define VG_CORE_GEOMETRY_VOLUME_H
 
@@ -8,8 +9,8 @@
 
 #include "core/geometry/vector.h"
 
-/** Six times the volume of the cone from o over the triangle a b c: positive
- * if o sees its corners clockwise. */
+/** Six times the volume of the cone from o over the triangle a b c: positive if
+ * its corners are clockwise seen from o. */
 static inline double vg_tri_cone(const double o[3], const double a[3],
                                  const double b[3], const double c[3])
 {
@@ -21,8 +22,9 @@ static inline double vg_tri_cone(const double o[3], const double a[3],
   return vg_triple(u, v, w);
 }
 
-/** The same over a quadrilateral: the mean of its two triangulations, so that
- * the cones of two cells over a warped face that they share cancel. */
+/** Six times the volume of the cone over a quadrilateral: the mean over its two
+ * triangulations, so that the cones of two cells over a shared warped face
+ * cancel. */
 static inline double vg_quad_cone(const double o[3], const double a[3],
                                   const double b[3], const double c[3],
                                   const double d[3])
@@ -32,9 +34,9 @@ static inline double vg_quad_cone(const double o[3], const double a[3],
          2;
 }
 
-/** Six times the volume that triangles tri[n] with corners in x enclose, if
- * their normals point outwards. The result loses least to rounding if o is
- * near them. */
+/** Six times the volume enclosed by the triangles tri[n] with corners in x, if
+ * their normals point outwards. The rounding error is smallest if o is near
+ * them. */
 static inline double vg_enclosed6(size_t n, const uint32_t (*tri)[3],
                                   const double (*x)[3], const double o[3])
 {

@@ -1,4 +1,4 @@
-/* Faces, edges and places that slices have in common. */
+/* Matching of faces, edges and positions shared by slices. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "base/union_find.h"
 #include "core/judge/judge_slices_parts.h"
 
-/* --- faces --------------------------------------------------------------- */
+/* --- faces ---------------------------------------------------------------- */
 
 static void add_edge(struct vg_judge_worker *w, uint32_t a, uint32_t b)
 {
@@ -23,7 +23,8 @@ static void add_edge(struct vg_judge_worker *w, uint32_t a, uint32_t b)
   e->ratio = -1;
 }
 
-/* Edges of a face that bounds what is judged are not to be counted. */
+/* Exclude the edges of a face on the boundary of the checked cells from the
+ * statistics. */
 static void bar_edges(struct vg_judge_worker *w, const struct vg_face_item *f)
 {
   const uint32_t *n = f->node;
@@ -38,8 +39,8 @@ static void bar_edges(struct vg_judge_worker *w, const struct vg_face_item *f)
   add_edge(w, n[2], n[3]);
 }
 
-/* A face that does not join two things may have more cells, which a slice has
- * matched with each other. */
+/* A face that does not join exactly two sides may have further cells, which a
+ * slice has already matched with each other. */
 static void suspect(struct vg_judge_worker *w, const struct vg_face_item *f)
 {
   struct vg_face_key *key = vg_items_add(&w->suspect, sizeof *key);
@@ -48,7 +49,8 @@ static void suspect(struct vg_judge_worker *w, const struct vg_face_item *f)
   else w->st = vg_fail_memory(&w->err, "the faces between slices");
 }
 
-/* The face as it is in the whole mesh (q 0), or in the field alone. */
+/* Match a face in the whole mesh (q = VG_JUDGED_WHOLE) or in the field alone.
+ */
 static void match_face(const struct vg_slices_judgement *j,
                        struct vg_judge_worker *w, int q,
                        const struct vg_face_item *f, size_t n)
@@ -87,7 +89,7 @@ static void meet_face(void *context, const unsigned char *item, size_t n,
     match_face(j, &j->worker[worker], q, (const void *)item, n);
 }
 
-/* Two sides of a face are all, unless it is suspect. */
+/* A face is complete with two sides, unless there are suspect faces. */
 static int is_whole_face(const void *context, const unsigned char *item,
                          size_t n)
 {
@@ -137,7 +139,8 @@ static void boundary_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Of the boundary, which all ranks know, what meets others here. */
+/* Add the faces of the boundary, which all ranks know, that are matched on
+ * this rank. */
 static vg_status add_boundary(struct vg_slices_judgement *j,
                               const struct vg_rendezvous *m,
                               struct vg_error *err)
@@ -149,7 +152,7 @@ static vg_status add_boundary(struct vg_slices_judgement *j,
   return worst_status(j, err);
 }
 
-/* Numbers of components from those of each slice to those of all. */
+/* Convert the component numbers of each slice to global numbers. */
 static void number_components(struct vg_slices_judgement *j)
 {
   for (int i = 0; i < j->n_worker; i++) {
@@ -184,7 +187,7 @@ done:
   return st;
 }
 
-/* --- edges and places ---------------------------------------------------- */
+/* --- edges and positions -------------------------------------------------- */
 
 static void meet_edge(void *context, const unsigned char *item, size_t n,
                       int worker)
@@ -207,7 +210,7 @@ static void meet_place(void *context, const unsigned char *item, size_t n,
   j->worker[worker].figures[VG_JUDGED_WHOLE]->n.duplicate_point += n - 1;
 }
 
-/* Points that may be at one place. */
+/* Points that may coincide: their positions have equal keys. */
 static void meet_place_key(void *context, const unsigned char *item, size_t n,
                            int worker)
 {
@@ -218,7 +221,7 @@ static void meet_place_key(void *context, const unsigned char *item, size_t n,
   if (n == 1) return;
   key = vg_items_add(&w->crowd, sizeof *key);
   if (key) memcpy(key, item, sizeof *key);
-  else w->st = vg_fail_memory(&w->err, "points at one place");
+  else w->st = vg_fail_memory(&w->err, "coincident points");
 }
 
 static vg_status meet_edges(struct vg_slices_judgement *j, struct vg_error *err)
@@ -244,14 +247,15 @@ static int by_key(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Keys of the places, of all ranks, at which there may be several points. */
+/* Gather from all ranks the keys of the positions that several points may
+ * have. */
 static vg_status gather_crowds(struct vg_slices_judgement *j,
                                struct vg_bytes *out, struct vg_error *err)
 {
   size_t size = (size_t)vg_comm_size(j->comm);
   struct vg_items mine = { 0 }, got = { 0 };
   struct vg_bytes *all = vg_calloc(size, sizeof *all), b;
-  vg_status st = all ? VG_OK : vg_fail_memory(err, "points at one place");
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "coincident points");
 
   for (int i = 0; i < j->n_worker && st >= 0; i++)
     st = vg_items_append(&mine, &j->worker[i].crowd, sizeof(uint64_t), err);
@@ -274,7 +278,7 @@ done:
   return st;
 }
 
-/* Places themselves, of the points that may be at one with another. */
+/* The positions of points that may coincide with another point. */
 struct crowd {
   struct vg_slices_judgement *j;
   const struct vg_bytes *key; /* n keys, sorted */
@@ -292,7 +296,7 @@ static vg_status list_crowded(void *context, const struct vg_slice *s,
 
     if (!bsearch(&key, c->key->data, c->key->n, sizeof key, by_key)) continue;
     to = vg_items_add(&c->place, sizeof *to);
-    if (!to) return vg_fail_memory(err, "points at one place");
+    if (!to) return vg_fail_memory(err, "coincident points");
     *to = place;
   }
   return VG_OK;
@@ -319,8 +323,9 @@ done:
   return st;
 }
 
-/* Only keys of places meet, a third of their bytes; where these are equal,
- * which in a good mesh is chance, the places do. */
+/* Only the keys of positions are exchanged, a third of their bytes. The
+ * positions themselves are only compared if keys are equal, which in a good
+ * mesh happens only accidentally. */
 static vg_status meet_places(struct vg_slices_judgement *j,
                              struct vg_error *err)
 {
@@ -352,13 +357,13 @@ done:
   return st;
 }
 
-/* --- components ---------------------------------------------------------- */
+/* --- components ----------------------------------------------------------- */
 
 struct link {
   uint32_t a, b;
 };
 
-/* Links that the ranks found: what joins components of slices. */
+/* Links that this rank found between components of slices. */
 static vg_status list_links(const struct vg_slices_judgement *j, int q,
                             struct vg_bytes *out, struct vg_error *err)
 {
@@ -371,7 +376,7 @@ static vg_status list_links(const struct vg_slices_judgement *j, int q,
       vg_union(parent, i, j->worker[w].parent[q][i]);
   for (uint32_t i = 0; i < j->n_all; i++) n += parent[i] != i;
   link = vg_alloc(n, sizeof *link);
-  if (!link) return vg_fail_memory(err, "the parts of the mesh");
+  if (!link) return vg_fail_memory(err, "the components of the mesh");
   n = 0;
   for (uint32_t i = 0; i < j->n_all; i++) {
     if (parent[i] == i) continue;
@@ -404,7 +409,7 @@ static vg_status count_joined(struct vg_slices_judgement *j, int q,
   struct vg_bytes mine = { 0, NULL };
   struct vg_bytes *all = vg_calloc((size_t)size, sizeof *all);
   vg_status st = all ? list_links(j, q, &mine, err)
-                     : vg_fail_memory(err, "the parts of the mesh");
+                     : vg_fail_memory(err, "the components of the mesh");
 
   VG_TRY(vg_comm_agree(j->comm, st, err));
   VG_TRY(vg_comm_allgather(j->comm, &mine, all, err));

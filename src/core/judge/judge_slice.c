@@ -1,4 +1,5 @@
-/* One slice: what is judged within it, and what is kept for others. */
+/* Check of one slice: measures the figures within it, and keeps the data that
+ * other slices need. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,10 +10,10 @@ struct work {
   struct vg_slices_judgement *j;
   struct vg_judge_worker *w;
   const struct vg_slice *slice;
-  struct vg_mesh view; /* of the slice: borrowed points and cells */
+  struct vg_mesh view; /* view of the slice: borrowed points and cells */
   struct vg_stats *f;
   struct vg_unpaired unpaired;
-  size_t at, n_cell; /* number of the slice; its cells */
+  size_t at, n_cell; /* number of the slice, and of its cells */
   int is_field;
 };
 
@@ -62,7 +63,7 @@ static int is_suspect(const void *context, const uint32_t local[4])
                  vg_face_key_order) != NULL;
 }
 
-/* The arrays of a mesh are not const, but none of the judges writes. */
+/* The arrays of a mesh are not const, but none of the checks modifies them. */
 static void make_view(struct work *k)
 {
   const struct vg_slice *s = k->slice;
@@ -78,8 +79,8 @@ static void make_view(struct work *k)
   memcpy(&m->pri, &s->cell[VG_SLICE_PRI], sizeof m->pri);
 }
 
-/* Indices and numbers that point nowhere, points that are nowhere. Returns
- * whether there are none. */
+/* Count indices out of range and points that are not finite. Returns 1 if
+ * there are no such entries. */
 static int check(struct work *k)
 {
   const struct vg_slice *s = k->slice;
@@ -95,12 +96,12 @@ static int check(struct work *k)
     own += vg_count_not_finite(1, s->x + s->own[i]);
   }
   k->f->n.bad_index += bad;
-  /* Those of others are counted by these. */
+  /* Points owned by other slices are counted there. */
   k->f->n.not_finite += own;
   return !bad && !lost;
 }
 
-/* --- points -------------------------------------------------------------- */
+/* --- points --------------------------------------------------------------- */
 
 static void extend_box(struct vg_judge_worker *w, const double x[3])
 {
@@ -146,7 +147,7 @@ static vg_status note_used(struct work *k, struct vg_error *err)
   return VG_OK;
 }
 
-/* --- what others must know ----------------------------------------------- */
+/* --- data for other slices ------------------------------------------------ */
 
 static vg_status keep_faces(struct work *k, struct vg_error *err)
 {

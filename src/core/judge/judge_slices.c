@@ -1,4 +1,4 @@
-/* Judging slices: shares the work out and puts the report together. */
+/* Check of a mesh in slices: distributes the work and assembles the report. */
 #include "core/judge/judge_slices.h"
 
 #include <assert.h>
@@ -10,12 +10,13 @@
 #include "base/parallel.h"
 #include "core/judge/judge_slices_parts.h"
 
-#define MOST_WORKERS 256 /* of vg_parallel_for */
+#define MOST_WORKERS 256 /* limit of vg_parallel_for */
 
-/* Slices on one rank, by the bits left for their number. */
+/* Largest number of slices on one rank, from the number of bits that remain
+ * for it. */
 #define MOST_SLICES ((size_t)1 << (32 - VG_FACE_BITS))
 
-/* --- preparing ----------------------------------------------------------- */
+/* --- preparation ---------------------------------------------------------- */
 
 static vg_status make_workers(struct vg_slices_judgement *j,
                               struct vg_error *err)
@@ -50,7 +51,8 @@ static size_t behind_last(const uint32_t *node, size_t n, uint64_t n_point)
   return end;
 }
 
-/* Places of the boundary's points are to be known everywhere; nowhere yet. */
+/* Space for the positions of the boundary's points, which every rank needs;
+ * not yet known. */
 static vg_status make_places(struct vg_slices_judgement *j,
                              struct vg_error *err)
 {
@@ -74,8 +76,8 @@ static vg_status prepare(struct vg_slices_judgement *j, struct vg_error *err)
 
   if (j->s->n_slice >= MOST_SLICES || j->s->n_point > UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%zu slices of %llu points are "
-                   "too many for the check of the mesh (limits 2^29 and "
+                   "%zu slices with %llu points are "
+                   "too many for the mesh check (limits 2^29 and "
                    "2^32)",
                    j->s->n_slice, (unsigned long long)j->s->n_point);
   VG_TRY(make_workers(j, err));
@@ -113,7 +115,7 @@ static void release(struct vg_slices_judgement *j)
   free(j->suspect);
 }
 
-/* --- slices -------------------------------------------------------------- */
+/* --- slices --------------------------------------------------------------- */
 
 static vg_status judge_all_slices(struct vg_slices_judgement *j,
                                   struct vg_error *err)
@@ -122,7 +124,7 @@ static vg_status judge_all_slices(struct vg_slices_judgement *j,
   for (int i = 0; i < j->n_worker; i++) {
     struct vg_judge_worker *w = &j->worker[i];
 
-    /* from here on the first figures are those of the whole mesh */
+    /* From here on the first figures are those of the whole mesh. */
     if (j->n_judged > 1)
       vg_stats_add(w->figures[VG_JUDGED_WHOLE], w->figures[VG_JUDGED_FIELD]);
     if (w->st >= 0) continue;
@@ -132,7 +134,7 @@ static vg_status judge_all_slices(struct vg_slices_judgement *j,
   return VG_OK;
 }
 
-/* What decides whether to go on, of all ranks. */
+/* Counts over all ranks that decide whether the check can continue. */
 struct census {
   uint64_t n_point, n_cell[VG_SLICE_KINDS], bad_index, not_finite;
 };
@@ -177,8 +179,8 @@ static vg_status take_census(struct vg_slices_judgement *j, struct census *c,
     (unsigned long long)s->n_cell[1], (unsigned long long)s->n_cell[2]);
 }
 
-/* Turns numbers of components of each slice into the number of the first,
- * over all ranks. */
+/* Replace the number of components of each slice by the global number of its
+ * first component. */
 static vg_status number_slices(struct vg_slices_judgement *j,
                                struct vg_error *err)
 {
@@ -187,7 +189,7 @@ static vg_status number_slices(struct vg_slices_judgement *j,
   uint64_t *n = vg_calloc(size + 1, sizeof *n), at = 0;
   vg_status st = VG_OK;
 
-  if (!n) st = vg_fail_memory(err, "the parts of the mesh");
+  if (!n) st = vg_fail_memory(err, "the components of the mesh");
   VG_TRY(vg_comm_agree(j->comm, st, err));
   for (size_t i = 0; i < j->s->n_slice; i++) n[me] += j->n_component[i];
   for (int i = 0; i < j->n_worker; i++)
@@ -200,8 +202,8 @@ static vg_status number_slices(struct vg_slices_judgement *j,
   j->n_all_field = n[size];
   if (j->n_all > UINT32_MAX) {
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "the mesh falls into too many "
-                 "parts for its check (limit 2^32)");
+                 "the mesh has too many "
+                 "components for the mesh check (limit 2^32)");
     goto done;
   }
   for (size_t i = 0; i < j->s->n_slice; i++) {
@@ -222,14 +224,14 @@ static vg_status make_parents(struct vg_slices_judgement *j,
     for (int q = 0; q < j->n_judged; q++) {
       uint32_t *parent = vg_alloc((size_t)j->n_all, sizeof *parent);
 
-      if (!parent) return vg_fail_memory(err, "the parts of the mesh");
+      if (!parent) return vg_fail_memory(err, "the components of the mesh");
       for (uint32_t k = 0; k < j->n_all; k++) parent[k] = k;
       j->worker[i].parent[q] = parent;
     }
   return VG_OK;
 }
 
-/* --- points in use ------------------------------------------------------- */
+/* --- points in use -------------------------------------------------------- */
 
 static size_t first_word(const struct vg_slices_judgement *j, int rank)
 {
@@ -237,7 +239,7 @@ static size_t first_word(const struct vg_slices_judgement *j, int rank)
                   (uint64_t)vg_comm_size(j->comm));
 }
 
-/* Each rank gets its share of the words of all others. */
+/* Each rank receives its share of the words of all ranks. */
 static vg_status unite_used(struct vg_slices_judgement *j, uint64_t *used,
                             struct vg_error *err)
 {
@@ -282,14 +284,14 @@ static vg_status count_used(struct vg_slices_judgement *j, struct vg_error *err)
     if (vg_comm_size(j->comm) > 1) VG_TRY(unite_used(j, j->used[q], err));
     for (size_t i = first; i < end; i++)
       n_used += (uint64_t)__builtin_popcountll(j->used[q][i]);
-    /* the last word is longer than the points */
+    /* the last word has more bits than there are points */
     if (end == j->n_word && end > first)
       n_here -= 64 * (uint64_t)j->n_word - j->s->n_point;
     if (q == VG_JUDGED_WHOLE) {
       n->unused_point = n_here - n_used;
       continue;
     }
-    /* the field's points are those that its cells use */
+    /* The field's points are those that its cells use. */
     for (int i = 0; i < j->n_worker; i++)
       j->worker[i].figures[q]->n.n_point = 0;
     n->n_point = n_used;
@@ -298,7 +300,7 @@ done:
   return st;
 }
 
-/* --- sums and reports ---------------------------------------------------- */
+/* --- sums and reports ----------------------------------------------------- */
 
 static vg_status gather_worst(struct vg_comm *comm, struct vg_stats *f,
                               struct vg_error *err)
@@ -325,7 +327,7 @@ done:
   return st;
 }
 
-/* All threads' and ranks' into the first worker's. */
+/* Add the figures of all threads and ranks to those of the first worker. */
 static vg_status sum_stats(struct vg_slices_judgement *j, int q,
                            struct vg_error *err)
 {
@@ -390,7 +392,7 @@ static void report_all(struct vg_slices_judgement *j, const size_t *n_component,
   vg_report_conclude(r);
 }
 
-/* Without indices and places nothing else means anything. */
+/* With bad indices or coordinates no other figure is meaningful. */
 static vg_status report_unsound(struct vg_slices_judgement *j,
                                 struct vg_mesh_report *r, struct vg_error *err)
 {
@@ -435,7 +437,7 @@ done:
   return st;
 }
 
-/* --- suspects ------------------------------------------------------------ */
+/* --- suspect faces -------------------------------------------------------- */
 
 static vg_status pack_suspects(struct vg_slices_judgement *j,
                                struct vg_bytes *mine, struct vg_error *err)
@@ -471,7 +473,8 @@ static vg_status unpack_suspects(const struct vg_bytes *all, size_t size,
   return VG_OK;
 }
 
-/* Of all ranks. Each is named once: its items met on one rank. */
+/* Gather the suspect faces of all ranks. Each is listed once, because all its
+ * items were compared on one rank. */
 static vg_status gather_suspects(struct vg_slices_judgement *j, size_t *n,
                                  struct vg_face_key **key, struct vg_error *err)
 {
@@ -491,8 +494,9 @@ done:
   return st;
 }
 
-/* Once more where faces are suspect: slices then leave these to be matched
- * with all others. Only in a mesh that is not valid. */
+/* Repeat the check if there are suspect faces. Slices then leave these faces
+ * unmatched, so that they are matched with those of all slices. This only
+ * happens for invalid meshes. */
 static vg_status judge_again(struct vg_slices_judgement *j,
                              uint64_t front_faces, struct vg_mesh_report *r,
                              struct vg_error *err)

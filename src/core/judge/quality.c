@@ -1,4 +1,5 @@
-/* The judge: calls the sweeps in turn and draws the conclusion. */
+/* The mesh check: runs the sweeps one after the other and draws the
+ * conclusion. */
 #include "core/judge/quality.h"
 
 #include <assert.h>
@@ -12,7 +13,7 @@
 #include "core/geometry/volume.h"
 #include "core/judge/quality_parts.h"
 
-/* Inward faces of formats.md 2.3, each turned around. */
+/* The inward faces of formats.md 2.3, with reversed orientation. */
 const struct vg_cell_faces vg_cell_faces[VG_CELL_KINDS] = {
   { 4, 4, 4, { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 0, 3, 2 } } },
   { 5,
@@ -111,8 +112,8 @@ static int same_place(const double a[3], const double b[3])
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* Points at the place of an earlier one. Points that coincide with one in the
- * table are not entered, so a crowd at one place stays cheap. */
+/* Count points that coincide with an earlier one. They are not entered in the
+ * table, so that many points at one position cost little. */
 static vg_status count_duplicates(const struct vg_mesh *m, struct vg_counts *n,
                                   struct vg_error *err)
 {
@@ -132,7 +133,7 @@ static vg_status count_duplicates(const struct vg_mesh *m, struct vg_counts *n,
   return VG_OK;
 }
 
-/* The cones start at the middle of the box: the least cancellation. */
+/* The cones start at the centre of the box, which minimises cancellation. */
 double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
                           const double hi[3])
 {
@@ -195,7 +196,7 @@ vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
   f->n.bad_index = vg_count_bad_index(m);
   f->n.not_finite = vg_count_not_finite(m->n_point,
                                         (const double(*)[3])m->point);
-  /* Without indices and places nothing else means anything. */
+  /* With bad indices or coordinates no other figure is meaningful. */
   sound = !f->n.bad_index && !f->n.not_finite && f->n.n_cell;
   if (sound) VG_TRY(judge_all(m, sizing, f, &n_component, err));
   vg_stats_report(f, n_component, sound && sizing, report);

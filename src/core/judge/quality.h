@@ -1,5 +1,5 @@
-/* core/judge/quality.h: judging a finished mesh: validity and element quality.
- * */
+/* core/judge/quality.h: check of a finished mesh: validity and element
+ * quality. */
 #ifndef VG_CORE_JUDGE_QUALITY_H
 #define VG_CORE_JUDGE_QUALITY_H
 
@@ -19,59 +19,61 @@ struct vg_worst_cell {
 };
 
 struct vg_mesh_report {
-  /* validity: all zero in a valid mesh */
+  /* Validity: all zero in a valid mesh. */
   size_t bad_index, unused_point, not_finite, duplicate_point;
   size_t not_positive;     /* cells of zero or negative volume */
-  size_t open_face;        /* cell faces without neighbour or boundary */
-  size_t crowded_face;     /* faces of more than two cells */
+  size_t open_face;        /* cell faces without a neighbour or boundary face */
+  size_t crowded_face;     /* faces with more than two cells */
   size_t same_side_face;   /* neighbours on the same side of their face */
   size_t orphan_boundary;  /* boundary faces without a cell */
   size_t outward_boundary; /* boundary faces that point out of the fluid */
   size_t n_component;      /* face-connected components of cells */
   double volume, enclosed, volume_error;
   int is_valid;
-  /* size */
+  /* Size. */
   size_t n_point, n_cell, n_inner_face;
-  /* quality, over tetrahedra; angles are dihedral, in degrees */
+  /* Quality of tetrahedra; angles are dihedral, in degrees. */
   double angle_min, angle_max;
-  double angle_min_p1; /* 1st percentile of the smallest per cell */
-  double below[5];     /* % of cells with min below 5 10 15 20 30 */
-  double above[3];     /* % of cells with max above 150 160 170 */
+  double angle_min_p1; /* 1st percentile of the smallest angle per cell */
+  double below[5];     /* % of cells with smallest angle below 5 10 15 20 30 */
+  double above[3];     /* % of cells with largest angle above 150 160 170 */
   double radius_ratio_mean, radius_ratio_min; /* 3 r_in / R_circ */
   double mean_ratio_mean; /* 12 (3V)^(2/3) / sum of squared edges */
   double edge_length;     /* mean over cells of the root mean square edge */
-  double volume_ratio[3]; /* face neighbours: median, 95 %, maximum */
+  double volume_ratio[3]; /* of face neighbours: median, 95 %, maximum */
   size_t hist_angle_min[VG_HIST_ANGLE], hist_angle_max[VG_HIST_ANGLE];
   size_t hist_radius_ratio[VG_HIST_UNIT];
   struct vg_worst_cell worst[VG_WORST];
   size_t n_worst;
-  /* interior edges against the field (has_sizing) */
+  /* Interior edges compared with the sizing field (if has_sizing). */
   int has_sizing;
   double edge_mean;               /* mean of length / target */
   double edge_within;             /* % within [0.7, 1.5] of the target */
   size_t hist_edge[VG_HIST_UNIT]; /* length / target, bins of 0.1 */
 };
 
-/** Judge m. sizing may be NULL. Target of an edge: field at its midpoint.
- * Angle extremes are measured by libm and are for reporting only.
- * Cost: O(n) memory for one face table, O(n log n) time or better.
- * VG_ERR_MEMORY on refusal; an invalid mesh is VG_OK with is_valid 0. */
+/** Check m. sizing may be NULL. The target length of an edge is the sizing
+ * field at its midpoint. Extreme angles are computed with libm and only used
+ * for reporting. Cost: O(n) memory for one face table, O(n log n) time or
+ * better. VG_ERR_MEMORY if memory is refused; an invalid mesh is VG_OK with
+ * is_valid 0. */
 vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
                         struct vg_mesh_report *report, struct vg_error *err);
 
-/** Whether the judge takes a cell for positive: the volume of a tetrahedron,
- * exactly; of others theirs and that of the tetrahedra at all corners.
+/** Does the mesh check regard a cell as positive? The exact sign of the volume
+ * for a tetrahedron; for other cells, the signs of the volume and of the
+ * tetrahedra at all corners.
  *
  * @param kind  0 tetrahedron, 1 pyramid, 2 prism, 3 hexahedron
  * @param node  its points in x */
 int vg_cell_positive(const double (*x)[3], int kind, const uint32_t *node);
 
-/** The signed volume of a cell as the judge counts it: its quadrilaterals are
- * the mean of their two diagonals. Arguments as above. */
+/** Signed volume of a cell as used by the mesh check: a quadrilateral counts as
+ * the mean of its two triangulations. Arguments as for vg_cell_positive. */
 double vg_cell_volume(const double (*x)[3], int kind, const uint32_t *node);
 
-/** Per-tetrahedron figures for output: smallest dihedral angle in degrees and
- * radius ratio, each [n_tet], may be NULL. */
+/** Quality of each tetrahedron, for output: smallest dihedral angle in degrees
+ * and radius ratio. Each is [n_tet] and may be NULL. */
 void vg_mesh_cell_quality(const struct vg_mesh *m, float *angle_min,
                           float *radius_ratio);
 

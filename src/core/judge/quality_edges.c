@@ -1,10 +1,10 @@
-/* Conformity to the size field: length of every interior edge once.
+/* Edge lengths compared with the sizing field: every interior edge once.
  *
- * The two ends of an edge are entered in the bucket of the lower one; the
- * second and later entries of the same edge are recognised by a mark that its
- * upper node carries. As in quality_faces.c the buckets of one range of nodes
- * after the other are made, to keep memory small. Edges of boundary faces are
- * entered first and only leave their mark. */
+ * An edge is entered in the bucket of its lower node. Second and later entries
+ * of the same edge are recognised by a mark at the upper node. As in
+ * quality_faces.c, buckets are made for one range of nodes after the other to
+ * save memory. Edges of boundary faces are entered first and only leave their
+ * mark. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,21 +15,23 @@
 #define LEAST_ENTRIES ((size_t)1 << 21)
 #define N_PASS 4
 
-/* Targets are asked for in groups: one call for many points. */
+/* Target lengths are evaluated in groups, with one call for many points. */
 #define GROUP 256
 
 struct edges {
   const struct vg_mesh *m;
   const struct vg_sizing *sizing;
-  uint32_t *count;      /* [n_point] entries by lower node; then ends */
-  uint32_t *n_boundary; /* [n_point] of these from boundary faces */
-  uint32_t *mark;       /* [n_point] lower node + 1 of the last edge here */
+  uint32_t *count;      /* [n_point] entries by lower node; then ends of
+                           buckets */
+  uint32_t *n_boundary; /* [n_point] entries from boundary faces */
+  uint32_t *mark;       /* [n_point] lower node + 1 of the last edge with
+                           this upper node */
   uint32_t *entry;
   uint32_t lo, n;
-  int pass; /* 0 counts, 1 enters */
+  int pass; /* 0: count, 1: enter */
   struct vg_stats *f;
-  struct vg_unpaired *unpaired; /* NULL: m has its boundary */
-  int refused;                  /* memory for unpaired edges */
+  struct vg_unpaired *unpaired; /* NULL: m is a whole mesh with its boundary */
+  int refused;                  /* memory for unpaired edges was refused */
   uint32_t pair[GROUP][2];
   size_t n_group;
 };
@@ -100,8 +102,8 @@ static void count_entries(struct edges *e)
   e->pass = 1;
 }
 
-/* Length / target of up to GROUP edges; the ends of an edge may be told in
- * either order. */
+/* Length / target of up to GROUP edges; the order of an edge's ends does not
+ * affect the result. */
 static void measure(const struct vg_mesh *m, const struct vg_sizing *sizing,
                     size_t n, const uint32_t (*pair)[2], double *ratio)
 {
@@ -188,7 +190,7 @@ static void measure_range(struct edges *e)
   }
 }
 
-/* As in quality_faces.c: the nodes of the next range. */
+/* Find the end of the next range of nodes, as in quality_faces.c. */
 static uint32_t make_range(struct edges *e, uint32_t lo, size_t room,
                            int change, size_t *n_entry)
 {
@@ -256,7 +258,7 @@ vg_status vg_judge_edges(const struct vg_mesh *m,
   }
   flush(e);
   if (e->refused) {
-    st = vg_fail_memory(err, "the rim of a part of the mesh");
+    st = vg_fail_memory(err, "the unmatched edges of a slice");
     goto done;
   }
   if (unpaired) measure_unpaired(e);

@@ -1,13 +1,13 @@
-/* Conformity: every face of every cell meets its neighbour or a boundary
- * face.
+/* Conformity: every face of every cell must match a face of a neighbour or a
+ * boundary face.
  *
- * A face goes into the bucket of its lowest node (counting sort), where it is
- * matched by its other nodes: no global sort, so O(n). The records of all
- * buckets at once would need 64 bytes per tetrahedron, so buckets are made
- * and matched for one range of nodes after the other, in as many passes over
- * the cells as keep the records of a range small.
+ * A face is put into the bucket of its lowest node (counting sort), where it
+ * is matched by its other nodes. There is no global sort, so the cost is O(n).
+ * The records of all buckets would need 64 bytes per tetrahedron. Buckets are
+ * therefore made and matched for one range of nodes after the other, in enough
+ * passes over the cells to keep the records of a range small.
  *
- * Tetrahedra alone are first tried by quality_pairs.c. */
+ * Meshes of tetrahedra only are first passed to quality_pairs.c. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,22 +17,22 @@
 #include "base/union_find.h"
 #include "core/judge/quality_parts.h"
 
-/* Records per pass: a quarter of all, never fewer than this. */
+/* Records per pass: a quarter of all, but not fewer than this. */
 #define LEAST_RECORDS ((size_t)1 << 18)
 #define N_PASS 4
 
-/* Buckets up to this size are sorted by insertion; a node that is the lowest
- * of more faces than this is a hub, and rare. */
+/* Buckets up to this size are sorted by insertion. Nodes that are the lowest
+ * of more faces are hubs, which are rare. */
 #define SMALL_BUCKET 48
 
 struct record {
-  uint32_t a, b, c; /* the other nodes; c only of quads, else VG_NO_NODE */
+  uint32_t a, b, c; /* the other nodes; c is VG_NO_NODE for triangles */
   uint32_t owner;   /* 2 * (cell, or n_cell + boundary face) + winding */
 };
 
 struct table {
   const struct vg_mesh *m;
-  uint32_t *start; /* [n_point + 1] faces by lowest node; then the
+  uint32_t *start; /* [n_point + 1] number of faces by lowest node; then the
                       end of each bucket of the present range */
   struct record *record;
   uint32_t lo, n; /* nodes of the present range: lo .. lo + n - 1 */
@@ -41,7 +41,7 @@ struct table {
   const float *volume;
   struct vg_stats *f;
   struct vg_unpaired *unpaired; /* NULL: m is a whole mesh */
-  int refused;                  /* memory for unpaired faces */
+  int refused;                  /* memory for unpaired faces was refused */
 };
 
 static uint32_t lower(uint32_t a, uint32_t b)
@@ -64,8 +64,8 @@ static void put(struct table *t, uint32_t lowest, uint32_t a, uint32_t b,
   r->owner = owner;
 }
 
-/* The winding bit is 1 when the cycle, begun at its lowest node, goes on to
- * the higher of that node's two neighbours in it. */
+/* The winding bit is 1 if the lowest node is followed by the higher one of its
+ * two neighbours in the cycle. */
 static void put_tri(struct table *t, uint32_t a, uint32_t b, uint32_t c,
                     uint32_t owner)
 {
@@ -105,7 +105,7 @@ static void put_tets(struct table *t)
     uint32_t second = lower(upper(ab, cd),
                             lower(upper(n[0], n[1]), upper(n[2], n[3])));
 
-    /* three faces start at the lowest node, the fourth at the next */
+    /* three faces have the lowest node, the fourth has the second lowest */
     if (low - t->lo >= t->n && second - t->lo >= t->n) continue;
     put_tri(t, n[0], n[2], n[1], owner);
     put_tri(t, n[0], n[1], n[3], owner);
@@ -150,7 +150,7 @@ static void put_range(struct table *t)
     put_quad(t, m->quad[i], (uint32_t)owner);
 }
 
-/* count[v]: faces whose lowest node is v. */
+/* count[v]: number of faces whose lowest node is v. */
 static void count_faces(const struct vg_mesh *m, uint32_t *count)
 {
   for (size_t i = 0; i < m->n_tet; i++) {
@@ -190,7 +190,7 @@ static int order(const struct record *p, const struct record *q)
   return (p->c > q->c) - (p->c < q->c);
 }
 
-/* Of equal faces the lower owner first: cells before boundary faces. */
+/* Equal faces are sorted by owner: cells before boundary faces. */
 static int order_all(const void *a, const void *b)
 {
   const struct record *p = a, *q = b;
@@ -220,7 +220,7 @@ static void sort_bucket(struct record *r, size_t n)
   }
 }
 
-/* Nodes in cyclic order, as its cell winds them. */
+/* Nodes in cyclic order, with the winding of the cell. */
 static void face_nodes(uint32_t lowest, const struct record *r,
                        uint32_t node[4])
 {
@@ -244,8 +244,9 @@ static int is_shared(const struct vg_unpaired *unpaired, uint32_t lowest,
   return unpaired->is_shared(unpaired->context, node);
 }
 
-/* In a part of a mesh: n records of one face, which others have to match.
- * Its cell stands for the component until all are known. */
+/* In a part of a mesh: list the n records of one face, which must be matched
+ * with other parts. The cell stands for its component until all components are
+ * known. */
 static void pass_on(struct table *t, uint32_t lowest, const struct record *r,
                     size_t n)
 {
@@ -265,7 +266,7 @@ static void pass_on(struct table *t, uint32_t lowest, const struct record *r,
   }
 }
 
-/* The n records of one face. */
+/* Match the n records of one face. */
 static void match(struct table *t, uint32_t lowest, const struct record *r,
                   size_t n)
 {
@@ -302,14 +303,14 @@ static void match_range(struct table *t)
   }
 }
 
-/* Components in the order of their first cells. */
+/* Number the components in the order of their first cells. */
 static vg_status number_unpaired(struct table *t, struct vg_error *err)
 {
   uint32_t *number, n = 0;
 
   if (!t->unpaired->n_face) return VG_OK;
   number = vg_alloc(t->n_cell, sizeof *number);
-  if (!number) return vg_fail_memory(err, "the parts of the mesh");
+  if (!number) return vg_fail_memory(err, "the components of the mesh");
   for (size_t i = 0; i < t->n_cell; i++)
     if (t->parent[i] == i) number[i] = n++;
   for (size_t i = 0; i < t->unpaired->n_face; i++) {
@@ -328,8 +329,9 @@ static void release(struct table *t)
   free(t->parent);
 }
 
-/* Nodes lo .. hi - 1 with at most `room` faces together, but at least one
- * node; turns their counts into starts of buckets. *n_record: their faces. */
+/* Find the range of nodes lo .. hi - 1 with at most `room` faces, but at least
+ * one node. If change is set, turns the counts of the nodes into starts of
+ * buckets. *n_record: number of faces. */
 static uint32_t make_range(struct table *t, uint32_t lo, size_t room,
                            int change, size_t *n_record)
 {
@@ -371,7 +373,8 @@ static void part_cells(struct table *t)
   for (size_t i = 0; i < t->n_cell; i++) t->parent[i] = (uint32_t)i;
 }
 
-/* All sides of a face together: any cells, any faults. */
+/* Collect all sides of each face before matching: works for all kinds of cells
+ * and all defects. */
 static vg_status match_all(struct table *t, size_t n_record,
                            struct vg_error *err)
 {
@@ -391,7 +394,7 @@ static vg_status match_all(struct table *t, size_t n_record,
     put_range(t);
     match_range(t);
   }
-  return t->refused ? vg_fail_memory(err, "the rim of a part of the mesh")
+  return t->refused ? vg_fail_memory(err, "the unmatched faces of a slice")
                     : VG_OK;
 }
 
@@ -410,7 +413,7 @@ vg_status vg_judge_faces(const struct vg_mesh *m, const float *volume,
   if (t.n_cell + m->n_tri + m->n_quad > UINT32_MAX / 2 || n_record > UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "a mesh of %zu cells is too large for the check of its "
-                   "faces (limit 2^30); check its parts",
+                   "faces (limit 2^30); check parts of it separately",
                    t.n_cell);
   t.parent = vg_alloc(t.n_cell, sizeof *t.parent);
   if (!t.parent) return vg_fail_memory(err, "the faces of the mesh");

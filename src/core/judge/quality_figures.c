@@ -1,4 +1,4 @@
-/* Figures of a judgement: added up in any order, and made into a report. */
+/* Figures of a mesh check: added up in any order, and converted to a report. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -7,8 +7,9 @@
 #include "base/memory.h"
 #include "core/judge/quality_parts.h"
 
-/* Share of the volume by which cells and boundary may differ: far above the
- * rounding of each cell's volume, far below any cell that matters. */
+/* Relative difference allowed between the volumes of the cells and of the
+ * boundary: far above the rounding of the cells' volumes, far below any
+ * relevant cell. */
 #define VOLUME_TOLERANCE 1e-9
 
 struct vg_stats *vg_stats_new(void)
@@ -67,7 +68,8 @@ int vg_stats_face(struct vg_stats *f, size_t n_cell, size_t n_boundary,
   if (!n_cell) n->orphan_boundary += n_boundary;
   else if (n_cell + n_boundary > 2) n->crowded_face++;
   else if (n_cell + n_boundary == 1) n->open_face++;
-  else if (n_boundary) /* inwards: winds against its cell's outward face */
+  else if (n_boundary) /* points inwards: its winding is opposite to the
+                          outward face of its cell */
     n->outward_boundary += same_side;
   else {
     n->n_inner_face++;
@@ -198,7 +200,7 @@ void vg_report_conclude(struct vg_mesh_report *r)
   double scale = fabs(r->enclosed);
 
   if (fabs(r->volume) > scale) scale = fabs(r->volume);
-  /* not a number counts as a difference, too */
+  /* NaN counts as a difference, too */
   r->volume_error = scale != 0 ? fabs(r->volume - r->enclosed) / scale : 0;
   r->is_valid = r->n_cell && !r->unused_point && !r->duplicate_point &&
                 !r->not_positive && !r->open_face && !r->crowded_face &&

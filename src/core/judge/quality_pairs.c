@@ -1,20 +1,21 @@
-/* Faces of tetrahedra matched as they come.
+/* Matching of the faces of tetrahedra in the order of the cells.
  *
- * A face waits in a hash table until its other side comes, and leaves with it:
- * cells are written in an order in which neighbours follow each other closely,
- * so that few faces wait at a time and the table stays in the cache. Of cells
- * one upon the other in a column of layers, each shares a face with the next,
- * which never gets there. This takes less than two thirds of the time of
- * quality_faces.c, which sees all sides of a face together.
+ * A face waits in a hash table until its other side arrives, and then leaves
+ * the table. Cells are written in an order in which neighbours follow each
+ * other closely, so that few faces wait at a time and the table stays in the
+ * cache. In a column of layer cells, each cell shares a face with the next
+ * one, and these faces are not entered in the table at all. This takes less
+ * than two thirds of the time of quality_faces.c, which collects all sides of
+ * a face.
  *
- * Items cannot leave a table of base/table.h. For 2,076,831 tetrahedra of a
- * wing it would have 67 MB of slots for 4.2 million faces; these buckets
- * take 2.1 MB.
+ * Items cannot be removed from a table of base/table.h. For 2,076,831
+ * tetrahedra of a wing, it would need 67 MB of slots for 4.2 million faces;
+ * these buckets take 2.1 MB.
  *
- * What it does not see is a face with four sides, two and two. If cells are
- * positive and their faces leave in pairs of opposite sides, then they cover
- * each place equally often, so that such a mesh has a multiple of the volume
- * that its boundary encloses and is found out by that. */
+ * A face with four sides, two on each side, is not detected. But if all cells
+ * are positive and all faces leave in pairs of opposite sides, the cells cover
+ * each position equally often. The mesh then has a multiple of the volume
+ * enclosed by its boundary, which is detected. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,17 +29,17 @@
 #define FIRST_BITS 10
 #define SLOTS 4
 
-/* Tetrahedra whose faces are asked for from memory before they are needed. */
+/* Number of tetrahedra whose faces are prefetched from memory. */
 #define AHEAD 16
 
 struct face {
-  uint64_t key; /* lowest node << 32 | next */
+  uint64_t key; /* lowest node << 32 | second node */
   uint32_t high, owner;
 };
 
-/* Faces that wait, side by side in one line of the cache. */
+/* Waiting faces that share a cache line. */
 struct bucket {
-  uint64_t key[SLOTS];   /* lowest node << 32 | next; or VACANT */
+  uint64_t key[SLOTS];   /* lowest node << 32 | second node; or VACANT */
   uint32_t high[SLOTS];  /* highest node */
   uint32_t owner[SLOTS]; /* 2 * (cell, or n_cell + boundary face) + side */
 };
@@ -49,11 +50,11 @@ struct pairing {
   struct vg_stats *f;
   uint32_t *parent; /* [n_cell] components */
   size_t n_cell;
-  size_t n, mask; /* faces that wait; buckets - 1 */
+  size_t n, mask; /* number of waiting faces; number of buckets - 1 */
   unsigned shift;
   struct bucket *bucket;
-  uint8_t *is_over;    /* [buckets] had one that waits in the next */
-  int refused, is_odd; /* memory; a boundary face met another */
+  uint8_t *is_over;    /* [buckets] 1: a face overflowed to the next bucket */
+  int refused, is_odd; /* memory was refused; two boundary faces matched */
 };
 
 static size_t home(const struct pairing *p, uint64_t key, uint32_t high)
@@ -109,7 +110,7 @@ static void wait_at(struct pairing *p, size_t i, const struct face *f)
   p->bucket[i].owner[vacant] = f->owner;
 }
 
-/* Twice the buckets, so that at most half of the slots are taken. */
+/* Double the number of buckets, so that at most half of the slots are used. */
 static void grow(struct pairing *p)
 {
   struct bucket *old = p->bucket;
@@ -157,10 +158,11 @@ static void come(struct pairing *p, const struct face *f)
   if (++p->n > p->mask * (SLOTS / 2)) grow(p);
 }
 
-/* With the nodes a < b < c < d of a tetrahedron in a positive order, b c d and
- * a b d wind by rising numbers seen from outside, the others the other way;
- * each exchange turns all four. The side is 1 as in quality_faces.c: the
- * cycle goes on from its lowest node to the higher of the others. */
+/* If the nodes a < b < c < d of a tetrahedron are in a positive order, b c d
+ * and a b d wind in ascending order seen from outside, and the other faces in
+ * the opposite direction. Each exchange of two nodes reverses all four. The
+ * side is 1 under the same condition as in quality_faces.c: the lowest node is
+ * followed by the higher one of the others. */
 static void faces_of_tet(const uint32_t n[4], uint32_t cell, struct face f[4])
 {
   uint32_t v[4] = { n[0], n[1], n[2], n[3] };
@@ -180,7 +182,7 @@ static struct face face_of_tri(const uint32_t n[3], uint32_t owner)
   return (struct face){ (uint64_t)v[0] << 32 | v[1], v[2], side };
 }
 
-/* The face that leaves out a node, of those of faces_of_tet. */
+/* The face opposite a node, among those of faces_of_tet. */
 static struct face *opposite(struct face f[4], const uint32_t n[4],
                              uint32_t node)
 {
@@ -188,8 +190,9 @@ static struct face *opposite(struct face f[4], const uint32_t n[4],
          ((n[0] < node) + (n[1] < node) + (n[2] < node) + (n[3] < node));
 }
 
-/* In a column a cell stands on the one before: two nodes stay in their places
- * and the top takes that of the third. Keys of what has met: VACANT. */
+/* In a column of layer cells, a cell stands on the previous one: two nodes
+ * keep their positions, and the top node replaces the third. Matched faces get
+ * the key VACANT. */
 static void meet_in_columns(struct pairing *p, uint32_t (*n)[4], size_t n_cell,
                             struct face *f)
 {
@@ -229,14 +232,14 @@ static void come_all(struct pairing *p)
   }
 }
 
-/* What waits in vain is for others to match. */
+/* List the faces that still wait, for matching with other slices. */
 static vg_status list_unpaired(const struct pairing *p,
                                struct vg_unpaired *unpaired,
                                struct vg_error *err)
 {
   if (vg_reserve(&unpaired->face, &unpaired->cap_face, unpaired->n_face + p->n,
                  sizeof *unpaired->face))
-    return vg_fail_memory(err, "the rim of a part of the mesh");
+    return vg_fail_memory(err, "the unmatched faces of a slice");
   for (size_t i = 0; i <= p->mask; i++)
     for (unsigned k = 0; k < SLOTS; k++) {
       const struct bucket *b = &p->bucket[i];

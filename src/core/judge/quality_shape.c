@@ -13,24 +13,25 @@
 
 #define DEGREE 57.295779513082320877
 
-/* Tetrahedra are measured a few at a time, each step for all of them, which
- * compilers make vector instructions of, and counted when there are BATCH. */
+/* Tetrahedra are measured GROUP at a time, each step for all of them, which
+ * compilers vectorise. They are counted in batches of BATCH. */
 #define GROUP 4
 #define BATCH 256
 
-/* Compiled into each kind of measure_tets. */
+/* Compiled into each variant of measure_tets. */
 #define WITHIN static inline __attribute__((always_inline))
 
 typedef double lanes[GROUP];
 
-/* Of GROUP tetrahedra. */
+/* Results for GROUP tetrahedra. */
 struct tet_shapes {
-  lanes cos_max, cos_min; /* of the smallest and largest dihedral angle */
+  lanes cos_max, cos_min; /* cosines of the smallest and largest dihedral
+                             angle */
   lanes volume6;          /* |6 V| */
   lanes radius_ratio, edge2_sum;
 };
 
-/* Of up to BATCH. */
+/* Results for up to BATCH tetrahedra. */
 struct batch {
   double least[BATCH], most[BATCH]; /* angles */
   double volume[BATCH];
@@ -52,9 +53,9 @@ WITHIN void cross(lanes a[3], lanes b[3], lanes c[3])
   }
 }
 
-/* Extreme cosines of the angles between the faces of outward normals n. A
- * face without area makes the worst of both kinds, so that it cannot hide.
- * area2: sum of the lengths of the normals, which are normalised. */
+/* Extreme cosines of the angles between the faces with outward normals n. A
+ * face without area counts as the worst of both kinds, so that it cannot go
+ * unnoticed. area2: sum of the lengths of the normals, which are normalised. */
 WITHIN void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
 {
   lanes length[4], c;
@@ -92,7 +93,8 @@ WITHIN void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
   }
 }
 
-/* Normals of faces, |q| = |6 V| * twice the circumradius. */
+/* Computes the sum of squared edges, and q with |q| = |6 V| times twice the
+ * circumradius. n: normals of the faces. */
 WITHIN void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
                       lanes q[3], struct tet_shapes *s)
 {
@@ -152,8 +154,8 @@ static __attribute__((target("avx2"))) void measure_wide(lanes x[4][3],
 }
 #endif
 
-/* Four at once where the processor can; the same operations, the same bits
- * (no products are fused). */
+/* Four lanes at once if the processor supports AVX2. The operations are the
+ * same and give the same bits (no products are fused). */
 static void measure_tets(lanes x[4][3], struct tet_shapes *s)
 {
 #if defined __x86_64__
@@ -252,7 +254,7 @@ static void measure_group(const struct vg_mesh *m, size_t first, size_t n,
   }
 }
 
-/* Signed volumes; first: of m. */
+/* Signed volumes of tetrahedra first .. first + n - 1 of m. */
 static void measure_volumes(const struct vg_mesh *m, size_t first, size_t n,
                             double *volume, struct vg_stats *f)
 {
@@ -266,7 +268,7 @@ static void measure_volumes(const struct vg_mesh *m, size_t first, size_t n,
   }
 }
 
-/* n tetrahedra of m from `first` on; cell: number of that. */
+/* Measure n tetrahedra of m from `first` on. cell: number of the first one. */
 static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
                         size_t cell, float *volume, struct vg_stats *f)
 {
@@ -288,12 +290,14 @@ static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
   vg_exact_add_all(&f->n.sum_length, n, b.edge);
 }
 
-/* A corner tetrahedron of a prism, pyramid or hexahedron is spanned by a node
- * and its three neighbours; a cell is sound when all of them are positive. */
+/* The corner tetrahedra of a prism, pyramid or hexahedron, each spanned by a
+ * node and its three neighbours. A cell is valid if all of them are positive.
+ */
 static const uint8_t pri_corner[6][4] = { { 0, 1, 2, 3 }, { 1, 2, 0, 4 },
                                           { 2, 0, 1, 5 }, { 3, 5, 4, 0 },
                                           { 4, 3, 5, 1 }, { 5, 4, 3, 2 } };
-static const uint8_t pyr_corner[4][4] = { /* of the base, with the apex */
+static const uint8_t pyr_corner[4][4] = { /* corners of the base, with the
+                                             apex */
                                           { 0, 3, 1, 2 },
                                           { 3, 4, 0, 2 },
                                           { 4, 1, 3, 2 },
@@ -320,7 +324,8 @@ static int corners_positive(const double (*x)[3], int kind, const uint32_t *n)
   return 1;
 }
 
-/* By the divergence theorem, each quad as the mean of its two diagonals. */
+/* By the divergence theorem; each quad is the mean of its two triangulations.
+ */
 double vg_cell_volume(const double (*x)[3], int kind, const uint32_t *n)
 {
   assert(kind >= 0 && kind < VG_CELL_KINDS);

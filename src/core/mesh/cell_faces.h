@@ -1,5 +1,5 @@
 /* core/mesh/cell_faces.h: faces of the cells of core/mesh/mesh.h (formats.md
- * 2.3), normals into the cell; a triangle repeats its last node. */
+ * 2.3), with normals into the cell. A triangle repeats its last node. */
 #ifndef VG_CORE_MESH_CELL_FACES_H
 #define VG_CORE_MESH_CELL_FACES_H
 

@@ -1,12 +1,13 @@
-/* Mates of half-faces: core/mesh/cell_links.h.
+/* Matching of half-faces: core/mesh/cell_links.h.
  *
- * Cells are passed once, in order. A half-face whose mate has not been met
- * waits in a chain; its entry of link[] holds the next in the chain until the
- * mate comes, then the mate. So the heads, 16 bytes a point or 3 for each of
- * its tetrahedra, are all that the table costs; base/table.h would take 16 to
- * 32 bytes a tetrahedron. Heads lie near the number of the face's lowest point:
- * cells that are numbered near each other share cache lines, and a point with
- * very many faces spreads over a window of heads. */
+ * One pass visits the cells in order. A half-face whose mate has not been met
+ * yet waits in a chain: its entry of link[] holds the next half-face of the
+ * chain until the mate comes, and the mate from then on. The only extra memory
+ * is therefore the heads of the chains: 16 bytes per point, or 3 per
+ * tetrahedron. base/table.h would take 16 to 32 bytes per tetrahedron. The
+ * head of a face lies near the number of its lowest point. Cells with
+ * neighbouring numbers thus share cache lines, and the faces of a point with
+ * very many faces spread over a window of heads. */
 #include "core/mesh/cell_links.h"
 
 #include <assert.h>
@@ -18,10 +19,10 @@
 #include "core/mesh/cell_faces.h"
 
 #define NONE UINT32_MAX
-#define HEADS 4u /* per point */
+#define HEADS 4u /* heads per point */
 #define WINDOW_BITS 12u
 #define WINDOW (1u << WINDOW_BITS)
-/* 8 * cell + face stays below NONE. */
+/* Keeps 8 * cell + face below NONE. */
 #define MAX_CELL ((UINT32_MAX >> 3) - 1)
 
 struct heads {
@@ -38,7 +39,7 @@ void vg_cell_links_release(struct vg_cell_links *f)
   *f = empty;
 }
 
-/* Nodes of a cell, its faces and their number. */
+/* Nodes of a cell. Sets its faces and their number. */
 static inline const uint32_t *cell_nodes(const struct vg_cell_links *f,
                                          uint32_t cell,
                                          const unsigned char (**face)[4],
@@ -84,7 +85,7 @@ int vg_half_face_nodes(const struct vg_cell_links *f, uint32_t code,
   return width;
 }
 
-/* --- keys: sorted nodes, NONE behind those of a triangle --- */
+/* --- keys: sorted nodes, with NONE as the fourth entry for triangles ------ */
 
 static inline void make_key(const uint32_t *c, const unsigned char *q,
                             uint32_t key[4])
@@ -119,8 +120,8 @@ static inline int has_key(const struct vg_cell_links *f, uint32_t code,
            (key[3] ^ other[3]));
 }
 
-/* Take the waiting half-face with this key out of its chain; NONE if there
- * is none. */
+/* Remove the waiting half-face with this key from its chain and return it, or
+ * NONE if no half-face waits. */
 static inline uint32_t take(const struct vg_cell_links *f, struct heads *h,
                             size_t slot, const uint32_t key[4])
 {
@@ -138,7 +139,7 @@ static inline uint32_t take(const struct vg_cell_links *f, struct heads *h,
   return NONE;
 }
 
-/* --- building --- */
+/* --- building ------------------------------------------------------------- */
 
 static void pass_cells(struct vg_cell_links *f, struct heads *h)
 {
@@ -156,7 +157,8 @@ static void pass_cells(struct vg_cell_links *f, struct heads *h)
       slot = slot_of(key);
       mate = take(f, h, slot, key);
       if (mate != NONE && mate >> 3 == cell) {
-        /* A collapsed cell is no neighbour of itself: both stay. */
+        /* A collapsed cell is not a neighbour of itself: both half-faces wait.
+         */
         *link_of(f, mate) = h->head[slot];
         h->head[slot] = mate;
         mate = NONE;
@@ -189,9 +191,9 @@ static vg_status loose_face(const struct vg_mesh *m, size_t face,
   const double *p = m->point[node[0]];
 
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: boundary %s %zu of the mesh, at (%g, %g, %g), is the "
-                 "face of no cell, or of one that has another; the mesh is "
-                 "not closed: see `vanguard check`",
+                 "%s: boundary %s %zu of the mesh, at (%g, %g, %g), is not a "
+                 "face of any cell, or its cell face is already matched; the "
+                 "mesh is not closed: run 'vanguard check' on it",
                  name, width == 3 ? "triangle" : "quadrilateral",
                  (width == 3 ? face : face - m->n_tri) + 1, p[0], p[1], p[2]);
 }
@@ -216,7 +218,7 @@ static vg_status pass_boundary(struct vg_cell_links *f, struct heads *h,
   return VG_OK;
 }
 
-/* Any half-face still waiting? The lowest is named. */
+/* Does any half-face still wait? The error names the lowest one. */
 static vg_status check_left(const struct vg_cell_links *f,
                             const struct heads *h, const char *name,
                             struct vg_error *err)
@@ -242,15 +244,16 @@ static vg_status check_left(const struct vg_cell_links *f,
     kind = "pyramid";
     cell -= f->end_tet;
   }
-  return vg_fail(err, VG_ERR_INPUT,
-                 "%s: the face of points %u, %u, %u at (%g, %g, %g) of %s %u "
-                 "meets neither one other cell nor a boundary face; the mesh "
-                 "is not closed: see `vanguard check`",
-                 name, node[0] + 1, node[1] + 1, node[2] + 1, p[0], p[1], p[2],
-                 kind, cell + 1);
+  return vg_fail(
+    err, VG_ERR_INPUT,
+    "%s: the face with points %u, %u, %u at (%g, %g, %g) of %s %u "
+    "has neither a neighbouring cell nor a boundary face; the mesh "
+    "is not closed: run 'vanguard check' on it",
+    name, node[0] + 1, node[1] + 1, node[2] + 1, p[0], p[1], p[2], kind,
+    cell + 1);
 }
 
-/* What still waits has no mate. */
+/* Half-faces that still wait have no mate. */
 static void leave_open(const struct vg_cell_links *f, const struct heads *h)
 {
   for (size_t i = 0; i < h->n; i++)
@@ -269,8 +272,8 @@ static vg_status make_room(struct vg_cell_links *f, struct heads *h,
 
   if (n_cell > MAX_CELL || m->n_point > INT32_MAX || n_face > INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: %llu cells and %zu points are beyond labels of 32 bits "
-                   "for their faces",
+                   "%s: %llu cells and %zu points are too many for 32-bit "
+                   "labels of their faces",
                    name, (unsigned long long)n_cell, m->n_point);
   f->m = m;
   f->n_cell = (uint32_t)n_cell;

@@ -1,5 +1,5 @@
-/* Edges from half-edges: bucket by the lower node, sort each bucket by the
- * higher. Linear but for nodes with very many edges. */
+/* Edges from half-edges: bucket by the lower node, then sort each bucket by
+ * the higher node. Linear, except for nodes with very many edges. */
 #include "core/mesh/edges.h"
 
 #include <stdlib.h>
@@ -7,9 +7,9 @@
 
 #include "base/memory.h"
 
-#define FEW 24 /* keys that are sorted by insertion */
+#define FEW 24 /* up to this many keys are sorted by insertion */
 
-/* The half-edges to pair: of triangles, or sides. */
+/* The half-edges to pair: those of triangles, or given sides. */
 struct halves {
   size_t n_point, n;
   const uint32_t (*tri)[3], (*side)[2];
@@ -39,7 +39,7 @@ static void sort_keys(uint64_t *key, size_t n)
   }
 }
 
-/* Both nodes of half-edge h; 0 if it is left out. */
+/* Both nodes of half-edge h. Returns 0 if the half-edge is excluded. */
 static inline int ends(const struct halves *s, size_t h, uint32_t *lo,
                        uint32_t *hi)
 {
@@ -58,8 +58,8 @@ static inline int ends(const struct halves *s, size_t h, uint32_t *lo,
   return 1;
 }
 
-/* key[] = higher node and half-edge, in buckets of the lower node;
- * at[] (n_point + 1, zeroed) becomes the end of each bucket. */
+/* Fill key[] with pairs (higher node, half-edge), in buckets of the lower
+ * node. at[] (n_point + 1, zeroed) becomes the end of each bucket. */
 static void fill_buckets(const struct halves *s, uint64_t *key, uint32_t *at)
 {
   uint32_t lo, hi, sum = 0;

@@ -1,9 +1,9 @@
-/* core/mesh/edges.h: the edges of a triangulation, and which of its half-edges
+/* core/mesh/edges.h: the edges of a triangulation, with the half-edges that
  * lie on each.
  *
- * Half-edge 3 t + k runs from corner k of triangle t to the next one. A
- * boundary edge has one half-edge, an edge of a manifold two, a non-manifold
- * one more. */
+ * Half-edge 3 t + k runs from corner k of triangle t to the next corner. A
+ * boundary edge has one half-edge, a manifold edge two, a non-manifold edge
+ * more. */
 #ifndef VG_CORE_MESH_EDGES_H
 #define VG_CORE_MESH_EDGES_H
 
@@ -36,14 +36,14 @@ static inline uint32_t vg_half_to(const uint32_t (*tri)[3], uint32_t h)
   return vg_half_from(tri, vg_half_next(h));
 }
 
-/* Edges in the order of their lower, then their higher node. Edge i has the
- * half-edges half[start[i]] .. half[start[i + 1] - 1], by rising number. */
+/* Edges, sorted by their lower node, then by their higher node. Edge i has the
+ * half-edges half[start[i]] .. half[start[i + 1] - 1], in ascending order. */
 struct vg_edges {
   size_t n;
   uint32_t *start;   /* [n + 1] */
   uint32_t *half;    /* [start[n]] */
-  uint32_t *of_half; /* [half-edges] edge of each, UINT32_MAX for those
-                        of triangles that are left out */
+  uint32_t *of_half; /* [half-edges] edge of each; UINT32_MAX for half-edges
+                        of excluded triangles */
 };
 #define VG_EDGES_INIT                                                          \
   {                                                                            \
@@ -52,19 +52,20 @@ struct vg_edges {
 
 /** Find the edges of n_tri triangles.
  *
- * @param e      empty; on failure it stays so
+ * @param e      empty; stays empty on failure
  * @param tri    [n_tri][3] points below n_point; a point may repeat within a
  *               triangle
- * @param state  [n_tri] triangles with state[t] & out are left out; NULL: none
+ * @param state  [n_tri] triangles with state[t] & out are excluded; NULL: all
+ *               triangles are used
  *
- * O(n_point + n_tri), and O(k log k) for the k edges of a point. 16 bytes per
- * half-edge while it runs, 12 after. VG_ERR_MEMORY. */
+ * O(n_point + n_tri), plus O(k log k) for a point with k edges. 16 bytes per
+ * half-edge during the call, 12 afterwards. VG_ERR_MEMORY. */
 vg_status vg_edges_build(struct vg_edges *e, size_t n_point, size_t n_tri,
                          const uint32_t (*tri)[3], const uint8_t *state,
                          uint8_t out, struct vg_error *err);
 
-/** The same of n_side lines between points, in place of half-edges: sides of
- * other polygons, or of some triangles. */
+/** As vg_edges_build, for n_side lines between points instead of half-edges of
+ * triangles: sides of other polygons, or of some triangles. */
 vg_status vg_edges_build_sides(struct vg_edges *e, size_t n_point,
                                size_t n_side, const uint32_t (*side)[2],
                                struct vg_error *err);
@@ -83,8 +84,8 @@ static inline const uint32_t *vg_edges_at(const struct vg_edges *e, size_t i)
   return e->half + e->start[i];
 }
 
-/** The two half-edges of edge i (it has two) run the same way, so that their
- * triangles face different sides. */
+/** Do the two half-edges of edge i run the same way, so that its triangles are
+ * inconsistently oriented? The edge must have two half-edges. */
 static inline int vg_edges_disagree(const struct vg_edges *e,
                                     const uint32_t (*tri)[3], size_t i)
 {

@@ -2,12 +2,13 @@
  * produces, and writers store. A surface is a mesh without cells. Uses base
  * only.
  *
- * Conventions inside the program, whatever a file says (readers convert):
+ * Conventions inside the program (readers convert from the conventions of
+ * their file format):
  *   - indices are 0-based and 32-bit within one mesh;
- *   - boundary faces point INTO the fluid (right-hand normal), as VGRID's;
+ *   - boundary faces point INTO the fluid (right-hand normal), as in VGRID;
  *   - cells have UGRID's node order: tet 0 1 2 counter-clockwise seen from 3;
  *     pyramid base 0 3 4 1 with apex 2; prism 0 1 2 below 3 4 5; hex 0..3
- *     below 4..7 (formats.md 2.3), all of positive volume. */
+ *     below 4..7 (formats.md 2.3). All cells have positive volume. */
 #ifndef VG_CORE_MESH_MESH_H
 #define VG_CORE_MESH_MESH_H
 
@@ -18,17 +19,17 @@
 
 #define VG_NAME_MAX 80
 
-/* Boundary conditions are kept as codes of both solvers; 0 is a valid USM3D
+/* Boundary conditions are stored as codes of both solvers. 0 is a valid USM3D
  * code, so "not given" has a value of its own. */
 #define VG_BC_NONE INT32_MIN
 
 /** A named part of the boundary. */
 struct vg_patch {
-  int32_t id;             /* number in the files, any value, unique */
+  int32_t id;             /* number in the files; any value, unique */
   int32_t bc;             /* USM3D code (formats.md 1.4), or VG_BC_NONE */
   int32_t bc_fun3d;       /* FUN3D code, or VG_BC_NONE */
-  int32_t family;         /* VGRID family column; bc where unknown */
-  char name[VG_NAME_MAX]; /* "" where the file gives none */
+  int32_t family;         /* VGRID family column; equal to bc if unknown */
+  char name[VG_NAME_MAX]; /* empty if the file gives no name */
 };
 
 struct vg_mesh {
@@ -52,21 +53,24 @@ struct vg_mesh {
 /** Free all arrays and leave *m empty. Accepts an empty mesh. */
 void vg_mesh_release(struct vg_mesh *m);
 
-/** Move *from into *to: `to` is released first, `from` left empty. */
+/** Move *from into *to: `to` is released first, and `from` is left empty. */
 void vg_mesh_move(struct vg_mesh *to, struct vg_mesh *from);
 
-/** Deep copy of `from` into the empty mesh *to. VG_ERR_MEMORY on refusal. */
+/** Deep copy of `from` into the empty mesh *to. VG_ERR_MEMORY if memory is
+ * refused. */
 vg_status vg_mesh_copy(struct vg_mesh *to, const struct vg_mesh *from,
                        struct vg_error *err);
 
 /** Index in m->patch of the patch with number id, or SIZE_MAX. */
 size_t vg_mesh_find_patch(const struct vg_mesh *m, int32_t id);
 
-/** Index of patch `id`, appended with the given name (NULL: "") and no
- * boundary condition when absent; SIZE_MAX when memory is refused. */
+/** Index of patch `id`. If there is no such patch, it is appended with the
+ * given name (NULL: "") and no boundary condition. SIZE_MAX if memory is
+ * refused. */
 size_t vg_mesh_add_patch(struct vg_mesh *m, int32_t id, const char *name);
 
-/** Lower and upper corner of all points; both zero for an empty mesh. */
+/** Lower and upper corner of the bounding box of all points; both zero for an
+ * empty mesh. */
 void vg_mesh_bounds(const struct vg_mesh *m, double lo[3], double hi[3]);
 
 #endif

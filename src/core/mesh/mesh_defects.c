@@ -33,7 +33,7 @@ static size_t add_sides(const uint32_t *node, int n, uint32_t (*side)[2])
   size_t n_side = 0;
 
   for (int k = 0; k < n; k++) {
-    if (node[k] == node[(k + 1) % n]) continue; /* an error elsewhere */
+    if (node[k] == node[(k + 1) % n]) continue; /* reported by other checks */
     side[n_side][0] = node[k];
     side[n_side++][1] = node[(k + 1) % n];
   }

@@ -12,8 +12,9 @@ struct each {
   const struct vg_slices *s;
   vg_slice_body body;
   void *context;
-  atomic_flag busy;    /* noting a failure, which happens rarely */
-  atomic_size_t first; /* slice that failed; n_slice: none */
+  atomic_flag busy;    /* spin lock while a failure is recorded, which is
+                          rare */
+  atomic_size_t first; /* lowest slice that failed; n_slice if none failed */
   vg_status status;
   struct vg_error err;
 };
@@ -98,7 +99,7 @@ vg_status vg_slices_collect(const struct vg_slices *s, int threads,
   assert(s->boundary && out);
   if (s->n_point >= UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%llu points are too many for a "
+                   "%llu points are too many for a format that needs the "
                    "mesh in one piece; write b8l.ugrid or pvtu",
                    (unsigned long long)s->n_point);
   VG_TRY(vg_mesh_copy(&m, s->boundary, err));

@@ -2,10 +2,11 @@
  * mesh.h.
  *
  * A slice is a contiguous run of the mesh's points and of its cells of each
- * kind, with the points of other slices that its cells use. Every rank serves
- * some slices; together they are the mesh, each point and each cell once. The
- * boundary, O(N^(2/3)), is known everywhere. What slices there are, and all
- * numbers in them, follow from the input alone; who serves which does not. */
+ * kind. It also contains the points of other slices that its cells use. Every
+ * rank serves some of the slices. Together, the slices contain each point and
+ * each cell of the mesh once. The boundary, O(N^(2/3)), is known on every
+ * rank. The division into slices, and all numbers in them, depend on the input
+ * only; the assignment of slices to ranks may vary. */
 #ifndef VG_CORE_MESH_SLICES_H
 #define VG_CORE_MESH_SLICES_H
 
@@ -20,58 +21,62 @@ struct vg_slice {
   size_t n_point;       /* local points */
   const double (*x)[3]; /* [n_point] */
   const uint32_t *id;   /* [n_point] index in the mesh */
-  /* Points that this slice owns: the mesh's point_at + k is local point
-   * own[k]. Every point of the mesh is owned by one slice. */
+  /* Points that this slice owns: point_at + k of the mesh is local point
+   * own[k]. Every point of the mesh is owned by exactly one slice. */
   uint64_t point_at;
   size_t n_own;
   const uint32_t *own;              /* [n_own] */
-  uint64_t cell_at[VG_SLICE_KINDS]; /* index among the cells of the kind */
+  uint64_t cell_at[VG_SLICE_KINDS]; /* index of the first cell among the
+                                       mesh's cells of the kind */
   size_t n_cell[VG_SLICE_KINDS];
   const uint32_t *cell[VG_SLICE_KINDS]; /* [n_cell][4, 5, 6] local points, in
                                            the node order of core/mesh/mesh.h */
-  const uint32_t *part[VG_SLICE_KINDS]; /* [n_cell] for the solver, < n_part;
-                                           NULL where slices have no n_part */
+  const uint32_t *part[VG_SLICE_KINDS]; /* [n_cell] solver partition, <
+                                           n_part; NULL if the slices have no
+                                           n_part */
   uint32_t domain; /* number of the subdomain; 0 for layers */
-  uint8_t kind;    /* 0: layers, 1: leaf, 2: zone, 3: repair */
-  void *keep;      /* the server's */
+  uint8_t kind;    /* 0: layers, 1: leaf, 2: separator zone, 3: repair */
+  void *keep;      /* private data of the server */
 };
 
 struct vg_slices {
-  /* counts of the mesh */
+  /* Counts of the whole mesh. */
   uint64_t n_point, n_cell[VG_SLICE_KINDS];
-  uint64_t n_boundary_point;             /* they come first */
-  uint64_t n_layer_point;                /* index behind the last layer point */
-  uint64_t n_layer_cell[VG_SLICE_KINDS]; /* first of their kind */
-  uint32_t n_part;                       /* parts for the solver; 0: none */
-  /* Its boundary on every rank: patches, triangles and quadrilaterals with
-   * indices of the mesh; no points, no cells. */
+  uint64_t n_boundary_point;             /* boundary points come first */
+  uint64_t n_layer_point;                /* index after the last layer point */
+  uint64_t n_layer_cell[VG_SLICE_KINDS]; /* layer cells come first of their
+                                            kind */
+  uint32_t n_part;                       /* number of solver partitions; 0:
+                                            mesh is not partitioned */
+  /* Boundary of the mesh on every rank: patches, triangles and quadrilaterals
+   * with point indices of the mesh; no points, no cells. */
   const struct vg_mesh *boundary;
-  size_t n_slice;    /* served by this rank */
-  uint64_t n_served; /* cells of all kinds in them */
-  /** Make slice i at hand; it stays valid until put. Threads: any number of
-   * slices at once, each by one thread. VG_ERR_MEMORY. */
+  size_t n_slice;    /* number of slices served by this rank */
+  uint64_t n_served; /* cells of all kinds in these slices */
+  /** Provide slice i, which stays valid until `put` is called for it. Threads:
+   * any number of slices at once, each by one thread. VG_ERR_MEMORY. */
   vg_status (*get)(const struct vg_slices *s, size_t i, struct vg_slice *out,
                    struct vg_error *err);
   void (*put)(const struct vg_slices *s, struct vg_slice *slice);
-  void *user; /* the server's */
+  void *user; /* private data of the server */
 };
 
 /** Call body for each slice that this rank serves, in threads. Returns the
- * failure of the first slice that failed; those after a failure may be left
- * out. */
+ * failure of the lowest slice that failed. After a failure, remaining slices
+ * may be skipped. */
 typedef vg_status (*vg_slice_body)(void *context, const struct vg_slice *slice,
                                    struct vg_error *err);
 vg_status vg_slices_each(const struct vg_slices *s, int threads,
                          vg_slice_body body, void *context,
                          struct vg_error *err);
 
-/** Slices into one mesh in memory, on a job of one rank: for writers of whole
- * meshes. Boundary included. VG_ERR_MEMORY. */
+/** Collect all slices into one mesh in memory, including the boundary. For
+ * writers of whole meshes, in jobs of one rank. VG_ERR_MEMORY. */
 vg_status vg_slices_collect(const struct vg_slices *s, int threads,
                             struct vg_mesh *out, struct vg_error *err);
 
-/** Likewise the parts of all cells, in the order of kinds, where n_part > 0.
- * part: [cells of the mesh]. */
+/** Collect the solver partitions of all cells, ordered by cell kind. Requires
+ * n_part > 0. part: [cells of the mesh]. */
 vg_status vg_slices_collect_parts(const struct vg_slices *s, int threads,
                                   uint32_t *part, struct vg_error *err);
 

@@ -1,7 +1,8 @@
-/* Does what a mesher returned fill the front? With positive cells, faces that
- * two cells have from opposite sides, and the front's own covered once from
- * within, every place inside lies in as many cells as the front winds around
- * it: one. Volumes are compared besides. */
+/* Check that the result of a mesher fills the front. The cells must be
+ * positive, each inner face must have two cells on opposite sides, and each
+ * face of the front must have exactly one cell, on its inner side. The number
+ * of cells that contain a position inside then equals the winding number of
+ * the front around it, which is one. The volumes are compared in addition. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +13,7 @@
 #include "core/mesh/cell_links.h"
 #include "core/mesher/fill_with.h"
 
-/* Sums of volumes differ by rounding alone: some 1e-16 of the terms. */
+/* Sums of volumes differ by rounding only: about 1e-16 of the terms. */
 static const double tolerance = 1e-10;
 
 static const char *check_numbers(size_t n_front, size_t n, const double (*x)[3],
@@ -23,7 +24,8 @@ static const char *check_numbers(size_t n_front, size_t n, const double (*x)[3],
       if (!isfinite(x[i][k])) return "a point is not finite";
   for (size_t c = 0; c < n_cell; c++)
     for (int k = 0; k < 4; k++)
-      if (cell[c][k] >= n) return "a cell has a point that there is not";
+      if (cell[c][k] >= n)
+        return "a cell refers to a point that does not exist";
   return n_cell ? NULL : "there are no cells";
 }
 
@@ -50,8 +52,8 @@ static int turns_alike(const uint32_t a[3], const uint32_t b[3])
   return a[0] == b[k] && a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3];
 }
 
-/* Half-faces have their normals out of their cell, the front's faces into it.
- */
+/* The normals of half-faces point out of their cell, those of front faces into
+ * it. */
 static const char *check_sides(const struct vg_cell_links *l,
                                const uint32_t (*face)[3], size_t n_face)
 {
@@ -64,7 +66,8 @@ static const char *check_sides(const struct vg_cell_links *l,
     if (mate == VG_NO_CELL || mate < code) continue;
     vg_half_face_nodes(l, code, a);
     vg_half_face_nodes(l, mate, b);
-    if (turns_alike(a, b)) return "two cells lie on one side of their face";
+    if (turns_alike(a, b))
+      return "two cells lie on the same side of their common face";
   }
   for (size_t i = 0; i < n_face; i++) {
     vg_half_face_nodes(l, l->boundary[i], a);
@@ -74,7 +77,8 @@ static const char *check_sides(const struct vg_cell_links *l,
   return NULL;
 }
 
-/* Six times the volumes, about a point of the front so that little cancels. */
+/* Compares six times the volumes. Cones start at a point of the front to avoid
+ * cancellation. */
 static const char *check_volume(const double (*x)[3], const uint32_t (*face)[3],
                                 size_t n_face, size_t n_cell,
                                 const uint32_t (*cell)[4])
@@ -133,14 +137,14 @@ vg_status vg_mesher_check(size_t n_front, size_t n_face,
   assert(wrong && *n >= n_front);
   assert(face || !n_face);
   assert(cell || !n_cell);
-  memcpy(&m.tri, &face, sizeof m.tri); /* read only */
+  memcpy(&m.tri, &face, sizeof m.tri); /* not modified */
   *wrong = check_numbers(n_front, *n, (const double(*)[3])x, n_cell,
                          (const uint32_t(*)[4])cell);
   if (!*wrong) *wrong = turn_cells((const double(*)[3])x, n_cell, cell);
   if (*wrong) return VG_NOT_BETTER;
   st = vg_cell_links_build(&l, &m, 0, "a void", err);
   if (st == VG_ERR_INPUT || st == VG_ERR_UNSUPPORTED) {
-    *wrong = "the front is not kept, or cells do not meet face to face";
+    *wrong = "the front is not preserved, or cells do not match face to face";
     return VG_NOT_BETTER;
   }
   if (st < 0) return st;

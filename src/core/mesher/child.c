@@ -1,4 +1,4 @@
-/* The process of a mesher: core/mesher/mesher_parts.h. */
+/* The process that runs a mesher: core/mesher/mesher_parts.h. */
 #define _GNU_SOURCE
 #include <assert.h>
 #include <dlfcn.h>
@@ -17,10 +17,11 @@
 #include "base/memory.h"
 #include "core/mesher/mesher_parts.h"
 
-/* --- loading ------------------------------------------------------------- */
+/* --- loading -------------------------------------------------------------- */
 
-/* A library's own functions before ours of the same name: gmsh has a TetGen of
- * its own. What sanitizers replace has to be theirs everywhere. */
+/* A library's own functions take precedence over ours of the same name,
+ * because gmsh contains a TetGen of its own. Functions that sanitizers replace
+ * must be replaced everywhere. */
 void *vg_mesher_library(const char *path)
 {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -46,8 +47,8 @@ static const struct vg_mesher *load_plugin(const char *path, char *why,
   get = (plugin *)(uintptr_t)dlsym(library, VG_MESHER_SYMBOL);
   if (!get) {
     snprintf(why, size,
-             "it does not export the function %s, as a plug-in for "
-             "meshing does (vanguard/mesher.h)",
+             "it does not export the function %s, which every "
+             "mesher plug-in must define (vanguard/mesher.h)",
              VG_MESHER_SYMBOL);
     return NULL;
   }
@@ -55,9 +56,9 @@ static const struct vg_mesher *load_plugin(const char *path, char *why,
   if (m && m->version == VG_MESHER_VERSION && m->fill) return m;
   if (m && m->version != VG_MESHER_VERSION)
     snprintf(why, size,
-             "it is made for version %u of the interface, this "
-             "program has version %d; compile it with this program's "
-             "vanguard/mesher.h",
+             "it was made for version %u of the plug-in interface, but "
+             "this program has version %d; recompile it with this "
+             "program's vanguard/mesher.h",
              (unsigned)m->version, VG_MESHER_VERSION);
   else snprintf(why, size, "its %s returns no mesher", VG_MESHER_SYMBOL);
   return NULL;
@@ -65,8 +66,8 @@ static const struct vg_mesher *load_plugin(const char *path, char *why,
 
 static const struct vg_mesher *load(const char *name, char *why, size_t size)
 {
-  /* one thread: several are no faster beside the other workers, and none may
-   * be about when this process forks */
+  /* Use one thread: more are no faster when other workers run at the same
+   * time, and no other thread may exist when this process forks. */
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
   setenv("OMP_NUM_THREADS", "1", 1);
   if (!strcmp(name, "tetgen")) return vg_mesher_tetgen();
@@ -74,9 +75,9 @@ static const struct vg_mesher *load(const char *name, char *why, size_t size)
   return load_plugin(name, why, size);
 }
 
-/* --- a void -------------------------------------------------------------- */
+/* --- a void --------------------------------------------------------------- */
 
-/* What never ends is ended by its time on the processor. */
+/* A limit of processor time ends meshers that do not terminate. */
 static void set_end(double seconds)
 {
   struct itimerval t = { { 0, 0 }, { (time_t)seconds + 1, 0 } };
@@ -121,18 +122,18 @@ __attribute__((noreturn)) static void fill(int fd, const struct vg_mesher *m,
   if (!sizes.user) _exit(1);
   if (m->fill(&front, &sizes, &cells))
     _exit(!vg_child_put(fd, &none, sizeof none));
-  _exit(!put_cells(fd, &cells)); /* and so nothing is to be released */
+  _exit(!put_cells(fd, &cells)); /* process ends here, so nothing is released */
 }
 
-/* --- one process for each ------------------------------------------------ */
+/* --- one process per void ------------------------------------------------- */
 
 static void wake(int signal)
 {
   (void)signal;
 }
 
-/* 1 when the process has done its void. It is ended when the other end of the
- * socket is. */
+/* Returns 1 if the process has meshed its void. The process is killed if the
+ * other end of the socket closes. */
 static int wait_for(pid_t pid, int fd)
 {
   struct pollfd p = { fd, POLLRDHUP, 0 };

@@ -1,8 +1,8 @@
-/* Sizes on the other side of a socket. To ask for each would take longer than
- * the meshing: so they are kept on an octree over the front's box, whose cells
- * are split where they are longer than their least corner's size, and read from
- * it trilinearly. A cell's children are asked for at once, when a point in it
- * is first looked up. */
+/* Target edge lengths from the other side of a socket. Asking for each of them
+ * would take longer than the meshing. They are therefore cached on an octree
+ * over the box of the front and interpolated trilinearly. Cells are split if
+ * they are longer than the smallest length at their corners. The children of a
+ * cell are requested together when a point in the cell is first looked up. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,11 +13,11 @@
 #include "base/memory.h"
 #include "core/mesher/mesher_parts.h"
 
-#define DEPTH 40 /* more than doubles can tell apart */
+#define DEPTH 40 /* more levels than doubles can resolve */
 
 struct node {
-  uint32_t child; /* the first of eight; 0: not split (yet) */
-  float h[8];     /* at its corners, x first */
+  uint32_t child; /* first of eight children; 0: not split (yet) */
+  float h[8];     /* lengths at its corners, x first */
 };
 
 struct vg_child_sizes {
@@ -85,7 +85,7 @@ static int wants_split(const struct node *at, double side)
   return side > (double)least;
 }
 
-/* The children's corners are a grid of 27 points. */
+/* The corners of the children form a grid of 27 points. */
 static void split(struct vg_child_sizes *s, uint32_t node, const double lo[3],
                   double side)
 {

@@ -1,4 +1,5 @@
-/* The parent's end of meshers in processes: core/mesher/mesher_parts.h. */
+/* The parent's side of meshers in child processes: core/mesher/mesher_parts.h.
+ */
 #include "core/mesher/fill_with.h"
 
 #include <assert.h>
@@ -14,21 +15,23 @@
 #include "base/memory.h"
 #include "core/mesher/mesher_parts.h"
 
-/* Slow ones make a thousand cells a second, and some ten for each triangle. */
+/* Slow meshers make a thousand cells per second, and about ten cells per
+ * triangle. */
 static const double patience = 600, patience_each = 0.05; /* K31 */
-static const double silence = 10; /* times that, without a sign of life */
+static const double silence = 10; /* limit without any message, relative to
+                                     the processor time */
 
-static const uint64_t n_max = UINT32_MAX / 8 - 1; /* cell_links.h */
+static const uint64_t n_max = UINT32_MAX / 8 - 1; /* limit of cell_links.h */
 
 struct vg_mesher_pool {
   struct vg_mesher_spec spec;
   double patience, patience_each;
   pthread_mutex_t lock;
   size_t n, room;
-  struct vg_child *idle; /* [n] that have loaded it and have nothing to do */
+  struct vg_child *idle; /* [n] idle processes that have loaded the mesher */
 };
 
-/* --- processes ----------------------------------------------------------- */
+/* --- processes ------------------------------------------------------------ */
 
 static vg_status start(struct vg_mesher_pool *p, struct vg_child *c,
                        struct vg_error *err)
@@ -42,8 +45,8 @@ static vg_status start(struct vg_mesher_pool *p, struct vg_child *c,
       !vg_child_get(c->fd, &hello, sizeof hello))
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
                  "mesher %s: the process that loads "
-                 "it ended; it crashes when it is loaded or asked for its "
-                 "mesher",
+                 "it ended; the library crashes when it is loaded or when "
+                 "its plug-in function is called",
                  p->spec.name);
   else if (!hello.is_ready)
     st = vg_fail(err, VG_ERR_UNSUPPORTED, "mesher %s: %.500s", p->spec.name,
@@ -122,7 +125,7 @@ void vg_mesher_patience(struct vg_mesher_pool *p, double seconds,
   p->patience_each = seconds_each;
 }
 
-/* --- a void -------------------------------------------------------------- */
+/* --- a void --------------------------------------------------------------- */
 
 enum outcome { FILLED, STOPPED, TOO_MANY, FAILED, ENDED };
 
@@ -133,11 +136,11 @@ struct filling {
   const struct vg_fill_options *options;
   double seconds;
   size_t n, n_cell;
-  double (*x)[3]; /* [n] the front's points first */
+  double (*x)[3]; /* [n] points of the front first */
   uint32_t (*cell)[4];
 };
 
-/* Until there is something to be read. */
+/* Wait until data can be read. */
 static enum outcome await(const struct filling *f)
 {
   double end = vg_clock() + silence * f->seconds;
@@ -212,7 +215,7 @@ static enum outcome converse(struct filling *f)
   }
 }
 
-/* The checked cells, without the points of the front. */
+/* Store the checked cells, without the points of the front. */
 static vg_status take(struct filling *f, struct vg_filled *out,
                       struct vg_error *err)
 {
@@ -278,7 +281,7 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
   case FILLED: st = judge(&f, out, report, err); break;
   case STOPPED: st = vg_stopped(&options->stop, err); break;
   case TOO_MANY:
-    st = vg_fail(err, VG_ERR_UNSUPPORTED, "a void takes more than %llu points",
+    st = vg_fail(err, VG_ERR_UNSUPPORTED, "a void needs more than %llu points",
                  (unsigned long long)options->point_limit);
     break;
   case FAILED: report->n_other_failed++; break;

@@ -1,7 +1,7 @@
 /* HXT of gmsh (C. Marot, J. Pellerin, J.-F. Remacle, "One machine, one minute,
- * three billion tetrahedra", Int. J. Numer. Methods Eng. 117(9), 2019), by
- * gmsh's C interface. The library is looked for when a mesher of that name is
- * asked for, and need not be there before; only in a child. */
+ * three billion tetrahedra", Int. J. Numer. Methods Eng. 117(9), 2019),
+ * through gmsh's C interface. The library is loaded in a child process when
+ * this mesher is requested; it need not be installed otherwise. */
 #include <assert.h>
 #include <dlfcn.h>
 #include <stdio.h>
@@ -11,11 +11,11 @@
 #include "base/memory.h"
 #include "core/mesher/mesher_parts.h"
 
-/* The interface of 4.8: later ones have other arguments. */
+/* Interface of version 4.8; later versions have other arguments. */
 static const char library_name[] = "libgmsh.so.4.8";
 
-/* Asked for sizes, HXT makes edges that are 1.47 times as long on average; with
- * this factor they are as long as wanted. */
+/* HXT makes edges that are on average 1.47 times as long as requested. With
+ * this factor they have the requested length. */
 static const double stretch = 0.68; /* K33 */
 
 static struct {
@@ -118,14 +118,15 @@ static int set_options(void)
   return bad;
 }
 
-/* --- the front ----------------------------------------------------------- */
+/* --- the front ------------------------------------------------------------ */
 
-/* HXT tells volumes by the surfaces around them. Where a front touches itself
- * along edges, what lies between may be a volume too, and would have the same
- * surface around it as what is to be filled: so each piece of a shell is a
- * surface. */
+/* HXT identifies volumes by the surfaces around them. Where a front touches
+ * itself along edges, the space between may also be a volume and would have
+ * the same surface around it as the void. Each piece of a shell is therefore a
+ * surface of its own. */
 
-/* The points of a surface that are on no other yet; numbered from 1. */
+/* Add the points of a surface that no other surface has added; numbered from
+ * 1. */
 static int put_points(const struct vg_mesher_front *f,
                       const struct vg_mesher_shells *s, uint32_t piece,
                       unsigned char *is_put)
@@ -163,8 +164,9 @@ static int put_triangles(const struct vg_mesher_front *f,
   return bad;
 }
 
-/* One volume within one shell and around the hollow ones, or one in each shell.
- * Hollows in several: gmsh would have to be told which lies in which. */
+/* Add one volume within one shell and around the hollow ones, or one volume in
+ * each shell. Hollows in several shells are not supported, because gmsh needs
+ * to know which hollow lies in which shell. */
 static int put_volumes(const struct vg_mesher_shells *s)
 {
   size_t n_outer = s->n - s->n_hollow, n = 1;
@@ -190,7 +192,8 @@ static int put_volumes(const struct vg_mesher_shells *s)
   return bad;
 }
 
-/* A front in hundreds of pieces would take its points hundreds of times. */
+/* Limit, since a front in hundreds of pieces would scan its points hundreds of
+ * times. */
 #define MOST_PIECES 200
 
 static int put_front(const struct vg_mesher_front *f)
@@ -205,12 +208,12 @@ static int put_front(const struct vg_mesher_front *f)
     bad = put_triangles(f, &s, k);
   if (!bad) bad = put_volumes(&s);
   free(is_put);
-  return bad; /* the process ends soon, and frees the rest */
+  return bad; /* the process ends soon, which frees the rest */
 }
 
-/* --- the cells ----------------------------------------------------------- */
+/* --- the cells ------------------------------------------------------------ */
 
-/* New nodes in the order of their tags, which need not be without gaps. */
+/* New nodes in the order of their tags, which may have gaps. */
 static int take_nodes(size_t n_front, struct vg_mesher_cells *to,
                       uint32_t **number, size_t *most)
 {

@@ -1,6 +1,6 @@
-/* What bounds the parts of a void, told by the edges of its front. Where more
- * than two triangles meet at an edge, two that have the void between them bound
- * the same part. */
+/* Shells of a void, determined from the edges of its front. Where more than
+ * two triangles meet at an edge, two neighbouring triangles with the void
+ * between them belong to the same shell. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,15 +12,16 @@
 
 struct edge {
   uint32_t v[2], face; /* v[0] < v[1] */
-  int is_along;        /* the face goes from v[0] to v[1] */
-  double angle;        /* of edges of more than two: 0 to 4, as turns from
-                          the first, quarters being 1 */
+  int is_along;        /* face runs from v[0] to v[1] */
+  double angle;        /* position around an edge with more than two
+                          triangles, relative to the first one: 0 to 4, one
+                          unit per quarter turn */
 };
 
 struct work {
   const struct vg_mesher_front *f;
   struct edge *edge;       /* [3 n_face] */
-  uint32_t *shell, *piece; /* [n_face] base/union_find.h */
+  uint32_t *shell, *piece; /* [n_face] forests of base/union_find.h */
 };
 
 void vg_mesher_shells_release(struct vg_mesher_shells *s)
@@ -63,7 +64,7 @@ static int by_angle(const void *a, const void *b)
   return x->angle > y->angle ? 1 : (x->face > y->face) - (x->face < y->face);
 }
 
-/* Of a triangle around an edge: grows with the angle, without its cost. */
+/* A monotone function of the angle (x, y), cheaper than the angle itself. */
 static double turn(double x, double y)
 {
   double sum = fabs(x) + fabs(y), t = sum > 0 ? y / sum : 0;
@@ -82,7 +83,8 @@ static double dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* From the edge to a triangle's third point, across the edge. */
+/* Vector from the edge to the third point of a triangle, perpendicular to the
+ * edge. */
 static void arm(const struct vg_mesher_front *f, const struct edge *e,
                 const double along[3], double out[3])
 {
@@ -95,8 +97,8 @@ static void arm(const struct vg_mesher_front *f, const struct edge *e,
   for (int k = 0; k < 3; k++) out[k] -= share * along[k];
 }
 
-/* Around the edge, the void lies behind a triangle that goes along it, and
- * before the next one. */
+/* Around the edge, the void lies after a triangle that runs along it, and
+ * before the next triangle. */
 static void pair_around(const struct work *w, struct edge *e, size_t n)
 {
   double along[3], u[3], v[3], at[3], length;
@@ -146,7 +148,7 @@ static void join(const struct work *w)
   }
 }
 
-/* Numbers of sets by their lowest faces. */
+/* Number the sets in the order of their lowest faces. */
 static size_t number(uint32_t *up, size_t n, uint32_t *to)
 {
   size_t next = 0;
@@ -159,7 +161,7 @@ static size_t number(uint32_t *up, size_t n, uint32_t *to)
   return next;
 }
 
-/* Normals point into what is to be filled: out of a hollow. */
+/* Normals point into the void, so out of a hollow shell. */
 static void measure(const struct vg_mesher_front *f, struct vg_mesher_shells *s,
                     double (*sum)[2])
 {

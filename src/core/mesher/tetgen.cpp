@@ -1,6 +1,6 @@
 /* TetGen as a mesher of whole voids (H. Si, "TetGen, a Delaunay-based quality
- * tetrahedral mesh generator", ACM TOMS 41(2), 2015). Only in a child: it keeps
- * state and may end the process. */
+ * tetrahedral mesh generator", ACM TOMS 41(2), 2015). Only in a child process,
+ * because it keeps state and may end the process. */
 #include <cmath>
 #include <cstdlib>
 #include <vector>
@@ -11,9 +11,9 @@
 namespace
 {
 
-/* A cell is split whose volume is more than this many times that of a regular
- * one with the edges wanted at its middle: as many cells then as of our own
- * kernel. */
+/* A cell is split if its volume exceeds this multiple of that of a regular
+ * cell with the target edge length at its centroid. This gives about the same
+ * number of cells as our own kernel. */
 const double largest = 1.3; /* K32 */
 
 const vg_mesher_sizes *sizes;
@@ -36,9 +36,9 @@ bool is_too_large(REAL *a, REAL *b, REAL *c, REAL *d, REAL *, REAL)
   return volume > largest * h * h * h / (6 * std::sqrt(2.0));
 }
 
-/* A point within each hollow, closely behind the largest triangle. Where it
- * misses, cells are made in the hollow that nobody wants, or none where they
- * are wanted, which is noticed. */
+/* Put a point into each hollow, closely behind its largest triangle. If the
+ * point misses the hollow, cells are made there or are missing in the void;
+ * the check of the result detects both. */
 void put_holes(tetgenio &in, const vg_mesher_front &f,
                const vg_mesher_shells &shells)
 {
@@ -54,7 +54,7 @@ void put_holes(tetgenio &in, const vg_mesher_front &f,
     if (!shells.is_hollow[s]) continue;
     vg_mesher_normal(&f, shells.largest[s], n);
     for (int k = 0; k < 3; k++) length += n[k] * n[k];
-    length = std::sqrt(std::sqrt(length)); /* about an edge */
+    length = std::sqrt(std::sqrt(length)); /* about an edge length */
     for (int k = 0; k < 3; k++)
       in.holelist[at++] = (f.x[face[0]][k] + f.x[face[1]][k] +
                            f.x[face[2]][k]) /
@@ -72,8 +72,8 @@ void put_front(tetgenio &in, const vg_mesher_front &f)
   in.tetunsuitable = is_too_large;
 }
 
-/* Cells that are joined to the inner side of a face of the front, from
- * neighbour to neighbour; others stand in hollows. */
+/* The cells that are connected to the inner side of a face of the front, from
+ * neighbour to neighbour. All other cells are in hollows. */
 class inside
 {
 public:
@@ -93,7 +93,7 @@ private:
   enum { start = 1, reached = 2 };
   const tetgenio &io;
   std::vector<char> is_in;
-  std::vector<std::vector<uint32_t>> face_at; /* by its lowest point */
+  std::vector<std::vector<uint32_t>> face_at; /* faces by their lowest point */
   const vg_mesher_front *front = nullptr;
 
   static uint32_t lowest(const uint32_t v[3])
@@ -103,8 +103,9 @@ private:
     return low < v[2] ? low : v[2];
   }
 
-  /* 0: no face of the front; 1: one that faces the cell; -1: away from it. The
-   * triangle turns counter-clockwise seen from within the cell. */
+  /* Returns 0: not a face of the front; 1: a face that faces the cell; -1: a
+   * face that faces away. The triangle is counter-clockwise seen from within
+   * the cell. */
   int side(const uint32_t v[3]) const
   {
     uint32_t low = lowest(v);
@@ -220,8 +221,8 @@ bool take_cells(const tetgenio &out, const vg_mesher_front &f,
   return true;
 }
 
-/* p: keep the facets, Y: no points on them, q: radius over edge; n: neighbours;
- * M, T: as for boundary recovery. */
+/* Switches. p: keep the facets; Y: no points on them; q: ratio of circumradius
+ * to shortest edge; n: neighbours; M, T: as for boundary recovery. */
 int fill(const vg_mesher_front *front, const vg_mesher_sizes *wanted,
          vg_mesher_cells *cells)
 {

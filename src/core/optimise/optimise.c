@@ -9,15 +9,17 @@
 #include "core/geometry/hilbert.h"
 #include "core/optimise/optimise_parts.h"
 
-/* As vg_shape. Cells below `aim` (dihedral angles below 25 or above 155
- * degrees) are worked on one by one; sweeps swap below `fair` (30, 150);
- * `good` (45, 135) cells are not touched. */
+/* Shapes as defined by vg_shape, with the dihedral angles that they correspond
+ * to, in degrees. Cells below `aim` (angles below 25 or above 155) are
+ * improved one by one. Sweeps swap cells below `fair` (30, 150). Cells above
+ * `good` (45, 135) are not touched. */
 static const double aim = VG_SHAPE_TARGET;
 static const float fair = 0.25, good = VG_SHAPE_GOOD; /* K24 */
-/* Below this (15, 165) points are taken away or put in. */
+/* Below this shape (15, 165), points are removed or inserted. */
 static const double desperate = 0.067; /* K25 */
 
-/* Rounds of mending, ended early when less than a hundredth got better. */
+/* Number of rounds over bad cells. They end early if a round improves at most
+ * one percent of its cells. */
 enum { ROUNDS = 8, CLASSES = 8 }; /* K26 */
 
 static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
@@ -59,8 +61,8 @@ static int is_in_region(const struct vg_optimiser *o, uint32_t c)
                             t->x[v[2]], t->x[v[3]]);
 }
 
-/* A flat cell between the front and the region: if its neighbours become
- * final, nothing but it can fill the slit that they leave. */
+/* A flat cell between the front and the region: if its neighbours became
+ * final, only this cell could fill the slit between them. */
 static int makes_slit(const struct vg_optimiser *o, uint32_t c)
 {
   const struct vg_tets *t = o->t;
@@ -73,8 +75,9 @@ static int makes_slit(const struct vg_optimiser *o, uint32_t c)
   return 0;
 }
 
-/* Is cell c one that should get better? The answer no, which bad cells at the
- * border get again and again, is kept until the cell changes. */
+/* Is cell c one that should be improved? A negative answer, which would be
+ * computed repeatedly for bad cells at the border, is stored until the cell
+ * changes. */
 static int concerns(const struct vg_optimiser *o, uint32_t c)
 {
   if (!o->region) return 1;
@@ -84,7 +87,7 @@ static int concerns(const struct vg_optimiser *o, uint32_t c)
   return 0;
 }
 
-/* least[p]: shape of the worst cell around p that concerns us. */
+/* least[p]: shape of the worst cell around p that should be improved. */
 static void worst_around(const struct vg_optimiser *o, float *least)
 {
   const struct vg_tets *t = o->t;
@@ -96,11 +99,11 @@ static void worst_around(const struct vg_optimiser *o, float *least)
         if (o->q[c] < least[t->cell[c].v[i]]) least[t->cell[c].v[i]] = o->q[c];
 }
 
-/* Swaps first: a sliver that is smoothed spoils its neighbours. Points whose
- * cells are all good are left where they are: in a level field that is nearly
- * all of them. Those of a region stay where they stand, on the lattice that the
- * voids beside it go on with: moved off it they would cost these more than
- * smoothing gains here. */
+/* Swaps come first, since smoothing a sliver spoils its neighbours. Points
+ * whose cells are all good are not moved; in a uniform sizing field these are
+ * nearly all points. The points of a region are not smoothed either: they are
+ * on the lattice that the adjacent voids will continue, and moving them would
+ * degrade these voids more than it improves the region. */
 static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
 {
   struct vg_tets *t = o->t;
@@ -118,15 +121,15 @@ static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
   return VG_OK;
 }
 
-/* A cell on which everything failed is flagged VG_TRIED until it changes. */
+/* A cell for which all steps failed is flagged VG_TRIED until it changes. */
 static int wants_mending(const struct vg_optimiser *o, uint32_t c)
 {
   return is_live(o->t, c) && o->q[c] < aim && !(o->t->flag[c] & VG_TRIED) &&
          concerns(o, c);
 }
 
-/* The cells that want mending: the worst first in a few classes, and within
- * a class as they lie in memory, where neighbours are near each other. */
+/* List the cells to improve: a few classes of shape, the worst class first,
+ * and within a class in memory order, which keeps neighbours together. */
 static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
                           struct vg_key **list, struct vg_error *err)
 {
@@ -147,7 +150,7 @@ static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
   return vg_sort_keys(*n, *list, err);
 }
 
-/* One bad cell: the cheapest step that helps. */
+/* Improve one bad cell by the cheapest step that helps. */
 static int improve_cell(struct vg_optimiser *o, uint32_t c)
 {
   int better = 0;
@@ -178,7 +181,7 @@ static vg_status improve_bad(struct vg_optimiser *o, int *again,
   return st;
 }
 
-/* Bad cells for which nothing was left to be spent. */
+/* Number of bad cells that were skipped because the budget was spent. */
 static size_t count_left(const struct vg_optimiser *o)
 {
   size_t n = 0;

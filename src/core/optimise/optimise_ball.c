@@ -1,5 +1,5 @@
-/* Shapes of the cells around a point and their slopes. Loops without branches
- * over arrays, which compilers turn into vector instructions. */
+/* Shapes of the cells around a point and their gradients, as loops without
+ * branches over arrays, which compilers vectorise. */
 #include "core/optimise/optimise_ball.h"
 
 #include <assert.h>
@@ -7,8 +7,9 @@
 
 #include "core/sizing/sizing.h"
 
-/* Shares of vg_ball_other: of volume^2 / E^3 over a regular cell's, of what
- * sizes are off, squared; and in slopes, beside the logarithm of the shape. */
+/* Weights in vg_ball_other: of volume^2 / E^3 relative to a regular cell, and
+ * of the squared deviation from the target length. Then the weights of both in
+ * the gradient, relative to the logarithm of the shape. */
 static const double round_share = 0.3, size_share = 0.5; /* K28 */
 static const double round_slope = 1.2, size_slope = 0.5;
 
@@ -54,8 +55,9 @@ void vg_ball_target(const struct vg_sizing *sizing, const double x[3],
   b->per = sizing ? 1 / (6 * h * h) : 0;
 }
 
-/* Of cell k with the point at x: edges to the corners of the face, and of the
- * faces between them, each opposite a corner, normals and their squares. */
+/* Cell k with the point at x: edges to the corners of the face and their
+ * squared lengths; for the faces between them, each opposite a corner, normals
+ * and their squares. */
 struct cone {
   double u[3][3], l[3], n[3][3], s[3], det;
 };
@@ -110,7 +112,7 @@ int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
       least = least_of(least, b->edge2[2][k] * c.s[0] * c.s[1]);
       all = c.s[0] * c.s[1] * c.s[2] * s;
       square = c.det * fabs(c.det);
-      /* As vg_shape: not 0 only where rounding has no say in the sign. */
+      /* As in vg_shape: nonzero only if rounding cannot affect the sign. */
       q[k] = ((all > 0) &
               (fabs(square) > 1e-24 * c.l[0] * b->edge2[0][k] * b->edge2[1][k]))
              ? square * least / all
@@ -148,7 +150,8 @@ double vg_ball_other(const struct vg_ball_faces *b, const double x[3])
 void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
                    const double x[3], double to[3])
 {
-  static const double height = 0.81649658092772603; /* regular: of an edge */
+  static const double height =
+    0.81649658092772603; /* height of a regular tetrahedron with edge 1 */
   double sum[3] = { 0 }, total = 0;
 
   assert(b->n > 0);
@@ -164,10 +167,11 @@ void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
   for (int a = 0; a < 3; a++) to[a] = total > 0 ? sum[a] / total : x[a];
 }
 
-/* The shape is det^2 l / (s s') of the edge, of length sqrt(l) between faces
- * of areas sqrt(s), at which that is least. An edge up to corner i is of the
- * two faces opposite the other corners, the one of the border opposite corner i
- * of face i alone. */
+/* Gradient for cell k. The shape is det^2 l / (s s') at the edge where this is
+ * smallest; sqrt(l) is the length of the edge, and sqrt(s) and sqrt(s') are
+ * twice the areas of its faces. The edge from the point to corner i lies
+ * between the faces opposite the other two corners. The base edge opposite
+ * corner i lies between the base and face i, of which only face i changes. */
 static inline void slope_of(const struct vg_ball_faces *b, size_t k,
                             const double x[3], double g[3])
 {

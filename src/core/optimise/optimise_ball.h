@@ -1,6 +1,6 @@
-/* core/optimise/optimise_ball.h: the cells around a point, laid out for loops
- * over them: each is the face opposite the point, and what does not change as
- * the point moves. */
+/* core/optimise/optimise_ball.h: the cells around a point, stored as arrays
+ * for fast loops. Each cell is represented by the face opposite the point,
+ * with all quantities that do not change when the point moves. */
 #ifndef VG_CORE_OPTIMISE_OPTIMISE_BALL_H
 #define VG_CORE_OPTIMISE_OPTIMISE_BALL_H
 
@@ -9,43 +9,45 @@
 struct vg_ball_faces {
   size_t n;
   double x[3][3][VG_BALL_MAX];   /* [corner][axis][n] */
-  double normal[3][VG_BALL_MAX]; /* twice the area, towards the point */
-  double area2[VG_BALL_MAX];     /* its square */
-  double edge2[3][VG_BALL_MAX];  /* squares of the edges, each opposite the
-                                    corner of that number */
-  double border2[VG_BALL_MAX];   /* their sum */
-  double per;                    /* 1 / (6 squares of the length that edges
-                                    should have); 0: any */
+  double normal[3][VG_BALL_MAX]; /* towards the point; length is twice the
+                                    area */
+  double area2[VG_BALL_MAX];     /* squared length of the normal */
+  double edge2[3][VG_BALL_MAX];  /* squared edge lengths; each edge is
+                                    opposite the corner of that index */
+  double border2[VG_BALL_MAX];   /* sum of the squared edge lengths */
+  double per;                    /* 1 / (6 h^2) for target edge length h; 0:
+                                    no target */
 };
 
-/** All but `per`. link: [n <= VG_BALL_MAX] 4 * cell + index of the point. */
+/** Fill all members except `per`. link: [n <= VG_BALL_MAX] 4 * cell + index of
+ * the point. */
 void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
                    struct vg_ball_faces *out);
-/** The length that edges should have: what `sizing` says at x, where the point
- * is; NULL: any. */
+/** Set the target edge length to the value of `sizing` at x, the position of
+ * the point; NULL: no target. */
 void vg_ball_target(const struct vg_sizing *sizing, const double x[3],
                     struct vg_ball_faces *b);
 
-/** The shapes (vg_shape) of the cells if the point stood at x. q out: [n]
- * Returns 0, and leaves q unfinished, as soon as one is not above `stop`. */
+/** Shapes (vg_shape) of the cells with the point at x. q out: [n]. Returns 0,
+ * and leaves q unfinished, as soon as one shape is not above `stop`. */
 int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
                    double stop, double *q);
 
-/** What is to be said for the cells with the point at x besides their shapes,
- * by the squares of their volumes and the sums E of their squared edges: a
- * share of the sum of volume^2 / E^3, which large angles spoil as small ones
- * do, less one of the sum of (E / what the target makes it - 1)^2. */
+/** Terms of the rating of position x in addition to the shapes. E is the sum of
+ * the squared edges of a cell. The first term is a weighted sum of volume^2 /
+ * E^3, which large angles reduce as small angles do. A weighted sum of (E /
+ * E_target - 1)^2 is subtracted from it. */
 double vg_ball_other(const struct vg_ball_faces *b, const double x[3]);
 
-/** The mean of where the point would be of the best use to each cell: above
- * its face's middle, as high as in a regular tetrahedron. Weights are 1 - q.
- * q: [n] shapes of the cells as they are; x: where the point is */
+/** Weighted mean of the ideal positions of the point for each cell: above the
+ * centroid of its face, at the height of a regular tetrahedron. Weights are 1
+ * - q. q: [n] present shapes of the cells; x: present position of the point. */
 void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
                    const double x[3], double to[3]);
 
-/** Gradient, by the point at x, of half the sum of the logarithms of the shapes
- * of cells first ... end - 1, all of which are positive, and of as much of what
- * vg_ball_other sums up, of its first part likewise the logarithms. */
+/** Gradient with respect to x of half the sum of the logarithms of the shapes
+ * of cells first ... end - 1, which must be positive, plus the same terms as
+ * in vg_ball_other, with logarithms in the first one. */
 void vg_ball_slope(const struct vg_ball_faces *b, size_t first, size_t end,
                    const double x[3], double g[3]);
 

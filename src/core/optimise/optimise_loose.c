@@ -1,5 +1,6 @@
-/* Points smoothed among cells that are only listed, without the links between
- * them. They are few, so each gets more than in a sweep of the optimisation. */
+/* Smoothing of points among cells that are only listed, without links between
+ * them. There are few such points, so each of them gets more steps than in a
+ * sweep of the optimisation. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,9 +10,9 @@
 #include "base/memory.h"
 #include "core/optimise/optimise_ball.h"
 
-/* Balls of the points, one after the other. */
+/* Balls (cells around a point) of all points, one after the other. */
 struct balls {
-  uint32_t *slot; /* [t.n_point] place in the list, or VG_NONE */
+  uint32_t *slot; /* [t.n_point] index in the list, or VG_NONE */
   size_t *first;  /* [n + 2] */
   uint32_t *link; /* 4 * cell + index of the point */
 };
@@ -23,7 +24,7 @@ static void balls_release(struct balls *b)
   free(b->link);
 }
 
-/* Place in the list of the points that have a cell below. */
+/* Index in the list of the points that have a cell below the limit. */
 static vg_status find_slots(const struct vg_tets *t, size_t n,
                             const uint32_t *point, float below, const float *q,
                             uint32_t *slot)
@@ -68,11 +69,11 @@ static vg_status balls_new(const struct vg_tets *t, size_t n,
 
 /* --- one point ------------------------------------------------------------ */
 
-/* Where a point stands, the shapes around it there, and their sum with what
- * else is to be said for the place. */
+/* A position of a point, the shapes of the cells around it there, and the
+ * rating: their sum plus the terms of vg_ball_other. */
 struct stand {
   double x[3], q[VG_BALL_MAX], worst, sum;
-  size_t at; /* the worst cell */
+  size_t at; /* index of the worst cell */
 };
 
 struct mover {
@@ -94,8 +95,8 @@ static void weigh(struct stand *s, size_t n)
   }
 }
 
-/* Points with a cell that is flat in plain arithmetic are left alone: what is
- * positive cannot be told there. */
+/* Points with a cell that is flat in plain arithmetic are left alone, because
+ * the sign of its volume is unreliable. */
 static int take_ball(struct mover *m, const struct vg_tets *t, size_t n,
                      const uint32_t *link, uint32_t p, float below,
                      const struct vg_sizing *sizing, const float *q)
@@ -111,8 +112,8 @@ static int take_ball(struct mover *m, const struct vg_tets *t, size_t n,
   return 1;
 }
 
-/* To x + length g, where that is better: the worst shape is, or it is no worse
- * than what is aimed at and the sum is better. */
+/* Move to x + length g if that is better: the worst shape improves, or it is
+ * at least the target shape and the rating improves. */
 static int move(struct mover *m, const double g[3], double length)
 {
   const double aim = VG_SHAPE_TARGET;
@@ -132,11 +133,12 @@ static int move(struct mover *m, const double g[3], double length)
   return 1;
 }
 
-/* K40: steps up the slope of all cells, in lengths of an edge. */
+/* K40: steps along the gradient of all cells, relative to an edge length. */
 #define ALL_FIRST 0.05
 #define ALL_LEAST 0.015
 
-/* Up the slope of cells first ... end - 1, by a share of an edge. */
+/* Step along the gradient of cells first ... end - 1, by a fraction of an
+ * edge. */
 static int climb(struct mover *m, size_t first, size_t end, double share,
                  double least)
 {
@@ -156,9 +158,10 @@ static int climb(struct mover *m, size_t first, size_t end, double share,
   return 0;
 }
 
-/* Towards where the point is of the best use to its cells, then up the slope
- * of the worst of them where that is bad, and up that of all: their logarithms,
- * which the bad ones count for most in, and sizes. */
+/* Move towards the ideal position for all cells, then along the gradient of
+ * the worst cell if that is bad, and along the gradient of all cells. The
+ * latter uses logarithms, in which bad cells have the largest weight, and
+ * target lengths. */
 static int improve(struct mover *m)
 {
   double to[3], g[3];

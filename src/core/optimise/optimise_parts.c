@@ -40,7 +40,7 @@ int vg_ball(struct vg_optimiser *o, uint32_t p)
   return whole;
 }
 
-/* --- replacing cells ----------------------------------------------------- */
+/* --- replacing cells ------------------------------------------------------ */
 
 static int grow_shapes(struct vg_optimiser *o)
 {

@@ -1,6 +1,6 @@
-/* For bad cells that neither swaps nor smoothing improve: a point is taken
- * away, or one is put in (Klingner, Shewchuk, "Aggressive tetrahedral mesh
- * improvement", 2007). Both are made only when the worst cell gets better. */
+/* Removal and insertion of points for bad cells that neither swaps nor
+ * smoothing improve (Klingner, Shewchuk, "Aggressive tetrahedral mesh
+ * improvement", 2007). Both are only accepted if the worst cell improves. */
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -9,8 +9,9 @@
 #include "core/geometry/vector.h"
 #include "core/optimise/optimise_parts.h"
 
-/* K41: least gain of the worst shape that a change of the points is worth, and
- * least share of the way to a place above a face that is tried. */
+/* K41: factor by which a removal or insertion must improve the worst shape,
+ * and smallest fraction of the height that is tried for a point above a face.
+ */
 static const double gain = 1.01, least_share = 0.2;
 
 static double worth(double old)
@@ -18,7 +19,7 @@ static double worth(double old)
   return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * gain;
 }
 
-/* --- taking a point away ------------------------------------------------- */
+/* --- edge collapse -------------------------------------------------------- */
 
 struct merger {
   int n_new;
@@ -26,8 +27,8 @@ struct merger {
   float q[VG_OLD_MAX];
 };
 
-/* Cell k of the ball of p with p moved onto its neighbour `to`, and its shape;
- * 0 when it goes, having that corner already. */
+/* Cell k of the ball of p with p moved onto its neighbour `to`, and its shape.
+ * Returns 0 if the cell disappears because `to` is one of its corners. */
 static int move_cell(const struct vg_optimiser *o, size_t k, uint32_t to,
                      uint32_t w[4], double *q)
 {
@@ -41,7 +42,8 @@ static int move_cell(const struct vg_optimiser *o, size_t k, uint32_t to,
   return 1;
 }
 
-/* The ball of p with p moved onto its neighbour `to`; 0 when not better. */
+/* The ball of p with p moved onto its neighbour `to`. Returns 0 if the cells
+ * are not better than `need`. */
 static int plan_merge(const struct vg_optimiser *o, uint32_t to, double need,
                       struct merger *m, double *worst)
 {
@@ -58,10 +60,10 @@ static int plan_merge(const struct vg_optimiser *o, uint32_t to, double need,
   return m->n_new > 0;
 }
 
-/* The same where cells of the ball are flat, `most` of them: fewer are left,
- * if they are positive at all. That undoes several flat cells side by side,
- * as there are between points in a line, one by one. Their number, or `most`
- * when it is not to be. */
+/* As plan_merge, for a ball with `most` flat cells: fewer flat cells remain,
+ * and all cells are positive. This removes groups of adjacent flat cells, as
+ * they occur between collinear points, one by one. Returns the number of flat
+ * cells, or `most` if the collapse is rejected. */
 static int plan_flat_merge(const struct vg_optimiser *o, uint32_t to, int most,
                            struct merger *m)
 {
@@ -152,24 +154,25 @@ int vg_collapse(struct vg_optimiser *o, uint32_t c)
   return 0;
 }
 
-/* --- putting a point in -------------------------------------------------- */
+/* --- insertion of a point ------------------------------------------------- */
 
-/* Over stretched boundary triangles a point needs a large cavity. */
+/* Over stretched boundary triangles, a point needs a large cavity. */
 enum { CAVITY_MAX = 44 }; /* K27 */
 
-/* Cells that are looked at to put points in, for each cell there is and beyond
- * these. Aircraft with needles take 20 (F-16) to 16 (low-boom), others hardly
- * any, an aerofoil of needles alone 340. */
+/* Limit of the number of cells that are examined to insert points: per
+ * existing cell, and in addition. Aircraft with sliver triangles take 20
+ * (F-16) to 16 (low-boom) per cell, others hardly any, an aerofoil meshed with
+ * slivers only 340. */
 enum { SPEND_PER_CELL = 24, SPEND_FREELY = 100000 }; /* K30 */
 
-/* As vg_shape: angles below 10 or above 170 degrees. */
+/* Shape (vg_shape) of cells with angles of 10 or 170 degrees. */
 static const float worst_of_all = 0.03F;
 
 struct cavity {
   int n_old, n_new;
   uint32_t old[VG_OLD_MAX];
   uint32_t v[VG_NEW_MAX][4];
-  uint32_t from[VG_NEW_MAX]; /* faces, as links */
+  uint32_t from[VG_NEW_MAX]; /* faces of the cavity, as links */
   float q[VG_NEW_MAX];
 };
 
@@ -185,8 +188,8 @@ static int in_cavity(const struct cavity *h, uint32_t c)
   return 0;
 }
 
-/* Cell `c` joined the cavity: drop the face it shares with a cell that was in
- * before. 0: the two are separated by a fixed face. */
+/* Remove the face between cell `c`, which has joined the cavity, and a cell
+ * that joined before. Returns 0 if a fixed face separates the two. */
 static int drop_shared(const struct vg_tets *t, uint32_t c, struct cavity *h)
 {
   for (int m = 0; m < h->n_new;) {
@@ -205,8 +208,9 @@ static int drop_shared(const struct vg_tets *t, uint32_t c, struct cavity *h)
   return 1;
 }
 
-/* Faces of the cavity joined with x. A face that makes a cell no better than
- * `need` is opened: the cell behind it joins the cavity. 0: cannot be done. */
+/* Connect the faces of the cavity to x. A face that makes a cell no better
+ * than `need` is opened: the cell behind it joins the cavity. Returns 0 if
+ * this fails. */
 static int open_cavity(struct vg_optimiser *o, const double x[3], double need,
                        struct cavity *h)
 {
@@ -244,7 +248,7 @@ static int open_cavity(struct vg_optimiser *o, const double x[3], double need,
   return 1;
 }
 
-/* Would a point of the old cells be in none of the new ones? */
+/* Would a point of the old cells not be a corner of any new cell? */
 static int swallows(const struct vg_tets *t, const struct cavity *h)
 {
   for (int k = 0; k < h->n_old; k++)
@@ -306,8 +310,9 @@ static void centre(const struct vg_tets *t, uint32_t c, const double share[4],
   }
 }
 
-/* A place above the middle of face i of cell c, as high over it as `share` of
- * the root of twice its area: 1.3 would be a regular tetrahedron. */
+/* A position above the centroid of face i of cell c. Its height is `share`
+ * times the square root of twice the area of the face; 0.88 gives a regular
+ * tetrahedron. */
 static void above(const struct vg_tets *t, uint32_t c, int i, double share,
                   double x[3])
 {
@@ -324,8 +329,8 @@ static void above(const struct vg_tets *t, uint32_t c, int i, double share,
     x[k] = (a[k] + b[k] + d[k]) / 3 + (size > 0 ? share * n[k] / size : 0);
 }
 
-/* Where the cell lies on a fixed face: a point above that face, with room
- * below it, in a cavity that is opened as far as that takes. */
+/* Split a cell on a fixed face: insert a point above that face, far enough
+ * from it, in a cavity that is opened as needed. */
 static int split_above(struct vg_optimiser *o, uint32_t c, double aim)
 {
   double x[3];
@@ -340,8 +345,9 @@ static int split_above(struct vg_optimiser *o, uint32_t c, double aim)
   return 0;
 }
 
-/* Further places: the centre of its neighbours (for a flat cell that lies on
- * the boundary), of the cell, and for the worst of its edges. */
+/* Further positions are tried: the centroids of the cell's neighbours (for a
+ * flat cell on the boundary) and of the cell, and for the worst cells the
+ * midpoints of its edges. */
 int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
 {
   assert(c < o->t->n_cell && !(o->t->flag[c] & VG_DEAD));

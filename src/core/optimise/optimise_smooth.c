@@ -1,7 +1,7 @@
-/* Smoothing: a point moves within its ball when that makes the worst cell
- * around it better; where all are good already, when it makes their mean
- * better. Targets: the volume-weighted mean of the cells' centroids, which
- * evens out sizes and shapes together (Chen, "Mesh smoothing schemes based on
+/* Smoothing: a point moves within its ball if the worst cell around it
+ * improves, or, if all of them are good already, if their mean improves.
+ * Targets are the volume-weighted mean of the cells' centroids, which evens
+ * out sizes and shapes together (Chen, "Mesh smoothing schemes based on
  * optimal Delaunay triangulations", 2004), then steps along the gradient of
  * the worst cell. */
 #include <assert.h>
@@ -15,7 +15,8 @@ struct ball_state {
   double worst, sum;
 };
 
-/* The shapes around p if it stood at x; stops below `stop`. */
+/* Shapes of the cells around p with p at x. Returns 0 as soon as one is not
+ * above `stop`. */
 static int try_at(const struct vg_optimiser *o, const double x[3], double stop,
                   float *q, struct ball_state *s)
 {
@@ -36,7 +37,8 @@ static int try_at(const struct vg_optimiser *o, const double x[3], double stop,
   return 1;
 }
 
-/* The worst cell becomes the first of the ball: it decides soonest. */
+/* Move the worst cell to the front of the ball, where it rejects positions
+ * soonest. */
 static void present(struct vg_optimiser *o, struct ball_state *s)
 {
   size_t worst = 0;
@@ -90,7 +92,7 @@ static void keep(struct vg_optimiser *o, uint32_t p, const double x[3],
   o->report->n_smoothed++;
 }
 
-/* Direction in which the worst cell's shape grows, by central differences. */
+/* Gradient of the worst cell's shape, by central differences. */
 static double gradient(const struct vg_optimiser *o, uint32_t p, size_t worst,
                        double step, double g[3])
 {
@@ -112,12 +114,13 @@ static double gradient(const struct vg_optimiser *o, uint32_t p, size_t worst,
   return sqrt(length);
 }
 
-/* K40: least step next to a flat cell, and half the width of differences, in
- * lengths of an edge. */
+/* K40: smallest step next to a flat cell, and half the width of the
+ * differences, relative to an edge length. */
 #define STEP_FLAT 1e-5
 #define DIFFERENCE 1e-3
 
-/* Next to a flat cell far smaller steps help too: any sign is a gain. */
+/* Next to a flat cell much smaller steps help, too, since any positive sign is
+ * a gain. */
 static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
 {
   const double least = now->worst < VG_SHAPE_FLAT ? STEP_FLAT : VG_CLIMB_LEAST;

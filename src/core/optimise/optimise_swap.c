@@ -1,8 +1,9 @@
-/* Swaps: a face replaced by an edge (2-3), an edge by the best triangulation
- * of the ring around it (3-2, 4-4, ... by dynamic programming: Shewchuk, "Two
- * discrete optimization algorithms for the topological improvement of
- * tetrahedral meshes", 2002). A swap is made when the worst cell of the new
- * configuration is better than the worst of the old. */
+/* Swaps: a face is replaced by an edge (2-3), or an edge by the best
+ * triangulation of the polygon around it (3-2, 4-4, ... by dynamic
+ * programming: Shewchuk, "Two discrete optimization algorithms for the
+ * topological improvement of tetrahedral meshes", 2002). A swap is made if the
+ * worst cell of the new configuration is better than the worst cell of the old
+ * one. */
 #include <assert.h>
 
 #include "core/optimise/optimise_parts.h"
@@ -13,7 +14,8 @@ static double shape_of(const struct vg_tets *t, uint32_t a, uint32_t b,
   return vg_shape(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
 
-/* Gain that is worth the work; also keeps rounding from swapping for ever. */
+/* Smallest gain that justifies a swap; also prevents rounding from causing
+ * endless swaps. */
 static const double gain = 1.0001; /* K41 */
 
 static double worth(double old)
@@ -21,7 +23,7 @@ static double worth(double old)
   return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * gain;
 }
 
-/* --- face removal: 2 cells to 3 ------------------------------------------ */
+/* --- face removal: 2 cells to 3 ------------------------------------------- */
 
 static int swap_face(struct vg_optimiser *o, uint32_t c, int i)
 {
@@ -52,20 +54,20 @@ static int swap_face(struct vg_optimiser *o, uint32_t c, int i)
   return 1;
 }
 
-/* --- edge removal -------------------------------------------------------- */
+/* --- edge removal --------------------------------------------------------- */
 
 struct ring_plan {
   const struct vg_tets *t;
   uint32_t a, b, ring[VG_SHELL_MAX];
   double need;
-  double best[VG_SHELL_MAX][VG_SHELL_MAX]; /* of the polygon i..j */
+  double best[VG_SHELL_MAX][VG_SHELL_MAX]; /* for the polygon i..j */
   int split[VG_SHELL_MAX][VG_SHELL_MAX];
   int n_new;
   uint32_t v[2 * VG_SHELL_MAX][4];
   float q[2 * VG_SHELL_MAX];
 };
 
-/* Worse of the two cells that triangle i k j of the ring makes. */
+/* Shape of the worse of the two cells on triangle i k j of the ring. */
 static double triangle_shape(const struct ring_plan *r, int i, int k, int j)
 {
   const uint32_t *v = r->ring;

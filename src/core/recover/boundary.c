@@ -13,15 +13,15 @@
 #include "core/recover/cdt_tetgen.h"
 #include "core/recover/recover.h"
 
-/* --- surface triangles found among cell faces ---------------------------- */
+/* --- surface triangles among the cell faces ------------------------------- */
 
 struct tri_table {
   struct vg_table table;
   const uint32_t (*tri)[3];
 };
 
-/* The hash is the same for all orders of the corners, so a search need not sort
- * them. */
+/* The hash does not depend on the order of the corners, so that a search need
+ * not sort them. */
 static uint64_t hash3(const uint32_t v[3])
 {
   uint64_t a = v[0], b = v[1], c = v[2];
@@ -29,7 +29,7 @@ static uint64_t hash3(const uint32_t v[3])
   return vg_hash_1((a + b + c) * VG_GOLDEN ^ (a * b + b * c + c * a));
 }
 
-/* 1: same turning sense, -1: opposite, 0: other points. */
+/* 1: same orientation, -1: opposite orientation, 0: different points. */
 static int same_triangle(const uint32_t a[3], const uint32_t b[3])
 {
   for (int k = 0; k < 3; k++) {
@@ -83,7 +83,7 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
       uint32_t link = t->cell[c].link[i], v[3], at;
       int sense;
 
-      if (link < 4 * c + i) continue; /* seen from there */
+      if (link < 4 * c + i) continue; /* handled from the other cell */
       for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
       at = tri_table_find(&table, v, &sense);
       if (at == VG_NONE) continue;
@@ -100,27 +100,30 @@ vg_status vg_boundary_fix(struct vg_tets *t, size_t n_tri,
   return st;
 }
 
-/* --- which side is fluid ------------------------------------------------- */
+/* --- fluid and solid side ------------------------------------------------- */
 
 enum { SIDE_UNKNOWN, SIDE_FLUID, SIDE_SOLID };
 
 struct sides {
   struct vg_tets *t;
-  const struct vg_region_cache *cache; /* NULL: everywhere */
-  double band;                         /* sides are told so near the region */
+  const struct vg_region_cache *cache; /* NULL: no restriction */
+  double band;                         /* sides are determined within this
+                                          band of the region */
   int is_strict;                       /* 1: a contradiction is an error */
-  uint32_t corner;                     /* first of the box */
-  int is_local;    /* 1: not over cells with a corner of the box */
+  uint32_t corner;                     /* first corner of the box */
+  int is_local;    /* 1: do not spread over cells with a corner of the box */
   uint8_t *side;   /* [n_cell] */
-  uint8_t *front;  /* [n_cell] bit i: face i is a triangle that faces
-                      the cell; bit 4 + i: that faces away */
-  uint8_t *near;   /* [n_cell] bit i: face i was found to lie in the
-                      band; bit 4 + i: not to */
-  uint32_t *queue; /* [n_cell] cells with a side, as they got it */
+  uint8_t *front;  /* [n_cell] bit i: face i is a surface triangle that faces
+                      the cell; bit 4 + i: a triangle that faces away */
+  uint8_t *near;   /* [n_cell] cached result of matters(). Bit i: face i is
+                      in the band; bit 4 + i: it is not */
+  uint32_t *queue; /* [n_cell] cells with a known side, in the order in which
+                      it became known */
   size_t n_queue, next;
 };
 
-/* Is face i of cell c where sides are to be told? Kept for both its cells. */
+/* Is face i of cell c within the band where sides are determined? The result
+ * is cached for both cells of the face. */
 static int matters(const struct sides *s, uint32_t c, int i)
 {
   const uint32_t *v = s->t->cell[c].v;
@@ -135,7 +138,8 @@ static int matters(const struct sides *s, uint32_t c, int i)
   return known & 1;
 }
 
-/* Another band: what was found is to be found again, but for some bits. */
+/* Set another band. Cached results are discarded, except for the bits in keep.
+ */
 static void set_band(struct sides *s, double band, uint8_t keep)
 {
   s->band = band;
@@ -189,7 +193,7 @@ static vg_status seed_sides(struct sides *s, struct vg_error *err)
   return VG_OK;
 }
 
-/* Has cell c a corner of the box around all? */
+/* Does cell c have a corner of the box around all points? */
 static int is_around(const struct sides *s, uint32_t c)
 {
   const uint32_t *v = s->t->cell[c].v;
@@ -236,7 +240,7 @@ static vg_status spread_sides(struct sides *s, struct vg_error *err)
   return st;
 }
 
-/* Bands of growing width that sides spread over in turn (K29). */
+/* Sides spread in this number of bands of growing width (K29). */
 enum { BANDS = 4 };
 
 static vg_status spread_in_bands(struct sides *s, struct vg_error *err)
@@ -245,7 +249,7 @@ static vg_status spread_in_bands(struct sides *s, struct vg_error *err)
   vg_status st = VG_OK;
 
   for (int k = 1; k <= BANDS; k++) {
-    /* the first may be narrower than the last one was */
+    /* The first band may be narrower than the previous last one. */
     set_band(s,
              k < BANDS ? (reach + VG_BAND_FLUID) * k / BANDS - reach
                        : VG_BAND_FLUID,
@@ -258,12 +262,14 @@ done:
   return st;
 }
 
-/* On the region itself every front face is known, so what is reached along it
- * is sure. From there sides spread over bands that grow. Where they contradict
- * each other, for want of faces, what is nearest to the region wins: far from
- * it, where a front goes on that is not known, sides may leak past its rim.
- * Cells at a corner of the box reach around the whole front, past all rims:
- * they come in a second round, when what lies between is told. */
+/* Determine the sides. On the region itself every front face is known, so
+ * sides that spread along the region are certain. From there they spread over
+ * bands of growing width. Where sides contradict each other because faces are
+ * missing, the side nearest to the region wins: far from the region, the front
+ * continues beyond the known faces, and sides may leak around the rim of the
+ * known part. Cells with a corner of the box extend around the whole front,
+ * past all rims. They are only included in a second round, when the sides
+ * between are determined. */
 static vg_status tell_sides(struct sides *s, struct vg_error *err)
 {
   double reach = s->cache ? s->cache->region->reach : 0;
@@ -290,11 +296,12 @@ static int meets_region(const struct sides *s, uint32_t c)
   return 0;
 }
 
-/* With a region, cells that were not reached lie away from it: they count as
- * fluid, so that they do not hinder insertion, but faces between these and
- * what is known to be solid are fixed, since no surface was. Cells that were
- * not reached although they meet the region have no front nearby that could
- * tell: nothing is to grow there. */
+/* Handle the cells that were not reached in a region. Those away from the
+ * region count as fluid, so that they do not hinder insertion, but faces
+ * between them and known solid cells are fixed, since there is no surface
+ * between the two. Cells that meet the region but were not reached have no
+ * front nearby that could determine their side. They count as solid, so that
+ * no cells are made there. */
 static void wall_off(struct sides *s)
 {
   struct vg_tets *t = s->t;
@@ -357,9 +364,10 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   return st;
 }
 
-/* --- Delaunay tetrahedra of the points ----------------------------------- */
+/* --- Delaunay tetrahedra of the points ------------------------------------ */
 
-/* The five tetrahedra of a box with corner bits x, y, z = 1, 2, 4. */
+/* The five tetrahedra of a box whose corners have the bits x, y, z = 1, 2, 4.
+ */
 static const uint32_t box_cell[5][4] = {
   { 0, 1, 2, 4 }, { 3, 2, 1, 7 }, { 5, 4, 7, 1 }, { 6, 7, 4, 2 }, { 1, 2, 4, 7 }
 };
@@ -408,7 +416,7 @@ static vg_status delaunay(struct vg_tets *t, size_t n, const double (*x)[3],
     at = s.last;
     if (st == VG_BLOCKED)
       st = vg_fail(err, VG_ERR_GEOMETRY,
-                   "point %u (%.17g %.17g %.17g) coincides with another; "
+                   "point %u (%.17g %.17g %.17g) coincides with another point; "
                    "weld the surface",
                    order[i] + 1, x[order[i]][0], x[order[i]][1],
                    x[order[i]][2]);
@@ -418,7 +426,7 @@ static vg_status delaunay(struct vg_tets *t, size_t n, const double (*x)[3],
   return st;
 }
 
-/* --- the whole void at once ---------------------------------------------- */
+/* --- the whole void at once ----------------------------------------------- */
 
 static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
                             const uint32_t (*tri)[3], struct vg_tets *out,
@@ -450,7 +458,8 @@ done:
   return st;
 }
 
-/* How many triangles are no fixed faces? SIZE_MAX when memory is refused. */
+/* Number of triangles that are not fixed faces; SIZE_MAX if memory is refused.
+ */
 static size_t not_fixed(struct vg_tets *t, size_t n_tri,
                         const uint32_t (*tri)[3])
 {

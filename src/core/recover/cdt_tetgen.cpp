@@ -15,19 +15,20 @@
 namespace
 {
 
-/* On some input TetGen turns in circles. A job is given up after so many calls
- * of its predicates, and so many more for each triangle: dozens of times what
- * pockets need. A count, unlike a clock, is the same on any machine. */
+/* On some input, TetGen loops forever. A job is aborted after this many calls
+ * of TetGen's predicates, plus this many per triangle: dozens of times what
+ * pockets need. Unlike a time limit, a count of calls gives the same result on
+ * any machine. */
 const uint64_t patience = 20000000, patience_each = 50000; /* K4 */
 
-/* It may also turn without asking a predicate, for ever: a job is given up too
- * when so many seconds on the processor, and more for each triangle, pass
- * without a call, of which there are millions a second otherwise. The clock
- * decides only when to give up what has no end. */
+/* TetGen may also loop forever without calling a predicate. A job is therefore
+ * aborted, too, if it uses this many seconds of processor time, plus this many
+ * per triangle, without a call. Otherwise there are millions of calls per
+ * second, so the clock only stops jobs that would never end. */
 const double silence = 2, silence_each = 1e-4;
 
-/* Calls left to the job at hand, and when it was looked at last; in the
- * child. */
+/* Calls left to the current job, and their number at the last check. Only used
+ * in the child. */
 volatile uint64_t calls_left = UINT64_MAX, calls_seen;
 
 void count_call()
@@ -41,7 +42,7 @@ void look(int)
   calls_seen = calls_left;
 }
 
-/* TetGen's own function, of which ours below takes the place. */
+/* TetGen's own function, which ours below replaces. */
 template <typename function> function original(const char *name)
 {
   void *at = dlsym(RTLD_NEXT, name);
@@ -50,19 +51,19 @@ template <typename function> function original(const char *name)
   return reinterpret_cast<function>(at);
 }
 
-/* On the socket, in the byte order of the machine: */
-struct question {         /* before x and tri */
-  uint64_t n, n_tri, way; /* way: first of those below to be tried */
+/* Messages on the socket, in the byte order of the machine: */
+struct question {         /* followed by x and tri */
+  uint64_t n, n_tri, way; /* way: first of the ways below to try */
 };
-struct answer { /* before the added points and the tetrahedra */
+struct answer { /* followed by the added points and the tetrahedra */
   uint64_t n_added, n_tet;
 };
 
-const uint64_t n_max = 1u << 31; /* TetGen counts in int */
+const uint64_t n_max = 1u << 31; /* TetGen's indices are int */
 
-const uint64_t ways = 2; /* for TetGen to do a job */
+const uint64_t ways = 2; /* number of sets of switches to try */
 
-/* --- in the child -------------------------------------------------------- */
+/* --- in the child --------------------------------------------------------- */
 
 bool take_input(tetgenio &in, const question &q, int from)
 {
@@ -89,13 +90,14 @@ bool give_output(const tetgenio &out, const question &q, int to)
          vg_child_put(to, out.tetrahedronlist, 4 * a.n_tet * sizeof(int));
 }
 
-/* p: keep facets; Y: without points on them, in either of two ways; c: all of
- * the hull; M: coplanar neighbours stay separate facets; T: relative tolerance
- * of coplanarity, small because our predicates are exact.
+/* Switches. p: keep facets; Y: add no points on them, in one of two ways; c:
+ * keep all cells of the convex hull; M: do not merge coplanar facets; T:
+ * relative tolerance of coplanarity, which is small because our predicates are
+ * exact.
  *
- * Points that TetGen puts on edges of facets it moves off them afterwards;
- * where one stays there, and where it ends its process, the other way most
- * often succeeds. */
+ * TetGen puts points on edges of facets and moves them off afterwards. If one
+ * stays there, or if TetGen ends its process, the other way succeeds in most
+ * cases. */
 bool run(const question &q, int fd)
 {
   char switches[ways][16] = { "pYcMQT1e-13", "pY/2cMQT1e-13" };
@@ -126,7 +128,7 @@ void be_patient(size_t n_tri)
   setitimer(ITIMER_PROF, &time, nullptr);
 }
 
-/* --- in the parent ------------------------------------------------------- */
+/* --- in the parent -------------------------------------------------------- */
 
 bool ask(const vg_cdt_job &job, uint64_t way, int to)
 {
@@ -137,7 +139,7 @@ bool ask(const vg_cdt_job &job, uint64_t way, int to)
          vg_child_put(to, job.tri, job.n_tri * sizeof *job.tri);
 }
 
-/* One answer; false when the child is gone. */
+/* Receive one answer. Returns false if the child has ended. */
 bool receive(vg_cdt_job &job, int from)
 {
   answer a;
@@ -165,7 +167,7 @@ bool receive(vg_cdt_job &job, int from)
   return false;
 }
 
-/* What a child does: jobs in and answers out. */
+/* Main loop of a child: reads jobs and writes answers. */
 void serve(int fd)
 {
   question q;
@@ -181,8 +183,9 @@ void serve(int fd)
   _exit(0);
 }
 
-/* A child works through the jobs until one ends it. Returns how many need not
- * be tried again in this way, or a negative status. */
+/* Start a child that works through the jobs until one of them ends it. Returns
+ * the number of jobs that need not be tried again in this way, or a negative
+ * status. */
 long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
 {
   struct vg_child c;
@@ -191,7 +194,7 @@ long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
   if (vg_child_open(serve, &c) < 0) return VG_ERR_MEMORY;
   while (done < n && ask(job[done], way, c.fd) && receive(job[done], c.fd))
     done++;
-  /* blame the job, unless the child was taken along by the server's end */
+  /* The job is at fault, unless the child ended with its server. */
   if (done < n && (c.pid || vg_child_server_is_alive())) done++;
   vg_child_close(&c);
   return done;
@@ -199,7 +202,7 @@ long run_child(size_t n_job, vg_cdt_job *job, uint64_t way)
 
 } // namespace
 
-/* The dynamic linker takes these for TetGen's. */
+/* The dynamic linker uses these functions in place of TetGen's. */
 REAL orient3d(REAL *a, REAL *b, REAL *c, REAL *d)
 {
   static const auto real = original<REAL (*)(REAL *, REAL *, REAL *, REAL *)>(
@@ -231,7 +234,7 @@ extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
     if (job[k].n > 100000000 || job[k].n_tri > 200000000)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
                      "boundary recovery of %zu points "
-                     "exceeds TetGen's indices",
+                     "exceeds the range of TetGen's indices",
                      job[k].n);
   }
   while (next < n_job) {
@@ -252,5 +255,6 @@ extern "C" vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
 extern "C" void vg_library_tetgen(struct vg_library *out)
 {
   out->name = "TetGen";
-  std::strcpy(out->version, "1.5"); /* tetgen.h has no constant for it */
+  std::strcpy(out->version, "1.5"); /* tetgen.h has no constant for the
+                                       version */
 }

@@ -1,10 +1,11 @@
-/* core/recover/cdt_tetgen.h: the only door to TetGen (H. Si, "TetGen, a
- * Delaunay-based quality tetrahedral mesh generator", ACM TOMS 41(2), 2015).
+/* core/recover/cdt_tetgen.h: the only interface to TetGen for boundary
+ * recovery (H. Si, "TetGen, a Delaunay-based quality tetrahedral mesh
+ * generator", ACM TOMS 41(2), 2015).
  *
- * TetGen 1.5 keeps filters and random state in statics, prints when told to
- * be quiet, ends the process on failed assertions and frees twice what it
- * gives up. So it runs in a child process (base/child.h), which may die without
- * harm. */
+ * TetGen 1.5 keeps filters and random state in static variables, prints even
+ * in quiet mode, ends the process on failed assertions and frees memory twice
+ * after a failure. It therefore runs in a child process (base/child.h), whose
+ * end does no harm. */
 #ifndef VG_CORE_RECOVER_CDT_TETGEN_H
 #define VG_CORE_RECOVER_CDT_TETGEN_H
 
@@ -19,25 +20,29 @@ extern "C" {
 #endif
 
 struct vg_cdt_job {
-  size_t n, n_tri;          /* in */
+  size_t n, n_tri;          /* in: numbers of points and triangles */
   const double (*x)[3];     /* in: [n] */
-  const uint32_t (*tri)[3]; /* in: [n_tri], any orientation, no two crossing */
-  vg_status st;             /* out: VG_OK, VG_ERR_GEOMETRY: TetGen failed */
-  size_t n_all, n_tet;      /* out: points in all, >= n; tetrahedra */
+  const uint32_t (*tri)[3]; /* in: [n_tri], any orientation, must not cross
+                               each other */
+  vg_status st;             /* out: VG_OK, or VG_ERR_GEOMETRY if TetGen
+                               failed */
+  size_t n_all, n_tet;      /* out: number of all points, >= n; number of
+                               tetrahedra */
   double (*all)[3];         /* out: [n_all], the first n equal to x */
   uint32_t (*tet)[4];       /* out: [n_tet], in either orientation */
 };
 
-/** For each job the constrained Delaunay tetrahedra of the convex hull of its
- * points, holding every triangle as a face of cells. Not trusted: callers
- * verify. Caller frees all and tet of jobs whose st is VG_OK (else NULL).
- * Threads: re-entrant. Same bytes for the same job.
- * Returns VG_ERR_MEMORY when memory or a process is refused (jobs may then be
- * undone: st VG_ERR_GEOMETRY), else VG_OK. */
+/** For each job, compute the constrained Delaunay tetrahedra of the convex hull
+ * of its points, with every triangle as a face of cells. The result is not
+ * trusted: callers must verify it. The caller frees all and tet of jobs whose
+ * st is VG_OK (otherwise they are NULL). Threads: re-entrant. Same bytes for
+ * the same job. Returns VG_ERR_MEMORY if memory or a process is refused (some
+ * jobs may then not have run: st VG_ERR_GEOMETRY), else VG_OK. */
 vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
                         struct vg_error *err);
 
-/** Which TetGen this is; it cannot tell itself. */
+/** Name and version of the TetGen library, which cannot report its version
+ * itself. */
 void vg_library_tetgen(struct vg_library *out);
 
 #ifdef __cplusplus

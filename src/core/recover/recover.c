@@ -12,9 +12,10 @@
 #include "core/recover/cdt_tetgen.h"
 #include "core/recover/recover_flip.h"
 
-/* A pocket with more triangles is no pocket: where flips leave that many, the
- * triangles of the surface are easier to recover than the border of what they
- * made of Delaunay tetrahedra. Some of 10,000 triangles were worth it. */
+/* A pocket with more triangles than POCKET_MAX is refused. If flips leave that
+ * many, the triangles of the surface are easier to recover than the border of
+ * the pocket, which consists of faces of flipped cells. Some pockets of 10,000
+ * triangles were worth closing. */
 enum { ROUNDS = 4, POCKET_MAX = 40000 }; /* K1 */
 
 struct recovery {
@@ -22,20 +23,21 @@ struct recovery {
   size_t n_tri;
   const uint32_t (*tri)[3];
   size_t n_missing;
-  uint32_t *missing; /* [n_missing] triangles not in t */
-  uint32_t *parent;  /* [n_missing] pockets, as a union-find forest */
-  uint32_t *owner;   /* [cells] missing triangle of each cell */
+  uint32_t *missing; /* [n_missing] triangles missing from t */
+  uint32_t *parent;  /* [n_missing] union-find forest of the pockets */
+  uint32_t *owner;   /* [cells] missing triangle that claims each cell */
   uint32_t *star;    /* [points] a cell of each point */
   size_t n_cell, cap_cell;
-  uint32_t *cell; /* cells of all pockets, as they are found */
+  uint32_t *cell; /* cells of all pockets, in the order of discovery */
   struct vg_boundary_report *report;
 };
 
-/* --- cells that a triangle passes through -------------------------------- */
+/* --- cells that a triangle passes through --------------------------------- */
 
-/* Conservative: touching at a corner or along an edge does not count, but a
- * cell beside the triangle may. Counts a cell with a face in the triangle's
- * plane, because that face is then to be replaced. */
+/* Does the triangle pass through cell c? The test is conservative: contact at
+ * a corner or along an edge does not count, but a cell near the triangle may
+ * be reported although they do not intersect. A cell with a face in the plane
+ * of the triangle counts, because that face must be replaced. */
 static int passes_through(const struct vg_tets *t, const uint32_t tri[3],
                           uint32_t c)
 {
@@ -77,7 +79,8 @@ static int claim(struct recovery *r, uint32_t c, uint32_t k)
   return 0;
 }
 
-/* Cells seen for one triangle, flagged VG_MARK while it is searched. */
+/* Cells visited for one triangle. They have the flag VG_MARK during the
+ * search. */
 struct visit {
   size_t n, cap;
   uint32_t *cell;
@@ -93,7 +96,8 @@ static int visit(struct recovery *r, struct visit *list, uint32_t c)
   return 0;
 }
 
-/* Do a cell and its neighbour behind face i share a corner of the triangle? */
+/* Does face i, between a cell and its neighbour, have a corner of the
+ * triangle? */
 static int share_corner(const struct vg_cell *c, int i, const uint32_t tri[3])
 {
   for (int k = 0; k < 3; k++)
@@ -102,7 +106,7 @@ static int share_corner(const struct vg_cell *c, int i, const uint32_t tri[3])
   return 0;
 }
 
-/* The search goes around the corners of the triangle and through its pocket,
+/* The search runs around the corners of the triangle and through its pocket,
  * which is connected and begins at a corner. */
 static int find_pocket(struct recovery *r, struct visit *list, uint32_t k)
 {
@@ -129,7 +133,7 @@ static int find_pocket(struct recovery *r, struct visit *list, uint32_t k)
   return bad;
 }
 
-/* One more ring of cells around every pocket. */
+/* Add one more layer of cells around every pocket. */
 static int add_ring(struct recovery *r)
 {
   size_t n = r->n_cell;
@@ -144,14 +148,16 @@ static int add_ring(struct recovery *r)
   return 0;
 }
 
-/* --- closing one pocket -------------------------------------------------- */
+/* --- closing one pocket --------------------------------------------------- */
 
 struct pocket {
   size_t n_cell, n_tri, cap_tri, n_border, n_point;
-  const struct vg_key *cell; /* index: cells of the pocket */
-  uint32_t (*tri)[3];        /* border, fixed faces inside, missing triangles */
-  uint32_t *point;           /* [n_point] sorted numbers in t */
-  double (*x)[3];            /* [n_point]; NULL: not to be closed now */
+  const struct vg_key *cell; /* index: cell of the pocket */
+  uint32_t (*tri)[3];        /* border faces, then fixed faces inside and
+                                missing triangles */
+  uint32_t *point;           /* [n_point] indices in t, sorted */
+  double (*x)[3];            /* [n_point]; NULL: do not close the pocket in
+                                this round */
 };
 
 static int add_tri(struct pocket *p, const uint32_t v[3])
@@ -187,7 +193,8 @@ static int by_number(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* The points used, and the triangles in terms of them. */
+/* Collect the points of the pocket, and replace the corners of its triangles
+ * by indices into them. */
 static int number_points(const struct vg_tets *t, struct pocket *p)
 {
   size_t n = 0;
@@ -205,13 +212,13 @@ static int number_points(const struct vg_tets *t, struct pocket *p)
       const uint32_t *at = bsearch(&p->tri[m][k], p->point, p->n_point,
                                    sizeof *at, by_number);
 
-      if (!at) return 1; /* a corner outside: the pocket is too small */
+      if (!at) return 1; /* corner outside: the pocket is too small */
       p->tri[m][k] = (uint32_t)(at - p->point);
     }
   return 0;
 }
 
-/* Do two cells lie on the same side of the face between them? */
+/* Do two cells lie on the same side of their common face? */
 static int is_folded(const struct vg_tets *t)
 {
   for (uint32_t c = 0; c < t->n_cell; c++)
@@ -230,7 +237,8 @@ static int is_folded(const struct vg_tets *t)
   return 0;
 }
 
-/* Cells outside the border are flagged; then: is every triangle there? */
+/* Flag the cells outside the border, then check that every triangle is a face.
+ */
 static vg_status verify(struct vg_tets *local, const struct pocket *p,
                         struct vg_error *err)
 {
@@ -244,11 +252,11 @@ static vg_status verify(struct vg_tets *local, const struct pocket *p,
   if (st == VG_OK && !n_missing)
     st = vg_boundary_fix(local, p->n_tri, tri, NULL, &n_missing, err);
   if (st == VG_OK && (n_missing || is_folded(local)))
-    st = vg_fail(err, VG_ERR_GEOMETRY, "a pocket was not closed faithfully");
+    st = vg_fail(err, VG_ERR_GEOMETRY, "TetGen closed a pocket incorrectly");
   return st;
 }
 
-/* Put the local cells in place of the pocket's; links are renewed later. */
+/* Replace the pocket's cells by the local cells. Links are rebuilt later. */
 static vg_status replace(struct recovery *r, const struct pocket *p,
                          const struct vg_tets *local, struct vg_error *err)
 {
@@ -282,8 +290,8 @@ static vg_status replace(struct recovery *r, const struct pocket *p,
   return VG_OK;
 }
 
-/* What TetGen needs of one pocket. tri: its missing triangles.
- * VG_BLOCKED when a corner of them lies outside. */
+/* Set up the input to TetGen for one pocket. tri: its missing triangles.
+ * VG_BLOCKED if a corner of them lies outside the pocket. */
 static vg_status describe(struct recovery *r, struct pocket *p, size_t n_tri,
                           const struct vg_key *tri, struct vg_error *err)
 {
@@ -310,7 +318,7 @@ static vg_status describe(struct recovery *r, struct pocket *p, size_t n_tri,
   return VG_OK;
 }
 
-/* Take the answer for one pocket, if it is faithful. */
+/* Use TetGen's result for one pocket if it is correct. */
 static vg_status accept(struct recovery *r, struct pocket *p,
                         struct vg_cdt_job *job, struct vg_error *err)
 {
@@ -329,9 +337,10 @@ static vg_status accept(struct recovery *r, struct pocket *p,
   return VG_OK;
 }
 
-/* --- rounds -------------------------------------------------------------- */
+/* --- rounds --------------------------------------------------------------- */
 
-/* Cells and missing triangles, both sorted by pocket, are cut up in step. */
+/* Split the cells and the missing triangles, both sorted by pocket, into
+ * pockets. */
 static vg_status describe_all(struct recovery *r, const struct vg_key *cell,
                               const struct vg_key *tri, struct pocket *pocket,
                               size_t *n_pocket, struct vg_error *err)
@@ -366,12 +375,12 @@ static vg_status describe_all(struct recovery *r, const struct vg_key *cell,
     if (pocket[m].n_tri > POCKET_MAX)
       st = vg_fail(err, VG_ERR_GEOMETRY,
                    "%zu of %zu surface triangles are "
-                   "missing, too many for pockets",
+                   "missing, too many to recover in pockets",
                    r->n_missing, r->n_tri);
   return st;
 }
 
-/* A pocket that TetGen refuses waits for the next round. */
+/* A pocket that TetGen could not close waits for the next round. */
 static vg_status close_all(struct recovery *r, size_t n, struct pocket *pocket,
                            struct vg_error *err)
 {
@@ -475,8 +484,8 @@ static vg_status list_missing(struct recovery *r, uint8_t *missing,
   return st;
 }
 
-/* Fixed faces were kept up by every flip; so their number tells whether all
- * triangles are there, if each comes once. */
+/* Every flip maintains the fixed faces. Their number therefore shows whether
+ * all triangles are present, provided that no triangle occurs twice. */
 static int is_complete(const struct recovery *r)
 {
   static const uint8_t bits[16] = { 0, 1, 1, 2, 1, 2, 2, 3,
@@ -498,7 +507,7 @@ static vg_status flip_first(struct recovery *r, uint8_t *missing,
   return st;
 }
 
-/* Dead ones are like no other. */
+/* Dead cells get a value that differs from every live cell. */
 static struct vg_cell *copy_of_cells(const struct vg_tets *t)
 {
   struct vg_cell *copy = vg_alloc(t->n_cell, sizeof *copy);

@@ -1,5 +1,5 @@
-/* core/recover/recover.h: surface triangles that are missing from Delaunay
- * tetrahedra are put in, by flips or pocket by pocket. */
+/* core/recover/recover.h: recovery of surface triangles that are missing from
+ * Delaunay tetrahedra, by flips or pocket by pocket. */
 #ifndef VG_CORE_RECOVER_RECOVER_H
 #define VG_CORE_RECOVER_RECOVER_H
 
@@ -11,23 +11,25 @@
 
 /** Make every triangle a fixed face of t.
  *
- * Flips bring in most (core/recover/recover_flip.h). The cells that a triangle
- * still missing passes through form its pocket; pockets that share cells are
- * one. TetGen closes each pocket, its border and every triangle in it kept; the
- * result is verified face by face before it replaces the pocket's cells. A
- * pocket that fails grows by a ring of cells and is tried again, three times.
- * Returns VG_ERR_GEOMETRY when pockets remain that cannot be closed, or one is
- * so large that the whole surface is the better start. */
+ * Flips recover most triangles (core/recover/recover_flip.h). For each
+ * triangle that is still missing, the cells that it passes through form its
+ * pocket; pockets that share cells are merged. TetGen meshes each pocket and
+ * preserves its border and every triangle in it. The result is verified face
+ * by face before it replaces the pocket's cells. If that fails, the pocket
+ * grows by a layer of cells and is tried again, up to three times. Returns
+ * VG_ERR_GEOMETRY if pockets remain that cannot be closed, or if one is so
+ * large that recovering the whole surface at once is more promising. */
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
                      struct vg_boundary_report *report, struct vg_error *err);
 
-/** Flip faces of t that are not locally Delaunay, fixed ones excepted, until
- * none is left that a flip brings nearer to it: points inserted afterwards
- * (core/delaunay/insert.h) start from Delaunay cells. No edge or face of the
- * surface is lost while all its triangles are fixed faces.
- * n_before, before  cells as they were when all faces were locally Delaunay;
- *                   those that still are the same are not looked at again
- * n_flip out: flips made */
+/** Flip faces of t that are not locally Delaunay, except fixed ones, until no
+ * flip brings any of them closer to Delaunay. Points inserted afterwards
+ * (core/delaunay/insert.h) then start from Delaunay cells. No edge or face of
+ * the surface is lost while all its triangles are fixed faces.
+ *
+ * n_before, before: copy of the cells from when all faces were locally
+ * Delaunay; faces between cells that have not changed since are not examined
+ * again. n_flip out: number of flips. */
 vg_status vg_recover_delaunay(struct vg_tets *t, size_t n_before,
                               const struct vg_cell *before, size_t *n_flip,
                               struct vg_error *err);

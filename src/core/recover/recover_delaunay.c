@@ -1,9 +1,9 @@
-/* Flips back towards Delaunay tetrahedra, when all triangles of the surface
- * are there. A face is locally Delaunay when the sphere around one of its
- * cells does not hold the far corner of the other. Each flip here lowers the
- * paraboloid |x|^2 interpolated over the cells, which Delaunay tetrahedra do
- * most, so it ends. (B. Joe, "Three-dimensional triangulations from local
- * transformations", SIAM J. Sci. Stat. Comput. 10, 1989.) */
+/* Flips that restore Delaunay tetrahedra once all triangles of the surface are
+ * recovered. A face is locally Delaunay if the circumsphere of one of its
+ * cells does not contain the far corner of the other. Each flip lowers the
+ * paraboloid |x|^2 interpolated over the cells. Delaunay tetrahedra minimise
+ * it, so the process ends. (B. Joe, "Three-dimensional triangulations from
+ * local transformations", SIAM J. Sci. Stat. Comput. 10, 1989.) */
 #include "core/recover/recover.h"
 
 #include <assert.h>
@@ -19,14 +19,15 @@
 
 enum { RING = 10, NEW_MAX = 2 * (RING - 2), ROUNDS = 64 };
 
-/* An edge goes if that lowers the paraboloid by this share of what it is at
- * least: the sum is not exact. */
+/* An edge is removed if this lowers the paraboloid by at least this share of
+ * its present value. The margin is needed because the sum is not exact. */
 static const double gain = 1e-9; /* K3 */
 
-/* Flips for each face that is listed at first, and 100 more: front of aircraft
- * take 0.4 to 0.9, small parts up to 4. Where a whole ring is flat, sums are
- * rounding alone, and flips by exact signs may turn back for ever what goes by
- * them: what is left then is valid, but not Delaunay. */
+/* Limit of the number of flips: this many per face in the initial list, plus
+ * 100. Fronts of aircraft take 0.4 to 0.9 per face, small parts up to 4. Where
+ * a whole edge star is flat, the sums consist of rounding errors only, and
+ * flips decided by exact signs may undo forever those decided by the sums. The
+ * cells at the limit are valid, but not Delaunay. */
 static const size_t flips_each = 8;
 
 struct faces {
@@ -36,7 +37,7 @@ struct faces {
 
 struct restorer {
   struct vg_tets *t;
-  struct faces next; /* to be looked at in the next round */
+  struct faces next; /* faces to examine in the next round */
   size_t n_flip;
   int refused;
 };
@@ -55,7 +56,7 @@ static void add(struct restorer *r, uint32_t link)
   else f->link[f->n++] = link;
 }
 
-/* Is face i of live cell c one that flips may take away, and should? */
+/* Is face i of live cell c not locally Delaunay, and may flips remove it? */
 static int is_wrong(const struct vg_tets *t, uint32_t c, int i)
 {
   uint32_t link = t->cell[c].link[i];
@@ -82,19 +83,20 @@ static int replace(struct restorer *r, int n_old, const uint32_t *old,
   return 1;
 }
 
-/* --- the ring around an edge --------------------------------------------- */
+/* --- the star of an edge -------------------------------------------------- */
 
 struct ring {
   const struct vg_tets *t;
   uint32_t a, b;
   int n;
-  uint32_t cell[RING], v[RING]; /* as of vg_cavity_ring */
-  double cost[RING][RING];      /* of the polygon i..j; INFINITY: none */
+  uint32_t cell[RING], v[RING]; /* as returned by vg_cavity_ring */
+  double cost[RING][RING];      /* cost of the polygon i..j; INFINITY: none
+                                   found */
   int split[RING][RING];
 };
 
-/* Six times the volume of a cell, times the mean of |x|^2 at its corners (by
- * four), with x from the edge's first end. */
+/* Six times the volume of a cell, times the mean of |x|^2 at its corners
+ * (times four), with x relative to the first end of the edge. */
 static double lifted(const struct ring *r, uint32_t p, uint32_t q, uint32_t s,
                      uint32_t u)
 {
@@ -156,7 +158,7 @@ static int emit(const struct ring *r, int i, int j, int n, uint32_t (*v)[4])
   return emit(r, k, j, emit(r, i, k, n, v), v);
 }
 
-/* Remove the edge a b of cell c if that lowers the paraboloid. */
+/* Remove the edge a b of cell c if this lowers the paraboloid. */
 static int remove_edge(struct restorer *f, uint32_t c, uint32_t a, uint32_t b)
 {
   struct ring r = { .t = f->t, .a = a, .b = b };
@@ -173,10 +175,11 @@ static int remove_edge(struct restorer *f, uint32_t c, uint32_t a, uint32_t b)
                  (const uint32_t(*)[4])v);
 }
 
-/* --- faces --------------------------------------------------------------- */
+/* --- faces ---------------------------------------------------------------- */
 
-/* Two cells become three around the edge between their far corners. Where that
- * does not pass through the face, an edge that it passes by may go. */
+/* Replace two cells by three around the edge between their far corners. If
+ * that edge does not pass through the face, try to remove an edge of the face
+ * that it passes outside. */
 static void restore_face(struct restorer *r, uint32_t c, int i)
 {
   const struct vg_tets *t = r->t;
@@ -206,7 +209,7 @@ static int is_as_before(const struct vg_tets *t, size_t n,
   return c < n && !memcmp(t->cell[c].v, before[c].v, sizeof before[c].v);
 }
 
-/* Faces between cells that are as they were need no look. */
+/* Faces between unchanged cells need no test. */
 static void list_wrong(struct restorer *r, size_t n,
                        const struct vg_cell *before)
 {

@@ -11,19 +11,19 @@ enum { NEW_MAX = 2 * VG_FLIP_RING };
 struct ring {
   uint32_t a, b;
   int n;
-  uint32_t cell[VG_FLIP_RING]; /* holds a, b, v[k], v[k + 1] */
-  uint32_t v[VG_FLIP_RING];    /* v[k], v[k + 1], a, b is positive */
+  uint32_t cell[VG_FLIP_RING]; /* cell k has the corners a, b, v[k], v[k + 1] */
+  uint32_t v[VG_FLIP_RING];    /* (v[k], v[k + 1], a, b) is positive */
 };
 
-struct change { /* cells that go, cells that come */
+struct change { /* cells to remove, cells to add */
   int n_old, n_new;
   const uint32_t *old;
   uint32_t v[NEW_MAX][4];
 };
 
-/* --- replacing cells ----------------------------------------------------- */
+/* --- replacing cells ------------------------------------------------------ */
 
-/* Triangles of the front among the faces between new cells are fixed. */
+/* Mark faces between new cells that are triangles of the front as fixed. */
 static void fix_inside(struct vg_flipper *f, int n, const uint32_t *slot)
 {
   struct vg_tets *t = f->t;
@@ -74,7 +74,7 @@ static double side(const struct vg_tets *t, uint32_t a, uint32_t b, uint32_t c,
   return vg_orient3d(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
 
-/* --- face removal -------------------------------------------------------- */
+/* --- face removal --------------------------------------------------------- */
 
 int vg_flip_face(struct vg_flipper *f, uint32_t c, int i)
 {
@@ -100,7 +100,7 @@ int vg_flip_face(struct vg_flipper *f, uint32_t c, int i)
   return after < before && replace(f, &g);
 }
 
-/* --- the ring around an edge --------------------------------------------- */
+/* --- the star of an edge -------------------------------------------------- */
 
 static int in_the_way(const struct vg_flipper *f, const struct ring *r)
 {
@@ -111,18 +111,21 @@ static int in_the_way(const struct vg_flipper *f, const struct ring *r)
   return n;
 }
 
-/* --- its triangulation --------------------------------------------------- */
+/* --- triangulation of the polygon around the edge ------------------------- */
 
 struct plan {
   const struct vg_flipper *f;
   const struct ring *r;
-  int most;                             /* may be in the way of the target */
-  int cost[VG_FLIP_RING][VG_FLIP_RING]; /* of polygon i..j; INT_MAX: none */
+  int most;                             /* largest number of obstructions
+                                           allowed */
+  int cost[VG_FLIP_RING][VG_FLIP_RING]; /* obstructions of polygon i..j;
+                                           INT_MAX: not possible */
   double worst[VG_FLIP_RING][VG_FLIP_RING];
   int split[VG_FLIP_RING][VG_FLIP_RING];
 };
 
-/* What the chord i j brings into the way; its ends are no neighbours. */
+/* Number of obstructions caused by the chord i j, whose ends are not
+ * neighbours. */
 static int cost_of_chord(const struct plan *p, int i, int j)
 {
   const struct ring *r = p->r;
@@ -132,7 +135,8 @@ static int cost_of_chord(const struct plan *p, int i, int j)
          vg_flip_obstructs(p->f, r->v[i], r->v[j], r->b);
 }
 
-/* Worse shape of the two cells that triangle i k j makes; 0: not positive. */
+/* Shape of the worse of the two cells on triangle i k j; 0 if one of them is
+ * not positive. */
 static double shape_at(const struct plan *p, int i, int k, int j)
 {
   const struct vg_tets *t = p->f->t;
@@ -149,7 +153,8 @@ static double shape_at(const struct plan *p, int i, int k, int j)
   return lo > 1e-300 ? lo : 1e-300;
 }
 
-/* Corner k between the polygons i..k and k..j. */
+/* Try the triangulation of polygon i..j by triangle i k j and the polygons
+ * i..k and k..j. */
 static void try_split(struct plan *p, int i, int k, int j, int chord)
 {
   const struct ring *r = p->r;
@@ -172,8 +177,9 @@ static void try_split(struct plan *p, int i, int k, int j, int chord)
   p->split[i][j] = k;
 }
 
-/* Of every sub-polygon the triangulation that is least in the way, then that
- * of the best shape. is_ear: the last corner has to be an ear. */
+/* For every sub-polygon, find the triangulation with the fewest obstructions,
+ * and among those the one with the best shape. is_ear: the last corner must be
+ * an ear. */
 static int make_plan(struct plan *p, int is_ear)
 {
   int n = p->r->n;
@@ -209,7 +215,7 @@ static void emit(const struct plan *p, struct change *g, int i, int j)
   emit(p, g, k, j);
 }
 
-/* Turn the ring until `ear` is its last corner. */
+/* Rotate the ring so that `ear` becomes its last corner. */
 static int turn_ring(struct ring *r, uint32_t ear)
 {
   struct ring old = *r;
@@ -224,10 +230,10 @@ static int turn_ring(struct ring *r, uint32_t ear)
   return 1;
 }
 
-/* --- edge removal -------------------------------------------------------- */
+/* --- edge removal --------------------------------------------------------- */
 
-/* ear: VG_NONE, or a corner of the ring that only one triangle may have.
- * gain: by how much less must be in the way. */
+/* ear: VG_NONE, or a corner of the ring that only one triangle may use. gain:
+ * required reduction of the number of obstructions. */
 struct removal {
   uint32_t a, b, ear;
   int depth, gain;
@@ -236,8 +242,8 @@ struct removal {
 static int remove_edge(struct vg_flipper *f, uint32_t c,
                        const struct removal *m);
 
-/* A cell of the ring as it was that still has the edge: only those beside the
- * corner that went are gone, unless other edges went before that one. */
+/* A cell of the former star that still has the edge. Only the cells next to
+ * the removed corner are gone, unless other edges were removed before. */
 static uint32_t still_there(const struct vg_tets *t, const struct ring *r)
 {
   for (int k = 0; k < r->n; k++) {
@@ -251,10 +257,11 @@ static uint32_t still_there(const struct vg_tets *t, const struct ring *r)
   return VG_NONE;
 }
 
-/* The ring loses a corner where the edge from it to a or b can go. That helps
- * where the corner's neighbours do not see each other past that edge. What has
- * changed stays so even if the edge a b does not go: another attempt then
- * finds other cells, which brings more about than going back. */
+/* Reduce the ring by a corner whose edge to a or b can be removed. This helps
+ * if the neighbours of the corner do not see each other past that edge.
+ * Changes remain even if the edge a b cannot be removed then: another attempt
+ * will find different cells, which succeeds more often than undoing the
+ * changes. */
 static int reduce_ring(struct vg_flipper *f, const struct ring *r,
                        const struct removal *m)
 {
@@ -279,7 +286,7 @@ static int reduce_ring(struct vg_flipper *f, const struct ring *r,
   return 0;
 }
 
-/* Returns 1 when the edge is gone. */
+/* Returns 1 if the edge was removed. */
 static int remove_edge(struct vg_flipper *f, uint32_t c,
                        const struct removal *m)
 {

@@ -1,4 +1,4 @@
-/* All that flips can put in: edges first, then triangles. */
+/* Recovery by flips: first the edges, then the triangles. */
 #include "core/recover/recover_flip.h"
 
 #include <assert.h>
@@ -8,13 +8,13 @@
 #include "base/checks.h"
 #include "base/memory.h"
 
-/* Depth of each round. A round over what was left by one before finds other
- * cells there, and brings in more. */
+/* Depth of each round. A round that follows another one finds different cells
+ * and recovers more. */
 static const int edge_round[] = { 0, 1, 1, 2, 2, 3, 3 };
 static const int tri_round[] = { 0, 1, 2, 3 };
 
-/* The edges of the missing triangles, each once. Returns their number, or
- * SIZE_MAX when memory is refused. */
+/* List the edges of the missing triangles, each once. Returns their number, or
+ * SIZE_MAX if memory is refused. */
 static size_t list_edges(const struct vg_flip_front *s, size_t n,
                          const uint32_t *missing, uint32_t (*edge)[2])
 {

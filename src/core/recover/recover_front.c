@@ -1,5 +1,5 @@
-/* What flips ask of the surface: its edges and triangles, and what is in the
- * way of one that is to appear. */
+/* Queries of the flips about the surface: its edges and triangles, and
+ * obstructions of an edge or triangle to be recovered. */
 #include "core/recover/recover_flip.h"
 
 #include <assert.h>
@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 
-/* --- edges and triangles ------------------------------------------------- */
+/* --- edges and triangles -------------------------------------------------- */
 
 static uint32_t find(const uint32_t *list, uint32_t from, uint32_t to,
                      uint32_t x)
@@ -52,7 +52,7 @@ int vg_flip_is_tri(const struct vg_flip_front *s, const uint32_t v[3])
   return 0;
 }
 
-/* An edge of two triangles was entered twice. */
+/* Remove duplicates: an edge of two triangles was entered twice. */
 static void drop_doubles(struct vg_flip_front *s)
 {
   uint32_t n = 0, from = 0;
@@ -114,7 +114,7 @@ void vg_flip_front_release(struct vg_flip_front *s)
   memset(s, 0, sizeof *s);
 }
 
-/* --- what is in the way -------------------------------------------------- */
+/* --- obstructions --------------------------------------------------------- */
 
 static double side(const struct vg_tets *t, uint32_t a, uint32_t b, uint32_t c,
                    uint32_t d)
@@ -122,9 +122,10 @@ static double side(const struct vg_tets *t, uint32_t a, uint32_t b, uint32_t c,
   return vg_orient3d(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
 
-/* Triangle end y z and the edge end - other: are they in one plane, and does
- * the edge leave the triangle through y z? Seen along the longest component
- * of the triangle's normal, since all are in that plane. */
+/* Are the triangle end y z and the edge end - other coplanar, and does the
+ * edge leave the triangle through y z? Since all points are in one plane, the
+ * test is made in the projection along the largest component of the triangle's
+ * normal. */
 static int crosses_in_plane(const struct vg_tets *t, uint32_t end,
                             uint32_t other, uint32_t y, uint32_t z)
 {

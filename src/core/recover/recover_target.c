@@ -1,5 +1,5 @@
-/* Edges and triangles of a surface put in: what is in the way of each is
- * searched for from its first point, and flipped away. */
+/* Recovery of one edge or triangle of a surface: its obstructions are searched
+ * for from its first point and removed by flips. */
 #include <assert.h>
 
 #include "core/recover/recover_flip.h"
@@ -9,10 +9,10 @@
 
 enum { SEEN_MAX = 4096, HINDRANCE_MAX = 64, WALK_MAX = 1000 };
 
-/* Rings looked at for one edge or triangle, by depth. */
+/* Number of edge stars to examine for one edge or triangle, by depth. */
 static const int budget[4] = { 60, 200, 600, 2000 }; /* K2 */
 
-/* A face of a cell, or an edge of it. */
+/* A face of a cell, or an edge of a cell. */
 struct hindrance {
   uint32_t c, a, b;
   int i;
@@ -23,7 +23,7 @@ struct hindrances {
   struct hindrance list[HINDRANCE_MAX];
 };
 
-/* --- cells of one search ------------------------------------------------- */
+/* --- cells of one search -------------------------------------------------- */
 
 static void see(struct vg_flipper *f, uint32_t link)
 {
@@ -45,8 +45,8 @@ static void forget(struct vg_flipper *f)
     f->t->flag[f->seen[k]] &= (uint8_t)~VG_TRIED;
 }
 
-/* A cell at point p, start being one, that the way from p to q begins in: it
- * has q where the two are neighbours. */
+/* The cell at point p in which the segment from p to q begins; found by a walk
+ * from any cell at p. It has the corner q if p and q are neighbours. */
 static uint32_t towards(const struct vg_flipper *f, uint32_t p, uint32_t q)
 {
   const struct vg_tets *t = f->t;
@@ -78,9 +78,9 @@ static int has(const struct vg_cell *c, uint32_t p)
   return c->v[0] == p || c->v[1] == p || c->v[2] == p || c->v[3] == p;
 }
 
-/* The cells to search from: that in which the edge begins, or those around
- * the first edge of the triangle. Returns 1 when one of them has all points of
- * the target, -1 when there are none. */
+/* Find the cells from which the search starts: the one in which the edge
+ * begins, or those around the first edge of the triangle. Returns 1 if one of
+ * them has all points of the target, -1 if there are no such cells. */
 static int start_search(struct vg_flipper *f)
 {
   const struct vg_tets *t = f->t;
@@ -102,9 +102,9 @@ static int start_search(struct vg_flipper *f)
   return 0;
 }
 
-/* --- what is in the way -------------------------------------------------- */
+/* --- obstructions --------------------------------------------------------- */
 
-/* Faces that the edge crosses, from its first point on. */
+/* Faces that the edge crosses, beginning at its first point. */
 static void faces_in_the_way(struct vg_flipper *f, struct hindrances *h)
 {
   const struct vg_tets *t = f->t;
@@ -156,9 +156,9 @@ static void edges_in_the_way(struct vg_flipper *f, struct hindrances *h)
   }
 }
 
-/* --- one step ------------------------------------------------------------ */
+/* --- one step ------------------------------------------------------------- */
 
-/* Each returns 1 when cells have changed. */
+/* The functions below return 1 if cells have changed. */
 
 static int flip_faces(struct vg_flipper *f, const struct hindrances *h)
 {

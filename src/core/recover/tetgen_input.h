@@ -1,5 +1,5 @@
-/* core/recover/tetgen_input.h: a triangulation as TetGen takes it. In C++, for
- * the adapters of tetgen.h, in whose children it is used. */
+/* core/recover/tetgen_input.h: a triangulation as input to TetGen. In C++, for
+ * the adapters that include tetgen.h, in whose child processes it is used. */
 #ifndef VG_CORE_RECOVER_TETGEN_INPUT_H
 #define VG_CORE_RECOVER_TETGEN_INPUT_H
 
@@ -9,8 +9,8 @@
 #define TETLIBRARY
 #include <tetgen.h>
 
-/** Room for n points, which the caller fills in, numbered from 0. TetGen's
- * destructor frees it. */
+/** Allocate n points, numbered from 0, which the caller fills in. TetGen's
+ * destructor frees them. */
 inline void vg_tetgen_points(tetgenio &in, std::size_t n)
 {
   in.firstnumber = 0;
@@ -18,7 +18,7 @@ inline void vg_tetgen_points(tetgenio &in, std::size_t n)
   in.pointlist = new REAL[3 * n];
 }
 
-/** n triangles as facets of a polygon each. */
+/** Set n triangles as facets with one polygon each. */
 inline void vg_tetgen_triangles(tetgenio &in, std::size_t n,
                                 const std::uint32_t (*tri)[3])
 {

@@ -1,4 +1,4 @@
-/* core/search/box.h: axis-parallel boxes. A box without points has lo > hi. */
+/* core/search/box.h: axis-parallel boxes. An empty box has lo > hi. */
 #ifndef VG_CORE_SEARCH_BOX_H
 #define VG_CORE_SEARCH_BOX_H
 
@@ -16,7 +16,7 @@ struct vg_box {
     }                                                                          \
   }
 
-/** Enlarge a box so that it holds the point x. */
+/** Enlarge the box so that it contains the point x. */
 static inline void vg_box_add(struct vg_box *b, const double x[3])
 {
   for (int k = 0; k < 3; k++) {
@@ -25,7 +25,7 @@ static inline void vg_box_add(struct vg_box *b, const double x[3])
   }
 }
 
-/** Enlarge box a so that it holds box b, which may be empty. */
+/** Enlarge box a so that it contains box b, which may be empty. */
 static inline void vg_box_join(struct vg_box *a, const struct vg_box *b)
 {
   for (int k = 0; k < 3; k++) {
@@ -34,7 +34,7 @@ static inline void vg_box_join(struct vg_box *a, const struct vg_box *b)
   }
 }
 
-/** The boxes share a point. Empty boxes touch nothing. */
+/** Do the boxes share a point? Empty boxes touch nothing. */
 static inline int vg_box_touch(const struct vg_box *a, const struct vg_box *b)
 {
   return a->lo[0] <= b->hi[0] && b->lo[0] <= a->hi[0] && a->lo[1] <= b->hi[1] &&
@@ -42,7 +42,7 @@ static inline int vg_box_touch(const struct vg_box *a, const struct vg_box *b)
 }
 
 /** Squared distance of the point x from the box, INFINITY if the box is empty.
- * Rounding is monotone: it is never less for a box within another. */
+ * Rounding is monotone: a box within another one is never nearer to x. */
 static inline double vg_box_distance2(const struct vg_box *b, const double x[3])
 {
   double sum = 0;

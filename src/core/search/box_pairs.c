@@ -6,9 +6,10 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-#define TASKS 1024 /* pairs of nodes that are searched at the same time */
+#define TASKS 1024 /* pairs of nodes that are searched in parallel */
 
-/* Items below node a with those below node b; the same node: within it. */
+/* Pairs of an item below node a and an item below node b. If a = b: pairs of
+ * different items below that node. */
 struct task {
   size_t a, b;
 };
@@ -19,7 +20,7 @@ struct pairs {
   void *context;
   size_t n_task, cap_task;
   struct task *task;
-  int status; /* of a visit that failed */
+  int status; /* status of a visit that failed */
 };
 
 static vg_status leaf_pairs(const struct pairs *p, int worker, struct task of)
@@ -39,7 +40,7 @@ static vg_status leaf_pairs(const struct pairs *p, int worker, struct task of)
   return VG_OK;
 }
 
-/* Longest side. */
+/* Longest side of a box. */
 static double extent(const struct vg_box *b)
 {
   double m = b->hi[0] - b->lo[0];
@@ -49,9 +50,9 @@ static double extent(const struct vg_box *b)
   return m;
 }
 
-/* The tasks that a task consists of: 0 to 3, in order; -1 where both nodes are
- * leaves. All leaves are on one level, but of two nodes one may be above the
- * other. */
+/* Split a task into 0 to 3 smaller tasks, in order. Returns -1 if both nodes
+ * are leaves. All leaves are on one level, but one node of a pair may be
+ * higher in the tree than the other. */
 static int parts_of(const struct pairs *p, struct task of, struct task out[3])
 {
   const struct vg_box *a = vg_box_tree_node(p->t, of.a);
@@ -103,7 +104,7 @@ static void pairs_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Split all tasks again and again, until they are enough. */
+/* Split all tasks repeatedly until there are enough of them. */
 static vg_status list_tasks(struct pairs *p)
 {
   struct task *old = NULL;

@@ -23,8 +23,8 @@ static vg_status order_items(size_t n, const struct vg_box *box, uint32_t *item,
   return st;
 }
 
-/* Sort the boxes key[].index along the curve through the cube about their
- * middles, then each run of them that have one key. */
+/* Sort the boxes key[].index along the Hilbert curve through the bounding cube
+ * of their centres, then recursively each run of boxes with equal keys. */
 static vg_status order_run(const struct vg_box *box, size_t n,
                            struct vg_key *key, struct vg_error *err)
 {
@@ -130,7 +130,7 @@ void vg_box_tree_release(struct vg_box_tree *t)
   *t = (struct vg_box_tree)VG_BOX_TREE_INIT;
 }
 
-/* A search for items. */
+/* Search for items whose boxes touch a given box. */
 struct touched {
   const struct vg_box_tree *t;
   const struct vg_box *box;

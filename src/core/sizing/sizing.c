@@ -11,7 +11,8 @@
 #include "core/sizing/sizing_parts.h"
 #include "core/sizing/sizing_surface.h"
 
-/* Leaves beyond those that a surface accounts for: sources may need some. */
+/* Number of leaves in addition to those that the surface accounts for, since
+ * sources may need some. */
 #define LEAF_BASE (1u << 20)
 #define LEAF_PER_SAMPLE 8
 
@@ -20,7 +21,7 @@ static vg_status check_options(const struct vg_sizing_options *o,
 {
   if (!isfinite(o->growth) || o->growth <= 1)
     return vg_fail(err, VG_ERR_INPUT,
-                   "growth rate %g of sizes is not above 1; 1.2 is usual",
+                   "growth rate %g of the spacing is not above 1; 1.2 is usual",
                    o->growth);
   if (!isfinite(o->scale) || o->scale <= 0)
     return vg_fail(err, VG_ERR_INPUT,
@@ -29,28 +30,31 @@ static vg_status check_options(const struct vg_sizing_options *o,
                    o->scale);
   if (!(isfinite(o->coarseness) && o->coarseness >= 1))
     return vg_fail(err, VG_ERR_INPUT,
-                   "coarseness %g of a field of sizes is "
-                   "below 1",
+                   "coarseness %g of the sizing field is "
+                   "below 1; give 1 or more",
                    o->coarseness);
   if (!isfinite(o->h_min) || o->h_min < 0)
     return vg_fail(err, VG_ERR_INPUT,
-                   "smallest size %g is not a length; 0 means none", o->h_min);
+                   "smallest size %g is negative or not finite; 0 means no "
+                   "limit",
+                   o->h_min);
   if (!(o->h_max >= 0))
     return vg_fail(err, VG_ERR_INPUT,
-                   "largest size %g is not a length; 0 means the largest "
-                   "of the input",
+                   "largest size %g is negative or not a number; 0 means the "
+                   "largest one in the input",
                    o->h_max);
   if (o->h_max > 0 && o->h_min > o->h_max)
     return vg_fail(err, VG_ERR_INPUT,
-                   "smallest size %g is above the largest, %g; exchange "
+                   "smallest size %g is above the largest size %g; exchange "
                    "them",
                    o->h_min, o->h_max);
   return VG_OK;
 }
 
-/* Largest size in the input. With a surface it is the cap where none is given:
- * cells larger than any face of the boundary are of no use, and a uniform
- * boundary should give a uniform mesh. VGRID's mean never exceeds it. */
+/* Largest spacing in the input. With a surface, it is the upper limit unless
+ * one is given: cells larger than any face of the boundary are useless, and a
+ * uniform boundary should give a uniform mesh. VGRID's mean never exceeds it.
+ */
 static double largest(const struct vg_source_set *set,
                       const struct vg_samples *s)
 {
@@ -66,8 +70,8 @@ static double largest(const struct vg_source_set *set,
   return h;
 }
 
-/* Cube around the surface, or around the sources where there is none; a bit
- * larger, so that no point of the domain is beyond it by rounding. */
+/* Cube around the surface, or around the sources if there is no surface. It is
+ * slightly larger, so that rounding moves no point of the domain outside. */
 static double root_cube(const struct vg_mesh *surface,
                         const struct vg_source_set *set, double h, double lo[3])
 {
@@ -100,7 +104,7 @@ static void find_range(struct vg_sizing *s)
   s->most = (double)most;
 }
 
-/* The part of vg_sizing_new that has checked input and owns nothing. */
+/* Part of vg_sizing_new, called after the input was checked. Owns no memory. */
 static vg_status build(const struct vg_sizing_options *o,
                        const struct vg_mesh *surface, struct vg_stat *f,
                        const struct vg_samples *samples, struct vg_sizing *s,
@@ -116,7 +120,7 @@ static vg_status build(const struct vg_sizing_options *o,
   side = root_cube(surface, &f->set, cap > 0 ? cap : o->h_max, lo);
   if (!isfinite(side) || !isfinite(lo[0] + lo[1] + lo[2]))
     return vg_fail(err, VG_ERR_INPUT,
-                   "coordinates are too large for a field of sizes (extent "
+                   "coordinates are too large for the sizing field (extent "
                    "%g); use another unit of length",
                    side);
   f->slope = o->growth - 1;
@@ -131,7 +135,8 @@ static vg_status build(const struct vg_sizing_options *o,
                          &s->octree, err);
 }
 
-/* The growth of the surface from above or from below. */
+/* Build the hierarchy for the growth of surface samples, from above or from
+ * below. */
 static vg_status make_near(const struct vg_sizing_options *o,
                            const struct vg_mesh *surface,
                            const struct vg_samples *all, int below,
@@ -158,7 +163,8 @@ static vg_status check_map(const struct vg_map_fault *f, struct vg_error *err)
                  f->x[0], f->x[1], f->x[2], f->h);
 }
 
-/* All but the sources' own, which their laws multiply. */
+/* Apply the scale to all options except those of the sources, whose laws apply
+ * it themselves. */
 static struct vg_sizing_options scaled(const struct vg_sizing_options *options)
 {
   struct vg_sizing_options o = *options;
@@ -191,7 +197,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
   if (surface) VG_TRY(vg_samples_check(surface, err));
   s = vg_calloc(1, sizeof *s);
   if (!s) {
-    st = vg_fail_memory(err, "the field of sizes");
+    st = vg_fail_memory(err, "the sizing field");
     goto done;
   }
   VG_TRY(vg_source_prepare(options, n, source, 1, &f.set, err));
@@ -211,7 +217,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
   VG_TRY(vg_team_any(options->team, &steep, err));
   VG_TRY(check_map(&fault, err));
   s->slope = steep ? vg_bvh_steep(s->growth) : s->growth;
-  VG_CHECK("the field of sizes", vg_octree_defects(&s->octree));
+  VG_CHECK("the sizing field", vg_octree_defects(&s->octree));
   *out = s;
   s = NULL;
 done:

@@ -10,7 +10,7 @@
 
 #define LANES VG_BVH_LANES
 
-/* Order of the samples: medians of the longest side, again and again. */
+/* Order of the samples: recursive medians along the longest side. */
 
 struct key {
   float p[3];
@@ -23,7 +23,7 @@ static int key_less(const struct key *a, const struct key *b, int axis)
   return a->at < b->at;
 }
 
-/* Median of first, middle and last. */
+/* Median of the first, middle and last key. */
 static struct key choose_pivot(const struct key *a, size_t n, int axis)
 {
   const struct key *x = a, *y = a + n / 2, *z = a + n - 1, *swap;
@@ -37,8 +37,9 @@ static struct key choose_pivot(const struct key *a, size_t n, int axis)
   return *y;
 }
 
-/* Partition: the m least of n keys come first. Every other pivot is half way
- * between the extremes, which bounds the rounds for any input. */
+/* Partition: move the m smallest of n keys to the front. Every fourth pivot is
+ * half way between the extremes, which bounds the number of rounds for any
+ * input. */
 static void select_keys(struct key *a, size_t n, size_t m, int axis)
 {
   for (int round = 0; n > 1 && m > 0 && m < n; round++) {
@@ -63,7 +64,7 @@ static void select_keys(struct key *a, size_t n, size_t m, int axis)
       a[i++] = a[--j];
       a[j] = swap;
     }
-    if (!i) { /* the pivot is the least: put it first */
+    if (!i) { /* the pivot is the smallest key: move it to the front */
       for (size_t k = 1; k < n; k++)
         if (key_less(a + k, a + i, axis)) i = k;
       pivot = a[i];
@@ -100,8 +101,8 @@ static int longest_side(const struct key *a, size_t n)
   return axis;
 }
 
-/* Order n keys into runs of `unit` for the lanes of one node, each of them
- * in order within; unit is 8^level. */
+/* Order n keys into runs of `unit` keys, one for each lane of a node, with
+ * each run ordered in the same way. unit is 8^level. */
 static void order_keys(struct key *a, size_t n, size_t unit)
 {
   size_t lane = (n + unit - 1) / unit, m = lane / 2 * unit;
@@ -117,7 +118,8 @@ static void order_keys(struct key *a, size_t n, size_t unit)
   order_keys(a + m, n - m, unit);
 }
 
-/* Keys that one thread orders alone, and blocks or groups that it fills. */
+/* Number of keys that one thread orders alone, and of blocks or groups that it
+ * fills. */
 #define RANGE 8192
 #define GRAIN 256
 
@@ -126,8 +128,8 @@ struct range {
   size_t n, unit;
 };
 
-/* As order_keys, the longer ranges halved round by round: range i becomes
- * 2 i and 2 i + 1. */
+/* As order_keys, with the longer ranges halved round by round: range i becomes
+ * ranges 2 i and 2 i + 1. */
 static void halve_body(void *context, size_t first, size_t end, int worker)
 {
   struct range *range = context;
@@ -157,7 +159,8 @@ static void order_body(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) order_keys(r[i].key, r[i].n, r[i].unit);
 }
 
-/* Ranges are spread over the array for the next round, from the end. */
+/* For the next round, the ranges are spread over the array, beginning at its
+ * end. */
 static int order_samples(struct key *key, size_t n, int threads)
 {
   size_t unit = LANES, n_range = 1, most = 1;
@@ -186,7 +189,8 @@ static int size_class(double h, double least)
   return c;
 }
 
-/* Keys by class of size, the classes in order; count gets how many each. */
+/* Sort the keys by size class, in the order of the classes. count: number of
+ * keys in each class. */
 static void classify(size_t n, const double (*p)[3], const double *h,
                      struct key *key, size_t count[VG_BVH_CLASSES])
 {
@@ -206,7 +210,7 @@ static void classify(size_t n, const double (*p)[3], const double *h,
   }
 }
 
-/* Box and sizes of what one lane of a group holds. */
+/* Box and sizes of the contents of one lane of a group. */
 struct bound {
   double lo[3], hi[3];
   float h_min, h_max;
@@ -238,7 +242,7 @@ static void join(struct bound *a, const struct bound *b)
   if (b->h_max > a->h_max) a->h_max = b->h_max;
 }
 
-/* Group of n <= LANES bounds; an empty lane is never entered. */
+/* Fill a group with n <= LANES bounds. Searches never enter an empty lane. */
 static void fill_group(const struct bound *from, size_t n,
                        struct vg_bvh_group *g)
 {
@@ -265,10 +269,10 @@ struct filling {
   size_t n;
   struct vg_bvh_block *block;
   struct vg_bvh_group *group;
-  struct bound *bound, *up; /* of what goes in, and of what comes out */
+  struct bound *bound, *up; /* bounds of the input and of the output */
 };
 
-/* The last block is padded by repeating its last sample. */
+/* The last block is padded with copies of its last sample. */
 static void block_body(void *context, size_t first, size_t end, int worker)
 {
   const struct filling *f = context;
@@ -304,8 +308,8 @@ static void group_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* A tree of f->n samples: its blocks, and groups level by level. Moves *f on
- * behind them. */
+/* Build the tree of f->n samples: its blocks, and its groups level by level.
+ * Advances *f past them. */
 static void fill_tree(struct filling *f, struct vg_bvh_tree *t, int threads)
 {
   struct bound *bound = f->up;
@@ -368,7 +372,7 @@ vg_status vg_bvh_new(size_t n, const double (*p)[3], const double *h,
   t->steep = (float)vg_bvh_steep(slope);
   t->rise = (float)vg_bvh_rise(slope);
   t->block = vg_alloc(n_block, sizeof *t->block);
-  /* a seventh of the blocks, and what is not full on each level */
+  /* a seventh of the blocks, and one partly filled group per level */
   t->group = vg_alloc(n_group, sizeof *t->group);
   if (!t->block || !t->group) goto refused;
   classify(n, p, h, key, count);
@@ -381,7 +385,7 @@ refused:
   free(bound);
   free(key);
   vg_bvh_free(t);
-  return vg_fail_memory(err, "the sizes on the surface");
+  return vg_fail_memory(err, "the spacings on the surface");
 }
 
 void vg_bvh_free(struct vg_bvh *t)

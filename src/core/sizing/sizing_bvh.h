@@ -1,18 +1,20 @@
-/* core/sizing/sizing_bvh.h: growth of very many point samples, by a bounding
- * volume hierarchy. Internal to core/sizing. Uses base only.
+/* core/sizing/sizing_bvh.h: growth of the spacing from very many point
+ * samples, by a bounding volume hierarchy. Internal to core/sizing. Uses base
+ * only.
  *
  * Sample i with size h_i gives, with slope s and d = max(0, r_i - p h_i),
  *   from above  h_i + s d,  the minimum over i: sizes grow away from samples;
- *   from below  h_i - s d,  the maximum over i: nothing may undercut them
- *               nearby. Beyond VG_BVH_KNEE h_i that falls by VG_BVH_STEEP
- *               if s is less, and so ends after three h_i.
+ *   from below  h_i - s d,  the maximum over i: nothing may undercut the
+ *               samples nearby. Beyond VG_BVH_KNEE h_i, this value falls by
+ *               VG_BVH_STEEP if s is less, and so ends after three h_i.
  * The plateau p h_i (VG_BVH_PLATEAU of h, s p <= VG_BVH_OFFSET) closes the
- * gaps between samples of one triangle and flattens the kink that a coarse
- * interpolation across the surface would round upwards.
+ * gaps between the samples of a triangle. It also flattens the kink at the
+ * surface, which a coarse interpolation would round upwards.
  *
- * It stays next to core/search/box_tree.h because it tests eight samples or
- * nodes at once: the least value at 200,000 points near 577,602 samples takes
- * 0.18 s, by the shared tree 0.98 s (one thread, 2026-11-26). */
+ * This module exists in addition to core/search/box_tree.h because it tests
+ * eight samples or nodes at once: the smallest value at 200,000 points near
+ * 577,602 samples takes 0.18 s, with the general tree 0.98 s (one thread,
+ * 2026-11-26). */
 #ifndef VG_CORE_SIZING_SIZING_BVH_H
 #define VG_CORE_SIZING_SIZING_BVH_H
 
@@ -25,31 +27,34 @@
 #define VG_BVH_OFFSET 0.05
 #define VG_BVH_KNEE 1.5
 #define VG_BVH_STEEP 0.5
-#define VG_BVH_CLASSES 16 /* sizes within a factor of 4; the last: others */
+#define VG_BVH_CLASSES                                                         \
+  16 /* each class spans a factor of 4 in size; the last                       \
+        holds all larger sizes */
 
 struct vg_bvh;
 
-/** s p, as a share of h_i. */
+/** s p, relative to h_i. */
 static inline double vg_bvh_offset(double slope)
 {
   return slope * VG_BVH_PLATEAU < VG_BVH_OFFSET ? slope * VG_BVH_PLATEAU
                                                 : VG_BVH_OFFSET;
 }
 
-/** The slope from below beyond the knee, at least that before it. */
+/** Slope from below beyond the knee, at least the slope before it. */
 static inline double vg_bvh_steep(double slope)
 {
   return slope > VG_BVH_STEEP ? slope : VG_BVH_STEEP;
 }
 
-/** What size h gives from below beyond the knee, less vg_bvh_steep d, in h. */
+/** Value from below of a sample of size h beyond the knee, plus vg_bvh_steep d,
+ * relative to h. */
 static inline double vg_bvh_rise(double slope)
 {
   return 1 + vg_bvh_offset(slope) + (vg_bvh_steep(slope) - slope) * VG_BVH_KNEE;
 }
 
-/** Build over n >= 1 samples; p [n][3] and h [n] are copied. threads: as
- * vg_parallel_for's; the same for any number. */
+/** Build the hierarchy over n >= 1 samples; p [n][3] and h [n] are copied.
+ * threads: as for vg_parallel_for; the result does not depend on it. */
 vg_status vg_bvh_new(size_t n, const double (*p)[3], const double *h,
                      double slope, int threads, struct vg_bvh **out,
                      struct vg_error *err);
@@ -57,39 +62,41 @@ vg_status vg_bvh_new(size_t n, const double (*p)[3], const double *h,
 /** Free; NULL is accepted. */
 void vg_bvh_free(struct vg_bvh *t);
 
-/** Least "from above" value in the box lo..hi (a point: lo == hi).
+/** Smallest "from above" value in the box lo..hi (a point: lo == hi).
  *
- * @param below   only values under this matter; it is returned if none is
- * @param hint    in/out: where the search starts, and where it ended; any
- *                value that an earlier call returned, 0 at first. It is for
- *                speed: the result does not depend on it. */
+ * @param below   only smaller values are searched for; returned if there is no
+ *                smaller value
+ * @param hint    in/out: start of the search, and its end. Any value returned
+ *                by an earlier call, initially 0. It only affects speed, not
+ *                the result. */
 double vg_bvh_above(const struct vg_bvh *t, const double lo[3],
                     const double hi[3], double below, uint32_t *hint);
 
-/** What classes of samples give from below at some point near those where it
- * is asked for, which tells what they can give there; made when it is first
- * of use. is_known is 0 at first. */
+/** Upper bounds of the "from below" values of each size class near some point,
+ * computed when first needed. They limit the values at other points nearby.
+ * is_known must be 0 initially. */
 struct vg_bvh_reach {
   double mid[3];
-  float trifle; /* less than that need not be known */
+  float trifle; /* smaller values need not be known */
   int is_known;
   float most[VG_BVH_CLASSES];
 };
 
-/** Greatest "from below" value at x; `above` if none exceeds it, or any that
- * is not below `enough`.
+/** Largest "from below" value at x. Returns `above` if no value exceeds it, or
+ * any value that is at least `enough`.
  *
  * @param reach  for speed, or NULL
- * @param by     out: the size of the sample that gives it, 0 where none
- *               exceeds `above` */
+ * @param by     out: size of the sample with this value; 0 if no value exceeds
+ *               `above` */
 double vg_bvh_below(const struct vg_bvh *t, const double x[3], double above,
                     double enough, struct vg_bvh_reach *reach, double *by);
 
-/** A sample of size `by` gives v from below somewhere: how much more than by
- * s `far` that falls over a distance of `far` at most. 0 if by is. */
+/** Let a sample of size `by` have the value v from below at some point. Returns
+ * by how much more than s * far the value can fall over a distance of `far`. 0
+ * if by is 0. */
 double vg_bvh_falls(const struct vg_bvh *t, double by, double v, double far);
 
-/** What a sample of size `by` gives from below at its knee. */
+/** Value from below of a sample of size `by` at its knee. */
 double vg_bvh_knee(const struct vg_bvh *t, double by);
 
 #endif

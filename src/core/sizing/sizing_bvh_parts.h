@@ -2,13 +2,13 @@
  * core/sizing/sizing_bvh.c builds and core/sizing/sizing_walk.c searches.
  * Internal to core/sizing.
  *
- * Samples are classed by size, so that large and small ones do not spoil each
- * other's bounds; each class is a tree: samples in the order of a k-d tree,
- * eight to a block, blocks eight to a group, groups eight to a group above,
- * up to one root. Positions are single precision and relative to an origin of
- * the block or group, so that rounding is relative to the distance itself,
- * however wide the span of sizes is; VG_BVH_MARGIN allows for it where a bound
- * must not exclude what it should not. */
+ * Samples are classed by size, so that large and small samples do not weaken
+ * each other's bounds. Each class is a tree: samples in the order of a k-d
+ * tree, eight per block, eight blocks per group, eight groups per group of the
+ * next level, up to one root. Positions are in single precision and relative
+ * to an origin of the block or group, so that rounding is relative to the
+ * distance, for any range of sizes. VG_BVH_MARGIN allows for this rounding
+ * where a bound must not exclude valid results. */
 #ifndef VG_CORE_SIZING_SIZING_BVH_PARTS_H
 #define VG_CORE_SIZING_SIZING_BVH_PARTS_H
 
@@ -17,15 +17,15 @@
 #define VG_BVH_LANES 8
 #define VG_BVH_LEVELS 12
 #define VG_BVH_MARGIN 2e-6f
-#define VG_BVH_NEVER 1e38f /* a size that none has */
+#define VG_BVH_NEVER 1e38f /* a size larger than that of any sample */
 
 struct vg_bvh_block {
   double origin[3];
   float p[3][VG_BVH_LANES], h[VG_BVH_LANES];
 };
 
-/* Boxes and sizes of eight children; a lane without one has sizes that are
- * never of use. */
+/* Boxes and sizes of eight children; an empty lane has sizes that no search
+ * accepts. */
 struct vg_bvh_group {
   double origin[3];
   float mid[3][VG_BVH_LANES], half[3][VG_BVH_LANES];
@@ -34,18 +34,18 @@ struct vg_bvh_group {
 
 struct vg_bvh_tree {
   const struct vg_bvh_block *block;
-  const struct vg_bvh_group *group[VG_BVH_LEVELS]; /* the lowest first */
+  const struct vg_bvh_group *group[VG_BVH_LEVELS]; /* lowest level first */
   int n_level;
   float h_min, h_max;
 };
 
 struct vg_bvh {
-  struct vg_bvh_block *block; /* of all trees, one after the other */
+  struct vg_bvh_block *block; /* blocks of all trees, one after the other */
   struct vg_bvh_group *group;
   struct vg_bvh_tree tree[VG_BVH_CLASSES];
   int n_tree;
   float slope, offset;
-  float steep, rise; /* from below, beyond the knee */
+  float steep, rise; /* slope and offset from below, beyond the knee */
 };
 
 #endif

@@ -1,5 +1,5 @@
-/* Is the octree of sizes a tree, and every size a number? A check of stages
- * (base/checks.h). */
+/* Check that the octree of spacings is a valid tree, and that every spacing is
+ * a number (base/checks.h). */
 #include "core/sizing/sizing_octree.h"
 
 static size_t bad_entry(const struct vg_octree *t, uint32_t e, size_t above)

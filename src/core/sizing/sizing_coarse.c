@@ -1,4 +1,4 @@
-/* Sizes that are larger than another field's. */
+/* A sizing field coarser than another one. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,7 +18,8 @@ static float size_at(const struct coarsening *c, const double x[3], float h)
   return (float)fmin(c->factor * (double)h, vg_sizing_at(c->most, x));
 }
 
-/* Entry e of the tree, the cube at lo; the least size in it. */
+/* Coarsen entry e of the tree, the cube at lo. Returns the smallest spacing in
+ * it. */
 static float coarsen(const struct coarsening *c, uint32_t e, const double lo[3],
                      double side)
 {
@@ -61,14 +62,14 @@ vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
   const struct vg_octree *t = &s->octree;
   struct coarsening c = { s, most, factor, to ? &to->octree : NULL };
 
-  if (!to) return vg_fail_memory(err, "the field of sizes");
+  if (!to) return vg_fail_memory(err, "the sizing field");
   to->octree.child = copy_of(t->child, t->n_split, sizeof *t->child);
   to->octree.least = copy_of(t->least, t->n_split, sizeof *t->least);
   to->octree.leaf = copy_of(t->leaf, t->n_leaf, sizeof *t->leaf);
   memset(&to->common, 0, sizeof to->common);
   if (!to->octree.child || !to->octree.least || !to->octree.leaf) {
     vg_sizing_free(to);
-    return vg_fail_memory(err, "the field of sizes");
+    return vg_fail_memory(err, "the sizing field");
   }
   to->least = (double)coarsen(&c, t->root, t->lo, t->side);
   to->most = fmin(factor * s->most, most->most);

@@ -8,8 +8,12 @@
 #include "base/memory.h"
 #include "core/sizing/sizing_probes.h"
 
-#define NEARBY 3 /* spacings around a source that has no place */
-#define MANY 200 /* more sources are looked at in less detail */
+#define NEARBY                                                                 \
+  3 /* distance of sample points around a source without points                \
+       in the void, in spacings */
+#define MANY                                                                   \
+  200 /* if there are more sources, each gets fewer sample points              \
+       */
 
 struct finder {
   const struct vg_sizing_options *options;
@@ -20,7 +24,7 @@ struct finder {
   size_t cap, cap_outside, cap_place;
 };
 
-/* Faces that hold a source back. */
+/* Faces that limit a source. */
 struct holders {
   size_t n, cap;
   struct holder {
@@ -37,8 +41,9 @@ void vg_effects_release(struct vg_effects *h)
   memset(h, 0, sizeof *h);
 }
 
-/* What a source asks for at x, its growth included. One of VGRID's does by
- * itself only where it is: there the mean is its spacing. */
+/* Requested spacing of a source at x, including its growth. A VGRID source by
+ * itself only defines the spacing at its own position, where the mean is its
+ * spacing. */
 static double asked_at(const struct finder *f, size_t i, const double x[3])
 {
   struct vg_source s = f->source[i];
@@ -49,7 +54,8 @@ static double asked_at(const struct finder *f, size_t i, const double x[3])
   return vg_sizing_sources_at(f->options, 1, &s, x);
 }
 
-/* Mean edge of a triangle, and how far its corners and its middle are. */
+/* Mean edge of a triangle, and the distance of its nearest corner or centroid.
+ */
 static void measure(const struct vg_mesh *m, size_t tri, const double x[3],
                     double *edge, double *distance)
 {
@@ -72,7 +78,8 @@ static void measure(const struct vg_mesh *m, size_t tri, const double x[3],
   *distance = sqrt(near2);
 }
 
-/* The face that asks for most, and all that ask for more than the source. */
+/* Find the face that requires the largest spacing, and all faces that require
+ * a larger spacing than the source. */
 static int find_faces(const struct finder *f, struct vg_limited_source *h,
                       struct holders *all)
 {
@@ -100,7 +107,7 @@ static int find_faces(const struct finder *f, struct vg_limited_source *h,
   return 0;
 }
 
-/* Whether none of them would with another growth rate. */
+/* Would no face limit the source with another growth rate? */
 static int lets_go(const struct holders *all, double growth, double asked)
 {
   for (size_t i = 0; i < all->n; i++)
@@ -150,8 +157,8 @@ static void take(struct vg_limited_source *h, const double x[3], double asked,
   h->got = got;
 }
 
-/* Whether that is worth telling. What is around a source need not follow it
- * everywhere. */
+/* Is the limitation worth reporting? The field around a source need not follow
+ * it everywhere. */
 static int is_limited(const struct vg_limited_source *h, int is_wide)
 {
   return h->n_limited &&
@@ -160,8 +167,8 @@ static int is_limited(const struct vg_limited_source *h, int is_wide)
            (double)h->n_limited >= VG_LIMITED_SHARE * (double)h->n_place));
 }
 
-/* Keep a place around which sizes are more than twice as large, four of them
- * off. */
+/* Store a sample point if the spacing more than doubles within four spacings
+ * of it. */
 static int keep_place(struct finder *f, size_t i, const double x[3], double got)
 {
   struct vg_steep_place p = { .got = got, .source = i };
@@ -181,8 +188,8 @@ static int keep_place(struct finder *f, size_t i, const double x[3], double got)
   return 0;
 }
 
-/* Ask source i at its places from .. to that are in the void. is_wide: they
- * are around it. */
+/* Evaluate source i at its sample points from .. to that are in the void.
+ * is_wide: the points are around the source. */
 static vg_status ask(struct finder *f, size_t i, const struct vg_probes *p,
                      size_t from, size_t to, int is_wide, struct vg_error *err)
 {
@@ -248,7 +255,8 @@ static vg_status ask_all(struct finder *f, const struct vg_probes *p,
   return st;
 }
 
-/* Sources without a place in the void: places around them. */
+/* For sources without a sample point in the void: create sample points around
+ * them. */
 static void look_around(const struct finder *f, const struct vg_probes *p,
                         const uint8_t *is_met, struct vg_probes *wide)
 {
@@ -279,7 +287,8 @@ static int is_beyond(const struct vg_probes *p, size_t from, size_t to,
   return 1;
 }
 
-/* What has no place in the fluid either, layers included. */
+/* List the sources that have no sample point in the fluid either, which
+ * includes the layers. */
 static vg_status list_outside(struct finder *f, const struct vg_probes *p,
                               const struct vg_mesh *surface,
                               const uint8_t *is_met, struct vg_error *err)
@@ -319,7 +328,7 @@ static vg_status find(struct finder *f, struct vg_probes *p,
   VG_TRY(ask_all(f, p, is_met, 0, err));
   look_around(f, p, is_met, wide);
   if (wide->refused) {
-    st = vg_fail_memory(err, "the places of sources");
+    st = vg_fail_memory(err, "the sample points of sources");
     goto done;
   }
   if (!wide->n) goto done;
@@ -355,7 +364,8 @@ vg_status vg_effects_find(const struct vg_sizing_options *options, size_t n,
   is_met = vg_calloc(n, 1);
   for (size_t i = 0; i < n; i++)
     vg_probes_shape(&p, source + i, (uint32_t)i, n <= MANY);
-  if (!is_met || p.refused) st = vg_fail_memory(err, "the places of sources");
+  if (!is_met || p.refused)
+    st = vg_fail_memory(err, "the sample points of sources");
   else st = find(&f, &p, &wide, is_met, surface, err);
   vg_probes_release(&p);
   vg_probes_release(&wide);

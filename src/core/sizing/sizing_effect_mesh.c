@@ -1,4 +1,4 @@
-/* Whether a mesh has points near the places of sources. */
+/* Does a mesh have points near the sample points of sources? */
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +52,7 @@ static vg_status meet_slice(void *context, const struct vg_slice *s,
   return VG_OK;
 }
 
-/* The places of a source follow each other. */
+/* The sample points of a source are contiguous. */
 static void conclude(struct vg_effects *h, const uint64_t *met)
 {
   for (size_t i = 0, end; i < h->n_place; i = end) {

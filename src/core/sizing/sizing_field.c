@@ -1,8 +1,8 @@
-/* The exact field: sources, and the growth of the surface. */
+/* The exact field: sources, and growth of the spacing from the surface. */
 #include "core/sizing/sizing_octree.h"
 
-/* H6: Sources count as finer than the surface below this share of what it
- * allows. */
+/* H6: sources count as finer than the surface if they are below this share of
+ * the spacing that it allows. */
 #define FINER 0.65
 
 double vg_stat_clamp(const struct vg_stat *f, double h)
@@ -11,8 +11,9 @@ double vg_stat_clamp(const struct vg_stat *f, double h)
   return h > f->h_min ? h : f->h_min;
 }
 
-/* Where the upper bound is below the sources it holds, and the lower one,
- * which costs most, need not be known. */
+/* Combine the bounds. If the upper bound is below the spacing of the sources,
+ * it is the result, and the lower bound, which is the most expensive, is not
+ * needed. */
 double vg_stat_combine(const struct vg_stat *f, const double x[3],
                        double source, struct vg_bvh_reach *reach,
                        uint32_t *hint)

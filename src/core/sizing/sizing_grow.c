@@ -6,33 +6,34 @@
 #include "base/parallel.h"
 #include "core/sizing/sizing_build.h"
 
-/* The octree is made level by level. A cell is split where trilinear
+/* The octree is built level by level. A cell is split if trilinear
  * interpolation between its corners would miss the field by more than
- * TOLERANCE, but not below the size found in it (floor of it): there the
- * field varies by a few per cent only.
+ * TOLERANCE, but not below the spacing found in it (floor times that spacing):
+ * within such a cell the field varies by a few per cent only.
  *
- * A split makes up to 19 new points: middles of 12 edges and 6 faces, and the
- * centre. A middle that is a corner of all cells around it is sampled; one
- * that is not, because a neighbour is not split, hangs: it takes the mean of
- * the ends of its edge or the corners of its face, which is what the
- * neighbour's interpolation gives there, so the result is continuous. Parents
- * of a hanging point are corners of split cells: points of levels before.
+ * A split creates up to 19 new points: midpoints of 12 edges and 6 faces, and
+ * the centre. A midpoint that is a corner of all cells around it is sampled.
+ * If a neighbour is not split, the midpoint hangs: it takes the mean of the
+ * ends of its edge or of the corners of its face. This equals the neighbour's
+ * interpolation there, so the result is continuous. The parents of a hanging
+ * point are corners of split cells, i.e. points of earlier levels.
  *
- * Cells know those around them by their parents', so a middle that several
- * cells have belongs to the first of them, and each counts its own: no table
- * of points is searched, and threads share nothing. */
+ * Cells find their neighbours through those of their parents. A midpoint
+ * shared by several cells therefore belongs to the first of them, and each
+ * cell counts its own midpoints: no table of points is searched, and threads
+ * share no data. */
 #define TOLERANCE 0.03 /* H1 */
 #define MAP_CELLS 32   /* H7 */
 #define NONE UINT32_MAX
 #define POINT_MAX (UINT32_MAX - 1)
-#define FAMILIES 16 /* of eight cells, for a thread at a time */
+#define FAMILIES 16 /* families of eight cells per thread and step */
 
-/* Room from the beginning. Blocks of tens of megabytes grow by new addresses,
- * smaller ones by copies, which one thread would make. */
+/* Initial capacity. Blocks of tens of megabytes grow by remapping, smaller
+ * ones by copies, which a single thread would make. */
 #define ROOM ((size_t)1 << 20)
 
-/* Neighbours of a split cell that share a middle of it, as directions, and
- * what the middle is in their lattices of 3 x 3 x 3 points. */
+/* Neighbours of a split cell that share one of its midpoints, as directions,
+ * and the index of the midpoint in their lattices of 3 x 3 x 3 points. */
 struct share {
   uint8_t n, way[3], at[3];
 };
@@ -40,17 +41,18 @@ struct share {
 struct level {
   struct vg_octree_build *b;
   size_t first, n; /* cells */
-  uint32_t half;   /* of the side */
+  uint32_t half;   /* half the side of a cell */
   double side;
-  uint8_t *mark; /* [n] split */
-  float *centre; /* [n] the field there, NAN where not asked for */
+  uint8_t *mark; /* [n] 1: cell is split */
+  float *centre; /* [n] field at the centre, NAN if not evaluated */
   size_t n_split;
-  uint32_t *which;             /* [n_split] cells */
-  uint32_t (*around)[27];      /* [n_split] cells by direction, itself at
-                                  13; only across faces and edges */
-  const uint32_t (*above)[27]; /* the same of their parents */
-  uint32_t *own;               /* [n_split] middles that it owns */
-  uint32_t *base;              /* [n_split + 1] the first point of each */
+  uint32_t *which;             /* [n_split] split cells */
+  uint32_t (*around)[27];      /* [n_split] cells by direction, the cell
+                                  itself at 13; only across faces and edges */
+  const uint32_t (*above)[27]; /* around[] of the parents */
+  uint32_t *own;               /* [n_split] bit mask of the midpoints that it
+                                  owns */
+  uint32_t *base;              /* [n_split + 1] first point of each */
   struct share share[27];
 };
 
@@ -61,15 +63,16 @@ static void coordinates(int i, int at[3])
   for (int k = 0; k < 3; k++, i /= 3) at[k] = i % 3;
 }
 
-/* Decisions, for the eight children of a cell together. */
+/* Split decisions for the eight children of a cell together. */
 
 struct family {
   const struct level *l;
   struct vg_bvh_reach reach;
-  float face[125]; /* field at the centres of their faces; NAN */
+  float face[125]; /* field at the centres of their faces; NAN if not
+                      evaluated */
 };
 
-/* Cells around this one are next. */
+/* Prepare for the family whose first cell is c. */
 static void start_family(struct family *y, const struct vg_octree_cell *c)
 {
   const struct level *l = y->l;
@@ -80,7 +83,7 @@ static void start_family(struct family *y, const struct vg_octree_cell *c)
   y->reach.is_known = 0;
 }
 
-/* At point i of the lattice of a cell. */
+/* Field at point i of the lattice of a cell. */
 static float sample(struct family *y, const struct vg_octree_cell *c, int i)
 {
   const struct level *l = y->l;
@@ -94,7 +97,7 @@ static float sample(struct family *y, const struct vg_octree_cell *c, int i)
   return (float)vg_stat_at(l->b->f, x, &y->reach, &hint);
 }
 
-/* Siblings share faces. */
+/* Field at the centre of a face, which siblings share. */
 static float sample_face(struct family *y, const struct vg_octree_cell *c,
                          int sibling, int i)
 {
@@ -108,7 +111,7 @@ static float sample_face(struct family *y, const struct vg_octree_cell *c,
   return y->face[slot];
 }
 
-/* Mean of the corners that lie on face (axis, end); of all where axis < 0. */
+/* Mean of the corners on face (axis, end); of all corners if axis < 0. */
 static float corner_mean(const float h[8], int axis, int end)
 {
   float sum = 0;
@@ -137,7 +140,7 @@ static int test_cell(struct family *y, const struct vg_octree_cell *c,
   return 0;
 }
 
-/* A map of which no bounds are known is looked at everywhere (H7). */
+/* A map without known bounds is sampled everywhere (H7). */
 static int is_unsampled(const struct vg_octree_build *b, double side)
 {
   const struct vg_size_map *map = b->f->set.map;
@@ -191,8 +194,8 @@ static void decide_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Which cells are split. Where the tree would become too large for its limit
- * the floor rises: a coarser field, but one that covers everything alike. */
+/* Decide which cells are split. If the tree would exceed its limit, the floor
+ * rises: the field becomes coarser, but uniformly everywhere. */
 static vg_status decide(struct level *l, struct vg_error *err)
 {
   struct vg_octree_build *b = l->b;
@@ -221,7 +224,7 @@ static vg_status decide(struct level *l, struct vg_error *err)
   return VG_OK;
 }
 
-/* Splitting. */
+/* --- splitting ------------------------------------------------------------ */
 
 static uint32_t neighbour(const struct level *l, size_t cell, const int d[3])
 {
@@ -259,8 +262,8 @@ static void around_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Middles have one coordinate that is odd, or two; the centre has three, and
- * nobody to share with. */
+/* Midpoints have one coordinate that is odd, or two. The centre has three, and
+ * is not shared. */
 static void make_shares(struct level *l)
 {
   for (int i = 0; i < 27; i++) {
@@ -287,10 +290,10 @@ static void make_shares(struct level *l)
   }
 }
 
-/* Splits that have middle i of split s, and the first of them. */
+/* Number of splits that have midpoint i of split s, and the first of them. */
 struct sharing {
   size_t first;
-  int at; /* the middle in its lattice */
+  int at; /* index of the midpoint in its lattice */
   unsigned n;
 };
 
@@ -335,7 +338,8 @@ static void own_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Cells inside the root that have a middle when all of them are split. */
+/* Number of cells inside the root that share a midpoint if all of them are
+ * split. */
 static unsigned full_count(const struct vg_octree_point *p)
 {
   unsigned n = p->n_parent == 2 ? 4 : p->n_parent == 4 ? 2 : 1;
@@ -347,8 +351,8 @@ static unsigned full_count(const struct vg_octree_point *p)
   return n >> on_side;
 }
 
-/* Middle i that split s owns. Its parents are what its odd coordinates span:
- * points of levels before, known by now. */
+/* Create midpoint i, which split s owns. Its parents span its odd coordinates.
+ * They are points of earlier levels, so their values are known. */
 static void make_point(const struct level *l, struct family *y, size_t s, int i,
                        unsigned n_cell, struct vg_octree_point *p)
 {
@@ -421,7 +425,7 @@ static void split_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Numbers of the splits, of their points and children. */
+/* Number the splits, their points and their children. */
 static int number_splits(struct level *l)
 {
   struct vg_octree_build *b = l->b;
@@ -468,7 +472,7 @@ static vg_status split_level(struct level *l, struct vg_error *err)
   l->own = vg_alloc(l->n_split, sizeof *l->own);
   l->base = vg_alloc(l->n_split + 1, sizeof *l->base);
   if (!l->which || !l->around || !l->own || !l->base || number_splits(l))
-    st = vg_fail_memory(err, "the octree of sizes");
+    st = vg_fail_memory(err, "the octree of the sizing field");
   else st = split(l, err);
   free(l->which);
   free(l->own);
@@ -476,7 +480,7 @@ static vg_status split_level(struct level *l, struct vg_error *err)
   return st;
 }
 
-/* *above: around[] of the level above, replaced by that of this one. */
+/* *above: around[] of the level above, replaced by that of this level. */
 static vg_status grow_level(struct vg_octree_build *b, int level,
                             uint32_t (**above)[27], struct vg_error *err)
 {
@@ -493,8 +497,9 @@ static vg_status grow_level(struct vg_octree_build *b, int level,
   vg_status st;
 
   make_shares(&l);
-  st = l.mark && l.centre ? split_level(&l, err)
-                          : vg_fail_memory(err, "the octree of sizes");
+  st = l.mark && l.centre
+       ? split_level(&l, err)
+       : vg_fail_memory(err, "the octree of the sizing field");
   free(l.mark);
   free(l.centre);
   free(*above);
@@ -527,7 +532,8 @@ vg_status vg_octree_grow(struct vg_octree_build *b, struct vg_error *err)
   uint32_t(*above)[27] = NULL;
   vg_status st = VG_OK;
 
-  if (make_root(b)) return vg_fail_memory(err, "the octree of sizes");
+  if (make_root(b))
+    return vg_fail_memory(err, "the octree of the sizing field");
   b->level[1] = 1;
   b->n_level = 1;
   while (st >= 0 && b->n_level <= VG_OCTREE_DEPTH) {

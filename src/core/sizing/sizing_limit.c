@@ -6,17 +6,19 @@
 #include "base/memory.h"
 #include "core/sizing/sizing_build.h"
 
-/* Gradient. Laws of sources may be steeper than the growth rate, so their
- * values at the points are lowered until no two corners of a leaf differ by
- * more than the slope times their distance. Lowering is monotone: whatever
- * the order, it ends in the same greatest values that satisfy all. So leaves
- * may be taken by many threads, and a value is lowered for good as soon as
- * one of them asks for it. */
+/* Gradient limit. Laws of sources may be steeper than the growth rate, so
+ * their values at the points are lowered until no two corners of a leaf differ
+ * by more than the slope times their distance. Lowering is monotone, and in
+ * any order it converges to the same largest values that satisfy all
+ * conditions. Many threads may therefore process leaves, and each lowered
+ * value is stored at once. */
 struct limit {
   struct vg_octree_build *b;
-  _Atomic uint32_t *bits;    /* [n_point] of floats above 0: in their order */
-  float *before;             /* [n_point] */
-  _Atomic uint8_t *round_of; /* [n_point] when it was lowered last */
+  _Atomic uint32_t *bits;    /* [n_point] bits of positive floats, which have
+                                the same order */
+  float *before;             /* [n_point] values before */
+  _Atomic uint8_t *round_of; /* [n_point] round in which the point was
+                                lowered last */
   uint8_t round;
   int backwards;
   atomic_int changed;
@@ -38,7 +40,7 @@ static uint32_t bits_of(float h)
   return bits;
 }
 
-/* Whether that changed anything. */
+/* Lower a value to h. Returns whether it changed. */
 static int lower(_Atomic uint32_t *at, float h)
 {
   uint32_t bits = bits_of(h);
@@ -86,7 +88,7 @@ static int lower_corners(const struct limit *l, const struct vg_octree_cell *c)
   return changed;
 }
 
-/* Whether a corner was lowered since the leaf was looked at last. */
+/* Was a corner lowered since the leaf was last processed? */
 static int is_due(const struct limit *l, const struct vg_octree_cell *c)
 {
   for (int i = 0; i < 8; i++) {
@@ -144,8 +146,9 @@ static void remesh_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* The field at points whose sources were lowered, and at hanging ones, whose
- * parents may hang too: in order. */
+/* Update the field at points whose source value was lowered, and at hanging
+ * points. This is done in order, because the parents of a hanging point may
+ * hang, too. */
 static void renew(struct limit *l)
 {
   struct vg_octree_build *b = l->b;
@@ -168,7 +171,7 @@ vg_status vg_octree_limit(struct vg_octree_build *b, struct vg_error *err)
   int any = -1;
 
   if (!l.bits || !l.before || !l.round_of)
-    st = vg_fail_memory(err, "the octree of sizes");
+    st = vg_fail_memory(err, "the octree of the sizing field");
   else
     st = vg_team_for(b->team, b->threads, b->n_point, VG_OCTREE_GRAIN,
                      source_body, &l, sizeof out / sizeof *out, out, err);

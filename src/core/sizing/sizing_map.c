@@ -53,7 +53,7 @@ vg_status vg_size_samples_new(size_t n, const double (*x)[3], const double *h,
   struct vg_size_samples *s = vg_calloc(1, sizeof *s);
   vg_status st;
 
-  if (!s) return vg_fail_memory(err, "the sizes at points");
+  if (!s) return vg_fail_memory(err, "the spacings at points");
   st = vg_bvh_new(n, x, h, growth - 1, threads, &s->tree, err);
   if (st < 0) {
     free(s);

@@ -9,17 +9,21 @@
 #include "base/parallel.h"
 #include "core/sizing/sizing_build.h"
 
-/* Cells are not split below FLOOR times the size (H2), where the surface rules
- * SURFACE times as much (H6), unless sizes grow by more than STEEP. */
+/* Cells are not split below FLOOR times the spacing (H2), or SURFACE times
+ * that where the surface determines the spacing (H6), unless the growth
+ * exceeds STEEP. */
 #define FLOOR 1.25
-#define FLOOR_SLOPE 0.2 /* H11: FLOOR holds here, else with 1 / sqrt(slope) */
-#define FLOOR_MOST 2    /* and is no more than this */
+#define FLOOR_SLOPE                                                            \
+  0.2                /* H11: slope at which FLOOR applies; it scales with      \
+                        1 / sqrt(slope) */
+#define FLOOR_MOST 2 /* upper limit of the scaled floor */
 #define SURFACE 2
 #define STEEP 0.5
 
-/* The compact tree, in depth-first order: near in space, near in memory.
- * First what is below each cell is counted, from the last level up; then
- * each cell hands its first numbers on to its children. */
+/* The compact tree, in depth-first order, which keeps cells that are near in
+ * space near in memory. First the leaves and splits below each cell are
+ * counted, from the last level up. Then each cell passes its first numbers on
+ * to its children. */
 
 struct span {
   uint32_t leaf, split;
@@ -28,9 +32,10 @@ struct span {
 
 struct compaction {
   const struct vg_octree_build *b;
-  struct span *span; /* [n_cell] how many below, then first of them */
+  struct span *span; /* [n_cell] numbers below each cell, later the first
+                        number */
   struct vg_octree *t;
-  size_t first; /* cell of the level */
+  size_t first; /* first cell of the level */
 };
 
 static void count_body(void *context, size_t first, size_t end, int worker)
@@ -145,7 +150,7 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
   st = vg_octree_grow(&b, err);
   if (st >= 0 && vg_source_any(&f->set)) st = vg_octree_limit(&b, err);
   if (st >= 0 && compact(&b, out))
-    st = vg_fail_memory(err, "the octree of sizes");
+    st = vg_fail_memory(err, "the octree of the sizing field");
   free(b.cell);
   free(b.point);
   if (st < 0) vg_octree_release(out);
@@ -160,9 +165,9 @@ void vg_octree_release(struct vg_octree *t)
   memset(t, 0, sizeof *t);
 }
 
-/* Evaluation. */
+/* --- evaluation ----------------------------------------------------------- */
 
-/* f: place in the leaf, from 0 to 1. */
+/* f: position in the leaf, from 0 to 1. */
 static inline double trilinear(const float h[8], const double f[3])
 {
   double a = (double)h[0] + f[0] * ((double)h[1] - (double)h[0]);
@@ -203,13 +208,15 @@ double vg_octree_at(const struct vg_octree *t, const double x[3],
   return trilinear(t->leaf[e & ~VG_OCTREE_LEAF], f);
 }
 
-/* The least value, by branch and bound. Lengths in the side of the root. */
+/* Search for the smallest value by branch and bound. Lengths are relative to
+ * the side of the root. */
 struct search {
   const struct vg_octree *t;
   double lo[3], hi[3], x[3], least;
 };
 
-/* Trilinear: least at a corner of what the box has of the leaf. */
+/* A trilinear function has its minimum at a corner of the part of the leaf in
+ * the box. */
 static void search_leaf(struct search *s, const float h[8], const double at[3],
                         double side)
 {

@@ -1,5 +1,5 @@
-/* core/sizing/sizing_octree.h: the exact field and the octree that caches it.
- * Internal to core/sizing. */
+/* core/sizing/sizing_octree.h: the exact sizing field and the octree that
+ * caches it. Internal to core/sizing. */
 #ifndef VG_CORE_SIZING_SIZING_OCTREE_H
 #define VG_CORE_SIZING_SIZING_OCTREE_H
 
@@ -8,18 +8,20 @@
 #include "core/sizing/sizing_bvh.h"
 #include "core/sizing/sizing_source.h"
 
-/** What is cached: min(above, max(below, sources)), then clamped; above and
- * below are the growth of the surface (sizing_bvh.h). So the field equals
- * the local size on the surface, and departs from it at the growth rate; down
- * to sources that are much finer than faces nearby, faster in the end. */
+/** The field to be cached: min(above, max(below, sources)), then clamped. above
+ * and below are the bounds from the growth of the surface spacing
+ * (sizing_bvh.h). The field therefore equals the local spacing on the surface
+ * and departs from it at the growth rate. Towards sources that are much finer
+ * than the faces nearby, it finally changes faster. */
 struct vg_stat {
-  const struct vg_bvh *near;  /* from above; NULL: no surface */
-  const struct vg_bvh *under; /* from below; NULL: nor any source */
+  const struct vg_bvh *near;  /* bound from above; NULL: no surface */
+  const struct vg_bvh *under; /* bound from below; NULL: no surface, or no
+                                 source */
   struct vg_source_set set;
   double slope;         /* growth - 1 */
-  atomic_int *is_steep; /* out: faces hold sources back beyond the knee
+  atomic_int *is_steep; /* out: sources are limited by faces beyond the knee
                            somewhere (sizing_bvh.h) */
-  double h_min, h_max;  /* clamp, 0 and INFINITY for none */
+  double h_min, h_max;  /* limits; 0 and INFINITY: no limit */
 };
 
 #define VG_OCTREE_LEAF 0x80000000u
@@ -29,8 +31,9 @@ struct vg_octree {
   double lo[3], side;   /* root cube */
   uint32_t root;        /* as an entry of child */
   uint32_t (*child)[8]; /* [n_split] VG_OCTREE_LEAF | leaf, or split */
-  float *least;         /* [n_split] of the corners below */
-  float (*leaf)[8];     /* [n_leaf] corner sizes; x fastest, then y */
+  float *least;         /* [n_split] smallest corner value below each */
+  float (*leaf)[8];     /* [n_leaf] spacings at the corners; x fastest, then
+                           y */
   size_t n_split, n_leaf;
 };
 #define VG_OCTREE_INIT                                                         \
@@ -40,26 +43,27 @@ struct vg_octree {
 
 double vg_stat_clamp(const struct vg_stat *f, double h);
 
-/** Value of the field at x before its gradient is limited. reach, hint: for
- * the searches (sizing_bvh.h), without influence. */
+/** Value of the field at x before its gradient is limited. reach, hint: speed
+ * up the searches (sizing_bvh.h), without effect on the result. */
 double vg_stat_at(const struct vg_stat *f, const double x[3],
                   struct vg_bvh_reach *reach, uint32_t *hint);
 
-/** The surface's bounds applied to the sources' size at x. */
+/** Apply the bounds of the surface to the spacing of the sources at x. */
 double vg_stat_combine(const struct vg_stat *f, const double x[3],
                        double source, struct vg_bvh_reach *reach,
                        uint32_t *hint);
 
-/** Lower bound of the field within a cube; of VGRID's mean an estimate from
- * the centre, which is good in a cube that resolves its sources.
- * by_sources out: 1: they ask for less than the surface does. */
+/** Lower bound of the field within a cube. For VGRID's mean, it is an estimate
+ * from the centre, which is accurate in a cube that resolves its sources.
+ * by_sources out: 1: the sources require less than the surface does. */
 double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
                      struct vg_bvh_reach *reach, uint32_t *hint,
                      int *by_sources);
 
-/** Build over the cube lo, side with about max_leaf leaves at most. *out is
- * empty before, and on failure. threads: as vg_parallel_for's; the same tree
- * for any number. team: NULL, or those who make it together. */
+/** Build the octree over the cube lo, side with at most about max_leaf leaves.
+ * *out is empty before, and on failure. threads: as for vg_parallel_for; the
+ * tree does not depend on it. team: NULL, or the processes that build it
+ * together. */
 vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
                           double side, double coarseness, size_t max_leaf,
                           int threads, struct vg_team *team,
@@ -68,17 +72,17 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
 void vg_octree_release(struct vg_octree *t);
 
 /** Number of entries that are out of range or do not point down the tree, and
- * of sizes that are negative or no numbers; a check of stages (base/checks.h).
- */
+ * of spacings that are negative or not numbers. For checks of stages
+ * (base/checks.h). */
 size_t vg_octree_defects(const struct vg_octree *t);
 
-/** Trilinear size at x; outside the cube at the nearest point of it, and
- * *outside gets the distance (0 inside). */
+/** Trilinear spacing at x; outside the cube, that at its nearest point.
+ * *outside is the distance to the cube (0 inside). */
 double vg_octree_at(const struct vg_octree *t, const double x[3],
                     double *outside);
 
-/** Least value within the cube lo, side, and a place x where it is: that in
- * the root cube nearest to it, where it is outside. */
+/** Smallest value within the cube lo, side, and a point x where it occurs. For
+ * a cube outside the root cube, the nearest point of the root cube is used. */
 double vg_octree_least(const struct vg_octree *t, const double lo[3],
                        double side, double x[3]);
 

@@ -1,5 +1,5 @@
-/* core/sizing/sizing_parts.h: what a field of sizes consists of. Internal to
- * core/sizing. */
+/* core/sizing/sizing_parts.h: data of a sizing field. Internal to core/sizing.
+ */
 #ifndef VG_CORE_SIZING_SIZING_PARTS_H
 #define VG_CORE_SIZING_SIZING_PARTS_H
 
@@ -8,10 +8,12 @@
 
 struct vg_sizing {
   struct vg_octree octree;
-  double growth, cap;     /* of sizes outside the octree; growth: rate - 1 */
-  double slope;           /* bound on the gradient in it */
-  double least, most;     /* over the octree */
-  struct vg_shmem common; /* where the octree's arrays are, if anywhere */
+  double growth, cap;     /* for spacings outside the octree: rate - 1, and
+                             their upper limit */
+  double slope;           /* bound on the gradient within the octree */
+  double least, most;     /* range over the octree */
+  struct vg_shmem common; /* shared memory with the octree's arrays, if it is
+                             used */
 };
 
 #endif

@@ -7,7 +7,8 @@
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 
-/* Of a radius: a place on a border is on neither side of it. */
+/* Factor on radii: keeps sample points off the border, where their side is
+ * undefined. */
 #define WITHIN 0.999
 
 void vg_probes_release(struct vg_probes *p)
@@ -16,7 +17,7 @@ void vg_probes_release(struct vg_probes *p)
   memset(p, 0, sizeof *p);
 }
 
-/* At x + far * way. */
+/* Add the sample point x + far * way. */
 static void put(struct vg_probes *p, uint32_t i, const double x[3], double far,
                 const double way[3])
 {
@@ -36,7 +37,7 @@ static void put_at(struct vg_probes *p, uint32_t i, const double x[3])
   put(p, i, x, 0, x);
 }
 
-/* The six ways along the axes, then the eight between them. */
+/* The six directions along the axes, then the eight diagonals between them. */
 static void make_way(int i, double way[3])
 {
   const double third = 0.57735026918962576;
@@ -60,7 +61,7 @@ static void put_ball(struct vg_probes *p, const struct vg_source *s, uint32_t i,
   }
 }
 
-/* Two directions across d. */
+/* Two directions perpendicular to d. */
 static void cross_ways(const double d[3], double way[2][3])
 {
   int thin = 0;
@@ -173,9 +174,9 @@ void vg_probes_around(struct vg_probes *p, size_t from, size_t to, double far)
     }
 }
 
-/* Rays. An edge seen along x counts for a place when it spans its y, half
- * open, and passes above its z; edges are looked at from their lower end, so
- * that both faces of an edge agree. */
+/* Rays. Seen along x, an edge counts for a sample point if it spans the y of
+ * the point (half open) and passes above its z. Edges are evaluated from their
+ * lower end, so that both faces of an edge agree. */
 
 struct ray {
   double y, z;
@@ -252,7 +253,7 @@ vg_status vg_probes_cross(struct vg_probes *p, const struct vg_mesh *m,
 {
   struct ray *ray = vg_alloc(p->n, sizeof *ray);
 
-  if (!ray) return vg_fail_memory(err, "the places of sources");
+  if (!ray) return vg_fail_memory(err, "the sample points of sources");
   for (size_t i = 0; i < p->n; i++) {
     struct vg_probe *q = p->item + i;
 

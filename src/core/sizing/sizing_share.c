@@ -1,11 +1,11 @@
-/* One field of sizes for the ranks of a node. */
+/* One sizing field shared by the ranks of a node. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "core/sizing/sizing_parts.h"
 
-/* The field's figures, the tree, its least sizes, the leaves. */
+/* The scalar members, the tree, its smallest spacings, the leaves. */
 enum { PARTS = 4 };
 
 static struct vg_bytes part(size_t n, const void *data)
@@ -37,7 +37,7 @@ void vg_sizing_show(const struct vg_sizing *s,
   for (int k = 1; k < PARTS; k++) look(user, p[k].n, p[k].data);
 }
 
-/* Takes over what is common. NULL: no memory. */
+/* Takes over the shared memory. Returns NULL if memory is refused. */
 static struct vg_sizing *view(const struct vg_shmem *common)
 {
   struct vg_sizing *s = vg_alloc(1, sizeof *s);
@@ -72,7 +72,7 @@ vg_status vg_sizing_share(struct vg_comm *c, struct vg_sizing **s,
   got = view(&common);
   if (!got) {
     vg_shmem_release(&common);
-    return vg_fail_memory(err, "the field of sizes");
+    return vg_fail_memory(err, "the sizing field");
   }
   vg_sizing_free(*s);
   *s = got;

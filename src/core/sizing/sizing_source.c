@@ -22,7 +22,7 @@ static double within(double t, double lo, double hi)
   return t < lo ? lo : t > hi ? hi : t;
 }
 
-/* Checks. */
+/* --- checks --------------------------------------------------------------- */
 
 static int is_finite3(const double p[3])
 {
@@ -40,7 +40,7 @@ static int is_vgrid(enum vg_source_kind kind)
   return kind == VG_SOURCE_VGRID_NODE || kind == VG_SOURCE_VGRID_LINE;
 }
 
-/* What is wrong with a source and how to correct it, or NULL. */
+/* Defect of a source and how to correct it, or NULL. */
 static const char *defect(const struct vg_source *s)
 {
   double d[3];
@@ -88,11 +88,11 @@ vg_status vg_source_check(size_t n, const struct vg_source *source,
   return VG_OK;
 }
 
-/* Arctangent and logarithm of our own: libm's differ between systems in the
- * last bit, and meshes would with them. Both are good to a few ulp. */
+/* Arctangent and logarithm of our own: those of libm differ between systems in
+ * the last bit, and the meshes would, too. Both are accurate to a few ulp. */
 
-/* atan(z) / z for z >= 0, finite at 0. Two halvings of the angle bring z
- * below 0.2, where eleven terms of the series reach rounding. */
+/* atan(z) / z for z >= 0, finite at 0. Two halvings of the angle bring z below
+ * 0.2, where eleven terms of the series reach rounding accuracy. */
 static double atan_ratio(double z)
 {
   double w = z, sum = 0, y;
@@ -113,7 +113,7 @@ static double log_series(double z)
   return 2 * z * sum;
 }
 
-/* log(a / b), without cancellation where a and b are near. */
+/* log(a / b), without cancellation if a and b are close. */
 static double log_ratio(double a, double b)
 {
   double z = (a - b) / (a + b), m;
@@ -128,18 +128,18 @@ static double log_ratio(double a, double b)
   return log_series((m - 1) / (m + 1)) + e * 0.69314718055994530942;
 }
 
-/* VGRID's inverse-square mean. */
+/* --- VGRID's inverse-square mean ------------------------------------------ */
 
-/* Kernel 1/r^2 averaged over a segment, plain in *weight and times the linear
- * spacing in *size. Averaged, not integrated over length: an integral would
- * make the mesh depend on the unit of length as soon as nodes and lines meet
- * (formats.md 1.7 leaves the law open). Returns 0 on the segment itself, with
- * the spacing there in *size.
+/* Kernel 1/r^2 averaged over a segment: plain in *weight, and times the linear
+ * spacing in *size. It is averaged, not integrated over length: with an
+ * integral, the mesh would depend on the unit of length as soon as there are
+ * both nodes and lines (formats.md 1.7 leaves this open). Returns 0 on the
+ * segment itself, with the spacing there in *size.
  *
- * With foot t = c and squared distance q |d|^2 of the axis,
+ * With foot t = c and squared distance q |d|^2 from the axis,
  *   int dt / ((t-c)^2 + q)   = angle / sqrt(q),
  *   int t dt / ((t-c)^2 + q) = c times that + log(r1^2 / r0^2) / 2,
- * where angle is the one under which x sees the segment. */
+ * where angle is the angle that the segment subtends at x. */
 static int line_kernel(const struct vg_source *s, const double x[3],
                        double *weight, double *size)
 {
@@ -196,7 +196,7 @@ double vg_source_mean(size_t n, const struct vg_source *source,
   return top / bottom;
 }
 
-/* Distances to shapes. */
+/* --- distances from shapes ------------------------------------------------ */
 
 static double segment_distance(const double a[3], const double b[3],
                                const double x[3], double *t)
@@ -211,7 +211,7 @@ static double segment_distance(const double a[3], const double b[3],
   return sqrt(vg_dot(u, u));
 }
 
-/* The same, with the way from the segment to x. */
+/* As segment_distance, with the vector from the segment to x. */
 static double segment_way(const double a[3], const double b[3],
                           const double x[3], double *t, double way[3])
 {
@@ -221,9 +221,9 @@ static double segment_way(const double a[3], const double b[3],
   return d;
 }
 
-/* Inside the three edge planes the distance is to the plane, otherwise to the
- * nearest edge. A degenerate triangle has only edges. way out: from the
- * triangle to x, of any length. */
+/* Within the three edge planes, the distance is that from the plane, otherwise
+ * that from the nearest edge. A degenerate triangle has only edges. way out:
+ * direction from the triangle to x, not normalised. */
 static double triangle_distance(const struct vg_source *s, const double x[3],
                                 double way[3])
 {
@@ -267,7 +267,7 @@ static double box_distance(const double lo[3], const double hi[3],
   return sqrt(d2);
 }
 
-/* In the half plane (axial z, radial r) the cone is a trapezium. */
+/* In the half plane (axial z, radial r), the cone is a trapezium. */
 static double cone_distance(const struct vg_source *s, const double x[3],
                             double *t)
 {
@@ -315,7 +315,8 @@ static double bounded_at(const struct vg_bounded *b, const double x[3])
   return s->h0 + t * (s->h1 - s->h0) + b->slope * most(d, 0);
 }
 
-/* How far a box reaches along a way of any length. */
+/* Extent of a box from its centre along a direction, which need not be
+ * normalised. */
 static double reach_along(const double way[3], const double half[3])
 {
   double sum = 0, len = sqrt(vg_dot(way, way));
@@ -324,8 +325,9 @@ static double reach_along(const double way[3], const double half[3])
   return len > 0 ? sum / len : 0;
 }
 
-/* Lower bound of one bounded source in a box. Distances to convex shapes are
- * convex: nowhere below the plane that touches them in the centre. */
+/* Lower bound of one bounded source in a box. Distances from convex shapes are
+ * convex functions, so they are nowhere below their tangent plane at the
+ * centre. */
 static double bounded_floor(const struct vg_bounded *b, const double mid[3],
                             const double half[3])
 {
@@ -349,9 +351,9 @@ static double bounded_floor(const struct vg_bounded *b, const double mid[3],
   return most(h, b->least) + b->slope * most(d, 0);
 }
 
-/* Lists of sources. */
+/* --- lists of sources ----------------------------------------------------- */
 
-/* Box around the shape; a slanted cone's is larger than need be. */
+/* Box around the shape; for a slanted cone larger than necessary. */
 static void bound_shape(struct vg_bounded *b)
 {
   const struct vg_source *s = &b->law;
@@ -404,7 +406,7 @@ static void prepare_bounded(const struct vg_sizing_options *o,
   b->steep = sqrt(b->slope * b->slope + along);
 }
 
-/* A VGRID line without length is a node of its mean spacing. */
+/* A VGRID line of zero length is treated as a node with its mean spacing. */
 static void prepare_mean(const struct vg_sizing_options *o,
                          const struct vg_source *s, struct vg_source *m)
 {
@@ -420,11 +422,12 @@ static void prepare_mean(const struct vg_sizing_options *o,
   m->h0 = 0.5 * (m->h0 + m->h1);
 }
 
-#define REACH 0.25 /* H10: that fraction */
+#define REACH 0.25 /* H10: the fraction described below */
 
 /* The mean varies next to a node over a fraction of the distance to the next
- * source, next to a line over a fraction of its length. Quadratic, as is the
- * use of the sources by then: every sample of the field costs all of them. */
+ * source, and next to a line over a fraction of its length. This takes
+ * quadratic time, but so does the evaluation: every sample of the field
+ * depends on all sources. */
 static void find_reach(struct vg_source_set *set)
 {
   for (size_t i = 0; i < set->n_mean; i++) {
@@ -534,9 +537,9 @@ double vg_source_at(const struct vg_source_set *set, const double x[3])
   return h;
 }
 
-/* Two bounds per source: the box around its shape, coarse at any size, and
- * what follows from the law at the centre, which becomes exact as the box
- * shrinks. */
+/* There are two bounds per source: one from the box around its shape, which is
+ * coarse for boxes of any size, and one from the law at the centre, which
+ * becomes exact as the box shrinks. */
 double vg_source_floor(const struct vg_source_set *set, const double lo[3],
                        const double hi[3])
 {
@@ -567,7 +570,9 @@ int vg_source_resolved(const struct vg_source_set *set, const double lo[3],
 {
   double mid[3], r2 = 0, t;
 
-  if (set->n_mean < 2) return 1; /* one node: constant; one line: bounded */
+  if (set->n_mean < 2)
+    return 1; /* a single node is constant; a single line
+                 is bounded */
   for (int k = 0; k < 3; k++) {
     mid[k] = 0.5 * (lo[k] + hi[k]);
     r2 += (hi[k] - mid[k]) * (hi[k] - mid[k]);

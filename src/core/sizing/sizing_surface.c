@@ -10,16 +10,16 @@
 #include "core/geometry/vector.h"
 #include "core/sizing/sizing_bvh.h"
 
-#define GRAIN 4096 /* points or faces for a thread at a time */
+#define GRAIN 4096 /* points or faces per thread and step */
 
-/* Ratio of the longest edge to the size above which the centroid of a face
- * is no sample. */
+/* Ratio of the longest edge to the spacing above which the centroid of a face
+ * is not a sample. */
 #define STRETCHED 3.0 /* H4 */
 
 /* 4 / sqrt(3): squared edge of the equilateral triangle of area 1. */
 #define EQUILATERAL 2.3094010767585034
 
-/* What is summed at a point. Each face adds both of its edges there. */
+/* Sums at a point. Each face adds its two edges at the point. */
 struct sum {
   double inverse, area;
   uint32_t n_edge, n_face;
@@ -40,15 +40,15 @@ vg_status vg_samples_check(const struct vg_mesh *m, struct vg_error *err)
     for (int k = 0; k < 3; k++)
       if (m->tri[i][k] >= m->n_point)
         return vg_fail(err, VG_ERR_INPUT,
-                       "surface triangle %zu uses point %zu of %zu; repair "
-                       "the surface",
+                       "surface triangle %zu uses point %zu, but there are "
+                       "%zu points; repair the surface",
                        i + 1, (size_t)m->tri[i][k] + 1, m->n_point);
   for (size_t i = 0; i < m->n_quad; i++)
     for (int k = 0; k < 4; k++)
       if (m->quad[i][k] >= m->n_point)
         return vg_fail(err, VG_ERR_INPUT,
-                       "surface quadrilateral %zu uses point %zu of %zu; "
-                       "repair the surface",
+                       "surface quadrilateral %zu uses point %zu, but there "
+                       "are %zu points; repair the surface",
                        i + 1, (size_t)m->quad[i][k] + 1, m->n_point);
   return VG_OK;
 }
@@ -63,13 +63,13 @@ static double area(const double a[3], const double b[3], const double c[3])
   return 0.5 * vg_norm(n);
 }
 
-/* Edges of no length belong to degenerate faces and say nothing. */
+/* Edges of zero length belong to degenerate faces and are ignored. */
 static void add_face(const struct vg_mesh *m, const uint32_t *v, int n,
                      struct sum *sum)
 {
   double whole = area(m->point[v[0]], m->point[v[1]], m->point[v[2]]);
 
-  if (n == 4) /* as two triangles; each point then sees half of it */
+  if (n == 4) /* as two triangles; each point gets half of it */
     whole = 0.5 *
             (whole + area(m->point[v[0]], m->point[v[2]], m->point[v[3]]));
   for (int i = 0; i < n; i++) {
@@ -86,8 +86,9 @@ static void add_face(const struct vg_mesh *m, const uint32_t *v, int n,
   }
 }
 
-/* H9: least size at a point, over the edge of an equilateral triangle of the
- * mean area there: needles do not ask for their short side. */
+/* H9: smallest spacing at a point, relative to the edge of an equilateral
+ * triangle with the mean area there. It prevents sliver triangles from
+ * requesting their short edge. */
 #define LEAST_SHARE 0.25
 
 static double point_size(const struct sum *s)
@@ -98,7 +99,7 @@ static double point_size(const struct sum *s)
   return h > least ? h : least;
 }
 
-/* The corners of face i, triangles before quadrilaterals; returns how many. */
+/* Corners of face i, triangles before quadrilaterals. Returns their number. */
 static int corners(const struct vg_mesh *m, size_t i, const uint32_t **v)
 {
   *v = i < m->n_tri ? m->tri[i] : m->quad[i - m->n_tri];
@@ -164,7 +165,7 @@ vg_status vg_samples_make(const struct vg_mesh *m, int threads,
   if (!sum || !out->p || !out->h) {
     free(sum);
     vg_samples_release(out);
-    return vg_fail_memory(err, "the sizes on the surface");
+    return vg_fail_memory(err, "the spacings on the surface");
   }
   for (size_t i = 0; i < m->n_tri; i++) add_face(m, m->tri[i], 3, sum);
   for (size_t i = 0; i < m->n_quad; i++) add_face(m, m->quad[i], 4, sum);
@@ -175,19 +176,21 @@ vg_status vg_samples_make(const struct vg_mesh *m, int threads,
   return VG_OK;
 }
 
-/* Samples that are never felt. With c the cone's size at its tip, (1 -+ offset)
- * h, sample i is above sample j everywhere where c_j + slope |p_i p_j| <= c_i,
- * and h_j < h_i; from below likewise, with both of its slopes. That is so along
- * chains of samples, so what is left holds for all. MARGIN keeps it so in
- * single precision. */
+/* Samples without influence. Let c be the value of a sample's cone at its tip,
+ * (1 -+ offset) h. Sample i is above sample j everywhere if c_j + slope |p_i
+ * p_j| <= c_i and h_j < h_i. The condition from below is analogous, with both
+ * of its slopes. The relation is transitive, so the remaining samples give the
+ * same field as all samples. MARGIN ensures this in single precision. */
 #define MARGIN 1e-5
 
 struct thinning {
   const struct vg_mesh *m;
   const struct vg_samples *s;
   _Atomic unsigned char *idle;
-  double slope, keep; /* of the growth, and share of h at its tip */
-  double steep, rise; /* from below beyond the knee; else as these */
+  double slope, keep; /* slope of the growth, and value at the tip relative
+                         to h */
+  double steep, rise; /* from below: the same beyond the knee; otherwise
+                         equal to slope and keep */
 };
 
 static void compare(const struct thinning *t, size_t i, size_t j)
@@ -243,7 +246,7 @@ vg_status vg_samples_thin(const struct vg_mesh *m, const struct vg_samples *all,
   if (!t.idle || !out->p || !out->h) {
     free(t.idle);
     vg_samples_release(out);
-    return vg_fail_memory(err, "the sizes on the surface");
+    return vg_fail_memory(err, "the spacings on the surface");
   }
   vg_parallel_for(threads, m->n_tri + m->n_quad, GRAIN, thin_body, &t);
   for (size_t i = 0; i < all->n; i++) {

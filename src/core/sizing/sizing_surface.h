@@ -1,41 +1,44 @@
-/* core/sizing/sizing_surface.h: sizes that a boundary triangulation prescribes.
- * Internal to core/sizing. Uses core/mesh/mesh.h. */
+/* core/sizing/sizing_surface.h: spacings prescribed by a boundary
+ * triangulation. Internal to core/sizing. Uses core/mesh/mesh.h. */
 #ifndef VG_CORE_SIZING_SIZING_SURFACE_H
 #define VG_CORE_SIZING_SIZING_SURFACE_H
 
 #include "core/mesh/mesh.h"
 
-/** Points with a size each; released with vg_samples_release. */
+/** Points with a spacing each; released with vg_samples_release. */
 struct vg_samples {
   double (*p)[3], *h;
   size_t n;
-  size_t n_sized; /* the others have size 0 and are none */
+  size_t n_sized; /* number of samples with h > 0; entries with h = 0 are
+                     ignored */
 };
 #define VG_SAMPLES_INIT                                                        \
   {                                                                            \
     0                                                                          \
   }
 
-/** Refuse points that are not finite and faces of points that do not exist. */
+/** Refuse points that are not finite, and faces that refer to nonexistent
+ * points. */
 vg_status vg_samples_check(const struct vg_mesh *m, struct vg_error *err);
 
-/** Samples of a checked surface: its points, and the centroids of faces, all
- * of them in the order of the mesh, triangles before quadrilaterals. The
- * size at a point is the harmonic mean of the edges at it, so that a few
- * long edges do not hide the short ones: a cell on a stretched face has good
- * angles only if its apex is about a short edge away. But it is never less
- * than a quarter of the equilateral edge of the mean area around, so that
- * needles and single tiny edges cannot demand an explosion of cells.
+/** Samples of a checked surface: its points, then the centroids of its faces,
+ * both in the order of the mesh, triangles before quadrilaterals. The spacing
+ * at a point is the harmonic mean of its edges, so that a few long edges do
+ * not outweigh the short ones: a cell on a stretched face has good angles only
+ * if its apex is about a short edge away. The spacing is at least a quarter of
+ * the edge of an equilateral triangle with the mean area around the point, so
+ * that sliver triangles and single tiny edges cannot cause an excessive number
+ * of cells.
  *
- * A centroid has the mean size of its corners and closes the gap between
- * them. Much stretched faces have no such sample: along their long edges
- * sizes may grow away from the corners. */
+ * A centroid has the mean spacing of its corners and closes the gap between
+ * them. Strongly stretched faces have no such sample: along their long edges
+ * the spacing may grow away from the corners. */
 vg_status vg_samples_make(const struct vg_mesh *m, int threads,
                           struct vg_samples *out, struct vg_error *err);
 
-/** Those of all samples of a surface that the growth (sizing_bvh.h) by slope
- * from above, or from below, can depend on: one whose size differs from a
- * neighbour's by more than the growth between them is never felt. */
+/** Select the samples of a surface that can influence the growth (sizing_bvh.h)
+ * with a given slope, from above or from below. A sample whose spacing differs
+ * from a neighbour's by more than the growth between them has no influence. */
 vg_status vg_samples_thin(const struct vg_mesh *m, const struct vg_samples *all,
                           double slope, int below, int threads,
                           struct vg_samples *out, struct vg_error *err);

@@ -1,8 +1,8 @@
-/* Searches in the hierarchy of samples (core/sizing/sizing_bvh_parts.h). Four
- * lanes at once, in the vectors of gcc and clang; sqrt and masks alone need
- * help. Every operation rounds as its scalar form does, so machines agree.
- * Wider vectors do not pay: what takes time is to know which child comes next.
- * */
+/* Searches in the hierarchy of samples (core/sizing/sizing_bvh_parts.h), four
+ * lanes at a time in the vector types of gcc and clang. Only sqrt and masks
+ * need intrinsics. Every operation rounds as its scalar form does, so that all
+ * machines agree. Wider vectors are not faster, because most of the time is
+ * spent on deciding which child comes next. */
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -82,7 +82,7 @@ static inline float least_lane(lanes v)
 }
 
 /* Distances between a box x +- reach and four boxes mid +- half (NULL:
- * points); lanes of axis k are `step` floats behind those of k - 1. */
+ * points). Lanes of axis k are `step` floats after those of axis k - 1. */
 static inline lanes distances(const float x[3], const float reach[3],
                               const float *mid, const float *half, size_t step)
 {
@@ -98,7 +98,7 @@ static inline lanes distances(const float x[3], const float reach[3],
   return lanes_sqrt(sum);
 }
 
-/* What sizes h become at distance d, from above and from below. */
+/* Values of sizes h at distance d, from above and from below. */
 static inline lanes grown(const struct vg_bvh *t, lanes h, lanes d)
 {
   lanes v = h * (1 - t->offset) + t->slope * d;
@@ -137,9 +137,9 @@ static void visit_above(struct search *q, const struct vg_bvh_block *b)
   q->hint = (uint32_t)(b - q->t->block);
 }
 
-/* Bounds of the children of a group. They allow for rounding, so what is found
- * is the best of all samples, wherever a search began; the last bits of each
- * are the number of the child. */
+/* Bounds of the children of a group. They allow for rounding, so that the
+ * result is the best of all samples, regardless of the start of the search.
+ * The last bits of each bound hold the index of the child. */
 static inline void bounds_above(const struct search *q,
                                 const struct vg_bvh_group *g, lanes bound[2])
 {
@@ -156,8 +156,8 @@ static inline void bounds_above(const struct search *q,
   }
 }
 
-/* The child with the least bound, which is INFINITY from then on; LANES when
- * none is below `best`. */
+/* Return the child with the smallest bound, and set that bound to INFINITY.
+ * Returns LANES if no bound is below `best`. */
 static inline unsigned take_least(lanes bound[2], float best)
 {
   float least = least_lane(lanes_min(bound[0], bound[1]));
@@ -171,8 +171,8 @@ static inline unsigned take_least(lanes bound[2], float best)
   return bits & 7;
 }
 
-/* Nearest child first, so that the rest is seldom entered. Recursion is as
- * deep as the hierarchy: 8^12 samples at most. */
+/* The nearest child comes first, so that others are seldom entered. The depth
+ * of recursion is that of the hierarchy: 8^12 samples at most. */
 static void descend_above(struct search *q, int level, size_t at)
 {
   lanes bound[2];
@@ -220,7 +220,7 @@ double vg_bvh_above(const struct vg_bvh *t, const double lo[3],
   return q.best < start ? (double)q.best : below;
 }
 
-/* From below. */
+/* --- from below ----------------------------------------------------------- */
 
 static void visit_below(struct search *q, const struct vg_bvh_block *b)
 {
@@ -239,8 +239,8 @@ static void visit_below(struct search *q, const struct vg_bvh_block *b)
   }
 }
 
-/* Only what is above the best so far matters, which is above 0. Signs are
- * turned, so that the best bound is the least. */
+/* Only values above the best one so far, which is positive, matter. Signs are
+ * inverted, so that the best bound is the smallest. */
 static void descend_below(struct search *q, int level, size_t at)
 {
   static const masks child[2] = { { 0, 1, 2, 3 }, { 4, 5, 6, 7 } };
