@@ -620,7 +620,7 @@ static void refuses(void **unused)
 
   (void)unused;
   shape_box(&m, size, n);
-  refuse(&none, &o, VG_ERR_INPUT, "triangles is needed");
+  refuse(&none, &o, VG_ERR_INPUT, "can be remeshed");
   x = m.point[3][1];
   m.point[3][1] = NAN;
   refuse(&m, &o, VG_ERR_INPUT, "not finite");
@@ -630,7 +630,7 @@ static void refuses(void **unused)
   refuse(&m, &o, VG_ERR_INPUT, "triangle 5");
   m.tri[4][0] = m.tri[4][1];
   m.tri[4][1] = k;
-  refuse(&m, &o, VG_ERR_INPUT, "turned the other way");
+  refuse(&m, &o, VG_ERR_INPUT, "orientation is opposite");
   m.tri[4][1] = m.tri[4][0];
   m.tri[4][0] = k;
   shape_tri(&m, m.tri[0][0], m.tri[0][1], m.tri[0][2], 0);

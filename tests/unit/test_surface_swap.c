@@ -465,7 +465,7 @@ static void refuses_bad_surfaces(void **unused)
   keep = m.tri[5][1];
   m.tri[5][1] = m.tri[5][2];
   m.tri[5][2] = keep;
-  refuse(&m, &o, "other orientation");
+  refuse(&m, &o, "opposite orientation");
   m.tri[5][2] = m.tri[5][1];
   m.tri[5][1] = keep;
   add_tri(&m, m.tri[0][0], m.tri[0][1], m.tri[0][2], 0);
@@ -512,7 +512,7 @@ static void refuses_bad_options(void **unused)
   (void)unused;
   make_cube(&m, 1, 0, 1);
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-    refuse(&m, &bad[i], "give 0 or");
+    refuse(&m, &bad[i], "must be");
   vg_mesh_release(&m);
 }
 

@@ -459,9 +459,9 @@ static void what_cannot_be_is_refused(void **state)
   (void)state;
   refuses(&m, 1, VG_ERR_INPUT, "only triangles");
   add_brick(&m, 0, 12);
-  refuses(&m, 0, VG_ERR_INPUT, "must be > 0");
-  refuses(&m, NAN, VG_ERR_INPUT, "must be > 0");
-  refuses(&m, INFINITY, VG_ERR_INPUT, "must be > 0");
+  refuses(&m, 0, VG_ERR_INPUT, "must be positive");
+  refuses(&m, NAN, VG_ERR_INPUT, "must be positive");
+  refuses(&m, INFINITY, VG_ERR_INPUT, "must be positive");
   refuses(&m, 1e-6, VG_ERR_INPUT, "in the unit of the surface?");
   m.tri[3][1] = 8;
   refuses(&m, 1, VG_ERR_INPUT, "triangle 4");

@@ -1,6 +1,7 @@
-/* Outline: find the open edges of the body; none: a whole farfield; all in
- * one coordinate plane: snap them to it, half a farfield whose border lies in
- * the plane, and the plane itself between border and footprints. */
+/* Outline: find the open edges of the body. Without open edges it gets a whole
+ * farfield. If all of them are in one coordinate plane, they are moved exactly
+ * into it; half a farfield is added whose border is in the plane, and the plane
+ * is triangulated between that border and the footprint of the body. */
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
@@ -16,19 +17,20 @@
 #include "core/geometry/volume.h"
 #include "core/mesh/mesh_defects.h"
 
-/* Part of a farfield's radius that the body may reach: chords of the
- * triangulated sphere come this near. */
+/* Largest distance of the body from the centre over the farfield's radius. The
+ * chords of the triangulated sphere come this close to the centre. */
 #define FARFIELD_ROOM 0.9 /* S10 */
 
 struct domain {
   struct vg_mesh m;
   const struct vg_farfield *farfield;
   const struct vg_size_function *law;
-  double lo[3], hi[3], length; /* of the body */
+  double lo[3], hi[3], length; /* Of the body. */
   double centre[3], radius;
-  int axis, side; /* symmetry; axis -1: none; side 1: above */
+  int axis, side; /* Symmetry: axis (-1: none), and the side of the body (1:
+                     above). */
   double at;
-  struct vg_border open; /* as the new surface runs along them */
+  struct vg_border open; /* Directed as the closing surface runs along them. */
 };
 
 static void measure(struct domain *d)
@@ -37,7 +39,7 @@ static void measure(struct domain *d)
   for (int k = 0; k < 3; k++) d->length = fmax(d->length, d->hi[k] - d->lo[k]);
 }
 
-/* --- the symmetry plane -------------------------------------------------- */
+/* --- symmetry plane ------------------------------------------------------- */
 
 static void open_range(const struct domain *d, int k, double *lo, double *hi)
 {
@@ -51,14 +53,14 @@ static void open_range(const struct domain *d, int k, double *lo, double *hi)
   }
 }
 
-/* Coordinate axis across which the open edges are flat and the body lies on
- * one side; -1 where there is none. */
+/* Coordinate axis across which the open edges are flat and the body is on one
+ * side; -1 if no axis fits. */
 static int symmetry_axis(const struct domain *d)
 {
   const double tol = VG_PLANE_TOLERANCE * d->length;
 
   for (int i = 0; i < 3; i++) {
-    const int k = (i + 1) % 3; /* y first: the usual one */
+    const int k = (i + 1) % 3; /* y first: the most common */
     double lo, hi;
 
     open_range(d, k, &lo, &hi);
@@ -69,7 +71,7 @@ static int symmetry_axis(const struct domain *d)
   return -1;
 }
 
-/* Edges that lie in a plane, but not where a half body was cut. */
+/* Fail for open edges that are in a plane but not the cut of a half body. */
 static vg_status refuse_hole(const struct domain *d, struct vg_error *err)
 {
   double lo[3], hi[3], centre[3], width = 0;
@@ -80,15 +82,16 @@ static vg_status refuse_hole(const struct domain *d, struct vg_error *err)
     width = fmax(width, hi[k] - lo[k]);
   }
   return vg_fail(err, VG_ERR_GEOMETRY,
-                 "the surface has a hole: %zu open edges "
-                 "around (%.9g, %.9g, %.9g), %.4g wide, in a body %.4g long; "
-                 "close it (close_holes yes). Should the body be half of a "
-                 "symmetric one, cut at %c = %.9g, say so (half yes)",
+                 "the surface has a hole: %zu open edges around (%.9g, %.9g, "
+                 "%.9g), %.4g wide, in a body %.4g long; close it "
+                 "(close_holes yes). If the body is half of a symmetric one, "
+                 "cut at %c = %.9g, set half yes",
                  d->open.n, centre[0], centre[1], centre[2], width, d->length,
                  "xyz"[d->axis], d -> at);
 }
 
-/* The plane of the open edges: axis, -1 where there is none, and at. */
+/* Set the plane of the open edges: axis (-1 if they are not in a plane) and
+ * at. */
 static void find_plane(struct domain *d)
 {
   const double tol = VG_PLANE_TOLERANCE * d->length;
@@ -126,16 +129,16 @@ static vg_status find_symmetry(struct domain *d, struct vg_error *err)
     x = d->m.point[i];
     if (d->side ? x[d->axis] < d->at : x[d->axis] > d->at)
       return vg_fail(err, VG_ERR_GEOMETRY,
-                     "point %zu (%.9g, %.9g, %.9g) lies "
-                     "beyond the symmetry plane %c = %.9g that the open edges "
-                     "are in; move it onto the plane or cut it off",
+                     "point %zu (%.9g, %.9g, %.9g) lies beyond the symmetry "
+                     "plane %c = %.9g of the open edges; move it onto the "
+                     "plane or cut it off",
                      i + 1, x[0], x[1], x[2], "xyz"[d->axis], d -> at);
   }
   return VG_OK;
 }
 
-/* Fluid lies outside a body: six times the volume behind its triangles, seen
- * from a point of the symmetry plane, must be positive. */
+/* The fluid must be outside the body: six times the volume enclosed by its
+ * triangles, relative to a point of the symmetry plane, must be positive. */
 static vg_status check_orientation(const struct domain *d, struct vg_error *err)
 {
   const struct vg_mesh *m = &d->m;
@@ -153,13 +156,13 @@ static vg_status check_orientation(const struct domain *d, struct vg_error *err)
   }
   if (sum > 0) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "the triangles of the surface point into "
-                 "the body, not into the fluid: either it already is a whole "
-                 "flow domain, which takes no farfield (farfield none), or it "
-                 "has to be turned inside out");
+                 "the triangles of the surface point into the body, not into "
+                 "the fluid: either the surface already is a whole flow "
+                 "domain, which needs no farfield (farfield none), or it "
+                 "must be turned inside out");
 }
 
-/* --- the farfield -------------------------------------------------------- */
+/* --- farfield ------------------------------------------------------------- */
 
 static double domain_size(void *user, const double x[3])
 {
@@ -171,7 +174,8 @@ static double domain_size(void *user, const double x[3])
 
     if (s < h) h = s;
   }
-  /* a farfield is round, or has room, with this many edges across it */
+  /* At least 4 edges per radius, so that a farfield is round and its sides are
+   * resolved. */
   return h < d->radius / 4 ? h : d->radius / 4;
 }
 
@@ -273,8 +277,9 @@ static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
     if (m->patch[i].id > id) id = m->patch[i].id;
   if (id == INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "patch number %" PRId32 " leaves "
-                   "none for the %s; renumber the patches",
+                   "patch number %" PRId32 " is the largest possible and "
+                   "leaves none for the %s; renumber "
+                   "the patches",
                    id, name);
   i = vg_mesh_add_patch(m, id + 1, name);
   if (i == SIZE_MAX) return vg_fail_memory(err, "a patch");
@@ -313,7 +318,8 @@ static vg_status build(struct domain *d, struct vg_error *err)
   VG_TRY(vg_open_edges(&d->m, &d->open, err));
   VG_TRY(find_symmetry(d, err));
   if (d->farfield->kind == VG_FARFIELD_NONE) {
-    /* The outer boundary is given, and open along the symmetry plane too. */
+    /* The outer boundary is given, and is open along the symmetry plane,
+     * too. */
     d->radius = d->length;
     if (d->axis >= 0) VG_TRY(add_symmetry(d, &border, err));
     goto done;

@@ -38,7 +38,8 @@ static vg_status add_points(struct vg_mesh *m, size_t n, struct vg_error *err)
   return VG_OK;
 }
 
-/* vg_graded_steps; of a law that stops sizes are 0, which ends the division. */
+/* Call vg_graded_steps. When the caller has asked to stop, sizes are 0, which
+ * ends the division. */
 static vg_status divide(double len, double (*size)(void *user, double s),
                         void *user, const struct vg_size_function *law,
                         size_t least, size_t *n, double **s,
@@ -51,15 +52,16 @@ static vg_status divide(double len, double (*size)(void *user, double s),
   return st;
 }
 
-/* --- sphere --------------------------------------------------------------
+/* --- sphere ---------------------------------------------------------------
  * A half sphere is the stereographic image of the unit disc. The map is
- * conformal and takes circles to circles, so a good Delaunay triangulation of
- * the disc, with sizes divided by the local scale, is one of the sphere. */
+ * conformal and maps circles to circles. A good Delaunay triangulation of the
+ * disc, with sizes divided by the local scale, is therefore a good one of the
+ * half sphere. */
 
 struct half_sphere {
   const double *centre;
   double radius;
-  int axis, iu, iv, side; /* side +1 or -1 */
+  int axis, iu, iv, side; /* Side: +1 or -1. */
   const struct vg_size_function *size;
 };
 
@@ -83,7 +85,8 @@ static double size_on_disc(void *user, const double p[2])
          (2 * s->radius);
 }
 
-/* Point of the unit circle, turn in quarters, 0 <= turn < 4. */
+/* Point of the unit circle; turn is in quarters of the circle, 0 <= turn <
+ * 4. */
 static void on_circle(double turn, double p[2])
 {
   const int quarter = (int)turn;
@@ -105,7 +108,8 @@ static double size_on_circle(void *user, double turn)
   return s->size->at(s->size->user, x) / (s->radius * 1.57079632679489662);
 }
 
-/* Equator, counter-clockwise about +axis: points first .. first + n - 1. */
+/* Add the equator, counter-clockwise about +axis: points first .. first + n -
+ * 1. */
 static vg_status add_equator(struct vg_mesh *m, const struct half_sphere *s,
                              double (**disc)[2], size_t *n,
                              struct vg_error *err)
@@ -242,7 +246,8 @@ static double size_on_line(void *user, double s)
   return l->size->at(l->size->user, x);
 }
 
-/* Points of one edge of the box from corner a along `axis`, ends included. */
+/* Points of one edge of the box from corner a along `axis`, including its
+ * ends. */
 struct box_edge {
   size_t n;
   uint32_t *point;
@@ -279,9 +284,9 @@ done:
   return st;
 }
 
-/* Corner c has the upper bound in axis k where bit k is set. The edge from
- * corner c along axis k (bit k of c clear) has number 4 k + rest, where rest
- * are the other two bits of c, lower axis first. */
+/* Corner c has the upper bound in axis k if bit k is set. The edge from corner
+ * c along axis k (bit k of c clear) has number 4 k + rest, where rest consists
+ * of the other two bits of c, lower axis first. */
 static int edge_number(int c, int k)
 {
   const int a = k == 0 ? 1 : 0, b = k == 2 ? 1 : 2;
@@ -300,7 +305,8 @@ static vg_status walk_edge(struct vg_border *r, const struct box_edge *e,
   return st;
 }
 
-/* Loop around face 2 * axis + side, counter-clockwise seen from inside. */
+/* Append the loop around face 2 * axis + side, counter-clockwise as seen from
+ * inside. */
 static vg_status face_loop(struct vg_border *r, const struct box_edge edge[12],
                            int face, struct vg_error *err)
 {
@@ -308,8 +314,8 @@ static vg_status face_loop(struct vg_border *r, const struct box_edge edge[12],
   const int base = face % 2 ? 1 << k : 0, up = face % 2;
   vg_status st;
 
-  /* u then v turns counter-clockwise about +k, the view from inside a lower
-   * face; an upper face is run the other way round. */
+  /* u, then v, turns counter-clockwise about +k, as seen from inside at a lower
+   * face; the loop of an upper face runs the other way. */
   VG_TRY(walk_edge(r, &edge[edge_number(base, u)], up, err));
   VG_TRY(walk_edge(r, &edge[edge_number(base | 1 << u, v)], up, err));
   VG_TRY(walk_edge(r, &edge[edge_number(base | 1 << v, u)], !up, err));

@@ -1,5 +1,5 @@
-/* Outline: open edges are joined to rims; those where a half model was cut stay
- * open; each of the others is closed by a plane patch of its own. */
+/* Outline: open edges are joined to rims. The rims of the cut of a half model
+ * stay open; each other rim is closed by a plane patch of its own. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,14 +13,13 @@
 
 #define HOLE_FLATNESS 0.05 /* S11 */
 #define OPPOSITE                                                               \
-  0.1 /* S11: of the extent: rims so near to an end are of                     \
-         that end */
+  0.1 /* S11: of the extent: rims this near to an end belong to it */
 
 struct holes {
   struct vg_mesh m;
   struct vg_border open;
-  uint32_t *next; /* [n_point] along the rim, or UINT32_MAX */
-  uint32_t *loop; /* [n_point] number of its rim */
+  uint32_t *next; /* [n_point] Next point along the rim, or UINT32_MAX. */
+  uint32_t *loop; /* [n_point] Number of its rim. */
   uint32_t n_loop;
   struct rim {
     uint32_t first;
@@ -80,7 +79,7 @@ static vg_status list_edges(const struct holes *h, uint32_t k,
   return st;
 }
 
-/* Whether the rims in a plane are those of a half model. */
+/* Set *cut to whether the rims in a plane are the cut of a half model. */
 static vg_status is_cut(const struct holes *h, int symmetry, int axis,
                         double at, int *cut, struct vg_error *err)
 {
@@ -95,7 +94,7 @@ done:
   return st;
 }
 
-/* A rim at the end of the body that is opposite to the plane. */
+/* Is there a rim at the end of the body opposite the plane? */
 static int is_open_opposite(const struct holes *h, int axis, int is_lo)
 {
   const double extent = h->hi[axis] - h->lo[axis];
@@ -109,7 +108,8 @@ static int is_open_opposite(const struct holes *h, int axis, int is_lo)
   return 0;
 }
 
-/* A shaft or a wing section that is open at both ends is no half model. */
+/* Mark the rims of a half model to stay open. A shaft or a wing section that is
+ * open at both ends is not a half model. */
 static vg_status keep_symmetry(struct holes *h, int symmetry,
                                struct vg_error *err)
 {
@@ -117,12 +117,12 @@ static vg_status keep_symmetry(struct holes *h, int symmetry,
   vg_status st = VG_OK;
 
   for (int i = 0; i < 3 && symmetry >= 0 && !found; i++) {
-    const int axis = (i + 1) % 3; /* y first: the usual one */
+    const int axis = (i + 1) % 3; /* y first: the most common */
     int lo, hi;
 
     VG_TRY(is_cut(h, symmetry, axis, h->lo[axis], &lo, err));
     VG_TRY(is_cut(h, symmetry, axis, h->hi[axis], &hi, err));
-    if (lo && hi && symmetry > 0) { /* the end that looks like a cut */
+    if (lo && hi && symmetry > 0) { /* decide by the shape of the ends */
       VG_TRY(is_cut(h, 0, axis, h->lo[axis], &lo, err));
       VG_TRY(is_cut(h, 0, axis, h->hi[axis], &hi, err));
     }
@@ -134,7 +134,7 @@ done:
   return st;
 }
 
-/* The patch of the n-th cap, with the lowest id above all others. */
+/* Add the patch of the n-th cap. Its id is one above all others. */
 static vg_status add_cap(struct holes *h, size_t n, uint32_t *patch,
                          struct vg_error *err)
 {
@@ -269,7 +269,7 @@ vg_status vg_domain_rims(const struct vg_mesh *surface, size_t *n,
   for (uint32_t k = 0; k < h.n_loop; k++) (*rim)[k] = measure_rim(&h, k);
   *n = h.n_loop;
 done:
-  h.m = (struct vg_mesh)VG_MESH_INIT; /* borrowed */
+  h.m = (struct vg_mesh)VG_MESH_INIT; /* borrowed from the caller */
   release(&h);
   return st;
 }

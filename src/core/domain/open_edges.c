@@ -27,13 +27,14 @@ static vg_status refuse(const double x[3], const double y[3],
                         struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_GEOMETRY,
-                 "edge from (%.9g, %.9g, %.9g) to "
-                 "(%.9g, %.9g, %.9g): its triangles run the same way; "
-                 "run `vanguard check` on the surface",
+                 "edge from (%.9g, %.9g, %.9g) to (%.9g, %.9g, %.9g): its "
+                 "triangles have opposite orientations; run `vanguard check` "
+                 "on the surface",
                  x[0], x[1], x[2], y[0], y[1], y[2]);
 }
 
-/* Edges whose sides do not run both ways as often. */
+/* Find the edges whose sides do not cancel: those with more sides in one
+ * direction than in the other. */
 vg_status vg_open_edges(const struct vg_mesh *m, struct vg_border *open,
                         struct vg_error *err)
 {
@@ -50,7 +51,7 @@ vg_status vg_open_edges(const struct vg_mesh *m, struct vg_border *open,
   for (size_t i = 0; st == VG_OK && i < e.n; i++) {
     const uint32_t *s = side[vg_edges_at(&e, i)[0]];
     const uint32_t lo = s[0] < s[1] ? s[0] : s[1], hi = s[0] ^ s[1] ^ lo;
-    int sum = 0; /* sides up from the lower point, less others */
+    int sum = 0; /* sides that start at the lower point, minus others */
 
     for (uint32_t k = 0; k < vg_edges_count(&e, i); k++)
       sum += side[vg_edges_at(&e, i)[k]][0] < hi ? 1 : -1;

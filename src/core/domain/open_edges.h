@@ -1,13 +1,17 @@
-/* core/domain/open_edges.h: where a surface ends. Private to core/domain. */
+/* core/domain/open_edges.h: the open edges of a surface. Private to
+ * core/domain. */
 #ifndef VG_CORE_DOMAIN_OPEN_EDGES_H
 #define VG_CORE_DOMAIN_OPEN_EDGES_H
 
 #include "core/domain/farfield.h"
 
-/** Edges whose two directions do not cancel, as a surface that closes m runs
- * along them. Triangles and quads; O(n log valence).
+/** Append the edges whose two directions do not cancel, directed as a surface
+ * that closes m runs along them. Triangles and quadrilaterals; O(n log
+ * valence).
+ *
  * @param open  appended to
- * VG_ERR_GEOMETRY where triangles at an edge run the same way. */
+ * VG_ERR_GEOMETRY if triangles at an edge run along it in the same
+ * direction. */
 vg_status vg_open_edges(const struct vg_mesh *m, struct vg_border *open,
                         struct vg_error *err);
 

@@ -1,5 +1,6 @@
-/* Outline: constrained Delaunay triangulation of the boundary, flood the
- * inside from the left of the segments, add points by a front, smooth. */
+/* Outline: build the constrained Delaunay triangulation of the boundary, flood
+ * the inside from the left of the segments, add points by an advancing front,
+ * smooth. */
 #include "core/domain/planar.h"
 
 #include <assert.h>
@@ -15,7 +16,7 @@
 
 enum {
   N_SWEEP = 8,
-  LEFT = 8 /* flag bit LEFT + k: half-edge k is a given segment */
+  LEFT = 8 /* Bit LEFT + k of the flags: half-edge k is a boundary segment. */
 };
 
 struct region {
@@ -52,7 +53,7 @@ static vg_status check_input(const struct region *r, struct vg_error *err)
   return VG_OK;
 }
 
-/* Insert the points that segments use. */
+/* Insert the points that are used by segments. */
 static vg_status insert_points(struct region *r, struct vg_error *err)
 {
   uint32_t *alias = vg_alloc(r->n, sizeof *alias);
@@ -160,8 +161,8 @@ static int flood(struct vg_tri2 *t, uint32_t from)
   return 0;
 }
 
-/* The region is what lies on the left of segments; no triangle of it may
- * touch the enclosing triangle or the right of a segment. */
+/* The region is on the left of the segments. None of its triangles may touch
+ * the enclosing triangle or the right side of a segment. */
 static vg_status mark_inside(struct region *r, struct vg_error *err)
 {
   struct vg_tri2 *t = &r->t;
@@ -200,7 +201,7 @@ static vg_status mark_inside(struct region *r, struct vg_error *err)
   return vg_tri2_carve(t) ? vg_fail_memory(err, "a plane region") : VG_OK;
 }
 
-/* The size at a boundary point is what its segments have. */
+/* Set the size at boundary points from the lengths of their segments. */
 static vg_status boundary_size(struct region *r, struct vg_error *err)
 {
   uint32_t *n = vg_calloc(r->n, sizeof *n);
@@ -285,9 +286,9 @@ vg_status vg_planar_mesh(size_t n, const double (*p)[2], size_t n_edge,
   }
   if (bad) {
     st = vg_fail(err, VG_ERR_MEMORY,
-                 "plane region with %zu boundary segments: "
-                 "not enough memory, or more than %u points; the spacing may "
-                 "be far too small in it",
+                 "plane region with %zu boundary segments: not enough "
+                 "memory, or more than %u points; the spacing in it may be "
+                 "far too small",
                  n_edge, VG_T2_POINT_MAX);
     goto done;
   }

@@ -1,5 +1,4 @@
-/* Does a triangulation keep the invariant of planar_tri.h? A check of stages
- * (base/checks.h). */
+/* Checks the invariant of planar_tri.h, as a stage check (base/checks.h). */
 #include "core/domain/planar_tri.h"
 #include "core/geometry/predicates.h"
 

@@ -1,9 +1,10 @@
 /* Front point placement in a Delaunay triangulation (Rebay, "Efficient
  * unstructured mesh generation by means of Delaunay triangulation and
- * Bowyer-Watson algorithm", J. Comput. Phys. 106, 1993): the front runs
- * between triangles of the wanted size (done) and too large ones. The point
- * for a front edge lies on the Voronoi segment dual to it, no farther than
- * the circumcentre, so no vertex is nearer to it than the edge's ends. */
+ * Bowyer-Watson algorithm", J. Comput. Phys. 106, 1993). The front separates
+ * triangles of the target size (done) from triangles that are too large. The
+ * point for a front edge is placed on the dual Voronoi segment, no farther than
+ * the circumcentre, so that no vertex is nearer to it than the ends of the
+ * edge. */
 #include "core/domain/planar_front.h"
 
 #include <assert.h>
@@ -15,17 +16,20 @@
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 
-/* A triangle is done when its circumradius is below this times its target
- * edge length (1 / sqrt(3) where it is equilateral and exact). */
+/* A triangle is done if its circumradius is below this factor times its target
+ * edge length. The ratio is 1 / sqrt(3) for an equilateral triangle of the
+ * target size. */
 #define DONE_RADIUS 0.80 /* S6 */
-/* A new point sees no fixed edge under a cosine below this (110 deg): a
- * flatter triangle would stay, since fixed edges are never split. */
+/* A new point must not see a fixed edge under an angle with a cosine below this
+ * (110 degrees): the flat triangle would remain, since fixed edges are never
+ * split. */
 #define FLAT_COSINE (-0.342)
 
-/* One list per octave of the front edge's length: smallest first, first in
- * first out among equals, so that an even front advances in even rows. The
- * octaves are centred on the shortest boundary segment: where all edges are
- * about as long as the boundary's, they fall in one list. */
+/* One list per octave of the length of the front edge: shortest octave first,
+ * and first in, first out within a list, so that a uniform front advances in
+ * uniform rows. The octaves are centred on the shortest boundary segment: if
+ * all edges are about as long as the boundary segments, they are in one
+ * list. */
 enum { N_BUCKET = 2200, BUCKET_ZERO = 1100 };
 
 struct entry {
@@ -36,7 +40,7 @@ struct front {
   struct vg_tri2 *t;
   const struct vg_planar_law *law;
   struct entry *entry; /* [n] Items of the queue. */
-  uint32_t *free;      /* [n_free] Entries that have left it. */
+  uint32_t *free;      /* [n_free] Entries no longer in the queue. */
   size_t n, cap, n_free, cap_free;
   struct vg_buckets queue;
   double scale;
@@ -49,7 +53,8 @@ static double distance(const double a[2], const double b[2])
   return sqrt(dx * dx + dy * dy);
 }
 
-/* Circumradius; centre out. Huge for a degenerate triangle. */
+/* Returns the circumradius and sets the centre. INFINITY for a degenerate
+ * triangle. */
 static double circumcircle(const double a[2], const double b[2],
                            const double c[2], double centre[2])
 {
@@ -81,7 +86,8 @@ static int is_done(const struct vg_tri2 *t, uint32_t at)
          DONE_RADIUS * h;
 }
 
-/* Shortest edge of an unfinished triangle on the front; NONE if none is. */
+/* Shortest front edge of an unfinished triangle; NONE if it has no front
+ * edge. */
 static uint32_t front_edge(const struct vg_tri2 *t, uint32_t at, double *len)
 {
   uint32_t best = VG_T2_NONE;
@@ -126,7 +132,7 @@ static int push(struct front *f, uint32_t at)
   return 0;
 }
 
-/* Next live unfinished triangle, or NONE. */
+/* The next unfinished triangle in the queue; NONE if the queue is empty. */
 static uint32_t pop(struct front *f)
 {
   uint32_t slot;
@@ -142,7 +148,8 @@ static uint32_t pop(struct front *f)
   return VG_T2_NONE;
 }
 
-/* The function's value, held within VG_T2_GROWTH of what is already there. */
+/* Target edge length at x, with its gradient relative to the corners of
+ * triangle `at` limited to VG_T2_GROWTH. */
 static double target(const struct front *f, const double x[2], uint32_t at)
 {
   const struct vg_tri2 *t = f->t;
@@ -159,7 +166,7 @@ static double target(const struct front *f, const double x[2], uint32_t at)
   return h < lo ? lo < hi ? lo : hi : h;
 }
 
-/* Place the point for front edge e. */
+/* Place the point for front edge e in x. Returns its target edge length. */
 static double place(const struct front *f, uint32_t e, double x[2])
 {
   const struct vg_tri2 *t = f->t;
@@ -185,7 +192,7 @@ static double place(const struct front *f, uint32_t e, double x[2])
   return h;
 }
 
-/* Would x leave a flat triangle on a fixed edge of its cavity? */
+/* Would x create a flat triangle on a fixed edge of its cavity? */
 static int is_flat(const struct vg_tri2 *t, const double x[2])
 {
   for (size_t i = 0; i < t->n_border; i++) {
@@ -203,7 +210,8 @@ static int is_flat(const struct vg_tri2 *t, const double x[2])
   return 0;
 }
 
-/* New triangles: done or on the front; neighbours may have come onto it. */
+/* Mark new triangles as done or queue them, and queue neighbours that are now
+ * on the front. */
 static int classify(struct front *f)
 {
   struct vg_tri2 *t = f->t;
@@ -223,7 +231,8 @@ static int classify(struct front *f)
   return 0;
 }
 
-/* 1 inserted, 0 not possible here, -1 no memory. */
+/* Returns 1 if x was inserted, 0 if it cannot be inserted here, -1 without
+ * memory. */
 static int insert(struct front *f, const double x[2], double h)
 {
   struct vg_tri2 *t = f->t;
@@ -243,7 +252,8 @@ static int insert(struct front *f, const double x[2], double h)
   return 1;
 }
 
-/* Give a triangle up: its neighbours come onto the front. */
+/* Mark a triangle as done although it is too large: its neighbours are then on
+ * the front. */
 static int give_up(struct front *f, uint32_t at)
 {
   f->t->face[at].flag |= VG_T2_DONE;

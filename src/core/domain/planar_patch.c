@@ -22,15 +22,17 @@ struct vg_size_function vg_size_function_of(const struct vg_sizing *sizing)
                                     .user = (void *)sizing };
 }
 
-/* A point off the plane by more than this part of the extent is an error. */
+/* Largest distance of a point from the plane, of the extent of the patch. */
 #define FLATNESS 1e-6
 
-/* axis >= 0: the plane `coordinate axis = at`, in-plane coordinates are the
- * other two, in the order that makes the normal +axis or -axis. */
+/* axis >= 0: the plane in which that coordinate equals `at`. The in-plane
+ * coordinates are the other two, in the order for which the normal is +axis or
+ * -axis. */
 struct frame {
   int axis, iu, iv;
   double at, o[3], u[3], v[3], n[3];
-  double flatness; /* how far points may be off, of the extent */
+  double flatness; /* Largest distance of points from the plane, of the
+                      extent. */
   const struct vg_size_function *size;
 };
 
@@ -67,7 +69,7 @@ static double size_in_plane(void *user, const double p[2])
   return f->size->at(f->size->user, x);
 }
 
-/* Axis that all points share exactly, or -1. */
+/* Axis along which all points have exactly the same coordinate, or -1. */
 static int shared_axis(const struct vg_mesh *m, size_t n_edge,
                        const uint32_t (*edge)[2], const double n[3])
 {
@@ -141,7 +143,7 @@ static vg_status make_frame(const struct vg_mesh *m, size_t n_edge,
   return VG_OK;
 }
 
-/* Region in the plane's own numbering: to_mesh[local] is the mesh point. */
+/* Region with local point numbers: to_mesh[local] is the point of the mesh. */
 struct local {
   size_t n;
   uint32_t *number, *to_mesh, (*edge)[2];

@@ -1,7 +1,7 @@
-/* Smoothing: every free vertex goes to the mean of the apexes of equilateral
- * triangles on the edges of its ring, as far as the sum of squared inverse
- * qualities of its triangles falls; then edges are flipped to Delaunay, which
- * in the plane is also the flip to the larger smallest angle. */
+/* Smoothing: each free vertex moves towards the mean of the apexes of
+ * equilateral triangles on the edges of its ring, as far as the sum of squared
+ * inverse qualities of its triangles decreases. Then edges are flipped to
+ * Delaunay, which in the plane also maximises the smallest angle. */
 #include <assert.h>
 #include <math.h>
 
@@ -10,12 +10,12 @@
 
 enum { RING_MAX = 32, N_LIFT = 4 };
 
-/* Vertices of triangles with a smaller angle, by its sine (36 degrees), are
- * moved once more, for that angle alone. */
+/* Vertices of triangles with a smaller angle (sine of 36 degrees) are moved
+ * once more, to increase that angle alone. */
 #define LIFT_BELOW 0.588 /* S7 */
 
-/* (sum of squared edges / area)^2 summed over the ring; INFINITY when a
- * triangle is not positive. */
+/* Sum over the ring of (sum of squared edges / area)^2; INFINITY if a triangle
+ * is not positive. */
 static double badness(int n, double (*ring)[2], const double x[2])
 {
   double sum = 0;
@@ -90,7 +90,7 @@ static int smooth_vertex(struct vg_tri2 *t, uint32_t v)
   return 0;
 }
 
-/* Smallest sine of the smallest angles of the ring's triangles. */
+/* Smallest sine of all angles of the ring's triangles. */
 static double least_sine(int n, double (*ring)[2], const double x[2])
 {
   double least = 1;
@@ -103,7 +103,7 @@ static double least_sine(int n, double (*ring)[2], const double x[2])
     const double cc = (bx - ax) * (bx - ax) + (by - ay) * (by - ay);
     const double area = ax * by - ay * bx;
     const double low = aa < bb ? aa < cc ? aa : cc : bb < cc ? bb : cc;
-    /* twice the area over the product of the two longer edges */
+    /* Twice the area over the product of the two longer edges. */
     const double sine = area / sqrt(aa * bb * cc / low);
 
     if (!(sine >= least)) least = sine;
@@ -111,7 +111,7 @@ static double least_sine(int n, double (*ring)[2], const double x[2])
   return least;
 }
 
-/* Try ever smaller steps along the axes while the smallest angle grows. */
+/* Try decreasing steps along the axes while the smallest angle increases. */
 static int lift_vertex(struct vg_tri2 *t, uint32_t v)
 {
   static const double way[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 } };

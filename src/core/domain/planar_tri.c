@@ -87,9 +87,8 @@ int vg_tri2_init(struct vg_tri2 *t, size_t n, const double (*p)[2])
   return 0;
 }
 
-/* Visibility walk. Which edge is tried first changes with every step, so that
- * a walk cannot run in circles for ever where constraints bend the
- * triangulation. */
+/* Visibility walk. The first edge tried changes with every step, so that the
+ * walk cannot cycle forever where constraints distort the triangulation. */
 uint32_t vg_tri2_locate(struct vg_tri2 *t, const double x[2], int stop_at_fixed)
 {
   uint32_t at = t->walk, came = VG_T2_NONE, turn = 1;
@@ -150,8 +149,9 @@ static int border_add(struct vg_tri2 *t, uint32_t e, const double x[2])
   return vg_orient2d(t->x[r->a], t->x[r->b], x) > 0;
 }
 
-/* Depth first, each triangle's edges counter-clockwise from the one it was
- * entered by: so the border comes out as one counter-clockwise cycle. */
+/* Depth first, the edges of each triangle counter-clockwise from the one
+ * through which it was entered, so that the border is a single
+ * counter-clockwise cycle. */
 int vg_tri2_cavity(struct vg_tri2 *t, const double x[2], uint32_t at)
 {
   size_t n = 3;
@@ -229,7 +229,8 @@ int vg_tri2_commit(struct vg_tri2 *t, uint32_t p, uint32_t flag)
 
 /* Order of insertion: rounds of doubling size, each along a Morton curve
  * (Amenta, Choi, Rote, "Incremental constructions con BRIO", 2003). The round
- * comes from a hash of the index, so the order is a function of the input. */
+ * is derived from a hash of the index, so that the order is a function of the
+ * input. */
 struct order {
   uint64_t key;
   uint32_t round, point;
@@ -324,7 +325,7 @@ uint32_t vg_tri2_find(const struct vg_tri2 *t, uint32_t a, uint32_t b)
   return VG_T2_NONE;
 }
 
-/* Exchange the diagonal e. */
+/* Flip the diagonal e. */
 static void flip(struct vg_tri2 *t, uint32_t e)
 {
   /* a -> b with apex c on the left and d on the right becomes d -> c. */
@@ -340,7 +341,7 @@ static void flip(struct vg_tri2 *t, uint32_t e)
                               (uint32_t)vg_t2_is_fixed(t, en),
                               (uint32_t)vg_t2_is_fixed(t, op) };
   struct vg_t2_face *fl = &t->face[l], *fr = &t->face[r];
-  /* left: a d c, right: b c d; their outer edges in this order */
+  /* Left: a d c, right: b c d; their outer edges are in this order. */
   const uint32_t mine[4] = { 4 * l, 4 * l + 2, 4 * r, 4 * r + 2 };
 
   fl->v[0] = a, fl->v[1] = d, fl->v[2] = c;
@@ -370,8 +371,8 @@ static int is_convex(const struct vg_tri2 *t, uint32_t e)
          vg_orient2d(t->x[c], t->x[d], t->x[b]) > 0;
 }
 
-/* Where the ray a -> b leaves the ring of a: the crossed half-edge; NONE with
- * *on set when it runs along an edge to *on. */
+/* The half-edge through which the ray a -> b leaves the ring of a; NONE, with
+ * *on set, if it runs along an edge to *on. */
 static uint32_t leave_ring(const struct vg_tri2 *t, uint32_t a, uint32_t b,
                            uint32_t *on)
 {
@@ -440,7 +441,7 @@ static vg_status collect_crossed(struct vg_tri2 *t, uint32_t a, uint32_t b,
       at[0] = w;
       return VG_ERR_GEOMETRY;
     }
-    /* o runs from the left side to the right one */
+    /* o runs from the left side of the ray to the right side. */
     e = side > 0 ? vg_t2_next(o) : vg_t2_prev(o);
   }
 }
@@ -453,7 +454,7 @@ static void fix_edge(struct vg_tri2 *t, uint32_t e)
   if (o != VG_T2_NONE) t->face[o >> 2].flag |= 1u << (o & 3);
 }
 
-/* Flips crossed edges whose quadrilateral is convex until none is crossed
+/* Flip crossed edges whose quadrilateral is convex until no edge is crossed
  * (Sloan, "A fast algorithm for generating constrained Delaunay
  * triangulations", Comput. Struct. 47, 1993). */
 vg_status vg_tri2_constrain(struct vg_tri2 *t, uint32_t a, uint32_t b, int *hit,
@@ -496,7 +497,7 @@ static int is_illegal(const struct vg_tri2 *t, uint32_t e)
          in_circle(t, e >> 2, t->x[vg_t2_apex(t, o)]);
 }
 
-/* Flip e and whatever becomes illegal by it. */
+/* Flip e, and the edges that are no longer Delaunay as a result. */
 static long settle(struct vg_tri2 *t, uint32_t e)
 {
   size_t n = 1;
@@ -535,7 +536,7 @@ long vg_tri2_legalise(struct vg_tri2 *t)
       flips = settle(t, e);
       if (flips < 0) return -1;
       total += flips;
-      k = UINT32_MAX; /* the face has changed: look at all its edges */
+      k = UINT32_MAX; /* the face has changed: examine all its edges */
     }
   }
   return total;

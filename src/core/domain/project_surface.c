@@ -1,4 +1,4 @@
-/* Surface of a project of planar patches. Curves as VGRID marches them
+/* Surface of a project of planar patches. Curves are marched as in VGRID
  * (formats.md 1.7): the step is the spacing at the current point, until it
  * would pass the end; the last three steps are then made equal. */
 #include <assert.h>
@@ -13,7 +13,7 @@
 #include "core/geometry/vector.h"
 
 /* A chain of points that turns by more than 30 degrees has a corner there,
- * which the mesh keeps. */
+ * which becomes a mesh point. */
 #define CORNER_COSINE 0.866
 
 struct builder {
@@ -22,8 +22,8 @@ struct builder {
   struct vg_stop stop;
   struct vg_mesh m;
   size_t cap_point;
-  uint32_t *corner; /* [project n_point] mesh point, or UINT32_MAX */
-  struct trace {    /* mesh points along a curve, ends included */
+  uint32_t *corner; /* [project n_point] Mesh point, or UINT32_MAX. */
+  struct trace {    /* Mesh points along a curve, ends included. */
     uint32_t *point;
     size_t n, cap;
   } * trace; /* [project n_curve] */
@@ -81,8 +81,8 @@ static vg_status check_project(const struct vg_project *p, struct vg_error *err)
           (k && !(vg_distance(p->point[c->point[k - 1]],
                               p->point[c->point[k]]) > 0)))
         return vg_fail(err, VG_ERR_INPUT,
-                       "%s: curve %" PRId32 ": point %zu "
-                       "of it does not exist or repeats the one before",
+                       "%s: curve %" PRId32 ": its point %zu does not exist "
+                       "or repeats the previous point",
                        p->name, c->id, k + 1);
   }
   for (size_t i = 0; i < p->n_shape; i++)
@@ -98,7 +98,8 @@ static vg_status check_project(const struct vg_project *p, struct vg_error *err)
   return VG_OK;
 }
 
-/* Ends and corners of curves become mesh points, in the project's order. */
+/* Ends and corners of curves become mesh points, in the order of the
+ * project. */
 static vg_status place_corners(struct builder *b, struct vg_error *err)
 {
   const struct vg_project *p = b->project;
@@ -121,12 +122,12 @@ static vg_status place_corners(struct builder *b, struct vg_error *err)
   return VG_OK;
 }
 
-/* Part of a curve between two kept points, by distance along it. */
+/* Part of a curve between two fixed points, parametrised by arc length. */
 struct run {
   const struct vg_project *p;
   const uint32_t *point; /* [n] */
   const double *along;   /* [n] */
-  size_t n, at;          /* at: segment of the last look-up */
+  size_t n, at;          /* `at`: segment of the last look-up. */
 };
 
 static void run_point(struct run *r, double s, double x[3])
@@ -139,11 +140,11 @@ static void run_point(struct run *r, double s, double x[3])
   a = r->p->point[r->point[r->at]];
   b = r->p->point[r->point[r->at + 1]];
   w = (s - r->along[r->at]) / (r->along[r->at + 1] - r->along[r->at]);
-  for (int k = 0; k < 3; k++) /* exact where both ends agree */
+  for (int k = 0; k < 3; k++) /* exact if both ends have the same coordinate */
     x[k] = a[k] == b[k] ? a[k] : a[k] + w * (b[k] - a[k]);
 }
 
-/* 0, 1: too fine, 2: stopped, or -1. */
+/* Returns 0; 1: too fine; 2: stopped; or -1. */
 static int march(struct builder *b, struct run *r, double **step, size_t *n)
 {
   const double len = r->along[r->n - 1];
@@ -162,7 +163,7 @@ static int march(struct builder *b, struct run *r, double **step, size_t *n)
     if (vg_stops(&b->stop)) return 2;
     s += h;
   }
-  /* *n steps, the last one cut off by the end */
+  /* There are *n steps, the last one cut off at the end. */
   keep = *n > 3 ? *n - 3 : 0;
   for (size_t i = keep; i < *n; i++)
     (*step)[i] = (*step)[keep] + (len - (*step)[keep]) *

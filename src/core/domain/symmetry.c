@@ -6,14 +6,14 @@
 #include "core/geometry/vector.h"
 
 /* S9 */
-#define STEEP 0.7      /* cosine of normal and axis: 45 degrees */
+#define STEEP 0.7      /* of normal and axis: cosine of 45 degrees */
 #define MOSTLY 0.7     /* of the length of the open edges */
-#define SPAN 0.5       /* of the body's extent */
+#define SPAN 0.5       /* of the extent of the body */
 #define DEEP 1.5       /* times the width of the opening */
-#define NEAR_ZERO 1e-3 /* of the body's length */
+#define NEAR_ZERO 1e-3 /* of the length of the body */
 
-/* Length of the sides of a triangle that lie in the plane, and whether the
- * triangle meets it steeply. */
+/* Length of the sides of a triangle in the plane, and whether the triangle
+ * meets the plane steeply. */
 static double in_plane(const struct vg_mesh *m, const uint32_t *t, int axis,
                        double at, double tolerance, int *is_steep)
 {

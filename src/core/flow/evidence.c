@@ -1,6 +1,6 @@
-/* Outline: shells are put into trees of nesting; each outermost one gets the
- * roles of its patches; those with others inside, and one that stands alone,
- * are measured against their convex hull. */
+/* Outline: shells are arranged in trees by nesting. Each outermost shell gets
+ * the roles of its patches. Shells that contain others, and a shell that is the
+ * only one, are compared with their convex hull. */
 #include "core/flow/evidence.h"
 
 #include <math.h>
@@ -48,9 +48,9 @@ static void find_crossed(struct vg_flow_evidence *e)
   }
 }
 
-/* The outermost closed shell around shell i: itself for most. A shell that is
- * not closed has no nesting; with by_box the largest closed shell counts whose
- * box contains that of shell i. */
+/* The outermost closed shell around shell i, which is shell i itself in most
+ * cases. A shell that is not closed has no nesting; with by_box it belongs to
+ * the largest closed shell if that shell's box contains its box. */
 static size_t top_of(const struct vg_flow_evidence *e, size_t i, size_t largest)
 {
   const struct vg_surface_report *r = e->r;
@@ -76,7 +76,7 @@ static size_t largest_closed(const struct vg_surface_report *r)
   return largest;
 }
 
-/* Outermost shells, in the order of their numbers; then what is inside. */
+/* List the outermost shells by number; then add up the shells inside them. */
 static void list_shells(struct vg_flow_evidence *e, int by_box)
 {
   const struct vg_surface_report *r = e->r;

@@ -1,6 +1,6 @@
-/* Outline: a cap that closes a half model is removed; a half model is joined
- * with its mirror image; outermost shells are judged and the verdicts combined;
- * shells are turned and sealed cavities dropped. */
+/* Outline: the cap of a half model is removed, and a half model is joined with
+ * its mirror image. Each outermost shell is classified, and the verdicts are
+ * combined. Shells are then turned and sealed cavities dropped. */
 #include "core/flow/flow.h"
 
 #include <assert.h>
@@ -15,17 +15,19 @@
 #include "core/flow/half.h"
 #include "core/flow/verdict.h"
 
-/* What becomes of a shell. */
+/* Treatment of a shell. */
 enum fate { KEEP_OUT, KEEP_IN, DROP }; /* normals out of it, into it */
 
 struct settle {
   const struct vg_flow_options *o;
-  struct vg_mesh *m;           /* as given, without a cap */
-  struct vg_surface_report *r; /* on m */
-  struct vg_mesh whole;        /* m with its mirror image; empty: m is whole */
+  struct vg_mesh *m;           /* The input without a cap. */
+  struct vg_surface_report *r; /* Report on m. */
+  struct vg_mesh whole;        /* m with its mirror image; empty: m is a whole
+                                  model. */
   struct vg_surface_report whole_r;
-  struct vg_flow_evidence e;     /* on the whole */
-  enum vg_flow_verdict *verdict; /* [e.n_shell] */
+  struct vg_flow_evidence e;     /* Evidence on the whole model. */
+  enum vg_flow_verdict *verdict; /* [e.n_shell] Verdict on each outermost
+                                    shell. */
   struct vg_flow out;
 };
 
@@ -51,7 +53,7 @@ static __attribute__((format(printf, 2, 3))) void tell(struct vg_flow *f,
 
 /* --- half models --------------------------------------------------------- */
 
-/* Drop marked triangles, and look again. */
+/* Drop marked triangles and repeat the surface check. */
 static vg_status drop(struct settle *s, const uint8_t *gone, int external,
                       struct vg_error *err)
 {
@@ -72,8 +74,8 @@ static vg_status drop(struct settle *s, const uint8_t *gone, int external,
   return vg_surface_check(m, &o, s->r, err);
 }
 
-/* A closed surface may be a half model that is closed by a cap. *removed: the
- * cap is gone, since the options or a condition say so. */
+/* A closed surface may be a half model with a cap. *removed is set if the cap
+ * was removed because the options or a condition require it. */
 static vg_status look_for_cap(struct settle *s, int *removed,
                               struct vg_error *err)
 {
@@ -89,10 +91,9 @@ static vg_status look_for_cap(struct settle *s, int *removed,
   if (cap.axis < 0) {
     if (half >= VG_HALF_X)
       st = vg_fail(err, VG_ERR_INPUT,
-                   "half %c: the surface is closed and has "
-                   "no flat cap at an end in %c that could be removed; give "
-                   "the half model open along its symmetry plane, or leave the "
-                   "option half out",
+                   "half %c: the surface is closed and has no flat cap at an "
+                   "end in %c that could be removed; give a half model that "
+                   "is open along its symmetry plane, or omit the option half",
                    "xyz"[half - VG_HALF_X], "xyz"[half - VG_HALF_X]);
     goto done;
   }
@@ -101,18 +102,19 @@ static vg_status look_for_cap(struct settle *s, int *removed,
   if (half < VG_HALF_X && !by_condition) goto done;
   *removed = 1;
   s->out.n_cap_tri = cap.n_tri;
-  tell(&s->out, "the flat cap at %c = %g, %zu triangles, %s: it was removed",
+  tell(&s->out, "the flat cap at %c = %g (%zu triangles) %s: it was removed",
        "xyz"[cap.axis], cap.at, cap.n_tri,
        by_condition ? "has the condition or name of a symmetry plane"
-                    : "closes a half model as the option half says");
+                    : "closes a half model according to the option half");
   VG_TRY(drop(s, cap.tri, -1, err));
 done:
   vg_flow_cap_release(&cap);
   return st;
 }
 
-/* Rims can be followed where triangles agree. A reference surface may cross
- * itself by less than the tolerance of the surface that is made from it. */
+/* Rims can be followed if neighbouring triangles agree in orientation. A
+ * reference surface may intersect itself by less than the tolerance of the
+ * remeshed surface. */
 static int has_rims(const struct vg_surface_report *r)
 {
   return r->count[VG_DEFECT_OPEN_EDGE] && !r->count[VG_DEFECT_ORIENTATION] &&
@@ -135,9 +137,8 @@ static vg_status look_for_rims(struct settle *s, struct vg_error *err)
   if (axis < 0) goto done;
   if (half >= VG_HALF_X && axis != (int)half - VG_HALF_X) {
     st = vg_fail(err, VG_ERR_INPUT,
-                 "half %c: the open edges of the surface "
-                 "lie in the plane %c = %g; give half %c, or close them "
-                 "(close_holes yes)",
+                 "half %c: the open edges of the surface lie in the plane %c "
+                 "= %g; set half %c, or close them (close_holes yes)",
                  "xyz"[half - VG_HALF_X], "xyz"[axis], at, "xyz"[axis]);
     goto done;
   }
@@ -163,10 +164,10 @@ done:
 static vg_status two_readings(const char *why, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_INPUT,
-                 "the flow domain can be read in two ways: "
-                 "%s. Choose with --flow external (the surface is a body, the "
-                 "fluid is outside) or --flow internal (the surface bounds the "
-                 "fluid inside it), or give boundary conditions",
+                 "the flow domain is ambiguous and can be read in two ways: "
+                 "%s. Choose --flow external (the surface is a body, the "
+                 "fluid is outside) or --flow internal (the surface bounds "
+                 "the fluid inside it), or give boundary conditions",
                  why);
 }
 
@@ -178,7 +179,8 @@ static vg_status judge_shells(struct settle *s, struct vg_error *err)
 
   s->verdict = vg_alloc(e->n_shell, sizeof *s->verdict);
   if (!s->verdict) return vg_fail_memory(err, "the shells");
-  /* The open triangles of a half model say nothing of its side. */
+  /* The orientation of the triangles of a half model, which is open, is not
+   * evidence. */
   if (s->out.axis >= 0 && side != VG_SIDE_DEFINED) side = VG_SIDE_FREE;
   for (size_t i = 0; i < e->n_shell; i++) {
     s->verdict[i] = vg_flow_judge(&e->shell[i], side, why);
@@ -196,7 +198,8 @@ static vg_status judge_shells(struct settle *s, struct vg_error *err)
   return VG_OK;
 }
 
-/* A shell inside another one cannot be the outer boundary of its fluid. */
+/* A shell inside another one cannot be the outer boundary of that shell's
+ * fluid. */
 static vg_status check_inner(const struct settle *s, struct vg_error *err)
 {
   const struct vg_flow_evidence *e = &s->e;
@@ -233,10 +236,10 @@ static vg_status combine(struct settle *s, struct vg_error *err)
   f->kind = f->n_outer ? VG_FLOW_INTERNAL : VG_FLOW_EXTERNAL;
   if (f->n_outer && f->n_outer < s->e.n_shell) {
     st = vg_fail(err, VG_ERR_INPUT,
-                 "the flow domain can be read in two ways: "
-                 "%zu of %zu outermost shells are outer boundaries of a fluid "
-                 "inside them, and the others are bodies that stand outside "
-                 "these. Choose with --flow external or --flow internal, or "
+                 "the flow domain is ambiguous and can be read in two ways: "
+                 "%zu of %zu outermost shells are outer boundaries of a "
+                 "fluid inside them, and the others are bodies outside these "
+                 "boundaries. Choose --flow external or --flow internal, or "
                  "remove the shells that do not belong to the domain",
                  f->n_outer, s->e.n_shell);
   } else if (f->n_outer > 1 && !s->o->all_regions) {
@@ -250,7 +253,7 @@ done:
   return st;
 }
 
-/* --- what becomes of the shells ------------------------------------------ */
+/* --- treatment of shells -------------------------------------------------- */
 
 static enum fate fate_of(const struct settle *s, uint32_t shell)
 {
@@ -263,7 +266,7 @@ static enum fate fate_of(const struct settle *s, uint32_t shell)
   return depth % 2 == outer ? KEEP_OUT : KEEP_IN;
 }
 
-/* The shell goes on into its mirror image. */
+/* Is the shell connected to its mirror image? */
 static int is_joined(const struct settle *s, const struct vg_shell *x)
 {
   return s->out.axis >= 0 &&
@@ -284,8 +287,8 @@ static void count_shell(struct settle *s, uint32_t shell, double *largest)
   for (int k = 0; k < 3; k++) s->out.cavity_at[k] = 0.5 * (x->lo[k] + x->hi[k]);
 }
 
-/* Patches of the outer boundary; those that stand in its pocket are not: more
- * than half of their triangles do. */
+/* Mark the patches of the outer boundary. A patch with more than half of its
+ * triangles on a body inside the outer boundary does not belong to it. */
 static vg_status mark_outer(struct settle *s, struct vg_error *err)
 {
   const struct vg_flow_evidence *e = &s->e;
@@ -309,7 +312,8 @@ static void count_shells(struct settle *s)
 {
   double largest = 0;
 
-  /* Of two images one counts: a half model's shells hold triangles of m. */
+  /* Of a shell and its image count one: the shell whose first triangle is in
+   * m. */
   for (size_t i = 0; i < s->e.r->n_shell; i++)
     if (s->out.axis < 0 || s->e.r->shell[i].face < s->m->n_tri)
       count_shell(s, (uint32_t)i, &largest);
@@ -342,7 +346,7 @@ static void turn(struct settle *s, const uint8_t *turned)
   r->shells_reoriented = n && n == r->n_shell;
 }
 
-/* Triangles of m have the numbers that they have in the whole. */
+/* Triangles of m have the same numbers in the whole model. */
 static vg_status apply(struct settle *s, struct vg_error *err)
 {
   const struct vg_surface_report *whole = s->e.r;
@@ -389,7 +393,7 @@ void vg_flow_release(struct vg_flow *f)
   *f = (struct vg_flow)VG_FLOW_INIT;
 }
 
-/* Evidence and verdicts on the surface as it is now. */
+/* Collect evidence and verdicts on the current surface. */
 static vg_status judge_surface(struct settle *s, struct vg_error *err)
 {
   vg_status st;
@@ -404,8 +408,8 @@ done:
   return st;
 }
 
-/* A symmetry plane that closes a body is the cap of a half model; one that is
- * part of an outer boundary is not. */
+/* A symmetry plane that closes a body is the cap of a half model; a symmetry
+ * plane that is part of an outer boundary is not. */
 static vg_status judge(struct settle *s, struct vg_error *err)
 {
   struct vg_flow before;

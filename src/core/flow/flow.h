@@ -1,26 +1,26 @@
-/* core/flow/flow.h: on which side of a surface is the fluid, and which parts of
- * the surface bound it?
+/* core/flow/flow.h: determines on which side of a surface the fluid is, and
+ * which parts of the surface bound it.
  *
- * The question has one answer, given here once, before the surface is wrapped,
- * remeshed or completed. The evidence is collected shell by shell
- * (core/flow/evidence.h), each outermost shell is judged by itself
- * (core/flow/verdict.h), and the verdicts are combined:
+ * The decision is made once, before the surface is wrapped, remeshed or
+ * completed. Evidence is collected shell by shell (core/flow/evidence.h), each
+ * outermost shell is classified by itself (core/flow/verdict.h), and the
+ * verdicts are combined:
  *
- *      external flow                        internal flow
- *   . . . . . . . . . . . .             +-----------------------+
- *   .   +------------+    .             |  outer boundary       |
- *   .   | body       |    .             |      +---------+      |
- *   .   |   +----+   |    .             |      | body    |      |
- *   .   |   |//// sealed  .             |      |   +--+  |      |
- *   .   |   +----+ cavity .             |      |   |//| cavity  |
- *   .   +------------+    .             |      |   +--+  |      |
- *   . . . . farfield  . . .             |      +---------+      |
- *                                       +-----------------------+
+ *     external flow                        internal flow
+ *  . . . . . . . . . . . .             +-----------------------+
+ *  .   +------------+    .             |  outer boundary       |
+ *  .   | body       |    .             |      +---------+      |
+ *  .   |   +----+   |    .             |      | body    |      |
+ *  .   |   |//// sealed  .             |      |   +--+  |      |
+ *  .   |   +----+ cavity .             |      |   |//| cavity  |
+ *  .   +------------+    .             |      |   +--+  |      |
+ *  . . . . farfield  . . .             |      +---------+      |
+ *                                      +-----------------------+
  *
  * Sealed cavities are dropped. A half model, open along a coordinate plane, is
- * judged as the whole that it makes with its mirror image. Where the evidence
- * supports two readings, the answer is an error that names both.
- * Uses core/surface, core/domain. */
+ * classified together with its mirror image. If the evidence supports two
+ * readings, the result is an error that names both. Uses core/surface,
+ * core/domain. */
 #ifndef VG_CORE_FLOW_FLOW_H
 #define VG_CORE_FLOW_FLOW_H
 
@@ -32,65 +32,65 @@
 #include "core/surface/surface_check.h"
 
 enum vg_flow_kind {
-  VG_FLOW_UNKNOWN,  /* asked: find out; found: it cannot be known */
-  VG_FLOW_EXTERNAL, /* bodies in a fluid that has no given end */
-  VG_FLOW_INTERNAL  /* the surface is the whole boundary */
+  VG_FLOW_UNKNOWN,  /* As option: to be determined; as result: undecidable. */
+  VG_FLOW_EXTERNAL, /* Bodies in a fluid without a given outer boundary. */
+  VG_FLOW_INTERNAL  /* The surface is the whole boundary. */
 };
 
-/** Half models: the words of the setting `half`. */
+/** Half models: the values of the setting `half`. */
 enum vg_flow_half {
-  VG_HALF_AUTO, /* open rims, and conditions, decide */
-  VG_HALF_NO,   /* the model is whole */
-  VG_HALF_YES,  /* open rims lie in the symmetry plane */
+  VG_HALF_AUTO, /* From open rims and conditions. */
+  VG_HALF_NO,   /* The model is whole. */
+  VG_HALF_YES,  /* Open rims are in the symmetry plane. */
   VG_HALF_X,
   VG_HALF_Y,
-  VG_HALF_Z /* symmetry plane across this axis; a flat
-         cap in it is removed */
+  VG_HALF_Z /* The symmetry plane is normal to this axis; a flat cap in it is
+               removed. */
 };
 
-/** The side to which triangles point, as the format of the input defines it. */
+/** The side to which triangles point, as defined by the format of the input. */
 enum vg_flow_side {
-  VG_SIDE_FREE,   /* nothing, or files are found both ways */
-  VG_SIDE_USUAL,  /* into the fluid, with exceptions (UGRID,
-                     AFLR) */
-  VG_SIDE_DEFINED /* into the fluid (VGRID, this interface) */
+  VG_SIDE_FREE,   /* Undefined, or files of both kinds exist. */
+  VG_SIDE_USUAL,  /* Into the fluid, with exceptions (UGRID, AFLR). */
+  VG_SIDE_DEFINED /* Into the fluid (VGRID, this interface). */
 };
 
 struct vg_flow_options {
-  enum vg_flow_kind kind; /* the reading that the user asked for */
-  const char *asked_by;   /* option that asks for it, as "--flow
-                             internal"; NULL when kind is UNKNOWN */
+  enum vg_flow_kind kind; /* The reading that the user requested. */
+  const char *asked_by;   /* Option that requests it, as "--flow internal"; NULL
+                             if kind is UNKNOWN. */
   enum vg_flow_half half;
-  enum vg_flow_side side; /* of the format of the input */
-  int all_regions;        /* 1: mesh every region of fluid, sealed
-                             cavities too */
-  int repair;             /* 1: shells may be turned */
-  int require_bc;         /* as in vg_surface_check_options */
-  int threads;            /* 0: one per core; the same answer for any */
+  enum vg_flow_side side; /* Defined by the format of the input. */
+  int all_regions;        /* 1: mesh every region of fluid, including sealed
+                             cavities. */
+  int repair;             /* 1: shells may be turned. */
+  int require_bc;         /* As in vg_surface_check_options. */
+  int threads;            /* 0: one per core. The result does not depend on
+                             it. */
   struct vg_stop stop;
 };
 
-#define VG_FLOW_EVIDENCE 12 /* lines of evidence at most */
-#define VG_FLOW_TEXT 320    /* bytes of each */
+#define VG_FLOW_EVIDENCE 12 /* most lines of evidence */
+#define VG_FLOW_TEXT 320    /* bytes per line */
 
-/** The answer. Texts are complete English phrases without a full stop. */
+/** The result. Texts are complete English phrases without a full stop. */
 struct vg_flow {
   enum vg_flow_kind kind;
-  int axis;                 /* half model: axis of its plane; -1: whole */
-  double at;                /* coordinate of that plane */
-  size_t n_body;            /* closed (or cut) bodies in the fluid */
-  size_t n_outer;           /* outer boundaries: regions of fluid */
-  size_t n_cavity;          /* sealed cavities, dropped */
-  double cavity_volume;     /* of all of them */
-  double cavity_at[3];      /* a point of the largest one */
-  size_t n_inlet, n_outlet; /* patches by condition or name */
-  int cap_axis;             /* a flat cap that may close a half model: axis
-                               of its plane; -1: none */
-  double cap_at;            /* coordinate of that plane */
-  size_t n_cap_tri;         /* triangles of a cap that was removed */
+  int axis;                 /* Half model: axis of its symmetry plane; -1: whole
+                               model. */
+  double at;                /* Coordinate of that plane. */
+  size_t n_body;            /* Closed (or cut) bodies in the fluid. */
+  size_t n_outer;           /* Outer boundaries: the number of fluid regions. */
+  size_t n_cavity;          /* Sealed cavities that were dropped. */
+  double cavity_volume;     /* Total volume of the sealed cavities. */
+  double cavity_at[3];      /* Centre of the box of the largest one. */
+  size_t n_inlet, n_outlet; /* Patches by condition or name. */
+  int cap_axis;             /* Axis of the plane of a flat cap that may close a
+                               half model; -1: none. */
+  double cap_at;            /* Coordinate of that plane. */
+  size_t n_cap_tri;         /* Triangles of the cap if it was removed. */
   uint8_t *on_outer;        /* [n_patch] 1: the patch belongs to an outer
-                               boundary; owned; NULL while kind is UNKNOWN
-                               */
+                               boundary; owned; NULL while kind is UNKNOWN. */
   int n_evidence;
   char evidence[VG_FLOW_EVIDENCE][VG_FLOW_TEXT];
 };
@@ -102,50 +102,55 @@ struct vg_flow {
 void vg_flow_release(struct vg_flow *f);
 
 /** Decide which flow the surface bounds, and prepare the surface for it: shells
- * point into the fluid, sealed cavities and the cap of a half model are gone.
+ * point into the fluid, sealed cavities and the cap of a half model are
+ * removed.
  *
  * @param m  triangles; on success only dropped and turned
- * @param r  in: report of vg_surface_check with `external` -1 on m; out: report
- *           on m as it is now
+ * @param r  in: report of vg_surface_check on m with `external` -1; out: report
+ *           on the changed m
  * A surface with open rims that are not those of a half model, or with other
- * defects, is classified as far as its closed shells permit, and is turned
- * only where it has no other defects than open edges: the caller refuses it.
- * VG_ERR_INPUT where the evidence supports two readings or contradicts the
- * options: the message names both readings and the options that select them.
- * *out is released first, and untouched on failure; m and r may have changed
- * then. O(n log n). */
+ * defects, is classified as far as its closed shells permit, and turned only if
+ * open edges are its only defects; the caller refuses it. VG_ERR_INPUT if the
+ * evidence supports two readings or contradicts the options: the message names
+ * both readings and the options that select them. *out is released first, and
+ * untouched on failure; m and r may then have changed. O(n log n). */
 vg_status vg_flow_settle(struct vg_mesh *m, struct vg_surface_report *r,
                          const struct vg_flow_options *o, struct vg_flow *out,
                          struct vg_error *err);
 
-/** Which triangles belong to outer boundaries, so that a wrap of the bodies
- * leaves them alone. Also for dirty surfaces: shells that are not closed count
- * as inside a shell whose box contains theirs.
+/** Find the triangles that belong to outer boundaries, so that a wrap of the
+ * bodies excludes them. This also works for dirty surfaces: shells that are not
+ * closed count as inside a shell whose box contains their box.
+ *
  * @param outer  out: [m->n_tri]
  * @param n      out: number of outer boundaries
- * Errors as vg_flow_settle. */
+ * Errors as for vg_flow_settle. */
 vg_status vg_flow_outer(const struct vg_mesh *m,
                         const struct vg_surface_report *r,
                         const struct vg_flow_options *o, uint8_t *outer,
                         size_t *n, struct vg_error *err);
 
-/** "External flow around 2 closed bodies; farfield added". out[VG_FLOW_TEXT].
- * @param adds_farfield  1: the program completes the domain */
+/** Summarise the result: "External flow around 2 closed bodies; farfield
+ * added".
+ *
+ * @param adds_farfield  1: the program completes the domain
+ * @param out            out: [VG_FLOW_TEXT] */
 void vg_flow_statement(const struct vg_flow *f, int adds_farfield, char *out);
 
-/** What a patch is by its condition or, where it has none, by its name. */
+/** The role of a patch by its condition or, if it has none, by its name. */
 enum vg_flow_role {
-  VG_ROLE_NONE, /* neither condition nor name says anything */
+  VG_ROLE_NONE, /* Neither condition nor name determines a role. */
   VG_ROLE_WALL,
   VG_ROLE_SYMMETRY,
   VG_ROLE_FARFIELD,
   VG_ROLE_INLET,
   VG_ROLE_OUTLET,
-  VG_ROLE_OTHER, /* a condition or name, of other meaning */
+  VG_ROLE_OTHER, /* A condition or name with another meaning. */
   VG_ROLE_N
 };
 
-/** Codes of USM3D and FUN3D count alike. O(length of the name). */
+/** Role of a patch. Codes of USM3D and FUN3D are equivalent. O(length of the
+ * name). */
 enum vg_flow_role vg_flow_role_of(const struct vg_patch *p);
 
 #endif

@@ -9,8 +9,8 @@
 #include "core/domain/planar.h"
 #include "core/geometry/vector.h"
 
-#define NEAR 1e-5 /* S5: of the length: points so near are in a plane */
-#define ZERO 1e-3 /* F4: of the length: a plane so near is at 0 */
+#define NEAR 1e-5 /* S5: of the length: points this near are in a plane */
+#define ZERO 1e-3 /* F4: of the length: a plane this near is at 0 */
 
 void vg_flow_cap_release(struct vg_flow_cap *cap)
 {
@@ -41,8 +41,8 @@ static int is_in_plane(const struct vg_mesh *m, size_t t, int axis, double at,
   return 1;
 }
 
-/* Triangles in the plane; those of patches that are not symmetry planes count
- * only when no condition is asked for. */
+/* Mark the triangles in the plane; with symmetry_only, only those of symmetry
+ * planes. */
 static void mark_cap(const struct vg_mesh *m, int axis, double at, double near,
                      int symmetry_only, struct vg_flow_cap *cap)
 {
@@ -58,7 +58,7 @@ static void mark_cap(const struct vg_mesh *m, int axis, double at, double near,
   }
 }
 
-/* m without the cap; points stay. */
+/* Copy m without the cap; its points stay. */
 static vg_status without_cap(const struct vg_mesh *m,
                              const struct vg_flow_cap *cap, struct vg_mesh *out,
                              struct vg_error *err)
@@ -76,7 +76,7 @@ static vg_status without_cap(const struct vg_mesh *m,
   return VG_OK;
 }
 
-/* The surface meets the plane of the cap as half of a symmetric body does. */
+/* Does the surface meet the plane of the cap like half of a symmetric body? */
 static vg_status is_half(const struct vg_mesh *m, const struct vg_flow_cap *cap,
                          int *half, struct vg_error *err)
 {
@@ -94,7 +94,7 @@ done:
   return st;
 }
 
-/* The whole patch, or none of it, lies in a coordinate plane at an end. */
+/* Are all triangles of symmetry planes in the cap? */
 static int has_symmetry(const struct vg_mesh *m, const struct vg_flow_cap *cap)
 {
   for (size_t t = 0; t < m->n_tri; t++)
@@ -120,7 +120,7 @@ vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
   if (!cap->tri) VG_TRY(vg_fail_memory(err, "the cap of a half model"));
   for (int pass = 0; pass < 2 && !found; pass++)
     for (int end = 0; end < 6 && !found; end++) {
-      const int axis = (end / 2 + 1) % 3; /* y first: the usual one */
+      const int axis = (end / 2 + 1) % 3; /* y first: the most common */
       double at = end % 2 ? b.hi[axis] : b.lo[axis];
 
       if (fabs(at) <= near) at = 0;

@@ -13,26 +13,28 @@
 
 /** A flat cap in a coordinate plane at an end of the surface. */
 struct vg_flow_cap {
-  int axis; /* -1: no cap was found */
+  int axis; /* -1: no cap was found. */
   double at;
   size_t n_tri;
-  uint8_t *tri; /* [m->n_tri] 1: triangle of the cap; owned */
+  uint8_t *tri; /* [m->n_tri] 1: triangle of the cap; owned. */
 };
 
-/** Find the cap that may close a half model.
+/** Find the cap that may close a half model: the cap with a symmetry condition
+ * or name, or else one at coordinate 0 whose plane the surface meets steeply.
  *
- * @param half  VG_HALF_X to _Z: across this axis; else the cap with a symmetry
- *              condition or name, or else one at coordinate 0 whose plane the
- *              surface meets steeply; *by_condition says which
- * O(n) but for the border of the cap. */
+ * @param half          VG_HALF_X to _Z: only a cap normal to this axis, at any
+ *                      coordinate
+ * @param by_condition  out: 1 if the cap has a symmetry condition or name
+ * O(n), plus the cost of the border of the cap. */
 vg_status vg_flow_find_cap(const struct vg_mesh *m, enum vg_flow_half half,
                            struct vg_flow_cap *cap, int *by_condition,
                            struct vg_error *err);
 
 void vg_flow_cap_release(struct vg_flow_cap *cap);
 
-/** m with its mirror image across x[axis] = at; points in the plane are shared,
- * triangles n_tri and up are the image. *out is empty before. */
+/** Join m with its mirror image across x[axis] = at. Points in the plane are
+ * shared; triangles from number n_tri on are the image. *out is empty on
+ * entry. */
 vg_status vg_flow_mirror(const struct vg_mesh *m, int axis, double at,
                          struct vg_mesh *out, struct vg_error *err);
 

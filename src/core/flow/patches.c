@@ -1,4 +1,4 @@
-/* Where patches lie: flat ones, and ends of shells. */
+/* Finds flat patches and ends of shells. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,10 +11,9 @@
 /* F1 */
 #define FLAT 1e-4  /* of the shell's length: deviation of a flat patch */
 #define STEEP 0.7  /* cosine between a wall and the plane of an end */
-#define MOSTLY 0.7 /* share of the border that meets it so steeply */
+#define MOSTLY 0.7 /* least share of the border that meets it steeply */
 #define LARGE                                                                  \
-  1e-3 /* of the area of all patches: a plain patch that is                    \
-          smaller is no opening */
+  1e-3 /* of the total area: least area of an opening without name */
 
 static void normal_of(const struct vg_mesh *m, size_t t, double n[3])
 {
@@ -41,7 +40,7 @@ static void add_normals(const struct vg_mesh *m,
   }
 }
 
-/* Range of the points of patches, and of their shells, along their normals. */
+/* Range of the points of a patch, and of its shell, along its normal. */
 struct range {
   double lo, hi, shell_lo, shell_hi;
 };
@@ -52,7 +51,8 @@ static void widen(double x, double *lo, double *hi)
   if (x > *hi) *hi = x;
 }
 
-/* The few patches that may be ends pay for a loop over all triangles. */
+/* Measure the patches that may be ends. They are few, so that each can afford a
+ * loop over all triangles. */
 static void measure_flat(const struct vg_mesh *m,
                          const struct vg_surface_report *r,
                          struct vg_flow_patch *p, size_t at)
@@ -83,7 +83,7 @@ static void measure_flat(const struct vg_mesh *m,
                              p->plane - g.shell_lo <= FLAT * length);
 }
 
-/* Length of the borders of patches, and of the steep part of them. */
+/* Length of the border of a patch, and of its steep part. */
 struct border {
   double all, steep;
 };
@@ -103,7 +103,7 @@ static void add_border(const struct vg_mesh *m, size_t at, size_t beside,
     border[own].steep += length;
 }
 
-/* Ends are those flat patches whose borders are steep. */
+/* Flat patches with steep borders are ends. */
 static vg_status find_ends(const struct vg_mesh *m, struct vg_flow_patch *patch,
                            struct vg_error *err)
 {
@@ -135,9 +135,9 @@ done:
   return st;
 }
 
-/* Patches whose place is evidence: openings, symmetry planes, and, next to
- * named walls, patches without condition and name. The area of a
- * flat patch is the length of the sum of its normals. */
+/* Is the location of the patch evidence? It is for openings and symmetry planes
+ * and, next to named walls, for patches without condition and name. The area of
+ * a flat patch is half the length of the sum of its normals. */
 static int may_be_end(const struct vg_flow_patch *p, int has_walls, double area)
 {
   if (!p->is_used || p->shell == UINT32_MAX ||

@@ -1,4 +1,4 @@
-/* What a patch is, by its condition or its name. Declared in
+/* The role of a patch, by its condition or its name. Declared in
  * core/flow/flow.h. */
 #include <ctype.h>
 #include <string.h>
@@ -10,7 +10,7 @@ struct code_range {
   enum vg_flow_role role;
 };
 
-/* Codes of formats.md 1.4 and 1.5. USM3D's end at 11,111. */
+/* Codes of formats.md 1.4 and 1.5. Those of USM3D end at 11,111. */
 static const struct code_range codes[] = {
   { 0, 0, VG_ROLE_FARFIELD }, /* USM3D freestream */
   { 1, 1, VG_ROLE_SYMMETRY },
@@ -36,7 +36,7 @@ static const struct code_range codes[] = {
 
 static enum vg_flow_role by_code(int32_t code)
 {
-  if (code < 0) code = -code; /* FUN3D's weak forms */
+  if (code < 0) code = -code; /* weak forms of FUN3D */
   for (size_t i = 0; i < sizeof codes / sizeof *codes; i++)
     if (code >= codes[i].first && code <= codes[i].last) return codes[i].role;
   return VG_ROLE_OTHER;
@@ -48,8 +48,8 @@ struct word {
   enum vg_flow_role role;
 };
 
-/* A word counts anywhere in a name, or only between blanks, digits and signs.
- */
+/* A word counts anywhere in a name, or only between blanks, digits and
+ * punctuation. */
 static const struct word words[] = {
   { "inlet", 0, VG_ROLE_INLET },        { "inflow", 0, VG_ROLE_INLET },
   { "outlet", 0, VG_ROLE_OUTLET },      { "outflow", 0, VG_ROLE_OUTLET },
@@ -60,7 +60,7 @@ static const struct word words[] = {
   { "sym", 1, VG_ROLE_SYMMETRY },       { "wall", 0, VG_ROLE_WALL },
 };
 
-/* Enclosures: evidence only for a shell with others inside it. */
+/* Names of enclosures: evidence only for a shell with others inside it. */
 static const char *const enclosures[] = { "tunnel", "domain", "enclosure",
                                           "outer_boundary" };
 
@@ -84,8 +84,8 @@ static void lower_case(const char *name, char *out, size_t size)
   out[n] = 0;
 }
 
-/* The name that a cap over a hole gets (core/domain/holes.c) says nothing of
- * the flow through it. */
+/* The name of a cap over a hole (core/domain/holes.c) is no evidence for the
+ * flow through it. */
 static int is_cap_name(const char *name)
 {
   if (strncmp(name, "cap_", 4) != 0 || !name[4]) return 0;

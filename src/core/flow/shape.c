@@ -1,7 +1,7 @@
-/* The shape of an outermost shell: a box, or a part of a sphere that coordinate
- * planes cut, and how deep the rest of it reaches inside. Farfields and tunnels
- * have these shapes; a wing and a rocket, which cover their hulls as well, do
- * not. */
+/* The shape of an outermost shell: whether it is a box, or a part of a sphere
+ * cut by coordinate planes, and how deep the rest of it reaches inside.
+ * Farfields and tunnels have these shapes; a wing or a rocket does not,
+ * although it also covers its hull. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,12 +12,13 @@
 #include "core/surface/envelope.h"
 
 /* F2 */
-#define BOX_SHARE 0.98 /* of a box's area on its bounding box */
-#define BOX_NEAR 1e-4  /* of its length: points so near are on it */
-#define ROUND 0.02     /* of a sphere's radius: points so near are on it */
-#define DEEP 1e-3      /* of the length: a body reaches deeper than this */
+#define BOX_SHARE 0.98 /* of a box's area: least part on its bounding box */
+#define BOX_NEAR                                                               \
+  1e-4             /* of its length: points this near are on the bounding box */
+#define ROUND 0.02 /* of a sphere's radius: points this near are on it */
+#define DEEP 1e-3  /* of the length: least depth of a body inside */
 
-/* One shell as a mesh of its own. */
+/* Copy one shell to a mesh of its own. */
 static vg_status take_shell(const struct vg_flow_evidence *e, uint32_t s,
                             struct vg_mesh *out, struct vg_error *err)
 {
@@ -52,9 +53,9 @@ done:
 struct hull {
   const struct vg_mesh *m;
   const uint8_t *outer; /* [n_tri] 1: part of the outer boundary; NULL: all
-                           triangles are */
+                           triangles are. */
   double lo[3], hi[3], length;
-  double centre[3], radius; /* of the sphere; radius 0: none */
+  double centre[3], radius; /* Of the sphere; radius 0: no sphere was found. */
 };
 
 static double off_box(const struct hull *h, const double x[3])
@@ -66,7 +67,7 @@ static double off_box(const struct hull *h, const double x[3])
   return least;
 }
 
-/* All corners of the triangle are on one side of the bounding box. */
+/* Are all corners of the triangle on one side of the bounding box? */
 static int is_on_side(const struct hull *h, size_t t)
 {
   for (int k = 0; k < 3; k++) {
@@ -101,15 +102,15 @@ static int is_box(const struct hull *h)
   return on >= BOX_SHARE * all;
 }
 
-/* Corner k of triangle t is part of the outer boundary, and of no side of the
- * bounding box. */
+/* Is corner k of triangle t part of the outer boundary, but on no side of the
+ * bounding box? */
 static int is_free(const struct hull *h, size_t t, int k)
 {
   return (!h->outer || h->outer[t]) &&
          off_box(h, h->m->point[h->m->tri[t][k]]) > BOX_NEAR * h->length;
 }
 
-/* Gauss's elimination with pivots; 0 where the system is singular. */
+/* Gaussian elimination with pivoting. Returns 0 if the system is singular. */
 static int solve(double a[4][5])
 {
   for (int i = 0; i < 4; i++) {
@@ -134,8 +135,8 @@ static int solve(double a[4][5])
   return 1;
 }
 
-/* The sphere through the free corners, by least squares of |x|^2 = 2 c.x + d,
- * in lengths of the box about its middle. */
+/* Fit a sphere to the free corners by least squares of |x|^2 = 2 c.x + d,
+ * relative to the centre and size of the box. */
 static int fit_sphere(struct hull *h)
 {
   double a[4][5] = { { 0 } }, mid[3], rr;
@@ -178,7 +179,7 @@ static int is_round(struct hull *h)
   return 1;
 }
 
-/* How far the rest of the shell reaches inside the outer boundary. */
+/* Largest depth of the rest of the shell inside the outer boundary. */
 static double depth(const struct hull *h)
 {
   double most = 0;
@@ -194,7 +195,8 @@ static double depth(const struct hull *h)
   return most;
 }
 
-/* outer: [n] of the triangles of the shell, in their order. */
+/* Mark the triangles of a body inside the outer boundary. outer: [n], in the
+ * order of the shell's triangles. */
 static vg_status mark_pocket(struct vg_flow_evidence *e, uint32_t shell,
                              const uint8_t *outer, struct vg_error *err)
 {

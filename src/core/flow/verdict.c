@@ -4,12 +4,12 @@
 #include <stdio.h>
 
 /* F3: thresholds of rule 5. */
-#define CONVEX 0.7  /* of its hull's silhouette: less is no enclosure */
-#define HOLLOW 0.3  /* of its volume: with more inside it is hollow */
+#define CONVEX 0.7  /* of its hull's silhouette: an enclosure covers more */
+#define HOLLOW 0.3  /* of its volume: a hollow shell contains more */
 #define FILLED 0.02 /* of its volume: a tunnel is not filled more */
-#define FINE 0.2    /* least triangles inside over those of a tunnel */
-#define BUBBLE 1e-3 /* of its volume, and */
-#define COARSE 0.05 /* of its triangles: what a bubble has at most */
+#define FINE 0.2    /* of its triangles: a tunnel contains more */
+#define BUBBLE 1e-3 /* of its volume: a bubble is not larger */
+#define COARSE 0.05 /* of its triangles: a bubble has no more */
 
 static enum vg_flow_verdict say(char *why, enum vg_flow_verdict v,
                                 const char *text)
@@ -32,15 +32,15 @@ static enum vg_flow_verdict by_openings(const struct vg_flow_shell *s,
   }
   if (!s->n_opening_end) {
     snprintf(why, VG_FLOW_TEXT,
-             "the inlets and outlets, patches %s, lie "
-             "inside the body's silhouette as engine faces do",
+             "the inlets and outlets, patches %s, lie inside the body's "
+             "silhouette like engine faces",
              s->openings);
     return VG_FLOW_BODY;
   }
   snprintf(why, VG_FLOW_TEXT,
-           "the inlets and outlets are patches %s, %zu of "
-           "%zu at a flat end of the shell: a duct has two or more and all of "
-           "them there, a body with engines has none there",
+           "of the inlets and outlets, patches %s, %zu of %zu are flat ends "
+           "of the shell: a duct has two or more, all of them flat ends; a "
+           "body with engines has none at a flat end",
            s->openings, s->n_opening_end, n);
   return VG_FLOW_EITHER;
 }
@@ -61,9 +61,9 @@ static enum vg_flow_verdict by_orientation(const struct vg_flow_shell *s,
                "its triangles point into it, which in this "
                "format is the side of the fluid");
   return say(why, VG_FLOW_EITHER,
-             "its triangles point into it, which in this "
-             "format is the side of the fluid, but all of its patches are "
-             "walls, as those of a body are");
+             "its triangles point into it, which in this format is the side "
+             "of the fluid, but all of its patches are walls, like those of "
+             "a body");
 }
 
 static enum vg_flow_verdict by_contents(const struct vg_flow_shell *s,
@@ -75,9 +75,8 @@ static enum vg_flow_verdict by_contents(const struct vg_flow_shell *s,
                "name of an enclosure");
   if (s->covered < CONVEX) {
     snprintf(why, VG_FLOW_TEXT,
-             "it covers %.0f %% of the silhouette of its "
-             "convex hull as a body does; the shells inside it (%zu) are "
-             "sealed cavities",
+             "it covers %.0f %% of the silhouette of its convex hull, like a "
+             "body; the shells inside it (%zu) are sealed cavities",
              100 * s->covered, s->n_inside);
     return VG_FLOW_BODY;
   }
@@ -116,9 +115,9 @@ enum vg_flow_verdict vg_flow_judge(const struct vg_flow_shell *s,
   if (side && s->points_in) return by_orientation(s, side, why);
   if (s->has_pocket) {
     snprintf(why, VG_FLOW_TEXT,
-             "its outer part is a box, or part of a sphere, "
-             "that covers %.0f %% of every view along x, y and z, and the rest "
-             "stands inside that part",
+             "its outer part is a box, or part of a sphere, that covers at "
+             "least %.0f %% of the silhouette of its hull in every view "
+             "along x, y and z, and the rest of it is inside that part",
              100 * (s->covered < 1 ? s->covered : 1));
     return VG_FLOW_OUTER;
   }

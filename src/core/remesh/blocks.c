@@ -1,7 +1,7 @@
-/* Outline: triangles are dealt to blocks; each block copies its own into a
- * surface with numbers of its own, in which edges that others have the far side
- * of are open and their ends frozen; when all have been changed they are put
- * together along those edges. */
+/* Outline: every triangle is assigned to a block. Each block copies its
+ * triangles into a surface of its own with local numbers, in which edges shared
+ * with other blocks are open and their end points frozen. When all blocks have
+ * been changed, they are joined along those edges. */
 #include "core/remesh/blocks_parts.h"
 
 #include <assert.h>
@@ -15,16 +15,17 @@ struct blocks {
   const struct vg_tris *w;
   size_t n;
   struct vg_block *block; /* [n] */
-  uint32_t *of;           /* [n_tri] block of each triangle */
-  uint32_t *tri;          /* [n_tri] triangles by block */
-  uint32_t *local;        /* [n_tri] number of a triangle in its block */
-  uint32_t *map;          /* [workers][n_point] numbers in a block;
-                             VG_REF_NONE between blocks */
+  uint32_t *of;           /* [n_tri] Block of each triangle. */
+  uint32_t *tri;          /* [n_tri] Triangles sorted by block. */
+  uint32_t *local;        /* [n_tri] Local number of each triangle in its
+                             block. */
+  uint32_t *map;          /* [workers][n_point] Local numbers of points; all
+                             VG_REF_NONE between blocks. */
   vg_block_body body;
   void *user;
 };
 
-/* --- out of the whole ---------------------------------------------------- */
+/* --- from the whole surface to a block ------------------------------------ */
 
 static vg_status room(struct vg_block *b, const struct vg_tris *w,
                       struct vg_error *err)
@@ -78,7 +79,7 @@ static vg_status take_points(struct vg_block *b, const struct vg_tris *w,
 
     *p = w->point[b->origin[i]];
     p->half = VG_REF_NONE;
-    p->changed = p->changed != 0; /* on the block's own clock */
+    p->changed = p->changed != 0; /* The clock of the block starts at 0. */
     p->tried = !p->changed;
   }
   for (uint32_t h = 0; h < 3 * l->n_tri; h++)
@@ -102,8 +103,8 @@ static vg_status take_line(struct vg_tris *l, const struct vg_tris *w,
   return VG_OK;
 }
 
-/* Mates and lines; ends of edges that another block has the far side of are
- * frozen. */
+/* Copy mates and feature edges. The ends of edges that are shared with another
+ * block are frozen. */
 static vg_status take_edges(const struct blocks *s, struct vg_block *b,
                             const uint32_t *map, struct vg_error *err)
 {
@@ -128,8 +129,8 @@ done:
   return st;
 }
 
-/* Points with more than one open edge that leaves them have triangles that do
- * not hang together. */
+/* A point with more than one outgoing open edge belongs to several umbrellas:
+ * its triangles in this block are not connected over edges. */
 static vg_status find_fans(struct vg_tris *l, struct vg_error *err)
 {
   uint8_t *open = vg_calloc(l->n_point, 1);
@@ -175,9 +176,9 @@ static void change(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- all blocks ----------------------------------------------------------- */
 
-/* Triangles by block, and the numbers that they have there. */
+/* Sort the triangles by block and number them within it. */
 static vg_status deal(struct blocks *s, struct vg_error *err)
 {
   size_t *start = vg_calloc(s->n + 1, sizeof *start);

@@ -1,5 +1,5 @@
-/* Which triangle is in which block: bisection of the centroids across the
- * longest side of their box, by histogram. */
+/* Assigns triangles to blocks: recursive bisection of their centroids across
+ * the longest side of the bounding box, by histogram. */
 #include "core/remesh/blocks_parts.h"
 
 #include <assert.h>
@@ -10,10 +10,8 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 
-#define BLOCK 6000.0 /* S29: triangles, about: small enough for a cache */
-#define OLD                                                                    \
-  0.25 /* a triangle that is there counts as so many new                       \
-          ones */
+#define BLOCK 6000.0 /* S29: triangles per block, about: fits into a cache */
+#define OLD 0.25     /* work of an existing triangle, in new ones */
 #define BINS 1024
 
 struct cutting {
@@ -21,7 +19,7 @@ struct cutting {
   int phase;
   double *weight;         /* [n_tri] */
   double (*middle)[3];    /* [n_tri] */
-  uint32_t *list, *spare; /* [n_tri] triangles, by block */
+  uint32_t *list, *spare; /* [n_tri] Triangles, sorted by block. */
   uint32_t *block;
 };
 
@@ -48,7 +46,7 @@ size_t vg_blocks_number(const struct vg_tris *w)
   return sum < 2 * BLOCK ? 1 : (size_t)(sum / BLOCK);
 }
 
-/* The share of k blocks that goes to the first side, another in each phase. */
+/* Number of blocks, of k, on the first side; it differs between phases. */
 static size_t first_side(size_t k, int phase)
 {
   static const size_t share[3][2] = { { 1, 2 }, { 1, 3 }, { 2, 5 } };
@@ -78,7 +76,7 @@ static int longest_side(const struct cutting *c, const uint32_t *list, size_t n,
   return axis;
 }
 
-/* Of the bins, the first ones with the share of the weight. */
+/* Number of leading bins that hold the given share of the weight. */
 static int bins_of(const double *sum, double share)
 {
   double total = 0, so_far = 0;
@@ -90,7 +88,7 @@ static int bins_of(const double *sum, double share)
   return k;
 }
 
-/* The triangles of list into blocks first .. first + k - 1. */
+/* Distribute the triangles of list over blocks first .. first + k - 1. */
 static void bisect(const struct cutting *c, uint32_t *list, size_t n,
                    size_t first, size_t k)
 {

@@ -1,6 +1,7 @@
-/* Outline: what is left of the whole and what is new get numbers, block by
- * block; each block writes its part; open edges of blocks are matched by their
- * ends, which stayed; and points near them count as changed. */
+/* Outline: the remaining points and triangles and the new ones are numbered
+ * block by block; each block writes its range. Open edges of blocks are matched
+ * by their end points, which have not moved. Points near these edges count as
+ * changed. */
 #include "core/remesh/blocks_parts.h"
 
 #include <assert.h>
@@ -16,10 +17,12 @@
 struct joining {
   struct vg_tris made;
   struct vg_block *block;
-  uint32_t *number; /* [n_point before] of points that stay */
+  uint32_t *number; /* [n_point before] New number of each point that
+                       remains. */
 };
 
-/* Old points that stay keep their order and come first, then new ones. */
+/* Old points that remain keep their order and come first, followed by new
+ * points. */
 static vg_status number(const struct vg_tris *w, size_t n, struct joining *j,
                         struct vg_error *err)
 {
@@ -49,8 +52,8 @@ static vg_status number(const struct vg_tris *w, size_t n, struct joining *j,
   return n_point < UINT32_MAX - 2 && n_tri < UINT32_MAX / 3
          ? VG_OK
          : vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%zu triangles of the new surface "
-                   "are too many; ask for larger sizes",
+                   "the remeshed surface would have %zu triangles, which are "
+                   "too many; request larger sizes",
                    n_tri);
 }
 
@@ -62,12 +65,12 @@ static vg_status room(struct joining *j, struct vg_error *err)
   VG_TRY(vg_tris_room(m, m->n_tri, err));
   m->point = vg_alloc(m->n_point, sizeof *m->point);
   m->line = vg_alloc(m->n_line, sizeof *m->line);
-  if (!m->point || !m->line) st = vg_fail_memory(err, "the new surface");
+  if (!m->point || !m->line) st = vg_fail_memory(err, "the remeshed surface");
 done:
   return st;
 }
 
-/* --- a block into the whole ---------------------------------------------- */
+/* --- from a block to the whole surface ------------------------------------ */
 
 static void put_points(struct joining *j, struct vg_block *b)
 {
@@ -79,7 +82,7 @@ static void put_points(struct joining *j, struct vg_block *b)
     b->point[p] = VG_REF_NONE;
     if (q->half == VG_REF_NONE) continue;
     b->point[p] = p < b->n_origin ? j->number[b->origin[p]] : next++;
-    if (q->frozen) continue; /* others have it, too */
+    if (q->frozen) continue; /* shared with other blocks: see finish_points */
     q->changed = q->tried = 0;
     j->made.point[b->point[p]] = *q;
   }
@@ -132,15 +135,16 @@ static void put(void *context, size_t first, size_t end, int worker)
       for (int e = 0; e < 2; e++)
         if (b->point[line.end[e]] != VG_REF_NONE)
           line.end[e] = b->point[line.end[e]];
-        else line.end[e] = 0; /* of a line that is no more */
+        else line.end[e] = 0; /* the feature edge no longer exists */
       j->made.line[b->first_line + k] = line;
     }
   }
 }
 
-/* --- borders ------------------------------------------------------------- */
+/* --- block borders -------------------------------------------------------- */
 
-/* Half-edges of the whole at the borders of blocks, rising, and their ends. */
+/* Half-edges of the whole surface on block borders, ascending, and their end
+ * points. */
 struct sides {
   size_t n, cap_half, cap_end;
   uint32_t *half, (*end)[2];
@@ -166,7 +170,8 @@ static vg_status list_sides(const struct joining *j, size_t n, struct sides *s,
   return VG_OK;
 }
 
-/* Open edges of blocks that no other has are rims of the surface. */
+/* Match the border edges of blocks. Open edges without a partner are open rims
+ * of the surface. */
 static vg_status join_sides(struct joining *j, size_t n, struct vg_error *err)
 {
   struct sides s = { 0 };
@@ -192,8 +197,8 @@ done:
   return st;
 }
 
-/* What the blocks' changes left to be done: small angles, and edges that are
- * too long or too short. */
+/* Triangles that the blocks left unfinished: with small angles, or with edges
+ * that are too long or too short. */
 static int is_bad(const struct vg_tris *w, uint32_t t)
 {
   if (vg_tris_tri_shape(w, t) < BAD2) return 1;
@@ -251,12 +256,12 @@ vg_status vg_blocks_join(struct vg_tris *w, size_t n, struct vg_block *b,
   j.made.clock = 1;
   memset(j.made.looked, 0, sizeof j.made.looked);
   j.number = vg_alloc(w->n_point, sizeof *j.number);
-  if (!j.number) VG_TRY(vg_fail_memory(err, "the new surface"));
+  if (!j.number) VG_TRY(vg_fail_memory(err, "the remeshed surface"));
   VG_TRY(number(w, n, &j, err));
   VG_TRY(room(&j, err));
   vg_parallel_for(threads, n, 1, put, &j);
   for (size_t i = 0; i < n; i++)
-    if (b[i].st < 0) VG_TRY(vg_fail_memory(err, "the new surface"));
+    if (b[i].st < 0) VG_TRY(vg_fail_memory(err, "the remeshed surface"));
   VG_TRY(join_sides(&j, n, err));
   finish_points(&j, n);
   for (size_t i = 0; i < n; i++) {

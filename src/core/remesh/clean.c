@@ -1,7 +1,7 @@
-/* Outline: sweeps collapse short edges, the shortest first, where no triangle
- * was changed in the same sweep. After each sweep the longest edges of flat
- * triangles are swapped. At triangles that intersect each other, longer edges
- * count as short. */
+/* Outline: sweeps collapse short edges, the shortest first, unless a triangle
+ * around the edge has already changed in the same sweep. After each sweep the
+ * longest edges of flat triangles are swapped. At triangles that intersect each
+ * other, longer edges also count as short. */
 #include "core/remesh/job.h"
 
 #include <math.h>
@@ -13,28 +13,27 @@
 #include "core/geometry/vector.h"
 #include "core/surface/surface_check.h"
 
-#define SHORT 0.02  /* S46: of the tolerance: no new edge is near */
-#define FLAT 0.02   /* S46: the same: lower triangles are flat */
-#define CROSSED 1.0 /* the same, at triangles that intersect */
+#define SHORT 0.02  /* S46: of the tolerance: shorter edges collapse */
+#define FLAT 0.02   /* S46: of the tolerance: lower triangles are flat */
+#define CROSSED 1.0 /* SHORT at triangles that intersect */
 #define SWEEPS 24
-#define CLEARINGS 14 /* searches for intersections */
+#define CLEARINGS 14 /* most searches for intersections */
 #define DEEPEST                                                                \
-  0.25             /* S46: of the tolerance: deeper ones are not moved         \
-                      apart */
-#define CLEAR 1e-4 /* of the tolerance: how far beyond, at least */
-#define RING 256   /* triangles at a point that may be collapsed */
+  0.25             /* S46: of the tolerance: deeper ones are not moved apart */
+#define CLEAR 1e-4 /* of the tolerance: least clearance after moving */
+#define RING 256   /* most triangles at a point of a collapsed edge */
 
-/* --- what is around a point ---------------------------------------------- */
+/* --- neighbourhood of a point --------------------------------------------- */
 
 struct sweep {
   struct vg_mesh *m;
-  struct vg_ref ref;      /* faces of m */
-  uint32_t *start, *half; /* half-edges that leave each point */
-  uint8_t *hard;          /* [n_point] on a rim or a hard border */
-  uint8_t *busy;          /* [n_tri] changed in this sweep */
-  uint8_t *gone;          /* [n_tri] */
-  size_t *left;           /* [n_patch] triangles */
-  double limit2;          /* square of the height of sound triangles */
+  struct vg_ref ref;      /* Faces of m. */
+  uint32_t *start, *half; /* Outgoing half-edges of each point. */
+  uint8_t *hard;          /* [n_point] On a rim or a fixed patch border. */
+  uint8_t *busy;          /* [n_tri] Changed in this sweep. */
+  uint8_t *gone;          /* [n_tri] Removed. */
+  size_t *left;           /* [n_patch] Remaining triangles. */
+  double limit2;          /* Squared least height of a sound triangle. */
 };
 
 struct candidate {
@@ -92,8 +91,8 @@ static int is_neighbour(const struct sweep *s, uint32_t p, uint32_t q)
   return 0;
 }
 
-/* The ends of h have no common neighbours but the corners across it, and no
- * triangle around them has changed. */
+/* Link condition: the ends of h share no neighbours except the corners opposite
+ * h, and no triangle around them has changed in this sweep. */
 static int link_fits(const struct sweep *s, uint32_t h)
 {
   const struct vg_ref *r = &s->ref;
@@ -120,7 +119,7 @@ static int link_fits(const struct sweep *s, uint32_t h)
   return 1;
 }
 
-/* Neither a tetrahedron nor a lens of two triangles closes. */
+/* The collapse does not close a tetrahedron or a lens of two triangles. */
 static int leaves_surface(const struct sweep *s, uint32_t h)
 {
   const struct vg_ref *r = &s->ref;
@@ -150,7 +149,7 @@ static double longest2(const double *a, const double *b, const double *c)
   return fmax(vg_distance2(a, b), fmax(vg_distance2(b, c), vg_distance2(c, a)));
 }
 
-/* No triangle of a height that counts turns over. */
+/* No triangle of significant height is inverted. */
 static int keeps_sides(const struct sweep *s, uint32_t h)
 {
   const struct vg_ref *r = &s->ref;
@@ -180,7 +179,7 @@ static int patches_stay(const struct sweep *s, uint32_t h)
   return s->left[p] > 2 && s->left[q] > 2;
 }
 
-/* Move the start of h onto its end. */
+/* Move the start of h to its end. */
 static int collapse(struct sweep *s, uint32_t h)
 {
   const struct vg_ref *r = &s->ref;
@@ -207,8 +206,8 @@ static int collapse(struct sweep *s, uint32_t h)
   return 1;
 }
 
-/* One of the ends is moved onto the other: no point of a hard line that the
- * edge is not on. */
+/* Collapse the edge by moving one of its ends to the other. A point on a rim or
+ * a fixed border moves only along an edge of it. */
 static int collapse_edge(struct sweep *s, const struct vg_clean_options *o,
                          uint32_t h)
 {
@@ -231,7 +230,8 @@ static int by_length(const void *pa, const void *pb)
   return a->half < b->half ? -1 : a->half > b->half;
 }
 
-/* Edges below the limit, or below a longer one at marked triangles. */
+/* List edges shorter than the limit, and at marked triangles edges shorter than
+ * `longer`. */
 static vg_status list_short(const struct sweep *s, const uint8_t *crossed,
                             double limit, double longer,
                             struct candidate **list, size_t *n,
@@ -257,7 +257,7 @@ static vg_status list_short(const struct sweep *s, const uint8_t *crossed,
   return VG_OK;
 }
 
-/* Drop triangles that are gone, and points without triangles. */
+/* Remove deleted triangles, and points without triangles. */
 static vg_status pack(struct vg_clean *c, const struct sweep *s,
                       uint8_t *crossed, struct vg_error *err)
 {
@@ -333,8 +333,8 @@ static vg_status collapse_short(struct vg_clean *c,
 
 /* --- intersections ------------------------------------------------------- */
 
-/* Distances of the corners of triangle a from the plane of b; 0 where b has no
- * plane. */
+/* Signed distances of the corners of triangle a from the plane of b. Returns 0
+ * if b is too flat to define a plane. */
 static int heights(const struct vg_mesh *m, size_t a, size_t b, double n[3],
                    double h[3])
 {
@@ -356,7 +356,7 @@ static int heights(const struct vg_mesh *m, size_t a, size_t b, double n[3],
   return 1;
 }
 
-/* How far triangle a reaches through the plane of b. */
+/* Depth by which triangle a reaches through the plane of b. */
 static double reach(const double h[3])
 {
   const double lo = fmin(h[0], fmin(h[1], h[2]));
@@ -371,7 +371,7 @@ static int is_pair(const struct vg_defect *d)
          d->face[1] != SIZE_MAX;
 }
 
-/* Set depth and place of the deepest intersection. */
+/* Set depth and location of the deepest intersection. */
 static void find_depth(const struct vg_mesh *m,
                        const struct vg_surface_report *r, struct vg_clean *c)
 {
@@ -391,8 +391,8 @@ static void find_depth(const struct vg_mesh *m,
   }
 }
 
-/* Corners of a that are barely on the wrong side of b move over to the other
- * one, where most of a is. */
+/* Move corners of a that are barely on the wrong side of b to the side on which
+ * most of a is. */
 static void push(const struct vg_mesh *m, size_t a, size_t b, double tolerance,
                  double (*move)[3])
 {
@@ -410,8 +410,8 @@ static void push(const struct vg_mesh *m, size_t a, size_t b, double tolerance,
   }
 }
 
-/* Move points of intersecting triangles along the normals there, so that the
- * two sheets of a thin place come apart. */
+/* Move points of intersecting triangles along their normals, so that the two
+ * sheets of a thin region separate. */
 static vg_status part(struct vg_mesh *m, const struct vg_surface_report *r,
                       double tolerance, size_t *n_moved, struct vg_error *err)
 {
@@ -474,8 +474,9 @@ done:
 /* --- flaps --------------------------------------------------------------- */
 
 struct face {
-  uint32_t node[3], tri; /* nodes rising */
-  int turned;            /* an odd number of exchanges sorts them */
+  uint32_t node[3], tri; /* Corners, ascending. */
+  int turned;            /* The corners were sorted by an odd number of
+                            exchanges. */
 };
 
 static int by_nodes(const void *pa, const void *pb)
@@ -495,7 +496,7 @@ static struct face face_of(const struct vg_mesh *m, uint32_t t)
   return f;
 }
 
-/* The tolerance hides all that is across the triangle. */
+/* The triangle is lower than the tolerance. */
 static int is_thin(const struct vg_mesh *m, uint32_t t, double tolerance)
 {
   const double *a = m->point[m->tri[t][0]], *b = m->point[m->tri[t][1]];
@@ -506,8 +507,8 @@ static int is_thin(const struct vg_mesh *m, uint32_t t, double tolerance)
   return vg_dot(n, n) <= tolerance * tolerance * longest2(a, b, c);
 }
 
-/* Two triangles on the same three points that face opposite ways are two sides
- * of nothing: thin ones go, as at the end of a cusp. */
+/* Drop pairs of triangles on the same three points that face opposite ways:
+ * they enclose nothing. Only thin ones are dropped, as at the end of a cusp. */
 static vg_status drop_flaps(struct vg_clean *c, double tolerance,
                             struct vg_error *err)
 {
@@ -536,7 +537,7 @@ done:
   return st;
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- whole repair --------------------------------------------------------- */
 
 static vg_status begin(struct vg_clean *c, const struct vg_mesh *m,
                        struct vg_error *err)
@@ -564,7 +565,8 @@ vg_status vg_clean_find(const struct vg_mesh *m,
   VG_TRY(drop_flaps(c, o->tolerance, err));
   st = collapse_short(c, o, NULL, 0, err);
   if (st == VG_ERR_INPUT) {
-    vg_clean_release(c); /* not a surface: others say so with the place */
+    vg_clean_release(c); /* Not a manifold surface: vg_ref_set_faces reports
+                            where. */
     return VG_OK;
   }
   VG_TRY(st);

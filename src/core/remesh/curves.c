@@ -1,7 +1,9 @@
-/* Outline: edges become lines by the angle between their faces; ends that run
- * on into edges not quite as sharp are led on; short pieces that a distance of
- * the tolerance could hide are dropped; then points with other than two lines,
- * or where the line turns, are corners, and lines between them curves. */
+/* Outline: edges become feature edges by the angle between their faces. Loose
+ * ends are extended along edges that are not quite as sharp. Short isolated
+ * curves that a displacement by the tolerance could produce are dropped. Points
+ * with a number of feature edges other than two, or at which the curve turns
+ * sharply, become feature corners, and the chains between them feature
+ * curves. */
 #include "core/remesh/curves.h"
 
 #include <assert.h>
@@ -13,21 +15,21 @@
 #include "core/geometry/graded.h"
 #include "core/geometry/vector.h"
 
-#define LEAD 0.6  /* S24: of the angle: where a ridge may go on */
-#define TURN 50.0 /* degrees: more is a corner */
-#define JAG 8.0   /* tolerances along the line: turns are measured on */
-#define THIN                                                                   \
-  8                /* S32: triangles lower than the tolerance, at most,        \
-                      that are passed over */
-#define SPECK 20.0 /* tolerances: shorter loose pieces are dropped */
+#define LEAD 0.6   /* S24: of the angle: extension of a feature curve */
+#define TURN 50.0  /* degrees: larger turns are feature corners */
+#define JAG 8.0    /* tolerances along a curve: base of measured turns */
+#define THIN 8     /* S32: triangles lower than the tolerance to skip */
+#define SPECK 20.0 /* tolerances: shorter isolated curves are dropped */
 
 struct finder {
   struct vg_curves *c;
   const struct vg_ref *r;
   const struct vg_curves_options *o;
-  uint32_t *start, *half; /* half-edges of each point, both ways */
-  uint8_t *degree;        /* lines at a point, 255 at most */
-  double sharp, lead;     /* cosines */
+  uint32_t *start, *half; /* Undirected edges at each point, one half-edge for
+                             each. */
+  uint8_t *degree;        /* Feature edges at each point, at most 255. */
+  double sharp, lead;     /* Cosines of the feature angle and of its LEAD
+                             part. */
 };
 
 double vg_cosine(double degrees)
@@ -59,9 +61,9 @@ static double length2(const struct vg_ref *r, uint32_t h)
   return vg_distance2(r->point[vg_ref_from(r, h)], r->point[vg_ref_to(r, h)]);
 }
 
-/* The first triangle on the side of h that says which way the surface faces
- * there: those are passed over that are lower than the tolerance, together,
- * since points that are off by as much turn them anyhow. */
+/* The first triangle on the side of h that defines the direction of the surface
+ * there. Triangles whose heights add up to less than the tolerance are skipped:
+ * points that are off by the tolerance turn such triangles arbitrarily. */
 static uint32_t face_beside(const struct finder *f, uint32_t h)
 {
   const struct vg_ref *r = f->r;
@@ -80,7 +82,8 @@ static uint32_t face_beside(const struct finder *f, uint32_t h)
   return h / 3;
 }
 
-/* Cosine between the faces; flat ones say nothing. */
+/* Cosine of the angle between the faces on both sides of h; 1 if one of them is
+ * too flat to have a normal. */
 static double cosine(const struct finder *f, uint32_t h)
 {
   const struct vg_ref *r = f->r;
@@ -150,7 +153,7 @@ static vg_status list_halves(struct finder *f, struct vg_error *err)
   f->half = vg_alloc(6 * r->n_tri, sizeof *f->half);
   f->degree = vg_calloc(r->n_point, 1);
   if (!f->start || !f->half || !f->degree)
-    return vg_fail_memory(err, "the ridges of the surface");
+    return vg_fail_memory(err, "the feature curves of the surface");
   /* One half-edge of each edge, listed at both ends. */
   for (int pass = 0; pass < 2; pass++) {
     for (uint32_t h = 0; h < 3 * r->n_tri; h++) {
@@ -174,7 +177,8 @@ static uint32_t other_end(const struct vg_ref *r, uint32_t h, uint32_t p)
   return vg_ref_from(r, h) == p ? vg_ref_to(r, h) : vg_ref_from(r, h);
 }
 
-/* The line at p other than h; VG_REF_NONE unless there is exactly one. */
+/* The feature edge at p other than h; VG_REF_NONE unless there is exactly
+ * one. */
 static uint32_t line_on(const struct finder *f, uint32_t p, uint32_t h)
 {
   if (f->degree[p] != 2) return VG_REF_NONE;
@@ -195,8 +199,8 @@ static double straight(const struct vg_ref *r, uint32_t a, uint32_t b,
   return vg_dot(u, v);
 }
 
-/* Lead the end p of a line on along the straightest edge sharp enough, until
- * it meets a line or there is none. */
+/* Extend the feature curve with the loose end p along the straightest edges
+ * that are sharp enough, until it meets another one or no such edge is left. */
 static void lead_on(struct finder *f, uint32_t p)
 {
   const double turn = vg_cosine(TURN);
@@ -226,8 +230,8 @@ static void lead_on(struct finder *f, uint32_t p)
   }
 }
 
-/* Take the line away that has the loose end p, if it is a speck with another
- * loose end. */
+/* Drop the curve with the loose end p if it is short and its other end is
+ * loose, too. */
 static void drop_speck(struct finder *f, uint32_t p)
 {
   uint32_t list[64], h = VG_REF_NONE;
@@ -249,9 +253,10 @@ static void drop_speck(struct finder *f, uint32_t p)
   for (size_t i = 0; i < n; i++) set_line(f, list[i], 0);
 }
 
-/* --- corners and curves -------------------------------------------------- */
+/* --- feature corners and curves ------------------------------------------- */
 
-/* The point at most `reach` along the line that leaves p by h. */
+/* The first point at least `reach` along the curve that leaves p by h, or the
+ * last point before the curve ends or branches. */
 static uint32_t along(const struct finder *f, uint32_t p, uint32_t h,
                       double reach)
 {
@@ -289,7 +294,7 @@ static vg_status add_point(struct vg_curves *c, const struct vg_ref *r,
 
   if (vg_reserve(&c->point, &c->cap_point, c->n_point + 1, sizeof *c->point) ||
       vg_reserve(&c->at, &c->cap_at, c->n_point + 1, sizeof *c->at))
-    return vg_fail_memory(err, "the ridges of the surface");
+    return vg_fail_memory(err, "the feature curves of the surface");
   if (k->n)
     s = c->at[c->n_point - 1] +
         vg_distance(r->point[c->point[c->n_point - 1]], r->point[p]);
@@ -299,7 +304,7 @@ static vg_status add_point(struct vg_curves *c, const struct vg_ref *r,
   return VG_OK;
 }
 
-/* From corner p along h to the next corner. */
+/* Trace a curve from corner p along h to the next corner. */
 static vg_status trace(struct finder *f, uint32_t p, uint32_t h, uint8_t *seen,
                        struct vg_error *err)
 {
@@ -307,7 +312,7 @@ static vg_status trace(struct finder *f, uint32_t p, uint32_t h, uint8_t *seen,
   vg_status st;
 
   if (vg_reserve(&c->curve, &c->cap_curve, c->n_curve + 1, sizeof *c->curve))
-    return vg_fail_memory(err, "the ridges of the surface");
+    return vg_fail_memory(err, "the feature curves of the surface");
   c->curve[c->n_curve++] = (struct vg_feature_curve){ c->n_point, 0 };
   VG_TRY(add_point(c, f->r, p, err));
   for (;;) {
@@ -330,8 +335,9 @@ static vg_status trace_all(struct finder *f, struct vg_error *err)
   uint8_t *seen = vg_calloc(3 * r->n_tri, 1);
   vg_status st = VG_OK;
 
-  if (!seen) return vg_fail_memory(err, "the ridges of the surface");
-  /* Lines without a corner begin at their first point, which becomes one. */
+  if (!seen) return vg_fail_memory(err, "the feature curves of the surface");
+  /* A closed curve without a corner starts at its first point, which becomes a
+   * corner. */
   for (int round = 0; round < 2; round++)
     for (uint32_t p = 0; p < r->n_point; p++) {
       if (round ? f->degree[p] != 2 || f->c->corner[p] : !f->c->corner[p])
@@ -375,7 +381,7 @@ vg_status vg_curves_find(struct vg_curves *c, const struct vg_ref *r,
   c->line = vg_calloc(3 * r->n_tri, sizeof *c->line);
   c->corner = vg_calloc(r->n_point, 1);
   if (!c->line || !c->corner)
-    VG_TRY(vg_fail_memory(err, "the ridges of the surface"));
+    VG_TRY(vg_fail_memory(err, "the feature curves of the surface"));
   VG_TRY(list_halves(&f, err));
   find_lines(&f);
   for (uint32_t p = 0; p < r->n_point; p++)
@@ -402,7 +408,7 @@ void vg_curves_release(struct vg_curves *c)
   memset(c, 0, sizeof *c);
 }
 
-/* --- along a curve ------------------------------------------------------- */
+/* --- points on a curve ---------------------------------------------------- */
 
 size_t vg_curve_of(const struct vg_curves *c, uint32_t number)
 {
@@ -425,7 +431,7 @@ double vg_curve_length(const struct vg_curves *c, size_t i)
   return c->at[c->curve[i].first + c->curve[i].n - 1];
 }
 
-/* The last point of the curve, of those but the very last, at or before s. */
+/* The last point of the curve at or before s, excluding its end point. */
 static size_t before(const struct vg_curves *c, size_t i, double s)
 {
   size_t lo = c->curve[i].first, hi = lo + c->curve[i].n - 1;

@@ -1,27 +1,28 @@
-/* core/remesh/curves.h: the lines of a surface that stay: ridges, hard borders
- * of patches, open rims. Private to core/remesh. */
+/* core/remesh/curves.h: the feature curves of a surface, which remeshing
+ * preserves: sharp edges, fixed patch borders and open rims. Private to
+ * core/remesh. */
 #ifndef VG_CORE_REMESH_CURVES_H
 #define VG_CORE_REMESH_CURVES_H
 
 #include "core/remesh/reference.h"
 
-/* A line from corner to corner, or round to where it began. */
+/* A feature curve from corner to corner, or closed. */
 struct vg_feature_curve {
-  size_t first, n; /* its points among those of all */
+  size_t first, n; /* Its range in vg_curves.point. */
 };
 
 struct vg_curves {
-  uint32_t *line;  /* [3 n_tri] half-edges on lines, both sides:
-                      number + 1 of the piece from a point to the
-                      next, curve by curve; 0: on none */
-  uint8_t *corner; /* [n_point] */
+  uint32_t *line;  /* [3 n_tri] For half-edges of feature edges, on both sides:
+                      number + 1 of the feature edge, counted curve by curve; 0
+                      for other half-edges. */
+  uint8_t *corner; /* [n_point] 1: feature corner. */
   size_t n_curve, cap_curve, n_point, cap_point, cap_at;
   struct vg_feature_curve *curve;
-  uint32_t *point; /* [n_point] points of the surface, in order */
-  double *at;      /* [n_point] length of the line up to there */
+  uint32_t *point; /* [n_point] Surface points along the curves, in order. */
+  double *at;      /* [n_point] Arc length of the curve up to each point. */
   size_t n_corner;
-  double length;         /* of all */
-  const uint8_t *closed; /* as in the options, borrowed */
+  double length;         /* Total length of all curves. */
+  const uint8_t *closed; /* As in the options; borrowed. */
 };
 #define VG_CURVES_INIT                                                         \
   {                                                                            \
@@ -29,46 +30,51 @@ struct vg_curves {
   }
 
 struct vg_curves_options {
-  double angle;              /* degrees between faces, from which on an edge is
-                                a ridge */
-  double tolerance;          /* jags smaller than this make no corner */
-  const uint32_t *tri_patch; /* [n_tri] */
+  double angle;              /* Feature angle: least angle in degrees between
+                                the faces of a sharp edge. */
+  double tolerance;          /* Jags smaller than this do not make a feature
+                                corner. */
+  const uint32_t *tri_patch; /* [n_tri] Patch of each triangle. */
   const struct vg_patch *patch;
-  const uint8_t *hard;   /* [n_patch] whose borders are lines; or NULL.
-                            So are those between different conditions */
-  const double *stretch; /* [3 n_tri] half-edges with more than 1 are lines;
-                            or NULL */
-  const uint8_t *closed; /* [3 n_tri] edges that are no ridges, whatever
-                            their angle; or NULL */
+  const uint8_t *hard;   /* [n_patch] 1: the borders of the patch are fixed. May
+                            be NULL. Borders between patches with different
+                            conditions are always fixed. */
+  const double *stretch; /* [3 n_tri] Half-edges with values above 1 are feature
+                            edges; may be NULL. */
+  const uint8_t *closed; /* [3 n_tri] Edges that are not sharp edges at any
+                            angle; may be NULL. */
 };
 
-/** Find them. Decisions compare cosines with one that the angle gives by a
- * rational approximation, not libm. O(n). VG_ERR_MEMORY. */
+/** Find the feature curves. Cosines are compared with the cosine of the feature
+ * angle, which is computed by a rational approximation, not libm, so that all
+ * processors take the same decisions. O(n). VG_ERR_MEMORY. */
 vg_status vg_curves_find(struct vg_curves *c, const struct vg_ref *r,
                          const struct vg_curves_options *o,
                          struct vg_error *err);
 
 void vg_curves_release(struct vg_curves *c);
 
-/** Curve of the piece of a line with this number. */
+/** Curve that contains feature edge `number`, counted from 0. */
 size_t vg_curve_of(const struct vg_curves *c, uint32_t number);
 
-/** Must the edge stay a line: a rim, a border that is hard, or stretched? */
+/** Must the edge remain a feature edge: is it an open rim, a fixed patch border
+ * or stretched? */
 int vg_curves_is_hard(const struct vg_curves_options *o, const struct vg_ref *r,
                       uint32_t h);
 
-/** Place at length s along curve i. */
+/** Point at arc length s along curve i. */
 void vg_curve_at(const struct vg_curves *c, const struct vg_ref *r, size_t i,
                  double s, double x[3]);
 
-/** Largest distance of the curve between lengths s0 < s1 from the line
- * between its points there. */
+/** Largest distance of curve i between arc lengths s0 < s1 from the chord
+ * between these two points. */
 double vg_curve_chord(const struct vg_curves *c, const struct vg_ref *r,
                       size_t i, double s0, double s1);
 
 double vg_curve_length(const struct vg_curves *c, size_t i);
 
-/** Cosine of an angle in degrees, 0 to 180, by plain arithmetic. */
+/** Cosine of an angle in degrees, 0 to 180, by plain arithmetic without
+ * libm. */
 double vg_cosine(double degrees);
 
 #endif

@@ -10,18 +10,18 @@
 #include "core/remesh/reference.h"
 
 #define GRAIN 1024
-#define PER_FACE 3 /* samples: middles of edges */
+#define PER_FACE 3 /* samples per face: midpoints of its edges */
 
-/* One way. Samples are the points, then those of each triangle. */
+/* One direction. Samples are the points, followed by those of each triangle. */
 struct measuring {
   const struct vg_mesh *from;
-  struct vg_ref ref; /* of it */
+  struct vg_ref ref; /* Faces of the other surface. */
   const struct vg_ref *to;
-  uint32_t *by;    /* [from->n_point] triangle that measures there;
-                      VG_REF_NONE: it is of none */
-  uint32_t *order; /* [from->n_tri] triangles, near ones together */
-  double *d;       /* [n_point + PER_FACE n_tri] */
-  double *face;    /* [n_tri] or NULL */
+  uint32_t *by;    /* [from->n_point] Triangle that measures at the point;
+                      VG_REF_NONE if the point has no triangle. */
+  uint32_t *order; /* [from->n_tri] Triangles in spatial order. */
+  double *d;       /* [n_point + PER_FACE n_tri] Distance at each sample. */
+  double *face;    /* [n_tri] Largest distance at each face; may be NULL. */
   struct vg_remesh_distance *out;
   const struct vg_stop *stop;
   vg_status st;
@@ -36,13 +36,13 @@ static void face_sample(const struct vg_mesh *m, size_t t, int i, double x[3])
   for (int d = 0; d < 3; d++) x[d] = (a[d] + b[d]) / 2;
 }
 
-/* The middle of edge i of triangle t. */
+/* Sample number of the midpoint of edge i of triangle t. */
 static size_t slot_of(const struct vg_mesh *m, size_t t, size_t i)
 {
   return m->n_point + PER_FACE * t + i;
 }
 
-/* What is shared is measured by the first triangle that has it. */
+/* A sample shared by several triangles is measured by the first of them. */
 static void at_face(const struct measuring *m, size_t t, uint32_t *hint)
 {
   const struct vg_mesh *from = m->from;
@@ -75,14 +75,15 @@ static void at_faces(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) at_face(m, m->order[i], &hint);
 }
 
-/* As the tree has them; what measures a point is the first of them. */
+/* Order the triangles as in the search tree. The first triangle of a point
+ * measures there. */
 static void arrange(struct measuring *m)
 {
   const struct vg_mesh *from = m->from;
   size_t n = 0;
 
   memset(m->by, 0xff, from->n_point * sizeof *m->by);
-  memset(m->d, 0, from->n_tri * sizeof *m->d); /* 1: is there */
+  memset(m->d, 0, from->n_tri * sizeof *m->d); /* 1: triangle already listed */
   for (size_t i = 0; i < m->ref.tree.n; i++) {
     uint32_t t = m->ref.tree.item[i];
 
@@ -106,8 +107,8 @@ static void share(const struct measuring *m)
   }
 }
 
-/* The value that 99 % of n are not above: of positive doubles the bits rise
- * with the values. */
+/* The 99th percentile of n values. The bit patterns of positive doubles sort
+ * like their values. */
 static vg_status find_99(size_t n, const double *d, double *out,
                          struct vg_error *err)
 {
@@ -234,7 +235,7 @@ done:
   return st;
 }
 
-/* --- the order that suits it ---------------------------------------------- */
+/* --- arrangement along a Hilbert curve ------------------------------------ */
 
 struct arranging {
   double (*middle)[3]; /* [n_tri] */
@@ -242,7 +243,7 @@ struct arranging {
   uint32_t (*tri)[3];
   uint32_t *patch;
   double (*point)[3];
-  uint32_t *number; /* [n_point] new ones */
+  uint32_t *number; /* [n_point] New number of each point. */
 };
 
 static void release_arranging(struct arranging *a)
@@ -263,7 +264,8 @@ static void put_point(struct arranging *a, const struct vg_mesh *m, uint32_t p,
   a->number[p] = (*n)++;
 }
 
-/* Triangles by the order; points as they come first. */
+/* Write triangles in the new order, and points in the order of their first
+ * use. */
 static void put(struct arranging *a, struct vg_mesh *m)
 {
   uint32_t n = 0;

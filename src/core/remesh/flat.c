@@ -10,15 +10,13 @@
 #include "core/remesh/reference.h"
 
 #define FLAT2 7.596e-3 /* S50: (sin 5 degrees)^2 */
-#define OUTER                                                                  \
-  1e-3 /* of the longest edge: height of a flat triangle of                    \
-          the outer boundary */
+#define OUTER 1e-3     /* of the longest edge: flat height on outer boundary */
 #define SWEEPS 12
-#define TURN 0.9 /* cosine between new triangles and the neighbour */
+#define TURN 0.9 /* least cosine between new triangles and neighbour */
 
 struct flat {
-  double shape;  /* squared sine of the smallest angle */
-  uint32_t half; /* the longest edge */
+  double shape;  /* Squared sine of the smallest angle. */
+  uint32_t half; /* Half-edge of the longest edge. */
 };
 
 static int by_shape(const void *pa, const void *pb)
@@ -45,8 +43,9 @@ static double normal_of(const struct vg_mesh *m, const uint32_t v[3],
   return vg_unit(n);
 }
 
-/* The longest edge of triangle t; *height above it, and whether the foot of the
- * third corner is within it. */
+/* The longest edge of triangle t. Sets *height to the height above it, and
+ * *is_cap to whether the opposite corner projects into the middle of the
+ * edge. */
 static uint32_t longest(const struct vg_mesh *m, uint32_t t, double *height,
                         int *is_cap)
 {
@@ -59,7 +58,7 @@ static uint32_t longest(const struct vg_mesh *m, uint32_t t, double *height,
     if (l[k] > most) most = l[k], at = k;
   }
   *height = most > 0 ? normal_of(m, m->tri[t], n) / sqrt(most) : 0;
-  /* An angle above 120 degrees. */
+  /* The angle opposite the longest edge exceeds 120 degrees. */
   *is_cap = l[0] + l[1] + l[2] <
             2 * most - sqrt(l[(at + 1) % 3] * l[(at + 2) % 3]);
   return 3 * t + at;
@@ -99,13 +98,14 @@ static vg_status list_flat(const struct vg_mesh *m,
 
 struct swapper {
   struct vg_mesh *m;
-  struct vg_ref ref; /* faces as they were when the sweep began */
-  uint8_t *busy;     /* [n_tri] changed, or next to one that was */
-  size_t *count;     /* [n_patch] triangles */
+  struct vg_ref ref; /* Faces at the beginning of the sweep. */
+  uint8_t *busy;     /* [n_tri] Changed in this sweep, or next to a changed
+                        triangle. */
+  size_t *count;     /* [n_patch] Number of triangles. */
 };
 
-/* May there be an edge from the start of h to q? Not where one is already, nor
- * where triangles around the start have changed. */
+/* May an edge from the start of h to q be created? Not if that edge exists, nor
+ * if triangles around the start have changed. */
 static int may_join(const struct swapper *s, uint32_t h, uint32_t q)
 {
   const struct vg_ref *r = &s->ref;
@@ -133,7 +133,7 @@ static void set_busy(struct swapper *s, uint32_t h)
     if (s->ref.mate[e] != VG_REF_NONE) s->busy[s->ref.mate[e] / 3] = 1;
 }
 
-/* Are the two new triangles better, and do they face the way of u? */
+/* Are the two new triangles better, and do they face the same way as u? */
 static int is_better(const struct vg_mesh *m, uint32_t t, uint32_t u,
                      const uint32_t made[2][3])
 {
@@ -148,7 +148,8 @@ static int is_better(const struct vg_mesh *m, uint32_t t, uint32_t u,
   return 1;
 }
 
-/* Give the flat triangle of h the half of its neighbour. */
+/* Swap the longest edge h of a flat triangle with its neighbour, which is cut
+ * in two. */
 static int swap(struct swapper *s, uint32_t h)
 {
   struct vg_mesh *m = s->m;

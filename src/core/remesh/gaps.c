@@ -10,22 +10,21 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/reference.h"
 
-#define GRAIN 256 /* triangles of a block */
+#define GRAIN 256 /* triangles per task */
 #define DEPTH 64
-#define FACING -0.7 /* S40: cosine between the two sides of a gap */
-#define H_MIN 2e-5  /* of the length */
+#define FACING -0.7 /* S40: largest cosine between the sides of a gap */
+#define H_MIN 2e-5  /* default, of the length of the surface */
 #define H_MAX 0.04
-#define MOST 1e8 /* places */
-/* S60: samples of a forecast, and where gaps are narrow */
+#define MOST 1e8 /* largest number of sample places */
+/* S60: samples of a forecast, and most of them if gaps are narrow. */
 #define SAMPLES 1e5
 #define SAMPLES_MOST 1e6
-#define FINE 1e4       /* the limit over what one sample may count for */
+#define FINE 1e4       /* least ratio of the limit to one sample's share */
 #define TRIANGLE 0.433 /* area of a triangle of edge 1 */
 #define PLACE                                                                  \
-  0.15 /* area for each of the two places of a gap, over the                   \
-          square of its width */
+  0.15 /* of the squared width: area per place on one side of a gap */
 
-/* Places of some triangles, or a forecast of them. */
+/* Places on a group of triangles, or their forecast. */
 struct block {
   size_t n, cap_x, cap_h;
   double (*x)[3], *h;
@@ -38,14 +37,14 @@ struct search {
   const struct vg_ref *ref;
   const struct vg_mesh *m;
   double edges, h_min, h_max;
-  double coarse, fine; /* edges of a forecast's samples */
+  double coarse, fine; /* Sample spacing of a forecast. */
   double most_tri, most_place;
   struct block *block;
   const struct vg_stop *stop;
 };
 
-/* Width of the gap above x on triangle t, its other side into y, on triangle
- * *other; INFINITY: no surface faces x there. */
+/* Width of the gap above x on triangle t. Sets y to the point opposite x, and
+ * *other to its triangle. INFINITY if no surface faces x within reach. */
 static double gap_at(const struct search *s, size_t t, const double x[3],
                      double y[3], uint32_t *other)
 {
@@ -70,7 +69,8 @@ static void add(struct block *b, const double x[3], double h)
   b->h[b->n++] = h;
 }
 
-/* The centre of a part, the length of its longest edge, and which it is. */
+/* Centroid x and length of the longest edge of part p of a triangle; *edge is
+ * the number of that edge. */
 static double measure(double p[3][3], double x[3], int *edge)
 {
   double most = 0;
@@ -94,13 +94,14 @@ static void halve(double p[3][3], int edge, int side, double half[3][3])
   memcpy(half[(edge + side) % 3], mid, sizeof mid);
 }
 
-/* Length of the parts in which places are. */
+/* Edge length of the parts at which a gap of this width is sampled. */
 static double part_size(const struct search *s, double gap)
 {
   return fmax(fmin(gap, s->h_max), s->edges * s->h_min);
 }
 
-/* A part of triangle t, halved until it is as small as its gap is wide. */
+/* Bisect a part of triangle t until it is as small as the gap there is wide,
+ * and add a place for it. */
 static void visit(const struct search *s, size_t t, double p[3][3], int depth,
                   struct block *b)
 {
@@ -135,7 +136,8 @@ static double area_of(double p[3][3])
   return vg_norm(n) / 2;
 }
 
-/* What a part of triangle t will have, by a gap for all of it. */
+/* Forecast the places in a part of triangle t, by one gap width for the whole
+ * part. */
 static void forecast(const struct search *s, size_t t, double p[3][3],
                      int depth, struct block *b)
 {
@@ -170,7 +172,7 @@ static void forecast(const struct search *s, size_t t, double p[3][3],
   }
 }
 
-/* Applies `to_part` to every triangle of block i that has an area. */
+/* Apply `to_part` to every triangle of block i with a positive area. */
 static void each_triangle(const struct search *s, size_t i,
                           void (*to_part)(const struct search *s, size_t t,
                                           double p[3][3], int depth,
@@ -198,7 +200,8 @@ static void forecast_blocks(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Whether the forecast is too high; it is in *out then. */
+/* Returns 1 if the forecast exceeds a limit; *out then contains the
+ * forecast. */
 static int is_too_much(const struct search *s, size_t n_block, int threads,
                        struct vg_gaps *out)
 {
@@ -264,8 +267,8 @@ static vg_status settle(const struct vg_mesh *m, const struct vg_gap_options *o,
 
   if (!(o->edges > 0 && o->edges <= 1e4 && o->h_min >= 0 && o->h_max >= 0))
     return vg_fail(err, VG_ERR_INPUT,
-                   "%g edges across gaps, sizes %g to %g: "
-                   "one of them is out of range",
+                   "gaps: one of %g edges across gaps and sizes %g to %g is "
+                   "out of range",
                    o->edges, o->h_min, o->h_max);
   vg_mesh_bounds(m, lo, hi);
   for (int k = 0; k < 3; k++) length = fmax(length, hi[k] - lo[k]);
@@ -285,8 +288,8 @@ static vg_status settle(const struct vg_mesh *m, const struct vg_gap_options *o,
   s->most_place = o->most_place > 0 ? o->most_place : INFINITY;
   if (area < MOST * s->h_max * s->h_max) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "gaps would be looked for at some %.2g "
-                 "places; are sizes in the unit of the surface?",
+                 "the search for gaps would need some %.2g sample points; "
+                 "check that sizes are in the unit of the surface",
                  area / (s->h_max * s->h_max));
 }
 

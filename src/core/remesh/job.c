@@ -1,6 +1,7 @@
-/* Outline: small faults of the given surface are removed, lines found, strips
- * closed, sizes found. Long edges of lines are cut where the sizes of their
- * ends say nothing of their middles. Lines and sizes are then found again. */
+/* Outline: remove small faults of the input surface, find feature curves, close
+ * narrow strips, and compute the sizing field. Long feature edges are split if
+ * the sizes at their ends do not represent the size at their midpoint. Feature
+ * curves and sizes are then computed again. */
 #include "core/remesh/job.h"
 
 #include <math.h>
@@ -16,19 +17,15 @@
 #include "core/surface/envelope.h"
 
 #define TOLERANCE 1e-4 /* S20: of the body's length */
-#define CHORD 0.6      /* of the tolerance: what sizes allow for arcs */
-#define NOISE                                                                  \
-  3.0                /* S43: of the accuracy of the given surface: sizes       \
-                        that follow from it alone */
-#define H_MAX 0.02   /* of the length */
-#define H_MIN 2e-4   /* twice the tolerance */
-#define H_OUTER 0.04 /* of the domain's length */
-#define OUTER 0.9    /* S27: of the triangles of a patch: all of it is */
-#define LEAP                                                                   \
-  10.0                /* S47: of the size in the middle of an edge: what       \
-                         sizes grown from its ends would allow */
-#define CUTS 256      /* pieces of such an edge, at most */
-#define TRIANGLES 3e8 /* more are refused */
+#define CHORD 0.6    /* of the tolerance: sagitta of an arc that sizes allow */
+#define NOISE 3.0    /* S43: of the accuracy: least size from the shape alone */
+#define H_MAX 0.02   /* of the length of the body */
+#define H_MIN 2e-4   /* of the length: twice the tolerance */
+#define H_OUTER 0.04 /* of the length of the domain */
+#define OUTER 0.9    /* S27: share of a patch's triangles that makes it outer */
+#define LEAP 10.0    /* S47: largest ratio of grown to interpolated mid size */
+#define CUTS 256     /* most pieces of such an edge */
+#define TRIANGLES 3e8 /* limit of the estimated number of new triangles */
 
 static double length_of(const struct vg_mesh *m, const uint8_t *outer)
 {
@@ -45,8 +42,8 @@ static double length_of(const struct vg_mesh *m, const uint8_t *outer)
   return most;
 }
 
-/* A patch that is outer but for a sliver or two is outer: one of them would
- * make the body as long as the domain. */
+/* A patch of which all but a few triangles are outer is outer as a whole: a
+ * single remaining triangle would make the body as long as the domain. */
 static vg_status complete_outer(const struct vg_mesh *m, uint8_t *outer,
                                 struct vg_error *err)
 {
@@ -63,7 +60,8 @@ static vg_status complete_outer(const struct vg_mesh *m, uint8_t *outer,
   return VG_OK;
 }
 
-/* Lengths by the body; the outer boundary of a whole domain has its own. */
+/* Set tolerance and size bounds from the length of the body. The outer boundary
+ * of a whole domain has its own upper bound. */
 static vg_status settle(struct vg_remesh_job *j, struct vg_error *err)
 {
   const struct vg_mesh *m = j->given;
@@ -101,7 +99,8 @@ done:
   return st;
 }
 
-/* Sizes in another unit would ask for more triangles than fit anywhere. */
+/* Refuse sizes that would give more triangles than any computer can hold. The
+ * usual reason is another unit of length. */
 static vg_status check_number(const struct vg_remesh_job *j,
                               struct vg_error *err)
 {
@@ -119,8 +118,8 @@ static vg_status check_number(const struct vg_remesh_job *j,
   }
   if (n < TRIANGLES) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "the new surface would have some %.2g "
-                 "triangles; are sizes and tolerance in its unit?",
+                 "the remeshed surface would have some %.2g triangles; check "
+                 "that sizes and tolerance are in the unit of the surface",
                  n);
 }
 
@@ -163,7 +162,7 @@ done:
   return st;
 }
 
-/* Largest sizes of the mesh with the points where strips are cut. */
+/* Extend the largest sizes to the mesh in which strips are closed. */
 static vg_status extend_caps(struct vg_remesh_job *j, struct vg_error *err)
 {
   const struct vg_strips *s = &j->strips;
@@ -191,14 +190,15 @@ static vg_status extend_stretch(struct vg_remesh_job *j, struct vg_error *err)
 
   if (!j->o->stretch) return VG_OK;
   j->stretch = vg_calloc(n, sizeof *j->stretch);
-  if (!j->stretch) return vg_fail_memory(err, "the lines that are stretched");
+  if (!j->stretch) return vg_fail_memory(err, "the stretched feature curves");
   for (size_t h = 0; h < n; h++)
     if (s->half_from[h] != VG_REF_NONE)
       j->stretch[h] = j->o->stretch[s->half_from[h]];
   return VG_OK;
 }
 
-/* Where strips are closed, lines are found again without them. */
+/* Close narrow strips. If there are any, find the feature curves again without
+ * the closed pieces. */
 static vg_status close_strips(struct vg_remesh_job *j,
                               struct vg_curves_options *c, struct vg_error *err)
 {
@@ -234,7 +234,7 @@ void vg_job_release_reference(struct vg_remesh_job *j)
   j->given = j->whole;
 }
 
-/* The reference with its lines and sizes. */
+/* Build the reference with its feature curves and sizes. */
 vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
                                struct vg_error *err)
 {
@@ -259,9 +259,9 @@ done:
 
 /* --- small faults -------------------------------------------------------- */
 
-/* The surface that everything is built on is another one from now on: arrays of
- * the options are replaced by those of its points and triangles. tri_from and
- * half_from: [n_tri], [3 n_tri] numbers in the one before; VG_REF_NONE: new. */
+/* Replace the working surface by m, and the per-point and per-triangle options
+ * by arrays for m. tri_from [n_tri] and half_from [3 n_tri] are the numbers in
+ * the previous surface; VG_REF_NONE: new. */
 static vg_status adopt(struct vg_remesh_job *j, struct vg_mesh *m,
                        const uint32_t *tri_from, const uint32_t *half_from,
                        double **cap, struct vg_error *err)
@@ -339,11 +339,12 @@ done:
   return st;
 }
 
-/* --- long edges of lines ------------------------------------------------- */
+/* --- long feature edges --------------------------------------------------- */
 
-/* How many pieces half-edge h needs, between whose ends sizes are
- * interpolated: more than one where the ends ask for much less than what sizes
- * that grow from them would allow in the middle. */
+/* Number of pieces into which feature edge h must be split. Sizes are
+ * interpolated linearly between its ends; more than one piece is needed if the
+ * size at the midpoint would be much smaller than growth from the ends
+ * permits. */
 static int pieces(const struct vg_remesh_job *j, uint32_t h)
 {
   const struct vg_ref *r = &j->ref;
@@ -356,7 +357,8 @@ static int pieces(const struct vg_remesh_job *j, uint32_t h)
   return length / grown < CUTS ? (int)(length / grown) + 2 : CUTS;
 }
 
-/* [3 whole->n_tri] pieces of each edge, at one of its half-edges. */
+/* [3 whole->n_tri] Number of pieces of each edge, stored at one of its
+ * half-edges. */
 static size_t count_pieces(const struct vg_remesh_job *j, uint16_t *n)
 {
   size_t sum = 0;
@@ -401,7 +403,7 @@ done:
   return st;
 }
 
-/* Cut long edges of lines, and begin again with the surface so cut. */
+/* Split long feature edges, and rebuild the reference for the split surface. */
 static vg_status cut_edges(struct vg_remesh_job *j, int closes,
                            struct vg_error *err)
 {
@@ -432,7 +434,7 @@ done:
   return st;
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- preparation ---------------------------------------------------------- */
 
 vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
 {

@@ -1,5 +1,5 @@
-/* core/remesh/job.h: what vg_remesh works on: the reference with its lines and
- * sizes. Private to core/remesh. */
+/* core/remesh/job.h: the data that vg_remesh works on: the reference surface
+ * with its feature curves and sizing field. Private to core/remesh. */
 #ifndef VG_CORE_REMESH_JOB_H
 #define VG_CORE_REMESH_JOB_H
 
@@ -7,104 +7,113 @@
 #include "core/remesh/remesh.h"
 #include "core/remesh/strips.h"
 
-#define VG_JOB_RELATIVE 0.05 /* of the size: tolerance */
+#define VG_JOB_RELATIVE 0.05 /* tolerance, of the size */
 
 struct vg_remesh_job {
-  const struct vg_mesh *whole; /* as given, or without its small faults */
-  const struct vg_mesh *given; /* the same, or with strips that are closed */
+  const struct vg_mesh *whole; /* Input surface, or the same without its small
+                                  faults. */
+  const struct vg_mesh *given; /* The same, or strips.mesh if strips are
+                                  closed. */
   const struct vg_remesh_options *o;
-  struct vg_remesh_options own; /* of the surface without faults */
+  struct vg_remesh_options own; /* Options for `base`. */
   double *own_cap, *own_stretch;
-  struct vg_mesh base; /* that of `whole`, once changed */
+  struct vg_mesh base; /* Storage of `whole` once it is not the input
+                          surface. */
   struct vg_remesh_report r;
   struct vg_ref ref;
   struct vg_curves curves;
-  struct vg_strips strips;  /* closed ones; then given is their mesh */
-  double *strip_cap;        /* cap with strips; or NULL */
-  double *cap;              /* [n_tri] largest size, or NULL */
-  double *point_cap;        /* [n_point] the same, with strips; or NULL */
-  double *stretch;          /* [3 n_tri] that of the options, with strips */
-  double jag;               /* tolerance of lines, the same at any scale */
-  double far;               /* larger sizes are on an outer boundary only;
-                               0: no outer boundary */
-  struct vg_source *source; /* those of the options, then spots */
+  struct vg_strips strips;  /* Closed strips; `given` is then strips.mesh. */
+  double *strip_cap;        /* Largest sizes for strips.mesh; may be NULL. */
+  double *cap;              /* [n_tri] Largest size; may be NULL. */
+  double *point_cap;        /* [n_point] Largest size for strips.mesh; may be
+                               NULL. */
+  double *stretch;          /* [3 n_tri] options.stretch for strips.mesh. */
+  double jag;               /* Tolerance of feature curves; independent of the
+                               scale. */
+  double far;               /* Sizes above this occur on an outer boundary only;
+                               0: there is no outer boundary. */
+  struct vg_source *source; /* Sources of the options, followed by sources added
+                               at intersections. */
   size_t n_source, cap_source;
-  uint8_t *keep;     /* [whole->n_point] corners of given triangles that
-                        stay as they are; NULL: none. Strips are then
-                        not closed */
-  size_t n_keep;     /* such points */
-  int is_all_kept;   /* there is nothing more to keep where triangles
-                        meet */
-  size_t n_flat;     /* edges of flat triangles that were swapped */
-  size_t n_fault[2]; /* intersections of the new surface, last time and
-                        now */
-  int is_cut;        /* long edges of lines are cut */
-  int no_cuts;       /* they are not to be cut any more */
-  int looks;         /* nothing is changed */
+  uint8_t *keep;     /* [whole->n_point] 1: corner of input triangles that are
+                        kept unchanged; NULL: none. Strips are then not
+                        closed. */
+  size_t n_keep;     /* Number of such points. */
+  int is_all_kept;   /* The last search found no further input triangles to
+                        keep. */
+  size_t n_flat;     /* Swapped edges of flat triangles. */
+  size_t n_fault[2]; /* Intersections of the remeshed surface in the previous
+                        and the last attempt. */
+  int is_cut;        /* Long feature edges were split. */
+  int no_cuts;       /* Long feature edges must not be split. */
+  int looks;         /* Measure only: the surface is not changed. */
 };
 
-/** Settle lengths and sources, and build the reference. VG_ERR_INPUT for a
- * surface or options that are out of range; VG_ERR_MEMORY, VG_ERR_STOPPED. */
+/** Set lengths and sources, and build the reference. VG_ERR_INPUT for a surface
+ * or options out of range; VG_ERR_MEMORY, VG_ERR_STOPPED. */
 vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err);
 
-/** Build the reference with its lines and sizes; closes: with strips closed
- * that are narrower than the tolerance. */
+/** Build the reference with its feature curves and sizes. If `closes` is set,
+ * strips narrower than the tolerance are closed. */
 vg_status vg_job_set_reference(struct vg_remesh_job *j, int closes,
                                struct vg_error *err);
 
-/** Begin again with the given surface m and its options, cutting no edges. */
+/** Start again from the given surface m and options o, without splitting
+ * edges. */
 vg_status vg_job_restart(struct vg_remesh_job *j, const struct vg_mesh *m,
                          const struct vg_remesh_options *o,
                          struct vg_error *err);
 
-/** Empty it. */
+/** Release the reference, its feature curves, sizes and strips. */
 void vg_job_release_reference(struct vg_remesh_job *j);
 
-/** Empty all but the report's list. */
+/** Release everything except the list in the report. */
 void vg_job_release(struct vg_remesh_job *j);
 
-/* --- faults of the given surface and the new one (clean.c, flat.c) ------- */
+/* --- faults of the input and of the remeshed surface (clean.c, flat.c) ---- */
 
 struct vg_clean_options {
-  double tolerance; /* largest distance between the surfaces */
-  const struct vg_curves_options *lines; /* which edges are hard */
+  double tolerance;                      /* Largest distance between the
+                                            surfaces. */
+  const struct vg_curves_options *lines; /* Options that define the fixed
+                                            edges. */
   int threads;
   struct vg_stop stop;
 };
 
-/* The reference without its small faults. Points and triangles keep their
- * order. */
+/* The reference surface without its small faults. Points and triangles keep
+ * their order. */
 struct vg_clean {
-  struct vg_mesh mesh;  /* empty: nothing was changed */
-  uint32_t *point_from; /* [mesh.n_point] number before */
-  uint32_t *tri_from;   /* [mesh.n_tri] the same; corners keep their
-                           places */
-  size_t n_swap;        /* longest edges of flat triangles that were
-                           swapped */
-  size_t n_flap;        /* pairs of opposite triangles on the same points
-                           that were dropped */
-  size_t n_collapse;    /* edges that were collapsed */
-  size_t n_crossing[2]; /* pairs of triangles that intersect each other,
-                           before and after */
-  double depth, at[3];  /* the deepest such pair before: how far the two
-                           triangles reach through each other, and where */
+  struct vg_mesh mesh;  /* Empty: nothing was changed. */
+  uint32_t *point_from; /* [mesh.n_point] Number of each point in the input. */
+  uint32_t *tri_from;   /* [mesh.n_tri] Number of each triangle in the input,
+                           whose corners keep their positions 0 to 2. */
+  size_t n_swap;        /* Number of swapped longest edges of flat triangles. */
+  size_t n_flap;        /* Number of dropped pairs of opposite triangles on the
+                           same points. */
+  size_t n_collapse;    /* Number of collapsed edges. */
+  size_t n_crossing[2]; /* Number of pairs of triangles that intersect each
+                           other, before and after. */
+  double depth, at[3];  /* The deepest such pair before: the depth to which the
+                           two triangles reach through each other, and its
+                           location. */
 };
 #define VG_CLEAN_INIT                                                          \
   {                                                                            \
     .mesh = VG_MESH_INIT                                                       \
   }
 
-/** Repair a surface that has faults, as far as the tolerance hides it. Thin
- * triangles that lie back to back are dropped. Edges far below the tolerance
- * are collapsed, since no new edge could follow them, and so are edges below
- * the tolerance at triangles that intersect each other. The longest edges of
- * flat triangles are swapped. Points of thin places are moved apart. A sound
- * surface is better left alone: a collapse across a thin edge makes sheets
- * intersect.
+/** Repair faults of a surface that are smaller than the tolerance. Pairs of
+ * thin triangles that lie back to back are dropped. Edges far below the
+ * tolerance are collapsed, since no new edge could follow them, and so are
+ * edges below the tolerance at triangles that intersect each other. The longest
+ * edges of flat triangles are swapped. Points of thin regions are moved apart.
+ * Do not apply this to a sound surface: a collapse across a thin edge makes its
+ * sheets intersect.
  *
- * Edges of three triangles, and neighbours of opposite orientation, stop the
- * work: c is then empty, and vg_ref_set_faces says what is wrong.
- * m is untouched. O(n log n) for each sweep. VG_ERR_MEMORY, VG_ERR_STOPPED. */
+ * For edges of three triangles, or neighbours of opposite orientation, nothing
+ * is repaired and c is empty; vg_ref_set_faces then reports the fault.
+ * m is not modified. O(n log n) per sweep. VG_ERR_MEMORY, VG_ERR_STOPPED. */
 vg_status vg_clean_find(const struct vg_mesh *m,
                         const struct vg_clean_options *o, struct vg_clean *c,
                         struct vg_error *err);
@@ -112,20 +121,20 @@ vg_status vg_clean_find(const struct vg_mesh *m,
 void vg_clean_release(struct vg_clean *c);
 
 struct vg_flat_limit {
-  double height; /* largest height of a triangle that is flat */
-  double far;    /* longer edges are on an outer boundary, where
-                    the height is a share of the edge; 0: there is
-                    none */
+  double height; /* Largest height of a flat triangle. */
+  double far;    /* Longer edges are on an outer boundary, where the largest
+                    height is a fraction of the edge; 0: there is no outer
+                    boundary. */
 };
 
-/** Swap the longest edge of triangles whose three corners are nearly on a line.
- * The edge may be part of a line that stays: its two new pieces are within the
- * limit of it, and the flat triangle joins the patch of its neighbour.
+/** Swap the longest edge of each triangle whose corners are nearly collinear.
+ * This may be a feature edge: its two new pieces deviate from it by less than
+ * the limit, and the flat triangle joins the patch of its neighbour.
  *
- * @param n      out: edges swapped
- * O(n), and O(n log n) for each sweep where there are any. VG_ERR_INPUT for a
- * surface that is not manifold or not oriented; VG_ERR_MEMORY. Untouched on
- * failure. */
+ * @param n      out: number of swapped edges
+ * O(n), plus O(n log n) for each sweep if there are flat triangles.
+ * VG_ERR_INPUT for a surface that is not manifold or not oriented;
+ * VG_ERR_MEMORY. Untouched on failure. */
 vg_status vg_flat_swap(struct vg_mesh *m, const struct vg_flat_limit *limit,
                        size_t *n, struct vg_error *err);
 

@@ -25,7 +25,8 @@ void vg_form_frame(const double *form, double u[3], double v[3])
   for (int k = 0; k < 3; k++) v[k] /= l;
 }
 
-/* By the eigenvalues of the form in the plane, as trace and determinant. */
+/* From the eigenvalues of the form restricted to the plane, by trace and
+ * determinant. */
 double vg_form_aspect(const double *form, const double n[3])
 {
   assert(vg_dot(n, n) > 0);

@@ -1,10 +1,10 @@
-/* core/remesh/metric.h: edge lengths asked for at a place, by direction: a
- * size, and a symmetric tensor that is its share in each direction (George and
- * Borouchaki, "Delaunay Triangulation and Meshing", 1998, chapter 10). Private
- * to core/remesh.
+/* core/remesh/metric.h: target edge length as a function of position and
+ * direction: a size, and a symmetric tensor (form) that scales it in each
+ * direction (George and Borouchaki, "Delaunay Triangulation and Meshing", 1998,
+ * chapter 10). Private to core/remesh.
  *
- * Where nothing is stretched the size says all: functions that take a form take
- * NULL for that, and then do what they would without tensors. */
+ * Where edges are not stretched the size is sufficient: functions that take a
+ * form accept NULL and then compute isotropic lengths. */
 #ifndef VG_CORE_REMESH_METRIC_H
 #define VG_CORE_REMESH_METRIC_H
 
@@ -13,13 +13,13 @@
 #include "core/geometry/vector.h"
 
 struct vg_metric {
-  double size;    /* least of all directions */
-  double form[6]; /* xx, yy, zz, xy, yz, zx; its largest eigenvalue is
-                     1. An edge e is as long as asked where e form e
-                     is the squared size */
+  double size;    /* Smallest target length over all directions. */
+  double form[6]; /* Components xx, yy, zz, xy, yz, zx; the largest eigenvalue
+                     is 1. An edge e has its target length if e^T form e equals
+                     the squared size. */
 };
 
-/** a form b. */
+/** Inner product a^T form b. */
 static inline double vg_form_dot(const double *form, const double a[3],
                                  const double b[3])
 {
@@ -35,14 +35,14 @@ static inline double vg_form_norm(const double *form, const double a[3])
   return sqrt(vg_form_dot(form, a, a));
 }
 
-/** Squared norm of the cross product n of two vectors, were they measured by
- * the form: twice the area of their triangle. */
+/** Squared norm of the cross product n of two vectors in the metric of the
+ * form, that is, of twice the area of their triangle. */
 static inline double vg_form_area2(const double *form, const double n[3])
 {
   const double *f = form;
 
   if (!f) return vg_dot(n, n);
-  /* by the cofactors */
+  /* By the cofactors of the form. */
   return (f[1] * f[2] - f[4] * f[4]) * n[0] * n[0] +
          (f[0] * f[2] - f[5] * f[5]) * n[1] * n[1] +
          (f[0] * f[1] - f[3] * f[3]) * n[2] * n[2] +
@@ -51,7 +51,7 @@ static inline double vg_form_area2(const double *form, const double n[3])
               (f[3] * f[4] - f[5] * f[1]) * n[2] * n[0]);
 }
 
-/** Square of the sine of the smallest angle of a triangle, as measured by the
+/** Squared sine of the smallest angle of a triangle in the metric of the
  * form. */
 static inline double vg_form_shape(const double *form, const double *a,
                                    const double *b, const double *c)
@@ -71,20 +71,20 @@ static inline double vg_form_shape(const double *form, const double *a,
   return vg_form_area2(form, n) * least / (l[0] * l[1] * l[2]);
 }
 
-/** Edges along the unit vector d are `by` >= 1 times as long as across it. d
- * does not matter where by is 1. */
+/** Set the form so that edges along the unit vector d are `by` >= 1 times as
+ * long as across it. d is ignored if `by` is 1. */
 void vg_form_stretch(double *form, const double d[3], double by);
 
-/** Vectors in the plane of u and v that have length 1 and right angles, as
- * measured by the form; u keeps its direction. */
+/** Make u and v orthonormal in the metric of the form, within the plane that
+ * they span. u keeps its direction. */
 void vg_form_frame(const double *form, double u[3], double v[3]);
 
-/** Largest length asked for over the least, in the plane with the normal n
- * (any length but 0). */
+/** Ratio of the largest to the smallest target length in the plane with normal
+ * n, which need not be a unit vector but must not be 0. */
 double vg_form_aspect(const double *form, const double n[3]);
 
-/** Length of the edge e between places that ask for a and b, in parts of the
- * mean of what they ask for along it. 0 for an edge of no length. */
+/** Length of the edge e between points with metrics a and b, relative to the
+ * mean of their target lengths along e. 0 for an edge of zero length. */
 static inline double vg_metric_length(const struct vg_metric *a,
                                       const struct vg_metric *b,
                                       const double e[3])
@@ -97,7 +97,7 @@ static inline double vg_metric_length(const struct vg_metric *a,
   return la + lb > 0 ? 2 * la * lb / (la + lb) : 0;
 }
 
-/** Length asked for along d, of any length but 0. */
+/** Target length along d, which may have any length but 0. */
 static inline double vg_metric_along(const struct vg_metric *m,
                                      const double d[3])
 {

@@ -11,21 +11,21 @@
 #include "core/geometry/hilbert.h"
 #include "core/geometry/vector.h"
 
-#define ANGLE2 0.0669873 /* (sin 15 degrees)^2: no collapse below */
-#define FINE2 0.45       /* (sin 42 degrees)^2: good enough */
+#define ANGLE2 0.0669873 /* (sin 15 degrees)^2: no collapse creates less */
+#define FINE2 0.45       /* (sin 42 degrees)^2: good triangles */
 #define ROUNDS 12
-/* S72: another round of collapses follows if one in 8 of the short edges
- * collapsed, another round of swaps after one swap in 200 hundred triangles. */
+/* S72: another round of collapses follows if at least 1 in 8 of the short edges
+ * was collapsed, and another round of swaps if there was one swap per 20000
+ * triangles. */
 #define COLLAPSED_OF 8
 #define SWAPPED_OF 200
 #define GIVEN_WITHIN                                                           \
-  0.02                /* S73: of a step: a given point stays in its place      \
-                       */
-#define LONGEST 0.999 /* S74: of the length: sides that are no longer */
-/* S75: smoothing. The weight of a triangle is 1 over its shape and this. */
+  0.02                /* S73: of a step: an input point this close is used */
+#define LONGEST 0.999 /* S74: of the length: sides below count as shorter */
+/* S75: smoothing. The weight of a triangle is 1 / (shape + SHAPE_FLOOR). */
 #define SHAPE_FLOOR 0.05
 #define STEP_GOOD 0.1   /* of the size: least step among good triangles */
-#define STEP_BAD 0.02   /* and where one of them is not good */
+#define STEP_BAD 0.02   /* of the size: least step at a poor triangle */
 #define SHAPE_GAIN 0.02 /* of 1 - worst shape: least gain there */
 
 /* --- curves -------------------------------------------------------------- */
@@ -36,7 +36,7 @@ struct curve_size {
   uint32_t by;
 };
 
-/* Along the curve, at its place x. */
+/* Target length along the curve at arc length s, which is point x. */
 static double size_of_edges(const struct curve_size *c, double s,
                             const double x[3], double size)
 {
@@ -63,7 +63,7 @@ static double size_along(void *user, double s)
   return w->form ? size_of_edges(c, s, x, size) : size;
 }
 
-/* A half-edge of the line i; VG_REF_NONE: not found. */
+/* A half-edge of feature edge i; VG_REF_NONE: not found. */
 static uint32_t half_of(const struct vg_tris *w, uint32_t i)
 {
   for (int k = 0; k < 2; k++) {
@@ -79,17 +79,17 @@ static uint32_t half_of(const struct vg_tris *w, uint32_t i)
   return VG_REF_NONE;
 }
 
-/* Where curve i is to be divided, by the sizes along it. */
+/* Arc lengths at which a curve is divided, from the sizes along it. */
 struct steps {
   size_t n;
-  double *s; /* [n + 1] */
+  double *s; /* [n + 1] Arc lengths, ascending. */
   vg_status st;
   struct vg_error err;
 };
 
 struct dividing {
   const struct vg_tris *w;
-  struct steps *of; /* [n_curve] */
+  struct steps *of; /* [n_curve] Steps of each curve. */
 };
 
 static int is_loop(const struct vg_tris *w, size_t i)
@@ -114,8 +114,8 @@ static void find_steps(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Put points into a curve whose lines are first .. end - 1: those between the
- * steps go, which stay is marked. */
+/* Insert points into a curve whose feature edges are first .. end - 1. Existing
+ * points that are not at one of the steps are marked for removal. */
 static void divide(struct vg_tris *w, const struct steps *of, uint32_t first,
                    uint32_t end)
 {
@@ -135,7 +135,7 @@ static void divide(struct vg_tris *w, const struct steps *of, uint32_t first,
       uint32_t n_line = (uint32_t)w->n_line;
 
       m = vg_tris_split(w, h, &s[k]);
-      if (m != VG_REF_NONE) cur = n_line; /* the second half */
+      if (m != VG_REF_NONE) cur = n_line; /* second half of the split edge */
     }
     if (m != VG_REF_NONE) w->point[m].goes = 0;
   }
@@ -168,7 +168,8 @@ vg_status vg_pass_divide(struct vg_tris *w, int threads, struct vg_error *err)
   return st;
 }
 
-/* Towards that neighbour on the curve that is nearer. */
+/* Collapse p into its nearer neighbour on the curve, or else into the other
+ * one. */
 static int take_away(struct vg_tris *w, uint32_t p)
 {
   uint32_t ring[VG_WORK_RING], h[2], n_h = 0;
@@ -202,14 +203,14 @@ void vg_pass_curves(struct vg_tris *w)
   }
 }
 
-/* --- edges by length ----------------------------------------------------- */
+/* --- edges sorted by length ----------------------------------------------- */
 
 struct edge_list {
   size_t n, cap;
   struct vg_key *key;
 };
 
-/* Of positive doubles the bits rise with the values. */
+/* The bit patterns of positive doubles sort like their values. */
 static int list_edge(const struct vg_tris *w, uint32_t h, double lo, double hi,
                      int falls, struct edge_list *l)
 {
@@ -225,8 +226,9 @@ static int list_edge(const struct vg_tris *w, uint32_t h, double lo, double hi,
   return 0;
 }
 
-/* Edges with a ratio beyond the bounds, by rising ratio. Those that were
- * looked at and have not changed since are left out. */
+/* Edges whose ratio of length to target length is out of bounds, by ascending
+ * (or with `falls` descending) ratio. Edges that were examined before and have
+ * not changed since are left out. */
 static vg_status edges_by_ratio(struct vg_tris *w, int look, double lo,
                                 double hi, int falls, struct vg_key **key,
                                 size_t *n, struct vg_error *err)
@@ -256,7 +258,7 @@ static int try_collapse(struct vg_tris *w, uint32_t h, double most)
 {
   uint32_t g = w->mate[h];
 
-  /* From the less bound end; equal ones, the one with the smaller size. */
+  /* Move the less constrained end first. Of equal ends, try both directions. */
   if (g != VG_REF_NONE) {
     const struct vg_tris_point *a = &w->point[vg_tris_from(w, h)];
     const struct vg_tris_point *b = &w->point[vg_tris_to(w, h)];
@@ -302,7 +304,8 @@ done:
   return st;
 }
 
-/* Of both of its triangles: needles are cut across, not along. */
+/* Is the edge the longest of both its triangles? Needles are then cut across,
+ * not along. */
 static int is_longest(const struct vg_tris *w, uint32_t h)
 {
   const double l = LONGEST * vg_tris_ratio(w, h);
@@ -377,8 +380,8 @@ size_t vg_pass_swap(struct vg_tris *w)
 
 /* --- smooth -------------------------------------------------------------- */
 
-/* Mean of the places where p would make its triangles equilateral, seen from
- * the edges across and measured as p asks for. */
+/* Weighted mean of the positions at which p would make each of its triangles
+ * equilateral, on the opposite edge and in the metric at p. */
 static int better_place(const struct vg_tris *w, uint32_t p, double x[3],
                         double *worst)
 {

@@ -1,33 +1,38 @@
-/* core/remesh/passes.h: what is changed, in which order. Private to
- * core/remesh. */
+/* core/remesh/passes.h: the remeshing passes, sequences of local changes.
+ * Private to core/remesh. */
 #ifndef VG_CORE_REMESH_PASSES_H
 #define VG_CORE_REMESH_PASSES_H
 
 #include "core/remesh/work.h"
 
-/** Divide the curves of a surface not changed yet by size: points that are
- * not needed are marked to go. */
+/** Divide the curves of a surface that has not been changed yet by size. Points
+ * that are not needed are marked for removal. */
 vg_status vg_pass_divide(struct vg_tris *w, int threads, struct vg_error *err);
 
-/** Take points of curves away that are marked. */
+/** Remove the marked points of curves. */
 void vg_pass_curves(struct vg_tris *w);
 
-/** Collapse edges shorter than `least` sizes, shortest first, and split those
- * longer than `most`, longest first; each with swaps after it. *n: changes.
- * across: only edges that are the longest of both their triangles, each once.
- * */
+/** vg_pass_collapse collapses edges shorter than `least` target lengths, the
+ * shortest first; vg_pass_split splits those longer than `most`, the longest
+ * first. Each is followed by swaps.
+ *
+ * @param n       out: number of changes
+ * @param across  split only edges that are the longest of both their triangles,
+ *                in a single round */
 vg_status vg_pass_collapse(struct vg_tris *w, double least, double most,
                            size_t *n, struct vg_error *err);
 vg_status vg_pass_split(struct vg_tris *w, double most, int across, size_t *n,
                         struct vg_error *err);
 
-/** Swap whatever gets better, until nothing does. */
+/** Swap edges while that improves triangles. Returns the number of swaps. */
 size_t vg_pass_swap(struct vg_tris *w);
 
-/** Points of faces towards where their triangles are equilateral; sweeps. */
+/** Move points of faces to positions where their triangles are more nearly
+ * equilateral, for a number of sweeps. Returns the number of moves. */
 size_t vg_pass_smooth(struct vg_tris *w, int sweeps);
 
-/** All changes at triangles with an angle below that of `shape`. */
+/** Apply all kinds of changes to triangles with a smallest angle below that of
+ * `shape` (squared sine). */
 vg_status vg_pass_polish(struct vg_tris *w, double shape, size_t *n,
                          struct vg_error *err);
 

@@ -1,6 +1,6 @@
-/* Outline: what has a small angle is looked at one by one. Of each change it is
- * first seen on the points around what it would bring, which costs little;
- * only the best is held against the surface. */
+/* Outline: triangles with a small angle are treated one by one. The gain of
+ * each possible change is first computed from the surrounding points, which is
+ * cheap; only the best change is checked against the reference surface. */
 #include "core/remesh/passes.h"
 
 #include <assert.h>
@@ -9,22 +9,25 @@
 
 #include "core/geometry/vector.h"
 
-#define LONGEST 1.7 /* sizes: longer edges come from no collapse */
-#define MOST 16     /* triangles around a point that is moved */
-#define STEP 0.2    /* of the size: the first of a search */
-#define LEAST 0.01  /* the last */
-#define GAIN 1.01   /* of a move, in squares of sines, around the point */
-#define BETTER 1.01 /* of the triangle */
+#define LONGEST 1.7 /* sizes: a collapse makes no longer edges */
+#define MOST 16     /* most triangles around a moved point */
+#define STEP 0.2    /* of the size: first step of a search */
+#define LEAST 0.01  /* of the size: last step of a search */
+#define GAIN 1.01   /* least gain around a moved point, in squared sines */
+#define BETTER 1.01 /* least gain of a move for the triangle */
 
-/* A point and those around it. */
+/* A point and its neighbours. */
 struct ring {
-  size_t n; /* triangles */
+  size_t n; /* Number of triangles. */
   int is_stretched;
   uint32_t half[VG_WORK_RING];
-  const struct vg_tris_point *at[MOST + 1]; /* the first one again at the
-                                               end, but on a rim */
-  double form[MOST][6]; /* of the triangles, where edges are stretched */
-  double rim2[MOST];    /* squared lengths of the edges between them */
+  const struct vg_tris_point *at[MOST + 1]; /* Neighbours; the first is repeated
+                                               at the end unless the point is on
+                                               a rim. */
+  double form[MOST][6];                     /* Forms of the triangles if edges
+                                               are stretched. */
+  double rim2[MOST];                        /* Squared lengths of the edges
+                                               opposite the point. */
 };
 
 static const double *form_of(const struct ring *r, size_t i)
@@ -64,8 +67,7 @@ static int take_ring(const struct vg_tris *w, uint32_t p, struct ring *r)
   return 1;
 }
 
-/* As vg_tris_shape, of the squared lengths of the sides; not exact where it is
- * tiny. */
+/* As vg_tris_shape, from the squared side lengths. Inaccurate if it is tiny. */
 static inline double shape_of(double a, double b, double c)
 {
   const double dot2 = a + b - c;
@@ -75,8 +77,8 @@ static inline double shape_of(double a, double b, double c)
   return product > 0 ? (product - dot2 * dot2 / 4) * least / (product * c) : 0;
 }
 
-/* The least shape of the triangles around, were their point at x; 0 where that
- * is not above `bound`. */
+/* The least shape of the triangles around the point if it were at x; 0 if that
+ * does not exceed `bound`. */
 static double shape_at(const struct ring *r, const double x[3], double bound)
 {
   double least = 1, a = 0, b = 0;
@@ -94,7 +96,8 @@ static double shape_at(const struct ring *r, const double x[3], double bound)
   return least;
 }
 
-/* Two directions across the mean normal of the triangles around p. */
+/* Two orthogonal directions normal to the mean normal of the triangles around
+ * p. */
 static int tangents(const struct vg_tris *w, const struct ring *r, uint32_t p,
                     double u[3], double v[3])
 {
@@ -115,14 +118,15 @@ static int tangents(const struct vg_tris *w, const struct ring *r, uint32_t p,
   return 1;
 }
 
-/* Where a point is to go, and the least shape around it then; 0: nowhere. */
+/* Best position of a point, and the least shape around it there; 0: no better
+ * position was found. */
 struct place {
   uint32_t p;
-  double shape, x[3]; /* of a face */
-  double at;          /* of a curve: length along it */
+  double shape, x[3]; /* Position of a point of a face. */
+  double at;          /* Arc length of a point of a curve. */
 };
 
-/* Where the smallest angle is largest, step by step across the normal. */
+/* Maximise the smallest angle by a pattern search in the tangent plane. */
 static void search_face(const struct vg_tris *w, const struct ring *r,
                         struct place *to)
 {
@@ -153,7 +157,7 @@ static void search_face(const struct vg_tris *w, const struct ring *r,
   }
 }
 
-/* The same to and fro along a curve. */
+/* The same search along a curve, forwards and backwards. */
 static void search_curve(const struct vg_tris *w, const struct ring *r,
                          struct place *to)
 {
@@ -191,7 +195,8 @@ static void search_place(const struct vg_tris *w, uint32_t p, struct place *to)
   if (!(to->shape > GAIN * before)) to->shape = 0;
 }
 
-/* Move that corner of t which makes it best; others, should that not do. */
+/* Move the corner of t that improves it most; if that is refused, the next best
+ * one. */
 static int move_corner(struct vg_tris *w, uint32_t t, double shape)
 {
   struct place to[3];
@@ -211,7 +216,8 @@ static int move_corner(struct vg_tris *w, uint32_t t, double shape)
   }
 }
 
-/* The least shape of what is left when p goes onto neighbour i. */
+/* The least shape of the remaining triangles if the point is collapsed into
+ * neighbour i; 0 if that does not exceed `bound`. */
 static double shape_without(const struct vg_tris *w, const struct ring *r,
                             size_t i, double bound)
 {
@@ -227,7 +233,7 @@ static double shape_without(const struct vg_tris *w, const struct ring *r,
   return least;
 }
 
-/* Take p away, onto the neighbour where that is best for angles. */
+/* Remove p by a collapse into the neighbour that gives the best angles. */
 static int take_away(struct vg_tris *w, uint32_t p)
 {
   struct ring r;

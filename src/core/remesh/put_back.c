@@ -1,7 +1,8 @@
-/* Outline: all points move at once, since neighbours move nearly the same way.
- * Points of bad triangles then return, until no triangle is bad, and so do
- * points of triangles that meet. If triangles still meet, more and more rings
- * of points around them return. The given surface is sound, so this ends. */
+/* Outline: all points move at once, since neighbours move by nearly the same
+ * vector. Points of bad triangles are then moved back, until no triangle is
+ * bad, and so are points of triangles that intersect. If triangles still
+ * intersect, increasing numbers of rings of points around them are moved back.
+ * The given surface is sound, so this terminates. */
 #include "core/remesh/put_back.h"
 
 #include <assert.h>
@@ -18,15 +19,12 @@
 #define GRAIN 1024
 #define TURN 0.5 /* S28: cosine: no triangle turns by more */
 #define SLIVER                                                                 \
-  0.12           /* (sin 20 degrees)^2: smaller angles may not become          \
-                    smaller yet by LOSS */
-#define LOSS 0.7 /* of the square of the sine */
-#define TIGHT                                                                  \
-  3              /* rounds that return the points of meeting triangles         \
-                    alone; each further round doubles the rings */
-#define ROUNDS 9 /* then all points return */
+  0.12           /* (sin 20 degrees)^2: smaller angles may not shrink by LOSS */
+#define LOSS 0.7 /* of the squared sine */
+#define TIGHT 3  /* rounds without rings; each later one doubles the rings */
+#define ROUNDS 9 /* rounds, after which all points are moved back */
 
-/* --- where they are ------------------------------------------------------ */
+/* --- nearest triangles ---------------------------------------------------- */
 
 struct locating {
   const struct vg_ref *ref;
@@ -36,7 +34,8 @@ struct locating {
   const struct vg_stop *stop;
 };
 
-/* Hints go on within a chunk, whose bounds are the same for any threads. */
+/* Hints are reused within a chunk. Chunk bounds do not depend on the number of
+ * threads. */
 static void locate(void *context, size_t first, size_t end, int worker)
 {
   const struct locating *l = context;
@@ -61,7 +60,9 @@ vg_status vg_remesh_locate(const struct vg_mesh *on, size_t n,
 
   assert((x && tri && foot) || !n);
   if (!on->n_tri)
-    return vg_fail(err, VG_ERR_INPUT, "there are no triangles to look on");
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the surface to which points are "
+                   "projected has no triangles");
   st = vg_ref_build_tree(&ref, on, stop, err);
   if (st >= 0) vg_parallel_for(threads, n, GRAIN, locate, &l);
   if (st >= 0) st = vg_stopped(stop, err);
@@ -69,14 +70,14 @@ vg_status vg_remesh_locate(const struct vg_mesh *on, size_t n,
   return st;
 }
 
-/* --- back again ---------------------------------------------------------- */
+/* --- moving points back --------------------------------------------------- */
 
 struct moving {
   struct vg_mesh *m;
   const double (*from)[3];
   uint8_t *stays;
-  uint8_t *ring; /* [n_point] number of the ring around triangles
-                    that meet, from 1; 0: in none */
+  uint8_t *ring; /* [n_point] Ring number around intersecting triangles, from 1;
+                    0: in no ring. */
   size_t n_refused;
 };
 
@@ -97,7 +98,7 @@ static size_t return_corners(struct moving *k, size_t t)
   return n;
 }
 
-/* Return the points in the first n rings around the marked points. */
+/* Move back the points in the first n rings around the marked points. */
 static void return_rings(struct moving *k, uint8_t n)
 {
   for (uint8_t ring = 1; ring <= n; ring++)

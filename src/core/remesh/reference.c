@@ -9,15 +9,15 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-#define FLAT 1e-9 /* height over edge, below which a normal is noise */
-#define PIECE 2.0 /* mean edges, about: longer triangles are cut up */
-#define PIECES 64 /* at most */
-#define GRAIN 256 /* leaves */
+#define FLAT 1e-9 /* height over edge below which a normal is noise */
+#define PIECE 2.0 /* mean edges: longer triangles are cut into pieces */
+#define PIECES 64 /* most pieces of a triangle */
+#define GRAIN 256 /* leaves per task */
 #define OPPOSED                                                                \
-  0.03 /* cosine: both may be taken to face a way and its                      \
-          opposite, by S22 */
+  0.03 /* cosine below which a direction and its opposite may both be faced    \
+          (S22) */
 
-/* --- building ------------------------------------------------------------ */
+/* --- construction --------------------------------------------------------- */
 
 static vg_status refuse(const struct vg_ref *r, uint32_t h, const char *what,
                         struct vg_error *err)
@@ -26,8 +26,8 @@ static vg_status refuse(const struct vg_ref *r, uint32_t h, const char *what,
   const double *x = r->point[a < b ? a : b];
 
   return vg_fail(err, VG_ERR_INPUT,
-                 "triangle %zu of the surface, at (%g, %g, "
-                 "%g): %s; vanguard check names all such places",
+                 "triangle %zu of the surface, at (%g, %g, %g): %s; run "
+                 "`vanguard check` for a list of all such triangles",
                  (size_t)h / 3 + 1, x[0], x[1], x[2], what);
 }
 
@@ -40,10 +40,16 @@ static vg_status find_mates(struct vg_ref *r, struct vg_error *err)
   for (size_t i = 0; i < e.n && st >= 0; i++) {
     const uint32_t n = vg_edges_count(&e, i), *h = vg_edges_at(&e, i);
 
-    if (n > 2) st = refuse(r, h[0], "an edge of it has three triangles", err);
+    if (n > 2)
+      st = refuse(r, h[0],
+                  "one of its edges belongs to three "
+                  "triangles",
+                  err);
     if (n != 2) continue;
     if (vg_edges_disagree(&e, r->tri, i))
-      st = refuse(r, h[0], "it is turned the other way than its neighbour",
+      st = refuse(r, h[0],
+                  "its orientation is opposite to that of its "
+                  "neighbour",
                   err);
     r->mate[h[0]] = h[1];
     r->mate[h[1]] = h[0];
@@ -77,8 +83,9 @@ static void make_shape(struct vg_ref *r, size_t t)
   if (!(vg_unit(s->n) > FLAT * most)) memset(s->n, 0, sizeof s->n);
 }
 
-/* Needles are put into the tree in pieces, so that boxes about them are not
- * large and empty: parts between planes across their longest edge. */
+/* Needles are put into the tree in pieces, cut by planes across their longest
+ * edge, because the bounding box of a whole needle is large and mostly
+ * empty. */
 struct pieces {
   size_t n, cap_box, cap_tri;
   struct vg_box *box;
@@ -104,7 +111,8 @@ static double longest_edge(const struct vg_ref *r, size_t t, int *which)
   return sqrt(most);
 }
 
-/* The box about triangle t between parts from and to of its longest edge. */
+/* Bounding box of triangle t between fractions `from` and `to` of its longest
+ * edge. */
 static struct vg_box box_piece(const struct vg_ref *r, size_t t, int edge,
                                double from, double to)
 {
@@ -140,7 +148,7 @@ static struct vg_box box_piece(const struct vg_ref *r, size_t t, int edge,
   return b;
 }
 
-/* As many pieces as make them about as long as the mean edge. */
+/* Number the pieces so that each is about as long as the mean edge. */
 static vg_status make_pieces(const struct vg_ref *r, struct pieces *p,
                              struct vg_error *err)
 {
@@ -181,7 +189,7 @@ static void leaf_size(const struct vg_ref *r, size_t node)
       b->size = fmin(b->size, r->size[r->tri[r->tree.item[i]][c]]);
 }
 
-/* A triangle without a normal faces every way. */
+/* A triangle without a normal counts as oriented in every direction. */
 static void add_normal(struct vg_ref_node *b, const double n[3])
 {
   const int any = vg_dot(n, n) == 0, most = VG_REF_NORMAL;
@@ -208,7 +216,7 @@ static void leaf_normals(const struct vg_ref *r, size_t node)
     add_normal(b, r->shape[r->tree.item[i]].n);
 }
 
-/* What inner nodes have besides boxes, from their children. */
+/* Set size and normals of inner nodes from their children. */
 static void join_nodes(struct vg_ref *r)
 {
   for (size_t i = r->tree.first_leaf; i-- > 0;) {
@@ -329,7 +337,7 @@ void vg_ref_release(struct vg_ref *r)
   memset(r, 0, sizeof *r);
 }
 
-/* --- sheets that are near ------------------------------------------------ */
+/* --- sheets close to each other ------------------------------------------- */
 
 struct thinning {
   struct vg_ref *r;
@@ -338,7 +346,8 @@ struct thinning {
   const struct vg_stop *stop;
 };
 
-/* Do all corners of b lie on one side of a's plane, beyond the distance? */
+/* Are all corners of b on one side of the plane of a, farther than the
+ * distance? */
 static int apart(const struct vg_ref_tri *a, const struct vg_ref_tri *b,
                  double distance)
 {
@@ -366,8 +375,8 @@ static int boxes_apart(const struct vg_ref_tri *a, const struct vg_ref_tri *b,
   return 0;
 }
 
-/* Does triangle u face another way than t by some 90 degrees, or no way, come
- * within the distance as far as planes and boxes tell? */
+/* Is triangle u turned from t by some 90 degrees or more, or without a normal,
+ * and within the distance as far as planes and boxes tell? */
 static int opposes(const struct vg_ref *r, uint32_t t, uint32_t u,
                    double distance)
 {
@@ -385,14 +394,14 @@ static int is_outer(const struct thinning *c, uint32_t t)
   return isinf(c->cap[t]);
 }
 
-/* Others may have pieces of the same triangle. */
+/* Atomic: other leaves may contain pieces of the same triangle. */
 static void mark(const struct thinning *c, uint32_t t, int as)
 {
   __atomic_fetch_or(&c->r->thin[t], (uint8_t)as, __ATOMIC_RELAXED);
 }
 
-/* Mark those triangles of the leaf, or all but those that are not outer ones,
- * which others oppose within the distance. */
+/* Mark the triangles of the leaf that another one opposes within the distance.
+ * For THIN_FAR, triangles that are not outer are marked without a search. */
 static void thin_leaf(const struct thinning *c, size_t leaf, double distance,
                       int as)
 {

@@ -6,19 +6,19 @@
 
 #include "core/geometry/vector.h"
 
-#define FACING 0.7 /* S22: cosine between what faces the same way */
-#define WALK 24    /* triangles that are tried before the tree */
-#define FOLLOW 64  /* S30: triangles that an edge is followed over */
-#define START 1e-6 /* of the squared distance: its start is found */
-#define AROUND 48  /* leaves around points that are asked for at once */
+#define FACING 0.7 /* S22: cosine between equally oriented directions */
+#define WALK 24    /* triangles tried before the tree */
+#define FOLLOW 64  /* S30: triangles along which an edge is followed */
+#define START 1e-6 /* of the squared distance: start point is found */
+#define AROUND 48  /* most leaves around the points of one query */
 
 static double clamp(double x)
 {
   return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-/* The point on edge k of a triangle that is nearest: p and q of u and v;
- * returns how much farther than the corner a it is, in squares. */
+/* The nearest point on edge k of a triangle: sets its coordinates p and q for u
+ * and v. Returns its squared distance minus that of corner a. */
 static inline double on_edge(const struct vg_ref_tri *t, double du, double dv,
                              int k, double *p, double *q)
 {
@@ -41,9 +41,8 @@ static inline double on_edge(const struct vg_ref_tri *t, double du, double dv,
   return *p * (*p * uu - 2 * du) + s * (s * vv - 2 * dv) + 2 * *p * s * uv;
 }
 
-/* Barycentric coordinates (of u and v) of the nearest point of a triangle to
- * x; returns the squared distance. After Ericson, "Real-Time Collision
- * Detection", 2005, 5.1.5: inside, or on an edge that x is beyond. */
+/* After Ericson, "Real-Time Collision Detection", 2005, 5.1.5: the nearest
+ * point is inside the triangle or on an edge that x is beyond. */
 double vg_ref_tri_nearest(const struct vg_ref_tri *t, const double x[3],
                           double *s, double *r)
 {
@@ -76,7 +75,7 @@ double vg_ref_tri_nearest(const struct vg_ref_tri *t, const double x[3],
   return vg_dot(d, d);
 }
 
-/* Triangles without a normal face every way. */
+/* A triangle without a normal is oriented like any n. */
 static int faces(const struct vg_ref_tri *t, const double *n)
 {
   double c;
@@ -86,7 +85,8 @@ static int faces(const struct vg_ref_tri *t, const double *n)
   return c > FACING || (c == 0 && vg_dot(t->n, t->n) == 0);
 }
 
-/* May a triangle below the node? Leaves nothing to rounding. */
+/* May a triangle below the node be oriented like n? Conservative with respect
+ * to rounding. */
 static int may_face(const struct vg_ref *r, size_t node, const double *n)
 {
   const struct vg_ref_node *b = vg_ref_node(r, node);
@@ -97,7 +97,7 @@ static int may_face(const struct vg_ref *r, size_t node, const double *n)
   return most > (FACING - 0.01) * VG_REF_NORMAL;
 }
 
-/* Does the plane of a triangle come within the distance? */
+/* Is the plane of a triangle within the distance? */
 static int plane_near(const struct vg_ref_tri *t, const double x[3],
                       double limit)
 {
@@ -108,9 +108,9 @@ static int plane_near(const struct vg_ref_tri *t, const double x[3],
   return off * off <= limit;
 }
 
-/* From triangle *t to the neighbour that is nearer to x, and on, until none is
- * or one that faces the way of n is as near as `enough`. Returns the squared
- * distance; INFINITY where the last one faces another way. */
+/* Walk from triangle *t to neighbours nearer to x, until no neighbour is nearer
+ * or a triangle oriented like n is within `enough` (squared). Returns the
+ * squared distance; INFINITY if the last triangle is not oriented like n. */
 static double walk(const struct vg_ref *r, const double x[3], const double *n,
                    double enough, uint32_t *t, double *s, double *q)
 {
@@ -140,13 +140,13 @@ static double walk(const struct vg_ref *r, const double x[3], const double *n,
   return faces(&r->shape[*t], n) ? best : INFINITY;
 }
 
-/* A search for a triangle that faces the way of n (NULL: any). */
+/* A search for a triangle oriented like n (NULL: any). */
 struct finding {
   const struct vg_ref *r;
   const double *x, *n;
-  double best; /* squared distance: limit, or of `at` */
-  double s, q; /* barycentric coordinates of the point found */
-  uint32_t at; /* the triangle found, VG_REF_NONE: none yet */
+  double best; /* Squared distance: limit, or that of `at`. */
+  double s, q; /* Barycentric coordinates of the point found. */
+  uint32_t at; /* Triangle found; VG_REF_NONE: none yet. */
 };
 
 static inline int enter_within(void *context, size_t node)
@@ -205,7 +205,8 @@ static inline int enter_nearer(void *context, size_t node, double d2)
   return d2 <= f->best && may_face(f->r, node, f->n);
 }
 
-/* Of triangles that are as near, the one of the lowest number. */
+/* Of several triangles at the same distance, take the one with the lowest
+ * number. */
 static inline void find_nearer(void *context, size_t node)
 {
   struct finding *f = context;
@@ -257,8 +258,8 @@ double vg_ref_nearest(const struct vg_ref *r, const double x[3],
   return n && !(d < INFINITY) ? search(r, x, NULL, hint, out) : d;
 }
 
-/* Weights of the corners of a triangle at x, and how they change along e, times
- * the square of twice its area. */
+/* Weights of the corners of a triangle at x, and their change along e, both
+ * times the square of twice the area. */
 static void weights(const struct vg_ref_tri *t, const double x[3],
                     const double e[3], double f[3], double df[3])
 {
@@ -287,7 +288,7 @@ int vg_ref_leaves(const struct vg_ref *r, const double a[3], const double b[3],
 
   assert(distance >= 0 && hint < r->n_tri);
   vg_sub(b, a, e);
-  /* On a line the hint may be on its other side. */
+  /* If a is on a feature edge, the hint may be on its other side. */
   if (!(walk(r, a, n, START * limit, &t, &s, &q) <= limit) &&
       !(search(r, a, n, &t, x) < INFINITY))
     return 0;
@@ -297,7 +298,7 @@ int vg_ref_leaves(const struct vg_ref *r, const double a[3], const double b[3],
 
     weights(&r->shape[t], a, e, f, df);
     for (uint32_t k = 0; k < 3; k++) {
-      const uint32_t c = (k + 2) % 3; /* opposite edge k */
+      const uint32_t c = (k + 2) % 3; /* corner opposite edge k */
 
       if (k == entry || !(df[c] < 0) || !(-f[c] > end * df[c])) continue;
       end = -f[c] / df[c];
@@ -330,16 +331,16 @@ double vg_ref_project(const struct vg_ref *r, const double x[3],
   return sqrt(d2);
 }
 
-/* --- some at a time ------------------------------------------------------ */
+/* --- queries for several points ------------------------------------------- */
 
 /* A search for leaves or triangles within a distance of a box. */
 struct around {
   const struct vg_ref *r;
   const struct vg_box *box;
-  double limit;  /* squared distance */
-  size_t n, cap; /* found so far; the first cap are kept */
-  size_t *leaf;  /* [cap] leaves, or */
-  uint32_t *tri; /* [cap] triangles */
+  double limit;  /* Squared distance. */
+  size_t n, cap; /* Number found; the first cap of them are stored. */
+  size_t *leaf;  /* [cap] Leaves, if these are searched for. */
+  uint32_t *tri; /* [cap] Triangles, if these are searched for. */
 };
 
 static inline int enter_around(void *context, size_t node)
@@ -358,8 +359,8 @@ static inline int list_leaf(void *context, size_t node)
   return 0;
 }
 
-/* Leaves within the root of `limit` of the box; their number, or cap + 1 where
- * there are more. */
+/* Leaves within the square root of `limit` of the box. Returns their number, or
+ * cap + 1 if there are more. */
 static size_t leaves_around(const struct vg_ref *r, const struct vg_box *box,
                             double limit, size_t cap, size_t *leaf)
 {
@@ -441,8 +442,8 @@ size_t vg_ref_around(const struct vg_ref *r, const struct vg_box *box,
 
 /* --- sizes --------------------------------------------------------------- */
 
-/* What triangle t asks for at x: the size of its nearest point, or of a
- * corner, grown with the distance. */
+/* The size that triangle t determines at x: interpolated at the nearest point,
+ * or that of a corner, plus growth with the distance. */
 double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3])
 {
   assert(t < r->n_tri);
@@ -461,7 +462,7 @@ double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3])
   return h;
 }
 
-/* Could triangle t ask for less than h at x? */
+/* Can triangle t determine a size below h at x? */
 static int may_ask(const struct vg_ref *r, uint32_t t, const double x[3],
                    double h)
 {
@@ -476,12 +477,12 @@ static int may_ask(const struct vg_ref *r, uint32_t t, const double x[3],
   return vg_distance2(x, r->shape[t].a) < room * room;
 }
 
-/* A search for the triangle that asks for the least size at x. */
+/* A search for the triangle that determines the size at x. */
 struct asking {
   const struct vg_ref *r;
   const double *x;
-  double h;    /* the least so far */
-  uint32_t by; /* the triangle that asks for it */
+  double h;    /* Least size so far. */
+  uint32_t by; /* Triangle that determines it. */
 };
 
 static inline int enter_smaller(void *context, size_t node, double d2)
@@ -516,7 +517,10 @@ double vg_ref_size(const struct vg_ref *r, const double x[3], double most,
 
   assert(most > 0);
   if (*by != VG_REF_NONE) a.h = vg_ref_size_by(r, *by, x);
-  if (a.h > most) a.h = most * (1 + 4 * DBL_EPSILON); /* what asks is found */
+  if (a.h > most)
+    a.h = most * (1 + 4 * DBL_EPSILON); /* slightly above, so that
+                                           the triangle is still
+                                           found */
   vg_box_tree_approach(&r->tree, x, enter_smaller, ask_leaf, &a);
   *by = a.by;
   return a.h;
@@ -527,7 +531,8 @@ double vg_ref_size(const struct vg_ref *r, const double x[3], double most,
 struct ray {
   const struct vg_ref *ref;
   const double *x, *d;
-  double inverse[3], reach; /* to the nearest triangle so far */
+  double inverse[3], reach; /* `reach`: distance of the nearest triangle so
+                               far. */
   uint32_t tri;
 };
 
@@ -552,7 +557,7 @@ static inline int ray_enters(void *context, size_t node)
 }
 
 /* After Moeller and Trumbore, "Fast, minimum storage ray/triangle
- * intersection", Journal of Graphics Tools 2(1), 1997; from the front alone. */
+ * intersection", Journal of Graphics Tools 2(1), 1997; front sides only. */
 static void ray_meets(struct ray *r, uint32_t t)
 {
   const struct vg_ref_tri *s = &r->ref->shape[t];

@@ -1,8 +1,9 @@
-/* Outline: the surface as given becomes a reference; its lines and sizes are
- * found; a copy is changed pass by pass; the outcome is checked as any surface
- * that is to be meshed. Where triangles meet, which changes cannot see that
- * look around themselves only, those there are made smaller; should that not
- * help, all is done again with these sizes. */
+/* Outline: the input surface becomes the reference; its feature curves and
+ * sizes are computed. A copy is changed pass by pass, and the result is checked
+ * like any surface before meshing. Each change examines its neighbourhood
+ * only, so that distant triangles may intersect afterwards. There the triangles
+ * are made smaller; if that does not help, everything is repeated with these
+ * sizes. */
 #include "core/remesh/remesh.h"
 
 #include <assert.h>
@@ -23,26 +24,22 @@
 #include "core/surface/surface_check.h"
 
 #define ROUNDS                                                                 \
-  2 /* S31: from the beginning, until triangles no longer                      \
-       meet; 1 of a reference with faults */
+  2 /* S31: attempts while triangles intersect; 1 for a faulty input */
 #define KEEPS                                                                  \
-  7               /* S48: then, each time keeping the given triangles of       \
-                     twice as wide a neighbourhood */
-#define MENDS 4   /* in each: more and more triangles where they do */
-#define SPOTS 256 /* of them at a time */
-#define SPOT_LEAST 0.0625 /* S34: of h_min: sizes there */
-#define FLAT                                                                   \
-  0.1 /* of the tolerance: height of flat triangles that are                   \
-         swapped at the end */
+  7 /* S48: further attempts, in which input triangles are kept; each doubles  \
+       the neighbourhood */
+#define MENDS 4   /* in each attempt: smaller triangles at intersections */
+#define SPOTS 256 /* most spots added at a time */
+#define SPOT_LEAST 0.0625 /* S34: of h_min: least size at a spot */
+#define FLAT 0.1 /* of the tolerance: flat triangles swapped at the end */
 #define BAD                                                                    \
-  0.005             /* S47: of the triangles below VG_REMESH_BAD: more are     \
-                       worse than small sizes all along an edge */
-#define PHASES 2    /* of blocks, then the whole */
-#define HALVINGS 16 /* of needles, at most */
+  0.005 /* S47: largest share of triangles below VG_REMESH_BAD: more are worse \
+           than small sizes all along an edge */
+#define PHASES 2    /* of blocks, before the whole surface */
+#define HALVINGS 16 /* most rounds of splitting needles */
 #define POLISH2                                                                \
-  0.46             /* S21: (sin 42.7 degrees)^2: below, triangles are          \
-                      polished one by one */
-#define POLISHES 2 /* and once more after the last smoothing */
+  0.46 /* S21: (sin 42.7 degrees)^2: below, triangles are polished */
+#define POLISHES 2 /* rounds, and one more after the last smoothing */
 
 static const char *const cause_names[] = { "corner", "strip", "line",
                                            "surface" };
@@ -58,20 +55,18 @@ void vg_remesh_report_release(struct vg_remesh_report *r)
   memset(r, 0, sizeof *r);
 }
 
-/* --- what is asked for --------------------------------------------------- */
+/* --- checks of the input -------------------------------------------------- */
 
 static vg_status check_surface(const struct vg_mesh *m, struct vg_error *err)
 {
   if (!m->n_tri || m->n_quad)
     return vg_fail(err, VG_ERR_INPUT,
-                   "a surface of triangles is needed: this "
-                   "has %zu, and %zu quadrilaterals",
+                   "only a surface of triangles can be remeshed: this one "
+                   "has %zu triangles and %zu quadrilaterals",
                    m->n_tri, m->n_quad);
   if (m->n_tri > UINT32_MAX / 24)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%zu triangles are too many to be "
-                   "made anew",
-                   m->n_tri);
+                   "%zu triangles are too many to be remeshed", m->n_tri);
   for (size_t i = 0; i < m->n_point; i++)
     if (!isfinite(m->point[i][0] + m->point[i][1] + m->point[i][2]))
       return vg_fail(err, VG_ERR_INPUT,
@@ -94,13 +89,13 @@ static vg_status check_options(const struct vg_remesh_options *o,
         o->h_max >= 0 &&
         isfinite(o->tolerance + o->accuracy + o->h_min + o->h_max)))
     return vg_fail(err, VG_ERR_INPUT,
-                   "tolerance %g, accuracy %g and sizes %g, "
-                   "%g of the new surface must be lengths; 0: by the body",
+                   "tolerance %g, accuracy %g and sizes %g and %g of the "
+                   "remeshed surface must be finite and not negative; 0 "
+                   "selects a value from the length of the body",
                    o->tolerance, o->accuracy, o->h_min, o->h_max);
   if (!(o->scale > 0 && o->scale <= 1e4))
     return vg_fail(err, VG_ERR_INPUT,
-                   "scale %g of sizes is out of range (0 "
-                   "to 1e4)",
+                   "size scale %g is out of range (above 0, at most 1e4)",
                    o->scale);
   if (o->h_max > 0 && o->h_min > o->h_max)
     return vg_fail(err, VG_ERR_INPUT,
@@ -110,8 +105,8 @@ static vg_status check_options(const struct vg_remesh_options *o,
   if (!(o->feature_angle >= 5 && o->feature_angle <= 170 && o->per_turn >= 3 &&
         o->per_turn <= 1e4 && o->growth > 1 && o->growth <= 10))
     return vg_fail(err, VG_ERR_INPUT,
-                   "ridge angle %g (5 to 170 degrees), %g "
-                   "edges per turn (3 to 10000) or growth %g (1 to 10) is out "
+                   "feature angle %g (5 to 170 degrees), %g edges per turn "
+                   "(3 to 10000) or growth %g (above 1, at most 10) is out "
                    "of range",
                    o->feature_angle, o->per_turn, o->growth);
   return VG_OK;
@@ -123,16 +118,15 @@ static vg_status check_stretch(const struct vg_mesh *m, const double *stretch,
   for (size_t h = 0; stretch && h < 3 * m->n_tri; h++)
     if (!(stretch[h] >= 0 && stretch[h] <= VG_REMESH_STRETCH))
       return vg_fail(err, VG_ERR_INPUT,
-                     "edges along edge %zu of triangle %zu "
-                     "are to be %g times as long as across it: 1 to %d is "
-                     "possible",
+                     "edge %zu of triangle %zu: stretching ratio %g is out "
+                     "of range (0 to %d)",
                      h % 3 + 1, h / 3 + 1, stretch[h], VG_REMESH_STRETCH);
   return VG_OK;
 }
 
-/* --- one round ----------------------------------------------------------- */
+/* --- one attempt ---------------------------------------------------------- */
 
-/* Until no edge is much too long. */
+/* Split edges until none is much too long. */
 static vg_status halve(void *user, struct vg_tris *w, struct vg_error *err)
 {
   size_t n = 1, n_gone;
@@ -142,7 +136,7 @@ static vg_status halve(void *user, struct vg_tris *w, struct vg_error *err)
   vg_pass_curves(w);
   vg_pass_swap(w);
   VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n_gone, err));
-  /* Halves of needles collapse before they are halved again. */
+  /* Halves of needles are collapsed before they are split again. */
   for (int i = 0; n && i < HALVINGS; i++) {
     VG_TRY(vg_pass_split(w, 2 * VG_WORK_SHORT * VG_WORK_LONG, 1, &n, err));
     VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n_gone, err));
@@ -175,8 +169,8 @@ done:
   return st;
 }
 
-/* What is near the border of a block in one phase is inside one in the next;
- * what is near both is left to one thread. */
+/* Triangles near a block border in one phase are inside a block in the next.
+ * Those near borders in both phases are left to a single thread. */
 static vg_status run(struct vg_remesh_job *j, struct vg_tris *w,
                      vg_block_body body, struct vg_error *err)
 {
@@ -191,8 +185,8 @@ done:
   return st;
 }
 
-/* Edges are halved everywhere before anything else is done: beside large
- * triangles, where borders are, points would come and go. */
+/* Edges are first split everywhere: next to large triangles, as at block
+ * borders, points would otherwise be inserted and removed repeatedly. */
 static vg_status change(struct vg_remesh_job *j, struct vg_tris *w,
                         struct vg_error *err)
 {
@@ -210,7 +204,7 @@ static double source_size(const void *user, const double x[3])
   return vg_source_at(user, x);
 }
 
-/* --- whether triangles meet ---------------------------------------------- */
+/* --- intersections of the remeshed surface -------------------------------- */
 
 static int is_fault(const struct vg_defect *d)
 {
@@ -218,7 +212,7 @@ static int is_fault(const struct vg_defect *d)
          d->kind != VG_DEFECT_NO_BC;
 }
 
-/* Ask for smaller triangles where face f is. */
+/* Request smaller triangles at face f. */
 static vg_status add_spot(struct vg_remesh_job *j, const struct vg_mesh *m,
                           size_t f, struct vg_error *err)
 {
@@ -240,8 +234,8 @@ static vg_status add_spot(struct vg_remesh_job *j, const struct vg_mesh *m,
   return VG_OK;
 }
 
-/* Keep the given triangles within the distance of face f. Returns how many
- * points are kept more than before. */
+/* Keep the input triangles within the distance of face f. Returns the number of
+ * points that are newly kept. */
 static size_t keep_near(struct vg_remesh_job *j, const struct vg_mesh *m,
                         size_t f, double distance)
 {
@@ -281,7 +275,7 @@ static vg_status keep_around(struct vg_remesh_job *j, const struct vg_mesh *m,
   size_t n = 0;
 
   if (!j->keep) j->keep = vg_calloc(j->whole->n_point, 1);
-  if (!j->keep) return vg_fail_memory(err, "the new surface");
+  if (!j->keep) return vg_fail_memory(err, "the remeshed surface");
   for (size_t i = 0; i < r->n_defect; i++)
     for (int k = 0; k < 2; k++) {
       const struct vg_defect *d = &r->defect[i];
@@ -300,20 +294,20 @@ static vg_status refuse(const struct vg_remesh_job *j,
 {
   if (j->r.n_crossing[1])
     return vg_fail(err, VG_ERR_GEOMETRY,
-                   "near (%g, %g, %g) the surface "
-                   "intersects itself (%s) by more than the new surface's "
-                   "tolerance, %g, hides: repair the model there",
+                   "near (%g, %g, %g) the surface intersects itself (%s) by "
+                   "more than the remeshing tolerance %g: repair the model "
+                   "there",
                    d->at[0], d->at[1], d->at[2], vg_defect_name(d->kind),
                    j->r.tolerance);
   return vg_fail(err, VG_ERR_GEOMETRY,
-                 "near (%g, %g, %g) new triangles meet "
-                 "however small they are (%s): give a smaller "
-                 "surface_tolerance, or mesh the surface as it is",
+                 "near (%g, %g, %g) remeshed triangles intersect at all "
+                 "sizes that were tried (%s): give a smaller "
+                 "surface_tolerance, or mesh the surface without remeshing it",
                  d->at[0], d->at[1], d->at[2], vg_defect_name(d->kind));
 }
 
-/* Whether the new surface is as sound as the one given. If it is not, spots are
- * added there, or, with rings > 0, given triangles are kept. */
+/* Check that the remeshed surface is as sound as the input. If it is not, add
+ * spots at its faults, or with rings > 0 keep the input triangles there. */
 static vg_status is_sound(struct vg_remesh_job *j, struct vg_mesh *m, int last,
                           double rings, int *sound, struct vg_error *err)
 {
@@ -342,7 +336,7 @@ done:
   return st;
 }
 
-/* What the next outcome says anew. */
+/* Clear the members that the next attempt sets. */
 static void clear_report(struct vg_remesh_report *r)
 {
   const struct vg_remesh_report kept = *r;
@@ -361,7 +355,7 @@ static void clear_report(struct vg_remesh_report *r)
   memcpy(r->crossing_at, kept.crossing_at, sizeof r->crossing_at);
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- whole surface -------------------------------------------------------- */
 
 static vg_status ask_sources(const struct vg_remesh_job *j, struct vg_tris *w,
                              struct vg_source_set *set, struct vg_error *err)
@@ -382,7 +376,7 @@ done:
   return st;
 }
 
-/* Where the sources have become finer, triangles count as changed. */
+/* Mark triangles as changed where sources now request smaller sizes. */
 static void narrow(struct vg_tris *w)
 {
   if (!w->other_size) return;
@@ -413,8 +407,7 @@ static double angle_of(const struct vg_mesh *m, size_t t)
   return asin(fmin(sqrt(sine2), 1)) * (180 / M_PI); /* for the report only */
 }
 
-/* Take flat triangles out of the new surface, and bring the report up to
- * date. */
+/* Swap flat triangles of the remeshed surface, and update the report. */
 static vg_status swap_flat(struct vg_remesh_job *j, struct vg_mesh *m,
                            struct vg_error *err)
 {
@@ -441,14 +434,16 @@ done:
   return st;
 }
 
-/* How often triangles that meet are made smaller; whether failure is final; how
- * wide a neighbourhood of them is kept next, in their edges. */
+/* One attempt: how often intersecting triangles are made smaller, whether
+ * failure is final, and the width of the neighbourhood in which input triangles
+ * are kept next, in edges of the intersecting triangles. */
 struct attempt {
   int mends, last;
   double rings;
 };
 
-/* Triangles that meet are made smaller; if that does not help, *sound is 0. */
+/* Remesh once. Intersecting triangles are made smaller; if that does not help,
+ * *sound is 0. */
 static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
                       const struct attempt *a, int *sound, struct vg_error *err)
 {
@@ -489,7 +484,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
     VG_TRY(
       is_sound(j, out, a->last && is_end, is_end ? a->rings : 0, sound, err));
     if (!mend || *sound || j->n_fault[1] <= j->n_fault[0]) continue;
-    /* Smaller triangles make it worse. */
+    /* Smaller triangles have caused more intersections. */
     if (a->rings > 0 && !is_end)
       VG_TRY(is_sound(j, out, a->last, a->rings, sound, err));
     break;
@@ -505,8 +500,8 @@ done:
   return st;
 }
 
-/* New triangles still meet: given ones are kept there, more and more of them,
- * at the sizes that were asked for. */
+/* New triangles still intersect: keep more and more of the input triangles
+ * there, at the requested sizes. */
 static vg_status keep(struct vg_remesh_job *j, struct vg_mesh *out,
                       struct vg_error *err)
 {
@@ -528,7 +523,7 @@ done:
   return st;
 }
 
-/* The first attempt, where long edges are cut. */
+/* The first attempt, in which long feature edges are split. */
 static vg_status begin_simply(struct vg_remesh_job *j, const struct vg_mesh *m,
                               const struct vg_remesh_options *o,
                               struct vg_mesh *out, int *sound,
@@ -539,8 +534,8 @@ static vg_status begin_simply(struct vg_remesh_job *j, const struct vg_mesh *m,
 
   if (!j->is_cut) return VG_OK;
   VG_TRY(make(j, out, &once, sound, err));
-  /* Sizes that are larger in the middle may be what made triangles meet, or
-   * what keeps needles next to a knife's edge from being divided. */
+  /* Larger sizes at midpoints may have caused intersections, or may prevent
+   * needles next to a sharp edge of zero thickness from being split. */
   if ((double)j->r.n_bad > BAD * (double)out->n_tri) *sound = 0;
   if (!*sound) VG_TRY(vg_job_restart(j, m, o, err));
 done:
@@ -564,7 +559,8 @@ static vg_status repeat(struct vg_remesh_job *j, const struct vg_mesh *m,
 
     VG_TRY(make(j, out, &a, &sound, err));
     if (sound || !j->strips.n) continue;
-    /* They may be what made triangles meet: all again without. */
+    /* Closed strips may have caused the intersections: start again without
+     * them. */
     left = j->strips.n;
     vg_job_release_reference(j);
     VG_TRY(vg_job_set_reference(j, 0, err));
@@ -577,7 +573,7 @@ done:
   return st;
 }
 
-/* Of m, which was given, and what came out. */
+/* Complete the report on input m and result out. */
 static void tell(struct vg_remesh_job *j, const struct vg_mesh *m,
                  const struct vg_mesh *out, struct vg_remesh_report *report)
 {

@@ -11,7 +11,7 @@
 #include "core/geometry/vector.h"
 #include "core/mesh/mesh_defects.h"
 
-#define SWEEPS 8 /* over zigzags of soft borders */
+#define SWEEPS 8 /* over zigzags of smooth patch borders */
 #define NEAR_SQRT2 1.4142135623730951
 
 /* --- patches ------------------------------------------------------------- */
@@ -24,7 +24,7 @@ static void middle(const struct vg_tris *w, size_t t, double x[3])
   }
 }
 
-/* That of the given triangle below its middle. */
+/* Patch of the input triangle below the centroid of triangle t. */
 static uint32_t patch_of(const struct vg_tris *w, size_t t,
                          const uint32_t *patch)
 {
@@ -40,8 +40,8 @@ static uint32_t patch_of(const struct vg_tris *w, size_t t,
   return patch[hint];
 }
 
-/* Triangles with two neighbours of one other patch join it, so that soft
- * borders do not run to and fro; none loses its last one. */
+/* A triangle with two neighbours in the same other patch joins that patch, so
+ * that smooth patch borders do not zigzag. No patch loses its last triangle. */
 static void straighten(const struct vg_tris *w, uint32_t *label, size_t *count)
 {
   size_t n = 1;
@@ -73,7 +73,8 @@ static void straighten(const struct vg_tris *w, uint32_t *label, size_t *count)
   }
 }
 
-/* A patch smaller than the triangles there gets the one nearest to it. */
+/* A patch that is smaller than the local triangles gets the nearest
+ * triangle. */
 static void keep_patches(const struct vg_tris *w, const struct vg_mesh *given,
                          uint32_t *label, size_t *count)
 {
@@ -100,7 +101,7 @@ static void keep_patches(const struct vg_tris *w, const struct vg_mesh *given,
 
 struct labelling {
   const struct vg_tris *w;
-  const uint32_t *patch; /* of the given triangles */
+  const uint32_t *patch; /* Of the input triangles. */
   uint32_t *label;
 };
 
@@ -133,7 +134,7 @@ done:
   return st;
 }
 
-/* --- the report ---------------------------------------------------------- */
+/* --- report --------------------------------------------------------------- */
 
 static enum vg_remesh_cause cause_of(const struct vg_tris *w, size_t t)
 {
@@ -149,7 +150,7 @@ static enum vg_remesh_cause cause_of(const struct vg_tris *w, size_t t)
     n_edge += w->edge[h] != 0;
     if (l < least) least = l, at = h;
   }
-  /* The smallest angle is across from the shortest edge. */
+  /* The smallest angle is opposite the shortest edge. */
   if (w->edge[vg_half_next(at)] && w->edge[vg_half_prev(at)])
     return VG_REMESH_CORNER;
   if (n_line == 3) return VG_REMESH_STRIP;
@@ -184,10 +185,10 @@ static vg_status list_bad(const struct vg_tris *w, size_t t, size_t face,
   const double sine = sqrt(vg_tris_tri_shape(w, t));
   struct vg_remesh_bad b = { .face = face };
 
-  b.angle = asin(fmin(sine, 1)) * (180 / M_PI); /* for the report only */
+  b.angle = asin(fmin(sine, 1)) * (180 / M_PI); /* for the report only: libm */
   if (!face || b.angle < r->angle_min) r->angle_min = b.angle;
   if (w->form) count_aspect(w, t, r);
-  if (sine >= 0.34202014332566873) return VG_OK; /* of VG_REMESH_BAD */
+  if (sine >= 0.34202014332566873) return VG_OK; /* sine of VG_REMESH_BAD */
   if (vg_reserve(&r->bad, cap, r->n_bad + 1, sizeof *r->bad))
     return vg_fail_memory(err, "the list of bad triangles");
   b.cause = cause_of(w, t);
@@ -214,7 +215,7 @@ static void count_edges(const struct vg_tris *w, struct vg_remesh_report *r)
   }
 }
 
-/* --- is it consistent? --------------------------------------------------- */
+/* --- consistency check ---------------------------------------------------- */
 
 static size_t bad_half(const struct vg_tris *w, uint32_t h)
 {
@@ -249,7 +250,7 @@ size_t vg_tris_defects(const struct vg_tris *w)
   return bad;
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- result --------------------------------------------------------------- */
 
 static vg_status store(const struct vg_tris *w, const uint32_t *label,
                        uint32_t *map, struct vg_mesh *out,
@@ -293,7 +294,7 @@ vg_status vg_result_store(const struct vg_tris *w, const struct vg_mesh *given,
   out->patch = vg_alloc(given->n_patch, sizeof *out->patch);
   if (!map || !label || !out->point || !out->tri || !out->tri_patch ||
       !out->patch)
-    VG_TRY(vg_fail_memory(err, "the new surface"));
+    VG_TRY(vg_fail_memory(err, "the remeshed surface"));
   memcpy(out->patch, given->patch, given->n_patch * sizeof *out->patch);
   out->n_patch = given->n_patch;
   VG_TRY(label_all(w, given, label, err));

@@ -9,17 +9,18 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/strips.h"
 
-#define SMOOTH 2   /* averages of the curvature over neighbours */
-#define AROUND 3   /* S36: triangles around a strip that is closed */
-#define FLOOR 0.02 /* S26: of the size without strips: never finer */
+#define SMOOTH 2   /* sweeps that average curvature over neighbours */
+#define AROUND 3   /* S36: rings of triangles around a closed strip */
+#define FLOOR 0.02 /* S26: of the size without strips: least size */
 
-/* Curvature tensor of a triangle, summed over its edges, with its area. */
+/* Curvature tensor of a triangle, the sum over its edges, and its area. */
 struct bend {
   double t[6], area;
 };
 
-/* Angle between unit vectors whose cross product is n, plain arithmetic: by
- * the tangent of half of it, atan(t) ~ t (1 + 0.2733 (1 - t)) pi / 4 ... */
+/* Angle of a sine and cosine by plain arithmetic, without libm: from the
+ * tangent t of half the angle by atan(t) ~ t (pi / 4 + 0.273 (1 - t)) for t <=
+ * 1. */
 static double angle_of(double sine, double cosine)
 {
   double t = cosine > -1 ? sine / (1 + cosine) : 1e3;
@@ -32,9 +33,9 @@ static double angle_of(double sine, double cosine)
 /* --- curvature of faces -------------------------------------------------- */
 
 /* Cohen-Steiner and Morvan, "Restricted Delaunay triangulations and normal
- * cycle", 2003: an edge bends the surface by its angle, across itself. It is
- * summed over triangles, so that what lies beyond a line, which may be a large
- * plane, has no part in it. */
+ * cycle", 2003: an edge contributes its dihedral angle as curvature across the
+ * edge. The sum is taken per triangle, so that faces beyond a feature edge,
+ * such as a large plane, do not contribute. */
 static void add_edge(const struct vg_ref *r, uint32_t h, struct bend *bend)
 {
   const double *n = r->shape[h / 3].n, *m = r->shape[r->mate[h] / 3].n;
@@ -67,7 +68,8 @@ static void add_bend(struct bend *to, const struct bend *b, double share)
   to->area += share * b->area;
 }
 
-/* Sums over a triangle and its neighbours but for those beyond lines. */
+/* Sum each tensor over a triangle and its neighbours, except across feature
+ * edges. */
 static void spread(const struct vg_ref *r, const struct vg_curves *c,
                    const struct bend *from, struct bend *to)
 {
@@ -77,7 +79,7 @@ static void spread(const struct vg_ref *r, const struct vg_curves *c,
       add_bend(&to[h / 3], &from[r->mate[h] / 3], 0.5);
 }
 
-/* The larger of the two curvatures, by trace and norm. */
+/* The larger principal curvature, from trace and norm. */
 static double curvature(const struct bend *b)
 {
   double trace, norm2 = 0, rest;
@@ -99,7 +101,8 @@ static double arc_size(const struct vg_sizes_options *o, double curvature,
   return is_far ? h : fmin(h, sqrt(8 * o->chord / curvature));
 }
 
-/* The curvature of the faces from line h around its start to the next line. */
+/* Curvature of the faces from feature edge h around its start point to the next
+ * feature edge. */
 static double sector(const struct vg_ref *r, const struct vg_curves *c,
                      const struct bend *bend, uint32_t h)
 {
@@ -115,8 +118,8 @@ static double sector(const struct vg_ref *r, const struct vg_curves *c,
   return curvature(&sum);
 }
 
-/* At a point by all its triangles together; on a line by those on the side
- * that bends the most. */
+/* Sizes at points: from all triangles around the point together, but at a
+ * feature edge from the side with the largest curvature. */
 static vg_status by_triangles(struct vg_ref *r, const struct vg_curves *c,
                               const struct vg_sizes_options *o,
                               const struct bend *bend, const uint8_t *far,
@@ -175,7 +178,7 @@ done:
   return st;
 }
 
-/* --- curves and strips --------------------------------------------------- */
+/* --- feature curves and narrow strips ------------------------------------- */
 
 static void by_curves(struct vg_ref *r, const struct vg_curves *c,
                       const struct vg_sizes_options *o, const uint8_t *far)
@@ -191,7 +194,7 @@ static void by_curves(struct vg_ref *r, const struct vg_curves *c,
       lv = vg_unit(v);
       vg_cross(u, v, w);
       angle = angle_of(vg_norm(w), vg_dot(u, v));
-      /* A jag that the tolerance can hide is no arc. */
+      /* A jag smaller than the tolerance is not an arc. */
       if (angle * fmin(lu, lv) < o->chord) continue;
       r->size[c->point[k]] = fmin(r->size[c->point[k]],
                                   arc_size(o, 2 * angle / (lu + lv),
@@ -199,7 +202,8 @@ static void by_curves(struct vg_ref *r, const struct vg_curves *c,
     }
 }
 
-/* The size is the width by `strip` over the edges asked for across. */
+/* Size at a strip: its width times `strip`, divided by the number of edges
+ * requested across it. */
 static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
                      double strip, double across, double h_shape)
 {
@@ -221,7 +225,7 @@ static void by_strip(struct vg_ref *r, const struct vg_curves *c, uint32_t h,
   }
 }
 
-/* Points of outer triangles alone. */
+/* Find the points all of whose triangles are on an outer boundary. */
 static void find_far(const struct vg_ref *r, const double *cap, uint8_t *far)
 {
   memset(far, cap != NULL, r->n_point);
@@ -230,8 +234,8 @@ static void find_far(const struct vg_ref *r, const double *cap, uint8_t *far)
       if (cap[t] < INFINITY) far[r->tri[t][k]] = 0;
 }
 
-/* The triangles whose sizes follow strips; and those around edges that are
- * closed. */
+/* Mark the triangles whose sizes are reduced by strips, and those around closed
+ * edges. */
 static vg_status mark_strips(struct vg_ref *r, const struct vg_curves *c,
                              struct vg_error *err)
 {

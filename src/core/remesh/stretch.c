@@ -10,15 +10,13 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/work_parts.h"
 
-#define CHORD                                                                  \
-  0.6               /* S45: of the tolerance: what edges may leave of the      \
-                       line */
-#define BEND 0.033  /* of an edge: its chord where 24 go round a circle */
-#define SHORTER 0.8 /* an edge whose chord is too far, again and again */
+#define CHORD 0.6   /* S45: of the tolerance: largest sagitta of an edge */
+#define BEND 0.033  /* of an edge: its sagitta at 24 edges per turn */
+#define SHORTER 0.8 /* factor applied until the sagitta is small enough */
 
-/* --- making -------------------------------------------------------------- */
+/* --- construction --------------------------------------------------------- */
 
-/* Part of a curve that is to be stretched. */
+/* Part of a curve with a constant stretching ratio. */
 struct part {
   const struct vg_tris *w;
   size_t curve;
@@ -63,7 +61,7 @@ static struct vg_stretch_place place_at(const struct vg_stretch *s,
   return q;
 }
 
-/* The tree of the pieces of a run. */
+/* Build the tree of the segments of a run. */
 static vg_status make_tree(const struct vg_stretch *s, struct vg_stretch_run *r,
                            struct vg_error *err)
 {
@@ -73,7 +71,9 @@ static vg_status make_tree(const struct vg_stretch *s, struct vg_stretch_run *r,
   uint32_t *order = vg_alloc(n, sizeof *order);
   vg_status st;
 
-  if (!box || !order) VG_TRY(vg_fail_memory(err, "the stretched lines"));
+  if (!box || !order)
+    VG_TRY(vg_fail_memory(err, "the stretched feature "
+                               "curves"));
   for (size_t i = 0; i < n; i++) {
     order[i] = (uint32_t)i;
     box[i] = (struct vg_box)VG_BOX_EMPTY;
@@ -87,7 +87,7 @@ done:
   return st;
 }
 
-/* Lengths along it change by no more than sizes do. */
+/* Limit the change of lengths along the curve to the growth of sizes. */
 static void grade(const struct vg_stretch *s, struct vg_stretch_run *r)
 {
   struct vg_stretch_place *p = s->place + r->first;
@@ -114,7 +114,7 @@ static vg_status add_run(struct vg_stretch *s, struct part *p,
   if (vg_reserve(&s->place, &s->cap_place, s->n_place + r.n,
                  sizeof *s->place) ||
       vg_reserve(&s->run, &s->cap_run, s->n_run + 1, sizeof *s->run))
-    VG_TRY(vg_fail_memory(err, "the stretched lines"));
+    VG_TRY(vg_fail_memory(err, "the stretched feature curves"));
   for (size_t i = 0; i < r.n; i++)
     s->place[s->n_place++] = place_at(s, p, p->from + step[i]);
   grade(s, &r);
@@ -130,10 +130,11 @@ vg_status vg_stretch_make(struct vg_stretch *s, const struct vg_tris *w,
 {
   assert(s->by && !s->run && !s->place);
 
-  double *by = vg_calloc(w->n_line, sizeof *by); /* of each line */
+  double *by = vg_calloc(w->n_line, sizeof *by); /* stretching ratio of each
+                                                    feature edge */
   vg_status st = VG_OK;
 
-  if (!by) return vg_fail_memory(err, "the stretched lines");
+  if (!by) return vg_fail_memory(err, "the stretched feature curves");
   s->slope = w->ref->slope;
   s->h_max = w->h_max;
   for (uint32_t h = 0; h < 3 * w->n_tri; h++)
@@ -162,9 +163,10 @@ void vg_stretch_release(struct vg_stretch *s)
   *s = (struct vg_stretch){ .by = s->by };
 }
 
-/* --- asking -------------------------------------------------------------- */
+/* --- evaluation ----------------------------------------------------------- */
 
-/* Squared distance from the piece between two places; how far on it. */
+/* Squared distance of x from the segment p[0] p[1]; *t is the position of the
+ * nearest point on it, 0 to 1. */
 static double piece2(const struct vg_stretch_place *p, const double x[3],
                      double *t)
 {
@@ -178,14 +180,14 @@ static double piece2(const struct vg_stretch_place *p, const double x[3],
   return vg_dot(d, d);
 }
 
-/* A search for the piece of a run that is nearest to x. */
+/* A search for the segment of a run nearest to x. */
 struct finding {
-  const struct vg_stretch_place *place; /* of the run */
+  const struct vg_stretch_place *place; /* Places of the run. */
   const struct vg_box_tree *tree;
   const double *x;
-  double d2;   /* squared distance: limit, or of `best` */
-  double t;    /* how far on the piece, 0 to 1 */
-  size_t best; /* the piece; SIZE_MAX: none yet */
+  double d2;   /* Squared distance: limit, or that of `best`. */
+  double t;    /* Position on the segment, 0 to 1. */
+  size_t best; /* Segment; SIZE_MAX: none yet. */
 };
 
 static inline int enter_nearer(void *context, size_t node, double d2)
@@ -211,7 +213,8 @@ static inline void find_nearer(void *context, size_t node)
   }
 }
 
-/* How many times as long edges are along the run, and its direction. */
+/* Stretching ratio at x due to a run, and its direction; 1 if x is out of
+ * reach. */
 static double ask(const struct vg_stretch *s, const struct vg_stretch_run *r,
                   const double x[3], double size, double way[3])
 {

@@ -1,6 +1,7 @@
-/* Outline: along every line, place by place, the strip beside it is measured;
- * stretches of the shorter of two lines where it is narrow are closed. Edges
- * are cut where these begin and end. */
+/* Outline: the width of the strip on each side of every feature curve is
+ * measured at many places. Stretches of the shorter of two curves along which
+ * the strip is narrow are closed. Edges are split where a stretch begins or
+ * ends. */
 #include "core/remesh/strips.h"
 
 #include <assert.h>
@@ -12,22 +13,20 @@
 #include "core/geometry/vector.h"
 #include "core/remesh/strips_cut.h"
 
-#define STEPS 400   /* triangles that a walk across a strip crosses */
-#define ALONG 0.94  /* cosine: lines more oblique make a wedge */
-#define CLOSED 1.0  /* S35: of the tolerance: narrower strips go */
-#define SLENDER 3.0 /* S35: widths of it: shorter stretches stay */
-#define APART                                                                  \
-  4.0 /* tolerances: places along a line, at most PLACES                       \
-         to a piece of it */
+#define STEPS 400   /* most triangles crossed by a walk over a strip */
+#define ALONG 0.94  /* cosine: curves at a larger angle form a wedge */
+#define CLOSED 1.0  /* S35: of the tolerance: narrower strips are closed */
+#define SLENDER 3.0 /* S35: least length of a stretch, in widths */
+#define APART 4.0   /* tolerances between places, at most PLACES per edge */
 #define PLACES 256
-#define LINES 8 /* closed ones that a walk crosses */
+#define LINES 8 /* most closed curves crossed by a walk */
 #define BISECTIONS 24
-#define INSET 0.02 /* of a piece, or APART: its first and last place */
+#define INSET 0.02 /* of an edge, but at most APART: first and last place */
 
-/* --- the width ----------------------------------------------------------- */
+/* --- width of a strip ----------------------------------------------------- */
 
-/* Unit vector in triangle t at right angles to its half-edge h, inward, and
- * one along it. */
+/* Unit vectors along half-edge h (e) and normal to it in its triangle, inwards
+ * (in). */
 static int frame(const struct vg_ref *r, uint32_t h, double e[3], double in[3])
 {
   vg_sub(vg_ref_at(r, vg_half_next(h)), vg_ref_at(r, h), e);
@@ -36,8 +35,8 @@ static int frame(const struct vg_ref *r, uint32_t h, double e[3], double in[3])
   return vg_unit(in) > 0;
 }
 
-/* Where the ray from x along d leaves the triangle that it entered by h:
- * half-edge, and how far. */
+/* The half-edge through which the ray from x along d leaves the triangle that
+ * it entered by h. *far is the distance. */
 static uint32_t leave(const struct vg_ref *r, uint32_t h, const double x[3],
                       const double d[3], double *far)
 {
@@ -77,7 +76,7 @@ double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
     vg_sub(vg_ref_at(r, vg_half_next(g)), vg_ref_at(r, g), e);
     vg_unit(e);
     if (c->line[g] || r->mate[g] == VG_REF_NONE) {
-      /* As seen in the plane where the walk ends. */
+      /* The angle is measured in the plane of the last triangle. */
       a = vg_dot(e, d);
       if (end) {
         end->half = g;
@@ -88,23 +87,23 @@ double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
     a = vg_dot(d, e);
     h = r->mate[g];
     if (!frame(r, h, e, in)) return INFINITY;
-    a = -a; /* along the mate's own direction */
+    a = -a; /* the mate runs the other way */
     for (int k = 0; k < 3; k++)
       d[k] = a * e[k] + sqrt(fmax(0, 1 - a * a)) * in[k];
   }
   return INFINITY;
 }
 
-/* --- which of two lines goes --------------------------------------------- */
+/* --- which of two curves is dropped --------------------------------------- */
 
-/* A stretch along a curve. */
+/* A stretch of a curve. */
 struct stretch {
-  double from, to; /* lengths */
-  double width;    /* of the strip, largest */
+  double from, to; /* Arc lengths. */
+  double width;    /* Largest width of the strip. */
 };
 
 struct claim {
-  int stays; /* whatever is near */
+  int stays; /* Never dropped: it contains rims or fixed edges. */
   double length;
   size_t curve;
 };
@@ -113,12 +112,14 @@ struct finder {
   const struct vg_ref *r;
   const struct vg_curves *c;
   const struct vg_strips_options *o;
-  uint32_t (*side)[2];   /* [lines] half-edge along it, and against it */
-  struct claim *claim;   /* [n_curve] the last to go comes first */
-  size_t *rank;          /* [n_curve] where it is among these */
-  struct stretch *found; /* closed ones, rising along each curve */
+  uint32_t (*side)[2];   /* [feature edges] Half-edges along the curve, and
+                            against it. */
+  struct claim *claim;   /* [n_curve] By descending priority: the last one is
+                            dropped first. */
+  size_t *rank;          /* [n_curve] Position of each curve in `claim`. */
+  struct stretch *found; /* Closed stretches, ascending along each curve. */
   size_t n_found, cap_found;
-  size_t *first, *end; /* [n_curve] among them */
+  size_t *first, *end; /* [n_curve] Range of each curve in `found`. */
   struct vg_strips *s;
 };
 
@@ -143,7 +144,7 @@ static vg_status list_sides(struct finder *f, struct vg_error *err)
   return VG_OK;
 }
 
-/* Those that have to stay, then the longer, then those found first. */
+/* Curves that must stay, then longer ones, then those found first. */
 static int by_claim(const void *a, const void *b)
 {
   const struct claim *p = a, *q = b;
@@ -171,7 +172,7 @@ static vg_status rank_curves(struct finder *f, struct vg_error *err)
   return VG_OK;
 }
 
-/* --- where a strip is narrow --------------------------------------------- */
+/* --- narrow stretches of a curve ------------------------------------------ */
 
 static int is_closed(const struct finder *f, size_t curve, double s)
 {
@@ -180,8 +181,9 @@ static int is_closed(const struct finder *f, size_t curve, double s)
   return 0;
 }
 
-/* Is the strip on this side of the curve narrow at the place t of its piece k,
- * up to a line that stays? *width out. */
+/* At position t of edge k of the curve, is the strip on the side of h narrow,
+ * up to a curve that stays? Closed stretches are crossed. *width is the width
+ * of the strip. */
 static int is_narrow(const struct finder *f, size_t curve, size_t k, uint32_t h,
                      double t, double *width)
 {
@@ -211,8 +213,8 @@ static int is_narrow(const struct finder *f, size_t curve, size_t k, uint32_t h,
   return 0;
 }
 
-/* Between two places of which one is narrow: where it changes. *width of the
- * strip there. */
+/* Bisect between two positions, of which one is narrow, for the end of the
+ * narrow part. *width is raised to the widths found. */
 static double change_at(const struct finder *f, size_t curve, size_t k,
                         uint32_t h, double narrow, double wide, double *width)
 {
@@ -225,8 +227,8 @@ static double change_at(const struct finder *f, size_t curve, size_t k,
   return narrow;
 }
 
-/* Add to those of the curve from `first` on; one that begins where the last
- * ends goes on. */
+/* Append a stretch to those of the curve from `first` on, or extend the last
+ * one if they touch. */
 static vg_status add_stretch(struct finder *f, size_t first,
                              const struct stretch *s, struct vg_error *err)
 {
@@ -243,7 +245,7 @@ static vg_status add_stretch(struct finder *f, size_t first,
   return VG_OK;
 }
 
-/* The stretches of a piece of a line that are narrow on the side of h. */
+/* Find the stretches of edge k of a curve that are narrow on the side of h. */
 static vg_status look_along(struct finder *f, size_t curve, size_t k,
                             uint32_t h, size_t first, struct vg_error *err)
 {
@@ -286,7 +288,8 @@ static int by_start(const void *a, const void *b)
   return p->from < q->from ? -1 : p->from > q->from;
 }
 
-/* Those of both sides together; stubby ones stay. */
+/* Merge the stretches of both sides. Those that are too short for their width
+ * are dropped and stay feature edges. */
 static void merge(struct finder *f, size_t first)
 {
   size_t n = first;
@@ -332,7 +335,7 @@ done:
   return st;
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- closing -------------------------------------------------------------- */
 
 static void count(struct finder *f, size_t i)
 {

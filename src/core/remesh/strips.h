@@ -1,56 +1,77 @@
-/* core/remesh/strips.h: strips of a surface between two lines that are close,
- * and the closing of those that are narrower than the tolerance, in which no
- * triangle but needles could be. Private to core/remesh. */
+/* core/remesh/strips.h: narrow strips between two feature curves. Strips
+ * narrower than the tolerance can only be filled with needles and are closed:
+ * one of the two curves is dropped along the strip. Private to core/remesh.
+ *
+ *   shorter     o---.                                         .---o
+ *   curve            '---a----o------o------o------o----b----'
+ *                        |  width < tolerance, for at   |
+ *                        |    least three widths        |
+ *   longer      o=====o=====o======o======o======o======o======o==o
+ *   curve
+ *
+ *   closed      o---.                                         .---o
+ *                    '---a    .      .      .      .    b----'
+ *
+ *               o=====o=====o======o======o======o======o======o==o
+ *
+ * Edges of the shorter curve are split at the ends a and b of the narrow
+ * stretch. The edges between a and b are no longer feature edges. The surface
+ * itself is unchanged; the remeshed surface may deviate from it by the
+ * tolerance there. */
 #ifndef VG_CORE_REMESH_STRIPS_H
 #define VG_CORE_REMESH_STRIPS_H
 
 #include "core/remesh/curves.h"
 
-/* Where a walk across a strip ends. */
+/* End of a walk across a strip. */
 struct vg_strip_end {
-  uint32_t half; /* half-edge of the other line, in the strip */
+  uint32_t half; /* Half-edge of the opposite curve, in the strip. */
   double x[3];
 };
 
-/** Width of the surface from the point x of line h, straight across its
- * triangle, to another line nearly along it; INFINITY beyond `most` or where
- * there is none. *end: of lines of all directions; may be NULL. */
+/** Width of the strip at point x of feature edge h: the length of the walk from
+ * x at a right angle to h over the triangles to another feature edge that is
+ * nearly parallel. INFINITY above `most`, or if no such edge is found.
+ *
+ * @param end  out: the feature edge reached, at any angle; may be NULL */
 double vg_strip_width(const struct vg_ref *r, const struct vg_curves *c,
                       uint32_t h, const double x[3], double most,
                       struct vg_strip_end *end);
 
 struct vg_strips_options {
-  double tolerance;     /* narrower strips are closed */
-  const double *across; /* [n_patch] where not NULL and above 1, strips
-                           stay */
+  double tolerance;     /* Narrower strips are closed. */
+  const double *across; /* [n_patch] Strips in patches with values above 1 stay;
+                           may be NULL. */
   const struct vg_curves_options *lines;
 };
 
-/* The surface as it was, with points more where strips begin to be narrow.
- * New points and triangles come last. */
+/* The input surface with additional points where narrow stretches begin and
+ * end. New points and triangles come last. */
 struct vg_strips {
-  size_t n;             /* pieces of lines that are closed; 0: the rest is
-                           empty */
-  double length;        /* of them all */
-  double widest, at[3]; /* width of a strip, and where it is */
+  size_t n;             /* Number of closed stretches; if 0, all other members
+                           are empty. */
+  double length;        /* Total length of the closed stretches. */
+  double widest, at[3]; /* Largest width of a closed strip, and its location. */
   struct vg_mesh mesh;
-  uint8_t *closed;     /* [3 mesh.n_tri] half-edges of them, both sides */
-  uint32_t *tri_from;  /* [mesh.n_tri] triangle that it is a part of */
-  uint32_t *half_from; /* [3 mesh.n_tri] half-edge, the same;
-                          VG_REF_NONE: new, within a triangle */
+  uint8_t *closed;     /* [3 mesh.n_tri] 1: half-edge of a closed stretch, on
+                          both sides. */
+  uint32_t *tri_from;  /* [mesh.n_tri] Input triangle that contains the
+                          triangle. */
+  uint32_t *half_from; /* [3 mesh.n_tri] Input half-edge that contains the
+                          half-edge; VG_REF_NONE: inside an input triangle. */
   size_t n_new;
-  uint32_t (*ends)[2]; /* [n_new] of the edge in which a new point is;
-                          they may be new themselves, but before it */
+  uint32_t (*ends)[2]; /* [n_new] End points of the edge that a new point
+                          splits; these may be new points of lower numbers. */
 };
 #define VG_STRIPS_INIT                                                         \
   {                                                                            \
     0                                                                          \
   }
 
-/** Of two lines that are so close that the tolerance hides what is between
- * them only one needs to stay: the longer one, and rims and hard borders
- * always. m is what the faces of r are; neither tree nor sizes are asked for.
- * O(length of lines). VG_ERR_MEMORY. */
+/** Find and close narrow strips. Of two curves closer than the tolerance only
+ * one must stay: rims and fixed borders always do, otherwise the longer curve
+ * does. m is the mesh of r's faces; r needs neither tree nor sizes. O(total
+ * length of curves). VG_ERR_MEMORY. */
 vg_status vg_strips_find(const struct vg_ref *r, const struct vg_curves *c,
                          const struct vg_mesh *m,
                          const struct vg_strips_options *o, struct vg_strips *s,

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-#define END 1e-3 /* of an edge: nearer to its ends nothing is cut */
+#define END 1e-3 /* of an edge: no cut closer to its ends */
 
 vg_status vg_strip_cutter_begin(struct vg_strip_cutter *c,
                                 const struct vg_ref *r, const struct vg_mesh *m,
@@ -48,7 +48,10 @@ static vg_status make_room(struct vg_strip_cutter *c, struct vg_error *err)
   const size_t n = m->n_tri + 2;
 
   if (m->n_point >= UINT32_MAX || 3 * n >= UINT32_MAX)
-    return vg_fail(err, VG_ERR_UNSUPPORTED, "the surface is too large");
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "the surface has too many "
+                   "triangles to split the edges of "
+                   "its feature curves");
   if (vg_reserve(&m->point, &c->cap_point, m->n_point + 1, sizeof *m->point) ||
       vg_reserve(&m->tri, &c->cap_tri, n, sizeof *m->tri) ||
       vg_reserve(&m->tri_patch, &c->cap_patch, n, sizeof *m->tri_patch) ||
@@ -67,7 +70,7 @@ static void join(struct vg_strip_cutter *c, uint32_t g, uint32_t h)
   if (h != VG_REF_NONE) c->mate[h] = g;
 }
 
-/* Half-edge `from` is `to` now. */
+/* Half-edge `from` becomes half-edge `to`. */
 static void move(struct vg_strip_cutter *c, uint32_t from, uint32_t to)
 {
   const uint32_t first = c->s->half_from[from];
@@ -84,8 +87,8 @@ static void set_inner(struct vg_strip_cutter *c, uint32_t h)
   c->s->closed[h] = 0;
 }
 
-/* Divide the triangle of h by the edge from point m in h to the corner across:
- * h ends at m. Returns the other half of it. */
+/* Split the triangle of h by an edge from point m on h to the opposite corner;
+ * h then ends at m. Returns the second half of h. */
 static uint32_t halve(struct vg_strip_cutter *c, uint32_t h, uint32_t m)
 {
   struct vg_mesh *mesh = &c->s->mesh;
@@ -105,7 +108,8 @@ static uint32_t halve(struct vg_strip_cutter *c, uint32_t h, uint32_t m)
   return 3 * n + i;
 }
 
-/* Put a point into edge h, at t of it: h ends there. Returns the rest. */
+/* Insert a point at position t of edge h, which then ends there. *rest is the
+ * second half. */
 static vg_status cut(struct vg_strip_cutter *c, uint32_t h, double t,
                      uint32_t *rest, struct vg_error *err)
 {
@@ -138,7 +142,8 @@ static void mark(struct vg_strip_cutter *c, uint32_t h)
   if (c->mate[h] != VG_REF_NONE) c->s->closed[c->mate[h]] = 1;
 }
 
-/* Cut what is left of the edge at t of all of it; the rest is what is left. */
+/* Cut the remaining part of the current edge at position t of the whole
+ * edge. */
 static vg_status cut_at(struct vg_strip_cutter *c, double t,
                         struct vg_error *err)
 {

@@ -11,13 +11,11 @@
 #include "core/geometry/vector.h"
 
 #define TRIFLE 1e-4 /* of the squared tolerance: on the reference */
-#define ON                                                                     \
-  0.04            /* of the squared tolerance: as good as on a                 \
-                     triangle */
-#define FLAT 1e-3 /* S33: tolerances: lower triangles face any way */
-#define SWEEPS 8  /* in which sizes are passed on to neighbours */
+#define ON 0.04     /* of the squared tolerance: as good as on a triangle */
+#define FLAT 1e-3   /* S33: tolerances: lower triangles may face any way */
+#define SWEEPS 8    /* sweeps that pass sizes to neighbours */
 
-/* --- making -------------------------------------------------------------- */
+/* --- construction --------------------------------------------------------- */
 
 static vg_status make_lines(struct vg_tris *w, struct vg_error *err)
 {
@@ -44,7 +42,7 @@ static vg_status make_lines(struct vg_tris *w, struct vg_error *err)
 
 vg_status vg_tris_status(const struct vg_tris *w, struct vg_error *err)
 {
-  if (w->failed) return vg_fail_memory(err, "the new surface");
+  if (w->failed) return vg_fail_memory(err, "the remeshed surface");
   return w->ends ? vg_stopped(&w->stop, err) : VG_OK;
 }
 
@@ -79,9 +77,9 @@ double vg_tris_size_near(const struct vg_tris *w, const double x[3],
   return bounded(w, x, h);
 }
 
-/* Triangles that ask for less than a point's own one, from neighbour to
- * neighbour: all but exact where sizes grow along the surface, so that the
- * tree has little to look at. */
+/* Pass triangles that determine a smaller size than a point's own one from
+ * neighbour to neighbour. The result is almost exact where sizes grow along the
+ * surface, so that searches in the tree are short. */
 static void pass_sizes_on(struct vg_tris *w)
 {
   const uint32_t n = (uint32_t)(3 * w->n_tri);
@@ -150,8 +148,8 @@ static vg_status make_points(struct vg_tris *w, struct vg_error *err)
     if (w->curves->corner[p]) w->point[p].kind = VG_WORK_CORNER;
     if (w->point[p].half == VG_REF_NONE)
       return vg_fail(err, VG_ERR_INPUT,
-                     "point %zu of the surface is used by "
-                     "no triangle; repair it",
+                     "point %zu of the surface belongs to no triangle; "
+                     "repair the surface",
                      p + 1);
     w->point[p].by = w->point[p].home;
     w->point[p].asked.size = r->size[p];
@@ -161,7 +159,8 @@ static vg_status make_points(struct vg_tris *w, struct vg_error *err)
   return vg_stopped(&w->stop, err);
 }
 
-/* None has a triangle: they are points of this surface. */
+/* No point is a sample yet: all points of the reference are points of the
+ * surface. */
 static vg_status make_samples(struct vg_tris *w, struct vg_error *err)
 {
   const size_t n = w->ref->n_point;
@@ -184,7 +183,7 @@ vg_status vg_tris_room(struct vg_tris *w, size_t n, struct vg_error *err)
   w->first = vg_alloc(n, sizeof *w->first);
   return w->tri && w->mate && w->edge && w->stamp && w->first
          ? VG_OK
-         : vg_fail_memory(err, "the new surface");
+         : vg_fail_memory(err, "the remeshed surface");
 }
 
 vg_status vg_tris_begin(struct vg_tris *w, struct vg_error *err)
@@ -198,7 +197,7 @@ vg_status vg_tris_begin(struct vg_tris *w, struct vg_error *err)
   VG_TRY(vg_tris_room(w, r->n_tri, err));
   w->n_point = w->cap_point = r->n_point;
   w->point = vg_calloc(w->n_point, sizeof *w->point);
-  if (!w->point) return vg_fail_memory(err, "the new surface");
+  if (!w->point) return vg_fail_memory(err, "the remeshed surface");
   memcpy(w->tri, r->tri, w->n_tri * sizeof *w->tri);
   memcpy(w->mate, r->mate, 3 * w->n_tri * sizeof *w->mate);
   memset(w->first, 0xff, w->n_tri * sizeof *w->first);
@@ -245,7 +244,7 @@ void vg_tris_release(struct vg_tris *w)
   memset(w, 0, sizeof *w);
 }
 
-/* --- looking ------------------------------------------------------------- */
+/* --- queries -------------------------------------------------------------- */
 
 size_t vg_tris_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
                     int *open)
@@ -256,7 +255,7 @@ size_t vg_tris_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
   size_t n = 0;
 
   *open = 0;
-  /* To the rim, if there is one. */
+  /* Go to the rim, if there is one. */
   while (w->mate[h] != VG_REF_NONE) {
     h = vg_half_next(w->mate[h]);
     if (h == first) break;
@@ -321,7 +320,7 @@ void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p)
   p->room = vg_tris_tolerance(w, size);
 }
 
-/* --- a cavity ------------------------------------------------------------ */
+/* --- cavities ------------------------------------------------------------- */
 
 void vg_cavity_begin(const struct vg_tris *w, struct vg_cavity *c,
                      uint32_t point)
@@ -360,8 +359,8 @@ void vg_cavity_measure(const struct vg_tris *w, struct vg_cavity *c)
   }
 }
 
-/* Is x within the tolerance of the sheet of the reference that faces the way
- * of n, and clearly nearer to it than to one that faces the other way? */
+/* Is x within the tolerance of the sheet of the reference that is oriented like
+ * n, and clearly nearer to it than to a sheet of opposite orientation? */
 static int sample_near(const struct vg_tris *w, struct vg_cavity *c,
                        const double x[3], const double n[3])
 {
@@ -375,7 +374,7 @@ static int sample_near(const struct vg_tris *w, struct vg_cavity *c,
   if (d2 <= TRIFLE * c->tolerance * c->tolerance ||
       !vg_ref_within(w->ref, x, back, VG_WORK_NEARER * sqrt(d2), &other, &o2))
     return 1;
-  /* What was found is not the nearest. */
+  /* The triangle found need not be the nearest one. */
   d2 = vg_ref_nearest(w->ref, x, n, &c->hint, y);
   other = VG_REF_NONE;
   return !vg_ref_within(w->ref, x, back, VG_WORK_NEARER * d2, &other, &o2);
@@ -399,8 +398,8 @@ static int tri_fits(const struct vg_tris *w, struct vg_cavity *c, size_t i)
   return 1;
 }
 
-/* Where new edges cross those of the reference they may be farther from it than
- * in their middles. */
+/* Where new edges cross those of the reference, they may be farther from it
+ * than at their midpoints. */
 static int crossings_fit(const struct vg_tris *w, struct vg_cavity *c, size_t i)
 {
   const struct vg_tris_point *const *p = c->corner[i];
@@ -416,8 +415,9 @@ static int crossings_fit(const struct vg_tris *w, struct vg_cavity *c, size_t i)
   return 1;
 }
 
-/* Goes to the nearest of the new triangles, or one that is as good as on it,
- * from the one in the place of the old on. */
+/* Assign sample s to the nearest of the new triangles, or to the first that is
+ * practically at zero distance. The search starts at the triangle that replaces
+ * triangle `old`. */
 static int sample_fits(const struct vg_tris *w, struct vg_cavity *c, uint32_t s,
                        size_t old)
 {
@@ -436,8 +436,8 @@ static int sample_fits(const struct vg_tris *w, struct vg_cavity *c, uint32_t s,
   return best <= most;
 }
 
-/* Sets made, with normals, and the sum of these by area; 0 where one of the
- * triangles has none. */
+/* Set c->made with unit normals, and sum to their sum weighted by area. Returns
+ * 0 if a triangle has no normal. */
 static int make_triangles(struct vg_cavity *c, double sum[3])
 {
   memset(sum, 0, 3 * sizeof *sum);
@@ -453,7 +453,8 @@ static int make_triangles(struct vg_cavity *c, double sum[3])
   return 1;
 }
 
-/* Unit normal of a triangle as it is; returns its height over an edge. */
+/* Unit normal n of a triangle of the current surface. Returns its height above
+ * the longer edge at its first corner. */
 static double facing(const struct vg_tris *w, uint32_t t, double n[3])
 {
   const double *a = vg_tris_at(w, w->tri[t][0]);
@@ -466,7 +467,8 @@ static double facing(const struct vg_tris *w, uint32_t t, double n[3])
   return l > 0 ? vg_unit(n) / l : 0;
 }
 
-/* On a curve: does each triangle face the way of that before it? */
+/* On a curve: does each new triangle face the same way as the one it
+ * replaces? */
 static int faces_as_before(const struct vg_tris *w, const struct vg_cavity *c)
 {
   for (size_t i = 0; i < c->n_new; i++) {
@@ -479,8 +481,8 @@ static int faces_as_before(const struct vg_tris *w, const struct vg_cavity *c)
   return 1;
 }
 
-/* What is new has the rim of what was there, and so the same mean normal: no
- * triangle faces away from that unless one does now. */
+/* The new triangles have the same rim as the old ones and so the same mean
+ * normal. No triangle may face away from it unless an old one does so more. */
 static int is_unfolded(const struct vg_tris *w, const struct vg_cavity *c,
                        const double sum[3])
 {

@@ -1,5 +1,5 @@
-/* core/remesh/work.h: a surface that changes, and the checks that every change
- * must pass. Private to core/remesh. */
+/* core/remesh/work.h: the surface that is being changed, and the checks that
+ * every change must pass. Private to core/remesh. */
 #ifndef VG_CORE_REMESH_WORK_H
 #define VG_CORE_REMESH_WORK_H
 
@@ -9,10 +9,12 @@
 #include "core/remesh/curves.h"
 #include "core/remesh/metric.h"
 
-#define VG_WORK_RING 256   /* triangles around a point that may change */
-#define VG_WORK_NEARER 1.5 /* S25: than another sheet */
-#define VG_WORK_SHORT 0.7  /* S21: sizes: shorter edges go */
-#define VG_WORK_LONG 1.4   /* longer ones are split */
+#define VG_WORK_RING 256 /* most triangles around a point that may change */
+#define VG_WORK_NEARER                                                         \
+  1.5 /* S25: least ratio of distances to another sheet and its own */
+#define VG_WORK_SHORT                                                          \
+  0.7 /* S21: in target lengths: shorter edges are collapsed */
+#define VG_WORK_LONG 1.4 /* S21: in target lengths: longer edges are split */
 
 enum { VG_WORK_FACE, VG_WORK_CURVE, VG_WORK_CORNER };
 
@@ -20,21 +22,26 @@ enum { VG_WORK_FREE, VG_WORK_FROZEN, VG_WORK_FANS };
 
 struct vg_tris_point {
   double x[3];
-  double room;    /* vg_tris_find_room: largest distance there */
-  uint32_t half;  /* one that leaves it; VG_REF_NONE: removed */
-  uint32_t home;  /* triangle of the reference near it */
-  uint32_t by;    /* that which asks for its size */
-  uint32_t given; /* its sample, once removed; VG_REF_NONE: none */
+  double room;    /* Largest distance from the reference; see
+                     vg_tris_find_room. */
+  uint32_t half;  /* An outgoing half-edge; VG_REF_NONE: the point is
+                     removed. */
+  uint32_t home;  /* Reference triangle near the point. */
+  uint32_t by;    /* Reference triangle that determines its size. */
+  uint32_t given; /* Reference point that becomes a sample when this point is
+                     removed; VG_REF_NONE: none. */
   uint8_t kind;
-  uint8_t goes;           /* a point of a curve that is to be taken away */
-  uint8_t frozen;         /* on the border of a block: stays, and no edges
-                             are made to others; FANS: none to it at all, as
-                             its triangles in the block do not hang together
-                             */
-  uint8_t kept;           /* point of given triangles that stay as they are */
-  uint64_t changed;       /* when triangles at it changed */
-  struct vg_metric asked; /* form: not set where the surface has none */
-  uint64_t tried;         /* when it was last looked at */
+  uint8_t goes;           /* 1: curve point marked for removal. */
+  uint8_t frozen;         /* FROZEN: on the border of a block; it stays, and no
+                             new edges to other frozen points are made. FANS: no
+                             new edges to it at all, because its triangles in
+                             the block form several umbrellas. */
+  uint8_t kept;           /* Corner of input triangles that are kept
+                             unchanged. */
+  uint64_t changed;       /* Clock of the last change of its triangles. */
+  struct vg_metric asked; /* Target length; the form is not set if the surface
+                             is not stretched. */
+  uint64_t tried;         /* Clock of the last attempt to smooth it. */
 };
 
 enum {
@@ -46,57 +53,62 @@ enum {
   VG_WORK_LOOKS
 };
 
-struct vg_stretch; /* stretch.h */
+struct vg_stretch; /* see stretch.h */
 
-/* Edge along a curve. */
+/* Feature edge of the current surface: a segment of a curve. */
 struct vg_tris_line {
   uint32_t curve, end[2];
-  double at[2]; /* lengths along the curve, rising */
+  double at[2]; /* Arc lengths of its ends along the curve, ascending. */
 };
 
-/* Half-edge 3 t + k runs from corner k of triangle t to the next one. */
+/* Half-edge 3 t + k runs from corner k of triangle t to the next corner. */
 struct vg_tris {
   const struct vg_ref *ref;
   const struct vg_curves *curves;
-  double tolerance, relative; /* largest distance, and in parts of the size */
-  double far; /* where sizes are larger only the latter holds; 0:
-                 nowhere */
+  double tolerance, relative; /* Largest distance from the reference: absolute,
+                                 and relative to the size. */
+  double far;                 /* For sizes above this only `relative` applies;
+                                 0: never. */
   double (*other_size)(const void *user, const double x[3]);
-  const void *user; /* of other_size */
-  /* The form at x, where edges are `size` long across what stretches them;
-   * NULL: they are as long in all directions */
+  const void *user; /* Context of other_size. */
+  /* Form at x, where edges have length `size` across the direction of
+   * stretching. NULL: edges have the same length in all directions. */
   void (*form)(const void *of_form, const double x[3], double size,
                double form[6]);
   const void *of_form;
-  struct vg_stretch *stretch; /* made to begin with, for the form; or NULL */
+  struct vg_stretch *stretch; /* Set up by vg_tris_begin, for `form`; may be
+                                 NULL. */
   double h_min, h_max;
-  int threads;         /* to begin with */
-  const uint8_t *keep; /* [points of ref] given triangles of three such
-                          points stay as they are; NULL: none */
+  int threads;         /* Used by vg_tris_begin. */
+  const uint8_t *keep; /* [points of ref] Input triangles with three marked
+                          corners are kept unchanged; NULL: none. */
   size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first,
     cap_stamp;
   size_t n_line, cap_line;
   struct vg_tris_point *point;
-  uint32_t (*tri)[3]; /* removed: three times the same point */
-  uint32_t *mate;     /* VG_REF_NONE: open rim */
-  uint32_t *edge;     /* [3 n_tri] line + 1 of it; 0: none */
-  uint64_t *stamp;    /* [n_tri] when it changed */
+  uint32_t (*tri)[3]; /* Removed triangles have three equal corners. */
+  uint32_t *mate;     /* Opposite half-edge; VG_REF_NONE: open rim. */
+  uint32_t *edge;     /* [3 n_tri] Feature edge + 1; 0: none. */
+  uint64_t *stamp;    /* [n_tri] Clock of the last change. */
   struct vg_tris_line *line;
-  /* Samples: points of the reference that are none of this surface's any more
-   * are each kept with the triangle near them, which keeps the given surface
-   * near this one. */
-  uint32_t *first;    /* [n_tri] VG_REF_NONE: none */
-  uint32_t *follow;   /* [points of ref] the next one of the triangle */
-  uint8_t *is_sample; /* [the same] */
-  int is_block;       /* follow and is_sample are another's */
-  uint32_t *spare;    /* removed triangles */
+  /* Samples: reference points that the current surface no longer contains. Each
+   * is assigned to a triangle near it, which keeps the reference within the
+   * tolerance of the current surface. */
+  uint32_t *first;    /* [n_tri] First sample of the triangle; VG_REF_NONE:
+                         none. */
+  uint32_t *follow;   /* [points of ref] Next sample of the same triangle. */
+  uint8_t *is_sample; /* [points of ref] 1: sample. */
+  int is_block;       /* `follow` and `is_sample` belong to the whole
+                         surface. */
+  uint32_t *spare;    /* Removed triangles, for reuse. */
   size_t n_spare, cap_spare;
   size_t n_split, n_collapse, n_swap, n_move, n_refused;
-  uint64_t clock;                 /* counts changes */
-  uint64_t looked[VG_WORK_LOOKS]; /* when all was last looked at */
-  int failed;                     /* no memory */
+  uint64_t clock;                 /* Number of changes. */
+  uint64_t looked[VG_WORK_LOOKS]; /* Clock of the last complete pass of each
+                                     kind. */
+  int failed;                     /* 1: out of memory. */
   struct vg_stop stop;
-  int ends; /* it said so: nothing is changed any more */
+  int ends; /* 1: `stop` has requested the end; no more changes are made. */
 };
 
 static inline int vg_tris_ends(struct vg_tris *w)
@@ -105,7 +117,8 @@ static inline int vg_tris_ends(struct vg_tris *w)
   return w->ends;
 }
 
-/** What has kept changes from being made: VG_ERR_MEMORY, VG_ERR_STOPPED. */
+/** The reason why no more changes are made: VG_ERR_MEMORY, VG_ERR_STOPPED; else
+ * VG_OK. */
 vg_status vg_tris_status(const struct vg_tris *w, struct vg_error *err);
 
 static inline uint32_t vg_tris_from(const struct vg_tris *w, uint32_t h)
@@ -131,7 +144,7 @@ static inline int vg_tris_removed(const struct vg_tris *w, size_t t)
   return w->tri[t][0] == w->tri[t][1];
 }
 
-/** Has neither end of the edge changed since? */
+/** Have both ends of the edge been unchanged since? */
 static inline int vg_tris_is_old(const struct vg_tris *w, uint32_t h,
                                  uint64_t since)
 {
@@ -139,22 +152,22 @@ static inline int vg_tris_is_old(const struct vg_tris *w, uint32_t h,
          w->point[vg_tris_to(w, h)].changed <= since;
 }
 
-/** An edge of the border of a block, which stays as it is. */
+/** Is the edge on the border of a block, which must not change? */
 static inline int vg_tris_is_border(const struct vg_tris *w, uint32_t h)
 {
   return w->mate[h] == VG_REF_NONE && w->point[vg_tris_from(w, h)].frozen &&
          w->point[vg_tris_to(w, h)].frozen;
 }
 
-/** An edge that stays as it is: of the border of a block, or of given triangles
- * that are kept. */
+/** Must the edge stay unchanged, as part of a block border or of input
+ * triangles that are kept? */
 static inline int vg_tris_stays(const struct vg_tris *w, uint32_t h)
 {
   return vg_tris_is_border(w, h) ||
          (w->point[vg_tris_from(w, h)].kept && w->point[vg_tris_to(w, h)].kept);
 }
 
-/** May there be a new edge between a and b? */
+/** May a new edge between a and b be created? */
 static inline int vg_tris_may_join(const struct vg_tris *w, uint32_t a,
                                    uint32_t b)
 {
@@ -162,42 +175,50 @@ static inline int vg_tris_may_join(const struct vg_tris *w, uint32_t a,
   return w->point[a].frozen + w->point[b].frozen < VG_WORK_FANS;
 }
 
-/** The surface of the reference, ready to be changed. */
+/** Set up w as a copy of the reference surface. */
 vg_status vg_tris_begin(struct vg_tris *w, struct vg_error *err);
 
 void vg_tris_release(struct vg_tris *w);
 
-/** Number of inconsistencies of live triangles, their mates, edges of curves
- * and points; a check of stages (base/checks.h). O(triangles). */
+/** Number of inconsistencies among triangles, their mates, feature edges and
+ * points, for stage checks (base/checks.h). O(triangles). */
 size_t vg_tris_defects(const struct vg_tris *w);
 
-/** Arrays for n triangles, w->tri to w->first, and their counts; edges and
- * stamps 0, the others not set. VG_ERR_MEMORY: some are there. */
+/** Allocate the arrays for n triangles, w->tri to w->first, and set their
+ * capacities. Feature edges and stamps are 0, other values are not set. On
+ * VG_ERR_MEMORY some arrays are allocated. */
 vg_status vg_tris_room(struct vg_tris *w, size_t n, struct vg_error *err);
 
-/** Free points, triangles and lines: NULL then. Counts stay. */
+/** Free points, triangles and feature edges and set them to NULL; counts
+ * remain. */
 void vg_tris_free_arrays(struct vg_tris *w);
 
-/** Half-edges that leave p, one for each of its triangles: [VG_WORK_RING];
- * *open: the point is on a rim. 0 when there are too many. */
+/** Outgoing half-edges of p, one for each of its triangles. Returns their
+ * number; 0 if there are too many.
+ *
+ * @param half  out: [VG_WORK_RING]
+ * @param open  out: 1 if the point is on a rim */
 size_t vg_tris_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
                     int *open);
 
-/** Size asked for at x. *by: as vg_ref_size. */
+/** Size at x. *by: as for vg_ref_size. */
 double vg_tris_size(const struct vg_tris *w, const double x[3], uint32_t *by);
 
-/** The same, from what asks for the sizes of the n points, and the triangle
- * home: right but where a spot of finer sizes lies between them all. */
+/** Size at x from triangle `home` and the triangles that determine the sizes of
+ * n points. Correct unless there is a spot of smaller sizes between these
+ * points. */
 double vg_tris_size_near(const struct vg_tris *w, const double x[3],
                          uint32_t home, size_t n, const uint32_t *point,
                          uint32_t *by);
 
-/** Set p->room by its size and place: the tolerance, and a part of the size. Of
- * the size without strips, whose width says nothing of how exact the surface
- * has to be; and not where one is closed. */
+/** Set p->room from its size and position: the minimum of the tolerance and a
+ * fraction of the size. The size without strips is used, because the width of a
+ * strip does not determine the accuracy of the surface. Near a closed strip the
+ * tolerance alone applies. */
 void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p);
 
-/** Let q, which is in its place, with home and by, ask for this size. */
+/** Set the target length of q, whose position, home and by are set, to
+ * `size`. */
 static inline void vg_tris_ask(const struct vg_tris *w, struct vg_tris_point *q,
                                double size)
 {
@@ -206,13 +227,13 @@ static inline void vg_tris_ask(const struct vg_tris *w, struct vg_tris_point *q,
   vg_tris_find_room(w, q);
 }
 
-/** That of the point; NULL where nothing is stretched. */
+/** Form at point p; NULL if the surface is not stretched. */
 static inline const double *vg_tris_form(const struct vg_tris *w, uint32_t p)
 {
   return w->form ? w->point[p].asked.form : NULL;
 }
 
-/** Length of an edge in parts of what its ends ask for. */
+/** Length of an edge relative to the mean target length at its ends. */
 static inline double vg_tris_length(const struct vg_tris *w,
                                     const struct vg_tris_point *a,
                                     const struct vg_tris_point *b)
@@ -226,45 +247,49 @@ static inline double vg_tris_length(const struct vg_tris *w,
 
 double vg_tris_ratio(const struct vg_tris *w, uint32_t h);
 
-/** Square of the sine of the smallest angle of a triangle, measured by the mean
- * of its points' forms. */
+/** Squared sine of the smallest angle of a triangle in the mean metric of its
+ * points. */
 double vg_tris_shape(const struct vg_tris *w, const struct vg_tris_point *a,
                      const struct vg_tris_point *b,
                      const struct vg_tris_point *c);
 
 double vg_tris_tri_shape(const struct vg_tris *w, size_t t);
 
-/* The changes. Each looks whether the outcome is a surface like the one given,
- * within the distance, and nowhere folded, and else does nothing and returns
- * 0; so do all once work is to end. */
+/* Changes. Each checks that the result is a manifold surface, within the
+ * tolerance of the reference and not folded. If it is not, or work is to end,
+ * nothing is changed and 0 is returned. */
 
-/** Put a point into the edge, in its middle or, on a curve, at `at`. Returns
- * it, or VG_REF_NONE. */
+/** Insert a point into edge h: at its midpoint, or on a curve at arc length
+ * *at. Returns the point, or VG_REF_NONE. */
 uint32_t vg_tris_split(struct vg_tris *w, uint32_t h, const double *at);
 
-/** Take the start of h away, onto its end. No edge gets longer than `most`
- * sizes, unless one is now; no angle smaller than `shape` (square of the
- * sine), unless one is now. */
+/** Collapse h by moving its start to its end. Refused if an edge would be
+ * longer than `most` target lengths and longer than any edge now, or an angle
+ * smaller than that of `shape` (squared sine) and smaller than any angle now.
+ */
 int vg_tris_collapse(struct vg_tris *w, uint32_t h, double most, double shape);
 
-/** The other diagonal, where the smallest angle gets larger. */
+/** Replace edge h by the other diagonal if that increases the smallest
+ * angle. */
 int vg_tris_swap(struct vg_tris *w, uint32_t h);
 
-/** Move a point of a face near x, on the reference; no angle smaller than
- * `shape` unless that is better than now. */
+/** Move a point of a face to the projection of x on the reference. Refused if
+ * an angle would be smaller than that of `shape`, unless the smallest angle
+ * increases. */
 int vg_tris_move(struct vg_tris *w, uint32_t p, const double x[3],
                  double shape);
 
-/* The two lines at a point of a curve: lengths along it of their ends. */
+/* The two feature edges at a point of a curve, and the arc lengths of their
+ * ends. */
 struct vg_tris_span {
   uint32_t line[2], curve;
-  double lo, at, hi; /* the point is at `at` */
+  double lo, at, hi; /* The point is at arc length `at`. */
 };
 
-/** That of p; 0 where it has none, or may not move. */
+/** Set s for point p. Returns 0 if p is not a curve point or may not move. */
 int vg_tris_span(const struct vg_tris *w, uint32_t p, struct vg_tris_span *s);
 
-/** Move a point of a curve along it to the length `at`; shape as above. */
+/** Move a point of a curve to arc length `at`; `shape` as for vg_tris_move. */
 int vg_tris_slide(struct vg_tris *w, uint32_t p, double at, double shape);
 
 #endif

@@ -1,6 +1,6 @@
-/* The five changes. Each gathers the triangles that go and those that come,
- * has them checked, cheapest question first, and only then touches the
- * surface. */
+/* The five changes: split, collapse, swap, move and slide. Each collects the
+ * old and the new triangles, has them checked, the cheapest test first, and
+ * only then modifies the surface. */
 #include "core/remesh/work_parts.h"
 
 #include <assert.h>
@@ -11,23 +11,18 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 
-#define GAIN 1.02 /* of a swap, in squares of sines */
+#define GAIN 1.02 /* least gain of a swap, in squared sines */
 #define STUCK                                                                  \
-  3.0 /* S37: sizes: edges as long are split within the                        \
-         tolerance alone */
+  3.0 /* S37: target lengths: such edges ignore the relative tolerance */
 #define NEARBY                                                                 \
-  2.5 /* sizes: ends of shorter edges know the size between                    \
-         them */
+  2.5 /* target lengths: shorter edges take their midpoint's size from their   \
+         ends */
 #define STRAY                                                                  \
-  0.1               /* of the edge or size: farther from it, steps along       \
-                       the reference have lost their way */
-#define ALMOST 0.95 /* of the shape, before a point is on the surface */
+  0.1 /* of the edge or size: farther projections have gone astray */
+#define ALMOST 0.95 /* of the shape, tested before a point is projected */
 #define FLAT2                                                                  \
-  1e-8 /* S33: (sin 0.006 degrees)^2: flatter ones come from                   \
-          no split */
-#define SPLIT_LOSS                                                             \
-  0.2 /* S23: least shape after a split, of what was                           \
-         before */
+  1e-8 /* S33: (sin 0.006 degrees)^2: no split creates flatter triangles */
+#define SPLIT_LOSS 0.2 /* S23: least shape after a split, of that before */
 
 /* --- bookkeeping --------------------------------------------------------- */
 
@@ -140,12 +135,13 @@ static int split_fits(const struct vg_tris *w, uint32_t h,
   }
   vg_cavity_measure(w, c);
   if (ratio > STUCK) c->tolerance = fmax(c->tolerance, w->tolerance);
-  /* A line that is not split where it is needed stays too long for good. */
+  /* A feature edge that cannot be split where it is needed stays too long for
+   * good. */
   return c->shape > (face ? SPLIT_LOSS : 0.01) * shape &&
          (!face || c->shape >= fmin(shape, FLAT2)) && vg_cavity_fits(w, c);
 }
 
-/* Of a long edge, something finer may lie between its ends. */
+/* Between the ends of a long edge sizes may be smaller than at its ends. */
 static void size_between(const struct vg_tris *w, uint32_t h,
                          struct vg_tris_point *p)
 {
@@ -168,8 +164,8 @@ static uint32_t add_point(struct vg_tris *w, const struct vg_tris_point *p)
   return (uint32_t)w->n_point++;
 }
 
-/* Divide the line of h at length s by point m: returns the line of the first
- * half of h; the other is *second. */
+/* Split the feature edge of h at arc length s by point m. Returns the part in
+ * the first half of h; *second is the other. */
 static uint32_t split_line(struct vg_tris *w, uint32_t h, uint32_t m, double s,
                            uint32_t *second)
 {
@@ -184,8 +180,9 @@ static uint32_t split_line(struct vg_tris *w, uint32_t h, uint32_t m, double s,
   return (forward ? i : j) + 1;
 }
 
-/* Put m into the edge of h: t[0], t[1] are the halves of its triangle, t[2] and
- * t[3] those of the other, in the order in which they run along their edge. */
+/* Insert m into the edge of h. t[0] and t[1] are the halves of its triangle,
+ * t[2] and t[3] those of the opposite one, each in the order along its own
+ * half-edge. */
 static void stitch(struct vg_tris *w, uint32_t h, uint32_t m, const uint32_t *t,
                    const uint32_t *e)
 {
@@ -254,7 +251,7 @@ uint32_t vg_tris_split(struct vg_tris *w, uint32_t h, const double *at)
 
 /* --- collapse ------------------------------------------------------------ */
 
-/* Line at curve point v other than that of h. */
+/* The feature edge at curve point v other than that of h. */
 static uint32_t other_line(const struct vg_tris *w, const uint32_t *ring,
                            size_t n, uint32_t line)
 {
@@ -267,7 +264,8 @@ static uint32_t other_line(const struct vg_tris *w, const uint32_t *ring,
   return 0;
 }
 
-/* A point of a curve goes along it only, where the chord stays near it. */
+/* A point of a curve may only move along the curve, and only if the new chord
+ * stays near it. */
 static int curve_fits(const struct vg_tris *w, uint32_t h, const uint32_t *ring,
                       size_t n, double tolerance)
 {
@@ -286,7 +284,8 @@ static int curve_fits(const struct vg_tris *w, uint32_t h, const uint32_t *ring,
                         fmax(a->at[1], b->at[1])) <= tolerance;
 }
 
-/* The ends have only the nodes opposite the edge as common neighbours. */
+/* Link condition: the ends of h share only the corners opposite h as
+ * neighbours. */
 static int link_fits(const struct vg_tris *w, uint32_t h, const uint32_t *ring,
                      size_t n, int open)
 {
@@ -311,7 +310,7 @@ static int link_fits(const struct vg_tris *w, uint32_t h, const uint32_t *ring,
   return common == wanted;
 }
 
-/* Edges from u to the neighbours of v that are new may be made. */
+/* May all new edges from u to neighbours of v be created? */
 static int joins_fit(const struct vg_tris *w, uint32_t h, const uint32_t *ring,
                      size_t n, int open)
 {
@@ -353,8 +352,8 @@ static int collapse_fits(const struct vg_tris *w, uint32_t h,
     if (a == u || b == u) continue;
     l = vg_tris_length(w, pu, pa);
     if (l > longest) return 0;
-    /* u a is new unless a is next to the edge that goes; curves are seen to
-     * elsewhere */
+    /* Edge u a is new unless a is next to the collapsed edge; feature edges are
+     * checked elsewhere. */
     c->was[c->n_new] = (uint16_t)i;
     vg_cavity_add(c, pu, pa, pb, w->edge[ring[i]] ? 0 : 1);
   }
@@ -379,7 +378,7 @@ static void collapse(struct vg_tris *w, uint32_t h, const uint32_t *ring,
     b = &w->line[other_line(w, ring, n, w->edge[h]) - 1];
     b->end[last] = u;
     b->at[last] = a->at[last];
-    a->end[0] = a->end[1] = u; /* no more */
+    a->end[0] = a->end[1] = u; /* The feature edge is removed. */
     a->at[0] = a->at[1];
   }
   for (size_t i = 0; i < n; i++) {
@@ -432,7 +431,8 @@ int vg_tris_collapse(struct vg_tris *w, uint32_t h, double most, double shape)
   if (w->point[v].kind == VG_WORK_CURVE &&
       !curve_fits(w, h, ring, n, c.tolerance))
     return 0;
-  /* Both other sides on curves would become one edge of two. */
+  /* If both other sides of a removed triangle are feature edges, they would
+   * become one edge. */
   for (int side = 0; side < 2 && k != VG_REF_NONE; side++, k = g) {
     uint32_t p = vg_half_next(k), q = vg_half_prev(k);
 
@@ -509,7 +509,7 @@ int vg_tris_swap(struct vg_tris *w, uint32_t h)
 
 /* --- move ---------------------------------------------------------------- */
 
-/* p becomes q: what is around it is told. */
+/* Replace p by q, and update the clocks, sizes and samples around it. */
 static void settle_move(struct vg_tris *w, uint32_t p, const uint32_t *ring,
                         const struct vg_cavity *c, struct vg_tris_point *q)
 {
@@ -529,7 +529,7 @@ static void settle_move(struct vg_tris *w, uint32_t p, const uint32_t *ring,
   w->n_move++;
 }
 
-/* The triangles around p as they would be were it q; returns the least shape
+/* The triangles around p after it is replaced by q. Returns the least shape
  * that they have now. */
 static double move_cavity(const struct vg_tris *w, uint32_t p, size_t n,
                           const uint32_t *ring, const struct vg_tris_point *q,
@@ -571,7 +571,7 @@ int vg_tris_move(struct vg_tris *w, uint32_t p, const double x[3], double shape)
   if (!(vg_unit(n) > 0)) return 0;
   memcpy(q.x, x, sizeof q.x);
   before = fmin(shape, move_cavity(w, p, n_ring, ring, &q, &c));
-  vg_cavity_measure(w, &c); /* roughly, which costs little, then exactly */
+  vg_cavity_measure(w, &c); /* approximately and cheaply first, then exactly */
   if (!(c.shape > ALMOST * before) ||
       !(vg_ref_project(w->ref, x, n, &q.home, q.x) <= STRAY * q.asked.size))
     return 0;
@@ -584,7 +584,7 @@ int vg_tris_move(struct vg_tris *w, uint32_t p, const double x[3], double shape)
 
 /* --- slide --------------------------------------------------------------- */
 
-/* The lines that end and begin at p, along their curve. */
+/* The feature edges that end and begin at p along their curve. */
 static int lines_at(const struct vg_tris *w, uint32_t p, size_t n,
                     const uint32_t *ring, uint32_t line[2])
 {

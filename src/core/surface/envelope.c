@@ -1,8 +1,9 @@
-/* Outline: points extreme in many directions stand for the convex hull;
- * triangles are on it or off it; pieces of either kind by union-find over the
- * edges; the largest piece on the hull is measured against the hull's
- * silhouettes, every piece off it against its lid. A closed surface has vector
- * area 0, so the lid of a piece has the vector area of the piece. */
+/* Outline: points that are extreme in many directions represent the convex
+ * hull. Each triangle is on the hull or off it, and union-find over the edges
+ * joins triangles of either kind to pieces. The largest piece on the hull is
+ * compared with the silhouettes of the hull, every piece off the hull with its
+ * lid. A closed surface has vector area 0, so the lid of a piece has the same
+ * vector area as the piece. */
 #include "core/surface/envelope.h"
 
 #include <assert.h>
@@ -15,9 +16,9 @@
 #include "core/geometry/vector.h"
 #include "core/mesh/edges.h"
 
-#define REACH 3 /* directions: the integer points of a cube's faces */
+#define REACH 3 /* directions: integer points on the faces of a cube */
 #define N_DIRECTION (7 * 7 * 7 - 5 * 5 * 5)
-#define BOX 64    /* points */
+#define BOX 64    /* points per box */
 #define SLACK 0.1 /* of the longest edge: rounding, chords, diagonals */
 
 struct piece {
@@ -29,13 +30,15 @@ struct envelope {
   const struct vg_mesh *m;
   size_t n_extreme;
   uint32_t extreme[N_DIRECTION];
-  uint8_t *on;         /* [n_tri] on the hull */
-  uint32_t *root;      /* [n_tri] union-find, then piece of the triangle */
-  struct piece *piece; /* [n_tri] at the roots */
-  double sign;         /* -1 where normals point inward */
+  uint8_t *on;         /* [n_tri] 1: on the hull. */
+  uint32_t *root;      /* [n_tri] Union-find; then the piece of each
+                          triangle. */
+  struct piece *piece; /* [n_tri] Data of a piece, at its root. */
+  double sign;         /* -1 if normals point inwards. */
 };
 
-/* Twice the vector area, turned outward; returns the longest edge, squared. */
+/* Twice the vector area, pointing outwards. Returns the squared longest
+ * edge. */
 static double face(const struct envelope *e, size_t i, double n[3])
 {
   const double *p[3];
@@ -54,7 +57,7 @@ static double face(const struct envelope *e, size_t i, double n[3])
   return longest;
 }
 
-/* Points in the order given, some at a time, in boxes: neighbours mostly. */
+/* Bounding boxes of consecutive points, most of which are neighbours. */
 struct box {
   double lo[3], hi[3];
 };
@@ -72,8 +75,8 @@ static void find_boxes(const struct vg_mesh *m, size_t n, struct box *box)
   }
 }
 
-/* First of the points that are farthest along d, begun with any. No point of a
- * box is farther than its corner, rounding or not. */
+/* The first of the points that are farthest along d, starting from point `at`.
+ * No point of a box is farther than its corner, even with rounding. */
 static uint32_t extreme(const struct vg_mesh *m, size_t n_box,
                         const struct box *box, const double d[3], uint32_t at)
 {
@@ -98,7 +101,7 @@ static vg_status find_extremes(struct envelope *e, struct vg_error *err)
 {
   const size_t n = (e->m->n_point + BOX - 1) / BOX;
   struct box *box = vg_alloc(n, sizeof *box);
-  uint32_t at = 0; /* is near the next one, too */
+  uint32_t at = 0; /* next directions are similar: a good start */
 
   if (!box) return vg_fail_memory(err, "the pieces of the surface");
   find_boxes(e->m, n, box);
@@ -115,8 +118,10 @@ static vg_status find_extremes(struct envelope *e, struct vg_error *err)
   return VG_OK;
 }
 
-/* *above: what lay above the triangle before, which it may above this one too;
- * out: what does. */
+/* Is triangle i on the hull?
+ *
+ * @param above  in: extreme point above the previous triangle, tested first;
+ *               out: the one tested last */
 static int is_on_hull(const struct envelope *e, size_t i, size_t *above)
 {
   const double *o = e->m->point[e->m->tri[i][0]];
@@ -184,8 +189,8 @@ static double turn(const double a[2], const double b[2], const double c[2])
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-/* Twice the area of the convex hull of sorted points: monotone chains below
- * and above, summed as triangles about the first point. */
+/* Twice the area of the convex hull of sorted points: lower and upper monotone
+ * chains, summed as triangles with the first point. */
 static double hull_area(size_t n, const double (*p)[2])
 {
   double chain[N_DIRECTION][2], sum = 0;
@@ -203,7 +208,7 @@ static double hull_area(size_t n, const double (*p)[2])
   return sum;
 }
 
-/* Least share of the silhouette that a piece covers, over six views. */
+/* The least fraction of the silhouette that a piece covers, over six views. */
 static double least_cover(const struct envelope *e, uint32_t piece)
 {
   double seen[6] = { 0 }, least = INFINITY;
@@ -257,7 +262,8 @@ static void judge(const struct envelope *e, uint8_t *outer,
                    out->depth >= VG_ENVELOPE_DEPTH;
 }
 
-/* Six times the volume behind the triangles, about the first point. */
+/* Six times the volume enclosed by the triangles, relative to the first
+ * point. */
 static double signed_volume(const struct envelope *e)
 {
   const double *o = e->m->point[0];

@@ -1,5 +1,6 @@
-/* The surface check: repair a copy as far as no guess is needed, then look
- * for what is left, kind by kind. The steps are in surface_parts.h. */
+/* The surface check: repairs a copy of the surface where the repair is
+ * unambiguous, then searches for the remaining defects, kind by kind. The steps
+ * are in surface_parts.h. */
 #include "core/surface/surface_check.h"
 
 #include <assert.h>
@@ -16,17 +17,18 @@ struct check {
   const struct vg_surface_check_options *o;
   struct vg_surface_report *r;
   struct vg_error *err;
-  uint32_t *same;  /* [n_point] lowest point with the coordinates */
-  uint32_t *owner; /* [n_point] lowest face, UINT32_MAX: none */
+  uint32_t *same;  /* [n_point] Lowest point with the same coordinates. */
+  uint32_t *owner; /* [n_point] Lowest face that uses the point; UINT32_MAX:
+                      none. */
   struct vg_faces s;
   struct vg_edges e;
   struct vg_box_tree tree;
   struct vg_crossing cross;
-  uint32_t *first;    /* [s.n] lowest face with the same nodes */
-  uint8_t *copy;      /* [s.n] enum vg_copy; NULL: no face is a copy */
-  uint32_t (*fan)[3]; /* [s.n] */
-  uint8_t *flip;      /* [s.n] faces to turn */
-  uint32_t *shell;    /* [s.n] */
+  uint32_t *first;    /* [s.n] Lowest face with the same nodes. */
+  uint8_t *copy;      /* [s.n] enum vg_copy; NULL: no face is a copy. */
+  uint32_t (*fan)[3]; /* [s.n] Umbrella of each corner. */
+  uint8_t *flip;      /* [s.n] Faces to turn. */
+  uint32_t *shell;    /* [s.n] Shell of each face. */
   uint8_t *shell_state, *shell_turn;
 };
 
@@ -84,8 +86,9 @@ static int has_copies(const struct vg_faces *s, const uint32_t *first)
   return 0;
 }
 
-/* Collapsed triangles, copies, and both sides of walls that bodies share. In
- * a mesh of cells a face with two sides bounds cells on both. */
+/* Mark collapsed triangles, copies, and both sides of walls shared by bodies.
+ * In a mesh with cells a two-sided face bounds cells on both sides and
+ * stays. */
 static void list_superfluous(const struct vg_mesh *m, const struct vg_faces *s,
                              const uint32_t *first, const uint8_t *copy,
                              uint8_t *drop, struct vg_surface_report *r)
@@ -127,7 +130,7 @@ done:
   return st;
 }
 
-/* Merge points, drop triangles, then points that nothing uses. */
+/* Merge points, drop superfluous triangles, then drop unused points. */
 static vg_status tidy(struct vg_mesh *m, struct vg_surface_report *r,
                       struct vg_error *err)
 {
@@ -278,7 +281,7 @@ done:
   return st;
 }
 
-/* Middle of what the boxes of two faces share. */
+/* Centre of the overlap of the boxes of two faces. */
 static void meeting_place(const struct check *c, uint32_t f, uint32_t g,
                           double at[3])
 {
@@ -384,7 +387,7 @@ static int compare_defect(const void *a, const void *b)
   return order;
 }
 
-/* --- the whole ----------------------------------------------------------- */
+/* --- whole check ---------------------------------------------------------- */
 
 static vg_status list_owners(struct check *c)
 {
@@ -401,7 +404,7 @@ static vg_status list_owners(struct check *c)
   return VG_OK;
 }
 
-/* What follows from the nodes of the faces. */
+/* Build everything that depends on the nodes of the faces only. */
 static vg_status build_topology(struct check *c, struct vg_error *err)
 {
   struct vg_surface_report *r = c->r;
@@ -418,8 +421,8 @@ done:
   return st;
 }
 
-/* The tree follows from coordinates, the rest from the nodes: each is made by a
- * thread of its own. */
+/* The tree depends on coordinates, all else on nodes: a thread builds each of
+ * the two. */
 struct halves {
   struct check *c;
   vg_status st[2];
@@ -450,9 +453,9 @@ static vg_status build_halves(struct check *c)
   return VG_OK;
 }
 
-/* Copies that are reported as such take no part in what follows, so that
- * they are not reported as edges and intersections, too: all but the first
- * face of a skin, and both faces of a wall that bodies share. */
+/* Copies that are reported are excluded from the following tests, so that they
+ * are not also reported as edges and intersections: all but the first face of a
+ * skin, and both faces of a wall that bodies share. */
 static vg_status find_copies(struct check *c)
 {
   struct vg_faces *s = &c->s;
@@ -539,7 +542,7 @@ static void turn_quad(uint32_t node[4])
   node[3] = n;
 }
 
-/* Halves of a quadrilateral turn together, or it stays as it is. */
+/* A quadrilateral is turned only if both its halves are. */
 static void apply_flips(struct check *c)
 {
   struct vg_mesh *m = c->m;
@@ -599,7 +602,7 @@ vg_status vg_surface_check(struct vg_mesh *m,
   c.err = err;
   vg_surface_report_release(report);
   VG_TRY(vg_mesh_check_index(m, err));
-  if (options->repair) { /* a failure half-way must not show */
+  if (options->repair) { /* A failure must not leave a partial repair. */
     VG_TRY(vg_mesh_copy(&work, m, err));
     c.m = &work;
   }

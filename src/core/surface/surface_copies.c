@@ -1,7 +1,8 @@
-/* Faces with the same three nodes: what each region of them means. A region
- * is what such faces form through common edges. The other faces at its border
- * tell a doubled piece of a skin (one other face at each edge) from a wall
- * that two bodies share (two others), whatever the orientation as read. */
+/* Classifies regions of faces with the same three nodes. A region consists of
+ * such faces that are connected through common edges. The other faces at its
+ * border distinguish a duplicated piece of a skin (one other face at each edge)
+ * from a wall shared by two bodies (two others), whatever the orientation in
+ * the file. */
 #include "core/surface/surface_parts.h"
 
 #include <assert.h>
@@ -10,22 +11,23 @@
 #include "base/memory.h"
 #include "base/union_find.h"
 
-/* Edges of a region's border, and kinds of its groups; bits. */
+/* Edges on the border of a region, and properties of its groups; bits. */
 enum {
-  BORDER_NONE = 1, /* an edge without any other face */
+  BORDER_NONE = 1, /* An edge without any other face. */
   BORDER_ONE = 2,
   BORDER_TWO = 4,
   BORDER_MORE = 8,
-  NOT_PAIRS = 16, /* three faces or more with the same nodes */
-  OPPOSITE = 32   /* two faces that look to opposite sides */
+  NOT_PAIRS = 16, /* Three or more faces with the same nodes. */
+  OPPOSITE = 32   /* Two faces that face opposite sides. */
 };
 
 struct regions {
   const struct vg_faces *s;
   const uint32_t *first;
-  uint32_t *n;     /* [s->n] faces with the nodes of a first face */
-  uint32_t *up;    /* [s->n] union of first faces */
-  uint8_t *border; /* [s->n] bits above, by root */
+  uint32_t *n;     /* [s->n] Number of faces with the nodes of each first
+                      face. */
+  uint32_t *up;    /* [s->n] Union-find of first faces. */
+  uint8_t *border; /* [s->n] Bits above, at the roots. */
 };
 
 static int is_multiple(const struct regions *x, uint32_t h)
@@ -33,8 +35,8 @@ static int is_multiple(const struct regions *x, uint32_t h)
   return x->n[x->first[h / 3]] > 1;
 }
 
-/* Join the groups of one edge, so that roots are final before the borders
- * are examined. */
+/* Join the groups at one edge. All edges are joined before borders are
+ * examined, so that the roots are final. */
 static void join_edge(struct regions *x, const struct vg_edges *e, size_t edge)
 {
   uint32_t last = UINT32_MAX;
@@ -46,8 +48,8 @@ static void join_edge(struct regions *x, const struct vg_edges *e, size_t edge)
   }
 }
 
-/* An edge within a region, where two groups of it or more meet, is no border
- * unless single faces hang on it. */
+/* An edge in which two or more groups of a region meet is not on its border,
+ * unless there are single faces at the edge. */
 static void look_at_edge(struct regions *x, const struct vg_edges *e,
                          size_t edge)
 {

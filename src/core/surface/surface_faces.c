@@ -1,4 +1,4 @@
-/* The boundary faces as triangles over points of distinct coordinates. */
+/* The boundary faces as triangles on points with distinct coordinates. */
 #include "core/surface/surface_parts.h"
 
 #include <assert.h>
@@ -11,7 +11,7 @@
 #include "base/tri_key.h"
 #include "core/geometry/predicates.h"
 
-/* Exactly zero area: the triangle is a line in all three projections. */
+/* Is the area exactly zero: is the triangle a line in all three projections? */
 static int is_flat(const double *a, const double *b, const double *c)
 {
   for (int k = 0; k < 3; k++) {
@@ -32,7 +32,8 @@ static uint8_t state_of(const double (*p)[3], const uint32_t n[3])
   return is_flat(p[n[0]], p[n[1]], p[n[2]]) ? VG_FACE_FLAT : 0;
 }
 
-/* Triangles first, then 0 1 2 and 0 2 3 of each quadrilateral. */
+/* Triangles come first, then triangles 0 1 2 and 0 2 3 of each
+ * quadrilateral. */
 static void corners(const struct vg_mesh *m, size_t f, uint32_t node[3])
 {
   if (f < m->n_tri) {

@@ -1,5 +1,5 @@
-/* Triangles of a surface that have more in common than their common nodes and
- * edges: all pairs, in the order of their numbers. */
+/* Finds triangles of a surface that share more than their common nodes and
+ * edges: all pairs, sorted by their numbers. */
 #include "core/surface/surface_parts.h"
 
 #include <assert.h>
@@ -10,7 +10,7 @@
 #include "core/geometry/triangles.h"
 #include "core/search/box_pairs.h"
 
-/* What one thread finds. Beyond the limit pairs are counted only. */
+/* Findings of one thread. Beyond the limit, pairs are counted only. */
 struct found {
   size_t n_pair, n_listed, cap;
   uint32_t (*pair)[2];
@@ -23,10 +23,10 @@ struct search {
   const uint32_t (*fan)[3];
   const uint32_t *shell;
   const struct vg_stop *stop;
-  struct found *found; /* by worker */
+  struct found *found; /* By worker. */
 };
 
-/* The least of all that threads come with: whatever their order. */
+/* Atomic minimum over all threads, independent of their order. */
 static void note_partner(struct vg_crossing *c, uint32_t f, uint32_t g)
 {
   uint32_t *at = &c->partner[f], now = __atomic_load_n(at, __ATOMIC_RELAXED);
@@ -76,8 +76,8 @@ static int compare_pair(const void *a, const void *b)
   return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* The pairs of all threads, sorted: each is found once, so the order in which
- * they were found does not show. */
+/* Collect and sort the pairs of all threads. Each pair is found once, so that
+ * the result does not depend on the order in which they were found. */
 static vg_status gather_pairs(struct vg_crossing *c, const struct found *found,
                               int n_found)
 {

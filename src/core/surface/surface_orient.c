@@ -1,4 +1,4 @@
-/* Components of the surface and agreement between neighbours. */
+/* Connected components of the surface, and consistent orientation. */
 #include "core/surface/surface_parts.h"
 
 #include <assert.h>
@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/union_find.h"
 
-/* Half-edge on the other side of h where its edge has two, else UINT32_MAX. */
+/* Half-edge opposite h if its edge has two faces, else UINT32_MAX. */
 static uint32_t opposite(const struct vg_edges *e, uint32_t h)
 {
   uint32_t edge = e->of_half[h], at;
@@ -19,9 +19,9 @@ static uint32_t opposite(const struct vg_edges *e, uint32_t h)
   return e->half[at] == h ? e->half[at + 1] : e->half[at];
 }
 
-/* Walk from `seed` over two-manifold edges: queue[0 .. n) are the faces of
- * the component, turn[] relative to the seed (2: not seen). Returns n, and
- * whether two ways round contradict each other. */
+/* Walk from `seed` over manifold edges. queue[0 .. n) are the faces of the
+ * component, turn[] their orientation relative to the seed (2: not visited).
+ * Returns n, and whether two paths contradict each other. */
 static size_t walk(const struct vg_faces *s, const struct vg_edges *e,
                    uint32_t seed, uint32_t *queue, uint8_t *turn,
                    int *is_one_sided)
@@ -91,7 +91,7 @@ vg_status vg_label_fans(const struct vg_faces *s, const struct vg_edges *e,
 {
   uint32_t *up = each_alone(3 * s->n);
 
-  if (!up) return vg_fail_memory(err, "the fans of the surface");
+  if (!up) return vg_fail_memory(err, "the umbrellas of the surface");
   for (size_t i = 0; i < e->n; i++) {
     uint32_t g = e->half[e->start[i]];
 

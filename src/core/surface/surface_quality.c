@@ -8,7 +8,8 @@
 
 #define BINS 600 /* of 0.1 degrees */
 
-/* 2 r / R of a triangle: 16 A^2 over perimeter and product of its edges. */
+/* Radius ratio 2 r / R of a triangle: 16 A^2 over the product of its perimeter
+ * and its three edges. */
 static double ratio_of(const struct vg_tri_shape *s)
 {
   double a = sqrt(s->longest2), b = sqrt(s->middle2), c = sqrt(s->shortest2);
@@ -17,7 +18,8 @@ static double ratio_of(const struct vg_tri_shape *s)
   return product > 0 ? 4 * s->area * s->area / product : 0;
 }
 
-/* Into the list, behind those that are no better. */
+/* Insert the triangle into the list of the worst, after those that are no
+ * better. */
 static void keep_worst(const struct vg_mesh *m, size_t face, double angle,
                        int is_cap, struct vg_surface_quality *q)
 {

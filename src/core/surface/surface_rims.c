@@ -1,11 +1,11 @@
-/* Open edges whose ends lie next to those of another open edge, since two parts
- * of a surface were rounded differently: core/surface/surface_check.h.
+/* Welds open edges whose ends are next to those of another open edge because
+ * the two parts of the surface were rounded differently: see surface_check.h.
  *
- * Levels of tolerance rise by factors of ten. On each level the ends of the
- * edges that are still open are grouped by their distance, and two edges
- * between the same two groups are partners: their ends become one. A small gap
- * is so closed before a larger distance close to it, such as a thin trailing
- * edge, can confuse it. */
+ * Tolerances are tried in levels that increase by factors of ten. On each level
+ * the ends of the edges that are still open are grouped by distance, and two
+ * edges between the same two groups are partners: their ends are merged. A
+ * small gap is thus closed before a larger distance near it, such as the
+ * thickness of a trailing edge, can be mistaken for a gap. */
 #include "core/surface/surface_parts.h"
 
 #include <assert.h>
@@ -19,25 +19,24 @@
 
 #define SHARE 0.1 /* S61: largest gap over the shortest edge there */
 #define LEVEL_LEAST                                                            \
-  1e-15 /* first tolerance over the largest coordinate,                        \
-           which has no digits for less */
+  1e-15 /* of the largest coordinate: first tolerance; less is not resolved */
 #define LEVEL_STEP 10
 
 struct rim_edge {
-  uint32_t end[2]; /* points of the mesh */
-  uint32_t key[2]; /* groups of its ends on the current level */
+  uint32_t end[2]; /* Points of the mesh. */
+  uint32_t key[2]; /* Groups of its ends on the current level. */
 };
 
 struct rims {
   const struct vg_mesh *m;
-  uint32_t *up;          /* [n_point] sets of points that become one */
-  double *shortest;      /* [n_point] shortest edge there */
-  struct rim_edge *edge; /* [n_edge] still open */
+  uint32_t *up;          /* [n_point] Union-find of points that are merged. */
+  double *shortest;      /* [n_point] Shortest edge at each point. */
+  struct rim_edge *edge; /* [n_edge] Edges still open. */
   size_t n_edge, n_matched;
-  double least;   /* first tolerance */
-  double gap;     /* largest distance of ends that became one */
-  uint8_t *used;  /* [n_point] on the current level */
-  uint32_t *near; /* [n_point] group on the current level */
+  double least;   /* First tolerance. */
+  double gap;     /* Largest distance of merged ends. */
+  uint8_t *used;  /* [n_point] 1: grouped on the current level. */
+  uint32_t *near; /* [n_point] Group on the current level. */
 };
 
 static void rims_release(struct rims *r)
@@ -112,8 +111,8 @@ done:
   return st;
 }
 
-/* Groups of the points `number`, of which map[] tells the groups by their
- * distance. Points that have become one on a lower level are in one group. */
+/* Set the groups of the n points `number`, where map[] is their grouping by
+ * distance. Points that were merged on a lower level are in the same group. */
 static void take_groups(struct rims *r, const uint32_t *number,
                         const uint32_t *map, size_t n)
 {
@@ -128,8 +127,8 @@ static void take_groups(struct rims *r, const uint32_t *number,
   }
 }
 
-/* Groups the ends of open edges that are long compared with the tolerance.
- * r->near becomes the group of each end, named by its lowest point. */
+/* Group the ends of open edges that are long compared with the tolerance.
+ * r->near becomes the group of each end, identified by its lowest point. */
 static vg_status group_ends(struct rims *r, double tolerance,
                             struct vg_error *err)
 {
@@ -173,7 +172,8 @@ static int by_key(const void *a, const void *b)
   return 0;
 }
 
-/* Edges that this level can match come first, by their groups. */
+/* Move the edges that this level can match to the front, sorted by their
+ * groups. */
 static size_t sort_edges(struct rims *r)
 {
   size_t n = 0;
@@ -235,7 +235,7 @@ static vg_status match_level(struct rims *r, double tolerance,
   return VG_OK;
 }
 
-/* Levels up to `most`, which is the last one. */
+/* Match on all levels up to the tolerance `most`, which is the last level. */
 static vg_status match_levels(struct rims *r, double most, struct vg_error *err)
 {
   double t = r->least;

@@ -1,4 +1,4 @@
-/* Shells: their volume, which lies in which, and to which side they look. */
+/* Shells: their volumes, nesting and sides. */
 #include "core/surface/surface_parts.h"
 
 #include <assert.h>
@@ -9,9 +9,9 @@
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 
-/* --- measure ------------------------------------------------------------- */
+/* --- volume --------------------------------------------------------------- */
 
-/* Sum with the lost low parts kept (Neumaier), and the sum of magnitudes. */
+/* Sum with compensation of rounding (Neumaier), and the sum of magnitudes. */
 struct total {
   double sum, low, size;
 };
@@ -96,7 +96,8 @@ vg_status vg_measure_shells(struct vg_shell *shell, uint8_t *state,
     uint32_t i = of_face[f];
     const uint32_t *n = s->node[f];
 
-    /* From a corner of the box: small numbers, wherever the body is. */
+    /* Relative to a corner of the shell's box, so that numbers are small
+     * wherever the body is. */
     if (i != UINT32_MAX)
       add_volume(&sum[i], shell[i].lo, s->point[n[0]], s->point[n[1 + flip[f]]],
                  s->point[n[2 - flip[f]]]);
@@ -105,7 +106,7 @@ vg_status vg_measure_shells(struct vg_shell *shell, uint8_t *state,
     double total = sum[i].sum + sum[i].low;
 
     shell[i].volume = total / 6;
-    /* 8 roundings of 2^-53 per determinant; the sum itself adds none. */
+    /* 8 roundings of 2^-53 per determinant; the compensated sum adds none. */
     if (!(fabs(total) > 1e-15 * sum[i].size)) state[i] |= VG_SHELL_FLAT;
   }
   free(sum);
@@ -119,8 +120,8 @@ static int sign(double x)
   return (x > 0) - (x < 0);
 }
 
-/* Side of the line a b, projected along x, on which p + (0, e, e^2) lies for
- * e -> 0: never 0 unless a and b project to one point, so that a ray through
+/* Side of the line a b, projected along x, on which p + (0, e, e^2) lies for e
+ * -> 0. Never 0 unless a and b project to the same point, so that a ray through
  * an edge or a node is counted once. */
 static int side_of(const double *a, const double *b, const double *p)
 {
@@ -146,8 +147,8 @@ struct ray {
   const struct vg_shell *shell;
   const uint32_t *of_face;
   const double *from;
-  uint32_t own;  /* shell that the ray starts on */
-  uint32_t *hit; /* [n] shells crossed, as often as crossed */
+  uint32_t own;  /* Shell from which the ray starts. */
+  uint32_t *hit; /* [n] Shells crossed, with repetition. */
   size_t n, cap;
 };
 
@@ -189,9 +190,10 @@ static size_t keep_odd(uint32_t *id, size_t n)
 }
 
 struct nest {
-  uint32_t *foot; /* [n_shell] node of least x, so short rays */
-  size_t *start;  /* [n_shell + 1] into list */
-  uint32_t *list; /* shells around each shell */
+  uint32_t *foot; /* [n_shell] Node of least x, from which rays towards -x are
+                     short. */
+  size_t *start;  /* [n_shell + 1] Ranges of `list`. */
+  uint32_t *list; /* Shells around each shell. */
   size_t n, cap;
 };
 
@@ -209,7 +211,7 @@ static void find_feet(struct nest *x, size_t n_shell, const struct vg_faces *s,
   }
 }
 
-/* The line from p towards -x. */
+/* The ray from p towards -x. */
 static struct vg_box line_from(const double p[3])
 {
   return (struct vg_box){ { -INFINITY, p[1], p[2] }, { p[0], p[1], p[2] } };
@@ -262,7 +264,7 @@ vg_status vg_nest_shells(struct vg_shell *shell, size_t n_shell,
     for (size_t k = x.start[i]; k < x.start[i + 1]; k++) {
       size_t around = x.list[k];
 
-      /* Shells that cross can each have a node within the other. */
+      /* Of two shells that intersect, each can have a node inside the other. */
       if (shell[around].depth < shell[i].depth &&
           (shell[i].parent == SIZE_MAX ||
            shell[around].depth > shell[shell[i].parent].depth))
@@ -276,17 +278,18 @@ done:
   return st;
 }
 
-/* --- sides --------------------------------------------------------------- */
+/* --- orientation of shells ------------------------------------------------ */
 
 struct sides {
-  size_t *order; /* [n] closed shells, outer before inner */
+  size_t *order; /* [n] Closed shells, outer before inner. */
   size_t n;
-  uint8_t *wrong;     /* [n_shell] not the side its depth asks for */
-  uint8_t *all_wrong; /* [n_shell] nor any shell within */
-  uint8_t *whole;     /* [n_shell] turned with all within */
+  uint8_t *wrong;     /* [n_shell] 1: not the side that its depth requires. */
+  uint8_t *all_wrong; /* [n_shell] 1: neither this shell nor any inside it is
+                         right. */
+  uint8_t *whole;     /* [n_shell] 1: turned with all shells inside it. */
 };
 
-/* By rising depth, then number (counting sort; depths are below n_shell). */
+/* Sort by depth, then by number (counting sort; depths are below n_shell). */
 static void sort_by_depth(struct sides *x, const struct vg_shell *shell,
                           const uint8_t *state, size_t n_shell, size_t *at)
 {
@@ -302,8 +305,8 @@ static void sort_by_depth(struct sides *x, const struct vg_shell *shell,
   }
 }
 
-/* Fluid lies outside of outermost shells when external, else inside, and
- * changes with every shell further in. */
+/* The fluid is outside the outermost shells if external, else inside them, and
+ * alternates with each nested shell. */
 static void judge(struct sides *x, const struct vg_shell *shell, int external)
 {
   for (size_t i = 0; i < x->n; i++) {
@@ -320,9 +323,9 @@ static void judge(struct sides *x, const struct vg_shell *shell, int external)
   }
 }
 
-/* The shells that bound the fluid for certain are outermost ones and, within
- * a farfield, those directly inside it. They are turned as needed, with all
- * they contain where that is wrong as well. */
+/* The shells that certainly bound the fluid are the outermost ones and, within
+ * a farfield, those directly inside it. They are turned as needed, together
+ * with all shells inside them if all of these are wrong as well. */
 static void settle(struct sides *x, const struct vg_shell *shell,
                    uint8_t *state, int external, int repair,
                    const uint8_t *crossed, uint8_t *turn)

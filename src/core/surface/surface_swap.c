@@ -1,6 +1,7 @@
-/* Better triangles on the points a surface has: work on a copy of the
- * triangles, test what changed, and begin again with the points locked where
- * it meets something. Every round locks more, so the rounds end. */
+/* Improves triangles without adding points. A copy of the triangles is changed
+ * and then tested for intersections. Points of intersecting triangles are
+ * locked, and the changes start again from the input. Every round locks more
+ * points, so that the rounds end. */
 #include "core/surface/surface_swap.h"
 
 #include <math.h>
@@ -15,19 +16,19 @@
 #include "core/surface/surface_parts.h"
 #include "core/surface/surface_swap_parts.h"
 
-#define ROUNDS 16 /* then the surface stays as it is */
+#define ROUNDS 16 /* then the surface stays unchanged */
 #define PASSES 8  /* of collapses, each followed by swaps */
 
 struct job {
   struct vg_swapper w;
   const struct vg_mesh *m;
   struct vg_error *err;
-  uint32_t *same; /* [n_point] every point is itself */
+  uint32_t *same; /* [n_point] Identity map: no points are merged. */
   struct vg_faces s;
   struct vg_edges e;
   struct vg_box_tree tree;
   uint32_t (*fan)[3];
-  size_t n_locked; /* points locked in this round */
+  size_t n_locked; /* Points locked in this round. */
 };
 
 static void release_topology(struct job *j)
@@ -56,9 +57,9 @@ static void release(struct job *j)
   free(w->mark);
 }
 
-/* --- the input ----------------------------------------------------------- */
+/* --- input ---------------------------------------------------------------- */
 
-/* By its series, since cos() may differ from machine to machine. */
+/* By its series: cos() may differ between machines. */
 static double cosine_of(double degrees)
 {
   double x = degrees * (3.14159265358979323846 / 180), term = 1, sum = 1;
@@ -75,19 +76,20 @@ static vg_status check_options(const struct vg_swap_options *o,
 {
   if (!(o->distance >= 0) || isinf(o->distance))
     return vg_fail(err, VG_ERR_INPUT,
-                   "swaps may move the surface by %g of "
-                   "the length of a triangle: give 0 or a small positive "
+                   "swaps may move the surface by %g of the length of a "
+                   "triangle: this fraction must be 0 or a small positive "
                    "number",
                    o->distance);
   if (!(o->angle >= 0 && o->angle < 90))
     return vg_fail(err, VG_ERR_INPUT,
-                   "swaps may turn normals by %g degrees: "
-                   "give 0 or more and less than 90",
+                   "swaps may turn normals by %g degrees: this angle must be "
+                   "at least 0 and less than 90",
                    o->angle);
   if (!(o->short_edge >= 0 && o->short_edge < 1))
     return vg_fail(err, VG_ERR_INPUT,
-                   "edges count as short below %g of their "
-                   "neighbours: give 0 or more and less than 1",
+                   "edges count as short below %g of the length of their "
+                   "neighbours: this fraction must be at least 0 and less "
+                   "than 1",
                    o->short_edge);
   return VG_OK;
 }
@@ -128,7 +130,7 @@ static vg_status allocate(struct job *j)
   return VG_OK;
 }
 
-/* Faces and edges of the triangles as they are now. */
+/* Faces and edges of the current triangles. */
 static vg_status build_topology(struct job *j)
 {
   struct vg_mesh view = *j->m;
@@ -154,7 +156,7 @@ static vg_status refuse_edge(const struct job *j, size_t edge, uint32_t n)
                  (unsigned)(h / 3 + 1), .5 * p[0] + .5 * q[0],
                  .5 * p[1] + .5 * q[1], .5 * p[2] + .5 * q[2],
                  n == 1   ? "has no neighbour"
-                 : n == 2 ? "has a neighbour of other orientation"
+                 : n == 2 ? "has a neighbour of opposite orientation"
                           : "has more than one neighbour");
 }
 
@@ -207,7 +209,7 @@ done:
   return st;
 }
 
-/* --- the test ------------------------------------------------------------ */
+/* --- test for intersections ----------------------------------------------- */
 
 static void lock(struct job *j, uint32_t t)
 {
@@ -235,7 +237,8 @@ static vg_status test_pair(void *context, int worker, uint32_t f, uint32_t g)
   return VG_OK;
 }
 
-/* Two nodes joined twice, where the surface touches itself at a node. */
+/* Lock points at edges that occur twice, where the surface touches itself at a
+ * node. */
 static void test_edges(struct job *j)
 {
   for (size_t i = 0; i < j->e.n; i++) {
@@ -252,7 +255,7 @@ static void test_faces(struct job *j)
     if (j->s.state[t] & VG_FACE_FLAT) lock(j, t);
 }
 
-/* Lock the points of changed triangles that meet any other triangle. */
+/* Lock the points of changed triangles that intersect any other triangle. */
 static vg_status test(struct job *j)
 {
   vg_status st;
@@ -268,7 +271,7 @@ done:
   return st;
 }
 
-/* --- the whole ----------------------------------------------------------- */
+/* --- all rounds ----------------------------------------------------------- */
 
 static void count_slivers(const struct vg_swapper *w, size_t *n_cap,
                           size_t *n_needle)
@@ -294,8 +297,9 @@ static void swap_all(struct vg_swapper *w, int caps_only)
   vg_swap_edges(w);
 }
 
-/* Short edges and caps first: they need the movement that is allowed most,
- * and a cap that goes with its apex moves the surface less than by a swap. */
+/* Short edges and caps come first: they need most of the permitted movement,
+ * and collapsing the apex of a cap moves the surface less than swapping its
+ * edge. */
 static vg_status change(struct job *j)
 {
   size_t n = 0;
@@ -313,7 +317,7 @@ done:
   return st;
 }
 
-/* The triangles of j->m as they should be, in j->w; n_round of them tried. */
+/* Compute the improved triangles in j->w, with up to ROUNDS attempts. */
 static vg_status improve(struct job *j)
 {
   vg_status st = VG_OK;
@@ -341,7 +345,7 @@ static void commit(struct job *j, struct vg_mesh *m)
   for (size_t t = 0; t < w->n_tri; t++) drop[t] = vg_tri_removed(w, t);
   vg_mesh_drop_tri(m, drop);
   for (size_t p = 0; p < w->n_point; p++) w->removed[p] = !w->removed[p];
-  vg_mesh_renumber(m, j->same, w->removed); /* now: the points to keep */
+  vg_mesh_renumber(m, j->same, w->removed); /* now: points to keep */
 }
 
 static void report(const struct vg_swapper *w, struct vg_swap_report *r)

@@ -1,12 +1,13 @@
-/* core/surface/surface_swap.h: better triangles on the points a surface has.
+/* core/surface/surface_swap.h: improves the triangles of a surface without
+ * adding points.
  *
- * Surfaces from CAD carry caps (three nodes almost on a line) and needles
- * (two nodes almost at one place), on which layers invert at once. Caps
- * vanish when their long edge is swapped for the other diagonal, needles when
- * their short edge is collapsed; both hardly move the surface.
- * Swaps: Lawson, "Software for C1 surface interpolation", Mathematical
- * Software III, 1977; collapses: the link condition of Dey et al.,
- * "Topology preserving edge contraction", Publ. Inst. Math. 66, 1999. */
+ * Surfaces from CAD contain caps (three nodes almost on a line) and needles
+ * (two nodes almost at the same point), on which layers invert at once. Caps
+ * are removed by swapping their long edge, needles by collapsing their short
+ * edge; both hardly move the surface.
+ * Swaps: Lawson, "Software for C1 surface interpolation", Mathematical Software
+ * III, 1977. Collapses: the link condition of Dey et al., "Topology preserving
+ * edge contraction", Publ. Inst. Math. 66, 1999. */
 #ifndef VG_CORE_SURFACE_SURFACE_SWAP_H
 #define VG_CORE_SURFACE_SURFACE_SWAP_H
 
@@ -15,32 +16,33 @@
 #include "core/mesh/mesh.h"
 
 struct vg_swap_options {
-  double distance;   /* how far the surface may move in all, in parts
-                        of the length there: of the longest edges at
-                        a cap, of the mean of the edges at a short
-                        edge, elsewhere of 0.3 of the shortest */
-  double angle;      /* how far normals may turn, degrees, < 90 */
-  int collapse;      /* collapse short edges too */
-  double short_edge; /* short: below this part of the mean length of
-                        the other edges at both ends, < 1 */
+  double distance;   /* Largest total movement of the surface relative to a
+                        local length: the longest edge at a cap, the mean edge
+                        at a short edge, elsewhere 0.3 of the shortest edge. */
+  double angle;      /* Largest change of normals in degrees, < 90. */
+  int collapse;      /* 1: also collapse short edges. */
+  double short_edge; /* Edges are short below this fraction of the mean length
+                        of the other edges at both ends, < 1. */
 };
 #define VG_SWAP_OPTIONS_INIT                                                   \
   {                                                                            \
     1e-3, 10, 1, 0.02                                                          \
   } /* S1 */
 
-/* Triangles lower than this part of their longest edge are caps when they
- * have an angle over 120 degrees, else needles. */
+/* Triangles lower than this fraction of their longest edge are caps if they
+ * have an angle above 120 degrees, else needles. */
 #define VG_SWAP_SLIVER 0.02 /* S2 */
 
 struct vg_swap_report {
   size_t n_swapped, n_collapsed;
-  double moved;                 /* bound of how far the surface moved */
-  double moved_relative;        /* the same, in parts of the length there */
-  size_t n_cap[2], n_needle[2]; /* before, after */
-  size_t n_kept; /* points whose triangles stay as they are, since
-                    better ones met another part of the surface;
-                    all when no way was found to avoid that */
+  double moved;                 /* Upper bound of the movement of the
+                                   surface. */
+  double moved_relative;        /* The same, relative to the local length. */
+  size_t n_cap[2], n_needle[2]; /* Before, after. */
+  size_t n_kept;                /* Points whose triangles were kept because
+                                   better ones intersected another part of the
+                                   surface; all points if no attempt avoided
+                                   that. */
 };
 #define VG_SWAP_REPORT_INIT                                                    \
   {                                                                            \
@@ -50,16 +52,16 @@ struct vg_swap_report {
 /** Swap the edges of a closed surface until it is as nearly Delaunay (its
  * smallest angles as large) as its shape permits, and collapse short edges.
  *
- * Edges between patches and ridges (triangles of sound shape that differ by
- * more than the angle) are never swapped; points are removed only within
- * patches and along smooth edges of patches. A surface that is closed,
- * manifold, oriented and free of self-intersections stays so: the exact test
- * of vg_surface_check is made of all that changed, and what meets anything is
- * taken back.
+ * Patch borders and sharp edges (between triangles of sound shape that differ
+ * by more than the angle) are never swapped. Points are removed only inside
+ * patches and along smooth patch borders. A surface that is closed, manifold,
+ * oriented and free of self-intersections stays so: everything that changed is
+ * subjected to the exact test of vg_surface_check, and changes that intersect
+ * anything are undone.
  *
  * @param m  triangles only. Order of points, triangles and patches is kept;
- *           points and triangles removed leave no gaps. Corners of triangles
- *           that changed may begin elsewhere. Untouched on failure.
+ *           points and triangles removed leave no gaps. Corners of changed
+ *           triangles may start elsewhere. Untouched on failure.
  * @param r  out; may be NULL
  * VG_ERR_INPUT for a surface that is open, non-manifold or not oriented, has
  * quadrilaterals or cells, or for options out of range; VG_ERR_UNSUPPORTED

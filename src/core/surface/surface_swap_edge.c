@@ -1,5 +1,6 @@
-/* Swaps of edges. The smallest angle of the two triangles grows with every
- * swap, hence the sorted list of all smallest angles, so this ends. */
+/* Edge swaps. The smallest angle of the two triangles grows with every swap,
+ * hence also the sorted list of all smallest angles, so that the process
+ * terminates. */
 #include "core/surface/surface_swap_parts.h"
 
 #include <assert.h>
@@ -7,12 +8,12 @@
 
 #include "core/geometry/vector.h"
 
-/* Least gain of the square of the sine: rounding and the two diagonals of a
- * square must not count. */
+/* Least gain of the squared sine: rounding, and the equal diagonals of a
+ * square, must not count as a gain. */
 #define GAIN 1.01 /* S3 */
 
-/* Pairs without a cap may use this part of the distance only: there is less
- * to be gained, and on a curved surface all of them together count. */
+/* Pairs without a cap may use this fraction of the distance only: they gain
+ * less, and on a curved surface the movements of all of them add up. */
 #define GOOD 0.3
 
 static const double *at(const struct vg_swapper *w, uint32_t p)
@@ -74,8 +75,9 @@ static uint32_t pop(struct vg_swapper *w)
   return h;
 }
 
-/* Are the nodes that c and d leave joined? Turns about both at once, so that
- * a node with very many edges does not cost more than its partner has. */
+/* Are the start nodes of c and d connected by an edge? Searches around both
+ * nodes in step, so that a node with very many edges costs no more than the
+ * other one. */
 static int joined(const struct vg_swapper *w, uint32_t c, uint32_t d)
 {
   uint32_t from_c = vg_swap_from(w, c), from_d = vg_swap_from(w, d);
@@ -91,8 +93,8 @@ static int joined(const struct vg_swapper *w, uint32_t c, uint32_t d)
   return 0;
 }
 
-/* Between the lines a b and c d: for a convex quadrilateral that is how far
- * its surface moves when one diagonal takes the place of the other. */
+/* Distance of the lines a b and c d. For a convex quadrilateral it is the
+ * movement of the surface when one diagonal replaces the other. */
 static double distance(const double *a, const double *b, const double *c,
                        const double *d)
 {
@@ -106,8 +108,9 @@ static double distance(const double *a, const double *b, const double *c,
   return size > 0 ? fabs(vg_dot(x, y)) / sqrt(size) : INFINITY;
 }
 
-/* Normals of the old pair: the larger one is the surface's; the other says
- * something only when it is no sliver. */
+/* Compare new normals with those of the old pair. The larger old triangle
+ * defines the normal of the surface; the other one counts only if it is not a
+ * sliver. */
 static int normals_fit(const struct vg_swapper *w,
                        const struct vg_tri_shape before[2],
                        const struct vg_tri_shape after[2])
@@ -123,8 +126,8 @@ static int normals_fit(const struct vg_swapper *w,
   return 1;
 }
 
-/* Faces f = a b c and g = b a d become d c a and c d b: a half-edge keeps
- * its place unless it is one of the two that change faces. */
+/* Faces f = a b c and g = b a d become d c a and c d b. A half-edge keeps its
+ * place unless it is one of the two that move to the other face. */
 static void swap(struct vg_swapper *w, uint32_t f, uint32_t g, uint32_t c,
                  uint32_t d)
 {
@@ -150,7 +153,7 @@ static void swap(struct vg_swapper *w, uint32_t f, uint32_t g, uint32_t c,
   vg_swap_push(w, g2);
 }
 
-/* Book the movement of the two faces if it is within the bound. */
+/* Add the movement to the two faces if it is within the limit. */
 static int may_move(struct vg_swapper *w, size_t s, size_t t, double by,
                     double length)
 {
@@ -163,9 +166,9 @@ static int may_move(struct vg_swapper *w, size_t s, size_t t, double by,
   return 1;
 }
 
-/* Length of which a pair may move the part that the options give. A cap
- * cannot move by more than its height; two needles of a strip could move by
- * much of the width of the strip if their length were taken. */
+/* Reference length for the permitted movement of a pair. A cap cannot move by
+ * more than its height. Two needles of a narrow strip could move by a large
+ * part of its width if their length were used. */
 static double length_of(const struct vg_tri_shape pair[2])
 {
   if (vg_tri_shape_cap(&pair[0]) || vg_tri_shape_cap(&pair[1]))

@@ -1,4 +1,4 @@
-/* Removal of points by collapsing a short edge onto one of its ends. */
+/* Removes points by collapsing a short edge into one of its ends. */
 #include "core/surface/surface_swap_parts.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 
 #define RING 64 /* points with more edges stay */
 
-/* The half-edges away from a point, beginning with the one to collapse. */
+/* The outgoing half-edges of a point, beginning with the one to collapse. */
 struct ring {
   uint32_t half[RING];
   size_t n;
@@ -39,7 +39,7 @@ static int collect(const struct vg_swapper *w, uint32_t h, struct ring *r)
   return 1;
 }
 
-/* The ends have only the two opposite nodes as common neighbours. */
+/* Link condition: the ends share only the two nodes opposite the edge. */
 static int link_fits(struct vg_swapper *w, const struct ring *a,
                      const struct ring *b)
 {
@@ -58,8 +58,8 @@ static int between_patches(const struct vg_swapper *w, uint32_t h)
   return w->patch[h / 3] != w->patch[w->mate[h] / 3];
 }
 
-/* A point between patches may only go along their edge, from which it must
- * not be far once it is gone. *by: how far it is. */
+/* A point on a patch border may only move along that border, and must not be
+ * far from it after the collapse. *by: its distance. */
 static int edge_fits(const struct vg_swapper *w, const struct ring *r,
                      double *by)
 {
@@ -84,8 +84,9 @@ static int edge_fits(const struct vg_swapper *w, const struct ring *r,
   return 1;
 }
 
-/* Is the face that i begins sound as it is, or like what is across? A sliver
- * says nothing of the surface, but its neighbour may. */
+/* Does the new triangle agree with the old one at i or, if that is a sliver,
+ * with the triangle opposite? A sliver does not define the normal of the
+ * surface. */
 static int normal_fits(const struct vg_swapper *w, uint32_t i,
                        const struct vg_tri_shape *old,
                        const struct vg_tri_shape *now)
@@ -101,7 +102,8 @@ static int normal_fits(const struct vg_swapper *w, uint32_t i,
   return vg_tri_shape_sound(&s) && vg_tri_shape_agree(w, &s, now);
 }
 
-/* How far the surface moves when the point goes; INFINITY if it must stay. */
+/* Movement of the surface if the start of h is removed; INFINITY if it must
+ * stay. */
 static double price(struct vg_swapper *w, uint32_t h, double length)
 {
   const double *a = from(w, h), *b = from(w, w->mate[h]);
@@ -130,8 +132,8 @@ static double price(struct vg_swapper *w, uint32_t h, double length)
   return by + most <= w->o->distance * length ? by + most : INFINITY;
 }
 
-/* Faces f and g at the half-edge vanish, the others at its start get its
- * end. Everything around goes to the queue. */
+/* Remove faces f and g at the half-edge; the other faces at its start use its
+ * end instead. All surrounding edges are queued. */
 static void collapse(struct vg_swapper *w, uint32_t f, double moved)
 {
   uint32_t g = w->mate[f], f1 = vg_half_next(f), f2 = vg_half_next(f1);
@@ -171,7 +173,7 @@ static int try_collapse(struct vg_swapper *w, uint32_t h, double length)
   return 1;
 }
 
-/* Sum and number of the edges of every point. */
+/* Sum and number of the edges of each point. */
 static void measure(const struct vg_swapper *w, double *sum, uint32_t *n)
 {
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
@@ -182,7 +184,8 @@ static void measure(const struct vg_swapper *w, double *sum, uint32_t *n)
   }
 }
 
-/* A short side of a cap: swaps have left it, but its apex may go. */
+/* A short side of a cap: swaps did not remove the cap, but its apex can be
+ * collapsed. */
 static int at_cap(const struct vg_swapper *w, uint32_t h)
 {
   const double *a = from(w, h), *b = from(w, vg_half_next(h));

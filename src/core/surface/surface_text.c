@@ -1,4 +1,4 @@
-/* Findings of the surface check in words. */
+/* Findings of the surface check as text. */
 #include <assert.h>
 #include <stdio.h>
 
@@ -17,7 +17,7 @@ const char *vg_defect_name(enum vg_defect_kind kind)
   return (unsigned)kind < VG_DEFECT_N ? name[kind] : "unknown";
 }
 
-/* "patch 3 (wing), face 17", or "" where there is none. */
+/* "patch 3 (wing), face 17", or "" if the finding has no such face. */
 static void face_text(const struct vg_mesh *m, size_t f, char *text,
                       size_t size)
 {
@@ -67,8 +67,8 @@ static const char *remedy(const struct vg_defect *d)
     return "three or more faces meet in this edge; remove inner walls and "
            "doubled faces, or separate the bodies";
   case VG_DEFECT_ORIENTATION:
-    return "the faces on this edge look to different sides; turn one part of "
-           "the surface (a one-sided surface bounds no volume)";
+    return "the faces on this edge have opposite orientations; turn one part "
+           "of the surface (a one-sided surface bounds no volume)";
   case VG_DEFECT_DUPLICATE_POINT:
     return "two points have the same coordinates; weld the surface";
   case VG_DEFECT_UNUSED_POINT: return "no face uses this point; remove it";
@@ -77,10 +77,10 @@ static const char *remedy(const struct vg_defect *d)
            "edge";
   case VG_DEFECT_DUPLICATE_TRIANGLE:
     return "two triangles have the same points; remove one, or both if they "
-           "are a wall without thickness";
+           "are a wall of zero thickness";
   case VG_DEFECT_SHARED_WALL:
-    return "two bodies that touch both have this triangle; unite the bodies, "
-           "or use --wrap";
+    return "this triangle belongs to two bodies that touch; unite the "
+           "bodies, or use --wrap";
   case VG_DEFECT_INTERSECTION:
     return "these faces cross, overlap or touch; unite the bodies or "
            "move the surface apart there";
@@ -91,7 +91,7 @@ static const char *remedy(const struct vg_defect *d)
   case VG_DEFECT_NOT_FINITE:
     return "a coordinate is NaN or infinite; repair the file";
   case VG_DEFECT_QUAD:
-    return "the surface may have triangles only; split the quadrilateral";
+    return "the surface must consist of triangles; split the quadrilateral";
   default: return "";
   }
 }

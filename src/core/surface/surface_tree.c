@@ -1,4 +1,4 @@
-/* Tree of boxes about the triangles of a surface. */
+/* Tree of the bounding boxes of surface triangles. */
 #include "core/surface/surface_parts.h"
 
 #include <stdlib.h>

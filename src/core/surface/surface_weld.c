@@ -1,5 +1,5 @@
-/* Points that coincide, and the renumbering that follows from merging or
- * dropping points and triangles. */
+/* Merges points that coincide, and renumbers after points and triangles were
+ * merged or dropped. */
 #include "core/surface/surface_parts.h"
 
 #include <assert.h>
@@ -24,7 +24,7 @@ static int finite3(const double p[3])
   return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
 }
 
-/* Slot that holds an index i with key[i] equal to x, or the free one where
+/* Slot that contains an index i with key[i] equal to x, or the free slot where
  * such an index belongs. */
 static uint32_t *find(const struct vg_table *t, const double (*key)[3],
                       const double x[3])
@@ -68,20 +68,24 @@ vg_status vg_points_same(const struct vg_mesh *m, uint32_t **same,
 
 /* --- within a tolerance -------------------------------------------------- */
 
-/* Cells of which the tolerance is the diagonal, and blocks of BLOCK^3 cells,
- * which tell at once of most cells that nothing is near. */
+/* Cells whose diagonal is the tolerance, in blocks of BLOCK^3 cells. An empty
+ * block excludes many cells with a single look-up. */
 #define BLOCK 16
-#define REACH 2  /* cells that may hold a point within reach */
-#define CROWD 62 /* cells in reach, half of them: one side looks */
+#define REACH 2  /* cells: points farther apart are not within reach */
+#define CROWD 62 /* cells in reach, of which half are examined */
 
 struct grid {
-  struct vg_table cell, block; /* first point of each */
-  double (*key)[3];            /* [n] cell of each point, whole numbers */
-  double (*block_key)[3]; /* [n] block, of points that are first in theirs */
-  uint32_t *next;         /* [n] in the same cell */
-  uint32_t *next_cell;    /* [n] first point of the next cell in the block */
-  uint32_t *n_cell;       /* [n] > 0 for the first point of a cell; of a
-                             block's first, number of cells in the block */
+  struct vg_table cell, block; /* First point of each. */
+  double (*key)[3];            /* [n] Integer coordinates of the cell of each
+                                  point. */
+  double (*block_key)[3];      /* [n] Block of each point that is the first of
+                                  its cell. */
+  uint32_t *next;              /* [n] Next point in the same cell. */
+  uint32_t *next_cell;         /* [n] First point of the next cell in the
+                                  block. */
+  uint32_t *n_cell;            /* [n] > 0 for the first point of a cell; for the
+                                  first point of a block, the number of its
+                                  cells. */
   const double (*point)[3];
   double limit2;
 };
@@ -102,7 +106,7 @@ static void link_cells(const struct grid *g, uint32_t *map, uint32_t a,
     }
 }
 
-/* Look up half of the 124 cells in reach; the others look back. */
+/* Examine half of the 124 cells in reach; the other half examines this cell. */
 static void link_by_cell(const struct grid *g, uint32_t *map, uint32_t a)
 {
   for (int o = 63; o < 125; o++) {
@@ -121,8 +125,8 @@ static int in_reach(const double a[3], const double b[3])
          fabs(a[2] - b[2]) <= REACH;
 }
 
-/* Block o (0..7) of those that the reach of cell `key` extends to; 0 when it
- * is the same as an earlier one. */
+/* Block o (0..7) of those within reach of cell `key`. Returns 0 if it is the
+ * same as an earlier one. */
 static int block_in_reach(const double key[3], int o, double block[3])
 {
   for (int k = 0; k < 3; k++) {
@@ -135,8 +139,8 @@ static int block_in_reach(const double key[3], int o, double block[3])
   return 1;
 }
 
-/* Through the list of cells of each block near; where those are many, single
- * cells are looked up instead. */
+/* Follow the list of cells of each block within reach; if a list is long, look
+ * up single cells instead. */
 static void link_neighbours(const struct grid *g, uint32_t *map, uint32_t a)
 {
   uint32_t first[8];
@@ -177,8 +181,8 @@ static void enter_block(struct grid *g, uint32_t i)
   }
 }
 
-/* Points in one cell are within the tolerance of each other and become one
- * chain at once, so that a cell costs one search per neighbour. */
+/* Points in the same cell are within the tolerance of each other and are
+ * chained at once, so that each cell costs one search per neighbour. */
 static void link_grid(struct grid *g, uint32_t *map, size_t n, double side)
 {
   for (uint32_t i = 0; i < n; i++) {
@@ -213,7 +217,7 @@ static double largest_coordinate(const struct vg_mesh *m)
   return most;
 }
 
-/* map[] holds the exact merges already. */
+/* On entry map[] contains the exact merges. */
 static vg_status link_near(const struct vg_mesh *m, double tolerance,
                            uint32_t *map, struct vg_error *err)
 {
@@ -222,7 +226,7 @@ static vg_status link_near(const struct vg_mesh *m, double tolerance,
   vg_status st = VG_OK;
   int bad;
 
-  /* Coordinates have no digits for such a distance. */
+  /* Coordinates do not resolve such a distance. */
   if (tolerance < 1e-15 * largest_coordinate(m)) return VG_OK;
   memset(&g, 0, sizeof g);
   g.point = (const double(*)[3])m->point;
@@ -290,8 +294,8 @@ vg_status vg_mesh_check_index(const struct vg_mesh *m, struct vg_error *err)
 
     if (at != SIZE_MAX)
       return vg_fail(err, VG_ERR_INPUT,
-                     "%s %zu has a node that is none of "
-                     "the %zu points: the file is damaged",
+                     "%s %zu has a node outside the range of the %zu points: "
+                     "the file is damaged",
                      list[k].name, at + 1, m->n_point);
   }
   for (size_t i = 0; i < m->n_tri + m->n_quad; i++) {

@@ -11,14 +11,14 @@
 #include "core/mesh/mesh_defects.h"
 #include "core/wrap/wrap_parts.h"
 
-#define REACH 1.5 /* S41: of the offset: farther, a gap was bridged */
+#define REACH 1.5 /* S41: of the offset: farther away a gap was bridged */
 
 static vg_status check(const struct vg_mesh *m, double size,
                        struct vg_error *err)
 {
   if (!(size > 0) || !isfinite(size))
-    return vg_fail(err, VG_ERR_INPUT, "a wrap of size %g: it must be > 0",
-                   size);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "wrap size %g: it must be positive and finite", size);
   if (!m->n_tri || m->n_quad || m->n_tet || m->n_pyr || m->n_pri || m->n_hex)
     return vg_fail(err, VG_ERR_INPUT, "only triangles can be wrapped");
   for (size_t i = 0; i < m->n_tri; i++) {
@@ -27,14 +27,13 @@ static vg_status check(const struct vg_mesh *m, double size,
     for (int k = 0; k < 3; k++) good &= m->tri[i][k] < m->n_point;
     if (!good)
       return vg_fail(err, VG_ERR_INPUT,
-                     "triangle %zu: an index is out of "
-                     "range",
+                     "triangle %zu: a point or patch index is out of range",
                      i + 1);
   }
   return VG_OK;
 }
 
-/* What would take hours is refused. */
+/* Refuse wraps that would take hours. */
 static vg_status check_number(const struct vg_wrap_rims *rims, double size,
                               struct vg_error *err)
 {
@@ -42,17 +41,17 @@ static vg_status check_number(const struct vg_wrap_rims *rims, double size,
 
   if (f.triangles <= VG_WRAP_MOST) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "a wrap of size %g would have some %.2g "
-                 "triangles%s, and %.2g are the most; is it in the unit of "
-                 "the surface? Sizes from %.2g on will do",
+                 "a wrap of size %g would have some %.2g triangles%s, which "
+                 "exceeds the limit of %.2g; is the size in the unit of the "
+                 "surface? Sizes from %.2g upwards are possible",
                  size, f.triangles,
-                 f.n_open ? ", as it may go through holes and lie on both "
-                            "sides of the surface"
+                 f.n_open ? ", because it may go through holes and cover "
+                            "both sides of the surface"
                           : "",
                  VG_WRAP_MOST, 1.05 * size * sqrt(f.triangles / VG_WRAP_MOST));
 }
 
-/* Patches that had triangles, and have none. */
+/* Find the patches that had triangles before and have none after the wrap. */
 static vg_status find_empty(const struct vg_mesh *before,
                             const struct vg_mesh *after, uint8_t *empty,
                             size_t *n, struct vg_error *err)
@@ -69,7 +68,8 @@ static vg_status find_empty(const struct vg_mesh *before,
   return VG_OK;
 }
 
-/* Triangles get the patch of the nearest one of the input. */
+/* Assign each triangle the patch of the input triangle nearest to its centroid.
+ * Also measures the distance from the input. */
 static vg_status label(const struct vg_mesh *m, struct vg_mesh *out,
                        const struct vg_stop *stop, struct vg_wrap_report *r,
                        struct vg_error *err)
@@ -103,7 +103,7 @@ done:
   return st;
 }
 
-/* Points onto the input. */
+/* Move the points onto the input. */
 static vg_status fit(const struct vg_mesh *m, struct vg_mesh *out,
                      const struct vg_stop *stop, struct vg_wrap_report *r,
                      struct vg_error *err)
@@ -125,7 +125,7 @@ done:
   return st;
 }
 
-/* The triangles to wrap: all but those of outer boundaries. */
+/* Select the triangles to wrap: all except those of outer boundaries. */
 static vg_status take_bodies(const struct vg_mesh *m, const uint8_t *keep,
                              struct vg_mesh *in, struct vg_error *err)
 {
@@ -145,7 +145,7 @@ done:
   return st;
 }
 
-/* The wrap of `in`, without patches. */
+/* Make the wrap of `in`, without patches. */
 static vg_status make(const struct vg_mesh *in, const struct vg_wrap_options *o,
                       struct vg_mesh *out, struct vg_wrap_report *r,
                       struct vg_error *err)
@@ -162,7 +162,7 @@ static vg_status make(const struct vg_mesh *in, const struct vg_wrap_options *o,
   r->widest = f.widest;
   memcpy(r->widest_at, f.at, sizeof f.at);
   VG_TRY(vg_wrap_cgal(in, o, (size_t)f.triangles / 2, out, err));
-  out->patch = in->patch; /* borrowed, for checks */
+  out->patch = in->patch; /* borrowed for checks */
   out->n_patch = in->n_patch;
   st = vg_wrap_prune(out, stop, r, err);
   if (st >= 0 && out->n_tri) st = fit(in, out, stop, r, err);
@@ -172,8 +172,8 @@ static vg_status make(const struct vg_mesh *in, const struct vg_wrap_options *o,
   if (st < 0) goto done;
   if (!out->n_tri) {
     st = vg_fail(err, VG_ERR_GEOMETRY,
-                 "nothing is left of a wrap of size %g: "
-                 "it goes through the surface's holes; take a larger one",
+                 "nothing is left of a wrap of size %g: it goes through the "
+                 "holes of the surface; take a larger size",
                  o->size);
     goto done;
   }

@@ -1,13 +1,12 @@
-/* core/wrap/wrap.h: a closed surface around what cannot be repaired: parts that
- * overlap, holes, sheets, triangles without connections.
+/* core/wrap/wrap.h: makes a closed surface around an input that cannot be
+ * repaired: overlapping parts, holes, sheets, triangles without connectivity.
  *
  * CGAL's alpha wrap (Portaneri, Rouxel-Labbe, Hemmer, Cohen-Steiner, Alliez,
  * "Alpha wrapping with an offset", ACM Transactions on Graphics 41(4), 2022):
  * from outside, tetrahedra of a Delaunay triangulation are carved away as far
- * as a ball of radius `size` can go; points come to lie on the surface at a
- * small distance from the input. So the result is closed, oriented outward and
- * free of self-intersections whatever went in; what is narrower than `size` is
- * bridged. */
+ * as a ball of radius `size` can pass. Points are inserted at a small distance
+ * from the input. The result is therefore closed, oriented outwards and free of
+ * self-intersections for any input; gaps narrower than `size` are bridged. */
 #ifndef VG_CORE_WRAP_WRAP_H
 #define VG_CORE_WRAP_WRAP_H
 
@@ -21,107 +20,108 @@
 extern "C" {
 #endif
 
-/* Distance of the wrap from the input over its size. */
+/* Distance of the wrap from the input, divided by its size. */
 #define VG_WRAP_OFFSET (1.0 / 30) /* S12 */
-#define VG_WRAP_MOST 4e6          /* triangles; more are refused */
+#define VG_WRAP_MOST 4e6          /* triangles: larger wraps are refused */
 
 struct vg_wrap_options {
-  double size;         /* > 0: the smallest gap that the wrap enters, and
-                          about its longest edge, in the unit of m */
+  double size;         /* > 0: width of the smallest gap that the wrap enters,
+                          and approximately its longest edge, in the unit of
+                          m. */
   const uint8_t *keep; /* [n_tri] 1: the triangle belongs to an outer
-                          boundary, which stays as it is; NULL: all
-                          triangles are wrapped */
-  uint8_t *empty;      /* out: [n_patch] 1: the patch had triangles and
-                          has none after the wrap; may be NULL */
-  struct vg_stop stop; /* asked for every facet */
+                          boundary and is not changed; NULL: all triangles
+                          are wrapped. */
+  uint8_t *empty;      /* out: [n_patch] 1: the patch had triangles and has none
+                          after the wrap; may be NULL. */
+  struct vg_stop stop; /* Polled for every facet. */
+  /* Called with the number of inserted points and its forecast; may be NULL. */
   void (*progress)(void *user, size_t done, size_t expected);
-  /* points inserted, and their forecast; may be
-     NULL */
-  void *user; /* for progress */
+  void *user; /* Context of progress. */
 };
 
 struct vg_wrap_report {
-  double offset;         /* size * VG_WRAP_OFFSET */
-  size_t n_before;       /* triangles that were wrapped */
-  size_t n_kept;         /* triangles of outer boundaries, as they were */
-  size_t n_fit, n_point; /* points that lie on the input; all */
-  size_t n_zip;          /* points removed where two sides of the wrap meet
-                            in an edge of the input */
-  size_t n_cavity;       /* shells removed because they lie inside the
-                            wrap */
-  size_t n_crumb;        /* shells removed because they enclose less than
-                            offset^3 */
-  size_t n_empty;        /* patches that had triangles and have none */
-  double distance;       /* largest distance of the wrap from the input,
-                            over its corners and the centroids of its
-                            triangles */
-  double at[3];          /* place of that distance */
-  double missing;        /* largest distance of the input outside the wrap,
-                            over its points, middles of edges and centroids
-                            of pieces no longer than size */
-  double missing_at[3];  /* place of that distance */
-  double inside;         /* share of the input's area that lies deeper than
-                            1.5 offsets inside the wrap */
-  double sheet;          /* share of the other area that has fluid on both
-                            sides and no thickness */
-  double widest;         /* as in vg_wrap_forecast */
-  double widest_at[3];   /* middle of that rim */
+  double offset;         /* size * VG_WRAP_OFFSET. */
+  size_t n_before;       /* Triangles that were wrapped. */
+  size_t n_kept;         /* Unchanged triangles of outer boundaries. */
+  size_t n_fit, n_point; /* Points on the input; all points. */
+  size_t n_zip;          /* Points removed where two sides of the wrap meet in a
+                            sharp edge of the input. */
+  size_t n_cavity;       /* Shells removed because they are inside the wrap. */
+  size_t n_crumb;        /* Shells removed because they enclose less than
+                            offset^3. */
+  size_t n_empty;        /* Patches that had triangles and have none. */
+  double distance;       /* Largest distance of the wrap from the input, over
+                            its points and the centroids of its triangles. */
+  double at[3];          /* Location of that distance. */
+  double missing;        /* Largest distance of input outside the wrap from it,
+                            over input points, edge midpoints and centroids of
+                            pieces no longer than size. */
+  double missing_at[3];  /* Location of that distance. */
+  double inside;         /* Fraction of the area of the input that is deeper
+                            than 1.5 offsets inside the wrap. */
+  double sheet;          /* Fraction of the remaining area that has fluid on
+                            both sides and no thickness. */
+  double widest;         /* As in vg_wrap_forecast. */
+  double widest_at[3];   /* Centre of that rim. */
 };
 
 /** The cost of a wrap, and the rims of its input. */
 struct vg_wrap_forecast {
-  double area; /* of the triangles to wrap */
+  double area; /* Area of the triangles to wrap. */
   double triangles, seconds;
-  double widest;         /* width of the widest rim of a surface that would
-                            bound a body if its rims were closed; 0: no
-                            surface is such a one */
-  double at[3];          /* middle of that rim */
-  size_t n_part, n_open; /* parts connected by edges; those with rims */
+  double widest;         /* Width of the widest rim of a part that would bound a
+                            body if its rims were closed; 0: there is no such
+                            part. */
+  double at[3];          /* Centre of that rim. */
+  size_t n_part, n_open; /* Number of parts connected by edges; number of those
+                            with rims. */
 };
 
 enum vg_wrap_reason {
-  VG_WRAP_FITS,  /* the surface closes at the size */
-  VG_WRAP_HOLES, /* finer wraps go through its holes */
-  VG_WRAP_SHEETS /* no size will do: the surface consists of sheets
-                    without thickness that bound no body */
+  VG_WRAP_FITS,  /* The surface closes at this size. */
+  VG_WRAP_HOLES, /* Smaller sizes go through its holes. */
+  VG_WRAP_SHEETS /* No size works: the surface consists of sheets without
+                    thickness that bound no body. */
 };
 
-/** 1 when this build can wrap. */
+/** Returns 1 if this build supports wraps. */
 int vg_wrap_is_built(void);
 
-/** Put a surface around the triangles of m in their place. CGAL's points lie
- * `offset` away from them. The points move onto the input, so that its ridges,
- * knives and corners come back, unless the move makes a fold or an
- * intersection. The result is closed and points outward, no shell lies inside
- * another one, and the kept triangles follow behind the others.
+/** Replace the triangles of m by a surface around them. CGAL places points at a
+ * distance of `offset` from the triangles. The points are then moved onto the
+ * input, which restores its sharp edges, edges of zero thickness and corners,
+ * unless a move causes a fold or an intersection. The result is closed and
+ * points outwards, and no shell is inside another one. The kept triangles come
+ * last.
  *
- * A new triangle has the patch of the old one nearest to its centroid; patches
- * keep their order, also those that are left without triangles.
+ * A new triangle gets the patch of the input triangle nearest to its centroid.
+ * Patches keep their order, including those left without triangles.
  *
- * @param m  triangles only; untouched on failure. Whatever lies inside a part
- *           that is wrapped is lost
+ * @param m  triangles only; untouched on failure. Everything inside a wrapped
+ *           part is lost
  * VG_ERR_UNSUPPORTED in a build without CGAL; VG_ERR_INPUT for a size that is
- * not positive, or so small that more than VG_WRAP_MOST would come out, no
- * triangles, quadrilaterals or cells, an index out of range; VG_ERR_GEOMETRY
- * when the wrap goes through holes and becomes a hollow shell, or when it meets
- * or leaves the kept boundary; VG_ERR_STOPPED; VG_ERR_MEMORY. One thread, about
- * 0.1 to 0.5 ms for each triangle that comes out. Re-entrant. */
+ * not positive or would give more than VG_WRAP_MOST triangles, for an input
+ * without triangles, with quadrilaterals or cells, or with an index out of
+ * range; VG_ERR_GEOMETRY if the wrap goes through holes and becomes a hollow
+ * shell, or intersects or leaves the kept boundary; VG_ERR_STOPPED;
+ * VG_ERR_MEMORY. One thread, about 0.1 to 0.5 ms per resulting triangle.
+ * Re-entrant. */
 vg_status vg_wrap(struct vg_mesh *m, const struct vg_wrap_options *o,
                   struct vg_wrap_report *r, struct vg_error *err);
 
-/** The forecast of vg_wrap with the same arguments. O(n log n); fails as
- * vg_wrap does for inputs that it does not take. */
+/** Forecast vg_wrap with the same arguments. O(n log n); returns the errors of
+ * vg_wrap for invalid input. */
 vg_status vg_wrap_foresee(const struct vg_mesh *m,
                           const struct vg_wrap_options *o,
                           struct vg_wrap_forecast *f, struct vg_error *err);
 
-/** A size at which vg_wrap takes the surface: about 10,000 triangles, or fewer
- * where a finer wrap goes through holes. The size is tried, on a copy.
+/** Find a size at which vg_wrap succeeds: about 10,000 triangles, or fewer if
+ * finer wraps go through holes. Sizes are tried on a copy.
  *
  * @param stop    may be NULL
  * @param size    out: 0 for VG_WRAP_SHEETS
- * @param reason  out: what determined the size
- * Some seconds; fails as vg_wrap does for inputs that it does not take. */
+ * @param reason  out: the criterion that determined the size
+ * Takes some seconds; returns the errors of vg_wrap for invalid input. */
 vg_status vg_wrap_suggest(const struct vg_mesh *m, const struct vg_stop *stop,
                           double *size, enum vg_wrap_reason *reason,
                           struct vg_error *err);

@@ -94,7 +94,7 @@ bool is_flat(const vg_mesh *m)
   return true;
 }
 
-/* The input's triangles, those without area left out, and which they are. */
+/* The input triangles with a positive area, and their numbers in the input. */
 struct Input {
   explicit Input(const vg_mesh *m)
   {
@@ -123,8 +123,8 @@ void ask(const vg_stop *stop)
   if (vg_stops(stop)) throw Stopped();
 }
 
-/* Asks before each facet that the wrap is carved through, and reports every
- * 256th point. */
+/* Polls `stop` before each facet through which the wrap is carved, and reports
+ * every 256th point. */
 struct Visitor : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
   Visitor(const vg_wrap_options *options, size_t forecast)
       : o(options), expected(forecast)
@@ -137,7 +137,7 @@ struct Visitor : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
     ask(&o->stop);
   }
 
-  /* A point makes two triangles. */
+  /* Each point adds two triangles. */
   template <typename Wrapper, typename Vertex>
   void after_Steiner_point_insertion(const Wrapper &, Vertex)
   {
@@ -210,9 +210,9 @@ void find_nearest(const Input &in, size_t n, const double (*x)[3],
   }
 }
 
-/* The direction is parallel to no plane that a person would draw, so that the
- * ray meets no edge in practice; a point for which it does gets one answer, the
- * same each time. */
+/* The ray is parallel to no plane that a designer would use, so that it hits no
+ * edge in practice. If it does for some point, the result is still the same
+ * each time. */
 void find_outside(const Input &in, size_t n, const double (*x)[3],
                   const vg_stop *stop, uint8_t *outside)
 {
@@ -248,8 +248,8 @@ vg_status guarded(const vg_stop *stop, vg_error *err, Body body)
     return vg_stopped(stop, err);
   } catch (const TooMany &) {
     return vg_fail(err, VG_ERR_INPUT,
-                   "a wrap came to %.2g triangles and was "
-                   "not done: take a larger size",
+                   "a wrap was stopped at %.2g triangles before it was "
+                   "complete: take a larger size",
                    VG_WRAP_MOST);
   } catch (const std::bad_alloc &) {
     return vg_fail_memory(err, "a wrap; take a larger size");
@@ -277,7 +277,9 @@ extern "C" vg_status vg_wrap_cgal(const struct vg_mesh *m,
     Mesh made;
 
     if (is_flat(m))
-      return vg_fail(err, VG_ERR_INPUT, "a wrap: all triangles are degenerate");
+      return vg_fail(err, VG_ERR_INPUT,
+                     "the surface cannot be wrapped: all "
+                     "triangles are degenerate");
     wrap(m, o, expected, made);
     give(made, out);
     return VG_OK;

@@ -1,4 +1,4 @@
-/* The input measured against its wrap: is a part of it missing, and is the
+/* Compares the input with its wrap: is a part of the input missing, and is the
  * wrap a hollow shell? */
 #include <assert.h>
 #include <math.h>
@@ -10,25 +10,24 @@
 #include "core/wrap/wrap_parts.h"
 
 #define REACH 1.5      /* offsets: input deeper inside is enclosed */
-#define PIECES 8       /* of an edge, at most */
-#define SIDES 20000    /* samples whose sides are examined, about */
-#define STAND_OFF 5.0  /* S70: offsets: from a sample to its sides */
-#define START 0.01     /* offsets: where the segment to a side begins */
+#define PIECES 8       /* most pieces of an edge */
+#define SIDES 20000    /* approximate number of samples with examined sides */
+#define STAND_OFF 5.0  /* S70: offsets: distance of a side from its sample */
+#define START 0.01     /* offsets: start of the segment to a side */
 #define HOLLOW 0.5     /* S70: share of sheets that makes a hollow shell */
-#define LEAK 0.2       /* S70: the same of a part that should be a body */
-#define LEAK_WIDE 0.03 /* S70: and of one that is open by WIDE of its area */
+#define LEAK 0.2       /* S70: the same for a part that should be a body */
+#define LEAK_WIDE 0.03 /* S70: for a part with lids above WIDE of its area */
 #define WIDE 0.005
-#define COARSER 1.6 /* S71: size that is named where rims are narrow */
-#define MINOR                                                                  \
-  0.01 /* S70: share of the area; smaller parts are passed                     \
-          over */
+#define COARSER 1.6 /* S71: factor of the size suggested for narrow rims */
+#define MINOR 0.01  /* S70: of the area: smaller parts are ignored */
 
-/* Places of the input; the first n_centre are centroids of pieces. */
+/* Sample points of the input; the first n_centre are centroids of pieces. */
 struct samples {
   double (*x)[3], (*foot)[3];
-  uint32_t *tri, *near; /* [n_centre] of the input; [n] of the wrap */
-  double *area;         /* [n_centre] */
-  uint8_t *state;       /* [n] */
+  uint32_t *tri, *near; /* [n_centre] Triangle of the input; [n] nearest
+                           triangle of the wrap. */
+  double *area;         /* [n_centre] Area of the piece. */
+  uint8_t *state;       /* [n] ON, INSIDE or OUTSIDE. */
   size_t n, n_centre;
 };
 enum { ON, INSIDE, OUTSIDE };
@@ -72,7 +71,7 @@ static void place(const struct vg_mesh *m, size_t i, double a, double b,
            b * m->point[t[2]][k];
 }
 
-/* The n^2 similar pieces of triangle i: their centroids. */
+/* Add the centroids of the n^2 similar pieces of triangle i. */
 static void add_centres(const struct vg_mesh *m, size_t i, size_t n,
                         struct samples *s)
 {
@@ -119,7 +118,7 @@ static vg_status take_samples(const struct vg_mesh *m, double size,
   return VG_OK;
 }
 
-/* Samples farther than `least` from the wrap: inside or outside. */
+/* Classify samples farther than `least` from the wrap as inside or outside. */
 static vg_status find_states(struct samples *s, const struct vg_mesh *out,
                              double least, const struct vg_stop *stop,
                              struct vg_error *err)
@@ -163,13 +162,13 @@ static void sum_up(const struct samples *s, double reach,
   r->inside = area > 0 ? inside / area : 0;
 }
 
-/* Both sides of every step-th sample: places near it and at a distance. */
+/* Both sides of every step-th sample: points close to it and at a distance. */
 struct sides {
-  double (*from)[3], (*to)[3]; /* [2 n] two for each sample */
-  uint8_t *outside;            /* [2 n] */
-  uint32_t *blocked, *twice;   /* [2 n], [n] triangles that the segments from
-                                  `from` to `to`, and from one side to the
-                                  other, meet */
+  double (*from)[3], (*to)[3]; /* [2 n] Two for each sample. */
+  uint8_t *outside;            /* [2 n] 1: the side is outside the wrap. */
+  uint32_t *blocked, *twice;   /* [2 n], [n] Numbers of triangles crossed by the
+                                  segments from `from` to `to`, and by the
+                                  segment from one side to the other. */
   size_t n, step;
 };
 
@@ -218,12 +217,12 @@ static void place_sides(const struct vg_mesh *m, const struct samples *s,
   }
 }
 
-/* What a sample lies on: the skin of a body, a sheet, or a sheet that the input
- * has twice. */
+/* Kind of a sample: on the skin of a body, on a sheet, or on a sheet that the
+ * input contains twice. */
 enum { BODY, SHEET, DOUBLED, KINDS };
 
-/* Areas of each part by kind. A thin body is no sheet: its opposite skin
- * blocks the segment to the other side. */
+/* Sum up the areas of each part by kind. A thin body is not mistaken for a
+ * sheet: its opposite skin blocks the segment to the other side. */
 static vg_status find_sheets(const struct vg_wrap_rims *rims,
                              const struct samples *s, const struct vg_mesh *out,
                              double offset, const struct vg_stop *stop,
@@ -268,11 +267,11 @@ static vg_status refuse(const struct vg_wrap_rims *rims, double size,
 
   if (!is_pocket)
     return vg_fail(err, VG_ERR_GEOMETRY,
-                   "the wrap of size %g is a hollow "
-                   "shell with fluid on both sides of %.0f %% of its walls: "
-                   "the surface consists of sheets without thickness (parts: "
-                   "%zu, open: %zu), and gaps between them are wider than the "
-                   "size. Take a larger size, or give the sheets a thickness",
+                   "the wrap of size %g is a hollow shell with fluid on both "
+                   "sides of %.0f %% of its walls: the surface consists of "
+                   "sheets without thickness (%zu parts, of which %zu are "
+                   "open), and gaps between them are wider than the size. "
+                   "Take a larger size, or give the sheets a thickness",
                    size, 100 * share, f.n_part, f.n_open);
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "the wrap of size %g goes through the "
@@ -285,8 +284,8 @@ static vg_status refuse(const struct vg_wrap_rims *rims, double size,
                  fmax(f.widest, COARSER * size));
 }
 
-/* Hollow: half of all walls are sheets, or much of a part that should be a
- * body. */
+/* The wrap is hollow if half of all walls are sheets, or a large fraction of a
+ * part that should be a body. */
 static vg_status judge_sheets(const struct vg_wrap_rims *rims,
                               const double (*area)[KINDS], double size,
                               struct vg_wrap_report *r, struct vg_error *err)

@@ -1,6 +1,6 @@
-/* The points of a wrap put onto the input, where the wrap stays sound. Around a
- * convex edge the nearest place is on the edge, so ridges and corners come
- * back. */
+/* Moves the points of a wrap onto the input where the wrap stays sound. Around
+ * a convex edge the nearest point is on the edge, so that sharp edges and
+ * corners are restored. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,15 +11,15 @@
 #include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
 
-#define ROUNDS 8  /* until triangles no longer meet */
-#define TURN 0.3  /* S41: cosine by which a triangle may turn */
-#define FLAT 0.02 /* least height over longest edge, that is left */
+#define ROUNDS 8  /* until triangles no longer intersect */
+#define TURN 0.3  /* S41: cosine of the largest turn of a triangle */
+#define FLAT 0.02 /* least remaining height over longest edge */
 
 struct fit {
   struct vg_mesh *m;
-  double (*old)[3]; /* [n_point] as the wrap had them */
+  double (*old)[3]; /* [n_point] Positions in the wrap. */
   const double (*near)[3];
-  uint8_t *moved; /* [n_point] */
+  uint8_t *moved; /* [n_point] 1: moved onto the input. */
 };
 
 static void normal(const struct vg_mesh *m, const double (*x)[3], size_t t,
@@ -47,7 +47,7 @@ static int stands(const struct fit *f, size_t t)
          vg_dot(before, after) > TURN * vg_norm(before) * area;
 }
 
-/* Back to where the wrap had it. */
+/* Move the corners of triangle t back to their positions in the wrap. */
 static size_t give_up(struct fit *f, size_t t)
 {
   size_t n = 0;
@@ -74,7 +74,7 @@ static void settle(struct fit *f)
   }
 }
 
-/* Points of triangles that meet go back; *n: how many. */
+/* Move points of intersecting triangles back. *n: number of points. */
 static vg_status part(struct fit *f, const struct vg_stop *stop, size_t *n,
                       struct vg_error *err)
 {
@@ -115,7 +115,7 @@ vg_status vg_wrap_fit(struct vg_mesh *m, const double (*near)[3], double most,
     settle(&f);
     VG_TRY(part(&f, stop, &n, err));
   }
-  if (n) /* as it was, without a triangle that meets another */
+  if (n) /* the original wrap has no intersections */
     memcpy(m->point, f.old, m->n_point * sizeof *f.old);
   *n_fit = 0;
   for (size_t p = 0; p < m->n_point && !n; p++) *n_fit += f.moved[p];

@@ -1,4 +1,4 @@
-/* Parts and rims of the input: the holes that a wrap goes through. */
+/* Parts and rims of the input: the holes through which a wrap can enter. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,16 +10,13 @@
 #include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
 
-#define OPEN                                                                   \
-  15.0               /* S44: the same where both sides of a sheet are          \
-                        wrapped */
-#define SECONDS 3e-4 /* of a triangle */
+#define OPEN 15.0    /* S44: VG_WRAP_CLOSED of a sheet wrapped on both sides */
+#define SECONDS 3e-4 /* per triangle */
 #define CRACK 1e-3   /* of the size: narrower cracks are welded */
-#define EDGE 0.05    /* of the mean edge: no wider cracks are */
+#define EDGE 0.05    /* of the mean edge: wider cracks are not welded */
 #define POCKET                                                                 \
-  1.5               /* S70: area over that of the lids; a flat sheet has       \
-                       1, half a sphere 2 */
-#define CERTAIN 4.0 /* S70: sizes: a ball goes through such a rim */
+  1.5 /* S70: area over that of the lids; 1: flat sheet, 2: half a sphere */
+#define CERTAIN 4.0 /* S70: sizes: a ball goes through a wider rim */
 
 static uint32_t root(uint32_t *up, uint32_t i)
 {
@@ -27,7 +24,7 @@ static uint32_t root(uint32_t *up, uint32_t i)
   return i;
 }
 
-/* The lower number stays on top. */
+/* The lower number becomes the root. */
 static void unite(uint32_t *up, uint32_t a, uint32_t b)
 {
   a = root(up, a);
@@ -58,7 +55,7 @@ static double mean_edge(const struct vg_mesh *m)
   return sum / (3 * (double)m->n_tri);
 }
 
-/* Parts by edges; rims: edge 3 * triangle + k of each. */
+/* Find the parts connected by edges, and the rim edges as 3 * triangle + k. */
 static vg_status connect(struct vg_wrap_rims *r, uint32_t *rim, size_t *n_rim,
                          struct vg_error *err)
 {
@@ -77,7 +74,8 @@ static vg_status connect(struct vg_wrap_rims *r, uint32_t *rim, size_t *n_rim,
   }
   for (size_t i = 0; i < m->n_tri; i++)
     r->part_of[i] = root(r->part_of, (uint32_t)i);
-  /* numbers of parts follow their first triangles, which come first */
+  /* Number the parts in the order of their first triangles, which are the
+   * roots. */
   for (size_t i = 0; i < m->n_tri; i++)
     r->part_of[i] = r->part_of[i] == i ? (uint32_t)r->n_part++
                                        : r->part_of[r->part_of[i]];
@@ -97,13 +95,15 @@ static const double *end_of(const struct vg_mesh *m, uint32_t edge, uint32_t k)
   return m->point[m->tri[edge / 3][(edge + k) % 3]];
 }
 
-/* end_of's number; edge % 3 and (edge + k) % 3 agree as 3 divides 3 * tri. */
+/* Node number of end_of. (edge + k) % 3 is valid because 3 divides 3 *
+ * triangle. */
 static uint32_t node_of(const struct vg_mesh *m, uint32_t edge, uint32_t k)
 {
   return m->tri[edge / 3][(edge + k) % 3];
 }
 
-/* Twice over the edges: their middle, then the fan that closes them. */
+/* Two passes over the edges: first the centres of the rims, then the areas of
+ * the fans of triangles that close them. */
 static void measure_rims(const struct vg_mesh *m, const uint32_t *part_of,
                          const uint32_t *edge, size_t n, uint32_t *up,
                          struct rim *rim)
@@ -129,7 +129,8 @@ static void measure_rims(const struct vg_mesh *m, const uint32_t *part_of,
   }
 }
 
-/* A circle of that width has the rim's length and area. */
+/* The width is the diameter of a circle whose ratio of area to length is that
+ * of the rim. */
 static void add_rim(struct vg_wrap_part *part, const struct rim *x)
 {
   double width = 4 * x->area / x->length;

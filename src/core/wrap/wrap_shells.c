@@ -1,5 +1,5 @@
-/* The shells of a wrap: those that bound no body are removed, and outer
- * boundaries that were kept are appended. */
+/* The shells of a wrap: removes those that bound no body, and appends the outer
+ * boundaries that were kept. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -109,7 +109,8 @@ static vg_status append(struct vg_mesh *m, const struct vg_mesh *other,
   return VG_OK;
 }
 
-/* The first n faces are the wrap's. */
+/* Fail if the wrap, which is the first n faces, intersects the kept
+ * boundary. */
 static vg_status check_meeting(const struct vg_mesh *m, size_t n,
                                const struct vg_surface_report *r,
                                struct vg_error *err)
@@ -121,17 +122,17 @@ static vg_status check_meeting(const struct vg_mesh *m, size_t n,
         (d->face[0] < n) == (d->face[1] < n))
       continue;
     return vg_fail(err, VG_ERR_GEOMETRY,
-                   "the wrap meets the outer boundary "
-                   "that is kept (patch %d), at (%.6g, %.6g, %.6g): take a "
-                   "smaller size where a gap is left between the two, or take "
-                   "the body's part outside the boundary away",
+                   "the wrap meets the outer boundary that is kept (patch "
+                   "%d), at (%.6g, %.6g, %.6g): take a smaller size if there "
+                   "is a gap between the two, or remove the part of the body "
+                   "outside the boundary",
                    (int)m->patch[m->tri_patch[d->face[d->face[0] < n]]].id,
                    d->at[0], d->at[1], d->at[2]);
   }
   return VG_OK;
 }
 
-/* A shell of the wrap lies directly within an odd number of kept ones. */
+/* Fail if a shell of the wrap is not inside an odd number of kept shells. */
 static vg_status check_leaving(const struct vg_mesh *m, size_t n,
                                const struct vg_surface_report *r,
                                struct vg_error *err)
@@ -146,9 +147,8 @@ static vg_status check_leaving(const struct vg_mesh *m, size_t n,
 
     if (s->face < n && s->depth % 2 == 0)
       return vg_fail(err, VG_ERR_GEOMETRY,
-                     "a wrapped body lies outside the "
-                     "outer boundary that is kept, at (%.6g, %.6g, %.6g): "
-                     "take it out of the surface",
+                     "a wrapped body lies outside the outer boundary that is "
+                     "kept, at (%.6g, %.6g, %.6g): remove it from the surface",
                      x[0], x[1], x[2]);
   }
   return VG_OK;
@@ -166,7 +166,7 @@ vg_status vg_wrap_join(const struct vg_mesh *m, const uint8_t *keep,
   VG_TRY(vg_mesh_copy(&kept, m, err));
   VG_TRY(vg_wrap_select(&kept, keep, err));
   VG_TRY(append(out, &kept, err));
-  out->patch = m->patch; /* borrowed, for the check */
+  out->patch = m->patch; /* borrowed for the check */
   out->n_patch = m->n_patch;
   st = examine(out, stop, &r, err);
   if (st >= 0) st = check_meeting(out, n, &r, err);

@@ -1,4 +1,4 @@
-/* A size for a wrap, found by trying. */
+/* Finds a size for a wrap by trial. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,9 +8,9 @@
 
 #define TRIANGLES 1e4 /* S71: of the first size tried */
 #define COARSER 1.6   /* S71: from one size to the next */
-#define COARSEST 0.25 /* S71: of the longest side: the body is lost */
+#define COARSEST 0.25 /* S71: of the longest side: the body would be lost */
 
-/* Two digits, as a person would type it. */
+/* Round to two digits, as a user would type it. */
 static double rounded(double size)
 {
   char text[32];

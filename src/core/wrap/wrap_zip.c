@@ -1,9 +1,10 @@
-/* The ends of a wrap at knives, which are as wide as twice its offset, closed.
+/* Closes the ends of a wrap at sharp edges of zero thickness, which are as wide
+ * as twice its offset.
  *
- * A triangle whose corners have their places in a line is taken away by putting
- * two of them together, those whose places are nearest to each other. In each
- * round no two of these changes touch the same triangle; all are taken back if
- * triangles come to meet. */
+ * A triangle whose corners have collinear targets is removed by merging the two
+ * corners whose targets are nearest to each other. In each round no two of
+ * these changes affect the same triangle. All changes are undone if triangles
+ * intersect afterwards. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,17 +15,17 @@
 #include "core/surface/surface_check.h"
 #include "core/wrap/wrap_parts.h"
 
-#define FLAT 0.02 /* S42: height over longest edge: corners in a line */
-#define TURN 0.3  /* cosine by which others may turn */
+#define FLAT 0.02 /* S42: height over longest edge of collinear targets */
+#define TURN 0.3  /* cosine of the largest turn of other triangles */
 #define ROUNDS 64
 
 struct zip {
   struct vg_mesh *m;
   double (*near)[3];
   size_t *first; /* [n_point + 1] */
-  uint32_t *at;  /* [3 n_tri] triangles by point */
-  uint8_t *busy; /* [n_point] a triangle of it has been changed */
-  uint8_t *gone; /* [n_tri] */
+  uint32_t *at;  /* [3 n_tri] Triangles sorted by point. */
+  uint8_t *busy; /* [n_point] 1: one of its triangles has changed. */
+  uint8_t *gone; /* [n_tri] 1: removed. */
   size_t n;
 };
 
@@ -48,7 +49,7 @@ static int is_flat(const struct zip *z, const uint32_t v[3])
   return vg_norm(n) <= FLAT * longest2;
 }
 
-/* Triangles by point; removed ones have none. */
+/* Sort the remaining triangles by point. */
 static void list_triangles(struct zip *z)
 {
   const struct vg_mesh *m = z->m;
@@ -57,7 +58,7 @@ static void list_triangles(struct zip *z)
   for (size_t i = 0; i < 3 * m->n_tri; i++)
     if (!z->gone[i / 3]) z->first[m->tri[i / 3][i % 3]]++;
   for (size_t p = 0; p < m->n_point; p++) z->first[p + 1] += z->first[p];
-  for (size_t i = 3 * m->n_tri; i-- > 0;) /* ends become beginnings */
+  for (size_t i = 3 * m->n_tri; i-- > 0;) /* ends become starts */
     if (!z->gone[i / 3])
       z->at[--z->first[m->tri[i / 3][i % 3]]] = (uint32_t)(i / 3);
 }
@@ -67,7 +68,8 @@ static int has(const uint32_t v[3], uint32_t p)
   return v[0] == p || v[1] == p || v[2] == p;
 }
 
-/* Do a and b have two neighbours in common, those of their edge? */
+/* Link condition: a and b share exactly two neighbours, those opposite their
+ * edge. */
 static int link_fits(const struct zip *z, uint32_t a, uint32_t b)
 {
   size_t n = 0;
@@ -85,8 +87,8 @@ static int link_fits(const struct zip *z, uint32_t a, uint32_t b)
   return n == 4; /* each is in two triangles of a */
 }
 
-/* Triangles of b that stay, with a in its place: none folds or gets flat that
- * is not so now; nor is one changed already. */
+/* Can a replace b in the remaining triangles of b: does none of them fold or
+ * become flat that is not flat now, and has none changed in this round? */
 static int ring_fits(const struct zip *z, uint32_t a, uint32_t b)
 {
   for (size_t i = z->first[b]; i < z->first[b + 1]; i++) {
@@ -130,7 +132,8 @@ static int put_together(struct zip *z, uint32_t a, uint32_t b)
   return 1;
 }
 
-/* Its sides, the shortest first, in both ways. */
+/* Remove triangle t by merging the ends of one of its sides, the shortest
+ * first, in either direction. */
 static int take_away(struct zip *z, size_t t)
 {
   uint32_t v[3];
@@ -156,7 +159,7 @@ static int take_away(struct zip *z, size_t t)
   return 0;
 }
 
-/* Without what is gone; points that no triangle has any more go, too. */
+/* Drop removed triangles and points without triangles. */
 static void compact(struct zip *z)
 {
   struct vg_mesh *m = z->m;
@@ -167,7 +170,7 @@ static void compact(struct zip *z)
     if (z->gone[t]) continue;
     memmove(m->tri[n_tri++], m->tri[t], sizeof *m->tri);
   }
-  m->n_tri = n_tri; /* patches are not known yet */
+  m->n_tri = n_tri; /* patches are not assigned yet */
   memset(z->busy, 0, m->n_point);
   for (size_t i = 0; i < 3 * n_tri; i++) z->busy[m->tri[i / 3][i % 3]] = 1;
   for (uint32_t p = 0; p < m->n_point; p++) {

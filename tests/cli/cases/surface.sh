@@ -73,7 +73,7 @@ exits 2
 says err "feature_angle"
 vanguard surface -q bar.obj --surface-size 1e-7 --out small
 exits 1
-says err "are sizes and tolerance in its unit?"
+says err "sizes and tolerance are in the unit of the surface"
 absent small/bar.lb8.ugrid
 vanguard surface -q bar.obj --write cogsg --out small
 exits 1
