@@ -91,7 +91,7 @@ static inline struct vg_partition_options surprise_of(double leaf)
 {
   struct vg_partition_options o = options_of(leaf, 1, 0);
 
-  o.cells_per_octant = 0.1 * VG_LOAD_CELLS_PER_OCTANT;
+  o.cells_per_cube = 0.1 * VG_LOAD_CELLS_PER_CUBE;
   return o;
 }
 

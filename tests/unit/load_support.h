@@ -79,7 +79,7 @@ static inline void estimate(const struct scene *s, int threads,
   struct vg_error err = VG_ERROR_INIT;
 
   *l = (struct vg_load)VG_LOAD_INIT;
-  if (vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_OCTANT, threads, l,
+  if (vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_CUBE, threads, l,
                   &err) < 0)
     fail_msg("%s", err.text);
 }

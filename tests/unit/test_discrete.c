@@ -29,7 +29,7 @@ static void case_begin(struct case_of *c, const char *name, size_t n)
   for (size_t k = 0; k < c->front.n_point; k++)
     c->front.id[k] = VG_POINT_ID(0, k);
   memset(&c->load, 0, sizeof c->load);
-  assert_int_equal(vg_load_new(&c->front, c->s.sizing, VG_LOAD_CELLS_PER_OCTANT,
+  assert_int_equal(vg_load_new(&c->front, c->s.sizing, VG_LOAD_CELLS_PER_CUBE,
                                1, &c->load, NULL),
                    VG_OK);
 }

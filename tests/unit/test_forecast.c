@@ -32,8 +32,8 @@ static void make(struct scene *s, const char *name, size_t n_cell)
                                  s->demo.source, m, &s->sizing, NULL),
                    VG_OK);
   s->front = vg_front_of(m);
-  assert_int_equal(vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_OCTANT,
-                               1, &s->load, NULL),
+  assert_int_equal(vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+                               &s->load, NULL),
                    VG_OK);
 }
 

@@ -18,7 +18,7 @@ static void scene_of(struct scene *s, struct vg_mesh *m, double growth,
 
   s->load = (struct vg_load)VG_LOAD_INIT;
   s->sizing = shape_sizing(m, growth, h_max);
-  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_OCTANT, 1,
+  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
                                &s->load, NULL),
                    VG_OK);
   vg_mesh_release(m);

@@ -268,7 +268,7 @@ static void sizes_in_another_unit_are_named(void **state)
   shape_box(&m, 2, 1);
   make_scene(&s, &m, 1e-6);
   for (int threads = 1; threads <= 2; threads++) {
-    assert_int_equal(vg_load_new(&s.front, s.sizing, VG_LOAD_CELLS_PER_OCTANT,
+    assert_int_equal(vg_load_new(&s.front, s.sizing, VG_LOAD_CELLS_PER_CUBE,
                                  threads, &l, &err),
                      VG_ERR_UNSUPPORTED);
     assert_non_null(strstr(err.text, "10 billion cells"));
@@ -537,7 +537,7 @@ static void messages_come_back(void **state)
     assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_ERR_FORMAT);
     bytes.data[i] ^= 0x40;
   }
-  memset(bytes.data + bytes.n - 28, 0xff, 28); /* a octant of NaN */
+  memset(bytes.data + bytes.n - 28, 0xff, 28); /* an octant of NaN */
   assert_int_equal(vg_load_unpack(&bytes, &back, NULL), VG_ERR_FORMAT);
   assert_null(back.octant);
   free(bytes.data);

@@ -49,7 +49,7 @@ static void scene_of(struct scene *s, struct vg_mesh *m)
   copy_front(&s->was, &f);
   s->n = vg_node_new("0", &f);
   assert_non_null(s->n);
-  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_OCTANT, 1,
+  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
                                &s->n->load, NULL),
                    VG_OK);
   s->n->lattice.n[0] = s->n->lattice.n[1] = 1;
@@ -176,8 +176,8 @@ static void falls_into_blocks(void **state)
 
       assert_int_equal(c->path[2], '0' + k);
       assert_true(fabs(vg_front_volume(&c->front) / pow(n, 3) - 1) < 1e-12);
-      assert_true(
-        fabs(c->load.cells / pow(n, 3) / VG_LOAD_CELLS_PER_OCTANT - 1) < 0.1);
+      assert_true(fabs(c->load.cells / pow(n, 3) / VG_LOAD_CELLS_PER_CUBE - 1) <
+                  0.1);
     }
     scene_end(&s);
   }
@@ -204,7 +204,7 @@ static void what_hangs_together_stays(void **state)
     double volume = vg_front_volume(&s.n->child[k]->front);
 
     assert_true(
-      fabs(s.n->child[k]->load.cells / volume / VG_LOAD_CELLS_PER_OCTANT - 1) <
+      fabs(s.n->child[k]->load.cells / volume / VG_LOAD_CELLS_PER_CUBE - 1) <
       0.1);
   }
   scene_end(&s);

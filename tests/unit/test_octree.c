@@ -28,7 +28,7 @@ static void enter(struct parted *q)
   for (size_t k = 0; k < q->front.n_point; k++)
     q->front.id[k] = VG_POINT_ID(0, k);
   q->load = (struct vg_load)VG_LOAD_INIT;
-  if (vg_load_new(&q->front, q->s.sizing, VG_LOAD_CELLS_PER_OCTANT, 1, &q->load,
+  if (vg_load_new(&q->front, q->s.sizing, VG_LOAD_CELLS_PER_CUBE, 1, &q->load,
                   &err) < 0)
     fail_msg("%s", err.text);
   q->p = (struct vg_decomposition)VG_DECOMPOSITION_INIT;
@@ -45,7 +45,7 @@ static void leave(struct parted *q)
 static vg_status try(struct parted *q, struct vg_decomposition_options o,
                      struct vg_decomposition *p, struct vg_error *err)
 {
-  o.cells_per_octant = VG_LOAD_CELLS_PER_OCTANT;
+  o.cells_per_cube = VG_LOAD_CELLS_PER_CUBE;
   return vg_octree_part(&q->front, &q->load, q->s.sizing, &o, SERIAL, NULL, p,
                         err);
 }
@@ -200,7 +200,7 @@ static double most_cells(const struct parted *q, size_t n, double *mean)
     struct vg_load l = VG_LOAD_INIT;
 
     assert_int_equal(vg_load_new(&q->p.part[k].front, q->s.sizing,
-                                 VG_LOAD_CELLS_PER_OCTANT, 1, &l, NULL),
+                                 VG_LOAD_CELLS_PER_CUBE, 1, &l, NULL),
                      VG_OK);
     if (l.cells > most) most = l.cells;
     sum += l.cells;

@@ -471,7 +471,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
                   &p->problem.notes);
   v = vg_front_of(p->front);
   vg_display_update(&p->show, "forecast", 0, 0);
-  VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_OCTANT, vg_cores(),
+  VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, vg_cores(),
                      &p->load, err));
   VG_TRY(vg_plan_part(p, err));
   if (p->o->serial >= 0) {

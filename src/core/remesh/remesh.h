@@ -24,8 +24,8 @@
 
 struct vg_remesh_options {
   double tolerance;     /* Largest distance between the surfaces. 0: 1e-4 of the
-                           length of the body. It is limited to 0.05 of the local
-                           size. */
+                           length of the body. It is limited to 0.05 of the
+                           local size. */
   double accuracy;      /* Distance within which the input approximates the true
                            shape. The default tolerance is not smaller, and the
                            shape requests no sizes close to it. */

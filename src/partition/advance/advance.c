@@ -57,9 +57,9 @@ static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
   memcpy(n->front.face, m->tri, m->n_tri * sizeof *n->front.face);
   for (size_t k = 0; k < m->n_point; k++) n->front.id[k] = VG_POINT_ID(0, k);
   n->levels = p->options.levels;
-  n->per_octant = p->options.cells_per_octant;
+  n->per_cube = p->options.cells_per_cube;
   vg_comm_bind_node(comm, 1);
-  st = vg_load_new(&n->front, p->sizing, n->per_octant,
+  st = vg_load_new(&n->front, p->sizing, n->per_cube,
                    p->options.threads * vg_comm_node_size(comm), &n->load, err);
   vg_comm_bind_node(comm, 0);
   VG_TRY(st);

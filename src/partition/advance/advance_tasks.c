@@ -350,7 +350,7 @@ static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
   vg_put(w, sizeof n->path, 1, n->path);
   vg_put(w, N_NUMBER, sizeof *number, number);
   vg_put(w, 1, sizeof l->at, l->at); /* ribs are made where it is cut */
-  vg_put(w, 1, sizeof n->per_octant, &n->per_octant);
+  vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
   vg_put(w, 1, sizeof size, &size);
   vg_put(w, load.n, 1, load.data);
   vg_front_put(w, &n->front, 1);
@@ -370,7 +370,7 @@ static struct vg_node *get_node(struct vg_reader *r)
   vg_get(r, sizeof n->path, 1, n->path);
   vg_get(r, N_NUMBER, sizeof *number, number);
   vg_get(r, 1, sizeof n->lattice.at, n->lattice.at);
-  vg_get(r, 1, sizeof n->per_octant, &n->per_octant);
+  vg_get(r, 1, sizeof n->per_cube, &n->per_cube);
   vg_get(r, 1, sizeof size, &size);
   n->levels = number[0];
   n->retry = number[1];

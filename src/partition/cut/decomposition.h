@@ -22,19 +22,19 @@ struct vg_coarse_cells {
 void vg_coarse_cells_release(struct vg_coarse_cells *c);
 
 struct vg_decomposition_options {
-  int n_part;              /* at least 1 when a maker is asked; before, 0:
-                              by the rule's leaf_cells */
-  int partitioner;         /* enum vg_partitioner */
-  double coarsening;       /* sizes of the coarse mesh or octree over those of
-                              the mesh; 0: chosen */
-  int h_refine;            /* 1: interfaces get their size by halving edges */
-  double cells_per_octant; /* as of vg_load_new */
+  int n_part;            /* at least 1 when a maker is asked; before, 0:
+                            by the rule's leaf_cells */
+  int partitioner;       /* enum vg_partitioner */
+  double coarsening;     /* sizes of the coarse mesh or octree over those of
+                            the mesh; 0: chosen */
+  int h_refine;          /* 1: interfaces get their size by halving edges */
+  double cells_per_cube; /* as of vg_load_new */
   const struct vg_coarse_cells *coarse; /* made before by all workers, for the
                                discrete maker; borrowed. NULL: it makes one */
 };
 #define VG_DECOMPOSITION_OPTIONS_INIT                                          \
   {                                                                            \
-    0, VG_PARTITIONER_METIS, 0, 0, VG_LOAD_CELLS_PER_OCTANT, NULL              \
+    0, VG_PARTITIONER_METIS, 0, 0, VG_LOAD_CELLS_PER_CUBE, NULL                \
   }
 
 /* In the order of the setting's words. */

@@ -23,7 +23,7 @@ static const double room = 2.5; /* C7 */
 
 enum { MOST_PIECES = 8 };
 
-/* What a octant has of the zone. */
+/* What an octant has of the zone. */
 struct dot {
   size_t tile, number;
   double x[2], half, h, cells;

@@ -70,7 +70,7 @@ struct vg_node *vg_node_new(const char *path, struct vg_front *front)
   snprintf(n->path, sizeof n->path, "%s", path);
   n->front = *front;
   memset(front, 0, sizeof *front);
-  n->per_octant = VG_LOAD_CELLS_PER_OCTANT;
+  n->per_cube = VG_LOAD_CELLS_PER_CUBE;
   return n;
 }
 

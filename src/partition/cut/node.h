@@ -31,16 +31,16 @@ struct vg_node {
   char path[VG_PATH_MAX];
   struct vg_front front;
   struct vg_load load;
-  double per_octant; /* cells per octant of the spacing, as the zones of
-                      its ancestors turned out */
-  int levels;        /* bisections left, in a partition by levels */
-  int retry;         /* attempts that failed */
-  int is_final;      /* a leaf whatever it needs */
-  double fill_work;  /* of a leaf, see vg_front_work; 0: not known */
-  int to_part;       /* by a maker of decompositions, not by planes */
-  double elsewhere;  /* s of processor time that this took in other
-                        processes */
-  uint32_t serial;   /* of its leaf; 0: none yet */
+  double per_cube;  /* cells per cube of the spacing, as the zones of
+                       its ancestors turned out */
+  int levels;       /* bisections left, in a partition by levels */
+  int retry;        /* attempts that failed */
+  int is_final;     /* a leaf whatever it needs */
+  double fill_work; /* of a leaf, see vg_front_work; 0: not known */
+  int to_part;      /* by a maker of decompositions, not by planes */
+  double elsewhere; /* s of processor time that this took in other
+                       processes */
+  uint32_t serial;  /* of its leaf; 0: none yet */
   /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
   size_t cap_x, cap_id, cap_face; /* of the front; 0: just its size */
   struct vg_select select;

@@ -19,7 +19,7 @@
 
 /* A box ends so many spacings beyond the faces that it is made for. */
 static const double margin = 1.5, patch_margin = 2.5; /* C11 */
-/* Larger places, in octants of their spacing, are not filled. */
+/* Larger places, in cubes of their spacing, are not filled. */
 static const double most_volume = 1500;
 /* There is more in a box where spacings below this share of its own are. */
 static const double finer = 0.4;

@@ -54,7 +54,7 @@ struct vg_decomposition_options vg_node_decomposition(
 {
   struct vg_decomposition_options o = p->options.decomposition;
 
-  o.cells_per_octant = n->per_octant;
+  o.cells_per_cube = n->per_cube;
   if (!o.n_part)
     o.n_part = vg_decomposition_parts(n->load.cells,
                                       p->options.rule.leaf_cells);
@@ -203,7 +203,7 @@ static vg_status make_child(const struct shares *s, struct vg_node *n, size_t k,
   snprintf(path, sizeof path, "%.*s.%zu", VG_PATH_MAX - 24, n->path, k);
   c = vg_node_new(path, &q->front);
   if (!c) return vg_fail_memory(err, "the parts of a void");
-  c->per_octant = n->per_octant;
+  c->per_cube = n->per_cube;
   c->levels = n->levels;
   c->serial = s->of[k];
   c->is_final = !q->may_cut;

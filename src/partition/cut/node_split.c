@@ -300,7 +300,7 @@ static struct vg_node *new_child(const struct vg_node *n, size_t k, int is_rest,
   else snprintf(path, sizeof path, "%.*s.%zu", VG_PATH_MAX - 24, n->path, k);
   child = vg_node_new(path, front);
   if (!child) return NULL;
-  child->per_octant = n->per_octant;
+  child->per_cube = n->per_cube;
   child->levels = n->levels - n->n_bisection;
   if (child->levels < 0) child->levels = 0;
   return child;
@@ -320,16 +320,16 @@ static vg_status make_children(struct split *s, struct vg_error *err)
   return VG_OK;
 }
 
-/* How many cells a octant of the spacing gets is read off the zones; halfway,
+/* How many cells a cube of the spacing gets is read off the zones; halfway,
  * since these are along planes. */
 static double correction(struct vg_node *n)
 {
-  double was = n->per_octant, seen = n->separator_cells / n->zone_volume;
+  double was = n->per_cube, seen = n->separator_cells / n->zone_volume;
 
   if (!(n->separator_cells > 1000) || !(seen > 0.5 * was && seen < 2 * was))
     return 1;
-  n->per_octant = 0.5 * (was + seen);
-  return n->per_octant / was;
+  n->per_cube = 0.5 * (was + seen);
+  return n->per_cube / was;
 }
 
 /* Every child is what was left of one block. */
@@ -351,7 +351,7 @@ static vg_status load_of_blocks(struct split *s, struct vg_error *err)
       continue;
     }
     n->child[s->child[b]]->load = load[b];
-    n->child[s->child[b]]->per_octant = n->per_octant;
+    n->child[s->child[b]]->per_cube = n->per_cube;
   }
   free(load);
   return st;
@@ -373,7 +373,7 @@ vg_status vg_node_share_load(struct vg_node *n, double correction,
     st = vg_load_split(&n->load, n->n_child, v, correction, e, load, err);
   for (size_t k = 0; st == VG_OK && k < n->n_child; k++) {
     n->child[k]->load = load[k];
-    n->child[k]->per_octant = n->per_octant;
+    n->child[k]->per_cube = n->per_cube;
   }
   free(v);
   free(load);

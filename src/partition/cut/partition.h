@@ -22,7 +22,7 @@ struct vg_partition_options {
   vg_decomposition_maker *maker; /* parts the void before any of it is filled,
                               by the options behind; NULL: planes cut it */
   struct vg_decomposition_options decomposition;
-  double cells_per_octant; /* expected (load.h); what zones hold corrects it,
+  double cells_per_cube; /* expected (load.h); what zones hold corrects it,
                             and leaves that outgrow it are cut again */
   int threads;
   int cyclic; /* 1: leaves are dealt out beforehand (engine.h),
@@ -46,7 +46,7 @@ struct vg_partition_options {
   {                                                                            \
     .rule = { VG_LEAF_CELLS, -1, 0 }, .threads = 1, .sweeps = 2,               \
     .decomposition = VG_DECOMPOSITION_OPTIONS_INIT,                            \
-    .cells_per_octant = VG_LOAD_CELLS_PER_OCTANT                               \
+    .cells_per_cube = VG_LOAD_CELLS_PER_CUBE                                   \
   }
 
 /** What happened, summed over all ranks. */

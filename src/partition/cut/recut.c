@@ -340,7 +340,7 @@ done:
 
 /* --- to those that fill them --------------------------------------------- */
 
-static void send_front(const struct parcels *q, uint32_t of, double per_octant,
+static void send_front(const struct parcels *q, uint32_t of, double per_cube,
                        const struct vg_front *f)
 {
   uint32_t root = vg_root_of(q->up, of);
@@ -348,7 +348,7 @@ static void send_front(const struct parcels *q, uint32_t of, double per_octant,
   uint64_t head = root;
 
   vg_put(w, 1, sizeof head, &head);
-  vg_put(w, 1, sizeof per_octant, &per_octant);
+  vg_put(w, 1, sizeof per_cube, &per_cube);
   vg_front_put(w, f, 1);
 }
 
@@ -372,7 +372,7 @@ static vg_status send_unfilled(struct parcels *q, struct vg_error *err)
 
     memcpy(key.path, n->path, sizeof key.path);
     u = bsearch(&key, q->of, q->n, sizeof *q->of, by_path);
-    if (u) send_front(q, (uint32_t)(u - q->of), n->per_octant, &n->front);
+    if (u) send_front(q, (uint32_t)(u - q->of), n->per_cube, &n->front);
     if (st == VG_OK) st = add_gone(q, n->serial, err);
     vg_node_free(n);
   }
@@ -413,7 +413,7 @@ static vg_status send_pieces(struct parcels *q, vg_path *path, size_t *n_path,
 /* A void in the making, on the rank that fills it. */
 struct wider {
   struct vg_front front;
-  double per_octant;
+  double per_cube;
 };
 
 static vg_status receive(const struct parcels *q, struct wider *wider,
@@ -424,15 +424,15 @@ static vg_status receive(const struct parcels *q, struct wider *wider,
 
   while (st == VG_OK && !r.bad && r.at < r.n) {
     struct vg_front f = VG_FRONT_INIT;
-    double per_octant = 0;
+    double per_cube = 0;
     uint64_t head = 0;
 
     vg_get(&r, 1, sizeof head, &head);
-    vg_get(&r, 1, sizeof per_octant, &per_octant);
+    vg_get(&r, 1, sizeof per_cube, &per_cube);
     if (r.bad || head >= q->n) break;
     vg_front_get(&r, &f, 1);
     if (!r.bad) st = vg_front_join(&wider[head].front, &f, err);
-    wider[head].per_octant = fmax(wider[head].per_octant, per_octant);
+    wider[head].per_cube = fmax(wider[head].per_cube, per_cube);
     vg_front_release(&f);
   }
   return st == VG_OK && r.at < r.n ? vg_fail_damaged(err, "a front") : st;
@@ -492,10 +492,10 @@ static vg_status new_node(struct vg_partition *p, const char *path,
   snprintf(longer, sizeof longer, "%.*s%c", VG_PATH_MAX - 2, path, larger);
   n = *out = vg_node_new(longer, f);
   if (!n) return vg_fail_memory(err, "a void");
-  n->per_octant = wider->per_octant;
+  n->per_cube = wider->per_cube;
   n->is_final = 1;
   n->serial = vg_partition_serial(p);
-  VG_TRY(vg_load_new(&n->front, p->sizing, n->per_octant, p->options.threads,
+  VG_TRY(vg_load_new(&n->front, p->sizing, n->per_cube, p->options.threads,
                      &n->load, err));
   st = vg_select_sort(&n->front, err);
 done:

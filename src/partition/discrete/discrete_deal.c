@@ -31,7 +31,7 @@ struct weights {
   const struct vg_load *load;
   struct vg_load_finder *finder;
   const struct vg_sizing *sizing;
-  double per_octant;
+  double per_cube;
   double *flat; /* [c->t.n_cell] out: triangles that each adds to
                    the cost of its faces */
 };
@@ -50,7 +50,7 @@ static double density_at(const struct weights *w, const double x[3])
     return (double)c->cells / (8 * half * half * half * (double)c->part);
   }
   h = vg_sizing_at(w->sizing, x);
-  return w->per_octant / (h * h * h);
+  return w->per_cube / (h * h * h);
 }
 
 /* The mean over a cell, at points of a lattice in it: four to an edge, or, of
@@ -390,7 +390,7 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
                        load,
                        NULL,
                        sizing,
-                       o->cells_per_octant,
+                       o->cells_per_cube,
                        vg_alloc(c->t.n_cell, sizeof *w.flat) };
   struct dual d = { .begin = NULL };
   vg_status st = VG_OK;

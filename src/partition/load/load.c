@@ -17,8 +17,8 @@
 #define WIDE_FREE 3.0 /* C14 */
 #define WIDE_FRONT 2.0
 /* In large meshes they are wider, to have about this many octants, or one for
- * so many octants of the target edge. Nodes this wide tell how large a mesh is;
- * a leaf fills its width's octant on average. */
+ * so many cubes of the target edge. Nodes this wide tell how large a mesh is; a
+ * leaf fills its width's octant on average. */
 #define MANY_OCTANTS 40000.0
 #define EDGES_MOST 280.0
 #define WIDE_ROUGH 12.0
@@ -31,11 +31,11 @@
 #define LEAST 1.0
 /* From this gradient on VG_LOAD_GRADED counts in full. */
 #define GRADIENT 0.05 /* C15 */
-/* Where h changes by more than this times itself across a octant, the octant's
+/* Where h changes by more than this times itself across an octant, the octant's
  * parts are added up, to this depth. */
 #define STEEP 1.2 /* C16 */
 #define STEEP_DEPTH 4
-/* A field whose gradient is more than HIDES can have edges that no sample of a
+/* A field whose gradient is more than HIDES can have edges that no sample of an
  * octant shows: it is looked at closer while the least is below this share. */
 #define HIDES 0.5
 #define HIDDEN 0.5
@@ -49,7 +49,8 @@
 /* Cells for each face of the front at least: what meshes have in which hardly
  * a point is away from the front. */
 #define CELLS_PER_FACE 1.5
-/* A octant with more triangles holds details that its density need not know. */
+/* An octant with more triangles holds details that its density need not know.
+ */
 #define CROWD 400
 /* Places of the root octant that are tried when volumes do not agree. */
 #define PLACES 3
@@ -68,7 +69,7 @@ struct maker {
   const struct vg_sizing *pace; /* what cells next to the front can follow,
                                where the field is steeper; else NULL */
   int is_steep;                 /* the field is, somewhere */
-  double per_octant;
+  double per_cube;
   double narrow, wide; /* divides, multiplies the widths allowed */
   size_t n_branch, cap_branch, large;
   _Atomic size_t *emitted; /* octants of all branches */
@@ -84,7 +85,7 @@ struct maker {
 /* Of a node: mean of 1 / h^3, that times the correction for a gradient, and
  * the gradient. */
 struct density {
-  double octants, cells, slope;
+  double cubes, cells, slope;
 };
 
 static double edge_at(const struct maker *m, const double x[3])
@@ -94,7 +95,7 @@ static double edge_at(const struct maker *m, const double x[3])
   return m->pace ? fmin(h, vg_sizing_at(m->pace, x)) : h;
 }
 
-/* Of a octant around mid. A rule of four points, exact for quadratics. */
+/* Of an octant around mid. A rule of four points, exact for quadratics. */
 static struct density density_around(const struct maker *m, const double mid[3],
                                      double half)
 {
@@ -139,16 +140,16 @@ static struct density mean_density(const struct maker *m,
   return density_around(m, mid, half);
 }
 
-/* Whether h changes so much across a octant that the rule misses what is near
+/* Whether h changes so much across an octant that the rule misses what is near
  * its finest end. */
 static int is_steep(struct density d, double half)
 {
   const double change = 2 * half * d.slope;
 
-  return change * change * change * d.octants > STEEP * STEEP * STEEP;
+  return change * change * change * d.cubes > STEEP * STEEP * STEEP;
 }
 
-/* Whether there are edges in a octant that are much finer than its density
+/* Whether there are edges in an octant that are much finer than its density
  * shows, and of which it is more than `wide` wide. */
 static int hides(const struct maker *m, const double mid[3], double half,
                  double density, double wide)
@@ -162,7 +163,7 @@ static int hides(const struct maker *m, const double mid[3], double half,
          least * least * least * density < HIDDEN * HIDDEN * HIDDEN;
 }
 
-/* The same from parts of the octant. left: octants of the target edge that
+/* The same from parts of the octant. left: cubes of the target edge that
  * matter; where there are more, the node is divided in any case. */
 static struct density add_up(const struct maker *m, const double mid[3],
                              double half, int depth, double *left)
@@ -170,8 +171,8 @@ static struct density add_up(const struct maker *m, const double mid[3],
   struct density sum = density_around(m, mid, half);
 
   if (*left < 0 || ((depth <= 0 || !is_steep(sum, half)) &&
-                    !hides(m, mid, half, sum.octants, CLOSE))) {
-    *left -= 8 * half * half * half * sum.octants;
+                    !hides(m, mid, half, sum.cubes, CLOSE))) {
+    *left -= 8 * half * half * half * sum.cubes;
     return sum;
   }
   sum = (struct density){ 0, 0, 0 };
@@ -182,13 +183,13 @@ static struct density add_up(const struct maker *m, const double mid[3],
     for (int k = 0; k < 3; k++)
       x[k] = mid[k] + (o >> k & 1 ? 0.5 : -0.5) * half;
     d = add_up(m, x, 0.5 * half, depth - 1, left);
-    sum.octants += d.octants / 8;
+    sum.cubes += d.cubes / 8;
     sum.cells += d.cells / 8;
   }
   return sum;
 }
 
-/* Most octants of the target edge that a leaf has. */
+/* Most cubes of the target edge that a leaf has. */
 static double most_in(const struct maker *m, const struct vg_load_node *node)
 {
   const double wide = m->wide * (node->n ? WIDE_FRONT : WIDE_FREE) / m->narrow;
@@ -211,7 +212,7 @@ static double cube_root(double x)
   return ldexp(y, e / 3);
 }
 
-/* The parts of a octant around samples of it that lie inside, of all of one
+/* The parts of an octant around samples of it that lie inside, of all of one
  * that is: how many, and the density there. */
 static int sample_steep(const struct maker *m, const struct vg_load_node *node,
                         const int32_t owner[VG_LOAD_SAMPLES],
@@ -232,25 +233,25 @@ static int sample_steep(const struct maker *m, const struct vg_load_node *node,
     for (int k = 0; k < 3; k++)
       x[k] = t->lo[k] + node->at[k] * t->unit + (i >> k & 1 ? 3 : 1) * half;
     d = add_up(m, x, half, STEEP_DEPTH - 1, &left);
-    sum.octants += d.octants;
+    sum.cubes += d.cubes;
     sum.cells += d.cells;
     inside++;
   }
   if (inside) {
-    sum.octants /= inside;
+    sum.cubes /= inside;
     sum.cells /= inside;
     *density = sum;
   }
   return inside;
 }
 
-/* Samples of a octant that the front passes: how many are inside, and the
+/* Samples of an octant that the front passes: how many are inside, and the
  * density there. Without bias, however wide the octant is. */
 static int sample(const struct maker *m, const struct vg_load_stack *s,
                   const struct vg_load_node *node, struct density *density)
 {
   const struct vg_load_tree *t = m->tree;
-  const double more = density->cells / density->octants;
+  const double more = density->cells / density->cubes;
   int32_t owner[VG_LOAD_SAMPLES] = { 1, 1, 1, 1, 1, 1, 1, 1 };
   uint32_t at[3];
   double sum = 0, mid[3], half;
@@ -258,7 +259,7 @@ static int sample(const struct maker *m, const struct vg_load_stack *s,
 
   if (node->n) vg_load_sample(t, s, node, owner, at);
   half = middle_of(m, node, mid);
-  if (is_steep(*density, half) || hides(m, mid, half, density->octants, CLOSE))
+  if (is_steep(*density, half) || hides(m, mid, half, density->cubes, CLOSE))
     return sample_steep(m, node, owner, density);
   if (!node->n) return VG_LOAD_SAMPLES;
   for (int i = 0; i < VG_LOAD_SAMPLES; i++) {
@@ -275,8 +276,8 @@ static int sample(const struct maker *m, const struct vg_load_stack *s,
     inside++;
   }
   if (inside) {
-    density->octants = sum / inside;
-    density->cells = more * density->octants;
+    density->cubes = sum / inside;
+    density->cells = more * density->cubes;
   }
   return inside;
 }
@@ -299,9 +300,9 @@ static int emit(const struct maker *m, struct branch *b,
   for (int k = 0; k < 3; k++)
     c->at[k] = (float)(t->lo[k] + node->at[k] * t->unit + 0.5 * side);
   c->half = (float)(0.5 * side);
-  c->h = (float)(1 / cube_root(density.octants));
+  c->h = (float)(1 / cube_root(density.cubes));
   c->part = (float)inside / VG_LOAD_SAMPLES;
-  c->cells = (float)(m->per_octant * density.cells * volume * (double)c->part);
+  c->cells = (float)(m->per_cube * density.cells * volume * (double)c->part);
   return 0;
 }
 
@@ -324,10 +325,10 @@ static int refine(const struct maker *m, struct branch *b,
 
   if (!node->n && node->owner < 1) return 0;
   density = mean_density(m, node);
-  if (is_leaf(m, node, density.octants)) {
+  if (is_leaf(m, node, density.cubes)) {
     const int inside = sample(m, s, node, &density);
 
-    if (is_leaf(m, node, density.octants))
+    if (is_leaf(m, node, density.cubes))
       return emit(m, b, node, density, inside);
   }
   if (vg_load_octants(m->tree, s, node, part, 1)) return -1;
@@ -385,7 +386,7 @@ static int plan(struct maker *m, struct vg_load_stack *s,
 
   if (!node->n && node->owner < 1) return 0;
   if ((node->n <= m->large && node->level) ||
-      is_leaf(m, node, mean_density(m, node).octants))
+      is_leaf(m, node, mean_density(m, node).cubes))
     return add_branch(m, s, node);
   if (vg_load_octants(m->tree, s, node, part, threads)) return -1;
   for (int o = 0; o < 8 && !bad; o++) bad = plan(m, s, &part[o], threads);
@@ -415,12 +416,12 @@ struct rough_job {
 };
 #define ROUGH_MOST (MANY_OCTANTS * EDGES_MOST)
 
-/* Octants of the target edge in a node, whatever is the void. */
+/* cubes of the target edge in a node, whatever is the void. */
 static double rough(struct rough_job *job, const struct vg_load_node *node)
 {
   const struct maker *m = job->m;
   const double side = vg_load_side(node) * m->tree->unit;
-  const double n = mean_density(m, node).octants * side * side * side;
+  const double n = mean_density(m, node).cubes * side * side * side;
   struct vg_load_node part = *node;
   double sum = 0, mid[3], half;
 
@@ -551,7 +552,7 @@ static int lone_octant(const struct maker *m, const double lo[3],
   c->half = (float)(0.5 * side);
   c->h = (float)h;
   c->part = (float)(volume / (side * side * side));
-  c->cells = (float)(m->per_octant * volume / (h * h * h));
+  c->cells = (float)(m->per_cube * volume / (h * h * h));
   free(l->octant);
   l->octant = c;
   l->n = 1;
@@ -567,7 +568,7 @@ static vg_status refused(const struct maker *m, struct vg_error *err)
                  "the sizes ask for more than %.0f "
                  "billion cells; are hmin, hmax and the sources in the unit of "
                  "the surface?",
-                 OCTANTS_MOST * EDGES_MOST * m->per_octant * 1e-9);
+                 OCTANTS_MOST * EDGES_MOST * m->per_cube * 1e-9);
 }
 
 /* The best of several places of the root octant; nearly always the first. */
@@ -598,7 +599,7 @@ static vg_status build(struct maker *m, struct vg_load_tree *t,
       *out = l;
       best = off;
     } else vg_load_release(&l);
-    /* what samples of 1/8 of a octant may be wrong by, and a bit */
+    /* what samples of 1/8 of an octant may be wrong by, and a bit */
     if (off <= 0.01 * volume + 0.5 * sqrt(crossed)) break;
   }
   if (!out->n && lone_octant(m, lo, hi, volume, out))
@@ -640,17 +641,17 @@ static void raise_to(struct vg_load *l, double least)
 }
 
 vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
-                      double cells_per_octant, int threads, struct vg_load *out,
+                      double cells_per_cube, int threads, struct vg_load *out,
                       struct vg_error *err)
 {
-  assert(sizing && out && cells_per_octant > 0 && threads >= 0);
+  assert(sizing && out && cells_per_cube > 0 && threads >= 0);
   struct vg_load_tree t = { .unit = 1 };
   _Atomic size_t emitted = 0;
   struct vg_sizing *pace = NULL;
   struct maker m = { .tree = &t,
                      .sizing = sizing,
                      .is_steep = vg_sizing_slope(sizing) > HIDES,
-                     .per_octant = cells_per_octant,
+                     .per_cube = cells_per_cube,
                      .narrow = 1,
                      .emitted = &emitted };
   struct vg_load l = VG_LOAD_INIT;

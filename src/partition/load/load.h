@@ -15,10 +15,10 @@
 #include "core/front/front.h"
 #include "core/sizing/sizing.h"
 
-/** Cells per octant of the target edge where spacing is even, measured over
+/** Cells per cube of the target edge where spacing is even, measured over
  * boxes (docs/performance-parallel.md); corrected by what a void's zones turned
  * out. */
-#define VG_LOAD_CELLS_PER_OCTANT 9.0 /* C13 */
+#define VG_LOAD_CELLS_PER_CUBE 9.0 /* C13 */
 
 /** Where the target edge varies, cells are more by this share, and cost more:
  * nearly the same for growth rates from 1.1 to 1.35, while even spacing allows
@@ -56,33 +56,34 @@ void vg_load_release(struct vg_load *l);
  *
  * @param v   front only is looked at; closed
  * @param threads  to use; the result does not depend on it
- * @param cells_per_octant  VG_LOAD_CELLS_PER_OCTANT; where h varies in space
- * the cells are up to 1.21 times as many, as measured Octree over the void's
- * box: split while wider than 3 h, or than 2 h where the front passes (the part
- * inside is then sampled); wider in meshes of more than 10 M cells, to have
- * about 40,000 octants or one for 2,500 cells, and as narrow as 1 h in voids
- * with fewer than 64. Octants outside are dropped. Where h changes much across
- * a octant, 1 / h^3 is summed over its parts; of a field that changes by more
- * than half of a length over it, down to the least h in them. h is taken to
- * grow from the front's own edges by 1.5 for each length at most, which is what
- * meshes do, and there are 1.5 cells for each face at least. Cost: O(front +
- * octants) times a logarithm. Result follows from the arguments alone, bit by
- * bit. VG_ERR_UNSUPPORTED beyond 4 M octants, some 10 billion cells: sizes in
- * another unit than the surface. VG_ERR_MEMORY. */
+ * @param cells_per_cube  VG_LOAD_CELLS_PER_CUBE; where h varies in space the
+ *            cells are up to 1.21 times as many, as measured
+ * Octree over the void's box: split while wider than 3 h, or than 2 h where
+ * the front passes (the part inside is then sampled); wider in meshes of more
+ * than 10 M cells, to have about 40,000 octants or one for 2,500 cells, and as
+ * narrow as 1 h in voids with fewer than 64. Octants outside are dropped.
+ * Where h changes much across an octant, 1 / h^3 is summed over its parts; of a
+ * field that changes by more than half of a length over it, down to the least
+ * h in them. h is
+ * taken to grow from the front's own edges by 1.5 for each length at most,
+ * which is what meshes do, and there are 1.5 cells for each face at least.
+ * Cost: O(front + octants) times a logarithm. Result follows from the arguments
+ * alone, bit by bit. VG_ERR_UNSUPPORTED beyond 4 M octants, some 10 billion
+ * cells: sizes in another unit than the surface. VG_ERR_MEMORY. */
 vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
-                      double cells_per_octant, int threads, struct vg_load *out,
+                      double cells_per_cube, int threads, struct vg_load *out,
                       struct vg_error *err);
 
 /** What each of n voids takes of the load of a void that was cut into them.
  *
- * child: [n] fronts that lie inside the parent's void; out: [n] loads. A octant
- * goes to the child that it lies in (octants that fronts cross are shared by
- * samples); what lies in none of them (the zones) is dropped. A child that is
- * too small for the octants gets one around it. Shares are made to fit the
- * volumes of the fronts; nothing drifts over generations. The octants' cells
- * are multiplied by `correction`, the ratio of cells made to cells expected in
- * the ancestors' zones. Children are looked at in a loop of e, which may be
- * NULL. O(octants + fronts) times a logarithm. */
+ * child: [n] fronts that lie inside the parent's void; out: [n] loads. An
+ * octant goes to the child that it lies in (octants that fronts cross are
+ * shared by samples); what lies in none of them (the zones) is dropped. A child
+ * that is too small for the octants gets one around it. Shares are made to fit
+ * the volumes of the fronts; nothing drifts over generations. The octants'
+ * cells are multiplied by `correction`, the ratio of cells made to cells
+ * expected in the ancestors' zones. Children are looked at in a loop of e,
+ * which may be NULL. O(octants + fronts) times a logarithm. */
 vg_status vg_load_split(const struct vg_load *parent, size_t n,
                         const struct vg_front *child, double correction,
                         const struct vg_engine *e, struct vg_load *out,
@@ -92,7 +93,7 @@ vg_status vg_load_split(const struct vg_load *parent, size_t n,
  *
  * n: planes across each axis; at: their places, rising; out: [blocks] loads,
  * x first: block i + (n[0] + 1) (j + (n[1] + 1) k) is behind i planes across
- * x. A octant that planes pass goes to several blocks, by volume; what lies
+ * x. An octant that planes pass goes to several blocks, by volume; what lies
  * within `reach` target edges of a plane goes to none (zones). In loops of e,
  * which may be NULL. O(octants + blocks). */
 vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],

@@ -13,7 +13,7 @@
 
 enum { CHUNK = 4096 };
 
-/* Thinner slices of a octant are nothing. */
+/* Thinner slices of an octant are nothing. */
 #define SLICE 1e-3
 
 struct deal {
@@ -30,7 +30,7 @@ struct deal {
 /* --- octants ---------------------------------------------------------------
  */
 
-/* Part of a octant's cells in block k of an axis, zones left out. */
+/* Part of an octant's cells in block k of an axis, zones left out. */
 static double slice(const struct deal *d, const struct vg_load_octant *c,
                     int axis, int k)
 {
@@ -48,7 +48,7 @@ static double slice(const struct deal *d, const struct vg_load_octant *c,
   return hi > lo ? (to - from) / (hi - lo) : from <= to;
 }
 
-/* Blocks of an axis, first .. end - 1, that a octant touches. */
+/* Blocks of an axis, first .. end - 1, that an octant touches. */
 static void find_range(const struct deal *d, const struct vg_load_octant *c,
                        int axis, int *first, int *end)
 {

@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "partition/load/load_tree.h"
 
-/* A octant in the lattice of the octree. */
+/* An octant in the lattice of the octree. */
 struct place {
   uint32_t at[3], side; /* lower corner */
   uint32_t octant;

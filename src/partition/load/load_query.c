@@ -1,8 +1,8 @@
 /* Outline: each axis is divided into bins at edges of octants: of all of them
  * when they are few, else of a sample, so bins are narrow where octants are.
  * Bins know the cells below them, how densely cells stand on planes across
- * them, and the largest target edge. A octant that covers many bins is added in
- * constant time: as a difference between the first and the last of them. */
+ * them, and the largest target edge. An octant that covers many bins is added
+ * in constant time: as a difference between the first and the last of them. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -53,7 +53,7 @@ void vg_load_release(struct vg_load *l)
   memset(l, 0, sizeof *l);
 }
 
-/* Where a octant's cells are, along an axis. */
+/* Where an octant's cells are, along an axis. */
 static void reach_of(const struct vg_load *l, const struct vg_load_octant *c,
                      int k, double *lo, double *hi)
 {

@@ -1,7 +1,7 @@
 /* Outline: the parent's octants are descended along with the front of each
  * child. Where no front is left in a node, all of its octants are inside or
- * none; in a octant that the front crosses, samples are counted. The samples of
- * a octant are always the same ones, so what earlier cuts have dropped was
+ * none; in an octant that the front crosses, samples are counted. The samples
+ * of an octant are always the same ones, so what earlier cuts have dropped was
  * outside the children too, and errors do not pile up over generations. */
 #include <assert.h>
 #include <math.h>
@@ -51,7 +51,7 @@ static int share_octant(struct split *s, const struct vg_load_node *node,
   return n ? add_share(s, octant, n) : 0;
 }
 
-/* Octant of a node whose centre is mid that holds a octant. */
+/* Octant of a node whose centre is mid that holds an octant. */
 static int octant_of(const struct vg_load_octant *c, const double mid[3])
 {
   int o = 0;
@@ -173,7 +173,7 @@ static int share_all(struct split *s)
 
 /* --- children ------------------------------------------------------------ */
 
-/* Cells per volume and edge where the parent has a octant around x, or nearly
+/* Cells per volume and edge where the parent has an octant around x, or nearly
  * so: the octant that a descent ends in. */
 static const struct vg_load_octant *octant_at(const struct split *s,
                                               const double x[3])

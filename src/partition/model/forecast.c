@@ -61,8 +61,8 @@ void vg_forecast_release(struct vg_forecast *o)
   memset(o, 0, sizeof *o);
 }
 
-/* Inner points have 6 cells each in the lattice that fills make (12 in a octant
- * of two points), points on the boundary fewer, as measured. */
+/* Inner points have 6 cells each in the lattice that fills make (12 in an
+ * octant of two points), points on the boundary fewer, as measured. */
 double vg_forecast_points(double cells, double faces)
 {
   assert(cells >= 0 && faces >= 0);

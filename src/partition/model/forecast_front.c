@@ -37,7 +37,7 @@ vg_status vg_bins_add(struct vg_bins *f, const struct vg_bin *b,
   return VG_OK;
 }
 
-/* Of a share of a octant. */
+/* Of a share of an octant. */
 void vg_amount_add(struct vg_amount *a, const struct vg_load_octant *c,
                    double share)
 {
@@ -45,7 +45,7 @@ void vg_amount_add(struct vg_amount *a, const struct vg_load_octant *c,
 
   double side = 2 * (double)c->half / (double)c->h, cells = (double)c->cells;
   double octants = (double)c->part * side * side * side;
-  double more = octants > 0 ? cells / (octants * VG_LOAD_CELLS_PER_OCTANT) - 1
+  double more = octants > 0 ? cells / (octants * VG_LOAD_CELLS_PER_CUBE) - 1
                             : 0;
 
   a->cells += share * cells;
@@ -64,7 +64,7 @@ static double side_of_plane(const struct vg_plane *p, const float x[3])
          p->normal[2] * (double)x[2] - p->offset;
 }
 
-/* Half the extent of a octant across a plane. */
+/* Half the extent of an octant across a plane. */
 static double half_across(const struct vg_load_octant *c,
                           const struct vg_plane *p)
 {

@@ -13,7 +13,7 @@
 
 #define NONE VG_MODEL_NONE
 
-/* Bytes of a void's front per cells^(2/3): a octant of m target edges a side
+/* Bytes of a void's front per cells^(2/3): an octant of m target edges a side
  * has 9 m^3 cells and 6 m^2 * 4 / sqrt(3) triangles of 24 bytes each, half a
  * point and three numbers. */
 #define FRONT_BYTES 77.0 /* M5 */

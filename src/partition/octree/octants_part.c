@@ -461,7 +461,7 @@ vg_status vg_octants_part(struct vg_octants *t, const struct vg_front *v,
                           uint32_t *gap, struct vg_error *err)
 {
   struct chooser c = {
-    .t = t, .sizing = sizing, .options = o, .per_cube = o->cells_per_octant
+    .t = t, .sizing = sizing, .options = o, .per_cube = o->cells_per_cube
   };
   const size_t n = t->n_leaf;
   vg_status st;

@@ -61,7 +61,7 @@ static size_t n_free(const struct vg_octants *t)
  * there would be too many. */
 static double choose_width(const struct maker *m)
 {
-  const double per_cube = m->options->cells_per_octant;
+  const double per_cube = m->options->cells_per_cube;
   double wide = NARROW;
 
   if (m->options->coarsening > 0) return m->options->coarsening;
