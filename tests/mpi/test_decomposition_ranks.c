@@ -128,7 +128,7 @@ static void all_ranks_hear_of_it(void **state)
     int parts, hole;
     const char *why;
   } what[] = {
-    { 1000000, 0, "ask for fewer parts" },
+    { 1000000, 0, "request fewer subdomains" },
     { 4500, 0, "a smaller coarsening" },
     { 6, 1, "coarse mesh" },
   };

@@ -149,7 +149,7 @@ static void failures_are_those_of_all(void **state)
   o.n_part = m.n_tet + 1;
   assert_int_equal(vg_solver_part_slices(job, &c.s, &o, &out, &k, &r, &err),
                    VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "ask for 1 to"));
+  assert_non_null(strstr(err.text, "request 1 to"));
   o.n_part = 2;
   c.bad = 3;
   assert_int_equal(vg_solver_part_slices(job, &c.s, &o, &out, &k, &r, &err),

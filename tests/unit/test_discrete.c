@@ -278,13 +278,13 @@ static void what_cannot_be_parted(void **state)
   assert_int_equal(vg_discrete_part(&c.front, &c.load, c.s.sizing, &o, SERIAL,
                                     NULL, &p, &err),
                    VG_ERR_UNSUPPORTED);
-  assert_non_null(strstr(err.text, "fewer parts"));
+  assert_non_null(strstr(err.text, "fewer subdomains"));
   assert_int_equal(p.n_part, 0);
   o.n_part = 0;
   assert_int_equal(vg_discrete_part(&c.front, &c.load, c.s.sizing, &o, SERIAL,
                                     NULL, &p, &err),
                    VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "give 1 or more"));
+  assert_non_null(strstr(err.text, "request at least 1"));
   o.n_part = 4500; /* fewer than the mesh will have cells */
   assert_int_equal(vg_discrete_part(&c.front, &c.load, c.s.sizing, &o, SERIAL,
                                     NULL, &p, &err),

@@ -150,7 +150,7 @@ static void what_cannot_be_is_refused(void **state)
 
   (void)state;
   assert_int_equal(vg_graph_part(&g, &o, part, &err), VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "1601 parts of 1600 vertices"));
+  assert_non_null(strstr(err.text, "1601 subdomains of 1600 vertices"));
   o.n_part = 0;
   assert_int_equal(vg_graph_part(&g, &o, part, &err), VG_ERR_INPUT);
   assert_int_equal(part[0], 7);

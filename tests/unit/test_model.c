@@ -135,7 +135,7 @@ static void leaves_are_dealt_out(void **state)
   }
   m.cyclic = 1;
   assert_int_equal(vg_model_replay(&s, &m, &f, NULL, &err), VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "by what it is dealt out"));
+  assert_non_null(strstr(err.text, "of the trace has no 'work'"));
   for (int i = 0; i < 5; i++) s.span[2 + i].work = 5 - i;
   f = replay(&s, &m, &t);
   assert_true(f.wall == 3 + 1 + 4 + 8);
@@ -601,10 +601,10 @@ static void contradictions_are_named(void **state)
 
   (void)state;
   add(&s, "0L", "0J", 1);
-  refuses(&s, &m, "'0L' of the record was made by '0J'");
+  refuses(&s, &m, "'0L' of the trace was created by '0J'");
   add(&s, "0L", "", 1);
   add(&s, "0L", "", 1);
-  refuses(&s, &m, "'0L' is in the record more than once");
+  refuses(&s, &m, "'0L' is in the trace more than once");
   add(&s, "0J", "", 1);
   add(&s, "0.1J", "0.2J", 1);
   add(&s, "0.2J", "0.1J", 1);
@@ -617,7 +617,7 @@ static void contradictions_are_named(void **state)
   add(&s, "0.2L", "0R", 1);
   refuses(&s, &m, "waits for tasks that wait for it");
   add(&s, "0L", "", -1);
-  refuses(&s, &m, "'0L' of the record took -1 seconds");
+  refuses(&s, &m, "'0L' of the trace took -1 seconds");
   add(&s, "0J", "", 1);
   s.span[0].loops = 1.5;
   refuses(&s, &m, "took 1 seconds, of which 1.5 in loops");

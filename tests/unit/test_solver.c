@@ -276,7 +276,7 @@ static void refuses_parts_that_cannot_be(void **state)
   o.n_part = m.n_cell + 1;
   assert_int_equal(vg_solver_part(&m.mesh, NULL, &o, "x", m.part, &r, &err),
                    VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "ask for 1 to"));
+  assert_non_null(strstr(err.text, "request 1 to"));
   o.n_part = 1;
   assert_int_equal(vg_solver_part(&m.mesh, NULL, &o, "x", m.part, &r, &err),
                    VG_OK);

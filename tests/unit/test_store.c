@@ -292,7 +292,7 @@ static void another_run_is_refused(void **state)
   o.resume = 1;
   REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "second", "changed", "restore");
   o = options_of(1, 0);
-  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "resume it", "very run");
+  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "first", "resume it", "same run");
   s = opened(1, 1); /* still there after all this */
   assert_true(is_there(s, 7, 3, "abc"));
   vg_store_close(s, 1);
@@ -315,7 +315,7 @@ static void nothing_to_resume(void **state)
   struct vg_store_options o = options_of(1, 1);
 
   (void)state;
-  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "no such run directory",
+  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "run directory does not exist",
           "without resuming");
   assert_int_equal(access(RUN_DIR, F_OK), -1);
   assert_int_equal(mkdir(RUN_DIR, 0777), 0);
@@ -446,9 +446,10 @@ static void one_run_at_a_time(void **state)
   }
   assert_int_equal(read(ends[0], &c, 1), 1);
   snprintf(process, sizeof process, "process %ld)", (long)pid);
-  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "under way", "host ", process, "wait");
+  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "another run is using", "host ", process,
+          "wait");
   o = options_of(2, 0);
-  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "under way", process);
+  REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "another run is using", process);
   kill(pid, SIGKILL);
   assert_int_equal(waitpid(pid, NULL, 0), pid);
   snprintf(half, sizeof half, "%s.0.1.part", record_path());

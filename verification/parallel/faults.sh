@@ -313,7 +313,7 @@ case_changed() {
   begin 1 1
   finish
   ended 1
-  said 'finished tasks of this very run'
+  said 'finished tasks of this same run'
   resume 3 1   # and nothing is lost
   row "changed options with --resume; then without it; then as it was" "$kept"
 }
@@ -329,7 +329,7 @@ case_busy() {
   begin 1 1
   finish
   ended 1
-  said 'a run is under way in this directory'
+  said 'another run is using this directory'
   pid=$first out_dir=$out_of_first
   local kept
   kept=$(message)

@@ -14,8 +14,8 @@
 #include "partition/discrete/discrete.h"
 #include "partition/repair/repair.h"
 
-/* Tasks as long as all of them plan, grow zones and join these into fronts;
- * then cells. */
+/* Shows tasks as long as all of them plan, grow zones or update fronts; then
+ * cells. */
 static void progress(void *user, double done_cells, double known, size_t n_done,
                      size_t n_known)
 {
@@ -33,8 +33,8 @@ static void progress(void *user, double done_cells, double known, size_t n_done,
   else vg_partition_tell(p, p->stage, (size_t)done_cells, (size_t)all);
 }
 
-/* The root: the whole void, with its load. By rank 0, on the cores of its
- * node, as all others wait for it. */
+/* Makes the root node: the whole void with its load. Rank 0 does this on the
+ * cores of its node, since all other ranks wait for it. */
 static vg_status make_root(struct vg_partition *p, struct vg_comm *comm,
                            struct vg_node **out, struct vg_error *err)
 {
@@ -90,7 +90,8 @@ static vg_status within_limit(const struct vg_partition *p, double cells,
                  how, all, layers, (unsigned long long)p->options.max_cells);
 }
 
-/* The tasks that these voids lead to; the voids are taken over. Collective. */
+/* Runs the tasks that follow from these voids, which are taken over.
+ * Collective. */
 static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
                            size_t n, struct vg_node **node,
                            struct vg_spans *spans, struct vg_error *err)
@@ -119,8 +120,8 @@ static vg_status run_tasks(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
-/* Leaves by the number of parts, on all ranks. A void that is not cut is filled
- * as it is, in the order that its front came in. Collective. */
+/* Sets the leaf size from the number of subdomains, on all ranks. A void that
+ * is not cut is filled whole, with its front in the input order. Collective. */
 static vg_status cut_like_parts(struct vg_partition *p, struct vg_comm *comm,
                                 struct vg_node *root, struct vg_error *err)
 {
@@ -146,7 +147,7 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
   vg_status st = VG_OK;
 
   if (p->rank == 0) st = make_root(p, comm, &root, err);
-  /* no estimate is off by more than half */
+  /* no estimate is wrong by more than half */
   if (st == VG_OK && p->rank == 0)
     st = within_limit(p, p->report.estimate / 1.5, "would have", err);
   st = vg_comm_agree(comm, st, err);
@@ -168,8 +169,8 @@ static vg_status run_whole(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
-/* Parts that could not be filled are filled together with what is beside them,
- * until there is none. */
+/* Leaves that could not be filled are merged with adjacent pieces and filled
+ * again, until none is left. */
 static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
                            struct vg_spans *spans, struct vg_error *err)
 {
@@ -199,7 +200,7 @@ static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
-/* Counts and times of all ranks together. */
+/* Combines counts and times of all ranks. */
 static vg_status sum_report(struct vg_partition_report *r, struct vg_comm *comm,
                             struct vg_error *err)
 {

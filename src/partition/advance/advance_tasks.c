@@ -1,5 +1,5 @@
-/* Tasks of the advancing partition: what is done, what follows from it, and how
- * it gets to other ranks and back. */
+/* Tasks of the advancing partition: their execution, the tasks that follow,
+ * and their transfer to other ranks and back. */
 #include "partition/advance/advance_tasks.h"
 
 #include <assert.h>
@@ -11,14 +11,14 @@
 #include "base/memory.h"
 #include "partition/model/model.h"
 
-/* --- doing tasks --------------------------------------------------------- */
+/* --- execution ----------------------------------------------------------- */
 
-/* What a task's home hears. */
+/* The outcome of a task for its home rank. */
 struct outcome {
   int what;
-  struct vg_node *node; /* START, and LEAF that outgrew: owned; JOIN, ZONE:
-                           borrowed, at home only, */
-  uint64_t home_node;   /* elsewhere its number there */
+  struct vg_node *node; /* START, and overloaded LEAF: owned; JOIN, ZONE:
+                           borrowed, at home only. */
+  uint64_t home_node; /* On other ranks, the number of the node at its home. */
   size_t index;
   struct vg_change change;
 };
@@ -31,7 +31,7 @@ static void free_outcome(struct outcome *o)
   free(o);
 }
 
-/* One that cannot be filled is laid aside. */
+/* A leaf that cannot be filled is set aside. */
 static vg_status run_leaf(struct vg_partition *p, struct vg_work *w,
                           struct outcome *o, const struct vg_engine *e,
                           struct vg_error *err)
@@ -67,7 +67,8 @@ static vg_status run_work(struct vg_partition *p, struct vg_work *w,
   return vg_node_start(p, o->node, e, err);
 }
 
-/* Of the front that it is about: what its time follows besides cells. */
+/* Faces of the front that a task works on; its time depends on them and on its
+ * cells. */
 static size_t faces_of(const struct vg_work *w)
 {
   return w->what == VG_WORK_ZONE ? w->part.n_face : w->node->front.n_face;
@@ -91,7 +92,7 @@ static vg_status run(void *user, const struct vg_engine *e,
   return st;
 }
 
-/* --- what follows from them ---------------------------------------------- */
+/* --- tasks that follow --------------------------------------------------- */
 
 static double work_of(struct vg_node *leaf)
 {
@@ -175,15 +176,15 @@ static vg_status submit_child(struct vg_partition *p, struct vg_engine *e,
   if (vg_node_wants_cut(p, c)) return submit_start(e, c, err);
   pthread_mutex_lock(&p->lock);
   p->report.n_leaf++;
-  /* parts of a decomposition have their serials, and are as large as was asked
-   */
+  /* subdomains of a decomposition have a serial and the requested size */
   p->report.n_uncut += leaf > 0 && !c->serial &&
                        c->load.cells > VG_OUTGROWN * leaf;
   pthread_mutex_unlock(&p->lock);
   return submit_leaf(p, e, c, err);
 }
 
-/* From its first stage to its last a node is held by this rank alone. */
+/* Registers a node; from its first stage to its last only this rank holds
+ * it. */
 static void hold(struct vg_partition *p, struct vg_node *n)
 {
   pthread_mutex_lock(&p->lock);
@@ -195,7 +196,7 @@ static void hold(struct vg_partition *p, struct vg_node *n)
   pthread_mutex_unlock(&p->lock);
 }
 
-/* NULL: none of them has this number. */
+/* Finds a node by number; NULL: not found. */
 static struct vg_node *held(struct vg_partition *p, uint64_t number)
 {
   struct vg_node *n;
@@ -214,7 +215,8 @@ static void let_go(struct vg_partition *p, struct vg_node *n)
   pthread_mutex_unlock(&p->lock);
 }
 
-/* A node whose planning or joining is over: its works, or its children. */
+/* Continues a node after planning or a join: submits its works or its
+ * children. */
 static vg_status follow(struct vg_partition *p, struct vg_engine *e,
                         struct vg_node *n, struct vg_error *err)
 {
@@ -252,11 +254,11 @@ static vg_status follow(struct vg_partition *p, struct vg_engine *e,
   return st;
 }
 
-/* The last outcome of a stage lets the node go on. */
+/* The last outcome of a stage submits the join of the node. */
 static vg_status zone_done(struct vg_partition *p, struct vg_engine *e,
                            struct outcome *o, struct vg_error *err)
 {
-  /* a task that was packed, and came back to its home, has the number only */
+  /* a task that was packed and returned to its home has only the number */
   struct vg_node *n = o->node ? o->node : held(p, o->home_node);
   struct vg_change *change;
 
@@ -271,8 +273,8 @@ static vg_status zone_done(struct vg_partition *p, struct vg_engine *e,
   return --n->n_left ? VG_OK : submit_join(e, n, err);
 }
 
-/* A leaf that outgrew its estimate becomes a node: its front is what it was,
- * and there are at least as many cells in it as it was stopped for. */
+/* An overloaded leaf becomes a node. Its front is unchanged, and it has at
+ * least the number of cells at which it was stopped. */
 static vg_status leaf_done(struct vg_partition *p, struct vg_engine *e,
                            struct outcome *o, struct vg_error *err)
 {
@@ -310,7 +312,7 @@ static vg_status done(void *user, struct vg_engine *e,
   } else if (o->what == VG_WORK_LEAF) {
     st = leaf_done(p, e, o, err);
   } else {
-    o->node = NULL; /* goes on by itself */
+    o->node = NULL; /* continues by itself */
     if (o->what == VG_WORK_START) hold(p, n);
     st = follow(p, e, n, err);
   }
@@ -318,7 +320,7 @@ static vg_status done(void *user, struct vg_engine *e,
   return st;
 }
 
-/* --- to other ranks ------------------------------------------------------ */
+/* --- transfer to other ranks --------------------------------------------- */
 
 static vg_status packed(struct vg_writer *w, struct vg_bytes *out,
                         struct vg_error *err)
@@ -331,7 +333,7 @@ static vg_status packed(struct vg_writer *w, struct vg_bytes *out,
   return VG_OK;
 }
 
-enum { N_NUMBER = 10 }; /* of a node */
+enum { N_NUMBER = 10 }; /* integers of a node */
 
 static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
                           struct vg_error *err)
@@ -349,7 +351,7 @@ static vg_status put_node(struct vg_writer *w, const struct vg_node *n,
   size = load.n;
   vg_put(w, sizeof n->path, 1, n->path);
   vg_put(w, N_NUMBER, sizeof *number, number);
-  vg_put(w, 1, sizeof l->at, l->at); /* ribs are made where it is cut */
+  vg_put(w, 1, sizeof l->at, l->at); /* ribs are made by the rank that cuts */
   vg_put(w, 1, sizeof n->per_cube, &n->per_cube);
   vg_put(w, 1, sizeof size, &size);
   vg_put(w, load.n, 1, load.data);
@@ -457,7 +459,7 @@ static vg_status pack_outcome(void *user, const void *outcome,
   struct vg_writer w = { .cap = 0 };
   uint64_t home[2] = { o->home_node, o->index };
 
-  (void)user; /* only those of zones travel */
+  (void)user; /* only outcomes of zones are sent */
   vg_put(&w, 2, sizeof *home, home);
   vg_change_put(&w, &o->change);
   return packed(&w, out, err);
@@ -497,7 +499,7 @@ static void release_outcome(void *user, void *outcome)
   free_outcome(outcome);
 }
 
-/* --- for the engine ------------------------------------------------------ */
+/* --- interface to the engine --------------------------------------------- */
 
 const struct vg_engine_ops vg_tasks_ops = { run,           done,
                                             pack_input,    unpack_input,
@@ -515,7 +517,7 @@ vg_status vg_tasks_first(struct vg_partition *p, struct vg_node *n,
     vg_node_free(n);
     return vg_fail_memory(err, "a task");
   }
-  /* a void that is parted stays where its coarse mesh is */
+  /* a void that will be decomposed stays on the rank of its coarse mesh */
   *t = (struct vg_task){ .kind = cut ? VG_SPAN_JOIN : VG_SPAN_LEAF,
                          .moves = !n->to_part,
                          .pinned = n->to_part,

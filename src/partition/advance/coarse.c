@@ -10,13 +10,13 @@
 #include "partition/advance/advance.h"
 #include "partition/discrete/discrete.h"
 
-/* Cells to a leaf of the coarse mesh: small ones, of which there are some for
- * every worker, since all wait for it. */
+/* Cells per leaf of the coarse mesh: small leaves, several per worker, since
+ * all ranks wait for this mesh. */
 static const double leaf_cells = 20000; /* D10 */
 
-/* --- to rank 0 ----------------------------------------------------------- */
+/* --- transfer to rank 0 -------------------------------------------------- */
 
-/* Of one slice; then come its points and its cells. */
+/* Header of one slice, followed by its points and cells. */
 struct head {
   uint64_t point_at, n_point, cell_at, n_cell;
 };
@@ -58,7 +58,8 @@ static vg_status pack(const struct vg_slices *s, struct vg_bytes *out,
   return st;
 }
 
-/* In the numbers of the mesh, which has the boundary's points first. */
+/* Unpacks into the numbering of the mesh, which has the boundary's points
+ * first. */
 static vg_status unpack(const struct vg_bytes *b, struct vg_coarse_cells *c,
                         struct vg_error *err)
 {
@@ -104,8 +105,8 @@ done:
   return st;
 }
 
-/* The front has the boundary's points in an order of its own, which its names
- * tell. */
+/* The front has the boundary's points in its own order, which its global ids
+ * give. */
 static vg_status renumber(const struct vg_front *f, size_t n_boundary,
                           struct vg_coarse_cells *c, struct vg_error *err)
 {
@@ -134,7 +135,7 @@ static vg_status renumber(const struct vg_front *f, size_t n_boundary,
   return VG_OK;
 }
 
-/* --- made ---------------------------------------------------------------- */
+/* --- generation ---------------------------------------------------------- */
 
 static void progress(void *user, const char *stage, size_t done,
                      size_t expected)
@@ -143,7 +144,7 @@ static void progress(void *user, const char *stage, size_t done,
   vg_partition_tell(user, "coarse mesh", done, expected);
 }
 
-/* Its sizes, on all ranks of a node in common. */
+/* Its sizing field, shared by the ranks of a node. */
 static vg_status sizes(const struct vg_partition *p, struct vg_comm *comm,
                        double factor, struct vg_sizing **out,
                        struct vg_error *err)
@@ -185,8 +186,8 @@ static vg_status grow(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
-/* Their paths begin with that of the whole, "0". What they made is none of the
- * mesh's. */
+/* Moves the paths of the tasks from "0", the whole void, to "1". Their cells
+ * are not part of the final mesh. */
 static void rename_tasks(struct vg_spans *s)
 {
   for (size_t k = 0; k < s->n; k++) {
@@ -198,8 +199,8 @@ static void rename_tasks(struct vg_spans *s)
   for (size_t k = 0; k < s->n_help; k++) s->help[k].path[0] = '1';
 }
 
-/* A repair, which waits for all that was filled as all of them do; or else the
- * only leaf. */
+/* Returns a repair task, all of which wait for all leaves, or else the only
+ * leaf. */
 static const char *last_task(const struct vg_spans *s)
 {
   const char *last = "";

@@ -1,4 +1,4 @@
-/* partition/advance/ways.h: the ways to decompose a void. */
+/* partition/advance/ways.h: the methods to decompose a void. */
 #ifndef VG_PARTITION_ADVANCE_WAYS_H
 #define VG_PARTITION_ADVANCE_WAYS_H
 
@@ -6,10 +6,10 @@
 
 struct vg_way {
   const char *name;
-  vg_decomposition_maker *maker; /* NULL: cut by planes of final cells */
+  vg_decomposition_maker *maker; /* NULL: cut by planes of final cells. */
 };
 
-/** By enum vg_decomposition_method. */
+/** Indexed by enum vg_decomposition_method. */
 extern const struct vg_way vg_ways[VG_DECOMPOSITIONS];
 
 #endif

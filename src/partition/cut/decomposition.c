@@ -30,7 +30,7 @@ int vg_decomposition_parts(double cells, double leaf_cells)
   return parts < 1 ? 1 : parts > 1e6 ? 1000000 : (int)(parts + 0.5);
 }
 
-/* The smallest leaves that were found to be worth a cut. */
+/* Smallest leaves that are worth a cut, as measured. */
 static const double least_leaf = 14000; /* C1 */
 
 double vg_decomposition_leaf_cells(double cells, int n_part, int is_parted,
@@ -47,25 +47,26 @@ vg_status vg_decomposition_check_options(
   const struct vg_decomposition_options *o, double cells, struct vg_error *err)
 {
   if (o->n_part < 1)
-    return vg_fail(err, VG_ERR_INPUT, "%d parts are asked for; give 1 or more",
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%d subdomains were requested; request at least 1",
                    o->n_part);
   if (o->n_part > 1 && o->n_part > cells)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%d parts of a void in which "
-                   "%.0f cells are expected; ask for fewer parts, or leave "
-                   "them to leaf_cells",
+                   "%d subdomains were requested for a void in which "
+                   "only %.0f cells are expected; request fewer subdomains, "
+                   "or let leaf_cells determine their number",
                    o->n_part, cells);
   return VG_OK;
 }
 
-/* --- is it one? ---------------------------------------------------------- */
+/* --- check --------------------------------------------------------------- */
 
-/* A face by the names of its corners, rising. */
+/* A face by the global ids of its corners, ascending. */
 struct side {
   uint64_t id[3];
-  const double *x; /* of one of them */
-  int8_t sense;    /* 1 or -1, as they were turned */
-  int8_t is_part;  /* 0: of the void's front */
+  const double *x; /* Coordinates of one corner. */
+  int8_t sense;    /* 1 or -1: parity of the sort. */
+  int8_t is_part;  /* 0: a face of the void's front. */
 };
 
 static struct side side_of(const struct vg_front *f, const uint32_t v[3],
@@ -102,8 +103,8 @@ static void append_sides(const struct vg_front *f, int is_part, struct side *to)
     to[k] = side_of(f, f->face[k], is_part);
 }
 
-/* Sides of one triangle: what parts have beyond the front looks both ways,
- * once. */
+/* Are the sides of one triangle consistent? Apart from the front, subdomains
+ * have it once in each orientation or not at all. */
 static int is_right(size_t n, const struct side *s)
 {
   int over[2] = { 0, 0 };
@@ -112,7 +113,8 @@ static int is_right(size_t n, const struct side *s)
   return over[0] == over[1] && (over[0] == 0 || over[0] == 1);
 }
 
-/* Every point of a front is the void's own, or one of the decomposition's. */
+/* Checks that every point of a subdomain's front belongs to the void or to the
+ * decomposition. */
 static vg_status check_names(const struct vg_decomposition *p, uint32_t serial,
                              struct vg_error *err)
 {
@@ -125,8 +127,8 @@ static vg_status check_names(const struct vg_decomposition *p, uint32_t serial,
       if (f->id[v] >> 32 != serial) continue;
       if (at < p->n_point && !memcmp(p->x[at], f->x[v], sizeof *f->x)) continue;
       return vg_fail(err, VG_ERR_GEOMETRY,
-                     "part %zu of %zu has a point at "
-                     "(%g, %g, %g) that no interface has",
+                     "subdomain %zu of %zu has a point at "
+                     "(%g, %g, %g) that is on no interface",
                      k + 1, p->n_part, f->x[v][0], f->x[v][1], f->x[v][2]);
     }
   }
@@ -145,7 +147,7 @@ vg_status vg_decomposition_check(const struct vg_decomposition *p,
   if (st < 0) return st;
   for (size_t k = 0; k < p->n_part; k++) n += p->part[k].front.n_face;
   s = vg_alloc(n, sizeof *s);
-  if (!s) return vg_fail_memory(err, "the parts of a void");
+  if (!s) return vg_fail_memory(err, "the subdomains of a void");
   append_sides(front, 0, s);
   n = front->n_face;
   for (size_t k = 0; k < p->n_part; k++) {
@@ -157,8 +159,8 @@ vg_status vg_decomposition_check(const struct vg_decomposition *p,
     for (end = k + 1; end < n && !by_corners(&s[k], &s[end]);) end++;
     if (!is_right(end - k, s + k))
       st = vg_fail(err, VG_ERR_GEOMETRY,
-                   "the %zu parts of a void do not fit "
-                   "together at (%g, %g, %g)",
+                   "the interfaces of the %zu subdomains of a void do not "
+                   "match at (%g, %g, %g)",
                    p->n_part, s[k].x[0], s[k].x[1], s[k].x[2]);
   }
   free(s);
@@ -167,8 +169,8 @@ vg_status vg_decomposition_check(const struct vg_decomposition *p,
 
 /* --- for the store ------------------------------------------------------- */
 
-/* Names of points of interfaces are kept as those of this serial, which no task
- * has: a run that is resumed gives others. */
+/* Global ids of interface points are stored with this serial, which no task
+ * has, since a resumed run uses other serials. */
 static const uint32_t any_serial = UINT32_MAX;
 
 static void give_names(struct vg_front *f, uint32_t from, uint32_t to)

@@ -1,5 +1,5 @@
-/* Cells that were made for nothing: of zones whose changes cross the front.
- * Their home found that, when they were kept elsewhere already. */
+/* Dropped cells: those of zones whose changes cross the front. Their home rank
+ * finds this after the executing rank has kept the cells. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +27,7 @@ vg_status vg_partition_note_drop(struct vg_partition *p,
   return st;
 }
 
-/* Pieces with this serial go; their path is added to `path`. */
+/* Removes the pieces with this serial and appends their paths to `path`. */
 static void drop(struct vg_partition *p, uint32_t serial, vg_path *path,
                  size_t *n_path)
 {
@@ -44,7 +44,7 @@ static void drop(struct vg_partition *p, uint32_t serial, vg_path *path,
   p->n_piece = left;
 }
 
-/* Their tasks made no cells of the mesh. */
+/* Sets the cell count of the task to 0. */
 static void forget_span(struct vg_spans *s, const char *path)
 {
   for (size_t i = 0; i < s->n; i++)
@@ -58,7 +58,7 @@ vg_status vg_partition_forget_spans(struct vg_partition *p,
 {
   struct vg_bytes mine = { n_path * sizeof *path, (unsigned char *)path };
   struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
-  vg_status st = all ? VG_OK : vg_fail_memory(err, "the record of tasks");
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "the trace of tasks");
 
   assert(path || !n_path);
   VG_TRY(vg_comm_agree(comm, st, err));

@@ -5,19 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Cells within so many spacings of a line belong to its pencil: more than
- * tiles are thick, so that tiles end at pencils and not at each other. */
+/* Cells within this many spacings of a line belong to its pencil. It
+ * exceeds the thickness of tiles, so that tiles end at pencils and not at
+ * each other. */
 static const double pencil_reach = 1.3; /* C4 */
-/* Parallel planes are this many of the largest spacings on them apart. */
+/* Minimum distance of parallel planes, in the largest spacing on them. */
 static const double apart = 10; /* C5 */
-/* Where a second and a third attempt put a plane, as shares of the load. */
+/* Offsets of a plane, as shares of the load, for further attempts. */
 static const double other_share[] = { 0, 0.07, -0.07, 0.15, -0.15 };
-/* Blocks that may exceed the leaf size by this need no further cut. */
+/* Blocks that exceed the leaf size by no more than this need no further cut. */
 static const double leaf_slack = 1.25; /* C2 */
 
-/* Below so many leaves planes are grown whole, one after another, which costs
- * least: lattices have pencils, and tiles more border. With more leaves more
- * workers are expected, who would wait for single planes. */
+/* Below this number of leaves, single planes are grown one after another,
+ * which costs least, since lattices have pencils and tiles have more boundary.
+ * With more leaves more workers are expected, and these would wait for single
+ * planes. */
 static const double few_leaves = 80; /* C3 */
 
 enum { HALVINGS = 6, PER_AXIS = 2 };
@@ -62,8 +64,8 @@ static int is_roomy(const struct vg_load *load, int axis,
   return 1;
 }
 
-/* Cells in the zones of n planes across the axis, infinite where there is no
- * room for them. */
+/* Cells in the zones of n planes across the axis; infinite if the planes are
+ * too close. */
 static double zone_cost(const struct vg_load *load, int axis, int n, int retry)
 {
   struct vg_lattice l = { 0 };
@@ -94,8 +96,8 @@ static int bisections_wanted(const struct vg_load *load,
   return n;
 }
 
-/* The axis to halve the blocks of next: that which adds the fewest cells to
- * zones. */
+/* The axis along which to halve the blocks next, chosen to add the fewest cells
+ * to zones. */
 static int next_axis(const struct vg_load *load, const struct vg_cut_rule *rule,
                      const int half[3], int retry)
 {
@@ -112,7 +114,8 @@ static int next_axis(const struct vg_load *load, const struct vg_cut_rule *rule,
       continue;
     more = zone_cost(load, axis, then, retry);
     if (now) more -= zone_cost(load, axis, now, retry);
-    /* a first plane across an axis is preferred to several across one */
+    /* the first plane across an axis is preferred to more planes across
+     * another */
     if (more < least * (half[axis] && best >= 0 ? 0.8 : 1)) {
       least = more;
       best = axis;
@@ -121,7 +124,7 @@ static int next_axis(const struct vg_load *load, const struct vg_cut_rule *rule,
   return best;
 }
 
-/* Does x lie outside the void, and not near its front either? */
+/* Is x outside the void, and not near its front either? */
 static int is_outside(const struct vg_load *load, const double x[3])
 {
   for (size_t i = 0; i < load->n; i++) {
@@ -135,8 +138,8 @@ static int is_outside(const struct vg_load *load, const double x[3])
   return 1;
 }
 
-/* Growth begins at a front and ends at one. Where the only point that lines
- * have in common is in a body, each of them has its ends on fronts already. */
+/* Growth starts and ends at a front. If the only common point of the three
+ * lines is inside a body, the ends of each line are on fronts already. */
 static int are_lines_apart(const struct vg_load *load,
                            const struct vg_lattice *l)
 {
@@ -185,7 +188,7 @@ static void bound(struct vg_region *r, int axis, int sign, double at)
   add_wall(r, normal, sign * at);
 }
 
-/* Midway to the neighbours of plane k. */
+/* Walls midway to the neighbours of plane k. */
 static void between(struct vg_region *r, const struct vg_lattice *l, int axis,
                     int k)
 {
@@ -195,11 +198,11 @@ static void between(struct vg_region *r, const struct vg_lattice *l, int axis,
   if (k + 1 < l->n[axis]) bound(r, axis, -1, 0.5 * (at[k] + at[k + 1]));
 }
 
-/* Half the square root of 2: walls have unit normals. */
+/* sqrt(2) / 2, since walls have unit normals. */
 static const double slope = 0.7071067811865476;
 
-/* |x[across] - at| < sign (x[along] - end): the region ends in a roof where
- * another one crosses. */
+/* x[across] - at| < sign (x[along] - end): two walls at 45 degrees at the end
+ * of a region, where another plane crosses. */
 static void roof(struct vg_region *r, int across, double at, int along,
                  int sign, double end)
 {
@@ -212,7 +215,7 @@ static void roof(struct vg_region *r, int across, double at, int along,
   }
 }
 
-/* Interval k of the axis: between plane k - 1 and plane k. */
+/* Ends of interval k of the axis, between plane k - 1 and plane k. */
 static void ends(struct vg_region *r, const struct vg_lattice *l, int along,
                  int k, int across, double at)
 {
@@ -229,7 +232,7 @@ static void cross(struct vg_region *r, int axis, double at)
   p->offset = at;
 }
 
-/* Lines along z, all of them from end to end. */
+/* Lines along z, from end to end. */
 static int line(const struct vg_lattice *l, size_t k, struct vg_region *r)
 {
   int i = (int)k / l->n[1], j = (int)k % l->n[1];
@@ -248,8 +251,8 @@ static size_t segments_along(const struct vg_lattice *l, int axis)
   return (size_t)((l->n[axis] + 1) * l->n[b] * l->n[c]);
 }
 
-/* Lines along x and y, from one line along z to the next; lines_at_once: all
- * lines, from where they meet. */
+/* Lines along x and y, between lines along z; with lines_at_once segments of
+ * all lines, starting at their common point. */
 static int segment(const struct vg_lattice *l, size_t k, struct vg_region *r)
 {
   int along = 0, part;
@@ -296,7 +299,7 @@ static int tile(const struct vg_lattice *l, size_t k, struct vg_region *r)
   return axis;
 }
 
-/* Halfway between two ribs of a tile, on the side that sign tells. */
+/* A wall halfway between two ribs of a tile, on the given side. */
 static void halfway(struct vg_region *r, const struct vg_plane *a,
                     const struct vg_plane *b, int sign)
 {
@@ -324,7 +327,7 @@ static int rib(const struct vg_lattice *l, size_t k, struct vg_region *r)
   return axis;
 }
 
-/* Between ribs: rib i has piece rib[i].tile + i before it. */
+/* Pieces between ribs: piece rib[i].tile + i is before rib i. */
 static int piece(const struct vg_lattice *l, size_t k, struct vg_region *r)
 {
   size_t n = 0, n_rib = (size_t)l->n_rib;

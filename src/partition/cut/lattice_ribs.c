@@ -1,9 +1,9 @@
-/* Where large tiles are parted. Outline: what the tile's zone will hold is
- * read off the octants that its plane passes, as dots of the plane. Lines that
- * share the dots out evenly are tried, parallel to each axis of the plane and
- * as fans from each corner of the tile, where the body may be that spacing
- * grows away from; those which meet the fewest cells become ribs, as many as
- * have room beside each other. */
+/* Division of large tiles by ribs. Outline: the distribution of cells in the
+ * tile's zone is sampled at the octants that its plane passes through, as dots
+ * of the plane. Candidate lines divide the dots evenly, either parallel to an
+ * axis of the plane or as a fan from a corner of the tile, where the body may
+ * be from which the spacing grows. The lines that meet the fewest cells become
+ * ribs, as many as there is room for. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,51 +12,52 @@
 #include "base/memory.h"
 #include "partition/cut/lattice.h"
 
-/* C6: Cells of a piece to those of a leaf, so that it takes about half the
- * time; ribs of pieces with fewer than the least would cost too much, those
- * with more than the most would keep the workers of large leaves waiting. */
+/* C6: Cells of a piece relative to a leaf, so that a piece takes about half
+ * the time. Ribs of pieces below the minimum would cost too much; pieces above
+ * the maximum would keep the workers of large leaves waiting. */
 static const double piece_share = 0.2, least_piece = 4000, most_piece = 12000;
-/* Cells of its ribs to those of a tile. */
+/* Maximum cells of the ribs relative to their tile. */
 static const double rib_share = 0.12;
-/* A rib is this many spacings from what keeps it apart from the next one. */
+/* Minimum distance of a rib, in spacings, from the walls that separate it from
+ * the next rib. */
 static const double room = 2.5; /* C7 */
 
 enum { MOST_PIECES = 8 };
 
-/* What an octant has of the zone. */
+/* The share of an octant in the zone. */
 struct dot {
   size_t tile, number;
   double x[2], half, h, cells;
-  double key; /* lines of constant key are tried */
+  double key; /* Candidate lines have a constant key. */
 };
 
 struct tile {
-  int plane;   /* the axis across it */
-  int axis[2]; /* its own */
+  int plane;   /* Axis normal to its plane. */
+  int axis[2]; /* Axes in its plane. */
   double lo[2], hi[2];
   size_t n;
   struct dot *dot; /* [n] */
 };
 
-/* a x[0] + b x[1] = offset, towards higher keys */
+/* a x[0] + b x[1] = offset; the normal points to higher keys. */
 struct line {
   double normal[2], offset;
 };
 
-/* How keys are: along axis `way` of two, or, from 2 on, by the angle at a
- * corner: share of the way from the one side of the tile to the other. */
+/* Kinds of key: the coordinate along axis `way`, or, from 2 on, the angle at a
+ * corner, as a fraction between the two sides of the tile. */
 enum { WAYS = 6 };
 
-/* What is being added to. */
+/* The lattice that ribs are added to. */
 struct ribs {
-  double piece_cells; /* of a tile to a piece */
+  double piece_cells; /* Cells of a piece of a tile. */
   size_t cap;
   struct vg_lattice *lattice;
   struct vg_error *err;
 };
 
 struct lines {
-  double cost; /* cells, infinite without room */
+  double cost; /* Cells; infinite if there is no room. */
   int n;
   struct line line[MOST_PIECES - 1];
 };
@@ -110,7 +111,7 @@ static double beyond(const struct line *l, const double x[2])
   return l->normal[0] * x[0] + l->normal[1] * x[1] - l->offset;
 }
 
-/* Distance of x, a place on line k, from halfway to the next one. */
+/* Distance of x, a position on line k, from the bisector with the next line. */
 static double room_at(const struct lines *all, int k, const double x[2])
 {
   double least = INFINITY;
@@ -160,7 +161,7 @@ static void look_at(const struct tile *t, int way, struct lines *all)
     }
 }
 
-/* Lines between n equal parts of the dots, which are in order. */
+/* Lines that divide the sorted dots into n equal parts. */
 static void lines_of(const struct tile *t, int way, int n, double cells,
                      struct lines *out)
 {
@@ -286,7 +287,7 @@ static void bound_tile(const struct vg_load *load, const struct vg_lattice *l,
   }
 }
 
-/* first: the number of its first tile. */
+/* first: number of its first tile. */
 static vg_status part_plane(struct ribs *to, const struct vg_load *load,
                             int axis, int i, int first)
 {

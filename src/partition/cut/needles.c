@@ -6,8 +6,8 @@
 #include "core/geometry/vector.h"
 
 /* C19 */
-#define ASPECT 100.0 /* longest side over the height upon it */
-#define MANY 0.1     /* of all faces, that cross one plane */
+#define ASPECT 100.0 /* longest side over height */
+#define MANY 0.1     /* as a share of all faces, crossing one plane */
 
 static int is_needle(const double *const x[3])
 {
@@ -23,7 +23,7 @@ static int is_needle(const double *const x[3])
   return longest > ASPECT * vg_norm(n);
 }
 
-/* Planes of the axis that are not above x. */
+/* Number of planes of the axis at or below x. */
 static int planes_below(const struct vg_lattice *l, int axis, double x)
 {
   int k = 0;

@@ -89,10 +89,10 @@ int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
   return n->n_bisection > 0;
 }
 
-/* --- the works of a stage ------------------------------------------------ */
+/* --- tasks of a stage ---------------------------------------------------- */
 
-/* Behind the stages of the lattice: places that hang together, as boxes, then
- * across x, y and z. */
+/* Behind the stages of the lattice: places where the void is still connected,
+ * as boxes, then across x, y and z. */
 enum { STAGES = VG_LATTICE_STAGES + 4 };
 
 static vg_status make_room(struct vg_node *n, size_t n_work,
@@ -107,7 +107,7 @@ static vg_status make_room(struct vg_node *n, size_t n_work,
   return vg_fail_memory(err, "cutting a front");
 }
 
-/* Its number among the pencils or tiles of the node. */
+/* Number of task k among the pencils or tiles of the node. */
 static size_t number_of(struct vg_node *n, size_t k)
 {
   if (n->stage < VG_LATTICE_TILES) return n->n_pencil++;
@@ -115,11 +115,12 @@ static size_t number_of(struct vg_node *n, size_t k)
   return vg_lattice_count(&n->lattice, VG_LATTICE_TILES) + n->n_patch++;
 }
 
-/* More faces than this cost more than the patches that they save. */
+/* A part with more faces than this costs more than the patches that it
+ * saves. */
 enum { MOST_WIDE = 100000 }; /* C9 */
 
-/* The part of the front for work i, which is to know the front as far as the
- * faces reach that cross the lattice's planes there. */
+/* Selects the part of the front for task i, as far as the faces reach that
+ * cross the lattice's planes there. */
 static vg_status select_part(struct vg_node *n, struct vg_work *w, size_t i,
                              struct vg_error *err)
 {
@@ -142,8 +143,8 @@ done:
   return st;
 }
 
-/* The boxes tell about runs of faces, then the faces by themselves.
- * n->face[i] is NULL where the boxes hold no face. */
+/* Selects by the boxes around runs of faces first, then by single faces.
+ * n->face[i] is NULL if the boxes contain no face. */
 static vg_status find_part(struct vg_node *n, struct vg_work *w, size_t i)
 {
   vg_status st = select_part(n, w, i, NULL);
@@ -159,10 +160,11 @@ static vg_status find_part(struct vg_node *n, struct vg_work *w, size_t i)
 
 struct stage {
   struct vg_node *n;
-  const struct vg_region *region; /* [n->n_work] of the works */
+  const struct vg_region *region; /* [n->n_work] Regions of the tasks. */
 };
 
-/* What of the front each region needs. On failure n->work[k] is NULL. */
+/* Selects the part of the front that each region needs. On failure n->work[k]
+ * is NULL. */
 static void make_works(void *context, size_t first, size_t end, int worker)
 {
   const struct stage *s = context;
@@ -182,7 +184,7 @@ static void make_works(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Keep the works whose boxes hold a front, and name them. */
+/* Keeps the tasks whose boxes contain a part of the front, and names them. */
 static void name_works(struct vg_partition *p, struct vg_node *n)
 {
   size_t left = 0;
@@ -221,8 +223,8 @@ static vg_status add_works(struct vg_partition *p, struct vg_node *n,
   return VG_OK;
 }
 
-/* What the tiles of a plane are expected to make, shared out evenly: it
- * decides the order of tasks only. */
+/* Distributes the expected cells of a plane evenly among its tiles. The
+ * estimate affects only the order of tasks. */
 static void estimate_works(struct vg_node *n)
 {
   for (size_t i = 0; i < n->n_work; i++) {
@@ -243,7 +245,7 @@ static void estimate_works(struct vg_node *n)
   }
 }
 
-/* Regions of the node's stage. */
+/* Lists the regions of the node's stage. */
 static vg_status list_regions(struct vg_partition *p, struct vg_node *n,
                               const struct vg_engine *e,
                               struct vg_region **region, size_t *count,
@@ -289,7 +291,7 @@ static vg_status prepare(struct vg_partition *p, struct vg_node *n,
   return st;
 }
 
-/* Nothing to cut: the void is its own only part, to be filled as it is. */
+/* Nothing to cut: the void is its only child, to be filled whole. */
 static vg_status keep_whole(struct vg_node *n, struct vg_error *err)
 {
   n->child = vg_alloc(1, sizeof *n->child);

@@ -1,5 +1,22 @@
-/* partition/cut/node.h: one void on its way through the advancing partition.
- * For the modules of partition alone. */
+/* partition/cut/node.h: a node of the decomposition tree: one void from the
+ * plan of its cut to its children. For the modules of partition alone.
+ *
+ * A cut goes through stages (lattice.h draws them). All tasks of a stage get
+ * parts of the same front, and their changes are inserted together:
+ *
+ *    pJ0  vg_node_start   plan planes; regions of stage 0, a vg_work for each
+ *           |
+ *         pP..  pT..      tasks on any rank: cells along a line (pencil) or a
+ *           |             plane (tile); cells stay there, a vg_change returns
+ *           v
+ *    pJi  vg_node_join    insert the changes into the front (vg_node_put),
+ *           |      ^      select the parts of the front for the next stage
+ *           |      |
+ *           |      +----  pencils, segments, ribs, tiles, then boxes and
+ *           v             patches where the void is still connected
+ *         vg_node_split   no stage left: divide the front by blocks
+ *           |
+ *           +--> p.0, p.1, ...   children: cut again, or leaves (p.0L) */
 #ifndef VG_PARTITION_CUT_NODE_H
 #define VG_PARTITION_CUT_NODE_H
 
@@ -14,72 +31,76 @@
 #include "partition/engine/engine.h"
 #include "partition/engine/spans.h"
 
-/* A leaf that needs this many times the points that were expected is cut
- * again, as is one beyond this many times the leaf size. */
+/* A leaf that needs this many times the expected points, or the points of this
+ * many times the leaf size if that is more, is cut again. */
 #define VG_OUTGROWN 2.0 /* C8 */
 
 struct vg_work;
 
-/* Beside the number of a block: the point is on a plane, in the block below. */
+/* Bit in the number of a block: the point is on a plane, in the block below. */
 #define VG_ON_PLANE 0x8000u
 
 typedef char vg_path[VG_PATH_MAX];
 
 struct vg_node {
-  struct vg_node *next, **link; /* nodes being cut on this rank */
-  uint64_t number;              /* among these, for messages */
+  struct vg_node *next, **link; /* Links of the list of nodes being cut on
+                                   this rank. */
+  uint64_t number;              /* Number in this list, for messages. */
   char path[VG_PATH_MAX];
   struct vg_front front;
   struct vg_load load;
-  double per_cube;  /* cells per cube of the spacing, as the zones of
-                       its ancestors turned out */
-  int levels;       /* bisections left, in a partition by levels */
-  int retry;        /* attempts that failed */
-  int is_final;     /* a leaf whatever it needs */
-  double fill_work; /* of a leaf, see vg_front_work; 0: not known */
-  int to_part;      /* by a maker of decompositions, not by planes */
-  double elsewhere; /* s of processor time that this took in other
-                       processes */
-  uint32_t serial;  /* of its leaf; 0: none yet */
-  /* while it is being cut: faces stay where they are, with VG_FACE_GONE */
-  size_t cap_x, cap_id, cap_face; /* of the front; 0: just its size */
+  double per_cube;  /* Cells per cube of the spacing, as observed in the
+                       zones of its ancestors. */
+  int levels;       /* Remaining bisections, in a partition by levels. */
+  int retry;        /* Failed attempts. */
+  int is_final;     /* 1: filled whatever its size. */
+  double fill_work; /* Of a leaf, see vg_front_work; 0: not known. */
+  int to_part; /* 1: decomposed by a maker (decomposition.h), not by planes. */
+  double elsewhere; /* Processor time in s spent on it in other processes. */
+  uint32_t serial;  /* Serial of its leaf; 0: none yet. */
+  /* Used while it is being cut: faces keep their index and are marked with
+   * VG_FACE_GONE. */
+  size_t cap_x, cap_id, cap_face; /* Capacities of the front's arrays; 0:
+                                     equal to their sizes. */
   struct vg_select select;
   size_t n_block, cap_block;
-  uint16_t *block; /* [n_block] of the front's points: the block that
-                      each is in, with VG_ON_PLANE or not */
-  size_t n_seen;   /* faces that were looked at for the next list */
+  uint16_t *block; /* [n_block] Block of each point of the front, with or
+                      without VG_ON_PLANE. */
+  size_t n_seen;   /* Faces examined so far for `open`. */
   size_t n_open, cap_open;
-  uint32_t *open; /* [n_open] faces that lie in no block, rising;
-                     of those seen, some may be gone */
-  int is_planned; /* the next two are of this load, this retry */
+  uint32_t *open; /* [n_open] Faces that are in no block, ascending; some of
+                     them may be gone. */
+  int is_planned; /* 1: the next two members match the present load and
+                     retry. */
   int n_bisection;
   struct vg_lattice lattice;
   int n_join;
-  int stage;                /* the next one to be looked at */
-  size_t n_work, n_left;    /* of this stage; not yet done */
-  struct vg_work **work;    /* [n_work] until submitted */
-  struct vg_region *region; /* [n_work] theirs */
-  uint32_t **point, **face; /* [n_work] what of the front each was given */
-  struct vg_change *change; /* [n_work] what came of it */
+  int stage;                /* Next stage. */
+  size_t n_work, n_left;    /* Tasks of this stage; those not yet done. */
+  struct vg_work **work;    /* [n_work] Until submitted. */
+  struct vg_region *region; /* [n_work] Region of each task. */
+  uint32_t **point, **face; /* [n_work] Points and faces of the front that
+                               each task was given. */
+  struct vg_change *change; /* [n_work] Change that each task returned. */
   double separator_cells, zone_volume;
-  size_t n_pencil;  /* pencils so far: numbers go on */
-  size_t n_patch;   /* boxes that closed what was left, likewise */
-  size_t n_blocked; /* works that made nothing, or what crosses the
-                       front */
+  size_t n_pencil;  /* Pencils so far; numbers continue across stages. */
+  size_t n_patch;   /* Boxes and patches so far; their numbers continue too. */
+  size_t n_blocked; /* Tasks that made nothing, or cells that cross the
+                       front. */
   size_t n_child;
-  struct vg_node **child; /* [n_child] what it fell into */
+  struct vg_node **child; /* [n_child] Child nodes created by the cut. */
 };
 
-/* What a task is given. */
+/* Input of a task. */
 enum { VG_WORK_START, VG_WORK_JOIN, VG_WORK_ZONE, VG_WORK_LEAF };
 
 struct vg_work {
   int what;
-  struct vg_node *node; /* START, LEAF: owned; JOIN, ZONE: borrowed, at
-                           its home only, */
-  uint64_t home_node;   /* elsewhere its number there */
-  uint32_t serial;      /* ZONE, LEAF */
-  /* ZONE */
+  struct vg_node *node; /* START, LEAF: owned; JOIN, ZONE: borrowed, at home
+                           only. */
+  uint64_t home_node; /* On other ranks, the number of the node at its home. */
+  uint32_t serial;    /* For ZONE and LEAF. */
+  /* for ZONE only: */
   char path[VG_PATH_MAX];
   char kind;
   size_t index;
@@ -90,40 +111,42 @@ struct vg_work {
 
 struct vg_partition {
   int rank, size;
-  struct vg_mesh boundary; /* of the whole void; its arrays are borrowed */
+  struct vg_mesh boundary; /* Boundary of the whole void; its arrays are
+                              borrowed. */
   const struct vg_sizing *sizing;
   struct vg_partition_options options;
-  const char *stage; /* for progress: "fill", "recut" */
+  const char *stage; /* Name for progress: "fill", "recut". */
   atomic_uint_fast32_t n_serial;
-  pthread_mutex_t lock; /* of what follows */
+  pthread_mutex_t lock; /* Guards the members below. */
   size_t n_piece, cap_piece;
-  struct vg_piece *piece; /* what this rank made */
+  struct vg_piece *piece; /* Submeshes that this rank made. */
   size_t n_drop, cap_drop;
-  uint32_t *drop; /* serials of the zones of nodes of this rank whose
-                     changes were not put in */
+  uint32_t *drop; /* Serials of zones, in nodes of this rank, whose changes
+                     were rejected. */
   size_t n_unfilled, cap_unfilled;
   struct {
     struct vg_node *node;
     struct vg_error why;
   } * unfilled;
   struct vg_partition_report report;
-  struct vg_node *cutting; /* what a stopped job leaves */
-  uint64_t n_cutting;      /* numbers given to these so far */
-  /* numbering */
+  struct vg_node *cutting; /* List of nodes being cut; those left after a
+                              stop are freed. */
+  uint64_t n_cutting;      /* Last number given to a node in the list. */
+  /* numbering: */
   struct vg_slices slices;
   size_t n_place;
   struct vg_place_of {
     uint32_t serial;
     uint64_t point;
-  } * place;                     /* by serial
-                                  */
-  uint64_t *point_at, *cell_at;  /* [n_piece] */
-  uint32_t *domain;              /* [n_piece] */
+  } * place;                     /* Sorted by serial. */
+  uint64_t *point_at, *cell_at;  /* [n_piece] First point and cell number of
+                                    each piece. */
+  uint32_t *domain;              /* [n_piece] Subdomain number of each piece. */
   uint32_t *front_id;            /* [boundary->n_point] 0, 1, ... */
-  struct vg_mesh boundary_faces; /* the boundary without points */
+  struct vg_mesh boundary_faces; /* The boundary without points. */
 };
 
-/** Tell the options' progress, on rank 0. */
+/** Reports progress to the callback of the options, on rank 0. */
 static inline void vg_partition_tell(const struct vg_partition *p,
                                      const char *stage, size_t done,
                                      size_t expected)
@@ -131,37 +154,38 @@ static inline void vg_partition_tell(const struct vg_partition *p,
   if (!p->rank) vg_tell(&p->options.progress, stage, done, expected);
 }
 
-/** A serial that no other task of any rank has. Threads: safe. */
+/** Returns a serial that no other task on any rank has. Threads: safe. */
 uint32_t vg_partition_serial(struct vg_partition *p);
 
 void vg_node_free(struct vg_node *n);
 void vg_work_free(struct vg_work *w);
 
-/** A new node around a front, which it takes over. NULL: no memory. */
+/** Creates a node with a front, which it takes over. NULL: no memory. */
 struct vg_node *vg_node_new(const char *path, struct vg_front *front);
 
-/** Does the void ask to be cut? Plans the planes, which vg_node_start uses;
- * after its load was changed n->is_planned must be 0. */
+/** Should the void be cut? Plans the planes, which vg_node_start uses. Set
+ * n->is_planned to 0 after changing the load. */
 int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n);
 
-/** The works of the first stage that has some. Without any, n->n_work is 0
- * and n->n_child 1 (itself, to be filled). */
+/** Makes the tasks of the first stage that has any. If no stage has any,
+ * n->n_work is 0 and n->n_child is 1 (the node itself, to be filled). */
 vg_status vg_node_start(struct vg_partition *p, struct vg_node *n,
                         const struct vg_engine *e, struct vg_error *err);
 
-/** Put the changes of a stage into the front; then the works of the next
- * stage, or, when there is none, the children. */
+/** Inserts the changes of a stage into the front, and makes the tasks of the
+ * next stage or, when no stage is left, the children. */
 vg_status vg_node_join(struct vg_partition *p, struct vg_node *n,
                        const struct vg_engine *e, struct vg_error *err);
 
-/** Put the changes of the works into the front, but those that cross it: these
- * count as blocked, and their cells are dropped. All changes, and what the
- * works were given, are released. (node_put.c) */
+/** Inserts the changes of the tasks into the front, except for changes that
+ * cross it: these count as blocked, and their cells are dropped. Releases all
+ * changes, and the lists of points and faces given to the tasks.
+ * (node_put.c) */
 vg_status vg_node_put(struct vg_partition *p, struct vg_node *n,
                       const struct vg_engine *e, struct vg_error *err);
 
-/** The point of the front that is v in the change of work i, whose new points
- * are in the front from `first` on. */
+/** The point of the front that has index v in the change of task i, whose new
+ * points are in the front from `first` on. */
 static inline uint32_t vg_node_point(const struct vg_node *n, size_t i,
                                      size_t first, uint32_t v)
 {
@@ -170,68 +194,73 @@ static inline uint32_t vg_node_point(const struct vg_node *n, size_t i,
   return v < n_part ? n->point[i][v] : (uint32_t)(first + v - n_part);
 }
 
-/** Does a new face in the change of work i, whose points are in the front
- * already, meet a face of it beyond what the work was given, corners and edges
- * that they have in common aside, or do its cells hold such a face? Exact. -1:
- * no memory to tell.
- * Cost: of faces that leave the band that the work was given, which are few.
- * Threads: safe. (node_cross.c) */
+/** Does a new face in the change of task i, whose points are in the front
+ * already, intersect a face that the task was not given, other than at shared
+ * corners and edges, or do its cells contain such a face? Exact. -1: no memory
+ * for the test.
+ * Cost: proportional to the faces that leave the band that the task was given,
+ * which are few. Threads: safe. (node_cross.c) */
 int vg_node_crosses(const struct vg_node *n, size_t i, size_t first);
 
-/** Forget the cells of this zone when all tasks are done. Threads: safe. */
+/** Marks the cells of a zone to be dropped when all tasks are done. Threads:
+ * safe. */
 vg_status vg_partition_note_drop(struct vg_partition *p,
                                  const struct vg_change *c,
                                  struct vg_error *err);
 
-/** Now they are: forget them, also in *spans, which may be NULL. Collective.
- * (drop.c) */
+/** Drops the marked cells when all tasks are done, also in *spans, which may be
+ * NULL. Collective. (drop.c) */
 vg_status vg_partition_drop(struct vg_partition *p, struct vg_comm *comm,
                             struct vg_spans *spans, struct vg_error *err);
 
-/** Tasks with these paths [n_path] made no cells of the mesh: say so in *spans,
- * which may be NULL. Only the rank that had a piece knows its path, spans of
- * all are on rank 0. Collective. (drop.c) */
+/** Sets the cell count of the tasks with these paths [n_path] to 0 in *spans,
+ * which may be NULL, because their cells were dropped. Only the rank that had
+ * a piece knows its path, and the spans of all ranks are on rank 0.
+ * Collective. (drop.c) */
 vg_status vg_partition_forget_spans(struct vg_partition *p,
                                     struct vg_comm *comm, size_t n_path,
                                     vg_path *path, struct vg_spans *spans,
                                     struct vg_error *err);
 
-/** Lay the node of a leaf that cannot be filled aside; it is taken over, but
- * on failure. Threads: safe. (recut.c) */
+/** Sets aside the node of a leaf that cannot be filled. The node is taken over,
+ * except on failure. Threads: safe. (recut.c) */
 vg_status vg_recut_note_leaf(struct vg_partition *p, struct vg_node *n,
                              const struct vg_error *why, struct vg_error *err);
 void vg_recut_release(struct vg_partition *p);
 
-/** When all tasks are done: larger voids, to be filled uncut, around those that
- * were laid aside. What was made in them is forgotten, also in *spans, which
- * may be NULL. Cost: of what is beside them. Collective.
- * n_void out: of all ranks; node out: [*n] this rank's, *node to be freed by
- * the caller also on failure, with the nodes.
- * VG_ERR_GEOMETRY, with the reason, where there is nothing beside one. */
+/** Makes larger voids, to be filled without cuts, around the leaves that
+ * were set aside, when all tasks are done. The pieces in them are dropped,
+ * also in *spans, which may be NULL. Cost: proportional to the adjacent
+ * pieces. Collective.
+ * n_void out: number on all ranks; node out: [*n] nodes of this rank; the
+ * caller frees *node and the nodes, also on failure.
+ * VG_ERR_GEOMETRY, with the original reason, if a leaf has no adjacent
+ * piece. */
 vg_status vg_recut_voids(struct vg_partition *p, struct vg_comm *comm,
                          struct vg_spans *spans, size_t *n_void,
                          struct vg_node ***node, size_t *n,
                          struct vg_error *err);
 
-/** Leaves to come adopt the points of what was taken back that others have too:
- * behind the others on their fronts, with names of their serials; whoever has
- * the points knows them by these names from then on. Collective.
- * own: [n_own] serials of what this rank took back; node: [n], with serials, k:
- * their numbers, the same whoever has them. (recut_ids.c) */
+/** New leaves adopt those points of removed pieces that other pieces also use.
+ * Adopted points are moved behind the other points of the leaf's front and get
+ * ids with the leaf's serial; all pieces that use them are updated to the new
+ * ids. Collective.
+ * own: [n_own] serials of the pieces that this rank removed; node: [n], with
+ * serials; k: their numbers, equal on all ranks. (recut_ids.c) */
 vg_status vg_recut_adopt(struct vg_partition *p, struct vg_comm *comm,
                          size_t n_own, const uint32_t *own, size_t n,
                          struct vg_node *const *node, const uint32_t *k,
                          struct vg_error *err);
 
-/** The front that the cells of a piece fill, *f empty before; of faces that
- * look both ways keep none, and bring faces and points into an order that
- * follows from their places alone: VG_ERR_GEOMETRY where a face is there twice.
- * *f is released by the caller also on failure. (recut_front.c) */
+/** vg_recut_front makes the front that the cells of a piece fill; *f is empty
+ * before. vg_recut_settle removes faces that occur in both orientations, and
+ * sorts faces and points by coordinates alone; VG_ERR_GEOMETRY if a face
+ * occurs twice. The caller releases *f also on failure. (recut_front.c) */
 vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
                          struct vg_error *err);
 vg_status vg_recut_settle(struct vg_front *f, struct vg_error *err);
 
-/** Does a face with these points lie within one block, off all planes? */
+/** Is a face with these points inside one block, not touching a plane? */
 static inline int vg_node_is_in_block(const uint16_t *block,
                                       const uint32_t v[3])
 {
@@ -239,45 +268,47 @@ static inline int vg_node_is_in_block(const uint16_t *block,
          !(block[v[0]] & VG_ON_PLANE);
 }
 
-/** Bring n->open up to date: O(faces added since, and listed). (node_put.c) */
+/** Updates n->open: O(faces added since the last call + listed faces).
+ * (node_put.c) */
 vg_status vg_node_list_open(struct vg_node *n, const struct vg_engine *e,
                             struct vg_error *err);
 
-/** Where the void hangs together across planes of the lattice after its
- * stages: boxes to be filled, for axis -1, then patches of the planes across
- * an axis. They are few, or none are given (report.n_open_left).
- * region out: [*n_region], to be freed by the caller. (node_close.c) */
+/** Finds regions where the void is still connected across planes of the lattice
+ * after its stages: for axis -1 boxes to be filled, for an axis 0 to 2 patches
+ * of the planes normal to it. If there are too many, none are returned
+ * (report.n_open_left).
+ * region out: [*n_region], freed by the caller. (node_close.c) */
 vg_status vg_node_open_places(struct vg_partition *p, struct vg_node *n,
                               int axis, const struct vg_engine *e,
                               struct vg_region **region, size_t *n_region,
                               struct vg_error *err);
 
-/** The children of a node that a maker parts, planned. Points of interfaces are
- * those of leaves: each has some behind the others on its front, by names of
- * its serial. (node_part.c) */
+/** Makes the children of a node that a maker decomposes, and plans them.
+ * Interface points are owned by leaves: each leaf has its own behind the other
+ * points of its front, with ids of its serial. (node_part.c) */
 vg_status vg_node_part(struct vg_partition *p, struct vg_node *n,
                        const struct vg_engine *e, struct vg_error *err);
 
-/** What it asks a maker for. (node_part.c) */
+/** Options of the decomposition of a node. (node_part.c) */
 struct vg_decomposition_options vg_node_decomposition(
   const struct vg_partition *p, const struct vg_node *n);
 
-/** The children's loads, from the node's and their fronts; cells are multiplied
- * by `correction` (vg_load_split). (node_split.c) */
+/** Computes the children's loads from the node's load and their fronts; cells
+ * are multiplied by `correction` (vg_load_split). (node_split.c) */
 vg_status vg_node_share_load(struct vg_node *n, double correction,
                              const struct vg_engine *e, struct vg_error *err);
 
-/** Plan the children, which are known now. (node_split.c) */
+/** Plans the children. (node_split.c) */
 void vg_node_plan_children(const struct vg_partition *p, struct vg_node *n,
                            const struct vg_engine *e);
 
-/** Part the front by blocks: n->child, planned. (node_split.c) */
+/** Divides the front by blocks: makes n->child, planned. (node_split.c) */
 vg_status vg_node_split(struct vg_partition *p, struct vg_node *n,
                         const struct vg_engine *e, struct vg_error *err);
 
-/** Grow what a zone's or a leaf's work asks for; keeps the piece.
- * change out: what its home hears. outgrown out: 1: too large, nothing was
- * made. (work.c) */
+/** Makes the cells of a zone or leaf task, and keeps the piece.
+ * change out: the change for the home rank. outgrown out: 1: overloaded,
+ * nothing was made. (work.c) */
 vg_status vg_work_zone(struct vg_partition *p, const struct vg_work *w,
                        struct vg_change *change, const struct vg_engine *e,
                        struct vg_error *err);
@@ -285,8 +316,8 @@ vg_status vg_work_leaf(struct vg_partition *p, const struct vg_work *w,
                        int *outgrown, size_t *n_cell, const struct vg_engine *e,
                        struct vg_error *err);
 
-/** Number what all ranks made, and serve it as slices. Collective.
- * (number.c) */
+/** Numbers the points and cells of all ranks, and serves them as slices.
+ * Collective. (number.c) */
 vg_status vg_partition_number(struct vg_partition *p, struct vg_comm *comm,
                               struct vg_error *err);
 

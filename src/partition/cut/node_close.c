@@ -1,13 +1,13 @@
-/* Where parts of a void hang together across a lattice. Outline: every cell
- * that touches a plane is made by a stage, so the faces that are left lie on
- * one side of each plane, except where cells could not be kept, because they
- * would have reached into another region. Faces that touch a plane there are
- * put together to places. The boxes around small ones are filled, all at once:
- * few cells, which no plane needs to cross any more. What is left then, drawn
- * out along lines where spacing grows, or bounded by triangles that reach
- * farther from their plane than zones know the front, is grown again plane
- * after plane, as patches of the planes without the regions that hindered, and
- * as wide as these triangles. */
+/* Closes places where a void is still connected across a lattice. Outline:
+ * every cell that touches a plane is made in a stage, so the remaining faces
+ * are on one side of each plane, except where cells could not be kept because
+ * they would have reached into another region. The faces that touch a plane
+ * there are grouped into places. The boxes around small places are filled, all
+ * at once; these few cells need not be cut by a plane any more. The remaining
+ * places are elongated along lines where the spacing grows, or bounded by
+ * triangles that reach farther from their plane than the band in which zones
+ * know the front. They are grown again plane by plane, as patches of the
+ * planes without the interfering regions, and as wide as these triangles. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,17 +17,18 @@
 #include "base/union_find.h"
 #include "partition/cut/node.h"
 
-/* A box ends so many spacings beyond the faces that it is made for. */
+/* A box extends this many spacings beyond the faces that it is made for. */
 static const double margin = 1.5, patch_margin = 2.5; /* C11 */
 /* Larger places, in cubes of their spacing, are not filled. */
 static const double most_volume = 1500;
-/* There is more in a box where spacings below this share of its own are. */
+/* A box is not small if it has spacings below this share of its own. */
 static const double finer = 0.4;
-/* Nor are those where the load expects more cells: what is fine may lie in a
- * corner of a box. */
+/* Nor are boxes in which the load expects more cells, since fine spacing may
+ * be limited to a corner of a box. */
 static const double most_cells = 20000;
-/* Patches with more faces are where a region was given up, fewer may hang
- * together all along a body; more places: the planes do not suit this void. */
+/* Patches with more faces are in places where a region failed; with fewer
+ * faces a void may be connected all along a body. With more places, the planes
+ * do not suit this void. */
 enum { MOST_FACES = 4000, MOST_PLACES = 512, MOST_TOUCHING = 16384 };
 
 struct touching {
@@ -36,23 +37,23 @@ struct touching {
 };
 
 struct place {
-  int plane;      /* of a patch, across the axis */
-  size_t n_face;  /* 0: became part of another one */
-  uint32_t first; /* of its faces */
-  double spacing; /* the least at them */
-  double wide;    /* most spacings from the plane, of a patch */
+  int plane;      /* Plane of a patch, across the axis. */
+  size_t n_face;  /* 0: merged into another place. */
+  uint32_t first; /* First of its faces. */
+  double spacing; /* Smallest spacing at the faces. */
+  double wide;    /* Maximum distance of a patch from the plane, in spacings. */
   double lo[3], hi[3];
 };
 
 struct search {
   const struct vg_node *n;
   const struct vg_sizing *sizing;
-  int axis; /* across which patches are; -1: boxes */
+  int axis; /* Axis normal to the patches; -1: boxes. */
   double margin;
-  int is_cut; /* a limit was met */
+  int is_cut; /* 1: a limit was exceeded. */
   size_t n_touching, cap_touching;
   struct touching *touching;
-  uint32_t *parent; /* [n_touching] those with a point in common */
+  uint32_t *parent; /* [n_touching] Union-find of faces that share a point. */
   size_t n_place, cap_place;
   struct place *place;
 };
@@ -113,8 +114,8 @@ static int by_point(const void *a, const void *b)
   return (*s > *t) - (*s < *t);
 }
 
-/* Faces of a plane that have a point in common are of one place. The lowest
- * of them is their root. */
+/* Unites the faces of a plane that share a point into one place. The lowest of
+ * them is the root. */
 static vg_status unite_touching(struct search *s, struct vg_error *err)
 {
   size_t m = 0;
@@ -155,7 +156,7 @@ static void widen(struct place *p, const struct place *by)
   p->n_face += by->n_face;
 }
 
-/* How far a face reaches from its plane, in the spacings on that. */
+/* Distance of a face from its plane, in spacings on the plane. */
 static double width_of(const struct search *s, const struct touching *t)
 {
   const struct vg_front *f = &s->n->front;
@@ -217,8 +218,8 @@ static vg_status make_places(struct search *s, struct vg_error *err)
   return st;
 }
 
-/* Is there little in the box, by the spacing at the faces, by what is found
- * elsewhere in it, and by the load? */
+/* Are few cells expected in the box, by the spacing at the faces, by the
+ * spacing elsewhere in the box, and by the load? */
 static int is_small(const struct search *s, const struct place *p)
 {
   double volume = 1, x[3];
@@ -250,8 +251,8 @@ static int by_spacing(const void *a, const void *b)
   return (p->first > q->first) - (p->first < q->first);
 }
 
-/* Put p together with all that it overlaps, as long as that stays small: then
- * these leave the list and p stands for them. Else p is given up. */
+/* Merges p with all places that it overlaps, as long as the result stays
+ * small; they leave the list, and p replaces them. Otherwise p is dropped. */
 static int absorb(const struct search *s, struct place *list, size_t *n,
                   struct place *p)
 {
@@ -276,7 +277,7 @@ static int absorb(const struct search *s, struct place *list, size_t *n,
   return 1;
 }
 
-/* Small boxes that do not overlap, the finest first. */
+/* Chooses small boxes that do not overlap, the finest first. */
 static void choose_places(struct search *s)
 {
   size_t n = 0;
@@ -290,7 +291,7 @@ static void choose_places(struct search *s)
   s->n_place = n;
 }
 
-/* Patches of a plane that overlap become one. */
+/* Merges overlapping patches of a plane. */
 static void merge_patches(struct search *s)
 {
   int again = 1, b = (s->axis + 1) % 3, c = (s->axis + 2) % 3;

@@ -1,15 +1,16 @@
-/* Changes that cross the front. Outline: a zone is given the front within a
- * band of its planes, so many of the spacings there, and keeps cells by their
- * corners. A long cell can leave that band between them, where the spacing is
- * less, and pass through a front that the zone never saw. Its new faces there
- * are few; they are tested against the whole front, as it was before the
- * stage.
+/* Detects changes that cross the front. Outline: a zone is given the front
+ * within a band around its planes, whose width is a number of local spacings,
+ * and it keeps cells by their corners. A long cell can leave that band between
+ * its corners, where the spacing is smaller, and pass through a front that the
+ * zone does not know. Its new faces outside the band are few; they are tested
+ * against the whole front, as it was before the stage.
  *
- * A small body may lie wholly within such cells, and meet no face. From it,
- * straight away from the plane, the band ends before the cells do, since foot
- * and so the band stay what they are: so it lies between the plane and a face
- * around the cells, new or gone, that leaves the band. Points there that the
- * zone was not given must be outside all faces around its cells. */
+ * A small body may be completely inside such cells, and intersect no face.
+ * Seen from the body straight away from the plane, the band ends before the
+ * cells do, since the foot point and so the band width stay constant. The body
+ * is therefore between the plane and a face around the cells, new or gone,
+ * that leaves the band. Points there that the zone was not given must be
+ * outside all faces around its cells. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -22,17 +23,17 @@
 
 /* --- faces that leave the band ------------------------------------------- */
 
-/* Where the spacing was looked up last: it tells about faces nearby too. */
+/* Position of the last spacing query, which also bounds the spacing at nearby
+ * faces. */
 struct band {
   const struct vg_region *region;
   const struct vg_sizing *sizing;
-  double width, slope; /* in spacings; of the sizing */
+  double width, slope; /* Band width in spacings; slope of the sizing field. */
   double x[3], h;
 };
 
-/* Is no point of a triangle so far from the planes as `most`, by the spacing
- * that was looked up? Between the feet of two points lies no more than between
- * them. */
+/* Is no point of a triangle farther from the planes than `most`, by the cached
+ * spacing? The feet of two points are no farther apart than the points. */
 static int is_within(const struct band *b, const double *const x[3],
                      double most)
 {
@@ -47,7 +48,7 @@ static int is_within(const struct band *b, const double *const x[3],
   return most <= b->width * (b->h - b->slope * sqrt(far2));
 }
 
-/* Does the triangle stay where the front is known? No also in doubt. */
+/* Does the triangle stay within the known band? Also no in doubt. */
 static int stays(struct band *b, const double *const x[3])
 {
   const struct vg_region *r = b->region;
@@ -66,9 +67,9 @@ static int stays(struct band *b, const double *const x[3])
 
 struct crossing {
   const struct vg_node *n;
-  size_t work, first;           /* its new points are there in the front */
-  const struct vg_filled *made; /* what the work made */
-  uint32_t v[3];                /* the face at hand */
+  size_t work, first; /* Its new points are in the front from here on. */
+  const struct vg_filled *made; /* Result of the task. */
+  uint32_t v[3];                /* The face being tested. */
 };
 
 /* Faces around the cells: new ones, then consumed ones. */
@@ -89,7 +90,7 @@ static void face_around(const struct crossing *c, size_t k, uint32_t v[3])
   }
 }
 
-/* Faces that have a cell of the zone now are no longer there. */
+/* Is the face gone because a cell of the zone has consumed it? */
 static int is_gone(const struct crossing *c, uint32_t face)
 {
   for (size_t k = 0; k < c->made->n_consumed; k++)
@@ -110,9 +111,9 @@ static int crosses(void *context, uint32_t face)
          !is_gone(c, face);
 }
 
-/* --- bodies within cells ------------------------------------------------- */
+/* --- bodies inside cells ------------------------------------------------- */
 
-/* No way out is longer. */
+/* Length of the box around the cells, which bounds the length of a ray. */
 static double size_of(const struct crossing *c)
 {
   double lo[3] = { INFINITY, INFINITY, INFINITY };
@@ -130,25 +131,26 @@ static double size_of(const struct crossing *c)
   return hi[0] - lo[0] + hi[1] - lo[1] + hi[2] - lo[2];
 }
 
-/* Faces around the cells, seen along a way out: by the cells of a grid across
- * it that they may lie in. */
+/* Faces around the cells projected along the first ray direction, listed by
+ * the cells of a grid in which they may lie. */
 struct shadow {
-  double lo[2], per[2]; /* corner; grid cells to a length */
+  double lo[2], per[2]; /* Corner; grid cells per length. */
   uint32_t n[2];
-  uint32_t *first, *face; /* of grid cell i: first[i] to first[i + 1] */
+  uint32_t *first, *face; /* Faces of grid cell i: first[i] to first[i + 1]. */
 };
 
 struct body {
   const struct crossing *c;
   struct shadow shadow;
-  double lo[3], hi[3]; /* where it may lie */
-  double size;         /* of what is around the cells */
-  uint8_t *is_beside;  /* [points of the front] 1: was given, or is known
-                          to be outside the cells */
+  double lo[3], hi[3]; /* Box that may contain it. */
+  double size;         /* Length of the box around the cells. */
+  uint8_t *is_beside;  /* [points of the front] 1: was given to the zone, or
+                          is known to be outside the cells. */
 };
 
-/* Ways out. Aslant, so that they seldom touch an edge. Of the first one, which
- * nearly always will do, the shadow is kept; its third part is 1. */
+/* Ray directions, oblique so that they seldom touch an edge. The projection is
+ * kept for the first one, which is nearly always sufficient; its third
+ * component is 1. */
 static const double way[][3] = { { 0.4142, -0.2718, 1 },
                                  { -1.1, 0.5, 0.3 },
                                  { 0.3, -0.9, -0.8 },
@@ -160,8 +162,8 @@ static void across(const double x[3], double u[2])
   for (int k = 0; k < 2; k++) u[k] = x[k] - way[0][k] * x[2];
 }
 
-/* The grid cells that a face may lie in: rounding is far less than the margin
- * of a thousandth of one. */
+/* Range of grid cells in which a face may lie: the margin of a thousandth of a
+ * grid cell is far above the rounding error. */
 static void shadow_of(const struct crossing *c, const struct shadow *s,
                       size_t k, uint32_t lo[2], uint32_t hi[2])
 {
@@ -234,7 +236,7 @@ static int make_shadow(const struct crossing *c, struct shadow *s)
   return 0;
 }
 
-/* Once per work, and only where a face leaves the band. */
+/* Called once per task, and only if a face leaves the band. */
 static int prepare(struct body *b)
 {
   const struct vg_node *n = b->c->n;
@@ -248,8 +250,8 @@ static int prepare(struct body *b)
   return 0;
 }
 
-/* Does the way from x to y pass the triangle? -1: it touches its border, or
- * begins on it. */
+/* Does the segment from x to y cross the triangle? -1: it touches its border,
+ * or starts on it. */
 static int passes(const double x[3], const double y[3],
                   const double *const t[3])
 {
@@ -270,8 +272,8 @@ static int passes(const double x[3], const double y[3],
   return zero || from == 0 || to == 0 ? -1 : 1;
 }
 
-/* Faces around the cells that the way from x to y passes; -1: it cannot be
- * told. list: [n] of them to be looked at, NULL: the first n. */
+/* Number of faces around the cells that the segment from x to y crosses; -1:
+ * undecided. list: [n] faces to test, NULL: the first n. */
 static int n_passed(const struct body *b, const double x[3], const double y[3],
                     size_t n, const uint32_t *list)
 {
@@ -310,7 +312,8 @@ static int n_passed_in_shadow(const struct body *b, const double x[3],
                   s->face + s->first[at[0]]);
 }
 
-/* Is x within the cells? Exact, by the faces that a way out passes. */
+/* Is x inside the cells? Exact, by the number of faces that a ray crosses. 1
+ * if all rays are undecided. */
 static int is_within_cells(const struct body *b, const double x[3])
 {
   for (size_t k = 0; k < sizeof way / sizeof *way; k++) {
@@ -348,7 +351,7 @@ static int holds_body(struct body *b, const struct vg_region *r,
                       const double *const x[3])
 {
   const double *box[3] = { b->lo, b->hi,
-                           b->lo }; /* flat: only its box counts */
+                           b->lo }; /* flat: only its box is used */
 
   for (int k = 0; k < 3; k++) {
     b->lo[k] = fmin(x[0][k], fmin(x[1][k], x[2][k]));

@@ -1,7 +1,7 @@
-/* A void that a maker parts: its parts become children, as those of a cut do.
- * Points of interfaces are on two parts and more. One that is filled as it is
- * has them for its own: its leaf adopts them, as those of larger voids do
- * (recut_ids.c), wherever it is filled. */
+/* Decomposition of a void by a maker: its subdomains become children, like
+ * those of a cut. Interface points are on two or more subdomains. A subdomain
+ * that is filled without a cut owns them: its leaf adopts them, as the leaves
+ * of larger voids do (recut_ids.c), on whatever rank it is filled. */
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,10 +11,10 @@
 #include "base/memory.h"
 #include "partition/cut/node.h"
 
-/* --- made, or found in the store ----------------------------------------- */
+/* --- made, or read from the store ---------------------------------------- */
 
-/* The load follows from the front and the sizes, which are the job's; so do the
- * options. */
+/* The load follows from the front and the sizes, which are part of the job's
+ * digest, as are the options. */
 static struct vg_digest key_of(const struct vg_partition *p,
                                const struct vg_front *f)
 {
@@ -48,7 +48,8 @@ static void keep(struct vg_partition *p, struct vg_digest key, uint32_t serial,
   free(w.bytes.data);
 }
 
-/* As many parts as were asked for, or as there are leaves in the void. */
+/* The requested number of subdomains, or else the number of leaves that the
+ * void needs. */
 struct vg_decomposition_options vg_node_decomposition(
   const struct vg_partition *p, const struct vg_node *n)
 {
@@ -91,21 +92,21 @@ static vg_status find_or_make(struct vg_partition *p, struct vg_node *n,
   return st;
 }
 
-/* --- whose points -------------------------------------------------------- */
+/* --- owners of points ---------------------------------------------------- */
 
 enum { NOBODY = UINT32_MAX };
 
 struct shares {
   struct vg_decomposition *decomposition;
-  uint32_t serial;  /* of the decomposition's points */
-  uint32_t *owner;  /* [n_point] part that has each */
-  uint32_t *number; /* [n_point] among its owner's */
-  uint32_t *of;     /* [n_part] serials of the parts' leaves; 0: it
-                       may be cut, and owns none */
+  uint32_t serial;  /* Serial of the decomposition's points. */
+  uint32_t *owner;  /* [n_point] Subdomain that owns each point. */
+  uint32_t *number; /* [n_point] Index among its owner's points. */
+  uint32_t *of;     /* [n_part] Serials of the subdomains' leaves; 0: it may
+                       be cut, and owns no points. */
 };
 
-/* The first part with the point, of those that are filled or of those that may
- * be cut. */
+/* Gives each unowned point to the first subdomain with it, among those that
+ * are filled or those that may be cut. */
 static void claim(struct shares *s, int may_cut)
 {
   for (size_t k = 0; k < s->decomposition->n_part; k++) {
@@ -132,7 +133,7 @@ static vg_status share_points(struct shares *s, struct vg_partition *p,
   s->of = vg_calloc(q->n_part, sizeof *s->of);
   if (!n || !s->owner || !s->number || !s->of) {
     free(n);
-    return vg_fail_memory(err, "the parts of a void");
+    return vg_fail_memory(err, "the subdomains of a void");
   }
   memset(s->owner, 0xff, q->n_point * sizeof *s->owner);
   claim(s, 0);
@@ -148,8 +149,8 @@ static vg_status share_points(struct shares *s, struct vg_partition *p,
   return VG_OK;
 }
 
-/* Its own points go behind the others, by their numbers, and all points of
- * interfaces get the names that their owners give them. */
+/* Moves the subdomain's own points behind the others, by their numbers, and
+ * gives all interface points the global ids of their owners. */
 static vg_status rename_front(const struct shares *s, size_t part,
                               struct vg_error *err)
 {
@@ -163,7 +164,7 @@ static vg_status rename_front(const struct shares *s, size_t part,
     free(to);
     free(x);
     free(id);
-    return vg_fail_memory(err, "the parts of a void");
+    return vg_fail_memory(err, "the subdomains of a void");
   }
   for (size_t v = 0; v < f->n_point; v++)
     n -= f->id[v] >> 32 == s->serial && s->owner[(uint32_t)f->id[v]] == part;
@@ -202,7 +203,7 @@ static vg_status make_child(const struct shares *s, struct vg_node *n, size_t k,
   if (st < 0) return st;
   snprintf(path, sizeof path, "%.*s.%zu", VG_PATH_MAX - 24, n->path, k);
   c = vg_node_new(path, &q->front);
-  if (!c) return vg_fail_memory(err, "the parts of a void");
+  if (!c) return vg_fail_memory(err, "the subdomains of a void");
   c->per_cube = n->per_cube;
   c->levels = n->levels;
   c->serial = s->of[k];
@@ -223,12 +224,13 @@ vg_status vg_node_part(struct vg_partition *p, struct vg_node *n,
   st = find_or_make(p, n, s.serial, e, &decomposition, err);
   if (st != VG_OK) goto done; /* or stopped */
   if (!decomposition.n_part) {
-    st = vg_fail(err, VG_ERR_GEOMETRY, "a void fell into no parts");
+    st = vg_fail(err, VG_ERR_GEOMETRY,
+                 "the decomposition of a void gave no subdomains");
     goto done;
   }
   VG_TRY(share_points(&s, p, err));
   n->child = vg_calloc(decomposition.n_part, sizeof *n->child);
-  if (!n->child) st = vg_fail_memory(err, "the parts of a void");
+  if (!n->child) st = vg_fail_memory(err, "the subdomains of a void");
   for (size_t k = 0; st == VG_OK && k < decomposition.n_part; k++)
     st = make_child(&s, n, k, err);
   if (st == VG_OK) st = vg_node_share_load(n, 1, e, err);

@@ -1,7 +1,7 @@
-/* Putting what a stage made into the front of its node. Outline: works get
- * places behind the front in their order; then points are copied, and faces
- * that are new tested against the front, then put into it, in loops whose
- * chunks write what is theirs. */
+/* Front update: inserts the changes of a stage into the front of its node.
+ * Outline: each task gets its range of indices behind the front, in the order
+ * of the tasks. Points are then copied, and new faces are tested against the
+ * front and inserted, in loops whose chunks write disjoint ranges. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "partition/cut/node.h"
 #include "partition/engine/engine_memory.h"
 
-/* Points or faces to a chunk of a loop. */
+/* Points or faces per chunk of a loop. */
 enum { CHUNK = 8192 };
 
 /* --- changes ------------------------------------------------------------- */
@@ -19,11 +19,12 @@ struct put {
   struct vg_node *n;
   struct place {
     size_t point, face;
-  } * at;          /* [n->n_work] of what is new */
-  int8_t *crosses; /* [n->n_work] the front */
+  } * at; /* [n->n_work] Index of the first new point and face of each task. */
+  int8_t *crosses; /* [n->n_work] 1: the change crosses the front. */
 };
 
-/* Its points; then faces can be tested, while all of the front is there. */
+/* Copies the new points, and tests the new faces while the whole front still
+ * exists. */
 static void test_part(void *context, size_t first, size_t end, int worker)
 {
   const struct put *p = context;
@@ -41,9 +42,9 @@ static void test_part(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Faces that the work made, behind those that stay; faces that have a cell now
- * are gone. No two works of a stage make cells of the same face: walls keep
- * them apart. Of one that crosses the front nothing stays. */
+/* Appends the faces that the task made, and marks consumed faces as gone. No
+ * two tasks of a stage make cells on the same face, since walls keep them
+ * apart. Nothing is kept of a change that crosses the front. */
 static void put_change(struct vg_node *n, size_t i, const struct place *at,
                        int crosses)
 {
@@ -74,7 +75,7 @@ static void put_part(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Room for all, and where each begins. */
+/* Reserves room, and sets the start of each range. */
 static vg_status make_room(struct put *p, const struct vg_engine *e,
                            struct vg_error *err)
 {
@@ -102,7 +103,8 @@ static vg_status make_room(struct put *p, const struct vg_engine *e,
   return VG_OK;
 }
 
-/* What the stage made is counted, and what cannot stay given up. */
+/* Counts the changes of the stage, and notes those that cross the front for
+ * dropping. */
 static vg_status count_changes(const struct put *put, struct vg_partition *p,
                                struct vg_error *err)
 {
@@ -140,7 +142,7 @@ static void label_part(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Blocks of the points that are new. */
+/* Sets the blocks of new points. */
 static vg_status label_points(struct vg_node *n, const struct vg_engine *e,
                               struct vg_error *err)
 {
@@ -176,10 +178,10 @@ vg_status vg_node_put(struct vg_partition *p, struct vg_node *n,
 
 /* --- faces in no block --------------------------------------------------- */
 
-/* Each chunk lists from the place of its first face on. */
+/* Each chunk writes its list from the index of its first face on. */
 struct look {
   const struct vg_node *n;
-  uint32_t *face; /* [faces not yet seen] */
+  uint32_t *face; /* [faces not yet examined] */
   size_t *count;  /* [chunks] */
 };
 
@@ -224,7 +226,7 @@ vg_status vg_node_list_open(struct vg_node *n, const struct vg_engine *e,
   int bad = !l.face || !l.count;
 
   assert(n->n_seen <= n->front.n_face);
-  /* where no region held a face, nothing was put in that labelled them */
+  /* if no region contained a face, vg_node_put did not set their blocks */
   if (!bad) bad = label_points(n, e, err) != VG_OK;
   for (size_t k = 0; k < n->n_open; k++)
     if (n->front.face[n->open[k]][0] != VG_FACE_GONE)

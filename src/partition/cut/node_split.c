@@ -1,10 +1,10 @@
-/* What a cut leaves: the front, parted by the blocks of the lattice. Outline:
- * faces that are left lie on one side of every plane (node_close.c), so the
- * block of a point tells that of its faces, and what bounds a void within a
- * block never shares a point with another block. Where a face still touches
- * planes, the blocks on both sides are one void. A void's parts, a body in it
- * or a fragment that a zone went around, need not be told apart: cutting and
- * filling take any number of them. */
+/* Divides the front that a cut leaves by the blocks of the lattice. Outline:
+ * the remaining faces are on one side of every plane (node_close.c). The block
+ * of a point is therefore the block of its faces, and the front of a void
+ * inside one block never shares a point with another block. Where a face still
+ * touches planes, the blocks on both sides are one void. The components of a
+ * void, such as a body in it or a small component that a zone went around,
+ * need not be distinguished: cutting and filling accept any number of them. */
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@
 #include "partition/cut/node.h"
 #include "partition/engine/engine_memory.h"
 
-/* Faces or points to a chunk of a loop. */
+/* Faces or points per chunk of a loop. */
 enum { CHUNK = 8192 };
 
 enum { NONE = 0xffff };
@@ -23,17 +23,18 @@ enum { NONE = 0xffff };
 struct split {
   struct vg_node *n;
   const struct vg_engine *e;
-  size_t n_block, n_chunk; /* chunks of faces */
-  uint32_t *count;         /* [n_chunk][n_block] faces, then where the first
-                              of a child goes: at the child's first block */
-  uint32_t root[VG_LATTICE_BLOCKS];  /* of blocks (base/union_find.h) */
-  uint16_t child[VG_LATTICE_BLOCKS]; /* of a root, or NONE */
+  size_t n_block, n_chunk; /* n_chunk: chunks of faces. */
+  /* [n_chunk][n_block] Faces, later the index of the first face for a
+   * child, stored at the child's first block. */
+  uint32_t *count;
+  uint32_t root[VG_LATTICE_BLOCKS];  /* Of blocks (base/union_find.h). */
+  uint16_t child[VG_LATTICE_BLOCKS]; /* Child of a root, or NONE. */
   int is_merged;
   size_t n_part;
-  struct vg_front *part; /* [n_part] of the children, in their order */
+  struct vg_front *part; /* [n_part] Fronts of the children, in their order. */
 };
 
-/* --- blocks that hang together -------------------------------------------- */
+/* --- connected blocks ---------------------------------------------------- */
 
 static uint32_t block_of(const struct split *s, uint32_t point)
 {
@@ -66,13 +67,13 @@ static void count_part(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Faces of each chunk and block, those of all chunks in sum[]. */
+/* Counts the faces per chunk and block; totals in sum[]. */
 static vg_status count_faces(struct split *s, size_t *sum, struct vg_error *err)
 {
   s->n_block = vg_lattice_blocks(&s->n->lattice);
   s->n_chunk = (s->n->front.n_face + CHUNK - 1) / CHUNK;
   s->count = vg_calloc(s->n_chunk * s->n_block, sizeof *s->count);
-  if (!s->count) return vg_fail_memory(err, "the parts of a front");
+  if (!s->count) return vg_fail_memory(err, "dividing a front");
   vg_engine_loop(s->e, s->n->front.n_face, CHUNK, count_part, s);
   for (size_t c = 0; c < s->n_chunk; c++)
     for (size_t b = 0; b < s->n_block; b++)
@@ -80,7 +81,7 @@ static vg_status count_faces(struct split *s, size_t *sum, struct vg_error *err)
   return VG_OK;
 }
 
-/* Blocks that hang together become one; those without faces none. */
+/* Connected blocks become one child; blocks without faces have no child. */
 static void number_children(struct split *s, const size_t *n_face)
 {
   for (uint32_t b = 0; b < VG_LATTICE_BLOCKS; b++) s->root[b] = b;
@@ -106,7 +107,7 @@ static vg_status find_children(struct split *s, struct vg_error *err)
   VG_TRY(count_faces(s, n_face, err));
   number_children(s, n_face);
   s->part = vg_calloc(s->n_part, sizeof *s->part);
-  if (!s->part) return vg_fail_memory(err, "the parts of a front");
+  if (!s->part) return vg_fail_memory(err, "dividing a front");
   for (size_t b = 0; b < s->n_block; b++)
     if (n_face[b]) s->part[s->child[b]].n_face += n_face[b];
 done:
@@ -115,7 +116,7 @@ done:
 
 /* --- fronts of the children ---------------------------------------------- */
 
-/* Where each chunk puts its first face of each child. */
+/* Sets the index at which each chunk writes its first face of each child. */
 static void place_chunks(struct split *s)
 {
   uint32_t at[VG_LATTICE_BLOCKS] = { 0 };
@@ -135,11 +136,11 @@ static void place_chunks(struct split *s)
 
 struct deal {
   struct split *s;
-  uint32_t *number; /* [points of the front] in their child */
-  int *is_short;    /* [n_part] of memory */
+  uint32_t *number; /* [points of the front] Index in their child. */
+  int *is_short;    /* [n_part] 1: memory was refused. */
 };
 
-/* Children are not more than blocks, so count[] has their places. */
+/* There are no more children than blocks, so their indices fit in count[]. */
 static void deal_faces(void *context, size_t first, size_t end, int worker)
 {
   const struct deal *d = context;
@@ -165,9 +166,9 @@ static void clear_numbers(void *context, size_t first, size_t end, int worker)
   memset(d->number + first, 0xff, (end - first) * sizeof *d->number);
 }
 
-/* Points in the order in which faces use them. All corners of a face are in
- * blocks of one child (unite_corners), so a point has one child, and its
- * number one writer. */
+/* Numbers points in the order in which faces use them. All corners of a face
+ * are in blocks of one child (unite_corners), so a point belongs to one child,
+ * and only one thread writes its number. */
 static int number_points(const struct deal *d, struct vg_front *part)
 {
   const struct vg_front *f = &d->s->n->front;
@@ -215,14 +216,14 @@ static vg_status deal_out(struct deal *d, struct vg_error *err)
 
   for (size_t k = 0; k < s->n_part; k++) {
     s->part[k].face = vg_alloc(s->part[k].n_face, sizeof *f->face);
-    if (!s->part[k].face) return vg_fail_memory(err, "the parts of a front");
+    if (!s->part[k].face) return vg_fail_memory(err, "dividing a front");
   }
   place_chunks(s);
   vg_engine_loop(s->e, f->n_face, CHUNK, deal_faces, d);
   vg_engine_loop(s->e, f->n_point, CHUNK, clear_numbers, d);
   vg_engine_loop(s->e, s->n_part, 1, deal_points, d);
   for (size_t k = 0; k < s->n_part; k++)
-    if (d->is_short[k]) return vg_fail_memory(err, "the parts of a front");
+    if (d->is_short[k]) return vg_fail_memory(err, "dividing a front");
   return VG_OK;
 }
 
@@ -233,7 +234,7 @@ static vg_status split_front(struct split *s, struct vg_error *err)
   struct vg_front *f = &s->n->front;
   vg_status st = d.number && d.is_short
                  ? deal_out(&d, err)
-                 : vg_fail_memory(err, "the parts of a front");
+                 : vg_fail_memory(err, "dividing a front");
   void *const whole[] = { f->x, f->id, f->face, d.number, d.is_short };
 
   vg_engine_free(s->e, sizeof whole / sizeof *whole, whole);
@@ -243,7 +244,7 @@ static vg_status split_front(struct split *s, struct vg_error *err)
 
 struct volumes {
   const struct split *s;
-  double *of; /* [n_part] */
+  double *of; /* [n_part] Volumes. */
 };
 
 static void measure_part(void *context, size_t first, size_t end, int worker)
@@ -255,15 +256,15 @@ static void measure_part(void *context, size_t first, size_t end, int worker)
     v->of[k] = vg_front_volume(&v->s->part[k]);
 }
 
-/* Where nothing could be grown beside a block, a body in it may have lost its
- * void: then the front stays as it is. */
+/* If a zone next to a block failed, a body in the block may be left without a
+ * surrounding void. In that case the front is not divided. */
 static vg_status find_nothing(const struct split *s, int *found,
                               struct vg_error *err)
 {
   struct volumes v = { s, vg_alloc(s->n_part, sizeof *v.of) };
 
   *found = 0;
-  if (!v.of) return vg_fail_memory(err, "the parts of a front");
+  if (!v.of) return vg_fail_memory(err, "dividing a front");
   if (s->n->n_blocked) {
     vg_engine_loop(s->e, s->n_part, 1, measure_part, &v);
     for (size_t k = 0; k < s->n_part; k++) *found |= !(v.of[k] > 0);
@@ -272,7 +273,7 @@ static vg_status find_nothing(const struct split *s, int *found,
   return VG_OK;
 }
 
-/* One part again. */
+/* Merges everything into one part again. */
 static vg_status undo(struct split *s, struct vg_error *err)
 {
   for (size_t k = 1; k < s->n_part; k++) {
@@ -288,8 +289,8 @@ static vg_status undo(struct split *s, struct vg_error *err)
 
 /* --- children ------------------------------------------------------------ */
 
-/* The child's name, number k or, for what is put together, "r"; path[] has
- * room (vg_node_wants_cut). */
+/* Makes a child with path number k or, for small voids filled together, "r".
+ * path[] has room (vg_node_wants_cut). */
 static struct vg_node *new_child(const struct vg_node *n, size_t k, int is_rest,
                                  struct vg_front *front)
 {
@@ -311,17 +312,17 @@ static vg_status make_children(struct split *s, struct vg_error *err)
   struct vg_node *n = s->n;
 
   n->child = vg_calloc(s->n_part + 1, sizeof *n->child);
-  if (!n->child) return vg_fail_memory(err, "the parts of a front");
+  if (!n->child) return vg_fail_memory(err, "dividing a front");
   for (size_t k = 0; k < s->n_part; k++) {
     n->child[k] = new_child(n, k, 0, &s->part[k]);
-    if (!n->child[k]) return vg_fail_memory(err, "the parts of a front");
+    if (!n->child[k]) return vg_fail_memory(err, "dividing a front");
     n->n_child++;
   }
   return VG_OK;
 }
 
-/* How many cells a cube of the spacing gets is read off the zones; halfway,
- * since these are along planes. */
+/* Corrects the cells per cube of the spacing from the zones, by half of the
+ * difference, since zones are along planes only. */
 static double correction(struct vg_node *n)
 {
   double was = n->per_cube, seen = n->separator_cells / n->zone_volume;
@@ -332,7 +333,7 @@ static double correction(struct vg_node *n)
   return n->per_cube / was;
 }
 
-/* Every child is what was left of one block. */
+/* Every child is the remaining void of one block. */
 static vg_status load_of_blocks(struct split *s, struct vg_error *err)
 {
   struct vg_node *n = s->n;
@@ -380,7 +381,7 @@ vg_status vg_node_share_load(struct vg_node *n, double correction,
   return st;
 }
 
-/* A void that a cut left nearly whole is cut elsewhere next time. */
+/* A void that a cut left nearly whole is cut elsewhere at the next attempt. */
 static void count_retry(struct vg_partition *p, struct vg_node *n)
 {
   double sum = 0;
@@ -396,7 +397,7 @@ static void count_retry(struct vg_partition *p, struct vg_node *n)
     }
 }
 
-/* Put small children together. */
+/* Merges small children. */
 static vg_status bundle(struct vg_partition *p, struct vg_node *n,
                         struct vg_error *err)
 {
@@ -421,7 +422,7 @@ static vg_status bundle(struct vg_partition *p, struct vg_node *n,
   if (st == VG_OK && rest.n_face) {
     struct vg_node *r = new_child(n, 0, 1, &rest);
 
-    if (!r) st = vg_fail_memory(err, "the parts of a front");
+    if (!r) st = vg_fail_memory(err, "dividing a front");
     else {
       r->is_final = 1;
       r->load.cells = cells;

@@ -1,5 +1,6 @@
-/* Numbers for what all ranks made: tasks in the order of their paths, each
- * with its points and cells in its own order. One exchange of counts. */
+/* Numbers the points and cells of all ranks: tasks in the order of their
+ * paths, each with its points and cells in its own order. One exchange of
+ * counts. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,10 +8,10 @@
 #include "base/memory.h"
 #include "partition/cut/node.h"
 
-/* One task's share, as the ranks tell each other. */
+/* The counts of one task, as exchanged between ranks. */
 struct share {
   char path[VG_PATH_MAX];
-  uint32_t serial, index; /* index: among the pieces of its rank */
+  uint32_t serial, index; /* index: among the pieces of its rank. */
   uint64_t n_point, n_cell;
   uint64_t rank;
 };
@@ -49,7 +50,7 @@ static vg_status list_own(const struct vg_partition *p, struct vg_bytes *out,
   return VG_OK;
 }
 
-/* All shares of all ranks, by path. */
+/* Gathers the shares of all ranks, sorted by path. */
 static vg_status gather(const struct vg_partition *p, struct vg_comm *comm,
                         struct share **out, size_t *n, struct vg_error *err)
 {
@@ -107,8 +108,8 @@ static vg_status number(struct vg_partition *p, size_t n, const struct share *s,
   p->slices.n_cell[VG_SLICE_TET] = cell;
   if (point <= UINT32_MAX) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "the mesh would have %llu points; "
-                 "at most %u can be numbered: use a coarser spacing",
+                 "the mesh would have %llu points, "
+                 "but at most %u can be numbered: use a coarser spacing",
                  (unsigned long long)point, UINT32_MAX);
 }
 
@@ -183,7 +184,7 @@ static vg_status open_slices(struct vg_partition *p, struct vg_error *err)
 {
   struct vg_slices *s = &p->slices;
 
-  p->boundary_faces = p->boundary; /* arrays borrowed */
+  p->boundary_faces = p->boundary; /* arrays are borrowed */
   p->boundary_faces.n_point = 0;
   p->boundary_faces.point = NULL;
   p->front_id = vg_alloc(p->boundary.n_point, sizeof *p->front_id);

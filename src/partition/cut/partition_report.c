@@ -1,5 +1,5 @@
-/* The fields of the decomposition's report that ranks combine when all cells
- * are numbered. Repairs combine theirs before (repair/repair.c). */
+/* Members of the decomposition's report that ranks combine when all cells are
+ * numbered. Repairs combine theirs earlier (repair/repair.c). */
 #include "partition/cut/partition.h"
 
 #define COUNT(name, member)                                                    \

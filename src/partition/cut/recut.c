@@ -1,10 +1,11 @@
-/* Parts that could not be filled. Outline: such a leaf is laid aside and all
- * other tasks go on. When they are done, the cells of the zones beside it are
- * taken back: what bounds them, and the part, is the front of a larger void,
- * which is filled as one leaf. Where that fails too, more is taken back, leaves
- * too, and so on: voids that meet become one. So the price is what lies around
- * the place, however the tree of cuts looks. Nothing is kept for this while all
- * goes well. */
+/* Repeated decomposition (recut) around leaves that could not be filled.
+ * Outline: such a leaf is set aside, and all other tasks continue. When they
+ * are done, the cells of the adjacent zones are removed. The boundary of these
+ * cells and of the leaf is the front of a larger void, which is filled as one
+ * leaf. If that fails too, more pieces are removed, including leaves, and so
+ * on; voids that meet are merged. The cost is therefore local, whatever the
+ * tree of cuts looks like, and a run without failures stores nothing for this
+ * purpose. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,7 +19,7 @@
 #include "core/search/box.h"
 #include "partition/cut/node.h"
 
-/* At the end of the path of a void, as often as it was made larger. */
+/* Appended to the path of a void each time it is extended. */
 static const char larger = '~';
 
 vg_status vg_recut_note_leaf(struct vg_partition *p, struct vg_node *n,
@@ -46,31 +47,31 @@ void vg_recut_release(struct vg_partition *p)
   free(p->unfilled);
 }
 
-/* --- voids that were not filled, known to all ranks ---------------------- */
+/* --- unfilled voids, known to all ranks ---------------------------------- */
 
 struct corners {
   uint64_t id[3];
-}; /* of a face, rising */
+}; /* Corners of a face, ascending. */
 
 struct unfilled {
   char path[VG_PATH_MAX];
   struct vg_error why;
   struct vg_box box;
   size_t n_face;
-  struct corners *face; /* [n_face] in order */
+  struct corners *face; /* [n_face] Sorted. */
 };
 
-/* Where pieces and voids go. */
+/* Exchange of pieces and voids. */
 struct parcels {
   struct vg_partition *p;
   size_t n;
-  struct unfilled *of; /* [n] by path */
-  uint32_t *up;        /* [n] those that meet (base/union_find.h); the
-                          root's rank is root % size */
-  uint32_t *near;      /* [p->n_piece] a void beside it, or n: none */
+  struct unfilled *of; /* [n] Sorted by path. */
+  uint32_t *up;        /* [n] Voids that meet (base/union_find.h); the root
+                          is handled by rank root % size. */
+  uint32_t *near;      /* [p->n_piece] An adjacent void, or n: none. */
   size_t n_gone, cap_gone;
-  uint32_t *gone;       /* [n_gone] serials of what this rank takes back,
-                           and of voids that were not filled */
+  uint32_t *gone;       /* [n_gone] Serials of the pieces that this rank
+                           removes, and of unfilled voids. */
   struct vg_writer *to; /* [size] */
 };
 
@@ -151,7 +152,7 @@ static vg_status read_voids(struct parcels *q, const struct vg_bytes *all,
   return VG_OK;
 }
 
-/* The same list on all ranks. Collective. */
+/* Makes the same list on all ranks. Collective. */
 static vg_status list_voids(struct parcels *q, struct vg_comm *comm,
                             struct vg_error *err)
 {
@@ -172,12 +173,12 @@ done:
   return st;
 }
 
-/* --- what is beside them ------------------------------------------------- */
+/* --- adjacent pieces ----------------------------------------------------- */
 
-/* First the zones beside a void are taken back, then, time by time, these and
- * the leaf that has most faces in common with it, in the end all that there
- * is. Where no zone is beside it, as between the parts of a decomposition, a
- * leaf is taken at once. */
+/* First the zones adjacent to a void are removed; in the next rounds these and
+ * the leaf that shares most faces with the void; in the end all adjacent
+ * pieces. If no zone is adjacent, as between the subdomains of a
+ * decomposition, a leaf is removed in the first round. */
 enum { NO_LEAF, ONE_LEAF, ALL_LEAVES };
 
 enum { ONE_BY_ONE = 3 }; /* C17 */
@@ -203,8 +204,7 @@ static uint64_t name_in(const struct vg_piece *q, uint32_t v)
   return v < q->n_in ? q->in[v] : VG_POINT_ID(q->serial, v - q->n_in);
 }
 
-/* Faces that a piece has in common with a void; no more than `most` are
- * counted. */
+/* Number of faces that a piece shares with a void, counted up to `most`. */
 static uint64_t n_common(const struct unfilled *u, const struct vg_piece *q,
                          uint64_t most)
 {
@@ -228,7 +228,7 @@ static void take_back(struct parcels *q, size_t piece, uint32_t from)
   else q->near[piece] = from;
 }
 
-/* The leaf that has most faces in common with a void. */
+/* The leaf that shares most faces with a void. */
 struct best {
   uint64_t n;
   vg_path path;
@@ -239,9 +239,9 @@ static int is_better(const struct best *a, const struct best *b)
   return a->n != b->n ? a->n > b->n : a->n && strcmp(a->path, b->path) < 0;
 }
 
-/* Pieces of this rank that are beside voids, and voids that meet in one.
- * best: [q->n] zeros; of this rank's leaves, where one may be taken; n_zone:
- * [q->n] zeros; of this rank's zones. */
+/* Finds the pieces of this rank that are adjacent to voids, and voids that
+ * meet in one piece. best: [q->n] zeros; the best leaf of this rank, for voids
+ * that take one leaf; n_zone: [q->n] zeros; adjacent zones of this rank. */
 static void look_around(struct parcels *q, struct best *best, uint64_t *n_zone)
 {
   for (size_t k = 0; k < q->p->n_piece; k++) {
@@ -263,7 +263,7 @@ static void look_around(struct parcels *q, struct best *best, uint64_t *n_zone)
   }
 }
 
-/* Of all ranks' leaves the best for each void that takes one. Collective. */
+/* Finds the best leaf of all ranks for each void that takes one. Collective. */
 static vg_status take_best(struct parcels *q, struct vg_comm *comm,
                            struct best *best, uint64_t *n_zone,
                            struct vg_error *err)
@@ -291,7 +291,7 @@ done:
   return st;
 }
 
-/* Voids may have a face in common too. */
+/* Merges voids that share a face. */
 static void join_voids(struct parcels *q)
 {
   for (uint32_t i = 0; i < q->n; i++)
@@ -304,8 +304,8 @@ static void join_voids(struct parcels *q)
         }
 }
 
-/* What any rank found to be one is one. VG_ERR_GEOMETRY where a void has
- * nothing beside it that could be taken back. Collective. */
+/* Combines the groups that all ranks have found. VG_ERR_GEOMETRY if a void has
+ * no adjacent piece that could be removed. Collective. */
 static vg_status agree_on_groups(struct parcels *q, struct vg_comm *comm,
                                  struct vg_error *err)
 {
@@ -325,7 +325,7 @@ static vg_status agree_on_groups(struct parcels *q, struct vg_comm *comm,
   for (size_t k = 0; k < q->p->n_piece; k++)
     if (q->near[k] < q->n) beside[vg_root_of(q->up, q->near[k])]++;
   for (uint32_t k = 0; k < q->n; k++)
-    beside[k] += vg_root_of(q->up, k) != k; /* goes into another one */
+    beside[k] += vg_root_of(q->up, k) != k; /* merged into another void */
   VG_TRY(vg_comm_sum(comm, q->n, beside, err));
   for (size_t k = 0; k < q->n; k++) {
     if (beside[k] && strlen(q->of[k].path) + 2 < VG_PATH_MAX) continue;
@@ -338,7 +338,7 @@ done:
   return st;
 }
 
-/* --- to those that fill them --------------------------------------------- */
+/* --- transfer to the filling ranks --------------------------------------- */
 
 static void send_front(const struct parcels *q, uint32_t of, double per_cube,
                        const struct vg_front *f)
@@ -380,8 +380,8 @@ static vg_status send_unfilled(struct parcels *q, struct vg_error *err)
   return st;
 }
 
-/* Pieces beside voids are sent as what bounds them, and forgotten. path:
- * theirs. */
+/* Sends the boundaries of the pieces adjacent to voids, and drops the pieces.
+ * path: their paths. */
 static vg_status send_pieces(struct parcels *q, vg_path *path, size_t *n_path,
                              struct vg_error *err)
 {
@@ -410,7 +410,7 @@ static vg_status send_pieces(struct parcels *q, vg_path *path, size_t *n_path,
   return st;
 }
 
-/* A void in the making, on the rank that fills it. */
+/* An extended void under construction, on the rank that fills it. */
 struct wider {
   struct vg_front front;
   double per_cube;
@@ -438,8 +438,8 @@ static vg_status receive(const struct parcels *q, struct wider *wider,
   return st == VG_OK && r.at < r.n ? vg_fail_damaged(err, "a front") : st;
 }
 
-/* What all ranks have of the voids to those that fill them. wider: [q->n].
- * Collective. */
+/* Sends the parts of the voids from all ranks to the ranks that fill them.
+ * wider: [q->n]. Collective. */
 static vg_status exchange(struct parcels *q, struct vg_comm *comm,
                           struct wider *wider, struct vg_spans *spans,
                           struct vg_error *err)
@@ -476,7 +476,7 @@ done:
   return st;
 }
 
-/* --- larger voids -------------------------------------------------------- */
+/* --- extended voids ------------------------------------------------------ */
 
 static vg_status new_node(struct vg_partition *p, const char *path,
                           struct wider *wider, struct vg_node **out,

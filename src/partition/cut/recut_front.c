@@ -1,5 +1,5 @@
-/* The front of a void, from the cells that were made in it: faces that only
- * one of them has. */
+/* The front of a void from the cells that were made in it: the faces that only
+ * one cell has. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "core/delaunay/tets.h"
 #include "partition/cut/node.h"
 
-/* A face by its corners, rising; sense: 1 or -1, as they were turned. */
+/* A face by its corners, ascending; sense: 1 or -1, the parity of the sort. */
 struct side {
   uint32_t v[3];
   int32_t sense;
@@ -32,8 +32,9 @@ static int by_corners(const void *a, const void *b)
   return 0;
 }
 
-/* Faces that look both ways are between two cells: only others stay, rising.
- * VG_ERR_GEOMETRY where one is there twice. */
+/* Removes faces that occur in both orientations, which are between two cells;
+ * the others stay, ascending. VG_ERR_GEOMETRY if one occurs twice in the same
+ * orientation. */
 static vg_status cancel(struct vg_front *f, struct vg_error *err)
 {
   struct side *s = vg_alloc(f->n_face, sizeof *s);
@@ -50,8 +51,8 @@ static vg_status cancel(struct vg_front *f, struct vg_error *err)
     if (!sum) continue;
     if (abs(sum) > 1)
       st = vg_fail(err, VG_ERR_GEOMETRY,
-                   "a void that was cut has a face "
-                   "twice");
+                   "the front of a void that was cut contains a "
+                   "face twice");
     f->face[left][0] = s[k].v[0];
     f->face[left][1] = s[k].v[sum > 0 ? 1 : 2];
     f->face[left++][2] = s[k].v[sum > 0 ? 2 : 1];
@@ -67,8 +68,8 @@ struct spot {
   uint32_t was;
 };
 
-/* By their places: names depend on timing. No two have one place, but for
- * points of the boundary, whose names do not. */
+/* Sorts by coordinates, because ids depend on timing. No two points coincide,
+ * except for boundary points, whose ids do not depend on timing. */
 static int by_place(const void *a, const void *b)
 {
   const struct spot *s = a, *t = b;
@@ -78,7 +79,8 @@ static int by_place(const void *a, const void *b)
   return s->id < t->id ? -1 : s->id > t->id;
 }
 
-/* Only points that faces use, by their places. to: [f->n_point] scratch. */
+/* Keeps only points that faces use, sorted by coordinates. to: [f->n_point]
+ * scratch. */
 static void place_points(struct vg_front *f, struct spot *s, uint32_t *to)
 {
   size_t n = 0;

@@ -1,7 +1,7 @@
-/* Points of what was taken back. Its cells are gone, but others have points in
- * common with them, by names that say whose points they were. The void that is
- * filled there has all of these on its front: its leaf adopts them. Of voids
- * that touch in a point the first one does. */
+/* Points of removed pieces. Their cells are gone, but other pieces share
+ * points with them, by ids with the serial of the removed piece. The void that
+ * is filled there has all of these points on its front, and its leaf adopts
+ * them. Of voids that touch in a point, the first one adopts it. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "partition/cut/node.h"
 
-/* A name that the node of void k (by its rank) has on its front. */
+/* A global id that void k has on its front. */
 struct claim {
   uint64_t id;
   uint64_t k;
@@ -41,7 +41,7 @@ static int by_from(const void *a, const void *b)
   return (s->from > t->from) - (s->from < t->from);
 }
 
-/* What all ranks have of items of a size, in one list. Collective. */
+/* Gathers the items of all ranks in one list. Collective. */
 static vg_status gather(struct vg_partition *p, struct vg_comm *comm, size_t n,
                         size_t size, const void *mine, void **out,
                         size_t *n_out, struct vg_error *err)
@@ -56,15 +56,15 @@ static vg_status gather(struct vg_partition *p, struct vg_comm *comm, size_t n,
   own.data = vg_alloc(own.n, 1);
   if (own.data && own.n) memcpy(own.data, mine, own.n);
   VG_TRY(vg_comm_agree(comm,
-                       all && own.data ? VG_OK
-                                       : vg_fail_memory(err, "names of points"),
+                       all && own.data
+                         ? VG_OK
+                         : vg_fail_memory(err, "the global ids of points"),
                        err));
   VG_TRY(vg_comm_allgather(comm, &own, all, err));
   for (int r = 0; r < p->size; r++) bytes += all[r].n;
   *out = vg_alloc(bytes, 1);
-  VG_TRY(vg_comm_agree(comm,
-                       *out ? VG_OK : vg_fail_memory(err, "names of points"),
-                       err));
+  VG_TRY(vg_comm_agree(
+    comm, *out ? VG_OK : vg_fail_memory(err, "the global ids of points"), err));
   for (int r = 0; r < p->size; r++) {
     if (all[r].n) memcpy((char *)*out + *n_out * size, all[r].data, all[r].n);
     *n_out += all[r].n / size;
@@ -82,7 +82,7 @@ static int is_gone(size_t n, const uint32_t *gone, uint64_t id)
   return serial && bsearch(&serial, gone, n, sizeof serial, by_value);
 }
 
-/* Names on the fronts of this rank's voids that nobody has any more. */
+/* Lists the ids on the fronts of this rank's voids whose pieces are gone. */
 static vg_status list_claims(size_t n_gone, const uint32_t *gone, size_t n,
                              struct vg_node *const *node, const uint32_t *k,
                              struct claim **out, size_t *n_out,
@@ -96,7 +96,7 @@ static vg_status list_claims(size_t n_gone, const uint32_t *gone, size_t n,
 
       if (!is_gone(n_gone, gone, id)) continue;
       if (vg_reserve(out, &cap, *n_out + 1, sizeof **out))
-        return vg_fail_memory(err, "names of points");
+        return vg_fail_memory(err, "the global ids of points");
       (*out)[(*n_out)++] = (struct claim){ id, k[i] };
     }
   return VG_OK;
@@ -110,8 +110,8 @@ static int is_won(size_t n, const struct claim *all, uint64_t id, uint32_t k)
   return at && (at == all || at[-1].id != id);
 }
 
-/* Points that a front adopts go behind the others, in their order, with the
- * names of the leaf's first own points. */
+/* Moves the points that a front adopts behind the others, in their order, and
+ * gives them the ids of the leaf's first own points. */
 static vg_status adopt(struct vg_node *node, uint32_t k, size_t n_claim,
                        const struct claim *all, struct rename **map,
                        size_t *n_map, size_t *cap_map, struct vg_error *err)
@@ -124,7 +124,7 @@ static vg_status adopt(struct vg_node *node, uint32_t k, size_t n_claim,
   vg_status st = VG_OK;
 
   if (!to || !x || !id) {
-    st = vg_fail_memory(err, "names of points");
+    st = vg_fail_memory(err, "the global ids of points");
     goto done;
   }
   for (int own = 0; own < 2; own++)
@@ -135,7 +135,7 @@ static vg_status adopt(struct vg_node *node, uint32_t k, size_t n_claim,
       id[n] = f->id[v];
       if (own) {
         if (vg_reserve(map, cap_map, *n_map + 1, sizeof **map)) {
-          st = vg_fail_memory(err, "names of points");
+          st = vg_fail_memory(err, "the global ids of points");
           goto done;
         }
         id[n] = VG_POINT_ID(node->serial, n_own++);

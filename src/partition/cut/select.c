@@ -11,12 +11,12 @@
 #include "core/geometry/hilbert.h"
 #include "partition/engine/engine_memory.h"
 
-/* Faces to a box, and boxes to one of the next level; boxes to a chunk of a
+/* Faces per box, boxes per box of the next level, and boxes per chunk of a
  * loop. */
 enum { RUN = 16, FAN = 8, CHUNK = 512 };
 
-/* Spacings: so near a plane a face counts as crossing it; so far beyond the
- * faces that cross it what is around them is to be known. */
+/* Distances in spacings: a face this near a plane counts as crossing it; and
+ * the front must be known this far beyond the faces that cross it. */
 static const double crossing = 0.1, margin = 1.5; /* K22 */
 
 void vg_select_init(struct vg_select *s, const struct vg_front *front,
@@ -34,13 +34,13 @@ void vg_select_release(struct vg_select *s)
   memset(s, 0, sizeof *s);
 }
 
-/* Spacings that differ by less are not told apart. */
+/* Spacings with a smaller ratio count as equal. */
 static const double close_enough = 1.1;
 
 /* --- boxes --------------------------------------------------------------- */
 
-/* Boxes of a level from `first` on have something new below, which begins at
- * `from`; those from n on are new themselves. */
+/* Boxes of a level from `first` on have new items below, which begin at
+ * `from`; boxes from n on are new themselves. */
 struct update {
   struct vg_select *s;
   int level;
@@ -111,13 +111,13 @@ vg_status vg_select_update(struct vg_select *s, const struct vg_engine *e,
 struct list {
   const struct vg_select *s;
   const struct vg_region *region;
-  double band, least; /* in spacings, the region's reach included; the
-                         least spacing anywhere */
+  double band, least; /* Band in spacings, including the region's reach; the
+                         smallest spacing anywhere. */
   size_t n, cap;
   uint32_t *face;
 };
 
-/* The spacing at the foot of any point of a box is at most this. */
+/* Upper bound of the spacing at the foot of any point of a box. */
 static double most_spacing(const struct list *l, const struct vg_box *b)
 {
   double middle[3], d2 = 0;
@@ -130,7 +130,7 @@ static double most_spacing(const struct list *l, const struct vg_box *b)
          vg_sizing_slope(l->s->sizing) * sqrt(d2);
 }
 
-/* How far n . x, sign times, is below sign * offset in all of a box. */
+/* Distance by which sign * n . x is below sign * offset in the whole box. */
 static double beyond(const struct vg_plane *p, double sign,
                      const struct vg_box *b)
 {
@@ -144,8 +144,8 @@ static double beyond(const struct vg_plane *p, double sign,
   return far;
 }
 
-/* Distance of a box from the planes, or beyond a wall, where distances count
- * for more: whichever is most; no further once it is more than `enough`. */
+/* Largest distance of a box from a plane, or beyond a wall, where distances
+ * are weighted; the search ends once it exceeds `enough`. */
 static double distance(const struct vg_region *r, const struct vg_box *b,
                        double enough)
 {
@@ -159,7 +159,7 @@ static double distance(const struct vg_region *r, const struct vg_box *b,
   return far;
 }
 
-/* The planes and walls of a region beyond which a triangle of a box may lie:
+/* Planes and walls of a region beyond which a triangle in a box may lie:
  * normal . x < least for all corners. */
 struct limits {
   int n;
@@ -220,8 +220,8 @@ static int list_run(struct list *l, size_t run, double most)
   return 0;
 }
 
-/* most: no spacing in the box is larger, by the boxes around it; looked up
- * only where it matters. */
+/* most: upper bound of the spacing in the box, from the boxes around it; the
+ * sizing field is queried only if it matters. */
 static int list_box(struct list *l, int level, size_t b, double most)
 {
   const struct vg_select_level *at = &l->s->level[level];
@@ -253,11 +253,12 @@ static int list_faces(struct list *l)
   return 0;
 }
 
-/* Numbers of the points listed. The table is of the size of the part; an array
- * over all points would be as long as the front, in each thread. */
+/* Local numbers of the listed points. The table is as large as the selected
+ * part; an array over all points would be as long as the front, in each
+ * thread. */
 struct numbers {
   struct vg_table table;
-  size_t n;        /* points listed */
+  size_t n;        /* Points listed. */
   uint32_t *point; /* [n] */
 };
 
@@ -266,8 +267,8 @@ static uint64_t hash_of(const void *numbers, uint32_t k)
   return vg_hash_1(((const struct numbers *)numbers)->point[k]);
 }
 
-/* Number the corners of the faces listed, by first use; to: [n] these faces in
- * the new numbers. */
+/* Numbers the corners of the listed faces by first use; to: [n] these faces in
+ * local numbers. */
 static int number_points(struct numbers *t, const uint32_t (*from)[3], size_t n,
                          const uint32_t *face, uint32_t (*to)[3])
 {
@@ -329,7 +330,7 @@ static vg_status take(const struct vg_front *f, size_t n, const uint32_t *face,
   return vg_fail_memory(err, "cutting a front");
 }
 
-/* The list of faces, without room to spare, goes to the caller. */
+/* Returns the list of faces without spare room, for the caller. */
 static uint32_t *shrunk(struct list *l)
 {
   uint32_t *less = vg_realloc(l->face, l->n, sizeof *l->face);
@@ -357,7 +358,8 @@ vg_status vg_select_part(const struct vg_select *s,
   return st;
 }
 
-/* The corner of a face farthest from a plane, in spacings at its foot. */
+/* Distance of the corner of a face farthest from a plane, in spacings at its
+ * foot. */
 static double farthest(const struct list *l, const double *const x[3])
 {
   const struct vg_region *r = l->region;
@@ -402,7 +404,7 @@ vg_status vg_select_widen(const struct vg_select *s, struct vg_region *region,
   return st;
 }
 
-/* Faces of the part that come near enough: [n], ascending. */
+/* Lists the faces of the part that are near enough: [n], ascending. */
 static vg_status list_near(const struct vg_front *part,
                            const struct vg_region *region,
                            const struct vg_sizing *sizing, uint32_t *near,
@@ -453,7 +455,7 @@ struct touch {
   const struct vg_select *s;
   const double *const *x;
   double lo[3], hi[3], normal[3];
-  double size, most; /* no side is longer; no coordinate is more */
+  double size, most; /* Longest side; largest coordinate. */
   int (*visit)(void *context, uint32_t face);
   void *context;
 };
@@ -474,8 +476,8 @@ static void touch_init(struct touch *t)
   }
 }
 
-/* Does the box lie beside the triangle's own, or on one side of its plane?
- * Rounding aside, for which there is more than enough. */
+/* Is the box disjoint from the triangle's box, or on one side of its plane?
+ * The tolerance is well above the rounding error. */
 static int is_beside(const struct touch *t, const double lo[3],
                      const double hi[3])
 {

@@ -1,5 +1,5 @@
-/* partition/cut/task_data.h: what a task of the advancing partition is given,
- * what it makes, and what its home hears of it. Uses core. */
+/* partition/cut/task_data.h: input and outcome of a task of the advancing
+ * partition. Uses core. */
 #ifndef VG_PARTITION_CUT_TASK_DATA_H
 #define VG_PARTITION_CUT_TASK_DATA_H
 
@@ -12,31 +12,32 @@
 #include "core/front/region.h"
 #include "partition/load/load.h"
 
-/* The id of a point in a front: the serial of the task that made it, and its
- * place there. Serials depend on timing; so ids are compared for equality only,
- * and numbers are given at the end (number.c). Serial 0: the points of the
- * boundary, in their order. */
+/* Global id of a point in a front: the serial of the task that created it, and
+ * its index there. Serials depend on timing, so ids are compared for equality
+ * only, and final numbers are given at the end (number.c). Serial 0: the
+ * points of the boundary, in their order. */
 #define VG_POINT_ID(serial, k) ((uint64_t)(serial) << 32 | (uint32_t)(k))
 
-/** The first point of a face that is no longer part of a front: only while a
- * node is being cut (node.c); fronts of tasks have none. */
+/** First point of a face that is no longer part of a front, only while a node
+ * is being cut (node.c); fronts of tasks have no such faces. */
 #define VG_FACE_GONE UINT32_MAX
 
-/** PVGRID's estimate of what a part takes to fill, from its front alone: its
- * volume times the number of its faces over their area (length). 0 where the
- * front encloses nothing. O(faces). */
+/** PVGRID's estimate of the time to fill a subdomain, from its front alone: its
+ * volume times the number of its faces, divided by their area (a length). 0 if
+ * the front encloses nothing. O(faces). */
 double vg_front_work(const struct vg_front *f);
 
-/** What tasks that make cells leave on the rank that did them. */
+/** Submesh that a task leaves on its executing rank. */
 struct vg_piece {
   char path[64];
   char kind; /* VG_SPAN_... */
   uint32_t serial;
   size_t n_in, n_point, n_cell;
-  size_t n_adopted;    /* of n_point: a leaf's that others have too */
-  uint64_t *in;        /* [n_in] names of points of others */
-  double (*x)[3];      /* [n_in + n_point] theirs, then its own */
-  uint32_t (*cell)[4]; /* [n_cell] indices into x */
+  size_t n_adopted;    /* Part of n_point: adopted points of a leaf, which
+                          other pieces also use. */
+  uint64_t *in;        /* [n_in] Global ids of points of other pieces. */
+  double (*x)[3];      /* [n_in + n_point] Points of others, then its own. */
+  uint32_t (*cell)[4]; /* [n_cell] Indices into x. */
 };
 #define VG_PIECE_INIT                                                          \
   {                                                                            \
@@ -45,12 +46,12 @@ struct vg_piece {
 
 void vg_piece_release(struct vg_piece *p);
 
-/** What its home hears of a zone: the change of the front. */
+/** Outcome of a zone for its home rank: the change of the front. */
 struct vg_change {
-  int blocked;           /* nothing was made */
-  uint32_t serial;       /* of the zone's task */
-  size_t n_part;         /* points of the front that the zone was given */
-  struct vg_filled made; /* without cells, which stay with the piece */
+  int blocked;           /* 1: nothing was made. */
+  uint32_t serial;       /* Serial of the zone's task. */
+  size_t n_part;         /* Points of the front that the zone was given. */
+  struct vg_filled made; /* Without cells, which stay with the piece. */
 };
 #define VG_CHANGE_INIT                                                         \
   {                                                                            \

@@ -1,4 +1,5 @@
-/* What tasks that make cells do: look in the store, else grow, and keep. */
+/* Tasks that make cells: look in the store, otherwise make the cells, and keep
+ * the result. */
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,22 +10,23 @@
 #include "base/memory.h"
 #include "partition/cut/node.h"
 
-/* Points to a cell in a field; a bound for the first, not an estimate. */
+/* Cells per point in isotropic regions; used for a bound on points, not as an
+ * estimate. */
 static const double cells_per_point = 5.5; /* C12 */
 
-/* What a task made, as the store keeps it. It depends on no id or serial. */
+/* Result of a task, as the store keeps it. It does not depend on any id or
+ * serial. */
 struct made {
-  int is_blocked;          /* no cells can be made along the zone's region */
-  struct vg_filled filled; /* the front's points are the task's */
-  struct vg_fill_report report; /* without times where it comes from the
-                                   store */
+  int is_blocked; /* 1: no cells can be made along the zone's region. */
+  struct vg_filled filled;      /* The front's points are those of the task. */
+  struct vg_fill_report report; /* Without times if it comes from the store. */
 };
 #define MADE_INIT                                                              \
   {                                                                            \
     .is_blocked = 0                                                            \
   }
 
-/* The report too, so that a resumed run reports on the whole mesh. */
+/* Stores the report too, so that a resumed run reports on the whole mesh. */
 static void made_put(struct vg_writer *w, const struct made *m)
 {
   uint64_t is_blocked = (uint64_t)m->is_blocked;
@@ -49,7 +51,7 @@ static void made_get(struct vg_reader *r, struct made *m)
 
 /* --- the store ----------------------------------------------------------- */
 
-/* Everything that decides what the task makes. */
+/* Digest of everything that determines the result of the task. */
 static struct vg_digest key_of(const struct vg_partition *p,
                                const struct vg_front *f,
                                const struct vg_region *region, size_t limit)
@@ -93,7 +95,7 @@ static void keep(struct vg_partition *p, struct vg_digest key,
   free(w.bytes.data);
 }
 
-/* --- from cells to a piece ----------------------------------------------- */
+/* --- conversion of cells to a piece -------------------------------------- */
 
 static int add_piece(struct vg_partition *p, const struct vg_piece *piece)
 {
@@ -106,8 +108,8 @@ static int add_piece(struct vg_partition *p, const struct vg_piece *piece)
   return bad;
 }
 
-/* Numbers of the front's points among those that the cells use, ascending;
- * UINT32_MAX for the others. Returns how many the cells use. */
+/* Numbers the front's points that the cells use, ascending; UINT32_MAX for the
+ * others. Returns the number of points used. */
 static size_t number_used(const struct vg_filled *m, size_t n_front,
                           uint32_t *number)
 {
@@ -122,8 +124,8 @@ static size_t number_used(const struct vg_filled *m, size_t n_front,
   return n_used;
 }
 
-/* Points of the front that the cells use, then the new points, and the cells
- * in these numbers. The piece takes the cells over. */
+/* Copies the points of the front that the cells use, then the new points, and
+ * renumbers the cells. The piece takes the cells over. */
 static void take_points(struct vg_piece *piece, struct vg_filled *m,
                         const struct vg_front *f, const uint32_t *number,
                         size_t n_used)
@@ -165,7 +167,7 @@ static vg_status to_piece(struct vg_partition *p, struct vg_filled *m,
   piece.x = vg_alloc(n_used + m->n_point, sizeof *piece.x);
   if (!piece.in || !piece.x) goto refused;
   take_points(&piece, m, f, number, n_used);
-  /* points that a leaf adopts are the last of its front (recut_ids.c) */
+  /* points that a leaf adopts are the last ones of its front (recut_ids.c) */
   piece.n_in = n_used;
   while (piece.n_in && piece.in[piece.n_in - 1] >> 32 == serial) piece.n_in--;
   piece.n_adopted = n_used - piece.n_in;
@@ -188,7 +190,7 @@ static void add_report(struct vg_partition *p, const struct vg_fill_report *r)
   pthread_mutex_unlock(&p->lock);
 }
 
-/* The void of a leaf may be another mesher's to fill. */
+/* An external mesher may fill the void of a leaf. */
 static vg_status make(struct vg_partition *p, const struct vg_front *f,
                       const struct vg_region *region, size_t limit,
                       struct made *m, const struct vg_engine *e,
@@ -245,7 +247,7 @@ vg_status vg_work_zone(struct vg_partition *p, const struct vg_work *w,
   return VG_OK;
 }
 
-/* Points beyond which a leaf is cut again; 0: none. */
+/* Maximum number of points of a leaf before it is cut again; 0: no limit. */
 static size_t limit_of(const struct vg_partition *p, const struct vg_node *n)
 {
   double leaf = p->options.rule.leaf_cells;
@@ -255,7 +257,7 @@ static size_t limit_of(const struct vg_partition *p, const struct vg_node *n)
   return (size_t)(most / cells_per_point) + 1000;
 }
 
-/* By the path as it was before the leaf was made larger (FNV-1a). */
+/* Selects by the path before the leaf was extended (FNV-1a). */
 static int fails_on_purpose(const struct vg_partition *p, const char *path)
 {
   uint64_t h = 14695981039346656037u;
@@ -283,8 +285,8 @@ vg_status vg_work_leaf(struct vg_partition *p, const struct vg_work *w,
   assert(w->what == VG_WORK_LEAF && w->node && outgrown && n_cell);
   *outgrown = 0;
   if (p->options.fail_leaves > 0 && fails_on_purpose(p, n->path))
-    return vg_fail(err, VG_ERR_GEOMETRY, "%s is not filled on purpose",
-                   n->path);
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "%s: not filled, as requested for a test", n->path);
   st = find_or_make(p, &n->front, NULL, limit, &m, e, err);
   *outgrown = limit && st == VG_ERR_UNSUPPORTED;
   if (*outgrown) return VG_OK;

@@ -9,8 +9,9 @@
 #include "base/memory.h"
 #include "partition/discrete/discrete_parts.h"
 
-/* Coarse cells to a part, were all sizes multiplied: few enough to be made
- * quickly, many enough for even parts. And bounds of the factor. */
+/* Coarse cells per subdomain if all sizes are multiplied: few enough to be
+ * made quickly, many enough for balanced subdomains. And the bounds of the
+ * factor. */
 static const double cells_per_part = 150; /* D1 */
 static const double least_factor = 1.5, most_factor = 6;
 
@@ -25,7 +26,7 @@ double vg_discrete_coarsening(double cells,
   return f;
 }
 
-/* --- fronts of the parts ------------------------------------------------- */
+/* --- fronts of the subdomains -------------------------------------------- */
 
 struct fill {
   const struct vg_front *front;
@@ -33,10 +34,9 @@ struct fill {
   const struct vg_interface *f;
   const struct vg_sheets *s;
   uint32_t serial;
-  size_t n_all;     /* points of coarse mesh and sheets */
-  uint32_t *name;   /* [n_all] number among the points of interfaces,
-                       or VG_NONE */
-  uint32_t *number; /* [n_all] in a front */
+  size_t n_all;     /* Points of coarse mesh and sheets. */
+  uint32_t *name;   /* [n_all] Index among the interface points, or VG_NONE. */
+  uint32_t *number; /* [n_all] Index in a front. */
 };
 
 static const double *point_of(const struct fill *a, size_t k)
@@ -46,7 +46,8 @@ static const double *point_of(const struct fill *a, size_t k)
   return k < n ? a->c->t.x[k] : a->s->x[k - n];
 }
 
-/* Points of interfaces that are not the front's, in the order of all. */
+/* Numbers the interface points that are not on the front, in the order of all
+ * points. */
 static vg_status name_points(struct fill *a, struct vg_decomposition *out,
                              struct vg_error *err)
 {
@@ -55,7 +56,7 @@ static vg_status name_points(struct fill *a, struct vg_decomposition *out,
   a->n_all = a->c->t.n_point + a->s->n_point;
   a->name = vg_alloc(a->n_all, sizeof *a->name);
   a->number = vg_alloc(a->n_all, sizeof *a->number);
-  if (!a->name || !a->number) return vg_fail_memory(err, "the parts");
+  if (!a->name || !a->number) return vg_fail_memory(err, "the subdomains");
   memset(a->name, 0xff, a->n_all * sizeof *a->name);
   for (size_t k = 0; k < 3 * n_tri; k++) {
     uint32_t v = a->s->tri[k / 3][k % 3];
@@ -65,14 +66,14 @@ static vg_status name_points(struct fill *a, struct vg_decomposition *out,
   for (size_t k = 0; k < a->n_all; k++)
     if (a->name[k] != VG_NONE) a->name[k] = (uint32_t)out->n_point++;
   out->x = vg_alloc(out->n_point, sizeof *out->x);
-  if (!out->x) return vg_fail_memory(err, "the parts");
+  if (!out->x) return vg_fail_memory(err, "the subdomains");
   for (size_t k = 0; k < a->n_all; k++)
     if (a->name[k] != VG_NONE)
       memcpy(out->x[a->name[k]], point_of(a, k), sizeof *out->x);
   return VG_OK;
 }
 
-/* Parts on both sides of face i. */
+/* Subdomains on both sides of face i. */
 static void parts_of(const struct fill *a, size_t i, uint32_t part[2])
 {
   uint32_t side = a->f->side[i];
@@ -98,7 +99,7 @@ static vg_status make_faces(const struct fill *a, struct vg_decomposition *out,
     struct vg_front *f = &out->part[k].front;
 
     f->face = vg_alloc(f->n_face, sizeof *f->face);
-    if (!f->face) return vg_fail_memory(err, "the parts");
+    if (!f->face) return vg_fail_memory(err, "the subdomains");
     f->n_face = 0;
   }
   for (size_t q = 0; q < 4 * c->t.n_cell; q++)
@@ -123,13 +124,13 @@ static vg_status make_faces(const struct fill *a, struct vg_decomposition *out,
   return VG_OK;
 }
 
-/* Faces in the numbers of all become those of the front's own points. */
+/* Renumbers the faces from all points to the points of their front. */
 static vg_status make_points(const struct fill *a, struct vg_front *f,
                              struct vg_error *err)
 {
   f->x = vg_alloc(3 * f->n_face, sizeof *f->x);
   f->id = vg_alloc(3 * f->n_face, sizeof *f->id);
-  if (!f->x || !f->id) return vg_fail_memory(err, "the parts");
+  if (!f->x || !f->id) return vg_fail_memory(err, "the subdomains");
   for (size_t k = 0; k < 3 * f->n_face; k++)
     a->number[f->face[k / 3][k % 3]] = VG_NONE;
   for (size_t k = 0; k < 3 * f->n_face; k++) {
@@ -154,7 +155,7 @@ static vg_status make_parts(struct fill *a, struct vg_decomposition *out,
 
   if (st == VG_OK) {
     out->part = vg_calloc(a->c->n_part, sizeof *out->part);
-    if (!out->part) st = vg_fail_memory(err, "the parts");
+    if (!out->part) st = vg_fail_memory(err, "the subdomains");
     else out->n_part = a->c->n_part;
   }
   if (st == VG_OK) st = make_faces(a, out, err);
@@ -170,14 +171,14 @@ static vg_status make_parts(struct fill *a, struct vg_decomposition *out,
 vg_status vg_discrete_refuse(vg_status st, const char *why, double factor,
                              struct vg_error *err)
 {
-  char text[300]; /* why may be in *err */
+  char text[300]; /* copy, because why may point into *err */
 
   assert(st < 0 && why);
   snprintf(text, sizeof text, "%s", why);
   return vg_fail(err, st,
-                 "no coarse mesh for the discrete decomposition "
-                 "(%s); try another coarsening than %g, or decompose by "
-                 "advancing",
+                 "the coarse mesh for the discrete decomposition failed "
+                 "(%s); try another coarsening than %g, or set decompose "
+                 "to advancing",
                  text, factor);
 }
 
@@ -200,9 +201,9 @@ static vg_status coarse(const struct vg_front *front,
   r->n_coarse = c->t.n_cell;
   if (c->t.n_cell >= (size_t)o->n_part) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%d parts of a coarse mesh of %zu "
-                 "cells; ask for fewer parts, or for a smaller coarsening "
-                 "than %g",
+                 "%d subdomains were requested, but the coarse mesh has "
+                 "only %zu cells; request fewer subdomains, or a smaller "
+                 "coarsening than %g",
                  o->n_part, c->t.n_cell, r->coarsening);
 }
 

@@ -1,39 +1,42 @@
-/* partition/discrete/discrete.h: the discrete decomposition: a coarse mesh of
- * the void is dealt out to parts, whose interfaces get the local size. Uses
- * core, graph.h, load.h, decomposition.h.
+/* partition/discrete/discrete.h: discrete domain decomposition: the cells of a
+ * coarse mesh of the void are assigned to subdomains, whose interfaces are
+ * remeshed to the local size. Uses core, graph.h, load.h, decomposition.h.
  *
- * Outline: (1) our own kernel fills the void at sizes times a factor, the front
- * kept as it is; (2) METIS, or recursive coordinate bisection, deals out the
- * coarse cells, weighted with the cells that each is expected to hold; pieces
- * that hang apart become parts of their own; (3) interfaces are smoothed, no
- * coarse cell inverted; (4) edges of interfaces are divided to the local size,
- * then each coarse face between parts by itself, within its plane: so all sides
- * of an edge agree, and interfaces cross neither each other nor the front.
- * (N. Chrisochoides and others call it discrete domain decomposition.) */
+ * Outline: (1) the built-in kernel fills the void at sizes multiplied by a
+ * factor, with the front unchanged. (2) METIS or recursive coordinate
+ * bisection assigns the coarse cells to subdomains, weighted by the cells that
+ * each is expected to hold; disconnected components become subdomains of their
+ * own. (3) The interfaces are smoothed without inverting a coarse cell. (4)
+ * The edges of the interfaces are divided to the local size, and then each
+ * coarse face between subdomains is meshed separately within its plane. The
+ * division of an edge is therefore the same on all sides, and interfaces
+ * intersect neither each other nor the front. (N. Chrisochoides and others
+ * call it discrete domain decomposition.) */
 #ifndef VG_PARTITION_DISCRETE_DISCRETE_H
 #define VG_PARTITION_DISCRETE_DISCRETE_H
 
 #include "partition/cut/decomposition.h"
 
-/** See vg_decomposition_maker. Parts may not be cut further. Cost: that of a
- * mesh of some three cells for each face of the front, in one thread unless the
- * options bring it; loops that deal out and divide are shared.
- * VG_ERR_UNSUPPORTED: fewer coarse cells than parts. */
+/** See vg_decomposition_maker. The subdomains may not be cut further. Cost:
+ * that of a mesh with about three cells per face of the front, in one thread
+ * unless the options provide it; the loops that assign and divide are shared.
+ * VG_ERR_UNSUPPORTED: fewer coarse cells than subdomains. */
 vg_decomposition_maker vg_discrete_part;
 
-/** Sizes of the coarse mesh over those of the mesh, for a void of so many
- * cells. o->n_part is at least 1. */
+/** Factor between the sizes of the coarse mesh and of the mesh, for a void with
+ * the given number of cells. o->n_part is at least 1. */
 double vg_discrete_coarsening(double cells,
                               const struct vg_decomposition_options *o);
 
-/** Sizes of the coarse mesh: those of the mesh times a factor, growing from the
- * front's edges. *out is the caller's, vg_sizing_free. VG_ERR_MEMORY. */
+/** Sizing field of the coarse mesh: that of the mesh times a factor, growing
+ * from the front's edges. The caller frees *out with vg_sizing_free.
+ * VG_ERR_MEMORY. */
 vg_status vg_discrete_sizes(const struct vg_mesh *front,
                             const struct vg_sizing *sizing, double factor,
                             struct vg_sizing **out, struct vg_error *err);
 
-/** Say that there is no coarse mesh, for a reason, and what to do. Returns
- * st. */
+/** Reports that the coarse mesh cannot be made, with the reason and a remedy.
+ * Returns st. */
 vg_status vg_discrete_refuse(vg_status st, const char *why, double factor,
                              struct vg_error *err);
 

@@ -1,4 +1,4 @@
-/* The coarse mesh, by the kernel that makes all cells. */
+/* Generates the coarse mesh with the kernel that makes all cells. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,11 +17,10 @@ void vg_coarse_release(struct vg_coarse *c)
   memset(c, 0, sizeof *c);
 }
 
-/* Sizes of the coarse mesh grow from the front's own edges by this much for
- * each length: cells there are well shaped, and interfaces leave the front at
- * good angles. */
+/* Growth of the coarse mesh from the front's own edges per length: cells there
+ * are well shaped, and interfaces leave the front at good angles. */
 static const double growth = 1.6; /* D9 */
-/* The field of these sizes is as coarse. */
+/* Coarseness of the sizing field's octree for these sizes. */
 static const double coarseness = 3;
 
 vg_status vg_discrete_sizes(const struct vg_mesh *front,
@@ -42,7 +41,7 @@ vg_status vg_discrete_sizes(const struct vg_mesh *front,
   return st;
 }
 
-/* Points of a coarse mesh: the front's, then new ones. */
+/* Points of a coarse mesh: those of the front, then new ones. */
 static vg_status join_points(const struct vg_front *f, struct vg_filled *made,
                              struct vg_coarse_cells *out, struct vg_error *err)
 {
@@ -82,8 +81,8 @@ done:
   return st;
 }
 
-/* The coarse mesh that was made before is borrowed, so its points are copied
- * for the tetrahedra, which take theirs over. */
+/* A coarse mesh made before is borrowed, so its points are copied for the
+ * tetrahedra, which take the array over. */
 static vg_status copy_points(const struct vg_coarse_cells *given,
                              struct vg_coarse_cells *out, struct vg_error *err)
 {
@@ -94,9 +93,9 @@ static vg_status copy_points(const struct vg_coarse_cells *given,
   return VG_OK;
 }
 
-/* --- which of its faces are the front's ---------------------------------- */
+/* --- faces on the front -------------------------------------------------- */
 
-/* A face of the front, corners turned such that the first is the lowest. */
+/* A face of the front, rotated so that the lowest corner is first. */
 struct known {
   uint32_t v[3], face;
 };

@@ -1,4 +1,4 @@
-/* Coarse cells to parts. */
+/* Assigns coarse cells to subdomains. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,17 +11,18 @@
 #include "partition/graph/bisect.h"
 #include "partition/graph/graph.h"
 
-/* Most over mean that METIS is asked for. */
+/* Imbalance (maximum over mean) passed to METIS. */
 static const double imbalance = 1.03; /* D2 */
-/* Pieces that hang apart with less than this share of a part's weight go to the
- * part beside them. */
+/* Disconnected components below this share of a subdomain's weight move to an
+ * adjacent subdomain. */
 static const double small_piece = 0.1; /* D4 */
-/* Most over mean while cells change sides, and how often all are looked at. */
+/* Maximum over mean while cells change sides, and the number of sweeps over
+ * all cells. */
 static const double evened = 1.04; /* D5 */
 enum { EVEN_SWEEPS = 6 };
-/* A face of a flat coarse cell counts for so many triangles more, less where
- * angles are larger, up to those with this sine: interfaces through flat cells
- * leave slits, and cells of few degrees fill these. */
+/* Additional cost, in triangles, of a face of a flat coarse cell. It falls
+ * with growing angles, to zero at this sine. Interfaces through flat cells
+ * leave slits, which fill with cells of a few degrees. */
 static const double flat_costs = 10, flat_sine = 0.5; /* D11 */
 
 /* --- weights ------------------------------------------------------------- */
@@ -32,12 +33,12 @@ struct weights {
   struct vg_load_finder *finder;
   const struct vg_sizing *sizing;
   double per_cube;
-  double *flat; /* [c->t.n_cell] out: triangles that each adds to
-                   the cost of its faces */
+  double *flat; /* [c->t.n_cell] out: triangles added to the cost of each
+                   cell's faces. */
 };
 
-/* D3: cells to a volume, as the load has them; where it has no octant, as at a
- * wall, by the size. */
+/* D3: cells per volume from the load or, where the load has no octant, as at a
+ * wall, from the size. */
 static double density_at(const struct weights *w, const double x[3])
 {
   size_t k = vg_load_find(w->finder, x);
@@ -53,8 +54,8 @@ static double density_at(const struct weights *w, const double x[3])
   return w->per_cube / (h * h * h);
 }
 
-/* The mean over a cell, at points of a lattice in it: four to an edge, or, of
- * one that is small against the size, in the middle alone. */
+/* Mean density in a cell, at lattice points in it: four per edge, or only the
+ * centre of a cell that is small relative to the size. */
 static double density(const struct weights *w, double *const x[4])
 {
   enum { N = 3 };
@@ -107,7 +108,7 @@ static void weigh(void *context, size_t first, size_t end, int worker)
 
 /* --- the dual graph ------------------------------------------------------ */
 
-/* Triangles that a face gets, were it between parts. */
+/* Number of triangles that a face would have on an interface. */
 static double face_size(const struct vg_coarse *c,
                         const struct vg_sizing *sizing, size_t q, int i)
 {
@@ -149,7 +150,7 @@ static vg_status make_dual(const struct weights *w, struct dual *d,
   d->to = vg_alloc(4 * n, sizeof *d->to);
   d->edge = vg_alloc(4 * n, sizeof *d->edge);
   if (!d->begin || !d->to || !d->edge)
-    return vg_fail_memory(err, "dealing out the coarse mesh");
+    return vg_fail_memory(err, "assigning the coarse mesh to subdomains");
   for (size_t q = 0; q < n; q++) {
     d->begin[q] = m;
     for (int i = 0; i < 4; i++) {
@@ -174,10 +175,10 @@ static vg_status make_dual(const struct weights *w, struct dual *d,
   return VG_OK;
 }
 
-/* --- pieces that hang together ------------------------------------------- */
+/* --- connected components ------------------------------------------------ */
 
-/* Number the pieces of cells of one part that hang together: piece out: [n],
- * in the order of their first cells. */
+/* Numbers the connected components of each subdomain: piece out: [n], in the
+ * order of their first cells. */
 static uint32_t find_pieces(const struct dual *d, const uint32_t *part,
                             uint32_t *piece, uint32_t *queue)
 {
@@ -203,7 +204,8 @@ static uint32_t find_pieces(const struct dual *d, const uint32_t *part,
   return n_piece;
 }
 
-/* The part that cells with this number have most in common with, or VG_NONE. */
+/* The subdomain with the largest shared face cost to component n, or
+ * VG_NONE. */
 static uint32_t part_beside(const struct dual *d, const uint32_t *part,
                             const uint32_t *piece, size_t first, uint32_t n,
                             double *common, uint32_t n_part)
@@ -228,7 +230,8 @@ struct piece {
   uint32_t part;
 };
 
-/* Small pieces beside a larger one of their part go to the part beside them. */
+/* Moves small components, whose subdomain has a larger one, to an adjacent
+ * subdomain. */
 static int give_away(const struct dual *d, struct vg_coarse *c,
                      uint32_t n_piece, const uint32_t *piece, struct piece *of,
                      double *common)
@@ -261,8 +264,8 @@ static int give_away(const struct dual *d, struct vg_coarse *c,
   return n_given > 0;
 }
 
-/* Each piece a part: small ones are given away first, but for those that
- * nothing is beside. */
+/* Makes each component a subdomain, after moving small ones to adjacent
+ * subdomains where there are any. */
 static vg_status settle_pieces(const struct dual *d, struct vg_coarse *c,
                                struct vg_error *err)
 {
@@ -278,7 +281,8 @@ static vg_status settle_pieces(const struct dual *d, struct vg_coarse *c,
 
     again = give_away(d, c, n, piece, of, common);
   }
-  if (again < 0) st = vg_fail_memory(err, "dealing out the coarse mesh");
+  if (again < 0)
+    st = vg_fail_memory(err, "assigning the coarse mesh to subdomains");
   else {
     c->n_part = find_pieces(d, c->part, piece, queue);
     memcpy(c->part, piece, d->g.n * sizeof *piece);
@@ -290,17 +294,19 @@ static vg_status settle_pieces(const struct dual *d, struct vg_coarse *c,
   return st;
 }
 
-/* --- interfaces evened --------------------------------------------------- */
+/* --- smooth interfaces --------------------------------------------------- */
 
-/* A cell that has more in common with another part than with its own goes
- * there, if that part does not grow too much: interfaces lose their teeth. */
+/* Moves a cell that shares more with another subdomain than with its own to
+ * that subdomain, if that subdomain does not grow too much. This removes the
+ * teeth of interfaces. */
 static vg_status even_out(const struct dual *d, struct vg_coarse *c,
                           struct vg_error *err)
 {
   double *sum = vg_calloc(c->n_part, sizeof *sum), all = 0;
   size_t n_moved = 1;
 
-  if (!sum) return vg_fail_memory(err, "dealing out the coarse mesh");
+  if (!sum)
+    return vg_fail_memory(err, "assigning the coarse mesh to subdomains");
   for (size_t q = 0; q < d->g.n; q++) {
     sum[c->part[q]] += c->weight[q];
     all += c->weight[q];
@@ -335,14 +341,15 @@ static vg_status even_out(const struct dual *d, struct vg_coarse *c,
   return VG_OK;
 }
 
-/* --- all of it ----------------------------------------------------------- */
+/* --- all steps ----------------------------------------------------------- */
 
 static vg_status bisect(struct vg_coarse *c, int n_part, struct vg_error *err)
 {
   double(*mid)[3] = vg_calloc(c->t.n_cell, sizeof *mid);
   vg_status st;
 
-  if (!mid) return vg_fail_memory(err, "dealing out the coarse mesh");
+  if (!mid)
+    return vg_fail_memory(err, "assigning the coarse mesh to subdomains");
   for (size_t q = 0; q < c->t.n_cell; q++)
     for (int i = 0; i < 4; i++)
       for (int k = 0; k < 3; k++)
@@ -362,7 +369,7 @@ static int hangs_together(const struct dual *d, uint32_t *part,
 
   memset(part, 0, d->g.n * sizeof *part);
   if (piece && queue) n = find_pieces(d, part, piece, queue);
-  else *st = vg_fail_memory(err, "dealing out the coarse mesh");
+  else *st = vg_fail_memory(err, "assigning the coarse mesh to subdomains");
   free(piece);
   free(queue);
   return n == 1;
@@ -400,7 +407,7 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
   c->part = vg_alloc(c->t.n_cell, sizeof *c->part);
   c->n_part = (uint32_t)o->n_part;
   if (!c->weight || !c->part || !w.flat) {
-    st = vg_fail_memory(err, "dealing out the coarse mesh");
+    st = vg_fail_memory(err, "assigning the coarse mesh to subdomains");
     goto done;
   }
   VG_TRY(vg_load_finder_new(load, &w.finder, err));

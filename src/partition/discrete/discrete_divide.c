@@ -1,5 +1,5 @@
-/* Interfaces at the local size: points along their edges first, then each
- * coarse face as a plane region. */
+/* Remeshes interfaces to the local size: first points along their edges, then
+ * each coarse face as a plane region. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 #include "core/geometry/vector.h"
 #include "partition/discrete/discrete_parts.h"
 
-/* Intervals that the size along an edge is summed over. */
+/* Number of intervals in the sum of sizes along an edge. */
 enum { STEPS = 32 };
 
 void vg_sheets_release(struct vg_sheets *s)
@@ -24,13 +24,14 @@ void vg_sheets_release(struct vg_sheets *s)
 
 /* --- edges --------------------------------------------------------------- */
 
-/* Points inside an edge: new[from ... from + n - 1], from its lower end on. */
+/* Points inside an edge: new[from ... from + n - 1], starting at its lower
+ * end. */
 struct divided {
   uint32_t from, n;
 };
 
-/* Segments of the edge a b, by the sum of ds / h; cut out: [*n - 1] where they
- * meet, as shares of the edge. Owned by the caller. */
+/* Divides the edge a b into segments by the integral of ds / h; cut out: [*n -
+ * 1] positions as fractions of the edge. Owned by the caller. */
 static int divide(const struct vg_sizing *sizing, const double a[3],
                   const double b[3], size_t *n, double **cut)
 {
@@ -66,7 +67,7 @@ static int by_ends(const void *a, const void *b)
   return 0;
 }
 
-/* Edges of the front's faces: they stay as they are. */
+/* Marks the edges of the front's faces, which are not divided. */
 static void mark_rim(const struct vg_coarse *c, const struct vg_interface *f,
                      uint8_t *is_rim)
 {
@@ -127,8 +128,8 @@ static vg_status divide_edges(const struct vg_coarse *c,
 
 /* --- faces --------------------------------------------------------------- */
 
-/* What a face is divided into. Points: those along its sides, from its first
- * corner round, then `add`. */
+/* Triangulation of a face. Points: those along its sides, starting at its
+ * first corner, then `add`. */
 struct facet {
   size_t n_side, n_add, n_tri;
   uint32_t *side; /* [n_side] */
@@ -147,7 +148,7 @@ struct facets {
   struct facet *of; /* [n_face] */
 };
 
-/* The plane of a face; in it, coordinates along u and v. */
+/* The plane of a face, with coordinates along u and v. */
 struct plane {
   const struct vg_sizing *sizing;
   double o[3], u[3], v[3];
@@ -188,7 +189,8 @@ static const double *point_of(const struct facets *a, uint32_t k)
   return k < n ? a->c->t.x[k] : a->s->x[k - n];
 }
 
-/* Points along its sides. first out: [3] where its corners are among them. */
+/* Lists the points along the sides. first out: [3] position of the corners
+ * among them. */
 static int list_side(const struct facets *a, size_t i, const uint32_t v[3],
                      struct facet *o, size_t first[3])
 {
@@ -212,8 +214,9 @@ static int list_side(const struct facets *a, size_t i, const uint32_t v[3],
   return 0;
 }
 
-/* Without points inside: between the side with most points and the other two,
- * from one end to the other, in step. For faces that are too thin for more. */
+/* Triangulates without inner points, between the side with most points and the
+ * other two sides, by advancing along both. For faces that are too thin for
+ * inner points. */
 static int zip(struct facet *o, const size_t first[3])
 {
   size_t n = o->n_side, best = 0, most = 0, low = 1, from = 1;
@@ -231,7 +234,8 @@ static int zip(struct facet *o, const size_t first[3])
   for (o->n_tri = 0; o->n_tri < n - 2; o->n_tri++) {
     uint32_t *v = o->tri[o->n_tri];
     uint32_t a = (uint32_t)((best + low) % n);      /* along the side */
-    uint32_t b = (uint32_t)((best + n - from) % n); /* back along others */
+    uint32_t b = (uint32_t)((best + n - from) % n); /* back along the other
+                                                       sides */
     int up = low + 1 < most && (from + 1 >= n - most ||
                                 (low + 1) * (n - most) <= (from + 1) * most);
 
@@ -248,7 +252,7 @@ static int zip(struct facet *o, const size_t first[3])
   return 0;
 }
 
-/* In its plane. */
+/* Meshes a face in its plane. */
 static vg_status mesh_face(const struct facets *a, const double *const x[3],
                            struct facet *o)
 {
@@ -307,7 +311,7 @@ static void do_faces(void *context, size_t begin, size_t end, int worker)
   }
 }
 
-/* All facets together. */
+/* Collects all facets. */
 static vg_status collect(const struct facets *a, struct vg_sheets *s,
                          struct vg_error *err)
 {

@@ -1,4 +1,4 @@
-/* Faces and edges between parts. */
+/* Faces and edges between subdomains. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +44,7 @@ static vg_status list_sides(const struct vg_coarse *c, struct vg_interface *f,
   return VG_OK;
 }
 
-/* Number the edges by rising ends. Takes over e->of_half. */
+/* Numbers the edges by ascending ends. Takes over e->of_half. */
 static vg_status number_edges(struct vg_interface *f,
                               const uint32_t (*corner)[3], struct vg_edges *e,
                               struct vg_error *err)

@@ -1,7 +1,8 @@
-/* Interfaces at the local size by halves, as the original did it: the longest
- * edge of a triangle is halved if it is too long, and triangles fall into two,
- * three or four by their edges that were, time by time (M.-C. Rivara, Int. J.
- * Numer. Methods Eng. 20, 1984: angles stay above half of what they were). */
+/* Refines interfaces to the local size by bisection, as in the original
+ * method. The longest edge of a triangle is halved if it is too long, and
+ * triangles split into two, three or four by their halved edges, repeatedly
+ * (M.-C. Rivara, Int. J. Numer. Methods Eng. 20, 1984: angles stay above half
+ * of the initial ones). */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,9 +12,11 @@
 #include "core/mesh/edges.h"
 #include "partition/discrete/discrete_parts.h"
 
-/* An edge is halved while longer than this many of the size at its middle. */
+/* An edge is halved while it is longer than this many times the size at its
+ * midpoint. */
 static const double longest = 1.5; /* D8 */
-/* A coarse edge is halved a few times; one beyond that has no sensible size. */
+/* A coarse edge is halved a few times; more rounds than this indicate an
+ * invalid size. */
 enum { ROUNDS = 60 };
 
 struct halving {
@@ -21,11 +24,10 @@ struct halving {
   const struct vg_sizing *sizing;
   struct vg_sheets *s;
   size_t n;
-  uint32_t (*tri)[3]; /* [n] Triangles, by rising face. */
-  uint32_t *face;     /* [n] The face that each triangle is part of. */
-  double *reach;      /* [c.n_front] square of the longest edge of the
-                         front at a point */
-  uint32_t *middle;   /* [n][3] of edges that were halved, or VG_NONE */
+  uint32_t (*tri)[3]; /* [n] Triangles, by ascending face. */
+  uint32_t *face;     /* [n] Face that contains each triangle. */
+  double *reach; /* [c.n_front] Square of the longest front edge at a point. */
+  uint32_t *middle; /* [n][3] Midpoints of halved edges, or VG_NONE. */
 };
 
 static const double *point_of(const struct halving *h, uint32_t k)
@@ -35,9 +37,9 @@ static const double *point_of(const struct halving *h, uint32_t k)
   return k < n ? h->c->t.x[k] : h->s->x[k - n];
 }
 
-/* Edges at a point of the front are not halved below the longest edge of the
- * front there, which stays, however small the size is: triangles on that would
- * become flat. */
+/* Edges at a point of the front are not halved below the longest front edge
+ * there, however small the size is. Front edges stay, and triangles on them
+ * would become flat. */
 static vg_status find_reach(struct halving *h, struct vg_error *err)
 {
   const struct vg_coarse *c = h->c;
@@ -66,7 +68,7 @@ static double length2(const struct halving *h, uint32_t half)
                       point_of(h, vg_half_to(tri, half)));
 }
 
-/* Of edges of equal length, the one with the higher number counts as longer. */
+/* Of edges of equal length, the one with the higher index counts as longer. */
 static int is_longer(const struct halving *h, const struct vg_edges *e,
                      uint32_t a, uint32_t b)
 {
@@ -91,8 +93,8 @@ static int is_too_long(const struct halving *h, uint32_t half)
   return vg_distance2(a, b) > most;
 }
 
-/* Mark in each triangle the longest of the edges that are too long. middle out:
- * [e->n] VG_NONE for edges without a mark. */
+/* Marks in each triangle the longest of the edges that are too long. middle
+ * out: [e->n] VG_NONE for unmarked edges. */
 static void mark_long(const struct halving *h, const struct vg_edges *e,
                       uint32_t *middle)
 {
@@ -108,8 +110,7 @@ static void mark_long(const struct halving *h, const struct vg_edges *e,
   }
 }
 
-/* Add a point in the middle of each marked edge. middle[i] becomes its number.
- */
+/* Adds a midpoint to each marked edge. middle[i] becomes its index. */
 static vg_status add_middles(struct halving *h, const struct vg_edges *e,
                              uint32_t *middle, size_t *n_halved,
                              struct vg_error *err)
@@ -158,7 +159,7 @@ done:
   return st;
 }
 
-/* The parts of a triangle, turned as it is. */
+/* Splits a triangle, keeping its orientation. */
 static int fall(const struct halving *h, const uint32_t v[3],
                 const uint32_t m[3], uint32_t part[4][3])
 {
@@ -177,7 +178,7 @@ static int fall(const struct halving *h, const uint32_t v[3],
     return 4;
   }
   while (n == 1 ? m[k] == VG_NONE : m[k] != VG_NONE) k++;
-  { /* k: the edge that is halved, or is not */
+  { /* k: the only halved edge, or the only edge that is not halved */
     uint32_t a = v[k], b = v[(k + 1) % 3], c = v[(k + 2) % 3];
     uint32_t p = m[(k + 1) % 3], q = m[(k + 2) % 3];
 

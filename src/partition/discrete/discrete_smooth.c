@@ -1,6 +1,6 @@
-/* Interfaces smoothed: a point goes towards the middle of those that it has
- * edges to on the interfaces, one where parts meet along a curve towards its
- * neighbours on that, as long as the coarse cells stay good. */
+/* Smooths interfaces: a point moves towards the mean of its neighbours on the
+ * interfaces or, on a curve where subdomains meet, of its neighbours on the
+ * curve, as long as the coarse cells stay good. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,16 +11,16 @@
 #include "partition/discrete/discrete_parts.h"
 
 enum { SWEEPS = 8, TRIES = 3 };
-/* Shares of the way to that middle: forth, then back by a little more, which
- * evens what is rough without making what is round smaller: a part inside would
- * lose cells to those around it. After Taubin, "A signal processing approach to
- * fair surface design", SIGGRAPH 1995. */
+/* Fractions of the way to the mean: forwards, then backwards by slightly more,
+ * which removes roughness without shrinking round shapes. Otherwise an inner
+ * subdomain would lose cells to those around it. After Taubin, "A signal
+ * processing approach to fair surface design", SIGGRAPH 1995. */
 static const double share[2] = { 0.6, -0.63 }; /* D6 */
-/* A cell must not get worse than this (core/geometry/shape.h), or than it was.
- */
+/* A cell must not get worse than this shape (core/geometry/shape.h), or than
+ * it was. */
 static const double least_shape = 0.03; /* D7 */
 
-/* Lists by point. */
+/* Lists indexed by point. */
 struct lists {
   size_t *begin;
   uint32_t *of;
@@ -40,7 +40,7 @@ static void lists_release(struct lists *l)
   free(l->of);
 }
 
-/* From counts at begin[k + 2] to begins that filling moves to their ends. */
+/* Turns counts at begin[k + 2] into starts, which filling moves to the ends. */
 static void lists_open(struct lists *l, size_t n)
 {
   for (size_t k = 2; k < n + 2; k++) l->begin[k] += l->begin[k - 1];
@@ -62,7 +62,7 @@ static vg_status list_cells(const struct vg_coarse *c, struct lists *l,
   return VG_OK;
 }
 
-/* Edges between parts, by their ends. */
+/* Lists the edges between subdomains by their ends. */
 static vg_status list_edges(const struct vg_coarse *c,
                             const struct vg_interface *f, struct lists *l,
                             struct vg_error *err)
@@ -92,7 +92,7 @@ static double worst_at(const struct vg_tets *t, const struct lists *cells,
   return worst;
 }
 
-/* Where its neighbours have their middle. 0: the point stays. */
+/* Mean of the neighbours of a point. 0: the point stays. */
 static int middle(const struct vg_coarse *c, const struct vg_interface *f,
                   const struct lists *edges, size_t p, double to[3])
 {

@@ -48,7 +48,7 @@ void vg_task_state_free(struct vg_engine *e, struct vg_task_state *j)
 
 /* --- tasks --------------------------------------------------------------- */
 
-/* A number in [0, 1) that follows from path and seed alone. */
+/* A number in [0, 1) that depends on path and seed alone. */
 static double draw(const char *path, uint64_t seed)
 {
   uint64_t h = seed;
@@ -63,7 +63,8 @@ static int legal(const struct vg_task *t)
          isfinite(t->priority) && isfinite(t->weight) && isfinite(t->work);
 }
 
-/* Memory for the new tasks in all lists, so that entering them cannot fail. */
+/* Reserves room for the new tasks in all lists, so that entering them cannot
+ * fail. */
 static int make_room(struct vg_engine *e)
 {
   size_t n = e->n_new + 1;
@@ -83,8 +84,8 @@ vg_status vg_engine_submit(struct vg_engine *e, const struct vg_task *task,
   assert(e && task);
   if (!legal(task)) {
     st = vg_fail(err, VG_ERR_INPUT,
-                 "task '%.*s': no path, or a priority or "
-                 "weight that is not a number",
+                 "task '%.*s': its path is empty, or its priority "
+                 "or weight is not a number",
                  VG_PATH_MAX - 1, task->path);
   } else {
     vg_engine_lock(e);
@@ -120,7 +121,7 @@ static vg_status submit_first(struct vg_engine *e, size_t n,
   return st;
 }
 
-/* --- the beginning and the end ------------------------------------------- */
+/* --- start and end ------------------------------------------------------- */
 
 static vg_status init(struct vg_engine *e, struct vg_error *err)
 {
@@ -161,7 +162,8 @@ static void release(struct vg_engine *e)
   pthread_cond_destroy(&e->serve);
 }
 
-/* As many workers as can be had, and the handler as worker[threads]. */
+/* Starts up to `threads` workers, as many as the system allows, and the
+ * progress thread as worker[threads]. */
 static vg_status start(struct vg_engine *e, int threads, struct vg_error *err)
 {
   int n = 0, handler = e->size > 1, bad = 0;
@@ -200,21 +202,21 @@ static void stop_threads(struct vg_engine *e)
   e->threads = e->handler_index = 0;
 }
 
-/* What rank 0 has said about how it went. */
+/* The final status that rank 0 has sent. */
 static vg_status final_status(const struct vg_engine *e, struct vg_error *err)
 {
   const struct vg_final_status *v = &e->final_status;
 
   if (v->status >= 0) return (vg_status)v->status;
   if (v->status == VG_ERR_STOPPED)
-    return vg_fail(err, VG_ERR_STOPPED, "stopped before it was done, as asked");
+    return vg_fail(err, VG_ERR_STOPPED, "stopped on request before completion");
   if (v->from == e->rank)
     return vg_fail(err, (vg_status)v->status, "%s", v->text);
   return vg_fail(err, (vg_status)v->status, "rank %d: %s", v->from, v->text);
 }
 
-/* Lists of other ranks to the end of that of rank 0. list: address of the
- * pointer to its items of `size` bytes. Collective. */
+/* Appends the lists of other ranks to the list of rank 0. list: address of the
+ * pointer to items of `size` bytes. Collective. */
 static vg_status gather_list(struct vg_engine *e, void *list, size_t *count,
                              size_t *cap, size_t size, struct vg_error *err)
 {
@@ -224,7 +226,7 @@ static vg_status gather_list(struct vg_engine *e, void *list, size_t *count,
   unsigned char *item;
   vg_status st = VG_OK;
 
-  if (!to || !from) st = vg_fail_memory(err, "the record of tasks");
+  if (!to || !from) st = vg_fail_memory(err, "the trace of tasks");
   VG_TRY(vg_comm_agree(e->comm, st, err));
   memcpy(&item, list, sizeof item);
   if (e->rank) to[0] = (struct vg_bytes){ *count * size, item };
@@ -233,7 +235,7 @@ static vg_status gather_list(struct vg_engine *e, void *list, size_t *count,
     size_t more = from[r].n / size;
 
     if (vg_reserve(list, cap, *count + more, size)) {
-      st = vg_fail_memory(err, "the record of tasks");
+      st = vg_fail_memory(err, "the trace of tasks");
       goto done;
     }
     memcpy(&item, list, sizeof item);
@@ -246,7 +248,8 @@ done:
   return vg_comm_agree(e->comm, st, err);
 }
 
-/* All spans of the job to rank 0; other ranks keep their own. Collective. */
+/* Gathers all spans of the job on rank 0; other ranks keep their own.
+ * Collective. */
 static vg_status gather(struct vg_engine *e, struct vg_error *err)
 {
   struct vg_spans *s = &e->spans;
@@ -257,7 +260,7 @@ static vg_status gather(struct vg_engine *e, struct vg_error *err)
                      err);
 }
 
-/* Make ready what may fail, on all ranks or none. */
+/* Everything that may fail at the start, on all ranks or none. */
 static vg_status begin(struct vg_engine *e, size_t n_first,
                        const struct vg_task *first, double *n_thread,
                        struct vg_error *err)

@@ -1,7 +1,7 @@
-/* Loops inside a task. While one is open, workers of the rank that have
- * nothing else to do take chunks of it; who opened it takes them too, so it
- * ends with or without help. Tasks come before loops, but whoever helps stays
- * until no chunk is left: what it does meanwhile is of use all the same. */
+/* Parallel loops inside a task. While a loop is open, idle workers of the rank
+ * take chunks of it. The worker that opened it also takes chunks, so the loop
+ * ends with or without help. Tasks take precedence over loops, but a helper
+ * stays until no chunk is left, since its work is useful either way. */
 #include <assert.h>
 #include <string.h>
 
@@ -12,17 +12,17 @@ struct vg_loop {
   size_t n, grain, n_chunk;
   vg_loop_body body;
   void *context;
-  atomic_size_t next; /* chunk */
+  atomic_size_t next; /* Next chunk. */
   /* guarded by the engine's lock: */
-  const char *path;      /* of the task that it is in */
-  size_t free_slots;     /* helpers that may still come */
-  int n_helper;          /* who are there */
-  double helped;         /* s of processor time of those that have left */
-  pthread_cond_t left;   /* the last of them has */
-  struct vg_loop *other; /* the next open one */
+  const char *path;      /* Path of the task that opened the loop. */
+  size_t free_slots;     /* Helpers that may still join. */
+  int n_helper;          /* Helpers at work. */
+  double helped;         /* Processor time in s of helpers that have left. */
+  pthread_cond_t left;   /* Signalled when the last helper leaves. */
+  struct vg_loop *other; /* Next open loop. */
 };
 
-/* Which worker a thread is: a loop's caller has no other way to tell. */
+/* The worker of a thread, since the caller of a loop does not pass it. */
 static _Thread_local struct vg_worker *self;
 
 void vg_loop_enter(struct vg_worker *w)
@@ -30,7 +30,7 @@ void vg_loop_enter(struct vg_worker *w)
   self = w;
 }
 
-/* Returns how many chunks it was. */
+/* Returns the number of chunks done. */
 static size_t do_chunks(struct vg_loop *l, int worker)
 {
   size_t c, count = 0;
@@ -44,8 +44,8 @@ static size_t do_chunks(struct vg_loop *l, int worker)
   return count;
 }
 
-/* Who comes wakes two more, so that all are there after a few steps, and the
- * caller need not wake each. */
+/* Each helper that joins wakes two more. All are awake after a few steps, and
+ * the caller need not wake each of them. */
 static void call_helpers(struct vg_engine *e, const struct vg_loop *l)
 {
   for (size_t i = 0; i < 2 && i < l->free_slots && i < e->n_idle; i++)
@@ -119,8 +119,8 @@ int vg_loop_help(struct vg_worker *w)
   return 1;
 }
 
-/* A loop in a body is its thread's own: others have chunks of the outer one
- * to do, and its time is in the outer one's already. */
+/* A nested loop runs in its own thread alone: other threads have chunks of the
+ * outer loop to do, and its time is part of the outer loop's time. */
 void vg_engine_loop(const struct vg_engine *e, size_t n, size_t grain,
                     vg_loop_body body, void *context)
 {

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 
-/* Bytes to a chunk; arrays of fewer are left to realloc. */
+/* Bytes per chunk; smaller arrays than LARGE are left to realloc. */
 enum { CHUNK = 1 << 18, LARGE = 1 << 20 }; /* E3 */
 
 struct copy {

@@ -5,12 +5,13 @@
 
 #include "partition/engine/engine.h"
 
-/** As vg_reserve (base/memory.h); what is large is copied in a loop.
- * n: items in use, the first ones: others are not kept. */
+/** Like vg_reserve (base/memory.h), but copies large arrays in a parallel loop.
+ * n: items in use; only the first n are kept. */
 int vg_engine_reserve(const struct vg_engine *e, void *block, size_t *cap,
                       size_t n, size_t need, size_t size);
 
-/** free() n blocks, in a loop: giving pages back takes its time. */
+/** Frees n blocks in a parallel loop, because returning pages to the system is
+ * slow. */
 void vg_engine_free(const struct vg_engine *e, size_t n, void *const *block);
 
 #endif

@@ -1,5 +1,5 @@
-/* What a rank tells the schedule: by a call on rank 0, by a message elsewhere.
- * */
+/* Messages of a rank to the schedule: a function call on rank 0, a message
+ * elsewhere. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +13,8 @@ void vg_engine_wake(struct vg_engine *e)
   else pthread_cond_signal(&e->serve);
 }
 
-/* A message that cannot even be posted would leave the others waiting for
- * ever: then the job ends here. */
+/* If a message cannot even be posted, the other ranks would wait forever, so
+ * the job is aborted. */
 void vg_engine_post(struct vg_engine *e, int to, int kind, struct vg_bytes *b)
 {
   assert(to >= 0 && to < e->size && kind >= VG_MSG_UPDATE);
@@ -40,8 +40,8 @@ void vg_engine_send(struct vg_engine *e, int to, int kind, struct vg_msg msg)
   post_copy(e, to, kind, &msg, sizeof msg);
 }
 
-/* Give the new tasks their numbers; memory was taken when they were
- * submitted. Pinned ones need not wait for the schedule. */
+/* Gives the new tasks their handles; memory was reserved when they were
+ * submitted. Pinned tasks need not wait for the schedule. */
 static uint64_t enter_new(struct vg_engine *e)
 {
   size_t n = e->n_new;

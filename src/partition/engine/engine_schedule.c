@@ -1,15 +1,16 @@
-/* The list of ready tasks, on rank 0: who gets what.
+/* The list of ready tasks on rank 0, which decides who executes what.
  *
- * A rank is given a task while it has fewer than workers. It is given one more
- * per worker, to have its input while the worker is busy, only while at least
- * twice as many tasks are ready as the job has workers: as long as tasks are
- * scarce, what is ready next may be more urgent than what would be given
- * ahead. And when nothing is ready any more, a rank that holds a task it has
- * not started passes it on to one that waits (RECALL).
+ * A rank is given a task while it has fewer tasks than workers. It is given
+ * one more per worker, so that the input arrives while the worker is busy,
+ * only while the number of ready tasks is at least twice the number of workers
+ * of the job: while tasks are scarce, the next task to become ready may be
+ * more urgent than a task given ahead. When no task is ready any
+ * more, a rank that holds a task it has not started passes it on to a waiting
+ * rank (RECALL, work stealing).
  *
- * A cyclic schedule holds tasks with a `work` back until nothing else is left,
- * then deals all of them out to the workers in turn: cutting first, filling
- * after it, nobody helps another out. It is there for comparison. */
+ * A cyclic schedule, for comparison, holds tasks with `work` > 0 back until
+ * nothing else is left, and then assigns all of them to the workers in turn:
+ * cutting comes first, filling afterwards, and no worker helps another. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,11 +18,11 @@
 #include "base/memory.h"
 #include "partition/engine/engine_parts.h"
 
-/* Tasks of a rank's own are preferred while their priority is within this
- * factor of the highest: saves two messages and an input on its way. */
+/* A rank's own tasks are preferred while their priority is within this factor
+ * of the highest one. This saves two messages and the transfer of an input. */
 #define NEARLY 0.9 /* E1 */
 
-/* What the list knows of RECALL to a rank. */
+/* State of a RECALL to a rank. */
 enum { NOT_ASKED, ASKED, DECLINED };
 
 vg_status vg_schedule_init(struct vg_schedule *l, int size,
@@ -60,8 +61,9 @@ static void add_load(struct vg_schedule *l, int r, int d)
   if (d > 0 && l->asked[r] == DECLINED) l->asked[r] = NOT_ASKED;
 }
 
-/* Has rank r a worker without a task, or, ahead, one without a second? Rank 0
- * needs no tasks of its own ahead: they are at hand. */
+/* Number of workers of rank r without a task or, if ahead is set, of free
+ * slots at two tasks per worker. Rank 0 needs no tasks of its own ahead: they
+ * are in its memory. */
 static int free_slots(const struct vg_schedule *l, int r, int ahead)
 {
   if (!ahead) return l->threads[r] - l->load[r];
@@ -91,13 +93,13 @@ static int first_home(const struct vg_schedule *l, int size)
   return best;
 }
 
-/* Priorities may be negative: nearer to zero is higher, then. */
+/* Priorities may be negative; then a value nearer to zero is higher. */
 static int nearly(double key, double best)
 {
   return key >= (best > 0 ? best * NEARLY : best / NEARLY);
 }
 
-/* A task that waited is with this rank from now on, for a worker of it. */
+/* Assigns a waiting task to a rank, or to one of its workers. */
 static void assign(struct vg_engine *e, struct vg_ready *task, int home, int to,
                    int lane)
 {
@@ -111,7 +113,7 @@ static void assign(struct vg_engine *e, struct vg_ready *task, int home, int to,
   free(task);
 }
 
-/* Give one task to somebody; 0 when nobody takes one. */
+/* Gives one task to a rank; 0 when no rank has a free slot. */
 static int give(struct vg_engine *e, int ahead)
 {
   struct vg_schedule *l = &e->schedule;
@@ -140,7 +142,8 @@ static int by_work(const void *a, const void *b)
   return strcmp(s->path, t->path);
 }
 
-/* To the workers of rank 0, of rank 1, ... in turn, one each. */
+/* Assigns tasks to the workers in turn, one each: first those of rank 0, then
+ * rank 1, and so on. */
 static void deal_out(struct vg_engine *e)
 {
   struct vg_schedule *l = &e->schedule;
@@ -157,9 +160,9 @@ static void deal_out(struct vg_engine *e)
   }
 }
 
-/* Workers wait and nothing is ready: have those who hold tasks that they have
- * not started pass them on. Whether one does is known to itself only; load
- * counts more tasks than workers is a hint, and it may decline. */
+/* Workers wait and no task is ready: ask ranks to pass on tasks that they have
+ * not started. Only the rank itself knows whether it has one. A load above its
+ * number of workers is a hint, and the rank may decline. */
 static void recall(struct vg_engine *e)
 {
   struct vg_schedule *l = &e->schedule;
@@ -215,7 +218,7 @@ static void dispatch(struct vg_engine *e)
     finish(e);
 }
 
-/* Is it dealt out with others later? */
+/* Is the task held back for static assignment? */
 static int holds(const struct vg_engine *e, const struct vg_task_notice *n)
 {
   return e->options->cyclic && n->work > 0;
@@ -250,7 +253,7 @@ static void add_ready(struct vg_engine *e, int from,
   l->n_ready++;
 }
 
-/* Pinned tasks are with their rank already. */
+/* Pinned tasks are in the queue of their rank already. */
 void vg_schedule_update(struct vg_engine *e, int from,
                         const struct vg_update *update,
                         const struct vg_task_notice *notice)
@@ -308,7 +311,8 @@ static int is_failure(const struct vg_final_status *v)
 }
 
 /* Of several failures the one with the lowest path is reported, so that
- * messages repeat as far as can be; any failure rather than a mere stop. */
+ * messages are as reproducible as possible. Any failure takes precedence over
+ * a stop. */
 void vg_schedule_fail(struct vg_engine *e, const struct vg_final_status *v)
 {
   assert(v->status != VG_OK);

@@ -1,11 +1,13 @@
-/* The calling thread of vg_engine_run: messages, and what the caller polls.
+/* The calling thread of vg_engine_run serves messages and polls the caller's
+ * stop and progress.
  *
- * MPI has no wait for a message that leaves the core to others, so this thread
- * sleeps between polls: briefly after something came or was sent, longer and
- * longer while nothing happens, until the polls take SHARE of a core. What one
- * takes is measured, as it differs tenfold between machines: so where waking
- * is cheap, messages wait less. Those from the same node wait for nothing, as
- * the sender wakes. Alone it is only woken for the caller's. */
+ * MPI has no way to wait for a message without occupying a core, so this
+ * thread sleeps between polls: briefly after a message was received or sent,
+ * and longer and longer while nothing happens, until the polls take the share
+ * SHARE of a core. The cost of a poll is measured, since it differs tenfold
+ * between machines; where a wakeup is cheap, messages wait less. Messages from
+ * the same node do not wait, because the sender wakes the receiver. In a job
+ * of one rank the thread wakes only for stop and progress. */
 #define _GNU_SOURCE
 #include <assert.h>
 #include <math.h>
@@ -18,7 +20,9 @@
 #include "partition/engine/engine_parts.h"
 
 /* Seconds. */
-#define SLEEP_MIN 50e-6 /* E2: and as much again, by the kernel's slack */
+#define SLEEP_MIN                                                              \
+  50e-6 /* E2: plus the same again from the kernel's timer                     \
+           slack */
 #define SLEEP_MORE 1.5
 #define SLEEP_LOW 300e-6 /* bounds of the longest sleep */
 #define SLEEP_HIGH 5e-3
@@ -26,7 +30,7 @@
 #define SHARE 0.005
 #define STOP_EVERY 20e-3
 #define PROGRESS_EVERY 0.2
-#define PATIENCE 30.0 /* with a mailbox that fails */
+#define PATIENCE 30.0 /* until a failing mailbox aborts the job */
 
 static void push_out(struct vg_engine *e, struct vg_task_state *j, int to)
 {
@@ -66,7 +70,7 @@ void vg_serve_drain(struct vg_engine *e)
   pthread_cond_broadcast(&e->work);
 }
 
-/* --- inputs on their way ------------------------------------------------- */
+/* --- sending inputs ------------------------------------------------------ */
 
 static vg_status pack(struct vg_engine *e, struct vg_task_state *j,
                       struct vg_error *err)
@@ -144,14 +148,15 @@ static int send_inputs(struct vg_engine *e)
 
 /* --- messages ------------------------------------------------------------ */
 
-/* Cut what is at the end of the bytes off. */
+/* Removes the last n bytes and copies them to `end`. */
 static void cut(struct vg_bytes *b, void *end, size_t n)
 {
   b->n -= n;
   memcpy(end, b->data + b->n, n);
 }
 
-/* A task to be done here; one of our own may come back unstarted. */
+/* Takes a task to be executed here; a task of this rank may return
+ * unstarted. */
 static void take_input(struct vg_engine *e, struct vg_bytes *b)
 {
   struct vg_input_trailer c;
@@ -239,8 +244,8 @@ static void take_short(struct vg_engine *e, const struct vg_message *m)
   }
 }
 
-/* There was no memory for a message, as poll has said before. If it was a task
- * on its way, that is dropped. */
+/* There was no memory for a message, as vg_comm_poll has reported. If the
+ * message carried a task, the task is dropped. */
 static void lose(struct vg_engine *e, const struct vg_message *m)
 {
   if (m->kind != VG_MSG_INPUT && m->kind != VG_MSG_OUTCOME)
@@ -265,9 +270,9 @@ static void take(struct vg_engine *e, struct vg_message *m)
   free(m->bytes.data);
 }
 
-/* Take all messages. When one cannot be taken the job fails, and may get the
- * memory that this wants while tasks are dropped; after PATIENCE the rank
- * gives up, since the others would wait for it. Returns how many came. */
+/* Takes all messages. If one cannot be received, the job fails, and dropping
+ * tasks may free the memory it needs. After PATIENCE the rank aborts the job,
+ * since the others would wait for it. Returns the number of messages. */
 static int receive(struct vg_engine *e, double *failing)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -318,7 +323,7 @@ static void show_progress(struct vg_engine *e)
   o->progress(o->user, cells, known, n_done, n_known);
 }
 
-/* Nothing is left, and no message is on its way to this rank. */
+/* Nothing is left, and no message to this rank is in transit. */
 static int all_over(const struct vg_engine *e)
 {
   int first = e->rank ? 0 : 1, end = e->rank ? 1 : e->size;
@@ -330,9 +335,9 @@ static int all_over(const struct vg_engine *e)
 }
 
 struct pace {
-  double sleep, longest; /* s */
-  double cpu;            /* of this thread, when counting began */
-  int n;                 /* polls in vain since */
+  double sleep, longest; /* in s */
+  double cpu; /* Processor time of this thread at the start of the sample. */
+  int n;      /* Idle polls since then. */
 };
 
 static void set_pace(struct pace *p, int active)
@@ -356,7 +361,8 @@ static void set_pace(struct pace *p, int active)
   p->n = 0;
 }
 
-/* With the lock. Among ranks it is given back meanwhile. */
+/* Called with the lock held; with several ranks the lock is released during
+ * the sleep. */
 static void sleep_so_long(struct vg_engine *e, double seconds, unsigned wakes)
 {
   struct timespec until;
@@ -373,8 +379,8 @@ static void sleep_so_long(struct vg_engine *e, double seconds, unsigned wakes)
   pthread_cond_timedwait(&e->serve, &e->lock, &until);
 }
 
-/* Sleep, unless over, something is to be sent, or there was a wakeup since the
- * count was read. Returns 1 when over. */
+/* Sleeps, unless the engine is done, there is something to send, or a wakeup
+ * came since the count was read. Returns 1 when the engine is done. */
 static int doze(struct vg_engine *e, struct pace *pace, int active,
                 unsigned wakes)
 {

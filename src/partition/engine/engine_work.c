@@ -1,4 +1,5 @@
-/* What the workers do: tasks, and `done` for what has ended. */
+/* The workers: they execute tasks, and call `done` for tasks that have
+ * ended. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,8 +8,8 @@
 #include "base/memory.h"
 #include "partition/engine/engine_parts.h"
 
-/* Of sleeping workers a signal wakes any: not always the one it was dealt to.
- */
+/* A signal wakes any sleeping worker. A task that is assigned to one worker
+ * therefore needs a broadcast. */
 void vg_work_queue(struct vg_engine *e, struct vg_task_state *j)
 {
   assert(j->lane >= VG_LANE_ANY && j->lane < e->threads);
@@ -32,7 +33,8 @@ static struct vg_task_state *next_job(struct vg_worker *w)
 }
 
 /* A worker that ends a task of its own rank calls `done` itself, or leaves it
- * to the thread that is there; the handler is woken by others. */
+ * to the thread that already runs `done`. Outcomes from other ranks wake the
+ * progress thread. */
 void vg_work_end(struct vg_engine *e, struct vg_task_state *j)
 {
   j->next = NULL;
@@ -41,8 +43,8 @@ void vg_work_end(struct vg_engine *e, struct vg_task_state *j)
   e->ended.last = j;
 }
 
-/* A task that will not be done. Its home, when that is elsewhere, releases
- * what it knows of it at the end. */
+/* Drops a task that will not be done. If its home is another rank, that rank
+ * releases its state of the task at the end. */
 void vg_work_drop(struct vg_engine *e, struct vg_task_state *j)
 {
   double weight = j->task.weight;
@@ -69,7 +71,7 @@ static vg_status unpack(struct vg_engine *e, struct vg_task_state *j,
   return st;
 }
 
-/* The outcome as bytes with a vg_outcome_trailer at their end. */
+/* Packs the outcome as bytes, with a vg_outcome_trailer at the end. */
 static vg_status pack_return(struct vg_engine *e, struct vg_task_state *j,
                              struct vg_error *err)
 {
@@ -110,7 +112,7 @@ static void record(struct vg_worker *w, const struct vg_task_state *j,
   span->n_cell = j->n_cell;
 }
 
-/* Is `done` to be called here? */
+/* Is `done` called on this rank? */
 static int stays(const struct vg_engine *e, const struct vg_task_state *j)
 {
   return j->home == e->rank || j->task.moves;
@@ -142,7 +144,8 @@ static vg_status run(struct vg_worker *w, struct vg_task_state *j,
   return st;
 }
 
-/* To be stopped is no failure; unasked, it stops the job. */
+/* A stop is not a failure. A task that stops although no stop was requested
+ * stops the job. */
 static void fail(struct vg_engine *e, const struct vg_task_state *j,
                  vg_status st, const struct vg_error *err)
 {
@@ -179,7 +182,7 @@ static void do_job(struct vg_worker *w, struct vg_task_state *j)
     vg_notify_fail(e, err.code, j->task.path, &err);
   if (stays(e, j)) {
     j->runner = e->rank;
-    vg_work_end(e, j); /* whoever calls done frees it */
+    vg_work_end(e, j); /* freed by the thread that calls `done` */
     j = NULL;
   } else {
     vg_engine_post(e, j->home, VG_MSG_OUTCOME, &j->bytes);
@@ -188,7 +191,7 @@ static void do_job(struct vg_worker *w, struct vg_task_state *j)
   vg_task_state_free(e, j);
 }
 
-/* Tell `done` of one task. The lock is left for it. */
+/* Calls `done` for one task, with the lock released meanwhile. */
 static void end_one(struct vg_engine *e)
 {
   struct vg_task_state *j = e->ended.first;

@@ -20,7 +20,7 @@ vg_status vg_spans_add(struct vg_spans *s, const struct vg_span *span,
 {
   assert(span && memchr(span->path, 0, sizeof span->path));
   if (vg_reserve(&s->span, &s->cap, s->n + 1, sizeof *s->span))
-    return vg_fail_memory(err, "the record of tasks");
+    return vg_fail_memory(err, "the trace of tasks");
   s->span[s->n++] = *span;
   return VG_OK;
 }
@@ -30,7 +30,7 @@ vg_status vg_spans_add_help(struct vg_spans *s, const struct vg_help *help,
 {
   assert(help && memchr(help->path, 0, sizeof help->path));
   if (vg_reserve(&s->help, &s->cap_help, s->n_help + 1, sizeof *s->help))
-    return vg_fail_memory(err, "the record of tasks");
+    return vg_fail_memory(err, "the trace of tasks");
   s->help[s->n_help++] = *help;
   return VG_OK;
 }

@@ -47,7 +47,8 @@ static int longest_axis(const struct bisection *b, size_t first, size_t end)
   return axis;
 }
 
-/* Items first .. end - 1, at least n of them, become parts at .. at + n - 1. */
+/* Divide items first .. end - 1, at least n of them, into subdomains at .. at
+ * + n - 1. */
 static void bisect(const struct bisection *b, size_t first, size_t end,
                    size_t n, uint32_t at)
 {
@@ -86,8 +87,8 @@ vg_status vg_bisect(size_t n, const double (*x)[3], const double *weight,
   assert((x && weight && part) || !n);
   if (n_part < 1 || (size_t)n_part > n) {
     free(b.item);
-    return vg_fail(err, VG_ERR_INPUT, "%zu items cannot be made %d parts", n,
-                   n_part);
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%zu items cannot be divided into %d subdomains", n, n_part);
   }
   if (!b.item) return vg_fail_memory(err, "a bisection");
   for (size_t i = 0; i < n; i++) b.item[i].k = (uint32_t)i;

@@ -9,12 +9,14 @@
 
 #include "base/status.h"
 
-/** Parts of points with weights, by planes across the longest side of what is
- * left: they weigh nearly the same, none is empty, and they may hang apart.
+/** Divides weighted points into subdomains by recursive bisection: each plane
+ * is normal to the longest side of the remaining point set. The subdomains
+ * have nearly equal weight. None is empty, but a subdomain may be
+ * disconnected.
  *
  * x: [n]; weight: [n] > 0; part out: [n], 0 .. n_part - 1
- * Threads: safe. Cost: O(n log n log n_part). VG_ERR_INPUT: n_part < 1, or more
- * than n; VG_ERR_MEMORY. */
+ * Threads: safe. Cost: O(n log n log n_part). VG_ERR_INPUT: n_part is below 1
+ * or above n; VG_ERR_MEMORY. */
 vg_status vg_bisect(size_t n, const double (*x)[3], const double *weight,
                     int n_part, uint32_t *part, struct vg_error *err);
 

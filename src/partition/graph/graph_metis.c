@@ -14,10 +14,11 @@
 
 _Static_assert(sizeof(idx_t) == 4, "METIS with indices of 4 bytes");
 
-/* Sum of the weights that METIS sees: it adds them in idx_t. */
+/* Sum of the weights passed to METIS, which adds them in idx_t. */
 #define ALL_WEIGHTS 1e9
 
-/* Few parts come out better by bisection (METIS's manual). */
+/* For few subdomains recursive bisection gives better results (METIS's
+ * manual). */
 #define MOST_BISECTED 8
 
 struct question {
@@ -71,7 +72,7 @@ static void serve(int fd)
         !vg_child_put(fd, &seconds, sizeof seconds));
 }
 
-/* --- the graph for it ---------------------------------------------------- */
+/* --- passing the graph to the child -------------------------------------- */
 
 static int send_begins(int fd, const struct vg_graph *g)
 {
@@ -135,14 +136,14 @@ vg_status vg_graph_part(const struct vg_graph *g,
   assert(g && o && (part || !g->n));
   if (o->n_part < 1 || (size_t)o->n_part > g->n)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%d parts of %zu vertices: there must be "
-                   "at least one part, and a vertex for each",
+                   "%d subdomains of %zu vertices: there must be "
+                   "at least one subdomain, and a vertex for each",
                    o->n_part, g->n);
-  /* half of what its 4-byte integers hold is left for the weights */
+  /* half of the 4-byte integer range is left for the weights */
   if (g->n > 500000000 || g->begin[g->n] > INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "a graph of %zu vertices is beyond "
-                   "METIS with indices of 4 bytes",
+                   "a graph of %zu vertices is too large for "
+                   "METIS with 4-byte indices",
                    g->n);
   memset(part, 0, g->n * sizeof *part);
   if (o->n_part == 1) return VG_OK;
@@ -154,8 +155,8 @@ vg_status vg_graph_part(const struct vg_graph *g,
   for (size_t k = 0; ok && k < g->n; k++) ok = part[k] < (uint32_t)o->n_part;
   if (!ok)
     return vg_fail(err, VG_ERR_MEMORY,
-                   "METIS did not part a graph of %zu "
-                   "vertices; it may lack memory",
+                   "METIS failed on a graph of %zu "
+                   "vertices; it may have run out of memory",
                    g->n);
   if (o->seconds) *o->seconds += seconds;
   return VG_OK;

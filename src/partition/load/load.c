@@ -1,6 +1,6 @@
-/* Outline: an octree is refined until its nodes are a few target edges wide;
- * what is wholly outside is dropped where it is found. Branches are worked on
- * by several threads; their octants are joined in the order of the tree. */
+/* Outline: an octree is refined until its nodes are a few target edges wide.
+ * Nodes that are completely outside are dropped immediately. Several threads
+ * process branches, whose octants are joined in the order of the tree. */
 #include "partition/load/load.h"
 
 #include <assert.h>
@@ -13,46 +13,50 @@
 #include "base/parallel.h"
 #include "partition/load/load_tree.h"
 
-/* Widest octant in target edges, free and where the front passes. */
+/* Width limit of an octant in target edges, without and with the front passing.
+ */
 #define WIDE_FREE 3.0 /* C14 */
 #define WIDE_FRONT 2.0
-/* In large meshes they are wider, to have about this many octants, or one for
- * so many cubes of the target edge. Nodes this wide tell how large a mesh is; a
- * leaf fills its width's octant on average. */
+/* In large meshes the limits are raised to have about MANY_OCTANTS octants, or
+ * one per EDGES_MOST cubes of the target edge. The mesh size is estimated from
+ * nodes of width WIDE_ROUGH. A leaf fills the share FILLED of the cube of its
+ * width limit on average. */
 #define MANY_OCTANTS 40000.0
 #define EDGES_MOST 280.0
 #define WIDE_ROUGH 12.0
 #define FILLED 0.35
-/* More octants, of 2,500 cells each, are a mistake in the sizes. */
+/* More octants, of 2,500 cells each, indicate an error in the sizes. */
 #define OCTANTS_MOST 4000000
 /* With fewer octants than this, narrower ones are tried, down to LEAST edges.
  */
 #define FEW_OCTANTS 64
 #define LEAST 1.0
-/* From this gradient on VG_LOAD_GRADED counts in full. */
+/* From this gradient on, VG_LOAD_GRADED applies in full. */
 #define GRADIENT 0.05 /* C15 */
-/* Where h changes by more than this times itself across an octant, the octant's
- * parts are added up, to this depth. */
+/* If h changes by more than this times itself across an octant, the density is
+ * summed over the parts of the octant, to this depth. */
 #define STEEP 1.2 /* C16 */
 #define STEEP_DEPTH 4
-/* A field whose gradient is more than HIDES can have edges that no sample of an
- * octant shows: it is looked at closer while the least is below this share. */
+/* A sizing field whose gradient exceeds HIDES can have small edges that no
+ * sample of an octant meets. Such an octant is refined while its smallest h is
+ * below the share HIDDEN of the mean. */
 #define HIDES 0.5
 #define HIDDEN 0.5
-/* Narrower parts, in the least edge, are never divided. */
+/* Parts narrower than this many of their smallest edges are never divided. */
 #define CLOSE 0.25
-/* Cells next to a front follow its edges: away from it theirs grow by no more
- * than this for each length, however fast the field lets them. */
+/* Cells next to a front have its edge length. Away from the front they grow by
+ * no more than this per length, however fast the sizing field grows. */
 #define PACE 1.5
-/* From here to PACE the share that VG_LOAD_GRADED adds goes down to none. */
+/* Between this gradient and PACE, the share that VG_LOAD_GRADED adds falls to
+ * zero. */
 #define PACE_FROM 1.0
-/* Cells for each face of the front at least: what meshes have in which hardly
- * a point is away from the front. */
+/* Minimum of cells per face of the front, as in meshes where nearly all points
+ * are on the front. */
 #define CELLS_PER_FACE 1.5
-/* An octant with more triangles holds details that its density need not know.
- */
+/* An octant with more triangles than this contains details that its density
+ * need not resolve. */
 #define CROWD 400
-/* Places of the root octant that are tried when volumes do not agree. */
+/* Positions of the root octant that are tried when volumes do not agree. */
 #define PLACES 3
 
 /* --- octants of a branch ---------------------------------------------------
@@ -66,24 +70,25 @@ struct octants {
 struct maker {
   const struct vg_load_tree *tree;
   const struct vg_sizing *sizing;
-  const struct vg_sizing *pace; /* what cells next to the front can follow,
-                               where the field is steeper; else NULL */
-  int is_steep;                 /* the field is, somewhere */
+  /* Sizes that cells next to the front can follow, where the sizing field
+   * is steeper; else NULL. */
+  const struct vg_sizing *pace;
+  int is_steep; /* 1: the sizing field has steep gradients. */
   double per_cube;
-  double narrow, wide; /* divides, multiplies the widths allowed */
+  double narrow, wide; /* Divisor and factor of the width limits. */
   size_t n_branch, cap_branch, large;
-  _Atomic size_t *emitted; /* octants of all branches */
+  _Atomic size_t *emitted; /* Octants of all branches. */
   struct branch {
     struct vg_load_node node;
     uint32_t *item; /* [node.n] */
     struct octants out;
-    double crossed; /* sum of squares of volumes, octants crossed */
+    double crossed; /* Sum of squared volumes of the crossed octants. */
     int refused;
   } * branch;
 };
 
-/* Of a node: mean of 1 / h^3, that times the correction for a gradient, and
- * the gradient. */
+/* Of a node: mean of 1 / h^3, the same with the correction for the gradient,
+ * and the gradient. */
 struct density {
   double cubes, cells, slope;
 };
@@ -95,7 +100,8 @@ static double edge_at(const struct maker *m, const double x[3])
   return m->pace ? fmin(h, vg_sizing_at(m->pace, x)) : h;
 }
 
-/* Of an octant around mid. A rule of four points, exact for quadratics. */
+/* Density in an octant around mid, by a four-point rule that is exact for
+ * quadratics. */
 static struct density density_around(const struct maker *m, const double mid[3],
                                      double half)
 {
@@ -121,7 +127,7 @@ static struct density density_around(const struct maker *m, const double mid[3],
   return (struct density){ sum, sum * (1 + VG_LOAD_GRADED * graded), slope };
 }
 
-/* Its middle; returns half its side. */
+/* Centre of a node; returns half its side. */
 static double middle_of(const struct maker *m, const struct vg_load_node *node,
                         double mid[3])
 {
@@ -140,8 +146,8 @@ static struct density mean_density(const struct maker *m,
   return density_around(m, mid, half);
 }
 
-/* Whether h changes so much across an octant that the rule misses what is near
- * its finest end. */
+/* Is the change of h across an octant so large that the rule misses the cells
+ * near its finest end? */
 static int is_steep(struct density d, double half)
 {
   const double change = 2 * half * d.slope;
@@ -149,8 +155,8 @@ static int is_steep(struct density d, double half)
   return change * change * change * d.cubes > STEEP * STEEP * STEEP;
 }
 
-/* Whether there are edges in an octant that are much finer than its density
- * shows, and of which it is more than `wide` wide. */
+/* Does an octant contain edges that are much smaller than its density shows,
+ * and is it wider than `wide` of them? */
 static int hides(const struct maker *m, const double mid[3], double half,
                  double density, double wide)
 {
@@ -163,8 +169,9 @@ static int hides(const struct maker *m, const double mid[3], double half,
          least * least * least * density < HIDDEN * HIDDEN * HIDDEN;
 }
 
-/* The same from parts of the octant. left: cubes of the target edge that
- * matter; where there are more, the node is divided in any case. */
+/* Density of an octant, summed over its parts. left: cubes of the target edge
+ * up to which the sum matters; with more of them the node is divided in any
+ * case. */
 static struct density add_up(const struct maker *m, const double mid[3],
                              double half, int depth, double *left)
 {
@@ -189,7 +196,7 @@ static struct density add_up(const struct maker *m, const double mid[3],
   return sum;
 }
 
-/* Most cubes of the target edge that a leaf has. */
+/* Upper limit of the cubes of the target edge in a leaf. */
 static double most_in(const struct maker *m, const struct vg_load_node *node)
 {
   const double wide = m->wide * (node->n ? WIDE_FRONT : WIDE_FREE) / m->narrow;
@@ -197,7 +204,7 @@ static double most_in(const struct maker *m, const struct vg_load_node *node)
   return wide * wide * wide;
 }
 
-/* Octant root to single precision: h is of no use beyond. */
+/* Octant root to single precision, which is sufficient for h. */
 static double cube_root(double x)
 {
   int e;
@@ -212,8 +219,8 @@ static double cube_root(double x)
   return ldexp(y, e / 3);
 }
 
-/* The parts of an octant around samples of it that lie inside, of all of one
- * that is: how many, and the density there. */
+/* Density in an octant with a steep gradient, as the mean over the octants
+ * around its inside samples. Returns the number of inside samples. */
 static int sample_steep(const struct maker *m, const struct vg_load_node *node,
                         const int32_t owner[VG_LOAD_SAMPLES],
                         struct density *density)
@@ -245,8 +252,8 @@ static int sample_steep(const struct maker *m, const struct vg_load_node *node,
   return inside;
 }
 
-/* Samples of an octant that the front passes: how many are inside, and the
- * density there. Without bias, however wide the octant is. */
+/* Samples an octant that the front passes through: returns the number of inside
+ * samples, and the density at them. Unbiased for octants of any width. */
 static int sample(const struct maker *m, const struct vg_load_stack *s,
                   const struct vg_load_node *node, struct density *density)
 {
@@ -376,7 +383,8 @@ static int add_branch(struct maker *m, const struct vg_load_stack *s,
   return 0;
 }
 
-/* Branches in the order of the tree, none with a large share of the front. */
+/* Finds branches in the order of the tree, none with a large share of the
+ * front. */
 static int plan(struct maker *m, struct vg_load_stack *s,
                 const struct vg_load_node *node, int threads)
 {
@@ -410,13 +418,14 @@ static int plan_all(struct maker *m, int threads)
 
 struct rough_job {
   const struct maker *m;
-  double *sum;           /* [branch] */
-  _Atomic uint64_t seen; /* whole octants of all; from ROUGH_MOST on no more
-                            are looked for: widths would be the same */
+  double *sum; /* [branch] */
+  /* cubes of the target edge found so far; at ROUGH_MOST the search stops,
+   * since the width limits would not change any more. */
+  _Atomic uint64_t seen;
 };
 #define ROUGH_MOST (MANY_OCTANTS * EDGES_MOST)
 
-/* cubes of the target edge in a node, whatever is the void. */
+/* cubes of the target edge in a node, whether inside the void or not. */
 static double rough(struct rough_job *job, const struct vg_load_node *node)
 {
   const struct maker *m = job->m;
@@ -450,7 +459,7 @@ static void rough_part(void *context, size_t first, size_t end, int worker)
     job->sum[i] = rough(job, &job->m->branch[i].node);
 }
 
-/* Choose the widths for a tolerable number of octants. */
+/* Chooses the width limits for an acceptable number of octants. */
 static int widen(struct maker *m, int threads)
 {
   struct rough_job job = { m, vg_alloc(m->n_branch, sizeof *job.sum), 0 };
@@ -467,7 +476,7 @@ static int widen(struct maker *m, int threads)
   return 0;
 }
 
-/* All octants in order. crossed: see struct branch. */
+/* Joins all octants in order. crossed: see struct branch. */
 static int join(const struct maker *m, struct vg_load *out, double *crossed)
 {
   size_t n = 0;
@@ -510,10 +519,10 @@ static int make(struct maker *m, int threads, struct vg_load *out,
   return bad;
 }
 
-/* --- the whole ----------------------------------------------------------- */
+/* --- the complete load --------------------------------------------------- */
 
-/* A root octant with room to spare, at a place where planes of the lattice are
- * unlikely to lie in planes of the front. */
+/* Places the root octant with margins such that planes of the lattice are
+ * unlikely to coincide with planes of the front. */
 static void place_root(struct vg_load_tree *t, const double lo[3],
                        const double hi[3], int place)
 {
@@ -535,7 +544,7 @@ static void place_root(struct vg_load_tree *t, const double lo[3],
   }
 }
 
-/* A void that no sample has hit: one octant of its volume. */
+/* A void that no sample has hit gets one octant of its volume. */
 static int lone_octant(const struct maker *m, const double lo[3],
                        const double hi[3], double volume, struct vg_load *l)
 {
@@ -563,15 +572,16 @@ static int lone_octant(const struct maker *m, const double lo[3],
 static vg_status refused(const struct maker *m, struct vg_error *err)
 {
   if (atomic_load(m->emitted) <= OCTANTS_MOST)
-    return vg_fail_memory(err, "the estimate of cells");
+    return vg_fail_memory(err, "the load estimate");
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "the sizes ask for more than %.0f "
-                 "billion cells; are hmin, hmax and the sources in the unit of "
-                 "the surface?",
+                 "the sizes require more than %.0f "
+                 "billion cells; check that hmin, hmax and the sources have "
+                 "the unit of the surface",
                  OCTANTS_MOST * EDGES_MOST * m->per_cube * 1e-9);
 }
 
-/* The best of several places of the root octant; nearly always the first. */
+/* Builds the load with several positions of the root octant and keeps the best;
+ * nearly always the first one suffices. */
 static vg_status build(struct maker *m, struct vg_load_tree *t,
                        const struct vg_front *v, double volume, int threads,
                        struct vg_load *out, struct vg_error *err)
@@ -599,16 +609,16 @@ static vg_status build(struct maker *m, struct vg_load_tree *t,
       *out = l;
       best = off;
     } else vg_load_release(&l);
-    /* what samples of 1/8 of an octant may be wrong by, and a bit */
+    /* possible error of samples of 1/8 of an octant, with a margin */
     if (off <= 0.01 * volume + 0.5 * sqrt(crossed)) break;
   }
   if (!out->n && lone_octant(m, lo, hi, volume, out))
-    return vg_fail_memory(err, "the estimate of cells");
+    return vg_fail_memory(err, "the load estimate");
   return VG_OK;
 }
 
-/* The field of sizes that the front alone asks for, if it is left faster than
- * cells can follow. */
+/* The sizing field that the edges of the front alone give, if the requested
+ * one grows faster than cells can follow. */
 static vg_status find_pace(const struct vg_front *v,
                            const struct vg_sizing *sizing, int threads,
                            struct vg_sizing **out, struct vg_error *err)
@@ -627,7 +637,7 @@ static vg_status find_pace(const struct vg_front *v,
   return vg_sizing_new(&o, 0, NULL, &m, out, err);
 }
 
-/* To no fewer cells than this. */
+/* Scales the cells up to at least this number. */
 static void raise_to(struct vg_load *l, double least)
 {
   const double by = least / l->cells;

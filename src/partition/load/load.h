@@ -1,10 +1,12 @@
-/* partition/load/load.h: how many cells will a void need, and where? Uses core.
+/* partition/load/load.h: load estimate: the number and distribution of the
+ * cells that a void needs. Uses core.
  *
- * A load is a list of octants that together cover a void, each with the cells
- * expected in it: c V / h^3, V the part of the octant in the void. Octants are
- * a few target edges wide in small meshes; there are some thousands to some
- * tens of thousands of them, more only where cells are many hundred millions.
- * Questions about planes are answered from an index of each axis. */
+ * A load is a list of octants that together cover a void, each with
+ * the number of cells expected in it: c V / h^3, where V is the part of the
+ * octant in the void. In small meshes the octants are a few target edges wide.
+ * There are some thousands to some tens of thousands of octants, and more only
+ * for many hundred million cells. Queries about planes are answered from an
+ * index of each axis. */
 #ifndef VG_PARTITION_LOAD_LOAD_H
 #define VG_PARTITION_LOAD_LOAD_H
 
@@ -15,22 +17,23 @@
 #include "core/front/front.h"
 #include "core/sizing/sizing.h"
 
-/** Cells per cube of the target edge where spacing is even, measured over
- * boxes (docs/performance-parallel.md); corrected by what a void's zones turned
- * out. */
+/** Cells per cube of the target edge length where the spacing is uniform,
+ * measured over boxes (docs/performance-parallel.md). It is corrected by the
+ * number of cells that a void's separator zones needed. */
 #define VG_LOAD_CELLS_PER_CUBE 9.0 /* C13 */
 
-/** Where the target edge varies, cells are more by this share, and cost more:
- * nearly the same for growth rates from 1.1 to 1.35, while even spacing allows
- * regular cells. */
+/** Where the target edge length varies, the number of cells rises by this
+ * share, and so does the cost per cell. The share is nearly the same for
+ * growth rates from 1.1 to 1.35; uniform spacing allows regular cells. */
 #define VG_LOAD_GRADED 0.21 /* C15 */
 
 struct vg_load_octant {
-  float at[3], half; /* centre, half the side */
-  float h;           /* target edge, averaged like 1 / h^3 */
-  float part;        /* of the octant in the void, > 0; such that all
-                        make up the volume that the front encloses */
-  float cells;       /* expected in that part */
+  float at[3], half; /* Centre, half of the side. */
+  float h;           /* Target edge length, averaged like 1 / h^3. */
+  /* Fraction of the octant in the void, > 0; scaled so that all octants sum up
+   * to the volume that the front encloses. */
+  float part;
+  float cells; /* Cells expected in that fraction. */
 };
 
 struct vg_load_index;
@@ -38,11 +41,11 @@ struct vg_engine;
 
 struct vg_load {
   size_t n;
-  struct vg_load_octant *octant; /* [n] in the order of an octree: fixed */
-  double cells;                  /* sum */
-  double lo[3], unit;            /* of the octree: corner, side / 2^31 */
-  int is_block;          /* 1: octants count from .. to only: the void lies */
-  double from[3], to[3]; /* between planes that pass octants */
+  struct vg_load_octant *octant; /* [n] In octree order; fixed. */
+  double cells;                  /* Sum over the octants. */
+  double lo[3], unit;            /* Of the octree: corner, side / 2^31. */
+  int is_block; /* 1: planes that pass through octants bound the void. */
+  double from[3], to[3]; /* In that case octants count only within this box. */
   struct vg_load_index *index;
 };
 #define VG_LOAD_INIT                                                           \
@@ -52,77 +55,82 @@ struct vg_load {
 
 void vg_load_release(struct vg_load *l);
 
-/** The load of a void.
+/** Estimates the load of a void.
  *
- * @param v   front only is looked at; closed
- * @param threads  to use; the result does not depend on it
- * @param cells_per_cube  VG_LOAD_CELLS_PER_CUBE; where h varies in space the
- *            cells are up to 1.21 times as many, as measured
- * Octree over the void's box: split while wider than 3 h, or than 2 h where
- * the front passes (the part inside is then sampled); wider in meshes of more
- * than 10 M cells, to have about 40,000 octants or one for 2,500 cells, and as
- * narrow as 1 h in voids with fewer than 64. Octants outside are dropped.
- * Where h changes much across an octant, 1 / h^3 is summed over its parts; of a
- * field that changes by more than half of a length over it, down to the least
- * h in them. h is
- * taken to grow from the front's own edges by 1.5 for each length at most,
- * which is what meshes do, and there are 1.5 cells for each face at least.
- * Cost: O(front + octants) times a logarithm. Result follows from the arguments
- * alone, bit by bit. VG_ERR_UNSUPPORTED beyond 4 M octants, some 10 billion
- * cells: sizes in another unit than the surface. VG_ERR_MEMORY. */
+ * @param v   only the front is used; closed
+ * @param threads  threads to use; the result does not depend on it
+ * @param cells_per_cube  VG_LOAD_CELLS_PER_CUBE; where h varies in space, the
+ *   expected number is up to 1.21 times higher, as measured
+ * The octree covers the void's box. A node is split while it is wider than 3
+ * h, or than 2 h where the front passes through it (the inside fraction is
+ * then sampled). Nodes are wider in meshes of more than 10 M cells, to have
+ * about 40,000 octants or one per 2,500 cells, and as narrow as 1 h in voids
+ * with fewer than 64 octants. Octants outside the void are dropped.
+ * Where h changes much across an octant, 1 / h^3 is summed over its parts. If
+ * the sizing field changes by more than half an edge over one edge, the parts
+ * are refined down to the smallest h in them. h is assumed to grow from the
+ * front's own edges by at most 1.5 per length, as meshes do, and at least 1.5
+ * cells are expected per face of the front.
+ * Cost: O(front + octants) times a logarithm. The result depends on the
+ * arguments alone, bit by bit. VG_ERR_UNSUPPORTED beyond 4 M octants, some 10
+ * billion cells, which means that the sizes have another unit than the
+ * surface. VG_ERR_MEMORY. */
 vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
                       double cells_per_cube, int threads, struct vg_load *out,
                       struct vg_error *err);
 
-/** What each of n voids takes of the load of a void that was cut into them.
+/** Divides the load of a void among the n voids that it was cut into.
  *
- * child: [n] fronts that lie inside the parent's void; out: [n] loads. An
- * octant goes to the child that it lies in (octants that fronts cross are
- * shared by samples); what lies in none of them (the zones) is dropped. A child
- * that is too small for the octants gets one around it. Shares are made to fit
- * the volumes of the fronts; nothing drifts over generations. The octants'
- * cells are multiplied by `correction`, the ratio of cells made to cells
- * expected in the ancestors' zones. Children are looked at in a loop of e,
- * which may be NULL. O(octants + fronts) times a logarithm. */
+ * child: [n] fronts inside the parent's void; out: [n] loads. An octant goes to
+ * the child that contains it; octants that fronts cross are shared by samples.
+ * Parts of octants outside all children (the separator zones) are dropped. A
+ * child that is too small for the octants gets one octant around it. The shares
+ * are scaled to the volumes of the fronts, so that errors do not accumulate
+ * over generations. The octants' cells are multiplied by `correction`, the
+ * ratio of cells made to cells expected in the ancestors' zones. The children
+ * are processed in a loop of e, which may be NULL. O(octants + fronts) times a
+ * logarithm. */
 vg_status vg_load_split(const struct vg_load *parent, size_t n,
                         const struct vg_front *child, double correction,
                         const struct vg_engine *e, struct vg_load *out,
                         struct vg_error *err);
 
-/** What lies in each block of a lattice of planes.
+/** Divides a load among the blocks of a lattice of planes.
  *
- * n: planes across each axis; at: their places, rising; out: [blocks] loads,
- * x first: block i + (n[0] + 1) (j + (n[1] + 1) k) is behind i planes across
- * x. An octant that planes pass goes to several blocks, by volume; what lies
- * within `reach` target edges of a plane goes to none (zones). In loops of e,
- * which may be NULL. O(octants + blocks). */
+ * n: planes across each axis; at: their positions in ascending order; out:
+ * [blocks] loads, x first: block i + (n[0] + 1) (j + (n[1] + 1) k) is behind i
+ * planes across x. An octant that planes pass through is shared among blocks by
+ * volume. The part within `reach` target edges of a plane is assigned to no
+ * block (separator zones). In loops of e, which may be NULL. O(octants +
+ * blocks). */
 vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],
                                const double *const at[3], double reach,
                                double correction, const struct vg_engine *e,
                                struct vg_load *out, struct vg_error *err);
 
-/** Make the index for the questions below anew, after octants were changed by
- * hand; all loads from here have one. O(octants). VG_ERR_MEMORY. */
+/** Rebuilds the index for the queries below after octants were changed
+ * directly; all loads made here have one. O(octants). VG_ERR_MEMORY. */
 vg_status vg_load_index(struct vg_load *l, int threads, struct vg_error *err);
 
-/* Questions: O(log octants) each. */
+/* Queries: O(log octants) each. */
 
-/** Position along `axis` below which lies the share `part` of the cells;
- * octants count as evenly filled. */
+/** Position along `axis` below which the fraction `part` of the cells lies;
+ * octants count as uniformly filled. */
 double vg_load_quantile(const struct vg_load *l, int axis, double part);
 
-/** Cells expected within `width` target edges on each side of the plane
- * x[axis] = at: what a zone costs. As dense as on the plane. */
+/** Cells expected within `width` target edges on each side of the plane x[axis]
+ * = at, the cost of a separator zone. The density on the plane is used
+ * throughout. */
 double vg_load_zone(const struct vg_load *l, int axis, double at, double width);
 
-/** Largest target edge met on the plane (0: the plane misses the void). */
+/** Largest target edge length on the plane (0: the plane misses the void). */
 double vg_load_coarsest(const struct vg_load *l, int axis, double at);
 
 /** Cells expected in the box lo ... hi. O(octants). */
 double vg_load_within(const struct vg_load *l, const double lo[3],
                       const double hi[3]);
 
-/** Finds octants by places; of one load, which stays as it is. */
+/** Finds octants by position, in one load that must stay unchanged. */
 struct vg_load_finder;
 
 /** O(octants log octants). VG_ERR_MEMORY. */
@@ -131,11 +139,12 @@ vg_status vg_load_finder_new(const struct vg_load *l,
 /** Accepts NULL. */
 void vg_load_finder_free(struct vg_load_finder *f);
 
-/** The octant that x is in; SIZE_MAX: none, as outside the void. O(log
+/** The octant that contains x; SIZE_MAX: no octant, as outside the void. O(log
  * octants). Threads: safe. */
 size_t vg_load_find(const struct vg_load_finder *f, const double x[3]);
 
-/** Flat bytes and back, for messages: VG_ERR_FORMAT when damaged. */
+/** Conversion to flat bytes and back, for messages. VG_ERR_FORMAT when
+ * damaged. */
 struct vg_bytes;
 vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,
                        struct vg_error *err);

@@ -1,6 +1,6 @@
-/* Outline: octants are assigned to the blocks of a lattice by where they are,
- * in chunks that threads share: first all are counted, then written, so their
- * order in a block is the parent's. */
+/* Outline: octants are assigned to the blocks of a lattice by position, in
+ * chunks that threads share. All octants are counted first and then written, so
+ * that their order in a block is the parent's order. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 
 enum { CHUNK = 4096 };
 
-/* Thinner slices of an octant are nothing. */
+/* Thinner slices of an octant are ignored. */
 #define SLICE 1e-3
 
 struct deal {
@@ -22,7 +22,8 @@ struct deal {
   const double *const *at;
   double reach, correction;
   size_t n_block, n_chunk;
-  size_t *count; /* [n_chunk][n_block] octants, then their places */
+  size_t
+    *count; /* [n_chunk][n_block] Number of octants, later their offsets. */
   struct vg_load *out;
   int is_counting;
 };
@@ -30,7 +31,8 @@ struct deal {
 /* --- octants ---------------------------------------------------------------
  */
 
-/* Part of an octant's cells in block k of an axis, zones left out. */
+/* Fraction of an octant's cells in block k of an axis, without separator zones.
+ */
 static double slice(const struct deal *d, const struct vg_load_octant *c,
                     int axis, int k)
 {
@@ -48,7 +50,7 @@ static double slice(const struct deal *d, const struct vg_load_octant *c,
   return hi > lo ? (to - from) / (hi - lo) : from <= to;
 }
 
-/* Blocks of an axis, first .. end - 1, that an octant touches. */
+/* Blocks first .. end - 1 of an axis that an octant touches. */
 static void find_range(const struct deal *d, const struct vg_load_octant *c,
                        int axis, int *first, int *end)
 {
@@ -135,7 +137,7 @@ static void bound(const struct deal *d, size_t block, struct vg_load *l)
   l->is_block = 1;
 }
 
-/* Counts become places, and blocks get room. */
+/* Turns counts into offsets and allocates the blocks. */
 static int make_room(struct deal *d)
 {
   for (size_t b = 0; b < d->n_block; b++) {
@@ -166,7 +168,7 @@ static void release_all(struct vg_load *l, size_t n)
   free(l);
 }
 
-/* Loads without index or sum, or NULL. */
+/* Distributes the octants. Returns loads without index and sum, or NULL. */
 static struct vg_load *deal_out(struct deal *d, const struct vg_engine *e)
 {
   d->n_block = blocks_of(d->n);
@@ -206,7 +208,7 @@ static void finish_part(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Sums and indices. */
+/* Computes sums and indices. */
 static int finish(struct vg_load *l, size_t n, const struct vg_engine *e)
 {
   struct finish f = { l, vg_calloc(n, sizeof *f.bad) };
@@ -233,7 +235,7 @@ vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],
 
   if (!made || finish(made, d.n_block, e)) {
     release_all(made, made ? d.n_block : 0);
-    return vg_fail_memory(err, "the estimate of cells");
+    return vg_fail_memory(err, "the load estimate");
   }
   memcpy(out, made, d.n_block * sizeof *out);
   free(made);

@@ -1,4 +1,5 @@
-/* Loads as messages. The index is not sent: it follows from the octants. */
+/* Loads as messages. The index is not sent, because it is rebuilt from the
+ * octants. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
-/* Outline: octants are in the order of an octree, in which places have an
- * order, too: that of the first bit, from the top, in which two of them differ
- * along some axis. So the octant of a place is found by bisection. */
+/* Outline: octants are in octree order. The same order applies to positions:
+ * the highest bit in which two positions differ along some axis decides. The
+ * octant of a position is therefore found by bisection. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,16 +9,16 @@
 #include "base/memory.h"
 #include "partition/load/load_tree.h"
 
-/* An octant in the lattice of the octree. */
+/* An octant in the integer lattice of the octree. */
 struct place {
-  uint32_t at[3], side; /* lower corner */
+  uint32_t at[3], side; /* at: lower corner. */
   uint32_t octant;
 };
 
 struct vg_load_finder {
   double lo[3], unit;
   size_t n;
-  struct place *place; /* [n] in the order of the octree */
+  struct place *place; /* [n] In octree order. */
 };
 
 void vg_load_finder_free(struct vg_load_finder *f)
@@ -28,8 +28,9 @@ void vg_load_finder_free(struct vg_load_finder *f)
   free(f);
 }
 
-/* Which comes first: the axis decides whose coordinates differ in the highest
- * bit, of equals the last one (load_tree.h counts octants x first). */
+/* Compares two positions: the axis whose coordinates differ in the highest bit
+ * decides, and among several such axes the last one (load_tree.h counts
+ * octants x first). */
 static int by_order(const uint32_t a[3], const uint32_t b[3])
 {
   uint32_t most = 0;
@@ -38,7 +39,7 @@ static int by_order(const uint32_t a[3], const uint32_t b[3])
   for (int k = 0; k < 3; k++) {
     const uint32_t d = a[k] ^ b[k];
 
-    if (d >= most || d >= (most ^ d)) { /* its first bit is not below */
+    if (d >= most || d >= (most ^ d)) { /* its highest bit is not lower */
       most = d;
       axis = k;
     }
@@ -52,7 +53,7 @@ static int by_place(const void *a, const void *b)
 }
 
 /* Octants are kept in single precision; their sides are powers of two and their
- * corners multiples of them. 0: this is no octant of the octree. */
+ * corners multiples of them. Returns 0 if the octant is not in the octree. */
 static int place_of(const struct vg_load *l, size_t i, struct place *p)
 {
   const struct vg_load_octant *c = &l->octant[i];
@@ -83,7 +84,7 @@ vg_status vg_load_finder_new(const struct vg_load *l,
   if (f) f->place = vg_alloc(l->n, sizeof *f->place);
   if (!f || !f->place) {
     vg_load_finder_free(f);
-    return vg_fail_memory(err, "the cells expected");
+    return vg_fail_memory(err, "the load estimate");
   }
   memcpy(f->lo, l->lo, sizeof f->lo);
   f->unit = l->unit;
@@ -107,7 +108,7 @@ size_t vg_load_find(const struct vg_load_finder *f, const double x[3])
     if (!(p >= 0 && p < 0x1p31)) return SIZE_MAX;
     at[k] = (uint32_t)p;
   }
-  while (low < high) { /* the last one that is not behind it */
+  while (low < high) { /* the last octant that is not behind the position */
     const size_t mid = low + (high - low) / 2;
 
     if (by_order(f->place[mid].at, at) <= 0) low = mid + 1;

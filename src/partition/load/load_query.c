@@ -1,8 +1,9 @@
-/* Outline: each axis is divided into bins at edges of octants: of all of them
- * when they are few, else of a sample, so bins are narrow where octants are.
- * Bins know the cells below them, how densely cells stand on planes across
- * them, and the largest target edge. An octant that covers many bins is added
- * in constant time: as a difference between the first and the last of them. */
+/* Outline: each axis is divided into bins at the faces of octants, of all
+ * octants if they are few, else of a sample, so that bins are narrow where
+ * octants are small. Each bin stores the number of cells below it, the density
+ * of cells on planes across it, and the largest target edge length. An octant
+ * that covers many bins is added in constant time, as a difference between the
+ * first and the last of them. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,19 +13,20 @@
 #include "base/parallel.h"
 #include "partition/load/load.h"
 
-/* Octants whose edges become those of bins: all of few, up to SAMPLE of many.
- * Two edges nearer to each other than this share of a half octant are one
- * (coordinates are of single precision). */
+/* Number of octants whose faces become bounds of bins: all of a small load, up
+ * to SAMPLE of a large one. Two bounds nearer than this share of half an octant
+ * are merged (coordinates have single precision). */
 enum { SAMPLE = 256, FEW = 32, ONE_OF = 8 };
 #define ONE_EDGE 0.01
 
 struct axis {
   size_t n;             /* bins */
-  double *edge, *below; /* [n + 1] bounds; cells below */
-  double *dense;        /* [n] cells by target edge per length */
-  float *most;          /* [n] largest target edge */
-  size_t *first;        /* [2 n + 1] edges before an even slot */
-  double scale;         /* slots per length */
+  double *edge, *below; /* [n + 1] Bounds; cells below each. */
+  double *dense;        /* [n] Cells times target edge per length. */
+  float *most;          /* [n] Largest target edge length. */
+  size_t *first;        /* [2 n + 1] Number of bounds before each slot of
+                           equal width. */
+  double scale;         /* Slots per length. */
 };
 
 struct vg_load_index {
@@ -53,7 +55,7 @@ void vg_load_release(struct vg_load *l)
   memset(l, 0, sizeof *l);
 }
 
-/* Where an octant's cells are, along an axis. */
+/* Range of an octant's cells along an axis. */
 static void reach_of(const struct vg_load *l, const struct vg_load_octant *c,
                      int k, double *lo, double *hi)
 {
@@ -77,7 +79,8 @@ static int by_place(const void *a, const void *b)
   return (s->x > t->x) - (s->x < t->x);
 }
 
-/* Ends of the sample's octants and of all, in order, without twins. */
+/* Finds the ends of the sample's octants and of the load, sorted, without
+ * duplicates. */
 static size_t find_edges(const struct vg_load *l, int k, double *edge,
                          struct mark *mark)
 {
@@ -126,7 +129,7 @@ static void fill_slots(struct axis *a)
   while (s <= 2 * a->n) a->first[s++] = a->n + 1;
 }
 
-/* The bin that x is in: edge[bin] <= x, the first or last one if outside. */
+/* The bin that contains x: edge[bin] <= x, the first or last one if outside. */
 static size_t bin_of(const struct axis *a, double x)
 {
   const size_t s = slot_of(a, x);
@@ -141,12 +144,13 @@ static size_t bin_of(const struct axis *a, double x)
   return lo ? lo <= a->n ? lo - 1 : a->n - 1 : 0;
 }
 
-/* --- what is in them ----------------------------------------------------- */
+/* --- contents of the bins ------------------------------------------------ */
 
 struct sums {
-  double *cells, *weight; /* [n] whole sums: of cells, and times h */
-  double *rate[2];        /* [n + 1] both per length; differences */
-  float *most;            /* [levels][n] of runs of 2^level bins */
+  double *cells, *weight; /* [n] Complete sums: of cells, and of cells times
+                             h. */
+  double *rate[2];        /* [n + 1] Both per length, as differences. */
+  float *most;            /* [levels][n] Maximum over runs of 2^level bins. */
   int levels;
 };
 
@@ -182,7 +186,8 @@ static void add_octant(const struct axis *a, struct sums *s, double lo,
   size_t f = bin_of(a, lo), g = bin_of(a, hi);
   double rate;
 
-  /* an end next to an edge is there: nothing in the bin beyond */
+  /* an end close to a bound is moved onto it and adds nothing to the bin
+   * beyond */
   if (g > f && a->edge[f + 1] - lo <= near) lo = a->edge[++f];
   if (g > f && hi - a->edge[g] <= near) hi = a->edge[g--];
   most_over(s, a->n, f, g + 1, c->h);
@@ -298,13 +303,13 @@ vg_status vg_load_index(struct vg_load *l, int threads, struct vg_error *err)
     vg_parallel_for(l->n < 4096 ? 1 : threads, 3, 1, index_part, &job);
   if (!job.index || job.bad[0] || job.bad[1] || job.bad[2]) {
     release_index(job.index);
-    return vg_fail_memory(err, "the estimate of cells");
+    return vg_fail_memory(err, "the load estimate");
   }
   l->index = job.index;
   return VG_OK;
 }
 
-/* --- questions ----------------------------------------------------------- */
+/* --- queries ------------------------------------------------------------- */
 
 double vg_load_quantile(const struct vg_load *l, int axis, double part)
 {
@@ -330,7 +335,7 @@ double vg_load_quantile(const struct vg_load *l, int axis, double part)
   return a->edge[lo] + within * (a->edge[lo + 1] - a->edge[lo]);
 }
 
-/* The bins at x: two where x is an edge. Returns how many. */
+/* Finds the bins at x, two if x is a bound. Returns their number. */
 static int bins_at(const struct vg_load *l, int axis, double x, size_t bin[2])
 {
   const struct axis *a;

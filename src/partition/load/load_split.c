@@ -1,8 +1,9 @@
-/* Outline: the parent's octants are descended along with the front of each
- * child. Where no front is left in a node, all of its octants are inside or
- * none; in an octant that the front crosses, samples are counted. The samples
- * of an octant are always the same ones, so what earlier cuts have dropped was
- * outside the children too, and errors do not pile up over generations. */
+/* Outline: the parent's octants and the front of each child are descended
+ * together. In a node without any front, all octants are inside or all are
+ * outside. In an octant that the front crosses, inside samples are counted. The
+ * samples of an octant are always the same. Parts that earlier cuts have
+ * dropped are therefore outside the children too, and errors do not accumulate
+ * over generations. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,13 +19,13 @@ struct share {
   double part;
 };
 
-/* One child. */
+/* State for one child. */
 struct split {
   const struct vg_load *parent;
   struct vg_load_tree tree;
   struct vg_load_stack stack;
   size_t n_share, cap_share;
-  struct share *share; /* by octant */
+  struct share *share; /* Sorted by octant. */
 };
 
 static int add_share(struct split *s, size_t octant, int samples)
@@ -51,7 +52,7 @@ static int share_octant(struct split *s, const struct vg_load_node *node,
   return n ? add_share(s, octant, n) : 0;
 }
 
-/* Octant of a node whose centre is mid that holds an octant. */
+/* Octant, of a node with centre mid, that contains an octant. */
 static int octant_of(const struct vg_load_octant *c, const double mid[3])
 {
   int o = 0;
@@ -83,7 +84,7 @@ static size_t first_of(const struct split *s, size_t a, size_t b,
   return a;
 }
 
-/* Is the node the one octant a .. b - 1? */
+/* Is the node identical to the single octant a .. b - 1? */
 static int is_octant(const struct split *s, const struct vg_load_node *node,
                      size_t a, size_t b)
 {
@@ -118,8 +119,8 @@ static int descend(struct split *s, const struct vg_load_node *node, size_t a,
   return bad;
 }
 
-/* The smallest node around the child that is no smaller than the parent's
- * octant there, and the parent's octants a .. b - 1 in it. */
+/* Finds the smallest node around the child that is at least as large as the
+ * parent's octant there, and the parent's octants a .. b - 1 in it. */
 static void find_start(const struct split *s, struct vg_load_node *node,
                        size_t *a, size_t *b)
 {
@@ -173,8 +174,8 @@ static int share_all(struct split *s)
 
 /* --- children ------------------------------------------------------------ */
 
-/* Cells per volume and edge where the parent has an octant around x, or nearly
- * so: the octant that a descent ends in. */
+/* The parent's octant around x, or close to it, in which a descent ends; it
+ * gives the density and the edge length there. */
 static const struct vg_load_octant *octant_at(const struct split *s,
                                               const double x[3])
 {
@@ -203,7 +204,7 @@ static const struct vg_load_octant *octant_at(const struct split *s,
   return &s->parent->octant[a];
 }
 
-/* A child too small for any sample: one octant around it. */
+/* A child that is too small for any sample gets one octant around it. */
 static int lone_octant(const struct split *s, const struct vg_front *v,
                        double volume, double correction, struct vg_load *out)
 {
@@ -309,5 +310,5 @@ vg_status vg_load_split(const struct vg_load *parent, size_t n,
   for (size_t c = 0; bad && w.made && c < n; c++) vg_load_release(&w.made[c]);
   free(w.made);
   free(w.bad);
-  return bad ? vg_fail_memory(err, "the estimate of cells") : VG_OK;
+  return bad ? vg_fail_memory(err, "the load estimate") : VG_OK;
 }

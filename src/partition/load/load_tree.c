@@ -1,9 +1,9 @@
-/* Outline: whether a point is in a void follows from a point whose state is
- * known and the triangles that a path of axis-parallel pieces crosses: +1 where
- * it runs with a normal, -1 against it. A path within a node meets triangles
- * of the node's own list only, so nothing is searched. Signs are exact; a
- * point that projects onto an edge counts for one of the edge's two triangles
- * (it is thought shifted by e, e^2). */
+/* Outline: the owner of a point follows from a point with a known owner and
+ * the triangles that a path of axis-parallel segments crosses: +1 where the
+ * path runs along a normal, -1 against it. A path within a node meets only
+ * triangles of the node's own list, so no search is needed. Signs are exact. A
+ * point that projects onto an edge counts for one of the two triangles of the
+ * edge (symbolic perturbation by e, e^2). */
 #include "partition/load/load_tree.h"
 
 #include <assert.h>
@@ -19,8 +19,8 @@
 
 enum { GRAIN = 1 << 14, FIT_PASSES = 4 };
 
-/* A volume that is off by more is made to fit: by the octants that the front
- * crosses if that is possible, else by all alike. */
+/* A relative volume error above this is corrected, by the octants that the
+ * front crosses if that is possible, else by all octants equally. */
 #define FITS 1e-5
 
 /* --- fronts -------------------------------------------------------------- */
@@ -103,7 +103,7 @@ vg_status vg_load_tree_new(struct vg_load_tree *t, size_t n,
   t->tri = t->n_tri < UINT32_MAX && n < INT32_MAX
            ? vg_alloc(t->n_tri, sizeof *t->tri)
            : NULL;
-  if (!t->tri) return vg_fail_memory(err, "the estimate of cells");
+  if (!t->tri) return vg_fail_memory(err, "the load estimate");
   for (size_t c = 0; c < n; c++) {
     job.child = (uint32_t)c;
     vg_parallel_for(threads, child[c].n_face, GRAIN, enter_part, &job);
@@ -127,7 +127,7 @@ void vg_load_stack_release(struct vg_load_stack *s)
 
 /* --- crossings ----------------------------------------------------------- */
 
-/* On which side of a b is p, in the plane of axes u and v? 0: the edge
+/* The side of ab on which p lies in the plane of axes u and v. 0: the edge
  * projects to a point. */
 static int side_of(const double *a, const double *b, const double p[2], int u,
                    int v)
@@ -140,8 +140,8 @@ static int side_of(const double *a, const double *b, const double p[2], int u,
   return (b[u] > a[u]) - (b[u] < a[u]);
 }
 
-/* The step from lattice point p to the same with p[axis] = to, across one
- * triangle: +1 into the void, -1 out of it, 0 none. */
+/* Crossing of one triangle by the step from lattice point p to p[axis] = to:
+ * +1 into the void, -1 out of it, 0 no crossing. */
 static int crossing(const struct vg_load_tree *t, const struct vg_load_tri *tri,
                     int axis, const uint32_t p[3], uint32_t to)
 {
@@ -165,7 +165,7 @@ static int crossing(const struct vg_load_tree *t, const struct vg_load_tri *tri,
   return 0;
 }
 
-/* Change of owner along that step, from the triangles of a list. */
+/* Change of owner along that step, over the triangles of a list. */
 static int32_t along(const struct vg_load_tree *t, const uint32_t *list,
                      size_t n, int axis, const uint32_t p[3], uint32_t to)
 {
@@ -185,7 +185,7 @@ static int32_t along(const struct vg_load_tree *t, const uint32_t *list,
 
 /* --- nodes --------------------------------------------------------------- */
 
-/* Octants that a triangle's box touches: bit of each axis's side. */
+/* Octants that a triangle's box touches, as a bit mask. */
 static uint8_t octant_mask(const struct vg_load_tri *tri, const uint32_t mid[3])
 {
   static const uint8_t low[3] = { 0x55, 0x33, 0x0f };
@@ -213,7 +213,7 @@ static void mask_part(void *context, size_t first, size_t end, int worker)
     job->mask[i] = octant_mask(&job->t->tri[job->list[i]], job->mid);
 }
 
-/* Push the lists of the octants. */
+/* Pushes the lists of the octants. */
 static int distribute(const struct vg_load_tree *t, struct vg_load_stack *s,
                       const struct vg_load_node *node,
                       struct vg_load_node out[8], int threads)
@@ -254,7 +254,8 @@ int vg_load_octants(const struct vg_load_tree *t, struct vg_load_stack *s,
   }
   if (!node->n) return 0;
   if (distribute(t, s, node, out, threads)) return -1;
-  /* along the edges of octants, each by the list of the one it starts from */
+  /* along the edges of octants, each with the list of the octant it starts
+   * from */
   for (int o = 1; o < 8; o++) {
     const int axis = o >> 2 ? 2 : o >> 1 ? 1 : 0, from = o ^ 1 << axis;
 
@@ -267,8 +268,8 @@ int vg_load_octants(const struct vg_load_tree *t, struct vg_load_stack *s,
 
 /* --- samples ------------------------------------------------------------- */
 
-/* A number from a node's place, evenly spread: mixing after Steele, Lea and
- * Flood, "Fast splittable pseudorandom number generators" (2014). */
+/* A pseudorandom number from the position of a node: mixing after Steele, Lea
+ * and Flood, "Fast splittable pseudorandom number generators" (2014). */
 static uint64_t scatter(const struct vg_load_node *node)
 {
   uint64_t z = 0;
@@ -293,7 +294,7 @@ void vg_load_sample(const struct vg_load_tree *t, const struct vg_load_stack *s,
   int32_t own = node->owner;
 
   for (int k = 0; k < 3; k++) {
-    /* 21 bits each: a share of half, never 0 */
+    /* 21 bits each: a fraction of half a node, never 0 */
     const uint64_t share = 2 * (z >> 21 * k & 0xfffff) + 1;
     const uint32_t to = p[k] + (uint32_t)(share * half >> 21);
 
@@ -342,9 +343,10 @@ static void multiply(struct vg_load_octant *c, double factor)
   c->cells = (float)((double)c->cells * factor);
 }
 
-/* Least squares: a part p is thought to be wrong by p (1 - p) in the square,
- * so what is missing goes to each octant by its volume times that; most of it
- * to large octants, whose errors are the large ones. */
+/* Least squares: the fraction p of an octant is assumed to have a squared error
+ * of p (1 - p). The missing volume is therefore distributed by the octant's
+ * volume times that; most of it goes to large octants, which have the large
+ * errors. */
 static void fit_parts(struct vg_load *l, double missing)
 {
   double weight = 0;

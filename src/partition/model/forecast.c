@@ -10,7 +10,7 @@
 #include "core/geometry/vector.h"
 #include "partition/model/model.h"
 
-/* M1: Measured: docs/performance-parallel.md, "Model". */
+/* M1: measured, see docs/performance-parallel.md, "Model". */
 const struct vg_rates vg_rates_measured = {
   .pencil = { 0, 1.3e-6, 2.5e-6, 4.2e-6, 0, 0, 0 },
   .rib = { 0, 3.9e-6, 9.6e-6, 4.2e-6, 0, 0, 0 },
@@ -26,29 +26,32 @@ const struct vg_rates vg_rates_measured = {
   .octree = { 1.6e-6, 23e-6, 1.9e-6, 0.45, 9.5e-6, 0 },
 };
 
-/* Loops over fewer faces are of one chunk or two (node_split.c). */
+/* Loops over fewer faces have only one or two chunks (node_split.c). */
 static const double loop_faces = 5000; /* M2 */
 
-/* Where three planes meet, so many places are left where parts hang together,
- * with so many faces beside them; their cells, about 200, are the tiles'. */
+/* Number of places per crossing of three planes where subdomains stay
+ * connected, and the faces next to each; their cells, about 200, count as the
+ * tiles' cells. */
 static const double places_per_corner = 0.5, place_faces = 900; /* M3 */
 
-/* Bytes of a front per face: three indices, half a point and its name. */
+/* Bytes of a front per face: three indices, half a point and half a global
+ * id. */
 static const double bytes_per_face = 28;
 
-/* Cells of a leaf of a coarse mesh (advance/coarse.c). */
+/* Cells per leaf of a coarse mesh (advance/coarse.c). */
 static const double coarse_leaf = 20000; /* D10 */
 
 static const struct vg_task_rate no_time = { .task = 0 };
 
-/* Of less than a cell, what zones leave of a block is no void. */
+/* If zones leave less than one cell of a block, there is no void. */
 static const double least_void = 1;
 
 struct forecast {
   struct vg_forecast *out;
-  double n_handed, handed; /* tasks since the last join, faces they got */
-  struct vg_amount zones;  /* made by pencils and tiles */
-  char leaf[VG_PATH_MAX];  /* one of the leaves */
+  double n_handed, handed; /* Tasks since the last join, and the faces sent
+                              to them. */
+  struct vg_amount zones;  /* Cells of pencils and tiles. */
+  char leaf[VG_PATH_MAX];  /* Path of one of the leaves. */
   const struct vg_cut_rule *rule;
   const struct vg_rates *rates;
   struct vg_error *err;
@@ -61,7 +64,7 @@ void vg_forecast_release(struct vg_forecast *o)
   memset(o, 0, sizeof *o);
 }
 
-/* Inner points have 6 cells each in the lattice that fills make (12 in an
+/* Inner points have 6 cells each in the bcc lattice of the kernel (12 in an
  * octant of two points), points on the boundary fewer, as measured. */
 double vg_forecast_points(double cells, double faces)
 {
@@ -86,7 +89,7 @@ static double seconds(const struct vg_task_rate *r, struct vg_amount a,
          r->face * faces;
 }
 
-/* a: what it makes; for joins what is in the void. */
+/* a: cells that it makes; for joins the cells in the void. */
 static vg_status add_task(struct forecast *c, const char *path,
                           const char *after, char kind,
                           const struct vg_task_rate *rate, struct vg_amount a,
@@ -147,7 +150,7 @@ static double volume_of(const struct vg_load *l)
   return sum;
 }
 
-/* As vg_front_work has it (cut/task_data.h). */
+/* The estimate of vg_front_work (cut/task_data.h). */
 static double work_of(const struct vg_bins *f, double volume)
 {
   double faces = vg_bins_faces(f), area = 0;
@@ -179,9 +182,9 @@ done:
   return st;
 }
 
-/* Cells at interfaces get better when all leaves are there: as many tasks
- * as zones, each with an equal share of their cells; one more for each part,
- * with an equal share of the triangles between these. */
+/* Repairs at interfaces follow after all leaves: one task per zone, each with
+ * an equal share of the zones' cells, and one per subdomain with an equal
+ * share of the interface triangles. */
 static vg_status add_repairs(struct forecast *c,
                              const struct vg_forecast_decomposition *q)
 {
@@ -222,7 +225,8 @@ static vg_status add_join(struct forecast *c, const struct vg_subdomain *p,
   return st;
 }
 
-/* What a join, the span `index`, spends on the tasks that it makes. */
+/* Adds the time that a join, the span `index`, spends on the tasks that it
+ * creates. */
 static void pay_tasks(struct forecast *c, size_t index,
                       const struct vg_task_rate *rate)
 {
@@ -234,8 +238,9 @@ static void pay_tasks(struct forecast *c, size_t index,
   join->loops += share * took;
 }
 
-/* The zones of a stage. All see the front that the stage before left.
- * after in: the task that makes them; out: one of them, if there is any. */
+/* The zones of a stage, all of which get the front that the previous stage
+ * left. after in: the task that creates them; out: one of them, if there are
+ * any. */
 static vg_status grow_stage(struct forecast *c, struct vg_subdomain *p,
                             const struct vg_lattice *l, int stage,
                             size_t *n_pencil, char *after)
@@ -285,7 +290,7 @@ done:
   return st;
 }
 
-/* Where three planes meet parts may still hang together. */
+/* Subdomains may stay connected where three planes meet. */
 static vg_status close_places(struct forecast *c, const struct vg_subdomain *p,
                               const struct vg_lattice *l, char *after)
 {
@@ -438,9 +443,9 @@ static vg_status go_down(struct forecast *c, struct vg_subdomain *p,
   return st;
 }
 
-/* --- the whole ----------------------------------------------------------- */
+/* --- the whole forecast -------------------------------------------------- */
 
-/* One task after the other, as they were made. */
+/* Places the tasks one after the other, in the order of creation. */
 static void line_up(struct vg_spans *s)
 {
   for (size_t i = 0; i < s->n; i++) {
@@ -498,8 +503,8 @@ static vg_status add_load(const struct vg_load *load, struct vg_subdomain *p,
   return vg_load_index(&p->load, 1, err);
 }
 
-/* A coarse mesh that all workers make: equal leaves, and a repair, as which it
- * is waited for. Its cuts are in the rate. */
+/* A coarse mesh that all workers make: equal leaves, and a repair task that
+ * waits for them. Its cuts are included in the rate. */
 static vg_status add_coarse(struct forecast *c,
                             const struct vg_forecast_decomposition *q)
 {
@@ -513,7 +518,8 @@ static vg_status add_coarse(struct forecast *c,
   for (size_t k = 0; k < n; k++) {
     snprintf(path, sizeof path, "1.%zuL", k);
     VG_TRY(add_task(c, path, "1J0", VG_SPAN_LEAF, &rate, a, 0, 0));
-    c->out->spans.span[c->out->spans.n - 1].n_cell = 0; /* of the mesh */
+    c->out->spans.span[c->out->spans.n - 1].n_cell = 0; /* no cells of the
+                                                           final mesh */
   }
   st = add_task(c, "1R0", "1.0L", VG_SPAN_REPAIR, &no_time,
                 (struct vg_amount){ 0, 0 }, 0, 0);
@@ -521,7 +527,7 @@ done:
   return st;
 }
 
-/* The task that makes the parts, which no zones come from. */
+/* The task that makes the subdomains, without zones. */
 static vg_status add_maker(struct forecast *c, const struct vg_subdomain *root,
                            const struct vg_forecast_decomposition *q)
 {

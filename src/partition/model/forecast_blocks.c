@@ -1,4 +1,4 @@
-/* A void of a forecast, parted into the blocks of its lattice. */
+/* Divides a void of a forecast into the blocks of its lattice. */
 #include <stdlib.h>
 
 #include "base/memory.h"

@@ -1,4 +1,4 @@
-/* The coarse front of a forecast, and what zones take and leave of it. */
+/* The coarse front of a forecast, and the effect of separator zones on it. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "partition/model/forecast_parts.h"
 
 /* Cells of a pencil reach this many spacings to each side of both of its
- * planes, as VG_TILE_FILLED, those of a rib: as measured over boxes and
+ * planes (like VG_TILE_FILLED), and cells of a rib; measured over boxes and
  * spheres. */
 static const double pencil_reach = 1.9, rib_reach = 0.5; /* M4 */
 
@@ -37,7 +37,7 @@ vg_status vg_bins_add(struct vg_bins *f, const struct vg_bin *b,
   return VG_OK;
 }
 
-/* Of a share of an octant. */
+/* Cells in a share of an octant. */
 void vg_amount_add(struct vg_amount *a, const struct vg_load_octant *c,
                    double share)
 {
@@ -52,7 +52,7 @@ void vg_amount_add(struct vg_amount *a, const struct vg_load_octant *c,
   a->graded += share * cells * fmin(fmax(more / VG_LOAD_GRADED, 0), 1);
 }
 
-/* The axis of a plane of a lattice. */
+/* Axis of a plane of a lattice. */
 static int axis_of(const struct vg_plane *p)
 {
   return p->normal[0] > 0.5 ? 0 : p->normal[1] > 0.5 ? 1 : 2;
@@ -64,7 +64,7 @@ static double side_of_plane(const struct vg_plane *p, const float x[3])
          p->normal[2] * (double)x[2] - p->offset;
 }
 
-/* Half the extent of an octant across a plane. */
+/* Half the extent of an octant normal to a plane. */
 static double half_across(const struct vg_load_octant *c,
                           const struct vg_plane *p)
 {
@@ -72,7 +72,7 @@ static double half_across(const struct vg_load_octant *c,
          (fabs(p->normal[0]) + fabs(p->normal[1]) + fabs(p->normal[2]));
 }
 
-/* Part of the octant within `width` of the plane. */
+/* Fraction of the octant within `width` of the plane. */
 static double overlap(const struct vg_load_octant *c, const struct vg_plane *p,
                       double width)
 {
@@ -90,7 +90,7 @@ static double reach_of(const struct vg_region *r)
                          : rib_reach;
 }
 
-/* Is the foot of x on the planes within the walls, moved out by `band`? */
+/* Is the foot of x on the planes within the walls, moved outwards by `band`? */
 static int is_over(const struct vg_region *r, const float x[3], double band)
 {
   double at[3] = { (double)x[0], (double)x[1], (double)x[2] }, foot[3];
@@ -108,8 +108,8 @@ static int is_near(const struct vg_region *r, const float x[3], double band)
   return 1;
 }
 
-/* Faces that a zone leaves where it passes the octant: on both sides of its
- * plane, or all around a pencil. */
+/* Adds the faces that a zone leaves where it passes through the octant: on both
+ * sides of its plane, or all around a pencil. */
 static vg_status add_sides(const struct vg_load_octant *c,
                            const struct vg_region *r, struct vg_bins *f,
                            struct vg_error *err)
@@ -139,7 +139,7 @@ static vg_status add_sides(const struct vg_load_octant *c,
   return st;
 }
 
-/* Front that a zone has closed in. */
+/* Removes the front that a zone has covered. */
 void vg_bins_cover(struct vg_bins *f, size_t n, const struct vg_region *r)
 {
   assert(n <= f->n);
@@ -171,7 +171,8 @@ double vg_bins_near(const struct vg_bins *f, size_t n,
   return sum;
 }
 
-/* Cells of the region leave the load and, if it has a front, make sides. */
+/* Removes the cells of the region from the load. If the zone has a front, its
+ * side faces are added. */
 vg_status vg_bins_take(struct vg_subdomain *p, const struct vg_region *r,
                        struct vg_bins *made, struct vg_amount *a,
                        struct vg_error *err)

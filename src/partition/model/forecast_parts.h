@@ -1,7 +1,7 @@
-/* partition/model/forecast_parts.h: a void on its way down the forecast's tree,
- * with its load and a coarse front (forecast_front.c), parted into blocks
- * (forecast_blocks.c). Private to forecast*.c. Every function is a function of
- * its arguments alone; VG_ERR_MEMORY is their only error. */
+/* partition/model/forecast_parts.h: a void of the forecast's tree, with its
+ * load and a coarse front (forecast_front.c), divided into blocks
+ * (forecast_blocks.c). Private to forecast*.c. The result of every function
+ * depends on its arguments alone; VG_ERR_MEMORY is their only error. */
 #ifndef VG_PARTITION_MODEL_FORECAST_PARTS_H
 #define VG_PARTITION_MODEL_FORECAST_PARTS_H
 
@@ -9,10 +9,10 @@
 #include "partition/load/load.h"
 #include "partition/model/forecast.h"
 
-/* Faces of a triangle's own spacing to a square of it, 4 / sqrt(3). */
+/* Triangles of edge h per square of side h, 4 / sqrt(3). */
 #define VG_FACES_PER_SQUARE 2.309
 
-/* A stretch of front: n faces about x. */
+/* A piece of front: n faces of edge h around x. */
 struct vg_bin {
   float x[3], h, n;
 };
@@ -22,7 +22,7 @@ struct vg_bins {
   struct vg_bin *bit;
 };
 
-/* Cells, and how many of them lie where spacing varies. */
+/* Number of cells, and of those at varying spacing. */
 struct vg_amount {
   double cells, graded;
 };
@@ -37,7 +37,7 @@ struct vg_subdomain {
   int depth, levels, retry;
 };
 
-/* --- front and load (forecast_front.c) ------------------------------------ */
+/* --- front and load (forecast_front.c) ----------------------------------- */
 
 void vg_subdomain_release(struct vg_subdomain *p);
 
@@ -45,32 +45,32 @@ vg_status vg_bins_add(struct vg_bins *f, const struct vg_bin *b,
                       struct vg_error *err);
 double vg_bins_faces(const struct vg_bins *f);
 
-/** What a share of the octant holds, added to a. */
+/** Adds a share of an octant's content to a. */
 void vg_amount_add(struct vg_amount *a, const struct vg_load_octant *c,
                    double share);
 
-/** Cells of the region leave the load, counted in a; where it has some, the
- * faces that it leaves go to made. */
+/** Removes the cells of the region from the load and counts them in a. If there
+ * are any, the faces that the zone leaves are added to made. */
 vg_status vg_bins_take(struct vg_subdomain *p, const struct vg_region *r,
                        struct vg_bins *made, struct vg_amount *a,
                        struct vg_error *err);
 
-/** Front that a zone has closed in goes; of the first n bits only. */
+/** Removes the front that a zone has covered, among the first n bins. */
 void vg_bins_cover(struct vg_bins *f, size_t n, const struct vg_region *r);
 
-/** Faces of the first n bits that the region must know. */
+/** Faces of the first n bins that the task of the region must know. */
 double vg_bins_near(const struct vg_bins *f, size_t n,
                     const struct vg_region *r);
 
-/* --- blocks (forecast_blocks.c) ------------------------------------------- */
+/* --- blocks (forecast_blocks.c) ------------------------------------------ */
 
 struct vg_blocks {
   const struct vg_lattice *l; /* borrowed */
   size_t n;
-  struct vg_subdomain *part; /* [n] x first */
+  struct vg_subdomain *part; /* [n] Subdomains, x first. */
 };
 
-/** Load, front and box of p divided among the blocks of a lattice. Call
+/** Divides load, front and box of p among the blocks of a lattice. Call
  * vg_blocks_release in any case. */
 vg_status vg_blocks_open(struct vg_blocks *b, const struct vg_lattice *l,
                          const struct vg_subdomain *p, struct vg_error *err);

@@ -1,6 +1,6 @@
-/* The simulation. Two kinds of event in the order of time: a task has been
- * computed, and its outcome has arrived at home, which ends it. All events of
- * one moment are dealt with before tasks are handed out again. */
+/* The simulation. There are two kinds of event, processed by time: a task has
+ * been computed, and its outcome has arrived at home, which ends the task. All
+ * events of one moment are processed before tasks are handed out again. */
 #include "partition/model/model_parts.h"
 
 #include <assert.h>
@@ -13,11 +13,11 @@
 
 #define NONE VG_MODEL_NONE
 
-/* Bytes of a void's front per cells^(2/3): an octant of m target edges a side
+/* Bytes of a void's front per cells^(2/3): an octant of m target edges per side
  * has 9 m^3 cells and 6 m^2 * 4 / sqrt(3) triangles of 24 bytes each, half a
- * point and three numbers. */
+ * point and three indices. */
 #define FRONT_BYTES 77.0 /* M5 */
-/* What comes back from a task that leaves no front. */
+/* Outcome of a task that leaves no front. */
 #define SMALL_BYTES 1024.0
 
 enum event_kind { EVENT_COMPUTED, EVENT_ENDED };
@@ -28,15 +28,15 @@ struct event {
   enum event_kind kind;
 };
 
-/* Heap of ready tasks by their places in the order of priority. */
+/* Heap of ready tasks by their position in the order of priority. */
 struct ready {
   size_t n, cap;
   uint32_t *place;
 };
 
-/* A worker without a task is in two lists, that of all and that of its rank,
- * the longest idle first. Index n_worker + rank, and n_worker + ranks for all,
- * are the lists' heads. */
+/* An idle worker is in two lists, of all and of its rank, the longest idle
+ * first. The list heads have the indices n_worker + rank, and n_worker + ranks
+ * for all. */
 struct links {
   uint32_t *prev, *next;
 };
@@ -45,26 +45,28 @@ struct sim {
   const struct vg_machine *machine;
   struct vg_model_graph g;
   uint32_t n_worker;
-  uint32_t *order, *place;     /* [n] tasks by priority; and the inverse */
-  uint32_t *left;              /* [n_group] members that have not ended */
-  double *chain, *group_chain; /* longest chain up to a task's or group's end */
-  double *in, *out;            /* [n] bytes to and from a rank */
-  uint32_t *worker;            /* [n] who does it */
-  struct ready ready;          /* Tasks that any rank may do. */
+  uint32_t *order, *place;     /* [n] Tasks by priority, and the inverse. */
+  uint32_t *left;              /* [n_group] Members that have not ended. */
+  double *chain, *group_chain; /* Longest chain up to the end of a task or
+                                  group. */
+  double *in, *out;            /* [n] Bytes to and from a rank. */
+  uint32_t *worker;            /* [n] Executing worker. */
+  struct ready ready;          /* Tasks for any rank. */
   struct ready *joins;         /* [ranks] Joins that wait for their rank. */
   struct vg_dealt dealt;
-  uint32_t *home; /* [n] where it was made, then where it belongs */
+  uint32_t *home; /* [n] Rank that created it, later its home. */
   struct links all, own;
   uint32_t *n_idle;             /* [ranks] */
-  uint32_t *n_looping;          /* [ranks] tasks with loops under way */
-  uint32_t n_started, *started; /* [n_started] handed out at this moment */
-  struct vg_spans *helps;       /* who helped; may be NULL */
-  struct event *event;          /* heap by time, kind, task */
+  uint32_t *n_looping;          /* [ranks] Running tasks with loops. */
+  uint32_t n_started, *started; /* [n_started] Tasks handed out at this
+                                   moment. */
+  struct vg_spans *helps;       /* Trace of helpers; may be NULL. */
+  struct event *event;          /* Heap by time, kind, task. */
   size_t n_event;
   uint32_t n_ended;
-  double *sent, *received; /* [ranks] until when a rank's link is in use */
+  double *sent, *received; /* [ranks] Time until which a rank's link is busy. */
   double *busy;            /* [n_worker] */
-  /* Ranks that may hand joins out: [n_touched], each once. */
+  /* [n_touched] Ranks that may hand out joins, each once. */
   uint32_t n_touched, *touched;
   unsigned char *is_touched; /* [ranks] */
   double now, bytes, cuts_wall;
@@ -221,7 +223,7 @@ static uint32_t idle_any(const struct sim *s)
 
 /* --- events -------------------------------------------------------------- */
 
-/* When bytes that leave `from` now are at `to`. Both links are taken. */
+/* Arrival time of bytes sent now. Both links are occupied. */
 static double send(struct sim *s, uint32_t from, uint32_t to, double bytes)
 {
   const struct vg_machine *m = s->machine;
@@ -256,13 +258,13 @@ static void hand_out(struct sim *s, uint32_t task, uint32_t worker)
   s->started[s->n_started++] = task;
 }
 
-/* How many times as fast loops are that may have so much help. */
+/* Speedup of loops with the given number of helpers. */
 static double sped_up(const struct sim *s, double helpers)
 {
   return fmin(1 + helpers, s->machine->loop_threads);
 }
 
-/* `helped` seconds of a task's loops to workers that are idle, evenly. */
+/* Distributes `helped` seconds of a task's loops evenly among idle workers. */
 static vg_status add_help(struct sim *s, const struct vg_span *task,
                           double helped, double helpers, struct vg_error *err)
 {
@@ -287,7 +289,8 @@ static vg_status add_help(struct sim *s, const struct vg_span *task,
   return st;
 }
 
-/* Now it is known who stays idle. */
+/* Sets the durations of the tasks that start, now that the idle workers are
+ * known. */
 static vg_status set_durations(struct sim *s, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -347,8 +350,8 @@ static void hand_out_dealt(struct sim *s)
   d->n_woken = 0;
 }
 
-/* Joins first: no kind comes before them. The others go to a worker of their
- * home if one is idle. */
+/* Joins come first, since no kind has a higher priority. Other tasks go to a
+ * worker of their home rank if one is idle. */
 static vg_status hand_out_all(struct sim *s, struct vg_error *err)
 {
   while (s->n_touched) {
@@ -367,7 +370,7 @@ static vg_status hand_out_all(struct sim *s, struct vg_error *err)
   return set_durations(s, err);
 }
 
-/* What a task takes at least: with all the help that its rank can give. */
+/* Minimum time of a task, with all the help that its rank can give. */
 static double least_time(const struct sim *s, const struct vg_span *span)
 {
   double k = sped_up(s, s->machine->threads - 1);
@@ -495,7 +498,8 @@ static int by_priority(const void *a, const void *b)
   return (s->task > t->task) - (s->task < t->task);
 }
 
-/* Tasks are by path, so that paths decide between equal priorities. */
+/* Tasks are sorted by path first, so that paths break ties between equal
+ * priorities. */
 static vg_status sort_tasks(struct sim *s, struct vg_error *err)
 {
   struct ranked *list = vg_alloc(s->g.n, sizeof *list);
@@ -555,14 +559,14 @@ static vg_status simulate(struct sim *s, struct vg_error *err)
   for (uint32_t i = 0; i < s->g.n && s->n_ended < s->g.n; i++)
     if (s->left[i])
       return vg_fail(err, VG_ERR_INPUT,
-                     "task '%s' of the record waits for "
+                     "task '%s' of the trace waits for "
                      "tasks that wait for it",
                      s->g.span[i].path);
 done:
   return st;
 }
 
-/* s of one recorded core outside the tasks. */
+/* s of one traced core outside the tasks. */
 static double once(const struct vg_machine *m)
 {
   return m->serial + m->by_node + m->by_all;
@@ -583,26 +587,29 @@ static vg_status check_machine(const struct vg_machine *m, struct vg_error *err)
       m->threads > VG_MODEL_WORKERS_MAX / m->ranks)
     return vg_fail(err, VG_ERR_INPUT,
                    "a machine of %d ranks with %d threads "
-                   "each cannot be simulated: from 1 to %d workers in all",
+                   "each cannot be simulated: it must have 1 to %d workers",
                    m->ranks, m->threads, VG_MODEL_WORKERS_MAX);
   if (m->ranks_per_node < 1)
-    return vg_fail(err, VG_ERR_INPUT, "%d ranks on a node: at least 1",
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%d ranks per node: at least 1 is required",
                    m->ranks_per_node);
   if (m->loop_threads < 1)
-    return vg_fail(err, VG_ERR_INPUT, "loops in %d threads: at least 1",
+    return vg_fail(err, VG_ERR_INPUT,
+                   "loops in %d threads: at least 1 is required",
                    m->loop_threads);
   if (!(m->latency >= 0) || !(m->bandwidth > 0) || !(m->rate > 0) ||
       !(m->serial >= 0) || !(m->by_node >= 0) || !(m->by_all >= 0) ||
       isinf(m->latency) || isinf(once(m)))
     return vg_fail(err, VG_ERR_INPUT,
                    "latency %g s, bandwidth %g bytes/s, "
-                   "rate %g and serial time %g s do not make a machine: "
-                   "bandwidth and rate are above 0, the others not below it",
+                   "rate %g and serial time %g s do not describe a machine: "
+                   "bandwidth and rate must be positive, the other values "
+                   "must not be negative",
                    m->latency, m->bandwidth, m->rate, once(m));
   return VG_OK;
 }
 
-/* Time of cuts beyond what leaves take for as many cells. */
+/* Time of cuts beyond the time of leaves for the same number of cells. */
 static double extra_of_cuts(const struct sim *s, double cuts)
 {
   double leaves = 0, n_leaf = 0, n_zone = 0;
@@ -643,12 +650,12 @@ static struct vg_model_result judge(const struct sim *s)
     f.cuts_extra = extra_of_cuts(s, cuts) / sum;
     f.imbalance = most * workers / sum;
     f.idle = 1 - sum / (s->now * workers);
-    if (f.idle < 0) f.idle = 0; /* of rounding */
+    if (f.idle < 0) f.idle = 0; /* from rounding */
   }
   return f;
 }
 
-/* Bytes as they were sent: nothing where a task was done at home. */
+/* Bytes actually sent: none for a task executed at home. */
 static void hand_over(struct sim *s, struct vg_spans *timeline)
 {
   for (uint32_t i = 0; i < s->g.n; i++) {

@@ -1,4 +1,5 @@
-/* A cyclic schedule: leaves dealt out to the workers, before any is filled. */
+/* Cyclic schedule: static assignment of leaves to workers before any leaf is
+ * filled. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,9 +48,9 @@ vg_status vg_dealt_check(const struct vg_model_graph *g, struct vg_error *err)
   }
   if (!leaf) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "task '%s' of the record does not say by "
-                 "what it is dealt out, nor do others: record the run anew, or "
-                 "replay it with a dynamic schedule",
+                 "task '%s' of the trace has no 'work', by which leaves "
+                 "are assigned, nor has any other leaf: trace the run again, "
+                 "or replay it with a dynamic schedule",
                  leaf->path);
 }
 

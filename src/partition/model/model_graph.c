@@ -1,4 +1,4 @@
-/* Which task waits for which. Rules: model.h. */
+/* The dependency graph of the tasks. Rules: model.h. */
 #include "partition/model/model_parts.h"
 
 #include <stdlib.h>
@@ -8,10 +8,10 @@
 
 #define NONE VG_MODEL_NONE
 
-/* Times of a record are rounded, to the microsecond in files. */
+/* Times of a trace are rounded, to the microsecond in files. */
 #define LOOPS_ROUNDED 2e-6
 
-/* A task in a group: a pair that is sorted into lists later. */
+/* A task in a group; the pairs are sorted into lists later. */
 struct member {
   uint32_t task, group;
 };
@@ -21,8 +21,8 @@ struct members {
   struct member *item;
 };
 
-/* A stage is told by who made it, its node and its class. A node is the first
- * `len` bytes of a path. */
+/* A stage is identified by its creating task, its node and its class. A node
+ * is the first `len` bytes of a path. */
 struct key {
   uint32_t after, task;
   int class;
@@ -96,21 +96,21 @@ static vg_status check_span(const struct vg_span *s, struct vg_error *err)
   if (!s->path[0] || !memchr(s->path, 0, sizeof s->path) ||
       !memchr(s->after, 0, sizeof s->after))
     return vg_fail(err, VG_ERR_INPUT,
-                   "a task of the record has no path, or "
-                   "one without an end");
+                   "a task of the trace has an empty path, or "
+                   "one without a terminator");
   if (!(s->cpu >= 0 && s->cpu <= 1e9))
     return vg_fail(err, VG_ERR_INPUT,
-                   "task '%s' of the record took %g "
+                   "task '%s' of the trace took %g "
                    "seconds",
                    s->path, s->cpu);
   if (!(s->loops >= 0 && s->loops <= s->cpu + LOOPS_ROUNDED))
     return vg_fail(err, VG_ERR_INPUT,
-                   "task '%s' of the record took %g "
+                   "task '%s' of the trace took %g "
                    "seconds, of which %g in loops",
                    s->path, s->cpu, s->loops);
   if (s->home < 0)
     return vg_fail(err, VG_ERR_INPUT,
-                   "task '%s' of the record has the home "
+                   "task '%s' of the trace has the home "
                    "rank %d",
                    s->path, (int)s->home);
   return VG_OK;
@@ -123,12 +123,12 @@ static vg_status copy_spans(const struct vg_spans *spans,
 
   if (spans->n >= NONE / 4)
     return vg_fail(err, VG_ERR_INPUT,
-                   "a record of %zu tasks is more than "
-                   "can be replayed",
+                   "a trace of %zu tasks is too long "
+                   "to be replayed",
                    spans->n);
   g->n = (uint32_t)spans->n;
   g->span = vg_alloc(g->n, sizeof *g->span);
-  if (!g->span) return vg_fail_memory(err, "the tasks of the record");
+  if (!g->span) return vg_fail_memory(err, "the tasks of the trace");
   for (uint32_t i = 0; i < g->n && st >= 0; i++) {
     struct vg_span *one = &g->span[i];
 
@@ -141,7 +141,7 @@ static vg_status copy_spans(const struct vg_spans *spans,
   for (uint32_t i = 1; i < g->n; i++)
     if (!strcmp(g->span[i - 1].path, g->span[i].path))
       return vg_fail(err, VG_ERR_INPUT,
-                     "task '%s' is in the record more "
+                     "task '%s' is in the trace more "
                      "than once",
                      g->span[i].path);
   return VG_OK;
@@ -158,7 +158,7 @@ static vg_status find_after(struct vg_model_graph *g, struct vg_error *err)
     found = bsearch(&wanted, g->span, g->n, sizeof *g->span, by_path);
     if (!found)
       return vg_fail(err, VG_ERR_INPUT,
-                     "task '%s' of the record was made by "
+                     "task '%s' of the trace was created by "
                      "'%s', which is not in it",
                      g->span[i].path, g->span[i].after);
     g->after[i] = (uint32_t)(found - g->span);
@@ -166,14 +166,14 @@ static vg_status find_after(struct vg_model_graph *g, struct vg_error *err)
   return VG_OK;
 }
 
-/* Walk up until a task that has been passed before; each task is passed
- * once. A walk that meets itself is a circle. */
+/* Walks up from each task until a visited one; each task is visited once. A
+ * walk that meets itself is a cycle. */
 static vg_status find_circles(struct vg_model_graph *g, struct vg_error *err)
 {
   uint32_t *walk = vg_calloc(g->n, sizeof *walk);
   vg_status st = VG_OK;
 
-  if (!walk) return vg_fail_memory(err, "the order of the record");
+  if (!walk) return vg_fail_memory(err, "the order of the trace");
   for (uint32_t i = 0; i < g->n && st >= 0; i++) {
     uint32_t at = i;
 
@@ -184,7 +184,7 @@ static vg_status find_circles(struct vg_model_graph *g, struct vg_error *err)
     }
     if (at != NONE && walk[at] == i + 1)
       st = vg_fail(err, VG_ERR_INPUT,
-                   "task '%s' of the record comes after "
+                   "task '%s' of the trace comes after "
                    "itself",
                    g->span[at].path);
   }
@@ -196,7 +196,7 @@ static vg_status add_member(struct members *m, uint32_t task, uint32_t group,
                             struct vg_error *err)
 {
   if (vg_reserve(&m->item, &m->cap, m->n + 1, sizeof *m->item))
-    return vg_fail_memory(err, "the tasks that are waited for");
+    return vg_fail_memory(err, "the dependencies of tasks");
   m->item[m->n].task = task;
   m->item[m->n++].group = group;
   return VG_OK;
@@ -213,14 +213,14 @@ static struct key key_of(const struct vg_model_graph *g, uint32_t task)
   return k;
 }
 
-/* The group of each task's stage into stage[n], NONE for joins and leaves. */
+/* Finds the group of each task's stage: stage[n], NONE for joins and leaves. */
 static vg_status find_stages(struct vg_model_graph *g, uint32_t *stage,
                              struct members *m, struct vg_error *err)
 {
   struct keys k = { 0, vg_alloc(g->n, sizeof *k.item) };
   vg_status st = VG_OK;
 
-  if (!k.item) return vg_fail_memory(err, "the stages of the record");
+  if (!k.item) return vg_fail_memory(err, "the stages of the trace");
   for (uint32_t i = 0; i < g->n; i++) {
     stage[i] = NONE;
     if (class_of(g->span[i].kind)) k.item[k.n++] = key_of(g, i);
@@ -239,15 +239,15 @@ static vg_status find_stages(struct vg_model_graph *g, uint32_t *stage,
   return st;
 }
 
-/* 1 when the node of task a is that of b or above it. */
+/* Returns 1 when the node of task a is that of b or an ancestor. */
 static int is_above(const struct key *a, const struct key *b)
 {
   return a->len <= b->len && !memcmp(a->path, b->path, a->len) &&
          (a->len == b->len || b->path[a->len] == '.');
 }
 
-/* Repairs that wait for all leaves of a node: their nodes, sorted, each once;
- * their task is the first of its kind, `after` becomes the group. */
+/* Finds the nodes of repairs that wait for all leaves of a node, sorted, each
+ * once; their task is the first of its kind, `after` becomes the group. */
 static void find_repaired(struct vg_model_graph *g, struct keys *k)
 {
   size_t n = 0;
@@ -290,8 +290,8 @@ done:
   return st;
 }
 
-/* Wherever these are done is their home from then on: leaves, and joins that
- * start a node. */
+/* Finds the tasks whose executing rank becomes their home: leaves, and joins
+ * that start a node. */
 static void find_moves(struct vg_model_graph *g)
 {
   for (uint32_t i = 0; i < g->n; i++) {
@@ -315,7 +315,7 @@ static vg_status find_waits(struct vg_model_graph *g, struct members *m,
 
   g->n_group = g->n;
   if (!stage || !k.item) {
-    st = vg_fail_memory(err, "the order of the record");
+    st = vg_fail_memory(err, "the order of the trace");
     goto done;
   }
   for (uint32_t i = 0; i < g->n; i++) VG_TRY(add_member(m, i, i, err));
@@ -381,7 +381,7 @@ static vg_status list_all(struct vg_model_graph *g, const struct members *m,
   if (!waiting || !g->in_first || !g->in || !g->dep_first || !g->dep ||
       !g->size || m->n >= NONE) {
     free(waiting);
-    return vg_fail_memory(err, "the order of the record");
+    return vg_fail_memory(err, "the order of the trace");
   }
   list_pairs(m->n, m->item, 0, g->n, g->in_first, g->in);
   for (size_t i = 0; i < m->n; i++) g->size[m->item[i].group]++;
@@ -407,7 +407,7 @@ vg_status vg_model_graph_new(const struct vg_spans *spans,
   g.wait = vg_alloc(g.n, sizeof *g.wait);
   g.moves = vg_alloc(g.n, sizeof *g.moves);
   if (!g.after || !g.wait || !g.moves) {
-    st = vg_fail_memory(err, "the order of the record");
+    st = vg_fail_memory(err, "the order of the trace");
     goto done;
   }
   VG_TRY(find_after(&g, err));

@@ -8,9 +8,10 @@
 
 #include "base/memory.h"
 
-enum { LEAST = 4 }; /* tasks; fewer say nothing */
+enum { LEAST = 4 }; /* minimum number of tasks for a fit */
 
-/* Rows of 1 = cell * cells / seconds + face * faces / seconds, by columns. */
+/* Rows of 1 = cell * cells / seconds + face * faces / seconds, stored by
+ * columns. */
 struct rows {
   size_t n;
   double *a, *b;
@@ -42,7 +43,7 @@ static vg_status list_rows(const struct vg_spans *s, char kind, struct rows *r,
   return VG_OK;
 }
 
-/* Of one column alone: its coefficient, 0 where it is empty. */
+/* Coefficient of a fit with one column alone; 0 for an empty column. */
 static double alone(const struct rows *r, const double *column)
 {
   double xx = 0, xb = 0;
@@ -66,7 +67,7 @@ static double error_of(const struct rows *r, double cell, double face)
   return sqrt(sum / (double)r->n);
 }
 
-/* Loaded when it is asked for (src/CMakeLists.txt says why), and kept. */
+/* Loaded on first use (see src/CMakeLists.txt), and kept. */
 static __typeof__(LAPACKE_dgels) *load_dgels(void)
 {
   void *library = dlopen(VG_LAPACKE, RTLD_NOW | RTLD_LOCAL);
@@ -75,7 +76,8 @@ static __typeof__(LAPACKE_dgels) *load_dgels(void)
                  : NULL;
 }
 
-/* dgels overwrites both, so it gets copies. -1: memory; 0: no such pair. */
+/* Fits both rates. dgels overwrites both arrays, so it gets copies. -1: no
+ * memory; 0: no valid pair. */
 static int both(const struct rows *r, __typeof__(LAPACKE_dgels) *dgels,
                 double *cell, double *face)
 {
@@ -112,8 +114,8 @@ vg_status vg_rates_fit(const struct vg_spans *s, char kind,
   dgels = load_dgels();
   if (!dgels) {
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "the LAPACK that fits the times of "
-                 "tasks cannot be loaded: %s",
+                 "LAPACK, which fits the times of "
+                 "tasks, cannot be loaded: %s",
                  dlerror());
     goto done;
   }
@@ -122,7 +124,7 @@ vg_status vg_rates_fit(const struct vg_spans *s, char kind,
     st = vg_fail_memory(err, "the rates of a machine");
     goto done;
   }
-  if (!found) { /* one of them explains nothing, or worse */
+  if (!found) { /* one of the columns has no effect, or a negative one */
     double c = alone(&r, r.a), f = alone(&r, r.a + r.n);
     int by_face = f > 0 && error_of(&r, 0, f) < error_of(&r, c, 0);
 

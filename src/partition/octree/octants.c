@@ -1,6 +1,7 @@
-/* Outline: the octree is refined with the triangles of the front, which tell
- * what is in the void, until octants are as wide as sizes allow; then balanced,
- * and each triangle takes those out that it is too close to. */
+/* Outline: the octree is refined together with the triangles of the front,
+ * which determine what is in the void, until octants are as narrow as the
+ * sizes require. It is then balanced, and each triangle removes the octants
+ * that it is too close to. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,8 +10,8 @@
 #include "partition/engine/engine.h"
 #include "partition/octree/octree_parts.h"
 
-/* Room between an octant and the front, in sizes, for cells that are graded
- * from the one to the other. */
+/* Distance between octants and front, in sizes, as room for cells graded
+ * between them. */
 #define ROOM 1.5 /* O1 */
 
 enum { MOST = 1 << 24 };
@@ -37,12 +38,12 @@ void vg_octants_release(struct vg_octants *t)
 static vg_status too_many(const struct maker *m, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "an octree of %g sizes has more than "
+                 "an octree with octants %g sizes wide has more than "
                  "%d octants; raise the coarsening",
                  m->coarsening, (int)MOST);
 }
 
-/* Eight leaves below the leaf i, which have its state. */
+/* Makes eight leaves below leaf i, with its state. */
 static vg_status split(struct maker *m, uint32_t i, struct vg_error *err)
 {
   struct vg_octants *t = m->t;
@@ -121,7 +122,7 @@ static vg_status refine_all(struct maker *m, const struct vg_front *v,
   return st;
 }
 
-/* The octant of that level, or a leaf above it, beside o. */
+/* The neighbour of o, at its level or a leaf above it. */
 static uint32_t beside(const struct vg_octants *t, const struct vg_octant *o,
                        int axis, int up)
 {
@@ -139,7 +140,8 @@ static uint32_t beside(const struct vg_octants *t, const struct vg_octant *o,
   return i;
 }
 
-/* Leaves that come are looked at in their turn, so one pass will do. */
+/* Balances the octree. One pass suffices, because new leaves are visited
+ * later. */
 static vg_status balance(struct maker *m, struct vg_error *err)
 {
   struct vg_octants *t = m->t;
@@ -157,12 +159,12 @@ static vg_status balance(struct maker *m, struct vg_error *err)
       if (b->state == VG_OCTANT_OUT || b->level + 1 >= o->level) continue;
       st = split(m, at, err);
       if (st < 0) return st;
-      d--; /* once more */
+      d--; /* check this side again */
     }
   return VG_OK;
 }
 
-/* --- room ---------------------------------------------------------------- */
+/* --- distance to the front ----------------------------------------------- */
 
 static double set_reach(const struct maker *m, uint32_t i)
 {
@@ -184,7 +186,7 @@ static double set_reach(const struct maker *m, uint32_t i)
   return o->reach;
 }
 
-/* Take the octants out that the box is too close to. */
+/* Removes the octants that are too close to the box. */
 static void take_out(const struct vg_octants *t, uint32_t i, const double lo[3],
                      const double hi[3])
 {
@@ -236,7 +238,8 @@ static void list_leaves(struct vg_octants *t, uint32_t i)
   for (uint32_t c = 0; o->child && c < 8; c++) list_leaves(t, o->child + c);
 }
 
-/* Each face is found from its smaller leaf, of equals from the lower one. */
+/* Each face is found from its smaller leaf or, for equal leaves, from the
+ * lower one. */
 static vg_status list_faces(struct vg_octants *t, struct vg_error *err)
 {
   for (size_t l = 0; l < t->n_leaf; l++)

@@ -1,6 +1,7 @@
-/* Outline: what hangs together of the free leaves is parted by itself, into its
- * share of the parts; pieces that hang apart join the part beside them, or
- * become parts of their own. What hangs together of the others is a gap. */
+/* Outline: each connected component of free leaves is divided into its share
+ * of the subdomains. Disconnected components of a subdomain join an adjacent
+ * subdomain, or become subdomains of their own. Each connected component of
+ * the other leaves is a gap region. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,27 +14,28 @@
 #include "partition/graph/graph.h"
 #include "partition/octree/octree_parts.h"
 
-/* Of the mean part: a place off the front with less is left to the gap, a piece
- * of a part that hangs apart joins what is beside it. */
+/* Share of the mean subdomain: a free component with less is left to the gap
+ * region, and a disconnected component of a subdomain joins an adjacent one. */
 #define SMALL 0.3 /* O2 */
 
-/* The gradient from which on cells are more by VG_LOAD_GRADED, as in loads. */
+/* Gradient from which the number of cells rises by VG_LOAD_GRADED, as in
+ * load.c. */
 #define GRADIENT 0.05 /* C15 */
 
-/* METIS may make parts so much larger than the mean. */
+/* Allowed ratio of METIS's largest subdomain to the mean. */
 #define IMBALANCE 1.05
 
 struct chooser {
   struct vg_octants *t;
   const struct vg_sizing *sizing;
   const struct vg_decomposition_options *options;
-  double *cells;   /* [n_leaf] of free leaves, in the list's order */
-  double *edge;    /* [n_leaf] size in the middle */
-  uint32_t *up;    /* [n_leaf] what hangs together */
+  double *cells;   /* [n_leaf] Cells of free leaves, in list order. */
+  double *edge;    /* [n_leaf] Size at the centre. */
+  uint32_t *up;    /* [n_leaf] Union-find of connected leaves. */
   uint32_t *local; /* [n_leaf] scratch */
-  double *sum;     /* [n_leaf] scratch: of sets, at their roots */
-  double per_cube; /* cells expected per leaf of the size */
-  size_t n_asked;  /* parts */
+  double *sum;     /* [n_leaf] Scratch: sums of sets, at their roots. */
+  double per_cube; /* Expected cells per leaf of the size. */
+  size_t n_asked;  /* Requested subdomains. */
 };
 
 static struct vg_octant *leaf_of(const struct chooser *c, size_t l)
@@ -46,10 +48,10 @@ static int is_free(const struct chooser *c, size_t l)
   return leaf_of(c, l)->state == VG_OCTANT_FREE;
 }
 
-/* --- what is where ------------------------------------------------------- */
+/* --- cells and connected sets -------------------------------------------- */
 
-/* Cells in a leaf: c / h^3, summed over its eight parts; more where sizes vary
- * (C15). */
+/* Cells in a leaf: c / h^3, summed over its eight octants, and more where
+ * sizes vary (C15). */
 static void weigh(struct chooser *c, size_t l)
 {
   const struct vg_octant *o = leaf_of(c, l);
@@ -69,13 +71,13 @@ static void weigh(struct chooser *c, size_t l)
   for (int k = 0; k < 3; k++)
     x[k] = vg_octants_place(c->t, k, o->at[k]) + 0.5 * side;
   c->edge[l] = vg_sizing_at(c->sizing, x);
-  /* of h between the parts' middles, half a side apart: four pairs each */
+  /* gradient between the octants' centres, half a side apart: four pairs
+   * each */
   more = VG_LOAD_GRADED * fmin(vg_norm(g) / (2 * side) / GRADIENT, 1);
   c->cells[l] = c->per_cube * side * side * side * sum / 8 * (1 + more);
 }
 
-/* While ids are the numbers of leaves: sets of those that have a face in
- * common and are alike. */
+/* While ids are leaf indices: unites leaves that share a face and are alike. */
 static void unite(struct chooser *c,
                   int (*alike)(const struct chooser *c, size_t a, size_t b))
 {
@@ -100,7 +102,7 @@ static int both_gap(const struct chooser *c, size_t a, size_t b)
   return !is_free(c, a) && !is_free(c, b);
 }
 
-/* local: parts. */
+/* local: subdomains. */
 static int one_part(const struct chooser *c, size_t a, size_t b)
 {
   return both_free(c, a, b) && c->local[a] == c->local[b];
@@ -119,7 +121,8 @@ static double sum_sets(struct chooser *c)
   return all;
 }
 
-/* Leave small sets to the gap, but never the largest. Returns the cells. */
+/* Leaves small sets to the gap region, but never the largest set. Returns the
+ * remaining cells. */
 static double drop_small(struct chooser *c, double least)
 {
   const size_t n = c->t->n_leaf;
@@ -134,14 +137,14 @@ static double drop_small(struct chooser *c, double least)
   return sum_sets(c);
 }
 
-/* --- parts --------------------------------------------------------------- */
+/* --- subdomains ---------------------------------------------------------- */
 
 /* The leaves of one set. */
 struct set {
   size_t n;
-  uint32_t *leaf; /* [n] numbers of leaves */
+  uint32_t *leaf; /* [n] Indices of leaves. */
   double *weight; /* [n] cells */
-  double (*x)[3]; /* [n] their middles */
+  double (*x)[3]; /* [n] Centres. */
 };
 
 static void set_release(struct set *s)
@@ -158,7 +161,7 @@ static vg_status set_make(struct chooser *c, uint32_t root, size_t n,
   s->weight = vg_alloc(n, sizeof *s->weight);
   s->x = vg_alloc(n, sizeof *s->x);
   if (!s->leaf || !s->weight || !s->x)
-    return vg_fail_memory(err, "the parts of octants");
+    return vg_fail_memory(err, "the subdomains of octants");
   for (size_t l = root; s->n < n; l++) {
     const struct vg_octant *o = leaf_of(c, l);
 
@@ -173,7 +176,7 @@ static vg_status set_make(struct chooser *c, uint32_t root, size_t n,
   return VG_OK;
 }
 
-/* Price of a face: about its triangles. */
+/* Cost of a face: approximately its triangles. */
 static int32_t price_of(const struct chooser *c, const struct vg_octant_face *f,
                         uint32_t a, uint32_t b)
 {
@@ -183,7 +186,7 @@ static int32_t price_of(const struct chooser *c, const struct vg_octant_face *f,
   return (int32_t)fmin(1 + 2.3 * side * side, 1e6);
 }
 
-/* The faces within the set, both ways. */
+/* Graph of the faces within the set, in both directions. */
 static vg_status set_graph(const struct chooser *c, const struct set *s,
                            struct vg_graph *g, struct vg_error *err)
 {
@@ -229,7 +232,7 @@ static void graph_release(struct vg_graph *g)
   free((void *)(uintptr_t)g->edge);
 }
 
-/* Part the set of a root into n parts, numbered from *at: c->local. */
+/* Divides the set of a root into n subdomains, numbered from *at: c->local. */
 static vg_status part_set(struct chooser *c, uint32_t root, size_t n_leaf,
                           size_t n, uint32_t *at, struct vg_error *err)
 {
@@ -237,7 +240,8 @@ static vg_status part_set(struct chooser *c, uint32_t root, size_t n_leaf,
   struct vg_graph g = { 0 };
   struct vg_graph_options o = { (int)n, IMBALANCE, 1, &c->t->elsewhere };
   uint32_t *part = vg_calloc(n_leaf, sizeof *part);
-  vg_status st = part ? VG_OK : vg_fail_memory(err, "the parts of octants");
+  vg_status st = part ? VG_OK
+                      : vg_fail_memory(err, "the subdomains of octants");
 
   if (st == VG_OK) st = set_make(c, root, n_leaf, &s, err);
   if (st == VG_OK && n > 1) {
@@ -258,12 +262,13 @@ static vg_status part_set(struct chooser *c, uint32_t root, size_t n_leaf,
   return st;
 }
 
-/* local out: parts of free leaves. */
+/* Divides all sets. local out: subdomains of free leaves. */
 static vg_status part_sets(struct chooser *c, double mean, struct vg_error *err)
 {
   const size_t n = c->t->n_leaf;
   uint32_t *count = vg_calloc(n, sizeof *count), at = 0;
-  vg_status st = count ? VG_OK : vg_fail_memory(err, "the parts of octants");
+  vg_status st = count ? VG_OK
+                       : vg_fail_memory(err, "the subdomains of octants");
 
   for (size_t l = 0; l < n; l++) {
     c->up[l] = vg_root_of(c->up, (uint32_t)l);
@@ -281,11 +286,11 @@ static vg_status part_sets(struct chooser *c, double mean, struct vg_error *err)
   return st;
 }
 
-/* Scratch for pieces that join parts: at roots. */
+/* Scratch for components that join subdomains, stored at roots. */
 struct pieces {
-  uint32_t *largest; /* [parts] the root of its largest piece */
-  uint32_t *into;    /* the part that a piece joins */
-  double *shared;    /* what they share */
+  uint32_t *largest; /* [subdomains] Root of its largest component. */
+  uint32_t *into;    /* Subdomain that a component joins. */
+  double *shared;    /* Face cost that they share. */
 };
 
 static void pieces_release(struct pieces *p)
@@ -295,7 +300,7 @@ static void pieces_release(struct pieces *p)
   free(p->shared);
 }
 
-/* What joins what: p->into. */
+/* Finds the subdomain that each component joins: p->into. */
 static void match_pieces(struct chooser *c, double least, struct pieces *p)
 {
   const struct vg_octants *t = c->t;
@@ -327,9 +332,10 @@ static void match_pieces(struct chooser *c, double least, struct pieces *p)
     }
 }
 
-/* Pieces of parts that hang apart: but for the largest, small ones join that
- * largest piece of a part which they have the dearest face in common with.
- * local: parts, in and out. Returns whether something was joined, or -1. */
+/* Joins disconnected components: all small ones, except the largest of each
+ * subdomain, join the largest component of the subdomain with the most
+ * expensive shared face. local: subdomains, in and out. Returns 1 if something
+ * was joined, 0 if not, or -1. */
 static int join_pieces(struct chooser *c, double least)
 {
   const size_t n = c->t->n_leaf;
@@ -358,9 +364,9 @@ static int join_pieces(struct chooser *c, double least)
   return joined;
 }
 
-/* --- the gap ------------------------------------------------------------- */
+/* --- the gap region ------------------------------------------------------ */
 
-/* Make the leaves one that the box meets. Returns one of them. */
+/* Unites the leaves that the box meets. Returns one of them. */
 static uint32_t unite_box(struct chooser *c, uint32_t i, const double lo[3],
                           const double hi[3], uint32_t first)
 {
@@ -395,7 +401,8 @@ static void box_of(const struct vg_front *v, size_t i, double lo[3],
   }
 }
 
-/* Ids of all leaves, and of the gap at each triangle. up: sets. */
+/* Sets the ids of all leaves, and of the gap region at each triangle. up:
+ * sets. */
 static vg_status give_ids(struct chooser *c, const struct vg_front *v,
                           uint32_t *gap, struct vg_error *err)
 {
@@ -403,7 +410,7 @@ static vg_status give_ids(struct chooser *c, const struct vg_front *v,
   const size_t n = t->n_leaf;
   uint32_t *id = vg_alloc(n, sizeof *id);
 
-  if (!id) return vg_fail_memory(err, "the parts of octants");
+  if (!id) return vg_fail_memory(err, "the subdomains of octants");
   unite(c, one_part);
   memset(id, 0xff, n * sizeof *id);
   t->n_part = t->n_gap = 0;
@@ -430,7 +437,7 @@ static vg_status give_ids(struct chooser *c, const struct vg_front *v,
   return VG_OK;
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- all steps ----------------------------------------------------------- */
 
 static vg_status choose(struct chooser *c, const struct vg_front *v,
                         double cells, uint32_t *gap, struct vg_error *err)
@@ -448,7 +455,7 @@ static vg_status choose(struct chooser *c, const struct vg_front *v,
   st = part_sets(c, mean, err);
   for (int joined = 1; st == VG_OK && joined;) {
     joined = join_pieces(c, SMALL * mean);
-    if (joined < 0) st = vg_fail_memory(err, "the parts of octants");
+    if (joined < 0) st = vg_fail_memory(err, "the subdomains of octants");
   }
   if (st == VG_OK) st = give_ids(c, v, gap, err);
   c->t->n_apart = c->t->n_part > c->n_asked ? c->t->n_part - c->n_asked : 0;
@@ -473,7 +480,7 @@ vg_status vg_octants_part(struct vg_octants *t, const struct vg_front *v,
   c.local = vg_alloc(n, sizeof *c.local);
   c.sum = vg_alloc(n, sizeof *c.sum);
   if (!c.cells || !c.edge || !c.up || !c.local || !c.sum)
-    st = vg_fail_memory(err, "the parts of octants");
+    st = vg_fail_memory(err, "the subdomains of octants");
   else st = choose(&c, v, cells, gap, err);
   free(c.cells);
   free(c.edge);

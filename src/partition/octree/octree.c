@@ -1,6 +1,6 @@
-/* Outline: octants, parts of them, patches between parts, triangles on these;
- * then the fronts that they make up, which are looked at before they are given
- * away. */
+/* Outline: octants, their subdomains, patches between subdomains, triangles on
+ * patches; then the fronts that these form, which are checked before they are
+ * returned. */
 #include "partition/octree/octree.h"
 
 #include <assert.h>
@@ -12,14 +12,15 @@
 #include "base/memory.h"
 #include "partition/octree/octree_parts.h"
 
-/* Widest octants in sizes, where it is chosen; and as many as are worth it. */
+/* Automatic maximum width of octants in sizes, and the maximum number of
+ * octants worthwhile. */
 #define NARROW 4.0 /* O3 */
 #define MANY 5e5
-/* Narrower ones have sides of hardly a triangle. */
+/* Narrower octants would have sides of less than two triangles. */
 #define LEAST 2.0
 
-/* What volumes may be off by for rounding, of the whole: sums of some millions
- * of terms, each as large. */
+/* Relative tolerance of volumes for rounding: they are sums of some millions
+ * of terms of similar size. */
 #define ROUNDING 1e-8
 
 struct maker {
@@ -34,10 +35,10 @@ struct maker {
   struct vg_patches patches;
   struct vg_interfaces faces;
   struct vg_decomposition out;
-  double spent; /* clock at the end of the step before */
+  double spent; /* Clock at the end of the previous step. */
 };
 
-/* Seconds since the step before. */
+/* Adds the time since the previous step. */
 static void note_time(struct maker *m, int step)
 {
   const double now = vg_clock();
@@ -57,15 +58,15 @@ static size_t n_free(const struct vg_octants *t)
   return n;
 }
 
-/* Narrow ones, which leave least to the gap; wider in meshes so large that
- * there would be too many. */
+/* Chooses narrow octants, which leave least to the gap region; wider ones in
+ * meshes so large that there would be too many. */
 static double choose_width(const struct maker *m)
 {
   const double per_cube = m->options->cells_per_cube;
   double wide = NARROW;
 
   if (m->options->coarsening > 0) return m->options->coarsening;
-  /* the least that octants hold, which have half the width: an eighth */
+  /* minimum cells per cube, which has half the width: an eighth */
   while (m->load->cells > MANY * per_cube / 8 * wide * wide * wide)
     wide *= 1.25;
   return wide;
@@ -92,8 +93,8 @@ static vg_status make_octants(struct maker *m, struct vg_error *err)
 struct filler {
   struct maker *m;
   struct vg_part *part;
-  uint32_t *own, *new; /* [front, interface points] their numbers in the
-                          part, or VG_OCTANT_NONE */
+  uint32_t *own, *new; /* [front, interface points] Their index in the
+                          subdomain, or VG_OCTANT_NONE. */
 };
 
 static uint32_t take_point(struct filler *f, uint32_t *number,
@@ -117,8 +118,9 @@ static vg_status make_room(struct vg_part *p, size_t n_face,
   to->face = vg_alloc(n_face, sizeof *to->face);
   to->x = vg_alloc(n_face, 3 * sizeof *to->x);
   to->id = vg_alloc(n_face, 3 * sizeof *to->id);
-  return to->face && to->x && to->id ? VG_OK
-                                     : vg_fail_memory(err, "a part's front");
+  return to->face && to->x && to->id
+         ? VG_OK
+         : vg_fail_memory(err, "the front of a subdomain");
 }
 
 static void give_back(struct vg_front *f)
@@ -130,7 +132,7 @@ static void give_back(struct vg_front *f)
   if (name) f->id = name;
 }
 
-/* Interface triangles of a patch, seen from above or from below. */
+/* Takes the interface triangles of a patch, seen from above or from below. */
 static void take_patch(struct filler *f, size_t patch, int above)
 {
   struct maker *m = f->m;
@@ -161,11 +163,11 @@ static void take_triangle(struct filler *f, size_t i)
   }
 }
 
-/* Lists of the patches, then triangles, of each part. */
+/* Lists of the patches, then triangles, of each subdomain. */
 struct bounds {
-  size_t *begin;  /* [parts + 2] */
-  uint32_t *item; /* patches: 2 i + 1 where the part is above;
-                     after them triangles, 2 (patches + i) */
+  size_t *begin;  /* [subdomains + 2] */
+  uint32_t *item; /* Patches: 2 i + 1 if the subdomain is above; then
+                     triangles, 2 (patches + i). */
 };
 
 static vg_status list_bounds(const struct maker *m, size_t n, struct bounds *b,
@@ -175,7 +177,7 @@ static vg_status list_bounds(const struct maker *m, size_t n, struct bounds *b,
 
   b->begin = vg_calloc(n + 2, sizeof *b->begin);
   b->item = vg_alloc(2 * n_patch + m->front->n_face, sizeof *b->item);
-  if (!b->begin || !b->item) return vg_fail_memory(err, "the parts");
+  if (!b->begin || !b->item) return vg_fail_memory(err, "the subdomains");
   for (int fill = 0; fill < 2; fill++) {
     for (size_t i = 0; i < n_patch; i++)
       for (int k = 0; k < 2; k++) {
@@ -187,7 +189,7 @@ static vg_status list_bounds(const struct maker *m, size_t n, struct bounds *b,
     for (size_t i = 0; i < m->front->n_face; i++) {
       if (m->gap[i] == UINT32_MAX)
         return vg_fail(err, VG_ERR_GEOMETRY,
-                       "triangle %zu of the front lies "
+                       "triangle %zu of the front is "
                        "in no octant",
                        i + 1);
       if (fill)
@@ -238,7 +240,7 @@ static vg_status fill_parts(struct maker *m, struct vg_error *err)
   f.new = vg_alloc(m->faces.n_point, sizeof *f.new);
   out->part = vg_calloc(n, sizeof *out->part);
   if (!f.own || !f.new || !out->part) {
-    st = vg_fail_memory(err, "the parts");
+    st = vg_fail_memory(err, "the subdomains");
     goto done;
   }
   out->n_part = n;
@@ -261,7 +263,7 @@ done:
 
 /* --- checks -------------------------------------------------------------- */
 
-/* Of the octants of each part; 0 for the gap. */
+/* Adds the volumes of the octants of each subdomain; 0 for the gap region. */
 static void add_octants(const struct vg_octants *t, double *volume)
 {
   for (size_t l = 0; l < t->n_leaf; l++) {
@@ -277,7 +279,7 @@ static vg_status check(const struct maker *m, struct vg_error *err)
   const struct vg_decomposition *p = &m->out;
   const double whole = vg_load_volume(m->front);
   double *octants = vg_calloc(p->n_part, sizeof *octants), sum = 0;
-  vg_status st = octants ? VG_OK : vg_fail_memory(err, "the parts");
+  vg_status st = octants ? VG_OK : vg_fail_memory(err, "the subdomains");
 
   if (st == VG_OK) add_octants(&m->t, octants);
   for (size_t k = 0; st == VG_OK && k < p->n_part; k++) {
@@ -287,39 +289,39 @@ static vg_status check(const struct maker *m, struct vg_error *err)
     sum += volume;
     if (bad)
       st = vg_fail(err, VG_ERR_GEOMETRY,
-                   "part %zu of %zu around octants is "
-                   "not closed at %zu edges; is the front?",
+                   "subdomain %zu of %zu of the octree is "
+                   "not closed at %zu edges; check that the front is closed",
                    k + 1, p->n_part, bad);
     else if (k < m->t.n_part ? fabs(volume - octants[k]) > ROUNDING * whole
                              : !(volume > -ROUNDING * whole))
       st = vg_fail(err, VG_ERR_GEOMETRY,
-                   "part %zu of %zu around octants has a "
-                   "volume of %g, not %g; is the front closed?",
+                   "subdomain %zu of %zu of the octree has a "
+                   "volume of %g instead of %g; check that the front is closed",
                    k + 1, p->n_part, volume, octants[k]);
   }
   if (st == VG_OK && !(fabs(sum - whole) <= ROUNDING * whole))
     st = vg_fail(err, VG_ERR_GEOMETRY,
-                 "parts around octants have a volume of "
-                 "%.9g, the void has %.9g; is its front closed?",
+                 "the subdomains of the octree have a volume of "
+                 "%.9g, the void has %.9g; check that its front is closed",
                  sum, whole);
   free(octants);
   return st;
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- all steps ----------------------------------------------------------- */
 
 static vg_status check_options(const struct vg_decomposition_options *o,
                                struct vg_error *err)
 {
   if (o->h_refine)
     return vg_fail(err, VG_ERR_INPUT,
-                   "octants have no coarse faces whose "
-                   "edges could be halved; leave interfaces at remesh");
+                   "the octree decomposition has no coarse faces whose "
+                   "edges could be halved; set interfaces to remesh");
   if (o->coarsening != 0 &&
       !(o->coarsening >= LEAST && isfinite(o->coarsening)))
     return vg_fail(err, VG_ERR_INPUT,
-                   "a coarsening of %g: octants are at "
-                   "least %g sizes wide; leave it out to have it chosen",
+                   "a coarsening of %g is too small: octants are at "
+                   "least %g sizes wide; omit it for the automatic value",
                    o->coarsening, LEAST);
   return VG_OK;
 }
@@ -343,7 +345,7 @@ static vg_status make(struct maker *m, struct vg_error *err)
 
   m->spent = vg_clock();
   m->gap = vg_alloc(m->front->n_face, sizeof *m->gap);
-  if (!m->gap) return vg_fail_memory(err, "the parts");
+  if (!m->gap) return vg_fail_memory(err, "the subdomains");
   st = make_octants(m, err);
   if (st == VG_OK) st = vg_patches_make(&m->t, &m->patches, err);
   if (st == VG_OK)

@@ -1,5 +1,5 @@
-/* Outline: curves are divided, then patches between them triangulated, each for
- * itself; then numbered in their order. */
+/* Outline: curves are divided, then the patches between them are triangulated
+ * separately and numbered in their order. */
 #include <assert.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -11,13 +11,14 @@
 #include "partition/engine/engine.h"
 #include "partition/octree/octree_parts.h"
 
-/* A curve or a patch, on its way through a loop. */
+/* State of a curve or a patch in a loop. */
 struct piece {
-  size_t n_step;          /* curves */
+  size_t n_step;          /* Curves: number of steps. */
   double *step;           /* [n_step + 1] */
-  size_t at;              /* the first of its points, in all */
-  size_t n, n_new, n_tri; /* patches */
-  uint32_t *point;        /* [n] on its border, rising */
+  size_t at;              /* Index of its first point among all points. */
+  size_t n, n_new, n_tri; /* Patches: points on the border, new points,
+                             triangles. */
+  uint32_t *point;        /* [n] Points on its border, ascending. */
   double (*add)[2];
   uint32_t (*tri)[3];
 };
@@ -29,8 +30,8 @@ struct mesher {
   const struct vg_engine *engine;
   struct vg_interfaces *out;
   struct piece *curve, *patch;
-  pthread_mutex_t lock; /* of what follows */
-  size_t failed;        /* the first one that did, in its loop */
+  pthread_mutex_t lock; /* Guards the members below. */
+  size_t failed;        /* First item of the loop that failed. */
   vg_status st;
   struct vg_error err;
 };
@@ -48,8 +49,8 @@ static int stops(const struct mesher *m)
   return m->engine && vg_engine_stopping(m->engine);
 }
 
-/* Of several failures that of the first item is told, so that messages repeat.
- * */
+/* Notes the failure of the first failed item, so that messages are
+ * reproducible. */
 static void note(struct mesher *m, size_t item, vg_status st,
                  const struct vg_error *why)
 {
@@ -114,7 +115,7 @@ static void divide_curves(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Room for more points in the list of all. */
+/* Adds room for more points to the list of all points. */
 static vg_status add_room(struct vg_interfaces *out, size_t more,
                           struct vg_error *err)
 {
@@ -157,7 +158,7 @@ static vg_status place_curves(struct mesher *m, struct vg_error *err)
   return VG_OK;
 }
 
-/* Point k of a curve, from below. */
+/* Point k of a curve, from its lower end. */
 static uint32_t on_curve(const struct mesher *m, size_t curve, size_t k)
 {
   const struct piece *q = &m->curve[curve];
@@ -206,7 +207,7 @@ static uint32_t number_of(const struct piece *q, uint32_t point)
   return (uint32_t)(at - q->point);
 }
 
-/* The border's segments, in numbers of all points; counter-clockwise. */
+/* Segments of the border, in the numbering of all points; counter-clockwise. */
 static size_t walk_border(const struct mesher *m, size_t patch,
                           uint32_t (*edge)[2])
 {

@@ -1,7 +1,8 @@
-/* Outline: edges of faces between parts are divided at all ends of edges on
- * their line (where octants of two sizes meet they overlap). A segment with two
- * faces in one plane, between the same two parts, is inside a patch; others
- * bound patches, and are curves where they go on straight. */
+/* Outline: edges of faces between subdomains are divided at all ends of edges
+ * on their line (where octants of two sizes meet, edges overlap). A segment
+ * with two faces in one plane, between the same two subdomains, is inside a
+ * patch. The other segments bound patches, and form a curve where they
+ * continue straight. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,16 +11,16 @@
 #include "base/union_find.h"
 #include "partition/octree/octree_parts.h"
 
-/* An edge of a square, before and after it was divided. */
+/* An edge of a square, before and after its division. */
 struct edge {
-  uint8_t axis;     /* that it runs along */
-  uint8_t is_right; /* the square is on its right, seen from above */
-  uint32_t line[2]; /* where, along the two axes that follow */
+  uint8_t axis;     /* Direction. */
+  uint8_t is_right; /* 1: the square is to its right, seen from above. */
+  uint32_t line[2]; /* Position along the two following axes. */
   uint32_t from, to;
   uint32_t square;
 };
 
-/* Where edges are that have all in common but the square: first .. end - 1. */
+/* Edges first .. end - 1, which differ only in the square. */
 struct segment {
   size_t first, end;
   uint32_t corner[2];
@@ -29,17 +30,16 @@ struct builder {
   const struct vg_octants *t;
   struct vg_patches *p;
   size_t n_square;
-  uint32_t *square; /* [n_square] faces between ids, by number */
-  uint32_t *up;     /* [n_square] sets: patches */
+  uint32_t *square; /* [n_square] Faces between different ids, by index. */
+  uint32_t *up;     /* [n_square] Union-find: patches. */
   size_t n_edge, cap_edge;
-  struct edge *edge; /* [n_edge] divided, sorted */
+  struct edge *edge; /* [n_edge] Divided and sorted. */
   size_t n_segment;
-  struct segment *segment; /* [n_segment] that bound patches, sorted */
+  struct segment *segment; /* [n_segment] That bound patches, sorted. */
   size_t n_end;
   struct end {
     uint32_t at[3], segment;
-  } * end; /* [n_end] of segments, by
-their place */
+  } * end; /* [n_end] Ends of segments, by position. */
 };
 
 static void builder_release(struct builder *b)
@@ -101,7 +101,7 @@ static int by_number(const void *p, const void *q)
   return order(*(const uint32_t *)p, *(const uint32_t *)q);
 }
 
-/* The four edges of a square. From above u to v is counter-clockwise. */
+/* The four edges of a square. Seen from above, u to v is counter-clockwise. */
 static void edges_of(const struct vg_octant_face *f, uint32_t square,
                      struct edge out[4])
 {
@@ -135,7 +135,7 @@ static vg_status list_squares(struct builder *b, struct edge **whole,
   b->up = vg_alloc(n, sizeof *b->up);
   *whole = vg_alloc(n, 4 * sizeof **whole);
   if (!b->square || !b->up || !*whole || n > UINT32_MAX / 4)
-    return vg_fail_memory(err, "the faces of parts");
+    return vg_fail_memory(err, "the faces of subdomains");
   for (size_t f = 0; f < t->n_face; f++) {
     const size_t s = b->n_square;
 
@@ -150,7 +150,7 @@ static vg_status list_squares(struct builder *b, struct edge **whole,
   return VG_OK;
 }
 
-/* The edges of one line, cut at all their ends. */
+/* Divides the edges of one line at all their ends. */
 static vg_status divide_line(struct builder *b, size_t n,
                              const struct edge *edge, uint32_t *place,
                              struct vg_error *err)
@@ -170,7 +170,7 @@ static vg_status divide_line(struct builder *b, size_t n,
       struct edge *to;
 
       if (vg_reserve(&b->edge, &b->cap_edge, b->n_edge + 1, sizeof *b->edge))
-        return vg_fail_memory(err, "the edges of parts");
+        return vg_fail_memory(err, "the edges of subdomains");
       to = &b->edge[b->n_edge++];
       *to = edge[i];
       to->from = place[k];
@@ -185,7 +185,7 @@ static vg_status divide_edges(struct builder *b, const struct edge *whole,
 {
   const size_t n = 4 * b->n_square;
   uint32_t *place = vg_alloc(n, 2 * sizeof *place);
-  vg_status st = place ? VG_OK : vg_fail_memory(err, "the edges of parts");
+  vg_status st = place ? VG_OK : vg_fail_memory(err, "the edges of subdomains");
 
   for (size_t i = 0, end; st == VG_OK && i < n; i = end) {
     for (end = i + 1; end < n && same_line(&whole[i], &whole[end]);) end++;
@@ -210,7 +210,7 @@ static int is_inside(const struct builder *b, const struct segment *s)
 static vg_status list_segments(struct builder *b, struct vg_error *err)
 {
   b->segment = vg_alloc(b->n_edge, sizeof *b->segment);
-  if (!b->segment) return vg_fail_memory(err, "the edges of parts");
+  if (!b->segment) return vg_fail_memory(err, "the edges of subdomains");
   for (size_t i = 0, end; i < b->n_edge; i = end) {
     struct segment s = { .first = i };
 
@@ -252,15 +252,16 @@ static int goes_on(const struct builder *b, size_t i)
   return next && same_line(e, next) && e->to == next->from;
 }
 
-/* Corners: ends of segments that are not the middle of a straight run of two.
- * Of segments out: their corners, or VG_OCTANT_NONE. */
+/* Lists the corners: ends of segments, except the middle of a straight run of
+ * two segments. Sets the corners of the segments, or VG_OCTANT_NONE. */
 static vg_status list_corners(struct builder *b, struct vg_error *err)
 {
   struct vg_patches *p = b->p;
 
   b->end = vg_alloc(2 * b->n_segment, sizeof *b->end);
   p->corner = vg_alloc(2 * b->n_segment, sizeof *p->corner);
-  if (!b->end || !p->corner) return vg_fail_memory(err, "the edges of parts");
+  if (!b->end || !p->corner)
+    return vg_fail_memory(err, "the edges of subdomains");
   for (size_t i = 0; i < b->n_segment; i++)
     for (int far = 0; far < 2; far++) {
       struct end *e = &b->end[b->n_end++];
@@ -289,14 +290,14 @@ static vg_status list_corners(struct builder *b, struct vg_error *err)
 
 /* --- patches and their borders ------------------------------------------- */
 
-/* number out: [n_square] at roots, of their patches. */
+/* number out: [n_square] index of the patch, at roots. */
 static vg_status list_patches(struct builder *b, uint32_t *number,
                               struct vg_error *err)
 {
   struct vg_patches *p = b->p;
 
   p->patch = vg_alloc(b->n_square, sizeof *p->patch);
-  if (!p->patch) return vg_fail_memory(err, "the faces of parts");
+  if (!p->patch) return vg_fail_memory(err, "the faces of subdomains");
   for (uint32_t s = 0; s < b->n_square; s++) {
     const struct vg_octant_face *f = face_of(b, s);
 
@@ -307,10 +308,11 @@ static vg_status list_patches(struct builder *b, uint32_t *number,
     };
   }
   p->begin = vg_calloc(p->n + 2, sizeof *p->begin);
-  return p->begin ? VG_OK : vg_fail_memory(err, "the faces of parts");
+  return p->begin ? VG_OK : vg_fail_memory(err, "the faces of subdomains");
 }
 
-/* Each curve from its first segment; the patches beside it stay the same. */
+/* Makes each curve from its first segment; the adjacent patches stay the same
+ * along it. */
 static void list_curves(struct builder *b)
 {
   struct vg_patches *p = b->p;
@@ -319,7 +321,8 @@ static void list_curves(struct builder *b)
     const struct segment *s = &b->segment[i];
 
     if (s->corner[0] != VG_OCTANT_NONE) {
-      b->segment[p->n_curve].first = s->first; /* of segments that start */
+      b->segment[p->n_curve].first = s->first; /* of segments that start a
+                                                  curve */
       b->segment[p->n_curve].end = s->end;
       p->curve[p->n_curve++] = (struct vg_patch_curve){
         b->edge[s->first].axis, { s->corner[0], s->corner[1] }
@@ -336,7 +339,7 @@ static vg_status list_borders(struct builder *b, const uint32_t *number,
   struct vg_patches *p = b->p;
 
   p->curve = vg_alloc(b->n_segment, sizeof *p->curve);
-  if (!p->curve) return vg_fail_memory(err, "the edges of parts");
+  if (!p->curve) return vg_fail_memory(err, "the edges of subdomains");
   list_curves(b);
   for (int fill = 0; fill < 2; fill++) {
     for (size_t i = 0; i < p->n_curve; i++)
@@ -351,7 +354,7 @@ static vg_status list_borders(struct builder *b, const uint32_t *number,
     if (fill) break;
     for (size_t k = 2; k < p->n + 2; k++) p->begin[k] += p->begin[k - 1];
     p->border = vg_alloc(p->begin[p->n + 1], sizeof *p->border);
-    if (!p->border) return vg_fail_memory(err, "the edges of parts");
+    if (!p->border) return vg_fail_memory(err, "the edges of subdomains");
   }
   return VG_OK;
 }
@@ -372,7 +375,7 @@ vg_status vg_patches_make(const struct vg_octants *t, struct vg_patches *p,
   VG_TRY(list_corners(&b, err));
   number = vg_alloc(b.n_square, sizeof *number);
   if (!number) {
-    st = vg_fail_memory(err, "the faces of parts");
+    st = vg_fail_memory(err, "the faces of subdomains");
     goto done;
   }
   VG_TRY(list_patches(&b, number, err));

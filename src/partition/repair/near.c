@@ -10,18 +10,19 @@
 #include "base/parallel.h"
 #include "core/judge/quality.h"
 
-/* Angles are counted in bins of so much of a degree, as the judge does. */
+/* Angles are counted in bins of this fraction of a degree, as in the mesh
+ * check. */
 enum { PER_DEGREE = 100, N_BIN = 180 * PER_DEGREE + 1 };
 
 struct census {
   const struct vg_partition *p;
-  uint64_t *count;   /* [threads][N_BIN] */
-  double *least;     /* [threads] degrees */
-  atomic_int failed; /* memory was refused */
+  uint64_t *count;   /* [threads][N_BIN] Counts per thread. */
+  double *least;     /* [threads] Smallest angle in degrees. */
+  atomic_int failed; /* 1: memory was refused. */
 };
 
-/* Points of other tasks, and those that it has for others: the boundary's are
- * nobody's. */
+/* Points of other tasks, and adopted points, which other tasks use too.
+ * Boundary points do not count. */
 static int on_interface(const struct vg_piece *q, uint32_t v)
 {
   if (v < q->n_in) return q->in[v] >> 32 != 0;
@@ -35,7 +36,7 @@ static int touches(const uint8_t *ring, const uint32_t cell[4], int reach)
   return 0;
 }
 
-/* cell out: [*n] those near. */
+/* Lists the cells near interfaces. cell out: [*n]. */
 static void list_near(const struct vg_piece *q, uint8_t *ring,
                       uint32_t (*cell)[4], size_t *n)
 {

@@ -1,4 +1,5 @@
-/* Repairs: cells gathered by cluster, repaired, and put back as pieces. */
+/* Repairs: gathers cells by cluster, repairs them, and puts them back as
+ * pieces. */
 #include "partition/repair/repair.h"
 
 #include <assert.h>
@@ -14,17 +15,18 @@
 #include "core/geometry/predicates.h"
 #include "partition/repair/repair_parts.h"
 
-/* Balls to a cluster: a few hundred cells each. What is left over is done in
- * further rounds. */
+/* Maximum number of balls per cluster, with a few hundred cells each. The
+ * remaining balls are processed in further rounds. */
 enum { MOST_BALLS = 100, ROUNDS = 3 }; /* R6 */
 
-/* Cells of a piece that clusters have. */
+/* Cells of a piece that belong to clusters. */
 struct picks {
   size_t n, cap;
-  struct vg_key *at; /* [n] cells by cluster */
+  struct vg_key *at; /* [n] Cells by cluster. */
   size_t n_taken, cap_taken;
-  struct vg_key *taken; /* [n_taken] cells with a corner in the balls of a
-                           further cluster, by the one that has them */
+  /* [n_taken] Cells that also have a corner in the balls of a further
+   * cluster, by the cluster that has them. */
+  struct vg_key *taken;
   vg_status st;
 };
 
@@ -35,24 +37,25 @@ static void picks_release(struct picks *s)
   memset(s, 0, sizeof *s);
 }
 
-/* One round. */
+/* State of one round. */
 struct repair {
   struct vg_partition *p;
   struct vg_owners owners;
   struct vg_spot_grid balls;
   struct picks *pick; /* [n_piece] */
   size_t n_block, cap_block;
-  struct vg_cluster_cells *block; /* of the clusters of this rank, by cluster
-                               and path */
-  struct vg_repair_boundary boundary; /* between their points */
+  struct vg_cluster_cells *block;     /* Cells of the clusters of this rank, by
+                                         cluster and path. */
+  struct vg_repair_boundary boundary; /* Boundary triangles between their
+                                         points. */
   size_t n_job;
-  size_t *first;                /* [n_job + 1] block */
+  size_t *first;                /* [n_job + 1] First block. */
   struct vg_repaired *repaired; /* [n_job] */
   struct vg_span *span;         /* [n_job] */
   vg_status *st;                /* [n_job] */
-  uint64_t *better;             /* [n_cluster] on all ranks */
-  size_t number;                /* clusters of earlier rounds */
-  struct vg_spans *spans;       /* tasks of this rank */
+  uint64_t *better;             /* [n_cluster] Improved, on any rank. */
+  size_t number;                /* Clusters of earlier rounds. */
+  struct vg_spans *spans;       /* Tasks of this rank. */
 };
 
 static void repair_free(struct repair *r)
@@ -75,7 +78,7 @@ static void repair_free(struct repair *r)
   vg_repair_boundary_release(&r->boundary);
 }
 
-/* --- which cells --------------------------------------------------------- */
+/* --- selection of cells -------------------------------------------------- */
 
 static int add(size_t *n, size_t *cap, struct vg_key **list, uint32_t cluster,
                size_t cell)
@@ -85,7 +88,7 @@ static int add(size_t *n, size_t *cap, struct vg_key **list, uint32_t cluster,
   return 0;
 }
 
-/* A cell with corners in the balls of two clusters is the first one's. */
+/* A cell with corners in the balls of two clusters belongs to the first one. */
 static vg_status pick_in(const struct vg_piece *q, const uint32_t *in,
                          struct picks *s)
 {
@@ -140,15 +143,15 @@ static vg_status pick(struct repair *r, struct vg_error *err)
   return VG_OK;
 }
 
-/* --- to the ranks that repair -------------------------------------------- */
+/* --- transfer to the repairing ranks ------------------------------------- */
 
 static uint64_t name_of(const struct vg_piece *q, uint32_t v)
 {
   return v < q->n_in ? q->in[v] : VG_POINT_ID(q->serial, v - q->n_in);
 }
 
-/* Corners in the ball of a further cluster: that one does not get the cell, so
- * it must hold them. */
+/* Sends corners in the ball of a further cluster, which does not get the cell
+ * and must therefore hold these points fixed. */
 static void put_taken(struct repair *r, const struct vg_piece *q,
                       const struct vg_key *taken, struct vg_outbox *post)
 {
@@ -169,7 +172,8 @@ static void put_taken(struct repair *r, const struct vg_piece *q,
   }
 }
 
-/* The cells of one cluster: pick [n]. number: [n points], VG_NO_CLUSTER. */
+/* Makes the block of one cluster: pick [n]. number: [n points],
+ * VG_NO_CLUSTER. */
 static void fill_block(const struct vg_piece *q, size_t n,
                        const struct vg_key *pick, uint32_t *number,
                        struct vg_cluster_cells *b)
@@ -225,8 +229,8 @@ static vg_status put_piece(struct repair *r, size_t k, struct vg_outbox *post,
   return VG_OK;
 }
 
-/* What is only taken comes last: its points have no cells of their own, so
- * their order does not matter. */
+/* Blocks without cells come last: their points have no cells, so their order
+ * does not matter. */
 static int by_path(const void *a, const void *b)
 {
   const struct vg_cluster_cells *s = a, *t = b;
@@ -309,8 +313,8 @@ static vg_status repair_clusters(struct repair *r, struct vg_error *err)
   for (size_t k = 0; k < r->n_job; k++) {
     if (r->st[k] < 0)
       return vg_fail(err, r->st[k],
-                     "cells beside interfaces could not be "
-                     "mended: %s",
+                     "cells at interfaces could not be "
+                     "repaired: %s",
                      vg_status_name(r->st[k]));
     VG_TRY(vg_spans_add(r->spans, &r->span[k], err));
   }
@@ -318,7 +322,8 @@ done:
   return st;
 }
 
-/* Which clusters got better, and what that came to, on all ranks. */
+/* Combines, over all ranks, which clusters were improved, and their
+ * statistics. */
 static vg_status share_outcomes(struct repair *r, struct vg_comm *comm,
                                 struct vg_error *err)
 {
@@ -349,7 +354,8 @@ static vg_status share_outcomes(struct repair *r, struct vg_comm *comm,
 
 /* --- putting back -------------------------------------------------------- */
 
-/* Drop cells that clusters took, and points of others then not used. */
+/* Drops cells that clusters took, and points of others that are no longer
+ * used. */
 static vg_status shrink(struct vg_piece *q, const struct picks *s,
                         const uint64_t *better, struct vg_error *err)
 {
@@ -378,7 +384,7 @@ static vg_status remove_cells(struct repair *r, struct vg_error *err)
   return VG_OK;
 }
 
-/* Points that moved, to those who own them. */
+/* A moved point, for its owner. */
 struct move {
   uint64_t name;
   double x[3];
@@ -449,14 +455,14 @@ static vg_status put_back(struct repair *r, struct vg_comm *comm,
   if (st < 0) return st;
   take_moves(r, from);
   vg_bytes_release(from, (size_t)r->p->size);
-  /* the picks were those of the pieces there were */
+  /* the picks refer to the previous pieces */
   for (size_t k = 0; k < r->p->n_piece; k++) picks_release(&r->pick[k]);
   free(r->pick);
   r->pick = NULL;
   return vg_comm_agree(comm, add_pieces(r, err), err);
 }
 
-/* --- the whole ----------------------------------------------------------- */
+/* --- all rounds ---------------------------------------------------------- */
 
 static vg_status round_of(struct repair *r, struct vg_comm *comm, size_t n,
                           const struct vg_spot *spot, struct vg_error *err)
@@ -470,8 +476,8 @@ static vg_status round_of(struct repair *r, struct vg_comm *comm, size_t n,
   return st == VG_OK ? put_back(r, comm, err) : st;
 }
 
-/* Balls for the next round: those that this one left over, and, after the
- * first, large ones around what stayed bad. */
+/* Lists the balls for the next round: those that this round left over and,
+ * after the first round, large ones around cells that stayed bad. */
 static vg_status next_round(struct repair *r, struct vg_comm *comm, int first,
                             size_t *n, struct vg_spot **spot,
                             struct vg_error *err)
@@ -518,7 +524,7 @@ static vg_status all_rounds(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
-/* What ranks combine: sums and extremes. */
+/* Members that ranks combine: sums and extremes. */
 #define ROW(member, kind, rule)                                                \
   VG_ENTRY(NULL, struct vg_partition_report, member, kind, rule)
 static const struct vg_entry entry[] = {
@@ -529,8 +535,8 @@ static const struct vg_entry entry[] = {
 };
 static const struct vg_entries fields = { sizeof entry / sizeof *entry, entry };
 
-/* Cells of the pieces of this rank that are not positive, or have a point that
- * is out of range. */
+/* Counts the cells of this rank's pieces that are not positive or have a point
+ * that is out of range. */
 static size_t bad_cells(const struct vg_partition *p)
 {
   size_t bad = 0;
@@ -559,7 +565,7 @@ vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
   double t0 = vg_clock();
   vg_status st;
 
-  /* the regular tetrahedron, where there is nothing to do */
+  /* regular tetrahedron, if there is nothing to do */
   p->report.repair_worst = p->report.repair_worst_left = 8.0 / 9;
   VG_CHECK("the tasks of the partition", bad_cells(p));
   st = all_rounds(p, comm, &own, err);

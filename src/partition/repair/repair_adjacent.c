@@ -1,5 +1,5 @@
-/* Points next to interfaces: their neighbours there moved, so they get a sweep
- * more. */
+/* Points adjacent to interface points: these have moved, so the adjacent
+ * points get another sweep. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,15 +11,15 @@
 struct strip {
   const struct vg_piece *q;
   size_t n_hit;
-  const uint32_t *hit;   /* [n_hit] cells with a corner on an interface */
-  const uint8_t *shared; /* [q.n_point] that stay; or NULL: none */
-  uint8_t *moves;        /* [q.n_in + q.n_point] */
+  const uint32_t *hit;   /* [n_hit] Cells with a corner on an interface. */
+  const uint8_t *shared; /* [q.n_point] Points that stay, or NULL: none. */
+  uint8_t *moves;        /* [q.n_in + q.n_point] 1: may move. */
   size_t n;
-  uint32_t *point;  /* [n] that may move */
-  struct vg_tets t; /* cells around them, without links; x is q's */
+  uint32_t *point;  /* [n] Points that may move. */
+  struct vg_tets t; /* Cells around them, without links; x is q's. */
   size_t cap_flag, cap_shape, cap_on;
-  float *shape, *old; /* [t.n_cell] now, before */
-  uint8_t *on;        /* [t.n_cell] has a corner on an interface */
+  float *shape, *old; /* [t.n_cell] Now, before. */
+  uint8_t *on;        /* [t.n_cell] 1: has a corner on an interface. */
 };
 
 static vg_status find_points(struct strip *s)
@@ -76,8 +76,8 @@ static vg_status take_cells(struct strip *s)
   return VG_OK;
 }
 
-/* What makes a bad cell better may spoil one off the interface, where nobody
- * else looks. */
+/* Lists cells that got worse away from the interface, where no other step
+ * detects them. */
 static vg_status list_bad(const struct strip *s, const struct vg_sizing *sizing,
                           struct vg_spots *out)
 {

@@ -1,4 +1,4 @@
-/* Triangles of the boundary, between some of its points. */
+/* Boundary triangles between some of the boundary points. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* Cells of several pieces joined by the names of their points, and repaired. */
+/* Joins cells of several pieces by the global ids of their points, and repairs
+ * them. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,10 +11,11 @@
 #include "core/geometry/shape.h"
 #include "partition/repair/repair_parts.h"
 
-/* As vg_shape: what stays below 5 degrees, or above 175, is tried again. */
+/* Value of vg_shape: cells that stay below 5 degrees, or above 175, are tried
+ * again. */
 static const double hopeless = 0.0076; /* R7 */
 
-/* --- as they travel ------------------------------------------------------ */
+/* --- messages ------------------------------------------------------------ */
 
 void vg_cluster_cells_release(struct vg_cluster_cells *b)
 {
@@ -70,14 +72,14 @@ struct joint {
   const struct vg_cluster_cells *block;
   const struct vg_spot_grid *balls;
   const struct vg_repair_boundary *boundary;
-  /* points in the order in which they are first met */
+  /* points in the order of first use */
   size_t n_point, n_fixed, n_cell;
   uint64_t *name;
   double (*x)[3];
   uint8_t *fixed;
-  uint32_t *number;      /* [n_point] in the tetrahedra, fixed ones first */
-  uint32_t *point;       /* [n_point] and back */
-  struct vg_table table; /* points by their names */
+  uint32_t *number; /* [n_point] Index in the tetrahedra, fixed points first. */
+  uint32_t *point;  /* [n_point] Inverse. */
+  struct vg_table table; /* Points by global id. */
   uint32_t **local;      /* [n_block][block.n_point] */
   struct vg_tets t;
 };
@@ -119,7 +121,7 @@ static vg_status joint_new(struct joint *j, struct vg_error *err)
   return VG_OK;
 }
 
-/* The point of that name, which is added when it is new. */
+/* Finds or adds the point with that global id. */
 static uint32_t point_of(struct joint *j, uint64_t name, const double x[3])
 {
   uint32_t *at;
@@ -132,8 +134,8 @@ static uint32_t point_of(struct joint *j, uint64_t name, const double x[3])
   return (uint32_t)j->n_point++;
 }
 
-/* Points of the boundary, points outside the balls, and those that another
- * cluster has cells of, stay. */
+/* Fixes points of the boundary, points outside the balls, and points of which
+ * another cluster has cells. */
 static void join_points(struct joint *j)
 {
   size_t n_free = 0;
@@ -174,9 +176,9 @@ static int on_rim(const struct joint *j, uint32_t c, int i)
   return vg_repair_boundary_has(j->boundary, at);
 }
 
-/* Faces around the cells and sheets of the boundary are fixed. Other faces of
- * three boundary points are not: between them lie flat cells over edges that
- * the boundary has the other way round. */
+/* Fixes the outer faces of the cells and sheets of the boundary. Other faces
+ * of three boundary points are free: between them are flat cells over edges
+ * that the boundary has swapped. */
 static void fix_faces(struct joint *j)
 {
   struct vg_tets *t = &j->t;
@@ -212,11 +214,11 @@ static vg_status join_cells(struct joint *j, struct vg_error *err)
   return st;
 }
 
-/* --- what came of it ----------------------------------------------------- */
+/* --- results ------------------------------------------------------------- */
 
 enum { CLASSES = 3 };
 
-/* The worst cell, and cells below 5, 10 and 25 degrees. */
+/* Shape of the worst cell, and number of cells below 5, 10 and 25 degrees. */
 struct tally {
   double worst;
   uint64_t n[CLASSES];
@@ -239,7 +241,7 @@ static struct tally measure(const struct vg_tets *t)
   return s;
 }
 
-/* The worst cell and the very bad ones decide: a point put in for them may
+/* The worst cell and the very bad ones decide: a point inserted for them may
  * leave a few more cells that are only bad. */
 static int is_better(const struct tally *now, const struct tally *old)
 {
@@ -255,8 +257,9 @@ static int is_better(const struct tally *now, const struct tally *old)
   return now->worst > old->worst;
 }
 
-/* Numbers of the points that cells use, in a piece: those of others first.
- * to out: [t.n_point] or VG_NONE. 0: a point of others lost all its cells. */
+/* Numbers the points that cells use for a piece, points of other pieces first.
+ * to out: [t.n_point] or VG_NONE. Returns 0 if a point of another piece lost
+ * all its cells. */
 static int number_points(const struct joint *j, struct vg_piece *piece,
                          uint32_t *to)
 {
@@ -311,7 +314,7 @@ static vg_status to_piece(const struct joint *j, struct vg_repaired *m,
   return VG_OK;
 }
 
-/* Where another attempt needs more room. */
+/* Lists balls around cells for which another attempt needs more room. */
 static vg_status list_left(const struct joint *j,
                            const struct vg_sizing *sizing,
                            struct vg_repaired *m, struct vg_error *err)
@@ -384,7 +387,7 @@ vg_status vg_repair_cluster(size_t n, const struct vg_cluster_cells *block,
   if (st == VG_OK) st = take(&j, &old, &m, err);
   if (st == VG_OK) st = list_left(&j, sizing, &m, err);
   if (st == VG_ERR_GEOMETRY) {
-    /* cells that do not fit together, or flat ones, are left to the judge */
+    /* inconsistent or flat cells are left to the mesh check */
     m.better = 0;
     m.worst_left = m.worst;
     st = VG_OK;

@@ -1,4 +1,4 @@
-/* Cells of a piece dropped and added. */
+/* Removes and adds cells of a piece. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ void vg_edit_release(struct vg_edit *c)
   memset(c, 0, sizeof *c);
 }
 
-/* Cells that stay, then those that come. */
+/* Keeps the remaining cells and appends the new ones. */
 static vg_status edit_cells(struct vg_piece *q, const struct vg_edit *c)
 {
   size_t kept = 0;
@@ -37,7 +37,7 @@ static vg_status edit_cells(struct vg_piece *q, const struct vg_edit *c)
   return VG_OK;
 }
 
-/* Room behind the points for those that come. */
+/* Makes room for new points of other pieces. */
 static vg_status make_room(struct vg_piece *q, size_t more)
 {
   size_t n = q->n_in + q->n_point;
@@ -61,8 +61,8 @@ static vg_status make_room(struct vg_piece *q, size_t more)
   return VG_OK;
 }
 
-/* Points of others that cells use, those there were first; then its own. to:
- * [n_in + n_point + c.n_point] 0: used; out: numbers. */
+/* Renumbers the used points of other pieces, old ones first, then the piece's
+ * own. to: [n_in + n_point + c.n_point] 0: used; out: new numbers. */
 static void edit_points(struct vg_piece *q, const struct vg_edit *c,
                         uint32_t *to)
 {

@@ -1,4 +1,4 @@
-/* Balls around bad cells, who has which piece, and messages to other ranks. */
+/* Balls around bad cells, owners of pieces, and messages to other ranks. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,8 +9,8 @@
 #include "partition/repair/repair_parts.h"
 
 /* R10: the worse a cell, the larger its ball: `reach` local spacings, and
- * `most` times as far as its own corners. A cell that stayed bad needs much
- * room, next to long triangles of a sharp edge. */
+ * `most` times the distance of its own corners. A cell that stayed bad needs
+ * much room, for example next to long triangles at a sharp edge. */
 static const struct {
   double reach, most;
 } ball[VG_SPOT_SIZES] = { { 1.2, 1.01 }, { 2.5, 1.01 }, { 4, 2 } };
@@ -24,7 +24,7 @@ static int by_serial(const void *a, const void *b)
   return s->serial < t->serial ? -1 : s->serial > t->serial;
 }
 
-/* As it travels. */
+/* An owner as sent to other ranks. */
 struct listed {
   struct vg_owner o;
   char path[VG_PATH_MAX];
@@ -143,9 +143,9 @@ vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
 
 /* --- bad cells ----------------------------------------------------------- */
 
-/* The ball of a long cell far out may reach over all that is fine, and hold
- * most of the mesh: it is halved until no spacing in it is less than this share
- * of its radius (R8), even if the cell's own corners are then outside. */
+/* The ball of a long cell in a coarse region may cover everything fine, and
+ * contain most of the mesh. It is halved until no spacing inside is below this
+ * share of its radius (R8), even if the cell's own corners are then outside. */
 static const double least_spacing = 1.0 / 48;
 
 static void keep_small(const struct vg_sizing *sizing, struct vg_spot *s)
@@ -191,7 +191,7 @@ vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
   return VG_OK;
 }
 
-/* --- of all ranks -------------------------------------------------------- */
+/* --- gathering ----------------------------------------------------------- */
 
 static int by_place(const void *a, const void *b)
 {

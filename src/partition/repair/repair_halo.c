@@ -1,5 +1,4 @@
-/* Halos: what the owner of points on an interface needs of the cells that
- * other pieces have around them. */
+/* Halos: the cells of other pieces that the owner of interface points needs. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +6,7 @@
 #include "base/memory.h"
 #include "partition/repair/repair_parts.h"
 
-/* --- as they travel ------------------------------------------------------ */
+/* --- messages ------------------------------------------------------------ */
 
 void vg_halo_release(struct vg_halo *s)
 {
@@ -68,20 +67,19 @@ struct hit {
   uint32_t cell, owner;
 };
 
-/* A piece, and those whose points it uses. */
+/* A piece and the owners whose points it uses. */
 struct user {
   const struct vg_piece *q;
   const struct vg_owner *self;
   size_t n_owner, cap_owner;
-  const struct vg_owner **owner; /* [n_owner] in the order of first use */
-  uint32_t *of;                  /* [n_in] place in owner, VG_NO_CLUSTER: the
-                                    boundary's */
+  const struct vg_owner **owner; /* [n_owner] In the order of first use. */
+  uint32_t *of; /* [n_in] Index in owner; VG_NO_CLUSTER: a boundary point. */
   size_t n_hit, cap_hit;
-  struct hit *hit; /* [n_hit] by cell */
-  size_t *first;   /* [n_owner + 2] cells of each owner's halo */
+  struct hit *hit; /* [n_hit] Sorted by cell. */
+  size_t *first;   /* [n_owner + 2] Cells of each owner's halo. */
   uint32_t *cell;
-  uint32_t *number; /* [n_in + n_point] scratch */
-  uint32_t *list;   /* vertices of a halo */
+  uint32_t *number; /* [n_in + n_point] Scratch. */
+  uint32_t *list;   /* Vertices of a halo. */
 };
 
 static void user_release(struct user *u)
@@ -122,7 +120,7 @@ static vg_status find_owners(struct user *u, const struct vg_owners *owners)
   return VG_OK;
 }
 
-/* Whose points a cell has: out [4], each once; returns how many. */
+/* Owners of a cell's points: out [4], each once; returns their number. */
 static int owners_at(const struct user *u, const uint32_t *v, uint32_t *out)
 {
   int n = 0;
@@ -137,7 +135,8 @@ static int owners_at(const struct user *u, const uint32_t *v, uint32_t *out)
   return n;
 }
 
-/* One pass over the cells, most of which have nothing to do with others. */
+/* Finds hits in one pass over the cells, most of which have no points of
+ * others. */
 static vg_status find_hits(struct user *u)
 {
   const struct vg_piece *q = u->q;
@@ -170,8 +169,8 @@ static vg_status list_cells(struct user *u)
   return VG_OK;
 }
 
-/* Numbers of the vertices of a halo's cells: the owner's, then the others,
- * each in the order in which they are met. Returns how many in all. */
+/* Numbers the vertices of a halo's cells: the owner's, then the others, each
+ * in the order of first use. Returns their number. */
 static size_t number_vertices(struct user *u, uint32_t owner, size_t n,
                               const uint32_t *cell, struct vg_halo *s)
 {

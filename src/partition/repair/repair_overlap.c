@@ -1,5 +1,6 @@
-/* The cells around an owner's points on interfaces, those of other pieces
- * joined to its own by the names of their points. */
+/* Makes the overlap of an owner: the cells around its interface points, where
+ * the cells of other pieces are joined to its own by the global ids of their
+ * points. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -46,7 +47,7 @@ static uint32_t *find_name(const struct vg_overlap *f, uint64_t name)
   return at;
 }
 
-/* The vertex of that name, which is added when it is new. */
+/* Finds or adds the vertex with that global id. */
 static uint32_t vertex_of(struct vg_overlap *f, uint64_t name,
                           const double x[3])
 {
@@ -115,14 +116,14 @@ static void hold(struct vg_overlap *f, const uint32_t *v)
     if (is_shared(f, v[i])) f->stays[v[i] - f->q->n_in] = 1;
 }
 
-/* Is a zone's turn before that of the owner? */
+/* Is the turn of a zone before that of the owner? */
 static int is_before(const struct vg_overlap *f, uint32_t order)
 {
   if (order == VG_NO_ZONE) return 0;
   return f->first ? order < f->self->order : order > f->self->order;
 }
 
-/* The zone that vertex v < q.n_in is of. */
+/* The zone that owns vertex v < q.n_in. */
 static uint32_t zone_of(const struct vg_overlap *f,
                         const struct vg_owners *owners, uint32_t v,
                         const struct vg_owner **last)
@@ -171,8 +172,7 @@ static void add_halo(struct vg_overlap *f, const struct vg_halo *s,
       v[i] = vertex[k];
       if (k < s->n_known || !is_before(f, s->zone[k - s->n_known])) continue;
       kind |= VG_OVERLAP_LATER;
-      /* the one that has the cell looks at it only where others use that
-       * point */
+      /* the piece that has the cell handles it only if others use that point */
       if (s->zone[k - s->n_known] != s->order) kind |= VG_OVERLAP_CLAIMED;
     }
     if (kind) hold(f, v);

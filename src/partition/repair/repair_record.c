@@ -1,4 +1,4 @@
-/* What repairs took, as tasks in the record of a run: they wait for all leaves
+/* Times of repairs, as tasks in the trace of a run: they wait for all leaves
  * and for nothing else. */
 #include <assert.h>
 #include <stdio.h>
@@ -29,15 +29,16 @@ void vg_repair_end(struct vg_span *s, const char *what, size_t number,
   snprintf(s->path, sizeof s->path, "0R%s%06zu", what, number);
 }
 
-/* Lists of all ranks in that of rank 0; others keep their own. Clocks of two
- * nodes have nothing in common: times are told since the repairs began. */
+/* Collects the lists of all ranks on rank 0; other ranks keep their own. The
+ * clocks of two nodes are unrelated, so times are relative to the start of the
+ * repairs. */
 static vg_status collect(const struct vg_partition *p, struct vg_comm *comm,
                          double begin, struct vg_spans *own,
                          struct vg_spans *spans, struct vg_error *err)
 {
   struct vg_bytes *all = vg_calloc((size_t)p->size, sizeof *all);
   struct vg_bytes mine = { own->n * sizeof *own->span, (void *)own->span };
-  vg_status st = all ? VG_OK : vg_fail_memory(err, "the record of tasks");
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "the trace of tasks");
 
   for (size_t k = 0; k < own->n; k++) {
     own->span[k].rank = own->span[k].home = p->rank;

@@ -1,16 +1,18 @@
-/* Swaps and smoothing across interfaces, and bad cells that are left there.
+/* Swaps and smoothing across interfaces, and the bad cells that remain there.
  *
- * A task cannot move the points of the front that it is given, nor those that
- * its own zone leaves to others, nor swap across that front: here that is made
- * up for. Each piece sends its cells with corners among the points of another
- * to that one's rank. The owner smooths its points there; then the other points
- * of those cells are smoothed, each where it is; then the owner swaps what is
- * not good, and smooths again. In a level field the first time is enough.
+ * A task can move neither the points of its front nor, in a zone, the points
+ * that it leaves to others, and it cannot swap across that front. This is done
+ * here afterwards. Each piece sends its cells with corners among the points of
+ * another piece (halos) to the rank of that piece. The owner smooths its
+ * points there. The other points of those cells are then smoothed, each in its
+ * own piece. Finally the owner swaps cells that are not good, and smooths
+ * again. In a region of uniform size the first pass is enough.
  *
- * Of two points of different zones with a cell in common, that of the earlier
- * path may move, the second time that of the later one, and swaps are made
- * only among cells with which no other zone has to do: so owners do not depend
- * on each other, and the outcome not on ranks. */
+ * Of two points of different zones that share a cell, in the first pass the
+ * point of the zone with the earlier path may move, in the second pass that of
+ * the later path. Swaps are made only among cells that no other zone may
+ * change. Owners are therefore independent of each other, and the result is
+ * independent of ranks. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,39 +22,40 @@
 #include "core/geometry/shape.h"
 #include "partition/repair/repair_parts.h"
 
-/* A field is level when fewer than one in so many cells beside interfaces
- * would be swapped: it is one in 50 on a box, one in 8 where sizes vary. */
+/* Sizes count as uniform when fewer than one in this many cells at interfaces
+ * would be swapped: it is one in 50 on a box, and one in 8 where sizes vary. */
 enum { LEVEL = 30 }; /* R5 */
 
 enum { FIND, SMOOTH, ADJACENT, SWAP, N_SPAN };
 
-/* What came of a piece. */
+/* State of a piece. */
 struct outcome {
   size_t n_halo;
-  struct vg_halo *halo; /* [n_halo] its cells around others' points */
+  struct vg_halo *halo; /* [n_halo] Its cells around points of other pieces. */
   size_t n_hit;
-  uint32_t *hit;   /* [n_hit] those with a corner on an interface */
-  uint8_t *moved;  /* [n_point] or NULL: no halos */
-  uint8_t *shared; /* [n_point] of a zone, or NULL */
+  uint32_t *hit;   /* [n_hit] Its cells with a corner on an interface. */
+  uint8_t *moved;  /* [n_point] or NULL: no halos. */
+  uint8_t *shared; /* [n_point] Interface points of a zone, or NULL. */
   struct vg_spots bad;
   size_t n_moved, n_swap;
-  size_t n_cell, n_fair;       /* around its points; below VG_SHAPE_SWAP */
-  struct vg_edit edit;         /* cells swapped */
-  struct vg_span span[N_SPAN]; /* what is done for it, in turn */
+  size_t n_cell, n_fair;       /* Cells around its points; those below
+                                  VG_SHAPE_SWAP. */
+  struct vg_edit edit;         /* Swapped cells. */
+  struct vg_span span[N_SPAN]; /* Trace of the steps for it. */
   vg_status st;
 };
 
 struct smoothing {
   struct vg_partition *p;
   const struct vg_owners *owners;
-  int first;           /* the first time of two */
+  int first;           /* 1: the first of two passes. */
   struct outcome *out; /* [n_piece] */
   size_t n_far, cap_far;
-  struct vg_halo *far; /* [n_far] that came from other ranks */
+  struct vg_halo *far; /* [n_far] From other ranks. */
   size_t n_halo;
-  struct vg_halo **halo; /* [n_halo] around points of this rank, by owner
-                            and the path of those who have the cells */
-  size_t *first_halo;    /* [n_piece + 1] halo */
+  struct vg_halo **halo; /* [n_halo] Around points of this rank, by owner and
+                            by the path of the piece that has the cells. */
+  size_t *first_halo;    /* [n_piece + 1] First halo of each piece. */
 };
 
 static void smoothing_free(struct smoothing *s)
@@ -75,7 +78,7 @@ static void smoothing_free(struct smoothing *s)
   free(s->first_halo);
 }
 
-/* --- halos to the owners of the points ----------------------------------- */
+/* --- sending halos to the owners ----------------------------------------- */
 
 static void halo_body(void *context, size_t first, size_t end, int worker)
 {
@@ -146,7 +149,7 @@ static int by_owner(const void *a, const void *b)
   return s->order < t->order ? -1 : s->order > t->order;
 }
 
-/* Own halos stay where they are. */
+/* Sorts the halos by owner; those of this rank stay where they are. */
 static vg_status sort_halos(struct smoothing *s, struct vg_error *err)
 {
   size_t n = 0, n_piece = s->p->n_piece;
@@ -185,7 +188,7 @@ static vg_status send_halos(struct smoothing *s, struct vg_comm *comm,
   return vg_comm_agree(comm, st, err);
 }
 
-/* --- the points of one owner --------------------------------------------- */
+/* --- smoothing of one owner ---------------------------------------------- */
 
 static vg_status smooth(struct vg_overlap *f, const struct vg_sizing *sizing,
                         struct outcome *out)
@@ -211,7 +214,7 @@ static vg_status smooth(struct vg_overlap *f, const struct vg_sizing *sizing,
   return VG_OK;
 }
 
-/* Bad cells, and how many would be swapped. */
+/* Lists bad cells, and counts the cells that would be swapped. */
 static vg_status list_bad(const struct vg_overlap *f,
                           const struct vg_sizing *sizing, struct outcome *out)
 {
@@ -231,8 +234,8 @@ static vg_status list_bad(const struct vg_overlap *f,
   return VG_OK;
 }
 
-/* What a zone has at its own points on interfaces, beside what it has at those
- * of others; and those points. */
+/* Adds the cells at a zone's own interface points to those at points of other
+ * pieces, and keeps the marks of these points. */
 static vg_status keep_hits(struct vg_overlap *f, struct outcome *out)
 {
   size_t n = out->n_hit, k = 0, m = 0, n_all = 0;
@@ -296,16 +299,15 @@ static void smooth_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* --- back to those who use the points ------------------------------------ */
+/* --- returning updates --------------------------------------------------- */
 
-/* A point of a piece that is another's, and where it is now. */
+/* New coordinates of a point that belongs to another piece. */
 struct update {
   uint32_t piece, vertex;
   double x[3];
 };
 
-/* What the owner says of a halo: the points that moved, and the cells that it
- * has others for. */
+/* The owner's answer to a halo: moved points and replaced cells. */
 static void put_updates(const struct smoothing *s, const struct vg_halo *halo,
                         struct vg_writer *w)
 {
@@ -372,7 +374,7 @@ static vg_status take_updates(struct smoothing *s, const struct vg_bytes *from,
   return VG_OK;
 }
 
-/* On this rank: nobody else writes to those vertices. */
+/* Updates on this rank: no other thread writes to these vertices. */
 static void put_back_body(void *context, size_t first, size_t end, int worker)
 {
   struct smoothing *s = context;
@@ -413,7 +415,7 @@ static vg_status send_back(struct smoothing *s, struct vg_comm *comm,
   return st;
 }
 
-/* --- between the two times ------------------------------------------------ */
+/* --- between the two passes ---------------------------------------------- */
 
 static void adjacent_body(void *context, size_t first, size_t end, int worker)
 {
@@ -433,7 +435,8 @@ static void adjacent_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Halos of a rank came in the order in which it has them. */
+/* Updates the halos of other ranks, which arrive in the order in which their
+ * rank has them. */
 static vg_status refresh_far(struct smoothing *s, const struct vg_bytes *from)
 {
   struct vg_reader in = { 0 };
@@ -474,7 +477,7 @@ static vg_status go_between(struct smoothing *s, struct vg_comm *comm,
   return vg_comm_agree(comm, st, err);
 }
 
-/* --- the whole ----------------------------------------------------------- */
+/* --- all steps ----------------------------------------------------------- */
 
 static void edit_body(void *context, size_t first, size_t end, int worker)
 {
@@ -497,7 +500,7 @@ static vg_status once(struct smoothing *s, int first, struct vg_comm *comm,
   return vg_comm_agree(comm, st, err);
 }
 
-/* Where the field is level, one sweep is all that it takes. */
+/* Are the sizes uniform, so that one sweep is sufficient? */
 static vg_status is_uniform(const struct smoothing *s, struct vg_comm *comm,
                             int *level, struct vg_error *err)
 {

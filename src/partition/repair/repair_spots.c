@@ -1,4 +1,4 @@
-/* Balls of very different sizes in a hashed grid for each size. */
+/* Balls of very different sizes, in one hashed grid per size. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,8 +10,8 @@
 #include "core/geometry/vector.h"
 #include "partition/repair/repair_parts.h"
 
-/* Grid cells to a length. A ball of a level is smaller than a cell of its
- * grid: in 8 of them at the most. */
+/* Grid cells per unit length. A ball of a level is smaller than a cell of its
+ * grid, so that it meets at most 8 cells. */
 static double share(int level)
 {
   return ldexp(0.5, -level);
@@ -37,8 +37,8 @@ static uint64_t hash(int level, int64_t i, int64_t j, int64_t k)
   return vg_hash_add(vg_hash_add(h, (uint64_t)j), (uint64_t)k);
 }
 
-/* Slots of the cells of a level's grid that a ball meets: [8]; returns how
- * many. radius: at most that of the level's balls. */
+/* Slots of the grid cells of a level that a ball meets: [8]; returns their
+ * number. radius: at most that of the level's balls. */
 static int slots(const struct vg_spot_grid *b, const struct vg_spot *s,
                  int level, uint64_t *slot)
 {
@@ -115,7 +115,7 @@ uint32_t vg_spot_grid_at(const struct vg_spot_grid *b, const double x[3])
 
 struct forest {
   uint32_t *up, *size; /* [n] */
-  uint32_t *near;      /* roots beside a ball */
+  uint32_t *near;      /* Roots of the balls that overlap a ball. */
   size_t n_near, cap_near;
 };
 
@@ -126,13 +126,13 @@ static int overlaps(const struct vg_spot *a, const struct vg_spot *b)
   return vg_distance2(a->at, b->at) <= r * r;
 }
 
-/* Pairs of balls that overlap, the later one first. */
+/* Pairs of overlapping balls, the later ball first. */
 struct pairs {
   size_t n, cap;
   uint64_t *at;
 };
 
-/* Each ball finds those of its level and of higher ones. */
+/* Finds the overlapping balls of the same level and of higher levels. */
 static vg_status add_pairs(const struct vg_spot_grid *b, uint32_t i,
                            struct pairs *p, struct vg_error *err)
 {
@@ -164,8 +164,8 @@ static int by_value(const void *a, const void *b)
   return x < y ? -1 : x > y;
 }
 
-/* Ball i joins the clusters of the earlier balls it overlaps, unless that
- * makes too large a one. pair: [n] those of ball i. */
+/* Joins ball i to the clusters of the earlier balls that it overlaps, unless
+ * the cluster would become too large. pair: [n] those of ball i. */
 static void join(const struct vg_spot_grid *b, struct forest *f, uint32_t i,
                  size_t n, const uint64_t *pair, size_t most)
 {
@@ -191,7 +191,7 @@ static void join(const struct vg_spot_grid *b, struct forest *f, uint32_t i,
 
 static void number(struct vg_spot_grid *b, const struct forest *f)
 {
-  /* sizes are not needed any more: numbers of roots */
+  /* size is not needed any more; it now holds the numbers of roots */
   for (size_t i = 0; i < b->n; i++) f->size[i] = VG_NO_CLUSTER;
   for (size_t i = 0; i < b->n; i++) {
     uint32_t r;
@@ -255,12 +255,14 @@ vg_status vg_spot_grid_new(size_t n, const struct vg_spot *spot, size_t most,
   return st;
 }
 
-/* R9: an earlier ball of at least this share of the radius, with the middle
- * within the root of this share of its own, makes a ball needless. */
+/* R9: a ball is redundant if an earlier ball has at least this share of its
+ * radius, and the distance between their centres is below the square root of
+ * COVER_DEPTH2 times the earlier ball's radius. */
 #define COVER_RADIUS 0.8
 #define COVER_DEPTH2 0.2
 
-/* Is ball i's middle deep in an earlier ball that stays, not much smaller? */
+/* Is the centre of ball i deep in an earlier remaining ball that is not much
+ * smaller? */
 static int is_covered(const struct vg_spot_grid *b, uint32_t i)
 {
   const struct vg_spot *s = &b->spot[i];

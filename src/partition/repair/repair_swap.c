@@ -1,4 +1,5 @@
-/* Swaps across interfaces: the cells around those that want it, linked. */
+/* Swaps across interfaces: the cells around those to be swapped are linked to
+ * a patch. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,15 +8,15 @@
 
 struct patch {
   struct vg_overlap *f;
-  uint8_t *mark; /* [f.t.n_point] corner of a cell to be swapped */
+  uint8_t *mark; /* [f.t.n_point] 1: corner of a cell to be swapped. */
   size_t n;
-  uint32_t *cell;   /* [n] of the field */
-  uint32_t *number; /* [f.t.n_point] in the patch, VG_NONE */
-  uint32_t *vertex; /* [t.n_point] and back */
+  uint32_t *cell;   /* [n] Indices in the overlap. */
+  uint32_t *number; /* [f.t.n_point] Index in the patch, or VG_NONE. */
+  uint32_t *vertex; /* [t.n_point] Inverse. */
   struct vg_tets t;
-  uint32_t (*old)[4]; /* [n] vertices as they were */
-  float *q;           /* [t.n_cell] */
-  uint8_t *gone;      /* [f.t.n_cell] */
+  uint32_t (*old)[4]; /* [n] Vertices before the swaps. */
+  float *q;           /* [t.n_cell] Shapes. */
+  uint8_t *gone;      /* [f.t.n_cell] 1: removed. */
 };
 
 static void patch_release(struct patch *p)
@@ -30,15 +31,15 @@ static void patch_release(struct patch *p)
   free(p->gone);
 }
 
-/* --- which cells --------------------------------------------------------- */
+/* --- selection ----------------------------------------------------------- */
 
 static int is_ours(const struct vg_overlap *f, size_t c)
 {
   return !(f->kind[c] & VG_OVERLAP_LATER);
 }
 
-/* A cell shares an edge or a face with one that is to be swapped only where
- * two of its corners are marked. */
+/* Chooses the cells with two marked corners: only these share an edge or a
+ * face with a cell to be swapped. */
 static vg_status choose(struct patch *p)
 {
   const struct vg_overlap *f = p->f;
@@ -64,7 +65,7 @@ static vg_status choose(struct patch *p)
   return VG_OK;
 }
 
-/* --- linked -------------------------------------------------------------- */
+/* --- links --------------------------------------------------------------- */
 
 static int on_boundary(const struct patch *p, uint32_t v)
 {
@@ -75,7 +76,8 @@ static int on_boundary(const struct patch *p, uint32_t v)
   return at >= f->n_base && !(f->other[at - f->n_base] >> 32);
 }
 
-/* Faces around the patch, and those that may be triangles of the boundary. */
+/* Fixes the outer faces of the patch, and faces that may be boundary
+ * triangles. */
 static void fix_faces(struct patch *p)
 {
   struct vg_tets *t = &p->t;
@@ -139,7 +141,7 @@ static vg_status link_cells(struct patch *p)
   return VG_OK;
 }
 
-/* --- back into the field ------------------------------------------------- */
+/* --- back into the overlap ----------------------------------------------- */
 
 static int is_new(const struct patch *p, size_t c)
 {
@@ -159,7 +161,7 @@ static size_t find_gone(struct patch *p)
   return n;
 }
 
-/* In the halos, and in out->gone. */
+/* Marks removed cells in the halos and in out->gone. */
 static vg_status note_gone(const struct patch *p, struct vg_edit *out)
 {
   const struct vg_overlap *f = p->f;
@@ -226,7 +228,7 @@ vg_status vg_overlap_swap(struct vg_overlap *f, struct vg_edit *out,
       st = note_gone(&p, out);
       if (st == VG_OK) st = put_back(&p);
     }
-    /* cells that do not fit together, or flat ones, are left as they are */
+    /* inconsistent or flat cells are left unchanged */
     if (st == VG_ERR_GEOMETRY) st = VG_OK;
   }
   *n_swap = r.n_flip;

@@ -1,9 +1,10 @@
-/* Parts of a mesh in slices.
+/* Partitions of a mesh in slices.
  *
- * Every rank finds stacks and clusters in its slices, one slice at a time, and
- * the pairs of them that share a face; faces at the rims of slices meet in a
- * rendezvous. Units are numbered slice by slice along the mesh, so that the
- * graph, which rank 0 collects, is the same whoever serves which slice. */
+ * Every rank finds the stacks and clusters in its slices, one slice at a time,
+ * and the pairs of them that share a face. Faces on the rims of slices are
+ * matched in a rendezvous. Units are numbered slice by slice along the mesh.
+ * The graph, which rank 0 collects, is therefore independent of which rank
+ * serves which slice. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,15 +23,16 @@ struct unit_sum {
 
 /* A slice that this rank serves. */
 struct at {
-  uint64_t place; /* cells of all kinds before it: slices follow each
-                     other in every kind */
+  uint64_t place; /* Cells of all kinds before it; slices follow each other
+                     in every kind. */
   size_t n_cell[VG_SLICE_KINDS], n_unit;
-  uint64_t first;            /* number of its first unit */
-  uint32_t *of;              /* [cells] unit, later part */
+  uint64_t first;            /* Number of its first unit. */
+  uint32_t *of;              /* [cells] Unit, later partition. */
   struct unit_sum *sum;      /* [n_unit] */
-  struct vg_unit_pair *pair; /* [n_pair] units of its own, numbered from 0 */
+  struct vg_unit_pair *pair; /* [n_pair] Pairs of its own units, numbered
+                                from 0. */
   size_t n_pair;
-  struct vg_items rim; /* struct rim_face */
+  struct vg_items rim; /* Items of struct rim_face. */
   uint64_t n_stack, n_stack_cell, most_stack;
 };
 
@@ -50,9 +52,10 @@ struct sliced {
   struct vg_solver_slices *k;
   int threads;
   size_t cluster;
-  uint64_t n_unit;         /* of all ranks */
-  struct vg_items *across; /* [threads] struct vg_unit_pair, numbered */
-  int refused;             /* memory, in a rendezvous */
+  uint64_t n_unit;         /* Units of all ranks. */
+  struct vg_items *across; /* [threads] struct vg_unit_pair with global
+                              numbers. */
+  int refused;             /* 1: memory was refused in a rendezvous. */
 };
 
 static void release_lists(struct at *a)
@@ -76,7 +79,7 @@ void vg_solver_slices_close(struct vg_solver_slices *k)
 
 /* --- a slice ------------------------------------------------------------- */
 
-/* The arrays of a mesh are not const, but nothing writes. */
+/* The arrays of a mesh are not const, but nothing writes to them. */
 static struct vg_mesh view_of(const struct vg_slice *s)
 {
   struct vg_mesh m = { .n_point = s->n_point,
@@ -120,7 +123,7 @@ static vg_status keep_rim(struct at *a, const struct vg_slice *s,
       n = vg_half_face_nodes(l, cell << 3 | (uint32_t)i, node);
       f->node[3] = UINT32_MAX;
       f->unit = u->of[cell];
-      for (int k = 0; k < n; k++) { /* by rising number */
+      for (int k = 0; k < n; k++) { /* in ascending order */
         uint32_t v = s->id[node[k]];
         int c = k;
 
@@ -149,7 +152,7 @@ static vg_status keep_sums(struct at *a, struct vg_units *u,
   return VG_OK;
 }
 
-/* How many of a slice's first cells of each kind stand in layers. */
+/* Number of a slice's first cells of each kind that are layer cells. */
 static struct vg_unit_options unit_options(const struct sliced *w,
                                            const struct vg_slice *s)
 {
@@ -248,7 +251,8 @@ static int by_place(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Those of all ranks, in order; n_unit becomes the first unit's number. */
+/* The slices of all ranks in order; n_unit becomes the number of the first
+ * unit. */
 static vg_status order_slices(struct sliced *w, const struct vg_bytes *all,
                               struct counted **out, size_t *n_out,
                               struct vg_error *err)
@@ -278,8 +282,8 @@ static vg_status order_slices(struct sliced *w, const struct vg_bytes *all,
   *n_out = n;
   if (sum < UINT32_MAX) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "parts for the solver: %llu stacks "
-                 "and cells are beyond 32-bit numbers",
+                 "solver partitions: %llu stacks "
+                 "and cells exceed the range of 32-bit numbers",
                  (unsigned long long)sum);
 }
 
@@ -358,7 +362,7 @@ static vg_status match_rims(struct sliced *w, struct vg_error *err)
 
 /* --- the graph on rank 0 ------------------------------------------------- */
 
-/* Pairs, and what units weigh: numbers in front of each. */
+/* Packs pairs and weights of units, each slice preceded by its counts. */
 static void pack(const struct sliced *w, struct vg_writer *to)
 {
   for (size_t i = 0; i < w->k->n; i++) {
@@ -438,7 +442,7 @@ static vg_status collect(struct sliced *w, struct collected *c,
   return vg_comm_agree(w->comm, st, err);
 }
 
-/* --- parts --------------------------------------------------------------- */
+/* --- partitions ---------------------------------------------------------- */
 
 static vg_status tally(const struct vg_unit_graph *g,
                        const struct unit_sum *sum, const uint32_t *part,
@@ -456,10 +460,10 @@ static vg_status tally(const struct vg_unit_graph *g,
   }
   if (!bad) vg_tally_report(t, r);
   vg_tally_free(t);
-  return bad ? vg_fail_memory(err, "counting the faces of parts") : VG_OK;
+  return bad ? vg_fail_memory(err, "counting the faces of partitions") : VG_OK;
 }
 
-/* On rank 0. */
+/* Partitions the units, on rank 0. */
 static vg_status part_units(const struct sliced *w, struct collected *c,
                             uint32_t *part, struct vg_solver_report *r,
                             struct vg_error *err)
@@ -503,7 +507,7 @@ static vg_status share_parts(struct sliced *w, struct collected *c,
     parts.data = vg_alloc(w->n_unit, sizeof(uint32_t));
     told.data = vg_alloc(1, sizeof *r);
     if (!parts.data || !told.data)
-      st = vg_fail_memory(err, "the parts of a mesh");
+      st = vg_fail_memory(err, "the solver partitions");
     else st = part_units(w, c, (uint32_t *)(void *)parts.data, r, err);
     told.n = sizeof *r;
     if (told.data) memcpy(told.data, r, sizeof *r);
@@ -542,7 +546,7 @@ static vg_status sum_stacks(const struct sliced *w, struct vg_solver_report *r,
   return st;
 }
 
-/* --- slices with parts --------------------------------------------------- */
+/* --- slices with partitions ---------------------------------------------- */
 
 static vg_status get_slice(const struct vg_slices *s, size_t i,
                            struct vg_slice *out, struct vg_error *err)
@@ -608,7 +612,7 @@ vg_status vg_solver_part_slices(struct vg_comm *comm, const struct vg_slices *s,
   vg_status st;
 
   w.across = vg_calloc((size_t)w.threads, sizeof *w.across);
-  st = w.k && w.across ? VG_OK : vg_fail_memory(err, "the parts of a mesh");
+  st = w.k && w.across ? VG_OK : vg_fail_memory(err, "the solver partitions");
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(look_at_all(&w, err));
   VG_TRY(number(&w, err));

@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "partition/solver/solver_parts.h"
 
-/* Parts beside one: few, so a list that is searched. */
+/* Neighbours of a partition. They are few, so a list is searched. */
 struct near {
   uint32_t *part;
   size_t n, room;
@@ -36,7 +36,7 @@ void vg_tally_free(struct vg_tally *t)
   free(t);
 }
 
-/* What was met last stands first: faces come in runs. */
+/* Moves the neighbour found last to the front, since faces come in runs. */
 static int meet(struct near *s, uint32_t part)
 {
   for (size_t k = 0; k < s->n; k++)

@@ -1,4 +1,4 @@
-/* The graph of the units, and its parts by METIS. */
+/* The graph of the units, and its partitioning by METIS. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,8 +7,8 @@
 #include "base/memory.h"
 #include "partition/solver/solver_parts.h"
 
-/* Most over mean weight that METIS is asked for: its own default for parts of
- * which there are many. */
+/* Imbalance (maximum over mean weight) passed to METIS: its own default for
+ * k-way partitioning. */
 static const double imbalance = 1.03; /* P2 */
 
 void vg_unit_graph_release(struct vg_unit_graph *g)
@@ -26,7 +26,7 @@ static int by_value(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Most rows are short. */
+/* Insertion sort for short rows, as most are. */
 static void sort_row(uint32_t *v, size_t n)
 {
   if (n > 32) {
@@ -66,7 +66,7 @@ static void count(struct vg_unit_graph *g, uint32_t a, uint32_t b)
   g->begin[a]++;
 }
 
-/* begin[a] goes down from the end of the row to its beginning. */
+/* begin[a] moves from the end of the row to its beginning. */
 static void enter(struct vg_unit_graph *g, uint32_t a, uint32_t b)
 {
   g->to[--g->begin[a]] = b;
@@ -80,7 +80,7 @@ static void add_up(struct vg_unit_graph *g)
   g->begin[g->n] = sum;
 }
 
-/* Rows sorted, what repeats in one counted. */
+/* Sorts each row and merges equal entries into one with a count. */
 static vg_status merge_rows(struct vg_unit_graph *g, struct vg_error *err)
 {
   uint64_t n = 0, from = 0;
@@ -202,16 +202,16 @@ vg_status vg_unit_graph_of_pairs(size_t n, const struct vg_unit_pair *pair,
   return VG_OK;
 }
 
-/* --- parts --------------------------------------------------------------- */
+/* --- partitions ---------------------------------------------------------- */
 
-/* A part that METIS left empty gets the first unit of the part that has most;
- * solvers stop at empty ones. There are units enough. */
+/* A partition that METIS left empty gets the first unit of the partition with
+ * the most units, since solvers fail on empty ones. There are enough units. */
 static vg_status fill_empty(size_t n, uint64_t n_part, uint32_t *part,
                             struct vg_solver_report *r, struct vg_error *err)
 {
   uint64_t *have = vg_calloc(n_part, sizeof *have);
 
-  if (!have) return vg_fail_memory(err, "the sizes of parts");
+  if (!have) return vg_fail_memory(err, "the sizes of partitions");
   for (size_t k = 0; k < n; k++) have[part[k]]++;
   for (uint32_t p = 0; p < n_part; p++) {
     uint32_t most = 0;
@@ -244,9 +244,9 @@ vg_status vg_unit_graph_part(const struct vg_unit_graph *g,
 
   if (n_part < 1 || n_part > g->n || n_part > INT32_MAX)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%llu parts for the solver, but the mesh "
-                   "has %zu stacks and cells to be shared out; ask for 1 to "
-                   "%zu parts",
+                   "%llu solver partitions were requested, but the mesh "
+                   "has %zu stacks and cells to distribute; request 1 to "
+                   "%zu partitions",
                    (unsigned long long)n_part, g->n,
                    g->n < INT32_MAX ? g->n : (size_t)INT32_MAX);
   st = vg_graph_part(&graph, &o, part, err);

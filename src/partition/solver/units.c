@@ -1,12 +1,14 @@
-/* What stays together: stacks of layer cells, clusters of the others.
+/* Units of cells that stay together: stacks of layer cells, and clusters of
+ * the other cells.
  *
- * Vanguard's layer cells stand with the triangle of nodes 0, 1, 2 on what is
- * below them, and what is below is the cell that has raised one of its points
- * last: node 3 of a tetrahedron, 3 and 4 of a pyramid, 3, 4, 5 of a prism
- * (layers/expand/expand_cells.c). Where this holds for all that is said to be
- * in layers, joining each to the one below gives the stacks; those between the
- * columns of a fan begin on the flank of another. Prisms of any origin are
- * joined over triangles, hexahedra from walls upwards. */
+ * Vanguard's layer cells stand with the triangle of nodes 0, 1, 2 on the cell
+ * below, which is the last cell that raised one of the three points; a
+ * tetrahedron raises its node 3, a pyramid 3 and 4, a prism 3, 4, 5
+ * (layers/expand/expand_cells.c). If this holds for all cells that are
+ * declared as layer cells, joining each cell to the one below gives the
+ * stacks. Stacks between the columns of a fan start on the side face of
+ * another stack. Prisms of any origin are joined across triangles, and
+ * hexahedra from walls upwards. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,8 +42,8 @@ size_t vg_unit_cluster(const struct vg_solver_options *o, uint64_t n_field)
 struct work {
   const struct vg_cell_links *l;
   const struct vg_unit_options *o;
-  uint32_t *up;          /* [n_cell] stacks, as of base/union_find.h */
-  unsigned char *stands; /* [n_cell] bits: in a stack or alone in a layer */
+  uint32_t *up; /* [n_cell] Stacks, as union-find of base/union_find.h. */
+  unsigned char *stands; /* [n_cell] 1: in a stack, or alone in a layer. */
   struct vg_units *u;
 };
 
@@ -69,7 +71,7 @@ static int is_layer(const struct work *w, uint32_t cell)
   }
 }
 
-/* Faces as in core/mesh/cell_faces.h. */
+/* Bottom face; faces are numbered as in core/mesh/cell_faces.h. */
 static uint32_t bottom_of(const struct vg_cell_links *l, uint32_t cell)
 {
   return cell << 3 | (kind_of(l, cell) == PYR ? 0 : 3);
@@ -86,10 +88,10 @@ static int may_carry(const struct vg_cell_links *l, uint32_t code)
 
 enum footing { FIRM, ASIDE, NOWHERE };
 
-/* A cell onto what carries it. FIRM: a wall, or a cell; a tetrahedron on the
- * one before it, as they follow in a stack. ASIDE: on the flank of another
- * stack, as those between the columns of a fan begin. NOWHERE: where no cell of
- * Vanguard's layers stands. */
+/* Joins a cell to the cell that carries it. FIRM: it stands on a wall or on a
+ * layer cell (a tetrahedron on the preceding one, the order within a stack).
+ * ASIDE: on the side face of another stack, as stacks between the columns of a
+ * fan start. NOWHERE: at a place where no layer cell of Vanguard stands. */
 static enum footing stand(struct work *w, uint32_t cell)
 {
   uint32_t below = vg_mate(w->l, bottom_of(w->l, cell));
@@ -103,7 +105,7 @@ static enum footing stand(struct work *w, uint32_t cell)
   return FIRM;
 }
 
-/* Prisms of any origin: over both triangles. */
+/* Joins prisms of any origin across both triangles. */
 static void join_prisms(struct work *w)
 {
   const struct vg_cell_links *l = w->l;
@@ -127,9 +129,9 @@ static void forget(struct work *w)
   }
 }
 
-/* Returns 0 when what a file says to be layers is not built as they are: cells
- * stand nowhere, or too many not on the one before. Of Vanguard's, where stacks
- * of fans begin does, one cell in dozens. */
+/* Returns 0 if the declared layer cells of a file are not built like
+ * Vanguard's: some stand NOWHERE, or too many are ASIDE. In Vanguard's layers
+ * only the first cells of stacks in fans are ASIDE, one cell in dozens. */
 static int join_layers(struct work *w)
 {
   const struct vg_cell_links *l = w->l;
@@ -144,8 +146,8 @@ static int join_layers(struct work *w)
   return w->o->is_ours || (!n[NOWHERE] && n[ASIDE] <= n[FIRM] / 2);
 }
 
-/* From a face of a hexahedron on a wall to the ones above. Faces that lie
- * opposite each other are 0 and 1, 2 and 3, 4 and 5. */
+/* Climbs from a face of a hexahedron on a wall to the hexahedra above.
+ * Opposite faces are 0 and 1, 2 and 3, 4 and 5. */
 static void climb(struct work *w, uint32_t code)
 {
   uint32_t below = NONE;
@@ -180,7 +182,7 @@ static void join_all(struct work *w)
   }
   if (!w->o->is_known && n_loose) w->u->has_loose = 1;
   join_prisms(w);
-  /* what a prism of Vanguard's carries, or carries it */
+  /* join prisms with the layer cells above and below them */
   for (uint32_t cell = l->end_pyr;
        w->o->is_known && !w->u->has_loose && cell < l->end_pri; cell++)
     stand(w, cell);
@@ -189,7 +191,8 @@ static void join_all(struct work *w)
 
 /* --- clusters ------------------------------------------------------------ */
 
-/* Cells of the field around one, nearest by faces first, that have no unit. */
+/* Gathers cells without a unit, outside layers, around one cell, nearest by
+ * faces first. */
 static size_t gather(const struct work *w, uint32_t cell, uint32_t *list)
 {
   uint32_t *of = w->u->of, unit = of[cell];
@@ -208,8 +211,8 @@ static size_t gather(const struct work *w, uint32_t cell, uint32_t *list)
   return n;
 }
 
-/* A cluster that shares a face with these few cells, the lowest; NONE: none.
- * So no crumbs are left between clusters. */
+/* The lowest cluster that shares a face with these few cells; NONE: there is
+ * none. It avoids small remainders between clusters. */
 static uint32_t beside(const struct work *w, const uint32_t *list, size_t n)
 {
   uint32_t *of = w->u->of, best = NONE;
@@ -250,9 +253,9 @@ static void number(struct work *w)
   u->n_unit = next;
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- all units ----------------------------------------------------------- */
 
-/* Weights of units; stacks are counted by their cells. */
+/* Weights of units, and the statistics of stacks by their cells. */
 static vg_status weigh(struct work *w, struct vg_error *err)
 {
   struct vg_units *u = w->u;

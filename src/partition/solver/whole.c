@@ -1,4 +1,4 @@
-/* Parts of a mesh in one piece. */
+/* Partitions of a mesh in one piece. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,17 +7,16 @@
 #include "base/memory.h"
 #include "partition/solver/solver_parts.h"
 
-/* Where cells of the field came in clusters, borders between parts follow the
- * clusters' ragged ones; so many rounds of moving single cells straighten
- * them. */
+/* With clusters, the boundaries of partitions follow the ragged boundaries of
+ * clusters. This many rounds of moving single cells straighten them. */
 #define ROUNDS 4 /* P3 */
 
 struct smoothing {
   const struct vg_cell_links *l;
   const struct vg_units *u;
-  const double *weight; /* of kinds */
+  const double *weight; /* Weight of each kind. */
   double *load;         /* [n_part] */
-  double most;          /* that a part may have */
+  double most;          /* Upper limit of the load of a partition. */
   uint32_t *part;       /* [n_cell] */
 };
 
@@ -29,8 +28,8 @@ static int kind_of(const struct vg_cell_links *l, uint32_t cell)
                            : 3;
 }
 
-/* The part that most of a cell's neighbours are in; its own for want of a
- * better one, the lowest of equals. */
+/* The partition that contains most of a cell's neighbours: its own unless
+ * another one is better, the lowest of equals. */
 static uint32_t better(const struct smoothing *s, uint32_t cell)
 {
   uint32_t own = s->part[cell], best = own, part[6];
@@ -45,7 +44,7 @@ static uint32_t better(const struct smoothing *s, uint32_t cell)
     if (mate == VG_NO_CELL) continue;
     p = s->part[mate >> 3];
     while (k < n && part[k] != p) k++;
-    if (k == 6) continue; /* a hexahedron among seven parts */
+    if (k == 6) continue; /* a hexahedron next to seven partitions */
     if (k == n) {
       part[n] = p;
       faces[n++] = 0;
@@ -88,7 +87,7 @@ static vg_status straighten(const struct vg_cell_links *l,
   struct smoothing s = { l, u, o->weight, NULL, 0, part };
 
   s.load = vg_calloc(o->n_part, sizeof *s.load);
-  if (!s.load) return vg_fail_memory(err, "the loads of parts");
+  if (!s.load) return vg_fail_memory(err, "the loads of partitions");
   for (uint32_t cell = 0; cell < l->n_cell; cell++)
     s.load[part[cell]] += o->weight[kind_of(l, cell)];
   for (uint64_t p = 0; p < o->n_part; p++)
@@ -115,7 +114,7 @@ static vg_status tally(const struct vg_cell_links *l,
   }
   if (!bad) vg_tally_report(t, r);
   vg_tally_free(t);
-  return bad ? vg_fail_memory(err, "counting the faces of parts") : VG_OK;
+  return bad ? vg_fail_memory(err, "counting the faces of partitions") : VG_OK;
 }
 
 static struct vg_unit_options unit_options(const struct vg_mesh *m,
@@ -144,7 +143,7 @@ static vg_status part_units(const struct vg_cell_links *l,
 {
   struct vg_unit_graph g = { 0 };
   uint32_t *of_unit = vg_alloc(u->n_unit, sizeof *of_unit);
-  vg_status st = of_unit ? VG_OK : vg_fail_memory(err, "the parts of a mesh");
+  vg_status st = of_unit ? VG_OK : vg_fail_memory(err, "the solver partitions");
 
   if (st >= 0) st = vg_unit_graph_of_links(l, u, &g, err);
   r->time_graph = vg_clock() - r->time_graph;

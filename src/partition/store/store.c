@@ -15,7 +15,8 @@
 
 /* --- on rank 0 ----------------------------------------------------------- */
 
-/* Make the folder and those above it. Returns 0 or errno; *made: by us. */
+/* Creates the folder and its parents. Returns 0 or errno; *made: 1 if this
+ * call created it. */
 static int make_folders(const char *dir, int *made)
 {
   char *path = strdup(dir);
@@ -25,7 +26,7 @@ static int make_folders(const char *dir, int *made)
     at = strchr(at + 1, '/');
     if (at) *at = 0;
     *made = !mkdir(path, 0777);
-    /* what is there or lies in a place we may not write is found later */
+    /* an existing or unwritable parent shows up in a later step */
     if (!*made && errno != EEXIST && !at) error = errno;
     if (at) *at = '/';
   }
@@ -46,8 +47,9 @@ static vg_status enter(struct vg_store *s, int resume, struct vg_error *err)
 
   if (error == ENOENT && resume)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: there is no such run directory to "
-                   "resume from; check its name, or start without resuming",
+                   "%s: this run directory does not exist, so there "
+                   "is nothing to resume; check its name, or start without "
+                   "resuming",
                    s->dir);
   if (error == ENOENT) {
     error = make_folders(s->dir, &s->made);
@@ -55,7 +57,7 @@ static vg_status enter(struct vg_store *s, int resume, struct vg_error *err)
   }
   if (!error) return VG_OK;
   return vg_fail(err, VG_ERR_IO,
-                 "%s: cannot be used as run directory: %s; "
+                 "%s: cannot be used as a run directory: %s; "
                  "choose another one",
                  s->dir, strerror_r(error, text, sizeof text));
 }
@@ -63,7 +65,7 @@ static vg_status enter(struct vg_store *s, int resume, struct vg_error *err)
 static vg_status no_run(const struct vg_store *s, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: holds no run that could be resumed; "
+                 "%s: the directory holds no run to resume; "
                  "check its name, or start without resuming",
                  s->dir);
 }
@@ -80,7 +82,7 @@ vg_status vg_store_has_run(const char *dir, struct vg_error *err)
   return st == VG_BLOCKED ? no_run(&s, err) : st;
 }
 
-/* The run in the directory against ours. */
+/* Compares the run in the directory with the requested one. */
 static vg_status compare(const struct vg_store *s,
                          const struct vg_store_options *o,
                          const struct vg_store_run *there,
@@ -95,16 +97,16 @@ static vg_status compare(const struct vg_store *s,
   if (o->resume)
     return vg_fail(err, VG_ERR_INPUT,
                    "%s: cannot be resumed: input or "
-                   "options have changed since; its run was: %s; this one "
-                   "is: %s; %srestore what changed, or start without resuming "
-                   "in another directory",
+                   "options have changed; its run was: %s; this one "
+                   "is: %s; %srestore the old values, or start without "
+                   "resuming in another directory",
                    s->dir, there->what, ours->what, differ);
   if (!n_record) return VG_OK; /* nothing would be lost */
   if (same)
     return vg_fail(err, VG_ERR_INPUT,
                    "%s: holds %llu finished tasks of this "
-                   "very run (%s); resume it, remove the directory to start "
-                   "anew, or choose another one",
+                   "same run (%s); resume it, remove the directory to start "
+                   "again, or choose another one",
                    s->dir, (unsigned long long)n_record, there->what);
   return vg_fail(err, VG_ERR_INPUT,
                  "%s: holds %llu finished tasks of another "
@@ -138,9 +140,9 @@ static vg_status claim(struct vg_store *s, const struct vg_store_options *o,
     if (st < 0) return st;
   } else if (tally->n) {
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: holds %llu finished tasks without "
-                   "a note of whose they are; remove the directory or choose "
-                   "another one",
+                   "%s: holds %llu finished tasks, but no run.txt that "
+                   "says which run they belong to; remove the directory or "
+                   "choose another one",
                    s->dir, (unsigned long long)tally->n);
   }
   st = vg_store_write_settings(s, o->settings, err);
@@ -163,7 +165,7 @@ static vg_status take(struct vg_store *s, const struct vg_store_options *o,
   return st;
 }
 
-/* Leave a directory as it was found, after a failure. */
+/* Restores the directory to its previous state after a failure. */
 static void withdraw(struct vg_store *s)
 {
   if (s->lock >= 0 && s->fresh) {
@@ -175,7 +177,8 @@ static void withdraw(struct vg_store *s)
 
 /* --- on all ranks -------------------------------------------------------- */
 
-/* A directory on a disk of rank 0's node alone would do for no other node. */
+/* Checks that this rank sees the directory: one on a local disk of rank 0's
+ * node is not visible on other nodes. */
 static vg_status follow(struct vg_store *s, const struct vg_store_options *o,
                         struct vg_error *err)
 {
@@ -186,12 +189,12 @@ static vg_status follow(struct vg_store *s, const struct vg_store_options *o,
     return VG_OK;
   return vg_fail(err, VG_ERR_IO,
                  "%s: this rank does not see the run "
-                 "directory that rank 0 made; choose one on a file system "
-                 "that all nodes share",
+                 "directory that rank 0 created; choose one on a file "
+                 "system that all nodes share",
                  s->dir);
 }
 
-/* What is there already counts as well. */
+/* Divides the limit among the ranks; existing records count. */
 static vg_status divide(struct vg_store *s, uint64_t there,
                         struct vg_error *err)
 {
@@ -265,13 +268,13 @@ void vg_store_close(struct vg_store *s, int remove)
   struct vg_error err;
 
   if (!s) return;
-  /* no rank may be about to keep a record any more */
+  /* no rank may still be writing a record */
   if (vg_comm_agree(s->comm, VG_OK, &err) < 0) remove = 0;
   if (remove && !vg_comm_rank(s->comm)) {
     vg_store_walk(s->fd, 1);
     vg_store_remove_run(s);
     vg_store_unlock(s, 1);
-    rmdir(s->dir); /* refused while something else is in it */
+    rmdir(s->dir); /* fails while the directory holds other files */
   }
   release(s);
 }

@@ -19,7 +19,8 @@ static struct vg_digest hash(const void *data, size_t n)
 
 enum { PART = 1 << 20 };
 
-/* Read in parts: a mapped file would count as memory of the program. */
+/* The file is read in parts, because a mapped file would count as memory of
+ * the program. */
 static int digest_parts(int fd, XXH3_state_t *state, char *part,
                         struct vg_digest *d, uint64_t *bytes)
 {
@@ -53,8 +54,9 @@ int vg_digest_file(int fd, struct vg_digest *d, uint64_t *bytes)
   return bad;
 }
 
-/* XXH3 takes seeds of 64 bits only, so that a chain through them would come
- * down to 64; and its state for streams would show in the interface. */
+/* XXH3 takes 64-bit seeds only, which would reduce a chain to 64 bits, and its
+ * streaming state would have to appear in the interface. So digests are
+ * chained by hashing pairs. */
 struct vg_digest vg_digest_of(struct vg_digest seed, size_t n, const void *data)
 {
   struct vg_digest both[2] = { seed, hash(data, n) };

@@ -12,13 +12,13 @@
 #include "base/memory.h"
 #include "partition/store/store_parts.h"
 
-/* At the start of a record. The file is not forced to the disk: what a crash
- * of the machine leaves undone shows in `check`. */
+/* Header of a record. The file is not synced to disk: `check` detects a write
+ * that a crash of the machine left incomplete. */
 struct header {
   char magic[8];
-  uint64_t n; /* bytes that follow */
+  uint64_t n; /* Bytes of data after the header. */
   struct vg_digest key;
-  struct vg_digest check; /* of all before it and of what follows */
+  struct vg_digest check; /* Digest of all members above and of the data. */
 };
 #define MAGIC "VGREC\r\n\001"
 
@@ -43,7 +43,7 @@ static void name_of(struct vg_digest key, char name[VG_STORE_NAME])
 
 /* --- find ---------------------------------------------------------------- */
 
-/* 1: whole; 0: damaged; -1: no memory. */
+/* Returns 1: complete; 0: damaged; -1: no memory. */
 static int read_record(int fd, struct vg_digest key, struct vg_bytes *out)
 {
   struct header h, expected;
@@ -84,7 +84,7 @@ vg_status vg_store_find(struct vg_store *s, struct vg_digest key,
     close(fd);
     if (!found) unlinkat(s->fd, name, 0);
   }
-  if (found < 0) return vg_fail_memory(err, "the record of a task");
+  if (found < 0) return vg_fail_memory(err, "the trace of a task");
   pthread_mutex_lock(&s->mutex);
   if (found) s->report.n_found++;
   else s->report.n_damaged++;
@@ -94,7 +94,8 @@ vg_status vg_store_find(struct vg_store *s, struct vg_digest key,
 
 /* --- keep ---------------------------------------------------------------- */
 
-/* Room for n bytes more and a number for the temporary name; 0: no. */
+/* Reserves n more bytes and a number for the temporary name. Returns 0 if the
+ * store may not keep them. */
 static int reserve(struct vg_store *s, size_t n, uint64_t *number)
 {
   int may;
@@ -131,7 +132,7 @@ static void account(struct vg_store *s, size_t n, int error)
   pthread_mutex_unlock(&s->mutex);
 }
 
-/* Folders are made when the first record needs them. */
+/* Folders are created when the first record needs them. */
 static int open_part(int dir, const char *part)
 {
   const int flags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
@@ -154,7 +155,7 @@ static int write_record(int dir, const char *part, const char *name,
   if (fd < 0) return errno;
   error = vg_store_put(fd, h, sizeof *h);
   if (!error) error = vg_store_put(fd, data, h->n);
-  /* some file systems tell only here that there was no room */
+  /* some file systems report a full disk only here */
   if (close(fd) && !error && errno != EINTR) error = errno;
   if (!error && renameat(dir, part, dir, name)) error = errno;
   if (error) unlinkat(dir, part, 0);
@@ -204,7 +205,9 @@ static void walk_folder(int folder, int remove, struct vg_store_tally *t)
     struct stat info;
     size_t length = strlen(e->d_name);
 
-    if (!vg_digest_parse(e->d_name, &key)) continue; /* not ours */
+    if (!vg_digest_parse(e->d_name, &key))
+      continue; /* not a file of the
+                   store */
     if (length > 32 && strcmp(e->d_name + length - 5, ".part")) continue;
     if (remove || length > 32) {
       unlinkat(folder, e->d_name, 0);

@@ -56,7 +56,7 @@ static vg_status cannot_write(const struct vg_store *s, int error,
 
 /* --- run.txt ------------------------------------------------------------- */
 
-/* The start of a small file as text: its length, or -1. */
+/* Reads the start of a small file as text; returns its length, or -1. */
 static ssize_t read_text(int fd, char *text, size_t size)
 {
   ssize_t n;
@@ -98,8 +98,8 @@ vg_status vg_store_read_run(const struct vg_store *s, struct vg_store_run *run,
     if (fd >= 0) error = errno;
     if (fd >= 0) close(fd);
     return vg_fail(err, VG_ERR_IO,
-                   "%s/" RUN ": cannot be read: %s; mend "
-                   "that, or choose another run directory",
+                   "%s/" RUN ": cannot be read: %s; correct "
+                   "this, or choose another run directory",
                    s->dir, strerror_r(error, reason, sizeof reason));
   }
   close(fd);
@@ -107,7 +107,7 @@ vg_status vg_store_read_run(const struct vg_store *s, struct vg_store_run *run,
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s/" RUN ": is damaged, or was not "
                  "written by this program; remove the directory and start "
-                 "anew, or choose another one",
+                 "again, or choose another one",
                  s->dir);
 }
 
@@ -148,13 +148,15 @@ static vg_status under_way(const struct vg_store *s, int fd,
     strcpy(text, "of an unknown process");
   text[strcspn(text, "\n")] = 0;
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: a run is under way in this "
+                 "%s: another run is using this "
                  "directory (%s); wait for its end or choose another "
-                 "directory (if that host is no more, remove %s/" LOCK ")",
+                 "directory (if that host no longer exists, remove "
+                 "%s/" LOCK ")",
                  s->dir, text, s->dir);
 }
 
-/* A run that ended may have removed the file between our open and lock. */
+/* Is this still the lock file of the directory? A run that ended may have
+ * removed the file between our open and lock. */
 static int is_current(const struct vg_store *s, int fd)
 {
   struct stat a, b;
@@ -169,12 +171,12 @@ static void sign(int fd)
 
   gethostname(host, sizeof host - 1);
   snprintf(text, sizeof text, "host %s, process %ld\n", host, (long)getpid());
-  /* it is for people only: the lock holds without */
+  /* for people only: the lock holds without this text */
   if (!ftruncate(fd, 0)) vg_store_put(fd, text, strlen(text));
 }
 
-/* flock ends with the process, however that ends. A file system without locks
- * gives no protection from a second run; records are whole all the same. */
+/* flock ends with the process, however it ends. A file system without locks
+ * gives no protection from a second run, but records stay complete. */
 vg_status vg_store_lock(struct vg_store *s, struct vg_error *err)
 {
   for (;;) {

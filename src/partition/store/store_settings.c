@@ -1,5 +1,5 @@
-/* The settings of a run, kept beside run.txt so that a refusal can say which
- * of them differ. Lines of "name=value"; nothing is decided by them. */
+/* The settings of a run as lines of "name=value", kept next to run.txt so that
+ * a refusal can list the differences. No decision depends on them. */
 #define _GNU_SOURCE
 #include <assert.h>
 #include <errno.h>
@@ -37,7 +37,7 @@ void vg_store_remove_settings(const struct vg_store *s)
   unlinkat(s->fd, SETTINGS, 0);
 }
 
-/* NULL where there are none, or none that can be read. */
+/* Returns NULL if there are no settings or they cannot be read. */
 static char *read_settings(const struct vg_store *s)
 {
   int fd = openat(s->fd, SETTINGS, O_RDONLY | O_CLOEXEC);
@@ -55,8 +55,8 @@ static char *read_settings(const struct vg_store *s)
   return text;
 }
 
-/* The value of the setting that starts at `line` of another text; its length
- * out; NULL: not there. */
+/* Finds the setting that starts at `line` in another text. Returns its value
+ * and length, or NULL if it is absent. */
 static const char *value_in(const char *text, const char *line, size_t name,
                             size_t *n)
 {

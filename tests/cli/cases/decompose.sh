@@ -46,7 +46,7 @@ for way in 'discrete --parts 900000' 'octree --parts 900000' \
   # shellcheck disable=SC2086 # words
   vanguard mesh -q -p p/box --decompose $way --out none
   exits 1
-  says err "ask for fewer parts"
+  says err "request fewer subdomains"
   [ ! -e none ] || [ -z "$(ls none)" ] || fail "files of a refused mesh"
 done
 vanguard plan -q -p p/box --decompose discrete --parts 5 -n 1,5
@@ -144,7 +144,7 @@ exits 1
 says err "at least 2 sizes wide"
 vanguard mesh -q -p p/box --decompose octree --interfaces h-refine
 exits 1
-says err "leave interfaces at remesh"
+says err "set interfaces to remesh"
 vanguard plan -q -p p/box --decompose octree --parts 4 -n 1
 exits 0
 says out "that planes may cut, the gap at the front"

@@ -122,14 +122,14 @@ exits 2
 says err "--resume needs the --run-dir of the run"
 vanguard mesh $cut --run-dir none --resume --out none
 exits 1
-says err "none: there is no such run directory to resume from"
+says err "none: this run directory does not exist"
 absent none/box.b8.ugrid
 vanguard mesh $cut -t 2 --run-dir run --keep-run --out kept
 agrees kept
 exists run/run.txt
 vanguard mesh $cut --run-dir run --out kept
 exits 1
-says err "resume it, remove the directory to start anew, or choose another one"
+says err "resume it, remove the directory to start again, or choose another one"
 vanguard mesh $cut --run-dir run --resume --hmax 0.2 --out other
 exits 1
 says err "run: cannot be resumed: input or options have changed since"

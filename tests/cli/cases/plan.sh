@@ -63,7 +63,7 @@ says speedup.svg ">ideal<"
 # wrote it.
 vanguard plan -r r.timeline.json -n 2 --schedule cyclic
 exits 1
-says err "does not say by what it is dealt out"
+says err "of the trace has no 'work'"
 sed -e 's/"bytes_out"\]/"bytes_out", "work"]/' -e 's/0,0\],$/0,0,2.5],/' \
   -e 's/0,0\]$/0,0,1]/' -e '/"0.1L"/s/,1,3,2,/,1,3,6,/' \
   r.timeline.json >w.timeline.json
@@ -92,7 +92,7 @@ says err "none.timeline.json"
 sed 's/"0.3L","0J"/"0.3L","0K"/' r.timeline.json >bad.timeline.json
 vanguard plan -r bad.timeline.json
 exits 1
-says err "bad.timeline.json: task '0.3L' of the record was made by '0K'"
+says err "bad.timeline.json: task '0.3L' of the trace was created by '0K'"
 echo '{"ok": true}' >report.json
 vanguard plan -r report.json
 exits 1

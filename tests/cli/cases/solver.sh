@@ -73,7 +73,7 @@ for n in 0 -1 x 1.5 99999999999999999999; do
 done
 vanguard partition -q one/wing-half.b8.ugrid -n 999999999
 exits 1
-says err "999999999 parts for the solver, but the mesh has"
+says err "999999999 solver partitions were requested, but the mesh has"
 absent one/wing-half.part.999999999
 vanguard partition -q p/wing-half.lb8.ugrid -n 2
 exits 1
@@ -94,5 +94,5 @@ says err "no/folder/x.part.2"
 vanguard mesh -q -p p/wing-half $layers --solver-parts 9999999 \
   --write b8.ugrid --out many
 exits 1
-says err "9999999 parts for the solver"
+says err "9999999 solver partitions were requested"
 absent many/wing-half.b8.ugrid

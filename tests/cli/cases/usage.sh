@@ -118,12 +118,12 @@ says err "bad.deck:3: write: 'nonsense' is no format"
 echo "not a surface" >p/broken.stl
 vanguard mesh -q -p p/broken.stl --run-dir nowhere --resume
 exits 1
-says err "nowhere: there is no such run directory to resume from"
+says err "nowhere: this run directory does not exist"
 absent nowhere
 mkdir empty
 vanguard mesh -q -p p/broken.stl --run-dir empty --resume
 exits 1
-says err "empty: holds no run that could be resumed"
+says err "empty: the directory holds no run to resume"
 if [ "$(id -u)" = 0 ]; then
   echo "a folder that cannot be written: not tested as root"
 else
