@@ -514,7 +514,7 @@ static void walls_do_not_vanish(void **state)
   (void)state;
   assert_int_equal(shape(0, "1", &err), VG_OK);
   assert_int_equal(shape(0, "1-3", &err), VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "nothing of patch 3 is left"));
+  assert_non_null(strstr(err.text, "nothing is left of patch 3"));
 }
 
 /* 704 intersections, 11 overlapping components, open edges. */

@@ -234,9 +234,9 @@ case_full_run() {
   finish
   ended 0
   [ "$(digest "$out_dir")" = "$whole" ] || bad "files differ"
-  said 'not all tasks were kept there'
+  said 'some tasks were not kept there'
   row "full disk for the run directory: the run goes on" \
-    "$(sed -n 's/^  \(not all tasks were kept.*\)/\1/p' "$work/log")"
+    "$(sed -n 's/^  \(some tasks were not kept.*\)/\1/p' "$work/log")"
   drop "$run_dir"
 }
 

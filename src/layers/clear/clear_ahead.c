@@ -1,24 +1,26 @@
-/* What stands in front of a column? Triangles within a cone of 45 degrees that
- * face it. Boxes about triangles and about their normals leave nothing to look
- * at in most places, which is found out for a few neighbours at once.
+/* Finds the surface opposite each column: triangles that face the column,
+ * within a cone of 45 degrees. Bounding boxes of triangles and of their normals
+ * exclude everything in most places, which is determined for groups of
+ * neighbouring columns at once.
  *
  * A triangle T limits a column with unit direction u unless
- *   - it shares a point with the column's faces, or lies in a patch that the
- *     column slides in;
- *   - it does not face the column: n(T) . u > -0.2. A column meets such a
- *     triangle from behind or after a long way at best; next to a concave
- *     edge, where directions turn until they leave both walls, T is such a
- *     triangle although it is as near as the edge is;
- *   - its own columns grow away in nearly the same direction, m . u > 0.3 for
- *     their mean m: both belong to one stack, that of a concave edge narrower
- *     than a right angle, whose columns are nearly parallel. Without this the
- *     distance to the other wall, which falls to nothing towards the edge,
- *     would end the layers there;
- *   - it lies in a patch in which columns slide (some other columns) and is
- *     beside, not ahead: it counts for rays only, since the stack next to it
- *     stands on it and must not be kept away from it.
- * The distance to the others is counted along u. This is no proof that
- * columns do not meet, only a good first height: vg_clear_tops is exact. */
+ * - T shares a point with the faces of the column, or lies in a patch in which
+ *   the column slides;
+ * - T does not face the column: n(T) . u > -0.2. The column would hit such a
+ *   triangle from behind, or only after a long way. At a concave edge, where
+ *   directions turn until they leave both walls, T is such a triangle although
+ *   it is as near as the edge;
+ * - the columns of T grow in nearly the same direction, m . u > 0.3 for their
+ *   mean m. Both then belong to one stack at a concave edge narrower than a
+ *   right angle, whose columns are nearly parallel. Without this exception the
+ *   distance to the other wall, which vanishes towards the edge, would end the
+ *   layers there;
+ * - T lies in a patch in which other columns slide, and is only in the cone.
+ *   Such a patch is tested with rays only, because the neighbouring stack
+ *   stands on it and must not be kept away from it.
+ * The distance to all other triangles is measured along u. It does not prove
+ * that columns do not collide, but gives a good initial height: vg_clear_tops
+ * is exact. */
 #include "layers/clear/clear_ahead.h"
 
 #include <assert.h>
@@ -39,13 +41,17 @@ struct query {
   const struct vg_ahead *x;
   uint32_t column;
   double root[3], u[3];
-  double reach;           /* nothing beyond it matters; shrinks */
-  double lowest, highest; /* where rays start, below and above the root */
-  double widest;          /* square of the farthest such place from it */
-  double back;            /* how far below the root a cone with all rays has
-                             its apex */
+  double reach;           /* Nothing farther matters; decreases during the
+                             search. */
+  double lowest, highest; /* Range of the starting points of the rays along u,
+                             below and above the root. */
+  double widest;          /* Squared distance of the farthest starting point
+                             from the root. */
+  double back;            /* Distance below the root at which the apex of a cone
+                             that contains all rays lies. */
   int n_centre;
-  double centre[VG_AHEAD_FACES][3]; /* of the faces, relative to the root */
+  double centre[VG_AHEAD_FACES][3]; /* Centres of the faces, relative to the
+                                       root. */
 };
 
 /* --- one triangle -------------------------------------------------------- */
@@ -67,7 +73,8 @@ static int shares_point(const struct query *q, const uint32_t t[3])
   return 0;
 }
 
-/* Do the columns of triangle t grow the same way as the one asked for? */
+/* Whether the columns of triangle t grow in the same direction as that of the
+ * query. */
 static int same_stack(const struct query *q, uint32_t t)
 {
   const struct vg_ahead *x = q->x;
@@ -86,14 +93,14 @@ static int same_stack(const struct query *q, uint32_t t)
   return vg_dot(sum, q->u) > SAME_STACK * sqrt(vg_dot(sum, sum));
 }
 
-/* Least distance along u, the reach at most, at which a line from the centre
- * of a face passes through the triangle (corners p, unit normal n). */
+/* Least distance along u, at most the reach, at which a line from the centre of
+ * a face passes through the triangle (corners p, unit normal n). */
 static double nearest_on_lines(const struct query *q, const double (*p)[3],
                                const double n[3])
 {
   double c[3], near = q->reach, along, off, far = 0;
 
-  /* Most triangles are too far to the side for all of them. */
+  /* Most triangles are too far to the side for all lines. */
   for (int k = 0; k < 3; k++) c[k] = (p[0][k] + p[1][k] + p[2][k]) / 3;
   for (int j = 0; j < 3; j++) {
     double d[3] = { p[j][0] - c[0], p[j][1] - c[1], p[j][2] - c[2] };
@@ -108,9 +115,9 @@ static double nearest_on_lines(const struct query *q, const double (*p)[3],
   return near;
 }
 
-/* Is the triangle (corners p) beyond what matters, or beside the cone that
- * holds all rays? The cone lies on one side of the planes along its
- * generators; the one that heads for the triangle is tried. */
+/* Whether the triangle (corners p) is out of reach or outside the cone that
+ * contains all rays. The cone lies on one side of each plane along a generator;
+ * only the plane towards the triangle is tested. */
 static int is_aside(const struct query *q, const double (*p)[3])
 {
   double a[3], c[3], along, off, m = q->reach + q->highest;
@@ -126,7 +133,8 @@ static int is_aside(const struct query *q, const double (*p)[3])
   return 1;
 }
 
-/* The triangle at position i of the tree: how near is it? */
+/* Reduces the reach to the distance of the triangle at position i of the
+ * tree. */
 static void consider(struct query *q, size_t i)
 {
   static const double root[3] = { 0, 0, 0 };
@@ -159,9 +167,9 @@ static void consider(struct query *q, size_t i)
     q->reach = near;
 }
 
-/* --- through the tree ---------------------------------------------------- */
+/* --- search in the tree -------------------------------------------------- */
 
-/* The query as the boxes see it. */
+/* The query in the precision of the boxes. */
 struct cone {
   float root[3], u[3], lo, hi, back, slack;
 };
@@ -171,7 +179,7 @@ static inline vg_f4 all4(float x)
   return (vg_f4){ x, x, x, x };
 }
 
-/* Children with a normal n for which n . u < -FACING + spread. */
+/* Children that contain a normal n with n . u < -FACING + spread. */
 static inline vg_i4 facing4(const struct vg_normal_boxes *s, int h,
                             const float u[3], float spread)
 {
@@ -182,8 +190,9 @@ static inline vg_i4 facing4(const struct vg_normal_boxes *s, int h,
   return least <= all4(spread - (float)FACING + 1e-5f);
 }
 
-/* Children whose balls touch the cone with its apex `back` below the root,
- * and whose boxes lie between lo and hi along it; where they begin: *first. */
+/* Children whose bounding spheres touch the cone with its apex `back` below the
+ * root, and whose boxes lie between lo and hi along it; *first: where the boxes
+ * begin. */
 static inline vg_i4 in_cone4(const struct vg_box8 *n,
                              const struct vg_normal_boxes *s, int h,
                              const struct cone *c, vg_f4 *first)
@@ -200,8 +209,8 @@ static inline vg_i4 in_cone4(const struct vg_box8 *n,
   }
   half += all4(c->slack);
   *first = along - half;
-  /* A point at height z and distance d from the axis is (d - z) / sqrt 2
-   * away from the cone. */
+  /* The distance from the cone of a point at height z and distance d from the
+   * axis is (d - z) / sqrt 2. */
   reach = along + all4(c->back) + 1.4143f * s->radius.v[h] + all4(c->slack);
   return (along + half >= all4(c->lo)) & (*first <= all4(c->hi)) &
          (reach >= all4(0)) &
@@ -230,7 +239,8 @@ static void cone_of(const struct query *q, struct cone *c)
   c->lo = (float)q->lowest;
   c->hi = (float)(q->reach + q->highest);
   c->back = (float)q->back;
-  /* Rounding: 2^-24 of the coordinates and a few times that in sums. */
+  /* Rounding: 2^-24 of the coordinates, and a small multiple of that in
+   * sums. */
   c->slack = 1e-6f * b->extent;
 }
 
@@ -250,7 +260,8 @@ static void look_into_leaf(struct query *q, size_t leaf, struct cone *c)
   }
 }
 
-/* All of the tree, what begins nearest first: soon little is near enough. */
+/* Visits the whole tree, nearest boxes first, so that the reach shrinks
+ * early. */
 static void walk(struct query *q, struct cone *c)
 {
   const struct vg_boxes *b = &q->x->boxes;
@@ -288,7 +299,7 @@ static void walk(struct query *q, struct cone *c)
 
 /* --- columns ------------------------------------------------------------- */
 
-/* Centres of the faces: where else rays start. */
+/* Centres of the faces, from which further rays start. */
 static void find_centres(struct query *q)
 {
   const struct vg_columns *c = q->x->columns;
@@ -300,7 +311,7 @@ static void find_centres(struct query *q)
     const uint32_t *face = c->face[y->corner[i] / 3];
     double *x = q->centre[q->n_centre], s, w;
 
-    /* Apexes with more faces than this: the cone has to do. */
+    /* For points with more faces the cone must suffice. */
     if (q->n_centre == VG_AHEAD_FACES) break;
     memset(x, 0, sizeof q->centre[0]);
     for (int j = 0; j < 3; j++)
@@ -317,7 +328,7 @@ static void find_centres(struct query *q)
   q->back = SQRT_2 * sqrt(q->widest);
 }
 
-/* 0: nothing to ask. */
+/* Returns 0 if the column needs no search. */
 static int start_query(struct query *q, uint32_t i)
 {
   const struct vg_ahead *x = q->x;
@@ -345,8 +356,8 @@ static void end_query(const struct query *q, double wanted)
   if (q->reach < wanted && h < x->reach[q->column]) x->allowed[q->column] = h;
 }
 
-/* Neighbours ask together: boxes about their cones, and directions within
- * `spread` of u. */
+/* Queries of neighbouring columns, with the bounding box of their cones, and
+ * their directions within `spread` of u. */
 struct team {
   int n;
   struct query query[TEAM];
@@ -362,7 +373,7 @@ static void gather_team(struct team *t, const struct vg_boxes *b)
 
     for (int i = 0; i < t->n; i++) {
       const struct query *q = &t->query[i];
-      /* A cone of height h is within h of its axis, sideways. */
+      /* A cone of height h extends at most h sideways from its axis. */
       double h = q->reach + q->highest + q->back;
       double s = sqrt(fmax(0, 1 - q->u[k] * q->u[k]));
       double apex = q->root[k] - b->origin[k] - q->back * q->u[k];
@@ -405,8 +416,8 @@ static inline unsigned in_team(const struct vg_ahead *x, size_t node,
   return vg_lanes(m[0], m[1]);
 }
 
-/* Leaves that any of the team may have to look into; LEAF_MAX + 1: more than
- * is worth listing. */
+/* Leaves that any query of the team may have to visit; LEAF_MAX + 1: too many
+ * to list. */
 static int leaves_of_team(const struct vg_ahead *x, const struct team *t,
                           size_t leaf[LEAF_MAX])
 {
@@ -473,7 +484,7 @@ static void look_ahead(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- entry point --------------------------------------------------------- */
 
 vg_status vg_clear_ahead(const struct vg_mesh *surface,
                          const struct vg_columns *columns,
@@ -494,8 +505,9 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
   assert(threads >= 0);
   if (!(gap > 0))
     return vg_fail(err, VG_ERR_INPUT,
-                   "a gap of %g leaves no room for layers: "
-                   "it must be more than 0",
+                   "the gap share of layers is %g; it must be more than 0, "
+                   "since layers would have no room otherwise (setting "
+                   "layer_gap)",
                    gap);
   st = vg_ahead_prepare(&x, threads, err);
   if (st == VG_OK && x.boxes.n)

@@ -1,4 +1,4 @@
-/* One triangle: where does a line meet it, or a cone of 45 degrees first? */
+/* Intersection of one triangle with a line or with a cone of 45 degrees. */
 #include "layers/clear/clear_ahead.h"
 
 #include <assert.h>
@@ -34,7 +34,7 @@ int vg_line_hits(const double o[3], const double u[3], const double (*p)[3],
   return 1;
 }
 
-/* Least u . x over x on the edge a b within the cone of 45 degrees. */
+/* Least u . x for points x of the edge a b within the cone of 45 degrees. */
 static double edge_in_cone(const double u[3], const double a[3],
                            const double b[3])
 {
@@ -75,7 +75,8 @@ double vg_nearest_in_cone(const double u[3], const double (*p)[3],
   static const double apex[3] = { 0, 0, 0 };
 
   if (!(h > 0)) return INFINITY;
-  /* The plane is nearest along the generator that heads for it most. */
+  /* The plane is nearest along the generator that approaches it most
+   * directly. */
   flat = sqrt(g * g < 1 ? 1 - g * g : 0);
   s = h / (g + flat);
   if (s >= most) return INFINITY;

@@ -1,6 +1,6 @@
-/* What stands in front of columns, made ready to be asked: which triangle is
- * under which columns, the way that triangles face, boxes about that, and
- * columns in an order that keeps neighbours together. */
+/* Prepares the search for opposite surfaces: the face and columns on each
+ * triangle, normals and their bounding boxes, and an order of the columns that
+ * keeps neighbours together. */
 #include "layers/clear/clear_ahead.h"
 
 #include <assert.h>
@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-#define SHARP 0.5 /* L11: cosine of a column to its triangle */
+#define SHARP 0.5 /* L11: cosine between a column and its triangle. */
 
 enum { GRAIN = 512 };
 
@@ -34,9 +34,10 @@ void vg_add_direction(const struct vg_column *c, double sum[3])
     for (int k = 0; k < 3; k++) sum[k] += c->dir[k] / l;
 }
 
-/* Two sharp edges that point at each other face each other with their
- * columns, not with their triangles, whose normals n are across. Such columns
- * lean out of the triangle: n is turned towards them. */
+/* Two sharp edges that point at each other face each other with their columns,
+ * but not with their triangles, whose normals n are perpendicular to that
+ * direction. Such columns lean out of the triangle, so n is turned towards
+ * them. */
 static void turn_to_edge(const struct vg_ahead *x, size_t tri, double n[3])
 {
   double(*p)[3] = x->surface->point, out[3] = { 0, 0, 0 }, l;
@@ -90,7 +91,7 @@ static void range_of(const float *lo, const float *hi,
   }
 }
 
-/* Empty children face nothing: their mid - half is NaN. */
+/* Empty children face nothing: mid - half is NaN. */
 static void measure_child(struct vg_ahead *x, int level, size_t j, int i)
 {
   const struct vg_boxes *b = &x->boxes;
@@ -151,7 +152,8 @@ static void measure_sides(struct vg_ahead *x, size_t n_node, int threads)
   }
 }
 
-/* As their faces come in the tree; those without one come last. */
+/* Orders columns as their faces in the tree; columns without a face come
+ * last. */
 static vg_status order_columns(struct vg_ahead *x, struct vg_error *err)
 {
   const struct vg_columns *c = x->columns;
@@ -175,8 +177,8 @@ static vg_status order_columns(struct vg_ahead *x, struct vg_error *err)
   return VG_OK;
 }
 
-/* Columns come by rising root, so those of point p are column_of[p] to
- * column_of[p + 1] - 1. */
+/* Columns are sorted by root: those of point p are column_of[p] to column_of[p
+ * + 1] - 1. */
 static void index_columns(struct vg_ahead *x)
 {
   const struct vg_columns *c = x->columns;
@@ -219,7 +221,7 @@ vg_status vg_ahead_prepare(struct vg_ahead *x, int threads,
   x->order = vg_alloc(x->columns->n_column, sizeof *x->order);
   if (!x->face_of || !x->column_of || !x->slid || !x->sides || !x->normal ||
       !x->order)
-    return vg_fail_memory(err, "what stands in front of the layers");
+    return vg_fail_memory(err, "the search for surfaces opposite the layers");
   index_columns(x);
   measure_sides(x, n_node, threads);
   return order_columns(x, err);

@@ -1,7 +1,7 @@
-/* Rims of one slide patch whose flanks overlap within it. The patch may lie
- * in a plane up to noise only, or be curved, so the question is put in two
- * dimensions: the coordinate along which both flanks look largest is dropped,
- * and what is left is judged exactly. */
+/* Overlaps of the side faces of the layers in one slide patch. The patch may be
+ * plane only up to noise, or curved, so the test is two-dimensional: the
+ * coordinate along which the normals of both side faces are largest is dropped,
+ * and the projection is tested exactly. */
 #include "layers/clear/clear_parts.h"
 
 #include <assert.h>
@@ -12,23 +12,25 @@
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
 
-/* What is a border up to this share of its size off the patch of another border
- * still lies in it: planes are flat to 1e-6, curved ones are resolved. */
+/* A side face lies in the patch of another one if it is off that patch by less
+ * than this share of its size: plane patches are flat to 1e-6, and curved ones
+ * are resolved. */
 #define OFF_PLANE 0.1
 
 struct flanks {
   const struct vg_tops *t;
-  uint32_t (*tri)[3]; /* [2 n_border] halves, for their boxes */
+  uint32_t (*tri)[3]; /* [2 n_border] halves of the side faces, for their
+                         bounding boxes. */
   struct vg_boxes boxes;
 };
 
-/* A flank in the plane: roots a and b, then the tops of b and a, without
- * repetitions. */
+/* Outline of a side face in the plane: roots a and b, then the tops of b and a,
+ * without repeated points. */
 struct outline {
-  int n; /* 2: no column has a level; 3 or 4 */
+  int n; /* 2: neither column has a level; otherwise 3 or 4. */
   uint32_t node[4];
   double x[4][2];
-  int tri[2][3], n_tri; /* split into halves that turn the same way */
+  int tri[2][3], n_tri; /* Division into triangles of equal orientation. */
 };
 
 static int sign(double x)
@@ -62,8 +64,8 @@ static int segments_meet(const double *a, const double *b, const double *c,
   return abc * abd <= 0 && cda * cdb <= 0;
 }
 
-/* Edge from corner i of p, and half h of q: what they share besides common
- * corners and the edges between them. */
+/* Whether the edge from corner i of p intersects half h of q anywhere except at
+ * shared corners and the edges between them. */
 static int edge_meets_half(const struct outline *p, int i,
                            const struct outline *q, int h)
 {
@@ -81,7 +83,7 @@ static int edge_meets_half(const struct outline *p, int i,
     int k = at_i >= 0 ? at_i : at_j;
     const double *far = at_i >= 0 ? b : a;
 
-    /* From a corner of the half: into it, or along one of its edges? */
+    /* From the shared corner: into the half, or along one of its edges. */
     return own * turn(c[k], c[(k + 1) % 3], far) >= 0 &&
            own * turn(c[(k + 2) % 3], c[k], far) >= 0;
   }
@@ -93,8 +95,8 @@ static int edge_meets_half(const struct outline *p, int i,
   return 0;
 }
 
-/* Edges of p with q, when q has a level: one that has none is an edge of the
- * wall as it was, and asked about the other way round. */
+/* Tests the edges of p against q if q has a level. If q has none, it is an edge
+ * of the wall, which the call with p and q exchanged tests. */
 static int edges_meet(const struct outline *p, const struct outline *q)
 {
   for (int i = 0; i < p->n; i++)
@@ -103,9 +105,9 @@ static int edges_meet(const struct outline *p, const struct outline *q)
   return 0;
 }
 
-/* --- flanks -------------------------------------------------------------- */
+/* --- side faces ---------------------------------------------------------- */
 
-/* Corners of the flank of border r, repetitions included. */
+/* Corners of the side face on boundary edge r, including repeated points. */
 static void corners(const struct vg_tops *t, size_t r, uint32_t node[4])
 {
   uint32_t a = t->columns->border[r][0], b = t->columns->border[r][1];
@@ -116,7 +118,7 @@ static void corners(const struct vg_tops *t, size_t r, uint32_t node[4])
   node[3] = t->node[a];
 }
 
-/* Twice the area, as a vector. */
+/* Area vector, times two. */
 static void area_of(const struct vg_tops *t, const uint32_t node[4],
                     double n[3])
 {
@@ -132,8 +134,9 @@ static void area_of(const struct vg_tops *t, const uint32_t node[4],
     n[k] = d[(k + 1) % 3] * e[(k + 2) % 3] - d[(k + 2) % 3] * e[(k + 1) % 3];
 }
 
-/* Halves of a quadrilateral that turn alike, by one diagonal or the other. 0
- * when there are none: it crosses itself, or has no area. */
+/* Divides a quadrilateral along one of its diagonals into two triangles of
+ * equal orientation. Returns 0 if neither diagonal works because the
+ * quadrilateral crosses itself or has no area. */
 static int split(struct outline *o)
 {
   static const int half[2][2][3] = { { { 0, 1, 2 }, { 0, 2, 3 } },
@@ -207,7 +210,8 @@ static void meet_flanks(void *context, size_t i, size_t j)
   area_of(t, a, n);
   area_of(t, b, m);
   for (int k = 0; k < 3; k++) dot += n[k] * m[k];
-  /* Two sides of a thin plate; one without a level has no side. */
+  /* Opposite sides of a thin plate. A side face without a level has no
+   * orientation. */
   if (dot < 0) return;
   for (int k = 0; k < 3; k++) n[k] += m[k];
   if (!outline_of(t, a, axis_of(n), &o) || !outline_of(t, b, axis_of(n), &p))
@@ -226,7 +230,7 @@ static void judge_alone(const struct vg_tops *t, size_t r)
 
   corners(t, r, node);
   area_of(t, node, n);
-  /* Within a fan without a level all four are one point. */
+  /* Within a fan without levels all four corners are one point. */
   if (node[0] == node[1] && node[2] == node[0] && node[3] == node[0]) return;
   if (border_active(t, r) && !outline_of(t, node, axis_of(n), &o))
     mark_border(t, r);
@@ -243,11 +247,11 @@ vg_status vg_clear_flanks(const struct vg_tops *t, struct vg_error *err)
   if (!c->n_border) return VG_OK;
   if (c->n_border > VG_NO_INDEX / 2)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%zu edges between walls and "
-                   "slide patches are too many: use a coarser surface",
+                   "%zu edges between walls and slide patches are too many: "
+                   "use a coarser surface",
                    c->n_border);
   x.tri = vg_alloc(2 * c->n_border, sizeof *x.tri);
-  if (!x.tri) return vg_fail_memory(err, "flanks of the layers");
+  if (!x.tri) return vg_fail_memory(err, "side faces of the layers");
   for (size_t r = 0; r < c->n_border; r++) {
     uint32_t node[4];
 

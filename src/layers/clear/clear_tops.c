@@ -1,7 +1,7 @@
-/* Do tops meet what they must not? Boxes about the tops that may have moved
- * find the pairs, exact determinants judge them. Tops are told from others by
- * the numbers of their corners, so that touching at a common column, or at a
- * root when no column of it has a level, is no contact. */
+/* Finds tops that collide. Bounding boxes of the tops that may have moved find
+ * the candidate pairs, and exact determinants decide. Contact at a shared
+ * column, or at a shared root that has no column with a level, is recognised by
+ * the numbers of the corners and does not count. */
 #include "layers/clear/clear.h"
 
 #include <assert.h>
@@ -17,29 +17,30 @@
 
 enum {
   GRAIN = 2048,
-  TOP_NONE = 0,  /* fallen together (virtual), or of no area */
-  TOP_STILL = 1, /* no active column */
+  TOP_NONE = 0,  /* Degenerate (virtual), or without area. */
+  TOP_STILL = 1, /* No active column. */
   TOP_ACTIVE = 2
 };
 
 struct clear {
   struct vg_tops t;
   const uint8_t *is_slide;
-  uint32_t (*tri)[3]; /* [n_face] corners of tops in t.point */
-  uint8_t *state;     /* [n_face] */
-  uint8_t *covered;   /* [surface->n_tri] has a face on it */
-  uint32_t *active;   /* [n_active] faces */
+  uint32_t (*tri)[3]; /* [n_face] corners of the tops in t.point. */
+  uint8_t *state;     /* [n_face] TOP_NONE, TOP_STILL or TOP_ACTIVE. */
+  uint8_t *covered;   /* [surface->n_tri] 1: a face stands on it. */
+  uint32_t *active;   /* [n_active] active faces. */
   size_t n_active;
-  struct vg_boxes boxes; /* about active faces */
+  struct vg_boxes boxes; /* Boxes of active faces. */
 };
 
 static const uint32_t one_fan[3] = { 0, 0, 0 };
 
-/* --- where the tops are -------------------------------------------------- */
+/* --- positions of the tops ----------------------------------------------- */
 
-/* Most neighbours have the same law: heights are kept from one column to the
- * next. Same bits as vg_column_top, since heights of n levels begin with
- * those of fewer. */
+/* Most neighbouring columns have the same law, so the heights are kept from one
+ * column to the next. They equal those of vg_column_top bitwise, since the
+ * heights of n levels begin with those of fewer levels. Unlike vg_column_top,
+ * top_of() does not add the shift of a column. */
 struct heights {
   uint32_t law;
   double cap;
@@ -90,7 +91,7 @@ static void place_tops(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* --- what they are ------------------------------------------------------- */
+/* --- classification of the tops ------------------------------------------ */
 
 static void mark_face(const struct clear *x, size_t f)
 {
@@ -165,7 +166,7 @@ static void meet_tops(void *context, size_t i, size_t j)
   mark_face(x, g);
 }
 
-/* An active top with one, g, that is not. */
+/* Tests an active top against top g, which is not active. */
 static void meet_still(void *context, size_t i, size_t g)
 {
   const struct clear *x = context;
@@ -203,9 +204,9 @@ static int slides_in(const struct vg_columns *c, const uint32_t face[3],
   return 0;
 }
 
-/* A top with triangle s of the surface that carries no layers. A slide patch
- * is re-meshed within itself, so what does not slide in it may not reach it
- * any more than another patch. */
+/* Tests a top against triangle s of the surface, which has no layers. A slide
+ * patch is remeshed within itself, so tops without a column that slides in it
+ * must not touch it either. */
 static void meet_surface(void *context, size_t i, size_t s)
 {
   const struct clear *x = context;
@@ -233,7 +234,7 @@ static void visit_surface(void *context, size_t first, size_t end, int worker)
                      meet_surface, x, s);
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- entry point --------------------------------------------------------- */
 
 static void clear_release(struct clear *x)
 {
@@ -254,8 +255,8 @@ static vg_status allocate(struct clear *x, struct vg_error *err)
 
   if (m->n_point >= VG_NO_INDEX || c->n_column >= VG_NO_INDEX - m->n_point)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%zu surface points and %zu columns are more than the %u "
-                   "that one mesh can number: use a coarser surface",
+                   "%zu surface points and %zu columns exceed the limit of %u "
+                   "points in a mesh: use a coarser surface",
                    m->n_point, c->n_column, VG_NO_INDEX - 1);
   x->t.point = vg_alloc(m->n_point + c->n_column, sizeof *x->t.point);
   x->t.node = vg_alloc(c->n_column, sizeof *x->t.node);

@@ -74,8 +74,8 @@ static void make_keys(void *context, size_t first, size_t end, int worker)
     for (int k = 0; k < 3; k++) {
       double q = (0.5 * (box[k] + box[k + 3]) - x->lo[k]) * x->scale;
 
-      /* 18 bits each: what is closer together than 4e-6 of the whole may
-       * stay in the order given; saves one round of sorting. */
+      /* 18 bits each, which saves one round of sorting. Items closer than 4e-6
+       * of the extent may stay in their given order. */
       key |= vg_interleave3(!(q > 0)      ? 0
                             : q >= 262143 ? 262143
                                           : (uint64_t)q)
@@ -233,7 +233,7 @@ struct pairs {
   void *context;
 };
 
-/* Items of leaf l with those of leaf m >= l. */
+/* Pairs of items of leaf l with those of leaf m >= l. */
 static void leaf_pairs(const struct pairs *p, size_t l, size_t m)
 {
   const struct vg_box8 *own = &p->b->node[l], *other = &p->b->node[m];
@@ -269,7 +269,8 @@ static void pairs_of_leaves(void *context, size_t first, size_t end, int worker)
       size_t at = stack[depth].at;
       unsigned mask;
 
-      /* Leaves below are at .. at + 1 times 8^level: none beyond l? */
+      /* The leaves below are at .. at + 1 times 8^level; skip if all are before
+       * l. */
       if (((at + 1) << 3 * level) <= l) continue;
       if (!level) {
         leaf_pairs(p, l, at);

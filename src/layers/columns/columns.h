@@ -1,21 +1,39 @@
-/* layers/columns/columns.h: layers as columns. Uses core/mesh/mesh.h,
- * layers/columns/growth_law.h.
+/* layers/columns/columns.h: viscous layers stored as columns. Uses
+ * core/mesh/mesh.h, layers/columns/growth_law.h.
  *
- * A column stands on a wall point and has levels 0 (the wall) to n. Cells are
- * implied: for every face (a triangle of three columns), for levels l = 0, 1,
- * ...: of its columns by rising number, each with l < n is raised, which
- * makes one tetrahedron (v at l, v at l + 1, the two others where they stand
- * now) of positive volume: the lift rule. What is left on top is the face
- * with each column at its own n: the top, one triangle per face, so tops are
- * as conforming as the wall is. Neighbours may differ by any number of levels;
- * what is bounded is the slope of the tops between them
+ * A column stands on a wall point and has levels 0 (the wall) to n. Its cells
+ * are not stored: the lift rule derives them from the faces (triangles of three
+ * columns). For levels l = 0, 1, ... the rule visits the three columns of a
+ * face in order of increasing column number and raises each one with l < n.
+ * Each raise makes one tetrahedron of positive volume from four points: the
+ * column at l, the same column at l + 1, and the other two columns at their
+ * current levels. Three raises make a prism:
+ *
+ *             c1         at l + 1:  a1 b1 c1        columns a < b < c
+ *            /| \
+ *          a1-+--b1      1. raise a:  a0 b0 c0 a1
+ *          |  c0 |       2. raise b:  a1 b0 c0 b1
+ *          | /  \|       3. raise c:  a1 b1 c0 c1
+ *          a0---b0
+ *
+ *          a1            Where column c has ended, only a and b are raised:
+ *          | \           two tetrahedra, which together are a pyramid on the
+ *          |  b1         quadrilateral a0 b0 b1 a1 with its apex c0.
+ *          |  | \        Where b and c have ended, one tetrahedron is left.
+ *          a0-b0-c0
+ *
+ * When all columns of a face have reached their n, one triangle is left on top,
+ * the top of the face. There is one top per wall face, so the tops form a
+ * conforming triangulation. Neighbouring columns may differ by any number of
+ * levels; only the slope of the tops between them is bounded
  * (layers/grow/grow_parts.h).
  *
- * At a convex edge a point may have several columns, a fan. Between them lie
- * virtual faces: triangles of columns with two or three equal roots, of no
- * area at level 0. The lift rule holds for them; cells with a repeated point
- * (all columns of one root are one point at level 0) vanish, and the faces
- * of such a cell fall together in pairs, so conformity stays. */
+ * At a convex edge a point may have several columns, a fan. Virtual faces lie
+ * between them: triangles of columns of which two or three have the same root,
+ * with zero area at level 0. The lift rule applies to virtual faces as well.
+ * Cells with a repeated point are omitted (at level 0 all columns of one root
+ * are the same point). The faces of such a cell coincide in pairs, so the mesh
+ * remains conforming. */
 #ifndef VG_LAYERS_COLUMNS_COLUMNS_H
 #define VG_LAYERS_COLUMNS_COLUMNS_H
 
@@ -28,63 +46,67 @@
 
 #define VG_NO_INDEX UINT32_MAX
 
-/** Why a column has fewer or thinner layers than the law asks for. */
+/** Why a column has fewer or thinner layers than its growth law requests. */
 enum vg_layer_cause {
-  VG_CAUSE_NONE,       /* all layers that were asked for */
-  VG_CAUSE_SIZE,       /* ended as thick as the local cell: as intended */
-  VG_CAUSE_PROXIMITY,  /* another surface stands in front of it */
-  VG_CAUSE_CORNER,     /* columns converge in a concave corner */
-  VG_CAUSE_VISIBILITY, /* no direction sees all faces at the point */
-  VG_CAUSE_CELL,       /* a cell would be inverted or too flat */
-  VG_CAUSE_COLLISION,  /* tops or flanks would cross */
-  VG_CAUSE_SLIDE,      /* meets a slide patch at too flat an angle, or the
-                          patch could not be re-meshed around it */
+  VG_CAUSE_NONE,       /* All requested layers were grown. */
+  VG_CAUSE_SIZE,       /* Ended at the local cell size, as intended. */
+  VG_CAUSE_PROXIMITY,  /* The opposite surface is too close. */
+  VG_CAUSE_CORNER,     /* Columns converge in a concave corner. */
+  VG_CAUSE_VISIBILITY, /* No direction sees all faces at the point. */
+  VG_CAUSE_CELL,       /* A cell would be inverted or too flat. */
+  VG_CAUSE_COLLISION,  /* Tops or side faces would intersect. */
+  VG_CAUSE_SLIDE, /* The column meets a slide patch at too flat an angle, or
+                     the patch could not be remeshed around the layers. */
   VG_CAUSE_N
 };
 
-/** One word for reports: "none", "size", ... Static string. */
+/** Name of a cause in reports: "none", "size", ... Static string. */
 const char *vg_layer_cause_name(enum vg_layer_cause cause);
 
 struct vg_column {
-  uint32_t root;      /* point of the surface */
-  uint32_t law;       /* index into vg_columns.law */
-  uint32_t slide[2];  /* patches it slides in, VG_NO_INDEX: none; [0] first */
-  double dir[3];      /* level l >= 1 stands at root + shift + dir *
-                         height(l); length 1 to 2 */
-  double shift[3];    /* what makes the first point delta1 away from the
-                         wall, in corners where dir alone does not: so the
-                         layers above may be straightened out and the first
-                         height is kept. 0 for most */
-  double cap;         /* growth of this column: the law's, or less where it
-                         was compressed (vg_growth_law_heights) */
-  size_t bent;        /* SIZE_MAX: straight. Else levels 0 .. n are
-                         vg_columns.path[bent ..] (curved slide patches) */
-  uint16_t n;         /* levels */
-  uint16_t n_wanted;  /* by law and local size, before anything limited it */
-  uint8_t cause;      /* enum vg_layer_cause: what set n below n_wanted */
-  uint8_t compressed; /* enum vg_layer_cause: what set cap below the law's;
-                       VG_CAUSE_NONE: nothing did */
-  uint8_t unused[2];  /* 0: columns are sent, and compared, as bytes */
+  uint32_t root;     /* Wall point on which the column stands. */
+  uint32_t law;      /* Index into vg_columns.law. */
+  uint32_t slide[2]; /* Patches in which the column slides, the first one in
+                        [0]; VG_NO_INDEX: none. */
+  double dir[3];     /* Level l >= 1 is at root + shift + dir * height(l).
+                        Length 1 to 2. */
+  double shift[3];   /* Offset that places the first point delta1 away from the
+                        wall in corners where dir alone cannot. The first height
+                        is thus kept even if the levels above are straightened.
+                        0 for most columns. */
+  double cap;        /* Largest growth ratio of this column: that of its law, or
+                        less where it was compressed (vg_growth_law_heights). */
+  size_t bent;       /* SIZE_MAX: the column is straight. Otherwise levels 0 ..
+                        n are at vg_columns.path[bent ..] (curved slide
+                        patches). */
+  uint16_t n;        /* Number of levels. */
+  uint16_t n_wanted; /* Levels that the growth law and the local size request,
+                        before any limit. */
+  uint8_t cause;     /* enum vg_layer_cause: what reduced n below n_wanted. */
+  uint8_t compressed; /* enum vg_layer_cause: what reduced cap below that of the
+                       law; VG_CAUSE_NONE if nothing did. */
+  uint8_t unused[2];  /* 0, since columns are sent and compared as bytes. */
 };
 _Static_assert(sizeof(struct vg_column) == 88, "columns have no padding");
 
 struct vg_columns {
   size_t n_column, n_face, n_border, n_law, n_path;
-  struct vg_column *column; /* [n_column] by rising root; those of one root by
-                               rising position around it */
-  uint32_t (*face)[3];      /* [n_face] columns, counter-clockwise seen from
-                               the fluid; first those of triangles (by rising
-                               triangle while layers grow, then along a
-                               Hilbert curve), then the virtual ones */
-  uint32_t *face_tri;       /* [n_face] triangle of the surface; virtual:
-                               VG_NO_INDEX */
-  uint32_t (*border)[2];    /* [n_border] edges of one face, in its direction;
-                                 both columns slide in ... */
-  uint32_t *border_patch; /* [n_border] ... this patch. An edge between columns
-                              of one root is a border too where a fan meets a
-                              slide patch */
-  struct vg_growth_law *law; /* [n_law] */
-  double (*path)[3];         /* [n_path] */
+  struct vg_column *column; /* [n_column], sorted by root; the columns of one
+                               root are sorted by position around it. */
+  uint32_t (*face)[3];      /* [n_face] columns, counter-clockwise seen from the
+                               fluid. The faces of wall triangles come first (in
+                               triangle order while layers grow, then along a
+                               Hilbert curve), followed by the virtual faces. */
+  uint32_t *face_tri;       /* [n_face] triangle of the surface; VG_NO_INDEX for
+                               a virtual face. */
+  uint32_t (*border)[2];    /* [n_border] boundary edges, with the orientation
+                               of their only face; both columns slide in
+                               border_patch. */
+  uint32_t *border_patch; /* [n_border] slide patch of each boundary edge. Where
+                             a fan meets a slide patch, an edge between two
+                             columns of one root is also a boundary edge. */
+  struct vg_growth_law *law; /* [n_law] growth laws. */
+  double (*path)[3];         /* [n_path] points of bent columns. */
 };
 #define VG_COLUMNS_INIT                                                        \
   {                                                                            \
@@ -93,7 +115,7 @@ struct vg_columns {
 
 void vg_columns_release(struct vg_columns *c);
 
-/** Whether column i is one of a fan. */
+/** Whether column i belongs to a fan. */
 static inline int vg_shares_root(const struct vg_columns *c, size_t i)
 {
   assert(i < c->n_column);
@@ -104,13 +126,14 @@ static inline int vg_shares_root(const struct vg_columns *c, size_t i)
          (i + 1 < c->n_column && c->column[i + 1].root == root);
 }
 
-/** Points of levels 0 .. column[i].n into x. Where dir and shift have a
- * component of 0, straight columns keep that of the root to the last bit.
- * d: scratch for vg_growth_law_heights, [VG_LEVELS_MAX + 1]. */
+/** Writes the points of levels 0 .. column[i].n to x. In a straight column,
+ * every coordinate in which both dir and shift are 0 equals that of the root
+ * to the last bit. d: scratch for vg_growth_law_heights, [VG_LEVELS_MAX + 1].
+ */
 void vg_column_points(const struct vg_columns *c, const struct vg_mesh *m,
                       size_t i, double *d, double (*x)[3]);
 
-/** The top point of column i alone. */
+/** Only the top point of column i. */
 void vg_column_top(const struct vg_columns *c, const struct vg_mesh *m,
                    size_t i, double x[3]);
 

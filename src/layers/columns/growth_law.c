@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-/* A rate that no layers have. */
+/* Upper bound of the growth rate, above any rate in use. */
 #define RATE_MAX 1e6
 
 static double power(double x, int n)
@@ -15,7 +15,7 @@ static double power(double x, int n)
   return y;
 }
 
-/* Thickness of layer j by the law alone. */
+/* Thickness of layer j by the growth law without the cap. */
 static double bare(const struct vg_growth_law *law, int j)
 {
   int k = law->n_constant > 1 ? j - (int)law->n_constant : j - 1;
@@ -26,14 +26,15 @@ static double bare(const struct vg_growth_law *law, int j)
                k);
 }
 
-/* The same, given that of layer j - 1: one product for a geometric law. */
+/* As bare(), from the thickness of layer j - 1: one product for a geometric
+ * law. */
 static double bare_next(const struct vg_growth_law *law, int j, double before)
 {
   if (j <= 1 || j <= law->n_constant) return law->delta1;
   return law->rate2 > 0 ? bare(law, j) : before * (1 + law->rate1);
 }
 
-/* Thickness of layer j under a cap, given that of j - 1. */
+/* Thickness of layer j under the cap, from that of layer j - 1. */
 static double next(double bare, double cap, int j, double before)
 {
   return j > 1 && bare > cap * before ? cap * before : bare;
@@ -57,8 +58,8 @@ void vg_growth_law_heights(const struct vg_growth_law *law, double cap, int n,
   }
 }
 
-/* Height of n layers of thickness b[1 .. n] by the law alone; adds as
- * vg_growth_law_heights does, to the last bit. */
+/* Height of n layers whose thickness without the cap is b[1 .. n]. Adds in the
+ * same order as vg_growth_law_heights, so both agree to the last bit. */
 static double sum(const double *b, double cap, int n)
 {
   double total = 0, t = 0;
@@ -82,12 +83,12 @@ double vg_growth_law_compress(const struct vg_growth_law *law, int n,
   for (int j = 1; j <= n; j++) b[j] = bare_next(law, j, b[j - 1]);
   if (sum(b, hi, n) <= height) return hi;
   if (sum(b, lo, n) > height) return 0;
-  /* An unlimited law still has a largest ratio among its n layers. */
+  /* A law without a cap still has a largest ratio among its n layers. */
   if (!isfinite(hi)) {
     hi = 2;
     while (sum(b, hi, n) <= height) hi *= 2;
   }
-  for (int i = 0; i < 28; i++) { /* 4e-9 of the cap */
+  for (int i = 0; i < 28; i++) { /* Accurate to 4e-9 of the cap. */
     double mid = 0.5 * (lo + hi);
 
     if (sum(b, mid, n) <= height) lo = mid;
@@ -96,15 +97,16 @@ double vg_growth_law_compress(const struct vg_growth_law *law, int n,
   return lo;
 }
 
-/* x^(1/7), x > 0, by Newton's method and without libm, whose last bits differ
- * from machine to machine: y >= the root falls until it falls no more. */
+/* x^(1/7), x > 0, by Newton's method. libm is avoided because its last bits
+ * differ between machines. y starts above the root and decreases until it no
+ * longer does. */
 static double seventh_root(double x)
 {
   double y, next;
   int e;
 
   frexp(x, &e);
-  next = ldexp(1, e >= 0 ? e / 7 + 1 : e / 7); /* above the root */
+  next = ldexp(1, e >= 0 ? e / 7 + 1 : e / 7); /* Above the root. */
   do {
     y = next;
     next = y - (y - x / power(y, 6)) / 7;
@@ -112,7 +114,7 @@ static double seventh_root(double x)
   return y;
 }
 
-/* Friction velocity over that of the stream. */
+/* Friction velocity divided by the free-stream velocity. */
 static double friction(double reynolds)
 {
   return sqrt(0.5 * 0.026 / seventh_root(reynolds));
@@ -165,7 +167,9 @@ double vg_real_power(double x, double e)
 
   double whole = floor(fabs(e)), part = fabs(e) - whole, y, root = x;
 
-  if (whole > 1000) whole = 1000; /* beyond any that could be told */
+  if (whole > 1000)
+    whole = 1000; /* Beyond any exponent that makes a
+                     difference. */
   y = power(x, (int)whole);
   for (int i = 0; i < 53 && part > 0; i++) {
     root = sqrt(root);

@@ -1,4 +1,4 @@
-/* One copy of the layers for the ranks of a node. */
+/* Sharing one copy of the layers between the ranks of a node. */
 #include "layers/columns/share.h"
 
 #include <assert.h>
@@ -11,7 +11,7 @@ struct array {
 
 enum { N_ARRAY = 12 };
 
-/* All arrays of layers whose counts are set. */
+/* Lists all arrays; the counts in *l must be set. */
 static void list_arrays(struct vg_layers *l, struct array a[N_ARRAY])
 {
   struct vg_columns *c = &l->columns;
@@ -47,7 +47,7 @@ void vg_layers_show(const struct vg_layers *layers,
   for (int i = 0; i < N_ARRAY; i++) look(user, a[i].bytes, *a[i].at);
 }
 
-/* The layers' counts, then their arrays. */
+/* Lists the struct with its counts, then its arrays. */
 static void list_parts(struct vg_layers *l, struct vg_bytes part[1 + N_ARRAY])
 {
   struct array a[N_ARRAY];

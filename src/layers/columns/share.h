@@ -1,24 +1,24 @@
-/* layers/columns/share.h: layers that the ranks of a node have in common, and
- * a look at all of their bytes. Uses base/comm.h, layers/columns/layers.h. */
+/* layers/columns/share.h: layers in memory shared by the ranks of a node, and
+ * access to all their bytes. Uses base/comm.h, layers/columns/layers.h. */
 #ifndef VG_LAYERS_COLUMNS_SHARE_H
 #define VG_LAYERS_COLUMNS_SHARE_H
 
 #include "base/comm.h"
 #include "layers/columns/layers.h"
 
-/** The layers of the first rank of a node on all of its ranks, one copy of
- * them where the ranks can have memory in common (base/comm.h). From then on
- * they are only read. Collective over the node; nothing where a rank is alone
- * on it.
+/** Shares the layers of the first rank of a node with all its ranks, as a
+ * single copy where the ranks can share memory (base/comm.h). The layers are
+ * read-only afterwards. Collective over the node; does nothing if the rank is
+ * alone on its node.
  *
- * @param layers  those that were grown, empty on other ranks; replaced by the
- *                common ones, vg_layers_release. Untouched on failure, which
- *                all ranks of the node have */
+ * @param layers  the grown layers, empty on other ranks. Replaced by the shared
+ *                layers, to be released by vg_layers_release; untouched on
+ *                failure, which all ranks of the node report */
 vg_status vg_layers_share(struct vg_comm *c, struct vg_layers *layers,
                           struct vg_error *err);
 
-/** Show `look` the arrays of layers, one after the other, names of patches
- * aside: bytes that are the same where layers are. */
+/** Calls `look` for each array of the layers in turn, without the patch names.
+ * Equal layers yield equal bytes. */
 void vg_layers_show(const struct vg_layers *layers,
                     void (*look)(void *user, size_t n, const void *data),
                     void *user);

@@ -1,4 +1,5 @@
-/* Points of columns: numbers and places. Cells are in expand_cells.c. */
+/* Numbers and coordinates of the points of columns. Cells are in
+ * expand_cells.c. */
 #include "layers/expand/expand.h"
 
 #include <assert.h>
@@ -58,8 +59,8 @@ vg_status vg_expand_open(struct vg_expand *e, const struct vg_columns *columns,
   for (size_t i = 0; i < columns->n_column; i++)
     if (columns->column[i].n > VG_LEVELS_MAX)
       return vg_fail(err, VG_ERR_INPUT,
-                     "the column on point %zu has %u levels; at most %d can "
-                     "be made",
+                     "the column on point %zu has %u levels, but at most %d "
+                     "are supported",
                      (size_t)columns->column[i].root + 1, columns->column[i].n,
                      VG_LEVELS_MAX);
   st = reserve(e, err);
@@ -78,8 +79,8 @@ void vg_expand_close(struct vg_expand *e)
   memset(e, 0, sizeof *e);
 }
 
-/* One after the other, since a column's number depends on all before it: a
- * few nanoseconds for each face, whatever stands on it. */
+/* Sequential, because the number of a column depends on all columns before it.
+ * Takes a few nanoseconds per face, regardless of its levels. */
 static void number_columns(struct vg_expand *e, const size_t first[2])
 {
   const struct vg_columns *c = e->columns;
@@ -174,7 +175,7 @@ vg_status vg_layers_count(const struct vg_layers *layers,
                                 threads, err);
 
   if (st < 0) return st;
-  /* Any numbers will do that are the same for columns of one root. */
+  /* Any numbers will do if columns of one root have the same. */
   for (size_t i = 0; i < layers->columns.n_column; i++) {
     const struct vg_column *c = &layers->columns.column[i];
 

@@ -1,13 +1,16 @@
-/* Cells of faces and flanks of borders, one face or border at a time, upwards.
+/* Cells of wall faces, and the side faces at boundary edges, from the wall
+ * upwards.
  *
- * All tetrahedra: columns rise one by one, by rising number. Mixed: they rise
- * together, which makes a prism, a pyramid over the two that rise or one
- * tetrahedron. But two columns of one root are one point at level 0, and a
- * prism over a face with two of them has five points and two quadrilaterals
- * that share two edges: no cell. So, at level 0, columns that share their root
- * rise after the others, one by one: whatever of the face's points is equal,
- * what they leave are tetrahedra, or cells with a repeated point that vanish.
- * The columns alone decide, so both sides of a flank agree. */
+ * All tetrahedra: columns are raised one at a time, by increasing number.
+ * Mixed: the columns of a face are raised together, which makes a prism, or a
+ * pyramid if two are raised, or a tetrahedron if one is. However, two columns
+ * of one root are the same point at level 0, and a prism on a face with two
+ * such columns would have five points and two quadrilaterals that share two
+ * edges, which is not a valid cell. At level 0, columns that share their root
+ * are therefore raised after the others, one at a time. Whichever points of the
+ * face coincide, the resulting cells are tetrahedra, or cells with a repeated
+ * point, which are omitted. The order depends only on the columns, so both
+ * sides of a side face agree. */
 #include "layers/expand/expand.h"
 
 #include <assert.h>
@@ -22,8 +25,8 @@
 /* Blocks of faces that a thread takes at a time. */
 #define BLOCK_GRAIN 8
 
-/* Corners of a face by rising column, by which of f0 < f1, f1 < f2, f2 < f0
- * hold (bits 0, 1, 2; none or all cannot be). */
+/* Corners of a face by increasing column number, indexed by which of f0 < f1,
+ * f1 < f2, f2 < f0 hold (bits 0, 1, 2; none or all is impossible). */
 static const uint8_t rising[8][3] = {
   { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 0, 1, 2 },
   { 2, 1, 0 }, { 2, 0, 1 }, { 1, 2, 0 }, { 0, 1, 2 },
@@ -45,10 +48,12 @@ static inline void put_tet(struct vg_cell_sink *s, const uint32_t p[3],
   n[3] = top;
 }
 
-/* Who splits a prism's quadrilaterals from node 0 on (0 1 2 3, 1 2 3 4,
- * 2 3 4 5) should agree with his neighbours. By rising columns he would, but
- * half of the faces turn the other way round; there one of two edges must
- * disagree, and they take turns, so that warped sides add up to nothing. */
+/* A solver that splits the quadrilaterals of a prism from node 0 on (0 1 2 3, 1
+ * 2 3 4, 2 3 4 5) should split the quadrilaterals of neighbouring prisms in the
+ * same way. An order by increasing column number would achieve that, but half
+ * of the faces have the opposite orientation, in which the splits of one of two
+ * edges must disagree. These edges alternate, so that the volumes of warped
+ * side faces cancel. */
 static int first_corner(const uint32_t f[3])
 {
   const uint8_t *o = order_of(f);
@@ -68,7 +73,7 @@ static inline void put_prism(struct vg_cell_sink *s, int first,
   }
 }
 
-/* A prism of which corner w does not rise. */
+/* A prism in which corner w is not raised. */
 static void put_pyramid(struct vg_cell_sink *s, const uint32_t p[3],
                         const uint32_t h[3], int w)
 {
@@ -82,14 +87,15 @@ static void put_pyramid(struct vg_cell_sink *s, const uint32_t p[3],
   n[4] = h[v];
 }
 
-/* The lift rule where points may be equal. */
+/* The lift rule for points that may coincide. */
 static void lift(struct vg_cell_sink *s, uint32_t p[3], uint32_t top, int k)
 {
   if (p[0] != p[1] && p[1] != p[2] && p[2] != p[0]) put_tet(s, p, top);
   p[k] = top;
 }
 
-/* Corners of the mask that rise rise together; their roots differ. */
+/* Raises the corners in the mask that have the next level together; their roots
+ * differ. */
 static void rise_together(struct vg_cell_sink *s, const uint32_t f[3],
                           uint32_t p[3], const uint32_t h[3], unsigned mask)
 {
@@ -105,8 +111,8 @@ static void rise_together(struct vg_cell_sink *s, const uint32_t f[3],
     if (mask >> k & 1 && h[k] != VG_NO_INDEX) p[k] = h[k];
 }
 
-/* Points p stand at level 0; corners in the mask share their root with no
- * other column, so with two of them all points differ. */
+/* Points p are at level 0. Corners in the mask share their root with no other
+ * column, so if the mask has two of them all points differ. */
 static void rise_from_wall(const uint32_t f[3], unsigned together,
                            uint32_t p[3], const uint32_t h[3],
                            struct vg_cell_sink *s)
@@ -138,7 +144,7 @@ static inline void rise_one_by_one(const uint32_t f[3], uint32_t p[3],
   }
 }
 
-/* Corners of a face whose root has no other column, where that matters. */
+/* Corners of a face whose root has no other column, in mixed mode. */
 static unsigned alone(const struct vg_expand *e, const uint32_t f[3])
 {
   unsigned mask = 0;
@@ -160,7 +166,7 @@ static unsigned levels_of(const struct vg_expand *e, const uint32_t f[3],
   return low;
 }
 
-/* n_level levels of which all three columns have the next as well. */
+/* n_level levels above which all three columns have a further level. */
 static void whole_levels(int mixed, const uint32_t f[3], unsigned n_level,
                          uint32_t p[3], struct vg_cell_sink *s)
 {
@@ -182,15 +188,15 @@ static void whole_levels(int mixed, const uint32_t f[3], unsigned n_level,
       }
 }
 
-/* Two columns of one root without a level: what rises beside them has no
+/* Two columns of one root without levels: columns raised next to them make no
  * cells. */
 static int is_edge(const uint32_t p[3])
 {
   return p[0] == p[1] || p[1] == p[2] || p[2] == p[0];
 }
 
-/* Levels from l >= 1 on, of which at least one column does not have the next:
- * its point stays, and the cells above the others meet there. */
+/* Levels from l >= 1 on above which at least one column has ended. The point of
+ * such a column stays, and the cells of the other columns meet there. */
 static void other_levels(int mixed, const uint32_t f[3], const unsigned n[3],
                          unsigned l, uint32_t p[3], struct vg_cell_sink *s)
 {
@@ -220,7 +226,7 @@ void vg_expand_face(const struct vg_expand *e, size_t face,
   other_levels(e->mixed, f, n, low ? low : 1, p, s);
 }
 
-/* Corners at level 0, those of one root as one point. */
+/* Corners at level 0, with those of one root merged. */
 static void merge_roots(const struct vg_columns *c, const uint32_t f[3],
                         uint32_t p[3])
 {
@@ -231,7 +237,7 @@ static void merge_roots(const struct vg_columns *c, const uint32_t f[3],
   }
 }
 
-/* Of the cells of a face what rises last has the top. */
+/* The cell that is made last has the top. */
 int vg_expand_top(const struct vg_expand *e, size_t face, uint32_t node[6])
 {
   assert(face < e->columns->n_face);
@@ -292,7 +298,7 @@ int vg_join_wall_cells(const struct vg_columns *c, size_t face,
   return n;
 }
 
-/* Adds the cells of a face. */
+/* Adds the cells of a face to the counts. */
 static void count_face(const struct vg_expand *e, const uint32_t f[3],
                        size_t count[VG_N_KIND])
 {
@@ -309,7 +315,7 @@ static void count_face(const struct vg_expand *e, const uint32_t f[3],
   count[VG_KIND_PYR] += (size_t)(s.pyr - pyr);
   count[VG_KIND_PRI] += (size_t)(s.pri - pri);
   if (is_edge(p)) return;
-  /* Levels above the first that all have, two have, one has. */
+  /* Levels above the first that three, two or one of the columns have. */
   for (int k = 0; k < 3; k++) n[k] = n[k] ? n[k] - 1 : 0;
   low = low ? low - 1 : 0;
   high = n[0] > n[1] ? n[0] : n[1];
@@ -336,7 +342,7 @@ static void count_blocks(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Counts into first indices. */
+/* Turns counts into first indices. */
 static void add_up(struct vg_expand *e)
 {
   for (int k = 0; k < VG_N_KIND; k++) {
@@ -358,7 +364,7 @@ void vg_expand_count(struct vg_expand *e)
   add_up(e);
 }
 
-/* Columns of a border rise together at this level. */
+/* Whether the columns of a boundary edge are raised together at this level. */
 static int border_together(const struct vg_expand *e, const uint32_t border[2],
                            size_t level)
 {
@@ -367,7 +373,7 @@ static int border_together(const struct vg_expand *e, const uint32_t border[2],
   return e->mixed && (level || !shared);
 }
 
-/* The second column of a border rises before the first. */
+/* Whether the second column of a boundary edge is raised before the first. */
 static int border_second_first(const struct vg_expand *e,
                                const uint32_t border[2], size_t level)
 {
@@ -393,12 +399,12 @@ void vg_expand_count_flank(const struct vg_expand *e, size_t r, size_t *tri,
   for (size_t l = 0; l < both; l++)
     if (border_together(e, border, l)) ++*quad;
     else *tri += 2;
-  /* What rises first from a common root makes no face. */
+  /* The column that is raised first from a shared root makes no face. */
   if ((a || b) && c[border[0]].root == c[border[1]].root) --*tri;
 }
 
-/* Faces of one level of a flank; p: the points it stands on, in/out; h: those
- * that rise; first: the column to rise first, where they do one by one. */
+/* Faces of one level of a side face. p: current points, in/out; h: next points;
+ * first: the column that is raised first if they are raised one at a time. */
 static void rise_border(uint32_t p[2], const uint32_t h[2], int first,
                         uint32_t (**to)[3])
 {

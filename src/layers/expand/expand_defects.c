@@ -1,4 +1,4 @@
-/* Checks of columns: their indices, and their cells one by one. */
+/* Checks of columns: their indices, and every one of their cells. */
 #include "layers/expand/expand_defects.h"
 
 #include <string.h>
@@ -57,20 +57,21 @@ static size_t bad_borders(const struct vg_columns *c)
   return bad;
 }
 
-/* The columns of a face and the level at which each one stands. */
+/* The columns of a face and the current level of each. */
 struct lift {
   const struct vg_column *column[3];
   double x[3][VG_LEVELS_MAX + 1][3];
   int at[3];
 };
 
-/* Do corners i and k of the face stand on one point? */
+/* Whether corners i and k of the face are the same point. */
 static int is_one_point(const struct lift *l, int i, int k)
 {
   return !l->at[i] && !l->at[k] && l->column[i]->root == l->column[k]->root;
 }
 
-/* Raise corner i by a level. 1 when that makes a cell which is not positive. */
+/* Raises corner i by a level. Returns 1 if the resulting cell does not have
+ * positive volume. */
 static int raise(struct lift *l, int i)
 {
   const uint32_t node[4] = { 0, 1, 2, 3 };

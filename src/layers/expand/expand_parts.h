@@ -4,7 +4,7 @@
 
 #include "layers/expand/expand.h"
 
-/** cell[] and n_cell. */
+/** Counts the cells: sets cell[] and n_cell. */
 void vg_expand_count(struct vg_expand *e);
 
 #endif

@@ -1,4 +1,4 @@
-/* Layers and field put together in memory. */
+/* Merges layers and field into one mesh in memory. */
 #include "layers/expand/join.h"
 
 #include <assert.h>
@@ -11,7 +11,7 @@
 #include "layers/expand/join_plan.h"
 
 #define FIELD_GRAIN 65536
-#define BLOCK_GRAIN 8 /* blocks of faces */
+#define BLOCK_GRAIN 8 /* Blocks of faces that a thread takes at a time. */
 
 struct join {
   const struct vg_mesh *field;

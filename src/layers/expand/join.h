@@ -1,4 +1,4 @@
-/* layers/expand/join.h: the whole mesh from columns and field. Uses core,
+/* layers/expand/join.h: the complete mesh from columns and field. Uses core,
  * layers.h. */
 #ifndef VG_LAYERS_EXPAND_JOIN_H
 #define VG_LAYERS_EXPAND_JOIN_H
@@ -8,60 +8,66 @@
 enum vg_layer_cells { VG_LAYER_TETS, VG_LAYER_MIXED };
 
 struct vg_join_info {
-  size_t n_boundary_point; /* they come first */
-  size_t n_layer_point;    /* index behind the last layer point (npv) */
-  size_t n_layer_tet, n_layer_pyr, n_layer_pri; /* first of their kind */
-  double time;                                  /* wall seconds */
+  size_t n_boundary_point; /* Boundary points; they come first. */
+  size_t n_layer_point;    /* One past the index of the last layer point
+                              (npv). */
+  size_t n_layer_tet, n_layer_pyr, n_layer_pri; /* Number of layer cells, which
+                                                   are the first of their
+                                                   kind. */
+  double time;                                  /* Wall-clock seconds. */
 };
 
-/** Layers and field in one mesh.
+/** Merges layers and field into one mesh.
  *
- * Points: those of the surface that are still used, rising; points of flanks,
- * then new ones of re-meshed patches; points inside layers; field points.
- * Points of layers and flanks go column by column, upwards from level 1,
- * columns in the order in which the faces (and their corners) first have them.
- * Boundary triangles: those of the surface that stay, in their order, then, by
- * patch, flanks (border by border, upwards) and re-meshed ones; patches as they
- * were. Cells: layer cells first, face by face, upwards, then the field's.
- * So a run of faces has runs of cells and of new points: a slice (slices.h).
+ * Points: those of the surface still in use, in order; points of side faces;
+ * new points of remeshed patches; points inside layers; points of the field.
+ * Points of layers and side faces are ordered by column and level, from level 1
+ * on, with the columns in the order in which the corners of the faces first
+ * refer to them. Boundary faces: remaining triangles of the surface, in order;
+ * then, by patch, side faces (by boundary edge and level) and remeshed
+ * triangles. Patches are unchanged. Cells: layer cells, by face and level, then
+ * the cells of the field. Consecutive faces therefore have consecutive cells
+ * and new points: a slice (slices.h).
  *
- * VG_LAYER_TETS: the lift rule. VG_LAYER_MIXED: where three columns of a face
- * rise one prism, where two a pyramid, where one a tetrahedron (so beside a
- * column that ends the cells of its neighbours meet at its top), and flanks
- * whose two columns rise are quadrilaterals. Except at level 0 around a root
- * of several columns: there these rise last, one by one, which makes pyramids
- * and tetrahedra (a prism over an edge collapsed to a point is no cell of any
- * format), and flanks of triangles.
+ * VG_LAYER_TETS: cells by the lift rule. VG_LAYER_MIXED: where three columns of
+ * a face have the next level one prism, where two have it a pyramid, where one
+ * has it a tetrahedron. The cells around a column that ends meet at its top.
+ * Side faces whose two columns have the next level are quadrilaterals. An
+ * exception are roots with several columns at level 0: these columns are raised
+ * last, one at a time, which makes pyramids and tetrahedra, and triangles on
+ * the side faces (a prism over an edge collapsed to a point is not a valid cell
+ * in any format).
  *
  * @param field   mesh of the void within layers->front; its first points are
  *                those of the front
  * @param out     replaced on success, untouched on failure
- * VG_ERR_INPUT when the field is not the front's; VG_ERR_UNSUPPORTED beyond
- * 2^32 - 1 points.
- * Cost: memory speed, in parallel. Same bytes for any number of threads. */
+ *
+ * Returns VG_ERR_INPUT if the field does not match the front, and
+ * VG_ERR_UNSUPPORTED beyond 2^32 - 1 points. Runs in parallel at memory speed.
+ * The result is bitwise independent of the number of threads. */
 vg_status vg_layers_join(const struct vg_mesh *surface,
                          const struct vg_layers *layers,
                          const struct vg_mesh *field, enum vg_layer_cells cells,
                          int threads, struct vg_mesh *out,
                          struct vg_join_info *info, struct vg_error *err);
 
-/** A cell in the node order of its kind: corner k of the face at level 0 is
- * k, at level 1 it is 3 + k; of corners with one root the first stands for
- * all at level 0. */
+/** A cell in the node order of its kind. Corner k of the face is node k at
+ * level 0 and 3 + k at level 1. Corners with the same root are represented by
+ * the first of them at level 0. */
 struct vg_wall_cell {
-  int n_node; /* 4, 5 or 6 */
+  int n_node; /* 4, 5 or 6. */
   uint32_t node[6];
 };
 
-/** The cells that VG_LAYER_MIXED makes of a face at level 0, where they may
- * differ from those of the levels above, for checks of their shape.
- * cell out: [3]. Returns their number, 0 to 3. */
+/** The cells that VG_LAYER_MIXED makes on a face at level 0, which may differ
+ * from those of higher levels, for checks of their shape. cell out: [3].
+ * Returns the number of cells, 0 to 3. */
 int vg_join_wall_cells(const struct vg_columns *columns, size_t face,
                        struct vg_wall_cell cell[3]);
 
-/** Count the cells of all kinds that the columns become, as vg_layers_join
- * makes them. The front and the field may be absent. Memory speed, in
- * parallel. VG_ERR_MEMORY. */
+/** Counts the cells of all kinds that vg_layers_join would make of the columns.
+ * Front and field are not needed. Runs in parallel at memory speed.
+ * VG_ERR_MEMORY. */
 vg_status vg_layers_count(const struct vg_layers *layers,
                           enum vg_layer_cells cells, int threads, uint64_t *n,
                           struct vg_error *err);

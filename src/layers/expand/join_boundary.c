@@ -1,5 +1,5 @@
-/* The boundary of layers and field: what stays of the surface, flanks, and
- * re-meshed patches. */
+/* The boundary of the mesh of layers and field: remaining triangles of the
+ * surface, side faces of the layers, and remeshed patches. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,12 +9,12 @@
 struct work {
   const struct vg_join_plan *p;
   struct vg_mesh *m;
-  uint8_t *stays;     /* [surface->n_tri] */
-  uint8_t *changed;   /* [n_patch] re-meshed */
-  size_t *tri, *quad; /* [n_patch] where the next new face goes */
+  uint8_t *stays;     /* [surface->n_tri] 1: the triangle remains. */
+  uint8_t *changed;   /* [n_patch] 1: the patch was remeshed. */
+  size_t *tri, *quad; /* [n_patch] index of the next new face of each patch. */
 };
 
-/* Is front triangle f, point for point, triangle s of the surface? */
+/* Whether front triangle f has the same points as triangle s of the surface. */
 static int same_tri(const struct work *w, size_t f, size_t s)
 {
   for (int k = 0; k < 3; k++) {
@@ -26,9 +26,10 @@ static int same_tri(const struct work *w, size_t f, size_t s)
   return 1;
 }
 
-/* A patch off the walls stays when the front has the same triangles of it in
- * the same order; a wall stays, also where no column rises.
- * at: [n_patch + 1]; list: [surface->n_tri] its triangles, by patch. */
+/* A patch without layers is unchanged if the front has the same triangles of it
+ * in the same order. A wall is always unchanged, even where no column has
+ * levels. at: [n_patch + 1]; list: [surface->n_tri] triangles sorted by
+ * patch. */
 static void compare_patches(struct work *w, const uint8_t *is_wall, size_t *at,
                             uint32_t *list)
 {
@@ -103,14 +104,15 @@ static vg_status reserve_boundary(struct vg_mesh *m, struct vg_error *err)
   return vg_fail_memory(err, "the boundary of the mesh");
 }
 
-/* Is triangle i of the front boundary of the mesh, and none of the surface? */
+/* Whether triangle i of the front is on the boundary of the mesh but not in the
+ * surface. */
 static int is_new(const struct work *w, size_t i)
 {
   return w->p->front->face_id[i] == VG_NO_INDEX &&
          w->changed[w->p->front->patch[i]];
 }
 
-/* Counts faces by patch, then turns them into where each patch begins. */
+/* Counts faces by patch, then turns the counts into first indices. */
 static void count_boundary(struct work *w)
 {
   const struct vg_columns *c = w->p->columns;

@@ -1,4 +1,4 @@
-/* Which point is which. The boundary is in join_boundary.c. */
+/* Numbering of the points of the mesh. The boundary is in join_boundary.c. */
 #include "layers/expand/join_plan.h"
 
 #include <inttypes.h>
@@ -22,14 +22,14 @@ vg_status vg_join_check_field(const struct vg_front *f, uint64_t n_point,
                  n_point, n_tri, f->n_point, f->n_face);
 }
 
-/* Is point i of the front new with a re-meshed patch? */
+/* Whether point i of the front is a new point of a remeshed patch. */
 static int is_new(const struct vg_front *f, size_t i)
 {
   return f->id[i] == VG_LAYER_NEW;
 }
 
-/* Number the points of the surface in use: roots, and what the front has.
- * Returns how many there are. */
+/* Numbers the points of the surface in use, which are the roots and the points
+ * of the front. Returns their number. */
 static size_t number_surface(struct vg_join_plan *p)
 {
   const struct vg_front *f = p->front;
@@ -48,7 +48,7 @@ static size_t number_surface(struct vg_join_plan *p)
   return n;
 }
 
-/* Numbers of the front's points, once columns have theirs. */
+/* Numbers the points of the front, after the columns are numbered. */
 static void number_front(struct vg_join_plan *p)
 {
   const struct vg_front *f = p->front;
@@ -82,8 +82,8 @@ static vg_status number_points(struct vg_join_plan *p, uint64_t n_field_point,
   if (p->n_point > UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
                    "the mesh would have %zu points, %zu of them in the "
-                   "layers; at most %u can be numbered: ask for fewer layers "
-                   "or a coarser surface",
+                   "layers, but at most %u are supported: request fewer "
+                   "layers or coarsen the surface",
                    p->n_point, e->n_point[VG_FLANK] + e->n_point[VG_INNER],
                    UINT32_MAX);
   first[VG_FLANK] = p->first_flank;
@@ -93,7 +93,8 @@ static vg_status number_points(struct vg_join_plan *p, uint64_t n_field_point,
   return st;
 }
 
-/* Faces have nodes of the whole mesh; that of a closed surface is closed. */
+/* Checks that the faces refer to points of the mesh, and that the boundary is
+ * closed if the surface is. */
 static void check_boundary(const struct vg_join_plan *p)
 {
   struct vg_mesh m = p->boundary;

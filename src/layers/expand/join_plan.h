@@ -1,6 +1,6 @@
-/* layers/expand/join_plan.h: which point of layers and field is which in the
- * mesh, and its boundary, whether the mesh is then made as a whole or in
- * slices. Private to join*.c and slices*.c. */
+/* layers/expand/join_plan.h: numbering of the points of layers and field in the
+ * mesh, and its boundary, for meshes made as a whole or in slices. Private to
+ * join*.c and slices*.c. */
 #ifndef VG_LAYERS_EXPAND_JOIN_PLAN_H
 #define VG_LAYERS_EXPAND_JOIN_PLAN_H
 
@@ -12,22 +12,24 @@ struct vg_join_plan {
   const struct vg_columns *columns;
   const struct vg_front *front;
   struct vg_expand expand;
-  uint32_t *root; /* [surface->n_point] point of the mesh, or
-                     VG_NO_INDEX */
-  uint32_t *id;   /* [front n_point] point of the mesh */
-  /* Where points of a kind begin: those of flanks, new ones of re-meshed
-   * patches, inside layers, of the field; and all. */
+  uint32_t *root; /* [surface->n_point] point of the mesh, or VG_NO_INDEX. */
+  uint32_t *id;   /* [front n_point] point of the mesh. */
+  /* First points of each kind: side faces, new points of remeshed patches,
+   * inner points of layers, field; and the number of all points. */
   size_t first_flank, first_new, first_inner, first_field, n_point;
-  struct vg_mesh boundary; /* patches and faces */
+  struct vg_mesh boundary; /* Patches and faces. */
 };
 
-/** Does a mesh of these counts fill the front? VG_ERR_INPUT if not. */
+/** Checks that a mesh with these counts fills the front. VG_ERR_INPUT if it
+ * does not. */
 vg_status vg_join_check_field(const struct vg_front *f, uint64_t n_point,
                               uint64_t n_tri, uint64_t n_other_cell,
                               struct vg_error *err);
 
-/** @param n_field_point  points of the field besides those of the front
- * Everything is borrowed until closed. On failure there is nothing to close. */
+/** @param n_field_point  points of the field without those of the front
+ *
+ * Everything is borrowed until closed. After a failure there is nothing to
+ * close. */
 vg_status vg_join_plan_open(struct vg_join_plan *p,
                             const struct vg_mesh *surface,
                             const struct vg_layers *layers,
@@ -36,14 +38,15 @@ vg_status vg_join_plan_open(struct vg_join_plan *p,
 
 void vg_join_plan_close(struct vg_join_plan *p);
 
-/** Points of the boundary, or of boundary and layers, into point. */
+/** Writes the points of the boundary, or of boundary and layers, to point. */
 void vg_join_plan_points(const struct vg_join_plan *p, int boundary_only,
                          double (*point)[3]);
 
 void vg_join_plan_describe(const struct vg_join_plan *p, double time,
                            struct vg_join_info *info);
 
-/** Part of vg_join_plan_open: the boundary, once points have numbers. */
+/** The step of vg_join_plan_open that makes the boundary, once points are
+ * numbered. */
 vg_status vg_join_boundary(struct vg_join_plan *p, struct vg_error *err);
 
 #endif

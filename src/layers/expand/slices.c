@@ -1,4 +1,5 @@
-/* Layers and field in slices: what slices there are, and which is whose. */
+/* Layers and field in slices: division into slices, and their assignment to
+ * ranks. */
 #include "layers/expand/slices.h"
 
 #include <assert.h>
@@ -10,7 +11,8 @@
 #include "base/memory.h"
 #include "layers/expand/slices_parts.h"
 
-/* Cells that make a slice, and points of the boundary in one. */
+/* Least number of cells in a slice, and number of points in a slice of boundary
+ * points. */
 #define SLICE_CELLS 262144 /* L18 */
 #define SLICE_POINTS 16384
 
@@ -22,16 +24,17 @@ _Static_assert((int)VG_SLICE_TET == VG_KIND_TET &&
 struct vg_layer_slices {
   struct vg_join_plan plan;
   const struct vg_slices *field;
-  double (*point)[3]; /* of the boundary */
+  double (*point)[3]; /* Boundary points. */
   size_t rank, size;
-  size_t n_part; /* of the boundary's points */
+  size_t n_part; /* Number of slices of boundary points. */
   size_t n_run, room_run;
-  size_t *run;          /* [n_run + 1] first block of faces */
-  size_t first, n_mine; /* served here, of parts and runs */
+  size_t *run;          /* [n_run + 1] first block of faces of each run. */
+  size_t first, n_mine; /* Slices of boundary points and runs of faces served by
+                           this rank. */
 };
 
-/* Close a run where it has its cells. Blocks at the end on which nothing
- * stands make no slice. */
+/* Ends a run once it has enough cells. Trailing blocks of faces without levels
+ * get no slice. */
 static vg_status find_runs(struct vg_layer_slices *k, struct vg_error *err)
 {
   const struct vg_expand *e = &k->plan.expand;
@@ -74,21 +77,21 @@ static uint64_t cells_of(const struct vg_layer_slices *k, size_t slice)
   return n;
 }
 
-/* What a slice weighs, in cells of the field: one of the layers, which has no
- * edges to be measured, is judged in half of the time; the making of a point
- * takes a few of these. */
+/* Cost of a slice, in cells of the field. Checking a layer cell takes half the
+ * time, since its edges are not measured; making a boundary point takes a
+ * fraction of it. */
 static uint64_t weight_of(const struct vg_layer_slices *k, size_t slice)
 {
   return slice < k->n_part ? SLICE_POINTS / 8 : cells_of(k, slice) / 2;
 }
 
-/* Up to where all ranks are to be filled, so that `n` more fit: water filling,
- * where some ranks have more than that already. */
+/* Level up to which all ranks are filled so that `n` more cells fit. Water
+ * filling: some ranks may already have more. */
 static double level_of(size_t size, const uint64_t *n_field, uint64_t n)
 {
   double level = INFINITY;
 
-  for (size_t r = 0; r < size; r++) { /* vessels as full as r hold water */
+  for (size_t r = 0; r < size; r++) { /* ranks with no more cells than r */
     double sum = (double)n, wet = 0;
 
     for (size_t i = 0; i < size; i++) {
@@ -101,7 +104,8 @@ static double level_of(size_t size, const uint64_t *n_field, uint64_t n)
   return level;
 }
 
-/* A slice is served by the rank whose share its middle lies in. */
+/* A slice is served by the rank whose share contains the middle of the
+ * slice. */
 static void share_out(struct vg_layer_slices *k, const uint64_t *n_field)
 {
   size_t n = k->n_part + k->n_run, rank = 0;
@@ -145,8 +149,8 @@ static vg_status get_part(const struct vg_layer_slices *k, size_t part,
   return VG_OK;
 }
 
-/* Take the points of the front out of what a slice of the field owns. What
- * had nothing else is left empty. */
+/* Removes the points of the front from those owned by a slice of the field. A
+ * slice that then owns no points and has no cells becomes empty. */
 static void leave_front(const struct vg_layer_slices *k, struct vg_slice *s)
 {
   uint64_t n_front = k->plan.front->n_point;
@@ -205,7 +209,8 @@ static vg_status get_slice(const struct vg_slices *slices, size_t i,
                            struct vg_slice *out, struct vg_error *err)
 {
   const struct vg_layer_slices *k = slices->user;
-  size_t n = k->first + i; /* of parts and runs */
+  size_t n = k->first + i; /* Index among all slices of boundary points and
+                              runs. */
   struct vg_layer_slice *at = vg_calloc(1, sizeof *at);
   struct vg_slice s = { 0 };
   vg_status st;

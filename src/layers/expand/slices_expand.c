@@ -1,9 +1,9 @@
-/* One slice of the layers: a run of faces with all that stands on them.
+/* One slice of the layers: a run of faces with all its cells and new points.
  *
- * Local points: first the new ones inside, in the mesh's order, so that what
- * the slice owns is 0, 1, ...; then columns that belong to the boundary or to
- * an earlier slice; then the points at level 0. A column's points stand one
- * after the other here too, so cells are made as they are in the mesh. */
+ * Local points: first the new inner points, in the order of the mesh, so that
+ * the slice owns the points 0, 1, ...; then columns that belong to the boundary
+ * or to an earlier slice; then the points at level 0. The points of a column
+ * are consecutive here too, so cells are made as for the whole mesh. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,14 +14,14 @@
 
 struct run {
   const struct vg_join_plan *p;
-  size_t first, end; /* blocks */
-  size_t n_face;     /* with levels */
+  size_t first, end; /* Range of blocks. */
+  size_t n_face;     /* Number of faces with levels. */
   size_t n_column;
-  uint32_t *face;        /* [n_face] */
-  uint32_t (*corner)[3]; /* [n_face] local columns */
-  uint32_t *column;      /* [n_column] of the plan */
-  uint32_t *foot, *base; /* [n_column] local points at levels 0 and 1 */
-  struct vg_table table; /* of columns, then of feet */
+  uint32_t *face;        /* [n_face] faces of the plan. */
+  uint32_t (*corner)[3]; /* [n_face] local columns. */
+  uint32_t *column;      /* [n_column] columns of the plan. */
+  uint32_t *foot, *base; /* [n_column] local points at levels 0 and 1. */
+  struct vg_table table; /* Table of columns, then of points at level 0. */
 };
 
 static int has_levels(const struct vg_expand *e, size_t face)
@@ -90,7 +90,7 @@ static void list_columns(struct run *r)
   }
 }
 
-/* Local points; returns their number. */
+/* Numbers the local points; returns their number. */
 static size_t number_points(struct run *r)
 {
   const struct vg_expand *e = &r->p->expand;

@@ -1,8 +1,8 @@
-/* Volumes on both sides of the tops of layers.
+/* Volumes on both sides of the tops of the layers.
  *
- * The front's points come first in the field, so a cell of the field that
- * stands on a top has three of the front's numbers; a table of the front's
- * triangles tells which top. The cell below follows from the columns. */
+ * The points of the front come first in the field, so a cell of the field on a
+ * top has three points of the front. A table of the triangles of the front
+ * identifies the top, and the columns give the cell below it. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,12 +13,12 @@
 
 struct tops {
   const struct vg_join_plan *p;
-  struct vg_table table; /* triangles of the front that are tops */
-  double *ratio;         /* [n_face]; a top has one cell of the field, so
-                          one thread writes it */
+  struct vg_table table; /* Triangles of the front that are tops. */
+  double *ratio;         /* [n_face] each top has one cell of the field, so only
+                            one thread writes an entry. */
 };
 
-/* Where a triangle is in the table, or would go. */
+/* Slot of a triangle in the table, occupied or free. */
 static uint32_t *find(const struct tops *t, const uint32_t v[3])
 {
   const uint32_t(*tri)[3] = (const uint32_t(*)[3])t->p->front->face;
@@ -41,7 +41,7 @@ static vg_status make_table(struct tops *t, struct vg_error *err)
   return VG_OK;
 }
 
-/* Of the layers' cell that has the top of a face; 0: there is none. */
+/* Volume of the layer cell at the top of a face; 0 if the face has no cell. */
 static double volume_below(const struct tops *t, size_t face)
 {
   const struct vg_columns *c = t->p->columns;

@@ -1,8 +1,9 @@
-/* Directions bent apart. Declared in layers/grow/grow_parts.h.
+/* Bending of directions. Declared in layers/grow/grow_parts.h.
  *
- * Where columns converge (a concave corner, a wall at an acute angle to a
- * slide plane), directions within BAND heights are relaxed towards the mean
- * of their neighbours as far as it takes, so that the turn is spread. */
+ * Where columns converge (in a concave corner, or at a wall at an acute angle
+ * to a slide plane), the directions within BAND heights are relaxed towards the
+ * mean of their neighbours as far as necessary, so that the rotation is spread
+ * over many columns. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,10 +14,11 @@
 #include "layers/grow/direct.h"
 
 /* L4 */
-#define CONVERGE 0.75 /* a face that would shrink to less is bent apart */
+/* Faces that would shrink below this share of their area are bent apart. */
+#define CONVERGE 0.75
 #define BEND_MAX 0.995
-#define STILL 1e-3 /* a direction that changes by less has settled */
-#define BAND 2.5   /* heights that bending reaches to */
+#define STILL 1e-3 /* A direction that changes by less has converged. */
+#define BAND 2.5   /* Distance in heights that bending reaches. */
 
 static void mean_of_near(const struct vg_layer_work *w, size_t i,
                          double (*from)[3], double v[3])
@@ -28,13 +30,13 @@ static void mean_of_near(const struct vg_layer_work *w, size_t i,
     uint32_t o = w->t.near[j];
     double d = vg_distance(root, w->m->point[w->c->column[o].root]);
 
-    if (!(d > 0)) continue; /* another column of the same fan */
+    if (!(d > 0)) continue; /* Another column of the same fan. */
     for (int k = 0; k < 3; k++) v[k] += from[o][k] / d;
   }
 }
 
-/* What is left of the area of a face, seen along its normal, when its columns
- * have risen by h along the unit vectors dir. */
+/* Remaining share of the area of a face, projected along its normal, after its
+ * columns have grown by h along the unit vectors dir. */
 static double top_share(const struct vg_layer_work *w, uint32_t f,
                         double (*dir)[3], double h)
 {
@@ -64,9 +66,9 @@ static double tallest(const struct vg_layer_work *w, uint32_t f)
   return fmax(w->wanted[c[0]], fmax(w->wanted[c[1]], w->wanted[c[2]]));
 }
 
-/* How strongly a column is bent: not at all while its faces keep their area
- * up to the tops, wholly once one would shrink to half. So columns far from a
- * corner, and those on its convex side, stay normal to the wall. */
+/* Strength of bending at a column: zero while its faces keep their area up to
+ * the tops, full once one of them would shrink to half. Columns far from a
+ * corner, and columns on its convex side, therefore stay normal to the wall. */
 static double urge(const struct vg_dir_sweep *l, size_t i)
 {
   const struct vg_layer_work *w = l->w;
@@ -81,7 +83,7 @@ static double urge(const struct vg_dir_sweep *l, size_t i)
   return fmax(0, fmin(BEND_MAX, (CONVERGE - least) / (CONVERGE - 0.5)));
 }
 
-/* Nothing has moved around column i, so it will not move either. */
+/* If nothing around column i has moved, it will not move either. */
 static int is_still(const struct vg_dir_sweep *l, size_t i)
 {
   const struct vg_layer_work *w = l->w;
@@ -92,8 +94,8 @@ static int is_still(const struct vg_dir_sweep *l, size_t i)
   return 1;
 }
 
-/* One damped Jacobi step; where the mean loses the faces from visibility, half
- * of the way to it, and so on. */
+/* One damped Jacobi step. If the new direction loses too much visibility, the
+ * step is halved, up to three times. */
 static void relax(const struct vg_dir_sweep *l, size_t i, double (*n)[3])
 {
   const struct vg_layer_work *w = l->w;
@@ -172,7 +174,7 @@ static void converging(const struct vg_layer_work *w, double *reach)
   }
 }
 
-/* What is left of the reach of column i at its neighbour. */
+/* Propagates the remaining reach of column i to its neighbour. */
 static int carry(struct vg_layer_work *w, void *context, uint32_t i, uint32_t j)
 {
   double *reach = context, left;

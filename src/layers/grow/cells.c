@@ -1,4 +1,4 @@
-/* Are the cells that columns imply fit to be written? Declared in
+/* Checks the shape of the cells of all columns. Declared in
  * layers/grow/grow_parts.h. */
 #include <assert.h>
 #include <math.h>
@@ -12,17 +12,18 @@
 #include "layers/grow/grow_parts.h"
 
 #define GRAIN 1024
-#define FLAT                                                                   \
-  (0.25 * VG_VISIBILITY_MIN) /* L3: least sine of a column on a layer */
-#define SHRUNK 0.04          /* least area of a layer, of that at the wall */
-#define LOWER 0.75           /* of the height allowed, when a cell is bad */
-#define RESERVE 2.0          /* times the least height of all levels */
-#define NEAR_FARTHEST 0.5    /* share of the farthest reach at a bad cell */
+/* L3: least sine between a column and a layer. */
+#define FLAT (0.25 * VG_VISIBILITY_MIN)
+/* Least area of a layer, relative to its area at the wall. */
+#define SHRUNK 0.04
+#define LOWER 0.75        /* Factor on the allowed height at a bad cell. */
+#define RESERVE 2.0       /* Multiple of the least height of all levels. */
+#define NEAR_FARTHEST 0.5 /* Share of the farthest reach at a bad cell. */
 
-/* The face of one call: three columns by rising number, levels ascending. */
+/* The face of one call: three columns with ascending levels. */
 struct stack {
   const struct vg_column *c[3];
-  int order[3]; /* corners by rising column */
+  int order[3]; /* Corners by increasing column number. */
   double d[3][VG_LEVELS_MAX + 1];
   double x[3][VG_LEVELS_MAX + 1][3];
 };
@@ -30,9 +31,9 @@ struct stack {
 struct search {
   struct vg_layer_work *w;
   const uint8_t *moved;
-  int16_t *level;      /* [n_face] first bad level, -1: none */
-  uint8_t *faulty;     /* [n_face] bit k: corner k */
-  struct stack *stack; /* [worker] */
+  int16_t *level;      /* [n_face] first bad level; -1: none. */
+  uint8_t *faulty;     /* [n_face] bit k: corner k is at fault. */
+  struct stack *stack; /* [worker] scratch. */
 };
 
 static int positive(double det, double area2, const double up[3])
@@ -45,8 +46,9 @@ static int same_point(const struct stack *s, int a, int la, int b, int lb)
   return la == 0 && lb == 0 && s->c[a]->root == s->c[b]->root;
 }
 
-/* Tetrahedron (p at l, p at l + 1, q, r at their levels), where q and r
- * follow p around the face. Those with a repeated point vanish. */
+/* Tests tetrahedron (p at l, p at l + 1, q, r at their levels), where q and r
+ * follow p around the face. Tetrahedra with a repeated point do not exist and
+ * count as valid. */
 static int lifted(const struct stack *s, int p, int l, int lq, int lr)
 {
   int q = (p + 1) % 3, r = (p + 2) % 3;
@@ -63,7 +65,7 @@ static int lifted(const struct stack *s, int p, int l, int lq, int lr)
   return positive(vg_dot(n, up), vg_dot(n, n), up);
 }
 
-/* All that is raised from level l, by the lift rule. */
+/* Tests all cells raised from level l by the lift rule. */
 static int lifts(const struct stack *s, int l)
 {
   int at[3];
@@ -79,8 +81,8 @@ static int lifts(const struct stack *s, int l)
   return 1;
 }
 
-/* Of the three tetrahedra of a prism the first and the last are corners; this
- * is the one between them. */
+/* The first and the last of the three tetrahedra of a prism are among its
+ * corner tetrahedra; this is the one between them. */
 static int middle(const struct stack *s, int l)
 {
   int p = s->order[1], q = (p + 1) % 3, r = (p + 2) % 3;
@@ -97,7 +99,8 @@ static void area(const struct stack *s, int l, double n[3])
   vg_cross(a, b, n);
 }
 
-/* Corners of the prism between l and l + 1; returns those that are bad. */
+/* Tests the corner tetrahedra of the prism between l and l + 1; returns the bad
+ * corners. */
 static int corners(const struct stack *s, int l, const double low[3],
                    const double high[3])
 {
@@ -120,8 +123,8 @@ static int is_virtual(const struct stack *s)
          s->c[2]->root == s->c[0]->root;
 }
 
-/* The pyramid over the quadrilateral of the two columns that rise from l,
- * other than corner k: all four of its corner volumes. */
+/* Tests the pyramid on the quadrilateral of the two columns other than corner
+ * k, which are raised from l: all four of its corner volumes. */
 static int pyramid(const struct stack *s, int l, int k)
 {
   int p = (k + 1) % 3, q = (k + 2) % 3;
@@ -129,15 +132,15 @@ static int pyramid(const struct stack *s, int l, int k)
   const double *ring[4] = { s->x[p][l], s->x[q][l], s->x[q][l + 1],
                             s->x[p][l + 1] };
 
-  if (l == 0 && is_virtual(s)) return 1; /* see wall_cells() */
+  if (l == 0 && is_virtual(s)) return 1; /* See wall_cells(). */
   for (int i = 0; i < 4; i++)
     if (!(vg_det(ring[i], ring[(i + 1) % 4], apex, ring[(i + 3) % 4]) > 0))
       return 0;
   return 1;
 }
 
-/* At the wall, faces at a fan make other cells in mixed output than by the
- * lift rule. */
+/* At the wall, mixed output makes other cells on faces at a fan than the lift
+ * rule. */
 static int wall_cells(const struct stack *s, const struct vg_columns *c,
                       size_t f)
 {
@@ -174,7 +177,7 @@ static int wall_cells(const struct stack *s, const struct vg_columns *c,
   return 1;
 }
 
-/* First level from which a bad cell rises, or -1. */
+/* First level below a bad cell, or -1. */
 static int first_bad(const struct stack *s, uint8_t *faulty)
 {
   int whole = s->c[0]->n, most = whole, from = is_virtual(s);
@@ -250,10 +253,11 @@ static void search_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* A cell that fails at some height will fail there however many layers lead
- * up to it: what is lowered are the columns that reach farthest, of those at
- * fault, not one that is low already. One that fails on the wall itself
- * leaves no height at all. least: [3] out, INFINITY where not lowered. */
+/* A cell that fails at some height will fail there regardless of the number of
+ * layers below. Therefore the columns at fault that reach farthest are lowered,
+ * and not a column that is already low. A cell that fails at the wall itself
+ * leaves no height at all. least: [3] out, INFINITY for columns that are not
+ * lowered. */
 static void limits(const struct vg_layer_work *w, const uint32_t face[3],
                    int level, int faulty, double least[3])
 {
@@ -276,7 +280,7 @@ static void limits(const struct vg_layer_work *w, const uint32_t face[3],
       least[k] = INFINITY;
 }
 
-/* Lowering to these limits would cost levels. */
+/* Whether lowering to these limits would cost levels. */
 static int costs_levels(const struct vg_layer_work *w, const uint32_t face[3],
                         const double limit[3])
 {
@@ -288,8 +292,8 @@ static int costs_levels(const struct vg_layer_work *w, const uint32_t face[3],
   return 0;
 }
 
-/* A column gets the least of what its bad faces leave it, not the product.
- * turn: [n_face] out, 1 for faces whose columns are to be turned instead. */
+/* A column gets the least of the limits of its bad faces, not their product.
+ * turn: [n_face] out, 1 for faces whose columns are turned instead. */
 static void judge(struct vg_layer_work *w, const struct search *q, int may_turn,
                   double *least, uint8_t *turn, size_t *n_bad, size_t *n_turn)
 {
@@ -311,8 +315,8 @@ static void judge(struct vg_layer_work *w, const struct search *q, int may_turn,
   }
 }
 
-/* Faces whose columns would not turn are lowered after all. Columns of every
- * bad face count as turned, so that it will be looked at again. */
+/* Faces whose columns could not be turned are lowered after all. The columns of
+ * every bad face are marked as turned, so that the face is tested again. */
 static void stubborn(const struct vg_layer_work *w, const struct search *q,
                      const uint8_t *turn, uint8_t *turned, double *least)
 {

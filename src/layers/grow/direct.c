@@ -1,4 +1,4 @@
-/* Marching directions: normal to the wall where it is smooth, in visibility of
+/* Marching directions: normal to the wall where it is smooth, and visible from
  * all faces at edges and corners. Declared in layers/grow/grow_parts.h. */
 #include "layers/grow/direct.h"
 
@@ -13,11 +13,13 @@
 #include "layers/topology/most_normal.h"
 
 /* L8 */
-#define SMOOTH_WALL 0.95 /* least cosine at which the mean normal will do */
-#define CAP 0.05         /* height of a triangle over its longest edge */
-#define NOISE 0.002      /* the same, where the normal says nothing */
+#define SMOOTH_WALL 0.95 /* Least cosine at which the mean normal is used. */
+/* Height of a cap triangle relative to its longest edge. */
+#define CAP 0.05
+#define NOISE 0.002 /* Relative height below which the normal is noise. */
 #define CAP_END 0.1
-#define SAME_PLANE 0.05 /* sine between patches that are as good as one */
+/* Sine of the angle between two patches below which they count as one. */
+#define SAME_PLANE 0.05
 
 int vg_slide_normals(const struct vg_layer_work *w, size_t i, double n[2][3])
 {
@@ -56,7 +58,7 @@ void vg_constrain(int n_slide, double n[2][3], double v[3])
   }
 }
 
-/* Does face f say where the wall looks at column i? */
+/* Whether the normal of face f is meaningful for column i. */
 static int counts(const struct vg_layer_work *w, size_t i, uint32_t f)
 {
   if (w->c->face_tri[f] == VG_NO_INDEX) return 0;
@@ -135,8 +137,8 @@ void vg_dir_sweep_free(struct vg_dir_sweep *t)
   free(t->moved);
 }
 
-/* Angle between two edges without libm's acos: the chord 2 sin(a / 2) of unit
- * vectors serves as weight just as well. */
+/* Weight of a corner: the chord 2 sin(a / 2) of the unit edge vectors, which
+ * serves as well as the angle and does not need acos of libm. */
 static double corner_weight(const struct vg_mesh *m, const uint32_t *tri, int k)
 {
   double a[3], b[3];
@@ -195,7 +197,7 @@ static void first_body(void *context, size_t first, size_t end, int worker)
     first_direction(l->w, i, l->scratch + (size_t)worker * l->w->max_valence);
 }
 
-/* 1 + the corner that lies on the edge across, by less than CAP of its
+/* 1 + the corner that nearly lies on the opposite edge, at less than CAP of its
  * length and well between its ends; 0: none. n2: twice the area. */
 static uint8_t cap_corner(const struct vg_mesh *m, const uint32_t *tri,
                           double n2)

@@ -13,11 +13,13 @@
 #include "layers/expand/expand_defects.h"
 #include "layers/grow/grow_parts.h"
 
-#define ROUNDS_MAX 300  /* L2 */
-#define LAST_RESORT 150 /* rounds after which what is bad gets no layers */
-#define GENTLE 40       /* sound rounds in which heights lose a share only */
+#define ROUNDS_MAX 300 /* L2 */
+/* Rounds after which columns that still fail lose all layers. */
+#define LAST_RESORT 150
+/* Rounds with valid cells in which heights are lowered only gradually. */
+#define GENTLE 40
 #define SHARE 0.75
-#define TURNS_MAX 12 /* rounds that may turn columns */
+#define TURNS_MAX 12 /* Rounds in which columns may be turned. */
 
 static void work_release(struct vg_layer_work *w)
 {
@@ -49,18 +51,17 @@ static vg_status check_request(const struct vg_mesh *m, size_t p,
   if (!r->is_wall) return VG_OK;
   if (!(l->delta1 > 0 && l->delta1 < 1e60))
     return vg_fail(err, VG_ERR_INPUT,
-                   "patch %d: the first layer is %g thick; "
-                   "give a height above 0",
+                   "patch %d: the first layer is %g thick; give a height "
+                   "above 0",
                    (int)m->patch[p].id, l->delta1);
   if (!(l->rate1 >= 0 && l->rate1 <= 10 && l->rate2 >= 0 && l->rate2 <= 10))
     return vg_fail(err, VG_ERR_INPUT,
-                   "patch %d: growth rates %g and %g; they "
-                   "must lie in 0 to 10",
+                   "patch %d: the growth rates are %g and %g; they must be "
+                   "between 0 and 10",
                    (int)m->patch[p].id, l->rate1, l->rate2);
   if (!(l->cap >= 1))
     return vg_fail(err, VG_ERR_INPUT,
-                   "patch %d: the cap on growth is %g; it "
-                   "must be 1 or more",
+                   "patch %d: the cap on growth is %g; it must be at least 1",
                    (int)m->patch[p].id, l->cap);
   return VG_OK;
 }
@@ -104,13 +105,13 @@ static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
   }
   if (!n)
     return vg_fail(err, VG_ERR_INPUT,
-                   "layers were asked for, but no patch is "
-                   "a wall that grows them");
+                   "layers were requested, but no patch is a wall with layers");
   if (!(w->o->gap > 0 && w->o->gap < 0.5 && w->o->end > 0 && w->o->slope > 0))
     return vg_fail(err, VG_ERR_INPUT,
-                   "the share of a gap that a layer may "
-                   "take is %g, the end of layers %g and their slope %g; the "
-                   "first must lie in 0 to 0.5, the others above 0",
+                   "the share of a gap that layers may take is %g, the "
+                   "thickness at which layers end is %g edges and their slope "
+                   "is %g; the first must be between 0 and 0.5, the others "
+                   "above 0",
                    w->o->gap, w->o->end, w->o->slope);
   VG_TRY(vg_slides_find(w->m, w->is_wall, &w->n_slide, &w->slide, err));
   st = roughness(w, err);
@@ -139,7 +140,8 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   return vg_fail_memory(err, "the layers");
 }
 
-/* Allowed heights to begin with: no visibility, corners, what stands ahead. */
+/* Initial allowed heights: limited by visibility, corners, and the opposite
+ * surface. */
 static vg_status first_allowed(struct vg_layer_work *w,
                                struct vg_layer_report *r, struct vg_error *err)
 {
@@ -167,7 +169,7 @@ done:
   return st;
 }
 
-/* What one round lowers the columns in question to. */
+/* Height to which one round lowers a column that failed. */
 static double lowered(const struct vg_layer_work *w, size_t i, size_t round)
 {
   const struct vg_column *c = &w->c->column[i];
@@ -209,8 +211,9 @@ static vg_status try_slides(struct vg_layer_work *w, struct vg_front *front,
   return st == VG_BLOCKED ? VG_OK : st;
 }
 
-/* Column i, which does not slide in patch p, starts in front of its plane and
- * ends on it or behind: 1. 2: the patch is too rough for its plane to tell. */
+/* Returns 1 if column i, which does not slide in patch p, starts in front of
+ * the plane of the patch and ends on or behind it, and 2 if the patch is too
+ * rough to decide. */
 static int crosses(const struct vg_layer_work *w, uint32_t p, uint32_t i)
 {
   const struct vg_column *c = &w->c->column[i];
@@ -225,9 +228,9 @@ static int crosses(const struct vg_layer_work *w, uint32_t p, uint32_t i)
   return root > 0 && !(off_plane(&w->slide[s], top) > 2 * w->noise[s]);
 }
 
-/* Tops that stand on a slide plane with one edge or corner and cross it with
- * the others. vg_clear_tops has tested all other pairs, so that the front is
- * clear when there are none, unless a patch was too rough. */
+/* Finds tops that touch a slide plane with an edge or corner and cross it
+ * elsewhere. vg_clear_tops has tested all other pairs, so the front is free of
+ * collisions if no such top exists, unless a patch was too rough. */
 static void try_sides(struct vg_layer_work *w, uint8_t *bad, size_t round,
                       size_t *n_bad, int *is_unsure)
 {
@@ -253,14 +256,14 @@ static void try_sides(struct vg_layer_work *w, uint8_t *bad, size_t round,
   }
 }
 
-/* The front as it will be filled: re-meshed patches against tops. */
+/* Tests the final front: remeshed patches against tops. */
 static vg_status try_front(struct vg_layer_work *w, struct vg_front *front,
                            uint8_t *bad, size_t round, size_t *n_bad,
                            struct vg_error *err)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
-  struct vg_mesh mesh = vg_front_mesh(front, w->m); /* not repaired */
+  struct vg_mesh mesh = vg_front_mesh(front, w->m); /* Not repaired. */
   static const enum vg_defect_kind kind[] = { VG_DEFECT_INTERSECTION,
                                               VG_DEFECT_DEGENERATE_TRIANGLE,
                                               VG_DEFECT_NONMANIFOLD_EDGE,
@@ -294,15 +297,15 @@ static vg_status try_front(struct vg_layer_work *w, struct vg_front *front,
   }
   if (n_cross && !*n_bad)
     st = vg_fail(err, VG_ERR_GEOMETRY,
-                 "the surface crosses itself where no "
-                 "layers are; check it with `vanguard check`");
+                 "the surface intersects itself outside the layers; check it "
+                 "with `vanguard check`");
 done:
   vg_surface_report_release(&r);
   return st;
 }
 
-/* Columns on curved patches were bent onto them: are their cells still
- * sound? */
+/* Columns on curved patches were bent onto them, so their cells are tested
+ * again. */
 static vg_status try_bent(struct vg_layer_work *w, uint8_t *bent,
                           uint8_t *turned, size_t *n_bad, struct vg_error *err)
 {
@@ -311,7 +314,7 @@ static vg_status try_bent(struct vg_layer_work *w, uint8_t *bent,
   return vg_cells_lower(w, bent, 0, turned, n_bad, err);
 }
 
-/* Straight again, until the patches are re-meshed the next time. */
+/* Straightens columns until the patches are remeshed again. */
 static void unbend(struct vg_columns *c)
 {
   for (size_t i = 0; c->n_path && i < c->n_column; i++)
@@ -322,9 +325,9 @@ static void unbend(struct vg_columns *c)
 }
 
 struct rounds {
-  uint8_t *moved, *turned, *cells, *tops, *bad; /* cells, tops: to be looked
-                                                   at */
-  size_t sound; /* rounds in which all cells were sound */
+  uint8_t *moved, *turned, *cells, *tops, *bad; /* cells, tops: columns still to
+                                                   be tested. */
+  size_t sound; /* Number of rounds in which all cells were valid. */
 };
 
 static vg_status settle(struct vg_layer_work *w, struct rounds *q,
@@ -341,8 +344,8 @@ static vg_status settle(struct vg_layer_work *w, struct rounds *q,
   return st;
 }
 
-/* The first test that fails lowers columns, and the round begins again with
- * those that moved. Heights only ever shrink, so it ends. */
+/* The first test that fails lowers columns, and the next round starts with the
+ * columns that moved. Heights never increase, so the loop ends. */
 static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
                            struct vg_front *front, struct vg_layer_report *r,
                            size_t *n_bad, struct vg_error *err)
@@ -402,8 +405,8 @@ static vg_status until_clear(struct vg_layer_work *w, struct vg_front *front,
   }
   if (n_bad)
     st = vg_fail(err, VG_ERR_GEOMETRY,
-                 "the layers could not be cleared in "
-                 "%d rounds; please report this with the project files",
+                 "the layers still collide after %d rounds; please report "
+                 "this with the project files",
                  ROUNDS_MAX);
 done:
   free(q.moved);
@@ -414,8 +417,9 @@ done:
   return st;
 }
 
-/* Cells of a face by the lift rule; those at the wall in which columns of one
- * root are one point vanish, and all where such columns have no level. */
+/* Number of cells of a face by the lift rule. Cells at the wall in which
+ * columns of one root are the same point are not counted, nor any cell if such
+ * columns have no level. */
 static size_t face_cells(const struct vg_columns *c, const uint32_t face[3])
 {
   const struct vg_column *k[3];
@@ -493,7 +497,7 @@ done:
   return st;
 }
 
-/* The front of a closed surface is closed. */
+/* The front of a closed surface must be closed. */
 static void check_layers(const struct vg_mesh *surface,
                          const struct vg_layers *l)
 {

@@ -1,10 +1,9 @@
-/* Heights: how many layers, how high, and how much less where they must be.
+/* Number and heights of the layers, and their reduction where necessary.
  * Declared in layers/grow/grow_parts.h.
  *
- * Growth is lowered first: a column keeps its first height and its
- * number of layers and grows more slowly (the cap of its law is lowered).
- * Only where layers of equal thickness would still be too high are levels
- * dropped. */
+ * Growth is reduced first: a column keeps its first height and its number of
+ * layers and grows more slowly (with a lower cap than its law). Levels are
+ * dropped only where layers of equal thickness would still be too high. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,10 +17,13 @@
 #define GRAIN 2048
 #define EDGE_SWEEPS 3
 /* L7 */
-#define KEEP_EDGE 0.3 /* of an edge's length at the top, along itself */
-#define LEAN 0.3      /* of a triangle's height that a corner may lean */
+/* Least length of an edge at the tops, along its direction at the wall and
+ * relative to its length there. */
+#define KEEP_EDGE 0.3
+/* Share of the height of a triangle that a corner may move sideways. */
+#define LEAN 0.3
 
-/* Edge of the equilateral triangle with the mean area of the faces. */
+/* Edge length of the equilateral triangle with the mean area of the faces. */
 static void edge_body(void *context, size_t first, size_t end, int worker)
 {
   struct vg_layer_work *w = context;
@@ -52,7 +54,7 @@ struct relax {
   double *to;
 };
 
-/* Columns within a fan, which have no face of their own, take the mean. */
+/* Columns inside a fan, which have no face of their own, take the mean. */
 static void even_body(void *context, size_t first, size_t end, int worker)
 {
   struct relax *r = context;
@@ -89,8 +91,8 @@ static vg_status local_edges(struct vg_layer_work *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* Of the patches that meet at a point, the one with the thinnest first layer
- * rules, for all columns of a fan, so that they rise together. */
+/* Where patches meet, the patch with the thinnest first layer applies to all
+ * columns of a fan, so that they have equal heights. */
 static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
 {
   uint32_t first, end, best = VG_NO_INDEX;
@@ -109,7 +111,7 @@ static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
   return best;
 }
 
-/* Levels until the next would be thicker than the local cell. */
+/* Number of levels before a level would be thicker than the local cell. */
 static int levels(const struct vg_layer_work *w, uint32_t i,
                   const struct vg_layer_request *r,
                   const struct vg_growth_law *law)
@@ -194,7 +196,7 @@ vg_status vg_columns_spread(struct vg_layer_work *w,
   return n_now ? VG_OK : vg_fail_memory(err, "the layers");
 }
 
-/* Neighbours differ by one level at most, columns of one root by none. */
+/* Neighbours differ by at most one level, and columns of one root by none. */
 static int lower_wanted(struct vg_layer_work *w, void *unused, uint32_t i,
                         uint32_t j)
 {
@@ -209,8 +211,8 @@ static int lower_wanted(struct vg_layer_work *w, void *unused, uint32_t i,
   return 1;
 }
 
-/* Columns of one root have the same levels; of others only the slope from top
- * to top is bounded, by the heights they are allowed. */
+/* Columns of one root have the same number of levels. For other neighbours only
+ * the slope between the tops is bounded, by their allowed heights. */
 static int lower_level(struct vg_layer_work *w, void *unused, uint32_t i,
                        uint32_t j)
 {
@@ -245,7 +247,7 @@ static vg_status all_wanted(struct vg_layer_work *w, struct vg_error *err)
     { c->column, sizeof *c->column, 0, NULL },
     { w->by_size, sizeof *w->by_size, 0, NULL },
     { c->law, sizeof *c->law, 0, NULL }
-  }; /* one per column with law_at */
+  }; /* One law per column with law_at. */
 
   return vg_team_for(w->o->team, w->o->threads, c->n_column, GRAIN, wanted_body,
                      w, w->o->law_at ? 3 : 2, out, err);
@@ -287,9 +289,9 @@ void vg_heights_lower(struct vg_layer_work *w, size_t i, double limit,
   w->why[i] = (uint8_t)why;
 }
 
-/* In a face whose columns lean, one that is higher by d moves its corner by
- * d times the leaning part; across the longest edge that must stay below
- * LEAN of the height of the triangle. */
+/* In a face with inclined columns, a column that is higher by d moves its
+ * corner sideways by d times its inclination. Perpendicular to the longest edge
+ * this must stay below LEAN of the height of the triangle. */
 static double face_slack(const struct vg_layer_work *w, uint32_t f)
 {
   const uint32_t *c = w->c->face[f];
@@ -311,7 +313,7 @@ static double face_slack(const struct vg_layer_work *w, uint32_t f)
   vg_sub(x[2], x[0], across);
   vg_cross(e, across, area);
   vg_cross(n, longest, across);
-  side = fabs(vg_dot(lean, across)); /* times the longest edge */
+  side = fabs(vg_dot(lean, across)); /* Times the longest edge. */
   return side > 0 ? LEAN * vg_norm(area) / side : INFINITY;
 }
 
@@ -347,8 +349,8 @@ vg_status vg_heights_slack(struct vg_layer_work *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* Ratio by which steps of height h_i, h_j along the dirs of columns i and j
- * change the edge between their roots, along itself, less 1. 0 for columns of
+/* Relative change in length of the edge between two roots, along itself, when
+ * columns i and j grow by h_i and h_j along their directions. 0 for columns of
  * one root. */
 static double edge_change(const struct vg_layer_work *w, uint32_t i, uint32_t j,
                           double h_i, double h_j)
@@ -368,8 +370,8 @@ struct corner {
   double *limit;
 };
 
-/* Where the edge to a neighbour would shrink to less than KEEP_EDGE, both
- * heights are scaled alike. */
+/* Where the edge to a neighbour would shrink below KEEP_EDGE, both heights are
+ * scaled by the same factor. */
 static void corner_body(void *context, size_t first, size_t end, int worker)
 {
   struct corner *c = context;
@@ -400,7 +402,7 @@ vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* Growth and levels that fit into what a column is allowed. */
+/* Growth and levels that fit into the allowed height of a column. */
 static void fit(struct vg_layer_work *w, size_t i)
 {
   struct vg_column *c = &w->c->column[i];

@@ -1,5 +1,5 @@
-/* Lengths of the columns, first points, and columns made more alike.
- * Declared in layers/grow/grow_parts.h. */
+/* Lengths of columns, first points, and evening out of columns. Declared in
+ * layers/grow/grow_parts.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,13 +10,13 @@
 #include "layers/grow/direct.h"
 
 /* L9 */
-#define LEAST_VISIBILITY                                                       \
-  0.2                /* share of the first visibility that is left where cells \
-                        would be lost otherwise */
-#define CAP_SWEEPS 8 /* caps lie in chains */
+/* Share of the initial visibility that is kept where cells would be lost
+ * otherwise. */
+#define LEAST_VISIBILITY 0.2
+#define CAP_SWEEPS 8 /* Several sweeps, since caps form chains. */
 
-/* How far a small step of length 1 along v gets away from the wall: from the
- * triangles at the root, whichever columns of a fan they belong to. */
+/* Distance from the wall after a small step of length 1 along v: from the
+ * triangles at the root, for all columns of a fan. */
 static double gain(const struct vg_layer_work *w, uint32_t i, const double v[3])
 {
   uint32_t first, end;
@@ -57,8 +57,9 @@ static int same_slides(const struct vg_column *a, const struct vg_column *b)
   return a->slide[0] == b->slide[0] && a->slide[1] == b->slide[1];
 }
 
-/* Mean over the caps of which i is the apex, of what the ends of the edges
- * say: a flat triangle stays flat, instead of turning over. */
+/* Mean of the directions interpolated between the ends of the opposite edges,
+ * over the caps with apex i: a flat triangle then stays flat instead of turning
+ * over. */
 static void follow(const struct vg_dir_sweep *l, uint32_t i,
                    double (*normal)[3])
 {
@@ -102,8 +103,8 @@ static void follow_body(void *context, size_t first, size_t end, int worker)
     follow(l, l->list[k], l->scratch + (size_t)worker * l->w->max_valence);
 }
 
-/* Columns at the apex of a cap that may follow, by rising number; their
- * number. list: [n_column]. */
+/* Columns at the apex of a cap that may follow, in order. Returns their number.
+ * list: [n_column]. */
 static size_t apices(const struct vg_layer_work *w, uint32_t *list)
 {
   size_t n = 0;
@@ -124,8 +125,8 @@ struct shift {
   const uint8_t *which;
 };
 
-/* Along dir, or, where that leaves the first point no room, along the
- * direction from before smoothing. */
+/* Shifts along dir or, where that leaves no room for the first point, along the
+ * direction before smoothing. */
 static void shift_body(void *context, size_t first, size_t end, int worker)
 {
   const struct shift *s = context;
@@ -184,7 +185,8 @@ done:
   return st;
 }
 
-/* Half of the way to the mean over the faces to turn, or less. */
+/* Moves a direction half way or less to the mean over the faces to be
+ * turned. */
 static int even(struct vg_layer_work *w, size_t i, const uint8_t *turn,
                 double (*from)[3], double (*n)[3], double v[3])
 {

@@ -1,5 +1,5 @@
-/* Faces in an order that keeps neighbours together: cells and points of the
- * layers are numbered by faces. */
+/* Sorts the faces so that neighbours are close: cells and points of the layers
+ * are numbered by face. */
 #include <stdlib.h>
 #include <string.h>
 

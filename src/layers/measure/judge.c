@@ -1,7 +1,7 @@
-/* The cells that columns imply, judged one by one.
+/* Checks every cell of the columns.
  *
- * Faces go in chunks of near ones; the points of a chunk's columns are
- * computed once for all its faces, so that memory stays small whatever the
+ * Faces are processed in chunks of nearby faces. The points of the columns of a
+ * chunk are computed once for all its faces, so memory stays small for any
  * number of levels. */
 #include "layers/measure/measure.h"
 
@@ -20,27 +20,29 @@
 
 #define DEGREE 57.295779513082320877
 
-enum { GRAIN = 1024 }; /* faces per chunk */
+enum { GRAIN = 1024 }; /* Faces per chunk. */
 
-/* Levels of a chunk's columns; one per worker. */
+/* Points of the columns of a chunk; one per worker. */
 struct chunk_points {
-  struct vg_table table; /* columns by their numbers */
-  uint32_t *column;      /* [3 * GRAIN] as they come */
-  double (*x)[3];        /* [3 * GRAIN][job->stride] */
+  struct vg_table table; /* Columns by number. */
+  uint32_t *column;      /* [3 * GRAIN] columns in order of first use. */
+  double (*x)[3];        /* [3 * GRAIN][job->stride] points of each column. */
 };
 
 struct judge_job {
   const struct vg_mesh *surface;
   const struct vg_columns *columns;
-  size_t stride;                   /* levels of the highest column, + 1 */
-  struct chunk_points *scratch;    /* [workers] */
-  struct vg_layer_judgement *part; /* [chunks] */
-  double *cosine;                  /* [chunks] largest of angles of tops */
-  uint8_t *has_axis; /* [surface->n_patch][3] coordinate in common */
-  double *axis_at;   /* [surface->n_patch][3] */
+  size_t stride;                   /* Levels of the tallest column, + 1. */
+  struct chunk_points *scratch;    /* [workers] scratch. */
+  struct vg_layer_judgement *part; /* [chunks] results. */
+  double *cosine;                  /* [chunks] largest cosine of the angles of
+                                      tops. */
+  uint8_t *has_axis; /* [surface->n_patch][3] 1: all points have the same
+                        coordinate. */
+  double *axis_at;   /* [surface->n_patch][3] that coordinate. */
 };
 
-/* The points of column c, found or made. */
+/* Points of column c, which are computed on first use. */
 static const double (*levels_of(const struct judge_job *j,
                                 struct chunk_points *s, uint32_t *n_used,
                                 uint32_t c))[3]
@@ -57,15 +59,15 @@ static const double (*levels_of(const struct judge_job *j,
   return (const double(*)[3])(s->x + *at * j->stride);
 }
 
-/* A face as the lift rule sees it. */
+/* State of a face under the lift rule. */
 struct stack {
-  const double (*x[3])[3]; /* levels of its columns */
-  int n[3], level[3];      /* levels, and where each stands now */
-  int order[3];            /* corners by rising column */
+  const double (*x[3])[3]; /* Points of its columns. */
+  int n[3], level[3];      /* Number of levels, and current levels. */
+  int order[3];            /* Corners by increasing column number. */
   uint32_t root[3];
 };
 
-/* Two corners that are one point at level 0? */
+/* Whether two corners are the same point at level 0. */
 static int is_pinched(const struct stack *s, int a, int b)
 {
   return s->root[a] == s->root[b] && !s->level[a] && !s->level[b];
@@ -82,7 +84,7 @@ static double lift(const struct stack *s, int k)
                      s->x[2][s->level[2]], s->x[k][s->level[k] + 1]);
 }
 
-/* Raise by the rule those corners that have a level more. */
+/* Raises the corners that have a further level, by the lift rule. */
 static void raise(struct stack *s, int l, struct vg_layer_judgement *r)
 {
   for (int i = 0; i < 3; i++) {
@@ -97,8 +99,9 @@ static void raise(struct stack *s, int l, struct vg_layer_judgement *r)
   }
 }
 
-/* As raise() for a whole prism from level l to l + 1. Of its six corners the
- * first lower and the last upper one are cells of the lift rule too. */
+/* As raise(), for a complete prism from level l to l + 1. Two of its six corner
+ * tetrahedra, the first lower and the last upper one, are also cells of the
+ * lift rule. */
 static void raise_prism(struct stack *s, int l, struct vg_layer_judgement *r)
 {
   const double *p[3], *q[3];
@@ -137,8 +140,8 @@ static void count_pyramid(const double *const base[4], const double apex[3],
   r->n_bad_pyramid += bad != 0;
 }
 
-/* The pyramid over the quadrilateral of the corners that rise, its apex the
- * one that does not. */
+/* The pyramid on the quadrilateral of the two corners that are raised, with the
+ * third corner as apex. */
 static void judge_pyramid(const struct stack *s, int l,
                           struct vg_layer_judgement *r)
 {
@@ -158,8 +161,8 @@ static int shares_root(const struct vg_columns *c, size_t i)
          (i + 1 < c->n_column && c->column[i + 1].root == root);
 }
 
-/* What mixed output makes at level 0 of a face in which a column shares its
- * root: tetrahedra and pyramids, never a whole prism. */
+/* Cells of mixed output at level 0 on a face with a column that shares its
+ * root: tetrahedra and pyramids, but never a complete prism. */
 static void judge_wall(const struct judge_job *j, size_t face,
                        const struct stack *s, struct vg_layer_judgement *r)
 {
@@ -182,8 +185,9 @@ static void judge_wall(const struct judge_job *j, size_t face,
   }
 }
 
-/* All cells of a face. Above level 0 its points differ, but where two columns
- * of one root have no level, and there only the third can rise. */
+/* Checks all cells of a face. Above level 0 its points are distinct, except
+ * where two columns of one root have no level, and there only the third column
+ * can be raised. */
 static void judge_face(const struct judge_job *j, size_t face, struct stack *s,
                        struct vg_layer_judgement *r)
 {
@@ -215,7 +219,7 @@ static double cosine_at(const double a[3], const double b[3], const double c[3])
   return uu > 0 && vv > 0 ? uv / sqrt(uu * vv) : 1;
 }
 
-/* Largest cosine at the corners of the face that is left on top. */
+/* Largest cosine at the corners of the top of a face. */
 static void judge_top(const struct stack *s, double *cosine)
 {
   const double *t[3];
@@ -304,7 +308,7 @@ static vg_status count_steps(const struct judge_job *j, size_t *n,
   return st;
 }
 
-/* Which coordinates all points of a patch have in common. */
+/* Finds the coordinates that are equal for all points of a patch. */
 static vg_status find_axes(struct judge_job *j, struct vg_error *err)
 {
   const struct vg_mesh *m = j->surface;
@@ -312,7 +316,7 @@ static vg_status find_axes(struct judge_job *j, struct vg_error *err)
   j->has_axis = vg_alloc(m->n_patch, 3);
   j->axis_at = vg_alloc(m->n_patch, 3 * sizeof *j->axis_at);
   if (!j->has_axis || !j->axis_at) return vg_fail_memory(err, "slide planes");
-  memset(j->has_axis, 2, 3 * m->n_patch); /* 2: no point yet */
+  memset(j->has_axis, 2, 3 * m->n_patch); /* 2: no point visited yet. */
   for (size_t t = 0; t < m->n_tri; t++)
     for (int k = 0; k < 9; k++) {
       size_t at = 3 * (size_t)m->tri_patch[t] + (size_t)k % 3;
@@ -363,8 +367,7 @@ static vg_status prepare(struct judge_job *j, int workers, size_t n_chunk,
   for (size_t i = 0; i < c->n_column; i++) {
     if (c->column[i].n > VG_LEVELS_MAX)
       return vg_fail(err, VG_ERR_INPUT,
-                     "column %zu has %d levels, more than "
-                     "the %d that are possible",
+                     "column %zu has %d levels, but at most %d are supported",
                      i + 1, c->column[i].n, VG_LEVELS_MAX);
     if (c->column[i].n >= j->stride) j->stride = c->column[i].n + (size_t)1;
   }
@@ -372,14 +375,14 @@ static vg_status prepare(struct judge_job *j, int workers, size_t n_chunk,
   j->cosine = vg_alloc(n_chunk, sizeof *j->cosine);
   j->scratch = vg_calloc((size_t)workers, sizeof *j->scratch);
   if (!j->part || !j->cosine || !j->scratch)
-    return vg_fail_memory(err, "judging layers");
+    return vg_fail_memory(err, "checking the layers");
   for (int i = 0; i < workers; i++) {
     struct chunk_points *s = &j->scratch[i];
 
     s->column = vg_alloc(3 * GRAIN, sizeof *s->column);
     s->x = vg_alloc(3 * GRAIN * j->stride, sizeof *s->x);
     if (!s->column || !s->x || vg_table_init(&s->table, 3 * GRAIN))
-      return vg_fail_memory(err, "judging layers");
+      return vg_fail_memory(err, "checking the layers");
   }
   return find_axes(j, err);
 }

@@ -1,9 +1,10 @@
-/* Fields over the wall: levels and distances, measured on points.
+/* Fields over the wall: levels and distances, measured on the points.
  *
- * The distance of a point from the wall is that to triangles near its root:
- * for the first level those at the root; for the top the walk goes on from
- * the nearest triangle to those around it until none is nearer, since in a
- * concave corner the foot of a top lies several edges away from its root. */
+ * The distance of a point from the wall is that from triangles near its root.
+ * For the first level these are the triangles at the root. For the top the
+ * search continues from the nearest triangle to its neighbours until none is
+ * nearer, because in a concave corner the foot of a top may be several edges
+ * away from its root. */
 #include "layers/measure/measure.h"
 
 #include <assert.h>
@@ -15,14 +16,14 @@
 #include "base/parallel.h"
 #include "core/geometry/vector.h"
 
-enum { GRAIN = 512 }; /* wall points per chunk */
+enum { GRAIN = 512 }; /* Wall points per chunk. */
 
 struct fields_job {
   const struct vg_mesh *surface;
   const struct vg_columns *columns;
-  size_t *tri_first;    /* [surface->n_point + 1] into tri[] */
-  uint32_t *tri;        /* wall triangles at each point, rising */
-  size_t *column_first; /* [w->n + 1] into columns->column */
+  size_t *tri_first;    /* [surface->n_point + 1] offsets into tri[]. */
+  uint32_t *tri;        /* Wall triangles at each point, sorted. */
+  size_t *column_first; /* [w->n + 1] offsets into columns->column. */
   struct vg_wall_fields *w;
 };
 
@@ -46,7 +47,7 @@ void vg_wall_fields_release(struct vg_wall_fields *w)
   memset(w, 0, sizeof *w);
 }
 
-/* Square of |p - t u|. */
+/* Squared norm of p - t u. */
 static double off_line2(const double p[3], double t, const double u[3])
 {
   double q[3] = { p[0] - t * u[0], p[1] - t * u[1], p[2] - t * u[2] };
@@ -54,9 +55,9 @@ static double off_line2(const double p[3], double t, const double u[3])
   return vg_dot(q, q);
 }
 
-/* Square of the distance of x from triangle a b c by the region of the plane
- * that its foot lies in (Ericson, Real-Time Collision Detection, 5.1.5). Most
- * accurate where x is close to a: all is relative to a. */
+/* Squared distance of x from triangle a b c, by the region that contains its
+ * foot (Ericson, Real-Time Collision Detection, 5.1.5). Most accurate if x is
+ * close to a, since all vectors are relative to a. */
 static double to_triangle2(const double x[3], const double a[3],
                            const double b[3], const double c[3])
 {
@@ -93,7 +94,7 @@ static double to_triangle2(const double x[3], const double a[3],
   return height * height / vg_dot(n, n);
 }
 
-/* Take the wall triangles at point `at` into account. */
+/* Tests the wall triangles at point `at`. */
 static void scan(const struct fields_job *j, uint32_t at, const double x[3],
                  struct nearest *best)
 {
@@ -120,7 +121,7 @@ static double distance_at(const struct fields_job *j, uint32_t root,
   return best.tri == VG_NO_INDEX ? 0 : sqrt(best.d2);
 }
 
-/* Each turn comes nearer or is the last. */
+/* Each iteration reduces the distance or is the last. */
 static double distance_near(const struct fields_job *j, uint32_t root,
                             const double x[3])
 {
@@ -142,7 +143,7 @@ static double distance_near(const struct fields_job *j, uint32_t root,
   return best.tri == VG_NO_INDEX ? 0 : sqrt(best.d2);
 }
 
-/* Largest ratio of neighbouring layers of a column, 1 for a single one. */
+/* Largest ratio of neighbouring layers of a column, 1 for a single layer. */
 static double growth_of(const double (*x)[3], int n)
 {
   double before = 0, most = 0;
@@ -158,7 +159,7 @@ static double growth_of(const double (*x)[3], int n)
   return n > 1 ? sqrt(most) : 1;
 }
 
-/* Of the law's height of all levels, what the column reaches. */
+/* Height of a column relative to that of all its levels at the growth law. */
 static double share_of(const struct vg_growth_law *law,
                        const struct vg_column *c, double height)
 {
@@ -199,8 +200,8 @@ static void measure_column(const struct fields_job *j, size_t c, size_t i)
   if (growth > w->growth[i]) w->growth[i] = growth;
 }
 
-/* Columns short of what they wanted go before those that are not; of equals
- * the one with fewest levels. */
+/* Columns with fewer levels than wanted are worse than others; of equals, the
+ * column with fewer levels is worse. */
 int vg_column_is_worse(const struct vg_column *a, const struct vg_column *b)
 {
   assert(a && b);
@@ -246,7 +247,7 @@ static void measure_points(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Wall triangles at each point. */
+/* Finds the wall triangles at each point. */
 static vg_status find_triangles(struct fields_job *j, struct vg_error *err)
 {
   const struct vg_columns *c = j->columns;
@@ -260,7 +261,8 @@ static vg_status find_triangles(struct fields_job *j, struct vg_error *err)
     for (int k = 0; k < 3; k++)
       if (c->face_tri[f] != VG_NO_INDEX) first[m->tri[c->face_tri[f]][k] + 2]++;
   for (size_t p = 2; p <= m->n_point + 1; p++) first[p] += first[p - 1];
-  /* Filling moves first[p + 1] to the end of p: the start of p + 1. */
+  /* Filling advances first[p + 1] to the end of p, which is the start of p +
+   * 1. */
   for (size_t f = 0; f < c->n_face; f++)
     for (int k = 0; k < 3; k++)
       if (c->face_tri[f] != VG_NO_INDEX)
@@ -268,7 +270,7 @@ static vg_status find_triangles(struct fields_job *j, struct vg_error *err)
   return VG_OK;
 }
 
-/* Wall points and their columns, which are sorted by root. */
+/* Finds the wall points and their columns, which are sorted by root. */
 static vg_status find_points(struct fields_job *j, struct vg_error *err)
 {
   const struct vg_columns *c = j->columns;
@@ -279,8 +281,7 @@ static vg_status find_points(struct fields_job *j, struct vg_error *err)
   for (size_t i = 0; i < c->n_column; i++) {
     if (c->column[i].n > VG_LEVELS_MAX)
       return vg_fail(err, VG_ERR_INPUT,
-                     "column %zu has %d levels, more than "
-                     "the %d that are possible",
+                     "column %zu has %d levels, but at most %d are supported",
                      i + 1, c->column[i].n, VG_LEVELS_MAX);
     if (!i || c->column[i].root != c->column[i - 1].root)
       j->column_first[w->n++] = i;

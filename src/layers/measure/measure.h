@@ -1,36 +1,42 @@
-/* layers/measure/measure.h: what the layers are, measured on their points, not
- * taken from what was asked. Uses core, layers.h. */
+/* layers/measure/measure.h: properties of the layers, measured on their points
+ * and not taken from the requested values. Uses core, layers.h. */
 #ifndef VG_LAYERS_MEASURE_MEASURE_H
 #define VG_LAYERS_MEASURE_MEASURE_H
 
 #include "layers/columns/layers.h"
 
-/** Whether a is the worse of two columns of a point or face, the one whose
- * cause counts: short of the levels it wanted where the other is not, else of
- * fewer levels. */
+/** Whether a is the worse of two columns of a point or face, whose cause is
+ * reported: the column with fewer levels than wanted if the other one is
+ * complete, otherwise the column with fewer levels. */
 int vg_column_is_worse(const struct vg_column *a, const struct vg_column *b);
 
-/** As much for compressed: compressed where the other is not, else by more. */
+/** In the same way for compression: the compressed column if the other one is
+ * not, otherwise the more compressed one. */
 int vg_column_is_tighter(const struct vg_column *a, const struct vg_column *b);
 
-/** Per point of a wall, for pictures and reports. Arrays [n], owned. */
+/** Fields at the points of walls, for pictures and reports. Arrays [n],
+ * owned. */
 struct vg_wall_fields {
   size_t n;
-  uint32_t *point;             /* point of the surface, rising */
-  int32_t *level, *wanted;     /* least over its columns */
-  double *first, *asked;       /* wall distance of the first point (to the
-                                  triangles at the root, exact geometry), and
-                                  the law's delta1, of the column that misses it
-                                  most; 0 when no column has a level */
-  double *total;               /* wall distance of the top, least over columns:
-                                  to the triangles at the root and on from there
-                                  as long as they come nearer */
-  double *share;               /* height of the top over that of all levels at
-                                  the law's growth, along the column; least over
-                                  columns. 1 where the law asks for none */
-  double *growth;              /* largest ratio of neighbouring layers; 1 for a
-                                  single layer, 0 for none */
-  int32_t *cause, *compressed; /* of the worst column, of the tightest */
+  uint32_t *point;         /* Points of the surface, sorted. */
+  int32_t *level, *wanted; /* Least value over the columns of the point. */
+  double *first, *asked;   /* Wall distance of the first point (from the
+                              triangles at the root, by exact geometry) and
+                              delta1 of the law, for the column with the
+                              largest deviation; 0 if no column has a
+                              level. */
+  double *total;           /* Wall distance of the top, least over the
+                              columns: from the triangles at the root, and
+                              from their neighbours as long as these are
+                              nearer. */
+  double *share;           /* Height of the top relative to that of all levels
+                              at the growth law, along the column; least over
+                              the columns. 1 where the law requests no
+                              levels. */
+  double *growth;          /* Largest ratio of neighbouring layers; 1 for a
+                              single layer, 0 for none. */
+  int32_t *cause, *compressed; /* Cause of the worst column, and cause of
+                                compression of the most compressed column. */
 };
 #define VG_WALL_FIELDS_INIT                                                    \
   {                                                                            \
@@ -39,8 +45,8 @@ struct vg_wall_fields {
 
 void vg_wall_fields_release(struct vg_wall_fields *w);
 
-/** Fields over all points that have columns. Cost: about 2 us per column of
- * 40 levels. VG_ERR_INPUT for a column of more than VG_LEVELS_MAX levels. */
+/** Computes the fields at all points with columns. Cost: about 2 us per column
+ * of 40 levels. VG_ERR_INPUT for a column of more than VG_LEVELS_MAX levels. */
 vg_status vg_layers_fields(const struct vg_mesh *surface,
                            const struct vg_columns *columns, int threads,
                            struct vg_wall_fields *out, struct vg_error *err);
@@ -49,40 +55,43 @@ struct vg_range {
   double min, mean, max;
 };
 
-/** One wall patch; ranges over its points with at least one level. Points on
- * the border of two patches belong to both. */
+/** One wall patch. Ranges are over its points with at least one level. Points
+ * on the border of two patches belong to both. */
 struct vg_patch_layers {
   uint32_t patch;
   size_t n_face, n_point;
-  size_t n_bare;       /* faces for which law and local size ask for no
-                          level, so that they have all of them */
-  double full;         /* % of faces of which all columns have the levels
-                          that law and local size ask for; it and all
-                          other shares are 0 where no face has a level */
-  double uncompressed; /* % of faces that are full at the law's growth */
+  size_t n_bare;       /* Faces for which growth law and local size request no
+                          level, which count as complete. */
+  double full;         /* % of faces all of whose columns have the levels that
+                          growth law and local size request. This and all other
+                          shares are 0 if no face has a level. */
+  double uncompressed; /* % of faces that are full at the growth law. */
   double any;          /* % of faces with at least one level at all three
-                          corners */
+                          corners. */
   struct vg_range asked, first, level, total, growth;
-  /* Height reached over the law's, by area, of a face the mean of its
-   * corners: mean; what 5 % of the area stay below, to 0.001; % of the area
-   * that has 0.9 of it or more. */
+  /* Height relative to that of the growth law, weighted by area, with the mean
+   * of its corners for each face: mean; value that 5 % of the area is below, to
+   * 0.001; % of the area with at least 0.9. */
   double share_mean, share_low, share_area;
-  double first_error;     /* largest |first - asked| / asked */
-  struct vg_range y_plus; /* over faces with a level at all corners, mean of
-                             the three first heights; 0 when no Reynolds
-                             number is given */
-  /* Volumes of the cells on both sides of the tops, larger over smaller, by
-   * vg_layers_tops: n_top of them; median, what 5 % exceed, largest, and the
-   * middle of the face of the largest. */
+  double first_error;     /* Largest |first - asked| / asked. */
+  struct vg_range y_plus; /* Over faces with a level at all corners, from the
+                             mean of the three first heights; 0 if no Reynolds
+                             number is given. */
+  /* Ratios of the volumes of the two cells at each of the n_top tops, larger
+   * over smaller, from vg_layers_tops: median, value that 5 % exceed, largest;
+   * and the centre of the face with the largest. */
   size_t n_top;
   double top_ratio[3], top_at[3];
-  size_t cause[VG_CAUSE_N];      /* faces, by the worst of their columns */
-  size_t compressed[VG_CAUSE_N]; /* faces, by the tightest of them */
+  size_t cause[VG_CAUSE_N];      /* Number of faces by the cause of their worst
+                                    column. */
+  size_t compressed[VG_CAUSE_N]; /* Number of faces by the cause of their most
+                                  compressed column. */
 };
 
-/** All wall patches by rising patch, and the sum over all in *all. out: owned
- * by the caller (free). reynolds, length: see vg_y_plus; 0: no y+.
- * all may be NULL. Its patch is VG_NO_INDEX, and border points count once. */
+/** Statistics of all wall patches, sorted by patch, and of all patches together
+ * in *all. out: owned by the caller (free). reynolds, length: see vg_y_plus;
+ * 0: no y+. all may be NULL; its patch is VG_NO_INDEX, and points on borders
+ * count once. */
 vg_status vg_layers_patches(const struct vg_mesh *surface,
                             const struct vg_columns *columns,
                             const struct vg_wall_fields *fields,
@@ -90,42 +99,42 @@ vg_status vg_layers_patches(const struct vg_mesh *surface,
                             struct vg_patch_layers **out,
                             struct vg_patch_layers *all, struct vg_error *err);
 
-/** How cells change in size across the tops: n_top, top_ratio and top_at of
- * patches; faces of fans count in *all only.
+/** Volume ratios across the tops of the layers: n_top, top_ratio and top_at of
+ * the patches. Faces of fans count only in *all.
  *
- * @param ratio  [columns->n_face] of vg_layer_slices_tops
- * @param wall   [n] of vg_layers_patches */
+ * @param ratio  [columns->n_face] from vg_layer_slices_tops
+ * @param wall   [n] from vg_layers_patches */
 vg_status vg_layers_tops(const struct vg_mesh *surface,
                          const struct vg_columns *columns, const double *ratio,
                          size_t n, struct vg_patch_layers *wall,
                          struct vg_patch_layers *all, struct vg_error *err);
 
-/** What is wrong with the cells that columns imply, as tetrahedra and as mixed
- * cells: n_negative, n_bad_corner, n_bad_pyramid, n_bad_wall_tet and
- * n_off_plane are zero when all is valid. Cells that vanish (see columns.h) do
- * not count. Signs of volumes are exact. */
+/** Defects of the cells of columns, as tetrahedra and as mixed cells.
+ * n_negative, n_bad_corner, n_bad_pyramid, n_bad_wall_tet and n_off_plane are
+ * zero if all cells are valid. Omitted cells (see columns.h) do not count.
+ * Signs of volumes are exact. */
 struct vg_layer_judgement {
-  size_t n_cell, n_negative;         /* tetrahedra by the lift rule, those of no
-                                        positive volume */
-  size_t n_prism, n_bad_corner;      /* whole prisms, those with a corner of no
-                                        positive volume */
-  size_t n_pyramid, n_bad_pyramid;   /* where two columns of a face rise
-                                       together; those with a base corner of no
-                                       such volume */
-  size_t n_wall_tet, n_bad_wall_tet; /* what mixed output makes at level 0
-                                     where columns share a root; those of no
-                                     such volume */
-  size_t n_step;        /* edges whose levels differ by 2 or more */
-  size_t n_off_plane;   /* columns whose points leave a slide plane
-                           with an axis by one bit */
-  double top_angle_min; /* smallest angle of a top, degrees; 180
-                              when there is none */
+  size_t n_cell, n_negative;         /* Tetrahedra by the lift rule; those
+                                        without positive volume. */
+  size_t n_prism, n_bad_corner;      /* Complete prisms; those with a corner
+                                        tetrahedron without positive volume. */
+  size_t n_pyramid, n_bad_pyramid;   /* Pyramids where two columns of a face
+                                        have a further level; those with a base
+                                        corner without positive volume. */
+  size_t n_wall_tet, n_bad_wall_tet; /* Tetrahedra of mixed output at level 0
+                                        where columns share a root; those
+                                        without positive volume. */
+  size_t n_step;        /* Edges whose columns differ by 2 or more levels. */
+  size_t n_off_plane;   /* Columns with a point that is not bitwise in a
+                           slide plane with an axis. */
+  double top_angle_min; /* Smallest angle of a top in degrees; 180 if there
+                              is no top. */
 };
 
-/** Judge all faces, virtual ones included.
- * Cost: about 7 determinants per prism. Same result for any threads.
- * team: NULL, or those who judge together.
- * VG_ERR_INPUT for a column of more than VG_LEVELS_MAX levels. */
+/** Checks all faces, including virtual ones. Cost: about 7 determinants per
+ * prism. The result is independent of the number of threads. team: ranks that
+ * share the work, or NULL. VG_ERR_INPUT for a column of more than
+ * VG_LEVELS_MAX levels. */
 vg_status vg_layers_judge(const struct vg_mesh *surface,
                           const struct vg_columns *columns, int threads,
                           struct vg_team *team, struct vg_layer_judgement *out,

@@ -1,4 +1,4 @@
-/* Statistics of layers, patch by patch. */
+/* Statistics of layers by patch. */
 #include "layers/measure/measure.h"
 
 #include <assert.h>
@@ -10,15 +10,15 @@
 #include "core/geometry/vector.h"
 
 #define SHARE_BINS 1000
-#define SHARE_LOW 0.05  /* of the area */
-#define SHARE_WHOLE 0.9 /* of the law's height */
+#define SHARE_LOW 0.05  /* Share of the area. */
+#define SHARE_WHOLE 0.9 /* Share of the height of the growth law. */
 
-/* Counts that become percentages, means that are sums until the end. */
+/* Counts that become percentages; means are sums until the end. */
 struct tally {
   struct vg_patch_layers p;
   size_t n_full, n_uncompressed, n_any;
   double area, area_whole;
-  double bin[SHARE_BINS + 1]; /* area by share of the law's height */
+  double bin[SHARE_BINS + 1]; /* Area by relative height. */
 };
 
 struct patches_job {
@@ -26,10 +26,10 @@ struct patches_job {
   const struct vg_columns *columns;
   const struct vg_wall_fields *w;
   double reynolds, length;
-  size_t *face_first; /* [surface->n_patch + 1] into face[] */
-  uint32_t *face;     /* faces of triangles by patch, rising */
-  uint32_t *field;    /* [surface->n_point] index into w, or none */
-  uint32_t *seen;     /* [w->n] last patch, + 1, that counted it */
+  size_t *face_first; /* [surface->n_patch + 1] offsets into face[]. */
+  uint32_t *face;     /* Faces of triangles sorted by patch. */
+  uint32_t *field;    /* [surface->n_point] index into w, or VG_NO_INDEX. */
+  uint32_t *seen;     /* [w->n] last patch, + 1, that counted the point. */
 };
 
 static void note(struct vg_range *r, double x, size_t n_before)
@@ -144,7 +144,8 @@ static void finish(struct tally *t)
       0;
 }
 
-/* Sort the faces of triangles by patch; *n out: patches with faces. */
+/* Sorts the faces of triangles by patch; *n out: number of patches with
+ * faces. */
 static vg_status sort_faces(struct patches_job *j, size_t *n,
                             struct vg_error *err)
 {
@@ -163,7 +164,8 @@ static vg_status sort_faces(struct patches_job *j, size_t *n,
     *n += first[p] > 0;
     first[p] += first[p - 1];
   }
-  /* Filling moves first[p + 1] to the end of p: the start of p + 1. */
+  /* Filling advances first[p + 1] to the end of p, which is the start of p +
+   * 1. */
   for (size_t f = 0; f < c->n_face; f++)
     if (c->face_tri[f] != VG_NO_INDEX)
       j->face[first[patch[c->face_tri[f]] + 1]++] = (uint32_t)f;

@@ -1,4 +1,4 @@
-/* How cells change in size from layers to field, patch by patch. */
+/* Volume ratios between layers and field, by patch. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@ struct top {
   double ratio;
 };
 
-/* By patch; of one by ratio. */
+/* Sorts by patch, then by ratio. */
 static int by_patch(const void *a, const void *b)
 {
   const struct top *s = a, *t = b;
@@ -22,7 +22,7 @@ static int by_patch(const void *a, const void *b)
   return (s->face > t->face) - (s->face < t->face);
 }
 
-/* n > 0, by rising ratio. */
+/* Statistics of n > 0 tops sorted by ratio. */
 static void describe(const struct vg_mesh *surface, const struct vg_columns *c,
                      const struct top *top, size_t n, struct vg_patch_layers *w)
 {

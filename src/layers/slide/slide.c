@@ -1,4 +1,5 @@
-/* The front: tops, re-meshed slide patches, and what stays as it is. */
+/* The front: tops, remeshed slide patches, and all other triangles
+ * unchanged. */
 #include "layers/slide/slide.h"
 
 #include <assert.h>
@@ -19,8 +20,8 @@ vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
   assert(number);
   if (w->n_x >= UINT32_MAX - 1)
     return vg_fail(w->err, VG_ERR_UNSUPPORTED,
-                   "front of the layers: too many "
-                   "points");
+                   "front of the layers: more than 4 billion points; coarsen "
+                   "the surface");
   if (vg_reserve(&w->x, &w->cap_x, w->n_x + 1, sizeof *w->x))
     return vg_fail_memory(w->err, "slide patches");
   memcpy(w->x[w->n_x], x, 3 * sizeof *x);
@@ -68,7 +69,7 @@ uint32_t vg_slide_twin(const struct vg_slide_work *w, uint32_t a, uint32_t b)
   return VG_NO_INDEX;
 }
 
-/* Preparation -------------------------------------------------------------*/
+/* --- preparation --------------------------------------------------------- */
 
 static void release(struct vg_slide_work *w)
 {
@@ -97,8 +98,8 @@ static vg_status prepare(struct vg_slide_work *w)
 
   if (m->n_point + c->n_column >= UINT32_MAX - 1 || m->n_tri > UINT32_MAX / 3)
     return vg_fail(w->err, VG_ERR_UNSUPPORTED,
-                   "layers: %zu wall columns on "
-                   "%zu points and %zu triangles are too many",
+                   "layers: %zu wall columns on %zu points and %zu triangles "
+                   "exceed the limits of 32-bit indices; coarsen the surface",
                    c->n_column, m->n_point, m->n_tri);
   w->slide_of = vg_alloc(m->n_patch, sizeof *w->slide_of);
   w->bad = vg_calloc(c->n_column, 1);
@@ -120,10 +121,11 @@ static vg_status prepare(struct vg_slide_work *w)
   return vg_slide_parts(w);
 }
 
-/* The front ---------------------------------------------------------------*/
+/* --- the front ----------------------------------------------------------- */
 
-/* Triangles by the numbers of the work: those of the surface that stay and,
- * in their places, tops; virtual tops; re-meshed patches. */
+/* Triangles in the numbering of vg_slide_work: first the unchanged triangles of
+ * the surface, with tops in the places of wall faces, then tops of virtual
+ * faces, then remeshed patches. */
 struct list {
   size_t n;
   uint32_t (*tri)[3], *patch, *face;
@@ -137,8 +139,8 @@ static void put(struct list *l, const uint32_t v[3], uint32_t patch,
   l->face[l->n++] = face;
 }
 
-/* Put the top of face f, if it has one; base: its triangle when all its
- * columns have n = 0. */
+/* Adds the top of face f unless it is degenerate. If all columns of the face
+ * have n = 0, the top is its own triangle. */
 static void put_top(const struct vg_slide_work *w, uint32_t f, uint32_t patch,
                     struct list *l)
 {
@@ -195,12 +197,13 @@ static vg_status list_triangles(struct vg_slide_work *w, struct list *l)
   return VG_OK;
 }
 
-/* A triangle that stays must not stand on a root from which all columns
- * rise: the patch touches a wall where no column slides in it. */
+/* An unchanged triangle must not use a root at which all columns have levels:
+ * such a patch touches a wall at a point where no column slides in it. */
 static vg_status check_roots(struct vg_slide_work *w, const struct list *l)
 {
   const struct vg_columns *c = w->c;
-  uint8_t *left = vg_calloc(w->m->n_point, 1); /* 1: rises, 2: also stays */
+  uint8_t *left = vg_calloc(w->m->n_point, 1); /* Bits: 1: a column with levels,
+                                                  2: a column without. */
 
   if (!left) return vg_fail_memory(w->err, "the front of the layers");
   for (size_t i = 0; i < c->n_column; i++)
@@ -220,13 +223,14 @@ static vg_status check_roots(struct vg_slide_work *w, const struct list *l)
       }
       for (; lo < c->n_column && c->column[lo].root == v; lo++)
         vg_slide_mark_bad(w, (uint32_t)lo, l->patch[i], w->m->point[v],
-                          "columns rise where the patch touches the wall");
+                          "columns have levels where the patch only touches "
+                          "the wall");
     }
   free(left);
   return VG_OK;
 }
 
-/* Number the points in use, in the order of the work. */
+/* Numbers the points in use, in the order of vg_slide_work. */
 static vg_status number_points(const struct vg_slide_work *w,
                                const struct list *l, struct vg_front *f)
 {

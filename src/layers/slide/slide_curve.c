@@ -1,6 +1,6 @@
-/* Columns that slide in two patches run along the patches' common curve. The
- * points that a column swallows go, and the gap between its top and the next
- * point is marched anew. */
+/* Columns that slide in two patches follow the common curve of the patches.
+ * Points that a column passes are removed from the curve, and new points are
+ * placed between its top and the next remaining point. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,19 +10,19 @@
 #include "layers/slide/slide_parts.h"
 
 /* A curve that turns by more than 60 degrees at a point has a corner there,
- * which stays. */
+ * which is preserved. */
 #define CORNER 0.5 /* L14 */
-/* Points stay that are farther from a top than this share of the size ... */
+/* Points farther from a top than this share of the local size remain, ... */
 #define KEEP 0.5
-/* ... and the end of the curve must be farther than this. */
+/* ... and the end of the curve must be farther away than this share. */
 #define LEAST 0.25
 
-/* A curve from a column's root to a corner. Edge i is a half-edge of `left`
- * from point i to point i + 1. */
+/* A curve from the root of a column to a corner. Edge i is a half-edge of patch
+ * `left` from point i to point i + 1. */
 struct chain {
   size_t n, cap, cap_s;
   uint32_t *v;
-  double *s; /* length up to each point */
+  double *s; /* Arc length up to each point. */
   uint32_t left, right;
 };
 
@@ -36,7 +36,7 @@ static uint32_t head(const struct vg_slide_work *w, uint32_t half)
   return w->m->tri[half / 3][half % 3 < 2 ? half % 3 + 1 : 0];
 }
 
-/* The other patch at half-edge a -> b; VG_NO_INDEX: none that slides. */
+/* The slide patch on the other side of half-edge a -> b, or VG_NO_INDEX. */
 static uint32_t across(const struct vg_slide_work *w, uint32_t a, uint32_t b)
 {
   const uint32_t t = vg_slide_twin(w, a, b);
@@ -67,7 +67,7 @@ static int is_corner(const struct vg_mesh *m, const uint32_t v[2], uint32_t r)
   return vg_dot(a, b) < CORNER * vg_norm(a) * vg_norm(b);
 }
 
-/* The one edge that goes on from the chain's last point; VG_NO_INDEX at an
+/* The only edge that continues the chain from its last point; VG_NO_INDEX at an
  * end. */
 static uint32_t next_vertex(const struct vg_slide_work *w,
                             const struct chain *c)
@@ -89,7 +89,8 @@ static uint32_t next_vertex(const struct vg_slide_work *w,
   return next;
 }
 
-/* The curve of patches a and b that starts at p; empty if there is none. */
+/* The curve between patches a and b that starts at p; empty if there is
+ * none. */
 static vg_status follow(struct vg_slide_work *w, uint32_t p,
                         const uint32_t patch[2], struct chain *c)
 {
@@ -115,7 +116,8 @@ static vg_status follow(struct vg_slide_work *w, uint32_t p,
   return VG_OK;
 }
 
-/* The point at length s; exact where both ends of an edge agree. */
+/* Point at arc length s. Exact in a coordinate in which both ends of the edge
+ * agree. */
 static void on_chain(const struct vg_slide_work *w, const struct chain *c,
                      double s, double x[3])
 {
@@ -130,7 +132,9 @@ static void on_chain(const struct vg_slide_work *w, const struct chain *c,
   for (int k = 0; k < 3; k++) x[k] = a[k] + t * (b[k] - a[k]);
 }
 
-/* Let column i follow the curve, at equal distances. -1: it is too short. */
+/* Bends column i along the curve, with the distances of its levels measured
+ * along the curve. *is_short is set if the curve is too short for the column.
+ */
 static vg_status bend(struct vg_slide_work *w, uint32_t i,
                       const struct chain *c, int *is_short)
 {
@@ -154,8 +158,8 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
   return VG_OK;
 }
 
-/* Where a top stands along the chain, and the first point behind it that
- * stays (c->n - 1 at most); -1 when it is past the end. */
+/* Position of a top along the chain, and the first point beyond it that remains
+ * (c->n - 1 at most). Returns -1 if the top is beyond the end. */
 static int cut(const struct vg_slide_work *w, const struct chain *c,
                const double top[3], double h, double *s, size_t *keep)
 {
@@ -178,7 +182,7 @@ static int cut(const struct vg_slide_work *w, const struct chain *c,
   return 0;
 }
 
-/* An edge of the new curve, for the parts on both sides of chain edge i. */
+/* Adds an edge of the new curve to the parts on both sides of chain edge i. */
 static vg_status add_edge(struct vg_slide_work *w, const struct chain *c,
                           size_t i, uint32_t a, uint32_t b)
 {
@@ -205,14 +209,15 @@ static vg_status remove_edges(struct vg_slide_work *w, const struct chain *c,
   return VG_OK;
 }
 
-/* An end of a gap; at a top h is the length of the edges that meet there,
- * from which sizes depart at the field's slope; 0 at a point that stays. */
+/* An end of a gap in the curve. At a top, h is the length of the edges that
+ * meet there, from which sizes change with the slope of the sizing field; h is
+ * 0 at a remaining point. */
 struct end {
   uint32_t v;
   double s, h;
 };
 
-/* Size along the curve. */
+/* Target edge length along the curve. */
 static double size_at(const struct vg_slide_work *w, const struct chain *c,
                       const struct end end[2], double s)
 {
@@ -229,8 +234,8 @@ static double size_at(const struct vg_slide_work *w, const struct chain *c,
   return h;
 }
 
-/* Edges that fit between a and b, by Simpson's rule over many pieces: sum[i]
- * of them up to the i-th. */
+/* Number of edges that fit between a and b, by Simpson's rule on PIECES
+ * intervals; sum[i] is the number up to the i-th. */
 enum { PIECES = 256 };
 
 static void count_edges(const struct vg_slide_work *w, const struct chain *c,
@@ -250,7 +255,8 @@ static void count_edges(const struct vg_slide_work *w, const struct chain *c,
   }
 }
 
-/* March from one end to the other, in place of chain edge `at` and others. */
+/* Places points from one end to the other, in place of the chain edges from
+ * `at` on. */
 static vg_status march(struct vg_slide_work *w, const struct chain *c,
                        size_t at, struct end a, struct end b)
 {
@@ -277,7 +283,7 @@ static vg_status march(struct vg_slide_work *w, const struct chain *c,
   return add_edge(w, c, at, last, b.v);
 }
 
-/* The column at the chain's end that runs along it too, or VG_NO_INDEX. */
+/* Column at the end of the chain that also follows it, or VG_NO_INDEX. */
 static uint32_t other_end(const struct vg_slide_work *w, const struct chain *c,
                           const uint8_t *runs)
 {
@@ -343,8 +349,8 @@ static double top_edge(const struct vg_slide_work *w, uint32_t i)
   return n ? sum / n : 0;
 }
 
-/* Cut the chain at the top of column i, which stands at its start; mark the
- * column if it does not fit. *keep == c->n: marked. */
+/* Cuts the chain at the top of column i, whose root is the start of the chain.
+ * Marks the column if it does not fit; *keep is then c->n. */
 static vg_status cut_start(struct vg_slide_work *w, const struct chain *c,
                            uint32_t i, struct end *top, size_t *keep)
 {
@@ -364,7 +370,7 @@ static vg_status cut_start(struct vg_slide_work *w, const struct chain *c,
   return VG_OK;
 }
 
-/* Is too little left between two ends to be meshed? */
+/* Whether the two ends are too close for an edge between them. */
 static int is_narrow(const struct chain *c, struct end a, struct end b)
 {
   double h = c->s[c->n - 1];
@@ -374,7 +380,7 @@ static int is_narrow(const struct chain *c, struct end a, struct end b)
   return b.s - a.s < LEAST * h;
 }
 
-/* One column: everything behind `keep` stays. */
+/* One column at the start; all points from `keep` on remain. */
 static vg_status run_single(struct vg_slide_work *w, const struct chain *c,
                             uint32_t i)
 {
@@ -388,7 +394,7 @@ static vg_status run_single(struct vg_slide_work *w, const struct chain *c,
   next.s = c->s[keep];
   if (is_narrow(c, top, next)) {
     vg_slide_mark_bad(w, i, c->left, w->m->point[c->v[0]],
-                      "a column ends too near to the end of its curve");
+                      "a column ends too close to the end of its curve");
     return VG_OK;
   }
   VG_TRY(remove_edges(w, c, 0, keep));
@@ -397,7 +403,8 @@ done:
   return st;
 }
 
-/* Columns i at the start and j at the end: what lies between stays. */
+/* Column i at the start and column j at the end; the points between them
+ * remain. */
 static vg_status run_double(struct vg_slide_work *w, struct chain *c,
                             uint32_t i, uint32_t j)
 {
@@ -435,7 +442,7 @@ done:
   return st;
 }
 
-/* runs[i]: column i has borders in both patches that it slides in. */
+/* runs[i]: column i has boundary edges in both patches in which it slides. */
 static void find_runs(const struct vg_slide_work *w, uint8_t *runs)
 {
   const struct vg_columns *c = w->c;
@@ -474,7 +481,8 @@ vg_status vg_slide_curves(struct vg_slide_work *w)
     VG_TRY(follow(w, col->root, col->slide, &c));
     if (!c.n) continue;
     j = other_end(w, &c, runs);
-    /* Both ends of a curve are done at once, from the lower column. */
+    /* A curve with columns at both ends is handled once, from the column with
+     * the lower index. */
     if (j == VG_NO_INDEX) VG_TRY(run_single(w, &c, i));
     else if (j > i) VG_TRY(run_double(w, &c, i, j));
   }

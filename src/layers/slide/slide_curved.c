@@ -1,5 +1,5 @@
-/* Curved slide patches: graphs over their mean plane. Re-meshing happens in
- * that plane; points are lifted back onto the former triangles. */
+/* Curved slide patches, as graphs over their mean plane. They are remeshed in
+ * that plane, and new points are projected back onto the former triangles. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "core/geometry/vector.h"
 #include "layers/slide/slide_parts.h"
 
-/* No triangle may be tilted by more than 60 degrees against the mean. */
+/* No triangle may be inclined by more than 60 degrees to the mean plane. */
 #define TILT 0.5 /* L16 */
 
 void vg_slide_graph_release(struct vg_slide_graph *g)
@@ -85,8 +85,9 @@ vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
   return vg_fail_memory(w->err, "a curved slide patch");
 }
 
-/* Visit the triangles of part s at roots of columns that rise: add up their
- * area vectors, or count those that are steep against `normal`. */
+/* Visits the triangles of part s at the roots of columns with levels. Adds up
+ * their area vectors if `normal` is NULL; otherwise counts those too steep
+ * against `normal`. */
 static size_t at_roots(const struct vg_slide_work *w, size_t s,
                        const double *normal, double sum[3])
 {
@@ -121,7 +122,7 @@ void vg_slide_mark_steep(struct vg_slide_work *w, size_t s)
   assert(s < w->n_part);
   at_roots(w, s, NULL, sum);
   never = !(vg_unit(sum) > 0) || at_roots(w, s, sum, NULL) > 0;
-  vg_slide_mark_bad_all(w, s, "it is too curved to be meshed anew");
+  vg_slide_mark_bad_all(w, s, "it is too curved to be remeshed");
   for (uint32_t r = w->border_first[s]; never && r < w->border_first[s + 1];
        r++)
     for (int k = 0; k < 2; k++) {
@@ -131,7 +132,7 @@ void vg_slide_mark_steep(struct vg_slide_work *w, size_t s)
     }
 }
 
-/* The nearest triangle so far. */
+/* Nearest triangle so far. */
 struct nearest {
   const struct vg_slide_graph *g;
   const double *p;
@@ -139,7 +140,7 @@ struct nearest {
   uint32_t item;
 };
 
-/* Squared distance to segment a b, and how far along it the foot is. */
+/* Squared distance to segment a b, and the parameter of the foot point. */
 static double segment(const double a[2], const double b[2], const double p[2],
                       double *t)
 {
@@ -194,8 +195,8 @@ void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
   struct nearest best = { g, p, INFINITY, 0, VG_NO_INDEX };
   double reach = 0;
 
-  /* Within `reach` all triangles were seen: the nearest is final when it is
-   * no farther. */
+  /* All triangles within `reach` have been visited, so the nearest is final if
+   * it is not farther than that. */
   for (int i = 0; i < 64; i++) {
     const double lo[2] = { p[0] - reach, p[1] - reach };
     const double hi[2] = { p[0] + reach, p[1] + reach };
@@ -209,8 +210,8 @@ void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
   for (int k = 0; k < 3; k++) x[k] += best.height * g->frame.n[k];
 }
 
-/* The point of the patch at distance |step| from the root, over the line
- * along `step`. */
+/* Point of the patch at distance |step| from the root, above the line along
+ * `step`. */
 static void follow(const struct vg_slide_graph *g, const double root[3],
                    const double step[3], double x[3])
 {

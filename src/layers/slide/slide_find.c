@@ -1,4 +1,4 @@
-/* Which patches touch walls, and their normals. */
+/* Finds the patches that touch walls, and their normals. */
 #include "layers/slide/slide.h"
 
 #include <assert.h>
@@ -9,14 +9,15 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 
-/* A plane patch's points are no farther from it than this of its extent. */
+/* Largest distance of a point from the plane of a plane patch, relative to the
+ * extent of the patch. */
 #define FLATNESS 1e-6 /* L17 */
 
-/* What is known of a patch after one pass over its triangles. */
+/* Properties of a patch after one pass over its triangles. */
 struct shape {
   double area[3], lo[3], hi[3], first[3], inside[3], weight;
   size_t n_tri;
-  int found; /* touches a wall */
+  int found; /* Shares an edge with a wall. */
 };
 
 static void area_vector(const struct vg_mesh *m, size_t t, double n[3])
@@ -31,8 +32,8 @@ static void area_vector(const struct vg_mesh *m, size_t t, double n[3])
   vg_cross(a, b, n);
 }
 
-/* Mark patches with an edge in common with a wall: the walls' edges by their
- * first point, looked up from the other side. */
+/* Marks patches that share an edge with a wall. Edges of walls are stored by
+ * their first point and looked up from the other side. */
 static vg_status mark_touched(const struct vg_mesh *m, const uint8_t *is_wall,
                               struct shape *shape, struct vg_error *err)
 {
@@ -105,7 +106,7 @@ static double extent_of(const struct shape *s)
   return extent;
 }
 
-/* The coordinate in which a patch is thinner than the tolerance, or -1. */
+/* Axis along which a patch is thinner than the tolerance, or -1. */
 static int thin_axis(const struct shape *s)
 {
   for (int k = 0; k < 3; k++)
@@ -115,9 +116,9 @@ static int thin_axis(const struct shape *s)
   return -1;
 }
 
-/* A patch that closes on itself has no mean: any normal of it will do. A
- * plane normal to an axis but for noise gets the axis as normal, so that
- * what slides in it does not drift along the axis. */
+/* A patch that closes on itself has no mean normal, so any of its normals is
+ * used. A plane that is normal to an axis except for noise gets the axis as its
+ * normal, so that columns that slide in it do not drift along the axis. */
 static void start(const struct shape *s, uint32_t patch, struct vg_slide *out)
 {
   const int thin = thin_axis(s);
@@ -149,8 +150,8 @@ static int compare_value(const void *a, const void *b)
   return (p > q) - (p < q);
 }
 
-/* Where a plane normal to an axis is noisy, it stands where most points do:
- * at the median. */
+/* A noisy plane normal to an axis is placed at the median coordinate of its
+ * points. */
 static vg_status settle_planes(const struct vg_mesh *m,
                                const struct shape *shape, size_t n,
                                struct vg_slide *slide, struct vg_error *err)
@@ -173,7 +174,8 @@ static vg_status settle_planes(const struct vg_mesh *m,
   return VG_OK;
 }
 
-/* Clear is_plane where a triangle is off the plane or turned over. */
+/* Clears is_plane where a point is too far from the plane or a triangle is
+ * turned over. */
 static void check_planes(const struct vg_mesh *m, const struct shape *shape,
                          const uint32_t *slide_of, struct vg_slide *slide)
 {
@@ -195,8 +197,9 @@ static void check_planes(const struct vg_mesh *m, const struct shape *shape,
   }
 }
 
-/* atan(t), 0 <= t, without libm, so that results do not depend on it: three
- * half-angle steps leave less than 0.2, where seven terms give 1e-12. */
+/* atan(t), 0 <= t, without libm, so that results do not depend on it. Three
+ * half-angle steps leave less than 0.2, where seven terms are accurate to
+ * 1e-12. */
 static double arc_tangent(double t)
 {
   double s, sum;
@@ -211,7 +214,7 @@ static double arc_tangent(double t)
   return 8 * t * sum;
 }
 
-/* Add triangle t's normal times its angle at corner k. */
+/* Adds the normal of triangle t times its angle at corner k. */
 static void add_corner(const struct vg_mesh *m, size_t t, int k, double n[3])
 {
   const double *o = m->point[m->tri[t][k]];
@@ -259,8 +262,9 @@ static size_t unique(uint32_t *list, size_t n)
   return kept;
 }
 
-/* Slides and the tables of curved ones in one block: lists of 3 n_tri points
- * at most, normals first as they need the wider alignment. */
+/* Slide patches and the tables of the curved ones in one block. The lists hold
+ * at most 3 n_tri points; the normals come first because they need the larger
+ * alignment. */
 static struct vg_slide *with_tables(const struct vg_mesh *m, size_t n,
                                     const struct vg_slide *slide,
                                     const struct shape *shape,

@@ -1,5 +1,5 @@
-/* The new boundary of a slide patch: its former one with borders raised to the
- * tops, and whether it encloses what it should. */
+/* The new boundary of a slide patch, which is its former one with the edges at
+ * walls moved to the tops, and checks of the region that it encloses. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -31,8 +31,8 @@ static vg_status add_edge(struct vg_slide_work *w, struct vg_slide_loops *l,
   return VG_OK;
 }
 
-/* Half-edges of the part's triangles without a partner in it, that neither
- * columns nor curves replace. */
+/* Half-edges of the part without a twin in it, except those replaced by columns
+ * or curves. */
 static vg_status former_edges(struct vg_slide_work *w, size_t s,
                               const uint64_t *border, size_t n_border,
                               struct vg_slide_loops *l)
@@ -92,13 +92,13 @@ static int compare_point(const void *a, const void *b)
   return (p > q) - (p < q);
 }
 
-/* Each point must be left as often as it is reached. */
+/* Every point must have equally many incoming and outgoing edges. */
 static vg_status check_closed(struct vg_slide_work *w, size_t s,
                               const struct vg_slide_loops *l, int *is_closed)
 {
   uint32_t *from = vg_alloc(l->n, sizeof *from);
   uint32_t *to = vg_alloc(l->n, sizeof *to);
-  const char *what = "columns do not follow the border of the patch";
+  const char *what = "columns do not follow the boundary of the patch";
 
   *is_closed = 1;
   if (!from || !to) {
@@ -156,15 +156,16 @@ done:
   return st;
 }
 
-/* Crossings ---------------------------------------------------------------*/
+/* --- intersections ------------------------------------------------------- */
 
 struct cross {
   struct vg_slide_work *w;
   size_t s, n_bad;
   const struct vg_slide_loops *l;
   const double (*p)[2];
-  uint32_t edge; /* compared with those behind it */
-  int n;         /* corners of the flank at hand */
+  uint32_t edge; /* Index of the edge; it is compared with edges of higher
+                    index. */
+  int n;         /* Number of corners of the current side face. */
   uint32_t border, corner[4];
   double q[4][2];
 };
@@ -181,7 +182,7 @@ static int in_box(const double a[2], const double b[2], const double x[2])
   return 1;
 }
 
-/* Do segments without a common end touch? Exact. */
+/* Whether two segments without a common end touch. Exact. */
 static int touch(const double a[2], const double b[2], const double c[2],
                  const double d[2])
 {
@@ -193,7 +194,7 @@ static int touch(const double a[2], const double b[2], const double c[2],
          (!cda && in_box(c, d, a)) || (!cdb && in_box(c, d, b));
 }
 
-/* Do a - b and a - c run the same way? */
+/* Whether segments a - b and a - c overlap. */
 static int overlap(const double a[2], const double b[2], const double c[2])
 {
   return vg_orient2d(a, b, c) == 0 &&
@@ -222,8 +223,8 @@ static int visit_edge(void *user, uint32_t j)
   if (!is_bad) return 0;
   x->n_bad++;
   for (k = 0; k < 2; k++) {
-    mark_bad_point(x->w, x->s, e[k], "the tops' outline crosses itself");
-    mark_bad_point(x->w, x->s, f[k], "the tops' outline crosses itself");
+    mark_bad_point(x->w, x->s, e[k], "the outline of the tops crosses itself");
+    mark_bad_point(x->w, x->s, f[k], "the outline of the tops crosses itself");
   }
   return 0;
 }
@@ -238,7 +239,7 @@ static void mark_bad_flank(struct cross *x, const char *what)
                       x->w->m->point[x->w->c->column[r[k]].root], what);
 }
 
-/* No point of the boundary may stand within a flank. */
+/* No point of the boundary may lie within a side face. */
 static int visit_flank(void *user, uint32_t j)
 {
   struct cross *x = user;
@@ -249,13 +250,15 @@ static int visit_flank(void *user, uint32_t j)
     if (x->corner[i] == v) return 0;
   for (int i = 0; i < x->n; i++)
     if (vg_orient2d(x->q[i], x->q[i + 1 < x->n ? i + 1 : 0], p) < 0) return 0;
-  mark_bad_flank(x, "a flank runs into another part of the boundary");
+  mark_bad_flank(x, "a side face of the layers overlaps another part of the "
+                    "boundary");
   mark_bad_point(x->w, x->s, v,
-                 "a flank runs into another part of the boundary");
+                 "a side face of the layers overlaps another part of the "
+                 "boundary");
   return 0;
 }
 
-/* The point of column i at level 1, in the plane. */
+/* Point of column i at level 1, in the plane. */
 static void risen(const struct vg_slide_work *w, const struct vg_slide_frame *f,
                   uint32_t i, double q[2])
 {
@@ -272,7 +275,8 @@ static void risen(const struct vg_slide_work *w, const struct vg_slide_frame *f,
   vg_slide_to_plane(f, x, q);
 }
 
-/* The flank over a border, counter-clockwise; 0 corners where it is none. */
+/* Side face above a boundary edge, counter-clockwise; 0 corners if it has no
+ * area. */
 static void set_flank(struct cross *x, const struct vg_slide_frame *f,
                       uint32_t border)
 {
@@ -299,7 +303,8 @@ static int is_convex(const struct cross *x)
   return 1;
 }
 
-/* Which columns of a flank that folds leave the patch at once? */
+/* Marks the columns of a folded side face that leave the patch already at their
+ * first level. */
 static void give_up(struct cross *x, const struct vg_slide_frame *f)
 {
   const struct vg_slide_work *w = x->w;
@@ -360,7 +365,7 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
     set_flank(&x, frame, w->border[i]);
     if (!x.n) continue;
     if (!is_convex(&x)) {
-      mark_bad_flank(&x, "a flank folds over");
+      mark_bad_flank(&x, "a side face of the layers folds over");
       give_up(&x, frame);
       continue;
     }

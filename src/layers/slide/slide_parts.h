@@ -1,8 +1,9 @@
-/* layers/slide/slide_parts.h: what the steps of vg_slide_front share. Private
- * to slide*.c.
+/* layers/slide/slide_parts.h: data shared by the steps of vg_slide_front.
+ * Private to slide*.c.
  *
- * Points have one numbering while the front is built: those of the surface,
- * then one per column (its top; unused where n = 0), then new ones. */
+ * While the front is built, points have a single numbering: first the points of
+ * the surface, then one point per column (its top; unused if n = 0), then new
+ * points. */
 #ifndef VG_LAYERS_SLIDE_SLIDE_PARTS_H
 #define VG_LAYERS_SLIDE_SLIDE_PARTS_H
 
@@ -14,14 +15,14 @@
 
 /* slide_tree.c ------------------------------------------------------------*/
 
-/** A box in the plane: its third side has no length. */
+/** A box in the plane; its extent in z is zero. */
 static inline struct vg_box vg_slide_box(const double lo[2], const double hi[2])
 {
   return (struct vg_box){ { lo[0], lo[1], 0 }, { hi[0], hi[1], 0 } };
 }
 
-/** Tree of n boxes in the plane, along a Morton curve through their middles.
- * O(n). VG_ERR_MEMORY. */
+/** Tree of n boxes in the plane, ordered along a Morton curve through their
+ * centres. O(n). VG_ERR_MEMORY. */
 vg_status vg_slide_tree(struct vg_box_tree *t, size_t n,
                         const struct vg_box *box, struct vg_error *err);
 
@@ -37,38 +38,41 @@ struct vg_slide_work {
   size_t n_slide;
   const struct vg_slide *slide;
   struct vg_columns *c;
-  uint32_t *slide_of; /* [m->n_patch] index into slide[] */
+  uint32_t *slide_of; /* [m->n_patch] index into slide[]. */
   size_t n_x, cap_x;
-  double (*x)[3];  /* [n_x] surface, tops, new points */
-  uint32_t *local; /* [surface, tops, curves] scratch, VG_NO_INDEX
-                      between uses */
-  /* Half-edges 3 * triangle + corner of slide patches, by first point. */
-  uint32_t *first, *half; /* [m->n_point + 1], [first[n_point]] */
-  /* What is re-meshed: plane patches as a whole, of curved ones the
-   * surroundings of the walls, each with its own mean normal. */
+  double (*x)[3];  /* [n_x] surface points, tops, new points. */
+  uint32_t *local; /* [surface points, tops, points of curves] scratch; all
+                      VG_NO_INDEX between uses. */
+  /* Half-edges 3 * triangle + corner of slide patches, sorted by first
+   * point. */
+  uint32_t *first, *half; /* [m->n_point + 1], [first[n_point]]. */
+  /* Parts to be remeshed, each with its own mean normal: plane patches as a
+   * whole, curved patches only around walls. */
   size_t n_part, cap_part;
   struct vg_slide *part;
-  uint32_t *part_of;         /* [m->n_tri] VG_NO_INDEX: stays */
-  uint32_t *tri_first, *tri; /* [n_part + 1] into tri[]: triangles by part */
-  uint32_t *border_first, *border; /* [n_part + 1] into border[]: borders by
-                                      part */
-  /* Curves between slide patches: edges of the surface that are gone (both
-   * points, the lower one in the high half, sorted) and those in their
-   * place. */
+  uint32_t *part_of;         /* [m->n_tri] part of each triangle; VG_NO_INDEX:
+                                it remains. */
+  uint32_t *tri_first, *tri; /* [n_part + 1] offsets into tri[], the triangles
+                                sorted by part. */
+  uint32_t *border_first, *border; /* [n_part + 1] offsets into border[], the
+                                      boundary edges sorted by part. */
+  /* Curves between slide patches: the removed edges of the surface (keys with
+   * the lower point in the high half, sorted) and the edges that replace
+   * them. */
   size_t n_gone, cap_gone, n_edge, cap_edge;
   uint64_t *gone;
   struct vg_slide_edge *edge;
-  /* Triangles of re-meshed patches. */
+  /* Triangles of remeshed patches. */
   size_t n_new, cap_new, cap_new_patch;
   uint32_t (*new_tri)[3], *new_patch;
   /* Failures. */
-  uint8_t *bad; /* [n_column] 2: at any height */
+  uint8_t *bad; /* [n_column] 1: failed; 2: fails at any height. */
   size_t n_bad, cap_path;
-  char *text; /* [200] "" until something fails */
+  char *text; /* [200] "" until the first failure. */
   struct vg_error *err;
 };
 
-/** The point that column i has in the front: its root, or its top. */
+/** Point of column i in the front: its top, or its root if it has no levels. */
 static inline uint32_t vg_slide_top(const struct vg_slide_work *w, uint32_t i)
 {
   assert(i < w->c->n_column);
@@ -78,7 +82,7 @@ static inline uint32_t vg_slide_top(const struct vg_slide_work *w, uint32_t i)
   return c->n ? (uint32_t)(w->m->n_point + i) : c->root;
 }
 
-/** The column of which point p is the top, or VG_NO_INDEX. */
+/** Column whose top is point p, or VG_NO_INDEX. */
 static inline uint32_t vg_slide_column(const struct vg_slide_work *w,
                                        uint32_t p)
 {
@@ -93,48 +97,50 @@ static inline uint64_t vg_slide_key(uint32_t a, uint32_t b)
   return vg_edge_key(a, b);
 }
 
-/** Append a point; VG_ERR_MEMORY or VG_ERR_UNSUPPORTED. */
+/** Appends a point. VG_ERR_MEMORY or VG_ERR_UNSUPPORTED. */
 vg_status vg_slide_add_point(struct vg_slide_work *w, const double x[3],
                              uint32_t *number);
 
-/** Mark column i as failed (columns without levels cannot be). The first
- * call says why: what, in patch, near x. */
+/** Marks column i as failed, unless it has no levels. The first call sets the
+ * description of the failure: `what`, the patch, and the position x. */
 void vg_slide_mark_bad(struct vg_slide_work *w, uint32_t i, uint32_t patch,
                        const double x[3], const char *what);
 
-/** Mark all border columns of part s. */
+/** Marks all columns on the boundary edges of part s. */
 void vg_slide_mark_bad_all(struct vg_slide_work *w, size_t s, const char *what);
 
-/** The half-edge from b to a (twin of a -> b) in a slide patch, or
+/** Half-edge from b to a (the twin of a -> b) in a slide patch, or
  * VG_NO_INDEX. */
 uint32_t vg_slide_twin(const struct vg_slide_work *w, uint32_t a, uint32_t b);
 
 /* slide_region.c ----------------------------------------------------------*/
 
-/** Half-edges, parts, and what belongs to each. */
+/** Finds half-edges and parts, and the triangles and boundary edges of each
+ * part. */
 vg_status vg_slide_parts(struct vg_slide_work *w);
 
 /* slide_curve.c -----------------------------------------------------------*/
 
-/** Follow columns that slide in two patches along the patches' common curve:
- * fills gone[] and edge[]; bends columns where the curve is not straight. */
+/** Follows columns that slide in two patches along the common curve of the
+ * patches. Fills gone[] and edge[], and bends columns where the curve is not
+ * straight. */
 vg_status vg_slide_curves(struct vg_slide_work *w);
 
 /* slide_loop.c ------------------------------------------------------------*/
 
-/* The new boundary of a part, region on its left. */
+/* New boundary of a part, with the region on its left. */
 struct vg_slide_loops {
   size_t n, cap;
   uint32_t (*edge)[2];
 };
 
-/** Boundary of part s; empty where columns were marked. */
+/** Boundary of part s; empty if columns were marked. */
 vg_status vg_slide_boundary(struct vg_slide_work *w, size_t s,
                             struct vg_slide_loops *out);
 
 /* slide_plane.c -----------------------------------------------------------*/
 
-/* A plane's own coordinates. axis >= 0: the other two of space. */
+/* Coordinates in a plane. axis >= 0: the other two coordinates of space. */
 struct vg_slide_frame {
   int axis, iu, iv;
   double at, o[3], u[3], v[3], n[3];
@@ -147,10 +153,10 @@ void vg_slide_to_plane(const struct vg_slide_frame *f, const double x[3],
 void vg_slide_to_space(const struct vg_slide_frame *f, const double p[2],
                        double x[3]);
 
-/** Mark columns at which the boundary crosses itself or enters a flank.
+/** Marks columns at which the boundary crosses itself or enters a side face.
  *
- * @param p      coordinates in the plane, by w->local of the loops' points
- * @param n_bad  out: how many such places; 0: the region is as it should be */
+ * @param p  coordinates in the plane, indexed by w->local of the points
+ * @param n_bad  out: number of such places; 0: the region is valid */
 vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
                          const struct vg_slide_frame *frame,
                          const struct vg_slide_loops *loops,
@@ -158,67 +164,71 @@ vg_status vg_slide_cross(struct vg_slide_work *w, size_t s,
 
 /* slide_curved.c ----------------------------------------------------------*/
 
-/* The triangles of a curved part over its mean plane. */
+/* Triangles of a curved part over its mean plane. */
 struct vg_slide_graph {
   const struct vg_slide_work *w;
   struct vg_slide_frame frame;
   size_t n;
-  const uint32_t *tri; /* [n] */
-  double (*p)[3][2];   /* [n] */
-  double (*height)[3]; /* [n] above the plane */
+  const uint32_t *tri; /* [n] triangles. */
+  double (*p)[3][2];   /* [n] corners in the plane. */
+  double (*height)[3]; /* [n] heights of the corners above the plane. */
   struct vg_box_tree tree;
   double extent;
 };
 
-/** VG_BLOCKED when the part is no graph over its mean plane. */
+/** Returns VG_BLOCKED if the part is not a graph over its mean plane. */
 vg_status vg_slide_graph(const struct vg_slide_work *w, size_t s,
                          struct vg_slide_graph *g);
 void vg_slide_graph_release(struct vg_slide_graph *g);
 
-/** Mark the border columns of part s, which is no graph: for good when it is
- * none even right at their roots, since less height leaves a smaller part. */
+/** Marks the columns of part s, which is not a graph. They are marked for any
+ * height if the part is not even a graph at their roots, since lower columns
+ * make the part smaller. */
 void vg_slide_mark_steep(struct vg_slide_work *w, size_t s);
 
-/** The point of the patch over p; beyond its border that nearest to it. */
+/** Point of the patch above p, or the nearest point of the patch if p is
+ * outside. */
 void vg_slide_lift(const struct vg_slide_graph *g, const double p[2],
                    double x[3]);
 
-/** Bend the border columns of part s onto it, those that follow a curve (bent
- * already) excepted. */
+/** Bends the columns of part s onto it, except those already bent along a
+ * curve. */
 vg_status vg_slide_bend(struct vg_slide_work *w, size_t s,
                         const struct vg_slide_graph *g);
 
 /* slide_size.c ------------------------------------------------------------*/
 
-/* Edge length in a slide patch: the field's, but no finer than the edges
- * between tops, from where it may fall at the field's slope. */
+/* Target edge length in a slide patch: that of the sizing field, but not
+ * smaller than the edges between nearby tops, from which it decreases with the
+ * slope of the field. */
 struct vg_slide_law {
   const struct vg_sizing *sizing;
   const struct vg_slide_frame *frame;
-  const struct vg_slide_graph *graph; /* NULL: the patch is plane */
+  const struct vg_slide_graph *graph; /* NULL: the patch is plane. */
   double slope;
   struct {
     double p[2], h;
-  } * top;                 /* edges finer than which it would be */
-  struct vg_box_tree tree; /* of them, as far as they matter */
+  } * top;                 /* Edges between tops that are longer than the size
+                              there. */
+  struct vg_box_tree tree; /* Tree of their regions of influence. */
 };
 
-/** Let tops bound the size from below. */
+/** Makes the edges between tops a lower bound of the size. */
 vg_status vg_slide_law_floor(struct vg_slide_work *w,
                              const struct vg_slide_loops *loops,
                              struct vg_slide_law *l);
 void vg_slide_law_release(struct vg_slide_law *l);
 
-/** The point of the patch at p. */
+/** Point of the patch at p. */
 void vg_slide_place(const struct vg_slide_law *l, const double p[2],
                     double x[3]);
 
-/** The size at p; law: the struct vg_slide_law. */
+/** Size at p. law: struct vg_slide_law. */
 double vg_slide_size(void *law, const double p[2]);
 
 /* slide_plane.c, again ----------------------------------------------------*/
 
-/** Re-mesh part s. */
+/** Remeshes part s. */
 vg_status vg_slide_remesh(struct vg_slide_work *w, size_t s);
 
 #endif

@@ -1,4 +1,4 @@
-/* A slide patch, triangulated anew inside its new boundary. */
+/* Remeshing of a slide patch inside its new boundary. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,8 +10,8 @@
 #include "core/geometry/vector.h"
 #include "layers/slide/slide_parts.h"
 
-/* A triangle with its corners on the boundary and a height below this share
- * of its longest edge is a sliver between tops that nearly line up. */
+/* A triangle with all corners on the boundary and a height below this share of
+ * its longest edge is a sliver between nearly collinear tops. */
 #define SLIVER 1e-9
 
 void vg_slide_frame(const struct vg_slide_work *w, size_t s,
@@ -72,7 +72,7 @@ void vg_slide_to_space(const struct vg_slide_frame *f, const double p[2],
   for (int k = 0; k < 3; k++) x[k] = f->o[k] + p[0] * f->u[k] + p[1] * f->v[k];
 }
 
-/* The region in the plane, with numbers of its own: `number` is the point. */
+/* The region in the plane with its own numbering; `number` is the point. */
 struct region {
   size_t n;
   uint32_t *number, (*edge)[2];
@@ -109,7 +109,7 @@ static void release_region(struct vg_slide_work *w, struct region *r)
   free(r->p);
 }
 
-/* Slivers between points of the boundary: mark their columns. */
+/* Marks the columns of slivers between points of the boundary. */
 static void check_slivers(struct vg_slide_work *w, size_t s,
                           const struct region *r, size_t n_tri,
                           const uint32_t (*tri)[3])
@@ -131,7 +131,8 @@ static void check_slivers(struct vg_slide_work *w, size_t s,
 
       if (c != VG_NO_INDEX)
         vg_slide_mark_bad(w, c, w->part[s].patch, w->x[r->number[t[k]]],
-                          "tops line up so that a triangle has no area");
+                          "tops are collinear and leave a triangle without "
+                          "area");
     }
   }
 }

@@ -1,6 +1,7 @@
-/* What is re-meshed: plane patches with columns as a whole; of curved patches
- * only what columns reach and a few edges more, since new points stand on
- * facets and the rest should stay as it was. */
+/* Finds the parts to be remeshed: plane patches with columns as a whole, but of
+ * curved patches only the area that columns reach and a few edges more. New
+ * points lie on the facets of the given surface, so the rest should remain
+ * unchanged. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,13 +10,13 @@
 #include "core/geometry/vector.h"
 #include "layers/slide/slide_parts.h"
 
-/* A curved patch is re-meshed as far as this many edges from the tops. */
+/* A curved patch is remeshed up to this many edges beyond the tops. */
 #define BEYOND 4 /* L15 */
-/* part_of[] of triangles in reach, before they are divided into parts. */
+/* part_of[] of triangles within reach, before they are divided into parts. */
 #define MARKED (VG_NO_INDEX - 1)
 
-/* Bucket items by class: n_class + 1 offsets and the items of each, rising.
- * VG_NO_INDEX belongs to none. */
+/* Sorts items by class: n_class + 1 offsets and the items of each class, in
+ * order. VG_NO_INDEX belongs to no class. */
 static vg_status bucket(size_t n, const uint32_t *class_of, size_t n_class,
                         uint32_t **first, uint32_t **item, struct vg_error *err)
 {
@@ -60,7 +61,7 @@ static vg_status add_part(struct vg_slide_work *w, const struct vg_slide *s)
   return VG_OK;
 }
 
-/* Plane patches with a border column that rises. */
+/* Plane patches with at least one column with levels. */
 static vg_status plane_parts(struct vg_slide_work *w)
 {
   const struct vg_columns *c = w->c;
@@ -91,16 +92,16 @@ done:
   return st;
 }
 
-/* Spread from border columns over curved patches. */
+/* Propagation from columns over curved patches. */
 struct spread {
-  double *left;   /* [n_point] reach that is left at a point */
-  uint32_t *from; /* [n_point] the column that left it */
+  double *left;   /* [n_point] remaining reach at a point. */
+  uint32_t *from; /* [n_point] column with that remaining reach. */
   uint32_t *queue;
   size_t n, cap;
 };
 
-/* Mark the triangles at v, which its column reaches, and go on from their
- * points as far as the reach lasts. */
+/* Marks the triangles at v, which its column reaches, and continues from their
+ * points while reach remains. */
 static vg_status visit(struct vg_slide_work *w, struct spread *q, uint32_t v)
 {
   const struct vg_mesh *m = w->m;
@@ -159,7 +160,7 @@ done:
   return st;
 }
 
-/* The triangle across edge k of t, if it is of the same patch and marked. */
+/* Triangle across edge k of t, if it is marked and of the same patch. */
 static uint32_t neighbour(const struct vg_slide_work *w, uint32_t t, int k)
 {
   const uint32_t *v = w->m->tri[t];
@@ -171,7 +172,7 @@ static uint32_t neighbour(const struct vg_slide_work *w, uint32_t t, int k)
   return h / 3;
 }
 
-/* Connected regions of marked triangles become parts. */
+/* Turns connected regions of marked triangles into parts. */
 static vg_status split(struct vg_slide_work *w)
 {
   uint32_t *stack = vg_alloc(w->m->n_tri, sizeof *stack);
@@ -202,8 +203,8 @@ done:
   return st;
 }
 
-/* Mean normals of curved parts; that of a part that closes stays the
- * patch's. */
+/* Mean normals of curved parts. A part that closes on itself keeps the normal
+ * of its patch. */
 static void mean_normals(struct vg_slide_work *w)
 {
   for (size_t s = 0; s < w->n_part; s++) {
@@ -226,8 +227,8 @@ static void mean_normals(struct vg_slide_work *w)
   }
 }
 
-/* The part that a border belongs to: its triangle's; between columns of one
- * root, that of a triangle of the patch there. */
+/* Part of a boundary edge: that of its triangle or, between columns of one
+ * root, that of a triangle of the patch at the root. */
 static uint32_t part_of_border(const struct vg_slide_work *w, size_t i)
 {
   const struct vg_columns *c = w->c;

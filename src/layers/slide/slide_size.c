@@ -1,6 +1,7 @@
-/* The edge length that a slide patch is re-meshed with. The field was made
- * over walls that are covered now: where tops fan out, their edges are longer
- * than it asks for, and what is filled later starts from them. */
+/* Target edge length for remeshing a slide patch. The sizing field was built
+ * for the walls, which are now covered by layers: where tops spread apart,
+ * their edges are longer than the field requests, and the meshing that follows
+ * starts from these edges. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@ void vg_slide_law_release(struct vg_slide_law *l)
   vg_box_tree_release(&l->tree);
 }
 
-/* Edge between tops that is longer than the field asks for? */
+/* Whether an edge between tops is longer than the field requests. */
 static int is_coarse(const struct vg_slide_work *w, const uint32_t e[2],
                      double mid[3], double *h)
 {

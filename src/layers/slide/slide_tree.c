@@ -1,6 +1,6 @@
-/* A tree of boxes in the plane. Their order is that of Morton's curve: which of
- * several faults of a boundary is found first, and so named, follows from it.
- */
+/* A tree of boxes in the plane, ordered along a Morton curve. The order
+ * determines which of several faults of a boundary is found first and thus
+ * reported. */
 #include <assert.h>
 #include <stdlib.h>
 
@@ -8,7 +8,7 @@
 #include "core/geometry/hilbert.h"
 #include "layers/slide/slide_parts.h"
 
-/* Morton codes of the boxes' middles. */
+/* Morton codes of the centres of the boxes. */
 static void make_keys(size_t n, const struct vg_box *box, struct vg_key *key)
 {
   struct vg_box all = VG_BOX_EMPTY;

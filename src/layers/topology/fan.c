@@ -9,27 +9,32 @@
 #include "core/geometry/vector.h"
 #include "layers/topology/most_normal.h"
 
-/* L12: As in direct.c: where all faces are seen this well the mean normal is
- * the direction, elsewhere the most normal one. */
-#define LEAST_CLEAR 0.3 /* of a step, that it leads away from the wall */
+/* L12: Thresholds as in direct.c. Where all faces are seen with at least
+ * SMOOTH_WALL the direction is the mean normal, elsewhere it is the most normal
+ * direction. */
+#define LEAST_CLEAR 0.3 /* Least distance from the wall after a unit step. */
 #define SMOOTH_WALL 0.95
-#define LEAST_VISIBILITY 0.1 /* cosine between a sector's column and faces */
-#define NEEDED_ANGLE                                                           \
-  60 /* degrees: ridges where fans are only made if one                        \
-        column sees too little (L19) */
-#define NEEDED_VISIBILITY 0.02 /* cosine between one column and all faces */
+/* Least cosine between the column of a sector and its faces. */
+#define LEAST_VISIBILITY 0.1
+/* L19: Fans that are made only where one column sees too little use ridges of
+ * more than this angle, in degrees. */
+#define NEEDED_ANGLE 60
+/* Least cosine between a single column and all faces. */
+#define NEEDED_VISIBILITY 0.02
 
 struct build {
   const struct vg_wall *w;
   size_t n_slide;
   const struct vg_slide *slide;
   struct vg_fans *f;
-  double cos_fan, cos_half; /* of the fan angle and of half of it */
-  int if_needed;            /* only where no one direction sees all faces */
-  double (*normal)[3];      /* [n_face] unit; 0: a face without area */
-  uint8_t *ridge;           /* [3 * n_face] */
-  uint8_t *n_ridge;         /* [n_point] from the point, 255 for more */
-  double (*ring)[3];        /* normals around one point, sector by sector */
+  double cos_fan, cos_half; /* Cosines of the fan angle and of half of it. */
+  int if_needed;            /* Make fans only where no single direction sees all
+                               faces. */
+  double (*normal)[3];      /* [n_face] unit normals; 0 for a face of zero
+                               area. */
+  uint8_t *ridge;           /* [3 * n_face] 1: the half-edge is a ridge. */
+  uint8_t *n_ridge;         /* [n_point] ridges at each point, at most 255. */
+  double (*ring)[3];        /* Normals around one point, sector by sector. */
   size_t cap_ring, cap_chain, cap_fan, cap_preset;
 };
 
@@ -47,9 +52,9 @@ void vg_fans_release(struct vg_fans *f)
   memset(f, 0, sizeof *f);
 }
 
-/* Cosine of an angle in degrees, 0 to 180, the same on every machine: the
- * series of a quarter of it (x < 0.79, the first term left out is 1e-15),
- * doubled twice. */
+/* Cosine of an angle of 0 to 180 degrees, the same on every machine. Evaluates
+ * the series for a quarter of the angle (x < 0.79, the first omitted term is
+ * 1e-15) and doubles the angle twice. */
 static double cos_degrees(double angle)
 {
   double x = angle * (3.14159265358979323846 / 720), x2 = x * x, c = 1;
@@ -79,8 +84,9 @@ static const double *wall_point(const struct vg_wall *w, uint32_t h)
   return w->surface->point[w->point[w->face[h / 3][h % 3]]];
 }
 
-/* Sharper than the fan angle, and the fluid is outside: the neighbour's far
- * point lies behind the face, exactly. */
+/* Whether the edge turns by more than the fan angle and is convex. Convexity is
+ * decided exactly: the opposite vertex of the neighbour lies behind the
+ * face. */
 static int is_ridge(const struct build *b, uint32_t h, uint32_t g)
 {
   const double *n = b->normal[h / 3], *o = b->normal[g / 3];
@@ -148,9 +154,8 @@ static double least_visibility(size_t n, const double (*normal)[3],
   return least;
 }
 
-/* Direction for faces of the ring from corner h on, `n` of them: the one
- * that their column will start from. 0: none sees them all by `least`, the
- * cosine between them. */
+/* Initial direction of the column of `n` faces of the ring, from corner h on.
+ * Returns 0 if no direction sees them all with a cosine of at least `least`. */
 static int direct(struct build *b, const struct vg_fan_shape *s, uint32_t h,
                   size_t n, double least, double dir[3])
 {
@@ -178,8 +183,9 @@ static int direct(struct build *b, const struct vg_fan_shape *s, uint32_t h,
   return least_visibility(k, (const double(*)[3])b->ring, dir) >= least;
 }
 
-/* The ring of p cut at its ridges: first corner of each sector and how many
- * faces it has. Closed rings start behind a ridge. Returns the sectors. */
+/* Splits the ring of p at its ridges into sectors: the first corner of each
+ * sector and its number of faces. In a closed ring the first sector starts at a
+ * ridge. Returns the number of sectors. */
 static int cut(const struct build *b, uint32_t p,
                uint32_t corner[VG_FAN_SECTORS], size_t size[VG_FAN_SECTORS],
                int *is_open)
@@ -203,8 +209,8 @@ static int cut(const struct build *b, uint32_t p,
   return n;
 }
 
-/* One direction is enough when it is as near to those of all sectors as that
- * of an edge just below the fan angle. */
+/* One direction suffices if it is as close to those of all sectors as the
+ * single direction at an edge just below the fan angle would be. */
 static int one_will_do(struct build *b, const struct vg_fan_shape *s,
                        uint32_t start, size_t n)
 {
@@ -238,7 +244,8 @@ static vg_status reserve(struct build *b, const struct vg_fan_shape *s,
   return VG_OK;
 }
 
-/* Write a fan down: columns of its corners, chains, preset directions. */
+/* Stores a fan: the columns of its corners, its chains and its preset
+ * directions. */
 static void keep(struct build *b, uint32_t p, const struct vg_fan_shape *s,
                  const uint32_t *corner, const size_t *size)
 {
@@ -275,8 +282,8 @@ static void keep(struct build *b, uint32_t p, const struct vg_fan_shape *s,
   }
 }
 
-/* Do all directions lead away from all triangles at p? At a ridge that ends
- * in a concave corner some may lead into the other wall. */
+/* Whether all directions lead away from all triangles at p. At a ridge that
+ * ends in a concave corner a direction may lead into the other wall. */
 static int is_clear(const struct build *b, uint32_t p,
                     const struct vg_fan_shape *s)
 {
@@ -299,7 +306,7 @@ static int is_clear(const struct build *b, uint32_t p,
   return 1;
 }
 
-/* Is there no direction that sees all faces at p? */
+/* Whether no direction sees all faces at p. */
 static int is_needed(struct build *b, const struct vg_fan_shape *s,
                      uint32_t start, size_t n)
 {
@@ -387,9 +394,8 @@ vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
   assert(slide || !n_slide);
   if (!(fan_angle >= 0))
     return vg_fail(err, VG_ERR_INPUT,
-                   "the fan angle is %g degrees; it has to "
-                   "be 0 (fans where one column cannot stand) or more (180: no "
-                   "fans)",
+                   "the fan angle is %g degrees; it must be at least 0 (0: "
+                   "fans only where a single column fails, 180: no fans)",
                    fan_angle);
   f.first = vg_alloc(w->n_point + 1, sizeof *f.first);
   if (!f.first) return vg_fail_memory(err, "the columns");
@@ -401,8 +407,8 @@ vg_status vg_fans_build(const struct vg_wall *w, size_t n_slide,
   }
   if (total > UINT32_MAX / 8) {
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%zu columns, %u at most; raise the "
-                 "fan angle or coarsen the surface",
+                 "the layers need %zu columns, but at most %u are supported; "
+                 "raise the fan angle or coarsen the surface",
                  total, UINT32_MAX / 8);
     goto done;
   }

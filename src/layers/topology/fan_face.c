@@ -1,4 +1,4 @@
-/* Virtual faces along ridges and at points, and borders of fans. */
+/* Virtual faces along ridges and at points, and boundary edges of fans. */
 #include "base/memory.h"
 #include "layers/topology/fan.h"
 
@@ -23,8 +23,8 @@ static vg_status add_face(struct faces *s, uint32_t a, uint32_t b, uint32_t c,
   return VG_OK;
 }
 
-/* Chain of a ridge as seen from the point that half-edge h starts from; a
- * single column where the point has no fan. */
+/* Chain of a ridge as seen from the point at which half-edge h starts; a single
+ * column if the point has no fan. */
 static struct vg_fan_chain chain_at(const struct faces *s, uint32_t h)
 {
   struct vg_fan_chain none = { 0, 0, 0, 0 };
@@ -33,9 +33,9 @@ static struct vg_fan_chain chain_at(const struct faces *s, uint32_t h)
   return i == VG_NO_INDEX ? none : s->f->chain[i];
 }
 
-/* The strip of ridge h, from p to q: its left face has p to q, its right one
- * q to p. Both chains are followed from left to right, that of p against its
- * sense, and whichever lags behind takes the next step. */
+/* Virtual faces along ridge h from p to q. Its left face has the edge p to q,
+ * its right face q to p. Both chains are followed from left to right, that of p
+ * in reverse, and the chain that lags behind takes the next step. */
 static vg_status strip(struct faces *s, uint32_t h, struct vg_error *err)
 {
   const struct vg_wall *w = s->w;
@@ -59,7 +59,7 @@ done:
   return st;
 }
 
-/* What is left around a point where three sectors or more meet. */
+/* Virtual faces of the polygon at a point where three or more sectors meet. */
 static vg_status polygon(struct faces *s, const struct vg_fan_point *fan,
                          struct vg_error *err)
 {
@@ -73,8 +73,9 @@ done:
   return st;
 }
 
-/* Where a fan meets a slide patch its chains have strips on one side only:
- * the other one is the border, in the sense of the strips. */
+/* Where a fan meets a slide patch, its chains have virtual faces on one side
+ * only. The edges on the other side are boundary edges, with the orientation of
+ * these faces. */
 static vg_status fan_rims(struct faces *s, const struct vg_fan_point *fan,
                           struct vg_error *err)
 {
@@ -86,7 +87,7 @@ static vg_status fan_rims(struct faces *s, const struct vg_fan_point *fan,
                    sizeof *f->border) < 0 ||
         vg_reserve(&f->border_patch, &s->cap_patch, f->n_border + 1,
                    sizeof *f->border_patch) < 0)
-      return vg_fail_memory(err, "the rims of fans");
+      return vg_fail_memory(err, "the boundary edges of fans");
     f->border[f->n_border][0] = o + i;
     f->border[f->n_border][1] = o + i - 1;
     f->border_patch[f->n_border++] = s->w->slide[fan->point][0];

@@ -6,10 +6,13 @@
 #include "layers/topology/fan.h"
 #include "layers/topology/most_normal.h"
 
-#define COS_STEP 0.7660444431189780 /* L13: of 40 degrees */
-#define SLACK 1e-9        /* a turn of 40 degrees sharp takes one step */
-#define LEAST_TURN 0.1    /* of a step about its ridge, as a share */
-#define LEAST_CENTRE 0.05 /* sine between the centre and an edge's plane */
+/* L13: cosine of 40 degrees, the largest step. */
+#define COS_STEP 0.7660444431189780
+#define SLACK 1e-9 /* Lets a turn of exactly 40 degrees be one step. */
+/* Least rotation of a step about its ridge, relative to its rotation. */
+#define LEAST_TURN 0.1
+/* Least sine between the centre and the plane of a polygon edge. */
+#define LEAST_CENTRE 0.05
 
 static void into_plane(const struct vg_fan_shape *s, double v[3])
 {
@@ -21,9 +24,9 @@ static void into_plane(const struct vg_fan_shape *s, double v[3])
     v[k] = fabs(s->plane[k]) == 1 ? 0 : v[k] - d * s->plane[k];
 }
 
-/* The point at share t of the arc between unit vectors less than 180 degrees
- * apart: halved six times, then along the chord, which is off by less than
- * 1e-5 of the arc. */
+/* Point at the fraction t of the arc between two unit vectors less than 180
+ * degrees apart. Halves the arc six times and then interpolates along the
+ * chord, with an error below 1e-5 of the arc. */
 static void on_arc(const double *from, const double *to, double t,
                    double out[3])
 {
@@ -53,9 +56,10 @@ static int steps_are_small(int n, const double (*dir)[3])
   return 1;
 }
 
-/* Middle of the arc from a to b, turning about the ridge that points along
- * `edge`: a is on its right. The sum of both normals fails for thin wedges,
- * that of both outward directions for blunt ones; together they never do. */
+/* Middle of the arc from a to b, which turns about the ridge along `edge` with
+ * a on its right. The sum of the two normals fails for thin wedges, and the sum
+ * of the two outward directions fails for blunt ones; the sum of all four never
+ * fails. */
 static int middle(const struct vg_fan_shape *s, const double *a,
                   const double *b, const double *edge, double mid[3])
 {
@@ -68,7 +72,8 @@ static int middle(const struct vg_fan_shape *s, const double *a,
   return vg_unit(mid) > 0.1;
 }
 
-/* dir[0 .. return] from a to b with the fewest steps; 0: none will do. */
+/* Chain dir[0 .. return] from a to b with the fewest steps. Returns 0 if no
+ * chain is possible. */
 static int make_chain(const struct vg_fan_shape *s, const double *a,
                       const double *b, const double *edge, double (*dir)[3])
 {
@@ -91,8 +96,8 @@ static int make_chain(const struct vg_fan_shape *s, const double *a,
   return 0;
 }
 
-/* Each step of a chain, left to right, turns about the ridge: so cells of
- * the virtual faces along it are positive. */
+/* Whether each step of a chain, from left to right, turns about the ridge. If
+ * so, the cells of the virtual faces along it have positive volume. */
 static int turns_about(int n, const double (*dir)[3], const double *edge)
 {
   for (int i = 0; i < n; i++) {
@@ -116,8 +121,9 @@ static int sees_polygon(const struct vg_fan_shape *s, const double *centre)
   return 1;
 }
 
-/* Fill the gap where three sectors or more meet: a triangle is its own
- * filling, others get a column that all their edges see. */
+/* Closes the polygon where three or more sectors meet. A triangle needs no
+ * further column; other polygons get a centre column that sees all their
+ * edges. */
 static int fill_polygon(struct vg_fan_shape *s)
 {
   double side[VG_FAN_COLUMNS][3], *centre = s->dir[s->n_column];
@@ -140,7 +146,7 @@ static int fill_polygon(struct vg_fan_shape *s)
   return 1;
 }
 
-/* Two sectors around a closed point: both ridges share one chain. */
+/* Closed ring of two sectors: both ridges share one chain. */
 static int spread_pair(struct vg_fan_shape *s)
 {
   double along[3], back[VG_FAN_STEPS + 1][3];
@@ -160,8 +166,8 @@ static int spread_pair(struct vg_fan_shape *s)
   return 1;
 }
 
-/* Chains from sector `first` on across n_ridge ridges, one after the other,
- * and at the end the sector behind the last one. */
+/* Chains across n_ridge consecutive ridges from sector `first` on, followed by
+ * the sector behind the last ridge. */
 static int spread_from(struct vg_fan_shape *s, int first, int n_ridge)
 {
   double chain[VG_FAN_STEPS + 1][3];
@@ -185,8 +191,8 @@ static int spread_from(struct vg_fan_shape *s, int first, int n_ridge)
   return 1;
 }
 
-/* Sectors in one plane, such as where a blunt edge becomes a sharp one: the
- * chain of one ridge is those of the others, backwards. */
+/* Sectors whose directions lie in one plane, such as where a blunt edge becomes
+ * sharp: the chain of one ridge consists of the other chains in reverse. */
 static int spread_shared(struct vg_fan_shape *s)
 {
   double back[VG_FAN_COLUMNS][3];

@@ -7,11 +7,12 @@
 #include "core/geometry/vector.h"
 
 #define STEPS_MAX 200
-#define SLACK 1e-9 /* of a constraint that counts as kept */
+#define SLACK 1e-9 /* Tolerance of a constraint. */
 
-/* G c = 1 for a symmetric G of order k <= 3, in c; 0 unless it is positive
- * definite. Cholesky's factors, in plain arithmetic: BLAS and LAPACK choose
- * code by the processor, and its last bits would show in the mesh. */
+/* Solves G c = 1 for a symmetric matrix G of order k <= 3; returns 0 unless it
+ * is positive definite. The Cholesky factorisation is written out because BLAS
+ * and LAPACK choose code by processor, and differences in the last bits would
+ * change the mesh. */
 static int solve_gram(int k, double g[3][3], double c[3])
 {
   for (int j = 0; j < k; j++) {
@@ -35,7 +36,7 @@ static int solve_gram(int k, double g[3][3], double c[3])
   return 1;
 }
 
-/* w over the active normals; 0 unless all weights are positive. */
+/* w for the active normals; 0 unless all weights are positive. */
 static int solve(const double (*n)[3], const int *active, int k, double w[3])
 {
   double g[3][3], c[3];
@@ -60,8 +61,8 @@ static int keeps(const double (*n)[3], const int *among, int k,
   return 1;
 }
 
-/* The optimum over old[] and the normal that it violates: that one is active,
- * with at most two of the others. */
+/* Optimum over old[] and the normal that it violates: that normal is active,
+ * together with at most two of the others. */
 static int exchange(const double (*n)[3], int old[3], int *n_old, int worst,
                     double w[3])
 {

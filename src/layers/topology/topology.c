@@ -48,15 +48,15 @@ static vg_status make_columns(const struct vg_wall *w, const struct vg_fans *f,
   return VG_OK;
 }
 
-/* Faces of triangles, then virtual ones. */
+/* Faces of wall triangles, followed by virtual faces. */
 static vg_status make_faces(const struct vg_wall *w, const struct vg_fans *f,
                             struct vg_columns *c, struct vg_error *err)
 {
   c->n_face = w->n_face + f->n_face;
   if (c->n_face > UINT32_MAX / 12)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%zu faces with fans, %u at most; "
-                   "raise the fan angle or coarsen the surface",
+                   "the layers need %zu faces with fans, but at most %u are "
+                   "supported; raise the fan angle or coarsen the surface",
                    c->n_face, UINT32_MAX / 12);
   c->face = vg_alloc(c->n_face, sizeof *c->face);
   c->face_tri = vg_alloc(c->n_face, sizeof *c->face_tri);
@@ -72,7 +72,8 @@ static vg_status make_faces(const struct vg_wall *w, const struct vg_fans *f,
   return VG_OK;
 }
 
-/* Rims of triangles by rising half-edge, then those of fans. */
+/* Boundary edges of wall triangles, sorted by half-edge, followed by those of
+ * fans. */
 static vg_status make_rims(const struct vg_wall *w, const struct vg_fans *f,
                            struct vg_columns *c, struct vg_error *err)
 {
@@ -80,7 +81,7 @@ static vg_status make_rims(const struct vg_wall *w, const struct vg_fans *f,
   c->border = vg_alloc(c->n_border, sizeof *c->border);
   c->border_patch = vg_alloc(c->n_border, sizeof *c->border_patch);
   if (!c->border || !c->border_patch)
-    return vg_fail_memory(err, "the rims of the columns");
+    return vg_fail_memory(err, "the boundary edges of the columns");
   for (size_t i = 0; i < w->n_border; i++) {
     c->border[i][0] = vg_fan_column(w, f, w->border[i]);
     c->border[i][1] = vg_fan_column(w, f, vg_half_next(w->border[i]));
@@ -93,7 +94,7 @@ static vg_status make_rims(const struct vg_wall *w, const struct vg_fans *f,
   return VG_OK;
 }
 
-/* Corners of each column: counting sort, so faces rise. */
+/* Corners of each column. A counting sort keeps the faces in order. */
 static vg_status make_corners(const struct vg_columns *c, struct vg_topology *t,
                               struct vg_error *err)
 {
@@ -110,9 +111,9 @@ static vg_status make_corners(const struct vg_columns *c, struct vg_topology *t,
   return VG_OK;
 }
 
-/* Columns are visited by rising number, and each is written into the lists of
- * its neighbours: so lists rise, and repetitions follow each other. A list is
- * twice as long as that of the corners at most. */
+/* Visits the columns in order and appends each to the lists of its neighbours:
+ * the lists are sorted, and repeated entries are adjacent. A list is at most
+ * twice as long as that of the corners. */
 static vg_status make_near(const struct vg_columns *c, struct vg_topology *t,
                            struct vg_error *err)
 {

@@ -1,4 +1,4 @@
-/* layers/topology/topology.h: which columns, faces and borders a wall has. Uses
+/* layers/topology/topology.h: columns, faces and boundary edges of a wall. Uses
  * core, columns.h, slide.h. */
 #ifndef VG_LAYERS_TOPOLOGY_TOPOLOGY_H
 #define VG_LAYERS_TOPOLOGY_TOPOLOGY_H
@@ -6,18 +6,18 @@
 #include "layers/slide/slide.h"
 
 struct vg_topology {
-  uint32_t *first;      /* [n_column + 1] into corner[] */
-  uint32_t *corner;     /* 3 * face + k with face[k] the column, real and
-                           virtual faces, by rising face */
-  uint32_t *near_first; /* [n_column + 1] into near[] */
-  uint32_t *near;       /* columns that share an edge, rising */
-  uint8_t *preset;      /* [n_column] 1: dir is given (a column inside a
-                           fan, without a triangle of its own) */
-  uint8_t *blocked;     /* [n_column] 1: no levels can stand here (n must
-                           be 0): several sheets of wall meet in the
-                           point, or it touches more than two slide
-                           patches, or a patch that is neither wall nor
-                           slide patch */
+  uint32_t *first;      /* [n_column + 1] offsets into corner[]. */
+  uint32_t *corner;     /* 3 * face + k, where face[k] is the column; real and
+                           virtual faces, sorted by face. */
+  uint32_t *near_first; /* [n_column + 1] offsets into near[]. */
+  uint32_t *near;       /* Columns that share an edge with the column,
+                           sorted. */
+  uint8_t *preset;      /* [n_column] 1: the direction is given (a column inside
+                           a fan, without a triangle of its own). */
+  uint8_t *blocked;     /* [n_column] 1: the column cannot have levels (n must
+                           be 0), since several wall sheets meet at the point,
+                           or the point touches more than two slide patches or a
+                           patch that is neither a wall nor a slide patch. */
 };
 #define VG_TOPOLOGY_INIT                                                       \
   {                                                                            \
@@ -26,30 +26,32 @@ struct vg_topology {
 
 void vg_topology_release(struct vg_topology *t);
 
-/** Columns, faces, borders and their neighbourhoods. n, dir, cap, law of the
- * columns are 0 but for the dir (unit) of preset columns.
+/** Builds columns, faces, boundary edges and their adjacency. The members n,
+ * dir, cap and law of the columns are 0, except for the unit direction of
+ * preset columns.
  *
- * slide[] of a column: the slide patches that its point touches, by an edge
- * or by the point alone, by rising patch; the first two of them.
+ * slide[] of a column contains the first two slide patches, by index, that its
+ * point touches by an edge or only by the point.
  *
- * Without fans: one column per wall point. With them: an edge between two
- * wall triangles whose normals differ by more than fan_angle degrees (convex)
- * is a ridge; the triangles around a point, cut at its ridges, form sectors;
- * each sector has a column, and between neighbouring sectors lie as many
- * preset columns that the turning between directions is at most 40 degrees.
- * A point that one direction serves well, or that lies on one ridge end only,
- * keeps one column. With a fan_angle of 0 only points that no one direction
- * sees have fans. Virtual faces close the gaps along ridges and at points. A
- * ridge that ends at a slide patch ends in a border there.
+ * Without fans there is one column per wall point. With fans, a convex edge
+ * between two wall triangles whose normals differ by more than fan_angle
+ * degrees is a ridge. The ridges at a point divide its triangles into sectors.
+ * Each sector has a column, and between neighbouring sectors there are enough
+ * preset columns that consecutive directions differ by at most 40 degrees. A
+ * point keeps one column if one direction serves it well, or if it is the end
+ * of a single ridge. With a fan_angle of 0, only points at which no direction
+ * sees all faces have fans. Virtual faces close the gaps along ridges and at
+ * points. Where a ridge ends at a slide patch, the fan has boundary edges.
  *
- * All columns of one root should get the same levels and heights. Then cells
- * of virtual faces are positive as long as no column of the face is 90 degrees
- * or more away from the middle of the two others; else a fan that tapers onto
- * one column makes flat or inverted ones.
+ * All columns of one root should get the same levels and heights. The cells of
+ * virtual faces then have positive volume as long as no column of the face is
+ * 90 degrees or more from the middle of the other two. Otherwise a fan that
+ * tapers onto one column makes flat or inverted cells.
  *
- * @param slide    [n_slide] as from vg_slides_find
+ * @param slide    [n_slide] from vg_slides_find
  * @param columns  in: empty; untouched on failure, as is *t
- * Cost: O(points + triangles). Same bytes for the same input. */
+ *
+ * Cost: O(points + triangles). The same input gives the same bytes. */
 vg_status vg_topology_build(const struct vg_mesh *surface,
                             const uint8_t *is_wall, size_t n_slide,
                             const struct vg_slide *slide, double fan_angle,

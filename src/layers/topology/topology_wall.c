@@ -8,13 +8,13 @@
 
 enum role { INERT, WALL, SLIDE };
 
-/* All triangles around wall points, and what only the build needs. */
+/* All triangles around wall points, and data needed only during the build. */
 struct rings {
-  uint8_t *role;    /* [n_patch] enum role */
-  uint32_t *id;     /* [surface n_point] wall point or VG_NO_INDEX */
-  uint32_t *face;   /* [surface n_tri] wall face or VG_NO_INDEX */
-  uint32_t *first;  /* [wall n_point + 1] into corner[] */
-  uint32_t *corner; /* 3 * triangle of the surface + k */
+  uint8_t *role;    /* [n_patch] enum role. */
+  uint32_t *id;     /* [surface n_point] wall point or VG_NO_INDEX. */
+  uint32_t *face;   /* [surface n_tri] wall face or VG_NO_INDEX. */
+  uint32_t *first;  /* [wall n_point + 1] offsets into corner[]. */
+  uint32_t *corner; /* 3 * triangle of the surface + k. */
 };
 
 void vg_wall_release(struct vg_wall *w)
@@ -46,8 +46,8 @@ static vg_status find_roles(const struct vg_mesh *m, const uint8_t *is_wall,
 {
   if (m->n_tri > UINT32_MAX / 12)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "the surface has %zu triangles, layers can have %u at "
-                   "most; coarsen the surface",
+                   "the surface has %zu triangles, but layers support at most "
+                   "%u; coarsen the surface",
                    m->n_tri, UINT32_MAX / 12);
   r->role = vg_calloc(m->n_patch, sizeof *r->role);
   r->id = vg_alloc(m->n_point, sizeof *r->id);
@@ -62,7 +62,7 @@ static vg_status find_roles(const struct vg_mesh *m, const uint8_t *is_wall,
   return VG_OK;
 }
 
-/* Number points and faces of the walls by rising point and triangle. */
+/* Numbers points and faces of the walls in the order of the surface. */
 static vg_status number(struct vg_wall *w, struct rings *r,
                         struct vg_error *err)
 {
@@ -100,7 +100,7 @@ static vg_status number(struct vg_wall *w, struct rings *r,
   return VG_OK;
 }
 
-/* Corners of all triangles around wall points: counting sort. */
+/* Corners of all triangles around wall points, by counting sort. */
 static vg_status collect_rings(const struct vg_wall *w, struct rings *r,
                                struct vg_error *err)
 {
@@ -125,9 +125,9 @@ static vg_status collect_rings(const struct vg_wall *w, struct rings *r,
   return VG_OK;
 }
 
-/* Half-edge of the surface from b to a (wall points), VG_NO_INDEX unless
- * there is exactly one. Looks in the shorter of the two rings, so that points
- * with many neighbours cost no more than others. */
+/* Half-edge of the surface from b to a (wall points); VG_NO_INDEX unless there
+ * is exactly one. Searches the shorter of the two rings, so that points with
+ * many neighbours cost no more than others. */
 static uint32_t find_reverse(const struct vg_wall *w, const struct rings *r,
                              uint32_t a, uint32_t b)
 {
@@ -171,14 +171,14 @@ static vg_status find_opposites(struct vg_wall *w, const struct rings *r,
           0 ||
         vg_reserve(&w->border_patch, &cap_patch, w->n_border + 1,
                    sizeof *w->border_patch) < 0)
-      return vg_fail_memory(err, "the rims of the walls");
+      return vg_fail_memory(err, "the boundary edges of the walls");
     w->border[w->n_border] = h;
     w->border_patch[w->n_border++] = patch;
   }
   return VG_OK;
 }
 
-/* Add a slide patch to those of point p, by rising patch. */
+/* Adds a slide patch to the sorted patches of point p. */
 static void add_slide(struct vg_wall *w, size_t p, uint32_t patch)
 {
   uint32_t *s = w->slide[p];
@@ -193,8 +193,8 @@ static void add_slide(struct vg_wall *w, size_t p, uint32_t patch)
   }
 }
 
-/* Slide patches of a point, where its ring of wall faces starts, and whether
- * that ring is a single one. */
+/* Finds the slide patches of a point, the start of its ring of wall faces, and
+ * whether there is only one such ring. */
 static void visit_point(struct vg_wall *w, const struct rings *r, size_t p)
 {
   const struct vg_mesh *m = w->surface;
@@ -224,7 +224,7 @@ static void visit_point(struct vg_wall *w, const struct rings *r, size_t p)
   if (n_seen != n_corner || (h != VG_NO_INDEX && h != start)) {
     w->blocked[p] = 1;
   } else if (h == start && n_corner < r->first[p + 1] - r->first[p]) {
-    w->blocked[p] = 1; /* a closed ring, and another sheet touches it */
+    w->blocked[p] = 1; /* Another sheet touches a closed ring. */
   }
 }
 

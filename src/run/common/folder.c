@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* errno says why not. */
+/* Sets errno if it is not a folder. */
 static int is_folder(const char *path)
 {
   struct stat s;

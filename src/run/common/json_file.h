@@ -1,4 +1,4 @@
-/* run/common/json_file.h: JSON as a file. Uses jansson, io/stream. */
+/* run/common/json_file.h: writes JSON files. Uses jansson, io/stream. */
 #ifndef VG_RUN_COMMON_JSON_FILE_H
 #define VG_RUN_COMMON_JSON_FILE_H
 
@@ -6,12 +6,13 @@
 
 #include "base/status.h"
 
-/** Write o, indented, to path, which appears when it is complete.
+/** Writes o, indented, to path. The file appears only when it is complete.
  *
  * @param o     borrowed
- * @param what  it is, for messages: "the report"
- * VG_ERR_MEMORY, also where o is NULL; VG_ERR_IO: an earlier file of that name
- * stays as it was. */
+ * @param what  its name in messages: "the report"
+ *
+ * VG_ERR_MEMORY, also if o is NULL; VG_ERR_IO: an existing file of that name is
+ * unchanged. */
 vg_status vg_json_write(const char *path, const json_t *o, const char *what,
                         struct vg_error *err);
 

@@ -11,7 +11,7 @@ static FILE *log_file;
 static char *log_path;
 static volatile int log_fd = -1;
 
-/* Somebody's work must not be lost by a slip of the pen. */
+/* Prevents a typing error from overwriting a file of the user. */
 static int is_foreign(const char *path)
 {
   char head[sizeof FIRST_WORD - 1];
@@ -26,8 +26,8 @@ vg_status vg_log_open(const char *path, struct vg_error *err)
 {
   if (is_foreign(path))
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: this file is there and is no log; "
-                   "give --log another name",
+                   "%s: this file exists and is not a log; give --log another "
+                   "name",
                    path);
   log_path = strdup(path);
   if (!log_path) return vg_fail_memory(err, "a path");
@@ -56,7 +56,7 @@ vg_status vg_log_close(struct vg_error *err)
 
   log_fd = -1;
   if (log_file && (ferror(log_file) | fclose(log_file)))
-    st = vg_fail(err, VG_ERR_IO, "%s: the log could not be written whole",
+    st = vg_fail(err, VG_ERR_IO, "%s: the log could not be written completely",
                  log_path);
   log_file = NULL;
   free(log_path);

@@ -1,5 +1,5 @@
-/* run/common/log.h: a file that gets what a run says: --log. One per process,
- * as there is one standard output. */
+/* run/common/log.h: the file of --log, which receives the output of a run. One
+ * per process, like the standard output. */
 #ifndef VG_RUN_COMMON_LOG_H
 #define VG_RUN_COMMON_LOG_H
 
@@ -7,18 +7,18 @@
 
 #include "base/status.h"
 
-/** Begin the log at path. A file that is there is replaced only if it is a log:
- * its first word is "vanguard".
- * VG_ERR_IO: it cannot be written; VG_ERR_INPUT: it is something else. */
+/** Opens the log at path. An existing file is replaced only if it is a log,
+ * whose first word is "vanguard". VG_ERR_IO: it cannot be written;
+ * VG_ERR_INPUT: it is not a log. */
 vg_status vg_log_open(const char *path, struct vg_error *err);
 
-/** Where to write; NULL: there is no log. Lines are written as they end. */
+/** Stream of the log; NULL: there is no log. Line-buffered. */
 FILE *vg_log(void);
 
-/** The file's descriptor, for signal handlers; -1: none. */
+/** Its file descriptor, for signal handlers; -1: no log. */
 int vg_log_descriptor(void);
 
-/** VG_ERR_IO: not all could be written. Nothing happens without a log. */
+/** VG_ERR_IO if something could not be written. Does nothing without a log. */
 vg_status vg_log_close(struct vg_error *err);
 
 #endif

@@ -19,15 +19,15 @@
 #define LIVE_EVERY_S 0.2
 #define PLAIN_EVERY_S 10.0
 
-/* Signals that come together are one wish: timeout(1) sends its own twice,
- * launchers to a process and to its group. */
+/* Signals in quick succession are one request: timeout(1) sends its signal
+ * twice, and launchers send it to a process and to its group. */
 #define SAME_WISH_MS 1000
 
 static volatile sig_atomic_t interrupted, ends_at_once, shows_line, posted,
   is_urgent;
 static atomic_llong interrupted_ms;
 
-/* In a signal's handler: only what is safe there. */
+/* Called in signal handlers: only async-signal-safe functions. */
 static void end_at_once(void)
 {
   static const char line[] = "\r\033[K";
@@ -50,10 +50,11 @@ static long long now_ms(void)
 
 /* --- a deadline ---------------------------------------------------------- */
 
-/* Held while the outcome is put into its place, and while the process ends. */
+/* Held while the output files are moved into place, and while the process
+ * ends. */
 static pthread_mutex_t ending = PTHREAD_MUTEX_INITIALIZER;
 static char temporary[4096];
-static double deadline; /* s; 0: none */
+static double deadline; /* Seconds; 0: none. */
 static int is_committed;
 static sem_t asked;
 
@@ -65,7 +66,7 @@ static int remove_one(const char *path, const struct stat *info, int type,
   return 0;
 }
 
-/* Until the next signal, so many milliseconds at most. */
+/* Waits for the next signal, for at most this many milliseconds. */
 static void wait_for_more(long long ms)
 {
   struct timespec t;
@@ -77,8 +78,8 @@ static void wait_for_more(long long ms)
   sem_timedwait(&asked, &t);
 }
 
-/* Other threads go on writing until the end: the folder may need a second
- * look. */
+/* Other threads continue writing until the process ends, so removing the folder
+ * may take several attempts. */
 static void *wait_for_deadline(void *unused)
 {
   (void)unused;
@@ -104,7 +105,7 @@ void vg_display_deadline(double seconds)
 
   if (deadline > 0 || sem_init(&asked, 0, 0)) return;
   deadline = seconds;
-  sigfillset(&all); /* signals are for other threads */
+  sigfillset(&all); /* Signals are handled by other threads. */
   pthread_sigmask(SIG_SETMASK, &all, &before);
   if (pthread_create(&thread, NULL, wait_for_deadline, NULL)) deadline = 0;
   else pthread_detach(thread);
@@ -188,10 +189,10 @@ void vg_display_watch(void)
   sigaction(SIGUSR1, &action, NULL);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
-  /* A terminal that is gone; under nohup it is ignored, and stays so. */
+  /* A lost terminal. Under nohup the signal is ignored, and remains so. */
   if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN)
     sigaction(SIGHUP, &action, NULL);
-  /* A file too large for ulimit -f: an error of write like any other. */
+  /* A file that exceeds ulimit -f is a write error like any other. */
   action.sa_handler = SIG_IGN;
   sigaction(SIGXFSZ, &action, NULL);
 }
@@ -225,7 +226,7 @@ static void duration(double s, char *text, size_t size)
   else snprintf(text, size, "%lu h %02lu min", t / 3600, t / 60 % 60);
 }
 
-/* The line of a stage. */
+/* The progress line of a stage. */
 static void describe(const struct vg_display *d, double now, char line[160])
 {
   char count[32], of[32], rate_text[32], eta[32];
@@ -274,9 +275,9 @@ static void log_line(struct vg_display *d, double now)
   d->logged = d->done;
 }
 
-/* Estimates grow while work is done and what was done may be given up: neither
- * the count nor the share of a stage goes back. Returns 1 where there is
- * something to be told at once: another stage, or its first count. */
+/* Estimates grow while work proceeds, and finished work may be discarded;
+ * neither the count nor the share of a stage decreases. Returns 1 for a change
+ * to show at once: a new stage, or its first count. */
 static int move_on(struct vg_display *d, const char *stage, size_t done,
                    size_t expected, double now)
 {

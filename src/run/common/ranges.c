@@ -80,8 +80,11 @@ static vg_status add_all(const char *what, const struct span *s, int64_t lo,
                    what, (long long)lo, (long long)hi, (long long)s->first,
                    (long long)s->last);
   if (s->is_factor && s->first < 1)
-    return vg_fail(err, VG_ERR_INPUT, "%s: %lld times a factor leads nowhere",
-                   what, (long long)s->first);
+    return vg_fail(
+      err, VG_ERR_INPUT,
+      "%s: multiplying %lld by a factor never reaches the end of the range; "
+      "start at 1 or more",
+      what, (long long)s->first);
   for (int64_t v = s->first; st >= 0;) {
     st = add(what, r, v, err);
     if (s->is_factor ? v > s->last / s->step : v > s->last - s->step) break;
@@ -104,8 +107,8 @@ vg_status vg_range_parse(const char *what, const char *text, int64_t lo,
 
     if (!parse_one(text, len, &s)) {
       st = vg_fail(err, VG_ERR_INPUT,
-                   "%s takes numbers as 1,2,4 or ranges as "
-                   "3:7, 0:100:20 or 1:64:x2, not '%.*s'",
+                   "%s takes numbers such as 1,2,4 or ranges such as 3:7, "
+                   "0:100:20 or 1:64:x2, not '%.*s'",
                    what, (int)len, text);
       goto done;
     }

@@ -1,6 +1,6 @@
-/* run/common/ranges.h: lists of numbers as a user types them: "1,2,4", "3:7",
- * "0:100:20", "1:512:x2" (each twice the one before), and any of these
- * with commas between. */
+/* run/common/ranges.h: lists of numbers as entered by users: "1,2,4", "3:7",
+ * "0:100:20", "1:512:x2" (each number is twice the previous one), and
+ * combinations separated by commas. */
 #ifndef VG_RUN_COMMON_RANGES_H
 #define VG_RUN_COMMON_RANGES_H
 
@@ -21,15 +21,16 @@ struct vg_range_list {
     0, 0, NULL                                                                 \
   }
 
-/** A whole number, also as 2e6 or 1.5e6: 1 on success. */
+/** Parses a whole number, also in the form 2e6 or 1.5e6; 1 on success. */
 int vg_parse_count(const char *text, size_t len, int64_t *out);
 
 void vg_range_release(struct vg_range_list *r);
 
-/** Numbers from lo to hi in the order given, each once.
- * @param what  for messages: the option
+/** Numbers from lo to hi in the given order, each once.
+ * @param what  name of the option, for messages
  * @param out   replaced; untouched on failure
- * VG_ERR_INPUT. */
+ *
+ * VG_ERR_INPUT for invalid text. */
 vg_status vg_range_parse(const char *what, const char *text, int64_t lo,
                          int64_t hi, struct vg_range_list *out,
                          struct vg_error *err);

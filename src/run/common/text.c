@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes that the first byte c of a character announces, 0: it cannot be one. */
+/* Length of a character by its first byte c; 0 if c cannot be a first byte. */
 static size_t announced(unsigned char c)
 {
   if (c < 0x80) return 1;
@@ -37,8 +37,8 @@ size_t vg_text_character(const char *text)
   return code == 0xfffe || code == 0xffff ? 0 : n;
 }
 
-/* Columns that a terminal gives it: none to marks on the letter before, two
- * to the letters and signs of East Asia. */
+/* Width of a character on a terminal: 0 for combining marks, 2 for East Asian
+ * characters. */
 static size_t width(uint32_t c)
 {
   static const struct {
@@ -53,7 +53,7 @@ static size_t width(uint32_t c)
   return 1;
 }
 
-/* At most `columns` of text; *used: how many. */
+/* Writes at most `columns` columns of text; *used: their number. */
 static size_t put(const char *text, size_t columns, char *out, size_t size,
                   size_t *used)
 {

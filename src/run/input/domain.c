@@ -1,5 +1,5 @@
-/* The flow domain: the decision that core/flow makes, with what settings and
- * files say of it, and the domain completed. Declared in run/input/input.h. */
+/* The flow domain: passes settings and file contents to the decision of
+ * core/flow, and completes the domain. Declared in run/input/input.h. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,9 +34,9 @@ static void note_cavities(struct vg_boundary *b)
 
   if (f->n_cavity)
     vg_note(b->notes,
-            "sealed cavities inside the bodies are not meshed: %zu, "
-            "volume %.4g, the largest around (%.6g, %.6g, %.6g) (--regions all "
-            "meshes them)",
+            "sealed cavities inside the bodies are not meshed: %zu with a "
+            "total volume of %.4g, the largest near (%.6g, %.6g, %.6g); "
+            "--regions all meshes them",
             f->n_cavity, f->cavity_volume, f->cavity_at[0], f->cavity_at[1],
             f->cavity_at[2]);
 }
@@ -48,9 +48,9 @@ static void note_cap(struct vg_boundary *b)
   if (f->cap_axis >= 0 && !f->n_cap_tri && f->kind == VG_FLOW_EXTERNAL &&
       b->read->settings.half == VG_HALF_AUTO)
     vg_note(b->notes,
-            "flat cap at %c = %g: is this a half model? --half %c "
-            "removes the cap and adds the symmetry plane; --half no settles "
-            "that it is a whole body",
+            "flat cap at %c = %g: if this is a half model, --half %c removes "
+            "the cap and adds the symmetry plane; if it is a complete body, "
+            "--half no confirms that",
             "xyz"[f->cap_axis], f -> cap_at, "xyz"[f->cap_axis]);
 }
 
@@ -78,7 +78,7 @@ int vg_is_only_open(const struct vg_surface_report *r)
          r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
 }
 
-/* "; the first is 0.2 wide, of 24 edges, around (0, 0, 1)" for each. */
+/* For each rim: "0.2 wide, 24 edges, around (0, 0, 1)". */
 static void list_rims(const struct vg_rim *rim, size_t n, char *text,
                       size_t size)
 {
@@ -107,9 +107,9 @@ vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
   if (b->rim_gap > 0) {
     free(rim);
     return vg_fail(err, VG_ERR_GEOMETRY,
-                   "%s: the surface is open, but open "
-                   "edges lie next to each other, %.3g apart at most: --weld "
-                   "%.2g closes these gaps",
+                   "%s: the surface is open, but its open edges face each "
+                   "other at a distance of at most %.3g: --weld %.2g closes "
+                   "these gaps",
                    b->read->files.stem, b->rim_gap, 1.05 * b->rim_gap);
   }
   if (st == VG_ERR_GEOMETRY) {
@@ -121,14 +121,14 @@ vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
   list_rims(rim, n, list, sizeof list);
   if (n == 1 && rim[0].axis >= 0)
     snprintf(half, sizeof half,
-             ". Should it be half of a symmetric model, cut "
-             "at %c = %g, give --half %c",
+             ". If it is one half of a symmetric model, cut at %c = %g, give "
+             "--half %c",
              "xyz"[rim[0].axis], rim[0].centre[rim[0].axis],
              "xyz"[rim[0].axis]);
   st = vg_fail(err, VG_ERR_GEOMETRY,
-               "%s: the surface is open: %zu rim%s (%s). "
-               "--close-holes yes closes each with a flat cap in a patch of "
-               "its own (cap_1%s%s)%s",
+               "%s: the surface is open: %zu rim%s (%s). --close-holes yes "
+               "closes each rim with a flat cap in a patch of its own "
+               "(cap_1%s%s)%s",
                b->read->files.stem, n, n > 1 ? "s" : "", list,
                n > 1 ? ", cap_2, ..." : "",
                n > 1 ? "; in a duct with --flow "
@@ -139,9 +139,10 @@ vg_status vg_boundary_refuse_open(const struct vg_boundary *b,
   return st;
 }
 
-/* --- the domain completed ------------------------------------------------ */
+/* --- completing the domain ----------------------------------------------- */
 
-/* An edge in another unit would ask for more triangles than fit anywhere. */
+/* With an edge length in a different unit the farfield could need more
+ * triangles than fit in memory. */
 static vg_status check_farfield(const struct vg_boundary *b,
                                 const struct vg_farfield *far,
                                 struct vg_error *err)
@@ -156,20 +157,20 @@ static vg_status check_farfield(const struct vg_boundary *b,
     if (far->has_box) size = fmax(size, (far->hi[k] - far->lo[k]) / 2);
   }
   if (far->size > 0) size = far->size;
-  /* The area of a sphere over that of a triangle. */
+  /* Area of a sphere divided by that of a triangle. */
   n = edge > 0 ? 29 * (size / edge) * (size / edge) : 0;
   if (far->kind == VG_FARFIELD_NONE || n < FARFIELD_TRIANGLES) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "a farfield of size %g with edges of %g "
-                 "has some %.2g triangles; are its spacing and hmax in the "
-                 "unit of the surface?",
+                 "a farfield of size %g with edges of length %g would have "
+                 "about %.2g triangles; check that its spacing and hmax are "
+                 "in the unit of the surface",
                  size, edge, n);
 }
 
-/* Of the flow that was decided, where settings leave it open. */
+/* Farfield options, with open settings filled in from the decided flow. */
 static struct vg_farfield decided_farfield(const struct vg_boundary *b)
 {
-  struct vg_settings view = b->read->settings; /* tables are borrowed */
+  struct vg_settings view = b->read->settings; /* Tables are borrowed. */
 
   vg_resolve_flow(&view, (int)b->flow.kind, b->flow.axis);
   return vg_options_farfield(&view);
@@ -186,8 +187,8 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
 
   far.symmetry = b->flow.axis < 0 ? -1 : 1;
   VG_TRY(check_farfield(b, &far, err));
-  /* The farfield is away from the body, whose own largest edge is no limit
-   * for it. */
+  /* The farfield is far from the body, so the largest edge of the body does not
+   * limit it. */
   if (!(options.h_max > 0)) options.h_max = INFINITY;
   options.threads = b->threads;
   VG_TRY(
@@ -196,6 +197,6 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(vg_domain_complete(&b->surface, &far, sizing, &b->domain, err));
 done:
   vg_sizing_free(sizing);
-  /* the library's message says less */
+  /* The message of the library has less detail. */
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }

@@ -1,5 +1,5 @@
-/* Sizes of gaps, besides those of a file or a program. Declared in
- * run/input/sizes.h. */
+/* Sizes from gaps between facing surfaces, combined with those of a file or the
+ * calling program. Declared in run/input/sizes.h. */
 #include "core/remesh/gaps.h"
 
 #include <math.h>
@@ -10,13 +10,14 @@
 #include "run/input/sizes.h"
 #include "run/settings/plan_options.h"
 
-/* S60: limit of what gaps ask for. */
+/* S60: most samples from gaps. */
 #define MOST_PLACE 2e7
 
 struct vg_gap_sizes {
   struct vg_size_samples *samples;
-  const struct vg_size_map *gaps, *other; /* other: NULL, there were none */
-  struct vg_size_map map;                 /* the less of both */
+  const struct vg_size_map *gaps, *other; /* other: NULL if there were no other
+                                             sizes. */
+  struct vg_size_map map;                 /* The smaller of both sizes. */
 };
 
 static double at(void *user, const double x[3])
@@ -34,7 +35,7 @@ static double least(void *user, const double lo[3], const double hi[3])
               g->other->least(g->other->user, lo, hi));
 }
 
-/* The other one may have no bound from below. */
+/* The other map may have no lower bound. */
 static void join_maps(struct vg_gap_sizes *g, const struct vg_size_map *other)
 {
   g->gaps = vg_size_samples_map(g->samples);
@@ -85,16 +86,16 @@ static vg_status too_many(const struct vg_boundary *b, const struct vg_gaps *g,
   patch_text(&b->surface.patch[g->patch[0]], one, sizeof one);
   patch_text(&b->surface.patch[g->patch[1]], two, sizeof two);
   return vg_fail(err, VG_ERR_INPUT,
-                 "gap_edges %g needs some %.2g %s in gaps, "
-                 "%.9g are the limit%s; the narrowest gap is %.4g wide, "
-                 "between patches %s and %s at (%.6g, %.6g, %.6g). Lower "
-                 "gap_edges, raise hmin, or close the gap (--wrap)%s",
+                 "gap_edges %g needs about %.2g %s in gaps, but the limit is "
+                 "%.9g%s; the narrowest gap is %.4g wide, between patches %s "
+                 "and %s at (%.6g, %.6g, %.6g). Reduce gap_edges, increase "
+                 "hmin, or close the gap (--wrap)%s",
                  s->gap_edges, is_tri ? g->n_tri : g->n_place,
-                 is_tri ? "surface triangles" : "places with a size",
+                 is_tri ? "surface triangles" : "size samples",
                  is_tri ? most_tri : MOST_PLACE,
                  is_tri && s->max_cells ? " (max_cells)" : "", g->narrowest,
                  one, two, g->at[0], g->at[1], g->at[2],
-                 is_tri && s->max_cells ? "; or raise max_cells" : "");
+                 is_tri && s->max_cells ? "; or increase max_cells" : "");
 }
 
 vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
@@ -114,15 +115,17 @@ vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
   if (st == VG_BLOCKED) VG_TRY(too_many(b, &found, o.most_tri, err));
   if (found.n)
     vg_note(b->notes,
-            "gap_edges %g: sizes from %zu places in gaps, the "
-            "narrowest %.4g wide at (%.6g, %.6g, %.6g)%s",
+            "gap_edges %g: sizes from %zu places in gaps; the narrowest gap "
+            "is %.4g wide, at (%.6g, %.6g, %.6g)%s",
             s->gap_edges, found.n, found.narrowest, found.at[0], found.at[1],
             found.at[2],
             b->is_remeshed
               ? ""
-              : "; the surface stays as it is given, and "
-                "cells between coarse faces cannot be small (remesh_surface)");
-  else vg_note(b->notes, "without effect, for no gap is narrow: gap_edges");
+              : "; the surface is not remeshed, so cells between its coarse "
+                "faces cannot become small (remesh_surface yes remeshes it)");
+  else
+    vg_note(b->notes, "setting without effect because no gap is narrow "
+                      "enough: gap_edges");
   if (found.n) VG_TRY(make(b, &found, err));
   st = vg_display_stopped(show, err);
 done:

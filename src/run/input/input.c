@@ -111,7 +111,7 @@ static int has_mode(const char *path, mode_t kind)
   return stat(path, &s) == 0 && (s.st_mode & S_IFMT) == kind;
 }
 
-/* Path of stem.suffix where that file exists, else "". NULL: no memory. */
+/* Path of stem.suffix if that file exists, otherwise "". NULL: no memory. */
 static char *beside(const char *stem, const char *suffix)
 {
   char *path;
@@ -121,8 +121,8 @@ static char *beside(const char *stem, const char *suffix)
   return path;
 }
 
-/* The surface file of a stem: the only one that holds no cells, for files with
- * cells beside it are meshes of earlier runs. */
+/* Surface file of a stem: the only one without cells, since files with cells
+ * next to it are meshes of earlier runs. */
 static vg_status find_surface(const char *stem, char **out,
                               struct vg_error *err)
 {
@@ -139,8 +139,8 @@ static vg_status find_surface(const char *stem, char **out,
       free(path);
     } else if (found) {
       st = vg_fail(err, VG_ERR_INPUT,
-                   "both %s and %s may be the surface; "
-                   "give the full name of one",
+                   "both %s and %s could be the surface; give the complete "
+                   "name of one of them",
                    found, path);
       free(path);
     } else {
@@ -156,7 +156,7 @@ static vg_status find_surface(const char *stem, char **out,
   return found ? VG_OK : vg_fail_memory(err, "a path");
 }
 
-/* The stem of a full surface name, or NULL when it is none. */
+/* Stem of a complete surface name; NULL if it is not one. */
 static char *stem_of(const char *name)
 {
   size_t suffix = vg_format_suffix_length(name), n = strlen(name);
@@ -178,7 +178,7 @@ static vg_status find_beside(struct vg_input_files *f, const char *deck,
   f->aflr = beside(f->stem, "bc");
   if (!f->d3m) f->d3m = strdup("");
   if (!f->front) f->front = strdup("");
-  /* A .bc beside a mesh of an earlier run is VGRID's. */
+  /* A .bc next to a mesh of an earlier run is in the format of VGRID. */
   if (f->aflr && *f->aflr && !vg_aflr_is_bc(f->aflr)) *f->aflr = 0;
   if (!f->mapbc || !f->deck || !f->d3m || !f->front || !f->tags || !f->aflr)
     return vg_fail_memory(err, "the paths of the project");
@@ -204,13 +204,13 @@ static vg_status find_stem(const char *name, struct vg_input_files *f,
   if (has_mode(name, S_IFREG)) return vg_format_unknown(name, err);
   if (has_mode(name, S_IFDIR))
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: this is a folder; give the stem of "
-                   "a project, or the full name of a surface file, in it",
+                   "%s: this is a folder; give the stem of a project in it, "
+                   "or the complete name of a surface file",
                    name);
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: no project here: neither %s.d3m nor "
-                 "%s.front nor a surface such as %s.lb8.ugrid or %s.stl; give "
-                 "the stem of a project or the full name of a surface file",
+                 "%s: no project found: there is neither %s.d3m nor %s.front "
+                 "nor a surface such as %s.lb8.ugrid or %s.stl; give the stem "
+                 "of a project or the complete name of a surface file",
                  name, name, name, name, name);
 }
 
@@ -276,19 +276,19 @@ static enum vg_flow_side side_of(const char *format)
 void vg_note_own_mapbc(struct vg_notes *notes, const char *stem, size_t n)
 {
   vg_note(notes,
-          "%.*s.mapbc was written by an earlier run of Vanguard and was "
-          "not read; give --mapbc %.*s.mapbc to use it",
+          "%.*s.mapbc was written by an earlier run of Vanguard and was not "
+          "read; --mapbc %.*s.mapbc uses it",
           (int)n, stem, (int)n, stem);
 }
 
-/* The .mapbc of an earlier run is no input, and may be overwritten. */
+/* The .mapbc of an earlier run is not an input and may be overwritten. */
 static void leave_own_mapbc(struct vg_read *r)
 {
   vg_note_own_mapbc(r->notes, r->files.stem, strlen(r->files.stem));
   *r->files.mapbc = 0;
 }
 
-/* The file that the settings name takes the place of the project's. */
+/* A file named by the settings replaces that of the project. */
 static vg_status name_mapbc(struct vg_read *r, struct vg_error *err)
 {
   char *name;
@@ -306,8 +306,8 @@ static void note_cad(void *user, const char *text)
   vg_note(user, "CAD: %s", text);
 }
 
-/* The conditions are those of the .mapbc that is named or has the stem of the
- * file. */
+/* Boundary conditions come from the .mapbc that the settings name, or that has
+ * the stem of the file. */
 static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
 {
   const int is_remeshed = vg_read_is_remeshed(r, &r->surface);
@@ -323,20 +323,20 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
   cad.user = r->notes;
   if (st < 0) return st;
   st = vg_surface_read(path, &r->surface, &info, err);
-  /* the library's message says less */
+  /* The message of the library has less detail. */
   if (st == VG_ERR_STOPPED) return vg_display_stopped(NULL, err);
   if (st < 0) return st;
   r->has_cells = info.n_cell > 0;
   r->side = side_of(info.format);
   if (info.n_cell)
     vg_note(r->notes,
-            "%s is a volume mesh: its boundary is meshed anew, its "
-            "%zu cells are not used",
+            "%s is a volume mesh: its boundary is used as the surface, and "
+            "its %zu cells are ignored",
             path, info.n_cell);
   if (info.turned.face)
     vg_note(r->notes,
-            "%s: %zu boundary faces pointed out of their cells and "
-            "were turned",
+            "%s: %zu boundary faces pointed out of their cells; their "
+            "orientation was reversed",
             path, info.turned.face);
   if (info.turned.loose_face)
     vg_note(r->notes, "%s: %zu boundary faces belong to no cell", path,
@@ -346,7 +346,7 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
   return VG_OK;
 }
 
-/* Sizes have to reach over the patches, wherever the sources are. */
+/* Sizes must cover the patches, wherever the sources are. */
 static vg_status mesh_patches(struct vg_read *r, struct vg_display *show,
                               struct vg_error *err)
 {
@@ -359,19 +359,19 @@ static vg_status mesh_patches(struct vg_read *r, struct vg_display *show,
 
   if (!r->project.n_shape)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: no patches in it and no surface "
-                   "beside it; add a .front or a surface file",
+                   "%s: it has no patches, and there is no surface next to "
+                   "it; add a .front or a surface file",
                    r->files.d3m);
   VG_TRY(vg_sizing_new(&options, r->settings.n_source, r->settings.source,
                        &corners, &sizing, err));
   VG_TRY(vg_project_surface(&r->project, sizing, &stop, &r->surface, err));
 done:
   vg_sizing_free(sizing);
-  /* the library's message says less */
+  /* The message of the library has less detail. */
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
 
-/* VGRID's factor on all sources. */
+/* Applies VGRID's factor to all sources. */
 static void use_ifact(struct vg_settings *s, double ifact)
 {
   for (size_t i = 0; i < s->n_source; i++) {
@@ -380,8 +380,8 @@ static void use_ifact(struct vg_settings *s, double ifact)
   }
 }
 
-/* Sources of the project come first, those of the deck after them; the sum of
- * VGRID's law depends on the order in the last bits. */
+/* Sources of the project come first, followed by those of the deck. The last
+ * bits of the sum in VGRID's source law depend on the order. */
 static vg_status merge_sources(struct vg_read *r, struct vg_error *err)
 {
   struct vg_settings *s = &r->settings;
@@ -403,7 +403,7 @@ static vg_status merge_sources(struct vg_read *r, struct vg_error *err)
   return VG_OK;
 }
 
-/* A code from 3000 on, or a negative one, is FUN3D's. */
+/* A code from 3000 to 7999, or a negative code, is one of FUN3D. */
 static void set_condition(struct vg_patch *p, int32_t code, int axis)
 {
   int32_t before = p->bc;
@@ -425,7 +425,7 @@ int vg_boundary_is_cap(const struct vg_boundary *b, size_t i)
          !strncmp(b->surface.patch[i].name, "cap_", 4);
 }
 
-/* The table wins over the .mapbc. */
+/* The table takes precedence over the .mapbc. */
 vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
                                int may_lack, struct vg_mesh *surface,
                                struct vg_error *err)
@@ -451,7 +451,7 @@ vg_status vg_patch_table_apply(size_t n, const struct vg_patch_row *row,
   return st;
 }
 
-/* With numbers in place of names. */
+/* Replaces names by numbers first. */
 static vg_status apply_patch_table(struct vg_read *r, struct vg_error *err)
 {
   vg_status st = vg_patch_rows_resolve(&r->settings, &r->surface, err);
@@ -486,7 +486,7 @@ int vg_read_is_by_first(const struct vg_read *r, struct vg_comm *comm)
          vg_format_is_cad(r->files.surface);
 }
 
-/* st: of this rank so far. Collective. */
+/* st: status of this rank so far. Collective. */
 static vg_status read_for_all(struct vg_read *r, struct vg_comm *comm,
                               vg_status st, struct vg_error *err)
 {
@@ -517,8 +517,9 @@ static vg_status read_surface(struct vg_read *r, struct vg_display *show,
   return st < 0 ? st : apply_conditions(r, err);
 }
 
-/* Layer settings of the .d3m where none are given. VGRID's vfact scales the
- * spacing of its viscous part: the local edge at which layers end. */
+/* Takes layer settings from the .d3m where none are given. VGRID's vfact scales
+ * the spacing of its viscous part, that is the local edge length at which
+ * layers end. */
 static void merge_layers(struct vg_read *r)
 {
   struct vg_layer_settings *l = &r->settings.layer;
@@ -526,8 +527,8 @@ static void merge_layers(struct vg_read *r)
 
   if (!l->from_files || !d->grid || l->grow == VG_ANSWER_NO) return;
   vg_note(r->notes,
-          "layers as the .d3m says (grid = %d): first %g, rates %g "
-          "and %g, at most %d layers, vfact %g",
+          "layer settings taken from the .d3m (grid = %d): first height %g, "
+          "rates %g and %g, at most %d layers, vfact %g",
           (int)d->grid, d->layer.delta1, d->layer.rate1, d->layer.rate2,
           (int)d->layer.n_max, d->vfact);
   if (l->first == 0 && l->y_plus == 0) {
@@ -544,7 +545,7 @@ static void merge_layers(struct vg_read *r)
   if (d->vfact > 0) l->end *= d->vfact;
 }
 
-/* The row of patch id in the layers table, added where there is none. */
+/* Row of patch id in the layers table; added if it is missing. */
 static struct vg_layer_row *layer_row(struct vg_settings *s, int32_t id)
 {
   struct vg_layer_row row;
@@ -557,7 +558,7 @@ static struct vg_layer_row *layer_row(struct vg_settings *s, int32_t id)
   return &s->layer_row[s->n_layer - 1];
 }
 
-/* What an AFLR file asks for on one patch, where nothing is given. */
+/* Layer settings of an AFLR file for one patch, where none are given. */
 static vg_status merge_aflr_patch(struct vg_settings *s,
                                   const struct vg_aflr_patch *a, int32_t id,
                                   struct vg_error *err)
@@ -580,7 +581,7 @@ static vg_status merge_aflr_patch(struct vg_settings *s,
   return VG_OK;
 }
 
-/* AFLR's .tags go by number, its .bc by name. */
+/* AFLR's .tags identifies patches by number, its .bc by name. */
 static vg_status apply_aflr(struct vg_read *r, const char *path, int by_name,
                             struct vg_error *err)
 {
@@ -596,7 +597,7 @@ static vg_status apply_aflr(struct vg_read *r, const char *path, int by_name,
   if (n_unused)
     vg_note(r->notes, "%s lists %zu patches that the surface does not have",
             path, n_unused);
-  /* A row that is given by name goes before one of the file. */
+  /* A row given by name takes precedence over one of the file. */
   VG_TRY(vg_patch_rows_resolve(&r->settings, &r->surface, err));
   for (size_t i = 0; i < a.n && r->settings.layer.from_files; i++)
     for (size_t j = 0; j < m->n_patch; j++)
@@ -637,8 +638,8 @@ double *vg_point_height(const struct vg_point_heights *h, const double x[3])
   return found ? &found->first : NULL;
 }
 
-/* A .surf may have a first height at each point. They are found again by
- * their coordinates, since repairs renumber points. */
+/* A .surf may have a first height at each point. The heights are looked up by
+ * coordinates, since repairs renumber points. */
 static vg_status read_heights(struct vg_read *r, struct vg_error *err)
 {
   const char *path = r->files.surface;
@@ -673,7 +674,7 @@ done:
   return st;
 }
 
-/* The settings that are asked for, to which files may add. */
+/* Starts with the requested settings, to which files may add. */
 static vg_status begin(const struct vg_settings *asked, struct vg_read *r,
                        struct vg_error *err)
 {
@@ -695,7 +696,7 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
 
   r->notes = &p->notes;
   vg_mesh_move(&r->surface, surface);
-  r->side = VG_SIDE_DEFINED; /* as the interface has it */
+  r->side = VG_SIDE_DEFINED; /* As the interface defines it. */
   VG_TRY(begin(&p->asked, r, err));
   f->stem = strdup(name);
   for (size_t i = 0; i < sizeof path / sizeof *path; i++)
@@ -708,7 +709,7 @@ done:
   return st;
 }
 
-/* Read the project, its sources and the file of sizes. */
+/* Reads the project, its sources and the file of sizes. */
 static vg_status read_asides(const struct vg_settings *asked, struct vg_read *r,
                              struct vg_error *err)
 {
@@ -725,7 +726,7 @@ done:
   return st;
 }
 
-/* Take conditions, names and layers of the patches from files and settings. */
+/* Takes conditions, names and layers of the patches from files and settings. */
 static vg_status read_patches(struct vg_read *r, struct vg_error *err)
 {
   vg_status st;
@@ -733,7 +734,7 @@ static vg_status read_patches(struct vg_read *r, struct vg_error *err)
   VG_TRY(apply_aflr(r, r->files.tags, 0, err));
   VG_TRY(apply_aflr(r, r->files.aflr, 1, err));
   VG_TRY(read_heights(r, err));
-  /* What has been taken is in the settings, but for heights by point. */
+  /* All layer settings are in the settings now, except heights by point. */
   if (!r->heights.n) r->settings.layer.from_files = 0;
   st = apply_patch_table(r, err);
 done:

@@ -1,4 +1,4 @@
-/* What layers must reach, once they and the field are known. */
+/* Checks the limits on layers, once layers and field are known. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -6,14 +6,15 @@
 #include "base/memory.h"
 #include "run/input/layers.h"
 
-/* NAN compares false: no limit. A patch without layers meets none. */
+/* NAN compares false: no limit. A patch without layers misses every limit. */
 static int is_missed(const struct vg_limit_missed *m)
 {
   if (m->is_bare) return !isnan(m->wanted);
   return m->is_least ? m->got < m->wanted : m->got > m->wanted;
 }
 
-/* What patch i reached, `w`; NULL: it has no face from which layers grow. */
+/* Checks the limits of patch i. w: its measured layers; NULL: it has no face
+ * from which layers grow. */
 static vg_status check_patch(struct vg_layer_stage *s, uint32_t i,
                              const struct vg_patch_layers *w,
                              struct vg_error *err)
@@ -55,7 +56,7 @@ vg_status vg_layer_stage_finish(struct vg_layer_stage *s,
   assert(s->is_on && s->top);
   VG_TRY(vg_layers_tops(surface, &s->layers.columns, s->top, s->n_wall, s->wall,
                         &s->all, err));
-  for (uint32_t i = 0; i < s->n_patch; i++) { /* s->wall is by rising patch */
+  for (uint32_t i = 0; i < s->n_patch; i++) { /* s->wall is sorted by patch. */
     while (at < s->n_wall && s->wall[at].patch < i) at++;
     if (s->reason[i] == VG_WALL_NOT) continue;
     VG_TRY(check_patch(s, i,

@@ -9,22 +9,23 @@
 #include "layers/grow/grow.h"
 #include "run/settings/plan_options.h"
 
-#define DEFAULT_RATE 0.2 /* RANS practice; growth 1.2 */
+#define DEFAULT_RATE 0.2 /* Common in RANS practice; growth 1.2. */
 #define SHOWN_PATCHES 20
 
-/* By source: first height and rates. Each is the mean that the spacing would
- * be, with the value in place of the spacing (formats.md 1.7): the same
- * weights, by the same code. By point: the first height of a .surf, the rest by
- * patch. */
+/* Growth laws that vary in space. By source: each of first height and rates is
+ * interpolated by the code that computes the spacing, with the same weights,
+ * with the value in place of the spacing (formats.md 1.7). By point: the first
+ * height is that of a .surf, all other values are those of the patch. */
 struct vg_layer_laws {
-  struct vg_point_heights at; /* first heights; none: by source */
+  struct vg_point_heights at; /* First heights; empty: by source. */
   size_t n;
-  struct vg_source *source[3]; /* [n] h0, h1: delta1, rate1, rate2 */
-  double constant[3];          /* one value at all sources, or NAN */
-  double shift[3];             /* added, since no spacing may be 0 */
+  struct vg_source *source[3]; /* [n] h0, h1 hold delta1, rate1, rate2. */
+  double constant[3];          /* The value if it is equal at all sources,
+                                  otherwise NAN. */
+  double shift[3];             /* Added because a spacing cannot be 0. */
   double cap;
   int n_constant;
-  enum vg_growth_law_rule rule; /* of a grid family, with its scale */
+  enum vg_growth_law_rule rule; /* Rule of a grid family, with its scale. */
   double scale;
 };
 
@@ -83,7 +84,7 @@ static int has_law(const struct vg_source *s)
   return s->kind <= VG_SOURCE_VGRID_LINE && s->layer0[0] > 0;
 }
 
-/* Values k of the sources in place of their spacings. */
+/* Replaces the spacings of the sources by their values k. */
 static void put_values(struct vg_layer_laws *l, int k)
 {
   struct vg_source *s = l->source[k];
@@ -130,9 +131,9 @@ static vg_status make_laws(const struct vg_settings *s, double cap,
   }
   if (st >= 0 && !l->n)
     st = vg_fail(err, VG_ERR_INPUT,
-                 "layer_sources: no VGRID source has a "
-                 "first height (delta1_0); give first and set layer_sources "
-                 "to no");
+                 "layer_sources: no VGRID source has a first height "
+                 "(delta1_0); give a first height (setting first), and set "
+                 "layer_sources to no");
   l->cap = cap;
   l->n_constant = (int)s->layer.constant;
   set_scale(s, l);
@@ -152,7 +153,7 @@ static double law_cap(double cap)
   return cap > 0 ? cap : INFINITY;
 }
 
-/* 0 when it is not known. */
+/* 0 if it is not known. */
 static double first_height(const struct vg_layer_settings *l,
                            const struct vg_layer_row *r)
 {
@@ -161,7 +162,7 @@ static double first_height(const struct vg_layer_settings *l,
   return own > 0 ? own : vg_settings_first(l, l->first, l->y_plus);
 }
 
-/* Both rates from number and total height; the cap must allow them. */
+/* Rate from number of layers and total height, limited by the cap. */
 static vg_status rate_for_total(const struct vg_layer_request *q, int32_t id,
                                 double *rate, struct vg_error *err)
 {
@@ -171,22 +172,22 @@ static vg_status rate_for_total(const struct vg_layer_request *q, int32_t id,
                                    q->total);
   if (r < 0)
     return vg_fail(err, VG_ERR_INPUT,
-                   "layers of patch %d: %d layers of %g "
-                   "are together higher than %g; lower the number or the "
-                   "first height",
+                   "layers of patch %d: %d layers of thickness %g are already "
+                   "higher than the total height %g; reduce the number of "
+                   "layers or the first height",
                    (int)id, q->n_max, q->law.delta1, q->total);
   if (1 + r > q->law.cap)
     return vg_fail(err, VG_ERR_INPUT,
-                   "layers of patch %d: %d layers from %g "
-                   "to %g grow by %.4f, above layer_cap %g; give more layers "
-                   "or raise the cap",
+                   "layers of patch %d: %d layers from first height %g to "
+                   "total height %g need a growth of %.4f, above layer_cap "
+                   "%g; request more layers or increase the cap",
                    (int)id, q->n_max, q->law.delta1, q->total, 1 + r,
                    q->law.cap);
   *rate = r;
   return VG_OK;
 }
 
-/* Of the member of a family, if it is one. */
+/* Sets the rates, scaled for the member of a grid family. */
 static vg_status set_rates(const struct vg_settings *s,
                            const struct vg_layer_row *r,
                            struct vg_layer_request *q, struct vg_error *err)
@@ -234,13 +235,13 @@ static vg_status no_first(const struct vg_mesh *m, size_t i,
                           struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_INPUT,
-                 "layers on patch %d %s: no first height "
-                 "is known; give --first, or --y-plus with --reynolds and "
-                 "--reference-length (or --layers no)",
+                 "layers on patch %d %s: the first height is not known; give "
+                 "--first, or --y-plus with --reynolds and --reference-length "
+                 "(or turn layers off with --layers no)",
                  (int)m->patch[i].id, m->patch[i].name);
 }
 
-/* Own laws cannot hold where the sources give the law. */
+/* A patch cannot have its own law if the sources define the law. */
 static vg_status check_row(const struct vg_layer_row *r, int by_source,
                            struct vg_error *err)
 {
@@ -249,19 +250,21 @@ static vg_status check_row(const struct vg_layer_row *r, int by_source,
                      r->constant == VG_COUNT_NONE))
     return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "layers: patch %d has a law of its own, "
-                 "but layer_sources takes the law from the sources; set it "
-                 "to no or remove the values",
+                 "layers: patch %d has a growth law of its own, but "
+                 "layer_sources takes the law from the sources; set "
+                 "layer_sources to no or remove the values of the patch",
                  (int)r->id);
 }
 
 /* First heights at points. */
 struct by_point {
-  double *least;              /* [n_patch] 0 where a patch uses none */
-  struct vg_point_heights at; /* 0 where a patch has a height of its own */
+  double *least;              /* [n_patch] least height; 0 for a patch that uses
+                                 none. */
+  struct vg_point_heights at; /* Heights; 0 at points of patches with a height
+                                 of their own. */
 };
 
-/* The laws take the heights over. */
+/* Moves the heights into the laws. */
 static vg_status use_heights(struct vg_layer_stage *s,
                              const struct vg_boundary *b, struct by_point *h,
                              struct vg_error *err)
@@ -313,8 +316,8 @@ static vg_status make_requests(struct vg_layer_stage *s,
     s->limit[i] = limits_of(&row.limit, &l->limit);
     if (s->reason[i] == VG_WALL_NOT && vg_has_limits(&row.limit))
       st = vg_fail(err, VG_ERR_INPUT,
-                   "layers: patch %d has a limit, but it "
-                   "is no wall; set grow to yes or remove the limit",
+                   "layers: patch %d has a limit on layers, but it is not a "
+                   "wall; set grow to yes or remove the limit",
                    (int)row.id);
     if (st < 0) break;
     if (s->reason[i] == VG_WALL_NOT) continue;
@@ -333,7 +336,7 @@ done:
   return st;
 }
 
-/* Heights by point are for patches that have none by setting. */
+/* Heights by point apply to patches whose settings give none. */
 static int uses_points(const struct vg_layer_settings *l,
                        const struct vg_layer_row *r)
 {
@@ -341,8 +344,8 @@ static int uses_points(const struct vg_layer_settings *l,
          isnan(r->y_plus);
 }
 
-/* Heights at points of patches that have their own are dropped; the least of
- * the others, per patch, is for points without one. */
+/* Drops the heights at points of patches that have their own. The least height
+ * of each other patch applies to its points without a height. */
 static vg_status sort_heights(const struct vg_boundary *b, struct by_point *h,
                               struct vg_error *err)
 {
@@ -381,7 +384,7 @@ static vg_status sort_heights(const struct vg_boundary *b, struct by_point *h,
   return VG_OK;
 }
 
-/* 1 when each wall has a first height. */
+/* 1 if every wall has a first height. */
 static int first_is_known(const struct vg_layer_stage *s,
                           const struct vg_boundary *b, const double *least)
 {
@@ -398,8 +401,8 @@ static int first_is_known(const struct vg_layer_stage *s,
   return 1;
 }
 
-/* How many walls there are, and their numbers as " 3 4 7"; `odd`: those alone
- * whose condition says that they are none. */
+/* Number of walls, and their numbers as " 3 4 7". `odd`: only those with a
+ * condition that is not viscous. */
 static size_t wall_numbers(const struct vg_layer_stage *s,
                            const struct vg_mesh *m, int odd, char *list,
                            size_t size)
@@ -420,20 +423,20 @@ static size_t wall_numbers(const struct vg_layer_stage *s,
   return n;
 }
 
-/* Layers that conditions suggest but nobody has given a height for. */
+/* Note on walls that get no layers because no first height is given. */
 static void note_missing(const struct vg_layer_stage *s, struct vg_boundary *b)
 {
   char list[12 * SHOWN_PATCHES + 24];
   size_t n_wall = wall_numbers(s, &b->surface, 0, list, sizeof list);
 
   vg_note(b->notes,
-          "no layers on %zu viscous wall%s (patch%s%s), for no "
-          "first height is known: give --first, or --y-plus with --reynolds "
-          "and --reference-length",
+          "no layers grow on %zu viscous wall%s (patch%s%s), because no first "
+          "height is given: give --first, or --y-plus with --reynolds and "
+          "--reference-length",
           n_wall, n_wall > 1 ? "s" : "", n_wall > 1 ? "es" : "", list);
 }
 
-/* A wall with layers and without a condition is a viscous one; left open, it
+/* A wall with layers and without a condition gets a viscous one; otherwise it
  * would be written as inviscid. */
 static void give_conditions(const struct vg_layer_stage *s,
                             struct vg_boundary *b)
@@ -452,8 +455,8 @@ static void give_conditions(const struct vg_layer_stage *s,
   }
   if (n)
     vg_note(b->notes,
-            "%zu patch%s with layers, but without a boundary "
-            "condition, %s written as viscous (4, FUN3D 4000)",
+            "%zu patch%s with layers but without a boundary condition %s "
+            "written as viscous (4, FUN3D 4000)",
             n, n > 1 ? "es" : "", n > 1 ? "are" : "is");
 }
 
@@ -467,36 +470,41 @@ static void note_choice(const struct vg_layer_stage *s, struct vg_boundary *b)
   for (size_t i = 0; i < s->n_patch; i++) n += s->reason[i] == VG_WALL_BODY;
   if (n_odd)
     vg_note(b->notes,
-            "%zu patch%s layers, but a condition that is not "
-            "viscous: number%s",
+            "%zu patch%s layers but a boundary condition that is not viscous: "
+            "number%s",
             n_odd, n_odd > 1 ? "es have" : " has", list);
   if (n && b->flow.kind == VG_FLOW_INTERNAL)
     vg_note(b->notes,
-            "no patch has a condition: layers grow on %zu of %zu "
-            "patches, not on inlets, outlets, caps, and outer boundaries "
-            "around bodies (--walls, --slip or the table layers settle it)",
+            "no patch has a boundary condition: layers grow on %zu of %zu "
+            "patches, but not on inlets, outlets, caps and outer boundaries "
+            "around bodies; name the walls with --walls, --slip or the table "
+            "layers if that is wrong",
             n, s->n_patch);
   else if (n)
-    vg_note(b->notes, "no patch has a condition: layers grow on the whole "
-                      "body (--walls, --slip or the table layers settle it)");
+    vg_note(b->notes, "no patch has a boundary condition: layers grow on the "
+                      "whole body; name the walls with --walls, --slip or the "
+                      "table layers if that is wrong");
   if (!l->by_source && l->y_plus > 0)
     vg_note(b->notes,
-            "y+ %g at Reynolds number %g of length %g: first "
+            "y+ %g at Reynolds number %g, based on the length %g: first "
             "height %.6g",
             l->y_plus, l->reynolds, l->length,
             vg_first_height(l->y_plus, l->reynolds, l->length));
   if (l->scale_rule != VG_GROWTH_LAW_KEPT)
     vg_note(b->notes,
-            "scale_layers: first heights times %.4g, growth of the "
-            "layers to the power of %.4g, numbers of layers over it, constant "
-            "ones over %.4g",
+            "scale_layers: first heights are multiplied by %.4g, growth "
+            "ratios of the layers are raised to the power %.4g, numbers of "
+            "layers are divided by that power, and numbers of constant layers "
+            "are divided by %.4g",
             b->read->settings.scale,
             vg_growth_law_power((enum vg_growth_law_rule)l->scale_rule,
                                 b->read->settings.scale),
             b->read->settings.scale);
   if (ratio > cap)
-    vg_note(b->notes, "ratio %g is above layer_cap %g, which holds", ratio,
-            cap);
+    vg_note(b->notes,
+            "ratio %g is larger than layer_cap %g, so the growth is "
+            "limited to layer_cap",
+            ratio, cap);
 }
 
 static void set_options(struct vg_layer_stage *s, const struct vg_settings *set)
@@ -523,7 +531,7 @@ static vg_status allocate(struct vg_layer_stage *s, size_t n,
          : vg_fail_memory(err, "the patches");
 }
 
-/* A limit would be met by nothing. */
+/* A limit on layers cannot be met without layers. */
 static vg_status refuse_limits(const struct vg_settings *s,
                                struct vg_error *err)
 {
@@ -533,12 +541,12 @@ static vg_status refuse_limits(const struct vg_settings *s,
     found |= vg_has_limits(&s->layer_row[i].limit);
   if (!found) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "layers is no, but a limit on layers is "
-                 "set (min_full, min_any, min_height, max_first_error or "
-                 "max_top_ratio); remove the limit or let layers grow");
+                 "layers is no, but a limit on layers is set (min_full, "
+                 "min_any, min_height, max_first_error or max_top_ratio); "
+                 "remove the limit or turn layers on");
 }
 
-/* On walls that were found. */
+/* Plans the layers of the walls found. */
 static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
                             struct by_point *h, struct vg_error *err)
 {
@@ -554,8 +562,9 @@ static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
   }
   if (!n_wall) {
     if (vg_walls_asked(set))
-      vg_note(b->notes, "layers are asked for, but no patch has a viscous "
-                        "condition: there are none (--walls names walls)");
+      vg_note(b->notes, "layers were requested, but no patch has a viscous "
+                        "boundary condition, so no layers grow (--walls names "
+                        "the walls)");
     return VG_OK;
   }
   VG_TRY(make_requests(s, b, h, err));
@@ -585,7 +594,7 @@ vg_status vg_layer_stage_plan(struct vg_layer_stage *s, struct vg_boundary *b,
   return st;
 }
 
-/* Whether layers grow, for each patch that was given. */
+/* Whether layers grow, for each patch of the input. */
 static vg_status list_grows(const struct vg_layer_stage *s,
                             const struct vg_boundary *b,
                             struct vg_patch_grows **out, size_t *n,
@@ -633,7 +642,7 @@ done:
   return st;
 }
 
-/* Patches without layers that share an edge with a wall. */
+/* Marks patches without layers that share an edge with a wall. */
 static void mark_beside(const struct vg_layer_stage *s, const struct vg_mesh *m,
                         uint8_t *on_wall, uint8_t *beside)
 {
@@ -689,10 +698,10 @@ static vg_status judge(struct vg_layer_stage *s, const struct vg_mesh *surface,
 
   if (st < 0 || !(j->n_negative + j->n_off_plane)) return st;
   return vg_fail(err, VG_ERR_GEOMETRY,
-                 "the layers did not pass their own "
-                 "check (%zu negative cells, %zu columns off their plane) "
-                 "and nothing was written; please report this with the "
-                 "project files, and try --layers no",
+                 "the layers failed their final check (%zu cells with "
+                 "negative volume, %zu columns that leave their plane), and "
+                 "nothing was written; please report this with the project "
+                 "files, and try --layers no",
                  j->n_negative, j->n_off_plane);
 }
 

@@ -1,4 +1,4 @@
-/* The walls with what grew on them, as a picture. */
+/* Writes the walls with properties of their layers, for visualisation. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,12 +6,12 @@
 #include "io/mesh/vtu.h"
 #include "run/input/layers.h"
 
-/* Triangles of the walls, for pictures. */
+/* Triangles of the walls. */
 struct wall_tris {
   size_t n;
-  uint32_t (*tri)[3]; /* points of the fields */
+  uint32_t (*tri)[3]; /* Indices into the points of the fields. */
   int32_t *patch;
-  double *top; /* volume ratio across the top, 0: none */
+  double *top; /* Volume ratio across the top; 0: none. */
 };
 
 static vg_status write_walls(const struct vg_layer_stage *s,

@@ -1,9 +1,10 @@
-/* A surface that was remeshed from CAD is put back on its faces and curves.
+/* Projects a surface that was remeshed from CAD back onto its CAD faces and
+ * curves.
  *
- * Samples are the points and the centroids of the new triangles: each is near a
- * triangle of CAD's, which has a face; points on an edge of it that is part of
- * a curve belong to the curve. Points are put back; where that leaves centroids
- * is measured. */
+ * Samples are the points and the centroids of the new triangles. Each sample is
+ * near a triangle of the CAD tessellation, which belongs to a face; points on
+ * an edge of that triangle that is part of a curve belong to the curve. Points
+ * are projected; the distances of the centroids are only measured. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,19 +14,21 @@
 #include "core/remesh/put_back.h"
 #include "run/input/shape_parts.h"
 
-#define ON_EDGE 1e-6 /* of its length: a point this near is on it */
+/* Share of the length of an edge below which a point is on it. */
+#define ON_EDGE 1e-6
 
 struct segment {
   uint32_t end[2], curve;
 };
 
 struct samples {
-  size_t n, n_point;        /* points come first */
-  double (*x)[3], (*to)[3]; /* as the surface is, and on the CAD model */
-  uint32_t *tri;            /* of CAD's */
-  uint32_t *curve;          /* [n_point] 0: none */
-  double *distance;         /* of to from x; INFINITY: has no place there */
-  uint8_t *stays;           /* [n_point] is not put back */
+  size_t n, n_point;        /* Points come first. */
+  double (*x)[3], (*to)[3]; /* Position on the surface, and on the CAD model. */
+  uint32_t *tri;            /* Triangle of the CAD tessellation. */
+  uint32_t *curve;          /* [n_point] curve; 0: none. */
+  double *distance;         /* Distance between `to` and `x`; INFINITY: the
+                               sample has no position on the model. */
+  uint8_t *stays;           /* [n_point] 1: the point is not moved. */
 };
 
 struct range {
@@ -130,9 +133,9 @@ static void find_curves(struct samples *s, const struct vg_cad_surface *c,
     }
 }
 
-/* --- places on the model ------------------------------------------------- */
+/* --- positions on the model ---------------------------------------------- */
 
-/* Those on curves, or the others. */
+/* Projects the samples on curves, or all others. */
 static vg_status ask(struct samples *s, struct vg_cad *cad, struct range of_all,
                      int on_curves, struct vg_error *err)
 {
@@ -195,8 +198,8 @@ static vg_status summarise(const struct samples *s, size_t end,
   return VG_OK;
 }
 
-/* Which triangle each sample lies on, and which curve; where it is farther
- * than `limit` from all of them, it is none of the model's. */
+/* Finds the triangle and curve of each sample. A sample farther than `limit`
+ * from all triangles is not part of the model. */
 static vg_status locate(struct samples *s, const struct vg_boundary *b,
                         double limit, struct vg_error *err)
 {
@@ -216,7 +219,7 @@ done:
   return st;
 }
 
-/* Where the points belong. */
+/* Finds the positions of the points on the model. */
 static vg_status find_places(struct samples *s, struct vg_cad *cad,
                              struct vg_remesh_distance *d, struct vg_error *err)
 {
@@ -230,8 +233,9 @@ done:
   return st;
 }
 
-/* How far the surface is now: points that stay are as far as they were, a
- * triangle has a place where all its points have. */
+/* Distances of the surface after the projection. Points that were not moved
+ * keep their distance, and a triangle has a position if all its points have
+ * one. */
 static vg_status measure(struct samples *s, const struct vg_mesh *m,
                          struct vg_cad *cad, struct vg_remesh_distance *d,
                          struct vg_error *err)
@@ -255,10 +259,10 @@ done:
   return st;
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- entry point --------------------------------------------------------- */
 
-/* The model has no caps over its holes: points inside them stay and do not
- * count, distance INFINITY. */
+/* The model has no caps over its holes: points inside caps are not moved and do
+ * not count, with distance INFINITY. */
 static void leave_caps(struct samples *s, const struct vg_boundary *b,
                        struct vg_put_back *back)
 {
@@ -291,7 +295,7 @@ static vg_status move(struct vg_boundary *b, struct samples *s,
                             &stop, s->stays, &back->n_refused, err);
 }
 
-/* The largest of each triangle's own samples, where it has a place there. */
+/* Largest distance of the samples of each triangle that has a position. */
 static void by_face(const struct samples *s, const struct vg_mesh *m,
                     double *face)
 {
@@ -324,16 +328,16 @@ vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err)
   back->is_done = 1;
   vg_note(
     b->notes,
-    "points were put back on the CAD model: %zu, %zu of them "
-    "on its curves, from at most %.3g off it; middles of triangles, "
-    "which are flat, are at most %.3g off; refused, since triangles would fold "
-    "or meet: %zu",
+    "points projected onto the CAD model: %zu, of which %zu lie on its "
+    "curves; they were at most %.3g away from it; centroids of triangles, "
+    "which are flat, remain at most %.3g away; not projected, because "
+    "triangles would fold or intersect: %zu",
     back->n_point - back->n_far - back->n_refused, back->n_curve,
     back->off[0].most, back->off[1].most, back->n_refused);
   if (back->n_far)
     vg_note(b->notes,
-            "%zu points lie farther than %.3g from the CAD model "
-            "and were left where they are",
+            "%zu points are farther than %.3g from the CAD model and were not "
+            "moved",
             back->n_far, r->report.tolerance);
 done:
   release(&s);

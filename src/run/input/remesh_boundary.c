@@ -1,5 +1,5 @@
-/* The surface remeshed, as settings ask for it. Where one tessellation of a CAD
- * model leads to no sound surface, others are tried in a fixed order. */
+/* Remeshes the surface as the settings request. If one tessellation of a CAD
+ * model leads to no valid surface, others are tried in a fixed order. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,20 +15,21 @@
 
 #define SLIVER2 0.03015369 /* S49: (sin 10 degrees)^2 */
 #define NEEDLE 5.0         /* S56: degrees */
-#define MANY                                                                   \
-  1e-3           /* of the triangles: a larger share of needles is             \
-                    repaired */
-#define MOST 0.5 /* of the triangles: then most of them are slivers */
+/* Share of the triangles; a larger share of needles is repaired. */
+#define MANY 1e-3
+/* Share of the triangles; above it most of them are slivers. */
+#define MOST 0.5
 
-/* S49: tessellations after the first, as factors on its chord and angle:
- * coarser ones, whose sheets do not cross at cusps, then a finer one, whose
- * sheets come apart where chords are larger than a body is thick. */
+/* S49: tessellations after the first, as factors on its chord and angle.
+ * Coarser ones come first, whose sheets do not cross at cusps, then a finer
+ * one, whose sheets separate where chords are larger than the thickness of a
+ * body. */
 static const double again[][2] = { { 7, 2 }, { 30, 3 }, { 0.1, 0.6 } };
 #define TRIES (sizeof again / sizeof *again)
 
 /* --- which surfaces are remeshed ----------------------------------------- */
 
-/* Is the smallest angle below 10 degrees? */
+/* Whether the smallest angle is below 10 degrees. */
 static int is_sliver(const struct vg_mesh *m, const uint32_t v[3])
 {
   double e[3][3], l[3], n[3], least;
@@ -42,7 +43,7 @@ static int is_sliver(const struct vg_mesh *m, const uint32_t v[3])
   return vg_dot(n, n) * least <= SLIVER2 * l[0] * l[1] * l[2];
 }
 
-/* Share of the triangles that have an angle below 10 degrees. */
+/* Share of the triangles with an angle below 10 degrees. */
 static double sliver_share(const struct vg_mesh *m)
 {
   size_t n = 0;
@@ -73,21 +74,20 @@ void vg_boundary_note_slivers(struct vg_boundary *b)
   if (b->read->settings.remesh != VG_ANSWER_AUTO || !(share > MOST)) return;
   if (b->is_remeshed)
     vg_note(b->notes,
-            "%.0f %% of the triangles have an angle below 10 "
-            "degrees: the surface is taken for a tessellation and is remeshed "
-            "(--remesh-surface no: as given)",
+            "%.0f %% of the triangles have an angle below 10 degrees: the "
+            "surface is treated as a tessellation and is remeshed "
+            "(--remesh-surface no keeps it unchanged)",
             100 * share);
   else if (!(b->read->settings.wrap > 0))
     vg_note(b->notes,
-            "%.0f %% of the triangles have an angle below 10 "
-            "degrees, and so will cells on them: --remesh-surface yes remeshes "
-            "the surface",
+            "%.0f %% of the triangles have an angle below 10 degrees, and so "
+            "will the cells on them: --remesh-surface yes remeshes the surface",
             100 * share);
 }
 
-/* --- the new surface ----------------------------------------------------- */
+/* --- the remeshed surface ------------------------------------------------ */
 
-/* *hard: [n_patch], NULL where none is asked for. */
+/* *hard: [n_patch], NULL if no patch has a fixed border. */
 static vg_status hard_patches(const struct vg_boundary *b, uint8_t **hard,
                               struct vg_error *err)
 {
@@ -133,9 +133,9 @@ static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
   return vg_remesh(&b->surface, &o, &b->remeshing.report, err);
 }
 
-/* Volumes of the new surface and of the CAD model, where both are closed and
- * nothing was dropped or capped. About a corner: small numbers wherever the
- * body is. */
+/* Volumes of the remeshed surface and of the CAD model, if both are closed and
+ * nothing was dropped or capped. Integrated about a corner, so that numbers are
+ * small wherever the body is. */
 static void take_volumes(struct vg_boundary *b)
 {
   const struct vg_mesh *m = &b->surface;
@@ -160,9 +160,10 @@ static size_t n_needle(const struct vg_remesh_report *r)
   return n;
 }
 
-/* A tessellation without defects is remeshed as it is. Where CAD leads to many
- * needles that way, since its own are feature edges too, it is repaired as one
- * with defects is, and the outcome with fewer needles stays. */
+/* A tessellation without defects is remeshed directly. If this yields many
+ * needles for CAD, because its own needles are feature edges too, it is
+ * repaired like a tessellation with defects, and the result with fewer needles
+ * is kept. */
 static vg_status remesh_cad(struct vg_boundary *b, const struct vg_mesh *given,
                             const uint8_t *hard,
                             const struct vg_surface_sizes *sizes,
@@ -221,15 +222,15 @@ static void note_faults(struct vg_boundary *b)
 
   if (r->n_crossing[0])
     vg_note(b->notes,
-            "the surface as given intersects itself in %zu pairs of "
-            "triangles, by %.3g at most, at (%.6g, %.6g, %.6g); the new "
-            "surface, which is within %.3g of it, does not",
+            "the input surface intersects itself in %zu pairs of triangles, "
+            "by at most %.3g, at (%.6g, %.6g, %.6g); the remeshed surface, "
+            "which is within %.3g of it, does not",
             r->n_crossing[0], r->crossing_depth, r->crossing_at[0],
             r->crossing_at[1], r->crossing_at[2], r->tolerance);
   if (r->n_kept)
     vg_note(b->notes,
-            "%zu triangles stay as given, since new ones met there; "
-            "the first are near (%.6g, %.6g, %.6g)",
+            "%zu triangles were kept unchanged because new triangles would "
+            "intersect there; the first are near (%.6g, %.6g, %.6g)",
             r->n_kept, r->kept_at[0], r->kept_at[1], r->kept_at[2]);
 }
 
@@ -245,9 +246,9 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
 
   if (b->read->heights.n)
     return vg_fail(err, VG_ERR_INPUT,
-                   "first heights are given at points of "
-                   "the surface, which remesh_surface would take away: give "
-                   "them by patch instead, or keep the surface");
+                   "first heights are given at points of the surface, but "
+                   "remesh_surface replaces these points: give the heights by "
+                   "patch, or set remesh_surface to no");
   vg_display_update(show, "remesh", b->surface.n_tri, 0);
   VG_TRY(vg_mesh_copy(&given, &b->surface, err));
   VG_TRY(hard_patches(b, &hard, err));
@@ -262,8 +263,8 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   areas(&b->surface, 1, r->area);
   note_faults(b);
   vg_note(b->notes,
-          "the surface was remeshed (remesh_surface): %zu "
-          "triangles, before %zu, at most %.3g from it, tolerance %.3g",
+          "the surface was remeshed (remesh_surface): %zu triangles, %zu "
+          "before; largest distance between both surfaces %.3g, tolerance %.3g",
           r->report.n_tri[1], r->report.n_tri[0],
           r->off[0].most > r->off[1].most ? r->off[0].most : r->off[1].most,
           r->report.tolerance);
@@ -276,7 +277,7 @@ done:
 
 /* --- other tessellations ------------------------------------------------- */
 
-/* Conditions and names are those of the same patches as they were read. */
+/* Copies names and conditions from the patches with the same numbers. */
 static void keep_conditions(const struct vg_mesh *from, struct vg_mesh *to)
 {
   for (size_t i = 0; i < to->n_patch; i++) {
@@ -312,8 +313,8 @@ vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
   vg_remeshing_release(&b->remeshing);
   while (b->notes->n > n_note) free(b->notes->text[--b->notes->n]);
   vg_note(b->notes,
-          "the first tessellation of the CAD model led to no sound "
-          "surface; this one has chord %.2g and angle %.3g (cad_chord, "
+          "the first tessellation of the CAD model led to no valid surface; "
+          "the tessellation used has chord %.2g and angle %.3g (cad_chord, "
           "cad_angle)",
           cad.chord, cad.angle);
   return VG_OK;

@@ -9,7 +9,7 @@ struct head {
   uint64_t n_point, n_tri, n_patch, number;
 };
 
-/* --- in common ----------------------------------------------------------- */
+/* --- shared memory -------------------------------------------------------- */
 
 enum { N_PART = 5 };
 
@@ -58,7 +58,7 @@ vg_status vg_surface_share(struct vg_comm *c, struct vg_mesh *m,
   return st;
 }
 
-/* --- as bytes ------------------------------------------------------------ */
+/* --- conversion to bytes ------------------------------------------------- */
 
 vg_status vg_surface_pack(const struct vg_mesh *m, uint64_t number,
                           struct vg_bytes *out, struct vg_error *err)
@@ -115,7 +115,7 @@ vg_status vg_surface_unpack(const struct vg_bytes *bytes, struct vg_mesh *m,
   if (r.bad || r.at != r.n || !is_sound(&got)) {
     vg_mesh_release(&got);
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%zu bytes are no surface, or memory "
+                   "the %zu bytes received are not a valid surface, or memory "
                    "is short; run again",
                    bytes->n);
   }

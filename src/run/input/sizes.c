@@ -14,8 +14,8 @@
 #include "io/mesh/vtu_read.h"
 #include "run/settings/plan_options.h"
 
-/* H8: between two points of a cell that are further apart than FAR times the
- * smaller of their sizes there are samples, at most PARTS - 1. */
+/* H8: pairs of points of a cell that are farther apart than FAR times the
+ * smaller of their sizes get samples between them, at most PARTS - 1. */
 #define FAR 2
 #define PARTS 8
 
@@ -55,7 +55,8 @@ static void add_between(struct samples *s, const double a[3], const double b[3],
   }
 }
 
-/* All pairs of points of each cell, or face where there are no cells. */
+/* Adds samples between all pairs of points of each cell, or of each face if
+ * there are no cells. */
 static void add_cells(struct samples *s, const struct vg_mesh *m,
                       const double *h, size_t n, int width,
                       const uint32_t *node)
@@ -80,7 +81,7 @@ static vg_status make_samples(const struct vg_mesh *m, const double *h,
   return s->refused ? vg_fail_memory(err, "the sizes of a mesh") : VG_OK;
 }
 
-/* The mesh beside STEM.sol: the only file of the stem that can be read. */
+/* The mesh next to STEM.sol: the only file of the stem that can be read. */
 static vg_status find_mesh(const char *path, char **out, struct vg_error *err)
 {
   const char *dot = strrchr(path, '.'), *suffix;
@@ -94,8 +95,8 @@ static vg_status find_mesh(const char *path, char **out, struct vg_error *err)
       free(name);
     } else if (found) {
       st = vg_fail(err, VG_ERR_INPUT,
-                   "%s: both %s and %s may be the mesh of "
-                   "these sizes; leave one beside it",
+                   "%s: both %s and %s could be the mesh of these sizes; keep "
+                   "only one of them next to the file",
                    path, found, name);
       free(name);
     } else {
@@ -104,8 +105,8 @@ static vg_status find_mesh(const char *path, char **out, struct vg_error *err)
   }
   if (st >= 0 && !found)
     st = vg_fail(err, VG_ERR_INPUT,
-                 "%s: there is no mesh %.*s.mesh, .meshb, "
-                 ".b8.ugrid, ... beside it, at whose points its sizes are",
+                 "%s: there is no mesh %.*s.mesh, .meshb, .b8.ugrid, ... next "
+                 "to it, whose points the sizes refer to",
                  path, (int)(dot - path), path);
   if (st < 0) free(found);
   else *out = found;
@@ -119,7 +120,7 @@ static int ends_in(const char *path, const char *suffix)
   return n > len && !strcasecmp(path + n - len, suffix);
 }
 
-/* Points without cells: between them sizes grow. */
+/* Points without cells: sizes grow between them. */
 static vg_status read_vtk(const char *path, struct vg_mesh *m, double **h,
                           struct vg_error *err)
 {
@@ -144,9 +145,8 @@ static vg_status read_values(const char *path, struct vg_mesh *m, double **h,
     return read_vtk(path, m, h, err);
   if (!ends_in(path, ".sol") && !ends_in(path, ".solb"))
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: sizes are read from Medit's .sol "
-                   "and .solb beside a mesh, and from a point array 'size' of "
-                   "VTK's .vtu",
+                   "%s: sizes can be read from Medit's .sol and .solb next to "
+                   "a mesh, and from a point array 'size' in VTK's .vtu",
                    path);
   VG_TRY(vg_sol_read(path, &n, h, err));
   VG_TRY(find_mesh(path, &mesh, err));
@@ -170,8 +170,8 @@ vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err)
   if (!*set->sizes || r->samples) return VG_OK;
   if (r->map)
     return vg_fail(err, VG_ERR_INPUT,
-                   "sizes are given by the file %s and by "
-                   "the program; give one",
+                   "sizes are given both by the file %s and by the calling "
+                   "program; give only one of them",
                    set->sizes);
   VG_TRY(read_values(set->sizes, &m, &h, err));
   VG_TRY(vg_size_samples_check(set->sizes, m.n_point,
@@ -181,7 +181,7 @@ vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err)
                              vg_options_growth(set), (int)set->threads,
                              &r->samples, err));
   r->map = vg_size_samples_map(r->samples);
-  vg_note(r->notes, "sizes of %zu points were read from %s", m.n_point,
+  vg_note(r->notes, "sizes at %zu points were read from %s", m.n_point,
           set->sizes);
 done:
   free(s.x);

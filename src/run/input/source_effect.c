@@ -46,7 +46,7 @@ static int is_wholly(const struct vg_limited_source *h)
   return h->n_limited == h->n_place;
 }
 
-/* What holds it back, and what would help. */
+/* What limits the source, and a remedy. */
 static void explain(const struct vg_limited_source *h,
                     const struct vg_mesh *front, char *text, size_t size)
 {
@@ -55,17 +55,18 @@ static void explain(const struct vg_limited_source *h,
 
   if (!patch) {
     snprintf(text, size,
-             "no face is to blame: the octree of sizes is at its "
-             "limit; fewer or coarser sources would help");
+             "the octree of the sizing field is at its limit and no face "
+             "limits it; use fewer or coarser sources");
     return;
   }
   n = snprintf(text, size,
-               "faces with edges of %.3g on patch %d%s%.40s%s, "
-               "%.3g away, hold it back; make them no longer than %.3g there",
+               "faces with edges of length %.3g on patch %d%s%.40s%s, at a "
+               "distance of %.3g, limit it; make their edges no longer than "
+               "%.3g",
                h->edge, (int)patch->id, patch->name[0] ? " (" : "", patch->name,
                patch->name[0] ? ")" : "", h->distance, h->edge_wanted);
   if (h->growth_wanted > 0 && n > 0 && (size_t)n < size)
-    snprintf(text + n, size - (size_t)n, ", or set growth to %.3g",
+    snprintf(text + n, size - (size_t)n, ", or increase growth to %.3g",
              h->growth_wanted);
 }
 
@@ -81,13 +82,13 @@ static void note_limited(const struct vg_limited_source *h,
   explain(h, front, why, sizeof why);
   if (is_wholly(h))
     vg_note(notes,
-            "%s gets nowhere what it asks for: %.3g at best where "
-            "it asks for %.3g, at %.4g %.4g %.4g, where %s",
+            "%s is limited everywhere: it requests a size of %.3g but gets "
+            "%.3g at best, at (%.4g, %.4g, %.4g), where %s",
             name, h->got, h->asked, h->at[0], h->at[1], h->at[2], why);
   else
     vg_note(notes,
-            "%s is held back in %zu of %zu places: at %.4g %.4g "
-            "%.4g it asks for %.3g and gets %.3g, where %s",
+            "%s is limited at %zu of %zu sample points: at (%.4g, %.4g, %.4g) "
+            "it requests a size of %.3g but gets %.3g, where %s",
             name, h->n_limited, h->n_place, h->at[0], h->at[1], h->at[2],
             h->asked, h->got, why);
 }
@@ -96,10 +97,11 @@ static void note_unmet(const struct vg_unmet_source *u,
                        const struct vg_source *s, struct vg_notes *notes)
 {
   vg_note(notes,
-          "source %zu (%s%s%.32s) has no effect in %zu of %zu "
-          "places: at %.4g %.4g %.4g the size is %.3g, and no point of the "
-          "mesh is within twice that, for sizes grow faster around it than "
-          "cells can; a larger radius or growth of 2 or less would help",
+          "source %zu (%s%s%.32s) is not resolved at %zu of %zu sample "
+          "points: at (%.4g, %.4g, %.4g) the size is %.3g, but no point of "
+          "the mesh is within twice that distance, because sizes increase "
+          "faster around it than cells can follow; use a larger radius, or a "
+          "growth of at most 2",
           u->source + 1, kind_of(s), s->group[0] ? " of " : "", s->group,
           u->n_unmet, u->n_place, u->place.x[0], u->place.x[1], u->place.x[2],
           u->place.got);
@@ -122,11 +124,11 @@ static void note_outside(const struct vg_effects *h, int is_beyond,
   }
   if (!n) return;
   vg_note(notes,
-          "%zu source%s (number%s%s) %s wholly %s: of %s no more "
-          "than the growth is felt",
+          "%zu source%s (number%s%s) %s completely %s; in the fluid only "
+          "the growth of sizes around %s has an effect",
           n, n > 1 ? "s" : "", n > 1 ? "s" : "", list, n > 1 ? "lie" : "lies",
           is_beyond ? "outside the domain"
-                    : "inside a body, or beyond the boundary",
+                    : "inside a body or beyond the boundary",
           n > 1 ? "them" : "it");
 }
 
@@ -137,15 +139,15 @@ void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
     note_limited(h->item + i, front, s->source + h->item[i].source, notes);
   if (h->n > VG_SHOWN_LIMITED)
     vg_note(notes,
-            "%zu more sources are held back; the JSON report has "
-            "them all",
+            "%zu further sources are limited by the surface; the JSON report "
+            "lists them all",
             h->n - VG_SHOWN_LIMITED);
   for (size_t i = 0; i < h->n_unmet && i < VG_SHOWN_LIMITED; i++)
     note_unmet(h->unmet + i, s->source + h->unmet[i].source, notes);
   if (h->n_unmet > VG_SHOWN_LIMITED)
     vg_note(notes,
-            "%zu more sources have no effect; the JSON report has "
-            "them all",
+            "%zu further sources are not resolved; the JSON report lists them "
+            "all",
             h->n_unmet - VG_SHOWN_LIMITED);
   note_outside(h, 0, notes);
   note_outside(h, 1, notes);

@@ -1,5 +1,5 @@
-/* run/input/source_effect.h: sources without effect, for people and programs.
- * Uses core/sizing/sizing_effect.h, run/input/input.h. */
+/* run/input/source_effect.h: notes and JSON on sources without effect. Uses
+ * core/sizing/sizing_effect.h, run/input/input.h. */
 #ifndef VG_RUN_INPUT_SOURCE_EFFECT_H
 #define VG_RUN_INPUT_SOURCE_EFFECT_H
 
@@ -14,15 +14,15 @@ vg_status vg_boundary_effects(const struct vg_boundary *b,
                               const struct vg_sizing *sizing,
                               struct vg_effects *out, struct vg_error *err);
 
-/** A note for each source that is held back, or that the mesh does not meet,
- * the first VG_SHOWN_LIMITED of them, and one for all that are outside. front:
- * as for vg_effects_find; s: with the sources. */
+/** Adds a note for each limited and each unresolved source, the first
+ * VG_SHOWN_LIMITED of each kind, and one note for all sources outside the
+ * fluid. front: as for vg_effects_find; s: settings with the sources. */
 #define VG_SHOWN_LIMITED 10
 void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
                      const struct vg_settings *s, struct vg_notes *notes);
 
-/** All of them: "held", "unmet" (by the mesh), "inside" (a body), "beyond"
- * (the domain). */
+/** All of them: "held" (limited by the surface), "unmet" (unresolved), "inside"
+ * (a body), "beyond" (outside the domain). */
 json_t *vg_effects_json(const struct vg_effects *h, const struct vg_mesh *front,
                         const struct vg_settings *s);
 

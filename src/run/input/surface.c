@@ -1,4 +1,4 @@
-/* From triangles as read to the closed boundary of a fluid. Declared in
+/* From the triangles read to the closed boundary of a fluid. Declared in
  * run/input/input.h. */
 #include <math.h>
 #include <stdlib.h>
@@ -12,12 +12,12 @@
 #include "run/settings/deck.h"
 #include "run/settings/plan_options.h"
 
-#define SHOWN_PATCHES 20 /* numbers in a note */
-#define ROUNDING                                                               \
-  1e-9 /* S62: of the length: gaps between rims that are                       \
-          rounding of coordinates */
+#define SHOWN_PATCHES 20 /* Most patch numbers in a note. */
+/* S62: share of the length below which gaps between rims are due to the
+ * rounding of coordinates. */
+#define ROUNDING 1e-9
 
-/* Then all patches should have one. */
+/* Whether any patch has a condition; all patches should have one then. */
 static int has_conditions(const struct vg_mesh *m)
 {
   for (size_t i = 0; i < m->n_patch; i++)
@@ -25,7 +25,7 @@ static int has_conditions(const struct vg_mesh *m)
   return 0;
 }
 
-/* The fill takes triangles only. */
+/* The kernel accepts only triangles. */
 static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
                              struct vg_error *err)
 {
@@ -58,13 +58,14 @@ static vg_status split_quads(struct vg_mesh *m, struct vg_notes *notes,
   return VG_OK;
 }
 
-/* Notes on triangles that the repair removed: the next check finds none. */
+/* Notes on triangles that the repair removed, since the next check no longer
+ * finds them. */
 static void note_removed(struct vg_boundary *b)
 {
   if (b->check.n_removed_wall)
     vg_note(b->notes,
-            "%zu triangles of walls that touching bodies shared "
-            "were removed, so that the bodies have one skin",
+            "%zu triangles of walls shared by touching bodies were removed, "
+            "so that the bodies share one surface",
             b->check.n_removed_wall);
   if (b->check.n_removed_tri)
     vg_note(b->notes, "%zu duplicate or degenerate triangles were removed",
@@ -95,8 +96,8 @@ static vg_status defects(const struct vg_boundary *b, struct vg_display *show,
 
   if (!b->check.n_defect && !b->surface.n_tri)
     return vg_fail(err, VG_ERR_GEOMETRY,
-                   "%s: no surface is left: all its "
-                   "triangles are degenerate",
+                   "%s: no surface is left, because all its triangles are "
+                   "degenerate; check the units and the weld tolerance",
                    b->read->files.stem);
   if (!b->check.n_defect) return VG_OK;
   vg_boundary_suggest_wrap(b, show, remedy, sizeof remedy);
@@ -106,8 +107,9 @@ static vg_status defects(const struct vg_boundary *b, struct vg_display *show,
                  b->read->files.stem, b->check.n_defect, remedy);
 }
 
-/* The rows of n patches as they are now; what is added later comes by itself
- * when the run is repeated. Borders are hard as the n rows of `old` say. */
+/* Takes the rows of the current patches; patches added later are added again
+ * when the run is repeated. The n rows of `old` determine which borders are
+ * fixed. */
 static vg_status take_rows(struct vg_boundary *b, size_t n,
                            const struct vg_patch_row *old, struct vg_error *err)
 {
@@ -135,7 +137,7 @@ void vg_boundary_note_unset(struct vg_boundary *b)
   size_t n = 0, at = 0;
   uint8_t *has_faces = vg_calloc(b->surface.n_patch, 1);
 
-  if (!has_faces) return; /* as a note for which there is no memory */
+  if (!has_faces) return; /* As for a note for which there is no memory. */
   for (size_t i = 0; i < b->surface.n_tri; i++)
     has_faces[b->surface.tri_patch[i]] = 1;
   for (size_t i = 0; i < b->surface.n_patch; i++) {
@@ -150,9 +152,9 @@ void vg_boundary_note_unset(struct vg_boundary *b)
   }
   if (n)
     vg_note(b->notes,
-            "%zu patch%s no boundary condition (number%s%s), "
-            "written as inviscid (5, FUN3D 3000): give conditions in a .mapbc "
-            "file or the deck",
+            "%zu patch%s no boundary condition (number%s%s) and will be "
+            "written as inviscid (5, FUN3D 3000): set conditions in a .mapbc "
+            "file or in the deck",
             n, n > 1 ? "es have" : " has", list,
             n > SHOWN_PATCHES ? " ..." : "");
   free(has_faces);
@@ -178,9 +180,8 @@ static vg_status close_holes(struct vg_boundary *b, struct vg_error *err)
                                sizing, &n_hole, &n_tri, err));
   if (n_hole)
     vg_note(b->notes,
-            "holes of the surface that were closed (close_holes): "
-            "%zu, with %zu triangles in patches %d to %d, named cap_1 to "
-            "cap_%zu",
+            "holes of the surface closed (close_holes): %zu, with %zu "
+            "triangles in patches %d to %d, named cap_1 to cap_%zu",
             n_hole, n_tri, (int)b->surface.patch[b->n_given_patch].id,
             (int)b->surface.patch[b->surface.n_patch - 1].id, n_hole);
 done:
@@ -188,7 +189,7 @@ done:
   return st;
 }
 
-/* Bodies are wrapped; outer boundaries stay as they are. */
+/* Bodies are wrapped; outer boundaries are kept. */
 static vg_status wrap(struct vg_boundary *b, struct vg_display *show,
                       struct vg_error *err)
 {
@@ -206,8 +207,8 @@ done:
   return st;
 }
 
-/* Rims that coincide but for rounding are welded; for wider gaps the refusal
- * of an open surface names the tolerance. */
+/* Welds rims that coincide except for rounding. For wider gaps, the error
+ * message for an open surface names the tolerance. */
 static vg_status weld_rims(struct vg_boundary *b, struct vg_display *show,
                            struct vg_error *err)
 {
@@ -226,8 +227,8 @@ static vg_status weld_rims(struct vg_boundary *b, struct vg_display *show,
                               err));
   if (!n_point) goto done;
   vg_note(b->notes,
-          "%zu open edges coincide with others but for rounding: "
-          "they were welded, %zu points merged",
+          "%zu open edges coincide with others except for rounding: they were "
+          "welded, and %zu points were merged",
           n_edge, n_point);
   VG_TRY(check(b, -1, show, err));
   VG_TRY(vg_surface_rim_gap(&b->surface, &b->check, &b->rim_gap, &n_edge, err));
@@ -235,7 +236,7 @@ done:
   return st;
 }
 
-/* Close the surface as far as settings ask for it, and check it. */
+/* Closes the surface as far as the settings request it, and checks it. */
 static vg_status close_surface(struct vg_boundary *b, struct vg_display *show,
                                struct vg_error *err)
 {
@@ -248,7 +249,8 @@ static vg_status close_surface(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(check(b, -1, show, err));
   VG_TRY(weld_rims(b, show, err));
   if (s->close_holes && b->check.count[VG_DEFECT_OPEN_EDGE]) {
-    /* Rims are followed along triangles that agree, as the check left them. */
+    /* Rims are followed along consistently oriented triangles, as left by the
+     * check. */
     b->n_given_patch = b->surface.n_patch;
     VG_TRY(close_holes(b, err));
     VG_TRY(vg_patch_table_apply(b->n_row, b->row, 0, &b->surface, err));
@@ -262,8 +264,8 @@ done:
   return st;
 }
 
-/* Defects that the remesher tolerates, since the new surface is judged. Edges
- * of four triangles are tolerated where triangles lie back to back. */
+/* Whether the remesher tolerates all defects, since its result is checked.
+ * Edges of four triangles are tolerated where triangles lie back to back. */
 static int is_reference(const struct vg_surface_report *r)
 {
   const size_t n_double = r->count[VG_DEFECT_DUPLICATE_TRIANGLE];
@@ -274,7 +276,7 @@ static int is_reference(const struct vg_surface_report *r)
            n_double + (n_double ? r->count[VG_DEFECT_NONMANIFOLD_EDGE] : 0);
 }
 
-/* Open, and no half model. */
+/* Whether the surface is open and not a half model. */
 static int is_open_for_good(const struct vg_boundary *b,
                             const struct vg_shape_options *o)
 {
@@ -284,7 +286,7 @@ static int is_open_for_good(const struct vg_boundary *b,
          !n[VG_DEFECT_NONMANIFOLD_EDGE] && !n[VG_DEFECT_ORIENTATION];
 }
 
-/* One tessellation of the surface: closed, decided, remeshed. */
+/* One tessellation of the surface: closes it, decides the flow, remeshes it. */
 static vg_status shape(struct vg_boundary *b, const struct vg_shape_options *o,
                        struct vg_display *show, struct vg_error *err)
 {
@@ -317,7 +319,7 @@ done:
 /* Names and conditions before the first tessellation, for the next one. */
 struct given {
   size_t n_note, n_patch;
-  struct vg_patch *patch; /* [n_patch] owned */
+  struct vg_patch *patch; /* [n_patch] owned. */
 };
 
 static vg_status take_given(const struct vg_boundary *b, struct given *g,
@@ -331,7 +333,7 @@ static vg_status take_given(const struct vg_boundary *b, struct given *g,
   return VG_OK;
 }
 
-/* The first tessellation that leads to a sound surface. */
+/* Uses the first tessellation that leads to a valid surface. */
 static vg_status try_shapes(struct vg_boundary *b,
                             const struct vg_shape_options *o,
                             struct vg_display *show, struct vg_error *err)
@@ -382,11 +384,11 @@ vg_status vg_boundary_shape(struct vg_read *read,
   b->is_remeshed = vg_read_is_remeshed(read, &b->surface);
   vg_boundary_note_slivers(b);
   st = try_shapes(b, o, show, err);
-  /* the library's message says less */
+  /* The message of the library has less detail. */
   return st == VG_ERR_STOPPED ? vg_display_stopped(show, err) : st;
 }
 
-/* Add farfield and symmetry plane, and check the whole boundary. */
+/* Adds farfield and symmetry plane, and checks the complete boundary. */
 static vg_status complete(struct vg_boundary *b, struct vg_display *show,
                           struct vg_error *err)
 {
@@ -400,7 +402,7 @@ done:
   return st;
 }
 
-/* A surface that was remeshed, as the decision has it. */
+/* Checks a remeshed surface again, with the decided flow. */
 static vg_status check_again(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err)
 {
@@ -444,8 +446,8 @@ const struct vg_mesh *vg_problem_surface(const struct vg_problem *p)
   return p->boundary.read ? &p->boundary.surface : &p->read.surface;
 }
 
-/* Face f of the report as one or two triangles (quadrilaterals come after
- * the triangles). */
+/* Face f of the report as one or two triangles (quadrilaterals follow the
+ * triangles). */
 static size_t face_triangles(const struct vg_mesh *m, size_t f,
                              uint32_t out[2][3])
 {

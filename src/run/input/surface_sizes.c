@@ -1,6 +1,6 @@
-/* The table `surface`: sizes of single patches, curves, leading edges and
- * strips of a surface that is made anew, as largest sizes at the points that it
- * has now, and curves along which edges are stretched. */
+/* The table `surface`: target edge lengths of single patches, curves, leading
+ * edges and strips of a surface to be remeshed, as largest sizes at its current
+ * points, and curves along which edges are stretched. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "run/settings/patch_names.h"
 #include "run/settings/surface_table.h"
 
-#define SECTIONS 256 /* along the span of a patch */
+#define SECTIONS 256 /* Number of sections along the span of a patch. */
 
 static void lower(double *cap, uint32_t p, double size)
 {
@@ -33,7 +33,7 @@ static int by_ends(const void *pa, const void *pb)
   return (a->patch > b->patch) - (a->patch < b->patch);
 }
 
-/* Edges between patches with on[][0] and those with on[][1]. */
+/* Whether an edge lies between a patch with on[][0] and one with on[][1]. */
 static int is_between(const uint8_t (*on)[2], uint32_t p, uint32_t q)
 {
   return p != q && ((on[p][0] && on[q][1]) || (on[p][1] && on[q][0]));
@@ -74,8 +74,8 @@ static vg_status size_curve(const struct vg_mesh *m, const uint8_t (*on)[2],
 
 /* --- leading edges ------------------------------------------------------- */
 
-/* x from `lo` to `hi` of a patch in sections across y or z, whichever it is
- * longer along; the flow is along x. */
+/* Range of x, from `lo` to `hi`, of a patch in sections normal to y or z,
+ * whichever of its extents is larger; the flow is along x. */
 struct sections {
   int axis;
   double from, step;
@@ -87,7 +87,7 @@ static double section_at(const struct sections *s, size_t i)
   return s->from + s->step * ((double)i + 0.5);
 }
 
-/* The line ab, where it crosses sections. */
+/* Extends the sections that the line ab crosses. */
 static void cross(struct sections *s, const double *a, const double *b)
 {
   const double *l = a[s->axis] < b[s->axis] ? a : b, *h = l == a ? b : a;
@@ -124,7 +124,7 @@ static void cut(struct sections *s, const struct vg_mesh *m, size_t patch)
       cross(s, m->point[m->tri[t][k]], m->point[m->tri[t][(k + 1) % 3]]);
 }
 
-/* Chord of the patch where x is, and how far x is behind its front. */
+/* Chord of the patch at x, and distance of x behind its leading edge. */
 static int chord_at(const struct sections *s, const double x[3], double *chord,
                     double *behind)
 {
@@ -157,7 +157,7 @@ static void size_lead(const struct vg_mesh *m, size_t patch, double share,
     }
 }
 
-/* --- all ----------------------------------------------------------------- */
+/* --- rows of the table --------------------------------------------------- */
 
 static vg_status take_curve(const struct vg_mesh *m,
                             const struct vg_surface_row *row, uint8_t (*on)[2],

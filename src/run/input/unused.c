@@ -1,4 +1,4 @@
-/* Settings without effect. Declared in run/input/input.h. */
+/* Notes on settings without effect. Declared in run/input/input.h. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,17 +9,17 @@
 
 #define SHOWN 12
 
-/* Why settings that need it had no effect; in the order of enum vg_use. */
+/* Why settings of each kind had no effect, in the order of enum vg_use. */
 static const char *const reason[VG_USE_N] = {
   "",
   "",
   "there is no .d3m",
   "no CAD file was read",
-  "the surface was not made anew (remesh_surface)",
+  "the surface was not remeshed (remesh_surface)",
   "no layers grow",
   "no farfield was made",
-  "no planes cut what is parted otherwise (decompose)",
-  "the space was cut by planes (decompose)"
+  "the domain was not cut by planes (decompose)",
+  "the domain was cut by planes (decompose)"
 };
 
 static unsigned in_use(const struct vg_problem *p, int layers_on)
@@ -37,7 +37,8 @@ static unsigned in_use(const struct vg_problem *p, int layers_on)
          (unsigned)planes << VG_USE_PLANES | (unsigned)parted << VG_USE_PARTS;
 }
 
-/* Sizes of a surface that is made here are scaled, too. */
+/* Whether the surface is given; sizes of a surface that is made here are scaled
+ * as well. */
 static int is_given(const struct vg_input_files *f)
 {
   return *f->front || (*f->surface && !vg_format_is_cad(f->surface)) ||
@@ -60,8 +61,8 @@ static void note_use(struct vg_problem *p, const uint8_t *given,
                              n > 1 ? ", " : "", name);
   }
   if (!n) return;
-  vg_note(&p->notes, "without effect, for %s: %s%s", reason[use], list,
-          n > SHOWN ? ", ..." : "");
+  vg_note(&p->notes, "settings without effect because %s: %s%s", reason[use],
+          list, n > SHOWN ? ", ..." : "");
 }
 
 void vg_problem_note_unused(struct vg_problem *p, int layers_on,
@@ -73,22 +74,26 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
   unsigned missing = judged & ~in_use(p, layers_on);
   size_t n_hard = 0;
 
-  if (!given) return; /* as a note for which there is no memory */
+  if (!given) return; /* As for a note for which there is no memory. */
   for (int use = VG_USE_D3M; use < VG_USE_N; use++)
     if (missing >> use & 1) note_use(p, given, (enum vg_use)use);
   free(given);
   if (layers_on && s->layer.scale_rule && s->scale == 1)
-    vg_note(&p->notes, "without effect, for scale is 1: scale_layers");
+    vg_note(&p->notes, "setting without effect because scale is 1: "
+                       "scale_layers");
   if (s->scale != 1 && missing >> VG_USE_REMESH & 1 && is_given(&p->read.files))
     vg_note(&p->notes,
-            "scale %g acts on sizes in space alone: the surface "
-            "stays as it is given (remesh_surface makes it anew)",
+            "scale %g changes only sizes in the volume: the surface is not "
+            "remeshed and keeps its edge lengths (remesh_surface yes remeshes "
+            "it)",
             s->scale);
   for (size_t i = 0; i < b->n_row; i++) n_hard += b->row[i].hard != 0;
   if (n_hard && missing >> VG_USE_REMESH & 1)
-    vg_note(&p->notes, "without effect, for %s: hard, in %zu rows of patches",
+    vg_note(&p->notes,
+            "setting without effect because %s: hard, in %zu rows "
+            "of the table patches",
             reason[VG_USE_REMESH], n_hard);
   if (s->n_surface && missing >> VG_USE_REMESH & 1)
-    vg_note(&p->notes, "without effect, for %s: the table surface",
+    vg_note(&p->notes, "table without effect because %s: surface",
             reason[VG_USE_REMESH]);
 }

@@ -14,8 +14,8 @@
 #include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
 
-#define MESHING_WALL 2 /* class of a .d3m patch that grows layers */
-#define FLAT 1e-4      /* S50: height over the longest edge: 0.006 degrees */
+#define MESHING_WALL 2 /* Class of a .d3m patch on which layers grow. */
+#define FLAT 1e-4      /* S50: height over the longest edge: 0.006 degrees. */
 
 const char *vg_wall_reason_name(enum vg_wall_reason reason)
 {
@@ -26,8 +26,8 @@ const char *vg_wall_reason_name(enum vg_wall_reason reason)
   return name[reason];
 }
 
-/* 41 moving wall, 44 blunt base; codes of FUN3D without a translation begin
- * with 4 as well. */
+/* 41: moving wall, 44: blunt base. Codes of FUN3D without a translation also
+ * begin with 4. */
 int vg_is_viscous(const struct vg_patch *p)
 {
   int32_t bc = p->bc;
@@ -58,7 +58,7 @@ int vg_walls_asked(const struct vg_settings *s)
        *l->walls || vg_has_limits(&l->limit);
 }
 
-/* Meshing class of patch id in the project, 0 where it says nothing. */
+/* Meshing class of patch id in the project; 0 if it has none. */
 static int32_t meshing_class(const struct vg_project *p, int32_t id)
 {
   for (size_t i = 0; i < p->n_shape; i++)
@@ -66,7 +66,7 @@ static int32_t meshing_class(const struct vg_project *p, int32_t id)
   return 0;
 }
 
-/* The patches that were given; what completes the domain comes later. */
+/* Whether a patch is part of the input; others complete the domain. */
 static int is_given(const struct vg_boundary *b, int32_t id)
 {
   for (size_t i = 0; i < b->n_row; i++)
@@ -74,14 +74,15 @@ static int is_given(const struct vg_boundary *b, int32_t id)
   return 0;
 }
 
-/* A farfield or symmetry plane that this program added. Its number follows
- * those of the surface, so that a range can include it by mistake. */
+/* Whether this program added the patch, as a farfield or symmetry plane. The
+ * number of such a patch follows those of the surface, so a range may include
+ * it by mistake. */
 static int is_added(const struct vg_boundary *b, const struct vg_patch *patch)
 {
   return !is_given(b, patch->id) && (patch->bc == 1 || patch->bc == 3);
 }
 
-/* The patches before those that this program added. */
+/* Number of patches before those that this program added. */
 static size_t n_own(const struct vg_boundary *b)
 {
   size_t n = b->surface.n_patch;
@@ -98,15 +99,14 @@ static vg_status refuse_added(const struct vg_boundary *b, const char *what,
 
   vg_patch_list_text(&b->surface, n_own(b), list, sizeof list);
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: patch %d is the %s that was added to "
-                 "the surface, on which no layers grow; leave it out. Patches: "
-                 "%s",
+                 "%s: patch %d is the %s that was added to the surface, and "
+                 "no layers grow on it; remove it from the list. Patches: %s",
                  what, (int)patch->id,
                  patch->bc == 1 ? "symmetry plane" : "farfield", list);
 }
 
-/* Names mean patches of the surface; only numbers can mean one that was
- * added. */
+/* Names refer to patches of the surface; only numbers can refer to an added
+ * patch. */
 static vg_status refuse_added_walls(const struct vg_boundary *b,
                                     struct vg_error *err)
 {
@@ -121,7 +121,7 @@ static vg_status refuse_added_walls(const struct vg_boundary *b,
   return VG_OK;
 }
 
-/* A patch without faces has no layers, whatever is asked for. */
+/* A patch without faces cannot have layers, even if they are requested. */
 static vg_status refuse_empty(const struct vg_mesh *m, const uint8_t *has_faces,
                               const enum vg_wall_reason *reason,
                               struct vg_error *err)
@@ -129,17 +129,17 @@ static vg_status refuse_empty(const struct vg_mesh *m, const uint8_t *has_faces,
   for (size_t i = 0; i < m->n_patch; i++)
     if (reason[i] == VG_WALL_SETTING && !has_faces[i])
       return vg_fail(err, VG_ERR_INPUT,
-                     "layers are asked for on patch %d%s%s, "
-                     "but none of its faces is left (the repair, or wrap, "
-                     "removed them); leave it out",
+                     "layers are requested on patch %d%s%s, but none of its "
+                     "faces is left (the repair or the wrap removed them); "
+                     "remove it from the list",
                      (int)m->patch[i].id, *m->patch[i].name ? " " : "",
                      m->patch[i].name);
   return VG_OK;
 }
 
-/* Patches without conditions that are walls when layers are asked for: all of a
- * body; in a duct all but its ends; in another outer boundary the bodies
- * inside it. A name that says wall decides everywhere. */
+/* Which patches without conditions are walls when layers are requested: all of
+ * a body; all of a duct except its ends; in another outer boundary, the bodies
+ * inside it. A name that says wall always decides. */
 static int is_bare_wall(const struct vg_boundary *b, size_t i)
 {
   const struct vg_flow *f = &b->flow;
@@ -152,7 +152,7 @@ static int is_bare_wall(const struct vg_boundary *b, size_t i)
   return f->n_inlet + f->n_outlet || b->n_given_patch || !f->on_outer[i];
 }
 
-/* What the input says of patch i, settings aside. */
+/* Classifies patch i by the input, without settings. */
 static enum vg_wall_reason by_input(const struct vg_boundary *b, size_t i,
                                     int has_faces)
 {
@@ -182,13 +182,13 @@ static vg_status apply_row(const struct vg_boundary *b,
     return refuse_added(b, "layers", i, err);
   if (row->grow == VG_ANSWER_NO && wall[i])
     return vg_fail(err, VG_ERR_INPUT,
-                   "patch %d is in the list walls, but the "
-                   "table layers says grow no; remove one",
+                   "patch %d is in the list walls, but the table layers has "
+                   "grow no for it; remove one of them",
                    (int)row->id);
   if (row->grow == VG_ANSWER_YES && slip[i])
     return vg_fail(err, VG_ERR_INPUT,
-                   "patch %d is in the list slip, but the "
-                   "table layers says grow yes; remove one",
+                   "patch %d is in the list slip, but the table layers has "
+                   "grow yes for it; remove one of them",
                    (int)row->id);
   if (row->grow == VG_ANSWER_YES) reason[i] = VG_WALL_SETTING;
   if (row->grow == VG_ANSWER_NO) reason[i] = VG_WALL_NOT;
@@ -209,8 +209,8 @@ static vg_status by_settings(const struct vg_boundary *b, uint8_t *wall,
   for (size_t i = 0; i < m->n_patch; i++) {
     if (wall[i] && slip[i]) {
       st = vg_fail(err, VG_ERR_INPUT,
-                   "patch %d is in both lists, walls and "
-                   "slip; remove one",
+                   "patch %d is in both lists, walls and slip; remove it from "
+                   "one of them",
                    (int)m->patch[i].id);
       goto done;
     }
@@ -223,7 +223,8 @@ done:
   return st;
 }
 
-/* Layers or nothing: a limit that is checked on no patch would be met. */
+/* Whether layers are mandatory: a limit that no patch is checked against would
+ * be met. */
 static int insists(const struct vg_settings *s)
 {
   const struct vg_layer_settings *l = &s->layer;
@@ -240,10 +241,9 @@ static vg_status no_walls(const struct vg_boundary *b, struct vg_error *err)
   vg_patch_list_text(&b->surface, n_own(b), list, sizeof list);
   return vg_fail(
     err, VG_ERR_INPUT,
-    "%s: layers are asked for, but no patch "
-    "is known to be a wall; name them with --walls (as in "
-    "--walls 3-12,wing*), give condition 4 in a .mapbc or the deck, "
-    "or say --layers no. Patches: %s",
+    "%s: layers are requested, but no patch is known to be a wall; name the "
+    "walls with --walls (such as --walls 3-12,wing*), set condition 4 in a "
+    ".mapbc or the deck, or turn layers off with --layers no. Patches: %s",
     b->read->files.stem, list);
 }
 
@@ -265,8 +265,8 @@ vg_status vg_walls_find(const struct vg_boundary *b,
   VG_TRY(by_settings(b, mark_of, mark_of + m->n_patch, reason, err));
   VG_TRY(refuse_empty(m, has_faces, reason, err));
   for (size_t i = 0; i < m->n_patch; i++) *n_wall += reason[i] != VG_WALL_NOT;
-  /* A whole domain in which conditions say that nothing is viscous is left
-   * as it is, unless somebody insists. */
+  /* A complete domain whose conditions say that nothing is viscous is accepted,
+   * unless layers are mandatory. */
   if (!*n_wall && vg_walls_asked(&b->read->settings) &&
       (insists(&b->read->settings) || !b->require_bc))
     st = no_walls(b, err);
@@ -275,7 +275,7 @@ done:
   return st;
 }
 
-/* Lower than this share of its longest edge. */
+/* Whether the height is below this share of the longest edge. */
 static int is_sliver(const struct vg_mesh *m, const uint32_t t[3], double share)
 {
   double e[3][3], n[3], longest = 0;
@@ -288,8 +288,8 @@ static int is_sliver(const struct vg_mesh *m, const uint32_t t[3], double share)
   return vg_norm(n) < share * longest;
 }
 
-/* On walls, layers would invert on slivers. Elsewhere only flat triangles spoil
- * the cells on them. Patches next to walls are triangulated again anyway. */
+/* On walls, layers would invert on slivers. Elsewhere only flat triangles
+ * degrade the cells on them. Patches next to walls are remeshed anyway. */
 static int has_slivers(const struct vg_mesh *m,
                        const enum vg_wall_reason *reason)
 {
@@ -314,9 +314,9 @@ vg_status vg_walls_swap(struct vg_boundary *b,
   st = vg_surface_swap(&b->surface, &o, &r, err);
   if (st < 0) return st;
   vg_note(b->notes,
-          "slivers of the surface: caps %zu, now %zu, needles %zu, "
-          "now %zu, by %zu swaps and %zu collapses of edges that move it by "
-          "%.2g at most (--surface-swap no: as given)",
+          "slivers of the surface: caps %zu, now %zu, needles %zu, now %zu, "
+          "by %zu swaps and %zu collapses of edges that move it by at most "
+          "%.2g (--surface-swap no keeps it unchanged)",
           r.n_cap[0], r.n_cap[1], r.n_needle[0], r.n_needle[1], r.n_swapped,
           r.n_collapsed, r.moved);
   return st;

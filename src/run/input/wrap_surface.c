@@ -1,4 +1,4 @@
-/* The surface of a problem wrapped. */
+/* Wraps the surface of a problem. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -9,9 +9,9 @@
 #include "run/settings/plan_options.h"
 #include "run/settings/patch_names.h"
 
-#define LONG 60.0 /* seconds that are announced */
+#define LONG 60.0 /* Seconds above which a wrap is announced. */
 
-/* asked: [n_patch] 1: walls or the table layers name the patch. */
+/* asked: [n_patch] 1: `walls` or the table layers names the patch. */
 static vg_status find_asked(const struct vg_boundary *b, uint8_t *asked,
                             struct vg_error *err)
 {
@@ -38,10 +38,10 @@ static vg_status check_empty(const struct vg_boundary *b, const uint8_t *empty,
   for (size_t i = 0; i < b->surface.n_patch; i++)
     if (empty[i] && asked[i])
       return vg_fail(err, VG_ERR_INPUT,
-                     "wrap: nothing of patch %d is left, "
-                     "though walls or the table layers name it: it lies inside "
-                     "others, or is smaller than the size; remove it there, or "
-                     "take a smaller size",
+                     "wrap: nothing is left of patch %d, although walls or "
+                     "the table layers names it: it lies inside other "
+                     "patches, or is smaller than the wrap size; remove it "
+                     "from the list, or reduce the size",
                      (int)b->surface.patch[i].id);
   return VG_OK;
 }
@@ -49,45 +49,46 @@ static vg_status check_empty(const struct vg_boundary *b, const uint8_t *empty,
 static void note_wrap(struct vg_boundary *b, const struct vg_wrap_report *r)
 {
   vg_note(b->notes,
-          "the surface was wrapped: %zu triangles by %zu; of %zu "
-          "points %zu lie on them, others about %.3g away; put together where "
-          "two sides meet in an edge: %zu; gaps narrower than %g were bridged; "
-          "the farthest point of the wrap is %.3g away, at (%.6g, %.6g, %.6g); "
-          "patches follow the nearest triangle, left without any: %zu",
+          "the surface was wrapped: %zu triangles replaced by %zu; of %zu "
+          "points %zu lie on the input, the others about %.3g away; points "
+          "merged where two sides meet in an edge: %zu; gaps narrower than %g "
+          "were bridged; the farthest point of the wrap is %.3g away, at "
+          "(%.6g, %.6g, %.6g); new triangles have the patch of the nearest "
+          "input triangle; patches left without triangles: %zu",
           r->n_before, b->surface.n_tri - r->n_kept, r->n_point, r->n_fit,
           r->offset, r->n_zip, b->read->settings.wrap, r->distance, r->at[0],
           r->at[1], r->at[2], r->n_empty);
   vg_note(b->notes,
-          "what the wrap leaves out: no point of the input lies "
-          "farther than %.3g outside it (at %.6g, %.6g, %.6g); %.1f %% of the "
-          "input's area lies inside it, within other parts or behind gaps "
-          "narrower than its size",
+          "parts of the input that the wrap omits: no point of the input is "
+          "farther than %.3g outside the wrap (at %.6g, %.6g, %.6g); %.1f %% "
+          "of the input area is inside it, within other parts or behind gaps "
+          "narrower than the wrap size",
           r->missing, r->missing_at[0], r->missing_at[1], r->missing_at[2],
           100 * r->inside);
   if (r->sheet > 0)
     vg_note(b->notes,
-            "%.1f %% of the wrapped area are sheets: they have "
-            "fluid on both sides, closer together than %.3g",
+            "%.1f %% of the wrapped area consists of sheets: they have fluid "
+            "on both sides, closer together than %.3g",
             100 * r->sheet, 10 * r->offset);
   if (r->sheet > 0 && r->widest > b->read->settings.wrap)
     vg_note(b->notes,
-            "the surface has holes wider than the wrap, up to %.3g, "
-            "at (%.6g, %.6g, %.6g): a part that should be solid may have fluid "
-            "inside it (--close-holes yes, or a larger wrap)",
+            "the surface has holes wider than the wrap size, up to %.3g, at "
+            "(%.6g, %.6g, %.6g): a part that should be solid may have fluid "
+            "inside it (close them with --close-holes yes, or use a larger "
+            "wrap size)",
             r->widest, r->widest_at[0], r->widest_at[1], r->widest_at[2]);
   if (r->n_cavity || r->n_crumb)
     vg_note(b->notes,
-            "shells of the wrap that were removed: inside it %zu, "
-            "of negligible volume %zu",
+            "shells of the wrap that were removed: %zu inside it, %zu of "
+            "negligible volume",
             r->n_cavity, r->n_crumb);
   if (r->n_kept)
     vg_note(b->notes,
-            "triangles of outer boundaries that were not wrapped: "
-            "%zu",
+            "triangles of outer boundaries, which were not wrapped: %zu",
             r->n_kept);
 }
 
-/* What takes minutes says so before it begins. */
+/* Announces a wrap that takes minutes before it starts. */
 static vg_status announce(struct vg_boundary *b,
                           const struct vg_wrap_options *o,
                           struct vg_display *show, struct vg_error *err)
@@ -102,8 +103,8 @@ static vg_status announce(struct vg_boundary *b,
            (int)(f.seconds / 60 + 0.5));
   vg_display_update(show, stage, 0, 0);
   vg_note(b->notes,
-          "forecast of the wrap: %s triangles, %.0f minutes; twice "
-          "the size takes a quarter of them",
+          "forecast of the wrap: %s triangles, %.0f minutes; doubling the "
+          "size reduces both to about a quarter",
           count, f.seconds / 60);
   return VG_OK;
 }
@@ -154,13 +155,13 @@ void vg_boundary_suggest_wrap(const struct vg_boundary *b,
       b->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE] ||
       n[VG_DEFECT_NO_BC] == b->check.n_defect)
     return;
-  vg_display_update(show, "wrap that would do", 0, 0);
+  vg_display_update(show, "searching for a wrap size", 0, 0);
   if (vg_wrap_suggest(&b->surface, &stop, &wrap, &reason, &why) < 0) return;
   if (reason == VG_WRAP_SHEETS)
     snprintf(text, size,
-             "; its sheets without thickness bound no body, so "
-             "that no wrap will do");
+             "; it consists of sheets without thickness that bound no body, "
+             "so a wrap does not help");
   else
     snprintf(text, size, "; --wrap %.2g puts a closed surface around it%s",
-             wrap, reason == VG_WRAP_HOLES ? " that bridges its holes" : "");
+             wrap, reason == VG_WRAP_HOLES ? " and bridges its holes" : "");
 }

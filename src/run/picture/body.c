@@ -7,13 +7,13 @@
 #include "base/memory.h"
 #include "core/geometry/vector.h"
 
-/* Planes stand a little off the middle, where symmetric bodies have points and
- * edges (V4). */
+/* Planes are placed slightly away from the middle, where symmetric bodies have
+ * points and edges (V4). */
 #define MIDDLE 0.4871
-#define TRIED 7       /* planes */
-#define AROUND 1.3    /* window of a section over its extent */
-#define CLOSE 5       /* window close to a wall, in heights of layers */
-#define CLOSE_BARE 14 /* as much in edges, without layers */
+#define TRIED 7       /* Number of planes tried. */
+#define AROUND 1.3    /* Window of a section relative to its extent. */
+#define CLOSE 5       /* Window close to a wall, in heights of the layers. */
+#define CLOSE_BARE 14 /* The same without layers, in edges. */
 
 static int is_wall(const struct vg_patch *p)
 {
@@ -42,14 +42,14 @@ void vg_body_patches(const struct vg_mesh *surface,
   if (!n) memset(on, 1, surface->n_patch);
 }
 
-/* --- where to cut -------------------------------------------------------- */
+/* --- choice of the cuts -------------------------------------------------- */
 
-/* The body and its box. */
+/* The body and its bounding box. */
 struct body {
   const struct vg_mesh *m;
   const struct vg_columns *columns;
-  uint8_t *on;    /* patches */
-  double *height; /* [n_point] of the layers; NULL: none */
+  uint8_t *on;    /* Patches of the body. */
+  double *height; /* [n_point] height of the layers; NULL: no layers. */
   double lo[3], hi[3];
 };
 
@@ -99,8 +99,9 @@ static struct vg_cut window(const double lo[3], const double hi[3], int axis,
   return c;
 }
 
-/* What a plane cuts of the body: its box, and its ends in the first of the
- * axes with what is to be seen there, the layers or some edges. */
+/* Section of the body by a plane: its bounding box, its ends along the first
+ * axis, and the size of the details there, which are the layers or some
+ * edges. */
 struct section {
   double lo[3], hi[3], at[2][2], size[2];
 };
@@ -142,7 +143,7 @@ static void cut_triangle(const struct body *b, const uint32_t *t, int axis,
   }
 }
 
-/* 0: the plane does not meet the body. */
+/* Returns 0 if the plane does not intersect the body. */
 static double cut_body(const struct body *b, int axis, double at,
                        struct section *s)
 {
@@ -163,8 +164,8 @@ static double plane_at(const struct body *b, int axis, double share)
   return b->lo[axis] + share * (b->hi[axis] - b->lo[axis]);
 }
 
-/* The middle, or of a few planes that whose section is largest: of a wing it
- * is the one along its span. */
+/* The middle plane or, among a few others, the plane with the largest section:
+ * for a wing it is the one along its span. */
 static double choose_plane(const struct body *b, int axis, struct section *s)
 {
   double at = plane_at(b, axis, MIDDLE), most = cut_body(b, axis, at, s);
@@ -194,7 +195,8 @@ static void close_to_ends(const struct section *s, const struct vg_cut *whole,
   }
 }
 
-/* Of columns that lack levels, the one with the least share of them. */
+/* Among columns with missing levels, the one with the smallest share of its
+ * levels. */
 static size_t poorest(const struct vg_columns *c)
 {
   size_t found = SIZE_MAX;
@@ -211,7 +213,7 @@ static size_t poorest(const struct vg_columns *c)
   return found;
 }
 
-/* Across the axis that the column leans to least. */
+/* The plane is normal to the axis to which the column is inclined least. */
 static void close_to_poorest(const struct body *b, struct vg_cut_plan *plan)
 {
   const struct vg_columns *c = b->columns;

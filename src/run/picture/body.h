@@ -1,26 +1,26 @@
-/* run/picture/body.h: what of a domain one wants to look at, and from where.
- * The same on every rank that has the surface and the columns. Uses
- * layers/columns/columns.h, run/picture/cuts.h. */
+/* run/picture/body.h: chooses views of a domain. The same on every rank that
+ * has the surface and the columns. Uses layers/columns/columns.h,
+ * run/picture/cuts.h. */
 #ifndef VG_RUN_PICTURE_BODY_H
 #define VG_RUN_PICTURE_BODY_H
 
 #include "layers/columns/columns.h"
 #include "run/picture/cuts.h"
 
-/** Mark the patches of the body: those with layers; without such, those with
- * the condition of a wall; without such, all.
+/** Marks the patches of the body: those with layers, or, without layers, those
+ * with a wall condition, or, without any such condition, all patches.
  * @param columns  NULL: no layers
  * @param on       out: [surface->n_patch] */
 void vg_body_patches(const struct vg_mesh *surface,
                      const struct vg_columns *columns, uint8_t *on);
 
-/** What a cut shows, for its words. */
+/** What a cut shows, for its caption. */
 enum vg_cut_view {
-  VG_VIEW_BODY,   /* the body's section */
-  VG_VIEW_DOMAIN, /* the whole domain */
-  VG_VIEW_FIRST,  /* close to the section's end of least u */
-  VG_VIEW_LAST,   /* ... of largest u */
-  VG_VIEW_POOREST /* where layers lack most of their levels */
+  VG_VIEW_BODY,   /* The section of the body. */
+  VG_VIEW_DOMAIN, /* The whole domain. */
+  VG_VIEW_FIRST,  /* Close to the end of the section with the smallest u. */
+  VG_VIEW_LAST,   /* Close to the end with the largest u. */
+  VG_VIEW_POOREST /* Where layers lack most of their levels. */
 };
 
 struct vg_cut_plan {
@@ -29,9 +29,9 @@ struct vg_cut_plan {
   enum vg_cut_view view[VG_CUTS_MAX];
 };
 
-/** Sections of the body across y, x and z a little off its middle, the first
- * of them for the whole domain too and close to both of its ends, and where
- * layers are poorest, if they are somewhere. VG_ERR_MEMORY. */
+/** Sections of the body normal to y, x and z slightly away from its middle. The
+ * first section is also shown for the whole domain and close to both of its
+ * ends. If layers lack levels, the worst place is added. VG_ERR_MEMORY. */
 vg_status vg_cut_plan(const struct vg_mesh *surface,
                       const struct vg_columns *columns,
                       struct vg_cut_plan *plan, struct vg_error *err);

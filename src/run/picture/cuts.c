@@ -72,9 +72,9 @@ void vg_cuts_free(struct vg_cuts *c)
 
 /* --- cells of a slice ---------------------------------------------------- */
 
-/* What is drawn of a slice: the cuts whose windows it comes near to, and for
- * each of these a bit of above[p], set where point p is above the plane or in
- * it, so that a plane never goes through a point. */
+/* State of drawing a slice: the cuts whose windows may contain parts of it. For
+ * each of these cuts a bit of above[p] is set if point p is above the plane or
+ * in it, so that a plane never passes exactly through a point. */
 struct drawing {
   struct vg_cuts *c;
   const struct vg_slice *s;
@@ -123,8 +123,8 @@ static void find_sides(struct drawing *d)
   }
 }
 
-/* Where the plane meets an edge, from below to above: the same place for all
- * cells at the edge. */
+/* Intersection of the plane with an edge, from below to above: the same
+ * position for all cells at the edge. */
 static void meet(const struct vg_cut *c, const double *below,
                  const double *above, double p[2])
 {
@@ -138,7 +138,7 @@ static void meet(const struct vg_cut *c, const double *below,
          (below[v] + t * (above[v] - below[v]) - c->centre[1]) * scale;
 }
 
-/* The step of the smallest dihedral angle of a tetrahedron. */
+/* Colour step of the smallest dihedral angle of a tetrahedron. */
 static int angle_step(const double *const x[4])
 {
   double normal[4][3], most = -1;
@@ -198,7 +198,7 @@ static vg_status cut_cell(const struct drawing *d, size_t j, int kind,
   return vg_cuts_draw(d->c->at + i * TILES, &g, code, err);
 }
 
-/* Bits of the cuts that go through a cell of n points. */
+/* Bits of the cuts that intersect a cell of n points. */
 static inline unsigned cuts_of(const uint16_t *above, const uint32_t *node,
                                int n)
 {
@@ -249,9 +249,9 @@ vg_status vg_cuts_put(void *cuts, const struct vg_slice *slice,
   return st;
 }
 
-/* --- ranks ----------------------------------------------------------------*/
+/* --- gathering from ranks ------------------------------------------------ */
 
-/* Tiles as they are sent: where, then the samples. */
+/* A tile in a message: its position and its samples. */
 struct sent {
   uint32_t at;
   uint16_t code[TILE * TILE];

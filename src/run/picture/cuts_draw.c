@@ -1,4 +1,4 @@
-/* Convex polygons into the samples of a cut. */
+/* Draws convex polygons into the samples of a cut. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,8 +6,9 @@
 #include "base/memory.h"
 #include "run/picture/cuts_parts.h"
 
-#define PEN 1.2        /* samples from an edge that it darkens */
-#define THIN (4 * PEN) /* polygons thinner than this have fainter edges */
+/* Distance from an edge, in samples, that the edge darkens. */
+#define PEN 1.2
+#define THIN (4 * PEN) /* Polygons thinner than this have fainter edges. */
 
 static double least(double a, double b)
 {
@@ -18,7 +19,7 @@ static double most(double a, double b)
   return a > b ? a : b;
 }
 
-/* The tile, made if it is not there; NULL: no memory. */
+/* The tile, created if it does not exist; NULL: no memory. */
 static struct tile *touch(struct tile **at)
 {
   struct tile *now = __atomic_load_n(at, __ATOMIC_ACQUIRE), *made;
@@ -33,7 +34,7 @@ static struct tile *touch(struct tile **at)
   return now;
 }
 
-/* Something that grows with the angle of d. */
+/* A monotonic function of the angle of d. */
 static double turn(const double d[2])
 {
   double sum = fabs(d[0]) + fabs(d[1]), t = sum > 0 ? d[1] / sum : 0;
@@ -41,7 +42,7 @@ static double turn(const double d[2])
   return d[0] < 0 ? 2 - t : t;
 }
 
-/* Corners around their mean: the cut of a convex cell is convex. */
+/* Sorts corners around their mean: the section of a convex cell is convex. */
 static void order(struct polygon *g)
 {
   double mean[2] = { 0, 0 }, angle[CORNERS_MAX];
@@ -68,8 +69,8 @@ struct lines {
   double a[CORNERS_MAX], b[CORNERS_MAX], c[CORNERS_MAX], pen;
 };
 
-/* Twice the area over the circumference is about the thickness of a thin
- * polygon; black edges of such would hide what they are edges of. */
+/* Twice the area over the perimeter is about the thickness of a thin polygon,
+ * whose black edges would otherwise hide its colour. */
 static void find_lines(const struct polygon *g, struct lines *l)
 {
   double area = 0, around = 0;
@@ -97,8 +98,9 @@ static void find_lines(const struct polygon *g, struct lines *l)
   if (l->pen > 1) l->pen = 1;
 }
 
-/* Samples of a row with middles in the polygon: *from .. *to - 1. An edge cuts
- * the row at the same place for the polygons on both of its sides. */
+/* Samples of a row with centres in the polygon: *from .. *to - 1. An edge
+ * intersects the row at the same position for the polygons on both of its
+ * sides. */
 static void span(const struct polygon *g, double y, double *from, double *to)
 {
   *from = INFINITY;
@@ -130,7 +132,7 @@ static int shade(const struct lines *l, double x, double y)
   return (int)(SHADE_MAX * near * l->pen + 0.5);
 }
 
-/* Samples of a row beyond the pen of all edges: *from .. *to - 1. */
+/* Samples of a row that no edge darkens: *from .. *to - 1. */
 static void inside(const struct lines *l, double y, int *from, int *to)
 {
   double lo = *from, hi = *to;
@@ -157,7 +159,7 @@ static void near_edges(uint16_t *row, int x0, int from, int to, double y,
   }
 }
 
-/* Samples from the first to before the last that a polygon may touch. */
+/* Range of samples that a polygon may touch; x1 and y1 are excluded. */
 struct range {
   int x0, y0, x1, y1;
 };
@@ -177,7 +179,7 @@ static struct range range_of(const struct polygon *g)
                          whole(ceil(hi[1] - 0.5), 0, SAMPLES * VG_CUT_HEIGHT) };
 }
 
-/* The part of a polygon in a tile that this thread has. */
+/* Draws the part of a polygon in a tile that this thread has locked. */
 static void draw_tile(struct tile *t, int tx, int ty, const struct range *r,
                       const struct polygon *g, const struct lines *l,
                       uint16_t code)

@@ -1,4 +1,4 @@
-/* Samples of a cut into pixels. */
+/* Converts samples of a cut to pixels. */
 #include "run/picture/cuts.h"
 
 #include <assert.h>
@@ -17,7 +17,7 @@ const uint8_t vg_cut_angle_colour[VG_CUT_ANGLES + 1][3] = {
 static const uint8_t layer_grey[3] = { 214, 216, 220 };
 static const uint8_t ink[3] = { 34, 36, 46 };
 
-/* Subdomains of neighbouring numbers get colours far from each other. */
+/* Subdomains with neighbouring numbers get clearly different colours. */
 static const uint8_t part_colour[12][3] = {
   { 141, 184, 226 }, { 244, 190, 120 }, { 150, 204, 150 }, { 232, 150, 150 },
   { 190, 170, 220 }, { 206, 174, 150 }, { 240, 180, 214 }, { 200, 200, 110 },
@@ -51,7 +51,7 @@ struct sum {
   int rgb[3], n;
 };
 
-/* A sample's colour, darkened as it is near an edge. */
+/* Colour of a sample, darkened near an edge. */
 static struct sum shaded(unsigned code, enum vg_cut_colours colours)
 {
   const uint8_t *c = colour_of(code, colours);
@@ -63,7 +63,7 @@ static struct sum shaded(unsigned code, enum vg_cut_colours colours)
   return s;
 }
 
-/* Pixels of a tile. Neighbours have mostly the same code. */
+/* Pixels of a tile. Neighbouring samples mostly have the same code. */
 static void tile_pixels(const struct tile *t, enum vg_cut_colours colours,
                         uint8_t (*to)[4])
 {

@@ -1,10 +1,11 @@
-/* Private to run/picture: samples of a cut. */
+/* run/picture/cuts_parts.h: samples of a cut. Private to run/picture. */
 #ifndef VG_RUN_PICTURE_CUTS_PARTS_H
 #define VG_RUN_PICTURE_CUTS_PARTS_H
 
 #include "run/picture/cuts.h"
 
-/* Samples are kept in square tiles that come to be when they are touched. */
+/* Samples are stored in square tiles, which are created when first drawn
+ * into. */
 enum {
   SAMPLES = 2,
   TILE = 64,
@@ -14,7 +15,7 @@ enum {
   CORNERS_MAX = 8
 };
 
-/* A sample: 0, or what is there. */
+/* A sample: 0 if nothing is drawn, or a code that describes the cell. */
 #define CODE(kind, shade, angle, part)                                         \
   (uint16_t)(0x8000 | (kind) << 12 | (shade) << 9 | (angle) << 6 | (part))
 enum {
@@ -27,13 +28,13 @@ enum {
 
 struct tile {
   uint16_t code[TILE * TILE];
-  char busy; /* who has set it draws */
+  char busy; /* A lock: the thread that has set it draws. */
 };
 
 struct vg_cuts {
   size_t n;
   struct vg_cut cut[VG_CUTS_MAX];
-  struct tile **at; /* [n * TILES]; NULL: nothing is drawn there */
+  struct tile **at; /* [n * TILES]; NULL: nothing is drawn there. */
 };
 
 /* In samples, from the upper left corner. */
@@ -42,8 +43,8 @@ struct polygon {
   double p[CORNERS_MAX][2];
 };
 
-/* cuts_draw.c: draw a convex polygon, its corners in any order, which they have
- * around it afterwards. code: that of an inner sample, of shade 0. */
+/* cuts_draw.c: draws a convex polygon. Its corners may be in any order and are
+ * sorted around it. code: that of an inner sample, with shade 0. */
 vg_status vg_cuts_draw(struct tile **tiles, struct polygon *g, uint16_t code,
                        struct vg_error *err);
 

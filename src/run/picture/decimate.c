@@ -9,8 +9,8 @@
 #include "base/table.h"
 #include "core/geometry/vector.h"
 
-#define COARSER 1.25 /* the next lattice, where one was too fine */
-#define LEFT 3       /* triangles in a square of a lattice */
+#define COARSER 1.25 /* Factor to the next lattice if one is too fine. */
+#define LEFT 3       /* Triangles per square of a lattice. */
 
 void vg_decimated_release(struct vg_decimated *c)
 {
@@ -20,12 +20,12 @@ void vg_decimated_release(struct vg_decimated *c)
   *c = (struct vg_decimated)VG_DECIMATED_INIT;
 }
 
-/* Cubes that hold points, numbered as their first points come. */
+/* Cubes that contain points, numbered in the order of their first points. */
 struct cubes {
   struct vg_table table;
-  uint64_t *key;   /* [n_cube] place on the lattice */
-  uint32_t *of;    /* [n_point] cube of each point */
-  uint32_t *count; /* [n_cube] points */
+  uint64_t *key;   /* [n_cube] position in the lattice. */
+  uint32_t *of;    /* [n_point] cube of each point. */
+  uint32_t *count; /* [n_cube] number of points. */
 };
 
 static void release(struct cubes *q)
@@ -119,8 +119,9 @@ static double area_of(const struct vg_mesh *m, size_t t)
   return vg_norm(cross) / 2;
 }
 
-/* Triangles that a lattice leaves: those larger than its cubes, and about
- * LEFT for each of its squares that smaller ones cover. By every stride-th. */
+/* Estimated number of triangles that a lattice leaves: those larger than its
+ * cubes, and about LEFT for each of its squares that smaller ones cover.
+ * Samples every stride-th triangle. */
 static double expected(const struct vg_mesh *m, size_t stride, double step)
 {
   double n = 0;
@@ -130,7 +131,7 @@ static double expected(const struct vg_mesh *m, size_t stride, double step)
   return n * (double)stride;
 }
 
-/* The finest step that may do. */
+/* Lower bound of the step. */
 static double first_step(const struct vg_mesh *m, size_t n)
 {
   size_t stride = 1 + m->n_tri / 20000;

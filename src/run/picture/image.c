@@ -7,7 +7,8 @@
 
 #include "base/memory.h"
 
-/* A report has a dozen pictures: the fastest level is the one for them (V3). */
+/* A report has a dozen pictures, for which the fastest level is suitable
+ * (V3). */
 #define LEVEL 1
 
 vg_status vg_image_new(int width, int height, struct vg_image *m,
@@ -32,7 +33,8 @@ static void put32(uint8_t *to, unsigned long v)
   for (int k = 0; k < 4; k++) to[k] = (uint8_t)(v >> (24 - 8 * k));
 }
 
-/* A chunk at `to`, its data already behind the 8 bytes of length and name. */
+/* Completes a chunk at `to`, whose data already follow the 8 bytes of length
+ * and name. */
 static size_t seal(uint8_t *to, const char *name, size_t n)
 {
   put32(to, n);
@@ -89,8 +91,9 @@ static int nearest(const struct used *palette, unsigned colour)
   return best;
 }
 
-/* Colours by falling count, the first of them a palette, and the place in it
- * of every colour in use. Returns how many it has. */
+/* Sorts colours by decreasing count, takes the first of them as the palette,
+ * and stores the palette index of every colour in use. Returns the size of the
+ * palette. */
 static size_t find_palette(const struct vg_image *m, uint32_t *table,
                            struct used *used)
 {
@@ -118,8 +121,8 @@ static size_t put_head(const struct vg_image *m, size_t n,
 
   put32(head, (unsigned long)m->width);
   put32(head + 4, (unsigned long)m->height);
-  head[8] = 8; /* bits of a place in ... */
-  head[9] = 3; /* ... a palette */
+  head[8] = 8; /* Bits of an index into ... */
+  head[9] = 3; /* ... a palette. */
   at = seal(to, "IHDR", 13);
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) {
@@ -136,7 +139,7 @@ static size_t put_head(const struct vg_image *m, size_t n,
   return at + seal(to + at, "tRNS", n);
 }
 
-/* Rows of places in the palette, each behind a byte that says so. */
+/* Rows of palette indices, each preceded by the byte of its filter type. */
 static void put_rows(const struct vg_image *m, const uint32_t *table,
                      uint8_t *to)
 {

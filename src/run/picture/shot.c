@@ -10,12 +10,15 @@
 #include "core/geometry/vector.h"
 
 enum { SAMPLES = 2, BAND = 60 };
-#define PEN 0.9 /* samples from an edge that it darkens */
+#define PEN                                                                    \
+  0.9 /* Distance from an edge, in samples, that the edge darkens.             \
+       */
 
-/* The light of a sample: brightness of the face by 63, darkness of an edge. */
+/* The light of a sample: brightness of the face up to 63, darkness of an
+ * edge. */
 enum { LIGHT_FULL = 63, EDGE_DARK = 3 };
-#define SMALL 3.0  /* triangles lower than this have no edges, ... */
-#define LARGE 12.0 /* ... and from here on black ones */
+#define SMALL 3.0  /* Triangles lower than this have no edges, ... */
+#define LARGE 12.0 /* ... and those higher than this have black edges. */
 
 /* --- camera -------------------------------------------------------------- */
 
@@ -73,8 +76,8 @@ struct drawing {
   const struct vg_camera *camera;
   struct vg_shot *s;
   float *depth;
-  double (*at)[3];    /* [n_point] in samples */
-  uint16_t (*row)[2]; /* [n_tri] rows from .. to - 1; none: not seen */
+  double (*at)[3];    /* [n_point] positions in samples. */
+  uint16_t (*row)[2]; /* [n_tri] rows from .. to - 1; empty if not visible. */
 };
 
 static void place(void *context, size_t first, size_t end, int worker)
@@ -103,7 +106,8 @@ static double brightness(const struct drawing *d, const uint32_t *t)
   return l > 1 ? 1 : l;
 }
 
-/* Functions of the place that are 0 on an edge and 1 at the corner across. */
+/* Linear functions of the position that are 0 on an edge and 1 at the opposite
+ * corner. */
 struct plane {
   double a[3], b[3], c[3], height[3];
   int bright, pen;
@@ -173,7 +177,7 @@ static int whole(double v, int from, int to)
   return v < from ? from : v > to ? to : (int)v;
 }
 
-/* From the first sample with its middle behind lo to the last before hi. */
+/* From the first sample whose centre is beyond lo to the last one before hi. */
 static void between(double lo, double hi, int all, int *from, int *to)
 {
   *from = whole(ceil(lo - 0.5), 0, all);
@@ -190,7 +194,7 @@ static void find_rows(void *context, size_t first, size_t end, int worker)
     const double *a = d->at[n[0]], *b = d->at[n[1]], *c = d->at[n[2]];
     int from = 0, to = 0;
 
-    /* y goes down, so fronts are clockwise */
+    /* y points down, so front faces are clockwise. */
     if (d->is_seen[t] && area_of(d, t) < -1e-9)
       between(least(a[1], least(b[1], c[1])), most(a[1], most(b[1], c[1])),
               d->s->height, &from, &to);
@@ -199,8 +203,8 @@ static void find_rows(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Rows of a band, all triangles in their order: the first of two that are
- * equally near stays. */
+/* Draws the rows of a band, with all triangles in order: of two that are
+ * equally near, the first stays. */
 static void draw(void *context, size_t first, size_t end, int worker)
 {
   const struct drawing *d = context;
@@ -266,7 +270,7 @@ void vg_shot_release(struct vg_shot *s)
   *s = (struct vg_shot)VG_SHOT_INIT;
 }
 
-/* Sums over samples: colours by brightness. */
+/* Sums over samples: colour times brightness. */
 struct sum {
   int rgb[3], n;
 };
@@ -282,7 +286,8 @@ static struct sum shaded(const uint8_t *rgb, int light, int is_behind)
   return s;
 }
 
-/* A row of pixels. Neighbours mostly have the triangle and light of before. */
+/* A row of pixels. Neighbouring samples mostly have the same triangle and
+ * light. */
 static void pixels(const struct vg_shot *s, int y, const uint8_t *colour,
                    const uint8_t (*palette)[3], uint8_t (*to)[4])
 {

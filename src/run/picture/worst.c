@@ -42,7 +42,7 @@ static vg_status look(const struct vg_slice *s, size_t at, struct vg_around *to,
   return VG_OK;
 }
 
-/* A cell is in one slice, so threads do not meet. */
+/* A cell is in one slice, so threads do not write the same entry. */
 static vg_status search_slice(void *context, const struct vg_slice *s,
                               struct vg_error *err)
 {
@@ -57,7 +57,7 @@ static vg_status search_slice(void *context, const struct vg_slice *s,
   return st;
 }
 
-/* Which of them this is, then its cells. */
+/* Packs the index of each entry and its cells. */
 static vg_status pack(size_t n, const struct vg_around *a, struct vg_bytes *b,
                       struct vg_error *err)
 {

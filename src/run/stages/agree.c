@@ -9,9 +9,9 @@
 #include "layers/columns/share.h"
 #include "partition/store/store.h"
 
-/* What a rank says; the same bytes for the same things. */
+/* Digests of the data of a rank; equal data give equal bytes. */
 struct claim {
-  uint64_t counts; /* 1: the first rank of its node */
+  uint64_t counts; /* 1: the first rank of its node. */
   struct vg_digest of[VG_AGREE_N];
   char host[64];
 };
@@ -30,7 +30,7 @@ static void add(void *user, size_t n, const void *data)
   *d = vg_digest_of(*d, n, data);
 }
 
-/* Names of patches aside, which change no mesh. */
+/* Names of patches are omitted, since they do not affect the mesh. */
 static struct vg_digest of_surface(const struct vg_mesh *m)
 {
   struct vg_digest d = { { 0, 0 } };
@@ -72,10 +72,10 @@ static vg_status compare(int n, const struct vg_bytes *claim,
     for (int k = 0; k < VG_AGREE_N && other.counts; k++)
       if (memcmp(&other.of[k], &first.of[k], sizeof other.of[k]) != 0)
         return vg_fail(err, VG_ERR_REMOTE,
-                       "rank %d on %s made other %s than "
-                       "rank 0 on %s; nothing was meshed. Give all ranks the "
-                       "same program, input files and libraries; if they have "
-                       "them, please report this with both processors",
+                       "rank %d on %s computed different %s than rank 0 on "
+                       "%s; nothing was meshed. Give all ranks the same "
+                       "program, input files and libraries; if they are the "
+                       "same, please report this with both processor types",
                        r, other.host, vg_agree_name((enum vg_agree)k),
                        first.host);
   }

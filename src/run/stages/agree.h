@@ -1,5 +1,6 @@
-/* run/stages/agree.h: nodes that make surface, layers and sizes each for itself
- * must make the same. Uses partition/store, layers, core. */
+/* run/stages/agree.h: checks that the nodes, each of which computes surface,
+ * layers and sizes itself, have obtained the same result. Uses partition/store,
+ * layers, core. */
 #ifndef VG_RUN_STAGES_AGREE_H
 #define VG_RUN_STAGES_AGREE_H
 
@@ -8,7 +9,7 @@
 #include "core/sizing/sizing.h"
 #include "layers/columns/layers.h"
 
-/* What can differ; VG_AGREE_NOTHING for the test below. */
+/* Data that can differ; VG_AGREE_NOTHING is for the test below. */
 enum vg_agree {
   VG_AGREE_SURFACE,
   VG_AGREE_LAYERS,
@@ -17,16 +18,18 @@ enum vg_agree {
   VG_AGREE_NOTHING = VG_AGREE_N
 };
 
-/** "surface", "layers", "sizes"; NULL beyond. Static. */
+/** "surface", "layers", "sizes"; NULL for other values. Static string. */
 const char *vg_agree_name(enum vg_agree what);
 
-/** Whether all ranks have the same, by digests; of the ranks of a node the
- * first speaks for all, who got copies. Collective, after these are shared.
+/** Compares the data of all ranks by digests. The first rank of a node
+ * represents the others, which have copies. Collective; call it after the data
+ * were shared.
  *
- * @param layers  NULL: none
- * @param change  what the last node takes for changed, to show what happens
- * VG_ERR_REMOTE on all ranks, with the rank, its host and what differs. Costs
- * one reading of it on several nodes, nothing on one. */
+ * @param layers  NULL: no layers
+ * @param change  data that the last node pretends to have changed, for tests
+ *
+ * VG_ERR_REMOTE on all ranks, naming the rank, its host and the data that
+ * differ. Costs one pass over the data on several nodes, and nothing on one. */
 vg_status vg_run_agree(struct vg_comm *c, const struct vg_mesh *surface,
                        const struct vg_layers *layers,
                        const struct vg_sizing *sizing, enum vg_agree change,

@@ -117,14 +117,14 @@ static const char *hits_input(const struct vg_outputs *o,
   return hit;
 }
 
-/* A .cogsg holds tetrahedra only. */
+/* A .cogsg can hold only tetrahedra. */
 static vg_status refuse_mixed(const char *item, const struct vg_settings *s,
                               struct vg_error *err)
 {
   if (s->cells != VG_LAYER_MIXED || strcmp(item, "cogsg") != 0) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "write: a .cogsg holds tetrahedra only, "
-                 "but cells is mixed; write b8.ugrid, or set cells to tets");
+                 "write: a .cogsg can hold only tetrahedra, but cells is "
+                 "mixed; write b8.ugrid, or set cells to tets");
 }
 
 static vg_status refuse_hit(const struct vg_outputs *o,
@@ -140,8 +140,9 @@ static vg_status refuse_hit(const struct vg_outputs *o,
                  suffix, hit);
 }
 
-/* A folder where a file is to stand: found by renaming, it would leave some
- * files of this mesh beside some of another. */
+/* Refuses a path at which a folder exists. If this were detected only by
+ * renaming, some files of this mesh would be mixed with files of another
+ * one. */
 static vg_status refuse_folder(const struct vg_outputs *o, const char *suffix,
                                struct vg_error *err)
 {
@@ -152,8 +153,8 @@ static vg_status refuse_folder(const struct vg_outputs *o, const char *suffix,
   if (!path) st = vg_fail_memory(err, "the output paths");
   else if (!lstat(path, &is) && S_ISDIR(is.st_mode))
     st = vg_fail(err, VG_ERR_IO,
-                 "%s: a folder stands where a file is to be "
-                 "written; move it, or choose another --out DIR",
+                 "%s: a folder exists where a file must be written; move it, "
+                 "or choose another --out DIR",
                  path);
   free(path);
   return st;
@@ -199,9 +200,8 @@ static vg_status refuse_ranks(const char *item, int ranks, struct vg_error *err)
 {
   if (ranks == 1 || vg_slices_can_write(item)) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "write: %s needs the whole mesh in "
-                 "one process; run on one rank, or write b8.ugrid and convert "
-                 "it",
+                 "write: %s can only be written from a mesh in one process; "
+                 "run on one rank, or write b8.ugrid and convert it",
                  item);
 }
 
@@ -240,9 +240,9 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
     for (size_t j = 0; j < bc.n; j++) found |= bc.entry[j].id == m->patch[i].id;
     if (!found)
       st = vg_fail(err, VG_ERR_INPUT,
-                   "%s is an input and is not overwritten, "
-                   "but it lacks patch %d (%s) of the mesh; use --out DIR, or "
-                   "add the patch to it",
+                   "%s is an input and will not be overwritten, but it does "
+                   "not contain patch %d (%s) of the mesh; use --out DIR, or "
+                   "add the patch to the file",
                    p->read.files.mapbc, (int)m->patch[i].id, m->patch[i].name);
   }
   vg_mapbc_release(&bc);
@@ -269,7 +269,7 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
 {
   char *copy;
 
-  for (size_t i = 0; i < o->n_file; i++) /* cogsg brings the mapbc */
+  for (size_t i = 0; i < o->n_file; i++) /* cogsg adds the mapbc. */
     if (!strcmp(o->file[i].suffix, suffix)) return VG_OK;
   copy = strdup(suffix);
   if (!copy ||
@@ -281,7 +281,7 @@ vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
   return VG_OK;
 }
 
-/* The folder that rank 0 makes, on all ranks. */
+/* Distributes the name of the folder that rank 0 makes. */
 vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
                            struct vg_error *err)
 {
@@ -302,7 +302,7 @@ done:
   return st;
 }
 
-/* --- while slices are at hand --- */
+/* --- files written slice by slice ---------------------------------------- */
 
 static vg_status open_item(struct vg_outputs *o, const struct vg_problem *p,
                            struct vg_comm *comm, const struct vg_slices *mesh,
@@ -359,9 +359,9 @@ vg_status vg_outputs_close(struct vg_outputs *o, vg_status st,
   return st;
 }
 
-/* --- the rest --- */
+/* --- all other files ----------------------------------------------------- */
 
-/* The mesh on its way out. */
+/* State of writing the mesh. */
 struct writing {
   struct vg_outputs *o;
   const struct vg_problem *p;
@@ -369,7 +369,7 @@ struct writing {
   struct vg_comm *comm;
   const struct vg_slices *mesh;
   int threads;
-  struct vg_mesh whole; /* for writers of whole meshes; else empty */
+  struct vg_mesh whole; /* For writers of whole meshes; otherwise empty. */
 };
 
 static vg_status write_format(const struct writing *w, const char *path,
@@ -425,7 +425,8 @@ static vg_status write_alone(struct writing *w, const char *item,
   return st;
 }
 
-/* Conditions, with the title of the project. Rank 0 writes. */
+/* Writes the boundary conditions, with the title of the project. Rank 0
+ * writes. */
 static vg_status write_conditions(struct writing *w, const char *item,
                                   struct vg_error *err)
 {
@@ -446,7 +447,7 @@ static vg_status write_conditions(struct writing *w, const char *item,
   return st < 0 ? st : vg_outputs_add(w->o, item, err);
 }
 
-/* The pieces of a .pvtu are found by their names. */
+/* Finds the pieces of a .pvtu by their names. */
 static vg_status add_pieces(struct writing *w, const char *stem,
                             struct vg_error *err)
 {
@@ -520,23 +521,24 @@ static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
   return st < 0 ? st : vg_outputs_add(o, WALLS, err);
 }
 
-/* The resolved settings say with which files they were used. The number of
- * threads is the machine's affair: the file is the same for any. */
+/* The resolved settings state the files with which they were used. The number
+ * of threads is omitted, so that the file does not depend on the machine. */
 static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
                             struct vg_error *err)
 {
   const struct vg_input_files *f = &p->read.files;
-  struct vg_settings settings = p->resolved.settings; /* tables borrowed */
+  struct vg_settings settings = p->resolved.settings; /* Tables are borrowed. */
   const char *input = *f->surface ? f->surface : f->stem;
-  const char *quote = strchr(input, ' ') ? "'" : ""; /* for a shell */
+  const char *quote = strchr(input, ' ') ? "'" : ""; /* Quotation for a
+                                                        shell. */
   char *path = vg_outputs_temp_path(o, "resolved.deck"), *comment = NULL;
   vg_status st;
 
   if (!path ||
       asprintf(&comment,
-               "# Settings of a run, complete: to repeat it,\n"
-               "#   vanguard mesh -p %s%s%s --deck %s%s.resolved.deck%s\n"
-               "# (sources of a .d3m are listed below and not read again)\n",
+               "# Complete settings of a run. To repeat it:\n#   vanguard "
+               "mesh -p %s%s%s --deck %s%s.resolved.deck%s\n# (sources of a "
+               ".d3m are listed below and are not read again)\n",
                quote, input, quote, quote, o->name, quote) < 0) {
     free(path);
     return vg_fail_memory(err, "the settings");
@@ -563,8 +565,8 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
   if (st >= 0 && !o->is_guest && layers->is_on)
     st = write_walls(o, p, layers, err);
   if (st >= 0 && !o->is_guest) st = write_deck(o, p, err);
-  /* What may coincide with an input by then: a .mapbc that knows all patches,
-   * and the resolved deck of the run that is being repeated. */
+  /* Files that may coincide with an input at this point: a .mapbc that contains
+   * all patches, and the resolved deck of the run that is being repeated. */
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
     o->file[i].keep_old = hits_input(o, p, o->file[i].suffix) != NULL;
   vg_mesh_release(&w.whole);
@@ -617,7 +619,7 @@ vg_status vg_outputs_commit(struct vg_outputs *o, struct vg_error *err)
     if (!from || !to) st = vg_fail_memory(err, "the output paths");
     else if (o->file[i].is_case) st = vg_foam_place(from, to, err);
     else if (!o->file[i].keep_old && rename(from, to))
-      st = vg_fail(err, VG_ERR_IO, "%s: cannot be put in place: %s", to,
+      st = vg_fail(err, VG_ERR_IO, "%s: cannot be moved into place: %s", to,
                    strerror(errno));
     free(from);
     free(to);

@@ -1,4 +1,4 @@
-/* How the work was cut up and shared out, for a person and for a program. */
+/* Report of the decomposition and its tasks, as text and as JSON. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,12 +7,11 @@
 #include "run/report/report.h"
 #include "run/stages/run.h"
 
-/* Leaves by what they were filled with. Fragments are parts of a void that are
- * too small for a task each and are filled together: ".r" at the end of a path.
- * */
+/* Leaves by their kind of content. Small components of a void, each too small
+ * for a task of its own, are filled together: ".r" at the end of a path. */
 struct leaves {
   size_t n, n_fragment;
-  uint64_t *cells; /* [n] rising; of no fragments */
+  uint64_t *cells; /* [n] sorted; without small components. */
   uint64_t fragment_cells;
 };
 
@@ -30,7 +29,7 @@ static int is_fragment(const struct vg_span *s)
   return n > 3 && !strcmp(s->path + n - 3, ".rL");
 }
 
-/* Without memory: none. */
+/* Empty if there is no memory. */
 static struct leaves leaves_of(const struct vg_spans *s)
 {
   struct leaves l = { .cells = vg_alloc(s->n, sizeof *l.cells) };
@@ -61,13 +60,15 @@ static void print_leaves(FILE *to, const struct leaves *l)
             vg_text_count(l->cells[(l->n - 1) / 2], c));
   fprintf(to, "\n");
   if (l->n_fragment)
-    fprintf(to, "  and %s of fragments filled together, %s cells\n",
+    fprintf(to,
+            "  and %s of small components that are filled together, %s "
+            "cells\n",
             vg_text_count(l->n_fragment, a),
             vg_text_count(l->fragment_cells, b));
 }
 
-/* What repairs and swaps across interfaces have added to the cells of tasks,
- * or, below 0, taken away. */
+/* Cells that repairs and swaps across interfaces have added to the cells of
+ * tasks, or removed if negative. */
 static int64_t repair_cells(const struct vg_run *r, const struct leaves *l)
 {
   uint64_t tasks = r->partition.n_zone_cell + l->fragment_cells;
@@ -81,7 +82,7 @@ static double share_of(const struct vg_run *r, uint64_t n)
   return r->n_field_cell ? 100 * (double)n / (double)r->n_field_cell : 0;
 }
 
-/* Most over mean of the leaves' cells. */
+/* Largest over mean number of cells of the leaves. */
 static double balance(const struct leaves *l)
 {
   double sum = 0;
@@ -90,7 +91,7 @@ static double balance(const struct leaves *l)
   return l->n ? (double)l->cells[l->n - 1] * (double)l->n / sum : 1;
 }
 
-/* A void that was parted before any of it was filled. */
+/* Text on a void that was decomposed before any of it was filled. */
 static void print_decomposition(FILE *to, const struct vg_run *r,
                                 const struct leaves *l)
 {
@@ -100,9 +101,9 @@ static void print_decomposition(FILE *to, const struct vg_run *r,
 
   if (!p->n_part) return;
   fprintf(to,
-          "  decomposed by %s: %s parts (%s asked for, %llu as pieces "
-          "hung apart),\n  balance %.3f (most over mean of the cells made in "
-          "leaves)\n",
+          "  decomposed by %s: %s subdomains (%s requested, %llu more because "
+          "subdomains were\n  not connected), balance %.3f (largest over mean "
+          "number of cells of leaves)\n",
           r->decomposition, vg_text_count(p->n_part, a),
           vg_text_count(q->n_asked, b), (unsigned long long)q->n_apart,
           balance(l));
@@ -111,13 +112,13 @@ static void print_decomposition(FILE *to, const struct vg_run *r,
           q->coarsening, vg_text_count(q->n_face, b));
   if (q->n_gap)
     fprintf(to,
-            "  %s of these parts are the gap at the front, which planes "
-            "may cut; octants hold %.1f %%\n  of the cells expected%s\n",
+            "  %s of these subdomains are gap regions at the front, which "
+            "planes may cut; octants hold\n  %.1f %% of the expected cells%s\n",
             vg_text_count(q->n_gap, a), 100 * q->coarse_cells / p->estimate,
-            q->n_coarse ? "" : ": no octant has room off the front");
+            q->n_coarse ? "" : ": no octant fits away from the front");
   fprintf(to,
-          "  seconds: %s %.2f, dealt out %.2f, interfaces smoothed "
-          "%.2f, divided %.2f\n",
+          "  seconds: %s %.2f, assignment %.2f, smoothing of interfaces %.2f, "
+          "division of interfaces %.2f\n",
           q->n_gap ? "octants" : "coarse cells",
           q->time[VG_DECOMPOSITION_COARSE], q->time[VG_DECOMPOSITION_GRAPH],
           q->time[VG_DECOMPOSITION_SMOOTH], q->time[VG_DECOMPOSITION_FACES]);
@@ -170,20 +171,21 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
   print_leaves(to, &l);
   if (p->n_widened)
     fprintf(to,
-            "  parts that could not be filled, and were filled together "
-            "with what is beside\n  them %s: %s cells made again, %.2f s\n",
+            "  subdomains that could not be filled and were filled again "
+            "together with their\n  neighbours: %s, %s cells made again, %.2f "
+            "s\n",
             vg_text_count(p->n_widened, a), vg_text_count(p->n_widened_cell, b),
             p->widened);
   if (p->n_blocked || p->n_retry || p->n_uncut || p->n_outgrown)
     fprintf(to,
-            "  zones given up %s, cuts repeated elsewhere %s, leaves cut "
-            "again %s, left large %llu\n",
+            "  separators abandoned %s, cuts repeated elsewhere %s, "
+            "overloaded leaves cut again %s, large leaves not cut %llu\n",
             vg_text_count(p->n_blocked, a), vg_text_count(p->n_retry, b),
             vg_text_count(p->n_outgrown, c), (unsigned long long)p->n_uncut);
   if (p->n_open_left)
     fprintf(to,
-            "  stages between zones left to leaves, since the void hangs "
-            "together at too many places: %llu\n",
+            "  stages between separators left to leaves, because the void was "
+            "connected at too many places: %llu\n",
             (unsigned long long)p->n_open_left);
   fprintf(to, "  across interfaces: points moved %s times, %s swaps; ",
           vg_text_count(p->n_repair_moved, a),
@@ -193,19 +195,19 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           (long long)repair_cells(r, &l), p->repair);
   if (r->near.n_cell)
     fprintf(to,
-            "  %s cells within two rings of interfaces: 1st percentile of "
-            "the smallest angle\n  %.2f degrees, least %.2f\n",
+            "  %s cells within two layers of interfaces: smallest angle %.2f "
+            "degrees (1st percentile),\n  %.2f degrees (minimum)\n",
             vg_text_count(r->near.n_cell, a), r->near.angle_min_p1,
             r->near.angle_min);
   free(l.cells);
-  fprintf(to, "  workers busy %.1f %%, imbalance %.3f (most over mean)%s\n",
+  fprintf(to, "  workers busy %.1f %%, imbalance %.3f (largest over mean)%s\n",
           100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans),
-          r->cyclic ? "; leaves dealt out in turn" : "");
+          r->cyclic ? "; leaves assigned cyclically" : "");
   if (!r->store) return;
   fprintf(to, "  tasks found in %s: %s\n", r->options.dir,
           vg_text_count(p->n_found, a));
   if (*r->stored.stopped)
-    fprintf(to, "  not all tasks were kept there: %s\n", r->stored.stopped);
+    fprintf(to, "  some tasks were not kept there: %s\n", r->stored.stopped);
 }
 
 json_t *vg_report_partition_json(const struct vg_run *r)

@@ -36,10 +36,10 @@ vg_status vg_run_memory(struct vg_run *r, struct vg_error *err)
   return st;
 }
 
-/* --- for every node: sizes and layers ------------------------------------ */
+/* --- sizing field and layers, on every node ------------------------------ */
 
-/* The first ranks of the nodes do it, each on the cores of all ranks of its
- * node, who wait asleep. */
+/* These steps are done by the first rank of each node, on the cores of all
+ * ranks of its node, which sleep meanwhile. */
 static int leads_node(const struct vg_run *r)
 {
   return vg_comm_node_rank(r->comm) == 0;
@@ -52,7 +52,7 @@ static int node_threads(struct vg_run *r, const struct vg_settings *s)
   return (int)s->threads * vg_comm_node_size(r->comm);
 }
 
-/* By the first rank of a node. */
+/* Called on the first rank of a node. */
 static vg_status shape_surface(struct vg_run *r, struct vg_problem *p,
                                struct vg_display *show, struct vg_error *err)
 {
@@ -83,7 +83,7 @@ done:
   return st;
 }
 
-/* By the other ranks of a node, which get the surface. */
+/* Called on the other ranks of a node, which receive the surface. */
 static vg_status await_surface(struct vg_problem *p, struct vg_error *err)
 {
   vg_problem_forget_sizes(p);
@@ -113,8 +113,8 @@ done:
   return st;
 }
 
-/* What the first rank of the node made, with status st, on the others too.
- * Collective; without layers NULL. */
+/* Shares the data made by the first rank of the node, with status st, with its
+ * other ranks. Collective. layers is NULL without layers. */
 static vg_status share_with_node(struct vg_run *r, vg_status st,
                                  struct vg_layers *layers,
                                  struct vg_display *show,
@@ -135,7 +135,7 @@ done:
   return st;
 }
 
-/* The size field over a boundary. */
+/* Builds the sizing field over a boundary. */
 static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
                                const struct vg_mesh *boundary,
                                double coarseness, int threads,
@@ -156,7 +156,7 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
   return st < 0 ? st : vg_display_stopped(show, err);
 }
 
-/* Which sources have no effect; by rank 0. Collective. */
+/* Finds the sources without effect, on rank 0. Collective. */
 static vg_status look_at_sources(struct vg_run *r, const struct vg_problem *p,
                                  const struct vg_mesh *front,
                                  const struct vg_sizing *sizing,
@@ -180,9 +180,9 @@ static void add_digest(void *user, size_t n, const void *data)
   *d = vg_digest_of(*d, n, data);
 }
 
-/* The outcomes of tasks follow from their input and from the program, the
- * settings, the boundary, and sizes that no setting describes. The first rank
- * alone has resolved settings: the others get its digest. Collective. */
+/* The outcomes of tasks depend on their input, the program, the settings, the
+ * boundary, and sizes that no setting describes. Only rank 0 has resolved
+ * settings; the other ranks receive its digest. Collective. */
 static vg_status job_digest(const struct vg_run *r, const struct vg_problem *p,
                             const struct vg_mesh *boundary,
                             const struct vg_sizing *sizing,
@@ -250,15 +250,14 @@ static vg_status say_stopped(const struct vg_run *r, struct vg_error *err)
                    "interrupted; nothing was written "
                    "(with --run-dir a run can be resumed)");
   return vg_fail(err, VG_ERR_STOPPED,
-                 "stopped; finished tasks are kept in %s: "
-                 "give the same command with --resume to go on, on any "
-                 "number of ranks",
+                 "stopped; finished tasks are kept in %s: repeat the command "
+                 "with --resume to continue, on any number of ranks",
                  r->options.dir);
 }
 
 /* --- the field ----------------------------------------------------------- */
 
-/* Of the leaves, where it is not the kernel. */
+/* Opens the mesher of the leaves if it is not the built-in kernel. */
 static vg_status open_mesher(const struct vg_run *r,
                              const struct vg_settings *s,
                              struct vg_mesher_pool **out, struct vg_error *err)
@@ -270,8 +269,8 @@ static vg_status open_mesher(const struct vg_run *r,
   return vg_comm_agree(r->comm, st, err);
 }
 
-/* Cells of the layers, 0 without a limit of cells. They alone may be too many.
- * Alike on all ranks. */
+/* Number of layer cells; 0 without a limit on cells, which the layers alone may
+ * exceed. The same on all ranks. */
 static vg_status count_layers(const struct vg_run *r,
                               const struct vg_settings *s,
                               const struct vg_layers *layers, uint64_t *n,
@@ -285,9 +284,9 @@ static vg_status count_layers(const struct vg_run *r,
                        err);
   if (st >= 0 && *n > (uint64_t)s->max_cells)
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "the layers alone have %llu cells; "
-                 "%llu are allowed (max_cells); use a coarser surface, fewer "
-                 "layers, cells mixed or raise the limit",
+                 "the layers alone have %llu cells, but only %llu are allowed "
+                 "(max_cells); use a coarser surface, fewer layers, cells "
+                 "mixed, or increase the limit",
                  (unsigned long long)*n, (unsigned long long)s->max_cells);
   return vg_comm_agree(r->comm, st, err);
 }
@@ -332,7 +331,7 @@ done:
   return st;
 }
 
-/* --- judgement ----------------------------------------------------------- */
+/* --- mesh check ---------------------------------------------------------- */
 
 static vg_status accept(const struct vg_run *r, struct vg_error *err)
 {
@@ -343,9 +342,8 @@ static vg_status accept(const struct vg_run *r, struct vg_error *err)
   vg_report_faults(r->judge.is_valid ? &r->field_judge : &r->judge, faults,
                    sizeof faults);
   return vg_fail(err, VG_ERR_GEOMETRY,
-                 "the mesh did not pass its own check "
-                 "(%s) and was not written; please report this with the "
-                 "project files",
+                 "the mesh failed the final check (%s) and was not written; "
+                 "please report this with the project files",
                  faults);
 }
 
@@ -358,8 +356,8 @@ static vg_status put_slice(void *run, const struct vg_slice *slice,
   return st < 0 ? st : vg_run_pictures_put(&r->pictures, slice, err);
 }
 
-/* Edges are held against the field's sizes; within layers there is no
- * isotropic size to meet. A file of a mesh that is not valid goes again. */
+/* Edges are compared with the sizing field only outside the layers, where sizes
+ * are isotropic. The file of an invalid mesh is removed. */
 static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        const struct vg_layers *layers,
                        const struct vg_sizing *sizing, struct vg_display *show,
@@ -421,7 +419,7 @@ done:
   return st;
 }
 
-/* Columns and the front above them, with their sizes; on the cores of the
+/* Columns and the front above them, with its sizing field, on the cores of the
  * nodes. */
 static vg_status grow_layers(struct vg_run *r, const struct vg_problem *p,
                              struct vg_layer_stage *layers,
@@ -455,7 +453,8 @@ done:
   return st;
 }
 
-/* By what each rank has of the field. */
+/* Distributes the slices of the layers by the number of field cells of each
+ * rank. */
 static vg_status share_layers(struct vg_run *r, struct vg_error *err)
 {
   uint64_t *n = vg_calloc((size_t)r->size, sizeof *n);
@@ -470,7 +469,7 @@ done:
   return st;
 }
 
-/* How cells change in size from layers to field; the first rank reports. */
+/* Measures the volume ratios between layers and field; rank 0 reports them. */
 static vg_status measure_tops(struct vg_run *r, const struct vg_problem *p,
                               struct vg_layer_stage *layers,
                               struct vg_error *err)
@@ -490,8 +489,8 @@ done:
   return st;
 }
 
-/* The second size field is that of the front, so that the fill fits the tops
- * of the layers. */
+/* The second sizing field is that of the front, so that the field matches the
+ * tops of the layers. */
 static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                              struct vg_layer_stage *layers,
                              struct vg_display *show, struct vg_error *err)
@@ -523,7 +522,7 @@ done:
   return st;
 }
 
-/* Solver_parts of the mesh that is about to be written. */
+/* Solver partitions of the mesh that is about to be written. */
 static vg_status part_for_solver(struct vg_run *r, const struct vg_problem *p,
                                  struct vg_display *show, struct vg_error *err)
 {

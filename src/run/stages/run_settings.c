@@ -1,6 +1,6 @@
-/* What decides the mesh of a run, as a digest and as lines for its run
- * directory: a refused resume shows which of them differ. The rows of the
- * settings say which values decide it (vg_param.keeps_mesh). */
+/* Settings that affect the mesh of a run, as a digest and as lines for its run
+ * directory: a refused resume lists those that differ. The rows of the settings
+ * state which values affect it (vg_param.keeps_mesh). */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <stdio.h>
@@ -44,8 +44,8 @@ static void put_rows(FILE *to, const struct vg_settings *s,
     put_values(to, "", t->column, t->n_column, vg_settings_row(s, kind, i));
 }
 
-/* The digest of what `put_rows` writes for a table, or of the plain settings
- * where kind is VG_TABLE_FARFIELD. */
+/* Digest of the lines that `put_rows` writes for a table, or of the plain
+ * settings if kind is VG_TABLE_FARFIELD. */
 static int digest_part(const struct vg_settings *s, enum vg_table_kind kind,
                        struct vg_digest *d)
 {
@@ -87,7 +87,7 @@ static int decides(const struct vg_setting_table *t)
   return 0;
 }
 
-/* Tables may be long: a count and a digest stand for their rows. */
+/* Tables may be long, so a count and a digest represent their rows. */
 static void put_table(FILE *to, const struct vg_settings *s,
                       enum vg_table_kind kind)
 {

@@ -49,7 +49,7 @@ exits 0
 says out "smallest angle"
 says one/wing.mapbc "trailing_edge"
 says one/wing.resolved.deck "cad_angle"
-says out "note: points were put back on the CAD model: "
+says out "note: points projected onto the CAD model: "
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 if mpirun -n 2 true >/dev/null 2>&1; then
@@ -89,7 +89,7 @@ lacks out "remeshed:"
 octahedron >body.obj
 vanguard mesh -q -p body.obj --unit m --hmax 5 --out o
 exits 0
-says out "without effect, for no CAD file was read: unit"
+says out "settings without effect because no CAD file was read: unit"
 vanguard mesh -q -p "$cad/box.brep" --unit m --out b
 exits 1
 says err "has no unit of length"

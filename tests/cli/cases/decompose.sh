@@ -13,7 +13,7 @@ for way in 'remesh metis' 'h-refine rcb'; do
     --interfaces "$interfaces" --partitioner "$partitioner"
   vanguard "$@" -t 1 --out one
   exits 0
-  says out "decomposed by discrete: 5 parts"
+  says out "decomposed by discrete: 5 subdomains"
   says out "validity: valid"
   says one/box.report.json '"decomposition": "discrete"'
   says one/box.report.json '"interface_triangles": '
@@ -33,7 +33,7 @@ done
 # Without a number of parts there are leaf_cells to each.
 vanguard mesh -q -p p/box --decompose discrete --leaf-cells 7000 --out by
 exits 0
-says out "decomposed by discrete: 3 parts"
+says out "decomposed by discrete: 3 subdomains"
 
 vanguard mesh -q -p p/box --decompose discrete --parts 0
 exits 2
@@ -76,7 +76,7 @@ for way in advancing discrete octree; do
   says one/box.report.json '"near_interfaces": '
   vanguard "$@" --schedule cyclic -t 3 --out many
   exits 0
-  says out "leaves dealt out in turn"
+  says out "leaves assigned cyclically"
   says many/box.timeline.json '"cyclic": 1'
   cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "$way: dealt out, another mesh"
   near() { jq -c .partition.near_interfaces "$1/box.report.json"; }
@@ -112,7 +112,7 @@ vanguard mesh -q -p p/box --decompose octree --parts 4 -t 1 --write b8.ugrid \
   --out one
 exits 0
 says out "octants, coarsening 4.00"
-says out "of these parts are the gap at the front"
+says out "of these subdomains are gap regions at the front"
 says one/box.report.json '"gap_parts": 1'
 vanguard mesh -q -p p/box --decompose octree --parts 4 -t 3 --write b8.ugrid \
   --shuffle-tasks 7 --out many
@@ -131,11 +131,11 @@ exits 0
 vanguard demo box --cells 500 --out tiny
 vanguard mesh -q -p tiny/box --decompose octree --parts 4 --out tiny
 exits 0
-says out "no octant has room off the front"
-says out "octree: 1 parts (4 asked for"
+says out "no octant fits away from the front"
+says out "octree: 1 subdomains (4 requested"
 vanguard mesh -q -p p/box --decompose octree --parts 4000 --out short
 exits 0
-says out "parts (4,000 asked for"
+says out "subdomains (4,000 requested"
 vanguard mesh -q -p p/box --decompose octree --parts 0
 exits 2
 says err "parts"

@@ -63,7 +63,7 @@ exits 0
 says out "repaired: 2 triangles of walls that touching bodies shared removed"
 vanguard mesh -q -p wall.obj --out united
 exits 0
-says out "note: 2 triangles of walls that touching bodies shared were removed"
+says out "note: 2 triangles of walls shared by touching bodies were removed"
 vanguard check -q united/wall.b8.ugrid
 exits 0
 printf 't\nrepair\nno\n' >wall.deck

@@ -67,7 +67,7 @@ says err "give that of the first level in the deck"
 } >coarse.deck
 vanguard sweep -q -p ball --deck coarse.deck -o coarse
 exits 0
-says coarse/f1-n1-t1/run.log "scale_layers: first heights times 2"
+says coarse/f1-n1-t1/run.log "scale_layers: first heights are multiplied by 2"
 says coarse/family.csv "f1-n1-t1,1,1,"
 
 # The same bytes again with the resolved deck.
@@ -81,14 +81,14 @@ same a/ball.b8.ugrid b/ball.b8.ugrid
 vanguard mesh -q -p ball --remesh-surface no --layers no --scale 0.8 \
   --cad-angle 10 --coarsening 2 --out c
 exits 0
-says out "scale 0.8 acts on sizes in space alone"
-says out "without effect, for the surface was not made anew (remesh_surface): surface_tolerance, surface_size"
-says out "without effect, for no CAD file was read: cad_angle"
-says out "without effect, for no layers grow: first, ratio"
-says out "without effect, for the space was cut by planes (decompose): coarsening"
+says out "scale 0.8 changes only sizes in the volume"
+says out "settings without effect because the surface was not remeshed (remesh_surface): surface_tolerance, surface_size"
+says out "settings without effect because no CAD file was read: cad_angle"
+says out "settings without effect because no layers grow: first, ratio"
+says out "settings without effect because the domain was cut by planes (decompose): coarsening"
 lacks out "no farfield was made"
 vanguard mesh -q -p ball --scale-layers even --out d
-says out "without effect, for scale is 1: scale_layers"
+says out "setting without effect because scale is 1: scale_layers"
 
 # Two bodies beside each other: edges across the gap.
 body pair 1 0.6 0.4 0
@@ -100,7 +100,7 @@ vanguard surface -q pair.obj --surface-size 0.2 --gap-edges 4 \
   --surface-tolerance 0.01 --out gap
 exits 0
 says out "note: gap_edges 4: sizes from "
-says out "the narrowest 0.05"
+says out "the narrowest gap is 0.05"
 vanguard surface -q pair.obj --surface-size 0.2 --surface-tolerance 0.01 \
   --out plain
 exits 0
@@ -117,4 +117,4 @@ exits 0
 same two/pair.b8.ugrid again/pair.b8.ugrid
 vanguard surface -q ball.obj --gap-edges 4 --out none
 exits 0
-says out "without effect, for no gap is narrow: gap_edges"
+says out "setting without effect because no gap is narrow enough: gap_edges"

@@ -32,5 +32,5 @@ vanguard demo sphere --cells 2000 --out unit
 for option in --farfield-spacing --hmax; do
   vanguard mesh -q -p unit/sphere --farfield sphere $option 1e-3
   exits 1
-  says err "are its spacing and hmax in the unit of the surface?"
+  says err "check that its spacing and hmax are in the unit of the surface"
 done

@@ -69,7 +69,7 @@ cp p/box.lb8.ugrid p/box.deck viscous
 cp viscous.mapbc viscous/box.mapbc
 vanguard mesh -q -p viscous/box --out v1
 exits 0
-says out "no layers on 1 viscous wall (patch 5), for no first height"
+says out "no layers grow on 1 viscous wall (patch 5), because no first height"
 same plain/box.b8.ugrid v1/box.b8.ugrid
 vanguard mesh -q -p viscous/box --first 1e-3 --out v2
 exits 0
@@ -108,7 +108,7 @@ refuse() { # TEXT OPTIONS...
   says err "$text"
   absent refused/box.b8.ugrid
 }
-refuse "no first height is known; give --first" --layers yes --walls 5
+refuse "the first height is not known; give --first" --layers yes --walls 5
 refuse "walls: patch 77 is not in the surface" --walls 77 --first 1
 refuse "walls: no patch of the surface is within 77-99" --walls 77-99 --first 1
 wrong=2 refuse "'3-x' is no list of patches" --walls 3-x --first 1
@@ -117,15 +117,15 @@ refuse "patch 5 is in both lists" --walls 5 --slip 4-6 --first 1
 wrong=2 refuse "the first height, 0.1, is above layer_total, 0.01" --walls 5 \
   --first 0.1 --layer-total 0.01
 wrong=2 refuse "y_plus needs reynolds" --walls 5 --y-plus 1
-refuse "layers are asked for, but no patch is known to be a wall" \
+refuse "layers are requested, but no patch is known to be a wall" \
   --layers yes --first 1e-3
-refuse "name them with --walls" --layers yes --first 1e-3
+refuse "name the walls with --walls" --layers yes --first 1e-3
 refuse "5 z-min (bc 3)" --layers yes --first 1e-3
-refuse "are together higher than 0.001" --walls 5 --first 1e-3 \
+refuse "are already higher than the total height 0.001" --walls 5 --first 1e-3 \
   --layer-count 10 --layer-total 1e-3
-refuse "above layer_cap 1.3; give more layers" --walls 5 --first 1e-3 \
+refuse "above layer_cap 1.3; request more layers" --walls 5 --first 1e-3 \
   --layer-count 3 --layer-total 0.1
-refuse "a .cogsg holds tetrahedra only" --walls 5 --first 1e-3 --cells mixed \
+refuse "a .cogsg can hold only tetrahedra" --walls 5 --first 1e-3 --cells mixed \
   --write cogsg
 refuse "no VGRID source has a first height" --walls 5 --first 1e-3 \
   --layer-sources yes
@@ -133,19 +133,19 @@ printf 't\nlayers\nid first\n66 1e-3\n' >slip.deck
 refuse "layers: patch 66 is not in the surface" --deck slip.deck --walls 5 \
   --first 1
 printf 't\nwalls first\n5 1e-3\n\nlayers\nid grow\n5 no\n' >slip.deck
-refuse "the table layers says grow no" --deck slip.deck
+refuse "the table layers has grow no" --deck slip.deck
 vanguard mesh -q -p p/box --first 1e-3 --out note
 exits 0
-says out "layers are asked for, but no patch has a viscous condition"
+says out "layers were requested, but no patch has a viscous boundary condition"
 
 # A limit without layers would be met by nothing.
 refuse "no patch is known to be a wall" --first 1e-3 --min-full 98
-refuse "no first height is known" --walls 5 --min-full 98
+refuse "the first height is not known" --walls 5 --min-full 98
 refuse "layers is no, but a limit on layers is set" --layers no --min-full 98
 printf 't\nlayers\nid min_any\n5 98\n' >slip.deck
 refuse "layers is no, but a limit on layers is set" --layers no --deck slip.deck
 printf 't\nlayers\nid min_full\n6 98\n' >slip.deck
-refuse "patch 6 has a limit, but it is no wall" --deck slip.deck --walls 5 \
+refuse "patch 6 has a limit on layers, but it is not a wall" --deck slip.deck --walls 5 \
   --first 1e-3
 vanguard mesh -q -p p/box --first -1
 exits 2

@@ -16,11 +16,11 @@ facet() {
 # Asked for: the whole body, not the farfield.
 vanguard mesh -q -p body --first 0.01
 exits 0
-says out "2 patches with layers, but without a boundary condition"
+says out "2 patches with layers but without a boundary condition"
 lacks out "inviscid"
 says body.mapbc "4"
 rm body.mapbc
-says out "no patch has a condition: layers grow on the whole body"
+says out "no patch has a boundary condition: layers grow on the whole body"
 lacks out "not viscous"
 [ "$(grep -c '"wall_by": "body"' body.report.json)" = 2 ] ||
   fail "not both patches of the body are walls"

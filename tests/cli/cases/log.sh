@@ -31,7 +31,7 @@ lacks run.log "hmax"
 cp box.deck mine
 vanguard mesh -q -p box --out o --log mine
 exits 1
-says err "mine: this file is there and is no log"
+says err "mine: this file exists and is not a log"
 same box.deck mine
 vanguard mesh -q -p box --out o --log no/where.log
 exits 1

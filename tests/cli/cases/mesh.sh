@@ -68,7 +68,7 @@ mkdir volume
 cp p/box.b8.ugrid volume/old.b8.ugrid
 vanguard mesh -q -p volume/old.b8.ugrid --out anew
 exits 0
-says out "is a volume mesh: its boundary is meshed anew"
+says out "is a volume mesh: its boundary is used as the surface"
 says out "6 patches have no boundary condition"
 exists anew/old.b8.ugrid
 

@@ -35,7 +35,7 @@ says err "no project here"
 cp a/box.lb8.ugrid a/box.b8.ugrid
 vanguard mesh -q -p a/box --out e
 exits 1
-says err "may be the surface; give the full name of one"
+says err "could be the surface; give the complete name of one"
 
 # A folder in the way of a file, and so all or nothing: of what is asked for,
 # beforehand; of what comes along, before anything is put into its place.
@@ -44,7 +44,7 @@ for suffix in cogsg report.json; do
   mkdir -p f/g.$suffix
   vanguard mesh -q -p g.lb8.ugrid --out f
   exits 1
-  says err "f/g.$suffix: a folder stands where a file is to be written"
+  says err "f/g.$suffix: a folder exists where a file must be written"
   [ "$(ls -A f)" = g.$suffix ] || fail "left behind: $(ls -A f)"
   rmdir f/g.$suffix
 done

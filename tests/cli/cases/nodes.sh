@@ -25,6 +25,6 @@ for what in surface layers sizes; do
   on_nodes 4 2 --test-differ $what
   exits 1
   says err "rank 2 on "
-  says err "made other $what than rank 0 on "
+  says err "computed different $what than rank 0 on "
   [ -z "$(ls -A many)" ] || fail "left behind: $(ls -A many)"
 done

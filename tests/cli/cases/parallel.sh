@@ -73,7 +73,7 @@ if [ $has_mpirun = 1 ]; then
   agrees ranks3
   ranks 2 mesh -q -p p/box --write foam --out whole
   exits 1
-  says err "write: foam needs the whole mesh in one process"
+  says err "write: foam can only be written from a mesh in one process"
   absent whole/box.openfoam
   [ -z "$(ls -A whole)" ] || fail "left behind: $(ls -A whole)"
 fi

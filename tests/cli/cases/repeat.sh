@@ -30,8 +30,8 @@ repeat() {
     same digests.1 "digests.$turn"
     [ "$turn" = 1 ] && lacks out "written by an earlier run"
     [ "$turn" != 1 ] && says out "note: $name/${what%%.*}.mapbc was written by \
-an earlier run of Vanguard and was not read; give --mapbc \
-$name/${what%%.*}.mapbc to use it"
+an earlier run of Vanguard and was not read; --mapbc \
+$name/${what%%.*}.mapbc uses it"
   done
 }
 
@@ -50,7 +50,7 @@ cp s/octa.stl given
 printf '1\n1 4000 skin\n' >given/octa.mapbc
 vanguard mesh -q -p given/octa --farfield none --report-html no
 exits 0
-says out "no layers on 1 viscous wall (patch 1)"
+says out "no layers grow on 1 viscous wall (patch 1)"
 lacks out "earlier run"
 [ "$(cat given/octa.mapbc)" = "$(printf '1\n1 4000 skin')" ] ||
   fail "given/octa.mapbc was overwritten"
@@ -65,7 +65,7 @@ says stl.full/octa.resolved.deck "mapbc"
 vanguard mesh -q -p s/octa.stl --mapbc given/octa.mapbc --out o \
   --report-html no
 exits 0
-says out "no layers on 1 viscous wall (patch 1)"
+says out "no layers grow on 1 viscous wall (patch 1)"
 vanguard mesh -q -p s/octa.stl --mapbc none.mapbc --out o
 exits 1
 says err "none.mapbc: cannot open"

@@ -84,7 +84,7 @@ exits 1
 says err "there is no mesh lone.mesh"
 vanguard mesh -q -p box --sizes first/box.mesh --out no
 exits 1
-says err "sizes are read from"
+says err "sizes can be read from"
 vanguard mesh -q -p box --sizes nowhere.sol --out no
 exits 1
 says err "nowhere.sol"

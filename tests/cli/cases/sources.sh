@@ -27,12 +27,12 @@ END
 vanguard mesh -q -p p/sphere --out held
 exits 0
 lacks out "source 1 "
-says out "source 2 (cylinder of wake, from 2 0 0) is held back in"
-says out "source 3 (point of far, from 0 17 0) gets nowhere what it asks for: "
+says out "source 2 (cylinder of wake, from 2 0 0) is limited at"
+says out "source 3 (point of far, from 0 17 0) is limited everywhere: it requests "
 says out "on patch 2 (farfield)"
-says out "hold it back; make them no longer than"
-says out "1 source (number 4) lies wholly inside a body"
-says out "1 source (number 5) lies wholly outside the domain"
+says out "limit it; make their edges no longer than"
+says out "1 source (number 4) lies completely inside a body"
+says out "1 source (number 5) lies completely outside the domain"
 says held/sphere.report.json '"patch_name": "farfield"'
 says held/sphere.report.json '"edge_wanted": '
 grep note out >notes
@@ -43,15 +43,15 @@ exits 0
 grep note out | diff - notes || fail "notes depend on threads"
 vanguard plan -q -p p/sphere -n 1
 exits 0
-says out "source 3 (point of far, from 0 17 0) gets nowhere what it asks for"
-says out "1 source (number 5) lies wholly outside the domain"
+says out "source 3 (point of far, from 0 17 0) is limited everywhere"
+says out "1 source (number 5) lies completely outside the domain"
 vanguard plan -q -p p/sphere -n 1 --json
 exits 0
 says out '"wholly": true'
 says out '"beyond": ['
 
 # What is advised helps.
-growth=$(sed -n 's/.*source 6 .*set growth to //p' notes)
+growth=$(sed -n 's/.*source 6 .*increase growth to //p' notes)
 [ -n "$growth" ] || fail "no growth rate is advised"
 vanguard mesh -q -p p/sphere --out grown --growth "$growth"
 exits 0
@@ -80,5 +80,5 @@ END
 vanguard mesh -q -p b/box --out point --growth 4
 exits 0
 lacks out "source 1 "
-says out "source 2 (point) has no effect in 1 of 1 places: at 0.7 0.6 0.5"
+says out "source 2 (point) is not resolved at 1 of 1 sample points: at (0.7, 0.6, 0.5)"
 says point/box.report.json '"places_unmet": 1'

@@ -190,7 +190,7 @@ says out "L5-n1-t1 "
 printf 'Sizes\n\nsweep\nleaf_cells\nmany\n' >bad.deck
 sweep -p p/box --deck bad.deck -o d
 exits 1
-says err "bad.deck: sweep: leaf_cells takes numbers as 1,2,4 or ranges"
+says err "bad.deck: sweep: leaf_cells takes numbers such as 1,2,4 or ranges"
 says err "not 'many'"
 # Its other commands take no notice of it; a second line is one too many.
 vanguard mesh -q -p p/box --out m

@@ -41,9 +41,9 @@ for limit in "" "--max-cells 100000"; do
   vanguard mesh -q -p gap.stl --farfield none --remesh-surface yes \
     --gap-edges 3 $limit --out edges
   exits 1
-  says err "gap_edges 3 needs some"
+  says err "gap_edges 3 needs about"
   says err "surface triangles in gaps"
   says err "the narrowest gap is 0.001656 wide, between patches 1 (hull)"
-  says err "Lower gap_edges, raise hmin, or close the gap"
+  says err "Reduce gap_edges, increase hmin, or close the gap"
 done
-says err "100000 are the limit (max_cells)"
+says err "the limit is 100000 (max_cells)"

@@ -6,7 +6,7 @@ done
 vanguard mesh -q -p box
 exits 0
 says out "validity: valid"
-says out "layers as the .d3m says (grid = 1): first 0.001, rates 0.15 and 0.02"
+says out "layer settings taken from the .d3m (grid = 1): first height 0.001, rates 0.15 and 0.02"
 exists box.cogsg box.bc box.b8.ugrid box.wall.vtu
 says box.report.json '"wall_by": "meshing class"'
 grep -A6 '"first_requested":' box.report.json | grep -q '"min": 0.001' ||
@@ -32,7 +32,7 @@ nev=$(od -An -tu4 --endian=big -j 24 -N 4 box.cogsg | tr -d ' ')
 # The resolved deck needs the .d3m no more and repeats the run.
 vanguard mesh -q -p box --deck box.resolved.deck --out again
 exits 0
-lacks out "as the .d3m says"
+lacks out "taken from the .d3m"
 same box.cogsg again/box.cogsg
 
 # Without layers it is what it was before there were any.

@@ -13,8 +13,8 @@ if grep -q "cannot wrap" err; then
   skip "built without CGAL"
 fi
 exits 0
-says out "note: the surface was wrapped: 16 triangles by"
-says out "left without any: 0"
+says out "note: the surface was wrapped: 16 triangles replaced by"
+says out "patches left without triangles: 0"
 says one/two.resolved.deck "wrap"
 vanguard check one/two.b8.ugrid
 exits 0
@@ -54,4 +54,4 @@ octahedron | awk '$1 == "v" { print "v", $2 / 4, $3 / 4, $4 / 4; next }
 vanguard mesh -q -p nested.obj --flow external --wrap 0.2 --walls 1-2 \
   --out lost
 exits 1
-says err "nothing of patch 2 is left"
+says err "nothing is left of patch 2"
