@@ -1,8 +1,8 @@
 #!/bin/sh
-# One command from a bare Debian 12 to a result:
-#   ./bootstrap.sh demo   build, mesh the embedded example, show the report
+# Builds and runs Vanguard on a fresh Debian 12 with one command:
+#   ./bootstrap.sh demo   build, mesh the built-in example, show the report
 #   ./bootstrap.sh test   build, run the whole test suite
-# Each installs the packages that are missing (as root, or through sudo).
+# Both install missing packages first (as root, or with sudo).
 set -eu
 cd "$(dirname "$0")"
 
@@ -34,8 +34,8 @@ install_missing() {
     --no-install-recommends $missing >/dev/null
 }
 
-# -DVG_DATA_DIR is kept from an earlier configure, or taken from the
-# environment: tests that need real geometry skip without it.
+# VG_DATA_DIR is taken from the environment, or else from an earlier configure
+# run. Without it, tests that need real geometry are skipped.
 build() {
   cmake --preset release -G Ninja ${VG_DATA_DIR:+-DVG_DATA_DIR="$VG_DATA_DIR"} \
     >/dev/null

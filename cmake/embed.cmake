@@ -1,6 +1,6 @@
 # Writes OUT, a C file with the bytes of FILES (separated by ;) as arrays
-# vg_asset_NAME, NAME with _ for what is no letter or digit, and their sizes, as
-# HEADER declares them.
+# vg_asset_NAME, and their sizes. HEADER declares them. In NAME, all characters
+# other than letters and digits become _.
 set(text "#include \"${HEADER}\"\n")
 foreach(file ${FILES})
   get_filename_component(name ${file} NAME)

@@ -1,5 +1,6 @@
-# Signs of predicates and bytes of output must not depend on how a compiler
-# fuses or reorders floating point: no contraction, no fast-math, ever.
+# The signs of predicates and the bytes of output must not depend on how a
+# compiler fuses or reorders floating-point operations: contraction and
+# fast-math are never allowed.
 add_library(vg_flags INTERFACE)
 target_compile_options(vg_flags INTERFACE
   -Wall -Wextra -Wshadow -Wpointer-arith
@@ -11,15 +12,16 @@ target_include_directories(vg_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
 set(CMAKE_C_FLAGS_RELEASE "-O3 -g -DNDEBUG")
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g -DNDEBUG")
 
-# Counts of lines (verification/coverage.sh). They are not atomic, which would slow
-# threads down: how often a line ran is then inexact, whether it ran is not.
+# Line coverage (verification/coverage.sh). The counters are not atomic, because
+# that would slow threads down. So the number of executions of a line is
+# inexact, but it is known reliably whether a line was executed.
 if(VG_COVERAGE)
   target_compile_options(vg_flags INTERFACE --coverage)
   add_link_options(--coverage LINKER:--wrap=_exit)
 endif()
 
-# vg_module(FOLDER SEEN...): the sources of a folder of src as one part of the
-# program, that sees the headers of others: src/CMakeLists.txt.
+# vg_module(FOLDER SEEN...): makes a module of the sources in a folder of src,
+# which may include headers of the modules SEEN. See src/CMakeLists.txt.
 function(vg_module module)
   string(REPLACE "/" "_" target "vg_${module}")
   file(GLOB sources CONFIGURE_DEPENDS ${module}/*.c ${module}/*.cpp)
@@ -28,7 +30,7 @@ function(vg_module module)
   foreach(seen ${ARGN})
     string(REPLACE "/" "_" below "vg_${seen}")
     if(NOT TARGET ${below})
-      message(FATAL_ERROR "src/CMakeLists.txt: ${module} sees ${seen}, which is "
+      message(FATAL_ERROR "src/CMakeLists.txt: ${module} uses ${seen}, which is "
         "not above it in the list")
     endif()
     target_link_libraries(${target} PUBLIC ${below})

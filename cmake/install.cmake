@@ -1,4 +1,5 @@
-# Program, library, its header, pkg-config file and CMake package.
+# Installs the program, the library with its headers, the pkg-config file and
+# the CMake package.
 include(CMakePackageConfigHelpers)
 if(NOT TARGET vanguard_program)
   return()
@@ -22,7 +23,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/vanguard-config-version.cma
 install(FILES ${CMAKE_BINARY_DIR}/vanguard-config.cmake
   ${CMAKE_BINARY_DIR}/vanguard-config-version.cmake DESTINATION ${package})
 
-# Relative to the file itself, so that an install tree can be moved.
+# Relative to the file itself, so that the installation can be moved.
 file(RELATIVE_PATH includedir
   ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 set(VG_PC_INCLUDEDIR "\${pcfiledir}/${includedir}")
@@ -39,7 +40,7 @@ install(FILES share/html/regl.LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# Debian's Python finds modules here, or by PYTHONPATH elsewhere.
+# Debian's Python finds modules in this folder; other systems need PYTHONPATH.
 set(python ${CMAKE_INSTALL_PREFIX}/lib/python3/dist-packages)
 file(RELATIVE_PATH VG_LIBRARY_FROM_PYTHON ${python}
   ${CMAKE_INSTALL_FULL_LIBDIR}/libvanguard.so.1)

@@ -1,19 +1,19 @@
 #!/bin/sh
-# Man pages and completions of bash, made from what the program's own tables of
-# options say: manual.sh PROGRAM VERSION FOLDER
+# Makes man pages and bash completions from the program's own help texts:
+# manual.sh PROGRAM VERSION FOLDER
 set -eu
 program=$1 version=$2 folder=$3
 export LC_ALL=C
-# A line for each option, its help from one column on.
+# One line for each option, with its help starting in a fixed column.
 export ARGP_HELP_FMT=rmargin=30000,opt-doc-col=60
 mkdir -p "$folder/man/man1" "$folder/bash-completion/completions"
 
-# "mesh mesh the volume ..." for each command.
+# For each command its name and summary: "mesh mesh the volume ...".
 commands() {
   "$program" --help | sed -n 's/^  \([a-z]*\)  *\([^ ].*\)/\1 \2/p'
 }
 
-# help NAME SUMMARY: its --help as a man page.
+# page NAME SUMMARY: convert the --help of a command to a man page.
 page() {
   awk -v name="$1" -v summary="$2" -v version="$version" '
     function plain(s) {
@@ -73,7 +73,7 @@ commands | while read -r name summary; do
     >"$folder/man/man1/vanguard-$name.1"
 done
 
-# Long options of a command, with = where they take a value.
+# Long options of a command, followed by = if they take a value.
 options() {
   "$program" "$1" --help |
     sed -n 's/^ \{1,\}\(-.*, \)\{0,1\}--\([a-z0-9-]*\)\(\[\{0,1\}=\{0,1\}\).*/--\2\3/p' |
@@ -81,7 +81,7 @@ options() {
 }
 
 {
-  echo "# Completion of vanguard's commands and options; made from its help."
+  echo "# Completion of vanguard's commands and options, generated from its help."
   echo "_vanguard() {"
   echo '  local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]} options'
   echo "  COMPREPLY=()"

@@ -1,6 +1,7 @@
-# Open CASCADE, for CAD files: optional. What uses it is a library of its own,
-# which child processes load when there is CAD to read (io/cad/cad.h): nobody
-# else has to load its seventy libraries.
+# Open CASCADE, for CAD files: optional. The code that uses it is a separate
+# library, which only child processes load when they read CAD files
+# (io/cad/cad.h), so that no other process loads Open CASCADE's seventy
+# libraries.
 find_path(VG_OCCT_INCLUDE STEPCAFControl_Reader.hxx PATH_SUFFIXES opencascade)
 set(occt)
 foreach(part XDESTEP XDEIGES STEP IGES XSBase XCAF LCAF CDF Mesh BO ShHealing TopAlgo
@@ -14,7 +15,7 @@ if(VG_OCCT_INCLUDE AND NOT occt MATCHES NOTFOUND)
 else()
   set(VG_OCCT_FOUND OFF)
 endif()
-option(VG_CAD "Read STEP, IGES and BREP by Open CASCADE" ${VG_OCCT_FOUND})
+option(VG_CAD "Read STEP, IGES and BREP with Open CASCADE" ${VG_OCCT_FOUND})
 set_target_properties(vg_io_occt PROPERTIES EXCLUDE_FROM_ALL ON)
 if(VG_CAD AND NOT VG_OCCT_FOUND)
   message(FATAL_ERROR "VG_CAD: Open CASCADE was not found; install "
@@ -26,17 +27,17 @@ elseif(VG_CAD)
   target_compile_options(vg_io_occt PRIVATE ${VG_NO_CXX_RUNTIME})
   target_include_directories(vg_io_occt SYSTEM PRIVATE ${VG_OCCT_INCLUDE})
 else()
-  message(STATUS "CAD files: not read, Open CASCADE was not found or is not "
-    "wanted")
+  message(STATUS "CAD files: disabled, since Open CASCADE was not found or "
+    "VG_CAD is OFF")
 endif()
 target_link_libraries(vg_io_cad PUBLIC ${CMAKE_DL_LIBS})
 
-# The library, beside libvanguard.
+# The library, built in addition to libvanguard.
 function(vg_cad_library)
   add_library(vanguard-cad MODULE $<TARGET_OBJECTS:vg_io_occt>)
   target_link_libraries(vanguard-cad PRIVATE ${occt} Threads::Threads)
   if(VG_COVERAGE)
-    # It writes its own counts, by a copy of gcov of its own.
+    # It has its own copy of gcov, which writes its own counts.
     target_sources(vanguard-cad PRIVATE ${PROJECT_SOURCE_DIR}/cmake/coverage.c)
     target_link_options(vanguard-cad PRIVATE LINKER:-Bsymbolic)
   endif()

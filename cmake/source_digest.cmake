@@ -1,5 +1,5 @@
-# Writes OUT, a C file with the digest of all sources below SOURCE_DIR: what a
-# kept outcome of a task follows from, besides its input.
+# Writes OUT, a C file with the digest of all sources below SOURCE_DIR. A stored
+# outcome of a task depends on this digest and on the input of the task.
 file(GLOB_RECURSE sources RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/*.c
   ${SOURCE_DIR}/*.h ${SOURCE_DIR}/*.cpp)
 list(SORT sources)

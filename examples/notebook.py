@@ -1,6 +1,6 @@
-"""A wing-like body from arrays to a mesh, cell by cell of a notebook: run it as
-a script, or open it where `# %%` makes cells (VS Code, Jupytext, Spyder)."""
-# %% A surface: an ellipsoid of triangles, patch 1.
+"""Meshes a wing-like body given as arrays. Run it as a script, or as a notebook
+in editors that use `# %%` as cell marks (VS Code, Jupytext, Spyder)."""
+# %% A surface: a triangulated ellipsoid, all of it patch 1.
 import numpy as np
 import vanguard
 
@@ -21,7 +21,7 @@ triangles = np.concatenate([
     np.stack([np.full(m, tail), (n - 2) * m + other,
               (n - 2) * m + ring], axis=1)])
 
-# %% Settings are those of the deck; a body in open air gets a farfield.
+# %% Settings are those of the deck. A farfield is added around the body.
 job = vanguard.Job()
 job.surface(points, triangles, np.ones(len(triangles)), name="ellipsoid")
 job.patch(1, bc=4, name="hull")
@@ -37,7 +37,7 @@ print("patches:", [(p["id"], p["name"]) for p in mesh.patches])
 for note in mesh.notes:
     print("note:", note)
 
-# %% What came of layers and cells.
+# %% Quality of layers and cells.
 for wall in mesh.walls[:1]:
     print("first heights %.2g to %.2g, %d to %d layers" % (
         wall["first"][0], wall["first"][2], wall["level"][0],
@@ -45,7 +45,7 @@ for wall in mesh.walls[:1]:
 print("dihedral angles of the field: %.1f to %.1f degrees" % (
     mesh.quality["angle_min"], mesh.quality["angle_max"]))
 
-# %% On to others: files, meshio.Mesh(**data), pyvista.UnstructuredGrid(*grid).
+# %% Export: files, meshio.Mesh(**data), pyvista.UnstructuredGrid(*grid).
 mesh.write("ellipsoid", "b8.ugrid,vtu")
 data = mesh.to_meshio_dict()
 grid = mesh.to_vtk_arrays()

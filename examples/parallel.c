@@ -1,10 +1,10 @@
-/* On the ranks of MPI: each holds its pieces of the mesh, all write one file.
- * usage: mpirun -n RANKS parallel SURFACE STEM */
+/* Meshing with MPI: each rank holds pieces of the mesh, and all ranks write one
+ * file. usage: mpirun -n RANKS parallel SURFACE STEM */
 #include <mpi.h>
 #include <stdio.h>
 #include <vanguard/vanguard.h>
 
-/* Cells and volume of the tetrahedra that this rank has. */
+/* Number of cells, and volume of the tetrahedra, in the pieces of this rank. */
 static int measure_pieces(vanguard_job *job, double sum[2])
 {
   for (size_t i = 0; i < vanguard_pieces(job); i++) {
@@ -21,7 +21,8 @@ static int measure_pieces(vanguard_job *job, double sum[2])
                     p.xyz[3 * p.tet[4 * c] + (size_t)k];
       sum[1] += (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
                  e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
-                 e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) / 6;
+                 e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
+                6;
     }
     vanguard_piece_put(job, &p);
   }
@@ -40,8 +41,7 @@ int main(int argc, char **argv)
   MPI_Comm_rank(all, &rank);
   if (argc != 3) MPI_Abort(all, 2);
   bad = vanguard_new_mpi(VANGUARD_ABI, &all, &job) ||
-        vanguard_open(job, argv[1], NULL) ||
-        vanguard_mesh(job, NULL, NULL) ||
+        vanguard_open(job, argv[1], NULL) || vanguard_mesh(job, NULL, NULL) ||
         vanguard_write(job, argv[2], "b8.ugrid") || measure_pieces(job, mine);
   if (bad) fprintf(stderr, "rank %d: %s\n", rank, vanguard_message(job));
   MPI_Reduce(mine, sum, 2, MPI_DOUBLE, MPI_SUM, 0, all);

@@ -1,13 +1,15 @@
-/* Sizes of one's own: a surface file, finer cells around a point by a function,
- * with progress. usage: sizes SURFACE X Y Z SIZE STEM */
+/* User-defined sizes: meshes a surface file with a size function that refines
+ * around a point, and prints progress. usage: sizes SURFACE X Y Z SIZE STEM */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <vanguard/vanguard.h>
 
-struct focus { double at[3], size; };
+struct focus {
+  double at[3], size;
+};
 
-/* Called by several threads: it only reads. */
+/* Called by several threads at once, so it must not change any data. */
 static double around(void *user, const double x[3])
 {
   const struct focus *f = user;
@@ -17,7 +19,7 @@ static double around(void *user, const double x[3])
   return f->size + 0.2 * sqrt(d2);
 }
 
-/* Anything but 0 would stop the run. */
+/* A non-zero return value would stop the run. */
 static int progress(void *user, const char *phase, uint64_t done,
                     uint64_t expected)
 {
@@ -40,16 +42,15 @@ int main(int argc, char **argv)
   for (int k = 0; k < 3; k++) f.at[k] = atof(argv[2 + k]);
   f.size = atof(argv[5]);
   vanguard_prepare();
-  bad = vanguard_new(VANGUARD_ABI, &job) ||
-        vanguard_open(job, argv[1], NULL) ||
-        vanguard_sizes(job, around, &f) ||
-        vanguard_mesh(job, progress, NULL) ||
+  bad = vanguard_new(VANGUARD_ABI, &job) || vanguard_open(job, argv[1], NULL) ||
+        vanguard_sizes(job, around, &f) || vanguard_mesh(job, progress, NULL) ||
         vanguard_count(job, &n) || vanguard_measure(job, &q) ||
         vanguard_write(job, argv[6], "b8.ugrid");
-  if (bad) fprintf(stderr, "%s\n%s", vanguard_message(job),
-                   vanguard_details(job));
-  else printf("%llu tetrahedra, dihedral angles from %.1f to %.1f degrees\n",
-              (unsigned long long)n.n_tet, q.angle_min, q.angle_max);
+  if (bad)
+    fprintf(stderr, "%s\n%s", vanguard_message(job), vanguard_details(job));
+  else
+    printf("%llu tetrahedra, dihedral angles from %.1f to %.1f degrees\n",
+           (unsigned long long)n.n_tet, q.angle_min, q.angle_max);
   vanguard_free(job);
   return bad;
 }

@@ -1,7 +1,7 @@
-/* A mesher for Vanguard, as small as one can be: a point in the middle of the
- * void, and a tetrahedron from each triangle of the front to it. That fills
- * voids which can be seen whole from their middle, and no others: of those it
- * says so, and Vanguard's own kernel fills them.
+/* A minimal mesher for Vanguard: it adds a point at the centre of the void and
+ * connects each triangle of the front to it. This fills only voids that are
+ * star-shaped about their centre. For all others it returns an error, and
+ * Vanguard's own kernel fills them.
  *
  *   cc -shared -fPIC -I PREFIX/include star.c -o star.so
  *   vanguard mesh -p PROJECT --mesher ./star.so
@@ -33,7 +33,7 @@ static void find_middle(const struct vg_mesher_front *f, double x[3])
     for (int k = 0; k < 3; k++) x[k] += f->x[i][k] / (double)f->n_point;
 }
 
-/* The sizes are there to place points by; this mesher has no use for them. */
+/* The sizes would guide the placement of points; this mesher ignores them. */
 static int fill(const struct vg_mesher_front *f,
                 const struct vg_mesher_sizes *sizes,
                 struct vg_mesher_cells *out)
@@ -49,7 +49,7 @@ static int fill(const struct vg_mesher_front *f,
     uint32_t *cell = out->cell[out->n_cell++];
 
     if (!(volume(f->x[v[0]], f->x[v[1]], f->x[v[2]], out->x[0]) > 0))
-      return 1;              /* this triangle is not seen from within */
+      return 1; /* triangle not visible from the centre */
     memcpy(cell, v, 3 * sizeof *cell);
     cell[3] = (uint32_t)f->n_point;
   }

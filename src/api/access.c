@@ -1,4 +1,4 @@
-/* What a mesh is: the last part of api/vanguard.h. */
+/* Access to a finished mesh: the last part of api/vanguard.h. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,7 +57,8 @@ vanguard_status vanguard_patch(vanguard_job *job, size_t i,
   vg_status st = vg_job_meshed(job);
 
   if (st >= 0 && i >= job->run.slices.boundary->n_patch)
-    st = vg_fail(&job->err, VG_ERR_USAGE, "no patch %zu: there are %zu", i,
+    st = vg_fail(&job->err, VG_ERR_USAGE,
+                 "there is no patch %zu: the mesh has %zu", i,
                  job->run.slices.boundary->n_patch);
   if (st < 0) return vg_job_status(st);
   from = &job->run.slices.boundary->patch[i];
@@ -132,15 +133,15 @@ vanguard_status vanguard_arrays(vanguard_job *job, double *xyz, uint32_t *tet,
   if (st < 0) return vg_job_status(st);
   if (job->run.size > 1)
     return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED,
-                                 "no process "
-                                 "has the whole mesh of %d ranks: use "
-                                 "vanguard_piece_get, or write it",
+                                 "no process holds the whole mesh of a job "
+                                 "with %d ranks: use vanguard_piece_get or "
+                                 "vanguard_write",
                                  job->run.size));
   if (job->run.slices.n_point >= UINT32_MAX)
     return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED,
-                                 "%llu points "
-                                 "are too many for numbers of 32 bits: use "
-                                 "vanguard_piece_get, or write b8l.ugrid",
+                                 "%llu points cannot be numbered with 32 "
+                                 "bits: use vanguard_piece_get, or write "
+                                 "b8l.ugrid",
                                  (unsigned long long)job->run.slices.n_point));
   st = vg_slices_each(&job->run.slices, job->run.threads, fill_arrays, &a,
                       &job->err);
@@ -161,8 +162,8 @@ vanguard_status vanguard_piece_get(vanguard_job *job, size_t i,
   vg_status st = vg_job_meshed(job);
 
   if (st >= 0 && i >= s->n_slice)
-    st = vg_fail(&job->err, VG_ERR_USAGE, "no piece %zu: this rank has %zu", i,
-                 s->n_slice);
+    st = vg_fail(&job->err, VG_ERR_USAGE,
+                 "there is no piece %zu: this rank has %zu", i, s->n_slice);
   if (st < 0) return vg_job_status(st);
   slice = vg_calloc(1, sizeof *slice);
   st = slice ? s->get(s, i, slice, &job->err)
@@ -244,7 +245,8 @@ vanguard_status vanguard_wall(vanguard_job *job, size_t i,
   vg_status st = vg_job_meshed(job);
 
   if (st >= 0 && (!vanguard_walls(job) || i > job->layers.n_wall))
-    st = vg_fail(&job->err, VG_ERR_USAGE, "no wall %zu: this rank knows %zu", i,
+    st = vg_fail(&job->err, VG_ERR_USAGE,
+                 "there is no wall %zu: this rank has %zu", i,
                  vanguard_walls(job));
   if (st < 0) return vg_job_status(st);
   from = i < job->layers.n_wall ? &job->layers.wall[i] : &job->layers.all;
@@ -266,7 +268,8 @@ vanguard_status vanguard_wall(vanguard_job *job, size_t i,
   return VANGUARD_OK;
 }
 
-/* The numbers that points of the walls have in the mesh; NULL: no memory. */
+/* Numbers of the wall points in the mesh; NULL if there is not enough
+ * memory. */
 static const uint32_t *wall_points(vanguard_job *job)
 {
   const struct vg_wall_fields *w = &job->layers.fields;
@@ -314,19 +317,20 @@ const char *vanguard_cause(int32_t cause)
 
 /* --- files --------------------------------------------------------------- */
 
-/* Where files go and what they are is the caller's, all else the run's. */
+/* Plan the output files: the stem and the forms are those of the caller, all
+ * other settings those of the run. */
 static vg_status plan_files(vanguard_job *job, const char *stem,
                             const char *forms, struct vg_outputs *o)
 {
-  struct vg_settings view = job->problem.asked; /* tables are borrowed */
+  /* shares the tables of `asked`; must not be released */
+  struct vg_settings view = job->problem.asked;
   size_t n = forms ? strlen(forms) : 0;
   char list[VG_WRITE_MAX];
 
   if (n >= sizeof view.write)
     return vg_fail(&job->err, VG_ERR_INPUT,
-                   "the list of forms has %zu "
-                   "characters, at most %zu are taken",
-                   n, sizeof view.write - 1);
+                   "the list of forms has %zu characters; the limit is %zu", n,
+                   sizeof view.write - 1);
   if (forms) memcpy(view.write, forms, n + 1);
   vg_resolve_write(&view, list);
   return vg_outputs_plan(&job->problem, stem, NULL, list, job->run.size, o,

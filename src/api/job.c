@@ -32,9 +32,9 @@ static vg_status refuse_abi(int abi, struct vg_error *err)
 {
   if (abi == VANGUARD_ABI) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "the program was compiled for ABI %d "
-                 "of libvanguard, this is version %s with ABI %d; compile it "
-                 "with the header of this version",
+                 "the program was compiled for ABI %d of libvanguard, but "
+                 "this is version %s with ABI %d; recompile it with the "
+                 "header of this version",
                  abi, VG_VERSION, VANGUARD_ABI);
 }
 
@@ -132,8 +132,8 @@ vanguard_status vanguard_get(vanguard_job *job, const char *name, char *value,
     st = vg_settings_get(&job->settings, name, text, sizeof text, &job->err);
   if (st >= 0 && strlen(text) >= size)
     st = vg_fail(&job->err, VG_ERR_USAGE,
-                 "the value of %s has %zu characters, "
-                 "%zu are too few for it",
+                 "the value of %s has %zu characters and does not fit into "
+                 "an array of %zu",
                  name, strlen(text), size);
   if (st >= 0) memcpy(value, text, strlen(text) + 1);
   return vg_job_status(st);
@@ -239,8 +239,8 @@ static vg_status check_triangles(const char *name, size_t n_point, size_t n,
   for (size_t i = 0; i < 3 * n; i++)
     if (tri[i] >= n_point)
       return vg_fail(err, VG_ERR_INPUT,
-                     "%s: triangle %zu has point %lu, but "
-                     "points go from 0 to %lld",
+                     "%s: triangle %zu refers to point %lu, but points are "
+                     "numbered from 0 to %lld",
                      name, i / 3, (unsigned long)tri[i],
                      (long long)n_point - 1);
   return VG_OK;
@@ -253,7 +253,7 @@ static int compare_id(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Patches by rising number. */
+/* Create the patches in ascending order of their ids. */
 static vg_status make_patches(struct vg_mesh *m, const int32_t *patch,
                               struct vg_error *err)
 {
@@ -343,7 +343,7 @@ vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
   at = vg_alloc(n, sizeof *at);
   of = vg_alloc(n, sizeof *of);
   if (!at || !of) {
-    st = vg_fail_memory(&job->err, "the sizes at points");
+    st = vg_fail_memory(&job->err, "the target edge lengths at points");
     goto done;
   }
   if (n) memcpy(at, xyz, n * sizeof *at);

@@ -1,4 +1,4 @@
-/* api/job.h: what a vanguard_job is. Private to api. */
+/* api/job.h: the members of a vanguard_job. Private to api. */
 #ifndef VG_API_JOB_H
 #define VG_API_JOB_H
 
@@ -11,18 +11,21 @@
 
 struct vanguard_job {
   struct vg_comm *comm;
-  int is_refused; /* the caller's ABI is: no call makes sense */
+  int is_refused; /* the caller's ABI is not supported, or the job could not
+                     be created: every call fails */
   struct vg_error err;
   struct vg_settings settings;
-  char *project, *deck;   /* of vanguard_open; NULL */
-  char *name;             /* of `surface` */
-  struct vg_mesh surface; /* of vanguard_surface */
+  char *project, *deck;   /* names given to vanguard_open; else NULL */
+  char *name;             /* name of `surface` */
+  struct vg_mesh surface; /* surface given to vanguard_surface */
   vanguard_size_function *size;
   void *size_user;
-  struct vg_size_map map; /* of `size` or `samples`; at NULL: none */
+  struct vg_size_map map; /* sizing field of `size` or `samples`; `at` is
+                             NULL without either */
   size_t n_size;
-  double (*size_at)[3], *size_of; /* [n_size] of vanguard_size_points */
-  /* a run */
+  double (*size_at)[3], *size_of; /* [n_size] points and sizes given to
+                                     vanguard_size_points */
+  /* State of the last run. */
   vanguard_progress *progress;
   void *progress_user;
   struct vg_display show;
@@ -31,25 +34,26 @@ struct vanguard_job {
   struct vg_layer_stage layers;
   struct vg_run run;
   int is_meshed;
-  uint32_t *wall_point; /* of vanguard_wall_points; NULL: not asked yet */
+  uint32_t *wall_point; /* [n_point] made by vanguard_wall_points at its
+                           first call; NULL before */
   char *details;
 };
 
-/** Keep a failure: what the public function returns. */
+/** Convert an internal status to that of the public functions. */
 static inline vanguard_status vg_job_status(vg_status st)
 {
   return st < 0 ? (vanguard_status)st : VANGUARD_OK;
 }
 
-/** VG_ERR_USAGE where the job cannot do anything, or has no mesh. */
+/** VG_ERR_USAGE if the job could not be created, or if it has no mesh. */
 vg_status vg_job_usable(vanguard_job *job);
 vg_status vg_job_meshed(vanguard_job *job);
 
-/** Release everything of the last run. Collective. */
+/** Release everything that belongs to the last run. Collective. */
 void vg_job_release_run(vanguard_job *job, int success);
 
-/** Give out a structure, no more of it than the caller knows: the first
- * member of both is the size. */
+/** Copy those members of a structure to the caller that the caller's
+ * struct_size covers. Both structures begin with their size. */
 void vg_job_give(void *out, const void *full, size_t size);
 
 #endif

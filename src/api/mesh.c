@@ -47,7 +47,7 @@ static double size_at(void *user, const double x[3])
   return job->size(job->size_user, x);
 }
 
-/* The sizes that the caller gave, as the run takes them. */
+/* Pass the caller's sizes to the run. */
 static vg_status use_sizes(vanguard_job *job)
 {
   struct vg_problem *p = &job->problem;
@@ -65,7 +65,8 @@ static vg_status use_sizes(vanguard_job *job)
   return st;
 }
 
-/* By each rank: settings, files found, sizes; the surface is copied. */
+/* Collect the input on this rank: settings, file names and sizes. A surface
+ * given in memory is copied. */
 static vg_status take_input(vanguard_job *job, struct vg_mesh *copy)
 {
   struct vg_problem *p = &job->problem;
@@ -100,7 +101,8 @@ static vg_status read_input(vanguard_job *job)
   return vg_comm_agree(job->comm, st, &job->err);
 }
 
-/* What there is to say of the surface, good or bad. */
+/* Store the report on the surface for vanguard_details, whether or not meshing
+ * has succeeded. */
 static void describe_surface(vanguard_job *job)
 {
   const struct vg_problem *p = &job->problem;

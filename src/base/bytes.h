@@ -50,7 +50,8 @@ static inline void vg_get(struct vg_reader *r, size_t n, size_t size,
   r->at += n * size;
 }
 
-/** A new array of n items that follow; NULL (and r->bad) when they do not. */
+/** Read an array of n items into new memory. Returns NULL and sets r->bad if
+ * the message does not contain that many. */
 static inline void *vg_get_array(struct vg_reader *r, size_t n, size_t size)
 {
   void *a;
@@ -65,12 +66,12 @@ static inline void *vg_get_array(struct vg_reader *r, size_t n, size_t size)
   return a;
 }
 
-/** VG_ERR_FORMAT: what was read cannot be, or does not fit into memory. */
+/** VG_ERR_FORMAT: the data read are inconsistent, or do not fit into memory. */
 static inline vg_status vg_fail_damaged(struct vg_error *err, const char *what)
 {
   return vg_fail(err, VG_ERR_FORMAT,
-                 "a damaged message (%s), or one that does "
-                 "not fit into memory",
+                 "a damaged message (%s), or one too large for the "
+                 "available memory",
                  what);
 }
 

@@ -1,4 +1,4 @@
-/* The end of a program whose stage left a wrong result. */
+/* Aborts the program when a stage has left a wrong result. */
 #include "base/checks.h"
 
 #include <stdio.h>

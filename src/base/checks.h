@@ -1,10 +1,10 @@
-/* base/checks.h: checks of the result of a whole stage, too expensive for
+/* base/checks.h: checks of the complete result of a stage, too expensive for
  * assert. The CMake option VG_CHECKS compiles them in (presets asan and fuzz);
  * without it they cost nothing. Uses nothing.
  *
- * Like assert, these checks are for our own bugs: a failed one prints the name
- * of the stage and aborts. What input can cause is an error and returns a
- * vg_status. */
+ * Like assert, these checks detect our own bugs: a failed check prints the name
+ * of the stage and aborts. Errors that the input can cause return a vg_status
+ * instead. */
 #ifndef VG_BASE_CHECKS_H
 #define VG_BASE_CHECKS_H
 
@@ -16,10 +16,10 @@ enum { VG_CHECKS_ON = 1 };
 enum { VG_CHECKS_ON = 0 };
 #endif
 
-/** Return if n_defect is 0; else print stage, what and n_defect to the standard
- * error and abort. Threads: safe.
+/** Return if n_defect is 0; otherwise print stage, what and n_defect to
+ * standard error and abort. Threads: safe.
  *
- * @param stage  name of the stage for a person: "boundary recovery"
+ * @param stage  readable name of the stage: "boundary recovery"
  * @param what   expression that counted the defects */
 void vg_check_none(const char *stage, const char *what, size_t n_defect);
 

@@ -16,7 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* One message asks for one child; a socket to it comes along. */
+/* A message requests one child; the child's socket is sent along with it. */
 struct request {
   vg_child_body *body;
   int has_affinity;
@@ -28,8 +28,10 @@ union ticket { /* control data that carries one descriptor */
   struct cmsghdr aligned;
 };
 
-static atomic_int control = -1; /* our end; closed by stop alone */
-static atomic_int server;       /* its process; 0: none, or waited for */
+static atomic_int control = -1; /* our end of the socket; closed by
+                                   vg_child_server_stop only */
+static atomic_int server;       /* process id of the server; 0: not running, or
+                                   already waited for */
 static atomic_int server_died;
 
 /* --- a process that shares nothing --------------------------------------- */
@@ -42,14 +44,16 @@ static void close_from(unsigned first, unsigned end)
 #ifdef SYS_close_range
   if (!syscall(SYS_close_range, first, end - 1, 0)) return;
 #endif
-  /* an older kernel; few processes have opened that many */
+  /* close_range needs Linux 5.9. Few processes have opened more descriptors
+   * than this limit. */
   if (getrlimit(RLIMIT_NOFILE, &limit) || limit.rlim_cur > 65536)
     limit.rlim_cur = 65536;
   for (unsigned fd = first; fd < end && fd < limit.rlim_cur; fd++)
     close((int)fd);
 }
 
-/* Descriptors of others would keep their files, pipes and sockets open. */
+/* Close all inherited descriptors except fd. Otherwise they would keep files,
+ * pipes and sockets of the parent open. */
 static void keep_only(int fd)
 {
   int nowhere = open("/dev/null", O_RDWR);
@@ -60,8 +64,9 @@ static void keep_only(int fd)
   close_from(fd > STDERR_FILENO ? (unsigned)fd + 1 : STDERR_FILENO + 1, ~0u);
 }
 
-/* What a terminal or a batch system sends to a whole group: our user decides.
- * All else as at the start of a program; no signal blocked. */
+/* Ignore the signals that a terminal or a batch system sends to the whole
+ * process group: the parent decides when this process ends. All other signals
+ * get their default action, and none is blocked. */
 static void set_signals(void)
 {
   static const int others[] = { SIGINT,  SIGTERM, SIGHUP,
@@ -83,15 +88,17 @@ static void detach(pid_t parent, int fd)
 
   set_signals();
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1); /* it ended before it could matter */
+  if (getppid() != parent)
+    _exit(1); /* the parent ended before PR_SET_PDEATHSIG took effect */
   setrlimit(RLIMIT_CORE, &none);
   keep_only(fd);
 }
 
 /* --- the server ---------------------------------------------------------- */
 
-/* Returns the size of the message, 0 at the end, -1 on failure; *fd is -1
- * when none came. */
+/* Receive a request and the descriptor sent with it. Returns the size of the
+ * message, 0 at the end, -1 on failure; *fd is -1 if the message has no
+ * descriptor. */
 static ssize_t take_request(int from, struct request *r, int *fd)
 {
   union ticket t;
@@ -164,7 +171,7 @@ vg_status vg_child_server_start(struct vg_error *err)
   return VG_OK;
 }
 
-/* --- its users ----------------------------------------------------------- */
+/* --- functions for the users of children --------------------------------- */
 
 static void wait_for(int options)
 {
@@ -179,7 +186,8 @@ void vg_child_server_stop(void)
   int fd = atomic_exchange(&control, -1);
 
   if (fd < 0) return;
-  shutdown(fd, SHUT_RDWR); /* ends it even where a copy of fd is about */
+  shutdown(fd, SHUT_RDWR); /* ends the server even if another process holds a
+                              copy of fd */
   close(fd);
   wait_for(0);
 }
@@ -191,7 +199,7 @@ static void remember_death(void)
   if (p.fd < 0 || server_died) return;
   if (poll(&p, 1, 0) <= 0 || !(p.revents & (POLLHUP | POLLERR))) return;
   server_died = 1;
-  wait_for(0); /* its socket is closed: it is about to end */
+  wait_for(0); /* returns soon, since its socket is closed */
 }
 
 static int send_ticket(int to, int fd, vg_child_body *body)
@@ -206,7 +214,7 @@ static int send_ticket(int to, int fd, vg_child_body *body)
   struct cmsghdr *c = CMSG_FIRSTHDR(&m);
   ssize_t n;
 
-  /* refused on machines with more processors than a cpu_set_t has */
+  /* fails on machines with more processors than a cpu_set_t holds */
   r.has_affinity = !sched_getaffinity(0, sizeof r.affinity, &r.affinity);
   c->cmsg_level = SOL_SOCKET;
   c->cmsg_type = SCM_RIGHTS;
@@ -217,7 +225,8 @@ static int send_ticket(int to, int fd, vg_child_body *body)
   return n == sizeof r;
 }
 
-/* A child of the server; -1 when there is no server, or it cannot. */
+/* Ask the server for a child. Returns its socket, or -1 if there is no server
+ * or it cannot make one. */
 static int ask_server(vg_child_body *body)
 {
   int ends[2], to = control, sent;
@@ -274,7 +283,7 @@ void vg_child_close(struct vg_child *c)
   }
 }
 
-/* A body that ends at once. */
+/* A child body that ends at once. */
 static void only_hello(int fd)
 {
   (void)fd;

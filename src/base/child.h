@@ -1,16 +1,17 @@
-/* base/child.h: child processes for libraries that cannot be trusted with this
- * one: that hold state in statics, end the process, take signals for themselves
- * or never return.
+/* base/child.h: child processes for third-party libraries that must not run in
+ * this process, because they keep state in static variables, end the process,
+ * take over signals or never return.
  *
- * fork copies the page tables of the caller, takes seconds in a process of
- * many gigabytes, is discouraged under MPI and, with other threads at work,
- * may leave a child whose locks are held for ever. So a program that meshes
- * forks a small process of one thread at its start; that one forks again for
- * each call of vg_child_open. Without it vg_child_open forks in place.
+ * fork copies the page tables of the caller. In a process of many gigabytes
+ * this takes seconds, under MPI it is discouraged, and if other threads are
+ * running the child may inherit locks that are never released. A meshing
+ * program therefore forks a small, single-threaded server process at its start,
+ * and that server forks again for each call of vg_child_open. Without the
+ * server, vg_child_open forks the calling process.
  *
- * There is one server per process, as there is one standard output: the only
- * mutable state of the library, since callers lie too deep for a handle.
- * Results do not depend on it. */
+ * There is one server per process, just as there is one standard output. It is
+ * the only mutable global state of the library, since its callers are too deep
+ * in the call tree to receive a handle. Results do not depend on it. */
 #ifndef VG_BASE_CHILD_H
 #define VG_BASE_CHILD_H
 
@@ -23,48 +24,50 @@
 extern "C" {
 #endif
 
-/** Start the server. Call at program start, before any thread, before MPI.
+/** Start the server. Call it at program start, before any thread is started and
+ * before MPI is initialised.
  *
- * It ends when this process ends, however that comes, leaves its signals to
- * this process (SIGINT, SIGTERM and the like sent to the group are ignored)
- * and holds none of its files. A second call does nothing.
- * VG_ERR_MEMORY: the system refuses a process or a socket; the program may go
- * on, children are then forked in place. */
+ * The server ends when this process ends for whatever reason. It ignores
+ * SIGINT, SIGTERM and similar signals sent to the process group, which are for
+ * this process to handle, and holds none of its files. A second call does
+ * nothing.
+ * VG_ERR_MEMORY: the system refused a process or a socket. The program may go
+ * on; children are then forked from the calling process. */
 vg_status vg_child_server_start(struct vg_error *err);
 
-/** End the server and wait for it; nothing happens without one. No child may
- * be at work. */
+/** End the server and wait for it; does nothing without one. No child may be
+ * running. */
 void vg_child_server_stop(void);
 
-/** 1 when the server has just given proof of life by a fresh child: then one
- * that is gone went by itself. The socket of a server is no such proof, since
- * it may stay open for a moment after its children were told of its end.
- * Threads: safe. */
+/** Returns 1 if the server has just proved that it is alive by starting a new
+ * child. A child that has disappeared must then have ended by itself. The state
+ * of the server's socket proves nothing: it may stay open for a moment after
+ * the server's children were told to end. Threads: safe. */
 int vg_child_server_is_alive(void);
 
-/** What a child does with the stream socket to its parent, until the other end
- * shuts it; it does not return. The child shares nothing else with the parent:
- * no other files, default signals save those that the parent decides about
- * (ignored), output to nowhere, and an end with the parent. */
+/** Function that a child runs. `fd` is the stream socket to the parent; the
+ * function serves it until the parent shuts the other end, and does not return.
+ * The child shares nothing else with the parent: it has no other open files,
+ * default signal actions (except for the ignored signals that the parent
+ * handles), discarded output, and it ends when the parent ends. */
 typedef void vg_child_body(int fd);
 
 struct vg_child {
-  int fd;    /* a stream socket; the end of its other end is the
-                end of the child */
-  pid_t pid; /* forked in place; 0: the server's */
+  int fd;    /* stream socket; the child ends when the other end is shut */
+  pid_t pid; /* process id if forked by this process; 0: child of the server */
 };
 
-/** A fresh child that runs `body`, a function of this program: the server has
- * it at the same address. It takes on the affinity of the calling thread.
- * Returns -1 when the system refuses. Threads: safe. */
+/** Start a new child that runs `body`, a function of this program; the server
+ * has it at the same address. The child gets the CPU affinity of the calling
+ * thread. Returns -1 if the system refuses. Threads: safe. */
 int vg_child_open(vg_child_body *body, struct vg_child *out);
 
-/** The child ends, by itself if its body ends when the socket is shut; one that
- * was forked in place is waited for. */
+/** Shut the child's socket, at which its body ends. Waits for the child only if
+ * this process forked it. */
 void vg_child_close(struct vg_child *c);
 
-/** All of these bytes over a child's socket, at either end. Returns 0 when the
- * other end is gone; never raises SIGPIPE. */
+/** Send all of these bytes over a child's socket, from either end. Returns 0 if
+ * the other end is closed; never raises SIGPIPE. */
 int vg_child_put(int fd, const void *data, size_t size);
 int vg_child_get(int fd, void *data, size_t size);
 

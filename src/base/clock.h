@@ -1,11 +1,11 @@
-/* base/clock.h: seconds, for reports and displays; nothing that is made may
- * follow from them. */
+/* base/clock.h: clocks for reports and progress displays. No result may depend
+ * on them. */
 #ifndef VG_BASE_CLOCK_H
 #define VG_BASE_CLOCK_H
 
 #include <time.h>
 
-/** Seconds of a clock that only goes forward, from any start. */
+/** Seconds of a monotonic clock with an arbitrary origin. */
 static inline double vg_clock(void)
 {
   struct timespec t;
@@ -14,7 +14,7 @@ static inline double vg_clock(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/** Seconds of processor time that the calling thread has had. */
+/** Processor time of the calling thread in seconds. */
 static inline double vg_clock_thread(void)
 {
   struct timespec t;
@@ -23,7 +23,7 @@ static inline double vg_clock_thread(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/** The same of all threads of this process together. */
+/** Processor time of all threads of this process in seconds. */
 static inline double vg_clock_process(void)
 {
   struct timespec t;

@@ -1,4 +1,4 @@
-/* Joining and leaving a job, and waiting asleep: base/comm.h. */
+/* Joining and leaving a job, and waiting without spinning; see base/comm.h. */
 #include "base/comm.h"
 
 #include <arpa/inet.h>
@@ -16,15 +16,16 @@
 #include "base/library.h"
 #include "base/memory.h"
 
-/* Bytes in one call of MPI: far below the 2^31 of its counts. */
+/* Bytes per MPI call: far below the 2^31 limit of its counts. */
 #define CHUNK ((size_t)1 << 28)
 
-/* Files that are looked at for the launcher's socket. */
+/* Number of open files searched for the launcher's socket. */
 #define MOST_SOCKETS 64
 
-/* Sleep between looks: a share of what was waited so far, so that waits take
- * at most so much longer, and long ones use no core. While bytes flow it is
- * the looks that move them, so there a rank sleeps only after LOOKS of them. */
+/* Duration of the sleep between polls. It is a fixed share of the time waited
+ * so far, so a wait lasts at most that share longer, and long waits use no
+ * core. While data are being transferred, polling is what moves them, so in
+ * that case a rank sleeps only after every LOOKS polls. */
 enum {
   NAP_FIRST_NS = 2000,
   NAP_BRISK_NS = 16000,
@@ -33,8 +34,8 @@ enum {
   LOOKS = 64
 };
 
-/* Sleeps end at most so long after their time; the kernel's own 50 us are as
- * long as most waits. */
+/* Allowed delay of the end of a sleep. The kernel's default of 50 us is as long
+ * as most waits. */
 enum { SLACK_NS = 1000 };
 
 vg_status vg_comm_fail(struct vg_error *err, const char *what, int rc)
@@ -104,10 +105,10 @@ static long number(const char *name)
   return text ? strtol(text, NULL, 10) : -1;
 }
 
-/* Variables of the launchers that connect their processes: Open MPI's mpirun,
- * whatever speaks PMI (MPICH's, Intel's and Cray's; srun --mpi=pmi2) and PMIx
- * (prterun, srun --mpi=pmix). Says how many processes there should be, if the
- * launcher tells, else 1. */
+/* Is there a launcher that connects its processes? Detects Open MPI's mpirun,
+ * PMI (MPICH, Intel and Cray MPI; srun --mpi=pmi2) and PMIx (prterun, srun
+ * --mpi=pmix) by their environment variables. *size is the number of processes
+ * if the launcher tells it, else 1. */
 static int launched(long *size)
 {
   static const char *const sign[] = { "OMPI_COMM_WORLD_SIZE", "PMI_SIZE",
@@ -123,19 +124,20 @@ static int launched(long *size)
   return 0;
 }
 
-/* Processes of a Slurm step that nothing connects would each believe to be
- * alone, and all do and write the same. */
+/* Is this a process of a Slurm step that no launcher connects? Each of them
+ * would run as a job of one rank, and all would do the same work and write the
+ * same files. */
 static int is_loose_step(void)
 {
   return getenv("SLURM_STEP_ID") && getenv("SLURM_PROCID") &&
          number("SLURM_STEP_NUM_TASKS") > 1;
 }
 
-/* Open MPI looks for networks, 0.2 s long, also where all ranks are on one
- * node, as its mpirun tells. There it is asked for what it would end with:
- * shared memory, and sockets where that is refused. What was asked of it
- * otherwise counts. Of other launchers and libraries the variables are not
- * known. */
+/* Open MPI spends 0.2 s looking for networks, even if all ranks are on one
+ * node, which mpirun tells by its variables. In this case we select the
+ * transports that it would end up with: shared memory, or sockets where that is
+ * refused. Settings of the user take precedence. The corresponding variables of
+ * other launchers and libraries are not known. */
 static void spare_networks(void)
 {
   static const char *const asked[] = { "OMPI_MCA_pml", "OMPI_MCA_btl",
@@ -150,9 +152,10 @@ static void spare_networks(void)
   setenv(asked[1], "self,vader,tcp", 0);
 }
 
-/* To leave, PMIx sends its launcher four short messages one after another
- * over a socket of this node. All but the first wait for the receipt of that,
- * which is put off for 40 ms, unless the socket is told not to. */
+/* To leave, PMIx sends its launcher four short messages in a row over a local
+ * socket. With Nagle's algorithm, all but the first wait for the
+ * acknowledgement of the previous one, which is delayed by 40 ms. TCP_NODELAY
+ * avoids this. */
 static void spare_delays(void)
 {
   for (int file = 3; file < MOST_SOCKETS; file++) {
@@ -172,10 +175,10 @@ static vg_status allows_threads(int level, struct vg_error *err)
 {
   if (level >= MPI_THREAD_MULTIPLE) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "this MPI library does not allow "
-                 "calls from several threads (MPI_THREAD_MULTIPLE; it offers "
-                 "level %d); use one that does, or run one rank with "
-                 "--threads and without mpirun",
+                 "this MPI library does not support calls from several "
+                 "threads (MPI_THREAD_MULTIPLE; it offers level %d); use an "
+                 "MPI library that does, or run one rank with --threads and "
+                 "without mpirun",
                  level);
 }
 
@@ -185,8 +188,8 @@ static vg_status start(struct vg_comm *c, struct vg_error *err)
 
   if (MPI_Finalized(&is_over) || is_over)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "MPI was left and cannot be "
-                   "joined again in the same process");
+                   "MPI was finalised and cannot be started again in the "
+                   "same process");
   rc = MPI_Initialized(&is_up);
   if (!rc && is_up) rc = MPI_Query_thread(&level);
   else if (!rc) {
@@ -206,7 +209,7 @@ static int duplicate(MPI_Comm of, MPI_Comm *to)
   return rc ? rc : MPI_Comm_set_errhandler(*to, MPI_ERRORS_RETURN);
 }
 
-/* What follows from c->node; both collective. */
+/* Set up the data that depend on c->node, on all of its ranks. Collective. */
 static vg_status settle_node(struct vg_comm *c, struct vg_error *err)
 {
   int rc;
@@ -269,10 +272,10 @@ static vg_status check_size(const struct vg_comm *c, long announced,
 {
   if (c->size > 1 || announced <= 1 || !c->owns_mpi) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "the launcher started %ld "
-                 "processes that do not find each other: use the mpirun of "
-                 "the MPI library that this program is linked with (or srun "
-                 "--mpi with a plugin that it knows)",
+                 "the launcher started %ld processes that cannot find each "
+                 "other: use the mpirun of the MPI library that this "
+                 "program is linked with, or srun --mpi with a plugin that "
+                 "this library supports",
                  announced);
 }
 
@@ -297,17 +300,17 @@ vg_status vg_comm_open(struct vg_comm **out, struct vg_error *err)
   if (!launched(&announced)) {
     if (is_loose_step())
       return vg_fail(err, VG_ERR_UNSUPPORTED,
-                     "srun started %ld processes "
-                     "without connecting them; use srun --mpi=pmix or "
-                     "--mpi=pmi2 (srun --mpi=list shows what there is), or "
-                     "mpirun",
+                     "srun started %ld processes without connecting them; "
+                     "use srun --mpi=pmix or --mpi=pmi2 (srun --mpi=list "
+                     "shows the plugins available), or mpirun",
                      announced);
     *out = NULL;
     return VG_OK;
   }
   c = new_comm();
   if (!c) return vg_fail_memory(err, "communication");
-  prctl(PR_SET_TIMERSLACK, (unsigned long)SLACK_NS); /* and threads to come */
+  /* also holds for threads started later */
+  prctl(PR_SET_TIMERSLACK, (unsigned long)SLACK_NS);
   VG_TRY(start(c, err));
   VG_TRY(join(c, MPI_COMM_WORLD, err));
   VG_TRY(check_size(c, announced, err));
@@ -389,7 +392,8 @@ void vg_library_mpi(struct vg_library *out)
   char text[MPI_MAX_LIBRARY_VERSION_STRING];
   int n = 0;
 
-  MPI_Get_library_version(text, &n); /* also before MPI is started */
+  MPI_Get_library_version(text, &n); /* may be called before MPI is
+                                        initialised */
   out->name = "MPI";
   snprintf(out->version, sizeof out->version, "%.100s", text);
 }

@@ -1,5 +1,5 @@
-/* What all ranks do together: base/comm.h. All waiting is done asleep; where
- * one rank may run out of memory all ranks agree before they go on. */
+/* Collectives of base/comm.h. Ranks sleep while they wait. Where one rank may
+ * run out of memory, all ranks agree before they continue. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@ static vg_status finish(MPI_Request *request, int rc, const char *what,
   return rc ? vg_comm_fail(err, what, rc) : VG_OK;
 }
 
-/* v [n] of a type, reduced in place. */
+/* Reduce v [n] of an MPI type in place. */
 static vg_status reduce(struct vg_comm *c, size_t n, void *v, size_t size,
                         MPI_Datatype type, MPI_Op op, struct vg_error *err)
 {
@@ -54,13 +54,14 @@ struct verdict {
   char text[sizeof((struct vg_error *)0)->text];
 };
 
-/* Failures before what another rank's failure caused, before outcomes. */
+/* Order of verdicts: genuine failures first, then VG_ERR_REMOTE, which another
+ * rank's failure caused, then outcomes > 0. */
 static uint64_t severity(vg_status st)
 {
   return st < 0 ? (st == VG_ERR_REMOTE) : st > 0 ? 2 : 3;
 }
 
-/* "rank 3: ..." says already whose it is. */
+/* Does the message already begin with "rank 3: ..."? */
 static int names_rank(const char *text)
 {
   size_t n;
@@ -172,7 +173,8 @@ static void release_all(struct vg_bytes *b, int n)
   free(b);
 }
 
-/* Room for n [size] bytes from every rank; all or none of the ranks. */
+/* Allocate n [size] bytes for the data of every rank. Succeeds on all ranks or
+ * on none. */
 static vg_status fresh_all(const struct vg_comm *c, const uint64_t *n,
                            struct vg_bytes **out, struct vg_error *err)
 {
@@ -220,7 +222,8 @@ static size_t n_chunks(const struct vg_comm *c, const struct vg_bytes *b)
   return n;
 }
 
-/* Peers in turn from one's own number on, so that not all send to one. */
+/* Each rank starts with its own successor, so that the ranks do not all send to
+ * the same one at once. */
 static vg_status exchange_bytes(const struct vg_comm *c,
                                 const struct vg_bytes *to,
                                 struct vg_bytes *from, MPI_Request *request,
@@ -243,11 +246,12 @@ static vg_status exchange_bytes(const struct vg_comm *c,
     if (rc) st = vg_comm_fail(err, "exchange", rc);
   }
   if (st < 0 && vg_comm_cancel_receives(n_receive, t.request))
-    for (int k = 0; k < c->size; k++) from[k].data = NULL; /* MPI's now */
+    /* MPI may still write there */
+    for (int k = 0; k < c->size; k++) from[k].data = NULL;
   return st;
 }
 
-/* Take a size that has come, if one has: n [size]. */
+/* Receive one size if a message has arrived; n [size]. */
 static int take_size(struct vg_comm *c, int tag, uint64_t *n)
 {
   MPI_Message message;
@@ -262,7 +266,8 @@ static int take_size(struct vg_comm *c, int tag, uint64_t *n)
   return rc;
 }
 
-/* Until all that was sent has been taken, here and then everywhere. */
+/* Receive sizes until every size sent has been received, first by this rank and
+ * then by all. */
 static int take_sizes(struct vg_comm *c, int tag, int n_request,
                       MPI_Request *request, uint64_t *n)
 {
@@ -283,12 +288,14 @@ static int take_sizes(struct vg_comm *c, int tag, int n_request,
   return rc;
 }
 
-/* What is on its way here, known from those alone who send something: as many
- * messages as there are such pairs, not the square of the ranks (Hoefler,
- * Siebert, Lumsdaine: Scalable communication protocols for dynamic sparse data
- * exchange, PPoPP 2010). The tags of two exchanges differ: who has heard that
- * all is taken may begin the next one before others have.
- * n in: [size] bytes to each; out: from each. */
+/* Find out how many bytes each rank will receive, where only the ranks that
+ * send something announce it. The number of messages is the number of
+ * communicating pairs, not the square of the number of ranks (Hoefler, Siebert,
+ * Lumsdaine: Scalable communication protocols for dynamic sparse data exchange,
+ * PPoPP 2010). Consecutive exchanges use different tags, since a rank that
+ * knows that all sizes have been received may begin the next exchange before
+ * the others have ended this one.
+ * n in: [size] bytes to each rank; out: bytes from each rank. */
 static vg_status exchange_sizes(struct vg_comm *c, uint64_t *n,
                                 struct vg_error *err)
 {
@@ -311,7 +318,8 @@ static vg_status exchange_sizes(struct vg_comm *c, uint64_t *n,
                       &request[m++]);
   }
   if (!rc) rc = take_sizes(c, tag, m, request, n);
-  if (rc) return vg_comm_fail(err, "exchange", rc); /* they are MPI's now */
+  /* MPI may still use the buffers */
+  if (rc) return vg_comm_fail(err, "exchange", rc);
 done:
   free(request);
   free(to);
@@ -365,7 +373,7 @@ void vg_bytes_release(struct vg_bytes *list, size_t n)
   free(list);
 }
 
-/* By MPI's own gathering: at [size] where each rank's bytes begin in all. */
+/* Gather by MPI_Allgatherv. at: [size] offset of each rank's bytes in `all`. */
 static vg_status gather(struct vg_comm *c, const struct vg_bytes *mine,
                         const uint64_t *n, int *count, int *at,
                         struct vg_bytes *out, struct vg_error *err)
@@ -399,7 +407,7 @@ done:
   return st;
 }
 
-/* Much at once goes as an exchange, which has no limit. */
+/* Large amounts are sent by vg_comm_exchange, which has no size limit. */
 static vg_status exchange_same(struct vg_comm *c, const struct vg_bytes *mine,
                                struct vg_bytes *out, struct vg_error *err)
 {

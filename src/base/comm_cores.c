@@ -1,6 +1,6 @@
-/* Cores of a node and who may use them: base/comm.h. The only file that sees
- * hwloc.h: the kernel says which processors a process may use, hwloc which of
- * them are threads of the same core. */
+/* Cores of a node, and which ranks may use them; see base/comm.h. The only file
+ * that includes hwloc.h: the kernel knows which processors a process may use,
+ * hwloc which of them are hyperthreads of one core. */
 #define _GNU_SOURCE
 #include <hwloc.h>
 #include <sched.h>
@@ -16,7 +16,7 @@
 #define BITS (8 * sizeof(unsigned long))
 #define WORDS (sizeof(struct vg_cores_mask) / sizeof(unsigned long))
 
-/* Zeros where the kernel does not tell. */
+/* Affinity of this process; all zero if the kernel does not provide it. */
 static void own_mask(struct vg_cores_mask *m)
 {
   memset(m, 0, sizeof *m);
@@ -32,7 +32,7 @@ static int n_processors(const struct vg_cores_mask *m)
   return n;
 }
 
-/* Cores with a processor in m; 0: unknown. */
+/* Number of cores with a processor in m; 0: unknown. */
 static int topology_cores(hwloc_topology_t topology,
                           const struct vg_cores_mask *m)
 {
@@ -49,7 +49,8 @@ static int topology_cores(hwloc_topology_t topology,
   return n;
 }
 
-/* At least 1. Processors count as cores where hwloc knows no better. */
+/* Number of cores in m, at least 1. Without information from hwloc, each
+ * processor counts as a core. */
 static int n_cores(const struct vg_cores_mask *m)
 {
   hwloc_topology_t topology;
@@ -91,7 +92,7 @@ void vg_comm_bind_node(struct vg_comm *c, int on)
   m = c->core[c->node_rank];
   for (int i = 0; on && i < c->node_size; i++)
     for (size_t w = 0; w < WORDS; w++) m.word[w] |= c->core[i].word[w];
-  /* refused: the cores stay what they are */
+  /* If the call fails, the binding stays as it is. */
   if (n_processors(&m)) sched_setaffinity(0, sizeof m, (cpu_set_t *)m.word);
 }
 

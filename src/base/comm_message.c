@@ -1,11 +1,12 @@
-/* Messages between ranks: base/comm.h.
+/* Messages between ranks; see base/comm.h.
  *
- * The kind of a message travels as its tag, 2 * kind, and its length is found
- * by probing. One longer than a call of MPI takes is announced by 16 bytes
- * with the tag 2 * kind + 1: its length; its parts follow on the other
- * communicator. Announcements and parts of a rank stay in order, since MPI
- * lets no message overtake another of the same sender, communicator and tag,
- * and since all of it is posted under one lock. */
+ * The tag of a message is 2 * kind, and the receiver finds its length by
+ * probing. A message longer than one MPI call can send is announced by a
+ * 16-byte message with tag 2 * kind + 1 that holds its length. Its parts follow
+ * on the other communicator. Announcements and parts from one rank arrive in
+ * order, because MPI does not let messages with the same sender, communicator
+ * and tag overtake each other, and because all of them are posted under one
+ * lock. */
 #include <assert.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -14,11 +15,11 @@
 #include "base/comm_parts.h"
 #include "base/memory.h"
 
-enum { KIND_MAX = 16383 }; /* MPI promises tags up to 32767 */
+enum { KIND_MAX = 16383 }; /* MPI guarantees tags up to 32767 */
 
 struct vg_sent {
-  size_t n_left; /* requests that are not done */
-  uint64_t n;    /* what an announcement says */
+  size_t n_left; /* requests that are not complete */
+  uint64_t n;    /* length of the announced message */
   unsigned char *data;
 };
 
@@ -127,7 +128,7 @@ vg_status vg_comm_post(struct vg_comm *c, int to, int kind, struct vg_bytes *b,
   return st;
 }
 
-/* Free what has been sent. */
+/* Free the memory of messages that have been sent. */
 static vg_status reclaim(struct vg_comm *c, struct vg_error *err)
 {
   int n_done = 0, n = 0, rc;
@@ -143,7 +144,7 @@ static vg_status reclaim(struct vg_comm *c, struct vg_error *err)
     free(s->data);
     free(s);
   }
-  if (n_done <= 0) return VG_OK; /* may be MPI_UNDEFINED */
+  if (n_done <= 0) return VG_OK; /* n_done may be MPI_UNDEFINED */
   for (int i = 0; i < c->n_request; i++) {
     if (c->request[i] == MPI_REQUEST_NULL) continue;
     c->request[n] = c->request[i];
@@ -155,7 +156,8 @@ static vg_status reclaim(struct vg_comm *c, struct vg_error *err)
 
 /* --- incoming ------------------------------------------------------------ */
 
-/* Receive what was announced; the parts' order is the announcements'. */
+/* Receive the parts of an announced message. They arrive in the order of the
+ * announcements. */
 static vg_status start_long(struct vg_comm *c, struct vg_incoming *a,
                             MPI_Message *handle, struct vg_error *err)
 {
@@ -198,7 +200,8 @@ static vg_status start_short(struct vg_incoming *a, MPI_Message *handle,
   return VG_OK;
 }
 
-/* What Open MPI finds while it probes in vain, only the next probe says. */
+/* Open MPI may detect a message during an unsuccessful probe, and report it
+ * only at the next one. So probe twice. */
 static int probe(struct vg_comm *c, int *is_there, MPI_Message *handle,
                  MPI_Status *status)
 {
@@ -211,7 +214,7 @@ static int probe(struct vg_comm *c, int *is_there, MPI_Message *handle,
   return rc;
 }
 
-/* Start to receive all that is announced, as far as there is room. */
+/* Start to receive all announced messages, as far as there is room. */
 static vg_status look(struct vg_comm *c, struct vg_error *err)
 {
   while (c->n_incoming < VG_INCOMING_MAX) {
@@ -227,7 +230,8 @@ static vg_status look(struct vg_comm *c, struct vg_error *err)
     memset(a, 0, sizeof *a);
     a->message.from = status.MPI_SOURCE;
     a->message.kind = status.MPI_TAG / 2;
-    c->n_incoming++; /* before it can fail: its memory is kept */
+    c->n_incoming++; /* count it before the receive can fail, since its
+                        memory must be kept */
     if (status.MPI_TAG % 2) st = start_long(c, a, &handle, err);
     else st = start_short(a, &handle, &status, err);
     if (st < 0) return st;
@@ -242,7 +246,8 @@ static int is_overtaking(const struct vg_comm *c, int i)
   return 0;
 }
 
-/* The first message that is whole and not before an earlier of its sender. */
+/* Take the first complete message that no earlier message of the same sender
+ * precedes. */
 static vg_status take(struct vg_comm *c, struct vg_message *m,
                       struct vg_error *err)
 {
@@ -263,7 +268,7 @@ static vg_status take(struct vg_comm *c, struct vg_message *m,
   return VG_BLOCKED;
 }
 
-/* Called with the lock. */
+/* Take a message from this rank to itself. Called with the lock held. */
 static int take_own(struct vg_comm *c, struct vg_message *m)
 {
   struct vg_self_message *q = c->first;
@@ -296,10 +301,10 @@ vg_status vg_comm_poll(struct vg_comm *c, struct vg_message *m,
 
 /* --- the end ------------------------------------------------------------- */
 
-/* What is under way in the job is what all have posted less what all have
- * received, and what MPI has not yet sent. A rank that cannot go on lets all
- * give up: then MPI's own end waits for what is left, or the launcher ends
- * the job. */
+/* The messages in transit are those that all ranks have posted and not yet
+ * received, including those that MPI has not yet sent. If one rank cannot go
+ * on, all ranks stop waiting here; then MPI_Finalize waits for the remaining
+ * messages, or the launcher ends the job. */
 void vg_comm_drain(struct vg_comm *c)
 {
   uint64_t v[2] = { 1, 0 };
@@ -332,7 +337,7 @@ void vg_comm_messages_release(struct vg_comm *c)
   for (int i = 0; i < c->n_request; i++) {
     int is_done = 0;
 
-    /* what is still on its way keeps its memory */
+    /* memory of an incomplete send must be kept */
     if (MPI_Test(&c->request[i], &is_done, MPI_STATUS_IGNORE) || !is_done ||
         --c->sent[i]->n_left)
       continue;

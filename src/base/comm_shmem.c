@@ -1,10 +1,10 @@
-/* Memory that the ranks of a node have in common: base/comm.h.
+/* Memory shared by the ranks of a node; see base/comm.h.
  *
- * The first rank writes a file that has no name; the others open it by way of
- * /proc, see that it is the one that was meant, and all map it. So no limit of
- * /dev/shm, which containers have, stands in the way, and nothing is left
- * behind by a job that dies. It is written, not stored to: a write that finds
- * no memory says so. */
+ * The first rank writes an unnamed file. The other ranks open it through /proc,
+ * check that it is the intended file, and all of them map it. This avoids the
+ * size limit of /dev/shm in containers, and a job that dies leaves nothing
+ * behind. The file is filled by write rather than by stores into the mapping,
+ * since write reports a lack of memory as an error. */
 #define _GNU_SOURCE
 #include <assert.h>
 #include <errno.h>
@@ -21,10 +21,10 @@
 
 struct ticket {
   uint64_t n, device, inode;
-  int64_t process, file; /* file < 0: there is none */
+  int64_t process, file; /* file < 0: there is no file */
 };
 
-/* At least 1, as nothing cannot be mapped. */
+/* At least 1, since an empty file cannot be mapped. */
 static size_t total(size_t n_part, const struct vg_bytes *part)
 {
   size_t n = 0;
@@ -33,7 +33,7 @@ static size_t total(size_t n_part, const struct vg_bytes *part)
   return n ? n : 1;
 }
 
-/* --- in common ----------------------------------------------------------- */
+/* --- shared memory ------------------------------------------------------- */
 
 static int write_part(int file, const struct vg_bytes *b, size_t at)
 {
@@ -76,7 +76,8 @@ static int make_file(size_t n_part, const struct vg_bytes *part,
   return file;
 }
 
-/* In another view of the processes the same name means something else. */
+/* Open the file of another process through /proc. In another PID namespace the
+ * same path may denote another file, so its identity is checked. */
 static int open_file(const struct ticket *t, int writes)
 {
   char name[80];
@@ -103,7 +104,7 @@ static unsigned char *map(int file, size_t n, int writes)
   return at == MAP_FAILED ? NULL : at;
 }
 
-/* VG_BLOCKED on all ranks of the node: one cannot. */
+/* VG_BLOCKED on all ranks of the node if one of them cannot map the file. */
 static vg_status share(const struct vg_comm *c, size_t n_part,
                        const struct vg_bytes *part, int writes,
                        struct vg_shmem *out, struct vg_error *err)
@@ -117,7 +118,8 @@ static vg_status share(const struct vg_comm *c, size_t n_part,
   if (!c->node_rank && !c->apart) file = make_file(n_part, part, &t);
   rc = MPI_Ibcast(&t, (int)sizeof t, MPI_BYTE, 0, c->node, &request);
   if (!rc) rc = vg_comm_wait(1, &request, 0);
-  st = rc ? vg_comm_fail(err, "memory in common", rc) : VG_BLOCKED;
+  st = rc ? vg_comm_fail(err, "the memory that the ranks of a node share", rc)
+          : VG_BLOCKED;
   if (!rc && c->node_rank) file = open_file(&t, writes);
   if (file >= 0 && (at = map(file, (size_t)t.n, writes))) st = VG_OK;
   st = vg_comm_agree_in(c, c->node, st, err);
@@ -127,7 +129,7 @@ static vg_status share(const struct vg_comm *c, size_t n_part,
   return st;
 }
 
-/* --- or a copy each ------------------------------------------------------ */
+/* --- a copy on each rank ------------------------------------------------- */
 
 static vg_status join_parts(size_t n_part, const struct vg_bytes *part,
                             struct vg_bytes *b, struct vg_error *err)
@@ -136,7 +138,8 @@ static vg_status join_parts(size_t n_part, const struct vg_bytes *part,
 
   b->n = total(n_part, part);
   b->data = vg_calloc(b->n, 1);
-  if (!b->data) return vg_fail_memory(err, "what a node has in common");
+  if (!b->data)
+    return vg_fail_memory(err, "the data that the ranks of a node share");
   for (size_t i = 0; i < n_part; at += vg_shmem_padded(part[i++].n))
     if (part[i].n) memcpy(b->data + at, part[i].data, part[i].n);
   return VG_OK;

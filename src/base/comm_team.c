@@ -5,15 +5,15 @@
 #include "base/memory.h"
 #include "base/team.h"
 
-/* Fewer chunks than these for each member are done by everyone. */
+/* A loop with fewer chunks than this per member is executed by every member. */
 enum { WORTH = 4 };
 
 struct vg_team {
   struct vg_comm *c;
   MPI_Comm comm;
   int rank, size;
-  int is_broken;   /* a member failed, and all know */
-  int *count, *at; /* [size] for MPI */
+  int is_broken;   /* a member has failed, and all members know it */
+  int *count, *at; /* [size] arguments of MPI calls */
 };
 
 static void team_free(struct vg_team *t)
@@ -64,7 +64,7 @@ vg_status vg_team_open(struct vg_comm *c, struct vg_team **out,
   return st;
 }
 
-/* Before anything is done together: has a member left? */
+/* Agree before each joint operation whether a member has left the team. */
 static vg_status meet(struct vg_team *t, vg_status mine, struct vg_error *err)
 {
   vg_status st;
@@ -84,14 +84,14 @@ vg_status vg_team_close(struct vg_team *t, vg_status st, struct vg_error *err)
   return st;
 }
 
-/* Where the chunks of member m begin. */
+/* First chunk of member m. */
 static size_t part_of(const struct vg_team *t, size_t n_chunk, int m)
 {
   return n_chunk / (size_t)t->size * (size_t)m +
          n_chunk % (size_t)t->size * (size_t)m / (size_t)t->size;
 }
 
-/* The first element of item i. */
+/* First array element of item i. */
 static size_t element_of(const struct vg_team_out *o, size_t i)
 {
   size_t per = o->per ? o->per : 1;
@@ -99,7 +99,7 @@ static size_t element_of(const struct vg_team_out *o, size_t i)
   return o->begin ? o->begin[i] : (i + per - 1) / per;
 }
 
-/* In rounds, so that no call of MPI carries more than it may. */
+/* Gather in rounds, so that no MPI call exceeds its size limit. */
 static vg_status gather(struct vg_team *t, size_t n, size_t grain,
                         size_t n_chunk, const struct vg_team_out *o,
                         struct vg_error *err)
@@ -109,7 +109,7 @@ static vg_status gather(struct vg_team *t, size_t n, size_t grain,
   int rc = MPI_Type_contiguous((int)o->size, MPI_BYTE, &element);
 
   if (!rc) rc = MPI_Type_commit(&element);
-  if (rc) return vg_comm_fail(err, "gathering among nodes", rc);
+  if (rc) return vg_comm_fail(err, "cannot gather among the nodes", rc);
   if (!most) most = 1;
   while (!rc && left) {
     size_t base = 0;
@@ -138,10 +138,10 @@ static vg_status gather(struct vg_team *t, size_t n, size_t grain,
     done += most;
   }
   MPI_Type_free(&element);
-  return rc ? vg_comm_fail(err, "gathering among nodes", rc) : VG_OK;
+  return rc ? vg_comm_fail(err, "cannot gather among the nodes", rc) : VG_OK;
 }
 
-/* The items of this member, as if they were all. */
+/* The loop over this member's items, numbered as in the whole loop. */
 struct part {
   vg_loop_body body;
   void *context;
@@ -197,5 +197,5 @@ vg_status vg_team_any(struct vg_team *t, int *flag, struct vg_error *err)
                       &request);
   if (!rc) rc = vg_comm_wait(1, &request, 1);
   if (rc) t->is_broken = 1;
-  return rc ? vg_comm_fail(err, "a question to all nodes", rc) : VG_OK;
+  return rc ? vg_comm_fail(err, "cannot agree among the nodes", rc) : VG_OK;
 }

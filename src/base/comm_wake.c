@@ -1,7 +1,7 @@
-/* Wakeups: base/comm.h. MPI has no wait that sleeps, so a rank that polls
- * learns of a message when it happens to look. Ranks of a node have a word of
- * memory in common for each of them, on which a rank sleeps and which others
- * change when they have posted. */
+/* Wakeups; see base/comm.h. MPI has no wait that sleeps, so a polling rank only
+ * notices a message at its next poll. Therefore each rank of a node has a word
+ * of shared memory on which it sleeps, and which another rank changes after it
+ * has posted a message. */
 #define _GNU_SOURCE
 #include <assert.h>
 #include <linux/futex.h>
@@ -13,14 +13,14 @@
 #include "base/comm_parts.h"
 #include "base/memory.h"
 
-/* A line of the cache each. */
+/* Each wakeup has a cache line of its own. */
 struct vg_wakeup {
   atomic_uint count, sleeps;
   char rest[VG_SHMEM_ALIGN - 2 * sizeof(atomic_uint)];
 };
 
-/* wakeup_at [size]: places of the ranks among those of the node, or
- * MPI_UNDEFINED. Local. */
+/* Set wakeup_at [size] to the index of each rank among the ranks of the node,
+ * or MPI_UNDEFINED. Local. */
 static int find_neighbours(struct vg_comm *c)
 {
   MPI_Group all = MPI_GROUP_NULL, node = MPI_GROUP_NULL;
@@ -48,7 +48,7 @@ vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err)
 
   c->wakeup_at = vg_alloc((size_t)c->size, sizeof *c->wakeup_at);
   if (!none.data || find_neighbours(c))
-    st = vg_fail_memory(err, "what wakes ranks");
+    st = vg_fail_memory(err, "the wakeups of ranks");
   st = vg_comm_agree_in(c, c->all, st, err);
   if (st >= 0) st = vg_comm_node_memory(c, 1, &none, 1, &c->wakeups, err);
   free(none.data);
@@ -69,8 +69,8 @@ static void wake(struct vg_wakeup *b)
     syscall(SYS_futex, &b->count, FUTEX_WAKE, 1, NULL, NULL, 0);
 }
 
-/* Where memory is not in common, each has all wakeups for itself: only its own
- * ones count. */
+/* Without shared memory each rank has private copies of all wakeups, of which
+ * only its own is used. */
 void vg_comm_wake_rank(struct vg_comm *c, int rank)
 {
   if (c->wakeup_at[rank] != MPI_UNDEFINED && c->wakeups.is_mapped)

@@ -7,7 +7,7 @@
 #include "base/bytes.h"
 #include "base/memory.h"
 
-/* Times are summed over ranks in millionths of a second. */
+/* Times are summed over ranks as whole microseconds. */
 static const double per_second = 1e6;
 
 static int is_real(const struct vg_entry *f)
@@ -72,8 +72,8 @@ void vg_entries_add(const struct vg_entries *l, void *to, const void *from)
   }
 }
 
-/* Counts and times are summed. Of other reals the most is taken, after a change
- * of sign where the least is wanted. */
+/* Counts and times are summed. Other real numbers are combined by their
+ * maximum; for a minimum their sign is changed before and after. */
 vg_status vg_entries_agree(const struct vg_entries *l, void *report,
                            struct vg_comm *comm, struct vg_error *err)
 {

@@ -1,7 +1,8 @@
-/* base/hash.h: hash functions of numbers and places. Uses nothing.
+/* base/hash.h: hash functions of numbers and coordinates. Uses nothing.
  *
- * base/table.h uses the upper bits of a hash. Some values also decide where the
- * points of a mesh stand, so a change of any function changes meshes. */
+ * base/table.h uses the upper bits of a hash. Some hashes also affect the
+ * positions of mesh points, so changing any of these functions changes
+ * meshes. */
 #ifndef VG_BASE_HASH_H
 #define VG_BASE_HASH_H
 
@@ -23,29 +24,29 @@ static inline uint64_t vg_hash_mix(uint64_t x)
   return x ^ x >> 32;
 }
 
-/** Hash of one number. Its upper bits depend on all bits of x, for the price of
- * one multiplication. */
+/** Hash of one number. Its upper bits depend on all bits of x; costs one
+ * multiplication. */
 static inline uint64_t vg_hash_1(uint64_t x)
 {
   return (x ^ x >> 32) * VG_GOLDEN;
 }
 
-/** Hash of three numbers in order, a sum of products. Its upper bits depend on
- * all bits of numbers below 2^32. */
+/** Hash of an ordered triple of numbers, computed as a sum of products. Its
+ * upper bits depend on all bits of numbers below 2^32. */
 static inline uint64_t vg_hash_3(uint64_t a, uint64_t b, uint64_t c)
 {
   return a * VG_GOLDEN + b * VG_HASH_2 + c * VG_HASH_3;
 }
 
-/** Hash of a sequence with one more word at its end. h: hash of the sequence
- * without it, 0 of the empty one. */
+/** Hash of a sequence extended by one word. h: hash of the sequence without
+ * that word; 0 for the empty sequence. */
 static inline uint64_t vg_hash_add(uint64_t h, uint64_t word)
 {
   h = (h ^ word) * VG_GOLDEN;
   return h ^ h >> 32;
 }
 
-/** Hash of a place. -0 and 0 have the same hash. */
+/** Hash of a point. -0 and 0 have the same hash. */
 static inline uint64_t vg_hash_point(const double x[3])
 {
   uint64_t h = 0;

@@ -1,8 +1,8 @@
 /* base/heap.h: a binary heap in an array of the caller. Uses nothing.
  *
  * The order in which equal items leave depends on the order of all calls. Where
- * it matters, `before` compares a number of the item last, so that no two items
- * are equal. Threads: one at a time. */
+ * this matters, `before` must compare a unique number of the items last, so
+ * that no two items are equal. Threads: one at a time. */
 #ifndef VG_BASE_HEAP_H
 #define VG_BASE_HEAP_H
 
@@ -14,11 +14,11 @@
  *   static void NAME_push(TYPE *heap, size_t *n, TYPE item)
  *     Add an item; heap has room for *n + 1. O(log n).
  *   static TYPE NAME_pop(TYPE *heap, size_t *n)
- *     Remove the item that is before all others; *n > 0. O(log n).
+ *     Remove the first item; *n > 0. O(log n).
  *
  * heap[0] is the item that leaves next.
  * @param before  int before(const TYPE *a, const TYPE *b): does a leave before
- *                b? A function or a macro, which is compiled in line. */
+ *                b? A function or a macro, compiled inline. */
 #define VG_HEAP_DEFINE(name, type, before)                                     \
   static inline void name##_push(type *heap, size_t *n, type item)             \
   {                                                                            \

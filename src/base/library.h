@@ -1,5 +1,5 @@
-/* base/library.h: which libraries of others are at work, told by the files that
- * adapt them. */
+/* base/library.h: names and versions of the third-party libraries in use,
+ * provided by the files that adapt them. */
 #ifndef VG_BASE_LIBRARY_H
 #define VG_BASE_LIBRARY_H
 
@@ -7,7 +7,8 @@
 extern "C" {
 #endif
 
-/** As the library itself says at run time, where it can; one line. */
+/** Name and version in one line, as reported by the library itself at run time
+ * where it can. */
 struct vg_library {
   const char *name;
   char version[112];

@@ -1,11 +1,11 @@
-/* base/markup.h: characters that HTML and XML do not take as they are. */
+/* base/markup.h: escaping of characters that are special in HTML and XML. */
 #ifndef VG_BASE_MARKUP_H
 #define VG_BASE_MARKUP_H
 
 #include <stddef.h>
 
-/** What stands for the character c in elements and in values in double quotes;
- * NULL: the character itself. */
+/** Entity for the character c in text and in attribute values in double quotes;
+ * NULL if c needs none. */
 static inline const char *vg_markup_entity(char c)
 {
   return c == '&' ? "&amp;"

@@ -8,8 +8,9 @@
 
 enum { HUGE_PAGE = 1 << 21 };
 
-/* Ask for huge pages: work on a mesh jumps about in memory, and fewer page
- * faults and address translations make a whole fill 7 % faster. A hint only. */
+/* Advise the kernel to use huge pages. Mesh algorithms access memory
+ * irregularly; fewer page faults and address translations make a complete fill
+ * 7 % faster. */
 static void *spread(void *block, size_t bytes)
 {
   uintptr_t from = ((uintptr_t)block + HUGE_PAGE - 1) & -(uintptr_t)HUGE_PAGE;

@@ -1,4 +1,5 @@
-/* base/memory.h: allocation with overflow checks. NULL means refused. */
+/* base/memory.h: allocation with overflow checks. All functions return NULL if
+ * there is not enough memory. */
 #ifndef VG_BASE_MEMORY_H
 #define VG_BASE_MEMORY_H
 
@@ -13,11 +14,13 @@ void *vg_calloc(size_t n, size_t size);
 /** Resize a block to n * size bytes; NULL leaves the old block valid. */
 void *vg_realloc(void *block, size_t n, size_t size);
 
-/** Room for at least `need` items of `size` bytes in *block, growing by half.
+/** Make room for at least `need` items of `size` bytes in *block, growing by
+ * half.
  *
  * @param block  in/out: address of the array pointer, e.g. &list
- * @param cap    in/out: items the array can hold
- * Returns 0, or -1 when refused (array and cap unchanged). */
+ * @param cap    in/out: number of items that the array can hold
+ * Returns 0, or -1 if there is not enough memory (array and cap are
+ * unchanged). */
 int vg_reserve(void *block, size_t *cap, size_t need, size_t size);
 
 #endif

@@ -13,7 +13,7 @@ struct loop {
   size_t n, grain;
   vg_loop_body body;
   void *context;
-  atomic_size_t next; /* chunk */
+  atomic_size_t next; /* next chunk */
 };
 
 struct worker {
@@ -29,7 +29,7 @@ int vg_cores(void)
 
   if (!sched_getaffinity(0, sizeof set, &set))
     return CPU_COUNT(&set) > 0 ? CPU_COUNT(&set) : 1;
-  /* more processors than a cpu_set_t has */
+  /* sched_getaffinity fails with more processors than a cpu_set_t holds */
   n = sysconf(_SC_NPROCESSORS_ONLN);
   return n < 1 ? 1 : n > WORKERS_MAX ? WORKERS_MAX : (int)n;
 }

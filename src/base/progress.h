@@ -1,12 +1,13 @@
-/* base/progress.h: how work that takes long says how far it is. Asking it to
- * stop is another matter: base/stop.h. */
+/* base/progress.h: progress reports of long operations. base/stop.h lets the
+ * caller stop them. */
 #ifndef VG_BASE_PROGRESS_H
 #define VG_BASE_PROGRESS_H
 
 #include <stddef.h>
 
 struct vg_progress {
-  /* stage: a static string; expected 0: not known. NULL: nobody listens. */
+  /* stage: a static string; expected: 0 if not known. The pointer may be
+   * NULL. */
   void (*tell)(void *user, const char *stage, size_t done, size_t expected);
   void *user;
 };

@@ -8,8 +8,8 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-/* Items of a part fit the second-level cache; in it they are put into buckets
- * of few and compared. */
+/* Number of items per part: they fit into the second-level cache, where they
+ * are sorted into small buckets and compared. */
 #define PART_ITEMS 4096
 #define BUCKET_ITEMS 4
 #define MOST_PARTS ((size_t)1 << 20)
@@ -27,7 +27,7 @@ vg_status vg_items_append(struct vg_items *to, const struct vg_items *more,
   assert(to && more && to != more && size > 0);
   if (!more->n) return VG_OK;
   if (vg_reserve(&to->data, &to->room, to->n + more->n, size))
-    return vg_fail_memory(err, "what slices share");
+    return vg_fail_memory(err, "the data shared by slices");
   memcpy(to->data + size * to->n, more->data, size * more->n);
   to->n += more->n;
   return VG_OK;
@@ -39,8 +39,8 @@ void vg_items_release(struct vg_items *list)
   memset(list, 0, sizeof *list);
 }
 
-/* Ranks, parts and buckets are named by different bits of the hash: upper
- * half, lower 20, the next 12. */
+/* Ranks, parts and buckets are selected by different bits of the hash: the
+ * upper half, the lower 20 and the next 12. */
 static int rank_of(uint64_t h, int size)
 {
   return (int)((h >> 32) * (uint64_t)size >> 32);
@@ -54,13 +54,13 @@ int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key)
 
 /* --- counting sort ------------------------------------------------------- */
 
-/* Items of several sources, put in order of bins: ranks or parts. */
+/* Items of several sources to be sorted by bin. A bin is a rank or a part. */
 struct sorting {
   const struct vg_rendezvous *m;
   size_t (*bin)(const struct sorting *s, uint64_t h);
   struct vg_bytes *from; /* [n_from] */
   size_t n_from, n_bin;
-  size_t *at; /* [n_from][n_bin + 1], the first 0 */
+  size_t *at; /* [n_from][n_bin + 1] offsets of the bins, the first 0 */
 };
 
 static size_t rank_bin(const struct sorting *s, uint64_t h)
@@ -78,7 +78,7 @@ static size_t bin_of(const struct sorting *s, const unsigned char *item)
   return s->bin(s, vg_rendezvous_hash(item, s->m->key));
 }
 
-/* Where the items of each bin begin in each source, once they are in order. */
+/* Compute where each bin begins in each source after sorting. */
 static void count_sources(void *context, size_t first, size_t end, int worker)
 {
   const struct sorting *s = context;
@@ -107,8 +107,8 @@ static void swap_items(unsigned char *a, unsigned char *b, size_t size)
   }
 }
 
-/* Items of bins low and up in order of groups of `width` bins each, in place:
- * every swap brings one to its group. next, end: [n_group] of items */
+/* Sort the items of bins low to up - 1 in place by groups of `width` bins:
+ * every swap moves one item to its group. next, end: [n_group] item offsets */
 static void order_groups(const struct sorting *s, unsigned char *item,
                          size_t low, size_t width, size_t n_group, size_t *next,
                          const size_t *end)
@@ -124,8 +124,8 @@ static void order_groups(const struct sorting *s, unsigned char *item,
     }
 }
 
-/* The items of a source in order of bins: of groups of bins first, each of
- * which then stays in the caches. next, end: [n_bin] */
+/* Sort the items of a source by bin, first by groups of bins, so that each
+ * group then stays in the caches. next, end: [n_bin] */
 static void order_source(const struct sorting *s, size_t r, size_t *next,
                          size_t *end)
 {
@@ -172,14 +172,15 @@ static vg_status sort_items(struct sorting *s, struct vg_error *err)
   struct ordering o = { .s = s };
 
   s->at = vg_calloc(s->n_from, (s->n_bin + 1) * sizeof *s->at);
-  if (!s->at) return vg_fail_memory(err, "what slices share");
+  if (!s->at) return vg_fail_memory(err, "the data shared by slices");
   vg_parallel_for(s->m->threads, s->n_from, 1, count_sources, s);
   vg_parallel_for(s->m->threads, s->n_from, 1, order_sources, &o);
-  if (atomic_load(&o.refused)) return vg_fail_memory(err, "what slices share");
+  if (atomic_load(&o.refused))
+    return vg_fail_memory(err, "the data shared by slices");
   return VG_OK;
 }
 
-/* --- to their ranks ------------------------------------------------------ */
+/* --- exchange between ranks ---------------------------------------------- */
 
 static void release(struct vg_bytes *b, size_t n)
 {
@@ -187,7 +188,8 @@ static void release(struct vg_bytes *b, size_t n)
   free(b);
 }
 
-/* What the sources have for each rank, one behind the other in *all. */
+/* Concatenate, for each rank, the data that the sources have for it, in
+ * *all. */
 static vg_status join_sources(struct sorting *s, struct vg_bytes *to,
                               unsigned char **all, struct vg_error *err)
 {
@@ -195,7 +197,7 @@ static vg_status join_sources(struct sorting *s, struct vg_bytes *to,
 
   for (size_t r = 0; r < s->n_from; r++) n += s->from[r].n;
   *all = vg_alloc(n, 1);
-  if (!*all) return vg_fail_memory(err, "what slices share");
+  if (!*all) return vg_fail_memory(err, "the data shared by slices");
   n = 0;
   for (size_t b = 0; b < s->n_bin; b++) {
     to[b].data = *all + n;
@@ -211,7 +213,7 @@ static vg_status join_sources(struct sorting *s, struct vg_bytes *to,
   return VG_OK;
 }
 
-/* *out: [size], what all ranks had for this one. */
+/* Exchange the items. *out: [size] lists that this rank received. */
 static vg_status send(const struct vg_rendezvous *m, struct vg_bytes *list,
                       size_t n_list, struct vg_bytes **out,
                       struct vg_error *err)
@@ -225,7 +227,8 @@ static vg_status send(const struct vg_rendezvous *m, struct vg_bytes *list,
   unsigned char *all = NULL;
   vg_status st = VG_OK;
 
-  if (!to || !from || !list) st = vg_fail_memory(err, "what slices share");
+  if (!to || !from || !list)
+    st = vg_fail_memory(err, "the data shared by slices");
   if (st >= 0) st = sort_items(&s, err);
   if (st >= 0) st = join_sources(&s, to, &all, err);
   VG_TRY(vg_comm_agree(m->comm, st, err));
@@ -240,13 +243,15 @@ done:
   return st;
 }
 
-/* --- on their rank ------------------------------------------------------- */
+/* --- matching on the receiving rank -------------------------------------- */
 
 struct hall {
   const struct vg_rendezvous *m;
-  struct sorting s;      /* by part, a power of two of them */
-  size_t most;           /* items of the largest part */
-  struct vg_items *left; /* NULL, or [threads]: groups not whole go here */
+  struct sorting s; /* sorts items by part; the number of parts is a power of
+                       two */
+  size_t most;      /* number of items of the largest part */
+  struct vg_items *left; /* NULL, or [threads]: lists for groups that are not
+                            complete */
   atomic_int refused;
 };
 
@@ -256,7 +261,7 @@ static size_t bucket_of(const struct hall *h, const unsigned char *item,
   return (size_t)(vg_rendezvous_hash(item, h->m->key) >> 20) & (n_bucket - 1);
 }
 
-/* Any order of keys of n bytes will do. */
+/* An arbitrary total order of keys of n bytes. */
 static inline int key_order(const unsigned char *a, const unsigned char *b,
                             size_t n)
 {
@@ -270,8 +275,8 @@ static inline int key_order(const unsigned char *a, const unsigned char *b,
   return 0;
 }
 
-/* Insertion by key; equal keys stay where they are, so that a crowd of them
- * is no trouble. */
+/* Insertion sort by key. Items with equal keys are not moved, so that many
+ * equal keys cost nothing extra. */
 static void sort_bucket(const struct vg_rendezvous *m, unsigned char *item,
                         size_t n, unsigned char *spare)
 {
@@ -320,7 +325,7 @@ static void look_at_all(struct hall *h, const unsigned char *item, size_t n,
   }
 }
 
-/* Where the part's items begin and end in a source. */
+/* Begin and end of the part's items in a source. */
 static const unsigned char *part_of(const struct hall *h, size_t r, size_t p,
                                     const unsigned char **end)
 {
@@ -332,8 +337,8 @@ static const unsigned char *part_of(const struct hall *h, size_t r, size_t p,
   return item + h->m->size * at[0];
 }
 
-/* The items of a part into room, in order of buckets. On return each of
- * bucket [n_bucket] is the end of its own. */
+/* Copy the items of a part into `room`, sorted by bucket. On return, each
+ * bucket [n_bucket] holds the end of its items. */
 static void fill_buckets(const struct hall *h, size_t p, unsigned char *room,
                          size_t *bucket, size_t n_bucket)
 {
@@ -355,7 +360,8 @@ static void fill_buckets(const struct hall *h, size_t p, unsigned char *room,
       memcpy(room + size * bucket[bucket_of(h, item, n_bucket)]++, item, size);
 }
 
-/* room: of the largest part and one item; bucket: [n_bucket]. */
+/* Process a part. room: space for the largest part and one more item; bucket:
+ * [n_bucket]. */
 static void meet_part(struct hall *h, size_t p, unsigned char *room,
                       size_t *bucket, size_t n_bucket, int worker)
 {
@@ -412,13 +418,15 @@ static vg_status meet_here(const struct vg_rendezvous *m, struct vg_bytes *from,
     if (count > h.most) h.most = count;
   }
   vg_parallel_for(m->threads, h.s.n_bin, 8, meet_parts, &h);
-  if (atomic_load(&h.refused)) st = vg_fail_memory(err, "what slices share");
+  if (atomic_load(&h.refused))
+    st = vg_fail_memory(err, "the data shared by slices");
 done:
   free(h.s.at);
   return st;
 }
 
-/* The lists' memory as sources; NULL when refused. */
+/* Take over the memory of the lists as sources; NULL if there is not enough
+ * memory. */
 static struct vg_bytes *take_lists(const struct vg_rendezvous *m,
                                    struct vg_items *list, size_t n_list,
                                    size_t stride)
@@ -435,7 +443,8 @@ static struct vg_bytes *take_lists(const struct vg_rendezvous *m,
   return from;
 }
 
-/* Look at what is whole on this rank. *from, *n_from: what is not. Local. */
+/* Process the groups that are complete on this rank. *from, *n_from: the items
+ * of the other groups. Local. */
 static vg_status meet_first(const struct vg_rendezvous *m,
                             struct vg_bytes **from, size_t *n_from,
                             struct vg_error *err)
@@ -443,8 +452,9 @@ static vg_status meet_first(const struct vg_rendezvous *m,
   size_t n = (size_t)(m->threads > 0 ? m->threads : 1);
   struct vg_items *left = vg_calloc(n, sizeof *left);
   struct vg_rendezvous one = *m;
-  vg_status st = *from && left ? VG_OK
-                               : vg_fail_memory(err, "what slices share");
+  vg_status st = *from && left
+                 ? VG_OK
+                 : vg_fail_memory(err, "the data shared by slices");
 
   one.threads = (int)n;
   if (st >= 0) st = meet_here(&one, *from, *n_from, left, err);
@@ -478,7 +488,7 @@ vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
     n_from = (size_t)vg_comm_size(m->comm);
   }
   st = from ? meet_here(m, from, n_from, NULL, err)
-            : vg_fail_memory(err, "what slices share");
+            : vg_fail_memory(err, "the data shared by slices");
   st = vg_comm_agree(m->comm, st, err);
 done:
   release(from, n_from);

@@ -1,8 +1,9 @@
-/* base/rendezvous.h: where equal items of all ranks meet. Uses comm.h
- * and hash.h.
+/* base/rendezvous.h: brings equal items of all ranks together (a distributed
+ * directory). Uses comm.h and hash.h.
  *
- * An item begins with its key, a few 32-bit words. Items of equal keys go to
- * the rank that a hash of the key names, and are looked at there together. */
+ * An item begins with its key, a few 32-bit words. Items with equal keys are
+ * sent to the rank that a hash of the key selects, and are processed there as a
+ * group. */
 #ifndef VG_BASE_RENDEZVOUS_H
 #define VG_BASE_RENDEZVOUS_H
 
@@ -13,16 +14,17 @@
 #include "base/comm.h"
 #include "base/hash.h"
 
-/** A list of items; zeroed: none. */
+/** A list of items; empty if zeroed. */
 struct vg_items {
   size_t n, room;
   unsigned char *data;
 };
 
-/** Room for one more item of this size at the end; NULL when refused. */
+/** Append space for one item of this size; NULL if there is not enough
+ * memory. */
 void *vg_items_add(struct vg_items *list, size_t size);
 
-/** All of `more`, items of this size, behind those of *to. */
+/** Append all items of `more`, of this size, to *to. */
 vg_status vg_items_append(struct vg_items *to, const struct vg_items *more,
                           size_t size, struct vg_error *err);
 
@@ -31,13 +33,15 @@ void vg_items_release(struct vg_items *list);
 struct vg_rendezvous {
   struct vg_comm *comm;
   int threads;
-  size_t size, key; /* bytes of an item, multiple of 4, and of its
-                       key at its beginning */
-  /** n items of one key, in any order. Called by several threads. */
+  size_t size, key; /* bytes of an item (a multiple of 4) and of the key at
+                       its beginning */
+  /** Process n items with the same key, in any order. Called by several
+   * threads. */
   void (*group)(void *context, const unsigned char *item, size_t n, int worker);
   void *context;
-  /** NULL, or whether n items of one key, all that this rank has, are all
-   * there are. Such groups are looked at where they are and do not travel. */
+  /** NULL, or a function that tells whether n items with the same key, all that
+   * this rank has, are the complete group. Complete groups are processed
+   * locally and are not sent. */
   int (*is_whole)(const void *context, const unsigned char *item, size_t n);
 };
 
@@ -54,12 +58,12 @@ static inline uint64_t vg_rendezvous_hash(const void *key, size_t n)
   return vg_hash_mix(h);
 }
 
-/** Rank on which items of a key meet. */
+/** Rank that processes the items with this key. */
 int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key);
 
-/** Collective. Takes the items of n_list lists, `stride` bytes apart, and
- * leaves these empty, also on failure.
- * Memory: the items once, on several ranks twice. VG_ERR_MEMORY on all
+/** Process the items of n_list lists, `stride` bytes apart, which are empty
+ * afterwards, also on failure. Collective.
+ * Memory: the items once, with several ranks twice. VG_ERR_MEMORY on all
  * ranks. */
 vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
                             struct vg_items *list, size_t n_list, size_t stride,

@@ -1,6 +1,7 @@
 /* base/team.h: loops over the threads of several processes that hold the same
- * data: the first ranks of the nodes, while they make what every node needs.
- * Each does a part of the items, and all get what the others wrote. */
+ * data. The members of a team are the first ranks of the nodes, while they
+ * compute data that every node needs. Each member processes a part of the
+ * items, and all members receive the results of the others. */
 #ifndef VG_BASE_TEAM_H
 #define VG_BASE_TEAM_H
 
@@ -13,38 +14,39 @@
 
 struct vg_team; /* NULL: this process alone */
 
-/** What a loop writes into an array: for item i the elements begin[i] to
- * begin[i + 1] - 1 [n + 1]; where begin is NULL, the element i / per. */
+/** An array that a loop writes. For item i it writes the elements begin[i] to
+ * begin[i + 1] - 1, begin being [n + 1]. Where begin is NULL, it writes the
+ * element i / per. */
 struct vg_team_out {
   void *data;
   size_t size; /* bytes of an element */
-  size_t per;  /* divides the loop's grain; 0: 1 */
+  size_t per;  /* divides the loop's grain; 0 means 1 */
   const uint32_t *begin;
 };
 
-/** The first ranks of all nodes. Collective over all ranks; *out is NULL where
- * there is one node only, and on the other ranks. */
+/** Make a team of the first ranks of all nodes. *out is NULL if there is only
+ * one node, and on all other ranks. Collective over all ranks. */
 vg_status vg_team_open(struct vg_comm *c, struct vg_team **out,
                        struct vg_error *err);
 
-/** The end of what the team does together, with st how this member fared:
- * whatever the others do in the team then fails too, if it failed. To be called
- * once by every member, after its last loop, also after a failure. Returns what
- * vg_comm_agree would. Frees the team. */
+/** End the work of the team. st is the status of this member: if it is a
+ * failure, all further joint operations of the other members fail too. Every
+ * member calls it once, after its last loop, also after a failure. Returns the
+ * status that vg_comm_agree would return. Frees the team. */
 vg_status vg_team_close(struct vg_team *t, vg_status st, struct vg_error *err);
 
-/** As vg_parallel_for, by the threads of all members; the same outcome. body
- * writes to `out` [n_out] only, or to scratch of its worker.
+/** As vg_parallel_for, using the threads of all members, with the same result.
+ * The body may only write to `out` [n_out] or to scratch memory of its worker.
  *
- * The members call it in the same order with the same n and grain. Loops too
- * short to be worth a message are done by every member for itself.
- * Without a team it never fails; else VG_ERR_REMOTE, or the failure of a member
- * that left the team. */
+ * All members call it in the same order with the same n and grain. Loops too
+ * short to be worth a message are executed completely by every member. Never
+ * fails without a team; otherwise it may return VG_ERR_REMOTE, or the failure
+ * of a member that has left the team. */
 vg_status vg_team_for(struct vg_team *t, int threads, size_t n, size_t grain,
                       vg_loop_body body, void *context, size_t n_out,
                       const struct vg_team_out *out, struct vg_error *err);
 
-/** *flag: 1 where it is set with any member. */
+/** Set *flag to 1 if it is set on any member. */
 vg_status vg_team_any(struct vg_team *t, int *flag, struct vg_error *err);
 
 #endif

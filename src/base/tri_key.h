@@ -1,5 +1,5 @@
-/* base/tri_key.h: corners of edges, triangles and quadrilaterals in rising
- * order, as keys under which both sides of a face are found. Uses hash.h. */
+/* base/tri_key.h: vertices of edges, triangles and quadrilaterals in ascending
+ * order, used as keys to match the two sides of a face. Uses hash.h. */
 #ifndef VG_BASE_TRI_KEY_H
 #define VG_BASE_TRI_KEY_H
 
@@ -7,7 +7,7 @@
 
 #include "base/hash.h"
 
-/** Put two numbers in order; returns 1 where they were exchanged, else 0. */
+/** Sort two numbers; returns 1 if they were exchanged, else 0. */
 static inline uint32_t vg_order2(uint32_t *a, uint32_t *b)
 {
   uint32_t low = *a < *b ? *a : *b, high = *a < *b ? *b : *a;
@@ -18,7 +18,7 @@ static inline uint32_t vg_order2(uint32_t *a, uint32_t *b)
   return exchanged;
 }
 
-/** Put three numbers in order; returns 1 after an odd number of exchanges. */
+/** Sort three numbers; returns 1 after an odd number of exchanges. */
 static inline uint32_t vg_order3(uint32_t v[3])
 {
   uint32_t odd = vg_order2(&v[0], &v[1]);
@@ -27,7 +27,7 @@ static inline uint32_t vg_order3(uint32_t v[3])
   return odd ^ vg_order2(&v[0], &v[1]);
 }
 
-/** Put four numbers in order; returns 1 after an odd number of exchanges. */
+/** Sort four numbers; returns 1 after an odd number of exchanges. */
 static inline uint32_t vg_order4(uint32_t v[4])
 {
   uint32_t odd = vg_order2(&v[0], &v[1]) ^ vg_order2(&v[2], &v[3]);
@@ -42,10 +42,10 @@ static inline uint64_t vg_edge_key(uint32_t a, uint32_t b)
   return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
-/* Key of a triangle, the same for all orders of its corners. */
+/* Key of a triangle, independent of the order of its vertices. */
 struct vg_tri_key {
-  uint64_t low;  /* Lowest corner << 32 | middle corner. */
-  uint32_t high; /* Highest corner. */
+  uint64_t low;  /* Lowest vertex << 32 | middle vertex. */
+  uint32_t high; /* Highest vertex. */
 };
 
 static inline struct vg_tri_key vg_tri_key(const uint32_t corner[3])

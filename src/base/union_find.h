@@ -1,6 +1,7 @@
-/* base/union_find.h: sets that become one (union-find). up: [n] at first each
- * number itself, later another one of its set; that which is its own is the
- * root. Threads: one at a time. */
+/* base/union_find.h: union-find of disjoint sets. up: [n] parent of each
+ * number, which belongs to the same set; initially every number is its own
+ * parent. A number that is its own parent is the root of its set. Threads: one
+ * at a time. */
 #ifndef VG_BASE_UNION_FIND_H
 #define VG_BASE_UNION_FIND_H
 
@@ -15,8 +16,8 @@ static inline uint32_t vg_root_of(uint32_t *up, uint32_t k)
   return k;
 }
 
-/** Make the sets of a and b one, with the lower root, so that the outcome is
- * the same in any order. Returns 0 when they were one. */
+/** Unite the sets of a and b under the lower root, so that the result does not
+ * depend on the order of calls. Returns 0 if they were already one set. */
 static inline int vg_union(uint32_t *up, uint32_t a, uint32_t b)
 {
   a = vg_root_of(up, a);

@@ -476,7 +476,7 @@ const struct hostile hostile_binaries[] = {
     .phrase = "beyond the end",
     .make = make_meshb_truncated },
   { .file = "count.msh", .phrase = "beyond 32 bits", .make = make_gmsh_count },
-  { .file = "order.msh", .phrase = "order of bytes", .make = make_gmsh_order },
+  { .file = "order.msh", .phrase = "byte order", .make = make_gmsh_order },
   { .file = "wrong_end.msh", .phrase = "does not end", .make = make_gmsh_end },
   { .file = "endian.b8.ugrid", .phrase = "lb8", .make = make_ugrid_endian },
   { .file = "huge.b8.ugrid", .phrase = "cannot hold", .make = make_ugrid_huge },

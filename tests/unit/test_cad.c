@@ -205,7 +205,7 @@ static void loose_faces_are_sewn(void **state)
   vg_mesh_bounds(&m, lo, hi);
   near(hi[2], 0.003, 1e-9);
   says(&n, "24 edges had one face only");
-  says(&n, "24 of them found a partner");
+  says(&n, "found a partner for 24 of them");
   assert_int_equal(m.n_point, 8);
   vg_mesh_release(&m);
 }
@@ -332,7 +332,7 @@ static void a_solid_that_contains_another_stays(void **state)
     struct vg_mesh m = VG_MESH_INIT;
 
     read_file(cases[i].path, &o, &m);
-    says(&n, "contains another one; it was not united");
+    says(&n, "contains another one and was not united");
     assert_int_equal(m.n_patch, cases[i].patches);
     vg_mesh_release(&m);
   }
@@ -365,9 +365,9 @@ static void wide_gaps_are_sewn_and_faces_turned(void **state)
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
-  says(&n, "by sewing within 3.74e-05 24 of them found a partner, the first "
+  says(&n, "sewing within 3.74e-05 found a partner for 24 of them, the first "
            "at (");
-  says(&n, "3 faces that are not of a solid were turned");
+  says(&n, "3 faces that do not belong to a solid were turned");
   assert_int_equal(s.is_solid, 0);
   near(s.volume, 6, 1e-4);
   assert_int_equal(vg_surface_check(&s.mesh, &check, &r, &err), VG_OK);
@@ -450,9 +450,9 @@ static void what_is_no_cad_is_refused(void **state)
 
   (void)state;
   assert_int_equal(vg_cad_open(&c, &err), VG_OK);
-  refuses(c, "solid x", 7, VG_CAD_STEP, VG_ERR_FORMAT, "no STEP file");
-  refuses(c, "solid x", 7, VG_CAD_IGES, VG_ERR_FORMAT, "no IGES file");
-  refuses(c, "solid x", 7, VG_CAD_BREP, VG_ERR_FORMAT, "no BREP file");
+  refuses(c, "solid x", 7, VG_CAD_STEP, VG_ERR_FORMAT, "not a STEP file");
+  refuses(c, "solid x", 7, VG_CAD_IGES, VG_ERR_FORMAT, "not an IGES file");
+  refuses(c, "solid x", 7, VG_CAD_BREP, VG_ERR_FORMAT, "not a BREP file");
   refuses(c, "ISO-10303-21;\nEND-ISO-10303-21;\n", 32, VG_CAD_STEP,
           VG_ERR_FORMAT, "STEP");
   load(FILE_OF("edges.brep"), &in);
@@ -598,7 +598,7 @@ static void patience_ends(void **state)
   assert_int_equal(vg_cad_read(FILE_OF("wing.step"), VG_CAD_STEP, &o, NULL, &m,
                                &err),
                    VG_ERR_GEOMETRY);
-  assert_non_null(strstr(err.text, "given up after 0.2 s"));
+  assert_non_null(strstr(err.text, "time limit of 0.2 s"));
   assert_null(m.point);
 }
 

@@ -334,9 +334,9 @@ static void refuses_sections(void **state)
   one_face(&t, 3, 22, 1, 6, tri);
   refuse(&t, VG_ERR_UNSUPPORTED, "polygons");
   one_face(&t, 3, 5, INT64_MAX, 6, tri);
-  refuse(&t, VG_ERR_FORMAT, "has not the nodes");
+  refuse(&t, VG_ERR_FORMAT, "does not match the number");
   one_face(&t, 3, 5, 0, 6, tri);
-  refuse(&t, VG_ERR_FORMAT, "no range");
+  refuse(&t, VG_ERR_FORMAT, "not a valid range");
   one_face(&t, 3, 20, 2, 5, mixed);
   refuse(&t, VG_ERR_UNSUPPORTED, "type 6");
   one_face(&t, 3, 20, 2, 4, mixed);
@@ -345,7 +345,7 @@ static void refuses_sections(void **state)
   refuse(&t, VG_ERR_FORMAT, "more nodes");
   one_face(&t, 3, 5, 1, 3, tri);
   section(&t, "again", 5, 1, 1, 3, tri);
-  refuse(&t, VG_ERR_FORMAT, "another section's");
+  refuse(&t, VG_ERR_FORMAT, "another section");
   one_face(&t, 3, 3, 1, 2, tri);
   refuse(&t, VG_ERR_INPUT, "nothing to mesh");
 }
@@ -358,9 +358,9 @@ static void refuses_trees(void **state)
 
   (void)state;
   start(&t, 1);
-  refuse(&t, VG_ERR_UNSUPPORTED, "dimensions");
+  refuse(&t, VG_ERR_UNSUPPORTED, "of dimension 2");
   begin(&t);
-  refuse(&t, VG_ERR_FORMAT, "0 bases");
+  refuse(&t, VG_ERR_FORMAT, "no base");
   start(&t, 3);
   refuse(&t, VG_ERR_INPUT, "nothing to mesh");
   start(&t, 3);
@@ -675,15 +675,15 @@ static void refuses_blocks(void **state)
            "ZoneType", "ZoneType_t", "Structured");
   refuse(&t, VG_ERR_FORMAT, "CoordinateX has 0 values for 8 points");
   one_block(&t, NULL, "PointRange", 6, out);
-  refuse(&t, VG_ERR_FORMAT, "leaves the zone");
+  refuse(&t, VG_ERR_FORMAT, "exceeds the zone");
   one_block(&t, NULL, "PointRange", 6, zero);
-  refuse(&t, VG_ERR_FORMAT, "leaves the zone");
+  refuse(&t, VG_ERR_FORMAT, "exceeds the zone");
   one_block(&t, "IFaceCenter", "PointRange", 6, faces);
-  refuse(&t, VG_ERR_FORMAT, "leaves the zone");
+  refuse(&t, VG_ERR_FORMAT, "exceeds the zone");
   one_block(&t, "FaceCenter", "PointRange", 6, corner);
   refuse(&t, VG_ERR_UNSUPPORTED, "write IFaceCenter");
   one_block(&t, NULL, "PointRange", 6, within);
-  refuse(&t, VG_ERR_UNSUPPORTED, "within the block");
+  refuse(&t, VG_ERR_UNSUPPORTED, "inside the block");
   one_block(&t, NULL, "PointRange", 4, out);
   refuse(&t, VG_ERR_UNSUPPORTED, "PointRange of points or faces");
   one_block(&t, NULL, "PointList", 6, out);

@@ -63,9 +63,9 @@ static void unknown_suffixes_list_the_known(void **state)
   assert_non_null(strstr(err.text, ".stl"));
   assert_non_null(strstr(err.text, ".ugrid"));
   assert_int_equal(vg_mesh_read("wing.vtu", &m, NULL, &err), VG_ERR_FORMAT);
-  assert_non_null(strstr(err.text, "written only"));
+  assert_non_null(strstr(err.text, "can only be written"));
   assert_int_equal(vg_format_write("wing.front", &m, &err), VG_ERR_FORMAT);
-  assert_non_null(strstr(err.text, "read only"));
+  assert_non_null(strstr(err.text, "can only be read"));
   assert_int_equal(vg_format_write("wing", &m, &err), VG_ERR_FORMAT);
 }
 

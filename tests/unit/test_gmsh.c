@@ -289,13 +289,13 @@ static void refusals(void **state)
     { "$MeshFormat\n4 0 8\n$EndMeshFormat\n", VG_ERR_UNSUPPORTED, "msh41" },
     { "$MeshFormat\n4.1 2 8\n", VG_ERR_FORMAT, "0 or 1" },
     { "$MeshFormat\n2.2 0 4\n", VG_ERR_FORMAT, "8" },
-    { "$Nodes\n0\n", VG_ERR_FORMAT, "before $MeshFormat" },
+    { "$Nodes\n0\n", VG_ERR_FORMAT, "precedes $MeshFormat" },
     { HEAD HEAD, VG_ERR_FORMAT, "twice" },
     { HEAD "garbage\n", VG_ERR_FORMAT, "outside of a section" },
-    { HEAD "$Comments\n", VG_ERR_FORMAT, "no end" },
+    { HEAD "$Comments\n", VG_ERR_FORMAT, "the end of" },
     { HEAD NODES, VG_ERR_INPUT, "nothing to mesh" },
     { HEAD NODES NODES, VG_ERR_FORMAT, "twice" },
-    { HEAD "$Elements\n0 0 0 0\n$EndElements\n", VG_ERR_FORMAT, "before" },
+    { HEAD "$Elements\n0 0 0 0\n$EndElements\n", VG_ERR_FORMAT, "precede" },
     { HEAD "$PartitionedEntities\n", VG_ERR_UNSUPPORTED, "partitioned" },
     { HEAD "$PhysicalNames\n1\n2 1 wing\n", VG_ERR_FORMAT, "quotes" },
     { HEAD "$PhysicalNames\n1\n2 1 \"wing\n", VG_ERR_FORMAT, "quote" },
@@ -305,7 +305,7 @@ static void refusals(void **state)
     { HEAD "$Nodes\n1 2 1 1\n2 1 0 1\n1\n0 0 0\n$EndNodes\n", VG_ERR_FORMAT,
       "2 in all" },
     { HEAD "$Nodes\n1 2 1 1\n2 1 0 2\n1\n1\n0 0 0\n1 1 1\n$EndNodes\n",
-      VG_ERR_FORMAT, "given twice" },
+      VG_ERR_FORMAT, "defined twice" },
     { HEAD "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 nan\n$EndNodes\n", VG_ERR_FORMAT,
       "nan" },
     { HEAD "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 0 7 7\n$EndNodes\n", VG_ERR_FORMAT,
@@ -316,7 +316,7 @@ static void refusals(void **state)
       VG_ERR_UNSUPPORTED, "setorder 1" },
     { HEAD NODES "$Elements\n1 1 1 1\n2 3000000000 2 1\n1 1 2 3\n"
                  "$EndElements\n",
-      VG_ERR_UNSUPPORTED, "32 bits" },
+      VG_ERR_UNSUPPORTED, "32-bit" },
   };
 
   (void)state;

@@ -204,7 +204,7 @@ static void rounded_message(const struct vg_mesh *m, char *text, size_t size)
     copy.point[i / 3][i % 3] = (double)(float)m->point[i / 3][i % 3];
   assert_int_equal(vg_mesh_judge(&copy, NULL, &r, NULL), VG_OK);
   assert_true(r.not_positive > 1);
-  snprintf(text, size, "would make %zu cells flat or inverted, the first",
+  snprintf(text, size, "would have %zu flat or inverted cells, the first",
            r.not_positive);
   vg_mesh_release(&copy);
 }
@@ -290,9 +290,8 @@ static void rounding_that_joins_points_is_refused(void **state)
                      thin ? VG_ERR_GEOMETRY : VG_OK);
     assert_true(exists(cut_file("lb4.ugrid")) == !thin);
     if (thin)
-      assert_non_null(strstr(err.text,
-                             "would make 3 points one with others, "
-                             "the first point 5 (0, 0, 0.999999999)"));
+      assert_non_null(strstr(err.text, "would have 3 coincident points, "
+                                       "the first 5 (0, 0, 0.999999999)"));
     assert_int_equal(vg_ugrid_write(cut_file("lb4.ugrid"), &m, &err),
                      thin ? VG_ERR_GEOMETRY : VG_OK);
     unlink(cut_file("lb4.ugrid"));

@@ -314,8 +314,8 @@ static void reads_tokens_and_lines(void **state)
   assert_int_equal(i, 7);
   assert_int_equal(in.line, 6);
   assert_int_equal(vg_input_int(&in, &i, "the count", &err), VG_ERR_FORMAT);
-  assert_string_equal(err.text, "m:6: an integer (the count) should stand "
-                                "here, not '8.5'");
+  assert_string_equal(err.text, "m:6: expected an integer (the count), not "
+                                "'8.5'");
   assert_int_equal(vg_input_real(&in, &d, "x", &err), VG_ERR_FORMAT);
   assert_non_null(strstr(err.text, "ends where x"));
   vg_input_release(&in);

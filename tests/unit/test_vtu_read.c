@@ -302,7 +302,7 @@ static void refuses_what_it_cannot_take(void **state)
           VG_ERR_FORMAT, "3 components");
   refuses(HEAD POINTS "<PointData><DataArray type=\"Float64\" Name=\"size\" "
                       "format=\"appended\" offset=\"9\"/></PointData>",
-          VG_ERR_FORMAT, "nowhere");
+          VG_ERR_FORMAT, "are missing");
   refuses(HEAD POINTS "<PointData><DataArray type=\"Float64\" Name=\"size\" "
                       "format=\"binary\">AAAA</DataArray></PointData>",
           VG_ERR_FORMAT, "not as long");

@@ -17,13 +17,13 @@
 #include "io/stream/convention.h"
 
 #define POLL_MS 100
-#define TEXT_MAX 2048 /* of a message from the child */
+#define TEXT_MAX 2048 /* longest message from the child */
 
 struct vg_cad {
   struct vg_child child;
   int is_open, has_model;
-  struct vg_cad_options o; /* of the last parse */
-  char stage[80];          /* what it is doing */
+  struct vg_cad_options o; /* options of the last parse */
+  char stage[80];          /* current stage, for messages */
 };
 
 void vg_cad_surface_release(struct vg_cad_surface *s)
@@ -51,7 +51,7 @@ int vg_cad_is_built(void)
 #endif
 }
 
-/* --- in the child -------------------------------------------------------- */
+/* --- code that runs in the child ----------------------------------------- */
 
 static void serve(int fd)
 {
@@ -67,7 +67,7 @@ static void serve(int fd)
     memcpy(&entry, &at, sizeof entry);
     entry(fd, &wire);
   }
-  if (!why) why = VG_CAD_LIBRARY " is of another build";
+  if (!why) why = VG_CAD_LIBRARY " belongs to another build";
   gone.n = strlen(why) < TEXT_MAX ? strlen(why) : TEXT_MAX - 1;
   vg_child_put(fd, &gone, sizeof gone);
   vg_child_put(fd, why, gone.n);
@@ -76,7 +76,7 @@ static void serve(int fd)
   _exit(1);
 }
 
-/* --- its life ------------------------------------------------------------ */
+/* --- life of the child --------------------------------------------------- */
 
 static void end_child(struct vg_cad *c)
 {
@@ -101,11 +101,11 @@ vg_status vg_cad_open(struct vg_cad **out, struct vg_error *err)
 
   if (!vg_cad_is_built())
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "this build of vanguard reads no "
-                   "CAD: install Open CASCADE (Debian's "
-                   "libocct-data-exchange-dev) and configure again, or mesh "
-                   "the surface elsewhere ('gmsh -2 FILE -o NAME.stl') and "
-                   "give the triangles");
+                   "this build of vanguard cannot read CAD: install Open "
+                   "CASCADE (Debian's libocct-data-exchange-dev) and "
+                   "configure again, or mesh the surface with another "
+                   "program ('gmsh -2 FILE -o NAME.stl') and use its "
+                   "triangles");
   c = vg_calloc(1, sizeof *c);
   if (!c) return vg_fail_memory(err, "a CAD model");
   st = start_child(c, err);
@@ -123,7 +123,7 @@ void vg_cad_close(struct vg_cad *c)
 
 /* --- answers ------------------------------------------------------------- */
 
-/* What one question is about, while its answer is awaited. */
+/* Context of a question while its answer is awaited. */
 struct call {
   struct vg_cad *cad;
   const char *path;
@@ -138,14 +138,14 @@ static vg_status gone(struct call *k, struct vg_error *err)
   strcpy(stage, k->cad->stage);
   end_child(k->cad);
   return vg_fail(err, VG_ERR_GEOMETRY,
-                 "%s: Open CASCADE ended without an "
-                 "answer (a crash, or no memory left) while %s; the file may "
-                 "be damaged: export it again, or try another format (STEP, "
-                 "IGES, BREP)",
+                 "%s: Open CASCADE ended without an answer (a crash, or not "
+                 "enough memory) while %s; the file may be damaged: export "
+                 "it again, or try another format (STEP, IGES, BREP)",
                  k->path, stage);
 }
 
-/* Bytes to read, the end of the child, or an end to patience. */
+/* Wait until there are bytes to read, the child has ended, or the time limit is
+ * exceeded. */
 static vg_status await(struct call *k, struct vg_error *err)
 {
   const struct vg_cad_options *o = k->o;
@@ -154,15 +154,14 @@ static vg_status await(struct call *k, struct vg_error *err)
   do {
     if (o && vg_stops(&o->stop)) {
       end_child(k->cad);
-      return vg_fail(err, VG_ERR_STOPPED, "%s: stopped while reading it",
+      return vg_fail(err, VG_ERR_STOPPED, "%s: stopped while it was read",
                      k->path);
     }
     if (o && o->seconds > 0 && vg_clock() - k->start > o->seconds) {
       end_child(k->cad);
       return vg_fail(err, VG_ERR_GEOMETRY,
-                     "%s: Open CASCADE was given up "
-                     "after %g s while %s (cad_seconds allows more; 0: no "
-                     "limit)",
+                     "%s: Open CASCADE exceeded the time limit of %g s "
+                     "while %s (setting cad_seconds; 0: no limit)",
                      k->path, o->seconds, k->cad->stage);
     }
   } while (poll(&p, 1, POLL_MS) <= 0);
@@ -185,8 +184,8 @@ static vg_status take_text(struct call *k, const struct vg_cad_tell *t,
   return st;
 }
 
-/* The next answer that is neither a note nor a stage; a failure is one of
- * ours. */
+/* Receive the next answer other than a note or a stage. If the child reports a
+ * failure, the call fails with its message. */
 static vg_status next(struct call *k, struct vg_cad_tell *t,
                       struct vg_error *err)
 {
@@ -203,7 +202,7 @@ static vg_status next(struct call *k, struct vg_cad_tell *t,
     } else if (t->what == VG_CAD_TELL_STAGE) {
       snprintf(k->cad->stage, sizeof k->cad->stage, "%.79s", text);
     } else {
-      /* it ended amid a question */
+      /* The child ended while it read the question. */
       if (t->code == VG_ERR_MEMORY) end_child(k->cad);
       return vg_fail(err,
                      t->code < 0 && t->code >= VG_ERR_USAGE ? (vg_status)t->code
@@ -224,8 +223,7 @@ static vg_status take_array(struct call *k, uint64_t n, size_t size, void *to,
   if (!a) {
     end_child(k->cad);
     return vg_fail(err, VG_ERR_MEMORY,
-                   "%s: not enough memory for %llu items "
-                   "of its surface",
+                   "%s: not enough memory for the %llu items of its surface",
                    k->path, (unsigned long long)n);
   }
   memcpy(to, &a, sizeof a); /* the caller frees it, also on failure */
@@ -259,7 +257,7 @@ done:
   return st;
 }
 
-/* A library that a damaged file has misled may have written anywhere. */
+/* Check the indices: a damaged file may make the library write anywhere. */
 static int is_sound(const struct vg_cad_surface *s)
 {
   const struct vg_mesh *m = &s->mesh;
@@ -306,8 +304,8 @@ done:
 
 /* --- files --------------------------------------------------------------- */
 
-/* Standards say how these files begin and end: what is cut short is told
- * apart from what is damaged, and needs no child. */
+/* The standards define how these files begin and end. So truncated files can be
+ * distinguished from damaged ones without starting a child. */
 static size_t trimmed(const struct vg_input *in)
 {
   size_t n = in->size;
@@ -316,7 +314,7 @@ static size_t trimmed(const struct vg_input *in)
   return n;
 }
 
-/* The last line that is not blank; *end: behind it. */
+/* Last line that is not blank; *end: the position after it. */
 static const char *last_line(const struct vg_input *in, const char **end)
 {
   const char *data = (const char *)in->data;
@@ -333,9 +331,9 @@ static const char *skip_digits(const char *at, const char *end)
   return at;
 }
 
-/* Does a BREP file have the number of its shape, such as "+1 0"? That number
- * follows the last of its "TShapes N" parts, each of which ends in '*'. Text
- * behind it belongs to other programs (attributes of .egads files). */
+/* Does a BREP file contain the number of its shape, such as "+1 0"? It follows
+ * the last of the "TShapes N" sections, each of which ends with '*'. Text after
+ * that number belongs to other programs (attributes of .egads files). */
 static int ends_brep(const struct vg_input *in)
 {
   static const char word[] = "TShapes ";
@@ -384,18 +382,17 @@ static vg_status check_frame(const struct vg_input *in, enum vg_cad_kind kind,
 
   if (*word && !memmem(in->data, head, word, strlen(word)))
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: no %s file: \"%s\" should stand "
-                   "near its beginning",
+                   "%s: not a %s file: it should have \"%s\" near its "
+                   "beginning",
                    in->path, kind == VG_CAD_STEP ? "STEP" : "BREP", word);
   if (kind == VG_CAD_IGES && (in->size < 80 || in->data[72] != 'S'))
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: no IGES file: column 73 of its "
-                   "first line should be S (Start)",
+                   "%s: not an IGES file: column 73 of its first line "
+                   "should be S (Start)",
                    in->path);
   if (is_whole(in, kind)) return VG_OK;
   return vg_fail(err, VG_ERR_FORMAT,
-                 "%s: truncated: it does not end in %s, as "
-                 "it must; export it again",
+                 "%s: truncated: the file must end in %s; export it again",
                  in->path, frames[kind].last);
 }
 
@@ -410,7 +407,7 @@ static struct vg_cad_ask question(uint32_t what, uint32_t kind, uint64_t n,
                               0,          0 };
 }
 
-/* A child that does not listen may have told the reason before it ended. */
+/* If the child stops reading, it may have sent the reason before it ended. */
 static void send_file(struct call *k, const struct vg_input *in,
                       enum vg_cad_kind kind, int leave_apart, int with_volume)
 {
@@ -423,7 +420,7 @@ static void send_file(struct call *k, const struct vg_input *in,
     vg_child_put(k->cad->child.fd, in->data, in->size);
 }
 
-/* *out is untouched on failure. */
+/* *out is unchanged on failure. */
 static vg_status await_surface(struct call *k, struct vg_cad_surface *out,
                                struct vg_error *err)
 {
@@ -460,8 +457,8 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
   vg_status st;
 
   if (kind <= VG_CAD_NONE || kind > VG_CAD_BREP)
-    return vg_fail(err, VG_ERR_INPUT, "%s: %d is no kind of CAD file", in->path,
-                   (int)kind);
+    return vg_fail(err, VG_ERR_INPUT, "%s: %d is not a kind of CAD file",
+                   in->path, (int)kind);
   VG_TRY(check_frame(in, kind, err));
   VG_TRY(start_child(c, err));
   c->has_model = 0;
@@ -470,8 +467,9 @@ static vg_status parse(struct vg_cad *c, struct vg_input *in,
   st = await_surface(&k, out, err);
   if (st < 0 && crashed_uniting(&k)) {
     if (o->note)
-      o->note(o->user, "Open CASCADE crashed while it united solids that touch "
-                       "or overlap; the file was read again without that");
+      o->note(o->user,
+              "Open CASCADE crashed while it united solids that touch or "
+              "overlap; the file was read again without uniting them");
     VG_TRY(start_child(c, err));
     send_file(&k, in, kind, 1, with_volume);
     st = await_surface(&k, out, err);

@@ -1,13 +1,16 @@
-/* io/cad/cad.h: surfaces from CAD files (STEP, IGES, BREP) by Open CASCADE.
+/* io/cad/cad.h: surfaces from CAD files (STEP, IGES, BREP), read by Open
+ * CASCADE.
  *
- * Open CASCADE throws, raises signals, turns in circles and leaks on damaged
- * files, and brings seventy shared libraries along. So it is loaded (io/occt,
- * libvanguard-cad.so) by a child process only (base/child.h), which keeps the
- * model: as long as it lives, points can be put back on its faces and curves.
+ * On damaged files Open CASCADE throws exceptions, raises signals, enters
+ * endless loops and leaks memory, and it depends on seventy shared libraries.
+ * Therefore only a child process (base/child.h) loads it (io/occt,
+ * libvanguard-cad.so). The child keeps the model: as long as it lives, points
+ * can be projected to the model's faces and curves.
  *
- * The bytes that come out follow from the file and the options. Open CASCADE
- * calls libm, which chooses code by the processor: ranks of a job must take the
- * surface from one of them, and do (run/input/share.h). */
+ * The result depends on the file and the options, and on the processor, since
+ * Open CASCADE uses libm, which selects code for the processor. The ranks of a
+ * job must therefore receive the surface from a single rank, as in
+ * run/input/share.h. */
 #ifndef VG_IO_CAD_CAD_H
 #define VG_IO_CAD_CAD_H
 
@@ -20,7 +23,7 @@
 
 enum vg_cad_kind { VG_CAD_NONE, VG_CAD_STEP, VG_CAD_IGES, VG_CAD_BREP };
 
-/** Length unit of what is read; FILE: the file's own. */
+/** Length unit of the result; FILE: the unit of the file. */
 enum vg_cad_unit {
   VG_CAD_UNIT_FILE,
   VG_CAD_UNIT_MM,
@@ -32,7 +35,8 @@ enum vg_cad_unit {
   VG_CAD_UNIT_N
 };
 
-/** What makes a patch: each face, or all faces that have this in common. */
+/** What makes a patch: each face, or all faces with the same name, colour,
+ * layer or part. */
 enum vg_cad_patches {
   VG_CAD_BY_FACE,
   VG_CAD_BY_NAME,
@@ -43,55 +47,53 @@ enum vg_cad_patches {
 };
 
 struct vg_cad_options {
-  int32_t unit;     /* enum vg_cad_unit */
-  int32_t patches;  /* enum vg_cad_patches */
-  double tolerance; /* gaps between faces up to this are sewn, in the
-                       unit of what is read; 0: 1e-6 of the diagonal
-                       of the box around all */
-  double chord;     /* distance of an edge of the triangulation from
-                       its curve, over the size of that curve; of a
-                       face the largest of its edges */
-  double angle;     /* degrees between neighbouring edges on a curve,
-                       and triangles on a face */
-  double least;     /* shortest edge worth having, in the unit of what
-                       is read. Curves and faces are not divided below
-                       it, and shorter edges collapse, except between
-                       two corners of the model and where triangles
-                       would turn. 0: no edge collapses, and the bound
-                       of division is 1e-7 of the diagonal of the box
-                       around all or 1e-6 of that of the median face,
-                       whichever is larger */
-  double seconds;   /* give up then; 0: never */
-  void (*note)(void *user, const char *text); /* what a report should say, line
-                                by line: unit, what was healed or dropped, with
-                                places; NULL: lost */
-  void *user;                                 /* of note */
-  struct vg_stop stop;                        /* asked ten times a second */
+  int32_t unit;     /* see enum vg_cad_unit */
+  int32_t patches;  /* see enum vg_cad_patches */
+  double tolerance; /* gaps between faces up to this size are sewn, in the
+                       unit of the result; 0: 1e-6 of the diagonal of the
+                       bounding box */
+  double chord;     /* chord height: distance of an edge of the triangulation
+                       from its curve, relative to the size of that curve; for a
+                       face, of the largest of its edges */
+  double angle; /* degrees between neighbouring edges on a curve, and between
+                   neighbouring triangles on a face */
+  /* Smallest useful edge length, in the unit of the result. Curves and faces
+   * are not divided below it, and shorter edges are collapsed, except between
+   * two corners of the model and where triangles would be inverted. 0: no edge
+   * is collapsed, and the limit of division is 1e-7 of the diagonal of the
+   * bounding box, or 1e-6 of that of the median face, whichever is larger. */
+  double least;
+  double seconds; /* time limit; 0: none */
+  /* Receives lines for a report: the unit, and the faces and edges that were
+   * healed or dropped, with their locations. May be NULL. */
+  void (*note)(void *user, const char *text);
+  void *user;          /* passed to note */
+  struct vg_stop stop; /* polled ten times a second */
 };
 #define VG_CAD_OPTIONS_INIT                                                    \
   {                                                                            \
     .chord = 2e-3, .angle = 15, .seconds = 3600                                \
   } /* S15 */
 
-/** A model as triangles. Faces and curves have the numbers, from 1 up, of the
- * file's faces and edges in the order of its shells; those that were dropped
- * leave gaps. */
+/** A triangulated model. Faces and curves have the numbers of the file's faces
+ * and edges, counted from 1 in the order of its shells. Numbers of dropped
+ * faces and curves are not used. */
 struct vg_cad_surface {
-  struct vg_mesh mesh; /* triangles, oriented as the faces are: normals
-                          out of solids. Points on a curve that faces
-                          share are shared, by topology. A patch has the
-                          number of its face, or of its group */
-  uint32_t *tri_face;  /* [mesh.n_tri] number of the face */
+  /* Triangles, oriented as the faces: normals point out of solids. Points on a
+   * curve shared by faces are shared too, by topology. The id of a patch is the
+   * number of its face, or of its group. */
+  struct vg_mesh mesh;
+  uint32_t *tri_face; /* [mesh.n_tri] number of each triangle's face */
   size_t n_segment;
-  uint32_t (*segment)[2];  /* [n_segment] points on curves, in order */
-  uint32_t *segment_curve; /* [n_segment] number of the curve */
-  int is_solid;            /* 1: every face bounds a closed solid of the file,
-                              whose normals point out of its material */
-  double volume;           /* that the faces enclose, integrated over their
-                              exact geometry. Solids: volume of their
-                              material. Other faces: sum of the absolute
-                              volumes of connected shells. NAN where an edge
-                              does not have two faces */
+  uint32_t (*segment)[2];  /* [n_segment] edges on curves, in order */
+  uint32_t *segment_curve; /* [n_segment] number of each segment's curve */
+  int is_solid; /* 1: every face bounds a closed solid of the file, and its
+                   normals point out of the material */
+  /* Volume enclosed by the faces, integrated over their exact geometry. For
+   * solids it is the volume of their material, for other faces the sum of the
+   * absolute volumes of connected shells. NAN if an edge does not have exactly
+   * two faces. */
+  double volume;
 };
 #define VG_CAD_SURFACE_INIT                                                    \
   {                                                                            \
@@ -99,63 +101,64 @@ struct vg_cad_surface {
   }
 void vg_cad_surface_release(struct vg_cad_surface *s);
 
-struct vg_cad; /* a child with a model */
+struct vg_cad; /* a child process with a model */
 
-/** 1 when this build can read CAD. */
+/** Returns 1 if this build can read CAD. */
 int vg_cad_is_built(void);
 
 /** Start a child. VG_ERR_UNSUPPORTED in a build without Open CASCADE;
- * VG_ERR_MEMORY when the system refuses a process. */
+ * VG_ERR_MEMORY if the system refuses a process. */
 vg_status vg_cad_open(struct vg_cad **out, struct vg_error *err);
 
-/** End the child; NULL accepted. It also ends with this process. */
+/** End the child; accepts NULL. The child also ends with this process. */
 void vg_cad_close(struct vg_cad *c);
 
-/** Read, heal and triangulate a file; its model replaces the one before. May be
- * called again after any failure: the child is then another one.
+/** Read, heal and triangulate a file; its model replaces the previous one. May
+ * be called again after any failure, which then starts a new child.
  *
- * Dropped, each with a note that has its place: a face that repeats another
- * one, a face without area. Sewn: shells with open edges, by o->tolerance.
- * Faces that could not be triangulated and edges with one face are noted and
- * stay open.
- * VG_ERR_FORMAT: truncated, or not of its kind; VG_ERR_INPUT: nothing in it
- * that has faces; VG_ERR_GEOMETRY: Open CASCADE ended on it, or took longer
- * than o->seconds; VG_ERR_IO: stopped. *out is untouched on failure.
+ * Faces that repeat another face, and faces without area, are dropped, each
+ * with a note that gives its location. Shells with open edges are sewn with
+ * o->tolerance. Faces that could not be triangulated, and edges with only one
+ * face, are noted and remain open.
+ * VG_ERR_FORMAT: the file is truncated, or not of this kind; VG_ERR_INPUT: it
+ * has no faces; VG_ERR_GEOMETRY: Open CASCADE crashed, or took longer than
+ * o->seconds; VG_ERR_IO: stopped. *out is unchanged on failure.
  * Threads: one at a time for each child. */
 vg_status vg_cad_parse(struct vg_cad *c, struct vg_input *in,
                        enum vg_cad_kind kind, const struct vg_cad_options *o,
                        struct vg_cad_surface *out, struct vg_error *err);
 
-/** Triangulate the model that the last vg_cad_parse read once more, with the
- * patches, chord, angle and least of `o`. The file is not read again and unit
- * and tolerance stay as they were; the result is that of vg_cad_parse with
- * these options. VG_CAD_ON_TRIANGLES then refers to the new triangles. On
- * failure it refers to the former ones, as long as the child lives.
- * Status: as vg_cad_parse; VG_ERR_INPUT without a model. *out is untouched on
- * failure. */
+/** Triangulate the model of the last vg_cad_parse again, with the patches,
+ * chord, angle and least of `o`. The file is not read again, and unit and
+ * tolerance do not change. The result is that of vg_cad_parse with these
+ * options. VG_CAD_ON_TRIANGLES then refers to the new triangles; after a
+ * failure it refers to the previous ones, as long as the child lives.
+ * Status as for vg_cad_parse; VG_ERR_INPUT without a model. *out is unchanged
+ * on failure. */
 vg_status vg_cad_again(struct vg_cad *c, const struct vg_cad_options *o,
                        struct vg_cad_surface *out, struct vg_error *err);
 
-/** Points put on faces, or on curves, of the model.
+/** Project points to faces or curves of the model.
  *
- * @param on        faces, curves, or triangles of the surface as parsed, which
- *                  stand for their faces
- * @param number    [n] of the face, curve or triangle (from 0) for each point
- * @param point     in: [n][3]; out: the nearest point of that face (within its
+ * @param on        faces, curves, or triangles of the parsed surface, which
+ *                  select their faces
+ * @param number    [n] of the face or curve (from 1), or the triangle (from 0),
+ *                  for each point
+ * @param point     in: [n][3]; out: nearest point of that face (within its
  *                  bounds) or curve
- * @param distance  out: [n] how far each was moved; NULL accepted
- * stop and seconds of the options that the model was parsed with hold here too.
- * VG_ERR_INPUT for a number that the model lacks; VG_ERR_GEOMETRY when the
- * child is gone. Points are untouched on failure. Some 10 to 100 us each, by
- * triangles, which say where to begin, some 2. */
+ * @param distance  out: [n] distance that each point was moved; may be NULL
+ * stop and seconds of the options used to parse the model apply here too.
+ * VG_ERR_INPUT for a number that the model lacks; VG_ERR_GEOMETRY if the child
+ * has ended. Points are unchanged on failure. Takes some 10 to 100 us per
+ * point; with triangles, which provide a starting point, some 2 us. */
 enum vg_cad_on { VG_CAD_ON_FACES, VG_CAD_ON_CURVES, VG_CAD_ON_TRIANGLES };
 vg_status vg_cad_project(struct vg_cad *c, enum vg_cad_on on, size_t n,
                          const uint32_t *number, double (*point)[3],
                          double *distance, struct vg_error *err);
 
-/** A child and what it made of its file. */
+/** A child and the surface read from its file. */
 struct vg_cad_model {
-  struct vg_cad *cad; /* NULL: none */
+  struct vg_cad *cad; /* NULL: no model */
   struct vg_cad_surface surface;
 };
 #define VG_CAD_MODEL_INIT                                                      \
@@ -164,7 +167,7 @@ struct vg_cad_model {
   }
 void vg_cad_model_release(struct vg_cad_model *m);
 
-/** vg_cad_open and vg_cad_parse on a file (gzip'd or not).
+/** vg_cad_open and vg_cad_parse for a file (gzip'd or not).
  * @param o     NULL for defaults
  * @param keep  empty; out: the child, with a copy of the surface; NULL: the
  *              child is ended */

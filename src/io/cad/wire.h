@@ -1,5 +1,5 @@
-/* io/cad/wire.h: what goes over the socket between io/cad and io/occt, in the
- * byte order of the machine. */
+/* io/cad/wire.h: the protocol between io/cad and io/occt over the socket, in
+ * the byte order of the machine. */
 #ifndef VG_IO_CAD_WIRE_H
 #define VG_IO_CAD_WIRE_H
 
@@ -25,14 +25,14 @@ struct vg_cad_ask {
   uint64_t n;
   double tolerance, chord, angle, least;
   int32_t leave_apart; /* 1: do not unite solids */
-  int32_t with_volume; /* 1: find out is_solid and volume */
+  int32_t with_volume; /* 1: determine is_solid and volume */
 };
 
-/* The stage in which solids are united. */
+/* Name of the stage that unites solids. */
 #define VG_CAD_STAGE_UNITE "uniting its solids"
 
-/* Answers: any number of notes and stages (n characters), then a failure (n
- * characters; code: a vg_status), or a surface (n: 1, with its counts and
+/* Answers: any number of notes and stages (n characters), followed by a failure
+ * (n characters; code: a vg_status), a surface (n: 1, with its counts and
  * arrays), or points (n, and n distances). */
 enum {
   VG_CAD_TELL_NOTE,
@@ -46,8 +46,9 @@ struct vg_cad_tell {
   uint64_t n;
 };
 
-/* Before, in this order: points [][3], triangles [][3], faces of triangles,
- * patches of triangles, segments [][2], curves of segments, patches. */
+/* Sent before the arrays, which follow in this order: points [][3], triangles
+ * [][3], faces of triangles, patches of triangles, segments [][2], curves of
+ * segments, patches. */
 struct vg_cad_counts {
   uint64_t n_point, n_tri, n_segment, n_patch;
   int64_t is_solid;
@@ -56,12 +57,12 @@ struct vg_cad_counts {
 
 struct vg_cad_patch {
   int32_t id;
-  char name[80]; /* ends in 0 */
+  char name[80]; /* zero-terminated */
 };
 
-/* The adapter's door, found by its name in its library. It serves questions
- * until the socket is shut, and does not return. put and get: vg_child_put,
- * vg_child_get. */
+/* Entry point of the adapter, found by its name in the adapter's library. It
+ * answers questions until the socket is shut, and does not return. put and get:
+ * vg_child_put, vg_child_get. */
 struct vg_cad_wire {
   int (*put)(int fd, const void *data, size_t size);
   int (*get)(int fd, void *data, size_t size);

@@ -1,7 +1,7 @@
-/* CGNS files of whole meshes, and the frame of those of meshes in slices:
- * io/cgns/cgns.h, io/cgns/cgns_put.h. The nodes are made by HDF5 in a store in
- * which the arrays are holes; what stands between the holes is taken from
- * there. */
+/* Writer of CGNS files of whole meshes, and of the frame of files of slices;
+ * see io/cgns/cgns.h and io/cgns/cgns_put.h. HDF5 makes the nodes in a store in
+ * which the arrays are left out; the bytes between the arrays are taken from
+ * that store. */
 #include "io/cgns/cgns.h"
 
 #include <assert.h>
@@ -19,9 +19,10 @@
 
 #define BASE "Base"
 #define BLOCK 1024
-#define SECOND "+quads" /* behind a word: no word has a plus */
+#define SECOND "+quads" /* a suffix; words have no plus */
 
-/* Ours to CGNS's, whose pyramid has its apex last; its codes of kinds. */
+/* Our node order to CGNS's, whose pyramid has its apex last; CGNS's codes of
+ * kinds. */
 static const struct kind {
   const char *name;
   int32_t code;
@@ -34,24 +35,24 @@ static const struct kind {
 };
 enum { TRI_3 = 5, QUAD_4 = 7 };
 
-/* What an array of the file holds: coordinates, cells of a kind, faces from
- * first to end with n_node corners. */
+/* Content of an array in the file: coordinates, cells of a kind, or the faces
+ * from `first` to `end` - 1 with n_node vertices. */
 enum what { POINTS, CELLS, FACES };
 
 struct vg_cgns_array {
   uint64_t at, size;
   enum what what;
-  int which; /* axis, kind, corners */
+  int which; /* axis, kind of cells, or vertices per face */
   size_t first, end;
 };
 
-/* A file that is being laid out. */
+/* A file during layout. */
 struct layout {
   struct vg_cgns *c;
   struct vg_cgns_tree *tree;
   char (*word)[VG_PATCH_WORD];
   uint64_t n_cell[VG_CGNS_KINDS];
-  uint64_t n_element; /* of the sections so far */
+  uint64_t n_element; /* number of elements in the sections so far */
   int64_t base, zone, boundary;
 };
 
@@ -84,7 +85,7 @@ static vg_status add_empty(struct layout *l, int64_t parent, const char *name,
   return vg_cgns_tree_add(l->tree, parent, name, label, &d, id, NULL, err);
 }
 
-/* Indices as [rows][n / rows] of the standard; n at most 4. */
+/* Indices as [rows][n / rows] of the standard; n is at most 4. */
 static vg_status add_indices(struct layout *l, int64_t parent, const char *name,
                              const char *label, int n_dim, size_t rows,
                              size_t n, const int64_t *v, int64_t *id,
@@ -99,7 +100,7 @@ static vg_status add_indices(struct layout *l, int64_t parent, const char *name,
   return vg_cgns_tree_add(l->tree, parent, name, label, &d, id, NULL, err);
 }
 
-/* A node whose data are an array of n values. */
+/* Add a node whose data are an array of n values. */
 static vg_status add_array(struct layout *l, int64_t parent, const char *name,
                            const char *type, uint64_t n, struct vg_cgns_array a,
                            struct vg_error *err)
@@ -187,7 +188,7 @@ static vg_status lay_cells(struct layout *l, struct vg_error *err)
   return st;
 }
 
-/* Faces of one kind. */
+/* Add a section for the faces of one kind. */
 static vg_status lay_faces(struct layout *l, const char *word, size_t first,
                            size_t end, int n_node, int is_second,
                            struct vg_error *err)
@@ -227,7 +228,7 @@ done:
   return st;
 }
 
-/* Patches without faces are left out. */
+/* Patches without faces are omitted. */
 static vg_status lay_patches(struct layout *l, struct vg_error *err)
 {
   const struct vg_mesh *m = l->c->frame;
@@ -248,7 +249,7 @@ done:
   return st;
 }
 
-/* --- what stands between the arrays --- */
+/* --- the bytes between the arrays --- */
 
 static int by_place(const void *a, const void *b)
 {
@@ -311,7 +312,7 @@ done:
   return st;
 }
 
-/* Words of the patches, none of them the name of another node. */
+/* Words of the patches; none equals the name of another node. */
 static vg_status make_words(struct layout *l, struct vg_error *err)
 {
   static const char *const taken[] = { "Zone",       "ZoneType",
@@ -332,7 +333,8 @@ static vg_status make_words(struct layout *l, struct vg_error *err)
   return l->word ? VG_OK : vg_fail_memory(err, "the names of the patches");
 }
 
-/* 4-byte indices where all counts, the nodes of a section too, allow it. */
+/* Indices have 4 bytes if all counts allow it, including the nodes of a
+ * section. */
 static int needs_wide(const struct vg_mesh *m, const uint64_t *n_cell)
 {
   uint64_t n = m->n_tri + m->n_quad;
@@ -357,8 +359,8 @@ vg_status vg_cgns_plan(const char *path, const struct vg_mesh *frame,
   c->places.is_wide = (o && o->is_wide) || needs_wide(frame, l.n_cell);
   if (!(l.n_cell[0] + l.n_cell[1] + l.n_cell[2] + l.n_cell[3])) {
     st = vg_fail(err, VG_ERR_INPUT,
-                 "%s: the mesh has no cells; write the "
-                 "surface as .stl or .lb8.ugrid",
+                 "%s: the mesh has no cells; write the surface as .stl or "
+                 ".lb8.ugrid",
                  path);
     goto done;
   }
@@ -384,9 +386,10 @@ void vg_cgns_release(struct vg_cgns *c)
   c->between = NULL;
 }
 
-/* --- putting --- */
+/* --- writing --- */
 
-/* n indices from 1, of the width of the file; at most BLOCK. */
+/* Write n indices, counted from 1, in the width of the file; n is at most
+ * BLOCK. */
 static void put_indices(struct vg_output *out, const struct vg_cgns_places *p,
                         size_t n, const uint32_t *v)
 {

@@ -1,51 +1,52 @@
-/* io/cgns/cgns.h: CGNS files in HDF5 (cgns.github.io:
- * SIDS, and its mapping to HDF5). Uses io/vgrid/mapbc.h for conditions.
+/* io/cgns/cgns.h: CGNS files in HDF5 (cgns.github.io: SIDS, and its mapping to
+ * HDF5). Uses io/vgrid/mapbc.h for boundary conditions.
  *
- * Written: one base, one zone; a section per kind of cell, behind these one or
- * two per patch, named after it; a BC_t per patch on its faces, and a Family_t
- * of the same name with the condition. Indices have 4 bytes, or 8 where counts
- * ask for it.
+ * A written file has one base and one zone, with a section per kind of cell,
+ * followed by one or two sections per patch, named after it. Each patch has a
+ * BC_t for its faces, and a Family_t of the same name with its condition.
+ * Indices have 4 bytes, or 8 if the counts require it.
  *
- * Nodes are laid out by the HDF5 library, without the times that it would
- * note; the arrays of points, cells and faces are put where it has reserved
- * room for them, so that all ranks can write one file. A build without HDF5
- * answers VG_ERR_UNSUPPORTED. */
+ * The HDF5 library lays out the nodes, without the times that it would normally
+ * record. It reserves space for the arrays of points, cells and faces, which
+ * are then written there directly, so that all ranks can write one file. In a
+ * build without HDF5 all functions return VG_ERR_UNSUPPORTED. */
 #ifndef VG_IO_CGNS_CGNS_H
 #define VG_IO_CGNS_CGNS_H
 
 #include "core/mesh/mesh.h"
 #include "io/stream/stream.h"
 
-/** Characters of the name of a patch: vg_patch_words. */
+/** Maximum length of the name of a patch, for vg_patch_words. */
 #define VG_CGNS_WORD_MOST 26
 
-/** 1 in a build with HDF5. */
+/** Returns 1 in a build with HDF5. */
 int vg_cgns_is_built(void);
 
 /** Read a surface, or a volume mesh with its boundary; gzip'd input is
  * accepted. All zones of all bases with the highest cell dimension are joined;
- * where there are several, points with the same coordinates become one.
+ * if there are several zones, points with the same coordinates are merged.
  *
  * Unstructured zones: sections of triangles, quadrilaterals, tetrahedra,
- * pyramids, prisms, hexahedra, and MIXED ones of them; bars and nodes are
- * ignored. A face is on the patch of its BC_t: its family, where it has one,
- * else its name. One that no BC_t names is on that of its section; in a base
- * of surfaces on that of its zone's family, or of the zone where there are
- * several.
+ * pyramids, prisms, hexahedra, and MIXED sections of these are read; bars and
+ * nodes are ignored. A face belongs to the patch of its BC_t, which is the
+ * family of the BC_t if it has one, otherwise its name. A face without a BC_t
+ * belongs to a patch named after its section; in a base of surfaces, to that of
+ * its zone's family, or of the zone if there are several.
  *
- * Structured zones: the faces of surfaces (cell dimension 2, or a single layer
- * of points), on the patch of a BC_t, else of the zone's family, else of the
- * zone. Of blocks with cells the faces that a BC_t with a PointRange is on; the
- * cells are not used. Faces become triangles as io/cgns/cgns_block.h has it.
+ * Structured zones: of a surface (cell dimension 2, or a single layer of
+ * points) all faces are read. They belong to the patch of a BC_t, otherwise of
+ * the zone's family, otherwise of the zone. Of a block with cells, the faces of
+ * each BC_t with a PointRange are read; the cells are not used.
+ * io/cgns/cgns_block.h describes how faces become triangles.
  *
- * Patches of the same name are one; they are numbered from 1 as they come.
- * Conditions are taken over where they have a counterpart.
+ * Patches with the same name are one patch; they are numbered from 1 in the
+ * order in which they appear. Conditions are used if USM3D has a counterpart.
  *
- * The HDF5 library works in a child process, as damaged files may end it.
- * @param out  untouched on failure
+ * The HDF5 library runs in a child process, since damaged files may crash it.
+ * @param out  unchanged on failure
  * VG_ERR_IO, VG_ERR_FORMAT, VG_ERR_INPUT, VG_ERR_MEMORY; VG_ERR_UNSUPPORTED:
  * elements of higher order, polygons, conditions on points of unstructured
- * zones, or on lists of points of structured ones, links to other files, files
+ * zones or on lists of points of structured zones, links to other files, files
  * in ADF. Threads: re-entrant. O(n). */
 vg_status vg_cgns_read(const char *path, struct vg_mesh *out,
                        struct vg_error *err);
@@ -54,9 +55,9 @@ vg_status vg_cgns_read(const char *path, struct vg_mesh *out,
 vg_status vg_cgns_parse(struct vg_input *in, struct vg_mesh *out,
                         struct vg_error *err);
 
-/** Write cells and boundary: the same bytes whenever the mesh is the same.
- * VG_ERR_INPUT: no cells; VG_ERR_IO, VG_ERR_MEMORY. No file is left on
- * failure. Threads: one at a time, as the HDF5 library has it. */
+/** Write cells and boundary. The same mesh always gives the same bytes.
+ * VG_ERR_INPUT: no cells; VG_ERR_IO, VG_ERR_MEMORY. No file is left on failure.
+ * Threads: one at a time, a restriction of the HDF5 library. */
 vg_status vg_cgns_write(const char *path, const struct vg_mesh *m,
                         struct vg_error *err);
 

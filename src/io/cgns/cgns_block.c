@@ -11,7 +11,7 @@ void vg_cgns_block_release(struct vg_cgns_block *b)
   memset(b, 0, sizeof *b);
 }
 
-/* The other two, so that their product is along the axis. */
+/* The other two axes, in cyclic order: u x v is along the axis. */
 static void other_axes(int axis, int *u, int *v)
 {
   *u = (axis + 1) % 3;
@@ -54,7 +54,7 @@ static size_t place(const struct vg_cgns_block *b, const int64_t at[3])
   return (size_t)(at[0] - 1 + b->n[0] * (at[1] - 1 + b->n[1] * (at[2] - 1)));
 }
 
-/* Corners of the face whose lowest indices are at[], counter-clockwise around
+/* Vertices of the face with the lowest indices at[], counter-clockwise around
  * the axis. */
 static void corners(const struct vg_cgns_block *b, const int64_t at[3],
                     int axis, size_t corner[4])
@@ -128,8 +128,8 @@ vg_status vg_cgns_block_surface(struct vg_cgns_block *b, int axis,
   return st;
 }
 
-/* Six times the volume between the face and the next layer, < 0 where the face
- * looks out of the block. */
+/* Six times the volume between the face and the next layer of points, negative
+ * if the face points out of the block. */
 static double look(const struct vg_cgns_block *b, const int64_t at[3], int axis)
 {
   int64_t next[3] = { at[0], at[1], at[2] };

@@ -1,5 +1,5 @@
-/* The HDF5 library at work in a process of its own, which a damaged file may
- * end, or keep for ever: io/cgns/cgns.h. */
+/* Runs the HDF5 library in a child process, which a damaged file may crash or
+ * keep in an endless loop; see io/cgns/cgns.h. */
 #define _GNU_SOURCE
 #include <string.h>
 #include <sys/resource.h>
@@ -10,17 +10,17 @@
 #include "io/cgns/cgns.h"
 #include "io/cgns/cgns_read.h"
 
-/* Seconds of one core: HDF5 reads a megabyte in some milliseconds, but may
- * run in circles. */
+/* Limit of CPU time in seconds. HDF5 reads a megabyte in some milliseconds, but
+ * may enter an endless loop. */
 #define SECONDS(bytes) (60 + (bytes) / 1000000)
 
 struct answer {
   vg_status st;
   struct vg_error err;
-  struct vg_mesh m; /* counts; pointers mean nothing */
+  struct vg_mesh m; /* only the counts are used, not the pointers */
 };
 
-/* Arrays of a mesh, in the order in which they are handed over. */
+/* Arrays of a mesh, in the order in which they are sent. */
 enum { N_ARRAY = 10 };
 
 struct array {
@@ -48,7 +48,7 @@ struct question {
   size_t n_path, size;
 };
 
-/* Path and bytes of the file. */
+/* Receive the path and the bytes of the file. */
 static int get_input(int fd, struct vg_input *in)
 {
   struct question q;
@@ -93,8 +93,8 @@ __attribute__((noreturn)) static void serve(int fd)
 static vg_status is_lost(const char *path, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_FORMAT,
-                 "%s: the HDF5 library came to grief over "
-                 "it: the file is damaged, or there is not enough memory",
+                 "%s: the HDF5 library crashed while reading the file: it "
+                 "is damaged, or there is not enough memory",
                  path);
 }
 
@@ -133,8 +133,8 @@ static vg_status read_apart(struct vg_input *in, struct vg_mesh *out,
 
   if (vg_child_open(serve, &c) < 0)
     return vg_fail(err, VG_ERR_MEMORY,
-                   "%s: the system refuses a process to "
-                   "read it",
+                   "%s: the system refuses to start a process that reads "
+                   "the file",
                    in->path);
   if (vg_child_put(c.fd, &q, sizeof q) &&
       vg_child_put(c.fd, in->path, q.n_path) &&
@@ -145,7 +145,7 @@ static vg_status read_apart(struct vg_input *in, struct vg_mesh *out,
   return st;
 }
 
-/* HDF5 files begin with their mark, or behind a block of somebody's own. */
+/* HDF5 files begin with a signature, or contain it after a user block. */
 static int is_hdf5(const struct vg_input *in)
 {
   static const char mark[8] = "\x89HDF\r\n\x1a\n";
@@ -163,15 +163,13 @@ vg_status vg_cgns_parse(struct vg_input *in, struct vg_mesh *out,
   if (is_hdf5(in)) return read_apart(in, out, err);
   if (memmem(in->data, in->size < 64 ? in->size : 64, adf, sizeof adf - 1))
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: this CGNS file is in ADF, "
-                   "not in HDF5; convert it with `adf2hdf FILE NEW.cgns` "
-                   "(Debian's package cgns-convert), or with `cgnsconvert -h "
-                   "FILE NEW.cgns`, then give NEW.cgns in its place",
+                   "%s: this CGNS file is in ADF, not in HDF5; convert it "
+                   "with `adf2hdf FILE NEW.cgns` (Debian's package "
+                   "cgns-convert), or with `cgnsconvert -h FILE NEW.cgns`, "
+                   "and use NEW.cgns instead",
                    in->path);
   return vg_fail(err, VG_ERR_FORMAT,
-                 "%s: not a CGNS file: neither HDF5 nor "
-                 "ADF",
-                 in->path);
+                 "%s: this is not a CGNS file: neither HDF5 nor ADF", in->path);
 }
 
 vg_status vg_cgns_read(const char *path, struct vg_mesh *out,

@@ -4,7 +4,8 @@
 
 #include "io/vgrid/mapbc.h"
 
-/* Of several with the same word the first is what the word becomes. */
+/* If several rows have the same word, the word is converted to the code of the
+ * first. */
 static const struct {
   int32_t code;
   const char *type;

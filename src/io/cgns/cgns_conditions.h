@@ -1,16 +1,16 @@
-/* io/cgns/cgns_conditions.h: conditions of patches as CGNS has them (SIDS,
- * BCType_t). Private to its module. */
+/* io/cgns/cgns_conditions.h: boundary conditions of CGNS (SIDS, BCType_t).
+ * Private to its module. */
 #ifndef VG_IO_CGNS_CONDITIONS_H
 #define VG_IO_CGNS_CONDITIONS_H
 
 #include "core/mesh/mesh.h"
 
-/** "BCWallViscous", ... of a patch; NULL: it has none, or one without
- * counterpart. */
+/** BCType_t of a patch ("BCWallViscous", ...); NULL if it has no condition, or
+ * one without a counterpart. */
 const char *vg_cgns_condition(const struct vg_patch *p);
 
-/** The condition of a BCType_t, as USM3D's code; what has no counterpart
- * changes nothing. */
+/** Set the condition of a patch from a BCType_t, as USM3D's code. Types without
+ * a counterpart do not change it. */
 void vg_cgns_take_condition(const char *type, struct vg_patch *p);
 
 #endif

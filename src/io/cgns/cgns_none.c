@@ -1,4 +1,4 @@
-/* In a build without the HDF5 library: io/cgns/cgns_tree.h. */
+/* Stub of io/cgns/cgns_tree.h in a build without the HDF5 library. */
 #include "io/cgns/cgns_tree.h"
 
 int vg_cgns_tree_is_built(void)
@@ -9,8 +9,8 @@ int vg_cgns_tree_is_built(void)
 static vg_status absent(struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "this build has no CGNS: install "
-                 "libhdf5-dev and configure again");
+                 "this build does not support CGNS: install libhdf5-dev and "
+                 "configure again");
 }
 
 vg_status vg_cgns_tree_new(struct vg_cgns_store *store, const char *name,

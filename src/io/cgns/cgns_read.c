@@ -1,5 +1,6 @@
-/* Reading CGNS: io/cgns/cgns.h. Points of a zone come first, then what patch
- * its BC_t give to the elements of each section, then the elements. */
+/* Reader of CGNS; see io/cgns/cgns.h. For each zone it reads the points, then
+ * the patches that the zone's BC_t give to the elements of each section, then
+ * the elements. */
 #include "io/cgns/cgns_read.h"
 
 #include <stdlib.h>
@@ -16,8 +17,8 @@
 enum element { PASSED, TRI, QUAD, TET, PYR, PRI, HEX };
 enum { MIXED = 20, NODES_MOST = 8 };
 
-/* CGNS's types of elements of first order, and points and lines. Slot k of the
- * file is our node slot[k]. */
+/* CGNS's element types of first order, and points and lines. Slot k of the file
+ * is our node slot[k]. */
 static const struct type {
   int64_t code;
   enum element element;
@@ -52,7 +53,8 @@ vg_status vg_cgns_fail_zone(const struct vg_cgns_reader *r,
                  what);
 }
 
-/* Child of a label and, unless NULL, a name; id -1: there is none. */
+/* First child with this label and, unless NULL, this name; id is -1 if there is
+ * none. */
 static vg_status find_child(struct vg_cgns_reader *r, int64_t parent,
                             const char *label, const char *name,
                             struct vg_cgns_node *out, struct vg_error *err)
@@ -69,7 +71,7 @@ static vg_status find_child(struct vg_cgns_reader *r, int64_t parent,
   return VG_OK;
 }
 
-/* Text of a child, cut to fit; "" where there is none. */
+/* Text of a child, shortened if necessary; "" if there is no such child. */
 vg_status vg_cgns_child_text(struct vg_cgns_reader *r, int64_t parent,
                              const char *label, const char *name,
                              char to[VG_CGNS_NAME], struct vg_error *err)
@@ -87,7 +89,7 @@ vg_status vg_cgns_child_text(struct vg_cgns_reader *r, int64_t parent,
   return st;
 }
 
-/* The name of a family, which may come with its base: "/Base/wing". */
+/* Name of a family, without the base that may precede it: "/Base/wing". */
 vg_status vg_cgns_family_name(struct vg_cgns_reader *r, int64_t parent,
                               char to[VG_CGNS_NAME], struct vg_error *err)
 {
@@ -127,7 +129,8 @@ static vg_status read_families(struct vg_cgns_reader *r, int64_t base,
   return st;
 }
 
-/* The patch of a name, with a condition: "" that of a family of its name. */
+/* Find or create the patch with this name. condition "" means that of the
+ * family with the same name. */
 vg_status vg_cgns_find_patch(struct vg_cgns_reader *r, const char *name,
                              const char *condition, uint32_t *at,
                              struct vg_error *err)
@@ -149,8 +152,8 @@ vg_status vg_cgns_find_patch(struct vg_cgns_reader *r, const char *name,
 
 /* --- points --- */
 
-/* The three coordinates of the points, [n_point] each, which the caller frees
- * also on failure. */
+/* Read the three coordinates of the points, [n_point] each, which the caller
+ * frees also on failure. */
 vg_status vg_cgns_read_coordinates(struct vg_cgns_reader *r, double *x[3],
                                    struct vg_error *err)
 {
@@ -210,9 +213,8 @@ static vg_status unknown_type(const struct vg_cgns_reader *r,
                               struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: section '%s': elements of type "
-                 "%lld are polygons, or not of first order; write TRI_3, "
-                 "QUAD_4 or MIXED",
+                 "%s: section '%s': elements of type %lld are polygons, or "
+                 "not of first order; write TRI_3, QUAD_4 or MIXED",
                  r->in->path, s->node.name, (long long)code);
 }
 
@@ -224,7 +226,7 @@ static vg_status fail_section(const struct vg_cgns_reader *r,
                  s->node.name, what);
 }
 
-/* Numbers, nodes and kind of a section. */
+/* Read element numbers, nodes and kind of a section. */
 static vg_status read_section(struct vg_cgns_reader *r,
                               struct vg_cgns_section *s, struct vg_error *err)
 {
@@ -246,17 +248,17 @@ static vg_status read_section(struct vg_cgns_reader *r,
     VG_TRY(fail_section(r, s, "no ElementRange or ElementConnectivity", err));
   VG_TRY(vg_cgns_tree_ints(r->tree, node.id, "ElementRange", &range, &n, err));
   if (n != 2 || range[0] < 1 || range[1] < range[0])
-    VG_TRY(fail_section(r, s, "ElementRange is no range", err));
+    VG_TRY(fail_section(r, s, "ElementRange is not a valid range", err));
   s->first = range[0];
   s->last = range[1];
   VG_TRY(vg_cgns_tree_ints(r->tree, nodes.id, "ElementConnectivity", &s->v,
                            &s->n_v, err));
-  /* of mixed ones the least: a type and a node each */
+  /* A mixed element has at least a type and one node. */
   n_element = (uint64_t)(s->last - s->first) + 1;
   if (t ? s->n_v % (size_t)t->n_node || s->n_v / (size_t)t->n_node != n_element
         : s->n_v / 2 < n_element)
     VG_TRY(fail_section(r, s,
-                        "ElementConnectivity has not the nodes of the "
+                        "ElementConnectivity does not match the number of "
                         "elements in ElementRange",
                         err));
   s->patch = vg_alloc((size_t)n_element, sizeof *s->patch);
@@ -296,15 +298,16 @@ static vg_status read_sections(struct vg_cgns_reader *r, struct vg_error *err)
   for (size_t i = 1; i < n && st >= 0; i++)
     if (r->section[i].first <= r->section[i - 1].last)
       st = fail_section(r, &r->section[i],
-                        "its numbers are another section's "
-                        "too",
+                        "its element numbers overlap with those of another "
+                        "section",
                         err);
   return st;
 }
 
 /* --- conditions --- */
 
-/* Section with this element, or the first behind it; n_section: none. */
+/* Section that contains this element, or the first one after it; n_section if
+ * no section does. */
 static size_t find_section(const struct vg_cgns_reader *r, int64_t element)
 {
   size_t lo = 0, hi = r->n_section;
@@ -331,7 +334,7 @@ static void mark_range(struct vg_cgns_reader *r, int64_t first, int64_t last,
   }
 }
 
-/* What a BC_t is on: elements (1), or what is passed over (0). */
+/* Does a BC_t refer to elements (1), or is it ignored (0)? */
 static vg_status is_on_elements(struct vg_cgns_reader *r,
                                 const struct vg_cgns_node *b, const char *list,
                                 int *on, struct vg_error *err)
@@ -340,19 +343,19 @@ static vg_status is_on_elements(struct vg_cgns_reader *r,
   vg_status st = vg_cgns_child_text(r, b->id, "GridLocation_t", NULL, at, err);
 
   if (st < 0) return st;
-  /* old files call lists of elements so */
+  /* Old files use these names for lists of elements. */
   *on = !strncmp(list, "Element", 7) || !strcmp(at, "FaceCenter") ||
         !strcmp(at, "CellCenter");
-  /* of a surface points and edges are its border */
+  /* Points and edges of a surface are its boundary. */
   if (*on || r->dimension == 2 || !strcmp(at, "EdgeCenter")) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: condition '%s' is given on "
-                 "points (GridLocation %s), which does not say on which faces; "
-                 "write it with FaceCenter",
+                 "%s: condition '%s' is given on points (GridLocation %s), "
+                 "which does not determine its faces; write it with "
+                 "FaceCenter",
                  r->in->path, b->name, *at ? at : "Vertex");
 }
 
-/* Elements of a BC_t: a range or a list. */
+/* Elements of a BC_t, given as a range or a list. */
 vg_status vg_cgns_elements_of(struct vg_cgns_reader *r,
                               const struct vg_cgns_node *b,
                               char name[VG_CGNS_NAME], int64_t **v, size_t *n,
@@ -373,7 +376,7 @@ vg_status vg_cgns_elements_of(struct vg_cgns_reader *r,
   return vg_cgns_tree_ints(r->tree, node.id, node.name, v, n, err);
 }
 
-/* The patch of a BC_t: that of its family, where it has one, else of its own
+/* Patch of a BC_t: that of its family if it has one, otherwise of its own
  * name. */
 vg_status vg_cgns_condition_patch(struct vg_cgns_reader *r,
                                   const struct vg_cgns_node *b, uint32_t *patch,
@@ -412,8 +415,7 @@ static vg_status read_condition(struct vg_cgns_reader *r,
   if (strstr(list, "Range")) {
     if (n != 2)
       VG_TRY(vg_fail(err, VG_ERR_FORMAT,
-                     "%s: condition '%s': its %s is no "
-                     "range",
+                     "%s: condition '%s': its %s is not a valid range",
                      r->in->path, b->name, list));
     mark_range(r, v[0], v[1], patch);
   } else {
@@ -424,7 +426,7 @@ done:
   return st;
 }
 
-/* All conditions of the zone, by `read`. */
+/* Call `read` for every condition of the zone. */
 vg_status vg_cgns_read_conditions(struct vg_cgns_reader *r,
                                   vg_cgns_read_one *read, struct vg_error *err)
 {
@@ -442,7 +444,8 @@ vg_status vg_cgns_read_conditions(struct vg_cgns_reader *r,
 
 /* --- elements --- */
 
-/* Room for one more, which is counted; NULL: no memory. */
+/* Nodes of a new element, which is counted; NULL if there is not enough
+ * memory. */
 static uint32_t *next_element(struct vg_cgns_reader *r, enum element e,
                               uint32_t patch)
 {
@@ -478,8 +481,8 @@ static vg_status take_element(struct vg_cgns_reader *r,
   for (int k = 0; k < t->n_node; k++) {
     if (v[k] < 1 || (uint64_t)v[k] > r->n_point)
       return vg_fail(err, VG_ERR_INPUT,
-                     "%s: element %lld of section '%s' "
-                     "refers to point %lld of %zu",
+                     "%s: element %lld of section '%s' refers to point %lld "
+                     "of %zu",
                      r->in->path, (long long)number, s->node.name,
                      (long long)v[k], r->n_point);
     node[t->slot[k]] = r->point[v[k] - 1];
@@ -492,7 +495,7 @@ static vg_status take_element(struct vg_cgns_reader *r,
   return VG_OK;
 }
 
-/* The patch of faces without a condition: made when the first is met. */
+/* Patch of faces without a condition, created for the first of them. */
 static vg_status default_patch(struct vg_cgns_reader *r,
                                const struct vg_cgns_section *s, uint32_t *patch,
                                struct vg_error *err)
@@ -566,8 +569,8 @@ static vg_status read_elements(struct vg_cgns_reader *r, const int64_t *size,
 
   if (n < 3 || size[0] < 0 || (uint64_t)size[0] >= UINT32_MAX)
     VG_TRY(vg_cgns_fail_zone(r, err, VG_ERR_FORMAT,
-                             "its number of points is "
-                             "missing, negative or beyond 32 bits"));
+                             "its number of points is missing, negative or "
+                             "beyond 32 bits"));
   r->n_point = (size_t)size[0];
   VG_TRY(read_points(r, err));
   VG_TRY(read_sections(r, err));
@@ -646,8 +649,8 @@ done:
   return st;
 }
 
-/* A base of surfaces next to one of cells is the boundary of these, often with
- * a solution, and not read again. */
+/* A base of surfaces in addition to one of cells is the boundary of these
+ * cells, often with a solution, and is not read again. */
 static vg_status read_tree(struct vg_cgns_reader *r, int64_t root,
                            struct vg_error *err)
 {
@@ -665,14 +668,12 @@ static vg_status read_tree(struct vg_cgns_reader *r, int64_t root,
       r->dimension = base[i].dimension;
   }
   if (!n)
-    st = vg_fail(err, VG_ERR_FORMAT,
-                 "%s: 0 bases (CGNSBase_t) in it; at least "
-                 "one is wanted",
+    st = vg_fail(err, VG_ERR_FORMAT, "%s: the file has no base (CGNSBase_t)",
                  r->in->path);
   else if (r->dimension < 2)
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: base '%s' has not cells of 2 or "
-                 "3 dimensions in space of 3",
+                 "%s: base '%s' must have cells of dimension 2 or 3 in "
+                 "three-dimensional space",
                  r->in->path, list[0].name);
   else st = read_bases(r, base, n, err);
 done:
@@ -682,7 +683,8 @@ done:
   return st;
 }
 
-/* FUN3D's code of a symmetry plane says which axis it is normal to. */
+/* FUN3D's codes of symmetry planes depend on the axis that the plane is normal
+ * to. */
 static vg_status set_axes(struct vg_mesh *m, struct vg_error *err)
 {
   int *axis = vg_alloc(m->n_patch, sizeof *axis);
@@ -703,10 +705,10 @@ static vg_status finish(struct vg_cgns_reader *r, struct vg_error *err)
 
   if (!m->n_tri && !m->n_quad && !has_cells && r->n_volume_block)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: no BC_t says which faces of its "
-                   "structured blocks (%zu) bound the flow; write a BC_t with "
-                   "a PointRange for each wall, or the surface as zones in a "
-                   "base of cell dimension 2",
+                   "%s: no BC_t says which faces of its structured blocks "
+                   "(%zu) bound the flow; write a BC_t with a PointRange "
+                   "for each wall, or the surface as zones in a base of "
+                   "cell dimension 2",
                    r->in->path, r->n_volume_block);
   if (!m->n_tri && !m->n_quad && !has_cells)
     return vg_fail(err, VG_ERR_INPUT,

@@ -1,5 +1,5 @@
-/* Structured zones: io/cgns/cgns.h. Of a surface all faces are taken, of a
- * block with cells those that its conditions are on. */
+/* Structured zones; see io/cgns/cgns.h. All faces of a surface are read; of a
+ * block with cells, only the faces of its conditions. */
 #include "io/cgns/cgns_read_parts.h"
 
 #include <stdlib.h>
@@ -15,8 +15,8 @@ static vg_status set_block(struct vg_cgns_reader *r, const int64_t *size,
   r->n_index = n == 3 || n == 6 || n == 9 ? (int)(n / 3) : 0;
   if (r->n_index != r->dimension)
     return vg_cgns_fail_zone(r, err, VG_ERR_FORMAT,
-                             "its sizes are not those "
-                             "of a structured zone in this base");
+                             "its sizes are not those of a structured zone "
+                             "in this base");
   r->flat = -1;
   for (int k = 2; k >= 0; k--) {
     r->block.n[k] = k < r->n_index ? size[k] : 1;
@@ -41,9 +41,9 @@ static vg_status fail_range(const struct vg_cgns_reader *r,
                  r->in->path, r->zone.name, b->name, what);
 }
 
-/* The axis that a range of faces is normal to: one along which all have the
- * number of the first point, or that of the last, which no cell has. -1: no
- * axis, -2: more than one. */
+/* Axis that a range of faces is normal to: the one along which both ends have
+ * the number of the first point, or of the last, which no cell has. -1: no
+ * axis, -2: several. */
 static int normal_of_faces(const struct vg_cgns_reader *r,
                            const struct vg_cgns_range *range)
 {
@@ -57,8 +57,9 @@ static int normal_of_faces(const struct vg_cgns_reader *r,
   return axis;
 }
 
-/* The axis along which all points of a range have one number; -1: there is
- * none, or more than one, and so no face between the points. */
+/* Axis along which all points of a range have the same number; -1 if there is
+ * none or more than one, in which case there are no faces between the
+ * points. */
 static int normal_of_points(const struct vg_cgns_range *range)
 {
   int axis = -1, n = 0;
@@ -71,9 +72,9 @@ static int normal_of_points(const struct vg_cgns_range *range)
   return n == 1 ? axis : -1;
 }
 
-/* Points of a BC_t. Its range counts points or the faces between them. *axis
- * becomes the index direction normal to the faces; -1: the range has no faces.
- */
+/* Read the points of a BC_t. Its range refers to points or to the faces between
+ * them. *axis becomes the index direction normal to the faces; -1: the range
+ * has no faces. */
 static vg_status take_range(const struct vg_cgns_reader *r,
                             const struct vg_cgns_node *b, const int64_t *v,
                             const char *at, struct vg_cgns_range *range,
@@ -96,20 +97,20 @@ static vg_status take_range(const struct vg_cgns_reader *r,
   else *axis = normal_of_faces(r, range);
   if (*axis == -2)
     return fail_range(r, b,
-                      "does not say which way its faces look; write "
+                      "does not tell the direction of its faces; write "
                       "IFaceCenter, JFaceCenter or KFaceCenter",
                       err);
   for (int k = 0; k < 3 && is_face && !is_outside; k++)
     if (k != *axis) is_outside |= ++range->hi[k] > r->block.n[k];
   if (!is_outside) return VG_OK;
   return vg_fail(err, VG_ERR_FORMAT,
-                 "%s: zone '%s': the PointRange of "
-                 "condition '%s' leaves the zone",
+                 "%s: zone '%s': the PointRange of condition '%s' exceeds "
+                 "the zone",
                  r->in->path, r->zone.name, b->name);
 }
 
-/* Faces of a block with cells, which become triangles at once; of a surface
- * its cells are marked. */
+/* Read a condition. Faces of a block with cells become triangles at once; in a
+ * surface, the faces are marked. */
 static vg_status read_block_condition(struct vg_cgns_reader *r,
                                       const struct vg_cgns_node *b,
                                       struct vg_error *err)
@@ -134,7 +135,7 @@ static vg_status read_block_condition(struct vg_cgns_reader *r,
       vg_cgns_range_is_thin(&range, axis))
     goto done;
   if (range.lo[axis] != 1 && range.lo[axis] != r->block.n[axis])
-    VG_TRY(fail_range(r, b, "is on faces within the block", err));
+    VG_TRY(fail_range(r, b, "contains faces inside the block", err));
   VG_TRY(vg_cgns_condition_patch(r, b, &patch, err));
   if (r->flat < 0)
     VG_TRY(
@@ -145,7 +146,7 @@ done:
   return st;
 }
 
-/* The patch of a surface's cells without a condition. */
+/* Patch of the faces of a surface that have no condition. */
 static vg_status zone_patch(struct vg_cgns_reader *r, uint32_t *patch,
                             struct vg_error *err)
 {

@@ -14,7 +14,7 @@ void vg_cgns_store_release(struct vg_cgns_store *s)
   *s = empty;
 }
 
-/* The first page with this number or a higher one. */
+/* First page with this number or a higher one. */
 static size_t find(const struct vg_cgns_store *s, uint64_t number)
 {
   size_t lo = 0, hi = s->n_page;
@@ -65,7 +65,7 @@ void vg_cgns_store_get(const struct vg_cgns_store *s, uint64_t at, uint64_t n,
   }
 }
 
-/* Pages are few, and mostly come in order. */
+/* There are few pages, and most are added in ascending order. */
 static struct vg_cgns_page *page_for(struct vg_cgns_store *s, uint64_t number)
 {
   size_t i = find(s, number);

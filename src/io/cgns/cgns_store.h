@@ -1,8 +1,10 @@
-/* io/cgns/cgns_store.h: a file in memory in which only what was written takes
- * room, or bytes that are there to be read. Private to its module.
+/* io/cgns/cgns_store.h: a sparse file in memory, in which only the pages
+ * written take memory, or a read-only view of existing bytes. Private to its
+ * module.
  *
- * HDF5 keeps what it cannot write for ever, and trips over it at the end of
- * the program, so the nodes of a CGNS file are made where no disk is full. */
+ * HDF5 never discards data that it cannot write, and fails on them at the end
+ * of the program. So the nodes of a CGNS file are created in memory, where no
+ * disk can be full. */
 #ifndef VG_IO_CGNS_STORE_H
 #define VG_IO_CGNS_STORE_H
 
@@ -18,10 +20,10 @@ struct vg_cgns_page {
 
 struct vg_cgns_store {
   const unsigned char *view; /* [size] borrowed; NULL: pages */
-  uint64_t size;             /* up to where room is taken */
-  struct vg_cgns_page *page; /* [n_page] by rising number */
+  uint64_t size;             /* end of the bytes allocated by HDF5 */
+  struct vg_cgns_page *page; /* [n_page] sorted by number */
   size_t n_page, cap_page;
-  int failed; /* 1: memory was refused */
+  int failed; /* 1: there was not enough memory */
 };
 #define VG_CGNS_STORE_INIT                                                     \
   {                                                                            \
@@ -30,11 +32,12 @@ struct vg_cgns_store {
 
 void vg_cgns_store_release(struct vg_cgns_store *s);
 
-/** n bytes from `at` on; zero where nothing was written. */
+/** Copy n bytes starting at `at`; bytes never written are zero. */
 void vg_cgns_store_get(const struct vg_cgns_store *s, uint64_t at, uint64_t n,
                        void *to);
 
-/** Where memory is refused the bytes are lost, and `failed` set. */
+/** Write n bytes. If there is not enough memory they are lost, and `failed` is
+ * set. */
 void vg_cgns_store_put(struct vg_cgns_store *s, uint64_t at, uint64_t n,
                        const void *from);
 

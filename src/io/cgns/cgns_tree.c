@@ -1,6 +1,6 @@
-/* Nodes of CGNS in HDF5: io/cgns/cgns_tree.h, and in the standard "CGNS/HDF5
- * file mapping". Everything that would differ from run to run is left out:
- * HDF5 notes no times, and room for arrays is reserved at once. */
+/* CGNS nodes in HDF5; see io/cgns/cgns_tree.h and, in the standard, "CGNS/HDF5
+ * file mapping". Files are reproducible: HDF5 records no times, and space for
+ * arrays is reserved at once. */
 #include "io/cgns/cgns_tree.h"
 
 #include <assert.h>
@@ -11,17 +11,17 @@
 #include "base/memory.h"
 
 #define DATA " data"
-/* Deflate makes no more than this of a byte; sets of data that claim more
- * are lies, or were never written. */
+/* Best compression ratio of deflate. Data sets that claim a higher ratio are
+ * wrong, or were never written. */
 #define INFLATED_MOST 1100
 
 struct vg_cgns_tree {
   struct vg_cgns_store *store;
-  struct vg_cgns_store view; /* of what is read */
+  struct vg_cgns_store view; /* bytes to be read */
   hid_t driver, file, group_plist, data_plist, string[2];
-  char *path;        /* for messages */
-  int failed;        /* 1: HDF5 refused something while writing */
-  H5E_auto2_t print; /* how the library told of errors before */
+  char *path;        /* name in messages */
+  int failed;        /* 1: HDF5 failed while writing */
+  H5E_auto2_t print; /* error handler of the library before this file */
   void *print_data;
 };
 
@@ -30,10 +30,10 @@ int vg_cgns_tree_is_built(void)
   return 1;
 }
 
-/* --- a file that is a store, to HDF5 --- */
+/* --- a virtual file driver of HDF5 on a store --- */
 
 struct file {
-  H5FD_t as_hdf5; /* first: HDF5 writes into it */
+  H5FD_t as_hdf5; /* must be first: HDF5 writes to it */
   struct vg_cgns_store *store;
 };
 
@@ -101,9 +101,9 @@ static const H5FD_class_t file_class = { .name = "vanguard_store",
                                          .write = file_write,
                                          .fl_map = H5FD_FLMAP_SINGLE };
 
-/* --- both ways --- */
+/* --- both reading and writing --- */
 
-/* How to open the store as a file. */
+/* Access properties that open the store as a file. */
 static hid_t access_to(struct vg_cgns_tree *t)
 {
   hid_t access = H5Pcreate(H5P_FILE_ACCESS);
@@ -183,7 +183,7 @@ static void put_attribute(struct vg_cgns_tree *t, hid_t to, const char *name,
   if (space >= 0) H5Sclose(space);
 }
 
-/* A string of n bytes with nothing behind its end. */
+/* Write a string of n bytes, zero-filled after its end. */
 static void put_string(struct vg_cgns_tree *t, hid_t to, const char *name,
                        int is_type, const char *value)
 {
@@ -245,7 +245,7 @@ static vg_status refused(const struct vg_cgns_tree *t, struct vg_error *err)
                  t->path);
 }
 
-/* Creation properties of groups (and the first one) and of data. */
+/* Creation properties of groups (including the root) and of data sets. */
 static void set_plists(struct vg_cgns_tree *t, hid_t root_plist)
 {
   const hid_t group[2] = { t->group_plist, root_plist };
@@ -261,7 +261,7 @@ static void set_plists(struct vg_cgns_tree *t, hid_t root_plist)
     t->failed = 1;
 }
 
-/* What the library of CGNS puts into the root of a file. */
+/* Write the attributes that the CGNS library puts into the root of a file. */
 static int64_t put_root(struct vg_cgns_tree *t)
 {
   static const char format[] = "IEEE_LITTLE_32", version[33] = "HDF5";
@@ -347,7 +347,7 @@ vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
   t->view.view = in->data;
   t->view.size = in->size;
   t->store = &t->view;
-  /* a file must not say which code is loaded */
+  /* A file must not be able to load code. */
   H5PLset_loading_state(0);
   access = access_to(t);
   t->file = H5Fopen(in->path, H5F_ACC_RDONLY, access);
@@ -356,7 +356,7 @@ vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
   if (*root < 0) {
     vg_cgns_tree_close(t, NULL);
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: the HDF5 library cannot open it: "
+                   "%s: the HDF5 library cannot open it: the file is "
                    "truncated, damaged, or of a newer version",
                    in->path);
   }
@@ -364,7 +364,7 @@ vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
   return VG_OK;
 }
 
-/* A string of an attribute; "" where there is none. */
+/* Read a string attribute; "" if it is absent. */
 static void get_string(hid_t node, const char *name, char to[VG_CGNS_NAME])
 {
   hid_t a = H5Aexists(node, name) > 0 ? H5Aopen(node, name, H5P_DEFAULT) : -1;
@@ -373,7 +373,7 @@ static void get_string(hid_t node, const char *name, char to[VG_CGNS_NAME])
   hid_t as = make_string(VG_CGNS_NAME);
 
   memset(to, 0, VG_CGNS_NAME);
-  /* of a fixed length: others would be pointers */
+  /* Strings of variable length would be stored as pointers. */
   if (type >= 0 && space >= 0 && H5Tget_class(type) == H5T_STRING &&
       !H5Tis_variable_str(type) && H5Sget_simple_extent_npoints(space) == 1 &&
       H5Aread(a, as, to) < 0)
@@ -398,12 +398,12 @@ static vg_status is_link(const struct vg_cgns_tree *t, const char *name,
                          struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: node '%.40s' is a link to "
-                 "another place; write it in one file without links",
+                 "%s: node '%.40s' is a link to another location; write a "
+                 "single file without links",
                  t->path, name);
 }
 
-/* A group of the label wanted. */
+/* Collect a group that has the requested label. */
 static vg_status take_child(struct visit *v, hid_t parent, const char *name)
 {
   struct vg_cgns_node node = { .id = H5Oopen(parent, name, H5P_DEFAULT) };
@@ -433,7 +433,7 @@ static herr_t see_child(hid_t parent, const char *name, const H5L_info_t *info,
 {
   struct visit *v = visit;
 
-  if (*name == ' ') return 0; /* data, not a node */
+  if (*name == ' ') return 0; /* a data set, not a node */
   v->st = info->type == H5L_TYPE_HARD ? take_child(v, parent, name)
                                       : is_link(v->t, name, v->err);
   return v->st < 0;
@@ -470,7 +470,8 @@ vg_status vg_cgns_tree_children(struct vg_cgns_tree *t, int64_t parent,
   return VG_OK;
 }
 
-/* Data as values of `size` bytes of a native type, with room for one more. */
+/* Read data as values of `size` bytes of a native type, with space for one
+ * more. */
 static vg_status get_data(struct vg_cgns_tree *t, int64_t id, const char *what,
                           H5T_class_t class, hid_t native, size_t size,
                           void **out, size_t *n, struct vg_error *err)
@@ -486,13 +487,12 @@ static vg_status get_data(struct vg_cgns_tree *t, int64_t id, const char *what,
 
   if (type < 0 || count < 0 || H5Tget_class(type) != class)
     st = vg_fail(err, VG_ERR_FORMAT,
-                 "%s: %s: there are no data, or not of "
-                 "the type that they should have",
+                 "%s: %s: the data are missing or do not have the expected "
+                 "type",
                  t->path, what);
   else if ((uint64_t)count > INFLATED_MOST * t->view.size)
     st = vg_fail(err, VG_ERR_FORMAT,
-                 "%s: %s: %lld values cannot be in a file "
-                 "of %llu bytes",
+                 "%s: %s: %lld values do not fit into a file of %llu bytes",
                  t->path, what, (long long)count,
                  (unsigned long long)t->view.size);
   else if (!(v = vg_calloc((size_t)count + 1, size)))

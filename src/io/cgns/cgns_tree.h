@@ -1,10 +1,10 @@
-/* io/cgns/cgns_tree.h: the tree of nodes of a CGNS file in HDF5. Private to
- * its module; the only file that knows the HDF5 library is cgns_tree.c,
- * without which cgns_none.c stands for it.
+/* io/cgns/cgns_tree.h: the tree of nodes of a CGNS file in HDF5. Private to its
+ * module. Only cgns_tree.c uses the HDF5 library; cgns_none.c replaces it in
+ * builds without HDF5.
  *
- * A node is an HDF5 group of its name, with attributes name, label, type and
- * flags, and its data in a set " data", whose dimensions stand in HDF5 in the
- * reverse order. */
+ * A node is an HDF5 group with the node's name and the attributes name, label,
+ * type and flags. Its data are in a data set " data", whose dimensions are in
+ * reverse order in HDF5. */
 #ifndef VG_IO_CGNS_TREE_H
 #define VG_IO_CGNS_TREE_H
 
@@ -15,15 +15,16 @@
 #include "io/cgns/cgns_store.h"
 #include "io/stream/stream.h"
 
-enum { VG_CGNS_NAME = 33 }; /* bytes of a name or label with its end */
+/* Bytes of a name or label, including the terminating zero. */
+enum { VG_CGNS_NAME = 33 };
 
-/* What a node holds. type: as in CGNS, "MT" nothing, "C1" characters, "I4",
- * "I8", "R4", "R8". */
+/* Data of a node. type: as in CGNS, "MT" none, "C1" characters, "I4", "I8",
+ * "R4", "R8". */
 struct vg_cgns_data {
   const char *type;
   int n_dim;         /* 0 (MT) to 2 */
   uint64_t dim[2];   /* in the order of the standard */
-  const void *value; /* NULL: room is reserved, and nothing written */
+  const void *value; /* NULL: space is reserved, but nothing is written */
 };
 
 struct vg_cgns_node {
@@ -37,37 +38,38 @@ int vg_cgns_tree_is_built(void);
 
 /* --- writing --- */
 
-/** A new file in an empty store, which must stay; *root: its first node. When
- * it is closed its bytes are [store->size].
- * @param name  what messages call it */
+/** Create a file in an empty store, which must outlive it; *root: its first
+ * node. After it is closed, its bytes are [store->size].
+ * @param name  name of the file in messages */
 vg_status vg_cgns_tree_new(struct vg_cgns_store *store, const char *name,
                            struct vg_cgns_tree **out, int64_t *root,
                            struct vg_error *err);
 
-/** Append a child. id: NULL, or for children of its own; at: where in the file
- * its data are, of reserved room only; else NULL. */
+/** Append a child. id: receives the id of the child, which may get children;
+ * may be NULL. at: receives the offset of its data in the file, for reserved
+ * space only; otherwise NULL. */
 vg_status vg_cgns_tree_add(struct vg_cgns_tree *t, int64_t parent,
                            const char *name, const char *label,
                            const struct vg_cgns_data *d, int64_t *id,
                            uint64_t *at, struct vg_error *err);
 
-/* --- reading, in a process of its own: the library's settings are changed ---
- */
+/* --- reading, only in a separate process, since it changes the settings of
+ * HDF5 --- */
 
-/** The file in `in`, which must stay. */
+/** Open the file in `in`, which must outlive the tree. */
 vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
                             int64_t *root, struct vg_error *err);
 
-/** Children of a node with this label, in the order in which they were made
- * (by name, where the file does not keep that); *list to be freed.
- * VG_ERR_UNSUPPORTED: one of them is a link. */
+/** Children of a node that have this label, in the order of their creation (by
+ * name if the file does not record it); *list must be freed.
+ * VG_ERR_UNSUPPORTED: one of the node's children is a link. */
 vg_status vg_cgns_tree_children(struct vg_cgns_tree *t, int64_t parent,
                                 const char *label, struct vg_cgns_node **list,
                                 size_t *n, struct vg_error *err);
 
-/** Data of a node as integers, reals, text (with an end; n counts without it).
- * `what` is for messages; *v to be freed. VG_ERR_FORMAT: none, or of another
- * type, or more than can be in such a file. */
+/** Data of a node as integers, reals or text (zero-terminated; n excludes the
+ * zero). `what` is used in messages; *v must be freed. VG_ERR_FORMAT: there are
+ * no data, they have another type, or more values than fit into the file. */
 vg_status vg_cgns_tree_ints(struct vg_cgns_tree *t, int64_t id,
                             const char *what, int64_t **v, size_t *n,
                             struct vg_error *err);
@@ -78,7 +80,8 @@ vg_status vg_cgns_tree_text(struct vg_cgns_tree *t, int64_t id,
                             const char *what, char **v, size_t *n,
                             struct vg_error *err);
 
-/** Close. Of a file that is written: a failure so far. NULL is accepted. */
+/** Close. For a file that was written, returns the first failure. Accepts
+ * NULL. */
 vg_status vg_cgns_tree_close(struct vg_cgns_tree *t, struct vg_error *err);
 
 #endif

@@ -1,4 +1,5 @@
-/* .surf, .tags and AFLR's .bc: io/mesh/aflr.h, formats.md 2.5 and 2.6. */
+/* .surf, .tags and AFLR's .bc; see io/mesh/aflr.h and formats.md 2.5 and
+ * 2.6. */
 #include "io/mesh/aflr.h"
 
 #include <stdlib.h>
@@ -33,11 +34,12 @@ enum { TOKENS = 16 };
 struct row {
   const char *token[TOKENS];
   size_t len[TOKENS];
-  int n; /* TOKENS + 1: more than fit */
+  int n; /* number of tokens; TOKENS + 1 if there are more than that */
   size_t line;
 };
 
-/* Next line that is neither blank nor a comment; 0 at the end. */
+/* Read the next line that is neither blank nor a comment; returns 0 at the
+ * end. */
 static int next_row(struct vg_input *in, struct row *r)
 {
   const char *text;
@@ -61,8 +63,8 @@ static int next_row(struct vg_input *in, struct row *r)
 static vg_status bad_row(const struct vg_input *in, const struct row *r,
                          const char *expected, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: a line '%s' should stand here",
-                 in->path, r->line, expected);
+  return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: expected a line '%s'", in->path,
+                 r->line, expected);
 }
 
 static int row_int(const struct row *r, int k, int32_t *v)
@@ -76,7 +78,7 @@ static int row_int(const struct row *r, int k, int32_t *v)
   return 1;
 }
 
-/* A length: 0 or more. */
+/* Read a length, which must not be negative. */
 static int row_length(const struct row *r, int k, double *v)
 {
   return vg_parse_real(r->token[k], r->len[k], v) && *v >= 0;
@@ -110,7 +112,8 @@ static int by_name(const void *a, const void *b)
   return strcmp((*p)->name, (*q)->name);
 }
 
-/* Pointers to the entries in the order of `compare`, equal ones refused. */
+/* Return pointers to the entries, sorted by `compare`; entries that compare
+ * equal are an error. */
 static vg_status sort_unique(const char *path, const struct vg_aflr *a,
                              int (*compare)(const void *, const void *),
                              const struct vg_aflr_patch ***list,
@@ -148,13 +151,13 @@ static vg_status refuse_binary(const struct vg_input *in, const char *what,
                                struct vg_error *err)
 {
   if (vg_input_is_text(in)) return VG_OK;
-  return vg_fail(err, VG_ERR_FORMAT, "%s: holds binary data; %s is text",
+  return vg_fail(err, VG_ERR_FORMAT, "%s: contains binary data; %s is text",
                  in->path, what);
 }
 
 /* --- .tags --- */
 
-/* The flag that the properties of a line stand for. Of those that exclude
+/* Flag that corresponds to the properties of a line. Of properties that exclude
  * each other the last one counts. */
 static int32_t flag_of(const int32_t on[7])
 {
@@ -176,7 +179,7 @@ static int parse_tag(const struct row *r, struct vg_aflr_patch *p)
   row_name(r, 1, p->name);
   for (int i = 0; i < 7; i++) {
     on[i] = 0;
-    if (i == 3 && r->n == 10) continue; /* no `fixed` in old files */
+    if (i == 3 && r->n == 10) continue; /* old files have no `fixed` */
     if (!row_int(r, k++, on + i)) return 0;
   }
   p->flag = flag_of(on);
@@ -241,8 +244,8 @@ vg_status vg_aflr_bc_parse(struct vg_input *in, struct vg_aflr *out,
 
     if (!a.n && is_vgrid_head(&r)) {
       st = vg_fail(err, VG_ERR_FORMAT,
-                   "%s: the triangles of a VGRID mesh, "
-                   "not a list 'name flag spacing' of AFLR's",
+                   "%s: this is the list of triangles of a VGRID mesh, not "
+                   "AFLR's list of lines 'name flag spacing'",
                    in->path);
       goto done;
     }

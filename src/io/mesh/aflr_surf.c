@@ -1,4 +1,4 @@
-/* The surface files of AFLR3: io/mesh/aflr.h, formats.md 2.5. */
+/* Surface files of AFLR3; see io/mesh/aflr.h and formats.md 2.5. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,7 +6,7 @@
 #include "io/mesh/aflr.h"
 #include "io/stream/convention.h"
 
-/* Flags that AFLR3 knows lie well inside. */
+/* All flags of AFLR3 are well within this range. */
 enum { FLAG_LOW = -8, FLAG_HIGH = 15, N_FLAG = FLAG_HIGH - FLAG_LOW + 1 };
 
 struct reading {
@@ -15,7 +15,7 @@ struct reading {
   struct vg_aflr a;
   int n_column;      /* numbers per point: 3 to 5 */
   int32_t *tag;      /* [n_tri + n_quad] */
-  signed char *flag; /* the same; FLAG_HIGH + 1: none */
+  signed char *flag; /* [n_tri + n_quad] flags; FLAG_HIGH + 1: none */
 };
 
 static const signed char no_flag = FLAG_HIGH + 1;
@@ -34,18 +34,18 @@ static vg_status read_header(struct reading *r, struct vg_error *err)
     if (st < 0) return st;
     if (v < 0 || v > (int64_t)UINT32_MAX - 2)
       return vg_input_fail(r->in, err,
-                           "the %s is %lld; 0 to 4294967293 are "
-                           "possible",
+                           "the %s is %lld; it must be between 0 and "
+                           "4294967293",
                            name[k], (long long)v);
     count[k] = (uint64_t)v;
   }
-  /* Two bytes a number at least, the last one perhaps one. */
+  /* Each number takes at least two bytes, except that the last may take one. */
   if (8 * count[0] + 10 * count[1] + 6 * count[2] >
       (uint64_t)vg_input_left(r->in) + 1)
     return vg_input_fail(r->in, err,
-                         "truncated: %llu triangles, %llu "
-                         "quadrilaterals and %llu points do not fit into the "
-                         "remaining %zu bytes",
+                         "truncated: %llu triangles, %llu quadrilaterals "
+                         "and %llu points do not fit into the remaining %zu "
+                         "bytes",
                          (unsigned long long)count[0],
                          (unsigned long long)count[1],
                          (unsigned long long)count[2], vg_input_left(r->in));
@@ -75,7 +75,7 @@ static vg_status make_room(struct reading *r, struct vg_error *err)
   return vg_fail_memory(err, "the surface of a .surf file");
 }
 
-/* Every point has as many numbers as the first. */
+/* Count the numbers of the first point; all points have the same number. */
 static vg_status count_columns(struct reading *r, struct vg_error *err)
 {
   struct vg_input look = *r->in;
@@ -89,8 +89,8 @@ static vg_status count_columns(struct reading *r, struct vg_error *err)
     if (!vg_input_token_in_line(&look, &text, &len)) break;
   if (r->n_column >= 3 && r->n_column <= 5) return VG_OK;
   return vg_input_fail(&look, err,
-                       "the line of a point has 3 to 5 numbers: x "
-                       "y z [spacing [thickness]]");
+                       "the line of a point must have 3 to 5 numbers: x y z "
+                       "[spacing [thickness]]");
 }
 
 static vg_status read_points(struct reading *r, struct vg_error *err)
@@ -117,8 +117,8 @@ static vg_status face_line(struct reading *r, const char *what, size_t face,
                            struct vg_error *err)
 {
   return vg_input_fail(r->in, err,
-                       "the line of %s %zu is not 'points tag "
-                       "[recon [bc]]' in integers",
+                       "the line of %s %zu does not hold 'points tag [recon "
+                       "[bc]]' as integers",
                        what, face + 1);
 }
 
@@ -154,14 +154,14 @@ static vg_status read_face(struct reading *r, const char *what, size_t face,
   if (n < width + 3) return VG_OK;
   if (v[width + 2] < FLAG_LOW || v[width + 2] > FLAG_HIGH)
     return vg_input_fail(r->in, err,
-                         "%s %zu has the boundary flag %lld; -6 to "
-                         "7 are known",
+                         "%s %zu has the boundary flag %lld; flags are -6 "
+                         "to 7",
                          what, face + 1, (long long)v[width + 2]);
   r->flag[place] = (signed char)v[width + 2];
   return VG_OK;
 }
 
-/* --- what the faces and points say of their patches --- */
+/* --- settings of patches, collected from faces and points --- */
 
 static void set_patch(struct vg_aflr_patch *p, struct vg_patch *to,
                       const uint32_t count[N_FLAG])
@@ -209,7 +209,7 @@ static vg_status set_patches(struct reading *r, struct vg_error *err)
   return VG_OK;
 }
 
-/* The value that all points of a patch have; -1 once they differ. */
+/* Common value of all points of a patch; -1 if they differ. */
 static void meet(double *common, double v)
 {
   v = v > 0 ? v : 0;
@@ -273,8 +273,7 @@ vg_status vg_aflr_surf_parse(struct vg_input *in, struct vg_mesh *out,
 
   if (!vg_input_is_text(in))
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: holds binary data; only text .surf "
-                   "files are read",
+                   "%s: contains binary data; only text .surf files are read",
                    in->path);
   st = parse(&r, err);
   if (st == VG_OK) {

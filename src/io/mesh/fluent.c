@@ -9,15 +9,16 @@
 #include "io/stream/boundary.h"
 #include "io/vgrid/mapbc.h"
 
-/* Numbers of zones; patches follow. */
+/* Zone numbers; the patches have PATCHES and higher. */
 enum { POINTS = 1, FLUID, INTERIOR, PATCHES };
 enum { TYPE_INTERIOR = 2, MIXED = 0 };
 
-/* A real and the blank before it: vg_format_real needs 24 at most. */
+/* A real and the blank before it; vg_format_real writes at most 24
+ * characters. */
 #define REAL_WIDTH 25
 #define LINE 128
 
-/* Of the four kinds of cells. */
+/* Fluent's code of each of the four kinds of cells. */
 static const char digit[VG_FLUENT_KINDS] = { '2', '5', '6', '4' };
 
 /* --- types of zones --- */
@@ -52,7 +53,7 @@ static const struct zone_type *zone_type(const struct vg_patch *p)
 
 /* --- lines --- */
 
-/* A blank and v, right in `width` columns, from *to on. */
+/* Write a blank and v, right-justified in `width` columns, at *to. */
 static void column(char **to, int width, uint64_t v)
 {
   char *at = *to + width;
@@ -63,7 +64,8 @@ static void column(char **to, int width, uint64_t v)
   while (at >= *to - width - 1) *at-- = ' ';
 }
 
-/* Blanks for corners that a face has not, so that lines are of one length. */
+/* Length of a line. Vertices that a face lacks are written as blanks, so that
+ * all lines have the same length. */
 static uint64_t face_line(const struct vg_fluent *f, int kind)
 {
   int n_column = (kind == MIXED ? 4 : kind) + 2;
@@ -71,7 +73,8 @@ static uint64_t face_line(const struct vg_fluent *f, int kind)
   return (kind == MIXED) + (uint64_t)(n_column * (f->width + 1)) + 1;
 }
 
-/* mate: the cell that the normal points out of, from 1; 0: none. */
+/* mate: the cell on the side from which the normal points, counted from 1; 0:
+ * none. */
 static void put_face(struct vg_output *out, const struct vg_fluent *f, int kind,
                      int n, const uint32_t *node, uint32_t cell, uint32_t mate)
 {
@@ -104,7 +107,7 @@ void vg_fluent_put_point(struct vg_output *out, const double x[3])
 
 /* --- kinds --- */
 
-/* Of faces, n_quad of n with four corners. */
+/* Kind of n faces, n_quad of which have four vertices. */
 static int face_kind(uint64_t n, uint64_t n_quad)
 {
   return n_quad == 0 ? 3 : n_quad == n ? 4 : MIXED;
@@ -118,7 +121,7 @@ static int patch_kind(const struct vg_fluent *f, size_t patch)
   return face_kind(end - first, n_quad);
 }
 
-/* Of all cells, or MIXED. */
+/* Common kind of all cells, or MIXED. */
 static int cell_kind(const struct vg_fluent *f)
 {
   const struct vg_mesh *m = f->frame;
@@ -139,7 +142,7 @@ static void put_head(struct vg_output *out, size_t zone, uint64_t before,
                    (unsigned long long)(before + n), type, kind);
 }
 
-/* Numbers of zones are decimal here. */
+/* Zone numbers are decimal in this section. */
 static void put_names(struct vg_output *out, const struct vg_fluent *f)
 {
   vg_output_format(out, "(45 (%d fluid fluid)())\n", FLUID);
@@ -173,7 +176,7 @@ static void put_kinds(struct vg_output *out, const struct vg_fluent *f,
   }
 }
 
-/* Mixed cells are told kind by kind, a digit each. */
+/* The kinds of mixed cells are listed as one digit per cell. */
 static void put_cells(struct vg_output *out, struct vg_fluent *f, int is_whole)
 {
   int kind = cell_kind(f);
@@ -229,7 +232,7 @@ static void put_patch(struct vg_output *out, struct vg_fluent *f, size_t patch,
   vg_output_text(out, "))\n");
 }
 
-/* links: of the whole mesh; NULL: points, cells and faces are skipped. */
+/* links: of the whole mesh. With NULL, points, cells and faces are skipped. */
 static void put_all(struct vg_output *out, struct vg_fluent *f,
                     const struct vg_cell_links *links)
 {
@@ -351,8 +354,8 @@ static vg_status check_counts(const char *path, const struct vg_fluent *f,
                    path);
   if (n_corner > INT32_MAX || f->n_cell > INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: %llu corners of faces are "
-                   "beyond the 32-bit labels of formats of faces",
+                   "%s: the faces have %llu vertices in total, which "
+                   "exceeds the 32-bit labels of face-based formats",
                    path, (unsigned long long)n_corner);
   return VG_OK;
 }

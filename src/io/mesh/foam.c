@@ -1,6 +1,7 @@
-/* The five files of an OpenFOAM mesh: io/mesh/foam.h, formats.md 4.3. A list is
- * text, one item a line, or its length, '(', the bytes and ')'; binary faces
- * are two lists of labels: where each face starts, and the nodes of all. */
+/* The five files of an OpenFOAM mesh; see io/mesh/foam.h and formats.md 4.3. A
+ * list is either text, one item per line, or its length, '(', the bytes and
+ * ')'. Binary faces are two lists of labels: where each face starts, and the
+ * nodes of all faces. */
 #include "io/mesh/foam.h"
 
 #include <ctype.h>
@@ -31,9 +32,9 @@ int vg_foam_word(const char *word, struct vg_foam_options *options)
 
 /* --- patches --- */
 
-/* OpenFOAM's type of a patch by its condition; is_planar says whether its faces
- * lie in one plane. Walls are viscous and inviscid ones, "symmetry" also other
- * slip surfaces. *physical out: "" where there is none. */
+/* OpenFOAM's type of a patch, from its boundary condition; is_planar: all its
+ * faces lie in one plane. Viscous and inviscid walls are walls; "symmetry" also
+ * stands for other slip surfaces. *physical is the physical type, or "". */
 static const char *patch_type(const struct vg_patch *p, int is_planar,
                               const char **physical)
 {
@@ -68,8 +69,8 @@ static const uint32_t *boundary_nodes(const struct vg_mesh *m, size_t face)
   return face < m->n_tri ? m->tri[face] : m->quad[face - m->n_tri];
 }
 
-/* Unit normal, zero for a face without area. The cross product of the
- * diagonals is that of the two sides for a triangle. */
+/* Unit normal, zero for a face without area. For a triangle, the cross product
+ * of the diagonals is that of two sides. */
 static void unit_normal(const struct vg_mesh *m, size_t face, double n[3])
 {
   const uint32_t *node = boundary_nodes(m, face);
@@ -84,8 +85,8 @@ static void unit_normal(const struct vg_mesh *m, size_t face, double n[3])
   if (!(vg_unit(n) > 0)) memset(n, 0, 3 * sizeof *n);
 }
 
-/* OpenFOAM refuses a symmetryPlane where the square of the difference between
- * a face's normal and their mean exceeds 1e-15; ask for ten times less. */
+/* OpenFOAM rejects a symmetryPlane if the squared difference between the normal
+ * of a face and the mean normal exceeds 1e-15; we require a tenth of that. */
 static int is_planar(const struct vg_mesh *m, const size_t *face, size_t n)
 {
   double mean[3] = { 0, 0, 0 }, one[3];
@@ -137,8 +138,8 @@ vg_status vg_foam_links(struct vg_cell_links *f, const struct vg_mesh *m,
 
   if (st < 0 || f->n_corner <= INT32_MAX) return st;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: %llu corners of faces are "
-                 "beyond the 32-bit labels of formats of faces",
+                 "%s: the faces have %llu vertices in total, which exceeds "
+                 "the 32-bit labels of face-based formats",
                  name, (unsigned long long)f->n_corner);
 }
 
@@ -236,7 +237,8 @@ static void put_points(struct writing *w)
   vg_output_text(o, ")\n");
 }
 
-/* Owners and neighbours, and for a binary mesh where each face starts. */
+/* Write owners and neighbours and, for a binary mesh, where each face
+ * starts. */
 static void put_cells(struct writing *w, struct labels l[3])
 {
   const struct vg_cell_links *f = &w->faces;
@@ -337,7 +339,7 @@ static vg_status put_boundary(struct writing *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* All five files, complete, in w->folder. */
+/* Write all five files completely into w->folder. */
 static vg_status put_mesh(struct writing *w, struct vg_error *err)
 {
   vg_status st = VG_OK;
@@ -405,8 +407,8 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
   if (!constant) return vg_fail_memory(err, "a file name");
   if (!(m->n_tet + m->n_pyr + m->n_pri + m->n_hex)) {
     st = vg_fail(err, VG_ERR_INPUT,
-                 "%s: a mesh without cells cannot be an "
-                 "OpenFOAM case; write the surface as .stl",
+                 "%s: a mesh without cells cannot be an OpenFOAM case; "
+                 "write the surface as .stl",
                  case_dir);
     goto done;
   }
@@ -414,7 +416,7 @@ vg_status vg_foam_write(const char *case_dir, const struct vg_mesh *m,
   VG_TRY(vg_foam_links(&w.faces, m, case_dir, err));
   st = write_into(case_dir, constant, &w, err);
   if (st < 0) {
-    /* Leave no folders behind that are empty. */
+    /* Remove the folders if they are empty. */
     rmdir(constant);
     rmdir(case_dir);
   }

@@ -1,4 +1,4 @@
-/* The folders of an OpenFOAM case: io/mesh/foam.h. */
+/* Folders of an OpenFOAM case; see io/mesh/foam.h. */
 #include "io/mesh/foam.h"
 
 #include <assert.h>
@@ -14,13 +14,13 @@
 #include "io/mesh/foam_parts.h"
 #include "io/stream/stream.h"
 
-/* `boundary` comes last: without it OpenFOAM reads no mesh. */
+/* `boundary` is last: without it OpenFOAM does not read the mesh. */
 const char *const vg_foam_file[VG_FOAM_FILES] = { "points", "faces", "owner",
                                                   "neighbour", "boundary" };
 
-/* What belongs to a mesh beside its five files, packed or not: it would be
- * wrong with another mesh (OpenFOAM's polyMesh::removeFiles, and what its
- * refining and decomposing tools add). */
+/* Files that belong to a mesh in addition to its five files, compressed or not.
+ * They would be wrong with another mesh (OpenFOAM's polyMesh::removeFiles, plus
+ * the files of its tools for refinement and decomposition). */
 static const char *const belongs[] = { "cells",
                                        "cellZones",
                                        "faceZones",
@@ -86,7 +86,7 @@ vg_status vg_foam_folder(const char *path, struct vg_error *err)
 
   if (!mkdir(path, 0777)) return VG_OK;
   if (errno == EEXIST && !stat(path, &s) && S_ISDIR(s.st_mode)) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "%s: cannot make this folder: %s", path,
+  return vg_fail(err, VG_ERR_IO, "%s: cannot create this folder: %s", path,
                  strerror(errno));
 }
 
@@ -106,7 +106,7 @@ void vg_foam_header(struct vg_output *out, const char *class_name,
                    location, object);
 }
 
-/* "folder/name", and "folder/name.gz". */
+/* Remove "folder/name" and "folder/name.gz". */
 static void unlink_both(const char *folder, const char *name)
 {
   char *path = vg_foam_path(folder, name), *packed;
@@ -131,7 +131,7 @@ static void empty_sets(const char *folder)
   while (dir && (entry = readdir(dir))) {
     char *path = vg_foam_path(sets, entry->d_name);
 
-    if (path) unlink(path); /* refuses folders, hence . and .. */
+    if (path) unlink(path); /* fails for folders, and so for . and .. */
     free(path);
   }
   if (dir) closedir(dir);
@@ -149,8 +149,8 @@ void vg_foam_remove_mesh(const char *folder)
 static vg_status move(const char *from, const char *to, struct vg_error *err)
 {
   if (!rename(from, to)) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "%s: cannot be put in place: %s", to,
-                 strerror(errno));
+  return vg_fail(err, VG_ERR_IO, "%s: cannot be moved to its final place: %s",
+                 to, strerror(errno));
 }
 
 vg_status vg_foam_place_mesh(const char *from, const char *to,
@@ -159,15 +159,15 @@ vg_status vg_foam_place_mesh(const char *from, const char *to,
   vg_status st = VG_OK;
   struct stat s;
 
-  /* Where there was none or it is empty, the whole mesh appears at once. */
+  /* If the target is absent or empty, the whole mesh appears at once. */
   if (!rename(from, to)) return VG_OK;
-  /* ENOTDIR: perhaps a link to a folder, which several cases may share. */
+  /* ENOTDIR: may be a link to a folder that several cases share. */
   if (errno != ENOTEMPTY && errno != EEXIST &&
       (errno != ENOTDIR || stat(to, &s) || !S_ISDIR(s.st_mode)))
-    return vg_fail(err, VG_ERR_IO, "%s: cannot be put in place: %s", to,
-                   strerror(errno));
-  /* Stopped from here on, a mesh without `boundary` is left, which nothing
-   * reads, rather than a mixture of two. */
+    return vg_fail(err, VG_ERR_IO, "%s: cannot be moved to its final place: %s",
+                   to, strerror(errno));
+  /* If the program is stopped from here on, it leaves a mesh without
+   * `boundary`, which no program reads, rather than a mixture of two meshes. */
   for (int i = VG_FOAM_FILES - 1; i >= 0; i--) unlink_both(to, vg_foam_file[i]);
   for (size_t i = 0; i < sizeof belongs / sizeof *belongs; i++)
     unlink_both(to, belongs[i]);
@@ -185,7 +185,7 @@ vg_status vg_foam_place_mesh(const char *from, const char *to,
   return st;
 }
 
-/* NAME.foam for this case; NULL when memory is refused. */
+/* NAME.foam for this case; NULL if there is not enough memory. */
 static char *marker_name(const char *case_dir)
 {
   static const char tail[] = "." VG_FOAM_SUFFIX;
@@ -200,7 +200,7 @@ static char *marker_name(const char *case_dir)
       !strncmp(case_dir + end - (sizeof tail - 1), tail, sizeof tail - 1))
     n -= sizeof tail - 1;
   if (!n || case_dir[at] == '.') {
-    case_dir = "case"; /* ".", ".." and hidden folders */
+    case_dir = "case"; /* for ".", ".." and hidden folders */
     at = 0;
     n = 4;
   }
@@ -254,7 +254,7 @@ done:
   return st;
 }
 
-/* CASE/a and, unless b is NULL, CASE/a/b. */
+/* CASE/a, or CASE/a/b if b is not NULL. */
 static char *inside(const char *case_dir, const char *a, const char *b)
 {
   char *first = vg_foam_path(case_dir, a), *both;
@@ -265,8 +265,9 @@ static char *inside(const char *case_dir, const char *a, const char *b)
   return both;
 }
 
-/* Moves a file of the one case to the other, where it is absent when
- * keep_old; one that is not made leaves none when not. */
+/* Move a file from one case to the other. With keep_old an existing target is
+ * kept. Without it, the target is replaced, or removed if there is no
+ * source. */
 static vg_status place_file(const char *from_case, const char *to_case,
                             const char *folder, const char *name, int keep_old,
                             struct vg_error *err)
@@ -284,7 +285,7 @@ static vg_status place_file(const char *from_case, const char *to_case,
   return st;
 }
 
-/* Parts of the mesh that was there before are none of this one. */
+/* The subdomains of an earlier mesh do not fit this one. */
 static vg_status place_parts(const char *from_case, const char *to_case,
                              struct vg_error *err)
 {
@@ -347,7 +348,7 @@ void vg_foam_remove(const char *case_dir)
   free(marker);
 }
 
-/* system/decomposeParDict where absent. */
+/* Write system/decomposeParDict if it is absent. */
 static vg_status put_dict(const char *case_dir, size_t n_part,
                           struct vg_error *err)
 {

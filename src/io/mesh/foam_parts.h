@@ -1,5 +1,5 @@
-/* io/mesh/foam_parts.h: what foam.c (the five files of a mesh), foam_case.c
- * (folders) and, of the faces, fluent.c share. Private. */
+/* io/mesh/foam_parts.h: declarations shared by foam.c (the five files of a
+ * mesh), foam_case.c (folders) and, for faces, fluent.c. Private. */
 #ifndef VG_IO_MESH_FOAM_PARTS_H
 #define VG_IO_MESH_FOAM_PARTS_H
 
@@ -8,43 +8,43 @@
 
 /* --- faces (foam.c) --- */
 
-/** vg_cell_links_build of a whole mesh, whose corners of faces 32-bit labels
- * count. */
+/** vg_cell_links_build for the whole mesh. VG_ERR_UNSUPPORTED if 32-bit labels
+ * cannot count the vertices of all faces. */
 vg_status vg_foam_links(struct vg_cell_links *f, const struct vg_mesh *m,
                         const char *name, struct vg_error *err);
 
-/** Half-faces of `cell` whose mates are in higher cells, by rising mate:
- * upper-triangular order. Returns how many, at most 6. */
+/** Half-faces of `cell` whose other cell has a higher number, sorted by that
+ * number (upper-triangular order). Returns their number, at most 6. */
 int vg_foam_upper(const struct vg_cell_links *f, uint32_t cell,
                   uint32_t code[6], uint32_t neighbour[6]);
 
 /* --- folders (foam_case.c) --- */
 
-/** "a/b"; NULL when memory is refused. */
+/** "a/b"; NULL if there is not enough memory. */
 char *vg_foam_path(const char *a, const char *b);
 
-/** Make a folder unless there is one. */
+/** Create a folder unless it exists. */
 vg_status vg_foam_folder(const char *path, struct vg_error *err);
 
-/** The files of a polyMesh, in the order in which they are put in place. */
+/** Files of a polyMesh, in the order in which they are moved to their place. */
 enum { VG_FOAM_FILES = 5 };
 extern const char *const vg_foam_file[VG_FOAM_FILES];
 
-/** Put the mesh files of one folder into another, which may hold an earlier
- * mesh, and remove the first. */
+/** Move the mesh files of one folder to another, which may hold an earlier
+ * mesh, and remove the first folder. */
 vg_status vg_foam_place_mesh(const char *from, const char *to,
                              struct vg_error *err);
 
-/** Remove the mesh files of a folder, and it when this leaves it empty. */
+/** Remove the mesh files of a folder, and the folder if it becomes empty. */
 void vg_foam_remove_mesh(const char *folder);
 
-/** The head of an OpenFOAM file; note may be NULL. */
+/** Write the header of an OpenFOAM file; note may be NULL. */
 struct vg_output;
 void vg_foam_header(struct vg_output *out, const char *class_name,
                     const char *location, const char *object, int is_ascii,
                     const char *note);
 
-/** system/ and NAME.foam where absent. */
+/** Write the files of system/ and NAME.foam that are absent. */
 vg_status vg_foam_surroundings(const char *case_dir, struct vg_error *err);
 
 #endif

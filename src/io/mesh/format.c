@@ -1,4 +1,4 @@
-/* The table of formats: io/mesh/format.h. */
+/* The table of formats; see io/mesh/format.h. */
 #define _GNU_SOURCE
 #include "io/mesh/format.h"
 
@@ -65,8 +65,8 @@ static char *beside(const char *path, const char *suffix)
   return asprintf(&to, "%.*s%s", (int)n, path, suffix) < 0 ? NULL : to;
 }
 
-/* STEM.suffix or STEM.suffix.gz, whichever is there; "" where neither is;
- * NULL when memory is refused. The caller frees it. */
+/* STEM.suffix or STEM.suffix.gz, whichever exists; "" if neither does; NULL if
+ * there is not enough memory. The caller frees it. */
 static char *companion(const char *path, const char *suffix, const char *packed)
 {
   char *name = beside(path, suffix);
@@ -160,7 +160,7 @@ static const struct format {
 };
 #define N_FORMAT (sizeof formats / sizeof formats[0])
 
-/* Those of the table that io/cad reads, with options of its own. */
+/* The formats of the table that io/cad reads, which has its own options. */
 static const struct {
   const char *suffix;
   enum vg_cad_kind kind;
@@ -176,7 +176,7 @@ static enum vg_cad_kind cad_kind(const struct format *f)
   return VG_CAD_NONE;
 }
 
-/* Every surface suffix, plain and packed. */
+/* Every suffix of a surface, uncompressed and compressed. */
 static const char *const input_suffix[] = { "stl",           "tri",
                                             "triq",          "obj",
                                             "mesh",          "meshb",
@@ -214,11 +214,11 @@ const char *vg_format_input_suffix(size_t i)
 
 const char *vg_format_list(void)
 {
-  return ".stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid, .X.ugrid with X "
-         "of b8 lb8 b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 .lb8.ugrid64, "
-         ".cogsg, .front .surf .step .stp .iges .igs .brep (read only), "
-         ".fluent.msh .su2 .vtu .openfoam (written only); .gz may follow what "
-         "is read";
+  return ".stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid, .X.ugrid "
+         "with X of b8 lb8 b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 "
+         ".lb8.ugrid64, .cogsg, .front .surf .step .stp .iges .igs .brep "
+         "(read only), .fluent.msh .su2 .vtu .openfoam (write only); files "
+         "that are read may be compressed (.gz)";
 }
 
 /* Does name[0..n) end in ".suffix"? */
@@ -230,7 +230,7 @@ static int ends_in(const char *name, size_t n, const char *suffix)
          !strncasecmp(name + n - len, suffix, len);
 }
 
-/* Longest suffixes stand before their own ends in the table. */
+/* In the table, longer suffixes precede those that they end in. */
 static const struct format *find(const char *name, size_t n)
 {
   for (size_t i = 0; i < N_FORMAT; i++)
@@ -308,12 +308,12 @@ vg_status vg_format_unknown(const char *path, struct vg_error *err)
   for (size_t i = 0; i < sizeof native / sizeof *native; i++)
     if (ends_in(path, without_gz(path), native[i]))
       return vg_fail(err, VG_ERR_FORMAT,
-                     "%s: this is CAD geometry of one "
-                     "system; export it as STEP or IGES; read are %s",
+                     "%s: this is the native format of a CAD system; export "
+                     "the geometry as STEP or IGES; readable formats are %s",
                      path, vg_format_list());
-  return vg_fail(err, VG_ERR_FORMAT, "%s: %s; known are %s", path,
-                 f ? "this format is written only"
-                   : "the suffix names no format",
+  return vg_fail(err, VG_ERR_FORMAT, "%s: %s; known formats are %s", path,
+                 f ? "this format can only be written"
+                   : "the suffix does not belong to any format",
                  vg_format_list());
 }
 
@@ -430,8 +430,10 @@ vg_status vg_format_write(const char *path, const struct vg_mesh *m,
   const struct format *f = find(path, strlen(path));
 
   if (f && f->write) return f->write(path, m, err);
-  return vg_fail(err, VG_ERR_FORMAT, "%s: %s; known are %s", path,
-                 f ? "this format is read only" : "the suffix names no format",
+  return vg_fail(err, VG_ERR_FORMAT, "%s: %s; known formats are %s", path,
+                 f ? "this format can only be read"
+                   : "the suffix does not belong to "
+                     "any format",
                  vg_format_list());
 }
 

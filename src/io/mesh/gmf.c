@@ -20,7 +20,7 @@ static vg_status set_version(struct vg_gmf *g, int64_t v, struct vg_error *err)
   return VG_OK;
 }
 
-/* A binary file begins with an int32 one, in its own byte order. */
+/* A binary file begins with an int32 of 1 in its own byte order. */
 static int is_binary(struct vg_input *in)
 {
   for (int big = 0; big < 2; big++) {
@@ -83,8 +83,8 @@ vg_status vg_gmf_read_dimension(struct vg_gmf *g, struct vg_error *err)
   if (st < 0) return st;
   if (v == 2)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: a plane mesh (dimension 2); only three dimensions are "
-                   "meshed",
+                   "%s: a plane mesh (dimension 2); only three-dimensional "
+                   "meshes are read",
                    g->in->path);
   if (v != 3) return vg_gmf_fail(g, err, "the dimension is neither 2 nor 3");
   g->dimension = 3;
@@ -124,13 +124,12 @@ vg_status vg_gmf_keyword(struct vg_gmf *g, int32_t *code, size_t *next,
     VG_TRY(vg_input_i32(g->in, 1, &narrow, "a position", err));
     position = narrow;
   }
-  /* zero stands behind the last keyword */
+  /* 0 marks the last keyword */
   if (position && (position < 0 || (uint64_t)position > g->in->size))
     st = vg_gmf_fail(g, err,
-                     "truncated: a section is said to end beyond the "
-                     "end of the file");
+                     "truncated: a section ends beyond the end of the file");
   else if (position && (uint64_t)position <= start)
-    st = vg_gmf_fail(g, err, "a section is said to end before it begins");
+    st = vg_gmf_fail(g, err, "a section ends before it begins");
   *next = position > 0 ? (size_t)position : 0;
 done:
   return st;

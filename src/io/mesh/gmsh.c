@@ -1,5 +1,5 @@
-/* Gmsh's .msh, 4.1 binary: io/mesh/gmsh.h. Sizes and tags of nodes and
- * elements have 8 bytes, tags of entities 4. */
+/* Writer of Gmsh's .msh, version 4.1 binary; see io/mesh/gmsh.h. Sizes and tags
+ * of nodes and elements have 8 bytes, tags of entities 4. */
 #include "io/mesh/gmsh.h"
 
 #include <assert.h>
@@ -14,7 +14,7 @@
 
 enum { TRIANGLE = 2, QUADRILATERAL = 3, SURFACE = 2, VOLUME = 3 };
 
-/* Ours to Gmsh's, whose pyramid has its apex last. */
+/* Our node order to Gmsh's, whose pyramid has its apex last. */
 static const struct kind {
   int32_t type;
   int n_node;
@@ -41,7 +41,7 @@ static size_t count_faces(const struct vg_gmsh *g)
   return g->frame->n_tri + g->frame->n_quad;
 }
 
-/* Number of a patch as surface and as physical group. */
+/* Number of a patch, both as a surface and as a physical group. */
 static int32_t tag_of(const struct vg_gmsh *g, size_t patch)
 {
   return g->has_ids ? g->frame->patch[patch].id : (int32_t)patch + 1;
@@ -77,7 +77,7 @@ static void put_head(struct vg_output *out, const struct vg_gmsh *g)
 
 static uint64_t entities_size(const struct vg_gmsh *g)
 {
-  /* tag, box, number of groups, group, number of borders */
+  /* tag, box, number of groups, group, number of bounding entities */
   uint64_t one = 4 + 6 * 8 + 8 + 4 + 8, size = 4 * 8 + g->n_surface * one;
 
   if (count_cells(g)) size += one + 4 * g->n_surface;
@@ -140,7 +140,8 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
   if (has_cells) {
     put_entity(out, 1, all, 1, g->n_surface);
     for (size_t p = 0; p < g->frame->n_patch; p++) {
-      int32_t inward = -tag_of(g, p); /* as our faces point */
+      int32_t inward = -tag_of(g, p); /* surfaces are oriented as our faces,
+                                         inward */
 
       if (!is_empty(g, p)) vg_output_i32(out, 1, &inward);
     }
@@ -150,7 +151,8 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
 
 /* --- nodes --- */
 
-/* All in one block: of the volume, or of the first surface. */
+/* All nodes are in one block, which belongs to the volume, or to the first
+ * surface if there are no cells. */
 static void put_nodes_head(struct vg_output *out, const struct vg_gmsh *g)
 {
   int32_t entity[3] = { VOLUME, 1, 0 };
@@ -193,8 +195,8 @@ static void put_block(struct vg_output *out, int32_t dimension, int32_t tag,
   put_size(out, n);
 }
 
-/* Faces of a patch from first to end, which have n_node corners; the next tag
- * is returned. */
+/* Write the faces `first` to `end` - 1 of a patch, which have n_node vertices.
+ * Returns the next tag. */
 static uint64_t put_faces(struct vg_output *out, const struct vg_gmsh *g,
                           size_t patch, size_t first, size_t end, int n_node,
                           uint64_t tag)
@@ -214,7 +216,7 @@ static uint64_t put_faces(struct vg_output *out, const struct vg_gmsh *g,
   return tag;
 }
 
-/* Where the quadrilaterals of a patch begin. */
+/* Position of the first quadrilateral of a patch. */
 static size_t first_quad(const struct vg_gmsh *g, size_t patch)
 {
   size_t i = g->face_first[patch];
@@ -311,7 +313,7 @@ static void put_cells(struct vg_output *out, const struct vg_gmsh *g,
   }
 }
 
-/* Writes the file, and finds out where things stand. */
+/* Write the file and record the offsets of its parts. */
 static void put_all(struct vg_output *out, const struct vg_gmsh *g,
                     struct vg_gmsh *found)
 {
@@ -335,7 +337,7 @@ void vg_gmsh_put(struct vg_output *out, const struct vg_gmsh *g)
   put_all(out, g, &found);
 }
 
-/* By writing the frame to nowhere. */
+/* Determine the offsets by writing the frame without a file. */
 static vg_status find_places(struct vg_gmsh *g, struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;

@@ -1,4 +1,4 @@
-/* io/mesh/gmsh_parts.h: patches of a file of Gmsh. Private to io/mesh. */
+/* io/mesh/gmsh_parts.h: patches of a Gmsh file. Private to io/mesh. */
 #ifndef VG_IO_MESH_GMSH_PARTS_H
 #define VG_IO_MESH_GMSH_PARTS_H
 
@@ -10,18 +10,18 @@ struct vg_gmsh_name {
   char text[VG_NAME_MAX];
 };
 
-/* The surface that a face lies on, and the physical group of that surface; 0:
- * the surface is in no group. */
+/* The surface of a face and the physical group of that surface; 0: the surface
+ * is not in a group. */
 struct vg_gmsh_group {
   int64_t surface, physical;
 };
 
-/** Make the patches of a mesh. Their numbers are those of the physical groups
- * if any face has one, else those of the surfaces.
+/** Create the patches of a mesh. Their ids are the physical groups if any face
+ * has one, otherwise the surfaces.
  *
  * @param face  of triangles [m->n_tri], of quadrilaterals [m->n_quad]
  * @param name  [n_name] names of groups
- * VG_ERR_UNSUPPORTED: a number does not fit into 32 bits; VG_ERR_MEMORY. */
+ * VG_ERR_UNSUPPORTED: a number exceeds 32 bits; VG_ERR_MEMORY. */
 vg_status vg_gmsh_set_patches(struct vg_mesh *m,
                               struct vg_gmsh_group *const face[2],
                               size_t n_name, const struct vg_gmsh_name *name,

@@ -5,13 +5,13 @@
 #include "io/mesh/gmsh_parts.h"
 #include "io/stream/convention.h"
 
-/* Number of a face's patch. */
+/* Patch id of a face. */
 static int64_t patch_of(const struct vg_gmsh_group *g, int has_groups)
 {
   return has_groups ? g->physical : g->surface;
 }
 
-/* Patches stand by rising number. */
+/* Patches are sorted by id. */
 static void set_name(struct vg_mesh *m, const struct vg_gmsh_name *name)
 {
   size_t lo = 0, hi = m->n_patch;
@@ -45,8 +45,7 @@ vg_status vg_gmsh_set_patches(struct vg_mesh *m,
 
       if (id < -INT32_MAX || id > INT32_MAX)
         st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                     "%s: group %lld does not fit a "
-                     "patch number of 32 bits",
+                     "%s: group %lld does not fit into a 32-bit patch number",
                      path, (long long)id);
       *to++ = (int32_t)id;
     }

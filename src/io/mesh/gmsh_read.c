@@ -1,7 +1,7 @@
-/* Reading Gmsh's .msh: io/mesh/gmsh.h. Sections stand between $Name and
- * $EndName; those that are not ours are passed over. Versions 2.x have 4-byte
- * integers in binary files and groups with every element, 4.1 has sizes and
- * tags of nodes and elements of 4 or 8 bytes and groups with entities. */
+/* Reader of Gmsh's .msh; see io/mesh/gmsh.h. Sections are enclosed by $Name and
+ * $EndName; unknown sections are skipped. Versions 2.x have 4-byte integers in
+ * binary files, and groups with every element. Version 4.1 has sizes and tags
+ * of nodes and elements of 4 or 8 bytes, and groups with entities. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,8 +12,8 @@
 
 enum { NODES_MOST = 8 };
 
-/* Gmsh's types of elements of first order, and lines and points of any. Slot k
- * of the file is our node slot[k]. */
+/* Gmsh's element types of first order, and lines and points of any order. Slot
+ * k of the file is our node slot[k]. */
 enum element { SKIPPED, TRI, QUAD, TET, PYR, PRI, HEX, N_ELEMENT };
 
 static const struct type {
@@ -42,18 +42,19 @@ struct numbered {
 
 struct reader {
   struct vg_input *in;
-  int version;      /* 2 or 4; 0: not known yet */
+  int version;      /* 2 or 4; 0: not read yet */
   int binary, wide; /* wide: sizes have 8 bytes */
   struct vg_mesh m;
   size_t cap_point, cap[N_ELEMENT];
-  struct vg_gmsh_group *face[2]; /* of triangles, quadrilaterals: as `tri` */
+  struct vg_gmsh_group *face[2]; /* [n_tri], [n_quad] surface and group of
+                                    each face */
   size_t cap_face[2];
-  struct vg_gmsh_name *name; /* of physical groups of surfaces */
+  struct vg_gmsh_name *name; /* names of the physical groups of surfaces */
   size_t n_name, cap_name;
-  struct vg_gmsh_group *group; /* of surfaces, by rising number */
+  struct vg_gmsh_group *group; /* groups of the surfaces, sorted by surface */
   size_t n_group, cap_group;
-  struct numbered *node; /* [n_point] by rising tag */
-  int is_run;            /* tags are first_tag, first_tag + 1, ... */
+  struct numbered *node; /* [n_point] sorted by tag */
+  int is_run; /* tags are consecutive: first_tag, first_tag + 1, ... */
   int seen_nodes;
 };
 
@@ -67,7 +68,7 @@ static vg_status fail_at(const struct reader *r, struct vg_error *err,
 
 /* --- numbers --- */
 
-/* n integers: of 4 bytes, or as sizes, in binary files. */
+/* Read n integers. In binary files they have 4 bytes or the size of sizes. */
 static vg_status read_ints(struct reader *r, size_t n, int64_t *v,
                            const char *what, struct vg_error *err)
 {
@@ -104,7 +105,9 @@ static vg_status read_reals(struct reader *r, size_t n, double *v,
   return st;
 }
 
-/* A count of things, n_size sizes and n_int others (in text: numbers) each. */
+/* Check a count of items against the remaining bytes. In a binary file an item
+ * has n_size sizes and n_int other integers; in text it has n_size + n_int
+ * numbers. */
 static vg_status check_count(const struct reader *r, int64_t n, size_t n_size,
                              size_t n_int, const char *what,
                              struct vg_error *err)
@@ -117,7 +120,7 @@ static vg_status check_count(const struct reader *r, int64_t n, size_t n_size,
                    "%s: %lld %s: the count is negative "
                    "or beyond 32 bits",
                    r->in->path, (long long)n, what);
-  /* the last number of a text needs no blank behind it */
+  /* The last number of a text needs no blank after it. */
   return n
          ? vg_input_need(r->in, (uint64_t)n * bytes - !r->binary, 1, what, err)
          : VG_OK;
@@ -136,14 +139,12 @@ static vg_status read_name(struct reader *r, struct vg_error *err)
     VG_TRY(vg_input_int(r->in, &v[k], "a physical group", err));
   if (!vg_input_line(r->in, &line, &len) || !(first = memchr(line, '"', len)))
     return vg_input_fail(r->in, err,
-                         "a physical group without its name in "
-                         "quotes");
+                         "the name of a physical group is not in quotes");
   for (last = line + len - 1; *last != '"'; last--) {
   }
   if (last == first)
     return vg_input_fail(r->in, err,
-                         "the name of a physical group does not "
-                         "end in a quote");
+                         "the name of a physical group has no closing quote");
   if (v[0] != 2) return VG_OK;
   if (vg_reserve(&r->name, &r->cap_name, r->n_name + 1, sizeof *r->name))
     return vg_fail_memory(err, "the names of the patches");
@@ -163,7 +164,7 @@ static vg_status read_names(struct reader *r, struct vg_error *err)
   return st;
 }
 
-/* The rest of a list of n integers. */
+/* Skip the remaining integers of a list of n. */
 static vg_status skip_ints(struct reader *r, int64_t n, const char *what,
                            struct vg_error *err)
 {
@@ -195,7 +196,7 @@ static vg_status read_entity(struct reader *r, int dimension,
   if (dimension != 2) return VG_OK;
   if (vg_reserve(&r->group, &r->cap_group, r->n_group + 1, sizeof *r->group))
     return vg_fail_memory(err, "the surfaces");
-  /* below 0: the group has the surface turned round */
+  /* Negative: the group contains the surface with reversed orientation. */
   r->group[r->n_group++] = (struct vg_gmsh_group){ tag, llabs(physical) };
 done:
   return st;
@@ -250,8 +251,7 @@ static vg_status reserve_points(struct reader *r, int64_t n,
 
   if (need >= UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: more points than 32 bits "
-                   "number",
+                   "%s: more points than 32-bit numbers can count",
                    r->in->path);
   if (vg_reserve(&r->m.point, &cap, need, sizeof *r->m.point) ||
       vg_reserve(&r->node, &r->cap_point, need, sizeof *r->node))
@@ -312,8 +312,8 @@ static vg_status read_nodes_4(struct reader *r, struct vg_error *err)
     VG_TRY(reserve_points(r, n, err));
     if (entity[0] < 0 || entity[0] > 3)
       return fail_at(r, err,
-                     "a block of nodes of an entity that has not 0 to "
-                     "3 dimensions");
+                     "the entity of a block of nodes has a dimension other "
+                     "than 0 to 3");
     for (int64_t i = 0; i < n; i++) {
       VG_TRY(read_sizes(r, 1, &tag, "the nodes", err));
       take_tag(r, first + (size_t)i, tag);
@@ -323,8 +323,8 @@ static vg_status read_nodes_4(struct reader *r, struct vg_error *err)
   }
   if ((uint64_t)head[1] != r->m.n_point)
     st = vg_fail(err, VG_ERR_FORMAT,
-                 "%s: %zu nodes in blocks, but %lld in "
-                 "all",
+                 "%s: the blocks contain %zu nodes, but the section "
+                 "announces %lld",
                  r->in->path, r->m.n_point, (long long)head[1]);
 done:
   return st;
@@ -344,7 +344,8 @@ static vg_status read_nodes(struct reader *r, struct vg_error *err)
   size_t n;
   int is_sorted = 1;
 
-  if (r->seen_nodes++) return fail_at(r, err, "nodes appear twice");
+  if (r->seen_nodes++)
+    return fail_at(r, err, "the section of nodes appears twice");
   st = r->version == 2 ? read_nodes_2(r, err) : read_nodes_4(r, err);
   if (st < 0) return st;
   n = r->m.n_point;
@@ -353,9 +354,9 @@ static vg_status read_nodes(struct reader *r, struct vg_error *err)
   if (!is_sorted) qsort(r->node, n, sizeof *r->node, by_tag);
   for (size_t i = 1; i < n; i++)
     if (r->node[i - 1].tag == r->node[i].tag)
-      return vg_fail(err, VG_ERR_FORMAT, "%s: node %lld is given twice",
+      return vg_fail(err, VG_ERR_FORMAT, "%s: node %lld is defined twice",
                      r->in->path, (long long)r->node[i].tag);
-  /* no overflow: tags rise, and their number is small */
+  /* cannot overflow, since tags are ascending and their number is limited */
   r->is_run = n && is_sorted &&
               (uint64_t)r->node[n - 1].tag - (uint64_t)r->node[0].tag == n - 1;
   return VG_OK;
@@ -395,10 +396,10 @@ static vg_status unknown_type(const struct reader *r, int64_t code,
                               struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: elements of Gmsh's type %lld "
-                 "are not of first order, or of a kind that is not meshed; "
-                 "`gmsh FILE -setorder 1 -save -format msh41 -o NEW.msh` makes "
-                 "triangles, quadrilaterals and cells of first order",
+                 "%s: elements of Gmsh's type %lld are not of first order, "
+                 "or not of a supported kind; `gmsh FILE -setorder 1 -save "
+                 "-format msh41 -o NEW.msh` makes triangles, quadrilaterals "
+                 "and cells of first order",
                  r->in->path, (long long)code);
 }
 
@@ -428,7 +429,7 @@ static vg_status reserve_elements(struct reader *r, enum element e, int64_t n,
   return bad ? vg_fail_memory(err, "the elements") : VG_OK;
 }
 
-/* Room of the next element of a kind, which is counted. */
+/* Nodes of the next element of a kind, which is counted. */
 static uint32_t *next_element(struct reader *r, enum element e,
                               struct vg_gmsh_group group)
 {
@@ -454,8 +455,8 @@ static vg_status take_element(struct reader *r, const struct type *t,
   for (int k = 0; k < t->n_node; k++)
     if (!find_node(r, tag[k], &node[k]))
       return vg_fail(err, VG_ERR_INPUT,
-                     "%s: element %lld refers to node "
-                     "%lld, which is not there",
+                     "%s: element %lld refers to node %lld, which does not "
+                     "exist",
                      r->in->path, (long long)number, (long long)tag[k]);
   to = next_element(r, t->element, group);
   for (int k = 0; k < t->n_node; k++) to[t->slot[k]] = node[k];
@@ -499,8 +500,8 @@ done:
   return st;
 }
 
-/* Behind its number: groups and nodes. Version 2: the first two of n_tag are
- * the physical group and the surface. */
+/* Read the groups and nodes that follow the number of an element. In version 2,
+ * the first two of n_tag are the physical group and the surface. */
 static vg_status read_element_2(struct reader *r, const struct type *t,
                                 int64_t n_tag, int64_t number,
                                 struct vg_error *err)
@@ -520,7 +521,8 @@ done:
   return st;
 }
 
-/* Elements of one type, with as many groups. *n out: how many. */
+/* Read elements of one type that have the same number of groups. *n out: number
+ * of elements. */
 static vg_status read_block_2(struct reader *r, int64_t *n,
                               struct vg_error *err)
 {
@@ -528,13 +530,14 @@ static vg_status read_block_2(struct reader *r, int64_t *n,
   const struct type *t;
   vg_status st;
 
-  /* binary: type, elements, groups; text: number, type, groups */
+  /* binary: type, number of elements, number of groups; text: number, type,
+   * number of groups */
   VG_TRY(read_ints(r, 3, head, "an element", err));
   *n = r->binary ? head[1] : 1;
   number = head[0];
   t = find_type(r->binary ? head[0] : head[1]);
   if (!t) return unknown_type(r, r->binary ? head[0] : head[1], err);
-  if (*n < 1) return fail_at(r, err, "a block of no elements");
+  if (*n < 1) return fail_at(r, err, "a block of elements is empty");
   VG_TRY(check_count(r, *n, 0, 1 + (size_t)t->n_node, "elements", err));
   VG_TRY(reserve_elements(r, t->element, *n, err));
   for (int64_t i = 0; i < *n; i++) {
@@ -562,7 +565,7 @@ done:
 
 static vg_status read_elements(struct reader *r, struct vg_error *err)
 {
-  if (!r->seen_nodes) return fail_at(r, err, "elements stand before the nodes");
+  if (!r->seen_nodes) return fail_at(r, err, "the elements precede the nodes");
   return r->version == 2 ? read_elements_2(r, err) : read_elements_4(r, err);
 }
 
@@ -572,13 +575,13 @@ static vg_status unknown_version(const struct reader *r, const char *text,
                                  size_t len, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: .msh of version %.*s; read are "
-                 "4.1 and 2.x: `gmsh FILE -save -format msh41 -o NEW.msh` "
-                 "converts",
+                 "%s: .msh of version %.*s is not supported, only 4.1 and "
+                 "2.x; convert it with `gmsh FILE -save -format msh41 -o "
+                 "NEW.msh`",
                  r->in->path, (int)(len < 20 ? len : 20), text);
 }
 
-/* A number one behind the line shows the order of bytes. */
+/* The integer 1 after the line shows the byte order. */
 static vg_status read_order(struct reader *r, struct vg_error *err)
 {
   size_t start = r->in->at;
@@ -589,10 +592,10 @@ static vg_status read_order(struct reader *r, struct vg_error *err)
 
     vg_input_order(r->in, big);
     r->in->at = start;
-    st = vg_input_i32(r->in, 1, &one, "the order of bytes", err);
+    st = vg_input_i32(r->in, 1, &one, "the byte order", err);
     if (st < 0 || one == 1) return st;
   }
-  return fail_at(r, err, "the number that shows the order of bytes is not 1");
+  return fail_at(r, err, "the integer that shows the byte order is not 1");
 }
 
 static vg_status read_format(struct reader *r, struct vg_error *err)
@@ -613,8 +616,8 @@ static vg_status read_format(struct reader *r, struct vg_error *err)
   else return unknown_version(r, text, len, err);
   if (binary < 0 || binary > 1 || (size != 8 && (size != 4 || r->version == 2)))
     return vg_input_fail(r->in, err,
-                         "$MeshFormat must say 0 or 1 for text or "
-                         "binary, and 8, the bytes of a real or size");
+                         "$MeshFormat must have 0 or 1 for text or binary, "
+                         "and 8 for the bytes of a real or size");
   r->wide = size == 8 && r->version == 4;
   vg_input_line(r->in, &line, &line_len);
   if (!binary) return VG_OK;
@@ -634,8 +637,9 @@ static vg_status skip_section(struct reader *r, const char *name, size_t len,
     if (n >= len + 3 && !memcmp(line, "$End", 4) &&
         !memcmp(line + 4, name + 1, len - 1))
       return VG_OK;
-  return vg_fail(err, VG_ERR_FORMAT, "%s: truncated: %.*s has no end",
-                 r->in->path, (int)(len < 40 ? len : 40), name);
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s: truncated: the end of %.*s is missing", r->in->path,
+                 (int)(len < 40 ? len : 40), name);
 }
 
 static vg_status read_end(struct reader *r, const char *name, size_t len,
@@ -648,8 +652,7 @@ static vg_status read_end(struct reader *r, const char *name, size_t len,
       !memcmp(text, "$End", 4) && !memcmp(text + 4, name + 1, len - 1))
     return VG_OK;
   return vg_fail(err, VG_ERR_FORMAT,
-                 "%s: %.*s does not end where its counts "
-                 "say (near byte %zu)",
+                 "%s: %.*s does not end where its counts say (near byte %zu)",
                  r->in->path, (int)(len < 40 ? len : 40), name, r->in->at);
 }
 
@@ -676,8 +679,7 @@ static vg_status read_section(struct reader *r, const char *name, size_t len,
                    r->in->path);
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
     if (!vg_token_is(name, len, known[i].name)) continue;
-    if (!r->version)
-      return fail_at(r, err, "a section stands before $MeshFormat");
+    if (!r->version) return fail_at(r, err, "a section precedes $MeshFormat");
     if (r->binary) vg_input_line(r->in, &line, &line_len);
     st = known[i].read(r, err);
     return st < 0 ? st : read_end(r, name, len, err);
@@ -696,10 +698,9 @@ static vg_status read_sections(struct reader *r, struct vg_error *err)
       st = fail_at(r, err,
                    r->version ? "text outside of a section"
                    : *text == '('
-                     ? "this is a mesh of Fluent, whose files "
-                       "are not read; Gmsh's begin with $MeshFormat"
-                     : "not a file of Gmsh: it does not begin with "
-                       "$MeshFormat");
+                     ? "this is a mesh of Fluent, which cannot be "
+                       "read; Gmsh files begin with $MeshFormat"
+                     : "not a Gmsh file: it does not begin with $MeshFormat");
     else if (vg_token_is(text, len, "$NOD"))
       st = unknown_version(r, "1", 1, err);
     else if (vg_token_is(text, len, "$MeshFormat"))
@@ -720,12 +721,12 @@ static vg_status finish(struct reader *r, struct vg_error *err)
   vg_status st;
 
   if (!r->version)
-    return fail_at(r, err, "not a file of Gmsh: there is no $MeshFormat");
+    return fail_at(r, err, "not a Gmsh file: there is no $MeshFormat");
   if (!m->n_tri && !m->n_quad && !has_cells)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: no triangles, quadrilaterals or "
-                   "cells: there is nothing to mesh; where there are physical "
-                   "groups Gmsh saves only what is in one",
+                   "%s: no triangles, quadrilaterals or cells: there is "
+                   "nothing to mesh; if there are physical groups, Gmsh "
+                   "saves only the elements in them",
                    r->in->path);
   VG_TRY(vg_check_points(r->in->path, m->n_point, (const double(*)[3])m->point,
                          err));

@@ -7,7 +7,7 @@
 #include "io/mesh/gmf.h"
 #include "io/stream/convention.h"
 
-/* The sections that are read and written; all others are skipped. */
+/* Sections that are read and written; all others are skipped. */
 enum { VERTICES, TRIANGLES, QUADS, TETS, PYRAMIDS, PRISMS, HEXES, N_SECTION };
 
 static const struct section {
@@ -18,8 +18,8 @@ static const struct section {
                           { "Pyramids", 49, 5 },      { "Prisms", 9, 6 },
                           { "Hexahedra", 10, 8 } };
 
-/* Our pyramid has base ring 0 3 4 1 and apex 2, Medit's ring 0 1 2 3 and apex
- * 4: slot k of the file is our node pyramid_slot[k]. */
+/* Our pyramid has base 0 3 4 1 and apex 2, Medit's base 0 1 2 3 and apex 4:
+ * slot k of the file is our node pyramid_slot[k]. */
 static const int pyramid_slot[5] = { 0, 3, 4, 1, 2 };
 
 struct reader {
@@ -31,7 +31,7 @@ struct reader {
 
 /* --- sections of a mesh --- */
 
-/* Nodes of a section as one flat array, and how many entities it has. */
+/* Nodes of a section as one flat array, and its number of entities. */
 static uint32_t *section_get(const struct vg_mesh *m, int section, size_t *n)
 {
   switch (section) {
@@ -45,7 +45,8 @@ static uint32_t *section_get(const struct vg_mesh *m, int section, size_t *n)
   }
 }
 
-/* Allocate a section of n entities. 0, or -1 when refused. */
+/* Allocate a section of n entities. Returns 0, or -1 if there is not enough
+ * memory. */
 static int section_allocate(struct reader *r, int section, size_t n)
 {
   struct vg_mesh *m = &r->m;
@@ -90,8 +91,8 @@ static vg_status read_vertices(struct reader *r, struct vg_error *err)
   return VG_OK;
 }
 
-/* Entities other than vertices. Node numbers are compared with the number of
- * vertices at the end: the sections may come in any order. */
+/* Read entities other than vertices. Their node numbers are checked at the end,
+ * since the sections may come in any order. */
 static vg_status read_entities(struct reader *r, int section,
                                struct vg_error *err)
 {
@@ -111,22 +112,23 @@ static vg_status read_entities(struct reader *r, int section,
     for (int k = 0; k < n_node; k++) {
       if (v[k] < 1 || v[k] >= UINT32_MAX)
         return vg_fail(err, VG_ERR_INPUT,
-                       "%s: %s, number %zu: vertex %lld is out of range",
+                       "%s: %s number %zu: vertex %lld is out of range",
                        r->g.in->path, s->name, i + 1, (long long)v[k]);
       node[section == PYRAMIDS ? pyramid_slot[k] : k] = (uint32_t)(v[k] - 1);
     }
     if (!tag) continue;
     if (v[n_node] < -INT32_MAX || v[n_node] > INT32_MAX)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
-                     "%s: %s, number %zu: reference %lld does not fit a patch "
-                     "number of 32 bits",
+                     "%s: %s number %zu: reference %lld does not fit into a "
+                     "32-bit patch number",
                      r->g.in->path, s->name, i + 1, (long long)v[n_node]);
     tag[i] = (int32_t)v[n_node];
   }
   return VG_OK;
 }
 
-/* Least bytes of an entity: in text, a digit and a blank for each number. */
+/* Minimum number of bytes of an entity: in text, a digit and a blank for each
+ * number. */
 static size_t entity_size(const struct reader *r, int n_node)
 {
   size_t size_int = r->g.version == 4 ? 8 : 4;
@@ -144,7 +146,7 @@ static vg_status read_section(struct reader *r, int section,
   vg_status st;
 
   if (!r->g.dimension)
-    return vg_gmf_fail(&r->g, err, "a section stands before the dimension");
+    return vg_gmf_fail(&r->g, err, "a section comes before the dimension");
   if (r->seen[section]++)
     return vg_fail(err, VG_ERR_FORMAT, "%s: %s appear twice", r->g.in->path,
                    s->name);
@@ -154,7 +156,7 @@ static vg_status read_section(struct reader *r, int section,
                    "%s: %lld %s: the count is negative or beyond 32 bits",
                    r->g.in->path, (long long)n, s->name);
   if (!n) return VG_OK;
-  /* The last number of a text needs no blank behind it. */
+  /* The last number of a text needs no blank after it. */
   VG_TRY(vg_input_need(r->g.in,
                        (uint64_t)n * entity_size(r, s->n_node) - !r->g.binary,
                        1, s->name, err));
@@ -168,7 +170,7 @@ done:
 
 /* --- text --- */
 
-/* Sections that are not ours hold numbers; a word ends them. */
+/* Sections that are skipped hold numbers; they end at the next word. */
 static int next_word(struct vg_input *in, const char **text, size_t *len)
 {
   while (vg_input_token(in, text, len))
@@ -181,7 +183,7 @@ static int find_word(const char *text, size_t len)
 {
   for (int i = 0; i < N_SECTION; i++)
     if (vg_token_is(text, len, sections[i].name)) return i;
-  /* As Medit itself once spelled it. */
+  /* a spelling that Medit itself once used */
   return vg_token_is(text, len, "Hexaedra") ? HEXES : N_SECTION;
 }
 
@@ -257,8 +259,8 @@ static vg_status check_nodes(const struct reader *r, struct vg_error *err)
     for (size_t i = 0; i < n * width; i++)
       if (node[i] >= r->m.n_point)
         return vg_fail(err, VG_ERR_INPUT,
-                       "%s: %s, number %zu: vertex %lu is out of range: there "
-                       "are %zu",
+                       "%s: %s number %zu: vertex %lu is out of range: "
+                       "there are %zu",
                        r->g.in->path, sections[s].name, i / width + 1,
                        (unsigned long)node[i] + 1, r->m.n_point);
   }
@@ -387,7 +389,7 @@ static uint64_t section_size(const struct vg_mesh *m, int section, int version)
 
 static uint64_t file_size(const struct vg_mesh *m, int version)
 {
-  /* Cookie, version, dimension, end. */
+  /* Code 1, version, dimension, end. */
   uint64_t size = 8 + keyword_size(version) + 4 + keyword_size(version);
 
   for (int s = 0; s < N_SECTION; s++) size += section_size(m, s, version);

@@ -12,14 +12,15 @@ struct reader {
   struct vg_soup s;
   const char *name; /* current group; points into the input */
   size_t name_len;
-  uint32_t patch; /* of the group, or UINT32_MAX: no face yet */
-  /* A vertex may be named before it appears, so the highest number is
-   * checked at the end; this is the line where it stands. */
+  uint32_t patch; /* patch of the group; UINT32_MAX: the group has no face
+                     yet */
+  /* A face may refer to a vertex that follows later, so the highest number is
+   * checked at the end. `highest_line` is the line that contains it. */
   uint64_t highest;
   size_t highest_line;
 };
 
-/* Next token of a line that a backslash at its end continues. */
+/* Next token of a line, which may be continued by a backslash at its end. */
 static int next_token(struct vg_input *in, const char **text, size_t *len)
 {
   while (vg_input_token_in_line(in, text, len)) {
@@ -40,15 +41,15 @@ static vg_status read_vertex(struct reader *r, struct vg_error *err)
 
     if (!next_token(r->in, &text, &len) || !vg_parse_real(text, len, &x[k]))
       return vg_input_fail(r->in, err,
-                           "vertex %zu needs three finite coordinates, '%.*s' "
-                           "is none",
+                           "vertex %zu needs three finite coordinates, but "
+                           "'%.*s' is not one",
                            r->s.m.n_point + 1, (int)(len < 40 ? len : 40),
                            text);
   }
   return vg_soup_point(&r->s, x, &at, err);
 }
 
-/* The vertex of a corner "a", "a/t", "a//n" or "a/t/n", 0-based. */
+/* Read the vertex of a corner "a", "a/t", "a//n" or "a/t/n", 0-based. */
 static vg_status read_corner(struct reader *r, const char *text, size_t len,
                              uint32_t *node, struct vg_error *err)
 {
@@ -56,8 +57,7 @@ static vg_status read_corner(struct reader *r, const char *text, size_t len,
   int64_t v;
 
   if (!vg_parse_int(text, slash ? (size_t)(slash - text) : len, &v) || !v)
-    return vg_input_fail(r->in, err,
-                         "a vertex number should stand here, not '%.*s'",
+    return vg_input_fail(r->in, err, "expected a vertex number, not '%.*s'",
                          (int)(len < 40 ? len : 40), text);
   if (v < 0) v += (int64_t)r->s.m.n_point + 1;
   if (v < 1 || v >= UINT32_MAX)
@@ -95,9 +95,7 @@ static vg_status read_face(struct reader *r, struct vg_error *err)
   }
   if (n < 3)
     st = vg_input_fail(r->in, err,
-                       "a face needs three corners or more, not "
-                       "%zu",
-                       n);
+                       "a face needs three or more corners, not %zu", n);
 done:
   return st;
 }

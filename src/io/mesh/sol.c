@@ -8,17 +8,17 @@
 #include "base/memory.h"
 #include "io/mesh/gmf.h"
 
-/* GMF's code of SolAtVertices. */
+/* GMF code of SolAtVertices. */
 enum { CODE_VERTICES = 62 };
 enum { SCALAR = 1 };
 
 struct reader {
   struct vg_gmf g;
   size_t n;
-  double *value; /* [n]; NULL: not seen yet */
+  double *value; /* [n]; NULL: not read yet */
 };
 
-/* Of 4 bytes in all versions. */
+/* In all versions these integers have 4 bytes. */
 static vg_status read_int(struct reader *r, int64_t *v, struct vg_error *err)
 {
   int32_t narrow;
@@ -61,7 +61,7 @@ static vg_status read_section(struct reader *r, struct vg_error *err)
   vg_status st;
 
   if (!r->g.dimension)
-    return vg_gmf_fail(&r->g, err, "a section stands before the dimension");
+    return vg_gmf_fail(&r->g, err, "a section comes before the dimension");
   if (r->value) return vg_gmf_fail(&r->g, err, "SolAtVertices appears twice");
   VG_TRY(vg_gmf_ints(&r->g, 1, &n, "a count", err));
   if (n < 1 || n >= UINT32_MAX)
@@ -73,9 +73,8 @@ static vg_status read_section(struct reader *r, struct vg_error *err)
   if (n_kind == 1) VG_TRY(read_int(r, &kind, err));
   if (n_kind != 1 || kind != SCALAR)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: SolAtVertices must have one "
-                   "scalar per vertex (1 1), not %lld fields, the first of "
-                   "kind %lld",
+                   "%s: SolAtVertices must have one scalar per vertex (1 "
+                   "1), not %lld fields, the first of kind %lld",
                    r->g.in->path, (long long)n_kind, (long long)kind);
   r->n = (size_t)n;
   st = read_values(r, err);
@@ -83,7 +82,7 @@ done:
   return st;
 }
 
-/* Sections that are not ours hold numbers; a word ends them. */
+/* Sections that are skipped hold numbers; they end at the next word. */
 static vg_status read_text(struct reader *r, struct vg_error *err)
 {
   const char *text;
@@ -130,7 +129,7 @@ vg_status vg_sol_parse(struct vg_input *in, size_t *n, double **value,
   assert(in && n && value);
   if (st >= 0) st = r.g.binary ? read_binary(&r, err) : read_text(&r, err);
   if (st >= 0 && !r.value)
-    st = vg_fail(err, VG_ERR_FORMAT, "%s: there is no SolAtVertices in it",
+    st = vg_fail(err, VG_ERR_FORMAT, "%s: the file has no SolAtVertices",
                  in->path);
   if (st < 0) {
     free(r.value);

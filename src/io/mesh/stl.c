@@ -48,7 +48,7 @@ static vg_status read_binary(struct vg_input *in, uint32_t n, struct vg_soup *s,
 
 /* --- text --- */
 
-/* Keywords are written in capitals by some programs. */
+/* Some programs write keywords in capital letters. */
 static int is_word(const char *text, size_t len, const char *word)
 {
   if (strlen(word) != len) return 0;
@@ -69,19 +69,20 @@ static vg_status expect(struct vg_input *in, const char *word,
 
   if (!vg_input_token(in, &text, &len))
     return vg_input_fail(in, err,
-                         "truncated: the file ends where '%s' should stand",
+                         "truncated: the file ends where '%s' was expected",
                          word);
   if (is_word(text, len, word)) return VG_OK;
   if (is_word(text, len, "vertex"))
     return vg_input_fail(in, err,
-                         "a facet has more than three vertices: STL holds "
-                         "triangles only");
-  return vg_input_fail(in, err, "'%s' should stand here, not '%.*s'", word,
+                         "a facet has more than three vertices, but STL "
+                         "holds triangles only");
+  return vg_input_fail(in, err, "expected '%s', not '%.*s'", word,
                        (int)(len < 40 ? len : 40), text);
 }
 
-/* Behind "facet": the normal is recomputed by whoever needs it, and files
- * with "nan" for a facet without area are common: skip its numbers. */
+/* Read the facet after its keyword. The three numbers of the normal are
+ * skipped: where a normal is needed it is recomputed, and files with "nan" for
+ * a facet without area are common. */
 static vg_status read_facet(struct vg_input *in, struct vg_soup *s,
                             uint32_t patch, struct vg_error *err)
 {
@@ -93,7 +94,7 @@ static vg_status read_facet(struct vg_input *in, struct vg_soup *s,
   VG_TRY(expect(in, "normal", err));
   for (int k = 0; k < 3; k++)
     if (!vg_input_token(in, &text, &len))
-      return vg_input_fail(in, err, "truncated: the file ends in a normal");
+      return vg_input_fail(in, err, "truncated: the file ends within a normal");
   VG_TRY(expect(in, "outer", err));
   VG_TRY(expect(in, "loop", err));
   for (int k = 0; k < 3; k++) {
@@ -111,7 +112,8 @@ done:
   return st;
 }
 
-/* Behind "solid". A solid without facets makes no patch. */
+/* Read the solid after its keyword. A solid without facets does not become a
+ * patch. */
 static vg_status read_solid(struct vg_input *in, struct vg_soup *s,
                             struct vg_error *err)
 {
@@ -128,8 +130,7 @@ static vg_status read_solid(struct vg_input *in, struct vg_soup *s,
     }
     if (!is_word(text, len, "facet"))
       return vg_input_fail(in, err,
-                           "'facet' or 'endsolid' should stand here, not "
-                           "'%.*s'",
+                           "expected 'facet' or 'endsolid', not '%.*s'",
                            (int)(len < 40 ? len : 40), text);
     if (patch == UINT32_MAX)
       VG_TRY(vg_soup_patch(s, name, name_len, &patch, err));
@@ -151,7 +152,7 @@ static vg_status read_text(struct vg_input *in, struct vg_soup *s,
 
   while (st == VG_OK && vg_input_token(in, &text, &len)) {
     if (!is_word(text, len, "solid"))
-      return vg_input_fail(in, err, "'solid' should stand here, not '%.*s'",
+      return vg_input_fail(in, err, "expected 'solid', not '%.*s'",
                            (int)(len < 40 ? len : 40), text);
     st = read_solid(in, s, err);
   }
@@ -172,9 +173,9 @@ vg_status vg_stl_parse(struct vg_input *in, struct vg_mesh *out,
   else if (vg_input_is_text(in)) st = read_text(in, &s, err);
   else
     st = vg_fail(err, VG_ERR_FORMAT,
-                 "%s: neither text nor binary STL: its %zu bytes are not 84 + "
-                 "50 x %lu, the count of facets in its header (truncated, or "
-                 "another format)",
+                 "%s: neither text nor binary STL: its %zu bytes are not 84 "
+                 "+ 50 x %lu, the number of facets in its header "
+                 "(truncated, or another format)",
                  in->path, in->size, (unsigned long)n);
   if (st == VG_OK && !s.m.n_tri)
     st = vg_fail(err, VG_ERR_INPUT, "%s: the surface has no facets", in->path);
@@ -197,8 +198,8 @@ vg_status vg_stl_read(const char *path, struct vg_mesh *out,
 
 /* --- writing --- */
 
-/* Unit normal to six decimals, which is more than readers use; zero for a
- * triangle without area, as the format asks. */
+/* Unit normal to six decimals, which is more than any reader uses; zero for a
+ * triangle without area, as the format requires. */
 static void normal_of(const double *a, const double *b, const double *c,
                       double normal[3])
 {
@@ -249,7 +250,8 @@ static void put_facet(struct vg_output *o, const struct vg_mesh *m, uint32_t a,
   vg_output_text(o, "  endloop\n endfacet\n");
 }
 
-/* Face i of the boundary: triangles, then quadrilaterals, split in two. */
+/* Write face i of the boundary: triangles come first, then quadrilaterals,
+ * which are split in two. */
 static void put_face(struct vg_output *o, const struct vg_mesh *m, size_t i,
                      int binary)
 {
@@ -302,7 +304,7 @@ vg_status vg_stl_write_binary(const char *path, const struct vg_mesh *m,
 
   if (n > UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: %llu facets are more than binary STL can count; write "
+                   "%s: %llu facets exceed the limit of binary STL; write "
                    "another format",
                    path, (unsigned long long)n);
   VG_TRY(vg_output_open(path, &o, err));

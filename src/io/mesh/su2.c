@@ -7,10 +7,10 @@
 #include "base/memory.h"
 #include "io/mesh/su2_put.h"
 
-#define REAL_WIDTH 25 /* vg_format_real needs 24 at most */
+#define REAL_WIDTH 25 /* vg_format_real writes at most 24 characters */
 #define LINE 256
 
-/* Ours to VTK's, as in a .vtu (io/mesh/vtu.c). */
+/* Our node order to VTK's, as in a .vtu (io/mesh/vtu.c). */
 static const struct kind {
   int n_node;
   const char *name;
@@ -33,7 +33,7 @@ static int digits(uint64_t n)
   return width;
 }
 
-/* A blank and v, right in `width` columns, from *to on. */
+/* Write a blank and v, right-justified in `width` columns, at *to. */
 static void column(char **to, int width, uint64_t v)
 {
   char *at = *to + width;
@@ -73,7 +73,8 @@ static void put_points_head(struct vg_output *out, const struct vg_su2 *s)
   vg_output_format(out, "NPOIN= %zu\n", s->frame->n_point);
 }
 
-/* Where things stand: by writing what stands between them to nowhere. */
+/* Determine the offsets of cells and points by writing the text before them
+ * without a file. */
 static vg_status find_places(struct vg_su2 *s, struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
@@ -91,7 +92,8 @@ static vg_status find_places(struct vg_su2 *s, struct vg_error *err)
   return VG_OK;
 }
 
-/* Faces by patch: triangles, then quadrilaterals, each as they come. */
+/* Sort the faces by patch: triangles, then quadrilaterals, each in their order
+ * in the mesh. */
 static vg_status sort_faces(struct vg_su2 *s, struct vg_error *err)
 {
   const struct vg_mesh *m = s->frame;
@@ -103,7 +105,7 @@ static vg_status sort_faces(struct vg_su2 *s, struct vg_error *err)
   for (size_t i = 0; i < m->n_tri; i++) first[m->tri_patch[i] + 2]++;
   for (size_t i = 0; i < m->n_quad; i++) first[m->quad_patch[i] + 2]++;
   for (size_t p = 0; p < m->n_patch; p++) first[p + 2] += first[p + 1];
-  /* Filling moves first[p + 1] to the end of p: the start of p + 1. */
+  /* Filling moves first[p + 1] to the end of p, which is the start of p + 1. */
   for (size_t i = 0; i < m->n_tri; i++)
     s->face[first[m->tri_patch[i] + 1]++] = i;
   for (size_t i = 0; i < m->n_quad; i++)
@@ -123,9 +125,9 @@ vg_status vg_su2_plan(const char *path, const struct vg_mesh *frame,
     s->first[k] = s->first[k - 1] + s->n_cell[k - 1];
   if (!count_of(s))
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: the mesh has no cells; an SU2 "
-                   "file of three dimensions needs some: write the surface "
-                   "as .stl or .lb8.ugrid",
+                   "%s: the mesh has no cells, which a three-dimensional "
+                   "SU2 file must have; write the surface as .stl or "
+                   ".lb8.ugrid",
                    path);
   s->node_width = digits(frame->n_point - 1);
   s->cell_width = digits(count_of(s) - 1);
@@ -207,7 +209,7 @@ static void put_face(struct vg_output *out, const struct vg_mesh *m, size_t i)
   vg_output_bytes(out, line, (size_t)(to - line));
 }
 
-/* Patches without faces are no markers. */
+/* Patches without faces are not written as markers. */
 static void put_markers(struct vg_output *out, const struct vg_su2 *s)
 {
   size_t n = 0, n_patch = s->frame->n_patch;

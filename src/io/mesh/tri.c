@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "io/stream/convention.h"
 
-/* What the header says, and how a binary file is laid out. */
+/* Contents of the header, and the layout of a binary file. */
 struct layout {
   uint64_t n_point, n_tri;
   int is_big, is_record; /* byte order; Fortran records or a bare stream */
@@ -15,10 +15,10 @@ struct layout {
   int has_scalars;       /* .triq: a third number in the header */
 };
 
-/* Everything a file carries; both kinds of file fill it. */
+/* Contents of a file, text or binary. */
 struct content {
   struct vg_mesh m;
-  int32_t *tag; /* [n_tri] component */
+  int32_t *tag; /* [n_tri] component numbers */
 };
 
 static vg_status check_counts(const struct vg_input *in, int64_t n_point,
@@ -33,7 +33,7 @@ static vg_status check_counts(const struct vg_input *in, int64_t n_point,
   if (n_point >= UINT32_MAX || n_tri >= UINT32_MAX)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: the header announces %lld vertices and %lld "
-                   "triangles: beyond 32-bit numbers",
+                   "triangles, which exceeds 32-bit numbers",
                    in->path, (long long)n_point, (long long)n_tri);
   l->n_point = (uint64_t)n_point;
   l->n_tri = (uint64_t)n_tri;
@@ -58,8 +58,8 @@ static vg_status index_error(const struct vg_input *in, size_t triangle,
                              struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: triangle %zu names vertex %lld, out of range: vertices "
-                 "run from 1 to %llu",
+                 "%s: triangle %zu refers to vertex %lld, which is out of "
+                 "range: vertices are numbered 1 to %llu",
                  in->path, triangle + 1, (long long)node,
                  (unsigned long long)l->n_point);
 }
@@ -78,8 +78,8 @@ static vg_status read_text_header(struct vg_input *in, struct layout *l,
   VG_TRY(vg_input_int(in, &n_tri, "the number of triangles", err));
   l->has_scalars = vg_input_token_in_line(in, &text, &len);
   VG_TRY(check_counts(in, n_point, n_tri, l, err));
-  /* Every number takes a digit and a blank: refuse what cannot be there
-   * before allocating for it. */
+  /* Every number takes a digit and a blank: reject impossible counts before
+   * allocating memory for them. */
   VG_TRY(
     vg_input_need(in, 3 * (l->n_point + l->n_tri) - 1, 2, "the numbers", err));
 done:
@@ -103,7 +103,7 @@ static vg_status read_text_triangles(struct vg_input *in, struct content *c,
   return VG_OK;
 }
 
-/* Components, if the file goes on at all. */
+/* Read components, if the file has any. */
 static vg_status read_text_tags(struct vg_input *in, struct content *c,
                                 const struct layout *l, struct vg_error *err)
 {
@@ -123,8 +123,7 @@ static vg_status read_text_tags(struct vg_input *in, struct content *c,
     if (st < 0) return st;
     if (tag < -INT32_MAX || tag > INT32_MAX)
       return vg_input_fail(in, err,
-                           "component %lld of triangle %zu is beyond "
-                           "32 bits",
+                           "component %lld of triangle %zu exceeds 32 bits",
                            (long long)tag, i + 1);
     c->tag[i] = (int32_t)tag;
   }
@@ -160,8 +159,8 @@ static int64_t peek(struct vg_input *in, size_t at)
   return v;
 }
 
-/* A Fortran file begins with a record of two or three integers, followed by
- * one of 3 n_point reals. */
+/* A Fortran file begins with a record of two or three integers, followed by one
+ * of 3 n_point reals. */
 static int is_record_file(struct vg_input *in, struct layout *l)
 {
   int64_t first = peek(in, 0), n_point = peek(in, 4), reals;
@@ -172,9 +171,9 @@ static int is_record_file(struct vg_input *in, struct layout *l)
   l->has_scalars = first == 12;
   l->n_point = n_point > 0 ? (uint64_t)n_point : 0;
   l->n_tri = peek(in, 8) > 0 ? (uint64_t)peek(in, 8) : 0;
-  /* The marker of a record in parts is negative and says nothing: then the
-   * file is long enough for real*8, or it is not (n_tri is about 2 n_point,
-   * so real*4 with components falls short). */
+  /* The marker of a record in parts is negative and gives no length. Then the
+   * size of the file decides: n_tri is about 2 n_point, so a file of real*4
+   * with components is shorter than one of real*8. */
   reals = peek(in, 8 + (size_t)first);
   l->real_size = reals == (int64_t)(24 * l->n_point) ||
                      (reals < 0 && in->size > 24 * l->n_point + 12 * l->n_tri)
@@ -183,8 +182,8 @@ static int is_record_file(struct vg_input *in, struct layout *l)
   return 1;
 }
 
-/* Without records only the total size tells; no two layouts share one for
- * counts that are not absurd. */
+/* Without records only the total size distinguishes the layouts; no two of them
+ * have the same size for reasonable counts. */
 static int is_stream_file(struct vg_input *in, struct layout *l)
 {
   int64_t n[3];
@@ -222,7 +221,7 @@ static int find_layout(struct vg_input *in, struct layout *l)
   return 0;
 }
 
-/* The next section: a record, or the rest of the file without records. */
+/* Open the next section: a record, or the rest of a file without records. */
 static vg_status section(struct vg_input *in, const struct layout *l,
                          struct vg_input *part, const char *what,
                          struct vg_error *err)
@@ -249,7 +248,7 @@ static vg_status read_points(struct vg_input *in, struct content *c,
 
   VG_TRY(section(in, l, &part, "vertices", err));
   VG_TRY(vg_input_need(&part, n, (size_t)l->real_size, "vertices", err));
-  /* Triangles are looked at before anything is allocated for them. */
+  /* Check the size before allocating memory for the triangles. */
   VG_TRY(vg_input_need(in, l->n_tri, 12, "triangles", err));
   VG_TRY(allocate(c, l, err));
   x = c->m.point[0];
@@ -293,9 +292,9 @@ static vg_status read_binary(struct vg_input *in, struct content *c,
   if (!find_layout(in, &l))
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: neither text nor a binary .tri file: it does not "
-                   "begin with a Fortran record of two or three integers, and "
-                   "its %zu bytes do not fit its counts (truncated, or another "
-                   "format)",
+                   "begin with a Fortran record of two or three integers, "
+                   "and its %zu bytes do not match its counts (truncated, "
+                   "or another format)",
                    in->path, in->size);
   VG_TRY(check_counts(in, (int64_t)l.n_point, (int64_t)l.n_tri, &l, err));
   VG_TRY(section(in, &l, &part, "the header", err));
@@ -343,7 +342,7 @@ vg_status vg_tri_read(const char *path, struct vg_mesh *out,
 
 /* --- writing --- */
 
-/* Triangle j of the boundary when quadrilaterals are cut along 0-2. */
+/* Triangle j of the boundary when quadrilaterals are split along 0-2. */
 static void get_triangle(const struct vg_mesh *m, size_t j, uint32_t node[3],
                          int32_t *id)
 {
@@ -371,15 +370,15 @@ static void put_numbers(struct vg_output *o, const int32_t *v, int n)
   vg_output_text(o, "\n");
 }
 
-/* Node numbers are written as int32, so both counts must fit one. */
+/* Node numbers are written as int32, so both counts must fit. */
 static vg_status count(const char *path, const struct vg_mesh *m, size_t *n,
                        struct vg_error *err)
 {
   *n = m->n_tri + 2 * m->n_quad;
   if (*n <= INT32_MAX && m->n_point <= INT32_MAX) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: %zu points and %zu triangles are more than .tri can "
-                 "number; write another format",
+                 "%s: %zu points and %zu triangles exceed the 32-bit "
+                 "numbers of a .tri; write another format",
                  path, m->n_point, *n);
 }
 

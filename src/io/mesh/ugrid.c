@@ -1,4 +1,5 @@
-/* Reader and writer of the UGRID family: io/mesh/ugrid.h, formats.md 2. */
+/* Reader and writer of the UGRID family; see io/mesh/ugrid.h and formats.md
+ * 2. */
 #include "io/mesh/ugrid.h"
 
 #include <assert.h>
@@ -23,14 +24,16 @@ static const struct {
 };
 #define N_KIND (sizeof kinds / sizeof kinds[0])
 
-/* Nodes of triangle, quadrilateral, tetrahedron, pyramid, prism, hexahedron,
- * in the order of the counts in the header, which starts with the points. */
+/* Nodes of a triangle, quadrilateral, tetrahedron, pyramid, prism and
+ * hexahedron, in the order of the counts in the header, which start with the
+ * points. */
 static const int element_width[6] = { 3, 4, 4, 5, 6, 8 };
 static const char *const element_name[6] = { "triangle",    "quadrilateral",
                                              "tetrahedron", "pyramid",
                                              "prism",       "hexahedron" };
 
-/* The part of the name before `end` and behind the dot (or slash) before. */
+/* Start of the last part of a name that ends at `end`: the position after the
+ * preceding dot or slash. */
 static size_t last_part(const char *name, size_t end)
 {
   while (end && name[end - 1] != '.' && name[end - 1] != '/') end--;
@@ -67,9 +70,10 @@ int vg_ugrid_kind(const char *name, struct vg_ugrid_kind *kind)
   return !is_long;
 }
 
-/* --- does the content fit a kind? --- */
+/* --- does the content match a kind? --- */
 
-/* Where in the body the nodes of an element start; for element 6, its end. */
+/* Offset in the body of the nodes of an element kind; for element 6, its
+ * end. */
 static uint64_t nodes_at(const struct vg_ugrid_kind *kind,
                          const uint64_t count[7], int element)
 {
@@ -81,7 +85,7 @@ static uint64_t nodes_at(const struct vg_ugrid_kind *kind,
          n_int * (uint64_t)kind->int_size;
 }
 
-/* Bytes behind the header; UINT64_MAX when the counts are impossible. */
+/* Bytes after the header; UINT64_MAX if the counts are impossible. */
 static uint64_t body_bytes(const struct vg_ugrid_kind *kind,
                            const uint64_t count[7])
 {
@@ -96,8 +100,9 @@ static uint64_t marker_bytes(const struct vg_ugrid_kind *kind, uint64_t body)
   return 8 + vg_record_size(body, VG_RECORD_LIMIT) - body;
 }
 
-/* Counts of a binary header at the cursor, whatever they are worth. 0 when
- * the file is shorter than a header or the record marker is another. */
+/* Read the counts of a binary header at the cursor, without checking them.
+ * Returns 0 if the file is shorter than a header or the record marker
+ * differs. */
 static int read_counts(const struct vg_input *file,
                        const struct vg_ugrid_kind *kind, uint64_t count[7])
 {
@@ -122,8 +127,9 @@ static int read_counts(const struct vg_input *file,
   return 1;
 }
 
-/* 2: this kind ends where the file does; 1: something follows; 0: no. A file
- * of no points and no faces fits nothing: zeros look the same in any order. */
+/* Does the file match this kind? 2: yes, and nothing follows; 1: yes, but more
+ * data follow; 0: no. A file without points and faces matches no kind, since
+ * zeros are the same in any byte order. */
 static int fits(const struct vg_input *in, const struct vg_ugrid_kind *kind)
 {
   uint64_t count[7], body, need;
@@ -170,13 +176,14 @@ static vg_status not_fitting(const struct vg_input *in,
 
   if (vg_input_is_text(in))
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: is named as a binary .%s.ugrid but holds text; rename "
-                   "it to .ugrid if it is an ASCII UGRID",
+                   "%s: is named as a binary .%s.ugrid but holds text; "
+                   "rename it to .ugrid if it is an ASCII UGRID",
                    in->path, kind_name(kind));
   if (!read_counts(in, kind, c))
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: no %s.ugrid header: the file has %zu bytes%s", in->path,
-                   kind_name(kind), in->size,
+                   "%s: there is no %s.ugrid header: the file has %zu "
+                   "bytes%s",
+                   in->path, kind_name(kind), in->size,
                    kind->is_record ? " or its first Fortran marker is not "
                                      "the length of a header"
                                    : "");
@@ -251,7 +258,8 @@ static size_t count_of(const struct vg_mesh *m, int element)
   return list[element];
 }
 
-/* Integers of either size into 32 bits; what does not fit becomes `odd`. */
+/* Read integers of either size into 32 bits; *odd receives one that does not
+ * fit. */
 static vg_status read_ints(struct vg_input *in, int int_size, size_t n,
                            int32_t *v, int32_t odd, const char *what,
                            struct vg_error *err)
@@ -348,15 +356,15 @@ static vg_status text_header(struct vg_input *in, uint64_t count[7],
     if (st < 0) return st;
     if (v < 0 || v > (int64_t)UINT32_MAX - 2)
       return vg_input_fail(in, err,
-                           "the %s is %lld; 0 to 4294967293 are "
-                           "possible",
+                           "the %s is %lld; it must be between 0 and "
+                           "4294967293",
                            name[k], (long long)v);
     count[k] = (uint64_t)v;
   }
-  /* Every value takes two bytes at least, the last one perhaps one. */
+  /* Each value takes at least two bytes, except that the last may take one. */
   if (body_bytes(&smallest, count) > vg_input_left(in) + 1)
     return vg_input_fail(in, err,
-                         "truncated: the counts ask for more numbers than "
+                         "truncated: the counts require more numbers than "
                          "the remaining %zu bytes can hold",
                          vg_input_left(in));
   return VG_OK;
@@ -406,7 +414,8 @@ static vg_status read_text(struct vg_input *in, struct vg_mesh *m,
   for (size_t i = 0; i < m->n_tri + m->n_quad; i++) {
     if ((st = vg_input_int(in, &v, "surface tag", err)) < 0) return st;
     if (v < INT32_MIN || v > INT32_MAX)
-      return vg_input_fail(in, err, "surface tag %lld does not fit 32 bits",
+      return vg_input_fail(in, err,
+                           "surface tag %lld does not fit into 32 bits",
                            (long long)v);
     (*tag)[i] = (int32_t)v;
   }
@@ -439,9 +448,9 @@ done:
 static vg_status not_a_name(const char *path, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_FORMAT,
-                 "%s: not a name of a UGRID file; known are .ugrid (text), "
-                 ".X.ugrid with X of b8 lb8 b4 lb4 r8 lr8 r4 lr4 b8l lb8l, "
-                 "and .b8.ugrid64, .lb8.ugrid64",
+                 "%s: this is not a name of a UGRID file; known suffixes "
+                 "are .ugrid (text), .X.ugrid with X of b8 lb8 b4 lb4 r8 "
+                 "lr8 r4 lr4 b8l lb8l, and .b8.ugrid64, .lb8.ugrid64",
                  path);
 }
 
@@ -501,7 +510,7 @@ vg_status vg_ugrid_layer_tets(const char *path, int *is_known, size_t *n,
   read_counts(&in, &kind, count);
   at = body_bytes(&kind, count);
   at += 7 * (uint64_t)kind.int_size + marker_bytes(&kind, at) +
-        (kind.is_record ? 4 : 0); /* the tail's own marker */
+        (kind.is_record ? 4 : 0); /* record marker of the tail */
   if (at + (uint64_t)kind.int_size > in.size) goto done;
   in.at = (size_t)at;
   vg_input_order(&in, kind.is_big);
@@ -584,7 +593,7 @@ static void put_body(struct vg_output *out, const struct vg_ugrid_kind *kind,
   }
 }
 
-/* The number of layer tetrahedra, where there is a tail. */
+/* Write the number of layer tetrahedra, if the file has a tail. */
 static void put_tail(struct vg_output *out, const struct vg_ugrid_kind *kind,
                      const size_t *n_layer_tet)
 {
@@ -674,13 +683,13 @@ vg_status vg_ugrid_check(const char *path, const struct vg_ugrid_kind *kind,
   for (int k = 0; k < 7; k++)
     if (count[k] > limit)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
-                     "%s: %llu points or elements are too many for the "
-                     "integers of this kind; write .b8l.ugrid",
+                     "%s: %llu points or elements exceed the integers of "
+                     "this kind; write .b8l.ugrid",
                      path, (unsigned long long)count[k]);
   if (n_layer_tet && *n_layer_tet > m->n_tet)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: %zu tetrahedra are said to be in "
-                   "layers, but the mesh has %zu",
+                   "%s: %zu layer tetrahedra were given, but the mesh has "
+                   "only %zu tetrahedra",
                    path, *n_layer_tet, m->n_tet);
   return VG_OK;
 }
@@ -694,7 +703,7 @@ vg_status vg_ugrid_accept(const struct vg_ugrid_kind *kind,
   return vg_narrow_accept(n, kind_name(kind), kind_name(&wide), err);
 }
 
-/* Of a mesh in one piece. */
+/* Check the rounded coordinates of a mesh in one piece. */
 static vg_status check_rounded(const struct vg_ugrid_kind *kind,
                                const struct vg_mesh *m, struct vg_error *err)
 {

@@ -8,19 +8,19 @@
 #include "io/mesh/vtu_put.h"
 #include "io/stream/stream.h"
 
-/* Elements of one kind. The file's slot k is our node slot[k]. node NULL:
- * left for others to write, as are points and fields without data. */
+/* Elements of one kind. Slot k of the file is our node slot[k]. node is NULL if
+ * others write the elements, as for points and for fields without data. */
 struct block {
   const uint32_t *node;
   size_t n;
   int n_node;
-  uint8_t type; /* VTK's number */
+  uint8_t type; /* VTK's type number */
   uint8_t slot[8];
 };
 
 #define END "\n </AppendedData>\n</VTKFile>\n"
 
-/* What a file shows: points (renumbered where `number` is set) and blocks. */
+/* Contents of a file: points (renumbered if `number` is set) and blocks. */
 struct grid {
   size_t n_point, n_cell;
   const double (*point)[3];
@@ -30,10 +30,12 @@ struct grid {
   int n_block;
   const struct vg_vtu_field *field;
   size_t n_field;
-  const struct vg_mesh *patches; /* not NULL: add patch ids as cell data */
+  const struct vg_mesh *patches; /* if not NULL, patch ids are added as cell
+                                    data */
 };
 
-/* Ours to VTK's: pyramid and wedge differ (formats.md 2.3). */
+/* Our node order to VTK's, which differs for pyramid and wedge (formats.md
+ * 2.3). */
 #define PLAIN                                                                  \
   {                                                                            \
     0, 1, 2, 3, 4, 5, 6, 7                                                     \
@@ -60,7 +62,7 @@ static void add_block(struct grid *g, const uint32_t *node, size_t n,
 static const struct block triangle = { NULL, 0, 3, 5, PLAIN };
 static const struct block quadrilateral = { NULL, 0, 4, 9, PLAIN };
 
-static const struct block cells[4] = { /* as VG_SLICE_TET and so on */
+static const struct block cells[4] = { /* in the order of VG_SLICE_TET, ... */
                                        { NULL, 0, 4, 10, PLAIN },
                                        { NULL, 0, 5, 14, PYRAMID },
                                        { NULL, 0, 6, 13, WEDGE },
@@ -112,7 +114,7 @@ static uint64_t connectivity_bytes(const struct grid *g)
   return n;
 }
 
-/* Declare an array of `bytes` bytes; *at is the offset of the next one. */
+/* Declare an array of `bytes` bytes; *at becomes the offset of the next one. */
 static void put_array(struct vg_output *o, const char *type, const char *name,
                       int n_component, uint64_t bytes, uint64_t *at)
 {
@@ -213,7 +215,8 @@ static void put_connectivity(struct vg_output *o, const struct grid *g)
   for (int b = 0; b < g->n_block; b++) put_nodes(o, &g->block[b], g->number, 0);
 }
 
-/* Where each cell ends in the connectivity; *end: where the last one did. */
+/* Write the end of each cell in the connectivity; *end: end of the previous
+ * cell. */
 static void put_ends(struct vg_output *o, const struct block *k, int64_t *end)
 {
   for (size_t i = 0; i < k->n; i++) {
@@ -278,7 +281,8 @@ static vg_status check_names(const struct grid *g, struct vg_error *err)
       bad = (unsigned char)*name < 32 || strchr("<>&\"'", *name) != NULL;
     if (bad)
       return vg_fail(err, VG_ERR_INPUT,
-                     "field %zu of a VTU file has a name that XML cannot hold",
+                     "the name of field %zu of a VTU file contains "
+                     "characters that are not allowed in XML",
                      i + 1);
   }
   return VG_OK;
@@ -364,7 +368,7 @@ void vg_vtu_put_cells(struct vg_output *out, const struct vg_vtu_places *at,
   put_types(out, &b);
 }
 
-/* --- entries --- */
+/* --- public functions --- */
 
 vg_status vg_vtu_write(const char *path, const struct vg_mesh *m,
                        const struct vg_vtu_field *fields, size_t n,

@@ -1,7 +1,7 @@
-/* io/mesh/vtu.h: VTK unstructured grids for ParaView and VisIt, appended raw
- * with UInt64 headers (formats.md 4.4). 0-based; VTK's order of pyramids and
- * wedges. Written in the byte order of the machine, piece by piece, without
- * a copy of the mesh. */
+/* io/mesh/vtu.h: VTK unstructured grids for ParaView and VisIt, as appended raw
+ * data with UInt64 headers (formats.md 4.4). 0-based; pyramids and wedges in
+ * VTK's node order. Written in the byte order of the machine, array by array,
+ * without a copy of the mesh. */
 #ifndef VG_IO_MESH_VTU_H
 #define VG_IO_MESH_VTU_H
 
@@ -13,10 +13,10 @@
 enum vg_vtu_place { VG_VTU_POINT, VG_VTU_CELL };
 enum vg_vtu_type { VG_VTU_FLOAT64, VG_VTU_FLOAT32, VG_VTU_INT32 };
 
-/* Name of the cell data with parts for the solver. */
+/* Name of the cell data that holds the solver partition of each cell. */
 #define VG_VTU_SOLVER_PART "solver_part"
 
-/** One array of results; data is borrowed. */
+/** One result array; the data are borrowed. */
 struct vg_vtu_field {
   const char *name;
   enum vg_vtu_place place;
@@ -26,12 +26,12 @@ struct vg_vtu_field {
 };
 
 /** Write the cells of m (tetrahedra, pyramids, prisms, hexahedra, in this
- * order), or its boundary (vg_vtu_write_boundary) where m has no cells.
+ * order), or its boundary (vg_vtu_write_boundary) if m has no cells.
  *
- * @param fields  [n]; cell fields follow the order of cells above. May be
+ * @param fields  [n]; cell fields are in the order of the cells above. May be
  *                NULL for n = 0.
  * The file appears complete or not at all. Returns VG_ERR_IO, or VG_ERR_INPUT
- * for a field name that is empty or holds quotes, angle brackets, '&' or
+ * for a field name that is empty or contains quotes, angle brackets, '&' or
  * control characters. Threads: re-entrant. */
 vg_status vg_vtu_write(const char *path, const struct vg_mesh *m,
                        const struct vg_vtu_field *fields, size_t n,
@@ -41,12 +41,12 @@ vg_status vg_vtu_write(const char *path, const struct vg_mesh *m,
  * that they use, and patch ids as cell data `patch`.
  *
  * @param fields  [n]; cell fields: triangles, then quadrilaterals; point
- *                fields have an entry for every point of m */
+ *                fields: one value for every point of m */
 vg_status vg_vtu_write_boundary(const char *path, const struct vg_mesh *m,
                                 const struct vg_vtu_field *fields, size_t n,
                                 struct vg_error *err);
 
-/** Write loose triangles, e.g. faces with a defect.
+/** Write individual triangles, such as faces with a defect.
  *
  * @param point  [n_point][3]
  * @param tri    [n_tri][3] 0-based, < n_point */

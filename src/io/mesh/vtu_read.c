@@ -11,24 +11,27 @@
 
 #include "base/memory.h"
 
-/* What zlib can pack at best: 1032 to 1. A count beyond it is a lie. */
+/* Best compression ratio of zlib: 1032 to 1. A count that implies a higher one
+ * is wrong. */
 #define MOST_PACKED 1100
 
 struct file {
   struct vg_input *in;
-  const char *text, *end; /* the XML, without what is appended */
-  const char *appended;   /* behind its '_'; NULL: nothing is */
-  int is_base64;          /* of what is appended */
+  const char *text, *end; /* the XML, without the appended data */
+  const char *appended;   /* start of the appended data, after its '_'; NULL:
+                             the file has no appended data */
+  int is_base64;          /* encoding of the appended data */
   int swaps, is_packed;
-  size_t head; /* bytes of a number before data: 4 or 8 */
+  size_t head; /* size of the integers that precede the data: 4 or 8 bytes */
 };
 
 struct array {
-  const char *tag, *body, *end; /* "<DataArray", behind '>', "</DataArray" */
-  size_t width;                 /* bytes of a number */
+  const char *tag, *body, *end; /* positions of "<DataArray", after its '>',
+                                   and of "</DataArray" */
+  size_t width;                 /* size of a value in bytes */
 };
 
-/* --- XML, as much as it takes --- */
+/* --- the necessary part of XML --- */
 
 static const char *find(const char *from, const char *end, const char *word)
 {
@@ -37,7 +40,7 @@ static const char *find(const char *from, const char *end, const char *word)
          : NULL;
 }
 
-/* The next tag with this name: its '<'. */
+/* Position of the '<' of the next tag with this name. */
 static const char *find_tag(const char *from, const char *end, const char *name)
 {
   size_t len = strlen(name);
@@ -49,7 +52,8 @@ static const char *find_tag(const char *from, const char *end, const char *name)
   return NULL;
 }
 
-/* Attribute of the tag at `tag` into out; 0: it is not there, or too long. */
+/* Copy an attribute of the tag at `tag` to out; returns 0 if it is absent or
+ * too long. */
 static int attribute(const char *tag, const char *end, const char *name,
                      char *out, size_t size)
 {
@@ -97,8 +101,8 @@ static vg_status read_head(struct file *f, struct vg_error *err)
   f->is_packed = attribute(tag, f->end, "compressor", word, sizeof word);
   if (f->is_packed && strcmp(word, "vtkZLibDataCompressor") != 0)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: packed by %s; only zlib is "
-                   "read: write it with that, or unpacked",
+                   "%s: compressed with %s, but only zlib is supported; "
+                   "write it with zlib or uncompressed",
                    f->in->path, word);
   if (!append) return VG_OK;
   f->is_base64 = attribute(append, end, "encoding", word, sizeof word) &&
@@ -110,7 +114,7 @@ static vg_status read_head(struct file *f, struct vg_error *err)
   return VG_OK;
 }
 
-/* The one piece: its count of points. */
+/* Read the number of points of the only piece. */
 static vg_status read_piece(const struct file *f, size_t *n,
                             struct vg_error *err)
 {
@@ -121,12 +125,11 @@ static vg_status read_piece(const struct file *f, size_t *n,
   if (!piece) return damaged(f, err, "there is no <Piece>");
   if (find_tag(piece + 1, f->end, "Piece"))
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: it has several pieces; merge "
-                   "them into one",
+                   "%s: the file has several pieces; merge them into one",
                    f->in->path);
   if (!attribute(piece, f->end, "NumberOfPoints", word, sizeof word) ||
       !vg_parse_int(word, strlen(word), &v) || v < 1 || v >= UINT32_MAX)
-    return damaged(f, err, "NumberOfPoints is no number from 1 to 2^32 - 2");
+    return damaged(f, err, "NumberOfPoints is not a number from 1 to 2^32 - 2");
   if ((uint64_t)v > (uint64_t)f->in->size * MOST_PACKED / 4)
     return damaged(f, err,
                    "truncated: NumberOfPoints is more than the file "
@@ -135,7 +138,7 @@ static vg_status read_piece(const struct file *f, size_t *n,
   return VG_OK;
 }
 
-/* An array of a section: the first, or the one with a name. */
+/* Find an array of a section: the first one, or the one with this name. */
 static vg_status find_array(const struct file *f, const char *section,
                             const char *name, int components, struct array *out,
                             struct vg_error *err)
@@ -167,16 +170,16 @@ static vg_status find_array(const struct file *f, const char *section,
   out->width = !strcmp(word, "Float64") ? 8 : !strcmp(word, "Float32") ? 4 : 0;
   if (!out->width)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: the array in <%s> is of type "
-                   "'%.20s'; Float32 and Float64 are read",
+                   "%s: the array in <%s> is of type '%.20s'; only Float32 "
+                   "and Float64 are supported",
                    f->in->path, section, word);
   out->tag = at;
   out->body = stop + 1;
   out->end = stop[-1] == '/' ? stop + 1 : find(stop, f->end, "</DataArray");
-  return out->end ? VG_OK : damaged(f, err, "an array has no end");
+  return out->end ? VG_OK : damaged(f, err, "the end of an array is missing");
 }
 
-/* --- bytes, raw or in base64 --- */
+/* --- data bytes, raw or in base64 --- */
 
 struct source {
   const char *at, *end;
@@ -191,8 +194,8 @@ static int digit(char c)
   return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-/* n bytes of a run that was encoded in one; moves: go behind the run. -1:
- * there are not so many. */
+/* Decode the first n bytes of data that were encoded as a unit; with `moves`,
+ * advance past the unit. Returns -1 if there are fewer bytes. */
 static int take(struct source *s, size_t n, int moves, unsigned char *out)
 {
   const char *at = s->at;
@@ -247,7 +250,7 @@ static uint64_t number(const struct file *f, unsigned char *v)
   return f->head == 8 ? wide : narrow;
 }
 
-/* A count of bytes and so many of them, encoded together. */
+/* Read a byte count and that many bytes, encoded as one unit. */
 static int take_plain(const struct file *f, struct source *s, size_t bytes,
                       unsigned char *out)
 {
@@ -264,7 +267,7 @@ static int take_plain(const struct file *f, struct source *s, size_t bytes,
   return bad ? -1 : 0;
 }
 
-/* Blocks one after the other; of `packed` there are n_packed bytes. */
+/* Unpack the blocks in sequence from `packed`, which has n_packed bytes. */
 static int unpack(const struct file *f, unsigned char *head, uint64_t n,
                   const unsigned char *packed, size_t n_packed,
                   unsigned char *out, size_t bytes)
@@ -288,8 +291,9 @@ static int unpack(const struct file *f, unsigned char *head, uint64_t n,
   return done == bytes ? 0 : -1;
 }
 
-/* How many blocks, their size, that of the last (0: it is full), the packed
- * size of each: a run of its own; then all blocks, as another. */
+/* Read compressed data: first, as one unit, the number of blocks, their size,
+ * the size of the last block (0: it is full) and the packed size of each; then
+ * all blocks, as another unit. */
 static int take_packed(const struct file *f, struct source *s, size_t bytes,
                        unsigned char *out)
 {
@@ -329,8 +333,7 @@ static vg_status read_text(const struct file *f, const struct array *a,
     for (to = at; to < a->end && !isspace((unsigned char)*to);) to++;
     if (to == at || !vg_parse_real(at, (size_t)(to - at), &v[i]))
       return vg_fail(err, VG_ERR_FORMAT,
-                     "%s: number %zu of %zu of an array is "
-                     "no number",
+                     "%s: number %zu of %zu of an array is not a number",
                      f->in->path, i + 1, n);
     at = to;
   }
@@ -356,8 +359,8 @@ static vg_status read_bytes(const struct file *f, const struct array *a,
   }
   free(raw);
   return bad ? damaged(f, err,
-                       "truncated or damaged: an array is not as long "
-                       "as NumberOfPoints asks for")
+                       "truncated or damaged: an array is not as long as "
+                       "NumberOfPoints requires")
              : VG_OK;
 }
 
@@ -371,7 +374,7 @@ static vg_status read_array(const struct file *f, const struct array *a,
   vg_status st;
 
   if (!attribute(a->tag, a->end, "format", word, sizeof word))
-    return damaged(f, err, "an array says no format");
+    return damaged(f, err, "an array has no format");
   if (!strcmp(word, "ascii")) {
     st = read_text(f, a, n, v, err);
   } else if (!strcmp(word, "binary")) {
@@ -381,7 +384,7 @@ static vg_status read_array(const struct file *f, const struct array *a,
         !attribute(a->tag, a->end, "offset", word, sizeof word) ||
         !vg_parse_int(word, strlen(word), &offset) || offset < 0 ||
         offset > data_end - f->appended)
-      return damaged(f, err, "an array is nowhere in the file");
+      return damaged(f, err, "the data of an array are missing");
     s = (struct source){ f->appended + offset, data_end, f->is_base64 };
     st = read_bytes(f, a, &s, n, v, err);
   }

@@ -1,8 +1,8 @@
-/* Triangles of which three points lie on a line. Open CASCADE triangulates in
- * the plane of parameters: on cones, cylinders and ruled faces points of one
- * generator are in a line there too, and its triangles between them have no
- * area, or overlap by rounding. Swapping the edge that such a cap has in common
- * with its neighbour in the face moves no point. */
+/* Repair of triangles whose three points are collinear. Open CASCADE
+ * triangulates in the parameter plane. On cones, cylinders and ruled faces, the
+ * points of one generator are collinear there as well; triangles between them
+ * have no area, or overlap by rounding. Swapping the edge between such a cap
+ * and its neighbour in the same face moves no point. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>
@@ -16,17 +16,17 @@ namespace vg_occt
 namespace
 {
 
-/* Height over longest edge below which a triangle counts, and by how much a
- * swap must be worth it. */
+/* Triangles with a smaller ratio of height to longest edge are treated; a swap
+ * must improve it by the factor `gain`. */
 const double flat = 1e-3, gain = 2; /* S14 */
-/* Nothing but rounding is below this. */
+/* A ratio below this is only rounding. */
 const double straight = 1e-9;
 const int most_passes = 20;
 
 struct Edge {
   uint32_t a, b; /* a < b */
   size_t tri;
-  int side; /* opposite this corner */
+  int side; /* opposite this vertex */
 };
 
 bool before(const Edge &e, const Edge &f)
@@ -68,7 +68,7 @@ private:
     return gp_Vec(at(v[0]), at(v[1])).Crossed(gp_Vec(at(v[0]), at(v[2])));
   }
 
-  /* Over the longest edge, which is opposite corner *side. */
+  /* Ratio of height to longest edge, which is opposite vertex *side. */
   double height(const uint32_t *v, int *side) const
   {
     double longest = 0;
@@ -96,7 +96,7 @@ private:
     std::sort(edges_.begin(), edges_.end(), before);
   }
 
-  /* The faces of an edge, from the first one on. */
+  /* First entry of an edge; further entries of the edge follow. */
   std::vector<Edge>::const_iterator find(uint32_t a, uint32_t b) const
   {
     return std::lower_bound(edges_.begin(), edges_.end(),
@@ -124,9 +124,10 @@ private:
     return n == 2 ? other : nullptr;
   }
 
-  /* Worth it where both become higher, on the side of the one that has one;
-   * where four points are on a line, where the edge becomes shorter: so a cap
-   * moves on until there is one. */
+  /* A swap is useful if the smaller height of the new triangles exceeds that of
+   * t by the factor `gain` and neither is inverted. If all four points are
+   * collinear, it is useful if the new edge is shorter: in this way a cap moves
+   * on until its neighbour has an area. */
   bool is_better(const uint32_t *v, const uint32_t *w, const uint32_t *first,
                  const uint32_t *second, double longest) const
   {
@@ -140,7 +141,8 @@ private:
            normal(second) * up > 0;
   }
 
-  /* Triangle t = (p a b), its neighbour (q b a): (p a q) and (p q b). */
+  /* Triangle t = (p a b) and its neighbour (q b a) become (p a q) and (p q
+   * b). */
   bool swap(size_t t, int side)
   {
     uint32_t *v = tri_ + 3 * t;
@@ -176,7 +178,7 @@ private:
 
   const std::vector<double> &x_;
   uint32_t *tri_;
-  gp_Pnt2d *uv_; /* of their corners */
+  gp_Pnt2d *uv_; /* parameters of their vertices */
   size_t n_;
   std::vector<Edge> edges_;
   std::vector<bool> touched_;

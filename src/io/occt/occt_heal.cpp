@@ -1,4 +1,4 @@
-/* Faces that should not be there, and edges that should be one. */
+/* Removes superfluous faces, and starts mending, sewing and uniting. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>
@@ -26,10 +26,10 @@ namespace vg_occt
 namespace
 {
 
-/* A face narrower than this share of the model has no area. */
+/* A face narrower than this fraction of the model has no area. */
 const double width_least = 1e-9; /* S13 */
-/* Copies of a face may be other splines: candidates are those whose areas and
- * centres agree by so much; points on a grid decide. */
+/* Copies of a face may be different splines. Candidates agree in area and
+ * centre to these relative tolerances; a grid of points on the face decides. */
 const double area_near = 1e-2, centre_near = 1e-2, copy_near = 1e-4;
 const int copy_grid = 7;
 
@@ -49,7 +49,7 @@ Measure measure(const Model &model, size_t at)
 
 /* --- faces to mend ------------------------------------------------------- */
 
-/* An edge without its curve in the plane of parameters of its face. */
+/* Does an edge of the face lack its curve in the parameter plane? */
 bool lacks_curves(const TopoDS_Face &face)
 {
   double first, last;
@@ -63,7 +63,7 @@ bool lacks_curves(const TopoDS_Face &face)
 
 /* --- faces to drop ------------------------------------------------------- */
 
-/* Is all of a on b, as far as a grid of points tells? */
+/* Does a lie entirely on b, judged by a grid of points? */
 bool lies_on(const TopoDS_Face &a, const TopoDS_Face &b, double tolerance)
 {
   std::vector<gp_Pnt> some = samples(a, copy_grid);
@@ -85,8 +85,7 @@ bool are_copies(const Model &model, const Measure &a, const Measure &b)
          lies_on(f, g, copy_near * size) && lies_on(g, f, copy_near * size);
 }
 
-/* The normal of a face in the middle of its range of parameters, turned as the
- * face is, at the point of it that is nearest to p. */
+/* Normal of a face at its nearest point to p, oriented as the face. */
 gp_Vec normal_at(const TopoDS_Face &face, const gp_Pnt &p)
 {
   Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
@@ -100,7 +99,7 @@ gp_Vec normal_at(const TopoDS_Face &face, const gp_Pnt &p)
                                                : du.Crossed(dv);
 }
 
-/* Is the wall that two copies make between the materials of two solids? */
+/* Do two copies of a face form a wall between the materials of two solids? */
 bool is_between(const Face &a, const Face &b)
 {
   gp_Pnt p = point_of(a.shape);
@@ -109,8 +108,8 @@ bool is_between(const Face &a, const Face &b)
          normal_at(a.shape, p) * normal_at(b.shape, p) < 0;
 }
 
-/* The later one of two in the file goes. Equal faces of solids that overlap are
- * left for their union, the first time that they are seen. */
+/* Drop the later of two equal faces in the file. Equal faces of solids that
+ * overlap are kept for their union in the first round. */
 void drop_copy(Model &model, size_t i, size_t j, bool again, const Talk &talk)
 {
   Face &later = model.faces[std::max(i, j)];
@@ -125,7 +124,7 @@ void drop_copy(Model &model, size_t i, size_t j, bool again, const Talk &talk)
   later.shape.Nullify();
 }
 
-/* Walls between solids: faces, or two copies of one. */
+/* Walls between solids, which are single faces or two copies of one face. */
 class Walls
 {
 public:
@@ -152,8 +151,8 @@ public:
     shared_[{ std::min(a, b), std::max(a, b) }] += area_[i];
   }
 
-  /* A wall goes, and its solids become one, unless one of them fills a hollow
-   * of the other: that may be the fluid around it. */
+  /* Drop the walls and join their solids, unless one solid fills a hollow of
+   * the other, which may be the fluid around it. */
   void drop(bool again, const Talk &talk)
   {
     for (const Pair &p : pairs_) {
@@ -224,9 +223,9 @@ private:
   }
 
   Model &model_;
-  std::vector<double> area_;  /* of faces */
-  std::vector<Bnd_Box> box_;  /* of solids */
-  std::vector<double> total_; /* area of solids */
+  std::vector<double> area_;  /* area of each face */
+  std::vector<Bnd_Box> box_;  /* bounding box of each solid */
+  std::vector<double> total_; /* area of each solid */
   std::vector<Pair> pairs_;
   std::map<std::pair<int, int>, double> shared_;
   std::vector<std::pair<int, int>> joined_, renamed_;
@@ -266,7 +265,7 @@ void drop_copies(Model &model, std::vector<Measure> &list, bool again,
   walls.drop(again, talk);
 }
 
-/* What has no area goes at once; the others are returned. */
+/* Drop faces without area; return the others. */
 std::vector<Measure> drop_slits(Model &model, const Talk &talk)
 {
   std::vector<Measure> kept;
@@ -343,9 +342,9 @@ void complete(Model &model, const Talk &talk)
   for (const Face &f : model.faces) {
     if (!lacks_curves(f.shape)) continue;
     if (!n++)
-      talk.note(format("%s lacks the curves of its rim in its plane of "
-                       "parameters; they are made anew, also for others of the "
-                       "kind",
+      talk.note(format("%s lacks the curves of its rim in the parameter "
+                       "plane; they are computed, also for other faces like "
+                       "it",
                        named(f).c_str()));
   }
   if (n) mend(model, talk);
@@ -358,7 +357,7 @@ void complete(Model &model, const Talk &talk)
     box.Add(one);
   }
   if (box.IsVoid() || box.IsOpen())
-    throw Failure{ VG_ERR_INPUT, "a face of it reaches to infinity" };
+    throw Failure{ VG_ERR_INPUT, "a face extends to infinity" };
   model.diagonal = std::sqrt(box.SquareExtent());
   std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2,
                    sizes.end());

@@ -1,4 +1,4 @@
-/* Points put back on faces and curves. */
+/* Projection of points to faces and curves. */
 #include "io/occt/occt_parts.h"
 
 #include <cmath>
@@ -22,10 +22,10 @@ namespace
 {
 
 const int most_steps = 15;
-/* Where the lengths of the derivatives say no more: at a pole. */
+/* Below this the lengths of the derivatives are meaningless, as at a pole. */
 const double singular = 1e-10;
-/* Steps end when they are this small a part of the point's distance from the
- * origin and the first step. */
+/* Iterations end when a step is smaller than these fractions of the point's
+ * distance from the origin and of the first step. */
 const double precise = 1e-13, relative = 1e-7;
 
 } // namespace
@@ -52,7 +52,7 @@ Projector::Projector(const TopoDS_Face &face) : state_(new State(face))
 
 Projector::~Projector() = default;
 
-/* The foot may lie beyond the ends of the edge, or a period away. */
+/* The foot may be beyond the ends of the edge, or a period away. */
 gp_Pnt nearest_on_curve(const TopoDS_Edge &edge, const gp_Pnt &p)
 {
   BRepAdaptor_Curve curve(edge);
@@ -69,8 +69,8 @@ gp_Pnt nearest_on_curve(const TopoDS_Edge &edge, const gp_Pnt &p)
   return p.SquareDistance(foot) < p.SquareDistance(best) ? foot : best;
 }
 
-/* The foot on the whole surface, where the face has it; else a point of the
- * face's rim. */
+/* The nearest point of the whole surface if the face contains it; otherwise a
+ * point of the face's rim. */
 gp_Pnt Projector::nearest(const gp_Pnt &p)
 {
   State &s = *state_;
@@ -88,8 +88,8 @@ gp_Pnt Projector::nearest(const gp_Pnt &p)
   return best;
 }
 
-/* Gauss and Newton's steps: points lie near their feet, so that the bend of the
- * surface matters little. */
+/* Gauss-Newton iteration: points are near their feet, so the curvature of the
+ * surface has little effect. */
 static bool walk(const BRepAdaptor_Surface &surface, const gp_Pnt &p,
                  gp_Pnt2d &uv, gp_Pnt &foot)
 {
@@ -127,8 +127,8 @@ bool Piece::holds(const gp_Pnt2d &at) const
   return 1 - a - b >= least[0] && a >= least[1] && b >= least[2];
 }
 
-/* Whether a place is on the face takes longest to find out where its rim is
- * long; most places are in the triangle where they began. */
+/* Deciding whether a location is on the face is slow if its rim is long; most
+ * locations are in the triangle where the search began. */
 gp_Pnt Projector::nearest(const gp_Pnt &p, gp_Pnt2d guess, const Piece &piece)
 {
   State &s = *state_;

@@ -1,4 +1,5 @@
-/* STEP, IGES and BREP into faces with their words. */
+/* Reads faces and their names, colours and layers from STEP, IGES and BREP
+ * files. */
 #include "io/occt/occt_parts.h"
 
 #include <cmath>
@@ -42,10 +43,11 @@ namespace
 {
 
 struct Unit {
-  const char *word, *open_cascade; /* of a report; of Interface_Static */
+  const char *word, *open_cascade; /* name in reports; name in
+                                      Interface_Static */
   double mm;
 };
-/* In the order of enum vg_cad_unit, without the first. */
+/* In the order of enum vg_cad_unit, without its first entry. */
 const Unit units[] = { { "mm", "MM", 1 },        { "cm", "CM", 10 },
                        { "m", "M", 1000 },       { "km", "KM", 1e6 },
                        { "inch", "INCH", 25.4 }, { "foot", "FT", 304.8 } };
@@ -56,7 +58,7 @@ TopoDS_Shape bare(const TopoDS_Shape &s)
   return s.Located(TopLoc_Location());
 }
 
-/* Systems write these where there is no name. */
+/* Remove the placeholders that CAD systems write instead of a name. */
 std::string cleaned(std::string name)
 {
   while (!name.empty() && static_cast<unsigned char>(name.back()) <= ' ')
@@ -91,8 +93,8 @@ std::string name_of(const Handle(Standard_Transient) & entity)
 
 /* --- units --------------------------------------------------------------- */
 
-/* The unit to work in. `given`: millimetres of the file's own, 0: it has
- * none. */
+/* The unit of the result. `given`: millimetres per unit of the file; 0: the
+ * file has no unit. */
 const Unit &choose_unit(const vg_cad_ask &ask, double given, const char *called,
                         const Talk &talk)
 {
@@ -103,19 +105,20 @@ const Unit &choose_unit(const vg_cad_ask &ask, double given, const char *called,
     if (std::fabs(u.mm - own) < 1e-6 * own) to = &u;
   if (ask.unit > 0 && ask.unit <= n_unit) to = &units[ask.unit - 1];
   if (!to) {
-    talk.note(format("lengths are in %s, %.9g mm each; the surface is in mm",
+    talk.note(format("lengths in the file are in %s, %.9g mm each; the "
+                     "surface is in mm",
                      called, own));
     return units[0];
   }
   if (!(given > 0))
     talk.note(format("the file names no unit of length; millimetres were "
-                     "assumed, the surface is in %s",
+                     "assumed, and the surface is in %s",
                      to->word));
   else if (std::fabs(to->mm - own) < 1e-6 * own)
     talk.note(format("lengths are in %s, the file's unit", to->word));
   else
-    talk.note(format("lengths of the file, in %s (%.9g mm), were converted to "
-                     "%s",
+    talk.note(format("lengths in the file, in %s (%.9g mm), were converted "
+                     "to %s",
                      called, own, to->word));
   return *to;
 }
@@ -142,14 +145,14 @@ double step_unit(STEPControl_Reader &reader, std::string &called)
   return 1000;
 }
 
-/* --- what a document says of shapes -------------------------------------- */
+/* --- attributes of shapes in a document --------------------------------- */
 
 struct Said {
   std::string name, colour, layer;
 };
 
-/* Of all shapes at once, without their places in assemblies: looking each one
- * up in the document takes time that grows with its square. */
+/* Attributes of all shapes, without their locations in assemblies. Looking each
+ * shape up in the document would take quadratic time. */
 class Words
 {
 public:
@@ -172,7 +175,7 @@ public:
     take_document();
   }
 
-  /* Null where nothing is said. */
+  /* Null if the shape has no attributes. */
   const Said *of(const TopoDS_Shape &s) const
   {
     return said_.Seek(bare(s));
@@ -200,7 +203,7 @@ private:
     if (to->name.empty()) to->name = name;
   }
 
-  /* What one entity made of several faces has the name of all of them. */
+  /* All faces made from one entity have the entity's name. */
   void bind(const TopoDS_Shape &s, const std::string &name)
   {
     if (s.IsNull()) return;
@@ -250,8 +253,8 @@ private:
   NCollection_DataMap<TopoDS_Shape, Said, TopTools_ShapeMapHasher> said_;
 };
 
-/* Faces below a shape, in its order, each once; solids hand their words down
- * to faces that have none. */
+/* Collects the faces of a shape, in order, each once. Faces without attributes
+ * get those of their solid. */
 class Collector
 {
 public:
@@ -300,7 +303,7 @@ Handle(TDocStd_Document) new_document()
 {
   Handle(TDocStd_Document) doc;
 
-  XCAFDoc_ShapeTool::SetAutoNaming(Standard_False); /* as in "COMPOUND" */
+  XCAFDoc_ShapeTool::SetAutoNaming(Standard_False); /* such as "COMPOUND" */
   XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", doc);
   return doc;
 }
@@ -318,7 +321,7 @@ void collect(const Words &words, Model &model)
   }
 }
 
-/* Entities that Open CASCADE could not make shapes of. */
+/* Report entities that Open CASCADE could not convert to shapes. */
 void note_failures(const Handle(XSControl_WorkSession) & session,
                    const Talk &talk)
 {
@@ -346,22 +349,23 @@ void require(IFSelect_ReturnStatus got, const char *kind)
   if (got == IFSelect_RetDone) return;
   throw Failure{ VG_ERR_FORMAT,
                  format("Open CASCADE cannot read this %s file (%s); it is "
-                        "damaged or none: export it again",
+                        "damaged or not a file of this kind: export it again",
                         kind,
-                        got == IFSelect_RetVoid ? "nothing is in it"
+                        got == IFSelect_RetVoid ? "it is empty"
                                                 : "its syntax is wrong") };
 }
 
-/* Open CASCADE needs 27 kB for each: 8 GB. */
+/* Open CASCADE needs 27 kB per face, so this many need 8 GB. */
 const size_t MOST_FACES = 300000;
 
 void refuse_too_many(size_t n)
 {
   if (n <= MOST_FACES) return;
   throw Failure{ VG_ERR_UNSUPPORTED,
-                 format("it has %zu faces, more than the %zu for which Open "
-                        "CASCADE's memory lasts; a tessellation that was saved "
-                        "as CAD is read as what it is from STL or OBJ",
+                 format("it has %zu faces, more than the limit of %zu that "
+                        "Open CASCADE's memory use allows; if it is a "
+                        "tessellation saved as CAD, read it from STL or OBJ "
+                        "instead",
                         n, MOST_FACES) };
 }
 
@@ -374,8 +378,8 @@ bool names_face(const std::string &word)
           !word.compare(word.size() - tail.size(), tail.size(), tail));
 }
 
-/* Before a STEP file is read: the reader looks through a list for each of its
- * items, so that a shell of a million faces takes it hours. */
+/* Count faces before a STEP file is read: the reader searches a list for each
+ * of its items, so that a shell of a million faces would take hours. */
 size_t count_step_faces(const std::string &path)
 {
   std::ifstream in(path, std::ios::binary);
@@ -392,7 +396,7 @@ size_t count_step_faces(const std::string &path)
   return n;
 }
 
-/* Trimmed and bounded surfaces, faces of solids. */
+/* Count trimmed and bounded surfaces and faces of solids. */
 size_t count_iges_faces(const Handle(IGESData_IGESModel) & file)
 {
   size_t n = 0;
@@ -426,7 +430,8 @@ void read_step(const vg_cad_ask &ask, const std::string &path, Model &model,
     choose_unit(ask, given, called.c_str(), talk).open_cascade);
   talk.stage("translating its entities");
   if (!reader.Transfer(doc))
-    throw Failure{ VG_ERR_INPUT, "no shape could be made of this STEP file" };
+    throw Failure{ VG_ERR_INPUT, "this STEP file could not be converted to "
+                                 "a shape" };
   note_failures(reader.Reader().WS(), talk);
   collect(Words(doc, reader.Reader().WS()), model);
 }
@@ -442,7 +447,8 @@ void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
   reader.SetNameMode(Standard_True);
   reader.SetColorMode(Standard_True);
   reader.SetLayerMode(Standard_True);
-  /* The reader scales by what an earlier file has left here. */
+  /* The reader scales by this setting, which an earlier file may have
+   * changed. */
   Interface_Static::SetCVal("xstep.cascade.unit", units[0].open_cascade);
   require(reader.ReadFile(path.c_str()), "IGES");
   file = reader.IGESModel();
@@ -455,7 +461,8 @@ void read_iges(const vg_cad_ask &ask, const std::string &path, Model &model,
   }
   talk.stage("translating its entities");
   if (!reader.Transfer(doc))
-    throw Failure{ VG_ERR_INPUT, "no shape could be made of this IGES file" };
+    throw Failure{ VG_ERR_INPUT, "this IGES file could not be converted to "
+                                 "a shape" };
   note_failures(reader.WS(), talk);
   collect(Words(doc, reader.WS()), model);
 }
@@ -467,11 +474,11 @@ bool load_brep(const std::string &path, TopoDS_Shape &shape)
   try {
     return BRepTools::Read(shape, path.c_str(), builder) && !shape.IsNull();
   } catch (const Standard_Failure &) {
-    return false; /* what it says is of no use */
+    return false; /* its result is of no use */
   }
 }
 
-/* A BREP file has neither units nor words. */
+/* A BREP file has neither units nor names. */
 void read_brep(const vg_cad_ask &ask, const std::string &path, Model &model,
                const Talk &talk)
 {
@@ -482,10 +489,10 @@ void read_brep(const vg_cad_ask &ask, const std::string &path, Model &model,
                                   "is truncated or damaged: export it again" };
   refuse_too_many(count_faces(shape, MOST_FACES + 1));
   if (ask.unit)
-    throw Failure{ VG_ERR_INPUT, "a BREP file has no unit of length: cad_unit "
-                                 "must be file, and its numbers stay as they "
-                                 "are" };
-  talk.note("a BREP file has no unit of length: its numbers stay as they are");
+    throw Failure{ VG_ERR_INPUT, "a BREP file has no unit of length: "
+                                 "cad_unit must be file, and its numbers "
+                                 "are not scaled" };
+  talk.note("a BREP file has no unit of length: its numbers are not scaled");
   Collector(model, nullptr).add(shape, Face());
 }
 
@@ -499,8 +506,9 @@ void read(const vg_cad_ask &ask, const std::string &path, Model &model,
   else if (ask.kind == 2) read_iges(ask, path, model, talk);
   else read_brep(ask, path, model, talk);
   if (model.faces.empty())
-    throw Failure{ VG_ERR_INPUT, "there are no faces in it: points, curves or "
-                                 "nothing at all; export solids or surfaces" };
+    throw Failure{ VG_ERR_INPUT, "there are no faces in it, only points or "
+                                 "curves, or nothing at all; export solids "
+                                 "or surfaces" };
 }
 
 } // namespace vg_occt

@@ -1,10 +1,10 @@
-/* Triangles that do not follow their face.
+/* Repair of triangles that do not follow their face.
  *
- * A triangle of a curved face whose corners all lie on the rim lies in the
- * plane of the rim. Where the neighbouring face is a plane cap, or has such a
- * triangle too, the two overlap. Near a cusp, points of the face lie beyond the
+ * A triangle of a curved face whose vertices are all on the rim lies in the
+ * plane of the rim. If the neighbouring face is a plane cap, or also has such a
+ * triangle, the two overlap. Near a cusp, points of the face lie beyond the
  * chord of its rim, so that triangles fold. Swapping an edge, inserting a point
- * of the face, or removing one mends both. */
+ * of the face, or removing one repairs both. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>
@@ -19,15 +19,16 @@ namespace vg_occt
 namespace
 {
 
-/* Squares of the cosines of angles between a triangle and its face: corners on
- * the rim, 1 degree where one neighbouring face has them all, else 30; other
- * triangles 60. */
+/* Squared cosines of the largest angle between a triangle and its face: if all
+ * vertices are on the rim, 1 degree if one neighbouring face has all three,
+ * else 30 degrees; for other triangles 60 degrees. */
 const double near_cap = 0.9996954, near_rim = 0.75, near_face = 0.25; /* S53 */
-const double pull[] = { 0, 0.25, 0.5, 0.75 }; /* from an edge into the face */
-/* Height over longest edge: below it a triangle is useless. */
+/* distance from an edge into the face */
+const double pull[] = { 0, 0.25, 0.5, 0.75 };
+/* A triangle with a smaller ratio of height to longest edge is useless. */
 const double flat = 1e-7;
 const int most_passes = 20;
-/* Changes of one face beyond which it is left alone: it is damaged. */
+/* A face that needs more changes than this is damaged and left unchanged. */
 const int most_changes = 2000;
 
 struct Corner {
@@ -59,7 +60,7 @@ struct Tri {
 struct Side {
   uint32_t a, b; /* a < b */
   size_t tri;
-  int corner; /* opposite */
+  int corner; /* opposite the edge */
 };
 
 bool before(const Side &x, const Side &y)
@@ -88,7 +89,7 @@ public:
     tri_.push_back(tri);
   }
 
-  /* 1 when any triangle was changed. */
+  /* Returns true if any triangle was changed. */
   bool run()
   {
     list_sides();
@@ -130,7 +131,7 @@ private:
     return p < pieces_.size() && !pieces_[p].empty();
   }
 
-  /* Has another face all three corners? */
+  /* Does another face have all three vertices? */
   bool has_neighbour(const Tri &t) const
   {
     for (uint32_t other : pieces_[t.v[0].p])
@@ -159,8 +160,8 @@ private:
            dot * dot < most * n.SquareMagnitude() * up.SquareMagnitude();
   }
 
-  /* An edge between two points of a rim that two faces have may be one of the
-   * other face. */
+  /* An edge between two rim points that belong to two faces may also be an edge
+   * of the other face. */
   bool may_be_double(uint32_t a, uint32_t b) const
   {
     if (!is_on_rim(a) || !is_on_rim(b)) return false;
@@ -169,7 +170,8 @@ private:
     return false;
   }
 
-  /* Triangles on the rim, and those that fold: their faces are compared. */
+  /* Find triangles with all vertices on the rim, and those that fold; their
+   * normals are compared with the face. */
   void find_suspects()
   {
     std::vector<gp_Vec> n;
@@ -190,7 +192,7 @@ private:
     }
   }
 
-  /* Neither bad nor turned nor flat. */
+  /* Is the triangle neither bad nor inverted nor degenerate? */
   bool is_good(const Tri &t) const
   {
     gp_Vec n = normal(t);
@@ -235,7 +237,8 @@ private:
            e->b == std::max(a, b);
   }
 
-  /* The other triangle of an edge of two; null: the edge is on the rim. */
+  /* The other triangle of an edge with two triangles; null if the edge is on
+   * the rim. */
   const Side *across(size_t t, int corner) const
   {
     uint32_t a = tri_[t].v[(corner + 1) % 3].p;
@@ -271,7 +274,7 @@ private:
     return any;
   }
 
-  /* Triangles next to a bad one may be bad without a fold between them. */
+  /* The neighbours of a bad triangle may be bad without a fold between them. */
   bool spread(size_t t)
   {
     bool was = tri_[t].is_suspect || tri_[t].was_suspect;
@@ -298,7 +301,7 @@ private:
     return !has_chord && insert(t);
   }
 
-  /* The triangles of a point; empty where one of them was touched. */
+  /* Triangles of a point; empty if one of them was already changed. */
   std::vector<size_t> star(uint32_t p) const
   {
     std::vector<size_t> out;
@@ -311,13 +314,13 @@ private:
     return out;
   }
 
-  /* Is x in a triangle with `to`, and not in one with p? */
+  /* Is x in a triangle with `to`, but not in one with p? */
   bool is_beside(uint32_t x, uint32_t to, uint32_t p) const
   {
     return is_side(x, to) && !(is_side(x, p) && is_third(x, to, p));
   }
 
-  /* Is there a triangle of all three? */
+  /* Is there a triangle with these three vertices? */
   bool is_third(uint32_t x, uint32_t a, uint32_t b) const
   {
     for (auto e = find(a, b);
@@ -327,7 +330,7 @@ private:
     return false;
   }
 
-  /* Take a point of the face away: it moves to one of its neighbours. */
+  /* Remove a point of the face by moving it to one of its neighbours. */
   bool remove(size_t t, int k)
   {
     const uint32_t p = tri_[t].v[k].p;
@@ -400,7 +403,8 @@ private:
     s_.corner.pop_back();
   }
 
-  /* Both triangles of an edge become four around a new point of the face. */
+  /* Split an edge: its two triangles become four around a new point of the
+   * face. */
   bool divide(size_t t, int k, const Side &other)
   {
     const Corner *v = tri_[t].v;
@@ -424,7 +428,7 @@ private:
     return false;
   }
 
-  /* A triangle that is a whole face becomes three. */
+  /* Split a triangle that is a whole face into three. */
   bool insert(size_t t)
   {
     const Corner a = tri_[t].v[0], b = tri_[t].v[1], c = tri_[t].v[2];
@@ -451,7 +455,7 @@ private:
   int n_changes_ = 0;
 };
 
-/* Of each point of a curve the faces that have it, in order. */
+/* For each point of a curve, the faces that contain it, in order. */
 std::vector<std::vector<uint32_t>> list_pieces(const Surface &s)
 {
   std::vector<std::vector<uint32_t>> out(s.point.size() / 3);
@@ -469,7 +473,7 @@ std::vector<std::vector<uint32_t>> list_pieces(const Surface &s)
   return out;
 }
 
-/* Triangles t to end of `from`, as `patch` has them, behind those of `to`. */
+/* Append triangles t to end of `from` to `to`, replaced by those of `patch`. */
 void append(const Surface &from, size_t t, const std::vector<Tri> &patch,
             Surface &to)
 {

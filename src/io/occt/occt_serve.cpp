@@ -1,4 +1,4 @@
-/* Questions from the parent, and what may go wrong over them. */
+/* Answers the questions of the parent and handles their errors. */
 #include "io/occt/occt_parts.h"
 
 #include <cstdarg>
@@ -36,7 +36,8 @@ std::string place(const gp_Pnt &p)
 
 void Talk::put(const void *data, size_t size) const
 {
-  if (!wire_->put(fd_, data, size)) _exit(1); /* nobody listens */
+  /* the parent has closed the socket */
+  if (!wire_->put(fd_, data, size)) _exit(1);
 }
 
 bool Talk::get(void *data, size_t size) const
@@ -63,7 +64,7 @@ namespace
 
 using namespace vg_occt;
 
-/* A file in memory, with a path for libraries that open files. */
+/* A file in memory with a path, for libraries that open files. */
 class MemoryFile
 {
 public:
@@ -119,9 +120,9 @@ void send(const Model &model, const Surface &s, const Talk &talk)
   talk.put(s.patches.data(), s.patches.size() * sizeof s.patches[0]);
 }
 
-/* The state of the child between questions. */
+/* State of the child between questions. */
 struct Held {
-  Model healed; /* as it was before it was triangulated */
+  Model healed; /* model before triangulation */
   Model model;
   Surface surface;
 };
@@ -145,7 +146,7 @@ void answer_read(const vg_cad_ask &ask, Held &held, const Talk &talk)
   held = Held();
   talk.stage("reading the file");
   read(ask, file.path(), held.healed, talk);
-  talk.stage("looking for faults of its faces");
+  talk.stage("checking its faces for errors");
   complete(held.healed, talk);
   heal(ask, held.healed, talk);
   answer_again(ask, held, talk);
@@ -164,7 +165,7 @@ struct Points {
   }
 };
 
-/* A face of the file: all of its pieces. */
+/* A face of the file, with all of its pieces. */
 class Pieces
 {
 public:
@@ -205,7 +206,7 @@ void put_on_faces(const Model &model, Points &p)
     if (!open[k]) open[k].reset(new Pieces(model, k));
     if (open[k]->none())
       throw Failure{ VG_ERR_INPUT,
-                     format("point %zu: there is no face %u", i + 1, k) };
+                     format("point %zu: the model has no face %u", i + 1, k) };
     p.set(i, from, open[k]->nearest(from));
   }
 }
@@ -222,7 +223,7 @@ struct Triangle {
     gp_Vec u(x[0], x[1]), v(x[0], x[2]);
     double area = u.Crossed(v).Magnitude();
     for (int i = 0; i < 3; i++)
-      if (s.rim[t] >> i & 1) /* over the height of the corner */
+      if (s.rim[t] >> i & 1) /* relative to the height of the vertex */
         piece.least[i] = area > 0
                          ? s.bulge *
                              x[(i + 1) % 3].SquareDistance(x[(i + 2) % 3]) /
@@ -230,7 +231,7 @@ struct Triangle {
                          : 2;
   }
 
-  /* The place of p on it. */
+  /* Parameters of p in the triangle. */
   gp_Pnt2d guess(const gp_Pnt &p) const
   {
     const gp_Pnt2d *uv = piece.uv;
@@ -260,7 +261,8 @@ void put_on_triangles(const Model &model, const Surface &s, Points &p)
 
     if (t >= s.face.size())
       throw Failure{ VG_ERR_INPUT,
-                     format("point %zu: there is no triangle %u", i + 1, t) };
+                     format("point %zu: the model has no triangle %u", i + 1,
+                            t) };
     std::unique_ptr<Projector> &on = open[s.piece[t]];
     if (!on) on.reset(new Projector(model.faces[s.piece[t]].shape));
     const Triangle tri(s, t);
@@ -276,7 +278,7 @@ void put_on_curves(const Model &model, Points &p)
 
     if (!k || k > model.curves.size())
       throw Failure{ VG_ERR_INPUT,
-                     format("point %zu: there is no curve %u", i + 1, k) };
+                     format("point %zu: the model has no curve %u", i + 1, k) };
     p.set(i, from, nearest_on_curve(model.curves[k - 1], from));
   }
 }
@@ -292,7 +294,7 @@ void answer_points(const vg_cad_ask &ask, const Held &held, const Talk &talk)
   if (!talk.get(p.number.data(), ask.n * sizeof p.number[0]) ||
       !talk.get(p.x.data(), 3 * ask.n * sizeof p.x[0]))
     _exit(0);
-  talk.stage("putting points on its faces");
+  talk.stage("projecting points to its faces");
   if (ask.what == VG_CAD_ASK_FACES) put_on_faces(held.model, p);
   else if (ask.what == VG_CAD_ASK_CURVES) put_on_curves(held.model, p);
   else put_on_triangles(held.model, held.surface, p);
@@ -311,19 +313,20 @@ void answer(const vg_cad_ask &ask, Held &held, const Talk &talk)
     talk.fail(f);
   } catch (const std::bad_alloc &) {
     talk.fail({ VG_ERR_MEMORY, "not enough memory for Open CASCADE" });
-    _exit(1); /* the question may not have been read whole */
+    _exit(1); /* part of the question may still be unread */
   } catch (const Standard_Failure &f) {
     talk.fail({ VG_ERR_GEOMETRY,
-                format("Open CASCADE could not work on it (%s: %s); the file "
-                       "may be damaged: export it again",
+                format("Open CASCADE could not process it (%s: %s); the "
+                       "file may be damaged: export it again",
                        f.DynamicType()->Name(), f.GetMessageString()) });
   } catch (const std::exception &f) {
     talk.fail({ VG_ERR_GEOMETRY,
-                format("Open CASCADE could not work on it (%s)", f.what()) });
+                format("Open CASCADE could not process it (%s)", f.what()) });
   }
 }
 
-/* Whoever closes the other end wants no more: also when a call never ends. */
+/* End the process when the parent closes the socket, even if a call never
+ * returns. */
 void watch(int fd)
 {
   pollfd p = { fd, POLLRDHUP, 0 };
@@ -333,7 +336,7 @@ void watch(int fd)
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED 1 /* by gcc; their shadow is terabytes */
+#define SANITIZED 1 /* gcc's sanitizers need terabytes of address space */
 #elif defined(__has_feature)
 #define SANITIZED                                                              \
   (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
@@ -341,7 +344,7 @@ void watch(int fd)
 #define SANITIZED 0
 #endif
 
-/* A damaged file must not take the memory of the machine. */
+/* A damaged file must not use up the memory of the machine. */
 void limit_memory()
 {
 #if !SANITIZED

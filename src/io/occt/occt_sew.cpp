@@ -1,4 +1,4 @@
-/* Sewing of open edges, orientation of faces, and the volume of the model. */
+/* Sewing of open edges, orientation of faces, and volume of the model. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>
@@ -22,22 +22,23 @@ namespace vg_occt
 namespace
 {
 
-/* Tolerances over the diagonal, in turn; those behind the first stay below
- * this share of the shortest edge that is longer than the first. */
+/* Sewing tolerances relative to the diagonal, tried in this order. Those after
+ * the first must be smaller than share_of_edge times the shortest edge that is
+ * longer than the first. */
 const double sequence[] = { 1e-6, 1e-5, 1e-4 }, share_of_edge = 0.1; /* S52 */
-/* More open edges than this are not compared with each other. */
+/* With more open edges than this they are not compared with each other. */
 const size_t most_compared = 2000;
 const int most_places = 3;
-/* Error of a shell's volume that Open CASCADE aims at. */
+/* Relative error requested from Open CASCADE for the volume of a shell. */
 const double integral_near = 1e-6; /* S55 */
 
-/* An edge of a face, as the face has it. */
+/* Use of an edge by a face. */
 struct Use {
   size_t face;
   bool is_reversed;
 };
 
-/* Edges that are not degenerated, with the faces that have them. A seam has its
+/* Edges that are not degenerate, with the faces that use them. A seam lists its
  * face twice. */
 struct Edges {
   explicit Edges(const Model &model)
@@ -83,10 +84,11 @@ struct Sewn {
   Model model;
   double tolerance;
   size_t n_open;
-  std::string places; /* of the first edges that were joined */
+  std::string places; /* locations of the first edges that were joined */
   std::vector<std::string> notes;
 
-  /* What sewing made of a face: itself, several, or nothing. */
+  /* Take over the result of sewing for a face: the face itself, several faces,
+   * or none. */
   void take(const Face &from, const TopoDS_Shape &to)
   {
     size_t n = model.faces.size();
@@ -97,7 +99,7 @@ struct Sewn {
       model.faces.back().shape = TopoDS::Face(e.Current());
     }
     if (model.faces.size() > n) return;
-    notes.push_back(format("%s at %s is narrower than the tolerance of sewing "
+    notes.push_back(format("%s at %s is narrower than the sewing tolerance "
                            "and was dropped",
                            named(from).c_str(),
                            place(point_of(from.shape)).c_str()));
@@ -106,7 +108,7 @@ struct Sewn {
   }
 };
 
-/* Open edges of before that are no longer open. */
+/* Locations of edges that were open before and no longer are. */
 std::string joined_places(const Edges &before, const Edges &after,
                           const BRepBuilderAPI_Sewing &sewing)
 {
@@ -160,8 +162,8 @@ double shortest_edge(const Edges &edges, double least)
   return shortest;
 }
 
-/* May an open edge have a partner within the tolerance: does the middle of one
- * lie in the box of another one? */
+/* Can an open edge have a partner within the tolerance, that is, is the
+ * midpoint of one inside the bounding box of another? */
 bool may_have_partner(const Edges &edges, double tolerance)
 {
   std::vector<Bnd_Box> box;
@@ -183,7 +185,7 @@ bool may_have_partner(const Edges &edges, double tolerance)
   return false;
 }
 
-/* The first tolerance that leaves the fewest open edges. */
+/* Sew with the first tolerance that leaves the fewest open edges. */
 Sewn sew_best(const Model &model, const std::vector<double> &list,
               const Edges &before)
 {
@@ -202,8 +204,8 @@ Sewn sew_best(const Model &model, const std::vector<double> &list,
 
 /* --- orientation --------------------------------------------------------- */
 
-/* Faces turned like their neighbours, from the first one of each shell on;
- * those of solids come first and are never turned. */
+/* Orients faces like their neighbours, starting from the first face of each
+ * shell. Faces of solids come first and are never turned. */
 class Turning
 {
 public:
@@ -216,7 +218,7 @@ public:
         for (const Use &u : edges_.uses[i]) of_[u.face].push_back(i);
   }
 
-  /* The number of faces that were turned. */
+  /* Returns the number of faces that were turned. */
   size_t run()
   {
     size_t n = 0;
@@ -260,7 +262,7 @@ private:
 
   Model &model_;
   Edges edges_;
-  std::vector<std::vector<size_t>> of_; /* edges of faces */
+  std::vector<std::vector<size_t>> of_; /* edges of each face */
   std::vector<char> state_;
 };
 
@@ -274,14 +276,15 @@ void note_edges(const Model &model, double tolerance, const Talk &talk)
     const unsigned number = model.faces[u[0].face].number;
 
     if (u.size() == 1 && !open)
-      talk.note(format("%zu edges have one face only, the first is of face %u "
-                       "at %s: a face is missing there, the gap is wider than "
-                       "%.3g (cad_tolerance), or half of a body ends there",
+      talk.note(format("%zu edges have one face only, the first is of face "
+                       "%u at %s: a face is missing there, the gap is wider "
+                       "than %.3g (cad_tolerance), or it is the edge of "
+                       "half a body",
                        edges.n_open, number, middle(edges.edge(i)).c_str(),
                        tolerance));
     if (u.size() > 2 && !many)
-      talk.note(format("%zu edges have three faces or more, the first is of "
-                       "face %u at %s: faces that repeat or divide others",
+      talk.note(format("%zu edges have three or more faces, the first is of "
+                       "face %u at %s: some faces repeat or divide others",
                        edges.n_many, number, middle(edges.edge(i)).c_str()));
     open = open || u.size() == 1;
     many = many || u.size() > 2;
@@ -310,8 +313,8 @@ double sew(const vg_cad_ask &ask, Model &model, const Talk &talk)
     Sewn sewn = sew_best(model, list, before);
     used = sewn.tolerance;
     if (sewn.n_open < before.n_open) {
-      talk.note(format("%zu edges had one face only; by sewing within %.3g %zu "
-                       "of them found a partner, the first at %s",
+      talk.note(format("%zu edges had one face only; sewing within %.3g "
+                       "found a partner for %zu of them, the first at %s",
                        before.n_open, used, before.n_open - sewn.n_open,
                        sewn.places.c_str()));
       for (const std::string &text : sewn.notes) talk.note(text);
@@ -324,8 +327,8 @@ double sew(const vg_cad_ask &ask, Model &model, const Talk &talk)
 void orient(Model &model, double tolerance, const Talk &talk)
 {
   if (size_t n = Turning(model).run())
-    talk.note(format("%zu faces that are not of a solid were turned like their "
-                     "neighbours",
+    talk.note(format("%zu faces that do not belong to a solid were turned "
+                     "like their neighbours",
                      n));
   note_edges(model, tolerance, talk);
 }

@@ -1,5 +1,6 @@
-/* Open CASCADE's mending of what it has translated, but for the orientation of
- * faces in shells of very many: it looks through all faces for each of them. */
+/* Open CASCADE's mending of translated shapes, except that the orientation of
+ * faces is omitted in shells of very many faces, where Open CASCADE searches
+ * all faces for each face. */
 #include "io/occt/occt_parts.h"
 
 #include <ShapeFix_Shape.hxx>
@@ -17,7 +18,7 @@ namespace vg_occt
 namespace
 {
 
-const size_t MANY = 4000; /* faces: 2 s; four times that for twice as many */
+const size_t MANY = 4000; /* takes 2 s; the time grows as the square */
 
 class Mending : public XSAlgo_AlgoContainer
 {
@@ -30,7 +31,7 @@ public:
                             const bool non_manifold) const override;
 };
 
-/* As Open CASCADE does where nothing else is set. */
+/* The default processing of Open CASCADE. */
 TopoDS_Shape Mending::ProcessShape(const TopoDS_Shape &shape,
                                    const double precision, const double most,
                                    const char *resource, const char *sequence,
@@ -75,7 +76,7 @@ size_t count_faces(const TopoDS_Shape &shape, size_t most)
 
 void mend_large_shells()
 {
-  XSAlgo::Init(); /* would else put its own there later */
+  XSAlgo::Init(); /* otherwise it would later replace our function by its own */
   XSAlgo::SetAlgoContainer(new Mending);
 }
 

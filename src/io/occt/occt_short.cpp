@@ -1,5 +1,6 @@
-/* Edges too short to be of use. Curves that end in a cusp are divided there
- * without end, since their direction turns at each scale. */
+/* Collapse of edges that are too short to be useful. Curves that end in a cusp
+ * are divided indefinitely there, since their direction changes at every
+ * scale. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>
@@ -13,7 +14,7 @@ namespace
 {
 
 const int most_passes = 10;
-/* Square of the cosine by which a triangle may turn: 60 degrees. */
+/* Squared cosine of the largest rotation of a triangle: 60 degrees. */
 const double most_turn = 0.25; /* S51 */
 
 struct Short {
@@ -27,7 +28,7 @@ bool before(const Short &x, const Short &y)
   return x.a != y.a ? x.a < y.a : x.b < y.b;
 }
 
-/* A list without the items, of `width` each, that are gone. */
+/* Remove the items, of `width` values each, that are marked as gone. */
 template <class T>
 void keep(std::vector<T> &list, size_t width, const std::vector<bool> &gone)
 {
@@ -73,7 +74,7 @@ private:
     return gp_Pnt(s_.point[3 * p], s_.point[3 * p + 1], s_.point[3 * p + 2]);
   }
 
-  /* Short edges, by length; those of dead triangles may be among them. */
+  /* Short edges, sorted by length; some may belong to dead triangles. */
   std::vector<Short> list() const
   {
     std::vector<Short> out;
@@ -107,8 +108,8 @@ private:
     return any;
   }
 
-  /* May a point move to another: a point of a curve along its curve, a point
-   * of a face anywhere. */
+  /* May a point move to another? A point of a curve moves along its curve only,
+   * a point of a face anywhere. */
   bool can_go(uint32_t gone, uint32_t to) const
   {
     if (s_.corner[gone]) return false;
@@ -138,7 +139,8 @@ private:
     return out;
   }
 
-  /* Every common neighbour is the third corner of a triangle of the edge. */
+  /* Is every common neighbour of both points the third vertex of a triangle of
+   * the edge? */
   bool keeps_topology(uint32_t gone, uint32_t to) const
   {
     std::vector<uint32_t> a = around(gone), b = around(to), both, third;
@@ -206,8 +208,8 @@ private:
     }
   }
 
-  /* The place of `to` in the plane of parameters that is nearest to that of
-   * the corner: on a seam it has two. */
+  /* Set the parameters of a vertex to those of `to` that are nearest to the old
+   * ones, since a point on a seam has two. */
   void move_corner(size_t t, uint32_t gone, uint32_t to)
   {
     size_t k = 3 * t;
@@ -236,7 +238,7 @@ private:
     near_[gone].clear();
   }
 
-  /* Remove dead triangles, segments without length and points of neither. */
+  /* Remove dead triangles, segments without length, and unused points. */
   void sweep()
   {
     std::vector<bool> no_length(s_.curve.size());
@@ -256,8 +258,8 @@ private:
   Surface &s_;
   double least2_;
   std::vector<bool> dead_;
-  std::vector<std::vector<size_t>> of_;   /* triangles of points */
-  std::vector<std::vector<size_t>> near_; /* segments of points */
+  std::vector<std::vector<size_t>> of_;   /* triangles of each point */
+  std::vector<std::vector<size_t>> near_; /* segments of each point */
 };
 
 } // namespace

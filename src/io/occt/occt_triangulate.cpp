@@ -1,5 +1,5 @@
-/* Faces into triangles that share points by topology: a vertex is one point,
- * and so is each division of an edge, whatever faces meet there. */
+/* Triangulates faces so that they share points by topology: a vertex is one
+ * point, and so is each division of an edge, for all faces that meet there. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>
@@ -26,12 +26,13 @@ namespace
 {
 
 const uint32_t none = UINT32_MAX;
-/* Shortest edge worth having, over the diagonal and over the size of the median
- * face, which a far boundary does not change. */
+/* Smallest useful edge length, relative to the diagonal and to the size of the
+ * median face, which a distant boundary does not affect. */
 const double least_of_all = 1e-7, least_of_face = 1e-6; /* S51 */
 
-/* Mark in s.rim which edges of triangles are on the rims of their faces: those
- * of one triangle only. Triangles of one face are neighbours in the list. */
+/* Set bits in s.rim for the edges of triangles on the rims of their faces,
+ * which are edges with one triangle only. Triangles of one face are adjacent in
+ * the list. */
 void find_rims(Surface &s)
 {
   struct Side {
@@ -72,7 +73,7 @@ public:
   {
   }
 
-  /* Returns false for a face without triangles. */
+  /* Returns false if the face has no triangles. */
   bool add(size_t piece, uint32_t patch)
   {
     const Face &f = model_.faces[piece];
@@ -118,8 +119,8 @@ private:
     return vertex_[at - 1];
   }
 
-  /* Points of an edge from its first parameter to its last. The face that
-   * comes first says where they are; all have the same. */
+  /* Points of an edge from its first parameter to its last. The first face sets
+   * their coordinates; all faces have the same. */
   const std::vector<uint32_t> &divisions(const TopoDS_Edge &edge,
                                          const Handle(Poly_Triangulation) & t,
                                          const TopLoc_Location &at,
@@ -137,7 +138,8 @@ private:
     if (list.size() == n) return list;
     if (!list.empty())
       throw Failure{ VG_ERR_GEOMETRY,
-                     format("curve %zu is divided in two ways", number) };
+                     format("curve %zu is divided differently by two faces",
+                            number) };
     TopExp::Vertices(model_.curves[number - 1], first, last);
     list.resize(n);
     for (size_t k = 0; k < n; k++) {
@@ -182,7 +184,8 @@ private:
         list[k];
   }
 
-  /* Those that a vertex took in are gone. */
+  /* Triangles that collapsed because a vertex replaced several points are
+   * dropped. */
   void add_triangles(size_t piece, const Handle(Poly_Triangulation) & t,
                      uint32_t patch)
   {
@@ -213,10 +216,11 @@ private:
   TopTools_IndexedMapOfShape vertices_, curves_;
   std::vector<uint32_t> vertex_;
   std::vector<std::vector<uint32_t>> curve_;
-  std::vector<uint32_t> global_; /* of the nodes of one face */
+  std::vector<uint32_t> global_; /* numbers of the nodes of one face in the
+                                    surface */
 };
 
-/* What makes a patch, and its name. */
+/* Key and name of the patch of a face. */
 std::string group_of(const vg_cad_ask &ask, const Face &f)
 {
   switch (ask.patches) {
@@ -228,7 +232,7 @@ std::string group_of(const vg_cad_ask &ask, const Face &f)
   }
 }
 
-/* Names are cut at whole characters. */
+/* Names are shortened without splitting characters. */
 void set_name(vg_cad_patch &p, const std::string &name)
 {
   size_t n = std::min(name.size(), sizeof p.name - 1);
@@ -242,7 +246,7 @@ void set_name(vg_cad_patch &p, const std::string &name)
       p.name[k] = '_';
 }
 
-/* The patch of a face; groups count from 1 in the order of their first
+/* Patches of faces; groups are numbered from 1 in the order of their first
  * faces. */
 class Patches
 {
@@ -275,8 +279,9 @@ private:
   std::map<std::string, uint32_t> known_;
 };
 
-/* Deflections go by the size of each edge, so that a far boundary does not
- * coarsen the body in it. One thread: the same for everybody. */
+/* Deflections are relative to the size of each edge, so that a distant boundary
+ * does not coarsen the body. With a single thread the result is
+ * reproducible. */
 void run_mesher(const vg_cad_ask &ask, const TopoDS_Shape &shape, double least)
 {
   IMeshTools_Parameters p;
@@ -301,7 +306,7 @@ size_t count_bare(const Model &model)
     }));
 }
 
-/* Where faces stay bare, mended ones may not. */
+/* Faces that cannot be triangulated are mended and tried again. */
 void make_triangles(const vg_cad_ask &ask, Model &model, double least,
                     const Talk &talk)
 {
@@ -333,8 +338,8 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
 
   model.curves.clear();
   make_triangles(ask, model, least, talk);
-  /* An arc that turns by the angle rises by half of this over its chord;
-   * parameters need not run evenly. */
+  /* An arc that turns by the angle rises by half of this relative to its chord;
+   * the factor 2 allows for uneven parameters. */
   out.bulge = std::tan(ask.angle * (M_PI / 180) / 4);
   for (size_t i = 0; i < model.faces.size(); i++) {
     const Face &f = model.faces[i];
@@ -346,8 +351,8 @@ void triangulate(const vg_cad_ask &ask, Model &model, Surface &out,
                    f.name.c_str(), place(point_of(f.shape)).c_str());
   }
   if (n_bad)
-    talk.note(format("%zu faces could not be triangulated and are holes, the "
-                     "first is %s: its rim may cross itself",
+    talk.note(format("%zu faces could not be triangulated and leave holes, "
+                     "the first is %s: its boundary may cross itself",
                      n_bad, bad.c_str()));
   if (out.tri.empty())
     throw Failure{ VG_ERR_GEOMETRY, "none of its faces could be triangulated" };

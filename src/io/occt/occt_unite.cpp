@@ -1,10 +1,10 @@
-/* Solids that touch or overlap, by their union.
+/* Replaces solids that touch or overlap by their union.
  *
  * Open CASCADE's general fuse divides all solids of a group by each other into
- * cells that share faces. A face of one cell is outer; a face of two cells is
- * between materials and goes. A solid whose cells are among those of another
- * one lies in it: the larger one may be the fluid around it, so it stays as it
- * is. */
+ * cells that share faces. A face of one cell is an outer face; a face of two
+ * cells is between materials and is dropped. A solid whose cells are among
+ * those of another one is inside it. The larger one may then be the fluid
+ * around it, so it is not changed. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>
@@ -32,17 +32,18 @@ namespace vg_occt
 namespace
 {
 
-/* Faces of all solids of a group for which the union is tried: beyond, the time
- * that it takes grows out of bounds. */
+/* Largest number of faces of all solids of a group for which the union is
+ * tried; beyond this the time grows too fast. */
 const size_t most_faces = 5000;
 
-/* The cells of a solid have its volume, but for this share. */
+/* The volume of a solid's cells equals that of the solid to this relative
+ * tolerance. */
 const double volume_near = 1e-2; /* S54 */
 
-typedef std::vector<size_t> Group;        /* of solids, by number, ascending */
-typedef std::vector<TopoDS_Shape> Solids; /* null: no closed one */
+typedef std::vector<size_t> Group;        /* numbers of solids, ascending */
+typedef std::vector<TopoDS_Shape> Solids; /* null: the solid is not closed */
 
-/* Has every edge an even number of these faces? */
+/* Does every edge have an even number of these faces? */
 bool is_closed(const std::vector<TopoDS_Shape> &faces)
 {
   TopTools_IndexedMapOfShape edges;
@@ -60,7 +61,7 @@ bool is_closed(const std::vector<TopoDS_Shape> &faces)
          std::all_of(n.begin(), n.end(), [](size_t k) { return k % 2 == 0; });
 }
 
-/* The solids that the faces of the model bound. */
+/* The solids bounded by the faces of the model. */
 Solids build_solids(const Model &model)
 {
   const std::vector<size_t> of = find_shells(model);
@@ -94,7 +95,7 @@ Solids build_solids(const Model &model)
   return out;
 }
 
-/* Groups of solids whose boxes touch, directly or by others. */
+/* Groups of solids whose bounding boxes touch directly or through others. */
 std::vector<Group> touching(const Solids &solids, double tolerance)
 {
   std::vector<Bnd_Box> box(solids.size());
@@ -103,7 +104,9 @@ std::vector<Group> touching(const Solids &solids, double tolerance)
 
   for (size_t i = 0; i < box.size(); i++) {
     of[i] = i;
-    if (solids[i].IsNull()) continue; /* its box stays void: it is out */
+    if (solids[i].IsNull())
+      continue; /* its box stays void and touches
+                   nothing */
     BRepBndLib::Add(solids[i], box[i], Standard_False);
     box[i].Enlarge(tolerance);
     for (size_t j = 0; j < i; j++)
@@ -121,7 +124,7 @@ std::vector<Group> touching(const Solids &solids, double tolerance)
   return out;
 }
 
-/* The cells of a group of solids. */
+/* Cells of a group of solids. */
 class Cells
 {
 public:
@@ -147,7 +150,7 @@ public:
     return failed_;
   }
 
-  /* Does any of them touch another one? */
+  /* Do any two of the solids touch? */
   bool touch() const
   {
     TopTools_IndexedMapOfShape all;
@@ -164,8 +167,8 @@ public:
     return false;
   }
 
-  /* Solids that contain another one wholly, and more, or that have a hollow
-   * which another one fills. */
+  /* Solids that completely contain another one, or have a hollow that another
+   * one fills. */
   Group containers() const
   {
     Group out;
@@ -179,8 +182,8 @@ public:
     return out;
   }
 
-  /* The outer faces that a face of the file became, each once for all faces of
-   * the file. */
+  /* The outer faces that a face of the file became; each is returned for one
+   * face of the file only. */
   std::vector<TopoDS_Face> take(const TopoDS_Face &face)
   {
     const TopTools_ListOfShape &list = fuse_.Modified(face);
@@ -191,7 +194,8 @@ public:
     return out;
   }
 
-  /* Are all cells valid, the outer faces closed, and all of them taken? */
+  /* Are all cells valid, and are the outer faces closed and all of them
+   * taken? */
   bool is_whole() const
   {
     std::vector<TopoDS_Shape> outer;
@@ -218,7 +222,8 @@ private:
     return out;
   }
 
-  /* The fuse may lose cells without an error. */
+  /* Do the cells fill the solid? The fuse may lose cells without reporting an
+   * error. */
   static bool fills(const TopTools_IndexedMapOfShape &cells,
                     const TopoDS_Shape &solid)
   {
@@ -236,8 +241,8 @@ private:
     return g.Mass();
   }
 
-  /* Is solid j within the box of solid i, while the two share much of its area
-   * but none of its material? */
+  /* Is solid j inside the bounding box of solid i, and do the two share much of
+   * its area but none of its material? */
   bool is_hollow(size_t i, size_t j) const
   {
     TopTools_IndexedMapOfShape mine, other;
@@ -279,7 +284,7 @@ private:
     return a.Extent() > b.Extent();
   }
 
-  /* The faces of all cells, oriented as the first cell has them. */
+  /* Collect the faces of all cells, oriented as in their first cell. */
   void take_faces()
   {
     TopTools_IndexedMapOfShape all;
@@ -308,9 +313,9 @@ private:
   const Group &group_;
   BOPAlgo_Builder fuse_;
   bool failed_ = false;
-  std::vector<TopTools_IndexedMapOfShape> cells_; /* of each solid */
+  std::vector<TopTools_IndexedMapOfShape> cells_; /* cells of each solid */
   TopTools_IndexedMapOfShape faces_;
-  std::vector<size_t> count_; /* cells of each face */
+  std::vector<size_t> count_; /* number of cells of each face */
   std::vector<bool> taken_;
 };
 
@@ -330,7 +335,8 @@ std::string where(const Model &model, size_t solid)
   return "somewhere";
 }
 
-/* Faces of the group by those of its union; false where it is not closed. */
+/* Replace the faces of the group by those of its union; returns false if the
+ * union is not closed. */
 bool replace_faces(Cells &cells, const Group &group, Model &model)
 {
   std::vector<Face> out;
@@ -355,7 +361,8 @@ bool replace_faces(Cells &cells, const Group &group, Model &model)
   return true;
 }
 
-/* One group, without the solids that contain others; notes go to `say`. */
+/* Unite one group, without the solids that contain others; notes are added to
+ * `say`. */
 void unite_group(const Solids &solids, Group group, double tolerance,
                  Model &model, std::vector<std::string> &say)
 {
@@ -378,10 +385,10 @@ void unite_group(const Solids &solids, Group group, double tolerance,
       return;
     }
     for (size_t k : outer)
-      say.push_back(format("the solid %s contains another one; it was not "
+      say.push_back(format("the solid %s contains another one and was not "
                            "united with it. Where they touch, subtract the "
-                           "inner one if the outer one is the fluid, else "
-                           "delete it",
+                           "inner one if the outer one is the fluid, "
+                           "otherwise delete it",
                            where(model, k).c_str()));
     std::set_difference(group.begin(), group.end(), outer.begin(), outer.end(),
                         std::back_inserter(rest));
@@ -390,7 +397,7 @@ void unite_group(const Solids &solids, Group group, double tolerance,
   }
 }
 
-/* The reason of a failure; empty: none. */
+/* Reason of a failure; empty on success. */
 std::string try_to_unite(const Solids &solids, const Group &group,
                          double tolerance, Model &model, const Talk &talk)
 {
@@ -423,7 +430,7 @@ void unite(const vg_cad_ask &ask, Model &model, const Talk &talk)
   const std::vector<double> list = tolerances(ask, model);
 
   for (const Group &group : touching(solids, list[0])) {
-    std::string why = "its faces are too many";
+    std::string why = "it has too many faces";
 
     talk.stage(VG_CAD_STAGE_UNITE);
     if (count_faces_of(model, group) <= most_faces)

@@ -12,7 +12,7 @@
 #include "io/stream/shared_file.h"
 #include "io/vgrid/mapbc.h"
 
-/* --- a file in slices --- */
+/* --- writing the slices of a file --- */
 
 static void set_limit(const struct vg_slice_file *f, struct vg_output *out)
 {
@@ -119,8 +119,8 @@ static vg_status check_nodes(size_t n, int width, const uint32_t *node,
   for (size_t i = 0; i < n * (size_t)width; i++)
     if (node[i] >= n_point)
       return vg_fail(err, VG_ERR_INPUT,
-                     "boundary %s %zu of the mesh is on "
-                     "point %lu, but only %zu points are on the boundary",
+                     "boundary %s %zu of the mesh refers to point %lu, but "
+                     "only the first %zu points are boundary points",
                      what, i / (size_t)width + 1, (unsigned long)node[i] + 1,
                      n_point);
   return VG_OK;
@@ -227,9 +227,7 @@ vg_status vg_boundary_points_share(struct vg_comm *comm,
   for (size_t i = 0; i < b->n && st >= 0; i++)
     if (!b->known[i])
       st = vg_fail(err, VG_ERR_INPUT,
-                   "boundary point %zu is in no slice of "
-                   "the mesh",
-                   i + 1);
+                   "boundary point %zu is not in any slice of the mesh", i + 1);
   return st;
 }
 
@@ -305,7 +303,8 @@ int vg_slices_can_write(const char *form)
   return form_of(form) != FORM_NONE;
 }
 
-/* What shows the boundary only: by rank 0, with the writers of meshes. */
+/* Write a form that shows only the boundary: on rank 0, with the writers of
+ * whole meshes. */
 static vg_status write_boundary(struct vg_comm *comm, const struct vg_slices *s,
                                 const char *path, const char *stem,
                                 const char *form, int threads,
@@ -379,9 +378,9 @@ vg_status vg_slices_write_with(struct vg_comm *comm, const struct vg_slices *s,
       break;
     default:
       st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: a mesh in slices cannot be "
-                   "written in this form; known are cgns, cogsg, fluent.msh, "
-                   "msh, pvtu, su2, vtu and the binary kinds of .ugrid, as "
+                   "%s: a distributed mesh cannot be written in this form; "
+                   "possible forms are cgns, cogsg, fluent.msh, msh, pvtu, "
+                   "su2, vtu and the binary kinds of .ugrid, such as "
                    "lb8.ugrid",
                    path);
     }

@@ -1,5 +1,6 @@
-/* A mesh in slices as one .cgns: bytes of vg_cgns_write. Rank 0 lays the file
- * out and writes nodes and faces; the others are told where arrays are. */
+/* Writes a mesh in slices as one .cgns with the bytes of vg_cgns_write. Rank 0
+ * lays out the file and writes nodes and faces; it sends the offsets of the
+ * arrays to the other ranks. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,7 +46,7 @@ static void put_slice(void *of, const struct vg_slice *slice,
     put_axis(c, slice, axis, out);
 }
 
-/* Collective: the places that rank 0 has found, on all ranks. */
+/* Send the offsets that rank 0 has determined to all ranks. Collective. */
 static vg_status share_places(struct vg_comm *comm, struct vg_cgns_places *p,
                               struct vg_error *err)
 {
@@ -55,7 +56,7 @@ static vg_status share_places(struct vg_comm *comm, struct vg_cgns_places *p,
   if (!vg_comm_rank(comm)) {
     b.data = vg_alloc(1, sizeof *p);
     if (b.data) memcpy(b.data, p, sizeof *p);
-    else st = vg_fail_memory(err, "the places in a CGNS file");
+    else st = vg_fail_memory(err, "the offsets in a CGNS file");
   }
   st = vg_comm_agree(comm, st, err);
   if (st >= 0) st = vg_comm_bcast(comm, 0, &b, err);

@@ -8,14 +8,14 @@
 
 #define BLOCK 4096
 
-/* VGRID's order of points concerns the boundary only: its points come first
- * in a mesh in slices (core/mesh/slices.h) as in the file, so that all others
- * keep their numbers. Coordinates of the boundary are collected from the slices
- * that own them and written by rank 0. */
+/* VGRID's point order concerns only the boundary: in a mesh in slices
+ * (core/mesh/slices.h), as in the file, the boundary points come first, so that
+ * all other points keep their numbers. Coordinates of the boundary points are
+ * collected from the slices that own them and written by rank 0. */
 struct cogsg {
   struct vg_cogsg_info info;
-  struct vg_mesh mesh;               /* the frame */
-  uint32_t *new_to_old, *old_to_new; /* of boundary points, or NULL */
+  struct vg_mesh mesh;               /* frame of the file */
+  uint32_t *new_to_old, *old_to_new; /* orders of boundary points, or NULL */
   struct vg_boundary_points boundary;
 };
 
@@ -47,7 +47,7 @@ static void put_column(const struct cogsg *c, const struct vg_slice *slice,
   }
 }
 
-/* Points that are not on the boundary. */
+/* Write one coordinate of the points that are not on the boundary. */
 static void put_axis(const struct cogsg *c, const struct vg_slice *slice,
                      int axis, struct vg_output *out)
 {
@@ -97,7 +97,7 @@ static vg_status put_boundary(const struct cogsg *c, uint32_t record_limit,
   return st;
 }
 
-/* .bc and .mapbc, as far as it can be done before the .cogsg is complete. */
+/* Write the .bc, still under its temporary name, and the .mapbc. */
 static vg_status write_beside(const struct cogsg *c, const char *stem,
                               const char *bc_name, struct vg_output *bc,
                               struct vg_error *err)
@@ -108,7 +108,8 @@ static vg_status write_beside(const struct cogsg *c, const char *stem,
   VG_TRY(vg_output_open(bc_name, bc, err));
   vg_cogsg_put_faces(bc, &m, &c->info, c->old_to_new);
   VG_TRY(vg_output_flush(bc, err));
-  /* of the points, .mapbc depends on the box that holds all: the boundary */
+  /* .mapbc uses the bounding box of the points, which is that of the
+   * boundary. */
   m.n_point = c->boundary.n;
   m.point = c->boundary.x;
   VG_TRY(vg_cogsg_write_mapbc(stem, &m, NULL, err));
@@ -116,7 +117,7 @@ done:
   return st;
 }
 
-/* What rank 0 does when all slices are in the file. */
+/* On rank 0, after all slices have been written. */
 static vg_status finish(const struct cogsg *c, const char *stem,
                         uint32_t record_limit, struct vg_shared_file *to,
                         struct vg_error *err)

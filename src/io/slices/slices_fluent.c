@@ -1,10 +1,11 @@
-/* A mesh in slices as one .fluent.msh: bytes of vg_fluent_write.
+/* Writes a mesh in slices as one .fluent.msh with the bytes of vg_fluent_write.
  *
- * Cells on the two sides of a face are told by number. Faces within a slice are
- * matched there; the others, and those of the boundary, meet by their points
- * (base/rendezvous.h), and each side is told of the other. Internal faces stand
- * in the order of their lower cells, so those of a slice and kind follow each
- * other, from a place that all ranks work out from everybody's counts. */
+ * A face is written with the numbers of the cells on its two sides. Faces
+ * within a slice are matched locally. The other faces, and those of the
+ * boundary, are matched by their points (base/rendezvous.h), and each side
+ * receives the cell of the other. Internal faces are sorted by their lower
+ * cells, so those of one slice and kind are contiguous in the file. All ranks
+ * compute their offset from the counts of all slices. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,34 +18,36 @@
 #include "io/stream/boundary.h"
 #include "io/stream/shared_file.h"
 
-/* Half a face that is to meet its mate. */
+/* One side of a face (a half-face), to be matched with the other. */
 struct half {
-  uint32_t node[4];           /* rising; of a triangle the last is UINT32_MAX */
-  uint32_t cell;              /* of the mesh, from 1; 0: the boundary's */
-  uint32_t rank, slice, code; /* of the slice's cell links; of the boundary:
-                                 BOUNDARY, place in `order` */
+  uint32_t node[4]; /* ascending; the last one of a triangle is UINT32_MAX */
+  uint32_t cell;    /* number in the mesh, from 1; 0: a boundary face */
+  uint32_t rank, slice, code; /* rank, slice and code in the cell links of
+                                 the slice; for a boundary face BOUNDARY and
+                                 its position in `order` */
 };
 #define BOUNDARY UINT32_MAX
 
-/* What a half is told: the cell on its other side; own: its own. From 0. */
+/* Reply to a half-face: the cell on the other side. own: its own cell. Both are
+ * counted from 0. */
 struct told {
   uint32_t slice, code, cell, own;
 };
 
-/* Internal faces whose lower cells are of a slice and a kind. */
+/* Internal faces whose lower cells belong to one slice and kind. */
 struct run {
   uint64_t kind, cell, n, at;
 };
 
 struct served {
   struct run run[VG_SLICE_KINDS];
-  size_t first, n; /* told[first .. first + n - 1] is of it */
+  size_t first, n; /* told[first .. first + n - 1] are for this slice */
 };
 
 struct worker {
-  struct vg_items half, *told; /* told: [size], by rank */
+  struct vg_items half, *told; /* told: [size], by receiving rank */
   uint64_t n_quad, n_open;
-  uint32_t open[4]; /* a face that does not close */
+  uint32_t open[4]; /* nodes of a face that has no other side */
   vg_status st;
   struct vg_error err;
 };
@@ -55,20 +58,21 @@ struct writing {
   int rank, size, threads;
   struct vg_mesh frame;
   struct vg_fluent layout;
-  size_t *start, *order; /* of the boundary by patch, as in the layout */
-  uint64_t first[VG_SLICE_KINDS]; /* cell of the mesh of each kind */
+  size_t *start, *order;          /* boundary faces by patch, from the layout */
+  uint64_t first[VG_SLICE_KINDS]; /* first cell of each kind in the mesh */
   uint64_t n_internal, n_quad;
-  size_t begin, end;     /* faces of the boundary that are written here */
-  uint32_t *cell;        /* [end - begin] on them, from 0 */
+  size_t begin, end;     /* boundary faces that this rank writes */
+  uint32_t *cell;        /* [end - begin] their cells, counted from 0 */
   struct served *served; /* [n_slice] */
-  struct vg_items told;  /* struct told, by slice and code */
+  struct vg_items told;  /* replies (struct told), sorted by slice and code */
   struct worker *worker; /* [threads] */
   struct vg_shared_file *to;
 };
 
 /* --- a slice ------------------------------------------------------------- */
 
-/* Cells of a slice and which share faces; local numbers. */
+/* Build the links between the cells of a slice that share faces; local
+ * numbers. */
 static vg_status link_slice(const struct vg_slice *s, struct vg_mesh *m,
                             struct vg_cell_links *l, struct vg_error *err)
 {
@@ -90,7 +94,7 @@ static int kind_of(const struct vg_cell_links *l, uint32_t cell)
                            : VG_SLICE_PRI;
 }
 
-/* Number in the mesh of a slice's cell. */
+/* Number in the mesh of a cell of the slice. */
 static uint32_t number_of(const struct writing *w, const struct vg_slice *s,
                           const struct vg_cell_links *l, uint32_t cell)
 {
@@ -122,7 +126,7 @@ static struct half *add_half(struct worker *to, int n, const uint32_t *node)
   return h;
 }
 
-/* --- faces meet ---------------------------------------------------------- */
+/* --- matching of faces --------------------------------------------------- */
 
 static void find_mates(struct writing *w, size_t i, const struct vg_slice *s,
                        const struct vg_cell_links *l, struct worker *to)
@@ -157,7 +161,7 @@ static void find_mates(struct writing *w, size_t i, const struct vg_slice *s,
   }
 }
 
-/* Slice i at hand, its cells linked, for `body`. */
+/* Call `body` with slice i and its cell links. */
 static void with_slice(struct writing *w, size_t i, struct worker *to,
                        void (*body)(struct writing *w, size_t i,
                                     const struct vg_slice *s,
@@ -188,7 +192,7 @@ static void find_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* What this rank writes of the boundary is to be told its cells. */
+/* Add the boundary faces that this rank writes, which need their cells. */
 static void add_boundary(struct writing *w)
 {
   const struct vg_mesh *m = &w->frame;
@@ -234,7 +238,7 @@ static void meet(void *context, const unsigned char *item, size_t n, int worker)
     if (h[1 - k].cell) tell(to, &h[k], &h[1 - k]);
 }
 
-/* --- what was told ------------------------------------------------------- */
+/* --- replies ------------------------------------------------------------- */
 
 static int compare_told(const void *a, const void *b)
 {
@@ -254,7 +258,7 @@ static vg_status worst(const struct writing *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* Collective: to each rank what its halves are told. */
+/* Send each rank the replies for its half-faces. Collective. */
 static vg_status exchange(struct writing *w, struct vg_error *err)
 {
   size_t size = (size_t)w->size;
@@ -286,8 +290,8 @@ done:
   return st;
 }
 
-/* Sort what was told by slice, and count the faces of which the half that is
- * told is the lower. */
+/* Sort the replies by slice, and count the faces for which the half-face
+ * belongs to the lower cell. */
 static void take_told(struct writing *w)
 {
   struct told *t = (struct told *)w->told.data;
@@ -308,7 +312,7 @@ static void take_told(struct writing *w)
   }
 }
 
-/* --- places -------------------------------------------------------------- */
+/* --- offsets ------------------------------------------------------------- */
 
 static int compare_run(const void *a, const void *b)
 {
@@ -316,10 +320,11 @@ static int compare_run(const void *a, const void *b)
 
   if (x->kind != y->kind) return x->kind < y->kind ? -1 : 1;
   if (x->cell != y->cell) return x->cell < y->cell ? -1 : 1;
-  return (x->n > y->n) - (x->n < y->n); /* runs without cells first */
+  return (x->n > y->n) - (x->n < y->n); /* runs without faces first */
 }
 
-/* Collective: the runs of all ranks in their order, with their places. */
+/* Gather the runs of all ranks in order, and compute their offsets.
+ * Collective. */
 static vg_status gather_runs(struct writing *w, struct vg_items *all,
                              struct vg_error *err)
 {
@@ -328,7 +333,8 @@ static vg_status gather_runs(struct writing *w, struct vg_items *all,
   struct vg_bytes b = { n * sizeof *mine, (unsigned char *)mine };
   struct vg_bytes *from = vg_calloc(size, sizeof *from);
   uint64_t at = 0;
-  vg_status st = mine && from ? VG_OK : vg_fail_memory(err, "places of faces");
+  vg_status st = mine && from ? VG_OK
+                              : vg_fail_memory(err, "the offsets of faces");
 
   VG_TRY(vg_comm_agree(w->comm, st, err));
   for (size_t i = 0; i < n; i++)
@@ -376,8 +382,8 @@ static void put_frame(const void *of, struct vg_output *out)
   vg_fluent_put_frame(out, &(*w)->layout);
 }
 
-/* Faces of a cell whose mates are higher, by rising mate, as vg_foam_upper has
- * them. *t: what the slice is told from this cell on. */
+/* Faces of a cell whose other cell has a higher number, sorted by that number,
+ * as vg_foam_upper. *t: next reply for the slice. */
 static int find_upper(const struct writing *w, const struct vg_slice *s,
                       const struct vg_cell_links *l, uint32_t cell,
                       const struct told **t, const struct told *end,
@@ -467,8 +473,8 @@ static void put_body(void *context, size_t first, size_t end, int worker)
     with_slice(w, i, &w->worker[worker], put_slice);
 }
 
-/* A rank's share of the boundary's faces follow each other in `order`, and in
- * the file but for heads of zones. */
+/* The boundary faces that a rank writes are contiguous in `order`, and in the
+ * file except for the headers of zones. */
 static vg_status put_boundary(const struct writing *w, struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
@@ -508,7 +514,8 @@ static vg_status prepare(struct writing *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* Counts of all ranks together; that all faces close. Collective. */
+/* Sum the counts of all ranks, and check that every face has two sides.
+ * Collective. */
 struct sums {
   uint64_t n_quad, n_open;
   uint32_t open[4];
@@ -521,7 +528,7 @@ static vg_status add_sums(struct writing *w, const char *path,
   struct sums mine = { 0 }, all = { 0 };
   struct vg_bytes b = { sizeof mine, (unsigned char *)&mine };
   struct vg_bytes *from = vg_calloc(size, sizeof *from);
-  vg_status st = from ? VG_OK : vg_fail_memory(err, "places of faces");
+  vg_status st = from ? VG_OK : vg_fail_memory(err, "the offsets of faces");
 
   VG_TRY(vg_comm_agree(w->comm, st, err));
   for (int t = 0; t < w->threads; t++) {
@@ -542,9 +549,9 @@ static vg_status add_sums(struct writing *w, const char *path,
   w->n_quad = all.n_quad;
   if (all.n_open)
     st = vg_fail(err, VG_ERR_INPUT,
-                 "%s: cells and boundary are not closed: "
-                 "%llu faces have no other side, or several, one of them that "
-                 "of points %lu, %lu, %lu",
+                 "%s: cells and boundary are not closed: %llu faces have no "
+                 "other side, or more than one; the first has points %lu, "
+                 "%lu, %lu",
                  path, (unsigned long long)all.n_open, all.open[0] + 1ul,
                  all.open[1] + 1ul, all.open[2] + 1ul);
 done:
@@ -552,7 +559,7 @@ done:
   return st;
 }
 
-/* Which cells are on both sides of all faces. Collective. */
+/* Find the cells on both sides of all faces. Collective. */
 static vg_status match(struct writing *w, const char *path,
                        struct vg_error *err)
 {

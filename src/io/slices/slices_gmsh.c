@@ -1,5 +1,6 @@
-/* A mesh in slices as one .msh: bytes of vg_gmsh_write. The boxes of patches
- * need the points of the boundary, which are collected from the slices. */
+/* Writes a mesh in slices as one .msh with the bytes of vg_gmsh_write. The
+ * bounding boxes of patches need the boundary points, which are collected from
+ * the slices. */
 #include "io/slices/slices_parts.h"
 #include "io/stream/shared_file.h"
 
@@ -37,7 +38,7 @@ static void put_slice(void *of, const struct vg_slice *slice,
   vg_boundary_points_add(&g->boundary, slice);
 }
 
-/* By rank 0, when all slices are in the file. */
+/* On rank 0, after all slices have been written. */
 static vg_status put_entities(const struct gmsh *g, struct vg_shared_file *to,
                               struct vg_error *err)
 {

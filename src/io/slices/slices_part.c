@@ -1,5 +1,5 @@
-/* METIS's .part file of a mesh in slices: lines of different lengths, so all
- * ranks hear first how long everybody's are. */
+/* Writes METIS's .part file for a mesh in slices. Its lines have different
+ * lengths, so all ranks first exchange the sizes of their text. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,12 +9,12 @@
 
 /* Cells of one kind in a slice. */
 struct run {
-  uint64_t kind, cell_at; /* its name and place */
-  uint64_t bytes;         /* of its lines; later where they begin */
+  uint64_t kind, cell_at; /* kind, and number of its first cell */
+  uint64_t bytes;         /* bytes of its lines; later their offset */
 };
 
 struct part_file {
-  struct run *run; /* [n] of all ranks, in order */
+  struct run *run; /* [n] runs of all ranks, in order */
   size_t n;
   uint64_t size;
 };
@@ -109,9 +109,7 @@ vg_status vg_slices_write_part(struct vg_comm *comm, const struct vg_slices *s,
   vg_status st;
 
   if (!s->n_part)
-    return vg_fail(err, VG_ERR_INPUT,
-                   "%s: the mesh has no parts for a "
-                   "solver",
+    return vg_fail(err, VG_ERR_INPUT, "%s: the mesh has no solver partitions",
                    path);
   st = list_all(comm, s, &f, err);
   if (st >= 0) st = vg_slice_file_write(&file, comm, s, threads, err);

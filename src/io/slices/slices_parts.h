@@ -1,10 +1,11 @@
-/* io/slices/slices_parts.h: what writers of whole meshes share with those of
- * meshes in slices.
+/* io/slices/slices_parts.h: declarations shared by the writers of whole meshes
+ * and of meshes in slices.
  *
- * A file is its frame and what slices put into it. The frame is what the
- * writer of whole meshes makes of a mesh that has boundary and counts, but
- * NULL for its points and cells: their bytes are skipped, headers and markers
- * fall where they belong. Slices seek in it and use the same encoders. */
+ * A file consists of its frame and the data of the slices. The frame is the
+ * output of the writer of whole meshes for a mesh that has a boundary and
+ * counts, but NULL for its points and cells: their bytes are skipped, and
+ * headers and markers are written at their final offsets. Slices seek in the
+ * file and use the same encoders. */
 #ifndef VG_IO_SLICES_SLICES_PARTS_H
 #define VG_IO_SLICES_SLICES_PARTS_H
 
@@ -19,7 +20,7 @@
 #include "io/stream/stream.h"
 #include "io/vgrid/cogsg_put.h"
 
-/* How a kind of file is written; `of` is its own. */
+/* Functions that write a kind of file; `of` is passed to them. */
 struct vg_slice_file {
   const char *path;
   uint32_t record_limit; /* 0: VG_RECORD_LIMIT */
@@ -28,23 +29,23 @@ struct vg_slice_file {
   void (*slice)(void *of, const struct vg_slice *slice, struct vg_output *out);
 };
 
-/** Bytes of the file. */
+/** Size of the file in bytes. */
 vg_status vg_slice_file_size(const struct vg_slice_file *f, uint64_t *size,
                              struct vg_error *err);
 
-/** A slice, or the frame for NULL, into an open file. Local. Threads: any
- * number at once. */
+/** Write a slice, or the frame if it is NULL, into an open file. Local.
+ * Threads: any number at once. */
 vg_status vg_slice_file_put(const struct vg_slice_file *f,
                             struct vg_shared_file *to,
                             const struct vg_slice *slice, struct vg_error *err);
 
-/** Frame (by rank 0) and slices into an open file. Not collective. */
+/** Write frame (on rank 0) and slices into an open file. Not collective. */
 vg_status vg_slice_file_fill(const struct vg_slice_file *f,
                              struct vg_comm *comm, const struct vg_slices *s,
                              int threads, struct vg_shared_file *to,
                              struct vg_error *err);
 
-/** Collective; the file has its size. */
+/** Open the file with its final size. Collective. */
 vg_status vg_slice_file_open(const struct vg_slice_file *f,
                              struct vg_comm *comm, struct vg_shared_file **to,
                              struct vg_error *err);
@@ -54,24 +55,26 @@ vg_status vg_slice_file_write(const struct vg_slice_file *f,
                               struct vg_comm *comm, const struct vg_slices *s,
                               int threads, struct vg_error *err);
 
-/** Counts and boundary of a mesh in slices; nothing to be released. */
+/** Frame of a mesh in slices: counts and boundary. It must not be released. */
 struct vg_mesh vg_slices_frame(const struct vg_slices *s);
 
-/** VG_ERR_INPUT: a boundary face on a point that is not among the first
- * n_boundary_point. */
+/** VG_ERR_INPUT if a boundary face refers to a point that is not among the
+ * first n_boundary_point. */
 vg_status vg_slices_check_boundary(const struct vg_slices *s,
                                    struct vg_error *err);
 
-/** Coordinates [n][3] of the points `own` of a slice from its k-th on. */
+/** Coordinates [n][3] of the points `own` of a slice, starting with the
+ * k-th. */
 void vg_slice_points(const struct vg_slice *slice, size_t k, size_t n,
                      double (*x)[3]);
 
-/* Coordinates of boundary points as slices deliver them; [n_boundary_point].
- * add: from several threads at once; share: collective, between all ranks. */
+/* Coordinates [n_boundary_point] of the boundary points, collected from slices.
+ * add: may be called by several threads at once; share: between all ranks,
+ * collective. */
 struct vg_boundary_points {
   size_t n;
   double (*x)[3];
-  unsigned char *known; /* delivered on this rank */
+  unsigned char *known; /* points found on this rank */
 };
 vg_status vg_boundary_points_new(const struct vg_slices *s,
                                  struct vg_boundary_points *b,

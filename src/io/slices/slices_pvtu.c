@@ -1,6 +1,6 @@
-/* .pvtu: a mesh in slices as pieces, each a file of its own. A piece is a run
- * of slices, in the order of the mesh; each brings all its points, so that
- * nothing has to be matched between slices. */
+/* .pvtu: a mesh in slices as pieces, each in a file of its own. A piece is a
+ * sequence of slices in the order of the mesh. Each slice has copies of all its
+ * points, so that nothing has to be matched between slices. */
 #define _GNU_SOURCE
 #include <assert.h>
 #include <stdatomic.h>
@@ -18,27 +18,29 @@
 
 static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
 
-/* The last one where the mesh has parts for the solver. */
+/* The last field is only used if the mesh has solver partitions. */
 static const struct vg_vtu_field field[3] = {
   { "subdomain", VG_VTU_CELL, VG_VTU_INT32, 1, NULL },
   { "kind", VG_VTU_CELL, VG_VTU_INT32, 1, NULL },
   { VG_VTU_SOLVER_PART, VG_VTU_CELL, VG_VTU_INT32, 1, NULL }
 };
 
-/* A slice that has cells, wherever it is: all ranks know all of them. */
+/* A slice with cells on any rank; every rank has the list of all of them. */
 struct entry {
-  uint64_t before; /* cells of the mesh before it: its name */
+  uint64_t before; /* number of cells in the mesh before it, which identifies
+                      it */
   uint64_t n_point, n_cell[VG_SLICE_KINDS];
-  uint64_t piece, point_at, cell_at, node_at; /* its place */
+  /* its piece, and its offsets there */
+  uint64_t piece, point_at, cell_at, node_at;
 };
 
 struct piece {
   char *path;
-  struct vg_mesh mesh; /* the frame */
+  struct vg_mesh mesh; /* frame of the file */
   size_t n_field;
   struct vg_vtu_places at;
   struct vg_shared_file *to;
-  int is_placed; /* the file has its name */
+  int is_placed; /* the file has its final name */
 };
 
 struct pieces {
@@ -55,7 +57,7 @@ char *vg_slices_piece(const char *stem, size_t k)
   return asprintf(&path, "%s_%zu.vtu", stem, k) < 0 ? NULL : path;
 }
 
-/* --- which slices there are --- */
+/* --- the list of slices --- */
 
 static uint64_t name_of(const struct vg_slice *slice)
 {
@@ -74,7 +76,7 @@ static int by_name(const void *a, const void *b)
 
 struct list {
   atomic_size_t n;
-  struct entry *entry; /* room for all slices of this rank */
+  struct entry *entry; /* has space for all slices of this rank */
 };
 
 static vg_status list_slice(void *context, const struct vg_slice *slice,
@@ -125,7 +127,7 @@ static vg_status list_all(struct vg_comm *comm, const struct vg_slices *s,
   return st;
 }
 
-/* --- where they go --- */
+/* --- positions of slices --- */
 
 static void add_to_piece(struct vg_mesh *m, struct entry *e)
 {
@@ -187,7 +189,7 @@ static vg_status open_pieces(struct vg_comm *comm, struct pieces *p,
   return st;
 }
 
-/* --- what they hold --- */
+/* --- contents of pieces --- */
 
 static void put_number(struct vg_output *out, uint64_t at, size_t n, int32_t v)
 {
@@ -267,7 +269,7 @@ static vg_status fill(struct vg_comm *comm, const struct vg_slices *s,
   return vg_slices_each(s, threads, fill_slice, p, err);
 }
 
-/* --- the list of pieces --- */
+/* --- the file that lists the pieces --- */
 
 static vg_status write_list(const struct pieces *p, const char *stem,
                             struct vg_error *err)
@@ -307,7 +309,7 @@ static vg_status write_list(const struct pieces *p, const char *stem,
   return vg_output_commit(&out, err);
 }
 
-/* Collective: all pieces get their names, or none stays. */
+/* Rename all pieces to their final names, or remove them all. Collective. */
 static vg_status close_pieces(struct vg_comm *comm, struct pieces *p,
                               const char *stem, vg_status st,
                               struct vg_error *err)

@@ -1,4 +1,4 @@
-/* A mesh in slices as one .su2: bytes of vg_su2_write. */
+/* Writes a mesh in slices as one .su2 with the bytes of vg_su2_write. */
 #include "io/slices/slices_parts.h"
 
 static const int width[VG_SLICE_KINDS] = { 4, 5, 6 };

@@ -11,17 +11,18 @@
 
 struct vg_slices_ugrid {
   struct vg_ugrid_kind kind;
-  struct vg_mesh mesh; /* the frame */
+  struct vg_mesh mesh; /* frame of the file */
   uint64_t count[7];
   size_t n_layer_tet;
-  const size_t *tail; /* NULL: none */
+  const size_t *tail; /* NULL: no tail */
   struct vg_slice_file file;
   struct vg_shared_file *to;
   struct vg_comm *comm;
-  /* Of 4-byte reals: what rounding does. Points that coincide where cells stay
-   * positive are on the boundary, on two sides of a thin body. */
+  /* For 4-byte reals, the effects of rounding are recorded. Points that
+   * coincide while cells stay positive are on the boundary, on two sides of a
+   * thin body. */
   int is_narrow;
-  atomic_flag busy; /* somebody adds to: */
+  atomic_flag busy; /* spin lock of `narrow` */
   struct vg_narrow narrow;
   struct vg_boundary_points boundary;
 };
@@ -89,7 +90,8 @@ static vg_status note_rounded(struct vg_slices_ugrid *u,
                     slice->cell[k], slice->cell_at[k], &n);
   free(rounded);
   vg_boundary_points_add(&u->boundary, slice);
-  while (atomic_flag_test_and_set(&u->busy)) continue; /* a few stores */
+  /* held for a few stores only */
+  while (atomic_flag_test_and_set(&u->busy)) continue;
   vg_narrow_add(&u->narrow, &n);
   atomic_flag_clear(&u->busy);
   return VG_OK;
@@ -173,7 +175,7 @@ vg_status vg_slices_ugrid_open(struct vg_comm *comm, const struct vg_slices *s,
   if (!vg_comm_rank(comm)) st = vg_slice_file_put(&u->file, u->to, NULL, err);
   st = vg_comm_agree(comm, st, err);
   if (st < 0) return vg_slices_ugrid_close(u, st, err);
-  u->file.path = NULL; /* the caller's */
+  u->file.path = NULL; /* owned by the caller */
   *out = u;
   return VG_OK;
 }

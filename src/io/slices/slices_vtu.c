@@ -1,17 +1,17 @@
-/* A mesh in slices as one .vtu: bytes of vg_vtu_write. */
+/* Writes a mesh in slices as one .vtu with the bytes of vg_vtu_write. */
 #include "core/judge/quality.h"
 #include "io/slices/slices_parts.h"
 
-/* Each is a write of its own; twice 128 kB on the stack. */
+/* Values per write call; two blocks of 128 kB are on the stack. */
 #define BLOCK 32768
 
 static const int cell_width[VG_SLICE_KINDS] = { 4, 5, 6 };
 
 struct whole {
-  struct vg_mesh mesh; /* the frame */
+  struct vg_mesh mesh; /* frame of the file */
   struct vg_vtu_field field[VG_VTU_FIELDS_MAX];
-  size_t n_field, n_quality; /* 0 or 2: quality of tetrahedra; then parts for
-                                the solver, if there are any */
+  size_t n_field, n_quality; /* 0 or 2 quality fields of tetrahedra; then the
+                                solver partition, if there is one */
   struct vg_vtu_places at;
 };
 

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 
-/* Stable counting sort; start[] is shifted by one while it is filled. */
+/* Stable counting sort; start[] is shifted by one patch while it is filled. */
 vg_status vg_boundary_by_patch(const struct vg_mesh *m, size_t **start,
                                size_t **order, struct vg_error *err)
 {
@@ -18,7 +18,7 @@ vg_status vg_boundary_by_patch(const struct vg_mesh *m, size_t **start,
   if (!s || !o) {
     free(s);
     free(o);
-    return vg_fail_memory(err, "sorting faces by patch");
+    return vg_fail_memory(err, "the boundary faces sorted by patch");
   }
 #define PATCH(i)                                                               \
   ((i) < m->n_tri ? m->tri_patch[i] : m->quad_patch[(i)-m->n_tri])

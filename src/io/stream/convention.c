@@ -1,4 +1,4 @@
-/* Orientation, index base and patches of meshes from files. */
+/* Orientation, index base and patches of meshes read from files. */
 #include "io/stream/convention.h"
 
 #include <assert.h>
@@ -26,11 +26,12 @@ vg_status vg_check_points(const char *path, size_t n, const double (*p)[3],
       if (!(x >= -DBL_MAX && x <= DBL_MAX))
         return vg_fail(err, VG_ERR_INPUT,
                        "%s: coordinate %c of point %zu is not a finite "
-                       "number (%g); mend the file or check its byte order",
+                       "number (%g); correct the file or check its byte "
+                       "order",
                        path, "xyz"[k], i + 1, x);
       return vg_fail(err, VG_ERR_INPUT,
-                     "%s: coordinate %c of point %zu is %g: beyond %g no "
-                     "volume can be computed; check the byte order or use "
+                     "%s: coordinate %c of point %zu is %g; volumes cannot "
+                     "be computed beyond %g; check the byte order or use "
                      "another unit of length",
                      path, "xyz"[k], i + 1, x, VG_COORDINATE_MAX);
     }
@@ -54,8 +55,8 @@ vg_status vg_index_from_file(const char *path, const char *element, size_t n,
   for (size_t i = 0; i < count; i++)
     if (index[i] >= limit)
       return vg_fail(err, VG_ERR_INPUT,
-                     "%s: %s %zu refers to point %lld; points are numbered 1 "
-                     "to %zu",
+                     "%s: %s %zu refers to point %lld; points are numbered "
+                     "1 to %zu",
                      path, element, i / (size_t)width + 1,
                      (long long)(int32_t)(index[i] + 1), n_point);
   return VG_OK;
@@ -66,7 +67,7 @@ vg_status vg_index_from_file(const char *path, const char *element, size_t n,
 struct tags {
   struct vg_table table;
   size_t n, cap;
-  int32_t *id; /* [n] as they were found */
+  int32_t *id; /* [n] in the order of their first appearance */
 };
 
 static uint64_t hash_tag(const void *of, uint32_t i)
@@ -76,7 +77,8 @@ static uint64_t hash_tag(const void *of, uint32_t i)
   return vg_hash_1((uint32_t)t->id[i]);
 }
 
-/* Index of a tag, added when new; -1 when memory is refused. */
+/* Index of a tag, which is added if it is new; -1 if there is not enough
+ * memory. */
 static int64_t tag_index(struct tags *t, int32_t id)
 {
   uint32_t *at;
@@ -99,7 +101,8 @@ static int compare_patch(const void *a, const void *b)
   return (p->id > q->id) - (p->id < q->id);
 }
 
-/* Patches sorted by id; rank[i] is the place of the i-th tag found. */
+/* Create the patches in ascending order of their ids; rank[i] is the patch of
+ * the i-th tag found. */
 static vg_status make_patches(struct vg_mesh *m, const struct tags *t,
                               uint32_t *rank, struct vg_error *err)
 {
@@ -165,8 +168,8 @@ done:
 
 /* --- orientation --- */
 
-/* Six times the volume by inward faces, seen from node 0. Quadrilaterals
- * count as the mean of their two triangulations. */
+/* Six times the volume, computed from the inward faces as seen from node 0.
+ * Each quadrilateral counts as the mean of its two triangulations. */
 static double volume6(const struct vg_mesh *m, const uint32_t *c,
                       const unsigned char (*face)[4], int n_face)
 {
@@ -224,12 +227,12 @@ static size_t turn_cells(struct vg_mesh *m)
   return n;
 }
 
-/* Boundary faces by their sorted nodes; a triangle has UINT32_MAX last. Of
- * several faces on the same nodes the first is kept. */
+/* Boundary faces found by their sorted nodes; the last node of a triangle is
+ * UINT32_MAX. Of several faces with the same nodes the first is kept. */
 struct face_table {
   struct vg_table table;
   unsigned char *found; /* [n_tri + n_quad] */
-  unsigned char *on;    /* [n_point] the point is on the boundary */
+  unsigned char *on;    /* [n_point] is the point on the boundary? */
 };
 
 static void make_key(const uint32_t *n, int width, uint32_t key[4])
@@ -255,7 +258,7 @@ static int has_key(const struct vg_mesh *m, size_t f, const uint32_t key[4])
   return !memcmp(key, other, sizeof other);
 }
 
-/* Where the boundary face on these nodes is, or belongs. */
+/* Entry of the boundary face with these nodes, or the free slot for it. */
 static uint32_t *find_face(const struct vg_mesh *m, const struct face_table *t,
                            const uint32_t *node, int width)
 {
@@ -298,8 +301,8 @@ static vg_status face_build(struct face_table *t, const struct vg_mesh *m,
   return VG_OK;
 }
 
-/* Do the cycles a and b of w nodes run through the same edges, b forwards
- * (step 1) or backwards (step w - 1)? */
+/* Do the cycles a and b of w nodes have the same edges when b is traversed
+ * forwards (step 1) or backwards (step w - 1)? */
 static int same_cycle(const uint32_t *a, const uint32_t *b, int w, int step)
 {
   for (int i = 0; i < w; i++) {
@@ -311,9 +314,10 @@ static int same_cycle(const uint32_t *a, const uint32_t *b, int w, int step)
   return 0;
 }
 
-/* One face of a cell, listed inward: turn the boundary face on its nodes,
- * unless a cell has met it before. A quadrilateral that goes through the
- * same corners across the diagonals is another face and stays loose. */
+/* Process one face of a cell, listed inward: turn the boundary face with the
+ * same nodes, unless another cell has been matched to it before. A
+ * quadrilateral that visits the same nodes in another cyclic order is a
+ * different face and counts as loose. */
 static void meet_face(struct vg_mesh *m, struct face_table *t,
                       const uint32_t *inward, int width,
                       struct vg_turned *turned)
@@ -409,7 +413,7 @@ void vg_mesh_keep_boundary(struct vg_mesh *m)
   m->pri = NULL;
   m->hex = NULL;
   m->n_tet = m->n_pyr = m->n_pri = m->n_hex = 0;
-  if (!new_index) return; /* unused points stay: harmless */
+  if (!new_index) return; /* keeping unused points is harmless */
   memset(new_index, 0xff, m->n_point * sizeof *new_index);
   mark_used(3 * m->n_tri, (uint32_t *)m->tri, new_index);
   mark_used(4 * m->n_quad, (uint32_t *)m->quad, new_index);
@@ -424,7 +428,7 @@ void vg_mesh_keep_boundary(struct vg_mesh *m)
   free(new_index);
 }
 
-/* Not the first byte of a UTF-8 character. */
+/* Is c a continuation byte of a UTF-8 character? */
 static int is_inside(char c)
 {
   return ((unsigned char)c & 0xc0) == 0x80;

@@ -1,5 +1,5 @@
-/* Whole files in memory, binary values and Fortran records: io/stream/stream.h.
- * */
+/* Complete files in memory, binary values and Fortran records; see
+ * io/stream/stream.h. */
 #include "io/stream/stream.h"
 
 #include <assert.h>
@@ -18,10 +18,11 @@
 #define CHUNK ((size_t)1 << 20)
 #define WHOLE (SIZE_MAX / 4)
 
-/* A packed file that grows beyond both is no mesh but a trap. */
+/* Compressed data that exceed both this size and this ratio when unpacked are
+ * taken for a decompression bomb. */
 #define BOMB_SIZE ((size_t)1 << 28)
 #define BOMB_RATIO 200
-#define EXPLODES 100 /* beside zlib's codes */
+#define EXPLODES 100 /* in addition to zlib's error codes */
 
 int vg_host_is_little(void)
 {
@@ -41,8 +42,8 @@ static char *copy_string(const char *s)
   return to;
 }
 
-/* Append what can be read from fd, up to `limit` bytes; also works for
- * pipes, whose size is not known beforehand. */
+/* Append the contents of fd, up to `limit` bytes. Also works for pipes, whose
+ * size is not known in advance. */
 static vg_status read_all(int fd, const char *path, size_t expected,
                           size_t limit, unsigned char **data, size_t *size,
                           struct vg_error *err)
@@ -85,21 +86,21 @@ static vg_status gzip_error(const char *path, int code, size_t at,
   if (code == Z_MEM_ERROR) return vg_fail_memory(err, path);
   if (code == EXPLODES)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: gzip data that unpack to more than %d times their "
-                   "size; unpack the file with gunzip if it is meant so",
+                   "%s: gzip data that expand to more than %d times their "
+                   "size; if this is intended, unpack the file with gunzip",
                    path, BOMB_RATIO);
   if (code == Z_BUF_ERROR)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: truncated gzip data: the file ends before its "
-                   "compressed stream does; fetch it again",
+                   "compressed stream does; copy the file again",
                    path);
   return vg_fail(err, VG_ERR_FORMAT,
-                 "%s: broken gzip data near byte %zu; fetch it again", path,
-                 at);
+                 "%s: damaged gzip data near byte %zu; copy the file again",
+                 path, at);
 }
 
-/* Inflate the members of a gzip file one after another. Zero bytes behind
- * the last member are padding, as gzip(1) sees it. */
+/* Inflate the members of a gzip file one after the other. Zero bytes after the
+ * last member are padding, as for gzip(1). */
 static int inflate_members(z_stream *z, const unsigned char *from, size_t size,
                            unsigned char **data, size_t *n)
 {
@@ -153,8 +154,8 @@ static vg_status unpack(const char *path, int is_head, unsigned char **data,
   return VG_OK;
 }
 
-/* A text file may begin with U+FEFF in UTF-8, which some editors of Windows
- * write. In a binary file these bytes are data. */
+/* A text file may begin with U+FEFF in UTF-8, as written by some Windows
+ * editors. In a binary file these bytes are data. */
 static void drop_byte_order_mark(struct vg_input *in)
 {
   static const unsigned char mark[3] = { 0xef, 0xbb, 0xbf };
@@ -166,8 +167,8 @@ static void drop_byte_order_mark(struct vg_input *in)
   memmove(in->data, in->data + sizeof mark, in->size + 1);
 }
 
-/* A repository cloned without Git LFS holds a few lines of text in the place
- * of each large file. */
+/* A repository cloned without Git LFS has a few lines of text in place of each
+ * large file. */
 static vg_status refuse_pointer(const char *path, const unsigned char *data,
                                 size_t size, struct vg_error *err)
 {
@@ -181,7 +182,7 @@ static vg_status refuse_pointer(const char *path, const unsigned char *data,
                  path);
 }
 
-/* Takes over `data`. */
+/* Takes ownership of `data`. */
 static vg_status adopt(const char *path, int is_head, unsigned char *data,
                        size_t size, struct vg_input *in, struct vg_error *err)
 {
@@ -296,7 +297,7 @@ vg_status vg_input_need(const struct vg_input *in, uint64_t n, size_t size,
                  (unsigned long long)left);
 }
 
-/* Written so that compilers turn each loop into vector shuffles. */
+/* Written so that compilers vectorise each loop. */
 static void load32(const unsigned char *from, size_t n, uint32_t *to, int swap)
 {
   memcpy(to, from, n * sizeof *to);
@@ -311,7 +312,7 @@ static void load64(const unsigned char *from, size_t n, uint64_t *to, int swap)
     for (size_t i = 0; i < n; i++) to[i] = __builtin_bswap64(to[i]);
 }
 
-/* Fixed-size blocks keep the temporary in cache and the types honest. */
+/* Blocks of fixed size stay in the cache and avoid type punning. */
 #define BLOCK 2048
 
 #define READ_ARRAY(type, word, load)                                           \
@@ -385,14 +386,14 @@ static vg_status marker_error(const struct vg_input *in, const char *what,
 {
   return vg_fail(err, VG_ERR_FORMAT,
                  "%s: the Fortran record of %s at byte %zu has markers %lld "
-                 "and %lld that do not fit its length or each other (wrong "
-                 "byte order or a damaged file)",
+                 "and %lld, which do not match its length or each other "
+                 "(wrong byte order or a damaged file)",
                  in->path, what, at, (long long)first, (long long)last);
 }
 
-/* One (sub)record: its bytes are moved to *to, and *to advanced. Signs as in
- * formats.md 1.1: leading < 0 when another part follows, trailing < 0 when
- * one precedes. */
+/* Read one subrecord: move its bytes to *to and advance *to. The signs of the
+ * markers follow formats.md 1.1: the leading one is negative if another
+ * subrecord follows, the trailing one if another precedes. */
 static vg_status read_part(struct vg_input *in, int is_first, size_t *to,
                            int *more, const char *what, struct vg_error *err)
 {
@@ -407,9 +408,9 @@ static vg_status read_part(struct vg_input *in, int is_first, size_t *to,
   if (n > vg_input_left(in)) {
     in->at = at;
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: the Fortran record of %s at byte %zu announces %llu "
-                   "bytes, but the file ends before (truncated, wrong byte "
-                   "order, or not a Fortran file)",
+                   "%s: the Fortran record of %s at byte %zu should have "
+                   "%llu bytes, but the file ends before (truncated, wrong "
+                   "byte order, or not a Fortran file)",
                    in->path, what, at, (unsigned long long)n);
   }
   if (is_first) *to = in->at;

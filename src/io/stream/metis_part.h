@@ -1,6 +1,6 @@
-/* io/stream/metis_part.h: parts of cells as METIS's programs write them, in
- * STEM.part.N: a line with the number of its part, from 0, for each cell, in
- * the order of the cells. */
+/* io/stream/metis_part.h: subdomains of cells in the files that METIS's
+ * programs write, STEM.part.N. Each line holds the subdomain number of a cell,
+ * counted from 0, in the order of the cells. */
 #ifndef VG_IO_STREAM_METIS_PART_H
 #define VG_IO_STREAM_METIS_PART_H
 
@@ -9,14 +9,15 @@
 
 #include "base/status.h"
 
-/** part: [n]. The file appears complete or not at all. VG_ERR_IO. */
+/** Write the file for part [n]. It appears complete or not at all.
+ * VG_ERR_IO. */
 vg_status vg_metis_part_write(const char *path, size_t n, const uint32_t *part,
                               struct vg_error *err);
 
-/** Bytes that such lines take. */
+/** Size of the file in bytes. */
 uint64_t vg_metis_part_bytes(size_t n, const uint32_t *part);
 
-/** Such lines into an open file. */
+/** Write the lines into an open file. */
 struct vg_output;
 void vg_metis_part_put(struct vg_output *out, size_t n, const uint32_t *part);
 

@@ -20,7 +20,7 @@ void vg_narrow_round(size_t n, const double (*x)[3], double (*rounded)[3])
     for (int k = 0; k < 3; k++) rounded[i][k] = (double)(float)x[i][k];
 }
 
-/* The one with the lower kind, then number, is the first. */
+/* Order by kind, then by number. */
 static int is_before(const struct vg_narrow *a, const struct vg_narrow *b)
 {
   return a->kind != b->kind ? a->kind < b->kind : a->cell < b->cell;
@@ -146,20 +146,19 @@ vg_status vg_narrow_accept(const struct vg_narrow *n, const char *kind,
   if (!n->n_cell && !n->n_point) return VG_OK;
   if (n->n_cell)
     snprintf(cells, sizeof cells,
-             "%" PRIu64 " cell%s flat or inverted, the "
-             "first %s %" PRIu64 " at (%.9g, %.9g, %.9g)",
+             "%" PRIu64 " flat or inverted cell%s, the first %s %" PRIu64
+             " at (%.9g, %.9g, %.9g)",
              n->n_cell, n->n_cell > 1 ? "s" : "", cell_name[n->kind],
              n->cell + 1, n->at[0], n->at[1], n->at[2]);
   if (n->n_point)
     snprintf(points, sizeof points,
-             "%s%" PRIu64 " point%s one with others, "
-             "the first point %" PRIu64 " (%.9g, %.9g, %.9g)",
+             "%s%" PRIu64 " coincident point%s, the first %" PRIu64
+             " (%.9g, %.9g, %.9g)",
              n->n_cell ? ", and " : "", n->n_point, n->n_point > 1 ? "s" : "",
              n->point + 1, n->x[0], n->x[1], n->x[2]);
   return vg_fail(err, VG_ERR_GEOMETRY,
-                 "the 4-byte reals of a .%s.ugrid would "
-                 "make %s%s: a solver could not use it; write 8-byte reals, "
-                 "as .%s.ugrid has, or move the geometry nearer to the "
-                 "origin",
+                 "with the 4-byte reals of a .%s.ugrid the mesh would have "
+                 "%s%s, which no solver can use; write 8-byte reals, as "
+                 ".%s.ugrid has, or move the geometry closer to the origin",
                  kind, cells, points, instead);
 }

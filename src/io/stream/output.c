@@ -1,4 +1,4 @@
-/* Buffered output under a temporary name, records and numbers:
+/* Buffered output to a temporary file name, Fortran records and numbers; see
  * io/stream/stream.h. */
 #define _GNU_SOURCE
 #include "io/stream/stream.h"
@@ -141,7 +141,7 @@ void vg_output_order(struct vg_output *out, int is_big)
   out->swap = (is_big != 0) == vg_host_is_little();
 }
 
-/* data NULL: bytes that others write. */
+/* data NULL: others write these bytes. */
 static void put_raw(struct vg_output *out, const void *data, size_t n)
 {
   const unsigned char *from = data;
@@ -172,7 +172,7 @@ static void put_marker(struct vg_output *out, uint32_t n, int is_negative)
   put_raw(out, out->no_markers ? NULL : &word, sizeof word);
 }
 
-/* Signs as in formats.md 1.1. */
+/* The signs of the markers follow formats.md 1.1. */
 static void open_part(struct vg_output *out)
 {
   int more = out->record_left > out->record_limit;
@@ -196,8 +196,8 @@ void vg_output_record(struct vg_output *out, uint64_t bytes)
   open_part(out);
 }
 
-/* A record that got more or fewer bytes than announced is a mistake of the
- * writer's; it must not become a file. */
+/* A record with more or fewer bytes than announced is an error of the writer
+ * and must not produce a file. */
 void vg_output_record_end(struct vg_output *out)
 {
   assert(out->record_open);
@@ -269,7 +269,8 @@ uint64_t vg_record_size(uint64_t bytes, uint32_t limit)
   return bytes + 8 * (bytes ? (bytes - 1) / limit + 1 : 1);
 }
 
-/* Values pass through a block that stays in cache: convert, swap, append. */
+/* Values pass through a block that stays in the cache, where they are converted
+ * and byte-swapped. */
 #define WRITE_ARRAY(type, word, bswap)                                         \
   word block[BLOCK];                                                           \
   for (size_t i = 0, m; i < n; i += m) {                                       \
@@ -365,7 +366,7 @@ void vg_output_int(struct vg_output *out, int64_t v)
   vg_output_bytes(out, text, n);
 }
 
-/* printf writes the decimal point of the locale: put a '.' in its place. */
+/* printf writes the decimal point of the locale, which is replaced by '.'. */
 static size_t format_slow(double v, char *text)
 {
   double back;
@@ -384,8 +385,8 @@ static size_t format_slow(double v, char *text)
   return (size_t)n;
 }
 
-/* x = digits * 10^-scale with 17 digits, correctly rounded; 0 when the
- * extended precision cannot tell the last digit. */
+/* Compute x = digits * 10^-scale with 17 digits, correctly rounded. Returns 0
+ * if extended precision cannot decide the last digit. */
 static int seventeen_digits(double x, uint64_t *digits, int *scale)
 {
 #if LDBL_MANT_DIG == 64
@@ -403,7 +404,7 @@ static int seventeen_digits(double x, uint64_t *digits, int *scale)
   if (y < 1e16L || y >= 1e17L - 1) return 0;
   *digits = (uint64_t)y;
   part = y - (long double)*digits;
-  /* One rounding of y: an error of at most 2^-8 at 1e17. */
+  /* y has been rounded once: its error is at most 2^-8 at 1e17. */
   if (part > 0.49L && part < 0.51L) return 0;
   *digits += part > 0.5L;
   *scale = k;
@@ -416,7 +417,7 @@ static int seventeen_digits(double x, uint64_t *digits, int *scale)
 #endif
 }
 
-/* digits * 10^-scale without exponent, trailing zeros dropped. */
+/* Write digits * 10^-scale without an exponent and without trailing zeros. */
 static size_t format_fixed(uint64_t digits, int scale, char *text)
 {
   char digit[24];

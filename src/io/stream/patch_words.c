@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 
-#define TAIL 12 /* "_-2147483648" */
+#define TAIL 12 /* length of "_-2147483648" */
 
 struct named {
   char name[VG_PATCH_WORD];

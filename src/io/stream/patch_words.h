@@ -1,5 +1,5 @@
-/* io/stream/patch_words.h: names of patches for formats in which a name is a
- * word. */
+/* io/stream/patch_words.h: patch names for formats in which a name must be a
+ * single word. */
 #ifndef VG_IO_STREAM_PATCH_WORDS_H
 #define VG_IO_STREAM_PATCH_WORDS_H
 
@@ -8,11 +8,13 @@
 #define VG_PATCH_WORD (VG_NAME_MAX + 32)
 #define VG_PATCH_WORD_MOST (VG_PATCH_WORD - 1)
 
-/** Names of all patches as words that solvers take: letters, digits and "_-.",
- * a letter first; others become '_', no name "patch_ID". Unique: of equal ones
- * all but the first get their patch number, until nothing clashes.
- * @param most  characters of a word, from 24 to VG_PATCH_WORD_MOST
- * Returns [n_patch], to be freed; NULL: no memory. */
+/** Names of all patches as words that solvers accept: letters, digits and
+ * "_-.", starting with a letter. Other characters become '_', and a patch
+ * without a name is called "patch_ID". All words differ: of several equal ones,
+ * all but the first get their patch number appended, until there are no
+ * duplicates.
+ * @param most  maximum length of a word, from 24 to VG_PATCH_WORD_MOST
+ * Returns [n_patch], to be freed; NULL if there is not enough memory. */
 char (*vg_patch_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD];
 
 #endif

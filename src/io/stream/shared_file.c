@@ -1,4 +1,4 @@
-/* One file written by all ranks: io/stream/shared_file.h. */
+/* One file written by all ranks; see io/stream/shared_file.h. */
 #define _GNU_SOURCE
 #include "io/stream/shared_file.h"
 
@@ -17,14 +17,14 @@
 #include "base/memory.h"
 #include "io/stream/stream.h"
 
-/* Bytes in one call, far below the 2^31 of MPI's counts and of write(2). */
+/* Bytes per call, far below the 2^31 limit of MPI's counts and of write(2). */
 #define CHUNK ((uint64_t)1 << 28)
 
 struct vg_shared_file {
   struct vg_comm *comm;
-  MPI_File file; /* in a job with MPI */
-  int fd;        /* all there is in a job without; else the way
-                    to learn why MPI could not write */
+  MPI_File file; /* used in a job with MPI */
+  int fd; /* the file in a job without MPI; otherwise used to find out why
+             MPI could not write */
   uint64_t size;
   char *path, *part;
 };
@@ -48,16 +48,17 @@ static vg_status no_room(const struct vg_shared_file *f, int error,
                          struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_IO,
-                 "%s: no room for %" PRIu64 " bytes: %s; "
-                 "free some or write to another disk",
+                 "%s: there is not enough space for %" PRIu64
+                 " bytes: %s; free some space or write to another disk",
                  f->part, f->size, strerror(error));
 }
 
 /* --- opening ------------------------------------------------------------- */
 
-/* Take the room on disk now, so that a full disk is known before an hour of
- * writing; where the file system cannot reserve, at least look. fallocate and
- * not posix_fallocate: without support that one writes to every block. */
+/* Reserve the disk space now, so that a full disk is detected before an hour of
+ * writing. Where the file system cannot reserve space, compare with the free
+ * space. This uses fallocate rather than posix_fallocate, which without support
+ * by the file system writes to every block. */
 static vg_status reserve(const struct vg_shared_file *f, struct vg_error *err)
 {
   struct statvfs disk;
@@ -76,7 +77,7 @@ static vg_status reserve(const struct vg_shared_file *f, struct vg_error *err)
   return VG_OK;
 }
 
-/* By the first rank. */
+/* Create the file, on rank 0. */
 static vg_status create(struct vg_shared_file *f, struct vg_error *err)
 {
   vg_status st;
@@ -88,15 +89,15 @@ static vg_status create(struct vg_shared_file *f, struct vg_error *err)
   return st;
 }
 
-/* By the others, once it is there. */
+/* Open the file on the other ranks after it has been created. */
 static vg_status find(struct vg_shared_file *f, struct vg_error *err)
 {
   f->fd = open(f->part, O_WRONLY | O_CLOEXEC);
   if (f->fd >= 0) return VG_OK;
   if (errno != ENOENT) return fail(f, "cannot write", errno, err);
   return vg_fail(err, VG_ERR_IO,
-                 "%s: made by the first rank but not found "
-                 "here; write to a file system that all nodes share",
+                 "%s: created by rank 0 but not found by this rank; write "
+                 "to a file system that all nodes share",
                  f->part);
 }
 
@@ -107,12 +108,13 @@ static vg_status fail_mpi(const struct vg_shared_file *f, int rc,
   int n;
 
   if (MPI_Error_string(rc, text, &n)) text[0] = 0;
-  return vg_fail(err, VG_ERR_IO, "%s: cannot write by MPI-IO: %s", f->part,
+  return vg_fail(err, VG_ERR_IO, "%s: cannot write with MPI-IO: %s", f->part,
                  text);
 }
 
-/* All ranks can open the file, so MPI should. If it cannot on one of them
- * the others leave the file open: closing is collective and would wait. */
+/* All ranks can open the file, so MPI should be able to. If it fails on one
+ * rank, the other ranks leave the file open, because closing it is collective
+ * and would block. */
 static vg_status open_mpi(struct vg_shared_file *f, struct vg_error *err)
 {
   MPI_Comm comm = *(const MPI_Comm *)vg_comm_mpi(f->comm);
@@ -183,11 +185,11 @@ static vg_status write_plain(const struct vg_shared_file *f, uint64_t at,
   return VG_OK;
 }
 
-/* On a full disk Open MPI 4.1.4 answers MPI_SUCCESS with a count of 0, so it
- * is the count that tells; and neither it nor ROMIO says why. What could not
- * be written is tried once more without MPI, which either works or has the
- * system's reason. No lock: a handle may be used from several threads, and
- * ompio locks it itself. */
+/* On a full disk Open MPI 4.1.4 returns MPI_SUCCESS with a count of 0, so the
+ * count must be checked; and neither it nor ROMIO tells the reason. Bytes that
+ * could not be written are therefore written once more without MPI, which
+ * either succeeds or gives the system's reason. No lock is needed: several
+ * threads may use a handle, and ompio locks it itself. */
 static vg_status write_mpi(const struct vg_shared_file *f, uint64_t at,
                            uint64_t n, const unsigned char *data,
                            struct vg_error *err)
@@ -212,8 +214,8 @@ vg_status vg_shared_write(struct vg_shared_file *f, uint64_t at, uint64_t n,
   assert(data || !n);
   if (at > f->size || n > f->size - at)
     return vg_fail(err, VG_ERR_IO,
-                   "%s: %" PRIu64 " bytes at %" PRIu64 " go "
-                   "beyond the %" PRIu64 " that were announced",
+                   "%s: %" PRIu64 " bytes at %" PRIu64 " go beyond the %" PRIu64
+                   " that were announced",
                    f->part, n, at, f->size);
   return f->comm ? write_mpi(f, at, n, data, err)
                  : write_plain(f, at, n, data, err);
@@ -236,11 +238,12 @@ static vg_status give_name(const struct vg_shared_file *f, struct vg_error *err)
 {
   struct stat s;
 
-  if (stat(f->part, &s)) return fail(f, "lost while written", errno, err);
+  if (stat(f->part, &s))
+    return fail(f, "lost while it was written", errno, err);
   if ((uint64_t)s.st_size != f->size)
     return vg_fail(err, VG_ERR_IO,
                    "%s: has %" PRIu64 " bytes instead of %" PRIu64
-                   "; does something else write to it?",
+                   "; is another program writing to it?",
                    f->part, (uint64_t)s.st_size, f->size);
   if (rename(f->part, f->path))
     return vg_fail(err, VG_ERR_IO, "%s: cannot write: %s", f->path,
@@ -248,7 +251,8 @@ static vg_status give_name(const struct vg_shared_file *f, struct vg_error *err)
   return VG_OK;
 }
 
-/* MPI waits in closing without sleep: the ranks gather before. */
+/* MPI spins while it waits in MPI_File_close, so the ranks synchronise
+ * before. */
 vg_status vg_shared_close(struct vg_shared_file *f, vg_status mine,
                           struct vg_error *err)
 {

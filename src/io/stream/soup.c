@@ -21,8 +21,8 @@ static vg_status room(void *list, size_t *cap, size_t n, size_t size,
 {
   if (n >= UINT32_MAX - 1)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "more than 4294967294 %s: beyond 32-bit numbers; split the "
-                   "file",
+                   "more than 4294967294 %s, the limit of 32-bit numbers; "
+                   "split the file",
                    what);
   if (vg_reserve(list, cap, n + 1, size)) return vg_fail_memory(err, what);
   return VG_OK;

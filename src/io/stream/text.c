@@ -1,6 +1,6 @@
-/* Tokens, numbers and lines of text files: io/stream/stream.h. */
+/* Tokens, numbers and lines of text files; see io/stream/stream.h. */
 #ifndef _GNU_SOURCE
-#define _GNU_SOURCE /* strtod_l */
+#define _GNU_SOURCE /* for strtod_l */
 #endif
 #include "io/stream/stream.h"
 
@@ -15,7 +15,8 @@ static int is_space(unsigned char c)
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-/* data[size] is 0, which is neither white space nor a digit: loops stop. */
+/* data[size] is 0, which is neither white space nor a digit and ends all
+ * loops. */
 static void skip_space(struct vg_input *in, int in_line)
 {
   const unsigned char *d = in->data;
@@ -111,7 +112,7 @@ int vg_parse_int(const char *text, size_t len, int64_t *v)
   return 1;
 }
 
-/* A decimal number taken apart: value = mantissa * 10^exponent. */
+/* Decimal number split into its parts: value = mantissa * 10^exponent. */
 struct decimal {
   uint64_t mantissa; /* first 19 significant digits */
   int exponent;
@@ -172,9 +173,10 @@ static const double power10[23] = { 1e0,  1e1,  1e2,  1e3,  1e4,  1e5,
                                     1e12, 1e13, 1e14, 1e15, 1e16, 1e17,
                                     1e18, 1e19, 1e20, 1e21, 1e22 };
 
-/* Where `long double` has 64 bits, mantissa and power (5^27 < 2^64) are exact
- * in it and only one rounding happens; the second one, to double, is right
- * unless the first result lies next to the middle between two doubles. */
+/* If `long double` has a 64-bit mantissa, both the mantissa and the power (5^27
+ * < 2^64) are exact and only one rounding occurs. The second rounding, to
+ * double, is correct unless the first result is next to the midpoint of two
+ * doubles. */
 static int scale_extended(const struct decimal *d, double *v)
 {
 #if LDBL_MANT_DIG == 64
@@ -201,7 +203,7 @@ static int scale_extended(const struct decimal *d, double *v)
 #endif
 }
 
-/* The rare remainder: the C library, in the C locale (which is a constant
+/* For the rare remaining cases, use the C library in the C locale (a constant
  * object: no allocation, no global state). */
 static int parse_slow(const char *text, size_t len, double *v)
 {
@@ -260,12 +262,12 @@ static vg_status token_error(const struct vg_input *in, const char *text,
 
     if (c < 32 || c == 127)
       return vg_input_fail(in, err,
-                           "binary data where %s (%s) should stand: this is "
-                           "not a text file; check its suffix",
+                           "binary data instead of %s (%s): this is not a "
+                           "text file; check its suffix",
                            kind, what);
   }
-  return vg_input_fail(in, err, "%s (%s) should stand here, not '%.*s'", kind,
-                       what, (int)(len < 40 ? len : 40), text);
+  return vg_input_fail(in, err, "expected %s (%s), not '%.*s'", kind, what,
+                       (int)(len < 40 ? len : 40), text);
 }
 
 vg_status vg_input_int(struct vg_input *in, int64_t *v, const char *what,
@@ -276,7 +278,7 @@ vg_status vg_input_int(struct vg_input *in, int64_t *v, const char *what,
 
   assert(v && what);
   if (!vg_input_token(in, &text, &len))
-    return vg_input_fail(in, err, "the file ends where %s should stand", what);
+    return vg_input_fail(in, err, "the file ends where %s was expected", what);
   if (vg_parse_int(text, len, v)) return VG_OK;
   return token_error(in, text, len, "an integer", what, err);
 }
@@ -289,7 +291,7 @@ vg_status vg_input_real(struct vg_input *in, double *v, const char *what,
 
   assert(v && what);
   if (!vg_input_token(in, &text, &len))
-    return vg_input_fail(in, err, "the file ends where %s should stand", what);
+    return vg_input_fail(in, err, "the file ends where %s was expected", what);
   if (vg_parse_real(text, len, v)) return VG_OK;
   return token_error(in, text, len, "a finite number", what, err);
 }

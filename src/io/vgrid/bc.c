@@ -16,16 +16,16 @@ static vg_status bc_header(struct vg_input *in, int64_t head[4],
         !vg_parse_int(text, len, head + k))
       return vg_fail(err, VG_ERR_FORMAT,
                      "%s: line 1 must hold four integers (faces, curve "
-                     "points, patches, igrid); this is no VGRID .bc (AFLR "
-                     "uses the same suffix for something else)",
+                     "points, patches, igrid); this is not a VGRID .bc "
+                     "(AFLR uses the same suffix for another format)",
                      in->path);
   vg_input_line(in, &text, &len);
   vg_input_line(in, &text, &len); /* a title */
-  /* Five numbers and five separators in each face line. */
+  /* Each face line has five numbers and five separators. */
   if (head[0] < 0 || (uint64_t)head[0] > (vg_input_left(in) + 1) / 10)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: truncated: line 1 announces %lld faces, which the "
-                   "file is too short for",
+                   "%s: truncated: line 1 announces %lld faces, but the "
+                   "file is too short for them",
                    in->path, (long long)head[0]);
   return VG_OK;
 }

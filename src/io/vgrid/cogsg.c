@@ -1,4 +1,4 @@
-/* .cogsg and the triple it belongs to (formats.md 1.2). */
+/* .cogsg and its companion files (formats.md 1.2). */
 #define _GNU_SOURCE
 #include <assert.h>
 #include <stdio.h>
@@ -18,13 +18,13 @@ struct layout {
   int is_big, marker8, tc_size;
 };
 
-/* In the order in which a reader should try them. */
+/* In the order in which the reader tries them. */
 static const struct layout layouts[] = { { 1, 0, 8 }, { 0, 0, 8 }, { 1, 0, 4 },
                                          { 0, 0, 4 }, { 1, 1, 8 }, { 0, 1, 8 },
                                          { 1, 1, 4 }, { 0, 1, 4 } };
 
-/* Does the first marker fit the cell count behind it? A negative marker is
- * the first of several subrecords, which together must hold more. */
+/* Does the first marker fit the cell count that follows it? A negative marker
+ * belongs to the first of several subrecords, which together must be longer. */
 static int layout_fits(const struct vg_input *file, const struct layout *l)
 {
   struct vg_input in = *file;
@@ -39,7 +39,7 @@ static int layout_fits(const struct vg_input *file, const struct layout *l)
     if (vg_input_i32(&in, 1, &narrow, "marker", NULL) < 0) return 0;
     marker = narrow;
   }
-  /* A subrecord of a test may be too short to hold the cell count. */
+  /* In tests, the first subrecord may be too short to hold the cell count. */
   if (marker < 0 && marker > -8) return 0;
   if (vg_input_i32(&in, 2, head, "header", NULL) < 0 || head[1] < 0) return 0;
   full = 24 + l->tc_size + 16 * (int64_t)head[1];
@@ -94,8 +94,8 @@ static vg_status read_header(struct vg_input *record, const struct layout *l,
     return bad_header(record, h, "a negative count", err);
   if (vg_input_left(record) != 16 * (uint64_t)h->nc)
     return bad_header(record, h,
-                      "the first record has another length than "
-                      "its cells need",
+                      "the length of the first record does not match its "
+                      "number of cells",
                       err);
   if (h->nbn > h->npo)
     return bad_header(record, h, "more boundary points than points", err);
@@ -104,7 +104,7 @@ static vg_status read_header(struct vg_input *record, const struct layout *l,
   return VG_OK;
 }
 
-/* All first nodes, then all second nodes, ... */
+/* The file lists the first nodes of all cells, then all second nodes, ... */
 static vg_status read_cells(struct vg_input *record, size_t n_point,
                             struct vg_mesh *m, struct vg_error *err)
 {
@@ -175,7 +175,8 @@ static vg_status parse_volume(struct vg_input *in, struct vg_mesh *m,
   vg_input_order(in, l.is_big);
   st = vg_input_record(in, &record, "the cells", err);
   if (st == VG_OK) st = read_header(&record, &l, &h, err);
-  /* Behind the cells, three reals of at least four bytes for each point. */
+  /* After the cells there must be three reals of at least four bytes per
+   * point. */
   if (st == VG_OK)
     st = vg_input_need(in, (uint64_t)h.npo, 12, "the coordinates", err);
   if (st < 0) return st;
@@ -238,7 +239,7 @@ done:
   return st;
 }
 
-/* STEM + suffix, from STEM, STEM.cogsg or STEM.cogsg.gz. */
+/* STEM + suffix, where path is STEM, STEM.cogsg or STEM.cogsg.gz. */
 static char *beside(const char *path, const char *suffix)
 {
   size_t n = strlen(path);
@@ -260,8 +261,9 @@ static vg_status open_bc(const char *path, struct vg_input *bc,
   else if (!access(packed, F_OK)) st = vg_input_open(packed, bc, err);
   else
     st = vg_fail(err, VG_ERR_IO,
-                 "%s: not found; the boundary triangles of %s are in it", name,
-                 path);
+                 "%s: not found; it should contain the boundary triangles "
+                 "of %s",
+                 name, path);
   free(name);
   free(packed);
   return st;
@@ -371,7 +373,8 @@ void vg_cogsg_seek(struct vg_output *out, uint64_t n_tet, uint64_t n_point,
                           8 * ((uint64_t)column * n_point + first));
 }
 
-/* Right-justified to 8 columns, with a blank in front even of 8 digits. */
+/* Right-justified to 8 columns; a number of 8 digits is still preceded by a
+ * blank. */
 static void put_column(struct vg_output *out, int64_t v)
 {
   char text[32];
@@ -408,8 +411,9 @@ vg_status vg_cogsg_check(const char *stem, const struct vg_mesh *m,
 {
   if (m->n_pyr || m->n_pri || m->n_hex || m->n_quad)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s.cogsg: the format holds tetrahedra and triangles only, "
-                   "the mesh also has others; write .b8.ugrid",
+                   "%s.cogsg: the format holds only tetrahedra and "
+                   "triangles, but the mesh has other elements; write "
+                   ".b8.ugrid",
                    stem);
   if (m->n_tet > INT32_MAX || m->n_point > INT32_MAX || m->n_tri > INT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,

@@ -1,5 +1,5 @@
-/* .d3m project files, reader (formats.md 1.6). '#' lines are titles, blank
- * lines separate, text behind the numbers of a line is ignored. */
+/* Reader of .d3m project files (formats.md 1.6). Lines with '#' are titles,
+ * blank lines separate, and text after the numbers of a line is ignored. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "io/stream/convention.h"
 #include "io/vgrid/vgrid.h"
 
-/* --- numbers of points and curves, which need not run from 1 --- */
+/* --- ids of points and curves, which need not be consecutive --- */
 
 struct id_map {
   size_t n;
@@ -27,7 +27,7 @@ static int compare_id(const void *a, const void *b)
   return (p->at > q->at) - (p->at < q->at);
 }
 
-/* Sort; the first number that occurs twice, or -1. */
+/* Sort by id. Returns the first id that occurs twice, or -1. */
 static int64_t map_sort(struct id_map *m)
 {
   qsort(m->list, m->n, sizeof *m->list, compare_id);
@@ -57,8 +57,8 @@ struct reader {
 
 /* --- lines --- */
 
-/* Cut the next line that holds something other than a title out of the file:
- * its tokens can be read from *line, whose messages give its number. */
+/* Make *line a view of the next line that is neither a title nor blank. Its
+ * tokens can be read from the view, whose messages give its line number. */
 static vg_status content_line(struct vg_input *in, struct vg_input *line,
                               const char *what, struct vg_error *err)
 {
@@ -69,7 +69,7 @@ static vg_status content_line(struct vg_input *in, struct vg_input *line,
     struct vg_input look = *in;
 
     if (!vg_input_line(in, &text, &len))
-      return vg_input_fail(in, err, "the file ends where %s should stand",
+      return vg_input_fail(in, err, "the file ends where %s was expected",
                            what);
     look.is_view = 1;
     look.size = look.at + len;
@@ -101,8 +101,8 @@ static vg_status count_value(struct vg_input *in, const char *what,
   if (st < 0) return st;
   if (v < 0 || (uint64_t)v > vg_input_left(in) / bytes_each + 1)
     return vg_input_fail(&line, err,
-                         "%s is %lld, which the file is too short "
-                         "for",
+                         "%s is %lld, but the file is too short for that "
+                         "many",
                          what, (long long)v);
   *n = (size_t)v;
   return VG_OK;
@@ -164,7 +164,7 @@ static vg_status read_parameters(struct reader *r, struct vg_error *err)
   }
   VG_TRY(values(in, 1, &p->vfact, "vfact", err));
   VG_TRY(int_value(in, "strch", &p->stretch, err));
-  /* Fewest bytes of a point, a curve, a patch, a source. */
+  /* Minimum number of bytes of a point, a curve, a patch and a source. */
   VG_TRY(count_value(in, "npoli", 8, &p->n_point, err));
   VG_TRY(count_value(in, "nline", 8, &p->n_curve, err));
   VG_TRY(count_value(in, "nptch", 12, &p->n_shape, err));
@@ -189,7 +189,7 @@ static vg_status make_room(struct reader *r, struct vg_error *err)
   if (p->point && p->curve && p->shape && p->source && r->point.list &&
       r->curve.list)
     return VG_OK;
-  /* The release must not walk over arrays that are not there. */
+  /* On failure, release must not visit arrays that were not allocated. */
   if (!p->curve) p->n_curve = 0;
   if (!p->shape) p->n_shape = 0;
   return vg_fail_memory(err, "a project");
@@ -240,8 +240,8 @@ static vg_status read_curve(struct reader *r, size_t i, struct vg_error *err)
                          (long long)id);
   if (n < 2 || (uint64_t)n > vg_input_left(in) / 2 + 1)
     return vg_input_fail(in, err,
-                         "curve %lld has %lld points; two or more, "
-                         "and no more than the file lists, are possible",
+                         "curve %lld has %lld points; it must have at least "
+                         "two, and no more than the file lists",
                          (long long)id, (long long)n);
   c->id = (int32_t)id;
   c->point = vg_alloc((size_t)n, sizeof *c->point);
@@ -284,8 +284,8 @@ static uint32_t curve_end(const struct vg_project *p, int32_t signed_curve,
   return (signed_curve > 0) == is_tail ? c->point[c->n - 1] : c->point[0];
 }
 
-/* Number of the first curve of the loop whose tail is not the head of the
- * next one; 0 when the loop closes. */
+/* First curve, counted from 1, of the loop whose end is not the start of the
+ * next curve; 0 if the loop is closed. */
 static size_t loop_gap(const struct vg_project *p,
                        const struct vg_patch_shape *s)
 {
@@ -313,7 +313,8 @@ static vg_status add_loop_curve(struct reader *r, struct vg_patch_shape *s,
   return VG_OK;
 }
 
-/* A side may be several curves: lines are read until the loop closes. */
+/* A side may consist of several curves: lines are read until the loop is
+ * closed. */
 static vg_status read_loop(struct reader *r, struct vg_patch_shape *s,
                            struct vg_error *err)
 {
@@ -422,9 +423,8 @@ static vg_status read_source(struct reader *r, size_t i, struct vg_error *err)
   vg_input_token(&line, &text, &len);
   if (!vg_token_is(text, len, "source_number")) {
     st = vg_input_fail(&line, err,
-                       "'source_number' of source %zu of %zu "
-                       "should stand here",
-                       i + 1, r->p->n_source);
+                       "expected 'source_number' of source %zu of %zu", i + 1,
+                       r->p->n_source);
     goto done;
   }
   vg_input_token_in_line(&line, &text, &len);
@@ -432,8 +432,8 @@ static vg_status read_source(struct reader *r, size_t i, struct vg_error *err)
   VG_TRY(values(in, 2, v, "type and stretching of a source", err));
   if (v[0] != 0 && v[0] != 1) {
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s:%zu: source %zu has type %g; known are 0 (node) and 1 "
-                 "(line)",
+                 "%s:%zu: source %zu has type %g; valid types are 0 (node) "
+                 "and 1 (line)",
                  in->path, in->line - 1, i + 1, v[0]);
     goto done;
   }
@@ -469,11 +469,12 @@ vg_status vg_d3m_parse(struct vg_input *in, struct vg_project *out,
 
   assert(in && out);
   if (!vg_input_is_text(in))
-    return vg_fail(err, VG_ERR_FORMAT, "%s: holds binary data; a .d3m is text",
-                   in->path);
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: contains binary data; a .d3m is text", in->path);
   st = read_parameters(&r, err);
   if (st < 0) {
-    p.n_curve = p.n_shape = 0; /* announced, not there */
+    p.n_curve = p.n_shape = 0; /* announced by the header, but not yet
+                                  allocated */
     goto done;
   }
   VG_TRY(make_room(&r, err));

@@ -1,4 +1,4 @@
-/* .d3m project files, writer: the columns of VGRID's own example
+/* Writer of .d3m project files. It uses the columns of VGRID's own example
  * (formats.md 1.6), since it is not known whether VGRID reads by column. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,8 +6,8 @@
 
 #include "io/vgrid/vgrid.h"
 
-/* "%.10e" with a point in every locale: 17 characters at most for exponents
- * of two digits. */
+/* "%.10e" with a decimal point in every locale: at most 17 characters for
+ * exponents of two digits. */
 static size_t scientific(double v, char *text, size_t size)
 {
   int n = snprintf(text, size, "%.10e", v);
@@ -19,7 +19,7 @@ static size_t scientific(double v, char *text, size_t size)
   return (size_t)n;
 }
 
-/* Left-justified, at least one blank behind. */
+/* Left-justified, followed by at least one blank. */
 static void put_left(struct vg_output *out, const char *text, size_t n,
                      size_t width)
 {
@@ -189,8 +189,8 @@ vg_status vg_d3m_write(const char *path, const struct vg_project *p,
     if (p->source[i].kind != VG_SOURCE_VGRID_NODE &&
         p->source[i].kind != VG_SOURCE_VGRID_LINE)
       return vg_fail(err, VG_ERR_UNSUPPORTED,
-                     "%s: source %zu is of a kind that a .d3m does not have; "
-                     "put it in the run deck",
+                     "%s: source %zu is of a kind that a .d3m cannot hold; "
+                     "define it in the run deck",
                      path, i + 1);
   st = vg_output_open(path, &out, err);
   if (st < 0) return st;

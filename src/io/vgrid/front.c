@@ -1,5 +1,5 @@
-/* .front: VGRID's surface mesh and restart file (formats.md 1.9). Points,
- * faces and curve edges are read, the rest is passed over. */
+/* .front: VGRID's surface mesh and restart file (formats.md 1.9). Points, faces
+ * and curve edges are read; everything else is skipped. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "io/vgrid/vgrid.h"
 
-/* Values of line 2, by place. */
+/* Positions of the values of line 2. */
 enum {
   NPOIT,
   NELET,
@@ -33,17 +33,15 @@ static vg_status front_header(struct vg_input *in, int64_t head[N_HEADER],
   memset(head, 0, N_HEADER * sizeof *head);
   if (!vg_input_is_text(in))
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: holds binary data; a .front is "
-                   "text",
-                   in->path);
+                   "%s: contains binary data; a .front is text", in->path);
   vg_input_line(in, &text, &len);
   while (n < N_HEADER && vg_input_token_in_line(in, &text, &len) &&
          vg_parse_int(text, len, head + n))
     n++;
   if (n < NBOU0)
     return vg_input_fail(in, err,
-                         "ten or eleven counts (npoit nelet npoif "
-                         "nface ...) should stand here");
+                         "expected ten or eleven counts (npoit nelet npoif "
+                         "nface ...)");
   vg_input_line(in, &text, &len);
   for (int k = 0; k < n; k++)
     if (head[k] < 0 || head[k] > INT32_MAX)
@@ -51,17 +49,19 @@ static vg_status front_header(struct vg_input *in, int64_t head[N_HEADER],
                            (long long)head[k]);
   if (head[NELET] || head[NELEV] || head[NFACE] != head[NFACS])
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: the front of a volume run (%lld cells made, %lld of "
-                   "%lld faces left), not a surface; run VGRID with rstrt = "
-                   "-1, or give the surface as another file",
+                   "%s: this is the front of a volume run (%lld cells "
+                   "generated, %lld of %lld faces left), not a surface; run "
+                   "VGRID with rstrt = -1, or use another file for the "
+                   "surface",
                    in->path, (long long)head[NELET], (long long)head[NFACE],
                    (long long)head[NFACS]);
   if (!head[NFACE] || !head[NPOIT])
-    return vg_fail(err, VG_ERR_FORMAT, "%s: a front without faces", in->path);
-  /* A face takes eight bytes at least, so does a point. */
+    return vg_fail(err, VG_ERR_FORMAT, "%s: the front has no faces", in->path);
+  /* A face takes at least eight bytes, and so does a point. */
   if ((uint64_t)(head[NFACE] + head[NPOIT]) > vg_input_left(in) / 8 + 1)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: truncated: %lld faces and %lld points are announced",
+                   "%s: truncated: the header announces %lld faces and %lld "
+                   "points",
                    in->path, (long long)head[NFACE], (long long)head[NPOIT]);
   return VG_OK;
 }
@@ -97,8 +97,8 @@ static vg_status read_surface(struct vg_input *in, struct vg_mesh *m,
   for (size_t i = 0; i < m->n_point && st == VG_OK; i++) {
     st = vg_input_int(in, &number, "point number", err);
     if (st == VG_OK && number != (int64_t)i + 1)
-      return vg_input_fail(in, err, "point %zu should stand here, not %lld",
-                           i + 1, (long long)number);
+      return vg_input_fail(in, err, "expected point %zu, not %lld", i + 1,
+                           (long long)number);
     for (int k = 0; k < 3 && st == VG_OK; k++)
       st = vg_input_real(in, &m->point[i][k], "coordinate", err);
   }
@@ -117,7 +117,7 @@ static vg_status skip_lines(struct vg_input *in, size_t n, const char *what,
   return VG_OK;
 }
 
-/* Number pairs (tokens), then lines of flags and of two arrays: skipped. */
+/* Skip pairs of numbers (tokens), then lines of flags and of two arrays. */
 static vg_status skip_to_edges(struct vg_input *in, const struct vg_mesh *m,
                                struct vg_error *err)
 {
@@ -138,8 +138,8 @@ static vg_status read_edges(struct vg_input *in, const struct vg_mesh *m,
   if (st < 0) return st;
   if (n < 1 || (uint64_t)n > vg_input_left(in) / 4 + 1)
     return vg_input_fail(in, err,
-                         "%lld curve edges: none, or more than the "
-                         "file can hold",
+                         "the number of curve edges is %lld: not positive, "
+                         "or more than the file can hold",
                          (long long)n);
   list = vg_alloc((size_t)n, sizeof *list);
   if (!list) return vg_fail_memory(err, "the curve edges");

@@ -1,15 +1,16 @@
-/* Which patch is each face of a front? The file does not say (formats.md
- * 1.9), but it lists the edges on the curves of the project.
+/* Assigns the faces of a front to patches. The file does not contain the
+ * patches (formats.md 1.9), but it lists the edges on the curves of the
+ * project.
  *
- *   1. Every mesh edge goes into a list; curve edges are marked there.
+ *   1. Every mesh edge is entered into a list, and curve edges are marked.
  *   2. Faces are flooded across the other edges into regions.
  *   3. Curve edges are chained between curve ends, and each chain is matched
- *      with the curve of the project that has these ends (the nearest one,
- *      where several have).
- *   4. A region's curves, signed by the direction in which the region runs
- *      along them, are those of one patch: loops of the project are inward
- *      by the right-hand rule as faces are, so that even two patches inside
- *      one loop differ. */
+ *      with the curve of the project that has the same ends (the nearest
+ *      one, if several have).
+ *   4. The curves around a region, signed by the direction in which the
+ *      region runs along them, are those of exactly one patch. Loops of the
+ *      project are inward by the right-hand rule, as faces are, so that even
+ *      two patches inside the same loop differ. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -24,15 +25,16 @@
 
 #define NONE UINT32_MAX
 
-struct edge { /* of the mesh, a < b */
+struct edge { /* mesh edge, a < b */
   uint32_t a, b;
   uint32_t face[2];
   int n_face;
   int on_curve;
-  int32_t curve; /* 1-based, < 0: the curve runs from b to a */
+  int32_t curve; /* number of the curve from 1; negative: the curve runs from
+                    b to a */
 };
 
-/* A curve edge seen from one end. */
+/* A curve edge as seen from one of its ends. */
 struct link {
   uint32_t from, to;
   uint32_t edge;
@@ -46,14 +48,14 @@ struct front {
   size_t n_edge;
   struct edge *edge; /* [n_edge] */
   uint32_t *region;  /* [n_tri] */
-  uint32_t *seed;    /* [n_region] first face */
+  uint32_t *seed;    /* [n_region] first face of each region */
   size_t n_region, n_link;
   struct link *link;     /* [n_link] sorted by from, to */
-  uint32_t (*end)[2];    /* [n_curve] points of the mesh at curve ends */
+  uint32_t (*end)[2];    /* [n_curve] mesh points at both ends of each curve */
   unsigned char *is_end; /* [n_point] */
 };
 
-/* The edge of two points, made if need be. */
+/* Edge between two points, created if it does not exist yet. */
 static struct edge *edge_of(struct front *w, uint32_t p, uint32_t q)
 {
   uint32_t a = p < q ? p : q, b = p < q ? q : p, *at;
@@ -89,8 +91,8 @@ static vg_status build_edges(struct front *w, size_t n_edge,
     c->on_curve = 1;
     if (!c->n_face)
       return vg_fail(err, VG_ERR_INPUT,
-                     "%s: curve edge %zu joins points %u and %u, which no "
-                     "face joins; the file is damaged",
+                     "%s: curve edge %zu connects points %u and %u, but no "
+                     "face has this edge; the file is damaged",
                      w->path, i + 1, edge[i][0] + 1, edge[i][1] + 1);
   }
   return VG_OK;
@@ -135,7 +137,7 @@ refused:
   return vg_fail_memory(err, "the regions of a front");
 }
 
-/* --- curves of the project on the front --- */
+/* --- curves of the project, found in the front --- */
 
 static int compare_link(const void *x, const void *y)
 {
@@ -200,7 +202,8 @@ static int compare_x(const void *a, const void *b)
   return (p->p > q->p) - (p->p < q->p);
 }
 
-/* The nearest point on a curve within `tolerance` of c, or NONE. */
+/* Curve point of the front that is nearest to c and within `tolerance` of it,
+ * or NONE. `list` holds the curve points, sorted by x. */
 static uint32_t nearest(const struct front *w, const struct by_x *list,
                         size_t n, const double c[3], double tolerance)
 {
@@ -249,9 +252,9 @@ static vg_status find_end(struct front *w, const struct by_x *list, size_t n,
 
   if (p == NONE)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: the %s of curve %d of the project, at (%g %g %g), is "
-                   "no curve point of the front; the .d3m and the .front do "
-                   "not belong together",
+                   "%s: the %s of curve %d of the project, at (%g %g %g), "
+                   "is not a curve point of the front; the .d3m and the "
+                   ".front do not belong together",
                    w->path, side ? "end" : "start", c->id, at[0], at[1], at[2]);
   w->end[curve][side] = p;
   w->is_end[p] = 1;
@@ -284,8 +287,8 @@ static vg_status find_ends(struct front *w, struct vg_error *err)
   return st;
 }
 
-/* Squared distance of x from the chain of a curve's points, and where along
- * it (segment number plus fraction) the nearest place is. */
+/* Squared distance of x from the polyline of a curve. *where is the parameter
+ * of the nearest location (segment number plus fraction). */
 static double along(const struct vg_project *p, const struct vg_curve *c,
                     const double x[3], double *where)
 {
@@ -325,7 +328,7 @@ static int chain_add(struct chain *c, uint32_t p)
   return 0;
 }
 
-/* From link l to the next curve end (or fork): points and edges. */
+/* Collect points and edges from link l to the next curve end or fork. */
 static int follow(const struct front *w, size_t l, struct chain *c)
 {
   uint32_t start = w->link[l].from, p = start;
@@ -344,8 +347,9 @@ static int follow(const struct front *w, size_t l, struct chain *c)
   }
 }
 
-/* Does the chain run along the curve? Told by the ends, and where these are
- * the same point by the places of its second and last but one points. */
+/* Does the chain run along the direction of the curve? Decided by the ends, or,
+ * if these are the same point, by the locations of its second and its last but
+ * one point. */
 static int is_forward(const struct front *w, size_t curve,
                       const struct chain *c)
 {
@@ -360,7 +364,7 @@ static int is_forward(const struct front *w, size_t curve,
   return first < last;
 }
 
-/* The middle of a chain: a point of it, or the centre of its only edge. */
+/* Midpoint of a chain: one of its points, or the centre of its only edge. */
 static void middle(const struct front *w, const struct chain *c, double x[3])
 {
   const double *a = w->m->point[c->point[(c->n - 1) / 2]];
@@ -410,9 +414,9 @@ static vg_status name_chain(struct front *w, const struct ends *list,
   }
   if (curve == NONE)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: the curve edges from point %u to point %u, at (%g %g "
-                   "%g), lie on no curve of the project; the .d3m and the "
-                   ".front do not belong together",
+                   "%s: the curve edges from point %u to point %u, at (%g "
+                   "%g %g), do not lie on any curve of the project; the "
+                   ".d3m and the .front do not belong together",
                    w->path, p + 1, q + 1, x[0], x[1], x[2]);
   forward = is_forward(w, curve, c);
   for (size_t i = 0; i + 1 < c->n; i++) {
@@ -491,7 +495,7 @@ static int compare_signature_owner(const void *x, const void *y)
   return c ? c : (p->owner > q->owner) - (p->owner < q->owner);
 }
 
-/* Pairs into one signature per owner, in order of the owners. */
+/* Convert pairs into one signature per owner, in the order of the owners. */
 static void pack(struct pair *pair, size_t n_pair, int32_t *curve,
                  struct signature *s, size_t n_owner)
 {
@@ -543,7 +547,7 @@ static vg_status signatures(struct front *w, struct matching *g,
       uint32_t a = w->m->tri[f][k], b = w->m->tri[f][(k + 1) % 3];
       const struct edge *c = edge_of(w, a, b);
 
-      /* Three faces on a curve edge would pass the room that was made. */
+      /* A curve edge with three faces could exceed the space allocated. */
       if (c->curve && n < n_max)
         g->pair[n++] = (struct pair){ w->region[f],
                                       a < b ? c->curve : -c->curve };
@@ -570,7 +574,7 @@ static vg_status lost_region(const struct front *w, uint32_t region,
                  w->path, f + 1, x[0], x[1], x[2], why);
 }
 
-/* shape_of[region], each shape once. */
+/* Find shape_of[region]; each shape may be used once. */
 static vg_status match_regions(struct front *w, const struct matching *g,
                                uint32_t *shape_of, struct vg_error *err)
 {
@@ -585,13 +589,13 @@ static vg_status match_regions(struct front *w, const struct matching *g,
 
     if (!s) {
       st = lost_region(w, (uint32_t)r,
-                       "is bounded by other curves than any "
-                       "patch of the project",
+                       "is bounded by curves that bound no patch of the "
+                       "project",
                        err);
     } else if (taken[s->owner]) {
       st = lost_region(w, (uint32_t)r,
-                       "is bounded by the curves of a patch "
-                       "that another region has already",
+                       "is bounded by the curves of a patch that already "
+                       "has another region",
                        err);
     } else {
       taken[s->owner] = 1;
@@ -608,7 +612,7 @@ static vg_status match_regions(struct front *w, const struct matching *g,
   return st;
 }
 
-/* Tags to patches, then names and codes of the project. */
+/* Create the patches from the tags, with the names and codes of the project. */
 static vg_status set_patches(struct front *w, const uint32_t *shape_of,
                              struct vg_error *err)
 {

@@ -1,5 +1,5 @@
-/* .mapbc in both layouts and the codes: io/vgrid/mapbc.h, formats.md 1.4, 1.5.
- * */
+/* Both layouts of .mapbc, and the codes: io/vgrid/mapbc.h, formats.md 1.4,
+ * 1.5. */
 #include "io/vgrid/mapbc.h"
 
 #include <assert.h>
@@ -13,8 +13,8 @@
 
 /* --- codes --- */
 
-/* The first line with a code is its translation; refine's table where it has
- * one (formats.md 1.5), the nearest meaning elsewhere. */
+/* The first row with a code gives its translation. It follows refine's table
+ * where that has the code (formats.md 1.5), otherwise the nearest meaning. */
 static const struct {
   int32_t usm3d, fun3d;
 } pair[] = { { 1, 6662 },    { 1, 6661 },    { 1, 6663 },     { 0, 5050 },
@@ -129,7 +129,7 @@ static int token_int(const struct line *l, int k, int32_t *v)
   return 1;
 }
 
-/* Name from token k to the end of the line. */
+/* Set the name to the text from token k to the end of the line. */
 static void set_name(struct vg_patch *p, const struct line *l, int k)
 {
   const char *end;
@@ -162,13 +162,13 @@ static vg_status append(struct vg_mapbc *b, size_t *cap,
 static vg_status bad_line(const struct vg_input *in, size_t number,
                           const char *expected, struct vg_error *err)
 {
-  return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: a line '%s' should stand here",
-                 in->path, number, expected);
+  return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: expected a line '%s'", in->path,
+                 number, expected);
 }
 
-/* Four header lines, whatever they hold; then the patches. Where a complete
- * patch line stands among the first four, the header is shorter and every
- * line that is no patch line is taken for a header. */
+/* Read four header lines with any content, then the patches. If a complete
+ * patch line is among the first four lines, the header is shorter, and every
+ * line that is not a patch line belongs to the header. */
 static vg_status parse_vgrid(struct vg_input *in, struct vg_mapbc *b,
                              struct vg_error *err)
 {
@@ -211,7 +211,7 @@ static vg_status parse_fun3d(struct vg_input *in, struct vg_mapbc *b,
     if (!l.n) continue;
     if (!token_int(&l, 0, &p.id) || !token_int(&l, 1, &p.bc_fun3d))
       return bad_line(in, l.number, "id code name", err);
-    /* FUN3D takes these old codes for 5000, 4000, 3000. */
+    /* FUN3D accepts these old codes for 5000, 4000 and 3000. */
     if (p.bc_fun3d >= 3 && p.bc_fun3d <= 5)
       p.bc_fun3d = vg_bc_to_fun3d(p.bc_fun3d, -1);
     p.bc = p.family = vg_bc_to_usm3d(p.bc_fun3d);
@@ -221,8 +221,9 @@ static vg_status parse_fun3d(struct vg_input *in, struct vg_mapbc *b,
   return VG_OK;
 }
 
-/* FUN3D's layout: one integer alone, then that many lines. A VGRID title may
- * by chance be a number: then the lines behind the header have five numbers. */
+/* FUN3D's layout is a line with one integer, followed by that many lines. A
+ * VGRID title may happen to be a number, but then the lines after the header
+ * have five numbers. */
 static int looks_fun3d(const struct vg_input *file)
 {
   struct vg_input in = *file;
@@ -251,7 +252,7 @@ static int compare_entry(const void *a, const void *b)
   return (*p > *q) - (*p < *q);
 }
 
-/* Pointers to the entries by rising id; NULL when memory is refused. */
+/* Pointers to the entries, sorted by id; NULL if there is not enough memory. */
 static const struct vg_patch **sorted(const struct vg_mapbc *b)
 {
   const struct vg_patch **list = vg_alloc(b->n, sizeof *list);
@@ -271,8 +272,9 @@ static vg_status check_entries(const struct vg_input *in,
   if (!b->n)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: no patch line found; a .mapbc has four header lines "
-                   "and lines 'patch bc family nsurf surfids name', or "
-                   "FUN3D's number of lines and lines 'id code name'",
+                   "and then lines 'patch bc family nsurf surfids name', or "
+                   "in FUN3D's layout a number of lines and then lines 'id "
+                   "code name'",
                    in->path);
   list = sorted(b);
   if (!list) return vg_fail_memory(err, "the lines of a .mapbc");
@@ -295,7 +297,7 @@ vg_status vg_mapbc_parse(struct vg_input *in, struct vg_mapbc *out,
 
   if (!vg_input_is_text(in))
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: holds binary data; a .mapbc is text", in->path);
+                   "%s: contains binary data; a .mapbc is text", in->path);
   if (looks_fun3d(in)) {
     struct vg_input head = *in;
 
@@ -332,7 +334,7 @@ vg_status vg_mapbc_read(const char *path, struct vg_mapbc *out,
   return st;
 }
 
-/* At the end of the title of a file that is written next to a mesh. */
+/* End of the title of a file that is written next to a mesh. */
 static const char output_mark[] = " [written by vanguard mesh]";
 
 int vg_mapbc_is_output(const char *path)

@@ -1,4 +1,4 @@
-/* VGRID's order of points (formats.md 1.2): corners, points along the curves
+/* Point order of VGRID (formats.md 1.2): corners, points along the curves
  * between patches, other surface points, field points. */
 #include <assert.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 
 enum { ON_CURVE, ON_SURFACE, IN_FIELD, PLACED };
 
-/* An edge between two patches; each is stored once from either end. */
+/* An edge between two patches, stored once from each end. */
 struct link {
   uint32_t from, to;
 };
@@ -19,7 +19,7 @@ struct walk {
   const struct vg_mesh *m;
   unsigned char *class; /* [n_point] */
   uint32_t *new_to_old;
-  size_t n;          /* points placed so far */
+  size_t n;          /* number of points placed so far */
   struct link *link; /* sorted by from, to */
   size_t n_link;
 };
@@ -54,7 +54,7 @@ static int compare_link(const void *x, const void *y)
   return (p->to > q->to) - (p->to < q->to);
 }
 
-/* Sides of triangles with both ends on curves. */
+/* Sides of triangles whose two ends are on curves. */
 struct sides {
   size_t n, cap_end, cap_patch;
   uint32_t (*end)[2], *patch;
@@ -80,7 +80,7 @@ static int list_sides(const struct walk *w, struct sides *s)
   return 0;
 }
 
-/* Links from the edges whose triangles belong to different patches. */
+/* Create links from the edges whose triangles belong to different patches. */
 static vg_status find_links(struct walk *w, struct vg_error *err)
 {
   struct sides s = { 0 };
@@ -137,7 +137,8 @@ static void place(struct walk *w, uint32_t p)
   w->new_to_old[w->n++] = p;
 }
 
-/* Follow a curve from p, which is placed, through points not placed yet. */
+/* Follow a curve from p, which has been placed, through points that have
+ * not. */
 static void follow(struct walk *w, uint32_t p)
 {
   for (;;) {
@@ -152,7 +153,8 @@ static void follow(struct walk *w, uint32_t p)
   }
 }
 
-/* Corners are where curves end, meet, or touch: not exactly two links. */
+/* Corners are points where curves end, meet or touch, that is, points without
+ * exactly two links. */
 static void place_curves(struct walk *w)
 {
   size_t n_corner;

@@ -24,8 +24,8 @@ f 4 5 8
 END
 vanguard mesh -q -p far --farfield none --hmax 0.1 --write lb8.ugrid,lb4.ugrid
 exits 1
-says err "4-byte reals of a .lb4.ugrid would make"
-says err "cells flat or inverted, the first tetrahedron"
+says err "4-byte reals of a .lb4.ugrid the mesh would have"
+says err "flat or inverted cells, the first tetrahedron"
 says err "write 8-byte reals, as .lb8.ugrid has"
 absent far.lb4.ugrid
 absent far.lb8.ugrid

@@ -80,7 +80,7 @@ exits 1
 says err "a surface"
 vanguard partition -q one/wing-half.vtu -n 2
 exits 1
-says err "written only"
+says err "can only be written"
 vanguard partition -q one/wing-half.b8.ugrid -n 2 --weights prism=2
 exits 2
 vanguard partition -q one/wing-half.b8.ugrid -n 2 --weights pri=0

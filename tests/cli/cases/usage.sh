@@ -138,12 +138,12 @@ fi
 for command in check mesh; do
   vanguard $command -q wing.x_t
   exits 1
-  says err "wing.x_t: this is CAD geometry of one system; export it as STEP"
+  says err "wing.x_t: this is the native format of a CAD system; export"
 done
 : >wing.txt
 vanguard mesh -q wing.txt
 exits 1
-says err "wing.txt: the suffix names no format; known are .stl"
+says err "wing.txt: the suffix does not belong to any format; known"
 vanguard mesh -q -p p
 exits 1
 says err "p: this is a folder; give the stem of a project"
