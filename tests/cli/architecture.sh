@@ -1,18 +1,19 @@
 #!/bin/bash
-# Holds the source against src/CMakeLists.txt, the list of modules from the bottom
-# up with those that each one sees. Fails on
-#   - a folder of sources that is no module, a module of more than 40 files
-#   - a module that sees what its part of the program must not (io knows core
-#     only), or sees another without need
-#   - an include without its folder, of a module that is not seen, or of a private
-#     header (NAME_parts.h, or "Private to" in it) of another module
+# Checks the sources against src/CMakeLists.txt, which lists the modules from
+# the bottom up with the modules that each one may include. Fails on
+#   - a source folder that is not a module, a module of more than 40 files
+#   - a module that includes a module forbidden to its part of the program (io
+#     may use only core), or that lists a module it does not need
+#   - an include without its folder, of a module that is not listed, or of a
+#     private header (NAME_parts.h, or "Private to" in it) of another module
 #   - headers that include each other
 #   - a third-party header outside the file that adapts it
 #   - a struct, union or enum vg_NAME that is defined twice
 #   - a file name that two modules have, unless it is listed below
-#   - a constant of a hash function outside base/hash.h: a hash table by hand
+#   - a constant of a hash function outside base/hash.h: a hand-written hash
+#     table
 #   - a test that tests/README.md does not name
-#   - a symbol of a module further up, with a BUILD folder to look into
+#   - a symbol used from a higher module, if a BUILD folder is given
 # architecture.sh SOURCE_ROOT [BUILD]
 set -u
 build=${2:+$(realpath "$2")}
@@ -38,7 +39,7 @@ done < <(awk '/^vg_module\(/ { on = 1; line = "" }
   on && /\)/ { gsub(/vg_module\(|\)/, " ", line); print line; on = 0 }' \
   CMakeLists.txt)
 
-# The parts of the program that a part may see, besides base.
+# The parts of the program that each part may use, besides base.
 declare -A parts=([base]="" [core]="core" [layers]="core layers"
   [partition]="core layers partition" [io]="core io"
   [run]="core layers partition io run" [api]="core run"
@@ -100,7 +101,7 @@ loop=$(sed -nE 's,^([^:]*\.h):[0-9]*:[^"]*"([^"]*)".*,\1 \2,p' \
   <<< "$includes" | tsort 2>&1 >/dev/null | sed -n 's/^tsort: \([^-]\)/\1/p')
 [ -z "$loop" ] || complain "headers include each other:" $loop
 
-# Third-party headers and the files that may see them.
+# Third-party headers and the files that may include them.
 adapter() {
   local header=$1 allowed=$2 file
   while IFS= read -r file; do
@@ -116,7 +117,8 @@ adapter zlib.h '^(io/[a-z]+/[a-z_]+|run/picture/image)\.c$'
 adapter jansson.h '^(run|cli)/'
 adapter argp.h '^cli/'
 adapter microhttpd.h '^cli/serve/http\.c$'
-# Its last bits differ between processors: never where a mesh is made.
+# The last bits of LAPACK's results differ between processors: never use it
+# where a mesh is made.
 adapter lapacke.h '^partition/model/rates\.c$'
 adapter pthread.h '^(base|partition|core/mesher)/|^run/common/progress\.c$'
 adapter mpi.h \
@@ -134,7 +136,7 @@ while read -r n tag; do
 done < <(grep -rhoE '\b(struct|union|enum) (vg|vanguard)_[a-z0-9_]+ \{' \
   --include='*.[ch]' --include='*.cpp' . | sed 's/ {$//' | sort | uniq -c)
 
-# Names that two modules share, since the folder says which of the two it is.
+# File names that two modules share; the folder distinguishes them.
 declare -A shared
 for name in assets boundary child domain front gaps input job layers mesh output \
     page patches progress put_back share sizes slices slices_parts text walls work; do
@@ -152,7 +154,7 @@ done < <(grep -rliE '0x(9e3779b|c2b2ae3d|165667b1|d6e8feb8)|2654435769' \
   --include='*.[ch]' . | sed 's,^\./,,' |
   grep -v '^base/hash\.h$')
 
-# Every test is in the table of what covers what.
+# tests/README.md must list every test in its table.
 table=../tests/README.md
 if [ -e $table ]; then
   for file in ../tests/{unit,mpi,cli}/test_*.c ../tests/cli/cases/*.sh \
@@ -167,7 +169,7 @@ fi
 
 # --- symbols ---
 
-# "ROOM SYMBOL kind" of every object, kind U where it is used only.
+# "ROOM SYMBOL kind" of every object; kind is U where the symbol is only used.
 symbols() {
   local module
   for module in "${modules[@]}"; do

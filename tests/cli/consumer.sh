@@ -1,7 +1,7 @@
 #!/bin/bash
-# Installs the build tree; then strangers' programs are built against it, with
-# CMake and with pkg-config, and run: the examples, and consumer.c, which asks
-# for all that the library has; and the same for Python's module.
+# Installs the build tree, then builds external programs against it with CMake
+# and with pkg-config, and runs them: the examples, and consumer.c, which uses
+# the whole library. The same for the Python module.
 # consumer.sh BUILD_DIR FOLDER CMAKE CC
 set -eu
 build=$1 folder=$2 cmake=$3 cc=$4
@@ -22,7 +22,7 @@ mkdir -p "$folder/files"
 DESTDIR='' "$cmake" --install "$build" --prefix "$folder/prefix" >/dev/null
 prefix=$folder/prefix
 
-# --- what is installed, and what the library shows ---
+# --- installed files, and exported symbols of the library ---
 
 headers=$(cd "$prefix/include" && find . -type f | LC_ALL=C sort)
 [ "$headers" = "./vanguard/mesher.h
@@ -41,7 +41,7 @@ sed -n 's/\(vanguard_.*\)@@.*/\1/p' "$folder/abi" |
 
 # --- by CMake: the examples, and a program in C and one in C++ ---
 
-# A sanitizer of the library must be in the program too.
+# A sanitizer of the library must also be in the program.
 flags=$(sed -n 's/^CMAKE_C_FLAGS:STRING=//p' "$build/CMakeCache.txt")
 sanitizers() {
   [[ $flags = *-fsanitize* ]]
@@ -63,7 +63,7 @@ cd "$folder/files"
 "$folder/examples/sizes" cube.lb8.ugrid 0.5 0.5 0.5 0.006 focus 2>/dev/null
 [ -s focus.b8.ugrid ] || fail "the example wrote no focus.b8.ugrid"
 if mpirun -n 2 true >/dev/null 2>&1; then
-  # What MPI itself does not free is no leak of ours.
+  # Memory that MPI itself does not free is not a leak of Vanguard.
   ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$folder/examples/parallel" \
     cube.lb8.ugrid two
   "$prefix/bin/vanguard" mesh -q -p cube.lb8.ugrid -o one --write b8.ugrid \

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Are all sources laid out as CONTRIBUTING says? Fails, naming the place, on
+# Checks that all sources are laid out as CONTRIBUTING requires. Fails, naming
+# the place, on
 #   - a C or C++ source that clang-format 14 would change (.clang-format)
 #   - a line of more than 80 columns
 #   - a function of more than 60 lines, or a file of more than 800, below src

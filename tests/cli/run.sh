@@ -1,7 +1,7 @@
 #!/bin/bash
 # Runs one case: run.sh CASE PROGRAM FOLDER. The case is a shell script that
-# is sourced in an empty FOLDER, with the words below. Every expectation that
-# fails is shown; the case fails if one did. Skipped (77) by `skip`.
+# is sourced in an empty FOLDER and uses the functions below. Every failed
+# expectation is shown; the case fails if one did. `skip` skips it (77).
 set -u
 case_file=$(realpath "$1")
 program=$(realpath "$2")
@@ -44,7 +44,7 @@ is() { diff -u - "$1" || fail "$1 is not as expected"; }
 exists() { for f; do [ -e "$f" ] || fail "$f is absent"; done; }
 absent() { for f; do [ ! -e "$f" ] || fail "$f is there"; done; }
 same() { cmp "$1" "$2" || fail "$1 and $2 differ"; }
-# octahedron: a body with its corners at 1, as an .obj of one group.
+# octahedron: a body with its corners at distance 1, as an .obj of one group.
 octahedron() {
   printf 'v %s\n' "1 0 0" "-1 0 0" "0 1 0" "0 -1 0" "0 0 1" "0 0 -1"
   echo "g body"

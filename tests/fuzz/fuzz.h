@@ -1,5 +1,5 @@
-/* The driver that the fuzz targets of the readers share: bytes become an
- * input, and what a reader answers is held against its promises. */
+/* Driver shared by the fuzz targets of the readers: it turns bytes into an
+ * input and checks that a reader's answer keeps its promises. */
 #ifndef VG_TESTS_FUZZ_H
 #define VG_TESTS_FUZZ_H
 
@@ -28,7 +28,7 @@ static inline void fuzz_indices(const uint32_t *index, size_t n, size_t limit,
   for (size_t i = 0; i < n; i++) fuzz_expect(index[i] < limit, what);
 }
 
-/* What holds for every mesh that a reader returns. */
+/* Invariants of every mesh that a reader returns. */
 static inline void fuzz_check_mesh(const struct vg_mesh *m)
 {
 #define NODES(array, count, width)                                             \
@@ -48,16 +48,17 @@ static inline void fuzz_check_mesh(const struct vg_mesh *m)
     for (int k = 0; k < 3; k++)
       fuzz_expect(isfinite(m->point[i][k]), "finite coordinates");
   for (size_t i = 0; i < m->n_patch; i++) {
-    fuzz_expect(memchr(m->patch[i].name, 0, VG_NAME_MAX) != NULL, "names end");
+    fuzz_expect(memchr(m->patch[i].name, 0, VG_NAME_MAX) != NULL,
+                "names are terminated");
     fuzz_expect(!i || vg_mesh_find_patch(m, m->patch[i].id) == i || i > 64,
                 "patch ids are unique");
   }
 }
 
-/* What holds for every answer: a failure has a message that names the file. */
+/* Invariant of every answer: a failure has a message that names the file. */
 static inline void fuzz_check_answer(vg_status st, const struct vg_error *err)
 {
-  fuzz_expect(st <= 0, "no quiet status from a reader");
+  fuzz_expect(st <= 0, "a reader returns VG_OK or an error");
   if (st == VG_OK) return;
   fuzz_expect(err->code == st, "status and message agree");
   fuzz_expect(memchr(err->text, 0, sizeof err->text) && *err->text,
@@ -69,7 +70,7 @@ static inline void fuzz_check_answer(vg_status st, const struct vg_error *err)
 typedef vg_status (*fuzz_parse)(struct vg_input *, struct vg_mesh *,
                                 struct vg_error *);
 
-/* A reader that turns one input into a mesh. */
+/* Run a reader that turns one input into a mesh. */
 static inline void fuzz_mesh(fuzz_parse parse, const uint8_t *data, size_t size)
 {
   struct vg_input in = VG_INPUT_INIT;

@@ -1,4 +1,5 @@
-/* What holds for the settings by patch of AFLR's files, whichever was read. */
+/* Invariants of the settings by patch in AFLR's files, for all of their
+ * formats. */
 #ifndef VG_FUZZ_AFLR_H
 #define VG_FUZZ_AFLR_H
 
@@ -21,7 +22,8 @@ static int fuzz_aflr(const uint8_t *data, size_t size,
   for (size_t i = 0; i < a.n; i++) {
     const struct vg_aflr_patch *p = a.patch + i;
 
-    fuzz_expect(memchr(p->name, 0, VG_NAME_MAX) != NULL, "names end");
+    fuzz_expect(memchr(p->name, 0, VG_NAME_MAX) != NULL,
+                "names are terminated");
     fuzz_expect(isfinite(p->spacing) && p->spacing >= 0, "spacing");
     fuzz_expect(isfinite(p->thickness) && p->thickness >= 0, "thickness");
     fuzz_expect(p->n_layer >= 0, "layers");

@@ -1,5 +1,5 @@
-/* CAD through the child that Open CASCADE runs in: what it makes of an input
- * is its own affair, but there must be an answer, and a child for the next. */
+/* CAD, read through the child process in which Open CASCADE runs. The result is
+ * not checked, but there must be an answer, and a child for the next input. */
 #include "fuzz.h"
 
 #include "io/cad/cad.h"
@@ -20,7 +20,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   vg_status st;
 
   if (!vg_cad_is_built()) return 0;
-  if (!cad) fuzz_expect(vg_cad_open(&cad, &err) == VG_OK, "a child");
+  if (!cad)
+    fuzz_expect(vg_cad_open(&cad, &err) == VG_OK, "a child process starts");
   o.seconds = 4;
   st = vg_input_memory("FUZZ", data, size, &in, &err);
   if (st == VG_OK)

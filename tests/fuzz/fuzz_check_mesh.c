@@ -3,8 +3,7 @@
 #include "core/judge/quality.h"
 #include "io/mesh/medit.h"
 
-/* What follows reading a volume mesh: the judgement of validity and
- * quality. */
+/* The step after reading a volume mesh: the check of validity and quality. */
 static vg_status parse(struct vg_input *in, struct vg_mesh *m,
                        struct vg_error *err)
 {
@@ -14,7 +13,7 @@ static vg_status parse(struct vg_input *in, struct vg_mesh *m,
   if (st < 0 || !(m->n_tet + m->n_pyr + m->n_pri + m->n_hex)) return st;
   memset(&r, 0, sizeof r);
   st = vg_mesh_judge(m, NULL, &r, err);
-  fuzz_expect(st == VG_OK, "a mesh can be judged");
+  fuzz_expect(st == VG_OK, "a mesh can be checked");
   return st;
 }
 

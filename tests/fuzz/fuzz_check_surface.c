@@ -3,8 +3,8 @@
 #include "core/surface/surface_check.h"
 #include "io/mesh/tri.h"
 
-/* Rims that coincide are found by the tolerance that is offered, which closes
- * what it says. */
+/* If the check offers a tolerance for coincident rims, welding with it closes
+ * edges. */
 static void weld(struct vg_mesh *m, const struct vg_surface_report *r,
                  struct vg_error *err)
 {
@@ -14,16 +14,16 @@ static void weld(struct vg_mesh *m, const struct vg_surface_report *r,
   fuzz_expect(vg_surface_rim_gap(m, r, &gap, &n_edge, err) == VG_OK &&
                 gap >= 0 && n_edge <= r->count[VG_DEFECT_OPEN_EDGE] &&
                 (gap > 0) == (n_edge > 0),
-              "a gap goes with edges");
+              "there is a gap exactly if there are edges");
   if (gap > 0) {
     fuzz_expect(vg_surface_weld_rims(m, gap, NULL, &n_welded, err) == VG_OK,
                 "a surface can be welded");
-    fuzz_expect(n_welded > 0, "the gap that is offered welds edges");
+    fuzz_expect(n_welded > 0, "the offered tolerance welds edges");
   }
 }
 
-/* What follows reading a surface: the check with repair, the text of every
- * defect, and rims that may be welded. */
+/* The steps after reading a surface: the check with repair, the text of every
+ * defect, and rims that can be welded. */
 static vg_status parse(struct vg_input *in, struct vg_mesh *m,
                        struct vg_error *err)
 {

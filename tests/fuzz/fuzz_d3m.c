@@ -12,7 +12,7 @@ static void check(const struct vg_project *p)
       int32_t c = p->shape[i].curve[k];
 
       fuzz_expect(c && c > -INT32_MAX && (size_t)abs(c) <= p->n_curve,
-                  "curves of patches");
+                  "patches refer to existing curves");
     }
   for (size_t i = 0; i < p->n_point; i++)
     for (int k = 0; k < 3; k++)

@@ -1,6 +1,6 @@
-/* A mesh that was read goes to the table of faces that OpenFOAM and parts are
- * made from: any cells at all, which must end in a table that is complete or in
- * words. */
+/* The mesh that was read is converted to the table of faces from which OpenFOAM
+ * files and solver partitions are made. Any cells must give a complete table or
+ * an error message. */
 #include "fuzz.h"
 
 #include "core/mesh/cell_links.h"
@@ -24,8 +24,8 @@ static void check_table(const struct vg_cell_links *f, int is_open)
     }
   for (size_t i = 0; !is_open && i < f->m->n_tri + f->m->n_quad; i++)
     corner += (uint64_t)vg_half_face_nodes(f, f->boundary[i], node);
-  fuzz_expect(n == f->n_internal, "every inner face once");
-  fuzz_expect(corner == f->n_corner, "all corners counted");
+  fuzz_expect(n == f->n_internal, "every internal face is listed once");
+  fuzz_expect(corner == f->n_corner, "all corners are counted");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -1,6 +1,6 @@
 #include "fuzz.h"
 
-/* The stream itself: gzip told by its first bytes, tokens, lines, numbers
+/* The stream itself: gzip recognised by its first bytes, tokens, lines, numbers
  * and Fortran records of any data. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
@@ -16,14 +16,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   if (st < 0) return 0;
   while (vg_input_token(&in, &text, &len)) {
     fuzz_expect(len > 0 && text + len <= (char *)in.data + in.size,
-                "tokens lie in the data");
+                "tokens are within the data");
     if (vg_parse_real(text, len, &real))
       fuzz_expect(isfinite(real), "numbers are finite");
     sum += (size_t)vg_parse_int(text, len, &integer);
   }
   in.at = 0;
   while (vg_input_line(&in, &text, &len)) sum += len;
-  fuzz_expect(sum <= in.size * 2, "lines lie in the data");
+  fuzz_expect(sum <= in.size * 2, "lines are within the data");
   for (int kind = 0; kind < 4; kind++) {
     in.at = 0;
     in.marker8 = kind & 1;
@@ -31,7 +31,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     while (vg_input_left(&in) &&
            vg_input_record(&in, &record, "data", &err) == VG_OK)
       fuzz_expect(record.at <= record.size && record.size <= in.size,
-                  "records lie in the data");
+                  "records are within the data");
   }
   vg_input_release(&in);
   return 0;

@@ -12,7 +12,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   if (st == VG_OK) st = vg_mapbc_parse(&in, &b, &err);
   fuzz_check_answer(st, &err);
   for (size_t i = 0; i < b.n; i++)
-    fuzz_expect(memchr(b.entry[i].name, 0, VG_NAME_MAX) != NULL, "names end");
+    fuzz_expect(memchr(b.entry[i].name, 0, VG_NAME_MAX) != NULL,
+                "names are terminated");
   vg_mapbc_release(&b);
   vg_input_release(&in);
   return 0;

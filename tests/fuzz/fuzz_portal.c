@@ -3,10 +3,9 @@
 
 #include "../cli/portal_support.h"
 
-/* What a stranger sends is refused; what one sends who knows the token (the
- * word TOKEN in the input becomes it) never reads or writes outside of the
- * folder. No process is ever started: there is no room for runs, and no
- * Slurm. */
+/* Requests of strangers are refused. Requests with the token (which replaces
+ * the word TOKEN in the input) never read or write outside the folder. No
+ * process is ever started: there is no room for runs, and no Slurm. */
 static struct portal_scene scene;
 
 static int start(void)
@@ -24,7 +23,7 @@ static void stop(void)
   portal_scene_close(&scene);
 }
 
-/* The input with the token in the place of each TOKEN. */
+/* The input with each TOKEN replaced by the token. */
 static char *with_token(const uint8_t *data, size_t size, size_t *n,
                         int *has_token)
 {
@@ -53,7 +52,7 @@ static int count_other(void)
   struct stat s;
 
   snprintf(path, sizeof path, "%s/other", scene.dir);
-  fuzz_expect(!stat(path, &s), "the other folder stays");
+  fuzz_expect(!stat(path, &s), "the other folder still exists");
   return (int)s.st_mtim.tv_sec ^ (int)s.st_mtim.tv_nsec;
 }
 
@@ -74,13 +73,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   if (!request) return 0;
   got = portal_ask(&scene, request, n);
   free(request);
-  fuzz_expect(!got || !strncmp(scene.answer, "HTTP/1.", 7), "an answer");
+  fuzz_expect(!got || !strncmp(scene.answer, "HTTP/1.", 7),
+              "an answer is an HTTP response");
   fuzz_expect(has_token || got < 12 || scene.answer[9] == '4' ||
                 scene.answer[9] == '5' || scene.answer[9] == '1',
-              "strangers are refused");
+              "requests without the token are refused");
   fuzz_expect(!memmem(scene.answer, got, PORTAL_SECRET,
                       sizeof PORTAL_SECRET - 1),
-              "nothing from outside");
-  fuzz_expect(count_other() == other, "nothing to outside");
+              "nothing outside the folder is read");
+  fuzz_expect(count_other() == other, "nothing outside the folder is written");
   return 0;
 }

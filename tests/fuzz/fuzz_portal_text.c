@@ -4,8 +4,8 @@
 #include "cli/serve/rows.h"
 #include "cli/serve/runs.h"
 
-/* What a portal reads of its runs: progress, logs, records, squeue; and tables
- * in forms. The first byte says which. */
+/* The texts that a portal reads about its runs: progress, logs, records,
+ * squeue; and tables in forms. The first byte selects one. */
 static void record(const char *text, size_t size)
 {
   struct vg_serve_run run = { .id = 7 };
@@ -19,9 +19,9 @@ static void record(const char *text, size_t size)
   }
   fuzz_expect(run.project != NULL && run.state < VG_SERVE_STATES &&
                 run.ranks > 0 && run.nodes > 0 && run.cpus > 0,
-              "a record is whole");
+              "a record is complete");
   fuzz_expect(strspn(run.job, "0123456789_") == strlen(run.job),
-              "jobs are numbers");
+              "job names are numbers");
   free(run.project);
 }
 
@@ -30,7 +30,8 @@ static void tell(const char *text, size_t size)
   struct vg_tell t = VG_TELL_INIT;
 
   if (vg_tell_tail(text, size, &t))
-    fuzz_expect(*t.stage && t.share >= -1 && t.share <= 1, "a share");
+    fuzz_expect(*t.stage && t.share >= -1 && t.share <= 1,
+                "a share is between -1 and 1");
   fuzz_expect(vg_tell_status(text, size) < 1000, "an exit status");
 }
 
@@ -62,7 +63,7 @@ static void squeue(const char *text, size_t size)
   struct vg_serve_runs r = { .n = 1, .item = list, .squeue_start = 1 };
 
   vg_runs_take_squeue(&r, text, size);
-  fuzz_expect(run.state != VG_SERVE_QUEUED, "a job is in no queue of ours");
+  fuzz_expect(run.state != VG_SERVE_QUEUED, "a job is no longer queued");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

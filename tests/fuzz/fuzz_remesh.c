@@ -6,7 +6,7 @@
 #include "core/surface/surface_check.h"
 #include "io/mesh/tri.h"
 
-#define LARGE 400 /* triangles: more take too long for a fuzzer */
+#define LARGE 400 /* triangles; more take too long for a fuzzer */
 
 static int is_sound(struct vg_mesh *m, int repair)
 {
@@ -23,7 +23,7 @@ static int is_sound(struct vg_mesh *m, int repair)
   return sound;
 }
 
-/* Some edges stretched: the same on both sides. */
+/* Stretch some edges, by the same factor on both sides. */
 static void stretch_some(const struct vg_mesh *m, double *stretch)
 {
   for (size_t i = 0; i < 3 * m->n_tri; i++) {
@@ -33,8 +33,8 @@ static void stretch_some(const struct vg_mesh *m, double *stretch)
   }
 }
 
-/* What the check lets pass is made anew, or refused with a message; what is
- * made passes the check again. */
+/* A surface that passes the check is remeshed, or refused with a message; the
+ * remeshed surface passes the check again. */
 static vg_status parse(struct vg_input *in, struct vg_mesh *m,
                        struct vg_error *err)
 {
@@ -52,8 +52,9 @@ static vg_status parse(struct vg_input *in, struct vg_mesh *m,
     stretch_some(m, stretch);
     o.stretch = stretch;
   }
-  if (vg_remesh(m, &o, NULL, err) < 0) fuzz_expect(err->text[0], "a message");
-  fuzz_expect(is_sound(m, 0), "a new surface is sound");
+  if (vg_remesh(m, &o, NULL, err) < 0)
+    fuzz_expect(err->text[0], "a failure has a message");
+  fuzz_expect(is_sound(m, 0), "a remeshed surface is valid");
   return VG_OK;
 }
 

@@ -7,8 +7,8 @@
 #include "io/mesh/stl.h"
 #include "io/mesh/tri.h"
 
-/* Write, read, compare: whatever mesh a reader makes of the data must come
- * back from our own writers, bit by bit where the format can hold it. */
+/* Write, read, compare: any mesh that a reader makes of the data must survive
+ * our own writers, bit by bit where the format permits. */
 
 typedef vg_status (*write_mesh)(const char *, const struct vg_mesh *,
                                 struct vg_error *);
@@ -41,7 +41,7 @@ static void go_round(write_mesh put, read_mesh get, const struct vg_mesh *m,
 
   if (put(path, m, &err) != VG_OK || get(path, back, &err) != VG_OK) {
     fprintf(stderr, "%s\n", err.text);
-    fuzz_expect(0, "what is written can be read");
+    fuzz_expect(0, "a written file can be read");
   }
   fuzz_check_mesh(back);
 }
@@ -54,7 +54,7 @@ static void same_array(const void *a, const void *b, size_t n, size_t size,
 
 static void same_points(const struct vg_mesh *a, const struct vg_mesh *b)
 {
-  fuzz_expect(a->n_point == b->n_point, "as many points");
+  fuzz_expect(a->n_point == b->n_point, "same number of points");
   for (size_t i = 0; i < a->n_point; i++)
     for (int k = 0; k < 3; k++) /* == since -0 may become 0 */
       fuzz_expect(a->point[i][k] == b->point[i][k], "same coordinates");
@@ -73,7 +73,7 @@ static void round_medit(write_mesh put, const struct vg_mesh *m)
   go_round(put, vg_medit_read, m, &back);
   same_points(m, &back);
 #define SAME(array, n)                                                         \
-  fuzz_expect(m->n == back.n, "as many: " #array);                             \
+  fuzz_expect(m->n == back.n, "same number: " #array);                         \
   same_array(m->array, back.array, m->n, sizeof *m->array, #array)
   SAME(tri, n_tri);
   SAME(quad, n_quad);
@@ -97,7 +97,8 @@ static void round_surface(write_mesh put, read_mesh get,
   if (!m->n_tri && !m->n_quad) return;
   go_round(put, get, m, &back);
   if (keeps_points) same_points(m, &back);
-  fuzz_expect(back.n_tri == m->n_tri + 2 * m->n_quad, "as many triangles");
+  fuzz_expect(back.n_tri == m->n_tri + 2 * m->n_quad,
+              "expected number of triangles");
   fuzz_expect(back.n_patch <= m->n_patch, "no patch is added");
   vg_mesh_release(&back);
 }

@@ -11,11 +11,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
   if (vg_input_memory("fuzz.sol", data, size, &in, &err) < 0) return 0;
   if (vg_sol_parse(&in, &n, &value, &err) >= 0) {
-    fuzz_expect(n > 0 && value, "some values");
+    fuzz_expect(n > 0 && value, "there are values");
     for (size_t i = 0; i < n; i++)
       fuzz_expect(isfinite(value[i]), "finite values");
   } else {
-    fuzz_expect(err.text[0] && !value, "a message, and nothing else");
+    fuzz_expect(err.text[0] && !value, "a failure has a message and no values");
   }
   free(value);
   vg_input_release(&in);

@@ -3,7 +3,7 @@
 #include "cli/plot/timeline.h"
 #include "partition/model/model.h"
 
-/* What a reader lets through can be replayed, or is refused by name. */
+/* A timeline that the reader accepts can be replayed, or is refused by name. */
 static void replay(const struct vg_timeline *t)
 {
   struct vg_machine m = VG_MACHINE_INIT;
@@ -15,11 +15,12 @@ static void replay(const struct vg_timeline *t)
   m.ranks = 3;
   m.threads = 2;
   st = vg_model_replay(&t->spans, &m, &f, &spans, &err);
-  fuzz_expect(st <= 0, "no quiet status from the model");
+  fuzz_expect(st <= 0, "the model returns VG_OK or an error");
   if (st < 0) fuzz_expect(*err.text, "a failure has a message");
   else {
-    fuzz_expect(spans.n == t->spans.n, "every task is done");
-    fuzz_expect(f.wall >= f.critical * (1 - 1e-9), "no chain is cut short");
+    fuzz_expect(spans.n == t->spans.n, "every task is simulated");
+    fuzz_expect(f.wall >= f.critical * (1 - 1e-9),
+                "the time is at least that of the critical path");
   }
   vg_spans_release(&spans);
 }
@@ -36,8 +37,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
       const struct vg_span *s = &t.spans.span[i];
 
       fuzz_expect(s->rank < t.spans.n_rank && s->thread < t.spans.n_thread,
-                  "workers are of the run");
-      fuzz_expect(s->end >= s->start && s->start >= 0, "times rise");
+                  "workers belong to the run");
+      fuzz_expect(s->end >= s->start && s->start >= 0, "times are ascending");
     }
     fuzz_expect(vg_spans_busy(&t.spans) >= 0, "time spent");
     fuzz_expect(vg_spans_imbalance(&t.spans) >= 0, "imbalance");

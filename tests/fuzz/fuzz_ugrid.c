@@ -10,8 +10,8 @@ static vg_status parse(struct vg_input *in, struct vg_mesh *m,
   return vg_ugrid_parse(in, &kind, m, NULL, err);
 }
 
-/* The kind follows from a name; the first byte stands for it: bit 0 text,
- * 1 real*4, 2 integer*8, 3 records, 4 big-endian. */
+/* The format normally follows from the file name; here the first byte encodes
+ * it: bit 0 text, 1 real*4, 2 integer*8, 3 records, 4 big-endian. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
   if (!size) return 0;

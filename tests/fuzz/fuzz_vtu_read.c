@@ -17,7 +17,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                     isfinite(x[i][2]),
                   "finite numbers");
   } else {
-    fuzz_expect(err.text[0] && !x && !v, "a message, and nothing else");
+    fuzz_expect(err.text[0] && !x && !v,
+                "a failure has a message and no values");
   }
   free(x);
   free(v);

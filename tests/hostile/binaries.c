@@ -1,4 +1,4 @@
-/* Binary files that break their format, and files in the wrong clothes. */
+/* Binary files that break their format, and files with a misleading name. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -176,7 +176,7 @@ static void make_meshb_loop(const char *file)
 {
   struct bytes b;
 
-  meshb(&b, 2, 8, 4); /* the next keyword would be the one before */
+  meshb(&b, 2, 8, 4); /* the next keyword would be the previous one */
   save(file, b.b, b.n);
 }
 
@@ -214,7 +214,7 @@ static void make_meshb_truncated(const char *file)
 
 /* --- Gmsh --- */
 
-/* Nodes of version 4.1: a block whose count is n, and one point. */
+/* Nodes of version 4.1: a block that claims n nodes, and one point. */
 static void gmsh(struct bytes *b, int32_t one, int64_t n)
 {
   memset(b, 0, sizeof *b);
@@ -278,7 +278,7 @@ static void make_ugrid_endian(const char *file)
 {
   struct bytes b;
 
-  ugrid(&b, 0, 4, 0); /* little-endian under a name that says big */
+  ugrid(&b, 0, 4, 0); /* little-endian, but named as big-endian */
   save(file, b.b, b.n);
 }
 

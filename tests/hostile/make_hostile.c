@@ -1,5 +1,5 @@
 /* make_hostile FOLDER: writes all hostile files into FOLDER and their list,
- * CASES, one line for each: command, file, verdict, phrase, set off by '|'.
+ * CASES, one line for each: command, file, verdict, phrase, separated by '|'.
  * Deterministic; tests/hostile/run.sh reads the list. */
 #include <errno.h>
 #include <stdio.h>

@@ -1,13 +1,12 @@
-/* Project files and run decks that break their rules, shown to
- * `vanguard mesh`, which must stop before it meshes anything. */
+/* Project files and run decks that break their rules, given to `vanguard mesh`,
+ * which must stop before it meshes anything. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "hostile.h"
 
-/* A good .d3m: the unit tetrahedron. Lines are replaced by what a case is
- * about. */
+/* A good .d3m: the unit tetrahedron. Each case replaces lines of it. */
 static const char *const good[] = {
   "#VGRID VERSION",
   "3.6",
@@ -66,8 +65,8 @@ static const char *const good[] = {
 };
 #define N_LINE (sizeof good / sizeof *good)
 
-/* Write stem.d3m with the line that equals `from` replaced by `to`; the file
- * ends before it where `to` is NULL. */
+/* Write stem.d3m with the line that equals `from` replaced by `to`. If `to` is
+ * NULL, the file ends before that line. */
 static void save_d3m(const char *stem, const char *from, const char *to)
 {
   char text[4096], name[80];
@@ -150,13 +149,13 @@ static void make_d3m_empty(const char *stem)
   save(name, "", 0);
 }
 
-/* A name for what another case writes, or for nothing. */
+/* For a file that another case writes, or that must not exist. */
 static void make_nothing(const char *stem)
 {
   (void)stem;
 }
 
-/* A good surface with a bad deck beside it. */
+/* A good surface with a bad deck in the same folder. */
 static void save_deck(const char *stem, const char *deck)
 {
   char name[80];

@@ -1,8 +1,8 @@
 #!/bin/bash
-# Shows every hostile file to the program: run.sh MAKE_HOSTILE PROGRAM FOLDER.
-# A refused file: exit status 1, stderr names the file, the answer holds the
-# phrase that its line in CASES gives. A mended one: status 0 and the phrase.
-# Never a signal, a time-out, or the report of a sanitizer.
+# Gives every hostile file to the program: run.sh MAKE_HOSTILE PROGRAM FOLDER.
+# A refused file: exit status 1, stderr names the file, and the answer
+# contains the phrase of its line in CASES. A mended file: status 0 and the
+# phrase. Never a signal, a time-out, or the report of a sanitizer.
 set -u
 make_hostile=$(realpath "$1")
 program=$(realpath "$2")

@@ -1,4 +1,4 @@
-/* Surfaces that are well written and bound no volume. */
+/* Surfaces that are well-formed files but bound no volume. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +30,7 @@ static void add_tri(struct shape *s, int a, int b, int c)
   t[2] = c;
 }
 
-/* A box of twelve triangles; normals out of it, or in with `inward`. */
+/* A box of twelve triangles; normals outward, or inward with `inward`. */
 static void add_box(struct shape *s, double lo, double hi, double dx,
                     int inward)
 {
@@ -50,7 +50,7 @@ static void add_box(struct shape *s, double lo, double hi, double dx,
   }
 }
 
-/* As Cart3D text; points of the same coordinates stay apart. */
+/* As Cart3D text; points with equal coordinates stay distinct. */
 static void save_shape(const char *file, const struct shape *s)
 {
   static char text[32768];
@@ -105,7 +105,7 @@ static void make_single(const char *file)
   save_stl(file, &s);
 }
 
-/* Corners that differ in the last place: the rims are welded. */
+/* Corners that differ in the last digit: the rims are welded. */
 static void make_not_quite_closed(const char *file)
 {
   struct shape s = { 0 };
@@ -115,7 +115,7 @@ static void make_not_quite_closed(const char *file)
   save_stl(file, &s);
 }
 
-/* Two boxes with an edge in common, or a face. */
+/* Two boxes that share an edge, or a face. */
 static void make_common_edge(const char *file)
 {
   struct shape s = { 0 };
@@ -231,8 +231,8 @@ static void make_repeated_node(const char *file)
   save_shape(file, &s);
 }
 
-/* The projective plane on six points: every edge has two triangles, and no
- * way to turn them makes sides of it. */
+/* The projective plane on six points: every edge has two triangles, but the
+ * surface cannot be oriented. */
 static void make_one_sided(const char *file)
 {
   static const int tri[10][3] = { { 1, 2, 3 }, { 1, 3, 4 }, { 1, 4, 5 },
@@ -266,9 +266,10 @@ static void make_tiny(const char *file)
   save_shape(file, &s);
 }
 
-/* --- what the check mends --- */
+/* --- surfaces that the check repairs ------------------------------------- */
 
-/* The outer boundary inward, as it should be; the body in it inward, too. */
+/* The outer boundary points inward, as it should; the body in it wrongly points
+ * inward, too. */
 static void make_inside_out(const char *file)
 {
   struct shape s = { 0 };
@@ -278,7 +279,7 @@ static void make_inside_out(const char *file)
   save_shape(file, &s);
 }
 
-/* Boundary, body, cavity in the body: every second one must be turned. */
+/* Boundary, body, cavity in the body: every second one must be reversed. */
 static void make_all_inward(const char *file)
 {
   struct shape s = { 0 };

@@ -17,8 +17,8 @@
 #define MARK "\xef\xbb\xbf"
 #define MEDIT "MeshVersionFormatted 2\nDimension 3\n"
 
-/* A long line and a long token must neither be copied to a short buffer nor
- * take the message with them. */
+/* A long line and a long token must not overflow a short buffer, nor truncate
+ * the message away. */
 static void make_long_token(const char *file)
 {
   static char text[70000];
@@ -83,7 +83,7 @@ static void make_no_bc(const char *file)
 
 static void make_folder_like(const char *file)
 {
-  (void)file; /* a name that does not exist at all */
+  (void)file; /* a file that does not exist */
 }
 
 const struct hostile hostile_texts[] = {

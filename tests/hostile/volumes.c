@@ -1,5 +1,6 @@
-/* Volume meshes that are well written and wrong. All stand on the unit
- * tetrahedron with its four faces, or two tetrahedra on one face. */
+/* Volume meshes that are well-formed files but wrong. All are made from the
+ * unit tetrahedron with its four faces, or from two tetrahedra that share a
+ * face. */
 #include "hostile.h"
 
 #define T1 "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"

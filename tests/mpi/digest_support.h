@@ -1,4 +1,4 @@
-/* What rank 0 knows of a mesh, on all ranks. Uses mpi_support.h,
+/* Broadcasts rank 0's digest of a mesh. Uses mpi_support.h,
  * unit/advance_support.h. */
 #ifndef VG_TESTS_DIGEST_SUPPORT_H
 #define VG_TESTS_DIGEST_SUPPORT_H
@@ -7,7 +7,7 @@
 
 #include "../unit/advance_support.h"
 
-/* Collective; the others have waited. */
+/* Collective; the other ranks wait for rank 0. */
 static inline struct mesh_digest tell(const struct mesh_digest *d)
 {
   struct vg_bytes b = { sizeof *d, vg_calloc(1, sizeof *d) };

@@ -1,6 +1,6 @@
-/* A rank that gives up, for faults.sh: `fault abort` ends the job with status
- * 7, `fault kill` dies at once, `fault leave` closes while messages are under
- * way; the other ranks wait in a collective, or close too. */
+/* A rank that fails, for faults.sh: `fault abort` ends the job with status 7,
+ * `fault kill` dies at once, `fault leave` closes while messages are under way;
+ * the other ranks wait in a collective, or close too. */
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +12,7 @@ static int leave(struct vg_comm *c)
 {
   int size = vg_comm_size(c);
 
-  /* short, of the size that MPI sends at once, and long */
+  /* short, of the size that MPI sends eagerly, and long */
   for (int i = 0; i < 3 * size; i++) {
     const size_t n[] = { 10, 3000, 20000000 };
     struct vg_bytes b = { n[i / size], vg_calloc(n[i / size], 1) };

@@ -1,5 +1,6 @@
 #!/bin/sh
-# What ends a job: faults.sh PROGRAM MPIRUN [FLAG] (-n). None of it may hang.
+# Ways to end a job: faults.sh PROGRAM MPIRUN [FLAG] (-n). None of them may
+# hang.
 set -u
 program=$1
 shift
@@ -17,7 +18,7 @@ check abort 7
 check kill 137
 check leave 0
 
-# Processes that a launcher of another kind started, and that nothing connects.
+# Processes started by a launcher of another MPI, which are not connected.
 loose() {
   text=$(env "$@" timeout 30 "$program" leave 2>&1) &&
     { echo "$*: no error"; bad=1; }

@@ -1,4 +1,4 @@
-/* Opening and closing the job around a program of cmocka tests. */
+/* Open and close the job around a program of cmocka tests. */
 #ifndef VG_TESTS_MPI_SUPPORT_H
 #define VG_TESTS_MPI_SUPPORT_H
 

@@ -1,5 +1,6 @@
-/* Voids cut and filled by all ranks: the mesh that one rank makes alone; stops
- * and failures that every rank hears of; runs resumed on other ranks. */
+/* Voids cut and filled by all ranks: the mesh equals that of a single rank;
+ * every rank learns of stops and failures; runs are resumed on other numbers of
+ * ranks. */
 #define _GNU_SOURCE
 #include "digest_support.h"
 
@@ -9,7 +10,7 @@
 static char dir[4096], alone_stem[4096], all_stem[4096];
 static struct scene real; /* read before the job begins; may be empty */
 
-/* Names of this job: tests on other numbers of ranks run beside it. */
+/* Names for this job: tests on other numbers of ranks run at the same time. */
 static int set_up(void **state)
 {
   int size;
@@ -141,7 +142,7 @@ static void the_same_file(void **state)
   scene_end(&s);
 }
 
-/* --- records ------------------------------------------------------------- */
+/* --- run directories ----------------------------------------------------- */
 
 static struct vg_store *store_of(struct vg_comm *comm, int resume)
 {
@@ -159,7 +160,7 @@ static void clean(void)
   assert_int_equal(vg_comm_agree(job, VG_OK, NULL), VG_OK);
 }
 
-/* One run that is stopped, by the last of its ranks. */
+/* One run that is stopped by its last rank. */
 static void stopped(struct vg_comm *comm, const struct scene *s, double leaf)
 {
   struct vg_partition_options o = options_of(leaf, 1, 0);
@@ -176,7 +177,8 @@ static void stopped(struct vg_comm *comm, const struct scene *s, double leaf)
   vg_store_close(stopper.store, 0);
 }
 
-/* One run that goes on. Returns tasks that were found. */
+/* One run that continues. Returns the number of tasks found in the
+ * directory. */
 static uint64_t resumed(struct vg_comm *comm, const struct scene *s,
                         double leaf, const struct mesh_digest *expect, int last)
 {
@@ -252,7 +254,8 @@ static void all_ranks_hear_of_it(void **state)
   scene_demo(&s, "box", 40000);
   few.max_cells = 1000;
   refused(&s, &few, VG_ERR_UNSUPPORTED);
-  few.max_cells = 35000; /* less than it has, not by half: seen late */
+  few.max_cells =
+    35000; /* below the actual number, but above half of it: noticed late */
   refused(&s, &few, VG_ERR_UNSUPPORTED);
   if (vg_comm_rank(job) == vg_comm_size(job) - 1) stop.stop.ask = at_once;
   refused(&s, &stop, VG_ERR_STOPPED);
@@ -266,7 +269,7 @@ static void all_ranks_hear_of_it(void **state)
   scene_end(&s);
 }
 
-/* Files are unpacked by a child, which MPI does not like. */
+/* Files are unpacked by a child process, which may disturb MPI. */
 static void read_real(void)
 {
   static const char name[] = "simple/hemisphere_cylinder_farfield.lb8.ugrid.xz";

@@ -1,4 +1,4 @@
-/* What all ranks do together. */
+/* Collective operations. */
 #define _GNU_SOURCE
 #include "mpi_support.h"
 
@@ -20,7 +20,7 @@ static void ranks_are_those_of_the_launcher(void **state)
   assert_non_null(vg_comm_mpi(job));
 }
 
-/* Pieces of `chunk` bytes at a time, or of all at once. */
+/* Transfers in chunks of this many bytes; the last one takes all at once. */
 static const size_t chunks[] = { 64, 1000, (size_t)1 << 28 };
 enum { N_CHUNKS = sizeof chunks / sizeof *chunks };
 
@@ -50,7 +50,7 @@ static void sums_and_maxima(void **state)
   job->chunk = whole;
 }
 
-/* Bytes that tell whose they are and for whom. */
+/* Bytes that depend on their sender and receiver. */
 static struct vg_bytes make(size_t n, int from, int to)
 {
   struct vg_bytes b = { n, vg_alloc(n, 1) };
@@ -140,7 +140,7 @@ static void exchanges(void **state)
 
 /* --- agreement ----------------------------------------------------------- */
 
-/* What rank `on` says when the others are well. */
+/* Agreement where rank `on` reports `st` and the other ranks succeed. */
 static vg_status say(int on, vg_status st, const char *text,
                      struct vg_error *err)
 {
@@ -161,10 +161,10 @@ static void one_failure_is_all(void **state)
     snprintf(want, sizeof want, "rank %d: disk", on);
     assert_string_equal(err.text, rank == on ? "disk" : want);
     assert_int_equal(err.code, VG_ERR_IO);
-    /* once more, as the next stage does: still the same rank's */
+    /* once more, as the next stage does: still the same rank's error */
     assert_int_equal(vg_comm_agree(job, VG_ERR_IO, &err), VG_ERR_IO);
     if (on) assert_string_equal(err.text, want);
-    /* nobody listens */
+    /* without an error struct */
     assert_int_equal(vg_comm_agree(job, rank == on ? VG_ERR_MEMORY : VG_OK,
                                    NULL),
                      VG_ERR_MEMORY);
@@ -189,7 +189,7 @@ static void the_lowest_rank_speaks(void **state)
                                             : "rank 1: reason 1");
 }
 
-/* The cause before its consequences, a failure before an outcome. */
+/* The cause ranks above its consequences, a failure above an outcome. */
 static void the_worst_wins(void **state)
 {
   int size = vg_comm_size(job), rank = vg_comm_rank(job);

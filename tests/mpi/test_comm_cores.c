@@ -1,4 +1,4 @@
-/* Cores of a node, and whose they are. */
+/* Cores of a node, and their assignment to ranks. */
 #define _GNU_SOURCE
 #include "mpi_support.h"
 
@@ -7,9 +7,9 @@
 
 #include "base/parallel.h"
 
-/* What the launcher would have bound: even ranks to the first processor at
- * hand, odd ones to the second; before the job is joined, since a launcher
- * binds before it starts a process. */
+/* Simulates a launcher that binds even ranks to the first available processor
+ * and odd ones to the second. This happens before the job is joined, since a
+ * launcher binds before it starts a process. */
 static cpu_set_t at_hand, first, second;
 
 static void split(void)
@@ -55,7 +55,7 @@ static int cores_of_new_threads(void)
   return n;
 }
 
-/* Processors may be threads of one core: then two of them count once. */
+/* Processors may be threads of one core: then two of them count as one. */
 static void the_cores_of_all_and_ones_own_again(void **state)
 {
   int n_used = vg_comm_size(job) > 1 && CPU_COUNT(&second) ? 2 : 1, n;
@@ -69,7 +69,7 @@ static void the_cores_of_all_and_ones_own_again(void **state)
   assert_int_equal(cores_of_new_threads(), 1);
 }
 
-/* One core each, or shared with others: one thread. */
+/* One core each, or cores shared between ranks: one thread. */
 static void a_thread_for_a_core(void **state)
 {
   (void)state;

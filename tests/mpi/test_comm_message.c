@@ -1,4 +1,5 @@
-/* Messages: all arrive, whole, those of a rank in the order of posting. */
+/* Messages: all arrive, complete, and those of one rank in the order of
+ * posting. */
 #define _GNU_SOURCE
 #include "mpi_support.h"
 
@@ -37,7 +38,8 @@ static struct head open_body(const struct vg_bytes *b, size_t n)
   return h;
 }
 
-/* A minute for what takes milliseconds: lost, not late. */
+/* Allow a minute for a message that takes milliseconds: beyond that it is lost,
+ * not late. */
 static struct vg_message wait_message(void)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -63,7 +65,7 @@ static void meet(void)
   assert_int_equal(vg_comm_sum(job, 1, &v, NULL), VG_OK);
 }
 
-/* Lengths about those at which MPI changes its ways, and ours. */
+/* Lengths around those at which MPI, or Vanguard, changes its protocol. */
 static const size_t lengths[] = { 0,    1,    991,   992,    993,
                                   4000, 4096, 70000, 1000000 };
 enum { N_LENGTHS = sizeof lengths / sizeof *lengths };
@@ -99,7 +101,7 @@ static void all_to_all(size_t chunk, uint32_t count)
   }
   meet();
   assert_int_equal(vg_comm_poll(job, &m, NULL), VG_BLOCKED);
-  meet(); /* before anyone posts what comes next */
+  meet(); /* before anyone posts the next messages */
   job->chunk = whole;
 }
 
@@ -157,9 +159,10 @@ static void wrong_addresses_are_refused(void **state)
 
 enum { THREADS = 3, POSTS = 300 };
 
-/* A turn around all ranks of one node: each posts to the next when it has
- * heard from the one before, and looks only when its wakes rings. One that is
- * not rung, or that finds nothing when it is, sleeps for minutes. */
+/* A round through all ranks of one node: each rank posts to the next after it
+ * has received from the previous one, and polls only when its wakeup is
+ * signalled. A rank that is not signalled, or that then finds no message,
+ * sleeps for minutes. */
 static void who_listens_is_woken(void **state)
 {
   int size = vg_comm_size(job), rank = vg_comm_rank(job);
@@ -226,8 +229,8 @@ static void from_threads(void **state)
   meet();
 }
 
-/* More than MPI's counts can say; of half a minute and gigabytes, so only
- * where it is asked for. */
+/* Larger than MPI's counts. This takes half a minute and gigabytes, so it runs
+ * only on request. */
 static void of_more_than_two_gigabytes(void **state)
 {
   const size_t n = ((size_t)5 << 29) + 12345;

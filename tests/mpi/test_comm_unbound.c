@@ -1,4 +1,4 @@
-/* Ranks that the launcher binds to nothing share the cores of the node. */
+/* Ranks that the launcher does not bind share the cores of the node. */
 #define _GNU_SOURCE
 #include "mpi_support.h"
 

@@ -1,6 +1,6 @@
-/* Voids parted before they are filled, by all ranks: the mesh that one rank
- * makes alone, stopped and resumed elsewhere, and where parts cannot be filled.
- * */
+/* Voids decomposed before they are filled, by all ranks: the mesh equals that
+ * of a single rank; also stopped and resumed elsewhere, and with subdomains
+ * that cannot be filled. */
 #define _GNU_SOURCE
 #include "digest_support.h"
 
@@ -32,7 +32,7 @@ static struct vg_partition_options options(int n_part, int threads,
   return o;
 }
 
-/* What rank 0 makes alone, known to all. */
+/* The digest of rank 0's own mesh, broadcast to all. */
 static struct mesh_digest alone(const struct scene *s,
                                 const struct vg_partition_options *o)
 {
@@ -50,7 +50,7 @@ static void compare(const struct scene *s, double fail)
   struct vg_partition_report r;
 
   o.fail_leaves = fail;
-  o.fail_rounds = 1; /* with more, all may become one void */
+  o.fail_rounds = 1; /* with more rounds, all may become one void */
   expect = alone(s, &o);
   for (int threads = 1; threads < 3; threads++) {
     o.threads = threads;
@@ -73,7 +73,7 @@ static void as_one_rank_makes_it(void **state)
   scene_end(&s);
 }
 
-/* --- records ------------------------------------------------------------- */
+/* --- run directories ----------------------------------------------------- */
 
 static struct vg_store *store_of(int resume)
 {
@@ -121,7 +121,7 @@ static void stopped_and_resumed(void **state)
   scene_end(&s);
 }
 
-/* The coarse mesh is made by all ranks, so all hear why there is none. */
+/* The coarse mesh is made by all ranks, so all learn why it fails. */
 static void all_ranks_hear_of_it(void **state)
 {
   static const struct {

@@ -1,6 +1,6 @@
-/* The engine on several ranks: same results as on one, tasks that are pinned,
- * large inputs, stops and failures that every rank hears of, and what a task
- * and an idle rank cost (printed). */
+/* The engine on several ranks: the same results as on one, pinned tasks, large
+ * inputs, stops and failures that every rank learns of, and the cost of a task
+ * and of an idle rank (printed). */
 #define _GNU_SOURCE
 #include "mpi_support.h"
 
@@ -45,11 +45,11 @@ static void check_spans(const struct forest *f, const struct vg_spans *s,
   }
 }
 
-/* Tasks done away from home: who is quick enough is chance in one run, not in
- * all of them together. */
+/* Tasks run away from their home rank. Which rank is fast enough is random in a
+ * single run, but not over all runs together. */
 static uint64_t n_away;
 
-/* Trees begin on the ranks in turn: one tree, on rank 0 only. */
+/* Trees begin on the ranks in turn; a single tree is on rank 0 only. */
 static void same_result(int n_tree, int threads, uint64_t shuffle, int pin,
                         double spin)
 {
@@ -85,8 +85,9 @@ static void all_ways(void **state)
   if (vg_comm_size(job) > 1) assert_true(n_away > 0);
 }
 
-/* Of every task that moves, `done` is called where it ran: what it made is at
- * home there, and its outcome does not travel. One of three, then all. */
+/* For every task that moves its home, `done` is called on the executing rank:
+ * the children are at home there, and the outcome does not travel. One task of
+ * three moves, then all. */
 static void homes_move(void **state)
 {
   uint64_t away = 0, elsewhere = 0;
@@ -120,7 +121,7 @@ static void homes_move(void **state)
   if (vg_comm_size(job) > 1) assert_true(total(elsewhere) > 0);
 }
 
-/* Loops in tasks of several ranks; rank 0 hears who helped. */
+/* Loops in tasks of several ranks; rank 0 learns who helped. */
 static void ranks_have_loops(void **state)
 {
   struct forest f = { .threads = 2, .depth = 3, .loop = 13, .spin_item = 2e-4 };
@@ -147,7 +148,7 @@ static void ranks_have_loops(void **state)
   vg_spans_release(&s);
 }
 
-/* Moved tasks that fail, or are stopped, leave nothing on any rank. */
+/* Moved tasks that fail, or are stopped, leave no data on any rank. */
 static void moved_and_stopped(void **state)
 {
   struct forest f = {
@@ -223,7 +224,7 @@ static void it_stops(void **state)
   }
 }
 
-/* One rank is told to stop, before anything has begun. */
+/* One rank receives the stop signal before anything has begun. */
 static void one_rank_stops_all(void **state)
 {
   struct forest f = { .threads = 1, .depth = 9, .spin = 2e-3 };
@@ -302,8 +303,9 @@ static double run_tiny(size_t n, int pinned, double sleep, long *n_run)
   return wall;
 }
 
-/* Tasks with a work, and some without: those are over before any of these
- * begins, which go to the workers in turn, most first. */
+/* Some tasks have a work estimate and some do not. The tasks without one end
+ * before any task with one begins; the latter are assigned to the workers in
+ * turn, largest first. */
 static void work_is_dealt_out(void **state)
 {
   enum { N = 29, N_FREE = 3, THREADS = 3 };
@@ -341,7 +343,8 @@ static void work_is_dealt_out(void **state)
   vg_spans_release(&s);
 }
 
-/* Dealt out or not, the same is done; failures and stops leave nothing. */
+/* Static assignment does not change the results; failures and stops leave no
+ * data. */
 static void dealing_changes_nothing(void **state)
 {
   struct forest f = { .threads = 2, .depth = 4, .spin = 1e-4, .deal = 1 };
@@ -398,9 +401,9 @@ static double cpu_time(void)
          1e-6 * (double)(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
 }
 
-/* Rank 0 has one task that sleeps; nobody may spin meanwhile. The bar of the
- * engine is 1 % of a core; ten times that is allowed here, since a machine
- * that is busy or that runs sanitizers wakes threads at a higher price. */
+/* Rank 0 has one task that sleeps; no rank may spin meanwhile. The engine's
+ * target is 1 % of a core. Ten times that is allowed here, since waking threads
+ * costs more on a busy machine and with sanitizers. */
 static void idle_ranks_sleep(void **state)
 {
   double cpu = cpu_time(), wall;
@@ -409,14 +412,14 @@ static void idle_ranks_sleep(void **state)
   (void)state;
   wall = run_tiny(1, 1, 1, &n_run);
   cpu = cpu_time() - cpu;
-  assert_true(wall > 0.5); /* of a second, but for who comes late */
+  assert_true(wall > 0.5); /* of a second, minus the delay of late ranks */
   printf("rank %d: idle, %.2f %% of a core\n", vg_comm_rank(job),
          100 * cpu / wall);
   assert_true(cpu < 0.1 * wall);
 }
 
-/* Eight equal tasks for each rank that only sleep: shared out evenly; three
- * more are allowed where others wake late. */
+/* Eight equal tasks for each rank that only sleep must be distributed evenly;
+ * three more are allowed because other ranks may wake late. */
 static void nobody_hoards(void **state)
 {
   size_t size = (size_t)vg_comm_size(job);
@@ -438,9 +441,9 @@ static vg_status uneven_run(void *user, const struct vg_engine *e,
   return VG_OK;
 }
 
-/* One task takes 2 s, on the last rank, since all tasks are its own; 0.2 s of
- * work for each other rank are done by these meanwhile, also what was given
- * ahead to the last rank; on a busy machine, too. */
+/* One task takes 2 s, on the last rank, where all tasks are created. Meanwhile
+ * the other ranks do 0.2 s of work each, including tasks that were given to the
+ * last rank in advance; also on a busy machine. */
 static void what_was_given_ahead_comes_back(void **state)
 {
   static const struct vg_engine_ops ops = { .run = uneven_run,

@@ -1,5 +1,5 @@
-/* Judging slices on several ranks: the same report on each, and that of the
- * mesh in one piece. */
+/* The mesh check of slices on several ranks: every rank gets the same report as
+ * for the mesh in one piece. */
 #include "mpi_support.h"
 
 #include "../unit/judge_support.h"
@@ -94,7 +94,7 @@ static void points_nowhere_end_it_on_all(void **state)
   vg_mesh_release(&m);
 }
 
-/* The slice that cannot be had is on one rank; all return. */
+/* A slice that cannot be read is on one rank; all ranks return. */
 static void one_failure_is_everybodys(void **state)
 {
   struct vg_mesh m = judge_mesh(VG_LAYER_TETS);

@@ -1,5 +1,5 @@
-/* Other meshers in the parts of all ways to decompose, on all ranks: the mesh
- * that one rank makes alone. */
+/* Other meshers in the subdomains, for all ways to decompose, on all ranks: the
+ * mesh equals that of a single rank. */
 #define _GNU_SOURCE
 #include "digest_support.h"
 
@@ -28,7 +28,7 @@ static struct vg_partition_options options(int way,
   return o;
 }
 
-/* What rank 0 makes alone, known to all. */
+/* The digest of rank 0's own mesh, broadcast to all. */
 static struct mesh_digest alone(const struct scene *s,
                                 const struct vg_partition_options *o)
 {
@@ -39,7 +39,7 @@ static struct mesh_digest alone(const struct scene *s,
   return tell(&d);
 }
 
-/* is_whole: it fills every part. */
+/* is_whole: the mesher fills every subdomain. */
 static void compare(struct vg_mesher_pool *mesher, int is_whole)
 {
   struct scene s;
@@ -71,7 +71,7 @@ static void tetgen(void **state)
   vg_mesher_close(p);
 }
 
-/* Of gmsh's library, where there is one. */
+/* HXT from gmsh's library, if it is installed. */
 static void hxt(void **state)
 {
   struct vg_mesher_pool *p = open_mesher("hxt", 1);
@@ -82,7 +82,8 @@ static void hxt(void **state)
   vg_mesher_close(p);
 }
 
-/* The example of a plug-in: what is not star-shaped it leaves to the kernel. */
+/* The example plug-in: it leaves voids that are not star-shaped to the
+ * kernel. */
 static void plug_in(void **state)
 {
   struct vg_mesher_pool *p = open_mesher(VG_STAR, 0);

@@ -1,4 +1,4 @@
-/* One copy for the ranks of a node: bytes, the field of sizes, layers and
+/* One copy for the ranks of a node: bytes, the sizing field, layers and
  * surfaces. */
 #include "../unit/layer_cases.h"
 #include "base/comm_parts.h"
@@ -17,7 +17,8 @@ static unsigned char value(size_t part, size_t i)
   return (unsigned char)(31 * part + i + i / 251);
 }
 
-/* Ranks but the first give nothing, and read after others let go. */
+/* All ranks except the first contribute nothing, and read after other ranks
+ * have released the memory. */
 static void share_parts(int is_mapped)
 {
   int leads = vg_comm_node_rank(job) == 0;
@@ -87,7 +88,7 @@ static struct vg_sizing *field(void)
   return s;
 }
 
-/* Every rank knows what it has to be by making it as well. */
+/* Every rank also makes the field itself, to know the expected one. */
 static void share_field(void)
 {
   struct vg_sizing *own = field();
@@ -128,7 +129,7 @@ static void a_field_is_in_common(void **state)
 
 /* --- layers and surfaces ------------------------------------------------- */
 
-/* A post on a plane: columns, fans, borders on slide patches. */
+/* A post on a plane: columns, fans, boundary edges on slide patches. */
 static void grow(const struct vg_mesh *surface, struct vg_layers *out)
 {
   struct vg_layer_options options = VG_LAYER_OPTIONS_INIT;
@@ -166,8 +167,8 @@ static struct vg_digest digest(const struct vg_layers *l)
   return d;
 }
 
-/* Every rank knows what it has to be by growing them as well; those that lead
- * have theirs replaced. */
+/* Every rank also grows the layers itself, to know the expected ones. On the
+ * first rank of each node the shared copy replaces the original. */
 static void share_layers(const struct vg_mesh *surface)
 {
   struct vg_layers own = VG_LAYERS_INIT, got = VG_LAYERS_INIT;

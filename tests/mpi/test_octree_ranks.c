@@ -1,5 +1,5 @@
-/* Voids parted by octants, filled by all ranks: the mesh that one rank makes
- * alone, and a run that another number of ranks had begun. */
+/* Voids decomposed into octants and filled by all ranks: the mesh equals that
+ * of a single rank, and that of a run begun on another number of ranks. */
 #define _GNU_SOURCE
 #include "digest_support.h"
 
@@ -46,7 +46,7 @@ static struct mesh_digest run(struct vg_comm *comm, const struct scene *s,
   return d;
 }
 
-/* What rank 0 makes alone, on all ranks. */
+/* The digest of rank 0's own mesh, broadcast to all. */
 static struct mesh_digest alone(const struct scene *s,
                                 const struct vg_partition_options *o)
 {
@@ -57,7 +57,7 @@ static struct mesh_digest alone(const struct scene *s,
   return tell(&d);
 }
 
-/* Octants and a gap that is cut by planes: both are there. */
+/* Octants, and a gap region that is cut by planes: both occur. */
 static void as_one_rank_makes_it(void **state)
 {
   struct scene s;

@@ -1,4 +1,5 @@
-/* Parts that cannot be filled: on any number of ranks as on one. */
+/* Subdomains that cannot be filled: any number of ranks gives the result of
+ * one. */
 #define _GNU_SOURCE
 #include "digest_support.h"
 

@@ -54,8 +54,8 @@ static void test_zones_as_alone(void **state)
   same_as_alone(1);
 }
 
-/* In the record each task is of the rank that did it, and after what was there
- * before. */
+/* In the timeline each task belongs to the rank that ran it, and follows the
+ * earlier entries. */
 static void test_recorded(void **state)
 {
   struct vg_spans spans = { .n_rank = vg_comm_size(job),

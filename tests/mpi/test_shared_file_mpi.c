@@ -1,5 +1,6 @@
-/* One file of several ranks and threads, and what becomes of it when one of
- * them fails. With one rank and no MPI: tests/unit/test_shared_file.c. */
+/* One file written by several ranks and threads, and its fate when one of them
+ * fails. tests/unit/test_shared_file.c has the tests for one rank without
+ * MPI. */
 #define _GNU_SOURCE
 #include "mpi_support.h"
 
@@ -13,7 +14,7 @@
 
 enum { PIECES = 4000, THREADS = 2, TOTAL = 4000 * 3999 / 2 };
 
-static char name[256], part[300]; /* of their own for each number of ranks */
+static char name[256], part[300]; /* distinct for each number of ranks */
 
 static int open_named(void **state)
 {
@@ -38,7 +39,7 @@ static void meet(void)
   assert_int_equal(vg_comm_sum(job, 1, &v, NULL), VG_OK);
 }
 
-/* Piece i has i bytes, all of them i. */
+/* Piece i has i bytes, each of value i. */
 struct writer {
   struct vg_shared_file *f;
   int number, bad;
@@ -134,7 +135,7 @@ static void a_folder_that_is_not_there(void **state)
 
 static char disk[256];
 
-/* By rank 0, for all; 0: not possible here. */
+/* Done by rank 0 for all ranks; 0: not possible here. */
 static int mount_small(void)
 {
   double is_there = 0;
@@ -169,7 +170,7 @@ static void fill(const char *path)
   free(data);
 }
 
-/* Known before anything is written. */
+/* Detected before anything is written. */
 static void no_room_to_begin_with(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -192,7 +193,7 @@ static void no_room_to_begin_with(void **state)
   assert_false(is_left);
 }
 
-/* The room that was reserved is lost, as on a file system that cannot. */
+/* The reserved space is lost, as on a file system that cannot reserve it. */
 static void no_room_while_writing(void **state)
 {
   static unsigned char data[1 << 14];

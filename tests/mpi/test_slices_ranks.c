@@ -1,4 +1,4 @@
-/* Files written by all ranks are those that one writes. */
+/* Files written by all ranks equal those written by one rank. */
 #define _GNU_SOURCE
 #include "mpi_support.h"
 
@@ -16,7 +16,8 @@
 static struct vg_mesh mesh[2];
 static struct vg_join_info info[2];
 
-/* Of this job: tests with other numbers of ranks may run at the same time. */
+/* Distinct for this job: tests with other numbers of ranks may run at the same
+ * time. */
 static char all[4096], alone[4096], nowhere[4096];
 
 static void set_stem(char stem[4096], const char *what)
@@ -67,8 +68,8 @@ static char *path_of(const char *stem, const char *suffix)
   return path;
 }
 
-/* Compare and remove STEM.suffix of both stems; those that have the names of
- * the stems in them are removed only. */
+/* Compare and remove STEM.suffix of both stems. Files that contain the names of
+ * the stems are only removed. */
 static void same_pair(const char *a, const char *b, const char *suffix,
                       int has_names)
 {
@@ -101,7 +102,7 @@ static size_t same_pieces(const char *a, const char *b)
   return n;
 }
 
-/* One form, dealt to the ranks and by rank 0 alone. */
+/* One format, distributed over the ranks and by rank 0 alone. */
 static void check_form(int k, const char *form,
                        const struct vg_slices_options *o)
 {
@@ -149,7 +150,8 @@ static void any_number_of_ranks(void **state)
     }
 }
 
-/* Names of the stems are in them, so compare with what they should be. */
+/* These files contain the names of the stems, so compare with the expected
+ * text. */
 static void names_and_conditions(void **state)
 {
   static const char *const form[] = { "cogsg", "fun3d.mapbc", "mapbc" };
@@ -220,7 +222,7 @@ static void assert_gone(const char *stem, const char *form)
   free(part);
 }
 
-/* One slice of one rank cannot be had: all fail, nothing is left. */
+/* One slice of one rank cannot be read: all ranks fail, and no file is left. */
 static void one_fails_all_fail(void **state)
 {
   static const char *const form[] = { "b8.ugrid", "vtu",        "pvtu",
@@ -240,7 +242,7 @@ static void one_fails_all_fail(void **state)
     assert_true(vg_slices_write_with(job, &c.s, all, form[i], &o, &err) < 0);
     if (!strstr(err.text, "slice 7 is bad"))
       fail_msg("%s: %s", form[i], err.text);
-    /* rank 0 removes what there is when all have told how they fared */
+    /* rank 0 removes the files after all ranks have reported their status */
     vg_comm_agree(job, VG_OK, NULL);
     assert_gone(all, form[i]);
     assert_gone(all, "bc");

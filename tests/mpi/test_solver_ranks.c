@@ -1,5 +1,5 @@
-/* Parts of a mesh in slices: the same for any number of ranks and threads, and
- * written by all of them as one writes them. */
+/* Solver partitions of a mesh in slices: the same for any number of ranks and
+ * threads; the files written by all ranks equal those written by one. */
 #define _GNU_SOURCE
 #include "mpi_support.h"
 
@@ -12,7 +12,7 @@
 
 enum { N_SLICE = 17, N_PART = 6 };
 
-/* Parts of the whole mesh on rank 0 by itself, and of all ranks. */
+/* Partitions of the whole mesh on rank 0 alone, and of all ranks. */
 struct parts {
   struct vg_solver_report report;
   uint32_t *part;
@@ -130,7 +130,7 @@ static void same_parts_for_any_ranks_and_threads(void **state)
   }
 }
 
-/* A slice that cannot be had, more parts than cells: all ranks hear of it. */
+/* An unreadable slice, more partitions than cells: all ranks learn of it. */
 static void failures_are_those_of_all(void **state)
 {
   struct vg_solver_options o = VG_SOLVER_OPTIONS_INIT;

@@ -1,4 +1,5 @@
-/* Tasks' outcomes kept by all ranks, found by any; refusals reach all. */
+/* Outcomes of tasks are kept by all ranks and found by any of them; refusals
+ * reach all. */
 #define _GNU_SOURCE
 #include "mpi_support.h"
 
@@ -22,7 +23,8 @@ static int remove_one(const char *path, const struct stat *s, int flag,
   return remove(path);
 }
 
-/* A folder for each number of ranks, as these tests may run side by side. */
+/* A separate folder for each number of ranks, as these tests may run at the
+ * same time. */
 static int open_job_and_clean(void **state)
 {
   int bad = open_job(state);
@@ -126,7 +128,7 @@ static void the_limit_is_for_all_together(void **state)
   vg_store_state(s, &r);
   assert_non_null(strstr(r.stopped, "limit of 20000 bytes over all ranks"));
   sum = sum_of(r.bytes_kept);
-  /* a rank's share is used up to less than one record */
+  /* the unused rest of each rank's share is less than one record */
   assert_true(sum <= limit &&
               sum + 1100u * (unsigned)vg_comm_size(job) > limit);
   vg_store_close(s, 0);
@@ -139,7 +141,7 @@ static void the_limit_is_for_all_together(void **state)
   vg_store_close(s, 1);
 }
 
-/* Not seen by a rank other than 0, as on a disk of one node. */
+/* Visible to rank 0 only, as on a local disk of one node. */
 static void a_directory_of_one_node(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;

@@ -1,6 +1,6 @@
-/* Loops over several nodes: every member has all in the end, whatever the
- * shapes of the arrays; the failure of one is that of all, and nobody waits for
- * ever. Ranks are taken for nodes of their own. */
+/* Loops over several nodes: every member has all results in the end, for any
+ * shape of the arrays. If one member fails, all fail, and none waits forever.
+ * Ranks are taken for separate nodes. */
 #include "mpi_support.h"
 
 #include "base/comm_parts.h"
@@ -86,7 +86,7 @@ static void all_have_all(void **state)
 
       assert_int_equal(run(t, a, n[k], NULL), VG_OK);
       check(a, n[k]);
-      /* long loops are parted: nobody does much more than its share */
+      /* long loops are divided: no member does much more than its share */
       if (n[k] >= N - 3)
         assert_true(a->n_done <= n[k] / (size_t)vg_comm_size(job) + GRAIN);
       free(a);
@@ -128,7 +128,7 @@ static void one_failure_is_all(void **state)
 
     st = run(t, a, N, &err);
     assert_int_equal(st, VG_ERR_MEMORY);
-    /* and nothing waits from then on */
+    /* and no member waits from then on */
     assert_int_equal(run(t, a, N, NULL), VG_ERR_REMOTE);
     free(a);
   }

@@ -1,5 +1,5 @@
-/* Voids for the advancing partition, and what must hold of the mesh that it
- * makes, whoever made what when. Header only: one program per module. */
+/* Voids for the advancing partition, and the invariants of its mesh for any
+ * distribution and timing of the tasks. Header only: one program per module. */
 #ifndef TESTS_UNIT_ADVANCE_SUPPORT_H
 #define TESTS_UNIT_ADVANCE_SUPPORT_H
 
@@ -74,7 +74,7 @@ static inline void scene_end(struct scene *s)
   memset(s, 0, sizeof *s);
 }
 
-/* What the options of most runs are made of. */
+/* Options of most runs. */
 static inline struct vg_partition_options options_of(double leaf, int threads,
                                                      uint64_t shuffle)
 {
@@ -86,7 +86,7 @@ static inline struct vg_partition_options options_of(double leaf, int threads,
   return o;
 }
 
-/* Of a mesh that is expected to have a tenth of its cells. */
+/* The load estimate expects a tenth of the actual cells. */
 static inline struct vg_partition_options surprise_of(double leaf)
 {
   struct vg_partition_options o = options_of(leaf, 1, 0);
@@ -111,8 +111,8 @@ static inline void add_item(uint64_t sum[4], const struct item *it, int at)
   sum[at + 1] += d.word[1];
 }
 
-/* Points and cells with their numbers; each cell with the places of its
- * corners, so that every copy of a point counts. */
+/* Points and cells with their numbers. Each cell includes the coordinates of
+ * its corners, so that every copy of a point counts. */
 static inline void add_slice(const struct vg_slice *s, uint64_t sum[4])
 {
   for (size_t k = 0; k < s->n_own; k++) {
@@ -136,7 +136,7 @@ static inline void add_slice(const struct vg_slice *s, uint64_t sum[4])
   }
 }
 
-/* The boundary's points are the first ones, and where they were. */
+/* The boundary points come first, with unchanged coordinates. */
 static inline void check_front(const struct vg_slice *s,
                                const struct vg_mesh *front)
 {
@@ -145,7 +145,8 @@ static inline void check_front(const struct vg_slice *s,
       assert_memory_equal(s->x[k], front->point[s->id[k]], sizeof *s->x);
 }
 
-/* Sums over all slices of all ranks: of a mesh, not of how it is kept. */
+/* Sums over all slices of all ranks. They depend on the mesh, not on its
+ * storage. */
 struct mesh_digest {
   uint64_t n_point, n_cell, sum[4];
 };
@@ -186,8 +187,8 @@ static inline void same_digest(const struct mesh_digest *a,
 
 /* --- meshes -------------------------------------------------------------- */
 
-/* A valid mesh of the whole void. Volumes are sums of as many roundings as
- * there are cells, so about 1e-12 is to be expected at most. */
+/* Checks for a valid mesh of the whole void. The volume is a sum with one
+ * rounding per cell, so an error of about 1e-12 at most is expected. */
 static inline void check_mesh(struct vg_comm *comm, const struct scene *s,
                               const struct vg_partition *p)
 {
@@ -242,7 +243,7 @@ static inline vg_status grow(struct vg_comm *comm, const struct scene *s,
   return vg_partition_grow(comm, &s->m, s->sizing, o, p, r, NULL, err);
 }
 
-/* Grow, check, and let go. judge: 1: check all, 0: take the digest only. */
+/* Grow, check, and release. judge: 1: check all, 0: only take the digest. */
 static inline struct mesh_digest run_of(struct vg_comm *comm,
                                         const struct scene *s,
                                         const struct vg_partition_options *o,
@@ -294,7 +295,7 @@ static inline vg_status open_store(struct vg_comm *comm, const char *dir,
   return vg_store_open(comm, &o, s, err);
 }
 
-/* Stop once this rank has kept so many records; 0: at once. */
+/* Stop once this rank has kept this number of records; 0: at once. */
 struct stopper {
   struct vg_store *store;
   uint64_t after;

@@ -1,5 +1,6 @@
-/* Surfaces with columns built by hand: one per point of a wall, all layers of
- * equal thickness, so that the height of n layers is n times it. */
+/* Surfaces with columns built by hand: one column per wall point, and all
+ * layers of equal thickness, so that the height of n layers is n times the
+ * thickness. */
 #ifndef CLEAR_SHAPES_H
 #define CLEAR_SHAPES_H
 
@@ -16,7 +17,7 @@
 
 enum { MAX = 20000, PATCHES = 3 };
 
-/* Surface, columns and topology, growing as parts are added. */
+/* Surface, columns and topology, growing as patches are added. */
 struct shape {
   struct vg_mesh m;
   struct vg_columns c;
@@ -102,7 +103,7 @@ static uint32_t add_plate(struct shape *s, uint32_t patch, int n,
   return first;
 }
 
-/* Sphere of n x 2n patches; the fluid is outside. */
+/* A sphere of n by 2n quadrilaterals; the fluid is outside. */
 static void add_sphere(struct shape *s, uint32_t patch, int n,
                        const double o[3], double r)
 {

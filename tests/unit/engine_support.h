@@ -1,7 +1,7 @@
-/* A tree of tasks for the tests of the engine. A node's children follow from
- * its path; its value from its path and its children's values, in order. The
- * root's value shows that every task was done once, and its outcome came to
- * the right place, whoever did what when. */
+/* A tree of tasks for the tests of the engine. A node's children depend on its
+ * path; its value depends on its path and on its children's values, in order.
+ * The root's value therefore proves that every task ran once and its outcome
+ * reached the right place, for any distribution and timing. */
 #ifndef VG_TEST_ENGINE_SUPPORT_H
 #define VG_TEST_ENGINE_SUPPORT_H
 
@@ -19,28 +19,27 @@ enum { ANY = -1 };
 
 struct forest {
   int rank, size, threads;
-  int depth;                 /* nodes with longer paths are leaves */
-  double spin;               /* s of work per task */
-  size_t ballast;            /* bytes more in each input */
-  int pin;                   /* every pin-th task (by its path) is pinned */
-  int move;                  /* every move-th one moves its home */
-  int deal;                  /* 1: two of three are dealt out */
-  int loop;                  /* items of loops in each task, no power of 2:
-                                none is of one chunk; 0: no loops */
-  double spin_item;          /* s of work per item */
-  const char *fail_at;       /* path of a task whose run fails */
-  const char *done_fails_at; /* whose done fails */
+  int depth;           /* nodes with longer paths are leaves */
+  double spin;         /* s of work per task */
+  size_t ballast;      /* additional bytes in each input */
+  int pin;             /* every pin-th task (by its path) is pinned */
+  int move;            /* every move-th task moves its home */
+  int deal;            /* 1: two of three are assigned statically */
+  int loop;            /* loop items in each task, no power of 2; 0: no loops */
+  double spin_item;    /* s of work per item */
+  const char *fail_at; /* path of a task whose run fails */
+  const char *done_fails_at; /* path of a task whose done fails */
   const char *pack_fails_at;
-  const char *stop_at; /* once run, stop() says so */
+  const char *stop_at; /* after this task has run, stop() returns 1 */
   atomic_int stop;
-  atomic_int in_done; /* threads there */
-  atomic_int bad;     /* rules that were broken */
+  atomic_int in_done; /* threads inside `done` */
+  atomic_int bad;     /* violated rules */
   atomic_long alive;  /* inputs and outcomes on this rank */
   atomic_long n_run, n_done, n_moved;
   atomic_int busy[64];           /* by worker */
-  atomic_int inside[64];         /* a body of a loop runs, by worker */
-  atomic_long n_body, n_foreign; /* bodies, and those in another worker */
-  uint64_t sum;                  /* of all tasks' digests, in done */
+  atomic_int inside[64];         /* loop bodies in progress, by worker */
+  atomic_long n_body, n_foreign; /* loop bodies, and those elsewhere */
+  uint64_t sum;                  /* sum of all tasks' digests, in done */
   double last_done, last_known;
 };
 
@@ -109,13 +108,13 @@ static inline struct vg_task forest_task(struct forest *f, const char *path)
   return t;
 }
 
-/* A loop counts its items; each worker has a number of its own, a body that
- * itself has a loop runs that alone. */
+/* A loop counts its items. Each worker passes its own number; a loop inside a
+ * loop body runs on that worker alone. */
 struct forest_loop {
   struct forest *f;
   const struct vg_engine *e;
   int worker;    /* of the task */
-  int count[64]; /* by item: no lock, but for the loop's own */
+  int count[64]; /* by item; not locked except by the loop itself */
 };
 
 static inline void forest_inner(void *context, size_t first, size_t end,
@@ -317,7 +316,8 @@ static inline vg_status forest_grow(struct forest *f, struct vg_comm *comm,
   return vg_engine_run(comm, &options, &ops, f, n, first, spans, err);
 }
 
-/* What a run must find: tasks and sum of digests of a tree. */
+/* The expected result of a run: number of tasks and sum of digests of a
+ * tree. */
 static inline void forest_expect(const struct forest *f, const char *path,
                                  long *n, uint64_t *sum)
 {

@@ -1,5 +1,5 @@
-/* Closed surfaces for the tests of the fill: blocks of boxes, spheres, a
- * torus. Normals point into the fluid. Header only: one program per module. */
+/* Closed surfaces for the tests of the fill: blocks of boxes, spheres, a torus.
+ * Normals point into the fluid. Header only: one program per module. */
 #ifndef TESTS_UNIT_FILL_SHAPES_H
 #define TESTS_UNIT_FILL_SHAPES_H
 
@@ -18,7 +18,8 @@ static inline void shape_need(const void *p)
   if (!p) abort();
 }
 
-/* A front with patches as a mesh of the surface's patches, in this block. */
+/* A front with patches as a mesh with the surface's patches, valid in this
+ * block. */
 #define FRONT_MESH(front, surface)                                             \
   ((struct vg_mesh[1]){ vg_front_mesh((front), (surface)) })
 
@@ -46,8 +47,8 @@ static inline void shape_tri(struct vg_mesh *m, uint32_t a, uint32_t b,
   m->tri_patch[m->n_tri++] = (uint32_t)patch;
 }
 
-/* The boundary of those boxes of an n[0] x n[1] x n[2] block between lo and
- * hi for which `in` says 1. A patch for each of the six directions. */
+/* The boundary of those boxes of an n[0] x n[1] x n[2] block between lo and hi
+ * for which `in` returns 1, with a patch for each of the six directions. */
 static inline void shape_block(struct vg_mesh *m, const int n[3],
                                const double lo[3], const double hi[3],
                                int (*in)(const int at[3]))
@@ -108,8 +109,8 @@ static inline void shape_box(struct vg_mesh *m, int n, double half)
   shape_block(m, count, lo, hi, shape_all);
 }
 
-/* A body: an octahedron whose faces are cut into n x n triangles, pushed out
- * to a sphere. Coordinates by square roots only. */
+/* A body: an octahedron whose faces are divided into n x n triangles and
+ * projected onto a sphere. Its coordinates need only square roots. */
 static inline void shape_sphere(struct vg_mesh *m, int n,
                                 const double centre[3], double radius,
                                 int32_t patch_id)
@@ -183,7 +184,7 @@ static inline void shape_torus(struct vg_mesh *m, int nu, int nv, double big,
     }
 }
 
-/* The field that grows from the surface, at most h_max (0: no limit). */
+/* The sizing field that grows from the surface, at most h_max (0: no limit). */
 static inline struct vg_sizing *shape_sizing(const struct vg_mesh *m,
                                              double growth, double h_max)
 {

@@ -10,8 +10,8 @@
 #include "core/fill/fill.h"
 #include "core/mesh/mesh.h"
 
-/* The surface's boundary and points, new points behind them, and the cells,
- * which *out takes over. */
+/* Join the surface's boundary and points, the new points after them, and the
+ * cells, which *out takes over. */
 static inline vg_status fill_join(const struct vg_mesh *surface,
                                   struct vg_filled *made, struct vg_mesh *out,
                                   struct vg_error *err)
@@ -38,8 +38,8 @@ done:
   return st;
 }
 
-/* The mesh of the void that a closed surface bounds. out: empty; untouched on
- * failure. *report is cleared first. */
+/* Mesh the void that a closed surface bounds. out: empty; untouched on failure.
+ * *report is cleared first. */
 static inline vg_status fill_mesh(const struct vg_mesh *surface,
                                   const struct vg_sizing *sizing,
                                   const struct vg_fill_options *options,

@@ -1,4 +1,5 @@
-/* The parts of a front, for tests: what zones leave must fall apart. */
+/* Connected components of a front, for tests: separator zones must divide the
+ * front. */
 #ifndef FRONT_PARTS_H
 #define FRONT_PARTS_H
 
@@ -10,12 +11,12 @@
 #include "base/union_find.h"
 #include "partition/cut/task_data.h"
 
-/* --- parts --------------------------------------------------------------- */
+/* --- components ---------------------------------------------------------- */
 
 /* Half edges by their lower point. */
 struct part_edges {
   uint32_t *first; /* [n_point + 2] */
-  uint32_t *half;  /* [3 n_face] 3 * face + corner that begins it */
+  uint32_t *half;  /* [3 n_face] 3 * face + first corner */
 };
 
 static void part_ends_of(const struct vg_front *f, uint32_t half,
@@ -70,8 +71,8 @@ static double part_dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* How far a face is turned about its edge until it falls on another, through
- * the void that it faces: grows with the angle, from 0 to 4. */
+/* A monotonic measure, from 0 to 4, of the angle by which a face must be turned
+ * about its edge, through the void in front of it, to reach another face. */
 static double part_turn(const struct vg_front *f, uint32_t half, uint32_t other)
 {
   uint32_t from, to;
@@ -90,8 +91,9 @@ static double part_turn(const struct vg_front *f, uint32_t half, uint32_t other)
                 : (c < 0 ? 2 - s / n : 4 + s / n);
 }
 
-/* Where more than two faces meet in an edge, voids touch each other there; a
- * face belongs to the one it meets first, turned into its own void. */
+/* Where more than two faces meet at an edge, several voids touch there. A face
+ * is united with the first face that it meets when it is turned into its own
+ * void. */
 static void part_unite_crowd(const struct vg_front *f, uint32_t *parent,
                              size_t n, const uint32_t *half)
 {
@@ -115,7 +117,7 @@ static void part_unite_crowd(const struct vg_front *f, uint32_t *parent,
   }
 }
 
-/* All edges whose lower point is p. */
+/* Unite the faces at all edges whose lower point is p. */
 static void part_unite_around(const struct vg_front *f,
                               const struct part_edges *e, uint32_t *parent,
                               size_t p)
@@ -142,8 +144,8 @@ static void part_unite_around(const struct vg_front *f,
   }
 }
 
-/* Parts of a front that share no edge, by their first face. part out:
- * [n_face] 0, 1, ...; n out: how many. */
+/* Components of a front that share no edge, numbered by their first face. part
+ * out: [n_face] 0, 1, ...; n out: their number. */
 static inline vg_status front_parts(const struct vg_front *f, uint32_t *part,
                                     size_t *n, struct vg_error *err)
 {
@@ -182,8 +184,8 @@ static vg_status part_allocate(struct vg_front *f, size_t n_point,
   return vg_fail_memory(err, "a front");
 }
 
-/* The faces listed, with their points. to: [n_point] all UINT32_MAX, before
- * and after. */
+/* The listed faces, with their points. to: [n_point] all UINT32_MAX, before and
+ * after. */
 static vg_status part_take(const struct vg_front *f, size_t n,
                            const uint32_t *face, uint32_t *to,
                            struct vg_front *out, struct vg_error *err)
@@ -212,7 +214,7 @@ static vg_status part_take(const struct vg_front *f, size_t n,
   return VG_OK;
 }
 
-/* One front for each of n parts: out [n], with the points they use. */
+/* One front for each of n components: out [n], with the points they use. */
 static inline vg_status front_split(const struct vg_front *f,
                                     const uint32_t *part, size_t n,
                                     struct vg_front *out, struct vg_error *err)

@@ -5,8 +5,8 @@
 #include <malloc.h>
 #include <stdlib.h>
 
-/* The array with room for item n, twice as much where there is none: ASan
- * moves what is large to pages of its own whenever it grows. */
+/* The array with room for item n; doubled if it is full, because ASan maps
+ * large blocks to new pages at each reallocation. */
 static inline void *grown(void *array, size_t n, size_t size)
 {
   size_t need = (n + 1) * size;

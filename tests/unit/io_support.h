@@ -1,4 +1,4 @@
-/* What the tests of readers and writers share: the reference mesh T1 of the
+/* Shared by the tests of readers and writers: the reference mesh T1 of the
  * format notes, files in VG_TMP_DIR, real files of VG_DATA_DIR. */
 #ifndef VG_TESTS_IO_SUPPORT_H
 #define VG_TESTS_IO_SUPPORT_H
@@ -55,8 +55,8 @@ static inline void io_accept(io_parse parse, const char *text,
   if (st != VG_OK) fail_msg("refused: %s", err.text);
 }
 
-/* Parse bytes, expect a failure of this kind whose message has this phrase
- * and the name of the file, and an untouched mesh. */
+/* Parse bytes and expect a failure with this code, a message that contains this
+ * phrase and the name of the file, and an untouched mesh. */
 static inline void io_refuse_bytes(io_parse parse, const void *data,
                                    size_t size, vg_status code,
                                    const char *phrase)
@@ -105,9 +105,9 @@ static inline void io_make_t1(struct vg_mesh *m, int is_volume)
   for (uint32_t i = 0; i < 4; i++) m->tet[0][i] = i;
 }
 
-/* One cell of every kind side by side, with quadrilaterals on two patches:
- * a hexahedron, a prism on its right, a pyramid above it, a tetrahedron on
- * the pyramid. Not a closed boundary; readers do not ask for one. */
+/* One cell of every kind side by side, with quadrilaterals on two patches: a
+ * hexahedron, a prism on its right, a pyramid above it, a tetrahedron on the
+ * pyramid. The boundary is not closed; readers do not require it. */
 static inline void io_make_mixed(struct vg_mesh *m)
 {
   static const double point[13][3] = { { 0, 0, 0 },
@@ -125,7 +125,8 @@ static inline void io_make_mixed(struct vg_mesh *m)
                                        { 1.0 / 3, -0.1, 1e-7 } };
   static const uint32_t hex[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
   static const uint32_t pri[6] = { 1, 8, 2, 5, 9, 6 };
-  /* Ring 0 3 4 1 of slots is 4 5 6 7 counter-clockwise seen from point 10. */
+  /* The slots 0 3 4 1 are the quadrilateral 4 5 6 7, counter-clockwise seen
+   * from point 10. */
   static const uint32_t pyr[5] = { 4, 7, 10, 5, 6 };
   static const uint32_t tet[4] = { 5, 6, 10, 11 };
   static const uint32_t tri[2][3] = { { 1, 8, 2 }, { 4, 7, 10 } };
@@ -159,8 +160,8 @@ static inline void io_same_array(const void *a, const void *b, size_t n,
   if (n) assert_memory_equal(a, b, n * size);
 }
 
-/* Equal in every bit, but for boundary conditions and, where with_names is
- * 0, names of patches. */
+/* Equal in every bit, except for boundary conditions and, if with_names is 0,
+ * names of patches. */
 static inline void io_same(const struct vg_mesh *a, const struct vg_mesh *b,
                            int with_names)
 {
@@ -232,8 +233,8 @@ static inline size_t io_bad_edges(const struct vg_mesh *m)
   return bad;
 }
 
-/* Path of a real file, unpacked from .xz where needed; skips the test when
- * the data folder is not there. */
+/* Path of a real file, unpacked from .xz if needed; skips the test if there is
+ * no data folder. */
 static inline const char *io_real(const char *name)
 {
   char packed[1024], local[256], command[8192];

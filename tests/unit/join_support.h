@@ -1,5 +1,5 @@
-/* Columns by hand for the tests of join: a hipped roof whose ridges have fans,
- * under an apex to which everything else is a cone. Header only. */
+/* Columns built by hand for the tests of join: a hipped roof whose ridges have
+ * fans, under an apex, with a cone of cells filling the rest. Header only. */
 #ifndef TESTS_UNIT_JOIN_SUPPORT_H
 #define TESTS_UNIT_JOIN_SUPPORT_H
 
@@ -44,7 +44,7 @@ static inline uint32_t model_column(struct model *m, uint32_t root,
   return (uint32_t)c->n_column++;
 }
 
-/* Virtual when tri is VG_NO_INDEX. */
+/* Virtual if tri is VG_NO_INDEX. */
 static inline void model_face(struct model *m, uint32_t a, uint32_t b,
                               uint32_t c, uint32_t tri)
 {
@@ -71,8 +71,8 @@ static inline void model_wall(struct model *m, uint32_t a, uint32_t b,
   shape_tri(&m->surface, col[a].root, col[b].root, col[c].root, MODEL_WALL);
 }
 
-/* Virtual faces between the fans p and q at the ends of a ridge; bits of
- * `turn`: which of them goes on. */
+/* Virtual faces between the fans p and q at the ends of a ridge; each bit of
+ * `turn` selects the fan that advances. */
 static inline void model_strip(struct model *m, const uint32_t *p, int np,
                                const uint32_t *q, int nq, uint32_t turn)
 {
@@ -141,7 +141,7 @@ static inline void model_rims(struct model *m,
   free(edge);
 }
 
-/* The law of all columns. */
+/* The growth law of all columns. */
 static inline void model_law(struct model *m, double delta1)
 {
   struct vg_columns *c = &m->layers.columns;
@@ -153,9 +153,9 @@ static inline void model_law(struct model *m, double delta1)
   c->n_law = 1;
 }
 
-/* A fan of which some columns rise and some do not can leave a front that
- * touches itself: let none of them rise; with `all`, none higher than another.
- * Returns whether something changed. */
+/* A fan in which only some columns rise can leave a front that touches itself.
+ * Therefore lower all columns of such a fan to 0; with `all`, lower those of
+ * every fan to the lowest. Returns whether a column changed. */
 static inline int model_even(struct model *m, int all)
 {
   struct vg_column *c = m->layers.columns.column;
@@ -226,7 +226,7 @@ static inline void model_front_tri(struct model *m, const uint32_t t[3],
   f->face_id[f->n_face++] = face;
 }
 
-/* Front point of each column into top, of each other point into point. */
+/* The front point of each column into top, of each other point into point. */
 static inline void model_front_points(struct model *m, uint32_t *top,
                                       uint32_t *point)
 {
@@ -255,7 +255,8 @@ static inline void model_front_points(struct model *m, uint32_t *top,
   }
 }
 
-/* The front: tops, and the cone over borders or other triangles as they are. */
+/* The front: tops, and the cone over the boundary edges, or other triangles
+ * unchanged. */
 static inline void model_front(struct model *m)
 {
   const struct vg_columns *c = &m->layers.columns;
@@ -275,7 +276,7 @@ static inline void model_front(struct model *m)
   }
   for (size_t r = 0; r < c->n_border; r++)
     raised |= c->column[c->border[r][0]].n || c->column[c->border[r][1]].n;
-  /* A re-meshed patch has points of its own. */
+  /* A re-meshed patch has its own points. */
   if (raised) f->id[point[m->apex]] = VG_LAYER_NEW;
   for (size_t r = 0; r < c->n_border; r++) {
     uint32_t t[3] = { top[c->border[r][1]], top[c->border[r][0]],
@@ -294,7 +295,7 @@ static inline void model_front(struct model *m)
   free(point);
 }
 
-/* Does each edge of the front join two triangles? */
+/* Whether each edge of the front joins two triangles. */
 static inline int model_front_is_manifold(const struct model *m)
 {
   const struct vg_front *f = &m->layers.front;
@@ -312,7 +313,7 @@ static inline int model_front_is_manifold(const struct model *m)
   return fine;
 }
 
-/* A field for the front: the cone over the tops. */
+/* Cells that fill the front: the cone over the tops. */
 static inline void model_field(struct model *m)
 {
   const struct vg_front *f = &m->layers.front;
@@ -333,7 +334,7 @@ static inline void model_field(struct model *m)
   }
 }
 
-/* Numbers that repeat; no two tests share a state. */
+/* Reproducible random numbers; no two tests share a state. */
 static inline uint32_t model_random(uint64_t *state)
 {
   *state = *state * UINT64_C(6364136223846793005) +
@@ -341,7 +342,7 @@ static inline uint32_t model_random(uint64_t *state)
   return (uint32_t)(*state >> 33);
 }
 
-/* A sphere with columns of random levels, in a box that has none. */
+/* A sphere with columns of random levels, in a box without layers. */
 static inline void model_sphere(struct model *m, int n, int most,
                                 uint64_t *state)
 {
@@ -355,7 +356,8 @@ static inline void model_sphere(struct model *m, int n, int most,
   shape_box(&m->surface, 3, 3);
   first_point = m->surface.n_point;
   first_tri = m->surface.n_tri;
-  /* the helper numbers patches of the box from 0 on: move them off the wall */
+  /* the helper numbers the patches of the box from 0: move them past the
+   * wall */
   for (size_t i = 0; i < first_tri; i++) m->surface.tri_patch[i] += 2;
   shape_sphere(&m->surface, n, centre, 1, 40);
   for (size_t i = first_point; i < m->surface.n_point; i++) {
@@ -383,10 +385,10 @@ static inline void model_sphere(struct model *m, int n, int most,
 
 struct roof {
   int n;      /* squares per side, even */
-  int n_each; /* columns of each fan; 0: different ones */
+  int n_each; /* columns of each fan; 0: random numbers */
   int fan[ROOF_MAX * ROOF_MAX][4 * ROOF_FAN]; /* columns of a point */
   int n_fan[ROOF_MAX * ROOF_MAX];
-  int sector[ROOF_MAX * ROOF_MAX][5]; /* where in fan each sector's is */
+  int sector[ROOF_MAX * ROOF_MAX][5]; /* index in fan of each sector's column */
 };
 
 static inline uint32_t roof_side(const double x[3], const double y[3])
@@ -522,8 +524,8 @@ static inline void roof_ridges(struct model *m, const struct roof *r,
 }
 
 /* A hipped roof over the unit square with points in random order, fans along
- * its four ridges and on its top, of n_each columns of the same height or
- * at random, and up to `most` levels. */
+ * its four ridges and on its top, with n_each columns of equal or random
+ * height, and at most `most` levels. */
 static inline void model_roof(struct model *m, int n, int n_each, int most,
                               uint64_t *state)
 {

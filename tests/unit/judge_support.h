@@ -1,5 +1,5 @@
-/* Meshes for the tests of judging in slices: valid ones, damaged ones, and
- * the field of a cut by itself. Header only. */
+/* Meshes for the tests of the mesh check in slices: valid ones, damaged ones,
+ * and the isotropic region of a cut by itself. Header only. */
 #ifndef TESTS_UNIT_JUDGE_SUPPORT_H
 #define TESTS_UNIT_JUDGE_SUPPORT_H
 
@@ -41,7 +41,7 @@ static inline struct judge_side judge_side(const uint32_t *cell,
   return s;
 }
 
-/* Boundary: the faces that one cell has, turned inwards. */
+/* The boundary: the faces that belong to one cell only, turned inwards. */
 static inline void judge_close(struct vg_mesh *m)
 {
   struct judge_side *s = vg_alloc(5 * (m->n_tet + m->n_pyr + m->n_pri),
@@ -88,7 +88,7 @@ static inline struct vg_mesh judge_mesh(enum vg_layer_cells cells)
   struct vg_join_info info;
 
   cut_mesh(&m, &info, cells);
-  m.n_quad = 0; /* those are for writers only */
+  m.n_quad = 0; /* quadrilaterals are for writers only */
   return m;
 }
 
@@ -118,7 +118,7 @@ static inline struct vg_mesh judge_prisms(uint32_t nx, uint32_t ny, uint32_t nz)
   return m;
 }
 
-/* Takes level k of a block of n by n by n out. */
+/* Remove level k from a block of n by n by n. */
 static inline void judge_take_layer(struct vg_mesh *m, size_t n, size_t k)
 {
   size_t each = 2 * n * n;
@@ -140,7 +140,7 @@ static inline void judge_swap(uint32_t *a, uint32_t *b)
   *b = t;
 }
 
-/* at: 0, 1, 2: other places. */
+/* at: 0, 1, 2: different locations. */
 static inline void judge_damage(struct vg_mesh *m, int damage, uint32_t at)
 {
   size_t tet = (1 + at) * m->n_tet / 4, tri = (1 + at) * m->n_tri / 4;
@@ -153,12 +153,12 @@ static inline void judge_damage(struct vg_mesh *m, int damage, uint32_t at)
     break;
   case 1: judge_swap(&m->tet[tet][1], &m->tet[tet][2]); break;
   case 2: m->point[point][at] += 100; break;
-  case 3: /* two points at one place, but for signs of 0 */
+  case 3: /* two points with equal coordinates, except for signs of 0 */
     memset(m->point[point], 0, sizeof *m->point);
     m->point[m->tet[tet][1]][0] = m->point[m->tet[tet][1]][1] = 0;
     m->point[m->tet[tet][1]][2] = -0.0;
     break;
-  case 4: /* points without cells, three at one place */
+  case 4: /* points without cells, three with equal coordinates */
     for (int k = 0; k < 3; k++) shape_point(m, 2, 2, 2 + (int)at);
     break;
   case 5: judge_swap(&m->tri[tri][0], &m->tri[tri][1]); break;
@@ -167,10 +167,10 @@ static inline void judge_damage(struct vg_mesh *m, int damage, uint32_t at)
     m->tri[tri][2] = m->tri[tri][2] == point ? m->tet[tet][1] : point;
     break;
   case 8: memcpy(m->tri[tri], m->tri[tri + 1], sizeof *m->tri); break;
-  case 9: /* a cell hangs on another point */
+  case 9: /* a cell uses a wrong point */
     m->tet[tet][3] = m->tet[tet / 2][0];
     break;
-  case 10: /* a cell twice, the second time among the last */
+  case 10: /* a duplicate cell, the copy among the last */
     memcpy(m->tet[m->n_tet - 1], m->tet[tet / 2], sizeof *m->tet);
     break;
   case 11: /* a boundary face between two cells, or twice */
@@ -181,7 +181,7 @@ static inline void judge_damage(struct vg_mesh *m, int damage, uint32_t at)
     memcpy(m->tet[m->n_tet - 1], m->tet[at ? m->n_tet - 5 : tet / 2],
            3 * sizeof **m->tet);
     break;
-  default: /* prisms or tetrahedra, turned over */
+  default: /* inverted prisms or tetrahedra */
     t = m->n_pri ? m->pri[m->n_pri / (2 + at)] : m->tet[tet / 2];
     judge_swap(&t[0], &t[1]);
     if (m->n_pri) judge_swap(&t[3], &t[4]);
@@ -248,11 +248,11 @@ static inline void assert_same_report(const struct vg_mesh_report *a,
 #undef SAME_LIST
 }
 
-/* --- the field of a cut -------------------------------------------------- */
+/* --- the isotropic region of a cut --------------------------------------- */
 
 static inline int judge_is_field(size_t g)
 {
-  return g % 4 != 0; /* as cut_get says of kinds */
+  return g % 4 != 0; /* the rule by which cut_get assigns kinds */
 }
 
 static inline uint32_t judge_point(const struct cut *c, struct vg_mesh *m,
@@ -264,7 +264,7 @@ static inline uint32_t judge_point(const struct cut *c, struct vg_mesh *m,
   return number[p] - 1;
 }
 
-/* The cells of slices that are no layers, as a mesh with its boundary. */
+/* The cells of slices without layers, as a mesh with its boundary. */
 static inline struct vg_mesh judge_field(const struct cut *c)
 {
   struct vg_mesh m = VG_MESH_INIT;

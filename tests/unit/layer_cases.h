@@ -1,7 +1,7 @@
-/* Closed surfaces that are hard for layers, each at a size of choice: slots,
- * concave corners, bodies with edges and apexes, near misses, walls that meet
- * a symmetry plane at an angle. Normals point into the fluid; walls have the
- * condition 4 (viscous), symmetry planes 1, farfields 3. Header only. */
+/* Closed surfaces that are hard for layers, each with a chosen edge length:
+ * slots, concave corners, bodies with edges and apexes, near misses, walls that
+ * meet a symmetry plane at an angle. Normals point into the fluid; walls have
+ * the condition 4 (viscous), symmetry planes 1, farfields 3. Header only. */
 #ifndef TESTS_UNIT_LAYER_CASES_H
 #define TESTS_UNIT_LAYER_CASES_H
 
@@ -25,14 +25,14 @@ struct case_line {
   size_t n;
 };
 
-/* What a surface is put together from: points, lines between them that the
- * faces on both sides share, and plane faces within loops of them. */
+/* The components of a surface: points, lines between them that the faces on
+ * both sides share, and plane faces bounded by loops of lines. */
 struct case_builder {
   struct vg_mesh *m;
   struct case_size size;
   struct case_line *line;
   size_t n_line;
-  uint32_t (*edge)[2]; /* loops of the face at hand */
+  uint32_t (*edge)[2]; /* loops of the current face */
   size_t n_edge;
 };
 
@@ -50,7 +50,7 @@ static inline double case_size_at(void *user, const double x[3])
   return h < s->h_max ? h : s->h_max;
 }
 
-/* Even size h. */
+/* Uniform size h. */
 static inline struct case_builder case_start(struct vg_mesh *m, double h)
 {
   struct case_builder b = { .m = m,
@@ -100,7 +100,7 @@ static inline uint32_t case_point(struct case_builder *b, double x, double y,
 
 enum { CASE_SAMPLES = 256 };
 
-/* Pieces of a line so that each is as long as the size there. */
+/* Divide a line so that each piece is as long as the local size. */
 static inline void case_divide(struct case_builder *b, struct case_line *l)
 {
   double from[3], to[3], sum[CASE_SAMPLES + 1] = { 0 }, length = 0;
@@ -139,7 +139,7 @@ static inline void case_edge(struct case_builder *b, uint32_t from, uint32_t to)
   b->edge[b->n_edge++][1] = to;
 }
 
-/* A side of the face at hand; the line is made when it is met first. */
+/* A side of the current face; the line is created on first use. */
 static inline void case_side(struct case_builder *b, uint32_t from, uint32_t to)
 {
   size_t i = 0;
@@ -160,7 +160,8 @@ static inline void case_side(struct case_builder *b, uint32_t from, uint32_t to)
     else case_edge(b, l->point[l->n - j], l->point[l->n - j - 1]);
 }
 
-/* A loop of straight sides, region on its left; reversed where asked. */
+/* A loop of straight sides, region on its left; with `reverse` in the opposite
+ * order. */
 static inline void case_loop(struct case_builder *b, size_t n,
                              const uint32_t *v, int reverse)
 {
@@ -169,7 +170,7 @@ static inline void case_loop(struct case_builder *b, size_t n,
     else case_side(b, v[i], v[(i + 1) % n]);
 }
 
-/* Triangulate the face at hand. */
+/* Triangulate the current face. */
 static inline void case_fill(struct case_builder *b, uint32_t patch)
 {
   const struct vg_size_function law = { .at = case_size_at, .user = &b->size };
@@ -180,7 +181,7 @@ static inline void case_fill(struct case_builder *b, uint32_t patch)
   b->n_edge = 0;
 }
 
-/* Corners of a box: bit k of the index says which side along axis k. */
+/* Corners of a box: bit k of the index selects the side along axis k. */
 static inline void case_corners(struct case_builder *b, const double lo[3],
                                 const double hi[3], uint32_t v[8])
 {
@@ -200,7 +201,7 @@ static inline void case_box_loop(struct case_builder *b, const uint32_t v[8],
   case_loop(b, 4, loop, is_body ? side % 2 == 0 : side % 2);
 }
 
-/* A box, its fluid inside, or outside of a body. */
+/* A box with the fluid inside, or a body with the fluid outside. */
 static inline void case_box(struct case_builder *b, const double lo[3],
                             const double hi[3], const uint32_t patch[6],
                             int is_body)
@@ -253,10 +254,10 @@ static inline void case_extrude(struct case_builder *b, size_t n,
   }
 }
 
-/* A disc of n rings, ring i of 6 i points, put in space by `place` (from the
- * ring's share of the radius and its direction). Normals up, or flipped.
- * rim: the points of the last ring if there are any, else UINT32_MAX.
- * Returns the first point of the last ring. */
+/* A disc of n rings, ring i of 6 i points, mapped into space by `place` (from
+ * the relative radius and the direction). Normals up, or flipped. rim: the
+ * first point of an existing last ring, else UINT32_MAX. Returns the first
+ * point of the last ring. */
 static inline uint32_t case_disc(struct vg_mesh *m, int n, uint32_t patch,
                                  void (*place)(double r, double c, double s,
                                                const void *user, double x[3]),
@@ -295,7 +296,7 @@ static inline uint32_t case_disc(struct vg_mesh *m, int n, uint32_t patch,
 
 /* --- the cases ----------------------------------------------------------- */
 
-/* Two plates that close to a parallel slot of width `gap`: walls below and
+/* Two plates that converge to a parallel slot of width `gap`: walls below and
  * above, from x = 0 (1 apart) through x = 1.5 to x = 2.5. */
 static inline void case_slot(struct vg_mesh *m, double h, double gap)
 {
@@ -316,7 +317,7 @@ static inline void case_slot(struct vg_mesh *m, double h, double gap)
 }
 
 /* Fluid in a corner between two walls of length 1: the first along x, the
- * second at the angle of which cosine and sine are given. */
+ * second at the angle with the given cosine and sine. */
 static inline void case_corner(struct vg_mesh *m, double h, double cosine,
                                double sine)
 {
@@ -365,7 +366,7 @@ static inline void case_cubes(struct vg_mesh *m, double h, double gap)
   case_end(&b);
 }
 
-/* A flat plate, 1 by 1 by `thick`, edges of a right angle. */
+/* A flat plate, 1 by 1 by `thick`, with right-angled edges. */
 static inline void case_plate(struct vg_mesh *m, double h, double thick)
 {
   struct case_builder b = case_start_body(m, h, 0.5);
@@ -380,8 +381,8 @@ static inline void case_plate(struct vg_mesh *m, double h, double thick)
   case_end(&b);
 }
 
-/* A double wedge from one symmetry plane to another: two edges as sharp as
- * its thickness says, each ending in both planes. */
+/* A double wedge from one symmetry plane to another, with two edges whose angle
+ * follows from its thickness, each ending in both planes. */
 static inline void case_wedge(struct vg_mesh *m, double h, double thick)
 {
   struct case_builder b = case_start_body(m, h, 0.6);
@@ -476,9 +477,9 @@ static inline void case_on_post(double r, double c, double s, const void *user,
   x[2] = post->height;
 }
 
-/* A post on the symmetry plane z = 0: a cylinder whose axis leans by `lean`
- * (in x per z), so that it meets the plane at all angles between atan(1 /
- * lean) and 180 degrees less that: 0.577350 gives 60 to 120 degrees. */
+/* A post on the symmetry plane z = 0: a cylinder whose axis leans by `lean` (in
+ * x per z), so that it meets the plane at all angles between atan(1 / lean) and
+ * its supplement: 0.577350 gives 60 to 120 degrees. */
 static inline void case_post(struct vg_mesh *m, double h, double lean)
 {
   struct case_builder b = case_start_body(m, h, 0.8);
@@ -531,9 +532,9 @@ static inline int case_in_octants(const int at[3])
   return (y && z) || (!x && !y);
 }
 
-/* Walls fold so sharply at the origin that no direction sees all of them:
- * normals +y, -y, -x and +z meet. Fluid in four octants of a cube of side 2;
- * its outside is a farfield. */
+/* Walls fold so sharply at the origin that no direction is visible from all of
+ * them: normals +y, -y, -x and +z meet. Fluid in four octants of a cube of side
+ * 2; its outside is a farfield. */
 static inline void case_octants(struct vg_mesh *m)
 {
   const int n[3] = { CASE_OCTANT_SIDE, CASE_OCTANT_SIDE, CASE_OCTANT_SIDE };

@@ -1,5 +1,5 @@
-/* Scenes for the estimates of cells: a void with its sizes, its load, and the
- * mesh to compare with. */
+/* Scenes for the load estimates: a void with its sizes, its load, and the mesh
+ * to compare with. */
 #ifndef VG_TEST_LOAD_SUPPORT_H
 #define VG_TEST_LOAD_SUPPORT_H
 
@@ -18,7 +18,7 @@ struct scene {
   double volume;
 };
 
-/* The scene takes m over, which is empty then. */
+/* The scene takes m over and leaves it empty. */
 static inline void make_sized(struct scene *s, struct vg_mesh *m,
                               const struct vg_sizing_options *o,
                               const struct vg_source *source)
@@ -33,7 +33,7 @@ static inline void make_sized(struct scene *s, struct vg_mesh *m,
   assert_true(s->volume > 0);
 }
 
-/* even: the edge everywhere; 0: as the triangles have it. */
+/* even: the uniform edge length; 0: that of the triangles. */
 static inline void make_scene(struct scene *s, struct vg_mesh *m, double even)
 {
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
@@ -89,8 +89,8 @@ static inline double volume_of(const struct vg_load_octant *c)
   return 8 * pow((double)c->half, 3);
 }
 
-/* Volume by samples alone, before it was made to fit: the fit changes a part
- * by far less than a sample (1/8) is worth. */
+/* Volume from the samples alone, before the fit to the exact volume: the fit
+ * changes an octant's share by far less than one sample (1/8). */
 static inline double sampled(const struct vg_load *l)
 {
   double sum = 0;
@@ -109,9 +109,9 @@ static inline double fitted(const struct vg_load *l)
   return sum;
 }
 
-/* A branch on the wrong side would be worth many per cent, and a farfield has
- * few octants: what three standard deviations of samples are worth, where a
- * part is known to about 0.12. */
+/* An octant on the wrong side would cost several per cent, and a farfield has
+ * few octants. The tolerance is three standard deviations of the samples, where
+ * a share is known to about 0.12. */
 static inline void check_volume(const struct scene *s, const struct vg_load *l)
 {
   double cells = 0, crossed = 0;

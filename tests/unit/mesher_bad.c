@@ -1,4 +1,4 @@
-/* Plug-ins as they should not be, one for each BAD, for test_mesher.c. */
+/* Faulty plug-ins, one for each BAD, for test_mesher.c. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +24,7 @@ enum {
   WILD
 };
 
-/* A point in the middle joined to all triangles, and what is wrong with it. */
+/* A point in the middle joined to all triangles, with the fault added. */
 static int fill(const struct vg_mesher_front *f,
                 const struct vg_mesher_sizes *sizes,
                 struct vg_mesher_cells *out)

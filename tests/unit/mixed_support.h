@@ -1,13 +1,14 @@
-/* A closed mesh of all kinds of cells for tests: columns of three cubes. The
- * lowest is a hexahedron; the middle one five pyramids around its centre and,
- * on top, two tetrahedra; the highest two prisms. */
+/* A closed mesh of all kinds of cells for tests, made of columns of three
+ * cubes. The lowest cube is a hexahedron; the middle one consists of five
+ * pyramids around its centre and, on top, two tetrahedra; the highest of two
+ * prisms. */
 #ifndef VG_TESTS_MIXED_SUPPORT_H
 #define VG_TESTS_MIXED_SUPPORT_H
 
 #include "io_support.h"
 
-/* Outward faces by kind, written down apart from the library's; a triangle
- * repeats its last node. */
+/* Outward faces by kind, written independently of the library's tables; a
+ * triangle repeats its last node. */
 static const int mixed_width[4] = { 4, 5, 6, 8 };
 static const int mixed_n_face[4] = { 4, 5, 5, 6 };
 static const int mixed_face[4][6][4] = {
@@ -92,8 +93,8 @@ static inline size_t mixed_sides(const struct vg_mesh *m,
   return n;
 }
 
-/* Boundary faces, inward, from the sides that one cell has. Patches 1: below
- * (lowest points), 2: above, 3: the rest. */
+/* Boundary faces, inward: the sides that belong to one cell only. Patches 1:
+ * below (lowest points), 2: above, 3: all other faces. */
 static inline void mixed_close(struct vg_mesh *m, uint32_t below,
                                uint32_t above)
 {
@@ -129,7 +130,7 @@ static inline void mixed_close(struct vg_mesh *m, uint32_t below,
 static inline void mixed_fill_column(struct vg_mesh *m, const uint32_t v[16],
                                      uint32_t centre)
 {
-  static const int side[5][4] = { /* seen from the centre anticlockwise */
+  static const int side[5][4] = { /* counter-clockwise seen from the centre */
                                   { 0, 1, 2, 3 },
                                   { 0, 4, 5, 1 },
                                   { 1, 5, 6, 2 },
@@ -142,7 +143,7 @@ static inline void mixed_fill_column(struct vg_mesh *m, const uint32_t v[16],
   for (int f = 0; f < 5; f++) {
     uint32_t *p = m->pyr[m->n_pyr++];
 
-    /* Ring of slots 0 3 4 1, apex in slot 2. */
+    /* Slots 0 3 4 1 are the base, slot 2 is the apex. */
     p[0] = low[side[f][0]];
     p[3] = low[side[f][1]];
     p[4] = low[side[f][2]];
@@ -162,15 +163,16 @@ static inline void mixed_fill_column(struct vg_mesh *m, const uint32_t v[16],
   }
 }
 
-/* Of mixed_make: the floor is a quadrilateral, half the product of its
+/* Volume of mixed_make: the floor is a quadrilateral, half the product of its
  * diagonals; the height is 3. */
 static inline double mixed_volume(double nx, double ny)
 {
   return 3 * nx * ny * (1 + 0.025 * nx - 0.0025 * ny);
 }
 
-/* nx by ny columns, sheared so that no plane is a plane of axes but y = 0 and
- * the lower and upper ends. Patches 11 "low end" (wall), 12 "top", 13 "". */
+/* nx by ny columns, sheared so that no plane is normal to an axis except y = 0
+ * and the lower and upper ends. Patches 11 "low end" (wall), 12 "top", 13
+ * "". */
 static inline void mixed_make(struct vg_mesh *m, uint32_t nx, uint32_t ny)
 {
   uint32_t layer = (nx + 1) * (ny + 1), n = nx * ny, at = 4 * layer;
@@ -210,8 +212,8 @@ static inline void mixed_make(struct vg_mesh *m, uint32_t nx, uint32_t ny)
   m->patch[0].bc = 4;
 }
 
-/* Points and cells equal in every bit; as many faces, which may have been put
- * in the order of their patches. */
+/* Points and cells are equal in every bit. The number of faces is equal; their
+ * order may have been changed to that of the patches. */
 static inline void mixed_same(const struct vg_mesh *a, const struct vg_mesh *b)
 {
 #define SAME(array, n)                                                         \

@@ -1,4 +1,4 @@
-/* A surface on its way, for the tests of core/remesh's changes. */
+/* A surface being remeshed, for the tests of core/remesh's changes. */
 #ifndef VG_TESTS_REMESH_SCENE_H
 #define VG_TESTS_REMESH_SCENE_H
 
@@ -50,9 +50,9 @@ static inline double scene_drawn(uint32_t *state)
   return (double)(*state >> 8) / 16777216.;
 }
 
-/* Mates agree, lines cover their curves, Euler's number is 2, no two edges have
- * the same ends, and every sample of the reference is one of just one
- * triangle. */
+/* Mates are symmetric, feature edges cover their curves, the Euler
+ * characteristic is 2, no two edges have the same ends, and every sample of the
+ * reference surface is assigned to exactly one triangle. */
 static inline void scene_expect_whole(const struct scene *s)
 {
   const struct vg_tris *w = &s->w;
@@ -106,7 +106,7 @@ static inline void scene_expect_near(const struct scene *s, double tolerance)
   }
 }
 
-/* One change drawn at random; 1 when it was made. */
+/* Try one random change; returns 1 if it was made. */
 static inline int scene_change(struct vg_tris *w, uint32_t *state)
 {
   uint32_t h = (uint32_t)(scene_drawn(state) * 3 * (double)w->n_tri);

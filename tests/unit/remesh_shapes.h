@@ -32,7 +32,7 @@ static inline void shape_tri(struct vg_mesh *m, uint32_t a, uint32_t b,
   m->tri_patch[m->n_tri++] = patch;
 }
 
-/* Points at the same place become one, as readers of soups have it. */
+/* Merge points with equal coordinates, as readers of triangle soups do. */
 static inline void shape_weld(struct vg_mesh *m)
 {
   struct vg_surface_check_options o = { .repair = 1,
@@ -100,7 +100,7 @@ static inline void shape_ball(struct vg_mesh *m, const double r[3], uint32_t n)
   shape_weld(m);
 }
 
-/* Closed but for `open` edges, oriented, without intersections. */
+/* Closed except for `open` edges, oriented, without intersections. */
 static inline void shape_expect_sound(struct vg_mesh *m, size_t open)
 {
   struct vg_surface_check_options o = { .threads = 1, .external = 1 };

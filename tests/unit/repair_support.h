@@ -1,5 +1,5 @@
 /* A box of cells cut into slabs, which are the pieces of a partition as tasks
- * leave them; slab g is rank g % size's. Header only. */
+ * leave them. Slab g belongs to rank g % size. Header only. */
 #ifndef TESTS_UNIT_REPAIR_SUPPORT_H
 #define TESTS_UNIT_REPAIR_SUPPORT_H
 
@@ -15,7 +15,7 @@ enum { SLABS = 4 };
 
 struct scene {
   int n[3];
-  struct vg_tets t; /* all cells, as they are before the repair */
+  struct vg_tets t; /* all cells, as before the repair */
   struct vg_sizing *sizing;
   struct vg_partition p;
 };
@@ -51,7 +51,7 @@ static inline void scene_new(struct scene *s, int nx, int ny, int nz)
   if (vg_sizing_new(&o, 1, &box, NULL, &s->sizing, NULL) != VG_OK) abort();
 }
 
-/* Move a point, unless a cell around it would get worse than `least`. */
+/* Move a point, unless a cell around it would fall below quality `least`. */
 static inline int scene_move(struct scene *s, uint32_t p, const double by[3],
                              double least)
 {
@@ -75,7 +75,7 @@ static inline uint32_t scene_point(const struct scene *s, int i, int j, int k)
   return (uint32_t)(i + (s->n[0] + 1) * (j + (s->n[1] + 1) * k));
 }
 
-/* Points within, anywhere near where they were. */
+/* Move interior points at random, by at most `most`. */
 static inline void scene_shake(struct scene *s, double most, uint64_t seed)
 {
   for (uint32_t p = 0; p < s->t.n_point; p++) {
@@ -86,13 +86,13 @@ static inline void scene_shake(struct scene *s, double most, uint64_t seed)
   }
 }
 
-/* Slabs by the middle of the cells' first points in the regular box. */
+/* Slab of a cell: by its middle, in the regular box. */
 static inline int slab_of_cell(const struct scene *s, size_t c)
 {
   return (int)(c / 6) % s->n[0] * SLABS / s->n[0];
 }
 
-/* Points belong to the first slab that uses them. */
+/* A point belongs to the first slab that uses it. */
 static inline void own_points(const struct scene *s, int *owner,
                               uint32_t *place)
 {
@@ -174,7 +174,7 @@ static inline void scene_cut(struct scene *s, struct vg_comm *comm, int threads)
   free(place);
 }
 
-/* As if the slabs were zones: their points on interfaces may move. */
+/* Treat the slabs as separator zones: their points on interfaces may move. */
 static inline void scene_zones(struct scene *s)
 {
   for (size_t k = 0; k < s->p.n_piece; k++) s->p.piece[k].kind = VG_SPAN_TILE;
@@ -189,7 +189,7 @@ static inline void scene_end(struct scene *s)
   vg_tets_release(&s->t);
 }
 
-/* --- what there is ------------------------------------------------------- */
+/* --- results ------------------------------------------------------------- */
 
 struct print {
   char path[VG_PATH_MAX];
@@ -202,7 +202,7 @@ static inline int by_print(const void *a, const void *b)
                 ((const struct print *)b)->path);
 }
 
-/* Cells, points and their coordinates, by path; without names' serials. */
+/* Cells, points and their coordinates, by path; without the serials of ids. */
 static inline struct print print_of(const struct vg_piece *q)
 {
   struct print p = { .path = "" };
@@ -220,7 +220,7 @@ static inline struct print print_of(const struct vg_piece *q)
   return p;
 }
 
-/* Of all pieces of all ranks, the same for any number of them. */
+/* Digest of all pieces of all ranks, equal for any number of ranks. */
 static inline struct vg_digest scene_digest(const struct scene *s,
                                             struct vg_comm *comm)
 {

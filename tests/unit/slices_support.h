@@ -1,5 +1,5 @@
-/* A mesh in memory, cut at random into slices with numbers of their own, as
- * a server of core/mesh/slices.h; for the tests of what reads slices. Header
+/* A mesh in memory, cut at random into slices with local numbers, as a server
+ * of core/mesh/slices.h; for the tests of functions that read slices. Header
  * only. Slice g of the cut is served by rank g % size. */
 #ifndef TESTS_UNIT_SLICES_SUPPORT_H
 #define TESTS_UNIT_SLICES_SUPPORT_H
@@ -16,9 +16,9 @@ struct cut {
   const struct vg_mesh *mesh;
   struct vg_mesh boundary; /* borrows from mesh */
   size_t n;                /* slices of the whole cut */
-  size_t (*end)[4];        /* [n] behind the last point, tet, pyr, pri */
+  size_t (*end)[4];        /* [n] index past the last point, tet, pyr, pri */
   int rank, size;
-  size_t bad; /* slice that cannot be had; SIZE_MAX: none */
+  size_t bad; /* slice that cannot be read; SIZE_MAX: none */
   struct vg_slices s;
 };
 
@@ -80,7 +80,7 @@ static inline vg_status cut_get(const struct vg_slices *s, size_t i,
     k->cell[kind] = vg_alloc(n, width[kind] * sizeof **k->cell);
     out->cell_at[kind] = from[kind + 1];
     out->n_cell[kind] = n;
-    /* from behind, so that no order of the mesh survives */
+    /* backwards, so that the order of the mesh is not preserved */
     for (size_t j = n * width[kind]; j-- > 0;)
       k->cell[kind][j] = cut_local(c, k, out, node[j]);
     out->cell[kind] = k->cell[kind];
@@ -157,7 +157,7 @@ static inline void cut_make(struct cut *c, const struct vg_mesh *m, size_t n,
   c->s.n_layer_cell[VG_SLICE_PRI] = info->n_layer_pri;
 }
 
-/* Serve only what is dealt to this rank. */
+/* Serve only the slices of this rank. */
 static inline void cut_deal(struct cut *c, int rank, int size)
 {
   c->rank = rank;
@@ -171,8 +171,8 @@ static inline void cut_release(struct cut *c)
   memset(c, 0, sizeof *c);
 }
 
-/* A sphere with layers in a box, all tetrahedra or mixed. With layers of
- * prisms the boundary gets two quadrilaterals, which only writers will see. */
+/* A sphere with layers in a box, all tetrahedra or mixed. With layers of prisms
+ * the boundary gets two quadrilaterals, for the writers only. */
 static inline void cut_mesh(struct vg_mesh *out, struct vg_join_info *info,
                             enum vg_layer_cells cells)
 {
@@ -201,8 +201,8 @@ static inline void cut_mesh(struct vg_mesh *out, struct vg_join_info *info,
   for (uint32_t k = 0; k < 8; k++) out->quad[k / 4][k % 4] = 3 * k;
 }
 
-/* Formats of faces take only what closes: without these quadrilaterals.
- * Returns how many there were, to be put back. */
+/* Formats of faces require a closed boundary: remove these quadrilaterals.
+ * Returns their number, so that they can be restored. */
 static inline size_t cut_close(struct vg_mesh *m, const char *form)
 {
   size_t n = m->n_quad;

@@ -1,12 +1,12 @@
-/* The advancing partition on one rank: rules, records, refusals, and voids
- * that turn out larger than expected. */
+/* The advancing partition on one rank: rules, records, refusals, and voids that
+ * turn out larger than expected. */
 #define _GNU_SOURCE
 #include "advance_support.h"
 
 #include "base/child.h"
 #include "fill_support.h"
 
-/* --- without cuts it is the fill ----------------------------------------- */
+/* --- without cuts the result is that of the fill ------------------------- */
 
 static void as_filled(const struct scene *s, double leaf)
 {
@@ -45,7 +45,7 @@ static void uncut_is_the_fill(void **state)
   (void)state;
   scene_demo(&s, "box", 20000);
   as_filled(&s, 1e9);
-  as_filled(&s, 0); /* by levels, of which there are none */
+  as_filled(&s, 0); /* by number of bisections, which is 0 */
   scene_end(&s);
   scene_demo(&s, "sphere", 20000);
   as_filled(&s, 1e9);
@@ -88,7 +88,7 @@ static void several_generations(void **state)
   scene_end(&s);
 }
 
-/* Its surface alone asks for 290,000 cells. */
+/* Its surface alone requires 290,000 cells. */
 static void around_a_wing(void **state)
 {
   struct scene s;
@@ -111,7 +111,7 @@ static void real_surface(void **state)
 
 /* --- rules --------------------------------------------------------------- */
 
-/* Leaves with more cells than fragments have. */
+/* Leaves with more cells than small components have. */
 static size_t large_leaves(const struct vg_partition *p, double least)
 {
   uint64_t *size;
@@ -123,8 +123,9 @@ static size_t large_leaves(const struct vg_partition *p, double least)
   return large;
 }
 
-/* Even spacing: bisections halve the cells, and zones take some of them. So
- * leaves are alike; a fragment is far below a quarter of the mean. */
+/* Uniform spacing: bisections halve the cells, and separator zones take some of
+ * them. Therefore leaves are similar; a small component is far below a quarter
+ * of the mean. */
 static void levels_double_the_leaves(void **state)
 {
   struct scene s;
@@ -152,7 +153,7 @@ static void levels_double_the_leaves(void **state)
   scene_end(&s);
 }
 
-/* Extent of each large leaf's cells along an axis, the least of all. */
+/* The least extent, over all large leaves, of a leaf's cells along an axis. */
 static double least_extent(const struct vg_partition *p, int axis, size_t least)
 {
   const struct vg_slices *s = vg_partition_slices(p);
@@ -174,8 +175,9 @@ static double least_extent(const struct vg_partition *p, int axis, size_t least)
   return narrow;
 }
 
-/* The box is 1 wide. Cut across one axis only, leaves reach from wall to wall
- * along both others; two levels leave about a quarter along the first. */
+/* The box is 1 wide. If it is cut across one axis only, leaves reach from wall
+ * to wall along the two other axes; two bisections leave about a quarter along
+ * the first. */
 static void directions_are_respected(void **state)
 {
   struct scene s;
@@ -237,7 +239,7 @@ static void all_is_found_again(void **state)
   assert_int_equal(again.n_found, n_task(&again));
   assert_int_equal(again.n_zone_cell, r.n_zone_cell);
   assert_int_equal(again.n_blocked, r.n_blocked);
-  /* the same folder, another size field or other options */
+  /* the same folder, another sizing field or other options */
   o.job = job_digest(2);
   run_of(NULL, &s, &o, 0, &again);
   assert_int_equal(again.n_found, 0);
@@ -249,8 +251,8 @@ static void all_is_found_again(void **state)
   scene_end(&s);
 }
 
-/* Leaves that outgrow their estimate are cut again, in any order; of their
- * first attempts nothing is kept. */
+/* Leaves that exceed their estimate are cut again, in any order; nothing is
+ * kept of their first attempts. */
 static void leaves_that_outgrow(void **state)
 {
   const char *dir = VG_TMP_DIR "/advance_outgrown";
@@ -293,7 +295,7 @@ static void too_many_cells(void **state)
 
   (void)state;
   scene_demo(&s, "box", 20000);
-  o.max_cells = 1000; /* seen before anything is made */
+  o.max_cells = 1000; /* detected before anything is made */
   assert_int_equal(grow(NULL, &s, &o, &p, &r, &err), VG_ERR_UNSUPPORTED);
   assert_null(p);
   assert_int_equal(r.n_leaf + r.n_node, 0);
@@ -301,7 +303,7 @@ static void too_many_cells(void **state)
   assert_non_null(strstr(err.text, "coarser"));
   o.max_cells = 0;
   d = run_of(NULL, &s, &o, 0, &r);
-  o.max_cells = d.n_cell - 1; /* seen at the end */
+  o.max_cells = d.n_cell - 1; /* detected at the end */
   assert_int_equal(grow(NULL, &s, &o, &p, &r, &err), VG_ERR_UNSUPPORTED);
   assert_null(p);
   o.max_cells = d.n_cell;
@@ -315,7 +317,7 @@ static void too_many_cells(void **state)
   scene_end(&s);
 }
 
-/* Parts are made larger until there is nothing beside them. */
+/* Failed subdomains are extended until they have no neighbours. */
 static void refused(const struct scene *s, double leaf, int cuts)
 {
   for (uint64_t shuffle = 0; shuffle < 2; shuffle++) {

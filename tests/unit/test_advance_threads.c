@@ -1,5 +1,5 @@
-/* Voids cut and filled in threads: the same mesh for any number and order.
- * Meant to be run under the thread sanitizer too. */
+/* Voids cut and filled in threads: the same mesh for any number of threads and
+ * any order. Also run under the thread sanitizer. */
 #define _GNU_SOURCE
 #include "advance_support.h"
 
@@ -39,9 +39,9 @@ static void any_number_in_any_order(void **state)
   }
 }
 
-/* Threads that keep and find records at once, and a stop among them: the run
- * is so long that the question whether to stop, which is asked every 20 ms,
- * comes in the midst of it. */
+/* Threads that keep and find records concurrently, and a stop among them. The
+ * run is long enough for the stop request, which is polled every 20 ms, to
+ * arrive in the middle of it. */
 static void stopped_and_resumed(void **state)
 {
   const char *dir = VG_TMP_DIR "/advance_threads_run";
@@ -77,8 +77,8 @@ static void stopped_and_resumed(void **state)
   scene_end(&s);
 }
 
-/* The thread sanitizer's allocator does not survive a fork among threads, so
- * TetGen's children come from a server, as in the program. */
+/* The thread sanitizer's allocator does not survive a fork while threads run,
+ * so TetGen's child processes come from a server, as in the program. */
 int main(void)
 {
   const struct CMUnitTest tests[] = {

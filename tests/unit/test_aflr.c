@@ -113,7 +113,8 @@ static void reads_columns_quads_and_short_lines(void **state)
   assert_true(a.thickness[0] == 0.25 && a.thickness[4] == 0);
   assert_int_equal(a.patch[0].flag, VG_AFLR_NONE);
   assert_int_equal(a.patch[0].is_viscous, 0);
-  /* Patch 9 by its quadrilateral; points 1 to 4 differ in spacing. */
+  /* Patch 9 is defined by its quadrilateral; points 1 to 4 differ in
+   * spacing. */
   assert_int_equal(a.patch[1].flag, -1);
   assert_true(a.patch[1].spacing == 0);
   assert_true(a.patch[1].thickness == 0.25);
@@ -127,7 +128,7 @@ static void reads_columns_quads_and_short_lines(void **state)
   vg_aflr_release(&a);
 }
 
-/* Most faces decide, the lower flag at par. */
+/* The majority of faces decides; if equal, the lower flag. */
 static void faces_vote_for_their_patch(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -218,7 +219,7 @@ static void tags_of_every_age(void **state)
   assert_string_equal(a.patch[3].name, "FarField");
   assert_int_equal(a.patch[4].is_viscous, 1);
   assert_true(a.patch[4].spacing == 2e-5 && a.patch[4].thickness == 0.5);
-  /* `trans` stands behind `visc`, so it counts. */
+  /* `trans` comes after `visc`, so it overrides it. */
   assert_int_equal(a.patch[5].is_viscous, 0);
   accept_settings(vg_aflr_tags_parse, "# nothing\n", &a);
   assert_int_equal(a.n, 0);
@@ -335,7 +336,8 @@ static void settings_are_applied(void **state)
   vg_aflr_release(&a);
 }
 
-/* As an input surface, by its name; a .mapbc beside it overrules the flags. */
+/* As an input surface, found by its name; a .mapbc in the same folder overrides
+ * the flags. */
 static void is_a_format(void **state)
 {
   const char *path = io_temp("aflr_t1.surf"), *bc = io_temp("aflr_t1.mapbc");

@@ -1,4 +1,4 @@
-/* Trees of boxes: every answer is that of a loop over all boxes. */
+/* Trees of boxes: every answer equals that of a loop over all boxes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,7 +11,7 @@
 #include "core/search/box_pairs.h"
 #include "core/search/box_tree.h"
 
-/* A grid of 1/8 makes ties of distance and boxes that touch in a plane. */
+/* A grid of 1/8 gives equal distances and boxes that touch in a plane. */
 enum { GRID = 8, MOST = 700, WORKERS = 3 };
 
 static double draw(uint64_t *seed)
@@ -53,7 +53,8 @@ static struct vg_box_tree build(size_t n, const struct vg_box *box,
   return t;
 }
 
-/* Every item is in one leaf, every node's box is the least about its items. */
+/* Every item is in one leaf, and every node's box is the smallest that encloses
+ * its items. */
 static void expect_sound(const struct vg_box_tree *t, const struct vg_box *box)
 {
   uint8_t *seen = vg_calloc(t->n, 1);
@@ -110,7 +111,8 @@ static void expect_touched(const struct vg_box_tree *t,
   assert_int_equal(found.n, found.most);
 }
 
-/* The nearest box; of those as near that of the lowest number. */
+/* The nearest box; if several are equally near, the one with the lowest
+ * number. */
 struct nearest {
   const struct vg_box_tree *t;
   const double *x;
@@ -162,7 +164,7 @@ static void expect_nearest(const struct vg_box_tree *t,
   assert_int_equal(f.item, want);
 }
 
-/* How often each pair was visited, by all threads. */
+/* Number of visits of each pair, by all threads. */
 struct table {
   size_t n;
   uint8_t *seen; /* [n n] */
@@ -295,8 +297,9 @@ static double leaf_sides(const struct vg_box_tree *t)
   return sum;
 }
 
-/* One box at 1e12 puts all others into one cell of the curve: without a curve
- * of their own their leaves were as large as the space. */
+/* One box at 1e12 moves all others into a single cell of the Hilbert curve. If
+ * they were not ordered by a second curve, their leaves would be as large as
+ * the space. */
 static void one_box_far_away_does_not_spoil_the_order(void **state)
 {
   struct vg_box box[MOST];
@@ -320,12 +323,12 @@ static void one_box_far_away_does_not_spoil_the_order(void **state)
     sides[far] = leaf_sides(&t);
     vg_box_tree_release(&t);
   }
-  /* the leaf with the far box is left out: at most 2 % of 175 leaves */
+  /* except for the leaf with the far box: at most 2 % of 175 leaves */
   assert_true(fabs(sides[1] - sides[0]) < .02 * sides[0]);
   assert_true(sides[2] > 2 * sides[0]);
 }
 
-/* Nodes that have more than a box. */
+/* Nodes with data in addition to the box. */
 struct counted {
   struct vg_box box;
   size_t n;

@@ -1,4 +1,5 @@
-/* CAD through the child that Open CASCADE runs in; files: ../cad. */
+/* CAD, read through the child process in which Open CASCADE runs; files:
+ * ../cad. */
 #include "io_support.h"
 
 #include <math.h>
@@ -55,7 +56,7 @@ static void says(const struct notes *n, const char *text)
   if (!strstr(n->text, text)) fail_msg("'%s' lacks '%s'", n->text, text);
 }
 
-/* Closed, without defects, of so many shells. */
+/* Closed, without defects, with this number of shells. */
 static void is_sound(struct vg_mesh *m, size_t shells)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
@@ -67,7 +68,7 @@ static void is_sound(struct vg_mesh *m, size_t shells)
   if (vg_surface_check(m, &o, &r, &err)) fail_msg("%s", err.text);
   assert_int_equal(r.n_defect, 0);
   assert_int_equal(r.n_shell, shells);
-  assert_int_equal(r.n_flipped, 0);      /* out of the solid at once */
+  assert_int_equal(r.n_flipped, 0); /* outward normals from the solid at once */
   assert_int_equal(m->n_point, n_point); /* shared by topology already */
   vg_surface_report_release(&r);
 }
@@ -210,7 +211,7 @@ static void loose_faces_are_sewn(void **state)
   vg_mesh_release(&m);
 }
 
-/* A cylinder whose face is bounded by curves in space alone. */
+/* A cylinder whose face is bounded by curves in space only. */
 static void missing_curves_of_parameters_are_made(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -250,7 +251,7 @@ static struct vg_cad *parse_file(const char *path, enum vg_cad_kind kind,
                                  const struct vg_cad_options *o,
                                  struct vg_cad_surface *s);
 
-/* One closed shell of the union's volume. */
+/* One closed shell with the volume of the union. */
 static void solids_that_touch_are_united(void **state)
 {
   static const struct {
@@ -282,7 +283,7 @@ static void solids_that_touch_are_united(void **state)
   }
 }
 
-/* Points go to all pieces of a face that the union divided. */
+/* Points are projected to all pieces of a face that the union divided. */
 static void pieces_of_a_face_have_its_number(void **state)
 {
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
@@ -316,7 +317,7 @@ static void pieces_of_a_face_have_its_number(void **state)
   vg_cad_close(c);
 }
 
-/* The larger one may be the fluid: the inner one must not vanish. */
+/* The larger solid may be the fluid: the inner one must not disappear. */
 static void a_solid_that_contains_another_stays(void **state)
 {
   static const struct {
@@ -351,9 +352,9 @@ static void a_rocket_of_ten_solids_is_one_shell(void **state)
   vg_mesh_release(&m);
 }
 
-/* --- faces of no solid --------------------------------------------------- */
+/* --- faces without a solid ----------------------------------------------- */
 
-/* Six faces of a box with gaps of 2e-5, three of them turned. */
+/* Six faces of a box with gaps of 2e-5, three of them reversed. */
 static void wide_gaps_are_sewn_and_faces_turned(void **state)
 {
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
@@ -415,7 +416,8 @@ static void crossing_bodies_are_for_the_check(void **state)
   vg_mesh_release(&m);
 }
 
-/* A failure of this kind with this phrase and the file's name. */
+/* A failure with this code, whose message has this phrase and the file's
+ * name. */
 static void refuses(struct vg_cad *c, const void *data, size_t size,
                     enum vg_cad_kind kind, vg_status code, const char *phrase)
 {
@@ -464,7 +466,8 @@ static void what_is_no_cad_is_refused(void **state)
                    VG_ERR_IO);
 }
 
-/* Text of other programs behind a BREP, as Engineering Sketch Pad writes it. */
+/* Text of other programs after the BREP, as Engineering Sketch Pad writes
+ * it. */
 static void text_behind_a_brep_is_no_damage(void **state)
 {
   static const char tail[] = "\n##EGADS HEADER FILE-REV 1 ##\n1 1 8 12 6 1\n"
@@ -490,7 +493,7 @@ static void text_behind_a_brep_is_no_damage(void **state)
   assert_int_equal(s.mesh.n_tri, 12);
   vg_cad_surface_release(&s);
   vg_input_release(&all);
-  /* Cut within the BREP, and the text follows: truncated. */
+  /* Truncated within the BREP, with the text after it. */
   memcpy(text + in.size - 300, tail, sizeof tail);
   refuses(c, text, in.size - 300 + sizeof tail - 1, VG_CAD_BREP, VG_ERR_FORMAT,
           "truncated");
@@ -536,7 +539,8 @@ static void what_is_cut_short_is_refused(void **state)
   vg_cad_close(c);
 }
 
-/* Whatever Open CASCADE makes of damage: an answer, and a next one. */
+/* Whatever Open CASCADE makes of damaged files, there is an answer, and an
+ * answer to the next file. */
 static void damage_gets_an_answer(void **state)
 {
   static const char *const path[] = { FILE_OF("box.step"), FILE_OF("loose.igs"),
@@ -602,7 +606,7 @@ static void patience_ends(void **state)
   assert_null(m.point);
 }
 
-/* --- the same for everybody ---------------------------------------------- */
+/* --- reproducibility ----------------------------------------------------- */
 
 static void bytes_are_the_same(void **state)
 {
@@ -664,7 +668,8 @@ static void same_surface(const struct vg_cad_surface *a,
   assert_int_equal(a->is_solid, b->is_solid);
 }
 
-/* Coarse, fine and coarse: what a fresh child makes with these options. */
+/* Coarse, fine and coarse again: the result equals that of a fresh child with
+ * these options. */
 static void again_gives_what_parsing_gives(void **state)
 {
   const double angle[] = { 30, 8, 30 };
@@ -737,11 +742,12 @@ static void short_edges_collapse(void **state)
   with = count_short(&s.mesh, 2);
   is_sound(&s.mesh, 1);
   if (!(without > 100 && with * 10 < without))
-    fail_msg("%zu edges shorter than 2 mm, %zu with a bound", without, with);
+    fail_msg("%zu edges shorter than 2 mm, %zu with a least edge length",
+             without, with);
   vg_cad_surface_release(&s);
 }
 
-/* No triangle of the wing lies in the cap at its root, face 4. */
+/* No triangle of the wing is in the cap at its root, face 4. */
 static void rims_are_left(void **state)
 {
   struct vg_surface_check_options check = VG_SURFACE_CHECK_OPTIONS_INIT;
@@ -766,7 +772,7 @@ static void rims_are_left(void **state)
   vg_cad_surface_release(&s);
 }
 
-/* Exact volume of a wing with splines; its triangles come near. */
+/* Exact volume of a wing with splines; that of its triangles is close. */
 static void volume_is_exact(void **state)
 {
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
@@ -815,8 +821,8 @@ static void points_go_to_the_faces_of_a_box(void **state)
   vg_cad_close(c);
 }
 
-/* The middle of a triangle's edge lies within chord and angle of the face; on
- * the face it stays where it is. */
+/* The middle of a triangle's edge is within chord and angle of the face; a
+ * point on the face does not move. */
 static void points_go_to_the_faces_of_a_wing(void **state)
 {
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
@@ -841,7 +847,7 @@ static void points_go_to_the_faces_of_a_wing(void **state)
   vg_cad_close(c);
 }
 
-/* With a triangle to begin with: the same places. */
+/* With a starting triangle: the same points. */
 static void points_go_to_faces_by_triangles(void **state)
 {
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
@@ -909,7 +915,7 @@ static void points_go_to_curves(void **state)
   vg_cad_close(c);
 }
 
-/* --- real ones ----------------------------------------------------------- */
+/* --- real geometry ------------------------------------------------------- */
 
 static void the_doubled_face_of_dlr_f6(void **state)
 {

@@ -1,5 +1,5 @@
-/* TetGen's children come from a server: the same answers as in place, from
- * several threads at once, whatever happens to the server. */
+/* TetGen's child processes come from a server: the answers equal those in
+ * place, from several threads at once, and even if the server is killed. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <errno.h>
@@ -31,8 +31,8 @@ struct batch {
   double x[N_JOB][N_MAX][3];
 };
 
-/* Points in a cube; one triangle, in the second job another that crosses it,
- * which TetGen does not survive. */
+/* Points in a cube and one triangle; the second job has another triangle that
+ * intersects it, which makes TetGen fail. */
 static struct batch *batch_new(uint64_t seed, size_t n)
 {
   static const double at[6][3] = { { 0, 0, 0 },     { 1, 0, 0 },
@@ -81,7 +81,7 @@ static int batches_differ(const struct batch *a, const struct batch *b)
   return 0;
 }
 
-/* In place when no server is there, which callers see to. */
+/* In place if there is no server, which the callers ensure. */
 static struct batch *answered(uint64_t seed, size_t n)
 {
   struct batch *b = batch_new(seed, n);
@@ -207,8 +207,8 @@ static void *strike(void *argument)
   return NULL;
 }
 
-/* Killed before a call, between its jobs, and in the midst of one (a batch of
- * this size takes about 100 ms). */
+/* Killed before a call, between its jobs, and in the middle of a job (a batch
+ * of this size takes about 100 ms). */
 static void a_server_killed_at_any_time(void **state)
 {
   struct batch *a = answered(7, N_MAX), *b;
@@ -243,9 +243,9 @@ static void signals_are_left_to_the_parent(void **state)
 
   (void)state;
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
-  batch_free(answered(1, 50)); /* so it is past its beginning */
+  batch_free(answered(1, 50)); /* so it has started */
   pid = child_of(getpid());
-  assert_true(pid > 0); /* kill would take 0 for our group */
+  assert_true(pid > 0); /* kill would take 0 for our process group */
   for (size_t k = 0; k < sizeof number / sizeof *number; k++)
     assert_int_equal(kill(pid, number[k]), 0);
   batch_free(answered(1, 50));
@@ -254,7 +254,7 @@ static void signals_are_left_to_the_parent(void **state)
   no_child_is_left();
 }
 
-/* A reader of our output must not wait for the server's end. */
+/* A process that reads our output must not wait for the server's end. */
 static void files_are_not_held(void **state)
 {
   int ends[2];
@@ -270,7 +270,7 @@ static void files_are_not_held(void **state)
   vg_child_server_stop();
 }
 
-/* The parent is killed; its server becomes ours and ends by itself. */
+/* The parent is killed; its server is reparented to us and ends by itself. */
 static void it_ends_with_its_parent(void **state)
 {
   int ends[2], status;
@@ -280,7 +280,7 @@ static void it_ends_with_its_parent(void **state)
   assert_int_equal(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   assert_int_equal(pipe(ends), 0);
   pid = fork();
-  assert_true(pid >= 0); /* kill would take -1 for everybody */
+  assert_true(pid >= 0); /* kill would take -1 for all processes */
   if (pid == 0) {
     vg_child_server_start(NULL);
     server = child_of(getpid());

@@ -1,4 +1,4 @@
-/* core/delaunay/cell_signs.h beside the predicates that it stands for. */
+/* core/delaunay/cell_signs.h compared with the predicates that it replaces. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -24,7 +24,7 @@ static unsigned sides(const double (*x)[3], const uint32_t v[4])
     uint32_t w[4] = { v[0], v[1], v[2], v[3] };
     double o;
 
-    w[i] = 4; /* the cell with point 4 in place of vertex i */
+    w[i] = 4; /* the cell with vertex i replaced by point 4 */
     o = vg_orient3d(x[w[0]], x[w[1]], x[w[2]], x[w[3]]);
     if (o > 0) signs |= VG_SIDE_IN << i;
     if (o >= 0) signs |= VG_SIDE_SEES << i;
@@ -32,8 +32,8 @@ static unsigned sides(const double (*x)[3], const uint32_t v[4])
   return signs;
 }
 
-/* Points on a grid of n lines, 0: anywhere, `far` from the origin and pressed
- * flat. */
+/* Points on a grid of n lines, 0: anywhere; `far` from the origin, and
+ * flattened by the factor `flat`. */
 static void compare(int n, double far, double flat)
 {
   uint64_t seed = 7;

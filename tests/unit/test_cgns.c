@@ -1,5 +1,5 @@
-/* CGNS: what is written comes back, trees of other programs are read, and
- * those that are none are refused. */
+/* CGNS: written meshes are read back, trees of other programs are read, and
+ * invalid ones are refused. */
 #include "mixed_support.h"
 
 #include "io/cgns/cgns.h"
@@ -50,7 +50,7 @@ static void all_kinds_come_back(void **state)
 
 static void every_condition_comes_back(void **state)
 {
-  static const int32_t code[][3] = { /* given; comes back: USM3D, FUN3D */
+  static const int32_t code[][3] = { /* given; read back: USM3D, FUN3D */
                                      { 4, 4, 4000 },
                                      { 44, 4, 4000 },
                                      { 5, 5, 3000 },
@@ -71,7 +71,7 @@ static void every_condition_comes_back(void **state)
   vg_mesh_release(&back);
 }
 
-/* No times, no names of places are in it. */
+/* The file contains neither times nor paths. */
 static void bytes_follow_from_the_mesh(void **state)
 {
   const char *path[2] = { io_temp("once.cgns"), io_temp("other_name.cgns") };
@@ -156,7 +156,7 @@ static void start(struct tree *t, int32_t dimension)
   t->base = add(t, t->root, "wing", "CGNSBase_t", "I4", 1, 1, 2, cell);
 }
 
-/* A zone with points of T1: those in `which`, [n]. */
+/* A zone with the points of T1 listed in `which`, [n]. */
 static void zone(struct tree *t, const char *name, int n, const int *which)
 {
   static const char *const axis[3] = { "CoordinateX", "CoordinateY",
@@ -208,7 +208,7 @@ static int64_t conditions(struct tree *t)
   return add(t, t->zone, "ZoneBC", "ZoneBC_t", "MT", 0, 1, 0, NULL);
 }
 
-/* Closes it and reads it. */
+/* Closes the tree and reads it. */
 static vg_status read_tree(struct tree *t, struct vg_mesh *m,
                            struct vg_error *err)
 {
@@ -247,8 +247,8 @@ static const int all[4] = { 0, 1, 2, 3 };
 static const int32_t t1_mixed[] = { 3, 1, 2, 5, 1, 2, 3, 5, 1, 4,
                                     2, 5, 1, 3, 4, 5, 2, 4, 3 };
 
-/* Bars and faces in one section, with conditions by family, by their own, by
- * range and by list; the last face has none. */
+/* Bars and faces in one section, with conditions by family, directly, by range
+ * and by list; the last face has none. */
 static void conditions_make_patches(void **state)
 {
   static const int32_t second[2] = { 2, 2 }, list[2] = { 3, 4 };
@@ -285,8 +285,8 @@ static void conditions_make_patches(void **state)
   vg_mesh_release(&t1);
 }
 
-/* Zones of one face each, as programs for surfaces write them: points in
- * common are one again, patches are zones, or their families. */
+/* Zones of one face each, as surface programs write them: shared points are
+ * merged, and patches are the zones or their families. */
 static void zones_are_joined(void **state)
 {
   static const int part[2][3] = { { 0, 1, 2 }, { 3, 1, 0 } };
@@ -374,7 +374,7 @@ static void refuses_trees(void **state)
   one_face(&t, 3, 5, 1, 3, tri);
   condition(&t, conditions(&t), "points", "BCWall", NULL, "PointList", 3, tri);
   refuse(&t, VG_ERR_UNSUPPORTED, "FaceCenter");
-  /* of a surface such are its borders */
+  /* the boundaries of a surface are such conditions */
   one_face(&t, 2, 5, 1, 3, tri);
   condition(&t, conditions(&t), "rim", "BCWall", NULL, "PointList", 3, tri);
   accept(&t, &m);
@@ -385,7 +385,7 @@ static void refuses_trees(void **state)
 /* --- structured zones --- */
 
 /* Points i j k of a unit cube of n[] points, moved by `at` along x, and the
- * indices permuted so that the first runs along `axis`; mirrored: they are
+ * indices permuted so that the first runs along `axis`. If mirrored, they are
  * left-handed. */
 struct lattice {
   int n[3], axis, is_mirrored;
@@ -435,7 +435,8 @@ static void block(struct tree *t, const char *name, int d,
   free(x);
 }
 
-/* Six times the volume that the triangles enclose, > 0 where they look out. */
+/* Six times the volume that the triangles enclose, > 0 if their normals point
+ * out. */
 static double volume6(const struct vg_mesh *m)
 {
   double sum = 0;
@@ -451,7 +452,7 @@ static double volume6(const struct vg_mesh *m)
   return sum;
 }
 
-/* Two zones of a surface share a side: the points of the side are joined, and
+/* Two zones of a surface share a side: the points of the side are merged, and
  * each zone or its family becomes a patch. */
 static void surface_blocks_are_joined(void **state)
 {
@@ -484,8 +485,8 @@ static void surface_blocks_are_joined(void **state)
   vg_mesh_release(&m);
 }
 
-/* In a base of cells a zone with a single layer of points is a surface, the
- * layer along any index. */
+/* In a base of cells a zone with a single layer of points, along any index, is
+ * a surface. */
 static void a_layer_of_points_is_a_surface(void **state)
 {
   static const int32_t whole[6] = { 1, 1, 1, 1, 1, 1 };
@@ -511,7 +512,7 @@ static void a_layer_of_points_is_a_surface(void **state)
     assert_string_equal(m.patch[m.tri_patch[2]].name, "skin");
     vg_mesh_release(&m);
   }
-  /* faces count cells: the first one */
+  /* the range counts cells of the face: the first one */
   start(&t, 3);
   block(&t, "skin", 3, &(const struct lattice){ { 3, 3, 1 }, 0, 0, 0 });
   condition(&t, conditions(&t), "corner", "BCWall", "KFaceCenter", "PointRange",
@@ -554,8 +555,9 @@ static void collapsed_faces_are_dropped(void **state)
   vg_mesh_release(&m);
 }
 
-/* A block with cells gives the faces of its conditions, which look into it
- * whatever way its indices run; points that no face uses are left out. */
+/* A block with cells gives the faces of its conditions. Their normals point
+ * into the block for any direction of its indices; points that no face uses are
+ * left out. */
 static void conditions_of_a_block_make_its_boundary(void **state)
 {
   static const int32_t range[6][6] = {
@@ -591,10 +593,10 @@ static void conditions_of_a_block_make_its_boundary(void **state)
     assert_int_equal(m.n_patch, 6);
     assert_int_equal(m.patch[0].bc, 4);
     assert_int_equal(m.n_tet + m.n_hex, 0);
-    /* all but the 1 x 2 x 3 points within */
+    /* all but the 1 x 2 x 3 interior points */
     assert_int_equal(m.n_point, 60 - 6);
     assert_int_equal(m.n_tri, 4 * (2 * 3 + 3 * 4 + 4 * 2));
-    /* a cube of volume 1 seen from within; its coordinates are rounded */
+    /* a cube of volume 1 seen from inside; its coordinates are rounded */
     assert_true(volume6(&m) < -6 + 1e-12 && volume6(&m) > -6 - 1e-12);
     vg_mesh_release(&m);
   }
@@ -702,8 +704,8 @@ static void refuses_what_is_no_cgns(void **state)
             "cannot open it");
 }
 
-/* A file cut anywhere, or with bytes changed, is refused in words or read as a
- * mesh that holds together, whatever the library makes of it. */
+/* A file truncated anywhere, or with modified bytes, is refused with a message
+ * or read as a consistent mesh, whatever the HDF5 library makes of it. */
 static void no_damage_is_swallowed(void **state)
 {
   const char *path = io_temp("damaged.cgns");

@@ -1,4 +1,4 @@
-/* Checks of stages: what counts as a defect, and how a program ends that has
+/* Checks of stages: which states are defects, and how a program ends that has
  * one. */
 #include <setjmp.h>
 #include <signal.h>
@@ -16,7 +16,7 @@
 #include "core/mesh/mesh_defects.h"
 #include "tets_support.h"
 
-/* Run `body` in a child; its signal, and into text [n] what it wrote to the
+/* Run `body` in a child process. Returns its signal; text [n] receives its
  * standard error. */
 static int signal_of(void (*body)(void), char *text, size_t n)
 {
@@ -123,7 +123,7 @@ static void open_edges_are_counted(void **state)
   assert_int_equal(vg_mesh_open_edges(&m), 3);
   m.n_tri = 4;
   tri[3][0] = 0;
-  tri[3][1] = 2; /* turned over */
+  tri[3][1] = 2; /* reversed */
   assert_int_equal(vg_mesh_open_edges(&m), 3);
   m = (struct vg_mesh){ .n_point = 5,
                         .n_tri = 4,

@@ -1,4 +1,4 @@
-/* Layers clear of each other and of what stands in front. */
+/* Clearance of layers from each other and from the opposite surface. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -32,8 +32,8 @@ static size_t tops(const struct shape *s, const uint8_t *is_slide,
 static const double ex[3] = { 1, 0, 0 }, ey[3] = { 0, 1, 0 };
 static const double zero[3] = { 0, 0, 0 };
 
-/* Two plates that face each other, `gap` apart, n x n squares each; the upper
- * one does not repeat the lower one's squares. */
+/* Two plates that face each other, `gap` apart, n x n squares each; the squares
+ * of the two plates do not coincide. */
 static struct shape *two_plates(int n, double gap, double thickness)
 {
   struct shape *s = shape_new(thickness);
@@ -55,11 +55,12 @@ static void tops_between_plates(void **state)
   (void)state;
   s->is_wall[1] = 1;
   grow(s, 1);
-  /* 1/16 from each side leaves 1/8; 2/16 touch exactly; 3/16 cross not, but
-   * have passed through: only the middle is a contact of tops. */
+  /* 1/16 from each side leaves 1/8; 2/16 touch exactly; 3/16 do not intersect,
+   * but have passed through each other: only the middle one is a contact of
+   * tops. */
   assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 2;
-  /* All but what lies over no square of the other plate. */
+  /* All columns above a square of the other plate. */
   assert_true(tops(s, NULL, NULL, 1, bad) > s->c.n_column * 9 / 10);
   shape_free(s);
 }
@@ -78,14 +79,14 @@ static void one_column_through_the_other_front(void **state)
   tops(s, NULL, NULL, 1, bad);
   assert_int_equal(bad[i], 1);
   assert_int_equal(bad[s->of_point[0]], 0);
-  /* Through the bare wall as well, whose own top it then is. */
+  /* Through the bare wall as well, which is then its own top. */
   s->c.column[i].n = 2;
   for (size_t k = 169; k < s->c.n_column; k++) s->c.column[k].n = 0;
   assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
   s->c.column[i].n = 4;
   assert_true(tops(s, NULL, NULL, 1, bad) > 0);
   assert_int_equal(bad[i], 1);
-  /* A column without a level cannot be lowered and is not named. */
+  /* A column without a level cannot be lowered and is not reported. */
   for (size_t k = 169; k < s->c.n_column; k++) assert_int_equal(bad[k], 0);
   shape_free(s);
 }
@@ -101,7 +102,7 @@ static void inert_patch_is_in_the_way(void **state)
   assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 4;
   assert_true(tops(s, NULL, NULL, 1, bad) > 60);
-  /* So is a slide patch for those that do not slide in it ... */
+  /* A slide patch is an obstacle for columns that do not slide in it ... */
   assert_true(tops(s, is_slide, NULL, 1, bad) > 60);
   /* ... and only for them. */
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].slide[1] = 1;
@@ -175,7 +176,7 @@ static void tops_that_cross(void **state)
   s->is_wall[0] = 1;
   grow(s, 1);
   assert_int_equal(tops(s, NULL, NULL, 1, bad), 0);
-  /* Two columns three squares apart lean over until they cross. */
+  /* Two columns three squares apart lean until they cross. */
   a = s->of_point[5 * 11 + 3];
   b = s->of_point[5 * 11 + 6];
   s->c.column[a].dir[0] = 2;
@@ -196,7 +197,7 @@ static void degenerate_tops_are_bad(void **state)
   add_plate(s, 0, 8, zero, ex, ey);
   s->is_wall[0] = 1;
   grow(s, 1);
-  /* The top of a falls onto the line between those of its neighbours. */
+  /* The top of a is on the line between those of its neighbours. */
   a = s->of_point[4 * 9 + 4];
   s->c.column[a].dir[0] = 1;
   assert_true(tops(s, NULL, NULL, 1, bad) > 0);
@@ -207,7 +208,7 @@ static void degenerate_tops_are_bad(void **state)
   shape_free(s);
 }
 
-/* Columns of one root: faces between them are nothing at level 0, and tops
+/* Columns of one root: faces between them have no area at level 0, and tops
  * that stay at the root share it. */
 static void fan_of_columns(void **state)
 {
@@ -225,7 +226,7 @@ static void fan_of_columns(void **state)
   add_tri(s, 0, p[0], p[1], p[3]);
   s->is_wall[0] = 1;
   grow(s, 1);
-  /* Two columns more on point 0 and one more on point 1. */
+  /* Two additional columns on point 0 and one on point 1. */
   free(c->face);
   free(c->face_tri);
   c->column = realloc(c->column, 7 * sizeof *c->column);
@@ -254,8 +255,8 @@ static void fan_of_columns(void **state)
     memcpy(c->column[i].dir, dir[i], sizeof dir[i]);
   }
   for (unsigned levels = 0; levels < 128; levels++) {
-    /* Column 4 raised within a fan at level 0: a flap without volume, of two
-     * tops on each other. */
+    /* Column 4 raised within a fan at level 0 makes a flap without volume: two
+     * coincident tops. */
     int flap = (levels >> 4 & 1) && !(levels & 0x63);
 
     for (int i = 0; i < 7; i++) c->column[i].n = levels >> i & 1;
@@ -265,7 +266,7 @@ static void fan_of_columns(void **state)
   shape_free(s);
 }
 
-/* Two bars of triangles standing on the plane z = 0, which they slide in. */
+/* Two bars of triangles standing on the plane z = 0, in which they slide. */
 static struct shape *two_bars(double distance)
 {
   struct shape *s = shape_new(0.125);
@@ -295,8 +296,8 @@ static void flanks_in_one_plane(void **state)
   /* 3/8 on each side: they overlap, and so do the tops. */
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 3;
   assert_true(tops(s, is_slide, NULL, 1, bad) > 14);
-  /* One column in the plane alone, the tops of which are kept apart by
-   * leaning away: only the flanks tell. */
+  /* Only columns in the plane rise. Their tops lean away and stay apart, so
+   * that only the side faces collide. */
   for (size_t i = 0; i < s->c.n_column; i++)
     s->c.column[i].n = s->c.column[i].slide[0] == 1 ? 2 : 0;
   assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
@@ -315,7 +316,7 @@ static void flanks_in_one_plane(void **state)
   shape_free(s);
 }
 
-/* A plane known to noise only: nothing is exactly coplanar. */
+/* A plane with rounding noise: no points are exactly coplanar. */
 static void flanks_in_a_noisy_plane(void **state)
 {
   static const uint8_t is_slide[PATCHES] = { 0, 1, 0 };
@@ -331,7 +332,7 @@ static void flanks_in_a_noisy_plane(void **state)
                                                            2e-7;
   assert_int_equal(tops(s, is_slide, NULL, 1, bad), 0);
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = 3;
-  /* All but the ends of the rows may be lowered: both rows overlap. */
+  /* All except the ends of the rows may be lowered: both rows overlap. */
   assert_int_equal(tops(s, is_slide, NULL, 1, bad), 16);
   shape_free(s);
 }
@@ -348,7 +349,7 @@ static struct shape *sphere_over_plane(double distance)
   return s;
 }
 
-/* What is active decides which pairs are looked at, nothing else. */
+/* The active columns only determine which pairs are tested. */
 static void active_columns_only(void **state)
 {
   struct shape *s = sphere_over_plane(0.2);
@@ -360,10 +361,10 @@ static void active_columns_only(void **state)
   grow(s, 4);
   n = tops(s, NULL, NULL, 1, bad);
   assert_true(n > 10 && n < s->c.n_column / 2);
-  /* Those that touch nothing may be inactive. */
+  /* Columns that touch nothing may be inactive. */
   assert_int_equal(tops(s, NULL, bad, 1, part), n);
   assert_memory_equal(bad, part, s->c.n_column);
-  /* A single one: its faces, and what they touch. */
+  /* A single active column: its faces, and the faces that they touch. */
   for (size_t i = 0; i < s->c.n_column; i++) {
     memset(active, 0, sizeof active);
     if (!bad[i]) continue;
@@ -395,7 +396,7 @@ static void tops_with_any_number_of_threads(void **state)
   shape_free(s);
 }
 
-/* --- ahead --------------------------------------------------------------- */
+/* --- clearance ahead ----------------------------------------------------- */
 
 static double *ahead(struct shape *s, double reach, int threads)
 {
@@ -453,10 +454,11 @@ static void patches_to_slide_in(void **state)
   s->c.column[middle].slide[1] = 1;
   allowed = ahead(s, 1, 1);
   assert_true(allowed[middle] == 1);
-  /* For others it is a patch like any other, straight ahead. */
+  /* For other columns it is an ordinary patch, straight ahead. */
   assert_true(fabs(allowed[middle + 1] - 0.4 * 0.3) < 1e-12);
   free(allowed);
-  /* It is met where it is ahead, at 0.3 / 0.8; a wall also beside. */
+  /* It limits a column straight ahead, at 0.3 / 0.8; a wall also limits
+   * sideways. */
   s->c.column[middle + 1].dir[0] = 0.6;
   s->c.column[middle + 1].dir[2] = 0.8;
   allowed = ahead(s, 1, 1);
@@ -469,7 +471,8 @@ static void patches_to_slide_in(void **state)
   shape_free(s);
 }
 
-/* What grows the same way is no limit, whatever its wall looks like. */
+/* A face whose columns grow in the same direction is no limit, whatever the
+ * shape of its wall. */
 static void columns_of_one_stack(void **state)
 {
   struct shape *s = two_plates(16, 0.3, 0.01);
@@ -492,8 +495,8 @@ static void columns_of_one_stack(void **state)
   shape_free(s);
 }
 
-/* On a sphere, dir makes the angle a with the downward normal of the plane:
- * its cone meets the plane first at height H / (cos a + sin a). */
+/* On a sphere, dir makes the angle a with the downward normal of the plane: its
+ * cone meets the plane first at height H / (cos a + sin a). */
 static void sphere_near_a_plane(void **state)
 {
   struct shape *s = sphere_over_plane(0.2);
@@ -538,7 +541,7 @@ static void a_convex_body_sees_nothing(void **state)
 }
 
 /* No triangle that faces the column may have a corner in the cone nearer than
- * what the answer was made of: found without a tree. */
+ * the distance used for the answer; checked without a tree. */
 static void nothing_in_the_cone_is_missed(void **state)
 {
   struct shape *s = shape_new(0.1);
@@ -577,7 +580,7 @@ static void nothing_in_the_cone_is_missed(void **state)
     }
     if (nearest < 1) {
       assert_true(allowed[i] <= 0.4 * nearest + 1e-12);
-      /* Edges are 0.1 long: the corner is not far from the nearest place. */
+      /* Edges are 0.1 long: the corner is close to the nearest point. */
       assert_true(allowed[i] >= 0.4 * (nearest - 0.15));
       n++;
     }
@@ -587,7 +590,7 @@ static void nothing_in_the_cone_is_missed(void **state)
   shape_free(s);
 }
 
-/* Two walls at 30 degrees with the edge y; columns of both stand on it. */
+/* Two walls at 30 degrees with the edge y; both have columns. */
 static struct shape *wedge(int n)
 {
   struct shape *s = shape_new(0.01);
@@ -622,16 +625,16 @@ static void concave_wedge_at_right_angles(void **state)
   (void)state;
   grow(s, 1);
   allowed = ahead(s, 0.2, 1);
-  /* Square to its wall, the cone meets the other at x t / (1 + t). */
+  /* Normal to its wall, the cone meets the other at x t / (1 + t). */
   for (uint32_t i = 5; i <= N; i++) {
     double x = (double)i / N, expect = 0.4 * x * t / (1 + t);
 
     assert_true(fabs(allowed[N / 2 * (N + 1) + i] - expect) < 1e-9);
   }
-  /* Next to the edge, triangles of the other wall that stand on the edge do
-   * not count: the next row begins at z = 1/2 of a square. */
+  /* Next to the edge, triangles of the other wall that touch the edge do not
+   * count: the next row begins at z = 1/2 of a square. */
   assert_true(fabs(allowed[N / 2 * (N + 1) + 1] - 0.4 * 0.5 / N) < 1e-9);
-  /* On the edge itself nothing is in front. */
+  /* On the edge itself there is no opposite surface. */
   for (uint32_t j = 0; j <= N; j++) assert_true(allowed[j * (N + 1)] == 0.2);
   free(allowed);
   shape_free(s);
@@ -645,7 +648,8 @@ static void concave_wedge_with_turned_columns(void **state)
 
   (void)state;
   grow(s, 1);
-  /* Along the bisector on the edge, square to the wall from 8 squares on. */
+  /* Along the bisector on the edge, turning to the wall's normal over 8
+   * squares. */
   for (size_t i = 0; i < s->c.n_column; i++) {
     struct vg_column *c = &s->c.column[i];
     const double *x = s->m.point[c->root];
@@ -660,7 +664,7 @@ static void concave_wedge_with_turned_columns(void **state)
     for (int k = 0; k < 3; k++) c->dir[k] /= l;
   }
   allowed = ahead(s, 0.2, 1);
-  /* The columns next to the edge are of one stack and limited by nothing. */
+  /* The columns next to the edge belong to one stack and have no limit. */
   for (uint32_t i = 0; i <= 2; i++)
     assert_true(allowed[N / 2 * (N + 1) + i] == 0.2);
   assert_true(allowed[N / 2 * (N + 1) + 16] < 0.2);
@@ -668,8 +672,8 @@ static void concave_wedge_with_turned_columns(void **state)
   shape_free(s);
 }
 
-/* A flat bar along y with a sharp edge at x = at; `side` -1: it lies before
- * the edge, 1: behind. */
+/* A flat bar along y with a sharp edge at x = at; `side` -1: it lies before the
+ * edge, 1: after it. */
 static void add_sharp_bar(struct shape *s, int n, double at, int side)
 {
   uint32_t first = (uint32_t)s->m.n_point;
@@ -691,7 +695,8 @@ static void add_sharp_bar(struct shape *s, int n, double at, int side)
     }
 }
 
-/* Neither edge sees a triangle of the other: all are across its direction. */
+/* Neither edge can see a triangle of the other: all are parallel to its
+ * direction. */
 static void sharp_edges_face_each_other(void **state)
 {
   enum { N = 16 };
@@ -745,7 +750,7 @@ static void gap_must_leave_room(void **state)
   assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, NAN, 1, h, allowed,
                                   &err),
                    VG_ERR_INPUT);
-  /* What wants nothing gets it. */
+  /* A column with requested height 0 gets 0. */
   assert_int_equal(vg_clear_ahead(&s->m, &s->c, &s->t, 0.4, 1, h, allowed,
                                   &err),
                    VG_OK);

@@ -1,4 +1,5 @@
-/* A job of one rank, without a launcher. With one: tests/mpi/test_comm_*.c. */
+/* A job of one rank, without a launcher. With a launcher:
+ * tests/mpi/test_comm_*.c. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +11,7 @@
 #include "base/comm.h"
 #include "base/parallel.h"
 
-/* The test may itself be run in a job. */
+/* The test itself may run in a job. */
 static int forget_launcher(void **state)
 {
   static const char *const name[] = { "OMPI_COMM_WORLD_SIZE",
@@ -91,7 +92,8 @@ static void cores(void **state)
   assert_int_equal(vg_comm_node_cores(NULL, 0), n);
 }
 
-/* Each would believe to be alone, and write the same files as the others. */
+/* Each process would assume that it is alone, and all would write the same
+ * files. */
 static void unconnected_processes_are_refused(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;

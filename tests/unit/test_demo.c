@@ -51,7 +51,7 @@ static double distance(const double a[3], const double b[3])
               (b[2] - a[2]) * (b[2] - a[2]));
 }
 
-/* Volume enclosed, positive when triangles point into it. */
+/* Volume enclosed, positive if the normals point into it. */
 static double volume(const struct vg_mesh *m, size_t first, size_t last)
 {
   double sum = 0;
@@ -124,7 +124,8 @@ static void every_case_is_a_flow_domain(void **state)
 
       shape(m, i, &ratio, &angle);
       assert_true(ratio < 4.5);
-      /* the section's own corner at a sharp tail has 16.5 degrees */
+      /* the airfoil section itself has a corner of 16.5 degrees at a sharp
+       * trailing edge */
       assert_true(angle > 11);
     }
     vg_demo_release(&d);
@@ -170,7 +171,7 @@ static void half_wing_stands_on_its_plane(void **state)
   vg_demo_release(&d);
 }
 
-/* The skin's edges against the sources they came from. */
+/* The edges of the skin compared with the sources that control them. */
 static void wing_follows_its_sources(void **state)
 {
   struct vg_demo d = make("wing-sharp", 600000);

@@ -1,5 +1,5 @@
-/* The discrete decomposition: decompositions that fit together, meshes of them,
- * what cannot be parted. */
+/* The discrete decomposition: subdomains that fit together, meshes of them,
+ * voids that cannot be decomposed. */
 #define _GNU_SOURCE
 #include "advance_support.h"
 
@@ -64,10 +64,9 @@ static void part(const struct case_of *c, struct vg_decomposition_options o,
     fail_msg("%s", err.text);
 }
 
-/* --- decompositions
- * ------------------------------------------------------------ */
+/* --- decompositions ------------------------------------------------------ */
 
-/* Volumes of parts are sums of some thousand roundings. */
+/* Volumes of subdomains are sums of some thousand roundings. */
 static void parts_make_up_the_void(void **state)
 {
   struct case_of c;
@@ -100,7 +99,7 @@ static void parts_make_up_the_void(void **state)
 }
 
 /* Edges of interfaces have the local size: half of them within a third of it,
- * as far as the front, whose edges stay, does not decide. */
+ * except near the front, whose edges are fixed. */
 static void interfaces_have_the_local_size(void **state)
 {
   struct case_of c;
@@ -147,7 +146,7 @@ static void corners(const struct vg_coarse *m, size_t q, const double *x[4])
   for (int k = 0; k < 4; k++) x[k] = m->t.x[m->t.cell[q].v[k]];
 }
 
-/* Parts by distance from the middle of the box: inside, outside. */
+/* Subdomains by distance from the middle of the box: inside, outside. */
 static void part_ball(struct vg_coarse *m, double radius)
 {
   m->part = vg_calloc(m->t.n_cell, sizeof *m->part);
@@ -177,8 +176,9 @@ static double ball(const struct vg_coarse *m)
   return sum;
 }
 
-/* A ball of coarse cells loses its teeth, 6 % of its volume; were points moved
- * towards the middle of their neighbours alone, it would lose 12 %. */
+/* Smoothing removes the teeth of a ball of coarse cells, 6 % of its volume; if
+ * points only moved towards the mean of their neighbours, it would remove 12
+ * %. */
 static void smoothing_leaves_what_is_round(void **state)
 {
   struct vg_coarse m;
@@ -200,7 +200,7 @@ static void smoothing_leaves_what_is_round(void **state)
   case_end(&c);
 }
 
-/* Sine of the smallest angle of the cells at a face, squared. */
+/* Squared sine of the smallest angle of the cells at a face. */
 static double shape_at(const struct vg_coarse *m, uint32_t side)
 {
   const double *x[4], *y[4];
@@ -211,8 +211,9 @@ static double shape_at(const struct vg_coarse *m, uint32_t side)
               vg_shape(y[0], y[1], y[2], y[3]));
 }
 
-/* Cells around the middle planes are made flat: there the halves of a box would
- * meet, 84 % of their faces at flat cells, were it not for these; 8 % do. */
+/* Flatten the cells around the middle planes. The halves of a box would meet
+ * there, with 84 % of their faces at flat cells, if flat cells were not
+ * avoided; actually 8 % are. */
 static void squeeze(struct vg_coarse *m)
 {
   const double from = 0.45, to = 0.4975;
@@ -318,7 +319,7 @@ static void what_is_no_decomposition(void **state)
   assert_int_equal(vg_decomposition_check(&p, &c.front, SERIAL, NULL),
                    VG_ERR_GEOMETRY);
   f->n_face++;
-  v = f->face[7][0]; /* a face turned */
+  v = f->face[7][0]; /* a face reversed */
   f->face[7][0] = f->face[7][1];
   f->face[7][1] = v;
   assert_int_equal(vg_decomposition_check(&p, &c.front, SERIAL, NULL),
@@ -366,7 +367,7 @@ static void bytes_and_back(void **state)
   case_end(&c);
 }
 
-/* Weights as even as whole items allow, whatever the number of parts. */
+/* Weights as even as whole items permit, for any number of subdomains. */
 static void bisection_is_even(void **state)
 {
   enum { N = 3000 };
@@ -429,7 +430,8 @@ static void meshes_are_valid_in_any_order(void **state)
   scene_end(&s);
 }
 
-/* Parts that cannot be filled take the leaf beside them at once. */
+/* A subdomain that cannot be filled is extended by a neighbouring leaf at
+ * once. */
 static void parts_that_cannot_be_filled(void **state)
 {
   struct vg_partition_options o = mesh_options(12);

@@ -32,7 +32,8 @@ static int side_compare(const void *pa, const void *pb)
   return x->b < y->b ? -1 : x->b > y->b;
 }
 
-/* Every directed edge once, and so is its reverse; every point used. */
+/* Every directed edge occurs once, and so does its reverse; every point is
+ * used. */
 static void check_closed(const struct vg_mesh *m)
 {
   struct side *list = malloc(3 * m->n_tri * sizeof *list);
@@ -56,7 +57,7 @@ static void check_closed(const struct vg_mesh *m)
   free(used);
 }
 
-/* Volume enclosed, positive when triangles point into it. */
+/* Volume enclosed, positive if the normals point into it. */
 static double volume(const struct vg_mesh *m)
 {
   double sum = 0;
@@ -93,7 +94,7 @@ static double angle_min_deg(const struct vg_mesh *m)
   return least;
 }
 
-/* A sphere body, whole or half, radius 1 at the origin, normals out. */
+/* A sphere body, whole or half, radius 1 at the origin, normals outward. */
 static struct vg_mesh ball(int half, double h)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -144,7 +145,7 @@ static void makes_even_spheres(void **state)
 
       assert_true(fabs(x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - 1) < 1e-14);
     }
-    assert_true(volume(&m) < 0); /* normals out of it */
+    assert_true(volume(&m) < 0); /* normals outward */
     vg_mesh_release(&m);
   }
 }
@@ -167,7 +168,7 @@ static void puts_a_sphere_around_a_body(void **state)
   assert_true(report.added_farfield && !report.added_symmetry);
   assert_int_equal(report.n_added_tri, m.n_tri - n_tri);
   assert_memory_equal(first, m.point[17], sizeof first);
-  /* chords lose 1 - 3/20 h^2/R^2 or so of the volume; h is 4 of R = 20 */
+  /* chords lose about 1 - 3/20 h^2/R^2 of the volume; h is 4 of R = 20 */
   assert_true(volume(&m) > 0.95 * 4.18879 * 8000);
   assert_true(volume(&m) < 4.18879 * 8000);
   assert_int_equal(m.n_patch, 2);
@@ -217,7 +218,7 @@ static void completes_half_bodies(void **state)
       const double body = -volume(&m);
       size_t n_in_plane = 0;
 
-      /* a plane that is off by rounding, and not at zero */
+      /* a plane with rounding errors, and not at zero */
       for (size_t i = 0; i < m.n_point; i++)
         m.point[i][half / 2] += 3 + (i % 3 ? 0 : 1e-12);
       s = field(&m, 1.2);
@@ -247,8 +248,8 @@ static void completes_half_bodies(void **state)
     }
 }
 
-/* A body open at x[axis] = at: half a ball, `deep` times as deep, whose rim has
- * `rim` of its radius and widens over half of the depth. */
+/* A body open at x[axis] = at: half a ball stretched by the factor `deep`. Its
+ * rim has `rim` of its radius and widens over half of the depth. */
 static struct vg_mesh open_body(int axis, double deep, double rim, double at)
 {
   struct vg_mesh m = ball(2 * axis + 1, 0.1);
@@ -289,7 +290,7 @@ static void a_hole_is_no_symmetry_plane(void **state)
 {
   (void)state;
   for (int axis = 0; axis < 3; axis++) {
-    /* a rim of a third of the body, and a wide one that is blunt */
+    /* a rim of a third of the body, and a wide one on a blunt body */
     assert_int_equal(completed(axis, 1, 0.3, 0, 0), VG_ERR_GEOMETRY);
     assert_int_equal(completed(axis, 0.5, 0.6, 0, 0), VG_ERR_GEOMETRY);
     assert_int_equal(completed(axis, 1, 0.3, 0, 1), VG_OK);
@@ -319,8 +320,8 @@ static void drop_unused(struct vg_mesh *m)
   free(to);
 }
 
-/* Without the triangles that reach beyond `at` along an axis, to one side; the
- * rim goes into that plane. */
+/* Remove the triangles that reach beyond `at` along an axis, on one side, and
+ * move the rim into that plane. */
 static void cut_end(struct vg_mesh *m, int axis, int side, double at)
 {
   size_t n = 0;
@@ -391,7 +392,7 @@ static void closes_holes_but_not_half_bodies(void **state)
   assert_int_equal(n, 1);
   check_closed(&m);
   vg_mesh_release(&m);
-  m = ball(5, 0.1); /* as a section that is open at both ends */
+  m = ball(5, 0.1); /* a section that is open at both ends */
   cut_end(&m, 2, 1, 0.95);
   assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 2);
@@ -527,8 +528,8 @@ static void refuses_bodies_it_cannot_complete(void **state)
 
 /* --- projects of planar patches ------------------------------------------ */
 
-/* VGRID's own example: a cube of half width 10, eight nodal sources, spacing
- * 1 at the corners with y = -10 and 2 at those with y = +10. */
+/* VGRID's own example: a cube of half width 10, eight nodal sources, spacing 1
+ * at the corners with y = -10 and 2 at those with y = +10. */
 static void box_project(struct vg_project *p)
 {
   static const int32_t line[12][2] = { { 1, 2 }, { 2, 3 }, { 4, 3 }, { 1, 4 },
@@ -592,7 +593,7 @@ static void marches_curves_as_vgrid_does(void **state)
   for (int i = 0; i < 8; i++)
     assert_memory_equal(m.point[i], p.point[i], sizeof m.point[i]);
   for (int i = 0; i < 18; i++)
-    /* VGRID keeps 1e-8 off its sources and prints 12 digits */
+    /* VGRID stays 1e-8 away from its sources and prints 12 digits */
     assert_true(fabs(m.point[8 + i][0] - want[i]) < 1e-6);
   assert_true(m.point[26][0] == 10 && m.point[26][1] != -10);
   vg_mesh_release(&m);
@@ -623,16 +624,16 @@ static void meshes_a_project_of_planes(void **state)
   }
   assert_int_equal(n_off, 0);
   for (size_t i = 0; i < m.n_tri; i++) n_floor += m.tri_patch[i] == 2;
-  /* VGRID has 574 there, the one patch whose border has no layers; its edges
-   * are a little longer than the spacing */
+  /* VGRID has 574 there, the only patch whose boundary has no layers; its edges
+   * are slightly longer than the spacing */
   assert_true(n_floor > 520 && n_floor < 720);
   vg_sizing_free(s);
   vg_mesh_release(&m);
   vg_project_release(&p);
 }
 
-/* The file that VGRID itself was given. Its .front has 3,407 points, but
- * layer lines on four patches, which this mesh does not. */
+/* The original input file of VGRID. Its .front has 3,407 points, but also layer
+ * lines on four patches, which this mesh lacks. */
 static void meshes_the_box_of_vgrid(void **state)
 {
   const char *path = VG_DATA_DIR "/vgrid_box/box.d3m";
@@ -651,8 +652,8 @@ static void meshes_the_box_of_vgrid(void **state)
   assert_true(fabs(volume(&m) - 8000) < 1e-8);
   assert_int_equal(m.n_patch, 6);
   assert_true(m.n_tri > 2400 && m.n_tri < 3200);
-  /* curves that carry no layers come out as VGRID's: 8 corners, 18 points on
-   * each edge around the floor, 10 on each around the ceiling */
+  /* curves without layers are equal to VGRID's: 8 corners, 18 points on each
+   * edge around the floor, 10 on each around the ceiling */
   assert_int_equal(vg_front_read(VG_DATA_DIR "/vgrid_box/box.front", NULL,
                                  &front, &err),
                    VG_OK);
@@ -668,8 +669,8 @@ static void meshes_the_box_of_vgrid(void **state)
   vg_project_release(&p);
 }
 
-/* A square plate whose sides are chains of many points, in an oblique plane,
- * so short against the spacing that every side is one step. */
+/* A square plate whose sides are chains of many points, in an oblique plane. It
+ * is so small relative to the spacing that every side is one edge. */
 static void keeps_corners_of_chains(void **state)
 {
   struct vg_project p = VG_PROJECT_INIT;
@@ -743,8 +744,8 @@ static void keeps_corners_of_chains(void **state)
   vg_project_release(&p);
 }
 
-/* Around a body, on its symmetry plane, and for planes of a project: asked at
- * every turn, and what was there stays as it was. */
+/* For a farfield, a symmetry plane, and planes of a project: stops at any poll
+ * of the stop request, and leaves the input unchanged. */
 static void stops_when_asked(void **state)
 {
   static const enum vg_farfield_kind kind[2] = { VG_FARFIELD_SPHERE,

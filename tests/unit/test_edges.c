@@ -1,4 +1,4 @@
-/* Edges of triangulations: as a comparison of all half-edges finds them. */
+/* Edges of triangulations, compared with a comparison of all half-edges. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,7 +32,8 @@ static int compare(const uint32_t a[2], const uint32_t b[2])
   return (a[1] > b[1]) - (a[1] < b[1]);
 }
 
-/* Edges rise, and each has all half-edges with its ends, which rise too. */
+/* Edges are in ascending order; each has all half-edges with its ends, in
+ * ascending order too. */
 static void expect_edges(const struct vg_edges *e, size_t n,
                          const uint32_t (*side)[2], const uint8_t *is_out)
 {
@@ -62,9 +63,9 @@ static void expect_edges(const struct vg_edges *e, size_t n,
     if (is_out[h]) assert_int_equal(e->of_half[h], UINT32_MAX);
 }
 
-/* From few points, so that edges have up to thirty half-edges, and some both
- * ends at one point, to many, of which most have none; with and without
- * triangles that are left out. */
+/* From few points, so that edges have up to thirty half-edges and some have
+ * both ends at one point, to many points, most of which have no edges; with and
+ * without excluded triangles. */
 static void edges_are_those_of_all_pairs(void **state)
 {
   uint64_t seed = 1;
@@ -118,7 +119,7 @@ static void nothing_has_no_edges(void **state)
   vg_edges_release(&e);
 }
 
-/* A tetrahedron, its faces turned outwards, then one of them inwards. */
+/* A tetrahedron with its faces outward, then with one of them inward. */
 static void neighbours_agree_or_not(void **state)
 {
   uint32_t tri[4][3] = { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 2, 0, 3 } };

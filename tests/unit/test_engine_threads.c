@@ -1,5 +1,5 @@
-/* The engine on one rank: order, counts, records, stops and failures. Meant to
- * be run under the thread sanitizer too. */
+/* The engine on one rank: order, counts, records, stops and failures. Also run
+ * under the thread sanitizer. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +20,7 @@ static void check_tree(int threads, uint64_t shuffle, int pin)
 
   for (int t = 0; t < 3; t++)
     forest_expect(&f, (char[]){ (char)('a' + t), 0 }, &n, &sum);
-  assert_true(n > 500); /* else it shows nothing */
+  assert_true(n > 500); /* else the test shows nothing */
   assert_int_equal(forest_grow(&f, NULL, 3, shuffle, &s, &err), VG_OK);
   assert_int_equal(f.n_done, n);
   assert_true(f.sum == sum);
@@ -52,7 +52,7 @@ static void nothing_to_do(void **state)
   vg_spans_release(&s);
 }
 
-/* The spans in the order in which one worker did them. */
+/* The spans in the order in which one worker ran them. */
 static int by_start(const void *a, const void *b)
 {
   double s = ((const struct vg_span *)a)->start;
@@ -61,7 +61,7 @@ static int by_start(const void *a, const void *b)
   return s < t ? -1 : s > t;
 }
 
-/* One worker takes the highest priority of what has been made by then. */
+/* One worker takes the task of highest priority among those created so far. */
 static void one_worker_keeps_the_order(void **state)
 {
   struct forest f = { .threads = 1, .depth = 4 };
@@ -138,7 +138,7 @@ static void it_stops_when_told(void **state)
   }
 }
 
-/* Loops in tasks that come from each other, several open at a time. */
+/* Loops in tasks that create each other, several open at a time. */
 static void loops_are_done_once(void **state)
 {
   (void)state;
@@ -163,7 +163,7 @@ static void loops_are_done_once(void **state)
 }
 
 /* One task with a long loop, all other workers idle: they help, and the record
- * says so: no time is lost or counted twice. */
+ * shows it without losing time or counting it twice. */
 static void idle_workers_help(void **state)
 {
   struct forest f = { .threads = 3, .loop = 60, .spin_item = 2e-3 };
@@ -188,7 +188,7 @@ static void idle_workers_help(void **state)
   }
   wall = a->end - a->start;
   assert_true(a->loops > 0 && a->loops <= a->cpu);
-  /* clocks of three threads, of which one may be sampled between ticks */
+  /* clocks of three threads, one of which may be sampled between ticks */
   assert_true(a->cpu <= wall + help + 5e-3);
   assert_true(fabs(vg_spans_busy(&s) - (wall + help) / (3 * s.wall)) < 1e-9);
   vg_spans_release(&s);
@@ -211,7 +211,7 @@ static void loops_are_finished_after_a_stop(void **state)
   }
 }
 
-/* Without an engine, and where there is nothing to do. */
+/* Without an engine, and with an empty loop. */
 static void a_loop_alone(void **state)
 {
   int seen[7] = { 0 };
@@ -241,7 +241,7 @@ static vg_status nop_done(void *user, struct vg_engine *e,
   return VG_OK;
 }
 
-/* Input and outcome NULL: no callback for them is ever called. */
+/* Input and outcome NULL: their callbacks are never called. */
 static void tasks_without_input(void **state)
 {
   static const struct vg_engine_ops ops = { .run = nop_run, .done = nop_done };

@@ -17,7 +17,7 @@ static struct vg_envelope measure(const struct vg_mesh *m)
   return e;
 }
 
-/* The same whichever way the shell is turned. */
+/* The same for either orientation of the shell. */
 static struct vg_envelope measure_both(struct vg_mesh *m)
 {
   struct vg_envelope a = measure(m), b;
@@ -56,7 +56,7 @@ static void convex_shapes_are_no_domains(void **state)
 
   (void)state;
   assert_true(e.depth == 0 && !e.is_domain);
-  /* every triangle, every view whole */
+  /* every triangle, every view complete */
   assert_int_equal(e.n_outer, 2 * 2 * (20 + 24 + 30));
   assert_true(fabs(e.covered - 1) < 1e-12);
   shape_sphere(&m, 12, centre, 1, 1);
@@ -98,7 +98,7 @@ static void bodies_with_hollows_are_no_domains(void **state)
   struct vg_envelope e = measure_block(9, 6, 6, with_a_groove);
 
   (void)state;
-  /* the groove parts the outer surface: from one end nothing is seen of it */
+  /* the groove divides the outer surface: it is invisible from one end */
   assert_true(!e.is_domain && e.covered < 0.1);
   e = measure_block(20, 21, 3, plane_of_blocks);
   assert_true(!e.is_domain && e.covered < 0.5);

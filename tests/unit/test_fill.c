@@ -1,4 +1,4 @@
-/* The fill: whatever the shape, a valid mesh that keeps its surface. */
+/* The fill gives a valid mesh that preserves its surface, for any shape. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,8 +29,8 @@ static void surface_is_kept(const struct vg_mesh *m, const struct vg_mesh *s)
   same_array(m->patch, s->patch, s->n_patch, sizeof *s->patch);
 }
 
-/* Fill `s` twice; the result must be valid, keep the surface, and be the same
- * both times. Judged against the field. */
+/* Fill `s` twice. The result must be valid, preserve the surface, and be the
+ * same both times. Its quality is measured against the sizing field. */
 static struct vg_mesh_report fill_and_judge(const struct vg_mesh *s,
                                             const struct vg_sizing *sizing,
                                             struct vg_fill_report *fill)
@@ -78,8 +78,8 @@ static struct vg_mesh_report fill_shape(struct vg_mesh *s, double growth,
   return r;
 }
 
-/* The bounds on quality are those which the finished mesh has to meet
- * (12 degrees, 158 degrees, 0.8); the small cases here are no easier. */
+/* The quality limits are those for a finished mesh (12 degrees, 158 degrees,
+ * 0.8); the small cases here are no easier. */
 static void a_box_of_one_size(void **state)
 {
   struct vg_mesh s = VG_MESH_INIT;
@@ -107,7 +107,8 @@ static void a_sphere_in_a_box(void **state)
   shape_sphere(&s, 12, origin, 1, 7);
   r = fill_shape(&s, 1.3, 0, &fill);
   assert_int_equal(r.n_component, 1);
-  /* between the box without the sphere's circumscribed and inscribed ball */
+  /* between the box minus the sphere's circumscribed ball and minus its
+   * inscribed ball */
   assert_true(r.volume > 4096 - 4 * M_PI / 3);
   assert_true(r.volume < 4096 - 0.95 * 4 * M_PI / 3);
   assert_true(r.angle_min > 10 && r.angle_max < 162);
@@ -314,7 +315,7 @@ static void more_points_than_allowed_are_refused(void **state)
   vg_mesh_release(&s);
 }
 
-/* Expect a refusal in words that leaves nothing behind. */
+/* Expect a refusal with a message that leaves nothing behind. */
 static void refused(const struct vg_mesh *s, const struct vg_sizing *sizing)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -357,17 +358,17 @@ static void what_is_not_a_boundary_is_refused(void **state)
   s.n_tri--; /* a hole */
   refused(&s, sizing);
   s.n_tri++;
-  t = s.tri[9][0]; /* one triangle turned over */
+  t = s.tri[9][0]; /* one triangle reversed */
   s.tri[9][0] = s.tri[9][1];
   s.tri[9][1] = t;
   refused(&s, sizing);
   t = s.tri[9][0];
   s.tri[9][0] = s.tri[9][1];
   s.tri[9][1] = t;
-  shape_point(&s, 0, 0, 0); /* a point of no triangle */
+  shape_point(&s, 0, 0, 0); /* a point without triangles */
   refused(&s, sizing);
   s.n_point--;
-  for (size_t i = 0; i < s.n_tri; i++) { /* fluid outside, without end */
+  for (size_t i = 0; i < s.n_tri; i++) { /* unbounded fluid outside */
     t = s.tri[i][0];
     s.tri[i][0] = s.tri[i][1];
     s.tri[i][1] = t;
@@ -393,7 +394,7 @@ static void shells_that_cross_are_refused(void **state)
   vg_mesh_release(&s);
 }
 
-/* Without optimisation the mesh is worse, but as valid. */
+/* Without optimisation the mesh has lower quality, but is equally valid. */
 static void optimisation_is_optional(void **state)
 {
   struct vg_mesh s = VG_MESH_INIT, m = VG_MESH_INIT;

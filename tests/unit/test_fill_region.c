@@ -1,6 +1,6 @@
-/* Regions that are cut out of a front one after the other, and the rest that is
- * filled: at any moment the cells and the void are the domain. Whatever the
- * kernel refuses, and wherever it is stopped, it returns nothing. */
+/* Regions that are cut out of a front one after the other, and the remaining
+ * void that is filled: at any moment the cells and the void together are the
+ * domain. If the kernel refuses its input or is stopped, it returns nothing. */
 #include "zone_scene.h"
 
 /* --- regions ------------------------------------------------------------- */
@@ -27,7 +27,7 @@ static int crosses(const struct scene *s, size_t c, const struct vg_region *r)
   return 1;
 }
 
-/* Cells from `first` on all cross the planes of the region, or fill a dent
+/* All cells from `first` on cross the planes of the region, or fill a dent
  * between cells that do: their corners are corners of such cells. */
 static void all_cross(const struct scene *s, size_t first,
                       const struct vg_region *r)
@@ -47,7 +47,7 @@ static void all_cross(const struct scene *s, size_t first,
   free(used);
 }
 
-/* Faces of the front which cross the plane; those on either side. */
+/* Faces of the front that cross the plane, and those on either side. */
 static void front_sides(const struct vg_front *f, const struct vg_plane *s,
                         size_t count[3])
 {
@@ -65,7 +65,7 @@ static void front_sides(const struct vg_front *f, const struct vg_plane *s,
   }
 }
 
-/* Parts of the front that share no point. */
+/* Components of the front that share no point. */
 static size_t front_components(const struct vg_front *f)
 {
   uint32_t *parent = vg_alloc(f->n_point, sizeof *parent);
@@ -153,8 +153,8 @@ static int around_the_plate(const int at[3])
   return at[0] < 2 || at[0] >= 6 || at[1] < 2 || at[1] >= 6 || at[2] != 2;
 }
 
-/* Oblique planes and lines through a plate, one after the other: fronts of
- * any shape. */
+/* Oblique planes and lines through a plate, one after the other: fronts of any
+ * shape. */
 static void many_cuts_through_a_plate(void **state)
 {
   static const struct vg_region cuts[4] = {
@@ -200,7 +200,7 @@ static void a_region_elsewhere(void **state)
   scene_end(&s);
 }
 
-/* When all is filled there is nothing to do, which does no harm. */
+/* If everything is filled there is nothing to do, and this is no error. */
 static void nothing_is_left(void **state)
 {
   size_t n_cell, n_point;
@@ -237,7 +237,7 @@ static int stop_later(void *user)
   return ++s->calls >= s->at;
 }
 
-/* The rest of a void that a zone has parted. */
+/* Fill the remaining void after a separator zone has divided it. */
 static void the_rest(struct scene *s, struct zone_part *p)
 {
   box_scene(s, 4);
@@ -278,7 +278,7 @@ static void it_can_be_stopped_at_every_call(void **state)
   scene_end(&s);
 }
 
-/* The status, words, and no result. */
+/* The expected status, a message, and no result. */
 static void refused(struct scene *s, const struct zone_part *p,
                     const struct vg_fill_options *options, vg_status want)
 {
@@ -311,7 +311,7 @@ static void failures_return_nothing(void **state)
   p.front.x = realloc(p.front.x, (p.front.n_point + 1) * sizeof *p.front.x);
   assert_non_null(p.front.x);
   memset(p.front.x[p.front.n_point++], 0, sizeof *p.front.x);
-  refused(&s, &p, &options, VG_ERR_INPUT); /* a point of no face */
+  refused(&s, &p, &options, VG_ERR_INPUT); /* a point without faces */
   zone_part_release(&p);
   is_filled(&s);
   scene_end(&s);

@@ -1,5 +1,5 @@
-/* Two fills at once: the same bytes as one after the other. Meant to be run
- * under the thread sanitizer too. */
+/* Two fills at once give the same bytes as one after the other. Also run under
+ * the thread sanitizer. */
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -62,7 +62,7 @@ static void same_mesh(const struct job *a, const struct job *b)
                       a->mesh.n_tet * sizeof *a->mesh.tet);
 }
 
-/* An example with its own field. */
+/* An example with its own sizing field. */
 static struct vg_sizing *example(const char *name, size_t n_cell,
                                  struct vg_demo *d)
 {
@@ -76,7 +76,7 @@ static struct vg_sizing *example(const char *name, size_t n_cell,
   return sizing;
 }
 
-/* Two different voids, each with a field of its own. */
+/* Two different voids, each with its own sizing field. */
 static void two_voids_at_once(void **state)
 {
   struct vg_demo demo[2];
@@ -104,7 +104,7 @@ static void two_voids_at_once(void **state)
   }
 }
 
-/* Four fills of one surface that share one field. */
+/* Four fills of one surface that share one sizing field. */
 static void a_field_is_shared(void **state)
 {
   struct vg_demo demo;
@@ -128,7 +128,7 @@ static void a_field_is_shared(void **state)
   vg_demo_release(&demo);
 }
 
-/* Surfaces with triangles that TetGen has to recover, in two threads. */
+/* Surfaces with triangles that TetGen must recover, in two threads. */
 static void pockets_at_once(void **state)
 {
   const double centre[3] = { 0.1, -0.2, 0 };
@@ -157,8 +157,8 @@ static void pockets_at_once(void **state)
   }
 }
 
-/* The thread sanitizer's allocator does not survive a fork among threads, so
- * TetGen's children come from a server, as in the program. */
+/* The thread sanitizer's allocator does not survive a fork while threads run,
+ * so TetGen's child processes come from a server, as in the program. */
 int main(void)
 {
   const struct CMUnitTest tests[] = {

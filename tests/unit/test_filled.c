@@ -1,5 +1,5 @@
-/* The result of the kernel: its bytes and back, and its defects, each of which
- * is seen. */
+/* The result of the kernel: serialized and restored, and each of its defects,
+ * which must be detected. */
 #include "zone_scene.h"
 
 #include "base/bytes.h"
@@ -27,7 +27,8 @@ static void same(const struct vg_filled *a, const struct vg_filled *b,
   else assert_null(b->cell);
 }
 
-/* Of a copy that is as long as it says, so that reads beyond are seen. */
+/* Reads from an exact-size copy, so that the sanitizer detects reads beyond its
+ * end. */
 static void is_refused(const void *bytes, size_t n, int cells)
 {
   const struct vg_filled empty = VG_FILLED_INIT;
@@ -43,8 +44,8 @@ static void is_refused(const void *bytes, size_t n, int cells)
   free(copy);
 }
 
-/* Numbers of points, cells, faces and consumed faces that cannot be: cells only
- * where there are some. */
+/* Impossible numbers of points, cells, faces and consumed faces; those of cells
+ * only if there are cells. */
 static void wrong_numbers_are_refused(struct vg_writer *w, int cells)
 {
   const uint64_t huge[4] = { UINT64_MAX, (uint64_t)1 << 61, UINT32_MAX,
@@ -118,7 +119,8 @@ static void as_bytes(void **state)
 
 /* --- defects ------------------------------------------------------------- */
 
-/* A box so small that the zone needs its whole front, which is closed. */
+/* A box so small that the separator zone needs its whole front, which is
+ * closed. */
 static void zone_of_box(struct scene *s, struct zone_part *p,
                         struct vg_filled *made)
 {
@@ -143,7 +145,7 @@ static void swap(uint32_t *a, uint32_t *b)
   *b = keep;
 }
 
-/* A cell that is turned over, flat, or has a corner that does not exist. */
+/* A cell that is inverted, flat, or has a corner that does not exist. */
 static void bad_cells_are_seen(void **state)
 {
   struct vg_filled f;
@@ -173,8 +175,8 @@ static void bad_cells_are_seen(void **state)
   scene_end(&s);
 }
 
-/* A front that is not closed has three more edges that are not balanced for
- * each face that is missing, turned over, or there once too often. */
+/* A front that is not closed has three unbalanced edges for each face that is
+ * missing, reversed, or duplicated. */
 static void open_fronts_are_seen(void **state)
 {
   struct vg_filled f;
@@ -187,7 +189,7 @@ static void open_fronts_are_seen(void **state)
   f.n_face--; /* a new face is missing */
   assert_int_equal(vg_filled_defects(&p.front, &f, 1), 3);
   f.n_face++;
-  swap(&f.face[9][0], &f.face[9][2]); /* one is turned over */
+  swap(&f.face[9][0], &f.face[9][2]); /* one is reversed */
   assert_int_equal(vg_filled_defects(&p.front, &f, 1), 3);
   swap(&f.face[9][0], &f.face[9][2]);
   f.n_consumed--; /* one is not consumed */
@@ -203,7 +205,7 @@ static void open_fronts_are_seen(void **state)
   scene_end(&s);
 }
 
-/* A region is given the part of a front that it needs, which is open: the
+/* A region gets only the part of a front that it needs, which is open; the
  * boundary of its cells is closed all the same. */
 static void open_parts_of_a_front_are_no_defect(void **state)
 {
@@ -257,7 +259,7 @@ static void bad_lists_are_seen(void **state)
   scene_end(&s);
 }
 
-/* A void that is filled leaves no front: neither list may hold a face. */
+/* A filled void leaves no front: neither list may contain a face. */
 static void nothing_is_left_without_a_region(void **state)
 {
   const struct vg_fill_options options = VG_FILL_OPTIONS_INIT;

@@ -1,5 +1,6 @@
-/* On which side of a surface is the fluid? Every kind of surface for which the
- * answer was once wrong, and random ones, with shells turned at random. */
+/* The side of a surface on which the fluid is. Every kind of surface for which
+ * the answer was once wrong, and random ones, with shells reversed at
+ * random. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -91,7 +92,7 @@ static void add_cube(struct vg_mesh *m, double half, const char *const name[6],
   add_box(m, lo, hi, -1, name, bc);
 }
 
-/* --- the question -------------------------------------------------------- */
+/* --- the decision -------------------------------------------------------- */
 
 static double volume(const struct vg_mesh *m)
 {
@@ -134,7 +135,7 @@ static struct answer ask_with(struct vg_mesh *m,
       .threads = 1, .external = a.flow.kind == VG_FLOW_EXTERNAL
     };
 
-    /* The check agrees with the triangles that were turned and dropped. */
+    /* The check agrees with the triangles that were reversed and dropped. */
     assert_int_equal(vg_surface_check(m, &last, &r, &a.err), VG_OK);
     if (known && !o->all_regions) assert_int_equal(r.n_defect, 0);
   }
@@ -158,7 +159,7 @@ static void is_kind(const struct answer *a, enum vg_flow_kind kind)
   assert_int_equal(a->flow.kind, kind);
 }
 
-/* Two readings, both named with the options that select them. */
+/* Two possible readings, both reported with the options that select them. */
 static void is_refused(const struct answer *a)
 {
   assert_int_equal(a->st, VG_ERR_INPUT);
@@ -184,7 +185,8 @@ static void a_body_is_never_meshed_inside(void **state)
   }
 }
 
-/* Formats that define the orientation say where the fluid is. */
+/* In formats that define the orientation it determines the side of the
+ * fluid. */
 static void orientation_counts_where_it_is_defined(void **state)
 {
   const struct vg_flow_options trust = { .repair = 1,
@@ -203,7 +205,7 @@ static void orientation_counts_where_it_is_defined(void **state)
   add_ball(&m, 0, 0, 0, 1, -1, "");
   a = ask_with(&m, &trust);
   is_kind(&a, VG_FLOW_EXTERNAL);
-  /* A body whose walls all have conditions, inside out. */
+  /* A body all of whose walls have conditions, inside out. */
   add_cube(&m, 1, bare, walls);
   a = ask_with(&m, &trust);
   is_refused(&a);
@@ -272,7 +274,7 @@ static void a_tunnel_keeps_its_ball(void **state)
   }
 }
 
-/* Few triangles that enclose next to nothing are a fault of the surface. */
+/* Few triangles that enclose almost no volume are a defect of the surface. */
 static void bubbles_are_left_out(void **state)
 {
   static const double x[4][3] = {
@@ -304,8 +306,8 @@ static void bubbles_are_left_out(void **state)
   assert_true(a.volume > 3.5);
 }
 
-/* A block on the floor of a room: its patch is no part of the outer boundary.
- * A ball with the same block would be one with a hole: a body. */
+/* A block on the floor of a room: its patch is not part of the outer boundary.
+ * A ball with the same block would be a body with a hole. */
 static void a_room_keeps_its_block(void **state)
 {
   const double lo[3] = { 0, 0, 0 }, hi[3] = { 1, 1, 1 };
@@ -349,7 +351,7 @@ static void a_room_keeps_its_block(void **state)
   vg_mesh_release(&m);
 }
 
-/* A thick hollow block, or a box with something large in it. */
+/* A thick hollow block, or a box that contains something large. */
 static void doubtful_contents_are_refused(void **state)
 {
   const struct vg_flow_options external = { .repair = 1,
@@ -384,7 +386,7 @@ static void doubtful_contents_are_refused(void **state)
   assert_true(fabs(a.volume + 8 - 0.512) < 1e-9);
 }
 
-/* Conditions of both solvers, and names, count alike. */
+/* Conditions of both solvers, and names, count equally. */
 static void ducts_are_internal(void **state)
 {
   static const int32_t code[][6] = { { VG_BC_NONE, VG_BC_NONE, VG_BC_NONE,
@@ -468,7 +470,7 @@ static void several_regions_are_refused(void **state)
     struct vg_mesh m = VG_MESH_INIT;
     struct answer a;
 
-    /* A duct next to a body contradicts itself. */
+    /* A duct next to a body is a contradiction. */
     add_cube(&m, 1, ends, NULL);
     add_box(&m, lo, hi, -1, bare, NULL);
     a = ask(&m);
@@ -496,7 +498,7 @@ static void open_half_models_are_turned(void **state)
     }
 }
 
-/* The rims of skin and cavity both lie in the symmetry plane. */
+/* The rims of skin and cavity are both in the symmetry plane. */
 static void a_hollow_half_model_loses_its_cavity(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -556,8 +558,9 @@ static struct vg_mesh half_room(double r)
   return m;
 }
 
-/* A part of a sphere with a pocket is a domain around a half body, whatever the
- * direction of its normals. The same of an ellipsoid is a body with a dent. */
+/* Part of a sphere with a pocket is a domain around a half body, for either
+ * direction of its normals. The same shape of an ellipsoid is a body with a
+ * dent. */
 static void half_a_ball_around_half_a_body(void **state)
 {
   const double exact = 2 * 3.14159265358979 / 3 * (1000 - 8);
@@ -572,7 +575,7 @@ static void half_a_ball_around_half_a_body(void **state)
     if (way % 2) turn(&m, 0);
     a = ask(&m);
     is_kind(&a, is_round ? VG_FLOW_INTERNAL : VG_FLOW_EXTERNAL);
-    /* Chords of a fifth of the radius lie inside the spheres: 1.4 % less. */
+    /* Chords of a fifth of the radius are inside the spheres: 1.4 % less. */
     assert_true(fabs(a.volume / (is_round ? -exact : 1.2 * exact) - 1) < 0.02);
   }
 }
@@ -618,7 +621,7 @@ static void a_cap_is_named_or_removed(void **state)
   assert_int_equal(a.st, VG_ERR_INPUT);
 }
 
-/* A symmetry plane of a whole domain stays. */
+/* The symmetry plane of a whole domain is kept. */
 static void a_symmetry_plane_of_a_domain_stays(void **state)
 {
   static const int32_t code[][6] = { { 3, 3, 1, 3, 3, 3 },
@@ -638,7 +641,7 @@ static void a_symmetry_plane_of_a_domain_stays(void **state)
   }
 }
 
-/* An open tube is no half model, and not decided. */
+/* An open tube is no half model, and its flow side is not decided. */
 static void open_tubes_are_not_decided(void **state)
 {
   const double lo[3] = { 0, -1, -1 }, hi[3] = { 5, 1, 1 };
@@ -674,8 +677,8 @@ static double chance(void)
   return (double)(seed >> 11) / 9007199254740992.0;
 }
 
-/* Shells are turned at random. What comes out is what was built, or a refusal
- * that names both readings: never the inside of a body. */
+/* Shells are reversed at random. The result is the surface as built, or a
+ * refusal that names both readings: never the inside of a body. */
 static void random_surfaces_are_read_or_refused(void **state)
 {
   static const int32_t duct[6] = { 102, 101, 4, 4, 4, 4 };
@@ -712,7 +715,7 @@ static void random_surfaces_are_read_or_refused(void **state)
       continue;
     }
     n_read++;
-    /* A box without names around little is a domain, too. */
+    /* A box without names around small bodies is a domain, too. */
     if (kind != 1)
       assert_int_equal(a.flow.kind,
                        internal ? VG_FLOW_INTERNAL : VG_FLOW_EXTERNAL);
@@ -720,7 +723,7 @@ static void random_surfaces_are_read_or_refused(void **state)
     assert_int_equal(a.flow.n_body, n);
     assert_true(a.flow.n_evidence > 0);
   }
-  assert_true(n_read > 100); /* or nothing was tested */
+  assert_true(n_read > 100); /* else nothing was tested */
 }
 
 int main(void)

@@ -1,5 +1,5 @@
 /* Meshes for Fluent, read back by the published grammar: every side of every
- * cell is there once, turned as it must be. */
+ * cell occurs once, with the required orientation. */
 #include "mixed_support.h"
 
 #include "io/mesh/fluent.h"
@@ -10,7 +10,7 @@ struct reader {
   size_t n_side;
 };
 
-/* What the file must go on with, blanks and line ends aside. */
+/* The text that must come next in the file, ignoring blanks and line ends. */
 static void expect(struct reader *r, const char *text)
 {
   for (; *text; text++) {
@@ -69,8 +69,8 @@ static void read_cells(struct reader *r, const struct vg_mesh *m)
   expect(r, "))");
 }
 
-/* A side of a cell (from 1), with its nodes outward; key[3] holds the cell,
- * behind the nodes of a triangle and, with the fourth node, in node[]. */
+/* A side of a cell (from 1), with its nodes outward. key[3] holds the cell,
+ * after the nodes of a triangle; a fourth node is in node[]. */
 static void add_side(struct reader *r, uint32_t cell, int n,
                      const uint32_t *node, int is_inward)
 {
@@ -83,7 +83,7 @@ static void add_side(struct reader *r, uint32_t cell, int n,
   assert_true(cell > 0);
 }
 
-/* Is this, with its nodes outward, a side of the cell? */
+/* Check that these nodes, in outward order, are a side of the cell. */
 static void check_side(const struct vg_mesh *m, uint32_t cell, int n,
                        const uint32_t *node)
 {

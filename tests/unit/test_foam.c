@@ -5,7 +5,7 @@
 
 #include "io/mesh/foam.h"
 
-/* --- a reader of what was written, apart from the writer --- */
+/* --- a reader of the written files, independent of the writer ------------ */
 
 struct foam {
   size_t n_point, n_face, n_inner, n_cell;
@@ -25,8 +25,8 @@ static const char *in_case(const char *dir, const char *file)
   return path[turn];
 }
 
-/* The file and the place behind its head; *n is the length of the list that
- * stands there, *at its first byte. */
+/* The file and the position after its header; *n is the length of the list
+ * there, *at its first byte. */
 static char *open_list(const char *dir, const char *file, size_t *n, char **at)
 {
   char name[64];
@@ -139,7 +139,7 @@ static void unload(struct foam *f)
   free(f->boundary);
 }
 
-/* --- what has to hold --- */
+/* --- invariants --- */
 
 static void upper_triangular(const struct foam *f)
 {
@@ -170,8 +170,8 @@ static void area(const struct foam *f, size_t i, double n[3], double *volume)
                                           : (a[k] + b[k] + c[k]) / 3);
 }
 
-/* Faces of every cell close it, seen from owner and neighbour; the volume is
- * positive, so the faces point out; all volumes add up to `total`. */
+/* The faces of every cell close it, seen from owner and neighbour. Its volume
+ * is positive, so the faces point out; all volumes add up to `total`. */
 static void closed_and_positive(const struct foam *f, double total)
 {
   double(*sum)[4] = calloc(f->n_cell, sizeof *sum), all = 0;
@@ -316,7 +316,7 @@ static void all_kinds_of_cells(void **state)
   for (size_t i = f.n_inner; i < f.n_inner + 20; i++)
     for (uint32_t k = 1; k <= f.face[i][0]; k++)
       assert_true(f.point[f.face[i][k]][2] == 0);
-  /* Text says the same, to the last bit. */
+  /* The text file has the same values, to the last bit. */
   write_case(dir, &m, 1);
   load(dir, 1, &text);
   assert_memory_equal(f.point, text.point, m.n_point * sizeof *m.point);
@@ -332,7 +332,8 @@ static void all_kinds_of_cells(void **state)
   vg_mesh_release(&m);
 }
 
-/* The order of cells and points must not matter; faces are found from far. */
+/* The order of cells and points must not matter; faces between distant numbers
+ * are found. */
 static void cells_in_any_order(void **state)
 {
   const char *dir = io_temp("order.openfoam");
@@ -384,7 +385,7 @@ static void names_and_types(void **state)
     m.patch[k].bc = given[k].bc;
     m.patch[k].bc_fun3d = given[k].fun3d;
   }
-  /* Top (planar), one side of five planes, and nothing. */
+  /* Top (planar), one side of five planes, and an empty patch. */
   for (size_t i = 0; i < m.n_tri; i++) m.tri_patch[i] = 4;
   for (size_t i = 0; i < m.n_quad; i++)
     if (m.quad_patch[i] == 2) m.quad_patch[i] = 3;
@@ -453,7 +454,7 @@ static void unwritable_places_are_told(void **state)
   vg_mesh_release(&m);
 }
 
-/* What a user has put into a case stays; what belongs to the old mesh goes. */
+/* Files that a user added to a case stay; files of the old mesh are removed. */
 static void a_case_is_remeshed_in_place(void **state)
 {
   const char *dir = io_temp("again.openfoam");
@@ -509,7 +510,7 @@ static void a_case_is_remeshed_in_place(void **state)
   vg_mesh_release(&many);
 }
 
-/* Placing into nothing makes the whole case. */
+/* Placing into an empty folder makes the whole case. */
 static void a_case_is_placed(void **state)
 {
   const char *from = io_temp("from.openfoam"), *to = io_temp("to.openfoam");
@@ -567,8 +568,8 @@ static void a_linked_mesh_stays_linked(void **state)
   vg_mesh_release(&m);
 }
 
-/* A pole that every cell has: chains of one point would make this quadratic,
- * minutes instead of a moment. */
+/* A pole that every cell uses: chains by a single point would make this
+ * quadratic, taking minutes. */
 static void a_point_of_many_cells(void **state)
 {
   const uint32_t n = 60000;
@@ -587,7 +588,7 @@ static void a_point_of_many_cells(void **state)
   vg_mesh_add_patch(&m, 1, "all");
   for (uint32_t i = 0; i < n; i++) {
     double turn = 2 * 3.14159265358979 * i / n, *p = m.point[i + 2];
-    /* Every other cell far away: few mates follow at once. */
+    /* Every other cell has a distant number: few neighbours are consecutive. */
     uint32_t at = i % 2 ? n - 1 - i / 2 : i / 2;
     uint32_t a = at + 2, b = (at + 1) % n + 2;
     const uint32_t cell[4] = { 0, a, b, 1 };

@@ -1,5 +1,5 @@
 /* Forecasts: regular trees of uniform boxes, sums, tasks that the model can
- * run, and the same tasks as a real run has. */
+ * run, and agreement with the tasks of a real run. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -72,7 +72,8 @@ static double sum_of(const struct vg_spans *s, char kind)
   return sum;
 }
 
-/* Few leaves: planes one after another, always the middle of what is left. */
+/* Few leaves: planes one after another, always through the middle of the
+ * remaining void. */
 static void few_leaves_have_whole_planes(void **state)
 {
   struct vg_forecast o;
@@ -90,8 +91,9 @@ static void few_leaves_have_whole_planes(void **state)
   release(&s);
 }
 
-/* What a maker parted: a task that takes what its rates say, and leaves behind
- * it; a part that may be cut has the tasks that it would have by itself. */
+/* Decomposed by a maker: one task whose cost follows from its rates, and the
+ * leaves after it. A subdomain that may be cut has the tasks that it would have
+ * by itself. */
 static void parts_follow_their_maker(void **state)
 {
   static const struct vg_decomposition_rate rate = { 2e-6, 3e-6, 5e-6,
@@ -146,7 +148,7 @@ static void parts_follow_their_maker(void **state)
   release(&s);
 }
 
-/* Eight blocks at once; they differ by what octants beside planes do: some per
+/* Eight blocks at once; they differ by the octants next to planes: some per
  * cent. */
 static void a_box_has_a_regular_tree(void **state)
 {
@@ -159,7 +161,7 @@ static void a_box_has_a_regular_tree(void **state)
   o = look(&s, rule, 3);
   assert_int_equal(o.n_leaf, 8);
   assert_int_equal(o.n_node, 9);
-  assert_int_equal(o.n_tile, 12 + 1); /* a place where three meet */
+  assert_int_equal(o.n_tile, 12 + 1); /* a point where three meet */
   assert_int_equal(o.n_pencil, 5);
   assert_int_equal(o.node[0].n_child, 8);
   assert_true(o.node[0].parent == SIZE_MAX);
@@ -180,7 +182,8 @@ static void a_box_has_a_regular_tree(void **state)
   release(&s);
 }
 
-/* Nothing is lost but what single precision of the shares drops. */
+/* Nothing is lost except the rounding of the shares, which are single
+ * precision. */
 static void sums_are_the_loads(void **state)
 {
   static const char *const name[] = { "box", "sphere", "wing" };
@@ -305,9 +308,10 @@ static void levels_and_axes_are_obeyed(void **state)
   release(&s);
 }
 
-/* Far more bisections than there are cells: where zones leave nothing, there
- * is no void to be cut, and further levels add no task. The run of this box at
- * 12 levels made 81 cuts, 8 of them repeated, 185 tiles and no leaf. */
+/* Far more bisections than there are cells. Where separator zones leave no
+ * cells, there is no void to cut, and further bisections add no task. The run
+ * of this box with 12 bisections made 81 cuts, 8 of them repeated, 185 tiles
+ * and no leaf. */
 static void levels_end_where_nothing_is_left(void **state)
 {
   struct vg_cut_rule rule = { .leaf_cells = 0, .first_axis = -1 };
@@ -374,7 +378,7 @@ static int has(const struct vg_spans *s, const struct vg_span *one)
   return 0;
 }
 
-/* One for each zone, after all leaves; none where nothing is cut. */
+/* One repair for each separator zone, after all leaves; none without cuts. */
 static void repairs_come_last(void **state)
 {
   struct vg_forecast o, whole;
@@ -402,8 +406,9 @@ static void repairs_come_last(void **state)
 }
 
 /* A uniform box is cut by the same planes: every pencil and tile of the whole
- * by its name, as many of each kind, cells of zones within a fifth (they were
- * fitted over boxes ten times as large) and of leaves within a tenth. */
+ * has the same name, the number of each kind is equal, the cells of zones agree
+ * within a fifth (they were fitted over boxes ten times as large) and those of
+ * leaves within a tenth. */
 static void a_run_has_these_tasks(void **state)
 {
   struct vg_partition_options p = VG_PARTITION_OPTIONS_INIT;
@@ -437,7 +442,7 @@ static void a_run_has_these_tasks(void **state)
   release(&s);
 }
 
-/* Of meshes of boxes and spheres, measured: 2,068,887 and 1,921,331 cells. */
+/* Measured meshes of boxes and spheres: 2,068,887 and 1,921,331 cells. */
 static void points_follow_from_cells(void **state)
 {
   (void)state;

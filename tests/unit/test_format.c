@@ -69,8 +69,8 @@ static void unknown_suffixes_list_the_known(void **state)
   assert_int_equal(vg_format_write("wing", &m, &err), VG_ERR_FORMAT);
 }
 
-/* Every format that can be written and read gives T1's boundary back; those
- * for volumes its cell too. */
+/* Every format that can be written and read preserves T1's boundary; volume
+ * formats its cell too. */
 static void every_format_round_trips(void **state)
 {
   static const struct {
@@ -151,7 +151,7 @@ static void the_mapbc_beside_is_used(void **state)
     vg_mesh_release(&back);
     unlink(turn ? packed : bc);
   }
-  /* A broken companion is an error, not a silence. */
+  /* A broken companion file is an error, not ignored. */
   io_write_file(bc, "x\n", 2);
   assert_int_equal(vg_mesh_read(grid, &back, &info, &err), VG_ERR_FORMAT);
   assert_non_null(strstr(err.text, "format_bc.mapbc"));
@@ -161,8 +161,8 @@ static void the_mapbc_beside_is_used(void **state)
   vg_mesh_release(&m);
 }
 
-/* What an earlier run wrote goes with a mesh, and not with a surface unless it
- * is named. */
+/* A .mapbc written by an earlier run is read with a mesh, but not with a
+ * surface unless it is named. */
 static void the_mapbc_of_a_run_is_no_input(void **state)
 {
   const char *grid = io_temp("format_own.lb8.ugrid");
@@ -227,7 +227,7 @@ static void surfaces_leave_inner_points_out(void **state)
   vg_mesh_release(&back);
 }
 
-/* By its name alone a .front finds its project. */
+/* Given its name alone, a .front finds its project. */
 static void reads_the_real_project(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;

@@ -5,8 +5,8 @@
 
 #include "io/vgrid/vgrid.h"
 
-/* T1 as a project (formats.md 1.6), with other values for each field of its
- * source. */
+/* T1 as a project (formats.md 1.6), with a different value for each field of
+ * its source. */
 static const char t1_d3m[] =
   "#VGRID VERSION\n3.6\n#Project Name\nT1\n#\n"
   "               1 (grid)\n            0.15 (rate1)\n"
@@ -45,7 +45,7 @@ static const char t1_d3m[] =
   "0                0                -1               (point 1)\n"
   "0                0                3                (point 2)\n";
 
-/* Its surface, one triangle per patch, as VGRID would leave it. */
+/* Its surface, one triangle per patch, as VGRID would write it. */
 static const char t1_front[] =
   "      npoit      nelet    npoif    nface    nboun    nfacs    nbouc\n"
   "          4          0        4        4        4        4        4"
@@ -151,7 +151,7 @@ static void writes_what_it_read(void **state)
   p.source->h0 = 1.0 / 3;
   if (vg_d3m_write(path, &p, &err)) fail_msg("%s", err.text);
   if (vg_d3m_read(path, &back, &err)) fail_msg("%s", err.text);
-  /* Eleven digits in the columns of coordinates and sources. */
+  /* Coordinates and sources are written with eleven digits. */
   assert_true(fabs(back.point[3][2] - 1.0 / 3) < 1e-11);
   assert_true(fabs(back.source->h0 - 1.0 / 3) < 1e-11);
   back.point[3][2] = 1;
@@ -264,14 +264,15 @@ static void faces_get_the_patches_of_the_project(void **state)
   vg_project_release(&p);
 }
 
-/* Two half discs that share one loop of curves differ by direction only; and
- * two curves have the same ends. The front is a lens of four faces. */
+/* Two half discs bounded by the same loop of curves differ only in direction,
+ * and two curves have the same ends. The front is a lens of four faces. */
 static void patches_inside_one_loop_are_told_apart(void **state)
 {
   static const double at[4][3] = {
     { -1, 0, 0 }, { 0, -1, 0 }, { 1, 0, 0 }, { 0, 1, 0 }
   };
-  /* Upper side 7, lower side 9; curve 1 by point 1, curve 2 by point 3. */
+  /* Upper side 7, lower side 9; curve 1 through point 1, curve 2 through point
+   * 3. */
   uint32_t curve[2][3] = { { 0, 1, 2 }, { 0, 3, 2 } };
   int32_t loop[2][2] = { { 1, -2 }, { 2, -1 } };
   double point[5][3] = {
@@ -400,7 +401,7 @@ static int compare_face(const void *a, const void *b)
   return memcmp(a, b, 3 * sizeof(uint32_t));
 }
 
-/* Nodes rotated so that the lowest stands first, and the patch number. */
+/* Nodes rotated so that the lowest comes first, and the patch number. */
 static uint32_t (*sorted_faces(const struct vg_mesh *m))[4]
 {
   uint32_t(*face)[4] = malloc(m->n_tri * sizeof *face);
@@ -454,8 +455,8 @@ static void patches_of_the_real_front_are_those_of_its_bc(void **state)
     j += c >= 0;
   }
   for (size_t j = 0; j < 6810; j++) in_bc[b[j][3]]++;
-  print_message("%zu faces in common\n", n_common);
-  /* The floor (viscous) and the side across are the unchanged ones. */
+  print_message("%zu shared faces\n", n_common);
+  /* The floor (viscous) and the opposite side are the unchanged patches. */
   assert_int_equal(per_patch[3], in_bc[3]);
   assert_int_equal(per_patch[4], in_bc[4]);
   assert_true(n_common < 6810);

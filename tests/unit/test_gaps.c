@@ -1,5 +1,5 @@
-/* Gaps between surfaces: widths that are known, what is none, and what a new
- * surface makes of them. */
+/* Gaps between facing surfaces: known widths, cases without a gap, and the
+ * edges of a surface remeshed for gaps. */
 #include "remesh_shapes.h"
 
 #include "core/remesh/gaps.h"
@@ -32,8 +32,9 @@ static void find(const struct vg_mesh *m, double edges, int threads,
   if (vg_gaps_find(m, &o, g, &err) < 0) fail_msg("%s", err.text);
 }
 
-/* Two plates that overlap by half, of two triangles a side: every place is in
- * the gap, in pairs across it, and they lie as dense as it is wide. */
+/* Two plates that overlap by half, with two triangles per side: every sample
+ * point is in the gap, in pairs across it, and their spacing is the width of
+ * the gap. */
 static void measures_a_slot(void **unused)
 {
   const double size[3] = { 1, 1, 0.2 }, gap = 0.02, edges = 4;
@@ -53,7 +54,7 @@ static void measures_a_slot(void **unused)
                        g.x[i ^ 1][2] > g.x[i][2] ? size[2] : size[2] + gap,
                        1e-12);
   }
-  /* An area of 2 x 0.5, seen from both sides, in right triangles with an
+  /* An area of 2 x 0.5, seen from both sides, in right triangles with a
    * hypotenuse of gap / sqrt 2 to gap: of gap^2 / 8 to gap^2 / 4. */
   assert_true(g.n >= (size_t)(2 * 4 / (gap * gap) * 0.9));
   assert_true(g.n <= (size_t)(2 * 8 / (gap * gap) * 1.1));
@@ -61,8 +62,8 @@ static void measures_a_slot(void **unused)
   vg_mesh_release(&m);
 }
 
-/* The thickness of a plate is no gap, nor are planes at right angles, nor what
- * is wider than the largest size would need. */
+/* The thickness of a plate is not a gap. Neither are planes at right angles,
+ * nor distances wider than the largest size would need. */
 static void leaves_the_rest_alone(void **unused)
 {
   const double plate[3] = { 1, 1, 0.001 }, size[3] = { 1, 1, 0.2 };
@@ -76,17 +77,17 @@ static void leaves_the_rest_alone(void **unused)
   assert_int_equal(g.n, 0);
   vg_mesh_release(&m);
   shape_box(&m, size, n);
-  add_box(&m, size, n, 0, 0.25); /* 4 x 0.04 x 0.65 is less than it */
+  add_box(&m, size, n, 0, 0.25); /* 4 x 0.04 x 0.65 is less than 0.05 */
   find(&m, 4, 1, &g);
   assert_int_equal(g.n, 0);
-  find(&m, 8, 1, &g); /* 8 x 0.04 is more than it */
+  find(&m, 8, 1, &g); /* 8 x 0.04 is more than 0.05 */
   assert_true(g.n > 0);
   vg_gaps_release(&g);
   vg_mesh_release(&m);
 }
 
-/* Of two cylinders side by side: the narrowest place is between them, and the
- * gap opens as their circles do. */
+/* Two cylinders side by side: the narrowest point is between them, and the gap
+ * widens with their circles. */
 static void follows_round_sides(void **unused)
 {
   const double r[3] = { 0.5, 0.5, 2 }, gap = 0.01;
@@ -105,7 +106,7 @@ static void follows_round_sides(void **unused)
               0);
   find(&m, 3, 1, &g);
   assert_true(g.n > 0);
-  /* Facets are inside of the circles by 0.5 (1 - cos(pi / 80)). */
+  /* Facets are inside the circles by 0.5 (1 - cos(pi / 80)). */
   assert_true(g.narrowest > 0.99 * gap && g.narrowest < gap + 0.002);
   assert_true(fabs(g.at[1]) < 0.1 && fabs(g.at[2]) < 0.3);
   for (size_t i = 0; i < g.n; i += 2) {
@@ -124,8 +125,8 @@ static void follows_round_sides(void **unused)
   vg_mesh_release(&b);
 }
 
-/* Edges of a new surface in the slot are a fourth of it or less, and large
- * again away from it. */
+/* Edges of the remeshed surface in the slot are at most a fourth of its width,
+ * and long again away from it. */
 static void makes_edges_as_short(void **unused)
 {
   const double size[3] = { 1, 0.3, 0.2 }, gap = 0.04, edges = 4;
@@ -167,9 +168,9 @@ static void makes_edges_as_short(void **unused)
   vg_mesh_release(&m);
 }
 
-/* The plates of measures_a_slot: the forecast of places is right within a
- * factor of 2 and that of triangles follows from the area of the gap; nothing
- * is made where it is too high. */
+/* The plates of measures_a_slot: the forecast of sample points is right within
+ * a factor of 2, and that of triangles follows from the area of the gap. If the
+ * forecast exceeds the limit, no sample points are made. */
 static void forecasts(void **unused)
 {
   const double size[3] = { 1, 1, 0.2 }, gap = 0.02, edges = 4;

@@ -1,10 +1,10 @@
-/* Gmsh's .msh: what is written comes back; every layout that Gmsh itself
- * writes is read; damaged ones are refused. */
+/* Gmsh's .msh: written meshes are read back; every layout that Gmsh itself
+ * writes is read; damaged files are refused. */
 #include "mixed_support.h"
 
 #include "io/mesh/gmsh.h"
 
-/* --- files as Gmsh lays them out, written apart from the library --- */
+/* --- files as Gmsh lays them out, written independently of the library --- */
 
 struct layout {
   int version, binary, big, wide;
@@ -91,14 +91,14 @@ static void start(struct file *f, const struct layout *l)
 static const double t1_point[5][3] = {
   { 9, 9, 9 }, { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
 };
-/* Numbers of the nodes: neither in order nor without gaps; the first is of no
- * face. */
+/* Node numbers are neither in order nor contiguous; no face uses the first
+ * node. */
 static const int64_t t1_tag[5] = { 3, 40, 20, 30, 10 };
 static const int64_t t1_face[4][3] = {
   { 40, 20, 30 }, { 40, 10, 20 }, { 40, 30, 10 }, { 20, 10, 30 }
 };
 
-/* Surfaces 5 (in group 7, turned round), 6 (in none); points and lines. */
+/* Surfaces 5 (in group 7, reversed), 6 (in no group); points and lines. */
 static void make_4(struct file *f, const struct layout *l)
 {
   start(f, l);
@@ -144,7 +144,7 @@ static void make_4(struct file *f, const struct layout *l)
   text(f, "\n$EndElements\n");
 }
 
-/* The number of elements in a block and what each of them begins with. */
+/* The number of elements in a block and the first values of each of them. */
 static void block_2(struct file *f, int type, int n, int n_tag)
 {
   if (!f->l->binary) return;
@@ -211,7 +211,7 @@ static void every_layout_is_read(void **state)
     make_file(&f, layouts + i);
     if (io_parse_bytes(vg_gmsh_parse, f.b, f.n, &m, &err) != VG_OK)
       fail_msg("layout %zu: %s", i, err.text);
-    /* the point of no face is gone, the others are in their order */
+    /* the point without faces is removed, the others keep their order */
     assert_int_equal(m.n_point, 4);
     assert_memory_equal(m.point, t1.point, 4 * sizeof *m.point);
     assert_int_equal(m.n_tri, 4);
@@ -228,8 +228,8 @@ static void every_layout_is_read(void **state)
   vg_mesh_release(&t1);
 }
 
-/* A file that ends anywhere, or has any byte changed, is refused with words
- * or read as a mesh that holds together. */
+/* A file truncated anywhere, or with any byte modified, is refused with a
+ * message or read as a consistent mesh. */
 static void no_damage_is_swallowed(void **state)
 {
   (void)state;
@@ -361,8 +361,8 @@ static void all_kinds_come_back(void **state)
   vg_mesh_release(&back);
 }
 
-/* The order of faces and their sides are kept where no cells decide; numbers
- * that Gmsh cannot have become 1, 2, ... */
+/* The order of faces and their orientation are kept if no cells determine it;
+ * numbers that Gmsh does not permit become 1, 2, ... */
 static void surfaces_come_back(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT, back = VG_MESH_INIT;

@@ -1,5 +1,5 @@
-/* Graphs parted by METIS: balanced, few edges cut, in one piece each, the same
- * every time; what cannot be parted is refused. */
+/* Graphs partitioned by METIS: balanced, few edges cut, each part connected,
+ * reproducible; graphs that cannot be partitioned are refused. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -57,7 +57,7 @@ static size_t n_cut(const struct vg_graph *g, const uint32_t *part)
   return n / 2;
 }
 
-/* Vertices of its part that are reached from the first one of each part. */
+/* Vertices that are reached from the first vertex of their part. */
 static size_t n_reached(const struct vg_graph *g, const uint32_t *part, int n)
 {
   uint8_t seen[N] = { 0 };
@@ -98,7 +98,7 @@ static void parts_are_even_and_hang_together(void **state)
     struct vg_graph_options o = { n[k], 1.03, 1, NULL };
 
     assert_int_equal(vg_graph_part(&g, &o, part, NULL), VG_OK);
-    /* parts of 40 vertices cannot be evener than a vertex or two */
+    /* parts of 40 vertices cannot be balanced better than to a vertex or two */
     assert_true(imbalance(&g, part, n[k]) < 1.03 + 2.0 * n[k] / N);
     /* squares of the same area cut 2 sqrt(n) sides; METIS is near that */
     assert_true((double)n_cut(&g, part) <= 1.5 * SIDE * n[k] / 2);
@@ -122,7 +122,7 @@ static void weights_count(void **state)
   assert_true(imbalance(&g, part, 4) < 1.05);
 }
 
-/* An edge of great price is not cut. */
+/* An edge of large weight is not cut. */
 static void prices_count(void **state)
 {
   struct vg_graph_options o = { 2, 1.1, 0, NULL };
@@ -131,7 +131,7 @@ static void prices_count(void **state)
   uint32_t part[N];
 
   (void)state;
-  for (size_t k = 0; k < N; k++) /* rows hold together */
+  for (size_t k = 0; k < N; k++) /* rows are connected by heavy edges */
     for (uint64_t j = g.begin[k]; j < g.begin[k + 1]; j++)
       price[j] = g.to[j] / SIDE == k / SIDE ? 1000 : 1;
   g.edge = price;
@@ -156,8 +156,8 @@ static void what_cannot_be_is_refused(void **state)
   assert_int_equal(part[0], 7);
 }
 
-/* Points of a line, of weights that rise: parts are runs of nearly the same
- * weight, none empty even where there are as many as points. */
+/* Points on a line, with increasing weights: parts are contiguous runs of
+ * nearly equal weight, and none is empty even with one part per point. */
 static void bisection_is_even(void **state)
 {
   enum { POINTS = 1000 };

@@ -56,7 +56,7 @@ static void geometric_when_r2_is_0(void **state)
   }
 }
 
-/* Of the layers, to the rounding of heights. */
+/* Thickness of the layers, to the rounding of heights. */
 static void thickness_grows_by_cap_at_most(void **state)
 {
   double d[61];
@@ -107,7 +107,7 @@ static void a_compressed_column_fits(void **state)
       vg_growth_law_heights(&laws[i], cap, 40, d);
       assert_true(d[40] <= height);
       assert_true(d[1] == laws[i].delta1);
-      /* and no lower than need be: 28 halvings */
+      /* and no lower than necessary: 28 halvings */
       if (cap == laws[i].cap) continue;
       vg_growth_law_heights(&laws[i], cap * (1 + 1e-7), 40, d);
       assert_true(d[40] > height);
@@ -142,8 +142,8 @@ static void y_plus_there_and_back(void **state)
       assert_true(fabs(vg_y_plus(y, re, 2.5) / y_plus - 1) < 1e-14);
       assert_true(fabs(vg_first_height(y_plus, re, 5) / y - 2) < 1e-14);
     }
-  /* By hand: Re^(1/7) = 9.0582 for 5 million, c_f = 0.0028703, so that
-   * sqrt(c_f / 2) = 0.037884 and y = 1 / (5e6 * 0.037884). */
+  /* By hand: Re^(1/7) = 9.0582 for 5 million, c_f = 0.0028703, so that sqrt(c_f
+   * / 2) = 0.037884 and y = 1 / (5e6 * 0.037884). */
   assert_true(fabs(vg_first_height(1, 5e6, 1) / 5.2793e-6 - 1) < 1e-4);
 }
 
@@ -169,7 +169,7 @@ static void a_rate_for_the_total(void **state)
   assert_true(vg_growth_law_rate_for_total(0.1, 1, 10, 1) < 1e-12);
 }
 
-/* Levels of a column, and a coordinate that its direction leaves alone. */
+/* Levels of a column, and a coordinate that its direction does not change. */
 static void columns_have_points(void **state)
 {
   double point[1][3] = { { 0.1, 1.0 / 3, -7 } }, d[VG_LEVELS_MAX + 1], x[6][3];
@@ -201,7 +201,7 @@ static void columns_have_points(void **state)
   assert_string_equal(vg_layer_cause_name(VG_CAUSE_SLIDE), "slide");
 }
 
-/* The numbers of the workshops, to the digits they are given with. */
+/* The numbers of the workshops, to the published digits. */
 static void members_of_a_family(void **state)
 {
   static const double ratio[6] = { 1.16, 1.104, 1.068, 1.045, 1.03, 1.02 };
@@ -221,8 +221,8 @@ static void members_of_a_family(void **state)
   }
 }
 
-/* As many times more layers reach as high; an even family keeps the height to
- * what the last layer may add. */
+/* A finer member of an even family has proportionally more layers and the same
+ * total height, to within the thickness of the last layer. */
 static void an_even_family_is_as_high(void **state)
 {
   struct vg_growth_law law = { 1e-3, 0.2, 0, 1.3, 1 }, half = law;

@@ -1,4 +1,4 @@
-/* base/heap.h and base/buckets.h against a list that is searched. */
+/* base/heap.h and base/buckets.h, compared with a list that is searched. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -35,8 +35,8 @@ static size_t first_of(const struct item *list, size_t n)
   return first;
 }
 
-/* Items come and leave at random; few different keys, so that the number
- * decides often. */
+/* Items are inserted and removed at random; there are few different keys, so
+ * that the item number often decides. */
 static void leave_in_order(void **state)
 {
   static struct item heap[MOST], list[MOST];
@@ -90,7 +90,7 @@ static void leave_sorted(void **state)
     }
 }
 
-/* The first of the lowest class, as the list is in the order of arrival. */
+/* The first item of the lowest class; the list is in the order of arrival. */
 static size_t lowest_of(const int *class, const uint32_t *item, size_t n)
 {
   size_t lowest = 0;
@@ -100,7 +100,8 @@ static size_t lowest_of(const int *class, const uint32_t *item, size_t n)
   return lowest;
 }
 
-/* Items come and leave at random, some again; classes beyond the ends too. */
+/* Items are inserted and removed at random, some repeatedly; classes beyond the
+ * ends too. */
 static void classes_in_turn(void **state)
 {
   static int class[MOST];

@@ -1,4 +1,4 @@
-/* The spatial hash: points near a place are found, those far off are not. */
+/* The spatial hash: points near a position are found, distant ones are not. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -33,11 +33,12 @@ static double spacing(const double x[3])
 }
 
 /* The list is in single precision, relative to the centre, and radii are below
- * 2: distances are good to 1e-6. Queries with a point so near to the radius are
- * drawn again, so that the count is exact. */
+ * 2: distances are accurate to 1e-6. Queries with a point this close to the
+ * radius are drawn again, so that the count is exact. */
 #define ROUNDING 1e-6
 
-/* Points of x within r of c, or -1 where rounding decides of one. */
+/* Number of points of x within r of c, or -1 if rounding decides for one of
+ * them. */
 static int count_within(size_t n, const double (*x)[3], const double c[3],
                         double r)
 {
@@ -103,7 +104,8 @@ static void lists_what_a_search_finds(void **state)
   free_grid(s);
 }
 
-/* Keys of blocks are shorter than their places: they repeat. */
+/* The keys of blocks have fewer bits than their coordinates, so two blocks can
+ * have the same key. */
 static void blocks_with_one_key_are_two(void **state)
 {
   static const double far[] = { 0x1p18, 0x1p20, 0x1p21, 0x1p22, 0x1p30 };

@@ -1,4 +1,4 @@
-/* core/geometry/hilbert.h: bits between bits, one by one. */
+/* core/geometry/hilbert.h: interleaved bits, compared one by one. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,7 +32,7 @@ static void interleaves(void **state)
   assert_true(vg_interleave3(0x1fffff) == by_bits(0x1fffff, 21, 3));
 }
 
-/* Cells that follow each other along the curve share a side. */
+/* Consecutive cells along the curve share a side. */
 static void walks_from_cell_to_cell(void **state)
 {
   const double lo[3] = { 0, 0, 0 };

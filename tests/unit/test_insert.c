@@ -1,5 +1,5 @@
-/* Insertion by cavities: Delaunay whatever the points, constraints kept, and
- * a refusal that changes nothing. */
+/* Insertion by cavities: the result is Delaunay for any points, constraints are
+ * kept, and a refusal changes nothing. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,8 +11,8 @@
 
 #include "tets_support.h"
 
-/* Insert n points into the cube -half..half; all must be taken, and every
- * face be Delaunay at the end, by the exact predicate. */
+/* Insert n points into the cube -half..half. All must be accepted, and every
+ * face must be Delaunay at the end, by the exact predicate. */
 static void insert_cloud(size_t n, const double (*x)[3], double half)
 {
   struct vg_tets t = VG_TETS_INIT;
@@ -91,7 +91,7 @@ static void points_on_a_line_and_a_plane(void **state)
     x[i][1] = i < 20 ? x[i][0] : (i / 20 - 10) / 32.0;
     x[i][2] = i < 20 ? x[i][0] : 0.125;
   }
-  for (int i = 20; i < 400; i++) /* not twice the same point */
+  for (int i = 20; i < 400; i++) /* no duplicate points */
     if (x[i][0] == 0.125 && x[i][1] == 0.125) x[i][2] = -0.5;
   insert_cloud(400, (const double(*)[3])x, 1);
 }
@@ -111,7 +111,7 @@ static void points_that_crowd_together(void **state)
 
 /* --- refusal ------------------------------------------------------------ */
 
-/* The cells of t as they are now. */
+/* A copy of the current cells of t. */
 static void copy_of(const struct vg_tets *t, struct vg_tets *c)
 {
   *c = *t;
@@ -171,7 +171,7 @@ static void duplicates_change_nothing(void **state)
   vg_tets_release(&t);
 }
 
-/* On a face of the hull there is no cavity that the point sees. */
+/* A point on a face of the hull has no cavity from which it is visible. */
 static void points_on_the_hull_are_refused(void **state)
 {
   struct vg_tets t = VG_TETS_INIT;
@@ -214,7 +214,8 @@ static int in_plane(const struct vg_tets *t, size_t c, int i)
   return 1;
 }
 
-/* 5 x 5 x 4 cubes with the faces at z = 2 fixed and what lies below outside. */
+/* 5 x 5 x 4 cubes with the faces at z = 2 fixed, and the cells below flagged as
+ * outside. */
 static void start_layers(struct vg_tets *t)
 {
   const int n[3] = { 5, 5, 4 };
@@ -275,7 +276,7 @@ static void constrained_faces_stay(void **state)
   vg_tets_release(&t);
 }
 
-/* Faces in the plane have edges 1, 1, sqrt 2: mean (squared) edge 1.155. */
+/* Faces in the plane have edges 1, 1, sqrt 2: root mean square 1.155. */
 static void clearance_over_constrained_faces(void **state)
 {
   struct vg_tets t = VG_TETS_INIT;
@@ -295,7 +296,8 @@ static void clearance_over_constrained_faces(void **state)
   vg_tets_release(&t);
 }
 
-/* Every face between the first cells is fixed: each point stays at home. */
+/* Every face between the first cells is fixed: each point stays in its first
+ * cell. */
 static void a_point_shut_in(void **state)
 {
   const int n[3] = { 2, 2, 2 };

@@ -1,4 +1,4 @@
-/* Layers and field in one mesh: conforming, positive, in order. */
+/* Layers and isotropic region in one mesh: conforming, positive, in order. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,7 +28,7 @@ static double volume6(const struct vg_mesh *m, uint32_t a, uint32_t b,
          u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
-/* Layer cells, or corners of them, of no positive volume. */
+/* Layer cells, or corners of them, without positive volume. */
 static size_t count_flat(const struct vg_mesh *m,
                          const struct vg_join_info *info)
 {
@@ -60,7 +60,8 @@ static size_t count_flat(const struct vg_mesh *m,
   return n;
 }
 
-/* All that concerns how cells meet; volumes of the cone are its own affair. */
+/* Everything about the connectivity of cells; volumes of the cone are not
+ * checked. */
 static void assert_conforming(const struct vg_mesh *m, struct vg_mesh_report *r)
 {
   assert_int_equal(vg_mesh_judge(m, NULL, r, NULL), VG_OK);
@@ -90,14 +91,15 @@ static void assert_boundary_first(const struct vg_mesh *m,
   free(on);
 }
 
-/* Corners of a face by rising column. */
+/* Corners of a face in ascending order of their columns. */
 static void rising_order(const uint32_t f[3], int order[3])
 {
   for (int k = 0; k < 3; k++)
     order[(f[k] > f[(k + 1) % 3]) + (f[k] > f[(k + 2) % 3])] = k;
 }
 
-/* Tetrahedra that the lift rule gives, but for those with a repeated point. */
+/* Tetrahedra made by the lift rule, without those that have a repeated
+ * point. */
 static size_t count_lifts(const struct vg_columns *c)
 {
   size_t n = 0;
@@ -129,7 +131,8 @@ static void join_model(const struct model *m, enum vg_layer_cells cells,
     fail_msg("%s", err.text);
 }
 
-/* Both expansions of one model; returns their layer cells of no volume. */
+/* Both expansions of one model; returns the number of their layer cells without
+ * volume. */
 static size_t check_model(const struct model *m)
 {
   struct vg_mesh tets = VG_MESH_INIT, mixed = VG_MESH_INIT;
@@ -170,7 +173,7 @@ static size_t check_model(const struct model *m)
   return n_flat;
 }
 
-/* The cells of one level are those that vg_join_wall_cells tells. */
+/* The cells of one level are those that vg_join_wall_cells lists. */
 static void check_wall_cells(const struct model *m)
 {
   const struct vg_columns *c = &m->layers.columns;
@@ -207,7 +210,7 @@ static void check_wall_cells(const struct model *m)
   vg_mesh_release(&mesh);
 }
 
-/* Without a level the boundary is the surface, in its order. */
+/* Without levels the boundary is the surface, in its order. */
 static void check_nothing_grown(const struct model *m)
 {
   struct vg_mesh mesh = VG_MESH_INIT;
@@ -230,8 +233,8 @@ static uint32_t one_side(const double x[3], const double y[3])
   return 0;
 }
 
-/* One ridge with fans of np and nq columns, a wall triangle on each side.
- * order: index of ridge ends p, q and of the outer corners. */
+/* One ridge with fans of np and nq columns, and a wall triangle on each side.
+ * order: indices of the ridge ends p, q and of the outer corners. */
 static void make_ridge(struct model *m, int np, int nq, const int order[4],
                        uint32_t turn)
 {
@@ -269,8 +272,9 @@ static void clear_front(struct model *m)
   vg_front_release(&m->layers.front);
 }
 
-/* Do all columns of each fan rise, or none? If not, opposite corners of a
- * strip's square may be all that rises, which is a cell of no volume. */
+/* Whether in each fan all columns rise, or none. Otherwise only two opposite
+ * corners of a square of the strip may rise, which gives a cell without
+ * volume. */
 static int is_even(const struct vg_columns *c)
 {
   for (size_t i = 1; i < c->n_column; i++)
@@ -280,7 +284,8 @@ static int is_even(const struct vg_columns *c)
   return 1;
 }
 
-/* Levels 0, 1 and `high` in all combinations: neighbours may differ by any. */
+/* Levels 0, 1 and `high` in all combinations: neighbours may differ by any
+ * number. */
 static size_t all_levels(struct model *m, size_t high, size_t *n_flat)
 {
   struct vg_columns *c = &m->layers.columns;
@@ -317,7 +322,7 @@ static void a_ridge_in_all_ways(void **state)
         struct model m;
         int np = 1 + fans % 2, nq = 1 + fans / 2;
 
-        /* nothing to choose where the strip is one triangle or none */
+        /* nothing to choose if the strip has at most one triangle */
         if (turn && (fans < 3 || turn > 2)) continue;
         make_ridge(&m, np, nq, order[i], turn);
         for (size_t high = 2; high < 4; high++)
@@ -344,7 +349,8 @@ static void check_roofs(int n_each, int n_model)
       n_flat = check_model(&m);
       if (i % 7 == 0) check_nothing_grown(&m);
       if (i % 7 == 1) check_wall_cells(&m); /* one level at most */
-      /* heights that differ within a fan may twist its cells flat */
+      /* different heights within a fan may twist its cells until they are
+       * flat */
       if (n_each) assert_int_equal(n_flat, 0);
       n_done++;
     }
@@ -413,7 +419,8 @@ static void a_sphere_in_a_box(void **state)
   model_release(&m);
 }
 
-/* Points of a column one after the other, columns as faces have them. */
+/* Points of a column are consecutive, and columns are ordered by their first
+ * face. */
 static void check_points(const struct model *m, const struct vg_mesh *mesh,
                          const struct vg_join_info *info)
 {
@@ -435,7 +442,7 @@ static void check_points(const struct model *m, const struct vg_mesh *mesh,
   free(seen);
 }
 
-/* The lift rule by hand. */
+/* The lift rule, coded independently. */
 static void check_lifts(const struct model *m, const struct vg_mesh *mesh,
                         const struct vg_join_info *info)
 {

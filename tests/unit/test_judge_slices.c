@@ -1,5 +1,5 @@
-/* Judging slices: the report of vg_mesh_judge, whatever the cut, the threads
- * and the damage. */
+/* The mesh check of slices: the report equals that of vg_mesh_judge for any
+ * cut, number of threads and damage. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -22,7 +22,7 @@ static void judge_cut(struct cut *c, const struct vg_sizing *sizing,
     fail_msg("%s", err.text);
 }
 
-/* Any cut of m, on 1 and 3 threads, against the mesh in one piece. */
+/* Any cut of m, on 1 and 3 threads, compared with the mesh in one piece. */
 static void check_cuts(const struct vg_mesh *m, const struct vg_sizing *sizing,
                        struct vg_mesh_report *whole)
 {
@@ -76,8 +76,8 @@ static void mixed_cells_in_slices(void **state)
   vg_mesh_release(&m);
 }
 
-/* Every face of cells that are there twice or three times has an even number
- * of sides, some of those of the boundary apart. */
+/* Every face of duplicated cells has an even number of sides, except for some
+ * on the boundary. */
 static void cells_several_times_over(void **state)
 {
   (void)state;
@@ -147,8 +147,9 @@ static void components_are_those_of_the_whole(void **state)
   vg_mesh_release(&m);
 }
 
-/* Slices of kind 0 are layers, the others the field: against a mesh of the
- * field's cells alone, bounded by its faces without a neighbour. */
+/* Slices of kind 0 are layers, the others are the isotropic region. Compared
+ * with a mesh of only the latter's cells, bounded by their faces without a
+ * neighbour. */
 static void the_field_is_judged_by_itself(void **state)
 {
   (void)state;
@@ -166,8 +167,8 @@ static void the_field_is_judged_by_itself(void **state)
     assert_int_equal(vg_mesh_judge(&part, sizing, &want_field, &err), VG_OK);
     judge_cut(&c, sizing, 2, part.n_tri + part.n_quad, &whole, &field);
     assert_same_report(&whole, &want);
-    /* numbers of cells are those in the whole mesh, and what encloses the
-     * field is not looked up */
+    /* cell numbers are those in the whole mesh, and the volume enclosed by the
+     * boundary of the isotropic region is not computed */
     judge_map_worst(&c, &want_field);
     assert_true(want_field.volume_error < 1e-12);
     want_field.enclosed = want_field.volume;
@@ -197,7 +198,7 @@ static void points_that_are_nowhere(void **state)
   vg_mesh_release(&m);
 }
 
-static struct cut *inner; /* what spoil_get spoils */
+static struct cut *inner; /* slices that spoil_get damages */
 
 static vg_status spoil_get(const struct vg_slices *s, size_t i,
                            struct vg_slice *out, struct vg_error *err)
@@ -341,7 +342,7 @@ static void sums_are_exact(void **state)
   assert_true(isnan(vg_exact_value(&s)));
 }
 
-/* All at once is one after the other. */
+/* Adding many terms at once equals adding them one after the other. */
 static void sums_of_many_are_those_of_each(void **state)
 {
   static double x[1500];
@@ -367,8 +368,7 @@ static void sums_of_many_are_those_of_each(void **state)
   assert_int_equal(t.n_odd, 1);
 }
 
-/* Halfway cases go to the even neighbour, unless something far below tips
- * them. */
+/* Ties round to even, unless a much smaller term decides. */
 static void sums_are_rounded_once(void **state)
 {
   struct vg_exact s = { .n_odd = 0 };

@@ -1,5 +1,5 @@
-/* Where a void is cut: planes at quantiles of the load, the regions of each
- * stage, and the walls that keep them apart. */
+/* Cut planes of a void: planes at quantiles of the load, the regions of each
+ * stage, and the walls that keep regions apart. */
 #include "io_support.h"
 
 #include "fill_shapes.h"
@@ -43,7 +43,7 @@ static void block_scene(struct scene *s, int nx, int ny, int nz)
   scene_of(s, &m, 1.2, 1);
 }
 
-/* Cells are dense around the body, which is off the middle. */
+/* Cells are dense around the body, which is not in the middle. */
 static void sphere_scene(struct scene *s)
 {
   const double centre[3] = { 4, -3, 2 };
@@ -83,7 +83,7 @@ static void planes_are(const struct vg_lattice *l, int x, int y, int z)
 
 /* --- planes -------------------------------------------------------------- */
 
-/* As many bisections as one cut makes at most: 8 blocks at least. */
+/* The largest number of bisections that one cut makes: 8 blocks at least. */
 static int most_of(const struct vg_load *load)
 {
   const struct vg_cut_rule rule = { 0, -1, 0 };
@@ -116,7 +116,7 @@ static void levels_make_planes(void **state)
   scene_end(&s);
 }
 
-/* Rising, and with an equal share of the cells between them. */
+/* In ascending order, with an equal share of the cells between them. */
 static void planes_are_at_quantiles(void **state)
 {
   const struct vg_cut_rule rule = { 0, -1, 0 };
@@ -145,7 +145,7 @@ static void planes_are_at_quantiles(void **state)
   }
 }
 
-/* Parallel planes need room for their zones: ten spacings. */
+/* Parallel planes need space for their separator zones: ten spacings. */
 static void planes_keep_their_distance(void **state)
 {
   const struct vg_cut_rule rule = { 0, -1, 0 }, along = { 0, 2, 1 };
@@ -209,9 +209,9 @@ static void an_axis_can_be_asked_for(void **state)
   scene_end(&s);
 }
 
-/* Cut while more cells are expected than a leaf should have, a little more let
- * pass: one plane at a time where few leaves come of it, else as many as make
- * them. */
+/* A void is cut if it is expected to have more cells than a leaf should have,
+ * with some tolerance: by one plane at a time if few leaves result, else by all
+ * the planes that make them. */
 static void leaves_have_their_size(void **state)
 {
   static const struct {
@@ -232,7 +232,7 @@ static void leaves_have_their_size(void **state)
   scene_end(&s);
 }
 
-/* Further attempts are single planes, each at another place. */
+/* Each further attempt is a single plane at a different position. */
 static void attempts_differ(void **state)
 {
   const struct vg_cut_rule rule = { 0, 2, 0 };
@@ -284,7 +284,7 @@ static void ribs_for(const struct scene *s, double leaf_cells,
     fail_msg("%s", err.text);
 }
 
-/* One plane across z, with ribs as for leaves of half of it. */
+/* One plane across z, with ribs as for leaves of half its size. */
 static void one_plane(const struct scene *s, struct vg_lattice *l)
 {
   const struct vg_cut_rule rule = { s->load.cells / 2, 2, 0 };
@@ -294,8 +294,8 @@ static void one_plane(const struct scene *s, struct vg_lattice *l)
   ribs_for(s, s->load.cells / 2, l);
 }
 
-/* 12 cells to a square of a plane, 12,000 to a piece; a rib counts as 25 to an
- * edge of it, and the ribs of a tile may be 12 % of it. */
+/* 12 cells per square of a plane, 12,000 per piece. A rib counts as 25 cells
+ * per edge of its length, and the ribs of a tile may have 12 % of its cells. */
 static void large_tiles_are_parted(void **state)
 {
   static const struct {
@@ -330,7 +330,7 @@ static void large_tiles_are_parted(void **state)
   }
 }
 
-/* A fifth of a leaf to a piece, from 4,000 to 12,000. */
+/* A piece has a fifth of a leaf's cells, from 4,000 to 12,000. */
 static void small_leaves_have_small_pieces(void **state)
 {
   static const struct {
@@ -380,7 +380,8 @@ static const struct vg_lattice four = {
 static const struct vg_lattice flat = {
   .n = { 2, 1, 0 }, .at = { { -0.3, 0.4 }, { 0.1 }, { 0 } }
 };
-/* Tiles in pieces: one of `flat`'s by two parallel ribs, and one by a fan. */
+/* Tiles in pieces: one of `flat`'s divided by two parallel ribs, and one by a
+ * fan of ribs. */
 static const struct vg_lattice ribbed = {
   .n = { 2, 1, 0 },
   .at = { { -0.3, 0.4 }, { 0.1 }, { 0 } },
@@ -420,7 +421,7 @@ static double length_of(const double v[3])
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* Planes of the lattice, in the axes they should be; unit normals. */
+/* Planes of the lattice, along the expected axes; unit normals. */
 static void is_well_made(const struct vg_lattice *l, int stage, int axis,
                          const struct vg_region *r)
 {
@@ -448,7 +449,8 @@ static void is_well_made(const struct vg_lattice *l, int stage, int axis,
     assert_true(fabs(length_of(r->wall[i].normal) - 1) < 1e-12);
 }
 
-/* How many regions of the stage have x within their walls? hit: counts. */
+/* Number of regions of the stage that have x within their walls. hit:
+ * counts. */
 static int owners(size_t n, const struct vg_region *r, const double x[3],
                   size_t *hit)
 {
@@ -519,8 +521,9 @@ static int is_on_tile(const struct vg_lattice *l, int tile, const double x[3])
   return is_on(&r, x) && vg_region_within(&r, x);
 }
 
-/* Where the planes of a region meet, some region has the point: the whole of
- * a plane is cut, the whole of a line grown. Points between crossings only. */
+/* Where the planes of a region meet, some region contains the point: the whole
+ * plane is cut, and cells are grown along the whole line. Only for points
+ * between crossings. */
 static void nothing_is_left_out(const struct vg_lattice *l)
 {
   uint64_t seed = 9;
@@ -562,8 +565,9 @@ static void regions_are_apart_and_complete(void **state)
 
 /* --- blocks and patches -------------------------------------------------- */
 
-/* A block's number is the sum of what its point is behind, x first; on a plane
- * a point is in the block below and, asked for the upper one, above. */
+/* A block's number is the sum of the steps of all planes below its point, x
+ * first. A point on a plane is in the block below or, if the upper one is
+ * requested, above. */
 static void points_have_blocks(void **state)
 {
   uint64_t seed = 3;
@@ -586,8 +590,8 @@ static void points_have_blocks(void **state)
   }
 }
 
-/* A patch is on its plane and ends with the box, and midway to the next plane:
- * patches of boxes beside each other do not overlap. */
+/* A patch of a region is on its plane and ends with the box, and midway to the
+ * next plane: patches of neighbouring boxes do not overlap. */
 static void patches_end_with_their_box(void **state)
 {
   const double lo[3] = { -0.2, -0.3, 0.1 }, hi[3] = { 0.4, 0.3, 0.6 };

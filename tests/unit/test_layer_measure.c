@@ -1,4 +1,4 @@
-/* Layers measured and judged, on columns built by hand. */
+/* Layers measured and checked, on columns built by hand. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,10 +12,10 @@
 #include "fill_shapes.h"
 #include "layers/measure/measure.h"
 
-enum { SIDE = 8 }; /* the plate is SIDE x SIDE squares of size 1 */
+enum { SIDE = 8 }; /* the plate has SIDE x SIDE squares of size 1 */
 
-/* A plate z = 0 with its fluid above; its left half is patch 0, its right
- * half patch 1. */
+/* A plate z = 0 with the fluid above; its left half is patch 0, its right half
+ * patch 1. */
 static void make_plate(struct vg_mesh *m, int side)
 {
   vg_mesh_add_patch(m, 5, "left");
@@ -107,7 +107,7 @@ static struct vg_layer_judgement judge(const struct plate *p)
   return r;
 }
 
-/* Heights are sums of up to 30 terms: a few units of the last place. */
+/* Heights are sums of up to 30 terms: a few units in the last place. */
 static int close_to(double a, double b)
 {
   return fabs(a - b) <= 1e-14 * fabs(b);
@@ -136,8 +136,8 @@ static void heights_of_straight_columns(void **state)
   vg_wall_fields_release(&w);
 }
 
-/* A column that leans by 60 degrees and is not lengthened: half as high over
- * the middle of the plate. */
+/* A column that leans by 60 degrees and is not lengthened has half the height
+ * over the middle of the plate. */
 static void a_leaning_column_is_measured_to_the_wall(void **state)
 {
   struct plate *p = *state;
@@ -148,8 +148,8 @@ static void a_leaning_column_is_measured_to_the_wall(void **state)
 
   c->dir[0] = sqrt(0.75);
   c->dir[2] = 0.5;
-  /* the foot of its top is 3.46 away: the root's own triangles are not what
-   * is nearest, the walk finds it */
+  /* the foot of its top is 3.46 away: the root's own triangles are not the
+   * nearest ones, but the walk finds those */
   p->c.law[0].delta1 = 0.5;
   c->n = 2;
   p->c.law[0].rate1 = 6;
@@ -163,7 +163,8 @@ static void a_leaning_column_is_measured_to_the_wall(void **state)
   vg_wall_fields_release(&w);
 }
 
-/* Two walls at a right angle: the direction between them needs sqrt(2). */
+/* Two walls at a right angle: the direction between them needs the factor
+ * sqrt(2). */
 static void the_first_height_in_a_corner(void **state)
 {
   struct plate *p = *state;
@@ -290,8 +291,8 @@ static void straight_columns_are_valid(void **state)
   assert_true(fabs(r.top_angle_min - 45) < 1e-6);
 }
 
-/* Level 30 of one corner point less: each of its two faces loses a cell and
- * has a pyramid on top in place of a prism. */
+/* Level 30 removed from one corner point: each of its two faces loses a cell
+ * and has a pyramid on top instead of a prism. */
 static void a_level_less_makes_pyramids(void **state)
 {
   struct plate *p = *state;
@@ -311,7 +312,7 @@ static void a_level_less_makes_pyramids(void **state)
   assert_int_equal(r.n_negative, 0);
 }
 
-/* Columns that lean across each other fold the cells above some height. */
+/* Columns that lean across each other invert the cells above some height. */
 static void crossing_columns_are_found(void **state)
 {
   struct plate *p = *state;
@@ -322,7 +323,7 @@ static void crossing_columns_are_found(void **state)
   for (size_t i = 0; i < p->c.n_column; i++) p->c.column[i].n = 5;
   p->c.column[middle].dir[0] = 1;
   r = judge(p);
-  /* at level 4 it stands on its neighbour's column: exactly no volume */
+  /* at level 4 it reaches its neighbour's column: exactly zero volume */
   assert_true(r.n_negative > 0 && r.n_bad_corner > 0);
   for (size_t i = 0; i < p->c.n_column; i++) p->c.column[i].n = 3;
   r = judge(p);
@@ -333,7 +334,7 @@ static void crossing_columns_are_found(void **state)
   assert_int_equal(r.n_bad_corner, r.n_prism);
 }
 
-/* A column within the plate: its first cells are flat, exactly. */
+/* A column within the plate: its first cells are exactly flat. */
 static void zero_volume_is_not_positive(void **state)
 {
   struct plate *p = *state;
@@ -438,7 +439,7 @@ static void virtual_faces_of_a_ridge(void **state)
 
   make_ridge(p, 4);
   r = judge(p);
-  /* 16 faces of triangles with 9 cells; of the 8 virtual ones those with two
+  /* 16 faces of triangles with 9 cells. Of the 8 virtual faces those with two
    * columns at the near point lose one cell of level 0, the others two */
   assert_int_equal(r.n_cell, 16 * 9 + 4 * 8 + 4 * 7);
   assert_int_equal(r.n_negative + r.n_bad_corner, 0);
@@ -452,7 +453,7 @@ static void virtual_faces_of_a_ridge(void **state)
   assert_int_equal(w.n, 15);
   for (size_t i = 0; i < w.n; i++) assert_true(fabs(w.first[i] - 0.1) < 1e-14);
   vg_wall_fields_release(&w);
-  /* turned over they are all wrong */
+  /* reversed faces give only inverted cells */
   for (size_t f = 16; f < p->c.n_face; f++) {
     uint32_t t = p->c.face[f][0];
 

@@ -1,4 +1,5 @@
-/* Layers and field in slices are, put together, what vg_layers_join makes. */
+/* Layers and isotropic region in slices: together they equal the mesh of
+ * vg_layers_join. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,10 +24,10 @@
 struct server {
   const struct vg_mesh *m;
   size_t n_front;
-  size_t n_piece; /* of the cells and of the points that are not the
-                     front's */
+  size_t n_piece; /* number of pieces, each with cells and the points that are
+                     not on the front */
   size_t rank, size;
-  int apart; /* the front's points are in a slice of their own */
+  int apart; /* the front's points are in a separate slice */
   int fails;
 };
 
@@ -52,7 +53,7 @@ static void serve_put(const struct vg_slices *s, struct vg_slice *slice)
   free(p);
 }
 
-/* Points that cells use come first, so what is owned stands anywhere. */
+/* Points used by cells come first, so the owned points are not contiguous. */
 static void serve_points(const struct vg_mesh *m, size_t first, size_t end,
                          size_t first_tet, size_t n_tet, struct vg_slice *out)
 {
@@ -134,7 +135,7 @@ static const size_t n_node[VG_SLICE_KINDS] = { 4, 5, 6 };
 struct check {
   const struct vg_mesh *m;
   const struct vg_slices *s;
-  uint8_t *point, *cell[VG_SLICE_KINDS]; /* seen how often */
+  uint8_t *point, *cell[VG_SLICE_KINDS]; /* number of times each one was seen */
   size_t *wrong;                         /* by slice */
 };
 
@@ -201,7 +202,7 @@ static void compare_some(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* Everything once. */
+/* Everything was seen once. */
 static void check_end(struct check *c)
 {
   for (size_t i = 0; i < c->m->n_point; i++) assert_int_equal(c->point[i], 1);
@@ -251,9 +252,8 @@ static void same_counts(const struct vg_mesh *m, const struct vg_join_info *a,
   }
 }
 
-/* What a field in n_piece pieces on `size` ranks of some threads makes,
- * against one mesh. Returns the number of slices of the layers. */
-/* Anew, as if later ranks had more of the field, the last more than all. */
+/* Divide the layers again, as if later ranks had more of the isotropic region,
+ * the last one more than all cells of the mesh. */
 static void share_unevenly(struct vg_layer_slices *keep, int size,
                            struct vg_slices *s)
 {
@@ -321,7 +321,8 @@ static size_t list_sides(const struct vg_mesh *m, const size_t n_layer[3],
   return n;
 }
 
-/* Against those of all pairs of a cell of the layers and one of the field. */
+/* The volume ratios at the tops equal those of a search for all pairs of a
+ * layer cell and an isotropic cell. */
 static void check_tops(const struct vg_mesh *m, const struct vg_join_info *info,
                        size_t n_face, double *ratio)
 {
@@ -365,6 +366,8 @@ static void add_tops(const struct vg_layer_slices *keep, size_t n_face,
   free(ratio);
 }
 
+/* An isotropic region in n_piece pieces on `size` ranks with several threads,
+ * compared with the whole mesh. Returns the number of slices of the layers. */
 static size_t check_split(const struct model *m, const struct vg_mesh *whole,
                           const struct vg_join_info *info,
                           enum vg_layer_cells cells, size_t n_piece, int apart,
@@ -409,7 +412,7 @@ static size_t check_split(const struct model *m, const struct vg_mesh *whole,
   return n_slice;
 }
 
-/* Every block of faces as a slice of its own. */
+/* Every block of faces as a separate slice. */
 static void check_blocks(const struct model *m, const struct vg_mesh *whole,
                          const struct vg_join_info *info,
                          enum vg_layer_cells cells)
@@ -491,7 +494,7 @@ static void roofs_with_fans(void **state)
   assert_true(n_done > 40);
 }
 
-/* More than one slice of points without cells, and several runs of faces. */
+/* Several slices of points without cells, and several runs of faces. */
 static void many_slices(void **state)
 {
   uint64_t seed = 3;
@@ -523,7 +526,8 @@ static void without_layers(void **state)
   model_release(&m);
 }
 
-/* Grown layers of fans, with patches re-meshed around flanks, and a field. */
+/* Grown layers with fans and with patches re-meshed around the side faces, and
+ * an isotropic region. */
 static void check_grown(struct model *m, double h)
 {
   struct vg_layer_request request[16];

@@ -1,6 +1,6 @@
-/* Layers as a whole, on surfaces that are hard for them: whatever the shape,
- * valid cells, the first height kept, a front that bounds the rest, and every
- * limit accounted for; then the fill and the join. */
+/* Layers as a whole, on difficult surfaces. For any shape: valid cells, the
+ * first height kept, a front that bounds the remaining void, and every limit
+ * explained; then the fill and the join. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,8 +21,8 @@
 #include "layers/grow/grow.h"
 #include "layers/measure/measure.h"
 
-/* A case at work. All walls ask for the same: a first layer of 1/1000 of the
- * edge, ratio 1.25, which takes about 30 levels and 4.4 edges. */
+/* A case in progress. All walls request the same layers: a first layer of
+ * 1/1000 of the edge, ratio 1.25, which takes about 30 levels and 4.4 edges. */
 struct bench {
   struct vg_mesh surface;
   struct vg_sizing *sizing;
@@ -69,7 +69,7 @@ static void grow(const struct bench *b, int threads, struct vg_layers *out,
     fail_msg("%s", err.text);
 }
 
-/* --- what must hold in every case ---------------------------------------- */
+/* --- invariants of every case -------------------------------------------- */
 
 static void is_clean(const struct vg_mesh *m)
 {
@@ -113,8 +113,8 @@ static double height_of(const struct vg_columns *c, const struct vg_column *v)
   return d[v->n];
 }
 
-/* Beside a column without room for all it wants, which may be lower than what
- * it is allowed by what a level is short of that. */
+/* The slope of the tops is limited next to a column that is compressed. Such a
+ * column may be lower than allowed by less than one level. */
 static void tops_are_no_steeper(const struct bench *b)
 {
   const struct vg_columns *c = &b->layers.columns;
@@ -136,8 +136,9 @@ static void tops_are_no_steeper(const struct bench *b)
     }
 }
 
-/* Within 1 % everywhere. Growth never above the law's cap: 1e-9 is for the
- * rounding of the points, 1e-16 on layers of 1e-5 and up. */
+/* First heights are within 1 % everywhere. Growth never exceeds the law's cap;
+ * 1e-9 allows for the rounding of the points, 1e-16 on layers of 1e-5 and
+ * up. */
 static void heights_are_kept(const struct bench *b)
 {
   struct vg_wall_fields w = VG_WALL_FIELDS_INIT;
@@ -163,7 +164,7 @@ static int is_limit(int cause)
   return cause != VG_CAUSE_NONE && cause != VG_CAUSE_SIZE && cause < VG_CAUSE_N;
 }
 
-/* Fewer levels than wanted, or less growth than the law's: both say why. */
+/* Fewer levels than wanted, or less growth than the law's, have a cause. */
 static void limits_are_explained(const struct bench *b)
 {
   const struct vg_columns *c = &b->layers.columns;
@@ -214,7 +215,8 @@ static long double enclosed(const struct vg_mesh *m)
   return sum;
 }
 
-/* By the lift rule, straight from its words; cells that vanish add nothing. */
+/* By the lift rule, coded from its definition; cells that vanish add
+ * nothing. */
 static long double volume_over(const struct vg_columns *c,
                                const struct vg_mesh *m, size_t f)
 {
@@ -240,9 +242,10 @@ static long double volume_over(const struct vg_columns *c,
   }
 }
 
-/* Layers and what the front encloses make up the whole: they share no volume
- * and leave none. Sums are in extended precision, so what is left is the
- * rounding of the points on patches that are no coordinate planes. */
+/* The volumes of the layers and of the front's interior add up to the whole:
+ * there are no overlaps or gaps. Sums are in extended precision, so the
+ * remaining error is the rounding of the points on patches that are not
+ * coordinate planes. */
 static void volumes_add_up(const struct bench *b)
 {
   long double whole = enclosed(&b->surface), sum;
@@ -252,10 +255,11 @@ static void volumes_add_up(const struct bench *b)
   for (size_t f = 0; f < b->layers.columns.n_face; f++)
     sum += volume_over(&b->layers.columns, &b->surface, f);
   if (!(fabsl(sum - whole) < 1e-12L * whole))
-    fail_msg("volume %.17Lg in place of %.17Lg", sum, whole);
+    fail_msg("volume %.17Lg instead of %.17Lg", sum, whole);
 }
 
-/* Every front point is what it says; the top of a face is that face's. */
+/* Every front point is at the position that its id names; the top of a face
+ * belongs to that face. */
 static void front_is_what_it_says(const struct bench *b)
 {
   const struct vg_front *f = &b->layers.front;
@@ -289,8 +293,7 @@ static void front_is_what_it_says(const struct bench *b)
   }
 }
 
-/* Patches without layers that are a coordinate plane still are, exactly, and
- * cover as much less as the flanks took. */
+/* Patches without layers in a coordinate plane stay exactly in it. */
 static void planes_stay_planes(const struct bench *b)
 {
   const struct vg_mesh *s = &b->surface,
@@ -445,12 +448,12 @@ static void all_of_it(struct bench *b, double h)
   fill_and_join(b);
 }
 
-/* --- what must hold at a place ------------------------------------------- */
+/* --- local checks -------------------------------------------------------- */
 
 struct place_figures {
-  size_t n, n_full, n_loose, n_none; /* columns: all, full, not compressed,
-                                        without a level */
-  double top_max;                    /* highest, by wall distance */
+  size_t n, n_full, n_loose,
+    n_none;       /* columns: all, full, not compressed, without a level */
+  double top_max; /* highest, by wall distance */
 };
 
 /* Columns with a root in a box. */
@@ -499,7 +502,8 @@ static void two_plates_that_close_to_a_gap(void **state)
   struct place_figures p;
 
   (void)state;
-  /* a whole stack is 0.44 high: the slot has room for a tenth of two */
+  /* a complete stack is 0.44 high: the slot has space for a tenth of two
+   * stacks */
   case_slot(&b.surface, 0.1, 0.08);
   all_of_it(&b, 0.1);
   at_least(&b, 100, 0, 100);
@@ -516,8 +520,8 @@ static void two_plates_that_close_to_a_gap(void **state)
   finish(&b);
 }
 
-/* Edges wider than the slot; in its corners four columns slide in two patches
- * each, and may lose a few levels to that. */
+/* Edges longer than the width of the slot. In its corners four columns slide in
+ * two patches each, and may lose a few levels because of that. */
 static void a_slot_narrower_than_an_edge(void **state)
 {
   struct bench b = { .options.smooth = 0 };
@@ -529,8 +533,8 @@ static void a_slot_narrower_than_an_edge(void **state)
   finish(&b);
 }
 
-/* A gap without room for a level: fans at its rims without one, beside columns
- * that have many. */
+/* A gap too narrow for a level: fans at its rims without levels, next to
+ * columns that have many. */
 static void fans_without_levels(void **state)
 {
   struct bench b = { .options.smooth = 0 };
@@ -741,8 +745,8 @@ static void a_post_at_45_to_135_degrees(void **state)
   finish(&b);
 }
 
-/* Four sides of a box as one patch touch the floor: no plane fits it. What
- * cannot be re-meshed costs levels, never validity. */
+/* Four sides of a box as one patch touch the floor: no plane fits it. Parts
+ * that cannot be re-meshed cost levels, but the mesh stays valid. */
 static void a_slide_patch_with_folds(void **state)
 {
   struct bench b = { .options.smooth = 0 };
@@ -783,7 +787,8 @@ static void a_point_that_sees_nothing(void **state)
   finish(&b);
 }
 
-/* Without being asked for: a fan there and nowhere else, which has layers. */
+/* Without a request: a fan at this point and nowhere else, and it has
+ * layers. */
 static void a_point_that_sees_nothing_gets_a_fan(void **state)
 {
   struct bench b = { .options.smooth = 0 };
@@ -797,7 +802,8 @@ static void a_point_that_sees_nothing_gets_a_fan(void **state)
   finish(&b);
 }
 
-/* Fans there too, and layers so thin that nothing else sets their height. */
+/* With requested fans too, and layers so thin that nothing else limits their
+ * height. */
 static void a_point_that_sees_nothing_with_fans(void **state)
 {
   struct bench b = { .options.smooth = 0 };
@@ -841,7 +847,7 @@ static void levels_and_height_as_asked(void **state)
   finish(&b);
 }
 
-/* The law changes with the place; each point gets its own first height. */
+/* The growth law varies in space; each point gets its own first height. */
 static void law_of_the_place(void *user, const double x[3],
                              struct vg_growth_law *law)
 {

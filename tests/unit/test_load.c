@@ -1,5 +1,5 @@
-/* Estimates of cells: volumes on shapes, cells against the mesher's,
- * the split among children, quantiles, messages. */
+/* Load estimates: volumes of shapes, cells compared with the mesher's, the
+ * split among children, quantiles, messages. */
 #include "load_support.h"
 
 #include "base/comm.h"
@@ -79,7 +79,7 @@ static void threads_do_not_matter(void **state)
 
 /* --- against the mesher -------------------------------------------------- */
 
-/* 15 %: what choosing a decomposition can bear. */
+/* 15 %: an error that the choice of a decomposition tolerates. */
 static void expects_what_is_made(void **state)
 {
   (void)state;
@@ -88,7 +88,7 @@ static void expects_what_is_made(void **state)
   compare_with_mesh("sphere", 200000, 1.2, 1.15);
 }
 
-/* What is so small that no sample of a wide octant would meet it. */
+/* Sources so small that no sample of a large octant would hit them. */
 static void small_sources_count(void **state)
 {
   const struct vg_source line = { .kind = VG_SOURCE_LINE,
@@ -106,7 +106,8 @@ static void small_sources_count(void **state)
   compare_sourced("sphere", 50000, 4, &ball, 1.15);
 }
 
-/* As many as faces alone ask for, where the field would have next to none. */
+/* The number of cells that the faces alone require, where the sizing field
+ * would give almost none. */
 static void faces_have_cells_of_their_own(void **state)
 {
   struct vg_load l;
@@ -186,7 +187,8 @@ static void children_get_their_share(void **state)
     /* some tens of octants along each wall, samples of an eighth each */
     assert_true(fabs(sampled(&part[c]) / volume - 1) < 0.1);
     assert_true(fabs(fitted(&part[c]) / volume - 1) < 1e-5);
-    /* even spacing, so cells go by volume, but for the rounding of numbers */
+    /* uniform spacing, so cells are proportional to volume, except for
+     * rounding */
     assert_true(fabs(part[c].cells / (1.5 * l.cells * volume / 3) - 1) < 1e-4);
     vg_mesh_release(&m[c]);
     vg_load_release(&part[c]);
@@ -195,7 +197,7 @@ static void children_get_their_share(void **state)
   release_scene(&s);
 }
 
-/* Split again and again into what it is: nothing wears off. */
+/* Split repeatedly down to the smallest blocks: the sums do not drift. */
 static void generations_do_not_drift(void **state)
 {
   struct vg_load l, next;
@@ -233,7 +235,7 @@ static void tiny_and_empty_children(void **state)
   make_bar(&s);
   estimate(&s, 1, &l);
   shape_sphere(&m, 3, at, 1e-3, 1);
-  for (size_t i = 0; i < m.n_tri; i++) { /* its inside */
+  for (size_t i = 0; i < m.n_tri; i++) { /* interior of the block */
     const uint32_t a = m.tri[i][0];
 
     m.tri[i][0] = m.tri[i][1];
@@ -256,7 +258,7 @@ static void tiny_and_empty_children(void **state)
   release_scene(&s);
 }
 
-/* Millimetres for metres: that nothing can be made of it is told at once. */
+/* Millimetres instead of metres: the impossible size is reported at once. */
 static void sizes_in_another_unit_are_named(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -277,7 +279,7 @@ static void sizes_in_another_unit_are_named(void **state)
   release_scene(&s);
 }
 
-/* A void smaller than an edge still has a load of its volume. */
+/* A void smaller than an edge still has a load equal to its volume. */
 static void a_small_void_has_octants(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -295,7 +297,7 @@ static void a_small_void_has_octants(void **state)
   release_scene(&s);
 }
 
-/* --- questions ----------------------------------------------------------- */
+/* --- queries ------------------------------------------------------------- */
 
 static void two_octants(struct vg_load *l)
 {
@@ -349,7 +351,7 @@ static void boxes_hold_shares_of_octants(void **state)
   release_index(&l);
 }
 
-/* The same questions, asked of all octants one after another. */
+/* The same queries, evaluated by a loop over all octants. */
 static double cells_below(const struct vg_load *l, int axis, double x)
 {
   double sum = 0;
@@ -380,7 +382,7 @@ static double cells_near(const struct vg_load *l, int axis, double x,
 }
 
 /* Spacing varies by a factor of tens here. Bins are as wide as the octants of a
- * sample, about a tenth of what lies around the sphere. */
+ * sample, about a tenth of the region around the sphere. */
 static void bins_answer_as_octants_do(void **state)
 {
   struct vg_load l;
@@ -429,7 +431,8 @@ static void blocks_share_a_load(void **state)
 
     expected = 1.5 * l.cells * wide[b % 3] / 3 * y * z;
     cells += part[b].cells;
-    /* even spacing; octants along the walls hold what samples found */
+    /* uniform spacing; octants along the walls have the volume found by
+     * samples */
     assert_true(fabs(part[b].cells / expected - 1) < 0.05);
     if (b % 3) /* nothing is beyond the plane */
       assert_true(vg_load_quantile(&part[b], 0, 0) >= across[0][b % 3 - 1]);
@@ -440,8 +443,8 @@ static void blocks_share_a_load(void **state)
   release_scene(&s);
 }
 
-/* Cells near planes are those of zones: each plane takes 2 x 1.2 edges of the
- * bar, 0.05 wide, out of all across it. */
+/* Cells near planes belong to separator zones: each plane takes 2 x 1.2 edges
+ * of the bar, 0.05 wide, over its whole cross-section. */
 static void zones_belong_to_no_block(void **state)
 {
   const double left = (3 - 2 * 0.12) / 3 * (1 - 0.12) * (1 - 0.12);
@@ -472,15 +475,16 @@ static void quantiles_halve_a_mesh(void **state)
   (void)state;
   make_bar(&s);
   estimate(&s, 1, &l);
-  for (int i = 1; i < 10; i++) /* even spacing: to a part of an edge, 0.05 */
+  for (int i = 1; i < 10;
+       i++) /* uniform spacing: to a fraction of an edge, 0.05 */
     assert_true(fabs(vg_load_quantile(&l, 0, i / 10.) - 0.3 * i) < 0.05);
   assert_true(fabs(vg_load_quantile(&l, 1, 0.5) - 0.5) < 0.02);
   vg_load_release(&l);
   release_scene(&s);
 }
 
-/* Every octant at its middle and near its corners (they are kept in single
- * precision); nothing outside of all. */
+/* Every octant is found at its middle and near its corners (they are kept in
+ * single precision); no octant is found outside of all. */
 static void places_find_their_octants(void **state)
 {
   struct vg_load_finder *f;

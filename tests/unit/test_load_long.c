@@ -1,11 +1,11 @@
-/* Estimates of cells where that takes long: meshes of a million cells, real
- * surfaces. */
+/* Load estimates that take long: meshes of a million cells, real surfaces. */
 #include "load_support.h"
 
 #include "io/mesh/ugrid.h"
 
-/* Where the field lets cells grow faster than they can, edges of the front,
- * not the size in a wide octant next to it, tell how many there are. */
+/* Where the sizing field grows faster than cells can, the number of cells
+ * follows from the edges of the front, not from the size in a large octant next
+ * to it. */
 static void steep_fields_do_not_outrun_the_front(void **state)
 {
   (void)state;
@@ -15,7 +15,7 @@ static void steep_fields_do_not_outrun_the_front(void **state)
   compare_with_mesh("sphere", 1000000, 4, 1.2);
 }
 
-/* As a domain, or, of walls alone, what they enclose. */
+/* As a domain or, if there are only walls, the interior of the walls. */
 static void check_real(const char *name)
 {
   struct vg_error err = VG_ERROR_INIT;

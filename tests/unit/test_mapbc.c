@@ -54,8 +54,8 @@ static void reads_both_layouts(void **state)
   vg_mapbc_release(&b);
 }
 
-/* The header is four lines of any content; old files have two or five
- * columns; names may be several words. */
+/* The header is four lines of any content; old files have two or five columns;
+ * names may be several words. */
 static void reads_variations(void **state)
 {
   struct vg_mapbc b = VG_MAPBC_INIT;
@@ -69,7 +69,7 @@ static void reads_variations(void **state)
   assert_int_equal(b.entry[0].family, 4);
   assert_string_equal(b.entry[1].name, "");
   assert_string_equal(b.entry[2].name, "the  symmetry plane");
-  /* A shorter header: the first patch stands among the first four lines. */
+  /* A shorter header: the first patch is among the first four lines. */
   accept("#title\n5 4 4 0 0 wing\n6 3 3 0 0 far\n", &b);
   assert_int_equal(b.n, 2);
   assert_int_equal(b.entry[0].id, 5);
@@ -78,7 +78,7 @@ static void reads_variations(void **state)
   assert_int_equal(b.n, 2);
   assert_int_equal(b.entry[1].bc, 4);
   assert_string_equal(b.entry[1].name, "rough wall");
-  /* FUN3D takes the old codes 3, 4, 5. */
+  /* FUN3D accepts the old codes 3, 4, 5. */
   accept("3\n1 3 far\n2 4 wall\n3 5 slip\n", &b);
   assert_int_equal(b.entry[0].bc_fun3d, 5000);
   assert_int_equal(b.entry[1].bc_fun3d, 4000);
@@ -227,8 +227,8 @@ static void writes_patches_without_a_condition(void **state)
   vg_mesh_release(&m);
 }
 
-/* The reader recognises a .mapbc that a run wrote by the mark in its title. The
- * longest title and an empty one keep the mark. */
+/* The reader recognises a .mapbc that a run wrote by the mark in its title.
+ * Both the longest title and an empty one keep the mark. */
 static void an_output_is_known_again(void **state)
 {
   const char *path = io_temp("mapbc_marked.mapbc");
@@ -258,7 +258,7 @@ static void an_output_is_known_again(void **state)
   data = io_slurp(path, &size);
   io_write_gzip(path, data, size);
   assert_int_equal(vg_mapbc_is_output(path), 1);
-  /* in another line it says nothing */
+  /* on another line it means nothing */
   io_write_file(path, "#\n# [written by vanguard mesh]\n", 31);
   assert_int_equal(vg_mapbc_is_output(path), 0);
   unlink(path);

@@ -1,4 +1,4 @@
-/* Markup escaped in files. */
+/* Escaping of markup in files. */
 #include "io_support.h"
 
 #include "base/markup.h"

@@ -7,8 +7,8 @@ static const char sample[] =
   "0 1 0 0\n0 0 1 0\nTriangles\n4\n1 2 3 1\n1 4 2 2\n1 3 4 3\n2 4 3 4\n"
   "Tetrahedra\n1\n1 2 3 4 0\nEnd\n";
 
-/* A negative tetrahedron, faces pointing out of it, sections in another
- * order, and what is to be skipped. */
+/* A negative tetrahedron, faces that point out of it, sections in another
+ * order, and sections to skip. */
 static const char turned[] =
   "MeshVersionFormatted\n1\n\nDimension\n3\n# comment Triangles\n"
   "Triangles 2 1 3 2 1 1 2 4 2\nCorners 2 1 2\nRequiredTriangles 1 1\n"
@@ -50,8 +50,8 @@ static void turns_cells_and_faces(void **state)
   vg_mesh_release(&m);
 }
 
-/* A boundary quadrilateral that runs across the diagonals of the base of a
- * pyramid is no face of it: it stays as it was read. */
+/* A boundary quadrilateral that runs across the diagonals of a pyramid's base
+ * is not a face of the pyramid: it stays as it was read. */
 static void crossed_quads_are_kept(void **state)
 {
   static const uint32_t quad[4] = { 2, 0, 1, 3 };
@@ -70,7 +70,7 @@ static void crossed_quads_are_kept(void **state)
       &m);
     assert_int_equal(m.n_quad, 1);
     if (crossed) assert_memory_equal(m.quad[0], quad, sizeof quad);
-    else assert_int_equal(m.quad[0][1], 1); /* turned into the pyramid */
+    else assert_int_equal(m.quad[0][1], 1); /* reversed, into the pyramid */
     vg_mesh_release(&m);
   }
 }
@@ -119,7 +119,7 @@ static void binary_round_trips(void **state)
   vg_mesh_release(&back);
   for (int version = 1; version <= 4; version++)
     for (int big = 0; big < 2; big++) {
-      if (version == 1) /* single precision: use what a float can hold */
+      if (version == 1) /* single precision: use values that a float can hold */
         for (int k = 0; k < 3; k++) m.point[12][k] = 0.125 * (k + 1);
       if (vg_medit_write_binary(path, &m, version, big, &err) != VG_OK ||
           vg_medit_read(path, &back, &err) != VG_OK)
@@ -133,7 +133,7 @@ static void binary_round_trips(void **state)
 }
 
 /* `1 2 | 3 20 3 | 4 144 4 {x y z ref} | 6 220 4 {...} | 8 252 1 {...} | 54 0`
- * in 260 bytes, as the format notes say for T1. */
+ * in 260 bytes, as the format notes specify for T1. */
 static void binary_layout_is_the_documented_one(void **state)
 {
   struct vg_mesh m;
@@ -217,7 +217,7 @@ static void refuses_broken_text(void **state)
             VG_ERR_FORMAT, "'nan'");
 }
 
-/* Cut a good binary file at every length, and break its positions. */
+/* Truncate a good binary file at every length, and damage its positions. */
 static void refuses_broken_binary(void **state)
 {
   struct vg_mesh m;
@@ -237,7 +237,7 @@ static void refuses_broken_binary(void **state)
     struct vg_mesh out = VG_MESH_INIT;
     vg_status st = io_parse_bytes(vg_medit_parse, data, n, &out, &err);
 
-    /* Whole sections and no more than that: a smaller but sound mesh. */
+    /* Complete sections only: a smaller but valid mesh. */
     if (st == VG_OK) assert_int_equal(n, 220);
     vg_mesh_release(&out);
   }
@@ -256,7 +256,7 @@ static void refuses_broken_binary(void **state)
   vg_mesh_release(&m);
 }
 
-/* Counts from the collection's table; its boundaries are closed, and normals
+/* Counts from the collection's table; the boundaries are closed, and normals
  * into the fluid enclose a negative volume. */
 static void reads_real_files(void **state)
 {

@@ -1,5 +1,5 @@
-/* Other meshers: what they return is taken when it fills the front, and only
- * then; what they do to their process harms no other. */
+/* Other meshers: their result is accepted only if it fills the front; whatever
+ * they do to their process affects no other. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -69,7 +69,7 @@ static struct vg_mesher_pool *open_mesher(const char *name)
   return p;
 }
 
-/* Nothing is returned but with VG_OK. */
+/* A result is returned only with VG_OK. */
 static vg_status fill(struct vg_mesher_pool *p, const struct vg_front *front,
                       const struct vg_fill_options *o, struct vg_filled *out,
                       struct vg_fill_report *r)
@@ -93,7 +93,7 @@ struct sample {
   uint32_t (*cell)[4];
 };
 
-/* What the kernel makes of the hollow void. */
+/* The kernel's result for the hollow void. */
 static void take_sample(struct sample *s)
 {
   const struct vg_fill_options o = VG_FILL_OPTIONS_INIT;
@@ -126,7 +126,7 @@ static void takes_what_fills_the_front(void **state)
   (void)state;
   take_sample(&s);
   n = s.n;
-  for (size_t c = 0; c < s.n_cell; c += 3) { /* the other way round */
+  for (size_t c = 0; c < s.n_cell; c += 3) { /* reversed */
     uint32_t t = s.cell[c][1];
 
     s.cell[c][1] = s.cell[c][2];
@@ -136,7 +136,7 @@ static void takes_what_fills_the_front(void **state)
   for (size_t c = 0; c < s.n_cell; c++)
     assert_true(vg_orient3d(s.x[s.cell[c][0]], s.x[s.cell[c][1]],
                             s.x[s.cell[c][2]], s.x[s.cell[c][3]]) > 0);
-  /* a point that nobody uses goes */
+  /* an unused point is removed */
   for (size_t c = 0; c < s.n_cell; c++)
     for (int k = 0; k < 4; k++) s.cell[c][k] += s.cell[c][k] >= s.n_front;
   s.x = realloc(s.x, (n + 1) * sizeof *s.x);
@@ -164,7 +164,7 @@ static void refuses_what_does_not(void **state)
     if (way == 1) s.x[s.n - 1][0] = INFINITY;
     if (way == 2) s.cell[5][1] = (uint32_t)s.n;
     if (way == 3) s.cell[5][1] = s.cell[5][0];
-    /* inverted cells are turned, and then lie on one side of a face */
+    /* inverted cells are reversed, and are then on the wrong side of a face */
     if (way == 4) s.x[s.n - 1][0] += 0.7;
     if (way == 5) s.n_cell = 0;
     wrong = check(&s);
@@ -210,14 +210,14 @@ static void the_example_fills_a_box(void **state)
     assert_int_equal(r.n_other, k + 1);
     vg_filled_release(&f);
   }
-  /* and says where it cannot */
+  /* and reports where it cannot fill */
   assert_int_equal(fill(p, &hollow, NULL, &f, &r), VG_NOT_BETTER);
   assert_int_equal(r.n_other_failed, 1);
   vg_mesher_close(p);
 }
 
-/* A mesher with sizes makes about as many cells as the kernel does: half to
- * twice; and the same each time. */
+/* A mesher that uses sizes makes half to twice the cells of the kernel, and the
+ * same cells each time. */
 static void fills_by_size(const char *name)
 {
   struct vg_mesher_pool *p = open_mesher(name);
@@ -248,8 +248,8 @@ static void tetgen_fills_around_a_hollow(void **state)
   fills_by_size("tetgen");
 }
 
-/* gmsh's library does not get through beside ASan, whose allocator it would
- * use: its voids go to the kernel. */
+/* gmsh's library does not work together with ASan, whose allocator it would
+ * use: its voids are filled by the kernel. */
 static void hxt_does_where_it_is(void **state)
 {
   struct vg_mesher_pool *p = NULL;
@@ -268,8 +268,8 @@ static void hxt_does_where_it_is(void **state)
   fills_by_size("hxt");
 }
 
-/* Two boxes that share an edge, one box in another: parts of a void are told by
- * what lies between two triangles. */
+/* Two boxes that share an edge, and one box inside another: components of a
+ * void are distinguished by the space between two triangles. */
 static void tells_shells_that_touch(void **state)
 {
   static const uint32_t tet[4][3] = {
@@ -305,7 +305,7 @@ static void tells_shells_that_touch(void **state)
   vg_mesher_shells_release(&s);
 }
 
-/* --- bad ones ------------------------------------------------------------ */
+/* --- faulty ones --------------------------------------------------------- */
 
 static void refuses_plugins_that_are_none(void **state)
 {
@@ -341,7 +341,7 @@ static void gives_up_plugins_that_fail(void **state)
     vg_mesher_patience(p, 0.05, 0);
     for (int again = 0; again < 2; again++)
       assert_int_equal(fill(p, &box, NULL, &f, &r), VG_NOT_BETTER);
-    /* 5 to 8 and 15 end or hang, the others return what is wrong */
+    /* 5 to 8 and 15 end or hang, the others return a wrong result */
     assert_int_equal(r.n_other_ended, k <= 8 || k == 15 ? 2 : 0);
     assert_int_equal(r.n_other_wrong, k <= 8 || k == 15 ? 0 : 2);
     assert_int_equal(r.n_other, 0);
@@ -391,8 +391,8 @@ static void *answer(void *fd)
   return NULL;
 }
 
-/* Between corners that are a size apart, the gradient of 0.2 and a size that is
- * linear but for creases leave a few per cent. */
+/* The gradient is 0.2, and corners are one spacing apart. There a size that is
+ * linear except at creases has an error of a few per cent. */
 static void sizes_are_those_of_the_field(void **state)
 {
   const struct vg_mesher_front f = { hollow.n_point, hollow.n_face,

@@ -1,5 +1,5 @@
-/* Lengths and shapes measured by a tensor; what the changes of a surface make
- * of one that is given. */
+/* Lengths and shapes measured by a tensor, and surfaces remeshed with a given
+ * metric. */
 #include "remesh_scene.h"
 
 #include "core/remesh/metric.h"
@@ -27,8 +27,8 @@ static void lengths_follow_the_direction(void **unused)
   assert_float_equal(vg_form_aspect(round_form, n), 1, 1e-12);
 }
 
-/* 1 edge of what is asked for at both ends; between other sizes in parts of
- * their mean, whichever way round. */
+/* Length 1 if the edge has the requested length at both ends; between different
+ * sizes it is relative to their mean, in either direction. */
 static void an_edge_has_the_mean_of_its_ends(void **unused)
 {
   struct vg_metric a = { 0.1, { 0 } }, b = { 0.3, { 0 } };
@@ -45,8 +45,8 @@ static void an_edge_has_the_mean_of_its_ends(void **unused)
   assert_float_equal(vg_metric_length(&a, &b, (double[3]){ 0, 0, 0 }), 0, 0);
 }
 
-/* The form of a round tensor says what no form says; a triangle stretched as
- * the form is equilateral. */
+/* An isotropic tensor gives the same result as no tensor; a triangle stretched
+ * like the tensor is equilateral. */
 static void shapes_are_those_before_stretching(void **unused)
 {
   const double a[3] = { 0.2, 0.1, 0.4 }, b[3] = { 1.3, 0.2, 0.1 };
@@ -76,8 +76,8 @@ static void shapes_are_those_before_stretching(void **unused)
   assert_float_equal(vg_form_shape(form, a, a, c), 0, 0);
 }
 
-/* Along x edges are ten times as long on the left, as long as others on the
- * right, and in between by the place. */
+/* Along x edges are ten times as long as across on the left, equally long on
+ * the right, and vary linearly in between. */
 static void falling(const void *unused, const double x[3], double size,
                     double form[6])
 {
@@ -108,7 +108,7 @@ static void change(struct scene *s)
 }
 
 /* A plate of 4 by 2 by 0.2, sizes of 0.1: triangles, edges and angles are, in
- * the metric, what they are where sizes are the same in all directions. */
+ * the metric, the same as with isotropic sizes. */
 static void a_plate_gets_the_triangles_of_its_metric(void **unused)
 {
   const double size[3] = { 4, 2, 0.2 };

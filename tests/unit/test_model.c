@@ -1,4 +1,4 @@
-/* The simulation of a record on other machines: graphs whose schedules are
+/* The simulation of a timeline on other machines: graphs whose schedules are
  * known. Durations are sums of powers of two, so results are exact unless a
  * tolerance is given. */
 #include <setjmp.h>
@@ -27,7 +27,7 @@ static void add(struct vg_spans *s, const char *path, const char *after,
   s->n_rank = s->n_thread = 1;
 }
 
-/* Free messages, so that schedules are those of text books. */
+/* Free messages, so that schedules equal those of textbooks. */
 static struct vg_machine machine_of(int ranks, int threads)
 {
   struct vg_machine m = VG_MACHINE_INIT;
@@ -91,7 +91,7 @@ static void add_fork_join(struct vg_spans *s, int n)
     snprintf(path, sizeof path, "0P%d", i);
     add(s, path, "0J1", 2);
   }
-  /* The record names the one that happened to be last. */
+  /* The timeline names the pencil that happened to end last. */
   add(s, "0J2", "0P3", 1);
 }
 
@@ -114,8 +114,9 @@ static void a_join_waits_for_its_whole_stage(void **state)
   vg_spans_release(&s);
 }
 
-/* By work 5, 4, 3, 2, 1 in turn to two workers: 5, 3, 1 and 4, 2, though their
- * times say otherwise; and not before the cut elsewhere has ended. */
+/* Tasks of work 5, 4, 3, 2, 1 are assigned in turn to two workers: 5, 3, 1 and
+ * 4, 2, although their times would give another order; and not before the other
+ * cut has ended. */
 static void leaves_are_dealt_out(void **state)
 {
   static const double cpu[] = { 1, 2, 4, 1, 8 };
@@ -151,8 +152,8 @@ static void leaves_are_dealt_out(void **state)
   vg_spans_release(&s);
 }
 
-/* Two nodes cut by one stage each: neither's join waits for the other's
- * pencils, though all were made by one task. */
+/* Two nodes with one stage each: neither's join waits for the other's pencils,
+ * although one task made them all. */
 static void stages_are_of_one_node(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
@@ -223,14 +224,15 @@ static void heavier_leaves_go_first(void **state)
   vg_spans_release(&s);
 }
 
-/* Numbers without a pattern; no state outside, the same everywhere. */
+/* Random numbers without external state, the same everywhere. */
 static double drawn(uint32_t *seed)
 {
   *seed = *seed * 1664525u + 1013904223u;
   return 1 + (*seed >> 24) / 64.0;
 }
 
-/* List schedules: longest chain and mean load below, Graham's bound above. */
+/* List schedules: longest chain and mean load as lower bounds, Graham's upper
+ * bound. */
 static void schedules_keep_the_bounds(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT;
@@ -259,8 +261,8 @@ static void schedules_keep_the_bounds(void **state)
   vg_spans_release(&s);
 }
 
-/* One tile at home, one away: 1 MB there and 2 MB back at 1 MB/s, a latency
- * of 1/4 s each; none within a node. */
+/* One tile at home, one away: 1 MB there and 2 MB back at 1 MB/s, a latency of
+ * 1/4 s each; no cost within a node. */
 static void messages_take_time(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
@@ -314,7 +316,8 @@ static void a_link_is_taken_in_turn(void **state)
   vg_spans_release(&t);
 }
 
-/* What did not travel in the record is sized like what did. */
+/* The size of a task that did not travel in the timeline is extrapolated from
+ * those that did. */
 static void sizes_are_made_up_from_cells(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
@@ -328,14 +331,15 @@ static void sizes_are_made_up_from_cells(void **state)
   s.span[1].bytes_out = 400;
   replay(&s, &m, &t);
   assert_true(find(&t, "0P2")->bytes_in == 40000);
-  assert_true(find(&t, "0P3")->bytes_in == 10000); /* 8 x the cells: 4 x */
+  assert_true(find(&t, "0P3")->bytes_in ==
+              10000); /* 8 x the cells: 4 x the bytes */
   assert_true(find(&t, "0P3")->bytes_out == 100);
   vg_spans_release(&s);
   vg_spans_release(&t);
 }
 
-/* A node lives where it was started; its pencils come back, its joins stay,
- * what it makes starts anywhere. */
+/* A node stays on the rank where it was started: its pencils return there, its
+ * joins stay, and tasks that it creates start anywhere. */
 static void nodes_move_and_joins_stay(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
@@ -366,7 +370,7 @@ static void nodes_move_and_joins_stay(void **state)
   vg_spans_release(&s);
 }
 
-/* Joins that wait for one rank are done by priority, others idle. */
+/* Joins that wait for one rank are done by priority, while other ranks idle. */
 static void joins_wait_for_their_rank(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
@@ -395,7 +399,7 @@ static void joins_wait_for_their_rank(void **state)
       last = one->start;
     }
   vg_spans_release(&t);
-  m.joins_roam = 1; /* four by four, then the tile */
+  m.joins_roam = 1; /* four at a time, then the tile */
   assert_true(replay(&s, &m, NULL).wall == 11);
   s.span[1].cpu = 1;
   assert_true(replay(&s, &m, NULL).wall == 4);
@@ -419,7 +423,8 @@ static void a_faster_core_takes_less(void **state)
   vg_spans_release(&s);
 }
 
-/* Of 1 + 8 + 32 s outside, nodes of two ranks share 8 and all ranks 32. */
+/* Of 1 + 8 + 32 s outside the tasks, nodes of two ranks share 8 s and all ranks
+ * 32 s. */
 static void what_is_outside_the_tasks_is_shared(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT;
@@ -478,7 +483,7 @@ static void idle_workers_help(void **state)
   vg_spans_release(&s);
 }
 
-/* Tasks that begin together share who is left, those under way count. */
+/* Tasks that begin together share the idle workers; tasks in progress count. */
 static void help_is_shared(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
@@ -496,11 +501,11 @@ static void help_is_shared(void **state)
   s.span[0].loops = s.span[3].loops = 0;
   s.span[2].loops = 3;
   replay(&s, &m, &t);
-  /* at 1: three tasks, two with loops, three are idle: k = 1 + 3/2 */
+  /* at 1: three tasks, two with loops, three idle workers: k = 1 + 3/2 */
   assert_true(find(&t, "0.0J0")->start == 1);
   assert_true(fabs(find(&t, "0.0J0")->end - (1 + 8 / 2.5)) < 1e-12);
   assert_true(fabs(find(&t, "0.1J0")->end - (1 + 1 + 3 / 2.5)) < 1e-12);
-  /* at 2: four tasks, three with loops, two are idle: k = 1 + 2/3 */
+  /* at 2: four tasks, three with loops, two idle workers: k = 1 + 2/3 */
   assert_true(find(&t, "0.2.0J0")->start == 2);
   assert_true(fabs(find(&t, "0.2.0J0")->end - (2 + 2 * 3 / 5.)) < 1e-12);
   assert_true(find(&t, "0.2.1L")->end == 18);
@@ -508,8 +513,8 @@ static void help_is_shared(void **state)
   vg_spans_release(&s);
 }
 
-/* A join, a zone of 500 cells in 2 s, two leaves of 4000 cells in 4 s each:
- * the zone's cells would have taken 0.5 s in leaves. */
+/* A join, a zone of 500 cells in 2 s, two leaves of 4000 cells in 4 s each: in
+ * leaves the zone's cells would have taken 0.5 s. */
 static void zones_make_cells_too(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT;
@@ -543,7 +548,7 @@ static void nothing_takes_no_time(void **state)
   vg_spans_release(&t);
 }
 
-/* Order of the record and of the run that it is of do not matter. */
+/* The order of the timeline does not matter, nor does that of the run. */
 static void the_same_record_gives_the_same(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, r = VG_SPANS_INIT;

@@ -1,5 +1,5 @@
-/* The most normal direction against a search through all active sets, whose
- * systems LAPACK solves. */
+/* The most normal direction, compared with a search through all active sets,
+ * whose systems LAPACK solves. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +16,8 @@
 
 enum { MOST = 7 };
 
-/* The shortest w with w . n = 1 for the normals of a set; 0: there is none. */
+/* The shortest w with w . n = 1 for the normals of a set; 0 if it does
+ * not exist. */
 static int solve(const double (*n)[3], const int *set, int k, double w[3])
 {
   double g[9], c[3] = { 1, 1, 1 };
@@ -30,7 +31,8 @@ static int solve(const double (*n)[3], const int *set, int k, double w[3])
   return 1;
 }
 
-/* Length of the shortest w that keeps all; INFINITY: none does. */
+/* Length of the shortest w that satisfies all constraints; INFINITY: there is
+ * none. */
 static double search(int k, const double (*n)[3], double best[3])
 {
   double least = INFINITY;
@@ -55,7 +57,8 @@ static double chance(void)
   return (double)rand() / RAND_MAX * 2 - 1;
 }
 
-/* Unit vectors within a cone about z: the wider, the fewer are all seen. */
+/* Unit vectors within a cone about z: the wider the cone, the fewer sets have a
+ * direction that sees all of them. */
 static void make_normals(int k, double wide, double (*n)[3])
 {
   for (int i = 0; i < k; i++) {
@@ -80,7 +83,7 @@ static void is_the_shortest(void **state)
     make_normals(k, round % 4 ? 0.3 * (round % 9) + 0.01 : 3, n);
     least = search(k, (const double(*)[3])n, best);
     got = vg_most_normal(k, (const double(*)[3])n, w);
-    if (least > 1e4) continue; /* hardly seen, or not at all */
+    if (least > 1e4) continue; /* hardly visible, or not at all */
     assert_true(got);
     n_some++;
     assert_true(fabs(vg_norm(w) / least - 1) < 1e-7);

@@ -1,6 +1,6 @@
-/* What happens to the front of a void that is being cut, on fronts that are
- * drawn by hand: changes put in, places found where it hangs together, and the
- * parts that it falls into. */
+/* The front of a void that is being cut, on fronts built by hand: front
+ * updates, open places where blocks are still connected, and the division into
+ * children. */
 #include "io_support.h"
 
 #include <pthread.h>
@@ -81,16 +81,16 @@ static void four_boxes(struct vg_mesh *m, int n)
     add_box(m, n, k % 2 ? n : -n, k / 2 ? n : -n, 0.5 * n);
 }
 
-/* A small one that reaches from block 0 to block 1. */
+/* A small box that reaches from block 0 to block 1. */
 static void bridge(struct vg_mesh *m, double y)
 {
   add_box(m, 2, 0.1, y, 1);
 }
 
-/* --- what must hold ------------------------------------------------------ */
+/* --- invariants ---------------------------------------------------------- */
 
-/* Each child has the faces of its blocks in their order, and points as these
- * use them. child: of each block. */
+/* Each child has the faces of its blocks in their order, and points in the
+ * order of their use. child: of each block. */
 static void dealt_out(const struct scene *s, const struct vg_front *was,
                       const int child[4])
 {
@@ -137,7 +137,8 @@ static int crosses(const struct vg_front *f, size_t i)
   return below[0] == 3 || below[1] == 3;
 }
 
-/* As many as a look at all of them finds, rising. */
+/* The list of open faces equals that of a loop over all faces, in ascending
+ * order. */
 static void lists_open(struct vg_node *n)
 {
   size_t k = 0;
@@ -151,7 +152,7 @@ static void lists_open(struct vg_node *n)
   assert_int_equal(n->n_open, k);
 }
 
-/* --- parts --------------------------------------------------------------- */
+/* --- division ------------------------------------------------------------ */
 
 /* n 20: 19,200 faces, several chunks of each loop. */
 static void falls_into_blocks(void **state)
@@ -183,7 +184,8 @@ static void falls_into_blocks(void **state)
   }
 }
 
-/* Blocks 0 and 1, one void now, have a load by their fronts. */
+/* Blocks 0 and 1, which form a single void now, have a load from their
+ * fronts. */
 static void what_hangs_together_stays(void **state)
 {
   const int child[4] = { 0, 0, 1, 2 };
@@ -210,10 +212,10 @@ static void what_hangs_together_stays(void **state)
   scene_end(&s);
 }
 
-/* --- places -------------------------------------------------------------- */
+/* --- open places --------------------------------------------------------- */
 
-/* Is each face that crosses, but those farther than `most` from the bridge,
- * within a region with room to spare? */
+/* Each face that crosses a plane, except those farther than `most` from the
+ * bridge, must be within a region with some margin. */
 static void covered(const struct vg_node *n, const struct vg_region *r,
                     size_t n_region)
 {
@@ -232,8 +234,8 @@ static void covered(const struct vg_node *n, const struct vg_region *r,
   }
 }
 
-/* Two bridges apart: two boxes, or two patches of the plane x = 0; none of
- * y = 0. Gone faces are no reason for any. */
+/* Two separate bridges: two boxes, or two patches of the plane x = 0; none of y
+ * = 0. Removed faces cause no place. */
 static void places_are_found(void **state)
 {
   struct vg_region *r;
@@ -279,8 +281,8 @@ static void places_are_found(void **state)
   scene_end(&s);
 }
 
-/* Where the load expects much in a corner of a box, there is none, but for
- * patches. */
+/* If the load expects many cells in a corner of a box, that box is not an open
+ * place; patches still are. */
 static void full_places_stay_open(void **state)
 {
   const double at[3] = { 0.1 + 1.3, -5 + 1.9, 1.9 };
@@ -310,10 +312,10 @@ static void full_places_stay_open(void **state)
   scene_end(&s);
 }
 
-/* --- changes ------------------------------------------------------------- */
+/* --- front updates ------------------------------------------------------- */
 
-/* Work i has given a cell to face `gone` of the front and put a new point
- * above it, with the three other faces of that cell. */
+/* Work i has made a cell on face `gone` of the front, with a new point above it
+ * and three new faces. */
 static void cell_on(struct vg_node *n, size_t i, uint32_t gone, uint32_t serial)
 {
   struct vg_change *c = &n->change[i];
@@ -353,8 +355,8 @@ static void works_of(struct vg_node *n, size_t count)
   assert_true(n->work && n->region && n->point && n->face && n->change);
 }
 
-/* In the order of the works; faces added cross planes too, and are listed
- * without a look at those seen before. */
+/* Changes are applied in the order of the works. Added faces that cross planes
+ * are listed too, without visiting the earlier faces again. */
 static void changes_are_put_in(void **state)
 {
   enum { WORKS = 5 };
@@ -396,10 +398,11 @@ static void changes_are_put_in(void **state)
   scene_end(&s);
 }
 
-/* --- changes that cross the front ---------------------------------------- */
+/* --- changes that intersect the front ------------------------------------ */
 
 /* A box with edges of 1 at x = -6, and a fine one at the origin, 1 away from
- * the zone: by the spacing there, more than a zone is given. */
+ * the zone. At the spacing there, this is farther than the part of the front
+ * that a zone is given. */
 static void coarse_and_fine(struct scene *s, double half)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -434,7 +437,8 @@ static uint32_t face_towards(const struct vg_front *f)
   return best;
 }
 
-/* A cell on that face with its tip at x, and one on another face: put in. */
+/* Apply two changes: a cell on that face with its tip at x, y, z, and one on
+ * another face. */
 static void put_long_cell(struct scene *s, double x, double y, double z,
                           const struct vg_region *region)
 {
@@ -450,8 +454,9 @@ static void put_long_cell(struct scene *s, double x, double y, double z,
   assert_int_equal(vg_node_put(&s->p, n, NULL, NULL), VG_OK);
 }
 
-/* What crosses a front that the zone was not given is not put in; the other
- * change of the stage is, and both where nothing is crossed. */
+/* A change that intersects a part of the front that its zone was not given is
+ * dropped. The other change of the stage is applied, and both are if nothing
+ * intersects. */
 static void what_crosses_stays_out(void **state)
 {
   const struct vg_region r = { .n_plane = 1, .plane = { { { 0, 1, 0 }, -1 } } };
@@ -483,8 +488,8 @@ static void what_crosses_stays_out(void **state)
   }
 }
 
-/* A body that the zone was not given may meet no face of a cell, and lie in
- * it all the same, or just beside. */
+/* A body that the zone was not given may intersect no face of a cell and still
+ * be inside the cell, or just outside. */
 static void what_holds_a_body_stays_out(void **state)
 {
   static const struct {
@@ -515,7 +520,7 @@ static void what_holds_a_body_stays_out(void **state)
   }
 }
 
-/* Cells of zones that were not put in are forgotten, others kept in order. */
+/* Cells of dropped zones are removed; the others keep their order. */
 static void dropped_cells_are_forgotten(void **state)
 {
   struct vg_partition p = { .size = 1 };

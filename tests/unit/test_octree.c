@@ -1,6 +1,7 @@
-/* The octree-guided decomposition: parts of octants and the gap at the front
- * are closed, make up the void, have each interface in common with one another,
- * and can be filled; octants are balanced; what cannot be is refused. */
+/* The octree-guided decomposition: subdomains of octants and the gap region at
+ * the front are closed, make up the void, share each interface with exactly one
+ * other, and can be filled; octants are balanced; impossible requests are
+ * refused. */
 #define _GNU_SOURCE
 #include "advance_support.h"
 
@@ -17,7 +18,7 @@ struct parted {
   struct vg_decomposition p;
 };
 
-/* A front and its load of the scene, which is there. */
+/* The front and the load of an existing scene. */
 static void enter(struct parted *q)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -57,8 +58,8 @@ static void part(struct parted *q, struct vg_decomposition_options o)
   if (try(q, o, &q->p, &err) != VG_OK) fail_msg("%s", err.text);
 }
 
-/* A leaf of side 1 whose front is as fine as `cells` ask for. With a source in
- * its middle octants of several sizes meet. */
+/* A leaf of side 1 whose front is as fine as `n_cell` cells require. With a
+ * source in its middle, octants of several sizes are adjacent. */
 static void graded_scene(struct scene *s, size_t n_cell)
 {
   struct vg_demo d = VG_DEMO_INIT;
@@ -78,7 +79,7 @@ static void graded_scene(struct scene *s, size_t n_cell)
   s->volume = scene_volume(&s->m);
 }
 
-/* --- what must hold ------------------------------------------------------ */
+/* --- invariants ---------------------------------------------------------- */
 
 struct side {
   uint64_t name[3];
@@ -93,7 +94,7 @@ static int by_names(const void *p, const void *q)
   return d ? d : a->turn - b->turn;
 }
 
-/* A face by its names, rising, and which way round it is. */
+/* A face by its global ids, in ascending order, and its orientation. */
 static struct side side_of(const struct vg_front *f, const uint32_t v[3])
 {
   struct side s = { { f->id[v[0]], f->id[v[1]], f->id[v[2]] }, 0 };
@@ -110,7 +111,8 @@ static struct side side_of(const struct vg_front *f, const uint32_t v[3])
   return s;
 }
 
-/* Faces of the front are in one part each, others in two, either way round. */
+/* Each face of the front is in one subdomain; all others are in two, with
+ * opposite orientations. */
 static void check_faces(const struct parted *q)
 {
   size_t n = 0, at = 0, n_front = 0, n_pair = 0;
@@ -141,7 +143,7 @@ static void check_faces(const struct parted *q)
   free(side);
 }
 
-/* Places agree with names; none of the new ones is on the front. */
+/* Coordinates agree with global ids; no new point is on the front. */
 static void check_points(const struct parted *q)
 {
   for (size_t k = 0; k < q->p.n_part; k++) {
@@ -174,7 +176,7 @@ static void check_volumes(const struct parted *q)
   assert_true(fabs(sum - q->s.volume) < 1e-9 * q->s.volume);
 }
 
-/* Parts of octants come first. Returns how many. */
+/* Subdomains of octants come first. Returns their number. */
 static size_t check_parts(const struct parted *q)
 {
   size_t n = 0;
@@ -191,7 +193,7 @@ static size_t check_parts(const struct parted *q)
   return n;
 }
 
-/* Most of the cells expected in a part of octants. mean out. */
+/* The most cells expected in a subdomain of octants. mean: out. */
 static double most_cells(const struct parted *q, size_t n, double *mean)
 {
   double most = 0, sum = 0;
@@ -226,10 +228,11 @@ static void check_scene(struct parted *q, size_t least, size_t most)
       if (n_part == 16) {
         assert_in_range(n, least, most);
         most_in = most_cells(q, n, &mean);
-        /* the number of parts is rounded; octants are some ten for each, and
-         * estimates of their cells and of a part's differ */
+        /* the number of subdomains is rounded; each has about ten octants, and
+         * the estimates for octants and for a subdomain differ */
         assert_true(most_in < 1.4 * q->load.cells / n_part);
-        /* pieces that hang apart are parts too, which METIS makes none of */
+        /* disconnected components become subdomains too; METIS makes none of
+         * them */
         if (partitioner == VG_PARTITIONER_METIS)
           assert_true(most_in < 1.15 * mean);
       }

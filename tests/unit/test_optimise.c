@@ -1,5 +1,5 @@
-/* Optimisation: the worst cell gets better, and nothing that is given is
- * touched: boundary, volume, orientation. */
+/* Optimisation: the worst cell improves, and the input is preserved: boundary,
+ * volume, orientation. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,7 +17,8 @@
 
 /* sin^2 of the smallest dihedral angle, or of the largest. */
 static const double ten_degrees = 0.03015;
-static const double aim = 0.1786; /* 25: above it shapes may be traded */
+static const double aim =
+  0.1786; /* 25: above it cells may lose quality in favour of others */
 
 /* --- meshes ------------------------------------------------------------- */
 
@@ -67,7 +68,7 @@ static void subject_end(struct subject *s)
   vg_mesh_release(&s->m);
 }
 
-/* Points anywhere: cells of every shape, slivers among them. */
+/* Random points: cells of every shape, including slivers. */
 static void random_subject(struct subject *s, int n, int n_point, uint64_t seed)
 {
   box_subject(s, n);
@@ -108,14 +109,14 @@ static size_t count_below(const struct vg_tets *t, double shape)
   return n;
 }
 
-/* --- what must be true -------------------------------------------------- */
+/* --- invariants --------------------------------------------------------- */
 
 static int by_corners(const void *a, const void *b)
 {
   return memcmp(a, b, 3 * sizeof(uint32_t));
 }
 
-/* The fixed faces of t, each turned to begin with its lowest corner, sorted.
+/* The fixed faces of t, each rotated to begin with its lowest corner, sorted.
  * The caller frees. */
 static uint32_t (*fixed_faces(const struct vg_tets *t, size_t *n))[3]
 {
@@ -138,7 +139,7 @@ static uint32_t (*fixed_faces(const struct vg_tets *t, size_t *n))[3]
   return face;
 }
 
-/* Optimise t and hold it against what it was. */
+/* Optimise t and compare it with its previous state. */
 static struct vg_optimise_report optimise(struct vg_tets *t, size_t n_fixed,
                                           int sweeps)
 {
@@ -228,8 +229,9 @@ static void the_same_bytes_again(void **state)
 
 /* --- flat cells ----------------------------------------------------------- */
 
-/* A shape that is not 0 has the sign of the volume, also where points are in a
- * line but for rounding; and none of those cells passes for a good one. */
+/* A shape that is not 0 has the sign of the volume, also if points are
+ * collinear except for rounding; and none of those cells counts as a good
+ * one. */
 static void points_in_a_line_are_flat(void **state)
 {
   static const int turn[4][4] = {
@@ -259,9 +261,9 @@ static void points_in_a_line_are_flat(void **state)
   }
 }
 
-/* Two points as good as on an edge of four cells, and what is between them and
- * that edge: five flat cells, one of them of four points in a line. No step
- * leaves cells that are all better, but one after the other they go. */
+/* Two points almost on an edge of four cells, with five flat cells between them
+ * and that edge, one of which has four collinear points. No single step
+ * improves all of its cells, but a sequence of steps removes them. */
 static void flat_cells_side_by_side_go(void **state)
 {
   static const double at[8][3] = { { 0, 0, -1 },
@@ -296,10 +298,10 @@ static void flat_cells_side_by_side_go(void **state)
   vg_tets_release(&t);
 }
 
-/* --- slivers on purpose -------------------------------------------------- */
+/* --- artificial slivers -------------------------------------------------- */
 
-/* Four points around the equator of a small sphere, two of them lifted by a
- * little: the Delaunay cell between them is flat. */
+/* Four points around the equator of a small sphere, two of them lifted
+ * slightly: the Delaunay cell between them is flat. */
 static void a_sliver_is_removed(void **state)
 {
   static const double lift[4] = { 1e-2, 1e-4, 1e-6, 1e-9 };
@@ -322,8 +324,8 @@ static void a_sliver_is_removed(void **state)
   }
 }
 
-/* A grid shaken by less than a millionth: the cells of each cube are what
- * rounding made of eight points on one sphere. */
+/* A grid perturbed by less than a millionth: the cells of each cube depend on
+ * the rounding of eight points on one sphere. */
 static void a_shaken_grid(void **state)
 {
   struct subject s;
@@ -345,9 +347,9 @@ static void a_shaken_grid(void **state)
   subject_end(&s);
 }
 
-/* --- points alone -------------------------------------------------------- */
+/* --- smoothing ----------------------------------------------------------- */
 
-/* How far squared edges of cells are from what the field says, squared. */
+/* Squared deviation of the squared edges of cells from the sizing field. */
 static double size_error(const struct subject *s)
 {
   double sum = 0;
@@ -370,8 +372,8 @@ static double size_error(const struct subject *s)
   return sum / (double)s->t.n_cell;
 }
 
-/* Smooth all points but the surface's, from the same begin, by shapes alone or
- * by sizes too; returns what sizes are off then. */
+/* Smooth all points except those of the surface, from the same start, by shapes
+ * alone or by sizes too; returns the remaining size error. */
 static double smooth_points(int by_size, double *mean)
 {
   struct subject s;
@@ -423,9 +425,9 @@ static void sizes_count_beside_shapes(void **state)
   assert_true(shape[1] > 0.97 * shape[0]);
 }
 
-/* --- further ------------------------------------------------------------- */
+/* --- more cases ---------------------------------------------------------- */
 
-/* A crowd of points in one spot can only be thinned out. */
+/* A crowd of points at one position can only be thinned out. */
 static void points_too_many_are_taken_away(void **state)
 {
   struct subject s;
@@ -449,7 +451,7 @@ static void points_too_many_are_taken_away(void **state)
 
 /* --- constraints --------------------------------------------------------- */
 
-/* The cells around a body are not tidied away, but flagged as outside. */
+/* The cells around a body are not removed, but flagged as outside. */
 static void cells_outside_stay(void **state)
 {
   struct subject s;
@@ -521,7 +523,7 @@ static void a_fixed_plane_stays(void **state)
   vg_tets_release(&t);
 }
 
-/* With every point fixed swaps are left, and new points. */
+/* With every point fixed only swaps and new points remain. */
 static void all_points_fixed(void **state)
 {
   (void)state;
@@ -536,7 +538,7 @@ static void all_points_fixed(void **state)
   }
 }
 
-/* One cell that cannot be helped. */
+/* One cell that cannot be improved. */
 static void a_single_cell(void **state)
 {
   const uint32_t v[1][4] = { { 0, 1, 2, 3 } };

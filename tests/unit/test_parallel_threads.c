@@ -1,5 +1,5 @@
-/* Loops over threads, alone and under what uses them. Meant to be run under
- * the thread sanitizer too. */
+/* Loops over threads, alone and in their callers. Also run under the thread
+ * sanitizer. */
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>

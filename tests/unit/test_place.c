@@ -1,5 +1,5 @@
-/* Points of the field: as far apart as the spacing says, nowhere a gap, all in
- * the fluid, always the same. */
+/* Point placement in the isotropic region: distances that match the spacing, no
+ * gaps, all points in the fluid, reproducible. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 #include "fill_shapes.h"
 #include "tets_support.h"
 
-/* A surface, its coarse cells and its field. */
+/* A surface, its coarse cells and its sizing field. */
 struct scene {
   struct vg_mesh m;
   struct vg_tets t;
@@ -93,8 +93,9 @@ static struct vg_placed place(const struct scene *s,
   return out;
 }
 
-/* The least share of the spacing between points is 0.66, measured in single
- * precision; a little less where the field is steep, as it is read twice. */
+/* The least distance between points is 0.66 spacings, measured in single
+ * precision; slightly less where the sizing field has a steep gradient, as it
+ * is evaluated twice. */
 static void keep_their_distance(const struct scene *s,
                                 const struct vg_placed *p, double share)
 {
@@ -108,9 +109,9 @@ static void keep_their_distance(const struct scene *s,
   }
 }
 
-/* No point of the fluid is farther from all points than 1.1 spacings: in the
- * lattice the farthest is at 0.61, and a gap where one more point could stand
- * is at most 0.72 wide where fronts meet. */
+/* No point of the fluid is farther from all points than 1.1 spacings. In the
+ * lattice the farthest position is at 0.61, and where fronts meet a gap that
+ * could take one more point is at most 0.72 wide. */
 static void leave_no_gap(const struct scene *s, const struct vg_placed *p,
                          const double lo[3], const double hi[3])
 {
@@ -207,7 +208,7 @@ static void the_limit_is_exact(void **state)
   scene_end(&s);
 }
 
-/* Points already there count: a second helping is all but empty. */
+/* Existing points count: a second placement adds almost none. */
 static void points_that_stand_count(void **state)
 {
   struct scene s;
@@ -252,8 +253,9 @@ static void a_slab_gets_its_points_only(void **state)
   scene_end(&s);
 }
 
-/* Least distance to those before it, over the spacing, of any point that the
- * front does not propose: farther from it than 1.6 spacings. */
+/* The least distance, over the spacing, of a point from the points before it.
+ * Only points that the front does not propose count, which are farther from it
+ * than 1.6 spacings. */
 static double least_within(const struct scene *s,
                            const struct vg_region *region)
 {
@@ -276,7 +278,8 @@ static double least_within(const struct scene *s,
 }
 
 /* In a region, away from the front, points are 0.68 spacings apart, elsewhere
- * 0.66; the field is so gentle that it matters little where it is read. */
+ * 0.66; the sizing field varies so slowly that the position of its evaluation
+ * hardly matters. */
 static void regions_keep_more_distance(void **state)
 {
   const struct vg_region zone = { .n_plane = 1,
@@ -329,7 +332,7 @@ static void cells_of_regions(void **state)
   scene_end(&s);
 }
 
-/* A cell belongs when all its corners are within all walls. */
+/* A cell belongs to the region if all its corners are within all walls. */
 static void walls_of_regions(void **state)
 {
   const double a[3] = { 0, 0, 0 }, b[3] = { 0.2, 0, 0 }, c[3] = { 0, 0.2, 0 };
@@ -414,7 +417,7 @@ static struct vg_placed seeds_of(const struct vg_source *source, double growth,
   return p;
 }
 
-/* How near the nearest of them comes to x. */
+/* The least distance of a seed from x. */
 static double seed_near(const struct vg_source *source, double growth,
                         const struct vg_region *region, const double x[3])
 {
@@ -425,9 +428,10 @@ static double seed_near(const struct vg_source *source, double growth,
   return d;
 }
 
-/* Where sizes grow fast, no front comes by a source that is small beside the
- * spacing around it: it has seeds of its own; also where a plane passes within
- * the points that are placed along it, but not farther off. */
+/* Where sizes grow fast, the front would miss a source that is small relative
+ * to the surrounding spacing. Therefore such a source has its own seeds, also
+ * where a plane passes within the band of placed points, but not farther
+ * away. */
 static void steep_places_have_seeds(void **state)
 {
   const struct vg_source source = { .kind = VG_SOURCE_SPHERE,
@@ -452,8 +456,8 @@ static void steep_places_have_seeds(void **state)
   }
 }
 
-/* A thin line has some all along it; a plane that crosses it, where it does,
- * and a pencil too. */
+/* A thin line has seeds along its whole length; for a region, only where its
+ * plane or pencil crosses the line. */
 static void thin_lines_have_seeds(void **state)
 {
   const struct vg_source source = { .kind = VG_SOURCE_LINE,

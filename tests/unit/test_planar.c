@@ -13,7 +13,7 @@
 
 enum { MAX_POINT = 20000 };
 
-/* A region under construction and what came of it. */
+/* A region under construction and its result. */
 struct plane {
   size_t n, n_edge, n_new, n_tri;
   double (*p)[2], (*add)[2];
@@ -259,8 +259,8 @@ static void keeps_loops_that_touch(void **state)
 
   (void)state;
   begin(&s);
-  /* a square, a triangular hole hanging on its corner 0, and a second
-   * triangle outside hanging on the same corner */
+  /* a square, a triangular hole attached to its corner 0, and a second triangle
+   * outside attached to the same corner */
   square(&s, &l, 1);
   put(&s, 0.2, 0.5);
   put(&s, 0.5, 0.2);
@@ -293,7 +293,7 @@ static void closes_a_region_finer_than_its_size(void **state)
   check_topology(&s);
   free(s.add);
   free(s.tri);
-  /* sizes that are no numbers: the boundary alone decides */
+  /* sizes are NaN: the boundary alone decides */
   assert_int_equal(run(&s, &nan_law), VG_OK);
   check_topology(&s);
   free(s.add);
@@ -425,7 +425,7 @@ static void refuses_bad_loops(void **state)
   }
 }
 
-/* One who asks to stop after so many questions. */
+/* A stop request after this number of polls. */
 struct patience {
   struct law l;
   size_t n_size, n_asked, most;
@@ -446,8 +446,8 @@ static int is_over(void *user)
   return ++p->n_asked > p->most;
 }
 
-/* Asked all along, while points are placed and while they are moved, and
- * stopped at once; the answers of one who does not stop change nothing. */
+/* The stop request is polled throughout the placement and the smoothing of
+ * points, and obeyed at once. Polls without a request change nothing. */
 static void stops_when_asked(void **state)
 {
   struct patience p = { .l = { { 0 }, 0.005, 0, 1 }, .most = SIZE_MAX };

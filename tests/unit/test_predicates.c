@@ -1,5 +1,6 @@
-/* Signs of core/geometry/predicates.h against integer arithmetic of any length:
- * every coordinate here is a whole number, so the reference has no rounding. */
+/* Signs of core/geometry/predicates.h compared with integer arithmetic of
+ * arbitrary length: every coordinate here is a whole number, so the reference
+ * has no rounding. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -98,7 +99,7 @@ static struct big big_det(int n, struct big m[][4])
   return sum;
 }
 
-/* Rows p[i] - p[last], with the squared length appended when lifted. */
+/* Rows p[i] - p[last], with the squared length appended if lifted. */
 static int det_sign(int n, int dim, double p[][3], int lifted)
 {
   struct big m[4][4];
@@ -214,8 +215,8 @@ static void is_exact_on_a_grid(void **unused)
   }
 }
 
-/* d within a rounding of the plane of a b c; coordinates of mixed size, so
- * that differences need two doubles. */
+/* d within a rounding of the plane of a b c; coordinates of mixed size, so that
+ * differences need two doubles. */
 static void is_exact_near_a_plane(void **unused)
 {
   uint64_t s = 1;
@@ -241,8 +242,8 @@ static void is_exact_near_a_plane(void **unused)
   }
 }
 
-/* Points of one sphere about 0 (permutations and reflections of one point),
- * one of them moved by at most one unit. */
+/* Points of one sphere about 0 (permutations and reflections of one point), one
+ * of them moved by at most one unit. */
 static void is_exact_near_a_sphere(void **unused)
 {
   const int perm[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 },
@@ -267,7 +268,7 @@ static void is_exact_near_a_sphere(void **unused)
     check_plane(p);
     zero += vg_insphere(p[0], p[1], p[2], p[3], p[4]) == 0;
   }
-  assert_true(zero > 1000); /* the cases are as degenerate as meant */
+  assert_true(zero > 1000); /* the cases are as degenerate as intended */
 }
 
 /* Nearly cospherical far from the origin of coordinates. */
@@ -296,7 +297,7 @@ static void is_exact_after_translation(void **unused)
 }
 
 /* Rows of whole numbers with determinant 1 and the largest entries that a
- * double holds: 1 is far below what even two doubles can tell from 0. */
+ * double holds: 1 is far below the resolution even of two doubles. */
 static void sees_one_unit_of_volume(void **unused)
 {
   uint64_t s = 5;
@@ -349,8 +350,8 @@ static void sees_one_unit_of_area(void **unused)
   }
 }
 
-/* Points on a sphere with squared radius R of 107 bits about 0, and one with
- * R - 1: u^2 + v^2 = x^2 + y^2 - 1 for x = u + 1 and 2 u = v^2 - y^2. */
+/* Points on a sphere with squared radius R of 107 bits about 0, and one with R
+ * - 1: u^2 + v^2 = x^2 + y^2 - 1 for x = u + 1 and 2 u = v^2 - y^2. */
 static void sees_one_unit_of_squared_radius(void **unused)
 {
   uint64_t s = 6;
@@ -392,8 +393,8 @@ static int parity(const int *perm, int n)
   return odd ? -1 : 1;
 }
 
-/* Exchanging two arguments changes the sign, also for values that are not
- * whole numbers and where the first filter fails. */
+/* Exchanging two arguments changes the sign, also for values that are not whole
+ * numbers and where the first filter fails. */
 static void is_antisymmetric(void **unused)
 {
   uint64_t s = 4;

@@ -1,5 +1,5 @@
-/* Points put back on a shape: found on old triangles, moved all at once, kept
- * where triangles would fold, become slivers or meet. */
+/* Points projected back to a shape: located on old triangles, moved all at
+ * once, and kept where triangles would fold, become slivers or intersect. */
 #include "remesh_shapes.h"
 
 #include "core/remesh/put_back.h"
@@ -14,7 +14,7 @@ static void put_back(struct vg_mesh *m, double (*to)[3], uint8_t *stays,
     fail_msg("%s", err.text);
 }
 
-/* Half a ball as large again: all of it moves, what stays is kept. */
+/* Half a ball scaled by 1.01: all its points move, the others stay. */
 static void moves_all(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -41,7 +41,8 @@ static void moves_all(void **unused)
   vg_mesh_release(&m);
 }
 
-/* One point far along the surface: it stays, with its neighbours at most. */
+/* One point moved far along the surface is refused, and with it its neighbours
+ * at most. */
 static void refuses_folds(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -68,8 +69,8 @@ static void refuses_folds(void **unused)
   vg_mesh_release(&m);
 }
 
-/* A box that gets thinner than nothing: no triangle folds or becomes a sliver,
- * but the sides meet, so all of one goes back. */
+/* A box whose thickness would become negative: no triangle folds or becomes a
+ * sliver, but the sides would intersect, so all points of one side are kept. */
 static void refuses_meeting(void **unused)
 {
   const double size[3] = { 1, 1, 0.01 };
@@ -102,8 +103,8 @@ static void refuses_meeting(void **unused)
   vg_mesh_release(&old);
 }
 
-/* Two sides of a plate meet at one place: the points of the other places move
- * all the same. */
+/* Two sides of a plate would intersect at one location: the points of other
+ * locations move all the same. */
 static void keeps_conflicts_local(void **unused)
 {
   const double size[3] = { 1, 1, 0.01 };
@@ -136,8 +137,8 @@ static void keeps_conflicts_local(void **unused)
   vg_mesh_release(&m);
 }
 
-/* Every point of a box is found on a triangle that has it, whatever way
- * triangles face, for any threads. */
+/* Every point of a box is located on a triangle that contains it, for either
+ * orientation of triangles and any number of threads. */
 static void locates(void **unused)
 {
   const double size[3] = { 3, 2, 1 };
@@ -149,7 +150,8 @@ static void locates(void **unused)
 
   (void)unused;
   shape_box(&m, size, n);
-  for (size_t t = 0; t < m.n_tri; t += 2) { /* neighbours disagree */
+  for (size_t t = 0; t < m.n_tri;
+       t += 2) { /* neighbours have opposite orientations */
     uint32_t a = m.tri[t][0];
 
     m.tri[t][0] = m.tri[t][1];

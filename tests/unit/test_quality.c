@@ -1,4 +1,4 @@
-/* The judge: known figures, and every kind of fault found and counted. */
+/* The mesh check: known figures, and every kind of fault found and counted. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #define P (N + 1)
 
 /* Nodes along the six paths of a cube from corner to opposite corner (Kuhn);
- * the last three paths are odd and turn the tetrahedron over. */
+ * the last three paths are odd and invert the tetrahedron. */
 static const int path[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 },
                                 { 0, 2, 1 }, { 2, 1, 0 }, { 1, 0, 2 } };
 static const size_t stride[3] = { 1, P, P *P };
@@ -98,7 +98,7 @@ static struct vg_mesh_report judge(const struct vg_mesh *m)
   return r;
 }
 
-/* Sum of everything that has to be zero, apart from the volume. */
+/* Sum of all figures that must be zero, except for the volume. */
 static size_t faults(const struct vg_mesh_report *r)
 {
   return r->bad_index + r->unused_point + r->not_finite + r->duplicate_point +
@@ -119,8 +119,8 @@ static void a_cube_is_valid(void **state)
   assert_int_equal(r.n_inner_face, (4 * 384 - 192) / 2);
   assert_near(r.volume, 1, 1e-15);
   assert_near(r.enclosed, 1, 1e-15);
-  /* Kuhn's tetrahedra: 45, 60, 90 degrees; radius ratio of legs 1, 1, 1:
-   * V = 1/6, area (1 + sqrt 2), R = sqrt(3)/2 of a unit cube */
+  /* Kuhn's tetrahedra: 45, 60, 90 degrees; radius ratio of legs 1, 1, 1: V =
+   * 1/6, area (1 + sqrt 2), R = sqrt(3)/2 of a unit cube */
   assert_near(r.angle_min, 45, 1e-9);
   assert_near(r.angle_max, 90, 1e-9);
   assert_near(r.angle_min_p1, 45, 0.011);
@@ -204,8 +204,9 @@ static void a_flat_cell_is_not_positive(void **state)
   vg_mesh_release(&m);
 }
 
-/* A needle whose sign plain arithmetic cannot tell: four points of a grid of
- * 2^-30 near (1, 1, 1), coplanar but for one step of one coordinate. */
+/* A needle whose sign floating-point arithmetic cannot determine: four points
+ * of a grid of 2^-30 near (1, 1, 1), coplanar except for one step of one
+ * coordinate. */
 static void signs_are_exact(void **state)
 {
   const double e = ldexp(1, -30);
@@ -263,7 +264,7 @@ static void unused_and_coincident_points_are_counted(void **state)
   m.point = vg_realloc(m.point, m.n_point + 2, sizeof *m.point);
   assert_non_null(m.point);
   for (int k = 0; k < 3; k++) {
-    m.point[m.n_point][k] = -0.0; /* the corner, but for the sign of 0 */
+    m.point[m.n_point][k] = -0.0; /* the corner, except for the sign of 0 */
     m.point[m.n_point + 1][k] = 7;
   }
   m.n_point += 2;
@@ -297,7 +298,7 @@ static void a_missing_cell_opens_faces(void **state)
   struct vg_mesh_report r;
 
   (void)state;
-  /* the middle cube is bounded by others only */
+  /* the middle cube is surrounded by other cubes only */
   memmove(m.tet + 6 * 21, m.tet + 6 * 21 + 1,
           (m.n_tet - 6 * 21 - 1) * sizeof *m.tet);
   m.n_tet--;
@@ -378,7 +379,7 @@ static void components_are_counted(void **state)
   struct vg_mesh_report r;
 
   (void)state;
-  /* take the second layer of cubes out: two blocks remain */
+  /* remove the second layer of cubes: two blocks remain */
   memmove(m.tet + 6 * N * N, m.tet + 12 * N * N,
           (m.n_tet - 12 * N * N) * sizeof *m.tet);
   m.n_tet -= 6 * N * N;
@@ -450,7 +451,7 @@ static void mixed_cells_are_judged(void **state)
   assert_int_equal(r.n_inner_face, 2);
   assert_near(r.volume, 1 + 1 / 2. + 1 / 3., 1e-14);
   assert_near(r.volume_ratio[2], 3, 3. / 256);
-  /* warped quads still enclose what the cells sum up to */
+  /* warped quads still enclose the sum of the cells' volumes */
   m.point[6][0] += 0.11;
   m.point[6][2] += 0.07;
   r = judge(&m);
@@ -469,7 +470,7 @@ static void inverted_mixed_cells_are_found(void **state)
   r = judge(&m);
   assert_int_equal(r.not_positive, 1);
   m.point[10][2] = 2;
-  m.point[8][0] = 0.5; /* a prism turned over */
+  m.point[8][0] = 0.5; /* an inverted prism */
   m.point[9][0] = 0.5;
   r = judge(&m);
   assert_int_equal(r.not_positive, 1);
@@ -480,7 +481,8 @@ static void inverted_mixed_cells_are_found(void **state)
   vg_mesh_release(&m);
 }
 
-/* Every interior edge of the cube counted once, each against its target. */
+/* Every interior edge of the cube is counted once and compared with its
+ * target. */
 static void edges_are_measured_against_the_field(void **state)
 {
   struct vg_mesh m = cube();
@@ -514,8 +516,8 @@ static void edges_are_measured_against_the_field(void **state)
   vg_mesh_release(&m);
 }
 
-/* Numbering has no part in the figures, and a node of very many faces is no
- * special case. */
+/* Numbering does not affect the figures, even with a node of very many
+ * faces. */
 static void figures_do_not_depend_on_numbering(void **state)
 {
   struct vg_mesh m = cube();
@@ -577,9 +579,9 @@ static void a_hub_is_matched(void **state)
   vg_mesh_release(&m);
 }
 
-/* VGRID's own mesh of a 20 x 20 x 20 box with layers: counts from its
- * headers, angles as an independent program (long double volumes, sorted
- * faces) prints them, with its rounding. */
+/* VGRID's own mesh of a 20 x 20 x 20 box with layers: counts from its headers,
+ * angles as an independent program (long double volumes, sorted faces) prints
+ * them, with its rounding. */
 static void a_mesh_of_vgrid(void **state)
 {
   const char *file = io_real("vgrid_box/box.cogsg");
@@ -601,9 +603,9 @@ static void a_mesh_of_vgrid(void **state)
   vg_mesh_release(&m);
 }
 
-/* AFLR3's mesh of a body in a box: 38,604 tetrahedra, 85,900 prisms. The
- * same independent program says: inner faces 290,603, angles 11.001 and
- * 155.021, enclosed volume 79983.302897, none of the cells turned over. */
+/* AFLR3's mesh of a body in a box: 38,604 tetrahedra, 85,900 prisms. The same
+ * independent program gives: inner faces 290,603, angles 11.001 and 155.021,
+ * enclosed volume 79983.302897, no inverted cells. */
 static void a_mesh_with_prisms(void **state)
 {
   const char *file = io_real("simple/cape_cigar_viscous_volume.lb8.ugrid.xz");

@@ -1,5 +1,6 @@
-/* The judge on tetrahedra alone: faces matched as they come
- * (core/judge/quality_pairs.c), when many wait and in columns of layers. */
+/* The mesh check of tetrahedra alone: faces are matched in the order of cells
+ * (core/judge/quality_pairs.c), with many faces waiting and in columns of
+ * layers. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -45,8 +46,8 @@ static void turn_over(uint32_t t[4])
   t[1] = first;
 }
 
-/* n pairs of tetrahedra on a common face, each apart from the others: the
- * second ones come when all first ones wait, and the boundary after them. */
+/* n separate pairs of tetrahedra, each with a common face. The second ones come
+ * when all first ones wait, and the boundary after them. */
 static struct vg_mesh pairs_apart(uint32_t n)
 {
   static const double x[5][3] = {
@@ -98,8 +99,8 @@ static void many_faces_may_wait(void **state)
 #define LEVELS 6
 #define RAISED (3 * LEVELS)
 
-/* A column: its corners are raised in turn, and each time a cell stands on
- * the one before. Numbers of points are spread by `by`, prime to 21. */
+/* A column: its corners are raised in turn, and each time a cell is placed on
+ * the previous one. Point numbers are spread by `by`, prime to 21. */
 static struct vg_mesh column(uint32_t by)
 {
   struct vg_mesh m = room_for(21, RAISED, 2 * RAISED + 2);

@@ -1,4 +1,4 @@
-/* How fast is the machine of a record? */
+/* The speed of the machine that recorded a timeline. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -27,7 +27,8 @@ static void add(struct vg_spans *s, char kind, uint64_t cells, uint64_t faces,
   assert_int_equal(vg_spans_add(s, &one, &err), VG_OK);
 }
 
-/* Tasks that take a us per cell and b us per face, off by a share each way. */
+/* Tasks that take a us per cell and b us per face, alternately increased and
+ * reduced by the share `off`. */
 static void add_tasks(struct vg_spans *s, char kind, int n, double a, double b,
                       double off)
 {
@@ -79,7 +80,8 @@ static void scatter_is_told(void **state)
   vg_spans_release(&s);
 }
 
-/* No rate is below 0, and what cannot be told apart goes to the cells. */
+/* No rate is below 0, and costs that cannot be separated are assigned to the
+ * cells. */
 static void one_column_stands_for_two(void **state)
 {
   struct vg_spans less = VG_SPANS_INIT, alike = VG_SPANS_INIT,

@@ -1,5 +1,6 @@
-/* Surfaces whose triangles are not Delaunay are in the cells all the same;
- * what is not a boundary is refused in words, without a trace. */
+/* Surfaces whose triangles are not Delaunay are recovered in the cells;
+ * surfaces that are not a boundary are refused with a message, and nothing is
+ * changed. */
 #include <fcntl.h>
 #include <math.h>
 #include <setjmp.h>
@@ -36,8 +37,8 @@ static size_t tri_of_edge(const struct vg_mesh *m, uint32_t a, uint32_t b,
   return SIZE_MAX;
 }
 
-/* Turn the edge behind corner k of triangle i where both lie in one plane and
- * the outcome is two triangles of the same sense. */
+/* Swap the edge opposite corner k of triangle i if both triangles are in one
+ * plane and the new ones have the same orientation. */
 static int turn_edge(struct vg_mesh *m, size_t i, int k)
 {
   uint32_t a = m->tri[i][k], b = m->tri[i][(k + 1) % 3];
@@ -67,7 +68,7 @@ static int turn_edge(struct vg_mesh *m, size_t i, int k)
   return 1;
 }
 
-/* n edges turned at random: flat sides whose triangles are anything. */
+/* n edges swapped at random: flat sides with arbitrary triangles. */
 static void turn_edges(struct vg_mesh *m, int n, uint64_t seed)
 {
   while (n) {
@@ -77,8 +78,9 @@ static void turn_edges(struct vg_mesh *m, int n, uint64_t seed)
   }
 }
 
-/* A triangular prism whose top is turned against its bottom so that its sides
- * bend inwards: Schoenhardt's polyhedron, which needs a point of its own. */
+/* A triangular prism whose top is rotated relative to its bottom so that its
+ * sides bend inwards: Schoenhardt's polyhedron, which needs an additional
+ * point. */
 static void twisted_prism(struct vg_mesh *m, double twist)
 {
   size_t patch = vg_mesh_add_patch(m, 1, "prism");
@@ -110,14 +112,14 @@ static double enclosed(const struct vg_mesh *m)
   return sum;
 }
 
-/* --- what must be true -------------------------------------------------- */
+/* --- invariants --------------------------------------------------------- */
 
 static int by_corners(const void *a, const void *b)
 {
   return memcmp(a, b, 3 * sizeof(uint32_t));
 }
 
-/* The lowest corner first, turning sense kept. */
+/* The lowest corner first, with the orientation kept. */
 static void put_face(uint32_t (*list)[3], size_t n, const uint32_t v[3])
 {
   int low = v[1] < v[0] ? 1 : 0;
@@ -126,7 +128,8 @@ static void put_face(uint32_t (*list)[3], size_t n, const uint32_t v[3])
   for (int k = 0; k < 3; k++) list[n][k] = v[(low + k) % 3];
 }
 
-/* The fixed faces of fluid cells are exactly the triangles, as they turn. */
+/* The fixed faces of fluid cells are exactly the triangles, with their
+ * orientation. */
 static void faces_are(const struct vg_tets *t, const struct vg_mesh *m)
 {
   uint32_t(*want)[3] = vg_alloc(m->n_tri, sizeof *want);
@@ -198,7 +201,7 @@ static void nothing_is_lost_of_an_octahedron(void **state)
   assert_int_equal(r.whole_void, 0);
 }
 
-/* --- others ------------------------------------------------------------- */
+/* --- other surfaces ----------------------------------------------------- */
 
 static void diagonals_turned_at_random(void **state)
 {
@@ -217,8 +220,8 @@ static void diagonals_turned_at_random(void **state)
   }
 }
 
-/* Coarse tubes with many points around them, their quads cut the other way if
- * told so. */
+/* Coarse tubes with many points around them, their quads cut along the other
+ * diagonal if requested. */
 static size_t torus_loses(int nu, int nv, int other_way)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -242,7 +245,7 @@ static void a_torus_of_either_diagonal(void **state)
   assert_true(torus_loses(9, 30, 1) > 20);
 }
 
-/* TetGen 1.5.0 never ends on a pocket of this one. */
+/* TetGen 1.5.0 never ends on a pocket of this surface. */
 static void a_pocket_that_tetgen_does_not_end(void **state)
 {
   (void)state;
@@ -265,7 +268,8 @@ static void a_twisted_prism_gets_a_point(void **state)
   }
 }
 
-/* A bar 300 long, 2 wide and 0.02 thick, its flat sides cut anyhow. */
+/* A bar 300 long, 2 wide and 0.02 thick, its flat sides triangulated
+ * arbitrarily. */
 static void long_slivers(void **state)
 {
   const int n[3] = { 30, 2, 1 };
@@ -293,7 +297,7 @@ static void a_body_with_turned_diagonals(void **state)
   assert_true(recovered(&m).n_face_lost > 0);
 }
 
-/* The count of the report against one of our own, face by face. */
+/* The count of the report compared with a count here, face by face. */
 static void the_lost_are_counted(void **state)
 {
   struct vg_tets t = VG_TETS_INIT;
@@ -367,7 +371,7 @@ static void the_same_bytes_again(void **state)
 
 /* --- refusal ------------------------------------------------------------ */
 
-/* What reaches the standard output between the two calls. */
+/* Captures the standard output between the two calls. */
 static int divert(FILE **to)
 {
   int kept;

@@ -1,5 +1,5 @@
-/* Flips towards Delaunay tetrahedra: what can be flipped back is, fixed faces
- * stay, and the cells go on filling the same box. */
+/* Flips towards Delaunay tetrahedra: faces that can be flipped back are, fixed
+ * faces stay, and the cells still fill the same box. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,7 +39,7 @@ static double side(const struct vg_tets *t, uint32_t a, uint32_t b, uint32_t c,
   return vg_orient3d(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
 
-/* The three cells that a face can become; 0 where it cannot. */
+/* The three cells that a face can be replaced by; 0 if it cannot. */
 static int three_of(const struct vg_tets *t, uint32_t c, int i,
                     uint32_t v[3][4])
 {
@@ -56,7 +56,7 @@ static int three_of(const struct vg_tets *t, uint32_t c, int i,
   return 1;
 }
 
-/* Flip faces at random, wherever that can be done. */
+/* Flip faces at random, wherever that is possible. */
 static void spoil(struct vg_tets *t, uint64_t seed)
 {
   for (int n = 0; n < N_SPOILT;) {
@@ -83,8 +83,8 @@ static int is_wrong(const struct vg_tets *t, uint32_t c, int i)
                      t->x[t->cell[link >> 2].v[link & 3]]) > 0;
 }
 
-/* Could an edge of the face, passed by on its outer side, go by three cells
- * becoming two? */
+/* Whether an edge of the face, with the face's outer side next to it, could be
+ * removed by a flip of three cells to two. */
 static int has_loose_edge(const struct vg_tets *t, uint32_t c, int i)
 {
   uint32_t far = t->cell[c].link[i], apex = t->cell[c].v[i];
@@ -122,7 +122,7 @@ static void is_sound(const struct vg_tets *t)
     assert_int_equal(t->flag[c] & (VG_MARK | VG_TRIED | VG_OUTSIDE), 0);
 }
 
-/* Without faces to keep most of what was spoilt comes back. */
+/* Without fixed faces most of the random flips are undone. */
 static void flips_are_undone(void **state)
 {
   (void)state;
@@ -138,7 +138,7 @@ static void flips_are_undone(void **state)
     is_sound(&t);
     nothing_is_left(&t);
     assert_true(n_flip > 0);
-    /* flips alone need not reach the end; seen: all of it or nearly */
+    /* flips alone need not succeed completely; observed: all or almost all */
     assert_true(tets_not_delaunay(&t) < spoilt / 10);
     vg_tets_release(&t);
   }
@@ -158,7 +158,7 @@ struct face {
   uint32_t v[3];
 };
 
-/* Every tenth face of the spoilt cells, fixed on both sides. */
+/* Every tenth face of the flipped cells, fixed on both sides. */
 static size_t fix_some(struct vg_tets *t, struct face *face)
 {
   size_t n = 0, k = 0;
@@ -211,8 +211,8 @@ static void fixed_faces_stay(void **state)
   vg_tets_release(&t);
 }
 
-/* All corners of a cube on one sphere: nothing is to be gained, so nothing may
- * be flipped, whatever the rounding of sums. */
+/* All corners of a cube are on one sphere: no flip is an improvement, so none
+ * may be made, whatever the rounding of sums. */
 static void equals_stay(void **state)
 {
   static const int n[3] = { 4, 4, 4 };
@@ -227,8 +227,8 @@ static void equals_stay(void **state)
   vg_tets_release(&t);
 }
 
-/* A turned, graded grid of points that lie in a plane but for their rounding:
- * whole rings of cells there are flat, and sums over them are noise. */
+/* A rotated, graded grid of points that are in a plane except for their
+ * rounding: whole edge stars are flat there, and sums over them are noise. */
 static void start_flat(struct vg_tets *t)
 {
   enum { SIDE = 20 };
@@ -249,8 +249,8 @@ static void start_flat(struct vg_tets *t)
   vg_inserter_release(&s);
 }
 
-/* Flips by such sums undo those by exact signs, over and over: the signal ends
- * the test then. */
+/* Flips by such sums would undo those by exact signs, over and over: then the
+ * signal ends the test. */
 static void flat_rings_come_to_rest(void **state)
 {
   (void)state;

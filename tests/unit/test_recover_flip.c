@@ -1,5 +1,5 @@
-/* Edges and triangles put in by flips: what can be is, the tetrahedra stay
- * tetrahedra of the same box, and what was there stays. */
+/* Edges and triangles recovered by flips: all that can be are, the tetrahedra
+ * still fill the same box, and recovered ones are kept. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -65,7 +65,8 @@ static void is_sound(const struct vg_tets *t)
     assert_int_equal(t->flag[c] & (VG_MARK | VG_TRIED), 0);
 }
 
-/* The missing ones of some triangles, in `missing`; returns how many. */
+/* Those of the triangles that are missing, in `missing`; returns their
+ * number. */
 static size_t missing_of(struct vg_tets *t, size_t n, const uint32_t (*tri)[3],
                          uint32_t *missing)
 {
@@ -82,8 +83,8 @@ static size_t missing_of(struct vg_tets *t, size_t n, const uint32_t (*tri)[3],
   return m;
 }
 
-/* Recover by flips and tell how many are left; all of what was told must be
- * true, and nothing that was there be lost. */
+/* Recover by flips and return the number of missing triangles. Everything
+ * reported must be true, and no existing one may be lost. */
 static size_t left_of(struct vg_tets *t, size_t n, const uint32_t (*tri)[3],
                       size_t *lost)
 {
@@ -113,7 +114,7 @@ static double distance(const struct vg_tets *t, uint32_t a, uint32_t b)
   return sqrt(d);
 }
 
-/* Three points nearer to each other than `near`. */
+/* Three points closer to each other than `near`. */
 static void choose(const struct vg_tets *t, double near, uint64_t *seed,
                    uint32_t v[3])
 {
@@ -170,8 +171,8 @@ static void triangles_in_a_thin_sheet(void **state)
 
 /* --- surfaces ----------------------------------------------------------- */
 
-/* A sheared sheet of nu x nv points, quadrilaterals far longer than wide, cut
- * along one diagonal or the other: not Delaunay at all. */
+/* A sheared sheet of nu x nv points, with quadrilaterals far longer than wide,
+ * cut along one diagonal or the other: far from Delaunay. */
 static size_t sheet(struct vg_tets *t, int nu, int nv, double bend,
                     uint32_t (*tri)[3])
 {
@@ -218,7 +219,8 @@ static void a_stretched_sheet(void **state)
   }
 }
 
-/* Schoenhardt's prisms in a row: no tetrahedra on their points hold them. */
+/* Schoenhardt's prisms in a row: tetrahedra on their points alone cannot
+ * contain them. */
 static void twisted_prisms_are_handed_on(void **state)
 {
   static uint32_t tri[5 * 8][3];
@@ -278,14 +280,14 @@ static void the_same_cells_again(void **state)
   vg_tets_release(&t[1]);
 }
 
-/* --- what is in the way -------------------------------------------------- */
+/* --- obstacles ----------------------------------------------------------- */
 
 static void signs_of_what_is_in_the_way(void **state)
 {
   static double x[9][3] = { { 0, 0, 0 },  { 4, 0, 0 },
                             { 0, 4, 0 },                 /* triangle */
                             { 1, 1, -1 }, { 1, 1, 1 },   /* through it */
-                            { 5, 5, 1 },                 /* beside it */
+                            { 5, 5, 1 },                 /* next to it */
                             { 2, 0, 0 },                 /* on its edge */
                             { 1, 1, 0 },  { 8, 8, 0 } }; /* in its plane */
   struct vg_tets t = { .n_point = 9, .x = x };

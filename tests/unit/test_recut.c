@@ -1,4 +1,5 @@
-/* Parts that cannot be filled, and are filled with what is beside them. */
+/* Subdomains that cannot be filled are filled together with their
+ * neighbours. */
 #define _GNU_SOURCE
 #include "advance_support.h"
 
@@ -27,7 +28,8 @@ static struct vg_piece piece_of(size_t n_cell, const uint32_t (*cell)[4])
   return q;
 }
 
-/* Of one piece, and put together from two in either order, the same. */
+/* The boundary of cells is the same for one piece and for two pieces in either
+ * order. */
 static void what_bounds_cells(void **state)
 {
   static const uint32_t cell[2][4] = { { 0, 1, 2, 3 }, { 0, 2, 1, 4 } };
@@ -69,8 +71,8 @@ static void what_bounds_cells(void **state)
 
 /* --- whole runs ---------------------------------------------------------- */
 
-/* A valid mesh, the same in any order, in threads, and when resumed. Returns
- * what happened. */
+/* A valid mesh, the same in any order, in threads, and after a resume. Returns
+ * the report. */
 static struct vg_partition_report always(const struct scene *s, double share,
                                          int rounds)
 {
@@ -99,7 +101,8 @@ static struct vg_partition_report always(const struct scene *s, double share,
   return first;
 }
 
-/* A part costs what is around it, twice in vain what is around that. */
+/* A subdomain that fails costs its neighbours; one that fails twice costs the
+ * neighbours of those too. */
 static void only_what_is_beside(void **state)
 {
   uint64_t before = 0;
@@ -110,7 +113,7 @@ static void only_what_is_beside(void **state)
   for (int rounds = 1; rounds <= 3; rounds++) {
     struct vg_partition_report r = always(&s, 0.04, rounds);
 
-    print_message("%d: %d voids, %d cells made again\n", rounds,
+    print_message("%d rounds: %d voids, %d cells replaced\n", rounds,
                   (int)r.n_widened, (int)r.n_widened_cell);
     /* Two leaves fail by their paths, 0.0.0.1.0 and 0.1.1.0.1. Both share faces
      * with the zone of the first plane, so the first round joins them to one
@@ -158,8 +161,8 @@ static void what_can_never_be_filled(void **state)
   scene_end(&s);
 }
 
-/* The record goes on behind the first tasks; cells that were made for nothing
- * are in none of it. */
+/* The timeline continues after the first tasks; cells that were made in vain do
+ * not appear in it. */
 static void the_record_is_one(void **state)
 {
   struct vg_partition_options o = options_of(2000, 2, 0);

@@ -1,4 +1,4 @@
-/* Which triangles come near a region, where sizes vary along it. */
+/* Selection of the triangles near a region, where sizes vary along it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +9,7 @@
 
 #include "core/front/region.h"
 
-/* Fine beside the origin, growing away from there. */
+/* Fine near the origin, growing away from it. */
 static struct vg_sizing *graded(void)
 {
   struct vg_source far[2] = {
@@ -48,13 +48,13 @@ static int met(const struct vg_region *r, const struct vg_sizing *s,
   return is;
 }
 
-/* A line along x, one unit above a plane of symmetry: near it by the spacing
- * at x = -12, not by that at x = -5. */
+/* A line along x, one unit above a plane of symmetry: near it by the spacing at
+ * x = -12, not by that at x = -5. */
 static const struct vg_region line = {
   .n_plane = 2, .plane = { { { 0, 1, 0 }, 1 }, { { 0, 0, 1 }, 0 } }
 };
 
-/* The middle of what the triangle has near the line lies where it is fine. */
+/* The middle of the triangle's part near the line is where the size is fine. */
 static void test_large_by_a_corner(void **state)
 {
   static const double x[3][3] = { { -12, 0, 0 },

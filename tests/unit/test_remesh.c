@@ -1,4 +1,4 @@
-/* Surfaces made anew: shapes of which lines, areas and distances are known, a
+/* Remeshed surfaces: shapes with known feature edges, areas and distances, a
  * random search, and refusals. */
 #include "remesh_shapes.h"
 
@@ -19,7 +19,7 @@ static double edge_within(const struct vg_remesh_report *r)
   return (double)r->n_edge_fit / (double)r->n_edge;
 }
 
-/* The largest distance of either from the other. */
+/* The larger of the distances of each surface from the other. */
 static double apart(const struct vg_mesh *a, const struct vg_mesh *b)
 {
   struct vg_remesh_distance d[2];
@@ -29,7 +29,8 @@ static double apart(const struct vg_mesh *a, const struct vg_mesh *b)
   return fmax(d[0].most, d[1].most);
 }
 
-/* A ridge that a point off by less than the tolerance makes is none. */
+/* A ridge caused by a point that is off by less than the tolerance is not a
+ * feature edge. */
 static void leaves_out_false_ridges(void **unused)
 {
   const double size[3] = { 3, 2, 1 };
@@ -63,8 +64,8 @@ static void leaves_out_false_ridges(void **unused)
   }
 }
 
-/* Edges that are asked for across a strip are there, however narrow it is for
- * the sizes around. */
+/* Edges requested across a strip are made, however narrow it is relative to the
+ * surrounding sizes. */
 static void edges_go_across_strips(void **unused)
 {
   const double size[3] = { 1, 1, 0.01 };
@@ -91,7 +92,7 @@ static void edges_go_across_strips(void **unused)
   assert_in_range(n_tri[1], 2400, 7200);
 }
 
-/* Needles of 1 : 60 on a box become good triangles; its edges stay. */
+/* Needles of 1 : 60 on a box become well-shaped triangles; its edges stay. */
 static void makes_needles_good(void **unused)
 {
   const double size[3] = { 3, 2, 1 };
@@ -117,7 +118,7 @@ static void makes_needles_good(void **unused)
   assert_true(q.angle_min_p1 >= 42);
   assert_true(edge_within(&r) > 0.95);
   assert_int_equal(r.n_bad, 0);
-  for (size_t p = 0; p < 6; p++) /* planes: areas but for rounding */
+  for (size_t p = 0; p < 6; p++) /* planes: areas except for rounding */
     assert_float_equal(shape_area(&m, p), shape_area(&old, p), 1e-9);
   assert_true(apart(&m, &old) < 1e-9);
   vg_remesh_report_release(&r);
@@ -125,8 +126,8 @@ static void makes_needles_good(void **unused)
   vg_mesh_release(&old);
 }
 
-/* A ball stays within the tolerance, and its two patches, between which it is
- * smooth, keep their names and halves. Triangles at the border are as large as
+/* A ball stays within the tolerance. Its two patches, which share a smooth
+ * border, keep their names and halves. Triangles at the border are as large as
  * 0.1: half of one along 2 pi is 0.3, of 12.6. */
 static void keeps_a_ball_round(void **unused)
 {
@@ -157,8 +158,8 @@ static void keeps_a_ball_round(void **unused)
   vg_mesh_release(&old);
 }
 
-/* On the border of a patch that is hard, and of one with another condition,
- * lines stay though the surface is smooth there. */
+/* On a fixed patch border, and on the border of a patch with another condition,
+ * feature edges stay although the surface is smooth there. */
 static void keeps_hard_borders(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -183,7 +184,8 @@ static void keeps_hard_borders(void **unused)
   }
 }
 
-/* A blunt edge 0.01 wide on a plate gets cells as narrow, not needles. */
+/* A blunt edge 0.01 wide on a plate gets equally narrow triangles, not
+ * needles. */
 static void follows_strips(void **unused)
 {
   const double size[3] = { 2, 1, 0.01 };
@@ -236,8 +238,8 @@ static void shape_chamfered(struct vg_mesh *m, double from, double to)
   }
 }
 
-/* Where the edges of the chamfer are nearer to each other than the tolerance,
- * one of the two is enough. */
+/* Where the edges of the chamfer are closer together than the tolerance, one of
+ * the two is dropped. */
 static void closes_narrow_strips(void **unused)
 {
   const double from = 2e-5, to = 0.01, across = 2;
@@ -275,9 +277,9 @@ static void closes_narrow_strips(void **unused)
   }
 }
 
-/* Half a body: the rim stays in its plane. */
-/* The same, where a wrap or the like can have made it: its edges are none, and
- * what it is off is allowed for. */
+/* A thin plate whose accuracy is given, as that of a wrap: it becomes the
+ * tolerance. If it is almost the thickness, the plate's edges need not stay
+ * feature edges and sizes are larger. */
 static void knows_what_the_given_is_worth(void **unused)
 {
   const double size[3] = { 2, 1, 0.01 };
@@ -307,6 +309,7 @@ static void knows_what_the_given_is_worth(void **unused)
   assert_true(n_line[2] <= n_line[0]);
 }
 
+/* Half a body: the rim stays in its plane. */
 static void keeps_open_rims(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -324,7 +327,7 @@ static void keeps_open_rims(void **unused)
     m.tri_patch[keep++] = m.tri_patch[t];
   }
   m.n_tri = keep;
-  shape_weld(&m); /* points of the side go */
+  shape_weld(&m); /* remove the points of the side */
   o.h_max = 0.1;
   remesh(&m, &o, &r);
   shape_expect_sound(&m, 1);
@@ -363,8 +366,8 @@ static void obeys_sources(void **unused)
   vg_mesh_release(&m);
 }
 
-/* Sources act on a surface as in the volume: edges are as long as the field of
- * the same settings has it, VGRID's sources and others. */
+/* Sources act on a surface as in the volume: edges are as long as in the sizing
+ * field of the same settings, for VGRID's sources and others. */
 static void obeys_the_field_of_the_volume(void **unused)
 {
   const double size[3] = { 4, 4, 1 };
@@ -415,15 +418,16 @@ static void obeys_the_field_of_the_volume(void **unused)
       n_edge++;
       n_fit += ratio > 0.7 && ratio < 1.42;
     }
-  /* What edges of any new surface are: row S21 of decisions.md. */
+  /* Edge lengths of any remeshed surface: row S21 of decisions.md. */
   assert_true((double)n_fit > 0.9 * (double)n_edge);
   assert_true(fabs(sum / (double)n_edge - 1) < 0.1);
   vg_sizing_free(field);
   vg_mesh_release(&m);
 }
 
-/* At half the scale there are four times as many triangles, half as long,
- * whether sizes come from the settings, curvature, or a source. */
+/* At half the scale edges are half as long and the number of triangles is four
+ * times higher, whether sizes come from the settings, curvature, or a source.
+ */
 static void scales_all_sizes(void **unused)
 {
   const double size[3] = { 1, 0.6, 0.3 };
@@ -458,7 +462,7 @@ static void scales_all_sizes(void **unused)
   vg_remesh_report_release(&r);
 }
 
-/* What is told of a surface that is not to be changed. */
+/* The report on a surface that is not changed. */
 static void judges_a_surface(void **unused)
 {
   const double size[3] = { 3, 2, 1 };
@@ -521,10 +525,9 @@ static double drawn(uint32_t *state, double lo, double hi)
   return lo + (hi - lo) * ((double)(*state >> 8) / 16777216.);
 }
 
-/* Boxes and ellipsoids of any proportion, two of them a gap apart: what comes
- * out is sound, near, and keeps its lines, whatever the settings. */
-/* Edges across z are lines, and new ones stretched along them: many lines that
- * are near each other, closed ones and those that meet in corners. */
+/* Stretch factors for all edges of constant z, which makes them feature edges:
+ * many curves close to each other, closed ones and some that meet in corners.
+ */
 static double *along_levels(const struct vg_mesh *m, double by)
 {
   double *stretch = calloc(3 * m->n_tri, sizeof *stretch);
@@ -536,6 +539,9 @@ static double *along_levels(const struct vg_mesh *m, double by)
   return stretch;
 }
 
+/* Boxes and ellipsoids of any proportion, some with a box a gap apart: for any
+ * settings the remeshed surface is valid, within the tolerance, and keeps its
+ * feature edges. */
 static void random_search(void **unused)
 {
   uint32_t state = 7;
@@ -557,7 +563,7 @@ static void random_search(void **unused)
     if (i % 2) shape_box(&m, size, n);
     else shape_ball(&m, size, 4 + n[0]);
     first = m.n_point;
-    if (i % 3 == 0) { /* beside it, a box as high */
+    if (i % 3 == 0) { /* next to it, a box of the same height */
       struct vg_mesh b = VG_MESH_INIT;
 
       shape_box(&b, size, n);
@@ -580,7 +586,7 @@ static void random_search(void **unused)
     remesh(&m, &o, &r);
     free(stretch);
     shape_expect_sound(&m, 0);
-    /* over the cosine of half the ridge angle */
+    /* divided by the cosine of half the feature angle */
     assert_true(apart(&m, &old) <= 1.065 * o.tolerance);
     if (i % 2) /* straight ones */
       assert_float_equal(r.line_length[1], r.line_length[0], 1e-9);
@@ -653,7 +659,7 @@ static void refuses(void **unused)
   vg_mesh_release(&m);
 }
 
-/* Says so from the k-th question on. */
+/* Requests a stop from the k-th poll on. */
 struct patience {
   size_t asked, k;
 };
@@ -676,8 +682,9 @@ static vg_status remesh_until(struct vg_mesh *m, struct patience *p)
   return vg_remesh(m, &o, NULL, &err);
 }
 
-/* It is asked before every change, so nothing goes on after the answer: each
- * stage, or block of the surface, learns of it by a question or two. */
+/* The stop request is polled before every change, so the work does not continue
+ * after it: each stage, or block of the surface, notices it within a poll or
+ * two. */
 static void stops_wherever_it_is(void **unused)
 {
   struct vg_mesh m = VG_MESH_INIT, old = VG_MESH_INIT;
@@ -721,8 +728,8 @@ static void stops_measuring(void **unused)
   vg_mesh_release(&m);
 }
 
-/* Boxes of which one is longer by 0.2: that far at its end, both ways, in any
- * order of triangles, on any number of threads. */
+/* Two boxes, one of them longer by 0.2: the distance is 0.2 in both directions,
+ * for any order of triangles and any number of threads. */
 static void measures_in_any_order(void **unused)
 {
   const double size[2][3] = { { 3, 2, 1 }, { 3.2, 2, 1 } };

@@ -1,5 +1,6 @@
-/* References with the faults of tessellations: short edges, folds, flaps,
- * sheets that cross, long edges of lines. The new surface is judged. */
+/* Reference surfaces with the faults of tessellations: short edges, folds,
+ * flaps, intersecting sheets, long feature edges. The remeshed surface is
+ * checked. */
 #include "remesh_shapes.h"
 
 #include "core/remesh/remesh.h"
@@ -14,7 +15,7 @@ static void remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
   if (vg_remesh(m, o, r, &err) < 0) fail_msg("%s", err.text);
 }
 
-/* Put a point into triangle t, at these shares of its corners. */
+/* Insert a point into triangle t, at these barycentric coordinates. */
 static uint32_t divide(struct vg_mesh *m, size_t t, double a, double b,
                        double c)
 {
@@ -33,7 +34,7 @@ static uint32_t divide(struct vg_mesh *m, size_t t, double a, double b,
   return p;
 }
 
-/* Edges of 1e-9 make neither corners nor triangles of their size. */
+/* Edges of 1e-9 produce neither corners nor triangles of their size. */
 static void collapses_short_edges(void **unused)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -112,7 +113,7 @@ static void drops_flaps(void **unused)
   vg_mesh_release(&m);
 }
 
-/* Boxes that stand in each other: no tolerance hides that. */
+/* Boxes that intersect by more than any tolerance hides. */
 static void refuses_large_crossings(void **unused)
 {
   const uint32_t n[3] = { 2, 2, 2 };
@@ -154,7 +155,7 @@ static void shape_fan(struct vg_mesh *m, const uint32_t *v, uint32_t n)
   for (uint32_t i = 0; i < n; i++) shape_tri(m, v[i], v[(i + 1) % n], p, 0);
 }
 
-/* Of a polygon in x and z, from y = 0 to 1. */
+/* A polygon in x and z, extruded from y = 0 to 1. */
 static void shape_prism(struct vg_mesh *m, const double (*at)[2], uint32_t n)
 {
   uint32_t end[2][16];
@@ -174,8 +175,8 @@ static void shape_prism(struct vg_mesh *m, const double (*at)[2], uint32_t n)
   shape_weld(m);
 }
 
-/* A long edge between two narrow chamfers: they ask for small sizes at both its
- * ends, and for none in its middle. */
+/* A long edge between two narrow chamfers, which require small sizes at both
+ * its ends but not in its middle. */
 static void cuts_long_lines(void **unused)
 {
   const double c = 0.01;
@@ -209,7 +210,7 @@ static double uniform(uint32_t *seed)
   return (*seed >> 8) * (1.0 / 16777216);
 }
 
-/* A lens with a knife's edge all around, of this thickness there. */
+/* A lens with a sharp edge all around, of thickness `edge` there. */
 static void shape_lens(struct vg_mesh *m, double thick, double edge, uint32_t n)
 {
   const double r[3] = { 1, 1, 1 };
@@ -231,8 +232,8 @@ static void disturb(struct vg_mesh *m, double by, uint32_t *seed)
     for (int k = 0; k < 3; k++) m->point[p][k] += by * (2 * uniform(seed) - 1);
 }
 
-/* Whatever is wrong, it ends in a sound surface within the tolerance, or in a
- * refusal that names a place. */
+/* Any fault ends in a valid surface within the tolerance, or in a refusal that
+ * names a location. */
 static void random_faults(void **unused)
 {
   size_t n_done = 0;
@@ -268,8 +269,8 @@ static void random_faults(void **unused)
       shape_expect_sound(&m, 0);
       assert_int_equal(vg_remesh_measure(&m, &old, 1, NULL, NULL, d, &err),
                        VG_OK);
-      /* The repair moves the reference by a tolerance at most, and the new
-       * surface is as far from that. */
+      /* The repair moves the reference surface by at most one tolerance, and
+       * the remeshed surface deviates by at most one from that. */
       assert_true(fmax(d[0].most, d[1].most) < 2.2 * tolerance);
       n_done++;
     }

@@ -1,12 +1,13 @@
-/* A surface changed in blocks: however it is cut, what is put together again
- * is whole and near the one given, and the same for any number of threads. */
+/* A surface changed in blocks: for any division the reassembled surface is
+ * consistent and close to the input, and it is the same for any number of
+ * threads. */
 #include "remesh_scene.h"
 
 #include "core/remesh/blocks.h"
 
 #define TOLERANCE 0.02
 
-/* Changes drawn by what the block is, not by who does it. */
+/* Random changes that depend on the block, not on the thread. */
 static vg_status draw_changes(void *user, struct vg_tris *w,
                               struct vg_error *err)
 {
@@ -68,8 +69,8 @@ static void whole_after_nothing(void **unused)
   scene_release(&s);
 }
 
-/* Lines along and across borders of blocks, and points where more than two
- * blocks meet. */
+/* Feature edges along and across borders of blocks, and points where more than
+ * two blocks meet. */
 static void whole_after_any_change(void **unused)
 {
   const double size[3] = { 1, 0.5, 0.1 };
@@ -115,7 +116,7 @@ static void same_for_any_threads(void **unused)
   for (int i = 0; i < 2; i++) scene_release(&s[i]);
 }
 
-/* Of several blocks that fail the first one is named. */
+/* If several blocks fail, the first one is reported. */
 static void fails_with_the_first(void **unused)
 {
   struct scene s = { .m = VG_MESH_INIT };

@@ -1,5 +1,6 @@
-/* The single changes of a surface: after any sequence of them it hangs
- * together, encloses what it did, and each has done what it says or nothing. */
+/* The single changes of a surface: after any sequence of them the surface is
+ * consistent and encloses the same volume, and each change was made completely
+ * or not at all. */
 #include "remesh_scene.h"
 
 static void any_sequence(struct scene *s, double tolerance)
@@ -42,9 +43,9 @@ static void any_sequence_on_a_box(void **unused)
   scene_release(&s);
 }
 
-/* A knife: half an angle of 0.002. On one side of its edge a quadrilateral
- * that is not convex: its other diagonal would fold it, onto the other side,
- * which is nearer than any tolerance. */
+/* A sharp edge: half an angle of 0.002. On one side of it is a quadrilateral
+ * that is not convex: its other diagonal would fold it onto the other side,
+ * which is closer than any tolerance. */
 static void knife(struct vg_mesh *m)
 {
   enum { P0, P1, P2, P3, Q, A, B, C, D, E, F };
@@ -83,7 +84,7 @@ static void does_not_fold(void **unused)
   scene_release(&s);
 }
 
-/* Corners stay, points of ridges leave only along them. */
+/* Corners stay; points on feature edges are removed only along them. */
 static void corners_and_ridges_stay(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -110,8 +111,9 @@ static void corners_and_ridges_stay(void **unused)
   scene_release(&s);
 }
 
-/* On a ridge of a box: each of its points slides to where its curve is at that
- * length, and not past its neighbours; where angles get worse it stays. */
+/* On a feature edge of a box each point slides along its curve to the requested
+ * curve length, but not past its neighbours. A point stays if angles would get
+ * worse. */
 static void points_slide_along_ridges(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -148,8 +150,8 @@ static void points_slide_along_ridges(void **unused)
   scene_release(&s);
 }
 
-/* What would leave the tolerance is refused: on a coarse ball no point can go
- * without its neighbourhood sinking. */
+/* Changes that would exceed the tolerance are refused: on a coarse ball no
+ * point can be removed without moving the surface inwards. */
 static void tolerance_is_kept(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
@@ -164,9 +166,9 @@ static void tolerance_is_kept(void **unused)
   scene_release(&s);
 }
 
-/* Over a fold 0.1 high an edge is farthest from the surface where it crosses
- * the fold, seen along the normal of the side where it begins: 0.0334, and not
- * in its middle, 0.0249. */
+/* An edge over a fold 0.1 high is farthest from the surface where it crosses
+ * the fold, measured along the normal of the side where it begins: 0.0334, and
+ * not in its middle, 0.0249. */
 static void follows_an_edge_over_a_fold(void **unused)
 {
   const double a[3] = { -0.5, 0, 0.05 }, b[3] = { 0.25, 0, 0.075 };

@@ -1,5 +1,4 @@
-/* Repairs: bad cells across an interface get better, and nothing else
- * changes. */
+/* Repairs: bad cells across an interface improve, and nothing else changes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +13,7 @@
 
 static const double aim = VG_SHAPE_TARGET;
 
-/* --- looking at pieces --------------------------------------------------- */
+/* --- access to pieces ---------------------------------------------------- */
 
 static size_t count_cells(const struct scene *s)
 {
@@ -24,7 +23,7 @@ static size_t count_cells(const struct scene *s)
   return n;
 }
 
-/* Points of the box in the original order of names: place in one array. */
+/* Index of a point of the box, in the original order of ids, in one array. */
 static size_t index_of(const struct scene *s, uint64_t name, size_t n_hull)
 {
   size_t at = n_hull;
@@ -38,7 +37,7 @@ static size_t index_of(const struct scene *s, uint64_t name, size_t n_hull)
   return 0;
 }
 
-/* All pieces as one mesh: fails where they do not fit together. */
+/* All pieces as one mesh: fails if they do not match. */
 static void whole(const struct scene *s, struct vg_tets *t)
 {
   size_t n_hull = s->t.n_point, n = n_hull, n_cell = count_cells(s), at = 0;
@@ -156,8 +155,8 @@ static void test_mends_across(void **state)
   scene_end(&s);
 }
 
-/* Points farther than the ball are where they were, and no piece keeps the
- * name of a point that it does not use. */
+/* Points outside the repair region have not moved, and no piece keeps the id of
+ * a point that it does not use. */
 static void test_border_stays(void **state)
 {
   struct scene s;
@@ -191,9 +190,9 @@ static void test_border_stays(void **state)
   scene_end(&s);
 }
 
-/* Points on interfaces of zones and those beside are smoothed, in slabs that
- * are wide and in such where those of two interfaces have cells in common;
- * others stay. What swaps make fits together. */
+/* Points on interfaces of zones and their neighbours are smoothed, in wide
+ * slabs and in slabs so narrow that the points of two interfaces share cells;
+ * other points stay. The results of swaps match across interfaces. */
 static void test_smooths(void **state)
 {
   static const int wide[] = { 16, 4 };
@@ -216,11 +215,11 @@ static void test_smooths(void **state)
     assert_true(mean_of(&after) > mean_of(&before));
     assert_true(worst_of(&after) >= fmin(aim, worst_of(&before)));
     for (size_t p = 0; p < after.n_point; p++) {
-      /* from 1/4, 1/2, 3/4 of the length */
+      /* distance from 1/4, 1/2, 3/4 of the length */
       double off = fabs(remainder(before.x[p][0], wide[k] / SLABS));
 
       if (!memcmp(after.x[p], before.x[p], sizeof *after.x)) continue;
-      /* the shaking, and a point of the grid */
+      /* allows for the random shift, and for a grid point */
       assert_true(off <= 0.16 || fabs(off - 1) <= 0.16);
       if (off <= 0.16) moved++;
       else beside++;
@@ -259,7 +258,8 @@ static void test_nothing_bad(void **state)
   scene_end(&s);
 }
 
-/* What is bad inside a piece was its own task's to mend. */
+/* Bad cells inside a piece are left: repairing them was up to their own
+ * task. */
 static void test_inside_is_left(void **state)
 {
   const double by[3] = { 0.05, 0.72, -0.12 };
@@ -275,7 +275,7 @@ static void test_inside_is_left(void **state)
   scene_end(&s);
 }
 
-/* Flat slabs: all cells are bad, and the hull leaves no room for better. */
+/* Flat slabs: all cells are bad, and the hull permits no better ones. */
 static void test_hopeless(void **state)
 {
   struct scene s;
@@ -371,8 +371,8 @@ static void test_balls(void **state)
   vg_spot_grid_release(&b);
 }
 
-/* No cluster of more balls than asked for; those that are left over are in
- * none, and clusters stay apart. */
+/* No cluster has more balls than requested; the remaining balls are in no
+ * cluster, and clusters stay apart. */
 static void test_balls_capped(void **state)
 {
   static struct vg_spot spot[N_BALL];
@@ -397,7 +397,7 @@ static void test_balls_capped(void **state)
   vg_spot_grid_release(&b);
 }
 
-/* What is left out is within half the radius of one that stays. */
+/* Balls that are left out are within half the radius of one that is kept. */
 static void test_thin(void **state)
 {
   static struct vg_spot all[N_BALL], spot[N_BALL];

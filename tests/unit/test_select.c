@@ -1,5 +1,5 @@
-/* Which faces of a front a region is given: all that may meet it, whatever was
- * added when, in numbers that lead back to the front. */
+/* The faces of a front that a region is given: all that may intersect it, in
+ * any order of additions, with indices that lead back to the front. */
 #define _GNU_SOURCE
 #include "advance_support.h"
 
@@ -27,7 +27,7 @@ static void front_of(const struct vg_mesh *m, struct vg_front *f)
   assert_int_equal(vg_select_sort(f, NULL), VG_OK);
 }
 
-/* Of the box [0, 1]^3 or the sphere's, [-20, 20]^3. */
+/* For the box [0, 1]^3 or the sphere's, [-20, 20]^3. */
 static struct vg_lattice lattice_of(double lo, double hi)
 {
   struct vg_lattice l = { .n = { 3, 1, 2 } };
@@ -57,9 +57,9 @@ static void select_part(const struct vg_select *s, const struct vg_region *r,
                    VG_OK);
 }
 
-/* --- what must hold ------------------------------------------------------ */
+/* --- invariants ---------------------------------------------------------- */
 
-/* Points are the front's, numbered in the order in which faces use them. */
+/* Points are the front's, numbered in the order of their first use by faces. */
 static void numbers_lead_back(const struct vg_front *f, const struct part *p)
 {
   uint32_t seen = 0;
@@ -91,7 +91,8 @@ static int may_meet(const struct vg_front *f, size_t i,
                             VG_BAND_FRONT);
 }
 
-/* All that may meet are there. Returns how many these are. */
+/* All faces that may intersect the region are included. Returns their
+ * number. */
 static size_t is_complete(const struct vg_front *f, const struct part *p,
                           const struct vg_region *r,
                           const struct vg_sizing *sizing)
@@ -111,8 +112,8 @@ static size_t is_complete(const struct vg_front *f, const struct part *p,
   return n;
 }
 
-/* What select_near leaves of a part of f are the n faces that may meet, and no
- * others, in numbers that still lead back to f. */
+/* vg_select_near reduces a part of f to exactly the n faces that may intersect
+ * the region, with indices that still lead back to f. */
 static void near_is_exact(const struct vg_front *f, struct part *p,
                           const struct vg_region *r,
                           const struct vg_sizing *sizing, size_t n)
@@ -125,8 +126,8 @@ static void near_is_exact(const struct vg_front *f, struct part *p,
     assert_true(may_meet(f, p->face[i], r, sizing));
 }
 
-/* Regions of all stages, and wider ones as patches are. most: faces there are
- * for one that may meet. */
+/* Regions of all stages, and wider ones as for patches. most: largest allowed
+ * ratio of selected faces to faces that may intersect. */
 static void regions_get_what_they_need(const char *name, size_t cells,
                                        double lo, double hi, double most)
 {
@@ -166,8 +167,8 @@ static void regions_get_what_they_need(const char *name, size_t cells,
 
 /* --- tests --------------------------------------------------------------- */
 
-/* Even spacing: boxes of 16 faces are about as wide as what is looked for, so
- * what is given too much is at most half as much again. */
+/* Uniform spacing: boxes of 16 faces are about as wide as the region, so at
+ * most half of the needed number of faces is selected in addition. */
 static void even_spacing(void **state)
 {
   (void)state;
@@ -191,8 +192,8 @@ static void same_boxes(const struct vg_select *a, const struct vg_select *b)
   }
 }
 
-/* However the front came, in runs that are full or not, the boxes are the same:
- * from one face on, over several levels. */
+/* The boxes are the same for any runs in which the front was added, full or
+ * not: from one face on, over several levels. */
 static void added_in_pieces(void **state)
 {
   const size_t upto[] = { 1, 15, 16, 17, 128, 130, 2000, 2048, 4001 };
@@ -220,7 +221,7 @@ static void added_in_pieces(void **state)
   scene_end(&scene);
 }
 
-/* No points in common: as many as there can be, far more than in a surface. */
+/* No shared points: the largest possible number, far more than in a surface. */
 static void triangles_of_their_own(void **state)
 {
   const struct vg_region all = VG_REGION_ALL;
@@ -282,8 +283,8 @@ static void nothing_near(void **state)
   scene_end(&scene);
 }
 
-/* One triangle in a field, from corners in spacings off the plane z = 0.5;
- * `beside` of its corners along x too. */
+/* One triangle in a sizing field, given by the distances of its corners from
+ * the plane z = 0.5, in spacings, and shifted along x. */
 struct lone {
   struct vg_select select;
   struct vg_front f;
@@ -313,7 +314,7 @@ static void lone_face(struct lone *t, const struct scene *scene,
   assert_int_equal(vg_select_update(&t->select, NULL, NULL), VG_OK);
 }
 
-/* What a region that had another width before is told. */
+/* The width set for a region that had another width before. */
 static double width_for(const struct scene *scene, struct vg_region r, double a,
                         double b, double c, double beside)
 {
@@ -331,9 +332,9 @@ static void is_about(double is, double want)
   if (fabs(is - want) > 0.01) fail_msg("%g instead of %g", is, want);
 }
 
-/* Faces that cross all planes of a region, or nearly so, ask for as much as
- * their farthest corner is off, and 1.5 spacings, beyond what is known
- * anyway: those of usual length for nothing. */
+/* Faces that cross all planes of a region, or nearly so, widen it: it must
+ * reach the distance of their farthest corner plus 1.5 spacings. Faces of usual
+ * length are within the known band and do not widen it. */
 static void long_faces_widen(void **state)
 {
   struct vg_region zone = { .n_plane = 1 }, pencil, walled;
@@ -349,11 +350,11 @@ static void long_faces_widen(void **state)
   is_about(width_for(&scene, zone, 0.08, 0.3, 4, 0), 4 + 1.5 - VG_BAND_FLUID);
   is_about(width_for(&scene, zone, 0.15, 0.3, 4, 0), 0);
 
-  walled = zone; /* beyond what a wall ends */
+  walled = zone; /* beyond the end at a wall */
   walled.wall[walled.n_wall++] = (struct vg_plane){ { 1, 0, 0 }, 0.9 };
   is_about(width_for(&scene, walled, -3, 0.6, -0.4, 0), 0);
 
-  pencil = zone; /* however thick it is */
+  pencil = zone; /* for any thickness */
   pencil.reach = 1.3;
   pencil.plane[pencil.n_plane++] = (struct vg_plane){ { 1, 0, 0 }, 0.5 };
   is_about(width_for(&scene, pencil, -3, 0.6, -0.4, -0.5),
@@ -362,7 +363,7 @@ static void long_faces_widen(void **state)
   scene_end(&scene);
 }
 
-/* Of many faces the longest counts, and none that is gone. */
+/* Of many faces the longest counts; removed faces do not. */
 static void the_longest_face_counts(void **state)
 {
   const struct vg_region r = { .n_plane = 1,
@@ -390,7 +391,7 @@ static void the_longest_face_counts(void **state)
   vg_select_init(&s, &t.f, scene.sizing);
   none.wide = 7;
   assert_int_equal(vg_select_widen(&s, &none, NULL), VG_OK);
-  assert_true(none.wide == 0); /* nothing was looked at yet */
+  assert_true(none.wide == 0); /* nothing was examined yet */
   assert_int_equal(vg_select_update(&s, NULL, NULL), VG_OK);
   assert_int_equal(vg_select_widen(&s, &some, NULL), VG_OK);
   is_about(some.wide, 4 + 1.5 - VG_BAND_FLUID);
@@ -429,7 +430,8 @@ static double any(uint64_t *state, double lo, double hi)
   return lo + (hi - lo) * (double)(*state >> 11) / 9007199254740992.0;
 }
 
-/* Three points behind those of the front: small, long or flat. */
+/* Three points after those of the front: close together, far apart or
+ * coplanar. */
 static void any_triangle(struct vg_front *f, uint64_t *state, int how)
 {
   double size = how % 3 == 0 ? 1 : 20;
@@ -442,7 +444,8 @@ static void any_triangle(struct vg_front *f, uint64_t *state, int how)
     f->x[f->n_point + (size_t)i][how % 5 % 3] = f->x[0][how % 5 % 3];
 }
 
-/* All that meet it, once, and of the others few; no face that is gone. */
+/* Every face that intersects the triangle is found once, with few others and no
+ * removed face. */
 static void all_that_a_triangle_meets(void **state)
 {
   struct vg_select s;

@@ -1,4 +1,4 @@
-/* Files written at places of choice, in a job of one rank. Under MPI:
+/* Files written at arbitrary offsets, in a job of one rank. Under MPI:
  * tests/mpi/test_shared_file_mpi.c. */
 #include <errno.h>
 #include <pthread.h>
@@ -69,8 +69,8 @@ static void no_bytes(void **state)
   unlink(NAME);
 }
 
-/* An earlier, longer .part must not show through, an earlier file must stay
- * until the new one is whole. */
+/* Content of an earlier, longer .part must not remain, and an earlier file must
+ * stay until the new one is complete. */
 static void takes_the_place_of_older_files(void **state)
 {
   struct vg_shared_file *f = NULL;
@@ -126,7 +126,7 @@ static void says_what_and_why(void **state)
   assert_int_equal(vg_shared_close(f, VG_ERR_IO, &err), VG_ERR_IO);
 }
 
-/* Someone else cuts the file short. */
+/* Another process truncates the file. */
 static void checks_the_size(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -141,7 +141,7 @@ static void checks_the_size(void **state)
   assert_false(exists(NAME ".part"));
 }
 
-/* What was reserved is lost, the disk is full: writing has to tell. */
+/* The reserved space is lost and the disk is full: writing must report it. */
 static vg_status write_late(void)
 {
   static const char path[] = VG_TMP_DIR "/full_disk/late";

@@ -1,4 +1,4 @@
-/* core/fill/sites.h: bits of a lattice beside a plain table of them. */
+/* core/fill/sites.h: bits of a lattice compared with a plain table. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@ static int is_set(struct vg_sites *s, const int64_t i[3], float h)
   return b->bit[i[0] & 7] & vg_site_bit(i) ? 1 : 0;
 }
 
-/* Some sites around a place, for two spacings, are set; then all are asked. */
+/* Set some sites around a position, for two spacings, then query all. */
 static void check(int64_t x, int64_t y, int64_t z)
 {
   static uint8_t set[2][SIDE][SIDE][SIDE];

@@ -1,4 +1,4 @@
-/* Sizes in space: laws of the sources, and the octree that caches them. */
+/* The sizing field: laws of the sources, and the octree that caches them. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -25,7 +25,7 @@ static void random_in(double x[3], double radius, uint64_t *state)
   for (int k = 0; k < 3; k++) x[k] = radius * (2 * random_unit(state) - 1);
 }
 
-/* Appends an octahedron whose faces are cut into n^2 equilateral triangles:
+/* Appends an octahedron whose faces are divided into n^2 equilateral triangles:
  * every edge has the length sqrt(2) radius / n. Faces do not share points. */
 static void add_octahedron(struct vg_mesh *m, const double centre[3],
                            double radius, int n)
@@ -140,8 +140,8 @@ static void vgrid_weights_multiply(void **state)
   assert_near(vg_sizing_sources_at(&twice, 2, s, x), 5, 0);
 }
 
-/* Half of the sizes everywhere: at the sources, in between, and where a source
- * grows at its own rate; within what the octree may be off, 5 %. */
+/* With scale 0.5 all sizes are halved: at the sources, between them, and where
+ * a source grows at its own rate; within the error of the octree, 5 %. */
 static void scale_makes_a_similar_field(void **state)
 {
   struct vg_source s[2] = {
@@ -175,7 +175,7 @@ static void scale_makes_a_similar_field(void **state)
   vg_sizing_free(f[1]);
 }
 
-/* The closed form against the midpoint rule, whose error is 1e-8 here. */
+/* The closed form compared with the midpoint rule, whose error is 1e-8 here. */
 static void vgrid_lines_integrate_the_kernel(void **state)
 {
   static const double at[5][3] = { { 0.3, 0.2, 0.1 },
@@ -276,8 +276,8 @@ static void cones_grow_from_side_and_caps(void **state)
   assert_near(one(&s, 0, -5, 1), 1.5 + 0.2 * 3, 1e-15);
 }
 
-/* One size all over the boundary: that size everywhere, in a tiny tree. The
- * size is a float there: a part in ten million. */
+/* A boundary of uniform size gives that size everywhere, in a tiny tree. The
+ * size is stored as a float: a relative error of 1e-7. */
 static void a_uniform_surface_gives_one_size(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -373,8 +373,8 @@ static void gradients_are_bounded(void **state)
   vg_mesh_release(&m);
 }
 
-/* Values just before and just after planes in which leaves of all sizes
- * meet: apart by the gradient and the rounding of single precision. */
+/* Values just before and just after planes in which leaves of all sizes meet
+ * differ only by the gradient and the rounding of single precision. */
 static void leaves_join_continuously(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -405,8 +405,8 @@ static void leaves_join_continuously(void **state)
   vg_mesh_release(&m);
 }
 
-/* Without a surface the cache follows the law; the sources grow at the
- * global rate, so limiting the gradient changes nothing. */
+/* Without a surface the cache follows the law; the sources grow at the global
+ * rate, so limiting the gradient changes nothing. */
 static void the_cache_follows_the_law(void **state)
 {
   const struct vg_source source[5] = {
@@ -465,7 +465,7 @@ static void vgrid_sources_alone_define_a_field(void **state)
   s = field(&plain, 8, source, NULL);
   for (int i = 0; i < 20000; i++) {
     random_in(x, 10, &seed);
-    /* this mean is nowhere steeper than the growth rate */
+    /* the gradient of this mean never exceeds the growth rate */
     assert_near(vg_sizing_at(s, x), vg_sizing_sources_at(&plain, 8, source, x),
                 0.06);
   }
@@ -473,7 +473,7 @@ static void vgrid_sources_alone_define_a_field(void **state)
 }
 
 /* A source that is finer than the boundary next to it: the boundary keeps its
- * size, the field goes down from there at the growth rate. */
+ * size, and the sizes decrease from there at the growth rate. */
 static void the_surface_prevails_on_itself(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -496,8 +496,8 @@ static void the_surface_prevails_on_itself(void **state)
   vg_mesh_release(&m);
 }
 
-/* Three lengths away from faces a source has what it asks for; on the way
- * there the field falls at the growth rate first, then by 0.5. */
+/* Three lengths away from faces a source has its requested size; closer to the
+ * faces the size first decreases at the growth rate, then by 0.5. */
 static void sources_prevail_away_from_coarse_faces(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -549,7 +549,7 @@ static void sizes_may_span_five_decades(void **state)
   vg_mesh_release(&m);
 }
 
-/* Strips 1 by 100: apart from the strip's ends the size is about that of the
+/* Strips of 1 by 100: except at the strip's ends the size is about that of the
  * short edges at the corners, and grows along the long ones. */
 static void stretched_faces_take_their_short_edges(void **state)
 {
@@ -593,7 +593,7 @@ static void options_clamp(void **state)
   assert_near(hi, 0.5, 1e-7);
   assert_near(vg_sizing_at(s, far), 0.5, 1e-7);
   vg_sizing_free(s);
-  /* no limit outside the surface even where none is asked for */
+  /* no limit outside the surface even if none is requested */
   s = field(&plain, 0, NULL, &m);
   vg_sizing_range(s, &lo, &hi);
   assert_near(hi, sqrt(2) * 12 / 9, 1e-6);
@@ -651,7 +651,8 @@ static void the_same_input_gives_the_same_bytes(void **state)
   vg_mesh_release(&m);
 }
 
-/* Sources steeper than the growth rate too, so that all steps are taken. */
+/* Some sources grow faster than the growth rate, so that all steps are
+ * taken. */
 static void busy_field(struct vg_mesh *m, struct vg_source source[9])
 {
   const double centre[3] = { 3, -2, 1 };
@@ -697,8 +698,9 @@ static void threads_give_the_same_bytes(void **state)
   vg_mesh_release(&m);
 }
 
-/* No sample of a cube is below its least, which is the field's where it is
- * said to be; cubes that the field does not cover are as its border is. */
+/* No sample of a cube is below its minimum, which is the value of the field at
+ * the reported position. Cubes outside the field have the value of its
+ * border. */
 static void the_least_of_a_cube_is_found(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -803,7 +805,7 @@ static void bad_options_and_surfaces_are_refused(void **state)
   vg_sizing_free(NULL);
 }
 
-/* Faces without area or with a repeated point say nothing, and harm none. */
+/* Faces without area or with a repeated point have no effect and do no harm. */
 static void degenerate_faces_are_passed_over(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;

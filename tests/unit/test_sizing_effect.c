@@ -1,4 +1,5 @@
-/* Sources that do not get what they ask for, and where places lie. */
+/* Sources that do not reach their requested size, and the location of sample
+ * points. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +17,7 @@
 static const struct vg_sizing_options plain = VG_SIZING_OPTIONS_INIT;
 
 /* Appends a cube of half side r around c, each side n x n squares of two
- * triangles, which look outwards for way 1 and inwards for -1. */
+ * triangles. Normals point outwards for way 1 and inwards for -1. */
 static void add_cube(struct vg_mesh *m, const double c[3], double r, int n,
                      int way)
 {
@@ -53,8 +54,8 @@ static void add_cube(struct vg_mesh *m, const double c[3], double r, int n,
       }
 }
 
-/* A body of half side 1 in a domain of half side 20, whose squares are 4
- * wide: edges of about 4.5. */
+/* A body of half side 1 in a domain of half side 20, whose squares are 4 wide:
+ * edges of about 4.5. */
 static void make_domain(struct vg_mesh *m)
 {
   static const double origin[3] = { 0, 0, 0 };
@@ -109,7 +110,7 @@ static void places_know_their_side(void **state)
   vg_mesh_release(&m);
 }
 
-/* All places lie within what each kind covers. */
+/* All sample points are within the extent of each kind of source. */
 static void places_are_in_the_shape(void **state)
 {
   const struct vg_source shape[] = {
@@ -206,7 +207,7 @@ static void held_sources_are_found(void **state)
   assert_near(m.point[m.tri[a->face][0]][1], 20, 1e-12);
   assert_near(a->edge, (8 + 4 * sqrt(2)) / 3, 1e-9);
   assert_true(a->distance >= 6 && a->distance < 6.7);
-  /* with that edge it would not be held */
+  /* with that edge the source would not be limited */
   assert_near(vg_sizing_below(1.2, a->edge_wanted, sqrt(37)), 0.1, 1e-9);
   assert_true(a->edge_wanted < a->edge);
   assert_true(a->growth_wanted > 1.5 && a->growth_wanted < 2);
@@ -261,8 +262,8 @@ static void put_half(const struct vg_slices *s, struct vg_slice *slice)
   (void)slice;
 }
 
-/* Points near two sources of three, within twice the size there or a bit
- * farther off. The third is wide: it is asked for on its border only. */
+/* Points near two sources of three, within twice the size there or slightly
+ * farther away. The third source is wide: it is sampled on its border only. */
 static void what_a_mesh_does_not_meet_is_told(void **state)
 {
   const struct vg_source source[] = {

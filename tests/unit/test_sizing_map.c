@@ -50,7 +50,7 @@ static double ramp(void *user, const double x[3])
   return 0.2 + 0.1 * x[0];
 }
 
-/* A small ball asks for small cells at once, far beyond the growth. */
+/* A small ball requests small cells abruptly, far beyond the growth. */
 static double ball(void *user, const double x[3])
 {
   return distance(x, user) < 1 ? 0.1 : INFINITY;
@@ -74,7 +74,7 @@ static void a_gentle_function_is_followed(void **state)
 
     for (int k = 0; k < 3; k++) x[k] = 10 * random_unit(&seed);
     h = ramp(NULL, x);
-    /* H1: interpolation misses by 3 % at most */
+    /* H1: the interpolation error is 3 % at most */
     assert_true(fabs(vg_sizing_at(s, x) - h) <= 0.03 * h);
   }
   vg_sizing_free(s);
@@ -94,8 +94,9 @@ static void a_steep_function_is_limited_by_growth(void **state)
     for (int k = 0; k < 3; k++) x[k] = 10 * random_unit(&seed);
     d = distance(x, at);
     if (d < 0.9) assert_true(vg_sizing_at(s, x) < 0.103);
-    /* Leaves beside the ball are up to 1.25 of the size wide and limited
-     * along their edges, by up to sqrt(3) more along diagonals. */
+    /* Leaves next to the ball are up to 1.25 sizes wide; the gradient is
+     * limited along their edges, and is up to sqrt(3) larger along
+     * diagonals. */
     most = 0.1 + sqrt(3.0) * (GROWTH - 1) * (d > 0.9 ? d - 0.9 : 0) + 0.02;
     assert_true(vg_sizing_at(s, x) <= 1.1 * fmin(most, 2));
   }
@@ -143,8 +144,8 @@ static void points_are_cones(void **state)
     for (int j = 0; j < N; j++)
       want = fmin(want, h[j] + (GROWTH - 1) * distance(p, x[j]));
     got = vg_sizing_at(one, p);
-    /* H2: leaves of 1.25 sizes are not split, and the cusp of a cone may be in
-     * one's middle, half a diagonal from its corners. H3: a plateau of a
+    /* H2: leaves of 1.25 sizes are not split, and the tip of a cone may be in
+     * the middle of one, half a diagonal from its corners. H3: a plateau of a
      * quarter of the size, up to 1.3, around each point. */
     assert_true(got <= want * (1 + (GROWTH - 1) * 1.25 * sqrt(3.0) / 2));
     assert_true(got >= 0.97 * want - 0.25 * (GROWTH - 1) * 1.3);

@@ -1,5 +1,5 @@
-/* Meshes in slices: what is written is what the writers of whole meshes
- * write, byte for byte. */
+/* Meshes in slices: the files equal those of the writers of whole meshes, byte
+ * for byte. */
 #define _GNU_SOURCE
 #include "io_support.h"
 #include "slices_support.h"
@@ -39,7 +39,7 @@ static int release_meshes(void **state)
   return 0;
 }
 
-/* What the writers of whole meshes make, and those of slices. */
+/* File names of the writers of whole meshes, and of those of slices. */
 static const char *whole_file(void)
 {
   static char path[4096];
@@ -56,7 +56,7 @@ static const char *cut_file(const char *suffix)
   return io_temp(name);
 }
 
-/* The name says the kind. */
+/* The name gives the kind. */
 static const char *ugrid_file(const char *kind)
 {
   static char path[4200];
@@ -85,7 +85,7 @@ static int exists(const char *path)
   return !access(path, F_OK);
 }
 
-/* Neither the file nor what it is called while it is written. */
+/* Neither the file nor its temporary name exists. */
 static void assert_absent(const char *path)
 {
   char part[4300];
@@ -191,8 +191,8 @@ static void others_are_those_of_the_whole_mesh(void **state)
   }
 }
 
-/* What the message of a kind of 4-byte reals must say of a mesh, by the judge
- * of the mesh so rounded. */
+/* The message expected for a kind of 4-byte reals, by the mesh check of the
+ * rounded mesh. */
 static void rounded_message(const struct vg_mesh *m, char *text, size_t size)
 {
   struct vg_mesh_report r;
@@ -209,9 +209,9 @@ static void rounded_message(const struct vg_mesh *m, char *text, size_t size)
   vg_mesh_release(&copy);
 }
 
-/* A valid mesh so far from the origin that 4-byte reals cannot tell its cells
- * from flat ones: said with their number, the same by both writers, and no
- * file is left. With 8 bytes it is written as ever. */
+/* A valid mesh so far from the origin that its cells are flat in 4-byte reals:
+ * reported with their number, equally by both writers, and no file is left.
+ * With 8 bytes it is written as usual. */
 static void rounding_that_spoils_cells_is_refused(void **state)
 {
   static const char *const form[] = { "b4.ugrid", "lb4.ugrid", "r4.ugrid",
@@ -251,8 +251,8 @@ static void rounding_that_spoils_cells_is_refused(void **state)
   }
 }
 
-/* Both sides of a thin body: cells stay positive, points become one. Places
- * that were the same before are no fault of the file. */
+/* Both sides of a thin body: cells stay positive, but points coincide. Points
+ * that already coincided before are no fault of the file. */
 static void rounding_that_joins_points_is_refused(void **state)
 {
   static const uint32_t face[4][3] = {
@@ -299,7 +299,7 @@ static void rounding_that_joins_points_is_refused(void **state)
   }
 }
 
-/* Lengths that make slices end before, on and behind markers. */
+/* Lengths that make slices end before, on and after markers. */
 static void records_in_parts(void **state)
 {
   static const uint32_t limit[] = { 64, 100, 1000, 1001, 4096, 100000 };
@@ -327,8 +327,8 @@ static void records_in_parts(void **state)
   }
 }
 
-/* Where skipping and seeking lead to in a record of 7 GB must be the same
- * place; nothing is written. */
+/* Skipping and seeking in a record of 7 GB must lead to the same position;
+ * nothing is written. */
 static void places_beyond_two_gigabytes(void **state)
 {
   const uint64_t bytes = 7000000000u;
@@ -403,7 +403,7 @@ static void cogsg_and_what_belongs_to_it(void **state)
   size_t n_curve, n_boundary;
 
   (void)state;
-  /* VGRID's order is another than the mesh's here ... */
+  /* VGRID's order differs from the mesh's here ... */
   assert_int_equal(vg_vgrid_order(&mesh[0], &new_to_old, &old_to_new, &n_curve,
                                   &n_boundary, NULL),
                    VG_OK);
@@ -412,7 +412,7 @@ static void cogsg_and_what_belongs_to_it(void **state)
   free(old_to_new);
   for (size_t i = 0; i < sizeof limit / sizeof *limit; i++)
     cogsg_case(&mesh[0], &info[0], limit[i], i);
-  /* ... and the same where there is one patch. */
+  /* ... and equals it if there is one patch. */
   memset(mesh[0].tri_patch, 0, mesh[0].n_tri * sizeof *mesh[0].tri_patch);
   assert_int_equal(vg_vgrid_order(&mesh[0], &new_to_old, &old_to_new, &n_curve,
                                   &n_boundary, NULL),
@@ -497,13 +497,13 @@ static void *array_of(const unsigned char *data, size_t size, int n,
   return copy;
 }
 
-/* Slots of VTK that hold our nodes. */
+/* VTK's slots of our nodes. */
 static const int to_vtk[3][6] = { { 0, 1, 2, 3 },
                                   { 1, 0, 3, 4, 2 },
                                   { 1, 0, 2, 4, 3, 5 } };
 
-/* The cells of slices g and on, as long as they are in this piece, must have
- * the coordinates of those of the mesh. Returns the next slice. */
+/* The cells of slices g and on, as far as they are in this piece, must have the
+ * coordinates of those of the mesh. Returns the next slice. */
 static size_t check_piece(const struct cut *c, const char *path, size_t g)
 {
   static const int width[3] = { 4, 5, 6 }, type[3] = { 10, 14, 13 };
@@ -620,7 +620,7 @@ static void failures_leave_nothing(void **state)
   for (size_t i = 0; i < N_FORM; i++)
     expect_failure(&c, io_temp("no_such_folder/x"), all_forms[i],
                    "no_such_folder");
-  /* as a disk that is full, but of one process */
+  /* like a full disk, but for one process only */
   signal(SIGXFSZ, SIG_IGN);
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
   small = old;

@@ -1,5 +1,5 @@
-/* Slide patches: found, their normals, and the front around columns. Columns
- * are made here from point normals, one per wall point. */
+/* Slide patches: how they are found, their normals, and the front around
+ * columns. Columns are made here from point normals, one per wall point. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -67,8 +67,8 @@ static void add_patches(struct grid *g, int n)
     assert_int_equal(vg_mesh_add_patch(&g->m, i + 1, "part"), i);
 }
 
-/* The inside of the unit cube, n cells along each edge, through `map`.
- * Patches: 0 z=0, 1 z=1, 2 y=0, 3 y=1, 4 x=0, 5 x=1; merged: all sides 2. */
+/* The inside of the unit cube, n cells along each edge, through `map`. Patches:
+ * 0 z=0, 1 z=1, 2 y=0, 3 y=1, 4 x=0, 5 x=1; merged: all sides 2. */
 static void make_box(struct grid *g, int n, int merged,
                      void (*map)(double x[3]))
 {
@@ -163,8 +163,8 @@ static void make_duct(struct grid *g, double r0, double r1, int n, int n_y)
   free(duct);
 }
 
-/* Half a sphere (patch 0, radius 1) on the plane z = 0 (patch 1) inside half
- * a sphere of radius 8 (patch 2). */
+/* Half a sphere (patch 0, radius 1) on the plane z = 0 (patch 1) inside half a
+ * sphere of radius 8 (patch 2). */
 static void make_dome(struct grid *g, int n, int n_up, int n_out)
 {
   uint32_t *ring[3], top;
@@ -240,7 +240,7 @@ static void release(struct made *a)
   free(a->failure.column);
 }
 
-/* Cut v down to what slides in patches with normals n[0 .. k - 1]. */
+/* Project v to the patches with normals n[0 .. k - 1] in which it slides. */
 static void constrain(int k, double n[2][3], double v[3])
 {
   if (k == 2) {
@@ -435,9 +435,9 @@ static double least_angle(const struct vg_mesh *m, size_t t)
   return least * 180 / M_PI;
 }
 
-/* The patch of slide s in the front: in its plane to the last bit, turned the
- * right way, of fair triangles; its area and that of the flanks are what the
- * patch had. */
+/* The patch of slide s in the front is in its plane to the last bit, correctly
+ * oriented, and has well-shaped triangles; its area and that of the side faces
+ * add up to the original area. */
 static void assert_plane(struct made *a, size_t s, double min_angle)
 {
   const struct vg_slide *sl = &a->slide[s];
@@ -480,7 +480,7 @@ static void assert_plane(struct made *a, size_t s, double min_angle)
   assert_true(fabs(area - before) <= 1e-10 * before);
 }
 
-/* Every top is at its column's end; points of the surface are themselves. */
+/* Every top is at its column's end; points of the surface keep their ids. */
 static void assert_points(const struct made *a)
 {
   const struct vg_front *f = &a->front;
@@ -536,7 +536,8 @@ static void finds_planes_and_normals(void **state)
   assert_true(a.slide[0].normal[2] == 1 && a.slide[0].at == 0);
   free(a.slide);
   a.slide = NULL;
-  /* The body as slide of the plane: curved, normals outward from the axis. */
+  /* The body as slide patch of the plane: curved, normals outward from the
+   * axis. */
   a.is_wall[0] = 0;
   a.is_wall[1] = 1;
   assert_int_equal(vg_slides_find(&a.g.m, a.is_wall, &a.n_slide, &a.slide,
@@ -642,7 +643,8 @@ static void body_between_planes(void **state)
   }
 }
 
-/* Every other wedge of the body has no layers: borders climb and fall. */
+/* Every other wedge of the body has no layers: the tops along boundary edges
+ * rise and fall. */
 static void levels_climb_from_nothing(void **state)
 {
   struct made a = { 0 };
@@ -681,7 +683,7 @@ static void nothing_grows_nothing_changes(void **state)
   release(&a);
 }
 
-/* A floor with four sides: the corner columns run up the vertical edges. */
+/* A floor with four sides: the corner columns follow the vertical edges. */
 static void floor_with_four_sides(void **state)
 {
   (void)state;
@@ -708,7 +710,7 @@ static void tilt(double x[3])
   x[2] = 0.6 * y + 0.8 * z;
 }
 
-/* Planes without an axis. */
+/* Planes that are not normal to an axis. */
 static void tilted_floor(void **state)
 {
   struct made a = { 0 };
@@ -724,7 +726,7 @@ static void tilted_floor(void **state)
   release(&a);
 }
 
-/* Floor and roof: both ends of the vertical edges are swallowed. */
+/* Floor and roof: both ends of the vertical edges are covered by layers. */
 static void floor_and_roof(void **state)
 {
   static const int n[3] = { 3, 10, 14 }; /* heights 0.04, 0.26, 0.59 */
@@ -750,7 +752,8 @@ static void floor_and_roof(void **state)
   }
 }
 
-/* Columns that outgrow the box are named; lowered, all is well. */
+/* Columns that leave the box are reported; after lowering them the front is
+ * valid. */
 static void too_high_is_failure(void **state)
 {
   struct made a = { 0 };
@@ -809,7 +812,7 @@ static void gently_curved_side(void **state)
     assert_true(fabs(vg_distance(x[1], x[0]) - 0.01) < 1e-8);
   }
   assert_int_equal(n_bent, 13);
-  /* New points lie on facets of edges 1/12: within their sagitta. */
+  /* New points are on facets with edges 1/12: within their sagitta. */
   for (size_t t = 0; t < a.front.n_face; t++)
     for (int k = 0; k < 3 && a.front.patch[t] == 4; k++) {
       const double *p = a.front.x[a.front.face[t][k]];
@@ -845,7 +848,7 @@ static void tunnel_is_no_graph(void **state)
   release(&a);
 }
 
-/* One plane in two patches, cut by a line that starts at the body: columns
+/* One plane in two patches, divided by a line that starts at the body: columns
  * there slide in both, though not along the line. */
 static void plane_in_two_patches(void **state)
 {
@@ -865,7 +868,7 @@ static void plane_in_two_patches(void **state)
     struct vg_column *c = &a.c.column[i];
     const double *x = a.g.m.point[c->root];
 
-    /* Tilted, so that tops do not stand on the cut. */
+    /* Tilted, so that tops are not on the dividing line. */
     c->dir[0] = x[0] - 0.2 * x[2];
     c->dir[1] = 0;
     c->dir[2] = x[2] + 0.2 * x[0];
@@ -880,8 +883,8 @@ static void plane_in_two_patches(void **state)
   release(&a);
 }
 
-/* Where a body's edge turns in the plane, three columns stand on one point:
- * the virtual faces between them end in borders. */
+/* Where a body's edge turns in the plane, three columns stand on one point: the
+ * virtual faces between them end in boundary edges. */
 static void fan_at_the_plane(void **state)
 {
   struct made a = { 0 };
@@ -949,7 +952,7 @@ static void fan_at_the_plane(void **state)
   assert_points(&a);
   assert_plane(&a, 0, 15);
   assert_plane(&a, 1, 15);
-  /* With no levels at all the fan is one point and its faces vanish. */
+  /* Without levels the fan is one point and its faces vanish. */
   for (size_t i = 0; i < c->n_column; i++) c->column[i].n = 0;
   vg_front_release(&a.front);
   assert_int_equal(front(&a), VG_OK);
@@ -958,8 +961,8 @@ static void fan_at_the_plane(void **state)
   release(&a);
 }
 
-/* Sides of a box that the floor's columns slide in, but one that they are
- * told to leave out: their flanks there would hang in the air. */
+/* Sides of a box in which the floor's columns slide, except one that is
+ * excluded: side faces there would not be attached to anything. */
 static void border_without_columns_fails(void **state)
 {
   struct made a = { 0 };
@@ -1044,8 +1047,9 @@ static void wrap(double x[3])
   x[1] = r * cos(a);
 }
 
-/* A strut between two cylinders that turn by 153 degrees: no graphs as a
- * whole, but around the strut. The rest of them stays as it is. */
+/* A strut between two cylinders that turn by 153 degrees: as a whole they are
+ * not graphs over a plane, but near the strut they are. Their other parts are
+ * unchanged. */
 static void only_the_surroundings(void **state)
 {
   struct made a = { 0 };

@@ -1,5 +1,5 @@
-/* Parts for a solver: no stack is cut, parts are balanced, what is reported is
- * so; and the files of parts. */
+/* Solver partitions: no stack is cut, partitions are balanced, the report is
+ * correct; and the files of partitions. */
 #include "io_support.h"
 
 #include "base/bytes.h"
@@ -53,8 +53,8 @@ static void release(struct made *m)
   free(m->part);
 }
 
-/* Cells of each kind that stand on a face of these columns, as columns.h has
- * it: none of them share a root here. */
+/* Cells of each kind that stand on a face of these columns, as defined by
+ * columns.h: no two columns share a root here. */
 static void stands_on(const struct made *m, size_t face, int mixed, size_t n[3])
 {
   const struct vg_columns *c = &m->model.layers.columns;
@@ -72,7 +72,7 @@ static void stands_on(const struct made *m, size_t face, int mixed, size_t n[3])
   n[2] = mixed ? low : 0;
 }
 
-/* Stacks that are in several parts, told by the columns. */
+/* Stacks that are in several partitions, determined from the columns. */
 static size_t stacks_cut(const struct made *m, int mixed, uint64_t *n_stack,
                          uint64_t *n_cell)
 {
@@ -110,7 +110,7 @@ static int by_nodes(const void *a, const void *b)
   return memcmp(a, b, 4 * sizeof(uint32_t));
 }
 
-/* Faces between parts, found by sorting all faces. */
+/* Faces between partitions, found by sorting all faces. */
 static uint64_t count_cut(const struct vg_mesh *m, const uint32_t *part)
 {
   static const int side[4][3] = {
@@ -157,8 +157,8 @@ static void tell_apart(struct made *m, const struct vg_solver_options *o,
     fail_msg("%s", err.text);
 }
 
-/* METIS is asked for 3 % over the mean; a stack of 18 cells in parts of some
- * hundred can be in the way of that. */
+/* METIS is allowed 3 % over the mean; a stack of 18 cells in partitions of some
+ * hundred can prevent that. */
 static void check_balance(const struct made *m, uint64_t n,
                           const struct vg_solver_report *r)
 {
@@ -202,7 +202,7 @@ static void no_stack_is_cut(void **state)
   }
 }
 
-/* Clusters make borders ragged, single cells straighten them again. */
+/* Clusters give ragged borders, which moving single cells straightens. */
 static void clusters_keep_stacks_and_balance(void **state)
 {
   struct vg_solver_options o = parts(5);
@@ -240,7 +240,7 @@ static void weights_shift_cells(void **state)
   release(&m);
 }
 
-/* Cells of the field that are said to be in layers stand on nothing. */
+/* Isotropic cells that are wrongly counted as layer cells stand on no wall. */
 static void a_wrong_number_of_layers_is_noticed(void **state)
 {
   const struct vg_solver_options o = parts(4);

@@ -79,7 +79,7 @@ static void binary_round_trip_keeps_floats(void **state)
 
   (void)state;
   io_make_t1(&m, 0);
-  m.point[3][2] = 0.3; /* not a float: must come back as the nearest one */
+  m.point[3][2] = 0.3; /* not a float: must be read back as the nearest one */
   assert_int_equal(vg_stl_write_binary(path, &m, &err), VG_OK);
   assert_int_equal(vg_stl_read(path, &back, &err), VG_OK);
   assert_int_equal(back.n_point, 4);
@@ -89,7 +89,7 @@ static void binary_round_trip_keeps_floats(void **state)
   assert_true(back.point[3][2] == (double)0.3f);
   data = io_slurp(path, &size);
   assert_int_equal(size, 84 + 4 * 50);
-  memcpy(data, "solid trap", 10); /* real headers begin so */
+  memcpy(data, "solid trap", 10); /* real headers begin like this */
   vg_mesh_release(&back);
   assert_int_equal(io_parse_bytes(vg_stl_parse, data, size, &back, &err),
                    VG_OK);

@@ -1,5 +1,5 @@
-/* What finished tasks left is found again, whole or not at all; directories
- * that are not for this run are refused in words. */
+/* Outcomes of finished tasks are found again, completely or not at all;
+ * directories of other runs are refused with a message. */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <ftw.h>
@@ -69,7 +69,7 @@ static struct vg_store *opened(uint64_t job, int resume)
   return s;
 }
 
-/* All words must be in the message; nothing is handed out. */
+/* All words must be in the message; no store is returned. */
 static void refused(const struct vg_store_options *o, vg_status st,
                     const char *const *word)
 {
@@ -210,7 +210,7 @@ static void kept_and_found(void **state)
   assert_int_equal(stat(RUN_DIR, &info), -1);
 }
 
-/* Every bit of every byte turned, every length, and bytes too many. */
+/* Every bit of every byte flipped, every shorter length, and extra bytes. */
 static void a_damaged_record_is_none(void **state)
 {
   unsigned char whole[256], bad[257];
@@ -236,7 +236,7 @@ static void a_damaged_record_is_none(void **state)
   vg_store_close(s, 1);
 }
 
-/* A whole record, but under the name of another. */
+/* A complete record, but under the name of another. */
 static void a_record_of_another_key(void **state)
 {
   struct vg_store *s = opened(1, 0);
@@ -277,7 +277,7 @@ static void several_threads(void **state)
   vg_store_close(s, 1);
 }
 
-/* --- whose directory ----------------------------------------------------- */
+/* --- ownership of the directory ------------------------------------------ */
 
 static void another_run_is_refused(void **state)
 {
@@ -369,7 +369,7 @@ static void a_place_that_cannot_be_written(void **state)
   REFUSED(&o, VG_ERR_IO, "/proc/self/store", "choose another");
 }
 
-/* A refusal names what differs, and nothing that does not. */
+/* A refusal names the settings that differ, and no others. */
 static void settings_side_by_side(void **state)
 {
   struct vg_store_options o = options_of(1, 0);
@@ -395,7 +395,7 @@ static void settings_side_by_side(void **state)
     snprintf(many + strlen(many), 30, "name%d=value\n", k);
   o.settings = many;
   REFUSED(&o, VG_ERR_INPUT, "name0 was", "more; choose another directory");
-  o = options_of(1, 1); /* whatever the lines say, jobs decide */
+  o = options_of(1, 1); /* the job digest decides, whatever the lines contain */
   o.settings = "growth=3";
   assert_int_equal(vg_store_open(NULL, &o, &s, NULL), VG_OK);
   vg_store_close(s, 1);
@@ -422,8 +422,8 @@ static void folders_above_and_other_files(void **state)
   assert_int_equal(unlink(RUN_DIR "/a/b/notes"), 0);
 }
 
-/* Another process holds the directory; killed, it does so no longer, and what
- * it was writing is gone. */
+/* Another process holds the directory. After it is killed it no longer does,
+ * and its incomplete files are gone. */
 static void one_run_at_a_time(void **state)
 {
   struct vg_store_options o = options_of(1, 1);
@@ -436,7 +436,7 @@ static void one_run_at_a_time(void **state)
   (void)state;
   assert_int_equal(pipe(ends), 0);
   pid = fork();
-  assert_true(pid >= 0); /* kill would take -1 for everybody */
+  assert_true(pid >= 0); /* kill would take -1 for all processes */
   if (pid == 0) {
     s = opened(1, 0);
     vg_store_keep(s, key_of(1), 3, "abc");
@@ -495,7 +495,7 @@ static int count_one(const char *path, const struct stat *s, int flag,
   return flag == FTW_F && strlen(path + f->base) == 32 && s->st_size < 300000;
 }
 
-/* Records of 300 kB until there is no room. */
+/* Records of 300 kB until the disk is full. */
 static void fill_up(struct vg_store *s, const char *reason)
 {
   static unsigned char data[300000];
@@ -516,7 +516,7 @@ static void fill_up(struct vg_store *s, const char *reason)
   }
 }
 
-/* A limit of the shell's on files ends writes half-way as a full disk does. */
+/* The shell's file size limit ends writes half-way, like a full disk. */
 static void a_write_that_ends_half_way(void **state)
 {
   struct rlimit before, small;
@@ -533,7 +533,7 @@ static void a_write_that_ends_half_way(void **state)
   vg_store_close(s, 1);
 }
 
-/* In a name space of our own, where that is allowed. */
+/* In a separate mount namespace, if that is permitted. */
 static void a_full_disk(void **state)
 {
   struct vg_store *s;
@@ -542,7 +542,7 @@ static void a_full_disk(void **state)
   if (unshare(CLONE_NEWNS) ||
       mount("none", "/", NULL, MS_REC | MS_PRIVATE, NULL) ||
       mkdir(RUN_DIR, 0777) || mount("none", RUN_DIR, "tmpfs", 0, "size=1M")) {
-    print_message("no right to mount a small disk\n");
+    print_message("no permission to mount a small disk: skipped\n");
     skip();
   }
   s = opened(1, 0);

@@ -6,7 +6,7 @@
 
 #include "io/stream/stream.h"
 
-/* Numbers without a pattern, the same on every run. */
+/* Random numbers, the same on every run. */
 static uint64_t next_random(uint64_t *state)
 {
   *state += 0x9e3779b97f4a7c15u;
@@ -129,7 +129,7 @@ static void unpacks_gzip_whatever_its_name(void **state)
   assert_memory_equal(in.data, text, n);
   vg_input_release(&in);
 
-  /* Two members one behind the other, then padding, as gzip allows. */
+  /* Two consecutive members, then padding, as gzip allows. */
   FILE *f = fopen(path, "rb");
   gz = malloc(2 * n);
   packed = fread(gz, 1, n, f);
@@ -400,8 +400,8 @@ static void parses_reals_with_care(void **state)
   }
 }
 
-/* Against the C library, correctly rounded by definition, over random bit
- * patterns and over numbers of the size of coordinates. */
+/* Compared with the C library, which is correctly rounded by definition, for
+ * random bit patterns and for numbers of the size of coordinates. */
 static void parses_as_the_c_library(void **state)
 {
   uint64_t seed = 1;
@@ -538,7 +538,7 @@ static void output_errors_are_reported(void **state)
   }
 }
 
-/* A disk that is full, played by a device that always is. */
+/* A full disk, simulated by a device that is always full. */
 static void a_full_disk_is_reported(void **state)
 {
   struct vg_output out = VG_OUTPUT_INIT;

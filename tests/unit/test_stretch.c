@@ -1,5 +1,5 @@
-/* Edges stretched along lines: the tensors around these, and wings made anew
- * with longer edges along their leading edges. */
+/* Edges stretched along feature curves: the tensors around these, and remeshed
+ * wings with longer edges along their leading edges. */
 #include "remesh_scene.h"
 
 #include "core/remesh/remesh.h"
@@ -36,7 +36,8 @@ static double asked(const struct vg_stretch *s, double x, double y, double z,
   return vg_metric_along(&m, d);
 }
 
-/* A cube of sizes 0.05: one of its sides is stretched by 8, another by `by`. */
+/* A cube with uniform size 0.05: one of its sides is stretched by 8, another by
+ * `by`. */
 static void stretch_cube(struct scene *s, struct vg_stretch *stretch, double by)
 {
   const double size[3] = { 4, 4, 4 };
@@ -57,8 +58,9 @@ static void release_cube(struct scene *s, struct vg_stretch *stretch)
   scene_release(s);
 }
 
-/* Along the line what was asked for, less by growth - 1 (0.2) per length away
- * from it, and never below the size, which stays that across. */
+/* Along the curve the requested length, reduced by growth - 1 (0.2) per length
+ * away from it, and never below the size, which remains that across the
+ * curve. */
 static void falls_with_the_distance(void **unused)
 {
   struct scene s = { .m = VG_MESH_INIT };
@@ -75,8 +77,8 @@ static void falls_with_the_distance(void **unused)
   release_cube(&s, &stretch);
 }
 
-/* Where two lines at right angles meet none is stretched; by one of them edges
- * are as that asks for, but for what is left of the other. */
+/* Where two curves meet at right angles neither is stretched. On one of them
+ * edges have its requested length, minus the remaining effect of the other. */
 static void lines_share_their_corner(void **unused)
 {
   struct scene s = { .m = VG_MESH_INIT };
@@ -90,7 +92,8 @@ static void lines_share_their_corner(void **unused)
   assert_float_equal(asked(&stretch, 0.5, 0.5, 0, 1, 0), 0.05, 1e-9);
   assert_float_equal(asked(&stretch, 3, 0, 0, 1, 0), 0.4, 1e-9);
   assert_float_equal(asked(&stretch, 0, 3, 0, 0, 1), 0.4, 1e-9);
-  /* 0.4 - 0.2 for what is 1 away, less the size, is taken from 0.4 */
+  /* at distance 1 the other curve still has 0.4 - 0.2; its excess over the size
+   * is subtracted from 0.4 */
   assert_float_equal(asked(&stretch, 1, 0, 0, 1, 0), 0.25, 1e-9);
   release_cube(&s, &stretch);
 }
@@ -100,8 +103,8 @@ static void lines_share_their_corner(void **unused)
 #define CHORD 40
 #define SPAN 30
 
-/* A tapered wing with a round nose and a sharp trailing edge: upper and lower
- * side meet in both. */
+/* A tapered wing with a round leading edge and a sharp trailing edge: upper and
+ * lower side meet in both. */
 static void wing(struct vg_mesh *m)
 {
   static const char *const name[] = { "upper", "lower", "root", "tip" };
@@ -188,8 +191,8 @@ static void make_wing(struct vg_mesh *m, double by, double h_max, int threads,
   vg_mesh_release(&given);
 }
 
-/* Edges along the leading edge get as many times fewer as asked for, and
- * triangles fewer; shapes are as good, for what is asked. */
+/* The edges along the leading edge are fewer by the requested factor, and the
+ * triangles are fewer; shapes are equally good in the requested metric. */
 static void stretches_a_leading_edge(void **unused)
 {
   const double by[3] = { 1.0001, 4, 10 };

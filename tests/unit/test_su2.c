@@ -3,7 +3,7 @@
 
 #include "io/mesh/su2.h"
 
-/* --- a reader of what was written, apart from the writer --- */
+/* --- a reader of the written files, independent of the writer --- */
 
 struct reader {
   FILE *file;
@@ -68,7 +68,7 @@ static void take_side(const uint32_t *node, const int *face,
   mixed_sort(s->key, 4);
 }
 
-/* Sides of all cells, outward as VTK has them. */
+/* Sides of all cells, outward in VTK's convention. */
 static size_t read_cells(struct reader *r, size_t n_point,
                          struct mixed_side **out)
 {

@@ -71,7 +71,7 @@ static void move_from(struct vg_mesh *m, size_t first, double x, double y,
   }
 }
 
-/* Kind, place and remedy of every finding, and a patch if it has a face. */
+/* Kind, location and remedy of every finding, and a patch if it has a face. */
 static void check_texts(const struct vg_mesh *m,
                         const struct vg_surface_report *r)
 {
@@ -242,7 +242,7 @@ static void reports_three_faces_at_an_edge(void **unused)
   assert_int_equal(r.count[VG_DEFECT_NONMANIFOLD_EDGE], 1);
   assert_int_equal(r.count[VG_DEFECT_OPEN_EDGE], 2);
   assert_int_equal(r.count[VG_DEFECT_ORIENTATION], 0);
-  assert_int_equal(r.count[VG_DEFECT_INTERSECTION], 0); /* said once */
+  assert_int_equal(r.count[VG_DEFECT_INTERSECTION], 0); /* reported once */
   assert_false(r.is_closed);
   assert_true(r.face_kinds[12] >> VG_DEFECT_NONMANIFOLD_EDGE & 1);
   assert_true(r.face_kinds[4] >> VG_DEFECT_NONMANIFOLD_EDGE & 1);
@@ -337,7 +337,7 @@ static void welds_a_soup(void **unused)
   }
   check(&m, 0, 1, &r);
   assert_only(&r, VG_DEFECT_DUPLICATE_POINT, 28);
-  assert_true(r.is_closed); /* judged as if welded */
+  assert_true(r.is_closed); /* checked as if welded */
   assert_int_equal(m.n_point, 36);
   check(&m, 1, 1, &r);
   assert_none(&r);
@@ -425,7 +425,7 @@ static void drops_copies_of_a_triangle(void **unused)
   check(&m, 1, 1, &r);
   assert_none(&r);
   assert_int_equal(r.n_removed_tri, 1);
-  add_tri(&m, m.tri[5][1], m.tri[5][0], m.tri[5][2], 0); /* other side */
+  add_tri(&m, m.tri[5][1], m.tri[5][0], m.tri[5][2], 0); /* reversed */
   vg_mesh_add_patch(&m, 7, "paint");
   add_tri(&m, m.tri[0][0], m.tri[0][1], m.tri[0][2], 1); /* other patch */
   add_tri(&m, m.tri[0][0], m.tri[0][1], m.tri[0][2], 1); /* a third one */
@@ -439,7 +439,7 @@ static void drops_copies_of_a_triangle(void **unused)
   done(&m, &r);
 }
 
-/* All of a body twice, the second one inside out. */
+/* A complete duplicate of a body, inside out. */
 static void drops_a_second_skin(void **unused)
 {
   NEW;
@@ -457,7 +457,7 @@ static void drops_a_second_skin(void **unused)
   done(&m, &r);
 }
 
-/* Two boxes with a common side, whichever way the second one looks. */
+/* Two boxes with a common side, for either orientation of the second one. */
 static void unites_bodies_that_share_a_wall(void **unused)
 {
   (void)unused;
@@ -513,14 +513,14 @@ static void add_cell(struct vg_mesh *m, int x, int y, int z, int outward)
     }
 }
 
-/* 27 boxes, some of them inside out: walls meet in edges, and a body may have
- * walls all around. Without one of them the others have a hole in a corner,
- * in an edge, in a side or a cavity. */
+/* 27 boxes, some of them inside out: walls meet in edges, and a body may be
+ * surrounded by walls. If one box is left out, the others have a hole in a
+ * corner, in an edge, in a side, or a cavity. */
 static void unites_many_bodies(void **unused)
 {
   (void)unused;
   for (int left_out = -1; left_out < 27; left_out++) {
-    int n_side = 0; /* sides of the box that is left out on the hull */
+    int n_side = 0; /* sides on the hull of the box that is left out */
     NEW;
 
     for (int i = 0; i < 27; i++)
@@ -539,7 +539,8 @@ static void unites_many_bodies(void **unused)
   }
 }
 
-/* A wall that stands on a body with both of its sides: nothing is guessed. */
+/* A wall of two coincident sides attached to a body: the check does not guess
+ * its thickness. */
 static void leaves_a_wall_without_thickness(void **unused)
 {
   uint32_t p;
@@ -557,8 +558,8 @@ static void leaves_a_wall_without_thickness(void **unused)
   done(&m, &r);
 }
 
-/* A box on another one, of which a side is missing: without the wall they
- * would have a hole. */
+/* A box on another one, of which a side is missing: without the wall they would
+ * have a hole. */
 static void keeps_a_shared_wall_at_a_hole(void **unused)
 {
   NEW;
@@ -602,7 +603,7 @@ static void reports_quadrilaterals(void **unused)
   m.quad_patch = calloc(6, sizeof *m.quad_patch);
   m.n_quad = 6;
   for (int s = 0; s < 6; s++) memcpy(m.quad[s], side[s], sizeof side[s]);
-  check(&m, 1, 0, &r); /* turned: outward normals, fluid within */
+  check(&m, 1, 0, &r); /* reversed: outward normals, fluid inside */
   assert_only(&r, VG_DEFECT_QUAD, 6);
   assert_true(r.is_closed && r.shell[0].volume == -1);
   assert_int_equal(r.n_flipped, 6);
@@ -650,7 +651,7 @@ static void refuses_an_index_out_of_range(void **unused)
 
 /* --- intersections ------------------------------------------------------- */
 
-/* Reference: two triangles of whole numbers are apart exactly when one of
+/* Reference: two triangles of whole numbers are disjoint exactly if one of
  * these directions separates them strictly. */
 typedef int64_t vec[3];
 
@@ -753,8 +754,8 @@ static int equal(const int64_t *a, const int64_t *b)
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* On a small grid most pairs touch, overlap or lie in one plane. Corners are
- * shared by number; another coincidence of corners is a meeting. */
+/* On a small grid most pairs touch, overlap or are coplanar. Corners are shared
+ * by number; any other coincidence of corners is an intersection. */
 static void agrees_with_separating_planes(void **unused)
 {
   uint64_t s = 1;
@@ -831,7 +832,7 @@ static void finds_boxes_that_cross(void **unused)
   done(&m, &r);
 }
 
-/* Beyond the limit every face is told of once, and the count stays true. */
+/* Beyond the limit every face is listed once, and the count stays correct. */
 static void counts_more_pairs_than_it_lists(void **unused)
 {
   const uint32_t n = 520; /* 520^2 = 270400 pairs */
@@ -936,7 +937,7 @@ static void does_not_guess_about_a_stray_body(void **unused)
   vg_defect_text(&m, &r.defect[0], text, sizeof text);
   assert_non_null(strstr(text, "patch 2 (box), face 13; patch 1 (box), face "
                                "1 at (3.5, 3.5, 3.5)"));
-  for (size_t t = 12; t < 24; t++) { /* as a cavity it is meant */
+  for (size_t t = 12; t < 24; t++) { /* as an intended cavity */
     uint32_t n = m.tri[t][1];
 
     m.tri[t][1] = m.tri[t][2];
@@ -1005,7 +1006,7 @@ static void welds_a_chain(void **unused)
   done(&m, &r);
 }
 
-/* Lowest point that a chain of steps within the tolerance leads to. */
+/* Lowest point that is reached by a chain of steps within the tolerance. */
 static void reference_weld(const struct vg_mesh *m, double tolerance,
                            uint32_t *root)
 {
@@ -1031,8 +1032,8 @@ static void reference_weld(const struct vg_mesh *m, double tolerance,
   }
 }
 
-/* Whole coordinates: distances of exactly the tolerance, on both sides of
- * cell walls and of zero, and many equal points. */
+/* Whole coordinates: distances of exactly the tolerance, on both sides of cell
+ * walls and of zero, and many equal points. */
 static void welds_as_the_definition_says(void **unused)
 {
   const double tolerance[] = { 0, 1, 2, 2.5, 4 };
@@ -1082,7 +1083,7 @@ static void names_every_kind(void **unused)
   }
 }
 
-/* n triangles anywhere in the unit cube, of edges of about `size`. */
+/* n random triangles in the unit cube, with edges of about `size`. */
 static void add_soup(struct vg_mesh *m, size_t n, double size, uint64_t seed)
 {
   uint32_t patch = (uint32_t)vg_mesh_add_patch(m, 1, "soup");
@@ -1102,7 +1103,7 @@ static void add_soup(struct vg_mesh *m, size_t n, double size, uint64_t seed)
   }
 }
 
-/* Few pairs, each listed, and more than are listed, one partner for each. */
+/* Few pairs, each listed, and more than the limit, one partner for each. */
 static void threads_find_the_same(void **unused)
 {
   static const double size[2] = { 0.06, 1.5 };

@@ -20,7 +20,7 @@ static vg_status read_any(const char *path, struct vg_mesh *m,
   return vg_tri_read(path, m, err);
 }
 
-/* Read a file of the data folder; skips the test where there is none. */
+/* Read a file of the data folder; skips the test if it is missing. */
 static void read_real(const char *name, struct vg_mesh *m)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -67,7 +67,7 @@ static const struct figures dirty[] = {
   { "dirty/openvsp_cfdmesh_concorde.tri.xz", 0, 13, 113, 0, 550, 35, 0 },
 };
 
-/* Without the repair: the figures are of the surface as it is, welded. */
+/* Without the repair: the figures are those of the welded input surface. */
 static void check_figures(const struct figures *x)
 {
   struct vg_surface_check_options o = { .external = !x->is_domain,
@@ -91,8 +91,8 @@ static void check_figures(const struct figures *x)
   vg_mesh_release(&m);
 }
 
-/* The repair leaves nothing to complain about, and turns the boundary of a
- * domain into the fluid and bodies out of the solid, whatever the file had. */
+/* After the repair there are no findings. The boundary of a domain points into
+ * the fluid and bodies point out of the solid, whatever the file had. */
 static void check_repair(const struct figures *x)
 {
   struct vg_surface_check_options o = { .repair = 1,

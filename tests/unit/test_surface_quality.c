@@ -1,4 +1,4 @@
-/* Figures of the triangles of a surface, against triangles that are known. */
+/* Figures of the triangles of a surface, for known triangles. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +9,7 @@
 #include "core/surface/surface_quality.h"
 
 /* Equilateral, half a square, a cap of height 1e-3, a needle of 0.01 degrees,
- * a place that is no number. */
+ * coordinates that are NaN. */
 static void known_triangles(void **state)
 {
   const double base = 2 * tan(M_PI / 36000);
@@ -51,7 +51,7 @@ static void known_triangles(void **state)
   assert_true(q.n == 0 && q.angle_min == 0 && q.ratio_mean == 0);
 }
 
-/* Of more than fit the worst are kept, in order. */
+/* If there are more triangles than fit, the worst are kept, in order. */
 static void the_worst_of_many(void **state)
 {
   enum { N = 40 };

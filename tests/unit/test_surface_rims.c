@@ -1,5 +1,5 @@
-/* Rims that coincide but for rounding are distinguished from holes, and welded.
- */
+/* Rims that coincide except for rounding are distinguished from holes, and
+ * welded. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,8 +15,8 @@
 
 #include "core/surface/surface_check.h"
 
-/* A ball of length 2 in parts by patch, which have points of their own, moved
- * along x by `step` times the number of the part. */
+/* A ball of length 2 in parts by patch that do not share points, each moved
+ * along x by `step` times its number. */
 static void make_parts(struct vg_mesh *m, size_t n_patch, double step)
 {
   static const double radius[3] = { 1, 1, 1 };
@@ -130,7 +130,7 @@ static void drop_tri(struct vg_mesh *m, size_t t)
           (m->n_tri - t) * sizeof *m->tri_patch);
 }
 
-/* Whatever the tolerance, and next to a gap. */
+/* For any tolerance, and next to a gap. */
 static void a_hole_stays_open(void **state)
 {
   static const double tolerance[] = { 1e-12, 1e-3, 0.05, 1, 100 };

@@ -1,5 +1,5 @@
-/* Swaps and collapses: constructed surfaces of which the result is known, and
- * real ones that must stay valid and get better. */
+/* Swaps and collapses: constructed surfaces with known results, and real ones
+ * that must stay valid and improve. */
 #include <math.h>
 
 #include "grow.h"
@@ -39,8 +39,9 @@ static double shift(uint32_t *state)
   return .6 * ((double)(*state >> 8) / 16777216. - .5);
 }
 
-/* One side of the unit cube, n by n squares, outward; points inside it are
- * moved in its plane when `shake`. Side s is at the end s & 1 of axis s / 2. */
+/* One side of the unit cube, n by n squares, outward; with `shake` points
+ * inside it are moved within its plane. Side s is the end s & 1 of axis s /
+ * 2. */
 static void add_side(struct vg_mesh *m, int s, uint32_t n, int shake,
                      uint32_t patch, uint32_t *state)
 {
@@ -96,8 +97,8 @@ static uint32_t split(struct vg_mesh *m, size_t t, double u, double v,
   return p;
 }
 
-/* A drum of 48 sides and 4 rings; each square of its side has two triangles,
- * in patches of their own or not, and a cap on the diagonal. */
+/* A drum of 48 sides and 4 rings. Each square of its side has two triangles, in
+ * separate patches or not, and a cap on the diagonal. */
 static void make_drum(struct vg_mesh *m, int patches)
 {
   uint32_t n = 48, rings = 4, low, high;
@@ -127,7 +128,7 @@ static void make_drum(struct vg_mesh *m, int patches)
   for (size_t t = 0; t < n_side; t += 2) split(m, t, .45, 1e-4, 0);
 }
 
-/* --- what must hold ------------------------------------------------------ */
+/* --- invariants ---------------------------------------------------------- */
 
 static double volume_of(const struct vg_mesh *m)
 {
@@ -252,8 +253,8 @@ static void leaves_a_cube(void **unused)
   vg_mesh_release(&old);
 }
 
-/* The swaps leave what would gain less than 1 % in the square of a sine; a
- * sum of angles of 0.06 above pi is enough for that in these triangles. */
+/* Swaps that would gain less than 1 % in the square of a sine are not made; in
+ * these triangles that permits a sum of angles of 0.06 above pi. */
 static void makes_a_plane_delaunay(void **unused)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -269,7 +270,7 @@ static void makes_a_plane_delaunay(void **unused)
   vg_mesh_release(&m);
 }
 
-/* One patch only: what keeps the edges of the cube is their angle. */
+/* One patch only: the edges of the cube are kept because of their angle. */
 static void keeps_ridges(void **unused)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -310,7 +311,7 @@ static void swaps_caps_away(void **unused)
   vg_mesh_release(&m);
 }
 
-/* The diagonals are between patches now, the caps on one side of them. */
+/* Now the diagonals are between patches, with the caps on one side of them. */
 static void keeps_patches(void **unused)
 {
   struct vg_mesh m = VG_MESH_INIT, old = VG_MESH_INIT;
@@ -324,7 +325,7 @@ static void keeps_patches(void **unused)
   assert_int_equal(r.n_swapped, 0);
   assert_int_equal(r.n_cap[1], 48 * 4);
   assert_memory_equal(m.tri, old.tri, m.n_tri * sizeof *m.tri);
-  r = run(&m, 1); /* but the apexes may go */
+  r = run(&m, 1); /* but the apexes may be removed */
   assert_int_equal(r.n_collapsed, 48 * 4);
   assert_int_equal(r.n_cap[1], 0);
   assert_int_equal(m.n_point, 48 * 5 + 2);
@@ -356,8 +357,8 @@ static void removes_points_that_are_near(void **unused)
   vg_mesh_release(&m);
 }
 
-/* Points on the edges of a cube, next to its corners, go along the edges:
- * the corners stay. */
+/* Points on the edges of a cube, next to its corners, are collapsed along the
+ * edges: the corners stay. */
 static void removes_points_along_edges(void **unused)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -385,15 +386,15 @@ static void removes_points_along_edges(void **unused)
 
 /* --- other parts of the surface ------------------------------------------ */
 
-/* A cap raised a little above the top of a cube; its swap would lift the top
- * over the tip of a body that hovers there. */
+/* A cap raised slightly above the top of a cube; its swap would lift the top
+ * over the tip of a nearby body. */
 static void make_tip(struct vg_mesh *m, int with_body)
 {
   size_t t = 5 * 2; /* the top, z = 1, with diagonal 0 0 to 1 1 */
   uint32_t a, b, c, d;
 
   make_cube(m, 1, 0, 1);
-  /* first corner, and the last, on the diagonal; cap beside it */
+  /* first corner, and the last, on the diagonal; cap next to it */
   assert_true(m->point[m->tri[t][1]][2] == 1);
   split(m, t, 1e-4, .5, 3e-4);
   if (!with_body) return;
@@ -532,11 +533,11 @@ static void accepts_nothing(void **unused)
 struct real {
   const char *name;
   double volume;  /* largest relative change of it */
-  double slivers; /* largest part of the slivers that remains */
+  double slivers; /* largest remaining share of the slivers */
 };
 
-/* The volume of the low boom aircraft is of triangles of 1 to 6 m length, to
- * which 1e-3 of movement is allowed: 1.4e-5 was measured. */
+/* The volume of the low boom aircraft is of triangles with edges of 1 to 6 m,
+ * whose points may move by 1e-3: 1.4e-5 was measured. */
 static const struct real real[] = {
   { "supersonic/f16_full.lb8.ugrid.xz", 1e-5, .45 },
   { "supersonic/concorde_full.lb8.ugrid.xz", 1e-5, .45 },

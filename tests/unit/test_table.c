@@ -1,4 +1,5 @@
-/* base/table.h, base/hash.h, base/tri_key.h: tables against plain lists. */
+/* base/table.h, base/hash.h, base/tri_key.h: tables compared with plain
+ * lists. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -50,7 +51,7 @@ static size_t n_slot(const struct vg_table *t)
   return (size_t)(t->end - t->slot);
 }
 
-/* Keys drawn at random, each entered where it is new. */
+/* Random keys, each inserted if it is new. */
 static void draw_keys(int n, uint64_t among, int crowded)
 {
   static struct keys k;
@@ -133,9 +134,9 @@ static void hashes_stay(void **state)
 
 enum { BITS = 14, HALF = 1 << (BITS - 1) };
 
-/* Numbers of a mesh follow each other. Drawn at random, 8192 of them would
- * reach 16384 (1 - exp(-1/2)) = 6447 of 16384 slots; keys of some pattern
- * reach at least 0.8 of that, so that searches stay short. */
+/* Numbers of a mesh are consecutive. 8192 random keys would reach 16384 (1 -
+ * exp(-1/2)) = 6447 of 16384 slots; keys with a pattern reach at least 0.8 of
+ * that, so that searches stay short. */
 static void reach_slots(uint64_t (*key)(uint64_t i))
 {
   static uint8_t hit[1 << BITS];

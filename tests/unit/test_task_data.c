@@ -1,5 +1,5 @@
-/* Fronts as tasks get them: their parts where voids touch, splitting and
- * joining, checks, their volume, bytes and back. */
+/* Fronts of tasks: components where voids touch, splitting and joining, checks,
+ * volume, serialization. */
 #include "io_support.h"
 
 #include "base/bytes.h"
@@ -8,8 +8,8 @@
 #include "partition/cut/task_data.h"
 #include "tets_support.h"
 
-/* A front of the triangles of m, which is released. Names are not in the order
- * of the points. */
+/* A front of the triangles of m, which is released. Ids are not in the order of
+ * the points. */
 static struct vg_front front_of(struct vg_mesh *m)
 {
   struct vg_front f = VG_FRONT_INIT;
@@ -38,7 +38,7 @@ static struct vg_front block(int nx, int ny, int nz, int (*in)(const int at[3]))
   return front_of(&m);
 }
 
-/* Turned and stretched, so that nothing is along an axis. */
+/* Rotated and stretched, so that nothing is along an axis. */
 static void turn(struct vg_front *f)
 {
   for (size_t k = 0; k < f->n_point; k++) {
@@ -51,7 +51,7 @@ static void turn(struct vg_front *f)
   }
 }
 
-/* Another corner of each face comes first. */
+/* Rotate the corners of each face. */
 static void turn_faces(struct vg_front *f)
 {
   for (size_t i = 0; i < f->n_face; i++)
@@ -78,7 +78,7 @@ static uint32_t *parts_of(const struct vg_front *f, size_t *n)
   return part;
 }
 
-/* How many, whichever way the front is turned. */
+/* Expected number of components, for either orientation of the front. */
 static void parts_are(struct vg_front f, size_t want)
 {
   for (int k = 0; k < 3; k++) {
@@ -93,7 +93,7 @@ static void parts_are(struct vg_front f, size_t want)
   vg_front_release(&f);
 }
 
-/* --- parts --------------------------------------------------------------- */
+/* --- components ---------------------------------------------------------- */
 
 static int two_apart(const int at[3])
 {
@@ -138,7 +138,7 @@ static void parts_that_are_apart(void **state)
   parts_are(block(3, 2, 1, a_passage_wide), 1);
 }
 
-/* Edges with four faces: voids that touch there are parts of their own. */
+/* Edges with four faces: voids that touch there are separate components. */
 static void parts_that_touch(void **state)
 {
   (void)state;
@@ -192,7 +192,7 @@ static int by_name(const void *a, const void *b)
   return memcmp(a, b, 3 * sizeof(uint64_t));
 }
 
-/* Faces by the names of their points, the least first, sorted. */
+/* Faces by the ids of their points, the least first, sorted. */
 static uint64_t (*named(const struct vg_front *f))[3]
 {
   uint64_t(*t)[3] = vg_alloc(f->n_face, sizeof *t);
@@ -220,7 +220,7 @@ static void same_front(const struct vg_front *a, const struct vg_front *b)
   free(t);
 }
 
-/* Every point is used, and stands where the one of its name does. */
+/* Every point is used, and has the position of the point with its id. */
 static void is_part_of(const struct vg_front *f, const struct vg_front *whole)
 {
   uint8_t *used = vg_calloc(f->n_point, 1);
@@ -247,7 +247,7 @@ static int is_closed(const struct vg_front *f)
   return !vg_front_open_edges(f);
 }
 
-/* Split into parts and joined again. */
+/* Split into components and joined again. */
 static void split_and_join(struct vg_front f)
 {
   struct vg_front all = VG_FRONT_INIT, *out;
@@ -286,11 +286,11 @@ static void parts_are_split_and_joined(void **state)
   shape_sphere(&m, 6, centre, 1, 7);
   split_and_join(front_of(&m));
   split_and_join(block(2, 2, 1, two_at_an_edge));
-  split_and_join(block(4, 4, 4, every_other)); /* points of 8 parts */
+  split_and_join(block(4, 4, 4, every_other)); /* points of 8 components */
   split_and_join(block(4, 4, 3, around_two_bodies));
 }
 
-/* Parts may be without faces. */
+/* Parts may have no faces. */
 static void an_empty_part(void **state)
 {
   struct vg_front f = block(1, 1, 1, shape_all), out[3];
@@ -358,14 +358,14 @@ static void open_edges_are_counted(void **state)
   f.n_face--;
   assert_int_equal(vg_front_open_edges(&f), 3);
   f.n_face++;
-  f.face[9][0] = f.face[9][1]; /* turned over */
+  f.face[9][0] = f.face[9][1]; /* reversed */
   f.face[9][1] = keep;
   assert_int_equal(vg_front_open_edges(&f), 3);
   vg_front_release(&f);
   vg_front_release(&touching);
 }
 
-/* --- what a front encloses ----------------------------------------------- */
+/* --- enclosed volume ----------------------------------------------------- */
 
 static void volumes(void **state)
 {
@@ -380,7 +380,7 @@ static void volumes(void **state)
   f = front_of(&box);
   shape_sphere(&body, 24, centre, 1, 7);
   g = front_of(&body);
-  /* a body's is negative, and a little less than the sphere's */
+  /* a body's is negative, and slightly smaller than the sphere's */
   assert_true(fabs(vg_front_volume(&g) / (-4 * M_PI / 3) - 1) < 0.01);
   assert_true(vg_front_volume(&g) > -4 * M_PI / 3);
   assert_true(fabs(vg_front_volume(&f) - 8e6) < 1e-5);
@@ -403,7 +403,8 @@ static void equal_fronts(const struct vg_front *a, const struct vg_front *b,
 static void is_refused(const void *bytes, size_t n, int names)
 {
   const struct vg_front empty = VG_FRONT_INIT;
-  unsigned char *copy = vg_alloc(n, 1); /* reads beyond are seen */
+  unsigned char *copy = vg_alloc(
+    n, 1); /* so that reads beyond the end are detected */
   struct vg_reader r = { .n = n };
   struct vg_front f;
 
@@ -462,7 +463,7 @@ static void fronts_as_bytes(void **state)
   vg_front_release(&f);
 }
 
-/* Fronts one after the other; after damage nothing more is read. */
+/* Several fronts in a row; after damage nothing more is read. */
 static void several_in_a_row(void **state)
 {
   struct vg_front f[3] = { block(1, 1, 1, shape_all), VG_FRONT_INIT,
@@ -545,7 +546,7 @@ static void changes_as_bytes(void **state)
   free(w.bytes.data);
 }
 
-/* A blocked change has nothing in it. */
+/* A blocked change is empty. */
 static void an_empty_change(void **state)
 {
   struct vg_change c = { .blocked = 1 }, back;

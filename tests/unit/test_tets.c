@@ -1,5 +1,5 @@
-/* Cells with their neighbours: links, location, housekeeping; the Hilbert
- * curve and the sort under it. */
+/* Cells with their neighbours: links, location, housekeeping; the Hilbert curve
+ * and the sort along it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +13,7 @@
 
 static const int four_cubed[3] = { 4, 4, 4 };
 
-/* Does cell c contain x, faces included? */
+/* Whether cell c contains x, faces included. */
 static int holds(const struct vg_tets *t, uint32_t c, const double x[3])
 {
   const uint32_t *v = t->cell[c].v;
@@ -89,7 +89,7 @@ static void a_flat_cell_is_refused(void **state)
   x[1][0] = x[2][1] = x[3][0] = x[3][1] = x[4][2] = 1;
   assert_int_equal(vg_tets_from_cells(&t, 5, x, 2, v, &err), VG_ERR_GEOMETRY);
   assert_non_null(strstr(err.text, "flat"));
-  vg_tets_release(&t); /* x is t's, also now: a leak otherwise */
+  vg_tets_release(&t); /* x still belongs to t: a leak otherwise */
 }
 
 static void three_cells_on_a_face_are_refused(void **state)
@@ -131,7 +131,7 @@ static void defects_are_seen(void **state)
   t.flag[4] |= 4; /* constrained on one side only */
   assert_int_equal(vg_tets_defects(&t), 2);
   t.flag[4] = 0;
-  t.flag[0] = VG_DEAD; /* somebody's neighbour still */
+  t.flag[0] = VG_DEAD; /* still a neighbour of another cell */
   assert_int_equal(vg_tets_defects(&t), 1);
   vg_tets_release(&t);
 }
@@ -236,8 +236,9 @@ static int in_corner(const struct vg_tets *t, size_t c)
   return 1;
 }
 
-/* One cube of eight is outside, one slot dead: points of the kept range stay,
- * those that no cell uses go, the rest is renumbered consistently. */
+/* One cube of eight is outside, one slot is dead: points of the kept range
+ * stay, other unused points are removed, and everything else is renumbered
+ * consistently. */
 static void tidy_keeps_what_is_inside(void **state)
 {
   enum { N_KEEP = 28 };
@@ -289,8 +290,8 @@ static void tidy_keeps_what_is_inside(void **state)
 
 /* --- the curve ---------------------------------------------------------- */
 
-/* 8 x 8 x 8 boxes of 2^20 / 8 cells (coarse) or of one cell: the curve goes
- * through all of them, each step into a box that shares a face. */
+/* 8 x 8 x 8 boxes of 2^20 / 8 cells (coarse) or of one cell: the curve visits
+ * all of them, each step into a box that shares a face. */
 static void walk_the_curve(int shift, double box)
 {
   const double lo[3] = { 0, 0, 0 };
@@ -434,7 +435,8 @@ static void orders_are_permutations_of_short_path(void **state)
    * random 13. */
   assert_true(path(N, (const double(*)[3])x, order) < 2 * N);
   assert_true(path(N, (const double(*)[3])x, again) < 2 * N);
-  for (int i = 0; i < N; i++) memcpy(x[i], x[0], sizeof *x); /* one place */
+  for (int i = 0; i < N; i++)
+    memcpy(x[i], x[0], sizeof *x); /* all coincident */
   assert_int_equal(vg_hilbert_order(N, (const double(*)[3])x, order, NULL),
                    VG_OK);
   for (uint32_t i = 0; i < N; i++) assert_int_equal(order[i], i);
@@ -443,8 +445,8 @@ static void orders_are_permutations_of_short_path(void **state)
   free(again);
 }
 
-/* The first eighth of the order is itself spread over the whole: every eighth
- * of the cube has its share. */
+/* The first eighth of the order is spread over the whole cube: every eighth of
+ * the cube has its share. */
 static void early_rounds_are_spread(void **state)
 {
   enum { N = 32768 };

@@ -1,4 +1,4 @@
-/* Columns, faces and borders of walls, with and without fans. */
+/* Columns, faces and boundary edges of walls, with and without fans. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -79,8 +79,8 @@ static int is_border(const struct vg_columns *c, uint32_t a, uint32_t b)
   return found;
 }
 
-/* Every directed edge once, with its reverse unless it is a border; returns the
- * Euler characteristic. */
+/* Every directed edge occurs once, with its reverse unless it is a boundary
+ * edge; returns the Euler characteristic. */
 static int check_complex(const struct vg_columns *c)
 {
   size_t n = 3 * c->n_face, n_open = 0;
@@ -105,7 +105,7 @@ static int check_complex(const struct vg_columns *c)
   return (int)c->n_column - (int)((n + n_open) / 2) + (int)c->n_face;
 }
 
-/* Lists against their definition. */
+/* Lists compared with their definition. */
 static void check_lists(const struct made *s)
 {
   const struct vg_columns *c = &s->c;
@@ -141,8 +141,8 @@ static void check_lists(const struct made *s)
   }
 }
 
-/* Directions of all other columns as a grower would choose them: the most
- * normal one, in the slide planes. */
+/* Directions of all other columns as the growth would choose them: the most
+ * normal direction, within the slide planes. */
 static void direct(struct made *s)
 {
   double n[256][3], v[3];
@@ -227,8 +227,8 @@ static void place(const struct made *s, uint32_t column, int level, double step,
     x[k] = s->m.point[col->root][k] + level * step * col->dir[k];
 }
 
-/* The cells of one face by the lift rule; their faces into the list. Cells
- * with a repeated point are none. Returns their volume. */
+/* The cells of one face by the lift rule, with their faces added to the list.
+ * Cells with a repeated point do not exist. Returns their volume. */
 static double lift(const struct made *s, size_t f, double step,
                    struct tri *list, size_t *n)
 {
@@ -268,9 +268,10 @@ static double lift(const struct made *s, size_t f, double step,
   return volume;
 }
 
-/* Expand all faces and cancel what is shared: what is left has to be the
- * walls (where something stands on them), the tops, and the flanks of borders.
- * Takes the walls and the tops away, too, and returns the flanks left. */
+/* Expand all faces and cancel the shared ones. The remaining faces must be the
+ * walls (below columns with levels), the tops, and the side faces at boundary
+ * edges. Removes the walls and the tops, too, and returns the number of
+ * remaining side faces. */
 static size_t check_cells(struct made *s, double step, double *volume)
 {
   const struct vg_columns *c = &s->c;
@@ -287,7 +288,8 @@ static size_t check_cells(struct made *s, double step, double *volume)
       root[k] = c->column[c->face[f][k]].root;
       top[k] = stand(c, c->face[f][k], c->column[c->face[f][k]].n);
     }
-    /* The reverse of the outside: so everything cancels but flanks. */
+    /* The reverse of the outside, so that everything cancels except side
+     * faces. */
     if (c->face_tri[f] != VG_NO_INDEX)
       add_tri(list, &n, root[0], root[1], root[2]);
     if (top[0] != top[1] && top[1] != top[2] && top[2] != top[0])
@@ -306,8 +308,8 @@ static size_t check_cells(struct made *s, double step, double *volume)
   return left;
 }
 
-/* low or low + 1, in no order: neighbours differ by one at most. Columns of
- * one root have the same. */
+/* low or low + 1 at random: neighbours differ by one at most. Columns of one
+ * root have the same. */
 static void set_levels(struct made *s, int low)
 {
   for (size_t i = 0; i < s->c.n_column; i++) {
@@ -323,9 +325,9 @@ static void set_full(struct made *s)
   for (size_t i = 0; i < s->c.n_column; i++) s->c.column[i].n = LEVELS;
 }
 
-/* All of it; returns the Euler characteristic of the tops. A border has a flank
- * of LEVELS quads, two triangles each; the lowest one is a triangle where both
- * columns have one root. */
+/* All checks; returns the Euler characteristic of the tops. A boundary edge has
+ * a side of LEVELS quads, two triangles each; the lowest one is a triangle if
+ * both columns have the same root. */
 static int check(struct made *s, double step)
 {
   int euler = check_complex(&s->c);
@@ -440,7 +442,7 @@ static void the_edge_to_an_inert_patch_is_blocked(void **state)
   made_release(&s);
 }
 
-/* Two octahedra with a point in common. */
+/* Two octahedra that share a point. */
 static void a_pinched_point_is_blocked(void **state)
 {
   struct made s = MADE_INIT;
@@ -487,8 +489,8 @@ static void a_cube_has_fans_at_edges_and_corners(void **state)
   (void)state;
   extrude(&s.m, 4, square, 2, 0, 0);
   build(&s, 1, ~0u, 60);
-  /* 90 degrees: three steps. Edge: two sectors, two between them. Corner:
-   * nine columns around and one in the middle. */
+  /* 90 degrees: three steps. Edge: two sectors, two between them. Corner: nine
+   * columns around and one in the middle. */
   assert_int_equal(columns_at(&s, 1, 0.5, 1), 4);
   assert_int_equal(columns_at(&s, 1, 1, 1), 10);
   assert_int_equal(columns_at(&s, 0, 1, 0), 1);
@@ -581,8 +583,8 @@ static void a_wedge_has_a_corner_at_its_tip(void **state)
   made_release(&s);
 }
 
-/* A ridge that flattens out inside the wall ends in a point with one column,
- * onto which the fan of the point before tapers. */
+/* A ridge that flattens out inside the wall ends in a point with one column, to
+ * which the fan of the previous point tapers. */
 static void a_ridge_that_ends_tapers(void **state)
 {
   struct made s = MADE_INIT;
@@ -598,7 +600,7 @@ static void a_ridge_that_ends_tapers(void **state)
 }
 
 /* A sharp edge (1, y > 0, 0) that opens into a narrow base (y < 0): at the
- * point between, three sectors lie in one plane and leave no gap. */
+ * point between, three sectors are in one plane and leave no gap. */
 static void a_base_that_closes_needs_no_centre(void **state)
 {
   static const double at[9][3] = {
@@ -670,8 +672,9 @@ static int same(const void *a, const void *b, size_t n, size_t size)
   return n == 0 || memcmp(a, b, n * size) == 0;
 }
 
-/* With an angle of 0 only points that one column sees too little of have fans:
- * of two pyramids the tip of the slender one, and no corner of its base. */
+/* With an angle of 0 only points where the visibility of one column is too low
+ * have fans: of two pyramids the tip of the slender one, and no corner of its
+ * base. */
 static void fans_stand_where_they_are_needed(void **state)
 {
   static const double slender[4][2] = {

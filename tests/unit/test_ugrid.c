@@ -71,7 +71,7 @@ static void reads_the_sample(void **state)
   vg_mesh_release(&t1);
 }
 
-/* Layout of formats.md 2.2 in both orders, byte by byte. */
+/* Layout of formats.md 2.2 in both byte orders, byte by byte. */
 static void writes_t1_byte_for_byte(void **state)
 {
   struct vg_mesh t1;
@@ -114,8 +114,8 @@ static void writes_t1_byte_for_byte(void **state)
   vg_mesh_release(&t1);
 }
 
-/* Every kind of cell and face, every variant of the file. The coordinates
- * are first rounded to single precision where the file does that. */
+/* Every kind of cell and face, every variant of the file. The coordinates are
+ * first rounded to single precision if the file does that. */
 static void every_variant_round_trips(void **state)
 {
   (void)state;
@@ -258,8 +258,8 @@ static void tails_are_ignored(void **state)
   vg_mesh_release(&back);
 }
 
-/* The tail follows what is written without it, in the kind's own integers
- * and records, and readers do not mind. */
+/* The tail follows the data written without it, in the kind's own integers and
+ * records, and readers ignore it. */
 static void the_number_of_layer_tetrahedra_follows(void **state)
 {
   static const struct {
@@ -309,8 +309,8 @@ static void the_number_of_layer_tetrahedra_follows(void **state)
   vg_mesh_release(&m);
 }
 
-/* The faces of mixed_support.h, written down apart, close a mesh of all kinds
- * and point out of it; what reads the file finds nothing to turn. */
+/* The faces of mixed_support.h, coded independently, close a mesh of all kinds
+ * and point out of it; the reader finds nothing to reverse. */
 static void a_closed_mesh_of_all_kinds_is_right(void **state)
 {
   const char *path = path_of("closed", "b8.ugrid");
@@ -372,7 +372,7 @@ static void binary_values_are_checked(void **state)
   data[size - 1] = 0;
   io_refuse_bytes(parse_b8, data, size, VG_ERR_INPUT,
                   "tetrahedron 1 refers to point 0");
-  /* A count that the file cannot hold, up to what overflows. */
+  /* A count that the file cannot hold, up to values that overflow. */
   for (int k = 0; k < 7; k++) {
     unsigned char old[4];
 
@@ -408,8 +408,8 @@ static void try_bytes(const char *kind_name, const unsigned char *data,
   vg_mesh_release(&m);
 }
 
-/* Cut at every byte and with bytes changed: an answer, never a crash (the
- * sanitizers watch). Binary files that are cut must be refused. */
+/* Truncated at every byte and with bytes modified: an answer, never a crash
+ * (the sanitizers watch). Truncated binary files must be refused. */
 static void survives_damage(void **state)
 {
   (void)state;

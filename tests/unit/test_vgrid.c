@@ -134,7 +134,7 @@ static void put_real(unsigned char **at, double v, int size, int big)
   put(at, size == 4 ? w : d, size, big);
 }
 
-/* The other layouts that readers should take: little-endian, reals and tc in
+/* The other layouts that readers should accept: little-endian, reals and tc in
  * single precision, markers of eight bytes. */
 static void reads_other_layouts(void **state)
 {
@@ -170,7 +170,7 @@ static void reads_other_layouts(void **state)
 }
 
 /* n x n x n cubes of six tetrahedra; patch of a boundary face: its side. The
- * points are numbered in scrambled order when stride is not 1. */
+ * points are numbered in scrambled order if stride is not 1. */
 static void make_box(struct vg_mesh *m, uint32_t n, uint32_t stride)
 {
   static const int order[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 },
@@ -251,7 +251,7 @@ static void same_geometry(const struct vg_mesh *a, const struct vg_mesh *b)
   }
 }
 
-/* How many sides of the box of n cubes a point lies on. */
+/* Number of sides of the box of n cubes that contain a point. */
 static int n_side(const double p[3], double n)
 {
   int s = 0;
@@ -282,8 +282,8 @@ static void points_are_put_in_vgrids_order(void **state)
                                                : i < 56  ? 2
                                                : i < 152 ? 1
                                                          : 0);
-  /* Along a curve each point is next to the one before it; twelve curves
-   * begin next to a corner. */
+  /* Along a curve each point is next to the previous one; twelve curves begin
+   * next to a corner. */
   int starts = 0;
   for (size_t i = 8; i < 56; i++) {
     double d = 0;
@@ -307,8 +307,8 @@ static void points_are_put_in_vgrids_order(void **state)
   vg_mesh_release(&again);
 }
 
-/* Records cut at 20 bytes: markers of formats.md 1.1 in the file, the same
- * mesh out of it. */
+/* Records cut at 20 bytes: markers of formats.md 1.1 in the file, and the same
+ * mesh when it is read. */
 static void subrecords_are_written_and_joined(void **state)
 {
   const char *stem = io_temp("vgrid_sub");
@@ -439,7 +439,7 @@ static void survives_damage(void **state)
     vg_status st = parse_pair(t1_cogsg, cut, t1_bc, sizeof t1_bc - 1, &m, NULL,
                               &err);
 
-    /* What follows the coordinates is not needed. */
+    /* The data after the coordinates are not needed. */
     if (st == VG_OK) assert_true(cut >= 160);
     vg_mesh_release(&m);
   }

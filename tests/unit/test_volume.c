@@ -58,8 +58,8 @@ static void quadrilaterals_enclose_a_box(void **state)
   }
 }
 
-/* A warped face has one cone, from whichever corner it is read and, with the
- * other sign, from its other side. */
+/* A warped face has one cone, whichever corner comes first and, with the other
+ * sign, from its other side. */
 static void a_warped_face_cancels(void **state)
 {
   static const double p[4][3] = {

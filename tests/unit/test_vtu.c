@@ -2,11 +2,11 @@
 
 #include "io/mesh/vtu.h"
 
-/* A written file taken apart: attributes by plain text search, arrays by the
- * offsets that they declare. */
+/* A parsed file: attributes by plain text search, arrays by the offsets that
+ * they declare. */
 struct vtu {
   unsigned char *data;
-  size_t size, raw; /* raw: first byte behind the '_' */
+  size_t size, raw; /* raw: first byte after the '_' */
 };
 
 static struct vtu load(const char *path)
@@ -23,7 +23,7 @@ static struct vtu load(const char *path)
   return v;
 }
 
-/* Data of a named array; *bytes is what stands before them. */
+/* Data of a named array; *bytes is the length stored before them. */
 static const void *array(const struct vtu *v, const char *type,
                          const char *name, size_t *bytes)
 {

@@ -1,4 +1,4 @@
-/* VTK's XML with a size at each point, in every way that it is written. */
+/* VTK's XML with a size at each point, in every permitted encoding. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -61,7 +61,7 @@ static void put_base64(struct bytes *b, const struct bytes *from)
   }
 }
 
-/* A way to write. */
+/* An encoding. */
 struct way {
   int width, wide, big, packed, base64, appended;
 };
@@ -80,7 +80,7 @@ static void put_values(struct bytes *b, const struct way *w, size_t n,
   }
 }
 
-/* The values of an array as they stand in the file. */
+/* The values of an array as stored in the file. */
 static void encode(struct bytes *b, const struct way *w, size_t n,
                    const double *v)
 {
@@ -261,7 +261,7 @@ static void no_damage_is_taken_for_data(void **state)
       }
       free(x);
       free(v);
-      assert_true(size + 120 > b.n); /* all arrays were whole */
+      assert_true(size + 120 > b.n); /* all arrays were complete */
     }
   }
 }

@@ -15,8 +15,8 @@ static int needs_cgal(void **state)
   exit(77);
 }
 
-/* A brick of twelve triangles from `lo` with edges of 1, as a patch of its
- * own; `n` triangles of it. */
+/* A brick of twelve triangles from `lo` with edges of 1, as a separate patch;
+ * only its first `n` triangles. */
 static void add_brick(struct vg_mesh *m, double lo, size_t n)
 {
   static const uint32_t tri[12][3] = { { 0, 2, 3 }, { 0, 3, 1 }, { 4, 5, 7 },
@@ -40,7 +40,7 @@ static void add_brick(struct vg_mesh *m, double lo, size_t n)
   }
 }
 
-/* What the promise is: a closed surface that points into the fluid. */
+/* The promised result: a closed surface that points into the fluid. */
 static size_t is_sound(struct vg_mesh *m)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
@@ -69,7 +69,7 @@ static void wrap(struct vg_mesh *m, double size, struct vg_wrap_report *r)
   if (vg_wrap(m, &o, r, &err)) fail_msg("%s", err.text);
 }
 
-/* The last brick's size, about its first corner. */
+/* Scale the last brick about its first corner. */
 static void scale_last(struct vg_mesh *m, double by)
 {
   const double lo[3] = { m->point[m->n_point - 8][0],
@@ -102,7 +102,8 @@ static void refuses(struct vg_mesh *m, double size, vg_status code,
   refuses_options(m, &o, code, phrase);
 }
 
-/* Parts that cross become one shell; patches follow nearness. */
+/* Bodies that intersect become one shell; patches follow the nearest
+ * triangle. */
 static void crossing_bricks(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -117,9 +118,9 @@ static void crossing_bricks(void **state)
   assert_int_equal(r.n_before, 24);
   assert_int_equal(r.n_empty, 0);
   assert_int_equal(m.n_patch, 2);
-  /* in the concave corner a ball of radius 0.1 stays so far away at most */
+  /* in the concave corner a ball of radius 0.1 is at most this far away */
   assert_true(r.distance >= 0.9 * r.offset && r.distance < 0.1);
-  /* points are on the bricks, and along their edges on these */
+  /* points are on the bricks, and those near an edge are exactly on it */
   assert_int_equal(r.n_point, m.n_point);
   assert_true(r.n_fit > 0.8 * (double)r.n_point);
   for (size_t i = 0; i < m.n_point; i++)
@@ -179,13 +180,13 @@ static void a_small_hole_is_bridged_a_large_one_refused(void **state)
   refuses(&m, 0.1, VG_ERR_GEOMETRY, "would go through"); /* before */
   vg_mesh_release(&m);
   add_brick(&m, 0, 10);
-  wrap(&m, 1.01, &r); /* as the message says */
+  wrap(&m, 1.01, &r); /* as the message suggests */
   assert_int_equal(is_sound(&m), 1);
   vg_mesh_release(&m);
 }
 
-/* A hole between two parts, each with a rim of its own that the other covers:
- * no refusal in advance. */
+/* A hole between two bodies, each with a rim that the other covers: no refusal
+ * in advance. */
 static void covered_rims_are_no_holes(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -201,7 +202,7 @@ static void covered_rims_are_no_holes(void **state)
   vg_mesh_release(&m);
 }
 
-/* A flat sheet of 1 x 1, `times` over. */
+/* A flat sheet of 1 x 1, repeated `times` times. */
 static void add_sheet(struct vg_mesh *m, int times)
 {
   for (int i = 0; i < times; i++) add_brick(m, 0, 2);
@@ -225,7 +226,7 @@ static void sheets_are_named(void **state)
   }
 }
 
-/* Inner shells and crumbs go; the rest keeps its order. */
+/* Inner shells and tiny shells are removed; the others keep their order. */
 static void shells_that_bound_no_body_go(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -274,7 +275,7 @@ static void outer_boundaries_are_kept(void **state)
 
   (void)state;
   add_tunnel(&m, 0, keep);
-  add_brick(&m, 0.5, 12); /* another one that crosses the first */
+  add_brick(&m, 0.5, 12); /* another one that intersects the first */
   if (vg_wrap(&m, &o, &r, &err)) fail_msg("%s", err.text);
   assert_int_equal(r.n_kept, 12);
   assert_int_equal(r.n_before, 24);
@@ -318,7 +319,7 @@ static void count_up(void *user, size_t done, size_t expected)
   seen[1] = expected;
 }
 
-/* The forecast's factor lies between 0.4 and 2.5 on all surfaces measured. */
+/* The forecast's factor is between 0.4 and 2.5 on all surfaces measured. */
 static void progress_has_a_share(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -342,7 +343,7 @@ static void progress_has_a_share(void **state)
   vg_mesh_release(&m);
 }
 
-/* A suggested size works, and reason says what determined it. */
+/* A suggested size works, and reason names its cause. */
 static void suggestions_work(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -367,8 +368,8 @@ static void suggestions_work(void **state)
   }
 }
 
-/* Points at an offset from an edge as sharp as a knife would fold if all of
- * them went onto it; they are put together there. */
+/* Points at an offset from a sharp edge of zero thickness would fold if all of
+ * them moved onto it; they are merged there. */
 static void knives_come_back(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -404,7 +405,8 @@ static int is_over(void *user)
   return *left ? --*left, 0 : 1;
 }
 
-/* Carving asks once a facet, and what comes after it once a point or two. */
+/* Carving polls the stop request once per facet, and later stages once per
+ * point or two. */
 static void stops_where_it_is(void **state)
 {
   const size_t patience[4] = { 0, 1, 1000, 5000 };
@@ -437,7 +439,7 @@ static void the_same_twice(void **state)
 
     add_brick(&m[i], 0, 12);
     add_brick(&m[i], 0.7, 11);
-    scale_last(&m[i], 0.2); /* the rim lies inside the first one */
+    scale_last(&m[i], 0.2); /* the rim is inside the first one */
     wrap(&m[i], 0.15, &r);
     free(hole);
   }
@@ -473,8 +475,8 @@ static void what_cannot_be_is_refused(void **state)
     for (int k = 0; k < 3; k++) m.tri[i][k] = 0;
   refuses(&m, 1, VG_ERR_INPUT, "degenerate");
   vg_mesh_release(&m);
-  /* rims of several parts may be covered: no refusal in advance, but a forecast
-   * of 15 / 2.5 times that many */
+  /* rims of several bodies may be covered: no refusal in advance, but a
+   * forecast of 15 / 2.5 times the limit */
   add_brick(&m, 0, 10);
   add_brick(&m, 0.2, 12);
   refuses(&m, 4e-3, VG_ERR_INPUT, "may go through holes");
@@ -557,7 +559,7 @@ static void read_field(const char *name, struct vg_mesh *m)
   if (vg_surface_read(plain, m, NULL, &err)) fail_msg("%s", err.text);
 }
 
-/* A pipe of 0.2 across, its walls alone. A wrap enters it half at 0.095. */
+/* A pipe of diameter 0.2, its walls alone. A wrap enters it partly at 0.095. */
 static void a_real_pipe_is_no_hollow_shell(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
@@ -610,7 +612,7 @@ static double between(uint32_t *seed, double lo, double hi)
   return lo + (hi - lo) * draw(seed, 1u << 16) / 65536.0;
 }
 
-/* A box, its sides as n x n squares; squares of one side whose both numbers are
+/* A box with sides of n x n squares; squares of one side whose both numbers are
  * below `hole` are missing; turned is its orientation. */
 static void add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
                     uint32_t n, uint32_t hole, int turned)
@@ -648,9 +650,9 @@ static void add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
       }
 }
 
-/* One to three boxes: next to each other, crossing, nested, flat, with holes of
- * any width, either orientation. lo, hi: of the first one, which has the hole.
- */
+/* One to three boxes: next to each other, intersecting, nested, flat, with
+ * holes of any width, either orientation. lo, hi: of the first one, which has
+ * the hole. */
 static void draw_boxes(struct vg_mesh *m, uint32_t *seed, double lo[3],
                        double hi[3], uint32_t *hole)
 {
@@ -674,8 +676,7 @@ static void draw_boxes(struct vg_mesh *m, uint32_t *seed, double lo[3],
   }
 }
 
-/* The middle of the first box lies inside the wrap, so that it is not hollow.
- */
+/* The middle of the first box is inside the wrap, so that it is not hollow. */
 static int encloses_middle(const struct vg_mesh *m, const double lo[3],
                            const double hi[3])
 {
@@ -715,7 +716,8 @@ static void anything_is_refused_or_sound(void **state)
     } else {
       is_sound(&m);
       if (!encloses_middle(&m, lo, hi)) fail_msg("case %u is hollow", i);
-      if (r.missing > o.size) fail_msg("case %u: %g missing", i, r.missing);
+      if (r.missing > o.size)
+        fail_msg("case %u: input up to %g outside the wrap", i, r.missing);
       n_done++;
     }
     vg_mesh_release(&m);

@@ -1,5 +1,5 @@
-/* Zones: final cells along planes, made from the part of a front near them;
- * what they part, what they cost, what stops them. */
+/* Separator zones: final cells along planes, made from the part of a front near
+ * them. Tests their division of the void, their cost, and their refusals. */
 #include "io/mesh/ugrid.h"
 #include "zone_scene.h"
 
@@ -35,7 +35,7 @@ static void three_zones_make_eight_boxes(void **state)
   scene_end(&s);
 }
 
-/* Wherever the planes are. */
+/* For any position of the planes. */
 static void any_planes_part_a_box(void **state)
 {
   (void)state;
@@ -81,7 +81,7 @@ static void planes_through_points(void **state)
   }
 }
 
-/* x cuts the body, y misses it, z cuts what is left of it. */
+/* x cuts the body, y misses it, z cuts the rest of it. */
 static void zones_around_a_sphere(void **state)
 {
   static const double at[3] = { 0.15, 1.6, -0.3 };
@@ -104,7 +104,7 @@ static void zones_around_a_sphere(void **state)
   scene_end(&s);
 }
 
-/* A zone that misses the body leaves it whole, in one of the parts. */
+/* A zone that misses the body leaves it complete, in one of the subdomains. */
 static void a_zone_beside_the_sphere(void **state)
 {
   struct vg_region r = plane_at(2, 2.0);
@@ -120,8 +120,8 @@ static void a_zone_beside_the_sphere(void **state)
 
 /* --- cost ---------------------------------------------------------------- */
 
-/* A box of 6 x 6 x n cells of edge 1, cut at z = 5.3: what the zone is given,
- * and what it makes. */
+/* A box of 6 x 6 x n cells of edge 1, cut at z = 5.3: the zone's input and its
+ * result. */
 static void zone_of_tower(int n, struct vg_filled *z, size_t *n_point,
                           size_t *n_face)
 {
@@ -159,7 +159,7 @@ static void same_zone(const struct vg_filled *a, const struct vg_filled *b)
                       a->n_consumed * sizeof *a->consumed);
 }
 
-/* A zone is given as many faces, whatever else the front has. */
+/* A zone is given the same number of faces for any size of the front. */
 static void a_zone_costs_what_is_near(void **state)
 {
   struct vg_filled z[3] = { VG_FILLED_INIT, VG_FILLED_INIT, VG_FILLED_INIT };
@@ -175,7 +175,8 @@ static void a_zone_costs_what_is_near(void **state)
     assert_true((double)n_face[k] <= 48 * (2 * VG_BAND_FRONT + 2));
     assert_true(z[k].n_cell > 200);
     assert_int_equal(z[k].n_hole, 0);
-    /* as many spacings are read from another tree: cells differ a little */
+    /* the same number of spacings is read from another tree: cells differ
+     * slightly */
     assert_true(fabs((double)z[k].n_cell / (double)z[0].n_cell - 1) < 0.05);
     assert_true(fabs(z[k].volume / z[0].volume - 1) < 0.05);
   }
@@ -196,8 +197,8 @@ static void the_same_bytes_again(void **state)
   assert_int_equal(z[0].n_cell + z[0].n_face + z[0].n_point, 0);
 }
 
-/* Where the spacing is 1, the sum of V / h^3 is the volume of the cells; what
- * is listed is in range and used. */
+/* Where the spacing is 1, the sum of V / h^3 is the volume of the cells; all
+ * indices in the lists are in range and used. */
 static void what_a_zone_says_of_itself(void **state)
 {
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
@@ -260,7 +261,7 @@ static int passes(const struct scene *s, size_t c, const struct vg_region *r)
                             x[v[3]]);
 }
 
-/* Longest edge over the spacing in its middle, of cells that a line does not
+/* Longest edge, over the spacing in its middle, of cells that a line does not
  * pass through. */
 static double longest_edge(const struct scene *s, const struct vg_region *r)
 {
@@ -283,8 +284,9 @@ static double longest_edge(const struct scene *s, const struct vg_region *r)
   return most;
 }
 
-/* Where a pencil leaves a plume in a corner of a box, points stand in the shape
- * of a trumpet: no cell spans the air beside that, as far as it is known. */
+/* Where a pencil leaves a plume in a corner of a box, its points are in the
+ * shape of a trumpet: no cell spans the space next to it, as far as the front
+ * is known. */
 static void a_pencil_leaves_a_plume(void **state)
 {
   const struct vg_source plume = { .kind = VG_SOURCE_CYLINDER,
@@ -313,7 +315,8 @@ static void a_pencil_leaves_a_plume(void **state)
   scene_end(&s);
 }
 
-/* Without reach, a pencil is the cells that the line passes through. */
+/* Without reach, a pencil consists of the cells that the line passes
+ * through. */
 static void a_pencil_is_thin(void **state)
 {
   struct vg_region thin = line_at(0, 0.03, 1, 0.02), thick = thin;
@@ -333,7 +336,7 @@ static void a_pencil_is_thin(void **state)
   assert_true(made[1] > 2 * made[0]);
 }
 
-/* --- real ---------------------------------------------------------------- */
+/* --- real geometry ------------------------------------------------------- */
 
 static void a_real_surface(void **state)
 {
@@ -394,7 +397,7 @@ static void no_front_near(void **state)
   scene_end(&s);
 }
 
-/* There is front near, but the plane is on its outer side: nothing is made. */
+/* The front is near, but the plane is on its outer side: nothing is made. */
 static void a_plane_outside(void **state)
 {
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
@@ -421,8 +424,8 @@ static void a_plane_outside(void **state)
   scene_end(&s);
 }
 
-/* A front that is not what it should be: no crash, nothing made or a status.
- * A face on the plane that is turned over contradicts its neighbours. */
+/* An invalid front: no crash, and an empty result or an error status. A
+ * reversed face on the plane contradicts its neighbours. */
 static int is_below_and_above(const struct zone_part *p, size_t face, double at)
 {
   int below = 0, above = 0;

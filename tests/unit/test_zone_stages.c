@@ -10,7 +10,7 @@ struct stage {
   struct vg_region *region;
 };
 
-/* All regions of a stage, each from the front as it was before. */
+/* All regions of a stage, each from the front at the start of the stage. */
 static void grow_stage(struct scene *s, const struct vg_lattice *l, int stage,
                        struct stage *out)
 {
@@ -31,8 +31,8 @@ static void grow_stage(struct scene *s, const struct vg_lattice *l, int stage,
   }
 }
 
-/* Put them into the scene; no two have taken the same face, all cells are
- * within their region's walls. Returns the cells. */
+/* Add them to the scene. No two have consumed the same face, and all cells are
+ * within their region's walls. Returns the number of cells. */
 static size_t join_stage(struct scene *s, struct stage *g)
 {
   size_t n_front = s->front.n_face, first = s->n_cell;
@@ -135,7 +135,7 @@ static void a_lattice_in_a_box(void **state)
   scene_end(&s);
 }
 
-/* Likewise through a sphere and around it: lines start and end on the body. */
+/* The same through a sphere and around it: lines start and end on the body. */
 static void a_lattice_around_a_sphere(void **state)
 {
   const struct vg_lattice l = { .n = { 1, 1, 1 },
@@ -176,7 +176,8 @@ static void all_lines_at_once(void **state)
   scene_end(&s);
 }
 
-/* A plane in three pieces, two ribs first: as if it were whole. */
+/* A plane in three pieces, two ribs first: the result is that of a whole
+ * plane. */
 static void a_plane_in_pieces(void **state)
 {
   const struct vg_lattice l = { .n = { 0, 0, 1 },
@@ -199,7 +200,8 @@ static void a_plane_in_pieces(void **state)
   scene_end(&s);
 }
 
-/* Between lines that come out of a body a rib goes on from it aslant. */
+/* Between lines that start at a body a rib continues obliquely from the
+ * body. */
 static void ribs_from_a_body(void **state)
 {
   const double u = 0.7071067811865476;
@@ -228,9 +230,9 @@ static void ribs_from_a_body(void **state)
   scene_end(&s);
 }
 
-/* Where three lines meet, cells of tiles may need a corner beyond the walls;
- * a few are left out, and blocks hang together there. Whole planes without
- * walls, one after the other, close what is left. */
+/* Where three lines meet, cells of tiles may need a corner beyond the walls. A
+ * few cells are left out, and blocks stay connected there. Whole planes without
+ * walls, one after the other, close the remaining places. */
 static void planes_close_what_is_left(void **state)
 {
   (void)state;

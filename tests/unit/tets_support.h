@@ -1,5 +1,5 @@
-/* Cells for the tests of the kernel, and what must be true of them. Header
- * only: one program per module. */
+/* Cells for the tests of the kernel, and their invariants. Header only: one
+ * program per module. */
 #ifndef TESTS_UNIT_TETS_SUPPORT_H
 #define TESTS_UNIT_TETS_SUPPORT_H
 
@@ -35,8 +35,8 @@ static inline void tets_box(struct vg_tets *t, double lo, double hi)
   if (vg_tets_from_cells(t, 8, x, 5, cell, NULL) != VG_OK) abort();
 }
 
-/* nx x ny x nz unit cubes of six cells each, which have a long diagonal in
- * common: all corners of a cube lie on one sphere. */
+/* nx x ny x nz unit cubes of six cells each, which share a long diagonal: all
+ * corners of a cube are on one sphere. */
 static inline void tets_grid(struct vg_tets *t, const int n[3])
 {
   static const int path[6][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 },
@@ -106,8 +106,8 @@ static inline size_t tets_live(const struct vg_tets *t)
   return n;
 }
 
-/* Number of faces that are not constrained and not Delaunay: a vertex opposite
- * lies inside the sphere of the other cell. */
+/* Number of faces that are neither constrained nor Delaunay: an opposite vertex
+ * is inside the sphere of the other cell. */
 static inline size_t tets_not_delaunay(const struct vg_tets *t)
 {
   size_t bad = 0;

@@ -1,5 +1,5 @@
-/* Domains that zones are cut out of, and what must hold at any moment. Header
- * only: one program per module. */
+/* Domains from which separator zones are cut, and their invariants at any
+ * moment. Header only: one program per module. */
 #ifndef TESTS_UNIT_ZONE_SCENE_H
 #define TESTS_UNIT_ZONE_SCENE_H
 
@@ -9,7 +9,7 @@
 #include "front_parts.h"
 #include "zone_support.h"
 
-/* The front of the surface m, which the scene has. */
+/* The front of the surface m, which is already in the scene. */
 static inline void scene_begin(struct scene *s, double growth, double h_max)
 {
   struct vg_front *f = &s->front;
@@ -73,7 +73,7 @@ static inline struct vg_region line_at(int a, double at, int b, double there)
   return r;
 }
 
-/* --- what must hold at any moment ---------------------------------------- */
+/* --- invariants at any moment -------------------------------------------- */
 
 static inline double volume_of_cell(const struct scene *s, size_t c)
 {
@@ -101,8 +101,9 @@ static inline void is_valid(const struct scene *s)
     fail_msg("volume %.17g instead of %.17g", sum, s->volume);
 }
 
-/* Parts of the front that share no edge: how many, fragments apart, the small
- * cavities left where cells of a zone are not well shaped. */
+/* Number of components of the front that share no edge. Small components, the
+ * cavities left where cells of a zone are badly shaped, are counted
+ * separately. */
 enum { CRUMB = 20 };
 
 static inline size_t parts_of(const struct vg_front *f, size_t *n_fragment)
@@ -128,18 +129,18 @@ static inline size_t parts_of(const struct vg_front *f, size_t *n_fragment)
   return large;
 }
 
-/* Fragments: at most one to 200 cells made, and two. */
+/* Small components: at most one per 200 cells, plus two. */
 static inline void parts_are(const struct scene *s, size_t want)
 {
   size_t n_fragment, n = parts_of(&s->front, &n_fragment);
 
   if (n != want || n_fragment > 2 + s->n_cell / 200)
-    fail_msg("%zu parts and %zu fragments of %zu cells instead of %zu parts", n,
-             n_fragment, s->n_cell, want);
+    fail_msg("%zu components and %zu small ones with %zu cells instead of %zu",
+             n, n_fragment, s->n_cell, want);
 }
 
-/* The rest is filled: what was made is a mesh of the surface, so no cell
- * overlaps another. */
+/* Fill the remaining void: the result is a mesh of the surface, so no cells
+ * overlap. */
 static inline void is_filled(struct scene *s)
 {
   const struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
@@ -165,7 +166,8 @@ static inline void is_filled(struct scene *s)
   assert_true(fabs(r.volume - s->volume) < 1e-10 * s->volume);
 }
 
-/* One zone; the state must be valid after it. Returns the cells it made. */
+/* One zone; the state must be valid after it. Returns the number of its
+ * cells. */
 static inline size_t cut(struct scene *s, const struct vg_region *region)
 {
   const struct vg_fill_options options = VG_FILL_OPTIONS_INIT;

@@ -1,6 +1,6 @@
-/* A domain that is filled piece by piece, as the advancing partition does it:
- * the kernel fills regions of its void, one after the other, and at last the
- * whole void that is left. Header only: one program per module. */
+/* A domain that is filled piece by piece, as in the advancing partition: the
+ * kernel fills regions of its void, one after the other, and finally the whole
+ * remaining void. Header only: one program per module. */
 #ifndef TESTS_UNIT_ZONE_SUPPORT_H
 #define TESTS_UNIT_ZONE_SUPPORT_H
 
@@ -13,8 +13,8 @@
 struct scene {
   struct vg_mesh m; /* The surface of the domain. */
   struct vg_sizing *sizing;
-  struct vg_front front; /* The front of the void that is left, with all
-                            points: those of m, then new ones. */
+  struct vg_front front; /* The front of the remaining void, with all points:
+                            those of m, then new ones. */
   size_t cap_point, cap_face;
   size_t n_cell, cap_cell;
   uint32_t (*cell)[4]; /* [n_cell] The cells made so far. */
@@ -53,8 +53,8 @@ static inline uint32_t zone_point(struct zone_part *p, const struct scene *s,
   return local[at];
 }
 
-/* The faces near the region, those and no others; all faces when there is no
- * region. Points that no face uses are left out: the kernel refuses them. */
+/* Exactly the faces near the region; all faces if there is no region. Points
+ * that no face uses are left out: the kernel refuses them. */
 static inline void zone_select(const struct scene *s, const struct vg_region *r,
                                struct zone_part *p)
 {
@@ -93,7 +93,7 @@ static inline vg_status zone_make(struct scene *s, const struct zone_part *p,
   return vg_fill_front(&p->front, r, s->sizing, options, made, &s->report, err);
 }
 
-/* Numbers in the scene of n corners, whose new points begin at `base`. */
+/* Indices in the scene of n corners, whose new points begin at `base`. */
 static inline void zone_number(const struct zone_part *p, size_t base, size_t n,
                                const uint32_t *from, uint32_t *to)
 {
@@ -103,8 +103,8 @@ static inline void zone_number(const struct zone_part *p, size_t base, size_t n,
             : (uint32_t)(base + from[i] - p->front.n_point);
 }
 
-/* Append what was made, and flag the faces that have a cell now: they are
- * removed by zone_compact once all zones of a stage are in. */
+/* Append the result, and flag the consumed faces: zone_compact removes them
+ * after all zones of a stage have been added. */
 static inline void zone_add(struct scene *s, const struct zone_part *p,
                             const struct vg_filled *made, uint8_t *is_gone)
 {
@@ -141,8 +141,8 @@ static inline void zone_compact(struct vg_front *f, const uint8_t *is_gone,
   f->n_face = kept;
 }
 
-/* Fill a region, or all that is left when r is NULL. The scene is unchanged
- * unless VG_OK is returned. */
+/* Fill a region, or the whole remaining void if r is NULL. The scene is
+ * unchanged unless VG_OK is returned. */
 static inline vg_status zone_take(struct scene *s, const struct vg_region *r,
                                   const struct vg_fill_options *options,
                                   struct vg_error *err)

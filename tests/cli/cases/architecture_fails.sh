@@ -1,4 +1,4 @@
-# The test of the architecture can fail, for each of its reasons.
+# The architecture test can fail, for each of its reasons.
 check="$here/architecture.sh"
 mkdir -p good/src/base good/src/core/mesh good/src/core/fill
 cat >good/src/CMakeLists.txt <<'END'
@@ -12,7 +12,8 @@ echo '#include "core/mesh/m.h"' >good/src/core/fill/f.c
 "$check" good >out 2>err; status=$?
 exits 0
 
-# refused NAME TEXT: the copy of the good tree with this name, for this reason.
+# refused NAME TEXT: the modified copy NAME of the good tree fails for this
+# reason.
 refused() {
   "$check" "$1" >out 2>err; status=$?
   exits 1
@@ -82,7 +83,7 @@ cp -r good name
 echo '#include "base/x.h"' >name/src/core/mesh/x.h
 refused name "two files are called x.h: "
 
-# A symbol that is declared below and defined above.
+# A symbol declared in a lower module and defined in a higher one.
 cp -r good symbol
 objects=build/src/CMakeFiles
 mkdir -p $objects/vg_base.dir $objects/vg_core_mesh.dir

@@ -1,5 +1,5 @@
-# From CAD to a mesh with one command; what was read, healed and assumed is said;
-# the same files for any number of ranks.
+# From CAD to a mesh with one command. The output reports what was read,
+# healed and assumed. The files are the same for any number of ranks.
 cad=$here/../cad
 vanguard check "$cad/wing.step" --remesh-surface no
 if grep -q "cannot read CAD" err; then
@@ -14,7 +14,8 @@ vanguard check --json "$cad/doubled.brep" --remesh-surface no
 exits 0
 says out "CAD: face 7 at (0.5, 0, 1.5) repeats face 3 and was dropped"
 
-# so many faces that Open CASCADE's own way of orienting them takes for ever
+# a number of faces for which Open CASCADE's own way of orienting them takes
+# forever
 awk -v n=27 -f "$cad/facets.awk" </dev/null >facets.step
 vanguard check -q facets.step --remesh-surface no
 exits 0
@@ -22,7 +23,8 @@ says out "patches                            4,374"
 says out "closed"
 says out "no defects"
 
-# and more than it has memory for are refused before it is asked
+# a file with more faces than fit into memory is refused before Open CASCADE
+# reads it
 awk 'BEGIN { print "ISO-10303-21;"
              for (i = 1; i <= 300001; i++) print "#" i "=FACE_SURFACE();"
              print "END-ISO-10303-21;" }' >million.step
@@ -31,7 +33,7 @@ exits 1
 says err "it has 300001 faces"
 says err "STL or OBJ"
 
-# settings of the deck hold for a check too
+# settings of the deck apply to a check too
 printf 'metres\nunit cad_patches\nm layer\n' >m.deck
 vanguard check -d m.deck "$cad/wing.step" --remesh-surface no
 exits 0
@@ -62,8 +64,9 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   says out "note: CAD: lengths are in mm"
 fi
 
-# the surface alone: made anew, put back on faces and curves, names kept; what is
-# left between CAD and the new triangles is less than what tessellation left
+# the surface alone: remeshed, projected back to faces and curves, names kept;
+# the distance between CAD and the new triangles is less than that of the
+# tessellation
 set -- -q "$cad/wing.step" --edges-per-turn 8 --surface-size 200 --hmin 10
 vanguard surface "$@" --out new
 exits 0
@@ -79,13 +82,13 @@ exits 0
 says out "no defects"
 vanguard surface "$@" --out again -t 2
 same new/wing.lb8.ugrid again/wing.lb8.ugrid
-# a whole run does so too, unless told not to
+# a complete run remeshes too, unless it is switched off
 grep -qE "remesh_surface|yes" one/wing.resolved.deck || fail "not resolved"
 vanguard mesh -q -p "$cad/box.step" --remesh-surface no --out plain
 exits 0
 lacks out "remeshed:"
 
-# what has no effect is said, what cannot be done refused
+# options without effect are reported, impossible requests are refused
 octahedron >body.obj
 vanguard mesh -q -p body.obj --unit m --hmax 5 --out o
 exits 0

@@ -23,14 +23,14 @@ vanguard deck box -o new.deck
 exits 1
 says err "new.deck exists and is not overwritten"
 
-# As written, it changes nothing.
+# A deck as written changes nothing.
 vanguard mesh -q -p box --deck new.deck --out one
 exits 0
 vanguard mesh -q -p box --deck all.deck --out two
 exits 0
 same one/box.b8.ugrid two/box.b8.ugrid
 
-# A slip is named with its line, and nothing is made.
+# A typing error is reported with its line, and nothing is made.
 sed 's/^scale /scael /' all.deck >slip.deck
 vanguard mesh -q -p box --deck slip.deck --out three
 exits 1

@@ -1,5 +1,6 @@
-# The void parted by the faces of a coarse mesh, or by octants: the same files for any number
-# of ranks and threads, in any order; reports; what is refused.
+# Decomposition of the void by the faces of a coarse mesh, or by octants: the
+# same files for any number of ranks and threads, in any order; reports; what
+# is refused.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \
@@ -30,7 +31,7 @@ for way in 'remesh metis' 'h-refine rcb'; do
   exits 0
 done
 
-# Without a number of parts there are leaf_cells to each.
+# Without a number of subdomains, leaf_cells gives the cells of each.
 vanguard mesh -q -p p/box --decompose discrete --leaf-cells 7000 --out by
 exits 0
 says out "decomposed by discrete: 3 subdomains"
@@ -60,8 +61,9 @@ says out '"complete_subdomains": 5'
 says out '"path": "0.4"'
 says out '"balance": 1.'
 
-# Advancing, parts are leaves; who fills them is no matter. A box of 20,000 in
-# two: the sixteenth of its cells that is in the zone is nobody's.
+# In the advancing partition subdomains are leaves; the mesher that fills them
+# does not matter. A box of 20,000 cells in two: the sixteenth of its cells
+# that is in the separator zone belongs to neither.
 vanguard mesh -q -p p/box --parts 2 --out by
 exits 0
 says by/box.report.json '"leaves": 2'
@@ -90,7 +92,7 @@ for way in advancing discrete octree; do
   jq -e '.partition.near_interfaces | .cells > 5000 and .cells < 20000 and
     .angle_min_p1 > 20 and .angle_min_p1 < 45 and .angle_min <= .angle_min_p1' \
     one/box.report.json >out || fail "$way: cells near interfaces"
-  # The coarse mesh is made first, and recorded as void 1, of no cells.
+  # The coarse mesh is made first, and recorded as void 1 without cells.
   jq -e --arg way $way '.columns as $c | [.spans[] | [$c, .] | transpose |
     map({(.[0]): .[1]}) | add] | map(select(.path[:1] == "1")) as $first |
     if $way != "discrete" then $first == [] else ($first | length) > 0 and
@@ -102,12 +104,13 @@ for way in advancing discrete octree; do
   says out "Forecast, leaves dealt out in turn"
 done
 
-# One part has no interfaces.
+# A single subdomain has no interfaces.
 vanguard mesh -q -p p/box --leaf-cells 0 --timeline --out whole
 exits 0
 lacks whole/box.report.json near_interfaces
 
-# By octants, the gap at the walls by planes; where none has room all is gap.
+# By octants, with the gap region at the walls cut by planes; where no octant
+# fits, the gap region is the whole void.
 vanguard mesh -q -p p/box --decompose octree --parts 4 -t 1 --write b8.ugrid \
   --out one
 exits 0

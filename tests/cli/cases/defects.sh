@@ -1,5 +1,5 @@
-# A surface that cannot bound a mesh is named, drawn and refused.
-# A unit tetrahedron as text, its slanted face missing.
+# A surface that cannot bound a mesh is reported, drawn and refused. The input
+# is a unit tetrahedron as text without its slanted face.
 cat >open.ugrid <<'END'
 4 3 0 0 0 0 0
 0 0 0  1 0 0  0 1 0  0 0 1
@@ -23,7 +23,7 @@ says err "the surface is open"
 exists open.defects.vtu
 absent open.cogsg open.b8.ugrid open.resolved.deck open.report.json
 
-# Two tetrahedra that cross.
+# Two tetrahedra that intersect.
 cat >cross.ugrid <<'END'
 8 8 0 0 0 0 0
 0 0 0  1 0 0  0 1 0  0 0 1
@@ -36,8 +36,8 @@ vanguard check -q cross.ugrid
 exits 1
 says out "self-intersection"
 
-# A triangle that is there twice, the second one turned and of another solid:
-# one finding, which the repair removes.
+# A duplicate triangle, the second one reversed and in another solid: one
+# finding, which the repair removes.
 octahedron >twice.obj
 printf 'g copy\nf 3 1 5\n' >>twice.obj
 vanguard check -q twice.obj
@@ -52,7 +52,7 @@ says out "duplicate triangle: 1"
 lacks out "self-intersection"
 lacks out "non-manifold"
 
-# Two bodies that share a wall, and have one skin without it.
+# Two bodies that share a wall; without the wall they have a single skin.
 { octahedron
   echo "v 2 2 2"
   echo "g second"
@@ -73,14 +73,14 @@ says out "shared wall: 1"
 says out "unite the bodies, or use --wrap"
 lacks out "self-intersection"
 
-# Three lines of a kind, whatever their number.
+# Three lines for each kind of defect, however many there are.
 octahedron | head -12 >lines.obj
 vanguard check -q lines.obj
 exits 1
 says out "open edge: 5"
 says out "... and 2 more"
 
-# A condition that was forgotten.
+# A patch whose boundary condition is missing.
 cat >tet.ugrid <<'END'
 4 4 0 0 0 0 0
 0 0 0  1 0 0  0 1 0  0 0 1
@@ -97,7 +97,7 @@ vanguard mesh -q -p tet
 exits 1
 says out "no boundary condition: 1"
 
-# The deck may give it, but not to a patch that is not there.
+# The deck may supply it, but not for a patch that does not exist.
 printf 't\npatches\nid bc name\n4 5000 "far two"\n' >tet.deck
 vanguard mesh -q -p tet --out done
 exits 0

@@ -1,6 +1,7 @@
-# Grid families: a small body made at three levels follows the rule; settings
-# without effect are named; and edges across gaps. The ellipsoids are given finer
-# than any level asks for: facets as large as that show in the numbers of edges.
+# Grid families: a small body meshed at three levels follows the rule;
+# settings without effect are reported; and edges across gaps. The input
+# ellipsoids are finer than any level requests, because coarser facets would
+# show in the edge counts.
 body() { # NAME X Y Z DX: an ellipsoid of these half axes, moved by DX
   awk -v n=48 -v x="$2" -v y="$3" -v z="$4" -v dx="$5" 'BEGIN {
     pi = atan2(0, -1)
@@ -37,8 +38,8 @@ kind    lengths
 sphere  3
 END
 
-# Within 5 % of the rule: cells, edges on the surface and in the field, first
-# heights, and the even rule's number of layers.
+# Within 5 % of the rule: cells, edges on the surface and in the isotropic
+# region, first heights, and the even rule's number of layers.
 vanguard sweep -q -p ball --family 1:3 -o fam -- --scale-layers even
 exits 0
 exists fam/family.csv fam/f1-n1-t1/ball.report.json
@@ -60,7 +61,8 @@ vanguard sweep -q -p ball --family 1:2 -o never -- --scale 2
 exits 1
 says err "give that of the first level in the deck"
 
-# The deck's own scale is the first level's, and its table may name the levels.
+# The deck's own scale applies to the first level, and its table may name the
+# levels.
 {
   sed 's/remesh_surface/scale remesh_surface/; s/^yes /2 yes /' ball.deck
   printf '\nsweep\nfamily\n1\n'
@@ -70,14 +72,15 @@ exits 0
 says coarse/f1-n1-t1/run.log "scale_layers: first heights are multiplied by 2"
 says coarse/family.csv "f1-n1-t1,1,1,"
 
-# The same bytes again with the resolved deck.
+# The resolved deck gives the same bytes.
 vanguard mesh -q -p ball --scale 1.5 --scale-layers workshop --out a
 exits 0
 vanguard mesh -q -p ball.obj --deck a/ball.resolved.deck --out b
 exits 0
 same a/ball.b8.ugrid b/ball.b8.ugrid
 
-# A surface that stays is told, and so is what had no effect.
+# A surface that is not remeshed is reported, and so are settings without
+# effect.
 vanguard mesh -q -p ball --remesh-surface no --layers no --scale 0.8 \
   --cad-angle 10 --coarsening 2 --out c
 exits 0
@@ -90,7 +93,7 @@ lacks out "no farfield was made"
 vanguard mesh -q -p ball --scale-layers even --out d
 says out "setting without effect because scale is 1: scale_layers"
 
-# Two bodies beside each other: edges across the gap.
+# Two neighbouring bodies: edges across the gap.
 body pair 1 0.6 0.4 0
 n=$(grep -c '^v ' pair.obj)
 body other 1 0.6 0.4 2.05

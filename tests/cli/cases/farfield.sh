@@ -1,4 +1,4 @@
-# Bodies alone get a farfield; half bodies a symmetry plane too.
+# A body alone gets a farfield; a half body gets a symmetry plane too.
 octahedron >octa.obj
 vanguard mesh -q -p octa --farfield-lengths 4 --growth 1.5
 exits 0
@@ -12,7 +12,7 @@ exits 0
 same octa.b8.ugrid again/octa.b8.ugrid
 says out "Evidence: the option flow external"
 
-# Half of it, cut at y = 0.
+# Half of the body, cut at y = 0.
 sed -e '/^v 0 -1 0/d' -e '/^f/d' octa.obj >half.obj
 cat >>half.obj <<'END'
 f 1 3 4
@@ -27,7 +27,7 @@ says out "added: farfield"
 says out "validity: valid"
 says half.mapbc "symmetry"
 
-# An edge in another unit: refused before it fills the memory.
+# An edge length in the wrong unit is refused before it fills the memory.
 vanguard demo sphere --cells 2000 --out unit
 for option in --farfield-spacing --hmax; do
   vanguard mesh -q -p unit/sphere --farfield sphere $option 1e-3

@@ -1,10 +1,11 @@
-# Ctrl-C ends cleanly: a message, status 1, and nothing half-written. Sent
-# when the work has begun, with the whole fill still to come.
+# Ctrl-C ends a run cleanly: a message, status 1, and no partial files. The
+# signal is sent when the work has begun, before the fill.
 vanguard demo box --cells 400000 --out p
 
-# signalled SIGNAL STAGE COMMAND...: sent $late s after the stage has begun, and
-# once more $again s later if that is set, or after it has stood still for
-# $stands s from then on.
+# signalled SIGNAL STAGE COMMAND...: runs the command and sends SIGNAL $late s
+# after the stage has begun. If $again is set, the signal is sent once more
+# $again s later; if $stands is set, the process is suspended for $stands s in
+# between.
 late=0 again= stands=
 signalled() {
   signal=$1 stage=$2
@@ -33,7 +34,7 @@ exits 1
 says err "interrupted; nothing was written"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
-# Told twice at nearly the same time, as timeout(1) does: that is one wish.
+# Two signals at nearly the same time, as timeout(1) sends them, count as one.
 again=0.02
 signalled TERM sizes "$program" mesh -p p/box --out o
 again=
@@ -41,7 +42,7 @@ exits 1
 says err "interrupted; nothing was written"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
-# The terminal goes away: the same; under nohup the run goes on.
+# SIGHUP stops the run as well; under nohup the run continues.
 signalled HUP sizes "$program" mesh -p p/box --out n
 exits 1
 says err "interrupted; nothing was written"
@@ -51,13 +52,13 @@ signalled HUP sizes nohup "$program" mesh -p f/box --out n
 exits 0
 exists n/box.b8.ugrid
 
-# A limit of the size of files is like a full disk.
+# A file size limit acts like a full disk.
 status=$(ulimit -f 200; "$program" mesh -p f/box --out fo >out 2>err; echo $?)
 exits 1
 says err "File too large"
 [ -z "$(ls -A fo)" ] || fail "left behind: $(ls -A fo)"
 
-# Told to stop while it starts, MPI included: the same message.
+# Stopped while it starts, MPI included: the same message.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1
 launcher=
@@ -72,7 +73,7 @@ for launch in "" "$launcher"; do
     caught=0
     [ ! -s pid ] ||
       caught=$(sed -n 's/^SigCgt:[^0-9a-f]*//p' "/proc/$(cat pid)/status")
-    # SIGUSR1, by vanguard and not by the shell before it
+    # SIGUSR1 caught by vanguard and not by the shell before it
     if [ $((0x${caught:-0} & 0x200)) != 0 ]; then
       kill -USR1 "$(cat pid)"
       break
@@ -86,8 +87,9 @@ for launch in "" "$launcher"; do
   lacks err "sizes"
 done
 
-# Sizes far too fine for any machine: what would take an hour stops, wherever
-# it is: the field of sizes and the load of a plan, and a farfield.
+# Sizes far too fine for any machine, so that the work would take an hour. It
+# stops in every stage: the sizing field and the load of a plan, and a
+# farfield.
 unset OMPI_MCA_rmaps_base_oversubscribe
 cat >fine.deck <<'END'
 Far too fine
@@ -98,7 +100,7 @@ sphere  0.5  0.5  0.5  0.4  2e-5
 END
 octahedron >octa.obj
 
-# stopped STAGE ARGS...: told to stop in the midst of the stage.
+# stopped STAGE ARGS...: SIGTERM in the middle of the stage.
 late=0.3
 stopped() {
   stage=$1
@@ -113,21 +115,21 @@ stopped farfield plan -p octa --farfield-spacing 0.03
 stopped farfield mesh -p octa --farfield-spacing 0.03 --out o
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
-# So does a surface that is made anew: millions of triangles are asked for.
+# Remeshing stops too: the sizes request millions of triangles.
 stopped remesh surface octa.obj --surface-size 1e-3 --out o
 stopped remesh mesh -p octa.obj --remesh-surface yes --surface-size 1e-3 --out o
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
-# A run that looks only now and then is ended two seconds later, and leaves
-# nothing: this field of sizes takes an hour.
+# A run that checks for signals only rarely is ended after two seconds, and
+# leaves nothing behind: this sizing field takes an hour.
 start=$(date +%s%N)
 stopped sizes mesh -p p/box --deck fine.deck --farfield none --out o
 [ $(($(date +%s%N) - start)) -lt 20000000000 ] || fail "it did not stop"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
-# Told once more a second later, while it has not ended yet (a busy machine,
-# played by a process that stands still): the same message and status, not the
-# signal's own.
+# A second signal one second later, before the run has ended (a busy machine,
+# simulated by a suspended process): the same message and status, not the
+# status of the signal.
 late=0 again=0.01 stands=1.2
 signalled TERM sizes "$program" mesh -p p/box --deck fine.deck \
   --farfield none --out o

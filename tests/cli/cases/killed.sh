@@ -1,5 +1,5 @@
-# Killed by SIGKILL while a parted void is filled, and resumed: the files of a
-# run that nothing happened to, in every way to decompose.
+# A run killed by SIGKILL while a decomposed void is filled, and resumed,
+# writes the files of an undisturbed run, for every way to decompose.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \
@@ -9,8 +9,8 @@ vanguard demo sphere --cells 200000 --out p
 launcher=
 ! mpirun -n 2 true >/dev/null 2>&1 || launcher='mpirun -n 2'
 
-# kill_after N: the run begun by "$@" is killed when N tasks are kept. Status 1:
-# it had ended before.
+# kill_after N: starts the run "$@" and kills it when N tasks are kept. Status
+# 1 if it ended before.
 kill_after() {
   local n=$1 job
   shift

@@ -2,7 +2,7 @@
 vanguard demo box --cells 2000 --out p
 exits 0
 
-# Walls by list. The report has tables, the JSON all figures.
+# Walls given by a list. The report has tables, the JSON all figures.
 vanguard mesh -q -p p/box --walls 5 --first 1e-3 --out one
 exits 0
 exists one/box.wall.vtu one/box.cogsg one/box.b8.ugrid
@@ -22,7 +22,7 @@ says out '"limits_met": true'
 says out "y+ 1 at Reynolds number 100000 of length 2: first height"
 grep -q '"tetrahedra_if_subdivided": [1-9]' out || fail "no layer cells"
 
-# The resolved deck repeats it byte by byte, for any number of threads.
+# The resolved deck repeats the run byte by byte, for any number of threads.
 vanguard mesh -q -p p/box --deck two/box.resolved.deck --threads 1 --out again
 exits 0
 for suffix in b8.ugrid cogsg bc wall.vtu; do
@@ -32,7 +32,7 @@ vanguard check -q two/box.cogsg
 exits 0
 says out "validity: valid"
 
-# max_cells counts the layers, in either kind of cells.
+# max_cells includes the cells of the layers, for both kinds of cells.
 for kind in tets mixed; do
   vanguard mesh -q -p p/box --walls 5 --first 1e-3 --cells $kind --out all \
     --write b8.ugrid
@@ -53,7 +53,7 @@ vanguard mesh -q -p p/box --walls 5 --first 1e-3 --out over --max-cells 100
 exits 1
 says err "the layers alone have"
 
-# Nothing is grown unless somebody asks; --layers no wins over all.
+# No layers grow unless requested; --layers no overrides everything.
 vanguard mesh -q -p p/box --out plain
 exits 0
 absent plain/box.wall.vtu
@@ -62,7 +62,7 @@ exits 0
 absent no/box.wall.vtu
 same plain/box.b8.ugrid no/box.b8.ugrid
 
-# A viscous condition without a height is no reason to grow, but to say so.
+# A viscous condition without a first height grows no layers, but is reported.
 sed 's/^5 *3 *3/5 4 4/' p/box.mapbc >viscous.mapbc
 mkdir viscous
 cp p/box.lb8.ugrid p/box.deck viscous
@@ -79,13 +79,14 @@ vanguard mesh -q -p viscous/box --first 1e-3 --slip 5 --out v3
 exits 0
 absent v3/box.wall.vtu
 
-# A first height above all edges leaves no layer, which is said as well.
+# A first height above all edge lengths leaves no layer, which is reported
+# too.
 vanguard mesh -q -p p/box --walls 5 --first 10 --out high
 exits 0
 says out "(first height above layer_end times the edge)"
 
-# Own values of a patch; a limit that cannot be met: all files are written,
-# the patch is named, and the status is 4.
+# Values for a single patch. A limit that cannot be met: all files are
+# written, the patch is named, and the status is 4.
 cp p/box.deck own.deck
 printf '\nlayers\nid grow first min_full\n5 yes 3e-2 99\n6 yes - -\n' >>own.deck
 vanguard mesh -q -p p/box --deck own.deck --first 2e-2 --layer-count 80 \
@@ -99,7 +100,7 @@ says limit/box.report.json '"limit": "min_full"'
 vanguard mesh -q -p p/box --deck own.deck --first 1e-3 --out met
 exits 0
 
-# Slips and what cannot be.
+# Typing errors and impossible requests.
 refuse() { # TEXT OPTIONS...
   local text=$1
   shift
@@ -138,7 +139,7 @@ vanguard mesh -q -p p/box --first 1e-3 --out note
 exits 0
 says out "layers were requested, but no patch has a viscous boundary condition"
 
-# A limit without layers would be met by nothing.
+# Without layers a limit could never be checked, so it is refused.
 refuse "no patch is known to be a wall" --first 1e-3 --min-full 98
 refuse "the first height is not known" --walls 5 --min-full 98
 refuse "layers is no, but a limit on layers is set" --layers no --min-full 98
@@ -151,7 +152,7 @@ vanguard mesh -q -p p/box --first -1
 exits 2
 says err "first is -1; it must be at least 0"
 
-# A whole domain without conditions: the user has to say.
+# A whole domain without conditions: the user must name the walls.
 mkdir bare
 cp p/box.lb8.ugrid bare
 vanguard mesh -q -p bare/box --farfield none --first 1e-3
@@ -178,7 +179,7 @@ exits 0
 [ $(($(stat -c %s tail/box.b8.ugrid) - $(stat -c %s one/box.b8.ugrid))) = 4 ] ||
   fail "the tail is not 4 bytes"
 
-# OpenFOAM case beside the other files, in place of an earlier one.
+# An OpenFOAM case next to the other files replaces an earlier one.
 for try in 1 2; do
   vanguard mesh -q -p p/box --walls 5 --first 1e-3 --cells mixed --out foam \
     --write foam,b8.ugrid
@@ -188,12 +189,13 @@ exists foam/box.openfoam/constant/polyMesh/owner foam/box.b8.ugrid
 same foam/box.b8.ugrid mixed/box.b8.ugrid
 [ "$(ls -A foam | grep -c '^\.')" = 0 ] || fail "a hidden folder is left"
 
-# A first height in another unit than the surface: no layers, and a question.
+# A first height in a unit other than that of the surface: no layers, and a
+# question.
 vanguard mesh -q -p p/box --walls 5 --first 100 --out huge
 exits 0
 says out "no layers on 1 of 1 walls (patch 5): their first height, 100"
 
-# Without a layer there is no share of any, and no limit is met.
+# Without layers there are no shares to compare, and no limit is met.
 for limit in min-full min-any min-height max-first-error max-top-ratio; do
   vanguard mesh -q -p p/box --walls 5 --first 100 --$limit 50 --out huge
   exits 4

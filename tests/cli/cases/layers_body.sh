@@ -1,4 +1,4 @@
-# Layers on a body without conditions, and as AFLR's files say.
+# Layers on a body without conditions, and as AFLR's files request them.
 corners=("1 0 0" "0 1 0" "0 0 1" "-1 0 0" "0 -1 0" "0 0 -1")
 facet() {
   echo " facet normal 0 0 0"; echo "  outer loop"
@@ -13,7 +13,7 @@ facet() {
   echo "endsolid lower"
 } >body.stl
 
-# Asked for: the whole body, not the farfield.
+# Requested: layers on the whole body, not on the farfield.
 vanguard mesh -q -p body --first 0.01
 exits 0
 says out "2 patches with layers but without a boundary condition"
@@ -35,7 +35,7 @@ exits 0
 [ "$(grep -c '"wall_by"' slip/body.report.json)" = 1 ] ||
   fail "a slip patch has layers"
 
-# The farfield that is added, caught by a range: no layers grow on it.
+# A range of walls that includes the added farfield: no layers grow on it.
 vanguard mesh -q -p body --first 0.01 --walls 1-3 --out far
 exits 1
 says err "walls: patch 3 is the farfield that was added to the surface"
@@ -73,7 +73,7 @@ vanguard mesh -q -p body --deck low.deck --out byname
 exits 1
 says err "layers: patch 2 lower is listed twice, as 2 and as *er"
 
-# Not asked for: none.
+# Not requested: no layers.
 vanguard mesh -q -p body --out none
 exits 0
 absent none/body.wall.vtu
@@ -94,13 +94,13 @@ grep -A4 '"first_requested"' aflr/body.report.json | grep -q '"min": 0.02' ||
 grep -A4 '"levels"' aflr/body.report.json | grep -q '"max": 3.0' ||
   fail "not the number of the .tags"
 says aflr/body.report.json '"wall_by": "condition"'
-# What is given wins.
+# Options override the file.
 vanguard mesh -q -p aflr/body --first 0.01 --layer-count 2 --out given
 exits 0
 grep -A4 '"first_requested"' given/body.report.json | grep -q '"min": 0.01' ||
   fail "the .tags won over --first"
 
-# An AFLR .bc by name; it is an input that a .cogsg would overwrite.
+# An AFLR .bc found by its name; it is an input that a .cogsg would overwrite.
 rm aflr/body.tags
 printf 'upper -1 0.02\nlower -1 0.02\n' >aflr/body.bc
 vanguard mesh -q -p aflr/body
@@ -111,7 +111,8 @@ exits 0
 grep -A4 '"first_requested"' aflr/body.report.json | grep -q '"min": 0.02' ||
   fail "not the height of the .bc"
 
-# A .surf: layers on flag -1, first heights by point, between 0.01 and 0.02.
+# A .surf: layers where the flag is -1, first heights by point, between 0.01
+# and 0.02.
 mkdir surf
 cat >surf/body.surf <<'END'
 8 0 6
@@ -144,7 +145,7 @@ exits 0
 grep -A4 '"first_requested"' one_height/body.report.json |
   grep -q '"max": 0.03125' || fail "--first did not win over the .surf"
 
-# Needles on a wall are removed before layers grow, and only then.
+# Sliver triangles on a wall are removed before layers grow, and only then.
 cat >needle.obj <<'END'
 v 1 0 0
 v 0 1 0

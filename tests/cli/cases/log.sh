@@ -1,5 +1,5 @@
-# --log: what is printed, and versions, host, ranks and threads, settings, and
-# the phases; nothing that is there is lost.
+# --log holds everything printed, and versions, host, ranks and threads,
+# settings, and the phases. Existing files are not lost.
 vanguard demo box --cells 2000 --out .
 exits 0
 vanguard mesh -q -p box --out o --hmax 0.3 --threads 2 --log run.log
@@ -20,14 +20,14 @@ sed -n '/^Vanguard demo: box/,/^  o\/box.report.json/p' run.log >logged
 cat out >printed
 is logged <printed
 
-# a failure is in it too, and it is replaced by the next
+# a failure is logged too, and the next run replaces the log
 vanguard mesh -q -p nothing --log run.log
 exits 1
 says run.log "vanguard: nothing: no project here"
 says run.log "exit status 1 after"
 lacks run.log "hmax"
 
-# not a log: refused
+# a file that is not a log is refused
 cp box.deck mine
 vanguard mesh -q -p box --out o --log mine
 exits 1

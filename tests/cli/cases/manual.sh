@@ -1,4 +1,4 @@
-# Man pages and completions say what the program says.
+# Man pages and completions agree with the program.
 share=$(dirname "$program")/../share
 for command in mesh surface check partition plan sweep serve deck demo; do
   page=$share/man/man1/vanguard-$command.1
@@ -19,7 +19,7 @@ if command -v groff >/dev/null; then
   [ ! -s warnings ] || fail "groff warns: $(head -3 warnings)"
 fi
 
-# complete WORDS...: what bash offers for the last word.
+# complete WORDS...: bash's completions of the last word.
 complete_words() {
   bash -c '
     compopt() { :; }

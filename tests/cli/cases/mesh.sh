@@ -19,7 +19,7 @@ says err "read"
 says p/box.report.json '"ok": true'
 says p/box.report.json '"valid": true'
 
-# Progress is not shown with --quiet; JSON is the report file's content.
+# --quiet shows no progress; --json prints the content of the report file.
 vanguard mesh -q -p p/box --json --out json
 exits 0
 is err </dev/null
@@ -37,7 +37,7 @@ for suffix in b8.ugrid cogsg bc mapbc vtu meshb resolved.deck; do
   same tuned/box.$suffix again/box.$suffix
 done
 
-# The same in place: the deck is an input then and stays.
+# The same in place: the deck is an input then and is not overwritten.
 (cd again && cp ../p/box.lb8.ugrid . && cp box.resolved.deck keep)
 vanguard mesh -q -p again/box --deck again/box.resolved.deck
 exits 0
@@ -63,7 +63,7 @@ exits 1
 says err "raise the limit"
 absent limited/box.b8.ugrid limited/box.cogsg
 
-# The boundary of a volume mesh is a surface to be meshed anew.
+# The boundary of a volume mesh can be the input surface of another run.
 mkdir volume
 cp p/box.b8.ugrid volume/old.b8.ugrid
 vanguard mesh -q -p volume/old.b8.ugrid --out anew
@@ -72,7 +72,7 @@ says out "is a volume mesh: its boundary is used as the surface"
 says out "6 patches have no boundary condition"
 exists anew/old.b8.ugrid
 
-# A number of cells that the geometry does not allow is said to be one.
+# A cell count that the geometry does not allow is reported as such.
 vanguard demo sphere --cells 1000 --out small
 exits 0
 says out "1,000 cells were asked for: the geometry needs more"

@@ -1,5 +1,6 @@
-# Other meshers in the leaves: TetGen, a plug-in, and plug-ins that are bad; the
-# same files for any number of threads; part of what a resumed run goes by.
+# Other meshers in the leaves: TetGen, a plug-in, and faulty plug-ins. The
+# files are the same for any number of threads. A resumed run checks the
+# mesher.
 plugins=$(dirname "$program")/../tests/unit
 vanguard demo sphere --cells 20000 --out p
 exits 0
@@ -17,7 +18,7 @@ says t1/sphere.report.json '"subdomains_by_other_mesher"'
 vanguard check -q t1/sphere.lb8.ugrid
 exits 0
 
-# HXT fills where gmsh is; a clear refusal elsewhere.
+# HXT fills where gmsh is available, and is clearly refused elsewhere.
 vanguard mesh -q -p p/sphere --mesher hxt --leaf-cells 5000 \
   --write lb8.ugrid --out h
 if [ "$status" = 0 ]; then
@@ -29,7 +30,8 @@ else
   says err "Debian: libgmsh4.8"
 fi
 
-# What a plug-in does not fill the kernel fills: here all, so nothing differs.
+# The kernel fills the leaves that a plug-in does not fill: here all of them,
+# so nothing differs.
 vanguard mesh -q -p p/sphere --leaf-cells 5000 --write lb8.ugrid --out b
 exits 0
 for name in star bad_5 bad_9; do
@@ -60,7 +62,7 @@ vanguard mesh -q -p p/sphere --mesher tetgne --out n
 exits 2
 says err "'tetgne' is none"
 
-# A run that another mesher began is another run.
+# A run begun with another mesher is a different run.
 vanguard mesh -q -p p/sphere --mesher tetgen --leaf-cells 5000 \
   --write lb8.ugrid --out r --run-dir run --keep-run
 exits 0

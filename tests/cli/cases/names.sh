@@ -1,5 +1,5 @@
-# Titles and names in other letters stay what they are, in tables that stay
-# straight; what is no UTF-8 becomes '?', and no name is cut within a letter.
+# Titles and names in other alphabets are kept, in tables that stay aligned.
+# Bytes that are not UTF-8 become '?', and no name is cut inside a character.
 vanguard demo box --cells 2000 --out p
 cp p/box.lb8.ugrid wing.lb8.ugrid
 long=$(printf 'x'; printf 'ü%.0s' $(seq 60))

@@ -1,4 +1,4 @@
-# An input file is never overwritten: said before anything is computed.
+# An input file is never overwritten: reported before anything is computed.
 vanguard demo box --cells 2000 --out a
 vanguard mesh -q -p a/box --out b --write b8.ugrid
 exits 0
@@ -20,7 +20,7 @@ exits 1
 says err "would overwrite the input"
 same a/box.lb8.ugrid c/box.lb8.ugrid
 
-# A .mapbc that does not know every patch cannot stand for the mesh's.
+# A .mapbc that lacks a patch cannot replace that of the mesh.
 grep -v '^6 ' a/box.mapbc >c/box.mapbc
 vanguard mesh -q -p c/box
 exits 1
@@ -37,8 +37,9 @@ vanguard mesh -q -p a/box --out e
 exits 1
 says err "could be the surface; give the complete name of one"
 
-# A folder in the way of a file, and so all or nothing: of what is asked for,
-# beforehand; of what comes along, before anything is put into its place.
+# A folder with the name of an output file: all files are written, or none.
+# For a requested file this is checked beforehand; for an additional file,
+# before anything is moved to its place.
 cp a/box.lb8.ugrid g.lb8.ugrid
 for suffix in cogsg report.json; do
   mkdir -p f/g.$suffix

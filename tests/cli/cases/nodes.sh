@@ -1,5 +1,5 @@
-# Ranks on nodes of their own make surface, layers and sizes each for itself:
-# the files of one rank, or a refusal that says who made what.
+# Ranks on separate nodes each make surface, layers and sizes: the files equal
+# those of one rank, or the run is refused, naming the nodes that differ.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1
 timeout 20 mpirun -n 2 true >/dev/null 2>&1 || skip "no mpirun"

@@ -1,6 +1,6 @@
 # Cut, filled and written by threads and ranks: the same files for any number
-# of both, in any order, and resumed; refusals; a stop that leaves nothing
-# half-written.
+# of both, in any order, and after a resume; refusals; a stop that leaves no
+# partial files.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \
@@ -10,8 +10,8 @@ has_mpirun=0
 ! mpirun -n 2 true >/dev/null 2>&1 || has_mpirun=1
 [ $has_mpirun = 1 ] || echo "no mpirun that starts here: threads only"
 
-# ranks N ARGS...: as vanguard, under mpirun. What MPI itself does not free is
-# no leak of ours.
+# ranks N ARGS...: as vanguard, under mpirun. Memory that MPI itself does not
+# free is not a leak of Vanguard.
 ranks() {
   local n=$1
   shift
@@ -19,15 +19,15 @@ ranks() {
   status=$?
 }
 
-# Names and digests of all files that the run in folder $1 wrote, but for the
-# record of its tasks, which holds times.
+# Names and digests of all files that the run in folder $1 wrote, except the
+# timeline of its tasks, which holds times.
 digests() {
   sed -n '/timeline.json/d
     s,.*"path": ".*/\([^/]*\)".*,\1,p
     s/.*"xxh3": "\(.*\)".*/  \1/p' "$1"/*.report.json
 }
 
-# agrees FOLDER [WITH]: its files are those of folder WITH (one).
+# agrees FOLDER [WITH]: the files of FOLDER equal those of folder WITH (one).
 agrees() {
   local with=${2:-one}
   exits 0
@@ -36,7 +36,7 @@ agrees() {
   cmp -s "$with"/*.b8.ugrid "$1"/*.b8.ugrid || fail "$1: another mesh"
 }
 
-# The part of a report that says what filling took, without its times.
+# The part of a report about the fill, without its times.
 counts() {
   sed -n '/^  "fill": {/,/^  }/p' "$1"/*.report.json | grep -v ': [0-9]*[.]'
 }
@@ -78,12 +78,12 @@ if [ $has_mpirun = 1 ]; then
   [ -z "$(ls -A whole)" ] || fail "left behind: $(ls -A whole)"
 fi
 
-# Where and how often it is cut.
+# Where the void is cut, and how often.
 vanguard mesh -q -p p/box --levels 2 --json --out levels
 exits 0
 says out '"pencils": 1,'
 says out '"leaves": 4,'
-# four, and some more where parts hung together across them
+# four tiles, and more where subdomains were connected across them
 grep -q '"tiles": [4-7],' out || fail "not 4 to 7 tiles"
 vanguard mesh -q -p p/box -L 2 --split-direction 3 --constant-direction yes \
   --json --out slabs
@@ -98,7 +98,8 @@ vanguard mesh -q -p p/box --constant-direction yes --out none
 exits 2
 says err "constant_direction needs a split_direction of 1, 2 or 3"
 
-# Cells of leaves, fragments and cuts, and what repairs did, are those of the mesh.
+# The cells of leaves, fragments and cuts, plus those added by repairs, add up
+# to the mesh.
 parts=$(sed -n '/"leaf_cells": \[/,/\]/s/^ *\([0-9]*\),*$/\1/p
   s/.*"\(fragment_cells\|separator_cells\|repair_cells\)": \([-0-9]*\).*/\2/p' \
   two/box.report.json | paste -sd+)
@@ -106,7 +107,7 @@ cells=$(sed -n 's/^    "cells": \([0-9]*\).*/\1/p' two/box.report.json | tail -1
 [ "$((parts))" = "$cells" ] || fail "$parts are not $cells cells"
 grep -q '"repair_cells": -*[1-9]' two/box.report.json || fail "no repair"
 
-# What is filled as one leaf because it is little is counted apart.
+# Small voids that are filled as one leaf are counted separately.
 vanguard demo sphere --cells 60000 --out p
 vanguard mesh -q -p p/sphere --leaf-cells 6000 --json --out fragments
 exits 0
@@ -116,7 +117,7 @@ least=$(sed -n '/"leaf_cells"/{n;s/[^0-9]//g;p}' out)
 [ "$((fragments == 0))" = "$((cells == 0))" ] || fail "$fragments fragments: $cells cells"
 [ "$least" -ge 300 ] || fail "a leaf of $least cells"
 
-# Tasks kept, and found again by another number of workers.
+# Kept tasks are found again by another number of workers.
 vanguard mesh -q -p p/box --resume
 exits 2
 says err "--resume needs the --run-dir of the run"
@@ -136,7 +137,7 @@ says err "run: cannot be resumed: input or options have changed since"
 says err ", is 0.2; restore what changed"
 lacks err "threads was"
 absent other/box.b8.ugrid
-# A setting that leaves the field as it is, but decides the mesh.
+# A setting that leaves the isotropic region unchanged, but affects the mesh.
 vanguard mesh $cut --run-dir run --resume --edges-per-turn 20 --out other
 exits 1
 says err "edges_per_turn was 24, is 20; restore what changed"
@@ -156,7 +157,7 @@ says out "tasks found in run: "
 lacks out "tasks found in run: 0"
 absent run
 
-# What was kept is reported as if it had been made now.
+# Kept outcomes are reported as if they had been made in this run.
 counts one >one.counts
 [ "$(wc -l <one.counts)" -ge 10 ] || fail "no counts: $(cat one.counts)"
 for folder in kept again; do
@@ -165,7 +166,7 @@ for folder in kept again; do
 done
 }
 
-# Layers of prisms, expanded by whoever writes them.
+# Layers of prisms, expanded by the rank that writes them.
 vanguard demo wing-half --cells 250000 --out p
 layered="-q -p p/wing-half --layer-count 5 --cells mixed --leaf-cells 40000"
 layered="$layered --write b8.ugrid,pvtu,vtu"
@@ -181,7 +182,7 @@ else vanguard mesh $layered -t 2 --out wing2; fi
 agrees wing2 wing
 }
 
-# SIGTERM or SIGUSR1 in the middle of the fill; then the rest of it.
+# SIGTERM or SIGUSR1 in the middle of the fill; then the rest of the run.
 vanguard demo box --cells 400000 --out p4
 for directory in "" "--run-dir r4"; do
   # shellcheck disable=SC2086
@@ -192,7 +193,7 @@ for directory in "" "--run-dir r4"; do
     ! grep -q '^fill' err || break
     sleep 0.02
   done
-  # a batch system's warning may come more than once; SIGTERM ends a process
+  # a batch system may send its warning more than once; SIGTERM ends a process
   # at the second
   if [ -n "$directory" ]; then
     for _ in 1 2 3; do

@@ -1,4 +1,4 @@
-# A recorded run on other machines: text, JSON, figure and messages.
+# A recorded run simulated on other machines: text, JSON, figure and messages.
 cat >r.timeline.json <<'END'
 {"vanguard_timeline": 1,
 "facts": {"title": "box", "ranks": 1, "threads": 1, "cells": 4000,
@@ -25,21 +25,21 @@ says out "      2       1       2      6.700      1.64        82.1      4.700"
 says out "      4       2       8      4.475      2.46        30.7      4.475"
 [ "$(grep -c '^ *[0-9][0-9]* *[0-9][0-9]* *[0-9][0-9]* ' out)" = 6 ] || fail "not 6 rows"
 
-# The serial part can be left out; a faster core takes less.
+# The serial part can be left out; a faster core takes less time.
 vanguard plan -r r.timeline.json -n 4 --serial 0 --rate 2 -j
 exits 0
 says out '"seconds": 1.5'
 says out '"serial": 0.0'
 says out '"error_percent": '
 
-# Slow links leave the work at home.
+# With slow links all work stays on the home rank.
 vanguard plan -r r.timeline.json -n 2 --latency 0.5 --serial 0
 says out "      2       1       2      6.0"
 vanguard plan -r r.timeline.json -n 2 --latency 0.5 --serial 0 \
   --ranks-per-node 2
 says out "      2       1       2      5.0"
 
-# A record with loops: the threads of a rank share the 0.75 s of its join.
+# A timeline with loops: the threads of a rank share the 0.75 s of its join.
 sed -e 's/"bytes_out"\]/"bytes_out", "loops"]/' -e 's/0,0\],$/0,0,0],/' \
   -e 's/0,0\]$/0,0,0]/' -e 's/0,1,1,0,0,0,0,0\]/0,1,1,0,0,0,0,0.75]/' \
   r.timeline.json >l.timeline.json
@@ -58,9 +58,9 @@ exits 0
 says out "    512       1     512"
 says speedup.svg ">ideal<"
 
-# Leaves dealt out in turn to two workers: the first, which is long, with the
-# third; the record says what they are dealt out by, unless an older version
-# wrote it.
+# Leaves assigned statically to two workers: the first leaf, which is long,
+# goes with the third. The timeline holds the key of the assignment, unless an
+# older version wrote it.
 vanguard plan -r r.timeline.json -n 2 --schedule cyclic
 exits 1
 says err "of the trace has no 'work'"
@@ -98,7 +98,8 @@ vanguard plan -r report.json
 exits 1
 says err "report.json: not a timeline of vanguard mesh"
 
-# Before anything is meshed: the same tree as the run has, nothing is written.
+# Before anything is meshed: the same tree as that of the run, and nothing is
+# written.
 vanguard demo box --cells 60000 --out p
 before=$(ls -A p)
 vanguard plan -q -p p/box --leaf-cells 8000 -n 1,2,8 -t 1,2 --write vtu,cogsg
@@ -123,8 +124,8 @@ exits 0
 says out '"pencils": 0'
 says out '"tiles": 7'
 
-# Cells and points that a plan says and a mesh has, within 6 %: the estimate's
-# own error.
+# The cells and points of a plan and of a mesh agree within 6 %, the error of
+# the estimate.
 figures() { sed -n 's/^ *"\(cells\|points\)": \([0-9][0-9.]*\).*/\1 \2/p' "$1" |
   sort -u -k1,1; }
 figures plan.json >planned
@@ -135,7 +136,7 @@ figures out | paste -d ' ' planned - >both
 awk '$1 != $3 || $2 / $4 < 0.94 || $2 / $4 > 1.06 { exit 1 }' both ||
   fail "planned and made: $(cat both)"
 
-# One leaf where that is asked for; a target that cannot be, and one that can.
+# One leaf if requested; an impossible target, and a possible one.
 vanguard plan -q -p p/box --leaf-cells 0 -n 1
 says out "0 cuts into 1 leaf"
 vanguard plan -q -p p/box --target 0.001 -n 1,2
@@ -173,7 +174,8 @@ vanguard plan -q -p p/box -n 1 --rates p/none
 exits 1
 says err "p/none"
 
-# What limits each phase is named; with the cores of a node, how to start it.
+# The limiting factor of each phase is named, and with the cores of a node the
+# command to start it.
 vanguard plan -q -p p/box --leaf-cells 8000 -n 1,2 --cores 6
 exits 0
 says out "limited by"

@@ -1,11 +1,11 @@
-# vanguard serve, asked by curl: who is let in, which paths are refused, runs,
-# stops and resumes, a portal that dies, jobs, sweeps. Needs curl.
+# vanguard serve, queried by curl: access, refused paths, runs, stops and
+# resumes, a portal that dies, jobs, sweeps. Needs curl.
 command -v curl >/dev/null || skip "no curl"
 servers=()
 stop_all() {
   local file pid
   for pid in "${servers[@]}"; do kill "$pid" 2>/dev/null; done
-  for file in */vanguard-runs/*/run.json; do   # what a failure leaves at work
+  for file in */vanguard-runs/*/run.json; do   # left behind by a failure
     [ -e "$file" ] || continue
     pid=$(sed -n 's/.*"pid": \([0-9]*\).*/\1/p' "$file")
     [ "${pid:-0}" -gt 1 ] || continue
@@ -14,8 +14,8 @@ stop_all() {
 }
 trap stop_all EXIT
 
-# serve NAME OPTION...: a portal of the folder NAME; its address in $url, its
-# process in $server.
+# serve NAME OPTION...: starts a portal of the folder NAME; its address in
+# $url, its process in $server.
 serve() {
   local name=$1
   shift
@@ -40,17 +40,17 @@ grep -q 'portal' mine.err && grep -q libmicrohttpd mine.err &&
   skip "$(cat mine.err)"
 [ -n "$url" ] || fail "no address: $(cat mine.err)"
 
-# asks STATUS CURL-ARGUMENT...: the body in `body`.
+# asks STATUS CURL-ARGUMENT...: the response body in `body`.
 asks() {
   local expected=$1 got
   shift
   got=$(curl -s --max-time 60 -o body -w '%{http_code}' "$@")
   [ "$got" = "$expected" ] || fail "status $got, not $expected, of $*"
 }
-# posts STATUS PATH CURL-ARGUMENT...: as the page does.
+# posts STATUS PATH CURL-ARGUMENT...: a POST like those of the page.
 posts() { asks "$1" -X POST -H "Origin: $origin" "${@:3}" "$url$2"; }
 
-# --- who is let in
+# --- access
 
 asks 200 "$url"
 says body 'box.lb8.ugrid'
@@ -77,7 +77,7 @@ for address in $(hostname -I 2>/dev/null); do
   ! (: <"/dev/tcp/$address/$port") 2>/dev/null || fail "reached by $address"
 done
 
-# two users, with a portal each; none in the other's folder
+# two users with a portal each; neither can access the other's folder
 first=$url
 serve other
 [ -n "$url" ] || fail "no second portal: $(cat other.err)"
@@ -144,7 +144,7 @@ posts 400 upload -F "file=@octa.obj;filename=.profile"
 [ "$(ls other)" = "secret.stl
 vanguard-runs" ] || fail "other has $(ls other)"
 
-# heads without end
+# endless request headers
 head -c 60000 /dev/zero | tr '\0' x >long
 code=$(curl -s -o /dev/null -w '%{http_code}' -H "X: $(cat long)" "$url")
 [[ $code = 4* || $code = 000 ]] || fail "a long header: $code"
@@ -188,12 +188,12 @@ asks 200 "${url}runs/1/file/mesh/box.b8.ugrid"
 same body plain/box.b8.ugrid
 posts 400 runs -d project=box.lb8.ugrid -d s.farfield_size=1 -d ranks=0
 
-# a run that fails says why
+# a run that fails gives the reason
 posts 303 runs -d project=octa.obj -d farfield.kind=none -d s.max_cells=1
 await 2 failed 60
 says runs.json '1 are allowed'
 
-# stopped when something is kept, resumed: the same bytes; a second one waits
+# stopped after a task is kept and resumed: the same bytes; a second run waits
 slow=(-d project=large/box.lb8.ugrid -d s.threads=1 -d s.leaf_cells=15000
   -d s.write=b8.ugrid)
 kept() { find "mine/vanguard-runs/$1/kept" -type f 2>/dev/null | wc -l; }
@@ -212,7 +212,7 @@ until_kept 0003
 posts 303 runs/3/stop
 await 3 stopped 30
 says runs.json 'finished tasks are kept'
-# the next one begins by itself; its portal dies, it does not
+# the next run begins by itself; it survives when its portal dies
 until_kept 0004
 kill -9 "$server"
 wait "$server" 2>/dev/null
@@ -227,7 +227,8 @@ same whole/box.b8.ugrid mine/vanguard-runs/0003/mesh/box.b8.ugrid
 same whole/box.b8.ugrid mine/vanguard-runs/0004/mesh/box.b8.ugrid
 absent mine/vanguard-runs/0003/kept
 
-# told to end, with a run at work: that goes on, and the next portal has it
+# the portal is ended while a run works: the run continues, and the next
+# portal shows it
 posts 303 runs "${slow[@]}"
 until_kept 0005
 kill "$server"
@@ -247,7 +248,7 @@ asks 200 "${url}runs/6/file/sweep/sweep.csv"
 asks 200 "${url}runs"
 says body 'sweep.csv'
 
-# on ranks: mpirun hands the wish to stop on
+# on ranks: mpirun passes the stop signal on
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1
 kill "$server"
@@ -266,12 +267,12 @@ fi
 kill "$server"
 wait "$server"
 
-# --- jobs, with a Slurm that only says so
+# --- jobs, with a fake Slurm
 
 mkdir -p bin
 cat >bin/sbatch <<'END_SBATCH'
 #!/bin/bash
-# Notes what it is asked, and starts the script behind.
+# Records its arguments, and starts the script in the background.
 echo "sbatch $*" >>"$FAKE/calls"
 env | grep -E '^(PROJECT|OUT|RUN_DIR|OPTIONS|VANGUARD)=' >>"$FAKE/calls"
 echo "sbatch: a word of warning" >&2

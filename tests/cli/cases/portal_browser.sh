@@ -1,5 +1,6 @@
 # The portal's page in a browser: twenty runs started, stopped and resumed by
-# clicks; their meshes are those of the command line. Needs Debian's chromium.
+# clicks; their meshes equal those of the command line. Needs Debian's
+# chromium.
 browser=$(command -v chromium) || skip "no chromium"
 python=$(command -v /usr/bin/python3) || skip "no Python"
 
@@ -10,7 +11,7 @@ server=$!
 stop_all() {
   local file pid
   kill $server 2>/dev/null
-  for file in root/vanguard-runs/*/run.json; do   # what a failure leaves
+  for file in root/vanguard-runs/*/run.json; do   # left behind by a failure
     pid=$(sed -n 's/.*"pid": \([0-9]*\).*/\1/p' "$file")
     [ "${pid:-0}" -gt 1 ] || continue
     ! grep -qs "$PWD" "/proc/$pid/cmdline" || kill -9 -- "-$pid" 2>/dev/null

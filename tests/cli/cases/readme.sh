@@ -1,4 +1,4 @@
-# The tour of the README works as a newcomer would type it (fewer cells).
+# The tour of the README works as a newcomer would type it (with fewer cells).
 corners=("1 0 0" "0 1 0" "0 0 1" "-1 0 0" "0 -1 0" "0 0 -1")
 facet() {
   echo " facet normal 0 0 0"; echo "  outer loop"
@@ -26,7 +26,7 @@ while IFS= read -r line; do
   read -ra words <<<"$line"
   "$program" "${words[@]:1}" >out 2>err
   status=$?
-  # what this build is without
+  # features that this build lacks
   ! grep -qE "cannot read CAD|cannot wrap" err || status=0
   [ "$status" = 0 ] || fail "$line: exit status $status"
   n=$((n + 1))
@@ -36,7 +36,7 @@ same work/sphere.b8.ugrid again/sphere.b8.ugrid
 exists plane.deck plane.b8.ugrid plane.vtu plane.surface.vtu
 says plane.deck 'fuselage'
 
-# The deck in it can be read, too.
+# The deck in the README can be read, too.
 sed -n '/^    Plane at Mach/,/^\[docs/p' "$here/../../README.md" |
   sed -n 's/^    //p;/^$/p' >tour.deck
 vanguard mesh -q -p plane.stl --deck tour.deck --out tour

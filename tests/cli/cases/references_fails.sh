@@ -20,7 +20,7 @@ cat >good/src/a.c <<'END'
 /* core/mesh/mesh.h has the mesh. Of T1 nothing is said. ONERA M6 is a wing (K2). */
 END
 
-# refused NAME TEXT FILE LINE: the good tree with LINE at the end of FILE fails
+# refused NAME TEXT FILE LINE: the good tree with LINE appended to FILE fails
 # for this reason.
 refused() {
   cp -r good "$1"

@@ -1,5 +1,5 @@
 # The same command three times in a folder gives the same mesh and the same
-# notes: what a run left there is not read, which one more note says.
+# notes: files left there by a run are not read, which one more note reports.
 octahedron >octa.obj
 vanguard surface -q octa.obj --surface-size 0.8 --out s \
   --write stl,tri,obj,mesh,meshb,msh,ugrid,lb8.ugrid,b4.ugrid,r8.ugrid
@@ -44,7 +44,7 @@ repeat cgns blocks.cgns "$corpus/cgns/blocks.cgns"
 repeat d3m t1 "$corpus/d3m/t1.d3m"
 repeat front t1 "$corpus/front/t1.front" "$corpus/d3m/t1.d3m"
 
-# Conditions that a user gave are read each time, and stay as they are.
+# Conditions that a user gave are read each time, and are not changed.
 mkdir given
 cp s/octa.stl given
 printf '1\n1 4000 skin\n' >given/octa.mapbc
@@ -55,7 +55,8 @@ lacks out "earlier run"
 [ "$(cat given/octa.mapbc)" = "$(printf '1\n1 4000 skin')" ] ||
   fail "given/octa.mapbc was overwritten"
 
-# A file that is named is read, whoever wrote it; it has to exist.
+# A file that is named explicitly is read, even if Vanguard wrote it; it must
+# exist.
 vanguard mesh -q -p stl.full/octa.stl --mapbc stl.full/octa.mapbc \
   --report-html no
 exits 0
@@ -73,7 +74,7 @@ vanguard check stl.full/octa.stl
 exits 0
 says out "was written by an earlier run of Vanguard and was not read"
 
-# With a mesh its conditions go: they are of its patches.
+# The conditions next to a mesh file are read: they belong to its patches.
 vanguard check stl.full/octa.b8.ugrid
 exits 0
 lacks out "earlier run"

@@ -1,8 +1,8 @@
-# PROJECT.report.html as a browser shows it: with scripts the surface turns,
-# without them pictures are all there. Needs Debian's chromium.
+# PROJECT.report.html in a browser: with scripts the surface rotates, without
+# them all pictures are present. Needs Debian's chromium.
 browser=$(command -v chromium) || skip "no chromium"
 
-# look OUT ARGS...: the browser, without network, in a folder of its own.
+# look OUT ARGS...: the browser, without network, in a separate folder.
 look() {
   local to=$1 profile
   shift
@@ -24,7 +24,7 @@ page=file://$PWD/o/wing-half.report.html
 look blank.html --dump-dom about:blank
 [ "$status" = 0 ] || skip "chromium does not start here: $(tail -1 browser.log)"
 
-# With scripts: the view is drawn, with its controls, and says how to turn it.
+# With scripts: the 3-D view is drawn, with its controls and instructions.
 look dom.html --window-size=1200,900 --dump-dom "$page"
 exits 0
 drawn=$(sed -n 's/.*data-drawn="\([0-9]*\)".*/\1/p' dom.html)
@@ -35,8 +35,9 @@ says dom.html 'Drag turns'
 ! grep -q 'Uncaught\|SyntaxError\|Refused to' browser.log ||
   fail "the browser complains: $(grep 'Uncaught\|Refused' browser.log)"
 
-# Without, as the page's policy can ask for: the view stays hidden, and the page
-# is a picture that is not blank (a blank one packs to a few kilobytes).
+# Without scripts, as the page's policy can demand: the 3-D view stays hidden,
+# and the page is a picture that is not blank (a blank one packs to a few
+# kilobytes).
 sed "s/script-src [^\"]*/script-src 'none'/" o/wing-half.report.html >still.html
 look still.dom --dump-dom "file://$PWD/still.html"
 says still.dom '<div id="view" hidden="">'

@@ -1,12 +1,13 @@
-# PROJECT.report.html: what it holds, that it loads nothing, that names cannot
-# break it, that it follows from the input alone but for the run's own part.
+# PROJECT.report.html: its contents; it loads nothing; names cannot break it;
+# it depends on the input alone, except for the section about the run.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe \
   PRTE_MCA_hwloc_default_binding_policy=none
 
-# stable FILE: all but the run's own part and what is listed of files.
+# stable FILE: everything except the section about the run and the list of
+# files.
 stable() { sed '/^<!--run-->$/,/^<!--\/run-->$/d' "$1"; }
 
 vanguard demo box --cells 20000 --out p
@@ -28,27 +29,27 @@ says $page "<code>first</code></th><td>0.002 length"
 says one/box.report.json '"pictures": '
 says one/box.report.json 'box.report.html"'
 
-# Pictures: patches, levels and causes twice, cuts, angles, parts; each a PNG in
-# the page with words for those who do not see it.
+# Pictures: patches, levels and causes twice, cuts, angles, subdomains; each
+# is a PNG in the page with a text for readers who cannot see it.
 n=$(grep -o '<img [^>]*src="data:image/png;base64,iVBOR' $page | wc -l)
 [ "$n" -ge 13 ] || fail "$n pictures"
 [ "$(grep -c '<img ' $page)" = "$(grep -c '<img [^>]* alt="[A-Z]' $page)" ] ||
   fail "a picture without words"
 [ "$(wc -c <$page)" -lt 6000000 ] || fail "$page is large"
 
-# Nothing is loaded: no address but that of regl, in a comment, and of SVG.
+# Nothing is loaded: no address except that of regl, in a comment, and of SVG.
 says $page "default-src 'none'"
 ! grep -qE '(src|href)="?(https?:)?//' $page || fail "it loads something"
 ! grep -qE '@import|url\(' $page || fail "its style loads something"
 
-# Elements are closed: as many ends as beginnings.
+# Elements are closed: the numbers of start and end tags are equal.
 for element in section table tr figure svg div ul details script style; do
   begins=$(grep -oE "<$element[ >]" $page | wc -l)
   ends=$(grep -o "</$element>" $page | wc -l)
   [ "$begins" = "$ends" ] || fail "<$element>: $begins begin, $ends end"
 done
 
-# The same page for any number of threads and ranks, and resumed.
+# The same page for any number of threads and ranks, and after a resume.
 stable $page >one.html
 vanguard mesh $run $layers -t 3 --out threads
 stable threads/box.report.html >threads.html
@@ -69,13 +70,13 @@ else
   echo "no mpirun that starts here: threads only"
 fi
 
-# Asked not to.
+# Switched off.
 vanguard mesh $run --report-html no --out without
 exits 0
 absent without/box.report.html
 lacks without/box.report.json "report.html"
 
-# A limit that is not met stands on top.
+# A limit that is not met is shown at the top.
 cp p/box.deck own.deck
 printf '\nlayers\nid grow first min_full\n5 yes 3e-2 99\n6 yes - -\n' >>own.deck
 vanguard mesh $run --deck own.deck --first 2e-2 --layer-count 80 --ratio 1.2 \

@@ -1,5 +1,5 @@
-# Edge lengths out of a file: the mesh of a first run, with a size at each of
-# its points, drives the next; and what cannot be is refused.
+# Edge lengths from a file: the mesh of a first run, with a size at each of
+# its points, controls the next run; and invalid files are refused.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 
@@ -37,7 +37,7 @@ plain=$(cells plain/box.report.json) finer=$(cells finer/box.report.json)
 [ "$finer" -gt $((plain * 3 / 2)) ] ||
   fail "$finer cells with sizes, $plain without"
 
-# what was used is in the deck, and the same for threads and ranks
+# the deck names the files used, and the run is the same for threads and ranks
 says finer/box.resolved.deck first/box.sol
 vanguard mesh -q -p box --deck finer/box.resolved.deck --out again --threads 3
 exits 0
@@ -48,7 +48,7 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   cmp finer/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks differ"
 fi
 
-# VTK: points of their own
+# VTK files have their own points
 cat >one.vtu <<'END'
 <VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">
 <UnstructuredGrid><Piece NumberOfPoints="1" NumberOfCells="0">
@@ -67,7 +67,8 @@ vanguard mesh -q -p box --sizes vtk/box.vtu --out no
 exits 1
 says err "vtk/box.vtu: there is no array 'size' in <PointData>"
 
-# refused: a size that is none, of how many points, without a mesh, of no kind
+# refused: a negative size, a wrong number of points, a .sol without its mesh,
+# an unknown format
 sol first/box.sol -0.006
 vanguard mesh -q -p box --sizes first/box.sol --out no
 exits 1

@@ -1,10 +1,11 @@
 # The batch script under plain bash, with a program whose end is known, and
-# with vanguard mesh: stopped by the signal that Slurm sends, continued.
+# with vanguard mesh: stopped by the signal that Slurm sends, then continued.
 script=$here/../../share/slurm/vanguard.sbatch
 unset SLURM_JOB_ID SLURM_NTASKS SLURM_CPUS_PER_TASK SLURM_JOB_NUM_NODES
 cat >fake <<'END_FAKE'
 #!/bin/bash
-# mesh ... --run-dir DIR ...: waits; told to stop it leaves what it has done
+# mesh ... --run-dir DIR ...: waits; on a stop signal it keeps its finished
+# work
 dir=.
 echo "called: $*"
 while [ $# -gt 0 ]; do
@@ -20,7 +21,7 @@ rm -r "$dir"
 END_FAKE
 chmod +x fake
 
-# batch SIGNAL VARIABLE...: run the script; send it the signal when the
+# batch SIGNAL VARIABLE...: runs the script and sends it the signal when the
 # program is ready ("-": none).
 batch() {
   local signal=$1 pid
@@ -63,7 +64,7 @@ exits 4
 exists elsewhere
 rm fails
 
-# The job goes back into the queue, not for ever.
+# The job is requeued, but not forever.
 mkdir bin
 printf '#!/bin/bash\necho "scontrol $*"\n' >bin/scontrol
 chmod +x bin/scontrol
@@ -76,7 +77,8 @@ batch USR1 PROJECT=in/box VANGUARD=./fake SLURM_JOB_ID=7 \
 exits 75
 lacks out "scontrol requeue"
 
-# Several ranks: with cores of their own, or, where there are too few, shared.
+# Several ranks: with separate cores, or with shared cores if there are too
+# few.
 printf '#!/bin/bash\necho "mpirun $*"\n' >bin/mpirun
 chmod +x bin/mpirun
 batch - PROJECT=in/box NTASKS=2 CPUS=9999 PATH="$PWD/bin:$PATH"
@@ -118,8 +120,9 @@ says out "--resume"
 same whole/box.b8.ugrid o/box.b8.ugrid
 absent o/box.run
 
-# Under Slurm itself: verification/slurm.sh, which starts its daemons. Here only
-# when asked for, as daemons are no business of every run of the tests.
+# The test under Slurm itself is verification/slurm.sh, which starts the
+# daemons of Slurm. It runs only on request, since a test run should not start
+# daemons.
 if [ -z "${VG_TEST_SLURM:-}" ]; then
   echo "sbatch is not tested: set VG_TEST_SLURM=1 for it"
 else

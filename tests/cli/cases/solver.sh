@@ -1,10 +1,10 @@
-# Parts for a solver: of a mesh that is made, by ranks and threads alike, and of
-# one in a file, in three forms; refusals.
+# Solver partitions: of a mesh as it is made, by ranks and threads, and of a
+# mesh file, in three forms; refusals.
 vanguard demo wing-half --cells 8000 --out p
 exits 0
 layers="--first 0.001 --layer-count 6 --fan-angle 60"
 
-# With the mesh: .part, cell data of the .vtu, OpenFOAM's.
+# With the mesh: .part, cell data of the .vtu, and OpenFOAM.
 # shellcheck disable=SC2086
 vanguard mesh -q -p p/wing-half $layers --ugrid-tail yes --solver-parts 4 \
   --write b8.ugrid,cogsg,vtu,foam --out one
@@ -23,7 +23,8 @@ sed -n '/^(/,/^)/p' one/wing-half.openfoam/constant/cellDecomposition |
 says one/wing-half.openfoam/constant/cellDecomposition "$n"
 says one/wing-half.openfoam/system/decomposeParDict "numberOfSubdomains 4;"
 
-# Of the file: the same stacks, hence the same parts; from either format.
+# From the file: the same stacks, hence the same partitions; from either
+# format.
 for file in wing-half.b8.ugrid wing-half.cogsg; do
   vanguard partition -q one/$file -n 4 --out again
   exits 0
@@ -49,7 +50,7 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   done
 fi
 
-# Prisms are stacks in any file; tetrahedra only where it tells.
+# Prisms form stacks in any file; tetrahedra only if the file marks them.
 # shellcheck disable=SC2086
 vanguard mesh -q -p p/wing-half $layers --cells mixed --write lb8.ugrid --out m
 vanguard partition -q m/wing-half.lb8.ugrid -n 3 --weights pri=2,pyr=1.5 \

@@ -1,5 +1,5 @@
-# Sources that coarse faces hold back, or that lie nowhere in the fluid, are
-# named with a remedy; those of the demos are not.
+# Sources that are limited by coarse faces, or that are outside the domain,
+# are reported with a remedy; those of the demos are not.
 vanguard demo sphere --cells 20000 --out p
 exits 0
 vanguard mesh -q -p p/sphere --out plain
@@ -37,7 +37,7 @@ says held/sphere.report.json '"patch_name": "farfield"'
 says held/sphere.report.json '"edge_wanted": '
 grep note out >notes
 
-# The same by all ranks and threads of one, and by plan.
+# All ranks and all threads report the same, and so does plan.
 vanguard mesh -q -p p/sphere --out held2 --threads 2
 exits 0
 grep note out | diff - notes || fail "notes depend on threads"
@@ -50,15 +50,15 @@ exits 0
 says out '"wholly": true'
 says out '"beyond": ['
 
-# What is advised helps.
+# The advised remedy works.
 growth=$(sed -n 's/.*source 6 .*increase growth to //p' notes)
 [ -n "$growth" ] || fail "no growth rate is advised"
 vanguard mesh -q -p p/sphere --out grown --growth "$growth"
 exits 0
 lacks out "source 6 "
 
-# Fast growth passes by a small sphere no more; a point that cells cannot grow
-# from as fast is named.
+# Fast growth no longer misses a small sphere; a point near which cells cannot
+# grow that fast is reported.
 vanguard demo box --cells 20000 --out b
 exits 0
 sed -i '/^sources$/,$d' b/box.deck

@@ -1,5 +1,5 @@
-# vanguard surface: a surface of needles made anew, its files and report; what
-# it refuses; and the same within a run of vanguard mesh.
+# vanguard surface: a surface of sliver triangles remeshed, its files and
+# report; refusals; and the same within a run of vanguard mesh.
 beam() { # NAME: a bar 4 x 1 x 1, its long sides cut into needles across
   {
     for ((i = 0; i <= 40; i++)); do
@@ -38,7 +38,7 @@ vanguard check -q new/bar.lb8.ugrid
 exits 0
 says out "no defects"
 
-# The same bytes again, whatever the threads; nothing is overwritten.
+# The same bytes for any number of threads; nothing is overwritten.
 vanguard surface -q bar.obj --surface-size 0.3 --out again -t 2 --json
 exits 0
 says out '"percent_edges_fit"'
@@ -47,7 +47,8 @@ vanguard surface -q bar.obj --surface-size 0.3 --out new
 exits 1
 says err "exists and is not overwritten"
 
-# A border that is hard stays; beside the input the name is another one.
+# A fixed patch border stays. In the folder of the input the output has
+# another name.
 cat >hard.deck <<'END'
 needles
 surface_size
@@ -62,7 +63,7 @@ exits 0
 exists bar.new.stl bar.new.mapbc
 rm bar.new.*
 
-# What cannot be.
+# Invalid requests.
 vanguard surface
 exits 2
 says err "which surface?"
@@ -80,11 +81,12 @@ exits 1
 says err "for volume meshes"
 sed '$d' bar.obj >open.obj
 vanguard surface -q open.obj --out holed
-exits 0 # an open rim is a line
+exits 0 # an open rim is a feature curve
 vanguard check -q holed/open.lb8.ugrid
 says out "open edge: "
 
-# Sizes of a patch and of a curve; the ends have no points but those of the rim.
+# Sizes for a patch and for a curve; the ends have no points except those of
+# the rim.
 made() { # triangles of the new surface
   sed -n 's/.*triangles, now \([0-9,]*\);.*/\1/p' out | tr -d ,
 }
@@ -122,7 +124,8 @@ vanguard surface -q bar.obj --deck nothing.deck --out nothing
 exits 1
 says err "asks for nothing"
 
-# The curve again, with longer edges along it than across, but at corners.
+# The curve again, with edges that are longer along it than across it, except
+# at corners.
 sed -e 's/  size$/  size  stretch/' -e 's/^2 .*/1      2       0.1   4/' \
   end.deck >long.deck
 sed 's/^1 .*/1      -       0.1   4/' long.deck >nowhere.deck
@@ -148,7 +151,8 @@ vanguard mesh -q -p bar.obj --deck run/bar.resolved.deck --out rerun
 exits 0
 same run/bar.lb8.ugrid rerun/bar.lb8.ugrid
 
-# What there is to know of a surface: lines, and distance from another one.
+# Information about a surface: feature edges, and the distance from another
+# surface.
 vanguard check -q new/bar.lb8.ugrid --against bar.obj --vtu shown.vtu
 exits 0
 says out "lines (ridges, rims, borders between conditions): 12, length 24"
@@ -159,7 +163,7 @@ says shown.vtu 'Name="distance"'
 printf 'Sizes of a bar\nsurface_size\n0.3\n' >size.deck
 vanguard check -q new/bar.lb8.ugrid --deck size.deck --json
 exits 0
-# Uniform sizes are to be met by 95 %.
+# At least 95 % of the edges must match a uniform size.
 jq -e '.. | .percent_edges_fit? // empty | . >= 98' out >/dev/null ||
   fail "edges do not fit: $(grep percent_edges_fit out)"
 says out '"corners": 8'

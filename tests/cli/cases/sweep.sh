@@ -1,5 +1,5 @@
 # A grid of runs: tables, figures, digests, failures. A small program stands
-# for vanguard mesh, so that times and digests are known.
+# in for vanguard mesh, so that times and digests are known.
 cat >fake <<'END'
 #!/bin/bash
 # mesh -p P --threads T --leaf-cells C --timeline -o DIR ...
@@ -73,8 +73,9 @@ says s/speedup.svg "leaves of 200, 2 ranks"
 says s/speedup.svg "leaves of 100, model"
 says s/c100-n1-t1/run.log progress
 
-# Ways to decompose, with all parts each: cells over those of the advancing
-# partition in as many; a list of the deck gives way to them.
+# Ways to decompose, each with every number of subdomains: cells relative to
+# those of the advancing partition with the same number. The options replace a
+# list in the deck.
 sweep -p box --decompose advancing,discrete --parts 4,16 -t 1,2 -o ways
 exits 0
 says out "8 of 8 cases done"
@@ -93,7 +94,7 @@ vanguard sweep -p box --decompose advancing,metis
 exits 2
 says err "--decompose takes advancing, discrete or octree, with commas between, not 'metis'"
 
-# Where no case has one worker, the fewest stand for it.
+# If no case has one worker, the case with the fewest is the reference.
 sweep -p box -n 2 -t 1,2 -o f
 exits 0
 says out "n2-t1     2       1      5.00     2.00   100.0     4.00"
@@ -101,7 +102,8 @@ says out "n2-t2     2       2      3.00     3.33    83.3     2.00"
 exists f/speedup.svg
 says f/speedup.svg "against n2-t1: 5 s"
 
-# Levels beside leaf sizes, repeats, meshes kept, nothing but JSON on stdout.
+# Bisections in addition to leaf sizes, repeats, meshes kept, nothing but JSON
+# on stdout.
 sweep -p box -L 3:4 --leaf-cells 100 --repeat 2 -o k --keep -q -j
 exits 0
 exists k/L3-n1-t1-r2/box.cogsg
@@ -109,8 +111,8 @@ says out '"case": "c100-n1-t1-r2"'
 says err "6 of 6 cases done"
 lacks err "1 of 6: "
 
-# A failed case is told with its reason and does not end the sweep; what an
-# earlier sweep left there is not taken for its result.
+# A failed case is reported with its reason and does not end the sweep; files
+# of an earlier sweep are not taken for its result.
 sweep -p box --leaf-cells 100 -t 1,2,4 -o s -- --fail-at 2
 exits 1
 says out "failed, status 3: no memory for 2 threads"
@@ -122,18 +124,18 @@ vanguard sweep -q -p box -o bad -- --no-such-option
 exits 1
 says out "failed, status 2: unrecognized option '--no-such-option'"
 
-# Files that differ are an error of their own.
+# Files that differ are a separate kind of error.
 sweep -p box --leaf-cells 100 -n 1,2 -o w -- --wrong
 exits 4
 says out "Digests DIFFER: box.cogsg is not the same in c100-n1-t1 and c100-n2-t1"
 says w/sweep.json '"digests": "differ"'
 
-# A program that is not there.
+# A program that does not exist.
 vanguard sweep -p box --program ./none -o none
 exits 1
 says out "failed, status 127: cannot start ./none"
 
-# A launcher's own message stands between rules.
+# A launcher's own message is printed between rules.
 cat >launch <<'END'
 #!/bin/bash
 printf '%s\n' started ------ "No slots for $1." "Ask for fewer." ------
@@ -144,7 +146,7 @@ vanguard sweep -p box -n 3 --launcher "./launch {ranks}x{threads}" -o none
 exits 1
 says out "failed, status 1: No slots for 3x1."
 
-# Told to stop: the run is told too, and what there is gets shown.
+# On a stop signal the run is stopped too, and the results so far are shown.
 cat >slow <<'END'
 #!/bin/bash
 trap 'echo "vanguard: stopped"; exit 1' TERM
@@ -166,7 +168,8 @@ says out "failed, status 1: stopped"
 says out "n1-t2     1       2 not run"
 says err "interrupted during n1-t1"
 
-# Lists from the deck of the project, or another one; options win.
+# Lists from the deck of the project, or from another deck; options override
+# them.
 vanguard demo box --cells 2000 --out p
 cat >>p/box.deck <<'END'
 
@@ -192,7 +195,7 @@ sweep -p p/box --deck bad.deck -o d
 exits 1
 says err "bad.deck: sweep: leaf_cells takes numbers such as 1,2,4 or ranges"
 says err "not 'many'"
-# Its other commands take no notice of it; a second line is one too many.
+# Other commands ignore these lists; a second line is an error.
 vanguard mesh -q -p p/box --out m
 exits 0
 says m/box.resolved.deck "1:4:x2"

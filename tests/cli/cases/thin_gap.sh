@@ -1,5 +1,6 @@
-# The space between two boxes, far narrower than their edges, cut into far more
-# parts than it holds cells: regions of a lattice without any face of the front.
+# The gap between two boxes, far narrower than their edges, cut into far more
+# subdomains than it holds cells: some regions of the lattice contain no face
+# of the front.
 awk '
 function corner(axis, side, u, v, half,  w) {
   w[axis] = side * half
@@ -35,7 +36,7 @@ vanguard check o/gap.b8.ugrid
 exits 0
 says out valid
 
-# Edges across the gap: far too many triangles, said before any is made.
+# Edges across the gap: far too many triangles, reported before any is made.
 for limit in "" "--max-cells 100000"; do
   # shellcheck disable=SC2086
   vanguard mesh -q -p gap.stl --farfield none --remesh-surface yes \

@@ -1,4 +1,5 @@
-# The tour of CONTRIBUTING.md names functions that are where it says.
+# The tour of CONTRIBUTING.md names functions that exist in the files it
+# gives.
 root=$here/../..
 n=0
 while IFS='|' read -r _ name file _; do
@@ -9,7 +10,8 @@ while IFS='|' read -r _ name file _; do
 done < <(grep -E '^\| `[a-z_]+` \| `[a-z/_]+\.c`' "$root/CONTRIBUTING.md")
 [ "$n" -ge 10 ] || fail "only $n steps in the tour"
 
-# The constants of docs/decisions.md are where it says, and name their rows.
+# The constants of docs/decisions.md are in the files it gives, and name their
+# rows.
 n=0
 while IFS='|' read -r _ row _ file _; do
   row=${row// /} file=${file//[ \`]/}

@@ -1,4 +1,4 @@
-# Without a command, with help, with a slip: texts and exit status.
+# Without a command, with help, with a typing error: texts and exit status.
 vanguard
 exits 2
 is err <<'END'
@@ -89,7 +89,7 @@ exits 2
 vanguard demo box --cells many
 exits 2
 
-# What cannot be written to standard output is a failure, and said.
+# A failure to write standard output is an error, and reported.
 if [ -w /dev/full ]; then
   "$program" demo --list >/dev/full 2>err
   status=$?
@@ -97,8 +97,8 @@ if [ -w /dev/full ]; then
   says err "standard output could not be written whole"
 fi
 
-# Settings that do not go together: wrong usage where options make it so, a bad
-# input where the deck alone does.
+# Conflicting settings: wrong usage if options cause the conflict, bad input
+# if the deck alone does.
 vanguard demo box --cells 2000 --out p
 for command in mesh plan; do
   vanguard $command -q -p p/box --constant-direction yes
@@ -114,7 +114,7 @@ vanguard mesh -q -p p/box --deck bad.deck
 exits 1
 says err "bad.deck:3: write: 'nonsense' is no format"
 
-# What a run needs beside its input is looked at before the input is read.
+# The other files of a run are checked before its input is read.
 echo "not a surface" >p/broken.stl
 vanguard mesh -q -p p/broken.stl --run-dir nowhere --resume
 exits 1
@@ -133,7 +133,7 @@ else
   says err "closed: cannot write in this folder: Permission denied"
 fi
 
-# What is no surface, and what is no folder.
+# Files that are not surfaces, and paths that are not folders.
 : >wing.x_t
 for command in check mesh; do
   vanguard $command -q wing.x_t

@@ -1,4 +1,4 @@
-# A real VGRID project meshes as it is, with the layers it asks for.
+# An unmodified VGRID project meshes with the layers that it requests.
 [ -d "${VG_DATA_DIR:-}/vgrid_box" ] || skip "VG_DATA_DIR has no vgrid_box"
 for suffix in d3m front mapbc; do
   cp "$VG_DATA_DIR/vgrid_box/box.$suffix" .
@@ -17,30 +17,32 @@ vanguard check -q "$VG_DATA_DIR/vgrid_box/box.cogsg"
 exits 0
 says out "validity: valid"
 
-# VGRID made 51,564 layer cells of 30 levels; the points that it has put on the
-# side walls already must not end ours early.
+# VGRID made 51,564 layer cells of 30 levels; the points that it already
+# placed on the side walls must not limit the layers.
 n=$(sed -n 's/.*"tetrahedra_if_subdivided": \([0-9]*\).*/\1/p' box.report.json)
 [ "$n" -gt 50533 ] && [ "$n" -lt 52595 ] ||
   fail "$n layer cells are not within 2 % of VGRID's 51,564"
 
-# The header says how many points and cells are in layers, in VGRID's order.
+# The header gives the numbers of points and cells in layers, in VGRID's
+# order.
 count() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" box.report.json | tail -1; }
 nev=$(od -An -tu4 --endian=big -j 24 -N 4 box.cogsg | tr -d ' ')
 [ "$nev" = "$(count tetrahedra_if_subdivided)" ] ||
   fail "nev is $nev, not $(count tetrahedra_if_subdivided)"
 
-# The resolved deck needs the .d3m no more and repeats the run.
+# The resolved deck no longer needs the .d3m and repeats the run.
 vanguard mesh -q -p box --deck box.resolved.deck --out again
 exits 0
 lacks out "taken from the .d3m"
 same box.cogsg again/box.cogsg
 
-# Without layers it is what it was before there were any.
+# Without layers the mesh is the one made before layers existed.
 vanguard mesh -q -p box --layers no --out plain
 exits 0
 absent plain/box.wall.vtu
 
-# grid 2: the law follows the sources; at a source it is the source's.
+# grid 2: the growth law follows the sources; at a source it equals that of
+# the source.
 mkdir by_source
 cp box.front box.mapbc by_source
 awk '/\( *grid:/ { sub(/1 \(/, "2 (") }

@@ -1,5 +1,5 @@
 # A closed surface without conditions and with normals out of the fluid: a
-# room in which a block stands is taken as a domain, with a note.
+# room that contains a block is taken as a domain, with a note.
 cat >room.obj <<'END'
 v 0 0 0
 v 9 0 0
@@ -66,14 +66,15 @@ vanguard check -q room.obj
 exits 0
 says out "Flow inside a given outer boundary"
 
-# The user knows better.
+# The user can override this.
 vanguard mesh -q -p room --farfield sphere --farfield-lengths 3 \
   --growth 1.5 --out outside
 exits 0
 says out "added: farfield"
 says out "Evidence: the option farfield sphere"
 
-# A brick says nothing: a body, and the note says how to have it otherwise.
+# A single brick gives no evidence: it is taken as a body, and the note
+# explains how to change that.
 sed -e '/^g floor/,$d' room.obj >brick.obj
 printf 'f 1 3 2\nf 1 4 3\n' >>brick.obj
 sed -i '/^v/{9,$d}' brick.obj

@@ -1,5 +1,5 @@
-# Bodies that cross cannot bound a mesh, until they are wrapped; the same files
-# for any number of ranks.
+# Bodies that intersect cannot bound a mesh until they are wrapped; the files
+# are the same for any number of ranks.
 octahedron >two.obj
 octahedron | sed 's/^g .*/g other/' | awk '$1 == "v" { print "v", $2 + 0.7, $3,
   $4; next } $1 == "f" { print "f", $2 + 6, $3 + 6, $4 + 6; next } { print }' \
@@ -27,7 +27,7 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   exits 0
   same one/two.b8.ugrid three/two.b8.ugrid
 fi
-# an outer boundary is kept, and refused where a body crosses it
+# an outer boundary is kept, and refused where a body intersects it
 printf '1 5000 far\n' >two.mapbc
 sed -i '1i 1' two.mapbc
 vanguard mesh -q -p two.obj --wrap 0.2 --out far
@@ -38,7 +38,7 @@ vanguard mesh -q -p two.obj --wrap 1e-6 --out small
 exits 1
 says err "in the unit of the surface?"
 absent small/two.b8.ugrid
-# a wrap that goes through a hole would have fluid inside; closing it works
+# a wrap that enters through a hole would have fluid inside; closing it works
 octahedron | grep -v '^f 1 3 5' >open.obj
 vanguard mesh -q -p open.obj --wrap 0.1 --out hollow
 exits 1
@@ -46,7 +46,7 @@ says err "close_holes yes"
 absent hollow/open.b8.ugrid
 vanguard mesh -q -p open.obj --wrap 0.1 --close-holes yes --out closed
 exits 0
-# a patch that walls name does not vanish without a word
+# a patch that walls name does not disappear without a message
 octahedron >nested.obj
 octahedron | awk '$1 == "v" { print "v", $2 / 4, $3 / 4, $4 / 4; next }
   $1 == "f" { print "f", $2 + 6, $3 + 6, $4 + 6; next } { print "g inner" }' \
