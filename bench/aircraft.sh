@@ -1,10 +1,10 @@
-# bench/aircraft.sh: surfaces of the data folder, and how they are meshed with
-# layers. Sourced after common.sh, with `vanguard` the program.
+# bench/aircraft.sh: surfaces of the data folder, and their settings for layers.
+# Sourced after common.sh; `vanguard` is the program.
 # shellcheck shell=bash disable=SC2034,SC2154 # for, and from, the caller
 
 # name, file below the data folder, patches that are walls (all: a body in open
-# air), mean chord, Reynolds number; chords without a source are read off the
-# bounding box.
+# air), mean chord, Reynolds number; chords without a source are estimated from
+# the bounding box.
 aircraft_table="
 dlr_f6_coarse transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz 1-123 141.2 3e6
 dlr_f6_medium transport/dlr_f6_wbnp_half_medium.lb8.ugrid.xz 1-123 141.2 3e6
@@ -17,8 +17,9 @@ f16           supersonic/f16_full.lb8.ugrid.xz all 3.4 5e6
 tmx1242       supersonic/tmx1242_wing_body.lb8.ugrid.xz all 8 5e6
 "
 
-# aircraft DATA NAME FOLDER: its surface in FOLDER, if there is one, packed or
-# not; `project` and `options` say how it is meshed. Status 1: no such file.
+# aircraft DATA NAME FOLDER: copy the surface, compressed or not, to FOLDER;
+# sets `project` and `options` for meshing. Status 1, with a message: no such
+# file.
 aircraft() {
   local name file walls length reynolds
   read -r name file walls length reynolds < <(
@@ -27,7 +28,10 @@ aircraft() {
   project=$3/$name.lb8.ugrid
   if [ -e "$1/${file%.xz}" ]; then cp -f "$1/${file%.xz}" "$project"
   elif [ -e "$1/$file" ]; then xz -dc "$1/$file" > "$project"
-  else return 1; fi
+  else
+    echo "no $1/$file: verification/fetch.md has the source" >&2
+    return 1
+  fi
   options=(--layers yes --y-plus 1 --reynolds "$reynolds"
     --reference-length "$length" --ratio 1.2)
   case $walls in
@@ -36,7 +40,7 @@ aircraft() {
   esac
 }
 
-# demo_project NAME CELLS FOLDER: as aircraft, of vanguard demo.
+# demo_project NAME CELLS FOLDER: the same for a case of vanguard demo.
 demo_project() {
   project=$3/$1.$2/$1
   options=()

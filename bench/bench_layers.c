@@ -1,20 +1,21 @@
-/* The program of bench/layers.sh: what viscous layers cost, phase by phase.
+/* The program of bench/layers.sh: cost of viscous layers, phase by phase.
  *
  * vg_bench_layers [OPTION...] --demo NAME --cells N
  * vg_bench_layers [OPTION...] SURFACE
- *   --name NAME     of the case in the rows (default: that of the input)
+ *   --name NAME     name of the case in the rows (default: that of the input)
  *   --walls LIST    patches with layers, as in 3-12,15 (default: condition 4,
- *                   or all where no patch has a condition)
+ *                   or all if no patch has a condition)
  *   --domain yes    SURFACE bounds the fluid by itself (default: a body)
  *   --length L --reynolds R   y+ 1 (default 0.7 and 5e6)
- *   --rate1 A --rate2 B --cap C   the law (default 0.2, 0, 1.3)
+ *   --rate1 A --rate2 B --cap C   the growth law (default 0.2, 0, 1.3)
  *   --threads N     (default 1)
- *   --runs N        of everything (default 3); shown are medians
- *   --fill no       leave the field out: layers alone are joined and written
- *   --out FILE      write the mesh here each time (a name of its own kind;
- *                   it is removed at the end)
- * Prints a row "grow | ..." and two rows "join | ...", as the tables of
- * bench/layers.sh have them. */
+ *   --runs N        runs of everything (default 3); medians are shown
+ *   --fill no       without the cells outside the layers: only layers are
+ *                   joined and written
+ *   --out FILE      write the mesh here each time; the suffix gives the format,
+ *                   and the file is removed at the end
+ * Prints a row "grow | ..." and two rows "join | ..." for the tables of
+ * bench/layers.sh. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,7 +45,7 @@ struct clocks {
   double wall, cpu;
 }; /* cpu: user and system */
 
-/* One run of everything; [0] tetrahedra, [1] mixed. */
+/* Results of one run; [0] tetrahedra, [1] mixed. */
 struct figures {
   struct vg_layer_report grow;
   struct clocks grown, joined[2], written[2];
@@ -83,7 +84,7 @@ static struct clocks since(struct clocks start)
   return (struct clocks){ end.wall - start.wall, end.cpu - start.cpu };
 }
 
-/* 1 when id is in a list as "3-12,15". */
+/* 1 if id is in a list such as "3-12,15". */
 static int in_list(const char *list, long id)
 {
   while (*list) {
@@ -141,7 +142,7 @@ static vg_status read_surface(struct bench *b, struct vg_error *err)
   return st;
 }
 
-/* The front's boundary and points, with the new points and the cells. */
+/* Boundary and points of the front, with the new points and the cells. */
 static vg_status fill(const struct vg_mesh *surface,
                       const struct vg_sizing *sizing, struct vg_mesh *field,
                       struct vg_error *err)
@@ -170,7 +171,7 @@ static vg_status fill(const struct vg_mesh *surface,
   return st;
 }
 
-/* A mesh of the front without cells: what is then joined is layers alone. */
+/* A mesh of the front without cells, to which only layers are joined. */
 static vg_status make_field(const struct bench *b,
                             const struct vg_layers *layers,
                             struct vg_mesh *field, struct vg_error *err)
@@ -212,7 +213,8 @@ done:
   return st;
 }
 
-/* The field is made once, by the first run: layers are the same each time. */
+/* Only the first run fills the void, because the layers are always the
+ * same. */
 static vg_status one_run(struct bench *b, const struct vg_sizing *sizing,
                          struct vg_mesh *field, struct figures *f,
                          struct vg_error *err)

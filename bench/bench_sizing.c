@@ -1,9 +1,9 @@
-/* bench_sizing [N [M [GROWTH [SPAN [THREADS]]]]]: cost of the field of sizes.
+/* bench_sizing [N [M [GROWTH [SPAN [THREADS]]]]]: cost of the sizing field.
  *
  * A sphere of 12 N^2 triangles within a box of 12 M^2 triangles, SPAN times
- * larger: time to build, leaves of the octree, points per second at random
- * points of the box, at random points near the sphere, and along a walk as a
- * mesher makes it. Prints one line per figure. */
+ * larger: time to build, leaves of the octree, evaluations per second at random
+ * points of the box, at random points near the sphere, and along a walk like
+ * that of a mesher. Prints one line per figure. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +20,7 @@ static double clock_of(clockid_t id)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Time of this program alone: other work on the machine is not counted. */
+/* Processor time of this program: other load on the machine is not counted. */
 static double now(void)
 {
   return clock_of(CLOCK_PROCESS_CPUTIME_ID);
@@ -32,8 +32,8 @@ static double random_unit(uint64_t *state)
   return (double)(*state >> 11) * 0x1p-53;
 }
 
-/* Six faces of n x n squares, each two triangles; points are not shared
- * between faces, which sizes do not mind. */
+/* Six faces of n x n squares of two triangles each. Faces do not share points,
+ * which the sizing field does not need. */
 static void add_cube(struct vg_mesh *m, int n, double radius, int round)
 {
   for (int f = 0; f < 6; f++) {

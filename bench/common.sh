@@ -1,5 +1,5 @@
-# bench/common.sh: what the scripts of bench/ and verification/ share. Sourced
-# by bash with `root` set; `script` is the caller's name in messages.
+# bench/common.sh: functions shared by the scripts of bench/ and verification/.
+# Sourced by bash with `root` set; `script` is the caller's name in messages.
 # shellcheck shell=bash
 export LC_ALL=C
 script=${0#"$root"/}
@@ -35,7 +35,7 @@ take_options() {
   done
 }
 
-# 0 when the case is one of `cases`, names or patterns, or there are none.
+# 0 if the case matches one of `cases` (names or patterns), or `cases` is empty.
 wanted() {
   local pattern
   [ ${#cases[@]} -gt 0 ] || return 0
@@ -51,7 +51,7 @@ need() {   # need PROGRAM PACKAGE
     die "$1 is not installed: apt-get install $2"
 }
 
-# make_programs BUILD NAME...: build what is not there yet.
+# make_programs BUILD NAME...: build the programs that do not exist yet.
 make_programs() {
   local build=$1 name
   shift
@@ -64,7 +64,7 @@ make_programs() {
   done
 }
 
-# work_folder NAME: $work is made, a temporary one when it is not given.
+# work_folder NAME: make the folder $work, a temporary one by default.
 work_folder() {
   if [ -z "${work:-}" ]; then
     work=$(mktemp -d "${TMPDIR:-/tmp}/vanguard-$1.XXXXXX")
@@ -73,7 +73,7 @@ work_folder() {
   mkdir -p "$work"
 }
 
-# to_measure NAME: what run_mesh needs, `vanguard` in $build, $work.
+# to_measure NAME: prepare run_mesh: `vanguard` in $build, and $work.
 to_measure() {
   need jq jq
   need /usr/bin/time time
@@ -83,10 +83,10 @@ to_measure() {
   work_folder "$1"
 }
 
-# Standard output, and the file --out as well.
+# Print to standard output, and to the file --out.
 say() { if [ -n "$out" ]; then tee -a "$out"; else cat; fi; }
 
-# calc EXPRESSION [NAME=VALUE...]: by awk.
+# calc EXPRESSION [NAME=VALUE...]: evaluate with awk.
 calc() {
   local text=$1 set=()
   shift
@@ -95,13 +95,13 @@ calc() {
 }
 holds() { awk "BEGIN { exit !($*) }"; }   # holds 1.02 '<=' 1.1
 
-# Open MPI asks twice before it starts anything for root.
+# Open MPI requires two variables to run as root.
 if [ "$(id -u)" = 0 ]; then
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
 
-# launch RANKS THREADS COMMAND...: bound to cores where there are enough. One
-# rank needs no launcher.
+# launch RANKS THREADS COMMAND...: bound to cores if there are enough. One rank
+# needs no launcher.
 launch() {
   local ranks=$1 threads=$2 binding=()
   shift 2
@@ -117,29 +117,29 @@ launch() {
   mpirun -n "$ranks" "${binding[@]}" "$@"
 }
 
-# digest FOLDER: of all its files that hold results and no times.
+# digest FOLDER: digest of all result files that contain no times.
 digest() {
   (cd "$1" && find . -type f ! -name '*.json' ! -name '*.html' \
     ! -name '*.deck' -print0 | sort -z | xargs -0r sha256sum | sha256sum |
     cut -c1-16)
 }
 
-# Seconds of processor time that the host took from this virtual machine so far.
+# Seconds of processor time that the host has taken from this virtual machine.
 stolen() {
   awk -v hz="$(getconf CLK_TCK)" '$1 == "cpu" { print $9 / hz }' /proc/stat
 }
 
-# run_mesh VANGUARD FOLDER RANKS THREADS OPTION...: vanguard mesh with its
-# record, timed. FOLDER/row.json: wall, cpu (user and system time of all
+# run_mesh VANGUARD FOLDER RANKS THREADS OPTION...: vanguard mesh with a
+# timeline, timed. FOLDER/row.json: wall, cpu (user and system time of all
 # ranks), stolen (the share of all cores that the host took meanwhile), peak_mb
-# (of the largest process), and what report and record say.
-# Status as the mesher's; its words are in FOLDER/log.
+# (of the largest process), and figures of report and timeline.
+# The status is that of the mesher; its output is in FOLDER/log.
 run_mesh() {
   local vanguard=$1 d=$2 ranks=$3 threads=$4 status=0 report record host
   shift 4
   rm -rf "$d"
   mkdir -p "$d/out"
-  # Around all of it: a launcher's time is that of its ranks.
+  # Time the whole command: the time of a launcher includes its ranks.
   local script_text
   script_text=$(declare -f launch)
   host=$(stolen)

@@ -1,21 +1,23 @@
 /* interface CASE CELLS LEAF [THREADS [PARTS [remesh|h-refine|octree
- * [metis|rcb]]]]: are cells beside interfaces as good as all cells?
+ * [metis|rcb]]]]: are cells near interfaces as good as all cells?
  *
  * CASE: a case of `vanguard demo` with about CELLS cells, or a file with a
- * closed surface, which is meshed as it is. It is filled in leaves of LEAF
- * cells; points that a zone made and that have cells of other tasks are on
- * interfaces. Cells made by repairs count as of the place where they are: what
- * their corners' makers say, since the tasks whose cells they take the place of
- * are not kept. With PARTS it is decomposed by `discrete`, or `octree`, whose
- * gap LEAF should leave whole: then points that a leaf made, or adopted, and
- * that have cells of other leaves are on interfaces; cells made by repairs do
- * not tell.
- * One line each for all cells, for those within two rings of an interface,
- * and for the others; then for all and those near among the inner cells,
- * without a corner on the surface, whose angles are others and of which
- * interfaces have fewer. In a line: number; smallest dihedral angle of a cell:
- * least, first and fifth hundredth, mean; largest: 95th and 99th hundredth;
- * mean edge over the target: mean, first, 50th and 99th hundredth. */
+ * closed surface, which is not modified. It is filled in leaves of LEAF cells.
+ * Points that a separator made and that have cells of other tasks are on
+ * interfaces. A cell made by repairs is assigned to the task of its location,
+ * which follows from the tasks that made its corners, because the tasks whose
+ * cells it replaces are not recorded. With PARTS the void is decomposed by
+ * `discrete` or `octree`; LEAF should then be large enough not to cut the gap
+ * region of `octree`. In this case points that a leaf made or adopted, and that
+ * have cells of other leaves, are on interfaces; cells made by repairs are
+ * ignored.
+ * Prints one line each for all cells, for those within two rings of an
+ * interface, and for the others; then for all and the near ones among the inner
+ * cells. These have no corner on the surface, where the angles differ and near
+ * which interfaces have fewer cells. In each line: number; smallest dihedral
+ * angle of a cell: minimum, 1st and 5th percentile, mean; largest: 95th and
+ * 99th percentile; mean edge over the target: mean, 1st, 50th and 99th
+ * percentile. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,7 +34,7 @@
 
 enum { BINS = 1800, N_SIZE = 4000, LEAF = 1, ZONE = 2, REPAIR = 3 };
 
-#define MIXED UINT32_MAX /* of a point: cells of two tasks */
+#define MIXED UINT32_MAX /* the point has cells of two tasks */
 #define NOBODY (UINT32_MAX - 1)
 
 static const double degree = 57.29577951308232;
@@ -59,13 +61,13 @@ struct share {
 
 struct census {
   const struct vg_sizing *sizing;
-  uint32_t *task;            /* [n_point] whose cells a point has */
-  uint32_t *maker;           /* [n_point] task that made it; NOBODY: none */
-  uint8_t *kind;             /* [n_point] and of which kind that is */
+  uint32_t *task;            /* [n_point] task of the cells at the point */
+  uint32_t *maker;           /* [n_point] task that made it, or NOBODY */
+  uint8_t *kind;             /* [n_point] kind of that task */
   uint8_t *ring;             /* [n_point] rings from an interface, + 1 */
-  int now;                   /* ring that is looked for */
-  int has_parts;             /* no zones: leaves meet at interfaces */
-  uint64_t n_boundary_point; /* they come first */
+  int now;                   /* ring being marked */
+  int has_parts;             /* no separators: leaves meet at interfaces */
+  uint64_t n_boundary_point; /* the first points */
   struct share all, near, rest, inner, inner_near;
 };
 
@@ -84,10 +86,10 @@ static vg_status note_makers(void *context, const struct vg_slice *s,
   return VG_OK;
 }
 
-/* The task in whose place a cell of a repair is, as its corners tell: a leaf's
- * points have cells of that leaf, and cells with points of one zone only are
- * taken for that zone's. MIXED: points of several tasks, none or some of them
- * leaves. */
+/* The task in whose region a cell of a repair is, derived from its corners:
+ * points of a leaf have cells of that leaf, and cells that only have points of
+ * one separator are assigned to that separator. MIXED: points of several
+ * tasks. */
 static uint32_t place_of(const struct census *k, const uint32_t *id,
                          const uint32_t *v)
 {
@@ -104,8 +106,8 @@ static uint32_t place_of(const struct census *k, const uint32_t *id,
   return leaf == NOBODY ? zone : leaf;
 }
 
-/* A cell that a zone got by a swap may have a corner that a leaf made: there it
- * is beyond the interface. */
+/* A separator cell made by a swap may have a corner that a leaf made; that
+ * corner is on the other side of the interface. */
 static vg_status mark(void *context, const struct vg_slice *s,
                       struct vg_error *err)
 {
@@ -130,7 +132,7 @@ static vg_status mark(void *context, const struct vg_slice *s,
   return VG_OK;
 }
 
-/* All cells of a zone's point may be repairs, or swapped. */
+/* All cells at a point of a separator may come from repairs or swaps. */
 static int on_interface(const struct census *k, size_t p)
 {
   return k->kind[p] == (k->has_parts ? LEAF : ZONE) && k->task[p] != NOBODY &&
@@ -276,8 +278,8 @@ static void show(const char *name, const struct share *s)
          part(s->size, N_SIZE + 1, s->n, 0.99, z));
 }
 
-/* Cells with a corner on an interface are the first ring, their neighbours
- * at points the second. One rank, one thread: marks are not atomic. */
+/* Cells with a corner on an interface are the first ring, cells that share a
+ * point with these the second. One rank, one thread: marks are not atomic. */
 static void measure(const struct vg_slices *s, const struct vg_sizing *sizing,
                     int has_parts)
 {

@@ -1,27 +1,26 @@
 #!/usr/bin/env bash
-# bench/layers.sh: what viscous layers cost, phase by phase, in one run.
+# bench/layers.sh: the cost of viscous layers, phase by phase.
 #
 # usage: bench/layers.sh [--quick] [--out FILE] [--build DIR] [--work DIR]
 #                        [--runs N] [--threads LIST] [--data DIR] [CASE...]
 #   --quick    the smallest size of each wing, one run
 #   --out      write the tables to FILE too
-#   --build    build folder (default build/release, made when missing)
-#   --work     folder for the mesh that is written (default: a temporary one)
-#   --runs     runs of a case, of which the median counts (default 3)
+#   --build    build folder (default build/release, built if missing)
+#   --work     folder for the written mesh (default: a temporary one)
+#   --runs     runs of a case; medians are shown (default 3)
 #   --threads  numbers of threads (default "1 2")
-#   --data     folder of real geometry: its surfaces too (verification/README.md
-#              lists them); there layers are made, joined and written alone,
-#              without the field
+#   --data     folder of real geometry (verification/fetch.md), whose surfaces
+#              are used too; for these only layers are made, joined and written
 #   CASE       wing wing-half wing-sharp, or a surface of --data
 #
-# Layers with y+ 1 at Re 5 million of the mean chord and ratio 1.2. Phases are
-# wall time by the report of vg_layers_grow; "D + H + C" are directions,
-# heights and collisions together. Joining makes the whole mesh of layers and
-# field (an empty mesh in, points and cells out); writing makes a .b8.ugrid in
-# the work folder, through the page cache. Of wall / CPU time the second, user
-# and system time of all threads, tells how much other work disturbed the first;
-# "by CPU time" is the rate with the seconds of all growing scaled accordingly:
-# per core, as far as the disturbance was even.
+# Layers with y+ 1 at Re 5 million based on the mean chord and ratio 1.2. Phases
+# are wall-clock times of the report of vg_layers_grow; "D + H + C" are
+# directions, heights and collisions together. Joining makes the whole mesh of
+# layers and other cells from an empty mesh; writing makes a .b8.ugrid in the
+# work folder, through the page cache. In wall / CPU time, the CPU time (user
+# and system time of all threads) shows how much other load disturbed the
+# wall-clock time; "by CPU time" is the rate corrected for this disturbance, per
+# core, provided that it was uniform.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -33,8 +32,8 @@ work='' data='' quick=0 runs=3 threads='1 2'
 take_options "out build work runs threads data" quick "$@"
 [ $quick = 0 ] || runs=1
 
-# Isotropic cells that `vanguard demo` is asked for: with the layers, as
-# tetrahedra, 2, 5 and 10 million cells.
+# Isotropic cells requested from `vanguard demo`: 2, 5 and 10 million tetrahedra
+# with the layers.
 sizes="600000 1100000 2000000"
 [ $quick = 0 ] || sizes=600000
 
@@ -77,7 +76,9 @@ for wing in wing wing-half wing-sharp; do
 done
 if [ -n "$data" ] && [ $quick = 0 ]; then
   while read -r name file walls kind length reynolds; do
-    if [ -z "$name" ] || ! wanted "$name" || [ ! -e "$data/$file" ]; then
+    if [ -z "$name" ] || ! wanted "$name"; then continue; fi
+    if [ ! -e "$data/$file" ]; then
+      echo "SKIP $name: no $file below --data (verification/fetch.md)" >&2
       continue
     fi
     surface=$work/$(basename "${file%.xz}")

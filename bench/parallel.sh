@@ -1,42 +1,44 @@
 #!/usr/bin/env bash
-# bench/parallel.sh: what cutting costs, and what ranks and threads bring.
+# bench/parallel.sh: the cost of cutting, and the effect of ranks and threads.
 #
 # usage: bench/parallel.sh [--quick] [--scale X] [--runs N] [--data DIR]
 #          [--aircraft NAME] [--leaf-cells LIST] [--build DIR] [--work DIR]
 #          [--out FILE] [--json FILE] [PART...]
-#   --quick       everything at a twentieth of its size, one run
+#   --quick       all cases at a twentieth of their size, one run
 #   --scale       all numbers of cells times X (default 1)
-#   --runs        runs of each, of which the median counts (default 3)
-#   --data        folder of real geometry (verification/README.md): the parts
-#                 two and model take aircraft from there
-#   --aircraft    the one with two cores (default dlr_f6_medium)
+#   --runs        runs of each case; medians are shown (default 3)
+#   --data        folder of real geometry (verification/fetch.md) with the
+#                 aircraft for the parts two and model
+#   --aircraft    aircraft of the part two (default dlr_f6_medium)
 #   --leaf-cells  sizes for the part leaf
-#   --build       build folder (default build/release, made when missing)
+#   --build       build folder (default build/release, built if missing)
 #   --work        scratch folder, kept (default: a temporary one, removed)
 #   --out         write the tables to FILE too
-#   --json        every run and every figure, as one JSON
+#   --json        all runs and figures as one JSON file
 #   PART          price two balance leaf memory model replay
 #
-#   price         CPU of 64 leaves over CPU of no cut, one thread, box 5 M
-#   two           start to files closed: 2 ranks, or 2 threads, against the
-#                 best single thread, cut or not: box 10 M, sphere 12 M,
-#                 aircraft; what vanguard plan makes of the record of one for
-#                 two
-#   balance       most over mean of the workers' time, 8 leaves per worker
-#   leaf          time, memory and forecast for 64 workers over leaf sizes
-#   memory        of the largest rank, over ranks
-#   model         forecasts from the load alone beside records of one thread:
-#                 box and sphere 5 M, DLR-F6 with layers, three leaf sizes
-#   replay        box 23 M and sphere 12 M, cut for 64 workers: what cutting
-#                 adds; on 1 to 512 threads, by their records; box 100 M on
-#                 512 by its estimate alone
+#   price         CPU time with 64 leaves over CPU time uncut, one thread, box
+#                 5 M
+#   two           start to files closed: 2 ranks, or 2 threads, compared with
+#                 the best single thread, cut or uncut: box 10 M, sphere 12 M,
+#                 aircraft; and the forecast of vanguard plan for two workers
+#                 from the timeline of one
+#   balance       maximum over mean of the times of workers, 8 leaves per worker
+#   leaf          time, memory and forecast for 64 workers, by leaf size
+#   memory        memory of the largest rank, by number of ranks
+#   model         forecasts from the load estimate compared with timelines of
+#                 one thread: box and sphere 5 M, DLR-F6 with layers, three leaf
+#                 sizes
+#   replay        box 23 M and sphere 12 M, cut for 64 workers: additional time
+#                 of cutting; replays of their timelines on 1 to 512 threads;
+#                 box 100 M on 512 from its estimate alone
 #
-# Runs that are compared alternate, so that other work on the machine disturbs
-# all alike; wall / CPU in the JSON tell how much. The machine should be quiet:
-# the load before is in the heading. Files from any ranks and threads, and the
-# memory of a large mesh: verification/parallel.
-# Exit status: 0, 1 when balance misses its bar or a run failed, 2 usage. Needs:
-# jq, time, openmpi-bin.
+# Runs that are compared alternate, so that other load on the machine affects
+# all of them equally; wall / CPU in the JSON shows how much. The machine should
+# be quiet: the load before the runs is in the heading. For the equality of
+# files and the memory of a large mesh see verification/parallel.
+# Exit status: 0 done, 1 the balance misses its limit or a run failed, 2 usage.
+# Needs: jq, time, openmpi-bin.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -62,8 +64,8 @@ rows=$work/rows.json figures=$work/figures.json
 cells() { calc "int($1 * $scale)"; }
 fmt() { printf "%.${2:-2}f" "$1"; }
 
-# once NAME RANKS THREADS OPTION...: a run of `project`; its row goes to all
-# rows, its record stays.
+# once NAME RANKS THREADS OPTION...: a run of `project`; adds its row to all
+# rows and keeps its timeline.
 once() {
   local name=$1 ranks=$2 threads=$3
   shift 3
@@ -79,7 +81,7 @@ middle() {   # middle NAME KEY: median over the runs so far
   jq -r --arg part "$part" --arg name "$1" \
     "select(.part == \$part and .name == \$name) | $2" "$rows" | median
 }
-# figure NAME VALUE [BAR]: for the JSON.
+# figure NAME VALUE [BAR]: add a figure to the JSON.
 figure() {
   jq -n -c --arg part "$part" --arg name "$1" --argjson value "$2" \
     --arg bar "${3:-}" '$ARGS.named' >> "$figures"
@@ -103,7 +105,7 @@ part_price() {
   figure box "$ratio" '<= 1.10'
   say << ROW
 
-## Price of cutting (bar: CPU ratio at most 1.10)
+## Price of cutting (limit: CPU ratio at most 1.10)
 
 | case | cells | leaves | zones, % of cells | CPU uncut, s | CPU cut, s | ratio | ratio of cutting and filling, wall |
 |---|---|---|---|---|---|---|---|
@@ -139,7 +141,7 @@ two_case() {   # two_case NAME: rows of `project`
 part_two() {
   say << 'ROW'
 
-## Two cores (bar: speed-up at least 1.75)
+## Two cores (limit: speed-up at least 1.75)
 
 | case | cells | ranks x threads | 1x1, s | 1x1 uncut, s | s | speed-up against the better | against 1x1 | cores in use | taken by the host, % | imbalance | forecast off by, % |
 |---|---|---|---|---|---|---|---|---|---|---|---|
@@ -158,7 +160,7 @@ ROW
 part_balance() {
   say << 'ROW'
 
-## Balance at 8 leaves per worker (bar: 1.05)
+## Balance at 8 leaves per worker (limit: 1.05)
 
 | case | ranks x threads | cells | leaves | busy, % | imbalance | bar | forecast for 16 workers: imbalance |
 |---|---|---|---|---|---|---|---|
@@ -222,7 +224,7 @@ part_memory() {
   local n name shared per
   say << 'ROW'
 
-## Memory of the largest rank (bar: 1.3 x 150 B x cells / ranks + shared part)
+## Memory of the largest rank (limit: 1.3 x 150 B x cells / ranks + shared part)
 
 | case | ranks | cells | peak MB | all ranks, MB | shared part, MB | beside it, B per cell of a rank | bar, MB |
 |---|---|---|---|---|---|---|---|
@@ -247,7 +249,7 @@ ROW
   done
 }
 
-# model_row NAME LEAF_CELLS: `project`, recorded and forecast.
+# model_row NAME LEAF_CELLS: run and forecast `project`.
 model_row() {
   local id=$1-$2 on=(-n 1 -t '2,4,8,16,32,64' --serial 0 --json)
   once "$id" 1 1 --leaf-cells "$2"
@@ -275,7 +277,7 @@ part_model() {
   local name leaf
   say << 'ROW'
 
-## Forecasts from the load beside records of one thread (made / forecast)
+## Forecasts from the load estimate and timelines of one thread (made / forecast)
 
 | case | leaf cells | cells off by, % | leaves | tasks, s | cuts, % | extra, % | speed-up on 1 x 2 | 1 x 4 | 1 x 8 | 1 x 16 | 1 x 32 | 1 x 64 | 1 x 64 off by, % |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|
@@ -293,7 +295,7 @@ ROW
   done
 }
 
-# replay_case NAME LEAF_CELLS: `project`, not cut and cut for 64 workers.
+# replay_case NAME LEAF_CELLS: `project`, uncut and cut for 64 workers.
 replay_case() {
   local name=$1 how added
   for ((i = 0; i < runs; i++)); do
@@ -324,7 +326,7 @@ part_replay() {
   local n
   say << 'ROW'
 
-## Forecasts from the record of one thread (bars: 45 at 64 workers, decomposing adds at most 10 %; PVGRID: 22.95 for the box, 15.47 for the sphere)
+## Forecasts from the timeline of one thread (limits: 45 at 64 workers, decomposing adds at most 10 %; PVGRID: 22.95 for the box, 15.47 for the sphere)
 
 | case | cells | decomposing adds to the time uncut, % | cuts, % of the work | beyond the price of their cells in leaves, % | threads | s | speed-up of cutting and filling | speed-up of all, reading to files | critical path, s | cuts end at % of the time | imbalance |
 |---|---|---|---|---|---|---|---|---|---|---|---|
@@ -337,7 +339,7 @@ ROW
   replay_case sphere "$(calc "int($n / 430)")"
   say << 'ROW'
 
-## Forecasts before meshing (bar: 300 at 512 workers)
+## Forecasts before meshing (limit: 300 at 512 workers)
 
 | case | cells expected | workers | cutting and filling, s | speed-up | of all | MB of a rank |
 |---|---|---|---|---|---|---|

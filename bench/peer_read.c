@@ -1,4 +1,4 @@
-/* Meshes of other programs. */
+/* Readers for meshes of other programs. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,7 +60,8 @@ done:
   return st;
 }
 
-/* TetGen's own order differs in sign between its versions: by volume. */
+/* The orientation of TetGen's cells differs between versions; use the sign of
+ * the volume. */
 static void make_positive(struct vg_mesh *m)
 {
   for (size_t i = 0; i < m->n_tet; i++) {
@@ -134,7 +135,7 @@ done:
   return st;
 }
 
-/* To the line after the one that is exactly `word`. */
+/* Skip to the line after a line that is exactly `word`. */
 static vg_status seek(struct vg_input *in, const char *word,
                       struct vg_error *err)
 {

@@ -1,4 +1,4 @@
-/* The size field for programs that take it from a background mesh. */
+/* The sizing field as a background mesh for other programs. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include "io/stream/stream.h"
 #include "peers.h"
 
-/* Relative difference below which a field counts as uniform in a cell. */
+/* Relative difference below which the field counts as uniform in a cell. */
 #define UNIFORM 0.01
 #define MAX_LEVEL 20
 #define NAME_MAX_LEN 4096
@@ -40,8 +40,8 @@ static double size_at(const struct sampler *s, const uint64_t at[3],
   return vg_sizing_at(s->sizing, x);
 }
 
-/* A field of bounded gradient cannot hide a fine spot in a cell of that many
- * target lengths, so looking at corners and middle is enough. */
+/* A field with bounded gradient has no fine region inside a cell of this many
+ * target lengths, so its corners and centre are sufficient. */
 static int is_fine(const struct sampler *s, const uint64_t at[3], uint64_t span)
 {
   double middle = size_at(s, at, span, (double[3]){ 0.5, 0.5, 0.5 });

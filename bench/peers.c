@@ -1,15 +1,15 @@
-/* vg_bench_peers: the go-between of bench/run.sh.
+/* vg_bench_peers: converts between Vanguard and other meshers for bench/run.sh.
  *
  *   prepare SURFACE DECK STEM  the boundary of a .ugrid mesh as STEM.smesh
  *                              (TetGen), STEM.msh and scripts STEM.geo,
- *                              STEM.ext.geo (Gmsh), and the size field as
+ *                              STEM.ext.geo (Gmsh), and the sizing field as
  *                              STEM.b.node, STEM.b.mtr
- *   view STEM                  the same field, with the tetrahedra that
- *                              TetGen made of it, as STEM.pos (Gmsh)
+ *   view STEM                  the same field on TetGen's tetrahedra of these
+ *                              points, as STEM.pos (Gmsh)
  *   judge MESH SURFACE DECK [OUT.ugrid]
  *                              figures of a mesh: .ugrid, .msh, or the stem
  *                              of .node and .ele; optionally written as UGRID
- *   seconds REPORT.json        time of the fill that a run of Vanguard reports
+ *   seconds REPORT.json        time of the fill in a report of Vanguard
  *
  * DECK is a run deck (run/settings/deck.h), "-" for all defaults. Exit status 0
  * done, 1 failed, 2 usage. */
@@ -31,7 +31,7 @@
 
 #define NAME_MAX_LEN 4096
 
-/* Width of the background's cells in target lengths. */
+/* Width of the background cells in target lengths. */
 #define BACKGROUND_CELLS 3
 
 static vg_status load_surface(const char *path, const char *deck,
@@ -45,7 +45,7 @@ static vg_status load_surface(const char *path, const char *deck,
   vg_settings_default(&s);
   if (strcmp(deck, "-")) VG_TRY(vg_deck_read(deck, &s, err));
   VG_TRY(vg_ugrid_read(path, m, NULL, err));
-  /* a volume mesh may be given: its cells and inner points are not wanted */
+  /* the file may be a volume mesh: drop its cells and inner points */
   free(m->tet);
   m->tet = NULL;
   m->n_tet = 0;
@@ -90,7 +90,8 @@ static double ray_hit(const double o[3], const double d[3], const double a[3],
   return u < 0 || v < 0 || u + v > 1 ? INFINITY : t;
 }
 
-/* Half way from the middle of triangle `face` to the next surface behind. */
+/* The point half way from the centroid of triangle `face` to the next surface
+ * behind it. */
 static void point_behind(const struct vg_mesh *m, size_t face, double x[3])
 {
   const uint32_t *n = m->tri[face];
@@ -116,8 +117,8 @@ static void point_behind(const struct vg_mesh *m, size_t face, double x[3])
   for (int k = 0; k < 3; k++) x[k] = o[k] + least / 2 * d[k];
 }
 
-/* Shells whose normals point out of what they enclose are bodies. *n points,
- * one in each; the caller frees *hole. */
+/* Shells with outward normals are bodies. Returns *n points, one inside each
+ * body; the caller frees *hole. */
 static vg_status find_holes(const struct vg_mesh *m, size_t *n,
                             double (**hole)[3], struct vg_error *err)
 {
@@ -212,8 +213,8 @@ done:
   return st;
 }
 
-/* The triangles, those of a patch as one discrete surface. Physical groups
- * are not set: Gmsh would then save nothing else. */
+/* Write the triangles, each patch as one discrete surface. Physical groups are
+ * not set, because Gmsh would then save only these. */
 static vg_status write_msh(const char *stem, const struct vg_mesh *m,
                            struct vg_error *err)
 {
@@ -244,7 +245,8 @@ static const char field_sizes[] =
 static const char extended_sizes[] =
   "Mesh.MeshSizeExtendFromBoundary = 1;\nMesh.MeshSizeFromPoints = 0;\n";
 
-/* The script of a run: sizes from the field, or from the boundary alone. */
+/* Write the script of a run: sizes from the field, or from the boundary
+ * alone. */
 static vg_status write_geo(const char *stem, const struct vg_mesh *m,
                            int has_field, struct vg_error *err)
 {
@@ -294,7 +296,7 @@ done:
   return st;
 }
 
-/* --- judging --- */
+/* --- mesh check --- */
 
 static void print_report(const struct vg_mesh_report *r, size_t n_tri,
                          size_t n_surface_tri)

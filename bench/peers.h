@@ -1,12 +1,12 @@
-/* bench/peers.h: what the files of the helper share. */
+/* bench/peers.h: functions shared by the files of vg_bench_peers. */
 #ifndef VG_BENCH_PEERS_H
 #define VG_BENCH_PEERS_H
 
 #include "core/mesh/mesh.h"
 #include "core/sizing/sizing.h"
 
-/** Read the mesh STEM.node, STEM.ele of TetGen. Its boundary is that of
- * `surface`, whose points TetGen keeps as its first. */
+/** Read the TetGen mesh STEM.node, STEM.ele. Its boundary is that of `surface`,
+ * whose points are the first points of the mesh. */
 vg_status peer_read_tetgen(const char *stem, const struct vg_mesh *surface,
                            struct vg_mesh *out, struct vg_error *err);
 
@@ -22,13 +22,13 @@ vg_status peer_sample(const struct vg_sizing *sizing, const double lo[3],
                       const double hi[3], double cells, size_t *n,
                       double (**point)[3], double **size, struct vg_error *err);
 
-/** Write STEM.b.node and STEM.b.mtr, a background of TetGen without its
- * tetrahedra (tetgen STEM.b.node makes these). */
+/** Write STEM.b.node and STEM.b.mtr, a background mesh for TetGen without its
+ * tetrahedra (`tetgen STEM.b.node` makes these). */
 vg_status peer_write_background(const char *stem, size_t n,
                                 const double (*point)[3], const double *size,
                                 struct vg_error *err);
 
-/** Turn STEM.b.node, .b.ele, .b.mtr into a view STEM.pos of Gmsh. */
+/** Convert STEM.b.node, .b.ele, .b.mtr to a Gmsh view STEM.pos. */
 vg_status peer_write_view(const char *stem, struct vg_error *err);
 
 #endif

@@ -1,28 +1,28 @@
 #!/usr/bin/env bash
-# bench/run.sh: Vanguard, TetGen and gmsh HXT on the same surfaces, in one run.
+# bench/run.sh: Vanguard, TetGen and gmsh HXT on the same surfaces.
 #
 # usage: bench/run.sh [--quick] [--out FILE] [--build DIR] [--work DIR]
 #                     [--runs N] [--meshcheck PROGRAM] [--no-peers] [CASE...]
 #   --quick      one run of every case at a tenth of its size
 #   --out        write the table to FILE too
-#   --build      build folder (default build/release, made when missing)
+#   --build      build folder (default build/release, built if missing)
 #   --work       scratch folder, kept (default: a temporary one, removed)
 #   --runs       runs of a small case (default 3; large ones: 1)
-#   --meshcheck  a program that judges NAME.lb8.ugrid, exit status 0: valid
+#   --meshcheck  a program that checks NAME.lb8.ugrid, exit status 0: valid
 #   --no-peers   only Vanguard
 #   CASE         box-1M box-10M sphere-2M sphere-12M wing wing-half wing-sharp
 #
-# One thread everywhere. Seconds are of the volume stage alone, from the
-# boundary triangulation to the finished mesh, without reading and writing:
-# of Vanguard the fill and its optimisation, of TetGen its total less its
-# output, of HXT "Done meshing 3D". All are wall time; TetGen knows CPU time
-# only, which is stretched by elapsed / CPU time of its process. Peak memory
-# is that of the whole process. All three keep the triangulation that
-# Vanguard's mesh has on its boundary, and take their sizes from the same
-# field: TetGen as a background mesh, HXT as a view on that mesh. Gmsh is slow
-# at looking sizes up in a view, so HXT also runs with the sizes of the
-# boundary extended inwards ("hxt-ext"): its full speed, but not our sizes.
-# The column "/ HXT" holds against the faster of the two.
+# Everything runs on one thread. Seconds are those of the volume stage, from the
+# boundary triangulation to the finished mesh, without reading and writing: for
+# Vanguard the fill and its optimisation, for TetGen its total without output,
+# for HXT "Done meshing 3D". All are wall-clock times; TetGen reports only CPU
+# time, which is scaled by elapsed / CPU time of its process. Peak memory is
+# that of the whole process. All three keep the boundary triangulation of
+# Vanguard's mesh, and use the same sizing field: TetGen as a background mesh,
+# HXT as a view on that mesh. Gmsh evaluates a view slowly, so HXT also runs
+# with the sizes of the boundary extended inwards ("hxt-ext"): its full speed,
+# but not the same sizes. The column "/ HXT" compares with the faster of the
+# two.
 # Needs: tetgen, gmsh, time (Debian packages of these names).
 set -euo pipefail
 export OMP_NUM_THREADS=1
@@ -66,7 +66,7 @@ helper=$build/bin/vg_bench_peers
 
 work_folder bench
 
-# Value of "key value" lines: field FILE KEY
+# field FILE KEY: the value in a file of "key value" lines.
 field() { awk -v k="$2" '$1 == k { print $2; exit }' "$1"; }
 peak_mb() { awk '/Maximum resident/ { printf "%.0f", $NF / 1024 }' "$1"; }
 timed() {
@@ -75,8 +75,8 @@ timed() {
   /usr/bin/time -v -o "$log.time" "$@" > "$log" 2>&1
 }
 
-# Each of these runs one mesher once in folder $1 and adds its seconds and
-# peak MB to NAME.runs.
+# Each of these functions runs one mesher once in folder $1 and appends its
+# seconds and peak MB to NAME.runs.
 run_vanguard() {
   timed "$1/vanguard.log" "$vanguard" mesh -p "$1/$2" --out "$1/out" \
     --write lb8.ugrid --layers no || { tail -5 "$1/vanguard.log" >&2; return 1; }
@@ -111,14 +111,14 @@ prepare_peers() {
   "$helper" view "$1/peer"
 }
 
-# Median, least and most of column $2 of file $1.
+# Median, minimum and maximum of column $2 of file $1.
 spread() {
   sort -g -k "$2,$2" "$1" | awk -v c="$2" '{ v[NR] = $c } END {
     m = NR % 2 ? v[(NR + 1) / 2] : (v[NR / 2] + v[NR / 2 + 1]) / 2
     print m, v[1], v[NR] }'
 }
 
-# Of rate $1 to the highest in the other files, "-" without any.
+# Ratio of rate $1 to the highest rate in the other files, or "-".
 ratio() {
   local rate=$1
   shift
@@ -189,7 +189,7 @@ one_case() {
     judge "$d" "$stem" "$p"
     row "$d" "$name" "$p" | say
   done
-  find "$d" -size +10M -delete   # large meshes would fill the disc
+  find "$d" -size +10M -delete   # large meshes would fill the disk
 }
 
 [ -z "$out" ] || : > "$out"

@@ -1,20 +1,21 @@
 #!/usr/bin/env bash
-# bench/scale.sh: does the cost of a cell stay what it is when meshes grow? The
-# layered demo wing at sizes that grow fourfold; seconds per million cells of
-# each phase, and of each kind of task per million of its own cells. Projects of
-# one's own, an aircraft with its surface refined for example, beside it.
+# bench/scale.sh: does the cost of a cell stay constant in large meshes? The
+# layered demo wing with a number of cells that grows by factors of four:
+# seconds per million cells for each phase, and for each kind of task per
+# million of the cells that it made. Other projects can be added, such as an
+# aircraft with a refined surface.
 #
 # usage: bench/scale.sh [--threads N] [--fail SHARE] [--vanguard PROGRAM]
 #          [--work DIR] [--out FILE] [MILLIONS | PROJECT]...
-#   --threads   of the runs (default 2)
-#   --fail      make this share of the leaves fail, and compare with none
+#   --threads   threads of the runs (default 2)
+#   --fail      make this share of the leaves fail, and compare with no failures
 #   --vanguard  the program (default build/release/bin/vanguard)
 #   --work      scratch folder, kept (default: a temporary one, removed)
 #   --out       write the table to FILE too (markdown)
-#   MILLIONS    of cells that the demo is asked for, of which the field takes
-#               half (default 2 8 32; with layers 300 are 565 M cells)
+#   MILLIONS    requested cells of the demo; half of them are outside the layers
+#               (default 2 8 32; with layers 300 gives 565 M cells)
 #   PROJECT     a stem with a "/" in it, as for vanguard mesh -p
-# Exit status: 0, 1 when a run failed, 2 usage. Needs: jq.
+# Exit status: 0 done, 1 a run failed, 2 usage. Needs: jq.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -35,8 +36,8 @@ work_folder scale
   echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
 } | say
 
-# row STEM NAME: seconds per million cells of the mesh, of tasks per million of
-# their own; joins per million of the field.
+# row STEM NAME: seconds per million cells of the mesh, for tasks per million of
+# their own cells, for front updates per million cells outside the layers.
 row() {
   jq -rn --slurpfile r "$1.report.json" --slurpfile t "$1.timeline.json" \
     --arg name "$2" '

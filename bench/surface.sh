@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# bench/surface.sh: how fast vanguard surface makes a surface anew.
+# bench/surface.sh: the speed of vanguard surface.
 #
 # usage: bench/surface.sh --data DIR [--runs N] [--build DIR] [--out FILE]
 #                         [CASE...]
-#   --data   folder of real geometry (verification/README.md)
-#   --runs   runs of a case on one thread and on two in turn, of which the
-#            medians count (default 3)
+#   --data   folder of real geometry (verification/fetch.md)
+#   --runs   runs of a case, alternating between one and two threads; medians
+#            are shown (default 3)
 #   --build  build folder (default build/release)
 #   --out    write the table to FILE too
 #   CASE     names of the table below (default all)
 #
-# Triangles of the new surface per second of one thread: user and system time
-# of the whole program: reading, making, checking, measuring the distance both
-# ways, writing. Wall time of one thread over that of two is for a machine with
-# nothing else to do. Cases that end in -1m ask for sizes that make about a
-# million triangles.
+# Triangles of the remeshed surface per second of one thread: user and system
+# time of the whole program: reading, remeshing, checking, measuring the
+# distance in both directions, writing. The wall-clock time of one thread over
+# that of two is only meaningful on an idle machine. Cases that end in -1m use
+# sizes that give about a million triangles.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -22,7 +22,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/bench/common.sh"
 data='' runs=3 build=$root/build/release
 take_options "data runs build out" "" "$@"
-[ -d "$data" ] || skip "no folder of real geometry: --data DIR"
+[ -d "$data" ] || skip "no folder of real geometry: give --data DIR (verification/fetch.md)"
 need jq jq
 need /usr/bin/time time
 # name, file, options
@@ -51,6 +51,8 @@ row "|---|---|---|---|---|---|"
 for name in "${cases[@]}"; do
   read -r _ file options < <(grep "^$name " <<<"$table") ||
     die "no case '$name'"
+  [ -e "$data/$file.lb8.ugrid.xz" ] ||
+    die "no $data/$file.lb8.ugrid.xz: verification/fetch.md has the source"
   xz -dc "$data/$file.lb8.ugrid.xz" >"$work/in.lb8.ugrid"
   : >"$work/times1"; : >"$work/times2"
   for ((i = 0; i < runs; i++)); do
@@ -63,7 +65,7 @@ for name in "${cases[@]}"; do
         die "$name: $(tail -1 "$work/err")"
     done
     cmp -s "$work"/new[12]/in.lb8.ugrid ||
-      die "$name: other bytes on two threads"
+      die "$name: different bytes on two threads"
   done
   row "$(awk -v c="$name" -v n="$(jq .remesh.triangles[1] "$work/out")" \
     -v t="$(awk '{ print $1 + $2 }' "$work/times1" | median)" \

@@ -1,23 +1,24 @@
 #!/usr/bin/env bash
-# verification/cad.sh: CAD files, and surfaces on which a mesher once went wrong,
-# by the default command.
+# verification/cad.sh: CAD files, and surfaces on which a mesher once failed,
+# with the default command.
 #
 # usage: verification/cad.sh --data DIR [--vanguard PROGRAM] [--meshcheck PROGRAM]
 #                            [--work DIR] [--out FILE] [--quick] [CASE...]
-#   --data       folder of real geometry (verification/README.md)
+#   --data       folder of real geometry (verification/fetch.md)
 #   --vanguard   program (default build/release/bin/vanguard)
-#   --meshcheck  independent judge of a .ugrid; without it vanguard check judges
+#   --meshcheck  independent checker of a .ugrid (default: vanguard check)
 #   --work       folder for all results (default: a temporary one)
 #   --out        write the table to FILE too
-#   --quick      the cases of folder field that take a few seconds
-#   CASE         names of the table below; default all
+#   --quick      only cases of the folder field that take a few seconds
+#   CASE         names of the table below (default: all)
 #
 # Each case runs `vanguard mesh -p FILE --y-plus 1 --reynolds 5e6
-# --reference-length L` with its options, and must end as its row says: in the
-# named flow domain with a valid mesh, or in a refusal with the named words.
-# Further bars: layers full on 99.9 % of the wall; where the row gives them, a
-# least angle of the field, 99 % of the points on the CAD model, and the volume
-# of the body within 0.1 % of the model's own. Status 0 when all are met.
+# --reference-length L` with its options. The result must be as its row says: a
+# valid mesh with the named flow domain, or a refusal with the named words.
+# Further requirements: full layers on 99.9 % of the wall; if the row gives
+# them, a least angle outside the layers, 99 % of the points on the CAD model,
+# and the volume of the body within 0.1 % of that of the model. Exit status 0 if
+# all are met.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -25,13 +26,13 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/bench/common.sh"
 data='' vanguard=$root/build/release/bin/vanguard meshcheck='' work='' quick=
 take_options "data vanguard meshcheck work out" "quick" "$@"
-[ -d "$data" ] || skip "no folder of real geometry: --data DIR"
+[ -d "$data" ] || skip "no folder of real geometry: give --data DIR (verification/fetch.md)"
 need jq jq
 [ -n "$work" ] || { work=$(mktemp -d); trap 'rm -rf "$work"' EXIT; }
 mkdir -p "$work"
 
-# name; file; reference length; what must come out: external, half, internal, or
-# a word of the refusal; least angle of the field (-: none asked for); options
+# name; file; reference length; required result: external, half, internal, or
+# words of the refusal; least angle outside the layers (-: not checked); options
 table='m6-openvsp|field/onera_m6_openvsp.igs.gz|0.64|external|5|
 m6-openvsp-half|field/onera_m6_openvsp.igs.gz|0.64|half|-|--half y
 m6-sharp-te|field/onera_m6_sharp_te.stp.gz|646|external|5|
@@ -76,7 +77,7 @@ fi
 failed=0
 row() { echo "$1"; [ -z "$out" ] || echo "$1" >>"$out"; }
 [ -z "$out" ] || : >"$out"
-row "| case | came out | cells | layers full % | worst angle of the field | points on CAD % | volume / CAD's - 1 | s | judge | missed |"
+row "| case | result | cells | full layers % | worst angle outside layers | points on CAD % | volume / CAD's - 1 | s | checker | missed |"
 row "|---|---|---|---|---|---|---|---|---|---|"
 
 judge() { # MESH
@@ -132,7 +133,7 @@ for name in "${cases[@]}"; do
     grep "^$name|" <<<"$table") || die "no case '$name'"
   [ -z "$quick" ] || [[ $brief == *[[:space:]]"$name"[[:space:]]* ]] || continue
   if [ ! -e "$data/$file" ]; then
-    row "| $name | the data lack $file | - | - | - | - | - | - | - | skipped |"
+    row "| $name | no $file (see verification/fetch.md) | - | - | - | - | - | - | - | skipped |"
     continue
   fi
   rm -rf "${work:?}/$name"

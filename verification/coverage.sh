@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
-# verification/coverage.sh: which share of the lines of each module the tests
-# run, by the counts of gcov in a build of the preset `coverage`:
+# verification/coverage.sh: the share of the lines of each module that the tests
+# execute, from the counts of gcov in a build of the preset `coverage`:
 #   cmake --preset coverage -G Ninja && cmake --build --preset coverage
 #   ctest --preset coverage; verification/coverage.sh
 #
 # usage: verification/coverage.sh [--build DIR] [--files] [--least N] [MODULE...]
 #   --build  the build (default build/coverage)
 #   --files  a row for each file too
-#   --least  fail when a module of core, layers, partition or io has less than N
+#   --least  fail if a module of core, layers, partition or io has less than N
 #            per cent (default 0)
 #   MODULE   names or patterns: 'core/*' (default: all)
-# Sources in C and C++ count, headers do not. Counts add up over runs of tests:
-# delete the .gcda files of the build to start again.
-# Exit status: 0, 1 a module has less than N, 2 usage.
+# Only C and C++ sources count, not headers. Counts accumulate over runs of the
+# tests: delete the .gcda files of the build to reset them.
+# Exit status: 0 done, 1 a module has less than N, 2 usage.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -25,8 +25,8 @@ objects=$(realpath "$build/src")
 source=$(sed -n 's/^vanguard_SOURCE_DIR:STATIC=//p' "$build/CMakeCache.txt")
 need gcov gcc
 
-# "FILE LINES RUN" of every source of src. gcov lists the sources of an object
-# file: its own, and headers.
+# "FILE LINES RUN" for every source of src. gcov lists the sources of an object
+# file: its own source, and headers.
 counts() {
   find "$objects" -name '*.gcno' -print0 |
     (cd "$objects" && xargs -0r -n 1 gcov -n 2>/dev/null) |

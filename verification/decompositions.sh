@@ -1,24 +1,23 @@
 #!/usr/bin/env bash
-# verification/decompositions.sh: voids parted before they are filled, in all
-# ways: every mesh valid, and its cells, balance and angles beside those of the
-# advancing partition.
+# verification/decompositions.sh: all decompositions: every mesh must be valid;
+# cells, balance and angles are compared with the advancing partition.
 #
 # usage: verification/decompositions.sh [--vanguard PROGRAM]
 #          [--meshcheck PROGRAM] [--data DIR] [--work DIR] [--out FILE]
 #          [--parts LIST] [--ways LIST] [--partitioners LIST] [--bare]
 #          [CASE...]
 #   --vanguard   the program (default build/release/bin/vanguard)
-#   --meshcheck  an independent judge of .lb8.ugrid files, called with one
-#   --data       folder of real geometry (verification/README.md)
+#   --meshcheck  an independent checker, called with one .lb8.ugrid file
+#   --data       folder of real geometry (verification/fetch.md)
 #   --work       scratch folder, kept (default: a temporary one, removed)
 #   --out        write the table to FILE too (markdown)
-#   --parts      numbers of parts (default "4 16 100")
-#   --ways       of advancing, octree, remesh, h-refine, the last two being the
-#                interfaces of the discrete decomposition (default: all)
+#   --parts      numbers of subdomains (default "4 16 100")
+#   --ways       some of advancing, octree, remesh, h-refine; the last two are
+#                the interfaces of the discrete decomposition (default: all)
 #   --partitioners  default "metis rcb"
 #   --bare       aircraft without layers
 #   CASE         names or patterns of the table at the end
-# Exit status: 0 all valid, 1 one is not or a run failed, 2 usage.
+# Exit status: 0 all valid, 1 a mesh is invalid or a run failed, 2 usage.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -38,9 +37,9 @@ work_folder decompositions
 
 need jq jq
 
-# Cells outside the layers, most over mean of leaves, triangles of interfaces,
-# 1st percentile of the smallest angle of these cells and of those within two
-# rings of interfaces, parts filled with others.
+# Cells outside the layers, maximum over mean of leaves, triangles of
+# interfaces, 1st percentile of the smallest angle of these cells and of those
+# within two rings of interfaces, subdomains filled together with others.
 row='[(.partition | (.leaf_cells | add) + .fragment_cells + .separator_cells
   + .repair_cells), (.partition.balance * 1000 | round / 1000),
   .partition.decomposition.interface_triangles // 0,
@@ -48,7 +47,7 @@ row='[(.partition | (.leaf_cells | add) + .fragment_cells + .separator_cells
   .partition.near_interfaces.angle_min_p1 // "-",
   .partition.subdomains_extended] | map(tostring) | join(" | ")'
 
-# try WAY OPTIONS...: mesh the case, judge it; a row of the table.
+# try WAY OPTIONS...: mesh and check the case; prints a row of the table.
 failed=0
 try() {
   local way=$1 verdict=valid figures=' | | | | | '
@@ -78,10 +77,11 @@ while read -r name kind size; do
   case $kind in
     demo) demo_project "$name" "$size" "$work/input" ;;
     data) if [ -z "$data" ] || ! aircraft "$data" "$name" "$work/input"; then
-            echo "SKIP $name: no --data with it" >&2
+            echo "SKIP $name: no file for it below --data" \
+              "(verification/fetch.md)" >&2
             continue
           fi
-          options+=(--cells mixed)   # a third of the cells to judge
+          options+=(--cells mixed)   # a third of the cells to check
           [ "$bare" = 0 ] || options+=(--layers no) ;;
   esac
   for way in $ways; do

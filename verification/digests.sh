@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# verification/digests.sh: digests of what two programs make of twelve cases, to
-# show that a change of the code leaves every byte of the meshes as it was.
+# verification/digests.sh: digests of the meshes of twelve cases, made by one or
+# two programs, to show that a change of the code leaves every byte unchanged.
 #
 # usage: verification/digests.sh [--vanguard PROGRAM] [--against PROGRAM]
 #          [--data DIR] [--work DIR] [--out FILE] [CASE...]
 #   --vanguard  the program (default build/release/bin/vanguard)
-#   --against   another one, say of the commit before; without it the digests
-#               are printed alone
-#   --data      folder of real geometry (verification/README.md)
+#   --against   a second program, such as that of the previous commit; without
+#               it only the digests are printed
+#   --data      folder of real geometry (verification/fetch.md)
 #   --work      scratch folder, kept (default: a temporary one, removed)
 #   --out       write the table to FILE too (markdown)
 #   CASE        names or patterns: 'wing*' f16
-# Exit status: 0 all the same, 1 one differs or a run failed, 2 usage.
+# Exit status: 0 all equal, 1 a digest differs or a run failed, 2 usage.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -26,7 +26,7 @@ take_options "vanguard against data work out" "" "$@"
 work_folder digests
 [ -z "$out" ] || : > "$out"
 
-# made PROGRAM: the digest of what it makes of the case.
+# made PROGRAM: the digest of the mesh that PROGRAM makes for the case.
 made() {
   rm -rf "$work/files"
   launch "$ranks" "$threads" "$1" mesh -q -p "$project" "${options[@]}" \
@@ -45,7 +45,8 @@ while read -r name kind size ranks threads more; do
   case $kind in
     demo) demo_project "$size" 300000 "$work/input" ;;
     data) if [ -z "$data" ] || ! aircraft "$data" "$size" "$work/input"; then
-            echo "SKIP $name: no --data with it" >&2
+            echo "SKIP $name: no file for it below --data" \
+              "(verification/fetch.md)" >&2
             continue
           fi ;;
     vgrid) project=$data/vgrid_box/box options=()

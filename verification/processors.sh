@@ -1,25 +1,25 @@
 #!/usr/bin/env bash
-# verification/processors.sh: the same files on other processors, with other
-# libraries of linear algebra and of other compilers' programs, alone and in one
-# run.
+# verification/processors.sh: the same files on different processors, with
+# different BLAS libraries and compilers, in separate runs and in one run.
 #
 # usage: verification/processors.sh [--quick] [--data DIR] [--vanguard PROGRAM]
 #          [--others "PROGRAM..."] [--work DIR] [--out FILE] [CASE...]
 #   --quick     60,000 cells, no aircraft
-#   --data      folder of real geometry (verification/README.md), for aircraft
+#   --data      folder of real geometry (verification/fetch.md), for aircraft
 #   --vanguard  the program (default build/release/bin/vanguard)
-#   --others    programs of other builds of the same source, clang's say
+#   --others    programs from other builds of the same source, such as clang's
 #   --work      scratch folder, kept (default: a temporary one, removed)
 #   --out       write the table to FILE too (markdown)
 #   CASE        box wing dlr_f6_coarse
 #
-# Processors are stood for by what chooses code by them: OpenBLAS's kernels
-# (OPENBLAS_CORETYPE, where Debian's libopenblas0-pthread is installed) and the
-# C library's (GLIBC_TUNABLES, without AVX2 and FMA). Each runs alone, and as the
-# second of two ranks that take themselves for nodes of their own and make
-# surface, layers and sizes each for itself, beside the program as it is. Bar:
-# one digest a case. Last, ranks that differ must be refused.
-# Exit status: 0 all the same, 1 not, or a run failed, 2 usage, 77 no mpirun.
+# Other processors are emulated by the libraries that select code by processor:
+# the kernels of OpenBLAS (OPENBLAS_CORETYPE, if Debian's libopenblas0-pthread
+# is installed) and of the C library (GLIBC_TUNABLES, without AVX2 and FMA).
+# Each variant runs alone, and as the second of two ranks, together with the
+# unmodified program. The two ranks act as separate nodes and make surface,
+# layers and sizes independently. Requirement: one digest per case. Finally,
+# ranks with different data must be refused.
+# Exit status: 0 all equal, 1 a difference or failure, 2 usage, 77 no mpirun.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -39,7 +39,7 @@ failed=0 size=600000
 blas=$(dirname "$(ls /usr/lib/*/openblas-pthread/liblapack.so.3 2> /dev/null |
   head -1)")
 
-# Variants: a name, then what stands before the options of mesh.
+# Variants: a name, and the words before the options of mesh.
 names=() commands=()
 variant() { names+=("$1"); commands+=("${*:2}"); }
 if [ -n "$blas" ] && [ "$blas" != . ]; then
@@ -53,7 +53,7 @@ variant "C library without AVX2, FMA" env \
   "$vanguard"
 for program in $others; do variant "$program" "$program"; done
 
-# made COMMAND...: digest of what it makes of the case.
+# made COMMAND...: digest of the mesh that COMMAND makes for the case.
 made() {
   rm -rf "$work/files"
   "$@" -q -p "$project" "${options[@]}" --out "$work/files" \
@@ -82,7 +82,7 @@ row() {   # row WHAT ALONE PAIR
   echo "| $name | $1 | $2 | $3 | $bad |" | say
 }
 
-echo "| case | variant | alone | beside the program as it is | |" | say
+echo "| case | variant | alone | with the unmodified program | |" | say
 echo "|---|---|---|---|---|" | say
 for name in box wing dlr_f6_coarse; do
   wanted $name || continue

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
-# verification/run.sh: mesh real geometry, judge every result.
+# verification/run.sh: mesh real geometry and check every result.
 #
 # usage: verification/run.sh --data DIR [--quick] [--vanguard PROGRAM]
 #            [--meshcheck PROGRAM] [--work DIR] [--out FILE] [NAME...]
-#   --data       folder of the geometry (verification/README.md lists it)
-#   --quick      small cases only: seconds instead of minutes
+#   --data       folder of the geometry (verification/fetch.md)
+#   --quick      only small cases: seconds instead of minutes
 #   --vanguard   the program (default build/release/bin/vanguard)
-#   --meshcheck  another judge: run as PROGRAM -q [-s SURFACE] MESH.lb8.ugrid,
-#                exit status 0 when the mesh is valid and has all triangles of
-#                the surface
+#   --meshcheck  another checker, run as PROGRAM -q [-s SURFACE] MESH.lb8.ugrid;
+#                exit status 0 if the mesh is valid and has all triangles of the
+#                surface
 #   --work       scratch folder, kept (default: a temporary one, removed)
 #   --out        write the table to FILE too
 #   NAME         only these cases
-# Exit status: 0 all as it should be, 1 a failure, 2 usage, 77 no data.
+# Exit status: 0 all as expected, 1 a failure, 2 usage, 77 no data.
 set -uo pipefail
 export LC_ALL=C
 
@@ -38,7 +38,7 @@ while [ $# -gt 0 ]; do
 done
 
 if [ -z "$data" ] || [ ! -d "$data" ]; then
-  echo "SKIP: no folder with geometry (--data DIR)"
+  echo "SKIP: no folder of geometry: give --data DIR (verification/fetch.md)"
   exit 77
 fi
 [ -x "$vanguard" ] || { echo "no program $vanguard: build it first" >&2
@@ -49,12 +49,12 @@ if [ -z "$work" ]; then
 fi
 mkdir -p "$work"
 
-# name, file below --data, what it is:
-#   project has everything    domain  bounds the fluid by itself
+# name; file below --data; kind:
+#   project is complete       domain  bounds the fluid by itself
 #   wall    needs a farfield  dirty   must be refused
-# (One closed shell whose normals point out may be a body or a domain: what
-# has no boundary conditions has to say so in its deck.)
-# volume of the fluid without farfield where it is known exactly ("-" else),
+# (A closed shell whose normals point outwards may be a body or a domain, so the
+# deck of a file without boundary conditions must say which.)
+# volume of the fluid without farfield if it is known exactly, otherwise "-";
 # q: part of --quick
 cases="
 vgrid_box        vgrid_box/box                                       project 8000 q
@@ -89,14 +89,14 @@ toy_airplane     dirty/toy_airplane_with_holes.obj.xz                dirty - q
 
 say() { if [ -n "$out" ]; then tee -a "$out"; else cat; fi; }
 
-# The first number behind "key": in the part "mesh" (or $3) of a report.
+# The first number after "key": in the part "mesh" (or $3) of a report.
 json() {
   awk -v key="\"$2\":" -v part="\"${3:-mesh}\":" '
     $1 == part { on = 1 }
     on && $1 == key { sub(/,$/, "", $2); print $2; exit }' "$1"
 }
 
-# Seconds of the fill: the last object "seconds" of a report is of the run.
+# Seconds of the fill: the last object "seconds" of a report is that of the run.
 seconds() {
   awk '$1 == "\"seconds\":" { on = 1; t = 0 }
     on && $1 == "\"fill\":" { t = $2 + 0 } END { print t }' "$1"
@@ -116,7 +116,7 @@ stage() {
 
 present() { [ -e "$data/$1" ] || [ -e "$data/$1.d3m" ]; }
 
-# Domain or body: each has a run deck of its own.
+# The run deck of a domain or body.
 write_deck() {
   local farfield=none
   [ "$3" != wall ] || farfield=sphere
@@ -132,7 +132,7 @@ END
 why=''
 bad() { why="${why:+$why; }$*"; }
 
-# Mesh it, look at what came out. Sets row.
+# Mesh the case and check the result. Sets row.
 mesh_case() {
   local d=$1 name=$2 kind=$3 volume=$4 input=$5 report result options=()
   why='' row=''
@@ -172,7 +172,7 @@ mesh_case() {
     "$(json "$report" angle_max)" "$(json "$report" radius_ratio_mean)")
 }
 
-# A refusal: exit status 1, words, no mesh. Sets row.
+# A refusal: exit status 1, a message, no mesh. Sets row.
 dirty_case() {
   local d=$1 input=$2 status
   why='' row='- | - | - | -'
@@ -200,7 +200,7 @@ failed=0 done=0
 while read -r name file kind volume small; do
   if [ -z "$name" ] || ! wanted "$name" "$small"; then continue; fi
   if ! present "$file"; then
-    echo "| $name | $file | no such file | | | | |" | say
+    echo "| $name | $file | no such file (verification/fetch.md) | | | | |" | say
     failed=1
     continue
   fi
@@ -224,6 +224,6 @@ if [ $done = 0 ] && [ $failed = 0 ]; then
   echo "no such case" >&2
   exit 2
 fi
-if [ $failed = 0 ]; then echo "$done cases, all as they should be" | say
+if [ $failed = 0 ]; then echo "$done cases, all as expected" | say
 else echo "FAILED" | say; fi
 exit $failed

@@ -1,18 +1,17 @@
 #!/usr/bin/env bash
-# verification/slurm.sh: share/slurm/vanguard.sbatch under a Slurm of one host.
+# verification/slurm.sh: share/slurm/vanguard.sbatch under a Slurm on one host.
 #
 # usage: verification/slurm.sh [--vanguard PROGRAM] [--work DIR] [--cells N]
 #   --vanguard  the program (default build/release/bin/vanguard)
 #   --work      scratch folder, kept (default: a temporary one, removed)
 #   --cells     of the box that is meshed (default 2000000)
-# Starts munged, slurmctld and slurmd of its own on free ports, with all state
-# in the scratch folder, and ends them again. Jobs of two ranks: one in peace,
-# and, by mpirun and by srun, one that is told by Slurm that its time is up,
-# goes back into the queue and continues; and one that a portal starts, stops
-# and resumes. All must write the same files. Needs
-# root (slurmd has to change users) and Debian's slurm-wlm, munge and
-# openmpi-bin. Exit status: 0 as it should be, 1 a failure, 2 usage, 77 cannot
-# be tried.
+# Starts private instances of munged, slurmctld and slurmd on free ports, with
+# all state in the scratch folder, and ends them afterwards. Jobs of two ranks:
+# an undisturbed one; with mpirun and with srun, one that Slurm signals near its
+# time limit, that returns to the queue and continues; and one that a portal
+# starts, stops and resumes. All must write the same files. Needs root (slurmd
+# changes users) and Debian's slurm-wlm, munge and openmpi-bin. Exit status: 0
+# as expected, 1 a failure, 2 usage, 77 not possible here.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -25,7 +24,7 @@ take_options "vanguard work cells" "" "$@"
 for program in munged slurmctld slurmd sbatch scontrol mpirun; do
   command -v $program > /dev/null || skip "no $program"
 done
-[ "$(id -u)" = 0 ] || skip "a Slurm of our own needs root"
+[ "$(id -u)" = 0 ] || skip "a private Slurm needs root"
 [ -x "$vanguard" ] || die "no program $vanguard: build it first"
 work_folder slurm
 work=$(cd "$work" && pwd)
@@ -100,7 +99,7 @@ CONF
     sleep 0.2
   done
   tail -n 5 "$work"/*.log >&2 || true
-  skip "Slurm does not come up on this host"
+  skip "Slurm does not start on this host"
 }
 
 # submit NAME LAUNCHER: a job; its id.
@@ -120,8 +119,7 @@ await_end() {   # await_end JOB SECONDS: its last state
   for _ in $(seq "$2"); do
     s=$(state "$1")
     case $s in
-      # Slurm holds a requeued job back for two minutes; they are not ours to
-      # wait for.
+      # Slurm delays a requeued job by two minutes; release it at once.
       PENDING) scontrol update jobid="$1" starttime=now > /dev/null 2>&1 ||
         true ;;
       RUNNING|COMPLETING|CONFIGURING|REQUEUED) ;;
@@ -143,8 +141,8 @@ end=$(await_end "$job" 600)
 
 told() {   # told NAME LAUNCHER
   local d=$work/$1 file n=0
-  # The signal that --signal=B:USR1@120 sends, without waiting for a time limit
-  # (Slurm's are minutes). As soon as something is kept.
+  # Send the signal of --signal=B:USR1@120 as soon as a task has been kept,
+  # without waiting for a time limit, which Slurm counts in minutes.
   job=$(submit "$1" "$2")
   for _ in $(seq 300); do
     [ "$(find "$d/box.run" -type f 2> /dev/null | wc -l)" -lt 6 ] || break
@@ -156,7 +154,7 @@ told() {   # told NAME LAUNCHER
     sleep 1
   done
   grep -q 'told to stop (limit)' "$d.log" ||
-    die "the job was not told in time: more --cells"
+    die "the job ended before the signal: use more --cells"
   grep -q 'back in the queue' "$d.log" || die "$2: not requeued"
   end=$(await_end "$job" 900)
   [ "$end" = COMPLETED ] || die "$2: the resumed job ended as $end"
@@ -178,8 +176,8 @@ else
   echo "srun: not tried, this Slurm has no pmix"
 fi
 
-# The same by a portal (docs/portal.md): a job started, stopped and resumed by
-# its forms.
+# The same with a portal (docs/reference/portal.md): its forms start, stop and
+# resume a job.
 await_run() {   # await_run STATE SECONDS
   local s=''
   for _ in $(seq "$2"); do

@@ -1,25 +1,26 @@
 #!/usr/bin/env bash
-# verification/surface.sh: tessellations made anew by vanguard surface, judged.
+# verification/surface.sh: tessellations remeshed by vanguard surface.
 #
 # usage: verification/surface.sh --data DIR [--vanguard PROGRAM] [--work DIR]
 #                                [--out FILE] [--volume] [CASE...]
-#   --data      folder of real geometry (verification/README.md)
+#   --data      folder of real geometry (verification/fetch.md)
 #   --vanguard  program (default build/release/bin/vanguard)
-#   --work      folder for what is made (default: a temporary one)
+#   --work      folder for the results (default: a temporary one)
 #   --out       write the table to FILE too
-#   --volume    mesh the volume with layers on the new surface as well (F-16,
-#               P180, Concorde, low-boom): long
-#   CASE        names below; default all
+#   --volume    also mesh the volume with layers on the remeshed surface (F-16,
+#               P180, Concorde, low-boom); takes long
+#   CASE        names below (default: all)
 #
-# Bars: no defect by vanguard check, but open edges where the input has them;
-# 99.9 % of the length of lines, but for strips narrower than the tolerance that
-# were closed, which are listed; distance both ways within 1.065 times the
-# tolerance (over the cosine of half the ridge angle); 1st percentile of the
-# smallest angles 35 degrees; edges within a factor 1.41 of the size 90 %; angles
-# below 10 degrees as the table says. Corners are points that never
-# move; how many the check of the new surface finds again, whose lines may turn
-# less or more over coarser edges, is told. With --volume: smallest angle of the
-# field 5 degrees, 0.01 % below 10. Status 0 when all of them are met.
+# Requirements: no defect according to vanguard check, except open edges of the
+# input; 99.9 % of the length of feature curves, except dropped strips
+# narrower than the tolerance, which are listed; distances in both directions
+# within 1.065 times the tolerance (divided by the cosine of half the feature
+# angle); 1st percentile of the smallest angles 35 degrees; 90 % of the edges
+# within a factor of 1.41 of the size; angles below 10 degrees as in the table.
+# Corners never move; the number of them that the check of the remeshed surface
+# finds again is reported, because curves may turn less or more over coarser
+# edges. With --volume: smallest angle outside the layers 5 degrees, 0.01 % of
+# the cells below 10. Exit status 0 if all are met.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -27,7 +28,7 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 . "$root/bench/common.sh"
 data='' vanguard=$root/build/release/bin/vanguard work='' volume=
 take_options "data vanguard work out" "volume" "$@"
-[ -d "$data" ] || skip "no folder of real geometry: --data DIR"
+[ -d "$data" ] || skip "no folder of real geometry: give --data DIR (verification/fetch.md)"
 need jq jq
 [ -n "$work" ] || { work=$(mktemp -d); trap 'rm -rf "$work"' EXIT; }
 mkdir -p "$work"
@@ -102,6 +103,8 @@ for name in "${cases[@]}"; do
     die "no case '$name'"
   mkdir -p "$work/$name"
   rm -f "$work/$name"/in.*
+  [ -e "$data/$file.lb8.ugrid.xz" ] ||
+    die "no $data/$file.lb8.ugrid.xz: verification/fetch.md has the source"
   xz -dc "$data/$file.lb8.ugrid.xz" >"$work/$name.lb8.ugrid"
   mv "$work/$name.lb8.ugrid" "$work/$name/given.lb8.ugrid"
   if ! "$vanguard" surface -q "$work/$name/given.lb8.ugrid" \

@@ -1,12 +1,13 @@
-/* Draws the cells that a plane cuts, as the pictures of docs/layers.md:
+/* Draws the cells that a plane cuts, for docs/reference/layers.md:
  *
  *   cut MESH PNG PLANE U V WIDTH PIXELS [LAYER_TETS]
  *
  * PLANE is x=C, y=C, z=C, or patch=ID for the faces of a boundary patch.
- * U V is the middle of the window in the two other coordinates (for a patch:
- * those besides the one that varies least), WIDTH its width in length; it is
- * two thirds as high. Prisms are drawn blue, pyramids orange, tetrahedra pale,
- * the first LAYER_TETS of them green; walls (condition 4) are thick lines. */
+ * U V is the centre of the window in the two other coordinates (for a patch,
+ * in all coordinates except the one with the smallest extent). WIDTH is the
+ * width of the window in length units; its height is two thirds of that.
+ * Prisms are blue, pyramids orange, tetrahedra pale, the first LAYER_TETS of
+ * them green; walls (condition 4) are thick lines. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,14 +21,17 @@
 #define CORNERS_MAX 12
 
 struct window {
-  int axis, u, v;          /* the plane's axis, and those of the picture */
-  double at;               /* of the plane */
+  int axis, u, v;          /* axis normal to the plane; axes of the picture */
+  double at;               /* coordinate of the plane */
   double centre[2], scale; /* samples per length */
   int width, height;       /* in samples */
   unsigned char (*rgb)[3];
 };
 
-struct polygon { int n; double p[CORNERS_MAX][2]; };
+struct polygon {
+  int n;
+  double p[CORNERS_MAX][2];
+};
 
 static const unsigned char prism[3] = { 120, 178, 232 };
 static const unsigned char pyramid[3] = { 246, 166, 86 };
@@ -41,7 +45,7 @@ static void to_picture(const struct window *w, double u, double v, double p[2])
   p[1] = w->height / 2.0 - (v - w->centre[1]) * w->scale;
 }
 
-/* Corners counter-clockwise about their mean: cuts of convex cells. */
+/* Sort the corners counter-clockwise about their mean; cells are convex. */
 static void order(struct polygon *g)
 {
   double c[2] = { 0, 0 }, angle[CORNERS_MAX];
@@ -92,7 +96,8 @@ static void box_of(const struct window *w, const struct polygon *g, int lo[2],
   }
 }
 
-/* Twice the area over the circumference: about the height of a flat one. */
+/* Twice the area over the circumference: about the height of a flat
+ * polygon. */
 static double thickness(const struct polygon *g)
 {
   double area = 0, around = 0;
@@ -151,7 +156,8 @@ static void line(struct window *w, const double a[2], const double b[2],
         memcpy(w->rgb[(size_t)y * (size_t)w->width + (size_t)x], ink, 3);
 }
 
-/* Where edges between n nodes meet the plane; a node in it is above it. */
+/* Intersections of the edges of a cell with the plane; a node in the plane
+ * counts as above it. */
 static void cut(const struct window *w, const struct vg_mesh *m,
                 const uint32_t *node, const int (*edge)[2], int n_edge,
                 struct polygon *g)
@@ -186,13 +192,13 @@ static void draw_cells(struct window *w, const struct vg_mesh *m,
 
 static void draw_cut(struct window *w, const struct vg_mesh *m, size_t layers)
 {
-  static const int tet[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 },
-                                 { 1, 3 }, { 2, 3 } };
+  static const int tet[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 },
+                                 { 1, 2 }, { 1, 3 }, { 2, 3 } };
   static const int pyr[8][2] = { { 0, 3 }, { 3, 4 }, { 4, 1 }, { 1, 0 },
                                  { 0, 2 }, { 1, 2 }, { 3, 2 }, { 4, 2 } };
-  static const int pri[9][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 }, { 3, 4 },
-                                 { 4, 5 }, { 5, 3 }, { 0, 3 }, { 1, 4 },
-                                 { 2, 5 } };
+  static const int pri[9][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 },
+                                 { 3, 4 }, { 4, 5 }, { 5, 3 },
+                                 { 0, 3 }, { 1, 4 }, { 2, 5 } };
   static const int tri[3][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 } };
 
   draw_cells(w, m, m->tet[layers], m->n_tet - layers, 4, tet, 6, field_tet);
@@ -231,7 +237,7 @@ static int draw_patch(struct window *w, const struct vg_mesh *m, int32_t id)
   return 0;
 }
 
-/* The axis along which a patch varies least. */
+/* The axis along which a patch has the smallest extent. */
 static int flat_axis(const struct vg_mesh *m, int32_t id)
 {
   size_t p = vg_mesh_find_patch(m, id);
@@ -273,7 +279,7 @@ static int render(struct window *w, const struct vg_mesh *m, char **argv,
   if (!is_patch) draw_cut(w, m, layers);
   else if (draw_patch(w, m, atoi(plane + 6))) return 1;
   return png_write(argv[2], w->width / SAMPLES, w->height / SAMPLES, SAMPLES,
-                   (const unsigned char (*)[3])w->rgb);
+                   (const unsigned char(*)[3])w->rgb);
 }
 
 int main(int argc, char **argv)

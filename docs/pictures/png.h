@@ -1,4 +1,4 @@
-/* docs/pictures/png.h: a picture of samples as a PNG file. */
+/* docs/pictures/png.h: writes a picture of samples as a PNG file. */
 #ifndef VG_PICTURES_PNG_H
 #define VG_PICTURES_PNG_H
 
@@ -16,16 +16,16 @@ static inline void png_pixel(int samples, int width,
     int sum = 0;
 
     for (int j = 0; j < samples * samples; j++)
-      sum += rgb[(size_t)(y * samples + j / samples) *
-                 (size_t)(width * samples) +
-                 (size_t)(x * samples + j % samples)][k];
+      sum +=
+        rgb[(size_t)(y * samples + j / samples) * (size_t)(width * samples) +
+            (size_t)(x * samples + j % samples)][k];
     to[k] = (uint8_t)(sum / (samples * samples));
   }
   to[3] = 255;
 }
 
 /** Write width x height pixels of samples x samples samples each, rows from
- * the top. 0 when all went well. */
+ * the top. Returns 0 on success. */
 static inline int png_write(const char *path, int width, int height,
                             int samples, const unsigned char (*rgb)[3])
 {
@@ -36,8 +36,8 @@ static inline int png_write(const char *path, int width, int height,
 
   for (int y = 0; !bad && y < height; y++)
     for (int x = 0; x < width; x++)
-      png_pixel(samples, width, rgb, x, y, m.rgba[(size_t)y * (size_t)width +
-                                                  (size_t)x]);
+      png_pixel(samples, width, rgb, x, y,
+                m.rgba[(size_t)y * (size_t)width + (size_t)x]);
   bad = bad || vg_image_png(&m, &png, NULL) < 0 || !(f = fopen(path, "wb"));
   bad = bad || fwrite(png.data, 1, png.n, f) != png.n;
   if (f && fclose(f)) bad = 1;

@@ -1,8 +1,8 @@
-/* Draws a mesh as a PNG: the cells below the plane z = CUT, broken along their
- * faces, and the walls (conditions 4 and 5) that they surround. The README's
- * picture: `cmake --build --preset release --target picture`, then
- *   render wing.b8.ugrid wing.png 0 1400
- * An orthographic z-buffer with 2 x 2 samples per pixel; edges are drawn. */
+/* Draws a mesh as a PNG: the cells below the plane z = CUT, with the exposed
+ * faces of the cells, and the walls (conditions 4 and 5) inside. For the
+ * picture of the README: `cmake --build --preset release --target picture`,
+ * then render wing.b8.ugrid wing.png 0 1400 An orthographic z-buffer with 2 x 2
+ * samples per pixel; edges are drawn. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,14 +15,16 @@
 #define SAMPLES 2
 
 struct image {
-  int width, height;                  /* in samples */
+  int width, height; /* in samples */
   float *depth;
   unsigned char (*rgb)[3];
-  double right[3], up[3], toward[3];  /* orthonormal; toward: to the eye */
-  double centre[3], scale;            /* samples per length */
+  double right[3], up[3], toward[3]; /* orthonormal; toward: to the viewer */
+  double centre[3], scale;           /* samples per length */
 };
 
-struct face { uint32_t node[3]; };    /* rising */
+struct face {
+  uint32_t node[3];
+}; /* ascending */
 
 static double dot(const double a[3], const double b[3])
 {
@@ -76,10 +78,10 @@ static void project(const struct image *im, const double p[3], double s[3])
   s[2] = dot(d, im->toward);
 }
 
-/* One sample: a barycentric weight times the height over its edge is the
- * distance to that edge. */
-static void sample(struct image *im, int x, int y, double s[3][3],
-                   double area, const double height[3], double bright,
+/* Shade one sample. A barycentric weight times the height over its edge is
+ * the distance from that edge. */
+static void sample(struct image *im, int x, int y, double s[3][3], double area,
+                   const double height[3], double bright,
                    const unsigned char colour[3])
 {
   size_t at = (size_t)y * (size_t)im->width + (size_t)x;
@@ -88,7 +90,8 @@ static void sample(struct image *im, int x, int y, double s[3][3],
   for (int i = 0; i < 3; i++) {
     const double *a = s[(i + 1) % 3], *b = s[(i + 2) % 3];
     double w = ((b[0] - a[0]) * (y + 0.5 - a[1]) -
-                (b[1] - a[1]) * (x + 0.5 - a[0])) / area;
+                (b[1] - a[1]) * (x + 0.5 - a[0])) /
+               area;
 
     if (w < 0) return;
     depth += w * s[i][2];
@@ -141,13 +144,16 @@ static int compare_face(const void *a, const void *b)
 static struct face make_face(uint32_t a, uint32_t b, uint32_t c)
 {
   uint32_t lo = a < b ? a : b, hi = a < b ? b : a;
-  struct face f = { { c < lo ? c : lo, c < lo ? lo : c < hi ? c : hi,
+  struct face f = { { c < lo ? c : lo,
+                      c < lo   ? lo
+                      : c < hi ? c
+                               : hi,
                       c < hi ? hi : c } };
 
   return f;
 }
 
-/* Faces that one cell only has, of the cells below the plane. */
+/* Faces that belong to exactly one of the cells below the plane. */
 static size_t skin(const struct vg_mesh *m, double cut, struct face *face)
 {
   size_t n = 0, kept = 0;
@@ -196,7 +202,7 @@ static int draw_mesh(struct image *im, const struct vg_mesh *m, double cut)
   return 0;
 }
 
-/* Centre and scale from the walls: their box just fits. */
+/* Set centre and scale so that the bounding box of the walls just fits. */
 static void aim(struct image *im, const struct vg_mesh *m)
 {
   double lo[3] = { 1e300, 1e300, 1e300 }, hi[3] = { -1e300, -1e300, -1e300 };
@@ -249,7 +255,7 @@ int main(int argc, char **argv)
   aim(&im, &m);
   bad = bad || draw_mesh(&im, &m, strtod(argv[3], NULL)) ||
         png_write(argv[2], im.width / SAMPLES, im.height / SAMPLES, SAMPLES,
-                  (const unsigned char (*)[3])im.rgb);
+                  (const unsigned char(*)[3])im.rgb);
   free(im.depth);
   free(im.rgb);
   vg_mesh_release(&m);

@@ -1,12 +1,13 @@
-/* Draws a cut through the parts of each way to decompose, as the pictures of
- * docs/decompositions.md:
+/* Draws a section through the subdomains of each decomposition, for
+ * docs/design/decompositions.md:
  *
  *   ways CASE CELLS PARTS AXIS AT U V WIDTH PREFIX
  *
- * CASE and CELLS as of vanguard demo, without layers; the plane AXIS (x, y, z)
- * = AT, of which a window WIDTH wide, two thirds as high, about U V in the two
- * other coordinates is drawn to PREFIX.advancing.png and so on. Every colour is
- * a part; cells of planes that part a void are dark. */
+ * CASE and CELLS are those of vanguard demo, without layers. The section is the
+ * plane AXIS (x, y, z) = AT. A window of width WIDTH and two thirds of that
+ * height, centred at U V in the two other coordinates, is written to
+ * PREFIX.advancing.png and so on. Every colour is a subdomain; cells of planes
+ * that divide a void are dark. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Resolves every reference to a document. It complains when one is missing:
+"""Resolves every reference to a document, and names those that lead nowhere:
 
-  NAME.md                    a document of docs, of the root, or beside the file
+  NAME.md                    a document in docs or in one of its folders
+                             (FOLDERS_OF_DOCS, first match), in the root, or
+                             in the folder of the file that cites it
+  docs/reference/NAME.md     a document by its path from the root
   NAME.md 1.2                the heading with that number; also "1.2 and 1.3"
   NAME.md, "Title"           the heading of that title
-  row K17, rows K17 to K19,  a row of a table of docs/decisions.md
-  /* K17 ..., (K17)            the same, as comments of the code name rows
-  [text](FILE#anchor)        in documents: the file, and its heading
+  row K17, rows K17 to K19,  a row of a table of DECISIONS
+  /* K17 ..., (K17)            the same in comments of the code
+  [text](FILE#anchor)        in documents: the file and its heading
   core/mesh/mesh.h           a source file below src
 
 references.py ROOT
@@ -18,6 +21,9 @@ import sys
 CODE = (".c", ".h", ".cpp", ".sh", ".py", ".in", ".txt", ".cmake", ".js")
 FOLDERS = ("src", "tests", "bench", "cmake", "docs", "python", "examples",
            "share", "verification")
+FOLDERS_OF_DOCS = ("docs", "docs/reference", "docs/guide", "docs/guide/solvers",
+                   "docs/design", "docs/lab")
+DECISIONS = "docs/design/decisions.md"
 LIST = r"(?:,? (?:and|to) |, )"
 NUMBER = r"\d+(?:\.\d+)*"
 ROW = r"[A-Z]\d{1,2}"
@@ -53,7 +59,7 @@ def read(root, path):
 
 
 def running(text):
-    """Text without line ends and what begins the lines of a comment."""
+    """Text without line ends and without the markers that begin comment lines."""
     return re.sub(r"\s*\n[ \t]*(?:(?:\*|#|//)[ \t]+)?", " ", text)
 
 
@@ -73,8 +79,9 @@ class Document:
 def check_cited(root, path, text, documents):
     for m in CITED.finditer(text):
         name, numbers, title = m[1], re.findall(NUMBER, m[2]), m[3]
-        places = (os.path.join("docs", name), name,
-                  os.path.join(os.path.dirname(path), name))
+        places = [os.path.join(os.path.dirname(path), name), name]
+        if "/" not in name:
+            places += [os.path.join(folder, name) for folder in FOLDERS_OF_DOCS]
         target = next((p for p in map(os.path.normpath, places)
                        if os.path.exists(os.path.join(root, p))), None)
         if not target:
@@ -96,7 +103,7 @@ def check_rows(path, text, rows):
             named += TAGS.findall(comment) + IN_BRACKETS.findall(comment)
     for row in (row for group in named for row in re.findall(ROW, group)):
         if row not in rows:
-            complain(path, f"docs/decisions.md has no row {row}")
+            complain(path, f"{DECISIONS} has no row {row}")
 
 
 def check_links(root, path, text, documents):
@@ -128,9 +135,9 @@ def main(root):
     documents = {path: Document(text) for path, text in texts.items()
                  if path.endswith(".md")}
     listed = re.findall(rf"^\| ({ROW}) \|",
-                        texts.get("docs/decisions.md", ""), re.M)
+                        texts.get(DECISIONS, ""), re.M)
     for row in sorted({row for row in listed if listed.count(row) > 1}):
-        complain("docs/decisions.md", f"row {row} occurs twice")
+        complain(DECISIONS, f"row {row} occurs twice")
     for path, text in texts.items():
         joined = running(text)
         check_cited(root, path, joined, documents)

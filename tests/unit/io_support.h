@@ -242,7 +242,9 @@ static inline const char *io_real(const char *name)
 
   snprintf(packed, sizeof packed, "%s/%s", VG_DATA_DIR, name);
   if (!*VG_DATA_DIR || access(packed, R_OK)) {
-    print_message("VG_DATA_DIR has no %s: skipped\n", name);
+    print_message("VG_DATA_DIR has no %s: skipped (verification/fetch.md has "
+                  "the sources)\n",
+                  name);
     skip();
   }
   snprintf(local, sizeof local, "real_%d_%s", (int)getpid(),

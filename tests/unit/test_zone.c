@@ -22,7 +22,7 @@ static void three_zones_make_eight_boxes(void **state)
     double thickness = (double)now / (9 * open);
 
     /* The regular cells that cross a plane are 0.91 spacings thick, zones 1.14
-     * in the mean (decisions.md, "Zones and interfaces"). */
+     * in the mean (docs/lab/trials.md, "Zones and interfaces"). */
     assert_true(thickness > 0.91 && thickness < 1.14);
     made += now;
     parts_are(&s, (size_t)2 << axis);

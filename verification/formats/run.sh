@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# verification/formats/run.sh: what other programs find in the files, against
-# what `vanguard check` finds in the .b8.ugrid of the same run: cells of each
-# kind, faces of each patch by its name, the volume.
+# verification/formats/run.sh: compares the contents of the files as other
+# programs read them with those of the .b8.ugrid of the same run as `vanguard
+# check` reads it: cells of each kind, faces of each patch by name, the volume.
 #
 # usage: verification/formats/run.sh [--build DIR | --vanguard PROGRAM]
 #            [--quick] [--data DIR] [--work DIR]
-#   --quick  the demo wing-half with few layers, tetrahedra and mixed; else with
-#            many, and DLR-F6 (from --data) with layers on the aircraft
+#   --quick  only the demo wing-half with few layers, tetrahedra and mixed;
+#            otherwise with many layers, and DLR-F6 (from --data) with layers
 #   --work   scratch folder, kept (default: a temporary one, removed)
-# Clients: gmsh, which reads .msh, tells its volume and saves it as text of
-# version 2.2; cgnscheck and VTK's reader (python3-vtk9) of .cgns;
-# fluent3DMeshToFoam and checkMesh of .fluent.msh. What is not installed is
-# passed over, with a line that says so.
-# Exit status: 0 good, 1 a difference, 2 usage, 77 no client at all.
+# Clients: gmsh, which reads .msh, prints the volume and saves the mesh as text
+# of version 2.2; cgnscheck and VTK's reader (python3-vtk9) for .cgns;
+# fluent3DMeshToFoam and checkMesh for .fluent.msh. Clients that are not
+# installed are omitted, with a message.
+# Exit status: 0 equal, 1 a difference, 2 usage, 77 no client is installed.
 set -uo pipefail
-shopt -s lastpipe   # what `compare` finds at the end of a pipe counts
+shopt -s lastpipe   # keep variables set by `compare` at the end of a pipe
 export LC_ALL=C
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -45,7 +45,7 @@ mkdir -p "$work" || exit 2
 
 failed=0 clients=0
 
-# Debian's OpenFOAM has an environment, whose script complains.
+# The environment of Debian's OpenFOAM; its script prints warnings.
 if command -v fluent3DMeshToFoam >/dev/null && [ -z "${WM_PROJECT_DIR:-}" ]
 then
   set +u
@@ -59,8 +59,8 @@ for p in python3 /usr/bin/python3; do
     python=$p
 done
 
-# --- findings, a line each: "tetrahedra N", ..., "patch NAME N", "volume V"
-# with five digits, sorted; kinds without cells are left out ---
+# --- findings, one per line: "tetrahedra N", ..., "patch NAME N", "volume V"
+# with five digits, sorted; kinds without cells are omitted ---
 
 # of `vanguard check --json`
 of_check() {
@@ -73,7 +73,7 @@ of_check() {
        $1 == "volume:" { printf "volume %.5g\n", $2 }' | sort
 }
 
-# of a .msh of version 2.2
+# of a .msh, version 2.2
 of_gmsh() {
   awk '$1 ~ /^\$/ { section = $1; next }
        section == "$PhysicalNames" && $1 == 2 {
@@ -87,7 +87,7 @@ of_gmsh() {
   awk '/Mesh volume/ { printf "volume %.5g\n", $NF }' "$2"
 }
 
-# of cgnscheck -v, which has no volume
+# of cgnscheck -v, which prints no volume
 of_cgnscheck() {
   awk '/checking element set/ { set = $4; gsub("\"", "", set) }
        /Element Set Type/ { sub(".*=", ""); type = $0 }
@@ -127,7 +127,7 @@ for i in range(patches.GetNumberOfBlocks()):
 size = vtkCellSizeFilter()
 size.SetInputData(cells)
 size.Update()
-# its prisms keep CGNS's order of nodes, which to VTK is inside out
+# the reader keeps CGNS's order of prism nodes, which VTK reads as inverted
 volume = size.GetOutput().GetCellData().GetArray("Volume")
 print("volume %.5g" % sum(abs(volume.GetValue(i))
                           for i in range(cells.GetNumberOfCells())))
@@ -144,7 +144,8 @@ of_foam() {
          printf "volume %.5g\n", $0 }'
 }
 
-# compare CLIENT [volume]: findings on standard input; "volume": it tells it.
+# compare CLIENT [volume]: findings on standard input, with the volume if
+# "volume" is given.
 compare() {
   local want=$d/findings
   if [ $# = 1 ]; then
@@ -163,7 +164,7 @@ compare() {
 
 has() {
   if command -v "$1" >/dev/null; then clients=$((clients + 1)); return 0; fi
-  echo "  $1 is not installed: passed over"
+  echo "  $1 is not installed: omitted"
   return 1
 }
 
@@ -176,13 +177,13 @@ ask_gmsh() {
   gmsh "$stem.msh" -save -format msh22 -o "$d/back.msh" > "$d/log.gmsh" 2>&1 &&
     gmsh -parse_and_exit "$d/volume.geo" > "$d/log.volume" 2>&1 ||
     { echo "  gmsh: FAIL: $(tail -1 "$d/log.gmsh")"; failed=1; return; }
-  # gmsh integrates with one point, which is exact for tetrahedra only
+  # gmsh integrates with one point, which is exact only for tetrahedra
   if [ "$1" = tets ]; then
     of_gmsh "$d/back.msh" "$d/log.volume" | compare gmsh volume
   else
     of_gmsh "$d/back.msh" /dev/null | compare gmsh
   fi
-  # and what gmsh saves comes in again
+  # and Vanguard reads the file that gmsh saved
   "$vanguard" check -j "$d/back.msh" 2>/dev/null | of_check |
     compare back.msh volume
   rm -f "$d/back.msh"
@@ -198,7 +199,7 @@ ask_cgns() {
     clients=$((clients + 1))
     "$python" "$work/read_cgns.py" "$stem.cgns" | compare vtk volume
   else
-    echo "  VTK's reader (python3-vtk9) is not installed: passed over"
+    echo "  VTK's reader (python3-vtk9) is not installed: omitted"
   fi
 }
 
@@ -266,7 +267,7 @@ if [ $quick = 0 ] && [ -e "$f6" ]; then
       --reynolds 3e6 --reference-length 141.2 --y-plus 1
   done
 elif [ $quick = 0 ]; then
-  echo "no $f6: DLR-F6 passed over"
+  echo "no $f6: DLR-F6 omitted (verification/fetch.md has the source)"
 fi
 [ $failed = 1 ] && exit 1
 [ $clients -gt 0 ] || { echo "SKIP: none of the clients is installed"

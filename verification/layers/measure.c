@@ -1,14 +1,14 @@
-/* Layers as they are in a file, measured without what the program says.
+/* Measures the layers in a mesh file, independently of the program's report.
  *
  * vg_measure_layers box MESH.cogsg PATCH DELTA1 R1 R2
- *   a mesh with layers on one plane patch, VGRID's or ours: columns are found
- *   by their foot on the wall; levels, largest difference from the law, layer
- *   cells, and the quality of the other cells: dihedral angles, volume ratio
- *   across the top.
+ *   a mesh with layers on one plane patch, from VGRID or Vanguard: columns are
+ *   identified by their foot on the wall; levels, largest difference from the
+ *   law, layer cells, and the quality of the other cells: dihedral angles,
+ *   volume ratio across the top.
  * vg_measure_layers first MESH.b8.ugrid HEIGHT
- *   walls (condition 4 in the .mapbc beside it): first points over each wall
- *   point by the cells that stand on the wall, their distance from the wall
- *   triangles there, faces that carry a prism.
+ *   walls (condition 4 in the .mapbc of the mesh): the first points over each
+ *   wall point, found from the cells on the wall; their distance from the wall
+ *   triangles there; wall faces with a prism.
  * Prints "key value" lines. */
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +21,7 @@
 #include "io/vgrid/vgrid.h"
 
 #define LEVELS 256
-#define SAME_FOOT 1e-4     /* of two columns: VGRID's are a tenth apart */
+#define SAME_FOOT 1e-4 /* same foot; VGRID's columns are 0.1 apart */
 
 static double dot(const double a[3], const double b[3])
 {
@@ -62,7 +62,7 @@ static int by_value(const void *a, const void *b)
 struct wall {
   double normal[3], at;
   size_t n;
-  uint32_t *point;         /* [n] */
+  uint32_t *point; /* [n] */
 };
 
 static int find_wall(const struct vg_mesh *m, int32_t id, struct wall *w)
@@ -93,7 +93,8 @@ static int find_wall(const struct vg_mesh *m, int32_t id, struct wall *w)
   return w->n ? 0 : -1;
 }
 
-/* Index in the wall of the foot of x; one wall of hundreds of points. */
+/* Wall index of the foot of x. A linear search: the wall has hundreds of
+ * points. */
 static size_t foot(const struct vg_mesh *m, const struct wall *w,
                    const double x[3], double *height)
 {
@@ -140,7 +141,7 @@ static int columns(const struct vg_mesh *m, size_t n_layer, int32_t patch,
 {
   struct wall w = { .at = 0 };
   char *used = vg_calloc(m->n_point, 1);
-  double (*height)[LEVELS] = NULL;
+  double(*height)[LEVELS] = NULL;
   int *n = NULL, bad = !used || find_wall(m, patch, &w);
   size_t lost = 0;
 
@@ -172,7 +173,9 @@ static int columns(const struct vg_mesh *m, size_t n_layer, int32_t patch,
 
 /* box: the other cells ------------------------------------------------- */
 
-struct face { uint32_t v[3], cell; };
+struct face {
+  uint32_t v[3], cell;
+};
 
 static int by_face(const void *a, const void *b)
 {
@@ -221,8 +224,8 @@ static int top_ratio(const struct vg_mesh *m, size_t n_layer)
   qsort(ratio, n_top, sizeof *ratio, by_value);
   if (n_top)
     printf("top_faces %zu\ntop_ratio_median %.3f\ntop_ratio_95 %.3f\n"
-           "top_ratio_max %.3f\n", n_top, ratio[n_top / 2],
-           ratio[n_top * 95 / 100], ratio[n_top - 1]);
+           "top_ratio_max %.3f\n",
+           n_top, ratio[n_top / 2], ratio[n_top * 95 / 100], ratio[n_top - 1]);
   free(f);
   free(ratio);
   return 0;
@@ -270,14 +273,16 @@ static int box(char **argv)
 
 /* first: distances at the wall ------------------------------------------ */
 
-struct step { uint32_t root, node; };
+struct step {
+  uint32_t root, node;
+};
 
 struct walls {
   const struct vg_mesh *m;
   size_t n;
-  struct face *face;        /* [n] sorted; cell: the triangle */
-  char *on;                 /* [n_point] */
-  uint32_t *first, *of;     /* triangles at points */
+  struct face *face;    /* [n] sorted; cell: the triangle */
+  char *on;             /* [n_point] */
+  uint32_t *first, *of; /* triangles at points */
   struct step *step;
   size_t n_step, cap_step, n_prism;
 };
@@ -347,8 +352,8 @@ static int add_step(struct walls *w, uint32_t root, uint32_t node)
   return 0;
 }
 
-/* Off-wall nodes of a cell stand over the nearest corner of its face: edges
- * along the wall are far longer than the first height. */
+/* An off-wall node of a cell is above the nearest corner of its face, because
+ * edges along the wall are far longer than the first height. */
 static int add_nearest(struct walls *w, const uint32_t f[3], uint32_t node)
 {
   double best = INFINITY;
@@ -366,7 +371,7 @@ static int add_nearest(struct walls *w, const uint32_t f[3], uint32_t node)
   return add_step(w, root, node);
 }
 
-/* Cells that are no prism: any three of their nodes may be a wall face. */
+/* Any three nodes of a cell other than a prism may be a wall face. */
 static int walk_small(struct walls *w, const uint32_t *c, int n)
 {
   int on = 0, bad = 0;
@@ -438,8 +443,7 @@ static double to_triangle(const struct vg_mesh *m, const uint32_t t[3],
     minus(p, m->point[t[k]], q);
     cross(n, e, s);
     inside &= dot(s, q) >= 0;
-    best = fmin(best, to_segment(p, m->point[t[k]],
-                                 m->point[t[(k + 1) % 3]]));
+    best = fmin(best, to_segment(p, m->point[t[k]], m->point[t[(k + 1) % 3]]));
   }
   return inside ? fabs(dot(q, n)) / sqrt(dot(n, n)) : best;
 }
@@ -464,8 +468,7 @@ static void judge_steps(struct walls *w, double height)
 
     if (i && !by_step(s, s - 1)) continue;
     for (uint32_t j = w->first[s->root]; j < w->first[s->root + 1]; j++)
-      d = fmin(d, to_triangle(w->m, w->m->tri[w->of[j]],
-                              w->m->point[s->node]));
+      d = fmin(d, to_triangle(w->m, w->m->tri[w->of[j]], w->m->point[s->node]));
     if (fabs(d / height - 1) > worst) {
       worst = fabs(d / height - 1);
       memcpy(at, w->m->point[s->root], sizeof at);
@@ -478,8 +481,8 @@ static void judge_steps(struct walls *w, double height)
   printf("wall_points %zu\nwith_level %zu\nfirst_points %zu\n"
          "first_off_1_percent %zu\nfirst_error_percent %.4f\n"
          "worst_at %g %g %g\n"
-         "wall_faces %zu\nfaces_with_prism_percent %.4f\n", n_wall, n_root, n,
-         off, 100 * worst, at[0], at[1], at[2], w->n,
+         "wall_faces %zu\nfaces_with_prism_percent %.4f\n",
+         n_wall, n_root, n, off, 100 * worst, at[0], at[1], at[2], w->n,
          100. * (double)w->n_prism / (double)w->n);
 }
 
@@ -504,6 +507,6 @@ int main(int argc, char **argv)
   if (argc == 7 && !strcmp(argv[1], "box")) return box(argv);
   if (argc == 4 && !strcmp(argv[1], "first")) return first(argv);
   fprintf(stderr, "vg_measure_layers box MESH.cogsg PATCH DELTA1 R1 R2\n"
-          "vg_measure_layers first MESH.b8.ugrid HEIGHT\n");
+                  "vg_measure_layers first MESH.b8.ugrid HEIGHT\n");
   return 2;
 }

@@ -1,26 +1,27 @@
 #!/usr/bin/env bash
-# verification/layers/run.sh: layers on VGRID's own case, wings and aircraft,
-# judged from outside.
+# verification/layers/run.sh: layers on VGRID's example, wings and aircraft,
+# checked by independent programs.
 #
 # usage: verification/layers/run.sh [--data DIR] [--quick] [--build DIR]
 #          [--meshcheck PROGRAM|SOURCE.c] [--work DIR] [--out FILE]
 #          [--cells "tets mixed"] [--options "OPTION..."] [CASE...]
-#   --data       folder of real geometry (verification/README.md); without it
-#                the wings alone
+#   --data       folder of real geometry (verification/fetch.md); without it
+#                only the wings
 #   --quick      VGRID's case, the smallest wings and DLR-F6
 #   --build      build folder with bin/vanguard and bin/vg_measure_layers
 #                (default build/release)
-#   --meshcheck  another judge: PROGRAM -q MESH.b8.ugrid, exit status 0 when
-#                the mesh is valid; or its C source, of which a copy with the
-#                pyramids as UGRID has them judges mixed cells (README.md)
+#   --meshcheck  another checker: PROGRAM -q MESH.b8.ugrid, exit status 0 if the
+#                mesh is valid; or its C source, a copy of which with UGRID's
+#                order of pyramids checks mixed cells (README.md)
 #   --work       scratch folder, logs and reports are kept (default: a
 #                temporary one, removed)
 #   --out        write the table to FILE too
 #   --cells      kinds of cells (default both, one after the other)
 #   --options    more options for `vanguard mesh`, e.g. "--fan-angle 60"
 #   CASE         names or patterns: 'wing*_s_*' falcon
-# A row per mesh. Exit status: 0 every mesh is valid, 1 one is not, 2 usage,
-# 77 nothing to do. Bars that are missed are named in the last column only.
+# Prints a row per mesh. Exit status: 0 every mesh is valid, 1 a mesh is
+# invalid, 2 usage, 77 nothing to do. Requirements that are not met only appear
+# in the last column.
 set -uo pipefail
 export LC_ALL=C
 
@@ -57,8 +58,8 @@ fi
 mkdir -p "$work"
 
 # name, file below --data, patches that are walls (all: a body), mean chord,
-# Reynolds number, q: part of --quick. Chords without a source are read off
-# the bounding box.
+# Reynolds number, q: part of --quick. Chords without a source are estimated
+# from the bounding box.
 aircraft="
 dlr_f6_coarse transport/dlr_f6_wbnp_half_coarse.lb8.ugrid.xz 1-123 141.2 3e6 q
 dlr_f6_medium transport/dlr_f6_wbnp_half_medium.lb8.ugrid.xz 1-123 141.2 3e6 -
@@ -86,7 +87,7 @@ wanted() {
   return 1
 }
 
-# The value behind the last of some keys, each below the one before it.
+# The value of the last of several nested keys.
 json() {
   local file=$1
   shift
@@ -97,9 +98,9 @@ json() {
 value() { awk -v k="$2" '$1 == k { print $2; exit }' "$1"; }
 holds() { awk -v a="$2" -v b="$3" "BEGIN { exit !(a $1 b) }"; }
 
-# The judge of mixed cells: faces of pyramids turned, where the source has
-# them the other way round than UGRID, refine and its own prisms; volumes of
-# prisms as the mean of both ways to split them, as it takes its quadrilaterals.
+# The checker of mixed cells: the faces of pyramids are reversed if the source
+# has them opposite to UGRID, refine and its own prisms; volumes of prisms are
+# the mean of both subdivisions, as for quadrilaterals.
 checker='' checker_mixed=''
 prepare_checker() {
   case $meshcheck in
@@ -130,7 +131,7 @@ judge_mesh() {   # judge_mesh FOLDER MESH KIND
     bad "judge: $(grep -a FAIL "$1/meshcheck" | head -1)"
 }
 
-# Figures of a mesh against the bars. bars REPORT MEASURED KIND FULL
+# Compare a mesh with the requirements. bars REPORT MEASURED KIND FULL
 bars() {
   local full any first layers prisms
   full=$(json "$1" all percent_full)
@@ -157,7 +158,7 @@ bars() {
     "$(json "$1" field angle_min | cut -c1-5)")
 }
 
-# one NAME KIND FULL INPUT OPTION...: mesh, judge, a row.
+# one NAME KIND FULL INPUT OPTION...: mesh and check; prints a row.
 one() {
   local name=$1 kind=$2 full=$3 input=$4 d=$work/$1.$2 start status
   shift 4
@@ -222,7 +223,10 @@ aircraft_cases() {
   while read -r name file walls length reynolds small; do
     [ -n "$name" ] && wanted "$name" || continue
     [ $quick = 0 ] || [ "$small" = q ] || continue
-    [ -e "$data/$file" ] || { echo "$name: no $file" >&2; continue; }
+    [ -e "$data/$file" ] || {
+      echo "SKIP $name: no $file below --data (verification/fetch.md)" >&2
+      continue
+    }
     rm -rf "$work/input"
     mkdir -p "$work/input"
     input=$work/input/$name.lb8.ugrid
@@ -241,7 +245,7 @@ aircraft_cases() {
   done <<< "$aircraft"
 }
 
-# VGRID's case: its law, its levels, its cells; quality against its own mesh.
+# VGRID's example: law, levels and cells; quality compared with VGRID's mesh.
 box_row() {
   echo "| $1 | $(value "$2" layer_cells) | $(value "$2" levels_29) / $(value \
     "$2" levels_30) | $(value "$2" law_error) | $(value "$2" other_cells) |" \
@@ -306,5 +310,8 @@ say << END
 END
 wing_cases
 [ -z "$data" ] || aircraft_cases
-[ $done -gt 0 ] || { echo "SKIP: no such case, or no data"; exit 77; }
+[ $done -gt 0 ] || {
+  echo "SKIP: no such case, or no data (verification/fetch.md)"
+  exit 77
+}
 exit $failed

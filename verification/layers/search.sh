@@ -1,21 +1,21 @@
 #!/usr/bin/env bash
-# verification/layers/search.sh: layers with settings drawn at random, to find
-# what breaks them.
+# verification/layers/search.sh: layers with random settings, to find settings
+# that break them.
 #
 # usage: verification/layers/search.sh [--data DIR] [--build DIR] [--runs N]
 #          [--seed S] [--meshcheck PROGRAM] [--keep DIR]
-#   --data       folder of real geometry (verification/README.md); without it
-#                the demo shapes alone
-#   --build      build folder with bin/vanguard, best of preset asan (default
-#                build/asan)
-#   --runs       how many (default 100)
-#   --seed       of the first run; run i has seed S + i - 1 (default 1), so any
-#                run can be had again by itself
-#   --meshcheck  another judge: PROGRAM -q MESH.b8.ugrid
-#   --keep       where runs that failed are kept (default: nowhere)
-# A run is good that ends with status 0 and a mesh that is valid, or with
-# status 1 and a message; never by a signal, a sanitizer or the clock. A line
-# per run that is not. Exit status: 0 none, 1 some, 2 usage.
+#   --data       folder of real geometry (verification/fetch.md); without it
+#                only the demo shapes
+#   --build      build folder with bin/vanguard, preferably of preset asan
+#                (default build/asan)
+#   --runs       number of runs (default 100)
+#   --seed       seed of the first run; run i has seed S + i - 1 (default 1), so
+#                that each run can be repeated separately
+#   --meshcheck  another checker: PROGRAM -q MESH.b8.ugrid
+#   --keep       folder for failed runs (default: none)
+# A run succeeds if it ends with status 0 and a valid mesh, or with status 1 and
+# a message; it fails if a signal, a sanitizer or the time limit ends it. Prints
+# a line per failed run. Exit status: 0 none failed, 1 some failed, 2 usage.
 set -uo pipefail
 export LC_ALL=C ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=halt_on_error=1
 
@@ -60,17 +60,18 @@ low_boom supersonic/low_boom_sst_full.lb8.ugrid.xz all 20
 p180     bizjet/p180_avanti_full.lb8.ugrid.xz all 1.14
 "
 
-# Both leave what they drew in $REPLY: a subshell would draw the same again.
+# Both return the result in $REPLY: a subshell would repeat the same numbers.
 pick() { shift $((RANDOM % $#)); REPLY=$1; }
 
-# A number between two, by its logarithm.
+# A random number between two, uniform in its logarithm.
 draw() {
   local r=$((RANDOM * 32768 + RANDOM))
   REPLY=$(awk -v a="$1" -v b="$2" -v r=$r \
     'BEGIN { print exp(log(a) + (log(b) - log(a)) * r / 1073741824) }')
 }
 
-# Half of the time: may --option draw 1 2, may --option pick a b c
+# Add an option with probability 1/2: may --option draw 1 2, may --option pick a
+# b
 may() {
   local option=$1
   shift
@@ -79,7 +80,7 @@ may() {
   options+=("$option" "$REPLY")
 }
 
-# prepare NAME FILE WALLS LENGTH: the project and its own options
+# prepare NAME FILE WALLS LENGTH: the project and its options
 options=()
 prepare() {
   options=(--layers yes)
@@ -122,7 +123,7 @@ settings() {   # settings LENGTH
 }
 
 is_bad=''
-try() {   # try NAME: what is wrong, in $is_bad
+try() {   # try NAME: sets $is_bad to the reason of a failure
   local status mesh=$work/out/$1.b8.ugrid
   is_bad=''
   rm -rf "$work/out"
@@ -147,7 +148,7 @@ try() {   # try NAME: what is wrong, in $is_bad
 n_bad=0 n_refused=0
 mapfile -t lines < <(grep . <<< "$surfaces")
 for ((i = 0; i < runs; i++)); do
-  RANDOM=$((7919 * (seed + i)))   # neighbouring seeds draw alike
+  RANDOM=$((7919 * (seed + i)))   # neighbouring seeds give similar numbers
   pick "${lines[@]}"
   read -r name file walls length <<< "$REPLY"
   prepare "$name" "$file" "$walls" "$length" || {

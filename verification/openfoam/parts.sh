@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# verification/openfoam/parts.sh: does decomposePar take the parts of a mesh, and
-# does it find as many cells in each, and faces between them, as Vanguard says?
+# verification/openfoam/parts.sh: does decomposePar accept the partitions of a
+# mesh, with the numbers of cells and faces that Vanguard reports?
 #
 # usage: verification/openfoam/parts.sh [--vanguard PROGRAM] [--work DIR]
 #            [--parts N]
-# A demo wing-half with layers, in N parts (default 6), both by `vanguard mesh
-# --solver-parts` with tetrahedra and by `vanguard partition` with prisms.
-# Exit status: 0 good, 1 a failure, 2 usage, 77 no OpenFOAM.
+# A demo wing-half with layers in N partitions (default 6), made by `vanguard
+# mesh --solver-parts` with tetrahedra and by `vanguard partition` with prisms.
+# Exit status: 0 accepted, 1 a failure, 2 usage, 77 no OpenFOAM.
 set -uo pipefail
 export LC_ALL=C
 
@@ -44,10 +44,10 @@ failures=0
 
 bad() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
-# figure REPORT NAME: a whole number of a report in JSON.
+# figure REPORT NAME: an integer of a JSON report.
 figure() { sed -n "s/.*\"$2\": \([0-9]*\).*/\1/p" "$1" | head -1; }
 
-# check CASE REPORT: decomposePar agrees with what the report says.
+# check CASE REPORT: decomposePar agrees with the report.
 check() {
   local log=$1.log faces cells most
   if ! decomposePar -case "$1" > "$log" 2>&1; then

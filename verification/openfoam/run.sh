@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# verification/openfoam/run.sh: does OpenFOAM take the meshes, and does a
+# verification/openfoam/run.sh: does OpenFOAM accept the meshes, and does a
 # solver converge on them?
 #
 # usage: verification/openfoam/run.sh [--build DIR | --vanguard PROGRAM]
@@ -8,20 +8,20 @@
 #            [--model SpalartAllmaras|kOmegaSST] [--data IGNORED]
 #   --build       folder of a build, with bin/vanguard (default build/release)
 #   --work        scratch folder, kept (default: a temporary one, removed)
-#   --cells       kinds of cells of the layers (default both): mixed, y+ 1,
-#                 checked and solved; tets, its twin, checked; and tets with
-#                 a first height for wall functions, checked and solved
+#   --cells       cells of the layers (default both): mixed with y+ 1, checked
+#                 and solved; the same with tets, checked; and tets with a first
+#                 height for wall functions, checked and solved
 #   --wall-first  that height (default 0.004)
-#   --iterations  of simpleFoam (default 300); 0: checkMesh only
-#   --project     mesh this project (default: the demo wing-half); its deck and
-#                 conditions as `vanguard mesh -p` finds them
-#   --deck        with settings for that project
-#   --case        take an OpenFOAM mesh that exists, mesh nothing: a folder
-#                 with constant/polyMesh, which is copied; checked and solved
+#   --iterations  iterations of simpleFoam (default 300); 0: checkMesh only
+#   --project     mesh this project (default: the demo wing-half), with the deck
+#                 and conditions that `vanguard mesh -p` finds
+#   --deck        settings for that project
+#   --case        use an existing OpenFOAM mesh instead: a folder with
+#                 constant/polyMesh, which is copied, checked and solved
 #   --options     more options for `vanguard mesh`, one string
 # Chord 1, speed 1 along x turned by alpha (default 2) towards z, Reynolds
 # number 5 million (--reynolds).
-# Exit status: 0 good, 1 a failure, 2 usage, 77 no OpenFOAM.
+# Exit status: 0 all checks passed, 1 a failure, 2 usage, 77 no OpenFOAM.
 set -uo pipefail
 export LC_ALL=C
 
@@ -60,8 +60,8 @@ esac
 [ -z "$case" ] || kinds=given
 [ -n "$vanguard" ] || vanguard=$build/bin/vanguard
 
-# The environment of OpenFOAM: at hand, or of Debian's package, whose script
-# complains about what that package leaves out.
+# The environment of OpenFOAM: either set already, or that of Debian's package,
+# whose script prints warnings about omitted parts.
 if ! command -v checkMesh > /dev/null; then
   echo "SKIP: no OpenFOAM (checkMesh is not in PATH)"
   exit 77
@@ -118,11 +118,11 @@ make_mesh() {
 
 # --- checkMesh ---
 
-# What checkMesh calls failed although it is what viscous layers are: cells a
-# thousand times wider than high, and the determinant of their faces, which
-# is also near zero in any corner cell with two faces on the boundary.
+# Checks that viscous layers always fail: cells a thousand times wider than
+# high, and the determinant of their faces, which is also near zero in every
+# corner cell with two faces on the boundary.
 INHERENT='High aspect ratio|small determinant'
-# What only -allGeometry asks, and is a matter of quality.
+# Checks of quality that only -allGeometry makes.
 QUALITY='interpolation weight|volume ratio|flatness|Concave|small angle'
 
 check_mesh() {
@@ -192,7 +192,7 @@ END
   echo '}'
 }
 
-# Names of the walls that have forces, for controlDict.
+# Names of the walls with forces, for controlDict.
 walls() {
   awk '$1 == "{" { name = last } $1 == "type" && $2 == "wall;" { print name }
     { last = $1 }' "$d/constant/polyMesh/boundary" | tr '\n' ' '
@@ -209,7 +209,7 @@ write_fields() {
     'type zeroGradient;' \
     'type freestreamPressure; freestreamValue uniform 0; value uniform 0;' \
     > "$d/0/p"
-  # Spalding's law holds from the wall to y+ of some hundreds.
+  # Spalding's law is valid from the wall to a y+ of several hundred.
   nut=$(awk -v n="$nu" 'BEGIN { printf "%.10g", n / 5 }')
   field nut volScalarField '[0 2 -1 0 0 0 0]' "$nut" \
     'type nutUSpaldingWallFunction; value uniform 0;' 'type zeroGradient;' \
@@ -331,9 +331,9 @@ END
 # --- the solver ---
 
 # SIMPLEC ("consistent"): the cells of a column of layers move together, which
-# SIMPLE does not know; its pressures over a blunt base at y+ 1 swing further
-# with every iteration. The start is the wind everywhere, not potential flow,
-# which has spikes of pressure at sharp edges.
+# SIMPLE does not take into account; over a blunt base at y+ 1 its pressures
+# oscillate more with every iteration. The initial state is the wind everywhere,
+# not potential flow, which has pressure spikes at sharp edges.
 
 # First and last initial residual of a variable: "1.00e+00 3.21e-04".
 residual() {
@@ -341,15 +341,15 @@ residual() {
     index($0, v) { sub(/.*Initial residual = /, ""); sub(/,.*/, "")
                    r[++n] = $0 + 0 }
     END { if (!n) { print "- -"; exit }
-          # The first few of a start from rest are no measure: the largest of
-          # the first ten stands for them; the mean of the last ten for the end.
+          # The first few iterations are not representative: use the largest
+          # residual of the first ten, and the mean of the last ten.
           for (i = 1; i <= 10 && i <= n; i++) if (r[i] > a) a = r[i]
           m = n < 10 ? n : 10
           for (i = n - m + 1; i <= n; i++) b += r[i] / m
           printf "%.2e %.2e\n", a, b }' "$1"
 }
 
-# Residuals have to fall by this factor.
+# Required reduction of the residuals.
 FALL_U=10 FALL_P=5
 
 solve() {
@@ -374,7 +374,7 @@ solve() {
   awk '/^ *patch .* y\+/ { sub(/^ */, ""); print "  " $0 }' "$log"
 }
 
-# Means over the last 20 iterations; how far they wander.
+# Means over the last 20 iterations, and their variation.
 forces() {
   local file
   file=$(find "$d/postProcessing/forces" -name 'coefficient*.dat' | head -1)
@@ -389,7 +389,7 @@ forces() {
         if (i == n - m + 1 || d[i] > b) b = d[i] }
       printf "  forces per square chord: drag %.5f, lift %.5f", D, L
       printf " (drag wanders by %.1e)\n", b - a
-      # A solution that blew up has forces of any size.
+      # A diverged solution can have forces of any size.
       exit !(D * D + L * L < 1e4) }' "$file" || bad "forces out of bounds"
 }
 
@@ -406,9 +406,9 @@ for kind in $kinds; do
   cp -r "$mesh/constant/polyMesh" "$d/constant/" || { bad "no mesh"; continue; }
   write_system
   check_mesh
-  # OpenFOAM's operators see no more than 87 degrees between a face and the
-  # line of its cells (non-orthogonality); tetrahedra at y+ 1 have 89.99, and
-  # SIMPLE diverges on them whatever the relaxation.
+  # OpenFOAM's operators limit the non-orthogonality, the angle between a face
+  # normal and the line of its cells, to 87 degrees; tetrahedra at y+ 1 have
+  # 89.99, and SIMPLE diverges on them with any relaxation.
   [ "$iterations" = 0 ] || [ "$kind" = tets ] || solve
 done
 [ $failed = 0 ] && echo "good"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# verification/parallel/determinism.sh: the same files from any number of ranks
-# and threads, in any order of the tasks, and resumed after kill -9.
+# verification/parallel/determinism.sh: the same files for any number of ranks
+# and threads, any order of the tasks, and runs resumed after kill -9.
 #
 # usage: verification/parallel/determinism.sh [--quick] [--vanguard PROGRAM]
 #          [--data DIR] [--cells N] [--leaves N] [--ranks LIST]
@@ -9,31 +9,31 @@
 #   --quick     small: 60,000 cells (the wing more, but few layers), 1 and 2
 #               ranks and threads, one kill, no aircraft
 #   --vanguard  the program (default build/release/bin/vanguard)
-#   --data      folder of real geometry (verification/README.md), for aircraft
-#   --cells     of box, sphere and wing without its layers (default 600000; the
-#               wing has 250000 at least)
-#   --leaves    into about how many parts (default 24)
+#   --data      folder of real geometry (verification/fetch.md), for aircraft
+#   --cells     cells of box, sphere and wing without its layers (default
+#               600000; the wing has at least 250000)
+#   --leaves    approximate number of subdomains (default 24)
 #   --ranks     default "1 2 4 7"
 #   --threads   default "1 2 3"
 #   --decompose  default advancing; also discrete, octree
 #   --kills     runs of each case that are killed and resumed (default 5)
-#   --seed      of orders, times and victims (default: the clock; printed)
+#   --seed      seed of orders, times and victims (default: the clock; printed)
 #   --work      scratch folder, kept (default: a temporary one, removed)
 #   --out       write the table to FILE too (markdown)
 #   CASE        box sphere wing dlr_f6_coarse tmx1242 falcon; the wing and the
-#               aircraft have viscous layers, of tmx1242 mixed cells
+#               aircraft have viscous layers, tmx1242 with mixed cells
 #
-# Of each case: first one rank, one thread, heaviest task first. Then all ranks
-# x threads, each with tasks in another order. Then runs of which one rank is
-# killed at a random time, resumed on another number of ranks and threads, which
-# may be killed again, until one ends. Bar: every file but report and resolved
-# deck is the same, byte for byte, in all of them. A kill that comes after the
-# end is tried again, earlier.
-# The whole grid on two idle cores, in less than 20 minutes; 96 leaves, so that
-# lattices of planes are among the cuts:
+# For each case: first one rank, one thread, most expensive task first. Then all
+# ranks x threads, each with a different order of tasks. Then runs in which one
+# rank is killed at a random time; they are resumed on another number of ranks
+# and threads, and may be killed again, until one ends. Requirement: every file
+# except report and resolved deck is the same, byte for byte, in all of them. A
+# kill that comes after the end is repeated at an earlier time. The whole grid
+# takes less than 20 minutes on two idle cores; 96 leaves, so that lattices of
+# planes are among the cuts:
 #   verification/parallel/determinism.sh --data DIR --cells 2000000 \
 #     --leaves 96 --kills 2 box sphere wing dlr_f6_coarse tmx1242
-# Exit status: 0 all the same, 1 not, or a run failed, 2 usage, 77 no mpirun.
+# Exit status: 0 all equal, 1 a difference or failure, 2 usage, 77 no mpirun.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -69,7 +69,7 @@ fact() {   # fact BLOCK KEY: a number of a block of the report
     "$out_dir"/*.report.json
 }
 
-# whole RANKS THREADS OPTION...: a run to its end; its digest in `this`.
+# whole RANKS THREADS OPTION...: a complete run; sets its digest `this`.
 whole() {
   rm -rf "$out_dir"
   begin "$@"
@@ -101,8 +101,8 @@ kept() {   # tasks in the run directory
   { find "$run_dir/records" -type f 2> /dev/null || true; } | wc -l
 }
 
-# Killed once, or more often; as `this` what comes out. Numbers of ranks and
-# threads change every time.
+# A run that is killed once or several times, each time with other numbers of
+# ranks and threads; sets the digest `this` of the result.
 killed() {
   local r t how wait_s victims within=$1 chain=''
   run_dir=$work/run
@@ -113,7 +113,7 @@ killed() {
     wait_s=$(calc "$within * (0.05 + 0.9 * $RANDOM / 32768)")
     rm -rf "$out_dir" "$run_dir/run.lock"
     begin "$r" "$t" "${how[@]}"
-    # one of three is killed once more
+    # one of three is killed again
     if [ -z "$chain" ] || [ $((RANDOM % 3)) = 0 ]; then
       until_open
       sleep "$wait_s"
@@ -163,7 +163,7 @@ one_case() {   # one_case WAY
   rm -rf "$out_dir"
 }
 
-# Cells to expect above the layers, for the size of a leaf.
+# Expected cells outside the layers, for the size of a leaf.
 get_cells() {
   "$vanguard" plan -p "$project" "${options[@]}" -q -j -n 1 > "$work/plan.json" ||
     die "$name: no forecast"
@@ -186,7 +186,9 @@ for name in box sphere wing dlr_f6_coarse tmx1242 falcon; do
     box|sphere) demo_project $name "$cells" "$work/input" ;;
     *)
       if [ -z "$data" ] || ! aircraft "$data" $name "$work/input"; then
-        [ "$quick" = 1 ] || echo "SKIP $name: no --data with it" >&2
+        [ "$quick" = 1 ] ||
+          echo "SKIP $name: no file for it below --data" \
+            "(verification/fetch.md)" >&2
         continue
       fi
       [ $name != tmx1242 ] || options+=(--cells mixed) ;;
@@ -194,5 +196,5 @@ for name in box sphere wing dlr_f6_coarse tmx1242 falcon; do
   tried=1
   for way in $decompose; do one_case "$way"; done
 done
-[ $tried = 1 ] || die "no such case, or no data for it; see --help"
+[ $tried = 1 ] || die "no such case, or no data for it; see --help and verification/fetch.md"
 exit $failed

@@ -1,25 +1,26 @@
 #!/usr/bin/env bash
-# verification/parallel/faults.sh: what happens when something goes wrong.
+# verification/parallel/faults.sh: behaviour of runs that fail.
 #
 # usage: verification/parallel/faults.sh [--vanguard PROGRAM] [--cells N]
 #          [--kills N] [--seed N] [--demo NAME] [--work DIR] [--out FILE]
 #          [CASE...]
 #   --vanguard  the program (default build/release/bin/vanguard)
-#   --cells     of the demo that is meshed (default 600000)
-#   --demo      which (default box; wing has layers)
+#   --cells     cells of the demo (default 600000)
+#   --demo      name of the demo (default box; wing has layers)
 #   --kills     random times at which a rank is killed (default 5)
-#   --seed      of the times (default: the clock; printed)
+#   --seed      seed of the times (default: the clock; printed)
 #   --work      scratch folder, kept (default: a temporary one, removed)
 #   --out       write the table to FILE too
 #   CASE        kill random signal full-out full-run no-run changed busy damaged
 #               memory
 #
-# Each time: the run ends by itself within a limit, with a message and exit
-# status 1 (or what killed it), no result is there, whole or half; then --resume
-# on another number of ranks and threads writes the same files as a run that
-# nothing happened to, and leaves no run directory. Full disks are small tmpfs,
-# which need root; without, those cases are skipped by name.
-# Exit status: 0 as it should be, 1 a failure, 2 usage.
+# In each case the run ends by itself within a time limit, with a message and
+# exit status 1 (or the signal that killed it), and leaves neither complete nor
+# partial results. Then --resume on another number of ranks and threads writes
+# the same files as an undisturbed run, and leaves no run directory. Full disks
+# are small tmpfs, which need root; without root those cases are skipped by
+# name.
+# Exit status: 0 as expected, 1 a failure, 2 usage.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -81,7 +82,8 @@ no_litter() {
   [ -z "$left" ] || bad "left behind: ${left% }"
 }
 
-# resume RANKS THREADS: as far as it came, and on; files as those of the whole.
+# resume RANKS THREADS: continue the run; the files must equal those of the
+# undisturbed run.
 resume() {
   local how=()
   [ ! -e "$run_dir/run.txt" ] || how=(--resume)
@@ -96,7 +98,7 @@ resume() {
   no_litter "$out_dir"
 }
 row() {   # row WHAT SAID
-  echo "| $case_name | $1 | ${2:-} | ${why:-as it should be} |" | say
+  echo "| $case_name | $1 | ${2:-} | ${why:-as expected} |" | say
   [ -z "$why" ] || failed=1
 }
 not_tried() { echo "| $case_name | $1 | | skipped: $2 |" | say; }
@@ -111,7 +113,7 @@ drop() {
   unset 'mounts[-1]'
 }
 
-case_kill() {   # one of three ranks, first, middle and last of them
+case_kill() {   # kill the first, the middle and the last of three ranks
   local k victim said
   for k in 1 2 3; do
     fresh "kill-$k"
@@ -146,7 +148,7 @@ case_random() {
     until_open
     sleep "$wait_s"
     mapfile -t victims < <(ranks_of $ranks)
-    # None: it ended before.
+    # No result: the run had ended before.
     [ ${#victims[@]} = 0 ] ||
       kill -9 "${victims[RANDOM % ${#victims[@]}]}" 2> /dev/null || true
     finish
@@ -156,8 +158,8 @@ case_random() {
       late=$((late + 1))
       [ "$(digest "$out_dir")" = "$whole" ] || bad "files differ"
     else
-      # Files get their names one after the other at the very end: whole ones
-      # may be there, half ones never.
+      # Files get their names one after the other at the very end: complete
+      # files may exist, partial ones never.
       local f
       for f in "$out_dir/$demo".*; do
         [ -e "$f" ] || continue
@@ -171,7 +173,7 @@ case_random() {
     row "kill -9 of a rank of $ranks x $threads after $wait_s s" \
       "exit status $killed"
   done
-  [ $late -lt "$kills" ] || echo "all of them were too late" >&2
+  [ $late -lt "$kills" ] || echo "all kills came too late" >&2
 }
 
 case_signal() {
@@ -181,12 +183,13 @@ case_signal() {
       fresh "SIG$name-$ranks"
       begin $ranks 1
       until_kept 5
-      # INT and TERM end mpirun and its ranks at once; a batch system's USR1
-      # is passed on. A rank that gets TERM itself stops all of them.
+      # INT and TERM end mpirun and its ranks at once; mpirun forwards the USR1
+      # of a batch system. A rank that receives TERM itself stops all ranks.
       to=$pid
       [ $name != TERM ] || to=$(ranks_of $ranks | tail -1)
       [ $name != INT ] || [ $ranks = 1 ] || continue
-      # a shell has its background runs ignore INT: not so this program
+      # a shell starts background processes with INT ignored, but this program
+      # handles it
       kill "-$name" "$to" 2> /dev/null || bad "ended before"
       finish
       ended 1
@@ -240,7 +243,7 @@ case_full_run() {
   drop "$run_dir"
 }
 
-case_no_run() {   # run directories that cannot be
+case_no_run() {   # unusable run directories
   local kept
   fresh no-run-file
   : > "$run_dir"
@@ -292,7 +295,7 @@ case_no_run() {   # run directories that cannot be
   fi
 }
 
-interrupt() {   # a run that has kept some tasks
+interrupt() {   # interrupt a run that has kept some tasks
   begin "$1" 1
   until_kept 6
   kill -USR1 "$pid" 2> /dev/null || bad "ended before"
@@ -314,7 +317,7 @@ case_changed() {
   finish
   ended 1
   said 'finished tasks of this same run'
-  resume 3 1   # and nothing is lost
+  resume 3 1   # no result is lost
   row "changed options with --resume; then without it; then as it was" "$kept"
 }
 
@@ -357,7 +360,7 @@ case_damaged() {
   row "$n records shortened, overwritten or emptied" ""
 }
 
-# One of two ranks gets less and less memory, until that is not enough.
+# One of two ranks gets less and less memory, until the memory is insufficient.
 case_memory() {
   local limit_kb kept
   for ((limit_kb = 420000; limit_kb > 200000; limit_kb -= 20000)); do

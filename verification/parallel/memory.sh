@@ -5,23 +5,22 @@
 # usage: verification/parallel/memory.sh [--quick] [--build DIR] [--cells N]
 #          [--least N] [--ranks LIST] [--work DIR] [--out FILE]
 #   --quick  a mesh of 2 million cells
-#   --build  build folder (default build/release, made when missing)
-#   --cells  of the demo "wing" without its layers (default 14000000, with them
-#            56 million)
-#   --least  cells that there must be in all (default 50000000)
-#   --ranks  numbers of ranks (default "1 2 4"); each has threads for its share
-#            of the cores
+#   --build  build folder (default build/release, built if missing)
+#   --cells  cells of the demo "wing" without its layers (default 14000000; 56
+#            million with layers)
+#   --least  least number of cells in total (default 50000000)
+#   --ranks  numbers of ranks (default "1 2 4"); the ranks share the cores
 #   --work   scratch folder, kept (default: a temporary one, removed)
 #   --out    write the table to FILE too (markdown)
 #
-# Bars: all ranks together within 24 GiB; a rank within its share of 1.3 x 150
-# bytes a cell and the shared part, what any rank holds whatever their number
-# (surface, tops of layers, load, sizes, program), as vanguard plan has it.
-# Peaks are of resident memory, as the system has it of the largest process and
-# as the ranks report it for their sum.
-# Exit status: 0 all bars kept, 1 one missed or a run failed, 2 usage. Needs:
-# jq, time, openmpi-bin. By default about 3 minutes on two cores, and 2 GB of
-# disk.
+# Requirements: all ranks together within 24 GiB; each rank within its share of
+# 1.3 x 150 bytes per cell plus the part that every rank holds (surface, tops of
+# layers, load estimate, sizes, program), as forecast by vanguard plan. Peaks
+# are resident memory: of the largest process as measured by the system, and of
+# the sum as reported by the ranks.
+# Exit status: 0 all requirements met, 1 one missed or a run failed, 2 usage.
+# Needs: jq, time, openmpi-bin. By default about 3 minutes on two cores, and 2
+# GB of disk.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/../.." && pwd)

@@ -1,12 +1,12 @@
-# verification/parallel/runs.sh: runs in the background that can be killed.
-# Sourced by bash after bench/common.sh; the caller has `vanguard`, `work`,
-# `out_dir`, `run_dir` and mesh_options, what is meshed and how.
-# shellcheck shell=bash disable=SC2034,SC2154 # for, and from, the caller
+# verification/parallel/runs.sh: background runs that can be killed. Sourced by
+# bash after bench/common.sh; the caller sets `vanguard`, `work`, `out_dir`,
+# `run_dir` and the mesh_options, which give input and settings.
+# shellcheck shell=bash disable=SC2034,SC2154 # variables of the caller
 LIMIT_S=${LIMIT_S:-300}
 mesh_options=()
 
-# begin RANKS THREADS OPTION...: as `pid`. More ranks than cores are allowed,
-# and bound to none.
+# begin RANKS THREADS OPTION...: start a run; sets `pid`. More ranks than cores
+# are allowed, without binding.
 begin() {
   local ranks=$1 threads=$2
   shift 2
@@ -19,8 +19,8 @@ begin() {
   pid=$!
 }
 
-# The end of `pid`: `status`, `hung`. (The shell itself would tell of runs that
-# were killed.)
+# Wait for the end of `pid`; sets `status` and `hung`. (The shell itself would
+# print messages about killed runs.)
 finish() {
   local i
   hung=0 status=0
@@ -38,17 +38,17 @@ finish() {
 }
 
 # Wait until the run directory is open, or the run has ended. Its lock must not
-# be there before. Before that there is nothing to be resumed, and Open MPI
-# 4.1's mpirun may wait for ever when a rank is killed while ranks connect to
-# it.
+# exist before. Earlier there is nothing to resume, and mpirun of Open MPI 4.1
+# may wait forever if a rank is killed while ranks connect to it.
 until_open() {
   until [ -e "$run_dir/run.lock" ] || ! kill -0 "$pid" 2> /dev/null; do
     sleep 0.01
   done
 }
 
-# ranks_of RANKS: their processes. (Below them are helpers of the same name.)
+# ranks_of RANKS: the processes of the ranks. (Their children have the same
+# name.)
 ranks_of() { if [ "$1" = 1 ]; then echo "$pid"; else pgrep -P "$pid"; fi; }
 
-# What the program said when it failed.
+# The error message of the program.
 message() { grep -a -m 1 '^vanguard: ' "$work/log" | cut -c11- || true; }

@@ -1,27 +1,27 @@
 #!/usr/bin/env bash
-# verification/thesis/discrete.sh: the discrete decomposition on the cases that
-# the thesis has for it, with and without viscous layers, beside the octants and
-# the advancing partition.
+# verification/thesis/discrete.sh: the discrete decomposition on the cases of
+# the thesis, with and without viscous layers, compared with the octree-guided
+# decomposition and the advancing partition.
 #
 # usage: verification/thesis/discrete.sh --data DIR [--scale X] [--build DIR]
 #          [--parts N] [--workers N] [--ways LIST] [--work DIR] [--out FILE]
 #          [CASE...]
-#   --data     folder of real geometry (verification/README.md)
+#   --data     folder of real geometry (verification/fetch.md)
 #   --scale    numbers of cells times X (default 1)
-#   --build    build folder (default build/release, made when missing)
-#   --parts    that each field is parted into (default 100)
-#   --workers  that the record is replayed on (default 32)
+#   --build    build folder (default build/release, built if missing)
+#   --parts    number of subdomains (default 100)
+#   --workers  number of workers of the replay (default 32)
 #   --ways     default "advancing discrete octree"
 #   --work     scratch folder, kept (default: a temporary one, removed)
 #   --out      write the table to FILE too (markdown)
-#   CASE       f6-2 f6-14 jet-3 jet-25, with -layers or without; or patterns
+#   CASE       f6-2 f6-14 jet-3 jet-25, with or without -layers; or patterns
 #              (default: f6-2* jet-3*)
 #
-# Growth is chosen by vanguard plan such that there are about as many cells
-# outside the layers as the thesis has in all. Each case is meshed on one thread,
-# and its record replayed, with its tasks shared out as they come and dealt out in
-# turn (--schedule). The cases of 2 and 3 million take some minutes of one core.
-# Exit status: 0 all meshes valid, 1 not, 2 usage.
+# vanguard plan chooses the growth so that the number of cells outside the
+# layers is about the total of the thesis. Each case is meshed on one thread,
+# and its timeline replayed with dynamic and with static assignment of tasks
+# (--schedule). The cases of 2 and 3 million take some minutes of one core.
+# Exit status: 0 all meshes valid, 1 a mesh is invalid, 2 usage.
 # Needs: jq, time, openmpi-bin.
 set -euo pipefail
 
@@ -34,19 +34,19 @@ build=$root/build/release
 work='' data='' scale=1 parts=100 workers=32 ways='advancing discrete octree'
 project='' options=()
 take_options "data scale build parts workers ways work out" "" "$@"
-[ -n "$data" ] || skip "no --data: the cases are real geometry"
+[ -n "$data" ] || skip "no --data: the cases are real geometry (verification/fetch.md)"
 [ ${#cases[@]} -gt 0 ] || cases=('f6-2*' 'jet-3*')
 to_measure thesis-discrete
 [ -z "$out" ] || : > "$out"
 
-# Cells expected at a growth, in all and in the field.
+# Expected cells for a growth, in total and outside the layers.
 cells_at() {
   "$vanguard" plan -q -p "$project" "${options[@]}" --growth "$1" -n 1 --json \
     2> "$work/plan.log" | jq -r '"\(.mesh.cells) \(.mesh.field_cells)"'
 }
 
-# growth_for CELLS: that leads to so many in the field, within 4 %; more growth,
-# fewer cells.
+# growth_for CELLS: the growth that gives this number of cells outside the
+# layers within 4 %; the number decreases with growth.
 growth_for() {
   local lo=1.01 hi=1.6 growth cells step
   for step in 1 2 3 4 5 6 7 8 9 10; do
@@ -58,7 +58,7 @@ growth_for() {
   echo "$growth"
 }
 
-# replayed RECORD OPTION...: speed-up, idle share.
+# replayed TIMELINE OPTION...: speed-up, idle share.
 replayed() {
   local record=$1
   shift
@@ -67,7 +67,7 @@ replayed() {
       round / 10)"'
 }
 
-# Seconds of processor time of all tasks of a record, or of one.
+# Seconds of processor time of all tasks of a timeline, or of one kind.
 spent() {
   jq --arg task "${2:-}" '(.columns | index("cpu")) as $c | [.spans[] |
     select($task == "" or .[0] == $task) | .[$c]] | add // 0 |
@@ -116,7 +116,7 @@ while read -r base surface cells thesis; do
     [ $layers = no ] || name=$base-layers
     wanted "$name" || continue
     aircraft "$data" "$surface" "$work/input" || {
-      echo "SKIP $name: no --data with $surface" >&2
+      echo "SKIP $name: no $surface below --data (verification/fetch.md)" >&2
       continue
     }
     options+=(--layers $layers)

@@ -1,29 +1,30 @@
 #!/usr/bin/env bash
-# verification/thesis/run.sh: the cases of the thesis that PVGRID comes from,
-# at sizes for 2 cores and 24 GiB.
+# verification/thesis/run.sh: the cases of the thesis on PVGRID, at sizes for 2
+# cores and 24 GiB.
 #
 # usage: verification/thesis/run.sh [--quick] [--scale X] [--data DIR]
 #          [--build DIR] [--meshcheck PROGRAM] [--work DIR] [--out FILE]
 #          [--json FILE] [CASE...]
-#   --quick      everything at a hundredth of its size
+#   --quick      all cases at a hundredth of their size
 #   --scale      numbers of cells times X (default 1)
-#   --data       folder of real geometry (verification/README.md), for aircraft
-#   --build      build folder (default build/release, made when missing)
-#   --meshcheck  another judge, run as PROGRAM -q MESH.b8.ugrid; exit status 0:
-#                valid
+#   --data       folder of real geometry (verification/fetch.md), for aircraft
+#   --build      build folder (default build/release, built if missing)
+#   --meshcheck  another checker, run as PROGRAM -q MESH.b8.ugrid; exit status
+#                0: valid
 #   --work       scratch folder, kept (default: a temporary one, removed)
 #   --out        write the tables to FILE too
-#   --json       every run, as one JSON
+#   --json       all runs as one JSON file
 #   CASE         box sphere wing aircraft jet
 #
 # box 23 M and sphere 12 M as in the thesis; wing and aircraft with viscous
-# layers, 20 M and more, for its DLR-F6 and EET; jet: a nozzle whose fine plume
-# fills a corner of a large box, where one of 16 subdomains of equal volume has
-# most of the work. Each on one thread, two ranks and two threads, all of which
-# must write the same files; and what the record of one thread makes of 64
-# workers, beside the thesis's 64 processors (README.md).
-# All of it takes about 8 minutes on two idle cores, and 4 GB of disk.
-# Exit status: 0 all valid and the same, 1 not, 2 usage.
+# layers, 20 M and more, in place of its DLR-F6 and EET; jet: a nozzle whose
+# fine plume fills a corner of a large box, where one of 16 subdomains of equal
+# volume has most of the work. Each runs on one thread, two ranks and two
+# threads, which must write the same files. The timeline of one thread is
+# replayed on 64 workers and compared with the 64 processors of the thesis
+# (README.md). All cases take about 8 minutes on two idle cores, and 4 GB of
+# disk.
+# Exit status: 0 all valid and equal, 1 not, 2 usage.
 # Needs: jq, time, openmpi-bin.
 set -euo pipefail
 
@@ -43,7 +44,7 @@ rows=$work/rows.json failed=0
 [ -z "$out" ] || : > "$out"
 cells() { calc "int($1 * $scale)"; }
 
-# once CASE HOW OPTION...: HOW is RANKSxTHREADS. Leaves the digest in `this`.
+# once CASE HOW OPTION...: HOW is RANKSxTHREADS. Sets the digest `this`.
 once() {
   local name=$1 how=$2
   local d=$work/$name.$how
@@ -57,7 +58,7 @@ once() {
   this=$(digest "$d/out")
   if [ -n "$meshcheck" ] && [ "$how" = 2x1 ]; then
     "$meshcheck" -q "$d"/out/*.b8.ugrid > "$d/meshcheck" 2>&1 || {
-      echo "$name: the other judge says no: $d/meshcheck" >&2; failed=1; }
+      echo "$name: the other checker refuses it: $d/meshcheck" >&2; failed=1; }
   fi
   [ "$(get "$d/row.json" .valid)" = true ] || {
     echo "$name $how: not valid" >&2; failed=1; }
@@ -76,7 +77,7 @@ row() {   # row CASE HOW RESULT
     "$work/$1.$2/row.json" | say
 }
 
-# A case on one and two cores.
+# Run a case on one and on two cores.
 three() {
   local how first='' result
   for how in 1x1 2x1 1x2; do
@@ -88,7 +89,7 @@ three() {
   done
 }
 
-# forecast NAME RECORD WORKERS: lines of the second table.
+# forecast NAME TIMELINE WORKERS: lines of the second table.
 forecast() {
   "$vanguard" plan --replay "$2" --ranks "$3" --serial 0 --json \
     > "$work/tasks.json"
@@ -135,17 +136,17 @@ nozzle() {
   }'
 }
 
-# The nozzle stands near the corner of a box of 80 lengths; its plume is a cone
-# of fine cells, ten lengths from the faces of the box, from which cells can
-# shrink to its spacing at a growth of 1.2. Spacing for a number of cells:
-# nearly all are in the cone and in the layer in which cells grow to twice its
-# spacing.
+# The nozzle is near the corner of a box of 80 lengths. Its plume is a cone of
+# fine cells, ten lengths from the faces of the box; over this distance cells
+# can shrink to the spacing of the cone at a growth of 1.2. The spacing follows
+# from the number of cells: nearly all are in the cone and in the layer around
+# it in which cells grow to twice its spacing.
 jet_project() {
   local d=$work/input/jet h
   mkdir -p "$d"
   nozzle > "$d/jet.obj"
-  # 6.5 cells per cube of the spacing; 14.1 is the volume of the cone; growth
-  # around it adds about half as much again
+  # 6.5 cells per cube of the spacing; 14.1 is the volume of the cone; the
+  # growth around it adds about 50 %
   h=$(calc "exp(log(1.5 * 6.5 * 14.1 / $1) / 3)")
   cat > "$d/jet.deck" << DECK
 A supersonic jet in the corner of a large box
@@ -180,9 +181,9 @@ jet_row() {   # jet_row WHAT NAME
     "\($f[1].imbalance | f(3)) |"' "$d/row.json" | say
 }
 
-# PVGRID halves the boundary's box again and again: x into N, y and z into two.
-# What share of the cells the fullest part has, by the forecast of cells, spread
-# evenly over each of many small leaves.
+# PVGRID bisects the bounding box repeatedly: x into N, y and z into two parts.
+# Share of the cells in the fullest part, from the forecast of cells,
+# distributed uniformly over each of many small leaves.
 halved() {
   "$vanguard" plan -p "$project" "${options[@]}" -q --json -n 1 \
     --leaf-cells "$(cells 40000)" > "$work/boxes.json"
@@ -225,7 +226,8 @@ HEAD
 
 # ------------------------------------------------------------------------------
 
-# As many leaves at any scale; below 20,000 cells they are mostly surface.
+# The same number of leaves at any scale; leaves below 20,000 cells are mostly
+# surface.
 [ "$scale" = 1 ] || options_all=(--leaf-cells "$(calc "int(150000 * $scale < \
   20000 ? 20000 : 150000 * $scale)")")
 say << HEAD
@@ -248,10 +250,11 @@ for name in box sphere wing aircraft; do
       if holds "$scale" '<' 0.5; then plane=dlr_f6_coarse
       else plane=dlr_f6_medium; fi
       if [ -z "$data" ] || ! aircraft "$data" $plane "$work/input"; then
-        echo "SKIP aircraft: no --data with $plane" >&2
+        echo "SKIP aircraft: no $plane below --data" \
+          "(verification/fetch.md)" >&2
         continue
       fi
-      # thinner growth than usual, for 20 million cells
+      # smaller growth than usual, for 20 million cells
       [ $plane = dlr_f6_coarse ] || options+=(--ratio 1.12 --growth 1.12) ;;
   esac
   options+=("${options_all[@]}")
@@ -261,7 +264,7 @@ done
 if [ ${#forecasts[@]} -gt 0 ]; then
   say << 'HEAD'
 
-## On more workers, forecast from the record of one thread
+## On more workers, forecast from the timeline of one thread
 
 | case | workers | last cut, s | cutting and filling, s | reading to files, s | speed-up of cutting and filling | of all | imbalance |
 |---|---|---|---|---|---|---|---|

@@ -171,7 +171,7 @@ static const struct argp_option own[] = {
   { "rates", KEY_RATES, "FILE", 0,
     "take the seconds per cell and face of "
     "this machine from the record of a run on it, by least squares "
-    "[default: those of the machine that docs/performance-parallel.md "
+    "[default: those of the machine that docs/lab/performance-parallel.md "
     "names]",
     1 },
   { "target", KEY_TARGET, "S", 0,

@@ -15,7 +15,7 @@
 /* The estimate comes this close to the number wanted, within these turns. */
 #define FIT_CLOSE 0.02
 #define FIT_TURNS 5
-/* Sphere in a box, as in the comparisons of docs/performance.md. */
+/* Sphere in a box, as in the comparisons of docs/lab/performance.md. */
 #define SPHERE_FINE 0.02
 #define SPHERE_COARSE 1.5
 

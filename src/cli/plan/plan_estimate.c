@@ -22,7 +22,7 @@
 /* Cells are counted well enough in a field as coarse as this (M6). */
 #define COARSENESS 2
 
-/* Seconds of one core; docs/performance-parallel.md, "Model". */
+/* Seconds of one core; docs/lab/performance-parallel.md, "Model". */
 static const double spread_per_cell = 0.35e-6; /* number, judge, encode */
 static const double digest_per_byte = 0.4e-9;  /* the files once more */
 static const double layer_per_cell = 0.1e-6;   /* growing and measuring */

@@ -68,7 +68,7 @@ void vg_timeline_release(struct vg_timeline *t);
 /** What a run does outside the engine, as serial, by_node and by_all of *m, in
  * seconds of one core. The ranks of the record are taken as those of one node,
  * and of each phase the same part is taken to be done by one thread
- * (docs/performance-parallel.md, "Model"). */
+ * (docs/lab/performance-parallel.md, "Model"). */
 void vg_timeline_outside(const struct vg_timeline *t, struct vg_machine *m);
 
 /** Write; the engine's time is spans.wall. Spans in their order. */

@@ -1,8 +1,8 @@
 /* cli/serve/portal.h: runs from a browser. A portal is a web server in one
  * thread that lists the projects below a folder, starts vanguard mesh and
  * vanguard sweep as processes of their own, on this machine or through Slurm,
- * and shows how far they are: docs/portal.md. Uses libmicrohttpd, which is
- * loaded when a portal is opened. */
+ * and shows how far they are: docs/reference/portal.md. Uses libmicrohttpd,
+ * which is loaded when a portal is opened. */
 #ifndef VG_CLI_SERVE_PORTAL_H
 #define VG_CLI_SERVE_PORTAL_H
 

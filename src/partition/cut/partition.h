@@ -13,7 +13,8 @@
 #include "partition/cut/decomposition.h"
 #include "partition/store/store.h"
 
-/** Default number of cells per leaf: measured, docs/performance-parallel.md. */
+/** Default number of cells per leaf: measured,
+ * docs/lab/performance-parallel.md. */
 #define VG_LEAF_CELLS 300000.0 /* C1 */
 
 struct vg_partition_options {

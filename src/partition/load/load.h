@@ -18,8 +18,8 @@
 #include "core/sizing/sizing.h"
 
 /** Cells per cube of the target edge length where the spacing is uniform,
- * measured over boxes (docs/performance-parallel.md). It is corrected by the
- * number of cells that a void's separator zones needed. */
+ * measured over boxes (docs/lab/performance-parallel.md). It is corrected by
+ * the number of cells that a void's separator zones needed. */
 #define VG_LOAD_CELLS_PER_CUBE 9.0 /* C13 */
 
 /** Where the target edge length varies, the number of cells rises by this

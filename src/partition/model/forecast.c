@@ -10,7 +10,7 @@
 #include "core/geometry/vector.h"
 #include "partition/model/model.h"
 
-/* M1: measured, see docs/performance-parallel.md, "Model". */
+/* M1: measured, see docs/lab/performance-parallel.md, "Model". */
 const struct vg_rates vg_rates_measured = {
   .pencil = { 0, 1.3e-6, 2.5e-6, 4.2e-6, 0, 0, 0 },
   .rib = { 0, 3.9e-6, 9.6e-6, 4.2e-6, 0, 0, 0 },

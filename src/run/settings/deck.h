@@ -1,6 +1,6 @@
 /* run/settings/deck.h: the run deck, a text file with all that the mesh files
  * do not say, in the manner of USM3D's input file. Its grammar is in
- * docs/deck.md:
+ * docs/reference/deck.md:
  *
  *   title line
  *   names            one line of names above one line of values,

@@ -1,5 +1,5 @@
 /* Reader of the run deck: a state machine over lines. Declared in
- * run/settings/deck.h; grammar in docs/deck.md. */
+ * run/settings/deck.h; grammar in docs/reference/deck.md. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>

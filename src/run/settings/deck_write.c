@@ -1,5 +1,5 @@
 /* Writer of the run deck. Declared in run/settings/deck.h; grammar in
- * docs/deck.md. */
+ * docs/reference/deck.md. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -10,13 +10,13 @@ while IFS='|' read -r _ name file _; do
 done < <(grep -E '^\| `[a-z_]+` \| `[a-z/_]+\.c`' "$root/CONTRIBUTING.md")
 [ "$n" -ge 10 ] || fail "only $n steps in the tour"
 
-# The constants of docs/decisions.md are in the files it gives, and name their
+# The constants of docs/design/decisions.md are in the files it gives, and name their
 # rows.
 n=0
 while IFS='|' read -r _ row _ file _; do
   row=${row// /} file=${file//[ \`]/}
   grep -qE "(/\* |, |\()$row[ :)]" "$root/src/$file" ||
-    fail "src/$file does not name row $row of docs/decisions.md"
+    fail "src/$file does not name row $row of docs/design/decisions.md"
   n=$((n + 1))
-done < <(grep -E '^\| [A-Z][0-9]+ \|[^|]*\| `' "$root/docs/decisions.md")
-[ "$n" -ge 60 ] || fail "only $n constants in docs/decisions.md"
+done < <(grep -E '^\| [A-Z][0-9]+ \|[^|]*\| `' "$root/docs/design/decisions.md")
+[ "$n" -ge 60 ] || fail "only $n constants in docs/design/decisions.md"

@@ -1,5 +1,6 @@
 # An unmodified VGRID project meshes with the layers that it requests.
-[ -d "${VG_DATA_DIR:-}/vgrid_box" ] || skip "VG_DATA_DIR has no vgrid_box"
+[ -d "${VG_DATA_DIR:-}/vgrid_box" ] ||
+  skip "VG_DATA_DIR has no vgrid_box: verification/fetch.md has the sources"
 for suffix in d3m front mapbc; do
   cp "$VG_DATA_DIR/vgrid_box/box.$suffix" .
 done
