@@ -1,19 +1,19 @@
 #!/bin/sh
-# Makes man pages and bash completions from the program's own help texts:
+# Generates man pages and bash completions from the --help output of the program:
 # manual.sh PROGRAM VERSION FOLDER
 set -eu
 program=$1 version=$2 folder=$3
 export LC_ALL=C
-# One line for each option, with its help starting in a fixed column.
+# One line per option, with the help text from a fixed column on.
 export ARGP_HELP_FMT=rmargin=30000,opt-doc-col=60
 mkdir -p "$folder/man/man1" "$folder/bash-completion/completions"
 
-# For each command its name and summary: "mesh mesh the volume ...".
+# For each command, its name and summary: "check check a surface or ...".
 commands() {
   "$program" --help | sed -n 's/^  \([a-z]*\)  *\([^ ].*\)/\1 \2/p'
 }
 
-# page NAME SUMMARY: convert the --help of a command to a man page.
+# page NAME SUMMARY: converts --help output on standard input to a man page.
 page() {
   awk -v name="$1" -v summary="$2" -v version="$version" '
     function plain(s) {
@@ -66,14 +66,14 @@ overview() {
   done
 }
 
-overview | page vanguard "volume meshes for aerodynamics" \
+overview | page vanguard "volume mesh generator for aerodynamics" \
   >"$folder/man/man1/vanguard.1"
 commands | while read -r name summary; do
   "$program" "$name" --help | page "vanguard-$name" "$summary" \
     >"$folder/man/man1/vanguard-$name.1"
 done
 
-# Long options of a command, followed by = if they take a value.
+# Long options of a command, with = if they take a value.
 options() {
   "$program" "$1" --help |
     sed -n 's/^ \{1,\}\(-.*, \)\{0,1\}--\([a-z0-9-]*\)\(\[\{0,1\}=\{0,1\}\).*/--\2\3/p' |
@@ -81,7 +81,7 @@ options() {
 }
 
 {
-  echo "# Completion of vanguard's commands and options, generated from its help."
+  echo "# Completion of vanguard's commands and options; generated from its help."
   echo "_vanguard() {"
   echo '  local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]} options'
   echo "  COMPREPLY=()"

@@ -153,9 +153,9 @@ told() {   # told NAME LAUNCHER
     [ "$(state "$job")" = RUNNING ] || break
     sleep 1
   done
-  grep -q 'told to stop (limit)' "$d.log" ||
+  grep -q 'asked to stop (limit)' "$d.log" ||
     die "the job ended before the signal: use more --cells"
-  grep -q 'back in the queue' "$d.log" || die "$2: not requeued"
+  grep -q 'requeued' "$d.log" || die "$2: not requeued"
   end=$(await_end "$job" 900)
   [ "$end" = COMPLETED ] || die "$2: the resumed job ended as $end"
   grep -q 'continuing from' "$d.log" || die "$2: it did not continue"

@@ -1,11 +1,11 @@
-// What the page does beyond its forms: runs are shown as they are now, buttons
-// act without a new page, settings can be searched.
+// Functions of the page beyond plain forms: the list of runs is updated
+// continuously, buttons work without loading a page, settings can be searched.
 "use strict";
 
-const seen = new Map();            // of each run, its markup when last looked
+const seen = new Map();            // last markup of each run
 const list = () => document.getElementById("list");
 
-// A log that was opened or closed by hand stays so.
+// Keep logs open or closed as the user left them.
 function keepOpen(from, to) {
   for (const old of from.querySelectorAll("details[id]")) {
     const now = to.querySelector("#" + old.id);
@@ -20,8 +20,7 @@ function toEnd(run) {
   for (const log of run.querySelectorAll("pre")) log.scrollTop = log.scrollHeight;
 }
 
-// Only what has changed is replaced: a button is not taken away from under a
-// click on another run.
+// Replace changed runs only, so that a click on an unchanged one is not lost.
 function show(markup) {
   const next = new DOMParser().parseFromString(markup, "text/html")
     .getElementById("list");
@@ -53,7 +52,7 @@ function tellOffline(is) {
   if (is && !offline) {
     offline = document.createElement("p");
     offline.className = "message offline";
-    offline.textContent = "The portal does not answer; its runs go on.";
+    offline.textContent = "The portal does not respond; its runs continue.";
     document.body.append(offline);
   } else if (!is && offline) {
     offline.remove();
@@ -133,8 +132,8 @@ if (form) {
   const field = document.createElement("input");
 
   field.type = "search";
-  field.placeholder = "search settings";
-  field.setAttribute("aria-label", "search settings");
+  field.placeholder = "Search settings";
+  field.setAttribute("aria-label", "Search settings");
   field.addEventListener("input", () =>
     search(field.value.trim().toLowerCase()));
   form.querySelector(".title").append(field);
@@ -146,7 +145,7 @@ if (form) {
       count(row.closest(".group"));
     }
   });
-  // A line end in a field is no wish to start a run.
+  // The Enter key in a field does not submit the form.
   form.addEventListener("keydown", (e) => {
     if (e.key === "Enter" && e.target.tagName === "INPUT") e.preventDefault();
   });

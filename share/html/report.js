@@ -1,6 +1,6 @@
-// The surface of PROJECT.report.html in three dimensions. Data are in the page:
-// #facts (JSON) and #scene (zlib, base64); src/cli/html/html_scene.c writes
-// them. Where something is missing the page stays as it was.
+// The 3-D view of PROJECT.report.html. Its data are in the page: #facts (JSON)
+// and #scene (zlib, base64), written by src/cli/html/html_scene.c. If the
+// browser lacks a feature, the page stays unchanged.
 (async function () {
   'use strict';
   const say = document.getElementById('say');
@@ -19,7 +19,8 @@
     return new DataView(await new Response(stream).arrayBuffer());
   }
 
-  // Three corners for each triangle: places, and what edges are drawn by.
+  // For each corner of each triangle: position, and the barycentric coordinates
+  // by which edges are drawn.
   function expand(data) {
     const n = facts.triangles, from = 12 * facts.points;
     const place = new Float32Array(9 * n), side = new Uint8Array(9 * n);
@@ -60,7 +61,7 @@
     return out;
   }
 
-  // --- vectors and matrices (by columns) ----------------------------------
+  // --- vectors and matrices (column-major) --------------------------------
 
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1],
     a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -78,7 +79,7 @@
     return { toward, right, up: cross(toward, right) };
   }
 
-  // The body's box just fits.
+  // Zoom so that the bounding box of the body just fits.
   function fit() {
     const f = frame(), aspect = canvas.clientWidth / canvas.clientHeight;
     const extent = v => v.reduce((sum, x, k) =>
@@ -88,7 +89,7 @@
     eye.zoom = 0.92 * facts.radius / (size || facts.radius);
   }
 
-  // Orthographic, as engineers look at meshes; far beyond the body in depth.
+  // Orthographic projection, with a depth range far beyond the body.
   function matrix(width, height) {
     const f = frame(), aspect = width / height;
     const s = eye.zoom / (1.02 * facts.radius);
@@ -139,7 +140,8 @@
       attributes: buffers,
       uniforms: { m: regl.prop('m'), toward: regl.prop('f.toward'),
         up: regl.prop('f.up'), edges: regl.prop('edges') },
-      // Faces point into the fluid: a body shows its skin, a domain its back.
+      // Normals point into the fluid, so that a body shows its outside, and an
+      // outer boundary only its far side.
       cull: { enable: true, face: 'back' },
       offset: regl.prop('offset'), count: regl.prop('count'),
     });
@@ -222,9 +224,9 @@
   }
 
   function build(recolour, draw) {
-    const by = group('Colours');
-    const names = { patch: 'patches', level: 'levels',
-      share: 'height over the law\'s', cause: 'causes' };
+    const by = group('Colour by');
+    const names = { patch: 'patch', level: 'number of layers',
+      share: 'height / growth-law height', cause: 'cause' };
     for (const k of facts.layers ? Object.keys(names) : ['patch'])
       choice(by, 'radio', names[k], k === 'patch', () => {
         shown.by = k;
@@ -236,7 +238,7 @@
       draw();
     });
     facts.cuts.forEach((c, i) =>
-      choice(what, 'checkbox', 'cut across ' + 'xyz'[c.axis], false, on => {
+      choice(what, 'checkbox', 'cut normal to ' + 'xyz'[c.axis], false, on => {
         shown.cut[i] = on;
         draw();
       }));
@@ -245,17 +247,17 @@
         shown.worst = on;
         draw();
       });
-    const look = group('Look');
+    const look = group('View');
     const from = (turn, lift) => () => {
       Object.assign(eye, start, { turn, lift });
       fit();
       draw();
     };
     const half = Math.PI / 2;
-    button(look, 'start', from(start.turn, start.lift));
+    button(look, 'reset', from(start.turn, start.lift));
     button(look, 'along x', from(Math.PI, 0));
     button(look, 'along y', from(start.turn > 0 ? half : -half, 0));
-    button(look, 'down z', from(-half, half - 1e-4));
+    button(look, 'from above (-z)', from(-half, half - 1e-4));
     const patches = group('Patches', 'patches');
     facts.patches.forEach((p, i) =>
       choice(patches, 'checkbox', p.name, shown.patch[i], on => {
@@ -327,9 +329,9 @@
     });
   }
 
-  // --- all together -------------------------------------------------------
+  // --- main ---------------------------------------------------------------
 
-  // How many pixels show something, for those who cannot see the canvas.
+  // Number of pixels drawn, for tests.
   function count(regl) {
     const pixels = regl.read();
     let n = 0;
@@ -407,8 +409,8 @@
     listen(draw);
     fit();
     new ResizeObserver(draw).observe(canvas);
-    say.textContent = 'Drag turns, shift and drag moves, the wheel or two ' +
-      'fingers bring it nearer.';
+    say.textContent = 'Drag to rotate, shift-drag to pan, use the wheel or ' +
+      'two fingers to zoom.';
     draw();
   }
 
@@ -416,7 +418,7 @@
     await run();
   } catch (e) {
     view.hidden = true;
-    say.textContent = 'This browser shows no WebGL (' +
-      e.message.split('\n')[0] + '); the pictures below show the same.';
+    say.textContent = 'WebGL is not available in this browser (' +
+      e.message.split('\n')[0] + '); the pictures below show the surface.';
   }
 })();

@@ -1,6 +1,6 @@
-/* The program `vanguard`: finds the subcommand. Exit status: 0 done, 1 the
- * job failed, 2 wrong usage, 4 done but not as it should be: a limit on the
- * layers is not met, or runs of a sweep differ. */
+/* The program `vanguard`: dispatches to the subcommands. Exit status: 0
+ * success, 1 failure, 2 wrong usage, 4 finished, but a limit on the layers is
+ * not met or runs of a sweep differ. */
 #include <malloc.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,19 +17,19 @@ static const struct command {
   const char *title; /* argv[0] of the subcommand, for help */
   int meshes;
 } commands[] = {
-  { "mesh", "mesh the volume of a project, on threads and MPI ranks",
+  { "mesh", "generate the volume mesh of a project on threads and MPI ranks",
     vg_cmd_mesh, "vanguard mesh", 1 },
-  { "surface", "make the triangles of a surface anew to size", vg_cmd_surface,
+  { "surface", "remesh a surface to target edge lengths", vg_cmd_surface,
     "vanguard surface", 0 },
-  { "check", "judge a surface or a volume mesh", vg_cmd_check, "vanguard check",
+  { "check", "check a surface or a volume mesh", vg_cmd_check, "vanguard check",
     0 },
-  { "partition", "share a volume mesh out to a solver's processes",
+  { "partition", "partition a volume mesh for a parallel flow solver",
     vg_cmd_partition, "vanguard partition", 1 },
-  { "plan", "forecast cells, memory and time before a project is meshed",
-    vg_cmd_plan, "vanguard plan", 0 },
-  { "sweep", "mesh with many leaf sizes, ranks and threads, and compare",
+  { "plan", "forecast cells, memory and time of a run", vg_cmd_plan,
+    "vanguard plan", 0 },
+  { "sweep", "mesh with various subdomain sizes, ranks and threads; compare",
     vg_cmd_sweep, "vanguard sweep", 0 },
-  { "serve", "start, watch and resume runs from a browser", vg_cmd_serve,
+  { "serve", "start, monitor and resume runs from a browser", vg_cmd_serve,
     "vanguard serve", 0 },
   { "deck", "write a run deck with all defaults", vg_cmd_deck, "vanguard deck",
     0 },
@@ -41,17 +41,17 @@ static const struct command {
 static void usage(FILE *to)
 {
   fprintf(to, "Usage: vanguard COMMAND [OPTION...]\n"
-              "Vanguard makes volume meshes for aerodynamics from closed "
-              "surfaces: viscous\nlayers on the walls, tetrahedra around "
-              "them.\n\n");
+              "Vanguard generates volume meshes for aerodynamics from closed "
+              "surfaces: viscous\nlayers on the walls, tetrahedra "
+              "elsewhere.\n\n");
   for (size_t i = 0; i < N_COMMAND; i++)
     fprintf(to, "  %-9s %s\n", commands[i].name, commands[i].summary);
   fprintf(to,
           "\n'vanguard COMMAND --help' lists the options of a command, "
           "'vanguard --version'\nshows the version. On several nodes: "
           "'mpirun -n RANKS vanguard mesh -p PROJECT'.\n"
-          "Exit status: 0 done, 1 failed, 2 wrong usage, 4 done, but a limit "
-          "on the layers\nis not met or runs of a sweep differ.\n");
+          "Exit status: 0 success, 1 failure, 2 wrong usage, 4 finished, but "
+          "a limit on the\nlayers is not met or runs of a sweep differ.\n");
 }
 
 static const char *command_name(const void *user, size_t i)
@@ -65,21 +65,21 @@ static int unknown(const char *word)
   const char *near = vg_nearest_name(word, N_COMMAND, command_name, NULL);
 
   if (near)
-    fprintf(stderr, "vanguard: no command '%s'; did you mean '%s'?\n", word,
-            near);
+    fprintf(stderr, "vanguard: unknown command '%s'; did you mean '%s'?\n",
+            word, near);
   else
     fprintf(stderr,
-            "vanguard: no command '%s'; 'vanguard --help' lists "
-            "them\n",
+            "vanguard: unknown command '%s'; 'vanguard --help' lists "
+            "the commands\n",
             word);
   return VG_EXIT_USAGE;
 }
 
-/* Every task and slice takes a few arrays of megabytes and gives them back.
- * By default glibc would hand many of them to the system, which has to clear
- * each page again for the next: with these limits a run has half the page
- * faults (DLR-F6, 4.2 M cells: 50,000, now 22,000), for some 50 MB that are
- * kept. Larger blocks stay mappings of their own and are given back at once. */
+/* Every task and slice allocates and frees a few arrays of several megabytes.
+ * By default glibc returns many of them to the system, which must clear each
+ * page again for the next allocation. These limits halve the page faults of a
+ * run (DLR-F6, 4.2 M cells: from 50,000 to 22,000) and retain about 50 MB.
+ * Larger blocks are still mapped separately and returned at once. */
 static void keep_memory(void)
 {
 #ifdef __GLIBC__
@@ -89,16 +89,18 @@ static void keep_memory(void)
 #endif
 }
 
-/* A report that could not be written is a failure like any other. */
+/* Failure to write the report is a failure of the command. */
 static int written(int status)
 {
   if (!fflush(stdout) && !ferror(stdout)) return status;
-  fprintf(stderr, "vanguard: standard output could not be written whole\n");
+  fprintf(stderr,
+          "vanguard: standard output could not be written completely\n");
   return status == VG_EXIT_USAGE ? status : VG_EXIT_FAILED;
 }
 
-/* Before threads and MPI: while this process is small. Without the server
- * TetGen is dearer to start, so a refusal ends nothing. */
+/* The child server starts before threads and MPI, while this process is small.
+ * If it cannot start, processes for TetGen only cost more, so that is not an
+ * error. */
 static int run(const struct command *c, int argc, char **argv)
 {
   int status;
@@ -129,7 +131,7 @@ int main(int argc, char **argv)
       usage(stdout);
       return VG_EXIT_DONE;
     }
-    word = argv[1] = argv[2]; /* of a command, as COMMAND --help has it */
+    word = argv[1] = argv[2]; /* 'help COMMAND' as 'COMMAND --help' */
     argv[2] = help;
     argc = 3;
   }

@@ -93,7 +93,7 @@ export PKG_CONFIG_PATH
 "$prefix/bin/vanguard" demo box --cells 1000 --out plugin >/dev/null
 "$prefix/bin/vanguard" mesh -q -p plugin/box --mesher ../star.so \
   --write lb8.ugrid --out meshed >report
-grep -q 'parts filled by the other mesher 1:' report ||
+grep -q 'subdomains filled by the selected mesher: 1,' report ||
   fail "the example of a mesher did not fill a box"
 "$prefix/bin/vanguard" check -q meshed/box.lb8.ugrid >/dev/null
 

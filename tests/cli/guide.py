@@ -35,7 +35,7 @@ def run(command, folder, environment):
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if done.returncode == 0:
         return
-    if "reads no CAD" in done.stdout:
+    if "cannot read CAD" in done.stdout:
         raise Skipped(done.stdout.strip().splitlines()[-1])
     raise Wrong("exit status %d: %s\n%s" % (done.returncode, command,
                                             done.stdout[-4000:]))

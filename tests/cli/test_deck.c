@@ -234,41 +234,41 @@ static void messages_name_line_and_remedy(void **state)
   (void)state;
   refuse("", "run.deck");
   refuse("# only a comment\n", "title");
-  refuse("growth scale\n1.2 1\n", "run.deck:1: this line holds names");
-  refuse("t\ngrwoth\n1.2\n", "run.deck:2: 'grwoth' is not a name known in "
+  refuse("growth scale\n1.2 1\n", "run.deck:1: this line consists of names");
+  refuse("t\ngrwoth\n1.2\n", "run.deck:2: unknown name 'grwoth' in "
                              "this deck; did you mean 'growth'?");
   refuse("t\nsuorces\n", "did you mean 'sources'?");
-  refuse("t\nzzzzzzzz\n", "'vanguard deck' writes all names");
+  refuse("t\nzzzzzzzz\n", "'vanguard deck' writes a deck with all names");
   refuse("t\n\ngrowth hmin\n1.2\n", "run.deck:4: 1 values for 2 names");
-  refuse("t\ngrowth\n", "run.deck:2: names without a line of values");
-  refuse("t\ngrowth\n1.2\n1.3\n", "run.deck:4: '1.3' stands where a name");
+  refuse("t\ngrowth\n", "run.deck:2: the line of names has no line of values");
+  refuse("t\ngrowth\n1.2\n1.3\n",
+         "run.deck:4: expected a name, found the number '1.3'");
   refuse("t\ngrowth\n0.9\n", "run.deck:3: growth is 0.9; it must be above 1");
-  refuse("t\ngrowth\nfast\n", "growth must be a number, found 'fast'");
+  refuse("t\ngrowth\nfast\n", "growth must be a number, not 'fast'");
   refuse("t\ngrowth\nnan\n", "growth must be a number");
-  refuse("t\nhmin hmin\n1 1\n", "named twice");
-  refuse("t\nhmin\n1\nhmin\n2\n", "run.deck:4: 'hmin' was set before (line "
-                                  "2)");
-  refuse("t\noptimise\n1.5\n", "whole number");
+  refuse("t\nhmin hmin\n1 1\n", "appears twice");
+  refuse("t\nhmin\n1\nhmin\n2\n", "run.deck:4: 'hmin' was already set on line "
+                                  "2;");
+  refuse("t\noptimise\n1.5\n", "must be an integer");
   refuse("t\noptimise\n-1\n", "at least 0");
   refuse("t\nrepair\nyess\n", "did you mean 'yes'?");
   refuse("t\nhmin hmax\n2 1\n", "hmin 2 is larger than hmax 1");
-  refuse("t\nwrite\n\"open\n", "run.deck:3: a quote is not closed");
+  refuse("t\nwrite\n\"open\n", "run.deck:3: a quotation mark is not closed");
   refuse("t\nwrite\n\001\n", "control character");
   refuse("t\nfirst y_plus\n1 1\n", "first and y_plus are both given");
-  refuse("t\ny_plus\n1\n", "y_plus needs reynolds");
-  refuse("t\nreynolds\n1e6\n", "reference_length belong together");
+  refuse("t\ny_plus\n1\n", "y_plus requires reynolds");
+  refuse("t\nreynolds\n1e6\n", "reference_length must be given together");
   refuse("t\nratio rate1\n1.2 0.2\n", "ratio and rates are both given");
   refuse("t\nlayer_cap\n0.5\n", "layer_cap is 0.5; it must be at least 1");
-  refuse("t\nlayers\nyse\n", "run.deck:3: 'yse' is not a name known in "
-                             "layers");
-  refuse("t\nlayers\nyes\n\nlayers\nno\n", "'layers' was set before (line "
-                                           "3)");
+  refuse("t\nlayers\nyse\n", "run.deck:3: unknown name 'yse' in layers");
+  refuse("t\nlayers\nyes\n\nlayers\nno\n", "'layers' was already set on line "
+                                           "3;");
 }
 
 static void tables_are_checked_too(void **state)
 {
   (void)state;
-  refuse("t\nsources kind\n", "stands alone on its line");
+  refuse("t\nsources kind\n", "alone on its line");
   refuse("t\nsources\n", "needs a line of column names");
   refuse("t\nsources\n\nkind h0\npoint 1\n", "needs a line of column names");
   refuse("t\nsources\nkind x0\npoint 1\n", "needs a column 'h0'");
@@ -279,11 +279,11 @@ static void tables_are_checked_too(void **state)
   refuse("t\nsources\nkind h0\npoint 0\n", "must be above 0");
   refuse("t\nsources\nkind h0 growth\npoint 1 0.5\n", "growth of source 1");
   refuse("t\nsources\nkind h0\npoint 1\n\nsources\nkind h0\npoint 1\n",
-         "run.deck:6: table 'sources' was given before (line 2)");
+         "run.deck:6: table 'sources' was already given on line 2;");
   refuse("t\nfarfield\nkind\nbox\nbox\n", "one line of values");
   refuse("t\nfarfield\nkind x y\nbox 1 2\n", "give all three or none");
   refuse("t\nfarfield\nkind xlo ylo zlo xhi yhi zhi\nbox 0 0 0 1 -1 1\n",
-         "below the upper one in y");
+         "in y the lower corner must be below the upper corner");
   refuse("t\nfarfield\nkind xlo ylo zlo xhi yhi zhi\nsphere 0 0 0 1 1 1\n",
          "set kind to box");
   refuse("t\npatches\nid bc\n1 4\n2 3\n1 5\n", "patch 1 is listed twice");
@@ -291,7 +291,7 @@ static void tables_are_checked_too(void **state)
   refuse("t\nlayers\nid\n3\n3\n", "layers: patch 3 is listed twice");
   refuse("t\nlayers\nid first y_plus\n3 1 1\n", "both first and y_plus");
   refuse("t\nlayers\nid ratio rate2\n3 1.1 0\n", "both ratio and rates");
-  refuse("t\nlayers\nid y_plus\n3 1\n", "needs reynolds");
+  refuse("t\nlayers\nid y_plus\n3 1\n", "requires reynolds");
   refuse("t\nlayers\nid min_full\n3 101\n", "at most 100");
   refuse("t\nlayers\nid count\n3 251\n", "at most 250");
 }

@@ -17,7 +17,7 @@ static void refuse_list(const char *list)
 
   if (vg_patch_list_check("walls", list, &err) != VG_ERR_INPUT)
     fail_msg("'%s' was taken", list);
-  assert_non_null(strstr(err.text, "is no list of patches"));
+  assert_non_null(strstr(err.text, "is not a list of patches"));
 }
 
 static void lists_have_numbers_and_names(void **unused)
@@ -115,11 +115,11 @@ static void lists_are_marked(void **unused)
   assert_int_equal(vg_patch_list_mark("walls", "wing_m", &m, 4, on, &err),
                    VG_ERR_INPUT);
   assert_non_null(strstr(err.text,
-                         "is called 'wing_m'; did you mean "
+                         "is named 'wing_m'; did you mean "
                          "'wing_l'? Patches: 1 wing_l (no condition), 2"));
   assert_int_equal(vg_patch_list_mark("walls", "8-9", &m, 4, on, &err),
                    VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "within 8-9"));
+  assert_non_null(strstr(err.text, "in the range 8-9"));
   assert_int_equal(vg_patch_list_mark("walls", "tail", &m, 2, on, &err),
                    VG_ERR_INPUT); /* beyond the first n */
   vg_mesh_release(&m);

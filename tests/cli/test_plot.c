@@ -155,7 +155,7 @@ static void a_timeline_is_drawn(void **state)
   assert_non_null(strstr(text, ">leaf "));
   assert_non_null(strstr(text, ">pencil "));
   assert_non_null(strstr(text, ">help "));
-  assert_non_null(strstr(text, "seconds"));
+  assert_non_null(strstr(text, "time, s"));
   if (vg_plot_timeline(path, &t, &err) < 0) fail_msg("%s", err.text);
   again = contents(path);
   assert_string_equal(text, again);
@@ -223,7 +223,7 @@ static void sizes_are_drawn(void **state)
   text = contents(path);
   assert_well_formed(text);
   assert_non_null(strstr(text, "32 leaves: smallest "));
-  assert_non_null(strstr(text, "asked for 100k"));
+  assert_non_null(strstr(text, "requested 100k"));
   free(text);
   vg_timeline_release(&t);
 }

@@ -248,21 +248,22 @@ static void a_form_is_refused_by_name(void **state)
   refuses("title", "a\nb", "title");
   refuses("sources", "kind x0\npoint 1", "sources, line 2: ");
   refuses("sources", "\nkind x0 h0\n\npoint 1", "sources, line 4: 2 values");
-  refuses("sources", "kind h0 h0\npoint 1 1", "h0 is there twice");
-  refuses("patches", "id name\n3 \"wing", "line 2: a quote is not closed");
+  refuses("sources", "kind h0 h0\npoint 1 1", "h0 appears twice");
+  refuses("patches", "id name\n3 \"wing",
+          "line 2: a quotation mark is not closed");
   refuses("patches", "id bc\n3 4\n3 5", "patch 3 is listed twice");
   refuses("farfield.lengths", "0", "lengths is 0");
   refuses("s.first", "-1", "first");
   refuses("s.mesher", "./it.so", "plug-in");
   /* a table is nothing but that */
   refuses("patches", "id bc\n1 4\n\nmesher\n./it.so", "line 4: 1 values");
-  refuses("s.sizes", "../other/secret.obj", "no path below");
-  refuses("s.sizes", "/etc/passwd", "no path below");
-  refuses("s.sizes", "out.obj", "leads out");
+  refuses("s.sizes", "../other/secret.obj", "not a path below");
+  refuses("s.sizes", "/etc/passwd", "not a path below");
+  refuses("s.sizes", "out.obj", "is outside");
   snprintf(path, sizeof path, "%s/../other/secret.obj", scene.root);
-  refuses("s.sizes", path, "no path below");
-  refuses("s.mapbc", path, "no path below");
-  refuses("s.mapbc", "out.obj", "leads out");
+  refuses("s.sizes", path, "not a path below");
+  refuses("s.mapbc", path, "not a path below");
+  refuses("s.mapbc", "out.obj", "is outside");
 }
 
 /* What the form shows is what it sends back. */
@@ -375,7 +376,7 @@ static void projects_are_found(void **state)
     assert_int_equal(symlink("../other/secret.obj", path), 0);
     assert_int_equal(vg_project_settings(scene.root, "b.obj", NULL, &s, &err),
                      VG_ERR_INPUT);
-    assert_non_null(strstr(err.text, "b.deck leads out"));
+    assert_non_null(strstr(err.text, "b.deck is outside"));
     assert_null(strstr(err.text, PORTAL_SECRET));
     unlink(path);
   }
@@ -427,7 +428,7 @@ static void records_come_back(void **state)
   assert_int_equal(run->ranks, 7);
   assert_int_equal(run->state, VG_SERVE_PENDING);
   assert_int_equal(again.item[1]->state, VG_SERVE_FAILED);
-  assert_non_null(strstr(again.item[1]->note, "gone"));
+  assert_non_null(strstr(again.item[1]->note, "without an exit status"));
   /* a number that is taken is not given again */
   assert_int_equal(vg_runs_new(&again, &run, &err), VG_OK);
   assert_int_equal(run->id, 4);
@@ -545,7 +546,7 @@ static void pages_are_safe(void **state)
   assert_null(strstr(scene.answer, "<script>alert"));
   asks(200, "GET /%s?project=../other/secret.obj HTTP/1.1\r\n" HOST "\r\n");
   asks(200, "GET /%s?project=out.obj HTTP/1.1\r\n" HOST "\r\n");
-  assert_non_null(strstr(scene.answer, "leads out"));
+  assert_non_null(strstr(scene.answer, "is outside"));
   asks(404, "GET /%snothing HTTP/1.1\r\n" HOST "\r\n");
   asks(404, "GET /%sruns/1/log HTTP/1.1\r\n" HOST "\r\n");
   asks(200, "GET /%sruns.json HTTP/1.1\r\n" HOST "\r\n");
@@ -614,7 +615,7 @@ static void files_are_brought(void **state)
   brings(303, "", "new.obj", "v 0 0 0\n");
   assert_non_null(strstr(scene.answer, "?project=new.obj"));
   brings(400, "", "new.obj", "v 1 1 1\n");
-  assert_non_null(strstr(scene.answer, "is there already"));
+  assert_non_null(strstr(scene.answer, "already exists"));
   brings(400, "", "long.obj", text);
   assert_non_null(strstr(scene.answer, "--max-upload"));
   text[1000] = 0;

@@ -220,16 +220,16 @@ static void faults_are_named(void **state)
   refuse("", "not JSON");
   refuse("{\"a\": 1,\n\"a\": 2}", "t.json:2: not JSON");
   refuse("[]", "not a timeline of vanguard mesh");
-  refuse("{\"ok\": true}", "give the .timeline.json");
+  refuse("{\"ok\": true}", "give a .timeline.json");
   refuse("{\"vanguard_timeline\": 1}", "\"facts\" is missing");
   refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 2}}",
-         "fact \"threads\" is not a whole number");
+         "fact \"threads\" is not an integer");
   refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 0, "
          "\"threads\": 1}}",
          "0 ranks with 1 threads");
   refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 1048576, "
          "\"threads\": 1048576}}",
-         "workers can be read");
+         "number of workers must be");
   refuse("{\"vanguard_timeline\": 1, \"facts\": {\"ranks\": 1, "
          "\"threads\": 1, \"seconds_judge\": -1}}",
          "fact \"seconds_judge\" is not a number from 0");
@@ -247,7 +247,7 @@ static void faults_are_named(void **state)
   refuse(HEAD COLUMNS ", \"spans\": [], " HELP "[[\"0J\",0,0,1]]}",
          "help 1 has no \"end\"");
   refuse(HEAD COLUMNS ", \"spans\": [], " HELP "[[\"0J\",0,3,1,2]]}",
-         "help 1, task 0J: \"thread\" is not a whole number from 0 to 2");
+         "help 1, task 0J: \"thread\" is not an integer from 0 to 2");
   refuse(HEAD COLUMNS ", \"spans\": [], " HELP "[[\"0J\",0,2,3,2]]}",
          "help 1, task 0J: \"end\" is not after");
 }
@@ -276,16 +276,16 @@ static void faults_of_spans_are_named(void **state)
   refuse_span("\"0L\",\"\",\"l\",0,0,0,0,1,1,0,0,0,0",
               "span 2, task 0L: \"kind\" is not a letter");
   refuse_span("\"0L\",\"\",\"L\",2,0,0,0,1,1,0,0,0,0",
-              "\"rank\" is not a whole number from 0 to 1");
+              "\"rank\" is not an integer from 0 to 1");
   refuse_span("\"0L\",\"\",\"L\",0,3,0,0,1,1,0,0,0,0",
-              "\"thread\" is not a whole number from 0 to 2");
+              "\"thread\" is not an integer from 0 to 2");
   refuse_span("\"0L\",\"\",\"L\",0,0,-1,0,1,1,0,0,0,0", "\"home\" is not");
   refuse_span("\"0L\",\"\",\"L\",0,0,0,2,1,1,0,0,0,0",
               "\"end\" is not after \"start\"");
   refuse_span("\"0L\",\"\",\"L\",0,0,0,0,1e10,1,0,0,0,0", "\"end\" is not");
   refuse_span("\"0L\",\"\",\"L\",0,0,0,0,1,\"1\",0,0,0,0", "\"cpu\" is not");
   refuse_span("\"0L\",\"\",\"L\",0,0,0,0,1,1,0,0.5,0,0",
-              "\"cells\" is not a whole number");
+              "\"cells\" is not an integer");
 }
 
 static void a_missing_file_is_named(void **state)

@@ -237,9 +237,9 @@ case_full_run() {
   finish
   ended 0
   [ "$(digest "$out_dir")" = "$whole" ] || bad "files differ"
-  said 'some tasks were not kept there'
+  said 'not all tasks were stored there'
   row "full disk for the run directory: the run goes on" \
-    "$(sed -n 's/^  \(some tasks were not kept.*\)/\1/p' "$work/log")"
+    "$(sed -n 's/^  \(not all tasks were stored.*\)/\1/p' "$work/log")"
   drop "$run_dir"
 }
 

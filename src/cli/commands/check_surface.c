@@ -12,13 +12,14 @@
 #include "run/settings/plan_options.h"
 
 struct findings {
-  int has_lines; /* 1: the surface has no defects that keep its lines
-                    from being followed */
+  int has_lines; /* 1: feature curves were traced, which some defects
+                    prevent */
   struct vg_remesh_report lines;
   struct vg_mesh other;             /* the surface to compare with */
-  struct vg_remesh_distance off[2]; /* this surface from the other, and the
-                              other from this one */
-  double *face; /* [n_tri] distance of each triangle; or NULL */
+  struct vg_remesh_distance off[2]; /* of this surface from the other, and of
+                              the other from this one */
+  double *face; /* [n_tri] distance of each triangle from the other surface, or
+                   NULL */
 };
 
 static void release(struct findings *f)
@@ -28,14 +29,15 @@ static void release(struct findings *f)
   free(f->face);
 }
 
-/* Lines can be followed where no edge has three faces. */
+/* Feature curves can be traced if the only defects are open edges. */
 static int can_be_followed(const struct vg_mesh *m,
                            const struct vg_surface_report *r)
 {
   return m->n_tri && !m->n_quad && r->count[VG_DEFECT_OPEN_EDGE] == r->n_defect;
 }
 
-/* A surface may be sound and yet beyond what the remesher can be asked for. */
+/* Trace the feature curves. The remesher may reject a surface without defects;
+ * this is not an error here. */
 static vg_status look_at_lines(struct vg_boundary *b, struct findings *f,
                                struct vg_error *err)
 {
@@ -47,9 +49,9 @@ static vg_status look_at_lines(struct vg_boundary *b, struct findings *f,
   o.threads = 0;
   st = vg_remesh_judge(&b->surface, &o, &f->lines, &why);
   f->has_lines = st >= 0;
-  if (st == VG_ERR_MEMORY) return vg_fail_memory(err, "the lines");
+  if (st == VG_ERR_MEMORY) return vg_fail_memory(err, "the feature curves");
   if (st < 0)
-    vg_note(b->notes, "feature lines were not examined: %s", why.text);
+    vg_note(b->notes, "feature curves were not examined: %s", why.text);
   return VG_OK;
 }
 
@@ -64,8 +66,8 @@ static vg_status compare(const struct vg_check_surface *a,
   VG_TRY(vg_surface_read(a->against, &f->other, &info, err));
   if (f->other.n_quad || m->n_quad)
     VG_TRY(vg_fail(err, VG_ERR_INPUT,
-                   "%s: distances are measured between "
-                   "triangles; a surface here has quadrilaterals",
+                   "%s: distances can be measured between "
+                   "triangles only, but one of the surfaces has quadrilaterals",
                    a->against));
   f->face = vg_alloc(m->n_tri, sizeof *f->face);
   if (!f->face) VG_TRY(vg_fail_memory(err, "the distances"));
@@ -74,7 +76,7 @@ done:
   return st;
 }
 
-/* Arrays of triangles alone are written: quadrilaterals have no angles. */
+/* Quality is defined for triangles only, so quadrilaterals are rejected. */
 static vg_status write_vtu(const struct vg_check_surface *a,
                            const struct vg_mesh *m, const struct findings *f,
                            struct vg_error *err)
@@ -90,8 +92,8 @@ static vg_status write_vtu(const struct vg_check_surface *a,
   if (!a->vtu) return VG_OK;
   if (m->n_quad)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: the quality of triangles is "
-                   "written; %s has quadrilaterals",
+                   "%s: only the quality of triangles can be "
+                   "written, but %s has quadrilaterals",
                    a->vtu, a->file);
   angle = vg_alloc(2 * m->n_tri, sizeof *angle);
   if (!angle) return vg_fail_memory(err, "the angles");
@@ -100,7 +102,7 @@ static vg_status write_vtu(const struct vg_check_surface *a,
   field[1].data = angle + m->n_tri;
   vg_display_end_at_once(0);
   st = vg_vtu_write_boundary(a->vtu, m, field, f->face ? 3 : 2, err);
-  if (st >= 0 && !a->json) printf("  quality of each triangle: %s\n", a->vtu);
+  if (st >= 0 && !a->json) printf("  quality of the triangles: %s\n", a->vtu);
   free(angle);
   return st;
 }
@@ -115,8 +117,7 @@ static vg_status write_defects(const struct vg_check_surface *a,
   if (!a->defects || !r->n_defect) return VG_OK;
   vg_display_end_at_once(0);
   st = vg_write_defects(a->defects, m, r, err);
-  if (st >= 0 && !a->json)
-    printf("  all faces with a defect: %s\n", a->defects);
+  if (st >= 0 && !a->json) printf("  all faces with defects: %s\n", a->defects);
   return st;
 }
 
@@ -129,7 +130,7 @@ static json_t *notes_json(const struct vg_notes *notes)
   return list;
 }
 
-/* Whether vanguard mesh adds a farfield to a surface like this. */
+/* Whether vanguard mesh adds a farfield to this surface. */
 static int adds_farfield(const struct vg_boundary *b)
 {
   return b->flow.kind == VG_FLOW_EXTERNAL &&
@@ -197,7 +198,7 @@ done:
   return st;
 }
 
-/* The rest of the path, as vanguard mesh takes it before it makes cells. */
+/* The remaining steps of vanguard mesh before it generates cells. */
 static vg_status finish(struct vg_boundary *b, struct vg_display *show,
                         struct vg_error *err)
 {

@@ -11,14 +11,14 @@
 struct vg_check_surface {
   const char *file, *defects, *against, *vtu;
   int json;
-  int has_deck; /* settings are a deck's, sizes are asked for */
+  int has_deck; /* 1: a deck requests target edge lengths */
 };
 
-/** Take the path of vanguard mesh up to the closed boundary of the fluid, and
- * print what that would do: flow domain, patches, repairs, remeshing, layers,
- * defects. The status is that of the path: the message says why vanguard mesh
- * would refuse the surface.
- * @param p  files and settings; the surface is read here, if it is not */
+/** Perform the steps of vanguard mesh up to the closed boundary of the fluid
+ * and print their results: flow domain, patches, repairs, remeshing, layers,
+ * defects. The status is that of these steps; the message says why vanguard
+ * mesh would reject the surface.
+ * @param p  files and settings; the surface is read here if it has not been */
 vg_status vg_check_surface(const struct vg_check_surface *a,
                            struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err);

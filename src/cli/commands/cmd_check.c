@@ -1,5 +1,5 @@
-/* vanguard check: is this surface fit for meshing, is this mesh valid and how
- * good is it? */
+/* vanguard check: whether a surface can be meshed; validity and quality of a
+ * volume mesh. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdlib.h>
@@ -38,7 +38,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   return vg_cli_add_override(&a->kept, key, arg, state);
 }
 
-/* Spacing that edges are held against: that of the deck. */
+/* The sizing field of the deck, with which edges are compared. */
 static vg_status field(const struct arguments *a, const struct vg_settings *s,
                        const struct vg_mesh *m, struct vg_sizing **out,
                        struct vg_error *err)
@@ -56,8 +56,8 @@ static void print_json(json_t *o)
   json_decref(o);
 }
 
-/* Cells that were the wrong way round are mirrored on reading. In a mesh that
- * is not valid, those of a file of 4-byte reals may be what rounding made. */
+/* Inverted cells are mirrored on reading. If the mesh is not valid and the file
+ * has 4-byte reals, rounding may have inverted them. */
 static vg_status not_valid(const struct arguments *a,
                            const struct vg_turned *turned, struct vg_error *err)
 {
@@ -68,12 +68,12 @@ static vg_status not_valid(const struct arguments *a,
     return vg_fail(err, VG_ERR_GEOMETRY, "%s: the mesh is not valid",
                    a->one.file);
   if (turned->cell)
-    snprintf(cells, sizeof cells, " (inverted cells in it: %zu)", turned->cell);
+    snprintf(cells, sizeof cells, " (inverted cells: %zu)", turned->cell);
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "%s: the mesh is not valid%s; its "
-                 "coordinates are 4-byte reals: where it was valid before it "
-                 "was written, rounding spoilt it; write 8-byte reals, as "
-                 ".lb8.ugrid has",
+                 "coordinates are 4-byte reals: if the mesh was valid before "
+                 "it was written, rounding has invalidated it; write 8-byte "
+                 "reals, as in .lb8.ugrid",
                  a->one.file, cells);
 }
 
@@ -110,7 +110,7 @@ done:
   return st;
 }
 
-/* A volume mesh, as read. */
+/* Read and check a volume mesh. */
 static vg_status check_volume(const struct arguments *a, struct vg_problem *p,
                               struct vg_display *show, struct vg_error *err)
 {
@@ -159,24 +159,24 @@ int vg_cmd_check(int argc, char **argv)
 {
   const struct argp_option own[] = {
     { "deck", 'd', "FILE", 0,
-      "settings, patches and sources [default "
-      "STEM.deck where that exists]; the edges of a mesh, and of a "
-      "surface, are compared with the sizes of a deck that is given",
+      "Settings, patches and sources; if given, edges are compared with the "
+      "target edge lengths of the deck [default STEM.deck if it exists, "
+      "without this comparison]",
       1 },
     { "defects", 'f', "FILE", 0,
-      "write all faces with a defect to this .vtu "
+      "Write all faces with a defect to this .vtu "
       "file",
       1 },
     { "against", 'a', "FILE", 0,
-      "measure how far a surface is from this one, "
-      "and this one from it",
+      "Measure the distances between the surface and the one in FILE, in both "
+      "directions",
       1 },
     { "vtu", 'v', "FILE", 0,
-      "write the triangles of a surface with angles, "
-      "2 r/R and distance to this .vtu file",
+      "Write the triangles of a surface with smallest angle, radius ratio "
+      "(2 r/R) and distance to this .vtu file",
       1 },
-    { "json", 'j', NULL, 0, "report as JSON", 1 },
-    { "quiet", 'q', NULL, 0, "no progress", 1 },
+    { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 1 },
+    { "quiet", 'q', NULL, 0, "Do not show progress", 1 },
     { 0 }
   };
   struct vg_cli_options options;
@@ -184,11 +184,12 @@ int vg_cmd_check(int argc, char **argv)
     .parser = option,
     .args_doc = "FILE",
     .doc =
-      "Judge FILE. A volume mesh: validity, dihedral angles, radius "
-      "ratio, histograms, worst cells. A surface: what 'vanguard mesh' with "
-      "the same options would do with it: flow domain, patches, repairs, "
-      "remeshing, and every defect for which it would be refused.\v"
-      "Exit status 0 when the mesh is valid or the surface accepted, 1 "
+      "Check a volume mesh or a surface. For a volume mesh, report validity, "
+      "dihedral angles, radius ratio, histograms and worst cells. For a "
+      "surface, report how 'vanguard mesh' with the same options would "
+      "process it: flow domain, patches, repairs, remeshing, and every defect "
+      "for which it would be rejected.\v"
+      "Exit status: 0 if the mesh is valid or the surface is accepted, 1 "
       "otherwise."
   };
   struct arguments a = { 0 };

@@ -22,14 +22,15 @@ static error_t option(int key, char *arg, struct argp_state *state)
   switch (key) {
   case 'o': a->output = arg; return 0;
   case ARGP_KEY_ARG:
-    if (a->surface) argp_error(state, "one surface at a time: %s", arg);
+    if (a->surface) argp_error(state, "only one surface is accepted: %s", arg);
     a->surface = arg;
     return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
 }
 
-/* Settings with the patches of the surface; its sources stay in the .d3m. */
+/* Add the patches of the surface to the settings; its sources stay in the
+ * .d3m. */
 static vg_status describe(const char *name, struct vg_settings *out,
                           struct vg_error *err)
 {
@@ -49,7 +50,7 @@ done:
   return st;
 }
 
-/* Decks are short: written aside, then copied to standard output. */
+/* Write the deck to a temporary file and copy it to standard output. */
 static vg_status to_stdout(const struct vg_settings *s, struct vg_error *err)
 {
   char path[] = P_tmpdir "/vanguard-deck-XXXXXX", part[4096];
@@ -72,15 +73,15 @@ static vg_status to_stdout(const struct vg_settings *s, struct vg_error *err)
 int vg_cmd_deck(int argc, char **argv)
 {
   const struct argp_option options[] = {
-    { "output", 'o', "FILE", 0, "file to write [default standard output]", 0 },
+    { "output", 'o', "FILE", 0, "File to write [default: standard output]", 0 },
     { 0 }
   };
   const struct argp argp = {
     .options = options,
     .parser = option,
     .args_doc = "[SURFACE]",
-    .doc = "Write a run deck with every setting, its unit and its default, "
-           "and the patch table of SURFACE (a file or the stem of a project)."
+    .doc = "Write a run deck with every setting, its unit and default, and "
+           "the patch table of SURFACE (a file or the stem of a project)."
   };
   struct vg_settings s;
   struct vg_error err = VG_ERROR_INIT;

@@ -1,4 +1,4 @@
-/* vanguard demo: complete example projects that need no foreign data. */
+/* vanguard demo: complete example projects that need no external data. */
 #define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>
@@ -32,16 +32,16 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'l': a->list = 1; return 0;
   case 'c':
     if (!vg_parse_count(arg, strlen(arg), &n) || n < 1)
-      argp_error(state, "--cells takes a whole number, not '%s'", arg);
+      argp_error(state, "--cells takes a positive integer, not '%s'", arg);
     a->n_cell = (size_t)n;
     return 0;
   case ARGP_KEY_ARG:
-    if (a->name) argp_error(state, "one demo at a time: %s", arg);
+    if (a->name) argp_error(state, "only one demo is accepted: %s", arg);
     a->name = arg;
     return 0;
   case ARGP_KEY_END:
     if (!a->name && !a->list)
-      argp_error(state, "which demo? --list shows them");
+      argp_error(state, "no demo given; --list shows the available ones");
     return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
@@ -59,7 +59,8 @@ static int list_cases(void)
   return VG_EXIT_DONE;
 }
 
-/* Cases with viscous layers: a flow at Re 5 million of the mean chord. */
+/* Cases with viscous layers: Reynolds number 5 million based on the mean
+ * chord. */
 static const struct rans {
   const char *name;
   double y_plus, reynolds, length;
@@ -71,12 +72,12 @@ static const struct rans {
 };
 
 static const char layer_comment[] =
-  "# Viscous layers grow on the patches of condition 4 in the .mapbc. Their\n"
+  "# Viscous layers grow on the patches with condition 4 in the .mapbc. Their\n"
   "# first height follows from y_plus, reynolds and reference_length (the\n"
-  "# mean chord) below; 'vanguard mesh --layers no' makes isotropic cells\n"
-  "# only, '--cells mixed' leaves prisms whole.\n";
+  "# mean chord) below. 'vanguard mesh --layers no' generates isotropic cells\n"
+  "# only; '--cells mixed' does not divide prisms into tetrahedra.\n";
 
-/* 1 when the case has layers. */
+/* Returns 1 if the case has layers. */
 static int set_layers(const char *name, struct vg_settings *s)
 {
   for (size_t i = 0; i < sizeof rans_cases / sizeof *rans_cases; i++) {
@@ -89,7 +90,7 @@ static int set_layers(const char *name, struct vg_settings *s)
   return 0;
 }
 
-/* The recommended settings of the case as a deck. */
+/* The recommended settings of the case. */
 static vg_status settings_of(const char *name, const struct vg_demo *demo,
                              struct vg_settings *s, struct vg_error *err)
 {
@@ -108,7 +109,7 @@ static vg_status settings_of(const char *name, const struct vg_demo *demo,
   return st;
 }
 
-/* STEM.suffix, which must not be there yet. */
+/* The path STEM.suffix, which must not exist yet. */
 static vg_status new_path(const char *stem, const char *suffix, char **out,
                           struct vg_error *err)
 {
@@ -148,7 +149,7 @@ static vg_status write_project(char *const path[3], const char *stem,
          vg_text_count((unsigned long long)demo->n_cell, cells),
          has_layers ? " without the viscous layers" : "");
   if (wanted && demo->n_cell > 1.05 * (double)wanted)
-    printf("  %s cells were asked for: the geometry needs more\n",
+    printf("  %s cells were requested, but the geometry needs more\n",
            vg_text_count(wanted, cells));
   printf("Next: vanguard mesh -p %s\n", stem);
 done:
@@ -185,22 +186,23 @@ int vg_cmd_demo(int argc, char **argv)
 {
   const struct argp_option options[] = {
     { "cells", 'c', "N", 0,
-      "wanted number of cells, without layers [default "
-      "by case]",
+      "Approximate number of cells, without layers [default "
+      "depends on the case]",
       0 },
     { "out", 'o', "DIR", 0,
-      "folder for the project, made where absent "
-      "[default here]",
+      "Folder for the project, created if it does not exist "
+      "[default: current folder]",
       0 },
-    { "list", 'l', NULL, 0, "list the cases", 0 },
+    { "list", 'l', NULL, 0, "List the cases", 0 },
     { 0 }
   };
   const struct argp argp = {
     .options = options,
     .parser = option,
     .args_doc = "NAME",
-    .doc = "Write the project NAME: NAME.lb8.ugrid (surface), NAME.mapbc "
-           "(conditions) and NAME.deck (settings), ready for vanguard mesh."
+    .doc = "Write the example project NAME: NAME.lb8.ugrid (surface), "
+           "NAME.mapbc (boundary conditions) and NAME.deck (settings), ready "
+           "for vanguard mesh."
   };
   struct arguments a = { 0 };
   struct vg_error err = VG_ERROR_INIT;

@@ -1,4 +1,4 @@
-/* vanguard mesh: a project in, a volume mesh out. */
+/* vanguard mesh: generates the volume mesh of a project. */
 #define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +27,7 @@ struct arguments {
   int argc;
   char **argv;
   int json, quiet, timeline;
-  double every; /* s between lines of progress; 0: 10 */
+  double every; /* seconds between progress lines; 0: 10 */
   struct vg_run_options run;
   struct vg_cli_overrides kept;
 };
@@ -41,7 +41,7 @@ struct run {
   double start, time_read, time_check, time_write, time_digest, time_page;
 };
 
-/* Options that are no settings: they do not change the mesh. */
+/* Options that are not settings: they do not change the mesh. */
 enum {
   KEY_TIMELINE = 1,
   KEY_LOG,
@@ -62,7 +62,7 @@ static error_t limit(const char *text, uint64_t *to,
   int64_t v;
 
   if (!vg_parse_count(text, strlen(text), &v) || v < 0)
-    argp_error(state, "'%s' is no number from 0 up", text);
+    argp_error(state, "'%s' is not a non-negative integer", text);
   *to = (uint64_t)v;
   return 0;
 }
@@ -75,7 +75,7 @@ static error_t differ(const char *text, enum vg_agree *to,
       *to = (enum vg_agree)k;
       return 0;
     }
-  argp_error(state, "'%s' is none of surface, layers, sizes", text);
+  argp_error(state, "'%s' is not one of surface, layers, sizes", text);
   return 0;
 }
 
@@ -87,7 +87,7 @@ static error_t fail_leaves(const char *text, struct vg_run_options *to,
   to->fail_leaves = strtod(text, &end);
   to->fail_rounds = *end == ',' ? (int)strtol(end + 1, &end, 10) : 1;
   if (end == text || *end || !(to->fail_leaves >= 0 && to->fail_leaves <= 1))
-    argp_error(state, "'%s' is no share from 0 to 1", text);
+    argp_error(state, "'%s' is not a fraction from 0 to 1", text);
   return 0;
 }
 
@@ -95,7 +95,7 @@ static error_t seconds(const char *text, double *to,
                        const struct argp_state *state)
 {
   if (!vg_parse_real(text, strlen(text), to) || !(*to >= 0.1 && *to <= 86400))
-    argp_error(state, "'%s' is no time from 0.1 to 86400 s", text);
+    argp_error(state, "'%s' is not a time from 0.1 to 86400 s", text);
   return 0;
 }
 
@@ -123,20 +123,20 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'L': key = vg_cli_option_key("levels"); break;
   case 't': key = vg_cli_option_key("threads"); break;
   case ARGP_KEY_ARG:
-    if (a->project) argp_error(state, "one project at a time: %s", arg);
+    if (a->project) argp_error(state, "only one project is accepted: %s", arg);
     a->project = arg;
     return 0;
   case ARGP_KEY_END:
-    if (!a->project) argp_error(state, "which project? give -p PROJECT");
+    if (!a->project) argp_error(state, "no project given; use -p PROJECT");
     if (a->run.resume && !a->run.dir)
-      argp_error(state, "--resume needs the --run-dir of the run");
+      argp_error(state, "--resume requires the --run-dir of the run");
     return 0;
   default: break;
   }
   return vg_cli_add_override(&a->kept, key, arg, state);
 }
 
-/* Files and settings, by each rank. */
+/* Find the files and read the settings, on each rank. */
 static vg_status read_settings(struct run *r, const struct arguments *a,
                                struct vg_error *err)
 {
@@ -156,7 +156,7 @@ done:
   return st;
 }
 
-/* Stages up to a surface as read. */
+/* Read settings and surface. */
 static vg_status read_project(struct run *r, const struct arguments *a,
                               struct vg_error *err)
 {
@@ -275,7 +275,7 @@ static json_t *report_json(const struct run *r, int ok,
   return o;
 }
 
-/* Phases as the record of the run has them; spans are borrowed. */
+/* The timeline of the run; spans are borrowed. */
 static struct vg_timeline timeline_of(const struct run *r)
 {
   struct vg_timeline t = VG_TIMELINE_INIT;
@@ -289,7 +289,7 @@ static struct vg_timeline timeline_of(const struct run *r)
   t.seconds[VG_PHASE_NUMBER] = r->mesh.partition.number;
   t.seconds[VG_PHASE_JUDGE] = r->mesh.time_judge;
   t.seconds[VG_PHASE_WRITE] = r->time_write + r->time_digest;
-  /* what only a record asks for is no part of it */
+  /* Work done only for the timeline is excluded. */
   t.seconds[VG_PHASE_TOTAL] = vg_display_now() - r->start - r->mesh.time_near;
   t.n_cell = vg_run_cells(&r->mesh);
   t.n_point = r->mesh.slices.n_point;
@@ -313,7 +313,8 @@ done:
   return st;
 }
 
-/* The page holds a drawing of the timeline, which is a file for a moment. */
+/* The HTML report embeds a drawing of the timeline, which is written to a
+ * temporary file. */
 static vg_status write_page(struct run *r, struct vg_error *err)
 {
   struct vg_timeline t = timeline_of(r);
@@ -345,7 +346,8 @@ done:
   return st;
 }
 
-/* Rank 0's part: the reports, and putting everything into its place. */
+/* Work of rank 0 at the end: write the reports and move all files to their
+ * final names. */
 static vg_status finish(struct run *r, const struct arguments *a,
                         struct vg_error *err)
 {
@@ -406,7 +408,7 @@ static void print_surface(FILE *to, const struct run *r)
   fprintf(to, "\nSurface\n");
   vg_report_size_text(to, m);
   if (b->n_welded || b->n_dropped)
-    fprintf(to, "  welded: %zu points merged, %zu triangles dropped\n",
+    fprintf(to, "  welded: %zu points merged, %zu triangles removed\n",
             b->n_welded, b->n_dropped);
   vg_report_remesh_text(to, &b->remeshing);
   vg_report_domain_text(to, &b->domain);
@@ -422,16 +424,17 @@ static void print_count(FILE *to, const char *name, size_t n)
 
 static void print_times(FILE *to, const struct run *r)
 {
-  fprintf(to, "\nTime in seconds: read %.2f, check %.2f, sizes %.2f, ",
+  fprintf(to,
+          "\nTime (s)\n  read %.2f, surface check %.2f, sizing field %.2f, ",
           r->time_read, r->time_check, r->mesh.time_size);
   if (r->layers.is_on) fprintf(to, "layers %.2f, ", r->mesh.time_layers);
-  fprintf(to, "fill %.2f, number %.2f, judge %.2f, ", r->mesh.time_fill,
-          r->mesh.partition.number, r->mesh.time_judge);
-  if (r->mesh.parts) fprintf(to, "parts %.2f, ", r->mesh.time_parts);
+  fprintf(to, "fill %.2f, numbering %.2f,\n  mesh check %.2f, ",
+          r->mesh.time_fill, r->mesh.partition.number, r->mesh.time_judge);
+  if (r->mesh.parts) fprintf(to, "solver partition %.2f, ", r->mesh.time_parts);
   fprintf(to, "write %.2f, total %.2f\n", r->time_write,
           vg_display_now() - r->start);
-  fprintf(to, "Peak memory%s: %.0f MB\n", r->mesh.size > 1 ? " of a rank" : "",
-          r->mesh.memory / 1e6);
+  fprintf(to, "\nPeak memory%s: %.0f MB\n",
+          r->mesh.size > 1 ? " of a rank" : "", r->mesh.memory / 1e6);
 }
 
 static void print_files(FILE *to, const struct run *r)
@@ -452,19 +455,19 @@ static void print_report(FILE *to, const struct run *r)
 
   print_surface(to, r);
   if (r->layers.is_on) {
-    fprintf(to, "\nLayers\n");
+    fprintf(to, "\nBoundary layers\n");
     vg_report_layers_text(to, &r->layers, &r->problem.boundary.surface);
   }
-  fprintf(to, "\nPartition\n");
+  fprintf(to, "\nDomain decomposition\n");
   vg_report_partition_text(to, m);
-  fprintf(to, "\nFill\n");
+  fprintf(to, "\nVolume fill\n");
   vg_report_fill_text(to, &m->partition.fill, m->n_field_cell);
   if (r->layers.is_on) {
     fprintf(to, "\nField outside the layers\n");
     print_count(to, "tetrahedra", m->n_field_cell);
     vg_report_mesh_text(to, &m->field_judge, 0);
   }
-  fprintf(to, "\nMesh\n");
+  fprintf(to, "\nVolume mesh\n");
   print_count(to, "points", m->slices.n_point);
   print_count(to, "tetrahedra", m->slices.n_cell[VG_SLICE_TET]);
   if (m->slices.n_cell[VG_SLICE_PYR])
@@ -474,14 +477,14 @@ static void print_report(FILE *to, const struct run *r)
   if (r->layers.is_on) vg_report_whole_text(to, &m->judge);
   else vg_report_mesh_text(to, &m->judge, 0);
   if (m->parts) {
-    fprintf(to, "\nParts for the solver\n");
+    fprintf(to, "\nSolver partition\n");
     vg_report_solver_text(to, &m->solver);
   }
   print_times(to, r);
   print_files(to, r);
 }
 
-/* All faces with a defect go into STEM.defects.vtu. */
+/* Write all faces with a defect to STEM.defects.vtu. */
 static void show_defects(struct run *r, const struct arguments *a)
 {
   const struct vg_boundary *b = &r->problem.boundary;
@@ -495,7 +498,7 @@ static void show_defects(struct run *r, const struct arguments *a)
   if (!path) return;
   if (vg_write_defects(path, &b->surface, &b->check, &err) < 0)
     vg_cli_fail(&err);
-  else if (!a->json) printf("  all faces with a defect: %s\n", path);
+  else if (!a->json) printf("  all faces with defects: %s\n", path);
   free(path);
 }
 
@@ -556,7 +559,7 @@ static int report_success(struct run *r, const struct arguments *a)
   return VG_EXIT_LIMIT;
 }
 
-/* By rank 0. */
+/* Open the log, on rank 0. */
 static vg_status open_log(struct run *r, const struct arguments *a,
                           struct vg_error *err)
 {
@@ -599,7 +602,8 @@ static int run(const struct arguments *a)
   }
   vg_display_init(&r.show, a->quiet || r.mesh.rank);
   if (a->every > 0) r.show.every = a->every;
-  /* rank 0 puts the files into place; when it ends so do the others */
+  /* Rank 0 moves the files to their final names; the other ranks end when it
+   * ends. */
   vg_display_deadline(r.mesh.rank ? 1.8 : 1.5);
   if (run_stages(&r, a, &err) < 0) {
     vg_display_clear(&r.show);
@@ -618,64 +622,61 @@ static int run(const struct arguments *a)
 
 static const struct argp_option own[] = {
   { "project", 'p', "PROJECT", 0,
-    "stem of the project files, or the full "
+    "Stem of the project files, or the full "
     "name of a surface file",
     1 },
   { "deck", 'd', "FILE", 0,
-    "run deck [default PROJECT.deck if there is "
-    "one]",
+    "Run deck [default PROJECT.deck if it "
+    "exists]",
     1 },
   { "out", 'o', "DIR", 0,
-    "folder for the results [default beside the "
+    "Folder for the results [default: that of the "
     "input]",
     1 },
-  { "json", 'j', NULL, 0, "report as JSON on standard output", 1 },
-  { "quiet", 'q', NULL, 0, "no progress", 1 },
+  { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 1 },
+  { "quiet", 'q', NULL, 0, "Do not show progress", 1 },
   { "progress", KEY_PROGRESS, "SECONDS", 0,
-    "between lines of progress where "
-    "standard error is no terminal [default 10]",
+    "Interval between progress lines if "
+    "standard error is not a terminal [s, default 10]",
     1 },
   { "timeline", KEY_TIMELINE, NULL, 0,
-    "write what each worker did when, "
-    "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep'; the "
-    "report then tells of cells near interfaces",
+    "Write the trace of all workers to "
+    "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep', and "
+    "report the quality of cells near interfaces",
     1 },
   { "log", KEY_LOG, "FILE", 0,
-    "write all that is said into FILE as well, "
-    "with versions, host, ranks and threads, and settings",
+    "Also write all output to FILE, "
+    "with versions, host, ranks, threads and settings",
     1 },
   { "run-dir", KEY_RUN_DIR, "DIR", 0,
-    "keep finished tasks here, so that a "
-    "run that is stopped or killed can be resumed; removed at success",
+    "Store finished tasks in DIR, so that a "
+    "run that is stopped or killed can be resumed; removed on success",
     1 },
   { "resume", KEY_RESUME, NULL, 0,
-    "go on with what is kept in --run-dir, "
+    "Resume the run stored in --run-dir, "
     "on any number of ranks and threads",
     1 },
-  { "keep-run", KEY_KEEP, NULL, 0, "keep --run-dir at success", 1 },
+  { "keep-run", KEY_KEEP, NULL, 0, "Keep --run-dir on success", 1 },
   { "run-limit", KEY_LIMIT, "BYTES", 0,
-    "keep no more in --run-dir, over all "
-    "ranks [default 0: no limit]",
+    "Largest total size of --run-dir, over all "
+    "ranks [bytes, default 0: no limit]",
     1 },
   { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0,
-    "do tasks in another order; "
-    "the files stay the same (a test) [default 0: heaviest first]",
+    "Execute tasks in a random order; "
+    "the files do not change (for tests) [default 0: heaviest first]",
     1 },
   { "test-node-ranks", KEY_NODE_RANKS, "N", OPTION_HIDDEN,
-    "take N ranks "
-    "that follow each other for those of a node (a test)",
-    1 },
+    "Treat every N consecutive ranks as those of one node (for tests)", 1 },
   { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN,
-    "the last node takes "
-    "its surface, layers or sizes for changed (a test)",
+    "Let the last node report a different surface, layers or sizes (for "
+    "tests)",
     1 },
   { "test-fail-leaves", KEY_FAIL, "SHARE[,ROUNDS]", OPTION_HIDDEN,
-    "this "
-    "share of the leaves is not filled at the first ROUNDS attempts (a "
-    "test)",
+    "Let this fraction of the leaves fail in the first ROUNDS attempts (for "
+    "tests)",
     1 },
-  { NULL, 't', "N", 0, "the same as --threads", 1 },
-  { NULL, 'L', "N", 0, "the same as --levels", 1 },
+  { NULL, 't', "N", 0, "Same as --threads", 1 },
+  { NULL, 'L', "N", 0, "Same as --levels", 1 },
   { 0 }
 };
 
@@ -686,23 +687,24 @@ int vg_cmd_mesh(int argc, char **argv)
     .parser = option,
     .args_doc = "-p PROJECT",
     .doc =
-      "Mesh the volume of a project: viscous layers on its walls "
-      "where they are asked for, tetrahedra in the rest.\v"
-      "A project is a VGRID project (PROJECT.d3m with PROJECT.front, or "
-      "planar patches alone) or a surface (UGRID, AFLR, STL, Cart3D, OBJ, "
-      "Medit; STEP, IGES, BREP, EGADS), with conditions in PROJECT.mapbc and "
-      "settings in PROJECT.deck. "
-      "Written are PROJECT.cogsg, .bc, .mapbc and .b8.ugrid, .resolved.deck "
-      "with all settings, .report.json and, to look at, .report.html; a "
-      "surface with defects is refused and its bad faces are put into "
-      "PROJECT.defects.vtu. Layers "
-      "grow on viscous walls (condition 4, class 2 of a .d3m, --walls) once "
+      "Generate the volume mesh of a project: viscous layers on the walls "
+      "that request them, and tetrahedra elsewhere.\v"
+      "A project is a VGRID project (PROJECT.d3m with PROJECT.front, or with "
+      "planar patches only) or a surface (UGRID, AFLR, STL, Cart3D, OBJ, "
+      "Medit; STEP, IGES, BREP, EGADS), with boundary conditions in "
+      "PROJECT.mapbc and settings in PROJECT.deck. "
+      "The command writes PROJECT.cogsg, .bc, .mapbc and .b8.ugrid (see "
+      "--write), .resolved.deck with all settings, and the report as "
+      ".report.json and .report.html. A "
+      "surface with defects is rejected, and its defective faces are written "
+      "to PROJECT.defects.vtu. Layers "
+      "grow on viscous walls (condition 4, class 2 of a .d3m, or --walls) if "
       "a first height is known (--first, or --y-plus with --reynolds and "
       "--reference-length); PROJECT.wall.vtu shows them. Under mpirun or srun "
-      "all ranks mesh together; the files are the same, byte for byte, for "
+      "all ranks generate one mesh; its files are byte-identical for "
       "any number of ranks and threads. Exit status: 0 "
-      "done, 1 failed, 2 wrong usage, 4 done but a limit on the layers "
-      "(--min-full, ...) is not met."
+      "success, 1 failure, 2 wrong usage, 4 finished, but a limit on the "
+      "layers (--min-full, ...) is not met."
   };
   struct arguments a = { .argc = argc,
                          .argv = argv,

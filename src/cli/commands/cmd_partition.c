@@ -1,4 +1,5 @@
-/* vanguard partition: a volume mesh shared out to the processes of a solver. */
+/* vanguard partition: partitions a volume mesh for the processes of a flow
+ * solver. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdio.h>
@@ -46,7 +47,7 @@ struct run {
 
 /* --- options ------------------------------------------------------------- */
 
-/* "tet=1,pri=1.5": kinds that are not named weigh 1. */
+/* Parse "tet=1,pri=1.5"; cell types that are not listed have weight 1. */
 static void read_weights(struct arguments *a, const char *list,
                          const struct argp_state *state)
 {
@@ -61,14 +62,14 @@ static void read_weights(struct arguments *a, const char *list,
       k++;
     if (k == VG_SOLVER_KINDS)
       argp_error(state,
-                 "--weights %s: kinds are tet, pyr, pri and hex, as in "
+                 "--weights %s: cell types are tet, pyr, pri and hex, as in "
                  "tet=1,pri=1.5",
                  list);
     a->options.weight[k] = strtod(at + 4, &end);
     if (end == at + 4 || (*end && *end != ',') ||
         !(a->options.weight[k] >= 1e-3 && a->options.weight[k] <= 1e3))
       argp_error(state,
-                 "--weights %s: a weight is a number from 0.001 to "
+                 "--weights %s: weights must be numbers from 0.001 to "
                  "1000",
                  list);
     at = *end ? end + 1 : end;
@@ -88,7 +89,7 @@ static void read_forms(struct arguments *a, const char *list,
     else if (vg_foam_word(word, &a->foam)) a->to_foam = 1;
     else
       argp_error(state,
-                 "--write %s: known are part, vtu, foam and "
+                 "--write %s: known formats are part, vtu, foam and "
                  "foam-ascii",
                  list);
 }
@@ -102,7 +103,8 @@ static void read_count(struct arguments *a, const char *text,
   errno = 0;
   n = strtoull(text, &end, 10);
   if (errno || end == text || *end || strchr(text, '-') || n < 1)
-    argp_error(state, "-n %s: a number of parts, 1 or more", text);
+    argp_error(state, "-n %s: the number of partitions must be 1 or more",
+               text);
   a->options.n_part = n;
 }
 
@@ -118,7 +120,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   default: break;
   }
   if (key == ARGP_KEY_END && a->one.file && !a->options.n_part)
-    argp_error(state, "how many parts? -n N");
+    argp_error(state, "no number of partitions given; use -n N");
   return vg_cli_one(&a->one, "file", key, arg, state);
 }
 
@@ -135,8 +137,8 @@ static vg_status read_mesh(struct run *r, struct vg_error *err)
   r->n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
   if (!r->n_cell) {
     st = vg_fail(err, VG_ERR_INPUT,
-                 "%s: a surface; parts are made of the "
-                 "cells of a volume mesh",
+                 "%s: this is a surface; only a volume mesh can be "
+                 "partitioned",
                  path);
     goto done;
   }
@@ -145,7 +147,7 @@ static vg_status read_mesh(struct run *r, struct vg_error *err)
   r->is_wall = vg_calloc(m->n_patch, 1);
   r->part = vg_alloc(r->n_cell, sizeof *r->part);
   if (!r->is_wall || !r->part) {
-    st = vg_fail_memory(err, "the parts of a mesh");
+    st = vg_fail_memory(err, "the partition of a mesh");
     goto done;
   }
   for (size_t k = 0; k < m->n_patch; k++)
@@ -156,7 +158,7 @@ done:
   return st;
 }
 
-/* STEM.suffix among the files; NULL: no memory. */
+/* Add STEM.suffix to the files; NULL if out of memory. */
 static const char *add_file(struct run *r, const char *suffix)
 {
   char *path;
@@ -225,7 +227,7 @@ done:
   return st;
 }
 
-/* --- what came out ------------------------------------------------------- */
+/* --- report -------------------------------------------------------------- */
 
 static void print_json(const struct run *r)
 {
@@ -245,10 +247,10 @@ static void print_json(const struct run *r)
 
 static void print_text(const struct run *r)
 {
-  printf("%s: parts for a solver\n", r->a->one.file);
+  printf("%s: solver partition\n", r->a->one.file);
   vg_report_size_text(stdout, &r->mesh);
   vg_report_solver_text(stdout, &r->report);
-  printf("  read in %.2f s, written in %.2f s; peak memory %.0f MB\n",
+  printf("  time (s): read %.2f, write %.2f; peak memory %.0f MB\n",
          r->time_read, r->time_write, vg_report_peak_memory() / 1e6);
   for (size_t i = 0; i < r->n_file; i++) printf("  %s\n", r->file[i]);
 }
@@ -265,23 +267,23 @@ static void release(struct run *r)
 int vg_cmd_partition(int argc, char **argv)
 {
   const struct argp_option options[] = {
-    { "parts", 'n', "N", 0, "number of parts", 0 },
+    { "parts", 'n', "N", 0, "Number of partitions", 0 },
     { "out", 'o', "STEM", 0,
-      "first part of the names of files [default that "
+      "Stem of the names of the output files [default: that "
       "of MESH]",
       0 },
     { "write", KEY_WRITE, "LIST", 0,
-      "what to write: part (STEM.part.N, a line "
-      "with the part of each cell, as METIS has it), vtu (STEM.vtu with cell "
-      "data solver_part), foam or foam-ascii (the case STEM.openfoam with "
+      "Output: part (STEM.part.N, one line with the partition number of each "
+      "cell, as METIS writes it), vtu (STEM.vtu with the cell "
+      "array solver_part), foam or foam-ascii (the case STEM.openfoam with "
       "constant/cellDecomposition) [default part]",
       0 },
     { "weights", KEY_WEIGHTS, "LIST", 0,
-      "work of a cell by its kind, as in "
+      "Work per cell by cell type, as in "
       "tet=1,pyr=1.2,pri=1.5,hex=2 [default 1 for all]",
       0 },
-    { "json", 'j', NULL, 0, "report as JSON", 0 },
-    { "quiet", 'q', NULL, 0, "no progress", 0 },
+    { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 0 },
+    { "quiet", 'q', NULL, 0, "Do not show progress", 0 },
     { 0 }
   };
   const struct argp argp = {
@@ -289,14 +291,14 @@ int vg_cmd_partition(int argc, char **argv)
     .parser = option,
     .args_doc = "MESH",
     .doc =
-      "Share the cells of MESH out to N processes of a solver: parts of "
-      "equal work with few faces between them, none of which cuts a stack of "
-      "layer cells.\vStacks are those of prisms, of hexahedra on viscous "
-      "walls, and of Vanguard's layer tetrahedra where the file tells their "
-      "number (.cogsg, and .ugrid written with --ugrid-tail). OpenFOAM takes "
-      "the parts by decomposePar with the method manual, for which the case "
-      "has a decomposeParDict. 'vanguard mesh --solver-parts N' does the same "
-      "to the mesh that it makes."
+      "Partition the cells of MESH for N processes of a flow solver: equal "
+      "work, few faces between partitions, and no stack of layer cells is "
+      "cut.\vStacks are recognised for prisms, for hexahedra on viscous "
+      "walls, and for Vanguard's layer tetrahedra if the file contains their "
+      "number (.cogsg, and .ugrid written with --ugrid-tail). OpenFOAM reads "
+      "the partition by decomposePar with the method manual; the case "
+      "contains the decomposeParDict for it. 'vanguard mesh --solver-parts N' "
+      "partitions the mesh that it generates in the same way."
   };
   struct arguments a = { .options = VG_SOLVER_OPTIONS_INIT, .to_part = 1 };
   struct run r = { .a = &a };

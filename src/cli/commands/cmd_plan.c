@@ -1,4 +1,4 @@
-/* vanguard plan: what a run would take on other machines. */
+/* vanguard plan: forecasts a run, also on other machines. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +30,8 @@ static void number(const char *name, const char *text, double lo, double *out,
                    const struct argp_state *state)
 {
   if (!vg_parse_real(text, strlen(text), out) || *out < lo)
-    argp_error(state, "--%s takes a number from %g, not '%s'", name, lo, text);
+    argp_error(state, "--%s takes a number of at least %g, not '%s'", name, lo,
+               text);
 }
 
 static void range(const char *name, const char *text, struct vg_range_list *out,
@@ -48,12 +49,13 @@ static int whole(const char *name, const char *text, int64_t lo, int64_t hi,
   int64_t n;
 
   if (!vg_parse_int(text, strlen(text), &n) || n < lo || n > hi)
-    argp_error(state, "--%s takes a whole number from %d, not '%s'", name,
+    argp_error(state, "--%s takes an integer of at least %d, not '%s'", name,
                (int)lo, text);
   return (int)n;
 }
 
-/* Does nothing else decide than who does which task? */
+/* Whether `schedule`, which only assigns tasks to workers, is the only setting
+ * given. */
 static int is_schedule(const struct vg_cli_overrides *kept)
 {
   for (size_t i = 0; i < kept->n; i++)
@@ -65,23 +67,24 @@ static void check_end(const struct vg_plan_options *o,
                       const struct argp_state *state)
 {
   if (!o->replay && !o->project)
-    argp_error(state, "which run? give -p PROJECT, or --replay "
+    argp_error(state, "no run given; use -p PROJECT, or --replay "
                       "FILE.timeline.json");
   if (o->replay && o->project)
-    argp_error(state, "either a project or a --replay, not both");
+    argp_error(state, "give either a project or --replay, not both");
   if (o->replay && o->rates)
-    argp_error(state, "--rates are for a project: a --replay has its own "
-                      "times");
+    argp_error(state, "--rates needs a project; --replay uses the times of "
+                      "its record");
   if (o->replay && o->cores)
-    argp_error(state, "--cores are for a project: a --replay takes --ranks, "
-                      "--threads and --ranks-per-node");
+    argp_error(state, "--cores needs a project; use --ranks, --threads and "
+                      "--ranks-per-node with --replay");
   if (o->cores &&
       (o->threads.v[o->threads.n - 1] > 1 || o->machine.ranks_per_node > 1))
-    argp_error(state, "--cores tries all ranks per node and threads that fill "
-                      "a node: leave --threads and --ranks-per-node out");
+    argp_error(state, "--cores tries all combinations of ranks and threads "
+                      "that fill a node; omit --threads and "
+                      "--ranks-per-node");
   if (o->replay && (!is_schedule(&o->kept) || o->deck || o->target > 0))
-    argp_error(state, "a --replay takes no settings, deck or target, but for "
-                      "--schedule: the tasks are those of the record");
+    argp_error(state, "--replay takes no settings, deck or target other than "
+                      "--schedule, since the tasks are those of the record");
 }
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -120,7 +123,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_ROAM: o->machine.joins_roam = 1; return 0;
   case 'L': key = vg_cli_option_key("levels"); break;
   case ARGP_KEY_ARG:
-    if (o->project) argp_error(state, "one project at a time: %s", arg);
+    if (o->project) argp_error(state, "only one project is accepted: %s", arg);
     o->project = arg;
     return 0;
   case ARGP_KEY_END: check_end(o, state); return 0;
@@ -131,78 +134,73 @@ static error_t option(int key, char *arg, struct argp_state *state)
 
 static const struct argp_option own[] = {
   { "project", 'p', "PROJECT", 0,
-    "path and name without extension, or one "
-    "surface file, as for 'vanguard mesh'",
+    "Stem of the project files, or the full name of a surface file, as for "
+    "'vanguard mesh'",
     1 },
-  { "deck", 'd', "FILE", 0, "run deck [default PROJECT.deck if it exists]", 1 },
+  { "deck", 'd', "FILE", 0, "Run deck [default PROJECT.deck if it exists]", 1 },
   { "replay", 'r', "FILE", 0,
-    "record of a run, as 'vanguard mesh "
-    "--timeline' writes it",
+    "Replay the timeline of a run, as written by 'vanguard mesh "
+    "--timeline'",
     1 },
   { "ranks", 'n', "LIST", 0,
-    "numbers of ranks: 1,2,4 or 3:7 or 1:64:x2 "
+    "Numbers of ranks, as in 1,2,4 or 3:7 or 1:64:x2 "
     "[default 1:512:x2]",
     1 },
   { "threads", 't', "LIST", 0,
-    "threads of each rank [default 1]; those "
-    "that are idle help with joins, so that a node's cores as one rank do "
-    "more than as ranks of one thread",
+    "Numbers of threads per rank; idle threads help with front updates "
+    "(joins), so the cores of a node perform better as one rank than as ranks "
+    "with one thread each [default 1]",
     1 },
   { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0,
-    "ranks that share a "
-    "node: no latency between them, check, sizes and layers made together "
-    "[default 1]",
+    "Number of ranks per node; there is no latency between them, and they "
+    "share the surface check, sizing field and layers [default 1]",
     1 },
   { "cores", KEY_CORES, "N", 0,
-    "cores of a node: --ranks are numbers of "
-    "nodes, and of all ways to share their cores among ranks and threads "
-    "the best is named with its mpirun line; of a project only",
+    "Number of cores per node; --ranks are then numbers of nodes, all "
+    "combinations of ranks and threads that fill a node are tried, and the "
+    "best is shown with its mpirun line; for a project only",
     1 },
-  { "latency", KEY_LATENCY, "S", 0, "seconds per message [default 2e-6]", 1 },
+  { "latency", KEY_LATENCY, "S", 0, "Time per message [s, default 2e-6]", 1 },
   { "bandwidth", KEY_BANDWIDTH, "B", 0,
-    "bytes per second of a rank's link "
-    "[default 1e10]",
+    "Bandwidth of the link of a rank "
+    "[bytes/s, default 1e10]",
     1 },
   { "rate", KEY_RATE, "X", 0,
-    "speed of a core over the recorded one; "
-    "without a record over the one that the times were measured on "
+    "Speed of a core relative to that of the record; without a record, "
+    "relative to the core on which the built-in rates were measured "
     "[default 1]",
     1 },
   { "rates", KEY_RATES, "FILE", 0,
-    "take the seconds per cell and face of "
-    "this machine from the record of a run on it, by least squares "
-    "[default: those of the machine that docs/lab/performance-parallel.md "
-    "names]",
+    "Fit the times per cell and face by least squares to the timeline of a "
+    "run on this machine [default: rates of the machine named in "
+    "docs/lab/performance-parallel.md]",
     1 },
   { "target", KEY_TARGET, "S", 0,
-    "find the smallest machine that needs no "
-    "more than S seconds; of a project only, a --replay shows all of "
-    "--ranks and --threads [default: the largest that is 80 % efficient]",
+    "Find the smallest machine that needs at most S seconds; for a project "
+    "only [default: the largest machine with at least 80 % efficiency]",
     1 },
   { "serial", KEY_SERIAL, "S", 0,
-    "seconds outside the tasks, which no "
-    "workers share [default: phases of the record, shared by a node or by "
-    "all; without one by the times of reading, checking and sizes now]",
+    "Time outside the tasks that is not parallel [s, default: the phases of "
+    "the record, parallel within a node or over all workers; without a "
+    "record, estimated from the times of reading, checking and sizing now]",
     1 },
   { "joins-roam", KEY_ROAM, NULL, 0,
-    "joins are done by any rank, not at "
-    "their home",
-    1 },
+    "Let any rank perform front updates (joins), not only the home rank", 1 },
   { "loop-threads", KEY_LOOPS, "N", 0,
-    "most threads that make loops of "
-    "joins faster, since they share the memory of a rank [default 16]",
+    "Largest number of threads that speed up loops of front updates; they "
+    "share the memory bandwidth of a rank [default 16]",
     1 },
   { "json", 'j', NULL, 0,
-    "forecast as JSON on standard output, with "
-    "the whole tree",
+    "Write the forecast as JSON to standard output, with "
+    "the whole decomposition tree",
     1 },
   { "depth", KEY_DEPTH, "N", 0,
-    "levels of the tree of cuts that are shown "
+    "Levels of the decomposition tree to show "
     "[default 2]",
     1 },
-  { "quiet", 'q', NULL, 0, "no progress", 1 },
-  { "plot", KEY_PLOT, "FILE", 0, "figure of the speed-up (SVG)", 1 },
-  { NULL, 'L', "N", 0, "the same as --levels", 1 },
+  { "quiet", 'q', NULL, 0, "Do not show progress", 1 },
+  { "plot", KEY_PLOT, "FILE", 0, "Write a plot of the speed-up (SVG)", 1 },
+  { NULL, 'L', "N", 0, "Same as --levels", 1 },
   { 0 }
 };
 
@@ -214,15 +212,15 @@ int vg_cmd_plan(int argc, char **argv)
     .args_doc = "-p PROJECT\n--replay FILE [--schedule dynamic|cyclic]",
     .doc =
       "Forecast the mesh of a project and the time of its run before "
-      "anything is meshed, or the time of a recorded run on other machines. "
-      "Tasks are simulated: who is idle takes the next one, cuts before "
-      "fills, heavy ones first.\v"
-      "Speed-up is against one worker of the same tasks; critical is the "
-      "longest chain of tasks that wait for each other, which no machine of "
-      "such ranks can go below; cuts end is when the last cut has been made, "
-      "cuts the share of the work that cuts are, extra the share beyond what "
-      "their cells "
-      "would have taken in leaves."
+      "it is meshed, or the time of a recorded run on other machines. "
+      "The schedule is simulated: an idle worker takes the next task, cuts "
+      "before fills, expensive tasks first.\v"
+      "Columns of the forecast: speed-up is relative to one worker with the "
+      "same tasks; critical is the critical path, the longest chain of "
+      "dependent tasks and a lower bound of the time; cuts end is the time at "
+      "which the last cut is finished; cuts is the share of the work spent on "
+      "cuts, and extra the part of it that the same cells would not have "
+      "cost in leaves."
   };
   struct vg_plan_options o = { .machine = VG_MACHINE_INIT,
                                .serial = -1,
@@ -237,7 +235,7 @@ int vg_cmd_plan(int argc, char **argv)
     vg_fail_memory(&err, "the options");
     return vg_cli_fail(&err);
   }
-  /* --threads is a list here */
+  /* --threads is a list in this command, so the setting is hidden. */
   for (size_t i = 0; i < options.n; i++)
     if (options.option[i].key == vg_cli_option_key("threads"))
       options.option[i].flags |= OPTION_HIDDEN;

@@ -1,4 +1,4 @@
-/* vanguard serve: runs from a browser. */
+/* vanguard serve: the portal, from which runs are started in a browser. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +12,8 @@
 
 enum { KEY_HOST = 1, KEY_UPLOAD, KEY_JOBS, KEY_LAUNCHER, KEY_PROGRAM };
 
-/* How long the server sleeps when nothing comes in; runs are looked after as
- * often. */
+/* How long the server waits for requests, and the interval at which runs are
+ * checked. */
 #define STEP_MS 200
 
 static int64_t number(const char *option, const char *text, int64_t lo,
@@ -22,8 +22,8 @@ static int64_t number(const char *option, const char *text, int64_t lo,
   int64_t v = 0;
 
   if (!vg_parse_count(text, strlen(text), &v) || v < lo || v > hi)
-    argp_error(state, "--%s takes a number from %lld to %lld, not '%s'", option,
-               (long long)lo, (long long)hi, text);
+    argp_error(state, "--%s takes an integer from %lld to %lld, not '%s'",
+               option, (long long)lo, (long long)hi, text);
   return v;
 }
 
@@ -43,7 +43,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_PROGRAM: o->program = arg; return 0;
   case ARGP_KEY_ARG:
     argp_error(state,
-               "what is '%s'? the folder of the projects comes after "
+               "unexpected argument '%s'; give the folder of the projects with "
                "--root",
                arg);
     return 0;
@@ -62,18 +62,19 @@ static int run(const struct vg_portal_options *o)
   VG_TRY(vg_portal_open(o, &p, &err));
   printf("%s\n", vg_portal_url(p));
   fflush(stdout);
-  fprintf(stderr, "Open this address in a browser; whoever has it can start "
+  fprintf(stderr, "Open this address in a browser; anyone who has it can start "
                   "runs as you. Ctrl-C\nends the portal, not its runs.\n");
   if (o->host)
-    fprintf(stderr, "vanguard: --host: others on the network can read what is "
-                    "sent, the token too:\nHTTP is not encrypted\n");
+    fprintf(stderr, "vanguard: warning: with --host, others on the network can "
+                    "read the traffic, including\nthe token: HTTP is not "
+                    "encrypted\n");
   while (st >= 0 && !vg_display_interrupted())
     st = vg_portal_step(p, STEP_MS, &err);
   n = vg_portal_active(p);
   if (st >= 0 && n)
     fprintf(stderr,
-            "%d run%s wait or go on; a portal in the same folder shows "
-            "them again\n",
+            "%d run%s still waiting or running; a new portal with the same "
+            "--root shows them again\n",
             n, n > 1 ? "s" : "");
 done:
   vg_portal_close(p);
@@ -84,49 +85,46 @@ int vg_cmd_serve(int argc, char **argv)
 {
   const struct argp_option options[] = {
     { "port", 'p', "N", 0,
-      "port to listen on, 0 for any that is free [default "
+      "Port to listen on; 0: any free port [default "
       "8765]",
       1 },
     { "root", 'r', "DIR", 0,
-      "folder of the projects, out of which no path "
-      "leads; runs are in DIR/vanguard-runs [default: the current one]",
+      "Folder of the projects; the portal accesses no files outside it, and "
+      "stores runs in DIR/vanguard-runs [default: current folder]",
       1 },
     { "host", KEY_HOST, "ADDRESS", 0,
-      "address to listen on, for other "
-      "machines to reach; nothing is encrypted [default 127.0.0.1: this "
-      "machine alone]",
+      "Address to listen on, to allow access from other machines; the traffic "
+      "is not encrypted [default 127.0.0.1: this machine only]",
       1 },
     { "jobs", KEY_JOBS, "N", 0,
-      "runs on this machine at a time, others wait "
+      "Largest number of simultaneous runs on this machine; further runs wait "
       "[default 1]",
       1 },
     { "max-upload", KEY_UPLOAD, "BYTES", 0,
-      "largest file that a browser may "
-      "bring [default 1e9]",
-      1 },
+      "Largest file that can be uploaded [bytes, default 1e9]", 1 },
     { "launcher", KEY_LAUNCHER, "COMMAND", 0,
-      "how ranks are started, as for "
-      "vanguard sweep [default 'mpirun -n {ranks} --bind-to none', nothing for "
+      "Command that starts the ranks, as for "
+      "vanguard sweep [default 'mpirun -n {ranks} --bind-to none', none for "
       "one rank]",
       1 },
     { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN,
-      "instead of this "
-      "program",
-      1 },
+      "Program to run instead of this one (for tests)", 1 },
     { 0 }
   };
   const struct argp argp = {
     .options = options,
     .parser = option,
     .doc =
-      "Serve a page on this machine from which runs are started, watched, "
-      "stopped and resumed: projects below a folder, a form of all settings, "
-      "runs here or through Slurm, with progress, log and report.\v"
-      "Prints the address of the page, with a token that lets in; it is in "
-      "DIR/vanguard-runs/portal.url, too, until the end. From another machine: "
-      "ssh -L 8765:127.0.0.1:8765 MACHINE. Each run is a process of its own "
-      "in a folder of DIR/vanguard-runs and goes on when the portal ends. "
-      "Exit status: 0 ended by a signal, 1 failed, 2 wrong usage."
+      "Serve a web page from which runs are started, monitored, stopped and "
+      "resumed. It shows the projects below a folder, a form with all "
+      "settings, and the runs on this machine or through Slurm with their "
+      "progress, logs and reports.\v"
+      "The command prints the address of the page, which contains an access "
+      "token; until the portal ends, the address is also in "
+      "DIR/vanguard-runs/portal.url. To use it from another machine: "
+      "ssh -L 8765:127.0.0.1:8765 MACHINE. Each run is a separate process with "
+      "its own folder in DIR/vanguard-runs and continues when the portal ends. "
+      "Exit status: 0 ended by a signal, 1 failure, 2 wrong usage."
   };
   struct vg_portal_options o = VG_PORTAL_OPTIONS_INIT;
 

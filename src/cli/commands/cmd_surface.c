@@ -1,4 +1,4 @@
-/* vanguard surface: a triangulation in, a surface of triangles to size out. */
+/* vanguard surface: remeshes a surface to target edge lengths. */
 #define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +26,7 @@ struct arguments {
   struct vg_cli_overrides kept;
 };
 
-/* The files of a run; `stem` is what all their paths begin with. */
+/* The output files; `stem` is the common beginning of their paths. */
 struct files {
   char *stem;
   size_t n_item;
@@ -56,8 +56,8 @@ static void release_files(struct files *f)
   free(f->stem);
 }
 
-/* Register a file to write. A file of that name is an input or somebody's work,
- * and stays. */
+/* Register a file to write. An existing file of that name, which may be the
+ * input, is never overwritten. */
 static vg_status add_file(struct files *f, const char *suffix,
                           struct vg_error *err)
 {
@@ -76,7 +76,8 @@ static vg_status add_file(struct files *f, const char *suffix,
   return st;
 }
 
-/* Beside the input, under a name of its own, or in a folder, under its name. */
+/* Files go to the folder of the input as STEM.new.*, or to the given folder
+ * under the name of the input. */
 static vg_status plan_files(const struct vg_problem *p,
                             const struct arguments *a, struct files *f,
                             struct vg_error *err)
@@ -95,7 +96,7 @@ static vg_status plan_files(const struct vg_problem *p,
   for (size_t i = 0; i < f->n_item; i++) {
     if (!strcmp(f->item[i], "cogsg") || !strcmp(f->item[i], "openfoam"))
       VG_TRY(vg_fail(err, VG_ERR_INPUT,
-                     "%s is for volume meshes; write the "
+                     "%s is a format for volume meshes; write the "
                      "surface as lb8.ugrid, stl, ...",
                      f->item[i]));
     VG_TRY(add_file(f, f->item[i], err));
@@ -107,9 +108,9 @@ done:
   return st;
 }
 
-/* --- what is written ----------------------------------------------------- */
+/* --- output -------------------------------------------------------------- */
 
-/* The first of both arrays begins what is allocated. */
+/* `angle` is an allocation of 2 n values: angles, then radius ratios. */
 static vg_status write_vtu(const char *path, const struct vg_boundary *b,
                            struct vg_error *err)
 {
@@ -129,7 +130,7 @@ static vg_status write_vtu(const char *path, const struct vg_boundary *b,
   return st;
 }
 
-/* Path i; NULL: no memory. */
+/* Path of file i, to be freed; NULL if out of memory. */
 static char *path_of(const struct files *f, size_t i)
 {
   char *path;
@@ -160,7 +161,8 @@ static json_t *report(const struct vg_problem *p, const struct files *f)
                    "notes", notes, "files", files);
 }
 
-/* Write the file with a suffix: the surface, its conditions or a report. */
+/* Write the file with the given suffix: the surface, its conditions, its
+ * quality or the report. */
 static vg_status write_file(const struct vg_problem *p, struct files *f,
                             const char *suffix, const json_t *o,
                             struct vg_error *err)
@@ -213,7 +215,8 @@ static void print(const struct vg_problem *p, const struct files *f)
   }
 }
 
-/* Deck and options; the command adds its own format and remeshes always. */
+/* Read deck and options; the command has its own default format and always
+ * remeshes. */
 static vg_status read_settings(const struct arguments *a, struct vg_problem *p,
                                struct vg_error *err)
 {
@@ -269,7 +272,7 @@ static vg_status run(const struct arguments *a, struct vg_display *show,
     json_dumpf(o, stdout, JSON_INDENT(2));
     printf("\n");
   } else {
-    printf("%s: a new surface\n", a->one.file);
+    printf("%s: remeshed surface\n", a->one.file);
     print(&p, &f);
   }
 done:
@@ -283,16 +286,17 @@ int vg_cmd_surface(int argc, char **argv)
 {
   const struct argp_option own[] = {
     { "deck", 'd', "FILE", 0,
-      "settings, patches and sources [default "
-      "STEM.deck where that exists]",
+      "Settings, patches and sources [default "
+      "STEM.deck if it exists]",
       0 },
     { "out", 'o', "DIR", 0,
-      "folder for the files, made where absent; they "
-      "have the name of the input [default beside it, as STEM.new]",
+      "Folder for the files, created if it does not exist; they "
+      "have the stem of the input [default: the folder of the input, with the "
+      "stem STEM.new]",
       0 },
-    { "json", 'j', NULL, 0, "report as JSON", 0 },
-    { "quiet", 'q', NULL, 0, "no progress", 0 },
-    { NULL, 't', "N", 0, "as --threads", 0 },
+    { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 0 },
+    { "quiet", 'q', NULL, 0, "Do not show progress", 0 },
+    { NULL, 't', "N", 0, "Same as --threads", 0 },
     { 0 }
   };
   struct vg_cli_options options;
@@ -300,10 +304,11 @@ int vg_cmd_surface(int argc, char **argv)
     .parser = option,
     .args_doc = "INPUT",
     .doc =
-      "Make the triangles of a surface anew, as long as its shape and "
-      "sources ask for. Ridges, corners and patches stay. Written are the "
-      "surface (--write, default lb8.ugrid), its conditions (.mapbc), quality "
-      "and distance (.surface.vtu) and the report (.surface.json)."
+      "Remesh a surface to target edge lengths given by its curvature, by "
+      "settings and by sources, preserving feature edges, corners and patches. "
+      "The command writes the surface (--write, default lb8.ugrid), its "
+      "boundary conditions (.mapbc), quality and distance of the triangles "
+      "(.surface.vtu) and the report (.surface.json)."
   };
   struct arguments a = { 0 };
   struct vg_display show;

@@ -1,4 +1,4 @@
-/* vanguard sweep: the mesher over a grid of parameters. */
+/* vanguard sweep: runs vanguard mesh over a grid of parameters. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,7 +26,7 @@ enum {
   KEY_FAMILY
 };
 
-/* Lists, from an option or from the deck. */
+/* Lists that are given by an option or by the deck. */
 enum { RANKS, THREADS, LEVELS, LEAF_CELLS, PARTS, FAMILY, N_LIST };
 static const struct {
   const char *option, *column;
@@ -85,7 +85,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 't': range(THREADS, arg, o, state); return 0;
   case KEY_REPEAT:
     if (!vg_parse_int(arg, strlen(arg), &n) || n < 1 || n > 1000)
-      argp_error(state, "--repeat takes a number from 1 to 1000, not '%s'",
+      argp_error(state, "--repeat takes an integer from 1 to 1000, not '%s'",
                  arg);
     o->repeat = (int)n;
     return 0;
@@ -97,21 +97,21 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case ARGP_KEY_ARG:
     if (o->project)
       argp_error(state,
-                 "one project at a time: %s; options "
-                 "for vanguard mesh come after '--'",
+                 "only one project is accepted: %s; put options "
+                 "for vanguard mesh after '--'",
                  arg);
     o->project = arg;
     return 0;
   case ARGP_KEY_END:
-    if (!o->project) argp_error(state, "which project? give -p PROJECT");
+    if (!o->project) argp_error(state, "no project given; use -p PROJECT");
     return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
 }
 
-/* --- what the deck says -------------------------------------------------- */
+/* --- the deck ------------------------------------------------------------ */
 
-/* A list of the deck, where no option gave one. */
+/* Read list k from the deck. */
 static vg_status take_list(const char *deck, int k, const char *text,
                            struct vg_sweep_options *o, struct vg_error *err)
 {
@@ -123,7 +123,9 @@ static vg_status take_list(const char *deck, int k, const char *text,
                         err);
 }
 
-/* Options win over the deck; levels, leaf sizes and ways are one question. */
+/* Take the lists of the deck that no option gives. Levels, leaf sizes, methods
+ * and numbers of subdomains are alternatives: if an option gives one of them,
+ * none of them is taken from the deck. */
 static vg_status take_row(const char *deck, const struct vg_sweep_row *row,
                           struct vg_sweep_options *o, struct vg_error *err)
 {
@@ -146,7 +148,8 @@ static vg_status take_row(const char *deck, const struct vg_sweep_row *row,
   return st;
 }
 
-/* A project that is not found is for its runs to tell. */
+/* Read the sweep table of the deck. If the project is not found, the runs will
+ * report it. */
 static vg_status take_deck(struct vg_sweep_options *o, struct vg_error *err)
 {
   struct vg_problem p = VG_PROBLEM_INIT;
@@ -174,7 +177,7 @@ static void print_value(double v, int width, int digits)
   else printf(" %*s", width, "-");
 }
 
-/* Of the column of names. */
+/* Width of the column of names. */
 static int name_width(const struct vg_sweep *s)
 {
   int width = 4;
@@ -216,13 +219,12 @@ static void print_case(const struct vg_sweep *s, const struct vg_sweep_case *c,
          c->digest[0] ? c->digest : "-", c->note[0] ? "  " : "", c->note);
 }
 
-/* The decompositions beside each other. */
+/* Comparison of the decompositions. */
 static void print_parts(const struct vg_sweep *s, int width)
 {
-  printf(
-    "\n%-*s  parts balance   decomposition cut+fill critical  idle %%    cells "
-    "/ adv.  1st perc. near  of all\n",
-    width, "case");
+  printf("\n%-*s subdom. balance decomp. s cut+fill critical  idle %%    cells "
+         "/ adv.  1st perc. near  of all\n",
+         width, "case");
   for (size_t i = 0; i < s->n; i++) {
     const struct vg_sweep_case *c = &s->item[i];
     const struct vg_sweep_parts *m = &c->parts_made;
@@ -255,18 +257,18 @@ static int conclude(const struct vg_sweep *s)
   fprintf(to, "\n%zu of %zu cases done; tables and figures in %s\n", n_done,
           s->n, s->o->dir);
   if (vg_sweep_differ(s, &compared, &a, &b, file)) {
-    fprintf(to, "Digests DIFFER: %s is not the same in %s and %s\n", file,
-            a->name, b->name);
+    fprintf(to, "Digests DIFFER: %s differs between %s and %s\n", file, a->name,
+            b->name);
     return VG_EXIT_LIMIT;
   }
   if (compared)
     fprintf(to,
-            "Digests agree: equal mesh options gave the same files "
+            "Digests agree: equal mesh options gave identical files "
             "(%zu compared)\n",
             compared);
   else
-    fprintf(to, "Digests were not compared: no two cases with equal mesh "
-                "options gave digests\n");
+    fprintf(to, "Digests were not compared: no two cases have equal mesh "
+                "options and digests\n");
   return n_done == s->n ? VG_EXIT_DONE : VG_EXIT_FAILED;
 }
 
@@ -284,7 +286,7 @@ static vg_status run_all(struct vg_sweep *s, struct vg_error *err)
   return st;
 }
 
-/* A sweep that was stopped shows what there is. */
+/* A sweep that was stopped reports the cases that it has finished. */
 static int run(struct vg_sweep_options *o)
 {
   struct vg_sweep s = { .n = 0 };
@@ -316,56 +318,58 @@ done:
 }
 
 static const struct argp_option options[] = {
-  { "project", 'p', "PROJECT", 0, "as for vanguard mesh", 1 },
+  { "project", 'p', "PROJECT", 0,
+    "Stem of the project files, or the full name of a surface file, as for "
+    "'vanguard mesh'",
+    1 },
   { "deck", 'd', "FILE", 0,
-    "run deck, for vanguard mesh too; lists that no "
-    "option gives come from its table sweep [default PROJECT.deck if there "
-    "is one]",
+    "Run deck, also passed to vanguard mesh; lists that no "
+    "option gives are taken from its table sweep [default PROJECT.deck if it "
+    "exists]",
     1 },
   { "levels", 'L', "LIST", 0,
-    "levels of bisection: 1,2,4 or 3:7 or "
+    "Numbers of successive bisections, as in 1,2,4 or 3:7 or "
     "2:10:2",
     2 },
   { "leaf-cells", KEY_LEAF_CELLS, "LIST", 0,
-    "cells to a leaf; both lists "
-    "make cases of their own [default as vanguard mesh has it]",
+    "Cells per subdomain; these cases are run in addition to those of "
+    "--levels [default: as for vanguard mesh]",
     2 },
   { "decompose", KEY_DECOMPOSE, "LIST", 0,
-    "ways to decompose: advancing,"
-    "discrete,octree; each with all --parts, as cases of their own [default "
-    "as vanguard mesh has it]",
+    "Decomposition methods, as in advancing,discrete,octree; each is run with "
+    "every entry of --parts, in addition to the cases of the other lists "
+    "[default: as for vanguard mesh]",
     2 },
-  { "parts", KEY_PARTS, "LIST", 0, "numbers of parts", 2 },
-  { "ranks", 'n', "LIST", 0, "numbers of ranks [default 1]", 2 },
-  { "threads", 't', "LIST", 0, "threads of each rank [default 1]", 2 },
+  { "parts", KEY_PARTS, "LIST", 0, "Numbers of subdomains", 2 },
+  { "ranks", 'n', "LIST", 0, "Numbers of ranks [default 1]", 2 },
+  { "threads", 't', "LIST", 0, "Numbers of threads per rank [default 1]", 2 },
   { "family", KEY_FAMILY, "LIST", 0,
-    "levels of a grid family, as in 1:3: "
-    "all sizes times 2/(level + 1), layers by the Drag Prediction "
-    "Workshops' rule (--scale, --scale-layers workshop)",
+    "Levels of a grid family, as in 1:3: "
+    "all edge lengths are multiplied by 2/(level + 1), and layers follow the "
+    "rule of the AIAA Drag Prediction Workshops (--scale, --scale-layers "
+    "workshop)",
     2 },
   { "repeat", KEY_REPEAT, "K", 0,
-    "times that each case is run [default "
+    "Number of runs of each case [default "
     "1]",
     2 },
   { "launcher", KEY_LAUNCHER, "COMMAND", 0,
-    "how ranks are started, e.g. "
+    "Command that starts the ranks, as in "
     "'srun -n {ranks} -c {threads}' [default 'mpirun -n {ranks} --bind-to "
-    "none', nothing for one rank]",
+    "none', none for one rank]",
     3 },
   { "out", 'o', "DIR", 0,
-    "folder for tables, figures and a folder for "
-    "each case [default sweep]",
+    "Folder for tables, figures and one folder per "
+    "case [default sweep]",
     3 },
   { "keep", KEY_KEEP, NULL, 0,
-    "keep all meshes [default: reports, records "
-    "and logs only]",
+    "Keep all meshes [default: keep only reports, timelines "
+    "and logs]",
     3 },
-  { "json", 'j', NULL, 0, "table as JSON on standard output", 3 },
-  { "quiet", 'q', NULL, 0, "no progress", 3 },
+  { "json", 'j', NULL, 0, "Write the table as JSON to standard output", 3 },
+  { "quiet", 'q', NULL, 0, "Do not show progress", 3 },
   { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN,
-    "instead of this "
-    "program",
-    3 },
+    "Program to run instead of this one (for tests)", 3 },
   { 0 }
 };
 
@@ -376,15 +380,17 @@ int vg_cmd_sweep(int argc, char **argv)
     .parser = option,
     .args_doc = "-p PROJECT [-- MESH-OPTION...]",
     .doc =
-      "Run vanguard mesh for all combinations of levels, leaf sizes or ways "
-      "to decompose, ranks and threads, and compare: sweep.csv and "
-      "sweep.json with times, balance and digests, figures of speed-up, "
-      "phases, each run's timeline and sizes of its leaves.\v"
-      "Options after '--' go to vanguard mesh. Speed-ups are against the "
-      "first case on one worker; if none is, those of the fewest stand for "
-      "it. A case that fails is listed with its "
-      "message; its log is DIR/CASE/run.log. Exit status: 0 done, 1 a case "
-      "failed, 2 wrong usage, 4 equal mesh options gave different files."
+      "Run vanguard mesh for all combinations of decompositions (--levels, "
+      "--leaf-cells or --decompose), ranks and threads, and compare them. The "
+      "results are sweep.csv and sweep.json with times, balance and digests, "
+      "and plots of the speed-up, the phases, the timeline of each run and "
+      "the sizes of its leaves.\v"
+      "Options after '--' are passed to vanguard mesh. Speed-ups are relative "
+      "to the first case with one worker or, if there is none, with the "
+      "fewest workers, whose efficiency is taken as 100 %. A case that fails "
+      "is listed with its message; its log is DIR/CASE/run.log. Exit status: "
+      "0 success, 1 a case failed, 2 wrong usage, 4 equal mesh options gave "
+      "different files."
   };
   struct vg_sweep_options o = { .dir = "sweep" };
   int status;

@@ -1,6 +1,6 @@
 /* cli/commands/commands.h: the subcommands. Each is one file with one entry
- * that takes its own argc, argv and returns an exit status (cli/common/cli.h).
- * */
+ * point, which takes argc and argv and returns an exit status
+ * (cli/common/cli.h). */
 #ifndef VG_CLI_COMMANDS_COMMANDS_H
 #define VG_CLI_COMMANDS_COMMANDS_H
 
@@ -16,8 +16,9 @@ int vg_cmd_plan(int argc, char **argv);
 int vg_cmd_deck(int argc, char **argv);
 int vg_cmd_demo(int argc, char **argv);
 
-/** Version and licence; verbose: source, compiler and libraries too. The
- * libraries alone, a line each. version.c */
+/** Print version and licence; if verbose, also source digest, compiler and
+ * libraries. vg_version_libraries prints the libraries only, one per line.
+ * version.c */
 void vg_version_print(FILE *to, int verbose);
 void vg_version_libraries(FILE *to);
 

@@ -58,7 +58,7 @@ void vg_mesh_log_settings(const struct vg_run *r,
 
   if (!to) return;
   vg_resolve_write(asked, view.write);
-  fprintf(to, "threads  %d of each rank\nsettings\n",
+  fprintf(to, "threads  %d per rank\nsettings\n",
           s->threads ? (int)s->threads : vg_comm_default_threads(r->comm));
   for (size_t i = 0; (p = vg_settings_name(i, &name, &in_farfield)); i++) {
     vg_param_format(p,
@@ -68,7 +68,7 @@ void vg_mesh_log_settings(const struct vg_run *r,
   }
   for (size_t i = 0; i < sizeof table / sizeof *table; i++)
     if (vg_settings_rows(s, table[i]))
-      fprintf(to, "  %-20s %zu in its table\n",
+      fprintf(to, "  %-20s %zu rows in its table\n",
               vg_settings_table(table[i])->name, vg_settings_rows(s, table[i]));
   fprintf(to, "\n");
 }

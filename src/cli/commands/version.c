@@ -1,4 +1,4 @@
-/* Which program this is, and on which libraries it stands. */
+/* Version of the program and of its libraries. */
 #include <gnu/libc-version.h>
 #include <jansson.h>
 #include <string.h>

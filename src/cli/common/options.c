@@ -22,11 +22,11 @@ error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key, char *arg,
   case 'j': one->json = 1; return 0;
   case 'q': one->quiet = 1; return 0;
   case ARGP_KEY_ARG:
-    if (one->file) argp_error(state, "one %s at a time: %s", what, arg);
+    if (one->file) argp_error(state, "only one %s is accepted: %s", what, arg);
     one->file = arg;
     return 0;
   case ARGP_KEY_END:
-    if (!one->file) argp_error(state, "which %s?", what);
+    if (!one->file) argp_error(state, "no %s given", what);
     return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
@@ -38,7 +38,7 @@ static char *keep(struct vg_cli_options *o, char *text)
   return text;
 }
 
-/* One option for setting p; base holds its default. */
+/* Add the option of setting p; base contains its default. */
 static int add_option(struct vg_cli_options *o, const struct vg_param *p,
                       const char *name, int key, const void *base)
 {
@@ -90,7 +90,7 @@ vg_status vg_cli_options(const struct argp_option *own,
   }
   memcpy(out->option, own, n_own * sizeof *own);
   out->n = n_own;
-  out->option[out->n].doc = "Settings, which win over the deck:";
+  out->option[out->n].doc = "Settings, which override those of the deck:";
   out->option[out->n++].group = 2;
   vg_settings_default(&defaults);
   for (size_t i = 0; (p = vg_settings_name(i, &name, &in_farfield)); i++)
@@ -120,7 +120,8 @@ int vg_cli_option_key(const char *name)
   return 0;
 }
 
-/* What the option with `key` names; VG_BLOCKED when it names none. */
+/* Set the setting of the option with `key`; VG_BLOCKED if `key` is not that of
+ * a setting. */
 static vg_status set_option(int key, const char *text, struct vg_settings *s,
                             struct vg_error *err)
 {

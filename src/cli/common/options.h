@@ -1,4 +1,4 @@
-/* cli/common/options.h: options of the command line, made from the table of
+/* cli/common/options.h: command-line options, generated from the rows of the
  * settings. Uses run/settings/settings.h. */
 #ifndef VG_CLI_COMMON_OPTIONS_H
 #define VG_CLI_COMMON_OPTIONS_H
@@ -8,12 +8,13 @@
 #include "base/status.h"
 #include "run/settings/settings.h"
 
-/** argp_parse with exit status 2 for wrong usage and help on stdout. */
+/** argp_parse with exit status 2 for wrong usage. */
 void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input);
 
-/** For a parser whose command takes one argument, `what` ("file"): keys of
- * arguments, of their end, and 'j' and 'q' for JSON and no progress.
- * ARGP_ERR_UNKNOWN: another key. A second argument, or none, is wrong usage. */
+/** Parser of a command that takes exactly one argument, called `what` in
+ * messages ("file"): handles the argument, the end of arguments, and the
+ * options 'j' (JSON) and 'q' (no progress). ARGP_ERR_UNKNOWN for other keys. A
+ * second argument, or none, is wrong usage. */
 struct vg_cli_one {
   const char *file;
   int json, quiet;
@@ -21,29 +22,28 @@ struct vg_cli_one {
 error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key, char *arg,
                    const struct argp_state *state);
 
-/** Help line "[unit; default x]" parts for the settings and their options.
- *
- * Appends one option per plain setting, and the farfield's kind, lengths, size
- * and spacing, to option[*n...]; keys are VG_KEY_SETTING + position. Text is
- * owned by the table, freed by vg_cli_options_free. */
+/** The options of a command: its own, followed by one for each plain setting
+ * and for kind, lengths, size and spacing of the farfield, whose help ends with
+ * "[unit, default x]". Keys of settings are VG_KEY_SETTING + position. The
+ * texts are owned by the table and freed by vg_cli_options_free. */
 #define VG_KEY_SETTING 1000
 struct vg_cli_options {
-  struct argp_option *option; /* NULL-ended */
+  struct argp_option *option; /* terminated by a zero entry */
   char **text;
   size_t n, n_text;
 };
 
-/** `own`: the subcommand's options, ended by a zero entry. */
+/** @param own  the options of the subcommand, terminated by a zero entry */
 vg_status vg_cli_options(const struct argp_option *own,
                          struct vg_cli_options *out);
 void vg_cli_options_free(struct vg_cli_options *o);
 
-/** Key of a plain setting's option, for a short one that means the same; 0:
- * no setting has the name. */
+/** Key of the option of the setting `name`, for a short option with the same
+ * meaning; 0 if there is no such setting. */
 int vg_cli_option_key(const char *name);
 
-/** Settings from the command line: they wait until the deck has been read,
- * which they win over. */
+/** Settings from the command line, stored until the deck has been read, which
+ * they override. */
 struct vg_cli_overrides {
   size_t n, cap;
   struct {
@@ -52,14 +52,14 @@ struct vg_cli_overrides {
   } * set; /* text is argv's */
 };
 
-/** Keep what the option with `key` sets. A value that cannot be is wrong usage,
- * known before anything is read. For a parser: ARGP_ERR_UNKNOWN when the key
- * is no setting's. */
+/** Store the value of the option with `key`. An invalid value is wrong usage,
+ * reported before anything is read. Returns ARGP_ERR_UNKNOWN to the parser if
+ * the key is not that of a setting. */
 error_t vg_cli_add_override(struct vg_cli_overrides *kept, int key,
                             const char *text, const struct argp_state *state);
 
-/** Set all of them, and check that the settings go together: VG_ERR_USAGE
- * where those of the deck alone did. */
+/** Apply all stored values to s and check the combination of all settings.
+ * VG_ERR_USAGE if it is invalid. */
 vg_status vg_cli_apply(const struct vg_cli_overrides *kept,
                        struct vg_settings *s, struct vg_error *err);
 

@@ -42,7 +42,7 @@ vg_status vg_words_pair(struct vg_words *w, const char *name, int64_t v,
   return st < 0 ? st : vg_words_add(w, text, err);
 }
 
-/* A word of the launcher with its places filled in. */
+/* A word of the launcher with its placeholders replaced. */
 static char *fill_in(const char *word, size_t len, int ranks, int threads)
 {
   char *out = vg_alloc(len * 4 + 32, 1);

@@ -1,5 +1,5 @@
-/* cli/common/process.h: what runs of this program as processes need: command
- * lines word by word, the path of this program, and why a run failed. */
+/* cli/common/process.h: support for runs of this program as child processes:
+ * command lines, the path of this program, and the reason why a run failed. */
 #ifndef VG_CLI_COMMON_PROCESS_H
 #define VG_CLI_COMMON_PROCESS_H
 
@@ -8,7 +8,7 @@
 
 #include "base/status.h"
 
-/** A command line; word is NULL-ended once something was added. */
+/** A command line; `word` is NULL-terminated once a word has been added. */
 struct vg_words {
   size_t n, cap;
   char **word;
@@ -20,27 +20,27 @@ struct vg_words {
 
 void vg_words_release(struct vg_words *w);
 
-/** Add a word, which is taken over; NULL stands for refused memory. */
+/** Add a word and take ownership of it; NULL means out of memory. */
 vg_status vg_words_take(struct vg_words *w, char *text, struct vg_error *err);
 
-/** Add a copy of a word; a word and a number. */
+/** Add a copy of a word; add an option and a number. */
 vg_status vg_words_add(struct vg_words *w, const char *text,
                        struct vg_error *err);
 vg_status vg_words_pair(struct vg_words *w, const char *name, int64_t v,
                         struct vg_error *err);
 
-/** Add the words of a launcher, parted by blanks, with {ranks} and {threads}
- * filled in. NULL: mpirun, nothing for one rank. */
+/** Add the words of a launcher, separated by blanks, with {ranks} and {threads}
+ * replaced. NULL: mpirun, or no launcher for one rank. */
 vg_status vg_words_launcher(struct vg_words *w, const char *launcher, int ranks,
                             int threads, struct vg_error *err);
 
-/** Path of this program; the caller frees it. NULL: no memory. */
+/** Path of this program; the caller frees it. NULL: out of memory. */
 char *vg_own_path(void);
 
-/** What went wrong in a run, by what it has printed into the file at path: the
- * last line that vanguard wrote; or else what follows the first rule, as
- * launchers put round their messages; or the last line. "see PATH" where the
- * file says nothing. note[size]. */
+/** Extract the reason of a failure from the output of a run in the file at
+ * `path`: the last line that vanguard wrote; else the line after the first
+ * horizontal rule, with which launchers frame their messages; else the last
+ * line; "see PATH" if the file is empty. note[size]. */
 void vg_failure_note(const char *path, char *note, size_t size);
 
 #endif

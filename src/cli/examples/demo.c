@@ -12,7 +12,7 @@
 #define FARFIELD 20.0 /* radius or half width, body lengths or chords */
 /* Largest factor on the spacings below that still resolves the geometry. */
 #define FACTOR_MAX 12.0
-/* The estimate comes this close to the number wanted, within these turns. */
+/* Relative accuracy of the estimate, and largest number of iterations. */
 #define FIT_CLOSE 0.02
 #define FIT_TURNS 5
 /* Sphere in a box, as in the comparisons of docs/lab/performance.md. */
@@ -22,12 +22,13 @@
 enum kind { BOX, SPHERE, WING };
 
 static const struct vg_demo_case cases[] = {
-  { "box", "unit cube, even spacing", 100000 },
+  { "box", "unit cube, uniform spacing", 100000 },
   { "sphere", "sphere in a box 20 times its size", 500000 },
   { "wing", "swept tapered wing, blunt trailing edge", 1000000 },
-  { "wing-half", "the same, half of it on a symmetry plane", 500000 },
+  { "wing-half", "half model of wing, on a symmetry plane", 500000 },
   { "wing-sharp", "swept tapered wing, sharp trailing edge", 1000000 },
-  { "wing-sharp-half", "the same, half of it on a symmetry plane", 500000 },
+  { "wing-sharp-half", "half model of wing-sharp, on a symmetry plane",
+    500000 },
 };
 
 enum { N_ENTRY = sizeof cases / sizeof *cases };
@@ -73,8 +74,9 @@ struct estimate {
   void *user;
 };
 
-/* Halve a block until it is at most this many edges long, then take two Gauss
- * points along each axis: over such a block h changes by as much as itself. */
+/* Blocks are halved until they are at most this many edges long, and integrated
+ * with two Gauss points along each axis: over such a block h changes by about
+ * its own value. */
 #define BLOCK_EDGES 3.0
 #define GAUSS 0.28867513459481288225 /* 1 / (2 sqrt(3)) */
 
@@ -116,9 +118,9 @@ static double count_block(const struct estimate *e, const double lo[3],
   return sum;
 }
 
-/* Integral of 1 / h^3 over the points of a box for which `inside` (may be NULL:
- * all) is not 0; size(user, x) > 0. Times cells per cube, the size of the mesh
- * that the field h leads to. */
+/* Integral of 1 / h^3 over the part of a box where `inside` is not 0 (NULL: the
+ * whole box), with h = size(user, x) > 0. Multiplied by the cells per cube, it
+ * is the number of cells for the sizing field h. */
 static double cubes(const double lo[3], const double hi[3],
                     double (*size)(void *user, const double x[3]),
                     int (*inside)(void *user, const double x[3]), void *user)
@@ -129,14 +131,14 @@ static double cubes(const double lo[3], const double hi[3],
   return count_block(&e, lo, side, 24);
 }
 
-/* --- laws ---------------------------------------------------------------- */
+/* --- spacings ------------------------------------------------------------ */
 
 /* A case with its spacings multiplied by a factor. */
 struct scaled {
   const struct entry *entry;
   double factor;
   struct vg_demo_spacing law;
-  struct vg_sizing *field; /* borrowed; while its cells are counted */
+  struct vg_sizing *field; /* borrowed; set while its cells are counted */
 };
 
 static void make_law(struct scaled *s)
@@ -192,7 +194,7 @@ static int in_fluid(void *user, const double x[3])
   return rr < FARFIELD * FARFIELD && !vg_demo_wing_holds(&s->entry->wing, x);
 }
 
-/* Cells of a graded case where edges have these sizes. */
+/* Number of cells of a graded case with this sizing field. */
 static double n_cell_of(struct scaled *s,
                         double (*size)(void *user, const double x[3]))
 {
@@ -218,8 +220,9 @@ static double cube_root(double x)
   return y;
 }
 
-/* From the factor that s has. Cells fall by the first to the third power of the
- * factor: the cube root of the excess is a step that never overshoots. */
+/* Fit the factor to the number of cells, starting from the factor of s. The
+ * number of cells is proportional to a power of 1 / factor between 1 and 3, so
+ * a step by the cube root of the ratio never overshoots. */
 static double fit_factor(struct scaled *s, double n_cell)
 {
   double n = 0;
@@ -302,7 +305,7 @@ static vg_status add_farfield(const struct scaled *s, struct vg_demo *d,
   return vg_domain_complete_by(&d->surface, &far, &law, NULL, err);
 }
 
-/* All of *d by the law of s, but its n_cell. */
+/* Set all members of *d but n_cell from the spacings of s. */
 static vg_status build(const struct scaled *s, struct vg_demo *d,
                        struct vg_error *err)
 {
@@ -327,9 +330,9 @@ static vg_status build(const struct scaled *s, struct vg_demo *d,
   return add_farfield(s, d, err);
 }
 
-/* The mesh follows the field, in which edges of the surface have their say:
- * about leading edges and on coarse spheres cells are smaller than by the
- * sources alone. */
+/* Estimate with the sizing field, which also depends on the edges of the
+ * surface: near leading edges and on coarse spheres, cells are smaller than the
+ * sources require. */
 static vg_status field_estimate(struct scaled *s, const struct vg_demo *d,
                                 double *n_cell, struct vg_error *err)
 {
@@ -343,7 +346,8 @@ static vg_status field_estimate(struct scaled *s, const struct vg_demo *d,
   return VG_OK;
 }
 
-/* What the law gives too much, it is asked for less: two or three turns. */
+/* Correct the requested number by the error of the previous estimate; two or
+ * three iterations suffice. */
 static vg_status make(struct scaled *s, double n_cell, struct vg_demo *d,
                       struct vg_error *err)
 {
@@ -375,7 +379,7 @@ static vg_status unknown(const char *name, struct vg_error *err)
   for (size_t i = 0; i < N_ENTRY; i++)
     at += (size_t)snprintf(list + at, sizeof list - at, "%s%s", i ? ", " : "",
                            cases[i].name);
-  return vg_fail(err, VG_ERR_INPUT, "no example is called '%s'; there are %s",
+  return vg_fail(err, VG_ERR_INPUT, "unknown example '%s'; the examples are %s",
                  name, list);
 }
 
@@ -391,8 +395,8 @@ vg_status vg_demo_make(const char *name, size_t n_cell, struct vg_demo *out,
   if (!s.entry) return unknown(name, err);
   if (n_cell > 2000000000)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%zu cells are more than one mesh can "
-                   "number; ask for 2000000000 at most",
+                   "%zu cells are more than a mesh can "
+                   "number; request at most 2000000000",
                    n_cell);
   if (!n_cell) n_cell = cases[s.entry - entries].n_cell;
   st = make(&s, (double)n_cell, &d, err);

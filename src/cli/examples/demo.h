@@ -1,5 +1,5 @@
 /* cli/examples/demo.h: the geometry of `vanguard demo`: complete flow domains
- * that need no foreign data, at any size. Uses core/mesh/mesh.h,
+ * of any size that need no external data. Uses core/mesh/mesh.h,
  * core/sizing/sizing.h. */
 #ifndef VG_CLI_EXAMPLES_DEMO_H
 #define VG_CLI_EXAMPLES_DEMO_H
@@ -10,13 +10,13 @@
 #include "core/mesh/mesh.h"
 #include "core/sizing/sizing.h"
 
-/** Cells per cube of the target edge length in a finished mesh; what turns
- * a number of cells into spacings, and back in estimates. Measured: 8.9 to 9.2
- * on the box (20 thousand to a million cells), where spacing is even. */
+/** Cells per cube of the target edge length in a finished mesh, which relates
+ * the number of cells to the spacings. Measured: 8.9 to 9.2 on the box (20
+ * thousand to a million cells), whose spacing is uniform. */
 #define VG_DEMO_CELLS_PER_CUBE 9.0
 
-/** As much more where spacing varies: 10.3 to 10.8 per cube on the sphere,
- * 10.8 to 11.1 on the wings. */
+/** Factor on VG_DEMO_CELLS_PER_CUBE for graded meshes: 10.3 to 10.8 cells per
+ * cube on the sphere, 10.8 to 11.1 on the wings. */
 #define VG_DEMO_GRADED 1.2
 
 /** A case of the list. */
@@ -26,19 +26,19 @@ struct vg_demo_case {
   size_t n_cell;       /* default size */
 };
 
-/** All cases. *n out: their number. Static. */
+/** All cases. *n out: their number. Static storage. */
 const struct vg_demo_case *vg_demo_cases(size_t *n);
 
 /** A case ready to be meshed. */
 struct vg_demo {
-  struct vg_mesh surface; /* closed, triangles point into the fluid; patches
-                             named, with conditions of both solvers */
-  size_t n_body_tri;      /* of surface.tri, the first ones: the body; 0
-                             where there is none */
+  struct vg_mesh surface; /* closed, normals point into the fluid; patches
+                             have names and conditions of both solvers */
+  size_t n_body_tri;      /* the first triangles of the surface, which are the
+                             body; 0: no body */
   struct vg_sizing_options sizing; /* recommended, with from_surface */
   size_t n_source;
   struct vg_source *source;
-  double n_cell; /* estimated size of the mesh: within 5 % of it */
+  double n_cell; /* estimated number of cells, within 5 % */
 };
 #define VG_DEMO_INIT                                                           \
   {                                                                            \
@@ -51,11 +51,11 @@ struct vg_demo {
  *                of half width 20; "wing", "wing-half" swept tapered wing
  *                with a blunt trailing edge, whole and on a symmetry plane;
  *                "wing-sharp", "wing-sharp-half" with a sharp one
- * @param n_cell  wanted number of cells, 0: the default. Geometry sets a
+ * @param n_cell  requested number of cells, 0: the default. The geometry sets a
  *                lower bound: see the estimate in *out
- * @param out     owned by the caller, vg_demo_release; untouched on failure
- * VG_ERR_INPUT names the known cases when there is no such case, or when
- * n_cell is above 2e9. Same bytes for the same arguments. */
+ * @param out     owned by the caller, vg_demo_release; unchanged on failure
+ * VG_ERR_INPUT: no such case (the message lists the known ones), or n_cell is
+ * above 2e9. Same bytes for the same arguments. */
 vg_status vg_demo_make(const char *name, size_t n_cell, struct vg_demo *out,
                        struct vg_error *err);
 

@@ -1,11 +1,11 @@
-/* cli/examples/demo_parts.h: what demo*.c share. Private to them. */
+/* cli/examples/demo_parts.h: declarations shared by demo*.c; private. */
 #ifndef VG_CLI_EXAMPLES_DEMO_PARTS_H
 #define VG_CLI_EXAMPLES_DEMO_PARTS_H
 
 #include "cli/examples/demo.h"
 #include "core/domain/planar_patch.h"
 
-/** Sources of a case, all spacings times `factor`. */
+/** Sources of a case, with a factor on all spacings. */
 enum { VG_DEMO_SOURCE_MAX = 10 };
 
 struct vg_demo_spacing {
@@ -27,10 +27,10 @@ struct vg_demo_wing {
 void vg_demo_wing_law(const struct vg_demo_wing *w, double factor,
                       struct vg_demo_spacing *law);
 
-/** 1 for a point in the wing, at y >= 0 where it is a half model. */
+/** Returns 1 for a point inside the wing; of a half model, at y >= 0. */
 int vg_demo_wing_holds(const struct vg_demo_wing *w, const double x[3]);
 
-/** Surface of the wing alone, closed, or open along y = 0. */
+/** Surface of the wing without farfield: closed, or open along y = 0. */
 vg_status vg_demo_wing_surface(const struct vg_demo_wing *w,
                                const struct vg_demo_spacing *law,
                                struct vg_mesh *out, struct vg_error *err);

@@ -26,8 +26,8 @@
 #define H_TAIL 0.006
 #define H_TIP 0.015
 #define H_WING 0.04
-/* The nose has a radius of 0.016; a base higher than a third of an edge
- * keeps its triangles from being slivers. */
+/* Upper bounds: the nose has a radius of 0.016; triangles of the base are not
+ * slivers if an edge is at most three times its height. */
 #define H_NOSE_MAX 0.03
 #define H_BASE_MAX (3 * BASE)
 
@@ -130,7 +130,7 @@ static void root_point(const struct cone *c, double u, double x[3])
   put3(x, u * u, 0, u < 0 ? -z : z);
 }
 
-/* Point on the ray of the root's point u, scale 1 at the root. */
+/* Point on the ray through the root point u; scale is 1 at the root. */
 static void cone_point(const struct cone *c, double u, double scale,
                        double x[3])
 {
@@ -147,8 +147,9 @@ static double ray_length(const struct cone *c, double u)
   return sqrt(rr);
 }
 
-/* Unroll: turn from ray to ray by the angle between them, counter-clockwise
- * with growing u, by sine and cosine out of products alone. */
+/* Unroll the cone: rotate from ray to ray by the angle between them,
+ * counter-clockwise with increasing u; sine and cosine are computed from
+ * products only. */
 static int unroll(struct cone *c)
 {
   double before[3] = { 0 };
@@ -227,7 +228,7 @@ static double size_on_cone(void *user, const double p[2])
 
 /* --- curves -------------------------------------------------------------- */
 
-/* One side of the section at root or tip: length along it to u. */
+/* One side of the section at root or tip, parametrised by arc length. */
 struct side {
   const struct cone *c;
   double scale;
@@ -256,8 +257,8 @@ static double size_on_side(void *user, double length)
   return vg_demo_size((void *)s->c->law, x);
 }
 
-/* Parameters u > 0 from 1 at the tail to 0 at the nose; the lower side is the
- * mirror image. */
+/* Parameters u > 0 of the points, from 1 at the tail to 0 at the nose; the
+ * lower side is the mirror image. */
 static vg_status divide_side(const struct cone *c, double scale, size_t *n,
                              double **u, struct vg_error *err)
 {
@@ -300,8 +301,9 @@ static double size_on_tail(void *user, double s)
 
 /* --- assembly ------------------------------------------------------------ */
 
-/* Points of the half wing's edges, as mesh points in the order of u from -1
- * to 1 (root, tip), and from root to tip (lower, upper), ends included. */
+/* Mesh points on the feature curves of the half wing: sections at root and tip
+ * in the order of u from -1 to 1, and trailing edges (lower, upper) from root
+ * to tip, ends included. */
 struct frame {
   struct cone c;
   struct vg_mesh *m;
@@ -325,7 +327,7 @@ static double curve_u(const struct frame *f, int end, size_t i)
   return i <= n ? -f->u[end][i] : f->u[end][2 * n - i];
 }
 
-/* The section at root (end 0) or tip (end 1), exactly in its plane. */
+/* Add the section at root (end 0) or tip (end 1), exactly in its plane. */
 static int add_curve(struct frame *f, int end)
 {
   const size_t n = 2 * f->n_side[end];
@@ -363,7 +365,7 @@ static int add_tail(struct frame *f, double u, uint32_t **list)
   return 0;
 }
 
-/* Points across the blunt trailing edge, upper to lower. */
+/* Add points across the blunt trailing edge, from upper to lower. */
 static int add_base(struct frame *f, int end)
 {
   const uint32_t *curve = f->curve[end];
@@ -487,7 +489,7 @@ done:
   return st;
 }
 
-/* Directed edges along list, reversed where back is set. */
+/* Directed edges along the list, reversed if `back` is set. */
 static size_t chain(const uint32_t *list, size_t n, int back,
                     uint32_t (*edge)[2])
 {
@@ -498,7 +500,7 @@ static size_t chain(const uint32_t *list, size_t n, int back,
   return n;
 }
 
-/* The flat tip and the blunt trailing edge. */
+/* Triangulate the flat tip and the blunt trailing edge. */
 static vg_status fill_caps(struct frame *f, struct vg_error *err)
 {
   const struct vg_size_function law = { .at = vg_demo_size,
@@ -523,7 +525,7 @@ done:
   return st;
 }
 
-/* The other side; points at y = 0 serve both. */
+/* Add the mirror image; points at y = 0 are shared. */
 static vg_status mirror(struct vg_mesh *m, struct vg_error *err)
 {
   const size_t n = m->n_point, n_tri = m->n_tri;

@@ -1,5 +1,5 @@
-/* cli/html/assets.h: files of share/html, in the program. Private to cli/html.
- */
+/* cli/html/assets.h: files of share/html, embedded in the program. Private to
+ * cli/html. */
 #ifndef VG_CLI_HTML_ASSETS_H
 #define VG_CLI_HTML_ASSETS_H
 

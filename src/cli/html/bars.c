@@ -12,8 +12,8 @@ enum {
   BOTTOM = 34
 };
 
-/* The logarithm, exact at whole digits and straight between them: the same on
- * every machine, and good enough to draw by. v >= 1. */
+/* Decimal logarithm, exact at integers times powers of ten and linear between
+ * them: the same on every machine, and accurate enough for drawing. v >= 1. */
 static double decades_of(double v)
 {
   static const double log_digit[10] = { 0,       0.30103, 0.47712, 0.60206,
@@ -28,7 +28,8 @@ static double decades_of(double v)
          (v - digit) * (log_digit[digit] - log_digit[digit - 1]);
 }
 
-/* Counts are drawn by their logarithm: what matters is rare. */
+/* Height of a bar; counts have a logarithmic scale, since poor cells are
+ * rare. */
 static double height_of(double count, double decades)
 {
   return count >= 1

@@ -1,4 +1,4 @@
-/* Colours of patches, levels and causes, for pictures and their keys. */
+/* Colours of patches, layer counts and causes, for pictures and legends. */
 #include "cli/html/page.h"
 
 const uint8_t vg_patch_colour[PATCH_COLOURS][3] = {
@@ -7,7 +7,8 @@ const uint8_t vg_patch_colour[PATCH_COLOURS][3] = {
   { 92, 190, 198 },  { 246, 204, 112 }, { 142, 170, 156 }, { 150, 160, 226 }
 };
 
-/* From few to many: dark blue over green to yellow, as bright as many. */
+/* From few to many layers: dark blue over green to yellow, with increasing
+ * brightness. */
 const uint8_t vg_level_colour[LEVEL_COLOURS][3] = {
   { 68, 1, 84 },    { 72, 26, 108 },  { 71, 47, 125 },  { 65, 68, 135 },
   { 57, 86, 140 },  { 49, 104, 142 }, { 42, 120, 142 }, { 35, 136, 142 },
@@ -25,14 +26,14 @@ const uint8_t vg_beside_colour[3] = { 231, 231, 239 };
 const char *vg_cause_words(enum vg_layer_cause cause)
 {
   static const char *const words[VG_CAUSE_N] = {
-    "all layers asked for",
-    "ended as thick as the local cells, as intended",
-    "another surface stands in front",
-    "columns converge in a corner",
-    "no direction sees all faces",
+    "full layers",
+    "ended at the local edge length, as intended",
+    "proximity to an opposite surface",
+    "columns converge in a concave corner",
+    "no direction sees all faces of the point",
     "a cell would be inverted or flat",
-    "tops or flanks would cross",
-    "meets a slide patch too flat"
+    "tops or side faces of the layers would intersect",
+    "the wall meets a slide patch at too flat an angle"
   };
 
   return words[cause];

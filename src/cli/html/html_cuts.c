@@ -1,4 +1,4 @@
-/* Planes through field and layers. */
+/* Cuts through field and layers. */
 #include <stdio.h>
 
 #include "cli/html/page.h"
@@ -8,23 +8,22 @@ static const char *const axis_name[3] = { "x", "y", "z" };
 static const char *view_words(enum vg_cut_view view)
 {
   switch (view) {
-  case VG_VIEW_BODY: return "The body's section";
-  case VG_VIEW_DOMAIN: return "The whole domain";
-  case VG_VIEW_FIRST: return "Close to the least end of the section";
-  case VG_VIEW_LAST: return "Close to the far end of the section";
-  case VG_VIEW_POOREST: return "Where the layers lack most of their levels";
+  case VG_VIEW_BODY: return "Section of the body";
+  case VG_VIEW_DOMAIN: return "Whole domain";
+  case VG_VIEW_FIRST: return "Close-up at the lower end of the section";
+  case VG_VIEW_LAST: return "Close-up at the upper end of the section";
+  case VG_VIEW_POOREST: return "Location with the most missing layers";
   }
   return "";
 }
 
-/* "x = 0.5": markup without escapes. */
+/* Write "x = 0.5" and the width of the view. */
 static void place(struct page *p, const struct vg_cut *c)
 {
   vg_page_format(p, "%s = ", axis_name[c->axis]);
   vg_page_real(p, c->at, 5);
-  vg_page_markup(p, "; the window is ");
+  vg_page_markup(p, "; width of the view ");
   vg_page_real(p, c->width, 3);
-  vg_page_markup(p, " wide");
 }
 
 static void figure(struct page *p, size_t i, int picture, const char *what)
@@ -33,8 +32,8 @@ static void figure(struct page *p, size_t i, int picture, const char *what)
   const struct vg_cut *c = &plan->cut[i];
   char alt[160], id[24];
 
-  snprintf(alt, sizeof alt, "%s, cut across %s: %s.", view_words(plan->view[i]),
-           axis_name[c->axis], what);
+  snprintf(alt, sizeof alt, "%s, cut normal to %s: %s.",
+           view_words(plan->view[i]), axis_name[c->axis], what);
   snprintf(id, sizeof id, "cut%zu", i);
   vg_page_figure(p, picture, picture < PICTURE_ANGLE ? id : NULL, alt);
   vg_page_markup(p, view_words(plan->view[i]));
@@ -45,8 +44,9 @@ static void figure(struct page *p, size_t i, int picture, const char *what)
 
 static void kind_keys(struct page *p)
 {
-  static const char *const name[VG_CUT_KINDS] = { "tetrahedra of the field",
-                                                  "tetrahedra of the layers",
+  static const char *const name[VG_CUT_KINDS] = { "tetrahedra outside the "
+                                                  "layers",
+                                                  "tetrahedra in layers",
                                                   "pyramids", "prisms" };
   const uint64_t *layer = p->h->run->slices.n_layer_cell;
   const uint64_t n[VG_CUT_KINDS] = { 1, layer[VG_SLICE_TET],
@@ -62,7 +62,7 @@ static void angle_keys(struct page *p)
 {
   char word[40];
 
-  vg_page_markup(p, "<p class=\"keys\">Smallest dihedral angle of a cell: ");
+  vg_page_markup(p, "<p class=\"keys\">Smallest dihedral angle of each cell: ");
   for (int k = 0; k <= VG_CUT_ANGLES; k++) {
     if (k < VG_CUT_ANGLES)
       snprintf(word, sizeof word, "below %d\302\260", vg_cut_angle[k]);
@@ -80,11 +80,11 @@ void vg_html_cuts(struct page *p)
 
   vg_page_section(p, "cuts", "Cuts through the mesh");
   vg_page_markup(
-    p, "<p>Each picture shows the cells that a plane meets, as "
-       "they are in the files. Lines around cells fade where cells are thinner "
-       "than a line.</p>\n<div class=\"pair\">\n");
+    p, "<p>Each picture shows the cells that a plane cuts, as they are in the "
+       "output files. Edges fade where cells are thinner than a "
+       "line.</p>\n<div class=\"pair\">\n");
   for (size_t i = 0; i < plan->n; i++)
-    figure(p, i, PICTURE_CUT + (int)i, "cells by their kind");
+    figure(p, i, PICTURE_CUT + (int)i, "cells by type");
   vg_page_markup(p, "</div>\n");
   kind_keys(p);
   vg_page_end_section(p);
@@ -94,7 +94,7 @@ void vg_html_angles(struct page *p)
 {
   if (!p->h->run->pictures.plan.n) return;
   vg_page_markup(p, "<div>");
-  figure(p, 0, PICTURE_ANGLE, "cells by their smallest angle");
+  figure(p, 0, PICTURE_ANGLE, "cells by smallest angle");
   angle_keys(p);
   vg_page_markup(p, "</div>\n");
 }
@@ -104,35 +104,33 @@ void vg_html_partition(struct page *p)
   static const struct {
     const char *name, *path;
   } row[] = {
-    { "cuts", "partition.cuts" },
-    { "zones along lines", "partition.pencils" },
-    { "zones in planes", "partition.tiles" },
-    { "cells of zones", "partition.separator_cells" },
-    { "subdomains", "partition.leaves" },
-    { "zones given up", "partition.separators_failed" },
-    { "cuts repeated elsewhere", "partition.recuts" },
-    { "subdomains cut again", "partition.leaves_subdivided_again" },
-    { "subdomains left larger than asked", "partition.leaves_left_overloaded" },
-    { "parts filled again with their neighbours",
+    { "Cuts", "partition.cuts" },
+    { "Edge separators (pencils)", "partition.pencils" },
+    { "Face separators (tiles)", "partition.tiles" },
+    { "Cells of separators", "partition.separator_cells" },
+    { "Subdomains (leaves)", "partition.leaves" },
+    { "Separators abandoned", "partition.separators_failed" },
+    { "Cuts repeated elsewhere", "partition.recuts" },
+    { "Overloaded subdomains cut again", "partition.leaves_subdivided_again" },
+    { "Subdomains left too large", "partition.leaves_left_overloaded" },
+    { "Subdomains filled with their neighbours",
       "partition.subdomains_extended" },
-    { "regions at interfaces that were bad", "partition.repair_regions" },
-    { "of these improved", "partition.repair_regions_improved" },
+    { "Regions with poor cells at interfaces", "partition.repair_regions" },
+    { "Of these repaired", "partition.repair_regions_improved" },
   };
 
-  vg_page_section(p, "partition", "How the field was cut up");
+  vg_page_section(p, "partition", "Domain decomposition");
   vg_page_markup(p, "<div class=\"pair\">\n");
   if (p->h->run->pictures.plan.n)
-    figure(p, p->part_cut, PICTURE_PART,
-           "cells by the subdomain in which "
-           "they were made");
+    figure(p, p->part_cut, PICTURE_PART, "cells by subdomain");
   vg_page_markup(p, "<div><table class=\"facts\">\n");
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     vg_page_fact_count(p, row[i].name,
                        (uint64_t)vg_page_number(p, row[i].path));
   vg_page_markup(p, "</table>\n<p class=\"keys\">");
-  vg_page_key(p, vg_cut_zone_colour, "zones, made first");
+  vg_page_key(p, vg_cut_zone_colour, "separators");
   if (p->has_layers) vg_page_markup(p, "Layers are light grey; ");
-  vg_page_markup(p, "other colours tell neighbouring subdomains apart.</p>"
+  vg_page_markup(p, "other colours distinguish neighbouring subdomains.</p>"
                     "</div>\n</div>\n");
   vg_page_end_section(p);
 }

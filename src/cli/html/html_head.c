@@ -1,4 +1,4 @@
-/* The top of the page: what the run was, and what one has to know first. */
+/* The top of the page: title, flow domain, summary and key figures. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,13 +7,13 @@
 #include "cli/html/assets.h"
 #include "cli/html/page.h"
 
-/* Nothing is loaded from anywhere, and the browser is told so. */
+/* The page loads nothing, and the policy makes the browser enforce it. */
 static const char policy[] =
   "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
   "img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline' "
   "'unsafe-eval'\">\n";
 
-/* The flow domain and its evidence: the first thing to know. */
+/* The flow domain and its evidence. */
 static void flow(struct page *p)
 {
   const struct vg_boundary *q = &p->h->problem->boundary;
@@ -62,9 +62,10 @@ void vg_html_head(struct page *p)
   vg_page_markup(p, "</header>\n<main>\n\n");
 }
 
-/* --- what to know first -------------------------------------------------- */
+/* --- summary ------------------------------------------------------------- */
 
-/* The list is written weight by weight: a line of another one is not begun. */
+/* The list is sorted by weight: the functions below are called once for each
+ * weight, and begin() rejects the lines of other weights. */
 enum weight { WEIGHT_BAD, WEIGHT_LOOK, WEIGHT_CHANGED, WEIGHT_NOTE, WEIGHTS };
 
 struct list {
@@ -76,7 +77,7 @@ struct list {
 static int begin(struct list *l, enum weight weight)
 {
   static const char *const name[] = { "bad", "warn", "warn", "note" };
-  static const char *const word[] = { "Missed", "Look", "Changed", "Note" };
+  static const char *const word[] = { "Not met", "Check", "Changed", "Note" };
 
   if (weight != l->now) return 0;
   l->n++;
@@ -99,11 +100,12 @@ static void count_line(struct list *l, enum weight weight, uint64_t n,
   end(l);
 }
 
-static void patch_words(struct page *p, uint32_t patch)
+/* `word` is "Patch" or "patch". */
+static void patch_words(struct page *p, const char *word, uint32_t patch)
 {
   const struct vg_patch *of = &p->h->problem->boundary.surface.patch[patch];
 
-  vg_page_format(p, "patch %d ", (int)of->id);
+  vg_page_format(p, "%s %d ", word, (int)of->id);
   vg_page_text(p, of->name);
 }
 
@@ -115,7 +117,7 @@ static void missed(struct list *l)
     const struct vg_limit_missed *m = &s->missed[i];
 
     if (!begin(l, WEIGHT_BAD)) return;
-    patch_words(l->p, m->patch);
+    patch_words(l->p, "Patch", m->patch);
     vg_page_format(l->p, ": %s is ", m->name);
     vg_page_real(l->p, m->wanted, 10);
     vg_page_format(l->p,
@@ -129,7 +131,7 @@ static void missed(struct list *l)
   }
 }
 
-/* Walls that lack layers, or their height; the worst one named. */
+/* Walls with fewer or lower layers than requested, and the worst one. */
 static void layers_short(struct list *l)
 {
   const struct vg_layer_stage *s = l->p->h->layers;
@@ -143,29 +145,29 @@ static void layers_short(struct list *l)
   }
   if (s->all.full < 100 && begin(l, WEIGHT_BAD)) {
     vg_page_fixed(p, 100 - s->all.full, 2);
-    vg_page_markup(p, " % of the walls' faces have fewer layers than law and "
-                      "local size ask for");
+    vg_page_markup(p, " % of the wall faces have fewer layers than growth law "
+                      "and local edge length require");
     if (fewest->patch != VG_NO_INDEX) {
-      vg_page_markup(p, ", most on ");
-      patch_words(p, fewest->patch);
+      vg_page_markup(p, "; the largest percentage is on ");
+      patch_words(p, "patch", fewest->patch);
     }
-    vg_page_markup(p, "; <a href=\"#layers\">causes are below</a>");
+    vg_page_markup(p, " (<a href=\"#layers\">see causes</a>).");
     end(l);
   }
   if (s->all.share_area < 100 && begin(l, WEIGHT_LOOK)) {
-    vg_page_markup(p, "on ");
+    vg_page_markup(p, "On ");
     vg_page_fixed(p, 100 - s->all.share_area, 2);
-    vg_page_markup(p, " % of the walls' area the layers are lower than 0.9 of "
-                      "what the law leads to; in the mean they reach ");
+    vg_page_markup(p, " % of the wall area the layers are lower than 0.9 of "
+                      "the growth-law height. The mean height is ");
     vg_page_fixed(p, s->all.share_mean, 3);
     vg_page_markup(p, " of it");
     if (lowest->patch != VG_NO_INDEX) {
-      vg_page_markup(p, ", least on ");
-      patch_words(p, lowest->patch);
-      vg_page_markup(p, ": ");
+      vg_page_markup(p, "; the lowest mean is ");
       vg_page_fixed(p, lowest->share_mean, 3);
+      vg_page_markup(p, " on ");
+      patch_words(p, "patch", lowest->patch);
     }
-    vg_page_markup(p, "; <a href=\"#layers\">causes are below</a>");
+    vg_page_markup(p, " (<a href=\"#layers\">see causes</a>).");
     end(l);
   }
 }
@@ -176,14 +178,14 @@ static void added(struct list *l)
 
   if (!d->added_symmetry && !d->added_farfield) return;
   if (!begin(l, WEIGHT_CHANGED)) return;
-  vg_page_markup(l->p, "to the body were added: ");
+  vg_page_markup(l->p, "The domain was completed with ");
   if (d->added_symmetry) {
     vg_page_format(l->p, "a symmetry plane at %c = ", "xyz"[d->symmetry_axis]);
     vg_page_real(l->p, d->symmetry_at, 6);
     if (d->added_farfield) vg_page_markup(l->p, " and ");
   }
   if (d->added_farfield) vg_page_markup(l->p, "a farfield");
-  vg_page_format(l->p, ", of %zu triangles", d->n_added_tri);
+  vg_page_format(l->p, " (%zu triangles).", d->n_added_tri);
   end(l);
 }
 
@@ -196,20 +198,21 @@ static void surface_changed(struct list *l)
   int all = flipped >= q->surface.n_tri;
 
   count_line(l, WEIGHT_CHANGED, q->n_dropped,
-             "triangle of the input was "
-             "dropped by the weld",
-             "triangles of the input were dropped by "
-             "the weld");
-  count_line(l, WEIGHT_CHANGED, removed, "triangle was removed by the repair",
-             "triangles were removed by the repair");
+             "triangle of the input collapsed when points were merged, and was "
+             "removed.",
+             "triangles of the input collapsed when points were merged, and "
+             "were removed.");
+  count_line(l, WEIGHT_CHANGED, removed,
+             "duplicate or degenerate triangle was removed.",
+             "duplicate or degenerate triangles were removed.");
   count_line(l, all ? WEIGHT_NOTE : WEIGHT_CHANGED, flipped,
-             "triangle was turned over",
+             "triangle was reversed for a consistent orientation.",
              all
-               ? "triangles were turned over: all, so that they point into the "
-                 "fluid"
-               : "triangles were turned over");
-  count_line(l, WEIGHT_NOTE, q->n_welded, "point was merged with another",
-             "points were merged with others");
+               ? "triangles were reversed: the whole surface, so that normals "
+                 "point into the fluid."
+               : "triangles were reversed for a consistent orientation.");
+  count_line(l, WEIGHT_NOTE, q->n_welded, "point was merged with another one.",
+             "points were merged with others.");
   added(l);
 }
 
@@ -222,22 +225,22 @@ static void mesh_lines(struct list *l)
   if (r->below[0] > 0 && begin(l, WEIGHT_LOOK)) {
     vg_page_real(p, r->below[0], 3);
     vg_page_format(p,
-                   " %% of the %s have an angle below 5 degrees, the "
+                   " %% of the %s have a dihedral angle below 5 degrees; the "
                    "smallest is ",
-                   p->has_layers ? "field's cells" : "cells");
+                   p->has_layers ? "cells outside the layers" : "cells");
     vg_page_real(p, r->angle_min, 3);
-    vg_page_markup(p, "&deg;; <a href=\"#worst\">the worst are shown</a>");
+    vg_page_markup(p, "&deg; (<a href=\"#worst\">see the worst cells</a>).");
     end(l);
   }
   count_line(l, WEIGHT_NOTE,
              (uint64_t)vg_page_number(p, "partition.subdomains_extended"),
-             "part of the field could not be filled, and was filled together "
-             "with what is beside it",
-             "parts of the field could not be "
-             "filled, and were filled together with what is beside them");
+             "subdomain could not be filled and was filled together with its "
+             "neighbours.",
+             "subdomains could not be filled and were filled together with "
+             "their neighbours.");
   count_line(l, WEIGHT_NOTE, (uint64_t)vg_page_number(p, "fill.steiner_points"),
-             "point was added to recover the boundary",
-             "points were added to recover the boundary");
+             "interior point was added by boundary recovery.",
+             "interior points were added by boundary recovery.");
 }
 
 void vg_html_first(struct page *p)
@@ -245,7 +248,7 @@ void vg_html_first(struct page *p)
   const struct vg_notes *notes = &p->h->problem->notes;
   struct list l = { .p = p };
 
-  vg_page_section(p, "first", "To know first");
+  vg_page_section(p, "first", "Summary");
   vg_page_markup(p, "<ul class=\"first\">\n");
   for (l.now = WEIGHT_BAD; l.now < WEIGHTS; l.now++) {
     missed(&l);
@@ -258,13 +261,14 @@ void vg_html_first(struct page *p)
     }
   }
   if (!l.n)
-    vg_page_markup(p, "<li class=\"good\"><b>All</b> <span>as asked: nothing "
-                      "was missed, dropped, closed or assumed.</span></li>\n");
+    vg_page_markup(p, "<li class=\"good\"><b>As requested</b> <span>All limits "
+                      "are met, and nothing was removed, closed or "
+                      "assumed.</span></li>\n");
   vg_page_markup(p, "</ul>\n");
   vg_page_end_section(p);
 }
 
-/* --- the figures that everybody asks for --------------------------------- */
+/* --- key figures --------------------------------------------------------- */
 
 static void tile_begin(struct page *p)
 {
@@ -303,17 +307,18 @@ void vg_html_tiles(struct page *p)
     tile_begin(p);
     vg_page_fixed(p, p->h->layers->all.full, 2);
     vg_page_markup(p, " %");
-    tile_end(p, "wall faces with all layers");
+    tile_end(p, "wall faces with full layers");
     tile_begin(p);
     vg_page_real(p, p->h->layers->all.first.mean, 4);
-    tile_end(p, "first height, mean");
+    tile_end(p, "mean first height");
   }
   tile_begin(p);
   vg_page_real(p, r->angle_min, 3);
   vg_page_markup(p, "&deg;");
-  tile_end(p, p->has_layers ? "smallest angle of the field" : "smallest angle");
+  tile_end(p, p->has_layers ? "smallest dihedral angle outside the layers"
+                            : "smallest dihedral angle");
   tile_begin(p);
   vg_page_fixed(p, r->radius_ratio_mean, 3);
-  tile_end(p, "radius ratio, mean");
+  tile_end(p, "mean radius ratio");
   vg_page_markup(p, "</div>\n\n");
 }

@@ -1,4 +1,4 @@
-/* Layers of each wall, in a table. */
+/* Table of the layers of each wall. */
 #include <math.h>
 
 #include "cli/html/page.h"
@@ -11,7 +11,7 @@ static size_t lacking(const size_t *count)
   return n;
 }
 
-/* "proximity 12, corner 3" */
+/* Write the counts by cause, as in "fewer: proximity 12, corner 3". */
 static void causes(struct page *p, const char *lead, const size_t *count)
 {
   if (!lacking(count)) return;
@@ -83,28 +83,34 @@ void vg_html_layers(struct page *p)
   const struct vg_layer_stage *s = p->h->layers;
 
   if (!p->has_layers) return;
-  vg_page_section(p, "layers", "Viscous layers");
+  vg_page_section(p, "layers", "Boundary layers");
   vg_page_markup(
     p,
     "<div class=\"wide\"><table>\n<thead><tr>"
-    "<th scope=\"col\">wall</th><th scope=\"col\">faces</th>"
-    "<th scope=\"col\">full&nbsp;%</th><th scope=\"col\">any&nbsp;%</th>"
-    "<th scope=\"col\">levels</th><th scope=\"col\">mean</th>"
-    "<th scope=\"col\">first asked</th><th scope=\"col\">first got</th>"
-    "<th scope=\"col\">largest error&nbsp;%</th><th scope=\"col\">y+</th>"
-    "<th scope=\"col\">height</th><th scope=\"col\">over the law's</th>"
-    "<th scope=\"col\">volume ratio at the top</th>"
-    "<th scope=\"col\" class=\"words\">faces with fewer or thinner layers, by "
+    "<th scope=\"col\">Wall</th><th scope=\"col\">Faces</th>"
+    "<th scope=\"col\">Full layers&nbsp;%</th>"
+    "<th scope=\"col\">Any layer&nbsp;%</th>"
+    "<th scope=\"col\">Layers, min &ndash; max</th>"
+    "<th scope=\"col\">Layers, mean</th>"
+    "<th scope=\"col\">First height, requested</th>"
+    "<th scope=\"col\">First height, mean</th>"
+    "<th scope=\"col\">First height, max error&nbsp;%</th>"
+    "<th scope=\"col\">y+, mean</th>"
+    "<th scope=\"col\">Total height, mean</th>"
+    "<th scope=\"col\">Height / growth-law height</th>"
+    "<th scope=\"col\">Volume ratio at the top, 95&nbsp;%</th>"
+    "<th scope=\"col\" class=\"words\">Faces with fewer or thinner layers, by "
     "cause</th>"
     "</tr></thead>\n<tbody>\n");
   for (size_t i = 0; i < s->n_wall; i++) row(p, &s->wall[i]);
   if (s->n_wall > 1) row(p, &s->all);
   vg_page_markup(
     p,
-    "</tbody></table></div>\n<p class=\"note\">Full: all "
-    "levels that the law and the size of the local cells ask for. Heights are "
-    "measured on the points. Volume ratio: what 5 % of the faces exceed "
-    "between the last layer and the field.</p>\n<dl class=\"causes\">");
+    "</tbody></table></div>\n<p class=\"note\">Full layers: all "
+    "layers that the growth law and the local edge length require. Heights are "
+    "in the length unit of the surface and measured on the mesh points. Volume "
+    "ratio: 95th percentile of the ratio between the cells on either side of "
+    "the top of the layers.</p>\n<dl class=\"causes\">");
   for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++) {
     if (!s->all.cause[c] && !s->all.compressed[c]) continue;
     vg_page_format(p, "<dt>%s</dt><dd>%s</dd>",

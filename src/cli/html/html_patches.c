@@ -1,4 +1,4 @@
-/* Patches and the surface as it was meshed. */
+/* Patches, and the surface that was meshed. */
 #include "cli/html/page.h"
 
 static void code(struct page *p, int32_t bc)
@@ -14,9 +14,10 @@ static void patches(struct page *p)
 
   vg_page_markup(
     p, "<div class=\"wide\"><table>\n<thead><tr>"
-       "<th scope=\"col\">patch</th><th scope=\"col\">triangles</th>"
-       "<th scope=\"col\">USM3D</th><th scope=\"col\">FUN3D</th>"
-       "<th scope=\"col\" class=\"words\">layers, by</th></tr></thead>\n"
+       "<th scope=\"col\">Patch</th><th scope=\"col\">Triangles</th>"
+       "<th scope=\"col\">USM3D code</th><th scope=\"col\">FUN3D code</th>"
+       "<th scope=\"col\" class=\"words\">Layers requested by</th></tr>"
+       "</thead>\n"
        "<tbody>\n");
   for (size_t i = 0; i < m->n_patch; i++) {
     const struct vg_patch *patch = &m->patch[i];
@@ -38,22 +39,22 @@ static void patches(struct page *p)
 
 void vg_html_patches(struct page *p)
 {
-  vg_page_section(p, "patches", "Patches and surface");
+  vg_page_section(p, "patches", "Patches");
   patches(p);
   vg_page_markup(p, "<table class=\"facts\">\n");
-  vg_page_fact_count(p, "points of the surface",
+  vg_page_fact_count(p, "Points of the surface",
                      p->h->problem->boundary.surface.n_point);
-  vg_page_fact_count(p, "triangles", p->h->problem->boundary.surface.n_tri);
-  vg_page_fact_count(p, "closed shells",
+  vg_page_fact_count(p, "Triangles", p->h->problem->boundary.surface.n_tri);
+  vg_page_fact_count(p, "Closed shells",
                      json_array_size(vg_page_json(p, "surface.shells")));
-  vg_page_fact(p, "smallest angle of a triangle");
+  vg_page_fact(p, "Smallest angle of a triangle");
   vg_page_fixed(p, vg_page_number(p, "surface.quality.angle_min"), 2);
   vg_page_markup(p, "&deg;</td></tr>\n");
-  vg_page_fact_count(p, "caps (an angle near 180 degrees)",
+  vg_page_fact_count(p, "Caps (an angle near 180 degrees)",
                      (uint64_t)vg_page_number(p, "surface.quality.caps"));
-  vg_page_fact_count(p, "needles (a short edge)",
+  vg_page_fact_count(p, "Needles (a short edge)",
                      (uint64_t)vg_page_number(p, "surface.quality.needles"));
-  vg_page_fact(p, "volume of the mesh, enclosed by the boundary");
+  vg_page_fact(p, "Volume: sum of cells, enclosed by the boundary");
   vg_page_real(p, vg_page_number(p, "mesh.volume"), 10);
   vg_page_markup(p, ", ");
   vg_page_real(p, vg_page_number(p, "mesh.enclosed"), 10);

@@ -1,4 +1,4 @@
-/* All pictures of a page, made at the same time by threads. */
+/* Draws all pictures of a page in parallel on threads. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,7 +6,8 @@
 #include "base/parallel.h"
 #include "cli/html/page.h"
 
-/* Thinner layers in the colour of fewer for the same cause, half as strong. */
+/* Thinner layers have the colour of fewer layers of the same cause, at half
+ * strength. */
 static void thinner(struct palette *to)
 {
   for (int c = 0; c < VG_CAUSE_N; c++)
@@ -25,8 +26,8 @@ void vg_html_palette(enum by by, struct palette *to)
   memcpy(to->rgb[GREY], vg_beside_colour, sizeof vg_beside_colour);
 }
 
-/* Twice the area of the symmetry planes as seen along y: below 0 where their
- * fluid is on the side of small y. */
+/* Twice the area of the symmetry planes projected along y; negative if the
+ * fluid is on their side of smaller y. */
 static double faces_y(const struct vg_mesh *m)
 {
   double sum = 0;
@@ -41,8 +42,8 @@ static double faces_y(const struct vg_mesh *m)
   return sum;
 }
 
-/* From ahead and from behind, on the side of a symmetry plane where the fluid
- * is. */
+/* Choose views from the front and from behind, on the fluid side of a symmetry
+ * plane. */
 static vg_status choose_views(struct page *p, struct vg_error *err)
 {
   static const double toward[VIEWS][3] = { { -0.62, -0.55, 0.56 },
@@ -97,7 +98,8 @@ static vg_status cut(const struct drawing *d, int k, struct vg_image *to,
                        to, err);
 }
 
-/* Memory is all that can be missing; the message is the caller's. */
+/* Draw pictures. Out of memory is the only possible failure; the caller reports
+ * it. */
 static void draw(void *context, size_t first, size_t end, int worker)
 {
   struct drawing *d = context;
@@ -112,7 +114,8 @@ static void draw(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* A section that runs along a zone shows little else; another one may not. */
+/* Choose the section of the body that shows the most subdomains: one that runs
+ * along a separator would show little else. */
 static void choose_part_cut(struct page *p)
 {
   const struct vg_run_pictures *r = &p->h->run->pictures;

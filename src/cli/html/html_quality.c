@@ -1,4 +1,4 @@
-/* Quality: histograms and figures. */
+/* Quality of the cells: histograms and figures. */
 #include <stdio.h>
 
 #include "cli/html/page.h"
@@ -38,11 +38,13 @@ static void shares(struct page *p)
   char name[60];
 
   for (size_t i = 0; i < 5; i++) {
-    snprintf(name, sizeof name, "cells below %d\302\260", below[i]);
+    snprintf(name, sizeof name, "Cells with an angle below %d\302\260",
+             below[i]);
     fact(p, name, item(p, "percent_below_5_10_15_20_30", i), 4, " %");
   }
   for (size_t i = 0; i < 3; i++) {
-    snprintf(name, sizeof name, "cells above %d\302\260", above[i]);
+    snprintf(name, sizeof name, "Cells with an angle above %d\302\260",
+             above[i]);
     fact(p, name, item(p, "percent_above_150_160_170", i), 4, " %");
   }
 }
@@ -52,23 +54,25 @@ static void facts(struct page *p)
   const json_t *edges = block(p, "edges");
 
   vg_page_markup(p, "<table class=\"facts\">\n");
-  vg_page_fact_count(p, "tetrahedra judged", (uint64_t)of(p, "cells"));
-  fact(p, "smallest dihedral angle", of(p, "angle_min"), 2, "&deg;");
-  fact(p, "largest", of(p, "angle_max"), 2, "&deg;");
-  fact(p, "1 % of the cells have a smallest below", of(p, "angle_min_p1"), 1,
-       "&deg;");
+  vg_page_fact_count(p, "Tetrahedra examined", (uint64_t)of(p, "cells"));
+  fact(p, "Smallest dihedral angle", of(p, "angle_min"), 2, "&deg;");
+  fact(p, "Largest dihedral angle", of(p, "angle_max"), 2, "&deg;");
+  fact(p, "Smallest angle of each cell, 1st percentile", of(p, "angle_min_p1"),
+       1, "&deg;");
   shares(p);
-  fact(p, "radius ratio, mean", of(p, "radius_ratio_mean"), 4, "");
-  fact(p, "radius ratio, smallest", of(p, "radius_ratio_min"), 4, "");
-  fact(p, "mean ratio, mean", of(p, "mean_ratio_mean"), 4, "");
-  fact(p, "volume ratio of neighbours, median",
+  fact(p, "Radius ratio, mean", of(p, "radius_ratio_mean"), 4, "");
+  fact(p, "Radius ratio, smallest", of(p, "radius_ratio_min"), 4, "");
+  fact(p, "Mean ratio, mean", of(p, "mean_ratio_mean"), 4, "");
+  fact(p, "Volume ratio of neighbouring cells, median",
        item(p, "volume_ratio_median_95_max", 0), 2, "");
-  fact(p, "5 % exceed", item(p, "volume_ratio_median_95_max", 1), 2, "");
-  fact(p, "largest", item(p, "volume_ratio_median_95_max", 2), 2, "");
+  fact(p, "Volume ratio, 95th percentile",
+       item(p, "volume_ratio_median_95_max", 1), 2, "");
+  fact(p, "Volume ratio, largest", item(p, "volume_ratio_median_95_max", 2), 2,
+       "");
   if (json_is_object(edges)) {
-    fact(p, "edge over target, mean",
+    fact(p, "Edge length / target edge length, mean",
          json_number_value(json_object_get(edges, "mean")), 3, "");
-    fact(p, "edges within 0.7 to 1.5 of it",
+    fact(p, "Edges with a ratio of 0.7 to 1.5",
          json_number_value(json_object_get(edges, "percent_within")), 2, " %");
   }
   vg_page_markup(p, "</table>\n");
@@ -94,17 +98,19 @@ void vg_html_quality(struct page *p)
     0,
     160
   };
-  static const struct bars ratio = { "Radius ratio, 3 inradius / "
-                                     "circumradius",
-                                     "1: regular",
-                                     "Histogram of radius ratios.",
+  static const struct bars ratio = { "Radius ratio (3 inradius / "
+                                     "circumradius)",
+                                     "1: regular tetrahedron",
+                                     "Histogram of the radius ratio of each "
+                                     "cell.",
                                      1,
                                      0.05,
                                      0.1,
                                      1e9 };
-  static const struct bars edge = { "Edges over the size asked for there",
-                                    "1: as asked",
-                                    "Histogram of edge lengths over target.",
+  static const struct bars edge = { "Edge length / target edge length",
+                                    "1: as requested",
+                                    "Histogram of edge length over target "
+                                    "edge length.",
                                     1,
                                     0.1,
                                     0.4,
@@ -114,11 +120,11 @@ void vg_html_quality(struct page *p)
   vg_page_section(p, "quality", "Quality of the cells");
   vg_page_markup(
     p, p->has_layers
-         ? "<p>Of the field. Cells of the layers are flat by intent; their "
-           "heights and volumes are judged above.</p>\n"
+         ? "<p>Cells outside the layers. Layer cells are flat by design; "
+           "their heights and volume ratios are shown above.</p>\n"
          : "");
-  vg_page_markup(p, "<p>Counts are drawn by their logarithm, as what matters "
-                    "is rare; bars of cells to look at are red.</p>\n"
+  vg_page_markup(p, "<p>Counts have a logarithmic scale, since poor cells are "
+                    "rare; bins of poor cells are red.</p>\n"
                     "<div class=\"charts\">\n");
   vg_html_bars(p, &least, block(p, "histogram_angle_min"));
   vg_html_bars(p, &most, block(p, "histogram_angle_max"));

@@ -1,5 +1,5 @@
-/* The surface for scripts to turn: points, triangles and their colours by
- * patch, packed; report.js of share/html draws it. */
+/* Data of the 3-D view: points, triangles and colours of the surface,
+ * compressed; share/html/report.js draws it. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,11 +13,12 @@
 
 #define MOST 120000 /* triangles (V1) */
 
-/* Triangles sorted by patch: those of patch i are first[i] .. first[i + 1]. */
+/* The decimated surface. order[first[i]] .. order[first[i + 1] - 1] are the
+ * triangles of patch i. */
 struct scene {
   struct vg_decimated coarse;
   size_t *first, *order;             /* [n_patch + 1], [n_tri] */
-  double centre[3], half[3], radius; /* of the body's box */
+  double centre[3], half[3], radius; /* of the bounding box of the body */
 };
 
 static void release(struct scene *s)
@@ -72,7 +73,7 @@ static vg_status sort(const struct page *p, struct scene *s,
   return VG_OK;
 }
 
-/* Lowest byte first, as all that show pages have it. */
+/* Little-endian, as on all machines that show such pages. */
 static void put32(uint8_t **to, uint32_t v)
 {
   for (int k = 0; k < 4; k++) *(*to)++ = (uint8_t)(v >> 8 * k);
@@ -87,8 +88,9 @@ static void put_float(uint8_t **to, double v)
   put32(to, bits);
 }
 
-/* Points less the centre, triangles as the difference from the number before
- * (which packs well), then a byte each for level, height and cause. */
+/* Pack points relative to the centre, then corners of triangles, each as the
+ * difference to the previous one (which compresses well), then one byte per
+ * triangle each for number of layers, height and cause. */
 static vg_status pack(const struct page *p, const struct scene *s,
                       struct vg_bytes *out, struct vg_error *err)
 {
@@ -115,7 +117,7 @@ static vg_status pack(const struct page *p, const struct scene *s,
   return st;
 }
 
-/* --- facts for the script, as JSON --------------------------------------- */
+/* --- data for the script, as JSON ---------------------------------------- */
 
 static json_t *colours(const uint8_t (*rgb)[3], size_t n)
 {
@@ -147,7 +149,7 @@ static json_t *patches(const struct page *p, const struct scene *s)
                                     : vg_beside_colour;
 
     snprintf(name, sizeof name, "%d %s", (int)m->patch[i].id, m->patch[i].name);
-    /* "</script>" in a name must not end the script */
+    /* "</script>" in a name must not end the script element. */
     vg_text_clean(name, clean, sizeof clean);
     for (char *c = clean; *c; c++)
       if (*c == '<') *c = '(';
@@ -224,27 +226,28 @@ static void words(struct page *p, const struct scene *s)
 {
   const struct vg_mesh *m = &p->h->problem->boundary.surface;
 
-  vg_page_section(p, "turn", "To turn and to look into");
+  vg_page_section(p, "turn", "3-D view");
   vg_page_markup(
     p,
     "<div id=\"view\" hidden>\n<div id=\"controls\"></div>\n"
-    "<canvas id=\"canvas\" tabindex=\"0\" role=\"img\" aria-label=\"The "
-    "surface in three dimensions. Arrow keys turn it, plus and minus bring it "
-    "nearer or farther; the pictures below show the same.\"></canvas>\n"
+    "<canvas id=\"canvas\" tabindex=\"0\" role=\"img\" aria-label=\"3-D view "
+    "of the surface. The arrow keys rotate it, plus and minus zoom; the "
+    "pictures below show the same surface.\"></canvas>\n"
     "</div>\n<p class=\"note\">");
   vg_page_count(p, s->coarse.n_tri);
   if (s->coarse.step > 0) {
-    vg_page_markup(p, " triangles, merged from the ");
+    vg_page_markup(p, " triangles, reduced from the ");
     vg_page_count(p, m->n_tri);
-    vg_page_markup(p, " of the surface to keep this page small (points within "
-                      "cubes of ");
+    vg_page_markup(p, " of the surface to limit the size of this page (points "
+                      "were merged within cubes of width ");
     vg_page_real(p, s->coarse.step, 2);
-    vg_page_markup(p, " became one); the pictures below show all of them.");
+    vg_page_markup(p, "); the pictures below show the full surface.");
   } else {
-    vg_page_markup(p, " triangles, all that the surface has.");
+    vg_page_markup(p, " triangles, the full surface.");
   }
   vg_page_markup(p, " <span id=\"say\">Without scripts or WebGL this view is "
-                    "not shown; everything else is.</span></p>\n");
+                    "not shown; the rest of the page is complete.</span></p>"
+                    "\n");
   vg_page_end_section(p);
 }
 

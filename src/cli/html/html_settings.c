@@ -1,4 +1,4 @@
-/* What was asked, what was settled by the program, and all the rest. */
+/* Settings: requested ones, those resolved by the program, and the rest. */
 #include <stdio.h>
 #include <string.h>
 
@@ -21,7 +21,7 @@ static void row(struct page *p, const struct vg_param *param, int is_far,
   vg_page_text(p, asked && *asked ? asked : *now ? now : "\"\"");
   if (*param->unit) vg_page_format(p, " %s", param->unit);
   if (asked && strcmp(asked, now) != 0) {
-    vg_page_markup(p, ", settled as ");
+    vg_page_markup(p, ", resolved to ");
     vg_page_text(p, *now ? now : "\"\"");
   }
   vg_page_markup(p, "</td><td class=\"words\">");
@@ -29,8 +29,9 @@ static void row(struct page *p, const struct vg_param *param, int is_far,
   vg_page_markup(p, "</td></tr>\n");
 }
 
-/* Setting i of the plain ones and, behind them, of the farfield, and what its
- * offset counts from in s. NULL behind the last. */
+/* Description of setting i: plain settings, then columns of the farfield table.
+ * *base is the structure in s to which its offset refers. NULL past the last
+ * setting. */
 static const struct vg_param *param_of(const struct vg_settings *s, size_t i,
                                        int *is_far, const void **base)
 {
@@ -44,7 +45,7 @@ static const struct vg_param *param_of(const struct vg_settings *s, size_t i,
   return i - n < far->n_column ? &far->column[i - n] : NULL;
 }
 
-/* Rows of one kind; `threads` tells of the run, not of the mesh. */
+/* Write the rows of one kind; returns their number. */
 static size_t rows(struct page *p, const struct vg_settings *usual,
                    enum which which)
 {
@@ -58,7 +59,7 @@ static size_t rows(struct page *p, const struct vg_settings *usual,
 
   for (size_t i = 0; (param = param_of(usual, i, &far, &base)); i++) {
     if (!strcmp(param->name, "threads") || !strcmp(param->name, "schedule"))
-      continue; /* no part of what the mesh follows from */
+      continue; /* may differ between runs that make the same page */
     for (int k = 0; k < 3; k++) {
       param_of(of[k], i, &far, &base);
       vg_param_format(param, base, value[k], sizeof value[k]);
@@ -84,19 +85,19 @@ void vg_html_settings(struct page *p)
   struct vg_settings usual;
 
   vg_settings_default(&usual);
-  vg_page_section(p, "settings", "What was asked and what was assumed");
-  vg_page_markup(p, "<h3>Asked, by deck, project and command line</h3>\n");
-  table(p, &usual, ASKED, "Nothing: all settings had their defaults.");
-  vg_page_markup(p, "<h3>Settled by the program</h3>\n");
-  table(p, &usual, SETTLED, "Nothing.");
+  vg_page_section(p, "settings", "Settings");
+  vg_page_markup(p, "<h3>Requested by deck, project or command line</h3>\n");
+  table(p, &usual, ASKED, "None: all settings have their defaults.");
+  vg_page_markup(p, "<h3>Resolved by the program</h3>\n");
+  table(p, &usual, SETTLED, "None.");
   if (s->n_source)
     vg_page_format(p,
                    "<p>Sources of spacing: %zu. They are listed in "
-                   "PROJECT.resolved.deck, as is every setting of single "
-                   "patches.</p>\n",
+                   "PROJECT.resolved.deck, together with the settings of "
+                   "individual patches.</p>\n",
                    s->n_source);
-  vg_page_markup(p, "<details><summary>All other settings, at their "
-                    "defaults</summary>\n");
+  vg_page_markup(p, "<details><summary>All other settings (defaults)"
+                    "</summary>\n");
   table(p, &usual, REST, "None.");
   vg_page_markup(p, "</details>\n");
   vg_page_end_section(p);

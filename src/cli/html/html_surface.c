@@ -1,17 +1,17 @@
-/* Pictures of the surface: patches, levels, causes. */
+/* Pictures of the surface: patches, number of layers, causes. */
 #include <stdio.h>
 
 #include "cli/html/page.h"
 
 static void pair(struct page *p, enum by by, const char *what)
 {
-  static const char *const from[VIEWS] = { "from ahead and above",
+  static const char *const from[VIEWS] = { "from the front and above",
                                            "from behind and below" };
   char alt[200];
 
   vg_page_markup(p, "<div class=\"pair\">\n");
   for (int view = 0; view < VIEWS; view++) {
-    snprintf(alt, sizeof alt, "The surface, %s, seen %s.", what, from[view]);
+    snprintf(alt, sizeof alt, "Surface: %s, seen %s.", what, from[view]);
     vg_page_figure(p, PICTURE_SURFACE + (int)by * VIEWS + view, NULL, alt);
     vg_page_format(p, "%s, %s", what, from[view]);
     vg_page_end_figure(p);
@@ -36,7 +36,7 @@ static void patch_keys(struct page *p)
     vg_page_key(p, vg_patch_colour[i % PATCH_COLOURS], word);
   }
   if (rest) vg_page_format(p, "and %zu more; ", rest);
-  vg_page_key(p, vg_beside_colour, "beside the body");
+  vg_page_key(p, vg_beside_colour, "adjacent to the body");
   if (n > PATCH_COLOURS)
     vg_page_markup(p, "<span>Colours repeat after twelve patches.</span>");
 }
@@ -47,7 +47,7 @@ static void level_keys(struct page *p)
   char word[40];
 
   for (int k = 0; k < LEVEL_COLOURS; k += 3) {
-    snprintf(word, sizeof word, "%d levels",
+    snprintf(word, sizeof word, "%d layers",
              (k * (most + 1) + LEVEL_COLOURS - 1) / LEVEL_COLOURS);
     vg_page_key(p, vg_level_colour[k], word);
   }
@@ -59,7 +59,7 @@ static void cause_keys(struct page *p)
   char word[120];
 
   vg_html_palette(BY_CAUSE, &palette);
-  vg_page_key(p, palette.rgb[0], "all layers asked for");
+  vg_page_key(p, palette.rgb[0], "full layers");
   for (int thin = 0; thin < 2; thin++)
     for (int c = VG_CAUSE_PROXIMITY; c < VG_CAUSE_N; c++) {
       if (!p->walls.cause[thin][c]) continue;
@@ -72,15 +72,15 @@ static void cause_keys(struct page *p)
 
 void vg_html_surface(struct page *p)
 {
-  vg_page_section(p, "surface", "The surface");
-  pair(p, BY_PATCH, "patches");
+  vg_page_section(p, "surface", "Surface");
+  pair(p, BY_PATCH, "Patches");
   patch_keys(p);
   if (p->has_layers) {
     vg_page_markup(p, "</p>\n");
-    pair(p, BY_LEVEL, "levels of the layers");
+    pair(p, BY_LEVEL, "Number of layers");
     level_keys(p);
     vg_page_markup(p, "</p>\n");
-    pair(p, BY_CAUSE, "why layers are fewer or thinner");
+    pair(p, BY_CAUSE, "Causes of fewer or thinner layers");
     cause_keys(p);
   }
   vg_page_markup(p, "</p>\n");

@@ -1,4 +1,4 @@
-/* The worst cells: a drawing of each with the cells around it, and a list. */
+/* The worst cells: drawings with the adjacent cells, and a table. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,8 +8,8 @@
 
 enum { SIZE = 300 };
 
-/* Half from above the largest face, where flat cells have their shape, half
- * along it, where they have none. */
+/* View direction halfway between the normal of the largest face, from which a
+ * flat cell shows its shape, and the plane of that face. */
 static void look(const double (*x)[3], struct vg_camera *c)
 {
   double normal[3], longest[3] = { 1, 0, 0 }, most = 0, length = 0;
@@ -95,7 +95,7 @@ static void drawing(struct page *p, const struct vg_around *a, size_t k,
       put_point(p, &c, a->cell[0][(f + i) % 4], i == 0 ? "M" : "L");
   vg_page_format(p, "Z\"/></svg>\n<figcaption>%zu: ", k + 1);
   vg_page_fixed(p, w->value, 2);
-  vg_page_format(p, "&deg;, with %zu cells around it</figcaption></figure>\n",
+  vg_page_format(p, "&deg;, with %zu adjacent cells</figcaption></figure>\n",
                  a->n - 1);
 }
 
@@ -105,8 +105,8 @@ void vg_html_worst(struct page *p)
   const struct vg_mesh_report *m = p->has_layers ? &r->field_judge : &r->judge;
 
   if (!m->n_worst) return;
-  vg_page_section(p, "worst", "The worst cells");
-  vg_page_markup(p, "<p>By their smallest dihedral angle, in red, with the "
+  vg_page_section(p, "worst", "Worst cells");
+  vg_page_markup(p, "<p>Cells with the smallest dihedral angles (red) and the "
                     "cells that touch them.</p>\n<div class=\"cells\">\n");
   for (size_t k = 0; k < VG_RUN_WORST; k++)
     if (r->pictures.worst[k].n)
@@ -114,8 +114,8 @@ void vg_html_worst(struct page *p)
   vg_page_markup(
     p,
     "</div>\n<div class=\"wide\"><table>\n<thead><tr>"
-    "<th scope=\"col\"></th><th scope=\"col\">cell</th>"
-    "<th scope=\"col\">smallest angle</th><th scope=\"col\">x</th>"
+    "<th scope=\"col\"></th><th scope=\"col\">Cell</th>"
+    "<th scope=\"col\">Smallest angle</th><th scope=\"col\">x</th>"
     "<th scope=\"col\">y</th><th scope=\"col\">z</th></tr></thead>\n<tbody>");
   for (size_t k = 0; k < m->n_worst; k++) {
     vg_page_format(p, "<tr><th scope=\"row\">%zu</th><td>", k + 1);

@@ -1,4 +1,4 @@
-/* What pages are made of. */
+/* Elements of a page. */
 #include "cli/html/page.h"
 
 #include <math.h>

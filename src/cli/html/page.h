@@ -1,4 +1,4 @@
-/* Private to cli/html: what a page is made of. */
+/* Private to cli/html: elements and sections of a page. */
 #ifndef VG_CLI_HTML_PAGE_H
 #define VG_CLI_HTML_PAGE_H
 
@@ -7,8 +7,8 @@
 #include "run/picture/body.h"
 #include "run/picture/shot.h"
 
-/* Pictures of a page by number: the surface by something (enum by) from two
- * views, cuts, two of them in other colours. */
+/* Pictures of a page by number: the surface coloured by a quantity (enum by)
+ * from two directions, cuts, and two of the cuts in other colours. */
 enum { VIEWS = 2 };
 enum by { BY_PATCH, BY_LEVEL, BY_CAUSE, BY_N };
 enum {
@@ -19,8 +19,8 @@ enum {
   PICTURES
 };
 
-/* Triangles of the surface: their colours, GREY where it is no wall, and which
- * are seen in its pictures. walls.c */
+/* Colours of the triangles of the surface, GREY if not on a wall, and which
+ * triangles are visible in its pictures. walls.c */
 struct walls {
   uint8_t *by[BY_N], *by_share, *is_seen; /* [surface.n_tri] */
   int level_most;
@@ -34,61 +34,63 @@ struct page {
   uint8_t *body; /* [surface.n_patch] run/picture/body.h */
   struct walls walls;
   struct vg_camera camera[VIEWS];
-  struct vg_bytes png[PICTURES]; /* empty where there is none */
+  struct vg_bytes png[PICTURES]; /* empty if there is no such picture */
   size_t part_cut;               /* cut of PICTURE_PART */
 };
 
-/* page.c: text with markup escaped; printf without reals; markup as it is. */
+/* page.c: text with markup escaped; markup, written unchanged; printf, to be
+ * used without reals. */
 void vg_page_text(struct page *p, const char *text);
 void vg_page_markup(struct page *p, const char *markup);
 void vg_page_format(struct page *p, const char *format, ...)
   __attribute__((format(printf, 2, 3)));
 
-/* A count with separators; a real with so many significant digits; with so
- * many decimals; "-" where it is not finite. */
+/* A count with thousands separators; a real with `digits` significant digits;
+ * a real with `decimals` decimals; a dash if it is not finite. */
 void vg_page_count(struct page *p, uint64_t n);
 void vg_page_real(struct page *p, double v, int digits);
 void vg_page_fixed(struct page *p, double v, int decimals);
 
-/* Bytes as base64. */
+/* Bytes, encoded as base64. */
 void vg_page_base64(struct page *p, const unsigned char *data, size_t n);
 
 /* A colour as "#rrggbb". */
 void vg_page_colour(struct page *p, const uint8_t rgb[3]);
 
-/* A square of a colour with a word. */
+/* A legend entry: a coloured square and a word. */
 void vg_page_key(struct page *p, const uint8_t rgb[3], const char *word);
 
-/* A section with an id and a heading, and its end. */
+/* Begin of a section with id and heading; end of a section. */
 void vg_page_section(struct page *p, const char *id, const char *title);
 void vg_page_end_section(struct page *p);
 
-/* A figure: a picture with a text for those who do not see it; the caption
- * follows, then vg_page_end_figure. id: for scripts, or NULL. */
+/* A figure: a picture with an alternative text; the caller adds the caption and
+ * vg_page_end_figure. id: for scripts, or NULL. */
 void vg_page_figure(struct page *p, int picture, const char *id,
                     const char *alt);
 void vg_page_end_figure(struct page *p);
 
-/* A row of a table of facts: a name and, with printf, a value; or the name
- * alone, with the value and </td></tr> to follow. */
+/* A row of a table of facts: vg_page_fact writes the name only, and the caller
+ * adds the value and </td></tr>; vg_page_fact_count writes a complete row. */
 void vg_page_fact(struct page *p, const char *name);
 void vg_page_fact_count(struct page *p, const char *name, uint64_t n);
 
-/* Numbers of the report: "field.angle_min"; 0 where absent. */
+/* Values of the report by path, as in "field.angle_min"; NULL and 0 if
+ * absent. */
 const json_t *vg_page_json(const struct page *p, const char *path);
 double vg_page_number(const struct page *p, const char *path);
 
-/* The report's block that judges cells by their angles. */
+/* The object of the report with the quality of the cells: "field" or "mesh". */
 const char *vg_page_judged(const struct page *p);
 
-/* html_pictures.c: makes all pictures, and their colours by number. */
+/* html_pictures.c: draws all pictures; the colours of a kind of picture. */
 vg_status vg_html_draw(struct page *p, struct vg_error *err);
 struct palette {
   uint8_t rgb[256][3];
 };
 void vg_html_palette(enum by by, struct palette *to);
 
-/* Sections, in this order. */
+/* Sections, in the order of the page. */
 void vg_html_head(struct page *p); /* html_head.c */
 void vg_html_first(struct page *p);
 void vg_html_tiles(struct page *p);
@@ -103,11 +105,11 @@ void vg_html_patches(struct page *p);
 void vg_html_partition(struct page *p); /* html_cuts.c */
 vg_status vg_html_run(struct page *p, struct vg_error *err);
 
-/* html_cuts.c: a cut by the angles of its cells. */
+/* html_cuts.c: a cut with its cells coloured by smallest angle. */
 void vg_html_angles(struct page *p);
 
-/* A histogram: `n` bins from 0 by `step`; bins within bad_below or from
- * bad_from on are marked. Logarithmic where `log`, as bad cells are few. */
+/* A histogram with bins of width `step` from 0; bins below bad_below and from
+ * bad_from on are highlighted. Counts have a logarithmic scale. */
 struct bars {
   const char *title, *unit, *alt;
   int decimals;
@@ -122,7 +124,7 @@ extern const uint8_t vg_level_colour[LEVEL_COLOURS][3];
 extern const uint8_t vg_cause_colour[VG_CAUSE_N][3];
 extern const uint8_t vg_beside_colour[3];
 
-/* "proximity" in words of a sentence. */
+/* Explanation of a cause, such as "proximity". */
 const char *vg_cause_words(enum vg_layer_cause cause);
 
 vg_status vg_walls_colour(const struct page *p, struct walls *w,

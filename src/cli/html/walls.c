@@ -1,4 +1,5 @@
-/* Triangles of the surface by patch, levels and causes, for pictures. */
+/* Colours of surface triangles by patch, number of layers and cause, for
+ * pictures. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +7,7 @@
 #include "base/memory.h"
 #include "cli/html/page.h"
 
-/* A point of a wall, by the fields of the layers. */
+/* Index of each wall point in the fields of the layers. */
 static const uint32_t *index_points(const struct vg_wall_fields *f, size_t n,
                                     uint32_t *index)
 {
@@ -22,8 +23,8 @@ static int step_of(double v, double most)
   return k < 0 ? 0 : k >= LEVEL_COLOURS ? LEVEL_COLOURS - 1 : k;
 }
 
-/* Of three corners what is worst for the triangle: the fewest levels, the
- * least height, and the cause of the corner that lacks most. */
+/* A triangle gets the worst values of its three corners: the fewest levels, the
+ * least height, and the cause of the corner with the most missing levels. */
 static void colour_layers(const struct vg_wall_fields *f, const uint32_t *at,
                           size_t t, struct walls *w)
 {
@@ -73,7 +74,8 @@ static void by_layers(const struct page *p, const uint32_t *index,
   }
 }
 
-/* Symmetry planes, and what columns slide in, stand behind the body. */
+/* Mark the patches in the background of the body: symmetry planes and slide
+ * patches. */
 static void mark_beside(const struct page *p, uint8_t *beside)
 {
   const struct vg_mesh *m = &p->h->problem->boundary.surface;

@@ -1,5 +1,5 @@
-/* The decomposition of the field that vanguard mesh would begin with: made as
- * it would be, but for sizes that are as coarse as a forecast's. */
+/* The domain decomposition with which vanguard mesh would begin, made in the
+ * same way, but with the coarser sizing field of a forecast. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,8 +18,8 @@ void vg_plan_decomposition_release(struct vg_plan_decomposition *q)
   memset(q, 0, sizeof *q);
 }
 
-/* Cells expected in parts: their sum, the most, of those that are filled as
- * they are. */
+/* Compute sum and largest number of the expected cells of the subdomains that
+ * are filled without cutting them. */
 static vg_status weigh_parts(const struct vg_load *load,
                              struct vg_plan_decomposition *q,
                              struct vg_error *err)
@@ -28,7 +28,7 @@ static vg_status weigh_parts(const struct vg_load *load,
   vg_status st;
 
   q->load = vg_calloc(q->n_part, sizeof *q->load);
-  st = v && q->load ? VG_OK : vg_fail_memory(err, "the parts");
+  st = v && q->load ? VG_OK : vg_fail_memory(err, "the subdomains");
   for (size_t k = 0; st == VG_OK && k < q->n_part; k++)
     v[k] = q->made.part[k].front;
   if (st == VG_OK)

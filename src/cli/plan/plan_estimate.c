@@ -1,4 +1,5 @@
-/* vanguard plan: a project's mesh and run, from surface and sizes alone. */
+/* vanguard plan: forecasts mesh and run of a project from the surface and the
+ * sizing field only. */
 #include "cli/plan/plan_estimate.h"
 
 #include <math.h>
@@ -15,38 +16,38 @@
 #include "partition/advance/ways.h"
 #include "run/settings/plan_options.h"
 
-/* Walls with more points get their layers estimated, not grown. */
+/* Layers on more wall points than this are estimated, not grown. */
 #define GROW_LIMIT 50000
-/* Least efficiency for which more workers are taken, without a target. */
+/* Least efficiency of the best machine if there is no target. */
 #define EFFICIENT 0.8
-/* Cells are counted well enough in a field as coarse as this (M6). */
+/* A sizing field of this coarseness is accurate enough to count cells (M6). */
 #define COARSENESS 2
 
-/* Seconds of one core; docs/lab/performance-parallel.md, "Model". */
+/* Seconds on one core; docs/lab/performance-parallel.md, "Model". */
 static const double spread_per_cell = 0.35e-6; /* number, judge, encode */
-static const double digest_per_byte = 0.4e-9;  /* the files once more */
+static const double digest_per_byte = 0.4e-9;  /* digest of the files */
 static const double layer_per_cell = 0.1e-6;   /* growing and measuring */
 
-/* Bytes: of a field in pieces, and of a void that is filled, per cell; of
- * layers, per point; per triangle of the front, and where columns stand per
- * point of the wall; per cube of the load; per leaf of the sizes' octree
- * (vg_sizing_leaves), which has fewer here than in the run; of the program.
- * Fitted to wings of 74, 206 and 562 M cells, box and sphere (M7). */
+/* Bytes per cell of the field in pieces, and of a void while it is filled; per
+ * point of the layers; per triangle of the front; per wall point with columns;
+ * per octant of the load; per leaf of the octree of the sizing field
+ * (vg_sizing_leaves), which has fewer leaves here than in the run; of the
+ * program. Fitted to wings of 74, 206 and 562 M cells, box and sphere (M7). */
 static const double mesh_per_cell = 35, fill_per_cell = 60, per_point = 8;
 static const double per_triangle = 250, per_wall_point = 1540, per_cube = 28;
 static const double per_leaf = 37 * COARSENESS * COARSENESS;
 static const double program = 18e6;
 
-/* --- layers that are not grown ------------------------------------------- */
+/* --- estimated layers ---------------------------------------------------- */
 
 struct lift {
   const struct vg_layer_stage *s;
   const struct vg_mesh *m;
   const struct vg_sizing *sizing;
   double (*normal)[3]; /* [n_point] */
-  double *edge;        /* [n_point] sum, then mean of edges at it */
+  double *edge;        /* [n_point] sum, then mean of its edge lengths */
   uint32_t *n_edge;    /* [n_point] */
-  uint32_t *patch;     /* [n_point] the wall whose law rules */
+  uint32_t *patch;     /* [n_point] the wall whose growth law applies */
   uint16_t *level;     /* [n_point] */
 };
 
@@ -76,8 +77,8 @@ static void add_triangle(struct lift *l, size_t i)
   }
 }
 
-/* As the layers do: until the next one would be thicker than the local cell,
- * at the wall and at the top. */
+/* Stack layers at a point by the rule of the layer module: until the next one
+ * would be thicker than the local edge length, at the wall and at the top. */
 static void lift_point(struct lift *l, size_t i, double x[3])
 {
   const struct vg_layer_request *q = &l->s->request[l->patch[i]];
@@ -118,8 +119,8 @@ static void measure_lift(struct vg_plan *p, struct lift *l)
       p->layer_tet += l->level[l->m->tri[i][k]];
 }
 
-/* The surface with its walls moved onto the layers' tops: what is left to
- * fill, but for details. */
+/* Move the walls to the tops of the layers. The result approximates the front
+ * that remains to be filled. */
 static vg_status estimate_layers(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_mesh *m = &p->problem.boundary.surface;
@@ -164,9 +165,9 @@ static vg_status count_wall_points(struct vg_plan *p, struct vg_error *err)
   return VG_OK;
 }
 
-/* --- the surface and its sizes ------------------------------------------- */
+/* --- surface and sizing field -------------------------------------------- */
 
-/* What was done since `start`, a run does too. */
+/* Add the time since `start` to a phase: a run does the same work. */
 static void count_time(struct vg_plan *p, enum vg_phase phase, double start)
 {
   p->phase[phase] += vg_clock_process() - start;
@@ -195,7 +196,8 @@ done:
   return st;
 }
 
-/* finer: how many times as long the run will take for its finer field. */
+/* Build the sizing field and add its time to the phase. finer: factor on that
+ * time, since the field of the run is finer. */
 static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
                                double coarseness, double finer,
                                struct vg_error *err)
@@ -225,8 +227,8 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_layer_stage_sizes(&p->layers, &p->problem.boundary, &view, err));
   VG_TRY(measure_sizes(p, &view, VG_LAYERS_COARSENESS, 1, err));
   VG_TRY(count_wall_points(p, err));
-  /* a front of layers that are estimated may cross itself: it cannot be
-   * parted */
+  /* The front of estimated layers may intersect itself, so a decomposition
+   * that needs the front requires grown layers. */
   p->is_grown = p->n_wall_point < GROW_LIMIT ||
                 vg_ways[p->problem.resolved.settings.decompose].maker;
   start = vg_clock_process();
@@ -274,7 +276,7 @@ static double bytes_written(const struct vg_plan *p)
   return sum;
 }
 
-/* Memory: what any rank holds, and what each cell and thread adds. */
+/* Memory of every rank, and of each of its cells and threads. */
 static void count_memory(struct vg_plan *p)
 {
   double most = 0;
@@ -308,7 +310,7 @@ static vg_status forecast(const struct vg_plan *p, double leaf_cells,
                          out, err);
 }
 
-/* What the machine of a record takes, in place of the one measured. */
+/* Rates fitted to the given record, or the built-in ones. */
 static vg_status learn_rates(struct vg_plan *p, struct vg_error *err)
 {
   struct vg_timeline t = VG_TIMELINE_INIT;
@@ -377,7 +379,8 @@ static vg_status run_on(const struct vg_plan *p, const struct vg_forecast *o,
   return VG_OK;
 }
 
-/* The fewest workers that reach the target; else the most that work well. */
+/* Choose the fewest workers that meet the target or, without a target, the most
+ * workers that are efficient. */
 static void choose(struct vg_plan *p)
 {
   double target = p->o->target;
@@ -396,7 +399,7 @@ static void choose(struct vg_plan *p)
   }
 }
 
-/* Other leaf sizes on the machine that was chosen, or on the largest. */
+/* Forecasts with other leaf sizes on the chosen machine, or on the largest. */
 static vg_status try_leaves(struct vg_plan *p, struct vg_error *err)
 {
   static const double sizes[VG_PLAN_LEAVES] = { 4e4, 7e4, 1e5,   1.5e5,
@@ -450,8 +453,8 @@ done:
   return st;
 }
 
-/* Read, check and size as vanguard mesh does, grow or estimate the layers, and
- * forecast. */
+/* Read and check the surface and make the sizing field as vanguard mesh does,
+ * grow or estimate the layers, and forecast the run. */
 static vg_status make(struct vg_plan *p, struct vg_error *err)
 {
   const struct vg_settings *s = &p->problem.resolved.settings;

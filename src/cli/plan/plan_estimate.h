@@ -1,7 +1,7 @@
 /* cli/plan/plan_estimate.h: the forecast of a project, for plan_*.c. Uses
  * run/input/layers.h, partition/model/rates.h.
  *
- * plan_estimate.c computes it, plan_print.c tells it. */
+ * plan_estimate.c computes it, plan_print.c prints it. */
 #ifndef VG_CLI_PLAN_PLAN_ESTIMATE_H
 #define VG_CLI_PLAN_PLAN_ESTIMATE_H
 
@@ -14,20 +14,20 @@
 
 enum { VG_PLAN_LEAVES = 8 };
 
-/** A whole run on a machine. */
+/** Forecast of a complete run on one machine. */
 struct vg_plan_row {
   int ranks, threads, ranks_per_node;
-  struct vg_model_result tasks; /* cutting and filling alone */
-  double wall;                  /* s, of everything */
-  double speedup, efficiency;   /* of everything, against one worker */
-  double memory;                /* bytes of a rank */
+  struct vg_model_result tasks; /* cutting and filling only */
+  double wall;                  /* seconds of the complete run */
+  double speedup, efficiency;   /* of the complete run, over one worker */
+  double memory;                /* bytes per rank */
 };
 
-/** What the field is parted into before it is filled. */
+/** The decomposition (discrete or octree) made before anything is filled. */
 struct vg_plan_decomposition {
-  size_t n_part;      /* 0: not parted */
-  size_t n_whole;     /* of these, filled as they are */
-  double cells, most; /* expected in all of these, in one at most */
+  size_t n_part;      /* number of subdomains; 0: no such decomposition */
+  size_t n_whole;     /* subdomains that are filled without cutting them */
+  double cells, most; /* expected cells of these: sum, largest */
   double seconds;
   struct vg_decomposition made;
   struct vg_load *load; /* [n_part] */
@@ -38,31 +38,32 @@ struct vg_plan {
   struct vg_display show;
   struct vg_problem problem;
   struct vg_layer_stage layers;
-  struct vg_mesh lifted;       /* the surface on top of estimated layers */
+  struct vg_mesh lifted;       /* the surface moved to the top of estimated
+                                  layers */
   struct vg_mesh grown;        /* the front above layers that were grown;
                                   borrowed from layers and problem */
-  const struct vg_mesh *front; /* what bounds the field; borrowed */
-  struct vg_sizing *sizing;    /* over the front */
+  const struct vg_mesh *front; /* boundary of the field; borrowed */
+  struct vg_sizing *sizing;    /* sizing field for the front */
   struct vg_effects effects;
   struct vg_load load;
   struct vg_plan_decomposition decomposition;
   struct vg_cut_rule rule;
   struct vg_rates rates;
   struct vg_rate_fit fit[VG_RATE_FITS]; /* n is 0: not fitted */
-  double spread_per_cell;               /* s */
+  double spread_per_cell;               /* seconds */
   struct vg_forecast forecast;
-  int is_grown; /* layers were; else they are estimated */
+  int is_grown; /* 1: layers were grown; 0: estimated */
   size_t n_wall_point;
-  double layer_tet, layer_point;  /* if all are tetrahedra */
-  double cell, point, prism, tet; /* of the mesh; cell: of all kinds */
-  double phase[VG_PHASE_N];       /* s of one core, outside the tasks; judging
-                                     includes the files written with it, writing
-                                     those that follow */
-  double shared, per_cell, per_thread; /* bytes: of any rank; of the mesh,
-                                  the mean of field and layers; of a leaf */
+  double layer_tet, layer_point;  /* of the layers, as tetrahedra only */
+  double cell, point, prism, tet; /* counts of the mesh; cell: all types */
+  double phase[VG_PHASE_N];       /* seconds on one core, outside the tasks;
+                                     the mesh check includes the files written
+                                     with it, writing the files after it */
+  double shared, per_cell, per_thread; /* bytes: of every rank; per cell of the
+                                  mesh, mean of field and layers; of a leaf */
   size_t n_row;
   struct vg_plan_row *row; /* [n_row] */
-  size_t best;             /* row; SIZE_MAX: none reaches the target */
+  size_t best;             /* best row; SIZE_MAX: none meets the criterion */
   size_t n_leaf;
   struct {
     double cells;
@@ -72,25 +73,26 @@ struct vg_plan {
   size_t best_leaf;
 };
 
-/** What a phase takes on the machine of a row: parts [3] out: by one thread, by
- * each node, by all workers. Returns their sum. */
+/** Time of a phase on the machine of a row. parts [3] receives the times of its
+ * portions that run on one thread, on the cores of a node and on all workers.
+ * Returns their sum. */
 double vg_plan_phase(const struct vg_plan *p, const struct vg_plan_row *r,
                      enum vg_phase phase, double parts[3]);
 
-/** Bytes of the files that a word of the write list stands for; 0: not
- * known. */
+/** Size in bytes of the files of a format in the write list; 0: unknown. */
 double vg_plan_bytes(const struct vg_plan *p, const char *item);
 
-/** p->decomposition, where one is asked for. (plan_decomposition.c) */
+/** Compute p->decomposition if the settings request one. (plan_decomposition.c)
+ */
 vg_status vg_plan_part(struct vg_plan *p, struct vg_error *err);
 void vg_plan_decomposition_release(struct vg_plan_decomposition *q);
 
-/** The forecast of the tasks of p->decomposition. (plan_decomposition.c) */
+/** Forecast the tasks of p->decomposition. (plan_decomposition.c) */
 vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_front *v,
                          const struct vg_cut_rule *rule,
                          struct vg_forecast *out, struct vg_error *err);
 
-/** Speed-up over workers as a figure. */
+/** Plot of the speed-up over the number of workers. */
 vg_status vg_plan_draw(const struct vg_plan *p, struct vg_error *err);
 
 void vg_plan_text(const struct vg_plan *p);

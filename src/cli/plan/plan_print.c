@@ -1,4 +1,4 @@
-/* What vanguard plan tells about a project: text, JSON, figure. */
+/* Output of the forecast of a project: text, JSON, plot. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,9 +17,9 @@
 
 /* --- files --------------------------------------------------------------- */
 
-/* Bytes per item of a mesh in some form: of points, tetrahedra and prisms, and
- * triangles of the boundary. Binary forms: as their layouts have it. Text: as
- * written for meshes of some million cells. */
+/* Bytes per point, tetrahedron, prism and boundary triangle in each file
+ * format. Binary formats: from their layouts. Text formats: measured on meshes
+ * of some million cells. */
 static const struct form {
   const char *word;
   double point, tet, prism, face;
@@ -37,7 +37,8 @@ static const struct form {
   { "cgns", 24, 16, 24, 12 },
 };
 
-/* Lines of one length: hexadecimal numbers of corners and two cells. */
+/* A Fluent file has one line per face, with the hexadecimal numbers of its
+ * corners and two cells; all lines are assumed to have the same length. */
 static double fluent_bytes(const struct vg_plan *p)
 {
   int is_mixed = p->prism > 0, width = 1;
@@ -92,25 +93,24 @@ static void print_mesh(const struct vg_plan *p)
   const struct vg_notes *notes = &p->problem.notes;
   char a[32], b[32];
 
-  printf("%s\n\nMesh expected\n", p->problem.asked.title);
+  printf("%s\n\nExpected mesh\n", p->problem.asked.title);
   printf("  %-24s %15s\n", "cells", count(p->cell, a));
   if (p->layers.is_on) {
-    printf("  %-24s %15s  %s\n", "  of layers",
+    printf("  %-24s %15s  %s\n", "  in layers",
            count(p->prism > 0 ? p->prism : p->layer_tet, a),
-           p->is_grown ? "layers have been grown"
-                       : "estimated from the walls and the law");
-    printf("  %-24s %15s\n", "  of the field", count(p->load.cells, a));
-    printf("  %-24s %15s\n", "points of the walls",
-           count((double)p->n_wall_point, a));
+           p->is_grown ? "(layers were grown)"
+                       : "(estimated from walls and growth law)");
+    printf("  %-24s %15s\n", "  outside the layers", count(p->load.cells, a));
+    printf("  %-24s %15s\n", "wall points", count((double)p->n_wall_point, a));
   }
   printf("  %-24s %15s\n", "points", count(p->point, a));
   if (p->layers.is_on)
-    printf("  %-24s %15s\n", "  of layers", count(p->layer_point, a));
-  printf("  %-24s %15s\n", "triangles around it",
+    printf("  %-24s %15s\n", "  in layers", count(p->layer_point, a));
+  printf("  %-24s %15s\n", "triangles of the front",
          count((double)p->front->n_tri, a));
   for (size_t i = 0; i < notes->n; i++) printf("  note: %s\n", notes->text[i]);
-  printf("\nMemory\n  shared, on every rank %s; cells of a rank %.0f B each; "
-         "a thread %s\n",
+  printf("\nMemory\n  each rank %s, plus %.0f B for each of its cells and %s "
+         "for each thread\n",
          bytes(p->shared, a), p->per_cell, bytes(p->per_thread, b));
 }
 
@@ -137,7 +137,7 @@ static void print_planes(const struct vg_lattice *l)
   }
 }
 
-/* Leaves of a node in one line. */
+/* Print the leaves of a node in one line. */
 static void print_leaves(const struct vg_forecast *o, size_t parent, int indent)
 {
   double least = INFINITY, most = 0;
@@ -164,8 +164,8 @@ static void print_number(size_t n, const char *what)
   printf("%zu %s%s", n, what, n == 1 ? "" : "s");
 }
 
-/* Most over mean of the cells expected in leaves; fragments, which are filled
- * together, left out as in the report of a run. */
+/* Largest over mean number of expected cells in leaves. Fragments, which are
+ * filled together, are excluded as in the report of a run. */
 static double balance(const struct vg_forecast *o)
 {
   double most = 0, sum = 0, n = 0;
@@ -192,20 +192,20 @@ static void print_decomposition(const struct vg_plan *p)
   char a[32], b[32], c[32];
 
   if (!q->n_part) return;
-  printf("\nParts\n");
-  printf("  %s: %s parts filled as they are, with %s cells, ", way,
+  printf("\nSubdomains\n");
+  printf("  %s: %s subdomains filled without cuts, with %s cells, ", way,
          count((double)q->n_whole, a), count(q->cells, b));
-  printf("most over mean %.2f\n  %s %s, coarsening %.2f, %s triangles of "
-         "interfaces, made here in %.2f s\n",
+  printf("max/mean %.2f\n  %s %s, coarsening %.2f, %s interface triangles, "
+         "made here in %.2f s\n",
          q->n_whole ? q->most * (double)q->n_whole / q->cells : 1,
          count((double)r->n_coarse, a), r->n_gap ? "octants" : "coarse cells",
          r->coarsening, count((double)r->n_face, c), q->seconds);
   if (r->n_gap)
-    printf("  and %s that planes may cut, the gap at the front\n",
+    printf("  and %s of the gap region at the front, which planes may cut\n",
            count((double)r->n_gap, a));
 }
 
-/* Voids that planes cut. */
+/* Number of voids that are cut by planes. */
 static size_t cuts(const struct vg_plan *p)
 {
   const struct vg_forecast *o = &p->forecast;
@@ -218,7 +218,7 @@ static void print_tree(const struct vg_plan *p)
   const struct vg_forecast *o = &p->forecast;
   char a[32], b[32];
 
-  printf("\nCuts\n  ");
+  printf("\nDomain decomposition\n  ");
   print_number(cuts(p), "cut");
   printf(" into ");
   if (o->n_leaf == 1) printf("1 leaf; ");
@@ -226,14 +226,14 @@ static void print_tree(const struct vg_plan *p)
   print_number(o->n_pencil, "pencil");
   printf(" and ");
   print_number(o->n_tile, "tile");
-  printf(" with %s cells (%.1f %%);\n  leaves: most over mean %.2f\n",
+  printf(" with %s cells (%.1f %%);\n  cells per leaf: max/mean %.2f\n",
          count(o->separator_cells, a),
          o->cells > 0 ? 100 * o->separator_cells / o->cells : 0, balance(o));
   for (size_t i = 0; i < o->n_node; i++) {
     const struct vg_forecast_node *n = &o->node[i];
 
     if (n->depth >= p->o->depth || (vg_forecast_is_leaf(n) && i)) continue;
-    printf("  %*s%s: %s cells, %s in zones", 2 * n->depth, "", n->path,
+    printf("  %*s%s: %s cells, %s in separators", 2 * n->depth, "", n->path,
            count(n->cells, a), count(n->zone, b));
     print_planes(&n->lattice);
     printf("\n");
@@ -254,30 +254,30 @@ static void print_row(const struct vg_plan_row *r)
 static void print_best(const struct vg_plan *p)
 {
   const struct vg_plan_row *r;
-  const char *why = "the most that keep 80 % efficiency";
+  const char *why = "most workers with at least 80 % efficiency";
   char text[64] = "", cells[32];
 
   if (p->best == SIZE_MAX) {
     if (p->o->target > 0)
-      printf("\nNo machine of the list takes %g s or less.\n", p->o->target);
-    else printf("\nNo machine of the list keeps 80 %% efficiency.\n");
+      printf("\nNo machine in the list takes %g s or less.\n", p->o->target);
+    else printf("\nNo machine in the list reaches 80 %% efficiency.\n");
     r = &p->row[p->n_row - 1];
-    snprintf(text, sizeof text, "With");
+    snprintf(text, sizeof text, "Times with");
   } else {
     r = &p->row[p->best];
-    if (p->o->target > 0) why = "the fewest within the target";
+    if (p->o->target > 0) why = "fewest workers that meet the target";
     printf("\nBest: %d rank%s x %d thread%s, %.2f s (%s)\n", r->ranks,
            r->ranks > 1 ? "s" : "", r->threads, r->threads > 1 ? "s" : "",
            r->wall, why);
-    snprintf(text, sizeof text, "There");
+    snprintf(text, sizeof text, "Times with");
   }
   if (p->o->cores)
     printf("Start: mpirun -n %d --map-by ppr:%d:node:PE=%d vanguard mesh -p %s "
            "--threads %d\n",
            r->ranks, r->ranks_per_node, r->threads, p->o->project, r->threads);
   if (!p->n_leaf) return;
-  printf("%s %d x %d by leaf size:\n   leaf cells  leaves       time      tasks"
-         "\n",
+  printf("%s %d x %d by leaf_cells:\n   leaf_cells  leaves    time, s   tasks, "
+         "s\n",
          text, r->ranks, r->threads);
   for (size_t i = 0; i < p->n_leaf; i++)
     printf("  %11s %7zu %10.2f %10.2f%s\n", count(p->leaf[i].cells, cells),
@@ -285,7 +285,7 @@ static void print_best(const struct vg_plan *p)
            i == p->best_leaf ? "  best" : "");
 }
 
-/* Of the parts of a phase, which takes longest there. */
+/* The resource that limits a phase: the portion that takes longest. */
 static const char *limit_of(const double parts[3])
 {
   static const char *const names[3] = { "one thread", "the cores of a node",
@@ -297,11 +297,12 @@ static const char *limit_of(const double parts[3])
   return names[most];
 }
 
-/* A chain of tasks cannot go faster on any machine of such cores. */
+/* What limits the tasks; a chain of tasks takes the same time on any number of
+ * these cores. */
 static const char *limit_of_tasks(const struct vg_plan_row *r)
 {
-  return r->tasks.critical > 0.8 * r->tasks.wall ? "a chain of tasks"
-       : r->tasks.idle > 0.2                     ? "tasks too few or too large"
+  return r->tasks.critical > 0.8 * r->tasks.wall ? "critical path of tasks"
+       : r->tasks.idle > 0.2                     ? "too few or too large tasks"
                                                  : "all cores";
 }
 
@@ -314,7 +315,7 @@ static void print_limits(const struct vg_plan *p)
 {
   const struct vg_plan_row *r = row_of_limits(p);
 
-  printf("\nPhases with %d x %d\n  phase       one core, s   there, s  "
+  printf("\nPhases with %d x %d\n  phase       one core, s    time, s  "
          "limited by\n",
          r->ranks, r->threads);
   for (int k = 0; k < VG_PHASE_N; k++) {
@@ -339,7 +340,7 @@ static const char *kind_name(char kind)
 static void print_rates(const struct vg_plan *p)
 {
   if (!p->o->rates) return;
-  printf("\nTimes of tasks, fitted to %s\n", p->o->rates);
+  printf("\nTask times, fitted to %s\n", p->o->rates);
   for (int k = 0; k < VG_RATE_FITS; k++) {
     const struct vg_rate_fit *f = &p->fit[k];
 
@@ -348,7 +349,7 @@ static void print_rates(const struct vg_plan *p)
              "tasks, error %.0f %%\n",
              kind_name(f->kind), 1e6 * f->cell, 1e6 * f->face, f->n,
              100 * f->error);
-    else printf("  %-8s too few in the record\n", kind_name(f->kind));
+    else printf("  %-8s too few tasks in the record\n", kind_name(f->kind));
   }
 }
 
@@ -368,14 +369,14 @@ void vg_plan_text(const struct vg_plan *p)
   print_tree(p);
   print_rates(p);
   printf(
-    "\nForecast: on one core %.2f s outside the tasks, %.2f s of tasks, of "
-    "which %.2f s in loops\n  of joins that idle threads of a rank help "
-    "with\n",
+    "\nForecast: on one core %.2f s outside the tasks and %.2f s in tasks, of "
+    "which %.2f s in loops\n  of front updates (joins), which idle threads of "
+    "a rank share\n",
     outside(p), p->forecast.spans.wall, vg_spans_loops(&p->forecast.spans));
   printf("  ranks threads workers       time  speed-up  efficiency      tasks "
-         " speed-up   critical  cuts end  cuts extra    a rank\n");
+         " speed-up   critical  cuts end  cuts extra  MB/rank\n");
   printf("                               s                     %%          s  "
-         "                  s         s     %%     %%        MB\n");
+         "                  s         s     %%     %%\n");
   for (size_t i = 0; i < p->n_row; i++) print_row(&p->row[i]);
   print_limits(p);
   print_best(p);
@@ -506,7 +507,7 @@ static json_t *leaves_json(const struct vg_plan *p)
   return list;
 }
 
-/* Of the best machine, or the largest. */
+/* Phases on the best machine or, if there is none, on the largest. */
 static json_t *limits_json(const struct vg_plan *p)
 {
   const struct vg_plan_row *r = row_of_limits(p);

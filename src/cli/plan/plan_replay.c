@@ -1,4 +1,5 @@
-/* vanguard plan --replay: the tasks of a run on other machines. */
+/* vanguard plan --replay: simulates the tasks of a recorded run on other
+ * machines. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -22,8 +23,8 @@ struct plan {
   const struct vg_plan_options *o;
   struct vg_timeline t;
   struct vg_machine machine;
-  struct row recorded; /* the machine of the record, replayed */
-  double measured;     /* s, what the record took in all */
+  struct row recorded; /* replay on the machine of the record */
+  double measured;     /* seconds, total time of the recorded run */
   size_t n;
   struct row *row; /* [n] */
 };
@@ -42,8 +43,7 @@ static vg_status replay(struct plan *p, int ranks, int threads, struct row *row,
   return st < 0 ? vg_fail(err, st, "%s: %s", p->o->replay, why.text) : VG_OK;
 }
 
-/* Ranks that share the recorded machine's memory are taken as one node. */
-/* The record's schedule, where none is asked for. */
+/* The requested schedule, by default that of the record. */
 static vg_status choose_schedule(const struct plan *p, int *cyclic,
                                  struct vg_error *err)
 {
@@ -58,6 +58,7 @@ static vg_status choose_schedule(const struct plan *p, int *cyclic,
   return st;
 }
 
+/* The ranks of the recorded machine are taken as one node. */
 static vg_status replay_all(struct plan *p, struct vg_error *err)
 {
   const struct vg_plan_options *o = p->o;
@@ -99,20 +100,21 @@ static void print_text(const struct plan *p)
   char cells[32];
 
   printf("%s\n\nRecord %s\n  %d rank%s x %d thread%s, %zu tasks, %s cells; cut "
-         "and fill %.3f s\n  outside, of one core: %.3f s once, %.3f s shared "
-         "by a node, %.3f s by all\n",
+         "and fill %.3f s\n  outside the tasks, on one core: %.3f s serial, "
+         "%.3f s parallel within a node, %.3f s parallel over all workers\n",
          p->t.title, p->o->replay, (int)s->n_rank, s->n_rank > 1 ? "s" : "",
          (int)s->n_thread, s->n_thread > 1 ? "s" : "", s->n,
          vg_text_count((unsigned long long)p->t.n_cell, cells), s->wall,
          p->machine.serial, p->machine.by_node, p->machine.by_all);
-  printf("  in loops of joins that idle threads of a rank help with: %.3f s\n",
+  printf("  loops of front updates (joins), which idle threads of a rank "
+         "share: %.3f s\n",
          vg_spans_loops(s));
-  printf("  the same machine replayed: %.3f s, measured %.3f s (%+.1f %%)\n",
+  printf("  same machine: replayed %.3f s, measured %.3f s (%+.1f %%)\n",
          p->recorded.f.wall, p->measured, error_percent(p));
   printf("\nForecast%s\n  ranks threads workers       time  speed-up  "
          "efficiency   critical   cuts end  cuts extra  idle  imbalance   sent"
          "\n",
-         p->machine.cyclic ? ", leaves dealt out in turn" : "");
+         p->machine.cyclic ? ", leaves assigned in turn (cyclic)" : "");
   printf("                               s                     %%          s"
          "          s     %%     %%     %%                MB\n");
   for (size_t i = 0; i < p->n; i++) {
@@ -181,7 +183,7 @@ static int by_workers(const void *a, const void *b)
   return n != m ? n - m : s->ranks - t->ranks;
 }
 
-/* All rows in one line, by workers. */
+/* Plot all rows as one curve over the number of workers. */
 static vg_status draw(struct plan *p, struct vg_error *err)
 {
   double *v = vg_alloc(2 * p->n, sizeof *v);

@@ -1,4 +1,4 @@
-/* The figures of one run: its timeline and the sizes of its subdomains. */
+/* Plots of one run: its timeline and the sizes of its leaves. */
 #include "cli/plot/plot.h"
 
 #include <math.h>
@@ -16,7 +16,8 @@
 #define LANES_HEIGHT_MAX 1400.0
 #define N_BIN 30
 
-/* Workers in loops of another one's task: joins only have any. */
+/* Pseudo kind of task: workers that help in loops of another worker's task,
+ * which only joins have. */
 #define HELP 'h'
 
 static const struct {
@@ -33,7 +34,7 @@ static const struct {
 };
 #define N_KIND (sizeof kinds / sizeof *kinds)
 
-/* A worker busy: with a task or in help. */
+/* A time in which a worker is busy, with a task or with help. */
 struct mark {
   size_t kind, lane;
   double start, end;
@@ -42,10 +43,10 @@ struct mark {
 struct lanes {
   const struct vg_timeline *t;
   size_t n_mark;
-  struct mark *mark;  /* [n_mark] in lanes that exist */
-  size_t n;           /* workers */
-  double offset, end; /* s: the engine's start; all */
-  double top, height; /* of one lane */
+  struct mark *mark;  /* [n_mark], in existing lanes */
+  size_t n;           /* number of workers */
+  double offset, end; /* seconds: start of the engine; end of the run */
+  double top, height; /* pixels: top of the lanes; height of one lane */
   struct vg_axis axis;
 };
 
@@ -57,7 +58,8 @@ static size_t kind_of(char kind)
   return i;
 }
 
-/* A record may come from a test or another program: workers are checked. */
+/* Marks of invalid workers are skipped, since the timeline may come from a test
+ * or another program. */
 static void add_mark(struct lanes *l, char kind, int rank, int thread,
                      double start, double end)
 {
@@ -103,12 +105,12 @@ static vg_status measure(const struct vg_timeline *t, struct lanes *l,
   if (l->height > 24) l->height = 24;
   l->top = 92;
   l->axis = vg_axis_linear(l->end, 9, LEFT, RIGHT);
-  /* Nothing comes behind the end: the axis need not reach its last tick. */
+  /* Nothing is drawn past the end, so the axis need not reach its last tick. */
   l->axis.hi = l->end;
   return add_marks(l, err);
 }
 
-/* Stages outside of the engine, all ranks' lanes at once. */
+/* Draw the stages outside the engine over all lanes. */
 static void draw_stages(struct vg_svg *svg, const struct lanes *l)
 {
   double at = 0, bottom = l->top + l->height * (double)l->n;
@@ -157,8 +159,8 @@ static int percent(double part, double whole)
   return v > 0 && v < 1000 ? (int)v : v > 0 ? 999 : 0;
 }
 
-/* Names of lanes to the left, their busy share to the right; not closer than
- * text is high. */
+/* Draw names of lanes on the left and their busy percentages on the right,
+ * skipping lanes where the text would overlap. */
 static vg_status draw_names(struct vg_svg *svg, const struct lanes *l,
                             struct vg_error *err)
 {
@@ -215,7 +217,7 @@ static void draw_keys(struct vg_svg *svg, const struct lanes *l)
   x = vg_svg_key(svg, x, 66, "#d4d4d4", "other stages");
 }
 
-/* A number with two decimals, whatever the locale. */
+/* Format a number with two decimals, independently of the locale. */
 static char *two_decimals(double v, char text[32])
 {
   long long n = v > 0 && v < 1e15 ? (long long)(v * 100 + 0.5) : 0;
@@ -247,7 +249,7 @@ vg_status vg_plot_timeline(const char *path, const struct vg_timeline *t,
   VG_TRY(vg_svg_open(path, WIDTH, bottom + 48, t->title, subtitle, &svg, err));
   draw_keys(&svg, &l);
   draw_stages(&svg, &l);
-  vg_axis_draw_x(&svg, &l.axis, bottom, l.top, "seconds");
+  vg_axis_draw_x(&svg, &l.axis, bottom, l.top, "time, s");
   draw_tasks(&svg, &l);
   VG_TRY(draw_names(&svg, &l, err));
   VG_TRY(vg_svg_close(&svg, err));
@@ -319,7 +321,7 @@ static void draw_bins(struct vg_svg *svg, const struct sizes *z, double target)
   y = vg_axis_linear((double)high, 5, 370, 110);
   if (y.step < 1) y = vg_axis_linear((double)high, (int)high, 370, 110);
   vg_axis_draw_y(svg, &y, 70, 610, "leaves");
-  vg_axis_draw_x(svg, &x, 370, 370, "cells of a leaf");
+  vg_axis_draw_x(svg, &x, 370, 370, "cells per leaf");
   for (int k = 0; k < N_BIN; k++) {
     double from = vg_axis_at(&x, k * width);
     double top = vg_axis_at(&y, (double)bin[k]);
@@ -331,7 +333,7 @@ static void draw_bins(struct vg_svg *svg, const struct sizes *z, double target)
   }
   if (z->n)
     mark(svg, &x, floor(z->sum / (double)z->n + 0.5), 105, VG_SVG_BLUE, "mean");
-  if (target > 0) mark(svg, &x, target, 89, VG_SVG_RED, "asked for");
+  if (target > 0) mark(svg, &x, target, 89, VG_SVG_RED, "requested");
 }
 
 vg_status vg_plot_sizes(const char *path, const struct vg_timeline *t,

@@ -1,4 +1,4 @@
-/* cli/plot/plot.h: figures of runs, as SVG. Uses cli/plot/svg.h,
+/* cli/plot/plot.h: plots of runs, as SVG. Uses cli/plot/svg.h,
  * cli/plot/timeline.h. */
 #ifndef VG_CLI_PLOT_PLOT_H
 #define VG_CLI_PLOT_PLOT_H
@@ -8,25 +8,27 @@
 
 #include "cli/plot/timeline.h"
 
-/** Who did what when: a lane for each thread of each rank, colours by kind of
- * task, idle white; the stages before and after as grey blocks. */
+/** Timeline: a lane for each thread of each rank, coloured by kind of task,
+ * with idle time white and the stages before and after the tasks as grey
+ * blocks. */
 vg_status vg_plot_timeline(const char *path, const struct vg_timeline *t,
                            struct vg_error *err);
 
-/** How large subdomains are: leaves by their cells.
- * @param target  cells per leaf that were asked for; 0: none */
+/** Histogram of the number of cells per leaf.
+ * @param target  requested cells per leaf; 0: none */
 vg_status vg_plot_sizes(const char *path, const struct vg_timeline *t,
                         double target, struct vg_error *err);
 
-/* Points of one colour: measured ones with dots, a model's a dashed line. */
+/* A curve: dots and a line if measured, a dashed line if from the model. */
 struct vg_plot_series {
   const char *label;
   int colour, is_model;
   size_t n;
-  const double *workers, *speedup; /* [n], workers rising */
+  const double *workers, *speedup; /* [n], sorted by workers */
 };
 
-/** Speed-up over workers, with the ideal line. Logarithmic beyond 16. */
+/** Speed-up over workers, with the ideal line; logarithmic axes beyond 16
+ * workers. */
 vg_status vg_plot_speedup(const char *path, const char *title,
                           const char *subtitle, size_t n,
                           const struct vg_plot_series *series,
@@ -37,7 +39,7 @@ struct vg_plot_bar {
   const double *seconds;
 };
 
-/** A bar for each run, its parts the phases ([VG_PHASE_N] each). */
+/** A bar for each run, divided into its phases (seconds[VG_PHASE_N]). */
 vg_status vg_plot_phases(const char *path, const char *title, size_t n,
                          const struct vg_plot_bar *bar, struct vg_error *err);
 

@@ -1,4 +1,4 @@
-/* Figures that hold several runs against each other: speed-up and phases. */
+/* Plots that compare several runs: speed-up and phases. */
 #include "cli/plot/plot.h"
 
 #include <stdio.h>
@@ -21,7 +21,7 @@ static const char *const phase_colours[VG_PHASE_TOTAL] = {
   VG_SVG_BLUE, VG_SVG_SKY,  VG_SVG_PURPLE, VG_SVG_GREEN
 };
 
-/* Text at the end of a line. */
+/* Label at the end of a curve. */
 struct label {
   double y;
   const char *text, *colour;
@@ -34,7 +34,8 @@ static int by_height(const void *a, const void *b)
   return (s->y > t->y) - (s->y < t->y);
 }
 
-/* Push labels apart, downwards, then back up from the bottom. */
+/* Separate overlapping labels: move them down, then up again from the
+ * bottom. */
 static void spread(size_t n, struct label *l, double bottom)
 {
   qsort(l, n, sizeof *l, by_height);
@@ -185,7 +186,7 @@ vg_status vg_plot_phases(const char *path, const char *title, size_t n,
   }
   VG_TRY(vg_svg_open(path, left + 760, bottom + 48, title, "", &svg, err));
   x = vg_axis_linear(most, 8, left, left + 690);
-  vg_axis_draw_x(&svg, &x, bottom, 70, "seconds");
+  vg_axis_draw_x(&svg, &x, bottom, 70, "time, s");
   key = left;
   for (int i = 0; i < VG_PHASE_TOTAL; i++)
     key = vg_svg_key(&svg, key, 54, phase_colours[i],

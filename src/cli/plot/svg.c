@@ -9,7 +9,7 @@
 
 #define FONT "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\""
 #define LABEL_SIZE 11.0
-#define COORDINATE_MAX 1e9 /* pixels: what is beyond comes to here */
+#define COORDINATE_MAX 1e9 /* pixels; larger coordinates are clamped */
 
 /* A coordinate with at most two decimals. */
 static void put(struct vg_svg *s, double v)
@@ -35,7 +35,8 @@ static void attribute(struct vg_svg *s, const char *name, double v)
   vg_output_text(&s->out, "\"");
 }
 
-/* Text as XML allows it: UTF-8, no control characters, markup escaped. */
+/* Write text as XML permits it: UTF-8, no control characters, markup
+ * escaped. */
 static void put_text(struct vg_svg *s, const char *text)
 {
   char *clean = vg_text_copy(text);
@@ -154,7 +155,7 @@ void vg_svg_text(struct vg_svg *s, double x, double y, double size,
   vg_output_text(&s->out, "</text>\n");
 }
 
-/* Text that reads upwards, about its middle. */
+/* Text rotated to read upwards, centred at x, y. */
 static void text_up(struct vg_svg *s, double x, double y, double size,
                     const char *fill, const char *text)
 {

@@ -1,6 +1,6 @@
-/* cli/plot/svg.h: what figures are made of: shapes, text and axes in an SVG
- * file. Numbers have two decimals and no locale, so equal data make equal
- * bytes. */
+/* cli/plot/svg.h: shapes, text and axes of a plot in an SVG file. Numbers are
+ * written with two decimals and independently of the locale, so that equal data
+ * give equal bytes. */
 #ifndef VG_CLI_PLOT_SVG_H
 #define VG_CLI_PLOT_SVG_H
 
@@ -9,8 +9,8 @@
 #include "base/status.h"
 #include "io/stream/stream.h"
 
-/* Grey of lines and text; the palette of Okabe and Ito, which people with any
- * kind of colour vision can tell apart. */
+/* Greys of lines and text; the palette of Okabe and Ito, whose colours can be
+ * distinguished with any kind of colour vision. */
 #define VG_SVG_GRID "#e4e4e4"
 #define VG_SVG_AXIS "#8a8a8a"
 #define VG_SVG_TEXT "#333333"
@@ -33,16 +33,16 @@ struct vg_svg {
     VG_OUTPUT_INIT                                                             \
   }
 
-/** Start a figure of w x h pixels on white, with a title (also for screen
- * readers) and a line below it, either may be "". */
+/** Start a plot of w x h pixels on white, with a title (also for screen
+ * readers) and a subtitle; either may be "". */
 vg_status vg_svg_open(const char *path, double w, double h, const char *title,
                       const char *subtitle, struct vg_svg *s,
                       struct vg_error *err);
 
-/** End it; the file gets its name. Releases *s. */
+/** Finish the plot and commit the file. Releases *s. */
 vg_status vg_svg_close(struct vg_svg *s, struct vg_error *err);
 
-/** Drop it unless closed. Accepts an initialised one. */
+/** Discard the plot unless it is closed. Accepts VG_SVG_INIT. */
 void vg_svg_release(struct vg_svg *s);
 
 void vg_svg_rect(struct vg_svg *s, double x, double y, double w, double h,
@@ -56,41 +56,44 @@ void vg_svg_dot(struct vg_svg *s, double x, double y, double radius,
 void vg_svg_text(struct vg_svg *s, double x, double y, double size,
                  enum vg_svg_anchor anchor, const char *fill, const char *text);
 
-/** Many boxes of one colour in one element; gap: width of the white line
- * around each. */
+/** Many boxes of one colour in one element; gap: width of the white outline of
+ * each box. */
 void vg_svg_boxes_begin(struct vg_svg *s, const char *fill, double gap);
 void vg_svg_box(struct vg_svg *s, double x, double y, double w, double h);
 void vg_svg_boxes_end(struct vg_svg *s);
 
-/** A square of a colour with a word; returns where the next one goes. */
+/** A legend entry: a coloured square and a word. Returns the x of the next
+ * entry. */
 double vg_svg_key(struct vg_svg *s, double x, double y, const char *fill,
                   const char *text);
 
-/** Width of text in pixels, about. */
+/** Approximate width of text in pixels. */
 double vg_svg_width(const char *text, double size);
 
-/* An axis maps lo .. hi to pixels from .. to; ticks at multiples of step, or
- * at powers of 2 where it is logarithmic (then lo >= 1). */
+/* An axis maps lo .. hi to pixels from .. to, with ticks at multiples of step
+ * or, if it is logarithmic (lo >= 1), at powers of 2. */
 struct vg_axis {
   double lo, hi, step, from, to;
   int is_log;
 };
 
-/** An axis from 0 to `most` or a little beyond, with about n ticks. */
+/** A linear axis from 0 to at least `most`, with about n ticks. */
 struct vg_axis vg_axis_linear(double most, int n, double from, double to);
 
-/** An axis from 1 to the power of 2 at or above `most`. */
+/** A logarithmic axis from 1 to the smallest power of 2 not below `most`. */
 struct vg_axis vg_axis_log(double most, double from, double to);
 
 double vg_axis_at(const struct vg_axis *a, double v);
 
-/** Grid lines and labels. y: where the axis is; top: to where lines go. */
+/** Draw grid lines and labels. y: position of the axis; top: end of the grid
+ * lines. */
 void vg_axis_draw_x(struct vg_svg *s, const struct vg_axis *a, double y,
                     double top, const char *label);
 void vg_axis_draw_y(struct vg_svg *s, const struct vg_axis *a, double x,
                     double right, const char *label);
 
-/** A number for a label: 0.25, 3, 20k, 1.5M; text[32]; returns text. */
+/** Format a number for a label, as 0.25, 3, 20k, 1.5M, in text[32]; returns
+ * text. */
 char *vg_svg_number(double v, char *text);
 
 #endif

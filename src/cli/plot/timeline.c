@@ -10,8 +10,8 @@
 
 #define SECONDS_MAX 1e9
 #define WORK_MAX 1e300
-#define ROUNDED 2e-6 /* twice half of what times are kept to */
-#define COUNT_MAX ((json_int_t)1 << 53) /* integers that a double holds */
+#define ROUNDED 2e-6 /* tolerance for times, which are rounded to 1e-6 s */
+#define COUNT_MAX ((json_int_t)1 << 53) /* integers exact in a double */
 
 enum column {
   COLUMN_PATH,
@@ -42,8 +42,8 @@ enum help_column {
   HELP_N
 };
 
-/* A list of rows, and the list that names their columns, of which the last
- * n - n_must may be absent. */
+/* Keys of a list of rows and of the list of their columns; the last n - n_must
+ * columns are optional. */
 struct table {
   const char *rows, *row, *columns;
   int n, n_must;
@@ -65,10 +65,10 @@ static const struct table help_table = {
   HELP_N, HELP_N, { "path", "rank", "thread", "start", "end" }
 };
 
-/* The keys of phases in the facts, and the parts of them that one thread does,
- * and that every node does for itself; all do the rest together. Of one
- * thread's time, by profile (M8). Those that are no part of what is outside
- * the tasks have none. */
+/* Names of the phases, their keys in the facts, whether they count as outside
+ * the tasks, and the fractions of their time that one thread does alone and
+ * that every node does for itself; the remainder is parallel over all workers.
+ * Fractions are from profiles of one thread (M8). */
 static const struct {
   const char *name, *key;
   int is_outside;
@@ -156,7 +156,7 @@ static void put_facts(struct vg_output *out, const struct vg_timeline *t)
   vg_output_text(out, "},\n");
 }
 
-/* Names of columns, and the beginning of the rows. */
+/* Write the names of the columns and the beginning of the rows. */
 static void put_head(struct vg_output *out, const struct table *t)
 {
   vg_output_format(out, "\"%s\": [", t->columns);
@@ -232,8 +232,8 @@ done:
 
 /* --- reading ------------------------------------------------------------- */
 
-/* Where in the file a value is, for messages: of span or help `number`, of a
- * fact where that is 0. */
+/* Location of a value in the file, for messages: span or help `number`; a fact
+ * if that is 0. */
 struct place {
   const char *name, *list;
   size_t number;
@@ -256,15 +256,12 @@ static vg_status get_text(const struct place *at, const json_t *o,
                           struct vg_error *err)
 {
   if (!json_is_string(o) || json_string_length(o) >= size)
-    return bad_value(at, what,
-                     "a text, or longer than any that vanguard "
-                     "writes",
-                     err);
+    return bad_value(at, what, "a text of the permitted length", err);
   memcpy(out, json_string_value(o), json_string_length(o) + 1);
   return VG_OK;
 }
 
-/* A whole number from 0 to limit. */
+/* Read an integer from 0 to limit. */
 static vg_status get_count(const struct place *at, const json_t *o,
                            const char *what, json_int_t limit, uint64_t *out,
                            struct vg_error *err)
@@ -272,7 +269,7 @@ static vg_status get_count(const struct place *at, const json_t *o,
   char wanted[80];
   json_int_t v = json_integer_value(o);
 
-  snprintf(wanted, sizeof wanted, "a whole number from 0 to %lld",
+  snprintf(wanted, sizeof wanted, "an integer from 0 to %lld",
            (long long)limit);
   if (!json_is_integer(o) || v < 0 || v > limit)
     return bad_value(at, what, wanted, err);
@@ -310,8 +307,8 @@ static vg_status get_facts(const char *name, const json_t *root,
                    VG_TIMELINE_MAX, &threads, err));
   if (!ranks || !threads || ranks * threads > VG_TIMELINE_MAX)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: %llu ranks with %llu threads: "
-                   "from 1 to %d workers can be read",
+                   "%s: %llu ranks with %llu threads; the number of workers "
+                   "must be from 1 to %d",
                    name, (unsigned long long)ranks, (unsigned long long)threads,
                    VG_TIMELINE_MAX);
   t->spans.n_rank = (int32_t)ranks;
@@ -335,7 +332,7 @@ done:
   return st;
 }
 
-/* In which place of a row each column is; SIZE_MAX where it is absent. */
+/* Find the position of each column in a row; SIZE_MAX if it is absent. */
 static vg_status get_columns(const char *name, const json_t *root,
                              const struct table *t, size_t *place,
                              struct vg_error *err)
@@ -358,7 +355,7 @@ static vg_status get_columns(const char *name, const json_t *root,
   return VG_OK;
 }
 
-/* The values of a row by column; NULL for one that is absent. */
+/* Read the values of a row by column; NULL for absent columns. */
 static vg_status get_row(const struct place *at, const json_t *row,
                          const struct table *t, const size_t *place, json_t **v,
                          struct vg_error *err)
@@ -367,7 +364,7 @@ static vg_status get_row(const struct place *at, const json_t *row,
     v[c] = place[c] == SIZE_MAX ? NULL : json_array_get(row, place[c]);
     if (!v[c] && place[c] != SIZE_MAX)
       return vg_fail(err, VG_ERR_FORMAT,
-                     "%s: %s %zu has no \"%s\": it is "
+                     "%s: %s %zu has no \"%s\"; it is "
                      "not a list as long as \"%s\"",
                      at->name, at->list, at->number, t->column[c], t->columns);
   }
@@ -523,8 +520,8 @@ vg_status vg_timeline_parse(const char *name, const void *data, size_t size,
   if (json_integer_value(json_object_get(root, "vanguard_timeline")) != 1) {
     st = vg_fail(err, VG_ERR_FORMAT,
                  "%s: not a timeline of vanguard mesh "
-                 "(\"vanguard_timeline\" is not 1): give the "
-                 ".timeline.json that 'vanguard mesh --timeline' wrote",
+                 "(\"vanguard_timeline\" is not 1); give a "
+                 ".timeline.json written by 'vanguard mesh --timeline'",
                  name);
     goto done;
   }

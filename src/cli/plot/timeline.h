@@ -1,6 +1,6 @@
-/* cli/plot/timeline.h: a run's record as a file, STEM.timeline.json: facts of
- * the run and what each worker did when. It is what vanguard plan replays and
- * vanguard sweep draws. Uses partition/model/model.h.
+/* cli/plot/timeline.h: the trace of a run as a file, STEM.timeline.json: facts
+ * of the run and the tasks of each worker with their times. vanguard plan
+ * replays it, and vanguard sweep plots it. Uses partition/model/model.h.
  *
  *   {"vanguard_timeline": 1,
  *    "facts": {"title": "wing", "ranks": 2, "threads": 4, "cells": 123,
@@ -11,11 +11,11 @@
  *    "help_columns": ["path", "rank", "thread", "start", "end"],
  *    "help": [["0J1", 1, 2, 0.25, 0.375], ...]}
  *
- * "help": when workers were in loops of another one's task. "loops" of a span
- * is what of its "cpu" was in loops; both have the helpers' time in them.
- * Times are kept to the microsecond. Readers take columns in any order, pass
- * over those that they do not know and take as 0 a fact that is absent, and
- * "loops", "faces" and "work" in records of versions that had none. */
+ * "help": times in which workers helped in loops of another worker's task.
+ * "loops" of a span is the portion of its "cpu" spent in loops; both include
+ * the time of helpers. Times are rounded to microseconds. Readers accept
+ * columns in any order and ignore unknown ones; absent facts are 0, and so are
+ * "loops", "faces" and "work" in files of versions that did not have them. */
 #ifndef VG_CLI_PLOT_TIMELINE_H
 #define VG_CLI_PLOT_TIMELINE_H
 
@@ -25,7 +25,7 @@
 #include "base/status.h"
 #include "partition/model/model.h"
 
-/* Phases of a run in their order. VG_PHASE_ENGINE is cutting and filling. */
+/* Phases of a run in order. VG_PHASE_ENGINE is cutting and filling. */
 enum vg_phase {
   VG_PHASE_READ,
   VG_PHASE_CHECK,
@@ -40,23 +40,24 @@ enum vg_phase {
 };
 
 /** "read", "check", "sizes", "layers", "cut+fill", "number", "judge", "write",
- * "total". Static. */
+ * "total". Static storage. */
 const char *vg_phase_name(enum vg_phase phase);
 
-/** Parts of a phase's seconds of one core that one thread of all does, and that
- * every node does for itself; the rest is shared by all (row M8). */
+/** Fractions of the time of a phase on one core that one thread does alone, and
+ * that every node does for itself; the remainder is parallel over all workers
+ * (row M8). */
 void vg_phase_shares(enum vg_phase phase, double *alone, double *by_node);
 
-/** Most ranks, and threads of a rank, that a file may name. */
+/** Largest number of ranks, and of threads per rank, in a file. */
 #define VG_TIMELINE_MAX (1 << 20)
 
 struct vg_timeline {
   char title[128];
   double seconds[VG_PHASE_N]; /* [VG_PHASE_ENGINE] is spans.wall */
   uint64_t n_cell, n_point;   /* of the mesh */
-  char digest[64];            /* of the files written; "" if not known */
-  int cyclic;                 /* 1: leaves were dealt out beforehand */
-  struct vg_spans spans;      /* ranks, threads and wall too */
+  char digest[64];            /* of the files written; "" if unknown */
+  int cyclic;                 /* 1: leaves were assigned in turn */
+  struct vg_spans spans;      /* also contains ranks, threads and wall time */
 };
 #define VG_TIMELINE_INIT                                                       \
   {                                                                            \
@@ -65,28 +66,29 @@ struct vg_timeline {
 
 void vg_timeline_release(struct vg_timeline *t);
 
-/** What a run does outside the engine, as serial, by_node and by_all of *m, in
- * seconds of one core. The ranks of the record are taken as those of one node,
- * and of each phase the same part is taken to be done by one thread
+/** Set serial, by_node and by_all of *m to the times of the run outside the
+ * engine, in seconds on one core. The ranks of the record are taken as those of
+ * one node, and a fixed fraction of each phase as serial
  * (docs/lab/performance-parallel.md, "Model"). */
 void vg_timeline_outside(const struct vg_timeline *t, struct vg_machine *m);
 
-/** Write; the engine's time is spans.wall. Spans in their order. */
+/** Write a timeline. The time of the engine is spans.wall. The order of the
+ * spans is kept. */
 vg_status vg_timeline_write(const char *path, const struct vg_timeline *t,
                             struct vg_error *err);
 
-/** Read from memory; the entry for fuzzing. Spans come out by path, with
- * ranks and threads below n_rank and n_thread, and times that are finite, not
- * negative and not beyond 1e9 s, help too; whether they make a graph is left to
- * vg_model_replay.
+/** Parse a timeline in memory; entry point of the fuzzer. The spans are sorted
+ * by path. Ranks and threads of spans and help are checked to be below n_rank
+ * and n_thread, and times to be finite, not negative and at most 1e9 s; whether
+ * the tasks form a graph is checked by vg_model_replay.
  *
- * @param name  for messages, which all begin with it
- * @param out   untouched on failure; release it
+ * @param name  file name for messages, which all begin with it
+ * @param out   unchanged on failure; to be released by the caller
  * VG_ERR_FORMAT. */
 vg_status vg_timeline_parse(const char *name, const void *data, size_t size,
                             struct vg_timeline *out, struct vg_error *err);
 
-/** As vg_timeline_parse, from a file. */
+/** As vg_timeline_parse, but reads a file. */
 vg_status vg_timeline_read(const char *path, struct vg_timeline *out,
                            struct vg_error *err);
 

@@ -1,4 +1,4 @@
-/* Private to cli/serve: files of share, in the program. */
+/* Private to cli/serve: files of share, embedded in the program. */
 #ifndef VG_CLI_SERVE_ASSETS_H
 #define VG_CLI_SERVE_ASSETS_H
 

@@ -23,7 +23,8 @@ static vg_status begin(struct vg_fields *f, const char *name,
   struct vg_form_field one = { NULL, NULL, 0 };
 
   if (f->n == VG_FIELDS_MAX)
-    return vg_fail(err, VG_ERR_INPUT, "more than %d fields", VG_FIELDS_MAX);
+    return vg_fail(err, VG_ERR_INPUT, "the form has more than %d fields",
+                   VG_FIELDS_MAX);
   one.name = strdup(name);
   one.value = vg_calloc(1, 1);
   if (!one.name || !one.value ||
@@ -44,14 +45,15 @@ vg_status vg_fields_put(struct vg_fields *f, const char *name, const char *data,
   char *longer;
 
   if (more > VG_FIELDS_BYTES - f->bytes)
-    return vg_fail(err, VG_ERR_INPUT, "a form of more than %d bytes",
+    return vg_fail(err, VG_ERR_INPUT, "the form has more than %d bytes",
                    VG_FIELDS_BYTES);
   if (size && memchr(data, 0, size))
-    return vg_fail(err, VG_ERR_INPUT, "a form with a zero byte");
+    return vg_fail(err, VG_ERR_INPUT, "the form contains a zero byte");
   if (!offset && begin(f, name, err) < 0) return VG_ERR_INPUT;
   at = f->n ? &f->item[f->n - 1] : NULL;
   if (!at || strcmp(at->name, name) != 0 || at->size != offset)
-    return vg_fail(err, VG_ERR_INPUT, "a form in pieces that do not fit");
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the pieces of the form are inconsistent");
   longer = vg_realloc(at->value, offset + size + 1, 1);
   if (!longer) return vg_fail_memory(err, "a form");
   at->value = longer;
@@ -85,7 +87,7 @@ vg_status vg_fields_count(const struct vg_fields *f, const char *name,
 
   if (*text && (!vg_parse_int(text, strlen(text), &v) || v < lo || v > hi))
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s takes a number from %d to %d, not "
+                   "%s must be an integer from %d to %d, not "
                    "'%.40s'",
                    what, lo, hi, text);
   *out = (int)v;

@@ -1,4 +1,4 @@
-/* Private to cli/serve: names with values, as forms and queries have them. */
+/* Private to cli/serve: the named values of forms and queries. */
 #ifndef VG_CLI_SERVE_FIELDS_H
 #define VG_CLI_SERVE_FIELDS_H
 
@@ -6,8 +6,8 @@
 
 #include "base/status.h"
 
-/* What a request may bring: fields, and bytes of names and values. A form has
- * some 120 fields; the tables of a deck are the long ones. */
+/* Limits of a request: number of fields, and bytes of names and values. A form
+ * has some 120 fields, of which the tables of a deck are the longest. */
 enum { VG_FIELDS_MAX = 400, VG_FIELDS_BYTES = 1 << 20 };
 
 struct vg_fields {
@@ -24,20 +24,20 @@ struct vg_fields {
 
 void vg_fields_release(struct vg_fields *f);
 
-/** Add size bytes at `offset` of the value of `name`; offset 0 begins another
- * field. VG_ERR_INPUT: more than the limits, a piece that does not follow the
- * one before, or a zero byte. */
+/** Add size bytes at `offset` of the value of `name`; offset 0 begins a new
+ * field. VG_ERR_INPUT: a limit is exceeded, the piece does not continue the
+ * previous one, or it contains a zero byte. */
 vg_status vg_fields_put(struct vg_fields *f, const char *name, const char *data,
                         size_t offset, size_t size, struct vg_error *err);
 
-/** The first value of `name`; NULL: there is none. Borrowed. */
+/** The first value of `name`, or NULL. Borrowed. */
 const char *vg_fields_get(const struct vg_fields *f, const char *name);
 
-/** The same, "" where there is none. */
+/** As vg_fields_get, but "" instead of NULL. */
 const char *vg_fields_text(const struct vg_fields *f, const char *name);
 
-/** A whole number from lo to hi; `otherwise` where the field is absent or
- * empty. VG_ERR_INPUT names `what`. */
+/** An integer from lo to hi; `otherwise` if the field is absent or empty. The
+ * message of VG_ERR_INPUT names `what`. */
 vg_status vg_fields_count(const struct vg_fields *f, const char *name,
                           const char *what, int lo, int hi, int otherwise,
                           int *out, struct vg_error *err);

@@ -1,4 +1,4 @@
-/* From fields to settings. Declared in cli/serve/form.h. */
+/* Converts form fields to settings. Declared in cli/serve/form.h. */
 #define _GNU_SOURCE
 #include "cli/serve/form.h"
 
@@ -10,7 +10,7 @@
 
 /* --- settings ------------------------------------------------------------ */
 
-/* Values at `base` by fields "PREFIX.NAME". */
+/* Set the values at `base` from the fields "PREFIX.NAME". */
 static vg_status take_params(const struct vg_fields *f, const char *prefix,
                              const struct vg_param *p, size_t n, void *base,
                              const void *defaults, struct vg_error *err)
@@ -31,7 +31,7 @@ static vg_status take_params(const struct vg_fields *f, const char *prefix,
   return st;
 }
 
-/* Whether a row says anything but defaults. */
+/* Whether a row has a value other than a default. */
 static int is_given(const struct vg_setting_table *t, const void *row,
                     const void *defaults)
 {
@@ -43,7 +43,7 @@ static int is_given(const struct vg_setting_table *t, const void *row,
   return 0;
 }
 
-/* Settings, and the tables of one line. */
+/* Set the plain settings and the one-line tables. */
 static vg_status take_values(const struct vg_fields *f, struct vg_settings *s,
                              struct vg_error *err)
 {
@@ -93,15 +93,16 @@ static vg_status take_title(const struct vg_fields *f, struct vg_settings *s,
 
   if (strlen(title) > VG_TITLE_MAX || strpbrk(title, "\r\n\t"))
     return vg_fail(err, VG_ERR_INPUT,
-                   "the title is one line of at most %d "
+                   "the title must be one line of at most %d "
                    "bytes",
                    VG_TITLE_MAX);
-  title += strspn(title, " #"); /* a deck's title is no comment */
+  title += strspn(title, " #"); /* a deck's title cannot be a comment */
   if (*title) snprintf(s->title, sizeof s->title, "%s", title);
   return VG_OK;
 }
 
-/* A file that a setting names lies below the root: to = its real path. */
+/* Check that a file given by a setting is below the root, and replace `to` by
+ * its real path. */
 static vg_status check_path(const char *root, const char *setting,
                             char to[VG_LIST_MAX], struct vg_error *err)
 {
@@ -124,7 +125,7 @@ static vg_status check_path(const char *root, const char *setting,
   return st;
 }
 
-/* What must not be is asked of the whole, wherever it came from. */
+/* Check the resulting settings, whether they come from the form or a deck. */
 static vg_status check_paths(const char *root, struct vg_settings *s,
                              struct vg_error *err)
 {
@@ -133,8 +134,8 @@ static vg_status check_paths(const char *root, struct vg_settings *s,
   if (strcmp(s->mesher, "builtin") != 0 && strcmp(s->mesher, "tetgen") != 0 &&
       strcmp(s->mesher, "hxt") != 0)
     return vg_fail(err, VG_ERR_INPUT,
-                   "mesher: a plug-in is a program, which "
-                   "a portal does not start; it takes builtin, tetgen or hxt");
+                   "mesher: the portal does not run plug-ins, since they are "
+                   "programs; choose builtin, tetgen or hxt");
   VG_TRY(check_path(root, "sizes", s->sizes, err));
   VG_TRY(check_path(root, "mapbc", s->mapbc, err));
 done:
@@ -155,7 +156,7 @@ done:
   return st;
 }
 
-/* --- where --------------------------------------------------------------- */
+/* --- machine ------------------------------------------------------------- */
 
 static vg_status take_word(const struct vg_fields *f, const char *name,
                            const char *what, const char *allowed, char *to,
@@ -165,7 +166,7 @@ static vg_status take_word(const struct vg_fields *f, const char *name,
 
   if (strlen(text) >= size || strspn(text, allowed) != strlen(text) ||
       *text == '-')
-    return vg_fail(err, VG_ERR_INPUT, "%s cannot be '%.40s'", what, text);
+    return vg_fail(err, VG_ERR_INPUT, "%s: invalid value '%.40s'", what, text);
   strcpy(to, text);
   return VG_OK;
 }
@@ -182,13 +183,13 @@ vg_status vg_form_run(const struct vg_fields *f, struct vg_serve_run *run,
   run->is_slurm = !strcmp(where, "slurm");
   if (!run->is_slurm && *where && strcmp(where, "here") != 0)
     return vg_fail(err, VG_ERR_INPUT,
-                   "a run is here or in slurm, not in "
+                   "a run must be on 'here' or 'slurm', not "
                    "'%.40s'",
                    where);
   if (run->is_slurm && run->is_sweep)
     return vg_fail(err, VG_ERR_INPUT,
-                   "sweeps run on this machine; in a job of "
-                   "your own, 'vanguard sweep --launcher' does the same");
+                   "the portal runs sweeps on this machine only; use 'vanguard "
+                   "sweep --launcher' in a job of your own");
   VG_TRY(vg_fields_count(f, "ranks", "ranks", 1, 100000, 1, &run->ranks, err));
   VG_TRY(vg_fields_count(f, "nodes", "nodes", 1, 100000, 1, &run->nodes, err));
   VG_TRY(

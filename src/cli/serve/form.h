@@ -1,5 +1,5 @@
-/* Private to cli/serve: the form of a run. A field for every setting and every
- * column of the tables of one line; the tables of many lines as text. */
+/* Private to cli/serve: the form of a run. It has a field for every setting and
+ * for every column of the one-line tables; the other tables are text areas. */
 #ifndef VG_CLI_SERVE_FORM_H
 #define VG_CLI_SERVE_FORM_H
 
@@ -9,28 +9,28 @@
 #include "cli/serve/runs.h"
 #include "run/settings/settings.h"
 
-/** Settings from the fields "s.NAME" of settings, "farfield.COLUMN",
- * "sweep.COLUMN", "title", and "patches", "layers", "sources": a line of
- * columns above lines of values, as in a deck. What is empty gets its default,
- * what is absent stays as it is.
+/** Read settings from the fields "s.NAME", "farfield.COLUMN", "sweep.COLUMN",
+ * "title", and "patches", "layers", "sources" (a line of columns above lines of
+ * values, as in a deck). An empty field sets the default, an absent field
+ * leaves the setting unchanged.
  *
- * @param root  paths in settings must stay in this folder; relative ones start
- *              from it. Plug-ins are refused: they are programs
+ * @param root  paths in settings must be below this folder; relative paths
+ *              start from it. Plug-ins are rejected, since they are programs
  * @param s     in, out; the caller releases it, also on failure
- * VG_ERR_INPUT: a value is refused, or they do not go together. */
+ * VG_ERR_INPUT: a value is invalid, or values contradict each other. */
 vg_status vg_form_settings(const struct vg_fields *f, const char *root,
                            struct vg_settings *s, struct vg_error *err);
 
-/** Where and how it is run: "where" (here or slurm), "ranks", "nodes", "cpus",
+/** Read how to run it: "where" (here or slurm), "ranks", "nodes", "cpus",
  * "time", "partition", "what" (mesh or sweep). */
 vg_status vg_form_run(const struct vg_fields *f, struct vg_serve_run *run,
                       struct vg_error *err);
 
-/** The form for a project.
+/** Print the form of a project.
  *
- * @param s       what the fields show
- * @param posted  wins over s: what was sent and refused; may be empty
- * @param slurm   whether sbatch is here */
+ * @param s       values of the fields
+ * @param posted  values of a rejected form, which override s; may be empty
+ * @param slurm   whether Slurm is available */
 void vg_form_print(FILE *to, const char *project, const struct vg_settings *s,
                    const struct vg_fields *posted, int slurm);
 

@@ -1,4 +1,4 @@
-/* Who may pass. Declared in cli/serve/portal_parts.h. */
+/* Access control of requests. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>
@@ -6,10 +6,11 @@
 
 #include "cli/serve/portal_parts.h"
 
-/* What a form adds around files. */
+/* Bytes that a form adds to its files. */
 #define FORM_AROUND 65536
 
-/* "[::1]:80" and "localhost:80" without the port: their length; 0: no host. */
+/* Length of the host in "[::1]:80" or "localhost:80", without the port; 0: not
+ * a host. */
 static size_t host_length(const char *host)
 {
   size_t n = *host == '[' ? strcspn(host, "]") + 1 : strcspn(host, ":");
@@ -31,7 +32,7 @@ int vg_gate_host(const struct vg_portal *p, const char *host)
   return 0;
 }
 
-/* In the same time, whatever it is. */
+/* Comparison in constant time. */
 static int is_token(const struct vg_portal *p, const char *text, size_t n)
 {
   unsigned differ = n != VG_TOKEN_DIGITS;
@@ -41,7 +42,7 @@ static int is_token(const struct vg_portal *p, const char *text, size_t n)
   return !differ;
 }
 
-/* A page of another origin cannot say this one's. */
+/* A page of another origin cannot send the portal's origin in this header. */
 static int is_own_origin(const struct vg_request *r)
 {
   return !strncmp(r->origin, "http://", 7) &&
@@ -57,17 +58,17 @@ int vg_gate(const struct vg_portal *p, const struct vg_request *r,
   int64_t most;
 
   if (!vg_gate_host(p, r->host)) {
-    vg_reply_text(a, 403, "This portal is not known by that host name.");
+    vg_reply_text(a, 403, "Requests with this host name are not accepted.");
     return 0;
   }
   if (!is_post && strcmp(r->method, "GET") && strcmp(r->method, "HEAD")) {
-    vg_reply_text(a, 405, "GET, HEAD and POST are understood.");
+    vg_reply_text(a, 405, "Only GET, HEAD and POST are supported.");
     return 0;
   }
   if (!is_token(p, path, n)) {
     vg_reply_text(a, 403,
-                  "Open the address that vanguard serve has printed; "
-                  "it holds a token, which this one lacks.");
+                  "The token in the address is missing or wrong. Open the "
+                  "address that vanguard serve printed.");
     return 0;
   }
   *rest = path + n;
@@ -75,14 +76,14 @@ int vg_gate(const struct vg_portal *p, const struct vg_request *r,
                                    : VG_FIELDS_BYTES;
   if (is_post && !is_own_origin(r)) {
     vg_reply_text(a, 403,
-                  "Forms are taken from the portal's own pages only "
+                  "Forms are accepted from the portal's own pages only "
                   "(header Origin).");
     return 0;
   }
   if (r->length > (is_post ? most : 0)) {
     vg_reply_text(a, 413,
-                  "That is more than is taken: a form has at most "
-                  "1 MB, a file as much as --max-upload says.");
+                  "The request is too large: the limit is 1 MB for a form, "
+                  "and --max-upload for files.");
     return 0;
   }
   return 1;

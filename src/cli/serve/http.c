@@ -13,8 +13,8 @@
 
 #include "base/memory.h"
 
-/* Loaded when a portal is opened, and only then: the library brings GnuTLS
- * along, which every start of the program would pay for. */
+/* The library is loaded only when a portal is opened: it depends on GnuTLS,
+ * which would slow down every start of the program. */
 #define FUNCTIONS(f)                                                           \
   f(MHD_start_daemon) f(MHD_stop_daemon) f(MHD_add_connection) f(MHD_run_wait) \
     f(MHD_lookup_connection_value) f(MHD_get_connection_values)                \
@@ -35,7 +35,7 @@ struct vg_http {
   const struct vg_http_handler *h;
 };
 
-/* A request under way. */
+/* A request in progress. */
 struct call {
   struct vg_http *http;
   struct vg_request r;
@@ -61,8 +61,8 @@ static vg_status load(struct library *lib, struct vg_error *err)
   FUNCTIONS(FIND)
   if (lib->handle && !missing) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "a portal needs " VG_MICROHTTPD
-                 ", which is not here: install libmicrohttpd12");
+                 "the portal needs " VG_MICROHTTPD
+                 ", which was not found; install libmicrohttpd12");
 }
 
 /* --- requests ------------------------------------------------------------ */
@@ -144,7 +144,7 @@ static void completed(void *user, struct MHD_Connection *connection,
   *state = NULL;
 }
 
-/* --- answers ------------------------------------------------------------- */
+/* --- replies ------------------------------------------------------------- */
 
 static struct MHD_Response *response_of(const struct library *lib,
                                         struct vg_reply *a)
@@ -164,7 +164,7 @@ static struct MHD_Response *response_of(const struct library *lib,
   return response;
 }
 
-/* Pages may not be framed, kept, or believed to be of another type. */
+/* The headers forbid framing, caching and guessing of the media type. */
 static void add_headers(const struct library *lib,
                         struct MHD_Response *response, const struct vg_reply *a)
 {
@@ -229,7 +229,7 @@ static enum MHD_Result too_many_headers(const struct vg_http *http,
 
 /* --- one request --------------------------------------------------------- */
 
-/* Its head is there. */
+/* The headers of a request have arrived. */
 static enum MHD_Result head(struct vg_http *http,
                             struct MHD_Connection *connection, const char *path,
                             const char *method, void **state)
@@ -245,14 +245,14 @@ static enum MHD_Result head(struct vg_http *http,
   *state = c;
   if (http->h->begin(http->h->user, &c->r, &a))
     return answer(http, connection, &a);
-  if (!strcmp(method, "POST")) /* NULL: no form, as where there is no body */
+  if (!strcmp(method, "POST")) /* NULL if the body is not a form, or absent */
     c->post = http->lib.MHD_create_post_processor(connection, 65536, take_field,
                                                   c);
   return MHD_YES;
 }
 
-/* Pieces of the body, and its end. What was refused is read and dropped, so
- * that the browser hears why. */
+/* Handle the pieces of the body, and its end. A rejected body is read to its
+ * end and discarded, so that the browser receives the reply. */
 static enum MHD_Result handle(void *user, struct MHD_Connection *connection,
                               const char *path, const char *method,
                               const char *version, const char *data,
@@ -270,12 +270,12 @@ static enum MHD_Result handle(void *user, struct MHD_Connection *connection,
          http->lib.MHD_post_process(c->post, data, *size) == MHD_NO) &&
         c->r.body >= 0)
       c->r.body = vg_fail(&c->r.error, VG_ERR_INPUT,
-                          "the body is no form, or "
-                          "a damaged one");
+                          "the body is not a form, or "
+                          "it is damaged");
     *size = 0;
     return MHD_YES;
   }
-  if (c->post) { /* it may hold a last piece back */
+  if (c->post) { /* destroying it delivers a last piece */
     http->lib.MHD_destroy_post_processor(c->post);
     c->post = NULL;
   }
@@ -337,7 +337,7 @@ vg_status vg_http_connect(struct vg_http *http, int fd, struct vg_error *err)
   if (http->lib.MHD_add_connection(http->daemon, fd, &from, sizeof from) ==
       MHD_YES)
     return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "the web server takes no connection");
+  return vg_fail(err, VG_ERR_IO, "the web server rejected a connection");
 }
 
 vg_status vg_http_step(struct vg_http *http, int milliseconds,

@@ -1,5 +1,5 @@
-/* Private to cli/serve: HTTP, by libmicrohttpd. One thread: whoever is called
- * back has the portal to itself. */
+/* Private to cli/serve: HTTP server, by libmicrohttpd. It is single-threaded,
+ * so callbacks need no locks. */
 #ifndef VG_CLI_SERVE_HTTP_H
 #define VG_CLI_SERVE_HTTP_H
 
@@ -9,8 +9,8 @@
 #include "cli/serve/fields.h"
 #include "cli/serve/upload.h"
 
-/* What a client may take: connections, seconds of silence, bytes of a request
- * line with its headers, and headers. */
+/* Limits for clients: connections, seconds without data, bytes of request line
+ * and headers, number of headers. */
 enum {
   VG_HTTP_CONNECTIONS = 64,
   VG_HTTP_SILENCE_S = 30,
@@ -20,21 +20,21 @@ enum {
 
 struct vg_request {
   const char *method, *path; /* path: decoded, without the query */
-  const char *host, *origin; /* headers; "" where absent */
-  int64_t length;            /* of the body, as announced; -1: not said */
+  const char *host, *origin; /* headers; "" if absent */
+  int64_t length;            /* announced length of the body; -1: unknown */
   struct vg_fields query, form;
   struct vg_upload upload;
-  vg_status body; /* < 0: the body was refused, error says why */
+  vg_status body; /* < 0: the body was rejected, see error */
   struct vg_error error;
 };
 
-/** What is answered: body of size bytes (malloc), or an open file. */
+/** A reply: a body of `size` bytes (from malloc), or an open file. */
 struct vg_reply {
   int status;
   const char *type;   /* media type; NULL: HTML */
-  const char *policy; /* of content; NULL: the portal's own */
-  char *location;     /* to go to, malloc; NULL */
-  char *download;     /* name to save under, malloc; NULL: to show */
+  const char *policy; /* content security policy; NULL: the portal's own */
+  char *location;     /* target of a redirection, from malloc; NULL: none */
+  char *download;     /* name to save under, from malloc; NULL: display it */
   char *body;
   size_t size;
   int fd; /* -1: body */
@@ -44,12 +44,12 @@ struct vg_reply {
     200, NULL, NULL, NULL, NULL, NULL, 0, -1                                   \
   }
 
-/** Called for each request: `begin` when its head is there (1: it is answered
- * before the body is read), `end` when all is. Pieces of files go through
- * vg_upload_put. */
+/** Called for each request: `begin` when its headers have arrived (returns 1 if
+ * it is answered without reading the body), `end` when it is complete. Pieces
+ * of files are passed to `file`. */
 struct vg_http_handler {
   int (*begin)(void *user, struct vg_request *r, struct vg_reply *a);
-  /* A piece of a file; VG_ERR_INPUT, ... end the request's body. */
+  /* A piece of a file; an error rejects the body of the request. */
   vg_status (*file)(void *user, struct vg_request *r, const char *name,
                     const char *data, uint64_t offset, size_t size,
                     struct vg_error *err);
@@ -59,17 +59,18 @@ struct vg_http_handler {
 
 struct vg_http;
 
-/** @param fd  a socket that listens, taken over; -1: none
- * @param h   borrowed until the server ends
- * VG_ERR_UNSUPPORTED: no libmicrohttpd, in this build or on this machine. */
+/** @param fd  a listening socket, owned by the server from now on; -1: none
+ * @param h   borrowed until the server is closed
+ * VG_ERR_UNSUPPORTED: libmicrohttpd is missing in this build or on this
+ * machine. */
 vg_status vg_http_open(int fd, const struct vg_http_handler *h,
                        struct vg_http **out, struct vg_error *err);
 void vg_http_close(struct vg_http *http);
 
-/** A connected socket as if it had come in; taken over. */
+/** Handle a connected socket like an accepted connection; takes ownership. */
 vg_status vg_http_connect(struct vg_http *http, int fd, struct vg_error *err);
 
-/** Do what is to be done, after waiting for it so long at most. */
+/** Wait for events for at most the given time and handle them. */
 vg_status vg_http_step(struct vg_http *http, int milliseconds,
                        struct vg_error *err);
 

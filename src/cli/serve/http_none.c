@@ -1,4 +1,4 @@
-/* In a build without libmicrohttpd: cli/serve/http.h. */
+/* Stub of cli/serve/http.h for builds without libmicrohttpd. */
 #include <unistd.h>
 
 #include "cli/serve/http.h"
@@ -6,8 +6,8 @@
 static vg_status absent(struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "this build has no portal: install "
-                 "libmicrohttpd-dev and configure again");
+                 "this build has no portal; install "
+                 "libmicrohttpd-dev, then configure and build again");
 }
 
 vg_status vg_http_open(int fd, const struct vg_http_handler *h,

@@ -19,7 +19,7 @@ static int is_clean(const char *text)
   return 1;
 }
 
-/* Each part of a relative path: neither empty nor "." nor "..". */
+/* No component of the relative path is empty, "." or "..". */
 static int has_plain_parts(const char *name)
 {
   if (!*name) return 1;
@@ -48,7 +48,7 @@ vg_status vg_inside(const char *root, const char *name, char **out,
 
   if (!is_clean(name) || !has_plain_parts(name))
     return vg_fail(err, VG_ERR_INPUT,
-                   "'" SHOWN "' is no path below the "
+                   "'" SHOWN "' is not a path below the "
                    "folder of the projects",
                    is_clean(name) ? name : "?");
   if (asprintf(&path, "%s/%s", root, name) < 0)
@@ -60,7 +60,7 @@ vg_status vg_inside(const char *root, const char *name, char **out,
   if (!vg_inside_holds(root, real)) {
     free(real);
     return vg_fail(err, VG_ERR_INPUT,
-                   "'" SHOWN "' leads out of the folder of "
+                   "'" SHOWN "' is outside the folder of "
                    "the projects",
                    name);
   }
@@ -73,8 +73,8 @@ vg_status vg_inside_name(const char *name, struct vg_error *err)
   if (!*name || *name == '.' || *name == '-' || strpbrk(name, "/\\") ||
       strlen(name) > 200 || !is_clean(name))
     return vg_fail(err, VG_ERR_INPUT,
-                   "'" SHOWN "' is no name for a file "
-                   "here: give one without '/', not beginning with '.' or '-'",
+                   "'" SHOWN "' is not a valid file name here; use a name "
+                   "without '/' that does not begin with '.' or '-'",
                    is_clean(name) ? name : "?");
   return VG_OK;
 }

@@ -1,24 +1,26 @@
-/* Private to cli/serve: paths that stay in a folder. */
+/* Private to cli/serve: confinement of paths to a folder. */
 #ifndef VG_CLI_SERVE_INSIDE_H
 #define VG_CLI_SERVE_INSIDE_H
 
 #include "base/status.h"
 
-/** The real path of what `name` is below a folder.
+/** The real path of the file or folder `name` below a folder.
  *
  * @param root  real path of the folder
- * @param name  relative, with '/' between; "" is the folder itself
- * @param out   out: the caller frees it; untouched on failure
- * VG_ERR_INPUT: `name` is absolute, has "." or ".." or control characters, or
- * leads out of the folder by a symbolic link. VG_ERR_IO: nothing is there. */
+ * @param name  relative path with '/'; "" is the folder itself
+ * @param out   out: to be freed by the caller; unchanged on failure
+ * VG_ERR_INPUT: `name` is absolute, contains ".", ".." or control characters,
+ * or leads out of the folder through a symbolic link. VG_ERR_IO: it does not
+ * exist. */
 vg_status vg_inside(const char *root, const char *name, char **out,
                     struct vg_error *err);
 
-/** 1 when the real path is the folder `root` or below it. */
+/** Returns 1 if the real path is the folder `root` or below it. */
 int vg_inside_holds(const char *root, const char *real);
 
-/** VG_ERR_INPUT: no name for a file that is brought: a '/' or '\', control
- * characters, no UTF-8, a leading '.' or '-', more than 200 bytes. */
+/** Check the name of an uploaded file. VG_ERR_INPUT: it contains '/', '\' or
+ * control characters, is not UTF-8, begins with '.' or '-', or has more than
+ * 200 bytes. */
 vg_status vg_inside_name(const char *name, struct vg_error *err);
 
 #endif

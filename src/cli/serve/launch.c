@@ -1,4 +1,4 @@
-/* Runs as processes. Declared in cli/serve/runs.h. */
+/* Starts and stops runs as processes. Declared in cli/serve/runs.h. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
@@ -14,9 +14,9 @@
 #include "cli/serve/runs.h"
 #include "run/common/progress.h"
 
-/* In the child: never returns. The portal ignores SIGPIPE, and its display
- * SIGXFSZ and, by handlers, the signals that stop it: none of that is the
- * run's. Sockets of the portal are not either. */
+/* Execute the command in the child process; never returns. The portal ignores
+ * SIGPIPE, and its display ignores SIGXFSZ and handles the signals that stop
+ * it; the child gets the default actions, and no sockets of the portal. */
 static void become(const char *dir, char *const *word, const char *output,
                    char *const *env)
 {
@@ -81,8 +81,8 @@ unsigned long long vg_process_start(pid_t pid)
 
   snprintf(path, sizeof path, "/proc/%ld/stat", (long)pid);
   if (!vg_file_tail(path, text, sizeof text, &whole)) return 0;
-  /* Behind the name, which may hold blanks and parentheses: state is the third
-   * value, start time the 22nd. */
+  /* After the name, which may contain blanks and parentheses: the state is the
+   * third value, the start time the 22nd. */
   at = strrchr(text, ')');
   if (!at || sscanf(at + 1,
                     " %c %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s %*s "
@@ -94,7 +94,7 @@ unsigned long long vg_process_start(pid_t pid)
 
 /* --- command lines ------------------------------------------------------- */
 
-/* The project as vanguard takes it: of VGRID's the stem. */
+/* Add the path of the project; of a VGRID project, its stem. */
 static vg_status add_project(const struct vg_serve_runs *r,
                              const struct vg_serve_run *run, struct vg_words *w,
                              struct vg_error *err)
@@ -151,7 +151,8 @@ done:
   return st;
 }
 
-/* What an earlier start has left must not be taken for this one's. */
+/* Rename the logs of an earlier start, so that they are not read as those of
+ * this one. */
 static void put_logs_aside(const struct vg_serve_run *run)
 {
   char from[4096], to[4096];
@@ -199,8 +200,8 @@ void vg_run_launch(struct vg_serve_runs *r, struct vg_serve_run *run)
 
 /* --- stopping ------------------------------------------------------------ */
 
-/* mpirun hands SIGUSR1 on to its ranks, and SIGTERM would have it kill them
- * soon after. */
+/* mpirun forwards SIGUSR1 to its ranks; on SIGTERM it would kill them soon
+ * after. */
 void vg_run_stop(struct vg_serve_runs *r, struct vg_serve_run *run, int hard)
 {
   struct vg_error err;
@@ -211,7 +212,7 @@ void vg_run_stop(struct vg_serve_runs *r, struct vg_serve_run *run, int hard)
   if (!vg_run_is_active(run)) return;
   if (run->state == VG_SERVE_QUEUED) {
     run->state = VG_SERVE_STOPPED;
-    snprintf(run->note, sizeof run->note, "taken out of the queue");
+    snprintf(run->note, sizeof run->note, "removed from the queue");
   } else {
     if (run->is_slurm && *run->job) vg_slurm_stop(run, hard);
     else if (is_alive && hard) kill(-run->pid, SIGKILL);

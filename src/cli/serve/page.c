@@ -1,4 +1,4 @@
-/* The page. Declared in cli/serve/portal_parts.h. */
+/* The page of the portal. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>
@@ -8,8 +8,8 @@
 #include "cli/serve/portal_parts.h"
 #include "cli/serve/projects.h"
 
-/* Without scripts the page loads itself anew while runs are at work, but not
- * under the hands of one who fills in the form. */
+/* Without scripts the page reloads itself while runs are active, but not while
+ * it shows the form, which the user may be filling in. */
 static void print_head(const struct vg_portal *p, int may_reload, FILE *to)
 {
   fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
@@ -26,7 +26,7 @@ static void print_head(const struct vg_portal *p, int may_reload, FILE *to)
           to);
   fputs("</head>\n<body>\n<header><h1>Vanguard</h1> <p class=\"about\">", to);
   vg_markup(to, p->root);
-  fprintf(to, " &middot; %d run%s at a time%s</p></header>\n", p->o.jobs,
+  fprintf(to, " &middot; %d simultaneous run%s%s</p></header>\n", p->o.jobs,
           p->o.jobs > 1 ? "s" : "", p->has_slurm ? " &middot; Slurm" : "");
 }
 
@@ -34,11 +34,11 @@ static void print_upload(const struct vg_portal *p, FILE *to)
 {
   fputs("<form class=\"upload\" method=\"post\" action=\"upload\" "
         "enctype=\"multipart/form-data\">\n<label>Folder <input "
-        "name=\"folder\" placeholder=\"that of all projects\" "
-        "autocomplete=\"off\"></label>\n<label>Files, at most ",
+        "name=\"folder\" placeholder=\"folder of all projects\" "
+        "autocomplete=\"off\"></label>\n<label>Files (at most ",
         to);
   vg_markup_size(to, p->o.max_upload);
-  fputs(" <input type=\"file\" name=\"file\" multiple required></label>\n"
+  fputs(") <input type=\"file\" name=\"file\" multiple required></label>\n"
         "<button>Upload</button>\n</form>\n",
         to);
 }
@@ -57,8 +57,8 @@ static void print_projects(const struct vg_portal *p, const char *chosen,
   }
   fputs(list.n
           ? "<ul>\n"
-          : "<p class=\"about\">No surface and no .d3m is "
-            "here: upload one, or write an example with 'vanguard demo'.</p>\n",
+          : "<p class=\"about\">There is no surface or .d3m file "
+            "yet. Upload one, or write an example with 'vanguard demo'.</p>\n",
         to);
   for (size_t i = 0; i < list.n; i++) {
     int is_it = chosen && !strcmp(chosen, list.item[i].name);
@@ -74,7 +74,7 @@ static void print_projects(const struct vg_portal *p, const char *chosen,
   }
   if (list.n) fputs("</ul>\n", to);
   if (list.is_cut)
-    fputs("<p class=\"about\">There may be more than is shown.</p>\n", to);
+    fputs("<p class=\"about\">The list may be incomplete.</p>\n", to);
   vg_projects_release(&list);
   print_upload(p, to);
   fputs("</section>\n", to);
@@ -88,7 +88,8 @@ static void print_message(const char *message, FILE *to)
   fputs("</p>\n", to);
 }
 
-/* The settings of a run come from its deck, those of a project from its. */
+/* The form shows the settings of a run from the deck of the run, else those of
+ * the project from the deck of the project. */
 static void print_form(const struct vg_portal *p, const struct vg_page_view *v,
                        FILE *to)
 {
@@ -102,7 +103,7 @@ static void print_form(const struct vg_portal *p, const struct vg_page_view *v,
     print_message(v->message, to);
     return;
   }
-  fputs("<section id=\"form\"><h2>Run ", to);
+  fputs("<section id=\"form\"><h2>New run of ", to);
   vg_markup(to, v->project);
   fputs("</h2>\n", to);
   print_message(v->message, to);

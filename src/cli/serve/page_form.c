@@ -9,17 +9,17 @@
 
 #define VALUE_SIZE (2 * VG_LIST_MAX + 4)
 
-/* Settings follow each other in the order of their table; a group begins at
- * the one that is named here. */
+/* Settings are shown in the order of their rows; a group begins at the setting
+ * that is named here. */
 static const struct group {
   const char *first, *title;
   int is_open;
 } groups[] = {
-  { "scale", "Sizes", 1 },
+  { "scale", "Edge lengths", 1 },
   { "unit", "CAD", 0 },
   { "weld", "Surface", 0 },
   { "optimise", "Cells and files", 0 },
-  { "mesher", "Parts, ranks and threads", 0 },
+  { "mesher", "Subdomains, ranks and threads", 0 },
   { "layers", "Viscous layers", 1 },
   { "min_full", "Limits on the layers", 0 },
 };
@@ -31,7 +31,7 @@ static const struct group *group_at(const char *name)
   return NULL;
 }
 
-/* A text as it is, all else as in the deck. */
+/* Value for the form: texts without quotes, all others as in the deck. */
 static void value_of(const struct vg_param *p, const void *base, char *text)
 {
   if (p->type == VG_PARAM_TEXT)
@@ -73,7 +73,7 @@ static void print_control(FILE *to, const struct vg_param *p, const char *name,
   fputs("</select>", to);
 }
 
-/* name, control, unit, help and default. */
+/* Row of a setting: name, control, unit, help and default. */
 static void print_param(FILE *to, const struct vg_param *p, const char *prefix,
                         const void *base, const void *defaults,
                         const struct vg_fields *posted)
@@ -167,7 +167,7 @@ static void print_table(FILE *to, enum vg_table_kind kind, const char *title,
   vg_markup_attribute(to, "name", t->name);
   vg_markup_attribute(to, "aria-label", title);
   vg_markup_attribute(to, "placeholder", example);
-  fputs(">\n", to); /* browsers drop the first line end */
+  fputs(">\n", to); /* browsers drop the first line break */
   if (sent) vg_markup(to, sent);
   else vg_rows_print(to, s, kind);
   fputs("</textarea>\n<dl class=\"columns\">", to);
@@ -183,7 +183,7 @@ static void print_table(FILE *to, enum vg_table_kind kind, const char *title,
   fputs("</dl></details>\n", to);
 }
 
-/* --- where --------------------------------------------------------------- */
+/* --- machine ------------------------------------------------------------- */
 
 static void print_number(FILE *to, const char *name, const char *label,
                          const struct vg_fields *posted, const char *otherwise)
@@ -203,7 +203,7 @@ static void print_where(FILE *to, const struct vg_fields *posted, int slurm)
   int is_slurm = !strcmp(vg_fields_text(posted, "where"), "slurm");
 
   fprintf(to,
-          "<fieldset class=\"where\"><legend>Where</legend>\n"
+          "<fieldset class=\"where\"><legend>Run on</legend>\n"
           "<label><input type=\"radio\" name=\"where\" value=\"here\"%s> this "
           "machine</label>\n",
           is_slurm ? "" : " checked");
@@ -212,8 +212,8 @@ static void print_where(FILE *to, const struct vg_fields *posted, int slurm)
             "<label><input type=\"radio\" name=\"where\" value=\"slurm\""
             "%s> Slurm</label>\n",
             is_slurm ? " checked" : "");
-  print_number(to, "ranks", slurm ? "ranks (of Slurm: on each node)" : "ranks",
-               posted, "1");
+  print_number(to, "ranks", slurm ? "ranks (Slurm: per node)" : "ranks", posted,
+               "1");
   if (slurm) {
     fputs("<span class=\"slurm\">\n", to);
     print_number(to, "nodes", "nodes", posted, "1");
@@ -223,10 +223,10 @@ static void print_where(FILE *to, const struct vg_fields *posted, int slurm)
     fputs("</span>\n", to);
   }
   fputs("</fieldset>\n<p class=\"start\"><button name=\"what\" value=\"mesh\" "
-        "class=\"main\">Start the run</button> <button name=\"what\" "
-        "value=\"sweep\">Start the sweep</button> <span class=\"about\">The "
-        "sweep runs the settings with all ranks, threads and leaf sizes of "
-        "its table, on this machine.</span></p>\n",
+        "class=\"main\">Start run</button> <button name=\"what\" "
+        "value=\"sweep\">Start sweep</button> <span class=\"about\">A "
+        "sweep runs these settings with all combinations of the table Sweep, "
+        "on this machine.</span></p>\n",
         to);
 }
 
@@ -248,7 +248,7 @@ void vg_form_print(FILE *to, const char *project, const struct vg_settings *s,
   print_row(to, VG_TABLE_FARFIELD, "Farfield", s, posted);
   print_table(to, VG_TABLE_PATCHES, "Patches", "id  bc  name\n1   4   wing", s,
               posted);
-  print_table(to, VG_TABLE_LAYERS, "Layers of single patches",
+  print_table(to, VG_TABLE_LAYERS, "Layers of individual patches",
               "id  grow  first  min_full\n1   yes   1e-5   98", s, posted);
   print_table(to, VG_TABLE_SOURCES, "Sources",
               "kind   x0  y0  z0  r0  h0\npoint  0   0   0   0   0.01", s,

@@ -11,7 +11,8 @@
 #include "cli/serve/portal_parts.h"
 #include "run/common/text.h"
 
-/* What a page shows: runs, the end of a log, files of a run. */
+/* Limits of a page: runs, bytes and lines of the end of a log, files of a
+ * run. */
 enum { RUNS_SHOWN = 60, TAIL_BYTES = 3000, TAIL_LINES = 14, FILES_SHOWN = 60 };
 
 static void print_time(FILE *to, int64_t when)
@@ -35,7 +36,7 @@ static void print_duration(FILE *to, int64_t s)
   else fprintf(to, "%lld h %02lld min", t / 3600, t / 60 % 60);
 }
 
-/* Project, place and times on a line. */
+/* Project, machine and times in one line. */
 static void print_about(FILE *to, const struct vg_serve_run *run)
 {
   fputs("<p class=\"about\">", to);
@@ -45,7 +46,7 @@ static void print_about(FILE *to, const struct vg_serve_run *run)
     fprintf(to, " &middot; this machine, %d rank%s", run->ranks,
             run->ranks > 1 ? "s" : "");
   if (run->is_slurm) {
-    fprintf(to, " &middot; Slurm, %d node%s of %d rank%s with %d CPU%s",
+    fprintf(to, " &middot; Slurm, %d node%s with %d rank%s of %d CPU%s",
             run->nodes, run->nodes > 1 ? "s" : "", run->ranks,
             run->ranks > 1 ? "s" : "", run->cpus, run->cpus > 1 ? "s" : "");
     if (*run->job) fprintf(to, ", job %s", run->job);
@@ -55,7 +56,7 @@ static void print_about(FILE *to, const struct vg_serve_run *run)
     print_time(to, run->started);
   }
   if (run->started && run->ended) {
-    fputs(" &middot; took ", to);
+    fputs(" &middot; duration ", to);
     print_duration(to, run->ended - run->started);
   }
   if (run->exit_status > 0)
@@ -63,7 +64,7 @@ static void print_about(FILE *to, const struct vg_serve_run *run)
   fputs("</p>\n", to);
 }
 
-/* A bar for the phase that it is in, with rate and time left. */
+/* Progress bar of the current stage, with rate and time left. */
 static void print_progress(FILE *to, const struct vg_serve_run *run)
 {
   const struct vg_tell *t = &run->tell;
@@ -72,14 +73,14 @@ static void print_progress(FILE *to, const struct vg_serve_run *run)
   fputs("<div class=\"progress\"><progress max=\"100\"", to);
   if (t->share >= 0) fprintf(to, " value=\"%d\"", (int)(100 * t->share));
   fputs("></progress> <span><b>", to);
-  vg_markup(to, *t->stage ? t->stage : "starts");
+  vg_markup(to, *t->stage ? t->stage : "starting");
   fputs("</b>", to);
   if (t->share >= 0) fprintf(to, " %d %%", (int)(100 * t->share));
   if (*t->count) fputs(" &middot; ", to);
   vg_markup(to, t->count);
   if (*t->rate) fputs(" &middot; ", to);
   vg_markup(to, t->rate);
-  if (*t->left) fputs(" &middot; left: ", to);
+  if (*t->left) fputs(" &middot; time left: ", to);
   vg_markup(to, t->left);
   fputs("</span></div>\n", to);
 }
@@ -96,11 +97,11 @@ static void print_button(FILE *to, const struct vg_serve_run *run,
 static void print_buttons(FILE *to, const struct vg_serve_run *run)
 {
   if (run->state == VG_SERVE_STOPPING)
-    print_button(to, run, "kill", "Stop at once");
+    print_button(to, run, "kill", "Stop immediately");
   else if (vg_run_is_active(run)) print_button(to, run, "stop", "Stop");
   if (vg_run_can_resume(run))
     print_button(to, run, "resume",
-                 vg_run_has_kept(run) ? "Resume" : "Start again");
+                 vg_run_has_kept(run) ? "Resume" : "Restart");
   fprintf(to,
           "<a href=\"?from=%d#form\">Settings</a> <a href=\"runs/%d/log\">"
           "Log</a> <a href=\"runs/%d/output\">Output</a> <a "
@@ -115,7 +116,8 @@ static int by_name(const void *a, const void *b)
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* Names of plain files in a folder of a run, sorted: their number. */
+/* Store the sorted names of the regular files in a folder of a run; returns
+ * their number. */
 static size_t list_files(const struct vg_serve_run *run, const char *folder,
                          char *name[FILES_SHOWN])
 {
@@ -176,7 +178,7 @@ static void print_files(FILE *to, const struct vg_serve_run *run)
   if (n) fputs("</p>\n", to);
 }
 
-/* --- the end of its log -------------------------------------------------- */
+/* --- end of the log ------------------------------------------------------ */
 
 static void print_tail(FILE *to, const struct vg_serve_run *run)
 {
@@ -211,7 +213,7 @@ static void print_run(FILE *to, const struct vg_serve_run *run)
           run->id, word, word, run->id);
   vg_markup(to, run->title);
   fprintf(to, " <span class=\"state\">%s</span></h3>\n",
-          run->state == VG_SERVE_LIMIT ? "done, limit not met" : word);
+          run->state == VG_SERVE_LIMIT ? "done, but limit not met" : word);
   print_about(to, run);
   print_progress(to, run);
   if (*run->note) {
@@ -239,7 +241,7 @@ void vg_page_runs(const struct vg_portal *p, FILE *to)
 
   fprintf(to, "<div id=\"list\" data-active=\"%d\">\n", vg_portal_active(p));
   if (!r->n) fputs("<p class=\"about\">No run yet.</p>\n", to);
-  /* Those at work first, then the newest. */
+  /* Running ones first, then the newest. */
   for (int at_work = 1; at_work >= 0; at_work--)
     for (size_t i = 0; i < r->n; i++) {
       const struct vg_serve_run *run = r->item[r->n - 1 - i];
@@ -248,10 +250,11 @@ void vg_page_runs(const struct vg_portal *p, FILE *to)
         print_run(to, run);
     }
   if (n < r->n)
-    fprintf(to,
-            "<p class=\"about\">Of %zu runs these are the last ones and "
-            "those at work; all are in vanguard-runs.</p>\n",
-            r->n);
+    fprintf(
+      to,
+      "<p class=\"about\">Of %zu runs, the active and the latest ones are "
+      "shown; the folder vanguard-runs contains all of them.</p>\n",
+      r->n);
   fputs("</div>\n", to);
 }
 

@@ -42,8 +42,8 @@ static vg_status file(void *user, struct vg_request *r, const char *name,
   if (!vg_gate(p, r, &rest, &a) || strcmp(rest, "/upload") != 0) {
     free(a.body);
     return vg_fail(err, VG_ERR_INPUT,
-                   "files are brought by the form for "
-                   "them");
+                   "files can be uploaded by the upload form "
+                   "only");
   }
   if (!goes_on)
     st = vg_upload_begin(u, p->root, vg_fields_text(&r->form, "folder"), name,
@@ -67,14 +67,16 @@ static vg_status make_token(struct vg_portal *p, struct vg_error *err)
   unsigned char bytes[VG_TOKEN_DIGITS / 2];
 
   if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
-    return vg_fail(err, VG_ERR_IO, "no random numbers for a token: %s",
+    return vg_fail(err, VG_ERR_IO,
+                   "cannot obtain random numbers for the "
+                   "token: %s",
                    strerror(errno));
   for (size_t i = 0; i < sizeof bytes; i++)
     snprintf(p->token + 2 * i, 3, "%02x", bytes[i]);
   return VG_OK;
 }
 
-/* The folder of the runs is a folder, and ours alone to manage. */
+/* Create and lock the folder of the runs, which must belong to this user. */
 static vg_status take_folder(struct vg_portal *p, struct vg_error *err)
 {
   char *path = NULL;
@@ -90,8 +92,8 @@ static vg_status take_folder(struct vg_portal *p, struct vg_error *err)
   if ((mkdir(p->dir, 0777) && errno != EEXIST) || lstat(p->dir, &s) ||
       !S_ISDIR(s.st_mode))
     st = vg_fail(err, VG_ERR_IO,
-                 "%s: this folder for the runs cannot be "
-                 "made; give --root a folder that you can write to",
+                 "%s: cannot create this folder for the runs; give --root a "
+                 "folder in which you can write",
                  p->dir);
   else if (s.st_uid != geteuid())
     st = vg_fail(err, VG_ERR_IO,
@@ -104,8 +106,8 @@ static vg_status take_folder(struct vg_portal *p, struct vg_error *err)
       st = vg_fail(err, VG_ERR_IO, "%s: %s", path, strerror(errno));
     else if (flock(p->lock, LOCK_EX | LOCK_NB))
       st = vg_fail(err, VG_ERR_IO,
-                   "another portal has %s; its address is in "
-                   "portal.url there",
+                   "another portal uses %s; its address is in "
+                   "the file portal.url there",
                    p->dir);
   }
   free(path);
@@ -124,7 +126,8 @@ static vg_status add_host(struct vg_portal *p, const char *name,
   return VG_OK;
 }
 
-/* This machine's name is one only where others may come. */
+/* The name of this machine is accepted only if the portal listens for other
+ * machines. */
 static vg_status name_hosts(struct vg_portal *p, struct vg_error *err)
 {
   char own[256] = "";
@@ -140,7 +143,8 @@ done:
   return st;
 }
 
-/* A socket that listens on the first address of the host that will have it. */
+/* Open a socket that listens on the first address of the host for which this
+ * succeeds. */
 static vg_status listen_on(const struct vg_portal *p, int *out,
                            struct vg_error *err)
 {
@@ -166,8 +170,8 @@ static vg_status listen_on(const struct vg_portal *p, int *out,
   freeaddrinfo(list);
   if (fd < 0)
     return vg_fail(err, VG_ERR_IO,
-                   "port %s of %s cannot be had: %s; give "
-                   "--port another one, or 0 for any",
+                   "cannot listen on port %s of %s: %s; give "
+                   "another --port, or 0 for any free port",
                    port, host, strerror(failed));
   *out = fd;
   return VG_OK;
@@ -187,7 +191,7 @@ static int port_of(int fd)
   return atoi(port);
 }
 
-/* The address, in a file for the owner alone. */
+/* Write the address to a file that only the owner can read. */
 static vg_status publish(struct vg_portal *p, int port, struct vg_error *err)
 {
   int fd;

@@ -1,8 +1,8 @@
-/* cli/serve/portal.h: runs from a browser. A portal is a web server in one
- * thread that lists the projects below a folder, starts vanguard mesh and
- * vanguard sweep as processes of their own, on this machine or through Slurm,
- * and shows how far they are: docs/reference/portal.md. Uses libmicrohttpd,
- * which is loaded when a portal is opened. */
+/* cli/serve/portal.h: the portal, from which runs are started in a browser: a
+ * single-threaded web server that lists the projects below a folder, starts
+ * vanguard mesh and vanguard sweep as separate processes, on this machine or
+ * through Slurm, and shows their progress; see docs/reference/portal.md. Uses
+ * libmicrohttpd, which is loaded when a portal is opened. */
 #ifndef VG_CLI_SERVE_PORTAL_H
 #define VG_CLI_SERVE_PORTAL_H
 
@@ -13,11 +13,11 @@
 struct vg_portal_options {
   const char *root;     /* folder of the projects */
   const char *host;     /* address to listen on; NULL: 127.0.0.1 */
-  int port;             /* 0: any that is free */
-  int64_t max_upload;   /* bytes of a file that is brought */
-  int jobs;             /* runs on this machine at a time */
+  int port;             /* 0: any free port */
+  int64_t max_upload;   /* largest uploaded file, bytes */
+  int jobs;             /* simultaneous runs on this machine */
   const char *launcher; /* of ranks, as for vanguard sweep; NULL: mpirun */
-  const char *program;  /* that meshes; NULL: this one */
+  const char *program;  /* program that meshes; NULL: this one */
 };
 #define VG_PORTAL_OPTIONS_INIT                                                 \
   {                                                                            \
@@ -26,33 +26,34 @@ struct vg_portal_options {
 
 struct vg_portal;
 
-/** Take the folder of the runs, root/vanguard-runs, for this portal, find the
+/** Lock the folder of the runs, root/vanguard-runs, for this portal, find the
  * runs in it, and listen. The address with its token is in
- * root/vanguard-runs/portal.url, for the owner alone, until the portal closes.
+ * root/vanguard-runs/portal.url, readable by the owner only, until the portal
+ * closes.
  *
  * @param o    borrowed until the portal is closed
- * VG_ERR_UNSUPPORTED: libmicrohttpd is absent; VG_ERR_IO: folder or port cannot
- * be had, or another portal has the folder. */
+ * VG_ERR_UNSUPPORTED: libmicrohttpd is missing; VG_ERR_IO: folder or port is
+ * not available, or another portal uses the folder. */
 vg_status vg_portal_open(const struct vg_portal_options *o,
                          struct vg_portal **out, struct vg_error *err);
 
 /** "http://127.0.0.1:8765/TOKEN/". Borrowed. */
 const char *vg_portal_url(const struct vg_portal *p);
 
-/** Answer what has come in, look after the runs, and wait for more, for so many
- * milliseconds at most. VG_ERR_IO: the server cannot go on. */
+/** Check the runs, then wait for requests for at most the given time and answer
+ * them. VG_ERR_IO: the server has failed. */
 vg_status vg_portal_step(struct vg_portal *p, int milliseconds,
                          struct vg_error *err);
 
-/** Runs that are at work or wait. */
+/** Number of runs that are running or waiting. */
 int vg_portal_active(const struct vg_portal *p);
 
-/** Take a connected stream socket as if it had come in; it is closed at its
- * end. For tests. */
+/** Handle a connected stream socket like an accepted connection; it is closed
+ * when the connection ends. For tests. */
 vg_status vg_portal_connect(struct vg_portal *p, int fd, struct vg_error *err);
 
-/** Runs go on; a portal opened in the same folder has them again. Accepts
- * NULL. */
+/** Close the portal. Its runs continue; a portal opened in the same folder
+ * finds them again. Accepts NULL. */
 void vg_portal_close(struct vg_portal *p);
 
 #endif

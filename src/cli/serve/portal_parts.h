@@ -1,4 +1,4 @@
-/* The parts of a portal. */
+/* Private to cli/serve: the structure of a portal. */
 #ifndef VG_CLI_SERVE_PORTAL_PARTS_H
 #define VG_CLI_SERVE_PORTAL_PARTS_H
 
@@ -15,40 +15,41 @@ struct vg_portal {
   char *root, *dir; /* real paths: projects, runs */
   char token[VG_TOKEN_DIGITS + 1];
   char *url, *url_file;
-  char *host[6]; /* names by which it may be called */
+  char *host[6]; /* accepted values of the header Host */
   int n_host, lock, has_slurm;
   struct vg_http *http;
   struct vg_http_handler handler;
   struct vg_serve_runs runs;
 };
 
-/** gate.c: whether a request may pass, by its head alone: 1 and *rest is what
- * follows the token in its path; 0 and *a says why not. Bodies are bounded,
- * POSTs come from the portal's own pages. */
+/** gate.c: decides from the headers whether a request is accepted. Returns 1,
+ * with *rest the part of the path after the token, or 0, with the reason in
+ * *a. The size of bodies is limited, and POST requests must come from the
+ * portal's own pages. */
 int vg_gate(const struct vg_portal *p, const struct vg_request *r,
             const char **rest, struct vg_reply *a);
 
-/** 1 when the header Host names one of the hosts, with any port: tunnels
- * change it. */
+/** Returns 1 if the header Host names one of the hosts. Any port is accepted,
+ * since tunnels change it. */
 int vg_gate_host(const struct vg_portal *p, const char *host);
 
-/** reply.c: an answer of one line; a page of a message; the address to go
- * to. */
+/** reply.c: a reply with one line of text; a redirection. */
 void vg_reply_text(struct vg_reply *a, int status, const char *text);
 void vg_reply_go(const struct vg_portal *p, struct vg_reply *a, const char *to);
 
-/** A file of a run, which stays open until it is sent: `name` relative to its
- * folder. */
+/** Reply with a file of a run, which stays open until it is sent; `name` is
+ * relative to the folder of the run. */
 void vg_reply_file(const struct vg_serve_run *run, const char *name,
                    struct vg_reply *a);
 
-/** routes.c: what is asked for. */
+/** routes.c: answers an accepted request. */
 void vg_route(struct vg_portal *p, struct vg_request *r, const char *rest,
               struct vg_reply *a);
 
-/** page.c: the page, for a project or from the settings of a run (NULL: none);
- * with a message and what was sent where that was refused.
- * page_runs.c: the list of runs, as a part of the page and as JSON. */
+/** page.c: the page, with the form of a project or with the settings of a run
+ * (NULL: no form). If a form was rejected, the page shows the message and the
+ * values that were posted.
+ * page_runs.c: the list of runs, as part of the page and as JSON. */
 struct vg_page_view {
   const char *project, *message;
   const struct vg_fields *posted;

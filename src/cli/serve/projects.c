@@ -42,7 +42,7 @@ int vg_projects_is_name(const char *name)
   return 0;
 }
 
-/* A .front beside its .d3m is part of that project. */
+/* A .front with a .d3m of the same name belongs to that project. */
 static int is_part(const char *path)
 {
   size_t n = strlen(path);
@@ -82,7 +82,7 @@ static vg_status take_file(const char *root, const char *name, int64_t size,
   return VG_OK;
 }
 
-/* Folders are opened one below the other, never through a link. */
+/* Folders are opened relative to their parent and never through a link. */
 static vg_status look(const char *root, int dir, const char *under, int depth,
                       struct vg_projects *p, struct vg_error *err);
 
@@ -159,7 +159,7 @@ vg_status vg_projects_list(const char *root, struct vg_projects *out,
 
 /* --- one project --------------------------------------------------------- */
 
-/* A file of a project that is a link to elsewhere is none of ours. */
+/* A file of a project may not be a link to a file outside the root. */
 static vg_status check_inside(const char *root, const char *path,
                               struct vg_error *err)
 {
@@ -172,7 +172,7 @@ static vg_status check_inside(const char *root, const char *path,
   free(real);
   if (ok) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "%.200s leads out of the folder of the "
+                 "%.200s is outside the folder of the "
                  "projects",
                  path);
 }

@@ -1,4 +1,4 @@
-/* Private to cli/serve: what can be meshed below a folder. */
+/* Private to cli/serve: finds the projects below a folder. */
 #ifndef VG_CLI_SERVE_PROJECTS_H
 #define VG_CLI_SERVE_PROJECTS_H
 
@@ -8,7 +8,7 @@
 #include "base/status.h"
 #include "run/settings/settings.h"
 
-/* How much of the folder is looked at. */
+/* Limits of the search: projects, levels of folders, entries examined. */
 enum {
   VG_PROJECTS_MAX = 500,
   VG_PROJECTS_DEPTH = 4,
@@ -30,20 +30,20 @@ struct vg_projects {
     0, 0, 0, NULL, 0                                                           \
   }
 
-/** Surfaces and VGRID projects (NAME.d3m) below root, in the order of their
- * names, which are relative to it. Hidden folders, links to folders, folders of
- * runs and files with volume cells are left out. */
+/** List surfaces and VGRID projects (NAME.d3m) below root, sorted by name;
+ * names are relative to root. Hidden folders, links to folders, folders of runs
+ * and files with volume cells are skipped. */
 vg_status vg_projects_list(const char *root, struct vg_projects *out,
                            struct vg_error *err);
 void vg_projects_release(struct vg_projects *p);
 
-/** 1 when a file of this name may be a project. */
+/** Returns 1 if a file of this name may be a project. */
 int vg_projects_is_name(const char *name);
 
-/** The settings of a project: its deck's, or defaults. All its files must be in
- * the root: VG_ERR_INPUT names the one that is not. *s is untouched on
- * failure.
- * @param deck  a deck instead of the project's; NULL */
+/** The settings of a project, from its deck or the defaults. All its files must
+ * be below root; the message of VG_ERR_INPUT names one that is not. *s is
+ * unchanged on failure.
+ * @param deck  a deck to use instead of the project's, or NULL */
 vg_status vg_project_settings(const char *root, const char *name,
                               const char *deck, struct vg_settings *s,
                               struct vg_error *err);

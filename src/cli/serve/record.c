@@ -1,4 +1,4 @@
-/* run.json: how a run stands, for the next portal. Declared in
+/* run.json: parameters and state of a run, for the next portal. Declared in
  * cli/serve/runs.h. */
 #define _GNU_SOURCE
 #include <jansson.h>
@@ -106,7 +106,8 @@ static int take_numbers(const json_t *o, struct vg_serve_run *run)
   return 1;
 }
 
-/* A job's number goes to scancel: digits, or "12_3" of an array. */
+/* A job number, which is passed to scancel: digits, or "12_3" of a job array.
+ */
 static int is_job(const char *job)
 {
   return strspn(job, "0123456789_") == strlen(job) && *job != '_';
@@ -131,7 +132,8 @@ vg_status vg_record_parse(const char *name, const char *data, size_t size,
   to.is_slurm = json_is_true(json_object_get(o, "slurm"));
   if (ok) copy = strdup(project);
   json_decref(o);
-  if (!ok) return vg_fail(err, VG_ERR_FORMAT, "%s: no record of a run", name);
+  if (!ok)
+    return vg_fail(err, VG_ERR_FORMAT, "%s: not the record of a run", name);
   if (!copy) return vg_fail_memory(err, "the record of a run");
   free(run->project);
   to.project = copy;
@@ -151,7 +153,7 @@ vg_status vg_record_read(struct vg_serve_run *run, struct vg_error *err)
                    &whole);
   st = n && whole == (int64_t)n
        ? vg_record_parse(path, text, n, run, err)
-       : vg_fail(err, VG_ERR_FORMAT, "%s: no record of a run", path);
+       : vg_fail(err, VG_ERR_FORMAT, "%s: not the record of a run", path);
   free(text);
   return st;
 }

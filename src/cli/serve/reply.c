@@ -1,4 +1,4 @@
-/* Answers that are no page. Declared in cli/serve/portal_parts.h. */
+/* Replies other than pages. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <stdlib.h>
@@ -10,8 +10,9 @@
 #include "cli/serve/inside.h"
 #include "cli/serve/portal_parts.h"
 
-/* What a run has written is shown as of an origin of its own, so that no script
- * in it can use the portal; it loads nothing. */
+/* Policy for files that a run has written: the sandbox gives them an origin of
+ * their own, so that scripts in them cannot access the portal; they load no
+ * external resources. */
 #define BOXED                                                                  \
   "default-src 'none'; img-src data:; style-src 'unsafe-inline'; "             \
   "frame-ancestors 'none'; base-uri 'none'; form-action 'none'; "
@@ -45,11 +46,12 @@ void vg_reply_text(struct vg_reply *a, int status, const char *text)
 
 void vg_reply_go(const struct vg_portal *p, struct vg_reply *a, const char *to)
 {
-  vg_reply_text(a, 303, "see there");
+  vg_reply_text(a, 303, "See other");
   if (asprintf(&a->location, "/%s/%s", p->token, to) < 0) a->location = NULL;
 }
 
-/* As a name to save under: quotes and the like would end the header's value. */
+/* File name for the header Content-Disposition, without characters that would
+ * end its value. */
 static char *plain_name(const char *name)
 {
   const char *base = strrchr(name, '/');
@@ -86,14 +88,14 @@ void vg_reply_file(const struct vg_serve_run *run, const char *name,
   int fd;
 
   if (!*name || vg_inside(run->dir, name, &real, &err) < 0) {
-    vg_reply_text(a, 404, "There is no such file of this run.");
+    vg_reply_text(a, 404, "This run has no such file.");
     return;
   }
   fd = open(real, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   free(real);
   if (fd < 0 || fstat(fd, &s) || !S_ISREG(s.st_mode)) {
     if (fd >= 0) close(fd);
-    vg_reply_text(a, 404, "There is no such file of this run.");
+    vg_reply_text(a, 404, "This run has no such file.");
     return;
   }
   choose_type(name, a);

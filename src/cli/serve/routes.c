@@ -1,4 +1,4 @@
-/* What a request asks for. Declared in cli/serve/portal_parts.h. */
+/* Answers requests by method and path. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE
 #include <stdlib.h>
 #include <string.h>
@@ -12,10 +12,10 @@
 
 static void not_there(struct vg_reply *a)
 {
-  vg_reply_text(a, 404, "There is nothing here.");
+  vg_reply_text(a, 404, "Not found.");
 }
 
-/* "12/log": 12 and "log"; 0: no number. */
+/* Split "12/log" into 12 and "log"; 0: no number. */
 static int take_id(const char *path, const char **rest)
 {
   size_t n = strspn(path, "0123456789");
@@ -31,14 +31,14 @@ static void answer_bytes(struct vg_reply *a, const char *type,
   a->type = type;
   a->body = malloc(size + 1);
   if (!a->body) {
-    vg_reply_text(a, 500, "There is not enough memory.");
+    vg_reply_text(a, 500, "Out of memory.");
     return;
   }
   memcpy(a->body, data, size);
   a->size = size;
 }
 
-/* What `print` writes, as a page. */
+/* Answer with the page or, without a view, with the list of runs. */
 static void answer_page(const struct vg_portal *p, const struct vg_page_view *v,
                         int status, struct vg_reply *a)
 {
@@ -49,7 +49,7 @@ static void answer_page(const struct vg_portal *p, const struct vg_page_view *v,
     if (v) vg_page(p, v, to);
     else vg_page_runs(p, to);
   }
-  if (!to || fclose(to)) vg_reply_text(a, 500, "There is not enough memory.");
+  if (!to || fclose(to)) vg_reply_text(a, 500, "Out of memory.");
 }
 
 /* --- GET ----------------------------------------------------------------- */
@@ -71,10 +71,10 @@ static void get_json(const struct vg_portal *p, struct vg_reply *a)
   a->type = "application/json";
   a->body = vg_page_runs_json(p);
   if (a->body) a->size = strlen(a->body);
-  else vg_reply_text(a, 500, "There is not enough memory.");
+  else vg_reply_text(a, 500, "Out of memory.");
 }
 
-/* runs/12/report, log, output, deck, file/mesh/wing.vtu */
+/* Paths below runs/: 12/log, 12/output, 12/deck, 12/file/mesh/wing.vtu. */
 static void get_of_run(const struct vg_portal *p, const char *path,
                        struct vg_reply *a)
 {
@@ -118,7 +118,7 @@ static void get(const struct vg_portal *p, const struct vg_request *r,
 
 /* --- POST ---------------------------------------------------------------- */
 
-/* A run in its folder with its deck, in the queue. */
+/* Create a queued run with its folder and deck. */
 static vg_status make_run(struct vg_portal *p, const struct vg_fields *f,
                           struct vg_serve_run **out, struct vg_error *err)
 {
@@ -133,7 +133,7 @@ static vg_status make_run(struct vg_portal *p, const struct vg_fields *f,
   VG_TRY(vg_form_run(f, &given, err));
   if (given.is_slurm && !p->has_slurm) {
     st = vg_fail(err, VG_ERR_INPUT,
-                 "there is no Slurm here: sbatch and squeue "
+                 "Slurm is not available: sbatch and squeue "
                  "are not in the PATH of the portal");
     goto done;
   }
@@ -156,7 +156,7 @@ static vg_status make_run(struct vg_portal *p, const struct vg_fields *f,
   strcpy(run->partition, given.partition);
   st = vg_deck_write(vg_run_path(run, "run.deck", path), &s, NULL, 0, err);
   if (st >= 0) st = vg_record_write(run, err);
-  if (st < 0) { /* it stays in the list, with the reason */
+  if (st < 0) { /* the run stays in the list, with the reason */
     run->state = VG_SERVE_FAILED;
     snprintf(run->note, sizeof run->note, "%.250s", err->text);
   }
@@ -196,7 +196,7 @@ static void post_run(struct vg_portal *p, struct vg_request *r,
     return;
   }
   if (run->is_slurm) vg_run_launch(&p->runs, run);
-  else vg_runs_watch(&p->runs); /* at once, if it is its turn */
+  else vg_runs_watch(&p->runs); /* starts it at once if possible */
   go_to_run(p, run, a);
 }
 
@@ -215,8 +215,8 @@ static void resume(struct vg_portal *p, struct vg_serve_run *run)
   vg_runs_watch(&p->runs);
 }
 
-/* runs/12/stop, kill, resume: what is no longer so is no failure, for pages may
- * be older than runs. */
+/* Paths runs/12/stop, kill, resume. A request that no longer applies is not an
+ * error, since the page may be older than the state of the run. */
 static void post_to_run(struct vg_portal *p, const char *path,
                         struct vg_reply *a)
 {
@@ -251,7 +251,7 @@ static void post_upload(struct vg_portal *p, struct vg_request *r,
     return;
   }
   if (!r->upload.n_whole) {
-    refuse(p, r, "no file was chosen", a);
+    refuse(p, r, "no file was selected", a);
     return;
   }
   to = open_memstream(&address, &size);
@@ -281,7 +281,7 @@ static void post(struct vg_portal *p, struct vg_request *r, const char *path,
 void vg_route(struct vg_portal *p, struct vg_request *r, const char *rest,
               struct vg_reply *a)
 {
-  if (!*rest) vg_reply_go(p, a, ""); /* relative addresses need the '/' */
+  if (!*rest) vg_reply_go(p, a, ""); /* relative URLs need the '/' */
   else if (!strcmp(r->method, "POST")) post(p, r, rest + 1, a);
   else get(p, r, rest + 1, a);
 }

@@ -15,8 +15,8 @@ struct words {
   const char *word[MOST_COLUMNS];
 };
 
-/* One value, ended in place; *is_quoted: it stood in quotes. NULL: a quote is
- * not closed. */
+/* Read one value and terminate it in place; *is_quoted: it was in quotes.
+ * NULL: a quotation mark is not closed. */
 static char *take_word(char **at, int *is_quoted)
 {
   char *p = *at, *to, *word;
@@ -46,7 +46,8 @@ static char *take_word(char **at, int *is_quoted)
   return word;
 }
 
-/* The values of a line; a bare "-" becomes NULL. */
+/* Split a line into values; an unquoted "-" becomes NULL. Returns an error
+ * message or NULL. */
 static const char *split(char *line, struct words *w)
 {
   int is_quoted;
@@ -58,7 +59,7 @@ static const char *split(char *line, struct words *w)
     if (!*line || *line == '#') return NULL;
     if (w->n == MOST_COLUMNS) return "more than 64 values";
     word = take_word(&line, &is_quoted);
-    if (!word) return "a quote is not closed; add \"";
+    if (!word) return "a quotation mark is not closed; add \"";
     w->word[w->n] = !is_quoted && !strcmp(word, "-") ? NULL : word;
   }
 }
@@ -71,14 +72,14 @@ static vg_status add_row(const char *table, const struct words *names,
   size_t n = 0;
 
   if (values->n != names->n)
-    return vg_fail(err, VG_ERR_INPUT, "%zu values below %zu columns", values->n,
+    return vg_fail(err, VG_ERR_INPUT, "%zu values for %zu columns", values->n,
                    names->n);
   for (size_t i = 0; i < names->n; i++) {
     if (!names->word[i])
-      return vg_fail(err, VG_ERR_INPUT, "a column cannot be called -");
+      return vg_fail(err, VG_ERR_INPUT, "'-' is not a column name");
     for (size_t j = 0; j < i; j++)
       if (!strcmp(names->word[i], names->word[j]))
-        return vg_fail(err, VG_ERR_INPUT, "column %.40s is there twice",
+        return vg_fail(err, VG_ERR_INPUT, "column %.40s appears twice",
                        names->word[i]);
     if (!values->word[i]) continue;
     name[n] = names->word[i];
@@ -87,7 +88,7 @@ static vg_status add_row(const char *table, const struct words *names,
   return vg_settings_add_named(s, table, n, name, value, err);
 }
 
-/* A line of names where there are none yet, else of values. */
+/* Process a line: the first one contains the names, all others values. */
 static vg_status take_line(char *line, const char *table, struct words *names,
                            struct vg_settings *s, struct vg_error *err)
 {
@@ -131,7 +132,7 @@ union row {
   struct vg_source s;
 };
 
-/* Width of a column; 0: it says nothing. */
+/* Width of a column; 0: all its values are defaults. */
 static size_t width_of(const struct vg_settings *s, enum vg_table_kind kind,
                        const struct vg_param *p, const void *defaults)
 {

@@ -1,4 +1,4 @@
-/* The table of runs, and their folders. Declared in cli/serve/runs.h. */
+/* The list of runs and their folders. Declared in cli/serve/runs.h. */
 #define _GNU_SOURCE
 #include "cli/serve/runs.h"
 
@@ -92,7 +92,7 @@ size_t vg_file_tail(const char *path, char *text, size_t size, int64_t *whole)
   return (size_t)n;
 }
 
-/* --- the table ----------------------------------------------------------- */
+/* --- list ---------------------------------------------------------------- */
 
 static struct vg_serve_run *blank(const struct vg_serve_runs *r, int id)
 {
@@ -131,10 +131,10 @@ vg_status vg_runs_new(struct vg_serve_runs *r, struct vg_serve_run **out,
   for (size_t i = 0; i < r->n; i++) n_active += vg_run_is_active(r->item[i]);
   if (n_active >= VG_SERVE_ACTIVE_MAX)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%d runs wait or are at work; let some "
-                   "of them end first",
+                   "%d runs are already waiting or running; wait until some "
+                   "of them have ended",
                    n_active);
-  /* Folders that are no runs of ours are left alone. */
+  /* Existing folders are skipped, also if they are not runs. */
   for (; id <= VG_SERVE_RUNS_MAX; id++) {
     run = blank(r, id);
     if (!run) return vg_fail_memory(err, "a run");
@@ -152,12 +152,12 @@ vg_status vg_runs_new(struct vg_serve_runs *r, struct vg_serve_run **out,
     release_run(run);
   }
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s has %d runs; move some away, and start "
-                 "the portal again",
+                 "%s has %d runs; move some of them away and restart "
+                 "the portal",
                  r->dir, VG_SERVE_RUNS_MAX);
 }
 
-/* --- those of earlier portals -------------------------------------------- */
+/* --- runs of earlier portals --------------------------------------------- */
 
 static int by_id(const void *a, const void *b)
 {
@@ -167,13 +167,14 @@ static int by_id(const void *a, const void *b)
   return (x->id > y->id) - (x->id < y->id);
 }
 
-/* "0012": 12; 0: another name. */
+/* The id of the folder "0012" is 12; 0 for other names. */
 static int id_of(const char *name)
 {
   return strlen(name) == 4 && strspn(name, "0123456789") == 4 ? atoi(name) : 0;
 }
 
-/* A process that bears the number and has the start time is the run's. */
+/* Determine the state of a run of an earlier portal. Its process is still alive
+ * if one with the same number and start time exists. */
 static void take_up(struct vg_serve_run *run)
 {
   if (!vg_run_is_active(run) || run->state == VG_SERVE_QUEUED ||
@@ -192,7 +193,7 @@ static vg_status load(struct vg_serve_runs *r, int id, struct vg_error *err)
   struct vg_error why = VG_ERROR_INIT;
 
   if (!run) return vg_fail_memory(err, "a run");
-  if (vg_record_read(run, &why) < 0) { /* none of ours, or damaged */
+  if (vg_record_read(run, &why) < 0) { /* not a run, or damaged */
     release_run(run);
     return why.code == VG_ERR_MEMORY ? vg_fail_memory(err, "a run") : VG_OK;
   }

@@ -1,6 +1,6 @@
-/* Runs as jobs of Slurm: share/slurm/vanguard.sbatch, written beside them.
- * sbatch, scancel and squeue may take long, so nobody waits for them. Declared
- * in cli/serve/runs.h. */
+/* Runs as Slurm jobs, by a copy of share/slurm/vanguard.sbatch in the folder of
+ * the run. sbatch, scancel and squeue may take long, so the portal does not
+ * wait for them. Declared in cli/serve/runs.h. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <stdio.h>
@@ -69,7 +69,7 @@ done:
   return st;
 }
 
-/* What the script takes from its environment; a job runs in its folder. */
+/* Environment variables of the script; a job runs in the folder of its run. */
 static vg_status environment(const struct vg_serve_runs *r,
                              const struct vg_serve_run *run, struct vg_words *w,
                              struct vg_error *err)
@@ -114,8 +114,8 @@ done:
   return st;
 }
 
-/* The number in the line of sbatch that is nothing but that, or "12;cluster".
- */
+/* Find the job number: a line of sbatch's output that is a number only, or
+ * "12;cluster". */
 static void find_job(char *text, char *job, size_t size)
 {
   char *save = NULL;
@@ -148,28 +148,28 @@ void vg_slurm_submitted(struct vg_serve_run *run, int exit_status)
     run->state = VG_SERVE_FAILED;
     text[strcspn(text, "\n")] = 0;
     snprintf(run->note, sizeof run->note, "sbatch: %.240s",
-             *text ? text : "it gave no number of a job");
+             *text ? text : "no job number in its output");
   }
   vg_record_write(run, &err);
 }
 
-/* A job that waits is taken out; one at work passes SIGTERM on as a wish to
- * stop. */
+/* A pending job is cancelled; the script of a running job forwards SIGTERM as a
+ * request to stop. */
 void vg_slurm_stop(struct vg_serve_run *run, int hard)
 {
   char *soft[] = { "scancel", "--batch", "--signal=TERM", run->job, NULL };
   char *end[] = { "scancel", run->job, NULL };
   pid_t child;
 
-  if (run->helper) return; /* told just now */
+  if (run->helper) return; /* scancel is still running */
   if (run->state == VG_SERVE_PENDING) hard = 1;
   child = vg_run_spawn(run->dir, hard ? end : soft, "sbatch.txt", NULL);
   if (child > 0) run->helper = child;
 }
 
-/* --- how jobs stand ------------------------------------------------------ */
+/* --- states of jobs ------------------------------------------------------ */
 
-/* Its state among "JOB STATE" lines; NULL: it is not there. */
+/* State of a job in lines of the form "JOB STATE"; NULL: it is not listed. */
 static const char *find_state(const char *data, size_t size, const char *job,
                               size_t *len)
 {
@@ -219,7 +219,7 @@ void vg_runs_take_squeue(struct vg_serve_runs *r, const char *data, size_t size)
   }
 }
 
-/* Refused answers are asked for again. */
+/* Read the output of squeue; if squeue failed, it is run again later. */
 static void take_answer(struct vg_serve_runs *r)
 {
   char path[4096], *text;

@@ -23,7 +23,7 @@ static size_t digits(const char *text)
   return strspn(text, "0123456789,");
 }
 
-/* "3 of 12: n2-t1", of a sweep. */
+/* A line of a sweep: "3 of 12: n2-t1". */
 static int sweep_line(const char *line, struct vg_tell *t)
 {
   unsigned i, n;
@@ -38,8 +38,8 @@ static int sweep_line(const char *line, struct vg_tell *t)
   return 1;
 }
 
-/* Behind the stage: "12,345 of ~27,000   45%  350,000/s  ETA 20 s", each part
- * with blanks before it, all but the first may be absent. */
+/* The counts after the stage: "12,345 of ~27,000   45%  350,000/s  ETA 20 s".
+ * Blanks precede each part, and all parts but the first are optional. */
 static int counts(const char *at, struct vg_tell *t)
 {
   size_t n;

@@ -1,13 +1,13 @@
-/* Private to cli/serve: what a run says about how far it is. */
+/* Private to cli/serve: parses the progress lines of a run. */
 #ifndef VG_CLI_SERVE_TELL_H
 #define VG_CLI_SERVE_TELL_H
 
 #include <stddef.h>
 
-/** The last line of progress. Texts are "" where the line does not say. */
+/** The last progress line. Texts are "" if not in the line. */
 struct vg_tell {
   char stage[40];
-  double share;            /* of the stage, 0 to 1; -1: not known */
+  double share;            /* completed fraction of the stage; -1: unknown */
   char count[72];          /* "12,345 of 27,000" */
   char rate[32], left[32]; /* "350,000/s", "2 min 10 s" */
 };
@@ -16,15 +16,16 @@ struct vg_tell {
     .share = -1                                                                \
   }
 
-/** A line as vanguard mesh or vanguard sweep puts it on standard error where
- * that is no terminal. 1: it was one, *out is replaced; 0: something else. */
+/** Parse a line that vanguard mesh or vanguard sweep writes to standard error
+ * if that is not a terminal. Returns 1 and replaces *out if it is a progress
+ * line, else 0. */
 int vg_tell_line(const char *line, size_t n, struct vg_tell *out);
 
-/** The last line of progress in the end of a file, whose first line may be
- * cut. 0: there is none, *out is as it was. */
+/** Find the last progress line in the end of a file, whose first line may be
+ * truncated. Returns 0 and leaves *out unchanged if it finds no such line. */
 int vg_tell_tail(const char *data, size_t n, struct vg_tell *out);
 
-/** The exit status that a log (--log) ends with; -1: it does not say. */
+/** The exit status at the end of a log (--log); -1 if it is missing. */
 int vg_tell_status(const char *data, size_t n);
 
 #endif

@@ -14,8 +14,8 @@
 static vg_status there_already(const char *name, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_INPUT,
-                 "'%.80s' is there already, and stays as it "
-                 "is; give the file another name",
+                 "'%.80s' already exists and is not "
+                 "overwritten; give the file another name",
                  name);
 }
 
@@ -27,7 +27,7 @@ static void forget(struct vg_upload *u)
   u->name = u->path = u->temporary = NULL;
 }
 
-/* A file of the name that it has until it is whole. */
+/* Create the file with the temporary name that it has until it is complete. */
 static vg_status make(struct vg_upload *u, const char *folder,
                       struct vg_error *err)
 {
@@ -40,7 +40,7 @@ static vg_status make(struct vg_upload *u, const char *folder,
   if (!lstat(u->path, &s)) return there_already(u->name, err);
   u->fd = mkostemp(u->temporary, O_CLOEXEC);
   if (u->fd >= 0) return VG_OK;
-  return vg_fail(err, VG_ERR_IO, "'%.80s' cannot be written there: %s", u->name,
+  return vg_fail(err, VG_ERR_IO, "cannot write '%.80s': %s", u->name,
                  strerror(errno));
 }
 
@@ -67,7 +67,7 @@ vg_status vg_upload_put(struct vg_upload *u, const char *data, size_t size,
 {
   if (size > most || u->size > most - size)
     return vg_fail(err, VG_ERR_INPUT,
-                   "the file has more than the %llu bytes "
+                   "the files are larger than the %llu bytes "
                    "that --max-upload allows",
                    (unsigned long long)most);
   while (size) {
@@ -76,7 +76,7 @@ vg_status vg_upload_put(struct vg_upload *u, const char *data, size_t size,
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0)
       return vg_fail(err, VG_ERR_IO, "the file could not be written: %s",
-                     n ? strerror(errno) : "no room");
+                     n ? strerror(errno) : "disk full");
     data += n;
     size -= (size_t)n;
     u->size += (uint64_t)n;
@@ -84,7 +84,8 @@ vg_status vg_upload_put(struct vg_upload *u, const char *data, size_t size,
   return VG_OK;
 }
 
-/* mkstemp's files are the owner's alone; this one is made as any other. */
+/* Files of mkstemp are accessible to the owner only; give this one the usual
+ * mode. */
 static int give_mode(int fd)
 {
   mode_t mask = umask(0);
@@ -93,13 +94,14 @@ static int give_mode(int fd)
   return fchmod(fd, 0666 & ~mask);
 }
 
-/* To its name, unless that has been taken meanwhile. */
+/* Rename the file to its final name, unless that exists by now. */
 static vg_status give_name(struct vg_upload *u, struct vg_error *err)
 {
   if (!renameat2(AT_FDCWD, u->temporary, AT_FDCWD, u->path, RENAME_NOREPLACE))
     return VG_OK;
   if (errno != EEXIST && !link(u->temporary, u->path)) {
-    unlink(u->temporary); /* a file system without that; link refuses, too */
+    unlink(u->temporary); /* no RENAME_NOREPLACE on this file system; link does
+                             not overwrite either */
     return VG_OK;
   }
   if (errno == EEXIST) return there_already(u->name, err);

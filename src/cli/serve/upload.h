@@ -1,6 +1,6 @@
-/* Private to cli/serve: files that a browser brings, one after the other. Each
- * has another name until it is whole, and never takes the place of one that is
- * there. */
+/* Private to cli/serve: uploaded files, one after the other. Each has a
+ * temporary name until it is complete, and never overwrites an existing file.
+ */
 #ifndef VG_CLI_SERVE_UPLOAD_H
 #define VG_CLI_SERVE_UPLOAD_H
 
@@ -10,32 +10,34 @@
 #include "base/status.h"
 
 struct vg_upload {
-  int fd;            /* of the file under way; -1: none */
-  char *name, *path; /* of it, or of the last one */
-  char *temporary;   /* what it is called so far; NULL: none */
-  uint64_t size;     /* of all files */
-  int n_whole;       /* files that are there */
+  int fd;            /* of the current file; -1: none */
+  char *name, *path; /* of the current file, or of the last one */
+  char *temporary;   /* temporary path; NULL: none */
+  uint64_t size;     /* total size of all files */
+  int n_whole;       /* number of complete files */
 };
 #define VG_UPLOAD_INIT                                                         \
   {                                                                            \
     -1, NULL, NULL, NULL, 0, 0                                                 \
   }
 
-/** Begin a file `name` in the folder `under` below root; one that is under way
- * is committed.
- * VG_ERR_INPUT: the folder or name cannot be, or the file is there already. */
+/** Commit the current file, if any, and begin a file `name` in the folder
+ * `under` below root.
+ * VG_ERR_INPUT: folder or name is invalid, or the file already exists. */
 vg_status vg_upload_begin(struct vg_upload *u, const char *root,
                           const char *under, const char *name,
                           struct vg_error *err);
 
-/** Add bytes. VG_ERR_INPUT: more than `most` in all; VG_ERR_IO: disk full. */
+/** Append bytes. VG_ERR_INPUT: more than `most` in total; VG_ERR_IO: disk
+ * full. */
 vg_status vg_upload_put(struct vg_upload *u, const char *data, size_t size,
                         uint64_t most, struct vg_error *err);
 
-/** Give it its name; nothing happens when none is under way. */
+/** Rename the current file, if any, to its final name. */
 vg_status vg_upload_commit(struct vg_upload *u, struct vg_error *err);
 
-/** Drop what is not committed. Accepts VG_UPLOAD_INIT. */
+/** Remove a file that is not committed, and free memory. Accepts
+ * VG_UPLOAD_INIT. */
 void vg_upload_release(struct vg_upload *u);
 
 #endif

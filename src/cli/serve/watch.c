@@ -1,4 +1,4 @@
-/* Runs that end, wait for their turn or tell how far they are. Declared in
+/* Monitors runs: their end, the queue, and their progress. Declared in
  * cli/serve/runs.h. */
 #define _GNU_SOURCE
 #include <errno.h>
@@ -12,7 +12,7 @@
 #include "cli/serve/runs.h"
 #include "run/common/progress.h"
 
-/* The exit status at the end of its log; -1: it does not say. */
+/* The exit status at the end of the log of a run; -1: unknown. */
 static int logged_status(const struct vg_serve_run *run)
 {
   char path[4096], text[4096];
@@ -23,15 +23,13 @@ static int logged_status(const struct vg_serve_run *run)
   return vg_tell_status(text, n);
 }
 
-/* What the last line of the output says, without the path that stands for
- * "nothing". */
+/* Set the note to the reason of the failure from the output of the run. */
 static void note_failure(struct vg_serve_run *run)
 {
   char path[4096], text[256];
 
   vg_failure_note(vg_run_path(run, "output.log", path), text, sizeof text);
-  if (!strncmp(text, "see /", 5))
-    snprintf(text, sizeof text, "it said nothing");
+  if (!strncmp(text, "see /", 5)) snprintf(text, sizeof text, "(no output)");
   if (run->exit_status > 128)
     snprintf(run->note, sizeof run->note,
              "ended by signal %d (%s); last "
@@ -39,8 +37,8 @@ static void note_failure(struct vg_serve_run *run)
              run->exit_status - 128, strsignal(run->exit_status - 128), text);
   else if (run->exit_status < 0)
     snprintf(run->note, sizeof run->note,
-             "gone without an exit status: "
-             "killed, or the machine went down; last line: %.160s",
+             "ended without an exit status: "
+             "killed, or the machine failed; last line: %.160s",
              text);
   else snprintf(run->note, sizeof run->note, "%.250s", text);
 }
@@ -61,7 +59,7 @@ void vg_run_ended(struct vg_serve_run *run, int exit_status)
     snprintf(run->note, sizeof run->note, "%s",
              run->is_sweep
                ? "equal mesh options gave different files"
-               : "a limit on the layers is not met; the mesh is whole");
+               : "a limit on the layers is not met; the mesh is complete");
   } else {
     note_failure(run);
     run->state = run->state == VG_SERVE_STOPPING ||
@@ -70,20 +68,21 @@ void vg_run_ended(struct vg_serve_run *run, int exit_status)
                  : VG_SERVE_FAILED;
     if (run->state == VG_SERVE_STOPPED && !run->is_sweep)
       snprintf(run->note, sizeof run->note, "%s",
-               vg_run_has_kept(run) ? "finished tasks are kept"
-                                    : "nothing was finished yet");
+               vg_run_has_kept(run) ? "finished tasks are stored"
+                                    : "no task was finished");
   }
   vg_record_write(run, &err);
 }
 
-/* 128 + n for signal n. */
+/* Exit status, or 128 + n if ended by signal n. */
 static int status_of(int wait_status)
 {
   return WIFEXITED(wait_status) ? WEXITSTATUS(wait_status)
                                 : 128 + WTERMSIG(wait_status);
 }
 
-/* Whether its process is gone, and how it ended (-1: not known). */
+/* Whether the process of the run has ended, and its exit status (-1:
+ * unknown). */
 static int is_gone(struct vg_serve_run *run, int *exit_status)
 {
   int status;
@@ -106,7 +105,7 @@ static void watch_process(struct vg_serve_run *run)
   else vg_run_ended(run, exit_status);
 }
 
-/* Only where the output has grown. */
+/* Read the progress of a run if its output has grown. */
 static void listen_to(struct vg_serve_run *run)
 {
   char path[4096], text[4096];

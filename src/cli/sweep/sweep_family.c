@@ -1,4 +1,4 @@
-/* A grid family: its members, and how far they follow its rule. */
+/* A grid family: its members, and how well they follow the family rule. */
 #define _GNU_SOURCE
 #include <jansson.h>
 #include <math.h>
@@ -16,8 +16,8 @@ double vg_sweep_scale(int64_t level)
   return 2 / ((double)level + 1);
 }
 
-/* What figure k is multiplied by from level a to level b: cells by the cube of
- * what edges are divided by. */
+/* Factor of quantity k from level a to level b: that of cells is the cube of
+ * the refinement ratio of edges. */
 static double rule(int k, int64_t a, int64_t b)
 {
   double finer = vg_sweep_scale(a) / vg_sweep_scale(b);
@@ -48,8 +48,8 @@ void vg_sweep_member(const json_t *report, struct vg_sweep_case *c)
   c->member[VG_MEMBER_LEVELS] = number(layers, "all", "levels", "mean");
 }
 
-/* The member that case i follows: the last one before it of another level that
- * is as it otherwise; NULL: there is none. */
+/* The previous member of the family: the last case before i of another level
+ * with the same parameters otherwise, or NULL. */
 static const struct vg_sweep_case *before(const struct vg_sweep *s, size_t i)
 {
   const struct vg_sweep_case *c = &s->item[i], *p;
@@ -65,7 +65,7 @@ static const struct vg_sweep_case *before(const struct vg_sweep *s, size_t i)
   return NULL;
 }
 
-/* Only where there is something to compare. */
+/* Print a member and, if there is a previous one, the ratios to it. */
 static void text_of(FILE *to, const struct vg_sweep_case *c,
                     const struct vg_sweep_case *p)
 {

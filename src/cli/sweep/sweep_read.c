@@ -1,4 +1,4 @@
-/* What a run of a sweep left: its report and record; and comparing runs. */
+/* Reads report and timeline of the runs of a sweep, and compares runs. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <jansson.h>
@@ -20,7 +20,8 @@ static int ends_with(const char *text, const char *end)
   return n >= m && !strcmp(text + n - m, end);
 }
 
-/* The file in a folder whose name ends so, the first by name; free() it. */
+/* The first file (by name) in a folder whose name ends with `end`; to be freed
+ * by the caller. */
 static char *find_file(const char *dir, const char *end)
 {
   struct dirent **list = NULL;
@@ -44,7 +45,7 @@ static double number_at(const json_t *o, const char *key)
   return json_is_number(v) ? json_number_value(v) : NAN;
 }
 
-/* "files": paths alone, or objects with path and digest. */
+/* Entries of "files" are paths, or objects with path and digest. */
 static const char *file_name(const json_t *file)
 {
   const char *path = json_is_string(file)
@@ -68,7 +69,7 @@ static void take_digests(const json_t *files, struct vg_sweep_case *c)
     const char *name = file_name(file);
     const char *xxh3 = json_string_value(json_object_get(file, "xxh3"));
 
-    /* Reports hold times, which differ. */
+    /* Reports contain times, which differ. */
     if (name && xxh3 && !ends_with(name, ".json"))
       fprintf(to, "%s %s\n", name, xxh3);
   }
@@ -100,7 +101,7 @@ static void remove_meshes(const json_t *files, const char *dir)
   }
 }
 
-/* How the void was parted, and how good cells are at interfaces. */
+/* Read the figures of the decomposition and the quality near interfaces. */
 static void take_parts(const json_t *root, struct vg_sweep_parts *to)
 {
   static const char *const steps[] = { "coarse_seconds", "deal_seconds",
@@ -142,7 +143,7 @@ static void read_report(const struct vg_sweep_options *o,
   free(path);
 }
 
-/* The longest chain of tasks of a run, on the machine that it had. */
+/* The critical path of the tasks of a run on its own machine, in seconds. */
 static double critical_of(const struct vg_timeline *t)
 {
   struct vg_machine m = VG_MACHINE_INIT;
@@ -213,7 +214,7 @@ double vg_sweep_field_cells(const struct vg_sweep_case *c)
   double sum = 0;
 
   if (!c->has_timeline) return NAN;
-  for (size_t i = 0; i < c->t.spans.n; i++) /* repairs change them only */
+  for (size_t i = 0; i < c->t.spans.n; i++) /* repairs only modify cells */
     if (c->t.spans.span[i].kind != VG_SPAN_REPAIR)
       sum += (double)c->t.spans.span[i].n_cell;
   return sum;
@@ -233,7 +234,7 @@ double vg_sweep_cells_ratio(const struct vg_sweep *s,
   return one ? vg_sweep_field_cells(c) / vg_sweep_field_cells(one) : NAN;
 }
 
-/* Name of the first file whose line is not the same in both lists. */
+/* Name of the first file whose line differs between the two lists. */
 static void first_difference(const char *a, const char *b, char *file)
 {
   snprintf(file, 64, "some file");

@@ -1,4 +1,4 @@
-/* The cases of a sweep, and running them one after the other. */
+/* Creates the cases of a sweep and runs them one after the other. */
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <errno.h>
@@ -49,7 +49,7 @@ vg_status vg_sweep_ways(const char *what, const char *text,
     if (way < 0)
       return vg_fail(err, VG_ERR_INPUT,
                      "%s takes advancing, discrete or "
-                     "octree, with commas between, not '%.*s'",
+                     "octree, separated by commas, not '%.*s'",
                      what, (int)len, at);
     for (int k = 0; k < o->n_way; k++) is_there |= o->way[k] == way;
     if (!is_there) o->way[o->n_way++] = way;
@@ -104,7 +104,7 @@ static vg_status add_machines(struct vg_sweep *s, struct vg_sweep_case *c,
   return st;
 }
 
-/* A family has scales of its own, which one after '--' would undo. */
+/* A family sets --scale itself; one after '--' would override it. */
 static vg_status check_extra(const struct vg_sweep_options *o,
                              struct vg_error *err)
 {
@@ -112,8 +112,8 @@ static vg_status check_extra(const struct vg_sweep_options *o,
     if (!strcmp(o->extra[i], "--scale") ||
         !strncmp(o->extra[i], "--scale=", strlen("--scale=")))
       return vg_fail(err, VG_ERR_INPUT,
-                     "--scale after '--' would take the "
-                     "place of the scales of --family: give that of the first "
+                     "--scale after '--' would override "
+                     "the scales of --family; give the scale of the first "
                      "level in the deck");
   return VG_OK;
 }
@@ -136,7 +136,8 @@ vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
   if (n <= VG_RANGE_MAX) n *= o->ranks.n;
   if (n <= VG_RANGE_MAX) n *= o->threads.n;
   if (n > VG_RANGE_MAX)
-    return vg_fail(err, VG_ERR_INPUT, "that is more than %d cases",
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the lists give more than %d cases; shorten them",
                    VG_RANGE_MAX);
   s->item = vg_calloc(n, sizeof *s->item);
   if (!s->item) return vg_fail_memory(err, "the cases");
@@ -160,7 +161,8 @@ done:
 
 /* --- command lines ------------------------------------------------------- */
 
-/* What comes after '--' may have another rule for the layers. */
+/* Options of a family member; they precede those after '--', which may
+ * therefore select another rule for the layers. */
 static vg_status add_member(struct vg_words *w,
                             const struct vg_sweep_options *o,
                             const struct vg_sweep_case *c, struct vg_error *err)
@@ -221,7 +223,8 @@ static int ends_with(const char *text, const char *end)
   return n >= m && !strcmp(text + n - m, end);
 }
 
-/* Reports of an earlier sweep must not be taken for this one's. */
+/* Remove the reports of an earlier sweep, so that they are not read as those of
+ * this one. */
 static void remove_stale(const char *dir)
 {
   DIR *d = opendir(dir);
@@ -234,7 +237,7 @@ static void remove_stale(const char *dir)
   if (d) closedir(d);
 }
 
-/* In the child: never returns. */
+/* Execute the command in the child process; never returns. */
 static void become(char **word, int log, const sigset_t *mask)
 {
   sigprocmask(SIG_SETMASK, mask, NULL);
@@ -247,8 +250,8 @@ static void become(char **word, int log, const sigset_t *mask)
   _exit(127);
 }
 
-/* Sleep until a child ends; SIGTERM is for the child too, which did not get
- * it (it got a Ctrl-C itself). */
+/* Wait until the child ends. A SIGTERM is forwarded to the child, which does
+ * not receive it otherwise (Ctrl-C reaches it directly). */
 static int wait_for(pid_t child, const sigset_t *chld)
 {
   const struct timespec pause = { 0, 200000000 };
@@ -310,7 +313,7 @@ vg_status vg_sweep_run(const struct vg_sweep_options *o,
     goto done;
   }
   VG_TRY(spawn(c, w.word, log, err));
-  /* Missed limits on the layers leave a mesh that is whole. */
+  /* If a limit on the layers is not met, the mesh is complete nevertheless. */
   c->is_done = c->exit_status == VG_EXIT_DONE ||
                c->exit_status == VG_EXIT_LIMIT;
   if (!c->is_done) vg_failure_note(path, c->note, sizeof c->note);

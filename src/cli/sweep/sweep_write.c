@@ -1,4 +1,4 @@
-/* Tables and figures of a sweep. */
+/* Writes the tables and plots of a sweep. */
 #define _GNU_SOURCE
 #include <jansson.h>
 #include <math.h>
@@ -58,7 +58,7 @@ static size_t leaf_count(const struct vg_spans *s)
   return n;
 }
 
-/* What is not known is NAN, an empty field. */
+/* Unknown values are NAN, which is written as an empty field. */
 static void values_of(const struct vg_sweep *s, const struct vg_sweep_case *c,
                       double v[N_VALUE])
 {
@@ -174,7 +174,7 @@ static json_t *whole_or_null(int64_t v)
   return v >= 0 ? json_integer((json_int_t)v) : json_null();
 }
 
-/* Seconds of a cell and of a face of the front, by kind of task. */
+/* Seconds per cell and per face of the front, by kind of task. */
 static json_t *rates_json(const struct vg_sweep_case *c)
 {
   static const char kinds[] = { VG_SPAN_LEAF, VG_SPAN_PENCIL, VG_SPAN_TILE };
@@ -308,10 +308,10 @@ done:
   return st;
 }
 
-/* A line of the speed-up figure being put together. */
+/* A curve of the speed-up plot. */
 struct line {
   const struct vg_sweep_case *mesh;
-  int colour; /* a model has that of what it models */
+  int colour; /* a model has the colour of the measured curve */
   char label[64];
   size_t n;
   double *workers, *speedup; /* [VG_RANGE_MAX at most] */
@@ -347,7 +347,7 @@ static int same_point(const struct vg_sweep_case *a,
          a->threads == b->threads;
 }
 
-/* Median time of all repeats of a case; NAN when none is done. */
+/* Median time of all repeats of a case; NAN if none is finished. */
 static vg_status median(const struct vg_sweep *s, const struct vg_sweep_case *c,
                         double *out, struct vg_error *err)
 {
@@ -382,7 +382,7 @@ static vg_status new_line(struct lines *l, const struct vg_sweep_case *mesh,
   return VG_OK;
 }
 
-/* Points are kept by workers, whatever the order of the list was. */
+/* Insert a point; points are sorted by the number of workers. */
 static void add_point(struct line *l, double workers, double speedup)
 {
   size_t at = l->n++;
@@ -397,18 +397,19 @@ static void add_point(struct line *l, double workers, double speedup)
 
 static void name_mesh(const struct vg_sweep_case *c, char *text, size_t size)
 {
-  if (c->levels >= 0) snprintf(text, size, "%lld levels", (long long)c->levels);
+  if (c->levels >= 0)
+    snprintf(text, size, "%lld bisections", (long long)c->levels);
   else if (c->leaf_cells >= 0)
-    snprintf(text, size, "leaves of %lld", (long long)c->leaf_cells);
+    snprintf(text, size, "%lld cells per leaf", (long long)c->leaf_cells);
   else if (c->way >= 0) snprintf(text, size, "%s", vg_ways[c->way].name);
   else snprintf(text, size, "measured");
   if (c->parts >= 0)
-    snprintf(text + strlen(text), size - strlen(text), ", %lld parts",
+    snprintf(text + strlen(text), size - strlen(text), ", %lld subdomains",
              (long long)c->parts);
 }
 
-/* The points of one mesh with `fixed` threads (or ranks, where more numbers
- * of threads than of ranks were asked for). */
+/* Add the curve of one mesh over ranks, with a fixed number of threads, or over
+ * threads with a fixed number of ranks if !by_ranks. */
 static vg_status add_measured(const struct vg_sweep *s,
                               const struct vg_sweep_case *first, int by_ranks,
                               double base, struct lines *l,
@@ -439,7 +440,7 @@ done:
   return st;
 }
 
-/* What the model makes of the tasks of the run on one worker. */
+/* Add the curve that the model predicts from the run on one worker. */
 static vg_status add_model(const struct vg_sweep *s,
                            const struct vg_sweep_case *mesh, double base,
                            double most, struct lines *l, struct vg_error *err)
@@ -476,7 +477,8 @@ done:
   return st;
 }
 
-/* 1 when the mesh, and the fixed number, did not come up before item i. */
+/* Returns 1 if item i is the first with its mesh and, unless by_ranks < 0, with
+ * its fixed number of threads or ranks. */
 static int is_first(const struct vg_sweep *s, size_t i, int by_ranks)
 {
   for (size_t k = 0; k < i; k++)
@@ -500,7 +502,7 @@ static vg_status draw_speedup(const struct vg_sweep *s, struct vg_error *err)
   if (!base) return VG_OK;
   VG_TRY(median(s, base, &time, err));
   seconds[vg_format_real(floor(time * 100 + 0.5) / 100, seconds)] = 0;
-  time *= base->ranks * base->threads; /* of one worker */
+  time *= base->ranks * base->threads; /* time of one worker */
   for (size_t i = 0; i < s->n; i++) {
     double workers = s->item[i].ranks * s->item[i].threads;
 
@@ -522,7 +524,8 @@ static vg_status draw_speedup(const struct vg_sweep *s, struct vg_error *err)
       l.line[i].label, l.line[i].colour,  i >= n_measured,
       l.line[i].n,     l.line[i].workers, l.line[i].speedup
     };
-  snprintf(subtitle, sizeof subtitle, "against %s: %s s", base->name, seconds);
+  snprintf(subtitle, sizeof subtitle, "relative to %s: %s s", base->name,
+           seconds);
   VG_TRY(path_of(s, "speedup.svg", &path, err));
   VG_TRY(vg_plot_speedup(path, s->o->project, subtitle, l.n, l.series, err));
 done:

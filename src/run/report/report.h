@@ -1,5 +1,5 @@
-/* run/report/report.h: findings as text for a person and as JSON for a program.
- * */
+/* run/report/report.h: reports as text for the terminal and as JSON for
+ * programs. */
 #ifndef VG_RUN_REPORT_REPORT_H
 #define VG_RUN_REPORT_REPORT_H
 
@@ -15,95 +15,98 @@
 #include "partition/solver/solver.h"
 #include "run/input/layers.h"
 
-#define VG_SHOWN_DEFECTS 3   /* first ones of a kind, for a person */
-#define VG_LISTED_DEFECTS 20 /* first ones of a kind, for a program */
-#define VG_SHOWN_ITEMS 20    /* shells, or numbers of patches, in one list */
-#define VG_SHOWN_FACES 3     /* as much of bad triangles */
+#define VG_SHOWN_DEFECTS 3   /* defects of a kind listed in the text */
+#define VG_LISTED_DEFECTS 20 /* defects of a kind listed in the JSON */
+#define VG_SHOWN_ITEMS 20    /* shells, or patch numbers, listed in the text */
+#define VG_SHOWN_FACES 3     /* poor triangles listed in the text */
 
-/** Counts of a mesh, its box and its patches. */
+/** Counts of a mesh and its bounding box. */
 void vg_report_size_text(FILE *to, const struct vg_mesh *m);
 json_t *vg_report_size_json(const struct vg_mesh *m);
 
-/** Number, faces, conditions, area, name and box of every patch; on screen at
- * most VG_SHOWN_PATCHES. */
+/** Number, faces, conditions, area, name and bounding box of every patch; the
+ * text lists at most VG_SHOWN_PATCHES. */
 #define VG_SHOWN_PATCHES 40
 vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
                                  struct vg_error *err);
 json_t *vg_report_patches_json(const struct vg_mesh *m);
 
-/** Every kind of defect counted, the first `shown` of each in words, shells,
- * and what the repair did. */
+/** Shells, repairs, triangle quality, and the number of defects of each kind
+ * with a description of the first `shown` ones. */
 void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
                             const struct vg_surface_report *r, size_t shown);
 json_t *vg_report_surface_json(const struct vg_mesh *m,
                                const struct vg_surface_report *r, size_t shown);
 
-/** A surface that was made anew; nothing, or null, where none was. */
+/** Result of remeshing; prints nothing, or returns null, if the surface was not
+ * remeshed. */
 void vg_report_remesh_text(FILE *to, const struct vg_remeshing *n);
 json_t *vg_report_remesh_json(const struct vg_remeshing *n,
                               const struct vg_mesh *m);
 
-/** Lines and corners of a surface as vg_remesh_judge found them, bad triangles
- * by cause; fit: edges against the sizes asked for, too. */
+/** Feature curves and corners of a surface as found by vg_remesh_judge, poor
+ * triangles by cause; if `fit`, also the edges that match the target edge
+ * lengths. */
 void vg_report_lines_text(FILE *to, const struct vg_remesh_report *r, int fit);
 json_t *vg_report_lines_json(const struct vg_remesh_report *r, int fit);
 
-/** Distances from the surface in a file, and of it from this one. */
+/** Distances between this surface and the one in `file`, in both directions. */
 void vg_report_distances_text(FILE *to, const char *file,
                               const struct vg_remesh_distance d[2]);
 json_t *vg_report_distances_json(const char *file,
                                  const struct vg_remesh_distance d[2]);
 
-/** Validity, then quality; `full`: with histograms and the worst cells. */
+/** Validity and quality of a mesh; if `full`, also histograms and the worst
+ * cells. */
 void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full);
 
-/** The same of a mesh with layers, whose flat cells have no angles to be
- * judged by: validity and volumes. */
+/** Validity and volume ratios of a mesh with layers: angles say nothing about
+ * the quality of its flat layer cells. */
 void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r);
 json_t *vg_report_mesh_json(const struct vg_mesh_report *r);
 
-/** What is wrong with an invalid mesh: "3 cells not positive, ...". */
+/** Describe why a mesh is invalid: "3 cells not positive, ...". */
 void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size);
 
-/** Add the fields of a report (base/entries.h) to o in their order; times to
- * seconds, which may be o. */
+/** Add the fields of a report (base/entries.h) to o in their order; times go to
+ * `seconds`, which may be o. */
 void vg_report_entries(json_t *o, json_t *seconds, const struct vg_entries *l,
                        const void *report);
 
-/** What the fill did and how fast. */
+/** Operations and times of the volume fill. */
 void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
                          size_t n_cell);
 json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell);
 
-/** The flow domain with its evidence, as the head of a report.
- * @param adds_farfield  1: a farfield is added, or was */
+/** The flow domain with its evidence, the beginning of a report.
+ * @param adds_farfield  1: a farfield is or was added */
 void vg_report_flow_text(FILE *to, const struct vg_flow *f, int adds_farfield);
 json_t *vg_report_flow_json(const struct vg_flow *f, int adds_farfield);
 
-/** What was added around the body. */
+/** Symmetry plane and farfield that were added. */
 void vg_report_domain_text(FILE *to, const struct vg_domain_report *r);
 json_t *vg_report_domain_json(const struct vg_domain_report *r);
 
-/** Largest memory of this process so far, bytes. */
+/** Peak memory of this process so far, bytes. */
 double vg_report_peak_memory(void);
 
-/** A note where whole patches stay without layers since
- * the first height is larger than their edges allow. On rank 0. */
+/** Add a note if whole patches have no layers because the first height is too
+ * large for their edges. On rank 0. */
 void vg_report_layers_note(const struct vg_layer_stage *s,
                            const struct vg_mesh *surface,
                            struct vg_notes *notes);
 
-/** Tables by patch, causes in words, times and rates. */
+/** Tables by patch, causes of missing layers, times and rates. */
 void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
                            const struct vg_mesh *surface);
 json_t *vg_report_layers_json(const struct vg_layer_stage *s,
                               const struct vg_mesh *surface);
 
-/** Parts for the solver: balance, borders, stacks. */
+/** Solver partition: balance, interfaces, stacks. */
 void vg_report_solver_text(FILE *to, const struct vg_solver_report *r);
 json_t *vg_report_solver_json(const struct vg_solver_report *r);
 
-/** Limits that are not met, one line each. */
+/** The limits that are not met, one per line. */
 void vg_report_missed_text(FILE *to, const struct vg_layer_stage *s,
                            const struct vg_mesh *surface);
 

@@ -1,4 +1,4 @@
-/* Reports on viscous layers. Declared in run/input/layers.h. */
+/* Reports on viscous layers. Declared in run/report/report.h. */
 #include <math.h>
 #include <string.h>
 
@@ -6,7 +6,9 @@
 #include "run/input/layers.h"
 #include "run/report/report.h"
 
-#define FIRST_SHOWN 1e-3 /* relative difference of first heights */
+#define FIRST_SHOWN                                                            \
+  1e-3 /* relative difference of first heights from which a                    \
+          patch is listed */
 
 static const struct vg_patch *patch_of(const struct vg_mesh *surface,
                                        const struct vg_patch_layers *w)
@@ -14,7 +16,8 @@ static const struct vg_patch *patch_of(const struct vg_mesh *surface,
   return &surface->patch[w->patch];
 }
 
-/* "   3 wing            " or "all": the first column of every table. */
+/* The first two columns of every table: "   3 wing            ", or "all" if
+ * there is no surface. */
 static void row_name(FILE *to, const struct vg_mesh *surface,
                      const struct vg_patch_layers *w)
 {
@@ -32,12 +35,12 @@ static void row_cover(FILE *to, const struct vg_mesh *surface,
   char count[32];
 
   row_name(to, surface, w);
-  fprintf(to, " %11s %7.2f %7.2f %7.2f %5.0f %6.1f %4.0f\n",
+  fprintf(to, " %11s  %13.2f  %15.2f  %11.2f  %10.0f %6.1f %5.0f\n",
           vg_text_count(w->n_face, count), w->full, w->uncompressed, w->any,
           w->level.min, w->level.mean, w->level.max);
 }
 
-/* What most faces with fewer or thinner layers are limited by. */
+/* The most frequent cause of fewer or thinner layers. */
 static const char *main_cause(const struct vg_patch_layers *w)
 {
   int most = VG_CAUSE_NONE;
@@ -55,7 +58,7 @@ static void row_height(FILE *to, const struct vg_mesh *surface,
                        const struct vg_patch_layers *w)
 {
   row_name(to, surface, w);
-  fprintf(to, " %11.3f %8.3f %16.2f   %s\n", w->share_mean, w->share_low,
+  fprintf(to, " %11.3f %15.3f %18.2f   %s\n", w->share_mean, w->share_low,
           w->share_area, main_cause(w));
 }
 
@@ -63,7 +66,7 @@ static void row_first(FILE *to, const struct vg_mesh *surface,
                       const struct vg_patch_layers *w)
 {
   row_name(to, surface, w);
-  fprintf(to, " %10.4g %10.4g %10.4g %10.4g %8.3f\n", w->asked.mean,
+  fprintf(to, " %11.4g %10.4g %10.4g %10.4g %8.3f\n", w->asked.mean,
           w->first.min, w->first.mean, w->first.max, 100 * w->first_error);
 }
 
@@ -71,16 +74,16 @@ static void row_total(FILE *to, const struct vg_mesh *surface,
                       const struct vg_patch_layers *w)
 {
   row_name(to, surface, w);
-  fprintf(to, " %9.3g %9.3g %9.3g %6.3f %6.3f", w->total.min, w->total.mean,
+  fprintf(to, " %11.3g %9.3g %9.3g %12.3f %6.3f", w->total.min, w->total.mean,
           w->total.max, w->growth.mean, w->growth.max);
   if (w->y_plus.max > 0)
-    fprintf(to, " %6.2f %6.2f %6.2f", w->y_plus.min, w->y_plus.mean,
+    fprintf(to, " %8.2f %6.2f %6.2f", w->y_plus.min, w->y_plus.mean,
             w->y_plus.max);
   fprintf(to, "\n");
 }
 
-/* First heights are the same on most patches: worth a line are those that
- * ask for something else than all together, or get it. */
+/* First heights are equal on most patches: only those are listed whose
+ * requested height differs from the overall mean, or which deviate from it. */
 static int is_first_special(const struct vg_layer_stage *s,
                             const struct vg_patch_layers *w)
 {
@@ -114,7 +117,7 @@ static void row_top(FILE *to, const struct vg_mesh *surface,
                     const struct vg_patch_layers *w)
 {
   row_name(to, surface, w);
-  fprintf(to, " %10.2f %7.2f %9.2f\n", w->top_ratio[0], w->top_ratio[1],
+  fprintf(to, " %11.2f %15.2f %8.2f\n", w->top_ratio[0], w->top_ratio[1],
           w->top_ratio[2]);
 }
 
@@ -125,22 +128,24 @@ typedef int (*row_chooser)(const struct vg_layer_stage *s,
                            const struct vg_patch_layers *w);
 
 static void table(FILE *to, const struct vg_layer_stage *s,
-                  const struct vg_mesh *surface, const char *head,
-                  row_writer row, row_chooser choose)
+                  const struct vg_mesh *surface, const char *title,
+                  const char *head, row_writer row, row_chooser choose)
 {
   size_t n = 0;
 
-  fprintf(to, "\n  %5s %-16s %s\n", "patch", "name", head);
+  fprintf(to, "\n  %s\n  %5s %-16s %s\n", title, "patch", "name", head);
   for (size_t i = 0; i < s->n_wall; i++)
     if (choose(s, &s->wall[i]) && n++ < VG_SHOWN_PATCHES)
       row(to, surface, &s->wall[i]);
   if (n > VG_SHOWN_PATCHES)
-    fprintf(to, "  ... and %zu more patches (all are in the JSON report)\n",
+    fprintf(to,
+            "  ... and %zu more patches (the JSON report lists all of them)\n",
             n - VG_SHOWN_PATCHES);
   if (s->n_wall > 1) row(to, NULL, &s->all);
 }
 
-/* ", proximity 12, corner 3" of counts that are reasons to tell. */
+/* Print the counts that are not zero, as in "proximity 12, corner 3"; returns
+ * how many there are. */
 static int cause_words(FILE *to, const char *lead, const size_t *count)
 {
   char n[32];
@@ -174,9 +179,9 @@ void vg_report_layers_note(const struct vg_layer_stage *s,
   }
   if (n)
     vg_note(notes,
-            "no layers on %zu of %zu walls (patch%s%s): their first "
-            "height, %g, is above layer_end times the edge there; is it in "
-            "the unit of the surface?",
+            "no layers on %zu of %zu walls (patch%s%s): the first "
+            "height, %g, exceeds layer_end times the local edge length; is it "
+            "in the unit of the surface?",
             n, s->n_wall, n > 1 ? "es" : "", list, first);
 }
 
@@ -194,13 +199,15 @@ static void causes(FILE *to, const struct vg_layer_stage *s,
       sum += w->cause[c] + w->compressed[c];
     if (!sum) continue;
     if (!shown++)
-      fprintf(to, "\n  faces with fewer or thinner layers, by "
-                  "cause\n");
+      fprintf(to, "\n  Wall faces with fewer or thinner layers than "
+                  "requested, by cause\n");
     row_name(to, surface, w);
     if (cause_words(to, " fewer: ", w->cause)) fprintf(to, ";");
     cause_words(to, " thinner: ", w->compressed);
     if (bare)
-      fprintf(to, " none: %s (first height above layer_end times the edge)",
+      fprintf(to,
+              " none: %s (first height exceeds layer_end times the edge "
+              "length)",
               vg_text_count(bare, count));
     fprintf(to, "\n");
   }
@@ -217,9 +224,9 @@ static void times(FILE *to, const struct vg_layer_stage *s)
   char a[32], b[32];
 
   fprintf(to,
-          "\n  seconds: topology %.2f, directions %.2f, heights %.2f, "
+          "\n  time (s): topology %.2f, directions %.2f, heights %.2f, "
           "clearance %.2f,\n  slide patches %.2f, total %.2f (%s columns/s, "
-          "%s layer cells/s); measure %.2f, join %.2f\n",
+          "%s layer cells/s); measurement %.2f, front %.2f\n",
           r->time_topology, r->time_direction, r->time_height, r->time_clear,
           r->time_slide, r->time_total,
           vg_text_count(rate(r->n_column, r->time_total), a),
@@ -242,12 +249,12 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
           vg_text_count(j->n_layer_tet, a), vg_text_count(j->n_layer_pri, b),
           vg_text_count(j->n_layer_pyr, c));
   fprintf(to,
-          "  rounds of lowering until clear: %zu; patches re-meshed: %zu "
-          "with %s triangles\n",
+          "  rounds of height reduction until free of collisions: %zu; slide "
+          "patches remeshed: %zu, %s triangles\n",
           r->n_round, r->n_slide_patch, vg_text_count(r->n_slide_tri, a));
   if (r->n_many_faces)
     fprintf(to,
-            "  columns of more than %d faces, for which some rays are not "
+            "  columns with more than %d faces, for which not all rays are "
             "traced: %zu\n",
             VG_AHEAD_FACES, r->n_many_faces);
 }
@@ -255,32 +262,31 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
 void vg_report_layers_text(FILE *to, const struct vg_layer_stage *s,
                            const struct vg_mesh *surface)
 {
-  const char *with_y_plus = "    total: least, mean, most   growth: mean, max"
-                            "   y+: min mean max";
-  const char *without = "    total: least, mean, most   growth: mean, max";
+  const char *with_y_plus = "height: min      mean       max growth: mean    "
+                            "max  y+: min   mean    max";
+  const char *without = "height: min      mean       max growth: mean    max";
   char a[32], b[32];
 
   sizes(to, s);
-  table(to, s, surface,
-        "      faces  full %  as law   any %  levels: min, "
-        "mean, max",
+  table(to, s, surface, "Coverage of the wall faces",
+        "      faces  full layers %  at growth law %  any layer %  levels min  "
+        " mean   max",
         row_cover, is_any);
-  table(to, s, surface,
-        "height over the law's: mean, 5 % below, % of area "
-        ">= 0.9, limited by",
+  table(to, s, surface, "Total height / growth-law height",
+        "       mean  5th percentile   % of area >= 0.9  limited by",
         row_height, is_limited);
+  table(to, s, surface, "First height (length unit of the surface)",
+        "  requested        min       mean        max  error %", row_first,
+        is_first_special);
   table(to, s, surface,
-        "first asked   got: min       mean        max  "
-        "error %",
-        row_first, is_first_special);
-  table(to, s, surface, s->all.y_plus.max > 0 ? with_y_plus : without,
-        row_total, is_any);
-  table(to, s, surface, "volume ratio across the top: median, 95 %, largest",
-        row_top, has_tops);
+        "Total height (length unit of the surface) and growth ratio",
+        s->all.y_plus.max > 0 ? with_y_plus : without, row_total, is_any);
+  table(to, s, surface, "Volume ratio of the cells across the layer tops",
+        "     median 95th percentile      max", row_top, has_tops);
   causes(to, s, surface);
   fprintf(to,
-          "\n  smallest angle of a top %.1f degrees; whole prisms %s, "
-          "with a bad corner %s\n",
+          "\n  smallest angle of a top face %.1f degrees; complete prisms %s, "
+          "of these with a non-positive corner %s\n",
           s->judgement.top_angle_min, vg_text_count(s->judgement.n_prism, a),
           vg_text_count(s->judgement.n_bad_corner, b));
   times(to, s);

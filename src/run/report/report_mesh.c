@@ -1,4 +1,5 @@
-/* Reports on volume meshes and the fill. Declared in run/report/report.h. */
+/* Reports on volume meshes and the volume fill. Declared in
+ * run/report/report.h. */
 #include <math.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -16,7 +17,8 @@ double vg_report_peak_memory(void)
   return 1024.0 * (double)use.ru_maxrss;
 }
 
-/* The rows of validity, for both forms of the report. */
+/* Row i of the validity checks; its name is also the JSON key. *name is NULL
+ * past the last row. */
 static size_t validity(const struct vg_mesh_report *r, int i, const char **name)
 {
   const struct {
@@ -82,8 +84,8 @@ static void validity_text(FILE *to, const struct vg_mesh_report *r)
     if (n) fprintf(to, "    %-24s %13s\n", name, vg_text_count(n, count));
   }
   fprintf(to,
-          "  volume %.10g, enclosed by the boundary %.10g, difference "
-          "%.2g\n",
+          "  volume: sum of cells %.10g, enclosed by the boundary %.10g, "
+          "difference %.2g\n",
           r->volume, r->enclosed, r->volume_error);
   fprintf(to, "  connected regions: %zu\n", r->n_component);
 }
@@ -93,7 +95,10 @@ void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size)
   const char *name;
   size_t at = 0;
 
-  snprintf(text, size, "volumes differ by %.2g", r->volume_error);
+  snprintf(text, size,
+           "the sum of the cell volumes differs from the enclosed "
+           "volume by %.2g",
+           r->volume_error);
   for (int i = 0;; i++) {
     size_t n = validity(r, i, &name);
 
@@ -107,28 +112,30 @@ void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size)
 static void quality_text(FILE *to, const struct vg_mesh_report *r)
 {
   fprintf(to,
-          "  dihedral angles: smallest %.2f, largest %.2f, 1st "
-          "percentile of the smallest %.2f degrees\n",
+          "  dihedral angles (degrees): smallest %.2f, largest %.2f; 1st "
+          "percentile of each cell's smallest %.2f\n",
           r->angle_min, r->angle_max, r->angle_min_p1);
   fprintf(to,
-          "  cells below  5 10 15 20 30 degrees: %.4f %.4f %.4f %.4f "
-          "%.4f %%\n",
+          "  cells with an angle below 5, 10, 15, 20, 30 degrees: %.4f %.4f "
+          "%.4f %.4f %.4f %%\n",
           r->below[0], r->below[1], r->below[2], r->below[3], r->below[4]);
-  fprintf(to, "  cells above  150 160 170 degrees:   %.4f %.4f %.4f %%\n",
+  fprintf(to,
+          "  cells with an angle above 150, 160, 170 degrees:     %.4f %.4f "
+          "%.4f %%\n",
           r->above[0], r->above[1], r->above[2]);
   fprintf(to,
-          "  radius ratio 3 r/R: mean %.4f, smallest %.4f; mean ratio: "
+          "  radius ratio (3 r/R): mean %.4f, smallest %.4f; mean ratio: "
           "mean %.4f\n",
           r->radius_ratio_mean, r->radius_ratio_min, r->mean_ratio_mean);
   fprintf(to,
-          "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
-          "largest %.1f\n",
+          "  volume ratio of neighbouring cells: median %.2f, 95th percentile "
+          "%.2f, largest %.1f\n",
           r->volume_ratio[0], r->volume_ratio[1], r->volume_ratio[2]);
-  fprintf(to, "  mean edge: %.6g\n", r->edge_length);
+  fprintf(to, "  mean edge length: %.6g\n", r->edge_length);
   if (r->has_sizing)
     fprintf(to,
-            "  edges / target spacing: mean %.3f, within 0.7 to 1.5: "
-            "%.2f %%\n",
+            "  edge length / target edge length: mean %.3f; between 0.7 and "
+            "1.5: %.2f %%\n",
             r->edge_mean, r->edge_within);
 }
 
@@ -136,8 +143,8 @@ void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r)
 {
   validity_text(to, r);
   fprintf(to,
-          "  volume ratio of neighbours: median %.2f, 95 %% below %.2f, "
-          "largest %.1f\n",
+          "  volume ratio of neighbouring cells: median %.2f, 95th percentile "
+          "%.2f, largest %.1f\n",
           r->volume_ratio[0], r->volume_ratio[1], r->volume_ratio[2]);
 }
 
@@ -146,17 +153,17 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
   validity_text(to, r);
   quality_text(to, r);
   if (!full) return;
-  bars(to, "smallest dihedral angle of a cell, degrees", r->hist_angle_min,
+  bars(to, "Smallest dihedral angle of each cell (degrees)", r->hist_angle_min,
        VG_HIST_ANGLE, 5, 0);
-  bars(to, "largest dihedral angle of a cell, degrees", r->hist_angle_max,
+  bars(to, "Largest dihedral angle of each cell (degrees)", r->hist_angle_max,
        VG_HIST_ANGLE, 5, 0);
-  bars(to, "radius ratio", r->hist_radius_ratio, VG_HIST_UNIT, 0.05, 2);
+  bars(to, "Radius ratio (3 r/R)", r->hist_radius_ratio, VG_HIST_UNIT, 0.05, 2);
   if (r->has_sizing)
-    bars(to, "edge length / target spacing", r->hist_edge, VG_HIST_UNIT, 0.1,
-         1);
-  if (r->n_worst) fprintf(to, "\n  worst cells\n");
+    bars(to, "Edge length / target edge length", r->hist_edge, VG_HIST_UNIT,
+         0.1, 1);
+  if (r->n_worst) fprintf(to, "\n  Worst cells\n");
   for (size_t i = 0; i < r->n_worst; i++)
-    fprintf(to, "    cell %zu: smallest angle %.2f degrees at %g %g %g\n",
+    fprintf(to, "    cell %zu: smallest angle %.2f degrees at (%g, %g, %g)\n",
             r->worst[i].cell + 1, r->worst[i].value, r->worst[i].at[0],
             r->worst[i].at[1], r->worst[i].at[2]);
 }
@@ -266,8 +273,8 @@ static void other_text(FILE *to, const struct vg_fill_report *r)
 
   if (!r->n_other && !back) return;
   fprintf(to,
-          "  parts filled by the other mesher %s: %s cells in %.2f s (%s "
-          "cells/s)\n",
+          "  subdomains filled by the selected mesher: %s, %s cells in %.2f s "
+          "(%s cells/s)\n",
           vg_text_count(r->n_other, a), vg_text_count(r->n_other_cell, b),
           r->time_other,
           vg_text_count((unsigned long long)(r->time_other > 0
@@ -277,9 +284,9 @@ static void other_text(FILE *to, const struct vg_fill_report *r)
                         c));
   if (back)
     fprintf(to,
-            "  parts that it did not fill, and the built-in one did: %zu "
-            "(%zu given back, %zu crashed\n  or without end, %zu not filled "
-            "as they should be)\n",
+            "  subdomains filled by the built-in mesher instead: %zu "
+            "(%zu rejected by the selected\n  mesher, %zu crashed or timed "
+            "out, %zu with an invalid result)\n",
             back, r->n_other_failed, r->n_other_ended, r->n_other_wrong);
 }
 
@@ -289,19 +296,19 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
   char a[32], b[32], c[32];
   double rate = r->time_total > 0 ? (double)n_cell / r->time_total : 0;
 
-  fprintf(to, "  field points inserted %s, refused %s\n",
+  fprintf(to, "  field points: inserted %s, rejected %s\n",
           vg_text_count(r->n_inserted, a), vg_text_count(r->n_refused, b));
   fprintf(to,
-          "  surface triangles recovered %s; pockets closed %s with %zu "
-          "cells, retries %zu%s\n",
+          "  boundary recovery: triangles recovered %s; pockets closed %s "
+          "with %zu cells, retries %zu%s\n",
           vg_text_count(r->n_surface_face_lost, a),
           vg_text_count(r->n_pocket, b), r->n_pocket_cell, r->n_retry,
-          r->whole_void ? "; a whole void was closed by TetGen" : "");
+          r->whole_void ? "; a whole subdomain was meshed by TetGen" : "");
   other_text(to, r);
   if (r->n_list_cut)
     fprintf(to,
-            "  points with more neighbours than are looked at: %zu (some "
-            "may be too near to each other)\n",
+            "  points with more neighbours than are examined: %zu (some "
+            "may be too close to each other)\n",
             r->n_list_cut);
   if (r->n_steiner)
     fprintf(to, "  points added to recover the boundary: %zu\n", r->n_steiner);
@@ -312,12 +319,12 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
           vg_text_count(r->n_collapse, c), r->n_split);
   if (r->n_left)
     fprintf(to,
-            "  bad cells into which no point was tried to be put, after "
-            "enough others: %s\n",
+            "  poor cells for which no point insertion was attempted, since "
+            "the limit was reached: %s\n",
             vg_text_count(r->n_left, a));
   fprintf(to,
-          "  seconds: boundary %.2f, place %.2f, insert %.2f, optimise "
-          "%.2f, total %.2f (%s cells/s)\n",
+          "  time (s): boundary recovery %.2f, point placement %.2f, insertion "
+          "%.2f, optimisation %.2f,\n  total %.2f (%s cells/s)\n",
           r->time_boundary, r->time_place, r->time_insert, r->time_optimise,
           r->time_total, vg_text_count((unsigned long long)rate, a));
 }

@@ -11,8 +11,9 @@ static double percent(size_t part, size_t whole)
 static void distance_text(FILE *to, const char *what,
                           const struct vg_remesh_distance *d)
 {
-  fprintf(to, "  %s: %.3g at most, at (%.6g, %.6g, %.6g); 99 %%: %.3g\n", what,
-          d->most, d->at[0], d->at[1], d->at[2], d->most_99);
+  fprintf(to,
+          "  %s: largest %.3g, at (%.6g, %.6g, %.6g); 99th percentile %.3g\n",
+          what, d->most, d->at[0], d->at[1], d->at[2], d->most_99);
 }
 
 static void bad_text(FILE *to, const struct vg_remesh_report *r)
@@ -20,13 +21,16 @@ static void bad_text(FILE *to, const struct vg_remesh_report *r)
   size_t shown = 0;
 
   if (!r->n_bad) return;
-  fprintf(to, "  below %g degrees: %zu triangles;", VG_REMESH_BAD, r->n_bad);
+  fprintf(to,
+          "  triangles with an angle below %g degrees: %zu; by "
+          "cause:",
+          VG_REMESH_BAD, r->n_bad);
   for (int c = 0; c < VG_REMESH_N; c++)
     fprintf(to, " %s %zu", vg_remesh_cause_name((enum vg_remesh_cause)c),
             r->cause[c]);
   fprintf(to, "\n");
   for (size_t i = 0; i < r->n_bad && shown < VG_SHOWN_FACES; i++, shown++)
-    fprintf(to, "    %s, face %zu, angle %.2g, at (%.6g, %.6g, %.6g)\n",
+    fprintf(to, "    %s, face %zu, angle %.2g degrees, at (%.6g, %.6g, %.6g)\n",
             vg_remesh_cause_name(r->bad[i].cause), r->bad[i].face + 1,
             r->bad[i].angle, r->bad[i].at[0], r->bad[i].at[1], r->bad[i].at[2]);
   if (r->n_bad > shown) fprintf(to, "    ... and %zu more\n", r->n_bad - shown);
@@ -35,12 +39,13 @@ static void bad_text(FILE *to, const struct vg_remesh_report *r)
 static void back_text(FILE *to, const struct vg_put_back *b)
 {
   fprintf(to,
-          "  put back on the CAD model: %zu points, %zu of them on its "
-          "curves; refused %zu, off it %zu\n",
+          "  projected onto the CAD model: %zu points, %zu of them onto its "
+          "curves; rejected %zu, too far away %zu\n",
           b->n_point - b->n_refused - b->n_far, b->n_curve, b->n_refused,
           b->n_far);
-  distance_text(to, "points from the CAD model before", &b->off[0]);
-  distance_text(to, "from the CAD model now", &b->off[1]);
+  distance_text(to, "distance of points from CAD before projection",
+                &b->off[0]);
+  distance_text(to, "distance of points from CAD after projection", &b->off[1]);
 }
 
 static void stretch_text(FILE *to, const struct vg_remesh_report *r)
@@ -49,12 +54,12 @@ static void stretch_text(FILE *to, const struct vg_remesh_report *r)
 
   if (!(r->aspect_most > 0)) return;
   fprintf(to,
-          "  stretched: triangles by up to 1.5 times %zu, to 3 %zu, to 6 "
-          "%zu, to 12 %zu, more %zu; at most %.3g\n",
+          "  stretched triangles by aspect ratio: to 1.5 %zu, to 3 %zu, to 6 "
+          "%zu, to 12 %zu, more %zu; largest %.3g\n",
           n[0], n[1], n[2], n[3], n[4], r->aspect_most);
   fprintf(to,
-          "  smallest angle %.3g, and those listed here, as if not "
-          "stretched\n",
+          "  smallest angle %.3g degrees; it and the angles listed below are "
+          "measured without the stretching\n",
           r->angle_min);
 }
 
@@ -65,37 +70,40 @@ void vg_report_remesh_text(FILE *to, const struct vg_remeshing *n)
 
   if (!n->is_done) return;
   fprintf(to,
-          "  remeshed: %s triangles, now %s; %zu corners and %zu lines "
-          "kept, length %.6g, now %.6g\n",
+          "  remeshed: triangles %s -> %s; %zu corners and %zu feature curves "
+          "preserved, length of curves %.6g -> %.6g\n",
           vg_text_count(r->n_tri[0], was), vg_text_count(r->n_tri[1], now),
           r->n_corner, r->n_line, r->line_length[0], r->line_length[1]);
   if (r->n_left)
     fprintf(to,
-            "  strips narrower than the tolerance left: %zu; triangles "
-            "met where they were closed\n",
+            "  strips narrower than the tolerance not closed: %zu, since "
+            "triangles would intersect\n",
             r->n_left);
   if (r->n_closed)
     fprintf(to,
             "  strips narrower than the tolerance closed: %zu, length "
-            "%.6g, width %.3g at most, at (%g, %g, %g)\n",
+            "%.6g, largest width %.3g, at (%g, %g, %g)\n",
             r->n_closed, r->closed_length, r->closed_width, r->closed_at[0],
             r->closed_at[1], r->closed_at[2]);
   fprintf(to,
-          "  sizes %.3g to %.3g; edges within a factor 1.41 of the size: "
-          "%.2f %%\n",
+          "  target edge length %.3g to %.3g; edges within a factor of 1.41 "
+          "of it: %.2f %%\n",
           r->h_min, r->h_max, percent(r->n_edge_fit, r->n_edge));
-  fprintf(to, "  tolerance %.3g (and 0.05 of the size)\n", r->tolerance);
-  distance_text(to, "new from given", &n->off[0]);
-  distance_text(to, "given from new", &n->off[1]);
+  fprintf(to, "  tolerance %.3g, at most 0.05 of the target edge length\n",
+          r->tolerance);
+  distance_text(to, "distance of the remeshed from the input surface",
+                &n->off[0]);
+  distance_text(to, "distance of the input from the remeshed surface",
+                &n->off[1]);
   if (n->back.is_done) back_text(to, &n->back);
   if (n->volume[1] > 0)
-    fprintf(to, "  volume %.9g, of the CAD model %.9g (%+.3g %%)\n",
+    fprintf(to, "  volume %.9g, volume of the CAD model %.9g (%+.3g %%)\n",
             n->volume[0], n->volume[1],
             100 * (n->volume[0] / n->volume[1] - 1));
   if (r->n_round > 1)
     fprintf(to,
-            "  made %d times: triangles met, and sizes there were "
-            "halved\n",
+            "  remeshed %d times, with the target edge length halved where "
+            "triangles intersected\n",
             r->n_round);
   stretch_text(to, r);
   bad_text(to, r);
@@ -203,13 +211,13 @@ json_t *vg_report_remesh_json(const struct vg_remeshing *n,
 void vg_report_lines_text(FILE *to, const struct vg_remesh_report *r, int fit)
 {
   fprintf(to,
-          "  lines (ridges, rims, borders between conditions): %zu, length "
-          "%.6g, corners %zu\n",
+          "  feature curves (sharp edges, rims, borders between conditions): "
+          "%zu, length %.6g, corners %zu\n",
           r->n_line, r->line_length[0], r->n_corner);
   if (fit)
     fprintf(to,
-            "  edges within a factor 1.41 of the size that shape and deck "
-            "ask for: %.2f %%\n",
+            "  edges within a factor of 1.41 of the target edge length given "
+            "by shape and deck: %.2f %%\n",
             percent(r->n_edge_fit, r->n_edge));
   bad_text(to, r);
 }
@@ -233,9 +241,9 @@ json_t *vg_report_lines_json(const struct vg_remesh_report *r, int fit)
 void vg_report_distances_text(FILE *to, const char *file,
                               const struct vg_remesh_distance d[2])
 {
-  fprintf(to, "  against %s\n", file);
-  distance_text(to, "this from that", &d[0]);
-  distance_text(to, "that from this", &d[1]);
+  fprintf(to, "  comparison with %s\n", file);
+  distance_text(to, "distance of this surface from that one", &d[0]);
+  distance_text(to, "distance of that surface from this one", &d[1]);
 }
 
 json_t *vg_report_distances_json(const char *file,

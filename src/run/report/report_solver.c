@@ -1,4 +1,4 @@
-/* Reports on parts for the solver. Declared in run/report/report.h. */
+/* Reports on solver partitions. Declared in run/report/report.h. */
 #include "run/common/text.h"
 #include "run/report/report.h"
 
@@ -13,31 +13,31 @@ void vg_report_solver_text(FILE *to, const struct vg_solver_report *r)
 {
   char more[120];
 
-  row(to, "parts", r->n_part, "");
+  row(to, "partitions", r->n_part, "");
   row(to, "stacks of layer cells", r->n_stack,
       r->n_stack ? ", none of them cut" : "");
   if (r->n_stack) {
     row(to, "cells in stacks", r->n_stack_cell, "");
-    row(to, "cells in the largest", r->most_stack, "");
+    row(to, "cells in largest stack", r->most_stack, "");
   }
   if (r->has_loose)
-    fprintf(to, "  which tetrahedra stand in stacks is not known: the file "
-                "does not tell, or\n  they are not in Vanguard's order; only "
-                "prisms and hexahedra were kept together\n");
-  snprintf(more, sizeof more, ", at least %llu, most over mean by weight %.4f",
+    fprintf(to, "  It is not known which tetrahedra belong to stacks: the "
+                "file does not say, or they\n  are not in Vanguard's order. "
+                "Only prisms and hexahedra were kept together.\n");
+  snprintf(more, sizeof more,
+           " at most, %llu at least; max/mean by weight %.4f",
            (unsigned long long)r->least_cells, r->balance);
-  row(to, "most cells of a part", r->most_cells, more);
-  row(to, "faces between parts", r->n_cut, "");
-  snprintf(more, sizeof more, ", on average %.0f", r->mean_cut);
-  row(to, "most of them on a part", r->most_cut, more);
-  snprintf(more, sizeof more, ", on average %.1f", r->mean_near);
-  row(to, "most parts beside one", r->most_near, more);
+  row(to, "cells per partition", r->most_cells, more);
+  row(to, "interface faces", r->n_cut, "");
+  snprintf(more, sizeof more, " at most, mean %.0f", r->mean_cut);
+  row(to, "faces per partition", r->most_cut, more);
+  snprintf(more, sizeof more, " at most, mean %.1f", r->mean_near);
+  row(to, "neighbour partitions", r->most_near, more);
   if (r->n_moved)
-    row(to, "parts METIS left empty", r->n_moved,
-        ", given a stack or a cell each");
+    row(to, "empty after METIS", r->n_moved, ", given one stack or cell each");
   fprintf(to,
-          "  METIS parted a graph of %s vertices in %.2f s; it took %.2f s "
-          "to make\n",
+          "  METIS: graph of %s vertices partitioned in %.2f s, built in %.2f "
+          "s\n",
           vg_text_count(r->n_vertex, more), r->time_metis, r->time_graph);
 }
 

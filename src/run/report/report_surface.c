@@ -34,8 +34,8 @@ void vg_report_size_text(FILE *to, const struct vg_mesh *m)
   count_line(to, "prisms", m->n_pri);
   count_line(to, "hexahedra", m->n_hex);
   count_line(to, "patches", m->n_patch);
-  fprintf(to, "  %-24s %g %g %g to %g %g %g\n", "box", lo[0], lo[1], lo[2],
-          hi[0], hi[1], hi[2]);
+  fprintf(to, "  %-24s %g %g %g to %g %g %g\n", "bounding box", lo[0], lo[1],
+          lo[2], hi[0], hi[1], hi[2]);
 }
 
 json_t *vg_report_size_json(const struct vg_mesh *m)
@@ -54,7 +54,7 @@ json_t *vg_report_size_json(const struct vg_mesh *m)
                    "upper", hi[0], hi[1], hi[2]);
 }
 
-/* Faces, area and box of a patch. */
+/* Faces, area and bounding box of a patch. */
 struct extent {
   size_t n;
   double area, lo[3], hi[3];
@@ -83,7 +83,7 @@ static void add_face(struct extent *e, const struct vg_mesh *m,
   }
 }
 
-/* [n_patch]; NULL when memory is refused. */
+/* Array [n_patch], to be freed by the caller; NULL if out of memory. */
 static struct extent *patch_extents(const struct vg_mesh *m)
 {
   struct extent *e = vg_calloc(m->n_patch, sizeof *e);
@@ -114,7 +114,7 @@ vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
 
   if (!e) return vg_fail_memory(err, "a report");
   fprintf(to, "  %8s %13s %6s %6s %10s  %s\n", "patch", "faces", "USM3D",
-          "FUN3D", "area", "name; box");
+          "FUN3D", "area", "name; bounding box");
   for (size_t i = 0; i < m->n_patch && i < VG_SHOWN_PATCHES; i++) {
     code_text(m->patch[i].bc, bc, sizeof bc);
     code_text(m->patch[i].bc_fun3d, fun3d, sizeof fun3d);
@@ -127,7 +127,7 @@ vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
     fputc('\n', to);
   }
   if (m->n_patch > VG_SHOWN_PATCHES)
-    fprintf(to, "  ... and %zu more\n", m->n_patch - VG_SHOWN_PATCHES);
+    fprintf(to, "  ... and %zu more patches\n", m->n_patch - VG_SHOWN_PATCHES);
   free(e);
   return VG_OK;
 }
@@ -173,11 +173,12 @@ static void shells_text(FILE *to, const struct vg_surface_report *r)
   for (size_t i = 0; i < r->n_shell && i < VG_SHOWN_ITEMS; i++) {
     const struct vg_shell *s = &r->shell[i];
 
-    fprintf(to,
-            "    shell %zu: %s triangles, depth %d, volume %g, box %g %g "
-            "%g to %g %g %g\n",
-            i + 1, vg_text_count(s->n_tri, count), s->depth, s->volume,
-            s->lo[0], s->lo[1], s->lo[2], s->hi[0], s->hi[1], s->hi[2]);
+    fprintf(
+      to,
+      "    shell %zu: %s triangles, nesting depth %d, volume %g, bounding "
+      "box %g %g %g to %g %g %g\n",
+      i + 1, vg_text_count(s->n_tri, count), s->depth, s->volume, s->lo[0],
+      s->lo[1], s->lo[2], s->hi[0], s->hi[1], s->hi[2]);
   }
   if (r->n_shell > VG_SHOWN_ITEMS)
     fprintf(to, "    ... and %zu more\n", r->n_shell - VG_SHOWN_ITEMS);
@@ -185,20 +186,20 @@ static void shells_text(FILE *to, const struct vg_surface_report *r)
 
 static void repair_text(FILE *to, const struct vg_surface_report *r)
 {
-  /* Where all was turned, those that were not had been turned before. */
+  /* If the whole surface was inverted, n_flipped triangles keep their
+   * orientation: those that were inverted before. */
   size_t single = r->n_flipped;
 
   if (r->shells_reoriented) {
     single = 0;
     for (size_t i = 0; i < r->n_shell; i++) single += r->shell[i].n_tri;
     single -= r->n_flipped;
-    fprintf(to, "  repaired: the whole surface was turned, so that it points "
-                "into the fluid\n");
+    fprintf(to, "  repaired: the orientation of the whole surface was "
+                "reversed, so that normals point into the fluid\n");
   }
   if (single)
     fprintf(to,
-            "  repaired: %zu triangles turned to agree with their "
-            "neighbours\n",
+            "  repaired: %zu triangles reversed for a consistent orientation\n",
             single);
   if (r->n_removed_point)
     fprintf(to, "  repaired: %zu unused or duplicate points removed\n",
@@ -208,21 +209,21 @@ static void repair_text(FILE *to, const struct vg_surface_report *r)
             r->n_removed_tri);
   if (r->n_removed_wall)
     fprintf(to,
-            "  repaired: %zu triangles of walls that touching bodies "
-            "shared removed\n",
+            "  repaired: %zu triangles of walls shared by touching bodies "
+            "removed\n",
             r->n_removed_wall);
 }
 
-/* Triangles that spoil the cells on them. */
+/* List triangles that prevent good cells on them. */
 static void slivers_text(FILE *to, const struct vg_mesh *m,
                          const struct vg_surface_quality *q)
 {
   if (!q->n_worst) return;
   fprintf(to,
-          "  slivers: caps (three nodes nearly on a line) %zu, needles "
-          "%zu; cells on them are\n  hardly better. surface_swap removes those "
-          "that it can without moving the surface\n  visibly; where they stay, "
-          "the surface needs new triangles:\n",
+          "  slivers: %zu caps (three nodes nearly on a line), %zu needles. "
+          "Cells on them are hardly\n  better. surface_swap removes those that "
+          "it can without visible change of the surface;\n  for the others "
+          "the surface must be remeshed:\n",
           q->n_cap, q->n_needle);
   for (size_t i = 0; i < q->n_worst && i < VG_SHOWN_FACES; i++) {
     const struct vg_worst_face *w = &q->worst[i];
@@ -230,8 +231,8 @@ static void slivers_text(FILE *to, const struct vg_mesh *m,
     char name[VG_NAME_MAX];
 
     fprintf(to,
-            "    %s, patch %d%s%s, face %zu, angle %.2g, at (%.6g, %.6g, "
-            "%.6g)\n",
+            "    %s, patch %d%s%s, face %zu, angle %.2g degrees, at (%.6g, "
+            "%.6g, %.6g)\n",
             w->is_cap ? "cap" : "needle", (int)p->id, *p->name ? " " : "",
             vg_text_clean(p->name, name, sizeof name), w->face + 1, w->angle,
             w->at[0], w->at[1], w->at[2]);
@@ -247,12 +248,13 @@ static void quality_text(FILE *to, const struct vg_mesh *m)
 
   vg_surface_quality(m, &q);
   if (!q.n) return;
-  fprintf(to,
-          "  triangles: smallest angle %.2g, 1st percentile %.1f degrees; "
-          "below 5 10 20 30:\n  %.4f %.4f %.4f %.4f %%; 2 r/R: mean %.3f; mean "
-          "edge %.6g\n",
-          q.angle_min, q.angle_min_p1, q.below[0], q.below[1], q.below[2],
-          q.below[3], q.ratio_mean, q.edge_mean);
+  fprintf(
+    to,
+    "  triangles: smallest angle %.2g, 1st percentile %.1f degrees; "
+    "below 5, 10, 20, 30 degrees:\n  %.4f %.4f %.4f %.4f %%; radius ratio "
+    "(2 r/R): mean %.3f; mean edge length %.6g\n",
+    q.angle_min, q.angle_min_p1, q.below[0], q.below[1], q.below[2], q.below[3],
+    q.ratio_mean, q.edge_mean);
   slivers_text(to, m, &q);
 }
 
@@ -296,7 +298,7 @@ void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
     if (n)
       fprintf(to, "  %s: %s\n", vg_defect_name((enum vg_defect_kind)kind),
               vg_text_count(n, count));
-    /* The list is sorted by kind. */
+    /* The array `defect` is sorted by kind. */
     for (; at < r->n_defect && (int)r->defect[at].kind == kind; at++) {
       if (said++ >= shown) continue;
       vg_defect_text(m, &r->defect[at], text, sizeof text);
@@ -321,7 +323,7 @@ static json_t *defects_json(const struct vg_mesh *m,
     vg_defect_text(m, d, text, sizeof text);
     one = json_pack("{s:s s:o}", "kind", vg_defect_name(d->kind), "text",
                     vg_text_json(text));
-    /* NaN has no JSON form: such a defect goes without its place. */
+    /* JSON has no NaN: the position of such a defect is omitted. */
     json_object_set_new(one, "at",
                         json_pack("[fff]", d->at[0], d->at[1], d->at[2]));
     for (int k = 0; k < 2; k++)
@@ -371,10 +373,10 @@ void vg_report_flow_text(FILE *to, const struct vg_flow *f, int adds_farfield)
   for (int i = 0; i < f->n_evidence; i++)
     fprintf(to, "  %s %s\n", i ? "         " : "Evidence:", f->evidence[i]);
   if (f->kind == VG_FLOW_EXTERNAL)
-    fprintf(to, "  If the fluid is inside the surface, give --flow internal\n");
+    fprintf(to, "  If the fluid is inside the surface, use --flow internal.\n");
   if (f->kind == VG_FLOW_INTERNAL)
     fprintf(to,
-            "  If the surface is a body in a fluid, give --flow external\n");
+            "  If the surface is a body in the fluid, use --flow external.\n");
 }
 
 json_t *vg_report_flow_json(const struct vg_flow *f, int adds_farfield)
@@ -409,7 +411,7 @@ void vg_report_domain_text(FILE *to, const struct vg_domain_report *r)
             r -> symmetry_at);
   if (r->added_farfield) fprintf(to, "  added: farfield\n");
   if (r->n_added_tri)
-    fprintf(to, "  added: %s triangles\n",
+    fprintf(to, "  added: %s boundary triangles\n",
             vg_text_count(r->n_added_tri, count));
 }
 

@@ -1,6 +1,6 @@
-/* run/settings/deck.h: the run deck, a text file with all that the mesh files
- * do not say, in the manner of USM3D's input file. Its grammar is in
- * docs/reference/deck.md:
+/* run/settings/deck.h: the run deck, a text file with all settings that the
+ * mesh files do not contain, modelled on USM3D's input file. Its grammar is
+ * documented in docs/reference/deck.md:
  *
  *   title line
  *   names            one line of names above one line of values,
@@ -18,27 +18,29 @@
 #include "core/mesh/mesh.h"
 #include "run/settings/settings.h"
 
-/** Read a deck from memory; the entry for fuzzing.
+/** Parse a deck in memory; entry point of the fuzzer.
  *
- * @param name  for messages, which all begin with name:line
- * @param s     defaults where the deck is silent; untouched on failure
- * Returns VG_ERR_FORMAT for grammar, VG_ERR_INPUT for values. */
+ * @param name  file name for messages, which all begin with name:line
+ * @param s     receives the settings; defaults where the deck gives none;
+ *              unchanged on failure
+ * Returns VG_ERR_FORMAT for errors of grammar, VG_ERR_INPUT for invalid
+ * values. */
 vg_status vg_deck_parse(const char *name, const void *data, size_t size,
                         struct vg_settings *s, struct vg_error *err);
 
-/** As vg_deck_parse, from a file. */
+/** As vg_deck_parse, but reads a file. */
 vg_status vg_deck_read(const char *path, struct vg_settings *s,
                        struct vg_error *err);
 
 /** Write a deck that vg_deck_parse reads back to equal settings.
  *
- * @param comment  lines put behind the title, each starting with '#'; may be
- *                 NULL
- * @param explain  1: say what every value means, with unit and default */
+ * @param comment  lines written after the title, each starting with '#'; may
+ *                 be NULL
+ * @param explain  1: document every value, with unit and default */
 vg_status vg_deck_write(const char *path, const struct vg_settings *s,
                         const char *comment, int explain, struct vg_error *err);
 
-/** One row of the patch table for every patch of m. */
+/** Append one row to the patch table for every patch of m. */
 vg_status vg_deck_patches_of(const struct vg_mesh *m, struct vg_settings *s,
                              struct vg_error *err);
 

@@ -19,13 +19,13 @@ struct token {
 
 struct reader {
   struct vg_input in;
-  size_t line; /* of the tokens */
+  size_t line; /* line number of the tokens */
   struct token token[MAX_TOKENS];
   size_t n_token;
   const struct vg_param *name[MAX_TOKENS];
   size_t n_name;
-  size_t *set_at;              /* line that set parameter i, or 0 */
-  size_t table_at[VG_TABLE_N]; /* line that began the table, or 0 */
+  size_t *set_at;              /* line on which parameter i was set, or 0 */
+  size_t table_at[VG_TABLE_N]; /* line on which the table began, or 0 */
   struct vg_settings s;
 };
 
@@ -35,7 +35,7 @@ static vg_status fail(const struct reader *r, struct vg_error *err,
   return vg_fail(err, code, "%s:%zu: %s", r->in.path, r->line, text);
 }
 
-/* Put the place before a message that a value caused. */
+/* Prefix the message about a value with file and line. */
 static vg_status place(const struct reader *r, struct vg_error *err)
 {
   struct vg_error inner;
@@ -46,7 +46,7 @@ static vg_status place(const struct reader *r, struct vg_error *err)
                  (int)(sizeof inner.text / 2), inner.text);
 }
 
-/* One token from *text up to `end`; "" inside quotes stands for ". */
+/* Read one token from *text, at most up to `end`; "" inside quotes is a ". */
 static vg_status scan_token(struct reader *r, const char **text,
                             const char *end, struct vg_error *err)
 {
@@ -60,7 +60,7 @@ static vg_status scan_token(struct reader *r, const char **text,
     if (p == end) {
       if (t->quoted)
         return fail(r, err, VG_ERR_FORMAT,
-                    "a quote is not closed on its "
+                    "a quotation mark is not closed on this "
                     "line; add \"");
       break;
     }
@@ -85,8 +85,8 @@ static vg_status scan_token(struct reader *r, const char **text,
   return VG_OK;
 }
 
-/* Split the next line. *state: 0 end of file, 1 blank line, 2 only a comment,
- * 3 tokens. */
+/* Split the next line into tokens. *state: 0 end of file, 1 blank line, 2
+ * comment only, 3 tokens. */
 static vg_status next_line(struct reader *r, int *state, struct vg_error *err)
 {
   const char *text, *end;
@@ -137,7 +137,7 @@ static int find_table(const char *name)
   return -1;
 }
 
-/* Everything that may stand first in a block: parameters, then tables. */
+/* Names that may begin a block: parameters, then tables. */
 static const char *any_name(const void *user, size_t i)
 {
   size_t n;
@@ -148,7 +148,8 @@ static const char *any_name(const void *user, size_t i)
   return vg_settings_table((enum vg_table_kind)(i - n))->name;
 }
 
-/* Nearest column of any table or parameter, with where it belongs. */
+/* Suggest the nearest column of the table or, outside tables, the nearest
+ * parameter or table. */
 static vg_status unknown_name(const struct reader *r, const char *name,
                               const struct vg_setting_table *table,
                               struct vg_error *err)
@@ -162,16 +163,16 @@ static vg_status unknown_name(const struct reader *r, const char *name,
          : vg_nearest_name(name, n + VG_TABLE_N, any_name, NULL);
   if (near)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s:%zu: '%s' is not a name known in "
+                   "%s:%zu: unknown name '%s' in "
                    "%s; did you mean '%s'?",
                    r->in.path, r->line, name, where, near);
   return vg_fail(err, VG_ERR_FORMAT,
-                 "%s:%zu: '%s' is not a name known in %s; "
-                 "'vanguard deck' writes all names",
+                 "%s:%zu: unknown name '%s' in %s; "
+                 "'vanguard deck' writes a deck with all names",
                  r->in.path, r->line, name, where);
 }
 
-/* Tokens as names out of p[n]; table NULL: the parameters. */
+/* Look up the tokens as names in p[n]; table NULL: the parameters. */
 static vg_status take_names(struct reader *r, const struct vg_param *p,
                             size_t n, const struct vg_setting_table *table,
                             struct vg_error *err)
@@ -184,14 +185,14 @@ static vg_status take_names(struct reader *r, const struct vg_param *p,
 
     if (!found && vg_parse_real(text, r->token[i].len, &number))
       return vg_fail(err, VG_ERR_FORMAT,
-                     "%s:%zu: '%s' stands where a name "
-                     "should: values need a line of names above them",
+                     "%s:%zu: expected a name, found the number '%s'; "
+                     "values need a line of names above them",
                      r->in.path, r->line, text);
     if (!found) return unknown_name(r, text, table, err);
     for (size_t j = 0; j < r->n_name; j++)
       if (r->name[j] == found)
         return vg_fail(err, VG_ERR_FORMAT,
-                       "%s:%zu: '%s' is named twice on "
+                       "%s:%zu: '%s' appears twice on "
                        "this line",
                        r->in.path, r->line, text);
     r->name[r->n_name++] = found;
@@ -199,13 +200,13 @@ static vg_status take_names(struct reader *r, const struct vg_param *p,
   return VG_OK;
 }
 
-/* Values under r->name into the struct at base. */
+/* Store the tokens as values of r->name in the struct at base. */
 static vg_status take_values(struct reader *r, void *base, struct vg_error *err)
 {
   if (r->n_token != r->n_name)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s:%zu: %zu values for %zu names; "
-                   "a value with blanks needs quotes, - stands for the "
+                   "quote values with blanks and write - for a "
                    "default",
                    r->in.path, r->line, r->n_token, r->n_name);
   for (size_t i = 0; i < r->n_token; i++) {
@@ -219,8 +220,8 @@ static vg_status take_values(struct reader *r, void *base, struct vg_error *err)
   return VG_OK;
 }
 
-/* A line of names has been read: the next line that says something holds the
- * values. */
+/* A line of names has been read: the next line that is neither blank nor a
+ * comment contains the values. */
 static vg_status parameters(struct reader *r, struct vg_error *err)
 {
   size_t n, names_at = r->line;
@@ -234,8 +235,8 @@ static vg_status parameters(struct reader *r, struct vg_error *err)
 
     if (*at)
       return vg_fail(err, VG_ERR_FORMAT,
-                     "%s:%zu: '%s' was set before (line "
-                     "%zu); remove one",
+                     "%s:%zu: '%s' was already set on line "
+                     "%zu; remove one of the two",
                      r->in.path, r->line, r->name[i]->name, *at);
     *at = r->line;
   }
@@ -245,14 +246,14 @@ static vg_status parameters(struct reader *r, struct vg_error *err)
   } while (state == 1 || state == 2);
   if (!state)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s:%zu: names without a line of "
-                   "values below",
+                   "%s:%zu: the line of names has no line of "
+                   "values below it",
                    r->in.path, names_at);
   return take_values(r, &r->s, err);
 }
 
-/* `layers` is a setting and a table. Alone on a line it is the setting when
- * the line below is a value for it, not names of columns. */
+/* `layers` is both a setting and a table. Alone on a line it is the setting if
+ * the line below is a valid value of it rather than column names. */
 static int is_setting(struct reader *r, const struct vg_setting_table *table)
 {
   size_t n;
@@ -279,14 +280,15 @@ static vg_status set_alone(struct reader *r,
   at = &r->set_at[r->name[0] - p];
   if (*at)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s:%zu: '%s' was set before (line "
-                   "%zu); remove one",
+                   "%s:%zu: '%s' was already set on line "
+                   "%zu; remove one of the two",
                    r->in.path, r->line, table->name, *at);
   *at = r->line;
   return take_values(r, &r->s, err);
 }
 
-/* Names of the columns. *is_value: it was no table, see is_setting. */
+/* Read the column names. *is_value: it was a setting, not a table; see
+ * is_setting. */
 static vg_status table_head(struct reader *r,
                             const struct vg_setting_table *table, int *is_value,
                             struct vg_error *err)
@@ -303,7 +305,7 @@ static vg_status table_head(struct reader *r,
   if (state != 3)
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s:%zu: table '%s' needs a line of "
-                   "column names right below",
+                   "column names directly below",
                    r->in.path, r->line, table->name);
   st = take_names(r, table->column, table->n_column, table, err);
   if (st < 0) return st;
@@ -342,7 +344,7 @@ static vg_status table_rows(struct reader *r, enum vg_table_kind kind,
     if (state == 2) continue;
     if ((kind == VG_TABLE_FARFIELD || kind == VG_TABLE_SWEEP) && n_row++)
       return vg_fail(err, VG_ERR_FORMAT,
-                     "%s:%zu: the %s table has one line of "
+                     "%s:%zu: the table '%s' takes only one line of "
                      "values",
                      r->in.path, r->line, vg_settings_table(kind)->name);
     vg_settings_row_default(kind, &row);
@@ -362,8 +364,8 @@ static vg_status table(struct reader *r, enum vg_table_kind kind,
 
   if (r->n_token > 1)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s:%zu: '%s' begins a table and "
-                   "stands alone on its line; column names go on the next",
+                   "%s:%zu: '%s' begins a table and must be "
+                   "alone on its line; column names go on the next line",
                    r->in.path, r->line, r->token[0].text);
   r->table_at[kind] = r->line;
   st = table_head(r, vg_settings_table(kind), &is_value, err);
@@ -374,14 +376,14 @@ static vg_status table(struct reader *r, enum vg_table_kind kind,
   }
   if (line_before)
     return vg_fail(err, VG_ERR_FORMAT,
-                   "%s:%zu: table '%s' was given before "
-                   "(line %zu); join the two",
+                   "%s:%zu: table '%s' was already given "
+                   "on line %zu; merge the two",
                    r->in.path, r->table_at[kind], vg_settings_table(kind)->name,
                    line_before);
   return table_rows(r, kind, err);
 }
 
-/* A first line made of names only: somebody forgot the title. */
+/* A first line that consists of names only: the title was forgotten. */
 static int looks_like_names(const struct reader *r)
 {
   size_t n;
@@ -393,8 +395,8 @@ static int looks_like_names(const struct reader *r)
   return 1;
 }
 
-/* The title is the first line that is neither blank nor a comment, as it
- * stands (a '#' in it is no comment). */
+/* The title is the first line that is neither blank nor a comment, taken
+ * literally (a '#' in it does not start a comment). */
 static vg_status title(struct reader *r, struct vg_error *err)
 {
   const char *text = "", *end;
@@ -420,8 +422,8 @@ static vg_status title(struct reader *r, struct vg_error *err)
   for (size_t i = 0; i < len; i++)
     if ((unsigned char)text[i] < ' ' || text[i] == 127)
       return fail(r, err, VG_ERR_FORMAT,
-                  "the title holds a control "
-                  "character: is this a text file?");
+                  "the title contains a control "
+                  "character; is this a text file?");
   memset(r->s.title, 0, sizeof r->s.title);
   memcpy(r->s.title, text, len);
   r->n_token = 0;
@@ -434,13 +436,13 @@ static vg_status title(struct reader *r, struct vg_error *err)
   }
   if (looks_like_names(r))
     return fail(r, err, VG_ERR_FORMAT,
-                "this line holds names, but the first "
-                "line of a deck is its title; put a title above");
+                "this line consists of names, but the first "
+                "line of a deck is its title; add a title above it");
   return VG_OK;
 }
 
-/* The line begins a table: its first word does, and is no setting among
- * others. */
+/* The line begins a table: its first word is the name of a table, and not that
+ * of a setting followed by other names. */
 static int begins_table(const struct reader *r)
 {
   size_t n;

@@ -19,7 +19,7 @@ static void pad(struct vg_output *out, const char *text, size_t width)
   for (size_t n = strlen(text); n < width; n++) vg_output_text(out, " ");
 }
 
-/* "[length, default 0]" or "[length, required]". */
+/* Write "[length, default 0]" or "[length, required]". */
 static void value_note(const struct vg_param *p, const void *defaults,
                        char *text, size_t size)
 {
@@ -30,7 +30,8 @@ static void value_note(const struct vg_param *p, const void *defaults,
            p->required ? "required" : "default ", value);
 }
 
-/* "# name     help [unit; default]", continued under the help. */
+/* Write "# name     help [unit, default]", with continuation lines aligned
+ * under the help. */
 static void explain_param(struct vg_output *out, const struct vg_param *p,
                           const void *defaults)
 {
@@ -56,7 +57,7 @@ static void explain_param(struct vg_output *out, const struct vg_param *p,
   vg_output_text(out, "\n");
 }
 
-/* Names p[first..last) above their values, in columns. */
+/* Write the names p[first..last) above their values, in columns. */
 static void write_block(struct vg_output *out, const struct vg_param *p,
                         size_t first, size_t last, const struct vg_settings *s)
 {
@@ -100,7 +101,8 @@ static int is_default(const struct vg_param *p, const void *row,
   return strcmp(a, b) == 0;
 }
 
-/* Columns worth writing and their widths; 0: left out. */
+/* Widths of the columns that are written; 0: the column is omitted, since all
+ * its values are defaults. */
 static void column_widths(const struct vg_setting_table *t,
                           enum vg_table_kind kind, const struct vg_settings *s,
                           const void *defaults, size_t *width)
@@ -125,7 +127,7 @@ static void column_widths(const struct vg_setting_table *t,
   }
 }
 
-/* Shown where a table is empty. */
+/* Commented examples, written if a table is empty. */
 static const char *const example[VG_TABLE_N] = {
   [VG_TABLE_FARFIELD] = "",
   [VG_TABLE_PATCHES] = "#\n# patches\n# id  bc  name\n# 1   4   wing\n\n",
@@ -197,9 +199,9 @@ vg_status vg_deck_write(const char *path, const struct vg_settings *s,
   if (explain)
     vg_output_text(
       &out,
-      "# A line of names stands above a line of values; the order is free.\n"
-      "# A table is its name, a line of column names, then lines of values\n"
-      "# up to a blank line. Lengths are in the unit of the surface.\n");
+      "# Each line of names is followed by a line of values, in any order.\n"
+      "# A table consists of its name, a line of column names and lines of\n"
+      "# values up to a blank line. Lengths are in the unit of the surface.\n");
   vg_output_text(&out, "\n");
   write_params(&out, s, &defaults, explain);
   for (int t = 0; t < VG_TABLE_N; t++)
@@ -209,8 +211,8 @@ vg_status vg_deck_write(const char *path, const struct vg_settings *s,
   return st;
 }
 
-/* The code from which both solvers' follow: USM3D's where FUN3D's is its
- * translation, else FUN3D's where that says more (4100 is more than 4). */
+/* The code from which the codes of both solvers follow: USM3D's if FUN3D's is
+ * its translation, else FUN3D's if it is more specific (4100 than 4). */
 static int32_t telling_code(const struct vg_patch *p, int axis)
 {
   if (p->bc == VG_BC_NONE) return p->bc_fun3d;

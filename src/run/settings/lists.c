@@ -14,7 +14,7 @@ static int is_case(const char *item)
   return vg_foam_word(item, &options);
 }
 
-/* Words of the write list that are no suffix of a mesh format. */
+/* Words of the write list that are not suffixes of a mesh format. */
 static int is_own_item(const char *item)
 {
   return !strcmp(item, "cogsg") || !strcmp(item, "mapbc") ||
@@ -29,7 +29,8 @@ static vg_status add_item(const char *name, size_t len, size_t *n,
 
   if (!len) return VG_OK;
   if (*n == VG_WRITE_ITEMS || len >= VG_WRITE_NAME)
-    return vg_fail(err, VG_ERR_INPUT, "write: too many or too long names");
+    return vg_fail(err, VG_ERR_INPUT,
+                   "write: too many names, or a name that is too long");
   memcpy(to, name, len);
   to[len] = 0;
   for (size_t i = 0; i < *n; i++)
@@ -37,11 +38,11 @@ static vg_status add_item(const char *name, size_t len, size_t *n,
   for (size_t i = 0; i < *n; i++)
     if (is_case(to) && is_case(item[i]))
       return vg_fail(err, VG_ERR_INPUT,
-                     "write: foam and foam-ascii go into "
-                     "the same folder; name one");
+                     "write: foam and foam-ascii write to "
+                     "the same folder; give only one of them");
   if (!is_own_item(to) && !vg_format_can_write(to))
     return vg_fail(err, VG_ERR_INPUT,
-                   "write: '%s' is no format; known are "
+                   "write: unknown format '%s'; known formats are "
                    "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
                    "pvtu, foam, foam-ascii and suffixes such as b8.ugrid, "
                    "lb8.ugrid, ugrid, cgns, su2, msh, fluent.msh, meshb",
@@ -85,8 +86,8 @@ vg_status vg_mesher_name_check(const char *name, const char *mesher,
     if (!strcmp(mesher, known[i])) return VG_OK;
   if (strchr(mesher, '/')) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: '%s' is none; known are builtin, "
-                 "tetgen, hxt and paths of plug-ins, which have a '/' in them, "
-                 "as in ./it.so",
+                 "%s: unknown mesher '%s'; give builtin, "
+                 "tetgen, hxt or the path of a plug-in, which contains a '/', "
+                 "as in ./mymesher.so",
                  name, mesher);
 }

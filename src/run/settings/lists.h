@@ -1,5 +1,5 @@
-/* run/settings/lists.h: settings that are lists of files to write, or names
- * of meshers. Uses io. */
+/* run/settings/lists.h: values of the settings `write` (a list of formats) and
+ * `mesher`. Uses io. */
 #ifndef VG_RUN_SETTINGS_LISTS_H
 #define VG_RUN_SETTINGS_LISTS_H
 
@@ -8,20 +8,20 @@
 
 #include "base/status.h"
 
-/* Kinds of file in a write list, and bytes of a name. */
+/* Largest number of formats in a write list, and bytes of a name. */
 enum { VG_WRITE_ITEMS = 16, VG_WRITE_NAME = 24 };
 
-/** The kinds in a list such as "b8.ugrid,vtu", each once, behind *n others in
- * item. VG_ERR_INPUT where one is no format. */
+/** Append the formats of a list such as "b8.ugrid,vtu" to the *n formats in
+ * item, without duplicates. VG_ERR_INPUT for an unknown format. */
 vg_status vg_write_list(const char *list, size_t *n,
                         char (*item)[VG_WRITE_NAME], struct vg_error *err);
 
-/** "builtin", "tetgen", "hxt", or a path with a '/' in it: a check of settings.
- */
+/** Check of the setting `mesher`: "builtin", "tetgen", "hxt", or a path that
+ * contains a '/'. */
 vg_status vg_mesher_name_check(const char *name, const char *mesher,
                                struct vg_error *err);
 
-/** The same, or "auto", as a check of settings. */
+/** Check of the setting `write`: a list as for vg_write_list, or "auto". */
 vg_status vg_write_list_check(const char *name, const char *list,
                               struct vg_error *err);
 

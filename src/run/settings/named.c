@@ -1,4 +1,4 @@
-/* Settings and rows of tables by their names. Declared in
+/* Access to settings and table rows by name. Declared in
  * run/settings/settings.h. */
 #include <assert.h>
 #include <stdlib.h>
@@ -7,7 +7,8 @@
 #include "base/memory.h"
 #include "run/settings/settings.h"
 
-/* Columns of the farfield table that are settings too, with their names. */
+/* Columns of the farfield table that are also plain settings, with their
+ * names. */
 static const struct {
   const char *column, *name;
 } farfield_names[] = {
@@ -110,11 +111,11 @@ static const struct vg_param *find(const char *name, int *in_farfield,
     if (same_name(name, known)) return p;
   near = vg_nearest_name(name, n, name_at, NULL);
   if (near)
-    vg_fail(err, VG_ERR_INPUT, "no setting '%s'; did you mean '%s'?", name,
+    vg_fail(err, VG_ERR_INPUT, "unknown setting '%s'; did you mean '%s'?", name,
             near);
   else
-    vg_fail(err, VG_ERR_INPUT, "no setting '%s'; 'vanguard deck' lists them",
-            name);
+    vg_fail(err, VG_ERR_INPUT,
+            "unknown setting '%s'; 'vanguard deck' lists all settings", name);
   return NULL;
 }
 
@@ -155,8 +156,8 @@ static vg_status find_table(const char *name, enum vg_table_kind *kind,
       return VG_OK;
     }
   return vg_fail(err, VG_ERR_INPUT,
-                 "no table '%s'; there are farfield, "
-                 "patches, layers, sources and sweep",
+                 "unknown table '%s'; the tables are farfield, "
+                 "patches, layers, surface, sources and sweep",
                  name);
 }
 
@@ -170,7 +171,7 @@ static vg_status set_columns(const struct vg_setting_table *t, void *row,
     const struct vg_param *p = column_of(t, column[i]);
 
     if (!p)
-      return vg_fail(err, VG_ERR_INPUT, "%s: no column '%s'", t->name,
+      return vg_fail(err, VG_ERR_INPUT, "%s: unknown column '%s'", t->name,
                      column[i]);
     if (vg_param_set(p, row, value[i], strlen(value[i]), &why) < 0)
       return vg_fail(err, why.code, "%s: %s", t->name, why.text);
@@ -181,7 +182,7 @@ static vg_status set_columns(const struct vg_setting_table *t, void *row,
     for (size_t i = 0; i < n && !given; i++)
       given = !strcmp(column[i], t->column[c].name);
     if (!given)
-      return vg_fail(err, VG_ERR_INPUT, "%s: a row needs a value of %s",
+      return vg_fail(err, VG_ERR_INPUT, "%s: a row needs a value for %s",
                      t->name, t->column[c].name);
   }
   return VG_OK;

@@ -1,5 +1,5 @@
-/* Values of settings as text, both ways, and the search for a slip of the
- * pen. Declared in run/settings/settings.h. */
+/* Conversion of settings from and to text, and the search for the nearest name
+ * to a misspelt one. Declared in run/settings/settings.h. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -37,7 +37,7 @@ static vg_status set_real(const struct vg_param *p, void *at, const char *text,
   double v;
 
   if (!vg_parse_real(text, len, &v))
-    return vg_fail(err, VG_ERR_INPUT, "%s must be a number, found '%.*s'",
+    return vg_fail(err, VG_ERR_INPUT, "%s must be a number, not '%.*s'",
                    p->name, (int)len, text);
   if (!in_range(p, v)) return out_of_range(p, text, len, err);
   memcpy(at, &v, sizeof v);
@@ -49,7 +49,7 @@ static vg_status check_characters(const struct vg_param *p, const char *text,
 {
   for (size_t i = 0; i < len; i++)
     if ((unsigned char)text[i] < ' ' || text[i] == 127)
-      return vg_fail(err, VG_ERR_INPUT, "%s holds a control character",
+      return vg_fail(err, VG_ERR_INPUT, "%s contains a control character",
                      p->name);
   return VG_OK;
 }
@@ -63,7 +63,7 @@ static vg_status set_int(const struct vg_param *p, void *at, const char *text,
   if (!(p->type == VG_PARAM_COUNT ? vg_parse_count : vg_parse_int)(text, len,
                                                                    &v))
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s must be a whole number, found "
+                   "%s must be an integer, not "
                    "'%.*s'",
                    p->name, (int)len, text);
   if (!in_range(p, (double)v)) return out_of_range(p, text, len, err);
@@ -73,7 +73,7 @@ static vg_status set_int(const struct vg_param *p, void *at, const char *text,
   return VG_OK;
 }
 
-/* A number, or else a name that the surface will know. */
+/* A number, or a name, which is looked up once the surface has been read. */
 static vg_status set_patch(const struct vg_param *p, void *base,
                            const char *text, size_t len, struct vg_error *err)
 {
@@ -90,7 +90,7 @@ static vg_status set_patch(const struct vg_param *p, void *base,
   if (!len || len >= VG_NAME_MAX)
     return vg_fail(err, VG_ERR_INPUT,
                    "%s must be the number or name of a "
-                   "patch, found '%.*s'",
+                   "patch, not '%.*s'",
                    p->name, (int)len, text);
   st = check_characters(p, text, len, err);
   if (st < 0) return st;
@@ -140,7 +140,7 @@ static vg_status set_text(const struct vg_param *p, char *at, const char *text,
   if (len >= p->size)
     return vg_fail(err, VG_ERR_INPUT,
                    "%s has %zu characters; at most %zu "
-                   "are kept",
+                   "are allowed",
                    p->name, len, p->size - 1);
   if (check_characters(p, text, len, err) < 0) return VG_ERR_INPUT;
   memset(at, 0, p->size);
@@ -179,7 +179,8 @@ vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
   return VG_OK;
 }
 
-/* Quoted where a bare token would not come back: "" inside stands for ". */
+/* Quote a text that would not be read back as one token; a " inside is written
+ * as "". */
 static void format_text(const char *text, char *out, size_t size)
 {
   int bare = *text && strcmp(text, "-") != 0 && !strpbrk(text, " #\"");
@@ -241,7 +242,7 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
   }
 }
 
-/* Edit distance with swaps of neighbours (optimal string alignment). */
+/* Edit distance with transpositions (optimal string alignment). */
 static size_t distance(const char *a, const char *b)
 {
   size_t row[3][72], n = strlen(a), m = strlen(b);

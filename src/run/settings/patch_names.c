@@ -30,7 +30,7 @@ static int take_range(const char **text, struct vg_patch_item *item)
   return item->to >= item->from;
 }
 
-/* A name up to a separator, or up to the end of its quote. */
+/* A name up to a separator, or up to the closing quotation mark. */
 static int take_name(const char **text, struct vg_patch_item *item)
 {
   const char *at = *text;
@@ -70,10 +70,10 @@ vg_status vg_patch_list_check(const char *name, const char *list,
   while (vg_patch_list_next(&at, &item)) continue;
   if (!*at) return VG_OK;
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: '%s' is no list of patches; numbers, "
-                 "ranges and names are separated by commas, as in "
-                 "3-12,15,wing*; quote a name that has blanks or commas or "
-                 "begins with a digit",
+                 "%s: '%s' is not a list of patches; separate numbers, "
+                 "ranges and names by commas, as in "
+                 "3-12,15,wing*; quote a name that contains blanks or commas "
+                 "or begins with a digit",
                  name, list);
 }
 
@@ -139,7 +139,7 @@ static vg_status no_name(const char *what, const char *name,
   if (near && *near)
     snprintf(hint, sizeof hint, "did you mean '%.*s'? ", VG_NAME_MAX, near);
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: no patch of the surface is called "
+                 "%s: no patch of the surface is named "
                  "'%s'; %sPatches: %s",
                  what, name, hint, list);
 }
@@ -153,11 +153,11 @@ static vg_status no_number(const char *what, int64_t from, int64_t to,
   vg_patch_list_text(m, n, list, sizeof list);
   if (from == to)
     return vg_fail(err, VG_ERR_INPUT,
-                   "%s: patch %lld is not in the surface. "
+                   "%s: the surface has no patch %lld. "
                    "Patches: %s",
                    what, (long long)from, list);
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: no patch of the surface is within "
+                 "%s: the surface has no patch in the range "
                  "%lld-%lld. Patches: %s",
                  what, (long long)from, (long long)to, list);
 }
@@ -209,7 +209,7 @@ vg_status vg_patch_ref_mark(const char *what, int32_t id, const char *name,
 
 /* --- rows of tables ------------------------------------------------------ */
 
-/* The number and the name of a row of patches or of layers. */
+/* Pointers to the number and the name in a row of patches or layers. */
 struct ref {
   int32_t *id;
   char *name;
@@ -249,7 +249,7 @@ static size_t *each_unset(size_t n)
   return of;
 }
 
-/* Row i of `old`, once for each patch that it names, into s. */
+/* Add row i of `old` to s, once for each patch that its name matches. */
 static vg_status resolve_row(struct vg_settings *s, enum vg_table_kind kind,
                              const struct vg_settings *old, size_t i,
                              const struct vg_mesh *m, uint8_t *on, size_t *of,
@@ -267,7 +267,7 @@ static vg_status resolve_row(struct vg_settings *s, enum vg_table_kind kind,
   r = ref_of(kind, &row);
   memset(on, 0, m->n_patch);
   if (!*r.name && vg_mesh_find_patch(m, *r.id) == SIZE_MAX)
-    return vg_settings_add(s, kind, &row, err); /* refused where it is used */
+    return vg_settings_add(s, kind, &row, err); /* rejected where it is used */
   VG_TRY(vg_patch_ref_mark(t->name, *r.id, r.name, m, m->n_patch, on, err));
   *r.name = 0;
   for (size_t k = 0; k < m->n_patch; k++) {
@@ -306,7 +306,7 @@ static vg_status resolve_table(struct vg_settings *to, enum vg_table_kind kind,
   return st;
 }
 
-/* The patches with the names that the table patches gives. */
+/* Copy the patches of m, with the names that the table `patches` gives. */
 static vg_status rename_patches(const struct vg_settings *s,
                                 const struct vg_mesh *m, struct vg_mesh *to,
                                 struct vg_error *err)

@@ -1,5 +1,5 @@
-/* run/settings/patch_names.h: patches named by number, range, name or pattern,
- * and what these mean on a surface. Uses core/mesh and run/settings. */
+/* run/settings/patch_names.h: lists of patches given by number, range, name or
+ * pattern, and their lookup on a surface. Uses core/mesh and run/settings. */
 #ifndef VG_RUN_SETTINGS_PATCH_NAMES_H
 #define VG_RUN_SETTINGS_PATCH_NAMES_H
 
@@ -10,19 +10,18 @@
 
 /** One item of a list of patches. */
 struct vg_patch_item {
-  int64_t from, to;       /* numbers, inclusive, where name is empty */
+  int64_t from, to;       /* range of numbers, inclusive, if name is empty */
   char name[VG_NAME_MAX]; /* a name, or a pattern with * and ? */
 };
 
-/** Read the next item of a list such as 3-12,wing*,"upper surface" and set
- * *text behind it. Commas and blanks separate items; a name that has one of
- * them, or begins like a number, stands in quotes of either kind. Numbers may
- * be negative. Returns 0 at the end of the list, and before an item that is
- * none of these, with *text at it. */
+/** Read the next item of a list such as 3-12,wing*,"upper surface" and advance
+ * *text past it. Commas and blanks separate items; a name that contains one of
+ * them, or begins like a number, must be in single or double quotes. Numbers
+ * may be negative. Returns 0 at the end of the list, and at an invalid item,
+ * with *text pointing to it. */
 int vg_patch_list_next(const char **text, struct vg_patch_item *item);
 
-/** Check a list. This is the check of a setting (struct vg_param);
- * VG_ERR_INPUT names the item that is wrong. */
+/** Check the syntax of a list; for the member `check` of struct vg_param. */
 vg_status vg_patch_list_check(const char *name, const char *list,
                               struct vg_error *err);
 
@@ -30,26 +29,26 @@ vg_status vg_patch_list_check(const char *name, const char *list,
  * and case matters. */
 int vg_patch_name_matches(const char *pattern, const char *name);
 
-/** Set on[i] to 1 for each of the first n patches of m that a list names.
+/** Set on[i] to 1 for each of the first n patches of m that is in the list.
  *
- * @param what  the setting, for messages
- * VG_ERR_INPUT for a number, range or name that no patch has: the message
- * gives the nearest name and lists the patches. */
+ * @param what  name of the setting, for messages
+ * VG_ERR_INPUT for a number, range or name that matches no patch: the message
+ * suggests the nearest name and lists the patches. */
 vg_status vg_patch_list_mark(const char *what, const char *list,
                              const struct vg_mesh *m, size_t n, uint8_t *on,
                              struct vg_error *err);
 
-/** As vg_patch_list_mark, for a row of a table: a number, or a name or
- * pattern. */
+/** As vg_patch_list_mark, for the patch of a table row: a number or, if `name`
+ * is not empty, a name or pattern. */
 vg_status vg_patch_ref_mark(const char *what, int32_t id, const char *name,
                             const struct vg_mesh *m, size_t n, uint8_t *on,
                             struct vg_error *err);
 
-/** Replace the rows of the tables patches and layers that have names by rows
- * with numbers, one for each patch that the name stands for. Rows with
- * numbers stay, so that a second call does nothing. In the table layers a
- * patch has the name that the table patches gives it.
- * VG_ERR_INPUT for a name that no patch has, and for a patch with two rows:
+/** Replace the rows of the tables `patches` and `layers` that have names by
+ * rows with numbers, one for each patch that matches the name. Rows with
+ * numbers are kept, so a second call has no effect. Names in the table `layers`
+ * refer to the names that the table `patches` assigns.
+ * VG_ERR_INPUT for a name that matches no patch, and for a patch with two rows;
  * the message names both. */
 vg_status vg_patch_rows_resolve(struct vg_settings *s, const struct vg_mesh *m,
                                 struct vg_error *err);

@@ -5,21 +5,22 @@
 
 #include "partition/advance/ways.h"
 
-/* Of struct vg_cad_options, however sizes are scaled. */
+/* Defaults and bounds of struct vg_cad_options for every scale. */
 #define FINE_CHORD 3e-4 /* S15: for a surface that is remeshed */
 #define FINEST_CHORD                                                           \
-  1e-4 /* S45: where triangles of thin tips do not cross                       \
-          yet */
+  1e-4 /* S45: at which triangles of thin tips do not                          \
+          intersect yet */
 #define FINE_ANGLE 8.0
 #define CHORD_MOST 0.5
 #define ANGLE_LEAST 1.0
 #define ANGLE_MOST 60.0
 
-#define MOST_TRI 1e8 /* S60: triangles of a new surface in gaps */
+#define MOST_TRI 1e8 /* S60: triangles of a remeshed surface in gaps */
 
 /* --- the surface --------------------------------------------------------- */
 
-/* Triangles along a stretched line are compared with facets next to it. */
+/* Triangles along a stretched curve are compared with the facets next to it, so
+ * these must be finer. */
 static int is_stretched(const struct vg_settings *s)
 {
   for (size_t i = 0; i < s->n_surface; i++)
@@ -32,7 +33,8 @@ struct vg_cad_options vg_options_cad(const struct vg_settings *s,
 {
   const struct vg_cad_options plain = VG_CAD_OPTIONS_INIT;
   const double scale2 = s->scale * s->scale;
-  /* An arc of an edge S times as long turns by S, and rises by S * S. */
+  /* If an edge is longer by a factor S, its arc turns by an angle larger by S
+   * and has a rise larger by S * S. */
   double chord = (s->cad.chord > 0 ? s->cad.chord : plain.chord) * scale2;
   double angle = (s->cad.angle > 0 ? s->cad.angle : plain.angle) * s->scale;
 
@@ -78,7 +80,7 @@ struct vg_flow_options vg_options_flow(const struct vg_settings *s,
                                                    : "farfield sphere";
   } else if (has_cells) {
     o.kind = VG_FLOW_INTERNAL;
-    o.asked_by = "that the boundary of a volume mesh is read";
+    o.asked_by = "flow internal (implied by a volume mesh as input)";
   }
   return o;
 }
@@ -88,7 +90,7 @@ struct vg_wrap_options vg_options_wrap(const struct vg_settings *s)
   return (struct vg_wrap_options){ .size = s->wrap };
 }
 
-/* The largest edge of a new surface; 0: none is given. */
+/* The largest edge of a remeshed surface; 0: not given. */
 static double largest_edge(const struct vg_settings *s)
 {
   return s->surface_size > 0 && !(s->hmax > 0 && s->hmax < s->surface_size)
@@ -96,8 +98,8 @@ static double largest_edge(const struct vg_settings *s)
          : s->hmax;
 }
 
-/* A surface of more triangles than cells are allowed is refused before it is
- * made. */
+/* A surface with more triangles than the permitted number of cells is rejected
+ * before it is remeshed. */
 static double most_triangles(const struct vg_settings *s, int is_remeshed)
 {
   if (!is_remeshed) return 0;

@@ -49,7 +49,7 @@ void vg_resolve_write(const struct vg_settings *s, char write[VG_WRITE_MAX])
                                          : "cogsg,b8.ugrid");
 }
 
-/* Rows in place of those of a table. */
+/* Replace the rows of the table `patches`. */
 static vg_status replace_patches(struct vg_settings *s,
                                  const struct vg_decisions *d,
                                  struct vg_error *err)
@@ -62,8 +62,8 @@ static vg_status replace_patches(struct vg_settings *s,
   return st;
 }
 
-/* Heights in place of y+, and a row for each given patch in place of lists and
- * conditions: they lead to the same layers again. */
+/* Replace y+ by heights, and lists and conditions by a row for each patch;
+ * these lead to the same layers. */
 static vg_status resolve_layers(const struct vg_settings *read,
                                 const struct vg_decisions *d,
                                 struct vg_settings *s, struct vg_error *err)

@@ -19,7 +19,7 @@
 #include "run/settings/patch_names.h"
 #include "run/settings/surface_table.h"
 
-#define HUGE_SIZE 1e60 /* beyond this the predicates are not safe */
+#define HUGE_SIZE 1e60 /* the geometric predicates are safe up to this */
 
 static const char *const domain_words[] = { "auto", "none", "sphere", "box",
                                             NULL };
@@ -60,7 +60,7 @@ static const char *const source_words[] = { "vgrid_node", "vgrid_line", "point",
 #define LENGTH .hi = HUGE_SIZE, .unit = "length"
 #define LIMIT(least, most, units, about)                                       \
   .keeps_mesh = 1, .lo = least, .hi = most, .optional = 1, .unit = units,      \
-  .help = about ", else exit status 4; -: no limit"
+  .help = about "; exit status 4 if violated; -: no limit"
 #define VG_ROW(type_, place, member, name_, initial, ...)                      \
   { .name = name_,                                                             \
     AT(VG_AT_##place member),                                                  \
@@ -89,24 +89,26 @@ static const struct vg_param params[] = {
 static const struct vg_param farfield_columns[] = {
   { "kind", AT(kind), .use = VG_USE_ALWAYS, .type = VG_PARAM_WORD,
     .words = domain_words, .unit = "", .required = 1,
-    .help = "auto (only around a body that stands alone), none, sphere or "
-            "box" },
+    .help = "Shape of the generated outer boundary: auto (a sphere, only "
+            "if the surface has no outer boundary), none, sphere or box" },
   { "lengths", AT(lengths), .type = VG_PARAM_REAL, .hi = HUGE_SIZE,
     .above_lo = 1, .unit = "body lengths",
-    .help = "radius, or half width of the box" },
+    .help = "Radius of the farfield sphere, or half width of the box" },
   { "size", AT(size), .type = VG_PARAM_REAL, LENGTH,
-    .help = "the same as a length; 0: by lengths" },
+    .help = "Radius or half width of the farfield as an absolute length; "
+            "0: in body lengths" },
   { "spacing", AT(spacing), .type = VG_PARAM_REAL, LENGTH,
-    .help = "edge on the farfield; 0: what growth from the body gives" },
-  POINT("x", centre, 0, "centre; -: that of the body"),
-  POINT("y", centre, 1, "centre"),
-  POINT("z", centre, 2, "centre"),
-  POINT("xlo", lo, 0, "lower corner of a box given outright"),
-  POINT("ylo", lo, 1, "lower corner"),
-  POINT("zlo", lo, 2, "lower corner"),
-  POINT("xhi", hi, 0, "upper corner"),
-  POINT("yhi", hi, 1, "upper corner"),
-  POINT("zhi", hi, 2, "upper corner"),
+    .help = "Edge length on the farfield; 0: the edge length that growth "
+            "from the body leads to" },
+  POINT("x", centre, 0, "Centre of the farfield, x; -: centre of the body"),
+  POINT("y", centre, 1, "Centre, y"),
+  POINT("z", centre, 2, "Centre, z"),
+  POINT("xlo", lo, 0, "Lower corner of a box given by its corners, x"),
+  POINT("ylo", lo, 1, "Lower corner, y"),
+  POINT("zlo", lo, 2, "Lower corner, z"),
+  POINT("xhi", hi, 0, "Upper corner, x"),
+  POINT("yhi", hi, 1, "Upper corner, y"),
+  POINT("zhi", hi, 2, "Upper corner, z"),
 };
 
 #undef AT
@@ -116,19 +118,18 @@ static const struct vg_param farfield_columns[] = {
 
 static const struct vg_param patch_columns[] = {
   { "id", AT(id), VG_PATCH_COLUMN(struct vg_patch_row, id_name), .required = 1,
-    .help = "patch: its number in the surface file, or its name there (* and "
-            "? stand for characters)" },
+    .help = "Number or name of the patch in the surface file (* and ? are "
+            "wildcards)" },
   { "bc", AT(bc), .type = VG_PARAM_ID, .lo = -9999, .hi = 99999, .optional = 1,
     .unit = "",
     .help =
-      "boundary condition, USM3D code (0 "
+      "Boundary condition, as a USM3D code (0 "
       "freestream, 1 symmetry, 3 farfield, 4 viscous wall, 5 inviscid wall) or "
-      "FUN3D code (3000 to 7999, or below 0); -: as the input says" },
+      "a FUN3D code (3000 to 7999, or negative); -: as in the input" },
   { "name", AT(name), .type = VG_PARAM_TEXT, .unit = "",
-    .help = "name; \"\": as the input says" },
+    .help = "New name of the patch; \"\": as in the input" },
   { "hard", AT(hard), .type = VG_PARAM_FLAG, .unit = "",
-    .help = "a surface "
-            "that is made anew keeps the borders of this patch" },
+    .help = "Keep the borders of this patch when the surface is remeshed" },
 };
 
 #undef AT
@@ -143,28 +144,28 @@ static const struct vg_param patch_columns[] = {
   }
 #define OWN_LIMIT(member, least, most, units)                                  \
   {                                                                            \
-#member, AT(limit.member), .type = VG_PARAM_REAL, .keeps_mesh = 1,         \
-                               .lo = least, .hi = most, .optional = 1,         \
-                               .unit = units, .help = "as the setting"         \
+#member, AT(limit.member),                                                 \
+      .type = VG_PARAM_REAL, .keeps_mesh = 1, .lo = least, .hi = most,         \
+      .optional = 1, .unit = units, .help = "As the setting of this name"      \
   }
 
 static const struct vg_param layer_columns[] = {
   { "id", AT(id), VG_PATCH_COLUMN(struct vg_layer_row, id_name), .required = 1,
-    .help = "number of the patch, or its name (* and ? stand for characters)" },
+    .help = "Number or name of the patch (* and ? are wildcards)" },
   { "grow", AT(grow), .type = VG_PARAM_WORD, .words = answer_words, .unit = "",
-    .help = "layers on this patch; auto: by its condition" },
-  OWN("first", first, 0, HUGE_SIZE, 1, "length", "as the setting"),
-  OWN("y_plus", y_plus, 0, HUGE_SIZE, 1, "", "as the setting"),
-  OWN("ratio", ratio, 1, 10, 0, "", "as the setting"),
-  OWN("rate1", rate1, 0, 9, 0, "", "as the setting"),
-  OWN("rate2", rate2, 0, 9, 0, "", "as the setting"),
+    .help = "Grow layers on this patch; auto: by its boundary condition" },
+  OWN("first", first, 0, HUGE_SIZE, 1, "length", "As the setting of this name"),
+  OWN("y_plus", y_plus, 0, HUGE_SIZE, 1, "", "As the setting of this name"),
+  OWN("ratio", ratio, 1, 10, 0, "", "As the setting of this name"),
+  OWN("rate1", rate1, 0, 9, 0, "", "As the setting of this name"),
+  OWN("rate2", rate2, 0, 9, 0, "", "As the setting of this name"),
   { "count", AT(count), .type = VG_PARAM_COUNT, .hi = VG_LEVELS_MAX,
-    .optional = 1, .unit = "layers", .help = "as layer_count" },
-  OWN("total", total, 0, HUGE_SIZE, 0, "length", "as layer_total"),
+    .optional = 1, .unit = "layers", .help = "As layer_count" },
+  OWN("total", total, 0, HUGE_SIZE, 0, "length", "As layer_total"),
   { "constant", AT(constant), .type = VG_PARAM_COUNT, .lo = 1,
     .hi = VG_LEVELS_MAX, .optional = 1, .unit = "layers",
-    .help = "as constant_layers" },
-  OWN("cap", cap, 0, 10, 0, "", "as layer_cap"),
+    .help = "As constant_layers" },
+  OWN("cap", cap, 0, 10, 0, "", "As layer_cap"),
   OWN_LIMIT(min_full, 0, 100, "%"),
   OWN_LIMIT(min_any, 0, 100, "%"),
   OWN_LIMIT(min_height, 0, 100, "%"),
@@ -184,7 +185,7 @@ static const struct vg_param layer_columns[] = {
     name, AT(field), .type = VG_PARAM_REAL, .lo = -HUGE_SIZE, .hi = HUGE_SIZE, \
                      .unit = units, .help = about                              \
   }
-/* What no law of sizes or layers takes from a source. */
+/* Members of a source that affect neither the sizing field nor the layers. */
 #define AS_READ(name, field, units, about)                                     \
   {                                                                            \
     name, AT(field), .type = VG_PARAM_REAL, .keeps_mesh = 1, .lo = -HUGE_SIZE, \
@@ -195,50 +196,55 @@ static const struct vg_param source_columns[] = {
   { "kind", AT(kind), .type = VG_PARAM_WORD, .words = source_words, .unit = "",
     .required = 1,
     .help =
-      "vgrid_node and vgrid_line follow "
-      "VGRID's inverse-square law; point, line, triangle, box, sphere and "
-      "cylinder (a cone where r0 and r1 differ) grow at a bounded rate" },
-  ANY("x0", p0[0], "length", "first point, centre or lower corner"),
-  ANY("y0", p0[1], "length", "first point"),
-  ANY("z0", p0[2], "length", "first point"),
+      "Shape of the source. vgrid_node and vgrid_line follow "
+      "VGRID's inverse-square law; around a point, line, triangle, box, "
+      "sphere or cylinder (a cone if r0 and r1 differ) the spacing grows at a "
+      "bounded rate" },
+  ANY("x0", p0[0], "length", "First point, centre or lower corner, x"),
+  ANY("y0", p0[1], "length", "First point, y"),
+  ANY("z0", p0[2], "length", "First point, z"),
   ANY("x1", p1[0], "length",
-      "second point (line, triangle, cylinder) or "
-      "upper corner (box)"),
-  ANY("y1", p1[1], "length", "second point"),
-  ANY("z1", p1[2], "length", "second point"),
-  ANY("x2", p2[0], "length", "third point (triangle)"),
-  ANY("y2", p2[1], "length", "third point"),
-  ANY("z2", p2[2], "length", "third point"),
+      "Second point (line, triangle, cylinder) or "
+      "upper corner (box), x"),
+  ANY("y1", p1[1], "length", "Second point, y"),
+  ANY("z1", p1[2], "length", "Second point, z"),
+  ANY("x2", p2[0], "length", "Third point (triangle), x"),
+  ANY("y2", p2[1], "length", "Third point, y"),
+  ANY("z2", p2[2], "length", "Third point, z"),
   { "h0", AT(h0), .type = VG_PARAM_REAL, LENGTH, .above_lo = 1, .required = 1,
-    .help = "edge at the first point, or inside the shape" },
+    .help = "Spacing at the first point, or inside the shape" },
   { "h1", AT(h1), .type = VG_PARAM_REAL, LENGTH,
-    .help = "edge at the second point; 0: as h0" },
+    .help = "Spacing at the second point; 0: as h0" },
   { "r0", AT(r0), .type = VG_PARAM_REAL, LENGTH,
-    .help = "radius in which h0 holds" },
+    .help = "Radius within which the spacing is h0" },
   { "r1", AT(r1), .type = VG_PARAM_REAL, LENGTH,
-    .help = "radius at the second point (cylinder)" },
+    .help = "Radius at the second point (cylinder)" },
   { "growth", AT(growth), .type = VG_PARAM_REAL, .hi = 10, .unit = "",
-    .help = "growth of this source, > 1; 0: the global one" },
-  ANY("an", an, "", "weight of a vgrid source"),
-  AS_READ("bn", bn, "", "VGRID: bias intensity, kept as read"),
-  AS_READ("alpha", alpha, "", "VGRID: directional bias, kept as read"),
-  AS_READ("stretch", stretch, "", "VGRID: stretching flag, kept as read"),
-  AS_READ("sp0", sp0, "length", "VGRID: second spacing at point 1, as read"),
-  AS_READ("sp1", sp1, "length", "VGRID: second spacing at point 2, as read"),
-  AS_READ("ux", u[0], "", "VGRID: bias vector, as read"),
-  AS_READ("uy", u[1], "", "VGRID: bias vector, as read"),
-  AS_READ("uz", u[2], "", "VGRID: bias vector, as read"),
-  AS_READ("px", p[0], "", "VGRID: stretching vector, as read"),
-  AS_READ("py", p[1], "", "VGRID: stretching vector, as read"),
-  AS_READ("pz", p[2], "", "VGRID: stretching vector, as read"),
-  ANY("delta1_0", layer0[0], "length", "first layer at point 1, as read"),
-  ANY("rate1_0", layer0[1], "", "layer rate 1 at point 1, as read"),
-  ANY("rate2_0", layer0[2], "", "layer rate 2 at point 1, as read"),
-  ANY("delta1_1", layer1[0], "length", "first layer at point 2, as read"),
-  ANY("rate1_1", layer1[1], "", "layer rate 1 at point 2, as read"),
-  ANY("rate2_1", layer1[2], "", "layer rate 2 at point 2, as read"),
+    .help = "Growth around this source, > 1; 0: the global growth" },
+  ANY("an", an, "", "Weight of a VGRID source"),
+  AS_READ("bn", bn, "", "VGRID bias intensity; stored, not used"),
+  AS_READ("alpha", alpha, "", "VGRID directional bias; stored, not used"),
+  AS_READ("stretch", stretch, "", "VGRID stretching flag; stored, not used"),
+  AS_READ("sp0", sp0, "length",
+          "VGRID second spacing at point 1; stored, not used"),
+  AS_READ("sp1", sp1, "length",
+          "VGRID second spacing at point 2; stored, not used"),
+  AS_READ("ux", u[0], "", "VGRID bias vector, x; stored, not used"),
+  AS_READ("uy", u[1], "", "VGRID bias vector, y; stored, not used"),
+  AS_READ("uz", u[2], "", "VGRID bias vector, z; stored, not used"),
+  AS_READ("px", p[0], "", "VGRID stretching vector, x; stored, not used"),
+  AS_READ("py", p[1], "", "VGRID stretching vector, y; stored, not used"),
+  AS_READ("pz", p[2], "", "VGRID stretching vector, z; stored, not used"),
+  ANY("delta1_0", layer0[0], "length",
+      "First layer height at point 1 (with layer_sources)"),
+  ANY("rate1_0", layer0[1], "", "Layer rate 1 at point 1"),
+  ANY("rate2_0", layer0[2], "", "Layer rate 2 at point 1"),
+  ANY("delta1_1", layer1[0], "length",
+      "First layer height at point 2 (with layer_sources)"),
+  ANY("rate1_1", layer1[1], "", "Layer rate 1 at point 2"),
+  ANY("rate2_1", layer1[2], "", "Layer rate 2 at point 2"),
   { "group", AT(group), .type = VG_PARAM_TEXT, .keeps_mesh = 1, .unit = "",
-    .help = "name of the group, for people" },
+    .help = "Name of a group of sources, used in messages only" },
 };
 
 #undef AT
@@ -252,20 +258,20 @@ static const struct vg_param source_columns[] = {
   }
 
 static const struct vg_param sweep_columns[] = {
-  LIST("ranks", ranks, "numbers of ranks, as in 1,2,4 or 1:64:x2; \"\": 1"),
-  LIST("threads", threads, "threads of each rank; \"\": 1"),
-  LIST("levels", levels, "levels of bisection; \"\": none"),
+  LIST("ranks", ranks, "Numbers of ranks, as in 1,2,4 or 1:64:x2; \"\": 1"),
+  LIST("threads", threads, "Numbers of threads per rank; \"\": 1"),
+  LIST("levels", levels, "Numbers of successive bisections; \"\": none"),
   LIST("leaf_cells", leaf_cells,
-       "cells to a leaf; both lists make cases of "
-       "their own; \"\": as the setting"),
+       "Cells per subdomain; these cases are run in addition to those of "
+       "levels; \"\": as the setting"),
   LIST("decompose", decompose,
-       "ways to decompose, as in advancing,discrete; "
-       "each with all parts, beside cases of the other lists; \"\": as the "
-       "setting"),
-  LIST("parts", parts, "numbers of parts; \"\": as the setting"),
-  LIST("family", family, "levels of a grid family; \"\": none"),
+       "Decomposition methods, as in advancing,discrete; each is run with "
+       "every entry of parts, in addition to the cases of the other lists; "
+       "\"\": as the setting"),
+  LIST("parts", parts, "Numbers of subdomains; \"\": as the setting"),
+  LIST("family", family, "Levels of a grid family; \"\": none"),
   { "repeat", AT(repeat), .type = VG_PARAM_COUNT, .keeps_mesh = 1, .hi = 1000,
-    .unit = "times", .help = "runs of each case; 0: one" },
+    .unit = "times", .help = "Number of runs of each case; 0: one" },
 };
 
 #define COUNT(a) (sizeof(a) / sizeof *(a))
@@ -275,23 +281,23 @@ static const struct vg_setting_table tables[VG_TABLE_N] = {
                           farfield_columns, COUNT(farfield_columns),
                           sizeof(struct vg_farfield_row) },
   [VG_TABLE_PATCHES] = { "patches",
-                         "Names and boundary conditions; they win "
-                         "over the .mapbc file.",
+                         "Names and boundary conditions, which override "
+                         "those of the .mapbc file.",
                          patch_columns, COUNT(patch_columns),
                          sizeof(struct vg_patch_row) },
   [VG_TABLE_LAYERS] = { "layers",
-                        "Layers of single patches. - or "
-                        "no column: the global one.",
+                        "Layers of individual patches. - or a missing "
+                        "column: the global setting.",
                         layer_columns, COUNT(layer_columns),
                         sizeof(struct vg_layer_row) },
   [VG_TABLE_SOURCES] = { "sources",
-                         "Spacing in the volume. - or no "
+                         "Sources of spacing in the volume. - or a missing "
                          "column: the default.",
                          source_columns, COUNT(source_columns),
                          sizeof(struct vg_source) },
   [VG_TABLE_SWEEP] = { "sweep",
-                       "What vanguard sweep runs, of which other "
-                       "commands take no notice. One line.",
+                       "Cases that vanguard sweep runs; other commands "
+                       "ignore this table. One line.",
                        sweep_columns, COUNT(sweep_columns),
                        sizeof(struct vg_sweep_row) },
 };

@@ -1,4 +1,4 @@
-/* Settings that do not go together, and rows of tables. Declared in
+/* Checks for contradictory settings and table rows. Declared in
  * run/settings/settings.h. */
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "run/settings/settings.h"
 #include "run/settings/surface_table.h"
 
-/* The word for the kind of a farfield, the first column of its table. */
+/* The word for the kind of the farfield, the first column of its table. */
 static const char *kind_name(const struct vg_farfield_row *f)
 {
   return vg_settings_table(VG_TABLE_FARFIELD)->column[0].words[f->kind];
@@ -28,7 +28,7 @@ static int compare_id(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Both tables of patches begin with the number. Names are compared when the
+/* Rows of both tables begin with the patch number. Names are compared once the
  * surface is known. */
 static vg_status check_numbers(const struct vg_settings *s,
                                enum vg_table_kind kind, struct vg_error *err)
@@ -74,7 +74,7 @@ static vg_status check_layer_rows(const struct vg_settings *s,
     if (!isnan(r->y_plus) && !(s->layer.reynolds > 0))
       return vg_fail(err, VG_ERR_INPUT,
                      "layers: patch %s has y_plus, which "
-                     "needs reynolds and reference_length",
+                     "requires reynolds and reference_length",
                      who);
     if (!isnan(r->cap) && r->cap > 0 && r->cap < 1)
       return vg_fail(err, VG_ERR_INPUT,
@@ -102,11 +102,11 @@ static vg_status check_layers(const struct vg_settings *s, struct vg_error *err)
                    "one (ratio is 1 + rate1)");
   if ((l->reynolds > 0) != (l->length > 0))
     return vg_fail(err, VG_ERR_INPUT,
-                   "reynolds and reference_length belong "
-                   "together; give both or none");
+                   "reynolds and reference_length must be given "
+                   "together; give both or neither");
   if (l->y_plus > 0 && !(l->reynolds > 0))
     return vg_fail(err, VG_ERR_INPUT,
-                   "y_plus needs reynolds and "
+                   "y_plus requires reynolds and "
                    "reference_length");
   if (!isnan(l->cap) && l->cap > 0 && l->cap < 1)
     return vg_fail(err, VG_ERR_INPUT,
@@ -115,9 +115,9 @@ static vg_status check_layers(const struct vg_settings *s, struct vg_error *err)
                    l->cap);
   if (l->total > 0 && first > l->total)
     return vg_fail(err, VG_ERR_INPUT,
-                   "the first height, %g, is above "
-                   "layer_total, %g: no layer has room; lower it or raise the "
-                   "total",
+                   "the first height, %g, exceeds "
+                   "layer_total, %g: there is no room for a layer; reduce the "
+                   "first height or increase layer_total",
                    first, l->total);
   return check_layer_rows(s, err);
 }
@@ -129,21 +129,21 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
 
   if (s->flow == VG_FLOW_INTERNAL && f->kind > VG_DOMAIN_NONE)
     return vg_fail(err, VG_ERR_INPUT,
-                   "flow is internal, but farfield is %s: "
-                   "leave one of them out",
+                   "flow is internal, but farfield is %s; "
+                   "remove one of the two",
                    kind_name(f));
   if (s->flow == VG_FLOW_EXTERNAL && f->kind == VG_DOMAIN_NONE)
     return vg_fail(err, VG_ERR_INPUT,
-                   "flow is external, but farfield is none: "
-                   "leave one of them out");
+                   "flow is external, but farfield is none; "
+                   "remove one of the two");
   if (s->constant_direction && !s->split_direction)
     return vg_fail(err, VG_ERR_INPUT,
-                   "constant_direction needs a "
+                   "constant_direction requires a "
                    "split_direction of 1, 2 or 3");
   if (s->coarsening != 0 && s->coarsening < 1)
     return vg_fail(err, VG_ERR_INPUT,
-                   "coarsening is %g; it must be at least "
-                   "1, or 0 for one by the number of parts",
+                   "coarsening is %g; it must be at least 1, or 0 to "
+                   "derive it from the number of subdomains",
                    s->coarsening);
   if (s->hmin > 0 && s->hmax > 0 && s->hmin > s->hmax)
     return vg_fail(err, VG_ERR_INPUT,
@@ -152,17 +152,17 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
                    s->hmin, s->hmax);
   if (centre % 3)
     return vg_fail(err, VG_ERR_INPUT,
-                   "farfield: x, y and z belong together; "
+                   "farfield: x, y and z must be given together; "
                    "give all three or none");
   if (lo != hi || lo % 3)
     return vg_fail(err, VG_ERR_INPUT,
                    "farfield: the corners xlo ylo zlo and "
-                   "xhi yhi zhi belong together; give all six or none");
+                   "xhi yhi zhi must be given together; give all six or none");
   for (int k = 0; lo && k < 3; k++)
     if (!(f->lo[k] < f->hi[k]))
       return vg_fail(err, VG_ERR_INPUT,
-                     "farfield: the lower corner must be "
-                     "below the upper one in %c",
+                     "farfield: in %c the lower corner must be "
+                     "below the upper corner",
                      "xyz"[k]);
   if (lo && f->kind != VG_DOMAIN_BOX)
     return vg_fail(err, VG_ERR_INPUT,
@@ -173,7 +173,7 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
     if (s->source[i].growth != 0 && !(s->source[i].growth > 1))
       return vg_fail(err, VG_ERR_INPUT,
                      "sources: growth of source %zu is %g; "
-                     "it must be above 1, or 0 for the global one",
+                     "it must be above 1, or 0 for the global growth",
                      i + 1, s->source[i].growth);
   if (vg_surface_rows_check(s, err) < 0) return VG_ERR_INPUT;
   if (s->n_patch && check_numbers(s, VG_TABLE_PATCHES, err) < 0)

@@ -11,30 +11,31 @@
 static const struct vg_param columns[] = {
   { "patch", AT(patch), VG_PATCH_COLUMN(struct vg_surface_row, patch_name),
     .required = 1,
-    .help = "number of the patch, or its name (* and ? stand "
-            "for characters)" },
+    .help = "Number or name of the patch (* and ? are wildcards)" },
   { "beside", AT(beside), VG_PATCH_COLUMN(struct vg_surface_row, beside_name),
     .optional = 1,
-    .help = "another patch: the size holds along the curve "
-            "between them; -: on all the patch" },
+    .help = "Adjacent patch: the row applies to the curve between the two "
+            "patches; -: to the whole patch" },
   { "size", AT(size), .type = VG_PARAM_REAL, .hi = 1e60, .unit = "length",
-    .help = "largest edge; 0: no limit" },
+    .help = "Largest edge; 0: no limit" },
   { "lead", AT(lead), .type = VG_PARAM_REAL, .hi = 1, .unit = "chords",
-    .help = "edge where the patch is foremost along x, over its length along x "
-            "there; 0: no limit" },
+    .help = "Edge length at the leading edge of the patch (its foremost points "
+            "along x), over the local length of the patch along x; "
+            "0: no limit" },
   { "across", AT(across), .type = VG_PARAM_REAL, .hi = 1000, .unit = "edges",
-    .help = "edges across the patch where it is a strip between two lines, "
-            "such as a blunt trailing edge; 0: 1" },
+    .help = "Number of edges across the patch where it is a narrow strip "
+            "between two feature curves, such as a blunt trailing edge; "
+            "0: 1" },
   { "stretch", AT(stretch), .type = VG_PARAM_REAL, .hi = VG_REMESH_STRETCH,
     .unit = "times",
-    .help = "edges along the curve between patch and beside, "
-            "which stays as a line, over those across it; fades out by growth; "
-            "0: 1" },
+    .help = "Aspect ratio of the triangles at the curve between the two "
+            "patches, which is preserved: length of edges along it over that "
+            "of edges across it; decreases with distance by growth; 0: 1" },
 };
 
 const struct vg_setting_table vg_surface_table = {
   "surface",
-  "Sizes of a new surface "
+  "Edge lengths of the remeshed surface "
   "on patches and along the curves between them.",
   columns, sizeof columns / sizeof *columns, sizeof(struct vg_surface_row)
 };
@@ -44,7 +45,7 @@ int vg_surface_row_has_beside(const struct vg_surface_row *r)
   return r->beside != VG_BC_NONE || *r->beside_name;
 }
 
-/* One row: what asks for nothing, or does not go together. */
+/* Reject a row without any request, and values that contradict each other. */
 static vg_status check_row(const struct vg_surface_row *r, size_t line,
                            struct vg_error *err)
 {
@@ -55,19 +56,19 @@ static vg_status check_row(const struct vg_surface_row *r, size_t line,
   vg_param_format(&columns[1], r, two, sizeof two);
   if (!(r->size > 0 || r->lead > 0 || r->across > 0 || r->stretch > 0))
     return vg_fail(err, VG_ERR_INPUT,
-                   "surface: line %zu, patch %s, asks for "
-                   "nothing; give size, lead, across or stretch",
+                   "surface: line %zu, patch %s, has no "
+                   "request; give size, lead, across or stretch",
                    line, one);
   if (beside && (r->lead > 0 || r->across > 0))
     return vg_fail(err, VG_ERR_INPUT,
-                   "surface: the curve between patches %s "
-                   "and %s has size and stretch only; give lead and across "
-                   "on a line without beside",
+                   "surface: only size and stretch apply to the curve between "
+                   "patches %s and %s; give lead and across "
+                   "on a line without `beside`",
                    one, two);
   if (!beside && r->stretch > 0)
     return vg_fail(err, VG_ERR_INPUT,
-                   "surface: line %zu, patch %s, asks for "
-                   "stretch without a curve; give the patch beside",
+                   "surface: line %zu, patch %s, has stretch, which needs a "
+                   "curve; name the adjacent patch in the column `beside`",
                    line, one);
   if (r->stretch > 0 && r->stretch < 1)
     return vg_fail(err, VG_ERR_INPUT,

@@ -6,11 +6,11 @@
 
 extern const struct vg_setting_table vg_surface_table;
 
-/** Whether a row is about the curve between two patches. */
+/** Whether a row applies to the curve between two patches. */
 int vg_surface_row_has_beside(const struct vg_surface_row *r);
 
-/** VG_ERR_INPUT for rows that ask for nothing, or for what does not go
- * together. */
+/** Check all rows. VG_ERR_INPUT for a row without any request, and for values
+ * that contradict each other. */
 vg_status vg_surface_rows_check(const struct vg_settings *s,
                                 struct vg_error *err);
 

@@ -1,4 +1,4 @@
-/* Report of the decomposition and its tasks, as text and as JSON. */
+/* Reports on the domain decomposition, as text and as JSON. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,11 +7,12 @@
 #include "run/report/report.h"
 #include "run/stages/run.h"
 
-/* Leaves by their kind of content. Small components of a void, each too small
- * for a task of its own, are filled together: ".r" at the end of a path. */
+/* Cells of the leaves. Fragments (small components of the front) are filled
+ * together in one task, since they are too small for a task each; its path ends
+ * with ".r". */
 struct leaves {
   size_t n, n_fragment;
-  uint64_t *cells; /* [n] sorted; without small components. */
+  uint64_t *cells; /* [n] in ascending order, without fragments */
   uint64_t fragment_cells;
 };
 
@@ -29,7 +30,7 @@ static int is_fragment(const struct vg_span *s)
   return n > 3 && !strcmp(s->path + n - 3, ".rL");
 }
 
-/* Empty if there is no memory. */
+/* No leaves if out of memory. */
 static struct leaves leaves_of(const struct vg_spans *s)
 {
   struct leaves l = { .cells = vg_alloc(s->n, sizeof *l.cells) };
@@ -53,22 +54,21 @@ static void print_leaves(FILE *to, const struct leaves *l)
 {
   char a[32], b[32], c[32];
 
-  fprintf(to, "leaves %s", vg_text_count(l->n, a));
+  fprintf(to, "  leaves (subdomains that are filled) %s",
+          vg_text_count(l->n, a));
   if (l->n > 1)
-    fprintf(to, " of %s to %s cells, median %s", vg_text_count(l->cells[0], a),
+    fprintf(to, ": %s to %s cells, median %s", vg_text_count(l->cells[0], a),
             vg_text_count(l->cells[l->n - 1], b),
             vg_text_count(l->cells[(l->n - 1) / 2], c));
   fprintf(to, "\n");
   if (l->n_fragment)
-    fprintf(to,
-            "  and %s of small components that are filled together, %s "
-            "cells\n",
+    fprintf(to, "  and %s of small components filled together, %s cells\n",
             vg_text_count(l->n_fragment, a),
             vg_text_count(l->fragment_cells, b));
 }
 
-/* Cells that repairs and swaps across interfaces have added to the cells of
- * tasks, or removed if negative. */
+/* Cells that repairs and swaps across interfaces have added to those of the
+ * tasks, or, if negative, removed. */
 static int64_t repair_cells(const struct vg_run *r, const struct leaves *l)
 {
   uint64_t tasks = r->partition.n_zone_cell + l->fragment_cells;
@@ -82,7 +82,7 @@ static double share_of(const struct vg_run *r, uint64_t n)
   return r->n_field_cell ? 100 * (double)n / (double)r->n_field_cell : 0;
 }
 
-/* Largest over mean number of cells of the leaves. */
+/* Largest number of cells of a leaf over the mean. */
 static double balance(const struct leaves *l)
 {
   double sum = 0;
@@ -91,7 +91,7 @@ static double balance(const struct leaves *l)
   return l->n ? (double)l->cells[l->n - 1] * (double)l->n / sum : 1;
 }
 
-/* Text on a void that was decomposed before any of it was filled. */
+/* The decomposition by discrete or octree, made before anything is filled. */
 static void print_decomposition(FILE *to, const struct vg_run *r,
                                 const struct leaves *l)
 {
@@ -101,24 +101,27 @@ static void print_decomposition(FILE *to, const struct vg_run *r,
 
   if (!p->n_part) return;
   fprintf(to,
-          "  decomposed by %s: %s subdomains (%s requested, %llu more because "
-          "subdomains were\n  not connected), balance %.3f (largest over mean "
-          "number of cells of leaves)\n",
+          "  decomposition %s: %s subdomains (%s requested, %llu more for "
+          "disconnected pieces),\n  balance %.3f (max/mean of the cells made "
+          "in leaves)\n",
           r->decomposition, vg_text_count(p->n_part, a),
           vg_text_count(q->n_asked, b), (unsigned long long)q->n_apart,
           balance(l));
-  fprintf(to, "  %s %s, coarsening %.2f, %s triangles of interfaces\n",
+  fprintf(to, "  %s %s, coarsening %.2f, %s interface triangles\n",
           vg_text_count(q->n_coarse, a), q->n_gap ? "octants" : "coarse cells",
           q->coarsening, vg_text_count(q->n_face, b));
   if (q->n_gap)
     fprintf(to,
-            "  %s of these subdomains are gap regions at the front, which "
-            "planes may cut; octants hold\n  %.1f %% of the expected cells%s\n",
+            "  %s of these subdomains are the gap region at the front, which "
+            "planes may cut; octants\n  contain %.1f %% of the expected "
+            "cells%s\n",
             vg_text_count(q->n_gap, a), 100 * q->coarse_cells / p->estimate,
-            q->n_coarse ? "" : ": no octant fits away from the front");
+            q->n_coarse ? ""
+                        : ": there is no room for an octant away from "
+                          "the front");
   fprintf(to,
-          "  seconds: %s %.2f, assignment %.2f, smoothing of interfaces %.2f, "
-          "division of interfaces %.2f\n",
+          "  time (s): %s %.2f, assignment %.2f, smoothing of interfaces "
+          "%.2f, subdivision %.2f\n",
           q->n_gap ? "octants" : "coarse cells",
           q->time[VG_DECOMPOSITION_COARSE], q->time[VG_DECOMPOSITION_GRAPH],
           q->time[VG_DECOMPOSITION_SMOOTH], q->time[VG_DECOMPOSITION_FACES]);
@@ -159,55 +162,56 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
   struct leaves l = leaves_of(&r->spans);
   char a[32], b[32], c[32];
 
-  fprintf(to, "  %d rank%s x %d thread%s; %s cells expected, %s made\n",
+  fprintf(to, "  %d rank%s x %d thread%s; cells expected %s, made %s\n",
           r->size, r->size > 1 ? "s" : "", r->threads,
           r->threads > 1 ? "s" : "",
           vg_text_count((unsigned long long)p->estimate, a),
           vg_text_count(r->n_field_cell, b));
   print_decomposition(to, r, &l);
-  fprintf(to, "  cuts %s, pencils %s, tiles %s: %.1f %% of the cells; ",
+  fprintf(to,
+          "  cuts %s; edge separators (pencils) %s, face separators (tiles) "
+          "%s: %.1f %% of the cells\n",
           vg_text_count(p->n_node, a), vg_text_count(p->n_pencil, b),
           vg_text_count(p->n_tile, c), share_of(r, p->n_zone_cell));
   print_leaves(to, &l);
   if (p->n_widened)
     fprintf(to,
-            "  subdomains that could not be filled and were filled again "
-            "together with their\n  neighbours: %s, %s cells made again, %.2f "
-            "s\n",
+            "  subdomains that could not be filled and were extended by "
+            "their neighbours: %s,\n  %s cells remade in %.2f s\n",
             vg_text_count(p->n_widened, a), vg_text_count(p->n_widened_cell, b),
             p->widened);
   if (p->n_blocked || p->n_retry || p->n_uncut || p->n_outgrown)
     fprintf(to,
-            "  separators abandoned %s, cuts repeated elsewhere %s, "
-            "overloaded leaves cut again %s, large leaves not cut %llu\n",
+            "  separators abandoned %s, cuts repeated elsewhere %s, overloaded "
+            "leaves cut %s, leaves left too large %llu\n",
             vg_text_count(p->n_blocked, a), vg_text_count(p->n_retry, b),
             vg_text_count(p->n_outgrown, c), (unsigned long long)p->n_uncut);
   if (p->n_open_left)
     fprintf(to,
-            "  stages between separators left to leaves, because the void was "
-            "connected at too many places: %llu\n",
+            "  separator stages left to leaves, since the void stays "
+            "connected in too many places: %llu\n",
             (unsigned long long)p->n_open_left);
-  fprintf(to, "  across interfaces: points moved %s times, %s swaps; ",
+  fprintf(to, "  repair across interfaces: %s point moves, %s swaps; ",
           vg_text_count(p->n_repair_moved, a),
           vg_text_count(p->n_repair_swapped, b));
-  fprintf(to, "repaired %s of %s regions, %+lld cells, %.2f s\n",
+  fprintf(to, "%s of %s poor regions repaired, %+lld cells, %.2f s\n",
           vg_text_count(p->n_repaired, a), vg_text_count(p->n_repair, b),
           (long long)repair_cells(r, &l), p->repair);
   if (r->near.n_cell)
     fprintf(to,
-            "  %s cells within two layers of interfaces: smallest angle %.2f "
-            "degrees (1st percentile),\n  %.2f degrees (minimum)\n",
+            "  cells within two layers of cells of an interface: %s; 1st "
+            "percentile of the smallest angle\n  %.2f degrees, smallest %.2f\n",
             vg_text_count(r->near.n_cell, a), r->near.angle_min_p1,
             r->near.angle_min);
   free(l.cells);
-  fprintf(to, "  workers busy %.1f %%, imbalance %.3f (largest over mean)%s\n",
+  fprintf(to, "  workers busy %.1f %%, imbalance %.3f (max/mean)%s\n",
           100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans),
-          r->cyclic ? "; leaves assigned cyclically" : "");
+          r->cyclic ? "; leaves assigned in turn (cyclic)" : "");
   if (!r->store) return;
   fprintf(to, "  tasks found in %s: %s\n", r->options.dir,
           vg_text_count(p->n_found, a));
   if (*r->stored.stopped)
-    fprintf(to, "  some tasks were not kept there: %s\n", r->stored.stopped);
+    fprintf(to, "  not all tasks were stored there: %s\n", r->stored.stopped);
 }
 
 json_t *vg_report_partition_json(const struct vg_run *r)

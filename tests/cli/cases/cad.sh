@@ -70,12 +70,12 @@ fi
 set -- -q "$cad/wing.step" --edges-per-turn 8 --surface-size 200 --hmin 10
 vanguard surface "$@" --out new
 exits 0
-says out "put back on the CAD model: "
-says out "refused 0, off it 0"
+says out "projected onto the CAD model: "
+says out "rejected 0, too far away 0"
 says new/wing.mapbc "trailing_edge"
 says new/wing.surface.json '"on_curves": '
-awk '/from the CAD model before/ { before = $7 }
-     /from the CAD model now/ { exit !($6 < before) }' out ||
+awk '/from CAD before projection/ { before = $9 + 0 }
+     /from CAD after projection/ { exit !($9 + 0 < before) }' out ||
   fail "farther from CAD than before"
 vanguard check -q new/wing.lb8.ugrid
 exits 0

@@ -34,7 +34,7 @@ same one/box.b8.ugrid two/box.b8.ugrid
 sed 's/^scale /scael /' all.deck >slip.deck
 vanguard mesh -q -p box --deck slip.deck --out three
 exits 1
-says err "is not a name known in this deck; did you mean 'scale'?"
+says err "unknown name 'scael' in this deck; did you mean 'scale'?"
 says err "slip.deck:$(grep -n '^scael' slip.deck | cut -d: -f1): "
 absent three
 vanguard mesh -q -p box --deck missing.deck

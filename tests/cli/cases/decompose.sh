@@ -14,7 +14,7 @@ for way in 'remesh metis' 'h-refine rcb'; do
     --interfaces "$interfaces" --partitioner "$partitioner"
   vanguard "$@" -t 1 --out one
   exits 0
-  says out "decomposed by discrete: 5 subdomains"
+  says out "decomposition discrete: 5 subdomains"
   says out "validity: valid"
   says one/box.report.json '"decomposition": "discrete"'
   says one/box.report.json '"interface_triangles": '
@@ -34,7 +34,7 @@ done
 # Without a number of subdomains, leaf_cells gives the cells of each.
 vanguard mesh -q -p p/box --decompose discrete --leaf-cells 7000 --out by
 exits 0
-says out "decomposed by discrete: 3 subdomains"
+says out "decomposition discrete: 3 subdomains"
 
 vanguard mesh -q -p p/box --decompose discrete --parts 0
 exits 2
@@ -52,9 +52,9 @@ for way in 'discrete --parts 900000' 'octree --parts 900000' \
 done
 vanguard plan -q -p p/box --decompose discrete --parts 5 -n 1,5
 exits 0
-says out "discrete: 5 parts filled as they are"
+says out "discrete: 5 subdomains filled without cuts"
 says out "0 cuts into 5 leaves; 0 pencils and 0 tiles"
-lacks out "by leaf size"
+lacks out "by leaf_cells"
 vanguard plan -q -p p/box --decompose discrete --parts 5 -n 1 -j
 says out '"leaves": 5'
 says out '"complete_subdomains": 5'
@@ -78,7 +78,7 @@ for way in advancing discrete octree; do
   says one/box.report.json '"near_interfaces": '
   vanguard "$@" --schedule cyclic -t 3 --out many
   exits 0
-  says out "leaves assigned cyclically"
+  says out "leaves assigned in turn"
   says many/box.timeline.json '"cyclic": 1'
   cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "$way: dealt out, another mesh"
   near() { jq -c .partition.near_interfaces "$1/box.report.json"; }
@@ -101,7 +101,7 @@ for way in advancing discrete octree; do
     one/box.timeline.json >out || fail "$way: the record of the coarse mesh"
   vanguard plan -r one/box.timeline.json -n 2 --schedule cyclic
   exits 0
-  says out "Forecast, leaves dealt out in turn"
+  says out "Forecast, leaves assigned in turn"
 done
 
 # A single subdomain has no interfaces.
@@ -115,7 +115,7 @@ vanguard mesh -q -p p/box --decompose octree --parts 4 -t 1 --write b8.ugrid \
   --out one
 exits 0
 says out "octants, coarsening 4.00"
-says out "of these subdomains are gap regions at the front"
+says out "of these subdomains are the gap region at the front"
 says one/box.report.json '"gap_parts": 1'
 vanguard mesh -q -p p/box --decompose octree --parts 4 -t 3 --write b8.ugrid \
   --shuffle-tasks 7 --out many
@@ -134,7 +134,7 @@ exits 0
 vanguard demo box --cells 500 --out tiny
 vanguard mesh -q -p tiny/box --decompose octree --parts 4 --out tiny
 exits 0
-says out "no octant fits away from the front"
+says out "there is no room for an octant away from the front"
 says out "octree: 1 subdomains (4 requested"
 vanguard mesh -q -p p/box --decompose octree --parts 4000 --out short
 exits 0
@@ -150,4 +150,4 @@ exits 1
 says err "set interfaces to remesh"
 vanguard plan -q -p p/box --decompose octree --parts 4 -n 1
 exits 0
-says out "that planes may cut, the gap at the front"
+says out "of the gap region at the front, which planes may cut"

@@ -60,7 +60,7 @@ lacks out "non-manifold"
 } >wall.obj
 vanguard check -q wall.obj
 exits 0
-says out "repaired: 2 triangles of walls that touching bodies shared removed"
+says out "repaired: 2 triangles of walls shared by touching bodies removed"
 vanguard mesh -q -p wall.obj --out united
 exits 0
 says out "note: 2 triangles of walls shared by touching bodies were removed"
@@ -114,7 +114,7 @@ says again/tet.fun3d.mapbc "4100"
 printf 't\npatches\nid bc\n7 5000\n' >tet.deck
 vanguard mesh -q -p tet
 exits 1
-says err "patch 7 is not in the surface"
+says err "the surface has no patch 7"
 
 for file in truncated.lb8.ugrid empty.stl noise.tri; do
   head -c 40 /dev/zero >$file

@@ -59,7 +59,7 @@ awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
 
 vanguard sweep -q -p ball --family 1:2 -o never -- --scale 2
 exits 1
-says err "give that of the first level in the deck"
+says err "give the scale of the first level in the deck"
 
 # The deck's own scale applies to the first level, and its table may name the
 # levels.

@@ -7,7 +7,7 @@ vanguard mesh -q -p p/box --walls 5 --first 1e-3 --out one
 exits 0
 exists one/box.wall.vtu one/box.cogsg one/box.b8.ugrid
 says out "validity: valid"
-says out "first asked"
+says out "requested        min       mean        max  error %"
 lacks out "y+:"
 vanguard mesh -q -p p/box --walls 5 --y-plus 1 --reynolds 1e5 \
   --reference-length 2 --json --threads 2 --out two
@@ -83,7 +83,7 @@ absent v3/box.wall.vtu
 # too.
 vanguard mesh -q -p p/box --walls 5 --first 10 --out high
 exits 0
-says out "(first height above layer_end times the edge)"
+says out "(first height exceeds layer_end times the edge length)"
 
 # Values for a single patch. A limit that cannot be met: all files are
 # written, the patch is named, and the status is 4.
@@ -110,14 +110,14 @@ refuse() { # TEXT OPTIONS...
   absent refused/box.b8.ugrid
 }
 refuse "the first height is not known; give --first" --layers yes --walls 5
-refuse "walls: patch 77 is not in the surface" --walls 77 --first 1
-refuse "walls: no patch of the surface is within 77-99" --walls 77-99 --first 1
-wrong=2 refuse "'3-x' is no list of patches" --walls 3-x --first 1
-wrong=2 refuse "'3-1' is no list of patches" --walls 3-1 --first 1
+refuse "walls: the surface has no patch 77" --walls 77 --first 1
+refuse "walls: the surface has no patch in the range 77-99" --walls 77-99 --first 1
+wrong=2 refuse "'3-x' is not a list of patches" --walls 3-x --first 1
+wrong=2 refuse "'3-1' is not a list of patches" --walls 3-1 --first 1
 refuse "patch 5 is in both lists" --walls 5 --slip 4-6 --first 1
-wrong=2 refuse "the first height, 0.1, is above layer_total, 0.01" --walls 5 \
+wrong=2 refuse "the first height, 0.1, exceeds layer_total, 0.01" --walls 5 \
   --first 0.1 --layer-total 0.01
-wrong=2 refuse "y_plus needs reynolds" --walls 5 --y-plus 1
+wrong=2 refuse "y_plus requires reynolds" --walls 5 --y-plus 1
 refuse "layers are requested, but no patch is known to be a wall" \
   --layers yes --first 1e-3
 refuse "name the walls with --walls" --layers yes --first 1e-3
@@ -131,7 +131,7 @@ refuse "a .cogsg can hold only tetrahedra" --walls 5 --first 1e-3 --cells mixed 
 refuse "no VGRID source has a first height" --walls 5 --first 1e-3 \
   --layer-sources yes
 printf 't\nlayers\nid first\n66 1e-3\n' >slip.deck
-refuse "layers: patch 66 is not in the surface" --deck slip.deck --walls 5 \
+refuse "layers: the surface has no patch 66" --deck slip.deck --walls 5 \
   --first 1
 printf 't\nwalls first\n5 1e-3\n\nlayers\nid grow\n5 no\n' >slip.deck
 refuse "the table layers has grow no" --deck slip.deck
@@ -193,7 +193,7 @@ same foam/box.b8.ugrid mixed/box.b8.ugrid
 # question.
 vanguard mesh -q -p p/box --walls 5 --first 100 --out huge
 exits 0
-says out "no layers on 1 of 1 walls (patch 5): their first height, 100"
+says out "no layers on 1 of 1 walls (patch 5): the first height, 100"
 
 # Without layers there are no shares to compare, and no limit is met.
 for limit in min-full min-any min-height max-first-error max-top-ratio; do

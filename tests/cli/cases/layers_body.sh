@@ -67,7 +67,7 @@ same one/body.b8.ugrid keel/body.b8.ugrid
 says keel/body.resolved.deck '2   -   keel'
 vanguard mesh -q -p body --first 0.01 --walls uper --out byname
 exits 1
-says err "walls: no patch of the surface is called 'uper'; did you mean 'upper'?"
+says err "walls: no patch of the surface is named 'uper'; did you mean 'upper'?"
 printf 't\nlayers\nid first\n2 0.01\n*er 0.02\n' >low.deck
 vanguard mesh -q -p body --deck low.deck --out byname
 exits 1

@@ -7,7 +7,7 @@ exits 0
 says run.log "vanguard 0.1.0, source "
 says run.log "command  vanguard mesh -q -p box --out o --hmax 0.3"
 says run.log "1 rank, 1 on this node"
-says run.log "threads  2 of each rank"
+says run.log "threads  2 per rank"
 says run.log "  hmax                 0.3"
 says run.log "  MPI "
 says run.log "  glibc "

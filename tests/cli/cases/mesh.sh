@@ -47,8 +47,8 @@ same tuned/box.b8.ugrid again/box.b8.ugrid
 vanguard check -q p/box.b8.ugrid
 exits 0
 says out "validity: valid"
-says out "smallest dihedral angle of a cell, degrees"
-says out "worst cells"
+says out "Smallest dihedral angle of each cell (degrees)"
+says out "Worst cells"
 vanguard check -q p/box.cogsg --json --deck p/box.resolved.deck
 exits 0
 says out '"valid": true'
@@ -75,7 +75,7 @@ exists anew/old.b8.ugrid
 # A cell count that the geometry does not allow is reported as such.
 vanguard demo sphere --cells 1000 --out small
 exits 0
-says out "1,000 cells were asked for: the geometry needs more"
+says out "1,000 cells were requested, but the geometry needs more"
 vanguard demo sphere --cells 100000 --out enough
 exits 0
 lacks out "asked for"

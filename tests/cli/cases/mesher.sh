@@ -9,8 +9,8 @@ for threads in 1 2; do
   vanguard mesh -q -p p/sphere -t $threads --mesher tetgen --leaf-cells 5000 \
     --write lb8.ugrid --out t$threads
   exits 0
-  says out "parts filled by the other mesher"
-  lacks out "that it did not fill"
+  says out "subdomains filled by the selected mesher"
+  lacks out "filled by the built-in mesher instead"
 done
 same t1/sphere.lb8.ugrid t2/sphere.lb8.ugrid
 says t1/sphere.resolved.deck "tetgen"
@@ -22,7 +22,7 @@ exits 0
 vanguard mesh -q -p p/sphere --mesher hxt --leaf-cells 5000 \
   --write lb8.ugrid --out h
 if [ "$status" = 0 ]; then
-  says out "parts filled by the other mesher"
+  says out "subdomains filled by the selected mesher"
   vanguard check -q h/sphere.lb8.ugrid
   exits 0
 else
@@ -42,7 +42,7 @@ for name in star bad_5 bad_9; do
   vanguard mesh -q -p p/sphere --mesher "$plugins/mesher_$name.so" \
     --leaf-cells 5000 --write lb8.ugrid --out "$name"
   exits 0
-  says out "parts that it did not fill, and the built-in one did:"
+  says out "subdomains filled by the built-in mesher instead:"
   same b/sphere.lb8.ugrid $name/sphere.lb8.ugrid
 done
 says bad_5/sphere.report.json '"subdomains_crashed": '
@@ -60,7 +60,7 @@ exits 1
 says err "mesher ./none.so: it cannot be loaded"
 vanguard mesh -q -p p/sphere --mesher tetgne --out n
 exits 2
-says err "'tetgne' is none"
+says err "unknown mesher 'tetgne'"
 
 # A run begun with another mesher is a different run.
 vanguard mesh -q -p p/sphere --mesher tetgen --leaf-cells 5000 \
@@ -70,7 +70,7 @@ vanguard mesh -q -p p/sphere --mesher tetgen --leaf-cells 5000 \
   --write lb8.ugrid --out r2 --run-dir run --keep-run --resume
 exits 0
 same r/sphere.lb8.ugrid r2/sphere.lb8.ugrid
-says out "parts filled by the other mesher"
+says out "subdomains filled by the selected mesher"
 vanguard mesh -q -p p/sphere --leaf-cells 5000 --write lb8.ugrid --out r3 \
   --run-dir run --resume
 exits 1

@@ -28,7 +28,7 @@ absent c/box.cogsg
 
 vanguard mesh -q -p a/box --out e --write nonsense
 exits 2
-says err "'nonsense' is no format"
+says err "unknown format 'nonsense'"
 vanguard mesh -q -p a/none
 exits 1
 says err "no project here"

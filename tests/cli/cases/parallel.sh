@@ -96,7 +96,7 @@ says out '"leaves": 1,'
 says out '"cuts": 0,'
 vanguard mesh -q -p p/box --constant-direction yes --out none
 exits 2
-says err "constant_direction needs a split_direction of 1, 2 or 3"
+says err "constant_direction requires a split_direction of 1, 2 or 3"
 
 # The cells of leaves, fragments and cuts, plus those added by repairs, add up
 # to the mesh.
@@ -120,7 +120,7 @@ least=$(sed -n '/"leaf_cells"/{n;s/[^0-9]//g;p}' out)
 # Kept tasks are found again by another number of workers.
 vanguard mesh -q -p p/box --resume
 exits 2
-says err "--resume needs the --run-dir of the run"
+says err "--resume requires the --run-dir of the run"
 vanguard mesh $cut --run-dir none --resume --out none
 exits 1
 says err "none: this run directory does not exist"

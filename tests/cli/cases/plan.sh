@@ -18,9 +18,9 @@ END
 vanguard plan --replay r.timeline.json --ranks 1:4:x2 --threads 1,2
 exits 0
 says out "1 rank x 1 thread, 5 tasks, 4,000 cells; cut and fill 9.000 s"
-says out "replayed: 11.000 s, measured 11.000 s (+0.0 %)"
+says out "replayed 11.000 s, measured 11.000 s (+0.0 %)"
 says out "      1       1       1     11.000      1.00       100.0      5.000"
-says out "outside, of one core: 1.400 s once, 0.000 s shared by a node, 0.600 s by all"
+says out "outside the tasks, on one core: 1.400 s serial, 0.000 s parallel within a node, 0.600 s parallel over all"
 says out "      2       1       2      6.700      1.64        82.1      4.700"
 says out "      4       2       8      4.475      2.46        30.7      4.475"
 [ "$(grep -c '^ *[0-9][0-9]* *[0-9][0-9]* *[0-9][0-9]* ' out)" = 6 ] || fail "not 6 rows"
@@ -45,7 +45,7 @@ sed -e 's/"bytes_out"\]/"bytes_out", "loops"]/' -e 's/0,0\],$/0,0,0],/' \
   r.timeline.json >l.timeline.json
 vanguard plan -r l.timeline.json -n 1 -t 1,4 --serial 0
 exits 0
-says out "idle threads of a rank help with: 0.750 s"
+says out "idle threads of a rank share: 0.750 s"
 says out "      1       1       1      9.000      1.00       100.0      3.000"
 says out "      1       4       4      2.438      3.69        92.3      2.438"
 vanguard plan -r l.timeline.json -n 1 -t 4 --serial 0 --loop-threads 3 -j
@@ -72,14 +72,14 @@ exits 0
 says out "      2       1       2      7.000 "
 vanguard plan -r w.timeline.json -n 2 --serial 0 --schedule cyclic
 exits 0
-says out "Forecast, leaves dealt out in turn"
+says out "Forecast, leaves assigned in turn"
 says out "      2       1       2      9.000 "
 vanguard plan -r w.timeline.json -n 2 --serial 0 --schedule cyclic -j
 says out '"cyclic": true'
 
 vanguard plan
 exits 2
-says err "which run?"
+says err "no run given"
 vanguard plan -r r.timeline.json -n 4:2
 exits 2
 says err "--ranks takes numbers from 1"
@@ -106,7 +106,7 @@ vanguard plan -q -p p/box --leaf-cells 8000 -n 1,2,8 -t 1,2 --write vtu,cogsg
 exits 0
 is err </dev/null
 [ "$(ls -A p)" = "$before" ] || fail "plan has written into the project"
-says out "Mesh expected"
+says out "Expected mesh"
 says out "7 cuts into 8 leaves; 0 pencils and 7 tiles"
 says out "    0.1: "
 says out "Best: "
@@ -141,16 +141,16 @@ vanguard plan -q -p p/box --leaf-cells 0 -n 1
 says out "0 cuts into 1 leaf"
 vanguard plan -q -p p/box --target 0.001 -n 1,2
 exits 0
-says out "No machine of the list takes 0.001 s or less."
+says out "No machine in the list takes 0.001 s or less."
 vanguard plan -q -p p/box --target 1000 -n 1,2
 says out "Best: 1 rank x 1 thread"
 
 vanguard plan -p p/box -r r.timeline.json
 exits 2
-says err "either a project or a --replay"
+says err "either a project or --replay"
 vanguard plan -r r.timeline.json --rates r.timeline.json
 exits 2
-says err "has its own times"
+says err "uses the times of its record"
 vanguard plan -r r.timeline.json --leaf-cells 5
 exits 2
 says err "takes no settings"
@@ -161,14 +161,14 @@ vanguard plan -p p/box --growth 0.5
 exits 2
 vanguard plan -p p/box --depth x
 exits 2
-says err "--depth takes a whole number from 0, not 'x'"
+says err "--depth takes an integer of at least 0, not 'x'"
 
 # Times of this machine, from a run on it.
 vanguard mesh p/box --leaf-cells 500 --timeline --write cogsg --out m2
 exits 0
 vanguard plan -q -p p/box -n 1 --rates m2/box.timeline.json
 exits 0
-says out "Times of tasks, fitted to m2/box.timeline.json"
+says out "Task times, fitted to m2/box.timeline.json"
 says out "us per face of the front"
 vanguard plan -q -p p/box -n 1 --rates p/none
 exits 1
@@ -189,4 +189,4 @@ says out '"limited_by": '
 says out '"ranks_per_node": '
 vanguard plan -q -p p/box --cores 6 -t 2
 exits 2
-says err "leave --threads and --ranks-per-node out"
+says err "omit --threads and --ranks-per-node"

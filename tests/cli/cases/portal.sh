@@ -94,10 +94,10 @@ url=$first origin=${first%/*/} server=${servers[0]}
 "$program" serve --port 0 --root mine >out 2>err
 status=$?
 exits 1
-says err "another portal has"
+says err "another portal uses"
 vanguard serve --port "$port" --root other
 exits 1
-says err "port $port of 127.0.0.1 cannot be had"
+says err "cannot listen on port $port of 127.0.0.1"
 vanguard serve --root nothing
 exits 1
 vanguard serve --jobs 0
@@ -109,7 +109,7 @@ ln -s "$PWD/other" mine/away
 echo SECRET >other/secret.stl
 ln -s "$PWD/other/secret.stl" mine/link.stl
 asks 200 "$url?project=link.stl"
-says body "leads out of the folder"
+says body "is outside the folder"
 for path in ../other/secret.stl away/secret.stl "$PWD/other/secret.stl" \
     link.stl vanguard-runs/../../other/secret.stl; do
   posts 400 runs --data-urlencode "project=$path"
@@ -138,7 +138,7 @@ octahedron >octa.obj
 posts 303 upload -F folder= -F "file=@octa.obj"
 same octa.obj mine/octa.obj
 posts 400 upload -F "file=@octa.obj"
-says body "is there already"
+says body "already exists"
 posts 400 upload -F "folder=away" -F "file=@big.stl;filename=x.obj"
 posts 400 upload -F "file=@octa.obj;filename=.profile"
 [ "$(ls other)" = "secret.stl
@@ -211,7 +211,7 @@ posts 303 runs "${slow[@]}"
 until_kept 0003
 posts 303 runs/3/stop
 await 3 stopped 30
-says runs.json 'finished tasks are kept'
+says runs.json 'finished tasks are stored'
 # the next run begins by itself; it survives when its portal dies
 until_kept 0004
 kill -9 "$server"
@@ -235,7 +235,7 @@ kill "$server"
 wait "$server"
 status=$?
 exits 0
-says mine.err "1 run wait or go on"
+says mine.err "1 run still waiting or running"
 serve mine
 [[ $(state 5) = @(running|done) ]] || fail "run 5 is $(state 5)"
 posts 303 runs/5/stop
@@ -259,7 +259,7 @@ if timeout 20 mpirun -n 2 true >/dev/null 2>&1; then
   until_kept 0007
   posts 303 runs/7/stop
   await 7 stopped 60
-  says runs.json 'finished tasks are kept'
+  says runs.json 'finished tasks are stored'
   posts 303 runs/7/resume
   await 7 done 120
   same whole/box.b8.ugrid mine/vanguard-runs/0007/mesh/box.b8.ugrid

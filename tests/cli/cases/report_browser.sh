@@ -29,7 +29,7 @@ look dom.html --window-size=1200,900 --dump-dom "$page"
 exits 0
 drawn=$(sed -n 's/.*data-drawn="\([0-9]*\)".*/\1/p' dom.html)
 [ "${drawn:-0}" -gt 20000 ] || fail "the view has ${drawn:-no} pixels"
-says dom.html 'Drag turns'
+says dom.html 'Drag to rotate'
 [ "$(grep -o 'type="radio"' dom.html | wc -l)" = 4 ] || fail "colours"
 [ "$(grep -o 'type="checkbox"' dom.html | wc -l)" -ge 8 ] || fail "controls"
 ! grep -q 'Uncaught\|SyntaxError\|Refused to' browser.log ||

@@ -83,7 +83,7 @@ vanguard mesh $run --deck own.deck --first 2e-2 --layer-count 80 --ratio 1.2 \
   --out limit
 exits 4
 says limit/box.report.html '<span class="badge bad">1 limit on the layers not'
-says limit/box.report.html '<li class="bad"><b>Missed</b> <span>patch 5 '
+says limit/box.report.html '<li class="bad"><b>Not met</b> <span>Patch 5 '
 }
 
 # Names that look like markup stay text, in the page and in its data.

@@ -59,8 +59,8 @@ one=0x3f800000 half=0x3f000000
 vanguard check -q bad.lb4.ugrid
 exits 1
 says out "mirrored on reading: 1"
-says err "the mesh is not valid (inverted cells in it: 1)"
-says err "write 8-byte reals, as .lb8.ugrid has"
+says err "the mesh is not valid (inverted cells: 1)"
+says err "write 8-byte reals, as in .lb8.ugrid"
 vanguard check -q --json bad.lb4.ugrid
 exits 1
 says out '"cells_turned": 1'

@@ -39,13 +39,13 @@ batch() {
 
 batch - PROJECT=
 exits 2
-says err "which project?"
+says err "no project given"
 
 batch USR1 PROJECT=in/box VANGUARD=./fake CPUS=3 OPTIONS="--hmax 2"
 exits 75
 says out "called: mesh -p in/box --out o --threads 3 --run-dir o/box.run --hmax 2"
-says out "told to stop (limit)"
-says out "the same command continues from o/box.run"
+says out "asked to stop (limit)"
+says out "the same command resumes from o/box.run"
 exists o/box.run/run.txt
 touch quick
 batch - PROJECT=in/box VANGUARD=./fake
@@ -57,7 +57,7 @@ rm quick
 
 batch TERM PROJECT=in/box VANGUARD=./fake
 exits 75
-says out "told to stop (cancelled)"
+says out "asked to stop (cancelled)"
 touch fails
 batch - PROJECT=in/box VANGUARD=./fake RUN_DIR=elsewhere
 exits 4
@@ -71,7 +71,7 @@ chmod +x bin/scontrol
 batch USR1 PROJECT=in/box VANGUARD=./fake SLURM_JOB_ID=7 PATH="$PWD/bin:$PATH"
 exits 75
 says out "scontrol requeue 7"
-says out "back in the queue"
+says out "requeued"
 batch USR1 PROJECT=in/box VANGUARD=./fake SLURM_JOB_ID=7 \
   SLURM_RESTART_COUNT=20 PATH="$PWD/bin:$PATH"
 exits 75

@@ -9,7 +9,7 @@ layers="--first 0.001 --layer-count 6 --fan-angle 60"
 vanguard mesh -q -p p/wing-half $layers --ugrid-tail yes --solver-parts 4 \
   --write b8.ugrid,cogsg,vtu,foam --out one
 exits 0
-says out "Parts for the solver"
+says out "Solver partition"
 says out "none of them cut"
 says one/wing-half.report.json '"solver_parts": {'
 says one/wing-half.resolved.deck "solver_parts"
@@ -67,7 +67,7 @@ says out "none of them cut"
 # Refusals.
 vanguard partition one/wing-half.b8.ugrid
 exits 2
-says err "how many parts"
+says err "no number of partitions given"
 for n in 0 -1 x 1.5 99999999999999999999; do
   vanguard partition one/wing-half.b8.ugrid -n $n
   exits 2

@@ -23,9 +23,9 @@ beam() { # NAME: a bar 4 x 1 x 1, its long sides cut into needles across
 beam bar
 vanguard surface -q bar.obj --surface-size 0.3 --out new
 exits 0
-says out "bar.obj: a new surface"
-says out "8 corners and 12 lines kept, length 24, now 24"
-says out "new from given: "
+says out "bar.obj: remeshed surface"
+says out "8 corners and 12 feature curves preserved, length of curves 24 -> 24"
+says out "distance of the remeshed from the input surface: "
 lacks out "below 20 degrees: "
 exists new/bar.lb8.ugrid new/bar.mapbc new/bar.surface.vtu new/bar.surface.json
 says new/bar.mapbc "side"
@@ -66,7 +66,7 @@ rm bar.new.*
 # Invalid requests.
 vanguard surface
 exits 2
-says err "which surface?"
+says err "no surface given"
 vanguard surface -q none.stl
 exits 1
 vanguard surface -q bar.obj --feature-angle 4
@@ -88,7 +88,7 @@ says out "open edge: "
 # Sizes for a patch and for a curve; the ends have no points except those of
 # the rim.
 made() { # triangles of the new surface
-  sed -n 's/.*triangles, now \([0-9,]*\);.*/\1/p' out | tr -d ,
+  sed -n 's/.*triangles [0-9,]* -> \([0-9,]*\);.*/\1/p' out | tr -d ,
 }
 cat >end.deck <<'END'
 finer ends
@@ -119,10 +119,10 @@ exits 0
 [ "$(made)" = "$n_rim" ] || fail "a curve by names is another one"
 vanguard surface -q bar.obj --deck none.deck --out none
 exits 1
-says err "surface: patch 7 is not in the surface"
+says err "surface: the surface has no patch 7"
 vanguard surface -q bar.obj --deck nothing.deck --out nothing
 exits 1
-says err "asks for nothing"
+says err "has no request"
 
 # The curve again, with edges that are longer along it than across it, except
 # at corners.
@@ -131,13 +131,13 @@ sed -e 's/  size$/  size  stretch/' -e 's/^2 .*/1      2       0.1   4/' \
 sed 's/^1 .*/1      -       0.1   4/' long.deck >nowhere.deck
 vanguard surface -q bar.obj --deck long.deck --out long
 exits 0
-says out "stretched: triangles by up to 1.5 times"
+says out "stretched triangles by aspect ratio: to 1.5"
 says long/bar.surface.json '"stretched"'
 n_long=$(made)
 [ "$n_long" -lt "$n_rim" ] || fail "$n_rim, stretched $n_long triangles"
 vanguard surface -q bar.obj --deck nowhere.deck --out nowhere
 exits 1
-says err "stretch without a curve; give the patch beside"
+says err "has stretch, which needs a curve; name the adjacent patch"
 
 # Within a run.
 vanguard mesh -q -p bar.obj --remesh-surface yes --surface-size 0.3 \
@@ -155,8 +155,8 @@ same run/bar.lb8.ugrid rerun/bar.lb8.ugrid
 # surface.
 vanguard check -q new/bar.lb8.ugrid --against bar.obj --vtu shown.vtu
 exits 0
-says out "lines (ridges, rims, borders between conditions): 12, length 24"
-says out "against bar.obj"
+says out "feature curves (sharp edges, rims, borders between conditions): 12, length 24"
+says out "comparison with bar.obj"
 lacks out "edges within a factor"
 says shown.vtu 'Name="radius_ratio"'
 says shown.vtu 'Name="distance"'

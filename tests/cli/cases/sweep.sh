@@ -60,7 +60,7 @@ sweep -p box --leaf-cells 100,200 -n 1,2 -t 1:4:x2 -o s
 exits 0
 says err "12 of 12: c200-n2-t4"
 says out "12 of 12 cases done; tables and figures in s"
-says out "Digests agree: equal mesh options gave the same files (10 compared)"
+says out "Digests agree: equal mesh options gave identical files (10 compared)"
 says out "c100-n2-t1     2       1      5.00     1.80    90.0     4.00"
 [ "$(wc -l <s/sweep.csv)" = 13 ] || fail "not 13 lines"
 says s/sweep.csv '"c200-n2-t4",,200,2,4,8,1,done,0,2,'
@@ -69,8 +69,8 @@ says s/sweep.json '"angle_min": 12.5'
 exists s/speedup.svg s/phases.svg s/c100-n1-t1.timeline.svg \
   s/c200-n2-t4.sizes.svg s/c100-n1-t1/run.log s/c100-n1-t1/box.report.json
 absent s/c100-n1-t1/box.cogsg
-says s/speedup.svg "leaves of 200, 2 ranks"
-says s/speedup.svg "leaves of 100, model"
+says s/speedup.svg "200 cells per leaf, 2 ranks"
+says s/speedup.svg "100 cells per leaf, model"
 says s/c100-n1-t1/run.log progress
 
 # Ways to decompose, each with every number of subdomains: cells relative to
@@ -89,10 +89,10 @@ says ways/sweep.json '"near_angle_min_p1": 30.25'
 says ways/sweep.json '"cells_ratio": 0.5'
 says ways/sweep.json '"decomposition_seconds": 1.75'
 says ways/sweep.json '"balance": 1.125'
-says ways/speedup.svg "discrete, 16 parts"
+says ways/speedup.svg "discrete, 16 subdomains"
 vanguard sweep -p box --decompose advancing,metis
 exits 2
-says err "--decompose takes advancing, discrete or octree, with commas between, not 'metis'"
+says err "--decompose takes advancing, discrete or octree, separated by commas, not 'metis'"
 
 # If no case has one worker, the case with the fewest is the reference.
 sweep -p box -n 2 -t 1,2 -o f
@@ -100,7 +100,7 @@ exits 0
 says out "n2-t1     2       1      5.00     2.00   100.0     4.00"
 says out "n2-t2     2       2      3.00     3.33    83.3     2.00"
 exists f/speedup.svg
-says f/speedup.svg "against n2-t1: 5 s"
+says f/speedup.svg "relative to n2-t1: 5 s"
 
 # Bisections in addition to leaf sizes, repeats, meshes kept, nothing but JSON
 # on stdout.
@@ -127,7 +127,7 @@ says out "failed, status 2: unrecognized option '--no-such-option'"
 # Files that differ are a separate kind of error.
 sweep -p box --leaf-cells 100 -n 1,2 -o w -- --wrong
 exits 4
-says out "Digests DIFFER: box.cogsg is not the same in c100-n1-t1 and c100-n2-t1"
+says out "Digests DIFFER: box.cogsg differs between c100-n1-t1 and c100-n2-t1"
 says w/sweep.json '"digests": "differ"'
 
 # A program that does not exist.
@@ -202,11 +202,11 @@ says m/box.resolved.deck "1:4:x2"
 printf '1 1 1 1\n' >>p/box.deck
 vanguard mesh -q -p p/box --out m
 exits 1
-says err "the sweep table has one line of values"
+says err "the table 'sweep' takes only one line of values"
 
 vanguard sweep
 exits 2
-says err "which project?"
+says err "no project given"
 vanguard sweep -p box -n 0
 exits 2
 says err "--ranks takes numbers from 1"

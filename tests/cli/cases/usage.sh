@@ -3,23 +3,23 @@ vanguard
 exits 2
 is err <<'END'
 Usage: vanguard COMMAND [OPTION...]
-Vanguard makes volume meshes for aerodynamics from closed surfaces: viscous
-layers on the walls, tetrahedra around them.
+Vanguard generates volume meshes for aerodynamics from closed surfaces: viscous
+layers on the walls, tetrahedra elsewhere.
 
-  mesh      mesh the volume of a project, on threads and MPI ranks
-  surface   make the triangles of a surface anew to size
-  check     judge a surface or a volume mesh
-  partition share a volume mesh out to a solver's processes
-  plan      forecast cells, memory and time before a project is meshed
-  sweep     mesh with many leaf sizes, ranks and threads, and compare
-  serve     start, watch and resume runs from a browser
+  mesh      generate the volume mesh of a project on threads and MPI ranks
+  surface   remesh a surface to target edge lengths
+  check     check a surface or a volume mesh
+  partition partition a volume mesh for a parallel flow solver
+  plan      forecast cells, memory and time of a run
+  sweep     mesh with various subdomain sizes, ranks and threads; compare
+  serve     start, monitor and resume runs from a browser
   deck      write a run deck with all defaults
   demo      write a complete example project
 
 'vanguard COMMAND --help' lists the options of a command, 'vanguard --version'
 shows the version. On several nodes: 'mpirun -n RANKS vanguard mesh -p PROJECT'.
-Exit status: 0 done, 1 failed, 2 wrong usage, 4 done, but a limit on the layers
-is not met or runs of a sweep differ.
+Exit status: 0 success, 1 failure, 2 wrong usage, 4 finished, but a limit on the
+layers is not met or runs of a sweep differ.
 END
 cp err usage
 vanguard --help
@@ -36,7 +36,7 @@ END
 vanguard chekc
 exits 2
 is err <<'END'
-vanguard: no command 'chekc'; did you mean 'check'?
+vanguard: unknown command 'chekc'; did you mean 'check'?
 END
 
 vanguard help chekc
@@ -58,13 +58,13 @@ done
 
 vanguard mesh
 exits 2
-says err "which project?"
+says err "no project given; use -p PROJECT"
 vanguard mesh -p x --growth 0.5
 exits 2
 says err "growth is 0.5; it must be above 1"
 vanguard mesh -p x --max-cells 2.5
 exits 2
-says err "max_cells must be a whole number, found '2.5'"
+says err "max_cells must be an integer, not '2.5'"
 vanguard mesh -p x --max-cells 2.5e6 --leaf-cells 1e5
 exits 1
 says err "no project here"
@@ -74,10 +74,10 @@ says err "did you mean 'sphere'?"
 for command in mesh plan; do
   vanguard $command -p x --write nonsense
   exits 2
-  says err "write: 'nonsense' is no format"
+  says err "write: unknown format 'nonsense'"
   vanguard $command -p x --walls 3-a
   exits 2
-  says err "walls: '3-a' is no list of patches"
+  says err "walls: '3-a' is not a list of patches"
 done
 vanguard plan --replay x --target 5
 exits 2
@@ -94,7 +94,7 @@ if [ -w /dev/full ]; then
   "$program" demo --list >/dev/full 2>err
   status=$?
   exits 1
-  says err "standard output could not be written whole"
+  says err "standard output could not be written completely"
 fi
 
 # Conflicting settings: wrong usage if options cause the conflict, bad input
@@ -103,16 +103,16 @@ vanguard demo box --cells 2000 --out p
 for command in mesh plan; do
   vanguard $command -q -p p/box --constant-direction yes
   exits 2
-  says err "constant_direction needs a split_direction"
+  says err "constant_direction requires a split_direction"
 done
 printf 'A deck\nconstant_direction\nyes\n' >bad.deck
 vanguard mesh -q -p p/box --deck bad.deck
 exits 1
-says err "bad.deck: constant_direction needs a split_direction"
+says err "bad.deck: constant_direction requires a split_direction"
 printf 'A deck\nwrite\nnonsense\n' >bad.deck
 vanguard mesh -q -p p/box --deck bad.deck
 exits 1
-says err "bad.deck:3: write: 'nonsense' is no format"
+says err "bad.deck:3: write: unknown format 'nonsense'"
 
 # The other files of a run are checked before its input is read.
 echo "not a surface" >p/broken.stl

@@ -53,11 +53,11 @@ vanguard mesh -q -p room
 exits 0
 says out "Flow inside a given outer boundary"
 says out "Evidence: its outer part is a box, or part of a sphere"
-says out "the whole surface was turned"
+says out "the orientation of the whole surface was reversed"
 lacks out "added: farfield"
 says out "3 patches have no boundary condition"
 says out "number 1 2 3"
-says out "volume 702"
+says out "volume: sum of cells 702"
 vanguard mesh -q -p room --deck room.resolved.deck --out again
 exits 0
 same room.b8.ugrid again/room.b8.ugrid
