@@ -93,7 +93,7 @@ while read -r name kind size; do
     esac
     for n in $parts; do
       for partitioner in $partitioners; do
-        try "$way $n $partitioner" "${how[@]}" --parts "$n" \
+        try "$way $n $partitioner" "${how[@]}" --subdomains "$n" \
           --partitioner "$partitioner"
       done
     done

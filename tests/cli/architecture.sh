@@ -154,8 +154,9 @@ done < <(grep -rliE '0x(9e3779b|c2b2ae3d|165667b1|d6e8feb8)|2654435769' \
   --include='*.[ch]' . | sed 's,^\./,,' |
   grep -v '^base/hash\.h$')
 
-# tests/README.md must list every test in its table.
-table=../tests/README.md
+# The README of the tests must list every test in its table.
+tests=../tests
+table=$tests/README.md
 if [ -e $table ]; then
   for file in ../tests/{unit,mpi,cli}/test_*.c ../tests/cli/cases/*.sh \
       ../tests/fuzz/fuzz_*.c; do

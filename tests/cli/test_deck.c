@@ -179,7 +179,7 @@ static void everything_survives_a_round_trip(void **state)
                                         .limit = { 95, NAN, 60, 1, 5.5 } };
   vg_settings_add(&s, VG_TABLE_LAYERS, &layer, NULL);
   vg_settings_add(&s, VG_TABLE_SURFACE, &surface, NULL);
-  surface.beside = 8;
+  surface.adjacent = 8;
   surface.lead = surface.across = 0;
   surface.stretch = 12.5;
   vg_settings_add(&s, VG_TABLE_SURFACE, &surface, NULL);
@@ -377,8 +377,8 @@ static void tells_what_is_given(void **state)
     { "cad_angle", VG_USE_CAD, 0 },         { "unit", VG_USE_CAD, 1 },
     { "first", VG_USE_LAYERS, 1 },          { "ratio", VG_USE_LAYERS, 0 },
     { "min_full", VG_USE_LAYERS, 0 },       { "layers", VG_USE_ALWAYS, 0 },
-    { "surface_size", VG_USE_REMESH, 1 },   { "parts", VG_USE_ALWAYS, 1 },
-    { "coarsening", VG_USE_PARTS, 0 },      { "levels", VG_USE_PLANES, 0 },
+    { "surface_size", VG_USE_REMESH, 1 },   { "subdomains", VG_USE_ALWAYS, 1 },
+    { "coarsening", VG_USE_PARTS, 0 },      { "bisections", VG_USE_PLANES, 0 },
     { "d3m_sources", VG_USE_D3M, 0 },       { "farfield", VG_USE_ALWAYS, 0 },
     { "farfield_size", VG_USE_FARFIELD, 1 }
   };
@@ -392,7 +392,7 @@ static void tells_what_is_given(void **state)
 
   (void)state;
   vg_settings_default(&s);
-  assert_true(parse("t\nhmax unit first surface_size parts growth\n"
+  assert_true(parse("t\nhmax unit first surface_size subdomains growth\n"
                     "3 mm 1e-5 2 4 1.2\nfarfield\nkind size\nauto 9\n",
                     &s, &err) >= 0);
   given = vg_settings_given(&s);

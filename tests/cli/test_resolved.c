@@ -190,8 +190,8 @@ static void options_follow_from_settings(void **state)
   o = vg_options_partition(&s);
   assert_true(o.rule.leaf_cells == 7000 && o.rule.first_axis == 1);
   assert_int_equal(o.decomposition.n_part, 0);
-  s.levels = 3;
-  s.parts = 5;
+  s.bisections = 3;
+  s.subdomains = 5;
   o = vg_options_partition(&s);
   assert_true(o.rule.leaf_cells == 0 && o.levels == 3);
   assert_int_equal(o.decomposition.n_part, 5);

@@ -327,7 +327,7 @@ const struct hostile hostile_shapes[] = {
   { .file = "open.stl", .phrase = "open edge", .make = make_open },
   { .file = "single.stl", .phrase = "open edge", .make = make_single },
   { .file = "not_quite_closed.stl",
-    .phrase = "but for rounding",
+    .phrase = "except for rounding",
     .verdict = MENDED,
     .make = make_not_quite_closed },
   { .file = "common_edge.stl",

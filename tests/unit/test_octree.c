@@ -404,8 +404,8 @@ static void absurd_options_are_refused(void **state)
     struct vg_decomposition_options o;
     const char *word;
   } bad[] = {
-    { { .n_part = 0 }, "0 parts" },
-    { { .n_part = -3 }, "-3 parts" },
+    { { .n_part = 0 }, "0 subdomains" },
+    { { .n_part = -3 }, "-3 subdomains" },
     { { .n_part = 4, .coarsening = 1 }, "coarsening of 1" },
     { { .n_part = 4, .coarsening = -5 }, "coarsening of -5" },
     { { .n_part = 4, .coarsening = NAN }, "coarsening" },

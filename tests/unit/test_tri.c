@@ -140,7 +140,7 @@ static void refuses_what_is_broken(void **state)
   (void)state;
   io_refuse(vg_tri_parse, "0 0\n", VG_ERR_INPUT, "no surface");
   io_refuse(vg_tri_parse, "3 1\n0 0 0 1 0 0 0 1 0\n1 2 4\n", VG_ERR_INPUT,
-            "triangle 1 names vertex 4");
+            "triangle 1 refers to vertex 4");
   io_refuse(vg_tri_parse, "3 1\n0 0 0 1 0 0 0 1 0\n0 1 2\n", VG_ERR_INPUT,
             "out of range");
   io_refuse(vg_tri_parse, "3 1\n0 0 0 1 nan 0 0 1 0\n1 2 3\n", VG_ERR_FORMAT,

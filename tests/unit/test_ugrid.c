@@ -304,7 +304,7 @@ static void the_number_of_layer_tetrahedra_follows(void **state)
   assert_int_equal(vg_ugrid_write_tail(path_of("tail", "b8.ugrid"), &m, 13,
                                        &err),
                    VG_ERR_INPUT);
-  assert_non_null(strstr(err.text, "13 tetrahedra"));
+  assert_non_null(strstr(err.text, "13 layer tetrahedra"));
   assert_true(access(path_of("tail", "b8.ugrid"), F_OK) != 0);
   vg_mesh_release(&m);
 }

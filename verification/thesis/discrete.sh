@@ -84,7 +84,7 @@ failed=0
 try() {   # try WAY THE_THESIS
   local way=$1 d=$work/$name.$1 dynamic cyclic all idle idle_cyclic made
   if ! run_mesh "$vanguard" "$d" 1 1 -p "$project" "${options[@]}" \
-       --decompose "$way" --parts "$parts" --write lb8.ugrid \
+       --decompose "$way" --subdomains "$parts" --write lb8.ugrid \
        --report-html no ||
      ! "$vanguard" check -q "$d"/out/*.lb8.ugrid > "$d/check.log" 2>&1
   then

@@ -120,7 +120,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_NODE_RANKS: return limit(arg, &a->run.node_ranks, state);
   case KEY_FAIL: return fail_leaves(arg, &a->run, state);
   case KEY_DIFFER: return differ(arg, &a->run.change, state);
-  case 'L': key = vg_cli_option_key("levels"); break;
+  case 'L': key = vg_cli_option_key("bisections"); break;
   case 't': key = vg_cli_option_key("threads"); break;
   case ARGP_KEY_ARG:
     if (a->project) argp_error(state, "only one project is accepted: %s", arg);
@@ -676,7 +676,7 @@ static const struct argp_option own[] = {
     "tests)",
     1 },
   { NULL, 't', "N", 0, "Same as --threads", 1 },
-  { NULL, 'L', "N", 0, "Same as --levels", 1 },
+  { NULL, 'L', "N", 0, "Same as --bisections", 1 },
   { 0 }
 };
 

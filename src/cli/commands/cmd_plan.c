@@ -121,7 +121,7 @@ static error_t option(int key, char *arg, struct argp_state *state)
                                     VG_MODEL_WORKERS_MAX, state);
     return 0;
   case KEY_ROAM: o->machine.joins_roam = 1; return 0;
-  case 'L': key = vg_cli_option_key("levels"); break;
+  case 'L': key = vg_cli_option_key("bisections"); break;
   case ARGP_KEY_ARG:
     if (o->project) argp_error(state, "only one project is accepted: %s", arg);
     o->project = arg;
@@ -200,7 +200,7 @@ static const struct argp_option own[] = {
     1 },
   { "quiet", 'q', NULL, 0, "Do not show progress", 1 },
   { "plot", KEY_PLOT, "FILE", 0, "Write a plot of the speed-up (SVG)", 1 },
-  { NULL, 'L', "N", 0, "Same as --levels", 1 },
+  { NULL, 'L', "N", 0, "Same as --bisections", 1 },
   { 0 }
 };
 

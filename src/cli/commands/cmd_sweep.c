@@ -33,19 +33,19 @@ static const struct {
   int64_t lo, hi;
 } lists[N_LIST] = { { "--ranks", "ranks", 1, 1000000 },
                     { "--threads", "threads", 1, 1000 },
-                    { "--levels", "levels", 0, 40 },
+                    { "--bisections", "bisections", 0, 40 },
                     { "--leaf-cells", "leaf_cells", 1, 1000000000000 },
-                    { "--parts", "parts", 1, 1000000 },
+                    { "--subdomains", "subdomains", 1, 1000000 },
                     { "--family", "family", 1, 100 } };
 
 static struct vg_range_list *list_of(struct vg_sweep_options *o, int k)
 {
   return k == RANKS      ? &o->ranks
        : k == THREADS    ? &o->threads
-       : k == LEVELS     ? &o->levels
+       : k == LEVELS     ? &o->bisections
        : k == LEAF_CELLS ? &o->leaf_cells
        : k == FAMILY     ? &o->family
-                         : &o->parts;
+                         : &o->subdomains;
 }
 
 static void range(int k, const char *text, struct vg_sweep_options *o,
@@ -129,8 +129,9 @@ static vg_status take_list(const char *deck, int k, const char *text,
 static vg_status take_row(const char *deck, const struct vg_sweep_row *row,
                           struct vg_sweep_options *o, struct vg_error *err)
 {
-  const char *text[N_LIST] = { row->ranks,      row->threads, row->levels,
-                               row->leaf_cells, row->parts,   row->family };
+  const char *text[N_LIST] = { row->ranks,      row->threads,
+                               row->bisections, row->leaf_cells,
+                               row->subdomains, row->family };
   char what[400];
   int given[N_LIST];
   vg_status st = VG_OK;
@@ -307,7 +308,7 @@ static int run(struct vg_sweep_options *o)
 
     print_head(width);
     for (size_t i = 0; i < s.n; i++) print_case(&s, &s.item[i], width);
-    if (o->n_way || o->parts.n) print_parts(&s, width);
+    if (o->n_way || o->subdomains.n) print_parts(&s, width);
     vg_sweep_family_text(stdout, &s);
   }
   status = conclude(&s);
@@ -327,20 +328,20 @@ static const struct argp_option options[] = {
     "option gives are taken from its table sweep [default PROJECT.deck if it "
     "exists]",
     1 },
-  { "levels", 'L', "LIST", 0,
+  { "bisections", 'L', "LIST", 0,
     "Numbers of successive bisections, as in 1,2,4 or 3:7 or "
     "2:10:2",
     2 },
   { "leaf-cells", KEY_LEAF_CELLS, "LIST", 0,
     "Cells per subdomain; these cases are run in addition to those of "
-    "--levels [default: as for vanguard mesh]",
+    "--bisections [default: as for vanguard mesh]",
     2 },
   { "decompose", KEY_DECOMPOSE, "LIST", 0,
     "Decomposition methods, as in advancing,discrete,octree; each is run with "
-    "every entry of --parts, in addition to the cases of the other lists "
+    "every entry of --subdomains, in addition to the cases of the other lists "
     "[default: as for vanguard mesh]",
     2 },
-  { "parts", KEY_PARTS, "LIST", 0, "Numbers of subdomains", 2 },
+  { "subdomains", KEY_PARTS, "LIST", 0, "Numbers of subdomains", 2 },
   { "ranks", 'n', "LIST", 0, "Numbers of ranks [default 1]", 2 },
   { "threads", 't', "LIST", 0, "Numbers of threads per rank [default 1]", 2 },
   { "family", KEY_FAMILY, "LIST", 0,
@@ -380,7 +381,7 @@ int vg_cmd_sweep(int argc, char **argv)
     .parser = option,
     .args_doc = "-p PROJECT [-- MESH-OPTION...]",
     .doc =
-      "Run vanguard mesh for all combinations of decompositions (--levels, "
+      "Run vanguard mesh for all combinations of decompositions (--bisections, "
       "--leaf-cells or --decompose), ranks and threads, and compare them. The "
       "results are sweep.csv and sweep.json with times, balance and digests, "
       "and plots of the speed-up, the phases, the timeline of each run and "

@@ -21,7 +21,7 @@ const uint8_t vg_cause_colour[VG_CAUSE_N][3] = {
   { 200, 40, 50 },   { 130, 70, 40 },   { 0, 114, 178 }, { 240, 100, 150 }
 };
 
-const uint8_t vg_beside_colour[3] = { 231, 231, 239 };
+const uint8_t vg_adjacent_colour[3] = { 231, 231, 239 };
 
 const char *vg_cause_words(enum vg_layer_cause cause)
 {

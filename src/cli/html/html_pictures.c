@@ -23,7 +23,7 @@ void vg_html_palette(enum by by, struct palette *to)
     memcpy(to->rgb, vg_level_colour, sizeof vg_level_colour);
   else memcpy(to->rgb, vg_cause_colour, sizeof vg_cause_colour);
   if (by == BY_CAUSE) thinner(to);
-  memcpy(to->rgb[GREY], vg_beside_colour, sizeof vg_beside_colour);
+  memcpy(to->rgb[GREY], vg_adjacent_colour, sizeof vg_adjacent_colour);
 }
 
 /* Twice the area of the symmetry planes projected along y; negative if the

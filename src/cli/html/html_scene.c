@@ -146,7 +146,7 @@ static json_t *patches(const struct page *p, const struct scene *s)
   for (size_t i = 0; i < m->n_patch; i++) {
     char name[VG_NAME_MAX + 16], clean[VG_NAME_MAX + 16];
     const uint8_t *rgb = p->body[i] ? vg_patch_colour[i % PATCH_COLOURS]
-                                    : vg_beside_colour;
+                                    : vg_adjacent_colour;
 
     snprintf(name, sizeof name, "%d %s", (int)m->patch[i].id, m->patch[i].name);
     /* "</script>" in a name must not end the script element. */

@@ -36,7 +36,7 @@ static void patch_keys(struct page *p)
     vg_page_key(p, vg_patch_colour[i % PATCH_COLOURS], word);
   }
   if (rest) vg_page_format(p, "and %zu more; ", rest);
-  vg_page_key(p, vg_beside_colour, "adjacent to the body");
+  vg_page_key(p, vg_adjacent_colour, "adjacent to the body");
   if (n > PATCH_COLOURS)
     vg_page_markup(p, "<span>Colours repeat after twelve patches.</span>");
 }

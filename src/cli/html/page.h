@@ -122,7 +122,7 @@ enum { PATCH_COLOURS = 12, LEVEL_COLOURS = 16, GREY = VG_SHOT_BEHIND };
 extern const uint8_t vg_patch_colour[PATCH_COLOURS][3];
 extern const uint8_t vg_level_colour[LEVEL_COLOURS][3];
 extern const uint8_t vg_cause_colour[VG_CAUSE_N][3];
-extern const uint8_t vg_beside_colour[3];
+extern const uint8_t vg_adjacent_colour[3];
 
 /* Explanation of a cause, such as "proximity". */
 const char *vg_cause_words(enum vg_layer_cause cause);

@@ -76,15 +76,15 @@ static void by_layers(const struct page *p, const uint32_t *index,
 
 /* Mark the patches in the background of the body: symmetry planes and slide
  * patches. */
-static void mark_beside(const struct page *p, uint8_t *beside)
+static void mark_adjacent(const struct page *p, uint8_t *adjacent)
 {
   const struct vg_mesh *m = &p->h->problem->boundary.surface;
   const struct vg_columns *c = &p->h->layers->layers.columns;
 
   for (size_t i = 0; i < m->n_patch; i++)
-    beside[i] = p->body[i] || m->patch[i].bc == 1;
+    adjacent[i] = p->body[i] || m->patch[i].bc == 1;
   for (size_t i = 0; p->has_layers && i < c->n_border; i++)
-    beside[c->border_patch[i]] = 1;
+    adjacent[c->border_patch[i]] = 1;
 }
 
 vg_status vg_walls_colour(const struct page *p, struct walls *w,
@@ -94,8 +94,9 @@ vg_status vg_walls_colour(const struct page *p, struct walls *w,
   uint8_t **list[] = { &w->by[BY_PATCH], &w->by[BY_LEVEL], &w->by[BY_CAUSE],
                        &w->by_share, &w->is_seen };
   uint32_t *index = vg_alloc(m->n_point, sizeof *index);
-  uint8_t *beside = vg_alloc(m->n_patch, 1);
-  vg_status st = index && beside ? VG_OK : vg_fail_memory(err, "the pictures");
+  uint8_t *adjacent = vg_alloc(m->n_patch, 1);
+  vg_status st = index && adjacent ? VG_OK
+                                   : vg_fail_memory(err, "the pictures");
 
   memset(w, 0, sizeof *w);
   for (size_t i = 0; i < sizeof list / sizeof *list && st >= 0; i++) {
@@ -104,11 +105,11 @@ vg_status vg_walls_colour(const struct page *p, struct walls *w,
     else memset(*list[i], GREY, m->n_tri);
   }
   if (st >= 0) {
-    mark_beside(p, beside);
+    mark_adjacent(p, adjacent);
     for (size_t t = 0; t < m->n_tri; t++) {
       uint32_t patch = m->tri_patch[t];
 
-      w->is_seen[t] = beside[patch];
+      w->is_seen[t] = adjacent[patch];
       if (p->body[patch]) w->by[BY_PATCH][t] = (uint8_t)(patch % PATCH_COLOURS);
     }
     if (p->has_layers)
@@ -117,7 +118,7 @@ vg_status vg_walls_colour(const struct page *p, struct walls *w,
     vg_walls_release(w);
   }
   free(index);
-  free(beside);
+  free(adjacent);
   return st;
 }
 

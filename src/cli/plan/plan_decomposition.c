@@ -95,8 +95,8 @@ vg_status vg_plan_parted(const struct vg_plan *p, const struct vg_front *v,
   for (size_t k = 0; k < q->n_part; k++)
     part[k] = (struct vg_forecast_part){ q->made.part[k].front, &q->load[k],
                                          q->made.part[k].may_cut };
-  st = vg_forecast_parted(v, &p->load, &all, rule, (int)s->levels, &p->rates,
-                          out, err);
+  st = vg_forecast_parted(v, &p->load, &all, rule, (int)s->bisections,
+                          &p->rates, out, err);
   free(part);
   return st;
 }

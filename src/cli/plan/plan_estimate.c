@@ -306,8 +306,8 @@ static vg_status forecast(const struct vg_plan *p, double leaf_cells,
   rule.leaf_cells = leaf_cells;
   if (p->decomposition.n_part) return vg_plan_parted(p, &v, &rule, out, err);
   return vg_forecast_new(&v, &p->load, &rule,
-                         (int)p->problem.resolved.settings.levels, &p->rates,
-                         out, err);
+                         (int)p->problem.resolved.settings.bisections,
+                         &p->rates, out, err);
 }
 
 /* Rates fitted to the given record, or the built-in ones. */

@@ -18,7 +18,7 @@ struct vg_sweep_options {
   const char *launcher; /* command with {ranks}, {threads}; NULL:
                            mpirun if there are 2 ranks or more */
   const char *program;  /* NULL: this program */
-  struct vg_range_list levels, leaf_cells, ranks, threads, parts;
+  struct vg_range_list bisections, leaf_cells, ranks, threads, subdomains;
   int n_way, way[VG_DECOMPOSITIONS]; /* [n_way] enum vg_decomposition_method */
   struct vg_range_list family; /* levels of a grid family; empty: no family */
   double scale;                /* scale of the first level */
@@ -38,7 +38,7 @@ enum vg_member_figure {
 };
 
 struct vg_sweep_case {
-  int64_t levels, leaf_cells, parts; /* -1: not given */
+  int64_t bisections, leaf_cells, subdomains; /* -1: not given */
   int way;        /* enum vg_decomposition_method; -1: not given */
   int64_t family; /* level, from 1; 0: no family */
   double member[VG_MEMBER_N];

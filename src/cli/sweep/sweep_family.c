@@ -56,10 +56,11 @@ static const struct vg_sweep_case *before(const struct vg_sweep *s, size_t i)
 
   while (i--) {
     p = &s->item[i];
-    if (p->is_done && p->family != c->family && p->levels == c->levels &&
-        p->leaf_cells == c->leaf_cells && p->way == c->way &&
-        p->parts == c->parts && p->ranks == c->ranks &&
-        p->threads == c->threads && p->repeat == c->repeat)
+    if (p->is_done && p->family != c->family &&
+        p->bisections == c->bisections && p->leaf_cells == c->leaf_cells &&
+        p->way == c->way && p->subdomains == c->subdomains &&
+        p->ranks == c->ranks && p->threads == c->threads &&
+        p->repeat == c->repeat)
       return p;
   }
   return NULL;

@@ -108,11 +108,11 @@ static void take_parts(const json_t *root, struct vg_sweep_parts *to)
                                        "smooth_seconds", "divide_seconds" };
   const json_t *all = json_object_get(root, "partition");
   const json_t *near = json_object_get(all, "near_interfaces");
-  const json_t *made = json_object_get(all, "decomposition");
+  const json_t *made = json_object_get(all, "subdomains");
   const json_t *mesh = json_object_get(root, "field");
 
   if (!mesh) mesh = json_object_get(root, "mesh");
-  to->n_part = number_at(made ? made : all, made ? "parts" : "leaves");
+  to->n_part = number_at(made ? made : all, made ? "count" : "leaves");
   to->balance = number_at(all, "balance");
   to->near_cells = number_at(near, "cells");
   to->near_p1 = number_at(near, "angle_min_p1");
@@ -205,8 +205,9 @@ double vg_sweep_speedup(const struct vg_sweep *s, double seconds)
 int vg_sweep_same_mesh(const struct vg_sweep_case *a,
                        const struct vg_sweep_case *b)
 {
-  return a->levels == b->levels && a->leaf_cells == b->leaf_cells &&
-         a->way == b->way && a->parts == b->parts && a->family == b->family;
+  return a->bisections == b->bisections && a->leaf_cells == b->leaf_cells &&
+         a->way == b->way && a->subdomains == b->subdomains &&
+         a->family == b->family;
 }
 
 double vg_sweep_field_cells(const struct vg_sweep_case *c)
@@ -229,7 +230,9 @@ double vg_sweep_cells_ratio(const struct vg_sweep *s,
     const struct vg_sweep_case *k = &s->item[i];
 
     if (k->way != VG_DECOMPOSE_ADVANCING || !k->has_timeline) continue;
-    if (!one || (one->parts != c->parts && k->parts == c->parts)) one = k;
+    if (!one ||
+        (one->subdomains != c->subdomains && k->subdomains == c->subdomains))
+      one = k;
   }
   return one ? vg_sweep_field_cells(c) / vg_sweep_field_cells(one) : NAN;
 }

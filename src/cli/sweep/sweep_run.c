@@ -67,14 +67,14 @@ static vg_status add_case(struct vg_sweep *s, const struct vg_sweep_case *c,
   *to = *c;
   if (c->family)
     at = (size_t)snprintf(part, sizeof part, "f%lld-", (long long)c->family);
-  if (c->levels >= 0)
-    snprintf(part + at, sizeof part - at, "L%lld-", (long long)c->levels);
+  if (c->bisections >= 0)
+    snprintf(part + at, sizeof part - at, "L%lld-", (long long)c->bisections);
   if (c->leaf_cells >= 0)
     snprintf(part + at, sizeof part - at, "c%lld-", (long long)c->leaf_cells);
   if (c->way >= 0)
     snprintf(part + at, sizeof part - at, "%s-", vg_ways[c->way].name);
-  if (c->parts >= 0)
-    snprintf(part + strlen(part), 24, "p%lld-", (long long)c->parts);
+  if (c->subdomains >= 0)
+    snprintf(part + strlen(part), 24, "p%lld-", (long long)c->subdomains);
   snprintf(to->name, sizeof to->name, "%sn%d-t%d", part, c->ranks, c->threads);
   if (s->o->repeat > 1)
     snprintf(to->name + strlen(to->name), 16, "-r%d", c->repeat);
@@ -121,9 +121,9 @@ static vg_status check_extra(const struct vg_sweep_options *o,
 vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
                         struct vg_error *err)
 {
-  size_t n_way = o->n_way ? (size_t)o->n_way : o->parts.n > 0;
-  size_t n_parts = o->parts.n ? o->parts.n : 1;
-  size_t n_cut = o->levels.n + o->leaf_cells.n;
+  size_t n_way = o->n_way ? (size_t)o->n_way : o->subdomains.n > 0;
+  size_t n_parts = o->subdomains.n ? o->subdomains.n : 1;
+  size_t n_cut = o->bisections.n + o->leaf_cells.n;
   size_t n_mesh = n_cut + n_way * n_parts, n;
   size_t n_member = o->family.n ? o->family.n : 1;
   vg_status st;
@@ -143,16 +143,19 @@ vg_status vg_sweep_plan(const struct vg_sweep_options *o, struct vg_sweep *s,
   if (!s->item) return vg_fail_memory(err, "the cases");
   for (int k = 1; k <= o->repeat; k++)
     for (size_t at = 0; at < n_mesh * n_member; at++) {
-      struct vg_sweep_case c = {
-        .levels = -1, .leaf_cells = -1, .parts = -1, .way = -1, .repeat = k
-      };
+      struct vg_sweep_case c = { .bisections = -1,
+                                 .leaf_cells = -1,
+                                 .subdomains = -1,
+                                 .way = -1,
+                                 .repeat = k };
       size_t i = at / n_member;
 
       if (o->family.n) c.family = o->family.v[at % n_member];
-      if (i < o->levels.n) c.levels = o->levels.v[i];
-      else if (i < n_cut) c.leaf_cells = o->leaf_cells.v[i - o->levels.n];
+      if (i < o->bisections.n) c.bisections = o->bisections.v[i];
+      else if (i < n_cut) c.leaf_cells = o->leaf_cells.v[i - o->bisections.n];
       else if (o->n_way) c.way = o->way[(i - n_cut) / n_parts];
-      if (i >= n_cut && o->parts.n) c.parts = o->parts.v[(i - n_cut) % n_parts];
+      if (i >= n_cut && o->subdomains.n)
+        c.subdomains = o->subdomains.v[(i - n_cut) % n_parts];
       VG_TRY(add_machines(s, &c, err));
     }
 done:
@@ -196,14 +199,16 @@ static vg_status command_line(const struct vg_sweep_options *o,
     VG_TRY(vg_words_add(w, o->deck, err));
   }
   VG_TRY(vg_words_pair(w, "--threads", c->threads, err));
-  if (c->levels >= 0) VG_TRY(vg_words_pair(w, "--levels", c->levels, err));
+  if (c->bisections >= 0)
+    VG_TRY(vg_words_pair(w, "--bisections", c->bisections, err));
   if (c->leaf_cells >= 0)
     VG_TRY(vg_words_pair(w, "--leaf-cells", c->leaf_cells, err));
   if (c->way >= 0) {
     VG_TRY(vg_words_add(w, "--decompose", err));
     VG_TRY(vg_words_add(w, vg_ways[c->way].name, err));
   }
-  if (c->parts >= 0) VG_TRY(vg_words_pair(w, "--parts", c->parts, err));
+  if (c->subdomains >= 0)
+    VG_TRY(vg_words_pair(w, "--subdomains", c->subdomains, err));
   if (c->family) VG_TRY(add_member(w, o, c, err));
   VG_TRY(vg_words_add(w, "--timeline", err));
   VG_TRY(vg_words_add(w, "-o", err));

@@ -40,7 +40,7 @@ static const char *const value_names[N_VALUE] = { "seconds",
                                                   "angle_min",
                                                   "peak_memory_bytes",
                                                   "parts_asked",
-                                                  "parts",
+                                                  "subdomains",
                                                   "field_cells",
                                                   "cells_ratio",
                                                   "decomposition_seconds",
@@ -63,7 +63,7 @@ static void values_of(const struct vg_sweep *s, const struct vg_sweep_case *c,
                       double v[N_VALUE])
 {
   for (int i = 0; i < N_VALUE; i++) v[i] = NAN;
-  if (c->parts >= 0) v[12] = (double)c->parts;
+  if (c->subdomains >= 0) v[12] = (double)c->subdomains;
   if (!c->is_run) return;
   v[1] = c->wall;
   if (!c->is_done) return;
@@ -124,7 +124,7 @@ static void put_row(struct vg_output *out, const struct vg_sweep *s,
   values_of(s, c, v);
   put_quoted(out, c->name);
   vg_output_text(out, ",");
-  if (c->levels >= 0) vg_output_int(out, c->levels);
+  if (c->bisections >= 0) vg_output_int(out, c->bisections);
   vg_output_text(out, ",");
   if (c->leaf_cells >= 0) vg_output_int(out, c->leaf_cells);
   vg_output_format(out, ",%d,%d,%d,%d,%s,%d", c->ranks, c->threads,
@@ -147,8 +147,9 @@ static vg_status write_csv(const struct vg_sweep *s, struct vg_error *err)
 
   VG_TRY(path_of(s, "sweep.csv", &path, err));
   VG_TRY(vg_output_open(path, &out, err));
-  vg_output_text(&out, "case,levels,leaf_cells,ranks,threads,workers,repeat,"
-                       "state,exit");
+  vg_output_text(&out,
+                 "case,bisections,leaf_cells,ranks,threads,workers,repeat,"
+                 "state,exit");
   for (int i = 0; i < N_VALUE; i++)
     vg_output_format(&out, ",%s", value_names[i]);
   for (int i = 0; i < VG_PHASE_N; i++)
@@ -202,7 +203,7 @@ static json_t *case_json(const struct vg_sweep *s,
 
   values_of(s, c, v);
   json_object_set_new(o, "case", vg_text_json(c->name));
-  json_object_set_new(o, "levels", whole_or_null(c->levels));
+  json_object_set_new(o, "bisections", whole_or_null(c->bisections));
   json_object_set_new(o, "leaf_cells", whole_or_null(c->leaf_cells));
   json_object_set_new(o, "decompose",
                       c->way < 0 ? json_null()
@@ -397,15 +398,15 @@ static void add_point(struct line *l, double workers, double speedup)
 
 static void name_mesh(const struct vg_sweep_case *c, char *text, size_t size)
 {
-  if (c->levels >= 0)
-    snprintf(text, size, "%lld bisections", (long long)c->levels);
+  if (c->bisections >= 0)
+    snprintf(text, size, "%lld bisections", (long long)c->bisections);
   else if (c->leaf_cells >= 0)
     snprintf(text, size, "%lld cells per leaf", (long long)c->leaf_cells);
   else if (c->way >= 0) snprintf(text, size, "%s", vg_ways[c->way].name);
   else snprintf(text, size, "measured");
-  if (c->parts >= 0)
+  if (c->subdomains >= 0)
     snprintf(text + strlen(text), size - strlen(text), ", %lld subdomains",
-             (long long)c->parts);
+             (long long)c->subdomains);
 }
 
 /* Add the curve of one mesh over ranks, with a fixed number of threads, or over

@@ -88,7 +88,7 @@ struct border {
   double all, steep;
 };
 
-static void add_border(const struct vg_mesh *m, size_t at, size_t beside,
+static void add_border(const struct vg_mesh *m, size_t at, size_t adjacent,
                        double length, const struct vg_flow_patch *patch,
                        struct border *border)
 {
@@ -96,7 +96,7 @@ static void add_border(const struct vg_mesh *m, size_t at, size_t beside,
   double n[3];
 
   if (!patch[own].is_end) return;
-  normal_of(m, beside, n);
+  normal_of(m, adjacent, n);
   border[own].all += length;
   if (fabs(vg_dot(n, patch[own].normal)) <=
       STEEP * vg_norm(n) * vg_norm(patch[own].normal))

@@ -57,7 +57,7 @@ static vg_status read_cogsg(const char *path, struct vg_mesh *out,
   return vg_cogsg_read(path, out, NULL, turned, err);
 }
 
-static char *beside(const char *path, const char *suffix)
+static char *adjacent(const char *path, const char *suffix)
 {
   size_t n = strlen(path) - vg_format_suffix_length(path);
   char *to;
@@ -69,11 +69,11 @@ static char *beside(const char *path, const char *suffix)
  * there is not enough memory. The caller frees it. */
 static char *companion(const char *path, const char *suffix, const char *packed)
 {
-  char *name = beside(path, suffix);
+  char *name = adjacent(path, suffix);
 
   if (!name || !access(name, F_OK)) return name;
   free(name);
-  name = beside(path, packed);
+  name = adjacent(path, packed);
   if (name && access(name, F_OK)) *name = 0;
   return name;
 }

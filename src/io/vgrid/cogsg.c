@@ -240,7 +240,7 @@ done:
 }
 
 /* STEM + suffix, where path is STEM, STEM.cogsg or STEM.cogsg.gz. */
-static char *beside(const char *path, const char *suffix)
+static char *adjacent(const char *path, const char *suffix)
 {
   size_t n = strlen(path);
   char *to;
@@ -253,7 +253,7 @@ static char *beside(const char *path, const char *suffix)
 static vg_status open_bc(const char *path, struct vg_input *bc,
                          struct vg_error *err)
 {
-  char *name = beside(path, ".bc"), *packed = beside(path, ".bc.gz");
+  char *name = adjacent(path, ".bc"), *packed = adjacent(path, ".bc.gz");
   vg_status st;
 
   if (!name || !packed) st = vg_fail_memory(err, "a file name");
@@ -432,7 +432,7 @@ vg_status vg_cogsg_write_mapbc(const char *stem, const struct vg_mesh *m,
                                size_t *n_unset, struct vg_error *err)
 {
   const char *slash = strrchr(stem, '/');
-  char *name = beside(stem, ".mapbc");
+  char *name = adjacent(stem, ".mapbc");
   vg_status st;
 
   if (!name) return vg_fail_memory(err, "a file name");
@@ -449,7 +449,7 @@ vg_status vg_cogsg_write(const char *stem, const struct vg_mesh *m,
   struct vg_cogsg_info full = VG_COGSG_INFO_INIT;
   struct vg_output cogsg = VG_OUTPUT_INIT, bc = VG_OUTPUT_INIT;
   uint32_t *new_to_old = NULL, *old_to_new = NULL;
-  char *cogsg_name = beside(stem, ".cogsg"), *bc_name = beside(stem, ".bc");
+  char *cogsg_name = adjacent(stem, ".cogsg"), *bc_name = adjacent(stem, ".bc");
   vg_status st = VG_OK;
 
   if (info) full = *info;

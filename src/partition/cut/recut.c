@@ -311,8 +311,8 @@ static vg_status agree_on_groups(struct parcels *q, struct vg_comm *comm,
 {
   struct vg_bytes mine = { q->n * sizeof *q->up, (unsigned char *)q->up };
   struct vg_bytes *all = vg_calloc((size_t)q->p->size, sizeof *all);
-  uint64_t *beside = vg_calloc(q->n, sizeof *beside);
-  vg_status st = all && beside ? VG_OK : vg_fail_memory(err, "a void");
+  uint64_t *adjacent = vg_calloc(q->n, sizeof *adjacent);
+  vg_status st = all && adjacent ? VG_OK : vg_fail_memory(err, "a void");
 
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(vg_comm_allgather(comm, &mine, all, err));
@@ -323,17 +323,17 @@ static vg_status agree_on_groups(struct parcels *q, struct vg_comm *comm,
       vg_union(q->up, k, up[k]);
   }
   for (size_t k = 0; k < q->p->n_piece; k++)
-    if (q->near[k] < q->n) beside[vg_root_of(q->up, q->near[k])]++;
+    if (q->near[k] < q->n) adjacent[vg_root_of(q->up, q->near[k])]++;
   for (uint32_t k = 0; k < q->n; k++)
-    beside[k] += vg_root_of(q->up, k) != k; /* merged into another void */
-  VG_TRY(vg_comm_sum(comm, q->n, beside, err));
+    adjacent[k] += vg_root_of(q->up, k) != k; /* merged into another void */
+  VG_TRY(vg_comm_sum(comm, q->n, adjacent, err));
   for (size_t k = 0; k < q->n; k++) {
-    if (beside[k] && strlen(q->of[k].path) + 2 < VG_PATH_MAX) continue;
+    if (adjacent[k] && strlen(q->of[k].path) + 2 < VG_PATH_MAX) continue;
     st = vg_fail(err, VG_ERR_GEOMETRY, "%s", q->of[k].why.text);
     break;
   }
 done:
-  free(beside);
+  free(adjacent);
   vg_bytes_release(all, (size_t)q->p->size);
   return st;
 }

@@ -123,8 +123,8 @@ static vg_status refine_all(struct maker *m, const struct vg_front *v,
 }
 
 /* The neighbour of o, at its level or a leaf above it. */
-static uint32_t beside(const struct vg_octants *t, const struct vg_octant *o,
-                       int axis, int up)
+static uint32_t adjacent(const struct vg_octants *t, const struct vg_octant *o,
+                         int axis, int up)
 {
   uint32_t p[3] = { o->at[0], o->at[1], o->at[2] }, i = 0;
 
@@ -153,7 +153,7 @@ static vg_status balance(struct maker *m, struct vg_error *err)
       vg_status st;
 
       if (o->child || o->state == VG_OCTANT_OUT) break;
-      at = beside(t, o, d >> 1, d & 1);
+      at = adjacent(t, o, d >> 1, d & 1);
       if (at == VG_OCTANT_NONE) continue;
       b = &t->octant[at];
       if (b->state == VG_OCTANT_OUT || b->level + 1 >= o->level) continue;
@@ -246,7 +246,7 @@ static vg_status list_faces(struct vg_octants *t, struct vg_error *err)
     for (int d = 0; d < 6; d++) {
       const struct vg_octant *o = &t->octant[t->leaf[l]], *b;
       const int axis = d >> 1, up = d & 1;
-      const uint32_t at = beside(t, o, axis, up);
+      const uint32_t at = adjacent(t, o, axis, up);
       struct vg_octant_face *f;
 
       if (at == VG_OCTANT_NONE) continue;

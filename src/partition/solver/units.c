@@ -213,7 +213,7 @@ static size_t gather(const struct work *w, uint32_t cell, uint32_t *list)
 
 /* The lowest cluster that shares a face with these few cells; NONE: there is
  * none. It avoids small remainders between clusters. */
-static uint32_t beside(const struct work *w, const uint32_t *list, size_t n)
+static uint32_t adjacent(const struct work *w, const uint32_t *list, size_t n)
 {
   uint32_t *of = w->u->of, best = NONE;
 
@@ -243,7 +243,7 @@ static void number(struct work *w)
     u->of[cell] = next++;
     if (w->o->cluster > 1) {
       size_t n = gather(w, cell, list);
-      uint32_t other = 4 * n < w->o->cluster ? beside(w, list, n) : NONE;
+      uint32_t other = 4 * n < w->o->cluster ? adjacent(w, list, n) : NONE;
 
       if (other == NONE) continue;
       for (size_t k = 0; k < n; k++) u->of[list[k]] = other;

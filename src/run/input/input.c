@@ -112,7 +112,7 @@ static int has_mode(const char *path, mode_t kind)
 }
 
 /* Path of stem.suffix if that file exists, otherwise "". NULL: no memory. */
-static char *beside(const char *stem, const char *suffix)
+static char *adjacent(const char *stem, const char *suffix)
 {
   char *path;
 
@@ -131,7 +131,7 @@ static vg_status find_surface(const char *stem, char **out,
   vg_status st = VG_OK;
 
   for (size_t i = 0; (suffix = vg_format_input_suffix(i)) && st >= 0; i++) {
-    char *path = beside(stem, suffix);
+    char *path = adjacent(stem, suffix);
 
     if (!path) {
       st = vg_fail_memory(err, "a path");
@@ -168,14 +168,14 @@ static char *stem_of(const char *name)
 static vg_status find_beside(struct vg_input_files *f, const char *deck,
                              struct vg_error *err)
 {
-  f->mapbc = beside(f->stem, "mapbc");
+  f->mapbc = adjacent(f->stem, "mapbc");
   if (f->mapbc && !*f->mapbc) {
     free(f->mapbc);
-    f->mapbc = beside(f->stem, "mapbc.gz");
+    f->mapbc = adjacent(f->stem, "mapbc.gz");
   }
-  f->deck = deck ? strdup(deck) : beside(f->stem, "deck");
-  f->tags = beside(f->stem, "tags");
-  f->aflr = beside(f->stem, "bc");
+  f->deck = deck ? strdup(deck) : adjacent(f->stem, "deck");
+  f->tags = adjacent(f->stem, "tags");
+  f->aflr = adjacent(f->stem, "bc");
   if (!f->d3m) f->d3m = strdup("");
   if (!f->front) f->front = strdup("");
   /* A .bc next to a mesh of an earlier run is in the format of VGRID. */
@@ -191,8 +191,8 @@ static vg_status find_stem(const char *name, struct vg_input_files *f,
   vg_status st;
 
   f->stem = strdup(name);
-  f->d3m = beside(name, "d3m");
-  f->front = beside(name, "front");
+  f->d3m = adjacent(name, "d3m");
+  f->front = adjacent(name, "front");
   if (!f->stem || !f->d3m || !f->front)
     return vg_fail_memory(err, "the paths of the project");
   if (*f->front) {

@@ -643,8 +643,9 @@ done:
 }
 
 /* Marks patches without layers that share an edge with a wall. */
-static void mark_beside(const struct vg_layer_stage *s, const struct vg_mesh *m,
-                        uint8_t *on_wall, uint8_t *beside)
+static void mark_adjacent(const struct vg_layer_stage *s,
+                          const struct vg_mesh *m, uint8_t *on_wall,
+                          uint8_t *adjacent)
 {
   for (size_t i = 0; i < m->n_tri; i++)
     for (int k = 0; k < 3 && s->reason[m->tri_patch[i]] != VG_WALL_NOT; k++)
@@ -654,7 +655,7 @@ static void mark_beside(const struct vg_layer_stage *s, const struct vg_mesh *m,
 
     if (s->reason[m->tri_patch[i]] == VG_WALL_NOT &&
         on_wall[t[0]] + on_wall[t[1]] + on_wall[t[2]] > 1)
-      beside[m->tri_patch[i]] = 1;
+      adjacent[m->tri_patch[i]] = 1;
   }
 }
 
@@ -665,26 +666,26 @@ vg_status vg_layer_stage_sizes(const struct vg_layer_stage *s,
   const struct vg_mesh *m = &b->surface;
   int is_front = *b->read->files.front && b->read->project.grid > 0;
   uint8_t *on_wall = vg_calloc(m->n_point, 1);
-  uint8_t *beside = vg_calloc(m->n_patch, 1);
+  uint8_t *adjacent = vg_calloc(m->n_patch, 1);
   vg_status st = VG_OK;
 
   *out = *m;
   out->n_tri = 0;
   out->tri = vg_alloc(m->n_tri, sizeof *out->tri);
   out->tri_patch = vg_alloc(m->n_tri, sizeof *out->tri_patch);
-  if (!on_wall || !beside || !out->tri || !out->tri_patch) {
+  if (!on_wall || !adjacent || !out->tri || !out->tri_patch) {
     st = vg_fail_memory(err, "the sizes");
     goto done;
   }
-  if (is_front) mark_beside(s, m, on_wall, beside);
+  if (is_front) mark_adjacent(s, m, on_wall, adjacent);
   for (size_t i = 0; i < m->n_tri; i++) {
-    if (beside[m->tri_patch[i]]) continue;
+    if (adjacent[m->tri_patch[i]]) continue;
     memcpy(out->tri[out->n_tri], m->tri[i], sizeof *out->tri);
     out->tri_patch[out->n_tri++] = m->tri_patch[i];
   }
 done:
   free(on_wall);
-  free(beside);
+  free(adjacent);
   return st;
 }
 

@@ -22,9 +22,9 @@ static vg_status write_walls(const struct vg_layer_stage *s,
   const struct vg_wall_fields *w = &s->fields;
   const struct vg_vtu_field field[] = {
     { "level", VG_VTU_POINT, VG_VTU_INT32, 1, w->level },
-    { "wanted", VG_VTU_POINT, VG_VTU_INT32, 1, w->wanted },
+    { "level_requested", VG_VTU_POINT, VG_VTU_INT32, 1, w->wanted },
     { "first_height", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->first },
-    { "asked", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->asked },
+    { "first_requested", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->asked },
     { "total", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->total },
     { "height_over_growth_law", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->share },
     { "growth", VG_VTU_POINT, VG_VTU_FLOAT64, 1, w->growth },

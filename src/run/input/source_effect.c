@@ -158,10 +158,11 @@ static json_t *item_json(const struct vg_limited_source *h,
 {
   const struct vg_patch *patch = patch_of(h, front);
   json_t *o = json_pack("{s:I s:s s:b s:I s:I s:[f,f,f] s:f s:f}", "source",
-                        (json_int_t)h->source + 1, "kind", kind_of(s), "wholly",
-                        is_wholly(h), "places", (json_int_t)h->n_place,
-                        "places_held", (json_int_t)h->n_limited, "at", h->at[0],
-                        h->at[1], h->at[2], "asks", h->asked, "gets", h->got);
+                        (json_int_t)h->source + 1, "kind", kind_of(s),
+                        "everywhere", is_wholly(h), "sample_points",
+                        (json_int_t)h->n_place, "sample_points_limited",
+                        (json_int_t)h->n_limited, "at", h->at[0], h->at[1],
+                        h->at[2], "requested", h->asked, "actual", h->got);
 
   if (s->group[0]) json_object_set_new(o, "group", vg_text_json(s->group));
   if (!patch) return o;
@@ -169,9 +170,9 @@ static json_t *item_json(const struct vg_limited_source *h,
   json_object_set_new(o, "patch_name", vg_text_json(patch->name));
   json_object_set_new(o, "edge", json_real(h->edge));
   json_object_set_new(o, "distance", json_real(h->distance));
-  json_object_set_new(o, "edge_wanted", json_real(h->edge_wanted));
+  json_object_set_new(o, "edge_required", json_real(h->edge_wanted));
   if (h->growth_wanted > 0)
-    json_object_set_new(o, "growth_wanted", json_real(h->growth_wanted));
+    json_object_set_new(o, "growth_required", json_real(h->growth_wanted));
   return o;
 }
 
@@ -191,18 +192,17 @@ json_t *vg_effects_json(const struct vg_effects *h, const struct vg_mesh *front,
   for (size_t i = 0; i < h->n_unmet; i++) {
     const struct vg_unmet_source *u = h->unmet + i;
 
-    json_array_append_new(unmet,
-                          json_pack("{s:I s:s s:I s:I s:[f,f,f] s:f}", "source",
-                                    (json_int_t)u->source + 1, "kind",
-                                    kind_of(s->source + u->source), "places",
-                                    (json_int_t)u->n_place, "places_unmet",
-                                    (json_int_t)u->n_unmet, "at", u->place.x[0],
-                                    u->place.x[1], u->place.x[2], "gets",
-                                    u->place.got));
+    json_array_append_new(
+      unmet, json_pack("{s:I s:s s:I s:I s:[f,f,f] s:f}", "source",
+                       (json_int_t)u->source + 1, "kind",
+                       kind_of(s->source + u->source), "sample_points",
+                       (json_int_t)u->n_place, "sample_points_unresolved",
+                       (json_int_t)u->n_unmet, "at", u->place.x[0],
+                       u->place.x[1], u->place.x[2], "actual", u->place.got));
   }
-  json_object_set_new(o, "held", held);
-  json_object_set_new(o, "unmet", unmet);
-  json_object_set_new(o, "inside", outside[0]);
-  json_object_set_new(o, "beyond", outside[1]);
+  json_object_set_new(o, "limited", held);
+  json_object_set_new(o, "unresolved", unmet);
+  json_object_set_new(o, "inside_body", outside[0]);
+  json_object_set_new(o, "outside_domain", outside[1]);
   return o;
 }

@@ -21,8 +21,8 @@ vg_status vg_boundary_effects(const struct vg_boundary *b,
 void vg_effects_note(const struct vg_effects *h, const struct vg_mesh *front,
                      const struct vg_settings *s, struct vg_notes *notes);
 
-/** All of them: "held" (limited by the surface), "unmet" (unresolved), "inside"
- * (a body), "beyond" (outside the domain). */
+/** All of them: "limited" (by the surface), "unresolved", "inside_body"
+ * and "outside_domain". */
 json_t *vg_effects_json(const struct vg_effects *h, const struct vg_mesh *front,
                         const struct vg_settings *s);
 

@@ -204,21 +204,21 @@ static vg_status take_row(const struct vg_boundary *b,
                           struct vg_error *err)
 {
   const struct vg_mesh *m = &b->surface;
-  const int beside = vg_surface_row_has_beside(row);
+  const int adjacent = vg_surface_row_has_adjacent(row);
   vg_status st;
 
   memset(mark, 0, 2 * m->n_patch);
   VG_TRY(vg_patch_ref_mark("surface", row->patch, row->patch_name, m,
                            m->n_patch, mark, err));
-  if (beside)
-    VG_TRY(vg_patch_ref_mark("surface", row->beside, row->beside_name, m,
+  if (adjacent)
+    VG_TRY(vg_patch_ref_mark("surface", row->adjacent, row->adjacent_name, m,
                              m->n_patch, mark + m->n_patch, err));
   for (size_t i = 0; i < m->n_patch; i++) {
     on[i][0] = mark[i];
     on[i][1] = mark[m->n_patch + i];
-    if (!beside && mark[i]) take_patch(b, i, row, s);
+    if (!adjacent && mark[i]) take_patch(b, i, row, s);
   }
-  if (beside) st = take_curve(m, row, on, s, err);
+  if (adjacent) st = take_curve(m, row, on, s, err);
 done:
   return st;
 }

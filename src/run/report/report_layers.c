@@ -399,8 +399,8 @@ static json_t *missed_json(const struct vg_layer_stage *s,
     json_array_append_new(list,
                           json_pack("{s:i s:o s:s s:o s:o}", "patch",
                                     (int)p->id, "name", vg_text_json(p->name),
-                                    "limit", m->name, "wanted", real(m->wanted),
-                                    "got",
+                                    "limit", m->name, "required",
+                                    real(m->wanted), "got",
                                     m->is_bare ? json_null() : real(m->got)));
   }
   return list;

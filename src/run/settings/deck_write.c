@@ -133,7 +133,7 @@ static const char *const example[VG_TABLE_N] = {
   [VG_TABLE_PATCHES] = "#\n# patches\n# id  bc  name\n# 1   4   wing\n\n",
   [VG_TABLE_LAYERS] = "#\n# layers\n# id  grow  first  min_full\n"
                       "# 1   yes   1e-5   98\n\n",
-  [VG_TABLE_SURFACE] = "#\n# surface\n# patch  beside  size\n"
+  [VG_TABLE_SURFACE] = "#\n# surface\n# patch  adjacent  size\n"
                        "# 1      2       0.01\n\n",
   [VG_TABLE_SOURCES] = "#\n# sources\n# kind   x0  y0  z0  r0  h0\n"
                        "# point  0   0   0   0   0.01\n\n",

@@ -193,8 +193,9 @@ struct vg_layer_options vg_options_layers(const struct vg_settings *s)
 
 struct vg_cut_rule vg_options_cuts(const struct vg_settings *s)
 {
-  return (struct vg_cut_rule){ .leaf_cells = s->levels ? 0
-                                                       : (double)s->leaf_cells,
+  return (struct vg_cut_rule){ .leaf_cells = s->bisections
+                                             ? 0
+                                             : (double)s->leaf_cells,
                                .first_axis = (int)s->split_direction - 1,
                                .constant = s->constant_direction };
 }
@@ -204,7 +205,7 @@ struct vg_decomposition_options vg_options_decomposition(
 {
   struct vg_decomposition_options o = VG_DECOMPOSITION_OPTIONS_INIT;
 
-  o.n_part = s->parts == VG_COUNT_NONE ? 0 : (int)s->parts;
+  o.n_part = s->subdomains == VG_COUNT_NONE ? 0 : (int)s->subdomains;
   o.partitioner = s->partitioner;
   o.coarsening = s->coarsening;
   o.h_refine = s->h_refine;
@@ -217,7 +218,7 @@ struct vg_partition_options vg_options_partition(const struct vg_settings *s)
 
   assert(s->decompose >= 0 && s->decompose < VG_DECOMPOSITIONS);
   o.rule = vg_options_cuts(s);
-  o.levels = (int)s->levels;
+  o.levels = (int)s->bisections;
   o.maker = vg_ways[s->decompose].maker;
   o.decomposition = vg_options_decomposition(s);
   o.cyclic = s->cyclic;

@@ -163,7 +163,7 @@ VG_ROW(COUNT, plain, leaf_cells, "leaf_cells", VG_LEAF_CELLS,
   .hi = 9e15, .unit = "cells", .help = "Target number of cells per subdomain; "
   "the space outside the layers is divided into subdomains, which are filled "
   "in parallel; 0: not divided")
-VG_ROW(COUNT, plain, levels, "levels", 0,
+VG_ROW(COUNT, plain, bisections, "bisections", 0,
   .use = VG_USE_PLANES, .hi = 30, .unit = "bisections",
   .help = "Number of successive bisections: 2^N subdomains, regardless of "
   "leaf_cells; 0: by leaf_cells")
@@ -179,7 +179,7 @@ VG_ROW(WORD, plain, decompose, "decompose", 0,
   "cells; discrete: along the faces of a coarse mesh, whose cells are "
   "assigned to subdomains; octree: by octants away from the layers, assigned "
   "to subdomains, and cut planes near the layers")
-VG_ROW(COUNT, plain, parts, "parts", VG_COUNT_NONE,
+VG_ROW(COUNT, plain, subdomains, "subdomains", VG_COUNT_NONE,
   .lo = 1, .hi = 1e6, .optional = 1, .unit = "subdomains",
   .help = "Number of subdomains. advancing: approximate; octree: octants get a "
   "share of them in proportion to their cells; -: expected number of cells "

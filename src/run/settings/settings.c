@@ -260,15 +260,17 @@ static const struct vg_param source_columns[] = {
 static const struct vg_param sweep_columns[] = {
   LIST("ranks", ranks, "Numbers of ranks, as in 1,2,4 or 1:64:x2; \"\": 1"),
   LIST("threads", threads, "Numbers of threads per rank; \"\": 1"),
-  LIST("levels", levels, "Numbers of successive bisections; \"\": none"),
+  LIST("bisections", bisections,
+       "Numbers of successive bisections; \"\": none"),
   LIST("leaf_cells", leaf_cells,
        "Cells per subdomain; these cases are run in addition to those of "
        "levels; \"\": as the setting"),
-  LIST("decompose", decompose,
-       "Decomposition methods, as in advancing,discrete; each is run with "
-       "every entry of parts, in addition to the cases of the other lists; "
-       "\"\": as the setting"),
-  LIST("parts", parts, "Numbers of subdomains; \"\": as the setting"),
+  LIST(
+    "decompose", decompose,
+    "Decomposition methods, as in advancing,discrete; each is run with "
+    "every entry of subdomains, in addition to the cases of the other lists; "
+    "\"\": as the setting"),
+  LIST("subdomains", subdomains, "Numbers of subdomains; \"\": as the setting"),
   LIST("family", family, "Levels of a grid family; \"\": none"),
   { "repeat", AT(repeat), .type = VG_PARAM_COUNT, .keeps_mesh = 1, .hi = 1000,
     .unit = "times", .help = "Number of runs of each case; 0: one" },
@@ -323,7 +325,7 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
     NAN, VG_COUNT_NONE,  VG_COUNT_NONE, NAN, NAN, VG_NO_LIMITS,
     ""
   };
-  struct vg_surface_row surface = { .beside = VG_BC_NONE };
+  struct vg_surface_row surface = { .adjacent = VG_BC_NONE };
   struct vg_source source = { .kind = VG_SOURCE_POINT, .an = 1 };
   struct vg_sweep_row sweep = { .repeat = 0 };
 
@@ -444,7 +446,7 @@ void vg_settings_override(struct vg_settings *s, const struct vg_param *set)
   assert(set->offset < sizeof *s);
   if (at == &l->first) l->y_plus = 0;
   if (at == &l->y_plus) l->first = 0;
-  if (at == &s->leaf_cells) s->levels = 0;
+  if (at == &s->leaf_cells) s->bisections = 0;
   if (at == &l->ratio) l->rate1 = l->rate2 = NAN;
   if (at == &l->rate1 || at == &l->rate2) l->ratio = NAN;
 }

@@ -47,11 +47,12 @@ struct vg_patch_row {
 /** Largest edges of a remeshed surface on a patch, or on the curve between two
  * patches. 0: not given. */
 struct vg_surface_row {
-  int32_t patch, beside; /* the patch, and the other patch of the
+  int32_t patch, adjacent; /* the patch, and the other patch of the
                             curve; VG_BC_NONE: no curve */
   double size, lead, across, stretch;
-  /* Names or patterns instead of patch and beside; "": the numbers are used. */
-  char patch_name[VG_NAME_MAX], beside_name[VG_NAME_MAX];
+  /* Names or patterns instead of patch and adjacent; "": the numbers are used.
+   */
+  char patch_name[VG_NAME_MAX], adjacent_name[VG_NAME_MAX];
 };
 
 /** A yes/no setting that the run may decide itself. */
@@ -83,8 +84,8 @@ struct vg_layer_row {
  * sweep only; "": not given. */
 struct vg_sweep_row {
   char ranks[VG_LIST_MAX], threads[VG_LIST_MAX];
-  char levels[VG_LIST_MAX], leaf_cells[VG_LIST_MAX], family[VG_LIST_MAX];
-  char decompose[VG_LIST_MAX], parts[VG_LIST_MAX];
+  char bisections[VG_LIST_MAX], leaf_cells[VG_LIST_MAX], family[VG_LIST_MAX];
+  char decompose[VG_LIST_MAX], subdomains[VG_LIST_MAX];
   int64_t repeat; /* 0: not given */
 };
 
@@ -303,8 +304,8 @@ const char *vg_nearest_name(const char *text, size_t n,
                             const void *user);
 
 /** Reset the alternatives of a setting. Some quantities can be given in two
- * ways (first and y_plus, ratio and the rates, leaf_cells and levels); the one
- * that was set last applies.
+ * ways (first and y_plus, ratio and the rates, leaf_cells and bisections); the
+ * one that was set last applies.
  * @param set  the setting that has just been set */
 void vg_settings_override(struct vg_settings *s, const struct vg_param *set);
 

@@ -12,8 +12,8 @@ static const struct vg_param columns[] = {
   { "patch", AT(patch), VG_PATCH_COLUMN(struct vg_surface_row, patch_name),
     .required = 1,
     .help = "Number or name of the patch (* and ? are wildcards)" },
-  { "beside", AT(beside), VG_PATCH_COLUMN(struct vg_surface_row, beside_name),
-    .optional = 1,
+  { "adjacent", AT(adjacent),
+    VG_PATCH_COLUMN(struct vg_surface_row, adjacent_name), .optional = 1,
     .help = "Adjacent patch: the row applies to the curve between the two "
             "patches; -: to the whole patch" },
   { "size", AT(size), .type = VG_PARAM_REAL, .hi = 1e60, .unit = "length",
@@ -40,16 +40,16 @@ const struct vg_setting_table vg_surface_table = {
   columns, sizeof columns / sizeof *columns, sizeof(struct vg_surface_row)
 };
 
-int vg_surface_row_has_beside(const struct vg_surface_row *r)
+int vg_surface_row_has_adjacent(const struct vg_surface_row *r)
 {
-  return r->beside != VG_BC_NONE || *r->beside_name;
+  return r->adjacent != VG_BC_NONE || *r->adjacent_name;
 }
 
 /* Reject a row without any request, and values that contradict each other. */
 static vg_status check_row(const struct vg_surface_row *r, size_t line,
                            struct vg_error *err)
 {
-  const int beside = vg_surface_row_has_beside(r);
+  const int adjacent = vg_surface_row_has_adjacent(r);
   char one[2 * VG_NAME_MAX + 4], two[2 * VG_NAME_MAX + 4];
 
   vg_param_format(&columns[0], r, one, sizeof one);
@@ -59,16 +59,16 @@ static vg_status check_row(const struct vg_surface_row *r, size_t line,
                    "surface: line %zu, patch %s, has no "
                    "request; give size, lead, across or stretch",
                    line, one);
-  if (beside && (r->lead > 0 || r->across > 0))
+  if (adjacent && (r->lead > 0 || r->across > 0))
     return vg_fail(err, VG_ERR_INPUT,
                    "surface: only size and stretch apply to the curve between "
                    "patches %s and %s; give lead and across "
-                   "on a line without `beside`",
+                   "on a line without `adjacent`",
                    one, two);
-  if (!beside && r->stretch > 0)
+  if (!adjacent && r->stretch > 0)
     return vg_fail(err, VG_ERR_INPUT,
                    "surface: line %zu, patch %s, has stretch, which needs a "
-                   "curve; name the adjacent patch in the column `beside`",
+                   "curve; name the adjacent patch in the column `adjacent`",
                    line, one);
   if (r->stretch > 0 && r->stretch < 1)
     return vg_fail(err, VG_ERR_INPUT,

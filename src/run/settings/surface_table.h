@@ -7,7 +7,7 @@
 extern const struct vg_setting_table vg_surface_table;
 
 /** Whether a row applies to the curve between two patches. */
-int vg_surface_row_has_beside(const struct vg_surface_row *r);
+int vg_surface_row_has_adjacent(const struct vg_surface_row *r);
 
 /** Check all rows. VG_ERR_INPUT for a row without any request, and for values
  * that contradict each other. */

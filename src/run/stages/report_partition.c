@@ -150,7 +150,7 @@ static void put_decomposition(const struct vg_run *r, const struct leaves *l,
                                   r->near.angle_min_p1));
   if (!p->n_part) return;
   decomposition = json_object();
-  json_object_set_new(decomposition, "parts", count(p->n_part));
+  json_object_set_new(decomposition, "count", count(p->n_part));
   vg_report_entries(decomposition, decomposition, &vg_decomposition_entries,
                     &p->decomposition);
   json_object_set_new(o, "subdomains", decomposition);

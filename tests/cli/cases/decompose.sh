@@ -10,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
 vanguard demo box --cells 20000 --out p
 for way in 'remesh metis' 'h-refine rcb'; do
   read -r interfaces partitioner <<< "$way"
-  set -- mesh -q -p p/box --decompose discrete --parts 5 --write b8.ugrid \
+  set -- mesh -q -p p/box --decompose discrete --subdomains 5 --write b8.ugrid \
     --interfaces "$interfaces" --partitioner "$partitioner"
   vanguard "$@" -t 1 --out one
   exits 0
@@ -36,26 +36,26 @@ vanguard mesh -q -p p/box --decompose discrete --leaf-cells 7000 --out by
 exits 0
 says out "decomposition discrete: 3 subdomains"
 
-vanguard mesh -q -p p/box --decompose discrete --parts 0
+vanguard mesh -q -p p/box --decompose discrete --subdomains 0
 exits 2
-says err "parts"
+says err "subdomains"
 vanguard mesh -q -p p/box --decompose discrete --coarsening 0.5
 exits 2
 says err "coarsening is 0.5; it must be at least 1"
-for way in 'discrete --parts 900000' 'octree --parts 900000' \
-  'discrete --parts 19000 --coarsening 6'; do
+for way in 'discrete --subdomains 900000' 'octree --subdomains 900000' \
+  'discrete --subdomains 19000 --coarsening 6'; do
   # shellcheck disable=SC2086 # words
   vanguard mesh -q -p p/box --decompose $way --out none
   exits 1
   says err "request fewer subdomains"
   [ ! -e none ] || [ -z "$(ls none)" ] || fail "files of a refused mesh"
 done
-vanguard plan -q -p p/box --decompose discrete --parts 5 -n 1,5
+vanguard plan -q -p p/box --decompose discrete --subdomains 5 -n 1,5
 exits 0
 says out "discrete: 5 subdomains filled without cuts"
 says out "0 cuts into 5 leaves; 0 pencils and 0 tiles"
 lacks out "by leaf_cells"
-vanguard plan -q -p p/box --decompose discrete --parts 5 -n 1 -j
+vanguard plan -q -p p/box --decompose discrete --subdomains 5 -n 1 -j
 says out '"leaves": 5'
 says out '"complete_subdomains": 5'
 says out '"path": "0.4"'
@@ -64,14 +64,14 @@ says out '"balance": 1.'
 # In the advancing partition subdomains are leaves; the mesher that fills them
 # does not matter. A box of 20,000 cells in two: the sixteenth of its cells
 # that is in the separator zone belongs to neither.
-vanguard mesh -q -p p/box --parts 2 --out by
+vanguard mesh -q -p p/box --subdomains 2 --out by
 exits 0
 says by/box.report.json '"leaves": 2'
 says by/box.report.json '"schedule": "dynamic"'
-vanguard plan -q -p p/box --parts 2 -n 1
+vanguard plan -q -p p/box --subdomains 2 -n 1
 says out "1 cut into 2 leaves"
 for way in advancing discrete octree; do
-  set -- mesh -q -p p/box --decompose $way --parts 4 --write b8.ugrid \
+  set -- mesh -q -p p/box --decompose $way --subdomains 4 --write b8.ugrid \
     --timeline
   vanguard "$@" -t 1 --out one
   exits 0
@@ -111,19 +111,19 @@ lacks whole/box.report.json near_interfaces
 
 # By octants, with the gap region at the walls cut by planes; where no octant
 # fits, the gap region is the whole void.
-vanguard mesh -q -p p/box --decompose octree --parts 4 -t 1 --write b8.ugrid \
+vanguard mesh -q -p p/box --decompose octree --subdomains 4 -t 1 --write b8.ugrid \
   --out one
 exits 0
 says out "octants, coarsening 4.00"
 says out "of these subdomains are the gap region at the front"
 says one/box.report.json '"gap_parts": 1'
-vanguard mesh -q -p p/box --decompose octree --parts 4 -t 3 --write b8.ugrid \
+vanguard mesh -q -p p/box --decompose octree --subdomains 4 -t 3 --write b8.ugrid \
   --shuffle-tasks 7 --out many
 exits 0
 cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "threads: another mesh"
 if mpirun -n 2 true >/dev/null 2>&1; then
   ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" mesh -q -p p/box \
-    --decompose octree --parts 4 -t 1 --write b8.ugrid --out ranks >out 2>err ||
+    --decompose octree --subdomains 4 -t 1 --write b8.ugrid --out ranks >out 2>err ||
     fail "2 ranks: $(cat err)"
   cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks: another mesh"
   says ranks/box.report.json '"gap_parts": 1'
@@ -132,22 +132,22 @@ fi
 vanguard check -q one/box.b8.ugrid
 exits 0
 vanguard demo box --cells 500 --out tiny
-vanguard mesh -q -p tiny/box --decompose octree --parts 4 --out tiny
+vanguard mesh -q -p tiny/box --decompose octree --subdomains 4 --out tiny
 exits 0
 says out "there is no room for an octant away from the front"
 says out "octree: 1 subdomains (4 requested"
-vanguard mesh -q -p p/box --decompose octree --parts 4000 --out short
+vanguard mesh -q -p p/box --decompose octree --subdomains 4000 --out short
 exits 0
 says out "subdomains (4,000 requested"
-vanguard mesh -q -p p/box --decompose octree --parts 0
+vanguard mesh -q -p p/box --decompose octree --subdomains 0
 exits 2
-says err "parts"
+says err "subdomains"
 vanguard mesh -q -p p/box --decompose octree --coarsening 1.5
 exits 1
 says err "at least 2 sizes wide"
 vanguard mesh -q -p p/box --decompose octree --interfaces h-refine
 exits 1
 says err "set interfaces to remesh"
-vanguard plan -q -p p/box --decompose octree --parts 4 -n 1
+vanguard plan -q -p p/box --decompose octree --subdomains 4 -n 1
 exits 0
 says out "of the gap region at the front, which planes may cut"

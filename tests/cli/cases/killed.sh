@@ -30,7 +30,7 @@ for way in 'discrete' 'discrete --interfaces h-refine --partitioner rcb' \
   'octree' 'advancing --leaf-cells 20000'; do
   # shellcheck disable=SC2086 # words
   set -- mesh -q -p p/sphere --decompose $way --write b8.ugrid
-  case $way in advancing*) ;; *) set -- "$@" --parts 12 ;; esac
+  case $way in advancing*) ;; *) set -- "$@" --subdomains 12 ;; esac
   vanguard "$@" -t 2 --out whole
   exits 0
   rm -rf killed

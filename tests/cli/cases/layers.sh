@@ -19,7 +19,7 @@ for key in columns wall_triangles percent_full percent_any first_requested \
 done
 says out '"wall_by": "setting"'
 says out '"limits_met": true'
-says out "y+ 1 at Reynolds number 100000 of length 2: first height"
+says out "y+ 1 at Reynolds number 100000, based on the length 2: first height"
 grep -q '"tetrahedra_if_subdivided": [1-9]' out || fail "no layer cells"
 
 # The resolved deck repeats the run byte by byte, for any number of threads.

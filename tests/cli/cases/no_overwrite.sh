@@ -31,7 +31,7 @@ exits 2
 says err "unknown format 'nonsense'"
 vanguard mesh -q -p a/none
 exits 1
-says err "no project here"
+says err "no project found"
 cp a/box.lb8.ugrid a/box.b8.ugrid
 vanguard mesh -q -p a/box --out e
 exits 1

@@ -79,7 +79,7 @@ if [ $has_mpirun = 1 ]; then
 fi
 
 # Where the void is cut, and how often.
-vanguard mesh -q -p p/box --levels 2 --json --out levels
+vanguard mesh -q -p p/box --bisections 2 --json --out levels
 exits 0
 says out '"pencils": 1,'
 says out '"leaves": 4,'
@@ -133,14 +133,14 @@ exits 1
 says err "resume it, remove the directory to start again, or choose another one"
 vanguard mesh $cut --run-dir run --resume --hmax 0.2 --out other
 exits 1
-says err "run: cannot be resumed: input or options have changed since"
-says err ", is 0.2; restore what changed"
+says err "run: cannot be resumed: input or options have changed"
+says err ", is 0.2; restore the old values"
 lacks err "threads was"
 absent other/box.b8.ugrid
 # A setting that leaves the isotropic region unchanged, but affects the mesh.
 vanguard mesh $cut --run-dir run --resume --edges-per-turn 20 --out other
 exits 1
-says err "edges_per_turn was 24, is 20; restore what changed"
+says err "edges_per_turn was 24, is 20; restore the old values"
 vanguard mesh $cut --run-dir run --resume --keep-run --schedule cyclic \
   --max-cells 9000000 --write b8.ugrid --out free
 exits 0

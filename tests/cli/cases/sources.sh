@@ -5,8 +5,8 @@ exits 0
 vanguard mesh -q -p p/sphere --out plain
 exits 0
 lacks out "source "
-says plain/sphere.report.json '"held": []'
-says plain/sphere.report.json '"inside": []'
+says plain/sphere.report.json '"limited": []'
+says plain/sphere.report.json '"inside_body": []'
 vanguard demo wing --out w
 exits 0
 vanguard plan -q -p w/wing -n 1
@@ -34,7 +34,7 @@ says out "limit it; make their edges no longer than"
 says out "1 source (number 4) lies completely inside a body"
 says out "1 source (number 5) lies completely outside the domain"
 says held/sphere.report.json '"patch_name": "farfield"'
-says held/sphere.report.json '"edge_wanted": '
+says held/sphere.report.json '"edge_required": '
 grep note out >notes
 
 # All ranks and all threads report the same, and so does plan.
@@ -47,8 +47,8 @@ says out "source 3 (point of far, from 0 17 0) is limited everywhere"
 says out "1 source (number 5) lies completely outside the domain"
 vanguard plan -q -p p/sphere -n 1 --json
 exits 0
-says out '"wholly": true'
-says out '"beyond": ['
+says out '"everywhere": true'
+says out '"outside_domain": ['
 
 # The advised remedy works.
 growth=$(sed -n 's/.*source 6 .*increase growth to //p' notes)
@@ -70,7 +70,7 @@ END
 vanguard mesh -q -p b/box --out ball --growth 4
 exits 0
 lacks out "source "
-says ball/box.report.json '"unmet": []'
+says ball/box.report.json '"unresolved": []'
 cells=$(sed -n 's/^ *"cells": \([0-9]*\),/\1/p' ball/box.report.json |
         sort -n | tail -n 1)
 [ "$cells" -gt 30000 ] || fail "only $cells cells"
@@ -81,4 +81,4 @@ vanguard mesh -q -p b/box --out point --growth 4
 exits 0
 lacks out "source 1 "
 says out "source 2 (point) is not resolved at 1 of 1 sample points: at (0.7, 0.6, 0.5)"
-says point/box.report.json '"places_unmet": 1'
+says point/box.report.json '"sample_points_unresolved": 1'

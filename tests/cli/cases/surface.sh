@@ -96,7 +96,7 @@ surface_size
 0.5
 
 surface
-patch  beside  size
+patch  adjacent  size
 2      -       0.1
 END
 sed 's/^2 .*/1      2       0.1/' end.deck >rim.deck

@@ -9,9 +9,9 @@ while [ $# -gt 0 ]; do
   case $1 in
     --threads) threads=$2; shift ;;
     --leaf-cells) leaf=$2; shift ;;
-    --levels) leaf=$((2 ** $2)); shift ;;
+    --bisections) leaf=$((2 ** $2)); shift ;;
     --decompose) way=$2; leaf=$((leaf + ${#2})); shift ;;
-    --parts) leaf=$((leaf + 1000 * $2)); shift ;;
+    --subdomains) leaf=$((leaf + 1000 * $2)); shift ;;
     -o) dir=$2; shift ;;
     --wrong) wrong=1 ;;
     --fail-at) [ "$threads" = "$2" ] && {
@@ -27,7 +27,7 @@ n=$((ranks * threads))
 decomposition='' cells=0
 case $way in
   advancing) cells=1500 ;;
-  *) cells=750 decomposition=', "decomposition": {"parts": 5, "coarse_seconds": 1,
+  *) cells=750 decomposition=', "subdomains": {"count": 5, "coarse_seconds": 1,
     "deal_seconds": 0.5, "smooth_seconds": 0.25, "divide_seconds": 0}' ;;
 esac
 digest=$leaf$((wrong * n))
@@ -76,7 +76,7 @@ says s/c100-n1-t1/run.log progress
 # Ways to decompose, each with every number of subdomains: cells relative to
 # those of the advancing partition with the same number. The options replace a
 # list in the deck.
-sweep -p box --decompose advancing,discrete --parts 4,16 -t 1,2 -o ways
+sweep -p box --decompose advancing,discrete --subdomains 4,16 -t 1,2 -o ways
 exits 0
 says out "8 of 8 cases done"
 says out "discrete-p16-n1-t2"
@@ -185,7 +185,9 @@ sweep -p p/box -o d -t 1 -L 3 --repeat 1
 exits 0
 says out "2 of 2 cases done"
 says d/sweep.csv '"L3-n2-t1"'
-printf 'Sizes\n\nsweep\nlevels\n3:5\n' >levels.deck
+printf 'Sizes\n\nsweep
+bisections
+3:5\n' >levels.deck
 sweep -p p/box --deck levels.deck -o d
 exits 0
 says out "3 of 3 cases done"

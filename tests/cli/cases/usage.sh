@@ -67,7 +67,7 @@ exits 2
 says err "max_cells must be an integer, not '2.5'"
 vanguard mesh -p x --max-cells 2.5e6 --leaf-cells 1e5
 exits 1
-says err "no project here"
+says err "no project found"
 vanguard mesh -p x --farfield sphree
 exits 2
 says err "did you mean 'sphere'?"
