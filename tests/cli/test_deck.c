@@ -238,6 +238,7 @@ static void messages_name_line_and_remedy(void **state)
   refuse("t\ngrwoth\n1.2\n", "run.deck:2: unknown name 'grwoth' in "
                              "this deck; did you mean 'growth'?");
   refuse("t\nsuorces\n", "did you mean 'sources'?");
+  refuse("t\nridge_angle\n30\n", "did you mean 'feature_angle'?");
   refuse("t\nzzzzzzzz\n", "'vanguard deck' writes a deck with all names");
   refuse("t\n\ngrowth hmin\n1.2\n", "run.deck:4: 1 values for 2 names");
   refuse("t\ngrowth\n", "run.deck:2: the line of names has no line of values");

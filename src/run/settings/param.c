@@ -267,17 +267,32 @@ static size_t distance(const char *a, const char *b)
   return row[n % 3][m];
 }
 
+/* Names of earlier versions and their successors. */
+static const char *const renamed[][2] = { { "ridge_angle", "feature_angle" },
+                                          { "levels", "bisections" },
+                                          { "parts", "subdomains" },
+                                          { "beside", "adjacent" },
+                                          { "symmetry", "half" } };
+
+static const char *successor(const char *name)
+{
+  for (size_t k = 0; k < sizeof renamed / sizeof *renamed; k++)
+    if (!strcmp(name, renamed[k][0])) return renamed[k][1];
+  return name;
+}
+
 const char *vg_nearest_name(const char *text, size_t n,
                             const char *(*get)(const void *user, size_t i),
                             const void *user)
 {
   size_t limit = 1 + strlen(text) / 3, best = SIZE_MAX;
-  const char *name = NULL;
+  const char *name = NULL, *now = successor(text);
 
   for (size_t i = 0; i < n; i++) {
     const char *candidate = get(user, i);
     size_t d = distance(text, candidate);
 
+    if (now != text && !strcmp(now, candidate)) return candidate;
     if (d < best) best = d, name = candidate;
   }
   return best <= limit ? name : NULL;

@@ -298,7 +298,8 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
                      size_t size);
 
 /** The name nearest to `text` (names are get(user, i), i < n), or NULL if none
- * is near enough for `text` to be a misspelling of it. */
+ * is near enough for `text` to be a misspelling of it. If `text` is the name of
+ * a setting in an earlier version, its present name. */
 const char *vg_nearest_name(const char *text, size_t n,
                             const char *(*get)(const void *user, size_t i),
                             const void *user);

@@ -4,7 +4,7 @@ vanguard demo box --cells 2000 --out .
 exits 0
 vanguard mesh -q -p box --out o --hmax 0.3 --threads 2 --log run.log
 exits 0
-says run.log "vanguard 0.1.0, source "
+says run.log "vanguard 0.2.0, source "
 says run.log "command  vanguard mesh -q -p box --out o --hmax 0.3"
 says run.log "1 rank, 1 on this node"
 says run.log "threads  2 per rank"
@@ -42,7 +42,7 @@ says run.log "validity: valid"
 
 vanguard --version --verbose
 exits 0
-says out "vanguard 0.1.0"
+says out "vanguard 0.2.0"
 says out "TetGen   1.5"
 grep -qE '^  hwloc    [0-9]+\.[0-9]+\.[0-9]+$' out || fail "no hwloc"
 grep -qE '^source   [0-9a-f]{64}$' out || fail "no digest of the source"

@@ -29,7 +29,7 @@ is out <usage
 vanguard --version
 exits 0
 is out <<'END'
-vanguard 0.1.0
+vanguard 0.2.0
 Licence AGPL-3.0-or-later: https://www.gnu.org/licenses/agpl-3.0.html
 END
 
