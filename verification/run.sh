@@ -159,7 +159,7 @@ mesh_case() {
   if [ "$volume" != - ]; then
     awk -v a="$(json "$report" volume)" -v b="$volume" \
       'BEGIN { d = a / b - 1; exit !(d < 1e-9 && d > -1e-9) }' ||
-      bad "volume is not $volume"
+      bad "the volume is not $volume"
   fi
   if [ -n "$meshcheck" ]; then
     local surface=()

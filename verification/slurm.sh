@@ -186,7 +186,7 @@ await_run() {   # await_run STATE SECONDS
     [ "$s" != "$1" ] || return 0
     sleep 1
   done
-  die "the portal's run is $s, not $1"
+  die "the run of the portal is $s, not $1"
 }
 post() {   # post PATH CURL-OPTION...
   curl -s -o "$work/body" -H "Origin: ${url%/*/}" "${@:2}" "$url$1"

@@ -54,7 +54,7 @@ done
 
 while read -r n folder; do
   [ -n "${place[$folder]-}" ] ||
-    complain "src/$folder: a folder without a place in src/CMakeLists.txt"
+    complain "src/$folder: the folder is not listed in src/CMakeLists.txt"
   [ "$n" -le $MOST_FILES ] ||
     complain "src/$folder: $n files, at most $MOST_FILES in a module"
 done < <(find . -mindepth 2 -name '*.[ch]*' -printf '%P\n' |
@@ -93,7 +93,7 @@ done <<< "$includes"
 for module in "${modules[@]}"; do
   for seen in ${sees[$module]}; do
     [ -n "${used["$module $seen"]-}" ] ||
-      complain "src/CMakeLists.txt: $module sees $seen, and includes nothing of it"
+      complain "src/CMakeLists.txt: $module sees $seen, but includes nothing from it"
   done
 done
 
@@ -170,7 +170,8 @@ fi
 
 # --- symbols ---
 
-# "ROOM SYMBOL kind" of every object; kind is U where the symbol is only used.
+# Prints "PLACE MODULE SYMBOL KIND" for every symbol of every object file; KIND
+# is U if the symbol is only used there.
 symbols() {
   local module
   for module in "${modules[@]}"; do
@@ -191,5 +192,5 @@ if [ -n "$build" ]; then
   [ -z "$upward" ] || complain "$upward"
 fi
 
-[ "$bad" = 0 ] && echo "all includes follow the arrows"
+[ "$bad" = 0 ] && echo "all includes follow src/CMakeLists.txt"
 exit $bad

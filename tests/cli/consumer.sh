@@ -27,17 +27,17 @@ prefix=$folder/prefix
 headers=$(cd "$prefix/include" && find . -type f | LC_ALL=C sort)
 [ "$headers" = "./vanguard/mesher.h
 ./vanguard/vanguard.h" ] ||
-  fail "other headers than vanguard.h and mesher.h are installed: $headers"
+  fail "headers other than vanguard.h and mesher.h are installed: $headers"
 library=$(find "$prefix" -name libvanguard.so)
 nm -D --defined-only --with-symbol-versions "$library" |
   awk '$2 != "A" { print $3 }' | LC_ALL=C sort >"$folder/abi"
 diff -u "$here/consumer/abi.list" "$folder/abi" ||
-  fail "the library's symbols are not those of tests/cli/consumer/abi.list." \
-    "What was there must stay; what is new is added to the list"
+  fail "the symbols of the library differ from tests/cli/consumer/abi.list." \
+    "Existing symbols must be kept; add new ones to the list"
 sed -n '/^VANGUARD_API/ { /(/! N; s/\n/ /; s/^.*\(vanguard_[a-z_]*\)(.*/\1/p; }' \
   "$prefix/include/vanguard/vanguard.h" | LC_ALL=C sort >"$folder/declared"
 sed -n 's/\(vanguard_.*\)@@.*/\1/p' "$folder/abi" |
-  diff -u "$folder/declared" - || fail "declared and exported differ"
+  diff -u "$folder/declared" - || fail "declared and exported symbols differ"
 
 # --- by CMake: the examples, and a program in C and one in C++ ---
 
@@ -70,7 +70,7 @@ if mpirun -n 2 true >/dev/null 2>&1; then
     >/dev/null
   cmp one/cube.b8.ugrid two.b8.ugrid
 else
-  echo "no mpirun that starts here: the example on ranks is left out"
+  echo "mpirun does not start here: the parallel example is omitted"
 fi
 
 # --- by pkg-config ---
@@ -104,9 +104,9 @@ for try in python3 /usr/bin/python3; do
   ! "$try" -c 'import numpy' 2>/dev/null || { python=$try; break; }
 done
 if [ -z "$python" ]; then
-  echo "Python is left out: no numpy here (python3-numpy)"
+  echo "Python is omitted: numpy is not installed (python3-numpy)"
 elif sanitizers; then
-  echo "Python is left out: it is not built with the sanitizer"
+  echo "Python is omitted: it is not built with the sanitizer"
 else
   PYTHONPATH=$(dirname "$(find "$prefix" -name vanguard.py)")
   export PYTHONPATH

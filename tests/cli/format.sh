@@ -57,5 +57,5 @@ done < <(find src -name '*.[ch]' | sort | xargs awk '
       print FILENAME ":" begin ": a function of " FNR - begin - 1 " lines"
     begin = 0
   }')
-[ "$failed" = 1 ] || echo "all sources are laid out as .clang-format says"
+[ "$failed" = 1 ] || echo "all sources follow .clang-format"
 exit "$failed"

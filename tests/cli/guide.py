@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""The worked cases of docs/guide give what their pages promise.
+"""Checks that the worked cases of docs/guide give the results on their pages.
 
-guide.py SOURCE PROGRAM FOLDER [PAGE...]: of each page all blocks of commands
-(```sh) are run as they are written, in a copy of the examples in FOLDER; each
-must end with status 0. After each block the tables that stand between it and
-the next one and have the columns "figure | in the report | expected | within"
-are compared with the JSON report that the text above the table names. Decks of
-an example must stand in its page as they are. Exit status 77: a page needs
-something that this build is without.
+guide.py SOURCE PROGRAM FOLDER [PAGE...]
+
+All command blocks (```sh) of a page are run unchanged in a copy of the examples
+in FOLDER; every command must end with status 0. After each block, the tables up
+to the next block that have the columns "figure | in the report | expected |
+within" are compared with the JSON report that the text above the table names.
+The page must show the decks of its example unchanged. Exit status 77: a page
+needs a feature that this build lacks.
 """
 import json
 import os
@@ -70,7 +71,7 @@ def compare(row, report):
 
 
 def check_page(page, folder, environment):
-    """Number of commands run and of figures compared."""
+    """Returns the numbers of commands run and of figures compared."""
     lines = open(page, encoding="utf-8").read().splitlines()
     report_name, commands, figures, at = None, 0, 0, 0
     while at < len(lines):
@@ -111,7 +112,7 @@ def check_decks(page, folder):
                 shown = "".join("    " + line if line.strip() else line
                                 for line in f)
             if "\n\n" + shown + "\n" not in text:
-                raise Wrong("the page does not show %s as it is" % name)
+                raise Wrong("the page does not show %s unchanged" % name)
 
 
 def main():
@@ -120,7 +121,8 @@ def main():
                              for name in PAGES]
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(os.path.join(folder, "path"))
-    # Only the program: the build's bin holds other names, too.
+    # Link only the program: the bin folder of the build contains other programs
+    # too.
     os.symlink(program, os.path.join(folder, "path", "vanguard"))
     environment = dict(os.environ, LC_ALL="C", COLUMNS="80")
     environment.pop("VANGUARD_OPTIONS", None)

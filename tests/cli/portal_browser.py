@@ -1,5 +1,5 @@
-"""Chromium on the page of a portal, over the pipe of its DevTools: runs are
-started, stopped and resumed by clicks.
+"""Starts, stops and resumes runs by clicks on the page of a portal. Controls
+Chromium over its DevTools pipe.
 
 portal_browser.py CHROMIUM URL PROJECT RUNS PICTURE
 """
@@ -73,7 +73,7 @@ class Browser:
                 self.errors.append(answer["params"]["entry"]["text"])
 
     def ask(self, script):
-        """The value of an expression; None while a page is being loaded."""
+        """Returns the value of an expression, or None while a page is loading."""
         try:
             result = self.call("Runtime.evaluate", expression=script,
                                returnByValue=True)
@@ -96,7 +96,7 @@ class Browser:
                    f"location.href.startsWith({json.dumps(url)})")
 
     def click(self, selector):
-        """A click of the mouse in the middle of an element."""
+        """Clicks in the middle of an element."""
         at = self.ask(
             f"(() => {{ const e = document.querySelector({selector!r});"
             "if (!e) return null; e.scrollIntoView({block: 'center',"
@@ -133,7 +133,7 @@ STATES = ("Object.fromEntries([...document.querySelectorAll('article')].map("
 
 
 def start(b, url, project, k):
-    """A run from the form; its settings are typed."""
+    """Starts a run from the form, with typed settings."""
     b.go(f"{url}?project={project}")
     b.type("#title", f"run {k}")
     for name, value in (("s.leaf_cells", "12000"), ("s.threads", "1"),
@@ -147,8 +147,8 @@ def start(b, url, project, k):
 
 
 def work(b, n, picture, seconds):
-    """Each run is stopped when it is at work and has kept something, resumed,
-    and let to its end."""
+    """Stops each run once it is active and has kept a task, resumes it, and
+    waits for its end."""
     stopped, resumed, shot = set(), set(), False
     end = time.monotonic() + seconds
     while True:
@@ -201,20 +201,20 @@ def main():
             stopped, resumed = work(b, n, picture, 1200)
             print(f"{n} runs started, {len(stopped)} stopped, "
                   f"{len(resumed)} resumed")
-            # without scripts: all is there, and a run can be started
+            # Without scripts, all runs are listed.
             b.call("Emulation.setScriptExecutionDisabled", value=True)
             b.go(url)
             if len(b.until(STATES)) != n:
-                raise SystemExit("not all runs are seen without scripts")
+                raise SystemExit("not all runs are listed without scripts")
             b.call("Emulation.setScriptExecutionDisabled", value=False)
-            # the report, in a box of its own
+            # The report runs in a sandbox of its own.
             b.go(url)
             report = b.until("document.querySelector('a.report').href")
             b.go(report)
             b.until("document.body.innerText.toLowerCase().includes("
                     "'vanguard mesh report')")
             if b.ask("self.origin") != "null":
-                raise SystemExit("the report is not in a box")
+                raise SystemExit("the report does not run in a sandbox")
             if b.errors:
                 raise SystemExit("the browser complains: " + b.errors[0])
         finally:

@@ -1,5 +1,5 @@
-/* A portal in a folder of its own, asked without a network: tests and the
- * fuzzer share it. */
+/* A portal in a folder of its own, queried over a socket pair instead of a
+ * network. Used by tests and the fuzzer. */
 #ifndef VG_TESTS_PORTAL_SUPPORT_H
 #define VG_TESTS_PORTAL_SUPPORT_H
 
@@ -17,13 +17,13 @@
 
 #define PORTAL_SECRET "SECRET-OF-ANOTHER-FOLDER"
 
-/* What a GET or POST may bring back. */
+/* Maximum length of a response. */
 #define PORTAL_ANSWER_MAX (4 << 20)
 
 struct portal_scene {
   char dir[200], root[256];
   struct vg_portal *p;
-  const char *token; /* in the portal's address */
+  const char *token; /* part of the portal's address */
   char *answer;      /* [PORTAL_ANSWER_MAX] */
 };
 
@@ -48,8 +48,9 @@ static inline int portal_remove(const char *path, const struct stat *s,
   return remove(path);
 }
 
-/* dir/root: a surface, links to what is outside of it, which holds the
- * secret. No run is ever started: there is no room for one. */
+/* Open a portal on dir/root, a folder with a surface and with links to files
+ * outside the folder, one of which contains PORTAL_SECRET. The portal never
+ * starts a run, because it allows no jobs. */
 static inline vg_status portal_scene_open(struct portal_scene *s,
                                           struct vg_error *err)
 {
@@ -73,7 +74,7 @@ static inline vg_status portal_scene_open(struct portal_scene *s,
   snprintf(path, sizeof path, "%s/root/away", s->dir);
   if (symlink("../other", path)) abort();
   o.root = s->root;
-  o.port = -1; /* none: connections are given to it */
+  o.port = -1; /* no port: the test passes connections to it */
   o.jobs = 0;
   o.max_upload = 1000;
   st = vg_portal_open(&o, &s->p, err);
@@ -90,8 +91,8 @@ static inline void portal_scene_close(struct portal_scene *s)
   nftw(s->dir, portal_remove, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* All that the portal answers to these bytes, in s->answer with a zero behind;
- * its length. */
+/* Send these bytes and store the portal's complete response in s->answer,
+ * terminated by a zero. Returns the length of the response. */
 static inline size_t portal_ask(struct portal_scene *s, const char *request,
                                 size_t size)
 {

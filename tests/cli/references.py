@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Resolves every reference to a document, and names those that lead nowhere:
+"""Resolves every reference to a document and reports those without a target:
 
   NAME.md                    a document in docs or in one of its folders
                              (FOLDERS_OF_DOCS, first match), in the root, or
@@ -146,7 +146,7 @@ def main(root):
         if path in documents:
             check_links(root, path, text, documents)
     print("\n".join(problems) or
-          f"{len(texts)} files: every reference leads somewhere")
+          f"{len(texts)} files: every reference has a target")
     return 1 if problems else 0
 
 

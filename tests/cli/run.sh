@@ -42,7 +42,7 @@ lacks() { ! grep -qF -- "$2" "$1" || fail "$1 has '$2'"; }
 is() { diff -u - "$1" || fail "$1 is not as expected"; }
 
 exists() { for f; do [ -e "$f" ] || fail "$f is absent"; done; }
-absent() { for f; do [ ! -e "$f" ] || fail "$f is there"; done; }
+absent() { for f; do [ ! -e "$f" ] || fail "$f exists"; done; }
 same() { cmp "$1" "$2" || fail "$1 and $2 differ"; }
 # octahedron: a body with its corners at distance 1, as an .obj of one group.
 octahedron() {

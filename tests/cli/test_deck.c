@@ -32,8 +32,8 @@ static void refuse(const char *text, const char *expected)
   assert_null(s.source);
 }
 
-/* Equal in everything that can be written: compared value by value through
- * the tables, so a new setting is compared without a change here. */
+/* Compare all values that can be written, using the tables, so that a new
+ * setting is compared without a change here. */
 static void assert_same(const struct vg_param *p, size_t n, const void *a,
                         const void *b)
 {
@@ -297,7 +297,7 @@ static void tables_are_checked_too(void **state)
   refuse("t\nlayers\nid count\n3 251\n", "at most 250");
 }
 
-/* `layers` is a setting, and a table of the same name. */
+/* `layers` is the name of both a setting and a table. */
 static void layers_are_a_setting_and_a_table(void **state)
 {
   char list[VG_WRITE_MAX];
@@ -366,7 +366,8 @@ static void patches_come_from_a_mesh(void **state)
   vg_mesh_release(&m);
 }
 
-/* What is not as by default is given; each setting says what it needs. */
+/* vg_settings_given marks every setting that differs from its default; the
+ * `use` of a setting says on what it has an effect. */
 static void tells_what_is_given(void **state)
 {
   static const struct {

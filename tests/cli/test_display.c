@@ -1,4 +1,4 @@
-/* Progress never runs backwards. */
+/* The displayed progress never decreases. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,9 +28,9 @@ static int tell(void *user, const char *stage, size_t done, size_t expected)
 static void counts_and_shares_only_rise(void **state)
 {
   static const size_t step[][2] = {
-    { 10, 100 },  { 5, 100 },   /* work was given up */
+    { 10, 100 },  { 5, 100 },   /* work was discarded */
     { 20, 400 },                /* the estimate has grown */
-    { 90, 100 },  { 120, 100 }, /* more than was expected */
+    { 90, 100 },  { 120, 100 }, /* more than expected */
     { 60, 1000 }, { 150, 150 }
   };
   struct told t = { .n = 0 };
@@ -51,7 +51,7 @@ static void counts_and_shares_only_rise(void **state)
     before = t.done;
   }
   assert_int_equal(t.done, 150);
-  /* another stage begins anew */
+  /* Another stage starts again from zero. */
   vg_display_update(&d, "judge", 1, 0);
   assert_string_equal(t.stage, "judge");
   assert_int_equal(t.done, 1);

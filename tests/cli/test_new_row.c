@@ -1,7 +1,7 @@
 /* A new setting is one row of run/settings/setting_rows.h: this program
- * compiles the settings with three more rows (tests/cli/new_row) and nothing
- * else. Default, deck, command line, help, digest and the check of a resumed
- * run follow. */
+ * compiles the settings with three additional rows (tests/cli/new_row) and no
+ * other change. Default, deck, command line, help, digest and the check of a
+ * resumed run must include them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -114,7 +114,8 @@ static int same(struct vg_digest a, struct vg_digest b)
   return !memcmp(&a, &b, sizeof a);
 }
 
-/* The value of a line of the settings in a run directory; "" without one. */
+/* The value of a setting in the file of settings in a run directory; "" if it
+ * has no line. */
 static const char *line_of(const struct vg_settings *s, const char *name,
                            char *out, size_t size)
 {

@@ -1,4 +1,5 @@
-/* Patches by number, range, name and pattern: lists, and rows of tables. */
+/* Patches given by number, range, name and pattern, in lists and in table
+ * rows. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -89,7 +90,7 @@ static void patterns_match(void **unused)
       fail_msg("%s on %s", x[i].pattern, x[i].name);
 }
 
-/* Patches 1 wing_l, 2 wing_r, 3 tail, 4 "3". */
+/* Patches 1 wing_l, 2 wing_r, 3 tail, and 4, whose name is "3". */
 static void scene(struct vg_mesh *m)
 {
   vg_mesh_add_patch(m, 1, "wing_l");
@@ -121,7 +122,7 @@ static void lists_are_marked(void **unused)
                    VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "in the range 8-9"));
   assert_int_equal(vg_patch_list_mark("walls", "tail", &m, 2, on, &err),
-                   VG_ERR_INPUT); /* beyond the first n */
+                   VG_ERR_INPUT); /* only the first 2 patches count */
   vg_mesh_release(&m);
 }
 
@@ -172,7 +173,7 @@ static void two_rows_of_a_patch_are_refused(void **unused)
   assert_int_equal(vg_patch_rows_resolve(&s, &m, &err), VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "patch 2 wing_r is listed twice, as 2 and "
                                    "as wing*"));
-  assert_int_equal(s.n_layer, 2); /* as it was */
+  assert_int_equal(s.n_layer, 2); /* unchanged */
   read_deck("t\npatches\nid bc\nwnig_l 4\n", &s);
   assert_int_equal(vg_patch_rows_resolve(&s, &m, &err), VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "did you mean 'wing_l'?"));

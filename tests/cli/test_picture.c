@@ -1,5 +1,5 @@
 /* Pictures: PNG files read back, cuts of known cells, surfaces seen from known
- * places, coarser surfaces, worst cells with their neighbours. */
+ * directions, decimated surfaces, worst cells with their neighbours. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -26,7 +26,8 @@ static unsigned long get32(const uint8_t *at)
          (unsigned long)at[2] << 8 | at[3];
 }
 
-/* The chunk of a name, its checksum looked at; *n: its bytes. */
+/* The data of the chunk with this name; *n: number of its bytes. Checks its
+ * checksum. */
 static const uint8_t *chunk(const struct vg_bytes *png, const char *name,
                             size_t *n)
 {
@@ -72,7 +73,8 @@ static void read_png(const struct vg_bytes *png, int width, int height,
   free(raw);
 }
 
-/* Colours come back to 3 bits less of brightness, opacity to quarters. */
+/* Colours keep all but the 3 lowest bits of brightness; opacity is rounded to
+ * quarters. */
 static void test_png(void **state)
 {
   enum { W = 37, H = 23 };
@@ -100,7 +102,8 @@ static void test_png(void **state)
   vg_image_release(&m);
 }
 
-/* More colours than a palette has: the rarest become near ones. */
+/* An image with more colours than a palette: the rarest ones are replaced by
+ * similar colours. */
 static void test_png_of_many_colours(void **state)
 {
   enum { W = 64, H = 64 };
@@ -120,8 +123,9 @@ static void test_png_of_many_colours(void **state)
   }
   assert_int_equal(vg_image_png(&m, &png, NULL), VG_OK);
   read_png(&png, W, H, back);
-  /* 4096 colours, 256 of them kept, which here fill one side of the cube: on
-   * the whole no worse than the nearest of these, half a side away. */
+  /* 256 of the 4096 colours are kept, and in this image they fill one side of
+   * the colour cube. The mean error must not exceed the distance to the nearest
+   * of them, half a side. */
   for (int i = 0; i < W * H; i++)
     for (int k = 0; k < 3; k++) off += abs(back[i][k] - m.rgba[i][k]);
   assert_true(off / (3 * W * H) < 64);
@@ -160,8 +164,8 @@ static struct vg_cuts *cuts_of(size_t n, const struct vg_cut *cut)
   return c;
 }
 
-/* A window twice as wide as the cube: what is covered is its square, to the
- * pixel; every sample in it, none outside. */
+/* In a window twice as wide as the cube, the cut covers exactly the pixels of
+ * its square. */
 static void test_cut_of_a_cube(void **state)
 {
   const struct vg_cut cut = {
@@ -185,12 +189,13 @@ static void test_cut_of_a_cube(void **state)
     }
   assert_int_equal(wrong, 0);
   assert_int_equal(vg_cuts_in_parts(c, 0),
-                   VG_CUT_WIDTH * VG_CUT_WIDTH); /* 4 of each 4th pixel */
+                   VG_CUT_WIDTH *
+                     VG_CUT_WIDTH); /* 4 samples of every fourth pixel */
   vg_image_release(&m);
   vg_cuts_free(c);
 }
 
-/* The same picture for any order of the cells, and cut up in any way. */
+/* The picture is the same for any order and any grouping of the cells. */
 static void test_cut_in_any_order(void **state)
 {
   const struct vg_cut cut[2] = {
@@ -223,8 +228,8 @@ static void test_cut_in_any_order(void **state)
 
 /* --- surfaces ------------------------------------------------------------ */
 
-/* Two squares across y, the second one nearer to an eye at small y; both turn
- * their front there. */
+/* Two squares across y, both facing an eye at small y. The second one is nearer
+ * to it. */
 static double square_point[8][3] = { { 0, 0, 0 },    { 1, 0, 0 },
                                      { 1, 0, 1 },    { 0, 0, 1 },
                                      { 0, -1, 0 },   { 0.5, -1, 0 },
@@ -243,7 +248,7 @@ static struct vg_mesh squares(void)
                            .tri_patch = square_patch };
 }
 
-/* Sum of opacity, and of red, over a picture of the squares. */
+/* The shares of a picture of the squares that are covered, and that are red. */
 static void look(const double toward[3], double *covered, double *red)
 {
   struct vg_mesh m = squares();
@@ -265,8 +270,9 @@ static void look(const double toward[3], double *covered, double *red)
   vg_image_release(&image);
 }
 
-/* Squares fill 0.94 of the picture's sides; the nearer one hides half of the
- * other. From behind there is nothing to see. A row of samples is 0.25 %. */
+/* The squares fill 0.94 of the picture's width and height, and the nearer one
+ * hides half of the other. Seen from behind, neither is drawn. A row of samples
+ * is 0.25 % of the height. */
 static void test_shot(void **state)
 {
   const double ahead[3] = { 0, -1, 0 }, behind[3] = { 0, 1, 0 };
@@ -316,8 +322,9 @@ static void test_decimate(void **state)
   assert_true(c.n_tri == m.n_tri && c.n_point == m.n_point && c.step == 0);
   assert_memory_equal(c.tri, m.tri, m.n_tri * sizeof *m.tri);
   assert_int_equal(vg_decimate(&m, 2000, &c, NULL), VG_OK);
-  /* fewer than asked, but not by more than a lattice a quarter coarser, and
-   * LEFT triangles for a square where a sheet has two */
+  /* No more triangles than requested. The lower bound allows for a lattice that
+   * is a quarter too coarse and leaves fewer triangles per square than the
+   * sheet has. */
   assert_true(c.n_tri <= 2000 && c.n_tri > 500 && c.step > 0);
   for (size_t t = 0; t < c.n_tri; t++) {
     const uint32_t *n = c.tri[t];
@@ -346,7 +353,8 @@ static void test_body(void **state)
   vg_body_patches(&m, NULL, on);
   assert_true(!on[0] && on[1]);
   assert_int_equal(vg_cut_plan(&m, NULL, &plan, NULL), VG_OK);
-  /* across y the body is flat: no window, no ends; x and z, and the domain */
+  /* The body is flat across y, so there is no cut across y and no close-up of
+   * its ends. The cuts across x and z and the cut of the domain remain. */
   for (size_t i = 0; i < plan.n; i++) {
     assert_true(plan.cut[i].width > 0);
     assert_true(plan.view[i] != VG_VIEW_POOREST);
@@ -372,7 +380,8 @@ static void put_cube(const struct vg_slices *s, struct vg_slice *slice)
   (void)slice;
 }
 
-/* All of the cube's cells touch: those of the same slice are found. */
+/* All cells of the cube touch each other: the neighbours in the same slice are
+ * found. */
 static void test_around(void **state)
 {
   const struct vg_slices s = { .n_slice = 2, .get = get_cube, .put = put_cube };

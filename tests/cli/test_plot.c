@@ -1,5 +1,5 @@
-/* Figures: they are well-formed, hold what they should, and are the same for
- * the same data. What they look like is for people to judge. */
+/* Figures are well-formed, contain the expected elements, and are the same for
+ * the same data. Their appearance is not tested. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +27,8 @@ static char *contents(const char *path)
   return text;
 }
 
-/* Every element that is opened is closed, in order; no number is missing. */
+/* Check that every element is closed, in the right order, and that no number is
+ * NaN or infinite. */
 static void assert_well_formed(const char *text)
 {
   char open[16][16];
@@ -75,8 +76,8 @@ static double drawn(uint32_t *seed)
   return (double)(*seed >> 16) / 65536;
 }
 
-/* A tree of cuts, each a join, three pencils, two tiles and a join, with
- * 2^depth leaves. */
+/* Add the spans of a decomposition tree with 2^depth leaves. Each cut has a
+ * join, three edge separators, a join, two face separators and a join. */
 static void grow(struct vg_spans *s, const char *node, const char *after,
                  int depth, uint32_t *seed)
 {
@@ -181,7 +182,7 @@ static void many_lanes_are_drawn(void **state)
   vg_timeline_release(&t);
 }
 
-/* What a damaged record may hold must not break a figure. */
+/* Values that only a damaged record can contain must not break a figure. */
 static void odd_records_are_drawn(void **state)
 {
   const char *path = VG_TMP_DIR "/odd.svg";

@@ -37,7 +37,8 @@ static void fields_come_in_pieces(void **state)
   assert_int_equal(vg_fields_put(&f, "a", " two", 3, 4, &err), VG_OK);
   assert_string_equal(vg_fields_get(&f, "a"), "one two");
   assert_null(vg_fields_get(&f, "b"));
-  /* not the piece that follows; a zero byte; no more than the limit */
+  /* Refused: a piece that does not follow the previous one, a zero byte, too
+   * many bytes. */
   assert_int_equal(vg_fields_put(&f, "a", "x", 9, 1, &err), VG_ERR_INPUT);
   assert_int_equal(vg_fields_put(&f, "b", "x", 1, 1, &err), VG_ERR_INPUT);
   assert_int_equal(vg_fields_put(&f, "b", "x\0y", 0, 3, &err), VG_ERR_INPUT);
@@ -198,7 +199,7 @@ static void a_form_becomes_settings(void **state)
   put(&f, "farfield.lengths", "7");
   put(&f, "sweep.threads", "1,2");
   put(&f, "patches", "\r\nid bc name # it\r\n\r\n3 4 \"a wing\"\r\n4 - -");
-  put(&f, "layers", "id y_plus\n3 1"); /* needs what follows */
+  put(&f, "layers", "id y_plus\n3 1"); /* requires the fields below */
   put(&f, "s.reynolds", "1e6");
   put(&f, "s.reference_length", "1");
   put(&f, "sources", "kind x0 h0\npoint 1 0.5\nsphere 2 0.25\n");
@@ -212,7 +213,8 @@ static void a_form_becomes_settings(void **state)
   assert_int_equal(s.n_patch, 2);
   assert_string_equal(s.patch[0].name, "a wing");
   assert_int_equal(s.n_source, 2);
-  /* what is absent stays, what is empty does not */
+  /* A setting without a field keeps its value; a setting with an empty field
+   * gets its default. */
   f.item[1].value[0] = 0;
   assert_string_equal(f.item[1].name, "s.growth");
   s.hmin = 0.125;
@@ -255,7 +257,7 @@ static void a_form_is_refused_by_name(void **state)
   refuses("farfield.lengths", "0", "lengths is 0");
   refuses("s.first", "-1", "first");
   refuses("s.mesher", "./it.so", "plug-in");
-  /* a table is nothing but that */
+  /* The field of a table cannot contain settings. */
   refuses("patches", "id bc\n1 4\n\nmesher\n./it.so", "line 4: 1 values");
   refuses("s.sizes", "../other/secret.obj", "not a path below");
   refuses("s.sizes", "/etc/passwd", "not a path below");
@@ -266,7 +268,8 @@ static void a_form_is_refused_by_name(void **state)
   refuses("s.mapbc", "out.obj", "is outside");
 }
 
-/* What the form shows is what it sends back. */
+/* The value of an attribute in the printed form, that is, of a field that the
+ * browser would send back. Ends the text there. */
 static char *attribute(char *at, const char *name)
 {
   char *found = strstr(at, name), *end;
@@ -367,7 +370,7 @@ static void projects_are_found(void **state)
   vg_settings_release(&s);
   assert_int_equal(vg_project_settings(scene.root, "out.obj", NULL, &s, &err),
                    VG_ERR_INPUT);
-  /* a file beside it that leads out */
+  /* A deck next to the surface that is a link to a file outside the folder. */
   portal_file(scene.root, "b.obj", "v 0 0 0\n");
   {
     char path[400];
@@ -412,7 +415,7 @@ static void records_come_back(void **state)
   run->state = VG_SERVE_PENDING;
   assert_int_equal(vg_record_write(run, &err), VG_OK);
   assert_int_equal(vg_runs_new(&r, &run, &err), VG_OK);
-  /* at work when the portal went, and gone meanwhile */
+  /* A run that was active when the portal ended, and has ended since. */
   run->state = VG_SERVE_RUNNING;
   run->pid = getpid();
   run->pid_start = vg_process_start(getpid()) + 1;
@@ -429,7 +432,7 @@ static void records_come_back(void **state)
   assert_int_equal(run->state, VG_SERVE_PENDING);
   assert_int_equal(again.item[1]->state, VG_SERVE_FAILED);
   assert_non_null(strstr(again.item[1]->note, "without an exit status"));
-  /* a number that is taken is not given again */
+  /* The number of an existing run is not used again. */
   assert_int_equal(vg_runs_new(&again, &run, &err), VG_OK);
   assert_int_equal(run->id, 4);
   vg_runs_release(&r);
@@ -466,7 +469,7 @@ static void jobs_stand_as_squeue_says(void **state)
     snprintf(run[k]->job, sizeof run[k]->job, "%d", 12 + k);
   }
   r.squeue_start = 5;
-  run[2]->submitted = 6; /* later than squeue looked */
+  run[2]->submitted = 6; /* after squeue was started */
   vg_runs_take_squeue(&r, "112 RUNNING\n12 RUNNING\n", 23);
   assert_int_equal(run[0]->state, VG_SERVE_RUNNING);
   assert_int_equal(run[1]->state, VG_SERVE_FAILED);
@@ -479,8 +482,8 @@ static void jobs_stand_as_squeue_says(void **state)
 
 /* --- requests ------------------------------------------------------------ */
 
-/* `format` with the token for its %s; asks, and says whether that is the
- * status. */
+/* Send the request `format`, whose %s is the token, and check the status of the
+ * response. */
 static void asks(int status, const char *format)
 {
   char request[8192], expected[32];
@@ -521,7 +524,7 @@ static void gate_keeps_strangers_out(void **state)
   asks(403, "GET /%s HTTP/1.1\r\nHost: 127.0.0.1.evil.example\r\n\r\n");
   asks(403, "GET /%s HTTP/1.1\r\nHost: localhost:80x\r\n\r\n");
   asks(405, "PUT /%s HTTP/1.1\r\n" HOST "\r\n");
-  /* POST: from its own pages alone */
+  /* POST is accepted only from the portal's own pages. */
   asks(403, "POST /%sruns HTTP/1.1\r\n" HOST FORM "Content-Length: 0\r\n\r\n");
   asks(403, "POST /%sruns HTTP/1.1\r\n" HOST FORM "Origin: null\r\n"
             "Content-Length: 0\r\n\r\n");
@@ -582,7 +585,7 @@ static void a_run_waits_and_is_stopped(void **state)
             "Content-Length: 0\r\n\r\n");
 }
 
-/* A form of one file; `text` is its content. */
+/* Upload one file with the content `text` by a form. */
 static void brings(int status, const char *folder, const char *name,
                    const char *text)
 {

@@ -1,4 +1,5 @@
-/* Signals: which end the process, and when. Each in a process of its own. */
+/* Which signals end the process, and when. Each case runs in a process of its
+ * own. */
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -15,7 +16,8 @@
 
 enum { WENT_ON = 7, NOT_TOLD = 8 };
 
-/* How a process ends that gets `first`, and `second` so much later. */
+/* The wait status of a process that receives signal `first`, and signal
+ * `second` later_ms milliseconds later. */
 static int ends(int first, int second, long later_ms)
 {
   const struct timespec wait = { later_ms / 1000, later_ms % 1000 * 1000000 };
@@ -49,7 +51,7 @@ static void signals_that_come_together_are_one_wish(void **state)
   assert_goes_on(ends(SIGUSR1, SIGHUP, 50));
 }
 
-/* With its own exit status, not the signal's. */
+/* The process ends with its own exit status instead of that of the signal. */
 static void one_that_comes_later_ends_at_once(void **state)
 {
   int status = ends(SIGINT, SIGTERM, 1200);

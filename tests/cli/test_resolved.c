@@ -1,5 +1,5 @@
-/* Settings asked, read and resolved: the steps of a run leave `asked` as it is,
- * and resolved settings lead to themselves. */
+/* Requested, read and resolved settings: the steps of a run leave `asked`
+ * unchanged, and a run with resolved settings resolves to the same settings. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -43,7 +43,7 @@ static struct vg_mesh cube(void)
   return m;
 }
 
-/* All steps; what layers ask for goes with them. */
+/* All steps up to the resolved settings, including the layer stage. */
 static void run(struct vg_problem *p)
 {
   const struct vg_shape_options o = { .threads = 1 };
@@ -177,7 +177,7 @@ static void resolved_settings_lead_to_themselves(void **state)
   vg_problem_release(&p);
 }
 
-/* Options that are made in one place and used in two. */
+/* Options that several stages derive from the settings. */
 static void options_follow_from_settings(void **state)
 {
   struct vg_settings s;

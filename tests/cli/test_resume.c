@@ -1,6 +1,6 @@
-/* Which settings a resumed run may change: one value after another of every
- * row of every table is changed, and the run directory of the unchanged
- * settings is opened with it. */
+/* Which settings a resumed run may change: every value of every row of every
+ * table is changed in turn, and the run directory of the unchanged settings is
+ * opened with it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +16,7 @@
 
 #define DIR VG_TMP_DIR "/resume.run"
 
-/* The rows that do not decide the mesh; all the others do. */
+/* The rows that do not affect the mesh; all other rows do. */
 static const struct {
   const char *table, *rows;
 } keeps[] = {
@@ -40,7 +40,7 @@ static int is_listed(const char *table, const char *row)
   return 0;
 }
 
-/* Set another value than the one there is. */
+/* Set a value that differs from the present one. */
 static void change(const struct vg_param *p, void *base)
 {
   static const char *const value[] = { "yes",      "no",     "0.25", "1.5",
@@ -98,7 +98,8 @@ static vg_status open_run(const struct vg_settings *s, int resume,
   return st;
 }
 
-/* Whether a run with these settings may go on; what is refused is named. */
+/* Check whether a run with these settings may be resumed; a refusal must name
+ * the setting. */
 static void resume(const struct vg_settings *s, const char *table,
                    const struct vg_param *p)
 {
@@ -133,7 +134,7 @@ static void every_row_is_judged_by_its_flag(void **state)
   const struct vg_param *p = vg_settings_params(&n);
 
   (void)state;
-  assert_int_equal(system("rm -rf " DIR), 0); /* of a test that failed */
+  assert_int_equal(system("rm -rf " DIR), 0); /* left by a failed test */
   fill(&s);
   assert_int_equal(open_run(&s, 0, &store, &err), VG_OK);
   vg_store_keep(store, (struct vg_digest){ { 1, 2 } }, 4, "kept");
@@ -165,7 +166,7 @@ static void every_row_is_judged_by_its_flag(void **state)
   vg_settings_release(&s);
 }
 
-/* A row more in a table, or one less, is another mesh. */
+/* An additional row in a table changes the digest. */
 static void rows_count(void **state)
 {
   struct vg_settings s, more = VG_SETTINGS_INIT;

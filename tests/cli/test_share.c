@@ -1,4 +1,4 @@
-/* A surface as bytes and back. */
+/* A surface is packed into bytes and unpacked. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-/* Names as they are shown: what is UTF-8, how wide it is, where it is cut. */
+/* Names as displayed: valid UTF-8, width in columns, where a name is cut. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -61,11 +61,11 @@ static void test_column(void **state)
                       "\xc3\xbc\xc3\xbc  ");
   assert_string_equal(vg_text_column("\xc3\xbc\xc3\xbc", 1, out, sizeof out),
                       "\xc3\xbc");
-  /* Two columns each, so that a third is left over. */
+  /* Each character takes two columns, so that one of three is padding. */
   assert_string_equal(vg_text_column("\xe6\x9c\xba\xe7\xbf\xbc", 3, out,
                                      sizeof out),
                       "\xe6\x9c\xba ");
-  /* A mark stands over the letter before it. */
+  /* A combining mark takes no column of its own. */
   assert_string_equal(vg_text_column("u\xcc\x88x", 3, out, sizeof out),
                       "u\xcc\x88x ");
 }

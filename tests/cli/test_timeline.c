@@ -1,4 +1,4 @@
-/* The timeline of a run: round trip, columns in any order, and messages. */
+/* The timeline of a run: round trip, columns in any order, error messages. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -125,7 +125,7 @@ static void what_is_written_is_read(void **state)
   vg_spans_sort(&t.spans);
   assert_int_equal(t.spans.help[0].thread, 0);
   assert_memory_equal(t.spans.help, u.spans.help, 2 * sizeof *u.spans.help);
-  /* 2.25 and 1.000001 s of tasks, 1 s of help, by 6 workers */
+  /* 2.25 s and 1.000001 s of tasks and 1 s of help, on 6 workers */
   assert_true(fabs(vg_spans_busy(&u.spans) * 6 * u.spans.wall - 4.250001) <
               1e-12);
   vg_timeline_release(&t);
@@ -133,8 +133,8 @@ static void what_is_written_is_read(void **state)
   remove(path);
 }
 
-/* What was measured comes out on the machine of the record; one core takes
- * longer, but not for what one thread does in any case. */
+/* On the machine of the timeline, the model gives the measured times outside
+ * the engine; one core takes longer, except for the serial parts. */
 static void what_is_outside_fits_the_record(void **state)
 {
   struct vg_timeline t = VG_TIMELINE_INIT;
@@ -148,18 +148,19 @@ static void what_is_outside_fits_the_record(void **state)
   m.ranks = m.ranks_per_node = 2;
   m.threads = 3;
   assert_true(fabs(vg_model_outside(&m) - 35.5) < 1e-12);
-  /* of the layers' 3.5 s by 6 workers 12 % of one core's 13.125 s were alone,
-   * 27 % are for every node; check and sizes likewise */
+  /* The layers took 3.5 s on 6 workers, which are 13.125 s on one core: 12 % of
+   * that is serial, 27 % is repeated on every node. Check and sizes are split
+   * in the same way. */
   assert_true(fabs(m.by_node - 0.27 * 13.125 - 0.8 * 4.5 - 0.2 * 12) < 1e-12);
   t.seconds[VG_PHASE_TOTAL] = t.seconds[VG_PHASE_WRITE] = 0;
-  vg_timeline_outside(&t, &m); /* a record that lacks them */
+  vg_timeline_outside(&t, &m); /* a timeline without these times */
   assert_true(m.serial > 0);
   assert_true(fabs(m.by_all - 0.75 * 12 - 0.61 * 13.125 -
                    0.99 * 6.5 / (0.01 + 0.99 / 6)) < 1e-12);
   vg_timeline_release(&t);
 }
 
-/* A title in bytes that are no UTF-8 must not spoil the file. */
+/* A title that is not valid UTF-8 must not make the file invalid. */
 static void any_title_can_be_written(void **state)
 {
   const char *path = VG_TMP_DIR "/title.timeline.json";
@@ -200,7 +201,8 @@ static void columns_come_in_any_order(void **state)
   vg_timeline_release(&t);
 }
 
-/* Records from before there were loops, and of versions to come. */
+/* Timelines without the columns of loops (older versions) or of later
+ * versions. */
 static void what_is_absent_is_zero(void **state)
 {
   struct vg_timeline t = VG_TIMELINE_INIT;
@@ -252,7 +254,7 @@ static void faults_are_named(void **state)
          "help 1, task 0J: \"end\" is not after");
 }
 
-/* A span with one value replaced. */
+/* The timeline has a valid span, followed by the span with these values. */
 static void refuse_span(const char *values, const char *expected)
 {
   char text[1024];

@@ -30,7 +30,7 @@ while IFS='|' read -r command file verdict phrase; do
   expected=1
   [ "$verdict" = mended ] && expected=0
   [ $status = $expected ] || fail "exit status $status, not $expected"
-  grep -qF -- "$phrase" out err || fail "no '$phrase' in the answer"
+  grep -qF -- "$phrase" out err || fail "the answer lacks '$phrase'"
   if [ "$verdict" = refused ]; then
     grep -qF -- "${file%.*}" err || fail "stderr does not name the file"
   fi

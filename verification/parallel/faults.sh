@@ -62,7 +62,7 @@ fresh() {   # fresh NAME: folders of a case
   mkdir -p "$out_dir"
 }
 bad() { why="${why:+$why; }$*"; }
-said() { grep -qaE "$1" "$work/log" || bad "no word of '$1'"; }
+said() { grep -qaE "$1" "$work/log" || bad "the log does not mention '$1'"; }
 ended() {   # ended STATUS...
   local s
   [ $hung = 0 ] || { bad "hung"; return; }

@@ -21,11 +21,11 @@ for way in 'remesh metis' 'h-refine rcb'; do
   says one/box.resolved.deck discrete
   vanguard "$@" -t 3 --out many --shuffle-tasks 7
   exits 0
-  cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "threads: another mesh"
+  cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "the mesh depends on threads"
   if mpirun -n 2 true >/dev/null 2>&1; then
     ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" "$@" -t 2 \
       --out ranks >out 2>err || fail "2 ranks: $(cat err)"
-    cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks: another mesh"
+    cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "the mesh depends on ranks"
   fi
   vanguard check -q one/box.b8.ugrid
   exits 0
@@ -48,7 +48,7 @@ for way in 'discrete --subdomains 900000' 'octree --subdomains 900000' \
   vanguard mesh -q -p p/box --decompose $way --out none
   exits 1
   says err "request fewer subdomains"
-  [ ! -e none ] || [ -z "$(ls none)" ] || fail "files of a refused mesh"
+  [ ! -e none ] || [ -z "$(ls none)" ] || fail "files of a refused mesh exist"
 done
 vanguard plan -q -p p/box --decompose discrete --subdomains 5 -n 1,5
 exits 0
@@ -80,13 +80,13 @@ for way in advancing discrete octree; do
   exits 0
   says out "leaves assigned in turn"
   says many/box.timeline.json '"cyclic": 1'
-  cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "$way: dealt out, another mesh"
+  cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "$way: static assignment: the mesh differs"
   near() { jq -c .partition.near_interfaces "$1/box.report.json"; }
-  [ "$(near one)" = "$(near many)" ] || fail "$way: other cells near interfaces"
+  [ "$(near one)" = "$(near many)" ] || fail "$way: the cells near interfaces differ"
   if mpirun -n 2 true >/dev/null 2>&1; then
     ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" "$@" -t 2 \
       --schedule cyclic --out ranks >out 2>err || fail "2 ranks: $(cat err)"
-    cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "$way: ranks, dealt out"
+    cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "$way: ranks, static assignment: the mesh differs"
     [ "$(near one)" = "$(near ranks)" ] || fail "$way: ranks: near interfaces"
   fi
   jq -e '.partition.near_interfaces | .cells > 5000 and .cells < 20000 and
@@ -120,12 +120,12 @@ says one/box.report.json '"gap_parts": 1'
 vanguard mesh -q -p p/box --decompose octree --subdomains 4 -t 3 --write b8.ugrid \
   --shuffle-tasks 7 --out many
 exits 0
-cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "threads: another mesh"
+cmp -s one/box.b8.ugrid many/box.b8.ugrid || fail "the mesh depends on threads"
 if mpirun -n 2 true >/dev/null 2>&1; then
   ASAN_OPTIONS=detect_leaks=0 mpirun -n 2 "$program" mesh -q -p p/box \
     --decompose octree --subdomains 4 -t 1 --write b8.ugrid --out ranks >out 2>err ||
     fail "2 ranks: $(cat err)"
-  cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks: another mesh"
+  cmp -s one/box.b8.ugrid ranks/box.b8.ugrid || fail "the mesh depends on ranks"
   says ranks/box.report.json '"gap_parts": 1'
   says out "octants, coarsening 4.00"
 fi

@@ -187,7 +187,7 @@ for try in 1 2; do
 done
 exists foam/box.openfoam/constant/polyMesh/owner foam/box.b8.ugrid
 same foam/box.b8.ugrid mixed/box.b8.ugrid
-[ "$(ls -A foam | grep -c '^\.')" = 0 ] || fail "a hidden folder is left"
+[ "$(ls -A foam | grep -c '^\.')" = 0 ] || fail "a hidden folder is left behind"
 
 # A first height in a unit other than that of the surface: no layers, and a
 # question.

@@ -15,7 +15,7 @@ same p/box.mapbc mapbc.before
 says out "validity: valid"
 says out "p/box.mapbc  (input, kept)"
 says err "read"
-[ "$(ls -A p | grep -c '^\.')" = 0 ] || fail "a hidden folder is left"
+[ "$(ls -A p | grep -c '^\.')" = 0 ] || fail "a hidden folder is left behind"
 says p/box.report.json '"ok": true'
 says p/box.report.json '"valid": true'
 

@@ -33,7 +33,7 @@ agrees() {
   exits 0
   digests "$1" >"$1.digests"
   same "$with.digests" "$1.digests"
-  cmp -s "$with"/*.b8.ugrid "$1"/*.b8.ugrid || fail "$1: another mesh"
+  cmp -s "$with"/*.b8.ugrid "$1"/*.b8.ugrid || fail "$1: the mesh differs"
 }
 
 # The part of a report about the fill, without its times.
@@ -104,7 +104,7 @@ parts=$(sed -n '/"leaf_cells": \[/,/\]/s/^ *\([0-9]*\),*$/\1/p
   s/.*"\(fragment_cells\|separator_cells\|repair_cells\)": \([-0-9]*\).*/\2/p' \
   two/box.report.json | paste -sd+)
 cells=$(sed -n 's/^    "cells": \([0-9]*\).*/\1/p' two/box.report.json | tail -1)
-[ "$((parts))" = "$cells" ] || fail "$parts are not $cells cells"
+[ "$((parts))" = "$cells" ] || fail "the parts have $parts cells, the mesh $cells"
 grep -q '"repair_cells": -*[1-9]' two/box.report.json || fail "no repair"
 
 # Small voids that are filled as one leaf are counted separately.
@@ -145,7 +145,7 @@ vanguard mesh $cut --run-dir run --resume --keep-run --schedule cyclic \
   --max-cells 9000000 --write b8.ugrid --out free
 exits 0
 lacks out "tasks found in run: 0"
-cmp kept/box.b8.ugrid free/box.b8.ugrid || fail "other files than before"
+cmp kept/box.b8.ugrid free/box.b8.ugrid || fail "the files differ from those before"
 if [ $has_mpirun = 1 ]; then
   ranks 2 mesh $cut -t 1 --run-dir run --resume --keep-run --out resumed
   agrees resumed

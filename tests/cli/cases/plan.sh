@@ -105,13 +105,13 @@ before=$(ls -A p)
 vanguard plan -q -p p/box --leaf-cells 8000 -n 1,2,8 -t 1,2 --write vtu,cogsg
 exits 0
 is err </dev/null
-[ "$(ls -A p)" = "$before" ] || fail "plan has written into the project"
+[ "$(ls -A p)" = "$before" ] || fail "plan wrote files into the project folder"
 says out "Expected mesh"
 says out "7 cuts into 8 leaves; 0 pencils and 7 tiles"
 says out "    0.1: "
 says out "Best: "
 says out "40,000       "
-grep -q "^  vtu  *[0-9.]* MB" out || fail "no size of the .vtu"
+grep -q "^  vtu  *[0-9.]* MB" out || fail "the size of the .vtu is not reported"
 grep -q "^      8       2      16 " out || fail "no row of 8 x 2"
 vanguard plan -q -p p/box --leaf-cells 8000 -n 2 -j --serial 0
 exits 0
@@ -134,7 +134,7 @@ exits 0
 figures out | paste -d ' ' planned - >both
 [ "$(wc -l <both)" = 2 ] || fail "no cells and points to compare"
 awk '$1 != $3 || $2 / $4 < 0.94 || $2 / $4 > 1.06 { exit 1 }' both ||
-  fail "planned and made: $(cat both)"
+  fail "plan and mesh differ: $(cat both)"
 
 # One leaf if requested; an impossible target, and a possible one.
 vanguard plan -q -p p/box --leaf-cells 0 -n 1

@@ -62,7 +62,7 @@ asks 403 -X POST "${url}runs" -d project=box.lb8.ugrid
 asks 403 -X POST -H "Origin: http://evil.example" "${url}runs" -d project=x
 asks 403 -X POST -H "Origin: null" "${url}runs" -d project=x
 asks 405 -X DELETE "$url"
-[ "$(stat -c %a mine/vanguard-runs/portal.url)" = 600 ] || fail "its mode"
+[ "$(stat -c %a mine/vanguard-runs/portal.url)" = 600 ] || fail "portal.url is readable by others"
 [ "$(cat mine/vanguard-runs/portal.url)" = "$url" ] || fail "another address"
 lacks "/proc/$server/cmdline" "${url: -20:10}"
 
@@ -70,11 +70,11 @@ lacks "/proc/$server/cmdline" "${url: -20:10}"
 port=${origin##*:}
 hex=$(printf '%04X' "$port")
 grep -q "0100007F:$hex 00000000:0000 0A" /proc/net/tcp || fail "not on loopback"
-! grep -q "00000000:$hex 00000000:0000 0A" /proc/net/tcp || fail "on all"
-! grep -qs ":$hex [0:]* 0A" /proc/net/tcp6 || fail "on IPv6"
+! grep -q "00000000:$hex 00000000:0000 0A" /proc/net/tcp || fail "the portal listens on all interfaces"
+! grep -qs ":$hex [0:]* 0A" /proc/net/tcp6 || fail "the portal listens on IPv6"
 for address in $(hostname -I 2>/dev/null); do
   case $address in 127.*|*:*) continue ;; esac
-  ! (: <"/dev/tcp/$address/$port") 2>/dev/null || fail "reached by $address"
+  ! (: <"/dev/tcp/$address/$port") 2>/dev/null || fail "the portal can be reached at $address"
 done
 
 # two users with a portal each; neither can access the other's folder
@@ -133,7 +133,7 @@ absent mine/big.stl
 curl -s -o body -X POST -H "Origin: $origin" -H "Transfer-Encoding: chunked" \
   -F "file=@bigger.stl" "${url}upload"
 says body "--max-upload"
-[ -z "$(find mine -name '*bigger*')" ] || fail "left of an upload"
+[ -z "$(find mine -name '*bigger*')" ] || fail "an upload left files behind"
 octahedron >octa.obj
 posts 303 upload -F folder= -F "file=@octa.obj"
 same octa.obj mine/octa.obj
@@ -207,7 +207,7 @@ until_kept() {
 }
 posts 303 runs "${slow[@]}"
 posts 303 runs "${slow[@]}"
-[ "$(state 4)" = queued ] || fail "two runs at a time"
+[ "$(state 4)" = queued ] || fail "two runs work at the same time"
 until_kept 0003
 posts 303 runs/3/stop
 await 3 stopped 30

@@ -36,7 +36,7 @@ says out "${VG_PORTAL_RUNS:-20} runs started"
 read -r _ _ _ stopped _ resumed _ <out
 least=$((${VG_PORTAL_RUNS:-20} * 3 / 4))
 [ "$stopped" -ge $least ] && [ "$resumed" -ge $least ] ||
-  fail "only $stopped stopped and $resumed resumed while at work"
+  fail "only $stopped runs were stopped and $resumed resumed while active"
 [ "$(wc -c <portal.png)" -gt 30000 ] || fail "the picture is blank"
 
 "$program" mesh -q -p root/box --threads 1 --leaf-cells 12000 \

@@ -30,8 +30,8 @@ exits 0
 drawn=$(sed -n 's/.*data-drawn="\([0-9]*\)".*/\1/p' dom.html)
 [ "${drawn:-0}" -gt 20000 ] || fail "the view has ${drawn:-no} pixels"
 says dom.html 'Drag to rotate'
-[ "$(grep -o 'type="radio"' dom.html | wc -l)" = 4 ] || fail "colours"
-[ "$(grep -o 'type="checkbox"' dom.html | wc -l)" -ge 8 ] || fail "controls"
+[ "$(grep -o 'type="radio"' dom.html | wc -l)" = 4 ] || fail "not 4 choices of colours"
+[ "$(grep -o 'type="checkbox"' dom.html | wc -l)" -ge 8 ] || fail "fewer than 8 check boxes"
 ! grep -q 'Uncaught\|SyntaxError\|Refused to' browser.log ||
   fail "the browser complains: $(grep 'Uncaught\|Refused' browser.log)"
 

@@ -34,13 +34,13 @@ says one/box.report.json 'box.report.html"'
 n=$(grep -o '<img [^>]*src="data:image/png;base64,iVBOR' $page | wc -l)
 [ "$n" -ge 13 ] || fail "$n pictures"
 [ "$(grep -c '<img ' $page)" = "$(grep -c '<img [^>]* alt="[A-Z]' $page)" ] ||
-  fail "a picture without words"
+  fail "a picture has no text"
 [ "$(wc -c <$page)" -lt 6000000 ] || fail "$page is large"
 
 # Nothing is loaded: no address except that of regl, in a comment, and of SVG.
 says $page "default-src 'none'"
-! grep -qE '(src|href)="?(https?:)?//' $page || fail "it loads something"
-! grep -qE '@import|url\(' $page || fail "its style loads something"
+! grep -qE '(src|href)="?(https?:)?//' $page || fail "the page loads something"
+! grep -qE '@import|url\(' $page || fail "the style loads something"
 
 # Elements are closed: the numbers of start and end tags are equal.
 for element in section table tr figure svg div ul details script style; do

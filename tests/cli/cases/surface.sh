@@ -33,7 +33,7 @@ says new/bar.mapbc "ends"
 says new/bar.surface.json '"given_from_new"'
 says new/bar.surface.vtu 'Name="smallest_angle"'
 says new/bar.surface.vtu 'Name="distance"'
-[ "$(ls -A new | wc -l)" = 4 ] || fail "files are left over: $(ls -A new)"
+[ "$(ls -A new | wc -l)" = 4 ] || fail "files are left behind: $(ls -A new)"
 vanguard check -q new/bar.lb8.ugrid
 exits 0
 says out "no defects"
@@ -116,7 +116,7 @@ n_rim=$(made)
 sed 's/^2 .*/sid?   e*      0.1/' end.deck >names.deck
 vanguard surface -q bar.obj --deck names.deck --out names
 exits 0
-[ "$(made)" = "$n_rim" ] || fail "a curve by names is another one"
+[ "$(made)" = "$n_rim" ] || fail "a curve given by names differs from that given by numbers"
 vanguard surface -q bar.obj --deck none.deck --out none
 exits 1
 says err "surface: the surface has no patch 7"

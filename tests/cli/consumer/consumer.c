@@ -1,5 +1,5 @@
-/* A program outside the project that asks the library for all it has, and for
- * much that it must refuse. consumer FOLDER */
+/* A program outside the project that calls every function of the library, also
+ * with input that the library must refuse. Usage: consumer FOLDER */
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -206,7 +206,7 @@ static void refuses_bad_surfaces(void)
   CHECK(!vanguard_surface(job, "nan", bad.n_point, bad.x[0], 2 * SIDE,
                           bad.tri[0], NULL));
   CHECK(vanguard_mesh(job, NULL, NULL) < 0 && *vanguard_message(job));
-  /* a hole in the middle of a side */
+  /* A hole in the middle of a side. */
   memcpy(bad.tri[SIDE / 12], cube.tri[0], sizeof *bad.tri);
   CHECK(!vanguard_surface(job, "open", cube.n_point, cube.x[0], 2 * SIDE - 1,
                           cube.tri[0], cube.patch));
@@ -234,7 +234,7 @@ static void gives_arrays_and_pieces(void)
   CHECK(a.n.n_tet > 100 && !a.n.n_pri && a.n.n_tri == 2 * SIDE);
   CHECK(a.n.n_patch == 6 && !vanguard_patch(job, 2, &p) && p.id == 12);
   CHECK(vanguard_patch(job, 6, &p) == VANGUARD_ERR_USAGE);
-  CHECK(fabs(volume_of(&a) - 1) < 1e-12); /* sums of some thousand terms */
+  CHECK(fabs(volume_of(&a) - 1) < 1e-12); /* a sum of thousands of terms */
   CHECK(!vanguard_measure(job, &q) && fabs(q.volume - 1) < 1e-12 &&
         q.angle_min > 5 && q.angle_max < 175);
   for (size_t i = 0; i < vanguard_pieces(job); i++) {
@@ -250,7 +250,7 @@ static void gives_arrays_and_pieces(void)
     vanguard_piece_put(job, &s);
   }
   CHECK(n_tet == a.n.n_tet && n_own == a.n.n_point);
-  /* a program that knows less of a structure */
+  /* A program compiled against an older, shorter structure. */
   old.n.struct_size = offsetof(struct vanguard_counts, n_pyr);
   old.n.n_tri = 77;
   CHECK(!vanguard_count(job, &old.n) && old.n.n_tet == n_tet &&
@@ -270,7 +270,8 @@ static void add_patch(vanguard_job *job, const char *id, const char *bc,
   CHECK(!vanguard_add(job, "patches", 3, column, value));
 }
 
-/* What points of the floor have agrees with the figures of the patch. */
+/* The values at the points of the floor must agree with the statistics of the
+ * patch. */
 static void tells_wall_points(vanguard_job *job, const struct arrays *a,
                               const struct vanguard_wall *w)
 {
@@ -293,7 +294,8 @@ static void tells_wall_points(vanguard_job *job, const struct arrays *a,
     n++;
   }
   CHECK(n == w->n_point && first[0] == w->first[0] && first[1] == w->first[2]);
-  CHECK(fabs(level / (double)n - w->level[1]) < 1e-9); /* order of a sum */
+  CHECK(fabs(level / (double)n - w->level[1]) <
+        1e-9); /* depends on the order of summation */
 }
 
 static void names_causes(void)
@@ -355,7 +357,7 @@ static void stops(void)
           VANGUARD_ERR_STOPPED);
     CHECK(vanguard_count(job, &after.n) == VANGUARD_ERR_USAGE);
   }
-  vanguard_cancel(job); /* nothing is at work */
+  vanguard_cancel(job); /* no run is active */
   CHECK(!vanguard_mesh(job, NULL, NULL));
   take(job, &after);
   CHECK(same(&before, &after));
@@ -431,7 +433,7 @@ static void writes(const char *dir)
     CHECK(f);
     if (f) fclose(f);
   }
-  /* what was written is read, meshed alike, and is not overwritten */
+  /* The written mesh can be read and meshed again, and is not overwritten. */
   snprintf(path, sizeof path, "%s.lb8.ugrid", stem);
   CHECK(!vanguard_open(job, path, NULL) && !vanguard_mesh(job, NULL, NULL));
   CHECK(vanguard_write(job, stem, "lb8.ugrid") == VANGUARD_ERR_INPUT &&
@@ -476,6 +478,6 @@ int main(int argc, char **argv)
   if (argc > 1) writes(argv[1]);
   CHECK(!vanguard_prepare());
   meshes_in_threads();
-  if (!n_bad) printf("libvanguard %s answers\n", vanguard_version());
+  if (!n_bad) printf("libvanguard %s works\n", vanguard_version());
   return n_bad != 0;
 }

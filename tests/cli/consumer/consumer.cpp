@@ -1,4 +1,4 @@
-// The header in C++.
+// The header must compile in C++.
 #include <cstdio>
 #include <vanguard/vanguard.h>
 
@@ -10,6 +10,6 @@ int main()
             vanguard_count(job, &n) != VANGUARD_ERR_USAGE;
 
   vanguard_free(job);
-  if (!bad) std::printf("and C++\n");
+  if (!bad) std::printf("C++ works too\n");
   return bad;
 }

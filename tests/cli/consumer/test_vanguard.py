@@ -1,5 +1,5 @@
-"""The module `vanguard` against the installed library. test_vanguard.py FOLDER
-VANGUARD: where to write, and the program to compare with."""
+"""Tests the module `vanguard` with the installed library. test_vanguard.py FOLDER
+VANGUARD: folder for output, program for comparison."""
 import os
 import subprocess
 import sys
@@ -10,8 +10,8 @@ import vanguard
 
 
 def cube(n):
-    """A cube of n x n squares a side, normals inwards: points, triangles,
-    patches 10 to 15."""
+    """Returns points, triangles and patches 10 to 15 of a cube with n x n squares
+    per side. Normals point inwards."""
     number, points, triangles, patches = {}, [], [], []
 
     def point(x):
@@ -93,7 +93,7 @@ def test_arrays():
     other = job.mesh()
     assert len(other.points) > len(before)
     refused("", "another mesh", lambda: mesh.triangles)
-    assert np.array_equal(mesh.points, before)   # copied, so they stay
+    assert np.array_equal(mesh.points, before)   # a copy, hence unchanged
 
 
 def test_layers():
@@ -195,7 +195,7 @@ def test_threads():
 
 
 def test_same_as_program(folder, program):
-    """A project with layers, where TetGen is called too: the same bytes."""
+    """A project with layers, for which TetGen is used too, gives the same bytes."""
     stem = os.path.join(folder, "demo", "wing-half")
     quiet = {"stdout": subprocess.DEVNULL, "check": True}
     subprocess.run([program, "demo", "wing-half", "--out",
@@ -217,4 +217,4 @@ if __name__ == "__main__":
         if name.startswith("test_") and name != "test_same_as_program":
             test()
     test_same_as_program(*sys.argv[1:])
-    print("vanguard", vanguard.library_version(), "answers Python")
+    print("vanguard", vanguard.library_version(), "works from Python")

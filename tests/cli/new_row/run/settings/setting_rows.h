@@ -1,4 +1,4 @@
-/* The rows of the program, and three that test_new_row.c adds. */
+/* The rows of the program, plus three rows for test_new_row.c. */
 #include "../../../../../src/run/settings/setting_rows.h"
 
 VG_ROW(REAL, plain, tip_size, "tip_size", 0.125, .hi = 1, .unit = "length",
