@@ -368,7 +368,7 @@ static void patches_come_from_a_mesh(void **state)
 
 /* vg_settings_given marks every setting that differs from its default; the
  * `use` of a setting says on what it has an effect. */
-static void tells_what_is_given(void **state)
+static void marks_given_settings(void **state)
 {
   static const struct {
     const char *name;
@@ -424,7 +424,7 @@ int main(void)
     cmocka_unit_test(layers_are_a_setting_and_a_table),
     cmocka_unit_test(failure_leaves_the_settings_alone),
     cmocka_unit_test(patches_come_from_a_mesh),
-    cmocka_unit_test(tells_what_is_given),
+    cmocka_unit_test(marks_given_settings),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

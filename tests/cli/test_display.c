@@ -58,7 +58,7 @@ static void counts_and_shares_only_rise(void **state)
   assert_int_equal(t.expected, 0);
 }
 
-static void who_is_told_can_stop_it(void **state)
+static void the_progress_callback_can_stop_a_run(void **state)
 {
   struct told t = { .stops = 1 };
   struct vg_display d = { .quiet = 1, .tell = tell, .user = &t };
@@ -76,7 +76,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(counts_and_shares_only_rise),
-    cmocka_unit_test(who_is_told_can_stop_it),
+    cmocka_unit_test(the_progress_callback_can_stop_a_run),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

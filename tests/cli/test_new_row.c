@@ -133,7 +133,7 @@ static const char *line_of(const struct vg_settings *s, const char *name,
   return out;
 }
 
-static void decides_as_its_row_says(void **state)
+static void affects_the_mesh_as_its_row_declares(void **state)
 {
   struct vg_settings s;
   struct vg_digest plain;
@@ -160,7 +160,7 @@ int main(void)
     cmocka_unit_test(has_its_default),
     cmocka_unit_test(is_in_the_deck),
     cmocka_unit_test(is_an_option),
-    cmocka_unit_test(decides_as_its_row_says),
+    cmocka_unit_test(affects_the_mesh_as_its_row_declares),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

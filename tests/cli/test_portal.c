@@ -26,7 +26,7 @@ static void put(struct vg_fields *f, const char *name, const char *value)
                    VG_OK);
 }
 
-static void fields_come_in_pieces(void **state)
+static void fields_arrive_in_pieces(void **state)
 {
   struct vg_fields f = VG_FIELDS_INIT;
   struct vg_error err;
@@ -133,7 +133,7 @@ static void markup_is_escaped(void **state)
   free(text);
 }
 
-static void lines_of_progress_are_understood(void **state)
+static void progress_lines_are_parsed(void **state)
 {
   static const char *const other[] = { "",
                                        "vanguard: no room",
@@ -240,7 +240,7 @@ static void refuses(const char *name, const char *value, const char *why)
   vg_fields_release(&f);
 }
 
-static void a_form_is_refused_by_name(void **state)
+static void a_refused_form_names_the_field(void **state)
 {
   char path[300];
 
@@ -455,7 +455,7 @@ static void damaged_records_are_refused(void **state)
   assert_null(run.project);
 }
 
-static void jobs_stand_as_squeue_says(void **state)
+static void job_states_follow_squeue(void **state)
 {
   struct vg_serve_runs r = empty_runs();
   struct vg_serve_run *run[3];
@@ -510,7 +510,7 @@ static void need_server(void)
   if (!scene.p) skip();
 }
 
-static void gate_keeps_strangers_out(void **state)
+static void gate_refuses_unauthorised_requests(void **state)
 {
   (void)state;
   need_server();
@@ -606,7 +606,7 @@ static void brings(int status, const char *folder, const char *name,
   asks(status, request);
 }
 
-static void files_are_brought(void **state)
+static void files_are_uploaded(void **state)
 {
   char text[1200], path[512];
   struct stat s;
@@ -637,7 +637,7 @@ static void files_are_brought(void **state)
   assert_int_equal(stat(path, &s), -1);
 }
 
-static void a_second_portal_is_kept_off(void **state)
+static void a_second_portal_is_refused(void **state)
 {
   struct vg_portal_options o = VG_PORTAL_OPTIONS_INIT;
   struct vg_portal *p = NULL;
@@ -659,24 +659,24 @@ static void a_second_portal_is_kept_off(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(fields_come_in_pieces),
+    cmocka_unit_test(fields_arrive_in_pieces),
     cmocka_unit_test(paths_stay_inside),
     cmocka_unit_test(names_of_files_are_plain),
     cmocka_unit_test(markup_is_escaped),
-    cmocka_unit_test(lines_of_progress_are_understood),
+    cmocka_unit_test(progress_lines_are_parsed),
     cmocka_unit_test(a_form_becomes_settings),
-    cmocka_unit_test(a_form_is_refused_by_name),
+    cmocka_unit_test(a_refused_form_names_the_field),
     cmocka_unit_test(a_printed_form_comes_back),
     cmocka_unit_test(places_are_checked),
     cmocka_unit_test(projects_are_found),
     cmocka_unit_test(records_come_back),
     cmocka_unit_test(damaged_records_are_refused),
-    cmocka_unit_test(jobs_stand_as_squeue_says),
-    cmocka_unit_test(gate_keeps_strangers_out),
+    cmocka_unit_test(job_states_follow_squeue),
+    cmocka_unit_test(gate_refuses_unauthorised_requests),
     cmocka_unit_test(pages_are_safe),
     cmocka_unit_test(a_run_waits_and_is_stopped),
-    cmocka_unit_test(files_are_brought),
-    cmocka_unit_test(a_second_portal_is_kept_off),
+    cmocka_unit_test(files_are_uploaded),
+    cmocka_unit_test(a_second_portal_is_refused),
   };
   struct vg_error err = VG_ERROR_INIT;
   int failed;

@@ -42,7 +42,7 @@ static void assert_goes_on(int status)
   assert_int_equal(WEXITSTATUS(status), WENT_ON);
 }
 
-static void signals_that_come_together_are_one_wish(void **state)
+static void simultaneous_signals_count_as_one(void **state)
 {
   (void)state;
   assert_goes_on(ends(SIGTERM, SIGTERM, 0));
@@ -52,7 +52,7 @@ static void signals_that_come_together_are_one_wish(void **state)
 }
 
 /* The process ends with its own exit status instead of that of the signal. */
-static void one_that_comes_later_ends_at_once(void **state)
+static void a_later_signal_ends_the_process_at_once(void **state)
 {
   int status = ends(SIGINT, SIGTERM, 1200);
 
@@ -70,8 +70,8 @@ static void warnings_of_batch_systems_never_end_it(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(signals_that_come_together_are_one_wish),
-    cmocka_unit_test(one_that_comes_later_ends_at_once),
+    cmocka_unit_test(simultaneous_signals_count_as_one),
+    cmocka_unit_test(a_later_signal_ends_the_process_at_once),
     cmocka_unit_test(warnings_of_batch_systems_never_end_it),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

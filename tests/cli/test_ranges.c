@@ -48,7 +48,7 @@ static void refuses(const char *text, int64_t hi, const char *expected)
   assert_ptr_equal(r.v, &kept);
 }
 
-static void slips_are_named(void **state)
+static void typing_errors_are_reported(void **state)
 {
   (void)state;
   refuses("", 1000, "not ''");
@@ -74,7 +74,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(lists_and_ranges),
-    cmocka_unit_test(slips_are_named),
+    cmocka_unit_test(typing_errors_are_reported),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

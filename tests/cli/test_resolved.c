@@ -95,7 +95,7 @@ static size_t take(const struct vg_settings *s, char text[MOST][TEXT])
   return n;
 }
 
-static void asked_stays(void **state)
+static void requested_settings_stay_unchanged(void **state)
 {
   static char before[MOST][TEXT], after[MOST][TEXT];
   struct vg_problem p = VG_PROBLEM_INIT;
@@ -154,7 +154,7 @@ static void assert_same_rows(const struct vg_settings *a,
     }
 }
 
-static void resolved_settings_lead_to_themselves(void **state)
+static void resolved_settings_resolve_to_themselves(void **state)
 {
   static char once[MOST][TEXT], twice[MOST][TEXT];
   struct vg_problem p = VG_PROBLEM_INIT, q = VG_PROBLEM_INIT;
@@ -210,9 +210,9 @@ static void options_follow_from_settings(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(asked_stays),
+    cmocka_unit_test(requested_settings_stay_unchanged),
     cmocka_unit_test(decisions_are_resolved),
-    cmocka_unit_test(resolved_settings_lead_to_themselves),
+    cmocka_unit_test(resolved_settings_resolve_to_themselves),
     cmocka_unit_test(options_follow_from_settings),
   };
 

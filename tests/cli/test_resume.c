@@ -125,7 +125,7 @@ static void resume(const struct vg_settings *s, const char *table,
   if (!strstr(err.text, name)) fail_msg("'%s' lacks '%s'", err.text, name);
 }
 
-static void every_row_is_judged_by_its_flag(void **state)
+static void every_row_obeys_its_flag(void **state)
 {
   struct vg_settings s;
   struct vg_store *store = NULL;
@@ -167,7 +167,7 @@ static void every_row_is_judged_by_its_flag(void **state)
 }
 
 /* An additional row in a table changes the digest. */
-static void rows_count(void **state)
+static void an_additional_row_changes_the_digest(void **state)
 {
   struct vg_settings s, more = VG_SETTINGS_INIT;
   struct vg_digest a, b;
@@ -188,8 +188,8 @@ static void rows_count(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(every_row_is_judged_by_its_flag),
-    cmocka_unit_test(rows_count),
+    cmocka_unit_test(every_row_obeys_its_flag),
+    cmocka_unit_test(an_additional_row_changes_the_digest),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

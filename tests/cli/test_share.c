@@ -68,7 +68,7 @@ static void refuses(struct vg_bytes b)
   assert_null(m.point);
 }
 
-static void other_bytes_are_refused(void **state)
+static void invalid_bytes_are_refused(void **state)
 {
   struct vg_bytes b = packed();
   const uint64_t many = UINT64_MAX / 16;
@@ -93,7 +93,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(comes_back_bit_by_bit),
-    cmocka_unit_test(other_bytes_are_refused),
+    cmocka_unit_test(invalid_bytes_are_refused),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

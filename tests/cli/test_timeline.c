@@ -101,7 +101,7 @@ static void fill(struct vg_timeline *t)
     assert_int_equal(vg_spans_add_help(&t->spans, &help[i], NULL), VG_OK);
 }
 
-static void what_is_written_is_read(void **state)
+static void written_files_can_be_read(void **state)
 {
   const char *path = VG_TMP_DIR "/round.timeline.json";
   struct vg_timeline t = VG_TIMELINE_INIT, u = VG_TIMELINE_INIT;
@@ -135,7 +135,7 @@ static void what_is_written_is_read(void **state)
 
 /* On the machine of the timeline, the model gives the measured times outside
  * the engine; one core takes longer, except for the serial parts. */
-static void what_is_outside_fits_the_record(void **state)
+static void time_outside_tasks_matches_the_timeline(void **state)
 {
   struct vg_timeline t = VG_TIMELINE_INIT;
   struct vg_machine m = VG_MACHINE_INIT;
@@ -203,7 +203,7 @@ static void columns_come_in_any_order(void **state)
 
 /* Timelines without the columns of loops (older versions) or of later
  * versions. */
-static void what_is_absent_is_zero(void **state)
+static void absent_columns_are_zero(void **state)
 {
   struct vg_timeline t = VG_TIMELINE_INIT;
 
@@ -216,7 +216,7 @@ static void what_is_absent_is_zero(void **state)
   vg_timeline_release(&t);
 }
 
-static void faults_are_named(void **state)
+static void faults_are_reported(void **state)
 {
   (void)state;
   refuse("", "not JSON");
@@ -266,7 +266,7 @@ static void refuse_span(const char *values, const char *expected)
   refuse(text, expected);
 }
 
-static void faults_of_spans_are_named(void **state)
+static void faults_of_spans_are_reported(void **state)
 {
   (void)state;
   refuse_span("\"\",\"\",\"L\",0,0,0,0,1,1,0,0,0,0",
@@ -304,13 +304,13 @@ static void a_missing_file_is_named(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(what_is_written_is_read),
-    cmocka_unit_test(what_is_outside_fits_the_record),
+    cmocka_unit_test(written_files_can_be_read),
+    cmocka_unit_test(time_outside_tasks_matches_the_timeline),
     cmocka_unit_test(any_title_can_be_written),
     cmocka_unit_test(columns_come_in_any_order),
-    cmocka_unit_test(what_is_absent_is_zero),
-    cmocka_unit_test(faults_are_named),
-    cmocka_unit_test(faults_of_spans_are_named),
+    cmocka_unit_test(absent_columns_are_zero),
+    cmocka_unit_test(faults_are_reported),
+    cmocka_unit_test(faults_of_spans_are_reported),
     cmocka_unit_test(a_missing_file_is_named),
   };
 

@@ -76,7 +76,7 @@ static void as_one_rank_makes_it(void **state)
   scene_end(&s);
 }
 
-static void leaves_that_outgrow(void **state)
+static void overloaded_leaves(void **state)
 {
   struct scene s;
 
@@ -249,7 +249,7 @@ static int at_once(void *user)
   return 1;
 }
 
-static void all_ranks_hear_of_it(void **state)
+static void all_ranks_learn_of_the_failure(void **state)
 {
   struct vg_partition_options o = options_of(2000, 2, 0), few = o, stop = o;
   struct scene s;
@@ -286,12 +286,12 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(as_one_rank_makes_it),
-    cmocka_unit_test(leaves_that_outgrow),
+    cmocka_unit_test(overloaded_leaves),
     cmocka_unit_test(a_wing),
     cmocka_unit_test(a_real_surface),
     cmocka_unit_test(the_same_file),
     cmocka_unit_test(resumed_elsewhere),
-    cmocka_unit_test(all_ranks_hear_of_it),
+    cmocka_unit_test(all_ranks_learn_of_the_failure),
   };
   int bad;
 

@@ -147,7 +147,7 @@ static vg_status say(int on, vg_status st, const char *text,
   return vg_comm_rank(job) == on ? vg_fail(err, st, "%s", text) : VG_OK;
 }
 
-static void one_failure_is_all(void **state)
+static void one_failure_fails_the_whole_team(void **state)
 {
   int size = vg_comm_size(job), rank = vg_comm_rank(job);
   char want[64];
@@ -251,7 +251,7 @@ int main(void)
     cmocka_unit_test(broadcasts),
     cmocka_unit_test(gathers),
     cmocka_unit_test(exchanges),
-    cmocka_unit_test(one_failure_is_all),
+    cmocka_unit_test(one_failure_fails_the_whole_team),
     cmocka_unit_test(the_lowest_rank_speaks),
     cmocka_unit_test(the_worst_wins),
     cmocka_unit_test(waiting_takes_no_core),

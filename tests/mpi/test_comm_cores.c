@@ -56,7 +56,7 @@ static int cores_of_new_threads(void)
 }
 
 /* Processors may be threads of one core: then two of them count as one. */
-static void the_cores_of_all_and_ones_own_again(void **state)
+static void node_cores_are_shared_and_released(void **state)
 {
   int n_used = vg_comm_size(job) > 1 && CPU_COUNT(&second) ? 2 : 1, n;
 
@@ -70,7 +70,7 @@ static void the_cores_of_all_and_ones_own_again(void **state)
 }
 
 /* One core each, or cores shared between ranks: one thread. */
-static void a_thread_for_a_core(void **state)
+static void one_thread_per_core(void **state)
 {
   (void)state;
   assert_int_equal(vg_comm_default_threads(job), 1);
@@ -79,8 +79,8 @@ static void a_thread_for_a_core(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_cores_of_all_and_ones_own_again),
-    cmocka_unit_test(a_thread_for_a_core),
+    cmocka_unit_test(node_cores_are_shared_and_released),
+    cmocka_unit_test(one_thread_per_core),
   };
 
   return cmocka_run_group_tests(tests, bind_and_open, close_job);

@@ -118,7 +118,7 @@ static void in_parts(void **state)
   all_to_all(100000, 30);
 }
 
-static void memory_of_what_was_sent_is_given_back(void **state)
+static void memory_of_sent_messages_is_freed(void **state)
 {
   int to = (vg_comm_rank(job) + 1) % vg_comm_size(job);
 
@@ -163,7 +163,7 @@ enum { THREADS = 3, POSTS = 300 };
  * has received from the previous one, and polls only when its wakeup is
  * signalled. A rank that is not signalled, or that then finds no message,
  * sleeps for minutes. */
-static void who_listens_is_woken(void **state)
+static void waiting_ranks_are_woken(void **state)
 {
   int size = vg_comm_size(job), rank = vg_comm_rank(job);
 
@@ -267,9 +267,9 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(in_order_and_whole),
     cmocka_unit_test(in_parts),
-    cmocka_unit_test(memory_of_what_was_sent_is_given_back),
+    cmocka_unit_test(memory_of_sent_messages_is_freed),
     cmocka_unit_test(wrong_addresses_are_refused),
-    cmocka_unit_test(who_listens_is_woken),
+    cmocka_unit_test(waiting_ranks_are_woken),
     cmocka_unit_test(from_threads),
     cmocka_unit_test(of_more_than_two_gigabytes),
   };

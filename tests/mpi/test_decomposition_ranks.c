@@ -122,7 +122,7 @@ static void stopped_and_resumed(void **state)
 }
 
 /* The coarse mesh is made by all ranks, so all learn why it fails. */
-static void all_ranks_hear_of_it(void **state)
+static void all_ranks_learn_of_the_failure(void **state)
 {
   static const struct {
     int parts, hole;
@@ -160,7 +160,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(as_one_rank_makes_it),
     cmocka_unit_test(stopped_and_resumed),
-    cmocka_unit_test(all_ranks_hear_of_it),
+    cmocka_unit_test(all_ranks_learn_of_the_failure),
   };
 
   if (vg_child_server_start(NULL) != VG_OK) return 1;

@@ -71,7 +71,7 @@ static void same_result(int n_tree, int threads, uint64_t shuffle, int pin,
   vg_spans_release(&s);
 }
 
-static void all_ways(void **state)
+static void all_schedules(void **state)
 {
   (void)state;
   for (int threads = 1; threads < 4; threads++)
@@ -172,7 +172,7 @@ static int ends_with(const char *text, const char *end)
   return n >= m && !strcmp(text + n - m, end);
 }
 
-static void a_failure_is_heard(void **state)
+static void a_failure_reaches_all_ranks(void **state)
 {
   (void)state;
   for (uint64_t shuffle = 0; shuffle < 4; shuffle++) {
@@ -306,7 +306,7 @@ static double run_tiny(size_t n, int pinned, double sleep, long *n_run)
 /* Some tasks have a work estimate and some do not. The tasks without one end
  * before any task with one begins; the latter are assigned to the workers in
  * turn, largest first. */
-static void work_is_dealt_out(void **state)
+static void work_is_assigned_statically(void **state)
 {
   enum { N = 29, N_FREE = 3, THREADS = 3 };
   static const struct vg_engine_ops ops = { .run = tiny_run,
@@ -345,7 +345,7 @@ static void work_is_dealt_out(void **state)
 
 /* Static assignment does not change the results; failures and stops leave no
  * data. */
-static void dealing_changes_nothing(void **state)
+static void static_assignment_keeps_the_results(void **state)
 {
   struct forest f = { .threads = 2, .depth = 4, .spin = 1e-4, .deal = 1 };
   struct forest g = {
@@ -420,7 +420,7 @@ static void idle_ranks_sleep(void **state)
 
 /* Eight equal tasks for each rank that only sleep must be distributed evenly;
  * three more are allowed because other ranks may wake late. */
-static void nobody_hoards(void **state)
+static void equal_tasks_are_distributed_evenly(void **state)
 {
   size_t size = (size_t)vg_comm_size(job);
   long n_run;
@@ -444,7 +444,7 @@ static vg_status uneven_run(void *user, const struct vg_engine *e,
 /* One task takes 2 s, on the last rank, where all tasks are created. Meanwhile
  * the other ranks do 0.2 s of work each, including tasks that were given to the
  * last rank in advance; also on a busy machine. */
-static void what_was_given_ahead_comes_back(void **state)
+static void tasks_given_in_advance_are_returned(void **state)
 {
   static const struct vg_engine_ops ops = { .run = uneven_run,
                                             .done = tiny_done };
@@ -472,21 +472,21 @@ static void what_was_given_ahead_comes_back(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(all_ways),
+    cmocka_unit_test(all_schedules),
     cmocka_unit_test(homes_move),
     cmocka_unit_test(ranks_have_loops),
     cmocka_unit_test(moved_and_stopped),
-    cmocka_unit_test(a_failure_is_heard),
+    cmocka_unit_test(a_failure_reaches_all_ranks),
     cmocka_unit_test(other_failures),
     cmocka_unit_test(it_stops),
     cmocka_unit_test(one_rank_stops_all),
     cmocka_unit_test(large_inputs),
-    cmocka_unit_test(work_is_dealt_out),
-    cmocka_unit_test(dealing_changes_nothing),
+    cmocka_unit_test(work_is_assigned_statically),
+    cmocka_unit_test(static_assignment_keeps_the_results),
     cmocka_unit_test(many_tiny_tasks),
     cmocka_unit_test(idle_ranks_sleep),
-    cmocka_unit_test(nobody_hoards),
-    cmocka_unit_test(what_was_given_ahead_comes_back),
+    cmocka_unit_test(equal_tasks_are_distributed_evenly),
+    cmocka_unit_test(tasks_given_in_advance_are_returned),
   };
 
   return RUN_IN_JOB(tests);

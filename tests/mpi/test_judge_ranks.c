@@ -95,7 +95,7 @@ static void points_nowhere_end_it_on_all(void **state)
 }
 
 /* A slice that cannot be read is on one rank; all ranks return. */
-static void one_failure_is_everybodys(void **state)
+static void one_failure_reaches_every_rank(void **state)
 {
   struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
   struct vg_mesh_report r;
@@ -118,7 +118,7 @@ int main(void)
     cmocka_unit_test(ranks_agree_with_one_piece),
     cmocka_unit_test(ranks_count_every_damage),
     cmocka_unit_test(points_nowhere_end_it_on_all),
-    cmocka_unit_test(one_failure_is_everybodys),
+    cmocka_unit_test(one_failure_reaches_every_rank),
   };
 
   return RUN_IN_JOB(tests);

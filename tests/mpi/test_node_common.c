@@ -49,7 +49,7 @@ static void share_parts(int is_mapped)
   assert_null(common.data);
 }
 
-static void parts_are_in_common(void **state)
+static void parts_are_shared_by_a_node(void **state)
 {
   (void)state;
   for (int i = 0; i < 5; i++) share_parts(vg_comm_node_size(job) > 1);
@@ -118,7 +118,7 @@ static void share_field(void)
   vg_sizing_free(s);
 }
 
-static void a_field_is_in_common(void **state)
+static void a_field_is_shared_by_a_node(void **state)
 {
   (void)state;
   share_field();
@@ -207,7 +207,7 @@ static void share_surface(const struct vg_mesh *m)
   else vg_mesh_release(&got);
 }
 
-static void layers_are_in_common(void **state)
+static void layers_are_shared(void **state)
 {
   struct vg_mesh surface = VG_MESH_INIT;
 
@@ -224,11 +224,12 @@ static void layers_are_in_common(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(parts_are_in_common),
-                                      cmocka_unit_test(or_copied),
-                                      cmocka_unit_test(nothing_can_be_shared),
-                                      cmocka_unit_test(a_field_is_in_common),
-                                      cmocka_unit_test(layers_are_in_common) };
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(parts_are_shared_by_a_node), cmocka_unit_test(or_copied),
+    cmocka_unit_test(nothing_can_be_shared),
+    cmocka_unit_test(a_field_is_shared_by_a_node),
+    cmocka_unit_test(layers_are_shared)
+  };
 
   return RUN_IN_JOB(tests);
 }

@@ -119,7 +119,7 @@ static void resumed_elsewhere(void **state)
   scene_end(&s);
 }
 
-static void all_ranks_hear_of_it(void **state)
+static void all_ranks_learn_of_the_failure(void **state)
 {
   struct vg_partition_options o = parted(VG_PARTITIONER_METIS, 2, 0);
   struct vg_partition_report r;
@@ -144,7 +144,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(as_one_rank_makes_it),
     cmocka_unit_test(resumed_elsewhere),
-    cmocka_unit_test(all_ranks_hear_of_it),
+    cmocka_unit_test(all_ranks_learn_of_the_failure),
   };
 
   if (vg_child_server_start(NULL) != VG_OK) return 1;

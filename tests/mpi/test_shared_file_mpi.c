@@ -100,7 +100,7 @@ static void the_bytes_of_one_rank(void **state)
   meet();
 }
 
-static void a_failing_rank_is_all_of_them(void **state)
+static void a_failure_on_one_rank_fails_all(void **state)
 {
   int last = vg_comm_size(job) - 1;
   struct vg_error err = VG_ERROR_INIT;
@@ -118,7 +118,7 @@ static void a_failing_rank_is_all_of_them(void **state)
   assert_false(exists(part));
 }
 
-static void a_folder_that_is_not_there(void **state)
+static void a_missing_folder(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
   struct vg_shared_file *f = NULL;
@@ -171,7 +171,7 @@ static void fill(const char *path)
 }
 
 /* Detected before anything is written. */
-static void no_room_to_begin_with(void **state)
+static void no_space_at_the_start(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
   struct vg_shared_file *f = NULL;
@@ -194,7 +194,7 @@ static void no_room_to_begin_with(void **state)
 }
 
 /* The reserved space is lost, as on a file system that cannot reserve it. */
-static void no_room_while_writing(void **state)
+static void no_space_while_writing(void **state)
 {
   static unsigned char data[1 << 14];
   struct vg_error err = VG_ERROR_INIT;
@@ -230,10 +230,10 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_bytes_of_one_rank),
-    cmocka_unit_test(a_failing_rank_is_all_of_them),
-    cmocka_unit_test(a_folder_that_is_not_there),
-    cmocka_unit_test(no_room_to_begin_with),
-    cmocka_unit_test(no_room_while_writing),
+    cmocka_unit_test(a_failure_on_one_rank_fails_all),
+    cmocka_unit_test(a_missing_folder),
+    cmocka_unit_test(no_space_at_the_start),
+    cmocka_unit_test(no_space_while_writing),
   };
 
   return cmocka_run_group_tests(tests, open_named, close_job);

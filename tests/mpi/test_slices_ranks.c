@@ -223,7 +223,7 @@ static void assert_gone(const char *stem, const char *form)
 }
 
 /* One slice of one rank cannot be read: all ranks fail, and no file is left. */
-static void one_fails_all_fail(void **state)
+static void one_failure_fails_all_ranks(void **state)
 {
   static const char *const form[] = { "b8.ugrid", "vtu",        "pvtu",
                                       "cogsg",    "su2",        "msh",
@@ -265,7 +265,7 @@ int main(void)
     cmocka_unit_test(any_number_of_ranks),
     cmocka_unit_test(names_and_conditions),
     cmocka_unit_test(boundary_is_everywhere),
-    cmocka_unit_test(one_fails_all_fail),
+    cmocka_unit_test(one_failure_fails_all_ranks),
   };
 
   return cmocka_run_group_tests(tests, set_up, tear_down);

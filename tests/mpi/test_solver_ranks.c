@@ -131,7 +131,7 @@ static void same_parts_for_any_ranks_and_threads(void **state)
 }
 
 /* An unreadable slice, more partitions than cells: all ranks learn of it. */
-static void failures_are_those_of_all(void **state)
+static void a_failure_fails_all_ranks(void **state)
 {
   struct vg_solver_options o = VG_SOLVER_OPTIONS_INIT;
   struct vg_mesh m = VG_MESH_INIT;
@@ -164,7 +164,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(same_parts_for_any_ranks_and_threads),
-    cmocka_unit_test(failures_are_those_of_all),
+    cmocka_unit_test(a_failure_fails_all_ranks),
   };
 
   return RUN_IN_JOB(tests);

@@ -69,7 +69,7 @@ static void check(const struct all *a, size_t n)
   for (size_t i = n; i < N; i++) assert_int_equal(a->item[i], 0);
 }
 
-static void all_have_all(void **state)
+static void all_members_get_all_results(void **state)
 {
   static const size_t n[] = { 0, 1, GRAIN, 259, N - 3, N };
   static const size_t chunk[] = { 1, 100, (size_t)1 << 28 };
@@ -96,7 +96,7 @@ static void all_have_all(void **state)
   assert_int_equal(vg_team_close(t, VG_OK, NULL), VG_OK);
 }
 
-static void one_flag_is_all(void **state)
+static void one_flag_sets_all(void **state)
 {
   int last = vg_comm_size(job) - 1, flag = vg_comm_rank(job) == last;
   struct vg_team *t;
@@ -112,7 +112,7 @@ static void one_flag_is_all(void **state)
 }
 
 /* The last member leaves before the loops of the others. */
-static void one_failure_is_all(void **state)
+static void one_failure_fails_the_whole_team(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
   int last = vg_comm_size(job) - 1;
@@ -139,9 +139,9 @@ static void one_failure_is_all(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(all_have_all),
-    cmocka_unit_test(one_flag_is_all),
-    cmocka_unit_test(one_failure_is_all),
+    cmocka_unit_test(all_members_get_all_results),
+    cmocka_unit_test(one_flag_sets_all),
+    cmocka_unit_test(one_failure_fails_the_whole_team),
   };
 
   return cmocka_run_group_tests(tests, open_nodes, close_job);

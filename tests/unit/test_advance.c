@@ -208,7 +208,7 @@ static void directions_are_respected(void **state)
 
 /* --- records ------------------------------------------------------------- */
 
-static void all_is_found_again(void **state)
+static void everything_is_found_again(void **state)
 {
   const char *dir = VG_TMP_DIR "/advance_run";
   struct vg_partition_options o = options_of(4000, 2, 0);
@@ -253,7 +253,7 @@ static void all_is_found_again(void **state)
 
 /* Leaves that exceed their estimate are cut again, in any order; nothing is
  * kept of their first attempts. */
-static void leaves_that_outgrow(void **state)
+static void overloaded_leaves(void **state)
 {
   const char *dir = VG_TMP_DIR "/advance_outgrown";
   struct vg_partition_options o = surprise_of(4000);
@@ -359,8 +359,8 @@ int main(void)
     cmocka_unit_test(real_surface),
     cmocka_unit_test(levels_double_the_leaves),
     cmocka_unit_test(directions_are_respected),
-    cmocka_unit_test(all_is_found_again),
-    cmocka_unit_test(leaves_that_outgrow),
+    cmocka_unit_test(everything_is_found_again),
+    cmocka_unit_test(overloaded_leaves),
     cmocka_unit_test(too_many_cells),
     cmocka_unit_test(fronts_that_bound_nothing),
   };

@@ -282,7 +282,7 @@ static void conditions_by_name(void **state)
 #undef REFUSE
 }
 
-static void told_apart_from_vgrids(void **state)
+static void distinguished_from_vgrid_files(void **state)
 {
   const char *path = io_temp("apart.bc");
 
@@ -374,7 +374,7 @@ int main(void)
     cmocka_unit_test(tags_of_every_age),
     cmocka_unit_test(refuses_broken_tags),
     cmocka_unit_test(conditions_by_name),
-    cmocka_unit_test(told_apart_from_vgrids),
+    cmocka_unit_test(distinguished_from_vgrid_files),
     cmocka_unit_test(settings_are_applied),
     cmocka_unit_test(is_a_format),
   };

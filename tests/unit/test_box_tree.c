@@ -193,7 +193,7 @@ static void expect_pairs(const struct vg_box_tree *t, const struct vg_box *box,
   free(p.seen);
 }
 
-static void answers_are_those_of_a_loop(void **state)
+static void results_equal_those_of_a_linear_search(void **state)
 {
   static const size_t size[] = { 0, 1, 2, 4, 5, 8, 9, 31, 64, 65, 300, MOST };
   struct vg_box box[MOST], q[8];
@@ -263,7 +263,7 @@ static vg_status stop_at_ten(void *context, int worker, uint32_t a, uint32_t b)
                                                           : VG_OK;
 }
 
-static void a_visit_that_fails_ends_the_pairs(void **state)
+static void a_failed_visit_ends_the_search_for_pairs(void **state)
 {
   struct vg_box box[MOST];
   uint64_t seed = 3;
@@ -363,10 +363,10 @@ static void nodes_may_have_more_than_boxes(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(answers_are_those_of_a_loop),
+    cmocka_unit_test(results_equal_those_of_a_linear_search),
     cmocka_unit_test(an_empty_tree_has_no_items),
     cmocka_unit_test(the_order_of_the_caller_is_kept),
-    cmocka_unit_test(a_visit_that_fails_ends_the_pairs),
+    cmocka_unit_test(a_failed_visit_ends_the_search_for_pairs),
     cmocka_unit_test(one_box_far_away_does_not_spoil_the_order),
     cmocka_unit_test(nodes_may_have_more_than_boxes),
   };

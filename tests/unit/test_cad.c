@@ -230,7 +230,7 @@ static void missing_curves_of_parameters_are_made(void **state)
   vg_mesh_release(&m);
 }
 
-static void a_doubled_face_goes(void **state)
+static void a_duplicate_face_is_removed(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct notes n;
@@ -399,7 +399,7 @@ static void a_missing_face_is_named(void **state)
   vg_mesh_release(&m);
 }
 
-static void crossing_bodies_are_for_the_check(void **state)
+static void intersecting_bodies_are_reported_by_the_check(void **state)
 {
   struct vg_surface_check_options o = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_surface_report r = VG_SURFACE_REPORT_INIT;
@@ -443,7 +443,7 @@ static void load(const char *path, struct vg_input *in)
   if (vg_input_open(path, in, &err)) fail_msg("%s", err.text);
 }
 
-static void what_is_no_cad_is_refused(void **state)
+static void files_that_are_not_cad_are_refused(void **state)
 {
   struct vg_input in = VG_INPUT_INIT;
   struct vg_cad *c = NULL;
@@ -468,7 +468,7 @@ static void what_is_no_cad_is_refused(void **state)
 
 /* Text of other programs after the BREP, as Engineering Sketch Pad writes
  * it. */
-static void text_behind_a_brep_is_no_damage(void **state)
+static void text_after_a_brep_is_accepted(void **state)
 {
   static const char tail[] = "\n##EGADS HEADER FILE-REV 1 ##\n1 1 8 12 6 1\n"
                              "#FACE 0.0 attribute *\n";
@@ -513,7 +513,7 @@ static void egads_is_a_suffix(void **state)
   vg_mesh_release(&m);
 }
 
-static void what_is_cut_short_is_refused(void **state)
+static void truncated_input_is_refused(void **state)
 {
   static const struct {
     const char *path;
@@ -583,7 +583,7 @@ static int at_once(void *user)
   return 1;
 }
 
-static void patience_ends(void **state)
+static void stops_on_request_and_at_the_time_limit(void **state)
 {
   struct vg_cad_options o = VG_CAD_OPTIONS_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -670,7 +670,7 @@ static void same_surface(const struct vg_cad_surface *a,
 
 /* Coarse, fine and coarse again: the result equals that of a fresh child with
  * these options. */
-static void again_gives_what_parsing_gives(void **state)
+static void retessellation_equals_a_fresh_read(void **state)
 {
   const double angle[] = { 30, 8, 30 };
   struct vg_cad_surface first = VG_CAD_SURFACE_INIT;
@@ -968,24 +968,24 @@ int main(void)
     cmocka_unit_test(finer_is_nearer),
     cmocka_unit_test(loose_faces_are_sewn),
     cmocka_unit_test(missing_curves_of_parameters_are_made),
-    cmocka_unit_test(a_doubled_face_goes),
+    cmocka_unit_test(a_duplicate_face_is_removed),
     cmocka_unit_test(solids_that_touch_are_united),
     cmocka_unit_test(pieces_of_a_face_have_its_number),
     cmocka_unit_test(a_solid_that_contains_another_stays),
     cmocka_unit_test(a_rocket_of_ten_solids_is_one_shell),
     cmocka_unit_test(wide_gaps_are_sewn_and_faces_turned),
-    cmocka_unit_test(again_gives_what_parsing_gives),
+    cmocka_unit_test(retessellation_equals_a_fresh_read),
     cmocka_unit_test(short_edges_collapse),
     cmocka_unit_test(rims_are_left),
     cmocka_unit_test(volume_is_exact),
-    cmocka_unit_test(text_behind_a_brep_is_no_damage),
+    cmocka_unit_test(text_after_a_brep_is_accepted),
     cmocka_unit_test(egads_is_a_suffix),
     cmocka_unit_test(a_missing_face_is_named),
-    cmocka_unit_test(crossing_bodies_are_for_the_check),
-    cmocka_unit_test(what_is_no_cad_is_refused),
-    cmocka_unit_test(what_is_cut_short_is_refused),
+    cmocka_unit_test(intersecting_bodies_are_reported_by_the_check),
+    cmocka_unit_test(files_that_are_not_cad_are_refused),
+    cmocka_unit_test(truncated_input_is_refused),
     cmocka_unit_test(damage_gets_an_answer),
-    cmocka_unit_test(patience_ends),
+    cmocka_unit_test(stops_on_request_and_at_the_time_limit),
     cmocka_unit_test(bytes_are_the_same),
     cmocka_unit_test(points_go_to_the_faces_of_a_box),
     cmocka_unit_test(points_go_to_the_faces_of_a_wing),

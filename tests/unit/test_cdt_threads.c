@@ -255,7 +255,7 @@ static void signals_are_left_to_the_parent(void **state)
 }
 
 /* A process that reads our output must not wait for the server's end. */
-static void files_are_not_held(void **state)
+static void the_server_holds_no_files_open(void **state)
 {
   int ends[2];
   char c;
@@ -306,7 +306,7 @@ int main(void)
     cmocka_unit_test(several_threads_at_once),
     cmocka_unit_test(a_server_killed_at_any_time),
     cmocka_unit_test(signals_are_left_to_the_parent),
-    cmocka_unit_test(files_are_not_held),
+    cmocka_unit_test(the_server_holds_no_files_open),
     cmocka_unit_test(it_ends_with_its_parent),
   };
 

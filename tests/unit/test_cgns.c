@@ -94,7 +94,7 @@ static void bytes_follow_from_the_mesh(void **state)
   vg_mesh_release(&m);
 }
 
-static void writing_fails_in_words(void **state)
+static void write_errors_are_reported(void **state)
 {
   const char *path = io_temp("refused.cgns");
   struct vg_error err = VG_ERROR_INIT;
@@ -249,7 +249,7 @@ static const int32_t t1_mixed[] = { 3, 1, 2, 5, 1, 2, 3, 5, 1, 4,
 
 /* Bars and faces in one section, with conditions by family, directly, by range
  * and by list; the last face has none. */
-static void conditions_make_patches(void **state)
+static void boundary_conditions_define_patches(void **state)
 {
   static const int32_t second[2] = { 2, 2 }, list[2] = { 3, 4 };
   struct vg_mesh m = VG_MESH_INIT, t1;
@@ -694,7 +694,7 @@ static void refuses_blocks(void **state)
   refuse(&t, VG_ERR_UNSUPPORTED, "PointRange of points or faces");
 }
 
-static void refuses_what_is_no_cgns(void **state)
+static void refuses_files_that_are_not_cgns(void **state)
 {
   (void)state;
   io_refuse(vg_cgns_parse, "solid x", VG_ERR_FORMAT, "neither HDF5 nor ADF");
@@ -706,7 +706,7 @@ static void refuses_what_is_no_cgns(void **state)
 
 /* A file truncated anywhere, or with modified bytes, is refused with a message
  * or read as a consistent mesh, whatever the HDF5 library makes of it. */
-static void no_damage_is_swallowed(void **state)
+static void damage_is_always_reported(void **state)
 {
   const char *path = io_temp("damaged.cgns");
   uint32_t random = 1;
@@ -749,8 +749,8 @@ int main(void)
     cmocka_unit_test(all_kinds_come_back),
     cmocka_unit_test(every_condition_comes_back),
     cmocka_unit_test(bytes_follow_from_the_mesh),
-    cmocka_unit_test(writing_fails_in_words),
-    cmocka_unit_test(conditions_make_patches),
+    cmocka_unit_test(write_errors_are_reported),
+    cmocka_unit_test(boundary_conditions_define_patches),
     cmocka_unit_test(zones_are_joined),
     cmocka_unit_test(refuses_sections),
     cmocka_unit_test(refuses_trees),
@@ -760,8 +760,8 @@ int main(void)
     cmocka_unit_test(conditions_of_a_block_make_its_boundary),
     cmocka_unit_test(bases_are_joined),
     cmocka_unit_test(refuses_blocks),
-    cmocka_unit_test(refuses_what_is_no_cgns),
-    cmocka_unit_test(no_damage_is_swallowed),
+    cmocka_unit_test(refuses_files_that_are_not_cgns),
+    cmocka_unit_test(damage_is_always_reported),
   };
 
   if (!vg_cgns_is_built()) {

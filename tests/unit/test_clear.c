@@ -525,7 +525,7 @@ static void sphere_near_a_plane(void **state)
   shape_free(s);
 }
 
-static void a_convex_body_sees_nothing(void **state)
+static void a_convex_body_has_no_opposite_surface(void **state)
 {
   struct shape *s = shape_new(0.1);
   double *allowed;
@@ -542,7 +542,7 @@ static void a_convex_body_sees_nothing(void **state)
 
 /* No triangle that faces the column may have a corner in the cone nearer than
  * the distance used for the answer; checked without a tree. */
-static void nothing_in_the_cone_is_missed(void **state)
+static void every_face_in_the_cone_is_found(void **state)
 {
   struct shape *s = shape_new(0.1);
   const double o[3] = { 0.3, 0.2, 1.4 };
@@ -788,8 +788,8 @@ int main(void)
     cmocka_unit_test(patches_to_slide_in),
     cmocka_unit_test(columns_of_one_stack),
     cmocka_unit_test(sphere_near_a_plane),
-    cmocka_unit_test(a_convex_body_sees_nothing),
-    cmocka_unit_test(nothing_in_the_cone_is_missed),
+    cmocka_unit_test(a_convex_body_has_no_opposite_surface),
+    cmocka_unit_test(every_face_in_the_cone_is_found),
     cmocka_unit_test(sharp_edges_face_each_other),
     cmocka_unit_test(concave_wedge_at_right_angles),
     cmocka_unit_test(concave_wedge_with_turned_columns),

@@ -214,7 +214,7 @@ static void whole_wing_is_symmetric(void **state)
   vg_demo_release(&d);
 }
 
-static void says_what_it_cannot_make(void **state)
+static void refuses_impossible_demos(void **state)
 {
   struct vg_demo d = VG_DEMO_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -250,7 +250,7 @@ int main(void)
     cmocka_unit_test(half_wing_stands_on_its_plane),
     cmocka_unit_test(wing_follows_its_sources),
     cmocka_unit_test(whole_wing_is_symmetric),
-    cmocka_unit_test(says_what_it_cannot_make),
+    cmocka_unit_test(refuses_impossible_demos),
     cmocka_unit_test(gives_the_same_bytes_twice),
   };
 

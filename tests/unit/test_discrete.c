@@ -179,7 +179,7 @@ static double ball(const struct vg_coarse *m)
 /* Smoothing removes the teeth of a ball of coarse cells, 6 % of its volume; if
  * points only moved towards the mean of their neighbours, it would remove 12
  * %. */
-static void smoothing_leaves_what_is_round(void **state)
+static void smoothing_keeps_the_volume_of_a_ball(void **state)
 {
   struct vg_coarse m;
   struct vg_interface f = { 0 };
@@ -267,7 +267,7 @@ static void one_part_is_the_void(void **state)
   case_end(&c);
 }
 
-static void what_cannot_be_parted(void **state)
+static void too_many_subdomains_are_refused(void **state)
 {
   struct vg_decomposition_options o = how(1000000, VG_PARTITIONER_RCB, 0);
   struct vg_decomposition p = VG_DECOMPOSITION_INIT;
@@ -303,7 +303,7 @@ static void what_cannot_be_parted(void **state)
 
 /* --- checks -------------------------------------------------------------- */
 
-static void what_is_no_decomposition(void **state)
+static void damaged_decompositions_are_refused(void **state)
 {
   struct vg_decomposition p;
   struct vg_front *f;
@@ -457,11 +457,11 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(parts_make_up_the_void),
     cmocka_unit_test(interfaces_have_the_local_size),
-    cmocka_unit_test(smoothing_leaves_what_is_round),
+    cmocka_unit_test(smoothing_keeps_the_volume_of_a_ball),
     cmocka_unit_test(interfaces_avoid_flat_cells),
     cmocka_unit_test(one_part_is_the_void),
-    cmocka_unit_test(what_cannot_be_parted),
-    cmocka_unit_test(what_is_no_decomposition),
+    cmocka_unit_test(too_many_subdomains_are_refused),
+    cmocka_unit_test(damaged_decompositions_are_refused),
     cmocka_unit_test(bytes_and_back),
     cmocka_unit_test(bisection_is_even),
     cmocka_unit_test(meshes_are_valid_in_any_order),

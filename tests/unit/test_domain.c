@@ -286,7 +286,7 @@ static vg_status completed(int axis, double deep, double rim, double at,
   return st;
 }
 
-static void a_hole_is_no_symmetry_plane(void **state)
+static void a_hole_is_not_a_symmetry_plane(void **state)
 {
   (void)state;
   for (int axis = 0; axis < 3; axis++) {
@@ -496,7 +496,7 @@ static void adds_a_symmetry_plane_alone(void **state)
   vg_mesh_release(&m);
 }
 
-static void refuses_bodies_it_cannot_complete(void **state)
+static void refuses_half_bodies_it_cannot_complete(void **state)
 {
   struct vg_farfield far = VG_FARFIELD_INIT, small = VG_FARFIELD_INIT,
                      nowhere = VG_FARFIELD_INIT;
@@ -791,11 +791,11 @@ int main(void)
     cmocka_unit_test(puts_a_sphere_around_a_body),
     cmocka_unit_test(puts_a_box_around_a_body),
     cmocka_unit_test(completes_half_bodies),
-    cmocka_unit_test(a_hole_is_no_symmetry_plane),
+    cmocka_unit_test(a_hole_is_not_a_symmetry_plane),
     cmocka_unit_test(closes_holes_but_not_half_bodies),
     cmocka_unit_test(takes_several_bodies),
     cmocka_unit_test(adds_a_symmetry_plane_alone),
-    cmocka_unit_test(refuses_bodies_it_cannot_complete),
+    cmocka_unit_test(refuses_half_bodies_it_cannot_complete),
     cmocka_unit_test(marches_curves_as_vgrid_does),
     cmocka_unit_test(meshes_a_project_of_planes),
     cmocka_unit_test(meshes_the_box_of_vgrid),

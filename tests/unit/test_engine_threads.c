@@ -31,7 +31,7 @@ static void check_tree(int threads, uint64_t shuffle, int pin)
   vg_spans_release(&s);
 }
 
-static void a_tree_is_done_once(void **state)
+static void every_task_of_a_tree_runs_once(void **state)
 {
   (void)state;
   for (int threads = 1; threads < 5; threads++)
@@ -107,7 +107,7 @@ static void spans_say_what_happened(void **state)
   vg_spans_release(&s);
 }
 
-static void a_failure_is_told(void **state)
+static void a_failure_is_reported(void **state)
 {
   (void)state;
   for (int threads = 1; threads < 4; threads++) {
@@ -125,7 +125,7 @@ static void a_failure_is_told(void **state)
   }
 }
 
-static void it_stops_when_told(void **state)
+static void it_stops_on_request(void **state)
 {
   (void)state;
   for (int threads = 1; threads < 4; threads++) {
@@ -212,7 +212,7 @@ static void loops_are_finished_after_a_stop(void **state)
 }
 
 /* Without an engine, and with an empty loop. */
-static void a_loop_alone(void **state)
+static void a_single_loop(void **state)
 {
   int seen[7] = { 0 };
 
@@ -288,16 +288,16 @@ static void refuses_bad_tasks(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_tree_is_done_once),
+    cmocka_unit_test(every_task_of_a_tree_runs_once),
     cmocka_unit_test(nothing_to_do),
     cmocka_unit_test(one_worker_keeps_the_order),
     cmocka_unit_test(spans_say_what_happened),
-    cmocka_unit_test(a_failure_is_told),
-    cmocka_unit_test(it_stops_when_told),
+    cmocka_unit_test(a_failure_is_reported),
+    cmocka_unit_test(it_stops_on_request),
     cmocka_unit_test(loops_are_done_once),
     cmocka_unit_test(idle_workers_help),
     cmocka_unit_test(loops_are_finished_after_a_stop),
-    cmocka_unit_test(a_loop_alone),
+    cmocka_unit_test(a_single_loop),
     cmocka_unit_test(tasks_without_input),
     cmocka_unit_test(refuses_bad_tasks),
   };

@@ -48,7 +48,7 @@ static struct vg_envelope measure_block(int nx, int ny, int nz,
   return measure_both(&m);
 }
 
-static void convex_shapes_are_no_domains(void **state)
+static void convex_shapes_are_not_domains(void **state)
 {
   const double centre[3] = { 0, 0, 0 };
   struct vg_mesh m = VG_MESH_INIT;
@@ -93,7 +93,7 @@ static int plane_of_blocks(const int at[3])
   return (fuselage || wing) && (fuselage || at[2] == 1);
 }
 
-static void bodies_with_hollows_are_no_domains(void **state)
+static void bodies_with_cavities_are_not_domains(void **state)
 {
   struct vg_envelope e = measure_block(9, 6, 6, with_a_groove);
 
@@ -169,9 +169,9 @@ static void real_geometry(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(convex_shapes_are_no_domains),
+    cmocka_unit_test(convex_shapes_are_not_domains),
     cmocka_unit_test(a_block_in_a_room),
-    cmocka_unit_test(bodies_with_hollows_are_no_domains),
+    cmocka_unit_test(bodies_with_cavities_are_not_domains),
     cmocka_unit_test(examples_are_domains),
     cmocka_unit_test(real_geometry),
   };

@@ -346,7 +346,7 @@ static void an_empty_front_gets_no_cells(void **state)
   vg_mesh_release(&s);
 }
 
-static void what_is_not_a_boundary_is_refused(void **state)
+static void invalid_boundaries_are_refused(void **state)
 {
   struct vg_mesh s = VG_MESH_INIT;
   struct vg_sizing *sizing;
@@ -434,7 +434,7 @@ int main(void)
     cmocka_unit_test(it_can_be_stopped),
     cmocka_unit_test(more_points_than_allowed_are_refused),
     cmocka_unit_test(an_empty_front_gets_no_cells),
-    cmocka_unit_test(what_is_not_a_boundary_is_refused),
+    cmocka_unit_test(invalid_boundaries_are_refused),
     cmocka_unit_test(shells_that_cross_are_refused),
     cmocka_unit_test(optimisation_is_optional),
   };

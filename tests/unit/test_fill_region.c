@@ -93,7 +93,7 @@ static const struct vg_region line_pencil = {
   .n_plane = 2, .plane = { { { 0, 0, 1 }, 0.03 }, { { 1, 0, 0 }, 0.07 } }
 };
 
-static void a_zone_parts_the_void(void **state)
+static void a_zone_divides_the_void(void **state)
 {
   struct scene s;
   size_t side[3], made;
@@ -320,7 +320,7 @@ static void failures_return_nothing(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_zone_parts_the_void),
+    cmocka_unit_test(a_zone_divides_the_void),
     cmocka_unit_test(an_oblique_zone_around_a_body),
     cmocka_unit_test(pencil_zone_rest),
     cmocka_unit_test(many_cuts_through_a_plate),

@@ -146,7 +146,7 @@ static void swap(uint32_t *a, uint32_t *b)
 }
 
 /* A cell that is inverted, flat, or has a corner that does not exist. */
-static void bad_cells_are_seen(void **state)
+static void bad_cells_are_detected(void **state)
 {
   struct vg_filled f;
   struct zone_part p;
@@ -177,7 +177,7 @@ static void bad_cells_are_seen(void **state)
 
 /* A front that is not closed has three unbalanced edges for each face that is
  * missing, reversed, or duplicated. */
-static void open_fronts_are_seen(void **state)
+static void open_fronts_are_detected(void **state)
 {
   struct vg_filled f;
   struct zone_part p;
@@ -233,7 +233,7 @@ static void open_parts_of_a_front_are_no_defect(void **state)
 }
 
 /* Consumed faces are a set, in ascending order, of faces that exist. */
-static void bad_lists_are_seen(void **state)
+static void bad_lists_are_detected(void **state)
 {
   struct vg_filled f;
   struct zone_part p;
@@ -295,10 +295,10 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(as_bytes),
-    cmocka_unit_test(bad_cells_are_seen),
-    cmocka_unit_test(open_fronts_are_seen),
+    cmocka_unit_test(bad_cells_are_detected),
+    cmocka_unit_test(open_fronts_are_detected),
     cmocka_unit_test(open_parts_of_a_front_are_no_defect),
-    cmocka_unit_test(bad_lists_are_seen),
+    cmocka_unit_test(bad_lists_are_detected),
     cmocka_unit_test(nothing_is_left_without_a_region),
   };
 

@@ -432,7 +432,7 @@ static void walls_with_bare_ends_are_refused(void **state)
 }
 
 /* Inlet and outlet inside the silhouette: a box with a pocket at either end. */
-static void engine_faces_are_no_duct(void **state)
+static void engine_faces_do_not_make_a_duct(void **state)
 {
   struct vg_flow_shell s = { .is_closed = 1, .n_opening = 2 };
   char why[VG_FLOW_TEXT];
@@ -591,7 +591,7 @@ static struct vg_mesh capped(int32_t bc)
   return m;
 }
 
-static void a_cap_is_named_or_removed(void **state)
+static void a_cap_is_reported_or_removed(void **state)
 {
   struct vg_flow_options o = plain;
   struct vg_mesh m = capped(VG_BC_NONE);
@@ -738,13 +738,13 @@ int main(void)
     cmocka_unit_test(doubtful_contents_are_refused),
     cmocka_unit_test(ducts_are_internal),
     cmocka_unit_test(walls_with_bare_ends_are_refused),
-    cmocka_unit_test(engine_faces_are_no_duct),
+    cmocka_unit_test(engine_faces_do_not_make_a_duct),
     cmocka_unit_test(several_regions_are_refused),
     cmocka_unit_test(open_half_models_are_turned),
     cmocka_unit_test(a_hollow_half_model_loses_its_cavity),
     cmocka_unit_test(a_half_domain_is_internal),
     cmocka_unit_test(half_a_ball_around_half_a_body),
-    cmocka_unit_test(a_cap_is_named_or_removed),
+    cmocka_unit_test(a_cap_is_reported_or_removed),
     cmocka_unit_test(a_symmetry_plane_of_a_domain_stays),
     cmocka_unit_test(open_tubes_are_not_decided),
     cmocka_unit_test(random_surfaces_are_read_or_refused),

@@ -437,7 +437,7 @@ static void open_meshes_are_refused(void **state)
   vg_mesh_release(&m);
 }
 
-static void unwritable_places_are_told(void **state)
+static void unwritable_paths_are_reported(void **state)
 {
   const char *file = io_temp("occupied.openfoam");
   struct vg_mesh m;
@@ -511,7 +511,7 @@ static void a_case_is_remeshed_in_place(void **state)
 }
 
 /* Placing into an empty folder makes the whole case. */
-static void a_case_is_placed(void **state)
+static void a_foam_case_is_moved_to_its_place(void **state)
 {
   const char *from = io_temp("from.openfoam"), *to = io_temp("to.openfoam");
   struct vg_error err = VG_ERROR_INIT;
@@ -631,9 +631,9 @@ int main(void)
     cmocka_unit_test(cells_in_any_order),
     cmocka_unit_test(names_and_types),
     cmocka_unit_test(open_meshes_are_refused),
-    cmocka_unit_test(unwritable_places_are_told),
+    cmocka_unit_test(unwritable_paths_are_reported),
     cmocka_unit_test(a_case_is_remeshed_in_place),
-    cmocka_unit_test(a_case_is_placed),
+    cmocka_unit_test(a_foam_case_is_moved_to_its_place),
     cmocka_unit_test(a_linked_mesh_stays_linked),
     cmocka_unit_test(a_point_of_many_cells),
     cmocka_unit_test(words),

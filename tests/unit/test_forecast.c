@@ -333,7 +333,7 @@ static void levels_end_where_nothing_is_left(void **state)
   release(&s);
 }
 
-static void a_faster_core_needs_less(void **state)
+static void a_faster_core_takes_less_time(void **state)
 {
   struct vg_rates half = vg_rates_measured;
   struct vg_forecast a, b = VG_FORECAST_INIT;
@@ -462,7 +462,7 @@ int main(void)
     cmocka_unit_test(it_is_the_same_twice),
     cmocka_unit_test(levels_and_axes_are_obeyed),
     cmocka_unit_test(levels_end_where_nothing_is_left),
-    cmocka_unit_test(a_faster_core_needs_less),
+    cmocka_unit_test(a_faster_core_takes_less_time),
     cmocka_unit_test(repairs_come_last),
     cmocka_unit_test(a_run_has_these_tasks),
     cmocka_unit_test(points_follow_from_cells),

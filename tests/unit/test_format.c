@@ -121,7 +121,7 @@ static void every_format_round_trips(void **state)
   vg_mesh_release(&t1);
 }
 
-static void the_mapbc_beside_is_used(void **state)
+static void the_mapbc_in_the_same_folder_is_used(void **state)
 {
   static const char text[] = "3\n1 4000 wall\n2 6662 symm\n9 5000 far\n";
   const char *grid = io_temp("format_bc.lb8.ugrid");
@@ -275,7 +275,7 @@ int main(void)
     cmocka_unit_test(suffixes_are_known),
     cmocka_unit_test(unknown_suffixes_list_the_known),
     cmocka_unit_test(every_format_round_trips),
-    cmocka_unit_test(the_mapbc_beside_is_used),
+    cmocka_unit_test(the_mapbc_in_the_same_folder_is_used),
     cmocka_unit_test(the_mapbc_of_a_run_is_no_input),
     cmocka_unit_test(surfaces_leave_inner_points_out),
     cmocka_unit_test(reads_the_real_project),

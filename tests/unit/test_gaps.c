@@ -64,7 +64,7 @@ static void measures_a_slot(void **unused)
 
 /* The thickness of a plate is not a gap. Neither are planes at right angles,
  * nor distances wider than the largest size would need. */
-static void leaves_the_rest_alone(void **unused)
+static void ignores_distances_that_are_not_gaps(void **unused)
 {
   const double plate[3] = { 1, 1, 0.001 }, size[3] = { 1, 1, 0.2 };
   const uint32_t n[3] = { 3, 3, 1 };
@@ -235,7 +235,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(measures_a_slot),
-    cmocka_unit_test(leaves_the_rest_alone),
+    cmocka_unit_test(ignores_distances_that_are_not_gaps),
     cmocka_unit_test(follows_round_sides),
     cmocka_unit_test(makes_edges_as_short),
     cmocka_unit_test(forecasts),

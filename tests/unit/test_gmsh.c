@@ -230,7 +230,7 @@ static void every_layout_is_read(void **state)
 
 /* A file truncated anywhere, or with any byte modified, is refused with a
  * message or read as a consistent mesh. */
-static void no_damage_is_swallowed(void **state)
+static void damage_is_always_reported(void **state)
 {
   (void)state;
   for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
@@ -380,7 +380,7 @@ static void surfaces_come_back(void **state)
   vg_mesh_release(&back);
 }
 
-static void writes_nothing_of_nothing(void **state)
+static void writes_nothing_for_an_empty_mesh(void **state)
 {
   const char *path = io_temp("nothing.msh");
   struct vg_error err = VG_ERROR_INIT;
@@ -399,12 +399,12 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_layout_is_read),
-    cmocka_unit_test(no_damage_is_swallowed),
+    cmocka_unit_test(damage_is_always_reported),
     cmocka_unit_test(surfaces_where_there_are_no_groups),
     cmocka_unit_test(refusals),
     cmocka_unit_test(all_kinds_come_back),
     cmocka_unit_test(surfaces_come_back),
-    cmocka_unit_test(writes_nothing_of_nothing),
+    cmocka_unit_test(writes_nothing_for_an_empty_mesh),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

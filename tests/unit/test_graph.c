@@ -87,7 +87,7 @@ static size_t n_reached(const struct vg_graph *g, const uint32_t *part, int n)
   return all;
 }
 
-static void parts_are_even_and_hang_together(void **state)
+static void subdomains_are_balanced_and_connected(void **state)
 {
   static const int n[] = { 1, 2, 7, 16, 40 };
   struct vg_graph g = square();
@@ -141,7 +141,7 @@ static void prices_count(void **state)
   free(price);
 }
 
-static void what_cannot_be_is_refused(void **state)
+static void invalid_requests_are_refused(void **state)
 {
   struct vg_graph_options o = { N + 1, 1.03, 0, NULL };
   struct vg_graph g = square();
@@ -192,10 +192,10 @@ static void bisection_is_even(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(parts_are_even_and_hang_together),
+    cmocka_unit_test(subdomains_are_balanced_and_connected),
     cmocka_unit_test(weights_count),
     cmocka_unit_test(prices_count),
-    cmocka_unit_test(what_cannot_be_is_refused),
+    cmocka_unit_test(invalid_requests_are_refused),
     cmocka_unit_test(bisection_is_even),
   };
 

@@ -118,7 +118,7 @@ static void a_compressed_column_fits(void **state)
   }
 }
 
-static void a_lower_cap_is_nowhere_higher(void **state)
+static void a_lower_cap_raises_no_height(void **state)
 {
   double a[41], b[41];
 
@@ -131,7 +131,7 @@ static void a_lower_cap_is_nowhere_higher(void **state)
     }
 }
 
-static void y_plus_there_and_back(void **state)
+static void y_plus_round_trip(void **state)
 {
   (void)state;
   for (double re = 1e4; re < 1e9; re *= 7)
@@ -202,7 +202,7 @@ static void columns_have_points(void **state)
 }
 
 /* The numbers of the workshops, to the published digits. */
-static void members_of_a_family(void **state)
+static void members_of_a_grid_family(void **state)
 {
   static const double ratio[6] = { 1.16, 1.104, 1.068, 1.045, 1.03, 1.02 };
   static const double y_plus[6] = { 1, 0.67, 0.5, 0.4, 0.33, 0.29 };
@@ -248,7 +248,7 @@ static void an_even_family_is_as_high(void **state)
   assert_memory_equal(&half, &law, sizeof law);
 }
 
-static void powers_without_libm(void **state)
+static void powers_are_computed_without_libm(void **state)
 {
   static const double x[] = { 2. / 3, 1, 1.02, 1.2, 10 };
   static const double e[] = { 0, 1e-9, 1. / 3, 0.5, 1, 2.75, 198, -0.4, -2 };
@@ -270,13 +270,13 @@ int main(void)
     cmocka_unit_test(thickness_grows_by_cap_at_most),
     cmocka_unit_test(constant_layers_shift_the_law),
     cmocka_unit_test(a_compressed_column_fits),
-    cmocka_unit_test(a_lower_cap_is_nowhere_higher),
-    cmocka_unit_test(y_plus_there_and_back),
+    cmocka_unit_test(a_lower_cap_raises_no_height),
+    cmocka_unit_test(y_plus_round_trip),
     cmocka_unit_test(a_rate_for_the_total),
     cmocka_unit_test(columns_have_points),
-    cmocka_unit_test(members_of_a_family),
+    cmocka_unit_test(members_of_a_grid_family),
     cmocka_unit_test(an_even_family_is_as_high),
-    cmocka_unit_test(powers_without_libm),
+    cmocka_unit_test(powers_are_computed_without_libm),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -102,7 +102,7 @@ static size_t lowest_of(const int *class, const uint32_t *item, size_t n)
 
 /* Items are inserted and removed at random, some repeatedly; classes beyond the
  * ends too. */
-static void classes_in_turn(void **state)
+static void classes_one_after_another(void **state)
 {
   static int class[MOST];
   static uint32_t list[MOST], spare[MOST];
@@ -143,7 +143,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(leave_in_order),
     cmocka_unit_test(leave_sorted),
-    cmocka_unit_test(classes_in_turn),
+    cmocka_unit_test(classes_one_after_another),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -97,7 +97,7 @@ static void points_on_a_line_and_a_plane(void **state)
 }
 
 /* Thirteen orders of magnitude between the smallest and the largest step. */
-static void points_that_crowd_together(void **state)
+static void points_that_are_too_close(void **state)
 {
   static double x[1000][3];
   uint64_t seed = 4;
@@ -298,7 +298,7 @@ static void clearance_over_constrained_faces(void **state)
 
 /* Every face between the first cells is fixed: each point stays in its first
  * cell. */
-static void a_point_shut_in(void **state)
+static void an_enclosed_point(void **state)
 {
   const int n[3] = { 2, 2, 2 };
   struct vg_tets t = VG_TETS_INIT;
@@ -366,13 +366,13 @@ int main(void)
     cmocka_unit_test(a_grid_of_points),
     cmocka_unit_test(points_on_one_sphere),
     cmocka_unit_test(points_on_a_line_and_a_plane),
-    cmocka_unit_test(points_that_crowd_together),
+    cmocka_unit_test(points_that_are_too_close),
     cmocka_unit_test(duplicates_change_nothing),
     cmocka_unit_test(points_on_the_hull_are_refused),
     cmocka_unit_test(the_nearest_point_keeps_its_distance),
     cmocka_unit_test(constrained_faces_stay),
     cmocka_unit_test(clearance_over_constrained_faces),
-    cmocka_unit_test(a_point_shut_in),
+    cmocka_unit_test(an_enclosed_point),
     cmocka_unit_test(the_same_bytes_again),
   };
 

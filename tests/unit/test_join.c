@@ -308,7 +308,7 @@ static size_t all_levels(struct model *m, size_t high, size_t *n_flat)
   return n_done;
 }
 
-static void a_ridge_in_all_ways(void **state)
+static void a_ridge_in_all_configurations(void **state)
 {
   static const int order[4][4] = {
     { 0, 1, 2, 3 }, { 1, 0, 3, 2 }, { 2, 1, 3, 0 }, { 3, 2, 0, 1 }
@@ -531,7 +531,7 @@ static void any_number_of_threads(void **state)
   model_release(&m);
 }
 
-static void refuses_what_does_not_fit(void **state)
+static void refuses_layers_that_do_not_fit(void **state)
 {
   uint64_t seed = 4;
   struct model m;
@@ -565,13 +565,13 @@ static void refuses_what_does_not_fit(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_ridge_in_all_ways),
+    cmocka_unit_test(a_ridge_in_all_configurations),
     cmocka_unit_test(roofs_with_any_fans),
     cmocka_unit_test(roofs_with_equal_fans),
     cmocka_unit_test(a_sphere_in_a_box),
     cmocka_unit_test(points_and_cells_in_order),
     cmocka_unit_test(any_number_of_threads),
-    cmocka_unit_test(refuses_what_does_not_fit),
+    cmocka_unit_test(refuses_layers_that_do_not_fit),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

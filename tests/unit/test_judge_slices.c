@@ -117,7 +117,7 @@ static void prisms_in_slices(void **state)
   vg_mesh_release(&m);
 }
 
-static void every_damage_is_counted_alike(void **state)
+static void slices_count_every_defect_equally(void **state)
 {
   (void)state;
   for (int damage = 0; damage < JUDGE_DAMAGES; damage++)
@@ -244,7 +244,7 @@ static void indices_that_point_nowhere(void **state)
   vg_mesh_release(&m);
 }
 
-static void failures_are_told(void **state)
+static void failures_are_reported(void **state)
 {
   struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
   struct vg_mesh_report r;
@@ -278,7 +278,7 @@ static vg_status count_cells(void *context, const struct vg_slice *slice,
   return n[0] < 2 ? VG_OK : vg_fail(err, VG_ERR_IO, "no more room");
 }
 
-static void others_are_shown_each_slice(void **state)
+static void every_slice_is_shown(void **state)
 {
   struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
   size_t *n = vg_calloc(m.n_tet, sizeof *n);
@@ -392,13 +392,13 @@ int main(void)
     cmocka_unit_test(mixed_cells_in_slices),
     cmocka_unit_test(prisms_in_slices),
     cmocka_unit_test(cells_several_times_over),
-    cmocka_unit_test(every_damage_is_counted_alike),
+    cmocka_unit_test(slices_count_every_defect_equally),
     cmocka_unit_test(components_are_those_of_the_whole),
     cmocka_unit_test(the_field_is_judged_by_itself),
     cmocka_unit_test(points_that_are_nowhere),
     cmocka_unit_test(indices_that_point_nowhere),
-    cmocka_unit_test(failures_are_told),
-    cmocka_unit_test(others_are_shown_each_slice),
+    cmocka_unit_test(failures_are_reported),
+    cmocka_unit_test(every_slice_is_shown),
     cmocka_unit_test(nothing_is_not_valid),
     cmocka_unit_test(sums_are_exact),
     cmocka_unit_test(sums_of_many_are_those_of_each),

@@ -187,7 +187,7 @@ static void the_cheapest_axis_is_cut(void **state)
   }
 }
 
-static void an_axis_can_be_asked_for(void **state)
+static void an_axis_can_be_requested(void **state)
 {
   struct scene s;
 
@@ -296,7 +296,7 @@ static void one_plane(const struct scene *s, struct vg_lattice *l)
 
 /* 12 cells per square of a plane, 12,000 per piece. A rib counts as 25 cells
  * per edge of its length, and the ribs of a tile may have 12 % of its cells. */
-static void large_tiles_are_parted(void **state)
+static void large_tiles_are_divided(void **state)
 {
   static const struct {
     int nx, ny, pieces;
@@ -550,7 +550,7 @@ static void nothing_is_left_out(const struct vg_lattice *l)
   }
 }
 
-static void regions_are_apart_and_complete(void **state)
+static void regions_are_disjoint_and_complete(void **state)
 {
   const struct vg_lattice *all[6] = {
     &two, &once, &four, &flat, &row, &ribbed
@@ -624,15 +624,15 @@ int main(void)
     cmocka_unit_test(planes_are_at_quantiles),
     cmocka_unit_test(planes_keep_their_distance),
     cmocka_unit_test(the_cheapest_axis_is_cut),
-    cmocka_unit_test(an_axis_can_be_asked_for),
+    cmocka_unit_test(an_axis_can_be_requested),
     cmocka_unit_test(leaves_have_their_size),
     cmocka_unit_test(attempts_differ),
     cmocka_unit_test(nothing_to_cut),
-    cmocka_unit_test(large_tiles_are_parted),
+    cmocka_unit_test(large_tiles_are_divided),
     cmocka_unit_test(small_leaves_have_small_pieces),
     cmocka_unit_test(small_tiles_stay_whole),
     cmocka_unit_test(numbers_of_regions),
-    cmocka_unit_test(regions_are_apart_and_complete),
+    cmocka_unit_test(regions_are_disjoint_and_complete),
     cmocka_unit_test(points_have_blocks),
     cmocka_unit_test(patches_end_with_their_box),
   };

@@ -192,7 +192,7 @@ static void the_first_height_in_a_corner(void **state)
   vg_wall_fields_release(&w);
 }
 
-static void a_point_says_the_worst_of_its_columns(void **state)
+static void a_point_reports_its_worst_column(void **state)
 {
   struct plate *p = *state;
   struct vg_column *c = p->c.column;
@@ -293,7 +293,7 @@ static void straight_columns_are_valid(void **state)
 
 /* Level 30 removed from one corner point: each of its two faces loses a cell
  * and has a pyramid on top instead of a prism. */
-static void a_level_less_makes_pyramids(void **state)
+static void a_missing_level_makes_pyramids(void **state)
 {
   struct plate *p = *state;
   struct vg_layer_judgement r;
@@ -512,7 +512,7 @@ static void too_many_levels_are_refused(void **state)
   assert_null(w.point);
 }
 
-static void nothing_is_nothing(void **state)
+static void no_columns_give_empty_results(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_columns c = { .n_column = 0 };
@@ -542,17 +542,17 @@ int main(void)
     ON_PLATE(heights_of_straight_columns),
     ON_PLATE(a_leaning_column_is_measured_to_the_wall),
     ON_PLATE(the_first_height_in_a_corner),
-    ON_PLATE(a_point_says_the_worst_of_its_columns),
+    ON_PLATE(a_point_reports_its_worst_column),
     ON_PLATE(statistics_by_patch),
     ON_PLATE(straight_columns_are_valid),
-    ON_PLATE(a_level_less_makes_pyramids),
+    ON_PLATE(a_missing_level_makes_pyramids),
     ON_PLATE(crossing_columns_are_found),
     ON_PLATE(zero_volume_is_not_positive),
     ON_PLATE(points_that_leave_a_slide_plane),
     ON_PLATE(virtual_faces_of_a_ridge),
     cmocka_unit_test(any_number_of_threads),
     ON_PLATE(too_many_levels_are_refused),
-    cmocka_unit_test(nothing_is_nothing),
+    cmocka_unit_test(no_columns_give_empty_results),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -767,7 +767,7 @@ static void a_slide_patch_with_folds(void **state)
   finish(&b);
 }
 
-static void a_point_that_sees_nothing(void **state)
+static void a_point_without_visibility(void **state)
 {
   const double at[3] = { 0, 0, 0 };
   struct bench b = { .options.smooth = 0 };
@@ -789,7 +789,7 @@ static void a_point_that_sees_nothing(void **state)
 
 /* Without a request: a fan at this point and nowhere else, and it has
  * layers. */
-static void a_point_that_sees_nothing_gets_a_fan(void **state)
+static void a_point_without_visibility_gets_a_fan(void **state)
 {
   struct bench b = { .options.smooth = 0 };
 
@@ -804,7 +804,7 @@ static void a_point_that_sees_nothing_gets_a_fan(void **state)
 
 /* With requested fans too, and layers so thin that nothing else limits their
  * height. */
-static void a_point_that_sees_nothing_with_fans(void **state)
+static void a_point_without_visibility_with_fans(void **state)
 {
   struct bench b = { .options.smooth = 0 };
 
@@ -821,7 +821,7 @@ static void a_point_that_sees_nothing_with_fans(void **state)
 
 /* --- requests ------------------------------------------------------------ */
 
-static void levels_and_height_as_asked(void **state)
+static void levels_and_height_as_requested(void **state)
 {
   struct bench b = { .options.smooth = 0 };
 
@@ -857,7 +857,7 @@ static void law_of_the_place(void *user, const double x[3],
   law->delta1 *= 1 + x[2];
 }
 
-static void a_law_that_varies(void **state)
+static void a_varying_growth_law(void **state)
 {
   struct bench b = { .options.smooth = 0 };
   struct vg_growth_law base;
@@ -934,11 +934,11 @@ int main(void)
     cmocka_unit_test(a_post_at_60_to_120_degrees),
     cmocka_unit_test(a_post_at_45_to_135_degrees),
     cmocka_unit_test(a_slide_patch_with_folds),
-    cmocka_unit_test(a_point_that_sees_nothing),
-    cmocka_unit_test(a_point_that_sees_nothing_gets_a_fan),
-    cmocka_unit_test(a_point_that_sees_nothing_with_fans),
-    cmocka_unit_test(levels_and_height_as_asked),
-    cmocka_unit_test(a_law_that_varies),
+    cmocka_unit_test(a_point_without_visibility),
+    cmocka_unit_test(a_point_without_visibility_gets_a_fan),
+    cmocka_unit_test(a_point_without_visibility_with_fans),
+    cmocka_unit_test(levels_and_height_as_requested),
+    cmocka_unit_test(a_varying_growth_law),
     cmocka_unit_test(refusals_leave_nothing),
   };
 

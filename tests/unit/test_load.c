@@ -28,7 +28,7 @@ static void demos_keep_their_volume(void **state)
 }
 
 /* Nothing inside the sphere, everything well outside of it. */
-static void a_body_is_left_out(void **state)
+static void a_stray_body_is_omitted(void **state)
 {
   struct vg_load l;
   struct scene s;
@@ -58,7 +58,7 @@ static void a_body_is_left_out(void **state)
   release_scene(&s);
 }
 
-static void threads_do_not_matter(void **state)
+static void the_result_is_independent_of_threads(void **state)
 {
   struct vg_load l, other;
   struct scene s;
@@ -383,7 +383,7 @@ static double cells_near(const struct vg_load *l, int axis, double x,
 
 /* Spacing varies by a factor of tens here. Bins are as wide as the octants of a
  * sample, about a tenth of the region around the sphere. */
-static void bins_answer_as_octants_do(void **state)
+static void bins_agree_with_octants(void **state)
 {
   struct vg_load l;
   struct scene s;
@@ -519,7 +519,7 @@ static void places_find_their_octants(void **state)
   release_scene(&s);
 }
 
-static void messages_come_back(void **state)
+static void messages_are_received(void **state)
 {
   struct vg_bytes bytes = { 0, NULL }, shorter;
   struct vg_load l, back = VG_LOAD_INIT;
@@ -554,8 +554,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(demos_keep_their_volume),
-    cmocka_unit_test(a_body_is_left_out),
-    cmocka_unit_test(threads_do_not_matter),
+    cmocka_unit_test(a_stray_body_is_omitted),
+    cmocka_unit_test(the_result_is_independent_of_threads),
     cmocka_unit_test(expects_what_is_made),
     cmocka_unit_test(small_sources_count),
     cmocka_unit_test(faces_have_cells_of_their_own),
@@ -565,12 +565,12 @@ int main(void)
     cmocka_unit_test(a_small_void_has_octants),
     cmocka_unit_test(answers_on_two_octants),
     cmocka_unit_test(boxes_hold_shares_of_octants),
-    cmocka_unit_test(bins_answer_as_octants_do),
+    cmocka_unit_test(bins_agree_with_octants),
     cmocka_unit_test(blocks_share_a_load),
     cmocka_unit_test(zones_belong_to_no_block),
     cmocka_unit_test(quantiles_halve_a_mesh),
     cmocka_unit_test(places_find_their_octants),
-    cmocka_unit_test(messages_come_back),
+    cmocka_unit_test(messages_are_received),
     cmocka_unit_test(sizes_in_another_unit_are_named),
   };
 

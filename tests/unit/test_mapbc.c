@@ -87,7 +87,7 @@ static void reads_variations(void **state)
   vg_mapbc_release(&b);
 }
 
-static void refuses_what_is_wrong(void **state)
+static void refuses_invalid_files(void **state)
 {
   static const struct {
     const char *text, *phrase;
@@ -315,7 +315,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(reads_both_layouts),
     cmocka_unit_test(reads_variations),
-    cmocka_unit_test(refuses_what_is_wrong),
+    cmocka_unit_test(refuses_invalid_files),
     cmocka_unit_test(translates_codes),
     cmocka_unit_test(applies_to_a_mesh),
     cmocka_unit_test(writes_samples_byte_for_byte),

@@ -149,7 +149,7 @@ static void takes_what_fills_the_front(void **state)
 }
 
 /* One cell of a good sample changed in one way. */
-static void refuses_what_does_not(void **state)
+static void refuses_damaged_samples(void **state)
 {
   static const char *const words[] = { "face to face", "not finite",
                                        "does not exist", "flat" };
@@ -176,7 +176,7 @@ static void refuses_what_does_not(void **state)
 }
 
 /* A front as a tetrahedron filled from outside: all faces match. */
-static void refuses_the_outside(void **state)
+static void refuses_cells_outside_the_front(void **state)
 {
   static const uint32_t face[4][3] = {
     { 1, 2, 3 }, { 0, 3, 2 }, { 0, 1, 3 }, { 0, 2, 1 }
@@ -250,7 +250,7 @@ static void tetgen_fills_around_a_hollow(void **state)
 
 /* gmsh's library does not work together with ASan, whose allocator it would
  * use: its voids are filled by the kernel. */
-static void hxt_does_where_it_is(void **state)
+static void hxt_works_where_available(void **state)
 {
   struct vg_mesher_pool *p = NULL;
   struct vg_error err = VG_ERROR_INIT;
@@ -307,7 +307,7 @@ static void tells_shells_that_touch(void **state)
 
 /* --- faulty ones --------------------------------------------------------- */
 
-static void refuses_plugins_that_are_none(void **state)
+static void refuses_files_that_are_not_plugins(void **state)
 {
   static const struct {
     int number;
@@ -330,7 +330,7 @@ static void refuses_plugins_that_are_none(void **state)
   }
 }
 
-static void gives_up_plugins_that_fail(void **state)
+static void stops_using_plugins_that_fail(void **state)
 {
   (void)state;
   for (int k = 5; k <= 15; k++) {
@@ -430,14 +430,14 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(takes_what_fills_the_front),
-    cmocka_unit_test(refuses_what_does_not),
-    cmocka_unit_test(refuses_the_outside),
+    cmocka_unit_test(refuses_damaged_samples),
+    cmocka_unit_test(refuses_cells_outside_the_front),
     cmocka_unit_test(the_example_fills_a_box),
     cmocka_unit_test(tetgen_fills_around_a_hollow),
-    cmocka_unit_test(hxt_does_where_it_is),
+    cmocka_unit_test(hxt_works_where_available),
     cmocka_unit_test(tells_shells_that_touch),
-    cmocka_unit_test(refuses_plugins_that_are_none),
-    cmocka_unit_test(gives_up_plugins_that_fail),
+    cmocka_unit_test(refuses_files_that_are_not_plugins),
+    cmocka_unit_test(stops_using_plugins_that_fail),
     cmocka_unit_test(stops_and_keeps_limits),
     cmocka_unit_test(sizes_are_those_of_the_field),
   };

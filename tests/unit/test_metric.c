@@ -29,7 +29,7 @@ static void lengths_follow_the_direction(void **unused)
 
 /* Length 1 if the edge has the requested length at both ends; between different
  * sizes it is relative to their mean, in either direction. */
-static void an_edge_has_the_mean_of_its_ends(void **unused)
+static void an_edge_has_the_mean_size_of_its_ends(void **unused)
 {
   struct vg_metric a = { 0.1, { 0 } }, b = { 0.3, { 0 } };
   const double e[3] = { 0.1, 0.2, 0.2 }; /* 0.3 long */
@@ -150,7 +150,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(lengths_follow_the_direction),
-    cmocka_unit_test(an_edge_has_the_mean_of_its_ends),
+    cmocka_unit_test(an_edge_has_the_mean_size_of_its_ends),
     cmocka_unit_test(shapes_are_those_before_stretching),
     cmocka_unit_test(a_plate_gets_the_triangles_of_its_metric),
   };

@@ -59,7 +59,7 @@ static struct vg_span *find(struct vg_spans *s, const char *path)
   return NULL;
 }
 
-static void a_chain_takes_its_sum(void **state)
+static void a_chain_takes_the_sum_of_its_tasks(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT;
 
@@ -117,7 +117,7 @@ static void a_join_waits_for_its_whole_stage(void **state)
 /* Tasks of work 5, 4, 3, 2, 1 are assigned in turn to two workers: 5, 3, 1 and
  * 4, 2, although their times would give another order; and not before the other
  * cut has ended. */
-static void leaves_are_dealt_out(void **state)
+static void leaves_are_assigned_statically(void **state)
 {
   static const double cpu[] = { 1, 2, 4, 1, 8 };
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
@@ -425,7 +425,7 @@ static void a_faster_core_takes_less(void **state)
 
 /* Of 1 + 8 + 32 s outside the tasks, nodes of two ranks share 8 s and all ranks
  * 32 s. */
-static void what_is_outside_the_tasks_is_shared(void **state)
+static void time_outside_tasks_is_divided(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT;
   struct vg_machine m = machine_of(4, 2);
@@ -656,7 +656,7 @@ static void cuts_come_before_fills(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_chain_takes_its_sum),
+    cmocka_unit_test(a_chain_takes_the_sum_of_its_tasks),
     cmocka_unit_test(a_join_waits_for_its_whole_stage),
     cmocka_unit_test(stages_are_of_one_node),
     cmocka_unit_test(repairs_wait_for_the_leaves_below),
@@ -668,14 +668,14 @@ int main(void)
     cmocka_unit_test(nodes_move_and_joins_stay),
     cmocka_unit_test(joins_wait_for_their_rank),
     cmocka_unit_test(a_faster_core_takes_less),
-    cmocka_unit_test(what_is_outside_the_tasks_is_shared),
+    cmocka_unit_test(time_outside_tasks_is_divided),
     cmocka_unit_test(idle_workers_help),
     cmocka_unit_test(help_is_shared),
     cmocka_unit_test(zones_make_cells_too),
     cmocka_unit_test(nothing_takes_no_time),
     cmocka_unit_test(the_same_record_gives_the_same),
     cmocka_unit_test(contradictions_are_named),
-    cmocka_unit_test(leaves_are_dealt_out),
+    cmocka_unit_test(leaves_are_assigned_statically),
     cmocka_unit_test(cuts_come_before_fills),
   };
 

@@ -69,7 +69,7 @@ static void make_normals(int k, double wide, double (*n)[3])
   }
 }
 
-static void is_the_shortest(void **state)
+static void finds_the_shortest_vector(void **state)
 {
   int n_none = 0, n_some = 0;
 
@@ -103,7 +103,8 @@ static void is_the_shortest(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(is_the_shortest) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(
+    finds_the_shortest_vector) };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -155,7 +155,7 @@ static void lists_open(struct vg_node *n)
 /* --- division ------------------------------------------------------------ */
 
 /* n 20: 19,200 faces, several chunks of each loop. */
-static void falls_into_blocks(void **state)
+static void a_front_splits_into_blocks(void **state)
 {
   const int child[4] = { 0, 1, 2, 3 };
 
@@ -186,7 +186,7 @@ static void falls_into_blocks(void **state)
 
 /* Blocks 0 and 1, which form a single void now, have a load from their
  * fronts. */
-static void what_hangs_together_stays(void **state)
+static void connected_blocks_stay_together(void **state)
 {
   const int child[4] = { 0, 0, 1, 2 };
   struct vg_mesh m;
@@ -283,7 +283,7 @@ static void places_are_found(void **state)
 
 /* If the load expects many cells in a corner of a box, that box is not an open
  * place; patches still are. */
-static void full_places_stay_open(void **state)
+static void patches_stay_open_near_many_cells(void **state)
 {
   const double at[3] = { 0.1 + 1.3, -5 + 1.9, 1.9 };
   struct vg_region *r;
@@ -357,7 +357,7 @@ static void works_of(struct vg_node *n, size_t count)
 
 /* Changes are applied in the order of the works. Added faces that cross planes
  * are listed too, without visiting the earlier faces again. */
-static void changes_are_put_in(void **state)
+static void changes_are_applied(void **state)
 {
   enum { WORKS = 5 };
   struct vg_mesh m;
@@ -457,7 +457,7 @@ static void put_long_cell(struct scene *s, double x, double y, double z,
 /* A change that intersects a part of the front that its zone was not given is
  * dropped. The other change of the stage is applied, and both are if nothing
  * intersects. */
-static void what_crosses_stays_out(void **state)
+static void intersecting_changes_are_dropped(void **state)
 {
   const struct vg_region r = { .n_plane = 1, .plane = { { { 0, 1, 0 }, -1 } } };
 
@@ -490,7 +490,7 @@ static void what_crosses_stays_out(void **state)
 
 /* A body that the zone was not given may intersect no face of a cell and still
  * be inside the cell, or just outside. */
-static void what_holds_a_body_stays_out(void **state)
+static void cells_containing_a_body_are_dropped(void **state)
 {
   static const struct {
     double half, aside[2];
@@ -584,13 +584,13 @@ static void arrays_keep_what_is_in_use(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(falls_into_blocks),
-    cmocka_unit_test(what_hangs_together_stays),
+    cmocka_unit_test(a_front_splits_into_blocks),
+    cmocka_unit_test(connected_blocks_stay_together),
     cmocka_unit_test(places_are_found),
-    cmocka_unit_test(full_places_stay_open),
-    cmocka_unit_test(changes_are_put_in),
-    cmocka_unit_test(what_crosses_stays_out),
-    cmocka_unit_test(what_holds_a_body_stays_out),
+    cmocka_unit_test(patches_stay_open_near_many_cells),
+    cmocka_unit_test(changes_are_applied),
+    cmocka_unit_test(intersecting_changes_are_dropped),
+    cmocka_unit_test(cells_containing_a_body_are_dropped),
     cmocka_unit_test(dropped_cells_are_forgotten),
     cmocka_unit_test(arrays_keep_what_is_in_use),
   };

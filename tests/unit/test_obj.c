@@ -93,7 +93,7 @@ static void reads_gzip(void **state)
   vg_mesh_release(&m);
 }
 
-static void refuses_what_is_broken(void **state)
+static void refuses_damaged_files(void **state)
 {
   (void)state;
   io_refuse(vg_obj_parse, "v 0 0 0\n", VG_ERR_INPUT, "no faces");
@@ -145,7 +145,7 @@ int main(void)
     cmocka_unit_test(round_trip_is_exact),
     cmocka_unit_test(nameless_patches_get_a_name),
     cmocka_unit_test(reads_gzip),
-    cmocka_unit_test(refuses_what_is_broken),
+    cmocka_unit_test(refuses_damaged_files),
     cmocka_unit_test(reads_real_files),
   };
 

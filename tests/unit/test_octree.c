@@ -241,7 +241,7 @@ static void check_scene(struct parted *q, size_t least, size_t most)
   leave(q);
 }
 
-static void even_voids_are_parted(void **state)
+static void uniform_voids_are_decomposed(void **state)
 {
   struct parted q;
 
@@ -251,7 +251,7 @@ static void even_voids_are_parted(void **state)
 }
 
 /* Octants of many sizes, around a body and inside a farfield. */
-static void graded_voids_are_parted(void **state)
+static void graded_voids_are_decomposed(void **state)
 {
   struct parted q;
 
@@ -262,7 +262,7 @@ static void graded_voids_are_parted(void **state)
   check_scene(&q, 8, 20);
 }
 
-static void half_bodies_are_parted(void **state)
+static void half_bodies_are_decomposed(void **state)
 {
   struct parted q;
 
@@ -343,7 +343,7 @@ static void parts_can_be_filled(void **state)
   leave(&q);
 }
 
-static void where_no_octant_fits_all_is_gap(void **state)
+static void without_octants_all_is_gap_region(void **state)
 {
   struct parted q;
 
@@ -447,12 +447,12 @@ static void open_fronts_are_refused(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(even_voids_are_parted),
-    cmocka_unit_test(graded_voids_are_parted),
-    cmocka_unit_test(half_bodies_are_parted),
+    cmocka_unit_test(uniform_voids_are_decomposed),
+    cmocka_unit_test(graded_voids_are_decomposed),
+    cmocka_unit_test(half_bodies_are_decomposed),
     cmocka_unit_test(octants_are_balanced_and_off_the_front),
     cmocka_unit_test(parts_can_be_filled),
-    cmocka_unit_test(where_no_octant_fits_all_is_gap),
+    cmocka_unit_test(without_octants_all_is_gap_region),
     cmocka_unit_test(one_part_is_octants_and_a_gap),
     cmocka_unit_test(it_is_the_same_every_time),
     cmocka_unit_test(absurd_options_are_refused),

@@ -192,7 +192,7 @@ static void random_cells_get_better(void **state)
   }
 }
 
-static void a_second_time_does_no_harm(void **state)
+static void repeated_optimisation_does_not_worsen_cells(void **state)
 {
   struct subject s;
   double once;
@@ -415,7 +415,7 @@ static double smooth_points(int by_size, double *mean)
   return off;
 }
 
-static void sizes_count_beside_shapes(void **state)
+static void sizes_count_in_addition_to_shapes(void **state)
 {
   double shape[2], off[2];
 
@@ -428,7 +428,7 @@ static void sizes_count_beside_shapes(void **state)
 /* --- more cases ---------------------------------------------------------- */
 
 /* A crowd of points at one position can only be thinned out. */
-static void points_too_many_are_taken_away(void **state)
+static void surplus_points_are_removed(void **state)
 {
   struct subject s;
   struct vg_optimise_report r;
@@ -561,14 +561,14 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(random_cells_get_better),
-    cmocka_unit_test(a_second_time_does_no_harm),
+    cmocka_unit_test(repeated_optimisation_does_not_worsen_cells),
     cmocka_unit_test(the_same_bytes_again),
     cmocka_unit_test(points_in_a_line_are_flat),
     cmocka_unit_test(flat_cells_side_by_side_go),
     cmocka_unit_test(a_sliver_is_removed),
     cmocka_unit_test(a_shaken_grid),
-    cmocka_unit_test(sizes_count_beside_shapes),
-    cmocka_unit_test(points_too_many_are_taken_away),
+    cmocka_unit_test(sizes_count_in_addition_to_shapes),
+    cmocka_unit_test(surplus_points_are_removed),
     cmocka_unit_test(cells_outside_stay),
     cmocka_unit_test(a_fixed_plane_stays),
     cmocka_unit_test(all_points_fixed),

@@ -129,7 +129,7 @@ static void leave_no_gap(const struct scene *s, const struct vg_placed *p,
   }
 }
 
-static void a_level_field(void **state)
+static void a_uniform_field(void **state)
 {
   const double lo[3] = { -0.5, -0.5, -0.5 }, hi[3] = { 0.5, 0.5, 0.5 };
   struct scene s;
@@ -231,7 +231,7 @@ static void points_that_stand_count(void **state)
 
 /* --- regions ------------------------------------------------------------- */
 
-static void a_slab_gets_its_points_only(void **state)
+static void a_slab_gets_only_its_own_points(void **state)
 {
   const struct vg_region zone = { .n_plane = 1,
                                   .plane = { { { 0, 0, 1 }, 0.1 } } };
@@ -490,12 +490,12 @@ static void thin_lines_have_seeds(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_level_field),
+    cmocka_unit_test(a_uniform_field),
     cmocka_unit_test(a_graded_field),
     cmocka_unit_test(the_same_bytes_again),
     cmocka_unit_test(the_limit_is_exact),
     cmocka_unit_test(points_that_stand_count),
-    cmocka_unit_test(a_slab_gets_its_points_only),
+    cmocka_unit_test(a_slab_gets_only_its_own_points),
     cmocka_unit_test(regions_keep_more_distance),
     cmocka_unit_test(cells_of_regions),
     cmocka_unit_test(walls_of_regions),

@@ -432,7 +432,7 @@ static void is_antisymmetric(void **unused)
 
 /* A long thin set far below the inline bound, at the ends of the range for
  * which the header promises exact signs. */
-static void holds_at_the_ends_of_the_range(void **unused)
+static void is_exact_at_the_ends_of_the_range(void **unused)
 {
   const double scale[3] = { 0x1p-140, 1, 0x1p190 };
 
@@ -466,7 +466,7 @@ int main(void)
     cmocka_unit_test(sees_one_unit_of_area),
     cmocka_unit_test(sees_one_unit_of_squared_radius),
     cmocka_unit_test(is_antisymmetric),
-    cmocka_unit_test(holds_at_the_ends_of_the_range),
+    cmocka_unit_test(is_exact_at_the_ends_of_the_range),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

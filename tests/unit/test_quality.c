@@ -308,7 +308,7 @@ static void a_missing_cell_opens_faces(void **state)
   vg_mesh_release(&m);
 }
 
-static void a_cell_twice_crowds_its_faces(void **state)
+static void a_duplicate_cell_crowds_its_faces(void **state)
 {
   struct vg_mesh m = cube();
   struct vg_mesh_report r;
@@ -547,7 +547,7 @@ static void figures_do_not_depend_on_numbering(void **state)
 }
 
 /* A spindle of n tetrahedra around one edge: node 0 is in all of them. */
-static void a_hub_is_matched(void **state)
+static void faces_around_a_shared_edge_are_matched(void **state)
 {
   enum { RING = 500 };
   struct vg_mesh m = VG_MESH_INIT;
@@ -638,7 +638,7 @@ int main(void)
     cmocka_unit_test(unused_and_coincident_points_are_counted),
     cmocka_unit_test(an_inverted_cell_is_found),
     cmocka_unit_test(a_missing_cell_opens_faces),
-    cmocka_unit_test(a_cell_twice_crowds_its_faces),
+    cmocka_unit_test(a_duplicate_cell_crowds_its_faces),
     cmocka_unit_test(boundary_faces_are_matched),
     cmocka_unit_test(two_neighbours_on_one_side_are_found),
     cmocka_unit_test(components_are_counted),
@@ -647,7 +647,7 @@ int main(void)
     cmocka_unit_test(inverted_mixed_cells_are_found),
     cmocka_unit_test(edges_are_measured_against_the_field),
     cmocka_unit_test(figures_do_not_depend_on_numbering),
-    cmocka_unit_test(a_hub_is_matched),
+    cmocka_unit_test(faces_around_a_shared_edge_are_matched),
     cmocka_unit_test(a_mesh_of_vgrid),
     cmocka_unit_test(a_mesh_with_prisms),
   };

@@ -67,7 +67,7 @@ static void exact_times_are_found(void **state)
   vg_spans_release(&s);
 }
 
-static void scatter_is_told(void **state)
+static void scatter_gives_the_error_of_a_rate(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT;
   struct vg_rate_fit f;
@@ -103,7 +103,7 @@ static void one_column_stands_for_two(void **state)
   vg_spans_release(&none);
 }
 
-static void few_tasks_say_nothing(void **state)
+static void too_few_tasks_give_no_rate(void **state)
 {
   struct vg_rate_fit f[VG_RATE_FITS];
   struct vg_error err = VG_ERROR_INIT;
@@ -128,9 +128,9 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(exact_times_are_found),
-    cmocka_unit_test(scatter_is_told),
+    cmocka_unit_test(scatter_gives_the_error_of_a_rate),
     cmocka_unit_test(one_column_stands_for_two),
-    cmocka_unit_test(few_tasks_say_nothing),
+    cmocka_unit_test(too_few_tasks_give_no_rate),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -181,7 +181,7 @@ static struct vg_boundary_report recovered(struct vg_mesh *m)
 
 /* --- Delaunay surfaces -------------------------------------------------- */
 
-static void nothing_is_lost_of_an_octahedron(void **state)
+static void all_faces_of_an_octahedron_are_recovered(void **state)
 {
   const double centre[3] = { 0, 0, 0 };
   struct vg_mesh m = VG_MESH_INIT;
@@ -298,7 +298,7 @@ static void a_body_with_turned_diagonals(void **state)
 }
 
 /* The count of the report compared with a count here, face by face. */
-static void the_lost_are_counted(void **state)
+static void lost_faces_are_counted(void **state)
 {
   struct vg_tets t = VG_TETS_INIT;
   struct vg_mesh m = VG_MESH_INIT;
@@ -434,7 +434,7 @@ static void one_triangle_turned_over(void **state)
   refused(&m);
 }
 
-static void fluid_without_end(void **state)
+static void unbounded_fluid(void **state)
 {
   const double centre[3] = { 0, 0, 0 };
   struct vg_mesh m = VG_MESH_INIT;
@@ -525,18 +525,18 @@ static void tetgen_fails_alone(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(nothing_is_lost_of_an_octahedron),
+    cmocka_unit_test(all_faces_of_an_octahedron_are_recovered),
     cmocka_unit_test(diagonals_turned_at_random),
     cmocka_unit_test(a_torus_of_either_diagonal),
     cmocka_unit_test(a_pocket_that_tetgen_does_not_end),
     cmocka_unit_test(a_twisted_prism_gets_a_point),
     cmocka_unit_test(long_slivers),
     cmocka_unit_test(a_body_with_turned_diagonals),
-    cmocka_unit_test(the_lost_are_counted),
+    cmocka_unit_test(lost_faces_are_counted),
     cmocka_unit_test(the_same_bytes_again),
     cmocka_unit_test(an_open_surface),
     cmocka_unit_test(one_triangle_turned_over),
-    cmocka_unit_test(fluid_without_end),
+    cmocka_unit_test(unbounded_fluid),
     cmocka_unit_test(two_points_in_one_place),
     cmocka_unit_test(crossing_boxes),
     cmocka_unit_test(many_crossing_spheres),

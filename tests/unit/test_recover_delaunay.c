@@ -213,7 +213,7 @@ static void fixed_faces_stay(void **state)
 
 /* All corners of a cube are on one sphere: no flip is an improvement, so none
  * may be made, whatever the rounding of sums. */
-static void equals_stay(void **state)
+static void cospherical_points_cause_no_flips(void **state)
 {
   static const int n[3] = { 4, 4, 4 };
   struct vg_tets t = VG_TETS_INIT;
@@ -274,7 +274,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(flips_are_undone),
     cmocka_unit_test(fixed_faces_stay),
-    cmocka_unit_test(equals_stay),
+    cmocka_unit_test(cospherical_points_cause_no_flips),
     cmocka_unit_test(flat_rings_come_to_rest),
   };
 

@@ -221,7 +221,7 @@ static void a_stretched_sheet(void **state)
 
 /* Schoenhardt's prisms in a row: tetrahedra on their points alone cannot
  * contain them. */
-static void twisted_prisms_are_handed_on(void **state)
+static void twisted_prisms_need_steiner_points(void **state)
 {
   static uint32_t tri[5 * 8][3];
   struct vg_tets t = VG_TETS_INIT;
@@ -326,7 +326,7 @@ int main(void)
     cmocka_unit_test(triangles_through_many_cells),
     cmocka_unit_test(triangles_in_a_thin_sheet),
     cmocka_unit_test(a_stretched_sheet),
-    cmocka_unit_test(twisted_prisms_are_handed_on),
+    cmocka_unit_test(twisted_prisms_need_steiner_points),
     cmocka_unit_test(the_same_cells_again),
     cmocka_unit_test(signs_of_what_is_in_the_way),
   };

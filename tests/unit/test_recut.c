@@ -30,7 +30,7 @@ static struct vg_piece piece_of(size_t n_cell, const uint32_t (*cell)[4])
 
 /* The boundary of cells is the same for one piece and for two pieces in either
  * order. */
-static void what_bounds_cells(void **state)
+static void boundary_of_cells_is_independent_of_pieces(void **state)
 {
   static const uint32_t cell[2][4] = { { 0, 1, 2, 3 }, { 0, 2, 1, 4 } };
   struct vg_piece both = piece_of(2, cell);
@@ -103,7 +103,7 @@ static struct vg_partition_report always(const struct scene *s, double share,
 
 /* A subdomain that fails costs its neighbours; one that fails twice costs the
  * neighbours of those too. */
-static void only_what_is_beside(void **state)
+static void only_neighbours_are_refilled(void **state)
 {
   uint64_t before = 0;
   struct scene s;
@@ -141,7 +141,7 @@ static void parts_that_meet_are_one(void **state)
   scene_end(&s);
 }
 
-static void what_can_never_be_filled(void **state)
+static void leaves_that_always_fail(void **state)
 {
   struct vg_partition_options o = options_of(2000, 2, 0);
   struct vg_error err = VG_ERROR_INIT;
@@ -163,7 +163,7 @@ static void what_can_never_be_filled(void **state)
 
 /* The timeline continues after the first tasks; cells that were made in vain do
  * not appear in it. */
-static void the_record_is_one(void **state)
+static void the_timeline_covers_all_rounds(void **state)
 {
   struct vg_partition_options o = options_of(2000, 2, 0);
   struct vg_spans spans = VG_SPANS_INIT;
@@ -198,11 +198,11 @@ static void the_record_is_one(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(what_bounds_cells),
-    cmocka_unit_test(only_what_is_beside),
+    cmocka_unit_test(boundary_of_cells_is_independent_of_pieces),
+    cmocka_unit_test(only_neighbours_are_refilled),
     cmocka_unit_test(parts_that_meet_are_one),
-    cmocka_unit_test(what_can_never_be_filled),
-    cmocka_unit_test(the_record_is_one),
+    cmocka_unit_test(leaves_that_always_fail),
+    cmocka_unit_test(the_timeline_covers_all_rounds),
   };
 
   if (vg_child_server_start(NULL) != VG_OK) return 1;

@@ -93,7 +93,7 @@ static void edges_go_across_strips(void **unused)
 }
 
 /* Needles of 1 : 60 on a box become well-shaped triangles; its edges stay. */
-static void makes_needles_good(void **unused)
+static void improves_sliver_triangles(void **unused)
 {
   const double size[3] = { 3, 2, 1 };
   const uint32_t n[3] = { 2, 90, 1 };
@@ -160,7 +160,7 @@ static void keeps_a_ball_round(void **unused)
 
 /* On a fixed patch border, and on the border of a patch with another condition,
  * feature edges stay although the surface is smooth there. */
-static void keeps_hard_borders(void **unused)
+static void keeps_fixed_borders(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
   const uint8_t hard[2] = { 1, 0 };
@@ -280,7 +280,7 @@ static void closes_narrow_strips(void **unused)
 /* A thin plate whose accuracy is given, as that of a wrap: it becomes the
  * tolerance. If it is almost the thickness, the plate's edges need not stay
  * feature edges and sizes are larger. */
-static void knows_what_the_given_is_worth(void **unused)
+static void given_accuracy_becomes_the_tolerance(void **unused)
 {
   const double size[3] = { 2, 1, 0.01 };
   const uint32_t n[3] = { 4, 4, 1 };
@@ -775,12 +775,12 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(leaves_out_false_ridges),
     cmocka_unit_test(edges_go_across_strips),
-    cmocka_unit_test(makes_needles_good),
+    cmocka_unit_test(improves_sliver_triangles),
     cmocka_unit_test(keeps_a_ball_round),
-    cmocka_unit_test(keeps_hard_borders),
+    cmocka_unit_test(keeps_fixed_borders),
     cmocka_unit_test(follows_strips),
     cmocka_unit_test(closes_narrow_strips),
-    cmocka_unit_test(knows_what_the_given_is_worth),
+    cmocka_unit_test(given_accuracy_becomes_the_tolerance),
     cmocka_unit_test(keeps_open_rims),
     cmocka_unit_test(obeys_sources),
     cmocka_unit_test(obeys_the_field_of_the_volume),

@@ -46,7 +46,7 @@ static void run(struct scene *s, size_t n, int phase, int threads,
     fail_msg("%s", err.text);
 }
 
-static void whole_after_nothing(void **unused)
+static void surface_stays_valid_without_changes(void **unused)
 {
   const double size[3] = { 1, 1, 1 };
   struct scene s = { .m = VG_MESH_INIT };
@@ -71,7 +71,7 @@ static void whole_after_nothing(void **unused)
 
 /* Feature edges along and across borders of blocks, and points where more than
  * two blocks meet. */
-static void whole_after_any_change(void **unused)
+static void surface_stays_valid_after_changes(void **unused)
 {
   const double size[3] = { 1, 0.5, 0.1 };
   const uint32_t n[3] = { 12, 9, 3 };
@@ -136,8 +136,8 @@ static void fails_with_the_first(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(whole_after_nothing),
-    cmocka_unit_test(whole_after_any_change),
+    cmocka_unit_test(surface_stays_valid_without_changes),
+    cmocka_unit_test(surface_stays_valid_after_changes),
     cmocka_unit_test(same_for_any_threads),
     cmocka_unit_test(fails_with_the_first),
   };

@@ -446,7 +446,7 @@ static void any_triangle(struct vg_front *f, uint64_t *state, int how)
 
 /* Every face that intersects the triangle is found once, with few others and no
  * removed face. */
-static void all_that_a_triangle_meets(void **state)
+static void finds_all_faces_that_a_triangle_meets(void **state)
 {
   struct vg_select s;
   struct vg_front f;
@@ -506,7 +506,7 @@ int main(void)
     cmocka_unit_test(nothing_near),
     cmocka_unit_test(long_faces_widen),
     cmocka_unit_test(the_longest_face_counts),
-    cmocka_unit_test(all_that_a_triangle_meets),
+    cmocka_unit_test(finds_all_faces_that_a_triangle_meets),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -92,7 +92,7 @@ static void takes_the_place_of_older_files(void **state)
   unlink(NAME);
 }
 
-static void a_failure_leaves_nothing(void **state)
+static void nothing_remains_after_a_failure(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
   struct vg_shared_file *f = NULL;
@@ -106,7 +106,7 @@ static void a_failure_leaves_nothing(void **state)
   assert_false(exists(NAME ".part"));
 }
 
-static void says_what_and_why(void **state)
+static void errors_name_file_and_reason(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
   struct vg_shared_file *f = NULL;
@@ -241,8 +241,8 @@ int main(void)
     cmocka_unit_test(places_in_any_order),
     cmocka_unit_test(no_bytes),
     cmocka_unit_test(takes_the_place_of_older_files),
-    cmocka_unit_test(a_failure_leaves_nothing),
-    cmocka_unit_test(says_what_and_why),
+    cmocka_unit_test(nothing_remains_after_a_failure),
+    cmocka_unit_test(errors_name_file_and_reason),
     cmocka_unit_test(checks_the_size),
     cmocka_unit_test(a_full_disk),
     cmocka_unit_test(from_threads),

@@ -806,7 +806,7 @@ static void bad_options_and_surfaces_are_refused(void **state)
 }
 
 /* Faces without area or with a repeated point have no effect and do no harm. */
-static void degenerate_faces_are_passed_over(void **state)
+static void degenerate_faces_are_skipped(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_sizing *s;
@@ -847,7 +847,7 @@ int main(void)
     cmocka_unit_test(the_least_of_a_cube_is_found),
     cmocka_unit_test(bad_sources_are_named),
     cmocka_unit_test(bad_options_and_surfaces_are_refused),
-    cmocka_unit_test(degenerate_faces_are_passed_over)
+    cmocka_unit_test(degenerate_faces_are_skipped)
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -79,7 +79,7 @@ static struct vg_effects look(size_t n, const struct vg_source *source,
 }
 
 /* Rays through corners and along edges of the body too. */
-static void places_know_their_side(void **state)
+static void samples_know_their_side(void **state)
 {
   static const double at[][3] = {
     { -10, 0, 0 },    { -10, 1, 1 },     { 0, 0, 0 },     { -10, 1, 0.2 },
@@ -147,7 +147,7 @@ static void places_are_in_the_shape(void **state)
     }
 }
 
-static void free_sources_are_no_news(void **state)
+static void effective_sources_are_not_reported(void **state)
 {
   const struct vg_source source[] = {
     { .kind = VG_SOURCE_SPHERE, .r0 = 1.5, .h0 = 0.2 }, /* around the body */
@@ -175,7 +175,7 @@ static void free_sources_are_no_news(void **state)
   vg_mesh_release(&m);
 }
 
-static void held_sources_are_found(void **state)
+static void limited_sources_are_found(void **state)
 {
   const struct vg_source source[] = {
     { .kind = VG_SOURCE_POINT, .p0 = { 3, 0, 0 }, .h0 = 0.1 },
@@ -219,7 +219,7 @@ static void held_sources_are_found(void **state)
   vg_mesh_release(&m);
 }
 
-static void lost_sources_are_told_apart(void **state)
+static void ineffective_sources_are_classified(void **state)
 {
   const struct vg_source source[] = {
     { .kind = VG_SOURCE_POINT, .p0 = { 0, 0, 0 }, .h0 = 0.1 },
@@ -264,7 +264,7 @@ static void put_half(const struct vg_slices *s, struct vg_slice *slice)
 
 /* Points near two sources of three, within twice the size there or slightly
  * farther away. The third source is wide: it is sampled on its border only. */
-static void what_a_mesh_does_not_meet_is_told(void **state)
+static void sources_without_effect_are_reported(void **state)
 {
   const struct vg_source source[] = {
     { .kind = VG_SOURCE_POINT, .p0 = { 5, 0, 0 }, .h0 = 0.01 },
@@ -308,12 +308,12 @@ static void what_a_mesh_does_not_meet_is_told(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(places_know_their_side),
+    cmocka_unit_test(samples_know_their_side),
     cmocka_unit_test(places_are_in_the_shape),
-    cmocka_unit_test(free_sources_are_no_news),
-    cmocka_unit_test(held_sources_are_found),
-    cmocka_unit_test(lost_sources_are_told_apart),
-    cmocka_unit_test(what_a_mesh_does_not_meet_is_told),
+    cmocka_unit_test(effective_sources_are_not_reported),
+    cmocka_unit_test(limited_sources_are_found),
+    cmocka_unit_test(ineffective_sources_are_classified),
+    cmocka_unit_test(sources_without_effect_are_reported),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

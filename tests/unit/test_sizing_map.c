@@ -62,7 +62,7 @@ static double wrong(void *user, const double x[3])
   return x[1] > 5 ? 0 : 1;
 }
 
-static void a_gentle_function_is_followed(void **state)
+static void a_slowly_varying_function_is_reproduced(void **state)
 {
   const struct vg_size_map map = { .at = ramp };
   struct vg_sizing *s = field(&map, 2);
@@ -80,7 +80,7 @@ static void a_gentle_function_is_followed(void **state)
   vg_sizing_free(s);
 }
 
-static void a_steep_function_is_limited_by_growth(void **state)
+static void a_steep_gradient_is_limited_by_growth(void **state)
 {
   double at[3] = { 4, 4, 4 };
   const struct vg_size_map map = { .at = ball, .user = at };
@@ -103,7 +103,7 @@ static void a_steep_function_is_limited_by_growth(void **state)
   vg_sizing_free(s);
 }
 
-static void what_is_no_size_is_named(void **state)
+static void invalid_sizes_are_reported(void **state)
 {
   const struct vg_size_map map = { .at = wrong };
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
@@ -187,9 +187,9 @@ static void bad_points_are_named(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_gentle_function_is_followed),
-    cmocka_unit_test(a_steep_function_is_limited_by_growth),
-    cmocka_unit_test(what_is_no_size_is_named),
+    cmocka_unit_test(a_slowly_varying_function_is_reproduced),
+    cmocka_unit_test(a_steep_gradient_is_limited_by_growth),
+    cmocka_unit_test(invalid_sizes_are_reported),
     cmocka_unit_test(points_are_cones),
     cmocka_unit_test(bad_points_are_named),
   };

@@ -449,7 +449,7 @@ static void one_vtu(void **state)
   }
 }
 
-static void what_shows_the_boundary(void **state)
+static void boundary_files_equal_those_of_the_whole_mesh(void **state)
 {
   const struct vg_slices_options o = { .threads = 2 };
   const char *whole = whole_file();
@@ -635,7 +635,7 @@ static void failures_leave_nothing(void **state)
   cut_release(&c);
 }
 
-static void refuses_what_a_form_cannot_hold(void **state)
+static void refuses_values_that_a_form_cannot_store(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
   struct cut c;
@@ -672,10 +672,10 @@ int main(void)
     cmocka_unit_test(records_in_parts),
     cmocka_unit_test(places_beyond_two_gigabytes),
     cmocka_unit_test(one_vtu),
-    cmocka_unit_test(what_shows_the_boundary),
+    cmocka_unit_test(boundary_files_equal_those_of_the_whole_mesh),
     cmocka_unit_test(pieces_are_the_mesh),
     cmocka_unit_test(failures_leave_nothing),
-    cmocka_unit_test(refuses_what_a_form_cannot_hold),
+    cmocka_unit_test(refuses_values_that_a_form_cannot_store),
     cmocka_unit_test(cogsg_and_what_belongs_to_it),
   };
 

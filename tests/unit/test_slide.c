@@ -645,7 +645,7 @@ static void body_between_planes(void **state)
 
 /* Every other wedge of the body has no layers: the tops along boundary edges
  * rise and fall. */
-static void levels_climb_from_nothing(void **state)
+static void levels_rise_from_zero_and_fall(void **state)
 {
   struct made a = { 0 };
   size_t n_wall = 0;
@@ -825,7 +825,7 @@ static void gently_curved_side(void **state)
   release(&a);
 }
 
-static void tunnel_is_no_graph(void **state)
+static void a_tunnel_is_not_a_height_field(void **state)
 {
   struct made a = { 0 };
 
@@ -1009,7 +1009,7 @@ static void curved_side_from_both_ends(void **state)
 }
 
 /* A column that leaves the plane's region at once can have no levels. */
-static void backward_is_never(void **state)
+static void backward_columns_get_no_levels(void **state)
 {
   struct made a = { 0 };
   size_t n_never = 0;
@@ -1097,20 +1097,20 @@ int main(void)
     cmocka_unit_test(noise_is_still_a_plane),
     cmocka_unit_test(dome_on_a_plane),
     cmocka_unit_test(body_between_planes),
-    cmocka_unit_test(levels_climb_from_nothing),
+    cmocka_unit_test(levels_rise_from_zero_and_fall),
     cmocka_unit_test(nothing_grows_nothing_changes),
     cmocka_unit_test(floor_with_four_sides),
     cmocka_unit_test(tilted_floor),
     cmocka_unit_test(floor_and_roof),
     cmocka_unit_test(too_high_is_failure),
     cmocka_unit_test(gently_curved_side),
-    cmocka_unit_test(tunnel_is_no_graph),
+    cmocka_unit_test(a_tunnel_is_not_a_height_field),
     cmocka_unit_test(plane_in_two_patches),
     cmocka_unit_test(fan_at_the_plane),
     cmocka_unit_test(border_without_columns_fails),
     cmocka_unit_test(curved_side_from_both_ends),
     cmocka_unit_test(only_the_surroundings),
-    cmocka_unit_test(backward_is_never),
+    cmocka_unit_test(backward_columns_get_no_levels),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

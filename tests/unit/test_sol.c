@@ -141,7 +141,7 @@ static void refuses(const char *text, vg_status want, const char *word)
 
 #define HEAD "MeshVersionFormatted 2\nDimension 3\n"
 
-static void refuses_what_it_cannot_take(void **state)
+static void refuses_unsupported_files(void **state)
 {
   (void)state;
   refuses("solid", VG_ERR_FORMAT, "MeshVersionFormatted");
@@ -171,7 +171,7 @@ int main(void)
     cmocka_unit_test(reads_text),
     cmocka_unit_test(reads_binary),
     cmocka_unit_test(every_truncation_is_refused),
-    cmocka_unit_test(refuses_what_it_cannot_take),
+    cmocka_unit_test(refuses_unsupported_files),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -129,7 +129,7 @@ static void reads_gzip(void **state)
   vg_mesh_release(&m);
 }
 
-static void refuses_what_is_broken(void **state)
+static void refuses_damaged_files(void **state)
 {
   unsigned char binary[84 + 50] = { 0 };
   const float nan_value = __builtin_nanf("");
@@ -188,7 +188,7 @@ int main(void)
     cmocka_unit_test(binary_round_trip_keeps_floats),
     cmocka_unit_test(quadrilaterals_are_split),
     cmocka_unit_test(reads_gzip),
-    cmocka_unit_test(refuses_what_is_broken),
+    cmocka_unit_test(refuses_damaged_files),
     cmocka_unit_test(reads_a_real_file),
   };
 

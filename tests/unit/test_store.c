@@ -150,7 +150,7 @@ static int digests_equal(struct vg_digest a, struct vg_digest b)
   return a.word[0] == b.word[0] && a.word[1] == b.word[1];
 }
 
-static void digest_depends_on_all(void **state)
+static void digest_depends_on_every_bit(void **state)
 {
   unsigned char data[300];
   struct vg_digest d, other;
@@ -211,7 +211,7 @@ static void kept_and_found(void **state)
 }
 
 /* Every bit of every byte flipped, every shorter length, and extra bytes. */
-static void a_damaged_record_is_none(void **state)
+static void a_damaged_record_is_ignored(void **state)
 {
   unsigned char whole[256], bad[257];
   struct vg_store *s = opened(1, 0);
@@ -237,7 +237,7 @@ static void a_damaged_record_is_none(void **state)
 }
 
 /* A complete record, but under the name of another. */
-static void a_record_of_another_key(void **state)
+static void a_record_with_a_different_key(void **state)
 {
   struct vg_store *s = opened(1, 0);
   char first[512];
@@ -298,7 +298,7 @@ static void another_run_is_refused(void **state)
   vg_store_close(s, 1);
 }
 
-static void nothing_kept_is_no_hindrance(void **state)
+static void empty_run_directories_can_be_replaced(void **state)
 {
   struct vg_store *s = opened(1, 0);
 
@@ -355,7 +355,7 @@ static void records_without_a_note(void **state)
   REFUSED(&o, VG_ERR_INPUT, RUN_DIR, "1 finished", "remove");
 }
 
-static void a_place_that_cannot_be_written(void **state)
+static void an_unwritable_path(void **state)
 {
   struct vg_store_options o = options_of(1, 0);
 
@@ -517,7 +517,7 @@ static void fill_up(struct vg_store *s, const char *reason)
 }
 
 /* The shell's file size limit ends writes half-way, like a full disk. */
-static void a_write_that_ends_half_way(void **state)
+static void an_incomplete_write(void **state)
 {
   struct rlimit before, small;
   struct vg_store *s = opened(1, 0);
@@ -556,22 +556,22 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, clean, clean)
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(digest_depends_on_all),
+    cmocka_unit_test(digest_depends_on_every_bit),
     TEST(kept_and_found),
-    TEST(a_damaged_record_is_none),
-    TEST(a_record_of_another_key),
+    TEST(a_damaged_record_is_ignored),
+    TEST(a_record_with_a_different_key),
     TEST(several_threads),
     TEST(another_run_is_refused),
-    TEST(nothing_kept_is_no_hindrance),
+    TEST(empty_run_directories_can_be_replaced),
     TEST(nothing_to_resume),
     TEST(a_damaged_note),
     TEST(records_without_a_note),
-    TEST(a_place_that_cannot_be_written),
+    TEST(an_unwritable_path),
     TEST(settings_side_by_side),
     TEST(folders_above_and_other_files),
     TEST(one_run_at_a_time),
     TEST(a_limit),
-    TEST(a_write_that_ends_half_way),
+    TEST(an_incomplete_write),
     TEST(a_full_disk),
   };
 

@@ -28,7 +28,7 @@ static void refuse_open(const char *path, vg_status code, const char *phrase)
   assert_null(in.data);
 }
 
-static void names_what_cannot_be_opened(void **state)
+static void reports_files_that_cannot_be_opened(void **state)
 {
   const char *path = io_temp("stream_empty");
 
@@ -94,7 +94,7 @@ static void drops_the_byte_order_mark_of_a_text(void **state)
   "adbb8f32b1258daaa5e2ca24d17e2393"                                           \
   "\nsize 12345\n"
 
-static void names_a_pointer_of_git_lfs(void **state)
+static void reports_a_git_lfs_pointer(void **state)
 {
   const char *path = io_temp("stream_pointer.lb8.ugrid");
   struct vg_input in = VG_INPUT_INIT;
@@ -559,9 +559,9 @@ static void a_full_disk_is_reported(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(names_what_cannot_be_opened),
+    cmocka_unit_test(reports_files_that_cannot_be_opened),
     cmocka_unit_test(drops_the_byte_order_mark_of_a_text),
-    cmocka_unit_test(names_a_pointer_of_git_lfs),
+    cmocka_unit_test(reports_a_git_lfs_pointer),
     cmocka_unit_test(unpacks_gzip_whatever_its_name),
     cmocka_unit_test(refuses_gzip_cut_anywhere),
     cmocka_unit_test(refuses_gzip_that_explodes),

@@ -242,7 +242,7 @@ static void same_bytes_for_any_threads(void **unused)
   }
 }
 
-static void refuses_what_is_no_number_of_times(void **unused)
+static void refuses_invalid_stretch_factors(void **unused)
 {
   const double bad[3] = { 20.5, -1, NAN };
 
@@ -270,7 +270,7 @@ int main(void)
     cmocka_unit_test(lines_share_their_corner),
     cmocka_unit_test(stretches_a_leading_edge),
     cmocka_unit_test(same_bytes_for_any_threads),
-    cmocka_unit_test(refuses_what_is_no_number_of_times),
+    cmocka_unit_test(refuses_invalid_stretch_factors),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -440,7 +440,7 @@ static void drops_copies_of_a_triangle(void **unused)
 }
 
 /* A complete duplicate of a body, inside out. */
-static void drops_a_second_skin(void **unused)
+static void drops_a_duplicate_skin(void **unused)
 {
   NEW;
 
@@ -1155,7 +1155,7 @@ int main(void)
     cmocka_unit_test(drops_unused_points),
     cmocka_unit_test(knows_degenerate_triangles),
     cmocka_unit_test(drops_copies_of_a_triangle),
-    cmocka_unit_test(drops_a_second_skin),
+    cmocka_unit_test(drops_a_duplicate_skin),
     cmocka_unit_test(unites_bodies_that_share_a_wall),
     cmocka_unit_test(unites_many_bodies),
     cmocka_unit_test(leaves_a_wall_without_thickness),

@@ -200,7 +200,7 @@ static void a_thin_plate_keeps_its_sides(void **state)
   vg_mesh_release(&m);
 }
 
-static void refuses_what_it_cannot_do(void **state)
+static void refuses_invalid_tolerances(void **state)
 {
   static const double bad[] = { 0, -1, INFINITY, NAN };
   struct vg_error err = VG_ERROR_INIT;
@@ -235,7 +235,7 @@ int main(void)
     cmocka_unit_test(parts_that_meet_in_a_point),
     cmocka_unit_test(a_hole_stays_open),
     cmocka_unit_test(a_thin_plate_keeps_its_sides),
-    cmocka_unit_test(refuses_what_it_cannot_do),
+    cmocka_unit_test(refuses_invalid_tolerances),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

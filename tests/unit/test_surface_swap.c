@@ -408,7 +408,7 @@ static void make_tip(struct vg_mesh *m, int with_body)
   add_tri(m, b, c, d, 0);
 }
 
-static void takes_back_what_meets(void **unused)
+static void undoes_swaps_that_cause_intersections(void **unused)
 {
   struct vg_mesh m = VG_MESH_INIT, old = VG_MESH_INIT;
   struct vg_swap_report r;
@@ -517,7 +517,7 @@ static void refuses_bad_options(void **unused)
   vg_mesh_release(&m);
 }
 
-static void accepts_nothing(void **unused)
+static void accepts_an_empty_surface(void **unused)
 {
   struct vg_swap_options o = VG_SWAP_OPTIONS_INIT;
   struct vg_mesh m = VG_MESH_INIT;
@@ -597,11 +597,11 @@ int main(void)
     cmocka_unit_test(keeps_patches),
     cmocka_unit_test(removes_points_that_are_near),
     cmocka_unit_test(removes_points_along_edges),
-    cmocka_unit_test(takes_back_what_meets),
+    cmocka_unit_test(undoes_swaps_that_cause_intersections),
     cmocka_unit_test(refuses_bad_surfaces),
     cmocka_unit_test(refuses_other_elements),
     cmocka_unit_test(refuses_bad_options),
-    cmocka_unit_test(accepts_nothing),
+    cmocka_unit_test(accepts_an_empty_surface),
     cmocka_unit_test(improves_real_surfaces),
   };
 

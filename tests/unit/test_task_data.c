@@ -130,7 +130,7 @@ static int a_passage_wide(const int at[3])
   return !(at[0] == 1 && at[1] == 0);
 }
 
-static void parts_that_are_apart(void **state)
+static void connected_components_are_counted(void **state)
 {
   (void)state;
   parts_are(block(2, 3, 1, shape_all), 1);
@@ -175,7 +175,7 @@ static void a_sphere_in_a_box(void **state)
   parts_are(front_of(&m), 2);
 }
 
-static void no_front_has_no_parts(void **state)
+static void an_empty_front_has_no_components(void **state)
 {
   struct vg_front f = VG_FRONT_INIT;
   size_t n = 5;
@@ -570,11 +570,11 @@ static void an_empty_change(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(parts_that_are_apart),
+    cmocka_unit_test(connected_components_are_counted),
     cmocka_unit_test(parts_that_touch),
     cmocka_unit_test(bodies_that_touch),
     cmocka_unit_test(a_sphere_in_a_box),
-    cmocka_unit_test(no_front_has_no_parts),
+    cmocka_unit_test(an_empty_front_has_no_components),
     cmocka_unit_test(parts_are_split_and_joined),
     cmocka_unit_test(an_empty_part),
     cmocka_unit_test(a_check_names_what_is_wrong),

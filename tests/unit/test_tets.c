@@ -109,7 +109,7 @@ static void three_cells_on_a_face_are_refused(void **state)
   vg_tets_release(&t);
 }
 
-static void defects_are_seen(void **state)
+static void defects_are_detected(void **state)
 {
   struct vg_tets t = VG_TETS_INIT;
   uint32_t *v, keep;
@@ -479,7 +479,7 @@ int main(void)
     cmocka_unit_test(a_grid_is_linked_face_by_face),
     cmocka_unit_test(a_flat_cell_is_refused),
     cmocka_unit_test(three_cells_on_a_face_are_refused),
-    cmocka_unit_test(defects_are_seen),
+    cmocka_unit_test(defects_are_detected),
     cmocka_unit_test(dead_slots_are_used_last_in_first_out),
     cmocka_unit_test(points_are_found_from_anywhere),
     cmocka_unit_test(points_outside_are_nowhere),

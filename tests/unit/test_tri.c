@@ -128,7 +128,7 @@ static void reads_streams_without_records(void **state)
   vg_mesh_release(&m);
 }
 
-static void refuses_what_is_broken(void **state)
+static void refuses_damaged_files(void **state)
 {
   static const unsigned char negative[24] = { 0,    0,    0, 8, 0xff, 0xff,
                                               0xff, 0xff, 0, 0, 0,    4,
@@ -199,7 +199,7 @@ int main(void)
     cmocka_unit_test(text_round_trip_is_exact),
     cmocka_unit_test(binary_round_trips),
     cmocka_unit_test(reads_streams_without_records),
-    cmocka_unit_test(refuses_what_is_broken),
+    cmocka_unit_test(refuses_damaged_files),
     cmocka_unit_test(reads_real_files),
   };
 

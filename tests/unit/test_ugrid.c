@@ -194,7 +194,7 @@ static void mirrored_cells_and_faces_are_turned(void **state)
   vg_mesh_release(&again);
 }
 
-static void a_wrong_name_is_told_the_right_one(void **state)
+static void a_misspelt_name_gets_a_suggestion(void **state)
 {
   static const struct {
     const char *as, *named, *phrase;
@@ -514,7 +514,7 @@ int main(void)
     cmocka_unit_test(every_variant_round_trips),
     cmocka_unit_test(surfaces_round_trip),
     cmocka_unit_test(mirrored_cells_and_faces_are_turned),
-    cmocka_unit_test(a_wrong_name_is_told_the_right_one),
+    cmocka_unit_test(a_misspelt_name_gets_a_suggestion),
     cmocka_unit_test(tails_are_ignored),
     cmocka_unit_test(the_number_of_layer_tetrahedra_follows),
     cmocka_unit_test(a_closed_mesh_of_all_kinds_is_right),

@@ -413,7 +413,7 @@ static void bad_bc_files_are_named(void **state)
            cases[i].phrase);
 }
 
-static void the_bc_must_stand_beside(void **state)
+static void the_bc_must_be_in_the_same_folder(void **state)
 {
   const char *path = io_temp("vgrid_alone.cogsg");
   struct vg_mesh m = VG_MESH_INIT;
@@ -508,7 +508,7 @@ int main(void)
     cmocka_unit_test(refuses_other_cells),
     cmocka_unit_test(bad_headers_are_named),
     cmocka_unit_test(bad_bc_files_are_named),
-    cmocka_unit_test(the_bc_must_stand_beside),
+    cmocka_unit_test(the_bc_must_be_in_the_same_folder),
     cmocka_unit_test(survives_damage),
     cmocka_unit_test(reproduces_box),
   };

@@ -147,7 +147,7 @@ static void writes_the_boundary_alone(void **state)
   vg_mesh_release(&m);
 }
 
-static void a_surface_is_written_as_such(void **state)
+static void a_surface_is_written_as_a_surface(void **state)
 {
   static const int32_t patch[4] = { 1, 2, 3, 4 };
   struct vg_mesh m;
@@ -216,7 +216,7 @@ int main(void)
     cmocka_unit_test(writes_the_documented_layout),
     cmocka_unit_test(writes_every_cell_in_vtk_order),
     cmocka_unit_test(writes_the_boundary_alone),
-    cmocka_unit_test(a_surface_is_written_as_such),
+    cmocka_unit_test(a_surface_is_written_as_a_surface),
     cmocka_unit_test(writes_loose_triangles),
     cmocka_unit_test(refuses_bad_names_and_places),
   };

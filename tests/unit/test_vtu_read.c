@@ -242,7 +242,7 @@ static void reads_what_is_written_here(void **state)
   free(v);
 }
 
-static void no_damage_is_taken_for_data(void **state)
+static void damage_is_never_read_as_data(void **state)
 {
   struct way w = { 8, 1, 0, 1, 1, 0 };
   struct vg_error err = VG_ERROR_INIT;
@@ -277,7 +277,7 @@ static void refuses(const char *text, vg_status want, const char *word)
   assert_true(!x && !v);
 }
 
-static void refuses_what_it_cannot_take(void **state)
+static void refuses_unsupported_files(void **state)
 {
   (void)state;
   refuses("solid", VG_ERR_FORMAT, "no <VTKFile>");
@@ -314,8 +314,8 @@ int main(void)
     cmocka_unit_test(reads_every_way),
     cmocka_unit_test(reads_text),
     cmocka_unit_test(reads_what_is_written_here),
-    cmocka_unit_test(no_damage_is_taken_for_data),
-    cmocka_unit_test(refuses_what_it_cannot_take),
+    cmocka_unit_test(damage_is_never_read_as_data),
+    cmocka_unit_test(refuses_unsupported_files),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -140,7 +140,7 @@ static void crossing_bricks(void **state)
 
 /* A body within another is lost, and the report names its patch and its share
  * of the area: 6 * 0.4^2 of 6 + 6 * 0.4^2. */
-static void what_is_inside_goes(void **state)
+static void bodies_inside_others_are_dropped(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_wrap_report r;
@@ -227,7 +227,7 @@ static void sheets_are_named(void **state)
 }
 
 /* Inner shells and tiny shells are removed; the others keep their order. */
-static void shells_that_bound_no_body_go(void **state)
+static void shells_that_bound_no_body_are_removed(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -370,7 +370,7 @@ static void suggestions_work(void **state)
 
 /* Points at an offset from a sharp edge of zero thickness would fold if all of
  * them moved onto it; they are merged there. */
-static void knives_come_back(void **state)
+static void sharp_edges_are_restored(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_wrap_report r;
@@ -454,7 +454,7 @@ static void the_same_twice(void **state)
   vg_mesh_release(&m[1]);
 }
 
-static void what_cannot_be_is_refused(void **state)
+static void invalid_requests_are_refused(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
 
@@ -560,7 +560,7 @@ static void read_field(const char *name, struct vg_mesh *m)
 }
 
 /* A pipe of diameter 0.2, its walls alone. A wrap enters it partly at 0.095. */
-static void a_real_pipe_is_no_hollow_shell(void **state)
+static void a_real_pipe_is_not_a_hollow_shell(void **state)
 {
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_wrap_report r;
@@ -689,7 +689,7 @@ static int encloses_middle(const struct vg_mesh *m, const double lo[3],
   return !outside;
 }
 
-static void anything_is_refused_or_sound(void **state)
+static void any_input_is_refused_or_valid(void **state)
 {
   size_t n_done = 0, n_refused = 0;
 
@@ -730,23 +730,23 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(crossing_bricks),
-    cmocka_unit_test(what_is_inside_goes),
+    cmocka_unit_test(bodies_inside_others_are_dropped),
     cmocka_unit_test(a_small_hole_is_bridged_a_large_one_refused),
     cmocka_unit_test(covered_rims_are_no_holes),
     cmocka_unit_test(sheets_are_named),
-    cmocka_unit_test(shells_that_bound_no_body_go),
+    cmocka_unit_test(shells_that_bound_no_body_are_removed),
     cmocka_unit_test(outer_boundaries_are_kept),
     cmocka_unit_test(bodies_that_leave_the_tunnel_are_refused),
     cmocka_unit_test(progress_has_a_share),
     cmocka_unit_test(suggestions_work),
     cmocka_unit_test(walls_do_not_vanish),
-    cmocka_unit_test(anything_is_refused_or_sound),
-    cmocka_unit_test(a_real_pipe_is_no_hollow_shell),
+    cmocka_unit_test(any_input_is_refused_or_valid),
+    cmocka_unit_test(a_real_pipe_is_not_a_hollow_shell),
     cmocka_unit_test(a_real_ball_stays_in_its_tunnel),
-    cmocka_unit_test(knives_come_back),
+    cmocka_unit_test(sharp_edges_are_restored),
     cmocka_unit_test(stops_where_it_is),
     cmocka_unit_test(the_same_twice),
-    cmocka_unit_test(what_cannot_be_is_refused),
+    cmocka_unit_test(invalid_requests_are_refused),
     cmocka_unit_test(real_soups_become_sound),
   };
 

@@ -36,7 +36,7 @@ static void three_zones_make_eight_boxes(void **state)
 }
 
 /* For any position of the planes. */
-static void any_planes_part_a_box(void **state)
+static void any_planes_divide_a_box(void **state)
 {
   (void)state;
   for (int k = 0; k < 6; k++) {
@@ -105,7 +105,7 @@ static void zones_around_a_sphere(void **state)
 }
 
 /* A zone that misses the body leaves it complete, in one of the subdomains. */
-static void a_zone_beside_the_sphere(void **state)
+static void a_zone_next_to_the_sphere(void **state)
 {
   struct vg_region r = plane_at(2, 2.0);
   struct scene s;
@@ -160,7 +160,7 @@ static void same_zone(const struct vg_filled *a, const struct vg_filled *b)
 }
 
 /* A zone is given the same number of faces for any size of the front. */
-static void a_zone_costs_what_is_near(void **state)
+static void a_zone_costs_only_its_neighbourhood(void **state)
 {
   struct vg_filled z[3] = { VG_FILLED_INIT, VG_FILLED_INIT, VG_FILLED_INIT };
   size_t n_point[3], n_face[3];
@@ -199,7 +199,7 @@ static void the_same_bytes_again(void **state)
 
 /* Where the spacing is 1, the sum of V / h^3 is the volume of the cells; all
  * indices in the lists are in range and used. */
-static void what_a_zone_says_of_itself(void **state)
+static void figures_reported_by_a_zone(void **state)
 {
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_region r = plane_at(0, 0.04);
@@ -287,7 +287,7 @@ static double longest_edge(const struct scene *s, const struct vg_region *r)
 /* Where a pencil leaves a plume in a corner of a box, its points are in the
  * shape of a trumpet: no cell spans the space next to it, as far as the front
  * is known. */
-static void a_pencil_leaves_a_plume(void **state)
+static void an_edge_separator_exits_a_plume(void **state)
 {
   const struct vg_source plume = { .kind = VG_SOURCE_CYLINDER,
                                    .p0 = { 1, 0, 0 },
@@ -530,14 +530,14 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(three_zones_make_eight_boxes),
-    cmocka_unit_test(any_planes_part_a_box),
+    cmocka_unit_test(any_planes_divide_a_box),
     cmocka_unit_test(planes_through_points),
     cmocka_unit_test(zones_around_a_sphere),
-    cmocka_unit_test(a_zone_beside_the_sphere),
-    cmocka_unit_test(a_zone_costs_what_is_near),
+    cmocka_unit_test(a_zone_next_to_the_sphere),
+    cmocka_unit_test(a_zone_costs_only_its_neighbourhood),
     cmocka_unit_test(the_same_bytes_again),
-    cmocka_unit_test(what_a_zone_says_of_itself),
-    cmocka_unit_test(a_pencil_leaves_a_plume),
+    cmocka_unit_test(figures_reported_by_a_zone),
+    cmocka_unit_test(an_edge_separator_exits_a_plume),
     cmocka_unit_test(a_pencil_is_thin),
     cmocka_unit_test(a_real_surface),
     cmocka_unit_test(no_front_near),
