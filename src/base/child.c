@@ -192,7 +192,7 @@ void vg_child_server_stop(void)
   wait_for(0);
 }
 
-static void remember_death(void)
+static void note_death(void)
 {
   struct pollfd p = { .fd = control, .events = 0 };
 
@@ -243,7 +243,7 @@ static int ask_server(vg_child_body *body)
   }
   if (n == 1) return ends[0];
   close(ends[0]);
-  remember_death();
+  note_death();
   return -1;
 }
 

@@ -294,7 +294,7 @@ static void sort_bucket(const struct vg_rendezvous *m, unsigned char *item,
   }
 }
 
-static void look_at(struct hall *h, const unsigned char *item, size_t n,
+static void inspect(struct hall *h, const unsigned char *item, size_t n,
                     int worker)
 {
   const struct vg_rendezvous *m = h->m;
@@ -311,7 +311,7 @@ static void look_at(struct hall *h, const unsigned char *item, size_t n,
   }
 }
 
-static void look_at_all(struct hall *h, const unsigned char *item, size_t n,
+static void inspect_all(struct hall *h, const unsigned char *item, size_t n,
                         int worker)
 {
   const struct vg_rendezvous *m = h->m;
@@ -321,7 +321,7 @@ static void look_at_all(struct hall *h, const unsigned char *item, size_t n,
 
     for (j = i + 1; j < n; j++)
       if (key_order(first, item + m->size * j, m->key)) break;
-    look_at(h, first, j - i, worker);
+    inspect(h, first, j - i, worker);
   }
 }
 
@@ -373,7 +373,7 @@ static void meet_part(struct hall *h, size_t p, unsigned char *room,
 
     sort_bucket(h->m, room + size * begin, bucket[b] - begin,
                 room + size * h->most);
-    look_at_all(h, room + size * begin, bucket[b] - begin, worker);
+    inspect_all(h, room + size * begin, bucket[b] - begin, worker);
   }
 }
 

@@ -241,8 +241,8 @@ static void interfaces_avoid_flat_cells(void **state)
   case_begin(&c, "box", 30000);
   coarse(&c, 1, &m);
   squeeze(&m);
-  assert_int_equal(vg_coarse_deal(&m, &c.load, c.s.sizing, &o, NULL, &n_apart,
-                                  NULL),
+  assert_int_equal(vg_coarse_assign(&m, &c.load, c.s.sizing, &o, NULL, &n_apart,
+                                    NULL),
                    VG_OK);
   assert_int_equal(vg_interface_list(&m, &f, NULL), VG_OK);
   for (size_t i = 0; i < f.n_face; i++) n += shape_at(&m, f.side[i]) < flat;

@@ -338,7 +338,7 @@ static void stops_using_plugins_that_fail(void **state)
     struct vg_fill_report r = { 0 };
     struct vg_filled f;
 
-    vg_mesher_patience(p, 0.05, 0);
+    vg_mesher_set_time_limit(p, 0.05, 0);
     for (int again = 0; again < 2; again++)
       assert_int_equal(fill(p, &box, NULL, &f, &r), VG_NOT_BETTER);
     /* 5 to 8 and 15 end or hang, the others return a wrong result */

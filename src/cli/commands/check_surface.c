@@ -38,8 +38,8 @@ static int can_be_followed(const struct vg_mesh *m,
 
 /* Trace the feature curves. The remesher may reject a surface without defects;
  * this is not an error here. */
-static vg_status look_at_lines(struct vg_boundary *b, struct findings *f,
-                               struct vg_error *err)
+static vg_status trace_curves(struct vg_boundary *b, struct findings *f,
+                              struct vg_error *err)
 {
   struct vg_remesh_options o = vg_options_remesh(&b->read->settings);
   struct vg_error why = VG_ERROR_INIT;
@@ -188,7 +188,7 @@ static vg_status examine(const struct vg_check_surface *a,
 {
   vg_status st;
 
-  VG_TRY(look_at_lines(b, f, err));
+  VG_TRY(trace_curves(b, f, err));
   VG_TRY(compare(a, &b->surface, f, err));
   vg_display_clear(show);
   if (!a->json) VG_TRY(print_text(a, b, f, err));

@@ -186,7 +186,7 @@ void vg_run_launch(struct vg_serve_runs *r, struct vg_serve_run *run)
   run->started = time(NULL);
   run->ended = 0;
   run->exit_status = run->output_size = -1;
-  run->told_to_stop = 0;
+  run->stop_time = 0;
   run->tell = nothing;
   run->note[0] = 0;
   st = run->is_slurm ? vg_slurm_submit(r, run, &err) : start_here(r, run, &err);
@@ -219,7 +219,7 @@ void vg_run_stop(struct vg_serve_runs *r, struct vg_serve_run *run, int hard)
     else if (is_alive)
       kill(run->pid, with_ranks && !run->is_slurm ? SIGUSR1 : SIGTERM);
     run->state = VG_SERVE_STOPPING;
-    run->told_to_stop = vg_display_now();
+    run->stop_time = vg_display_now();
   }
   vg_record_write(run, &err);
 }

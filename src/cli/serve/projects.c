@@ -86,9 +86,9 @@ static vg_status take_file(const char *root, const char *name, int64_t size,
 static vg_status look(const char *root, int dir, const char *under, int depth,
                       struct vg_projects *p, struct vg_error *err);
 
-static vg_status look_at(const char *root, int dir, const char *under,
-                         const char *name, int depth, struct vg_projects *p,
-                         struct vg_error *err)
+static vg_status inspect_file(const char *root, int dir, const char *under,
+                              const char *name, int depth,
+                              struct vg_projects *p, struct vg_error *err)
 {
   struct stat s;
   char *path;
@@ -126,7 +126,7 @@ static vg_status look(const char *root, int dir, const char *under, int depth,
       p->is_cut = 1;
       break;
     }
-    st = look_at(root, dirfd(d), under, e->d_name, depth, p, err);
+    st = inspect_file(root, dirfd(d), under, e->d_name, depth, p, err);
   }
   closedir(d);
   return st;

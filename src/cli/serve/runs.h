@@ -49,7 +49,7 @@ struct vg_serve_run {
   /* Not in the record: */
   struct vg_tell tell;
   int64_t output_size; /* size of output.log when `tell` was read */
-  double told_to_stop; /* time of the request, by vg_display_now */
+  double stop_time;    /* time of the request, by vg_display_now */
   double submitted;
   pid_t helper; /* scancel while it is running; 0: none */
 };

@@ -134,7 +134,7 @@ void vg_slurm_submitted(struct vg_serve_run *run, int exit_status)
   struct vg_error err;
   char path[4096], text[1024];
   int64_t whole;
-  int told = run->state == VG_SERVE_STOPPING;
+  int was_stopping = run->state == VG_SERVE_STOPPING;
 
   vg_file_tail(vg_run_path(run, "sbatch.txt", path), text, sizeof text, &whole);
   run->pid = 0;
@@ -143,7 +143,7 @@ void vg_slurm_submitted(struct vg_serve_run *run, int exit_status)
   if (exit_status == 0) find_job(text, run->job, sizeof run->job);
   if (*run->job) {
     run->state = VG_SERVE_PENDING;
-    if (told) vg_slurm_stop(run, 1), run->state = VG_SERVE_STOPPING;
+    if (was_stopping) vg_slurm_stop(run, 1), run->state = VG_SERVE_STOPPING;
   } else {
     run->state = VG_SERVE_FAILED;
     text[strcspn(text, "\n")] = 0;

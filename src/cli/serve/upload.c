@@ -11,7 +11,7 @@
 
 #include "cli/serve/inside.h"
 
-static vg_status there_already(const char *name, struct vg_error *err)
+static vg_status already_exists(const char *name, struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_INPUT,
                  "'%.80s' already exists and is not "
@@ -37,7 +37,7 @@ static vg_status make(struct vg_upload *u, const char *folder,
   if (asprintf(&u->temporary, "%s/.%.180s.XXXXXX", folder, u->name) < 0)
     u->temporary = NULL;
   if (!u->path || !u->temporary) return vg_fail_memory(err, "a path");
-  if (!lstat(u->path, &s)) return there_already(u->name, err);
+  if (!lstat(u->path, &s)) return already_exists(u->name, err);
   u->fd = mkostemp(u->temporary, O_CLOEXEC);
   if (u->fd >= 0) return VG_OK;
   return vg_fail(err, VG_ERR_IO, "cannot write '%.80s': %s", u->name,
@@ -104,7 +104,7 @@ static vg_status give_name(struct vg_upload *u, struct vg_error *err)
                              not overwrite either */
     return VG_OK;
   }
-  if (errno == EEXIST) return there_already(u->name, err);
+  if (errno == EEXIST) return already_exists(u->name, err);
   return vg_fail(err, VG_ERR_IO, "'%.80s': %s", u->name, strerror(errno));
 }
 

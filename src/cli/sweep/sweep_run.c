@@ -260,14 +260,14 @@ static void become(char **word, int log, const sigset_t *mask)
 static int wait_for(pid_t child, const sigset_t *chld)
 {
   const struct timespec pause = { 0, 200000000 };
-  int status = 0, told = 0;
+  int status = 0, signalled = 0;
 
   for (;;) {
     pid_t got = waitpid(child, &status, WNOHANG);
 
     if (got == child) break;
     if (got < 0 && errno != EINTR) return 127;
-    if (vg_display_interrupted() && !told++) kill(child, SIGTERM);
+    if (vg_display_interrupted() && !signalled++) kill(child, SIGTERM);
     sigtimedwait(chld, NULL, &pause);
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -120,11 +120,11 @@ static int flood(struct vg_inserter *s, const vg_d2 p[3])
       if (link != VG_NONE && !(own >> i & 1) && !(flag[other] & VG_TRIED)) {
         if (flag[other] & VG_MARK) continue;
         if (c.signs & VG_SIDE_SEES << i) {
-          unsigned told = vg_cell_signs(x, cells[other].v, p);
+          unsigned signs = vg_cell_signs(x, cells[other].v, p);
 
-          flag[other] |= told & VG_IN_SPHERE ? VG_MARK : VG_TRIED;
-          if (told & VG_IN_SPHERE) {
-            s->cell[s->n_cell++] = (struct vg_cavity_cell){ other, told };
+          flag[other] |= signs & VG_IN_SPHERE ? VG_MARK : VG_TRIED;
+          if (signs & VG_IN_SPHERE) {
+            s->cell[s->n_cell++] = (struct vg_cavity_cell){ other, signs };
             continue;
           }
           s->tried[s->n_tried++] = other;
@@ -143,12 +143,12 @@ static int start_flood(struct vg_inserter *s, uint32_t seed, const vg_d2 p[3])
 {
   const double(*x)[3] = (const double(*)[3])s->t->x;
   const uint32_t *v = s->t->cell[seed].v;
-  unsigned told = vg_cell_signs(x, v, p);
+  unsigned signs = vg_cell_signs(x, v, p);
 
-  if (!(told & VG_IN_SPHERE)) told = vg_cell_sides(x, v, p, 0, 0);
+  if (!(signs & VG_IN_SPHERE)) signs = vg_cell_sides(x, v, p, 0, 0);
   if (make_room(s)) return -1;
   s->t->flag[seed] |= VG_MARK;
-  s->cell[s->n_cell++] = (struct vg_cavity_cell){ seed, told };
+  s->cell[s->n_cell++] = (struct vg_cavity_cell){ seed, signs };
   return flood(s, p);
 }
 

@@ -43,7 +43,7 @@ static int all_four(const struct zone *z, const uint8_t *flag, uint32_t c)
 }
 
 /* Set z->at: the sides of the planes on which the points are. */
-static vg_status look_at_points(struct zone *z, struct vg_error *err)
+static vg_status find_point_sides(struct zone *z, struct vg_error *err)
 {
   const struct vg_tets *t = &z->g->t;
   const struct vg_region *r = z->g->region;
@@ -126,7 +126,7 @@ vg_status vg_zone_narrow(struct vg_filling *g, struct vg_error *err)
   const struct vg_region *r = g->region;
   uint8_t *is_known = vg_alloc(t->n_point, 1);
   double band = r->n_plane > 1 || r->n_wall ? VG_BAND_FLUID : whole_band;
-  vg_status st = is_known ? look_at_points(&z, err)
+  vg_status st = is_known ? find_point_sides(&z, err)
                           : vg_fail_memory(err, "the points of a zone");
 
   assert(r && (r->n_plane > 0 || r->n_wall > 0));
@@ -253,7 +253,7 @@ vg_status vg_zone_choose(struct vg_filling *g, struct vg_error *err)
   struct zone z = { .g = g };
   struct vg_tets *t = &g->t;
   uint8_t *used = vg_calloc(t->n_point, 1);
-  vg_status st = used ? look_at_points(&z, err)
+  vg_status st = used ? find_point_sides(&z, err)
                       : vg_fail_memory(err, "the points of a zone");
 
   assert(g->region && !g->out.n_cell);

@@ -41,7 +41,7 @@ static void bar_edges(struct vg_judge_worker *w, const struct vg_face_item *f)
 
 /* A face that does not join exactly two sides may have further cells, which a
  * slice has already matched with each other. */
-static void suspect(struct vg_judge_worker *w, const struct vg_face_item *f)
+static void add_suspect(struct vg_judge_worker *w, const struct vg_face_item *f)
 {
   struct vg_face_key *key = vg_items_add(&w->suspect, sizeof *key);
 
@@ -69,7 +69,7 @@ static void match_face(const struct vg_slices_judgement *j,
   }
   n_seen = n_cell + n_boundary;
   if (!n_seen) return;
-  if (q == VG_JUDGED_WHOLE && (n_seen != 2 || !n_cell)) suspect(w, f);
+  if (q == VG_JUDGED_WHOLE && (n_seen != 2 || !n_cell)) add_suspect(w, f);
   if (j->sizing && j->edges_of == q &&
       (q == VG_JUDGED_FIELD ? n_cell == 1 : n_boundary > 0))
     bar_edges(w, f);

@@ -87,7 +87,8 @@ static unsigned keyed(const struct bucket *b, uint64_t key)
   return found;
 }
 
-static unsigned that_have(const struct bucket *b, uint64_t key, uint32_t high)
+static unsigned matching_slots(const struct bucket *b, uint64_t key,
+                               uint32_t high)
 {
   unsigned found = 0;
 
@@ -140,12 +141,13 @@ static void meet(struct pairing *p, uint32_t first, uint32_t second)
   vg_stats_ratio(p->f, p->volume[a], p->volume[b]);
 }
 
-static void come(struct pairing *p, const struct face *f)
+static void add_face(struct pairing *p, const struct face *f)
 {
   size_t first = home(p, f->key, f->high), i = first;
   unsigned found;
 
-  while (!(found = that_have(&p->bucket[i], f->key, f->high)) && p->is_over[i])
+  while (!(found = matching_slots(&p->bucket[i], f->key, f->high)) &&
+         p->is_over[i])
     i = (i + 1) & p->mask;
   if (found) {
     found = (unsigned)__builtin_ctz(found);
@@ -211,7 +213,7 @@ static void meet_in_columns(struct pairing *p, uint32_t (*n)[4], size_t n_cell,
   }
 }
 
-static void come_all(struct pairing *p)
+static void add_all_faces(struct pairing *p)
 {
   const struct vg_mesh *m = p->m;
   struct face f[4 * AHEAD];
@@ -224,11 +226,11 @@ static void come_all(struct pairing *p)
     for (size_t k = 0; k < 4 * n; k++)
       __builtin_prefetch(&p->bucket[home(p, f[k].key, f[k].high)], 1);
     for (size_t k = 0; k < 4 * n && !p->refused; k++)
-      if (f[k].key != VACANT) come(p, &f[k]);
+      if (f[k].key != VACANT) add_face(p, &f[k]);
   }
   for (size_t i = 0; i < m->n_tri && !p->refused; i++) {
     f[0] = face_of_tri(m->tri[i], (uint32_t)(p->n_cell + i));
-    come(p, &f[0]);
+    add_face(p, &f[0]);
   }
 }
 
@@ -278,7 +280,7 @@ vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
 
   p.f = vg_stats_new();
   if (!p.f || !make_buckets(&p, FIRST_BITS)) p.refused = 1;
-  else come_all(&p);
+  else add_all_faces(&p);
   if (p.refused) st = vg_fail_memory(err, "the table of faces");
   else if (unpaired) st = list_unpaired(&p, unpaired, err);
   else if (p.n || p.is_odd) st = VG_BLOCKED;

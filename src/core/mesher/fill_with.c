@@ -17,7 +17,7 @@
 
 /* Slow meshers make a thousand cells per second, and about ten cells per
  * triangle. */
-static const double patience = 600, patience_each = 0.05; /* K31 */
+static const double time_limit = 600, time_limit_per_face = 0.05; /* K31 */
 static const double silence = 10; /* limit without any message, relative to
                                      the processor time */
 
@@ -25,7 +25,7 @@ static const uint64_t n_max = UINT32_MAX / 8 - 1; /* limit of cell_links.h */
 
 struct vg_mesher_pool {
   struct vg_mesher_spec spec;
-  double patience, patience_each;
+  double time_limit, time_limit_per_face;
   pthread_mutex_t lock;
   size_t n, room;
   struct vg_child *idle; /* [n] idle processes that have loaded the mesher */
@@ -88,8 +88,8 @@ vg_status vg_mesher_open(const char *name, struct vg_mesher_pool **out,
   assert(name && out);
   if (!p) return vg_fail_memory(err, "a mesher");
   pthread_mutex_init(&p->lock, NULL);
-  p->patience = patience;
-  p->patience_each = patience_each;
+  p->time_limit = time_limit;
+  p->time_limit_per_face = time_limit_per_face;
   if ((size_t)snprintf(p->spec.name, sizeof p->spec.name, "%s", name) >=
       sizeof p->spec.name) {
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
@@ -117,12 +117,12 @@ void vg_mesher_close(struct vg_mesher_pool *p)
   free(p);
 }
 
-void vg_mesher_patience(struct vg_mesher_pool *p, double seconds,
-                        double seconds_each)
+void vg_mesher_set_time_limit(struct vg_mesher_pool *p, double seconds,
+                              double seconds_each)
 {
   assert(p && seconds >= 0 && seconds_each >= 0);
-  p->patience = seconds;
-  p->patience_each = seconds_each;
+  p->time_limit = seconds;
+  p->time_limit_per_face = seconds_each;
 }
 
 /* --- a void --------------------------------------------------------------- */
@@ -199,7 +199,7 @@ static enum outcome take_cells(struct filling *f,
   return FILLED;
 }
 
-static enum outcome converse(struct filling *f)
+static enum outcome run_job(struct filling *f)
 {
   struct vg_mesher_word w;
 
@@ -260,8 +260,8 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
   struct filling f = { .front = front,
                        .sizing = sizing,
                        .options = options,
-                       .seconds = p->patience +
-                                  p->patience_each * (double)front->n_face };
+                       .seconds = p->time_limit + p->time_limit_per_face *
+                                                    (double)front->n_face };
   double t = vg_clock();
   struct vg_child c;
   enum outcome o;
@@ -273,7 +273,7 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
   st = borrow(p, &c, err);
   if (st < 0) return st;
   f.fd = c.fd;
-  o = converse(&f);
+  o = run_job(&f);
   if (o == FILLED || o == FAILED) give_back(p, &c);
   else vg_child_close(&c);
   st = VG_NOT_BETTER;

@@ -42,8 +42,8 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
 /** Set the time limit for a void: seconds of processor time, and additional
  * seconds per triangle of a front. A void is also aborted after ten times that
  * without any message from the mesher. */
-void vg_mesher_patience(struct vg_mesher_pool *p, double seconds,
-                        double seconds_each);
+void vg_mesher_set_time_limit(struct vg_mesher_pool *p, double seconds,
+                              double seconds_each);
 
 /** The check of vg_mesher_fill alone. Cells may have either orientation and are
  * made positive; new points that no cell uses are removed.

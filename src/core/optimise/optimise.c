@@ -122,7 +122,7 @@ static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
 }
 
 /* A cell for which all steps failed is flagged VG_TRIED until it changes. */
-static int wants_mending(const struct vg_optimiser *o, uint32_t c)
+static int needs_improvement(const struct vg_optimiser *o, uint32_t c)
 {
   return is_live(o->t, c) && o->q[c] < aim && !(o->t->flag[c] & VG_TRIED) &&
          concerns(o, c);
@@ -136,11 +136,11 @@ static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
   size_t k = 0, n_cell = o->t->n_cell;
 
   *n = 0;
-  for (uint32_t c = 0; c < n_cell; c++) *n += (size_t)wants_mending(o, c);
+  for (uint32_t c = 0; c < n_cell; c++) *n += (size_t)needs_improvement(o, c);
   *list = vg_alloc(*n, sizeof **list);
   if (!*list) return vg_fail_memory(err, "optimisation");
   for (uint32_t c = 0; c < n_cell; c++)
-    if (wants_mending(o, c)) {
+    if (needs_improvement(o, c)) {
       double q = o->q[c] > 0 ? o->q[c] : 0;
 
       (*list)[k].key = q < desperate ? (uint64_t)(CLASSES * q / desperate)
@@ -172,7 +172,7 @@ static vg_status improve_bad(struct vg_optimiser *o, int *again,
   for (size_t k = 0; st == VG_OK && k < n; k++) {
     uint32_t c = list[k].index;
 
-    if (!wants_mending(o, c)) continue;
+    if (!needs_improvement(o, c)) continue;
     if (improve_cell(o, c)) n_better++;
     else o->t->flag[c] |= VG_TRIED;
   }

@@ -19,7 +19,7 @@ namespace
  * of TetGen's predicates, plus this many per triangle: dozens of times what
  * pockets need. Unlike a time limit, a count of calls gives the same result on
  * any machine. */
-const uint64_t patience = 20000000, patience_each = 50000; /* K4 */
+const uint64_t call_limit = 20000000, call_limit_per_triangle = 50000; /* K4 */
 
 /* TetGen may also loop forever without calling a predicate. A job is therefore
  * aborted, too, if it uses this many seconds of processor time, plus this many
@@ -119,7 +119,7 @@ void be_patient(size_t n_tri)
 {
   itimerval time = {};
 
-  calls_left = patience + patience_each * n_tri;
+  calls_left = call_limit + call_limit_per_triangle * n_tri;
   calls_seen = 0;
   signal(SIGPROF, look);
   time.it_value.tv_sec = static_cast<time_t>(

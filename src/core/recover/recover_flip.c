@@ -57,8 +57,8 @@ static int replace(struct vg_flipper *f, const struct change *g)
   return 1;
 }
 
-static void come(struct change *g, uint32_t a, uint32_t b, uint32_t c,
-                 uint32_t d)
+static void add_cell(struct change *g, uint32_t a, uint32_t b, uint32_t c,
+                     uint32_t d)
 {
   uint32_t *v = g->v[g->n_new++];
 
@@ -92,7 +92,7 @@ int vg_flip_face(struct vg_flipper *f, uint32_t c, int i)
   for (int k = 0; k < 3; k++) v[k] = t->cell[c].v[vg_face[i][k]];
   for (int k = 0; k < 3; k++) {
     if (!(side(t, v[k], v[(k + 1) % 3], b, a) > 0)) return 0;
-    come(&g, v[k], v[(k + 1) % 3], b, a);
+    add_cell(&g, v[k], v[(k + 1) % 3], b, a);
   }
   before = vg_flip_obstructs(f, v[0], v[1], v[2]);
   after = vg_flip_pierces(f, a, b);
@@ -209,8 +209,8 @@ static void emit(const struct plan *p, struct change *g, int i, int j)
 
   if (j - i < 2) return;
   k = p->split[i][j];
-  come(g, r->v[i], r->v[k], r->v[j], r->b);
-  come(g, r->v[i], r->v[j], r->v[k], r->a);
+  add_cell(g, r->v[i], r->v[k], r->v[j], r->b);
+  add_cell(g, r->v[i], r->v[j], r->v[k], r->a);
   emit(p, g, i, k);
   emit(p, g, k, j);
 }

@@ -179,7 +179,7 @@ static void change(void *context, size_t first, size_t end, int worker)
 /* --- all blocks ----------------------------------------------------------- */
 
 /* Sort the triangles by block and number them within it. */
-static vg_status deal(struct blocks *s, struct vg_error *err)
+static vg_status sort_by_block(struct blocks *s, struct vg_error *err)
 {
   size_t *start = vg_calloc(s->n + 1, sizeof *start);
 
@@ -217,7 +217,7 @@ static vg_status run_blocks(struct blocks *s, struct vg_tris *w, int phase,
     VG_TRY(vg_fail_memory(err, "the blocks of the surface"));
   memset(s->map, 0xff, workers * w->n_point * sizeof *s->map);
   VG_TRY(vg_blocks_cut(w, s->n, phase, s->of, err));
-  VG_TRY(deal(s, err));
+  VG_TRY(sort_by_block(s, err));
   vg_parallel_for(threads, s->n, 1, change, s);
   for (size_t i = 0; i < s->n; i++) {
     if (s->block[i].st >= 0) continue;

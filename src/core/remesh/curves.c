@@ -64,7 +64,7 @@ static double length2(const struct vg_ref *r, uint32_t h)
 /* The first triangle on the side of h that defines the direction of the surface
  * there. Triangles whose heights add up to less than the tolerance are skipped:
  * points that are off by the tolerance turn such triangles arbitrarily. */
-static uint32_t face_beside(const struct finder *f, uint32_t h)
+static uint32_t adjacent_face(const struct finder *f, uint32_t h)
 {
   const struct vg_ref *r = f->r;
   double room = f->o->tolerance;
@@ -93,8 +93,8 @@ static double cosine(const struct finder *f, uint32_t h)
   if (vg_dot(a, a) == 0 || vg_dot(b, b) == 0) return 1;
   c = vg_dot(a, b);
   if (c > f->lead) return c;
-  a = r->shape[face_beside(f, h)].n;
-  b = r->shape[face_beside(f, r->mate[h])].n;
+  a = r->shape[adjacent_face(f, h)].n;
+  b = r->shape[adjacent_face(f, r->mate[h])].n;
   if (vg_dot(a, a) == 0 || vg_dot(b, b) == 0) return 1;
   return fmax(c, vg_dot(a, b));
 }
@@ -201,7 +201,7 @@ static double straight(const struct vg_ref *r, uint32_t a, uint32_t b,
 
 /* Extend the feature curve with the loose end p along the straightest edges
  * that are sharp enough, until it meets another one or no such edge is left. */
-static void lead_on(struct finder *f, uint32_t p)
+static void extend_curve(struct finder *f, uint32_t p)
 {
   const double turn = vg_cosine(TURN);
   uint32_t last = VG_REF_NONE;
@@ -385,7 +385,7 @@ vg_status vg_curves_find(struct vg_curves *c, const struct vg_ref *r,
   VG_TRY(list_halves(&f, err));
   find_lines(&f);
   for (uint32_t p = 0; p < r->n_point; p++)
-    if (f.degree[p] == 1) lead_on(&f, p);
+    if (f.degree[p] == 1) extend_curve(&f, p);
   for (uint32_t p = 0; p < r->n_point; p++)
     if (f.degree[p] == 1) drop_speck(&f, p);
   find_corners(&f);

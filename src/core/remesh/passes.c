@@ -170,7 +170,7 @@ vg_status vg_pass_divide(struct vg_tris *w, int threads, struct vg_error *err)
 
 /* Collapse p into its nearer neighbour on the curve, or else into the other
  * one. */
-static int take_away(struct vg_tris *w, uint32_t p)
+static int remove_point(struct vg_tris *w, uint32_t p)
 {
   uint32_t ring[VG_WORK_RING], h[2], n_h = 0;
   int open;
@@ -198,7 +198,7 @@ void vg_pass_curves(struct vg_tris *w)
     for (uint32_t p = 0; p < w->n_point && !w->ends; p++)
       if (w->point[p].goes && w->point[p].half != VG_REF_NONE &&
           w->point[p].kind == VG_WORK_CURVE)
-        n += (size_t)take_away(w, p);
+        n += (size_t)remove_point(w, p);
     n += vg_pass_swap(w);
   }
 }

@@ -234,7 +234,7 @@ static double shape_without(const struct vg_tris *w, const struct ring *r,
 }
 
 /* Remove p by a collapse into the neighbour that gives the best angles. */
-static int take_away(struct vg_tris *w, uint32_t p)
+static int remove_point(struct vg_tris *w, uint32_t p)
 {
   struct ring r;
   double best;
@@ -272,7 +272,7 @@ static int polish_tri(struct vg_tris *w, uint32_t t)
   for (int k = 2; k >= 0; k--)
     if (vg_tris_swap(w, order[k])) return 1;
   for (int k = 0; k < 3; k++)
-    if (take_away(w, w->tri[t][k])) return 1;
+    if (remove_point(w, w->tri[t][k])) return 1;
   if (move_corner(w, t, shape)) return 1;
   for (int k = 0; k < 2; k++) {
     uint32_t h = order[k], g = w->mate[h];

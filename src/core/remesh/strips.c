@@ -310,7 +310,7 @@ static void merge(struct finder *f, size_t first)
   f->n_found = n;
 }
 
-static vg_status look_at_curve(struct finder *f, size_t i, struct vg_error *err)
+static vg_status inspect_curve(struct finder *f, size_t i, struct vg_error *err)
 {
   const struct vg_feature_curve *curve = &f->c->curve[i];
   const double *across = f->o->across;
@@ -392,7 +392,7 @@ vg_status vg_strips_find(const struct vg_ref *r, const struct vg_curves *c,
   VG_TRY(list_sides(&f, err));
   VG_TRY(rank_curves(&f, err));
   for (size_t i = 0; i < c->n_curve; i++)
-    if (!f.claim[i].stays) VG_TRY(look_at_curve(&f, f.claim[i].curve, err));
+    if (!f.claim[i].stays) VG_TRY(inspect_curve(&f, f.claim[i].curve, err));
   if (f.n_found) VG_TRY(close_all(&f, m, err));
 done:
   free(f.side);

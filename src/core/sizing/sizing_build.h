@@ -26,7 +26,7 @@ struct vg_octree_point {
   uint32_t hint;
   float h;
   uint8_t n_parent; /* 0: corner of the root, or centre; otherwise 2 or 4 */
-  uint8_t hangs;
+  uint8_t is_hanging;
 };
 
 /* Cells of a level are contiguous, and so are the eight children of a cell. */
@@ -61,8 +61,8 @@ static inline void vg_octree_place(const struct vg_octree_build *b,
 }
 
 /** Value of a hanging point: the mean of its parents. */
-static inline float vg_octree_hang(const struct vg_octree_build *b,
-                                   const struct vg_octree_point *p)
+static inline float vg_octree_hanging_size(const struct vg_octree_build *b,
+                                           const struct vg_octree_point *p)
 {
   double sum = 0;
 

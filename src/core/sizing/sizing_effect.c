@@ -108,7 +108,7 @@ static int find_faces(const struct finder *f, struct vg_limited_source *h,
 }
 
 /* Would no face limit the source with another growth rate? */
-static int lets_go(const struct holders *all, double growth, double asked)
+static int is_unlimited(const struct holders *all, double growth, double asked)
 {
   for (size_t i = 0; i < all->n; i++)
     if (vg_sizing_below(growth, all->item[i].edge, all->item[i].distance) >
@@ -131,7 +131,7 @@ static void find_remedy(const struct finder *f, struct vg_limited_source *h,
                                         h->asked, nearest);
   for (int k = 21; k <= 40; k++)
     if (0.05 * k > o->growth &&
-        lets_go(all, vg_scaled_growth(0.05 * k, o->scale), h->asked)) {
+        is_unlimited(all, vg_scaled_growth(0.05 * k, o->scale), h->asked)) {
       h->growth_wanted = 0.05 * k;
       return;
     }

@@ -371,8 +371,8 @@ static void make_point(const struct level *l, struct family *y, size_t s, int i,
       on = on && (at[k] == 1 || at[k] / 2 == (j >> k & 1));
     if (on && p->n_parent < 4) p->parent[p->n_parent++] = c->corner[j];
   }
-  p->hangs = n_cell < full_count(p);
-  if (p->hangs) p->h = vg_octree_hang(b, p);
+  p->is_hanging = n_cell < full_count(p);
+  if (p->is_hanging) p->h = vg_octree_hanging_size(b, p);
   else if (i == 13 && !isnan(known)) p->h = known;
   else p->h = sample(y, c, i);
 }

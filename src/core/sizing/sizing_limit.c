@@ -140,7 +140,7 @@ static void remesh_body(void *context, size_t first, size_t end, int worker)
     float h = value(atomic_load_explicit(l->bits + i, memory_order_relaxed));
     double x[3];
 
-    if (p->hangs || h == l->before[i]) continue;
+    if (p->is_hanging || h == l->before[i]) continue;
     vg_octree_place(b, p->at, x);
     p->h = (float)vg_stat_combine(b->f, x, (double)h, NULL, &p->hint);
   }
@@ -155,7 +155,8 @@ static void renew(struct limit *l)
 
   vg_parallel_for(b->threads, b->n_point, VG_OCTREE_GRAIN, remesh_body, l);
   for (size_t i = 0; i < b->n_point; i++)
-    if (b->point[i].hangs) b->point[i].h = vg_octree_hang(b, b->point + i);
+    if (b->point[i].is_hanging)
+      b->point[i].h = vg_octree_hanging_size(b, b->point + i);
 }
 
 vg_status vg_octree_limit(struct vg_octree_build *b, struct vg_error *err)

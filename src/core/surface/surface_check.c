@@ -193,7 +193,7 @@ static void centre(const struct check *c, size_t f, double at[3])
   }
 }
 
-static vg_status look_at_points(struct check *c)
+static vg_status check_points(struct check *c)
 {
   const struct vg_mesh *m = c->m;
   uint8_t *in_cell = vg_calloc(m->n_point, 1);
@@ -217,7 +217,7 @@ done:
   return st;
 }
 
-static vg_status look_at_faces(struct check *c)
+static vg_status check_faces(struct check *c)
 {
   const uint32_t *first = c->first;
   double at[3];
@@ -261,7 +261,7 @@ static vg_status add_edge(struct check *c, enum vg_defect_kind kind,
              b, at);
 }
 
-static vg_status look_at_edges(struct check *c)
+static vg_status check_edges(struct check *c)
 {
   vg_status st = VG_OK;
 
@@ -309,7 +309,7 @@ static vg_status add_meeting(struct check *c, uint32_t f, uint32_t g)
              SIZE_MAX, at);
 }
 
-static vg_status look_at_crossings(struct check *c)
+static vg_status check_crossings(struct check *c)
 {
   const struct vg_crossing *x = &c->cross;
   vg_status st = VG_OK;
@@ -324,7 +324,7 @@ done:
   return st;
 }
 
-static vg_status look_at_shells(struct check *c)
+static vg_status check_shells(struct check *c)
 {
   const struct vg_surface_report *r = c->r;
   vg_status st = VG_OK;
@@ -347,7 +347,7 @@ done:
   return st;
 }
 
-static vg_status look_at_conditions(struct check *c)
+static vg_status check_conditions(struct check *c)
 {
   const struct vg_mesh *m = c->m;
   uint8_t *seen = vg_calloc(m->n_patch, 1);
@@ -570,12 +570,12 @@ static vg_status run(struct check *c)
   VG_TRY(vg_stopped(&c->o->stop, c->err));
   VG_TRY(build_shells(c));
   VG_TRY(vg_stopped(&c->o->stop, c->err));
-  VG_TRY(look_at_edges(c));
-  VG_TRY(look_at_points(c));
-  VG_TRY(look_at_faces(c));
-  VG_TRY(look_at_crossings(c));
-  VG_TRY(look_at_shells(c));
-  if (c->o->require_bc) VG_TRY(look_at_conditions(c));
+  VG_TRY(check_edges(c));
+  VG_TRY(check_points(c));
+  VG_TRY(check_faces(c));
+  VG_TRY(check_crossings(c));
+  VG_TRY(check_shells(c));
+  if (c->o->require_bc) VG_TRY(check_conditions(c));
   r->is_closed = c->s.n && !r->count[VG_DEFECT_OPEN_EDGE] &&
                  !r->count[VG_DEFECT_NONMANIFOLD_EDGE];
   if (r->n_defect)

@@ -50,7 +50,7 @@ static void join_edge(struct regions *x, const struct vg_edges *e, size_t edge)
 
 /* An edge in which two or more groups of a region meet is not on its border,
  * unless there are single faces at the edge. */
-static void look_at_edge(struct regions *x, const struct vg_edges *e,
+static void inspect_edge(struct regions *x, const struct vg_edges *e,
                          size_t edge)
 {
   static const uint8_t border[] = { BORDER_NONE, BORDER_ONE, BORDER_TWO,
@@ -99,7 +99,7 @@ static vg_status allocate(struct regions *x, uint8_t **copy,
   return vg_fail_memory(err, "the doubled triangles");
 }
 
-static void look_at_groups(struct regions *x)
+static void inspect_groups(struct regions *x)
 {
   const struct vg_faces *s = x->s;
 
@@ -129,8 +129,8 @@ vg_status vg_faces_copies(const struct vg_faces *s, const uint32_t *first,
     if (!(s->state[f] & VG_FACE_OUT)) x.n[first[f]]++;
   }
   for (size_t i = 0; i < e.n; i++) join_edge(&x, &e, i);
-  look_at_groups(&x);
-  for (size_t i = 0; i < e.n; i++) look_at_edge(&x, &e, i);
+  inspect_groups(&x);
+  for (size_t i = 0; i < e.n; i++) inspect_edge(&x, &e, i);
   for (uint32_t f = 0; f < s->n; f++)
     if (!(s->state[f] & VG_FACE_OUT) && x.n[first[f]] > 1)
       out[f] = (uint8_t)class_of(x.border[vg_root_of(x.up, first[f])]);

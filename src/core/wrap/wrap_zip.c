@@ -110,7 +110,7 @@ static int ring_fits(const struct zip *z, uint32_t a, uint32_t b)
   return 1;
 }
 
-static int put_together(struct zip *z, uint32_t a, uint32_t b)
+static int merge_points(struct zip *z, uint32_t a, uint32_t b)
 {
   if (z->busy[a] || z->busy[b] || !link_fits(z, a, b) || !ring_fits(z, a, b))
     return 0;
@@ -134,7 +134,7 @@ static int put_together(struct zip *z, uint32_t a, uint32_t b)
 
 /* Remove triangle t by merging the ends of one of its sides, the shortest
  * first, in either direction. */
-static int take_away(struct zip *z, size_t t)
+static int remove_triangle(struct zip *z, size_t t)
 {
   uint32_t v[3];
   int order[3] = { 0, 1, 2 };
@@ -154,7 +154,7 @@ static int take_away(struct zip *z, size_t t)
   for (int i = 0; i < 2; i++) {
     uint32_t a = v[order[i]], b = v[(order[i] + 1) % 3];
 
-    if (put_together(z, a, b) || put_together(z, b, a)) return 1;
+    if (merge_points(z, a, b) || merge_points(z, b, a)) return 1;
   }
   return 0;
 }
@@ -209,7 +209,7 @@ static vg_status zip_all(struct zip *z, const struct vg_stop *stop,
     list_triangles(z);
     memset(z->busy, 0, z->m->n_point);
     for (size_t t = 0; t < z->m->n_tri; t++)
-      if (!z->gone[t] && is_flat(z, z->m->tri[t])) take_away(z, t);
+      if (!z->gone[t] && is_flat(z, z->m->tri[t])) remove_triangle(z, t);
   }
   return VG_OK;
 }

@@ -139,7 +139,8 @@ done:
 
 /* --- the parts of the tree --- */
 
-static vg_status lay_zone(struct layout *l, int64_t root, struct vg_error *err)
+static vg_status layout_zone(struct layout *l, int64_t root,
+                             struct vg_error *err)
 {
   static const float version = 3.4f;
   static const int32_t three[2] = { 3, 3 };
@@ -161,7 +162,7 @@ done:
   return st;
 }
 
-static vg_status lay_points(struct layout *l, struct vg_error *err)
+static vg_status layout_points(struct layout *l, struct vg_error *err)
 {
   static const char *const name[3] = { "CoordinateX", "CoordinateY",
                                        "CoordinateZ" };
@@ -175,7 +176,7 @@ static vg_status lay_points(struct layout *l, struct vg_error *err)
   return st;
 }
 
-static vg_status lay_cells(struct layout *l, struct vg_error *err)
+static vg_status layout_cells(struct layout *l, struct vg_error *err)
 {
   vg_status st = VG_OK;
 
@@ -189,9 +190,9 @@ static vg_status lay_cells(struct layout *l, struct vg_error *err)
 }
 
 /* Add a section for the faces of one kind. */
-static vg_status lay_faces(struct layout *l, const char *word, size_t first,
-                           size_t end, int n_node, int is_second,
-                           struct vg_error *err)
+static vg_status layout_faces(struct layout *l, const char *word, size_t first,
+                              size_t end, int n_node, int is_second,
+                              struct vg_error *err)
 {
   char name[VG_CGNS_NAME];
 
@@ -206,9 +207,9 @@ static vg_status lay_faces(struct layout *l, const char *word, size_t first,
                      err);
 }
 
-static vg_status lay_condition(struct layout *l, const char *word,
-                               const struct vg_patch *p, uint64_t before,
-                               struct vg_error *err)
+static vg_status layout_condition(struct layout *l, const char *word,
+                                  const struct vg_patch *p, uint64_t before,
+                                  struct vg_error *err)
 {
   const int64_t range[2] = { (int64_t)before + 1, (int64_t)l->n_element };
   const char *type = vg_cgns_condition(p);
@@ -229,7 +230,7 @@ done:
 }
 
 /* Patches without faces are omitted. */
-static vg_status lay_patches(struct layout *l, struct vg_error *err)
+static vg_status layout_patches(struct layout *l, struct vg_error *err)
 {
   const struct vg_mesh *m = l->c->frame;
   vg_status st = add_empty(l, l->zone, "ZoneBC", "ZoneBC_t", &l->boundary, err);
@@ -241,9 +242,9 @@ static vg_status lay_patches(struct layout *l, struct vg_error *err)
 
     if (first == end) continue;
     while (quad < end && l->c->face[quad] < m->n_tri) quad++;
-    VG_TRY(lay_faces(l, l->word[p], first, quad, 3, 0, err));
-    VG_TRY(lay_faces(l, l->word[p], quad, end, 4, quad > first, err));
-    st = lay_condition(l, l->word[p], &m->patch[p], before, err);
+    VG_TRY(layout_faces(l, l->word[p], first, quad, 3, 0, err));
+    VG_TRY(layout_faces(l, l->word[p], quad, end, 4, quad > first, err));
+    st = layout_condition(l, l->word[p], &m->patch[p], before, err);
   }
 done:
   return st;
@@ -289,18 +290,18 @@ static void note_places(struct vg_cgns *c)
   if (c->n_array) qsort(c->array, c->n_array, sizeof *c->array, by_place);
 }
 
-static vg_status lay_out(const char *path, struct layout *l,
-                         struct vg_error *err)
+static vg_status make_layout(const char *path, struct layout *l,
+                             struct vg_error *err)
 {
   struct vg_cgns_store store = VG_CGNS_STORE_INIT;
   int64_t root;
   vg_status st;
 
   VG_TRY(vg_cgns_tree_new(&store, path, &l->tree, &root, err));
-  VG_TRY(lay_zone(l, root, err));
-  VG_TRY(lay_points(l, err));
-  VG_TRY(lay_cells(l, err));
-  VG_TRY(lay_patches(l, err));
+  VG_TRY(layout_zone(l, root, err));
+  VG_TRY(layout_points(l, err));
+  VG_TRY(layout_cells(l, err));
+  VG_TRY(layout_patches(l, err));
   st = vg_cgns_tree_close(l->tree, err);
   l->tree = NULL;
   if (st < 0) goto done;
@@ -368,7 +369,7 @@ vg_status vg_cgns_plan(const char *path, const struct vg_mesh *frame,
   if (!c->array) VG_TRY(vg_fail_memory(err, "the nodes of a CGNS file"));
   VG_TRY(make_words(&l, err));
   VG_TRY(vg_boundary_by_patch(frame, &c->face_first, &c->face, err));
-  st = lay_out(path, &l, err);
+  st = make_layout(path, &l, err);
 done:
   free(l.word);
   if (st < 0) vg_cgns_release(c);

@@ -98,9 +98,9 @@ static vg_status put_boundary(const struct cogsg *c, uint32_t record_limit,
 }
 
 /* Write the .bc, still under its temporary name, and the .mapbc. */
-static vg_status write_beside(const struct cogsg *c, const char *stem,
-                              const char *bc_name, struct vg_output *bc,
-                              struct vg_error *err)
+static vg_status write_companions(const struct cogsg *c, const char *stem,
+                                  const char *bc_name, struct vg_output *bc,
+                                  struct vg_error *err)
 {
   struct vg_mesh m = c->mesh;
   vg_status st;
@@ -129,7 +129,7 @@ static vg_status finish(const struct cogsg *c, const char *stem,
   if (asprintf(&bc_name, "%s.bc", stem) < 0)
     return vg_fail_memory(err, "a file name");
   VG_TRY(put_boundary(c, record_limit, to, err));
-  VG_TRY(write_beside(c, stem, bc_name, &bc, err));
+  VG_TRY(write_companions(c, stem, bc_name, &bc, err));
   VG_TRY(vg_output_commit(&bc, err));
 done:
   vg_output_release(&bc);

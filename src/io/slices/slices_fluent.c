@@ -30,7 +30,7 @@ struct half {
 
 /* Reply to a half-face: the cell on the other side. own: its own cell. Both are
  * counted from 0. */
-struct told {
+struct reply {
   uint32_t slice, code, cell, own;
 };
 
@@ -41,11 +41,11 @@ struct run {
 
 struct served {
   struct run run[VG_SLICE_KINDS];
-  size_t first, n; /* told[first .. first + n - 1] are for this slice */
+  size_t first, n; /* replies[first .. first + n - 1] are for this slice */
 };
 
 struct worker {
-  struct vg_items half, *told; /* told: [size], by receiving rank */
+  struct vg_items half, *replies; /* replies: [size], by receiving rank */
   uint64_t n_quad, n_open;
   uint32_t open[4]; /* nodes of a face that has no other side */
   vg_status st;
@@ -64,7 +64,8 @@ struct writing {
   size_t begin, end;     /* boundary faces that this rank writes */
   uint32_t *cell;        /* [end - begin] their cells, counted from 0 */
   struct served *served; /* [n_slice] */
-  struct vg_items told;  /* replies (struct told), sorted by slice and code */
+  struct vg_items
+    replies;             /* replies (struct reply), sorted by slice and code */
   struct worker *worker; /* [threads] */
   struct vg_shared_file *to;
 };
@@ -214,10 +215,10 @@ static void add_boundary(struct writing *w)
 static void tell(struct worker *w, const struct half *to,
                  const struct half *mate)
 {
-  struct told *t = vg_items_add(&w->told[to->rank], sizeof *t);
+  struct reply *t = vg_items_add(&w->replies[to->rank], sizeof *t);
 
   if (t)
-    *t = (struct told){ to->slice, to->code, mate->cell - 1, to->cell - 1 };
+    *t = (struct reply){ to->slice, to->code, mate->cell - 1, to->cell - 1 };
   else w->st = vg_fail_memory(&w->err, "the faces between slices");
 }
 
@@ -240,9 +241,9 @@ static void meet(void *context, const unsigned char *item, size_t n, int worker)
 
 /* --- replies ------------------------------------------------------------- */
 
-static int compare_told(const void *a, const void *b)
+static int compare_replies(const void *a, const void *b)
 {
-  const struct told *x = a, *y = b;
+  const struct reply *x = a, *y = b;
 
   if (x->slice != y->slice) return x->slice < y->slice ? -1 : 1;
   return (x->code > y->code) - (x->code < y->code);
@@ -271,17 +272,17 @@ static vg_status exchange(struct writing *w, struct vg_error *err)
     struct vg_items all = { 0 };
 
     for (int t = 0; t < w->threads && st >= 0; t++)
-      st = vg_items_append(&all, &w->worker[t].told[r], sizeof(struct told),
+      st = vg_items_append(&all, &w->worker[t].replies[r], sizeof(struct reply),
                            err);
-    to[r] = (struct vg_bytes){ all.n * sizeof(struct told), all.data };
+    to[r] = (struct vg_bytes){ all.n * sizeof(struct reply), all.data };
   }
   VG_TRY(vg_comm_agree(w->comm, st, err));
   VG_TRY(vg_comm_exchange(w->comm, to, from, err));
   for (size_t r = 0; r < size && st >= 0; r++) {
-    const struct vg_items got = { from[r].n / sizeof(struct told), 0,
+    const struct vg_items got = { from[r].n / sizeof(struct reply), 0,
                                   from[r].data };
 
-    st = vg_items_append(&w->told, &got, sizeof(struct told), err);
+    st = vg_items_append(&w->replies, &got, sizeof(struct reply), err);
   }
   st = vg_comm_agree(w->comm, st, err);
 done:
@@ -292,12 +293,12 @@ done:
 
 /* Sort the replies by slice, and count the faces for which the half-face
  * belongs to the lower cell. */
-static void take_told(struct writing *w)
+static void take_replies(struct writing *w)
 {
-  struct told *t = (struct told *)w->told.data;
+  struct reply *t = (struct reply *)w->replies.data;
 
-  if (w->told.n) qsort(t, w->told.n, sizeof *t, compare_told);
-  for (size_t i = 0; i < w->told.n; i++) {
+  if (w->replies.n) qsort(t, w->replies.n, sizeof *t, compare_replies);
+  for (size_t i = 0; i < w->replies.n; i++) {
     struct served *s;
     int kind = VG_SLICE_KINDS - 1;
 
@@ -386,7 +387,7 @@ static void put_frame(const void *of, struct vg_output *out)
  * as vg_foam_upper. *t: next reply for the slice. */
 static int find_upper(const struct writing *w, const struct vg_slice *s,
                       const struct vg_cell_links *l, uint32_t cell,
-                      const struct told **t, const struct told *end,
+                      const struct reply **t, const struct reply *end,
                       uint32_t code[6], uint32_t mate[6])
 {
   size_t at = vg_first_half(l, cell);
@@ -425,8 +426,8 @@ static void put_faces(const struct writing *w, size_t i,
                       struct vg_output *out)
 {
   const struct served *mine = &w->served[i];
-  const struct told *t = (const struct told *)w->told.data + mine->first;
-  const struct told *end = t + mine->n;
+  const struct reply *t = (const struct reply *)w->replies.data + mine->first;
+  const struct reply *end = t + mine->n;
   uint32_t code[6], mate[6], node[4];
   int last = -1;
 
@@ -508,8 +509,8 @@ static vg_status prepare(struct writing *w, struct vg_error *err)
   if (!w->cell || !w->served || !w->worker)
     return vg_fail_memory(err, "a file in slices");
   for (int t = 0; t < w->threads; t++) {
-    w->worker[t].told = vg_calloc(size, sizeof *w->worker[t].told);
-    if (!w->worker[t].told) return vg_fail_memory(err, "a file in slices");
+    w->worker[t].replies = vg_calloc(size, sizeof *w->worker[t].replies);
+    if (!w->worker[t].replies) return vg_fail_memory(err, "a file in slices");
   }
   return VG_OK;
 }
@@ -579,7 +580,7 @@ static vg_status match(struct writing *w, const char *path,
   VG_TRY(vg_comm_agree(w->comm, worst(w, err), err));
   VG_TRY(add_sums(w, path, err));
   VG_TRY(exchange(w, err));
-  take_told(w);
+  take_replies(w);
   st = find_places(w, err);
 done:
   return st;
@@ -608,9 +609,9 @@ done:
 static void release(struct writing *w)
 {
   for (int t = 0; w->worker && t < w->threads; t++) {
-    for (int r = 0; w->worker[t].told && r < w->size; r++)
-      vg_items_release(&w->worker[t].told[r]);
-    free(w->worker[t].told);
+    for (int r = 0; w->worker[t].replies && r < w->size; r++)
+      vg_items_release(&w->worker[t].replies[r]);
+    free(w->worker[t].replies);
     vg_items_release(&w->worker[t].half);
   }
   free(w->worker);
@@ -618,7 +619,7 @@ static void release(struct writing *w)
   free(w->cell);
   free(w->start);
   free(w->order);
-  vg_items_release(&w->told);
+  vg_items_release(&w->replies);
   vg_fluent_release(&w->layout);
 }
 

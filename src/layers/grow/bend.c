@@ -69,7 +69,7 @@ static double tallest(const struct vg_layer_work *w, uint32_t f)
 /* Strength of bending at a column: zero while its faces keep their area up to
  * the tops, full once one of them would shrink to half. Columns far from a
  * corner, and columns on its convex side, therefore stay normal to the wall. */
-static double urge(const struct vg_dir_sweep *l, size_t i)
+static double bend_strength(const struct vg_dir_sweep *l, size_t i)
 {
   const struct vg_layer_work *w = l->w;
   double least = 1;
@@ -109,7 +109,7 @@ static void relax(const struct vg_dir_sweep *l, size_t i, double (*n)[3])
   mean_of_near(w, i, l->from, mean);
   if (!(vg_unit(mean) > 0)) return;
   k = vg_face_normals(w, i, n);
-  step = urge(l, i);
+  step = bend_strength(l, i);
   for (int try = 0; try < 4; try++, step *= 0.5) {
     for (int c = 0; c < 3; c++)
       v[c] = l->from[i][c] + step * mean[c] + (1 - step) * w->root_dir[i][c];

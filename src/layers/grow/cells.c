@@ -317,8 +317,9 @@ static void judge(struct vg_layer_work *w, const struct search *q, int may_turn,
 
 /* Faces whose columns could not be turned are lowered after all. The columns of
  * every bad face are marked as turned, so that the face is tested again. */
-static void stubborn(const struct vg_layer_work *w, const struct search *q,
-                     const uint8_t *turn, uint8_t *turned, double *least)
+static void lower_unturned(const struct vg_layer_work *w,
+                           const struct search *q, const uint8_t *turn,
+                           uint8_t *turned, double *least)
 {
   for (size_t f = 0; f < w->c->n_face; f++) {
     const uint32_t *face = w->c->face[f];
@@ -367,7 +368,7 @@ vg_status vg_cells_lower(struct vg_layer_work *w, const uint8_t *moved,
   VG_TRY(search_all(w, &q, threads, err));
   judge(w, &q, may_turn, least, turn, n_bad, &n_turn);
   if (n_turn) VG_TRY(vg_directions_even(w, turn, turned, err));
-  stubborn(w, &q, turn, turned, least);
+  lower_unturned(w, &q, turn, turned, least);
   for (size_t i = 0; i < w->c->n_column; i++)
     vg_heights_lower(w, i, least[i], VG_CAUSE_CELL);
 done:

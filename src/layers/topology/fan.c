@@ -211,8 +211,8 @@ static int cut(const struct build *b, uint32_t p,
 
 /* One direction suffices if it is as close to those of all sectors as the
  * single direction at an edge just below the fan angle would be. */
-static int one_will_do(struct build *b, const struct vg_fan_shape *s,
-                       uint32_t start, size_t n)
+static int one_direction_suffices(struct build *b, const struct vg_fan_shape *s,
+                                  uint32_t start, size_t n)
 {
   double dir[3];
 
@@ -339,7 +339,7 @@ static vg_status visit(struct build *b, uint32_t p, struct vg_error *err)
     vg_sub(wall_point(w, vg_half_next(at)), wall_point(w, at), s.ridge[i]);
     vg_unit(s.ridge[i]);
   }
-  if (one_will_do(b, &s, corner[0], n) || !vg_fan_spread(&s) ||
+  if (one_direction_suffices(b, &s, corner[0], n) || !vg_fan_spread(&s) ||
       !is_clear(b, p, &s))
     return VG_OK;
   if ((st = reserve(b, &s, err)) < 0) return st;

@@ -86,7 +86,7 @@ static vg_status run(void *user, const struct vg_engine *e,
   done->n_face = faces_of(task->input);
   st = run_work(user, task->input, o, e, err);
   done->n_cell = o->change.made.n_cell;
-  if (o->what == VG_WORK_START) done->elsewhere = o->node->elsewhere;
+  if (o->what == VG_WORK_START) done->other_seconds = o->node->other_seconds;
   if (st == VG_OK) *outcome = o;
   else free_outcome(o);
   return st;
@@ -207,7 +207,7 @@ static struct vg_node *held(struct vg_partition *p, uint64_t number)
   return n;
 }
 
-static void let_go(struct vg_partition *p, struct vg_node *n)
+static void unlink_node(struct vg_partition *p, struct vg_node *n)
 {
   pthread_mutex_lock(&p->lock);
   *n->link = n->next;
@@ -234,7 +234,7 @@ static vg_status follow(struct vg_partition *p, struct vg_engine *e,
     st = submit(e, w->path, w->kind, 0, 0, w->estimate, w, err);
   }
   if (n_work || st < 0) return st;
-  let_go(p, n);
+  unlink_node(p, n);
   if (n->n_child != 1 || n->child[0] != n) {
     pthread_mutex_lock(&p->lock);
     p->report.n_node++;

@@ -67,7 +67,7 @@ struct vg_decomposition_report {
   uint64_t n_asked; /* Requested subdomains; with octants there may be fewer. */
   uint64_t n_face;  /* Triangles of interfaces. */
   double time[VG_DECOMPOSITION_STEPS];
-  double elsewhere; /* Processor time in s of other processes. */
+  double other_seconds; /* Processor time in s of other processes. */
 };
 
 struct vg_writer;

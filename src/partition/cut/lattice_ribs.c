@@ -133,7 +133,8 @@ static double room_at(const struct lines *all, int k, const double x[2])
 }
 
 /* Distance of x from the sides of the tile that lines do not cross. */
-static double room_beside(const struct tile *t, int way, const double x[2])
+static double distance_to_sides(const struct tile *t, int way,
+                                const double x[2])
 {
   double at[2], sign[2];
 
@@ -142,7 +143,7 @@ static double room_beside(const struct tile *t, int way, const double x[2])
   return fmin(fabs(x[0] - at[0]), fabs(x[1] - at[1]));
 }
 
-static void look_at(const struct tile *t, int way, struct lines *all)
+static void find_cost(const struct tile *t, int way, struct lines *all)
 {
   all->cost = 0;
   for (size_t i = 0; i < t->n; i++)
@@ -156,7 +157,7 @@ static void look_at(const struct tile *t, int way, struct lines *all)
       if (fabs(off) > d->half) continue;
       for (int j = 0; j < 2; j++) foot[j] = d->x[j] - off * l->normal[j];
       if (room_at(all, k, foot) < room * d->h ||
-          room_beside(t, way, foot) < room * d->h)
+          distance_to_sides(t, way, foot) < room * d->h)
         all->cost = INFINITY;
     }
 }
@@ -174,7 +175,7 @@ static void lines_of(const struct tile *t, int way, int n, double cells,
     out->line[out->n++] = line_of(t, way,
                                   0.5 * (t->dot[i].key + t->dot[i + 1].key));
   }
-  look_at(t, way, out);
+  find_cost(t, way, out);
 }
 
 static vg_status add_ribs(struct ribs *to, const struct tile *t, int tile,

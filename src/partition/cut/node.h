@@ -56,8 +56,9 @@ struct vg_node {
   int is_final;     /* 1: filled whatever its size. */
   double fill_work; /* Of a leaf, see vg_front_work; 0: not known. */
   int to_part; /* 1: decomposed by a maker (decomposition.h), not by planes. */
-  double elsewhere; /* Processor time in s spent on it in other processes. */
-  uint32_t serial;  /* Serial of its leaf; 0: none yet. */
+  double
+    other_seconds; /* Processor time in s spent on it in other processes. */
+  uint32_t serial; /* Serial of its leaf; 0: none yet. */
   /* Used while it is being cut: faces keep their index and are marked with
    * VG_FACE_GONE. */
   size_t cap_x, cap_id, cap_face; /* Capacities of the front's arrays; 0:

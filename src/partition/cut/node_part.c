@@ -88,7 +88,7 @@ static vg_status find_or_make(struct vg_partition *p, struct vg_node *n,
     p->report.n_part = out->n_part;
   }
   pthread_mutex_unlock(&p->lock);
-  n->elsewhere = is_found ? 0 : out->report.elsewhere;
+  n->other_seconds = is_found ? 0 : out->report.other_seconds;
   return st;
 }
 

@@ -134,16 +134,17 @@ static void place_chunks(struct split *s)
   }
 }
 
-struct deal {
+struct distribution {
   struct split *s;
   uint32_t *number; /* [points of the front] Index in their child. */
   int *is_short;    /* [n_part] 1: memory was refused. */
 };
 
 /* There are no more children than blocks, so their indices fit in count[]. */
-static void deal_faces(void *context, size_t first, size_t end, int worker)
+static void distribute_faces(void *context, size_t first, size_t end,
+                             int worker)
 {
-  const struct deal *d = context;
+  const struct distribution *d = context;
   const struct split *s = d->s;
   const struct vg_front *f = &s->n->front;
   uint32_t *at = s->count + first / CHUNK * s->n_block;
@@ -160,7 +161,7 @@ static void deal_faces(void *context, size_t first, size_t end, int worker)
 
 static void clear_numbers(void *context, size_t first, size_t end, int worker)
 {
-  const struct deal *d = context;
+  const struct distribution *d = context;
 
   (void)worker;
   memset(d->number + first, 0xff, (end - first) * sizeof *d->number);
@@ -169,7 +170,7 @@ static void clear_numbers(void *context, size_t first, size_t end, int worker)
 /* Numbers points in the order in which faces use them. All corners of a face
  * are in blocks of one child (unite_corners), so a point belongs to one child,
  * and only one thread writes its number. */
-static int number_points(const struct deal *d, struct vg_front *part)
+static int number_points(const struct distribution *d, struct vg_front *part)
 {
   const struct vg_front *f = &d->s->n->front;
   size_t n = 0, cap = 0;
@@ -200,16 +201,17 @@ static int number_points(const struct deal *d, struct vg_front *part)
   return bad;
 }
 
-static void deal_points(void *context, size_t first, size_t end, int worker)
+static void distribute_points(void *context, size_t first, size_t end,
+                              int worker)
 {
-  const struct deal *d = context;
+  const struct distribution *d = context;
 
   (void)worker;
   for (size_t c = first; c < end; c++)
     d->is_short[c] = number_points(d, &d->s->part[c]);
 }
 
-static vg_status deal_out(struct deal *d, struct vg_error *err)
+static vg_status distribute(struct distribution *d, struct vg_error *err)
 {
   struct split *s = d->s;
   const struct vg_front *f = &s->n->front;
@@ -219,9 +221,9 @@ static vg_status deal_out(struct deal *d, struct vg_error *err)
     if (!s->part[k].face) return vg_fail_memory(err, "dividing a front");
   }
   place_chunks(s);
-  vg_engine_loop(s->e, f->n_face, CHUNK, deal_faces, d);
+  vg_engine_loop(s->e, f->n_face, CHUNK, distribute_faces, d);
   vg_engine_loop(s->e, f->n_point, CHUNK, clear_numbers, d);
-  vg_engine_loop(s->e, s->n_part, 1, deal_points, d);
+  vg_engine_loop(s->e, s->n_part, 1, distribute_points, d);
   for (size_t k = 0; k < s->n_part; k++)
     if (d->is_short[k]) return vg_fail_memory(err, "dividing a front");
   return VG_OK;
@@ -229,11 +231,11 @@ static vg_status deal_out(struct deal *d, struct vg_error *err)
 
 static vg_status split_front(struct split *s, struct vg_error *err)
 {
-  struct deal d = { s, vg_alloc(s->n->front.n_point, sizeof *d.number),
-                    vg_calloc(s->n_part, sizeof *d.is_short) };
+  struct distribution d = { s, vg_alloc(s->n->front.n_point, sizeof *d.number),
+                            vg_calloc(s->n_part, sizeof *d.is_short) };
   struct vg_front *f = &s->n->front;
   vg_status st = d.number && d.is_short
-                 ? deal_out(&d, err)
+                 ? distribute(&d, err)
                  : vg_fail_memory(err, "dividing a front");
   void *const whole[] = { f->x, f->id, f->face, d.number, d.is_short };
 

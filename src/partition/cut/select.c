@@ -478,8 +478,8 @@ static void touch_init(struct touch *t)
 
 /* Is the box disjoint from the triangle's box, or on one side of its plane?
  * The tolerance is well above the rounding error. */
-static int is_beside(const struct touch *t, const double lo[3],
-                     const double hi[3])
+static int is_separated(const struct touch *t, const double lo[3],
+                        const double hi[3])
 {
   double middle = 0, reach = 0, size = t->size;
 
@@ -505,7 +505,7 @@ static int touch_run(const struct touch *t, size_t run)
 
     if (f->face[i][0] == VG_FACE_GONE) continue;
     for (int j = 0; j < 3; j++) vg_box_add(&b, f->x[f->face[i][j]]);
-    if (is_beside(t, b.lo, b.hi)) continue;
+    if (is_separated(t, b.lo, b.hi)) continue;
     found = t->visit(t->context, (uint32_t)i);
     if (found) return found;
   }
@@ -517,7 +517,8 @@ static int touch_box(const struct touch *t, int level, size_t b)
   const struct vg_select_level *at = &t->s->level[level];
   const struct vg_box *box = &at->box[b];
 
-  if (!(box->lo[0] <= box->hi[0]) || is_beside(t, box->lo, box->hi)) return 0;
+  if (!(box->lo[0] <= box->hi[0]) || is_separated(t, box->lo, box->hi))
+    return 0;
   if (!level) return touch_run(t, b);
   for (size_t k = b * FAN; k < (b + 1) * FAN && k < (at - 1)->n; k++) {
     int found = touch_box(t, level - 1, k);

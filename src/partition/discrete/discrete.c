@@ -231,8 +231,8 @@ vg_status vg_discrete_part(const struct vg_front *front,
   st = coarse(front, sizing, o, e, &c, r, err);
   if (st != VG_OK) goto done;
   t[1] = vg_clock();
-  VG_TRY(vg_coarse_deal(&c, load, sizing, o, e, &r->n_apart, err));
-  r->elsewhere = c.elsewhere;
+  VG_TRY(vg_coarse_assign(&c, load, sizing, o, e, &r->n_apart, err));
+  r->other_seconds = c.other_seconds;
   VG_TRY(vg_interface_list(&c, &f, err));
   t[2] = vg_clock();
   VG_TRY(vg_interface_smooth(&c, &f, err));

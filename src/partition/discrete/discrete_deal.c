@@ -206,9 +206,9 @@ static uint32_t find_pieces(const struct dual *d, const uint32_t *part,
 
 /* The subdomain with the largest shared face cost to component n, or
  * VG_NONE. */
-static uint32_t part_beside(const struct dual *d, const uint32_t *part,
-                            const uint32_t *piece, size_t first, uint32_t n,
-                            double *common, uint32_t n_part)
+static uint32_t adjacent_part(const struct dual *d, const uint32_t *part,
+                              const uint32_t *piece, size_t first, uint32_t n,
+                              double *common, uint32_t n_part)
 {
   uint32_t best = VG_NONE;
 
@@ -254,7 +254,7 @@ static int give_away(const struct dual *d, struct vg_coarse *c,
 
     if (of[k].weight >= best[of[k].part] || of[k].weight >= small_piece * mean)
       continue;
-    to = part_beside(d, c->part, piece, of[k].first, k, common, c->n_part);
+    to = adjacent_part(d, c->part, piece, of[k].first, k, common, c->n_part);
     if (to == VG_NONE) continue;
     for (size_t q = of[k].first; q < d->g.n; q++)
       if (piece[q] == k) c->part[q] = to;
@@ -360,8 +360,8 @@ static vg_status bisect(struct vg_coarse *c, int n_part, struct vg_error *err)
   return st;
 }
 
-static int hangs_together(const struct dual *d, uint32_t *part,
-                          struct vg_error *err, vg_status *st)
+static int is_connected(const struct dual *d, uint32_t *part,
+                        struct vg_error *err, vg_status *st)
 {
   uint32_t *piece = vg_alloc(d->g.n, sizeof *piece);
   uint32_t *queue = vg_alloc(d->g.n, sizeof *queue);
@@ -375,23 +375,23 @@ static int hangs_together(const struct dual *d, uint32_t *part,
   return n == 1;
 }
 
-static vg_status deal(struct vg_coarse *c, const struct dual *d,
-                      const struct vg_decomposition_options *o,
-                      struct vg_error *err)
+static vg_status assign_cells(struct vg_coarse *c, const struct dual *d,
+                              const struct vg_decomposition_options *o,
+                              struct vg_error *err)
 {
-  struct vg_graph_options how = { o->n_part, imbalance, 0, &c->elsewhere };
+  struct vg_graph_options how = { o->n_part, imbalance, 0, &c->other_seconds };
   vg_status st = VG_OK;
 
   if (o->partitioner == VG_PARTITIONER_RCB) return bisect(c, o->n_part, err);
-  how.contiguous = hangs_together(d, c->part, err, &st);
+  how.contiguous = is_connected(d, c->part, err, &st);
   return st < 0 ? st : vg_graph_part(&d->g, &how, c->part, err);
 }
 
-vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
-                         const struct vg_sizing *sizing,
-                         const struct vg_decomposition_options *o,
-                         const struct vg_engine *e, uint64_t *n_apart,
-                         struct vg_error *err)
+vg_status vg_coarse_assign(struct vg_coarse *c, const struct vg_load *load,
+                           const struct vg_sizing *sizing,
+                           const struct vg_decomposition_options *o,
+                           const struct vg_engine *e, uint64_t *n_apart,
+                           struct vg_error *err)
 {
   struct weights w = { c,
                        load,
@@ -413,7 +413,7 @@ vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
   VG_TRY(vg_load_finder_new(load, &w.finder, err));
   vg_engine_loop(e, c->t.n_cell, 256, weigh, &w);
   VG_TRY(make_dual(&w, &d, err));
-  VG_TRY(deal(c, &d, o, err));
+  VG_TRY(assign_cells(c, &d, o, err));
   VG_TRY(even_out(&d, c, err));
   VG_TRY(settle_pieces(&d, c, err));
   *n_apart = c->n_part > (uint32_t)o->n_part ? c->n_part - (uint32_t)o->n_part

@@ -160,8 +160,8 @@ done:
 }
 
 /* Splits a triangle, keeping its orientation. */
-static int fall(const struct halving *h, const uint32_t v[3],
-                const uint32_t m[3], uint32_t part[4][3])
+static int split_triangle(const struct halving *h, const uint32_t v[3],
+                          const uint32_t m[3], uint32_t part[4][3])
 {
   int n = 0, k = 0;
 
@@ -200,7 +200,7 @@ static int fall(const struct halving *h, const uint32_t v[3],
   }
 }
 
-static vg_status fall_all(struct halving *h, struct vg_error *err)
+static vg_status split_all(struct halving *h, struct vg_error *err)
 {
   uint32_t(*to)[3] = vg_alloc(4 * h->n, sizeof *to);
   uint32_t *face = vg_alloc(4 * h->n, sizeof *face);
@@ -212,7 +212,7 @@ static vg_status fall_all(struct halving *h, struct vg_error *err)
     return vg_fail_memory(err, "the interfaces");
   }
   for (size_t i = 0; i < h->n; i++) {
-    int n_part = fall(h, h->tri[i], h->middle + 3 * i, to + n);
+    int n_part = split_triangle(h, h->tri[i], h->middle + 3 * i, to + n);
 
     for (int k = 0; k < n_part; k++) face[n++] = h->face[i];
   }
@@ -259,7 +259,7 @@ vg_status vg_sheets_halve(const struct vg_coarse *c,
   }
   for (int k = 0; st == VG_OK && n_halved && k < ROUNDS; k++) {
     st = halve_edges(&h, &n_halved, err);
-    if (st == VG_OK && n_halved) st = fall_all(&h, err);
+    if (st == VG_OK && n_halved) st = split_all(&h, err);
   }
   if (st == VG_OK) st = hand_over(&h, f->n_face, err);
   free(h.tri);

@@ -17,7 +17,7 @@ struct vg_coarse {
   double *weight;    /* [n_cell] Cells that each is expected to hold. */
   uint32_t *part;    /* [n_cell] Subdomain. */
   uint32_t n_part;
-  double elsewhere; /* Processor time in s of other processes. */
+  double other_seconds; /* Processor time in s of other processes. */
 };
 
 void vg_coarse_release(struct vg_coarse *c);
@@ -33,11 +33,11 @@ vg_status vg_coarse_fill(const struct vg_front *front,
 /** Assigns its cells to subdomains, by the cells that the void's load expects
  * in them: sets c->weight, c->part, c->n_part. n_apart out: subdomains beyond
  * the requested number. (discrete_deal.c) */
-vg_status vg_coarse_deal(struct vg_coarse *c, const struct vg_load *load,
-                         const struct vg_sizing *sizing,
-                         const struct vg_decomposition_options *o,
-                         const struct vg_engine *e, uint64_t *n_apart,
-                         struct vg_error *err);
+vg_status vg_coarse_assign(struct vg_coarse *c, const struct vg_load *load,
+                           const struct vg_sizing *sizing,
+                           const struct vg_decomposition_options *o,
+                           const struct vg_engine *e, uint64_t *n_apart,
+                           struct vg_error *err);
 
 /* Faces between subdomains, each once, from the cell with the lower index. */
 struct vg_interface {

@@ -40,10 +40,10 @@ struct vg_task {
 
 /* Statistics of an executed task. */
 struct vg_done {
-  size_t n_cell;    /* Cells created. */
-  size_t n_face;    /* Faces of the front that the task received. */
-  double elsewhere; /* Processor time in s of child processes that worked for
-                       the task. */
+  size_t n_cell;        /* Cells created. */
+  size_t n_face;        /* Faces of the front that the task received. */
+  double other_seconds; /* Processor time in s of child processes that worked
+                       for the task. */
 };
 
 struct vg_engine; /* One per rank during vg_engine_run. */

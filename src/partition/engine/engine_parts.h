@@ -174,12 +174,12 @@ struct vg_schedule {
 struct vg_worker {
   struct vg_engine *e;
   int number;
-  int unreported;        /* 1: has not yet reported that it is free. */
-  struct vg_heap *dealt; /* Tasks assigned to this worker. */
-  const char *doing;     /* Path of its current task. */
-  double loops, helped;  /* Processor time in s that its task spent in loops,
-                            and the part of it in other threads. */
-  int in_loop;           /* 1: a loop body is running. */
+  int unreported;           /* 1: has not yet reported that it is free. */
+  struct vg_heap *assigned; /* Tasks assigned to this worker. */
+  const char *doing;        /* Path of its current task. */
+  double loops, helped;     /* Processor time in s that its task spent in loops,
+                               and the part of it in other threads. */
+  int in_loop;              /* 1: a loop body is running. */
   pthread_t thread;
 };
 

@@ -144,7 +144,7 @@ static int by_work(const void *a, const void *b)
 
 /* Assigns tasks to the workers in turn, one each: first those of rank 0, then
  * rank 1, and so on. */
-static void deal_out(struct vg_engine *e)
+static void assign_tasks(struct vg_engine *e)
 {
   struct vg_schedule *l = &e->schedule;
   size_t n = l->n_held;
@@ -211,7 +211,7 @@ static void dispatch(struct vg_engine *e)
       ;
     if (e->size > 1 && !l->n_ready && l->n_underloaded) recall(e);
     if (l->n_held && !l->n_ready && !l->n_out && l->n_joined == (size_t)e->size)
-      deal_out(e);
+      assign_tasks(e);
   }
   if (!l->ended && l->n_joined == (size_t)e->size && !l->n_out &&
       (l->draining || !(l->n_ready + l->n_held)))

@@ -363,7 +363,7 @@ static void set_pace(struct pace *p, int active)
 
 /* Called with the lock held; with several ranks the lock is released during
  * the sleep. */
-static void sleep_so_long(struct vg_engine *e, double seconds, unsigned wakes)
+static void sleep_for(struct vg_engine *e, double seconds, unsigned wakes)
 {
   struct timespec until;
   double t = vg_clock() + seconds;
@@ -391,7 +391,7 @@ static int doze(struct vg_engine *e, struct pace *pace, int active,
   e->poll_soon = 0;
   over = all_over(e);
   if (!over && !e->out.first) {
-    sleep_so_long(e, pace->sleep, wakes);
+    sleep_for(e, pace->sleep, wakes);
     over = all_over(e);
   }
   vg_engine_unlock(e);

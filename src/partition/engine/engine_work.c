@@ -17,14 +17,14 @@ void vg_work_queue(struct vg_engine *e, struct vg_task_state *j)
     vg_heap_push(&e->queue[j->task.pinned != 0], &j->place);
     pthread_cond_signal(&e->work);
   } else {
-    vg_heap_push(&e->worker[j->lane].dealt, &j->place);
+    vg_heap_push(&e->worker[j->lane].assigned, &j->place);
     pthread_cond_broadcast(&e->work);
   }
 }
 
 static struct vg_task_state *next_job(struct vg_worker *w)
 {
-  struct vg_heap **q[] = { &w->e->queue[0], &w->e->queue[1], &w->dealt };
+  struct vg_heap **q[] = { &w->e->queue[0], &w->e->queue[1], &w->assigned };
   struct vg_heap **first = NULL;
 
   for (size_t i = 0; i < sizeof q / sizeof *q; i++)
@@ -131,7 +131,7 @@ static vg_status run(struct vg_worker *w, struct vg_task_state *j,
     st = e->ops->run(e->user, e, &j->task, w->number, &j->outcome, &done, err);
   j->n_cell = done.n_cell;
   span->n_face = done.n_face;
-  span->cpu = done.elsewhere;
+  span->cpu = done.other_seconds;
   if (j->task.input) e->ops->release_input(e->user, j->task.input);
   j->task.input = NULL;
   if (st || stays(e, j)) return st;

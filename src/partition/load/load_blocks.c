@@ -16,7 +16,7 @@ enum { CHUNK = 4096 };
 /* Thinner slices of an octant are ignored. */
 #define SLICE 1e-3
 
-struct deal {
+struct distribution {
   const struct vg_load *parent;
   const int *n;
   const double *const *at;
@@ -33,8 +33,8 @@ struct deal {
 
 /* Fraction of an octant's cells in block k of an axis, without separator zones.
  */
-static double slice(const struct deal *d, const struct vg_load_octant *c,
-                    int axis, int k)
+static double slice(const struct distribution *d,
+                    const struct vg_load_octant *c, int axis, int k)
 {
   const struct vg_load *l = d->parent;
   const double *at = d->at[axis], zone = d->reach * (double)c->h;
@@ -51,8 +51,9 @@ static double slice(const struct deal *d, const struct vg_load_octant *c,
 }
 
 /* Blocks first .. end - 1 of an axis that an octant touches. */
-static void find_range(const struct deal *d, const struct vg_load_octant *c,
-                       int axis, int *first, int *end)
+static void find_range(const struct distribution *d,
+                       const struct vg_load_octant *c, int axis, int *first,
+                       int *end)
 {
   const double lo = (double)c->at[axis] - (double)c->half;
   const double hi = (double)c->at[axis] + (double)c->half;
@@ -64,7 +65,7 @@ static void find_range(const struct deal *d, const struct vg_load_octant *c,
   *end = k + 1;
 }
 
-static void put(struct deal *d, size_t *count, size_t block,
+static void put(struct distribution *d, size_t *count, size_t block,
                 const struct vg_load_octant *c, double part)
 {
   struct vg_load_octant *to;
@@ -78,8 +79,8 @@ static void put(struct deal *d, size_t *count, size_t block,
   count[block]++;
 }
 
-static void deal_octant(struct deal *d, size_t *count,
-                        const struct vg_load_octant *c)
+static void distribute_octant(struct distribution *d, size_t *count,
+                              const struct vg_load_octant *c)
 {
   const size_t nx = (size_t)d->n[0] + 1, ny = (size_t)d->n[1] + 1;
   int first[3], end[3];
@@ -104,9 +105,10 @@ static void deal_octant(struct deal *d, size_t *count,
   }
 }
 
-static void deal_part(void *context, size_t first, size_t end, int worker)
+static void distribute_chunk(void *context, size_t first, size_t end,
+                             int worker)
 {
-  struct deal *d = context;
+  struct distribution *d = context;
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
@@ -114,13 +116,13 @@ static void deal_part(void *context, size_t first, size_t end, int worker)
 
     if (b > d->parent->n) b = d->parent->n;
     for (; a < b; a++)
-      deal_octant(d, d->count + i * d->n_block, &d->parent->octant[a]);
+      distribute_octant(d, d->count + i * d->n_block, &d->parent->octant[a]);
   }
 }
 
 /* --- blocks -------------------------------------------------------------- */
 
-static void bound(const struct deal *d, size_t block, struct vg_load *l)
+static void bound(const struct distribution *d, size_t block, struct vg_load *l)
 {
   vg_load_copy_frame(d->parent, l);
   for (int k = 0; k < 3; k++) {
@@ -138,7 +140,7 @@ static void bound(const struct deal *d, size_t block, struct vg_load *l)
 }
 
 /* Turns counts into offsets and allocates the blocks. */
-static int make_room(struct deal *d)
+static int make_room(struct distribution *d)
 {
   for (size_t b = 0; b < d->n_block; b++) {
     struct vg_load *l = &d->out[b];
@@ -169,7 +171,8 @@ static void release_all(struct vg_load *l, size_t n)
 }
 
 /* Distributes the octants. Returns loads without index and sum, or NULL. */
-static struct vg_load *deal_out(struct deal *d, const struct vg_engine *e)
+static struct vg_load *distribute(struct distribution *d,
+                                  const struct vg_engine *e)
 {
   d->n_block = blocks_of(d->n);
   d->n_chunk = (d->parent->n + CHUNK - 1) / CHUNK;
@@ -177,10 +180,10 @@ static struct vg_load *deal_out(struct deal *d, const struct vg_engine *e)
   d->count = vg_calloc(d->n_chunk * d->n_block + 1, sizeof *d->count);
   d->is_counting = 1;
   if (d->out && d->count) {
-    vg_engine_loop(e, d->n_chunk, 1, deal_part, d);
+    vg_engine_loop(e, d->n_chunk, 1, distribute_chunk, d);
     if (!make_room(d)) {
       d->is_counting = 0;
-      vg_engine_loop(e, d->n_chunk, 1, deal_part, d);
+      vg_engine_loop(e, d->n_chunk, 1, distribute_chunk, d);
       free(d->count);
       return d->out;
     }
@@ -228,10 +231,10 @@ vg_status vg_load_split_blocks(const struct vg_load *parent, const int n[3],
   assert(n[0] >= 0 && n[1] >= 0 && n[2] >= 0 && out);
   assert(reach >= 0 && correction > 0);
 
-  struct deal d = {
+  struct distribution d = {
     .parent = parent, .n = n, .at = at, .reach = reach, .correction = correction
   };
-  struct vg_load *made = deal_out(&d, e);
+  struct vg_load *made = distribute(&d, e);
 
   if (!made || finish(made, d.n_block, e)) {
     release_all(made, made ? d.n_block : 0);

@@ -246,8 +246,8 @@ static void take_share(const struct split *s, const struct share *from,
                       (double)c->part);
 }
 
-static int deal(const struct split *s, const struct vg_front *child,
-                double correction, struct vg_load *made)
+static int distribute(const struct split *s, const struct vg_front *child,
+                      double correction, struct vg_load *made)
 {
   const double volume = vg_load_volume(child);
 
@@ -278,7 +278,8 @@ static int split_child(const struct children *w, size_t c)
   memcpy(s.tree.lo, w->parent->lo, sizeof s.tree.lo);
   s.tree.unit = w->parent->unit > 0 ? w->parent->unit : 1;
   bad = vg_load_tree_new(&s.tree, 1, &w->child[c], 1, NULL) < 0 ||
-        share_all(&s) || deal(&s, &w->child[c], w->correction, &w->made[c]);
+        share_all(&s) ||
+        distribute(&s, &w->child[c], w->correction, &w->made[c]);
   free(s.share);
   vg_load_tree_release(&s.tree);
   vg_load_stack_release(&s.stack);

@@ -53,7 +53,7 @@ struct sim {
   uint32_t *worker;            /* [n] Executing worker. */
   struct ready ready;          /* Tasks for any rank. */
   struct ready *joins;         /* [ranks] Joins that wait for their rank. */
-  struct vg_dealt dealt;
+  struct vg_assignment assignment;
   uint32_t *home; /* [n] Rank that created it, later its home. */
   struct links all, own;
   uint32_t *n_idle;             /* [ranks] */
@@ -200,7 +200,7 @@ static void set_idle(struct sim *s, uint32_t worker)
 
   link_last(&s->all, s->n_worker + ranks, worker);
   link_last(&s->own, s->n_worker + rank, worker);
-  s->dealt.is_idle[worker] = 1;
+  s->assignment.is_idle[worker] = 1;
   s->n_idle[rank]++;
   touch(s, rank);
 }
@@ -244,7 +244,7 @@ static void hand_out(struct sim *s, uint32_t task, uint32_t worker)
 
   unlink_item(&s->all, worker);
   unlink_item(&s->own, worker);
-  s->dealt.is_idle[worker] = 0;
+  s->assignment.is_idle[worker] = 0;
   s->n_idle[rank]--;
   s->n_looping[rank] += span->loops > 0;
   s->worker[task] = worker;
@@ -321,7 +321,7 @@ static vg_status make_ready(struct sim *s, uint32_t task, struct vg_error *err)
   *home = after != NONE ? s->home[after]
                         : (uint32_t)span->home % (uint32_t)s->machine->ranks;
   if (s->machine->cyclic && span->kind == VG_SPAN_LEAF && span->work > 0) {
-    s->dealt.held[s->dealt.n_held++] = task;
+    s->assignment.held[s->assignment.n_held++] = task;
     return VG_OK;
   }
   if (span->kind != VG_SPAN_JOIN || s->g.moves[task] || s->machine->joins_roam)
@@ -336,9 +336,9 @@ static void hand_out_joins(struct sim *s, uint32_t rank)
     hand_out(s, ready_pop(s, &s->joins[rank]), idle_of(s, rank));
 }
 
-static void hand_out_dealt(struct sim *s)
+static void start_assigned(struct sim *s)
 {
-  struct vg_dealt *d = &s->dealt;
+  struct vg_assignment *d = &s->assignment;
 
   for (uint32_t i = 0; i < d->n_woken; i++) {
     uint32_t w = d->woken[i], task = d->first[w];
@@ -366,7 +366,7 @@ static vg_status hand_out_all(struct sim *s, struct vg_error *err)
 
     hand_out(s, task, worker != NONE ? worker : idle_any(s));
   }
-  hand_out_dealt(s);
+  start_assigned(s);
   return set_durations(s, err);
 }
 
@@ -407,7 +407,7 @@ static void computed(struct sim *s, uint32_t task)
   uint32_t rank = (uint32_t)span->rank, home = s->home[task];
 
   set_idle(s, s->worker[task]);
-  s->dealt.woken[s->dealt.n_woken++] = s->worker[task];
+  s->assignment.woken[s->assignment.n_woken++] = s->worker[task];
   s->n_looping[rank] -= span->loops > 0;
   if (is_cut(span->kind) && s->cuts_wall < span->end) s->cuts_wall = span->end;
   if (rank == home) add_event(s, s->now, EVENT_ENDED, task);
@@ -428,7 +428,7 @@ static void sim_release(struct sim *s)
   free(s->out);
   free(s->worker);
   free(s->ready.place);
-  vg_dealt_release(&s->dealt);
+  vg_assignment_release(&s->assignment);
   free(s->home);
   for (int r = 0; s->joins && r < s->machine->ranks; r++)
     free(s->joins[r].place);
@@ -482,7 +482,7 @@ static vg_status sim_allocate(struct sim *s, struct vg_error *err)
       !s->n_idle || !s->n_looping || !s->started || !s->event || !s->sent ||
       !s->received || !s->busy || !s->touched || !s->is_touched)
     return vg_fail_memory(err, "the simulation");
-  return vg_dealt_new(&s->dealt, s->g.n, s->n_worker, err);
+  return vg_assignment_new(&s->assignment, s->g.n, s->n_worker, err);
 }
 
 struct ranked {
@@ -542,8 +542,8 @@ static vg_status simulate(struct sim *s, struct vg_error *err)
   }
   VG_TRY(hand_out_all(s, err));
   for (;;) {
-    if (!s->n_event && s->dealt.n_held) {
-      VG_TRY(vg_dealt_out(&s->dealt, s->g.span, err));
+    if (!s->n_event && s->assignment.n_held) {
+      VG_TRY(vg_assignment_make(&s->assignment, s->g.span, err));
       VG_TRY(hand_out_all(s, err));
     }
     if (!s->n_event) break;
@@ -688,7 +688,7 @@ vg_status vg_model_replay(const struct vg_spans *spans,
   VG_TRY(check_machine(machine, err));
   s.n_worker = (uint32_t)(machine->ranks * machine->threads);
   VG_TRY(vg_model_graph_new(spans, &s.g, err));
-  if (machine->cyclic) VG_TRY(vg_dealt_check(&s.g, err));
+  if (machine->cyclic) VG_TRY(vg_assignment_check(&s.g, err));
   VG_TRY(sim_allocate(&s, err));
   VG_TRY(sort_tasks(&s, err));
   find_bytes(&s);

@@ -9,7 +9,7 @@
 
 #define NONE VG_MODEL_NONE
 
-void vg_dealt_release(struct vg_dealt *d)
+void vg_assignment_release(struct vg_assignment *d)
 {
   free(d->held);
   free(d->first);
@@ -20,8 +20,8 @@ void vg_dealt_release(struct vg_dealt *d)
   memset(d, 0, sizeof *d);
 }
 
-vg_status vg_dealt_new(struct vg_dealt *d, uint32_t n, uint32_t n_worker,
-                       struct vg_error *err)
+vg_status vg_assignment_new(struct vg_assignment *d, uint32_t n,
+                            uint32_t n_worker, struct vg_error *err)
 {
   assert(n_worker > 0);
   d->n_worker = n_worker;
@@ -37,7 +37,8 @@ vg_status vg_dealt_new(struct vg_dealt *d, uint32_t n, uint32_t n_worker,
   return VG_OK;
 }
 
-vg_status vg_dealt_check(const struct vg_model_graph *g, struct vg_error *err)
+vg_status vg_assignment_check(const struct vg_model_graph *g,
+                              struct vg_error *err)
 {
   const struct vg_span *leaf = NULL;
 
@@ -54,7 +55,7 @@ vg_status vg_dealt_check(const struct vg_model_graph *g, struct vg_error *err)
                  leaf->path);
 }
 
-static void append(struct vg_dealt *d, uint32_t worker, uint32_t task)
+static void append(struct vg_assignment *d, uint32_t worker, uint32_t task)
 {
   d->next[task] = NONE;
   if (d->first[worker] == NONE) d->first[worker] = task;
@@ -75,8 +76,8 @@ static int by_work(const void *a, const void *b)
   return (s->task > t->task) - (s->task < t->task);
 }
 
-vg_status vg_dealt_out(struct vg_dealt *d, const struct vg_span *span,
-                       struct vg_error *err)
+vg_status vg_assignment_make(struct vg_assignment *d,
+                             const struct vg_span *span, struct vg_error *err)
 {
   struct held *list = vg_alloc(d->n_held, sizeof *list);
 

@@ -23,7 +23,7 @@ struct vg_model_graph {
 void vg_model_graph_release(struct vg_model_graph *g);
 
 /* The leaves of a cyclic machine and the workers they are assigned to. */
-struct vg_dealt {
+struct vg_assignment {
   uint32_t n_worker;
   uint32_t n_held, *held; /* [n_held] Tasks to be assigned. */
   uint32_t *first, *last; /* [n_worker] First and last task of each, or NONE. */
@@ -34,16 +34,17 @@ struct vg_dealt {
 };
 
 /** Initialises d for n tasks. */
-vg_status vg_dealt_new(struct vg_dealt *d, uint32_t n, uint32_t n_worker,
-                       struct vg_error *err);
-void vg_dealt_release(struct vg_dealt *d);
+vg_status vg_assignment_new(struct vg_assignment *d, uint32_t n,
+                            uint32_t n_worker, struct vg_error *err);
+void vg_assignment_release(struct vg_assignment *d);
 
 /** Assigns all held tasks to the workers in turn, most work first. */
-vg_status vg_dealt_out(struct vg_dealt *d, const struct vg_span *span,
-                       struct vg_error *err);
+vg_status vg_assignment_make(struct vg_assignment *d,
+                             const struct vg_span *span, struct vg_error *err);
 
 /** VG_ERR_INPUT if no leaf of the trace has `work`. */
-vg_status vg_dealt_check(const struct vg_model_graph *g, struct vg_error *err);
+vg_status vg_assignment_check(const struct vg_model_graph *g,
+                              struct vg_error *err);
 
 /** Builds the graph. VG_ERR_INPUT names the path of a contradiction. */
 vg_status vg_model_graph_new(const struct vg_spans *spans,

@@ -238,7 +238,7 @@ static vg_status part_set(struct chooser *c, uint32_t root, size_t n_leaf,
 {
   struct set s = { 0 };
   struct vg_graph g = { 0 };
-  struct vg_graph_options o = { (int)n, IMBALANCE, 1, &c->t->elsewhere };
+  struct vg_graph_options o = { (int)n, IMBALANCE, 1, &c->t->other_seconds };
   uint32_t *part = vg_calloc(n_leaf, sizeof *part);
   vg_status st = part ? VG_OK
                       : vg_fail_memory(err, "the subdomains of octants");
@@ -275,8 +275,8 @@ static vg_status part_sets(struct chooser *c, double mean, struct vg_error *err)
     if (st == VG_OK && is_free(c, l)) count[c->up[l]]++;
   }
   for (size_t l = 0; st == VG_OK && l < n; l++) {
-    const double wish = c->sum[l] / mean;
-    size_t parts = wish < 1 ? 1 : (size_t)(wish + 0.5);
+    const double n_wanted = c->sum[l] / mean;
+    size_t parts = n_wanted < 1 ? 1 : (size_t)(n_wanted + 0.5);
 
     if (!count[l]) continue;
     if (parts > count[l]) parts = count[l];

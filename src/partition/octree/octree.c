@@ -336,7 +336,7 @@ static void note_parts(struct maker *m)
   r->n_face = m->patches.n ? m->faces.begin[m->patches.n] : 0;
   r->n_gap = m->t.n_gap;
   r->coarse_cells = m->t.cells;
-  r->elsewhere = m->t.elsewhere;
+  r->other_seconds = m->t.other_seconds;
 }
 
 static vg_status make(struct maker *m, struct vg_error *err)

@@ -46,9 +46,9 @@ struct vg_octants {
   size_t n_face, cap_face;
   struct vg_octant_face *face; /* [n_face] Faces between these leaves. */
   size_t n_part, n_gap;        /* Numbers of subdomains. */
-  size_t n_apart;   /* Those of n_part made from disconnected components. */
-  double cells;     /* Cells expected in the free octants. */
-  double elsewhere; /* Processor time in s of other processes. */
+  size_t n_apart;       /* Those of n_part made from disconnected components. */
+  double cells;         /* Cells expected in the free octants. */
+  double other_seconds; /* Processor time in s of other processes. */
 };
 
 static inline uint32_t vg_octant_side(const struct vg_octant *o)

@@ -169,8 +169,8 @@ static struct vg_unit_options unit_options(const struct sliced *w,
   return u;
 }
 
-static vg_status look_at(const struct sliced *w, const struct vg_slice *s,
-                         struct at *a, struct vg_error *err)
+static vg_status inspect_slice(const struct sliced *w, const struct vg_slice *s,
+                               struct at *a, struct vg_error *err)
 {
   struct vg_unit_options o = unit_options(w, s);
   struct vg_mesh m = view_of(s);
@@ -202,7 +202,7 @@ struct looking {
   struct vg_error *err;
 };
 
-static void look_at_some(void *context, size_t first, size_t end, int worker)
+static void inspect_range(void *context, size_t first, size_t end, int worker)
 {
   struct looking *c = context;
   const struct sliced *w = c->w;
@@ -213,12 +213,12 @@ static void look_at_some(void *context, size_t first, size_t end, int worker)
 
     c->st[i] = w->k->s->get(w->k->s, i, &s, &c->err[i]);
     if (c->st[i] < 0) continue;
-    c->st[i] = look_at(w, &s, &w->k->at[i], &c->err[i]);
+    c->st[i] = inspect_slice(w, &s, &w->k->at[i], &c->err[i]);
     w->k->s->put(w->k->s, &s);
   }
 }
 
-static vg_status look_at_all(struct sliced *w, struct vg_error *err)
+static vg_status inspect_all(struct sliced *w, struct vg_error *err)
 {
   size_t n = w->k->n;
   struct looking c = { w, vg_calloc(n, sizeof *c.st),
@@ -228,7 +228,7 @@ static vg_status look_at_all(struct sliced *w, struct vg_error *err)
   if (!c.st || !c.err) {
     st = vg_fail_memory(err, "the slices of the mesh");
   } else {
-    vg_parallel_for(w->threads, n, 1, look_at_some, &c);
+    vg_parallel_for(w->threads, n, 1, inspect_range, &c);
     for (size_t i = 0; i < n && st >= 0; i++)
       if ((st = c.st[i]) < 0 && err) *err = c.err[i];
   }
@@ -614,7 +614,7 @@ vg_status vg_solver_part_slices(struct vg_comm *comm, const struct vg_slices *s,
   w.across = vg_calloc((size_t)w.threads, sizeof *w.across);
   st = w.k && w.across ? VG_OK : vg_fail_memory(err, "the solver partitions");
   VG_TRY(vg_comm_agree(comm, st, err));
-  VG_TRY(look_at_all(&w, err));
+  VG_TRY(inspect_all(&w, err));
   VG_TRY(number(&w, err));
   VG_TRY(match_rims(&w, err));
   VG_TRY(collect(&w, &c, err));

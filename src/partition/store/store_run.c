@@ -139,8 +139,8 @@ void vg_store_remove_run(const struct vg_store *s)
 
 /* --- run.lock ------------------------------------------------------------ */
 
-static vg_status under_way(const struct vg_store *s, int fd,
-                           struct vg_error *err)
+static vg_status is_running(const struct vg_store *s, int fd,
+                            struct vg_error *err)
 {
   char text[320];
 
@@ -186,7 +186,7 @@ vg_status vg_store_lock(struct vg_store *s, struct vg_error *err)
     if (fd < 0) return cannot_write(s, errno, err);
     if (flock(fd, LOCK_EX | LOCK_NB)) error = errno;
     if (error == EWOULDBLOCK) {
-      vg_status st = under_way(s, fd, err);
+      vg_status st = is_running(s, fd, err);
 
       close(fd);
       return st;

@@ -165,8 +165,8 @@ static char *stem_of(const char *name)
   return strndup(name, n - suffix);
 }
 
-static vg_status find_beside(struct vg_input_files *f, const char *deck,
-                             struct vg_error *err)
+static vg_status find_companions(struct vg_input_files *f, const char *deck,
+                                 struct vg_error *err)
 {
   f->mapbc = adjacent(f->stem, "mapbc");
   if (f->mapbc && !*f->mapbc) {
@@ -227,7 +227,7 @@ vg_status vg_input_find(const char *name, const char *deck,
   } else {
     st = find_stem(name, &f, err);
   }
-  if (st >= 0) st = find_beside(&f, deck, err);
+  if (st >= 0) st = find_companions(&f, deck, err);
   if (st < 0) {
     release_files(&f);
     return st;

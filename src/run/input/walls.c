@@ -225,7 +225,7 @@ done:
 
 /* Whether layers are mandatory: a limit that no patch is checked against would
  * be met. */
-static int insists(const struct vg_settings *s)
+static int is_mandatory(const struct vg_settings *s)
 {
   const struct vg_layer_settings *l = &s->layer;
 
@@ -268,7 +268,7 @@ vg_status vg_walls_find(const struct vg_boundary *b,
   /* A complete domain whose conditions say that nothing is viscous is accepted,
    * unless layers are mandatory. */
   if (!*n_wall && vg_walls_asked(&b->read->settings) &&
-      (insists(&b->read->settings) || !b->require_bc))
+      (is_mandatory(&b->read->settings) || !b->require_bc))
     st = no_walls(b, err);
 done:
   free(mark_of);

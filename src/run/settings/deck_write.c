@@ -213,7 +213,7 @@ vg_status vg_deck_write(const char *path, const struct vg_settings *s,
 
 /* The code from which the codes of both solvers follow: USM3D's if FUN3D's is
  * its translation, else FUN3D's if it is more specific (4100 than 4). */
-static int32_t telling_code(const struct vg_patch *p, int axis)
+static int32_t defining_code(const struct vg_patch *p, int axis)
 {
   if (p->bc == VG_BC_NONE) return p->bc_fun3d;
   if (p->bc_fun3d == vg_bc_to_fun3d(p->bc, axis)) return p->bc;
@@ -231,7 +231,7 @@ vg_status vg_deck_patches_of(const struct vg_mesh *m, struct vg_settings *s,
 
   for (size_t i = 0; i < m->n_patch && st >= 0; i++) {
     struct vg_patch_row row = { .id = m->patch[i].id,
-                                .bc = telling_code(&m->patch[i], axis[i]) };
+                                .bc = defining_code(&m->patch[i], axis[i]) };
 
     snprintf(row.name, sizeof row.name, "%s", m->patch[i].name);
     st = vg_settings_add(s, VG_TABLE_PATCHES, &row, err);

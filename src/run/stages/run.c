@@ -157,10 +157,11 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
 }
 
 /* Finds the sources without effect, on rank 0. Collective. */
-static vg_status look_at_sources(struct vg_run *r, const struct vg_problem *p,
-                                 const struct vg_mesh *front,
-                                 const struct vg_sizing *sizing,
-                                 struct vg_error *err)
+static vg_status find_ineffective_sources(struct vg_run *r,
+                                          const struct vg_problem *p,
+                                          const struct vg_mesh *front,
+                                          const struct vg_sizing *sizing,
+                                          struct vg_error *err)
 {
   double t = vg_display_now();
   vg_status st = VG_OK;
@@ -410,7 +411,7 @@ static vg_status mesh_plain(struct vg_run *r, const struct vg_problem *p,
   }
   VG_TRY(share_with_node(r, st, NULL, show, &sizing, err));
   VG_TRY(vg_run_agree(r->comm, surface, NULL, sizing, r->options.change, err));
-  VG_TRY(look_at_sources(r, p, surface, sizing, err));
+  VG_TRY(find_ineffective_sources(r, p, surface, sizing, err));
   VG_TRY(fill(r, p, NULL, surface, sizing, show, err));
   r->slices = *vg_partition_slices(r->field);
   st = judge(r, p, NULL, sizing, show, err);
@@ -506,7 +507,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
   front = vg_front_mesh(&layers->layers.front, &p->boundary.surface);
   VG_TRY(vg_run_agree(r->comm, &p->boundary.surface, &layers->layers, sizing,
                       r->options.change, err));
-  VG_TRY(look_at_sources(r, p, &front, sizing, err));
+  VG_TRY(find_ineffective_sources(r, p, &front, sizing, err));
   VG_TRY(fill(r, p, &layers->layers, &front, sizing, show, err));
   st = vg_layer_slices_open(&p->boundary.surface, &layers->layers,
                             vg_partition_slices(r->field),
