@@ -337,7 +337,7 @@ static void test_decimate(void **state)
   vg_mesh_release(&m);
 }
 
-/* --- what to look at ----------------------------------------------------- */
+/* --- choice of cuts ------------------------------------------------------ */
 
 static void test_body(void **state)
 {

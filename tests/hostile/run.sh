@@ -1,7 +1,7 @@
 #!/bin/bash
 # Gives every hostile file to the program: run.sh MAKE_HOSTILE PROGRAM FOLDER.
 # A refused file: exit status 1, stderr names the file, and the answer
-# contains the phrase of its line in CASES. A mended file: status 0 and the
+# contains the phrase of its line in CASES. A repaired file: status 0 and the
 # phrase. Never a signal, a time-out, or the report of a sanitizer.
 set -u
 make_hostile=$(realpath "$1")

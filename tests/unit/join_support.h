@@ -276,7 +276,7 @@ static inline void model_front(struct model *m)
   }
   for (size_t r = 0; r < c->n_border; r++)
     raised |= c->column[c->border[r][0]].n || c->column[c->border[r][1]].n;
-  /* A re-meshed patch has its own points. */
+  /* A remeshed patch has its own points. */
   if (raised) f->id[point[m->apex]] = VG_LAYER_NEW;
   for (size_t r = 0; r < c->n_border; r++) {
     uint32_t t[3] = { top[c->border[r][1]], top[c->border[r][0]],

@@ -526,7 +526,7 @@ static void without_layers(void **state)
   model_release(&m);
 }
 
-/* Grown layers with fans and with patches re-meshed around the side faces, and
+/* Grown layers with fans and with patches remeshed around the side faces, and
  * an isotropic region. */
 static void check_grown(struct model *m, double h)
 {

@@ -746,7 +746,7 @@ static void a_post_at_45_to_135_degrees(void **state)
 }
 
 /* Four sides of a box as one patch touch the floor: no plane fits it. Parts
- * that cannot be re-meshed cost levels, but the mesh stays valid. */
+ * that cannot be remeshed cost levels, but the mesh stays valid. */
 static void a_slide_patch_with_folds(void **state)
 {
   struct bench b = { .options.smooth = 0 };

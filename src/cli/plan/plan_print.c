@@ -507,7 +507,7 @@ static json_t *leaves_json(const struct vg_plan *p)
   return list;
 }
 
-/* Phases on the best machine or, if there is none, on the largest. */
+/* Phases on the best machine; without a best one, on the largest machine. */
 static json_t *limits_json(const struct vg_plan *p)
 {
   const struct vg_plan_row *r = row_of_limits(p);

@@ -120,7 +120,7 @@ int vg_sweep_same_mesh(const struct vg_sweep_case *a,
                        const struct vg_sweep_case *b);
 
 /** Find two cases that request the same mesh but whose files differ; returns 0
- * if there are none. *n_compared receives the number of cases that were
+ * if no two cases differ. *n_compared receives the number of cases that were
  * compared with an earlier one.
  * @param file  out: name of the first file that differs [64] */
 int vg_sweep_differ(const struct vg_sweep *s, size_t *n_compared,

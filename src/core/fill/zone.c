@@ -20,7 +20,8 @@ static const double dent = 0.25; /* K20 */
  * cell that becomes final, would be the only cell that can fill the slit
  * between the two. */
 static const double slit = 0.0003; /* K34 */
-/* Cells with edges longer than this many spacings are kept out of a pencil. */
+/* Cells with edges longer than this many spacings are not accepted in an edge
+ * separator. */
 static const double overlong = 4; /* K21 */
 
 struct zone {

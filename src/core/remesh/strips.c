@@ -19,7 +19,7 @@
 #define SLENDER 3.0 /* S35: least length of a stretch, in widths */
 #define APART 4.0   /* tolerances between places, at most PLACES per edge */
 #define PLACES 256
-#define LINES 8 /* most closed curves crossed by a walk */
+#define LINES 8 /* largest number of closed curves on a walk */
 #define BISECTIONS 24
 #define INSET 0.02 /* of an edge, but at most APART: first and last place */
 

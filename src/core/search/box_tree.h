@@ -64,7 +64,7 @@ static inline size_t vg_box_tree_end(const struct vg_box_tree *t, size_t node)
 }
 
 /** Order boxes along the Hilbert curve through their centres, at any scale.
- * Boxes that fall into the same one of the 2^20 cells per side of the curve
+ * Boxes with centres in the same one of the 2^20 cells per side of the curve
  * are ordered along a curve of their own. A single box far away therefore does
  * not spoil the order of the other boxes. O(n log n) for typical
  * distributions.

@@ -1,6 +1,6 @@
 /* Outline: points that are extreme in many directions represent the convex
  * hull. Each triangle is on the hull or off it, and union-find over the edges
- * joins triangles of either kind to pieces. The largest piece on the hull is
+ * joins triangles of either kind into pieces. The largest piece on the hull is
  * compared with the silhouettes of the hull, every piece off the hull with its
  * lid. A closed surface has vector area 0, so the lid of a piece has the same
  * vector area as the piece. */

@@ -1,4 +1,5 @@
-/* Removes superfluous faces, and starts mending, sewing and uniting. */
+/* Removes superfluous faces, and starts the repair, sewing and uniting of
+ * faces. */
 #include "io/occt/occt_parts.h"
 
 #include <algorithm>
@@ -47,7 +48,7 @@ Measure measure(const Model &model, size_t at)
   return { at, std::fabs(g.Mass()), g.CentreOfMass() };
 }
 
-/* --- faces to mend ------------------------------------------------------- */
+/* --- faces to repair ----------------------------------------------------- */
 
 /* Does an edge of the face lack its curve in the parameter plane? */
 bool lacks_curves(const TopoDS_Face &face)

@@ -91,15 +91,15 @@ void read(const vg_cad_ask &ask, const std::string &path, Model &model,
 /** Number of faces of a shape; `most` if there are at least that many. */
 size_t count_faces(const TopoDS_Shape &shape, size_t most);
 
-/** Make readers of STEP and IGES that are created later mend shells with many
+/** Make readers of STEP and IGES that are created later repair shells with many
  * faces in linear time. */
 void mend_large_shells();
 
 /** All faces that were not dropped, as one shape. */
 TopoDS_Compound together(const Model &model);
 
-/** Let Open CASCADE mend all faces: missing curves in the parameter plane, and
- * the order and gaps of rims. Faces keep their numbers. */
+/** Let Open CASCADE repair all faces: missing curves in the parameter plane,
+ * and the order and gaps of rims. Faces keep their numbers. */
 void mend(Model &model, const Talk &talk);
 
 /** Mend faces whose curves in the parameter plane are missing, and measure the

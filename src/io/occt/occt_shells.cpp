@@ -1,4 +1,4 @@
-/* Open CASCADE's mending of translated shapes, except that the orientation of
+/* Open CASCADE's repair of translated shapes, except that the orientation of
  * faces is omitted in shells of very many faces, where Open CASCADE searches
  * all faces for each face. */
 #include "io/occt/occt_parts.h"

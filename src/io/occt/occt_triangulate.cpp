@@ -306,7 +306,7 @@ size_t count_bare(const Model &model)
     }));
 }
 
-/* Faces that cannot be triangulated are mended and tried again. */
+/* Faces that cannot be triangulated are repaired and tried again. */
 void make_triangles(const vg_cad_ask &ask, Model &model, double least,
                     const Talk &talk)
 {

@@ -6,7 +6,7 @@
 #include "layers/columns/layers.h"
 #include "layers/topology/topology.h"
 
-/** Largest height of each column in visibility of the opposite surface: `gap`
+/** Largest height of each column that the opposite surface permits: `gap`
  * times the distance along dir (a unit step is a height of 1) to the nearest
  * triangle of the surface that is within the cone of 45 degrees about dir with
  * its apex at the root, or on the line along dir from the centre of a face of

@@ -425,7 +425,7 @@ struct rough_job {
 };
 #define ROUGH_MOST (MANY_OCTANTS * EDGES_MOST)
 
-/* cubes of the target edge in a node, whether inside the void or not. */
+/* Cubes of the target edge in a node, whether inside the void or not. */
 static double rough(struct rough_job *job, const struct vg_load_node *node)
 {
   const struct maker *m = job->m;

@@ -1,6 +1,6 @@
 /* The simulation. There are two kinds of event, processed by time: a task has
  * been computed, and its outcome has arrived at home, which ends the task. All
- * events of one moment are processed before tasks are handed out again. */
+ * events of one moment are processed before tasks are assigned again. */
 #include "partition/model/model_parts.h"
 
 #include <assert.h>
@@ -58,7 +58,7 @@ struct sim {
   struct links all, own;
   uint32_t *n_idle;             /* [ranks] */
   uint32_t *n_looping;          /* [ranks] Running tasks with loops. */
-  uint32_t n_started, *started; /* [n_started] Tasks handed out at this
+  uint32_t n_started, *started; /* [n_started] Tasks assigned at this
                                    moment. */
   struct vg_spans *helps;       /* Trace of helpers; may be NULL. */
   struct event *event;          /* Heap by time, kind, task. */

@@ -31,7 +31,7 @@
  * Idle workers of a rank help with the loops inside its tasks (engine.h). A
  * task takes cpu - loops + loops / k. Here k is 1 plus the ratio of the rank's
  * idle workers to its tasks with loops, when the task starts and after all
- * ready tasks have been handed out; k is at most loop_threads. It stays
+ * ready tasks have been assigned; k is at most loop_threads. It stays
  * constant, because these tasks (joins) are short compared with those that
  * workers come from and go to. A helper still takes a task that becomes ready,
  * as in the engine. */

@@ -29,7 +29,7 @@ struct vg_assignment {
   uint32_t *first, *last; /* [n_worker] First and last task of each, or NONE. */
   uint32_t *next;         /* [n] Next task of the same worker, or NONE. */
   uint32_t n_woken, *woken; /* [n_woken] Workers that became idle since tasks
-                               were last handed out. */
+                               were last assigned. */
   unsigned char *is_idle;   /* [n_worker] */
 };
 

@@ -245,7 +245,7 @@ struct vg_spot_grid {
 /** Removes balls whose centre is deep inside another ball. */
 vg_status vg_spots_thin(size_t *n, struct vg_spot *spot, struct vg_error *err);
 
-/** Joins overlapping balls to clusters, numbered by their first ball. Balls
+/** Joins overlapping balls into clusters, numbered by their first ball. Balls
  * that would make a cluster of more than `most` balls are left for later. */
 vg_status vg_spot_grid_new(size_t n, const struct vg_spot *spot, size_t most,
                            struct vg_spot_grid *out, struct vg_error *err);
