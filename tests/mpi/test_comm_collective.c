@@ -190,7 +190,7 @@ static void the_lowest_rank_speaks(void **state)
 }
 
 /* The cause ranks above its consequences, a failure above an outcome. */
-static void the_worst_wins(void **state)
+static void the_most_severe_status_wins(void **state)
 {
   int size = vg_comm_size(job), rank = vg_comm_rank(job);
   struct vg_error err = VG_ERROR_INIT;
@@ -253,7 +253,7 @@ int main(void)
     cmocka_unit_test(exchanges),
     cmocka_unit_test(one_failure_fails_the_whole_team),
     cmocka_unit_test(the_lowest_rank_speaks),
-    cmocka_unit_test(the_worst_wins),
+    cmocka_unit_test(the_most_severe_status_wins),
     cmocka_unit_test(waiting_takes_no_core),
   };
 

@@ -231,7 +231,7 @@ static void from_threads(void **state)
 
 /* Larger than MPI's counts. This takes half a minute and gigabytes, so it runs
  * only on request. */
-static void of_more_than_two_gigabytes(void **state)
+static void messages_of_more_than_two_gigabytes(void **state)
 {
   const size_t n = ((size_t)5 << 29) + 12345;
   int size = vg_comm_size(job), rank = vg_comm_rank(job);
@@ -271,7 +271,7 @@ int main(void)
     cmocka_unit_test(wrong_addresses_are_refused),
     cmocka_unit_test(waiting_ranks_are_woken),
     cmocka_unit_test(from_threads),
-    cmocka_unit_test(of_more_than_two_gigabytes),
+    cmocka_unit_test(messages_of_more_than_two_gigabytes),
   };
 
   return RUN_IN_JOB(tests);

@@ -88,7 +88,7 @@ static void all_schedules(void **state)
 /* For every task that moves its home, `done` is called on the executing rank:
  * the children are at home there, and the outcome does not travel. One task of
  * three moves, then all. */
-static void homes_move(void **state)
+static void tasks_can_move_their_home(void **state)
 {
   uint64_t away = 0, elsewhere = 0;
 
@@ -473,7 +473,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_schedules),
-    cmocka_unit_test(homes_move),
+    cmocka_unit_test(tasks_can_move_their_home),
     cmocka_unit_test(ranks_have_loops),
     cmocka_unit_test(moved_and_stopped),
     cmocka_unit_test(a_failure_reaches_all_ranks),

@@ -73,7 +73,7 @@ static void ranks_count_every_damage(void **state)
   }
 }
 
-static void points_nowhere_end_it_on_all(void **state)
+static void invalid_points_end_the_check_on_all_ranks(void **state)
 {
   struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
   struct vg_mesh_report r;
@@ -117,7 +117,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(ranks_agree_with_one_piece),
     cmocka_unit_test(ranks_count_every_damage),
-    cmocka_unit_test(points_nowhere_end_it_on_all),
+    cmocka_unit_test(invalid_points_end_the_check_on_all_ranks),
     cmocka_unit_test(one_failure_reaches_every_rank),
   };
 

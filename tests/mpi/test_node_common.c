@@ -55,7 +55,7 @@ static void parts_are_shared_by_a_node(void **state)
   for (int i = 0; i < 5; i++) share_parts(vg_comm_node_size(job) > 1);
 }
 
-static void or_copied(void **state)
+static void parts_are_copied_without_shared_memory(void **state)
 {
   (void)state;
   if (job) job->apart = 1;
@@ -225,7 +225,8 @@ static void layers_are_shared(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(parts_are_shared_by_a_node), cmocka_unit_test(or_copied),
+    cmocka_unit_test(parts_are_shared_by_a_node),
+    cmocka_unit_test(parts_are_copied_without_shared_memory),
     cmocka_unit_test(nothing_can_be_shared),
     cmocka_unit_test(a_field_is_shared_by_a_node),
     cmocka_unit_test(layers_are_shared)

@@ -112,7 +112,7 @@ static void all_ranks_are_refused(void **state)
   vg_store_close(s, 1);
 }
 
-static void the_limit_is_for_all_together(void **state)
+static void the_limit_applies_to_all_ranks_together(void **state)
 {
   static const char data[1000];
   const uint64_t limit = 20000;
@@ -164,7 +164,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(kept_by_one_found_by_all),
     cmocka_unit_test(all_ranks_are_refused),
-    cmocka_unit_test(the_limit_is_for_all_together),
+    cmocka_unit_test(the_limit_applies_to_all_ranks_together),
     cmocka_unit_test(a_directory_of_one_node),
   };
 

@@ -38,7 +38,7 @@ static void as_filled(const struct scene *s, double leaf)
   vg_mesh_release(&fill);
 }
 
-static void uncut_is_the_fill(void **state)
+static void a_void_without_cuts_equals_the_fill(void **state)
 {
   struct scene s;
 
@@ -353,7 +353,7 @@ static void fronts_that_bound_nothing(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(uncut_is_the_fill),
+    cmocka_unit_test(a_void_without_cuts_equals_the_fill),
     cmocka_unit_test(several_generations),
     cmocka_unit_test(around_a_wing),
     cmocka_unit_test(real_surface),

@@ -190,7 +190,7 @@ static void refuses_broken_surfaces(void **state)
 #undef HEAD
 }
 
-static void tags_of_every_age(void **state)
+static void tags_files_of_every_version(void **state)
 {
   struct vg_aflr a = VG_AFLR_INIT;
 
@@ -371,7 +371,7 @@ int main(void)
     cmocka_unit_test(reads_columns_quads_and_short_lines),
     cmocka_unit_test(faces_vote_for_their_patch),
     cmocka_unit_test(refuses_broken_surfaces),
-    cmocka_unit_test(tags_of_every_age),
+    cmocka_unit_test(tags_files_of_every_version),
     cmocka_unit_test(refuses_broken_tags),
     cmocka_unit_test(conditions_by_name),
     cmocka_unit_test(distinguished_from_vgrid_files),

@@ -128,7 +128,7 @@ static void step_has_names_and_units(void **state)
   vg_mesh_release(&m);
 }
 
-static void patches_follow_words(void **state)
+static void patches_follow_the_chosen_attribute(void **state)
 {
   static const struct {
     enum vg_cad_patches by;
@@ -541,7 +541,7 @@ static void truncated_input_is_refused(void **state)
 
 /* Whatever Open CASCADE makes of damaged files, there is an answer, and an
  * answer to the next file. */
-static void damage_gets_an_answer(void **state)
+static void damaged_files_get_an_answer(void **state)
 {
   static const char *const path[] = { FILE_OF("box.step"), FILE_OF("loose.igs"),
                                       FILE_OF("box.brep") };
@@ -748,7 +748,7 @@ static void short_edges_collapse(void **state)
 }
 
 /* No triangle of the wing is in the cap at its root, face 4. */
-static void rims_are_left(void **state)
+static void wing_triangles_stay_out_of_the_root_cap(void **state)
 {
   struct vg_surface_check_options check = VG_SURFACE_CHECK_OPTIONS_INIT;
   struct vg_cad_surface s = VG_CAD_SURFACE_INIT;
@@ -963,7 +963,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(step_has_names_and_units),
-    cmocka_unit_test(patches_follow_words),
+    cmocka_unit_test(patches_follow_the_chosen_attribute),
     cmocka_unit_test(parts_stand_where_the_assembly_puts_them),
     cmocka_unit_test(finer_is_nearer),
     cmocka_unit_test(loose_faces_are_sewn),
@@ -976,7 +976,7 @@ int main(void)
     cmocka_unit_test(wide_gaps_are_sewn_and_faces_turned),
     cmocka_unit_test(retessellation_equals_a_fresh_read),
     cmocka_unit_test(short_edges_collapse),
-    cmocka_unit_test(rims_are_left),
+    cmocka_unit_test(wing_triangles_stay_out_of_the_root_cap),
     cmocka_unit_test(volume_is_exact),
     cmocka_unit_test(text_after_a_brep_is_accepted),
     cmocka_unit_test(egads_is_a_suffix),
@@ -984,7 +984,7 @@ int main(void)
     cmocka_unit_test(intersecting_bodies_are_reported_by_the_check),
     cmocka_unit_test(files_that_are_not_cad_are_refused),
     cmocka_unit_test(truncated_input_is_refused),
-    cmocka_unit_test(damage_gets_an_answer),
+    cmocka_unit_test(damaged_files_get_an_answer),
     cmocka_unit_test(stops_on_request_and_at_the_time_limit),
     cmocka_unit_test(bytes_are_the_same),
     cmocka_unit_test(points_go_to_the_faces_of_a_box),

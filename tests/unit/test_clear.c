@@ -379,7 +379,7 @@ static void active_columns_only(void **state)
   shape_free(s);
 }
 
-static void tops_with_any_number_of_threads(void **state)
+static void top_collisions_do_not_depend_on_threads(void **state)
 {
   struct shape *s = sphere_over_plane(0.2);
   uint8_t bad[MAX], again[MAX];
@@ -473,7 +473,7 @@ static void patches_to_slide_in(void **state)
 
 /* A face whose columns grow in the same direction is no limit, whatever the
  * shape of its wall. */
-static void columns_of_one_stack(void **state)
+static void columns_of_one_stack_are_no_limit(void **state)
 {
   struct shape *s = two_plates(16, 0.3, 0.01);
   size_t middle = 8 * 17 + 8;
@@ -719,7 +719,7 @@ static void sharp_edges_face_each_other(void **state)
   shape_free(s);
 }
 
-static void ahead_with_any_number_of_threads(void **state)
+static void allowed_heights_do_not_depend_on_threads(void **state)
 {
   struct shape *s = sphere_over_plane(0.05);
   double *one, *more;
@@ -758,7 +758,7 @@ static void gap_must_leave_room(void **state)
   shape_free(s);
 }
 
-static void nothing_at_all(void **state)
+static void an_empty_surface(void **state)
 {
   struct shape *s = shape_new(1);
   uint8_t bad[1];
@@ -783,19 +783,19 @@ int main(void)
     cmocka_unit_test(flanks_in_one_plane),
     cmocka_unit_test(flanks_in_a_noisy_plane),
     cmocka_unit_test(active_columns_only),
-    cmocka_unit_test(tops_with_any_number_of_threads),
+    cmocka_unit_test(top_collisions_do_not_depend_on_threads),
     cmocka_unit_test(plates_share_the_gap),
     cmocka_unit_test(patches_to_slide_in),
-    cmocka_unit_test(columns_of_one_stack),
+    cmocka_unit_test(columns_of_one_stack_are_no_limit),
     cmocka_unit_test(sphere_near_a_plane),
     cmocka_unit_test(a_convex_body_has_no_opposite_surface),
     cmocka_unit_test(every_face_in_the_cone_is_found),
     cmocka_unit_test(sharp_edges_face_each_other),
     cmocka_unit_test(concave_wedge_at_right_angles),
     cmocka_unit_test(concave_wedge_with_turned_columns),
-    cmocka_unit_test(ahead_with_any_number_of_threads),
+    cmocka_unit_test(allowed_heights_do_not_depend_on_threads),
     cmocka_unit_test(gap_must_leave_room),
-    cmocka_unit_test(nothing_at_all),
+    cmocka_unit_test(an_empty_surface),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

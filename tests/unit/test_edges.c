@@ -66,7 +66,7 @@ static void expect_edges(const struct vg_edges *e, size_t n,
 /* From few points, so that edges have up to thirty half-edges and some have
  * both ends at one point, to many points, most of which have no edges; with and
  * without excluded triangles. */
-static void edges_are_those_of_all_pairs(void **state)
+static void edges_agree_with_a_brute_force_list(void **state)
 {
   uint64_t seed = 1;
 
@@ -103,7 +103,7 @@ static void edges_are_those_of_all_pairs(void **state)
     }
 }
 
-static void nothing_has_no_edges(void **state)
+static void no_triangles_have_no_edges(void **state)
 {
   struct vg_edges e = VG_EDGES_INIT;
   struct vg_error err = VG_ERROR_INIT;
@@ -156,8 +156,8 @@ static void half_edges_go_round_a_triangle(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(edges_are_those_of_all_pairs),
-    cmocka_unit_test(nothing_has_no_edges),
+    cmocka_unit_test(edges_agree_with_a_brute_force_list),
+    cmocka_unit_test(no_triangles_have_no_edges),
     cmocka_unit_test(neighbours_agree_or_not),
     cmocka_unit_test(half_edges_go_round_a_triangle),
   };

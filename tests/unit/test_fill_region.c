@@ -130,7 +130,7 @@ static void an_oblique_zone_around_a_body(void **state)
   scene_end(&s);
 }
 
-static void pencil_zone_rest(void **state)
+static void edge_separator_then_zone_then_remainder(void **state)
 {
   struct scene s;
   size_t pencil, side[3];
@@ -201,7 +201,7 @@ static void a_region_elsewhere(void **state)
 }
 
 /* If everything is filled there is nothing to do, and this is no error. */
-static void nothing_is_left(void **state)
+static void nothing_is_left_to_fill(void **state)
 {
   size_t n_cell, n_point;
   struct scene s;
@@ -322,10 +322,10 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_zone_divides_the_void),
     cmocka_unit_test(an_oblique_zone_around_a_body),
-    cmocka_unit_test(pencil_zone_rest),
+    cmocka_unit_test(edge_separator_then_zone_then_remainder),
     cmocka_unit_test(many_cuts_through_a_plate),
     cmocka_unit_test(a_region_elsewhere),
-    cmocka_unit_test(nothing_is_left),
+    cmocka_unit_test(nothing_is_left_to_fill),
     cmocka_unit_test(it_can_be_stopped_at_every_call),
     cmocka_unit_test(failures_return_nothing),
   };

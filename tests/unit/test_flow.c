@@ -211,7 +211,7 @@ static void orientation_counts_where_it_is_defined(void **state)
   is_refused(&a);
 }
 
-static void sealed_cavities_are_left_out(void **state)
+static void sealed_cavities_are_dropped(void **state)
 {
   const struct vg_flow_options all = { .repair = 1,
                                        .threads = 1,
@@ -731,7 +731,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_body_is_never_meshed_inside),
     cmocka_unit_test(orientation_counts_where_it_is_defined),
-    cmocka_unit_test(sealed_cavities_are_left_out),
+    cmocka_unit_test(sealed_cavities_are_dropped),
     cmocka_unit_test(a_tunnel_keeps_its_ball),
     cmocka_unit_test(a_room_keeps_its_block),
     cmocka_unit_test(bubbles_are_left_out),

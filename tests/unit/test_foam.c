@@ -611,7 +611,7 @@ static void a_point_of_many_cells(void **state)
   vg_mesh_release(&m);
 }
 
-static void words(void **state)
+static void format_words(void **state)
 {
   struct vg_foam_options o = { 7 };
 
@@ -636,7 +636,7 @@ int main(void)
     cmocka_unit_test(a_foam_case_is_moved_to_its_place),
     cmocka_unit_test(a_linked_mesh_stays_linked),
     cmocka_unit_test(a_point_of_many_cells),
-    cmocka_unit_test(words),
+    cmocka_unit_test(format_words),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

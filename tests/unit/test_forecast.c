@@ -312,7 +312,7 @@ static void levels_and_axes_are_obeyed(void **state)
  * cells, there is no void to cut, and further bisections add no task. The run
  * of this box with 12 bisections made 81 cuts, 8 of them repeated, 185 tiles
  * and no leaf. */
-static void levels_end_where_nothing_is_left(void **state)
+static void bisections_end_where_no_cells_are_left(void **state)
 {
   struct vg_cut_rule rule = { .leaf_cells = 0, .first_axis = -1 };
   struct vg_forecast o, more;
@@ -461,7 +461,7 @@ int main(void)
     cmocka_unit_test(threads_share_joins),
     cmocka_unit_test(it_is_the_same_twice),
     cmocka_unit_test(levels_and_axes_are_obeyed),
-    cmocka_unit_test(levels_end_where_nothing_is_left),
+    cmocka_unit_test(bisections_end_where_no_cells_are_left),
     cmocka_unit_test(a_faster_core_takes_less_time),
     cmocka_unit_test(repairs_come_last),
     cmocka_unit_test(a_run_has_these_tasks),

@@ -191,7 +191,7 @@ static void the_mapbc_of_a_run_is_no_input(void **state)
 }
 
 /* A tetrahedron around a point inside it: four cells, five points. */
-static void surfaces_leave_inner_points_out(void **state)
+static void surface_files_omit_inner_points(void **state)
 {
   static const double point[5][3] = {
     { 0.1, 0.1, 0.1 }, { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
@@ -277,7 +277,7 @@ int main(void)
     cmocka_unit_test(every_format_round_trips),
     cmocka_unit_test(the_mapbc_in_the_same_folder_is_used),
     cmocka_unit_test(the_mapbc_of_a_run_is_no_input),
-    cmocka_unit_test(surfaces_leave_inner_points_out),
+    cmocka_unit_test(surface_files_omit_inner_points),
     cmocka_unit_test(reads_the_real_project),
     cmocka_unit_test(reads_real_surfaces),
   };

@@ -127,7 +127,7 @@ static void follows_round_sides(void **unused)
 
 /* Edges of the remeshed surface in the slot are at most a fourth of its width,
  * and long again away from it. */
-static void makes_edges_as_short(void **unused)
+static void makes_edges_short_in_a_slot(void **unused)
 {
   const double size[3] = { 1, 0.3, 0.2 }, gap = 0.04, edges = 4;
   const uint32_t n[3] = { 2, 1, 1 };
@@ -237,7 +237,7 @@ int main(void)
     cmocka_unit_test(measures_a_slot),
     cmocka_unit_test(ignores_distances_that_are_not_gaps),
     cmocka_unit_test(follows_round_sides),
-    cmocka_unit_test(makes_edges_as_short),
+    cmocka_unit_test(makes_edges_short_in_a_slot),
     cmocka_unit_test(forecasts),
     cmocka_unit_test(refuses),
   };

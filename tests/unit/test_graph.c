@@ -123,7 +123,7 @@ static void weights_count(void **state)
 }
 
 /* An edge of large weight is not cut. */
-static void prices_count(void **state)
+static void edge_weights_count(void **state)
 {
   struct vg_graph_options o = { 2, 1.1, 0, NULL };
   struct vg_graph g = square();
@@ -194,7 +194,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(subdomains_are_balanced_and_connected),
     cmocka_unit_test(weights_count),
-    cmocka_unit_test(prices_count),
+    cmocka_unit_test(edge_weights_count),
     cmocka_unit_test(invalid_requests_are_refused),
     cmocka_unit_test(bisection_is_even),
   };

@@ -73,7 +73,7 @@ static void are_those_within(const struct vg_hgrid *s, size_t n,
   }
 }
 
-static void lists_what_a_search_finds(void **state)
+static void lists_agree_with_a_search(void **state)
 {
   enum { N = 3000 };
   static double x[N][3];
@@ -130,7 +130,7 @@ static void blocks_with_one_key_are_two(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(lists_what_a_search_finds),
+    cmocka_unit_test(lists_agree_with_a_search),
     cmocka_unit_test(blocks_with_one_key_are_two),
   };
 

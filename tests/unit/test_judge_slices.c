@@ -150,7 +150,7 @@ static void components_are_those_of_the_whole(void **state)
 /* Slices of kind 0 are layers, the others are the isotropic region. Compared
  * with a mesh of only the latter's cells, bounded by their faces without a
  * neighbour. */
-static void the_field_is_judged_by_itself(void **state)
+static void the_isotropic_region_is_checked_separately(void **state)
 {
   (void)state;
   for (int cells = 0; cells < 2; cells++) {
@@ -185,7 +185,7 @@ static void the_field_is_judged_by_itself(void **state)
   }
 }
 
-static void points_that_are_nowhere(void **state)
+static void points_that_are_not_finite(void **state)
 {
   struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
   struct vg_mesh_report r;
@@ -394,8 +394,8 @@ int main(void)
     cmocka_unit_test(cells_several_times_over),
     cmocka_unit_test(slices_count_every_defect_equally),
     cmocka_unit_test(components_are_those_of_the_whole),
-    cmocka_unit_test(the_field_is_judged_by_itself),
-    cmocka_unit_test(points_that_are_nowhere),
+    cmocka_unit_test(the_isotropic_region_is_checked_separately),
+    cmocka_unit_test(points_that_are_not_finite),
     cmocka_unit_test(indices_that_point_nowhere),
     cmocka_unit_test(failures_are_reported),
     cmocka_unit_test(every_slice_is_shown),

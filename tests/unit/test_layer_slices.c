@@ -510,7 +510,7 @@ static void many_slices(void **state)
   model_release(&m);
 }
 
-static void without_layers(void **state)
+static void slices_of_a_mesh_without_layers(void **state)
 {
   uint64_t seed = 3;
   struct model m;
@@ -619,8 +619,10 @@ static void refusals(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(roofs_with_fans), cmocka_unit_test(many_slices),
-    cmocka_unit_test(without_layers),  cmocka_unit_test(a_wedge_between_planes),
+    cmocka_unit_test(roofs_with_fans),
+    cmocka_unit_test(many_slices),
+    cmocka_unit_test(slices_of_a_mesh_without_layers),
+    cmocka_unit_test(a_wedge_between_planes),
     cmocka_unit_test(refusals),
   };
 

@@ -80,7 +80,7 @@ static void the_result_is_independent_of_threads(void **state)
 /* --- against the mesher -------------------------------------------------- */
 
 /* 15 %: an error that the choice of a decomposition tolerates. */
-static void expects_what_is_made(void **state)
+static void estimate_agrees_with_the_mesh(void **state)
 {
   (void)state;
   compare_with_mesh("box", 20000, 1.2, 1.15);
@@ -108,7 +108,7 @@ static void small_sources_count(void **state)
 
 /* The number of cells that the faces alone require, where the sizing field
  * would give almost none. */
-static void faces_have_cells_of_their_own(void **state)
+static void faces_alone_require_cells(void **state)
 {
   struct vg_load l;
   struct scene s;
@@ -198,7 +198,7 @@ static void children_get_their_share(void **state)
 }
 
 /* Split repeatedly down to the smallest blocks: the sums do not drift. */
-static void generations_do_not_drift(void **state)
+static void repeated_splits_do_not_drift(void **state)
 {
   struct vg_load l, next;
   struct scene s;
@@ -556,11 +556,11 @@ int main(void)
     cmocka_unit_test(demos_keep_their_volume),
     cmocka_unit_test(a_stray_body_is_omitted),
     cmocka_unit_test(the_result_is_independent_of_threads),
-    cmocka_unit_test(expects_what_is_made),
+    cmocka_unit_test(estimate_agrees_with_the_mesh),
     cmocka_unit_test(small_sources_count),
-    cmocka_unit_test(faces_have_cells_of_their_own),
+    cmocka_unit_test(faces_alone_require_cells),
     cmocka_unit_test(children_get_their_share),
-    cmocka_unit_test(generations_do_not_drift),
+    cmocka_unit_test(repeated_splits_do_not_drift),
     cmocka_unit_test(tiny_and_empty_children),
     cmocka_unit_test(a_small_void_has_octants),
     cmocka_unit_test(answers_on_two_octants),

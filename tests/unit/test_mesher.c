@@ -118,7 +118,7 @@ static const char *check(struct sample *s)
   return wrong;
 }
 
-static void takes_what_fills_the_front(void **state)
+static void accepts_cells_that_fill_the_front(void **state)
 {
   struct sample s;
   size_t n;
@@ -429,7 +429,7 @@ static void sizes_are_those_of_the_field(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(takes_what_fills_the_front),
+    cmocka_unit_test(accepts_cells_that_fill_the_front),
     cmocka_unit_test(refuses_damaged_samples),
     cmocka_unit_test(refuses_cells_outside_the_front),
     cmocka_unit_test(the_example_fills_a_box),

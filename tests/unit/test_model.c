@@ -536,7 +536,7 @@ static void zones_make_cells_too(void **state)
   vg_spans_release(&s);
 }
 
-static void nothing_takes_no_time(void **state)
+static void an_empty_timeline_takes_no_time(void **state)
 {
   struct vg_spans s = VG_SPANS_INIT, t = VG_SPANS_INIT;
   struct vg_machine m = machine_of(2, 2);
@@ -672,7 +672,7 @@ int main(void)
     cmocka_unit_test(idle_workers_help),
     cmocka_unit_test(help_is_shared),
     cmocka_unit_test(zones_make_cells_too),
-    cmocka_unit_test(nothing_takes_no_time),
+    cmocka_unit_test(an_empty_timeline_takes_no_time),
     cmocka_unit_test(the_same_record_gives_the_same),
     cmocka_unit_test(contradictions_are_named),
     cmocka_unit_test(leaves_are_assigned_statically),

@@ -209,7 +209,7 @@ static void the_limit_is_exact(void **state)
 }
 
 /* Existing points count: a second placement adds almost none. */
-static void points_that_stand_count(void **state)
+static void existing_points_count(void **state)
 {
   struct scene s;
   struct vg_placed p, q;
@@ -494,7 +494,7 @@ int main(void)
     cmocka_unit_test(a_graded_field),
     cmocka_unit_test(the_same_bytes_again),
     cmocka_unit_test(the_limit_is_exact),
-    cmocka_unit_test(points_that_stand_count),
+    cmocka_unit_test(existing_points_count),
     cmocka_unit_test(a_slab_gets_only_its_own_points),
     cmocka_unit_test(regions_keep_more_distance),
     cmocka_unit_test(cells_of_regions),

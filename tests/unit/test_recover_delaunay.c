@@ -251,7 +251,7 @@ static void start_flat(struct vg_tets *t)
 
 /* Flips by such sums would undo those by exact signs, over and over: then the
  * signal ends the test. */
-static void flat_rings_come_to_rest(void **state)
+static void flips_of_flat_rings_terminate(void **state)
 {
   (void)state;
   alarm(60);
@@ -275,7 +275,7 @@ int main(void)
     cmocka_unit_test(flips_are_undone),
     cmocka_unit_test(fixed_faces_stay),
     cmocka_unit_test(cospherical_points_cause_no_flips),
-    cmocka_unit_test(flat_rings_come_to_rest),
+    cmocka_unit_test(flips_of_flat_rings_terminate),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

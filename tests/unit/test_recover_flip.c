@@ -282,7 +282,7 @@ static void the_same_cells_again(void **state)
 
 /* --- obstacles ----------------------------------------------------------- */
 
-static void signs_of_what_is_in_the_way(void **state)
+static void signs_of_edges_near_a_triangle(void **state)
 {
   static double x[9][3] = { { 0, 0, 0 },  { 4, 0, 0 },
                             { 0, 4, 0 },                 /* triangle */
@@ -328,7 +328,7 @@ int main(void)
     cmocka_unit_test(a_stretched_sheet),
     cmocka_unit_test(twisted_prisms_need_steiner_points),
     cmocka_unit_test(the_same_cells_again),
-    cmocka_unit_test(signs_of_what_is_in_the_way),
+    cmocka_unit_test(signs_of_edges_near_a_triangle),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -68,7 +68,7 @@ static void knife(struct vg_mesh *m)
     shape_tri(m, tri[i][0], tri[i][1], tri[i][2], 0);
 }
 
-static void does_not_fold(void **unused)
+static void changes_do_not_fold_the_surface(void **unused)
 {
   struct scene s = { .m = VG_MESH_INIT };
   struct vg_tris *w = &s.w;
@@ -203,7 +203,7 @@ static void follows_an_edge_over_a_fold(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(does_not_fold),
+    cmocka_unit_test(changes_do_not_fold_the_surface),
     cmocka_unit_test(any_sequence_on_a_ball),
     cmocka_unit_test(any_sequence_on_a_box),
     cmocka_unit_test(corners_and_ridges_stay),

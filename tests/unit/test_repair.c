@@ -276,7 +276,7 @@ static void test_inside_is_left(void **state)
 }
 
 /* Flat slabs: all cells are bad, and the hull permits no better ones. */
-static void test_hopeless(void **state)
+static void test_slabs_that_cannot_be_improved(void **state)
 {
   struct scene s;
 
@@ -427,11 +427,16 @@ static void test_thin(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_mends_across),   cmocka_unit_test(test_border_stays),
-    cmocka_unit_test(test_smooths),        cmocka_unit_test(test_nothing_bad),
-    cmocka_unit_test(test_inside_is_left), cmocka_unit_test(test_hopeless),
-    cmocka_unit_test(test_many),           cmocka_unit_test(test_balls),
-    cmocka_unit_test(test_balls_capped),   cmocka_unit_test(test_thin),
+    cmocka_unit_test(test_mends_across),
+    cmocka_unit_test(test_border_stays),
+    cmocka_unit_test(test_smooths),
+    cmocka_unit_test(test_nothing_bad),
+    cmocka_unit_test(test_inside_is_left),
+    cmocka_unit_test(test_slabs_that_cannot_be_improved),
+    cmocka_unit_test(test_many),
+    cmocka_unit_test(test_balls),
+    cmocka_unit_test(test_balls_capped),
+    cmocka_unit_test(test_thin),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -222,7 +222,7 @@ static void added_in_pieces(void **state)
 }
 
 /* No shared points: the largest possible number, far more than in a surface. */
-static void triangles_of_their_own(void **state)
+static void triangles_without_shared_points(void **state)
 {
   const struct vg_region all = VG_REGION_ALL;
   struct vg_select s;
@@ -259,7 +259,7 @@ static void triangles_of_their_own(void **state)
   scene_end(&scene);
 }
 
-static void nothing_near(void **state)
+static void no_faces_near_the_region(void **state)
 {
   struct vg_region r = { .n_plane = 1 };
   struct vg_select s;
@@ -335,7 +335,7 @@ static void is_about(double is, double want)
 /* Faces that cross all planes of a region, or nearly so, widen it: it must
  * reach the distance of their farthest corner plus 1.5 spacings. Faces of usual
  * length are within the known band and do not widen it. */
-static void long_faces_widen(void **state)
+static void long_faces_widen_the_selection(void **state)
 {
   struct vg_region zone = { .n_plane = 1 }, pencil, walled;
   struct scene scene;
@@ -502,9 +502,9 @@ int main(void)
     cmocka_unit_test(even_spacing),
     cmocka_unit_test(spacing_varies),
     cmocka_unit_test(added_in_pieces),
-    cmocka_unit_test(triangles_of_their_own),
-    cmocka_unit_test(nothing_near),
-    cmocka_unit_test(long_faces_widen),
+    cmocka_unit_test(triangles_without_shared_points),
+    cmocka_unit_test(no_faces_near_the_region),
+    cmocka_unit_test(long_faces_widen_the_selection),
     cmocka_unit_test(the_longest_face_counts),
     cmocka_unit_test(finds_all_faces_that_a_triangle_meets),
   };

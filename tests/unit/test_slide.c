@@ -560,7 +560,7 @@ static void finds_planes_and_normals(void **state)
 }
 
 /* The same square twice: a corner cut into 1 or 4 triangles has one normal. */
-static void normals_go_by_angle(void **state)
+static void normals_are_weighted_by_angle(void **state)
 {
   struct grid g = { 0 };
   struct vg_slide s = { .patch = 0, .axis = -1, .normal = { 0, 0, 1 } };
@@ -754,7 +754,7 @@ static void floor_and_roof(void **state)
 
 /* Columns that leave the box are reported; after lowering them the front is
  * valid. */
-static void too_high_is_failure(void **state)
+static void columns_that_leave_the_box_are_reported(void **state)
 {
   struct made a = { 0 };
 
@@ -1093,7 +1093,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(finds_planes_and_normals),
-    cmocka_unit_test(normals_go_by_angle),
+    cmocka_unit_test(normals_are_weighted_by_angle),
     cmocka_unit_test(noise_is_still_a_plane),
     cmocka_unit_test(dome_on_a_plane),
     cmocka_unit_test(body_between_planes),
@@ -1102,7 +1102,7 @@ int main(void)
     cmocka_unit_test(floor_with_four_sides),
     cmocka_unit_test(tilted_floor),
     cmocka_unit_test(floor_and_roof),
-    cmocka_unit_test(too_high_is_failure),
+    cmocka_unit_test(columns_that_leave_the_box_are_reported),
     cmocka_unit_test(gently_curved_side),
     cmocka_unit_test(a_tunnel_is_not_a_height_field),
     cmocka_unit_test(plane_in_two_patches),

@@ -427,7 +427,7 @@ static void writes_parts_for_openfoam(void **state)
   vg_mesh_release(&m);
 }
 
-static void reads_how_many_tetrahedra_are_in_layers(void **state)
+static void reads_the_number_of_layer_tetrahedra(void **state)
 {
   static const char *const kind[] = { "tail.b8.ugrid", "tail.lr4.ugrid",
                                       "tail.lb8l.ugrid" };
@@ -466,7 +466,7 @@ int main(void)
     cmocka_unit_test(hexahedra_stand_on_walls),
     cmocka_unit_test(writes_parts_as_metis_does),
     cmocka_unit_test(writes_parts_for_openfoam),
-    cmocka_unit_test(reads_how_many_tetrahedra_are_in_layers),
+    cmocka_unit_test(reads_the_number_of_layer_tetrahedra),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

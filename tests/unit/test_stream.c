@@ -464,7 +464,7 @@ static void written_reals_read_back(void **state)
   }
 }
 
-static void no_locale_shows(void **state)
+static void numbers_do_not_depend_on_the_locale(void **state)
 {
   static const char *const name[] = { "de_DE.UTF-8", "de_DE.utf8",
                                       "fr_FR.UTF-8" };
@@ -574,7 +574,7 @@ int main(void)
     cmocka_unit_test(parses_reals_with_care),
     cmocka_unit_test(parses_as_the_c_library),
     cmocka_unit_test(written_reals_read_back),
-    cmocka_unit_test(no_locale_shows),
+    cmocka_unit_test(numbers_do_not_depend_on_the_locale),
     cmocka_unit_test(a_name_appears_only_when_complete),
     cmocka_unit_test(output_errors_are_reported),
     cmocka_unit_test(a_full_disk_is_reported),

@@ -884,7 +884,7 @@ static void nests_bodies_in_a_farfield(void **unused)
   done(&m, &r);
 }
 
-static void turns_what_bounds_the_fluid(void **unused)
+static void reverses_the_outer_boundary(void **unused)
 {
   NEW;
 
@@ -1168,7 +1168,7 @@ int main(void)
     cmocka_unit_test(finds_boxes_that_cross),
     cmocka_unit_test(counts_more_pairs_than_it_lists),
     cmocka_unit_test(nests_bodies_in_a_farfield),
-    cmocka_unit_test(turns_what_bounds_the_fluid),
+    cmocka_unit_test(reverses_the_outer_boundary),
     cmocka_unit_test(sees_through_many_layers),
     cmocka_unit_test(does_not_guess_about_a_stray_body),
     cmocka_unit_test(turns_a_hollow_body_as_one),

@@ -85,7 +85,7 @@ static void draw_keys(int n, uint64_t among, int crowded)
   vg_table_release(&t);
 }
 
-static void finds_what_a_list_finds(void **state)
+static void agrees_with_a_plain_list(void **state)
 {
   (void)state;
   draw_keys(2000, 50, 0);
@@ -196,7 +196,7 @@ static void keys_of_triangles(void **state)
 }
 
 /* All orders of four numbers, and whether they are odd. */
-static void order_of_four(void **state)
+static void four_numbers_are_sorted(void **state)
 {
   (void)state;
   for (int i = 0; i < 256; i++) {
@@ -217,13 +217,13 @@ static void order_of_four(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(finds_what_a_list_finds),
+    cmocka_unit_test(agrees_with_a_plain_list),
     cmocka_unit_test(survives_equal_hashes),
     cmocka_unit_test(refuses),
     cmocka_unit_test(hashes_stay),
     cmocka_unit_test(spreads_patterns),
     cmocka_unit_test(keys_of_triangles),
-    cmocka_unit_test(order_of_four),
+    cmocka_unit_test(four_numbers_are_sorted),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

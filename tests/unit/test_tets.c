@@ -187,7 +187,7 @@ static void points_are_found_from_anywhere(void **state)
   vg_tets_release(&t);
 }
 
-static void points_outside_are_nowhere(void **state)
+static void points_outside_are_not_located(void **state)
 {
   struct vg_tets t = VG_TETS_INIT;
   uint64_t seed = 2;
@@ -239,7 +239,7 @@ static int in_corner(const struct vg_tets *t, size_t c)
 /* One cube of eight is outside, one slot is dead: points of the kept range
  * stay, other unused points are removed, and everything else is renumbered
  * consistently. */
-static void tidy_keeps_what_is_inside(void **state)
+static void tidy_keeps_cells_inside(void **state)
 {
   enum { N_KEEP = 28 };
   struct vg_tets t = VG_TETS_INIT;
@@ -447,7 +447,7 @@ static void orders_are_permutations_of_short_path(void **state)
 
 /* The first eighth of the order is spread over the whole cube: every eighth of
  * the cube has its share. */
-static void early_rounds_are_spread(void **state)
+static void insertion_order_starts_spread_out(void **state)
 {
   enum { N = 32768 };
   double(*x)[3] = vg_alloc(N, sizeof *x);
@@ -482,14 +482,14 @@ int main(void)
     cmocka_unit_test(defects_are_detected),
     cmocka_unit_test(dead_slots_are_used_last_in_first_out),
     cmocka_unit_test(points_are_found_from_anywhere),
-    cmocka_unit_test(points_outside_are_nowhere),
+    cmocka_unit_test(points_outside_are_not_located),
     cmocka_unit_test(constraints_do_not_stop_the_walk),
-    cmocka_unit_test(tidy_keeps_what_is_inside),
+    cmocka_unit_test(tidy_keeps_cells_inside),
     cmocka_unit_test(the_curve_steps_to_neighbours),
     cmocka_unit_test(keys_are_clamped),
     cmocka_unit_test(the_sort_is_that_of_qsort),
     cmocka_unit_test(orders_are_permutations_of_short_path),
-    cmocka_unit_test(early_rounds_are_spread),
+    cmocka_unit_test(insertion_order_starts_spread_out),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

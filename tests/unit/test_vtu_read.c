@@ -221,7 +221,7 @@ static void reads_text(void **state)
   accept(&b);
 }
 
-static void reads_what_is_written_here(void **state)
+static void reads_its_own_output(void **state)
 {
   const struct vg_vtu_field field = { "size", VG_VTU_POINT, VG_VTU_FLOAT64, 1,
                                       size_of };
@@ -313,7 +313,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(reads_every_way),
     cmocka_unit_test(reads_text),
-    cmocka_unit_test(reads_what_is_written_here),
+    cmocka_unit_test(reads_its_own_output),
     cmocka_unit_test(damage_is_never_read_as_data),
     cmocka_unit_test(refuses_unsupported_files),
   };

@@ -379,7 +379,7 @@ static void is_empty(const struct vg_filled *z)
   assert_memory_equal(z, &empty, sizeof empty);
 }
 
-static void no_front_near(void **state)
+static void a_zone_without_front_nearby(void **state)
 {
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_region r = plane_at(1, 2);
@@ -540,7 +540,7 @@ int main(void)
     cmocka_unit_test(an_edge_separator_exits_a_plume),
     cmocka_unit_test(a_pencil_is_thin),
     cmocka_unit_test(a_real_surface),
-    cmocka_unit_test(no_front_near),
+    cmocka_unit_test(a_zone_without_front_nearby),
     cmocka_unit_test(a_plane_outside),
     cmocka_unit_test(a_damaged_front),
     cmocka_unit_test(it_can_be_stopped_at_every_call),

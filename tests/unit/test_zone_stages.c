@@ -156,7 +156,7 @@ static void a_lattice_around_a_sphere(void **state)
 }
 
 /* Planes that meet in the body: six segments at the same time. */
-static void all_lines_at_once(void **state)
+static void segments_of_all_lines_at_once(void **state)
 {
   const struct vg_lattice l = { .n = { 1, 1, 1 },
                                 .lines_at_once = 1,
@@ -233,7 +233,7 @@ static void ribs_from_a_body(void **state)
 /* Where three lines meet, cells of tiles may need a corner beyond the walls. A
  * few cells are left out, and blocks stay connected there. Whole planes without
  * walls, one after the other, close the remaining places. */
-static void planes_close_what_is_left(void **state)
+static void planes_close_the_remaining_places(void **state)
 {
   (void)state;
   for (int q = 0; q < 5; q++) {
@@ -267,10 +267,10 @@ int main(void)
     cmocka_unit_test(a_pencil_and_four_tiles),
     cmocka_unit_test(a_lattice_in_a_box),
     cmocka_unit_test(a_lattice_around_a_sphere),
-    cmocka_unit_test(all_lines_at_once),
+    cmocka_unit_test(segments_of_all_lines_at_once),
     cmocka_unit_test(a_plane_in_pieces),
     cmocka_unit_test(ribs_from_a_body),
-    cmocka_unit_test(planes_close_what_is_left),
+    cmocka_unit_test(planes_close_the_remaining_places),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
