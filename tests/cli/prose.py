@@ -50,7 +50,7 @@ PHRASES = [(re.compile(pattern, re.I), remedy) for pattern, remedy in (
     (r"\b(others|another|other [a-z]+s|theirs|ours|hers)' ?[.;,)]|another's\b",
      "complete the phrase"),
     # quantities
-    (r"\b(is|are|was|were|be) none\b|\bnone any ?more\b|\bno more of\b",
+    (r"(?<!there )\b(is|are|was|were|be) none\b|\bnone any ?more\b|\bno more of\b",
      '"no longer ...", "is not a ..."'),
     (r"\b(so|as) (many|much)\b(?! (that|as|more|less)\b)",
      '"that many", "up to n"'),
@@ -60,6 +60,7 @@ PHRASES = [(re.compile(pattern, re.I), remedy) for pattern, remedy in (
 
 # file, phrase, reason; at most 40
 EXCEPTIONS = (
+    ("src/run/settings/settings_check.c", "is none", "none is a value"),
     ("tests/cli/prose.py", None, "the list itself"),
     ("CONTRIBUTING.md", None, "quotes bad examples next to good ones"),
 )
