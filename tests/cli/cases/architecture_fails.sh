@@ -30,7 +30,7 @@ refused unseen "src/core/fill/f.c:2: core/fill must not include base"
 
 cp -r good idle
 : >idle/src/core/mesh/m.h
-refused idle "core/mesh sees base, and includes nothing of it"
+refused idle "core/mesh sees base, but includes nothing from it"
 
 cp -r good private
 echo '#include "core/mesh/m_parts.h"' >>private/src/core/fill/f.c
@@ -56,7 +56,7 @@ refused circle "headers include each other"
 cp -r good homeless
 mkdir homeless/src/core/odd
 touch homeless/src/core/odd/o.c
-refused homeless "src/core/odd: a folder without a place"
+refused homeless "src/core/odd: the folder is not listed in src/CMakeLists.txt"
 
 cp -r good full
 for i in $(seq 41); do touch full/src/core/fill/f$i.c; done
