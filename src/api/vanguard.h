@@ -229,7 +229,8 @@ VANGUARD_API vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
  * on every rank, except that only rank 0 calls it while the tetrahedra are
  * generated. A non-zero return value stops the run.
  *
- * @param phase     "read", "check", "sizes", "layers", "fill", "judge", ...
+ * @param phase     "read", "surface check", "sizing field", "layers", "fill",
+ *                  "mesh check", ...
  * @param done      triangles, columns or cells finished so far; within a phase
  *                  neither this number nor the fraction ever decreases
  * @param expected  expected total; 0: not known */

@@ -205,8 +205,8 @@ static void loose_faces_are_sewn(void **state)
   says(&n, "lengths are in m, the file's unit");
   vg_mesh_bounds(&m, lo, hi);
   near(hi[2], 0.003, 1e-9);
-  says(&n, "24 edges had one face only");
-  says(&n, "found a partner for 24 of them");
+  says(&n, "24 edges belonged to one face only");
+  says(&n, "joined 24 of them");
   assert_int_equal(m.n_point, 8);
   vg_mesh_release(&m);
 }
@@ -222,7 +222,7 @@ static void missing_curves_of_parameters_are_made(void **state)
   (void)state;
   read_file(FILE_OF("bare.brep"), &o, &m);
   assert_int_equal(m.n_patch, 3);
-  says(&n, "face 1 lacks the curves of its rim");
+  says(&n, "face 1 has no parameter-space curves along its boundary");
   is_sound(&m, 1);
   vg_mesh_bounds(&m, lo, hi);
   near(hi[0], 1, 1e-12);
@@ -239,7 +239,7 @@ static void a_duplicate_face_is_removed(void **state)
   (void)state;
   read_file(FILE_OF("doubled.brep"), &o, &m);
   assert_int_equal(m.n_patch, 6);
-  says(&n, "face 7 at (0.5, 0, 1.5) repeats face 3 and was dropped");
+  says(&n, "face 7 at (0.5, 0, 1.5) duplicates face 3 and was dropped");
   says(&n, "no unit of length");
   is_sound(&m, 1);
   vg_mesh_release(&m);
@@ -366,9 +366,9 @@ static void wide_gaps_are_sewn_and_faces_turned(void **state)
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
-  says(&n, "sewing within 3.74e-05 found a partner for 24 of them, the first "
+  says(&n, "sewing with a tolerance of 3.74e-05 joined 24 of them, the first "
            "at (");
-  says(&n, "3 faces that do not belong to a solid were turned");
+  says(&n, "3 faces that do not belong to a solid were reversed");
   assert_int_equal(s.is_solid, 0);
   near(s.volume, 6, 1e-4);
   assert_int_equal(vg_surface_check(&s.mesh, &check, &r, &err), VG_OK);
@@ -394,7 +394,7 @@ static void a_missing_face_is_named(void **state)
 
   (void)state;
   read_file(FILE_OF("missing.brep"), &o, &m);
-  says(&n, "4 edges have one face only, the first is of face 1");
+  says(&n, "4 edges belong to one face only, the first to face 1");
   assert_int_equal(m.n_patch, 5);
   vg_mesh_release(&m);
 }
@@ -926,7 +926,7 @@ static void the_doubled_face_of_dlr_f6(void **state)
   (void)state;
   read_file(io_real("transport/dlr_f6_wbnp_half.brep.xz"), &o, &m);
   says(&n, "face 130 at");
-  says(&n, "repeats face 123 and was dropped");
+  says(&n, "duplicates face 123 and was dropped");
   assert_int_equal(m.n_patch, 129);
   is_sound(&m, 1);
   vg_mesh_release(&m);

@@ -1080,6 +1080,7 @@ static void names_every_kind(void **unused)
     assert_non_null(name);
     for (int j = 0; j < k; j++)
       assert_string_not_equal(name, vg_defect_name((enum vg_defect_kind)j));
+    assert_string_not_equal(name, vg_defect_heading((enum vg_defect_kind)k));
   }
 }
 

@@ -212,6 +212,24 @@ done:
   return st;
 }
 
+/* The last line for a surface that vanguard mesh accepts, and why defects that
+ * were listed do not prevent it. */
+static void print_accepted(const struct vg_flow *f, size_t n_open,
+                           size_t n_defect)
+{
+  int closes = n_open && f->kind == VG_FLOW_EXTERNAL && f->axis >= 0;
+
+  printf("  vanguard mesh accepts this surface");
+  if (closes)
+    printf(": the symmetry plane %c = %g closes its %zu open edges",
+           "xyz"[f->axis], f -> at, n_open);
+  if (n_defect > (closes ? n_open : 0))
+    printf("%s the %sdefects listed are those of the input, and are removed "
+           "before it is meshed",
+           closes ? ";" : ":", closes ? "other " : "");
+  printf("\n");
+}
+
 vg_status vg_check_surface(const struct vg_check_surface *a,
                            struct vg_problem *p, struct vg_display *show,
                            struct vg_error *err)
@@ -221,7 +239,7 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
   struct vg_error why = VG_ERROR_INIT;
   struct findings f = { 0 };
   json_t *body = NULL;
-  size_t n_note;
+  size_t n_note, n_open, n_defect;
   vg_status st = vg_boundary_shape(&p->read, &o, show, b, &why), shape = st;
 
   if (st < 0 && !b->check.face_kinds) {
@@ -231,6 +249,8 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
   VG_TRY(examine(a, b, &f, show, err));
   body = vg_report_surface_json(&b->surface, &b->check, VG_LISTED_DEFECTS);
   n_note = p->notes.n;
+  n_open = b->check.count[VG_DEFECT_OPEN_EDGE];
+  n_defect = b->check.n_defect;
   if (shape >= 0) shape = finish(b, show, &why);
   vg_display_clear(show);
   if (a->json) print_json(a, b, &f, body, shape, &why);
@@ -238,7 +258,7 @@ vg_status vg_check_surface(const struct vg_check_surface *a,
     for (size_t i = n_note; i < p->notes.n; i++)
       printf("  note: %s\n", p->notes.text[i]);
   if (shape < 0) st = vg_fail(err, shape, "%s", why.text);
-  else if (!a->json) printf("  vanguard mesh accepts this surface\n");
+  else if (!a->json) print_accepted(&b->flow, n_open, n_defect);
 done:
   json_decref(body);
   release(&f);

@@ -463,7 +463,8 @@ static void print_report(FILE *to, const struct run *r)
   fprintf(to, "\nVolume fill\n");
   vg_report_fill_text(to, &m->partition.fill, m->n_field_cell);
   if (r->layers.is_on) {
-    fprintf(to, "\nField outside the layers\n");
+    fprintf(to, "\n"
+                "Cells outside the layers\n");
     print_count(to, "tetrahedra", m->n_field_cell);
     vg_report_mesh_text(to, &m->field_judge, 0);
   }

@@ -73,7 +73,7 @@ static void check_end(const struct vg_plan_options *o,
     argp_error(state, "give either a project or --replay, not both");
   if (o->replay && o->rates)
     argp_error(state, "--rates needs a project; --replay uses the times of "
-                      "its record");
+                      "its timeline");
   if (o->replay && o->cores)
     argp_error(state, "--cores needs a project; use --ranks, --threads and "
                       "--ranks-per-node with --replay");
@@ -84,7 +84,7 @@ static void check_end(const struct vg_plan_options *o,
                       "--ranks-per-node");
   if (o->replay && (!is_schedule(&o->kept) || o->deck || o->target > 0))
     argp_error(state, "--replay takes no settings, deck or target other than "
-                      "--schedule, since the tasks are those of the record");
+                      "--schedule, since the tasks are those of the timeline");
 }
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -166,9 +166,9 @@ static const struct argp_option own[] = {
     "[bytes/s, default 1e10]",
     1 },
   { "rate", KEY_RATE, "X", 0,
-    "Speed of a core relative to that of the record; without a record, "
-    "relative to the core on which the built-in rates were measured "
-    "[default 1]",
+    "Speed of a core relative to that of the timeline; without a timeline, "
+    "relative to the core on which the built-in rates were measured [default "
+    "1]",
     1 },
   { "rates", KEY_RATES, "FILE", 0,
     "Fit the times per cell and face by least squares to the timeline of a "
@@ -181,8 +181,8 @@ static const struct argp_option own[] = {
     1 },
   { "serial", KEY_SERIAL, "S", 0,
     "Time outside the tasks that is not parallel [s, default: the phases of "
-    "the record, parallel within a node or over all workers; without a "
-    "record, estimated from the times of reading, checking and sizing now]",
+    "the timeline, parallel within a node or over all workers; without a "
+    "timeline, estimated from the times of reading, checking and sizing now]",
     1 },
   { "joins-roam", KEY_ROAM, NULL, 0,
     "Let any rank perform front updates (joins), not only the home rank", 1 },

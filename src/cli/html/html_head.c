@@ -145,8 +145,8 @@ static void layers_short(struct list *l)
   }
   if (s->all.full < 100 && begin(l, WEIGHT_BAD)) {
     vg_page_fixed(p, 100 - s->all.full, 2);
-    vg_page_markup(p, " % of the wall faces have fewer layers than growth law "
-                      "and local edge length require");
+    vg_page_markup(p, " % of the wall faces have fewer layers than the "
+                      "growth law and the local edge length require");
     if (fewest->patch != VG_NO_INDEX) {
       vg_page_markup(p, "; the largest percentage is on ");
       patch_words(p, "patch", fewest->patch);

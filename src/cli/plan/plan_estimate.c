@@ -209,7 +209,7 @@ static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
 
   options.coarseness = coarseness;
   options.threads = 0;
-  vg_display_update(&p->show, "sizes", 0, 0);
+  vg_display_update(&p->show, "sizing field", 0, 0);
   vg_sizing_free(p->sizing);
   p->sizing = NULL;
   st = vg_sizing_new(&options, s->n_source, s->source, m, &p->sizing, err);

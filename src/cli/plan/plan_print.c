@@ -349,7 +349,7 @@ static void print_rates(const struct vg_plan *p)
              "tasks, error %.0f %%\n",
              kind_name(f->kind), 1e6 * f->cell, 1e6 * f->face, f->n,
              100 * f->error);
-    else printf("  %-8s too few tasks in the record\n", kind_name(f->kind));
+    else printf("  %-8s too few tasks in the timeline\n", kind_name(f->kind));
   }
 }
 

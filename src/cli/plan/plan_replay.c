@@ -99,9 +99,13 @@ static void print_text(const struct plan *p)
   const struct vg_spans *s = &p->t.spans;
   char cells[32];
 
-  printf("%s\n\nRecord %s\n  %d rank%s x %d thread%s, %zu tasks, %s cells; cut "
-         "and fill %.3f s\n  outside the tasks, on one core: %.3f s serial, "
-         "%.3f s parallel within a node, %.3f s parallel over all workers\n",
+  printf("%s\n"
+         "\n"
+         "Timeline %s\n"
+         "  %d rank%s x %d thread%s, %zu tasks, %s cells; cut and fill %.3f "
+         "s\n"
+         "  outside the tasks, on one core: %.3f s serial, %.3f s parallel "
+         "within a node, %.3f s parallel over all workers\n",
          p->t.title, p->o->replay, (int)s->n_rank, s->n_rank > 1 ? "s" : "",
          (int)s->n_thread, s->n_thread > 1 ? "s" : "", s->n,
          vg_text_count((unsigned long long)p->t.n_cell, cells), s->wall,

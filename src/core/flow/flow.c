@@ -194,7 +194,7 @@ static vg_status judge_shells(struct settle *s, struct vg_error *err)
     s->out.n_outer += s->verdict[i] == VG_FLOW_OUTER;
   }
   if (s->o->kind != VG_FLOW_UNKNOWN)
-    tell(&s->out, "the option %s", s->o->asked_by);
+    tell(&s->out, "given by the setting %s", s->o->asked_by);
   return VG_OK;
 }
 
@@ -488,7 +488,7 @@ void vg_flow_statement(const struct vg_flow *f, int adds_farfield, char *out)
   char half[80] = "", bodies[80] = "";
 
   if (f->axis >= 0)
-    snprintf(half, sizeof half, ", half of it, cut at %c = %g", "xyz"[f->axis],
+    snprintf(half, sizeof half, " (half model, cut at %c = %g)", "xyz"[f->axis],
              f -> at);
   if (f->n_body)
     snprintf(bodies, sizeof bodies, " around %zu closed bod%s", f->n_body,
@@ -502,11 +502,10 @@ void vg_flow_statement(const struct vg_flow *f, int adds_farfield, char *out)
     snprintf(out, VG_FLOW_TEXT, "Not decided");
   else if (f->n_inlet + f->n_outlet)
     snprintf(out, VG_FLOW_TEXT,
-             "Internal flow in a closed duct%s%s: inlet "
-             "%zu, outlet %zu",
+             "Internal flow in a closed duct%s%s; inlets: %zu, outlets: %zu",
              bodies, half, f->n_inlet, f->n_outlet);
   else
-    snprintf(out, VG_FLOW_TEXT, "Flow inside %s given outer boundar%s%s%s",
-             f->n_outer > 1 ? "several" : "a", f->n_outer > 1 ? "ies" : "y",
-             bodies, half);
+    snprintf(out, VG_FLOW_TEXT, "Flow%s within %s outer boundar%s%s", bodies,
+             f->n_outer > 1 ? "several given" : "the given",
+             f->n_outer > 1 ? "ies" : "y", half);
 }

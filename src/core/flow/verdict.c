@@ -136,7 +136,6 @@ enum vg_flow_verdict vg_flow_judge(const struct vg_flow_shell *s,
                "or name of a symmetry plane: the surface may bound a channel, "
                "or a body between two planes");
   return say(why, VG_FLOW_BODY,
-             "no patch has the condition or the name of an "
-             "outer boundary, an inlet or an outlet, and no other shell lies "
-             "inside");
+             "no patch has the condition or name of an outer boundary, inlet "
+             "or outlet, and no other shell lies inside");
 }

@@ -142,6 +142,9 @@ void vg_defect_text(const struct vg_mesh *m, const struct vg_defect *d,
 /** Name of a kind: "open edge", ... Static string. */
 const char *vg_defect_name(enum vg_defect_kind kind);
 
+/** Heading for the findings of a kind: "open edges", ... Static string. */
+const char *vg_defect_heading(enum vg_defect_kind kind);
+
 /** Merge points that coincide: exactly for tolerance 0 (0 and -0 are equal),
  * else within it (single linkage on a grid; the lowest index is kept), and
  * renumber. Triangles that collapse are dropped; cells are only renumbered.

@@ -17,6 +17,27 @@ const char *vg_defect_name(enum vg_defect_kind kind)
   return (unsigned)kind < VG_DEFECT_N ? name[kind] : "unknown";
 }
 
+const char *vg_defect_heading(enum vg_defect_kind kind)
+{
+  static const char *const heading[VG_DEFECT_N] = {
+    "open edges",
+    "non-manifold edges",
+    "edges with inconsistent orientation",
+    "duplicate points",
+    "unused points",
+    "degenerate triangles",
+    "duplicate triangles",
+    "triangles of shared walls",
+    "self-intersections",
+    "shells with inconsistent nesting",
+    "patches without boundary condition",
+    "non-finite coordinates",
+    "quadrilaterals"
+  };
+
+  return (unsigned)kind < VG_DEFECT_N ? heading[kind] : "unknown";
+}
+
 /* "patch 3 (wing), face 17", or "" if the finding has no such face. */
 static void face_text(const struct vg_mesh *m, size_t f, char *text,
                       size_t size)
@@ -82,8 +103,8 @@ static const char *remedy(const struct vg_defect *d)
     return "this triangle belongs to two bodies that touch; unite the "
            "bodies, or use --wrap";
   case VG_DEFECT_INTERSECTION:
-    return "these faces cross, overlap or touch; unite the bodies or "
-           "move the surface apart there";
+    return "these faces cross, overlap or touch; unite the bodies, or move "
+           "the surfaces apart there";
   case VG_DEFECT_SHELL: return shell_text(d);
   case VG_DEFECT_NO_BC:
     return "this patch has no boundary condition; give it one in the .mapbc "

@@ -119,7 +119,7 @@ void drop_copy(Model &model, size_t i, size_t j, bool again, const Talk &talk)
   if (!again && first.solid >= 0 && later.solid >= 0 &&
       first.solid != later.solid)
     return;
-  talk.note(format("%s at %s repeats face %u and was dropped",
+  talk.note(format("%s at %s duplicates face %u and was dropped",
                    named(later).c_str(), place(point_of(later.shape)).c_str(),
                    first.number));
   later.shape.Nullify();
@@ -329,7 +329,7 @@ void mend(Model &model, const Talk &talk)
     f.shape = TopoDS::Face(to);
   }
   if (n)
-    talk.note(format("%zu faces were mended, the first is %s at %s", n,
+    talk.note(format("%zu faces were repaired, the first is %s at %s", n,
                      named(*first).c_str(),
                      place(point_of(first->shape)).c_str()));
 }
@@ -343,9 +343,8 @@ void complete(Model &model, const Talk &talk)
   for (const Face &f : model.faces) {
     if (!lacks_curves(f.shape)) continue;
     if (!n++)
-      talk.note(format("%s lacks the curves of its rim in the parameter "
-                       "plane; they are computed, also for other faces like "
-                       "it",
+      talk.note(format("%s has no parameter-space curves along its boundary; "
+                       "they were computed, also for other faces like it",
                        named(f).c_str()));
   }
   if (n) mend(model, talk);
@@ -370,7 +369,7 @@ void heal(const vg_cad_ask &ask, Model &model, const Talk &talk)
   std::vector<Measure> list = drop_slits(model, talk);
   double tolerance;
 
-  talk.stage("looking for faces that repeat others");
+  talk.stage("looking for duplicate faces");
   drop_copies(model, list, model.n_solid < 2, talk);
   tolerance = sew(ask, model, talk);
   if (model.n_solid > 1) {

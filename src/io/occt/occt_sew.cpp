@@ -276,15 +276,16 @@ void note_edges(const Model &model, double tolerance, const Talk &talk)
     const unsigned number = model.faces[u[0].face].number;
 
     if (u.size() == 1 && !open)
-      talk.note(format("%zu edges have one face only, the first is of face "
+      talk.note(format("%zu edges belong to one face only, the first to face "
                        "%u at %s: a face is missing there, the gap is wider "
-                       "than %.3g (cad_tolerance), or it is the edge of "
-                       "half a body",
+                       "than %.3g (cad_tolerance), or the model is half of a "
+                       "body",
                        edges.n_open, number, middle(edges.edge(i)).c_str(),
                        tolerance));
     if (u.size() > 2 && !many)
-      talk.note(format("%zu edges have three or more faces, the first is of "
-                       "face %u at %s: some faces repeat or divide others",
+      talk.note(format("%zu edges belong to three or more faces, the first "
+                       "to face %u at %s: some faces duplicate or divide "
+                       "others",
                        edges.n_many, number, middle(edges.edge(i)).c_str()));
     open = open || u.size() == 1;
     many = many || u.size() > 2;
@@ -313,8 +314,9 @@ double sew(const vg_cad_ask &ask, Model &model, const Talk &talk)
     Sewn sewn = sew_best(model, list, before);
     used = sewn.tolerance;
     if (sewn.n_open < before.n_open) {
-      talk.note(format("%zu edges had one face only; sewing within %.3g "
-                       "found a partner for %zu of them, the first at %s",
+      talk.note(format("%zu edges belonged to one face only; sewing with a "
+                       "tolerance of %.3g joined %zu of them, the first at "
+                       "%s",
                        before.n_open, used, before.n_open - sewn.n_open,
                        sewn.places.c_str()));
       for (const std::string &text : sewn.notes) talk.note(text);
@@ -327,8 +329,8 @@ double sew(const vg_cad_ask &ask, Model &model, const Talk &talk)
 void orient(Model &model, double tolerance, const Talk &talk)
 {
   if (size_t n = Turning(model).run())
-    talk.note(format("%zu faces that do not belong to a solid were turned "
-                     "like their neighbours",
+    talk.note(format("%zu faces that do not belong to a solid were reversed "
+                     "to match their neighbours",
                      n));
   note_edges(model, tolerance, talk);
 }

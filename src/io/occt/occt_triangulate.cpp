@@ -316,7 +316,7 @@ void make_triangles(const vg_cad_ask &ask, Model &model, double least,
   run_mesher(ask, together(model), least);
   bare = count_bare(model);
   if (!bare) return;
-  talk.stage("mending its faces");
+  talk.stage("repairing its faces");
   mend(mended, talk);
   run_mesher(ask, together(mended), least);
   if (count_bare(mended) < bare) model = mended;

@@ -158,7 +158,7 @@ vg_status vg_narrow_accept(const struct vg_narrow *n, const char *kind,
              n->point + 1, n->x[0], n->x[1], n->x[2]);
   return vg_fail(err, VG_ERR_GEOMETRY,
                  "with the 4-byte reals of a .%s.ugrid the mesh would have "
-                 "%s%s, which no solver can use; write 8-byte reals, as "
-                 ".%s.ugrid has, or move the geometry closer to the origin",
+                 "%s%s, which no solver can use; write 8-byte reals, as in "
+                 ".%s.ugrid, or move the geometry closer to the origin",
                  kind, cells, points, instead);
 }

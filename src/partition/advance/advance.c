@@ -246,7 +246,7 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   if (st == VG_OK) st = run_again(p, comm, spans, err);
   p->report.wall = vg_clock() - t0;
   if (st == VG_OK) st = vg_partition_repair(p, comm, spans, err);
-  if (st == VG_OK) vg_partition_tell(p, "number", p->n_piece, 0);
+  if (st == VG_OK) vg_partition_tell(p, "numbering", p->n_piece, 0);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
   if (st == VG_OK) st = sum_report(&p->report, comm, err);
   p->report.number = vg_clock() - t0 - p->report.wall - p->report.repair;

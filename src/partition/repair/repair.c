@@ -508,7 +508,7 @@ static vg_status all_rounds(struct vg_partition *p, struct vg_comm *comm,
   for (int k = 0; st == VG_OK && k < ROUNDS && (!k || n); k++) {
     struct repair r = { .p = p, .number = number, .spans = spans };
 
-    vg_partition_tell(p, "repair", (size_t)k, ROUNDS);
+    vg_partition_tell(p, "interface repair", (size_t)k, ROUNDS);
     st = vg_owners_gather(p, comm, &r.owners, err);
     if (st == VG_OK && !k && r.owners.n > 1)
       st = vg_repair_smooth(p, comm, &r.owners, spans, &n, &spot, err);

@@ -115,8 +115,8 @@ vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
   if (st == VG_BLOCKED) VG_TRY(too_many(b, &found, o.most_tri, err));
   if (found.n)
     vg_note(b->notes,
-            "gap_edges %g: sizes from %zu places in gaps; the narrowest gap "
-            "is %.4g wide, at (%.6g, %.6g, %.6g)%s",
+            "gap_edges %g: limits edge lengths at %zu places in gaps; the "
+            "narrowest gap is %.4g wide, at (%.6g, %.6g, %.6g)%s",
             s->gap_edges, found.n, found.narrowest, found.at[0], found.at[1],
             found.at[2],
             b->is_remeshed
@@ -124,7 +124,7 @@ vg_status vg_boundary_gaps(struct vg_boundary *b, struct vg_display *show,
               : "; the surface is not remeshed, so cells between its coarse "
                 "faces cannot become small (remesh_surface yes remeshes it)");
   else
-    vg_note(b->notes, "setting without effect because no gap is narrow "
+    vg_note(b->notes, "setting that has no effect because no gap is narrow "
                       "enough: gap_edges");
   if (found.n) VG_TRY(make(b, &found, err));
   st = vg_display_stopped(show, err);

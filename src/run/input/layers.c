@@ -722,7 +722,7 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
   if (st == VG_ERR_STOPPED) st = vg_display_stopped(show, err);
   VG_TRY(st);
   t = vg_display_now();
-  vg_display_update(show, "measure layers", s->report.n_cell, 0);
+  vg_display_update(show, "layer measurement", s->report.n_cell, 0);
   VG_TRY(judge(s, surface, err));
   VG_TRY(vg_layers_fields(surface, &s->layers.columns, s->options.threads,
                           &s->fields, err));

@@ -328,9 +328,9 @@ vg_status vg_boundary_put_back(struct vg_boundary *b, struct vg_error *err)
   back->is_done = 1;
   vg_note(
     b->notes,
-    "points projected onto the CAD model: %zu, of which %zu lie on its "
-    "curves; they were at most %.3g away from it; centroids of triangles, "
-    "which are flat, remain at most %.3g away; not projected, because "
+    "points projected onto the CAD model: %zu, %zu of them onto its curves; "
+    "largest distance from the model before: %.3g; centroids of the flat "
+    "triangles are still up to %.3g away; points not projected, because "
     "triangles would fold or intersect: %zu",
     back->n_point - back->n_far - back->n_refused, back->n_curve,
     back->off[0].most, back->off[1].most, back->n_refused);

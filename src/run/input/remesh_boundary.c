@@ -249,7 +249,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
                    "first heights are given at points of the surface, but "
                    "remesh_surface replaces these points: give the heights by "
                    "patch, or set remesh_surface to no");
-  vg_display_update(show, "remesh", b->surface.n_tri, 0);
+  vg_display_update(show, "surface remeshing", b->surface.n_tri, 0);
   VG_TRY(vg_mesh_copy(&given, &b->surface, err));
   VG_TRY(hard_patches(b, &hard, err));
   VG_TRY(vg_surface_sizes_make(b, &sizes, err));
@@ -257,7 +257,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   r->seconds = vg_display_now() - t;
   VG_TRY(measure(b, &given, show, err));
   r->is_done = 1;
-  vg_display_update(show, "put back", b->surface.n_tri, 0);
+  vg_display_update(show, "projection", b->surface.n_tri, 0);
   if (b->model.cad) VG_TRY(vg_boundary_put_back(b, err));
   take_volumes(b);
   areas(&b->surface, 1, r->area);
@@ -303,7 +303,7 @@ vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
   cad.stop.ask = vg_display_stop;
   cad.chord = fmin(cad.chord * again[i][0], 0.1);
   cad.angle = fmin(fmax(cad.angle * again[i][1], 2), 30);
-  vg_display_update(show, "tessellate", 0, 0);
+  vg_display_update(show, "tessellation", 0, 0);
   VG_TRY(vg_cad_again(b->model.cad, &cad, &fresh, err));
   VG_TRY(vg_mesh_copy(&m, &fresh.mesh, err));
   keep_conditions(&given, &m);
@@ -313,9 +313,9 @@ vg_status vg_boundary_tessellate(struct vg_boundary *b, size_t i,
   vg_remeshing_release(&b->remeshing);
   while (b->notes->n > n_note) free(b->notes->text[--b->notes->n]);
   vg_note(b->notes,
-          "the first tessellation of the CAD model led to no valid surface; "
-          "the tessellation used has chord %.2g and angle %.3g (cad_chord, "
-          "cad_angle)",
+          "the first tessellation of the CAD model did not give a valid "
+          "surface; it was repeated with a chord error of %.2g and an angle "
+          "of %.3g degrees (cad_chord, cad_angle)",
           cad.chord, cad.angle);
   return VG_OK;
 done:

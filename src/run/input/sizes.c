@@ -105,8 +105,8 @@ static vg_status find_mesh(const char *path, char **out, struct vg_error *err)
   }
   if (st >= 0 && !found)
     st = vg_fail(err, VG_ERR_INPUT,
-                 "%s: there is no mesh %.*s.mesh, .meshb, .b8.ugrid, ... next "
-                 "to it, whose points the sizes refer to",
+                 "%s: the sizes belong to the points of a mesh, but there is "
+                 "no %.*s.mesh, .meshb, .b8.ugrid, ... in the same folder",
                  path, (int)(dot - path), path);
   if (st < 0) free(found);
   else *out = found;

@@ -124,8 +124,8 @@ static void note_outside(const struct vg_effects *h, int is_beyond,
   }
   if (!n) return;
   vg_note(notes,
-          "%zu source%s (number%s%s) %s completely %s; in the fluid only "
-          "the growth of sizes around %s has an effect",
+          "%zu source%s (number%s%s) %s completely %s; only the growth of "
+          "sizes around %s affects the fluid",
           n, n > 1 ? "s" : "", n > 1 ? "s" : "", list, n > 1 ? "lie" : "lies",
           is_beyond ? "outside the domain"
                     : "inside a body or beyond the boundary",

@@ -83,7 +83,7 @@ static vg_status check(struct vg_boundary *b, int external,
   o.external = external;
   o.threads = b->threads;
   o.stop = (struct vg_stop){ vg_display_stop, show };
-  vg_display_update(show, "check", b->surface.n_tri, 0);
+  vg_display_update(show, "surface check", b->surface.n_tri, 0);
   st = vg_surface_check(&b->surface, &o, &b->check, err);
   if (st >= 0) note_removed(b);
   return st;

@@ -61,8 +61,8 @@ static void note_use(struct vg_problem *p, const uint8_t *given,
                              n > 1 ? ", " : "", name);
   }
   if (!n) return;
-  vg_note(&p->notes, "settings without effect because %s: %s%s", reason[use],
-          list, n > SHOWN ? ", ..." : "");
+  vg_note(&p->notes, "settings that have no effect because %s: %s%s",
+          reason[use], list, n > SHOWN ? ", ..." : "");
 }
 
 void vg_problem_note_unused(struct vg_problem *p, int layers_on,
@@ -79,7 +79,7 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
     if (missing >> use & 1) note_use(p, given, (enum vg_use)use);
   free(given);
   if (layers_on && s->layer.scale_rule && s->scale == 1)
-    vg_note(&p->notes, "setting without effect because scale is 1: "
+    vg_note(&p->notes, "setting that has no effect because scale is 1: "
                        "scale_layers");
   if (s->scale != 1 && missing >> VG_USE_REMESH & 1 && is_given(&p->read.files))
     vg_note(&p->notes,
@@ -90,10 +90,10 @@ void vg_problem_note_unused(struct vg_problem *p, int layers_on,
   for (size_t i = 0; i < b->n_row; i++) n_hard += b->row[i].hard != 0;
   if (n_hard && missing >> VG_USE_REMESH & 1)
     vg_note(&p->notes,
-            "setting without effect because %s: hard, in %zu rows "
-            "of the table patches",
+            "setting that has no effect because %s: hard, in %zu rows of the "
+            "table patches",
             reason[VG_USE_REMESH], n_hard);
   if (s->n_surface && missing >> VG_USE_REMESH & 1)
-    vg_note(&p->notes, "table without effect because %s: surface",
+    vg_note(&p->notes, "table that has no effect because %s: surface",
             reason[VG_USE_REMESH]);
 }

@@ -314,9 +314,10 @@ vg_status vg_walls_swap(struct vg_boundary *b,
   st = vg_surface_swap(&b->surface, &o, &r, err);
   if (st < 0) return st;
   vg_note(b->notes,
-          "slivers of the surface: caps %zu, now %zu, needles %zu, now %zu, "
-          "by %zu swaps and %zu collapses of edges that move it by at most "
-          "%.2g (--surface-swap no keeps it unchanged)",
+          "slivers of the surface: caps reduced from %zu to %zu, needles "
+          "from %zu to %zu, by %zu swaps and %zu collapses of edges that "
+          "move the surface by at most %.2g (--surface-swap no keeps it "
+          "unchanged)",
           r.n_cap[0], r.n_cap[1], r.n_needle[0], r.n_needle[1], r.n_swapped,
           r.n_collapsed, r.moved);
   return st;

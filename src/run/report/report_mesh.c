@@ -17,30 +17,36 @@ double vg_report_peak_memory(void)
   return 1024.0 * (double)use.ru_maxrss;
 }
 
-/* Row i of the validity checks; its name is also the JSON key. *name is NULL
- * past the last row. */
-static size_t validity(const struct vg_mesh_report *r, int i, const char **name)
+/* Row i of the validity checks: its JSON key, and its name in texts. *key is
+ * NULL past the last row. */
+static size_t validity(const struct vg_mesh_report *r, int i, const char **key,
+                       const char **name)
 {
   const struct {
-    const char *name;
+    const char *key, *name;
     size_t n;
   } row[] = {
-    { "indices out of range", r->bad_index },
-    { "points not finite", r->not_finite },
-    { "unused points", r->unused_point },
-    { "duplicate points", r->duplicate_point },
-    { "cells not positive", r->not_positive },
-    { "open faces", r->open_face },
-    { "faces of three cells", r->crowded_face },
-    { "neighbours on one side", r->same_side_face },
-    { "boundary without cell", r->orphan_boundary },
-    { "boundary outward", r->outward_boundary },
+    { "indices out of range", "indices out of range", r->bad_index },
+    { "points not finite", "non-finite points", r->not_finite },
+    { "unused points", "unused points", r->unused_point },
+    { "duplicate points", "duplicate points", r->duplicate_point },
+    { "cells not positive", "cells of zero or negative volume",
+      r->not_positive },
+    { "open faces", "faces without neighbour", r->open_face },
+    { "faces of three cells", "faces of three or more cells", r->crowded_face },
+    { "neighbours on one side", "faces with overlapping cells",
+      r->same_side_face },
+    { "boundary without cell", "boundary faces without cell",
+      r->orphan_boundary },
+    { "boundary outward", "boundary faces facing outward",
+      r->outward_boundary },
   };
 
   if (i >= (int)(sizeof row / sizeof *row)) {
-    *name = NULL;
+    *key = *name = NULL;
     return 0;
   }
+  *key = row[i].key;
   *name = row[i].name;
   return row[i].n;
 }
@@ -73,15 +79,15 @@ static void bars(FILE *to, const char *title, const size_t *hist, int n,
 
 static void validity_text(FILE *to, const struct vg_mesh_report *r)
 {
-  const char *name;
+  const char *key, *name;
   char count[32];
 
   fprintf(to, "  validity: %s\n", r->is_valid ? "valid" : "NOT VALID");
   for (int i = 0;; i++) {
-    size_t n = validity(r, i, &name);
+    size_t n = validity(r, i, &key, &name);
 
-    if (!name) break;
-    if (n) fprintf(to, "    %-24s %13s\n", name, vg_text_count(n, count));
+    if (!key) break;
+    if (n) fprintf(to, "    %-32s %13s\n", name, vg_text_count(n, count));
   }
   fprintf(to,
           "  volume: sum of cells %.10g, enclosed by the boundary %.10g, "
@@ -92,7 +98,7 @@ static void validity_text(FILE *to, const struct vg_mesh_report *r)
 
 void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size)
 {
-  const char *name;
+  const char *key, *name;
   size_t at = 0;
 
   snprintf(text, size,
@@ -100,9 +106,9 @@ void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size)
            "volume by %.2g",
            r->volume_error);
   for (int i = 0;; i++) {
-    size_t n = validity(r, i, &name);
+    size_t n = validity(r, i, &key, &name);
 
-    if (!name) break;
+    if (!key) break;
     if (n && at < size)
       at += (size_t)snprintf(text + at, size - at, "%s%zu %s", at ? ", " : "",
                              n, name);
@@ -209,13 +215,13 @@ static json_t *worst_json(const struct vg_mesh_report *r)
 static json_t *validity_json(const struct vg_mesh_report *r)
 {
   json_t *o = json_object();
-  const char *name;
+  const char *key, *name;
 
   for (int i = 0;; i++) {
-    size_t n = validity(r, i, &name);
+    size_t n = validity(r, i, &key, &name);
 
-    if (!name) break;
-    json_object_set_new(o, name, json_integer((json_int_t)n));
+    if (!key) break;
+    json_object_set_new(o, key, json_integer((json_int_t)n));
   }
   return o;
 }
@@ -296,7 +302,7 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
   char a[32], b[32], c[32];
   double rate = r->time_total > 0 ? (double)n_cell / r->time_total : 0;
 
-  fprintf(to, "  field points: inserted %s, rejected %s\n",
+  fprintf(to, "  interior points: inserted %s, rejected %s\n",
           vg_text_count(r->n_inserted, a), vg_text_count(r->n_refused, b));
   fprintf(to,
           "  boundary recovery: triangles recovered %s; pockets closed %s "

@@ -16,6 +16,16 @@ static void distance_text(FILE *to, const char *what,
           what, d->most, d->at[0], d->at[1], d->at[2], d->most_99);
 }
 
+/* A cause in texts; vg_remesh_cause_name is its JSON key. */
+static const char *cause_text(enum vg_remesh_cause c)
+{
+  static const char *const text[VG_REMESH_N] = { "corner", "narrow strip",
+                                                 "feature curve",
+                                                 "smooth surface" };
+
+  return text[c];
+}
+
 static void bad_text(FILE *to, const struct vg_remesh_report *r)
 {
   size_t shown = 0;
@@ -26,13 +36,13 @@ static void bad_text(FILE *to, const struct vg_remesh_report *r)
           "cause:",
           VG_REMESH_BAD, r->n_bad);
   for (int c = 0; c < VG_REMESH_N; c++)
-    fprintf(to, " %s %zu", vg_remesh_cause_name((enum vg_remesh_cause)c),
+    fprintf(to, "%s %s %zu", c ? "," : "", cause_text((enum vg_remesh_cause)c),
             r->cause[c]);
   fprintf(to, "\n");
   for (size_t i = 0; i < r->n_bad && shown < VG_SHOWN_FACES; i++, shown++)
     fprintf(to, "    %s, face %zu, angle %.2g degrees, at (%.6g, %.6g, %.6g)\n",
-            vg_remesh_cause_name(r->bad[i].cause), r->bad[i].face + 1,
-            r->bad[i].angle, r->bad[i].at[0], r->bad[i].at[1], r->bad[i].at[2]);
+            cause_text(r->bad[i].cause), r->bad[i].face + 1, r->bad[i].angle,
+            r->bad[i].at[0], r->bad[i].at[1], r->bad[i].at[2]);
   if (r->n_bad > shown) fprintf(to, "    ... and %zu more\n", r->n_bad - shown);
 }
 
@@ -76,13 +86,13 @@ void vg_report_remesh_text(FILE *to, const struct vg_remeshing *n)
           r->n_corner, r->n_line, r->line_length[0], r->line_length[1]);
   if (r->n_left)
     fprintf(to,
-            "  strips narrower than the tolerance not closed: %zu, since "
-            "triangles would intersect\n",
+            "  strips narrower than the tolerance kept: %zu, since triangles "
+            "would intersect\n",
             r->n_left);
   if (r->n_closed)
     fprintf(to,
-            "  strips narrower than the tolerance closed: %zu, length "
-            "%.6g, largest width %.3g, at (%g, %g, %g)\n",
+            "  strips narrower than the tolerance collapsed: %zu, total "
+            "length %.6g, largest width %.3g, at (%g, %g, %g)\n",
             r->n_closed, r->closed_length, r->closed_width, r->closed_at[0],
             r->closed_at[1], r->closed_at[2]);
   fprintf(to,

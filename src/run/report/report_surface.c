@@ -220,10 +220,11 @@ static void slivers_text(FILE *to, const struct vg_mesh *m,
 {
   if (!q->n_worst) return;
   fprintf(to,
-          "  slivers: %zu caps (three nodes nearly on a line), %zu needles. "
-          "Cells on them are hardly\n  better. surface_swap removes those that "
-          "it can without visible change of the surface;\n  for the others "
-          "the surface must be remeshed:\n",
+          "  slivers: %zu caps (three nodes nearly on a line), %zu needles "
+          "(one very short edge).\n"
+          "  They cause poor cells. surface_swap removes those that it can "
+          "without visibly changing\n"
+          "  the surface; remesh_surface also replaces the others:\n",
           q->n_cap, q->n_needle);
   for (size_t i = 0; i < q->n_worst && i < VG_SHOWN_FACES; i++) {
     const struct vg_worst_face *w = &q->worst[i];
@@ -296,7 +297,7 @@ void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
     size_t n = r->count[kind], said = 0;
 
     if (n)
-      fprintf(to, "  %s: %s\n", vg_defect_name((enum vg_defect_kind)kind),
+      fprintf(to, "  %s: %s\n", vg_defect_heading((enum vg_defect_kind)kind),
               vg_text_count(n, count));
     /* The array `defect` is sorted by kind. */
     for (; at < r->n_defect && (int)r->defect[at].kind == kind; at++) {
@@ -375,8 +376,8 @@ void vg_report_flow_text(FILE *to, const struct vg_flow *f, int adds_farfield)
   if (f->kind == VG_FLOW_EXTERNAL)
     fprintf(to, "  If the fluid is inside the surface, use --flow internal.\n");
   if (f->kind == VG_FLOW_INTERNAL)
-    fprintf(to,
-            "  If the surface is a body in the fluid, use --flow external.\n");
+    fprintf(to, "  If the surface is a body immersed in the fluid, use --flow "
+                "external.\n");
 }
 
 json_t *vg_report_flow_json(const struct vg_flow *f, int adds_farfield)

@@ -133,14 +133,13 @@ static vg_status no_name(const char *what, const char *name,
                          struct vg_error *err)
 {
   const char *near = vg_nearest_name(name, n, name_of, m);
-  char list[600], hint[VG_NAME_MAX + 32] = "";
+  char list[600], hint[VG_NAME_MAX + 32] = ".";
 
   vg_patch_list_text(m, n, list, sizeof list);
   if (near && *near)
-    snprintf(hint, sizeof hint, "did you mean '%.*s'? ", VG_NAME_MAX, near);
+    snprintf(hint, sizeof hint, "; did you mean '%.*s'?", VG_NAME_MAX, near);
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: no patch of the surface is named "
-                 "'%s'; %sPatches: %s",
+                 "%s: no patch of the surface is named '%s'%s Patches: %s",
                  what, name, hint, list);
 }
 

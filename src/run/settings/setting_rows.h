@@ -80,8 +80,8 @@ VG_ROW(REAL, plain, wrap, "wrap", 0,
   "edge length that bridges gaps narrower than it; for overlapping parts and "
   "holes that cannot be closed; 0: no wrap")
 VG_ROW(FLAG, plain, repair, "repair", 1,
-  .unit = "", .help = "Repair what is unambiguous: orientation, unused and "
-  "duplicate points and faces")
+  .unit = "", .help = "Make all unambiguous repairs: orientation, unused and "
+                      "duplicate points and faces")
 VG_ROW(WORD, plain, flow, "flow", 0,
   .words = flow_words, .unit = "", .help = "Flow domain. external: the "
   "surface consists of bodies, and the fluid is outside; internal: the "
@@ -134,8 +134,9 @@ VG_ROW(COUNT, plain, optimise, "optimise", fill.sweeps,
   .hi = 100, .unit = "sweeps", .help = "Sweeps of smoothing and swapping "
   "after the volume fill")
 VG_ROW(COUNT, plain, max_cells, "max_cells", 0,
-  .keeps_mesh = 1, .hi = 9e15, .unit = "cells", .help = "Stop before the "
-  "mesh, including its layers, has more cells than this; 0: no limit")
+  .keeps_mesh = 1, .hi = 9e15, .unit = "cells", .help = "Stop if the "
+  "mesh, including its layers, would have more cells than "
+        "this; 0: no limit")
 VG_TEXT_ROW(plain, write, VG_WRITE_MAX, "write", "auto",
   .keeps_mesh = 1, .unit = "", .check = vg_write_list_check,
   .help = "Output formats, separated by commas; auto: cogsg,b8.ugrid, or "

@@ -102,8 +102,8 @@ static void print_decomposition(FILE *to, const struct vg_run *r,
   if (!p->n_part) return;
   fprintf(to,
           "  decomposition %s: %s subdomains (%s requested, %llu more for "
-          "disconnected pieces),\n  balance %.3f (max/mean of the cells made "
-          "in leaves)\n",
+          "disconnected pieces),\n"
+          "  balance %.3f (max/mean of the cells generated in leaves)\n",
           r->decomposition, vg_text_count(p->n_part, a),
           vg_text_count(q->n_asked, b), (unsigned long long)q->n_apart,
           balance(l));
@@ -112,13 +112,13 @@ static void print_decomposition(FILE *to, const struct vg_run *r,
           q->coarsening, vg_text_count(q->n_face, b));
   if (q->n_gap)
     fprintf(to,
-            "  %s of these subdomains are the gap region at the front, which "
-            "planes may cut; octants\n  contain %.1f %% of the expected "
-            "cells%s\n",
+            "  of these, %s in the gap region at the front, which planes may "
+            "cut; octants\n"
+            "  contain %.1f %% of the expected cells%s\n",
             vg_text_count(q->n_gap, a), 100 * q->coarse_cells / p->estimate,
             q->n_coarse ? ""
-                        : ": there is no room for an octant away from "
-                          "the front");
+                        : ": there is no room for octants away from the "
+                          "front");
   fprintf(to,
           "  time (s): %s %.2f, assignment %.2f, smoothing of interfaces "
           "%.2f, subdivision %.2f\n",
@@ -162,7 +162,7 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
   struct leaves l = leaves_of(&r->spans);
   char a[32], b[32], c[32];
 
-  fprintf(to, "  %d rank%s x %d thread%s; cells expected %s, made %s\n",
+  fprintf(to, "  %d rank%s x %d thread%s; %s cells expected, %s generated\n",
           r->size, r->size > 1 ? "s" : "", r->threads,
           r->threads > 1 ? "s" : "",
           vg_text_count((unsigned long long)p->estimate, a),
@@ -177,7 +177,8 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
   if (p->n_widened)
     fprintf(to,
             "  subdomains that could not be filled and were extended by "
-            "their neighbours: %s,\n  %s cells remade in %.2f s\n",
+            "their neighbours: %s,\n"
+            "  %s cells regenerated in %.2f s\n",
             vg_text_count(p->n_widened, a), vg_text_count(p->n_widened_cell, b),
             p->widened);
   if (p->n_blocked || p->n_retry || p->n_uncut || p->n_outgrown)
@@ -188,8 +189,8 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
             vg_text_count(p->n_outgrown, c), (unsigned long long)p->n_uncut);
   if (p->n_open_left)
     fprintf(to,
-            "  separator stages left to leaves, since the void stays "
-            "connected in too many places: %llu\n",
+            "  separators not made, since the void would stay connected in "
+            "too many places (filled as leaves): %llu\n",
             (unsigned long long)p->n_open_left);
   fprintf(to, "  repair across interfaces: %s point moves, %s swaps; ",
           vg_text_count(p->n_repair_moved, a),
@@ -208,7 +209,7 @@ void vg_report_partition_text(FILE *to, const struct vg_run *r)
           100 * vg_spans_busy(&r->spans), vg_spans_imbalance(&r->spans),
           r->cyclic ? "; leaves assigned in turn (cyclic)" : "");
   if (!r->store) return;
-  fprintf(to, "  tasks found in %s: %s\n", r->options.dir,
+  fprintf(to, "  tasks reused from %s: %s\n", r->options.dir,
           vg_text_count(p->n_found, a));
   if (*r->stored.stopped)
     fprintf(to, "  not all tasks were stored there: %s\n", r->stored.stopped);

@@ -150,7 +150,7 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
   options.threads = threads;
   options.coarseness = coarseness;
   options.team = team;
-  vg_display_update(show, "sizes", 0, 0);
+  vg_display_update(show, "sizing field", 0, 0);
   st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
   r->time_size += vg_display_now() - t;
   return st < 0 ? st : vg_display_stopped(show, err);
@@ -313,7 +313,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.progress = (struct vg_progress){ vg_display_update, show };
   o.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(open_mesher(r, s, &o.mesher, err));
-  vg_display_update(show, "load", 0, 0);
+  vg_display_update(show, "load estimate", 0, 0);
   VG_TRY(open_store(r, p, boundary, sizing, &o, err));
   o.store = r->store;
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
@@ -368,7 +368,7 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   double t = vg_display_now();
   vg_status st;
 
-  vg_display_update(show, "judge", vg_run_cells(r), 0);
+  vg_display_update(show, "mesh check", vg_run_cells(r), 0);
   VG_TRY(vg_run_pictures_plan(&r->pictures, r->comm, &p->boundary.surface,
                               layers ? &layers->columns : NULL, err));
   VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
@@ -532,7 +532,7 @@ static vg_status part_for_solver(struct vg_run *r, const struct vg_problem *p,
   vg_status st;
 
   if (!o.n_part) return VG_OK;
-  vg_display_update(show, "partition", vg_run_cells(r), 0);
+  vg_display_update(show, "solver partition", vg_run_cells(r), 0);
   o.threads = r->threads;
   st = vg_solver_part_slices(r->comm, &r->slices, &o, &r->parted, &r->parts,
                              &r->solver, err);

@@ -12,7 +12,7 @@ says out "note: CAD: lengths are in mm, the file's unit"
 says out "trailing edge"
 vanguard check --json "$cad/doubled.brep" --remesh-surface no
 exits 0
-says out "CAD: face 7 at (0.5, 0, 1.5) repeats face 3 and was dropped"
+says out "CAD: face 7 at (0.5, 0, 1.5) duplicates face 3 and was dropped"
 
 # a number of faces for which Open CASCADE's own way of orienting them takes
 # forever
@@ -92,7 +92,7 @@ lacks out "remeshed:"
 octahedron >body.obj
 vanguard mesh -q -p body.obj --unit m --hmax 5 --out o
 exits 0
-says out "settings without effect because no CAD file was read: unit"
+says out "settings that have no effect because no CAD file was read: unit"
 vanguard mesh -q -p "$cad/box.brep" --unit m --out b
 exits 1
 says err "has no unit of length"

@@ -115,7 +115,7 @@ vanguard mesh -q -p p/box --decompose octree --subdomains 4 -t 1 --write b8.ugri
   --out one
 exits 0
 says out "octants, coarsening 4.00"
-says out "of these subdomains are the gap region at the front"
+says out "in the gap region at the front"
 says one/box.report.json '"gap_parts": 1'
 vanguard mesh -q -p p/box --decompose octree --subdomains 4 -t 3 --write b8.ugrid \
   --shuffle-tasks 7 --out many
@@ -134,7 +134,7 @@ exits 0
 vanguard demo box --cells 500 --out tiny
 vanguard mesh -q -p tiny/box --decompose octree --subdomains 4 --out tiny
 exits 0
-says out "there is no room for an octant away from the front"
+says out "there is no room for octants away from the front"
 says out "octree: 1 subdomains (4 requested"
 vanguard mesh -q -p p/box --decompose octree --subdomains 4000 --out short
 exits 0

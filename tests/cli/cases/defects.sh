@@ -8,7 +8,7 @@ cat >open.ugrid <<'END'
 END
 vanguard check -q open.ugrid --defects shown.vtu
 exits 1
-says out "open edge: 3"
+says out "open edges: 3"
 says out "(not closed)"
 says err "open: the surface is open: 1 rim"
 says err "close-holes yes"
@@ -18,7 +18,7 @@ exits 1
 says out '"open edge": 3'
 vanguard mesh -q -p open --farfield none
 exits 1
-says out "open edge: 3"
+says out "open edges: 3"
 says err "the surface is open"
 exists open.defects.vtu
 absent open.cogsg open.b8.ugrid open.resolved.deck open.report.json
@@ -77,7 +77,7 @@ lacks out "self-intersection"
 octahedron | head -12 >lines.obj
 vanguard check -q lines.obj
 exits 1
-says out "open edge: 5"
+says out "open edges: 5"
 says out "... and 2 more"
 
 # A patch whose boundary condition is missing.
@@ -92,10 +92,10 @@ exits 0
 printf '3\n1 4000 wall\n2 6662 symm\n3 5000 far\n' >tet.mapbc
 vanguard check -q tet.ugrid
 exits 1
-says out "no boundary condition: 1"
+says out "patches without boundary condition: 1"
 vanguard mesh -q -p tet
 exits 1
-says out "no boundary condition: 1"
+says out "patches without boundary condition: 1"
 
 # The deck may supply it, but not for a patch that does not exist.
 printf 't\npatches\nid bc name\n4 5000 "far two"\n' >tet.deck

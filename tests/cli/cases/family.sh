@@ -85,13 +85,13 @@ vanguard mesh -q -p ball --remesh-surface no --layers no --scale 0.8 \
   --cad-angle 10 --coarsening 2 --out c
 exits 0
 says out "scale 0.8 changes only sizes in the volume"
-says out "settings without effect because the surface was not remeshed (remesh_surface): surface_tolerance, surface_size"
-says out "settings without effect because no CAD file was read: cad_angle"
-says out "settings without effect because no layers grow: first, ratio"
-says out "settings without effect because the domain was cut by planes (decompose): coarsening"
+says out "settings that have no effect because the surface was not remeshed (remesh_surface): surface_tolerance, surface_size"
+says out "settings that have no effect because no CAD file was read: cad_angle"
+says out "settings that have no effect because no layers grow: first, ratio"
+says out "settings that have no effect because the domain was cut by planes (decompose): coarsening"
 lacks out "no farfield was made"
 vanguard mesh -q -p ball --scale-layers even --out d
-says out "setting without effect because scale is 1: scale_layers"
+says out "setting that has no effect because scale is 1: scale_layers"
 
 # Two neighbouring bodies: edges across the gap.
 body pair 1 0.6 0.4 0
@@ -102,7 +102,7 @@ awk -v n="$n" '$1 == "f" { print "f", $2 + n, $3 + n, $4 + n; next } 1' \
 vanguard surface -q pair.obj --surface-size 0.2 --gap-edges 4 \
   --surface-tolerance 0.01 --out gap
 exits 0
-says out "note: gap_edges 4: sizes from "
+says out "note: gap_edges 4: limits edge lengths at "
 says out "the narrowest gap is 0.05"
 vanguard surface -q pair.obj --surface-size 0.2 --surface-tolerance 0.01 \
   --out plain
@@ -120,4 +120,4 @@ exits 0
 same two/pair.b8.ugrid again/pair.b8.ugrid
 vanguard surface -q ball.obj --gap-edges 4 --out none
 exits 0
-says out "setting without effect because no gap is narrow enough: gap_edges"
+says out "setting that has no effect because no gap is narrow enough: gap_edges"

@@ -10,7 +10,7 @@ says octa.resolved.deck "sphere  4"
 vanguard mesh -q -p octa --deck octa.resolved.deck --out again
 exits 0
 same octa.b8.ugrid again/octa.b8.ugrid
-says out "Evidence: the option flow external"
+says out "Evidence: given by the setting flow external"
 
 # Half of the body, cut at y = 0.
 sed -e '/^v 0 -1 0/d' -e '/^f/d' octa.obj >half.obj

@@ -84,7 +84,7 @@ for launch in "" "$launcher"; do
   status=$?
   exits 1
   says err "interrupted; nothing was written"
-  lacks err "sizes"
+  lacks err "sizing field"
 done
 
 # Sizes far too fine for any machine, so that the work would take an hour. It

@@ -46,8 +46,8 @@ for way in 'discrete' 'discrete --interfaces h-refine --partitioner rcb' \
     vanguard "$@" -t 2 --out killed --run-dir run --resume --keep-run
     exits 0
   fi
-  says out 'tasks found in run: '
-  lacks out 'tasks found in run: 0'
+  says out 'tasks reused from run: '
+  lacks out 'tasks reused from run: 0'
   same whole/sphere.b8.ugrid killed/sphere.b8.ugrid
   rm -rf whole killed run
 done

@@ -11,7 +11,8 @@ says run.log "threads  2 per rank"
 says run.log "  hmax                 0.3"
 says run.log "  MPI "
 says run.log "  glibc "
-for phase in read check sizes load fill repair number judge write; do
+for phase in read 'surface check' 'sizing field' 'load estimate' fill \
+  'interface repair' numbering 'mesh check' write; do
   grep -qE "^ *[0-9.]+ s  $phase" run.log || fail "no phase $phase"
 done
 says run.log "exit status 0 after"

@@ -56,7 +56,7 @@ says out '"percent_within"'
 vanguard check -q p/box.lb8.ugrid
 exits 0
 says out "no defects"
-says out "Flow inside a given outer boundary"
+says out "Flow within the given outer boundary"
 
 vanguard mesh -q -p p/box --out limited --max-cells 100
 exits 1

@@ -27,7 +27,7 @@ vanguard mesh -q -p far --farfield none --hmax 0.1 --write lb8.ugrid,lb4.ugrid
 exits 1
 says err "4-byte reals of a .lb4.ugrid the mesh would have"
 says err "flat or inverted cells, the first tetrahedron"
-says err "write 8-byte reals, as .lb8.ugrid has"
+says err "write 8-byte reals, as in .lb8.ugrid"
 absent far.lb4.ugrid
 absent far.lb8.ugrid
 vanguard mesh -q -p far --farfield none --hmax 0.1 --write lb8.ugrid

@@ -82,7 +82,7 @@ says err "first/box.sol has 1 sizes, but first/box.mesh has 3862 points"
 cp first/box.sol lone.sol
 vanguard mesh -q -p box --sizes lone.sol --out no
 exits 1
-says err "there is no mesh lone.mesh"
+says err "there is no lone.mesh"
 vanguard mesh -q -p box --sizes first/box.mesh --out no
 exits 1
 says err "sizes can be read from"

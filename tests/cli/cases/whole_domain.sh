@@ -51,7 +51,7 @@ f 12 16 13
 END
 vanguard mesh -q -p room
 exits 0
-says out "Flow inside a given outer boundary"
+says out "Flow within the given outer boundary"
 says out "Evidence: its outer part is a box, or part of a sphere"
 says out "the orientation of the whole surface was reversed"
 lacks out "added: farfield"
@@ -61,17 +61,17 @@ says out "volume: sum of cells 702"
 vanguard mesh -q -p room --deck room.resolved.deck --out again
 exits 0
 same room.b8.ugrid again/room.b8.ugrid
-says out "Evidence: the option flow internal"
+says out "Evidence: given by the setting flow internal"
 vanguard check -q room.obj
 exits 0
-says out "Flow inside a given outer boundary"
+says out "Flow within the given outer boundary"
 
 # The user can override this.
 vanguard mesh -q -p room --farfield sphere --farfield-lengths 3 \
   --growth 1.5 --out outside
 exits 0
 says out "added: farfield"
-says out "Evidence: the option farfield sphere"
+says out "Evidence: given by the setting farfield sphere"
 
 # A single brick gives no evidence: it is taken as a body, and the note
 # explains how to change that.

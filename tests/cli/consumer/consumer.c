@@ -345,7 +345,8 @@ static int stop_at(void *user, const char *phase, uint64_t done,
 
 static void stops(void)
 {
-  const char *const phase[] = { "check", "sizes", "load", "judge" };
+  const char *const phase[] = { "surface check", "sizing field",
+                                "load estimate", "mesh check" };
   vanguard_job *job = new_cube();
   struct arrays before, after;
 
