@@ -366,8 +366,8 @@ static void wide_gaps_are_sewn_and_faces_turned(void **state)
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
-  says(&n, "sewing with a tolerance of 3.74e-05 joined 24 of them, the first "
-           "at (");
+  says(&n, "sewing with a tolerance of 3.74e-05 joined 24 of them, for "
+           "example at (");
   says(&n, "3 faces that do not belong to a solid were reversed");
   assert_int_equal(s.is_solid, 0);
   near(s.volume, 6, 1e-4);

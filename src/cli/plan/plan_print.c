@@ -223,9 +223,9 @@ static void print_tree(const struct vg_plan *p)
   printf(" into ");
   if (o->n_leaf == 1) printf("1 leaf; ");
   else printf("%zu leaves; ", o->n_leaf);
-  print_number(o->n_pencil, "pencil");
+  print_number(o->n_pencil, "edge separator");
   printf(" and ");
-  print_number(o->n_tile, "tile");
+  print_number(o->n_tile, "face separator");
   printf(" with %s cells (%.1f %%);\n  cells per leaf: max/mean %.2f\n",
          count(o->separator_cells, a),
          o->cells > 0 ? 100 * o->separator_cells / o->cells : 0, balance(o));
@@ -315,17 +315,17 @@ static void print_limits(const struct vg_plan *p)
 {
   const struct vg_plan_row *r = row_of_limits(p);
 
-  printf("\nPhases with %d x %d\n  phase       one core, s    time, s  "
+  printf("\nPhases with %d x %d\n  phase          one core, s    time, s  "
          "limited by\n",
          r->ranks, r->threads);
   for (int k = 0; k < VG_PHASE_N; k++) {
     double parts[3], there = vg_plan_phase(p, r, (enum vg_phase)k, parts);
 
     if (k == VG_PHASE_ENGINE)
-      printf("  %-10s %12.2f %10.2f  %s\n", "cut+fill", r->tasks.work,
+      printf("  %-13s %12.2f %10.2f  %s\n", "cut+fill", r->tasks.work,
              r->tasks.wall, limit_of_tasks(r));
     else if (p->phase[k] > 0)
-      printf("  %-10s %12.2f %10.2f  %s\n", vg_phase_name((enum vg_phase)k),
+      printf("  %-13s %12.2f %10.2f  %s\n", vg_phase_label((enum vg_phase)k),
              p->phase[k], there, limit_of(parts));
   }
 }

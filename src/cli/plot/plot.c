@@ -116,7 +116,7 @@ static void draw_stages(struct vg_svg *svg, const struct lanes *l)
   double at = 0, bottom = l->top + l->height * (double)l->n;
 
   for (int i = 0; i < VG_PHASE_TOTAL; i++) {
-    const char *name = vg_phase_name((enum vg_phase)i);
+    const char *name = vg_phase_label((enum vg_phase)i);
     double took = i == VG_PHASE_ENGINE ? l->t->spans.wall : l->t->seconds[i];
     double x = vg_axis_at(&l->axis, at), w;
 

@@ -190,7 +190,7 @@ vg_status vg_plot_phases(const char *path, const char *title, size_t n,
   key = left;
   for (int i = 0; i < VG_PHASE_TOTAL; i++)
     key = vg_svg_key(&svg, key, 54, phase_colours[i],
-                     vg_phase_name((enum vg_phase)i));
+                     vg_phase_label((enum vg_phase)i));
   vg_svg_key(&svg, key, 54, "#eeeeee", "rest");
   for (size_t i = 0; i < n; i++)
     draw_bar(&svg, &bar[i], &x, 76 + 26 * (double)i);

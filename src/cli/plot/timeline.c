@@ -65,29 +65,34 @@ static const struct table help_table = {
   HELP_N, HELP_N, { "path", "rank", "thread", "start", "end" }
 };
 
-/* Names of the phases, their keys in the facts, whether they count as outside
- * the tasks, and the fractions of their time that one thread does alone and
- * that every node does for itself; the remainder is parallel over all workers.
- * Fractions are from profiles of one thread (M8). */
+/* Names and labels of the phases, their keys in the facts, whether they count
+ * as outside the tasks, and the fractions of their time that one thread does
+ * alone and that every node does for itself; the remainder is parallel over all
+ * workers. Fractions are from profiles of one thread (M8). */
 static const struct {
-  const char *name, *key;
+  const char *name, *label, *key;
   int is_outside;
   double alone, by_node;
 } phases[VG_PHASE_N] = {
-  { "read", "seconds_read", 0, 1, 0 },
-  { "check", "seconds_check", 1, 0.2, 0.8 },
-  { "sizes", "seconds_sizes", 1, 0.05, 0.20 },
-  { "layers", "seconds_layers", 1, 0.12, 0.27 },
-  { "cut+fill", "seconds_cut_fill", 0, 1, 0 },
-  { "number", "seconds_number", 0, 1, 0 },
-  { "judge", "seconds_judge", 1, 0.01, 0 },
-  { "write", "seconds_write", 1, 0.4, 0 },
-  { "total", "seconds_total", 0, 1, 0 },
+  { "read", "read", "seconds_read", 0, 1, 0 },
+  { "check", "surface check", "seconds_check", 1, 0.2, 0.8 },
+  { "sizes", "sizing field", "seconds_sizes", 1, 0.05, 0.20 },
+  { "layers", "layers", "seconds_layers", 1, 0.12, 0.27 },
+  { "cut+fill", "cut+fill", "seconds_cut_fill", 0, 1, 0 },
+  { "number", "numbering", "seconds_number", 0, 1, 0 },
+  { "judge", "mesh check", "seconds_judge", 1, 0.01, 0 },
+  { "write", "write", "seconds_write", 1, 0.4, 0 },
+  { "total", "total", "seconds_total", 0, 1, 0 },
 };
 
 const char *vg_phase_name(enum vg_phase phase)
 {
   return phases[phase].name;
+}
+
+const char *vg_phase_label(enum vg_phase phase)
+{
+  return phases[phase].label;
 }
 
 void vg_phase_shares(enum vg_phase phase, double *alone, double *by_node)

@@ -43,6 +43,9 @@ enum vg_phase {
  * "total". Static storage. */
 const char *vg_phase_name(enum vg_phase phase);
 
+/** Name of a phase in texts and plots: "surface check", ... Static storage. */
+const char *vg_phase_label(enum vg_phase phase);
+
 /** Fractions of the time of a phase on one core that one thread does alone, and
  * that every node does for itself; the remainder is parallel over all workers
  * (row M8). */

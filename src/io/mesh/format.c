@@ -312,8 +312,7 @@ vg_status vg_format_unknown(const char *path, struct vg_error *err)
                      "the geometry as STEP or IGES; readable formats are %s",
                      path, vg_format_list());
   return vg_fail(err, VG_ERR_FORMAT, "%s: %s; known formats are %s", path,
-                 f ? "this format can only be written"
-                   : "the suffix does not belong to any format",
+                 f ? "this format can only be written" : "unknown suffix",
                  vg_format_list());
 }
 
@@ -431,9 +430,7 @@ vg_status vg_format_write(const char *path, const struct vg_mesh *m,
 
   if (f && f->write) return f->write(path, m, err);
   return vg_fail(err, VG_ERR_FORMAT, "%s: %s; known formats are %s", path,
-                 f ? "this format can only be read"
-                   : "the suffix does not belong to "
-                     "any format",
+                 f ? "this format can only be read" : "unknown suffix",
                  vg_format_list());
 }
 

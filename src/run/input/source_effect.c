@@ -84,7 +84,7 @@ static void note_limited(const struct vg_limited_source *h,
     vg_note(notes,
             "%s is limited everywhere: it requests a size of %.3g but gets "
             "%.3g at best, at (%.4g, %.4g, %.4g), where %s",
-            name, h->got, h->asked, h->at[0], h->at[1], h->at[2], why);
+            name, h->asked, h->got, h->at[0], h->at[1], h->at[2], why);
   else
     vg_note(notes,
             "%s is limited at %zu of %zu sample points: at (%.4g, %.4g, %.4g) "

@@ -101,8 +101,8 @@ static void print_decomposition(FILE *to, const struct vg_run *r,
 
   if (!p->n_part) return;
   fprintf(to,
-          "  decomposition %s: %s subdomains (%s requested, %llu more for "
-          "disconnected pieces),\n"
+          "  decomposition %s; subdomains: %s (requested: %s; added for "
+          "disconnected pieces: %llu),\n"
           "  balance %.3f (max/mean of the cells generated in leaves)\n",
           r->decomposition, vg_text_count(p->n_part, a),
           vg_text_count(q->n_asked, b), (unsigned long long)q->n_apart,
@@ -112,8 +112,8 @@ static void print_decomposition(FILE *to, const struct vg_run *r,
           q->coarsening, vg_text_count(q->n_face, b));
   if (q->n_gap)
     fprintf(to,
-            "  of these, %s in the gap region at the front, which planes may "
-            "cut; octants\n"
+            "  subdomains in the gap region at the front, which planes may "
+            "cut: %s; octants\n"
             "  contain %.1f %% of the expected cells%s\n",
             vg_text_count(q->n_gap, a), 100 * q->coarse_cells / p->estimate,
             q->n_coarse ? ""

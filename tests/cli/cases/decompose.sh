@@ -53,7 +53,7 @@ done
 vanguard plan -q -p p/box --decompose discrete --subdomains 5 -n 1,5
 exits 0
 says out "discrete: 5 subdomains filled without cuts"
-says out "0 cuts into 5 leaves; 0 pencils and 0 tiles"
+says out "0 cuts into 5 leaves; 0 edge separators and 0 face separators"
 lacks out "by leaf_cells"
 vanguard plan -q -p p/box --decompose discrete --subdomains 5 -n 1 -j
 says out '"leaves": 5'
@@ -115,7 +115,7 @@ vanguard mesh -q -p p/box --decompose octree --subdomains 4 -t 1 --write b8.ugri
   --out one
 exits 0
 says out "octants, coarsening 4.00"
-says out "in the gap region at the front"
+says out "in the gap region at the front, which planes may cut: "
 says one/box.report.json '"gap_parts": 1'
 vanguard mesh -q -p p/box --decompose octree --subdomains 4 -t 3 --write b8.ugrid \
   --shuffle-tasks 7 --out many
@@ -135,11 +135,11 @@ vanguard demo box --cells 500 --out tiny
 vanguard mesh -q -p tiny/box --decompose octree --subdomains 4 --out tiny
 exits 0
 says out "there is no room for octants away from the front"
-says out "octree: 1 subdomains (4 requested"
-vanguard mesh -q -p p/box --decompose octree --subdomains 4000 --out short
+says out "octree; subdomains: 1 (requested: 4;"
+vanguard mesh -q -p p/box --decompose octree --parts 4000 --out short
 exits 0
-says out "subdomains (4,000 requested"
-vanguard mesh -q -p p/box --decompose octree --subdomains 0
+says out "(requested: 4,000;"
+vanguard mesh -q -p p/box --decompose octree --parts 0
 exits 2
 says err "subdomains"
 vanguard mesh -q -p p/box --decompose octree --coarsening 1.5

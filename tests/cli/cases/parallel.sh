@@ -145,7 +145,7 @@ vanguard mesh $cut --run-dir run --resume --keep-run --schedule cyclic \
   --max-cells 9000000 --write b8.ugrid --out free
 exits 0
 lacks out "tasks reused from run: 0"
-cmp kept/box.b8.ugrid free/box.b8.ugrid || fail "other files than before"
+cmp kept/box.b8.ugrid free/box.b8.ugrid || fail "the files differ from those before"
 if [ $has_mpirun = 1 ]; then
   ranks 2 mesh $cut -t 1 --run-dir run --resume --keep-run --out resumed
   agrees resumed

@@ -107,7 +107,7 @@ exits 0
 is err </dev/null
 [ "$(ls -A p)" = "$before" ] || fail "plan wrote files into the project folder"
 says out "Expected mesh"
-says out "7 cuts into 8 leaves; 0 pencils and 7 tiles"
+says out "7 cuts into 8 leaves; 0 edge separators and 7 face separators"
 says out "    0.1: "
 says out "Best: "
 says out "40,000       "

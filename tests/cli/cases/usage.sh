@@ -143,7 +143,7 @@ done
 : >wing.txt
 vanguard mesh -q wing.txt
 exits 1
-says err "wing.txt: the suffix does not belong to any format; known"
+says err "wing.txt: unknown suffix; known"
 vanguard mesh -q -p p
 exits 1
 says err "p: this is a folder; give the stem of a project"
