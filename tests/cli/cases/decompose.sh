@@ -14,7 +14,7 @@ for way in 'remesh metis' 'h-refine rcb'; do
     --interfaces "$interfaces" --partitioner "$partitioner"
   vanguard "$@" -t 1 --out one
   exits 0
-  says out "decomposition discrete: 5 subdomains"
+  says out "decomposition discrete; subdomains: 5 "
   says out "validity: valid"
   says one/box.report.json '"decomposition": "discrete"'
   says one/box.report.json '"interface_triangles": '
@@ -34,7 +34,7 @@ done
 # Without a number of subdomains, leaf_cells gives the cells of each.
 vanguard mesh -q -p p/box --decompose discrete --leaf-cells 7000 --out by
 exits 0
-says out "decomposition discrete: 3 subdomains"
+says out "decomposition discrete; subdomains: 3 "
 
 vanguard mesh -q -p p/box --decompose discrete --subdomains 0
 exits 2

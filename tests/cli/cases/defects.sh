@@ -48,7 +48,7 @@ lacks out "non-manifold"
 printf 't\nrepair\nno\n' >twice.deck
 vanguard mesh -q -p twice.obj
 exits 1
-says out "duplicate triangle: 1"
+says out "duplicate triangles: 1"
 lacks out "self-intersection"
 lacks out "non-manifold"
 
@@ -69,7 +69,7 @@ exits 0
 printf 't\nrepair\nno\n' >wall.deck
 vanguard mesh -q -p wall.obj
 exits 1
-says out "shared wall: 1"
+says out "triangles of shared walls: 1"
 says out "unite the bodies, or use --wrap"
 lacks out "self-intersection"
 

@@ -29,26 +29,26 @@ signalled() {
   status=$?
 }
 
-signalled INT sizes "$program" mesh -p p/box --out o
+signalled INT "sizing field" "$program" mesh -p p/box --out o
 exits 1
 says err "interrupted; nothing was written"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
 # Two signals at nearly the same time, as timeout(1) sends them, count as one.
 again=0.02
-signalled TERM sizes "$program" mesh -p p/box --out o
+signalled TERM "sizing field" "$program" mesh -p p/box --out o
 again=
 exits 1
 says err "interrupted; nothing was written"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
 # SIGHUP stops the run as well; under nohup the run continues.
-signalled HUP sizes "$program" mesh -p p/box --out n
+signalled HUP "sizing field" "$program" mesh -p p/box --out n
 exits 1
 says err "interrupted; nothing was written"
 [ -z "$(ls -A n)" ] || fail "left behind: $(ls -A n)"
 vanguard demo box --cells 30000 --out f
-signalled HUP sizes nohup "$program" mesh -p f/box --out n
+signalled HUP "sizing field" nohup "$program" mesh -p f/box --out n
 exits 0
 exists n/box.b8.ugrid
 
@@ -110,20 +110,21 @@ stopped() {
   says err "vanguard: interrupted; nothing was written"
 }
 
-stopped sizes plan -p p/box --deck fine.deck --farfield none
+stopped "sizing field" plan -p p/box --deck fine.deck --farfield none
 stopped farfield plan -p octa --farfield-spacing 0.03
 stopped farfield mesh -p octa --farfield-spacing 0.03 --out o
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
 # Remeshing stops too: the sizes request millions of triangles.
-stopped remesh surface octa.obj --surface-size 1e-3 --out o
-stopped remesh mesh -p octa.obj --remesh-surface yes --surface-size 1e-3 --out o
+stopped "surface remeshing" surface octa.obj --surface-size 1e-3 --out o
+stopped "surface remeshing" mesh -p octa.obj --remesh-surface yes \
+  --surface-size 1e-3 --out o
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
 # A run that checks for signals only rarely is ended after two seconds, and
 # leaves nothing behind: this sizing field takes an hour.
 start=$(date +%s%N)
-stopped sizes mesh -p p/box --deck fine.deck --farfield none --out o
+stopped "sizing field" mesh -p p/box --deck fine.deck --farfield none --out o
 [ $(($(date +%s%N) - start)) -lt 20000000000 ] || fail "it did not stop"
 [ -z "$(ls -A o)" ] || fail "left behind: $(ls -A o)"
 
@@ -131,7 +132,7 @@ stopped sizes mesh -p p/box --deck fine.deck --farfield none --out o
 # simulated by a suspended process): the same message and status, not the
 # status of the signal.
 late=0 again=0.01 stands=1.2
-signalled TERM sizes "$program" mesh -p p/box --deck fine.deck \
+signalled TERM "sizing field" "$program" mesh -p p/box --deck fine.deck \
   --farfield none --out o
 exits 1
 says err "interrupted; nothing was written"

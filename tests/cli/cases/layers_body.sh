@@ -167,7 +167,7 @@ f 1 5 6
 END
 vanguard mesh -q -p needle --first 0.001 --out swapped
 exits 0
-says out "needles 2, now 0"
+says out "needles from 2 to 0"
 says swapped/needle.report.json '"wall_triangles": 8'
 vanguard mesh -q -p needle --deck swapped/needle.resolved.deck --out again
 exits 0

@@ -133,7 +133,7 @@ exits 1
 says err "resume it, remove the directory to start again, or choose another one"
 vanguard mesh $cut --run-dir run --resume --hmax 0.2 --out other
 exits 1
-says err "run: cannot be resumed: input or options have changed"
+says err "run: cannot be resumed: input or options have changed; its run was"
 says err ", is 0.2; restore the old values"
 lacks err "threads was"
 absent other/box.b8.ugrid

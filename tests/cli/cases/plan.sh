@@ -150,7 +150,7 @@ exits 2
 says err "either a project or --replay"
 vanguard plan -r r.timeline.json --rates r.timeline.json
 exits 2
-says err "uses the times of its record"
+says err "uses the times of its timeline"
 vanguard plan -r r.timeline.json --leaf-cells 5
 exits 2
 says err "takes no settings"
