@@ -424,7 +424,7 @@ static void open_meshes_are_refused(void **state)
   refuse(&m, VG_ERR_INPUT, "prism");
   m.n_tri++;
   m.n_tet--;
-  refuse(&m, VG_ERR_INPUT, "has neither");
+  refuse(&m, VG_ERR_INPUT, "has neither a neighbouring");
   m.n_tet++;
   memcpy(m.hex[1], m.hex[0], sizeof m.hex[0]);
   refuse(&m, VG_ERR_INPUT, "boundary quadrilateral");

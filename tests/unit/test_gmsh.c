@@ -303,7 +303,7 @@ static void refusals(void **state)
     { HEAD "$Nodes\n1 1 1 1\n2 1 0 3000\n1\n", VG_ERR_FORMAT, "truncated" },
     { HEAD "$Nodes\n1 1 1 1\n5 1 0 1\n1\n0 0 0\n", VG_ERR_FORMAT, "entity" },
     { HEAD "$Nodes\n1 2 1 1\n2 1 0 1\n1\n0 0 0\n$EndNodes\n", VG_ERR_FORMAT,
-      "the section announces 2" },
+      "announces 2" },
     { HEAD "$Nodes\n1 2 1 1\n2 1 0 2\n1\n1\n0 0 0\n1 1 1\n$EndNodes\n",
       VG_ERR_FORMAT, "defined twice" },
     { HEAD "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 nan\n$EndNodes\n", VG_ERR_FORMAT,

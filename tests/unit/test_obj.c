@@ -99,7 +99,8 @@ static void refuses_damaged_files(void **state)
   io_refuse(vg_obj_parse, "v 0 0 0\n", VG_ERR_INPUT, "no faces");
   io_refuse(vg_obj_parse, "v 0 0 0\nv 1 0\n", VG_ERR_FORMAT, "case:2");
   io_refuse(vg_obj_parse, "v 0 0 inf\n", VG_ERR_FORMAT, "'inf'");
-  io_refuse(vg_obj_parse, "v 0 0 0\nf 1 1\n", VG_ERR_FORMAT, "three or more corners");
+  io_refuse(vg_obj_parse, "v 0 0 0\nf 1 1\n", VG_ERR_FORMAT,
+            "three or more corners");
   io_refuse(vg_obj_parse, "v 0 0 0\nf 1 1 -2\n", VG_ERR_FORMAT, "range");
   io_refuse(vg_obj_parse, "v 0 0 0\nf 1 1 0\n", VG_ERR_FORMAT, "'0'");
   io_refuse(vg_obj_parse, "v 0 0 0\nf 1 1 99999999999\n", VG_ERR_FORMAT,

@@ -223,7 +223,7 @@ static void rounding_that_spoils_cells_is_refused(void **state)
     const char *f = form[i / 2];
     struct vg_error err = VG_ERROR_INIT, whole = VG_ERROR_INIT;
     struct vg_mesh far = VG_MESH_INIT;
-    char want[200], instead[20];
+    char want[200], instead[24];
     struct cut c;
 
     assert_int_equal(vg_mesh_copy(&far, &mesh[i % 2], NULL), VG_OK);
@@ -234,7 +234,7 @@ static void rounding_that_spoils_cells_is_refused(void **state)
                                           &o, &err),
                      VG_ERR_GEOMETRY);
     assert_non_null(strstr(err.text, want));
-    snprintf(instead, sizeof instead, "as .%.*s8.", (int)strlen(f) - 7, f);
+    snprintf(instead, sizeof instead, "as in .%.*s8.", (int)strlen(f) - 7, f);
     assert_non_null(strstr(err.text, instead));
     assert_absent(cut_file(f));
     assert_int_equal(vg_ugrid_write(ugrid_file(f), &far, &whole),

@@ -315,8 +315,8 @@ double sew(const vg_cad_ask &ask, Model &model, const Talk &talk)
     used = sewn.tolerance;
     if (sewn.n_open < before.n_open) {
       talk.note(format("%zu edges belonged to one face only; sewing with a "
-                       "tolerance of %.3g joined %zu of them, the first at "
-                       "%s",
+                       "tolerance of %.3g joined %zu of them, for "
+                       "example at %s",
                        before.n_open, used, before.n_open - sewn.n_open,
                        sewn.places.c_str()));
       for (const std::string &text : sewn.notes) talk.note(text);
