@@ -331,7 +331,7 @@ static void bad_fronts_are_named(void **state)
     { "       2  0.1000", "       3  0.1000", "expected point 2",
       VG_ERR_FORMAT },
     { "       6\n", "       0\n", "curve edges is 0", VG_ERR_FORMAT },
-    { "       6\n", "99999999\n", "99999999 curve edges", VG_ERR_FORMAT },
+    { "       6\n", "99999999\n", "curve edges is 99999999", VG_ERR_FORMAT },
     { "       1       2       1       1       2       3       2",
       "       1       2       1       1       2       1       2",
       "do not belong together", VG_ERR_INPUT },
