@@ -82,9 +82,9 @@ static void bar(struct page *p, const struct bars *b, size_t i, size_t n,
   vg_page_markup(p, "\" height=\"");
   vg_page_fixed(p, height, 1);
   vg_page_markup(p, "\"><title>");
-  vg_page_fixed(p, low, b->decimals);
+  vg_page_real(p, low, 3);
   vg_page_markup(p, " to ");
-  vg_page_fixed(p, high, b->decimals);
+  vg_page_real(p, high, 3);
   vg_page_markup(p, ": ");
   vg_page_count(p, (uint64_t)count);
   vg_page_markup(p, "</title></rect>\n");

@@ -98,7 +98,7 @@ void vg_html_layers(struct page *p)
     "<th scope=\"col\">y+, mean</th>"
     "<th scope=\"col\">Total height, mean</th>"
     "<th scope=\"col\">Height / growth-law height</th>"
-    "<th scope=\"col\">Volume ratio at the top, 95&nbsp;%</th>"
+    "<th scope=\"col\">Volume ratio at the top, 95th&nbsp;percentile</th>"
     "<th scope=\"col\" class=\"words\">Faces with fewer or thinner layers, by "
     "cause</th>"
     "</tr></thead>\n<tbody>\n");
