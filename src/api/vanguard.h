@@ -373,12 +373,13 @@ struct vanguard_wall_points {
   size_t struct_size;
   size_t n_point;
   const uint32_t *point; /* number in the mesh, ascending */
-  /* Number of levels; number that growth law and local size ask for. */
+  /* Number of levels; number that the growth law and the local size
+   * request. */
   const int32_t *level, *wanted;
   /* Height of the first point, 0: no levels; requested first height. */
   const double *first, *asked;
   const double *total;  /* height of the last point */
-  const double *share;  /* height relative to the law */
+  const double *share;  /* height relative to that of the growth law */
   const double *growth; /* largest ratio of neighbouring layers */
   /* Causes of fewer and of thinner levels; see vanguard_cause. */
   const int32_t *cause, *compressed;
