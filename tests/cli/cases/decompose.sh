@@ -136,10 +136,10 @@ vanguard mesh -q -p tiny/box --decompose octree --subdomains 4 --out tiny
 exits 0
 says out "there is no room for octants away from the front"
 says out "octree; subdomains: 1 (requested: 4;"
-vanguard mesh -q -p p/box --decompose octree --parts 4000 --out short
+vanguard mesh -q -p p/box --decompose octree --subdomains 4000 --out short
 exits 0
 says out "(requested: 4,000;"
-vanguard mesh -q -p p/box --decompose octree --parts 0
+vanguard mesh -q -p p/box --decompose octree --subdomains 0
 exits 2
 says err "subdomains"
 vanguard mesh -q -p p/box --decompose octree --coarsening 1.5
