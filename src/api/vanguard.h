@@ -73,7 +73,7 @@ typedef struct vanguard_job vanguard_job;
 
 /* --- the library --------------------------------------------------------- */
 
-/** Version of the library, such as "0.1.0". Static string. */
+/** Version of the library, such as "0.2.0". Static string. */
 VANGUARD_API const char *vanguard_version(void);
 
 /** The newest VANGUARD_ABI that this library supports. */
