@@ -91,11 +91,11 @@ mesh() { # NAME CHORD
     --y-plus 1 --reynolds 5e6 --reference-length "$2" --write lb8.ugrid \
     --out "$work/$1/volume" >"$work/$1/volume.out" || {
     row "$1: no volume mesh"; failed=1; return; }
-  row "$1, field: $(sed -n '/Field outside/,/cells above/p' \
-    "$work/$1/volume.out" | grep -E 'dihedral|below' | tr -s ' ' | tr '\n' ' ')"
-  sed -n '/Field outside/,/cells above/p' "$work/$1/volume.out" |
-    awk '/smallest/ { bad = $4 + 0 < 5 } /cells below/ { bad += $9 > 0.01 }
-         END { exit bad > 0 }' || failed=1
+  local report=$work/$1/volume/in.report.json
+  row "$1, field: $(jq -r '.field | "smallest angle \(.angle_min), % below 5, 10 "
+    + "degrees \(.percent_below_5_10_15_20_30[:2])"' "$report")"
+  jq -e '.field | .angle_min >= 5 and .percent_below_5_10_15_20_30[1] <= 0.01' \
+    "$report" >/dev/null || failed=1
 }
 
 for name in "${cases[@]}"; do
