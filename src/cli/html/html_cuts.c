@@ -44,10 +44,10 @@ static void figure(struct page *p, size_t i, int picture, const char *what)
 
 static void kind_keys(struct page *p)
 {
-  static const char *const name[VG_CUT_KINDS] = { "tetrahedra outside the "
-                                                  "layers",
-                                                  "tetrahedra in layers",
-                                                  "pyramids", "prisms" };
+  static const char *const name[VG_CUT_KINDS] = {
+    "tetrahedra outside the layers", "tetrahedra in layers", "pyramids",
+    "prisms"
+  };
   const uint64_t *layer = p->h->run->slices.n_layer_cell;
   const uint64_t n[VG_CUT_KINDS] = { 1, layer[VG_SLICE_TET],
                                      layer[VG_SLICE_PYR], layer[VG_SLICE_PRI] };
