@@ -91,6 +91,29 @@ static void one_column_through_the_other_front(void **state)
   shape_free(s);
 }
 
+/* A column whose shift alone carries its top through the other front. */
+static void the_shift_of_a_column_counts(void **state)
+{
+  const double thickness = 0.0625;
+
+  (void)state;
+  for (int k = 0; k < 200; k++) {
+    const double gap = 0.2 + 0.0017 * (k * 61 % 101);
+    const double shift = gap * (0.011 * (k * 37 % 199) - 0.9);
+    struct shape *s = two_plates(12, gap, thickness);
+    struct vg_column *c;
+    uint8_t bad[MAX];
+
+    s->is_wall[1] = 1;
+    grow(s, 1);
+    c = &s->c.column[s->of_point[6 * 13 + 6]];
+    c->shift[2] = shift;
+    assert_int_equal(tops(s, NULL, NULL, 1, bad) > 0,
+                     2 * thickness + shift > gap);
+    shape_free(s);
+  }
+}
+
 static void inert_patch_is_in_the_way(void **state)
 {
   struct shape *s = two_plates(8, 0.25, 0.0625);
@@ -775,6 +798,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(tops_between_plates),
     cmocka_unit_test(one_column_through_the_other_front),
+    cmocka_unit_test(the_shift_of_a_column_counts),
     cmocka_unit_test(inert_patch_is_in_the_way),
     cmocka_unit_test(cube_grows_outward),
     cmocka_unit_test(tops_that_cross),

@@ -39,8 +39,7 @@ static const uint32_t one_fan[3] = { 0, 0, 0 };
 
 /* Most neighbouring columns have the same law, so the heights are kept from one
  * column to the next. They equal those of vg_column_top bitwise, since the
- * heights of n levels begin with those of fewer levels. Unlike vg_column_top,
- * top_of() does not add the shift of a column. */
+ * heights of n levels begin with those of fewer levels. */
 struct heights {
   uint32_t law;
   double cap;
@@ -64,8 +63,7 @@ static void top_of(const struct vg_tops *t, size_t i, struct heights *h,
     h->n = c->n;
     vg_growth_law_heights(&t->columns->law[c->law], c->cap, c->n, h->d);
   }
-  for (int k = 0; k < 3; k++)
-    x[k] = c->dir[k] == 0 ? root[k] : root[k] + c->dir[k] * h->d[c->n];
+  vg_column_at(c, root, h->d[c->n], x);
 }
 
 static void place_tops(void *context, size_t first, size_t end, int worker)

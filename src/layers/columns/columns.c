@@ -26,8 +26,8 @@ void vg_columns_release(struct vg_columns *c)
   memset(c, 0, sizeof *c);
 }
 
-static void at_height(const struct vg_column *c, const double *root, double h,
-                      double x[3])
+void vg_column_at(const struct vg_column *c, const double root[3], double h,
+                  double x[3])
 {
   for (int k = 0; k < 3; k++)
     x[k] = h == 0 || (c->dir[k] == 0 && c->shift[k] == 0)
@@ -50,7 +50,7 @@ void vg_column_points(const struct vg_columns *c, const struct vg_mesh *m,
   }
   vg_growth_law_heights(&c->law[col->law], col->cap, col->n, d);
   for (int l = 0; l <= col->n; l++)
-    at_height(col, m->point[col->root], d[l], x[l]);
+    vg_column_at(col, m->point[col->root], d[l], x[l]);
 }
 
 void vg_column_top(const struct vg_columns *c, const struct vg_mesh *m,
@@ -67,5 +67,5 @@ void vg_column_top(const struct vg_columns *c, const struct vg_mesh *m,
     return;
   }
   vg_growth_law_heights(&c->law[col->law], col->cap, col->n, d);
-  at_height(col, m->point[col->root], d[col->n], x);
+  vg_column_at(col, m->point[col->root], d[col->n], x);
 }

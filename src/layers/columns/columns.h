@@ -126,6 +126,12 @@ static inline int vg_shares_root(const struct vg_columns *c, size_t i)
          (i + 1 < c->n_column && c->column[i + 1].root == root);
 }
 
+/** Writes to x the point of a straight column at height h, 0 or one of its
+ * levels, above its root. Every place that computes a point of a column uses
+ * this function, so that all agree to the last bit. */
+void vg_column_at(const struct vg_column *c, const double root[3], double h,
+                  double x[3]);
+
 /** Writes the points of levels 0 .. column[i].n to x. In a straight column,
  * every coordinate in which both dir and shift are 0 equals that of the root
  * to the last bit. d: scratch for vg_growth_law_heights, [VG_LEVELS_MAX + 1].

@@ -57,7 +57,7 @@ struct vg_layer_options {
 /* L1 */
 #define VG_LAYER_OPTIONS_INIT                                                  \
   {                                                                            \
-    NULL, NULL, NULL, 0, 0.95, 0.4, 2, 100, 1, NULL, { NULL, NULL },           \
+    NULL, NULL, NULL, 0, 0.95, 0.4, 1, 100, 1, NULL, { NULL, NULL },           \
     {                                                                          \
       NULL, NULL                                                               \
     }                                                                          \

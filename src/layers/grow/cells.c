@@ -124,7 +124,8 @@ static int is_virtual(const struct stack *s)
 }
 
 /* Tests the pyramid on the quadrilateral of the two columns other than corner
- * k, which are raised from l: all four of its corner volumes. */
+ * k, which are raised from l: all four of its corner volumes. Its apex is the
+ * top of column k, which may be lower than l. */
 static int pyramid(const struct stack *s, int l, int k)
 {
   int p = (k + 1) % 3, q = (k + 2) % 3;
@@ -207,7 +208,7 @@ static int first_bad(const struct stack *s, uint8_t *faulty)
   for (int l = whole; l < most; l++) {
     if (!lifts(s, l)) return l;
     for (int k = 0; k < 3; k++)
-      if (s->c[k]->n == l && s->c[(k + 1) % 3]->n > l &&
+      if (s->c[k]->n <= l && s->c[(k + 1) % 3]->n > l &&
           s->c[(k + 2) % 3]->n > l && !pyramid(s, l, k))
         return l;
   }

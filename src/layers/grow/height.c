@@ -128,8 +128,7 @@ static int levels(const struct vg_layer_work *w, uint32_t i,
   for (; n > 0 && !r->n_exact; n--) {
     double x[3];
 
-    for (int k = 0; k < 3; k++)
-      x[k] = w->m->point[c->root][k] + c->dir[k] * d[n];
+    vg_column_at(c, w->m->point[c->root], d[n], x);
     if (d[n] - d[n - 1] <= w->o->end * vg_sizing_at(w->sizing, x)) break;
   }
   return n;

@@ -125,6 +125,20 @@ struct shift {
   const uint8_t *which;
 };
 
+/* Shortens dir where the second layer, measured along the column, would be
+ * thicker than the cap of the law times the first one, which has the length
+ * `first`. */
+static void shorten(const struct vg_growth_law *law, double first,
+                    double dir[3])
+{
+  double d[3], most;
+
+  if (!isfinite(law->cap)) return;
+  vg_growth_law_heights(law, INFINITY, 2, d);
+  most = law->cap * first / ((d[2] - d[1]) * vg_norm(dir));
+  for (int k = 0; most < 1 && k < 3; k++) dir[k] *= most;
+}
+
 /* Shifts along dir or, where that leaves no room for the first point, along the
  * direction before smoothing. */
 static void shift_body(void *context, size_t first, size_t end, int worker)
@@ -147,8 +161,12 @@ static void shift_body(void *context, size_t first, size_t end, int worker)
       memcpy(v, w->root_dir[i], sizeof v);
       d = gain(w, (uint32_t)i, v);
     }
-    if (d * VG_FACTOR_MAX < 1) w->visibility[i] = 0;
-    else if (fabs(d * vg_norm(c->dir) - 1) > 1e-9)
+    if (d * VG_FACTOR_MAX < 1) {
+      w->visibility[i] = 0;
+      continue;
+    }
+    shorten(&w->c->law[c->law], delta1 / d, c->dir);
+    if (fabs(d * vg_norm(c->dir) - 1) > 1e-9)
       for (int k = 0; k < 3; k++) c->shift[k] = delta1 * (v[k] / d - c->dir[k]);
   }
 }

@@ -140,18 +140,21 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
 {
   struct vg_columns *cs = w->c;
   struct vg_column *col = &cs->column[i];
-  double d[VG_LEVELS_MAX + 1];
-  const double scale = vg_norm(col->dir);
+  const double *root = w->m->point[col->root];
+  double d[VG_LEVELS_MAX + 1], x[3];
 
   vg_growth_law_heights(&cs->law[col->law], col->cap, col->n, d);
-  *is_short = !(scale * d[col->n] < c->s[c->n - 1]);
+  vg_column_at(col, root, d[col->n], x);
+  *is_short = !(vg_distance(x, root) < c->s[c->n - 1]);
   if (*is_short) return VG_OK;
   if (vg_reserve(&cs->path, &w->cap_path, cs->n_path + col->n + 1,
                  sizeof *cs->path))
     return vg_fail_memory(w->err, "bent columns");
-  memcpy(cs->path[cs->n_path], w->m->point[col->root], 3 * sizeof(double));
-  for (int l = 1; l <= col->n; l++)
-    on_chain(w, c, scale * d[l], cs->path[cs->n_path + (size_t)l]);
+  memcpy(cs->path[cs->n_path], root, 3 * sizeof *root);
+  for (int l = 1; l <= col->n; l++) {
+    vg_column_at(col, root, d[l], x);
+    on_chain(w, c, vg_distance(x, root), cs->path[cs->n_path + (size_t)l]);
+  }
   col->bent = cs->n_path;
   cs->n_path += (size_t)col->n + 1;
   memcpy(w->x[w->m->n_point + i], cs->path[cs->n_path - 1], 3 * sizeof(double));

@@ -246,9 +246,10 @@ static vg_status bend(struct vg_slide_work *w, uint32_t i,
   c->bent = cs->n_path;
   memcpy(cs->path[cs->n_path++], root, 3 * sizeof *root);
   for (int l = 1; l <= c->n; l++) {
-    const double step[3] = { c->dir[0] * d[l], c->dir[1] * d[l],
-                             c->dir[2] * d[l] };
+    double step[3];
 
+    vg_column_at(c, root, d[l], step);
+    vg_sub(step, root, step);
     follow(g, root, step, cs->path[cs->n_path++]);
   }
   memcpy(w->x[w->m->n_point + i], cs->path[cs->n_path - 1], 3 * sizeof(double));

@@ -270,7 +270,7 @@ static void risen(const struct vg_slide_work *w, const struct vg_slide_frame *f,
     memcpy(x, w->c->path[c->bent + 1], sizeof x);
   } else {
     vg_growth_law_heights(&w->c->law[c->law], c->cap, 1, d);
-    for (int k = 0; k < 3; k++) x[k] = root[k] + c->dir[k] * d[1];
+    vg_column_at(c, root, d[1], x);
   }
   vg_slide_to_plane(f, x, q);
 }
