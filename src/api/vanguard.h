@@ -373,8 +373,8 @@ struct vanguard_wall_points {
   size_t struct_size;
   size_t n_point;
   const uint32_t *point; /* number in the mesh, ascending */
-  /* Number of levels; number that the growth law and the local size
-   * request. */
+  /* Number of levels; number that the growth law, the local size and, for
+   * a limited height, the setting layer_jump request. */
   const int32_t *level, *wanted;
   /* Height of the first point, 0: no levels; requested first height. */
   const double *first, *asked;

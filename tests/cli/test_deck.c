@@ -173,6 +173,7 @@ static void everything_survives_a_round_trip(void **state)
                                         .gap = 0.3,
                                         .end = 0.8,
                                         .slope = 1.5,
+                                        .jump = 3,
                                         .smooth = 7,
                                         .by_source = 1,
                                         .scale_rule = 2,

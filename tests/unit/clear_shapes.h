@@ -186,7 +186,8 @@ static void grow(struct shape *s, int n)
                                                    .cap = 1.3,
                                                    .bent = SIZE_MAX,
                                                    .n = (uint16_t)n,
-                                                   .n_wanted = (uint16_t)n };
+                                                   .n_wanted = (uint16_t)n,
+                                                   .n_fit = (uint16_t)n };
   }
   for (size_t t = 0; t < s->m.n_tri; t++) {
     double normal[3];

@@ -54,6 +54,7 @@ static void stand(struct vg_columns *c, const struct vg_mesh *m,
                                        .bent = SIZE_MAX,
                                        .n = (uint16_t)n,
                                        .n_wanted = (uint16_t)n,
+                                       .n_fit = (uint16_t)n,
                                        .cause = VG_CAUSE_SIZE };
     memcpy(c->column[i].dir, dir, 3 * sizeof *dir);
   }
@@ -201,7 +202,7 @@ static void a_point_reports_its_worst_column(void **state)
   /* columns 0 and 1 both stand on point 0 */
   c[1].root = 0;
   c[0].n = 10;
-  c[0].n_wanted = 10;
+  c[0].n_wanted = c[0].n_fit = 10;
   c[1].n = 12;
   c[1].cause = VG_CAUSE_CORNER;
   c[0].cap = 1.1;
@@ -403,7 +404,8 @@ static void make_ridge(struct plate *p, int n)
       .cap = INFINITY,
       .bent = SIZE_MAX,
       .n = 3,
-      .n_wanted = 3
+      .n_wanted = 3,
+      .n_fit = 3
     };
     c->column[i].dir[i % 2 ? 0 : 2] = 1;
   }

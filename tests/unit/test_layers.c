@@ -174,8 +174,8 @@ static void limits_are_explained(const struct bench *b)
   for (size_t i = 0; i < c->n_column; i++) {
     const struct vg_column *col = &c->column[i];
 
-    assert_true(col->n <= col->n_wanted);
-    assert_int_equal(col->n < col->n_wanted, is_limit(col->cause));
+    assert_true(col->n <= col->n_fit && col->n_fit <= col->n_wanted);
+    assert_int_equal(col->n < col->n_fit, is_limit(col->cause));
     if (col->n && col->cap < 1.25) assert_true(is_limit(col->compressed));
     assert_true(col->cause < VG_CAUSE_N && col->compressed < VG_CAUSE_N);
     cause[col->cause]++;
@@ -474,7 +474,7 @@ static struct place_figures look(const struct bench *b, const double lo[3],
     vg_column_top(c, &b->surface, i, top);
     for (int k = 0; k < 3; k++) d2 += (top[k] - x[k]) * (top[k] - x[k]);
     p.n++;
-    p.n_full += col->n == col->n_wanted;
+    p.n_full += col->n == col->n_fit;
     p.n_loose += col->compressed == VG_CAUSE_NONE;
     p.n_none += col->n == 0;
     p.top_max = fmax(p.top_max, sqrt(d2));
@@ -518,6 +518,64 @@ static void two_plates_that_close_to_a_gap(void **state)
       assert_true(is_limit(c->cause) || is_limit(c->compressed));
   }
   finish(&b);
+}
+
+/* Levels, last layer and top of each column of the slot, [n_column]. */
+struct slot_columns {
+  size_t n;
+  int *level;
+  double *last, (*top)[3];
+};
+
+static struct slot_columns grow_slot(double jump)
+{
+  struct bench b = { .options.smooth = 0 };
+  struct slot_columns out = { .n = 0 };
+  double d[VG_LEVELS_MAX + 1];
+
+  case_slot(&b.surface, 0.1, 0.08);
+  start(&b, 0.1);
+  b.options.jump = jump;
+  grow_and_check(&b);
+  out.n = b.layers.columns.n_column;
+  out.level = malloc(out.n * sizeof *out.level);
+  out.last = calloc(out.n, sizeof *out.last);
+  out.top = malloc(out.n * sizeof *out.top);
+  assert_true(out.level && out.last && out.top);
+  for (size_t i = 0; i < out.n; i++) {
+    const struct vg_column *c = &b.layers.columns.column[i];
+
+    vg_growth_law_heights(&b.layers.columns.law[c->law], c->cap, c->n, d);
+    out.level[i] = c->n;
+    if (c->n) out.last[i] = d[c->n] - d[c->n - 1];
+    vg_column_top(&b.layers.columns, &b.surface, i, out.top[i]);
+  }
+  finish(&b);
+  return out;
+}
+
+/* layer_jump moves levels within columns of limited height. Their tops stay,
+ * except next to columns whose cells it changes. */
+static void fewer_levels_for_a_smaller_jump(void **state)
+{
+  struct slot_columns all = grow_slot(1000), few = grow_slot(1.5);
+  size_t n_fewer = 0, n_moved = 0;
+
+  (void)state;
+  assert_int_equal(all.n, few.n);
+  for (size_t i = 0; i < all.n; i++) {
+    if (vg_distance(few.top[i], all.top[i]) > 1e-6) {
+      n_moved++;
+      continue;
+    }
+    assert_true(few.level[i] <= all.level[i]);
+    assert_true(few.last[i] >= all.last[i] * (1 - 1e-6));
+    n_fewer += few.level[i] < all.level[i];
+  }
+  assert_true(n_fewer > all.n / 10);
+  assert_true(n_moved < all.n / 50);
+  free(all.level), free(all.last), free(all.top);
+  free(few.level), free(few.last), free(few.top);
 }
 
 /* Edges longer than the width of the slot. In its corners four columns slide in
@@ -916,6 +974,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(two_plates_that_close_to_a_gap),
+    cmocka_unit_test(fewer_levels_for_a_smaller_jump),
     cmocka_unit_test(a_slot_narrower_than_an_edge),
     cmocka_unit_test(fans_without_levels),
     cmocka_unit_test(a_right_angle),

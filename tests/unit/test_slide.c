@@ -334,7 +334,7 @@ static void make_columns(struct made *a, int n)
     col->slide[0] = col->slide[1] = VG_NO_INDEX;
     col->cap = 1.3;
     col->bent = SIZE_MAX;
-    col->n = col->n_wanted = (uint16_t)n;
+    col->n = col->n_wanted = col->n_fit = (uint16_t)n;
     column_of[p] = (uint32_t)c->n_column++;
   }
   add_faces(a, column_of);

@@ -112,6 +112,7 @@ settings() {   # settings LENGTH
   may --layer-cap pick 0 1 1.05 1.3 2
   may --fan-angle pick 20 25 45 60 100 179
   may --layer-slope draw 0.01 10
+  may --layer-jump pick 1 1.5 3 1000
   may --layer-gap draw 0.01 0.49
   may --layer-end draw 0.05 5
   may --layer-smooth pick 0 1 5 300

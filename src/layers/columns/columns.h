@@ -82,10 +82,12 @@ struct vg_column {
   uint16_t n;        /* Number of levels. */
   uint16_t n_wanted; /* Levels that the growth law and the local size request,
                         before any limit. */
-  uint8_t cause;     /* enum vg_layer_cause: what reduced n below n_wanted. */
+  uint8_t cause;     /* enum vg_layer_cause: what reduced n below n_fit. */
   uint8_t compressed; /* enum vg_layer_cause: what reduced cap below that of the
                        law; VG_CAUSE_NONE if nothing did. */
-  uint8_t unused[2];  /* 0, since columns are sent and compared as bytes. */
+  uint16_t n_fit;     /* Requested levels: n_wanted or, in a column of limited
+                         height into which these would fit, the smaller number
+                         that layer_jump asks for. */
 };
 _Static_assert(sizeof(struct vg_column) == 88, "columns have no padding");
 

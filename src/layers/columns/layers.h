@@ -47,6 +47,8 @@ struct vg_layer_options {
   double slope;         /* Largest height difference of two neighbouring
                            columns, relative to the distance of their roots; >
                            0. */
+  double jump;          /* Volume ratio across the tops to aim at in columns of
+                           limited height, >= 1. */
   int smooth;           /* Smoothing sweeps over the directions. */
   int threads;          /* Number of threads; 0: one per core. */
   struct vg_team *team; /* Ranks that share the work (base/team.h); NULL: this
@@ -57,7 +59,7 @@ struct vg_layer_options {
 /* L1 */
 #define VG_LAYER_OPTIONS_INIT                                                  \
   {                                                                            \
-    NULL, NULL, NULL, 0, 0.95, 0.4, 1, 100, 1, NULL, { NULL, NULL },           \
+    NULL, NULL, NULL, 0, 0.95, 0.4, 1, 1.5, 100, 1, NULL, { NULL, NULL },      \
     {                                                                          \
       NULL, NULL                                                               \
     }                                                                          \

@@ -113,6 +113,11 @@ static vg_status walls(struct vg_layer_work *w, struct vg_error *err)
                    "is %g; the first must be between 0 and 0.5, the others "
                    "above 0",
                    w->o->gap, w->o->end, w->o->slope);
+  if (!(w->o->jump >= 1))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the volume ratio across the tops to aim at is %g; it must "
+                   "be at least 1",
+                   w->o->jump);
   VG_TRY(vg_slides_find(w->m, w->is_wall, &w->n_slide, &w->slide, err));
   st = roughness(w, err);
 done:

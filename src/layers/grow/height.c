@@ -401,18 +401,67 @@ vg_status vg_heights_corner(struct vg_layer_work *w, struct vg_error *err)
   return VG_OK;
 }
 
-/* Growth and levels that fit into the allowed height of a column. */
+/* L20: volume ratio across the top, times the last layer over the edge. */
+#define JUMP_SHAPE 1.25
+
+/* Thickness of the last of n layers that fill the height, or 0 if n layers of
+ * equal thickness are higher. */
+static double last_layer(const struct vg_growth_law *law, int n, double height)
+{
+  double d[VG_LEVELS_MAX + 1];
+  const double cap = vg_growth_law_compress(law, n, height);
+
+  if (!(cap > 0)) return 0;
+  vg_growth_law_heights(law, cap, n, d);
+  return d[n] - d[n - 1];
+}
+
+/* The most levels, up to `most`, whose last layer is at least `last` thick when
+ * they fill the height. If no number of levels achieves that, as many as fill
+ * the height at the growth law, since fewer levels have thicker layers. */
+static int levels_within(const struct vg_growth_law *law, int most,
+                         double height, double last)
+{
+  double d[VG_LEVELS_MAX + 1];
+  int n = 1;
+
+  assert(most > 0);
+  vg_growth_law_heights(law, INFINITY, most, d);
+  while (n < most && d[n] < height) n++;
+  while (n < most) {
+    const int mid = (n + most + 1) / 2;
+
+    if (last_layer(law, mid, height) >= last) n = mid;
+    else most = mid - 1;
+  }
+  return n;
+}
+
+/* Growth and levels that fit into the allowed height of a column. If all
+ * requested levels would fit at a lower growth, fewer levels at a higher growth
+ * are chosen for the sake of the volume ratio across the top. */
 static void fit(struct vg_layer_work *w, size_t i)
 {
   struct vg_column *c = &w->c->column[i];
   const struct vg_growth_law *law = &w->c->law[c->law];
 
   w->settled[i] = w->allowed[i];
-  w->own[i] = c->n_wanted;
+  w->own[i] = c->n_fit = c->n_wanted;
   c->cap = law->cap;
   if (w->allowed[i] >= w->wanted[i]) return;
   c->cap = vg_growth_law_compress(law, c->n_wanted, w->allowed[i]);
-  if (c->cap > 0) return;
+  if (c->cap > 0) {
+    uint32_t first, end; /* one edge for all columns of a root */
+
+    if (w->o->patch[patch_of(w, (uint32_t)i)].n_exact) return;
+    vg_root_range(w->c, (uint32_t)i, &first, &end);
+    w->own[i] = c->n_fit = (uint16_t)levels_within(law, c->n_wanted,
+                                                   w->allowed[i],
+                                                   JUMP_SHAPE / w->o->jump *
+                                                     w->edge[first]);
+    c->cap = vg_growth_law_compress(law, c->n_fit, w->allowed[i]);
+    return;
+  }
   c->cap = 1;
   w->own[i] = (uint16_t)(w->allowed[i] / law->delta1);
 }
@@ -428,9 +477,9 @@ static void settle_body(void *context, size_t first, size_t end, int worker)
     if (w->allowed[i] != w->settled[i]) fit(w, i);
     c->n = w->own[i];
     c->compressed = w->allowed[i] < w->wanted[i] ? w->why[i] : VG_CAUSE_NONE;
-    c->cause = c->n < c->n_wanted ? w->why[i]
-             : w->by_size[i]      ? VG_CAUSE_SIZE
-                                  : VG_CAUSE_NONE;
+    c->cause = c->n < c->n_fit ? w->why[i]
+             : w->by_size[i]   ? VG_CAUSE_SIZE
+                               : VG_CAUSE_NONE;
   }
 }
 

@@ -179,7 +179,7 @@ static void measure_column(const struct fields_job *j, size_t c, size_t i)
   double share;
 
   if (col->n < w->level[i]) w->level[i] = col->n;
-  if (col->n_wanted < w->wanted[i]) w->wanted[i] = col->n_wanted;
+  if (col->n_fit < w->wanted[i]) w->wanted[i] = col->n_fit;
   if (!col->n) {
     w->total[i] = 0;
     if (col->n_wanted) w->share[i] = 0;
@@ -206,7 +206,7 @@ int vg_column_is_worse(const struct vg_column *a, const struct vg_column *b)
 {
   assert(a && b);
 
-  int a_short = a->n < a->n_wanted, b_short = b->n < b->n_wanted;
+  int a_short = a->n < a->n_fit, b_short = b->n < b->n_fit;
 
   return a_short != b_short ? a_short : a->n < b->n;
 }

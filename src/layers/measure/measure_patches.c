@@ -102,7 +102,7 @@ static void add_face(const struct patches_job *j, size_t f, struct tally *t)
 
     if (vg_column_is_worse(c, worst)) worst = c;
     if (vg_column_is_tighter(c, tightest)) tightest = c;
-    full &= c->n >= c->n_wanted;
+    full &= c->n >= c->n_fit;
     loose &= c->compressed == VG_CAUSE_NONE;
     any &= c->n > 0;
     first += j->w->first[j->field[c->root]];

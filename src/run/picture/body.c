@@ -204,7 +204,7 @@ static size_t poorest(const struct vg_columns *c)
 
   for (size_t i = 0; i < c->n_column; i++) {
     const struct vg_column *k = &c->column[i];
-    double share = k->n_wanted ? (double)k->n / k->n_wanted : 1;
+    double share = k->n_fit ? (double)k->n / k->n_fit : 1;
 
     if (share >= least || k->cause <= VG_CAUSE_SIZE) continue;
     least = share;

@@ -186,6 +186,7 @@ struct vg_layer_options vg_options_layers(const struct vg_settings *s)
   o.end = s->layer.end;
   o.gap = s->layer.gap;
   o.slope = s->layer.slope;
+  o.jump = s->layer.jump;
   o.smooth = (int)s->layer.smooth;
   o.threads = (int)s->threads;
   return o;

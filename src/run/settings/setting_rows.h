@@ -264,6 +264,11 @@ VG_ROW(REAL, layer, gap, "layer_gap", layers.gap,
 VG_ROW(REAL, layer, slope, "layer_slope", layers.slope,
   .hi = 100, .above_lo = 1, .unit = "", .help = "Largest difference between "
   "the layer heights at neighbouring points, over the edge between them")
+VG_ROW(REAL, layer, jump, "layer_jump", layers.jump,
+  .lo = 1, .hi = 1000, .unit = "", .help = "Volume ratio of the cells on both "
+  "sides of the layers' end to aim at. Where the height of the layers is "
+  "limited, they get fewer levels, up to the requested growth, until it is "
+  "met; 1000 keeps all levels")
 VG_ROW(REAL, layer, end, "layer_end", layers.end,
   .hi = 100, .above_lo = 1, .unit = "edges", .help = "Layers end before one "
   "would be higher than this times the local edge length")
