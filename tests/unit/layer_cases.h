@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "core/domain/planar_patch.h"
+#include "core/geometry/vector.h"
 #include "fill_shapes.h"
 
 enum { CASE_SYMMETRY = 1, CASE_FARFIELD = 3, CASE_WALL = 4 };
@@ -519,6 +520,73 @@ static inline void case_post(struct vg_mesh *m, double h, double lean)
     case_fill(&b, side == 4 ? flat : far);
   }
   case_end(&b);
+}
+
+/* The lower part of a body of revolution about the z axis that is sunk into the
+ * plane z = 0: a ball of this radius, or two cones on a common base, one with
+ * its apex down. `sunk`: depth of the lowest point, below the radius. */
+struct case_sunk {
+  double radius, height, sunk;
+  int is_ball;
+};
+
+static inline void case_on_sunk(double r, double c, double s, const void *user,
+                                double x[3])
+{
+  const struct case_sunk *body = user;
+  double rim = body->sunk / body->height * body->radius, out, z;
+
+  if (body->is_ball) {
+    double below = acos(1 - body->sunk / body->radius);
+    double a = r * (M_PI - below);
+
+    out = body->radius * sin(a);
+    z = body->radius * (cos(a) - cos(M_PI - below));
+  } else if (r < 0.5) {
+    out = body->radius * 2 * r;
+    z = body->height * (2 - 2 * r) - body->sunk;
+  } else {
+    out = body->radius + (rim - body->radius) * (2 * r - 1);
+    z = (body->height - body->sunk) * (2 - 2 * r);
+  }
+  x[0] = out * c;
+  x[1] = out * s;
+  x[2] = r == 1 ? 0 : z;
+}
+
+/* Such a body, of n rings of triangles, on a wall. */
+static inline void case_sunk_body(struct vg_mesh *m, double h, int n,
+                                  const struct case_sunk *body)
+{
+  struct case_builder b = case_start_body(m, h, body->radius);
+  const double far = 4 * body->radius;
+  const double lo[3] = { -far, -far, 0 }, hi[3] = { far, far, 2 * far };
+  uint32_t wall = case_patch(m, "body", CASE_WALL, 0);
+  uint32_t ground = case_patch(m, "ground", CASE_WALL, 0);
+  uint32_t out = case_patch(m, "farfield", CASE_FARFIELD, 0);
+  uint32_t v[8], rim = case_disc(m, n, wall, case_on_sunk, body, UINT32_MAX, 0);
+  int turn = 6 * n;
+
+  case_corners(&b, lo, hi, v);
+  for (int side = 0; side < 6; side++) {
+    case_box_loop(&b, v, side, 0);
+    for (int j = 0; side == 4 && j < turn; j++)
+      case_edge(&b, rim + (uint32_t)((j + 1) % turn), rim + (uint32_t)j);
+    case_fill(&b, side == 4 ? ground : out);
+  }
+  case_end(&b);
+}
+
+/* Rotates a surface by the unit quaternion q. */
+static inline void case_rotate(struct vg_mesh *m, const double q[4])
+{
+  for (size_t i = 0; i < m->n_point; i++) {
+    double *x = m->point[i], u[3], v[3];
+
+    vg_cross(q + 1, x, u);
+    vg_cross(q + 1, u, v);
+    for (int k = 0; k < 3; k++) x[k] += 2 * (q[0] * u[k] + v[k]);
+  }
 }
 
 enum { CASE_OCTANT_SIDE = 12 };

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/geometry/nearest.h"
 #include "core/geometry/vector.h"
 #include "layers/grow/direct.h"
 
@@ -13,7 +14,8 @@
 /* Share of the initial visibility that is kept where cells would be lost
  * otherwise. */
 #define LEAST_VISIBILITY 0.2
-#define CAP_SWEEPS 8 /* Several sweeps, since caps form chains. */
+#define CAP_SWEEPS 8    /* Several sweeps, since caps form chains. */
+#define FIRST_MOST 1.01 /* L22: largest first height, relative to delta1. */
 
 /* Distance from the wall after a small step of length 1 along v: from the
  * triangles at the root, for all columns of a fan. */
@@ -139,8 +141,34 @@ static void shorten(const struct vg_growth_law *law, double first,
   for (int k = 0; most < 1 && k < 3; k++) dir[k] *= most;
 }
 
+/* Whether the first point of column i is delta1 away from the triangles at the
+ * root. gain() extends these triangles to infinity, but the first point of a
+ * column in an acute wedge may be several edges away from the root. */
+static int first_is_kept(const struct vg_layer_work *w, uint32_t i)
+{
+  const struct vg_column *c = &w->c->column[i];
+  const double *root = w->m->point[c->root];
+  double delta1 = w->c->law[c->law].delta1, x[3], least = INFINITY;
+  uint32_t first, end;
+
+  vg_column_at(c, root, delta1, x);
+  vg_root_range(w->c, i, &first, &end);
+  for (uint32_t j = w->t.first[first]; j < w->t.first[end]; j++) {
+    uint32_t f = w->t.corner[j] / 3, k = w->t.corner[j] % 3;
+    const uint32_t tri = w->c->face_tri[f], *t;
+
+    if (tri == VG_NO_INDEX) continue;
+    t = w->m->tri[tri];
+    least = fmin(least, vg_to_triangle2(x, w->m->point[t[k]],
+                                        w->m->point[t[(k + 1) % 3]],
+                                        w->m->point[t[(k + 2) % 3]]));
+  }
+  return sqrt(least) <= FIRST_MOST * delta1;
+}
+
 /* Shifts along dir or, where that leaves no room for the first point, along the
- * direction before smoothing. */
+ * direction before smoothing. Without room along both, a column has no
+ * levels. */
 static void shift_body(void *context, size_t first, size_t end, int worker)
 {
   const struct shift *s = context;
@@ -149,25 +177,28 @@ static void shift_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t i = first; i < end; i++) {
     struct vg_column *c = &w->c->column[i];
+    const double dir[3] = { c->dir[0], c->dir[1], c->dir[2] };
     double v[3], delta1 = w->c->law[c->law].delta1, d;
+    int is_seen = 0, is_kept = 0;
 
     if (s->which && !s->which[i]) continue;
     memset(c->shift, 0, sizeof c->shift);
-    if (w->visibility[i] == 0) continue;
-    memcpy(v, c->dir, sizeof v);
-    vg_unit(v);
-    d = gain(w, (uint32_t)i, v);
-    if (d * VG_FACTOR_MAX < 1) {
-      memcpy(v, w->root_dir[i], sizeof v);
+    for (int try = 0; try < 2 && w->visibility[i] > 0 && !is_kept; try++) {
+      memcpy(c->dir, dir, sizeof dir);
+      memcpy(v, try ? w->root_dir[i] : dir, sizeof v);
+      vg_unit(v);
       d = gain(w, (uint32_t)i, v);
+      if (d * VG_FACTOR_MAX < 1) continue;
+      is_seen = 1;
+      shorten(&w->c->law[c->law], delta1 / d, c->dir);
+      for (int k = 0; k < 3; k++)
+        c->shift[k] = fabs(d * vg_norm(c->dir) - 1) > 1e-9
+                      ? delta1 * (v[k] / d - c->dir[k])
+                      : 0;
+      is_kept = first_is_kept(w, (uint32_t)i);
     }
-    if (d * VG_FACTOR_MAX < 1) {
-      w->visibility[i] = 0;
-      continue;
-    }
-    shorten(&w->c->law[c->law], delta1 / d, c->dir);
-    if (fabs(d * vg_norm(c->dir) - 1) > 1e-9)
-      for (int k = 0; k < 3; k++) c->shift[k] = delta1 * (v[k] / d - c->dir[k]);
+    if (!is_seen) w->visibility[i] = 0;
+    else if (!is_kept) vg_heights_lower(w, i, 0, VG_CAUSE_CORNER);
   }
 }
 

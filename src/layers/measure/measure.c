@@ -14,6 +14,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/geometry/nearest.h"
 #include "core/geometry/vector.h"
 
 enum { GRAIN = 512 }; /* Wall points per chunk. */
@@ -47,53 +48,6 @@ void vg_wall_fields_release(struct vg_wall_fields *w)
   memset(w, 0, sizeof *w);
 }
 
-/* Squared norm of p - t u. */
-static double off_line2(const double p[3], double t, const double u[3])
-{
-  double q[3] = { p[0] - t * u[0], p[1] - t * u[1], p[2] - t * u[2] };
-
-  return vg_dot(q, q);
-}
-
-/* Squared distance of x from triangle a b c, by the region that contains its
- * foot (Ericson, Real-Time Collision Detection, 5.1.5). Most accurate if x is
- * close to a, since all vectors are relative to a. */
-static double to_triangle2(const double x[3], const double a[3],
-                           const double b[3], const double c[3])
-{
-  double u[3], v[3], p[3], q[3], r[3], n[3];
-  double d1, d2, d3, d4, d5, d6, va, vb, vc, height;
-
-  vg_sub(b, a, u);
-  vg_sub(c, a, v);
-  vg_sub(x, a, p);
-  d1 = vg_dot(u, p);
-  d2 = vg_dot(v, p);
-  if (d1 <= 0 && d2 <= 0) return vg_dot(p, p);
-  vg_sub(p, u, q);
-  d3 = vg_dot(u, q);
-  d4 = vg_dot(v, q);
-  if (d3 >= 0 && d4 <= d3) return vg_dot(q, q);
-  vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return off_line2(p, d1 / (d1 - d3), u);
-  vg_sub(p, v, r);
-  d5 = vg_dot(u, r);
-  d6 = vg_dot(v, r);
-  if (d6 >= 0 && d5 <= d6) return vg_dot(r, r);
-  vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return off_line2(p, d2 / (d2 - d6), v);
-  va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) {
-    double w[3];
-
-    vg_sub(v, u, w);
-    return off_line2(q, (d4 - d3) / (d4 - d3 + d5 - d6), w);
-  }
-  vg_cross(u, v, n);
-  height = vg_dot(n, p);
-  return height * height / vg_dot(n, n);
-}
-
 /* Tests the wall triangles at point `at`. */
 static void scan(const struct fields_job *j, uint32_t at, const double x[3],
                  struct nearest *best)
@@ -103,8 +57,8 @@ static void scan(const struct fields_job *j, uint32_t at, const double x[3],
   for (size_t i = j->tri_first[at]; i < j->tri_first[at + 1]; i++) {
     const uint32_t *t = m->tri[j->tri[i]];
     int k = t[0] == at ? 0 : t[1] == at ? 1 : 2;
-    double d2 = to_triangle2(x, m->point[t[k]], m->point[t[(k + 1) % 3]],
-                             m->point[t[(k + 2) % 3]]);
+    double d2 = vg_to_triangle2(x, m->point[t[k]], m->point[t[(k + 1) % 3]],
+                                m->point[t[(k + 2) % 3]]);
 
     if (d2 >= best->d2) continue;
     best->d2 = d2;

@@ -1,0 +1,12 @@
+/* core/geometry/nearest.h: distance of a point from a triangle. Uses
+ * core/geometry/vector.h. */
+#ifndef VG_CORE_GEOMETRY_NEAREST_H
+#define VG_CORE_GEOMETRY_NEAREST_H
+
+/** Squared distance of x from triangle a b c. Most accurate if x is close to a,
+ * since all vectors are relative to a. The triangle must have an area if the
+ * foot of x lies inside it. Thread-safe; constant cost. */
+double vg_to_triangle2(const double x[3], const double a[3], const double b[3],
+                       const double c[3]);
+
+#endif
