@@ -589,6 +589,52 @@ static inline void case_rotate(struct vg_mesh *m, const double q[4])
   }
 }
 
+/* A room of 3 x 2 x 1 with a wall as its floor, except for a slip patch in the
+ * plane of the floor: all of it at x < 1 (upstream of a plate), or a window of
+ * 1 x 0.6. The other sides are symmetry planes. */
+static inline void case_flush(struct vg_mesh *m, double h, int is_window)
+{
+  struct case_builder b = case_start(m, h);
+  const double lo[3] = { 0, 0, 0 }, hi[3] = { 3, 2, 1 };
+  uint32_t wall = case_patch(m, "floor", CASE_WALL, 0);
+  uint32_t slip = case_patch(m, "slip", CASE_SYMMETRY, 2);
+  uint32_t v[8], w[4];
+
+  case_corners(&b, lo, hi, v);
+  for (uint32_t i = 0; i < 4; i++)
+    w[i] = is_window ? case_point(&b, i % 3 ? 2 : 1, i / 2 ? 1.3 : 0.7, 0)
+                     : case_point(&b, 1, i % 2 ? 2 : 0, i / 2);
+  for (int side = 0; side < 6; side++) {
+    const int axis = side / 2;
+
+    if (is_window || axis == 0) {
+      case_box_loop(&b, v, side, 0);
+      if (side == 4) case_loop(&b, 4, w, 1);
+    } else {
+      const uint32_t up = axis == 1 ? 2 * (uint32_t)(side % 2) : 0;
+      const uint32_t at = axis == 1 ? (uint32_t)(side % 2) : 0;
+      const uint32_t top = side == 5 ? 4 : 0;
+      const int reverse = side % 2 == (axis == 2);
+      const uint32_t y[4] = { v[up], w[at], w[at + 2], v[up + 4] };
+      const uint32_t yy[4] = { w[at], v[up + 1], v[up + 5], w[at + 2] };
+      const uint32_t z[4] = { v[top], w[top / 2], w[top / 2 + 1], v[top + 2] };
+      const uint32_t zz[4] = { w[top / 2], v[top + 1], v[top + 3],
+                               w[top / 2 + 1] };
+
+      case_loop(&b, 4, axis == 1 ? y : z, reverse);
+      if (side == 4) case_fill(&b, slip);
+      case_loop(&b, 4, axis == 1 ? yy : zz, reverse);
+    }
+    case_fill(&b,
+              side == 4 ? wall : case_patch(m, "side", CASE_SYMMETRY, axis));
+  }
+  if (is_window) {
+    case_loop(&b, 4, w, 0);
+    case_fill(&b, slip);
+  }
+  case_end(&b);
+}
+
 enum { CASE_OCTANT_SIDE = 12 };
 
 /* Of the eight octants these four are fluid, a path from one to the next. */

@@ -20,6 +20,7 @@
 #include "layers/expand/join.h"
 #include "layers/grow/grow.h"
 #include "layers/measure/measure.h"
+#include "layers/slide/slide.h"
 
 /* A case in progress. All walls request the same layers: a first layer of
  * 1/1000 of the edge, ratio 1.25, which takes about 30 levels and 4.4 edges. */
@@ -877,6 +878,51 @@ static void a_point_without_visibility_with_fans(void **state)
   finish(&b);
 }
 
+/* A slip patch in the plane of the wall: columns at its edge cannot slide in
+ * it, and the layers continue over it. */
+static void a_slip_patch_in_the_plane(int is_window)
+{
+  struct bench b = { .options.smooth = 0 };
+  uint8_t is_wall[16] = { 0 }, may[16] = { 0 };
+  uint32_t from[16];
+
+  case_flush(&b.surface, 0.15, is_window);
+  is_clean(&b.surface);
+  start(&b, 0.15);
+  grow_and_check(&b);
+  assert_true(b.report.cause[VG_CAUSE_SLIDE] > 0);
+  assert_int_equal(b.report.cause[VG_CAUSE_VISIBILITY], 0);
+  vg_layers_release(&b.layers);
+  is_wall[0] = 1;
+  assert_int_equal(vg_slides_extend(&b.surface, is_wall, may, from, NULL),
+                   VG_OK);
+  for (size_t p = 0; p < b.surface.n_patch; p++)
+    assert_int_equal(from[p], VG_NO_INDEX);
+  memset(may, 1, sizeof may);
+  may[0] = 0;
+  assert_int_equal(vg_slides_extend(&b.surface, is_wall, may, from, NULL),
+                   VG_OK);
+  for (size_t p = 0; p < b.surface.n_patch; p++)
+    assert_int_equal(from[p], p == 1 ? 0 : VG_NO_INDEX);
+  b.request[1] = b.request[0];
+  grow_and_check(&b);
+  at_least(&b, 100, 0, 100);
+  fill_and_join(&b);
+  finish(&b);
+}
+
+static void a_plate_with_slip_upstream(void **state)
+{
+  (void)state;
+  a_slip_patch_in_the_plane(0);
+}
+
+static void a_window_in_a_wall(void **state)
+{
+  (void)state;
+  a_slip_patch_in_the_plane(1);
+}
+
 /* --- requests ------------------------------------------------------------ */
 
 static void levels_and_height_as_requested(void **state)
@@ -996,6 +1042,8 @@ int main(void)
     cmocka_unit_test(a_point_without_visibility),
     cmocka_unit_test(a_point_without_visibility_gets_a_fan),
     cmocka_unit_test(a_point_without_visibility_with_fans),
+    cmocka_unit_test(a_plate_with_slip_upstream),
+    cmocka_unit_test(a_window_in_a_wall),
     cmocka_unit_test(levels_and_height_as_requested),
     cmocka_unit_test(a_varying_growth_law),
     cmocka_unit_test(refusals_leave_nothing),

@@ -98,6 +98,22 @@ double vg_least_visibility(int k, const double (*n)[3], const double v[3])
   return least;
 }
 
+enum vg_layer_cause vg_unseen_cause(const struct vg_layer_work *w, size_t i,
+                                    double (*n)[3])
+{
+  double v[3];
+  int k;
+
+  assert(i < w->c->n_column && n);
+  if (w->c->column[i].slide[0] == VG_NO_INDEX) return VG_CAUSE_VISIBILITY;
+  k = vg_face_normals(w, i, n);
+  if (!k || !vg_most_normal(k, n, v)) return VG_CAUSE_VISIBILITY;
+  vg_unit(v);
+  return vg_least_visibility(k, n, v) >= VG_VISIBILITY_MIN
+         ? VG_CAUSE_SLIDE
+         : VG_CAUSE_VISIBILITY;
+}
+
 vg_status vg_dir_sweep_scratch(struct vg_layer_work *w, struct vg_dir_sweep *l,
                                struct vg_error *err)
 {

@@ -152,11 +152,16 @@ static vg_status first_allowed(struct vg_layer_work *w,
 {
   size_t n = w->c->n_column;
   double *allowed = vg_alloc(n, sizeof *allowed), t = vg_clock();
+  double(*normal)[3] = vg_alloc(w->max_valence, sizeof *normal);
   vg_status st;
 
-  if (!allowed) return vg_fail_memory(err, "the layers");
+  if (!allowed || !normal) {
+    st = vg_fail_memory(err, "the layers");
+    goto done;
+  }
   for (size_t i = 0; i < n; i++) {
-    if (w->visibility[i] == 0) vg_heights_lower(w, i, 0, VG_CAUSE_VISIBILITY);
+    if (w->visibility[i] == 0)
+      vg_heights_lower(w, i, 0, vg_unseen_cause(w, i, normal));
     if (w->t.blocked && w->t.blocked[i])
       vg_heights_lower(w, i, 0, VG_CAUSE_SLIDE);
   }
@@ -171,6 +176,7 @@ static vg_status first_allowed(struct vg_layer_work *w,
   r->time_clear += vg_clock() - t;
 done:
   free(allowed);
+  free(normal);
   return st;
 }
 

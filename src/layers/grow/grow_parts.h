@@ -77,6 +77,12 @@ static inline double vg_root_distance(const struct vg_layer_work *w, uint32_t i,
  * visibility. */
 vg_status vg_directions_first(struct vg_layer_work *w, struct vg_error *err);
 
+/** Why column i has no direction: VG_CAUSE_SLIDE if a direction out of its
+ * slide patches would see all faces, otherwise VG_CAUSE_VISIBILITY.
+ * n: scratch, [max_valence]. */
+enum vg_layer_cause vg_unseen_cause(const struct vg_layer_work *w, size_t i,
+                                    double (*n)[3]);
+
 /** Bends directions apart where columns of height `wanted` would converge. */
 vg_status vg_directions_smooth(struct vg_layer_work *w, struct vg_error *err);
 

@@ -279,7 +279,7 @@ vg_status vg_directions_even(struct vg_layer_work *w, const uint8_t *turn,
   vg_directions_shift(w, turned);
   for (size_t i = 0; i < w->c->n_column; i++)
     if (w->visibility[i] == 0 && w->allowed[i] > 0) {
-      vg_heights_lower(w, i, 0, VG_CAUSE_VISIBILITY);
+      vg_heights_lower(w, i, 0, vg_unseen_cause(w, i, l.scratch));
       turned[i] = 1;
     }
 done:

@@ -52,6 +52,23 @@ vg_status vg_slides_find(const struct vg_mesh *surface, const uint8_t *is_wall,
                          size_t *n, struct vg_slide **out,
                          struct vg_error *err);
 
+/** Finds plane patches without layers over which the layers of a wall continue.
+ * A column on the edge between the two cannot slide in such a patch, because
+ * the wall is normal to it: a flat plate with a slip patch upstream, or a
+ * window in a wall. Such a patch is plane, and at 10 % or more of its edges
+ * with walls, by length, the surface turns by less than 18 degrees. Patches
+ * that continue the patches found are found as well.
+ * @param is_wall  [surface->n_patch]
+ * @param may      [surface->n_patch] 0: patches that stay without layers
+ * @param from     out: [surface->n_patch] wall from which the layers continue;
+ *                 VG_NO_INDEX: none. On failure unspecified
+ *
+ * O(n log n) for each patch in the longest sequence of patches.
+ * VG_ERR_MEMORY. */
+vg_status vg_slides_extend(const struct vg_mesh *surface,
+                           const uint8_t *is_wall, const uint8_t *may,
+                           uint32_t *from, struct vg_error *err);
+
 /** Normal of slide patch s at point p of the surface, into the fluid: that of
  * the plane, or the mean of the triangles of the patch at p weighted by angle.
  * The mean normal of the patch if p is not on it. O(log n). */

@@ -413,7 +413,7 @@ static size_t wall_numbers(const struct vg_layer_stage *s,
   for (size_t i = 0; i < s->n_patch; i++) {
     const struct vg_patch *p = &m->patch[i];
 
-    if (s->reason[i] == VG_WALL_NOT ||
+    if (s->reason[i] == VG_WALL_NOT || s->reason[i] == VG_WALL_EXTENDED ||
         (odd && (vg_is_viscous(p) || p->bc == VG_BC_NONE)))
       continue;
     if (n++ < SHOWN_PATCHES)
@@ -446,8 +446,8 @@ static void give_conditions(const struct vg_layer_stage *s,
   for (size_t i = 0; i < s->n_patch; i++) {
     struct vg_patch *patch = &b->surface.patch[i];
 
-    if (s->reason[i] == VG_WALL_NOT || patch->bc != VG_BC_NONE ||
-        patch->bc_fun3d != VG_BC_NONE)
+    if (s->reason[i] == VG_WALL_NOT || s->reason[i] == VG_WALL_EXTENDED ||
+        patch->bc != VG_BC_NONE || patch->bc_fun3d != VG_BC_NONE)
       continue;
     patch->bc = patch->family = 4;
     patch->bc_fun3d = 4000;
@@ -505,6 +505,31 @@ static void note_choice(const struct vg_layer_stage *s, struct vg_boundary *b)
             "ratio %g is larger than layer_cap %g, so the growth is "
             "limited to layer_cap",
             ratio, cap);
+}
+
+/* Layers of walls that end in the plane of another patch continue over that
+ * patch, on which no limits apply. */
+static vg_status extend_walls(struct vg_layer_stage *s, struct vg_boundary *b,
+                              struct vg_error *err)
+{
+  const struct vg_mesh *m = &b->surface;
+  uint32_t *from = vg_alloc(s->n_patch, sizeof *from);
+  vg_status st = from ? vg_walls_extend(b, s->reason, from, err)
+                      : vg_fail_memory(err, "the patches");
+
+  for (size_t i = 0; st >= 0 && i < s->n_patch; i++) {
+    if (from[i] == VG_NO_INDEX) continue;
+    s->request[i] = s->request[from[i]];
+    s->limit[i] = VG_NO_LIMITS;
+    vg_note(b->notes,
+            "the layers of patch %d %s continue over patch %d %s, because both "
+            "lie in one plane (grow no for patch %d in the table layers ends "
+            "them at its edge)",
+            (int)m->patch[from[i]].id, m->patch[from[i]].name,
+            (int)m->patch[i].id, m->patch[i].name, (int)m->patch[i].id);
+  }
+  free(from);
+  return st;
 }
 
 static void set_options(struct vg_layer_stage *s, const struct vg_settings *set)
@@ -568,6 +593,7 @@ static vg_status plan_walls(struct vg_layer_stage *s, struct vg_boundary *b,
     return VG_OK;
   }
   VG_TRY(make_requests(s, b, h, err));
+  VG_TRY(extend_walls(s, b, err));
   note_choice(s, b);
   give_conditions(s, b);
   set_options(s, set);
@@ -609,7 +635,9 @@ static vg_status list_grows(const struct vg_layer_stage *s,
 
     if (at != SIZE_MAX)
       list[(*n)++] = (struct vg_patch_grows){ b->row[i].id,
-                                              s->reason[at] != VG_WALL_NOT };
+                                              s->reason[at] != VG_WALL_NOT,
+                                              s->reason[at] ==
+                                                VG_WALL_EXTENDED };
   }
   *out = list;
   return VG_OK;

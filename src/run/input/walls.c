@@ -11,6 +11,7 @@
 #include "core/surface/surface_swap.h"
 #include "io/stream/stream.h"
 #include "io/vgrid/mapbc.h"
+#include "layers/slide/slide.h"
 #include "run/input/shape_parts.h"
 #include "run/settings/patch_names.h"
 
@@ -19,10 +20,10 @@
 
 const char *vg_wall_reason_name(enum vg_wall_reason reason)
 {
-  static const char *const name[] = { "no", "setting", "meshing class",
-                                      "condition", "body" };
+  static const char *const name[] = { "no",        "setting", "meshing class",
+                                      "condition", "body",    "extended" };
 
-  assert(reason <= VG_WALL_BODY);
+  assert(reason <= VG_WALL_EXTENDED);
   return name[reason];
 }
 
@@ -272,6 +273,29 @@ vg_status vg_walls_find(const struct vg_boundary *b,
     st = no_walls(b, err);
 done:
   free(mark_of);
+  return st;
+}
+
+vg_status vg_walls_extend(const struct vg_boundary *b,
+                          enum vg_wall_reason *reason, uint32_t *from,
+                          struct vg_error *err)
+{
+  const struct vg_mesh *m = &b->surface;
+  uint8_t *is_wall = vg_calloc(2 * m->n_patch, 1);
+  uint8_t *may = is_wall ? is_wall + m->n_patch : NULL;
+  vg_status st;
+
+  if (!is_wall) return vg_fail_memory(err, "the patches");
+  for (size_t i = 0; i < m->n_patch; i++) {
+    is_wall[i] = reason[i] != VG_WALL_NOT;
+    may[i] = !is_wall[i] && i < n_own(b) &&
+             vg_settings_layer_row(&b->read->settings, m->patch[i].id).grow !=
+               VG_ANSWER_NO;
+  }
+  st = vg_slides_extend(m, is_wall, may, from, err);
+  for (size_t i = 0; st >= 0 && i < m->n_patch; i++)
+    if (from[i] != VG_NO_INDEX) reason[i] = VG_WALL_EXTENDED;
+  free(is_wall);
   return st;
 }
 

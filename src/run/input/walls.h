@@ -13,8 +13,10 @@ enum vg_wall_reason {
   VG_WALL_SETTING,   /* The layers table or the list of walls. */
   VG_WALL_CLASS,     /* Meshing class 2 of the .d3m. */
   VG_WALL_CONDITION, /* A viscous boundary condition. */
-  VG_WALL_BODY       /* No patch has a condition: bodies, and the sides of
+  VG_WALL_BODY,      /* No patch has a condition: bodies, and the sides of
                         ducts. */
+  VG_WALL_EXTENDED   /* No wall, but layers of a wall in the same plane
+                        continue over it. */
 };
 
 /** Name of the reason. Static string. */
@@ -37,6 +39,18 @@ int vg_is_viscous(const struct vg_patch *p);
 vg_status vg_walls_find(const struct vg_boundary *b,
                         enum vg_wall_reason *reason, size_t *n_wall,
                         struct vg_error *err);
+
+/** Finds patches without layers in the plane of a wall, over which the layers
+ * of the wall continue (vg_slides_extend). Patches with `grow` no in the layers
+ * table and patches that this program added stay without layers.
+ *
+ * @param reason  in, out: [b->surface.n_patch] VG_WALL_EXTENDED for these
+ *                patches
+ * @param from    out: [b->surface.n_patch] the wall, or VG_NO_INDEX
+ */
+vg_status vg_walls_extend(const struct vg_boundary *b,
+                          enum vg_wall_reason *reason, uint32_t *from,
+                          struct vg_error *err);
 
 /** Swaps and collapses edges of the closed surface as the settings request.
  * `auto` does so if a wall has slivers, on which layers would invert, and

@@ -62,8 +62,25 @@ static vg_status replace_patches(struct vg_settings *s,
   return st;
 }
 
+/* Adds a patch to the list slip. */
+static vg_status add_slip(struct vg_layer_settings *l, int32_t id,
+                          struct vg_error *err)
+{
+  size_t at = strlen(l->slip);
+  int n = snprintf(l->slip + at, sizeof l->slip - at, at ? ",%d" : "%d",
+                   (int)id);
+
+  if (n > 0 && (size_t)n < sizeof l->slip - at) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "the layers of walls continue over more than %zu patches; "
+                 "join some of the patches, or set grow no for them in the "
+                 "table layers",
+                 at / 2);
+}
+
 /* Replace y+ by heights, and lists and conditions by a row for each patch;
- * these lead to the same layers. */
+ * these lead to the same layers. Patches over which layers continue are in the
+ * list slip, so that a second run finds them again. */
 static vg_status resolve_layers(const struct vg_settings *read,
                                 const struct vg_decisions *d,
                                 struct vg_settings *s, struct vg_error *err)
@@ -76,9 +93,14 @@ static vg_status resolve_layers(const struct vg_settings *read,
     return VG_OK;
   }
   s->n_layer = 0;
+  *l->walls = *l->slip = 0;
   for (size_t i = 0; i < d->n_grows && st >= 0; i++) {
     struct vg_layer_row row = vg_settings_layer_row(read, d->grows[i].id);
 
+    if (d->grows[i].is_extended) {
+      st = add_slip(l, d->grows[i].id, err);
+      continue;
+    }
     row.grow = d->grows[i].grows ? VG_ANSWER_YES : VG_ANSWER_NO;
     st = vg_settings_add(s, VG_TABLE_LAYERS, &row, err);
   }
@@ -86,7 +108,6 @@ static vg_status resolve_layers(const struct vg_settings *read,
   l->first = vg_settings_first(l, l->first, l->y_plus);
   l->y_plus = 0;
   l->cap = isnan(l->cap) ? VG_LAYER_CAP : l->cap;
-  *l->walls = *l->slip = 0;
   return st;
 }
 

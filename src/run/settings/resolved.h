@@ -27,6 +27,8 @@ struct vg_resolved {
 struct vg_patch_grows {
   int32_t id;
   int grows;
+  int
+    is_extended; /* 1: it is no wall, but layers of a wall continue over it. */
 };
 
 /** Decisions of a run. Arrays are borrowed. */
