@@ -289,13 +289,13 @@ static void every_slice_is_shown(void **state)
   (void)state;
   assert_non_null(n);
   cut_make(&c, &m, 6, 0, NULL, 5);
-  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, count_cells, n,
-                                        &r, NULL, &err),
+  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, NULL,
+                                        count_cells, n, &r, NULL, &err),
                    VG_OK);
   assert_true(r.is_valid);
   for (size_t i = 0; i < m.n_tet; i++) assert_int_equal(n[i], 1);
-  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, count_cells, n,
-                                        &r, NULL, &err),
+  assert_int_equal(vg_slices_judge_with(NULL, &c.s, 0, NULL, 2, NULL,
+                                        count_cells, n, &r, NULL, &err),
                    VG_ERR_IO);
   assert_string_equal(err.text, "no more room");
   cut_release(&c);

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "base/parallel.h"
+#include "core/judge/flat_cells.h"
 #include "core/judge/quality_parts.h"
 #include "fill_support.h"
 #include "join_support.h"
@@ -366,6 +367,46 @@ static void add_tops(const struct vg_layer_slices *keep, size_t n_face,
   free(ratio);
 }
 
+/* --- flat cells ---------------------------------------------------------- */
+
+/* The points of all cells outside the layers have the kinds that follow from
+ * the ids of the front. */
+static void check_kinds(const struct model *m, const struct vg_mesh *whole,
+                        const struct vg_join_info *info,
+                        struct vg_layer_slices *keep)
+{
+  static const enum vg_point_kind inner[4] = { VG_POINT_FIELD, VG_POINT_FIELD,
+                                               VG_POINT_FIELD, VG_POINT_FIELD };
+  const struct vg_front *f = &m->layers.front;
+  uint8_t *is_wall = vg_calloc(f->n_point, 1);
+  struct vg_flat *flat = NULL;
+
+  for (size_t i = 0; i < 3 * f->n_face; i++)
+    if (f->face_id[i / 3] != VG_NO_INDEX) is_wall[f->face[i / 3][i % 3]] = 1;
+  assert_int_equal(vg_layer_slices_flat(keep, &flat, NULL), VG_OK);
+  for (size_t i = 0; i < m->field.n_tet; i++) {
+    const uint32_t *v = m->field.tet[i];
+    struct vg_flat_class c = vg_flat_classify(flat,
+                                              whole->tet[info->n_layer_tet + i],
+                                              inner);
+
+    for (int k = 0; k < 4; k++) {
+      enum vg_point_kind want = VG_POINT_FIELD;
+
+      if (v[k] < f->n_point)
+        want = f->id[v[k]] == VG_LAYER_NEW ? VG_POINT_SLIDE
+             : f->id[v[k]] >> 32           ? VG_POINT_TOP
+             : is_wall[v[k]]               ? VG_POINT_WALL
+                                           : VG_POINT_SURFACE;
+      assert_int_equal(c.points.kind[k], want);
+      assert_true((c.points.patch[k] == VG_NO_PATCH) ==
+                  (want == VG_POINT_FIELD));
+    }
+  }
+  vg_flat_free(flat);
+  free(is_wall);
+}
+
 /* An isotropic region in n_piece pieces on `size` ranks with several threads,
  * compared with the whole mesh. Returns the number of slices of the layers. */
 static size_t check_split(const struct model *m, const struct vg_mesh *whole,
@@ -403,6 +444,7 @@ static size_t check_split(const struct model *m, const struct vg_mesh *whole,
     for (size_t i = 0; i < s.n_slice; i++) assert_int_equal(c.wrong[i], 0);
     n_slice += s.n_slice - field.n_slice;
     add_tops(keep, n_face, top);
+    check_kinds(m, whole, info, keep);
     free(c.wrong);
     vg_layer_slices_close(keep);
   }

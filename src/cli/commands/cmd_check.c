@@ -94,7 +94,7 @@ static vg_status check_mesh(const struct arguments *a,
       json_pack("{s:o s:b s:I s:o s:o s:o}", "file", vg_text_json(a->one.file),
                 "ok", r.is_valid, "cells_turned", (json_int_t)turned->cell,
                 "size", vg_report_size_json(m), "patches",
-                vg_report_patches_json(m), "mesh", vg_report_mesh_json(&r)));
+                vg_report_patches_json(m), "mesh", vg_report_mesh_json(&r, m)));
   } else {
     printf("%s: volume mesh\n", a->one.file);
     vg_report_size_text(stdout, m);

@@ -245,14 +245,14 @@ static json_t *report_json(const struct run *r, int ok,
     json_object_set_new(o, "sources",
                         vg_effects_json(&r->mesh.effects, &front,
                                         &p->resolved.settings));
-    json_object_set_new(o, "mesh", vg_report_mesh_json(&r->mesh.judge));
+    json_object_set_new(o, "mesh", vg_report_mesh_json(&r->mesh.judge, m));
     json_object_set_new(o, "fill",
                         vg_report_fill_json(&r->mesh.partition.fill,
                                             r->mesh.n_field_cell));
     json_object_set_new(o, "partition", vg_report_partition_json(&r->mesh));
     if (r->layers.is_on) {
       json_object_set_new(o, "field",
-                          vg_report_mesh_json(&r->mesh.field_judge));
+                          vg_report_mesh_json(&r->mesh.field_judge, m));
       json_object_set_new(o, "layers", vg_report_layers_json(&r->layers, m));
     }
     if (r->mesh.parts)

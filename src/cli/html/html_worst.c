@@ -99,6 +99,62 @@ static void drawing(struct page *p, const struct vg_around *a, size_t k,
                  a->n - 1);
 }
 
+/* The kinds of the points of a flat cell: "3 top 'wing', field". Equal points
+ * are listed once. */
+static void put_points(struct page *p, const struct vg_flat_points *points)
+{
+  const struct vg_mesh *m = &p->h->problem->boundary.surface;
+  unsigned done = 0;
+
+  for (int i = 0; i < 4 && points->kind[0] != VG_POINT_UNKNOWN; i++) {
+    int n = 0;
+
+    if (done >> i & 1) continue;
+    for (int k = i; k < 4; k++)
+      if (points->kind[k] == points->kind[i] &&
+          points->patch[k] == points->patch[i]) {
+        n++;
+        done |= 1u << k;
+      }
+    vg_page_format(p, "%s%d %s", i ? ", " : "", n,
+                   vg_point_kind_name((enum vg_point_kind)points->kind[i]));
+    if (points->patch[i] >= m->n_patch) continue;
+    vg_page_format(p, " %d ", (int)m->patch[points->patch[i]].id);
+    vg_page_text(p, m->patch[points->patch[i]].name);
+  }
+}
+
+/* Flat cells by the kinds of their points. */
+static void flat_cells(struct page *p, const struct vg_mesh_report *m)
+{
+  size_t n = 0;
+
+  for (int c = 0; c < VG_FLAT_CAUSES; c++) n += m->flat[c].n;
+  if (!m->has_flat || !n) return;
+  vg_page_format(
+    p,
+    "<p>Cells with an angle below %g&deg; by the kinds of their "
+    "points:</p>\n<div class=\"wide\"><table>\n<thead><tr>"
+    "<th scope=\"col\">Points</th><th scope=\"col\">Cells</th>"
+    "<th scope=\"col\">At interfaces</th><th scope=\"col\">"
+    "Spanning two parts of the boundary</th></tr></thead>\n<tbody>",
+    VG_FLAT_LIMIT);
+  for (int c = 0; c < VG_FLAT_CAUSES; c++) {
+    const struct vg_flat_count *f = &m->flat[c];
+
+    if (!f->n) continue;
+    vg_page_format(p, "<tr><th scope=\"row\">%s</th><td>",
+                   vg_flat_cause_name((enum vg_flat_cause)c));
+    vg_page_count(p, f->n);
+    vg_page_markup(p, "</td><td>");
+    vg_page_count(p, f->at_interface);
+    vg_page_markup(p, "</td><td>");
+    vg_page_count(p, f->spanning);
+    vg_page_markup(p, "</td></tr>\n");
+  }
+  vg_page_markup(p, "</tbody></table></div>\n");
+}
+
 void vg_html_worst(struct page *p)
 {
   const struct vg_run *r = p->h->run;
@@ -111,12 +167,12 @@ void vg_html_worst(struct page *p)
   for (size_t k = 0; k < VG_RUN_WORST; k++)
     if (r->pictures.worst[k].n)
       drawing(p, &r->pictures.worst[k], k, &m->worst[k]);
-  vg_page_markup(
-    p,
-    "</div>\n<div class=\"wide\"><table>\n<thead><tr>"
-    "<th scope=\"col\"></th><th scope=\"col\">Cell</th>"
-    "<th scope=\"col\">Smallest angle</th><th scope=\"col\">x</th>"
-    "<th scope=\"col\">y</th><th scope=\"col\">z</th></tr></thead>\n<tbody>");
+  vg_page_markup(p,
+                 "</div>\n<div class=\"wide\"><table>\n<thead><tr>"
+                 "<th scope=\"col\"></th><th scope=\"col\">Cell</th>"
+                 "<th scope=\"col\">Smallest angle</th><th scope=\"col\">x</th>"
+                 "<th scope=\"col\">y</th><th scope=\"col\">z</th>"
+                 "<th scope=\"col\">Points</th></tr></thead>\n<tbody>");
   for (size_t k = 0; k < m->n_worst; k++) {
     vg_page_format(p, "<tr><th scope=\"row\">%zu</th><td>", k + 1);
     vg_page_count(p, m->worst[k].cell + 1);
@@ -128,8 +184,11 @@ void vg_html_worst(struct page *p)
       vg_page_real(p, m->worst[k].at[i], 6);
       vg_page_markup(p, "</td>");
     }
-    vg_page_markup(p, "</tr>\n");
+    vg_page_markup(p, "<td>");
+    put_points(p, &m->worst[k].points);
+    vg_page_markup(p, "</td></tr>\n");
   }
   vg_page_markup(p, "</tbody></table></div>\n");
+  flat_cells(p, m);
   vg_page_end_section(p);
 }

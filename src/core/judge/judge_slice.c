@@ -183,12 +183,17 @@ static vg_status keep_edges(struct work *k, struct vg_error *err)
 static vg_status judge_cells(struct work *k, struct vg_error *err)
 {
   struct vg_slices_judgement *j = k->j;
+  const struct vg_slice *s = k->slice;
+  const struct vg_flat_part part = { j->flat, s->id, s->point_at, s->n_own,
+                                     s->kind > 1 };
+  int classify = j->flat && (k->is_field || j->edges_of == VG_JUDGED_WHOLE);
   float *volume = vg_alloc(k->n_cell, sizeof *volume);
   size_t n_component = 0;
   vg_status st = VG_OK;
 
   if (!volume) return vg_fail_memory(err, "the volumes of the cells");
-  vg_judge_shape(&k->view, k->slice->cell_at[VG_SLICE_TET], volume, k->f);
+  vg_judge_shape(&k->view, s->cell_at[VG_SLICE_TET], classify ? &part : NULL,
+                 volume, k->f);
   VG_TRY(
     vg_judge_faces(&k->view, volume, k->f, &k->unpaired, &n_component, err));
   j->n_component[k->at] = (uint32_t)n_component;

@@ -380,7 +380,8 @@ static void report_all(struct vg_slices_judgement *j, const size_t *n_component,
 {
   for (int q = 0; q < j->n_judged; q++)
     vg_stats_report(j->worker[0].figures[q], n_component[q],
-                    j->sizing && j->edges_of == q, &r[q]);
+                    j->sizing && j->edges_of == q, j->flat && j->edges_of == q,
+                    &r[q]);
   r[VG_JUDGED_WHOLE].enclosed = enclosed;
   vg_report_conclude(&r[VG_JUDGED_WHOLE]);
   if (j->n_judged == 1) return;
@@ -506,7 +507,8 @@ static vg_status judge_again(struct vg_slices_judgement *j,
                                        .sizing = j->sizing,
                                        .threads = j->threads,
                                        .n_judged = j->n_judged,
-                                       .edges_of = j->edges_of };
+                                       .edges_of = j->edges_of,
+                                       .flat = j->flat };
   vg_status st;
 
   VG_TRY(gather_suspects(j, &again.n_suspect, &again.suspect, err));
@@ -525,14 +527,14 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           struct vg_mesh_report *field, struct vg_error *err)
 {
   return vg_slices_judge_with(comm, s, front_faces, sizing, threads, NULL, NULL,
-                              whole, field, err);
+                              NULL, whole, field, err);
 }
 
 vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
                                uint64_t front_faces,
                                const struct vg_sizing *sizing, int threads,
-                               vg_slice_body body, void *context,
-                               struct vg_mesh_report *whole,
+                               const struct vg_flat *flat, vg_slice_body body,
+                               void *context, struct vg_mesh_report *whole,
                                struct vg_mesh_report *field,
                                struct vg_error *err)
 {
@@ -542,6 +544,7 @@ vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
                                    .s = s,
                                    .sizing = sizing,
                                    .threads = threads,
+                                   .flat = flat,
                                    .body = body,
                                    .context = context,
                                    .n_judged = field ? VG_JUDGED : 1,

@@ -43,7 +43,12 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           int threads, struct vg_mesh_report *whole,
                           struct vg_mesh_report *field, struct vg_error *err);
 
-/** As vg_slices_judge, with an additional call of body (may be NULL) for each
+/** As vg_slices_judge, with the causes of flat cells if `flat` is not NULL: in
+ * the report of the field if it is requested, else in that of the whole mesh.
+ * Points owned by other slices, and all points of separators and repairs, count
+ * as interface points unless they are on the boundary of `flat`.
+ *
+ * There is an additional call of body (may be NULL) for each
  * slice of this rank while the slice is in memory, so that a valid mesh needs
  * to provide each slice only once. body is called as in vg_slices_each; slices
  * with bad indices or coordinates are skipped. A failure of body fails the
@@ -51,8 +56,8 @@ vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
 vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
                                uint64_t front_faces,
                                const struct vg_sizing *sizing, int threads,
-                               vg_slice_body body, void *context,
-                               struct vg_mesh_report *whole,
+                               const struct vg_flat *flat, vg_slice_body body,
+                               void *context, struct vg_mesh_report *whole,
                                struct vg_mesh_report *field,
                                struct vg_error *err);
 

@@ -71,11 +71,12 @@ struct vg_slices_judgement {
   struct vg_comm *comm;
   const struct vg_slices *s;
   const struct vg_sizing *sizing;
-  int threads, n_judged; /* n_judged 1: no report of the field */
-  int edges_of;          /* VG_JUDGED_...: whole mesh or field for the edge
-                            statistics */
-  vg_slice_body body;    /* called for valid slices; may be NULL */
-  void *context;         /* argument of body */
+  int threads, n_judged;      /* n_judged 1: no report of the field */
+  int edges_of;               /* VG_JUDGED_...: whole mesh or field for the edge
+                                 statistics and flat cells */
+  const struct vg_flat *flat; /* NULL: do not classify flat cells */
+  vg_slice_body body;         /* called for valid slices; may be NULL */
+  void *context;              /* argument of body */
   int n_worker;
   struct vg_judge_worker *worker;
   size_t n_word;             /* number of words with one bit per point of the

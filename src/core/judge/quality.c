@@ -169,7 +169,7 @@ static vg_status judge_all(const struct vg_mesh *m,
     st = vg_fail_memory(err, "the volumes of the cells");
     goto done;
   }
-  vg_judge_shape(m, 0, volume, f);
+  vg_judge_shape(m, 0, NULL, volume, f);
   VG_TRY(vg_judge_faces(m, volume, f, NULL, n_component, err));
   free(volume);
   volume = NULL;
@@ -199,7 +199,7 @@ vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
   /* With bad indices or coordinates no other figure is meaningful. */
   sound = !f->n.bad_index && !f->n.not_finite && f->n.n_cell;
   if (sound) VG_TRY(judge_all(m, sizing, f, &n_component, err));
-  vg_stats_report(f, n_component, sound && sizing, report);
+  vg_stats_report(f, n_component, sound && sizing, 0, report);
   if (!sound) goto done;
   vg_mesh_bounds(m, lo, hi);
   report->enclosed = vg_enclosed_volume(m, lo, hi);

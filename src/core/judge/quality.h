@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "core/judge/flat_cells.h"
 #include "core/mesh/mesh.h"
 #include "core/sizing/sizing.h"
 
@@ -14,8 +15,15 @@
 #define VG_WORST 10
 
 struct vg_worst_cell {
-  size_t cell;         /* 0-based: tets, pyramids, prisms, hexes */
-  double value, at[3]; /* minimum dihedral in degrees, centroid */
+  size_t cell;                  /* 0-based: tets, pyramids, prisms, hexes */
+  double value, at[3];          /* minimum dihedral in degrees, centroid */
+  struct vg_flat_points points; /* of a flat cell, if has_flat */
+};
+
+/* Numbers of flat cells (core/judge/flat_cells.h) of one cause. */
+struct vg_flat_count {
+  size_t n;
+  size_t at_interface, spanning; /* of these: as in struct vg_flat_class */
 };
 
 struct vg_mesh_report {
@@ -45,6 +53,9 @@ struct vg_mesh_report {
   size_t hist_radius_ratio[VG_HIST_UNIT];
   struct vg_worst_cell worst[VG_WORST];
   size_t n_worst;
+  /* Flat cells by cause (if has_flat). */
+  int has_flat;
+  struct vg_flat_count flat[VG_FLAT_CAUSES];
   /* Interior edges compared with the sizing field (if has_sizing). */
   int has_sizing;
   double edge_mean;               /* mean of length / target */

@@ -184,14 +184,24 @@ static void report_edges(const struct vg_counts *n, struct vg_mesh_report *r)
   r->edge_within = 100 * (double)n->edge_within / (double)n->n_edge;
 }
 
+static void report_flat(const struct vg_counts *n, struct vg_mesh_report *r)
+{
+  r->has_flat = 1;
+  for (int c = 0; c < VG_FLAT_CAUSES; c++)
+    r->flat[c] = (struct vg_flat_count){ (size_t)n->flat[c],
+                                         (size_t)n->flat_interface[c],
+                                         (size_t)n->flat_spanning[c] };
+}
+
 void vg_stats_report(const struct vg_stats *f, size_t n_component,
-                     int has_sizing, struct vg_mesh_report *r)
+                     int has_sizing, int has_flat, struct vg_mesh_report *r)
 {
   memset(r, 0, sizeof *r);
   report_validity(&f->n, r);
   report_shape(f, r);
   report_ratios(&f->n, r);
   if (has_sizing) report_edges(&f->n, r);
+  if (has_flat) report_flat(&f->n, r);
   r->n_component = n_component;
 }
 

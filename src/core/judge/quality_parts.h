@@ -34,6 +34,8 @@ struct vg_counts {
   uint64_t angle_min[VG_HIST_ANGLE], angle_max[VG_HIST_ANGLE];
   uint64_t radius_ratio[VG_HIST_UNIT], edge[VG_HIST_UNIT];
   uint64_t fine[VG_N_FINE], ratio[VG_N_RATIO];
+  uint64_t flat[VG_FLAT_CAUSES], flat_interface[VG_FLAT_CAUSES];
+  uint64_t flat_spanning[VG_FLAT_CAUSES];
   struct vg_exact volume, sum_radius, sum_mean, sum_edge, sum_length;
 };
 
@@ -65,9 +67,10 @@ void vg_stats_ratio(struct vg_stats *f, float v, float w);
 void vg_stats_edge(struct vg_stats *f, double ratio);
 
 /** Fill the report, except for `enclosed` and the members that depend on it.
- * has_sizing: include the figures of edges. */
+ * has_sizing: include the figures of edges; has_flat:
+ * include the causes of flat cells. */
 void vg_stats_report(const struct vg_stats *f, size_t n_component,
-                     int has_sizing, struct vg_mesh_report *r);
+                     int has_sizing, int has_flat, struct vg_mesh_report *r);
 
 /** Compute the volume error from r->volume and r->enclosed, and whether the
  * mesh is valid. */
@@ -106,12 +109,23 @@ void vg_mark_used(const struct vg_mesh *m, uint8_t *used);
 double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
                           const double hi[3]);
 
+/** The points of a part of a mesh, for the classification of flat cells. */
+struct vg_flat_part {
+  const struct vg_flat *flat;
+  const uint32_t *id;     /* point of the mesh by point of the part */
+  uint64_t own_at, n_own; /* points of the mesh that belong to the part */
+  int is_interface;       /* 1: all points that are not on the boundary count
+                             as interface points; 0: those of other parts */
+};
+
 /** Measure signs and sums of volumes, angles, ratios, and the worst cells.
  *
  * @param first   number of the first tetrahedron, for the list of the worst
  *                cells
+ * @param part    NULL: do not classify flat cells
  * @param volume  out: [n_cell], signed */
-void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
+void vg_judge_shape(const struct vg_mesh *m, size_t first,
+                    const struct vg_flat_part *part, float *volume,
                     struct vg_stats *f);
 
 /** Faces of a part of a mesh that have no neighbour in it, or too many. */

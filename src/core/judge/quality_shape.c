@@ -222,11 +222,34 @@ static void count_ratios(struct vg_stats *f, size_t n, const double *ratio)
   }
 }
 
+/* Classifies and counts a flat cell. */
+static void count_flat(struct vg_stats *f, const struct vg_flat_part *part,
+                       const uint32_t node[4], struct vg_flat_points *points)
+{
+  uint32_t id[4];
+  enum vg_point_kind inner[4];
+  struct vg_flat_class c;
+
+  for (int k = 0; k < 4; k++) {
+    id[k] = part->id[node[k]];
+    inner[k] = part->is_interface || id[k] - part->own_at >= part->n_own
+               ? VG_POINT_INTERFACE
+               : VG_POINT_FIELD;
+  }
+  c = vg_flat_classify(part->flat, id, inner);
+  f->n.flat[c.cause]++;
+  f->n.flat_interface[c.cause] += (uint64_t)c.at_interface;
+  f->n.flat_spanning[c.cause] += (uint64_t)c.is_spanning;
+  *points = c.points;
+}
+
 static void note_worst(struct vg_stats *f, const struct vg_mesh *m, size_t i,
-                       size_t cell, double angle)
+                       size_t cell, const struct vg_flat_part *part,
+                       double angle)
 {
   struct vg_worst_cell w = { .cell = cell, .value = angle };
 
+  if (part && angle < VG_FLAT_LIMIT) count_flat(f, part, m->tet[i], &w.points);
   if (f->n_worst == VG_WORST && angle > f->worst[VG_WORST - 1].value) return;
   for (int k = 0; k < 3; k++)
     for (int j = 0; j < 4; j++) w.at[k] += m->point[m->tet[i][j]][k] / 4;
@@ -270,7 +293,8 @@ static void measure_volumes(const struct vg_mesh *m, size_t first, size_t n,
 
 /* Measure n tetrahedra of m from `first` on. cell: number of the first one. */
 static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
-                        size_t cell, float *volume, struct vg_stats *f)
+                        size_t cell, const struct vg_flat_part *part,
+                        float *volume, struct vg_stats *f)
 {
   struct batch b;
 
@@ -283,7 +307,7 @@ static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
   count_angles(f, n, b.least, b.most);
   count_ratios(f, n, b.radius_ratio);
   for (size_t i = 0; i < n; i++)
-    note_worst(f, m, first + i, cell + i, b.least[i]);
+    note_worst(f, m, first + i, cell + i, part, b.least[i]);
   vg_exact_add_all(&f->n.volume, n, b.volume);
   vg_exact_add_all(&f->n.sum_radius, n, b.radius_ratio);
   vg_exact_add_all(&f->n.sum_mean, n, b.mean_ratio);
@@ -369,13 +393,14 @@ static void judge_mixed(const struct vg_mesh *m, int kind, float *volume,
   }
 }
 
-void vg_judge_shape(const struct vg_mesh *m, size_t first, float *volume,
+void vg_judge_shape(const struct vg_mesh *m, size_t first,
+                    const struct vg_flat_part *part, float *volume,
                     struct vg_stats *f)
 {
   assert(volume || !(m->n_tet + m->n_pyr + m->n_pri + m->n_hex));
   for (size_t i = 0, n; i < m->n_tet; i += n) {
     n = m->n_tet - i < BATCH ? m->n_tet - i : BATCH;
-    judge_batch(m, i, n, first + i, volume, f);
+    judge_batch(m, i, n, first + i, part, volume, f);
   }
   for (int kind = VG_CELL_PYR; kind < VG_CELL_KINDS; kind++)
     judge_mixed(m, kind, volume, f);

@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "core/judge/flat_cells.h"
 #include "layers/expand/slices_parts.h"
 
 /* Least number of cells in a slice, and number of points in a slice of boundary
@@ -25,6 +26,7 @@ struct vg_layer_slices {
   struct vg_join_plan plan;
   const struct vg_slices *field;
   double (*point)[3]; /* Boundary points. */
+  uint8_t *kind;      /* [front n_point] enum vg_point_kind, for flat cells. */
   size_t rank, size;
   size_t n_part; /* Number of slices of boundary points. */
   size_t n_run, room_run;
@@ -320,6 +322,35 @@ vg_status vg_layer_slices_tops(struct vg_comm *comm,
   return vg_layer_tops(comm, &k->plan, k->field, ratio, err);
 }
 
+vg_status vg_layer_slices_flat(struct vg_layer_slices *k, struct vg_flat **out,
+                               struct vg_error *err)
+{
+  assert(k && out);
+
+  const struct vg_front *f = k->plan.front;
+  struct vg_flat_boundary b = { .n_point = f->n_point,
+                                .n_face = f->n_face,
+                                .id = k->plan.id,
+                                .face = (const uint32_t(*)[3])f->face,
+                                .patch = f->patch,
+                                .top = f->face_id };
+
+  free(k->kind);
+  b.kind = k->kind = vg_alloc(f->n_point, sizeof *k->kind);
+  if (!k->kind) return vg_fail_memory(err, "the causes of flat cells");
+  for (size_t i = 0; i < f->n_point; i++)
+    k->kind[i] = f->id[i] == VG_LAYER_NEW                    ? VG_POINT_SLIDE
+               : vg_layer_column_of(f->id[i]) != VG_NO_INDEX ? VG_POINT_TOP
+                                                             : VG_POINT_SURFACE;
+  for (size_t i = 0; i < 3 * f->n_face; i++) {
+    uint32_t p = f->face[i / 3][i % 3];
+
+    if (f->face_id[i / 3] != VG_NO_INDEX && k->kind[p] == VG_POINT_SURFACE)
+      k->kind[p] = VG_POINT_WALL;
+  }
+  return vg_flat_new(&b, out, err);
+}
+
 const uint32_t *vg_layer_slices_roots(const struct vg_layer_slices *keep)
 {
   return keep->plan.root;
@@ -330,6 +361,7 @@ void vg_layer_slices_close(struct vg_layer_slices *k)
   if (!k) return;
   vg_join_plan_close(&k->plan);
   free(k->point);
+  free(k->kind);
   free(k->run);
   free(k);
 }

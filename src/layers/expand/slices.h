@@ -59,6 +59,14 @@ vg_status vg_layer_slices_tops(struct vg_comm *comm,
                                const struct vg_layer_slices *keep,
                                double *ratio, struct vg_error *err);
 
+/** Prepares the classification of flat cells (core/judge/flat_cells.h) above
+ * the layers. *out is freed by vg_flat_free before *keep is closed.
+ * VG_ERR_MEMORY.
+ */
+struct vg_flat;
+vg_status vg_layer_slices_flat(struct vg_layer_slices *keep,
+                               struct vg_flat **out, struct vg_error *err);
+
 /** [surface n_point] point of the mesh for each point of the surface;
  * VG_NO_INDEX: the point no longer exists because its slide patch was
  * remeshed. On every rank, valid until closed. */

@@ -56,14 +56,17 @@ void vg_report_distances_text(FILE *to, const char *file,
 json_t *vg_report_distances_json(const char *file,
                                  const struct vg_remesh_distance d[2]);
 
-/** Validity and quality of a mesh; if `full`, also histograms and the worst
- * cells. */
+/** Validity and quality of a mesh, and the causes of flat cells if there are
+ * any and they are classified; if `full`, also histograms and the worst cells.
+ */
 void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full);
 
 /** Validity and volume ratios of a mesh with layers: angles say nothing about
  * the quality of its flat layer cells. */
 void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r);
-json_t *vg_report_mesh_json(const struct vg_mesh_report *r);
+/** @param patches  mesh with the patches to which flat cells refer */
+json_t *vg_report_mesh_json(const struct vg_mesh_report *r,
+                            const struct vg_mesh *patches);
 
 /** Describe why a mesh is invalid: "3 cells not positive, ...". */
 void vg_report_faults(const struct vg_mesh_report *r, char *text, size_t size);

@@ -154,10 +154,35 @@ void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r)
           r->volume_ratio[0], r->volume_ratio[1], r->volume_ratio[2]);
 }
 
+static void flat_text(FILE *to, const struct vg_mesh_report *r)
+{
+  size_t n = 0;
+  char count[32], a[32], b[32];
+
+  for (int c = 0; c < VG_FLAT_CAUSES; c++) n += r->flat[c].n;
+  if (!r->has_flat || !n) return;
+  fprintf(
+    to,
+    "  cells with an angle below %g degrees by the kinds of their points: "
+    "%s\n  %-36s %13s %13s %13s\n",
+    VG_FLAT_LIMIT, vg_text_count(n, count), "", "cells", "at interfaces",
+    "spanning");
+  for (int c = 0; c < VG_FLAT_CAUSES; c++) {
+    const struct vg_flat_count *f = &r->flat[c];
+
+    if (f->n)
+      fprintf(to, "    %-34s %13s %13s %13s\n",
+              vg_flat_cause_name((enum vg_flat_cause)c),
+              vg_text_count(f->n, count), vg_text_count(f->at_interface, a),
+              vg_text_count(f->spanning, b));
+  }
+}
+
 void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
 {
   validity_text(to, r);
   quality_text(to, r);
+  flat_text(to, r);
   if (!full) return;
   bars(to, "Smallest dihedral angle of each cell (degrees)", r->hist_angle_min,
        VG_HIST_ANGLE, 5, 0);
@@ -212,6 +237,68 @@ static json_t *worst_json(const struct vg_mesh_report *r)
   return list;
 }
 
+static json_t *points_json(const struct vg_flat_points *p,
+                           const struct vg_mesh *patches)
+{
+  json_t *list = json_array();
+
+  for (int k = 0; k < 4; k++) {
+    json_t *one = json_object();
+    const char *kind = vg_point_kind_name((enum vg_point_kind)p->kind[k]);
+
+    json_object_set_new(one, "kind", json_string(kind));
+    if (p->patch[k] < patches->n_patch) {
+      const struct vg_patch *patch = &patches->patch[p->patch[k]];
+
+      json_object_set_new(one, "patch", json_integer(patch->id));
+      json_object_set_new(one, "name", vg_text_json(patch->name));
+    }
+    json_array_append_new(list, one);
+  }
+  return list;
+}
+
+static json_t *flat_worst_json(const struct vg_mesh_report *r,
+                               const struct vg_mesh *patches)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < r->n_worst; i++) {
+    const struct vg_worst_cell *w = &r->worst[i];
+    json_t *one;
+
+    if (w->points.kind[0] == VG_POINT_UNKNOWN) continue;
+    one = json_object();
+    json_object_set_new(one, "angle", real(w->value));
+    json_object_set_new(one, "at", reals(w->at, 3));
+    json_object_set_new(one, "points", points_json(&w->points, patches));
+    json_array_append_new(list, one);
+  }
+  return list;
+}
+
+static json_t *flat_json(const struct vg_mesh_report *r,
+                         const struct vg_mesh *patches)
+{
+  json_t *o = json_object(), *causes = json_object();
+  json_int_t n = 0;
+
+  for (int c = 0; c < VG_FLAT_CAUSES; c++) {
+    const struct vg_flat_count *f = &r->flat[c];
+
+    n += (json_int_t)f->n;
+    json_object_set_new(causes, vg_flat_cause_key((enum vg_flat_cause)c),
+                        json_pack("{s:I s:I s:I}", "cells", (json_int_t)f->n,
+                                  "at_interfaces", (json_int_t)f->at_interface,
+                                  "spanning", (json_int_t)f->spanning));
+  }
+  json_object_set_new(o, "limit", real(VG_FLAT_LIMIT));
+  json_object_set_new(o, "cells", json_integer(n));
+  json_object_set_new(o, "by_cause", causes);
+  json_object_set_new(o, "worst", flat_worst_json(r, patches));
+  return o;
+}
+
 static json_t *validity_json(const struct vg_mesh_report *r)
 {
   json_t *o = json_object();
@@ -238,7 +325,8 @@ static json_t *edges_json(const struct vg_mesh_report *r)
   return o;
 }
 
-json_t *vg_report_mesh_json(const struct vg_mesh_report *r)
+json_t *vg_report_mesh_json(const struct vg_mesh_report *r,
+                            const struct vg_mesh *patches)
 {
   json_t *o = json_object();
 
@@ -269,6 +357,7 @@ json_t *vg_report_mesh_json(const struct vg_mesh_report *r)
                       counts(r->hist_radius_ratio, VG_HIST_UNIT));
   json_object_set_new(o, "edges", edges_json(r));
   json_object_set_new(o, "worst", worst_json(r));
+  if (r->has_flat) json_object_set_new(o, "flat_cells", flat_json(r, patches));
   return o;
 }
 

@@ -348,6 +348,23 @@ static vg_status accept(const struct vg_run *r, struct vg_error *err)
                  faults);
 }
 
+/* Prepares the classification of flat cells outside the layers. */
+static vg_status prepare_flat(const struct vg_run *r,
+                              const struct vg_mesh *surface,
+                              struct vg_flat **out, struct vg_error *err)
+{
+  const struct vg_flat_boundary b = {
+    .n_point = surface->n_point,
+    .n_face = surface->n_tri,
+    .face = (const uint32_t(*)[3])surface->tri,
+    .patch = surface->tri_patch
+  };
+  vg_status st = r->layers ? vg_layer_slices_flat(r->layers, out, err)
+                           : vg_flat_new(&b, out, err);
+
+  return vg_comm_agree(r->comm, st, err);
+}
+
 static vg_status put_slice(void *run, const struct vg_slice *slice,
                            struct vg_error *err)
 {
@@ -365,15 +382,17 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                        struct vg_error *err)
 {
   size_t front_faces = layers ? layers->front.n_face : 0;
+  struct vg_flat *flat = NULL;
   double t = vg_display_now();
   vg_status st;
 
   vg_display_update(show, "mesh check", vg_run_cells(r), 0);
   VG_TRY(vg_run_pictures_plan(&r->pictures, r->comm, &p->boundary.surface,
                               layers ? &layers->columns : NULL, err));
+  VG_TRY(prepare_flat(r, &p->boundary.surface, &flat, err));
   VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
-                            r->threads, put_slice, r, &r->judge,
+                            r->threads, flat, put_slice, r, &r->judge,
                             r->layers ? &r->field_judge : NULL, err);
   if (st >= 0)
     st = vg_effects_in_mesh(r->comm, &r->slices, r->threads, &r->effects, err);
@@ -388,6 +407,7 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                                 r->threads,
                                 r->layers ? &r->field_judge : &r->judge, err);
 done:
+  vg_flat_free(flat);
   if (r->outputs)
     r->time_put = 1e-9 * (double)r->outputs->put_time / r->threads;
   r->time_judge += vg_display_now() - t - r->time_put - r->pictures.time;
