@@ -46,6 +46,13 @@ static const uint8_t kind[N_POINT] = {
 #define F 99u
 #define OF(p) ((p) == F ? 1000u : 100 - 3 * (uint32_t)(p))
 
+/* Coordinates for cells in which shapes do not matter. */
+static const double corner[4][3] = {
+  { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
+};
+static const double *const fine[4] = { corner[0], corner[1], corner[2],
+                                       corner[3] };
+
 static struct vg_flat *made(void)
 {
   static uint32_t id[N_POINT];
@@ -99,11 +106,12 @@ static void causes(void **state)
     const uint32_t id[4] = { OF(p[0]), OF(p[1]), OF(p[2]), OF(p[3]) };
     enum vg_point_kind inner[4] = { VG_POINT_FIELD, VG_POINT_INTERFACE,
                                     VG_POINT_FIELD, VG_POINT_FIELD };
-    struct vg_flat_class c = vg_flat_classify(f, id, inner);
+    struct vg_flat_class c = vg_flat_classify(f, id, fine, inner);
 
     assert_int_equal(c.cause, row[i].cause);
     assert_int_equal(c.is_spanning, row[i].spanning);
     assert_int_equal(c.at_interface, p[1] == F);
+    assert_false(c.has_needle);
     assert_memory_equal(c.points.patch, row[i].patch, sizeof row[i].patch);
     for (int k = 0; k < 4; k++)
       assert_int_equal(c.points.kind[k], p[k] == F ? inner[k] : kind[p[k]]);
@@ -124,16 +132,48 @@ static void a_plain_surface(void **state)
 
   (void)state;
   assert_int_equal(vg_flat_new(&b, &f, NULL), VG_OK);
-  c = vg_flat_classify(f, (uint32_t[]){ 0, 12, 13, UINT32_MAX }, inner);
+  c = vg_flat_classify(f, (uint32_t[]){ 0, 12, 13, UINT32_MAX }, fine, inner);
   assert_int_equal(c.cause, VG_FLAT_SURFACE_FIELD);
   assert_true(c.is_spanning);
   assert_int_equal(c.points.kind[0], VG_POINT_SURFACE);
   assert_int_equal(c.points.patch[0], 4);
   assert_int_equal(c.points.patch[1], 1);
   assert_int_equal(c.points.kind[2], VG_POINT_FIELD);
-  c = vg_flat_classify(f, (uint32_t[]){ 0, 1, 2, 3 }, inner);
+  c = vg_flat_classify(f, (uint32_t[]){ 0, 1, 2, 3 }, fine, inner);
   assert_int_equal(c.cause, VG_FLAT_SURFACE);
   assert_false(c.is_spanning);
+  vg_flat_free(f);
+}
+
+/* A needle counts if it is a face of the boundary. */
+static void needles(void **state)
+{
+  static const enum vg_point_kind inner[4] = { VG_POINT_FIELD, VG_POINT_FIELD,
+                                               VG_POINT_FIELD, VG_POINT_FIELD };
+  struct vg_flat *f = made();
+
+  (void)state;
+  for (int degrees = 4; degrees <= 6; degrees++)
+    for (int turn = 0; turn < 3; turn++)
+      for (int joined = 0; joined < 2; joined++) {
+        /* tan(4, 5.01, 6 degrees) */
+        static const double height[] = { 0.0699, 0.08767, 0.1051 };
+        const double x[4][3] = { { 0, 0, 0 },
+                                 { 1, 0, 0 },
+                                 { 1, height[degrees - 4], 0 },
+                                 { 0.5, 0, 0.8 } };
+        const uint32_t p[3] = { 0, joined ? 1 : 4, 2 };
+        uint32_t id[4] = { 0, 0, 0, OF(F) };
+        const double *at[4] = { NULL, NULL, NULL, x[3] };
+        struct vg_flat_class c;
+
+        for (int k = 0; k < 3; k++) {
+          id[k] = OF(p[(k + turn) % 3]);
+          at[k] = x[(k + turn) % 3];
+        }
+        c = vg_flat_classify(f, id, at, inner);
+        assert_int_equal(c.has_needle, degrees == 4 && joined);
+      }
   vg_flat_free(f);
 }
 
@@ -210,6 +250,7 @@ static void any_cut_has_the_same_causes(void **state)
     for (int c = 0; c < VG_FLAT_CAUSES; c++) {
       assert_int_equal(r.flat[c].n, want.flat[c].n);
       assert_int_equal(r.flat[c].spanning, want.flat[c].spanning);
+      assert_int_equal(r.flat[c].needle, want.flat[c].needle);
       assert_true(r.flat[c].at_interface <= r.flat[c].n);
       at_interface += r.flat[c].at_interface;
     }
@@ -230,6 +271,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(causes),
     cmocka_unit_test(a_plain_surface),
+    cmocka_unit_test(needles),
     cmocka_unit_test(every_name_is_different),
     cmocka_unit_test(any_cut_has_the_same_causes),
   };

@@ -386,9 +386,10 @@ static void check_kinds(const struct model *m, const struct vg_mesh *whole,
   assert_int_equal(vg_layer_slices_flat(keep, &flat, NULL), VG_OK);
   for (size_t i = 0; i < m->field.n_tet; i++) {
     const uint32_t *v = m->field.tet[i];
-    struct vg_flat_class c = vg_flat_classify(flat,
-                                              whole->tet[info->n_layer_tet + i],
-                                              inner);
+    const uint32_t *node = whole->tet[info->n_layer_tet + i];
+    const double *const x[4] = { whole->point[node[0]], whole->point[node[1]],
+                                 whole->point[node[2]], whole->point[node[3]] };
+    struct vg_flat_class c = vg_flat_classify(flat, node, x, inner);
 
     for (int k = 0; k < 4; k++) {
       enum vg_point_kind want = VG_POINT_FIELD;

@@ -131,14 +131,14 @@ static void flat_cells(struct page *p, const struct vg_mesh_report *m)
 
   for (int c = 0; c < VG_FLAT_CAUSES; c++) n += m->flat[c].n;
   if (!m->has_flat || !n) return;
-  vg_page_format(
-    p,
-    "<p>Cells with an angle below %g&deg; by the kinds of their "
-    "points:</p>\n<div class=\"wide\"><table>\n<thead><tr>"
-    "<th scope=\"col\">Points</th><th scope=\"col\">Cells</th>"
-    "<th scope=\"col\">At interfaces</th><th scope=\"col\">"
-    "Spanning two parts of the boundary</th></tr></thead>\n<tbody>",
-    VG_FLAT_LIMIT);
+  vg_page_format(p,
+                 "<p>Cells with an angle below %g&deg; by the kinds of their "
+                 "points:</p>\n<div class=\"wide\"><table>\n<thead><tr>"
+                 "<th scope=\"col\">Points</th><th scope=\"col\">Cells</th>"
+                 "<th scope=\"col\">At interfaces</th><th scope=\"col\">"
+                 "Spanning two parts of the boundary</th>"
+                 "<th scope=\"col\">On needles</th></tr></thead>\n<tbody>",
+                 VG_FLAT_LIMIT);
   for (int c = 0; c < VG_FLAT_CAUSES; c++) {
     const struct vg_flat_count *f = &m->flat[c];
 
@@ -150,6 +150,8 @@ static void flat_cells(struct page *p, const struct vg_mesh_report *m)
     vg_page_count(p, f->at_interface);
     vg_page_markup(p, "</td><td>");
     vg_page_count(p, f->spanning);
+    vg_page_markup(p, "</td><td>");
+    vg_page_count(p, f->needle);
     vg_page_markup(p, "</td></tr>\n");
   }
   vg_page_markup(p, "</tbody></table></div>\n");

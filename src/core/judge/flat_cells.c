@@ -1,6 +1,7 @@
 #include "core/judge/flat_cells.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/hash.h"
@@ -178,6 +179,54 @@ static int are_connected(const struct vg_flat *f, int n, const uint32_t *p)
   return n == 0 || reached == (1u << n) - 1;
 }
 
+static int have_face(const struct vg_flat *f, const uint32_t p[3])
+{
+  for (uint32_t i = f->first[p[0]]; i < f->first[p[0] + 1]; i++) {
+    const uint32_t *v = f->b.face[f->list[i]];
+    int n = 0;
+
+    for (int k = 0; k < 3; k++) n += v[k] == p[1] || v[k] == p[2];
+    if (n == 2) return 1;
+  }
+  return 0;
+}
+
+static double dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Whether the triangle has an angle below the limit. */
+static int is_needle(const double *const x[3])
+{
+  for (int k = 0; k < 3; k++) {
+    double a[3], b[3];
+
+    for (int i = 0; i < 3; i++) {
+      a[i] = x[(k + 1) % 3][i] - x[k][i];
+      b[i] = x[(k + 2) % 3][i] - x[k][i];
+    }
+    if (!(dot(a, b) <= VG_FLAT_COSINE * sqrt(dot(a, a)) * sqrt(dot(b, b))))
+      return 1;
+  }
+  return 0;
+}
+
+/* p: n points of the boundary, with coordinates x. */
+static int has_needle(const struct vg_flat *f, int n, const uint32_t *p,
+                      const double *const *x)
+{
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < i; j++)
+      for (int k = 0; k < j; k++) {
+        const uint32_t v[3] = { p[i], p[j], p[k] };
+        const double *const corner[3] = { x[i], x[j], x[k] };
+
+        if (is_needle(corner) && have_face(f, v)) return 1;
+      }
+  return 0;
+}
+
 static enum vg_flat_cause cause_of(int n_top, int n_surface, int n_inner,
                                    int one_patch)
 {
@@ -189,10 +238,12 @@ static enum vg_flat_cause cause_of(int n_top, int n_surface, int n_inner,
 
 struct vg_flat_class vg_flat_classify(const struct vg_flat *f,
                                       const uint32_t id[4],
+                                      const double *const x[4],
                                       const enum vg_point_kind inner[4])
 {
   struct vg_flat_class c = { .at_interface = 0 };
   uint32_t all[4], top[4], common = VG_NO_PATCH;
+  const double *at[4];
   int n = 0, n_top = 0;
 
   for (int k = 0; k < 4; k++) {
@@ -201,7 +252,9 @@ struct vg_flat_class vg_flat_classify(const struct vg_flat *f,
     c.points.kind[k] = p == VG_TABLE_FREE ? inner[k] : kind_of(f, p);
     if (c.points.kind[k] == VG_POINT_TOP) top[n_top++] = p;
     c.at_interface |= c.points.kind[k] == VG_POINT_INTERFACE;
-    if (p != VG_TABLE_FREE) all[n++] = p;
+    if (p == VG_TABLE_FREE) continue;
+    at[n] = x[k];
+    all[n++] = p;
   }
   if (n_top) common = lowest_patch(f, top[0], n_top - 1, top + 1);
   for (int k = 0, i = 0; k < 4; k++) {
@@ -217,5 +270,6 @@ struct vg_flat_class vg_flat_classify(const struct vg_flat *f,
   }
   c.cause = cause_of(n_top, n - n_top, 4 - n, common != VG_NO_PATCH);
   c.is_spanning = !are_connected(f, n, all);
+  c.has_needle = has_needle(f, n, all, at);
   return c;
 }

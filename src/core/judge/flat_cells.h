@@ -9,7 +9,8 @@
 
 #include "base/status.h"
 
-#define VG_FLAT_LIMIT 5.0 /* degrees; Q1 */
+#define VG_FLAT_LIMIT 5.0                  /* degrees; Q1 */
+#define VG_FLAT_COSINE 0.99619469809174555 /* of VG_FLAT_LIMIT */
 #define VG_NO_PATCH UINT32_MAX
 
 enum vg_point_kind {
@@ -28,7 +29,7 @@ const char *vg_point_kind_name(enum vg_point_kind kind);
 
 enum vg_flat_cause {
   VG_FLAT_TOPS_ONE,      /* Four tops of one patch. */
-  VG_FLAT_TOPS_SEVERAL,  /* Four tops that have no patch in common. */
+  VG_FLAT_TOPS_SEVERAL,  /* Four tops that do not share a patch. */
   VG_FLAT_TOPS_FIELD,    /* Tops and field points. */
   VG_FLAT_TOPS_SURFACE,  /* Tops and other surface points, perhaps with field
                             points. */
@@ -47,8 +48,8 @@ struct vg_flat_points {
   uint32_t kind[4];  /* enum vg_point_kind; VG_POINT_UNKNOWN: the cell is not
                         classified */
   uint32_t patch[4]; /* Index of a patch of the point: the lowest one that all
-                        tops of the cell have in common, otherwise the lowest
-                        one of the point; VG_NO_PATCH: none. */
+                        tops of the cell share, otherwise the lowest one of the
+                        point; VG_NO_PATCH: none. */
 };
 
 struct vg_flat_class {
@@ -58,6 +59,8 @@ struct vg_flat_class {
   int is_spanning;  /* The edges of the boundary do not connect all boundary
                        points of the cell with each other, so the cell spans the
                        distance between two parts of the boundary. */
+  int has_needle;   /* A face of the cell is a face of the boundary with an
+                       angle below VG_FLAT_LIMIT. */
 };
 
 /** Boundary of the field: tops of layers, and surface without layers. All
@@ -74,8 +77,9 @@ struct vg_flat_boundary {
                                 wall points. NULL: there are no tops. */
 };
 
-/** Prepares the classification: O(points + faces), 36 bytes per point. *out is
- * freed by vg_flat_free and must not outlive the arrays of b. VG_ERR_MEMORY. */
+/** Prepares the classification: O(points + faces), about 40 bytes per point.
+ * *out is freed by vg_flat_free and must not outlive the arrays of b.
+ * VG_ERR_MEMORY. */
 struct vg_flat;
 vg_status vg_flat_new(const struct vg_flat_boundary *b, struct vg_flat **out,
                       struct vg_error *err);
@@ -86,10 +90,12 @@ void vg_flat_free(struct vg_flat *f);
 /** Classifies a cell. Threads: safe on a shared f.
  *
  * @param id     its points in the mesh
+ * @param x      [4] their coordinates
  * @param inner  [4] VG_POINT_FIELD or VG_POINT_INTERFACE: kind of each point if
  *               it is not on the boundary */
 struct vg_flat_class vg_flat_classify(const struct vg_flat *f,
                                       const uint32_t id[4],
+                                      const double *const x[4],
                                       const enum vg_point_kind inner[4]);
 
 #endif

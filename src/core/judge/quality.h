@@ -23,7 +23,8 @@ struct vg_worst_cell {
 /* Numbers of flat cells (core/judge/flat_cells.h) of one cause. */
 struct vg_flat_count {
   size_t n;
-  size_t at_interface, spanning; /* of these: as in struct vg_flat_class */
+  size_t at_interface, spanning, needle; /* of these: as in struct
+                                            vg_flat_class */
 };
 
 struct vg_mesh_report {

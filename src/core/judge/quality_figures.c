@@ -190,7 +190,8 @@ static void report_flat(const struct vg_counts *n, struct vg_mesh_report *r)
   for (int c = 0; c < VG_FLAT_CAUSES; c++)
     r->flat[c] = (struct vg_flat_count){ (size_t)n->flat[c],
                                          (size_t)n->flat_interface[c],
-                                         (size_t)n->flat_spanning[c] };
+                                         (size_t)n->flat_spanning[c],
+                                         (size_t)n->flat_needle[c] };
 }
 
 void vg_stats_report(const struct vg_stats *f, size_t n_component,

@@ -35,7 +35,7 @@ struct vg_counts {
   uint64_t radius_ratio[VG_HIST_UNIT], edge[VG_HIST_UNIT];
   uint64_t fine[VG_N_FINE], ratio[VG_N_RATIO];
   uint64_t flat[VG_FLAT_CAUSES], flat_interface[VG_FLAT_CAUSES];
-  uint64_t flat_spanning[VG_FLAT_CAUSES];
+  uint64_t flat_spanning[VG_FLAT_CAUSES], flat_needle[VG_FLAT_CAUSES];
   struct vg_exact volume, sum_radius, sum_mean, sum_edge, sum_length;
 };
 

@@ -223,23 +223,27 @@ static void count_ratios(struct vg_stats *f, size_t n, const double *ratio)
 }
 
 /* Classifies and counts a flat cell. */
-static void count_flat(struct vg_stats *f, const struct vg_flat_part *part,
-                       const uint32_t node[4], struct vg_flat_points *points)
+static void count_flat(struct vg_stats *f, const struct vg_mesh *m,
+                       const struct vg_flat_part *part, const uint32_t node[4],
+                       struct vg_flat_points *points)
 {
   uint32_t id[4];
+  const double *x[4];
   enum vg_point_kind inner[4];
   struct vg_flat_class c;
 
   for (int k = 0; k < 4; k++) {
+    x[k] = m->point[node[k]];
     id[k] = part->id[node[k]];
     inner[k] = part->is_interface || id[k] - part->own_at >= part->n_own
                ? VG_POINT_INTERFACE
                : VG_POINT_FIELD;
   }
-  c = vg_flat_classify(part->flat, id, inner);
+  c = vg_flat_classify(part->flat, id, x, inner);
   f->n.flat[c.cause]++;
   f->n.flat_interface[c.cause] += (uint64_t)c.at_interface;
   f->n.flat_spanning[c.cause] += (uint64_t)c.is_spanning;
+  f->n.flat_needle[c.cause] += (uint64_t)c.has_needle;
   *points = c.points;
 }
 
@@ -249,7 +253,8 @@ static void note_worst(struct vg_stats *f, const struct vg_mesh *m, size_t i,
 {
   struct vg_worst_cell w = { .cell = cell, .value = angle };
 
-  if (part && angle < VG_FLAT_LIMIT) count_flat(f, part, m->tet[i], &w.points);
+  if (part && angle < VG_FLAT_LIMIT)
+    count_flat(f, m, part, m->tet[i], &w.points);
   if (f->n_worst == VG_WORST && angle > f->worst[VG_WORST - 1].value) return;
   for (int k = 0; k < 3; k++)
     for (int j = 0; j < 4; j++) w.at[k] += m->point[m->tet[i][j]][k] / 4;

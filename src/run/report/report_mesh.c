@@ -157,24 +157,24 @@ void vg_report_whole_text(FILE *to, const struct vg_mesh_report *r)
 static void flat_text(FILE *to, const struct vg_mesh_report *r)
 {
   size_t n = 0;
-  char count[32], a[32], b[32];
+  char count[32], a[32], b[32], d[32];
 
   for (int c = 0; c < VG_FLAT_CAUSES; c++) n += r->flat[c].n;
   if (!r->has_flat || !n) return;
   fprintf(
     to,
     "  cells with an angle below %g degrees by the kinds of their points: "
-    "%s\n  %-36s %13s %13s %13s\n",
+    "%s\n  %-35s %10s %14s %9s %11s\n",
     VG_FLAT_LIMIT, vg_text_count(n, count), "", "cells", "at interfaces",
-    "spanning");
+    "spanning", "on needles");
   for (int c = 0; c < VG_FLAT_CAUSES; c++) {
     const struct vg_flat_count *f = &r->flat[c];
 
     if (f->n)
-      fprintf(to, "    %-34s %13s %13s %13s\n",
+      fprintf(to, "    %-33s %10s %14s %9s %11s\n",
               vg_flat_cause_name((enum vg_flat_cause)c),
               vg_text_count(f->n, count), vg_text_count(f->at_interface, a),
-              vg_text_count(f->spanning, b));
+              vg_text_count(f->spanning, b), vg_text_count(f->needle, d));
   }
 }
 
@@ -288,9 +288,11 @@ static json_t *flat_json(const struct vg_mesh_report *r,
 
     n += (json_int_t)f->n;
     json_object_set_new(causes, vg_flat_cause_key((enum vg_flat_cause)c),
-                        json_pack("{s:I s:I s:I}", "cells", (json_int_t)f->n,
-                                  "at_interfaces", (json_int_t)f->at_interface,
-                                  "spanning", (json_int_t)f->spanning));
+                        json_pack("{s:I s:I s:I s:I}", "cells",
+                                  (json_int_t)f->n, "at_interfaces",
+                                  (json_int_t)f->at_interface, "spanning",
+                                  (json_int_t)f->spanning, "on_needles",
+                                  (json_int_t)f->needle));
   }
   json_object_set_new(o, "limit", real(VG_FLAT_LIMIT));
   json_object_set_new(o, "cells", json_integer(n));

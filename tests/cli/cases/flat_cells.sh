@@ -49,6 +49,7 @@ says out "cells with an angle below 5 degrees by the kinds of their points: "
 says out "    four tops of several patches "
 flat one >one.flat
 says one.flat '"limit": 5.0'
+says one.flat '"on_needles": 0'
 grep -A3 '"tops_of_several_patches": {' one.flat |
   grep -q '"spanning": [1-9]' || fail "no cell spans the gap"
 grep -A3 '"tops_of_one_patch": {' one.flat |
