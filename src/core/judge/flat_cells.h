@@ -9,7 +9,7 @@
 
 #include "base/status.h"
 
-#define VG_FLAT_LIMIT 5.0                  /* degrees; Q1 */
+#define VG_FLAT_LIMIT 5.0                  /* Q1: degrees */
 #define VG_FLAT_COSINE 0.99619469809174555 /* of VG_FLAT_LIMIT */
 #define VG_NO_PATCH UINT32_MAX
 
