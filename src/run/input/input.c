@@ -535,9 +535,9 @@ static void merge_layers(struct vg_read *r)
     l->first = d->layer.delta1 > 0 ? d->layer.delta1 : 0;
     if (d->grid == 2) l->by_source = 1;
   }
-  if (isnan(l->ratio) && isnan(l->rate1) && isnan(l->rate2)) {
-    l->rate1 = d->layer.rate1;
-    l->rate2 = d->layer.rate2;
+  if (isnan(l->ratio)) {
+    if (isnan(l->rate1)) l->rate1 = d->layer.rate1;
+    if (isnan(l->rate2)) l->rate2 = d->layer.rate2;
   }
   if (l->most == 0 && d->layer.n_max > 0)
     l->most = d->layer.n_max < VG_LEVELS_MAX ? d->layer.n_max : VG_LEVELS_MAX;

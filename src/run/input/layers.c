@@ -200,7 +200,8 @@ static vg_status set_rates(const struct vg_settings *s,
   q->law.rate2 = 0;
   if (!isnan(r->rate1) || !isnan(r->rate2) ||
       (isnan(r->ratio) && (!isnan(l->rate1) || !isnan(l->rate2)))) {
-    q->law.rate1 = choose(choose(r->rate1, l->rate1), 0);
+    q->law.rate1 = choose(choose(r->rate1, l->rate1),
+                          isnan(ratio) ? DEFAULT_RATE : ratio - 1);
     q->law.rate2 = choose(choose(r->rate2, l->rate2), 0);
   } else if (!isnan(ratio)) {
     q->law.rate1 = ratio - 1;

@@ -74,3 +74,12 @@ vanguard mesh -q -p T1 --scale 0.5 --out fine
 exits 0
 [ "$(stat -c %s fine/T1.b8.ugrid)" -gt "$(stat -c %s T1.b8.ugrid)" ] ||
   fail "a smaller scale made no finer mesh"
+
+# A rate that is given leaves the other rate of the .d3m.
+cp "$here/../../examples/wing_body/wing_body.d3m" .
+vanguard mesh -q -p wing_body --scale 3 --rate2 0.01 --out rates
+exits 0
+rates=$(awk '$1 ~ /^#/ { next } { for (i = 1; i <= NF; i++) at[$i] = i }
+  at["rate1"] && at["rate2"] { getline; print $at["rate1"], $at["rate2"]; exit }
+  { delete at }' rates/wing_body.resolved.deck)
+[ "$rates" = "0.18 0.01" ] || fail "rates '$rates' instead of 0.18 and 0.01"
