@@ -105,7 +105,7 @@ done
 for what in surface layers sizes; do
   options+=(--test-differ $what)
   got=$(pair "$vanguard" -- "$vanguard")
-  [[ $got == *"rank 1 on "*" made other $what than rank 0 on "* ]] &&
+  [[ $got == *"rank 1 on "*" computed different $what than rank 0 on "* ]] &&
     [ -z "$(ls -A "$work/files" 2> /dev/null)" ] ||
     { echo "other $what: not refused: $got"; failed=1; }
 done
