@@ -1,12 +1,12 @@
 #include "core/judge/flat_cells.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/table.h"
+#include "core/geometry/vector.h"
 
 struct vg_flat {
   struct vg_flat_boundary b;
@@ -191,23 +191,15 @@ static int have_face(const struct vg_flat *f, const uint32_t p[3])
   return 0;
 }
 
-static double dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Whether the triangle has an angle below the limit. */
 static int is_needle(const double *const x[3])
 {
   for (int k = 0; k < 3; k++) {
     double a[3], b[3];
 
-    for (int i = 0; i < 3; i++) {
-      a[i] = x[(k + 1) % 3][i] - x[k][i];
-      b[i] = x[(k + 2) % 3][i] - x[k][i];
-    }
-    if (!(dot(a, b) <= VG_FLAT_COSINE * sqrt(dot(a, a)) * sqrt(dot(b, b))))
-      return 1;
+    vg_sub(x[(k + 1) % 3], x[k], a);
+    vg_sub(x[(k + 2) % 3], x[k], b);
+    if (!(vg_dot(a, b) <= VG_FLAT_COSINE * vg_norm(a) * vg_norm(b))) return 1;
   }
   return 0;
 }

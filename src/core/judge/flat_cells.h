@@ -1,6 +1,7 @@
 /* core/judge/flat_cells.h: causes of flat cells. A flat cell is a tetrahedron
  * outside the layers whose smallest dihedral angle is below VG_FLAT_LIMIT. It
- * is classified by the kinds of its four points. Uses base only. */
+ * is classified by the kinds of its four points. Uses base and
+ * core/geometry. */
 #ifndef VG_CORE_JUDGE_FLAT_CELLS_H
 #define VG_CORE_JUDGE_FLAT_CELLS_H
 

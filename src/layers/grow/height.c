@@ -459,7 +459,8 @@ static void fit(struct vg_layer_work *w, size_t i)
                                                    w->allowed[i],
                                                    JUMP_SHAPE / w->o->jump *
                                                      w->edge[first]);
-    c->cap = vg_growth_law_compress(law, c->n_fit, w->allowed[i]);
+    if (c->n_fit < c->n_wanted)
+      c->cap = vg_growth_law_compress(law, c->n_fit, w->allowed[i]);
     return;
   }
   c->cap = 1;
