@@ -356,7 +356,7 @@ static void places_are_checked(void **state)
 static void projects_are_found(void **state)
 {
   struct vg_projects list;
-  struct vg_settings s;
+  struct vg_settings s = VG_SETTINGS_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;

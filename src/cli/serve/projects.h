@@ -41,8 +41,8 @@ void vg_projects_release(struct vg_projects *p);
 int vg_projects_is_name(const char *name);
 
 /** The settings of a project, from its deck or the defaults. All its files must
- * be below root; the message of VG_ERR_INPUT names one that is not. *s is
- * unchanged on failure.
+ * be below root; the message of VG_ERR_INPUT names one that is not. *s
+ * must hold no rows; it is unchanged on failure.
  * @param deck  a deck to use instead of the project's, or NULL */
 vg_status vg_project_settings(const char *root, const char *name,
                               const char *deck, struct vg_settings *s,
