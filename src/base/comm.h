@@ -90,7 +90,7 @@ vg_status vg_comm_bcast(struct vg_comm *c, int root, struct vg_bytes *b,
 vg_status vg_comm_node_bcast(struct vg_comm *c, struct vg_bytes *b,
                              struct vg_error *err);
 
-/** Read-only bytes that the ranks of a node share. */
+/** Bytes that the ranks of a node share. */
 struct vg_shmem {
   size_t n;
   const unsigned char *data;
@@ -117,6 +117,13 @@ static inline size_t vg_shmem_padded(size_t n)
 vg_status vg_comm_node_shmem(struct vg_comm *c, size_t n_part,
                              const struct vg_bytes *part, struct vg_shmem *out,
                              struct vg_error *err);
+
+/** As vg_comm_node_shmem. With `writes`, ranks may change the memory; where
+ * each rank has its own copy (!out->is_mapped), each must make the same
+ * changes. Collective over the node. */
+vg_status vg_comm_node_memory(struct vg_comm *c, size_t n_part,
+                              const struct vg_bytes *part, int writes,
+                              struct vg_shmem *out, struct vg_error *err);
 
 void vg_shmem_release(struct vg_shmem *b);
 

@@ -83,11 +83,6 @@ vg_status vg_comm_agree_in(const struct vg_comm *c, MPI_Comm comm,
 /** Gather the CPU affinities of the ranks of the node. Collective. */
 vg_status vg_comm_cores_open(struct vg_comm *c, struct vg_error *err);
 
-/** As vg_comm_node_shmem; with `writes`, ranks may change the memory. */
-vg_status vg_comm_node_memory(struct vg_comm *c, size_t n_part,
-                              const struct vg_bytes *part, int writes,
-                              struct vg_shmem *out, struct vg_error *err);
-
 /** Create the wakeups of the node. Collective. */
 vg_status vg_comm_wakeups_open(struct vg_comm *c, struct vg_error *err);
 void vg_comm_wakeups_close(struct vg_comm *c);

@@ -19,7 +19,7 @@ static size_t tops(const struct shape *s, const uint8_t *is_slide,
 
   memset(bad, 7, s->c.n_column);
   assert_int_equal(vg_clear_tops(&s->m, &s->c, is_slide ? is_slide : none,
-                                 active, threads, bad, &n_bad, &err),
+                                 active, NULL, threads, bad, &n_bad, &err),
                    VG_OK);
   for (size_t i = 0; i < s->c.n_column; i++) {
     assert_true(bad[i] <= 1);
@@ -63,6 +63,42 @@ static void tops_between_plates(void **state)
   /* All columns above a square of the other plate. */
   assert_true(tops(s, NULL, NULL, 1, bad) > s->c.n_column * 9 / 10);
   shape_free(s);
+}
+
+/* One column with a margin, which is at most as high as the column, in the gap
+ * between two fronts. */
+static void a_front_keeps_its_margin(void **state)
+{
+  const double gap = 0.25;
+  size_t n_contact = 0;
+
+  (void)state;
+  for (int k = 0; k < 200; k++) {
+    const double thickness = 0.0005 * (1 + k * 37 % 211);
+    const double margin = 0.001 * (k * 53 % 197);
+    const double left = gap - 2 * thickness - fmin(margin, thickness);
+    struct shape *s = two_plates(12, gap, thickness);
+    double m[MAX] = { 0 };
+    uint8_t bad[MAX], none[PATCHES] = { 0 };
+    struct vg_error err = VG_ERROR_INIT;
+    size_t n_bad = 0;
+    uint32_t i;
+
+    s->is_wall[1] = 1;
+    grow(s, 1);
+    i = s->of_point[6 * 13 + 6];
+    m[i] = margin;
+    assert_int_equal(vg_clear_tops(&s->m, &s->c, none, NULL, m, 1, bad, &n_bad,
+                                   &err),
+                     VG_OK);
+    if (fabs(left) > 1e-9) {
+      assert_int_equal(n_bad > 0, left < 0);
+      assert_int_equal(bad[i], left < 0);
+    }
+    n_contact += left < 0;
+    shape_free(s);
+  }
+  assert_true(n_contact > 20 && n_contact < 180);
 }
 
 static void one_column_through_the_other_front(void **state)
@@ -797,6 +833,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(tops_between_plates),
+    cmocka_unit_test(a_front_keeps_its_margin),
     cmocka_unit_test(one_column_through_the_other_front),
     cmocka_unit_test(the_shift_of_a_column_counts),
     cmocka_unit_test(inert_patch_is_in_the_way),

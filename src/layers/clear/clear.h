@@ -55,6 +55,17 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
  * @param is_slide  [surface->n_patch] 1: the patch will be remeshed
  * @param active    [n_column] columns that moved since the last call, or NULL:
  *                  all; pairs of faces without an active column are skipped
+ * @param margin    [n_column], or NULL: 0. Tops are tested after each one was
+ *                  raised along dir by its margin, at most by its height:
+ *
+ *                      ----.----.----    tops of one front
+ *                          :    :        margin
+ *                          :    :        margin of the other front
+ *                      ----'----'----    tops of the other front
+ *
+ *                  Side faces are not tested then, and a top without area is
+ *                  no contact. Tops that pass with a margin still need the test
+ *                  without: a large margin may exceed the fluid behind a sheet
  * @param bad       out: [n_column] 1 for each column with n > 0 of a face that
  *                  touches, active or not; 0 for all others
  *
@@ -63,7 +74,7 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
 vg_status vg_clear_tops(const struct vg_mesh *surface,
                         const struct vg_columns *columns,
                         const uint8_t *is_slide, const uint8_t *active,
-                        int threads, uint8_t *bad, size_t *n_bad,
-                        struct vg_error *err);
+                        const double *margin, int threads, uint8_t *bad,
+                        size_t *n_bad, struct vg_error *err);
 
 #endif

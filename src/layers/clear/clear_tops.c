@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "core/geometry/predicates.h"
 #include "core/geometry/triangles.h"
+#include "core/geometry/vector.h"
 #include "layers/clear/clear_parts.h"
 
 enum {
@@ -25,6 +26,7 @@ enum {
 struct clear {
   struct vg_tops t;
   const uint8_t *is_slide;
+  int has_margin;     /* The points are tops raised by a margin. */
   uint32_t (*tri)[3]; /* [n_face] corners of the tops in t.point. */
   uint8_t *state;     /* [n_face] TOP_NONE, TOP_STILL or TOP_ACTIVE. */
   uint8_t *covered;   /* [surface->n_tri] 1: a face stands on it. */
@@ -34,6 +36,11 @@ struct clear {
 };
 
 static const uint32_t one_fan[3] = { 0, 0, 0 };
+
+struct placing {
+  const struct vg_tops *t;
+  const double *margin; /* [n_column], or NULL: the tops are not raised. */
+};
 
 /* --- positions of the tops ----------------------------------------------- */
 
@@ -66,9 +73,21 @@ static void top_of(const struct vg_tops *t, size_t i, struct heights *h,
   vg_column_at(c, root, h->d[c->n], x);
 }
 
+/* Moves the top x of a column along its direction by its margin, at most by its
+ * height: the columns of a gap much narrower than the margin each take a
+ * quarter of it. */
+static void raise_top(const struct vg_column *c, const double root[3],
+                      double margin, double x[3])
+{
+  double scale = fmin(margin, vg_distance(x, root)) / vg_norm(c->dir);
+
+  for (int k = 0; k < 3; k++) x[k] += scale * c->dir[k];
+}
+
 static void place_tops(void *context, size_t first, size_t end, int worker)
 {
-  const struct vg_tops *t = context;
+  const struct placing *p = context;
+  const struct vg_tops *t = p->t;
   struct heights h = { 0, 0, -1, { 0 } };
 
   (void)worker;
@@ -80,6 +99,7 @@ static void place_tops(void *context, size_t first, size_t end, int worker)
     memcpy(x, t->surface->point[c->root], 3 * sizeof *x);
     if (!c->n) continue;
     top_of(t, i, &h, x);
+    if (p->margin) raise_top(c, t->surface->point[c->root], p->margin[i], x);
     if (isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2])) {
       t->node[i] = (uint32_t)(t->n_point + i);
     } else {
@@ -143,7 +163,7 @@ static void classify_faces(void *context, size_t first, size_t end, int worker)
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     if (has_area(x->t.point[t[0]], x->t.point[t[1]], x->t.point[t[2]]))
       x->state[f] = active ? TOP_ACTIVE : TOP_STILL;
-    else if (active) mark_face(x, f);
+    else if (active && !x->has_margin) mark_face(x, f);
   }
 }
 
@@ -283,8 +303,8 @@ static void list_faces(struct clear *x)
 vg_status vg_clear_tops(const struct vg_mesh *surface,
                         const struct vg_columns *columns,
                         const uint8_t *is_slide, const uint8_t *active,
-                        int threads, uint8_t *bad, size_t *n_bad,
-                        struct vg_error *err)
+                        const double *margin, int threads, uint8_t *bad,
+                        size_t *n_bad, struct vg_error *err)
 {
   assert(is_slide || !surface->n_patch);
   assert(bad || !columns->n_column);
@@ -295,12 +315,14 @@ vg_status vg_clear_tops(const struct vg_mesh *surface,
                             .active = active,
                             .n_point = surface->n_point,
                             .threads = threads },
-                     .is_slide = is_slide };
+                     .is_slide = is_slide,
+                     .has_margin = margin != NULL };
+  struct placing placing = { &x.t, margin };
   size_t n_column = columns->n_column, count = 0;
   vg_status st = VG_OK;
 
   VG_TRY(allocate(&x, err));
-  vg_parallel_for(threads, n_column, GRAIN, place_tops, &x.t);
+  vg_parallel_for(threads, n_column, GRAIN, place_tops, &placing);
   vg_parallel_for(threads, columns->n_face, GRAIN, classify_faces, &x);
   list_faces(&x);
   VG_TRY(vg_boxes_build(&x.boxes, (const double(*)[3])x.t.point,
@@ -311,7 +333,7 @@ vg_status vg_clear_tops(const struct vg_mesh *surface,
     vg_parallel_for(threads, columns->n_face, GRAIN, visit_still, &x);
   if (x.n_active)
     vg_parallel_for(threads, surface->n_tri, GRAIN, visit_surface, &x);
-  VG_TRY(vg_clear_flanks(&x.t, err));
+  if (!margin) VG_TRY(vg_clear_flanks(&x.t, err));
   for (size_t i = 0; i < n_column; i++) {
     bad[i] = x.t.bad[i];
     count += x.t.bad[i];

@@ -70,7 +70,7 @@ vg_status vg_layers_share(struct vg_comm *c, struct vg_layers *layers,
 
   if (vg_comm_node_size(c) == 1) return VG_OK;
   list_parts(layers, part);
-  st = vg_comm_node_shmem(c, 1 + N_ARRAY, part, &common, err);
+  st = vg_comm_node_memory(c, 1 + N_ARRAY, part, 1, &common, err);
   if (st < 0) return st;
   at = (unsigned char *)(uintptr_t)common.data;
   memcpy(&view, at, sizeof view);

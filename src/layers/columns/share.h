@@ -7,9 +7,9 @@
 #include "layers/columns/layers.h"
 
 /** Shares the layers of the first rank of a node with all its ranks, as a
- * single copy where the ranks can share memory (base/comm.h). The layers are
- * read-only afterwards. Collective over the node; does nothing if the rank is
- * alone on its node.
+ * single copy where the ranks can share memory (base/comm.h). Afterwards, only
+ * layers/relax changes them, on one rank of each node. Collective over the
+ * node; does nothing if the rank is alone on its node.
  *
  * @param layers  the grown layers, empty on other ranks. Replaced by the shared
  *                layers, to be released by vg_layers_release; untouched on

@@ -20,6 +20,9 @@
 #define GENTLE 40
 #define SHARE 0.75
 #define TURNS_MAX 12 /* Rounds in which columns may be turned. */
+/* L23: Fronts that approach each other end at least twice this share of the
+ * local edge apart. */
+#define MARGIN 0.25
 
 static void work_release(struct vg_layer_work *w)
 {
@@ -33,6 +36,7 @@ static void work_release(struct vg_layer_work *w)
   free(w->root_dir);
   free(w->visibility);
   free(w->edge);
+  free(w->margin);
   free(w->wanted);
   free(w->allowed);
   free(w->slack);
@@ -145,6 +149,18 @@ static vg_status arrays(struct vg_layer_work *w, struct vg_error *err)
   return vg_fail_memory(err, "the layers");
 }
 
+/* Height of column i that leaves both its margin and that of the opposite front
+ * free, if `allowed` is the share of the gap that it may take: at most a share,
+ * and at least a quarter of the gap (vg_clear_tops). */
+static double within_margins(const struct vg_layer_work *w, size_t i,
+                             double allowed)
+{
+  double gap = allowed / w->o->gap;
+  double rest = gap / 2 - w->margin[i] / vg_norm(w->c->column[i].dir);
+
+  return fmin(allowed, fmax(rest, gap / 4));
+}
+
 /* Initial allowed heights: limited by visibility, corners, and the opposite
  * surface. */
 static vg_status first_allowed(struct vg_layer_work *w,
@@ -172,12 +188,23 @@ static vg_status first_allowed(struct vg_layer_work *w,
   VG_TRY(vg_clear_ahead(w->m, w->c, &w->t, w->o->gap, w->o->threads, w->allowed,
                         allowed, err));
   for (size_t i = 0; i < n; i++)
-    vg_heights_lower(w, i, allowed[i], VG_CAUSE_PROXIMITY);
+    if (allowed[i] < w->allowed[i])
+      vg_heights_lower(w, i, within_margins(w, i, allowed[i]),
+                       VG_CAUSE_PROXIMITY);
   r->time_clear += vg_clock() - t;
 done:
   free(allowed);
   free(normal);
   return st;
+}
+
+static vg_status margins(struct vg_layer_work *w, struct vg_error *err)
+{
+  w->margin = vg_alloc(w->c->n_column, sizeof *w->margin);
+  if (!w->margin) return vg_fail_memory(err, "the layers");
+  for (size_t i = 0; i < w->c->n_column; i++)
+    w->margin[i] = MARGIN * w->edge[i];
+  return VG_OK;
 }
 
 /* Height to which one round lowers a column that failed. */
@@ -193,11 +220,11 @@ static double lowered(const struct vg_layer_work *w, size_t i, size_t round)
 }
 
 static vg_status try_tops(struct vg_layer_work *w, const uint8_t *active,
-                          uint8_t *bad, size_t round, size_t *n_bad,
-                          struct vg_error *err)
+                          const double *margin, uint8_t *bad, size_t round,
+                          size_t *n_bad, struct vg_error *err)
 {
-  vg_status st = vg_clear_tops(w->m, w->c, w->is_slide, active, w->o->threads,
-                               bad, n_bad, err);
+  vg_status st = vg_clear_tops(w->m, w->c, w->is_slide, active, margin,
+                               w->o->threads, bad, n_bad, err);
 
   for (size_t i = 0; st >= 0 && *n_bad && i < w->c->n_column; i++)
     if (bad[i])
@@ -336,9 +363,12 @@ static void unbend(struct vg_columns *c)
 }
 
 struct rounds {
-  uint8_t *moved, *turned, *cells, *tops, *bad; /* cells, tops: columns still to
-                                                   be tested. */
+  uint8_t *moved, *turned, *bad;
+  uint8_t *cells, *tops,
+    *near;      /* Columns still to be tested: their cells, their
+                   tops, and their tops raised by the margin. */
   size_t sound; /* Number of rounds in which all cells were valid. */
+  int is_near;  /* Raised tops were tested before. */
 };
 
 static vg_status settle(struct vg_layer_work *w, struct rounds *q,
@@ -351,6 +381,7 @@ static vg_status settle(struct vg_layer_work *w, struct rounds *q,
     q->turned[i] = 0;
     q->cells[i] |= q->moved[i];
     q->tops[i] |= q->moved[i];
+    q->near[i] |= q->moved[i];
   }
   return st;
 }
@@ -370,10 +401,16 @@ static vg_status one_round(struct vg_layer_work *w, struct rounds *q,
                         q->turned, n_bad, err));
   memset(q->cells, 0, w->c->n_column);
   if (!*n_bad) {
-    VG_TRY(
-      try_tops(w, q->sound ? q->tops : NULL, q->bad, q->sound, n_bad, err));
+    VG_TRY(try_tops(w, q->sound ? q->tops : NULL, NULL, q->bad, q->sound, n_bad,
+                    err));
     memset(q->tops, 0, w->c->n_column);
     round = q->sound++;
+  }
+  if (!*n_bad) {
+    VG_TRY(try_tops(w, q->is_near ? q->near : NULL, w->margin, q->bad, round,
+                    n_bad, err));
+    memset(q->near, 0, w->c->n_column);
+    q->is_near = 1;
   }
   r->time_clear += vg_clock() - t;
   t = vg_clock();
@@ -394,12 +431,17 @@ static vg_status until_clear(struct vg_layer_work *w, struct vg_front *front,
                              struct vg_layer_report *r, struct vg_error *err)
 {
   size_t n = w->c->n_column, n_bad = 1;
-  struct rounds q = { vg_calloc(n, 1), vg_calloc(n, 1), vg_calloc(n, 1),
-                      vg_calloc(n, 1), vg_calloc(n, 1), 0 };
+  struct rounds q = { .moved = vg_calloc(n, 1),
+                      .turned = vg_calloc(n, 1),
+                      .bad = vg_calloc(n, 1),
+                      .cells = vg_calloc(n, 1),
+                      .tops = vg_calloc(n, 1),
+                      .near = vg_calloc(n, 1) };
+
   double t;
   vg_status st = VG_OK;
 
-  if (!q.moved || !q.turned || !q.cells || !q.tops || !q.bad) {
+  if (!q.moved || !q.turned || !q.cells || !q.tops || !q.near || !q.bad) {
     st = vg_fail_memory(err, "the layers");
     goto done;
   }
@@ -424,6 +466,7 @@ done:
   free(q.turned);
   free(q.cells);
   free(q.tops);
+  free(q.near);
   free(q.bad);
   return st;
 }
@@ -498,6 +541,7 @@ static vg_status columns(struct vg_layer_work *w, struct vg_layer_report *r,
   r->time_direction = vg_clock() - t;
   t = vg_clock();
   VG_TRY(vg_heights_wanted(w, err));
+  VG_TRY(margins(w, err));
   r->time_height = vg_clock() - t;
   t = vg_clock();
   VG_TRY(vg_directions_smooth(w, err));

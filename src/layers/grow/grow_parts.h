@@ -37,6 +37,8 @@ struct vg_layer_work {
   double *visibility;    /* Visibility: least cosine with its faces that dir
                       must keep; 0: no direction sees all faces. */
   double *edge;          /* Local isotropic edge length. */
+  double *margin;        /* Distance that its top keeps from opposite tops,
+                            as far as its height reaches. */
   double *wanted;        /* Height of n_wanted levels by the growth law. */
   double *allowed;       /* Allowed height, <= wanted. */
   double *slack;         /* [as t.near] largest difference of `allowed` between

@@ -258,6 +258,17 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   return st;
 }
 
+void vg_partition_move_front(struct vg_partition *p)
+{
+  for (size_t i = 0; i < p->n_piece; i++) {
+    struct vg_piece *q = &p->piece[i];
+
+    for (size_t k = 0; k < q->n_in; k++)
+      if (!(q->in[k] >> 32)) /* serial 0: the boundary */
+        memcpy(q->x[k], p->boundary.point[(uint32_t)q->in[k]], sizeof *q->x);
+  }
+}
+
 const struct vg_slices *vg_partition_slices(const struct vg_partition *p)
 {
   return &p->slices;

@@ -42,6 +42,10 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
  * which come first. Valid until vg_partition_free. */
 const struct vg_slices *vg_partition_slices(const struct vg_partition *p);
 
+/** Copies the coordinates of the points of `front` again after they changed.
+ * Cells keep their points. */
+void vg_partition_move_front(struct vg_partition *p);
+
 /** Number of cells of each leaf of this rank. sizes out: [*n], owned by the
  * caller. */
 vg_status vg_partition_leaves(const struct vg_partition *p, size_t *n,

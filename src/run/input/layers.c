@@ -735,12 +735,27 @@ static vg_status judge(struct vg_layer_stage *s, const struct vg_mesh *surface,
                  j->n_negative, j->n_off_plane);
 }
 
+static vg_status measure(struct vg_layer_stage *s,
+                         const struct vg_mesh *surface, struct vg_error *err)
+{
+  double t = vg_display_now();
+  vg_status st;
+
+  VG_TRY(judge(s, surface, err));
+  VG_TRY(vg_layers_fields(surface, &s->layers.columns, s->options.threads,
+                          &s->fields, err));
+  VG_TRY(vg_layers_patches(surface, &s->layers.columns, &s->fields, s->reynolds,
+                           s->length, &s->n_wall, &s->wall, &s->all, err));
+  s->time_measure += vg_display_now() - t;
+done:
+  return st;
+}
+
 vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
                               const struct vg_mesh *surface,
                               const struct vg_sizing *sizing,
                               struct vg_display *show, struct vg_error *err)
 {
-  double t;
   vg_status st;
 
   assert(s->is_on);
@@ -750,14 +765,23 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
                       err);
   if (st == VG_ERR_STOPPED) st = vg_display_stopped(show, err);
   VG_TRY(st);
-  t = vg_display_now();
   vg_display_update(show, "layer measurement", s->report.n_cell, 0);
-  VG_TRY(judge(s, surface, err));
-  VG_TRY(vg_layers_fields(surface, &s->layers.columns, s->options.threads,
-                          &s->fields, err));
-  VG_TRY(vg_layers_patches(surface, &s->layers.columns, &s->fields, s->reynolds,
-                           s->length, &s->n_wall, &s->wall, &s->all, err));
-  s->time_measure = vg_display_now() - t;
+  st = measure(s, surface, err);
 done:
   return st;
+}
+
+vg_status vg_layer_stage_relaxed(struct vg_layer_stage *s,
+                                 const struct vg_mesh *surface,
+                                 struct vg_error *err)
+{
+  const struct vg_columns *c = &s->layers.columns;
+
+  vg_wall_fields_release(&s->fields);
+  free(s->wall);
+  s->wall = NULL;
+  memset(s->report.compressed, 0, sizeof s->report.compressed);
+  for (size_t i = 0; i < c->n_column; i++)
+    s->report.compressed[c->column[i].compressed]++;
+  return measure(s, surface, err);
 }

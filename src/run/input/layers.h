@@ -7,6 +7,7 @@
 #include "layers/columns/layers.h"
 #include "layers/expand/join.h"
 #include "layers/measure/measure.h"
+#include "layers/relax/relax.h"
 #include "run/input/walls.h"
 
 /* Layers end where cells are as thick as those of the field, for which a
@@ -45,7 +46,9 @@ struct vg_layer_stage {
   struct vg_join_info join;
   double *top; /* [columns.n_face] volume ratio across the top, from
                   vg_layer_slices_tops. */
-  double time_measure;
+  struct vg_relax_report
+    relax; /* Tops lowered under flat cells of the field. */
+  double time_measure, time_relax;
 };
 #define VG_LAYER_STAGE_INIT                                                    \
   {                                                                            \
@@ -91,6 +94,12 @@ vg_status vg_layer_stage_grow(struct vg_layer_stage *s,
                               const struct vg_mesh *surface,
                               const struct vg_sizing *sizing,
                               struct vg_display *show, struct vg_error *err);
+
+/** Checks and measures the layers again, after tops were lowered. Same errors
+ * as vg_layer_stage_grow. */
+vg_status vg_layer_stage_relaxed(struct vg_layer_stage *s,
+                                 const struct vg_mesh *surface,
+                                 struct vg_error *err);
 
 /** Steps that also need the field, once s->top is known: statistics of the
  * tops, and limits. run/input/layer_limits.c. */

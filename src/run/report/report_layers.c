@@ -226,12 +226,13 @@ static void times(FILE *to, const struct vg_layer_stage *s)
   fprintf(to,
           "\n  time (s): topology %.2f, directions %.2f, heights %.2f, "
           "clearance %.2f,\n  slide patches %.2f, total %.2f (%s columns/s, "
-          "%s layer cells/s); measurement %.2f, front %.2f\n",
+          "%s layer cells/s); measurement %.2f, front %.2f, tops lowered after "
+          "the fill %.2f\n",
           r->time_topology, r->time_direction, r->time_height, r->time_clear,
           r->time_slide, r->time_total,
           vg_text_count(rate(r->n_column, r->time_total), a),
           vg_text_count(rate(r->n_cell, r->time_total), b), s->time_measure,
-          s->join.time);
+          s->join.time, s->time_relax);
 }
 
 static void sizes(FILE *to, const struct vg_layer_stage *s)
@@ -252,6 +253,14 @@ static void sizes(FILE *to, const struct vg_layer_stage *s)
           "  rounds of height reduction until free of collisions: %zu; slide "
           "patches remeshed: %zu, %s triangles\n",
           r->n_round, r->n_slide_patch, vg_text_count(r->n_slide_tri, a));
+  if (s->relax.n_flat)
+    fprintf(to,
+            "  field cells on the layers with an angle below 10 or above 170 "
+            "degrees: %s after the\n  fill, %s after lowering the tops of %s "
+            "columns\n",
+            vg_text_count(s->relax.n_flat, a),
+            vg_text_count(s->relax.n_left, b),
+            vg_text_count(s->relax.n_column, c));
   if (r->n_many_faces)
     fprintf(to,
             "  columns with more than %d faces, for which not all rays are "
@@ -410,11 +419,12 @@ static json_t *seconds_json(const struct vg_layer_stage *s)
 {
   const struct vg_layer_report *r = &s->report;
 
-  return json_pack("{s:f s:f s:f s:f s:f s:f s:f s:f}", "topology",
+  return json_pack("{s:f s:f s:f s:f s:f s:f s:f s:f s:f}", "topology",
                    r->time_topology, "directions", r->time_direction, "heights",
                    r->time_height, "clearance", r->time_clear, "slide",
                    r->time_slide, "total", r->time_total, "measure",
-                   s->time_measure, "join", s->join.time);
+                   s->time_measure, "join", s->join.time, "relax",
+                   s->time_relax);
 }
 
 json_t *vg_report_layers_json(const struct vg_layer_stage *s,
@@ -437,6 +447,9 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
     { "rounds", r->n_round },
     { "columns_of_many_faces", r->n_many_faces },
     { "slide_patches", r->n_slide_patch },
+    { "flat_cells_after_fill", s->relax.n_flat },
+    { "flat_cells_left", s->relax.n_left },
+    { "columns_lowered_after_fill", s->relax.n_column },
     { "slide_triangles", r->n_slide_tri },
     { "complete_prisms", s->judgement.n_prism },
     { "prisms_with_bad_corner", s->judgement.n_bad_corner },

@@ -8,6 +8,7 @@
 #include "base/team.h"
 #include "base/version.h"
 #include "layers/columns/share.h"
+#include "layers/relax/relax.h"
 #include "partition/advance/ways.h"
 #include "run/input/share.h"
 #include "run/input/sizes.h"
@@ -510,6 +511,24 @@ done:
   return st;
 }
 
+/* Lowers tops of layers under flat cells of the field. */
+static vg_status relax_tops(struct vg_run *r, const struct vg_problem *p,
+                            struct vg_layer_stage *layers, struct vg_error *err)
+{
+  double t = vg_display_now();
+  vg_status st = vg_layers_relax(r->comm, &p->boundary.surface, &layers->layers,
+                                 vg_partition_slices(r->field), r->threads,
+                                 &layers->relax, err);
+
+  if (st < 0) return st;
+  layers->time_relax = vg_display_now() - t;
+  if (!layers->relax.n_column) return VG_OK;
+  vg_partition_move_front(r->field);
+  layers->options.threads = r->threads;
+  if (!r->rank) st = vg_layer_stage_relaxed(layers, &p->boundary.surface, err);
+  return vg_comm_agree(r->comm, st, err);
+}
+
 /* The second sizing field is that of the front, so that the field matches the
  * tops of the layers. */
 static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
@@ -529,6 +548,7 @@ static vg_status mesh_layers(struct vg_run *r, const struct vg_problem *p,
                       r->options.change, err));
   VG_TRY(find_ineffective_sources(r, p, &front, sizing, err));
   VG_TRY(fill(r, p, &layers->layers, &front, sizing, show, err));
+  VG_TRY(relax_tops(r, p, layers, err));
   st = vg_layer_slices_open(&p->boundary.surface, &layers->layers,
                             vg_partition_slices(r->field),
                             (enum vg_layer_cells)p->resolved.settings.cells,

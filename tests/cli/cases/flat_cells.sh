@@ -34,7 +34,7 @@ function box(name, n, half, out,  k, s, i, j, d, a, b, c, e) {
 }
 BEGIN { box("hull", 4, 1, -1); box("core", 10, half, 1) }
 END
-awk -v half=0.95 -f boxes.awk >gap.stl
+awk -v half=0.98 -f boxes.awk >gap.stl
 run="-q -p gap.stl --farfield none --first 0.002 --write b8.ugrid"
 
 # flat FOLDER: the causes of flat cells in the report.
@@ -84,7 +84,6 @@ exits 0
 says out "    tops and other surface points "
 
 # Without layers, all cells are examined.
-awk -v half=0.98 -f boxes.awk >gap.stl
 vanguard mesh $run --layers no --out plain
 exits 0
 flat plain >plain.flat

@@ -1,0 +1,248 @@
+/* Collects the cells at the tops of flat cells, has them improved on the first
+ * rank, and moves the tops on all ranks. */
+#include "layers/relax/relax.h"
+
+#include <assert.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/shape.h"
+#include "layers/relax/relax_parts.h"
+
+struct search {
+  const struct vg_layers *layers;
+  uint8_t *mark; /* [n_column] 1: a top of a flat cell that may move. */
+  /* Cells at these tops, in the order of the threads. */
+  pthread_mutex_t lock;
+  size_t n_cell, cap_cell;
+  struct vg_relax_cell *cell;
+};
+
+/* Column whose top is point `id` of the field; VG_NO_INDEX: not a top. */
+static uint32_t column_of(const struct vg_layers *l, uint32_t id)
+{
+  return id < l->front.n_point ? vg_layer_column_of(l->front.id[id])
+                               : VG_NO_INDEX;
+}
+
+static double shape_of(const struct vg_slice *s, const uint32_t t[4])
+{
+  return vg_shape(s->x[t[0]], s->x[t[1]], s->x[t[2]], s->x[t[3]]);
+}
+
+/* Marks the tops of flat cells. */
+static vg_status mark_slice(void *context, const struct vg_slice *s,
+                            struct vg_error *err)
+{
+  const struct search *q = context;
+  const uint32_t(*tet)[4] = (const uint32_t(*)[4])s->cell[VG_SLICE_TET];
+
+  (void)err;
+  for (size_t i = 0; i < s->n_cell[VG_SLICE_TET]; i++) {
+    uint32_t column[4];
+    int n = 0;
+
+    for (int k = 0; k < 4; k++) {
+      uint32_t c = column_of(q->layers, s->id[tet[i][k]]);
+
+      if (c != VG_NO_INDEX && vg_relax_may_move(&q->layers->columns.column[c]))
+        column[n++] = c;
+    }
+    if (!n || shape_of(s, tet[i]) >= VG_RELAX_FLAT) continue;
+    while (n--) __atomic_store_n(&q->mark[column[n]], 1, __ATOMIC_RELAXED);
+  }
+  return VG_OK;
+}
+
+static int is_marked(const struct search *q, uint32_t id)
+{
+  uint32_t c = column_of(q->layers, id);
+
+  return c != VG_NO_INDEX && q->mark[c];
+}
+
+static vg_status keep(struct search *q, const struct vg_slice *s,
+                      const uint32_t t[4], struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  pthread_mutex_lock(&q->lock);
+  if (vg_reserve(&q->cell, &q->cap_cell, q->n_cell + 1, sizeof *q->cell)) {
+    st = vg_fail_memory(err, "the cells on the layers");
+  } else {
+    struct vg_relax_cell *c = &q->cell[q->n_cell++];
+
+    for (int k = 0; k < 4; k++) {
+      c->id[k] = s->id[t[k]];
+      memcpy(c->x[k], s->x[t[k]], sizeof c->x[k]);
+    }
+  }
+  pthread_mutex_unlock(&q->lock);
+  return st;
+}
+
+/* Keeps the cells at the marked tops. */
+static vg_status keep_slice(void *context, const struct vg_slice *s,
+                            struct vg_error *err)
+{
+  struct search *q = context;
+  const uint32_t(*tet)[4] = (const uint32_t(*)[4])s->cell[VG_SLICE_TET];
+  vg_status st = VG_OK;
+
+  for (size_t i = 0; i < s->n_cell[VG_SLICE_TET] && st >= 0; i++) {
+    int is_at_top = 0;
+
+    for (int k = 0; k < 4; k++) is_at_top |= is_marked(q, s->id[tet[i][k]]);
+    if (is_at_top) st = keep(q, s, tet[i], err);
+  }
+  return st;
+}
+
+/* Replaces *data by that of all ranks, in their order. Collective. */
+static vg_status gather(struct vg_comm *comm, size_t size, size_t *n,
+                        void **data, struct vg_error *err)
+{
+  size_t n_rank = (size_t)vg_comm_size(comm), bytes = 0;
+  struct vg_bytes mine = { *n * size, *data };
+  struct vg_bytes *all = vg_calloc(n_rank, sizeof *all);
+  unsigned char *to = NULL;
+  vg_status st = all ? VG_OK : vg_fail_memory(err, "the cells on the layers");
+
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(vg_comm_allgather(comm, &mine, all, err));
+  for (size_t r = 0; r < n_rank; r++) bytes += all[r].n;
+  to = vg_alloc(bytes, 1);
+  if (!to) {
+    st = vg_fail_memory(err, "the cells on the layers");
+    goto done;
+  }
+  *n = bytes / size;
+  free(*data);
+  *data = to;
+  for (size_t r = 0; r < n_rank; to += all[r++].n)
+    if (all[r].n) memcpy(to, all[r].data, all[r].n);
+done:
+  vg_bytes_release(all, all ? n_rank : 0);
+  return st;
+}
+
+/* Marks on every rank what any rank has marked. Collective. */
+static vg_status share_marks(struct vg_comm *comm, struct search *q, size_t *n,
+                             struct vg_error *err)
+{
+  size_t n_column = q->layers->columns.n_column;
+  uint32_t *list = NULL;
+  vg_status st = VG_OK;
+
+  *n = 0;
+  for (size_t i = 0; i < n_column; i++) *n += q->mark[i];
+  list = vg_alloc(*n, sizeof *list);
+  if (!list) st = vg_fail_memory(err, "the tops of the layers");
+  VG_TRY(vg_comm_agree(comm, st, err));
+  *n = 0;
+  for (size_t i = 0; i < n_column; i++)
+    if (q->mark[i]) list[(*n)++] = (uint32_t)i;
+  st = gather(comm, sizeof *list, n, (void **)&list, err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  for (size_t i = 0; i < *n; i++) q->mark[list[i]] = 1;
+done:
+  free(list);
+  return st;
+}
+
+/* --- moving the tops ----------------------------------------------------- */
+
+/* Applies the moves to the layers. The first rank of a node does it for the
+ * others if they share one copy. */
+static void apply(struct vg_layers *l, const struct vg_mesh *surface,
+                  uint8_t *mark, size_t n, const struct vg_relax_move *move)
+{
+  memset(mark, 0, l->columns.n_column);
+  for (size_t i = 0; i < n; i++) {
+    struct vg_column *c = &l->columns.column[move[i].column];
+
+    c->cap = move[i].cap;
+    c->compressed = VG_CAUSE_CELL;
+    mark[move[i].column] = 1;
+  }
+  for (size_t i = 0; i < l->front.n_point; i++) {
+    uint32_t c = column_of(l, (uint32_t)i);
+
+    if (c != VG_NO_INDEX && mark[c])
+      vg_column_top(&l->columns, surface, c, l->front.x[i]);
+  }
+}
+
+/* Sends the moves and the report of the first rank to all. Collective. */
+static vg_status send_moves(struct vg_comm *comm, size_t *n,
+                            struct vg_relax_move **move,
+                            struct vg_relax_report *report,
+                            struct vg_error *err)
+{
+  struct vg_bytes b = { *n * sizeof **move, (unsigned char *)*move };
+  struct vg_bytes r = { sizeof *report, (unsigned char *)report };
+  vg_status st;
+
+  if (vg_comm_rank(comm)) r = b = (struct vg_bytes){ 0, NULL };
+  VG_TRY(vg_comm_bcast(comm, 0, &b, err));
+  *move = (struct vg_relax_move *)(void *)b.data;
+  *n = b.n / sizeof **move;
+  VG_TRY(vg_comm_bcast(comm, 0, &r, err));
+  if (!vg_comm_rank(comm)) return st;
+  memcpy(report, r.data, sizeof *report);
+  free(r.data);
+done:
+  return st;
+}
+
+static vg_status move_tops(struct vg_comm *comm, const struct vg_mesh *surface,
+                           struct vg_layers *layers, struct search *q,
+                           struct vg_relax_report *report, struct vg_error *err)
+{
+  struct vg_relax_move *move = NULL;
+  size_t n_move = 0;
+  vg_status st = VG_OK;
+
+  if (!vg_comm_rank(comm))
+    st = vg_relax_tops(surface, layers, q->mark, q->n_cell, q->cell, &n_move,
+                       &move, report, err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(send_moves(comm, &n_move, &move, report, err));
+  if (!layers->common.is_mapped || !vg_comm_node_rank(comm))
+    apply(layers, surface, q->mark, n_move, move);
+  st = vg_comm_agree(comm, VG_OK, err);
+done:
+  free(move);
+  return st;
+}
+
+vg_status vg_layers_relax(struct vg_comm *comm, const struct vg_mesh *surface,
+                          struct vg_layers *layers,
+                          const struct vg_slices *field, int threads,
+                          struct vg_relax_report *report, struct vg_error *err)
+{
+  assert(field->n_boundary_point == layers->front.n_point);
+
+  struct search q = { .layers = layers,
+                      .mark = vg_calloc(layers->columns.n_column, 1),
+                      .lock = PTHREAD_MUTEX_INITIALIZER };
+  size_t n_mark;
+  vg_status st = q.mark ? VG_OK : vg_fail_memory(err, "the tops of the layers");
+
+  *report = (struct vg_relax_report){ 0 };
+  if (st >= 0) st = vg_slices_each(field, threads, mark_slice, &q, err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  VG_TRY(share_marks(comm, &q, &n_mark, err));
+  if (!n_mark) goto done;
+  st = vg_slices_each(field, threads, keep_slice, &q, err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  st = gather(comm, sizeof *q.cell, &q.n_cell, (void **)&q.cell, err);
+  VG_TRY(vg_comm_agree(comm, st, err));
+  st = move_tops(comm, surface, layers, &q, report, err);
+done:
+  free(q.mark);
+  free(q.cell);
+  return st;
+}

@@ -1,0 +1,333 @@
+/* Lowers tops one after the other, in the order of their columns. Declared in
+ * layers/relax/relax_parts.h. */
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/geometry/shape.h"
+#include "layers/expand/stack.h"
+#include "layers/relax/relax_parts.h"
+
+/* L25 */
+#define ROUNDS 6 /* Most sweeps over the tops. */
+#define STEPS                                                                  \
+  10 /* Heights tried for a column, from the present height down               \
+      */
+#define LEAST                                                                  \
+  0.5 /* to this share of the height after growth. Lower columns               \
+         would end with thin layers under large cells. */
+#define GAIN                                                                   \
+  1.05 /* Least improvement of the worst cell, as the square of a              \
+          sine. */
+
+/* A list of items for each top: items [first[i] .. first[i + 1] - 1]. */
+struct lists {
+  size_t *first;
+  uint32_t *item;
+};
+
+struct tops {
+  const struct vg_mesh *surface;
+  const struct vg_front *front;
+  struct vg_columns columns; /* With an own copy of the columns. */
+  size_t n_point, n_cell, n_top;
+  uint32_t *id;        /* [n_point] point of the field, ascending. */
+  double (*x)[3];      /* [n_point] */
+  uint32_t (*cell)[4]; /* [n_cell] points. */
+  uint32_t *top;       /* [n_top] column, ascending. */
+  uint32_t *top_of;    /* [n_column] index in top, or VG_NO_INDEX. */
+  uint32_t *point;     /* [n_top] point. */
+  double *least;       /* [n_top] least height of the column. */
+  struct lists cells, faces;
+  struct vg_stack stack;
+};
+
+/* --- data ---------------------------------------------------------------- */
+
+static int by_ids(const void *a, const void *b)
+{
+  const struct vg_relax_cell *s = a, *t = b;
+
+  for (int k = 0; k < 4; k++)
+    if (s->id[k] != t->id[k]) return s->id[k] < t->id[k] ? -1 : 1;
+  return 0;
+}
+
+static int by_value(const void *a, const void *b)
+{
+  uint32_t s = *(const uint32_t *)a, t = *(const uint32_t *)b;
+
+  return s < t ? -1 : s > t;
+}
+
+static uint32_t index_of(const struct tops *t, uint32_t id)
+{
+  const uint32_t *at = bsearch(&id, t->id, t->n_point, sizeof *t->id, by_value);
+
+  assert(at);
+  return (uint32_t)(at - t->id);
+}
+
+static vg_status number_points(struct tops *t, size_t n_cell,
+                               const struct vg_relax_cell *cell,
+                               struct vg_error *err)
+{
+  size_t n = 0;
+
+  t->n_cell = n_cell;
+  t->id = vg_alloc(4 * n_cell, sizeof *t->id);
+  t->x = vg_alloc(4 * n_cell, sizeof *t->x);
+  t->cell = vg_alloc(n_cell, sizeof *t->cell);
+  if (!t->id || !t->x || !t->cell)
+    return vg_fail_memory(err, "the cells on the layers");
+  for (size_t i = 0; i < 4 * n_cell; i++) t->id[i] = cell[i / 4].id[i % 4];
+  if (n_cell) qsort(t->id, 4 * n_cell, sizeof *t->id, by_value);
+  for (size_t i = 0; i < 4 * n_cell; i++)
+    if (!n || t->id[i] != t->id[n - 1]) t->id[n++] = t->id[i];
+  t->n_point = n;
+  for (size_t i = 0; i < 4 * n_cell; i++) {
+    uint32_t p = index_of(t, cell[i / 4].id[i % 4]);
+
+    t->cell[i / 4][i % 4] = p;
+    memcpy(t->x[p], cell[i / 4].x[i % 4], sizeof *t->x);
+  }
+  return VG_OK;
+}
+
+static vg_status list_tops(struct tops *t, const uint8_t *mark,
+                           struct vg_error *err)
+{
+  size_t n_column = t->columns.n_column;
+
+  for (size_t i = 0; i < n_column; i++) t->n_top += mark[i];
+  t->top = vg_alloc(t->n_top, sizeof *t->top);
+  t->point = vg_alloc(t->n_top, sizeof *t->point);
+  t->least = vg_alloc(t->n_top, sizeof *t->least);
+  t->top_of = vg_alloc(n_column, sizeof *t->top_of);
+  if (!t->top || !t->point || !t->least || !t->top_of)
+    return vg_fail_memory(err, "the tops of the layers");
+  t->n_top = 0;
+  for (size_t i = 0; i < n_column; i++) {
+    t->top_of[i] = VG_NO_INDEX;
+    if (!mark[i]) continue;
+    t->top_of[i] = (uint32_t)t->n_top;
+    t->top[t->n_top++] = (uint32_t)i;
+  }
+  for (size_t i = 0; i < t->n_point; i++) {
+    uint32_t c = t->id[i] < t->front->n_point
+                 ? vg_layer_column_of(t->front->id[t->id[i]])
+                 : VG_NO_INDEX;
+
+    if (c != VG_NO_INDEX && mark[c]) t->point[t->top_of[c]] = (uint32_t)i;
+  }
+  return VG_OK;
+}
+
+/* The lists of the items [n] whose k corners include a top; top_at gives the
+ * top of a corner, or VG_NO_INDEX. */
+static vg_status make_lists(const struct tops *t, size_t n, int k,
+                            uint32_t (*top_at)(const struct tops *, size_t,
+                                               int),
+                            struct lists *out, struct vg_error *err)
+{
+  size_t total = 0;
+
+  out->first = vg_calloc(t->n_top + 2, sizeof *out->first);
+  if (!out->first) return vg_fail_memory(err, "the tops of the layers");
+  for (size_t i = 0; i < n; i++)
+    for (int j = 0; j < k; j++) {
+      uint32_t top = top_at(t, i, j);
+
+      if (top != VG_NO_INDEX) out->first[top + 2]++, total++;
+    }
+  out->item = vg_alloc(total, sizeof *out->item);
+  if (!out->item) return vg_fail_memory(err, "the tops of the layers");
+  for (size_t i = 0; i < t->n_top; i++) out->first[i + 2] += out->first[i + 1];
+  for (size_t i = 0; i < n; i++)
+    for (int j = 0; j < k; j++) {
+      uint32_t top = top_at(t, i, j);
+
+      if (top != VG_NO_INDEX) out->item[out->first[top + 1]++] = (uint32_t)i;
+    }
+  return VG_OK;
+}
+
+static uint32_t top_of_face(const struct tops *t, size_t f, int k)
+{
+  return t->top_of[t->columns.face[f][k]];
+}
+
+static uint32_t top_of_cell(const struct tops *t, size_t i, int k)
+{
+  uint32_t id = t->id[t->cell[i][k]], c;
+
+  if (id >= t->front->n_point) return VG_NO_INDEX;
+  c = vg_layer_column_of(t->front->id[id]);
+  return c == VG_NO_INDEX ? VG_NO_INDEX : t->top_of[c];
+}
+
+/* --- moves --------------------------------------------------------------- */
+
+static double shape_of(const struct tops *t, size_t cell)
+{
+  const uint32_t *v = t->cell[cell];
+
+  return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+}
+
+static double worst(const struct tops *t, size_t top)
+{
+  double least = INFINITY;
+
+  for (size_t i = t->cells.first[top]; i < t->cells.first[top + 1]; i++)
+    least = fmin(least, shape_of(t, t->cells.item[i]));
+  return least;
+}
+
+static int is_sound(struct tops *t, size_t top)
+{
+  uint8_t faulty;
+
+  for (size_t i = t->faces.first[top]; i < t->faces.first[top + 1]; i++)
+    if (vg_stack_first_bad(&t->stack, &t->columns, t->surface, t->faces.item[i],
+                           &faulty) >= 0)
+      return 0;
+  return 1;
+}
+
+static double height(struct tops *t, size_t top)
+{
+  const struct vg_column *c = &t->columns.column[t->top[top]];
+  double *d = t->stack.d[0];
+
+  vg_growth_law_heights(&t->columns.law[c->law], c->cap, c->n, d);
+  return d[c->n];
+}
+
+/* Gives a column another cap and moves its top. */
+static void set_cap(struct tops *t, size_t top, double cap)
+{
+  t->columns.column[t->top[top]].cap = cap;
+  vg_column_top(&t->columns, t->surface, t->top[top], t->x[t->point[top]]);
+}
+
+/* Lowers a column to the height that is best for its worst cell. */
+static int lower(struct tops *t, size_t top)
+{
+  struct vg_column *c = &t->columns.column[t->top[top]];
+  const struct vg_growth_law *law = &t->columns.law[c->law];
+  double least = worst(t, top), cap = c->cap, best = cap;
+  double h = height(t, top), step = (h - t->least[top]) / STEPS;
+
+  if (least >= VG_RELAX_FLAT) return 0;
+  least = fmax(GAIN * least, 0);
+  for (int k = 1; k <= STEPS; k++) {
+    double next = vg_growth_law_compress(law, c->n, h - k * step), q;
+
+    if (!(next > 0)) break;
+    if (!(next < cap)) continue;
+    set_cap(t, top, next);
+    q = worst(t, top);
+    if (!(q > least) || !is_sound(t, top)) continue;
+    least = q;
+    best = next;
+  }
+  set_cap(t, top, best);
+  return best < cap;
+}
+
+static size_t count_flat(const struct tops *t)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < t->n_cell; i++) n += shape_of(t, i) < VG_RELAX_FLAT;
+  return n;
+}
+
+static vg_status list_moves(const struct tops *t, const struct vg_columns *old,
+                            size_t *n, struct vg_relax_move **out,
+                            struct vg_error *err)
+{
+  struct vg_relax_move *m = vg_calloc(t->n_top, sizeof *m);
+
+  if (!m) return vg_fail_memory(err, "the tops of the layers");
+  *n = 0;
+  for (size_t i = 0; i < t->n_top; i++) {
+    double cap = t->columns.column[t->top[i]].cap;
+
+    if (cap == old->column[t->top[i]].cap) continue;
+    m[*n].column = t->top[i];
+    m[(*n)++].cap = cap;
+  }
+  *out = m;
+  return VG_OK;
+}
+
+static vg_status prepare(struct tops *t, const struct vg_layers *layers,
+                         const uint8_t *mark, size_t n_cell,
+                         const struct vg_relax_cell *cell, struct vg_error *err)
+{
+  size_t n = layers->columns.n_column;
+  vg_status st;
+
+  t->columns.column = vg_alloc(n, sizeof *t->columns.column);
+  if (!t->columns.column) return vg_fail_memory(err, "the layers");
+  if (n)
+    memcpy(t->columns.column, layers->columns.column,
+           n * sizeof *t->columns.column);
+  VG_TRY(number_points(t, n_cell, cell, err));
+  VG_TRY(list_tops(t, mark, err));
+  VG_TRY(make_lists(t, n_cell, 4, top_of_cell, &t->cells, err));
+  st = make_lists(t, t->columns.n_face, 3, top_of_face, &t->faces, err);
+done:
+  return st;
+}
+
+static void release(struct tops *t)
+{
+  free(t->columns.column);
+  free(t->id);
+  free(t->x);
+  free(t->cell);
+  free(t->top);
+  free(t->top_of);
+  free(t->point);
+  free(t->least);
+  free(t->cells.first);
+  free(t->cells.item);
+  free(t->faces.first);
+  free(t->faces.item);
+  free(t);
+}
+
+vg_status vg_relax_tops(const struct vg_mesh *surface,
+                        const struct vg_layers *layers, const uint8_t *mark,
+                        size_t n_cell, struct vg_relax_cell *cell,
+                        size_t *n_move, struct vg_relax_move **move,
+                        struct vg_relax_report *report, struct vg_error *err)
+{
+  struct tops *t = vg_calloc(1, sizeof *t);
+  vg_status st;
+
+  if (!t) return vg_fail_memory(err, "the tops of the layers");
+  t->surface = surface;
+  t->front = &layers->front;
+  t->columns = layers->columns;
+  t->columns.column = NULL;
+  if (n_cell) qsort(cell, n_cell, sizeof *cell, by_ids);
+  VG_TRY(prepare(t, layers, mark, n_cell, cell, err));
+  for (size_t i = 0; i < t->n_top; i++) t->least[i] = LEAST * height(t, i);
+  report->n_flat = count_flat(t);
+  for (int round = 0, moved = 1; moved && round < ROUNDS; round++) {
+    moved = 0;
+    for (size_t i = 0; i < t->n_top; i++) moved |= lower(t, i);
+  }
+  report->n_left = count_flat(t);
+  VG_TRY(list_moves(t, &layers->columns, n_move, move, err));
+  report->n_column = *n_move;
+done:
+  release(t);
+  return st;
+}
