@@ -67,9 +67,12 @@ static size_t check(struct vg_mesh *surface, double delta1, const char *what,
   assert_int_equal(vg_layers_judge(surface, &layers.columns, 1, NULL, &judged,
                                    NULL),
                    VG_OK);
-  if (judged.n_negative || judged.n_bad_corner)
-    fail_msg("%s %d: %zu cells not positive, %zu prisms with a bad corner",
-             what, number, judged.n_negative, judged.n_bad_corner);
+  if (judged.n_negative || judged.n_bad_corner || judged.n_bad_pyramid)
+    fail_msg(
+      "%s %d: %zu cells not positive, %zu prisms and %zu pyramids with a "
+      "bad corner",
+      what, number, judged.n_negative, judged.n_bad_corner,
+      judged.n_bad_pyramid);
   assert_int_equal(vg_layers_fields(surface, &layers.columns, 1, &w, NULL),
                    VG_OK);
   for (size_t i = 0; i < w.n; i++) {
