@@ -129,6 +129,15 @@ stolen() {
   awk -v hz="$(getconf CLK_TCK)" '$1 == "cpu" { print $9 / hz }' /proc/stat
 }
 
+# check_workers REPORT RANKS THREADS: end the script if the run of a
+# .report.json had another number of ranks or of threads than was requested.
+check_workers() {
+  local had
+  had=$(jq -r '.partition | "\(.ranks) x \(.threads)"' "$1")
+  [ "$had" = "$2 x $3" ] ||
+    die "$1: $had ranks x threads instead of the requested $2 x $3"
+}
+
 # run_mesh VANGUARD FOLDER RANKS THREADS OPTION...: vanguard mesh with a
 # timeline, timed. FOLDER/row.json: wall, cpu (user and system time of all
 # ranks), stolen (the share of all cores that the host took meanwhile), peak_mb
@@ -149,6 +158,7 @@ run_mesh() {
   [ $status = 0 ] || return $status
   host=$(calc "($(stolen) - $host) / $(nproc)")
   report=$(echo "$d"/out/*.report.json)
+  check_workers "$report" "$ranks" "$threads"
   record=$(echo "$d"/out/*.timeline.json)
   cp "$record" "$d/record.json"
   jq -n -c --slurpfile r "$report" --slurpfile t "$record" \

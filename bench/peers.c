@@ -9,11 +9,9 @@
  *   judge MESH SURFACE DECK [OUT.ugrid]
  *                              figures of a mesh: .ugrid, .msh, or the stem
  *                              of .node and .ele; optionally written as UGRID
- *   seconds REPORT.json        time of the fill in a report of Vanguard
  *
  * DECK is a run deck (run/settings/deck.h), "-" for all defaults. Exit status 0
  * done, 1 failed, 2 usage. */
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -342,20 +340,6 @@ done:
   return st;
 }
 
-static vg_status seconds(const char *path, struct vg_error *err)
-{
-  json_error_t where;
-  json_t *report = json_load_file(path, 0, &where);
-  json_t *fill = json_object_get(json_object_get(report, "seconds"), "fill");
-  int found = json_is_number(fill);
-
-  if (found) printf("%.4f\n", json_number_value(fill));
-  json_decref(report);
-  return found ? VG_OK
-               : vg_fail(err, VG_ERR_FORMAT, "%s: no seconds of a fill%s%s",
-                         path, report ? "" : ": ", report ? "" : where.text);
-}
-
 int main(int argc, char **argv)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -364,15 +348,12 @@ int main(int argc, char **argv)
   if (argc == 5 && !strcmp(argv[1], "prepare")) st = prepare(argv + 2, &err);
   else if (argc == 3 && !strcmp(argv[1], "view"))
     st = peer_write_view(argv[2], &err);
-  else if (argc == 3 && !strcmp(argv[1], "seconds"))
-    st = seconds(argv[2], &err);
   else if ((argc == 5 || argc == 6) && !strcmp(argv[1], "judge"))
     st = judge(argv + 2, argv[5], &err);
   else {
     fprintf(stderr, "usage: vg_bench_peers prepare SURFACE DECK STEM\n"
                     "       vg_bench_peers view STEM\n"
-                    "       vg_bench_peers judge MESH SURFACE DECK [OUT]\n"
-                    "       vg_bench_peers seconds REPORT.json\n");
+                    "       vg_bench_peers judge MESH SURFACE DECK [OUT]\n");
     return 2;
   }
   if (st < 0) fprintf(stderr, "vg_bench_peers: %s\n", err.text);

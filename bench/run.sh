@@ -2,39 +2,44 @@
 # bench/run.sh: Vanguard, TetGen and gmsh HXT on the same surfaces.
 #
 # usage: bench/run.sh [--quick] [--out FILE] [--build DIR] [--work DIR]
-#                     [--runs N] [--meshcheck PROGRAM] [--no-peers] [CASE...]
+#                     [--runs N] [--threads N] [--meshcheck PROGRAM]
+#                     [--no-peers] [CASE...]
 #   --quick      one run of every case at a tenth of its size
 #   --out        write the table to FILE too
 #   --build      build folder (default build/release, built if missing)
 #   --work       scratch folder, kept (default: a temporary one, removed)
 #   --runs       runs of a small case (default 3; large ones: 1)
+#   --threads    threads of Vanguard and of HXT (default 1); TetGen has one
 #   --meshcheck  a program that checks NAME.lb8.ugrid, exit status 0: valid
 #   --no-peers   only Vanguard
 #   CASE         box-1M box-10M sphere-2M sphere-12M wing wing-half wing-sharp
 #
-# Everything runs on one thread. Seconds are those of the volume stage, from the
-# boundary triangulation to the finished mesh, without reading and writing: for
-# Vanguard the fill and its optimisation, for TetGen its total without output,
-# for HXT "Done meshing 3D". All are wall-clock times; TetGen reports only CPU
-# time, which is scaled by elapsed / CPU time of its process. Peak memory is
-# that of the whole process. All three keep the boundary triangulation of
-# Vanguard's mesh, and use the same sizing field: TetGen as a background mesh,
-# HXT as a view on that mesh. Gmsh evaluates a view slowly, so HXT also runs
-# with the sizes of the boundary extended inwards ("hxt-ext"): its full speed,
-# but not the same sizes. The column "/ HXT" compares with the faster of the
-# two.
-# Needs: tetgen, gmsh, time (Debian packages of these names).
+# Every run must have had the requested number of threads: the report of
+# Vanguard and the log of gmsh say how many there were, and no process may have
+# used more CPU time than that many threads have. Otherwise the script ends with
+# status 1.
+#
+# Seconds are those of the volume stage, from the boundary triangulation to the
+# finished mesh, without reading and writing: for Vanguard the fill and its
+# optimisation, for TetGen its total without output, for HXT "Done meshing 3D".
+# All are wall-clock times; TetGen reports only CPU time, which is scaled by
+# elapsed / CPU time of its process. Peak memory is that of the whole process.
+# All three keep the boundary triangulation of Vanguard's mesh, and use the same
+# sizing field: TetGen as a background mesh, HXT as a view on that mesh. Gmsh
+# evaluates a view slowly, so HXT also runs with the sizes of the boundary
+# extended inwards ("hxt-ext"): its full speed, but not the same sizes. The
+# column "/ HXT" compares with the faster of the two.
+# Needs: tetgen, gmsh, jq, time (Debian packages of these names).
 set -euo pipefail
-export OMP_NUM_THREADS=1
 
 root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=bench/common.sh
 . "$root/bench/common.sh"
 build=$root/build/release
-work='' meshcheck='' quick=0 runs=3 no_peers=0
+work='' meshcheck='' quick=0 runs=3 threads=1 no_peers=0
 TETGEN_OPTIONS=-pq1.414Ym
 
-take_options "out build work runs meshcheck" "quick no-peers" "$@"
+take_options "out build work runs threads meshcheck" "quick no-peers" "$@"
 [ ${#cases[@]} -gt 0 ] || cases=(box-1M wing wing-half wing-sharp sphere-2M
                                  box-10M sphere-12M)
 
@@ -57,7 +62,11 @@ case_cells() {
 }
 is_large() { [ "$(case_cells "$1")" -gt 5000000 ]; }
 
+[[ $threads =~ ^[1-9][0-9]*$ ]] || die "--threads $threads: not a number"
+export OMP_NUM_THREADS=$threads
+
 need /usr/bin/time time
+need jq jq
 if [ $no_peers = 0 ]; then need tetgen tetgen; need gmsh gmsh; fi
 
 make_programs "$build" vanguard vg_bench_peers
@@ -74,18 +83,30 @@ timed() {
   shift
   /usr/bin/time -v -o "$log.time" "$@" > "$log" 2>&1
 }
+# within_threads LOG N: N threads are enough for the CPU time of a process that
+# `timed` ran.
+within_threads() {
+  local percent
+  percent=$(sed -n 's/.*Percent of CPU.*: \([0-9]*\)%.*/\1/p' "$1.time")
+  [ "$percent" -le $((100 * $2 + 5)) ] ||
+    die "$1: used $percent % CPU, more than $2 threads have"
+}
 
 # Each of these functions runs one mesher once in folder $1 and appends its
 # seconds and peak MB to NAME.runs.
 run_vanguard() {
   timed "$1/vanguard.log" "$vanguard" mesh -p "$1/$2" --out "$1/out" \
-    --write lb8.ugrid --layers no || { tail -5 "$1/vanguard.log" >&2; return 1; }
-  echo "$("$helper" seconds "$1/out/$2.report.json") \
+    --write lb8.ugrid --layers no --threads "$threads" ||
+    { tail -5 "$1/vanguard.log" >&2; return 1; }
+  check_workers "$1/out/$2.report.json" 1 "$threads"
+  within_threads "$1/vanguard.log" "$threads"
+  echo "$(get "$1/out/$2.report.json" .seconds.fill) \
     $(peak_mb "$1/vanguard.log.time")" >> "$1/vanguard.runs"
 }
 run_tetgen() {
   timed "$1/tetgen.log" tetgen $TETGEN_OPTIONS "$1/peer.smesh" ||
     { tail -5 "$1/tetgen.log" >&2; return 1; }
+  within_threads "$1/tetgen.log" 1
   echo "$(awk '/^Total running seconds/ { t = $NF }
     /^Output seconds/ { o = $NF }
     /(User|System) time/ { cpu += $NF }
@@ -96,8 +117,13 @@ run_tetgen() {
     $(peak_mb "$1/tetgen.log.time")" >> "$1/tetgen.runs"
 }
 hxt() {   # hxt FOLDER NAME SCRIPT
-  timed "$1/$2.log" gmsh -3 -algo hxt -nt 1 -format msh22 -bin \
+  local got
+  timed "$1/$2.log" gmsh -3 -algo hxt -nt "$threads" -format msh22 -bin \
     -o "$1/$2.msh" "$1/$3" || { tail -5 "$1/$2.log" >&2; return 1; }
+  got=$(sed -n 's/.*max\. \([0-9]*\) thread.*/\1/p' "$1/$2.log")
+  [ "$got" = "$threads" ] ||
+    die "$1/$2.log: gmsh had $got threads instead of $threads"
+  within_threads "$1/$2.log" "$threads"
   echo "$(sed -n 's/.*Done meshing 3D (Wall \([0-9.]*\)s.*/\1/p' \
     "$1/$2.log") $(peak_mb "$1/$2.log.time")" >> "$1/$2.runs"
 }
@@ -194,7 +220,7 @@ one_case() {
 
 [ -z "$out" ] || : > "$out"
 say << END
-Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc --all) cores, $(date -u +%Y-%m-%d); TetGen $TETGEN_OPTIONS, gmsh $(gmsh --version 2>&1 | tail -1) HXT -nt 1; one thread each.
+Vanguard $("$vanguard" --version | awk 'NR == 1 { print $2 }'), $(uname -m), $(nproc --all) cores, $(date -u +%Y-%m-%d); TetGen $TETGEN_OPTIONS, gmsh $(gmsh --version 2>&1 | tail -1) HXT -nt $threads; threads of Vanguard and HXT: $threads, of TetGen: 1.
 
 | case | mesher | cells | volume stage, s (min-max) | cells/s | / TetGen | / HXT | peak MB | B/cell | dihedral min / max | % < 20 | radius ratio | % edges in [0.7, 1.5] | edge / target | valid | meshcheck |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|

@@ -66,6 +66,7 @@ mesh() {   # mesh PROJECT NAME OPTION...
   "$vanguard" mesh -q -p "$stem" --threads "$threads" --timeline \
     --write b8.ugrid --out "$work/files" "$@" > "$work/log" 2>&1 < /dev/null ||
     die "$stem: $(tail -1 "$work/log")"
+  check_workers "$work/files/${stem##*/}.report.json" 1 "$threads"
   row "$work/files/${stem##*/}" "$name" | say
   rm -rf "$work/files"
 }

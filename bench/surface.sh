@@ -67,6 +67,8 @@ for name in "${cases[@]}"; do
     cmp -s "$work"/new[12]/in.lb8.ugrid ||
       die "$name: different bytes on two threads"
   done
+  awk '$1 + $2 > 1.05 * $3 + 0.05 { exit 1 }' "$work/times1" ||
+    die "$name: more CPU time than one thread has"
   row "$(awk -v c="$name" -v n="$(jq .remesh.triangles[1] "$work/out")" \
     -v t="$(awk '{ print $1 + $2 }' "$work/times1" | median)" \
     -v w1="$(awk '{ print $3 }' "$work/times1" | median)" \

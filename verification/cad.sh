@@ -3,10 +3,13 @@
 # with the default command.
 #
 # usage: verification/cad.sh --data DIR [--vanguard PROGRAM] [--meshcheck PROGRAM]
-#                            [--work DIR] [--out FILE] [--quick] [CASE...]
+#                            [--threads N] [--work DIR] [--out FILE] [--quick]
+#                            [CASE...]
 #   --data       folder of real geometry (verification/fetch.md)
 #   --vanguard   program (default build/release/bin/vanguard)
 #   --meshcheck  independent checker of a .ugrid (default: vanguard check)
+#   --threads    threads of every run (default: the cores); the report of a run
+#                with another number is a failure
 #   --work       folder for all results (default: a temporary one)
 #   --out        write the table to FILE too
 #   --quick      only cases of the folder field that take a few seconds
@@ -25,7 +28,8 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=bench/common.sh
 . "$root/bench/common.sh"
 data='' vanguard=$root/build/release/bin/vanguard meshcheck='' work='' quick=
-take_options "data vanguard meshcheck work out" "quick" "$@"
+threads=$(nproc)
+take_options "data vanguard threads meshcheck work out" "quick" "$@"
 [ -d "$data" ] || skip "no folder of real geometry: give --data DIR (verification/fetch.md)"
 need jq jq
 [ -n "$work" ] || { work=$(mktemp -d); trap 'rm -rf "$work"' EXIT; }
@@ -77,7 +81,7 @@ fi
 failed=0
 row() { echo "$1"; [ -z "$out" ] || echo "$1" >>"$out"; }
 [ -z "$out" ] || : >"$out"
-row "| case | result | cells | full layers % | worst angle outside layers | points on CAD % | volume / CAD's - 1 | s | checker | missed |"
+row "| case | result | cells | full layers % | worst angle outside layers | points on CAD % | volume / CAD's - 1 | s on $threads thread(s) | checker | missed |"
 row "|---|---|---|---|---|---|---|---|---|---|"
 
 judge() { # MESH
@@ -149,11 +153,13 @@ for name in "${cases[@]}"; do
   status=0
   # shellcheck disable=SC2086 # a list of words
   timeout 600 "$vanguard" mesh -q -j -p "$input" --y-plus 1 --reynolds 5e6 \
-    --reference-length "$length" $options >"$work/$name/report" \
+    --reference-length "$length" --threads "$threads" $options \
+    >"$work/$name/report" \
     2>"$work/$name/err" || status=$?
   seconds=$(awk -v a="$start" -v b="$(date +%s.%N)" \
     'BEGIN { printf "%.1f", b - a }')
   if [ $status = 0 ]; then
+    check_workers "$work/$name/report" 1 "$threads"
     made "$name" "$wanted" "$angle" "$seconds"
   else
     refused "$name" "$wanted" "$status" "$seconds"

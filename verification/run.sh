@@ -2,10 +2,13 @@
 # verification/run.sh: mesh real geometry and check every result.
 #
 # usage: verification/run.sh --data DIR [--quick] [--vanguard PROGRAM]
-#            [--meshcheck PROGRAM] [--work DIR] [--out FILE] [NAME...]
+#            [--threads N] [--meshcheck PROGRAM] [--work DIR] [--out FILE]
+#            [NAME...]
 #   --data       folder of the geometry (verification/fetch.md)
 #   --quick      only small cases: seconds instead of minutes
 #   --vanguard   the program (default build/release/bin/vanguard)
+#   --threads    threads of every run (default 1); the report of a run with
+#                another number is a failure
 #   --meshcheck  another checker, run as PROGRAM -q [-s SURFACE] MESH.lb8.ugrid;
 #                exit status 0 if the mesh is valid and has all triangles of the
 #                surface
@@ -18,7 +21,7 @@ export LC_ALL=C
 
 root=$(cd "$(dirname "$0")/.." && pwd)
 vanguard=$root/build/release/bin/vanguard
-data='' work='' out='' meshcheck='' quick=0 only=()
+data='' work='' out='' meshcheck='' quick=0 threads=1 only=()
 LIMIT_S=3600
 
 usage() { sed -n '2,/^# Exit status/p' "$0" | sed 's/^# \{0,1\}//'; }
@@ -26,7 +29,7 @@ usage() { sed -n '2,/^# Exit status/p' "$0" | sed 's/^# \{0,1\}//'; }
 while [ $# -gt 0 ]; do
   case $1 in
     --quick) quick=1 ;;
-    --data|--vanguard|--meshcheck|--work|--out)
+    --data|--vanguard|--threads|--meshcheck|--work|--out)
       [ $# -gt 1 ] || { usage >&2; exit 2; }
       declare "${1#--}=$2"
       shift ;;
@@ -141,7 +144,7 @@ mesh_case() {
     options=(--deck "$d/deck")
   fi
   timeout $LIMIT_S "$vanguard" mesh -q -p "$input" --out "$d/out" \
-    --write lb8.ugrid "${options[@]}" > "$d/log" 2>&1
+    --write lb8.ugrid --threads "$threads" "${options[@]}" > "$d/log" 2>&1
   local status=$?
   report=$(echo "$d"/out/*.report.json)
   result=$(echo "$d"/out/*.lb8.ugrid)
@@ -149,6 +152,8 @@ mesh_case() {
     bad "exit $status: $(grep -a '^vanguard:' "$d/log" | tail -1)"
     return
   fi
+  [ "$(json "$report" threads partition)" = "$threads" ] ||
+    bad "not $threads threads"
   "$vanguard" check -q "$result" > "$d/check" 2>&1 || bad "vanguard check"
   case $kind in
     wall) [ "$(json "$report" farfield domain)" = true ] ||
@@ -177,7 +182,7 @@ dirty_case() {
   local d=$1 input=$2 status
   why='' row='- | - | - | -'
   timeout $LIMIT_S "$vanguard" mesh -q -p "$input" --out "$d/out" \
-    --write lb8.ugrid > "$d/log" 2> "$d/err"
+    --write lb8.ugrid --threads "$threads" > "$d/log" 2> "$d/err"
   status=$?
   [ $status = 1 ] || bad "exit $status instead of 1"
   grep -q '^vanguard: .' "$d/err" || bad "no message"
@@ -193,7 +198,7 @@ wanted() {
 
 [ -z "$out" ] || : > "$out"
 say << END
-| case | input | result | cells | fill, s | dihedral min / max | radius ratio |
+| case | input | result | cells | fill on $threads thread(s), s | dihedral min / max | radius ratio |
 |---|---|---|---|---|---|---|
 END
 failed=0 done=0

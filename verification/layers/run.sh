@@ -4,7 +4,7 @@
 #
 # usage: verification/layers/run.sh [--data DIR] [--quick] [--build DIR]
 #          [--meshcheck PROGRAM|SOURCE.c] [--work DIR] [--out FILE]
-#          [--cells "tets mixed"] [--options "OPTION..."] [CASE...]
+#          [--cells "tets mixed"] [--threads N] [--options "OPTION..."] [CASE...]
 #   --data       folder of real geometry (verification/fetch.md); without it
 #                only the wings
 #   --quick      VGRID's case, the smallest wings and DLR-F6
@@ -17,6 +17,8 @@
 #                temporary one, removed)
 #   --out        write the table to FILE too
 #   --cells      kinds of cells (default both, one after the other)
+#   --threads    threads of every run (default: the cores); the report of a run
+#                with another number is a failure
 #   --options    more options for `vanguard mesh`, e.g. "--fan-angle 60"
 #   CASE         names or patterns: 'wing*_s_*' falcon
 # Prints a row per mesh. Exit status: 0 every mesh is valid, 1 a mesh is
@@ -28,6 +30,7 @@ export LC_ALL=C
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=$root/build/release
 data='' work='' out='' meshcheck='' cells='tets mixed' options='' quick=0
+threads=$(nproc)
 only=()
 LIMIT_S=3600
 
@@ -36,7 +39,8 @@ usage() { sed -n '2,/^# 77/p' "$0" | sed 's/^# \{0,1\}//'; }
 while [ $# -gt 0 ]; do
   case $1 in
     --quick) quick=1 ;;
-    --data|--build|--meshcheck|--work|--out|--cells|--options)
+    --data|--build|--meshcheck|--work|--out|--cells|--threads|\
+    --options)
       [ $# -gt 1 ] || { usage >&2; exit 2; }
       declare "${1#--}=$2"
       shift ;;
@@ -167,7 +171,8 @@ one() {
   start=$(date +%s.%N)
   # shellcheck disable=SC2086
   timeout $LIMIT_S "$vanguard" mesh -q -p "$input" --out "$d/out" \
-    --write b8.ugrid,mapbc --layers yes --cells "$kind" "$@" $options \
+    --write b8.ugrid,mapbc --layers yes --cells "$kind" \
+    --threads "$threads" "$@" $options \
     > "$d/log" 2>&1
   status=$?
   seconds=$(awk -v a="$start" -v b="$(date +%s.%N)" \
@@ -177,6 +182,8 @@ one() {
   if [ $status != 0 ] || [ ! -f "$mesh" ]; then
     bad "exit $status: $(grep -a '^vanguard:' "$d/log" | tail -1)"
   else
+    [ "$(json "$report" partition threads)" = "$threads" ] ||
+      bad "not $threads threads"
     judge_mesh "$d" "$mesh" "$kind"
     [ "$kind" != mixed ] || "$measure" first "$mesh" \
       "$(json "$report" all first_requested mean)" > "$d/measured" 2>&1 ||
@@ -305,7 +312,7 @@ prepare_checker
 failed=0 done=0
 [ -z "$data" ] || box_case
 say << END
-| case | cells | wall points | all cells | mean levels | full % | any % | first height off, % | % prisms | worst dihedral outside | s | result | bars |
+| case | cells | wall points | all cells | mean levels | full % | any % | first height off, % | % prisms | worst dihedral outside | s on $threads thread(s) | result | bars |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|
 END
 wing_cases
