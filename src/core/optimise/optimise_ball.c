@@ -13,38 +13,84 @@
 static const double round_share = 0.3, size_share = 0.5; /* K28 */
 static const double round_slope = 1.2, size_slope = 0.5;
 
+/* Compiled into each variant of a function. The wide variants are used if the
+ * processor supports AVX2: the operations are the same and give the same bits
+ * (no products are fused). */
+#define WITHIN static inline __attribute__((always_inline))
+#if defined __x86_64__
+#define WIDE 1
+#define IS_WIDE __builtin_cpu_supports("avx2")
+#else
+#define WIDE 0
+#endif
+
+/* Cells are processed BLOCK at a time. The arrays are filled up to a multiple
+ * of BLOCK with copies of the last cell. */
+enum { BLOCK = 8 };
+
+static size_t whole_blocks(size_t n)
+{
+  return (n + BLOCK - 1) / BLOCK * BLOCK;
+}
+
+/* Quantities of a block of faces that follow from the corners. */
+WITHIN void measure(struct vg_ball_faces *b, size_t at)
+{
+  for (size_t k = at; k < at + BLOCK; k++) {
+    double e[3][3], area2 = 0;
+
+    for (int i = 0; i < 3; i++) {
+      b->edge2[i][k] = 0;
+      for (int a = 0; a < 3; a++) {
+        e[i][a] = b->x[(i + 2) % 3][a][k] - b->x[(i + 1) % 3][a][k];
+        b->edge2[i][k] += e[i][a] * e[i][a];
+      }
+    }
+    for (int a = 0; a < 3; a++) {
+      int c = (a + 1) % 3, d = (a + 2) % 3;
+      double s = e[0][c] * e[1][d] - e[0][d] * e[1][c];
+
+      b->normal[a][k] = s;
+      area2 += s * s;
+    }
+    b->area2[k] = area2;
+    b->border2[k] = b->edge2[0][k] + b->edge2[1][k] + b->edge2[2][k];
+  }
+}
+
+WITHIN void measure_all(struct vg_ball_faces *b)
+{
+  for (size_t at = 0; at < b->n; at += BLOCK) measure(b, at);
+}
+
+#if WIDE
+static __attribute__((target("avx2"))) void measure_wide(
+  struct vg_ball_faces *b)
+{
+  measure_all(b);
+}
+#endif
+
 void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
                    struct vg_ball_faces *out)
 {
-  assert(n <= VG_BALL_MAX);
+  assert(n > 0 && n <= VG_BALL_MAX);
   out->n = n;
-  for (size_t k = 0; k < n; k++) {
-    const uint32_t *v = t->cell[link[k] >> 2].v;
-    const uint8_t *f = vg_face[link[k] & 3];
+  for (size_t k = 0; k < whole_blocks(n); k++) {
+    uint32_t own = link[k < n ? k : n - 1];
+    const uint32_t *v = t->cell[own >> 2].v;
+    const uint8_t *f = vg_face[own & 3];
 
     for (int i = 0; i < 3; i++)
       for (int a = 0; a < 3; a++) out->x[i][a][k] = t->x[v[f[i]]][a];
   }
-  for (size_t k = 0; k < n; k++) {
-    double e[3][3], area2 = 0;
-
-    for (int i = 0; i < 3; i++) {
-      out->edge2[i][k] = 0;
-      for (int a = 0; a < 3; a++) {
-        e[i][a] = out->x[(i + 2) % 3][a][k] - out->x[(i + 1) % 3][a][k];
-        out->edge2[i][k] += e[i][a] * e[i][a];
-      }
-    }
-    for (int a = 0; a < 3; a++) {
-      int b = (a + 1) % 3, c = (a + 2) % 3;
-      double s = e[0][b] * e[1][c] - e[0][c] * e[1][b];
-
-      out->normal[a][k] = s;
-      area2 += s * s;
-    }
-    out->area2[k] = area2;
-    out->border2[k] = out->edge2[0][k] + out->edge2[1][k] + out->edge2[2][k];
+#if WIDE
+  if (IS_WIDE) {
+    measure_wide(out);
+    return;
   }
+#endif
+  measure_all(out);
 }
 
 void vg_ball_target(const struct vg_sizing *sizing, const double x[3],
@@ -62,8 +108,8 @@ struct cone {
   double u[3][3], l[3], n[3][3], s[3], det;
 };
 
-static inline void raise(const struct vg_ball_faces *b, size_t k,
-                         const double x[3], struct cone *c)
+WITHIN void raise(const struct vg_ball_faces *b, size_t k, const double x[3],
+                  struct cone *c)
 {
   for (int i = 0; i < 3; i++) {
     for (int a = 0; a < 3; a++) c->u[i][a] = b->x[i][a][k] - x[a];
@@ -85,43 +131,61 @@ static inline void raise(const struct vg_ball_faces *b, size_t k,
              c->u[0][2] * b->normal[2][k]);
 }
 
-static inline double least_of(double a, double b)
+WITHIN double least_of(double a, double b)
 {
   return a < b ? a : b;
 }
 
-enum { BLOCK = 8 };
+WITHIN int shapes(const struct vg_ball_faces *b, const double x[3], double stop,
+                  double *q)
+{
+  for (size_t at = 0; at < b->n; at += BLOCK) {
+    double of[BLOCK], worst = 2;
+
+    for (size_t k = 0; k < BLOCK; k++) {
+      struct cone c;
+      double s = b->area2[at + k], least, all, square;
+
+      raise(b, at + k, x, &c);
+      least = least_of(least_of(c.l[0] * c.s[0], c.l[1] * c.s[1]),
+                       c.l[2] * c.s[2]) *
+              s;
+      least = least_of(least, b->edge2[0][at + k] * c.s[1] * c.s[2]);
+      least = least_of(least, b->edge2[1][at + k] * c.s[2] * c.s[0]);
+      least = least_of(least, b->edge2[2][at + k] * c.s[0] * c.s[1]);
+      all = c.s[0] * c.s[1] * c.s[2] * s;
+      square = c.det * fabs(c.det);
+      /* As in vg_shape: nonzero only if rounding cannot affect the sign. */
+      of[k] = ((all > 0) &
+               (fabs(square) >
+                1e-24 * c.l[0] * b->edge2[0][at + k] * b->edge2[1][at + k]))
+              ? square * least / all
+              : 0;
+    }
+    for (size_t k = 0; k < BLOCK; k++) {
+      worst = least_of(worst, of[k]);
+      q[at + k] = of[k];
+    }
+    if (worst <= stop) return 0;
+  }
+  return 1;
+}
+
+#if WIDE
+static __attribute__((target("avx2"))) int shapes_wide(
+  const struct vg_ball_faces *b, const double x[3], double stop, double *q)
+{
+  return shapes(b, x, stop, q);
+}
+#endif
 
 int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
                    double stop, double *q)
 {
-  for (size_t at = 0; at < b->n; at += BLOCK) {
-    size_t end = at + BLOCK < b->n ? at + BLOCK : b->n;
-    double worst = 2;
-
-    for (size_t k = at; k < end; k++) {
-      struct cone c;
-      double s = b->area2[k], least, all, square;
-
-      raise(b, k, x, &c);
-      least = least_of(least_of(c.l[0] * c.s[0], c.l[1] * c.s[1]),
-                       c.l[2] * c.s[2]) *
-              s;
-      least = least_of(least, b->edge2[0][k] * c.s[1] * c.s[2]);
-      least = least_of(least, b->edge2[1][k] * c.s[2] * c.s[0]);
-      least = least_of(least, b->edge2[2][k] * c.s[0] * c.s[1]);
-      all = c.s[0] * c.s[1] * c.s[2] * s;
-      square = c.det * fabs(c.det);
-      /* As in vg_shape: nonzero only if rounding cannot affect the sign. */
-      q[k] = ((all > 0) &
-              (fabs(square) > 1e-24 * c.l[0] * b->edge2[0][k] * b->edge2[1][k]))
-             ? square * least / all
-             : 0;
-    }
-    for (size_t k = at; k < end; k++) worst = least_of(worst, q[k]);
-    if (worst <= stop) return 0;
-  }
-  return 1;
+#if WIDE
+  if (IS_WIDE) return shapes_wide(b, x, stop, q);
+#endif
+  return shapes(b, x, stop, q);
 }
 
 double vg_ball_other(const struct vg_ball_faces *b, const double x[3])
@@ -167,13 +231,31 @@ void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
   for (int a = 0; a < 3; a++) to[a] = total > 0 ? sum[a] / total : x[a];
 }
 
+void vg_ball_centre(const struct vg_ball_faces *b, const double x[3],
+                    double to[3])
+{
+  double sum[3] = { 0 }, total = 0;
+
+  for (size_t k = 0; k < b->n; k++) {
+    double volume = 0;
+
+    for (int a = 0; a < 3; a++)
+      volume += (x[a] - b->x[0][a][k]) * b->normal[a][k];
+    total += volume;
+    for (int a = 0; a < 3; a++)
+      sum[a] += volume * (b->x[0][a][k] + b->x[1][a][k] + b->x[2][a][k]);
+  }
+  for (int a = 0; a < 3; a++)
+    to[a] = total > 0 ? 0.25 * x[a] + 0.25 * sum[a] / total : x[a];
+}
+
 /* Gradient for cell k. The shape is det^2 l / (s s') at the edge where this is
  * smallest; sqrt(l) is the length of the edge, and sqrt(s) and sqrt(s') are
  * twice the areas of its faces. The edge from the point to corner i lies
  * between the faces opposite the other two corners. The base edge opposite
  * corner i lies between the base and face i, of which only face i changes. */
-static inline void slope_of(const struct vg_ball_faces *b, size_t k,
-                            const double x[3], double g[3])
+WITHIN void slope_of(const struct vg_ball_faces *b, size_t k, const double x[3],
+                     double g[3])
 {
   struct cone c;
   double up[3], border[3], least, edges2, wide, high;

@@ -19,8 +19,8 @@ struct vg_ball_faces {
                                     no target */
 };
 
-/** Fill all members except `per`. link: [n <= VG_BALL_MAX] 4 * cell + index of
- * the point. */
+/** Fill all members except `per`. link: [n] 4 * cell + index of the point, with
+ * 0 < n <= VG_BALL_MAX. */
 void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
                    struct vg_ball_faces *out);
 /** Set the target edge length to the value of `sizing` at x, the position of
@@ -28,8 +28,9 @@ void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
 void vg_ball_target(const struct vg_sizing *sizing, const double x[3],
                     struct vg_ball_faces *b);
 
-/** Shapes (vg_shape) of the cells with the point at x. q out: [n]. Returns 0,
- * and leaves q unfinished, as soon as one shape is not above `stop`. */
+/** Shapes (vg_shape) of the cells with the point at x. q out: [VG_BALL_MAX], of
+ * which n are meaningful. Returns 0, and leaves q unfinished, as soon as one
+ * shape is not above `stop`. */
 int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
                    double stop, double *q);
 
@@ -44,6 +45,12 @@ double vg_ball_other(const struct vg_ball_faces *b, const double x[3]);
  * - q. q: [n] present shapes of the cells; x: present position of the point. */
 void vg_ball_ideal(const struct vg_ball_faces *b, const double *q,
                    const double x[3], double to[3]);
+
+/** Volume-weighted mean of the centroids of the cells, sum (V_i (x + y1 + y2 +
+ * y3) / 4) / V; x: present position of the point. The volume V of the ball
+ * does not depend on x. */
+void vg_ball_centre(const struct vg_ball_faces *b, const double x[3],
+                    double to[3]);
 
 /** Gradient with respect to x of half the sum of the logarithms of the shapes
  * of cells first ... end - 1, which must be positive, plus the same terms as

@@ -9,30 +9,30 @@
 #include <string.h>
 
 #include "core/geometry/vector.h"
-#include "core/optimise/optimise_parts.h"
+#include "core/optimise/optimise_ball.h"
 
 struct ball_state {
   double worst, sum;
 };
 
-/* Shapes of the cells around p with p at x. Returns 0 as soon as one is not
- * above `stop`. */
-static int try_at(const struct vg_optimiser *o, const double x[3], double stop,
-                  float *q, struct ball_state *s)
-{
-  const struct vg_tets *t = o->t;
+/* A point that is smoothed: the faces around it, and the shapes of the cells
+ * at the position that is tried. */
+struct mover {
+  struct vg_ball_faces faces;
+  double q[VG_BALL_MAX];
+};
 
+/* Shapes of the cells around the point at x. Returns 0 as soon as one is not
+ * above `stop`. */
+static int try_at(struct mover *m, const double x[3], double stop,
+                  struct ball_state *s)
+{
   s->worst = 2;
   s->sum = 0;
-  for (size_t k = 0; k < o->n_ball; k++) {
-    const uint32_t *v = t->cell[o->ball[k] >> 2].v;
-    const uint8_t *f = vg_face[o->ball[k] & 3];
-    double shape = vg_shape(t->x[v[f[0]]], t->x[v[f[1]]], t->x[v[f[2]]], x);
-
-    if (shape <= stop) return 0;
-    q[k] = (float)shape;
-    if (shape < s->worst) s->worst = shape;
-    s->sum += shape;
+  if (!vg_ball_shapes(&m->faces, x, stop, m->q)) return 0;
+  for (size_t k = 0; k < m->faces.n; k++) {
+    if (m->q[k] < s->worst) s->worst = m->q[k];
+    s->sum += m->q[k];
   }
   return 1;
 }
@@ -60,33 +60,12 @@ static void present(struct vg_optimiser *o, struct ball_state *s)
   o->ball[0] = first;
 }
 
-/* Volume-weighted mean of centroids: sum (V_i (x + y1 + y2 + y3) / 4) / V.
- * The volume of the ball does not depend on x. */
-static void target(const struct vg_optimiser *o, const double x[3],
-                   double to[3])
-{
-  const struct vg_tets *t = o->t;
-  double sum[3] = { 0 }, total = 0;
-
-  for (size_t k = 0; k < o->n_ball; k++) {
-    const uint32_t *v = t->cell[o->ball[k] >> 2].v;
-    const uint8_t *f = vg_face[o->ball[k] & 3];
-    const double *a = t->x[v[f[0]]], *b = t->x[v[f[1]]], *c = t->x[v[f[2]]];
-    double volume = vg_det(a, b, c, x);
-
-    total += volume;
-    for (int i = 0; i < 3; i++) sum[i] += volume * (a[i] + b[i] + c[i]);
-  }
-  for (int i = 0; i < 3; i++)
-    to[i] = total > 0 ? 0.25 * x[i] + 0.25 * sum[i] / total : x[i];
-}
-
 static void keep(struct vg_optimiser *o, uint32_t p, const double x[3],
-                 const float *q)
+                 const double *q)
 {
   memcpy(o->t->x[p], x, 3 * sizeof *x);
   for (size_t k = 0; k < o->n_ball; k++) {
-    o->q[o->ball[k] >> 2] = q[k];
+    o->q[o->ball[k] >> 2] = (float)q[k];
     vg_changed(o, o->ball[k] >> 2);
   }
   o->report->n_smoothed++;
@@ -121,10 +100,10 @@ static double gradient(const struct vg_optimiser *o, uint32_t p, size_t worst,
 
 /* Next to a flat cell much smaller steps help, too, since any positive sign is
  * a gain. */
-static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
+static int climb(struct vg_optimiser *o, uint32_t p, struct mover *m,
+                 struct ball_state *now)
 {
   const double least = now->worst < VG_SHAPE_FLAT ? STEP_FLAT : VG_CLIMB_LEAST;
-  float q[VG_BALL_MAX];
   size_t worst = 0;
   double g[3], length, scale = 0, x[3];
   const double *other;
@@ -145,9 +124,8 @@ static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
   for (double step = VG_CLIMB_FIRST; step > least; step *= VG_CLIMB_NEXT) {
     for (int i = 0; i < 3; i++)
       x[i] = o->t->x[p][i] + g[i] / length * step * scale;
-    if (!try_at(o, x, now->worst * VG_GAIN_WORST + VG_SHAPE_FLAT, q, &s))
-      continue;
-    keep(o, p, x, q);
+    if (!try_at(m, x, now->worst * VG_GAIN_WORST + VG_SHAPE_FLAT, &s)) continue;
+    keep(o, p, x, m->q);
     *now = s;
     return 1;
   }
@@ -156,26 +134,27 @@ static int climb(struct vg_optimiser *o, uint32_t p, struct ball_state *now)
 
 static int smooth_ball(struct vg_optimiser *o, uint32_t p, double aim)
 {
-  float q[VG_BALL_MAX];
+  struct mover m;
   struct ball_state now, s;
   double to[3], x[3], stop;
   int better = 0;
 
   present(o, &now);
-  target(o, o->t->x[p], to);
+  vg_ball_faces(o->t, o->n_ball, o->ball, &m.faces);
+  vg_ball_centre(&m.faces, o->t->x[p], to);
   for (double share = 1; share > VG_SHARE_LEAST && !better; share *= 0.5) {
     for (int i = 0; i < 3; i++)
       x[i] = o->t->x[p][i] + share * (to[i] - o->t->x[p][i]);
     stop = now.worst < aim ? now.worst : aim;
-    if (!try_at(o, x, stop, q, &s)) continue;
+    if (!try_at(&m, x, stop, &s)) continue;
     if (s.worst < aim ? s.worst > now.worst * VG_GAIN_WORST + VG_SHAPE_FLAT
                       : now.worst < aim || s.sum > now.sum * VG_GAIN_SUM) {
-      keep(o, p, x, q);
+      keep(o, p, x, m.q);
       now = s;
       better = 1;
     }
   }
-  for (int k = 0; k < 4 && now.worst < aim && climb(o, p, &now); k++)
+  for (int k = 0; k < 4 && now.worst < aim && climb(o, p, &m, &now); k++)
     better = 1;
   return better;
 }
