@@ -125,6 +125,7 @@ static int flood(struct vg_inserter *s, const vg_d2 p[3])
           flag[other] |= signs & VG_IN_SPHERE ? VG_MARK : VG_TRIED;
           if (signs & VG_IN_SPHERE) {
             s->cell[s->n_cell++] = (struct vg_cavity_cell){ other, signs };
+            vg_tets_prefetch(s->t, other);
             continue;
           }
           s->tried[s->n_tried++] = other;
@@ -148,6 +149,7 @@ static int start_flood(struct vg_inserter *s, uint32_t seed, const vg_d2 p[3])
   if (!(signs & VG_IN_SPHERE)) signs = vg_cell_sides(x, v, p, 0, 0);
   if (make_room(s)) return -1;
   s->t->flag[seed] |= VG_MARK;
+  vg_tets_prefetch(s->t, seed);
   s->cell[s->n_cell++] = (struct vg_cavity_cell){ seed, signs };
   return flood(s, p);
 }

@@ -28,6 +28,17 @@ static int level_of(double h)
   return e - 1;
 }
 
+/* Side of a cell of a level, without a call to the mathematical library. */
+static inline double side_of(int level)
+{
+  uint64_t bits = (uint64_t)(1023 + level) << 52;
+  double side;
+
+  assert(level > -1023 && level < 1024);
+  memcpy(&side, &bits, sizeof side);
+  return side;
+}
+
 /* Blocks of 4 x 4 x 4 cells share an entry of the table and are contiguous in
  * memory, so that a query accesses few of them. */
 static uint64_t hash(int level, const int64_t block[3])
@@ -115,7 +126,7 @@ int vg_hgrid_add(struct vg_hgrid *s, const double x[3], double h)
   assert(h > 0);
 
   int level = level_of(h);
-  double inverse = ldexp(1, -level), side = ldexp(1, level);
+  double inverse = side_of(-level), side = side_of(level);
   int64_t i[3];
   struct vg_hgrid_page *page;
   uint32_t *head;
@@ -262,9 +273,9 @@ static void find_in_block(struct vg_hgrid *s, const struct query *q,
 static void find_level(struct vg_hgrid *s, const double c[3], double r,
                        int level)
 {
-  double inverse = ldexp(1, -level), d;
+  double inverse = side_of(-level), d;
   struct query q = {
-    { c[0], c[1], c[2] }, ldexp(1, level), r * r, { 0 }, { 0 }
+    { c[0], c[1], c[2] }, side_of(level), r * r, { 0 }, { 0 }
   };
   int64_t b[3];
 

@@ -32,6 +32,7 @@ int vg_ball(struct vg_optimiser *o, uint32_t p)
       if (t->flag[other] & VG_MARK) continue;
       while (t->cell[other].v[j] != p) j++;
       t->flag[other] |= VG_MARK;
+      vg_tets_prefetch(t, other);
       o->ball[o->n_ball++] = 4 * other + j;
     }
   }
