@@ -11,8 +11,9 @@
 
 /* Shapes as defined by vg_shape, with the dihedral angles that they correspond
  * to, in degrees. Cells below `aim` (angles below 25 or above 155) are
- * improved one by one. Sweeps swap cells below `fair` (30, 150). Cells above
- * `good` (45, 135) are not touched. */
+ * improved one by one. Sweeps swap cells below `fair` (30, 150). The first
+ * sweep moves the points of cells below `good` (45, 135), the next ones only
+ * those of cells below `fair`. */
 static const double aim = VG_SHAPE_TARGET;
 static const float fair = 0.25, good = VG_SHAPE_GOOD; /* K24 */
 /* Below this shape (15, 165), points are removed or inserted. */
@@ -87,24 +88,27 @@ static int concerns(const struct vg_optimiser *o, uint32_t c)
   return 0;
 }
 
-/* least[p]: shape of the worst cell around p that should be improved. */
-static void worst_around(const struct vg_optimiser *o, float *least)
+/* least[p]: shape of the worst cell around p that should be improved, if it is
+ * below the limit. */
+static void worst_around(const struct vg_optimiser *o, float limit,
+                         float *least)
 {
   const struct vg_tets *t = o->t;
 
   for (size_t p = 0; p < t->n_point; p++) least[p] = 2;
   for (uint32_t c = 0; c < t->n_cell; c++)
-    if (is_live(t, c) && o->q[c] < good && concerns(o, c))
+    if (is_live(t, c) && o->q[c] < limit && concerns(o, c))
       for (int i = 0; i < 4; i++)
         if (o->q[c] < least[t->cell[c].v[i]]) least[t->cell[c].v[i]] = o->q[c];
 }
 
 /* Swaps come first, since smoothing a sliver spoils its neighbours. Points
- * whose cells are all good are not moved; in a uniform sizing field these are
- * nearly all points. The points of a region are not smoothed either: they are
- * on the lattice that the adjacent voids will continue, and moving them would
- * degrade these voids more than it improves the region. */
-static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
+ * without a cell below `limit` are not moved; in a uniform sizing field these
+ * are nearly all points. The points of a region are not smoothed either: they
+ * are on the lattice that the adjacent voids will continue, and moving them
+ * would degrade these voids more than it improves the region. */
+static vg_status sweep(struct vg_optimiser *o, float limit,
+                       struct vg_error *err)
 {
   struct vg_tets *t = o->t;
   float *least;
@@ -114,9 +118,9 @@ static vg_status sweep(struct vg_optimiser *o, struct vg_error *err)
   if (o->region) return VG_OK;
   least = vg_alloc(t->n_point, sizeof *least);
   if (!least) return vg_fail_memory(err, "optimisation");
-  worst_around(o, least);
+  worst_around(o, limit, least);
   for (uint32_t p = (uint32_t)o->n_fixed; p < t->n_point; p++)
-    if (least[p] < good) vg_smooth(o, p, aim);
+    if (least[p] < limit) vg_smooth(o, p, aim);
   free(least);
   return VG_OK;
 }
@@ -199,7 +203,8 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
   int again = 1;
   vg_status st = start(o, t, err);
 
-  for (int k = 0; st == VG_OK && k < sweeps; k++) st = sweep(o, err);
+  for (int k = 0; st == VG_OK && k < sweeps; k++)
+    st = sweep(o, k ? fair : good, err);
   for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
     st = improve_bad(o, &again, err);
   if (st == VG_OK) o->report->n_left = count_left(o);
