@@ -3,9 +3,8 @@
 #include "core/geometry/predicates.h"
 
 unsigned vg_cell_sides(const double (*x)[3], const uint32_t v[4],
-                       const vg_d2 e[3], unsigned in, unsigned out)
+                       const double at[3], unsigned in, unsigned out)
 {
-  const double at[3] = { e[0][0], e[1][0], e[2][0] };
   unsigned signs = in * (VG_SIDE_IN | VG_SIDE_SEES);
 
   for (int i = 0; i < 4; i++) {
@@ -21,16 +20,9 @@ unsigned vg_cell_sides(const double (*x)[3], const uint32_t v[4],
 }
 
 unsigned vg_cell_signs_exact(const double (*x)[3], const uint32_t v[4],
-                             const vg_d2 e[3], vg_d2 even, vg_d2 odd,
-                             double flat)
+                             const double at[3], unsigned in, unsigned out)
 {
-  const double at[3] = { e[0][0], e[1][0], e[2][0] };
-  unsigned in, out;
-
   if (!(vg_insphere_exact(x[v[0]], x[v[1]], x[v[2]], x[v[3]], at) > 0))
     return 0;
-  in = vg_lanes2(even > flat) | vg_lanes2(odd > flat) << 2;
-  out = vg_lanes2(even < -flat) | vg_lanes2(odd < -flat) << 2;
-  return VG_IN_SPHERE |
-         vg_cell_sides(x, v, e, vg_lane_faces(in), vg_lane_faces(out));
+  return VG_IN_SPHERE | vg_cell_sides(x, v, at, in, out);
 }

@@ -2,7 +2,7 @@
  * and on which side of the cell's faces is it? Both are computed together: the
  * insphere determinant is the sum of the cell's four orientations with the
  * point, each multiplied by a squared distance. Decides as
- * core/geometry/predicates.h, but in pairs of SIMD lanes. Uses
+ * core/geometry/predicates.h, but in SIMD lanes. Uses
  * core/delaunay/tets.h. */
 #ifndef VG_CORE_DELAUNAY_CELL_SIGNS_H
 #define VG_CORE_DELAUNAY_CELL_SIGNS_H
@@ -12,8 +12,8 @@
 
 #include "core/delaunay/tets.h"
 
-#ifdef __SSE2__
-#include <emmintrin.h>
+#if defined __x86_64__
+#include <immintrin.h>
 #endif
 
 /* Two lanes, in the vector syntax of GCC and Clang for any processor. */
@@ -37,7 +37,7 @@ static inline unsigned vg_lane_faces(unsigned m)
 
 static inline vg_d2 vg_max2(vg_d2 a, vg_d2 b)
 {
-#ifdef __SSE2__
+#if defined __x86_64__
   return _mm_max_pd(a, b);
 #else
   return (vg_d2){ a[0] > b[0] ? a[0] : b[0], a[1] > b[1] ? a[1] : b[1] };
@@ -47,7 +47,7 @@ static inline vg_d2 vg_max2(vg_d2 a, vg_d2 b)
 /* Bits 0 and 1: the lanes of a comparison result. */
 static inline unsigned vg_lanes2(vg_l2 m)
 {
-#ifdef __SSE2__
+#if defined __x86_64__
   return (unsigned)_mm_movemask_pd((__m128d)m);
 #else
   return (unsigned)((m[0] & 1) | (m[1] & 2));
@@ -79,17 +79,14 @@ static inline vg_d2 vg_across2(vg_d2 a, vg_d2 b)
   return vg_max2((vg_d2){ a[0], b[0] }, (vg_d2){ a[1], b[1] });
 }
 
-/** Signs of a point e and the faces of cell v with corners in x. in, out: faces
- * of which e is already known to be on the inner or the outer side. */
+/** Signs of a point and the faces of cell v with corners in x. in, out: faces
+ * of which the point is already known to be on the inner or the outer side. */
 unsigned vg_cell_sides(const double (*x)[3], const uint32_t v[4],
-                       const vg_d2 e[3], unsigned in, unsigned out);
+                       const double at[3], unsigned in, unsigned out);
 
-/* Exact fallback if rounding leaves the sphere test undecided. even, odd:
- * orientations with faces 0 2 and 1 3, reliable if their magnitude exceeds
- * flat. */
+/* Exact fallback if rounding leaves the sphere test undecided. */
 unsigned vg_cell_signs_exact(const double (*x)[3], const uint32_t v[4],
-                             const vg_d2 e[3], vg_d2 even, vg_d2 odd,
-                             double flat);
+                             const double at[3], unsigned in, unsigned out);
 
 /** Signs of a point and cell v with corners in x. e: the coordinates of the
  * point, each in both lanes. */
@@ -116,16 +113,76 @@ static inline unsigned vg_cell_signs(const double (*x)[3], const uint32_t v[4],
   /* Errors as in core/geometry/predicates.h: 384 u = 4.263e-14 for the sphere;
    * for an orientation 8 u times at most 6 products, 48 u = 5.329e-15. */
   double det = sum[0] + sum[1], flat = 5.4e-15 * most[0] * xy[1];
+  const double at[3] = { e[0][0], e[1][0], e[2][0] };
+  int is_sure = fabs(det) > 4.27e-14 * most[0] * most[1];
   unsigned in, out;
 
-  if (!(fabs(det) > 4.27e-14 * most[0] * most[1]))
-    return vg_cell_signs_exact(x, v, e, even, odd, flat);
-  if (!(det > 0)) return 0;
+  if (is_sure && !(det > 0)) return 0;
   in = vg_lane_faces(vg_lanes2(even > flat) | vg_lanes2(odd > flat) << 2);
   out = vg_lanes2(even < -flat) | vg_lanes2(odd < -flat) << 2;
   out = vg_lane_faces(out);
-  if ((in | out) != 0xf) return VG_IN_SPHERE | vg_cell_sides(x, v, e, in, out);
+  if (!is_sure) return vg_cell_signs_exact(x, v, at, in, out);
+  if ((in | out) != 0xf) return VG_IN_SPHERE | vg_cell_sides(x, v, at, in, out);
   return VG_IN_SPHERE | in * (VG_SIDE_IN | VG_SIDE_SEES);
 }
+
+#if defined __x86_64__ && defined __GNUC__
+#define VG_WIDE __attribute__((target("avx2")))
+
+typedef double vg_d4 __attribute__((vector_size(32)));
+typedef int64_t vg_l4 __attribute__((vector_size(32)));
+
+#define VG_PICK4(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#define VG_TURN4(a, ...) __builtin_shufflevector(a, a, __VA_ARGS__)
+
+/** As vg_cell_signs, with a vertex or a face in each of four lanes. at: the
+ * point. Rounding differs, but not the result, which is exact. */
+static inline VG_WIDE unsigned vg_cell_signs_wide(const double (*x)[3],
+                                                  const uint32_t v[4],
+                                                  const double at[3])
+{
+  const double *pa = x[v[0]], *pb = x[v[1]], *pc = x[v[2]], *pd = x[v[3]];
+  const vg_l4 magnitude = { INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX };
+  const vg_d4 e = { at[0], at[1], at[2], 0 };
+  vg_d4 a = (vg_d4){ pa[0], pa[1], pa[2], 0 } - e;
+  vg_d4 b = (vg_d4){ pb[0], pb[1], pb[2], 0 } - e;
+  vg_d4 c = (vg_d4){ pc[0], pc[1], pc[2], 0 } - e;
+  vg_d4 d = (vg_d4){ pd[0], pd[1], pd[2], 0 } - e;
+  vg_d4 ab = VG_PICK4(a, b, 0, 4, 2, 6), cd = VG_PICK4(c, d, 0, 4, 2, 6);
+  vg_d4 ab1 = VG_PICK4(a, b, 1, 5, 3, 7), cd1 = VG_PICK4(c, d, 1, 5, 3, 7);
+  vg_d4 px = VG_PICK4(ab, cd, 0, 1, 4, 5), pz = VG_PICK4(ab, cd, 2, 3, 6, 7);
+  vg_d4 py = VG_PICK4(ab1, cd1, 0, 1, 4, 5);
+  vg_d4 l = px * px + py * py + pz * pz;
+  /* Minors of x and y, of the vertex and the next one, and the one after it. */
+  vg_d4 next = px * VG_TURN4(py, 1, 2, 3, 0) - VG_TURN4(px, 1, 2, 3, 0) * py;
+  vg_d4 far = px * VG_TURN4(py, 2, 3, 0, 1) - VG_TURN4(px, 2, 3, 0, 1) * py;
+  /* Orientations; those of faces 1 and 3 have the opposite sign. */
+  vg_d4 o = VG_TURN4(pz, 3, 0, 1, 2) * VG_TURN4(next, 1, 2, 3, 0) -
+            VG_TURN4(pz, 2, 3, 0, 1) * VG_TURN4(far, 1, 2, 3, 0) +
+            VG_TURN4(pz, 1, 2, 3, 0) * VG_TURN4(next, 2, 3, 0, 1);
+  vg_d4 sum, most;
+  double det, cube, flat;
+  unsigned in, out;
+
+  a = (vg_d4)((vg_l4)a & magnitude);
+  b = (vg_d4)((vg_l4)b & magnitude);
+  c = (vg_d4)((vg_l4)c & magnitude);
+  d = (vg_d4)((vg_l4)d & magnitude);
+  most = _mm256_max_pd(_mm256_max_pd(a, b), _mm256_max_pd(c, d));
+  o = (vg_d4)((vg_l4)o ^ (vg_l4){ 0, INT64_MIN, 0, INT64_MIN });
+  sum = l * o;
+  det = (sum[0] + sum[2]) + (sum[1] + sum[3]);
+  cube = most[0] * most[1] * most[2];
+  l = _mm256_max_pd(l, VG_TURN4(l, 2, 3, 0, 1));
+  flat = 5.4e-15 * cube;
+  in = (unsigned)_mm256_movemask_pd((__m256d)(o > flat));
+  out = (unsigned)_mm256_movemask_pd((__m256d)(o < -flat));
+  if (!(fabs(det) > 4.27e-14 * cube * (l[0] > l[1] ? l[0] : l[1])))
+    return vg_cell_signs_exact(x, v, at, in, out);
+  if (!(det > 0)) return 0;
+  if ((in | out) != 0xf) return VG_IN_SPHERE | vg_cell_sides(x, v, at, in, out);
+  return VG_IN_SPHERE | in * (VG_SIDE_IN | VG_SIDE_SEES);
+}
+#endif
 
 #endif

@@ -11,6 +11,9 @@
 #include "core/delaunay/cell_signs.h"
 #include "core/geometry/vector.h"
 
+/* Compiled into each variant of the search. */
+#define FLOOD static inline __attribute__((always_inline))
+
 enum { CUT_MAX = 16 }; /* K5: number of times that a cavity may be cut back */
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
@@ -95,14 +98,27 @@ static void drop_faces(struct vg_inserter *s, size_t first)
   s->n_face = n;
 }
 
+/* Signs of the point and a cell (core/delaunay/cell_signs.h). */
+FLOOD unsigned signs_of(const struct vg_inserter *s, const uint32_t v[4],
+                        const double p[3], int is_wide)
+{
+  const double(*x)[3] = (const double(*)[3])s->t->x;
+  const vg_d2 both[3] = { { p[0], p[0] }, { p[1], p[1] }, { p[2], p[2] } };
+
+#ifdef VG_WIDE
+  if (is_wide) return vg_cell_signs_wide(x, v, p);
+#endif
+  (void)is_wide;
+  return vg_cell_signs(x, v, both);
+}
+
 /* Find all cells that can be reached from those in the list, and the faces
  * around them. Cells that were marked TRIED before stay out. The search only
  * crosses faces that the point sees: among Delaunay cells this reaches every
  * cell of the cavity. Where recovery has left slivers with huge circumspheres,
  * it prevents the search from running through all of them. */
-static int flood(struct vg_inserter *s, const vg_d2 p[3])
+FLOOD int flood_with(struct vg_inserter *s, const double p[3], int is_wide)
 {
-  const double(*x)[3] = (const double(*)[3])s->t->x;
   const struct vg_cell *cells = s->t->cell;
   uint8_t *flag = s->t->flag;
   size_t late = SIZE_MAX; /* first face that may still turn out to be inside */
@@ -120,7 +136,7 @@ static int flood(struct vg_inserter *s, const vg_d2 p[3])
       if (link != VG_NONE && !(own >> i & 1) && !(flag[other] & VG_TRIED)) {
         if (flag[other] & VG_MARK) continue;
         if (c.signs & VG_SIDE_SEES << i) {
-          unsigned signs = vg_cell_signs(x, cells[other].v, p);
+          unsigned signs = signs_of(s, cells[other].v, p, is_wide);
 
           flag[other] |= signs & VG_IN_SPHERE ? VG_MARK : VG_TRIED;
           if (signs & VG_IN_SPHERE) {
@@ -140,13 +156,30 @@ static int flood(struct vg_inserter *s, const vg_d2 p[3])
   return 0;
 }
 
-static int start_flood(struct vg_inserter *s, uint32_t seed, const vg_d2 p[3])
+#ifdef VG_WIDE
+static VG_WIDE int flood_wide(struct vg_inserter *s, const double p[3])
 {
-  const double(*x)[3] = (const double(*)[3])s->t->x;
-  const uint32_t *v = s->t->cell[seed].v;
-  unsigned signs = vg_cell_signs(x, v, p);
+  return flood_with(s, p, 1);
+}
+#endif
 
-  if (!(signs & VG_IN_SPHERE)) signs = vg_cell_sides(x, v, p, 0, 0);
+/* Four lanes at once if the processor supports AVX2. The signs are exact, and
+ * so the same. */
+static int flood(struct vg_inserter *s, const double p[3])
+{
+#ifdef VG_WIDE
+  if (__builtin_cpu_supports("avx2")) return flood_wide(s, p);
+#endif
+  return flood_with(s, p, 0);
+}
+
+static int start_flood(struct vg_inserter *s, uint32_t seed, const double p[3])
+{
+  const uint32_t *v = s->t->cell[seed].v;
+  unsigned signs = signs_of(s, v, p, 0);
+
+  if (!(signs & VG_IN_SPHERE))
+    signs = vg_cell_sides((const double(*)[3])s->t->x, v, p, 0, 0);
   if (make_room(s)) return -1;
   s->t->flag[seed] |= VG_MARK;
   vg_tets_prefetch(s->t, seed);
@@ -176,7 +209,7 @@ static uint32_t cell_before(const struct vg_inserter *s, size_t f)
 /* Exclude the cells in front of all hidden faces, and flood again from the
  * seed. Returns 0: done; 1: a face of the seed itself is hidden; 2: no face is
  * hidden. */
-static int cut_back(struct vg_inserter *s, const vg_d2 p[3])
+static int cut_back(struct vg_inserter *s, const double p[3])
 {
   uint32_t seed = s->cell[0].at;
   size_t n_tried = s->n_tried;
@@ -367,19 +400,17 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
 
   struct vg_tets *t = s->t;
   double x[3];
-  vg_d2 both[3];
   struct vg_table edge = VG_TABLE_INIT;
   int state;
 
   memcpy(x, t->x[p], sizeof x);
-  for (int k = 0; k < 3; k++) both[k] = (vg_d2){ x[k], x[k] };
-  state = start_flood(s, at, both);
+  state = start_flood(s, at, x);
   if (!state && grow_local(s)) state = -1;
   if (!state) number_vertices(s);
   if (!state && nearest > 0) state = too_near(s, x, nearest);
   for (int cut = 0; !state; cut++) {
     if (cut) number_vertices(s);
-    state = cut == CUT_MAX ? 1 : cut_back(s, both);
+    state = cut == CUT_MAX ? 1 : cut_back(s, x);
   }
   if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
   if (!state && ((!s->n_vertex && vg_table_init(&edge, 2 * s->n_face)) ||
