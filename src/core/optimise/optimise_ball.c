@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "core/sizing/sizing.h"
 
@@ -188,6 +189,30 @@ int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
   return shapes(b, x, stop, q);
 }
 
+/* Terms of a block of cells. */
+WITHIN void others(const struct vg_ball_faces *b, size_t at, const double x[3],
+                   double of[BLOCK])
+{
+  for (size_t k = 0; k < BLOCK; k++) {
+    struct cone c;
+    double e, off;
+
+    raise(b, at + k, x, &c);
+    e = c.l[0] + c.l[1] + c.l[2] + b->border2[at + k];
+    off = e * b->per - 1;
+    of[k] = round_share * 432 * c.det * c.det / (e * e * e) -
+            size_share * off * off;
+  }
+}
+
+#if WIDE
+static __attribute__((target("avx2"))) void others_wide(
+  const struct vg_ball_faces *b, size_t at, const double x[3], double of[BLOCK])
+{
+  others(b, at, x, of);
+}
+#endif
+
 double vg_ball_other(const struct vg_ball_faces *b, const double x[3])
 {
   double sum = 0;
@@ -196,16 +221,11 @@ double vg_ball_other(const struct vg_ball_faces *b, const double x[3])
     size_t n = b->n - at < BLOCK ? b->n - at : BLOCK;
     double of[BLOCK];
 
-    for (size_t k = 0; k < n; k++) {
-      struct cone c;
-      double e, off;
-
-      raise(b, at + k, x, &c);
-      e = c.l[0] + c.l[1] + c.l[2] + b->border2[at + k];
-      off = e * b->per - 1;
-      of[k] = round_share * 432 * c.det * c.det / (e * e * e) -
-              size_share * off * off;
-    }
+#if WIDE
+    if (IS_WIDE) others_wide(b, at, x, of);
+    else
+#endif
+      others(b, at, x, of);
     for (size_t k = 0; k < n; k++) sum += of[k];
   }
   return sum;
@@ -249,6 +269,25 @@ void vg_ball_centre(const struct vg_ball_faces *b, const double x[3],
     to[a] = total > 0 ? 0.25 * x[a] + 0.25 * sum[a] / total : x[a];
 }
 
+/* Subtract the part of edge i, if it has the least angle, and of the face
+ * opposite corner i. A function instead of a loop, which compilers would not
+ * unroll before they vectorise over cells. */
+WITHIN void add_slope(const struct cone *c, const double up[3],
+                      const double border[3], int i, double g[3])
+{
+  int j = (i + 1) % 3, k = (i + 2) % 3;
+  const double *p = c->u[j], *r = c->u[k];
+  double edge = up[i] / c->l[i];
+  double face = (up[j] + up[k] + border[i]) / c->s[i];
+
+  for (int a = 0; a < 3; a++) {
+    int d = (a + 1) % 3, e = (a + 2) % 3;
+
+    g[a] -= edge * c->u[i][a] +
+            face * ((p[d] - r[d]) * c->n[i][e] - (p[e] - r[e]) * c->n[i][d]);
+  }
+}
+
 /* Gradient for cell k. The shape is det^2 l / (s s') at the edge where this is
  * smallest; sqrt(l) is the length of the edge, and sqrt(s) and sqrt(s') are
  * twice the areas of its faces. The edge from the point to corner i lies
@@ -277,31 +316,20 @@ WITHIN void slope_of(const struct vg_ball_faces *b, size_t k, const double x[3],
   high = (1 + round_slope) / c.det;
   for (int a = 0; a < 3; a++)
     g[a] = high * b->normal[a][k] + wide * (c.u[0][a] + c.u[1][a] + c.u[2][a]);
-  for (int i = 0; i < 3; i++) {
-    const double *p = c.u[(i + 1) % 3], *r = c.u[(i + 2) % 3];
-    double edge = up[i] / c.l[i];
-    double face = (up[(i + 1) % 3] + up[(i + 2) % 3] + border[i]) / c.s[i];
-
-    for (int a = 0; a < 3; a++) {
-      int d = (a + 1) % 3, e = (a + 2) % 3;
-
-      g[a] -= edge * c.u[i][a] +
-              face * ((p[d] - r[d]) * c.n[i][e] - (p[e] - r[e]) * c.n[i][d]);
-    }
-  }
+  add_slope(&c, up, border, 0, g);
+  add_slope(&c, up, border, 1, g);
+  add_slope(&c, up, border, 2, g);
 }
 
-void vg_ball_slope(const struct vg_ball_faces *b, size_t first, size_t end,
-                   const double x[3], double g[3])
+/* Sum of the gradients of all cells. */
+WITHIN void slope(const struct vg_ball_faces *b, const double x[3],
+                  double sum[3])
 {
-  double of[3][BLOCK];
+  for (size_t at = 0; at < b->n; at += BLOCK) {
+    size_t n = b->n - at < BLOCK ? b->n - at : BLOCK;
+    double of[3][BLOCK];
 
-  assert(first <= end && end <= b->n);
-  g[0] = g[1] = g[2] = 0;
-  for (size_t at = first; at < end; at += BLOCK) {
-    size_t n = end - at < BLOCK ? end - at : BLOCK;
-
-    for (size_t k = 0; k < n; k++) {
+    for (size_t k = 0; k < BLOCK; k++) {
       double h[3];
 
       slope_of(b, at + k, x, h);
@@ -310,6 +338,34 @@ void vg_ball_slope(const struct vg_ball_faces *b, size_t first, size_t end,
       of[2][k] = h[2];
     }
     for (size_t k = 0; k < n; k++)
-      for (int a = 0; a < 3; a++) g[a] += of[a][k];
+      for (int a = 0; a < 3; a++) sum[a] += of[a][k];
   }
+}
+
+#if WIDE
+static __attribute__((target("avx2"))) void slope_wide(
+  const struct vg_ball_faces *b, const double x[3], double sum[3])
+{
+  slope(b, x, sum);
+}
+#endif
+
+void vg_ball_slope(const struct vg_ball_faces *b, const double x[3],
+                   double g[3])
+{
+  double sum[3] = { 0 };
+
+#if WIDE
+  if (IS_WIDE) slope_wide(b, x, sum);
+  else
+#endif
+    slope(b, x, sum);
+  memcpy(g, sum, sizeof sum);
+}
+
+void vg_ball_slope_of(const struct vg_ball_faces *b, size_t k,
+                      const double x[3], double g[3])
+{
+  assert(k < b->n);
+  slope_of(b, k, x, g);
 }

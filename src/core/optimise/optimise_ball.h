@@ -53,9 +53,12 @@ void vg_ball_centre(const struct vg_ball_faces *b, const double x[3],
                     double to[3]);
 
 /** Gradient with respect to x of half the sum of the logarithms of the shapes
- * of cells first ... end - 1, which must be positive, plus the same terms as
- * in vg_ball_other, with logarithms in the first one. */
-void vg_ball_slope(const struct vg_ball_faces *b, size_t first, size_t end,
-                   const double x[3], double g[3]);
+ * of all cells, which must be positive, plus the same terms as in
+ * vg_ball_other, with logarithms in the first one. */
+void vg_ball_slope(const struct vg_ball_faces *b, const double x[3],
+                   double g[3]);
+/** The part of cell k in this gradient. */
+void vg_ball_slope_of(const struct vg_ball_faces *b, size_t k,
+                      const double x[3], double g[3]);
 
 #endif

@@ -137,20 +137,17 @@ static int move(struct mover *m, const double g[3], double length)
 #define ALL_FIRST 0.05
 #define ALL_LEAST 0.015
 
-/* Step along the gradient of cells first ... end - 1, by a fraction of an
- * edge. */
-static int climb(struct mover *m, size_t first, size_t end, double share,
-                 double least)
+/* Step along the gradient g by a fraction of an edge. */
+static int climb(struct mover *m, const double g[3], double share, double least)
 {
   const struct stand *s = &m->now;
-  double g[3], size, edge2 = 0;
+  double size, edge2 = 0;
 
   for (int a = 0; a < 3; a++) {
     double d = m->faces.x[0][a][s->at] - s->x[a];
 
     edge2 += d * d;
   }
-  vg_ball_slope(&m->faces, first, end, s->x, g);
   size = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
   if (!(size > 0)) return 0;
   for (; share > least; share *= VG_CLIMB_NEXT)
@@ -172,12 +169,15 @@ static int improve(struct mover *m)
   for (double share = 1; share > VG_SHARE_LEAST && !better; share *= 0.5)
     better = move(m, g, share);
   for (int k = 0; k < 4 && m->now.worst < VG_SHAPE_TARGET; k++) {
-    if (!climb(m, m->now.at, m->now.at + 1, VG_CLIMB_FIRST, VG_CLIMB_LEAST))
-      return better;
+    vg_ball_slope_of(&m->faces, m->now.at, m->now.x, g);
+    if (!climb(m, g, VG_CLIMB_FIRST, VG_CLIMB_LEAST)) return better;
     better = 1;
   }
-  for (int k = 0; k < 2 && climb(m, 0, m->faces.n, ALL_FIRST, ALL_LEAST); k++)
+  for (int k = 0; k < 2; k++) {
+    vg_ball_slope(&m->faces, m->now.x, g);
+    if (!climb(m, g, ALL_FIRST, ALL_LEAST)) return better;
     better = 1;
+  }
   return better;
 }
 
