@@ -231,80 +231,70 @@ static double gap(double d, double side)
   return d > 0 ? d : d + side < 0 ? -(d + side) : 0;
 }
 
+/* A query of one level. For each axis, `d` and `gap2` describe the cells lo to
+ * hi: the lower corner relative to the centre, and the squared distance. */
+enum { AXIS_MAX = 16 }; /* cells are wider than 0.56 h, by K39 */
+
 struct query {
-  double c[3], side, r2; /* centre, cell side, squared radius */
-  int64_t lo[3], hi[3];  /* range of cells to examine */
+  double r2;
+  int64_t lo[3], hi[3]; /* range of cells to examine */
+  double d[3][AXIS_MAX], gap2[3][AXIS_MAX];
 };
-
-/* For cell i along axis k: its corner relative to the centre, and its squared
- * distance. */
-static double along(const struct vg_hgrid *s, const struct query *q, int k,
-                    int64_t i, double side, double *d)
-{
-  double g;
-
-  *d = s->lo[k] + q->side * (double)i - q->c[k];
-  g = gap(*d, side);
-  return g * g;
-}
 
 static void find_in_block(struct vg_hgrid *s, const struct query *q,
                           const int64_t b[3],
                           const struct vg_hgrid_block *block)
 {
-  double d[3][4], g[3][4];
-  int from[3], to[3];
+  int first[3], from[3], to[3]; /* first: cell 0 of the block in the query */
   uint64_t left;
 
   for (int k = 0; k < 3; k++) {
-    from[k] = (int)(q->lo[k] > 4 * b[k] ? q->lo[k] - 4 * b[k] : 0);
-    to[k] = (int)(q->hi[k] < 4 * b[k] + 3 ? q->hi[k] - 4 * b[k] : 3);
-    for (int i = from[k]; i <= to[k]; i++)
-      g[k][i] = along(s, q, k, 4 * b[k] + i, q->side, &d[k][i]);
+    first[k] = (int)(4 * b[k] - q->lo[k]);
+    from[k] = first[k] < 0 ? -first[k] : 0;
+    to[k] = q->hi[k] < 4 * b[k] + 3 ? (int)(q->hi[k] - 4 * b[k]) : 3;
   }
   for (left = block->used & cells_between(from, to); left; left &= left - 1) {
-    int at = __builtin_ctzll(left), x = at >> 4, y = at >> 2 & 3, z = at & 3;
+    int at = __builtin_ctzll(left), x = first[0] + (at >> 4);
+    int y = first[1] + (at >> 2 & 3), z = first[2] + (at & 3);
 
-    if (g[0][x] + g[1][y] + g[2][z] > q->r2) continue;
-    find_cell(s, block->page[at], d[0][x], d[1][y], d[2][z]);
+    if (q->gap2[0][x] + q->gap2[1][y] + q->gap2[2][z] > q->r2) continue;
+    find_cell(s, block->page[at], q->d[0][x], q->d[1][y], q->d[2][z]);
   }
 }
 
 static void find_level(struct vg_hgrid *s, const double c[3], double r,
                        int level)
 {
-  double inverse = side_of(-level), d;
-  struct query q = {
-    { c[0], c[1], c[2] }, side_of(level), r * r, { 0 }, { 0 }
-  };
+  double inverse = side_of(-level), side = side_of(level);
+  struct query q;
   int64_t b[3];
 
+  q.r2 = r * r;
   for (int k = 0; k < 3; k++) {
     q.lo[k] = (int64_t)floor((c[k] - r - s->lo[k]) * inverse);
     q.hi[k] = (int64_t)floor((c[k] + r - s->lo[k]) * inverse);
-  }
-  for (b[0] = q.lo[0] >> 2; b[0] <= q.hi[0] >> 2; b[0]++) {
-    double gx = along(s, &q, 0, 4 * b[0], 4 * q.side, &d);
+    assert(q.hi[k] - q.lo[k] < AXIS_MAX);
+    for (int64_t i = q.lo[k]; i <= q.hi[k]; i++) {
+      double d = s->lo[k] + side * (double)i - c[k], g = gap(d, side);
 
-    for (b[1] = q.lo[1] >> 2; b[1] <= q.hi[1] >> 2; b[1]++) {
-      double gxy = gx + along(s, &q, 1, 4 * b[1], 4 * q.side, &d);
-
-      for (b[2] = q.lo[2] >> 2; b[2] <= q.hi[2] >> 2; b[2]++) {
-        uint32_t block;
-
-        if (gxy + along(s, &q, 2, 4 * b[2], 4 * q.side, &d) > q.r2) continue;
-        block = *find_slot(s, level, b);
-        if (block != VG_NONE) find_in_block(s, &q, b, &s->block[block]);
-      }
+      q.d[k][i - q.lo[k]] = d;
+      q.gap2[k][i - q.lo[k]] = g * g;
     }
   }
+  for (b[0] = q.lo[0] >> 2; b[0] <= q.hi[0] >> 2; b[0]++)
+    for (b[1] = q.lo[1] >> 2; b[1] <= q.hi[1] >> 2; b[1]++)
+      for (b[2] = q.lo[2] >> 2; b[2] <= q.hi[2] >> 2; b[2]++) {
+        uint32_t block = *find_slot(s, level, b);
+
+        if (block != VG_NONE) find_in_block(s, &q, b, &s->block[block]);
+      }
 }
 
 /* All points within r of c, where r is about twice the spacing h at c. They
  * are on the levels that the gradient of the sizing field allows. */
 void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
 {
-  assert(h > 0 && r >= 0);
+  assert(h > 0 && r >= 0 && r <= VG_HGRID_REACH * h);
 
   double change = fmin(s->slope * r, largest_change * h);
 

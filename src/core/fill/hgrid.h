@@ -14,7 +14,12 @@
 
 #include "base/table.h"
 
-enum { VG_HGRID_MAX = 2048, VG_HGRID_CELLS = 4096, VG_HGRID_PAGE = 8 };
+enum {
+  VG_HGRID_MAX = 2048,
+  VG_HGRID_CELLS = 4096,
+  VG_HGRID_PAGE = 8,
+  VG_HGRID_REACH = 4
+};
 
 struct vg_hgrid_page { /* some points of a cell, relative to its corner;
                           unused entries are 0 */
@@ -57,7 +62,8 @@ void vg_hgrid_release(struct vg_hgrid *s);
  * refused. */
 int vg_hgrid_add(struct vg_hgrid *s, const double x[3], double h);
 
-/** List the points within r of c, where the spacing is h. The list is truncated
+/** List the points within r of c, where the spacing is h, and r at most
+ * VG_HGRID_REACH times that. The list is truncated
  * (n_cut) if there are more than VG_HGRID_MAX points, or more than
  * VG_HGRID_CELLS cells with points. */
 void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r);
