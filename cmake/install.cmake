@@ -37,8 +37,15 @@ install(DIRECTORY ${CMAKE_BINARY_DIR}/share/bash-completion
 install(PROGRAMS share/slurm/vanguard.sbatch
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard)
 install(FILES share/html/regl.LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES LICENSE README.md CHANGELOG.md CITATION.cff
+install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# The documents to which the README links, with the examples that they use.
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+install(FILES tests/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests)
+install(DIRECTORY verification DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Debian's Python finds modules in this folder; other systems need PYTHONPATH.
 set(python ${CMAKE_INSTALL_PREFIX}/lib/python3/dist-packages)

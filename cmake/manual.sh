@@ -76,7 +76,7 @@ done
 # Long options of a command, with = if they take a value.
 options() {
   "$program" "$1" --help |
-    sed -n 's/^ \{1,\}\(-.*, \)\{0,1\}--\([a-z0-9-]*\)\(\[\{0,1\}=\{0,1\}\).*/--\2\3/p' |
+    sed -n 's/^ \{1,\}\(-[^ ]*, \)*--\([a-z0-9-]*\)\(\[\{0,1\}=\{0,1\}\).*/--\2\3/p' |
     tr -d '[' | tr '\n' ' '
 }
 

@@ -16,11 +16,13 @@ vg_status vg_job_meshed(vanguard_job *job)
 
 const char *vanguard_details(const vanguard_job *job)
 {
+  VG_JOB_CALL(job, "");
   return job->details ? job->details : "";
 }
 
 const char *vanguard_note(const vanguard_job *job, size_t i)
 {
+  VG_JOB_CALL(job, NULL);
   const struct vg_notes *notes = &job->problem.notes;
 
   return i < notes->n ? notes->text[i] : NULL;
@@ -28,6 +30,7 @@ const char *vanguard_note(const vanguard_job *job, size_t i)
 
 vanguard_status vanguard_count(vanguard_job *job, struct vanguard_counts *out)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   const struct vg_slices *s = &job->run.slices;
   struct vanguard_counts n = { .struct_size = sizeof n };
   vg_status st = vg_job_meshed(job);
@@ -52,6 +55,7 @@ vanguard_status vanguard_count(vanguard_job *job, struct vanguard_counts *out)
 vanguard_status vanguard_patch(vanguard_job *job, size_t i,
                                struct vanguard_patch *out)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   struct vanguard_patch p = { .struct_size = sizeof p };
   const struct vg_patch *from;
   vg_status st = vg_job_meshed(job);
@@ -79,21 +83,25 @@ static const struct vg_mesh *boundary_of(const vanguard_job *job)
 
 const uint32_t *vanguard_triangles(const vanguard_job *job)
 {
+  VG_JOB_CALL(job, NULL);
   return (const uint32_t *)boundary_of(job)->tri;
 }
 
 const uint32_t *vanguard_triangle_patches(const vanguard_job *job)
 {
+  VG_JOB_CALL(job, NULL);
   return boundary_of(job)->tri_patch;
 }
 
 const uint32_t *vanguard_quads(const vanguard_job *job)
 {
+  VG_JOB_CALL(job, NULL);
   return (const uint32_t *)boundary_of(job)->quad;
 }
 
 const uint32_t *vanguard_quad_patches(const vanguard_job *job)
 {
+  VG_JOB_CALL(job, NULL);
   return boundary_of(job)->quad_patch;
 }
 
@@ -127,6 +135,7 @@ static vg_status fill_arrays(void *context, const struct vg_slice *s,
 vanguard_status vanguard_arrays(vanguard_job *job, double *xyz, uint32_t *tet,
                                 uint32_t *pyr, uint32_t *pri)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   struct arrays a = { xyz, { tet, pyr, pri } };
   vg_status st = vg_job_meshed(job);
 
@@ -150,12 +159,14 @@ vanguard_status vanguard_arrays(vanguard_job *job, double *xyz, uint32_t *tet,
 
 size_t vanguard_pieces(const vanguard_job *job)
 {
+  VG_JOB_CALL(job, 0);
   return job->is_meshed ? job->run.slices.n_slice : 0;
 }
 
 vanguard_status vanguard_piece_get(vanguard_job *job, size_t i,
                                    struct vanguard_piece *out)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   const struct vg_slices *s = &job->run.slices;
   struct vanguard_piece p = { .struct_size = sizeof p };
   struct vg_slice *slice;
@@ -195,10 +206,11 @@ vanguard_status vanguard_piece_get(vanguard_job *job, size_t i,
 
 void vanguard_piece_put(vanguard_job *job, struct vanguard_piece *piece)
 {
-  if (!piece->keep) return;
+  if (!piece->keep || !vg_job_enter(job)) return;
   job->run.slices.put(&job->run.slices, piece->keep);
   free(piece->keep);
   piece->keep = NULL;
+  vg_job_leave(&(const vanguard_job *){ job });
 }
 
 /* --- figures ------------------------------------------------------------- */
@@ -206,6 +218,7 @@ void vanguard_piece_put(vanguard_job *job, struct vanguard_piece *piece)
 vanguard_status vanguard_measure(vanguard_job *job,
                                  struct vanguard_quality *out)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   const struct vg_mesh_report *field = job->run.layers ? &job->run.field_judge
                                                        : &job->run.judge;
   struct vanguard_quality q = { .struct_size = sizeof q };
@@ -225,9 +238,15 @@ vanguard_status vanguard_measure(vanguard_job *job,
   return VANGUARD_OK;
 }
 
-size_t vanguard_walls(const vanguard_job *job)
+static size_t n_walls(const vanguard_job *job)
 {
   return job->is_meshed && !job->run.rank ? job->layers.n_wall : 0;
+}
+
+size_t vanguard_walls(const vanguard_job *job)
+{
+  VG_JOB_CALL(job, 0);
+  return n_walls(job);
 }
 
 static void put_range(double to[3], const struct vg_range *r)
@@ -240,14 +259,14 @@ static void put_range(double to[3], const struct vg_range *r)
 vanguard_status vanguard_wall(vanguard_job *job, size_t i,
                               struct vanguard_wall *out)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   struct vanguard_wall w = { .struct_size = sizeof w };
   const struct vg_patch_layers *from;
   vg_status st = vg_job_meshed(job);
 
-  if (st >= 0 && (!vanguard_walls(job) || i > job->layers.n_wall))
+  if (st >= 0 && (!n_walls(job) || i > job->layers.n_wall))
     st = vg_fail(&job->err, VG_ERR_USAGE,
-                 "there is no wall %zu: this rank has %zu", i,
-                 vanguard_walls(job));
+                 "there is no wall %zu: this rank has %zu", i, n_walls(job));
   if (st < 0) return vg_job_status(st);
   from = i < job->layers.n_wall ? &job->layers.wall[i] : &job->layers.all;
   w.patch = i < job->layers.n_wall ? from->patch : SIZE_MAX;
@@ -285,11 +304,12 @@ static const uint32_t *wall_points(vanguard_job *job)
 vanguard_status vanguard_wall_points(vanguard_job *job,
                                      struct vanguard_wall_points *out)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   struct vanguard_wall_points p = { .struct_size = sizeof p };
   const struct vg_wall_fields *w = &job->layers.fields;
   vg_status st = vg_job_meshed(job);
 
-  if (st >= 0 && vanguard_walls(job)) {
+  if (st >= 0 && n_walls(job)) {
     p.n_point = w->n;
     p.point = wall_points(job);
     p.level = w->level;
@@ -333,8 +353,7 @@ static vg_status plan_files(vanguard_job *job, const char *stem,
                    sizeof view.write - 1);
   if (forms) memcpy(view.write, forms, n + 1);
   vg_resolve_write(&view, list);
-  return vg_outputs_plan(&job->problem, stem, NULL, list, job->run.size, o,
-                         &job->err);
+  return vg_outputs_plan(&job->problem, stem, NULL, list, o, &job->err);
 }
 
 static vg_status put_files(vanguard_job *job, struct vg_outputs *o)
@@ -358,11 +377,13 @@ done:
 vanguard_status vanguard_write(vanguard_job *job, const char *stem,
                                const char *forms)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   struct vg_outputs o = VG_OUTPUTS_INIT;
   vg_status st = vg_job_meshed(job);
 
   if (st < 0) return vg_job_status(st);
   st = vg_comm_agree(job->comm, plan_files(job, stem, forms, &o), &job->err);
+  if (st >= 0 && !job->run.rank) vg_outputs_sweep(&o, &job->problem.notes);
   if (st >= 0) st = vg_comm_agree(job->comm, put_files(job, &o), &job->err);
   vg_outputs_release(&o);
   return vg_job_status(st);

@@ -26,6 +26,26 @@ vanguard_status vanguard_prepare(void)
   return vg_job_status(vg_child_server_start(NULL));
 }
 
+/* --- one call at a time -------------------------------------------------- */
+
+/* The job whose use this thread was refused last; NULL: a later call was
+ * accepted. */
+static _Thread_local const vanguard_job *refused;
+
+int vg_job_enter(const vanguard_job *job)
+{
+  int is_free = !atomic_exchange(&((vanguard_job *)job)->busy, 1);
+
+  refused = is_free ? NULL : job;
+  return is_free;
+}
+
+void vg_job_leave(const vanguard_job *const *job)
+{
+  refused = NULL;
+  atomic_store(&((vanguard_job *)*job)->busy, 0);
+}
+
 /* --- jobs ---------------------------------------------------------------- */
 
 static vg_status refuse_abi(int abi, struct vg_error *err)
@@ -86,9 +106,10 @@ vanguard_status vanguard_new_fortran(int abi, int32_t comm, vanguard_job **out)
   return settle(*out, st, out);
 }
 
-void vanguard_free(vanguard_job *job)
+vanguard_status vanguard_close(vanguard_job *job)
 {
-  if (!job) return;
+  if (!job) return VANGUARD_OK;
+  if (!vg_job_enter(job)) return VANGUARD_ERR_BUSY;
   vg_job_release_run(job, 1);
   vg_settings_release(&job->settings);
   vg_mesh_release(&job->surface);
@@ -99,11 +120,22 @@ void vanguard_free(vanguard_job *job)
   free(job->name);
   vg_comm_close(job->comm);
   free(job);
+  return VANGUARD_OK;
+}
+
+void vanguard_free(vanguard_job *job)
+{
+  vanguard_close(job);
 }
 
 const char *vanguard_message(const vanguard_job *job)
 {
-  return job ? job->err.text : "not enough memory for a job";
+  if (!job) return "not enough memory for a job";
+  if (job == refused || atomic_load(&job->busy))
+    return "the job is in use by another call: a callback cannot use the job "
+           "that called it, and only one thread at a time can use a job; wait "
+           "until the call has returned, or use another job";
+  return job->err.text;
 }
 
 vg_status vg_job_usable(vanguard_job *job)
@@ -116,6 +148,7 @@ vg_status vg_job_usable(vanguard_job *job)
 vanguard_status vanguard_set(vanguard_job *job, const char *name,
                              const char *value)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   vg_status st = vg_job_usable(job);
 
   if (st >= 0) st = vg_settings_set(&job->settings, name, value, &job->err);
@@ -125,6 +158,7 @@ vanguard_status vanguard_set(vanguard_job *job, const char *name,
 vanguard_status vanguard_get(vanguard_job *job, const char *name, char *value,
                              size_t size)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   char text[2 * VG_LIST_MAX + 4];
   vg_status st = vg_job_usable(job);
 
@@ -143,6 +177,7 @@ vanguard_status vanguard_add(vanguard_job *job, const char *table, size_t n,
                              const char *const *column,
                              const char *const *value)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   vg_status st = vg_job_usable(job);
 
   if (st >= 0)
@@ -153,6 +188,7 @@ vanguard_status vanguard_add(vanguard_job *job, const char *table, size_t n,
 
 vanguard_status vanguard_deck(vanguard_job *job, const char *text)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   vg_status st = vg_job_usable(job);
 
   if (st >= 0)
@@ -210,6 +246,7 @@ static int keep_text(char **to, const char *text)
 vanguard_status vanguard_open(vanguard_job *job, const char *project,
                               const char *deck)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   struct vg_problem p = VG_PROBLEM_INIT;
   vg_status st;
 
@@ -282,6 +319,7 @@ vanguard_status vanguard_surface(vanguard_job *job, const char *name,
                                  size_t n_tri, const uint32_t *tri,
                                  const int32_t *patch)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
@@ -322,6 +360,7 @@ static void forget_sizes(vanguard_job *job)
 vanguard_status vanguard_sizes(vanguard_job *job, vanguard_size_function *size,
                                void *user)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   vg_status st = vg_job_usable(job);
 
   if (st < 0) return vg_job_status(st);
@@ -334,6 +373,7 @@ vanguard_status vanguard_sizes(vanguard_job *job, vanguard_size_function *size,
 vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
                                      const double *xyz, const double *size)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   double(*at)[3] = NULL, *of = NULL;
   vg_status st;
 

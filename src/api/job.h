@@ -2,6 +2,8 @@
 #ifndef VG_API_JOB_H
 #define VG_API_JOB_H
 
+#include <stdatomic.h>
+
 #include "api/vanguard.h"
 #include "base/comm.h"
 #include "core/sizing/sizing_map.h"
@@ -10,6 +12,7 @@
 #include "run/stages/run.h"
 
 struct vanguard_job {
+  atomic_int busy; /* 1 while a call uses the job */
   struct vg_comm *comm;
   int is_refused; /* the caller's ABI is not supported, or the job could not
                      be created: every call fails */
@@ -44,6 +47,19 @@ static inline vanguard_status vg_job_status(vg_status st)
 {
   return st < 0 ? (vanguard_status)st : VANGUARD_OK;
 }
+
+/** Claim the job for a call, or return 0 if another call uses it, in another
+ * thread or further up in this one, which runs its callback. The calling thread
+ * then gets the message of VANGUARD_ERR_BUSY. */
+int vg_job_enter(const vanguard_job *job);
+void vg_job_leave(const vanguard_job *const *job);
+
+/** First line of a public function: claims the job until the function returns,
+ * or returns `refusal`. */
+#define VG_JOB_CALL(job, refusal)                                              \
+  if (!vg_job_enter(job)) return refusal;                                      \
+  const vanguard_job *const claimed                                            \
+    __attribute__((cleanup(vg_job_leave), unused)) = (job)
 
 /** VG_ERR_USAGE if the job could not be created, or if it has no mesh. */
 vg_status vg_job_usable(vanguard_job *job);

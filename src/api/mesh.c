@@ -142,6 +142,7 @@ done:
 vanguard_status vanguard_mesh(vanguard_job *job, vanguard_progress *progress,
                               void *user)
 {
+  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   struct vg_run *r = &job->run;
   vg_status st = vg_job_usable(job);
 

@@ -18,10 +18,12 @@
  * in the length unit of the surface. The mesh depends only on the input and the
  * settings: it is the same for any number of ranks and threads.
  *
- * Threads. Only one thread at a time may use a job, with the exception of
- * vanguard_cancel, but it need not be the same thread each time. Different jobs
- * may be used by different threads at once. Meshing starts its own threads
- * (setting "threads").
+ * Threads. Only one call at a time uses a job, with the exception of
+ * vanguard_cancel, but the calls may come from different threads. While a call
+ * runs, any other call with the same job, from another thread or from one of
+ * its callbacks, changes nothing and returns VANGUARD_ERR_BUSY (or 0, NULL or
+ * ""). Different jobs may be used by different threads at once. Meshing starts
+ * its own threads (setting "threads").
  *
  * Ranks. All ranks of an MPI job must call the functions marked "Collective" in
  * the same order. Such a call succeeds on all ranks or fails on all ranks.
@@ -58,7 +60,8 @@ typedef enum {
   VANGUARD_ERR_UNSUPPORTED = -6, /* valid, but not supported by this build */
   VANGUARD_ERR_REMOTE = -7,      /* another rank failed */
   VANGUARD_ERR_USAGE = -8,       /* the call is not valid in this state */
-  VANGUARD_ERR_STOPPED = -9      /* stopped by vanguard_cancel or progress */
+  VANGUARD_ERR_STOPPED = -9,     /* stopped by vanguard_cancel or progress */
+  VANGUARD_ERR_BUSY = -10        /* another call uses the job */
 } vanguard_status;
 
 /** Opaque handle: the settings, a surface and, after vanguard_mesh, a mesh. */
@@ -110,11 +113,17 @@ VANGUARD_API vanguard_status vanguard_new_mpi(int abi, const void *comm,
 VANGUARD_API vanguard_status vanguard_new_fortran(int abi, int32_t comm,
                                                   vanguard_job **out);
 
-/** Free a job and its mesh. Accepts NULL. Collective. */
+/** Free a job and its mesh. Accepts NULL. Collective.
+ * VANGUARD_ERR_BUSY: another call uses the job, which is not freed. */
+VANGUARD_API vanguard_status vanguard_close(vanguard_job *job);
+
+/** As vanguard_close, without its result. */
 VANGUARD_API void vanguard_free(vanguard_job *job);
 
-/** Error message of the last call that failed; "" if none has failed. Valid
- * until the next call with this job. Accepts NULL (out of memory). */
+/** Error message of the last call that failed; "" if none has failed. While a
+ * call uses the job, and in a thread whose last call was refused with
+ * VANGUARD_ERR_BUSY, the message of that status. Valid until the next call with
+ * this job. Accepts NULL (out of memory). */
 VANGUARD_API const char *vanguard_message(const vanguard_job *job);
 
 /** Report on the surface after vanguard_mesh, in lines of text: the repairs
@@ -397,12 +406,12 @@ VANGUARD_API const char *vanguard_cause(int32_t cause);
 
 /** Write the mesh as STEM.form for each form in a comma-separated list. The
  * forms are the words of the setting "write": "b8.ugrid", "cogsg", "vtu",
- * "openfoam", "mapbc", ...; NULL uses that setting. In addition,
+ * "foam", "mapbc", ...; NULL uses that setting. In addition,
  * STEM.resolved.deck holds all settings as they were used and, with layers,
  * STEM.wall.vtu the layer data of the walls. Either all files appear or none.
- * Existing files are replaced, but never an input. Collective.
- * VANGUARD_ERR_UNSUPPORTED: the job has several ranks, and one of the forms can
- * be written by a single rank only. */
+ * Existing files are replaced, but never an input. Rank 0 of a job with several
+ * ranks needs memory for the whole mesh if one of the forms is "foam",
+ * "foam-ascii", "meshb", "mesh" or "ugrid" (text). Collective. */
 VANGUARD_API vanguard_status vanguard_write(vanguard_job *job, const char *stem,
                                             const char *forms);
 

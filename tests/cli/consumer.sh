@@ -39,6 +39,16 @@ sed -n '/^VANGUARD_API/ { /(/! N; s/\n/ /; s/^.*\(vanguard_[a-z_]*\)(.*/\1/p; }'
 sed -n 's/\(vanguard_.*\)@@.*/\1/p' "$folder/abi" |
   diff -u "$folder/declared" - || fail "declared and exported symbols differ"
 
+# --- every link of an installed document has a target ---
+
+find "$prefix/share/doc" -name '*.md' | while read -r page; do
+  grep -oE '\]\([^) #]+' "$page" | sed 's/^](//' | grep -v '://' |
+    while read -r target; do
+      [ -e "$(dirname "$page")/$target" ] ||
+        fail "$page links to $target, which is not installed"
+    done || exit 1
+done || exit 1
+
 # --- by CMake: the examples, and a program in C and one in C++ ---
 
 # A sanitizer of the library must also be in the program.

@@ -1,10 +1,8 @@
 /* vanguard check: whether a surface can be meshed; validity and quality of a
  * volume mesh. */
 #define _GNU_SOURCE
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/commands/check_surface.h"
 #include "cli/commands/commands.h"
@@ -138,8 +136,6 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
   vg_display_init(&show, a->one.quiet);
   vg_display_end_at_once(1);
   vg_display_update(&show, "read", 0, 0);
-  if (access(a->one.file, F_OK))
-    VG_TRY(vg_fail(err, VG_ERR_IO, "%s: %s", a->one.file, strerror(errno)));
   VG_TRY(vg_problem_open(&p, a->one.file, a->deck, err));
   VG_TRY(vg_cli_apply(&a->kept, &p.asked, err));
   if (vg_format_holds_cells(a->one.file)) {

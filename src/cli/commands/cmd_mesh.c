@@ -150,8 +150,8 @@ static vg_status read_settings(struct run *r, const struct arguments *a,
   VG_TRY(vg_cli_apply(&a->kept, &p->asked, err));
   vg_mesh_log_settings(&r->mesh, &p->asked);
   vg_resolve_write(&p->asked, list);
-  st = vg_outputs_plan(p, p->read.files.stem, a->dir, list,
-                       vg_comm_size(r->mesh.comm), &r->outputs, err);
+  st = vg_outputs_plan(p, p->read.files.stem, a->dir, list, &r->outputs, err);
+  if (st >= 0 && !r->mesh.rank) vg_outputs_sweep(&r->outputs, &p->notes);
 done:
   return st;
 }

@@ -78,9 +78,8 @@ static vg_status add_file(struct files *f, const char *suffix,
 
 /* Files go to the folder of the input as STEM.new.*, or to the given folder
  * under the name of the input. */
-static vg_status plan_files(const struct vg_problem *p,
-                            const struct arguments *a, struct files *f,
-                            struct vg_error *err)
+static vg_status plan_files(struct vg_problem *p, const struct arguments *a,
+                            struct files *f, struct vg_error *err)
 {
   const char *stem = p->read.files.stem, *name = strrchr(stem, '/');
   vg_status st;
@@ -92,6 +91,7 @@ static vg_status plan_files(const struct vg_problem *p,
     return vg_fail_memory(err, "a path");
   }
   VG_TRY(vg_outputs_place(f->stem, a->dir, &f->outputs, err));
+  vg_outputs_sweep(&f->outputs, &p->notes);
   VG_TRY(vg_write_list(p->asked.write, &f->n_item, f->item, err));
   for (size_t i = 0; i < f->n_item; i++) {
     if (!strcmp(f->item[i], "cogsg") || !strcmp(f->item[i], "openfoam"))

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "cli/common/options.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,10 +10,140 @@
 #include "base/memory.h"
 #include "cli/common/cli.h"
 
+/* --- parsing ------------------------------------------------------------- */
+
+/* The first option whose long name begins with name[0..len). */
+static const struct argp_option *long_option(const struct argp_option *o,
+                                             const char *name, size_t len)
+{
+  for (; o->name || o->key || o->doc; o++)
+    if (o->name && !(o->flags & OPTION_DOC) && !strncmp(o->name, name, len))
+      return o;
+  return NULL;
+}
+
+static const struct argp_option *short_option(const struct argp_option *o,
+                                              int key)
+{
+  for (; o->name || o->key || o->doc; o++)
+    if (o->key == key && !(o->flags & OPTION_DOC)) return o;
+  return NULL;
+}
+
+static const char *long_name(const void *user, size_t i)
+{
+  return (*((const struct argp_option *const *)user + i))->name;
+}
+
+/* The long name nearest to an unknown word; NULL if all are far. */
+static const char *nearest_option(const struct argp_option *o, const char *word,
+                                  size_t len)
+{
+  const struct argp_option *known[VG_KEY_SETTING];
+  char text[64];
+  size_t n = 0;
+
+  snprintf(text, sizeof text, "%.*s", (int)len, word);
+  for (char *c = text; *c; c++)
+    if (*c == '_') *c = '-';
+  for (; (o->name || o->key || o->doc) && n < VG_KEY_SETTING; o++)
+    if (o->name && !(o->flags & (OPTION_DOC | OPTION_HIDDEN))) known[n++] = o;
+  return vg_nearest_name(text, n, long_name, known);
+}
+
+static void refuse_option(const char *command, const char *dashes,
+                          const char *word, size_t len, const char *near)
+{
+  fprintf(stderr, "%s: unknown option '%s%.*s'", command, dashes, (int)len,
+          word);
+  if (near) fprintf(stderr, "; did you mean '--%s'?\n", near);
+  else fprintf(stderr, "; '%s --help' lists the options\n", command);
+  exit(VG_EXIT_USAGE);
+}
+
+/* "--name" or "--name=value". Returns 1 if the next word is its value. */
+static int check_long(const struct argp_option *o, const char *command,
+                      const char *word)
+{
+  size_t len = strcspn(word, "=");
+  const struct argp_option *found = long_option(o, word, len);
+  static const char *const own[] = { "help", "usage" };
+
+  if (found) return found->arg && !word[len];
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    if (!strncmp(own[i], word, len)) return 0;
+  refuse_option(command, "--", word, len, nearest_option(o, word, len));
+  return 0;
+}
+
+/* "-abc". Returns 1 if the next word is the value of the last letter. */
+static int check_short(const struct argp_option *o, const char *command,
+                       const char *word)
+{
+  for (const char *c = word; *c; c++) {
+    const struct argp_option *found = short_option(o, (unsigned char)*c);
+
+    if (found && found->arg) return !c[1];
+    if (!found && !strchr("?h", *c))
+      refuse_option(command, "-", word, strlen(word),
+                    strlen(word) > 2
+                      ? nearest_option(o, word, strcspn(word, "="))
+                      : NULL);
+  }
+  return 0;
+}
+
+/* Refuse an unknown option with a suggestion, which getopt cannot make. Words
+ * that are values of options are skipped. */
+static void check_options(const struct argp_option *o, int argc, char **argv)
+{
+  for (int i = 1; i < argc; i++) {
+    const char *word = argv[i];
+
+    if (!strcmp(word, "--")) return;
+    if (word[0] != '-' || !word[1]) continue;
+    i += word[1] == '-' ? check_long(o, argv[0], word + 2)
+                        : check_short(o, argv[0], word + 1);
+  }
+}
+
+#define KEY_USAGE 256 /* not a letter */
+
+/* Replaces argp's own options, of which -? is the only short one for help. */
+static error_t show_help(int key, char *arg, struct argp_state *state)
+{
+  (void)arg;
+  switch (key) {
+  case 'h':
+  case '?':
+    argp_state_help(state, state->out_stream, ARGP_HELP_STD_HELP);
+    return 0;
+  case KEY_USAGE:
+    argp_state_help(state, state->out_stream,
+                    ARGP_HELP_USAGE | ARGP_HELP_EXIT_OK);
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
 void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input)
 {
+  static const struct argp_option options[] = {
+    { "help", 'h', NULL, 0, "Give this help list", -1 },
+    { NULL, '?', NULL, OPTION_ALIAS, NULL, -1 },
+    { "usage", KEY_USAGE, NULL, 0, "Give a short usage message", -1 },
+    { 0 }
+  };
+  static const struct argp help = { .options = options, .parser = show_help };
+  const struct argp_child child[] = { { .argp = &help, .group = -1 }, { 0 } };
+  struct argp all = *argp;
+
+  assert(!argp->children && !short_option(argp->options, 'h'));
+  all.children = child;
   argp_err_exit_status = VG_EXIT_USAGE;
-  if (argp_parse(argp, argc, argv, 0, NULL, input)) exit(VG_EXIT_USAGE);
+  check_options(argp->options, argc, argv);
+  if (argp_parse(&all, argc, argv, ARGP_NO_HELP, NULL, input))
+    exit(VG_EXIT_USAGE);
 }
 
 error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key, char *arg,

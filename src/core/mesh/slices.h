@@ -70,13 +70,15 @@ vg_status vg_slices_each(const struct vg_slices *s, int threads,
                          vg_slice_body body, void *context,
                          struct vg_error *err);
 
-/** Collect all slices into one mesh in memory, including the boundary. For
- * writers of whole meshes, in jobs of one rank. VG_ERR_MEMORY. */
+/** Collect all slices that this rank serves into one mesh in memory, with the
+ * boundary. With one rank, this is the mesh; with several, the points and cells
+ * of the other ranks' slices are left unset (io/slices/slices.h has
+ * vg_slices_gather). VG_ERR_MEMORY. */
 vg_status vg_slices_collect(const struct vg_slices *s, int threads,
                             struct vg_mesh *out, struct vg_error *err);
 
-/** Collect the solver partitions of all cells, ordered by cell kind. Requires
- * n_part > 0. part: [cells of the mesh]. */
+/** Collect the solver partitions of the cells in these slices, ordered by cell
+ * kind. Requires n_part > 0. part: [cells of the mesh]. */
 vg_status vg_slices_collect_parts(const struct vg_slices *s, int threads,
                                   uint32_t *part, struct vg_error *err);
 

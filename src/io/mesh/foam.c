@@ -25,7 +25,9 @@ int vg_foam_word(const char *word, struct vg_foam_options *options)
 {
   int is_ascii = !strcasecmp(word, "foam-ascii");
 
-  if (!is_ascii && strcasecmp(word, "foam")) return 0;
+  if (!is_ascii && strcasecmp(word, "foam") &&
+      strcasecmp(word, VG_FOAM_SUFFIX) != 0)
+    return 0;
   options->is_ascii = is_ascii;
   return 1;
 }

@@ -7,8 +7,8 @@
  *                  ...) require
  *   CASE/NAME.foam  empty, for ParaView; NAME is the last component of CASE
  *                  without ".openfoam"
- * The word in a write list is "foam" (binary) or "foam-ascii"; the case of
- * project STEM is STEM.openfoam (VG_FOAM_SUFFIX).
+ * The word in a write list is "foam" or "openfoam" (binary), or "foam-ascii";
+ * the case of project STEM is STEM.openfoam (VG_FOAM_SUFFIX).
  *
  * Cells keep their order: tetrahedra, pyramids, prisms, hexahedra. Internal
  * faces are in upper-triangular order, boundary faces sorted by patch in the

@@ -81,4 +81,13 @@ vg_status vg_slices_boundary(struct vg_comm *comm, const struct vg_slices *s,
                              int threads, struct vg_mesh *out,
                              struct vg_error *err);
 
+/** Collect the whole mesh on rank 0, for formats that have no writer of slices.
+ * Collective. *out is replaced on success, by an empty mesh on the other ranks;
+ * *part is the solver partition of each cell on rank 0, to be freed, or NULL
+ * without n_part. Memory: the whole mesh on rank 0, and 256 MB.
+ * VG_ERR_UNSUPPORTED: too many points for 32 bits. VG_ERR_MEMORY. */
+vg_status vg_slices_gather(struct vg_comm *comm, const struct vg_slices *s,
+                           int threads, struct vg_mesh *out, uint32_t **part,
+                           struct vg_error *err);
+
 #endif

@@ -185,6 +185,31 @@ static vg_status find_companions(struct vg_input_files *f, const char *deck,
   return VG_OK;
 }
 
+/* Neither a file nor a project of this name exists. A name with the suffix of a
+ * format is that of a file. */
+static vg_status refuse_absent(const char *name, struct vg_error *err)
+{
+  const char *slash = strrchr(name, '/');
+  char *folder = slash && slash > name ? strndup(name, (size_t)(slash - name))
+                                       : NULL;
+  vg_status st;
+
+  if (folder && !has_mode(folder, S_IFDIR))
+    st = vg_fail(err, VG_ERR_INPUT, "%s: the folder %s does not exist", name,
+                 folder);
+  else if (vg_format_suffix_length(name))
+    st = vg_fail(err, VG_ERR_INPUT, "%s: this file does not exist", name);
+  else
+    st = vg_fail(err, VG_ERR_INPUT,
+                 "%s: there is no such file, and no project found: there is "
+                 "neither %s.d3m nor %s.front nor a surface such as "
+                 "%s.lb8.ugrid or %s.stl; give the stem of a project or the "
+                 "complete name of a surface file",
+                 name, name, name, name, name);
+  free(folder);
+  return st;
+}
+
 static vg_status find_stem(const char *name, struct vg_input_files *f,
                            struct vg_error *err)
 {
@@ -207,11 +232,7 @@ static vg_status find_stem(const char *name, struct vg_input_files *f,
                    "%s: this is a folder; give the stem of a project in it, "
                    "or the complete name of a surface file",
                    name);
-  return vg_fail(err, VG_ERR_INPUT,
-                 "%s: no project found: there is neither %s.d3m nor %s.front "
-                 "nor a surface such as %s.lb8.ugrid or %s.stl; give the stem "
-                 "of a project or the complete name of a surface file",
-                 name, name, name, name, name);
+  return refuse_absent(name, err);
 }
 
 vg_status vg_input_find(const char *name, const char *deck,

@@ -28,9 +28,10 @@ static vg_status add_item(const char *name, size_t len, size_t *n,
   char *to = item[*n];
 
   if (!len) return VG_OK;
-  if (*n == VG_WRITE_ITEMS || len >= VG_WRITE_NAME)
+  assert(*n < VG_WRITE_ITEMS);
+  if (len >= VG_WRITE_NAME)
     return vg_fail(err, VG_ERR_INPUT,
-                   "write: too many names, or a name that is too long");
+                   "write: '%.*s' is not the name of a format", (int)len, name);
   memcpy(to, name, len);
   to[len] = 0;
   for (size_t i = 0; i < *n; i++)
@@ -38,7 +39,7 @@ static vg_status add_item(const char *name, size_t len, size_t *n,
   for (size_t i = 0; i < *n; i++)
     if (is_case(to) && is_case(item[i]))
       return vg_fail(err, VG_ERR_INPUT,
-                     "write: foam and foam-ascii write to "
+                     "write: foam, openfoam and foam-ascii write to "
                      "the same folder; give only one of them");
   if (!is_own_item(to) && !vg_format_can_write(to))
     return vg_fail(err, VG_ERR_INPUT,

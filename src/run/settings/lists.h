@@ -8,8 +8,9 @@
 
 #include "base/status.h"
 
-/* Largest number of formats in a write list, and bytes of a name. */
-enum { VG_WRITE_ITEMS = 16, VG_WRITE_NAME = 24 };
+/* Largest number of formats in a write list, more than there are (checked by
+ * tests/cli/test_deck.c), and bytes of a name. */
+enum { VG_WRITE_ITEMS = 48, VG_WRITE_NAME = 24 };
 
 /** Append the formats of a list such as "b8.ugrid,vtu" to the *n formats in
  * item, without duplicates. VG_ERR_INPUT for an unknown format. */

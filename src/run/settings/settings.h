@@ -16,9 +16,9 @@
 #include "core/sizing/sizing.h"
 
 #define VG_TITLE_MAX 80
-#define VG_WRITE_MAX 160
+#define VG_WRITE_MAX 480  /* bytes of a list of all formats */
 #define VG_MESHER_MAX 240 /* bytes of a path */
-#define VG_LIST_MAX 240   /* bytes of a list of patches, the longest text */
+#define VG_LIST_MAX 240   /* bytes of a list of patches */
 
 /** Outer boundary that is generated around the input surface. */
 enum vg_domain_choice {

@@ -23,6 +23,7 @@
 #include "run/settings/deck.h"
 #include "run/settings/lists.h"
 #include "run/settings/plan_options.h"
+#include "run/stages/hidden.h"
 
 #define WALLS "wall.vtu"
 
@@ -38,7 +39,7 @@ static void remove_temp_dir(struct vg_outputs *o)
     free(path);
   }
   if (!o->is_guest) {
-    rmdir(o->temp_dir);
+    vg_hidden_remove(o->temp_dir, o->lock);
     vg_display_temporary(NULL);
   }
   free(o->temp_dir);
@@ -196,17 +197,8 @@ static vg_status refuse_absent(const char *item, struct vg_error *err)
                  "CGNS: install libhdf5-dev and configure again");
 }
 
-static vg_status refuse_ranks(const char *item, int ranks, struct vg_error *err)
-{
-  if (ranks == 1 || vg_slices_can_write(item)) return VG_OK;
-  return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "write: %s can only be written from a mesh in one process; "
-                 "run on one rank, or write b8.ugrid and convert it",
-                 item);
-}
-
 vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
-                          const char *dir, const char *list, int ranks,
+                          const char *dir, const char *list,
                           struct vg_outputs *o, struct vg_error *err)
 {
   vg_status st = vg_outputs_place(stem, dir, o, err);
@@ -220,9 +212,14 @@ vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
       st = refuse_hit(o, p, "bc", err);
     if (st >= 0) st = refuse_mixed(o->item[i], &p->asked, err);
     if (st >= 0) st = refuse_absent(o->item[i], err);
-    if (st >= 0) st = refuse_ranks(o->item[i], ranks, err);
   }
   return st;
+}
+
+void vg_outputs_sweep(const struct vg_outputs *o, struct vg_notes *notes)
+{
+  assert(o->dir && !o->temp_dir);
+  vg_hidden_sweep(o->dir, notes);
 }
 
 vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
@@ -251,17 +248,11 @@ vg_status vg_outputs_check(const struct vg_problem *p, struct vg_outputs *o,
 
 static vg_status make_temp_dir(struct vg_outputs *o, struct vg_error *err)
 {
-  if (asprintf(&o->temp_dir, "%s/.vanguard-XXXXXX", o->dir) < 0) {
-    o->temp_dir = NULL;
-    return vg_fail_memory(err, "the output paths");
-  }
-  if (mkdtemp(o->temp_dir)) {
-    vg_display_temporary(o->temp_dir);
-    return VG_OK;
-  }
-  free(o->temp_dir);
-  o->temp_dir = NULL;
-  return cannot_write(o, err);
+  vg_status st = vg_hidden_make(o->dir, &o->temp_dir, &o->lock, err);
+
+  if (st == VG_ERR_IO) return cannot_write(o, err);
+  if (st >= 0) vg_display_temporary(o->temp_dir);
+  return st;
 }
 
 vg_status vg_outputs_add(struct vg_outputs *o, const char *suffix,
@@ -369,7 +360,10 @@ struct writing {
   struct vg_comm *comm;
   const struct vg_slices *mesh;
   int threads;
-  struct vg_mesh whole; /* For writers of whole meshes; otherwise empty. */
+  /* Mesh and solver partitions on rank 0, for writers of whole meshes. */
+  struct vg_mesh whole;
+  uint32_t *part;
+  int is_whole; /* 1: `whole` and `part` have been gathered. */
 };
 
 static vg_status write_format(const struct writing *w, const char *path,
@@ -383,44 +377,40 @@ static vg_status write_format(const struct writing *w, const char *path,
   return vg_format_write(path, &w->whole, err);
 }
 
-static vg_status write_foam_parts(const struct writing *w, const char *path,
-                                  struct vg_error *err)
+static vg_status write_foam(struct writing *w, const char *path,
+                            const struct vg_foam_options *options,
+                            struct vg_error *err)
 {
   size_t n = w->whole.n_tet + w->whole.n_pyr + w->whole.n_pri;
-  uint32_t *part = vg_alloc(n, sizeof *part);
-  vg_status st = part ? vg_slices_collect_parts(w->mesh, w->threads, part, err)
-                      : vg_fail_memory(err, "the parts of a mesh");
+  vg_status st = vg_foam_write(path, &w->whole, options, err);
 
-  if (st >= 0) st = vg_foam_write_parts(path, n, part, w->mesh->n_part, err);
-  free(part);
+  if (st >= 0 && w->part)
+    st = vg_foam_write_parts(path, n, w->part, w->mesh->n_part, err);
   return st;
 }
 
-static vg_status write_alone(struct writing *w, const char *item,
+/* Writes a format that needs the mesh in one piece. Rank 0 writes. */
+static vg_status write_whole(struct writing *w, const char *item,
                              struct vg_error *err)
 {
   struct vg_foam_options options;
-  char *path;
-  vg_status st = VG_OK;
+  const int is_foam = vg_foam_word(item, &options);
+  const char *suffix = is_foam ? VG_FOAM_SUFFIX : item;
+  char *path = vg_outputs_temp_path(w->o, suffix);
+  vg_status st = path ? vg_outputs_add(w->o, suffix, err)
+                      : vg_fail_memory(err, "the output paths");
 
-  if (!w->whole.n_point)
-    st = vg_slices_collect(w->mesh, w->threads, &w->whole, err);
-  if (st < 0) return st;
-  if (!vg_foam_word(item, &options)) {
-    path = vg_outputs_temp_path(w->o, item);
-    st = path ? write_format(w, path, item, err)
-              : vg_fail_memory(err, "the output paths");
-    free(path);
-    return st < 0 ? st : vg_outputs_add(w->o, item, err);
-  }
-  path = vg_outputs_temp_path(w->o, VG_FOAM_SUFFIX);
-  st = path ? vg_outputs_add(w->o, VG_FOAM_SUFFIX, err)
-            : vg_fail_memory(err, "the output paths");
-  if (st >= 0) {
-    w->o->file[w->o->n_file - 1].is_case = 1;
-    st = vg_foam_write(path, &w->whole, &options, err);
-    if (st >= 0 && w->mesh->n_part) st = write_foam_parts(w, path, err);
-  }
+  VG_TRY(vg_comm_agree(w->comm, st, err));
+  w->o->file[w->o->n_file - 1].is_case = is_foam;
+  if (!w->is_whole)
+    VG_TRY(
+      vg_slices_gather(w->comm, w->mesh, w->threads, &w->whole, &w->part, err));
+  w->is_whole = 1;
+  if (!w->o->is_guest)
+    st = is_foam ? write_foam(w, path, &options, err)
+                 : write_format(w, path, item, err);
+  st = vg_comm_agree(w->comm, st, err);
+done:
   free(path);
   return st;
 }
@@ -505,7 +495,7 @@ static vg_status write_item(struct writing *w, const char *item,
   if (!strcmp(item, "mapbc") || !strcmp(item, "fun3d.mapbc"))
     return write_conditions(w, item, err);
   return vg_slices_can_write(item) ? write_slices(w, item, err)
-                                   : write_alone(w, item, err);
+                                   : write_whole(w, item, err);
 }
 
 static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
@@ -555,7 +545,12 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
                           struct vg_comm *comm, const struct vg_slices *mesh,
                           int threads, struct vg_error *err)
 {
-  struct writing w = { o, p, layers, comm, mesh, threads, VG_MESH_INIT };
+  struct writing w = { .o = o,
+                       .p = p,
+                       .layers = layers,
+                       .comm = comm,
+                       .mesh = mesh,
+                       .threads = threads };
   vg_status st = VG_OK;
 
   assert(!o->n_open && o->temp_dir);
@@ -570,6 +565,7 @@ vg_status vg_outputs_mesh(struct vg_outputs *o, const struct vg_problem *p,
   for (size_t i = 0; i < o->n_file && st >= 0; i++)
     o->file[i].keep_old = hits_input(o, p, o->file[i].suffix) != NULL;
   vg_mesh_release(&w.whole);
+  free(w.part);
   return vg_comm_agree(comm, st, err);
 }
 

@@ -15,6 +15,7 @@ struct vg_slices_ugrid;
 struct vg_outputs {
   char *dir, *name; /* Target folder ("." if none is given), base name. */
   char *temp_dir;   /* Hidden folder while writing, or NULL. */
+  int lock;         /* Descriptor that locks the hidden folder on rank 0. */
   int is_guest;     /* 1: another rank makes and removes the hidden folder. */
   size_t n_item;
   char item[VG_WRITE_ITEMS][VG_WRITE_NAME];
@@ -50,13 +51,18 @@ vg_status vg_outputs_begin(struct vg_outputs *o, struct vg_comm *comm,
                            struct vg_error *err);
 
 /** Parses the write list and determines where files are written. Refuses files
- * that would overwrite an input of p, or cannot be written by several ranks.
+ * that would overwrite an input of p.
  *
  * @param stem, dir  as for vg_outputs_place
  * @param list       as from vg_resolve_write */
 vg_status vg_outputs_plan(const struct vg_problem *p, const char *stem,
-                          const char *dir, const char *list, int ranks,
+                          const char *dir, const char *list,
                           struct vg_outputs *o, struct vg_error *err);
+
+/** Removes the hidden folders that runs which were killed have left in the
+ * target folder, and notes them (hidden.h). Rank 0 calls it before
+ * vg_outputs_begin. */
+void vg_outputs_sweep(const struct vg_outputs *o, struct vg_notes *notes);
 
 /** Called once the surface is final, before the fill: an existing .mapbc that
  * is an input is kept, and must contain every patch. */

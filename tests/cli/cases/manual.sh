@@ -41,6 +41,21 @@ complete_words vanguard check --js
 is out <<'END'
 --json
 END
+complete_words vanguard sweep --fam
+is out <<'END'
+--family=
+END
+complete_words vanguard sweep --scale
+is out <<'END'
+
+END
+# Every long option of every command is completed, and nothing else.
+for command in mesh surface check partition plan sweep serve deck demo; do
+  vanguard $command --help
+  sed -n 's/^ \{2,6\}\(-[^ ], \)*--\([a-z0-9-]*\).*/--\2/p' out | sort -u >options
+  complete_words vanguard $command --
+  tr -d = <out | sort -u | diff options - || fail "completions of $command"
+done
 complete_words vanguard mesh wing
 is out <<'END'
 

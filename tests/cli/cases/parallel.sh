@@ -71,11 +71,26 @@ if [ $has_mpirun = 1 ]; then
   says out "2 ranks x 1 thread;"
   ranks 3 mesh $cut -t 2 --out ranks3
   agrees ranks3
-  ranks 2 mesh -q -p p/box --write foam --out whole
-  exits 1
-  says err "write: foam can only be written from a mesh in one process"
-  absent whole/box.openfoam
-  [ -z "$(ls -A whole)" ] || fail "left behind: $(ls -A whole)"
+
+  # Formats that need the whole mesh in one process: rank 0 writes them.
+  whole="-q -p p/box --leaf-cells 3000 --solver-parts 3 \
+    --write foam,meshb,ugrid,b8.ugrid"
+  # shellcheck disable=SC2086 # words
+  vanguard mesh $whole -t 1 --out whole1
+  exits 0
+  for n in 2 3; do
+    # shellcheck disable=SC2086 # words
+    ranks $n mesh $whole -t 1 --out whole$n
+    exits 0
+    for file in box.meshb box.ugrid box.b8.ugrid \
+      box.openfoam/constant/cellDecomposition \
+      box.openfoam/constant/polyMesh/{points,faces,owner,neighbour,boundary}
+    do
+      same whole1/$file whole$n/$file
+    done
+    [ "$(ls -A whole1)" = "$(ls -A whole$n)" ] ||
+      fail "other files: $(ls -A whole$n)"
+  done
 fi
 
 # Where the void is cut, and how often.

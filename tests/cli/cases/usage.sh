@@ -56,6 +56,38 @@ for command in mesh surface check partition sweep serve plan deck demo; do
   says err "--no-such-option"
 done
 
+# Help by -h, and suggestions for unknown options. The value of an option is
+# not taken for one.
+for command in mesh check sweep deck; do
+  vanguard $command --help
+  cp out help
+  vanguard $command -h
+  exits 0
+  is out <help
+done
+vanguard mesh --grwoth 1.2 -p x
+exits 2
+is err <<'END'
+vanguard mesh: unknown option '--grwoth'; did you mean '--growth'?
+END
+vanguard check x --jsn
+exits 2
+says err "unknown option '--jsn'; did you mean '--json'?"
+vanguard mesh --farfield_lengths=3 x
+exits 2
+says err "unknown option '--farfield_lengths'; did you mean '--farfield-lengths'?"
+vanguard mesh -growth 1.2 x
+exits 2
+says err "unknown option '-growth'; did you mean '--growth'?"
+vanguard mesh -p --grwoth
+exits 1
+says err "--grwoth: there is no such file, and no project found"
+vanguard mesh --quiet=x -p x
+exits 2
+vanguard mesh -p x -- --grwoth
+exits 2
+says err "only one project is accepted"
+
 vanguard mesh
 exits 2
 says err "no project given; use -p PROJECT"
@@ -89,6 +121,20 @@ exits 2
 vanguard demo box --cells many
 exits 2
 
+# A file or a folder that does not exist. A project is found by its stem.
+for command in mesh plan surface deck check; do
+  vanguard $command nosuch.stl
+  exits 1
+  says err "vanguard: nosuch.stl: this file does not exist"
+  lacks err "nosuch.stl."
+  vanguard $command no/such
+  exits 1
+  says err "vanguard: no/such: the folder no does not exist"
+done
+vanguard check nosuch
+exits 1
+says err "vanguard: nosuch: there is no such file, and no project found"
+
 # A failure to write standard output is an error, and reported.
 if [ -w /dev/full ]; then
   "$program" demo --list >/dev/full 2>err
@@ -100,6 +146,25 @@ fi
 # Conflicting settings: wrong usage if options cause the conflict, bad input
 # if the deck alone does.
 vanguard demo box --cells 2000 --out p
+vanguard check -q p/box
+exits 0
+says out "p/box"
+
+# Every format in one list.
+vanguard mesh -q -p p/box --out all --write "stl,tri,obj,mesh,meshb,fluent.msh,\
+msh,b8.ugrid,lb8.ugrid,b4.ugrid,lb4.ugrid,r8.ugrid,lr8.ugrid,r4.ugrid,\
+lr4.ugrid,b8l.ugrid,lb8l.ugrid,b8.ugrid64,lb8.ugrid64,ugrid,cogsg,openfoam,su2,\
+vtu,pvtu,mapbc,fun3d.mapbc"
+exits 0
+for form in stl tri obj mesh meshb fluent.msh msh b8.ugrid lb8.ugrid b4.ugrid \
+  lb4.ugrid r8.ugrid lr8.ugrid r4.ugrid lr4.ugrid b8l.ugrid lb8l.ugrid \
+  b8.ugrid64 lb8.ugrid64 ugrid cogsg openfoam/constant/polyMesh/points su2 vtu \
+  pvtu mapbc fun3d.mapbc; do
+  exists all/box.$form
+done
+vanguard mesh -q -p p/box --write foam,openfoam
+exits 2
+says err "give only one of them"
 for command in mesh plan; do
   vanguard $command -q -p p/box --constant-direction yes
   exits 2

@@ -367,6 +367,36 @@ static void stops(void)
   vanguard_free(job);
 }
 
+/* Every call with the job of a run that is in progress is refused. */
+static int use_job_in_use(void *user, const char *phase, uint64_t done,
+                          uint64_t expected)
+{
+  vanguard_job *job = user;
+  struct vanguard_counts n = VANGUARD_INIT(n);
+
+  (void)phase, (void)done, (void)expected;
+  CHECK(vanguard_close(job) == VANGUARD_ERR_BUSY && says(job, "in use"));
+  vanguard_free(job);
+  CHECK(vanguard_mesh(job, NULL, NULL) == VANGUARD_ERR_BUSY);
+  CHECK(vanguard_set(job, "growth", "1.3") == VANGUARD_ERR_BUSY);
+  CHECK(vanguard_count(job, &n) == VANGUARD_ERR_BUSY);
+  CHECK(!vanguard_triangles(job) && !vanguard_note(job, 0));
+  CHECK(!vanguard_pieces(job) && !*vanguard_details(job));
+  return 0;
+}
+
+static void refuses_a_second_call(void)
+{
+  vanguard_job *job = new_cube();
+  struct vanguard_counts n = VANGUARD_INIT(n);
+
+  CHECK(!vanguard_mesh(job, use_job_in_use, job));
+  CHECK(!vanguard_count(job, &n) && n.n_tet > 0);
+  CHECK(vanguard_set(job, "growth", "0") == VANGUARD_ERR_INPUT &&
+        says(job, "above 1"));
+  CHECK(!vanguard_close(job));
+}
+
 static double focus(void *user, const double x[3])
 {
   double d2 = 0;
@@ -475,6 +505,7 @@ int main(int argc, char **argv)
   names_causes();
   grows_layers();
   stops();
+  refuses_a_second_call();
   takes_sizes();
   if (argc > 1) writes(argv[1]);
   CHECK(!vanguard_prepare());

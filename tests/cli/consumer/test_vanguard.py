@@ -151,6 +151,87 @@ def test_sizes():
     assert len(job.mesh().tetrahedra) == plain
 
 
+def test_size_function_without_result():
+    """The first bad result ends the run with one error, and standard error stays
+    empty: ctypes reports every result that it cannot convert."""
+    script = """if True:
+        import sys, vanguard
+        sys.path.insert(0, sys.argv[1])
+        from test_vanguard import cube
+        calls = []
+        job = vanguard.Job()
+        job.surface(*cube(6))
+        for result in (None, "0.1", [1], object()):
+            del calls[:]
+            def size(x, y, z):
+                calls.append(x)
+                return result
+            job.size_function(size)
+            try:
+                job.mesh()
+                print("no error for", result)
+            except TypeError as error:
+                print(len(calls), error)
+        def breaks(x, y, z):
+            return None + x
+        job.size_function(breaks)
+        try:
+            job.mesh()
+        except TypeError as error:
+            print("own:", error)
+    """
+    ran = subprocess.run(
+        [sys.executable, "-c", script, os.path.dirname(__file__)],
+        capture_output=True, text=True, timeout=120)
+    lines = ran.stdout.splitlines()
+    assert ran.returncode == 0 and not ran.stderr, ran.stderr[:500]
+    assert len(lines) == 5, lines
+    for line in lines[:4]:
+        assert line.startswith("1 the size function returned"), line
+        assert "must return a number above 0" in line, line
+    assert lines[4].startswith("own: unsupported operand"), lines[4]
+
+
+def test_one_call_at_a_time():
+    """A callback and a second thread are refused, and the run continues."""
+    points, triangles, patches = cube(6)
+    job = vanguard.Job()
+    job.surface(points, triangles, patches)
+    calls = [job.close, job.mesh, lambda: job.set(growth=1.3),
+             lambda: job.get("growth"), lambda: job.surface(points, triangles),
+             lambda: job.size_points([[0, 0, 0]], [1]),
+             lambda: job.deck("A deck"), lambda: job.open("x"),
+             lambda: job.patch(10, name="a"), lambda: job.size_function(None)]
+    refusals = []
+
+    def try_all():
+        for call in calls:
+            refusals.append(refused("busy", "in use by another call", call))
+
+    def progress(phase, done, expected):
+        if not refusals:
+            try_all()
+            other = threading.Thread(target=try_all)
+            other.start()
+            other.join()
+
+    mesh = job.mesh(progress)
+    assert len(refusals) == 2 * len(calls)
+    assert isinstance(refusals[0], vanguard.Busy)
+    assert abs(volume(mesh) - 1) < 1e-12 and job.get("growth") == "1.2"
+
+    def close(phase, done, expected):
+        job.close()
+
+    refused("busy", "in use by another call", job.mesh, close)
+    assert "no surface" not in refused(
+        "input", "above 1", job.set, growth=0.5).args[0]
+    again = job.mesh()
+    assert np.array_equal(again.points, mesh._arrays[0])
+    job.close()
+    job.close()
+
+
 def test_progress():
     points, triangles, patches = cube(6)
     job = vanguard.Job()
@@ -215,7 +296,6 @@ def test_same_as_program(folder, program):
 if __name__ == "__main__":
     assert vanguard.prepare()
     for name, test in list(globals().items()):
-        if name.startswith("test_") and name != "test_same_as_program":
-            test()
-    test_same_as_program(*sys.argv[1:])
+        if name.startswith("test_"):
+            test(*sys.argv[1:1 + test.__code__.co_argcount])
     print("vanguard", vanguard.library_version(), "works from Python")
