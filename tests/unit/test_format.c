@@ -3,6 +3,15 @@
 #include "io/mesh/format.h"
 #include "io/vgrid/vgrid.h"
 
+static int can_write(const char *suffix)
+{
+  const char *known;
+
+  for (size_t i = 0; (known = vg_format_output_suffix(i)); i++)
+    if (!strcmp(known, suffix)) return 1;
+  return 0;
+}
+
 static void suffixes_are_known(void **state)
 {
   static const struct {
@@ -42,14 +51,14 @@ static void suffixes_are_known(void **state)
     assert_int_equal(vg_format_suffix_length(name), strlen(s) + 1);
   }
   assert_int_equal(n, 56);
-  assert_true(vg_format_can_write("b8.ugrid"));
-  assert_true(vg_format_can_write("cogsg"));
-  assert_true(vg_format_can_write("vtu"));
-  assert_true(vg_format_can_write("openfoam"));
-  assert_false(vg_format_can_write("front"));
-  assert_false(vg_format_can_write("surf"));
-  assert_false(vg_format_can_write("b9.ugrid"));
-  assert_false(vg_format_can_write(""));
+  assert_true(can_write("b8.ugrid"));
+  assert_true(can_write("cogsg"));
+  assert_true(can_write("vtu"));
+  assert_true(can_write("openfoam"));
+  assert_false(can_write("front"));
+  assert_false(can_write("surf"));
+  assert_false(can_write("b9.ugrid"));
+  assert_false(can_write(""));
 }
 
 static void unknown_suffixes_list_the_known(void **state)

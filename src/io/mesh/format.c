@@ -253,11 +253,11 @@ size_t vg_format_suffix_length(const char *name)
   return f ? strlen(name) - n + strlen(f->suffix) + 1 : 0;
 }
 
-int vg_format_can_write(const char *suffix)
+const char *vg_format_output_suffix(size_t i)
 {
-  for (size_t i = 0; i < N_FORMAT; i++)
-    if (formats[i].write && !strcasecmp(suffix, formats[i].suffix)) return 1;
-  return 0;
+  for (size_t k = 0; k < N_FORMAT; k++)
+    if (formats[k].write && !i--) return formats[k].suffix;
+  return NULL;
 }
 
 int vg_format_is_cad(const char *path)

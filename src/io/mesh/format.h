@@ -40,8 +40,9 @@ const char *vg_format_input_suffix(size_t i);
  * "wing.lb8.ugrid.gz", 0 for "wing". The stem is the name without it. */
 size_t vg_format_suffix_length(const char *name);
 
-/** Returns 1 if a mesh can be written with this suffix (no leading dot). */
-int vg_format_can_write(const char *suffix);
+/** Suffix i, without its dot, of the formats that can be written; NULL past the
+ * last one. */
+const char *vg_format_output_suffix(size_t i);
 
 /** Returns 1 if path has the suffix of a CAD file. */
 int vg_format_is_cad(const char *path);

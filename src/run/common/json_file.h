@@ -16,4 +16,9 @@
 vg_status vg_json_write(const char *path, const json_t *o, const char *what,
                         struct vg_error *err);
 
+/** Flags for json_dumpf (JSON_REAL_PRECISION) with which it writes every real
+ * of a document exactly, with as few digits as possible: 0.1, not
+ * 0.10000000000000001. */
+size_t vg_json_digits(const json_t *o);
+
 #endif

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "io/stream/stream.h"
 #include "run/settings/deck.h"
+#include "run/settings/deck_json.h"
 
 #define MAX_TOKENS 64 /* more than any table has columns */
 #define TOKEN_SIZE 512
@@ -499,12 +500,27 @@ done:
   return st;
 }
 
+/* A deck whose first character is '{' is a JSON document. */
+static int is_json(const struct vg_input *in)
+{
+  size_t at = 0;
+
+  while (at < in->size && strchr(" \t\r\n", in->data[at])) at++;
+  return at < in->size && in->data[at] == '{';
+}
+
 static vg_status run(struct vg_input *in, struct vg_settings *s,
                      struct vg_error *err)
 {
-  struct reader *r = vg_calloc(1, sizeof *r);
+  struct reader *r;
   vg_status st;
 
+  if (is_json(in)) {
+    st = vg_deck_json_parse(in->path, in->data, in->size, s, err);
+    vg_input_release(in);
+    return st;
+  }
+  r = vg_calloc(1, sizeof *r);
   if (!r) {
     vg_input_release(in);
     return vg_fail_memory(err, "a deck");

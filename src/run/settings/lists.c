@@ -1,6 +1,9 @@
+#define _GNU_SOURCE
 #include "run/settings/lists.h"
 
 #include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "io/mesh/foam.h"
@@ -15,11 +18,23 @@ static int is_case(const char *item)
 }
 
 /* Words of the write list that are not suffixes of a mesh format. */
-static int is_own_item(const char *item)
+static const char *const own_word[] = { "mapbc", "fun3d.mapbc", "pvtu", "foam",
+                                        "foam-ascii" };
+#define N_OWN (sizeof own_word / sizeof *own_word)
+
+/* Word i of a write list; NULL past the last one. */
+static const char *write_word(size_t i)
 {
-  return !strcmp(item, "cogsg") || !strcmp(item, "mapbc") ||
-         !strcmp(item, "fun3d.mapbc") || !strcmp(item, "vtu") ||
-         !strcmp(item, "pvtu") || is_case(item);
+  return i < N_OWN ? own_word[i] : vg_format_output_suffix(i - N_OWN);
+}
+
+static int is_write_word(const char *item)
+{
+  const char *word;
+
+  for (size_t i = 0; (word = write_word(i)); i++)
+    if (!strcmp(word, item)) return 1;
+  return 0;
 }
 
 static vg_status add_item(const char *name, size_t len, size_t *n,
@@ -41,7 +56,7 @@ static vg_status add_item(const char *name, size_t len, size_t *n,
       return vg_fail(err, VG_ERR_INPUT,
                      "write: foam, openfoam and foam-ascii write to "
                      "the same folder; give only one of them");
-  if (!is_own_item(to) && !vg_format_can_write(to))
+  if (!is_write_word(to))
     return vg_fail(err, VG_ERR_INPUT,
                    "write: unknown format '%s'; known formats are "
                    "cogsg (with bc and mapbc), mapbc, fun3d.mapbc, vtu, "
@@ -76,6 +91,36 @@ vg_status vg_write_list_check(const char *name, const char *list,
 
   (void)name;
   return strcmp(list, "auto") ? vg_write_list(list, &n, item, err) : VG_OK;
+}
+
+/* `$` alone also matches before a line feed at the end. */
+#define END "$(?!\\n)"
+
+char *vg_write_list_pattern(void)
+{
+  char *text = NULL;
+  size_t size;
+  FILE *to = open_memstream(&text, &size);
+  const char *word;
+
+  if (!to) return NULL;
+  fprintf(to, "^(?:auto|[, ]*|[, ]*(?:(?:");
+  for (size_t i = 0; (word = write_word(i)); i++) {
+    if (i) fputc('|', to);
+    for (; *word; word++) fprintf(to, *word == '.' ? "\\%c" : "%c", *word);
+  }
+  fprintf(to, ")(?:[, ]+|(?![^, ])))+)" END);
+  if (fclose(to)) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}
+
+char *vg_mesher_name_pattern(void)
+{
+#define ANY "[^\\u0000-\\u001f\\u007f]*"
+  return strdup("^(?:builtin|tetgen|hxt|" ANY "/" ANY ")" END);
 }
 
 vg_status vg_mesher_name_check(const char *name, const char *mesher,

@@ -26,4 +26,10 @@ vg_status vg_mesher_name_check(const char *name, const char *mesher,
 vg_status vg_write_list_check(const char *name, const char *list,
                               struct vg_error *err);
 
+/** Regular expressions of the texts that these two checks accept, except that
+ * that of `write` does not find two words for the same OpenFOAM case. To be
+ * freed; NULL: no memory. */
+char *vg_write_list_pattern(void);
+char *vg_mesher_name_pattern(void);
+
 #endif

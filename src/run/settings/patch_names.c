@@ -1,3 +1,4 @@
+#define _GNU_SOURCE
 #include "run/settings/patch_names.h"
 
 #include <assert.h>
@@ -14,9 +15,10 @@
 
 static int take_number(const char **text, int64_t *out)
 {
-  size_t n = **text == '-';
+  size_t sign = **text == '-', n = sign;
 
   n += strspn(*text + n, "0123456789");
+  if (n - sign > 18) return 0;
   if (!vg_parse_int(*text, n, out)) return 0;
   *text += n;
   return 1;
@@ -75,6 +77,18 @@ vg_status vg_patch_list_check(const char *name, const char *list,
                  "3-12,15,wing*; quote a name that contains blanks or commas "
                  "or begins with a digit",
                  name, list);
+}
+
+/* `$` alone also matches before a line feed at the end. */
+char *vg_patch_list_pattern(void)
+{
+#define NUMBER "-?[0-9]{1,18}"
+#define OTHER "\\u0000-\\u001f\\u007f"
+#define ITEM                                                                   \
+  "(?:" NUMBER "(?:-" NUMBER ")?|\"[^\"" OTHER "]{1,79}\"|'[^'" OTHER          \
+  "]{1,79}'|(?!-?[0-9])[^, \"'" OTHER "][^, " OTHER "]{0,78})"
+
+  return strdup("^[, ]*(?:" ITEM "(?:[, ]+" ITEM ")*[, ]*)?$(?!\\n)");
 }
 
 int vg_patch_name_matches(const char *pattern, const char *name)

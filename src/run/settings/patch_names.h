@@ -25,6 +25,10 @@ int vg_patch_list_next(const char **text, struct vg_patch_item *item);
 vg_status vg_patch_list_check(const char *name, const char *list,
                               struct vg_error *err);
 
+/** Regular expression of the lists that vg_patch_list_check accepts, except
+ * that it does not compare the ends of ranges. To be freed; NULL: no memory. */
+char *vg_patch_list_pattern(void);
+
 /** Whether a name matches a pattern: * stands for any characters, ? for one,
  * and case matters. */
 int vg_patch_name_matches(const char *pattern, const char *name);

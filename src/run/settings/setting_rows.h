@@ -139,7 +139,7 @@ VG_ROW(COUNT, plain, max_cells, "max_cells", 0,
         "this; 0: no limit")
 VG_TEXT_ROW(plain, write, VG_WRITE_MAX, "write", "auto",
   .keeps_mesh = 1, .unit = "", .check = vg_write_list_check,
-  .help = "Output formats, separated by commas; auto: cogsg,b8.ugrid, or "
+  .pattern = vg_write_list_pattern, .help = "Output formats, separated by commas; auto: cogsg,b8.ugrid, or "
   "b8.ugrid for mixed cells")
 VG_ROW(FLAG, plain, report_html, "report_html", 1,
   .keeps_mesh = 1, .unit = "", .help = "Write PROJECT.report.html, a report "
@@ -156,7 +156,8 @@ VG_ROW(COUNT, plain, solver_parts, "solver_parts", 0,
   "cutting a stack of layer cells: writes PROJECT.part.N, a cell array in a "
   ".vtu and OpenFOAM's cellDecomposition; 0: no partition")
 VG_TEXT_ROW(plain, mesher, VG_MESHER_MAX, "mesher", "builtin",
-  .unit = "", .argument = "NAME", .check = vg_mesher_name_check, .help =
+  .unit = "", .argument = "NAME", .check = vg_mesher_name_check,
+  .pattern = vg_mesher_name_pattern, .help =
   "Mesh generator that fills the subdomains: builtin, tetgen, hxt (of an "
   "installed Gmsh 4.8), or the path of a plug-in, as in ./mymesher.so; "
   "builtin fills every subdomain that the other one fails to fill")
@@ -247,11 +248,13 @@ VG_ROW(REAL, layer, cap, "layer_cap", NAN,
   "ratio of every layer; 0: none; -: 1.3, or none if the .d3m gives the "
   "growth law")
 VG_TEXT_ROW(layer, walls, VG_LIST_MAX, "walls", "",
-  .unit = "", .check = vg_patch_list_check, .help = "Patches with layers, to "
+  .unit = "", .check = vg_patch_list_check,
+  .pattern = vg_patch_list_pattern, .help = "Patches with layers, to "
   "the exclusion of all others, by number or name, as in 3-12,15,wing*; \"\": "
   "by boundary condition")
 VG_TEXT_ROW(layer, slip, VG_LIST_MAX, "slip", "",
-  .unit = "", .check = vg_patch_list_check, .help = "Patches without layers "
+  .unit = "", .check = vg_patch_list_check,
+  .pattern = vg_patch_list_pattern, .help = "Patches without layers "
   "regardless of their boundary condition, as in 4,7-9,flap?")
 VG_ROW(REAL, layer, fan_angle, "fan_angle", layers.fan_angle,
   .lo = 0, .hi = 180, .unit = "degrees", .help = "Convex edges that turn by "

@@ -194,6 +194,9 @@ struct vg_param {
   const char *const *words; /* NULL-terminated, for VG_PARAM_WORD */
   /* Validates a text; NULL: every text is valid. */
   vg_status (*check)(const char *name, const char *text, struct vg_error *err);
+  /* Regular expression of the texts that `check` accepts, for the JSON Schema;
+   * the caller frees it. NULL: no check. */
+  char *(*pattern)(void);
   const char *unit; /* "" for pure numbers */
   const char *help;
   const char *argument; /* name of the value in the help; NULL: by its type */
@@ -202,7 +205,7 @@ struct vg_param {
 /** Type and range of a column that identifies a patch; `name` is the member of
  * the row that stores a name. */
 #define VG_PATCH_COLUMN(row, name)                                             \
-  .type = VG_PARAM_PATCH, .name_at = offsetof(row, name), .lo = INT32_MIN,     \
+  .type = VG_PARAM_PATCH, .name_at = offsetof(row, name), .lo = -INT32_MAX,    \
   .hi = INT32_MAX, .unit = ""
 
 enum vg_table_kind {

@@ -72,7 +72,7 @@ exits 0
 says out "note: removed $left ("
 absent "$left"
 
-# A folder without a lock, and names that are none of ours, stay.
+# A folder without a lock, and folders with other names, stay.
 mkdir -p o/.vanguard-Ab3dEf o/.vanguard-notes o/.vanguard-Ab3dEf/files
 vanguard mesh -q -p small/box --out o
 exits 0
