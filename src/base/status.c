@@ -34,7 +34,7 @@ const char *vg_status_name(vg_status code)
   case VG_NOT_BETTER: return "not better";
   case VG_ERR_INPUT: return "input";
   case VG_ERR_FORMAT: return "format";
-  case VG_ERR_IO: return "i/o";
+  case VG_ERR_IO: return "io";
   case VG_ERR_MEMORY: return "memory";
   case VG_ERR_GEOMETRY: return "geometry";
   case VG_ERR_UNSUPPORTED: return "unsupported";

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "cli/common/cli.h"
 #include "core/surface/surface_quality.h"
 #include "io/mesh/format.h"
 #include "io/mesh/vtu.h"
@@ -143,15 +144,17 @@ static void print_json(const struct vg_check_surface *a,
                        const struct vg_error *err)
 {
   json_t *o = json_pack(
-    "{s:o s:b s:o s:O s:o s:o s:o s:o}", "file", vg_text_json(a->file), "ok",
-    st >= 0, "flow", vg_report_flow_json(&b->flow, adds_farfield(b)), "surface",
-    body, "remesh", vg_report_remesh_json(&b->remeshing, &b->surface), "notes",
+    "{s:s s:o s:b s:o s:O s:o s:o s:o s:o}", "vanguard", VG_VERSION, "file",
+    vg_text_json(a->file), "ok", st >= 0, "flow",
+    vg_report_flow_json(&b->flow, adds_farfield(b)), "surface", body, "remesh",
+    vg_report_remesh_json(&b->remeshing, &b->surface), "notes",
     notes_json(b->notes), "lines",
     f->has_lines ? vg_report_lines_json(&f->lines, a->has_deck) : json_null(),
     "against",
     a->against ? vg_report_distances_json(a->against, f->off) : json_null());
 
-  if (st < 0) json_object_set_new(o, "error", vg_text_json(err->text));
+  *a->written = 1;
+  if (st < 0) vg_cli_put_error(o, err);
   json_object_set_new(o, "patches", vg_report_patches_json(&b->surface));
   json_object_set_new(o, "size", vg_report_size_json(&b->surface));
   json_dumpf(o, stdout, JSON_INDENT(2));

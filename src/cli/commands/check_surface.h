@@ -12,6 +12,7 @@ struct vg_check_surface {
   const char *file, *defects, *against, *vtu;
   int json;
   int has_deck; /* 1: a deck requests target edge lengths */
+  int *written; /* set to 1 once the report has been printed as JSON */
 };
 
 /** Perform the steps of vanguard mesh up to the closed boundary of the fluid

@@ -19,6 +19,7 @@ struct arguments {
   struct vg_cli_one one;
   const char *deck, *defects, *against, *vtu;
   struct vg_cli_overrides kept;
+  int *written; /* set to 1 once the report has been printed as JSON */
 };
 
 static error_t option(int key, char *arg, struct argp_state *state)
@@ -47,8 +48,9 @@ static vg_status field(const struct arguments *a, const struct vg_settings *s,
   return vg_sizing_new(&options, s->n_source, s->source, m, out, err);
 }
 
-static void print_json(json_t *o)
+static void print_json(json_t *o, const struct arguments *a)
 {
+  *a->written = 1;
   json_dumpf(o, stdout, JSON_INDENT(2));
   printf("\n");
   json_decref(o);
@@ -87,22 +89,27 @@ static vg_status check_mesh(const struct arguments *a,
   memset(&r, 0, sizeof r);
   VG_TRY(field(a, s, m, &sizing, err));
   VG_TRY(vg_mesh_judge(m, sizing, &r, err));
+  if (!r.is_valid) st = not_valid(a, turned, err);
   if (a->one.json) {
-    print_json(
-      json_pack("{s:o s:b s:I s:o s:o s:o}", "file", vg_text_json(a->one.file),
-                "ok", r.is_valid, "cells_turned", (json_int_t)turned->cell,
-                "size", vg_report_size_json(m), "patches",
-                vg_report_patches_json(m), "mesh", vg_report_mesh_json(&r, m)));
+    json_t *o = json_pack("{s:s s:o s:b s:I s:o s:o s:o}", "vanguard",
+                          VG_VERSION, "file", vg_text_json(a->one.file), "ok",
+                          r.is_valid, "cells_turned", (json_int_t)turned->cell,
+                          "size", vg_report_size_json(m), "patches",
+                          vg_report_patches_json(m), "mesh",
+                          vg_report_mesh_json(&r, m));
+
+    if (!r.is_valid) vg_cli_put_error(o, err);
+    print_json(o, a);
   } else {
     printf("%s: volume mesh\n", a->one.file);
     vg_report_size_text(stdout, m);
-    VG_TRY(vg_report_patches_text(stdout, m, err));
+    if (vg_report_patches_text(stdout, m, NULL) < 0)
+      VG_TRY(vg_fail_memory(err, "the patches"));
     if (turned->cell)
       printf("  cells of negative volume, mirrored on reading: %zu\n",
              turned->cell);
     vg_report_mesh_text(stdout, &r, 1);
   }
-  if (!r.is_valid) st = not_valid(a, turned, err);
 done:
   vg_sizing_free(sizing);
   return st;
@@ -130,7 +137,8 @@ static vg_status check(const struct arguments *a, struct vg_error *err)
   struct vg_display show;
   const struct vg_check_surface surface = { a->one.file, a->defects,
                                             a->against,  a->vtu,
-                                            a->one.json, a->deck != NULL };
+                                            a->one.json, a->deck != NULL,
+                                            a->written };
   vg_status st;
 
   vg_display_init(&show, a->one.quiet);
@@ -149,6 +157,16 @@ done:
   vg_display_clear(&show);
   vg_problem_release(&p);
   return st;
+}
+
+/* The report on a file that could not be examined. */
+static void print_failure(const struct arguments *a, const struct vg_error *err)
+{
+  json_t *o = json_pack("{s:s s:o s:b}", "vanguard", VG_VERSION, "file",
+                        vg_text_json(a->one.file), "ok", 0);
+
+  vg_cli_put_error(o, err);
+  print_json(o, a);
 }
 
 int vg_cmd_check(int argc, char **argv)
@@ -188,7 +206,8 @@ int vg_cmd_check(int argc, char **argv)
       "Exit status: 0 if the mesh is valid or the surface is accepted, 1 "
       "otherwise."
   };
-  struct arguments a = { 0 };
+  int written = 0;
+  struct arguments a = { .written = &written };
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
 
@@ -199,6 +218,7 @@ int vg_cmd_check(int argc, char **argv)
   argp.options = options.option;
   vg_cli_parse(&argp, argc, argv, &a);
   st = check(&a, &err);
+  if (st < 0 && a.one.json && !written) print_failure(&a, &err);
   vg_cli_options_free(&options);
   free(a.kept.set);
   return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;

@@ -231,7 +231,7 @@ static json_t *report_json(const struct run *r, int ok,
   json_object_set_new(o, "source", json_string(vg_source_digest));
   json_object_set_new(o, "title", vg_text_json(p->asked.title));
   json_object_set_new(o, "ok", json_boolean(ok));
-  if (!ok) json_object_set_new(o, "error", vg_text_json(err->text));
+  if (!ok) vg_cli_put_error(o, err);
   json_object_set_new(o, "flow",
                       vg_report_flow_json(&b->flow, b->domain.added_farfield));
   json_object_set_new(o, "input", vg_report_size_json(m));

@@ -139,8 +139,8 @@ VG_ROW(COUNT, plain, max_cells, "max_cells", 0,
         "this; 0: no limit")
 VG_TEXT_ROW(plain, write, VG_WRITE_MAX, "write", "auto",
   .keeps_mesh = 1, .unit = "", .check = vg_write_list_check,
-  .pattern = vg_write_list_pattern, .help = "Output formats, separated by commas; auto: cogsg,b8.ugrid, or "
-  "b8.ugrid for mixed cells")
+  .pattern = vg_write_list_pattern, .help = "Output formats, separated by "
+  "commas; auto: cogsg,b8.ugrid, or b8.ugrid for mixed cells")
 VG_ROW(FLAG, plain, report_html, "report_html", 1,
   .keeps_mesh = 1, .unit = "", .help = "Write PROJECT.report.html, a report "
   "of the run with pictures")
