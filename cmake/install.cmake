@@ -36,6 +36,9 @@ install(DIRECTORY ${CMAKE_BINARY_DIR}/share/bash-completion
   DESTINATION ${CMAKE_INSTALL_DATADIR})
 install(PROGRAMS share/slurm/vanguard.sbatch
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard)
+install(PROGRAMS share/drivers/vanguard_cases.py
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard/drivers)
+install(DIRECTORY share/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard)
 install(FILES share/html/regl.LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR})

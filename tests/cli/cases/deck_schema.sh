@@ -61,7 +61,7 @@ vanguard deck --deck text.deck -o second.deck
 exits 1
 says err "second.deck exists and is not overwritten"
 
-# A JSON deck of a run, and what is refused: with the place and a remedy.
+# A JSON deck of a run, and refusals with the place and a remedy.
 vanguard demo box --cells 2000 --out p
 echo '{"title": "By program", "settings": {"growth": 1.4, "write": "vtu"}}' \
   >by.json
