@@ -2,51 +2,75 @@
 # Builds and runs Vanguard on a fresh Debian 12 with one command:
 #   ./bootstrap.sh demo   build, mesh the built-in example, show the report
 #   ./bootstrap.sh test   build, run the whole test suite
-# Both install missing packages first (as root, or with sudo).
+# Both install missing packages first (as root, or with sudo). Without root they
+# use the installed packages and name the missing ones. Further arguments go to
+# CMake, such as -DVG_CAD=OFF.
 set -eu
 cd "$(dirname "$0")"
 
-packages="cmake ninja-build gcc g++ pkg-config libtet1.5-dev zlib1g-dev \
-libjansson-dev libcmocka-dev liblapacke-dev libopenmpi-dev openmpi-bin \
-libhwloc-dev libxxhash-dev libmetis-dev libhdf5-dev libocct-data-exchange-dev \
-libocct-ocaf-dev libcgal-dev libmicrohttpd-dev"
+required="cmake ninja-build gcc g++ pkg-config zlib1g-dev libjansson-dev \
+liblapacke-dev libhwloc-dev libxxhash-dev"
+optional="libopenmpi-dev openmpi-bin libmetis-dev libtet1.5-dev libcgal-dev \
+libocct-data-exchange-dev libocct-ocaf-dev libhdf5-dev libmicrohttpd-dev"
 
-install_missing() {
-  missing=
+# Prints those of the packages that are not installed.
+missing_of() {
   for package in "$@"; do
     state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) ||
       state=
-    [ "$state" = installed ] || missing="$missing $package"
+    [ "$state" = installed ] || printf ' %s' "$package"
   done
-  [ -n "$missing" ] || return 0
-  echo "installing:$missing"
+}
+
+# need REQUIRED OPTIONAL (lists of packages)
+need() {
+  command -v dpkg-query >/dev/null || return 0   # not Debian: CMake reports
+  # shellcheck disable=SC2086 # lists of words
+  hard=$(missing_of $1) soft=$(missing_of $2)
+  [ -n "$hard$soft" ] || return 0
   as_root=
   if [ "$(id -u)" != 0 ]; then
-    command -v sudo >/dev/null || {
-      echo "bootstrap.sh: not root and no sudo; install:$missing" >&2
-      exit 1
-    }
     as_root=sudo
+    if ! command -v sudo >/dev/null || ! sudo -v 2>/dev/null; then
+      without_root
+      return 0
+    fi
   fi
+  echo "installing:$hard$soft"
   $as_root apt-get -qq update
-  # shellcheck disable=SC2086 # a list of words
+  # shellcheck disable=SC2086
   DEBIAN_FRONTEND=noninteractive $as_root apt-get -qq install -y \
-    --no-install-recommends $missing >/dev/null
+    --no-install-recommends $hard $soft >/dev/null
+}
+
+without_root() {
+  if [ -n "$soft" ]; then
+    echo "bootstrap.sh: built without the optional packages$soft" >&2
+  fi
+  [ -n "$hard" ] || return 0
+  echo "bootstrap.sh: not root, and sudo is not available. Ask for these" \
+    "packages:$hard" >&2
+  exit 1
 }
 
 # VG_DATA_DIR is taken from the environment, or else from an earlier configure
 # run. Without it, tests that need real geometry are skipped.
 build() {
+  target=$1
+  shift
+  mkdir -p build
   cmake --preset release -G Ninja ${VG_DATA_DIR:+-DVG_DATA_DIR="$VG_DATA_DIR"} \
-    >/dev/null
-  cmake --build --preset release --target "$1"
+    "$@" >build/configure.log 2>&1 || { cat build/configure.log >&2; exit 1; }
+  sed -n '/^-- Parts of this build/,/^-- *$/p' build/configure.log
+  cmake --build --preset release --target "$target"
 }
 
-case "${1:-}" in
+command=${1:-}
+[ $# = 0 ] || shift
+case $command in
 demo)
-  # shellcheck disable=SC2086
-  install_missing $packages
-  build vanguard_program
+  need "$required" "$optional"
+  build vanguard_program "$@"
   rm -rf build/demo
   ./build/release/bin/vanguard demo wing --cells 600000 --out build/demo
   ./build/release/bin/vanguard mesh -p build/demo/wing \
@@ -56,13 +80,12 @@ demo)
     "build/demo/wing.wall.vtu in ParaView."
   ;;
 test)
-  # shellcheck disable=SC2086
-  install_missing $packages python3-numpy
-  build all
+  need "$required libcmocka-dev" "$optional python3-numpy"
+  build all "$@"
   ctest --preset release
   ;;
 *)
-  sed -n '2,5s/^# *//p' "$0" >&2
+  sed -n '2,7s/^# *//p' "$0" >&2
   exit 2
   ;;
 esac

@@ -49,13 +49,25 @@ find "$prefix/share/doc" -name '*.md' | while read -r page; do
     done || exit 1
 done || exit 1
 
-# --- by CMake: the examples, and a program in C and one in C++ ---
-
 # A sanitizer of the library must also be in the program.
 flags=$(sed -n 's/^CMAKE_C_FLAGS:STRING=//p' "$build/CMakeCache.txt")
 sanitizers() {
   [[ $flags = *-fsanitize* ]]
 }
+
+# The installation can be moved: its files find each other by relative paths,
+# and none refers to the build tree.
+find "$prefix" -type f \( -name 'lib*.so*' -o -perm -u+x ! -name '*.sbatch' \) |
+  while IFS= read -r file; do
+    paths=$(readelf -d "$file" | sed -n 's/.*R.*PATH.*\[\(.*\)\]/\1/p')
+    case :$paths in
+      *:/*) fail "$file searches absolute folders: $paths" ;;
+    esac
+    ! readelf -d "$file" | grep -q '(RPATH)' || sanitizers ||
+      fail "$file has an RPATH, which wins over LD_LIBRARY_PATH"
+  done
+
+# --- by CMake: the examples, and a program in C and one in C++ ---
 
 for project in "$here/consumer" "$examples"; do
   at=$folder/$(basename "$project")
