@@ -12,6 +12,10 @@ target_include_directories(vg_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
 set(CMAKE_C_FLAGS_RELEASE "-O3 -g -DNDEBUG")
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g -DNDEBUG")
 
+# Run-time type checks of clang's sanitizers need its C++ runtime.
+set(VG_NO_CXX_RUNTIME
+  "$<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=function,vptr>")
+
 # Line coverage (verification/coverage.sh). The counters are not atomic, because
 # that would slow threads down. So the number of executions of a line is
 # inexact, but it is known reliably whether a line was executed.

@@ -1,7 +1,16 @@
-# Writes OUT, a C file with the digest of all sources below SOURCE_DIR. A stored
+# Writes OUT, a C file with the digest of all sources below SOURCE_DIR, or below
+# its FOLDERS (separated by commas). A stored
 # outcome of a task depends on this digest and on the input of the task.
-file(GLOB_RECURSE sources RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/*.c
-  ${SOURCE_DIR}/*.h ${SOURCE_DIR}/*.cpp)
+set(sources)
+string(REPLACE "," ";" FOLDERS "${FOLDERS}")
+if(NOT FOLDERS)
+  set(FOLDERS .)
+endif()
+foreach(folder ${FOLDERS})
+  file(GLOB_RECURSE found RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/${folder}/*.c
+    ${SOURCE_DIR}/${folder}/*.h ${SOURCE_DIR}/${folder}/*.cpp)
+  list(APPEND sources ${found})
+endforeach()
 list(SORT sources)
 set(all "")
 foreach(source ${sources})

@@ -297,37 +297,3 @@ int vg_child_server_is_alive(void)
   if (fd >= 0) close(fd);
   return fd >= 0;
 }
-
-/* --- bytes over the socket ----------------------------------------------- */
-
-int vg_child_put(int fd, const void *data, size_t size)
-{
-  const char *at = data;
-
-  assert(data || !size);
-  while (size) {
-    ssize_t n = send(fd, at, size, MSG_NOSIGNAL);
-
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return 0;
-    at += n;
-    size -= (size_t)n;
-  }
-  return 1;
-}
-
-int vg_child_get(int fd, void *data, size_t size)
-{
-  char *at = data;
-
-  assert(data || !size);
-  while (size) {
-    ssize_t n = read(fd, at, size);
-
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return 0;
-    at += n;
-    size -= (size_t)n;
-  }
-  return 1;
-}

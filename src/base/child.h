@@ -67,7 +67,7 @@ int vg_child_open(vg_child_body *body, struct vg_child *out);
 void vg_child_close(struct vg_child *c);
 
 /** Send all of these bytes over a child's socket, from either end. Returns 0 if
- * the other end is closed; never raises SIGPIPE. */
+ * the other end is closed; never raises SIGPIPE on a socket. */
 int vg_child_put(int fd, const void *data, size_t size);
 int vg_child_get(int fd, void *data, size_t size);
 

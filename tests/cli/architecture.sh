@@ -109,10 +109,9 @@ adapter() {
   done < <(grep -rlE "#[[:space:]]*include[[:space:]]*[<\"]${header}[>\"]" . |
     sed 's,^\./,,')
 }
-adapter tetgen.h \
-  '^core/(recover/(cdt_tetgen\.cpp|tetgen_input\.h)|mesher/tetgen\.cpp)$'
+adapter tetgen.h '^$'   # in helpers/tetgen only
 adapter '[A-Z][A-Za-z0-9_]*\.hxx' '^io/occt/occt_[a-z]+\.(cpp|h)$'
-adapter 'CGAL/[A-Za-z0-9_]*\.h' '^core/wrap/wrap_cgal\.cpp$'
+adapter 'CGAL/[A-Za-z0-9_]*\.h' '^$'   # in helpers/wrap only
 adapter zlib.h '^(io/[a-z]+/[a-z_]+|run/picture/image)\.c$'
 adapter jansson.h '^(run|cli)/'
 adapter argp.h '^cli/'

@@ -55,6 +55,17 @@ sanitizers() {
   [[ $flags = *-fsanitize* ]]
 }
 
+# Libraries whose licences must not apply to program and library are in the
+# helper programs: neither their files nor their symbols are in the others.
+for file in "$library" "$prefix/bin/vanguard"; do
+  needed=$(readelf -d "$file" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
+  case $needed in
+    *libtet* | *CGAL* | *libgmp.* | *libmpfr*) fail "$file needs $needed" ;;
+  esac
+  ! nm -C "$file" 2>/dev/null | grep -iE 'tetgen(io|mesh|behavior)|CGAL::' ||
+    fail "$file contains TetGen or CGAL"
+done
+
 # The installation can be moved: its files find each other by relative paths,
 # and none refers to the build tree.
 find "$prefix" -type f \( -name 'lib*.so*' -o -perm -u+x ! -name '*.sbatch' \) |

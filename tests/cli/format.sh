@@ -37,7 +37,7 @@ complain() {
   failed=1
 }
 
-sources=$(find src tests bench \( -name '*.[ch]' -o -name '*.cpp' \) \
+sources=$(find src helpers tests bench \( -name '*.[ch]' -o -name '*.cpp' \) \
   -not -path '*/corpus/*' | sort)
 for file in $sources; do
   "$format" "$file" | cmp -s - "$file" ||

@@ -71,7 +71,7 @@ UNDATED = ("docs/guide/", "docs/reference/")
 CODE = (".c", ".h", ".cpp", ".js", ".in")
 SCRIPTS = (".py", ".sh", ".cmake", "CMakeLists.txt")
 DOCUMENTS = (".md",)
-FOLDERS = ("src", "tests", "bench", "cmake", "docs", "python", "examples",
+FOLDERS = ("src", "helpers", "tests", "bench", "cmake", "docs", "python", "examples",
            "share", "verification")
 
 

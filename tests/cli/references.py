@@ -19,7 +19,7 @@ import re
 import sys
 
 CODE = (".c", ".h", ".cpp", ".sh", ".py", ".in", ".txt", ".cmake", ".js")
-FOLDERS = ("src", "tests", "bench", "cmake", "docs", "python", "examples",
+FOLDERS = ("src", "helpers", "tests", "bench", "cmake", "docs", "python", "examples",
            "share", "verification")
 FOLDERS_OF_DOCS = ("docs", "docs/reference", "docs/guide", "docs/guide/solvers",
                    "docs/design", "docs/lab")

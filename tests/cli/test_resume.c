@@ -20,9 +20,10 @@
 static const struct {
   const char *table, *rows;
 } keeps[] = {
-  { "", " cad_seconds max_cells write report_html ugrid_tail solver_parts "
-        "schedule threads min_full min_any min_height max_first_error "
-        "max_top_ratio " },
+  { "",
+    " cad_seconds helpers max_cells write report_html ugrid_tail solver_parts "
+    "schedule threads min_full min_any min_height max_first_error "
+    "max_top_ratio " },
   { "layers", " min_full min_any min_height max_first_error max_top_ratio " },
   { "sources", " bn alpha stretch sp0 sp1 ux uy uz px py pz group " },
   { "sweep", " ranks threads bisections leaf_cells decompose subdomains family "

@@ -377,14 +377,18 @@ static void stops_and_keeps_limits(void **state)
 
 static void *answer(void *fd)
 {
-  struct vg_mesher_word w;
+  struct vg_helper_message w;
 
   while (vg_child_get(*(int *)fd, &w, sizeof w)) {
-    double(*x)[3] = malloc(w.n * sizeof *x), *h = malloc(w.n * sizeof *h);
+    size_t n = w.n[0];
+    double(*x)[3] = malloc(n * sizeof *x), *h = malloc(n * sizeof *h);
 
-    vg_child_get(*(int *)fd, x, w.n * sizeof *x);
-    vg_sizing_eval(sizing, w.n, (const double(*)[3])x, h);
-    vg_child_put(*(int *)fd, h, w.n * sizeof *h);
+    assert_int_equal(w.what, VG_HELPER_SIZES);
+    vg_child_get(*(int *)fd, x, n * sizeof *x);
+    vg_sizing_eval(sizing, n, (const double(*)[3])x, h);
+    w.what = VG_HELPER_LENGTHS;
+    vg_child_put(*(int *)fd, &w, sizeof w);
+    vg_child_put(*(int *)fd, h, n * sizeof *h);
     free(x);
     free(h);
   }
@@ -406,7 +410,7 @@ static void sizes_are_those_of_the_field(void **state)
   (void)state;
   assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
   assert_int_equal(pthread_create(&thread, NULL, answer, &ends[1]), 0);
-  s = vg_child_sizes_new(ends[0], &f);
+  s = vg_child_sizes_new(ends[0], ends[0], &f);
   assert_non_null(s);
   for (int i = 0; i < 5000; i++) {
     double x[1][3], h, want;

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/helper/helper.h"
 #include "base/version.h"
 #include "cli/commands/commands.h"
 #include "cli/commands/mesh_log.h"
@@ -218,6 +219,20 @@ static json_t *files_json(const struct run *r)
   return list;
 }
 
+/* Identity of each helper program, or null. */
+static json_t *helpers_json(void)
+{
+  json_t *o = json_object();
+  struct vg_helper h;
+
+  for (int kind = 0; kind < VG_HELPER_N; kind++) {
+    vg_helper_find((enum vg_helper_kind)kind, &h);
+    json_object_set_new(o, h.name,
+                        h.is_found ? json_string(h.identity) : json_null());
+  }
+  return o;
+}
+
 static json_t *report_json(const struct run *r, int ok,
                            const struct vg_error *err)
 {
@@ -229,6 +244,7 @@ static json_t *report_json(const struct run *r, int ok,
 
   json_object_set_new(o, "vanguard", json_string(VG_VERSION));
   json_object_set_new(o, "source", json_string(vg_source_digest));
+  json_object_set_new(o, "helpers", helpers_json());
   json_object_set_new(o, "title", vg_text_json(p->asked.title));
   json_object_set_new(o, "ok", json_boolean(ok));
   if (!ok) vg_cli_put_error(o, err);

@@ -3,10 +3,10 @@
 #include <jansson.h>
 #include <string.h>
 
+#include "base/helper/helper.h"
 #include "base/library.h"
 #include "base/version.h"
 #include "cli/commands/commands.h"
-#include "core/recover/cdt_tetgen.h"
 #include "io/stream/stream.h"
 #include "partition/graph/graph.h"
 #include "partition/store/store.h"
@@ -17,12 +17,22 @@ static void put(FILE *to, const struct vg_library *l)
           l->version);
 }
 
+static void put_helpers(FILE *to)
+{
+  struct vg_helper h;
+
+  fprintf(to, "helper programs\n");
+  for (int kind = 0; kind < VG_HELPER_N; kind++) {
+    vg_helper_find(kind, &h);
+    fprintf(to, "  %s %s\n", h.name, h.is_found ? h.identity : "not found");
+  }
+}
+
 void vg_version_libraries(FILE *to)
 {
-  static void (*const say[])(struct vg_library *) = {
-    vg_library_mpi,   vg_library_hwloc,  vg_library_tetgen,
-    vg_library_metis, vg_library_xxhash, vg_library_zlib
-  };
+  static void (*const say[])(
+    struct vg_library *) = { vg_library_mpi, vg_library_hwloc, vg_library_metis,
+                             vg_library_xxhash, vg_library_zlib };
   struct vg_library l;
 
   for (size_t i = 0; i < sizeof say / sizeof *say; i++) {
@@ -32,6 +42,7 @@ void vg_version_libraries(FILE *to)
   }
   fprintf(to, "  %-8s %s\n  %-8s %s\n", "jansson", JANSSON_VERSION, "glibc",
           gnu_get_libc_version());
+  put_helpers(to);
 }
 
 void vg_version_print(FILE *to, int verbose)

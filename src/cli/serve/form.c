@@ -136,6 +136,10 @@ static vg_status check_paths(const char *root, struct vg_settings *s,
     return vg_fail(err, VG_ERR_INPUT,
                    "mesher: the portal does not run plug-ins, since they are "
                    "programs; choose builtin, tetgen or hxt");
+  if (*s->helpers)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "helpers: the portal only runs the helper programs of its "
+                   "own installation; leave the setting empty");
   VG_TRY(check_path(root, "sizes", s->sizes, err));
   VG_TRY(check_path(root, "mapbc", s->mapbc, err));
 done:

@@ -14,6 +14,7 @@ static void add_boundary(struct vg_fill_report *to,
   to->n_pocket += b->n_pocket;
   to->n_pocket_cell += b->n_pocket_cell;
   to->n_retry += b->n_retry;
+  to->n_unassisted += b->n_unassisted;
   to->whole_void |= b->whole_void;
   to->n_steiner += b->n_steiner;
 }

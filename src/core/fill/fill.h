@@ -49,6 +49,8 @@ struct vg_fill_report {
                                      cells */
   size_t n_retry;                 /* pockets enlarged and tried again;
                                      regions that failed */
+  size_t n_unassisted;            /* pockets that were not closed because there
+                                     is no TetGen */
   int whole_void;                 /* 1: TetGen had to mesh a whole void */
   size_t n_steiner; /* interior points added by boundary recovery */
   size_t n_placed, n_inserted, n_refused; /* points of the field */

@@ -8,6 +8,7 @@ static const struct vg_entry entry[] = {
   ROW("triangles_recovered", n_surface_face_lost, COUNT),
   ROW("pockets", n_pocket, COUNT),
   ROW("pocket_cells", n_pocket_cell, COUNT),
+  ROW("pockets_without_tetgen", n_unassisted, COUNT),
   ROW("retries", n_retry, COUNT),
   ROW("steiner_points", n_steiner, COUNT),
   ROW("placed", n_placed, COUNT),

@@ -70,7 +70,6 @@ static const struct vg_mesher *load(const char *name, char *why, size_t size)
    * time, and no other thread may exist when this process forks. */
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
   setenv("OMP_NUM_THREADS", "1", 1);
-  if (!strcmp(name, "tetgen")) return vg_mesher_tetgen();
   if (!strcmp(name, "hxt")) return vg_mesher_hxt(why, size);
   return load_plugin(name, why, size);
 }
@@ -86,22 +85,27 @@ static void set_end(double seconds)
   setitimer(ITIMER_PROF, &t, NULL);
 }
 
-static int get_front(int fd, const struct vg_mesher_job *job,
+static int get_front(int fd, const struct vg_helper_message *job,
                      struct vg_mesher_front *f)
 {
-  double(*x)[3] = vg_alloc(job->n_point, sizeof *x);
-  uint32_t(*face)[3] = vg_alloc(job->n_face, sizeof *face);
+  double(*x)[3] = vg_alloc(job->n[0], sizeof *x);
+  uint32_t(*face)[3] = vg_alloc(job->n[1], sizeof *face);
+  double(*hole)[3] = vg_alloc(job->n[2], sizeof *hole);
+  int good;
 
-  *f = (struct vg_mesher_front){ job->n_point, job->n_face,
-                                 (const double(*)[3])x,
+  *f = (struct vg_mesher_front){ job->n[0], job->n[1], (const double(*)[3])x,
                                  (const uint32_t(*)[3])face };
-  return x && face && vg_child_get(fd, x, job->n_point * sizeof *x) &&
-         vg_child_get(fd, face, job->n_face * sizeof *face);
+  good = x && face && hole && vg_child_get(fd, x, job->n[0] * sizeof *x) &&
+         vg_child_get(fd, face, job->n[1] * sizeof *face) &&
+         vg_child_get(fd, hole, job->n[2] * sizeof *hole);
+  free(hole);
+  return good;
 }
 
 static int put_cells(int fd, const struct vg_mesher_cells *c)
 {
-  const struct vg_mesher_word w = { VG_WORD_CELLS, c->n_point, c->n_cell };
+  const struct vg_helper_message w = { .what = VG_HELPER_CELLS,
+                                       .n = { c->n_point, c->n_cell } };
 
   return vg_child_put(fd, &w, sizeof w) &&
          vg_child_put(fd, c->x, c->n_point * sizeof *c->x) &&
@@ -109,16 +113,16 @@ static int put_cells(int fd, const struct vg_mesher_cells *c)
 }
 
 __attribute__((noreturn)) static void fill(int fd, const struct vg_mesher *m,
-                                           const struct vg_mesher_job *job)
+                                           const struct vg_helper_message *job)
 {
-  static const struct vg_mesher_word none = { VG_WORD_NONE, 0, 0 };
+  static const struct vg_helper_message none = { .what = VG_HELPER_NONE };
   struct vg_mesher_cells cells = { 0, 0, NULL, NULL };
   struct vg_mesher_sizes sizes = { vg_child_sizes_at, NULL };
   struct vg_mesher_front front;
 
-  set_end(job->seconds);
+  set_end(job->value[0]);
   if (!get_front(fd, job, &front)) _exit(1);
-  sizes.user = vg_child_sizes_new(fd, &front);
+  sizes.user = vg_child_sizes_new(fd, fd, &front);
   if (!sizes.user) _exit(1);
   if (m->fill(&front, &sizes, &cells))
     _exit(!vg_child_put(fd, &none, sizeof none));
@@ -158,7 +162,7 @@ void vg_mesher_serve(int fd)
   static struct vg_mesher_spec spec;
   static struct vg_mesher_hello hello;
   const struct vg_mesher *m;
-  struct vg_mesher_job job;
+  struct vg_helper_message job;
   pid_t self = getpid();
 
   assert(fd >= 0);

@@ -21,18 +21,22 @@ struct node {
 };
 
 struct vg_child_sizes {
-  int fd;
+  int in, out; /* descriptors of the parent's answers and of questions */
   double lo[3], side;
   struct node *node;
   size_t n, room;
 };
 
-static void ask(int fd, size_t n, const double (*x)[3], double *h)
+static void ask(const struct vg_child_sizes *s, size_t n, const double (*x)[3],
+                double *h)
 {
-  const struct vg_mesher_word w = { VG_WORD_SIZES, n, 0 };
+  const struct vg_helper_message w = { .what = VG_HELPER_SIZES, .n = { n } };
+  struct vg_helper_message a;
 
-  if (!vg_child_put(fd, &w, sizeof w) || !vg_child_put(fd, x, n * sizeof *x) ||
-      !vg_child_get(fd, h, n * sizeof *h))
+  if (!vg_child_put(s->out, &w, sizeof w) ||
+      !vg_child_put(s->out, x, n * sizeof *x) ||
+      !vg_child_get(s->in, &a, sizeof a) || a.what != VG_HELPER_LENGTHS ||
+      a.n[0] != n || !vg_child_get(s->in, h, n * sizeof *h))
     _exit(1);
 }
 
@@ -55,22 +59,23 @@ void vg_child_sizes_free(struct vg_child_sizes *s)
   free(s);
 }
 
-struct vg_child_sizes *vg_child_sizes_new(int fd,
+struct vg_child_sizes *vg_child_sizes_new(int in, int out,
                                           const struct vg_mesher_front *f)
 {
   struct vg_child_sizes *s = vg_calloc(1, sizeof *s);
   double x[8][3], h[8];
 
-  assert(fd >= 0 && f && f->n_point);
+  assert(in >= 0 && out >= 0 && f && f->n_point);
   if (!s || vg_reserve(&s->node, &s->room, 1, sizeof *s->node)) {
     vg_child_sizes_free(s);
     return NULL;
   }
-  s->fd = fd;
+  s->in = in;
+  s->out = out;
   find_box(s, f);
   for (int c = 0; c < 8; c++)
     for (int k = 0; k < 3; k++) x[c][k] = s->lo[k] + (c >> k & 1) * s->side;
-  ask(fd, 8, (const double(*)[3])x, h);
+  ask(s, 8, (const double(*)[3])x, h);
   s->n = 1;
   s->node[0].child = 0;
   for (int c = 0; c < 8; c++) s->node[0].h[c] = (float)h[c];
@@ -95,7 +100,7 @@ static void split(struct vg_child_sizes *s, uint32_t node, const double lo[3],
     c = i;
     for (int k = 0; k < 3; k++, c /= 3) x[i][k] = lo[k] + c % 3 * (side / 2);
   }
-  ask(s->fd, 27, (const double(*)[3])x, h);
+  ask(s, 27, (const double(*)[3])x, h);
   if (s->n > UINT32_MAX - 8 ||
       vg_reserve(&s->node, &s->room, s->n + 8, sizeof *s->node))
     _exit(1);

@@ -3,15 +3,14 @@
 #include "core/mesher/fill_with.h"
 
 #include <assert.h>
-#include <errno.h>
-#include <poll.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/child.h"
 #include "base/clock.h"
+#include "base/helper/helper.h"
 #include "base/memory.h"
 #include "core/mesher/mesher_parts.h"
 
@@ -25,6 +24,7 @@ static const uint64_t n_max = UINT32_MAX / 8 - 1; /* limit of cell_links.h */
 
 struct vg_mesher_pool {
   struct vg_mesher_spec spec;
+  int is_helper; /* 1: each void has a new process of vanguard-tetgen */
   double time_limit, time_limit_per_face;
   pthread_mutex_t lock;
   size_t n, room;
@@ -55,16 +55,22 @@ static vg_status start(struct vg_mesher_pool *p, struct vg_child *c,
   return st;
 }
 
+/* Get a process that can fill a void. */
 static vg_status borrow(struct vg_mesher_pool *p, struct vg_child *c,
-                        struct vg_error *err)
+                        struct vg_link *l, struct vg_error *err)
 {
   int is_idle;
+  vg_status st = VG_OK;
 
+  if (p->is_helper)
+    return vg_helper_open(VG_HELPER_TETGEN, l->stop, l->silence, c, l, err);
   pthread_mutex_lock(&p->lock);
   is_idle = p->n > 0;
   if (is_idle) *c = p->idle[--p->n];
   pthread_mutex_unlock(&p->lock);
-  return is_idle ? VG_OK : start(p, c, err);
+  if (!is_idle) st = start(p, c, err);
+  l->fd = c->fd;
+  return st;
 }
 
 static void give_back(struct vg_mesher_pool *p, struct vg_child *c)
@@ -78,11 +84,28 @@ static void give_back(struct vg_mesher_pool *p, struct vg_child *c)
   if (refused) vg_child_close(c);
 }
 
+/* Try a mesher when it is opened, so that a run fails at its start. */
+static vg_status test(struct vg_mesher_pool *p, struct vg_error *err)
+{
+  struct vg_helper h;
+  struct vg_child c;
+  vg_status st;
+
+  if (p->is_helper) {
+    vg_helper_find(VG_HELPER_TETGEN, &h);
+    return h.is_found ? VG_OK
+                      : vg_fail(err, VG_ERR_UNSUPPORTED, "mesher %s: %s",
+                                p->spec.name, h.why);
+  }
+  st = start(p, &c, err);
+  if (st == VG_OK) give_back(p, &c);
+  return st;
+}
+
 vg_status vg_mesher_open(const char *name, struct vg_mesher_pool **out,
                          struct vg_error *err)
 {
   struct vg_mesher_pool *p = vg_calloc(1, sizeof *p);
-  struct vg_child c;
   vg_status st;
 
   assert(name && out);
@@ -97,13 +120,13 @@ vg_status vg_mesher_open(const char *name, struct vg_mesher_pool **out,
                  "long",
                  name);
   } else {
-    st = start(p, &c, err);
+    p->is_helper = !strcmp(name, "tetgen");
+    st = test(p, err);
   }
   if (st < 0) {
     vg_mesher_close(p);
     return st;
   }
-  give_back(p, &c);
   *out = p;
   return VG_OK;
 }
@@ -130,7 +153,9 @@ void vg_mesher_set_time_limit(struct vg_mesher_pool *p, double seconds,
 enum outcome { FILLED, STOPPED, TOO_MANY, FAILED, ENDED };
 
 struct filling {
-  int fd;
+  struct vg_link *link;
+  size_t n_hole;
+  double (*hole)[3]; /* [n_hole] a point in each hollow of the front */
   const struct vg_front *front;
   const struct vg_sizing *sizing;
   const struct vg_fill_options *options;
@@ -140,78 +165,96 @@ struct filling {
   uint32_t (*cell)[4];
 };
 
-/* Wait until data can be read. */
-static enum outcome await(const struct filling *f)
+/* Put a point into each hollow, closely behind its largest triangle. */
+static vg_status find_holes(const struct vg_front *v, size_t *n,
+                            double (**hole)[3], struct vg_error *err)
 {
-  double end = vg_clock() + silence * f->seconds;
-  struct pollfd p = { f->fd, POLLIN, 0 };
+  const struct vg_mesher_front f = { v->n_point, v->n_face,
+                                     (const double(*)[3])v->x,
+                                     (const uint32_t(*)[3])v->face };
+  struct vg_mesher_shells shells;
 
-  for (;;) {
-    int n = poll(&p, 1, 100);
+  *n = 0;
+  *hole = NULL;
+  if (vg_mesher_find_shells(&f, &shells))
+    return vg_fail_memory(err, "the shells of a front");
+  *hole = vg_alloc(shells.n_hollow, sizeof **hole);
+  for (size_t s = 0; *hole && s < shells.n; s++) {
+    const uint32_t *face = f.face[shells.largest[s]];
+    double normal[3], length = 0;
 
-    if (n > 0) return FILLED;
-    if (n < 0 && errno != EINTR) return ENDED;
-    if (vg_stops(&f->options->stop)) return STOPPED;
-    if (vg_clock() > end) return ENDED;
+    if (!shells.is_hollow[s]) continue;
+    vg_mesher_normal(&f, shells.largest[s], normal);
+    for (int k = 0; k < 3; k++) length += normal[k] * normal[k];
+    length = sqrt(sqrt(length)); /* about an edge length */
+    for (int k = 0; k < 3; k++)
+      (*hole)[*n][k] = (f.x[face[0]][k] + f.x[face[1]][k] + f.x[face[2]][k]) /
+                         3 -
+                       1e-4 * normal[k] / length;
+    ++*n;
   }
+  vg_mesher_shells_release(&shells);
+  return *hole ? VG_OK : vg_fail_memory(err, "the holes of a front");
 }
 
-static int put_job(const struct filling *f)
+static int put_job(struct filling *f)
 {
   const struct vg_front *v = f->front;
-  const struct vg_mesher_job job = { v->n_point, v->n_face, f->seconds };
+  const struct vg_helper_message job = { .what = VG_HELPER_FILL,
+                                         .n = { v->n_point, v->n_face,
+                                                f->n_hole },
+                                         .value = { f->seconds, 0 } };
 
-  return vg_child_put(f->fd, &job, sizeof job) &&
-         vg_child_put(f->fd, v->x, v->n_point * sizeof *v->x) &&
-         vg_child_put(f->fd, v->face, v->n_face * sizeof *v->face);
+  return vg_link_put(f->link, &job, sizeof job) &&
+         vg_link_put(f->link, v->x, v->n_point * sizeof *v->x) &&
+         vg_link_put(f->link, v->face, v->n_face * sizeof *v->face) &&
+         vg_link_put(f->link, f->hole, f->n_hole * sizeof *f->hole);
 }
 
-static int answer_sizes(const struct filling *f, uint64_t n)
+static int answer_sizes(struct filling *f, uint64_t n)
 {
+  const struct vg_helper_message a = { .what = VG_HELPER_LENGTHS, .n = { n } };
   double x[64][3], h[64];
 
-  for (size_t here; n; n -= here) {
-    here = n < 64 ? n : 64;
-    if (!vg_child_get(f->fd, x, here * sizeof *x)) return 0;
-    vg_sizing_eval(f->sizing, here, (const double(*)[3])x, h);
-    if (!vg_child_put(f->fd, h, here * sizeof *h)) return 0;
-  }
-  return 1;
+  if (n > 64) return 0; /* more would fill the sockets of both sides */
+  if (!vg_link_get(f->link, x, n * sizeof *x)) return 0;
+  vg_sizing_eval(f->sizing, n, (const double(*)[3])x, h);
+  return vg_link_put(f->link, &a, sizeof a) &&
+         vg_link_put(f->link, h, n * sizeof *h);
 }
 
 static enum outcome take_cells(struct filling *f,
-                               const struct vg_mesher_word *w)
+                               const struct vg_helper_message *w)
 {
   size_t n_front = f->front->n_point;
+  double(*added)[3];
 
-  if (f->options->point_limit && w->n > f->options->point_limit)
+  if (f->options->point_limit && w->n[0] > f->options->point_limit)
     return TOO_MANY;
-  if (w->n_cell > n_max || w->n > n_max) return ENDED;
-  f->n = n_front + w->n;
-  f->n_cell = w->n_cell;
+  if (w->n[1] > n_max || w->n[0] > n_max) return ENDED;
+  added = vg_link_get_array(f->link, w->n[0], sizeof *added);
+  f->n = n_front + w->n[0];
+  f->n_cell = w->n[1];
   f->x = vg_alloc(f->n, sizeof *f->x);
-  f->cell = vg_alloc(f->n_cell, sizeof *f->cell);
-  if (!f->x || !f->cell) return ENDED;
-  memcpy(f->x, f->front->x, n_front * sizeof *f->x);
-  if (!vg_child_get(f->fd, f->x + n_front, w->n * sizeof *f->x) ||
-      !vg_child_get(f->fd, f->cell, w->n_cell * sizeof *f->cell))
-    return ENDED;
-  return FILLED;
+  if (added && f->x) {
+    memcpy(f->x, f->front->x, n_front * sizeof *f->x);
+    if (w->n[0]) memcpy(f->x + n_front, added, w->n[0] * sizeof *f->x);
+    f->cell = vg_link_get_array(f->link, w->n[1], sizeof *f->cell);
+  }
+  free(added);
+  return f->cell ? FILLED : ENDED;
 }
 
 static enum outcome run_job(struct filling *f)
 {
-  struct vg_mesher_word w;
+  struct vg_helper_message w;
 
   if (!put_job(f)) return ENDED;
   for (;;) {
-    enum outcome waited = await(f);
-
-    if (waited != FILLED) return waited;
-    if (!vg_child_get(f->fd, &w, sizeof w)) return ENDED;
-    if (w.what == VG_WORD_CELLS) return take_cells(f, &w);
-    if (w.what == VG_WORD_NONE) return FAILED;
-    if (w.what != VG_WORD_SIZES || !answer_sizes(f, w.n)) return ENDED;
+    if (!vg_link_get(f->link, &w, sizeof w)) return ENDED;
+    if (w.what == VG_HELPER_CELLS) return take_cells(f, &w);
+    if (w.what == VG_HELPER_NONE) return FAILED;
+    if (w.what != VG_HELPER_SIZES || !answer_sizes(f, w.n[0])) return ENDED;
   }
 }
 
@@ -262,6 +305,7 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
                        .options = options,
                        .seconds = p->time_limit + p->time_limit_per_face *
                                                     (double)front->n_face };
+  struct vg_link l = { .stop = &options->stop, .silence = silence * f.seconds };
   double t = vg_clock();
   struct vg_child c;
   enum outcome o;
@@ -270,11 +314,13 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
   assert(p && sizing && options && report);
   assert(!out->n_point && !out->n_cell && !out->x && !out->cell);
   if (!front->n_face) return VG_OK;
-  st = borrow(p, &c, err);
-  if (st < 0) return st;
-  f.fd = c.fd;
+  if (p->is_helper) VG_TRY(find_holes(front, &f.n_hole, &f.hole, err));
+  VG_TRY(borrow(p, &c, &l, err));
+  f.link = &l;
   o = run_job(&f);
-  if (o == FILLED || o == FAILED) give_back(p, &c);
+  if (l.state == VG_LINK_STOPPED) o = STOPPED;
+  if (p->is_helper) vg_helper_close(&c);
+  else if (o == FILLED || o == FAILED) give_back(p, &c);
   else vg_child_close(&c);
   st = VG_NOT_BETTER;
   switch (o) {
@@ -287,6 +333,8 @@ vg_status vg_mesher_fill(struct vg_mesher_pool *p, const struct vg_front *front,
   case FAILED: report->n_other_failed++; break;
   case ENDED: report->n_other_ended++; break;
   }
+done:
+  free(f.hole);
   free(f.x);
   free(f.cell);
   report->time_total += vg_clock() - t;

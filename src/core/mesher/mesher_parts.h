@@ -3,17 +3,17 @@
  *
  * The process that loads a mesher fills no void itself. It forks a process for
  * each void, which ends afterwards. Every void thus gets the mesher in its
- * initial state, and a library of many megabytes is loaded only once. Messages
- * on the socket, in the byte order of the machine:
- *   parent: struct vg_mesher_spec; child: struct vg_mesher_hello;
- *   then for each void, parent: struct vg_mesher_job, x, face;
- *   child: struct vg_mesher_word, followed by its data:
- *     VG_WORD_SIZES: n points; the parent answers with n lengths
- *     VG_WORD_CELLS: n new points and n_cell cells; the void is done
- *     VG_WORD_NONE:  no data, the mesher failed; the void is done */
+ * initial state, and a library of many megabytes is loaded only once. The
+ * parent first sends a struct vg_mesher_spec and receives a struct
+ * vg_mesher_hello. After that the messages are those of a helper program
+ * (base/helper/helper_format.h): VG_HELPER_FILL and VG_HELPER_LENGTHS from the
+ * parent, VG_HELPER_SIZES, VG_HELPER_CELLS and VG_HELPER_NONE from the child.
+ * TetGen is a helper program itself (base/helper/helper.h), and each of its
+ * processes fills one void. */
 #ifndef VG_CORE_MESHER_MESHER_PARTS_H
 #define VG_CORE_MESHER_MESHER_PARTS_H
 
+#include "base/helper/helper_format.h"
 #include "core/mesher/mesher.h"
 
 #ifdef __cplusplus
@@ -27,23 +27,13 @@ struct vg_mesher_hello {
   int32_t is_ready;
   char text[508];
 };
-struct vg_mesher_job {
-  uint64_t n_point, n_face;
-  double seconds;
-};
-enum { VG_WORD_SIZES = 1, VG_WORD_CELLS, VG_WORD_NONE };
-struct vg_mesher_word {
-  uint64_t what, n, n_cell;
-};
-
 /** Main function of the child: a vg_child_body. */
 void vg_mesher_serve(int fd);
 
 /* --- in the child --------------------------------------------------------- */
 
-/** core/mesher/tetgen.cpp, core/mesher/hxt.c. vg_mesher_hxt returns NULL and
- * the reason in why if the library cannot be used. */
-const struct vg_mesher *vg_mesher_tetgen(void);
+/** core/mesher/hxt.c. Returns NULL and the reason in why if the library cannot
+ * be used. */
 const struct vg_mesher *vg_mesher_hxt(char *why, size_t size);
 
 /** core/mesher/child.c: as dlopen; the library's own symbols take precedence
@@ -71,11 +61,12 @@ void vg_mesher_normal(const struct vg_mesher_front *f, size_t face,
                       double n[3]);
 
 /** core/mesher/child_sizes.c: target edge lengths over the box of a front,
- * requested from the parent. NULL if memory is refused. Ends the process if
- * the parent is gone. */
+ * requested from the parent: questions go to `out`, answers come from `in`, two
+ * descriptors of which both may be the same socket. NULL if memory is refused.
+ * Ends the process if the parent is gone. Also part of vanguard-tetgen. */
 struct vg_child_sizes;
 void vg_child_sizes_free(struct vg_child_sizes *s);
-struct vg_child_sizes *vg_child_sizes_new(int fd,
+struct vg_child_sizes *vg_child_sizes_new(int in, int out,
                                           const struct vg_mesher_front *f);
 void vg_child_sizes_at(void *sizes, size_t n, const double (*x)[3], double *h);
 

@@ -435,10 +435,16 @@ static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
 {
   struct vg_cdt_job job = { .n = n, .n_tri = n_tri, .x = x, .tri = tri };
   size_t n_missing = n_tri;
-  vg_status st;
+  struct vg_error why = VG_ERROR_INIT;
+  vg_status st = vg_cdt_tetgen(1, &job, &why);
 
+  if (st == VG_BLOCKED)
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "%zu of %zu surface triangles could not be recovered by "
+                   "flips alone: %s",
+                   report->n_face_left, n_tri, why.text);
+  if (st < 0) return vg_fail(err, st, "%s", why.text);
   report->whole_void = 1;
-  VG_TRY(vg_cdt_tetgen(1, &job, err));
   if (job.st == VG_OK) {
     report->n_steiner = job.n_all - n;
     report->n_pocket = 1;

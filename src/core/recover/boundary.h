@@ -19,6 +19,8 @@ struct vg_boundary_report {
                                      cells */
   size_t n_retry;                 /* pockets that had to be enlarged */
   size_t n_restored;              /* flips that restored Delaunay cells */
+  size_t n_unassisted;            /* pockets that were not closed because there
+                                     is no TetGen */
   int whole_void;
   size_t n_steiner;
 };
@@ -28,6 +30,7 @@ struct vg_boundary_report {
  * Starts from the Delaunay tetrahedra of the points in a wide box. Missing
  * triangles are recovered by flips, or else in pockets
  * (core/recover/recover.h). If that fails, TetGen meshes the whole void.
+ * Without TetGen (base/helper/helper.h) only flips recover triangles.
  *
  * @param x, tri  [n][3] points, all used; [n_tri][3] facing the fluid
  * @param out     empty on entry; points 0..n-1 are x, later ones were added;

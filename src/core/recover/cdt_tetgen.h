@@ -4,20 +4,16 @@
  *
  * TetGen 1.5 keeps filters and random state in static variables, prints even
  * in quiet mode, ends the process on failed assertions and frees memory twice
- * after a failure. It therefore runs in a child process (base/child.h), whose
- * end does no harm. */
+ * after a failure, and its licence would apply to this program. It is therefore
+ * part of the helper program vanguard-tetgen (base/helper/helper.h), whose end
+ * does no harm. */
 #ifndef VG_CORE_RECOVER_CDT_TETGEN_H
 #define VG_CORE_RECOVER_CDT_TETGEN_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/library.h"
-#include "base/status.h"
-
-#ifdef __cplusplus
-extern "C" {
-#endif
+#include "base/helper/link.h"
 
 struct vg_cdt_job {
   size_t n, n_tri;          /* in: numbers of points and triangles */
@@ -36,17 +32,15 @@ struct vg_cdt_job {
  * of its points, with every triangle as a face of cells. The result is not
  * trusted: callers must verify it. The caller frees all and tet of jobs whose
  * st is VG_OK (otherwise they are NULL). Threads: re-entrant. Same bytes for
- * the same job. Returns VG_ERR_MEMORY if memory or a process is refused (some
- * jobs may then not have run: st VG_ERR_GEOMETRY), else VG_OK. */
+ * the same job. Returns VG_BLOCKED if there is no vanguard-tetgen: no job has
+ * run, and err says why; VG_ERR_MEMORY if memory or a process is refused,
+ * VG_ERR_IO if the helper no longer starts (in both cases some jobs may not
+ * have run: st VG_ERR_GEOMETRY), else VG_OK. */
 vg_status vg_cdt_tetgen(size_t n_job, struct vg_cdt_job *job,
                         struct vg_error *err);
 
-/** Name and version of the TetGen library, which cannot report its version
- * itself. */
-void vg_library_tetgen(struct vg_library *out);
-
-#ifdef __cplusplus
-}
-#endif
+/** Receive the answer to a job and store it there. Returns 0 if the helper has
+ * ended or its answer is invalid. */
+int vg_cdt_receive(struct vg_cdt_job *job, struct vg_link *from);
 
 #endif

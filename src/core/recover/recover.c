@@ -385,6 +385,7 @@ static vg_status close_all(struct recovery *r, size_t n, struct pocket *pocket,
                            struct vg_error *err)
 {
   struct vg_cdt_job *job = vg_calloc(n, sizeof *job);
+  struct vg_error why = VG_ERROR_INIT;
   size_t n_job = 0;
   vg_status st = VG_OK;
 
@@ -397,7 +398,12 @@ static vg_status close_all(struct recovery *r, size_t n, struct pocket *pocket,
         .x = (const double(*)[3])pocket[k].x,
         .tri = (const uint32_t(*)[3])pocket[k].tri
       };
-  st = vg_cdt_tetgen(n_job, job, err);
+  st = vg_cdt_tetgen(n_job, job, &why);
+  if (st == VG_BLOCKED) {
+    r->report->n_unassisted += n_job;
+    st = VG_ERR_GEOMETRY;
+  }
+  if (st < 0) vg_fail(err, st, "%s", why.text);
   n_job = 0;
   for (size_t k = 0; k < n; k++) {
     if (!pocket[k].x) continue;

@@ -16,10 +16,6 @@
 #include "base/stop.h"
 #include "core/mesh/mesh.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 /* Distance of the wrap from the input, divided by its size. */
 #define VG_WRAP_OFFSET (1.0 / 30) /* S12 */
 #define VG_WRAP_MOST 4e6          /* triangles: larger wraps are refused */
@@ -84,8 +80,10 @@ enum vg_wrap_reason {
                     thickness that bound no body. */
 };
 
-/** Returns 1 if this build supports wraps. */
-int vg_wrap_is_built(void);
+/** Returns 1 if the helper program vanguard-wrap, which contains CGAL, is
+ * available (base/helper/helper.h). why out: otherwise the reason and a remedy;
+ * may be NULL. */
+int vg_wrap_is_available(char *why, size_t size);
 
 /** Replace the triangles of m by a surface around them. CGAL places points at a
  * distance of `offset` from the triangles. The points are then moved onto the
@@ -99,7 +97,7 @@ int vg_wrap_is_built(void);
  *
  * @param m  triangles only; untouched on failure. Everything inside a wrapped
  *           part is lost
- * VG_ERR_UNSUPPORTED in a build without CGAL; VG_ERR_INPUT for a size that is
+ * VG_ERR_UNSUPPORTED without vanguard-wrap; VG_ERR_INPUT for a size that is
  * not positive or would give more than VG_WRAP_MOST triangles, for an input
  * without triangles, with quadrilaterals or cells, or with an index out of
  * range; VG_ERR_GEOMETRY if the wrap goes through holes and becomes a hollow
@@ -125,9 +123,5 @@ vg_status vg_wrap_foresee(const struct vg_mesh *m,
 vg_status vg_wrap_suggest(const struct vg_mesh *m, const struct vg_stop *stop,
                           double *size, enum vg_wrap_reason *reason,
                           struct vg_error *err);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -1,12 +1,10 @@
-/* core/wrap/wrap_parts.h: the CGAL adapter, and the steps that follow it. */
+/* core/wrap/wrap_parts.h: the requests to vanguard-wrap, and the steps that
+ * follow it. */
 #ifndef VG_CORE_WRAP_WRAP_PARTS_H
 #define VG_CORE_WRAP_WRAP_PARTS_H
 
+#include "base/helper/link.h"
 #include "core/wrap/wrap.h"
-
-#ifdef __cplusplus
-extern "C" {
-#endif
 
 #define VG_WRAP_CLOSED 2.5 /* S44: triangles of a wrap over area / size^2 */
 
@@ -18,6 +16,12 @@ extern "C" {
 vg_status vg_wrap_cgal(const struct vg_mesh *m, const struct vg_wrap_options *o,
                        size_t expected, struct vg_mesh *out,
                        struct vg_error *err);
+
+/** Receive a wrap from vanguard-wrap, for which the head of the message was
+ * received. VG_BLOCKED: the transfer failed; the link has the reason. */
+vg_status vg_wrap_receive_surface(struct vg_link *l, uint64_t n_point,
+                                  uint64_t n_tri, struct vg_mesh *out,
+                                  struct vg_error *err);
 
 /** Classify points as inside or outside the closed surface m by the parity of a
  * ray.
@@ -118,9 +122,5 @@ vg_status vg_wrap_compare(const struct vg_wrap_rims *rims,
 vg_status vg_wrap_join(const struct vg_mesh *m, const uint8_t *keep,
                        const struct vg_stop *stop, struct vg_mesh *out,
                        struct vg_error *err);
-
-#ifdef __cplusplus
-}
-#endif
 
 #endif

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/helper/helper.h"
 #include "base/memory.h"
 #include "io/mesh/aflr.h"
 #include "io/mesh/format.h"
@@ -769,6 +770,7 @@ vg_status vg_problem_read(struct vg_problem *p, struct vg_comm *comm,
   vg_status st;
 
   r->notes = &p->notes;
+  vg_helper_set_folder(p->asked.helpers);
   st = read_asides(&p->asked, r, err);
   if (vg_read_is_by_first(r, comm)) st = read_for_all(r, comm, st, err);
   else if (st >= 0) st = read_surface(r, show, err);

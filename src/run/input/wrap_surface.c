@@ -151,7 +151,7 @@ void vg_boundary_suggest_wrap(const struct vg_boundary *b,
   double wrap = 0;
 
   *text = 0;
-  if (!vg_wrap_is_built() || b->read->settings.wrap > 0 ||
+  if (!vg_wrap_is_available(NULL, 0) || b->read->settings.wrap > 0 ||
       b->flow.kind == VG_FLOW_INTERNAL || n[VG_DEFECT_NOT_FINITE] ||
       n[VG_DEFECT_NO_BC] == b->check.n_defect)
     return;

@@ -401,6 +401,11 @@ void vg_report_fill_text(FILE *to, const struct vg_fill_report *r,
           vg_text_count(r->n_surface_face_lost, a),
           vg_text_count(r->n_pocket, b), r->n_pocket_cell, r->n_retry,
           r->whole_void ? "; a whole subdomain was meshed by TetGen" : "");
+  if (r->n_unassisted)
+    fprintf(to,
+            "  pockets that were left open because vanguard-tetgen is missing: "
+            "%zu (the domain was\n  cut elsewhere)\n",
+            r->n_unassisted);
   other_text(to, r);
   if (r->n_list_cut)
     fprintf(to,

@@ -161,6 +161,11 @@ VG_TEXT_ROW(plain, mesher, VG_MESHER_MAX, "mesher", "builtin",
   "Mesh generator that fills the subdomains: builtin, tetgen, hxt (of an "
   "installed Gmsh 4.8), or the path of a plug-in, as in ./mymesher.so; "
   "builtin fills every subdomain that the other one fails to fill")
+VG_TEXT_ROW(plain, helpers, VG_LIST_MAX, "helpers", "",
+  .keeps_mesh = 1, .unit = "", .argument = "FOLDER", .help =
+  "Folder of the helper programs vanguard-tetgen and vanguard-wrap; \"\": that "
+  "of the environment variable VANGUARD_HELPERS, or else the folder of the "
+  "program or its libexec/vanguard")
 VG_ROW(COUNT, plain, leaf_cells, "leaf_cells", VG_LEAF_CELLS,
   .hi = 9e15, .unit = "cells", .help = "Target number of cells per subdomain; "
   "the space outside the layers is divided into subdomains, which are filled "

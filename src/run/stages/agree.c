@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/helper/helper.h"
 #include "base/memory.h"
 #include "layers/columns/share.h"
 #include "partition/store/store.h"
@@ -14,6 +15,7 @@ struct claim {
   uint64_t counts; /* 1: the first rank of its node. */
   struct vg_digest of[VG_AGREE_N];
   char host[64];
+  char tetgen[192]; /* identity of vanguard-tetgen, or "none" */
 };
 
 const char *vg_agree_name(enum vg_agree what)
@@ -46,12 +48,15 @@ static struct claim make_claim(struct vg_comm *c, const struct vg_mesh *surface,
                                const struct vg_sizing *sizing,
                                enum vg_agree change)
 {
+  struct vg_helper h;
   struct claim own;
 
   memset(&own, 0, sizeof own);
   if (gethostname(own.host, sizeof own.host - 1)) own.host[0] = '?';
   own.counts = vg_comm_node_rank(c) == 0;
   if (!own.counts) return own;
+  vg_helper_find(VG_HELPER_TETGEN, &h);
+  memcpy(own.tetgen, h.identity, strnlen(h.identity, sizeof own.tetgen - 1));
   own.of[VG_AGREE_SURFACE] = of_surface(surface);
   if (layers) vg_layers_show(layers, add, &own.of[VG_AGREE_LAYERS]);
   vg_sizing_show(sizing, add, &own.of[VG_AGREE_SIZES]);
@@ -59,6 +64,17 @@ static struct claim make_claim(struct vg_comm *c, const struct vg_mesh *surface,
       vg_comm_rank(c) + vg_comm_node_size(c) == vg_comm_size(c))
     own.of[change].word[0] ^= 1;
   return own;
+}
+
+static vg_status refuse_helper(int r, const struct claim *first,
+                               const struct claim *other, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_REMOTE,
+                 "rank %d on %s uses another vanguard-tetgen (%s) than rank 0 "
+                 "on %s (%s); nothing was meshed. Install the same helper "
+                 "programs on all nodes, or name a common folder with "
+                 "--helpers",
+                 r, other->host, other->tetgen, first->host, first->tetgen);
 }
 
 static vg_status compare(int n, const struct vg_bytes *claim,
@@ -69,6 +85,8 @@ static vg_status compare(int n, const struct vg_bytes *claim,
   memcpy(&first, claim[0].data, sizeof first);
   for (int r = 1; r < n; r++) {
     memcpy(&other, claim[r].data, sizeof other);
+    if (other.counts && strcmp(other.tetgen, first.tetgen) != 0)
+      return refuse_helper(r, &first, &other, err);
     for (int k = 0; k < VG_AGREE_N && other.counts; k++)
       if (memcmp(&other.of[k], &first.of[k], sizeof other.of[k]) != 0)
         return vg_fail(err, VG_ERR_REMOTE,

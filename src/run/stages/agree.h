@@ -1,5 +1,6 @@
 /* run/stages/agree.h: checks that the nodes, each of which computes surface,
- * layers and sizes itself, have obtained the same result. Uses partition/store,
+ * layers and sizes itself, have obtained the same result, and that they use the
+ * same vanguard-tetgen. Uses partition/store,
  * layers, core. */
 #ifndef VG_RUN_STAGES_AGREE_H
 #define VG_RUN_STAGES_AGREE_H

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/helper/helper.h"
 #include "base/memory.h"
 #include "io/cgns/cgns.h"
 #include "io/mesh/foam.h"
@@ -512,7 +513,8 @@ static vg_status write_walls(struct vg_outputs *o, const struct vg_problem *p,
 }
 
 /* The resolved settings state the files with which they were used. The number
- * of threads is omitted, so that the file does not depend on the machine. */
+ * of threads and the folder of helpers are omitted, so that the file does not
+ * depend on the machine. */
 static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
                             struct vg_error *err)
 {
@@ -522,18 +524,25 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
   const char *quote = strchr(input, ' ') ? "'" : ""; /* Quotation for a
                                                         shell. */
   char *path = vg_outputs_temp_path(o, "resolved.deck"), *comment = NULL;
+  struct vg_helper tetgen, wrap;
   vg_status st;
+
+  vg_helper_find(VG_HELPER_TETGEN, &tetgen);
+  vg_helper_find(VG_HELPER_WRAPS, &wrap);
 
   if (!path ||
       asprintf(&comment,
                "# Complete settings of a run. To repeat it:\n#   vanguard "
                "mesh -p %s%s%s --deck %s%s.resolved.deck%s\n# (sources of a "
-               ".d3m are listed below and are not read again)\n",
-               quote, input, quote, quote, o->name, quote) < 0) {
+               ".d3m are listed below and are not read again)\n"
+               "# Helper programs: %s (%s); %s (%s)\n",
+               quote, input, quote, quote, o->name, quote, tetgen.name,
+               tetgen.identity, wrap.name, wrap.identity) < 0) {
     free(path);
     return vg_fail_memory(err, "the settings");
   }
   settings.threads = 0;
+  *settings.helpers = 0;
   st = vg_deck_write(path, &settings, comment, 0, err);
   free(path);
   free(comment);

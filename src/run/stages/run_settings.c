@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/helper/helper.h"
 #include "base/version.h"
 #include "run/stages/run.h"
 
@@ -23,15 +24,19 @@ static void put_values(FILE *to, const char *prefix, const struct vg_param *p,
   }
 }
 
-/* The plain settings and the farfield. */
+/* The plain settings, the farfield, and the helper that boundary recovery uses.
+ * The work of vanguard-wrap is part of the boundary. */
 static void put_plain(FILE *to, const struct vg_settings *s)
 {
   size_t n;
   const struct vg_param *p = vg_settings_params(&n);
   const struct vg_setting_table *far = vg_settings_table(VG_TABLE_FARFIELD);
+  struct vg_helper tetgen;
 
   put_values(to, "", p, n, s);
   put_values(to, "farfield ", far->column, far->n_column, &s->farfield);
+  vg_helper_find(VG_HELPER_TETGEN, &tetgen);
+  fprintf(to, "%s=%s\n", tetgen.name, tetgen.identity);
 }
 
 static void put_rows(FILE *to, const struct vg_settings *s,

@@ -1,7 +1,6 @@
-/* core/recover/tetgen_input.h: a triangulation as input to TetGen. In C++, for
- * the adapters that include tetgen.h, in whose child processes it is used. */
-#ifndef VG_CORE_RECOVER_TETGEN_INPUT_H
-#define VG_CORE_RECOVER_TETGEN_INPUT_H
+/* helpers/tetgen/tetgen_input.h: a triangulation as input to TetGen. */
+#ifndef VG_HELPERS_TETGEN_TETGEN_INPUT_H
+#define VG_HELPERS_TETGEN_TETGEN_INPUT_H
 
 #include <cstddef>
 #include <cstdint>

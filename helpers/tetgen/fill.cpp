@@ -1,12 +1,17 @@
 /* TetGen as a mesher of whole voids (H. Si, "TetGen, a Delaunay-based quality
- * tetrahedral mesh generator", ACM TOMS 41(2), 2015). Only in a child process,
- * because it keeps state and may end the process. */
+ * tetrahedral mesh generator", ACM TOMS 41(2), 2015). */
+#include "tetgen/jobs.h"
+
 #include <cmath>
 #include <cstdlib>
 #include <vector>
 
+#include <signal.h>
+#include <sys/time.h>
+#include <unistd.h>
+
 #include "core/mesher/mesher_parts.h"
-#include "core/recover/tetgen_input.h"
+#include "tetgen/tetgen_input.h"
 
 namespace
 {
@@ -36,31 +41,15 @@ bool is_too_large(REAL *a, REAL *b, REAL *c, REAL *d, REAL *, REAL)
   return volume > largest * h * h * h / (6 * std::sqrt(2.0));
 }
 
-/* Put a point into each hollow, closely behind its largest triangle. If the
- * point misses the hollow, cells are made there or are missing in the void;
- * the check of the result detects both. */
-void put_holes(tetgenio &in, const vg_mesher_front &f,
-               const vg_mesher_shells &shells)
+/* If the point of a hole misses its hollow, cells are made there or are missing
+ * in the void; the check of the result by the program detects both. */
+void put_holes(tetgenio &in, const vg_serve_surface &s)
 {
-  size_t at = 0;
-
-  in.numberofholes = static_cast<int>(shells.n_hollow);
-  if (!shells.n_hollow) return;
-  in.holelist = new REAL[3 * shells.n_hollow];
-  for (size_t s = 0; s < shells.n; s++) {
-    const uint32_t *face = f.face[shells.largest[s]];
-    double n[3], length = 0;
-
-    if (!shells.is_hollow[s]) continue;
-    vg_mesher_normal(&f, shells.largest[s], n);
-    for (int k = 0; k < 3; k++) length += n[k] * n[k];
-    length = std::sqrt(std::sqrt(length)); /* about an edge length */
-    for (int k = 0; k < 3; k++)
-      in.holelist[at++] = (f.x[face[0]][k] + f.x[face[1]][k] +
-                           f.x[face[2]][k]) /
-                            3 -
-                          1e-4 * n[k] / length;
-  }
+  in.numberofholes = static_cast<int>(s.n_more);
+  if (!s.n_more) return;
+  in.holelist = new REAL[3 * s.n_more];
+  for (size_t i = 0; i < 3 * s.n_more; i++)
+    in.holelist[i] = s.more[i / 3][i % 3];
 }
 
 void put_front(tetgenio &in, const vg_mesher_front &f)
@@ -195,62 +184,58 @@ private:
   }
 };
 
-bool take_cells(const tetgenio &out, const vg_mesher_front &f,
-                vg_mesher_cells *to)
+void give_cells(const tetgenio &out, const vg_mesher_front &f)
 {
   size_t n = static_cast<size_t>(out.numberoftetrahedra);
+  size_t n_new = static_cast<size_t>(out.numberofpoints) - f.n_point;
+  std::vector<int> cell;
   inside in(out, f);
 
-  to->n_point = static_cast<size_t>(out.numberofpoints) - f.n_point;
-  to->x = static_cast<double(*)[3]>(
-    std::malloc((to->n_point + 1) * sizeof *to->x));
-  to->cell = static_cast<uint32_t(*)[4]>(
-    std::malloc((n + 1) * sizeof *to->cell));
-  if (!to->x || !to->cell) return false;
-  for (size_t i = 0; i < to->n_point; i++)
-    for (int k = 0; k < 3; k++)
-      to->x[i][k] = out.pointlist[3 * (f.n_point + i) + static_cast<size_t>(k)];
-  to->n_cell = 0;
-  for (size_t c = 0; c < n; c++) {
-    if (!in.has(c)) continue;
-    for (int k = 0; k < 4; k++)
-      to->cell[to->n_cell][k] = static_cast<uint32_t>(
-        out.tetrahedronlist[4 * c + static_cast<size_t>(k)]);
-    to->n_cell++;
-  }
-  return true;
+  for (size_t c = 0; c < n; c++)
+    for (size_t k = 0; in.has(c) && k < 4; k++)
+      cell.push_back(out.tetrahedronlist[4 * c + k]);
+  vg_serve_put(VG_HELPER_CELLS, 0, n_new, cell.size() / 4);
+  vg_serve_put_array(out.pointlist + 3 * f.n_point, 3 * n_new * sizeof(REAL));
+  vg_serve_put_array(cell.data(), cell.size() * sizeof(int));
 }
 
-/* Switches. p: keep the facets; Y: no points on them; q: ratio of circumradius
- * to shortest edge; n: neighbours; M, T: as for boundary recovery. */
-int fill(const vg_mesher_front *front, const vg_mesher_sizes *wanted,
-         vg_mesher_cells *cells)
+/* A limit of processor time ends this process. */
+void set_end(double seconds)
 {
-  char switches[] = "pYq1.4nMQT1e-13";
-  vg_mesher_shells shells;
-  tetgenio in, out;
+  itimerval t = {};
 
-  if (front->n_point > 100000000 || front->n_face > 200000000) return 1;
-  if (vg_mesher_find_shells(front, &shells)) return 1;
-  sizes = wanted;
-  try {
-    put_front(in, *front);
-    put_holes(in, *front, shells);
-    tetrahedralize(switches, &in, &out);
-    if (out.numberofcorners != 4 || !out.neighborlist ||
-        static_cast<size_t>(out.numberofpoints) < front->n_point)
-      return 1;
-    return take_cells(out, *front, cells) ? 0 : 1;
-  } catch (...) {
-    return 1;
-  }
+  t.it_value.tv_sec = static_cast<time_t>(seconds > 0 && seconds < 1e9 ? seconds
+                                                                       : 0) +
+                      1;
+  signal(SIGPROF, SIG_DFL);
+  setitimer(ITIMER_PROF, &t, nullptr);
 }
-
-const vg_mesher tetgen = { VG_MESHER_VERSION, "TetGen", fill, nullptr };
 
 } // namespace
 
-extern "C" const vg_mesher *vg_mesher_tetgen(void)
+/* Switches. p: keep the facets; Y: no points on them; q: ratio of circumradius
+ * to shortest edge; n: neighbours; M, T: as for boundary recovery. */
+bool vg_tetgen_fill(double seconds, const vg_serve_surface &s)
 {
-  return &tetgen;
+  const vg_mesher_front front = {
+    s.n_point, s.n_tri, reinterpret_cast<const double(*)[3]>(s.x),
+    reinterpret_cast<const uint32_t(*)[3]>(s.tri)
+  };
+  char switches[] = "pYq1.4nMQT1e-13";
+  vg_mesher_sizes wanted = { vg_child_sizes_at, nullptr };
+  tetgenio in, out;
+
+  set_end(seconds);
+  if (!s.n_point || s.n_point > 100000000 || s.n_tri > 200000000) return false;
+  wanted.user = vg_child_sizes_new(STDIN_FILENO, STDOUT_FILENO, &front);
+  if (!wanted.user) return false;
+  sizes = &wanted;
+  put_front(in, front);
+  put_holes(in, s);
+  tetrahedralize(switches, &in, &out);
+  if (out.numberofcorners != 4 || !out.neighborlist ||
+      static_cast<size_t>(out.numberofpoints) < front.n_point)
+    return false;
+  give_cells(out, front);
+  return true;
 }

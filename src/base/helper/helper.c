@@ -1,0 +1,249 @@
+#define _GNU_SOURCE
+#include "base/helper/helper.h"
+
+#include <assert.h>
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define START_SECONDS                                                          \
+  60 /* limit for the first message, on slow file systems                      \
+      */
+#define VARIABLE "VANGUARD_HELPERS"
+
+static const struct {
+  const char *name, *holds, *package;
+} helper_names[VG_HELPER_N] = {
+  { "vanguard-tetgen", "TetGen", "libtet1.5-dev" },
+  { "vanguard-wrap", "CGAL", "libcgal-dev" },
+};
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static char folder[4096];
+static struct vg_helper found[VG_HELPER_N];
+static int is_known[VG_HELPER_N];
+
+/* --- in the child --------------------------------------------------------- */
+
+struct program {
+  char path[4096];
+};
+
+/* A child body: receives the path of a program and becomes that program. */
+static void become(int fd)
+{
+  static struct program p;
+
+  if (!vg_child_get(fd, &p, sizeof p)) _exit(1);
+  p.path[sizeof p.path - 1] = 0;
+  for (int k = 0; k < 2; k++) {
+    if (fd != k && dup2(fd, k) < 0) _exit(1);
+    if (fd == k) fcntl(fd, F_SETFD, 0);
+  }
+  execl(p.path, p.path, "--serve", (char *)NULL);
+  _exit(127);
+}
+
+/* --- starting ------------------------------------------------------------- */
+
+static int is_text(const char *text, size_t size)
+{
+  size_t n = strnlen(text, size);
+
+  for (size_t i = 0; i < n; i++)
+    if (text[i] < ' ' || text[i] > '~') return 0;
+  return n > 0 && n < size;
+}
+
+const char *vg_helper_hello_wrong(const struct vg_helper_hello *h,
+                                  const char *name)
+{
+  if (memcmp(h->magic, VG_HELPER_MAGIC, sizeof h->magic) != 0)
+    return "it is not a helper program of Vanguard";
+  if (h->order != VG_HELPER_ORDER) return "it has another byte order";
+  if (h->format != VG_HELPER_FORMAT)
+    return "it has another version of the message format; install the helpers "
+           "of this version of Vanguard";
+  if (!is_text(h->name, sizeof h->name) || strcmp(h->name, name) != 0)
+    return "it is another helper program";
+  if (!is_text(h->library, sizeof h->library) ||
+      !is_text(h->source, sizeof h->source))
+    return "its first message is damaged";
+  return NULL;
+}
+
+/* Start a program and read its first message. Returns NULL, or what is wrong.
+ * The child is closed on failure. */
+static const char *start(const char *path, const char *name,
+                         const struct vg_stop *stop, struct vg_child *c,
+                         struct vg_link *l, struct vg_helper_hello *hello)
+{
+  struct program p = { "" };
+  const char *wrong;
+
+  snprintf(p.path, sizeof p.path, "%s", path);
+  if (vg_child_open(become, c) < 0) return "the system refuses another process";
+  *l = (struct vg_link){ .fd = c->fd, .silence = START_SECONDS, .stop = stop };
+  if (vg_link_put(l, &p, sizeof p) && vg_link_get(l, hello, sizeof *hello))
+    wrong = vg_helper_hello_wrong(hello, name);
+  else if (l->state == VG_LINK_SILENT)
+    wrong = "it did not report itself within a minute";
+  else wrong = "it ended when it was started; run it to see the reason";
+  if (wrong) vg_helper_close(c);
+  return wrong;
+}
+
+static void identify(const struct vg_helper_hello *hello, struct vg_helper *h)
+{
+  snprintf(h->library, sizeof h->library, "%s", hello->library);
+  snprintf(h->identity, sizeof h->identity, "%s, %s %.16s, format %d",
+           hello->library, hello->name, hello->source, VG_HELPER_FORMAT);
+}
+
+/* --- searching ------------------------------------------------------------ */
+
+/* Folder of the file that contains this code: the program or libvanguard. */
+static int own_folder(char *out, size_t size)
+{
+  static const char mark = 0;
+  Dl_info info;
+  char *path = NULL, *slash;
+
+  if (dladdr(&mark, &info) && info.dli_fname && strstr(info.dli_fname, ".so"))
+    path = realpath(info.dli_fname, NULL);
+  if (!path) path = realpath("/proc/self/exe", NULL);
+  slash = path ? strrchr(path, '/') : NULL;
+  if (slash) snprintf(out, size, "%.*s", (int)(slash - path), path);
+  free(path);
+  return slash != NULL;
+}
+
+static int try_folder(const char *in, const char *below, struct vg_helper *h)
+{
+  int n = snprintf(h->path, sizeof h->path, "%s%s%s/%s", in, *below ? "/" : "",
+                   below, h->name);
+
+  if (n > 0 && (size_t)n < sizeof h->path && !access(h->path, X_OK)) return 1;
+  *h->path = 0;
+  return 0;
+}
+
+/* Find the file of a helper. */
+static int find_file(struct vg_helper *h, const char *package)
+{
+  static const char *const below[] = { "", VG_LIBEXEC_FROM_BIN,
+                                       VG_LIBEXEC_FROM_LIB, "../bin" };
+  const char *given = *folder ? folder : getenv(VARIABLE);
+  char own[4096];
+
+  if (given && *given) {
+    if (try_folder(given, "", h)) return 1;
+    snprintf(h->why, sizeof h->why,
+             "%s, the helper program with %s, is not in the folder %.500s that "
+             "%s names",
+             h->name, h->holds, given, *folder ? "--helpers" : VARIABLE);
+    return 0;
+  }
+  for (size_t k = 0;
+       own_folder(own, sizeof own) && k < sizeof below / sizeof *below; k++)
+    if (try_folder(own, below[k], h)) return 1;
+  snprintf(h->why, sizeof h->why,
+           "%s, the helper program with %s, was not found; install it (a build "
+           "makes it if Debian's %s is installed), or name its folder with "
+           "--helpers",
+           h->name, h->holds, package);
+  return 0;
+}
+
+static void search(enum vg_helper_kind kind, struct vg_helper *h)
+{
+  struct vg_helper_hello hello;
+  struct vg_child c;
+  struct vg_link l;
+  const char *wrong;
+
+  memset(h, 0, sizeof *h);
+  h->name = helper_names[kind].name;
+  h->holds = helper_names[kind].holds;
+  snprintf(h->identity, sizeof h->identity, "none");
+  if (!find_file(h, helper_names[kind].package)) return;
+  wrong = start(h->path, h->name, NULL, &c, &l, &hello);
+  if (wrong) {
+    snprintf(h->why, sizeof h->why,
+             "%s, the helper program with %s, cannot be "
+             "used: %.600s: %s",
+             h->name, h->holds, h->path, wrong);
+    *h->path = 0;
+    return;
+  }
+  vg_helper_close(&c);
+  identify(&hello, h);
+  h->is_found = 1;
+}
+
+void vg_helper_set_folder(const char *to)
+{
+  assert(to);
+  pthread_mutex_lock(&lock);
+  if (strcmp(folder, to) != 0) {
+    snprintf(folder, sizeof folder, "%s", to);
+    memset(is_known, 0, sizeof is_known);
+  }
+  pthread_mutex_unlock(&lock);
+}
+
+void vg_helper_find(enum vg_helper_kind kind, struct vg_helper *out)
+{
+  assert(kind < VG_HELPER_N && out);
+  pthread_mutex_lock(&lock);
+  if (!is_known[kind]) search(kind, &found[kind]);
+  is_known[kind] = 1;
+  *out = found[kind];
+  pthread_mutex_unlock(&lock);
+}
+
+/* --- for the users of helpers --------------------------------------------- */
+
+vg_status vg_helper_open(enum vg_helper_kind kind, const struct vg_stop *stop,
+                         double silence, struct vg_child *child,
+                         struct vg_link *link, struct vg_error *err)
+{
+  struct vg_helper h, now;
+  struct vg_helper_hello hello;
+  const char *wrong = NULL;
+
+  assert(child && link && silence > 0);
+  vg_helper_find(kind, &h);
+  if (!h.is_found) return vg_fail(err, VG_ERR_UNSUPPORTED, "%s", h.why);
+  for (int attempt = 0; attempt < 2; attempt++) { /* if the server just died */
+    wrong = start(h.path, h.name, stop, child, link, &hello);
+    if (!wrong || link->state != VG_LINK_ENDED) break;
+  }
+  if (wrong && vg_stops(stop)) return vg_stopped(stop, err);
+  if (wrong)
+    return vg_fail(err, VG_ERR_IO, "%s no longer starts: %s", h.path, wrong);
+  identify(&hello, &now);
+  if (strcmp(now.identity, h.identity) != 0) {
+    vg_helper_close(child);
+    return vg_fail(err, VG_ERR_IO,
+                   "%s was replaced during the run: it was %s "
+                   "and is %s",
+                   h.path, h.identity, now.identity);
+  }
+  link->silence = silence;
+  return VG_OK;
+}
+
+/* A helper ends when its socket is closed. A process of our own is killed,
+ * because it may hang and we wait for its end. */
+void vg_helper_close(struct vg_child *child)
+{
+  if (child->pid > 0) kill(child->pid, SIGKILL);
+  vg_child_close(child);
+}
