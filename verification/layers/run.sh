@@ -135,6 +135,18 @@ judge_mesh() {   # judge_mesh FOLDER MESH KIND
     bad "judge: $(grep -a FAIL "$1/meshcheck" | head -1)"
 }
 
+# Quality of the field above the layers, on surfaces without needles.
+field_bars() {
+  local least largest jump
+  least=$(json "$1" field angle_min)
+  largest=$(json "$1" field angle_max)
+  jump=$(json "$1" all top_volume_ratio percentile_95)
+  holds '>=' "$least" 5 || miss "smallest angle $(printf %.2f "$least") < 5"
+  holds '<=' "$largest" 172 || miss "largest angle $(printf %.1f "$largest") > 172"
+  holds '<=' "$jump" 4 || miss "volume ratio across the top $(
+    printf %.2f "$jump") > 4 (95 %)"
+}
+
 # Compare a mesh with the requirements. bars REPORT MEASURED KIND FULL
 bars() {
   local full any first layers prisms
@@ -144,6 +156,7 @@ bars() {
   holds '>=' "$full" "$4" || miss "full $(printf %.2f "$full") < $4"
   holds '>=' "$any" 99.9 || miss "any $(printf %.2f "$any") < 99.9"
   holds '<=' "$first" 1 || miss "first height off by $(printf %.2f "$first") %"
+  field_bars "$1"
   prisms=-
   if [ "$3" = mixed ]; then
     layers=$(awk -v t="$(json "$1" layers tetrahedra)" \
