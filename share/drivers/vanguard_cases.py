@@ -29,7 +29,7 @@ import subprocess
 import sys
 import time
 
-# Files beside a surface that belong to its project.
+# Files in the folder of a surface that belong to its project.
 COMPANIONS = (".mapbc", ".tags", ".bc", ".d3m", ".front")
 HERE = os.path.dirname(os.path.abspath(__file__))
 
