@@ -39,7 +39,6 @@ install(PROGRAMS share/slurm/vanguard.sbatch
 install(PROGRAMS share/drivers/vanguard_cases.py
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard/drivers)
 install(DIRECTORY share/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard)
-install(FILES share/html/regl.LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # The documents to which the README links, with the examples that they use.

@@ -6,15 +6,29 @@
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
 #include "cli/common/options.h"
+#include "cli/look/look.h"
 #include "cli/serve/portal.h"
 #include "run/common/progress.h"
 #include "run/common/ranges.h"
 
-enum { KEY_HOST = 1, KEY_UPLOAD, KEY_JOBS, KEY_LAUNCHER, KEY_PROGRAM };
+enum {
+  KEY_HOST = 1,
+  KEY_UPLOAD,
+  KEY_JOBS,
+  KEY_LAUNCHER,
+  KEY_PROGRAM,
+  KEY_LOOK
+};
 
 /* How long the server waits for requests, and the interval at which runs are
  * checked. */
 #define STEP_MS 200
+
+struct arguments {
+  struct vg_portal_options o;
+  const char *look, *project; /* of a process that the portal has started; NULL:
+                                 serve */
+};
 
 static int64_t number(const char *option, const char *text, int64_t lo,
                       int64_t hi, const struct argp_state *state)
@@ -29,7 +43,8 @@ static int64_t number(const char *option, const char *text, int64_t lo,
 
 static error_t option(int key, char *arg, struct argp_state *state)
 {
-  struct vg_portal_options *o = state->input;
+  struct arguments *a = state->input;
+  struct vg_portal_options *o = &a->o;
 
   switch (key) {
   case 'p': o->port = (int)number("port", arg, 0, 65535, state); return 0;
@@ -41,7 +56,12 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case KEY_JOBS: o->jobs = (int)number("jobs", arg, 1, 64, state); return 0;
   case KEY_LAUNCHER: o->launcher = arg; return 0;
   case KEY_PROGRAM: o->program = arg; return 0;
+  case KEY_LOOK: a->look = arg; return 0;
   case ARGP_KEY_ARG:
+    if (a->look && !a->project) {
+      a->project = arg;
+      return 0;
+    }
     argp_error(state,
                "unexpected argument '%s'; give the folder of the projects with "
                "--root",
@@ -109,6 +129,8 @@ int vg_cmd_serve(int argc, char **argv)
       1 },
     { "program", KEY_PROGRAM, "FILE", OPTION_HIDDEN,
       "Program to run instead of this one (for tests)", 1 },
+    { "look", KEY_LOOK, "KIND", OPTION_HIDDEN,
+      "Examine a project for a portal: view or check", 1 },
     { 0 }
   };
   const struct argp argp = {
@@ -126,8 +148,11 @@ int vg_cmd_serve(int argc, char **argv)
       "its own folder in DIR/vanguard-runs and continues when the portal ends. "
       "Exit status: 0 ended by a signal, 1 failure, 2 wrong usage."
   };
-  struct vg_portal_options o = VG_PORTAL_OPTIONS_INIT;
+  struct arguments a = { .o = VG_PORTAL_OPTIONS_INIT };
 
-  vg_cli_parse(&argp, argc, argv, &o);
-  return run(&o);
+  vg_cli_parse(&argp, argc, argv, &a);
+  if (a.look && a.project)
+    return vg_look(strcmp(a.look, "check") ? VG_LOOK_VIEW : VG_LOOK_CHECK,
+                   a.project);
+  return run(&a.o);
 }

@@ -6,8 +6,8 @@
 #include <stddef.h>
 
 extern const unsigned char vg_asset_report_css[], vg_asset_report_js[],
-  vg_asset_regl_min_js[];
+  vg_asset_view_js[];
 extern const size_t vg_asset_report_css_size, vg_asset_report_js_size,
-  vg_asset_regl_min_js_size;
+  vg_asset_view_js_size;
 
 #endif

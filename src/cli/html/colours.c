@@ -1,11 +1,5 @@
-/* Colours of patches, layer counts and causes, for pictures and legends. */
+/* Colours of layer counts and causes, for pictures and legends. */
 #include "cli/html/page.h"
-
-const uint8_t vg_patch_colour[PATCH_COLOURS][3] = {
-  { 108, 162, 214 }, { 240, 166, 92 },  { 116, 184, 118 }, { 216, 112, 112 },
-  { 164, 140, 206 }, { 186, 148, 122 }, { 228, 144, 194 }, { 186, 186, 84 },
-  { 92, 190, 198 },  { 246, 204, 112 }, { 142, 170, 156 }, { 150, 160, 226 }
-};
 
 /* From few to many layers: dark blue over green to yellow, with increasing
  * brightness. */
@@ -20,8 +14,6 @@ const uint8_t vg_cause_colour[VG_CAUSE_N][3] = {
   { 176, 208, 190 }, { 176, 208, 190 }, { 230, 159, 0 }, { 160, 110, 190 },
   { 200, 40, 50 },   { 130, 70, 40 },   { 0, 114, 178 }, { 240, 100, 150 }
 };
-
-const uint8_t vg_adjacent_colour[3] = { 231, 231, 239 };
 
 const char *vg_cause_words(enum vg_layer_cause cause)
 {

@@ -12,11 +12,8 @@
  * also without them. */
 static void scripts(struct page *p)
 {
-  vg_page_markup(
-    p, "<!-- regl 2.1.1, https://github.com/regl-project/regl, "
-       "copyright 2016 Mikola Lysenko, MIT license: share/html/regl.LICENSE of "
-       "Vanguard -->\n<script>\n");
-  vg_output_bytes(&p->out, vg_asset_regl_min_js, vg_asset_regl_min_js_size);
+  vg_page_markup(p, "<script>\n");
+  vg_output_bytes(&p->out, vg_asset_view_js, vg_asset_view_js_size);
   vg_page_markup(p, "\n</script>\n<script>\n");
   vg_output_bytes(&p->out, vg_asset_report_js, vg_asset_report_js_size);
   vg_page_markup(p, "</script>\n");
@@ -29,8 +26,7 @@ static void foot(struct page *p)
   vg_page_format(p, "%.12s", vg_source_digest);
   vg_page_markup(
     p, ". This page loads no external resources. PROJECT.report.json contains "
-       "these and further figures. The 3-D view uses regl (MIT license, "
-       "copyright 2016 Mikola Lysenko).</p></footer>\n");
+       "these and further figures.</p></footer>\n");
   scripts(p);
   vg_page_markup(p, "</body>\n</html>\n");
 }

@@ -10,8 +10,8 @@
 /* The page loads nothing, and the policy makes the browser enforce it. */
 static const char policy[] =
   "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-  "img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline' "
-  "'unsafe-eval'\">\n";
+  "img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'\">"
+  "\n";
 
 /* The flow domain and its evidence. */
 static void flow(struct page *p)

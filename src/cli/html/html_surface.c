@@ -33,11 +33,11 @@ static void patch_keys(struct page *p)
     }
     n++;
     snprintf(word, sizeof word, "%d %s", (int)m->patch[i].id, m->patch[i].name);
-    vg_page_key(p, vg_patch_colour[i % PATCH_COLOURS], word);
+    vg_page_key(p, vg_patch_colour[i % VG_PATCH_COLOURS], word);
   }
   if (rest) vg_page_format(p, "and %zu more; ", rest);
   vg_page_key(p, vg_adjacent_colour, "adjacent to the body");
-  if (n > PATCH_COLOURS)
+  if (n > VG_PATCH_COLOURS)
     vg_page_markup(p, "<span>Colours repeat after twelve patches.</span>");
 }
 

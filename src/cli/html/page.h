@@ -3,6 +3,7 @@
 #define VG_CLI_HTML_PAGE_H
 
 #include "cli/html/html.h"
+#include "cli/scene/scene.h"
 #include "io/stream/stream.h"
 #include "run/picture/body.h"
 #include "run/picture/shot.h"
@@ -117,12 +118,10 @@ struct bars {
 };
 void vg_html_bars(struct page *p, const struct bars *b, const json_t *counts);
 
-/* colours.c */
-enum { PATCH_COLOURS = 12, LEVEL_COLOURS = 16, GREY = VG_SHOT_BEHIND };
-extern const uint8_t vg_patch_colour[PATCH_COLOURS][3];
+/* colours.c; those of patches are in cli/scene/scene.h */
+enum { LEVEL_COLOURS = 16, GREY = VG_SHOT_BEHIND };
 extern const uint8_t vg_level_colour[LEVEL_COLOURS][3];
 extern const uint8_t vg_cause_colour[VG_CAUSE_N][3];
-extern const uint8_t vg_adjacent_colour[3];
 
 /* Explanation of a cause, such as "proximity". */
 const char *vg_cause_words(enum vg_layer_cause cause);

@@ -110,7 +110,8 @@ vg_status vg_walls_colour(const struct page *p, struct walls *w,
       uint32_t patch = m->tri_patch[t];
 
       w->is_seen[t] = adjacent[patch];
-      if (p->body[patch]) w->by[BY_PATCH][t] = (uint8_t)(patch % PATCH_COLOURS);
+      if (p->body[patch])
+        w->by[BY_PATCH][t] = (uint8_t)(patch % VG_PATCH_COLOURS);
     }
     if (p->has_layers)
       by_layers(p, index_points(&p->h->layers->fields, m->n_point, index), w);

@@ -16,8 +16,8 @@
 #define BOXED                                                                  \
   "default-src 'none'; img-src data:; style-src 'unsafe-inline'; "             \
   "frame-ancestors 'none'; base-uri 'none'; form-action 'none'; "
-static const char page_policy[] = BOXED "script-src 'unsafe-inline' "
-                                        "'unsafe-eval'; sandbox allow-scripts";
+static const char page_policy[] = BOXED "script-src 'unsafe-inline'; "
+                                        "sandbox allow-scripts";
 static const char still_policy[] = BOXED "sandbox";
 
 static const struct {

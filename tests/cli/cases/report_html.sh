@@ -37,7 +37,7 @@ n=$(grep -o '<img [^>]*src="data:image/png;base64,iVBOR' $page | wc -l)
   fail "a picture has no text"
 [ "$(wc -c <$page)" -lt 6000000 ] || fail "$page is large"
 
-# Nothing is loaded: no address except that of regl, in a comment, and of SVG.
+# Nothing is loaded: no address except that of SVG.
 says $page "default-src 'none'"
 ! grep -qE '(src|href)="?(https?:)?//' $page || fail "the page loads something"
 ! grep -qE '@import|url\(' $page || fail "the style loads something"
