@@ -1,12 +1,13 @@
-// Functions of the page beyond plain forms: the list of runs is updated
-// continuously, buttons work without loading a page, settings can be searched.
+// Functions of the list of runs beyond plain forms: it is updated continuously,
+// and buttons work without loading a page.
 "use strict";
 
 const seen = new Map();            // last markup of each run
 const list = () => document.getElementById("list");
 
-// Keep logs open or closed as the user left them.
-function keepOpen(from, to) {
+// Keep logs and lists of files open or closed as the user left them, and runs
+// selected for a comparison.
+function keepState(from, to) {
   for (const old of from.querySelectorAll("details[id]")) {
     const now = to.querySelector("#" + old.id);
     if (now && old.dataset.byHand) {
@@ -14,10 +15,35 @@ function keepOpen(from, to) {
       now.dataset.byHand = "1";
     }
   }
+  const picked = from.querySelector(".pick input"),
+        pick = to.querySelector(".pick input");
+  if (picked && pick) pick.checked = picked.checked;
+}
+
+// A selector of the focused control, so that the focus stays when its run is
+// replaced.
+function focusOf(run) {
+  const e = document.activeElement;
+
+  if (!e || !run.contains(e)) return null;
+  const action = e.closest("form")?.getAttribute("action");
+  if (action) return `form[action="${action}"] button`;
+  if (e.tagName === "A") return `a[href="${e.getAttribute("href")}"]`;
+  if (e.tagName === "SUMMARY") return `#${e.parentElement.id} > summary`;
+  return null;
 }
 
 function toEnd(run) {
   for (const log of run.querySelectorAll("pre")) log.scrollTop = log.scrollHeight;
+}
+
+function replace(old, now) {
+  const focus = focusOf(old);
+
+  keepState(old, now);
+  old.replaceWith(now);
+  if (focus) (now.querySelector(focus) ||
+              now.querySelector(".buttons button, .buttons a"))?.focus();
 }
 
 // Replace changed runs only, so that a click on an unchanged one is not lost.
@@ -33,17 +59,20 @@ function show(markup) {
     if (!old || seen.get(run.id) !== markup) {
       seen.set(run.id, markup);
       now = document.importNode(run, true);
-      if (old) {
-        keepOpen(old, now);
-        old.replaceWith(now);
-      }
+      if (old) replace(old, now);
     }
     if (!before && list().firstElementChild !== now) list().prepend(now);
     if (before && before.nextElementSibling !== now) before.after(now);
     if (now !== old) toEnd(now);
     before = now;
   }
-  if (before) for (const p of list().querySelectorAll(":scope > p")) p.remove();
+  for (const run of list().querySelectorAll("article"))
+    if (!next.querySelector("#" + run.id)) {
+      seen.delete(run.id);
+      run.remove();
+    }
+  for (const p of list().querySelectorAll(":scope > p")) p.remove();
+  list().append(...next.querySelectorAll(":scope > p"));
   list().dataset.active = next.dataset.active;
 }
 
@@ -52,6 +81,7 @@ function tellOffline(is) {
   if (is && !offline) {
     offline = document.createElement("p");
     offline.className = "message offline";
+    offline.setAttribute("role", "alert");
     offline.textContent = "The portal does not respond; its runs continue.";
     document.body.append(offline);
   } else if (!is && offline) {
@@ -78,77 +108,43 @@ async function again() {
   timer = setTimeout(again, Number(list().dataset.active) ? 1000 : 4000);
 }
 
-document.getElementById("runs").addEventListener("submit", async (e) => {
+// Stop, resume and delete without loading a page; the reason of a refusal is
+// shown at the run.
+async function send(e) {
+  if (e.target.method !== "post") return;
   e.preventDefault();
   e.submitter.disabled = true;
   try {
-    await fetch(e.target.action, { method: "POST", redirect: "manual" });
+    const answer = await fetch(e.target.action, { method: "POST",
+      redirect: "manual" });
+    if (answer.status >= 400) {
+      const note = document.createElement("p");
+      note.className = "message";
+      note.textContent = await answer.text();
+      e.target.after(note);
+    }
   } finally {
     again();
   }
-});
-document.addEventListener("click", (e) => {
-  const log = e.target.closest("summary")?.parentElement;
-  if (log?.id) log.dataset.byHand = "1";
-});
-document.addEventListener("visibilitychange", again);
-
-// --- the form ---------------------------------------------------------------
-
-const form = document.getElementById("settings");
-
-function mark(row) {
-  const control = row.querySelector("[data-default]");
-  row.classList.toggle("changed", control.value !== "" &&
-                       control.value !== control.dataset.default);
 }
 
-function count(group) {
-  const n = group.querySelectorAll(".changed").length;
-  let told = group.querySelector("summary span");
-
-  if (!told) {
-    told = document.createElement("span");
-    group.querySelector("summary").append(" ", told);
+if (list()) {
+  for (const run of list().querySelectorAll("article")) {
+    seen.set(run.id, run.outerHTML);
+    toEnd(run);
   }
-  told.textContent = n ? n + " changed" : "";
-}
-
-function search(text) {
-  for (const group of form.querySelectorAll(".group")) {
-    let n = 0;
-    for (const row of group.querySelectorAll(".row")) {
-      const hit = row.textContent.toLowerCase().includes(text);
-      row.hidden = !hit;
-      row.style.display = hit ? "" : "none";
-      n += hit;
-    }
-    group.style.display = text && !n ? "none" : "";
-    if (text) group.open = n > 0;
-  }
-}
-
-if (form) {
-  const field = document.createElement("input");
-
-  field.type = "search";
-  field.placeholder = "Search settings";
-  field.setAttribute("aria-label", "Search settings");
-  field.addEventListener("input", () =>
-    search(field.value.trim().toLowerCase()));
-  form.querySelector(".title").append(field);
-  for (const group of form.querySelectorAll(".group")) count(group);
-  form.addEventListener("input", (e) => {
-    const row = e.target.closest(".row");
-    if (row) {
-      mark(row);
-      count(row.closest(".group"));
-    }
+  document.getElementById("runs").addEventListener("submit", send);
+  document.addEventListener("click", e => {
+    const part = e.target.closest("summary")?.parentElement;
+    if (part?.id) part.dataset.byHand = "1";
   });
-  // The Enter key in a field does not submit the form.
-  form.addEventListener("keydown", (e) => {
-    if (e.key === "Enter" && e.target.tagName === "INPUT") e.preventDefault();
-  });
+  document.addEventListener("visibilitychange", again);
+  again();
 }
 
-again();
+// An upload shows that it is going on.
+document.querySelector("form.upload")?.addEventListener("submit", e => {
+  const button = e.target.querySelector("button");
+  button.textContent = "Uploading …";
+  button.setAttribute("aria-busy", "true");
+});

@@ -131,7 +131,7 @@ const surfaceFragment = `#version 300 es
     float line = 1.0 - min(near.x, min(near.y, near.z));
     float small = max(width.x, max(width.y, width.z));
     line *= edges * (1.0 - smoothstep(0.12, 0.4, small));
-    vec3 base = mix(c, vec3(1.0, 0.78, 0.1), 0.62 * chosen);
+    vec3 base = mix(c, vec3(1.0, 0.74, 0.16), 0.88 * chosen);
     pixel = vec4(base * light * (1.0 - 0.6 * line), 1.0);
   }`;
 const planeVertex = `#version 300 es

@@ -115,7 +115,7 @@ adapter 'CGAL/[A-Za-z0-9_]*\.h' '^$'   # in helpers/wrap only
 adapter zlib.h '^(io/[a-z]+/[a-z_]+|run/picture/image)\.c$'
 adapter jansson.h '^(run|cli)/'
 adapter argp.h '^cli/'
-adapter microhttpd.h '^cli/serve/http\.c$'
+adapter microhttpd.h '^cli/http/http\.c$'
 # The last bits of LAPACK's results differ between processors: never use it
 # where a mesh is made.
 adapter lapacke.h '^partition/model/rates\.c$'

@@ -30,7 +30,7 @@ struct portal_scene {
 static inline void portal_file(const char *dir, const char *name,
                                const char *text)
 {
-  char path[512];
+  char path[1024];
   FILE *f;
 
   snprintf(path, sizeof path, "%s/%s", dir, name);

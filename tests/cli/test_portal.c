@@ -5,9 +5,10 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "cli/serve/fields.h"
+#include "cli/http/archive.h"
+#include "cli/http/fields.h"
 #include "cli/serve/form.h"
-#include "cli/serve/inside.h"
+#include "cli/http/inside.h"
 #include "cli/serve/page_markup.h"
 #include "cli/serve/projects.h"
 #include "cli/serve/runs.h"
@@ -176,11 +177,17 @@ static void progress_lines_are_parsed(void **state)
 
 /* --- settings ------------------------------------------------------------ */
 
+/* Where the last form was wrong. */
+static struct vg_form_fault fault;
+
 static vg_status settings_of(const struct vg_fields *f, struct vg_settings *s,
                              struct vg_error *err)
 {
+  const struct vg_form_fault nowhere = VG_FORM_FAULT_INIT;
+
   vg_settings_default(s);
-  return vg_form_settings(f, scene.root, s, err);
+  fault = nowhere;
+  return vg_form_settings(f, scene.root, s, &fault, err);
 }
 
 static void a_form_becomes_settings(void **state)
@@ -219,7 +226,7 @@ static void a_form_becomes_settings(void **state)
   assert_string_equal(f.item[1].name, "s.growth");
   s.hmin = 0.125;
   s.layer.grow = VG_ANSWER_NO;
-  assert_int_equal(vg_form_settings(&f, scene.root, &s, &err), VG_OK);
+  assert_int_equal(vg_form_settings(&f, scene.root, &s, &fault, &err), VG_OK);
   assert_true(s.growth == 1.2 && s.hmin == 0.125);
   assert_int_equal(s.layer.grow, VG_ANSWER_YES);
   assert_int_equal(s.n_source, 2);
@@ -227,6 +234,7 @@ static void a_form_becomes_settings(void **state)
   vg_fields_release(&f);
 }
 
+/* The message contains `why`, and the fault is in this field. */
 static void refuses(const char *name, const char *value, const char *why)
 {
   struct vg_fields f = VG_FIELDS_INIT;
@@ -236,6 +244,7 @@ static void refuses(const char *name, const char *value, const char *why)
   put(&f, name, value);
   assert_true(settings_of(&f, &s, &err) < 0);
   if (!strstr(err.text, why)) fail_msg("'%s' lacks '%s'", err.text, why);
+  assert_string_equal(fault.field, name);
   vg_settings_release(&s);
   vg_fields_release(&f);
 }
@@ -253,6 +262,7 @@ static void a_refused_form_names_the_field(void **state)
   refuses("sources", "kind h0 h0\npoint 1 1", "h0 appears twice");
   refuses("patches", "id name\n3 \"wing",
           "line 2: a quotation mark is not closed");
+  assert_int_equal(fault.line, 2);
   refuses("patches", "id bc\n3 4\n3 5", "patch 3 is listed twice");
   refuses("farfield.lengths", "0", "lengths is 0");
   refuses("s.first", "-1", "first");
@@ -265,6 +275,9 @@ static void a_refused_form_names_the_field(void **state)
   snprintf(path, sizeof path, "%s/../other/secret.obj", scene.root);
   refuses("s.sizes", path, "not a path below");
   refuses("s.mapbc", path, "not a path below");
+  /* Values that contradict each other: the first setting of the message. */
+  refuses("s.y_plus", "1", "y_plus requires reynolds");
+  refuses("s.constant_direction", "yes", "requires a split_direction");
   refuses("s.mapbc", "out.obj", "is outside");
 }
 
@@ -290,6 +303,7 @@ static void a_printed_form_comes_back(void **state)
                               .p0 = { 1, 2, 3 },
                               .an = 1,
                               .group = "a \"b\"" };
+  struct vg_form_view view = { "octa.obj", &s, &none, &fault, NULL, 1 };
   struct vg_error err = VG_ERROR_INIT;
   char *text, *at, *table, path[300];
   size_t size;
@@ -300,7 +314,7 @@ static void a_printed_form_comes_back(void **state)
   s.growth = 1.1;
   s.layer.first = 1e-5;
   assert_int_equal(vg_settings_add(&s, VG_TABLE_SOURCES, &source, &err), VG_OK);
-  vg_form_print(to, "octa.obj", &s, &none, 1);
+  vg_form_print(to, &view);
   fclose(to);
   table = strstr(text, "name=\"sources\"");
   assert_non_null(table);
@@ -348,7 +362,8 @@ static void places_are_checked(void **state)
     struct vg_serve_run run = { 0 };
 
     put(&f, t[i].name, t[i].value);
-    assert_int_equal(vg_form_run(&f, &run, &err), t[i].st);
+    assert_int_equal(vg_form_run(&f, &run, &fault, &err), t[i].st);
+    if (t[i].st < 0) assert_string_equal(fault.field, t[i].name);
     vg_fields_release(&f);
   }
 }
@@ -585,6 +600,222 @@ static void a_run_waits_and_is_stopped(void **state)
             "Content-Length: 0\r\n\r\n");
 }
 
+#define GET(path) "GET /%s" path " HTTP/1.1\r\n" HOST "\r\n"
+
+/* Send a form to a path. */
+static void sends(int status, const char *path, const char *body)
+{
+  char request[4096];
+  size_t n = 0;
+
+  snprintf(request, sizeof request,
+           "POST /%%s%s HTTP/1.1\r\n" OWN FORM "Content-Length: %zu\r\n\r\n",
+           path, strlen(body));
+  for (n = strlen(request); *body && n < sizeof request - 3; body++) {
+    if (*body == '%') request[n++] = '%';
+    request[n++] = *body;
+  }
+  request[n] = 0;
+  asks(status, request);
+}
+
+/* The value of a field that is wrong comes back, marked, in an open group. */
+static void a_refused_run_marks_its_field(void **state)
+{
+  char *field;
+
+  (void)state;
+  need_server();
+  sends(400, "runs", "project=octa.obj&s.hmin=<b>&title=abcdefgh");
+  field = strstr(scene.answer, "name=\"s.hmin\"");
+  assert_non_null(field);
+  assert_non_null(strstr(field, "aria-invalid=\"true\""));
+  assert_true(strstr(field, "aria-invalid") < strstr(field, ">"));
+  assert_non_null(strstr(scene.answer, "href=\"#s.hmin\""));
+  assert_non_null(strstr(scene.answer, "a number, not &#39;&lt;b&gt;&#39;"));
+  assert_null(strstr(scene.answer, "=\"<b>"));
+  assert_non_null(strstr(scene.answer, "value=\"&lt;b&gt;\""));
+  sends(400, "runs", "project=octa.obj&patches=id bc%0a1 x%0a++");
+  assert_non_null(strstr(scene.answer, "data-wrong=\"2\""));
+}
+
+/* This portal has no room for processes, so looks are refused; paths of looks
+ * lead nowhere else. */
+static void looks_are_confined(void **state)
+{
+  (void)state;
+  need_server();
+  asks(403,
+       "POST /%slooks/view HTTP/1.1\r\n" HOST FORM "Content-Length: 0\r\n\r\n");
+  sends(400, "looks/view", "project=octa.obj");
+  assert_non_null(strstr(scene.answer, "starts no processes"));
+  sends(400, "looks/check", "project=octa.obj&s.growth=0.500");
+  assert_non_null(strstr(scene.answer, "\"field\":\"s.growth\""));
+  sends(400, "looks/plan", "project=../other/secret.obj");
+  sends(400, "looks/view", "project=out.obj");
+  sends(404, "looks/mesh", "");
+  sends(404, "looks/1/stop", "");
+  sends(404, "looks/../runs", "");
+  asks(404, GET("looks/1"));
+  asks(404, GET("looks/1/scene"));
+  asks(404, GET("looks/0/scene"));
+  asks(404, GET("looks/view/scene"));
+  asks(404, GET("looks/1/look.deck"));
+  asks(404, GET("looks/99999999999/scene"));
+}
+
+static void pages_of_results_are_safe(void **state)
+{
+  (void)state;
+  need_server();
+  asks(200, GET("?uploaded=%%3Cscript%%3Ealert(1)"));
+  assert_null(strstr(scene.answer, "<script>alert"));
+  assert_non_null(strstr(scene.answer, "it is not a project"));
+  asks(404, GET("?report=77"));
+  asks(404, GET("?sweep=1"));
+  asks(404, GET("?report=%%2e%%2e/1"));
+  asks(200, GET("?compare=1&compare=77&compare=1"));
+  assert_non_null(strstr(scene.answer, "Choose two to four"));
+  asks(404, GET("runs/77/archive.tar"));
+  asks(404, GET("runs/1/picture/0"));
+  asks(404, GET("runs/1/picture/2"));
+  asks(404, GET("runs/1/picture/../run.json"));
+  asks(200, GET("view.js"));
+  asks(200, GET("form.js"));
+  asks(200, GET("case.js"));
+  asks(404, GET("report.js"));
+}
+
+/* Reports may be shown in a frame of the portal, and nothing else. */
+static void only_reports_are_framed(void **state)
+{
+  char path[512];
+
+  (void)state;
+  need_server();
+  snprintf(path, sizeof path, "%s/vanguard-runs/0001/mesh", scene.root);
+  assert_int_equal(mkdir(path, 0777), 0);
+  portal_file(path, "octa.report.html",
+              "<figure><img src=\"data:image/png;base64,iVBORw0K\">");
+  portal_file(path, "page.html", "<script>alert(1)</script>");
+  asks(200, GET("runs/1/file/mesh/octa.report.html"));
+  assert_non_null(strstr(scene.answer, "X-Frame-Options: SAMEORIGIN"));
+  assert_non_null(strstr(scene.answer, "frame-ancestors 'self'"));
+  assert_non_null(strstr(scene.answer, "sandbox allow-scripts"));
+  assert_null(strstr(scene.answer, "unsafe-eval"));
+  asks(200, GET("runs/1/file/mesh/page.html"));
+  assert_non_null(strstr(scene.answer, "X-Frame-Options: DENY"));
+  assert_non_null(strstr(scene.answer, "attachment"));
+  asks(200, GET("runs/1/picture/0"));
+  assert_non_null(strstr(scene.answer, "Content-Type: image/png"));
+  assert_non_null(strstr(scene.answer, "\r\n\r\n\x89PNG\r\n"));
+  /* A report that is a link out of the folder of the run is not read. */
+  snprintf(path, sizeof path, "%s/vanguard-runs/0001/mesh/octa.report.html",
+           scene.root);
+  assert_int_equal(remove(path), 0);
+  assert_int_equal(symlink("../../../../other/secret.obj", path), 0);
+  asks(404, GET("runs/1/picture/0"));
+  asks(404, GET("runs/1/file/mesh/octa.report.html"));
+  /* Nor is a deck, in a comparison. */
+  sends(303, "runs", "project=octa.obj");
+  sends(303, "runs/2/stop", "");
+  snprintf(path, sizeof path, "%s/vanguard-runs/0002/run.deck", scene.root);
+  assert_int_equal(remove(path), 0);
+  assert_int_equal(symlink("../../../other/secret.obj", path), 0);
+  asks(200, GET("?compare=1&compare=2"));
+  assert_non_null(strstr(scene.answer, "is outside the folder"));
+}
+
+/* The whole archive, by small pieces; free it. */
+static char *read_archive(const char *dir, const char *skip, size_t *n)
+{
+  struct vg_archive *a = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+  char *data;
+  size_t size;
+  ssize_t got;
+
+  assert_int_equal(vg_archive_open(dir, "run", skip, &a, &err), VG_OK);
+  size = (size_t)vg_archive_size(a);
+  data = malloc(size + 100);
+  for (*n = 0; (got = vg_archive_read(a, data + *n, 77)) > 0; *n += (size_t)got)
+    assert_true(*n + (size_t)got <= size);
+  assert_int_equal(got, 0);
+  assert_int_equal(*n, size);
+  vg_archive_free(a);
+  return data;
+}
+
+static void archives_hold_all_files(void **state)
+{
+  char path[400], name[300], *data;
+  struct vg_archive *a = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+  size_t n;
+
+  (void)state;
+  snprintf(path, sizeof path, "%s/pack", scene.dir);
+  assert_int_equal(mkdir(path, 0777), 0);
+  portal_file(path, "a.txt", "0123456789");
+  memset(name, 'n', 150);
+  strcpy(name + 150, ".txt");
+  portal_file(path, name, "long");
+  portal_file(path, ".hidden", PORTAL_SECRET);
+  snprintf(path, sizeof path, "%s/pack/kept", scene.dir);
+  assert_int_equal(mkdir(path, 0777), 0);
+  portal_file(path, "task", PORTAL_SECRET);
+  snprintf(path, sizeof path, "%s/pack/away", scene.dir);
+  assert_int_equal(symlink("../other/secret.obj", path), 0);
+  snprintf(path, sizeof path, "%s/pack", scene.dir);
+  data = read_archive(path, "kept", &n);
+  /* a header and a block; a name of two blocks, a header and a block; the
+   * end */
+  assert_int_equal(n, 512 * (2 + 2 + 2 + 2));
+  assert_string_equal(data, "run/a.txt");
+  assert_memory_equal(data + 512, "0123456789", 11);
+  assert_int_equal(data[2 * 512 + 156], 'L');
+  assert_memory_equal(data + 3 * 512 + 4, name, 155);
+  assert_memory_equal(data + 5 * 512, "long", 5);
+  assert_null(memmem(data, n, PORTAL_SECRET, strlen(PORTAL_SECRET)));
+  free(data);
+  /* A file that shrinks while it is sent ends the archive with an error. */
+  assert_int_equal(vg_archive_open(path, "run", "kept", &a, &err), VG_OK);
+  snprintf(name, sizeof name, "%s/pack/a.txt", scene.dir);
+  assert_int_equal(truncate(name, 3), 0);
+  assert_int_equal(vg_archive_read(a, path, 77), -1);
+  vg_archive_free(a);
+}
+
+/* Removal: not while active, and never through a link. */
+static void runs_are_removed(void **state)
+{
+  char path[512], link[600];
+  struct stat s;
+
+  (void)state;
+  need_server();
+  sends(303, "runs", "project=octa.obj");
+  asks(409, GET("runs/3/archive.tar"));
+  sends(409, "runs/3/delete", "");
+  sends(303, "runs/3/stop", "");
+  asks(200, GET("runs/3/archive.tar"));
+  assert_non_null(strstr(scene.answer, "filename=\"vanguard-0003.tar\""));
+  snprintf(path, sizeof path, "%s/vanguard-runs/0003", scene.root);
+  snprintf(link, sizeof link, "%s/away", path);
+  assert_int_equal(symlink("../../../other", link), 0);
+  asks(403, "POST /%sruns/3/delete HTTP/1.1\r\n" HOST FORM
+            "Origin: http://evil.example\r\nContent-Length: 0\r\n\r\n");
+  assert_int_equal(stat(path, &s), 0);
+  asks(404, GET("runs/3/delete"));
+  sends(303, "runs/3/delete", "");
+  assert_int_equal(lstat(path, &s), -1);
+  snprintf(path, sizeof path, "%s/other/secret.obj", scene.dir);
+  assert_int_equal(stat(path, &s), 0);
+  sends(404, "runs/3/delete", "");
+  asks(200, GET("runs"));
+  assert_null(strstr(scene.answer, "id=\"run-3\""));
+}
+
 /* Upload one file with the content `text` by a form. */
 static void brings(int status, const char *folder, const char *name,
                    const char *text)
@@ -675,6 +906,12 @@ int main(void)
     cmocka_unit_test(gate_refuses_unauthorised_requests),
     cmocka_unit_test(pages_are_safe),
     cmocka_unit_test(a_run_waits_and_is_stopped),
+    cmocka_unit_test(a_refused_run_marks_its_field),
+    cmocka_unit_test(looks_are_confined),
+    cmocka_unit_test(pages_of_results_are_safe),
+    cmocka_unit_test(only_reports_are_framed),
+    cmocka_unit_test(archives_hold_all_files),
+    cmocka_unit_test(runs_are_removed),
     cmocka_unit_test(files_are_uploaded),
     cmocka_unit_test(a_second_portal_is_refused),
   };

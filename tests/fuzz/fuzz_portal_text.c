@@ -44,7 +44,7 @@ static void rows(const char *text, size_t size, int kind)
 
   vg_settings_default(&s);
   st = copy
-       ? vg_rows_read(copy, VG_TABLE_PATCHES + (enum vg_table_kind)(kind % 3),
+       ? vg_rows_read(copy, VG_TABLE_PATCHES + (enum vg_table_kind)(kind % 4),
                       &s, &err)
        : VG_OK;
   fuzz_expect(st >= 0 || *err.text, "a failure has a message");

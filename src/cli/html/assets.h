@@ -5,9 +5,7 @@
 
 #include <stddef.h>
 
-extern const unsigned char vg_asset_report_css[], vg_asset_report_js[],
-  vg_asset_view_js[];
-extern const size_t vg_asset_report_css_size, vg_asset_report_js_size,
-  vg_asset_view_js_size;
+extern const unsigned char vg_asset_report_css[], vg_asset_report_js[];
+extern const size_t vg_asset_report_css_size, vg_asset_report_js_size;
 
 #endif

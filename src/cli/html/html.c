@@ -7,6 +7,7 @@
 #include "base/version.h"
 #include "cli/html/assets.h"
 #include "cli/html/page.h"
+#include "cli/scene/assets.h"
 
 /* Scripts are at the end, so that the page is complete before they run, and
  * also without them. */

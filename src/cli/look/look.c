@@ -110,6 +110,14 @@ done:
 
 /* --- result -------------------------------------------------------------- */
 
+/* 1 for a patch that closing the domain has added, which no deck can name. */
+static int is_added(const struct look *l, size_t i)
+{
+  size_t n_own = l->problem.boundary.n_row;
+
+  return n_own && i >= n_own;
+}
+
 /* The patches, with walls and layers where these are known. */
 static json_t *patches(const struct look *l, const struct vg_mesh *m)
 {
@@ -121,6 +129,7 @@ static json_t *patches(const struct look *l, const struct vg_mesh *m)
     int known = l->layers.reason && i < l->layers.n_patch;
 
     json_object_set_new(one, "body", json_boolean(l->body[i]));
+    json_object_set_new(one, "added", json_boolean(is_added(l, i)));
     json_object_set_new(one, "layers",
                         known ? json_boolean(l->layers.is_on &&
                                              l->layers.reason[i] != VG_WALL_NOT)
@@ -178,6 +187,16 @@ static void describe(struct look *l, const struct vg_mesh *m, vg_status st,
   json_object_set_new(o, "scene", vg_scene_json(&l->scene, m, l->body, toward));
 }
 
+/* Messages begin with the path of the project; the page shows its name. */
+static void shorten(const char *project, struct vg_error *err)
+{
+  const char *slash = strrchr(project, '/');
+  size_t n = slash ? (size_t)(slash - project) + 1 : 0;
+
+  if (n && !strncmp(err->text, project, n))
+    memmove(err->text, err->text + n, strlen(err->text + n) + 1);
+}
+
 static vg_status look(struct look *l, enum vg_look_kind kind,
                       const char *project, struct vg_display *show,
                       struct vg_error *err)
@@ -197,6 +216,7 @@ static vg_status look(struct look *l, enum vg_look_kind kind,
     st = vg_fail(err, found, "%s", why.text);
     goto done;
   }
+  shorten(project, &why);
   VG_TRY(find_body(l, m, err));
   VG_TRY(find_kinds(l, m, &p->boundary.check, err));
   VG_TRY(write_scene(l, m, err));
@@ -222,5 +242,6 @@ int vg_look(enum vg_look_kind kind, const char *project)
   st = look(&l, kind, project, &show, &err);
   vg_display_clear(&show);
   release(&l);
+  shorten(project, &err);
   return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
 }

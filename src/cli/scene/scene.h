@@ -22,8 +22,8 @@ struct vg_scene {
   }
 
 /** Decimate the triangles of m and find the box of the body.
- * @param body  [m->n_patch] 1 for patches of the body; if there is none, all
- *              patches are taken
+ * @param body  [m->n_patch] 1 for patches of the body; all patches are taken if
+ * no patch is marked
  * @param out   VG_SCENE_INIT; vg_scene_release, also on failure
  * VG_ERR_MEMORY. */
 vg_status vg_scene_make(const struct vg_mesh *m, const uint8_t *body,

@@ -5,8 +5,8 @@
 #include <stddef.h>
 
 extern const unsigned char vg_asset_portal_css[], vg_asset_portal_js[],
-  vg_asset_vanguard_sbatch[];
+  vg_asset_form_js[], vg_asset_case_js[], vg_asset_vanguard_sbatch[];
 extern const size_t vg_asset_portal_css_size, vg_asset_portal_js_size,
-  vg_asset_vanguard_sbatch_size;
+  vg_asset_form_js_size, vg_asset_case_js_size, vg_asset_vanguard_sbatch_size;
 
 #endif

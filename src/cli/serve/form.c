@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/serve/inside.h"
+#include "cli/http/inside.h"
 #include "cli/serve/rows.h"
 
 /* --- settings ------------------------------------------------------------ */
@@ -13,7 +13,8 @@
 /* Set the values at `base` from the fields "PREFIX.NAME". */
 static vg_status take_params(const struct vg_fields *f, const char *prefix,
                              const struct vg_param *p, size_t n, void *base,
-                             const void *defaults, struct vg_error *err)
+                             const void *defaults, struct vg_form_fault *fault,
+                             struct vg_error *err)
 {
   vg_status st = VG_OK;
 
@@ -27,6 +28,7 @@ static vg_status take_params(const struct vg_fields *f, const char *prefix,
     memcpy((char *)base + p[i].offset, (const char *)defaults + p[i].offset,
            p[i].size);
     if (*value) st = vg_param_set(&p[i], base, value, strlen(value), err);
+    if (st < 0) strcpy(fault->field, name);
   }
   return st;
 }
@@ -45,7 +47,7 @@ static int is_given(const struct vg_setting_table *t, const void *row,
 
 /* Set the plain settings and the one-line tables. */
 static vg_status take_values(const struct vg_fields *f, struct vg_settings *s,
-                             struct vg_error *err)
+                             struct vg_form_fault *fault, struct vg_error *err)
 {
   const struct vg_setting_table *farfield = vg_settings_table(
     VG_TABLE_FARFIELD);
@@ -56,32 +58,47 @@ static vg_status take_values(const struct vg_fields *f, struct vg_settings *s,
   vg_status st;
 
   vg_settings_default(&defaults);
-  VG_TRY(take_params(f, "s", p, n, s, &defaults, err));
+  VG_TRY(take_params(f, "s", p, n, s, &defaults, fault, err));
   VG_TRY(take_params(f, "farfield", farfield->column, farfield->n_column,
-                     &s->farfield, &defaults.farfield, err));
+                     &s->farfield, &defaults.farfield, fault, err));
   st = take_params(f, "sweep", sweep->column, sweep->n_column, &s->sweep,
-                   &defaults.sweep, err);
+                   &defaults.sweep, fault, err);
   s->n_sweep = is_given(sweep, &s->sweep, &defaults.sweep);
 done:
   return st;
 }
 
-static vg_status take_tables(const struct vg_fields *f, struct vg_settings *s,
-                             struct vg_error *err)
+/* The line in a message such as "sources, line 3: ...". */
+static int line_in(const char *message, const char *table)
 {
-  static const enum vg_table_kind tables[] = { VG_TABLE_PATCHES,
-                                               VG_TABLE_LAYERS,
-                                               VG_TABLE_SOURCES };
+  size_t n = strlen(table);
+  int line = 0;
+
+  if (!strncmp(message, table, n)) sscanf(message + n, ", line %9d", &line);
+  return line;
+}
+
+static vg_status take_tables(const struct vg_fields *f, struct vg_settings *s,
+                             struct vg_form_fault *fault, struct vg_error *err)
+{
+  static const enum vg_table_kind tables[] = {
+    VG_TABLE_PATCHES, VG_TABLE_LAYERS, VG_TABLE_SURFACE, VG_TABLE_SOURCES
+  };
   vg_status st = VG_OK;
 
   for (size_t i = 0; i < sizeof tables / sizeof *tables && st >= 0; i++) {
-    const char *text = vg_fields_get(f, vg_settings_table(tables[i])->name);
+    const char *name = vg_settings_table(tables[i])->name;
+    const char *text = vg_fields_get(f, name);
 
     if (!text) continue;
     if (tables[i] == VG_TABLE_PATCHES) s->n_patch = 0;
     if (tables[i] == VG_TABLE_LAYERS) s->n_layer = 0;
+    if (tables[i] == VG_TABLE_SURFACE) s->n_surface = 0;
     if (tables[i] == VG_TABLE_SOURCES) s->n_source = 0;
     st = vg_rows_read(text, tables[i], s, err);
+    if (st >= 0) continue;
+    strcpy(fault->field, name);
+    fault->line = line_in(err->text, name);
   }
   return st;
 }
@@ -127,35 +144,88 @@ static vg_status check_path(const char *root, const char *setting,
 
 /* Check the resulting settings, whether they come from the form or a deck. */
 static vg_status check_paths(const char *root, struct vg_settings *s,
-                             struct vg_error *err)
+                             struct vg_form_fault *fault, struct vg_error *err)
 {
   vg_status st;
 
+  strcpy(fault->field, "s.mesher");
   if (strcmp(s->mesher, "builtin") != 0 && strcmp(s->mesher, "tetgen") != 0 &&
       strcmp(s->mesher, "hxt") != 0)
     return vg_fail(err, VG_ERR_INPUT,
                    "mesher: the portal does not run plug-ins, since they are "
                    "programs; choose builtin, tetgen or hxt");
+  strcpy(fault->field, "s.helpers");
   if (*s->helpers)
     return vg_fail(err, VG_ERR_INPUT,
                    "helpers: the portal only runs the helper programs of its "
                    "own installation; leave the setting empty");
+  strcpy(fault->field, "s.sizes");
   VG_TRY(check_path(root, "sizes", s->sizes, err));
+  strcpy(fault->field, "s.mapbc");
   VG_TRY(check_path(root, "mapbc", s->mapbc, err));
+  fault->field[0] = 0;
 done:
   return st;
 }
 
+static int is_word_at(const char *text, const char *at, size_t n)
+{
+  static const char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789_";
+
+  return (at == text || !strchr(letters, at[-1])) &&
+         (!at[n] || !strchr(letters, at[n]));
+}
+
+/* The table with which a message begins, as in "patches: patch 3 ...". */
+static int find_table(const char *message, struct vg_form_fault *fault)
+{
+  for (int k = 0; k < VG_TABLE_N; k++) {
+    const char *name = vg_settings_table((enum vg_table_kind)k)->name;
+    size_t n = strlen(name);
+
+    if (strncmp(message, name, n) != 0 || message[n] != ':') continue;
+    snprintf(fault->field, sizeof fault->field,
+             k == VG_TABLE_FARFIELD ? "%s.kind" : "%s", name);
+    return 1;
+  }
+  return 0;
+}
+
+/* The setting that a message about several settings names first. */
+static void find_setting(const char *message, struct vg_form_fault *fault)
+{
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+  const char *first = NULL;
+
+  for (size_t i = 0; i < n; i++) {
+    size_t len = strlen(p[i].name);
+
+    for (const char *at = message; (at = strstr(at, p[i].name)); at++) {
+      if (!is_word_at(message, at, len)) continue;
+      if (!first || at < first) {
+        first = at;
+        snprintf(fault->field, sizeof fault->field, "s.%s", p[i].name);
+      }
+      break;
+    }
+  }
+}
+
 vg_status vg_form_settings(const struct vg_fields *f, const char *root,
-                           struct vg_settings *s, struct vg_error *err)
+                           struct vg_settings *s, struct vg_form_fault *fault,
+                           struct vg_error *err)
 {
   vg_status st;
 
+  strcpy(fault->field, "title");
   VG_TRY(take_title(f, s, err));
-  VG_TRY(take_values(f, s, err));
-  VG_TRY(take_tables(f, s, err));
-  VG_TRY(vg_settings_check(s, err));
-  st = check_paths(root, s, err);
+  fault->field[0] = 0;
+  VG_TRY(take_values(f, s, fault, err));
+  VG_TRY(take_tables(f, s, fault, err));
+  st = vg_settings_check(s, err);
+  if (st < 0 && !find_table(err->text, fault)) find_setting(err->text, fault);
+  if (st >= 0) st = check_paths(root, s, fault, err);
 done:
   return st;
 }
@@ -176,7 +246,7 @@ static vg_status take_word(const struct vg_fields *f, const char *name,
 }
 
 vg_status vg_form_run(const struct vg_fields *f, struct vg_serve_run *run,
-                      struct vg_error *err)
+                      struct vg_form_fault *fault, struct vg_error *err)
 {
   static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
                                 "abcdefghijklmnopqrstuvwxyz0123456789_.-";
@@ -185,6 +255,7 @@ vg_status vg_form_run(const struct vg_fields *f, struct vg_serve_run *run,
 
   run->is_sweep = !strcmp(vg_fields_text(f, "what"), "sweep");
   run->is_slurm = !strcmp(where, "slurm");
+  strcpy(fault->field, "where");
   if (!run->is_slurm && *where && strcmp(where, "here") != 0)
     return vg_fail(err, VG_ERR_INPUT,
                    "a run must be on 'here' or 'slurm', not "
@@ -194,12 +265,17 @@ vg_status vg_form_run(const struct vg_fields *f, struct vg_serve_run *run,
     return vg_fail(err, VG_ERR_INPUT,
                    "the portal runs sweeps on this machine only; use 'vanguard "
                    "sweep --launcher' in a job of your own");
+  strcpy(fault->field, "ranks");
   VG_TRY(vg_fields_count(f, "ranks", "ranks", 1, 100000, 1, &run->ranks, err));
+  strcpy(fault->field, "nodes");
   VG_TRY(vg_fields_count(f, "nodes", "nodes", 1, 100000, 1, &run->nodes, err));
+  strcpy(fault->field, "cpus");
   VG_TRY(
     vg_fields_count(f, "cpus", "CPUs per rank", 1, 4096, 1, &run->cpus, err));
+  strcpy(fault->field, "time");
   VG_TRY(take_word(f, "time", "the time limit", "0123456789:-", run->time,
                    sizeof run->time, err));
+  strcpy(fault->field, "partition");
   st = take_word(f, "partition", "the partition", letters, run->partition,
                  sizeof run->partition, err);
 done:

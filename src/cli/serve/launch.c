@@ -188,6 +188,7 @@ void vg_run_launch(struct vg_serve_runs *r, struct vg_serve_run *run)
   run->exit_status = run->output_size = -1;
   run->stop_time = 0;
   run->tell = nothing;
+  run->figures.is_read = 0;
   run->note[0] = 0;
   st = run->is_slurm ? vg_slurm_submit(r, run, &err) : start_here(r, run, &err);
   if (st < 0) {

@@ -2,11 +2,13 @@
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <jansson.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 
+#include "cli/serve/figures.h"
 #include "cli/serve/page_markup.h"
 #include "cli/serve/portal_parts.h"
 #include "run/common/text.h"
@@ -102,6 +104,12 @@ static void print_buttons(FILE *to, const struct vg_serve_run *run)
   if (vg_run_can_resume(run))
     print_button(to, run, "resume",
                  vg_run_has_kept(run) ? "Resume" : "Restart");
+  if (!vg_run_is_active(run) && run->is_sweep)
+    fprintf(to, "<a class=\"result\" href=\"?sweep=%d\">Figures</a>\n",
+            run->id);
+  else if (run->figures.is_known)
+    fprintf(to, "<a class=\"result\" href=\"?report=%d\">Report</a>\n",
+            run->id);
   fprintf(to,
           "<a href=\"?from=%d#form\">Settings</a> <a href=\"runs/%d/log\">"
           "Log</a> <a href=\"runs/%d/output\">Output</a> <a "
@@ -138,28 +146,21 @@ static size_t list_files(const struct vg_serve_run *run, const char *folder,
 static void print_file(FILE *to, const struct vg_serve_run *run,
                        const char *folder, const char *name)
 {
-  size_t n = strlen(name);
-  int is_report = n > 12 && !strcmp(name + n - 12, ".report.html");
   char path[4096];
   struct stat s;
-  int known;
 
-  snprintf(path, sizeof path, "%s/%s/%s", run->dir, folder, name);
-  known = !stat(path, &s);
-  fprintf(to, "<a%s href=\"runs/%d/file/%s/",
-          is_report ? " class=\"report\" target=\"_blank\" rel=\"noopener\""
-                    : "",
-          run->id, folder);
+  fprintf(to, "<li><a href=\"runs/%d/file/%s/", run->id, folder);
   vg_markup_path(to, name);
   fputs("\">", to);
-  vg_markup(to, is_report ? "Report" : name);
+  vg_markup(to, name);
   fputs("</a>", to);
-  if (known && !is_report) {
+  snprintf(path, sizeof path, "%s/%s/%s", run->dir, folder, name);
+  if (!stat(path, &s)) {
     fputs(" <i>", to);
     vg_markup_size(to, s.st_size);
     fputs("</i>", to);
   }
-  fputs("\n", to);
+  fputs("</li>\n", to);
 }
 
 static void print_files(FILE *to, const struct vg_serve_run *run)
@@ -170,12 +171,70 @@ static void print_files(FILE *to, const struct vg_serve_run *run)
 
   if (vg_run_is_active(run)) return;
   n = list_files(run, folder, name);
-  if (n) fputs("<p class=\"files\">", to);
+  if (!n) return;
+  fprintf(to,
+          "<details class=\"files\" id=\"files-%d\"><summary>%zu file%s"
+          "</summary><ul>\n",
+          run->id, n, n > 1 ? "s" : "");
   for (size_t i = 0; i < n; i++) {
     print_file(to, run, folder, name[i]);
     free(name[i]);
   }
-  if (n) fputs("</p>\n", to);
+  fputs("</ul></details>\n", to);
+}
+
+/* The archive, and the removal, which needs two presses. */
+static void print_disposal(FILE *to, const struct vg_serve_run *run)
+{
+  if (vg_run_is_active(run)) return;
+  fprintf(to,
+          "<div class=\"disposal\"><a href=\"runs/%d/archive.tar\" download>"
+          "Download all files</a>\n<details class=\"delete\" id=\"delete-%d\">"
+          "<summary>Delete</summary><form method=\"post\" "
+          "action=\"runs/%d/delete\"><button class=\"bad\">Delete run %d and "
+          "all its files</button></form></details></div>\n",
+          run->id, run->id, run->id, run->id);
+}
+
+/* --- figures ------------------------------------------------------------- */
+
+static void print_figure(FILE *to, const char *name, const char *value)
+{
+  fprintf(to, "<div><dt>%s</dt><dd>%s</dd></div>\n", name, value);
+}
+
+/* A picture, and the figures that show at once what came out. */
+static void print_figures(FILE *to, const struct vg_serve_run *run)
+{
+  const struct vg_serve_figures *f = &run->figures;
+  char text[48];
+
+  if (!f->is_known) return;
+  fprintf(
+    to,
+    "<a class=\"thumb\" href=\"?report=%d\"><img alt=\"Surface of run "
+    "%d; opens the report\" width=\"864\" height=\"576\" loading=\"lazy\" "
+    "src=\"runs/%d/picture/0?t=%lld\"></a>\n<dl class=\"figures\">\n",
+    run->id, run->id, run->id, (long long)run->ended);
+  print_figure(to, "Cells", vg_text_count((unsigned long long)f->cells, text));
+  fprintf(to, "<div><dt>Mesh</dt><dd class=\"%s\">%s</dd></div>\n",
+          f->is_valid ? "good" : "bad", f->is_valid ? "valid" : "not valid");
+  if (isfinite(f->angle)) {
+    snprintf(text, sizeof text, "%.1f&deg;", f->angle);
+    print_figure(to, "Smallest angle", text);
+  }
+  snprintf(text, sizeof text, "%.3g s", f->seconds);
+  print_figure(to, "Time", text);
+  fputs("</dl>\n", to);
+}
+
+static void print_choice(FILE *to, const struct vg_serve_run *run)
+{
+  if (!run->figures.is_known) return;
+  fprintf(to,
+          "<label class=\"pick\"><input type=\"checkbox\" form=\"compare\" "
+          "name=\"compare\" value=\"%d\"> compare</label>",
+          run->id);
 }
 
 /* --- end of the log ------------------------------------------------------ */
@@ -203,10 +262,11 @@ static void print_tail(FILE *to, const struct vg_serve_run *run)
   fputs("</pre></details>\n", to);
 }
 
-static void print_run(FILE *to, const struct vg_serve_run *run)
+static void print_run(FILE *to, struct vg_serve_run *run)
 {
   const char *word = vg_run_state_word(run->state);
 
+  vg_figures_read(run);
   fprintf(to,
           "<article id=\"run-%d\" class=\"run %s\" data-state=\"%s\">\n"
           "<h3><span class=\"id\">%d</span> ",
@@ -214,7 +274,9 @@ static void print_run(FILE *to, const struct vg_serve_run *run)
   vg_markup(to, run->title);
   fprintf(to, " <span class=\"state\">%s</span></h3>\n",
           run->state == VG_SERVE_LIMIT ? "done, but limit not met" : word);
+  print_choice(to, run);
   print_about(to, run);
+  print_figures(to, run);
   print_progress(to, run);
   if (*run->note) {
     fputs("<p class=\"note\">", to);
@@ -226,6 +288,7 @@ static void print_run(FILE *to, const struct vg_serve_run *run)
   fputs("</div>\n", to);
   print_files(to, run);
   print_tail(to, run);
+  print_disposal(to, run);
   fputs("</article>\n", to);
 }
 
@@ -244,7 +307,7 @@ void vg_page_runs(const struct vg_portal *p, FILE *to)
   /* Running ones first, then the newest. */
   for (int at_work = 1; at_work >= 0; at_work--)
     for (size_t i = 0; i < r->n; i++) {
-      const struct vg_serve_run *run = r->item[r->n - 1 - i];
+      struct vg_serve_run *run = r->item[r->n - 1 - i];
 
       if (is_at_work(run) == at_work && (i < n || vg_run_is_active(run)))
         print_run(to, run);
@@ -260,10 +323,12 @@ void vg_page_runs(const struct vg_portal *p, FILE *to)
 
 /* --- JSON ---------------------------------------------------------------- */
 
-static json_t *json_of(const struct vg_serve_run *run)
+static json_t *json_of(struct vg_serve_run *run)
 {
+  const struct vg_serve_figures *f = &run->figures;
   json_t *o = json_object();
 
+  vg_figures_read(run);
   json_object_set_new(o, "id", json_integer(run->id));
   json_object_set_new(o, "state", json_string(vg_run_state_word(run->state)));
   json_object_set_new(o, "project", vg_text_json(run->project));
@@ -279,6 +344,12 @@ static json_t *json_of(const struct vg_serve_run *run)
                       run->tell.share >= 0 ? json_real(run->tell.share)
                                            : json_null());
   json_object_set_new(o, "left", vg_text_json(run->tell.left));
+  if (f->is_known) {
+    json_object_set_new(o, "cells", json_integer((json_int_t)f->cells));
+    json_object_set_new(o, "valid", json_boolean(f->is_valid));
+    json_object_set_new(o, "angle_min", json_real(f->angle));
+    json_object_set_new(o, "seconds", json_real(f->seconds));
+  }
   return o;
 }
 

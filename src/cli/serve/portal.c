@@ -255,6 +255,7 @@ vg_status vg_portal_open(const struct vg_portal_options *o,
   VG_TRY(make_token(p, err));
   VG_TRY(name_hosts(p, err));
   VG_TRY(open_runs(p, err));
+  VG_TRY(vg_looks_open(&p->looks, p->dir, err));
   if (o->port >= 0) VG_TRY(listen_on(p, &fd, err));
   VG_TRY(publish(p, fd >= 0 ? port_of(fd) : 0, err));
   st = vg_http_open(fd, &p->handler, &p->http, err);
@@ -273,6 +274,7 @@ vg_status vg_portal_step(struct vg_portal *p, int milliseconds,
                          struct vg_error *err)
 {
   vg_runs_watch(&p->runs);
+  vg_looks_watch(&p->looks);
   return vg_http_step(p->http, milliseconds, err);
 }
 
@@ -297,6 +299,7 @@ void vg_portal_close(struct vg_portal *p)
   if (p->lock >= 0) close(p->lock);
   for (int i = 0; i < p->n_host; i++) free(p->host[i]);
   vg_runs_release(&p->runs);
+  vg_looks_release(&p->looks);
   free(p->root);
   free(p->dir);
   free(p->url);

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "cli/serve/inside.h"
+#include "cli/http/inside.h"
 #include "io/mesh/format.h"
 #include "run/input/input.h"
 #include "run/settings/deck.h"

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/serve/inside.h"
+#include "cli/http/inside.h"
 #include "cli/serve/portal_parts.h"
 
 /* Policy for files that a run has written: the sandbox gives them an origin of
@@ -15,10 +15,11 @@
  * external resources. */
 #define BOXED                                                                  \
   "default-src 'none'; img-src data:; style-src 'unsafe-inline'; "             \
-  "frame-ancestors 'none'; base-uri 'none'; form-action 'none'; "
-static const char page_policy[] = BOXED "script-src 'unsafe-inline'; "
-                                        "sandbox allow-scripts";
-static const char still_policy[] = BOXED "sandbox";
+  "base-uri 'none'; form-action 'none'; "
+static const char page_policy[] = BOXED
+  "frame-ancestors 'self'; script-src "
+  "'unsafe-inline'; sandbox allow-scripts";
+static const char still_policy[] = BOXED "frame-ancestors 'none'; sandbox";
 
 static const struct {
   const char *end, *type, *policy;
@@ -74,27 +75,47 @@ static void choose_type(const char *name, struct vg_reply *a)
     if (n < m || strcasecmp(name + n - m, shown[i].end)) continue;
     a->type = shown[i].type;
     a->policy = shown[i].policy;
+    a->in_frame = a->policy == page_policy;
     return;
   }
   a->download = plain_name(name);
 }
 
-void vg_reply_file(const struct vg_serve_run *run, const char *name,
-                   struct vg_reply *a)
+void vg_reply_missing(struct vg_reply *a)
+{
+  vg_reply_text(a, 404, "Not found.");
+}
+
+/* Open a file below a folder; -1: there is no such file. */
+static int open_inside(const char *dir, const char *name)
 {
   struct vg_error err;
   struct stat s;
   char *real;
   int fd;
 
-  if (!*name || vg_inside(run->dir, name, &real, &err) < 0) {
-    vg_reply_text(a, 404, "This run has no such file.");
-    return;
-  }
+  if (!*name || vg_inside(dir, name, &real, &err) < 0) return -1;
   fd = open(real, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   free(real);
-  if (fd < 0 || fstat(fd, &s) || !S_ISREG(s.st_mode)) {
-    if (fd >= 0) close(fd);
+  if (fd < 0 || (!fstat(fd, &s) && S_ISREG(s.st_mode))) return fd;
+  close(fd);
+  return -1;
+}
+
+void vg_reply_bytes(const char *dir, const char *name, struct vg_reply *a)
+{
+  a->fd = open_inside(dir, name);
+  a->type = "application/octet-stream";
+  a->policy = still_policy;
+  if (a->fd < 0) vg_reply_missing(a);
+}
+
+void vg_reply_file(const struct vg_serve_run *run, const char *name,
+                   struct vg_reply *a)
+{
+  int fd = open_inside(run->dir, name);
+
+  if (fd < 0) {
     vg_reply_text(a, 404, "This run has no such file.");
     return;
   }

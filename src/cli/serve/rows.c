@@ -129,6 +129,7 @@ vg_status vg_rows_read(const char *text, enum vg_table_kind kind,
 union row {
   struct vg_patch_row p;
   struct vg_layer_row l;
+  struct vg_surface_row f;
   struct vg_source s;
 };
 

@@ -15,7 +15,7 @@ vg_status vg_rows_read(const char *text, enum vg_table_kind kind,
                        struct vg_settings *s, struct vg_error *err);
 
 /** Print the rows of a table in columns, with markup escaped; columns that
- * contain only defaults are omitted. */
+ * contain only defaults are omitted. Nothing is printed for an empty table. */
 void vg_rows_print(FILE *to, const struct vg_settings *s,
                    enum vg_table_kind kind);
 

@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <ftw.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -124,7 +125,7 @@ static vg_status add(struct vg_serve_runs *r, struct vg_serve_run *run,
 vg_status vg_runs_new(struct vg_serve_runs *r, struct vg_serve_run **out,
                       struct vg_error *err)
 {
-  int id = r->n ? r->item[r->n - 1]->id + 1 : 1, n_active = 0;
+  int id = r->last + 1, n_active = 0;
   struct vg_serve_run *run;
   vg_status st;
 
@@ -140,6 +141,7 @@ vg_status vg_runs_new(struct vg_serve_runs *r, struct vg_serve_run **out,
     if (!run) return vg_fail_memory(err, "a run");
     if (!mkdir(run->dir, 0777)) {
       run->created = time(NULL);
+      r->last = id;
       st = add(r, run, err);
       if (st >= 0) *out = run;
       return st;
@@ -155,6 +157,38 @@ vg_status vg_runs_new(struct vg_serve_runs *r, struct vg_serve_run **out,
                  "%s has %d runs; move some of them away and restart "
                  "the portal",
                  r->dir, VG_SERVE_RUNS_MAX);
+}
+
+static int remove_one(const char *path, const struct stat *s, int type,
+                      struct FTW *at)
+{
+  (void)s, (void)type, (void)at;
+  return remove(path);
+}
+
+/* The folder first loses its name, so that a folder that is removed in part is
+ * no run any more. Links are removed, not followed. */
+vg_status vg_runs_remove(struct vg_serve_runs *r, struct vg_serve_run *run,
+                         struct vg_error *err)
+{
+  char gone[4096];
+  size_t i = 0;
+
+  if (vg_run_is_active(run))
+    return vg_fail(err, VG_ERR_INPUT, "run %d is active; stop it first",
+                   run->id);
+  snprintf(gone, sizeof gone, "%s/.removed-%04d-%ld", r->dir, run->id,
+           (long)time(NULL));
+  if (rename(run->dir, gone))
+    return vg_fail(err, VG_ERR_IO, "%s: %s", run->dir, strerror(errno));
+  while (r->item[i] != run) i++;
+  memmove(&r->item[i], &r->item[i + 1], (r->n - i - 1) * sizeof *r->item);
+  r->n--;
+  release_run(run);
+  if (nftw(gone, remove_one, 16, FTW_DEPTH | FTW_PHYS))
+    return vg_fail(err, VG_ERR_IO, "%s: %s; remove this folder by hand", gone,
+                   strerror(errno));
+  return VG_OK;
 }
 
 /* --- runs of earlier portals --------------------------------------------- */
@@ -212,5 +246,6 @@ vg_status vg_runs_open(struct vg_serve_runs *r, struct vg_error *err)
     if (id_of(e->d_name)) st = load(r, id_of(e->d_name), err);
   closedir(d);
   if (r->n) qsort(r->item, r->n, sizeof *r->item, by_id);
+  if (r->n) r->last = r->item[r->n - 1]->id;
   return st;
 }

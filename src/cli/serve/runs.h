@@ -32,6 +32,16 @@ enum vg_serve_state {
   VG_SERVE_STATES
 };
 
+/* Results of a mesh, from its report. */
+struct vg_serve_figures {
+  int is_read, is_known; /* is_known: there is a report. */
+  int is_valid;
+  double cells, points;
+  double angle; /* Smallest dihedral angle outside the layers, degrees;
+                   NAN: unknown. */
+  double seconds, memory; /* Time; peak memory of all ranks, bytes. */
+};
+
 struct vg_serve_run {
   int id;
   char *dir, *project; /* folder of the run; project, relative to the root */
@@ -52,6 +62,7 @@ struct vg_serve_run {
   double stop_time;    /* time of the request, by vg_display_now */
   double submitted;
   pid_t helper; /* scancel while it is running; 0: none */
+  struct vg_serve_figures figures;
 };
 
 struct vg_serve_runs {
@@ -60,7 +71,9 @@ struct vg_serve_runs {
   char *dir, *program;
   size_t n, cap;
   struct vg_serve_run **item; /* [n] owned, sorted by id */
-  pid_t squeue;               /* squeue while it is running; 0: none */
+  int last; /* Largest number of a run so far; numbers of removed runs are not
+               given again by this portal. */
+  pid_t squeue; /* squeue while it is running; 0: none */
   double squeue_start;
 };
 
@@ -79,6 +92,11 @@ vg_status vg_runs_new(struct vg_serve_runs *r, struct vg_serve_run **out,
 
 /** The run with this id, or NULL. */
 struct vg_serve_run *vg_runs_find(const struct vg_serve_runs *r, int id);
+
+/** Remove a run that is not active, with its folder. VG_ERR_INPUT: it is
+ * active; VG_ERR_IO: the folder cannot be removed, or only in part. */
+vg_status vg_runs_remove(struct vg_serve_runs *r, struct vg_serve_run *run,
+                         struct vg_error *err);
 
 /** Whether the run is waiting or running; whether it can be restarted; whether
  * it has stored tasks from which it resumes. */

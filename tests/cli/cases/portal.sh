@@ -188,6 +188,79 @@ asks 200 "${url}runs/1/file/mesh/box.b8.ugrid"
 same body plain/box.b8.ugrid
 posts 400 runs -d project=box.lb8.ugrid -d s.farfield_size=1 -d ranks=0
 
+# --- looks: the surface, its check and a forecast, by processes of their own
+
+# look KIND FIELD...: starts a look and waits; its state and result in `body`.
+look() {
+  local id kind=$1
+  shift
+  posts 200 "looks/$kind" "$@"
+  id=$(sed -n 's/{"id":\([0-9]*\)}/\1/p' body)
+  for _ in $(seq 300); do
+    asks 200 "${url}looks/$id"
+    grep -q '"state":"running"' body || break
+    sleep 0.1
+  done
+  look=$id
+}
+look view -d project=box.lb8.ugrid
+says body '"state":"done"'
+says body '"ok":true'
+says body '"name":"1 '
+asks 200 "${url}looks/$look/scene"
+[ "$(wc -c <body)" -gt 300 ] || fail "the scene has $(wc -c <body) bytes"
+asks 404 "${url}looks/$look/look.deck"
+asks 404 --path-as-is "${url}looks/$look/../../lock"
+look check -d project=box.lb8.ugrid -d s.layers=yes -d s.first=1e-3 \
+  -d s.walls=1
+says body '"layers":true'
+look plan -d project=box.lb8.ugrid -d ranks=2
+says body '"cells":'
+says body '"memory_bytes":'
+lacks body '"nodes"'
+posts 400 looks/check -d project=box.lb8.ugrid -d s.y_plus=x
+says body '"field":"s.y_plus"'
+# the view is independent of wrong fields
+look view -d project=box.lb8.ugrid -d s.y_plus=x
+says body '"ok":true'
+# a refused surface has a view, and its defects have coordinates
+grep -v 'f 1 3 5' octa.obj >mine/open.obj
+look view -d project=open.obj
+says body '"ok":false'
+says body '"open edge":3'
+says body '"at":['
+asks 200 "${url}looks/$look/scene"
+echo junk >mine/junk.stl
+look view -d project=junk.stl
+says body '"state":"failed"'
+says body "expected 'solid'"
+asks 404 "${url}looks/$look/scene"
+posts 400 looks/view -d project=away/secret.stl
+asks 403 -X POST "${url}looks/view" -d project=box.lb8.ugrid
+asks 403 "$origin/looks/$look"
+rm mine/open.obj mine/junk.stl
+
+# --- results of run 1 in the page
+
+says runs.json '"valid": true'
+asks 200 "${url}?report=1"
+says body '<iframe title="Report of run 1" src="runs/1/file/mesh/box.report.html"'
+asks 200 "${url}runs/1/picture/0"
+[ "$(head -c 4 body | tail -c 3)" = PNG ] || fail "the picture is no PNG"
+asks 200 "${url}runs/1/picture/1"
+curl -s -D head -o run.tar "${url}runs/1/archive.tar"
+says head 'filename="vanguard-0001.tar"'
+mkdir unpacked
+tar -xf run.tar -C unpacked
+same plain/box.b8.ugrid unpacked/vanguard-0001/mesh/box.b8.ugrid
+same mine/vanguard-runs/0001/run.log unpacked/vanguard-0001/run.log
+asks 404 "${url}?report=77"
+asks 404 "${url}?sweep=1"
+echo "notes" >notes.txt
+posts 303 upload -F "file=@notes.txt"
+curl -s -o body "${url}?uploaded=notes.txt"
+says body 'it is not a project'
+
 # a run that fails gives the reason
 posts 303 runs -d project=octa.obj -d farfield.kind=none -d s.max_cells=1
 await 2 failed 60
@@ -247,6 +320,11 @@ await 6 done 60
 asks 200 "${url}runs/6/file/sweep/sweep.csv"
 asks 200 "${url}runs"
 says body 'sweep.csv'
+asks 200 "${url}?sweep=6"
+says body 'src="runs/6/file/sweep/speedup.svg"'
+[ "$(grep -o '<th scope="row">' body | wc -l)" = 2 ] || fail "not two cases"
+asks 200 "${url}?compare=1&compare=4"
+says body '<code>leaf_cells</code></th><td>300000</td><td>15000</td>'
 
 # on ranks: mpirun passes the stop signal on
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
@@ -304,3 +382,11 @@ says calls "scancel --batch --signal=TERM 4711"
 posts 303 runs/8/resume
 await 8 done 120
 same whole/box.b8.ugrid mine/vanguard-runs/0008/mesh/box.b8.ugrid
+
+# deleted runs are gone, links in them are not followed
+ln -s "$PWD/other" mine/vanguard-runs/0006/away
+asks 403 -X POST "${url}runs/6/delete"
+posts 303 runs/6/delete
+absent mine/vanguard-runs/0006
+[ -e other/secret.stl ] || fail "a link was followed"
+asks 404 "${url}?sweep=6"

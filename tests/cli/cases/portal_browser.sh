@@ -41,7 +41,7 @@ least=$((${VG_PORTAL_RUNS:-20} * 3 / 4))
 
 "$program" mesh -q -p root/box --threads 1 --leaf-cells 12000 \
   --write b8.ugrid --out plain >out 2>err
-for run in root/vanguard-runs/*/; do
+for run in root/vanguard-runs/[0-9]*/; do
   same plain/box.b8.ugrid "$run/mesh/box.b8.ugrid"
 done
 kill $server

@@ -1,5 +1,5 @@
 #define _GNU_SOURCE
-#include "cli/serve/upload.h"
+#include "cli/http/upload.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/serve/inside.h"
+#include "cli/http/inside.h"
 
 static vg_status already_exists(const char *name, struct vg_error *err)
 {

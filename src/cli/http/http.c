@@ -1,5 +1,5 @@
 #define _GNU_SOURCE
-#include "cli/serve/http.h"
+#include "cli/http/http.h"
 
 #include <dlfcn.h>
 #include <microhttpd.h>
@@ -21,7 +21,8 @@
       f(MHD_create_post_processor) f(MHD_post_process)                         \
         f(MHD_destroy_post_processor) f(MHD_create_response_from_buffer)       \
           f(MHD_create_response_from_fd64) f(MHD_add_response_header)          \
-            f(MHD_queue_response) f(MHD_destroy_response)
+            f(MHD_create_response_from_callback) f(MHD_queue_response)         \
+              f(MHD_destroy_response)
 
 struct library {
   void *handle;
@@ -43,9 +44,10 @@ struct call {
 };
 
 static const char own_policy[] =
-  "default-src 'none'; img-src data:; "
+  "default-src 'none'; img-src 'self' data:; "
   "style-src 'self'; "
-  "script-src 'self'; connect-src 'self'; form-action 'self'; "
+  "script-src 'self'; connect-src 'self'; frame-src 'self'; "
+  "form-action 'self'; "
   "frame-ancestors 'none'; base-uri 'none'";
 
 static vg_status load(struct library *lib, struct vg_error *err)
@@ -146,12 +148,35 @@ static void completed(void *user, struct MHD_Connection *connection,
 
 /* --- replies ------------------------------------------------------------- */
 
+static ssize_t read_archive(void *user, uint64_t at, char *to, size_t most)
+{
+  ssize_t n = vg_archive_read(user, to, most);
+
+  (void)at;
+  if (n > 0) return n;
+  return n ? MHD_CONTENT_READER_END_WITH_ERROR
+           : MHD_CONTENT_READER_END_OF_STREAM;
+}
+
+static void free_archive(void *user)
+{
+  vg_archive_free(user);
+}
+
 static struct MHD_Response *response_of(const struct library *lib,
                                         struct vg_reply *a)
 {
   struct MHD_Response *response;
   struct stat s;
 
+  if (a->archive) {
+    response = lib->MHD_create_response_from_callback(vg_archive_size(
+                                                        a->archive),
+                                                      65536, read_archive,
+                                                      a->archive, free_archive);
+    if (response) a->archive = NULL;
+    return response;
+  }
   if (a->fd < 0) {
     response = lib->MHD_create_response_from_buffer(a->size, a->body,
                                                     MHD_RESPMEM_MUST_FREE);
@@ -174,11 +199,11 @@ static void add_headers(const struct library *lib,
     { "Content-Type", a->type ? a->type : "text/html; charset=utf-8" },
     { "Content-Security-Policy", a->policy ? a->policy : own_policy },
     { "X-Content-Type-Options", "nosniff" },
-    { "X-Frame-Options", "DENY" },
+    { "X-Frame-Options", a->in_frame ? "SAMEORIGIN" : "DENY" },
     { "Referrer-Policy", "same-origin" },
     { "Cross-Origin-Resource-Policy", "same-origin" },
     { "Cross-Origin-Opener-Policy", "same-origin" },
-    { "Cache-Control", "no-store" }
+    { "Cache-Control", a->is_fixed ? "private, max-age=86400" : "no-store" }
   };
   char *save;
 
@@ -209,6 +234,7 @@ static enum MHD_Result answer(const struct vg_http *http,
     http->lib.MHD_destroy_response(response);
   }
   if (a->fd >= 0) close(a->fd);
+  vg_archive_free(a->archive);
   free(a->body);
   free(a->location);
   free(a->download);

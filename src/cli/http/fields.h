@@ -1,6 +1,6 @@
-/* Private to cli/serve: the named values of forms and queries. */
-#ifndef VG_CLI_SERVE_FIELDS_H
-#define VG_CLI_SERVE_FIELDS_H
+/* cli/http/fields.h: the named values of forms and queries. */
+#ifndef VG_CLI_HTTP_FIELDS_H
+#define VG_CLI_HTTP_FIELDS_H
 
 #include <stddef.h>
 

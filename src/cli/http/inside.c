@@ -1,5 +1,5 @@
 #define _GNU_SOURCE
-#include "cli/serve/inside.h"
+#include "cli/http/inside.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
-/* Private to cli/serve: uploaded files, one after the other. Each has a
+/* cli/http/upload.h: uploaded files, one after the other. Each has a
  * temporary name until it is complete, and never overwrites an existing file.
  */
-#ifndef VG_CLI_SERVE_UPLOAD_H
-#define VG_CLI_SERVE_UPLOAD_H
+#ifndef VG_CLI_HTTP_UPLOAD_H
+#define VG_CLI_HTTP_UPLOAD_H
 
 #include <stdint.h>
 #include <stddef.h>

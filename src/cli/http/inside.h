@@ -1,6 +1,6 @@
-/* Private to cli/serve: confinement of paths to a folder. */
-#ifndef VG_CLI_SERVE_INSIDE_H
-#define VG_CLI_SERVE_INSIDE_H
+/* cli/http/inside.h: confinement of paths to a folder. */
+#ifndef VG_CLI_HTTP_INSIDE_H
+#define VG_CLI_HTTP_INSIDE_H
 
 #include "base/status.h"
 

@@ -1,13 +1,14 @@
-/* Private to cli/serve: HTTP server, by libmicrohttpd. It is single-threaded,
- * so callbacks need no locks. */
-#ifndef VG_CLI_SERVE_HTTP_H
-#define VG_CLI_SERVE_HTTP_H
+/* cli/http/http.h: HTTP server for the portal, by libmicrohttpd. It is
+ * single-threaded, so callbacks need no locks. */
+#ifndef VG_CLI_HTTP_HTTP_H
+#define VG_CLI_HTTP_HTTP_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "cli/serve/fields.h"
-#include "cli/serve/upload.h"
+#include "cli/http/archive.h"
+#include "cli/http/fields.h"
+#include "cli/http/upload.h"
 
 /* Limits for clients: connections, seconds without data, bytes of request line
  * and headers, number of headers. */
@@ -28,7 +29,8 @@ struct vg_request {
   struct vg_error error;
 };
 
-/** A reply: a body of `size` bytes (from malloc), or an open file. */
+/** A reply: a body of `size` bytes (from malloc), an open file, or an
+ * archive. */
 struct vg_reply {
   int status;
   const char *type;   /* media type; NULL: HTML */
@@ -37,11 +39,15 @@ struct vg_reply {
   char *download;     /* name to save under, from malloc; NULL: display it */
   char *body;
   size_t size;
-  int fd; /* -1: body */
+  int fd;                     /* -1: body or archive */
+  struct vg_archive *archive; /* owned; NULL: body or file */
+  int is_fixed; /* 1: the content at this address never changes, and the browser
+                   may keep it */
+  int in_frame; /* 1: pages of the portal may show it in a frame */
 };
 #define VG_REPLY_INIT                                                          \
   {                                                                            \
-    200, NULL, NULL, NULL, NULL, NULL, 0, -1                                   \
+    200, NULL, NULL, NULL, NULL, NULL, 0, -1, NULL, 0, 0                       \
   }
 
 /** Called for each request: `begin` when its headers have arrived (returns 1 if

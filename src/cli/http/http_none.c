@@ -1,7 +1,7 @@
-/* Stub of cli/serve/http.h for builds without libmicrohttpd. */
+/* Stub of cli/http/http.h for builds without libmicrohttpd. */
 #include <unistd.h>
 
-#include "cli/serve/http.h"
+#include "cli/http/http.h"
 
 static vg_status absent(struct vg_error *err)
 {

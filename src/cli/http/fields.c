@@ -1,5 +1,5 @@
 #define _GNU_SOURCE
-#include "cli/serve/fields.h"
+#include "cli/http/fields.h"
 
 #include <stdlib.h>
 #include <string.h>
