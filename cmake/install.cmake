@@ -37,6 +37,7 @@ install(DIRECTORY ${CMAKE_BINARY_DIR}/share/bash-completion
 install(PROGRAMS share/slurm/vanguard.sbatch
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard)
 install(PROGRAMS share/drivers/vanguard_cases.py
+  share/drivers/vanguard_solvers.py
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard/drivers)
 install(DIRECTORY share/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md
