@@ -40,9 +40,9 @@ class CaseError(Exception):
 
 def _program():
     """The program: VANGUARD, the one installed with this file, or by PATH."""
-    beside = os.path.join(HERE, "..", "..", "..", "bin", "vanguard")
+    installed = os.path.join(HERE, "..", "..", "..", "bin", "vanguard")
     found = os.environ.get("VANGUARD") or (
-        os.path.normpath(beside) if os.path.exists(beside)
+        os.path.normpath(installed) if os.path.exists(installed)
         else shutil.which("vanguard"))
     if not found:
         raise CaseError("the program vanguard was not found; set VANGUARD")

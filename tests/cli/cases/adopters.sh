@@ -92,7 +92,8 @@ fi
 # are kept as feature curves ---
 cp "$here/../cad/wing.step" wing.stp
 vanguard mesh -q -p wing.stp --half y --layers yes --first 0.05 \
-  --layer-count 4 --cells mixed --write su2 --out vsp --farfield-lengths 4
+  --layer-count 4 --cells mixed --write su2 --out vsp --farfield-lengths 4 \
+  --surface-size 80 --edges-per-turn 8 --surface-tolerance 2
 exits 0
 read_by_meshio vsp/wing.su2 "$(cells vsp/wing.report.json)"
 "$python" - vsp/wing.report.json <<'END' || fail "feature curves are lost"

@@ -1,9 +1,11 @@
 """Tests the module `vanguard` with the installed library. test_vanguard.py FOLDER
 VANGUARD: folder for output, program for comparison."""
+import importlib
 import os
 import subprocess
 import sys
 import threading
+import types
 
 import numpy as np
 import vanguard
@@ -123,6 +125,145 @@ def test_layers():
         mesh.prisms)
     assert len(cells) == 5 * (types == 10).sum() + 6 * (
         types == 14).sum() + 7 * (types == 13).sum()
+
+
+def client(name):
+    """An optional module; None, with a message, if it is not installed."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        print("omitted: %s is not installed" % name)
+        return None
+
+
+def layered(points, triangles, patches):
+    job = vanguard.Job()
+    job.surface(points, triangles, patches)
+    for id in range(10, 16):
+        job.patch(id, bc=4 if id == 14 else 1, name="p%d" % id)
+    job.set(cells="mixed", layers=True, first=0.01)
+    return job.mesh()
+
+
+def cell_volumes(points, cells):
+    """Volumes of meshio's cells by tetrahedra: positive in VTK's node order."""
+    split = {"tetra": [[0, 1, 2, 3]], "pyramid": [[0, 1, 2, 4], [0, 2, 3, 4]],
+             "wedge": [[0, 2, 1, 3], [1, 2, 5, 3], [1, 5, 4, 3]]}
+    for kind, nodes in cells:
+        for corner in split.get(kind, ()):
+            x = points[np.asarray(nodes, np.int64)[:, corner]]
+            yield kind, np.linalg.det(x[:, 1:] - x[:, :1]) / 6
+
+
+def same_again(mesh, data):
+    """The boundary, read back as a surface, gives the same mesh."""
+    job = vanguard.Job()
+    job.surface_of(data)
+    job.set(layers="no")
+    other = vanguard.Job()
+    other.surface(mesh.points[:mesh.triangles.max() + 1], mesh.triangles, [
+        [p["id"] for p in mesh.patches][k] for k in mesh.triangle_patches])
+    other.set(layers="no")
+    again = job.mesh()
+    assert np.array_equal(again.points, other.mesh().points)
+    assert sorted(p["id"] for p in again.patches) == list(range(10, 16))
+
+
+def test_meshio(folder):
+    mesh = layered(*cube(6))
+    total = 0
+    for kind, v in cell_volumes(mesh.points, mesh.to_meshio_dict()["cells"]):
+        assert v.min() > 0, kind
+        total += v.sum()
+    assert abs(total - 1) < 1e-9
+    meshio = client("meshio")
+    if not meshio:
+        refused_import("meshio", mesh.to_meshio)
+        return
+    path = os.path.join(folder, "round.vtu")
+    mesh.to_meshio().write(path)
+    back = meshio.read(path)
+    assert np.array_equal(back.points, mesh.points)
+    assert np.array_equal(back.cells_dict["tetra"], mesh.tetrahedra)
+    assert len(back.cells_dict["wedge"]) == len(mesh.prisms)
+    tets = vanguard.Job()
+    tets.surface(*cube(6))
+    tets = tets.mesh()
+    same_again(tets, tets.to_meshio())
+    path = os.path.join(folder, "round_tets.vtu")
+    tets.to_meshio().write(path)
+    same_again(tets, meshio.read(path))
+
+
+class Grid:
+    """Stands in for pyvista.UnstructuredGrid: keeps what it is given."""
+
+    def __init__(self, cells, types, points):
+        self.cells, self.celltypes, self.points = cells, types, points
+        self.cell_data, self.n_cells = {}, len(types)
+        self.cells_dict, at = {}, 0
+        for kind in types:
+            width = {5: 3, 9: 4, 10: 4, 13: 6, 14: 5}[kind]
+            assert cells[at] == width
+            self.cells_dict.setdefault(kind, []).append(
+                cells[at + 1:at + 1 + width])
+            at += 1 + width
+        assert at == len(cells)
+
+
+def test_pyvista_arrays():
+    """The arrays for pyvista, whether or not it is installed."""
+    mesh = layered(*cube(6))
+    before = sys.modules.get("pyvista")
+    sys.modules["pyvista"] = types.SimpleNamespace(UnstructuredGrid=Grid)
+    try:
+        grid, both = mesh.to_pyvista(), mesh.to_pyvista(boundary=True)
+    finally:
+        if before:
+            sys.modules["pyvista"] = before
+        else:
+            del sys.modules["pyvista"]
+    n = len(mesh.tetrahedra) + len(mesh.pyramids) + len(mesh.prisms)
+    assert grid.n_cells == n == len(grid.cell_data["patch"])
+    assert not grid.cell_data["patch"].any()
+    assert np.array_equal(both.cells_dict[5], mesh.triangles)
+    assert np.array_equal(both.cells_dict[9], mesh.quadrilaterals)
+    ids = np.array([p["id"] for p in mesh.patches])
+    assert np.array_equal(both.cell_data["patch"][n:], ids[np.concatenate(
+        [mesh.triangle_patches, mesh.quadrilateral_patches])])
+
+
+def test_pyvista():
+    mesh = layered(*cube(6))
+    pyvista = client("pyvista")
+    if not pyvista:
+        refused_import("pyvista", mesh.to_pyvista)
+        return
+    grid = mesh.to_pyvista()
+    n = len(mesh.tetrahedra) + len(mesh.pyramids) + len(mesh.prisms)
+    assert grid.n_cells == n and not grid.cell_data["patch"].any()
+    sizes = grid.compute_cell_sizes()
+    assert sizes["Volume"].min() > 0 and abs(sizes["Volume"].sum() - 1) < 1e-9
+    both = mesh.to_pyvista(boundary=True)
+    assert both.n_cells == n + len(mesh.triangles) + len(mesh.quadrilaterals)
+    assert set(both.cell_data["patch"]) == {0} | set(range(10, 16))
+    tets = vanguard.Job()
+    tets.surface(*cube(6))
+    tets = tets.mesh()
+    same_again(tets, tets.to_pyvista(boundary=True))
+    box = vanguard.Job()
+    box.surface_of(pyvista.Sphere())
+    box.set(flow="internal", farfield="none")
+    assert len(box.mesh().tetrahedra) > 100
+
+
+def refused_import(name, function):
+    try:
+        function()
+    except ImportError as error:
+        assert name + " is not installed" in str(error), error
+        return
+    raise AssertionError("%s is not missed" % name)
 
 
 def test_sizes():
