@@ -122,7 +122,7 @@ absent s/c100-n1-t2/box.report.json
 
 vanguard sweep -q -p box -o bad -- --no-such-option
 exits 1
-says out "failed, status 2: unrecognized option '--no-such-option'"
+says out "failed, status 2: unknown option '--no-such-option'"
 
 # Files that differ are a separate kind of error.
 sweep -p box --leaf-cells 100 -n 1,2 -o w -- --wrong
