@@ -27,6 +27,9 @@ typedef double lanes[GROUP];
 struct tet_shapes {
   lanes cos_max, cos_min; /* cosines of the smallest and largest dihedral
                              angle */
+  lanes least, most;      /* these angles, in degrees */
+  lanes det;              /* 6 V, as vg_orient3d computes it */
+  lanes doubt2;           /* the sign of det is sure if its square is more */
   lanes volume6;          /* |6 V| */
   lanes radius_ratio, edge2_sum;
 };
@@ -103,6 +106,9 @@ WITHIN void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
   dot(u, u, uu);
   dot(v, v, vv);
   dot(w, w, ww);
+  /* The bound of vg_orient3d is at most 8.9e-16 times six products of three
+   * lengths. */
+  for (int t = 0; t < GROUP; t++) s->doubt2[t] = 3e-29 * uu[t] * vv[t] * ww[t];
   for (int t = 0; t < GROUP; t++) s->edge2_sum[t] = 0;
   for (int k = 0; k < 3; k++)
     for (int t = 0; t < GROUP; t++) {
@@ -113,6 +119,34 @@ WITHIN void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
       s->edge2_sum[t] += e * e + f * f + g * g;
     }
   for (int t = 0; t < GROUP; t++) s->edge2_sum[t] += uu[t] + vv[t] + ww[t];
+}
+
+/* Arc cosines in degrees; 0 for NaN. With the rational approximation of fdlibm
+ * (Sun Microsystems, 1993) for the arc sine up to 0.5, without branches, and
+ * with the same bits on all processors. */
+WITHIN void degrees(lanes c, lanes out)
+{
+  static const double pi = 3.14159265358979323846;
+
+  for (int t = 0; t < GROUP; t++) {
+    double a = fabs(c[t]) < 1 ? fabs(c[t]) : 1, is_steep = a > 0.5 ? 1.0 : 0.0;
+    double z = a > 0.5 ? (1 - a) / 2 : a * a, x = a > 0.5 ? sqrt(z) : a;
+    double p = 7.91534994289814532176e-04 + z * 3.47933107596021167570e-05;
+    double q = -6.88283971605453293030e-01 + z * 7.70381505559019352791e-02;
+    double y;
+
+    p = -4.00555345006794114027e-02 + z * p;
+    p = 2.01212532134862925881e-01 + z * p;
+    p = -3.25565818622400915405e-01 + z * p;
+    p = 1.66666666666666657415e-01 + z * p;
+    q = 2.02094576023350569471e+00 + z * q;
+    q = -2.40339491173441421878e+00 + z * q;
+    q = 1 + z * q;
+    y = x + x * (z * p / q);
+    y = is_steep > 0 ? 2 * y : pi / 2 - y;
+    y = (c[t] < 0 ? pi - y : y) * DEGREE;
+    out[t] = c[t] == c[t] ? y : 0;
+  }
 }
 
 /* x: corners, [4][3] of GROUP tetrahedra. */
@@ -133,14 +167,16 @@ WITHIN void measure_lanes(lanes x[4][3], struct tet_shapes *s)
     for (int t = 0; t < GROUP; t++)
       n[0][k][t] = -n[1][k][t] - n[2][k][t] - n[3][k][t];
   add_edges(u, v, w, n, q, s);
-  dot(n[3], w, s->volume6);
+  dot(n[3], w, s->det);
   dot(q, q, qq);
   add_angles(n, s, area2);
+  degrees(s->cos_max, s->least);
+  degrees(s->cos_min, s->most);
   /* 3 (3 V / A) (12 V / |q|) with A = area2 / 2 and V = volume6 / 6 */
   for (int t = 0; t < GROUP; t++) {
     double ratio = area2[t] * sqrt(qq[t]);
 
-    s->volume6[t] = fabs(s->volume6[t]);
+    s->volume6[t] = fabs(s->det[t]);
     s->radius_ratio[t] = ratio > 0 ? 6 * s->volume6[t] * s->volume6[t] / ratio
                                    : ratio;
   }
@@ -178,13 +214,6 @@ static void measure_some(const struct vg_mesh *m, size_t first, size_t n,
       for (int k = 0; k < 3; k++)
         x[i][k][t] = m->point[m->tet[first + (t < n ? t : 0)][i]][k];
   measure_tets(x, s);
-}
-
-static double angle_of(double cosine)
-{
-  if (cosine >= 1) return 0;
-  if (cosine <= -1) return 180;
-  return cosine == cosine ? acos(cosine) * DEGREE : 0;
 }
 
 static size_t bin_of(double x, double per_unit, size_t n)
@@ -261,38 +290,37 @@ static void note_worst(struct vg_stats *f, const struct vg_mesh *m, size_t i,
   vg_stats_worst(f, &w);
 }
 
-/* Tetrahedra first .. first + n - 1 of m, n <= GROUP. */
-static void measure_group(const struct vg_mesh *m, size_t first, size_t n,
-                          double *least, double *most, double *radius_ratio,
-                          double *mean_ratio, double *edge)
+/* Signed volume of tetrahedron v, the one in lane t of s. */
+static double volume_of(const struct vg_mesh *m, const uint32_t v[4],
+                        const struct tet_shapes *s, size_t t)
+{
+  double six = s->det[t];
+
+  if (!(six * six > s->doubt2[t]))
+    six = vg_orient3d(m->point[v[0]], m->point[v[1]], m->point[v[2]],
+                      m->point[v[3]]);
+  return six / 6;
+}
+
+/* Tetrahedra first + at .. first + at + n - 1 of m, n <= GROUP: entries `at` to
+ * at + n - 1 of the batch. */
+static void measure_group(const struct vg_mesh *m, size_t first, size_t at,
+                          size_t n, struct batch *b)
 {
   struct tet_shapes s;
 
-  measure_some(m, first, n, &s);
+  measure_some(m, first + at, n, &s);
   for (size_t t = 0; t < n; t++) {
-    least[t] = angle_of(s.cos_max[t]);
-    most[t] = angle_of(s.cos_min[t]);
-    radius_ratio[t] = s.radius_ratio[t];
+    b->volume[at + t] = volume_of(m, m->tet[first + at + t], &s, t);
+    b->least[at + t] = s.least[t];
+    b->most[at + t] = s.most[t];
+    b->radius_ratio[at + t] = s.radius_ratio[t];
     /* (3 V)^2 = volume6^2 / 4 */
-    mean_ratio[t] = s.edge2_sum[t] > 0
-                    ? 12 * cbrt(s.volume6[t] * s.volume6[t] / 4) /
-                        s.edge2_sum[t]
-                    : 0;
-    edge[t] = sqrt(s.edge2_sum[t] / 6);
-  }
-}
-
-/* Signed volumes of tetrahedra first .. first + n - 1 of m. */
-static void measure_volumes(const struct vg_mesh *m, size_t first, size_t n,
-                            double *volume, struct vg_stats *f)
-{
-  for (size_t i = 0; i < n; i++) {
-    const uint32_t *v = m->tet[first + i];
-    double six = vg_orient3d(m->point[v[0]], m->point[v[1]], m->point[v[2]],
-                             m->point[v[3]]);
-
-    f->n.not_positive += !(six > 0);
-    volume[i] = six / 6;
+    b->mean_ratio[at + t] = s.edge2_sum[t] > 0
+                            ? 12 * cbrt(s.volume6[t] * s.volume6[t] / 4) /
+                                s.edge2_sum[t]
+                            : 0;
+    b->edge[at + t] = sqrt(s.edge2_sum[t] / 6);
   }
 }
 
@@ -303,11 +331,12 @@ static void judge_batch(const struct vg_mesh *m, size_t first, size_t n,
 {
   struct batch b;
 
-  measure_volumes(m, first, n, b.volume, f);
-  for (size_t i = 0; i < n; i++) volume[first + i] = (float)b.volume[i];
   for (size_t i = 0; i < n; i += GROUP)
-    measure_group(m, first + i, n - i < GROUP ? n - i : GROUP, b.least + i,
-                  b.most + i, b.radius_ratio + i, b.mean_ratio + i, b.edge + i);
+    measure_group(m, first, i, n - i < GROUP ? n - i : GROUP, &b);
+  for (size_t i = 0; i < n; i++) {
+    f->n.not_positive += !(b.volume[i] > 0);
+    volume[first + i] = (float)b.volume[i];
+  }
   f->n.n_tet += n;
   count_angles(f, n, b.least, b.most);
   count_ratios(f, n, b.radius_ratio);
@@ -420,7 +449,7 @@ void vg_mesh_cell_quality(const struct vg_mesh *m, float *angle_min,
     n = m->n_tet - i < GROUP ? m->n_tet - i : GROUP;
     measure_some(m, i, n, &s);
     for (size_t t = 0; t < n; t++) {
-      if (angle_min) angle_min[i + t] = (float)angle_of(s.cos_max[t]);
+      if (angle_min) angle_min[i + t] = (float)s.least[t];
       if (radius_ratio) radius_ratio[i + t] = (float)s.radius_ratio[t];
     }
   }
