@@ -41,8 +41,7 @@ static void check_signs(const double (*x)[3], const uint32_t v[4],
 
   assert_int_equal(vg_cell_signs(x, v, e), signs);
 #ifdef VG_WIDE
-  if (__builtin_cpu_supports("avx2"))
-    assert_int_equal(vg_cell_signs_wide(x, v, p), signs);
+  if (VG_IS_WIDE) assert_int_equal(vg_cell_signs_wide(x, v, p), signs);
 #endif
 }
 

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "base/wide.h"
 #include "core/delaunay/tets.h"
 
 #if defined __x86_64__
@@ -126,9 +127,7 @@ static inline unsigned vg_cell_signs(const double (*x)[3], const uint32_t v[4],
   return VG_IN_SPHERE | in * (VG_SIDE_IN | VG_SIDE_SEES);
 }
 
-#if defined __x86_64__ && defined __GNUC__
-#define VG_WIDE __attribute__((target("avx2")))
-
+#ifdef VG_WIDE
 typedef double vg_d4 __attribute__((vector_size(32)));
 typedef int64_t vg_l4 __attribute__((vector_size(32)));
 

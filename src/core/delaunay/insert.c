@@ -11,9 +11,6 @@
 #include "core/delaunay/cell_signs.h"
 #include "core/geometry/vector.h"
 
-/* Compiled into each variant of the search. */
-#define FLOOD static inline __attribute__((always_inline))
-
 enum { CUT_MAX = 16 }; /* K5: number of times that a cavity may be cut back */
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
@@ -99,8 +96,8 @@ static void drop_faces(struct vg_inserter *s, size_t first)
 }
 
 /* Signs of the point and a cell (core/delaunay/cell_signs.h). */
-FLOOD unsigned signs_of(const struct vg_inserter *s, const uint32_t v[4],
-                        const double p[3], int is_wide)
+VG_WITHIN unsigned signs_of(const struct vg_inserter *s, const uint32_t v[4],
+                            const double p[3], int is_wide)
 {
   const double(*x)[3] = (const double(*)[3])s->t->x;
   const vg_d2 both[3] = { { p[0], p[0] }, { p[1], p[1] }, { p[2], p[2] } };
@@ -117,7 +114,7 @@ FLOOD unsigned signs_of(const struct vg_inserter *s, const uint32_t v[4],
  * crosses faces that the point sees: among Delaunay cells this reaches every
  * cell of the cavity. Where recovery has left slivers with huge circumspheres,
  * it prevents the search from running through all of them. */
-FLOOD int flood_with(struct vg_inserter *s, const double p[3], int is_wide)
+VG_WITHIN int flood_with(struct vg_inserter *s, const double p[3], int is_wide)
 {
   const struct vg_cell *cells = s->t->cell;
   uint8_t *flag = s->t->flag;
@@ -168,7 +165,7 @@ static VG_WIDE int flood_wide(struct vg_inserter *s, const double p[3])
 static int flood(struct vg_inserter *s, const double p[3])
 {
 #ifdef VG_WIDE
-  if (__builtin_cpu_supports("avx2")) return flood_wide(s, p);
+  if (VG_IS_WIDE) return flood_wide(s, p);
 #endif
   return flood_with(s, p, 0);
 }

@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "base/wide.h"
 #include "core/geometry/predicates.h"
 #include "core/geometry/volume.h"
 #include "core/judge/quality_parts.h"
@@ -17,9 +18,6 @@
  * compilers vectorise. They are counted in batches of BATCH. */
 #define GROUP 4
 #define BATCH 256
-
-/* Compiled into each variant of measure_tets. */
-#define WITHIN static inline __attribute__((always_inline))
 
 typedef double lanes[GROUP];
 
@@ -41,13 +39,13 @@ struct batch {
   double radius_ratio[BATCH], mean_ratio[BATCH], edge[BATCH];
 };
 
-WITHIN void dot(lanes a[3], lanes b[3], lanes out)
+VG_WITHIN void dot(lanes a[3], lanes b[3], lanes out)
 {
   for (int t = 0; t < GROUP; t++)
     out[t] = a[0][t] * b[0][t] + a[1][t] * b[1][t] + a[2][t] * b[2][t];
 }
 
-WITHIN void cross(lanes a[3], lanes b[3], lanes c[3])
+VG_WITHIN void cross(lanes a[3], lanes b[3], lanes c[3])
 {
   for (int t = 0; t < GROUP; t++) {
     c[0][t] = a[1][t] * b[2][t] - a[2][t] * b[1][t];
@@ -59,7 +57,7 @@ WITHIN void cross(lanes a[3], lanes b[3], lanes c[3])
 /* Extreme cosines of the angles between the faces with outward normals n. A
  * face without area counts as the worst of both kinds, so that it cannot go
  * unnoticed. area2: sum of the lengths of the normals, which are normalised. */
-WITHIN void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
+VG_WITHIN void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
 {
   lanes length[4], c;
 
@@ -98,8 +96,8 @@ WITHIN void add_angles(lanes n[4][3], struct tet_shapes *s, lanes area2)
 
 /* Computes the sum of squared edges, and q with |q| = |6 V| times twice the
  * circumradius. n: normals of the faces. */
-WITHIN void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
-                      lanes q[3], struct tet_shapes *s)
+VG_WITHIN void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
+                         lanes q[3], struct tet_shapes *s)
 {
   lanes uu, vv, ww;
 
@@ -124,7 +122,7 @@ WITHIN void add_edges(lanes u[3], lanes v[3], lanes w[3], lanes n[4][3],
 /* Arc cosines in degrees; 0 for NaN. With the rational approximation of fdlibm
  * (Sun Microsystems, 1993) for the arc sine up to 0.5, without branches, and
  * with the same bits on all processors. */
-WITHIN void degrees(lanes c, lanes out)
+VG_WITHIN void degrees(lanes c, lanes out)
 {
   static const double pi = 3.14159265358979323846;
 
@@ -150,7 +148,7 @@ WITHIN void degrees(lanes c, lanes out)
 }
 
 /* x: corners, [4][3] of GROUP tetrahedra. */
-WITHIN void measure_lanes(lanes x[4][3], struct tet_shapes *s)
+VG_WITHIN void measure_lanes(lanes x[4][3], struct tet_shapes *s)
 {
   lanes u[3], v[3], w[3], n[4][3], q[3], area2, qq;
 
@@ -182,9 +180,8 @@ WITHIN void measure_lanes(lanes x[4][3], struct tet_shapes *s)
   }
 }
 
-#if defined __x86_64__
-static __attribute__((target("avx2"))) void measure_wide(lanes x[4][3],
-                                                         struct tet_shapes *s)
+#ifdef VG_WIDE
+static VG_WIDE void measure_wide(lanes x[4][3], struct tet_shapes *s)
 {
   measure_lanes(x, s);
 }
@@ -194,8 +191,8 @@ static __attribute__((target("avx2"))) void measure_wide(lanes x[4][3],
  * same and give the same bits (no products are fused). */
 static void measure_tets(lanes x[4][3], struct tet_shapes *s)
 {
-#if defined __x86_64__
-  if (__builtin_cpu_supports("avx2")) {
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) {
     measure_wide(x, s);
     return;
   }

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/wide.h"
 #include "core/sizing/sizing.h"
 
 /* Weights in vg_ball_other: of volume^2 / E^3 relative to a regular cell, and
@@ -13,17 +14,6 @@
  * the gradient, relative to the logarithm of the shape. */
 static const double round_share = 0.3, size_share = 0.5; /* K28 */
 static const double round_slope = 1.2, size_slope = 0.5;
-
-/* Compiled into each variant of a function. The wide variants are used if the
- * processor supports AVX2: the operations are the same and give the same bits
- * (no products are fused). */
-#define WITHIN static inline __attribute__((always_inline))
-#if defined __x86_64__
-#define WIDE 1
-#define IS_WIDE __builtin_cpu_supports("avx2")
-#else
-#define WIDE 0
-#endif
 
 /* Cells are processed BLOCK at a time. The arrays are filled up to a multiple
  * of BLOCK with copies of the last cell. */
@@ -35,7 +25,7 @@ static size_t whole_blocks(size_t n)
 }
 
 /* Quantities of a block of faces that follow from the corners. */
-WITHIN void measure(struct vg_ball_faces *b, size_t at)
+VG_WITHIN void measure(struct vg_ball_faces *b, size_t at)
 {
   for (size_t k = at; k < at + BLOCK; k++) {
     double e[3][3], area2 = 0;
@@ -59,14 +49,13 @@ WITHIN void measure(struct vg_ball_faces *b, size_t at)
   }
 }
 
-WITHIN void measure_all(struct vg_ball_faces *b)
+VG_WITHIN void measure_all(struct vg_ball_faces *b)
 {
   for (size_t at = 0; at < b->n; at += BLOCK) measure(b, at);
 }
 
-#if WIDE
-static __attribute__((target("avx2"))) void measure_wide(
-  struct vg_ball_faces *b)
+#ifdef VG_WIDE
+static VG_WIDE void measure_wide(struct vg_ball_faces *b)
 {
   measure_all(b);
 }
@@ -85,8 +74,8 @@ void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
     for (int i = 0; i < 3; i++)
       for (int a = 0; a < 3; a++) out->x[i][a][k] = t->x[v[f[i]]][a];
   }
-#if WIDE
-  if (IS_WIDE) {
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) {
     measure_wide(out);
     return;
   }
@@ -109,8 +98,8 @@ struct cone {
   double u[3][3], l[3], n[3][3], s[3], det;
 };
 
-WITHIN void raise(const struct vg_ball_faces *b, size_t k, const double x[3],
-                  struct cone *c)
+VG_WITHIN void raise(const struct vg_ball_faces *b, size_t k, const double x[3],
+                     struct cone *c)
 {
   for (int i = 0; i < 3; i++) {
     for (int a = 0; a < 3; a++) c->u[i][a] = b->x[i][a][k] - x[a];
@@ -132,13 +121,13 @@ WITHIN void raise(const struct vg_ball_faces *b, size_t k, const double x[3],
              c->u[0][2] * b->normal[2][k]);
 }
 
-WITHIN double least_of(double a, double b)
+VG_WITHIN double least_of(double a, double b)
 {
   return a < b ? a : b;
 }
 
-WITHIN int shapes(const struct vg_ball_faces *b, const double x[3], double stop,
-                  double *q)
+VG_WITHIN int shapes(const struct vg_ball_faces *b, const double x[3],
+                     double stop, double *q)
 {
   for (size_t at = 0; at < b->n; at += BLOCK) {
     double of[BLOCK], worst = 2;
@@ -172,9 +161,9 @@ WITHIN int shapes(const struct vg_ball_faces *b, const double x[3], double stop,
   return 1;
 }
 
-#if WIDE
-static __attribute__((target("avx2"))) int shapes_wide(
-  const struct vg_ball_faces *b, const double x[3], double stop, double *q)
+#ifdef VG_WIDE
+static VG_WIDE int shapes_wide(const struct vg_ball_faces *b, const double x[3],
+                               double stop, double *q)
 {
   return shapes(b, x, stop, q);
 }
@@ -183,15 +172,15 @@ static __attribute__((target("avx2"))) int shapes_wide(
 int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
                    double stop, double *q)
 {
-#if WIDE
-  if (IS_WIDE) return shapes_wide(b, x, stop, q);
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) return shapes_wide(b, x, stop, q);
 #endif
   return shapes(b, x, stop, q);
 }
 
 /* Terms of a block of cells. */
-WITHIN void others(const struct vg_ball_faces *b, size_t at, const double x[3],
-                   double of[BLOCK])
+VG_WITHIN void others(const struct vg_ball_faces *b, size_t at,
+                      const double x[3], double of[BLOCK])
 {
   for (size_t k = 0; k < BLOCK; k++) {
     struct cone c;
@@ -205,9 +194,9 @@ WITHIN void others(const struct vg_ball_faces *b, size_t at, const double x[3],
   }
 }
 
-#if WIDE
-static __attribute__((target("avx2"))) void others_wide(
-  const struct vg_ball_faces *b, size_t at, const double x[3], double of[BLOCK])
+#ifdef VG_WIDE
+static VG_WIDE void others_wide(const struct vg_ball_faces *b, size_t at,
+                                const double x[3], double of[BLOCK])
 {
   others(b, at, x, of);
 }
@@ -221,8 +210,8 @@ double vg_ball_other(const struct vg_ball_faces *b, const double x[3])
     size_t n = b->n - at < BLOCK ? b->n - at : BLOCK;
     double of[BLOCK];
 
-#if WIDE
-    if (IS_WIDE) others_wide(b, at, x, of);
+#ifdef VG_WIDE
+    if (VG_IS_WIDE) others_wide(b, at, x, of);
     else
 #endif
       others(b, at, x, of);
@@ -272,8 +261,8 @@ void vg_ball_centre(const struct vg_ball_faces *b, const double x[3],
 /* Subtract the part of edge i, if it has the least angle, and of the face
  * opposite corner i. A function instead of a loop, which compilers would not
  * unroll before they vectorise over cells. */
-WITHIN void add_slope(const struct cone *c, const double up[3],
-                      const double border[3], int i, double g[3])
+VG_WITHIN void add_slope(const struct cone *c, const double up[3],
+                         const double border[3], int i, double g[3])
 {
   int j = (i + 1) % 3, k = (i + 2) % 3;
   const double *p = c->u[j], *r = c->u[k];
@@ -293,8 +282,8 @@ WITHIN void add_slope(const struct cone *c, const double up[3],
  * twice the areas of its faces. The edge from the point to corner i lies
  * between the faces opposite the other two corners. The base edge opposite
  * corner i lies between the base and face i, of which only face i changes. */
-WITHIN void slope_of(const struct vg_ball_faces *b, size_t k, const double x[3],
-                     double g[3])
+VG_WITHIN void slope_of(const struct vg_ball_faces *b, size_t k,
+                        const double x[3], double g[3])
 {
   struct cone c;
   double up[3], border[3], least, edges2, wide, high;
@@ -322,8 +311,8 @@ WITHIN void slope_of(const struct vg_ball_faces *b, size_t k, const double x[3],
 }
 
 /* Sum of the gradients of all cells. */
-WITHIN void slope(const struct vg_ball_faces *b, const double x[3],
-                  double sum[3])
+VG_WITHIN void slope(const struct vg_ball_faces *b, const double x[3],
+                     double sum[3])
 {
   for (size_t at = 0; at < b->n; at += BLOCK) {
     size_t n = b->n - at < BLOCK ? b->n - at : BLOCK;
@@ -342,9 +331,9 @@ WITHIN void slope(const struct vg_ball_faces *b, const double x[3],
   }
 }
 
-#if WIDE
-static __attribute__((target("avx2"))) void slope_wide(
-  const struct vg_ball_faces *b, const double x[3], double sum[3])
+#ifdef VG_WIDE
+static VG_WIDE void slope_wide(const struct vg_ball_faces *b, const double x[3],
+                               double sum[3])
 {
   slope(b, x, sum);
 }
@@ -355,8 +344,8 @@ void vg_ball_slope(const struct vg_ball_faces *b, const double x[3],
 {
   double sum[3] = { 0 };
 
-#if WIDE
-  if (IS_WIDE) slope_wide(b, x, sum);
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) slope_wide(b, x, sum);
   else
 #endif
     slope(b, x, sum);
