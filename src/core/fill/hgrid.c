@@ -5,12 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
+#if defined __x86_64__
+#include <immintrin.h>
 #endif
 
 #include "base/hash.h"
 #include "base/memory.h"
+#include "base/wide.h"
 
 #define VG_NONE UINT32_MAX
 
@@ -172,7 +173,7 @@ typedef int32_t i4 __attribute__((vector_size(16)));
 
 static inline unsigned lanes(i4 m)
 {
-#ifdef __SSE2__
+#if defined __x86_64__
   return (unsigned)_mm_movemask_ps((__m128)m);
 #else
   m &= (i4){ 1, 2, 4, 8 };
@@ -204,25 +205,109 @@ static inline unsigned within(const struct vg_hgrid_page *page,
   return bits & ((1u << page->n) - 1);
 }
 
-static void gather_cell(struct vg_hgrid *s, const struct vg_hgrid_cell *f,
-                        float r2)
+#ifdef VG_WIDE
+typedef float f8 __attribute__((vector_size(32)));
+_Static_assert(VG_HGRID_PAGE == 8, "a page has a lane for each point");
+
+/* As `within`, for the whole page at once. */
+static inline VG_WIDE unsigned within_wide(const struct vg_hgrid_page *page,
+                                           const float d[3], float r2)
 {
-  float x = f->d[0], y = f->d[1], z = f->d[2];
-  size_t n = s->n;
+  f8 u, v, w;
 
-  for (uint32_t at = f->page; at != VG_NONE && n < VG_HGRID_MAX;
-       at = s->page[at].next) {
-    const struct vg_hgrid_page *page = &s->page[at];
+  memcpy(&u, page->x[0], sizeof u);
+  memcpy(&v, page->x[1], sizeof v);
+  memcpy(&w, page->x[2], sizeof w);
+  u += d[0];
+  v += d[1];
+  w += d[2];
+  return (unsigned)_mm256_movemask_ps((__m256)(u * u + v * v + w * w <= r2)) &
+         ((1u << page->n) - 1);
+}
+#endif
 
-    for (unsigned left = within(page, f->d, r2); left; left &= left - 1) {
-      int k = __builtin_ctz(left);
+VG_WITHIN unsigned near_in(const struct vg_hgrid_page *page, const float d[3],
+                           float r2, int is_wide)
+{
+#ifdef VG_WIDE
+  if (is_wide) return within_wide(page, d, r2);
+#endif
+  (void)is_wide;
+  return within(page, d, r2);
+}
 
-      s->x[0][n] = page->x[0][k] + x;
-      s->x[1][n] = page->x[1][k] + y;
-      s->x[2][n++] = page->x[2][k] + z;
+/* List the points of the cells that the query has found. */
+VG_WITHIN void gather_with(struct vg_hgrid *s, float r2, int is_wide)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < s->n_cell; i++) {
+    const struct vg_hgrid_cell *f = &s->cell[i];
+    float x = f->d[0], y = f->d[1], z = f->d[2];
+
+    for (uint32_t at = f->page; at != VG_NONE && n < VG_HGRID_MAX;
+         at = s->page[at].next) {
+      const struct vg_hgrid_page *page = &s->page[at];
+
+      for (unsigned left = near_in(page, f->d, r2, is_wide); left;
+           left &= left - 1) {
+        int k = __builtin_ctz(left);
+
+        s->x[0][n] = page->x[0][k] + x;
+        s->x[1][n] = page->x[1][k] + y;
+        s->x[2][n++] = page->x[2][k] + z;
+      }
     }
   }
   s->n = n;
+}
+
+#ifdef VG_WIDE
+static VG_WIDE void gather_wide(struct vg_hgrid *s, float r2)
+{
+  gather_with(s, r2, 1);
+}
+#endif
+
+static void gather(struct vg_hgrid *s, float r2)
+{
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) {
+    gather_wide(s, r2);
+    return;
+  }
+#endif
+  gather_with(s, r2, 0);
+}
+
+/* The loop has no branch, so that it can be vectorised. */
+VG_WITHIN int count(const struct vg_hgrid *s, const double d[3], double r)
+{
+  float x = (float)d[0], y = (float)d[1], z = (float)d[2], r2 = (float)(r * r);
+  int n = 0;
+
+  for (size_t k = 0; k < s->n; k++) {
+    float u = s->x[0][k] - x, v = s->x[1][k] - y, w = s->x[2][k] - z;
+
+    n += u * u + v * v + w * w < r2;
+  }
+  return n;
+}
+
+#ifdef VG_WIDE
+static VG_WIDE int count_wide(const struct vg_hgrid *s, const double d[3],
+                              double r)
+{
+  return count(s, d, r);
+}
+#endif
+
+int vg_hgrid_count(const struct vg_hgrid *s, const double d[3], double r)
+{
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) return count_wide(s, d, r);
+#endif
+  return count(s, d, r);
 }
 
 /* Distance along one axis from the centre to a cell that begins at d. */
@@ -302,8 +387,7 @@ void vg_hgrid_gather(struct vg_hgrid *s, const double c[3], double h, double r)
   for (int level = level_of(h - change); level <= level_of(h + change); level++)
     if (level >= s->level_lo && level <= s->level_hi)
       find_level(s, c, r, level);
-  for (size_t k = 0; k < s->n_cell; k++)
-    gather_cell(s, &s->cell[k], (float)(r * r));
+  gather(s, (float)(r * r));
   s->n_cut += s->n >= VG_HGRID_MAX || s->n_cell == VG_HGRID_CELLS;
   if (s->n > VG_HGRID_MAX) s->n = VG_HGRID_MAX;
 }

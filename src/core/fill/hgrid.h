@@ -77,20 +77,7 @@ static inline void vg_hgrid_note(struct vg_hgrid *s, const double d[3])
   s->n++;
 }
 
-/** Number of listed points that are nearer than r to c + d. The loop has no
- * branch, so that it can be vectorised. */
-static inline int vg_hgrid_count(const struct vg_hgrid *s, const double d[3],
-                                 double r)
-{
-  float x = (float)d[0], y = (float)d[1], z = (float)d[2], r2 = (float)(r * r);
-  int n = 0;
-
-  for (size_t k = 0; k < s->n; k++) {
-    float u = s->x[0][k] - x, v = s->x[1][k] - y, w = s->x[2][k] - z;
-
-    n += u * u + v * v + w * w < r2;
-  }
-  return n;
-}
+/** Number of listed points that are nearer than r to c + d. */
+int vg_hgrid_count(const struct vg_hgrid *s, const double d[3], double r);
 
 #endif
