@@ -7,7 +7,7 @@
 #include "base/checks.h"
 #include "base/memory.h"
 #include "core/geometry/hilbert.h"
-#include "core/optimise/optimise_parts.h"
+#include "core/optimise/optimise_ball.h"
 
 /* Shapes as defined by vg_shape, with the dihedral angles that they correspond
  * to, in degrees. Cells below `aim` (angles below 25 or above 155) are
@@ -22,6 +22,9 @@ static const double desperate = 0.067; /* K25 */
 /* Number of rounds over bad cells. They end early if a round improves at most
  * one percent of its cells. */
 enum { ROUNDS = 8, CLASSES = 8 }; /* K26 */
+
+/* Number of cells whose shapes are computed together. */
+enum { SHAPES = 64 };
 
 static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
                        struct vg_error *err)
@@ -38,11 +41,16 @@ static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
       vg_reserve(&o->failed_cell, &o->cap_failed_cell, t->cap_cell,
                  sizeof *o->failed_cell))
     return vg_fail_memory(err, "optimisation");
+  for (uint32_t c = 0, n; c < t->n_cell; c += n) {
+    n = t->n_cell - c < SHAPES ? (uint32_t)t->n_cell - c : SHAPES;
+    vg_ball_cells(t, c, n, o->q + c);
+  }
   for (uint32_t c = 0; c < t->n_cell; c++) {
-    o->q[c] = 1;
     o->failed_cell[c] = 0;
-    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE)) continue;
-    o->q[c] = (float)vg_cell_shape(t, c);
+    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE)) {
+      o->q[c] = 1;
+      continue;
+    }
     for (int i = 0; i < 4; i++) o->star[t->cell[c].v[i]] = c;
   }
   return VG_OK;

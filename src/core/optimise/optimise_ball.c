@@ -61,6 +61,17 @@ static VG_WIDE void measure_wide(struct vg_ball_faces *b)
 }
 #endif
 
+static void measure_faces(struct vg_ball_faces *b)
+{
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) {
+    measure_wide(b);
+    return;
+  }
+#endif
+  measure_all(b);
+}
+
 void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
                    struct vg_ball_faces *out)
 {
@@ -74,13 +85,7 @@ void vg_ball_faces(const struct vg_tets *t, size_t n, const uint32_t *link,
     for (int i = 0; i < 3; i++)
       for (int a = 0; a < 3; a++) out->x[i][a][k] = t->x[v[f[i]]][a];
   }
-#ifdef VG_WIDE
-  if (VG_IS_WIDE) {
-    measure_wide(out);
-    return;
-  }
-#endif
-  measure_all(out);
+  measure_faces(out);
 }
 
 void vg_ball_target(const struct vg_sizing *sizing, const double x[3],
@@ -176,6 +181,26 @@ int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
   if (VG_IS_WIDE) return shapes_wide(b, x, stop, q);
 #endif
   return shapes(b, x, stop, q);
+}
+
+void vg_ball_cells(const struct vg_tets *t, uint32_t first, size_t n, float *q)
+{
+  static const double origin[3] = { 0 };
+  struct vg_ball_faces b;
+  double shape[VG_BALL_MAX];
+
+  assert(n > 0 && n <= VG_BALL_MAX && first + n <= t->n_cell);
+  b.n = n;
+  for (size_t k = 0; k < whole_blocks(n); k++) {
+    const uint32_t *v = t->cell[first + (k < n ? k : n - 1)].v;
+
+    for (int i = 0; i < 3; i++)
+      for (int a = 0; a < 3; a++)
+        b.x[i][a][k] = t->x[v[vg_face[3][i]]][a] - t->x[v[3]][a];
+  }
+  measure_faces(&b);
+  vg_ball_shapes(&b, origin, -INFINITY, shape);
+  for (size_t k = 0; k < n; k++) q[k] = (float)shape[k];
 }
 
 /* Terms of a block of cells. */

@@ -34,6 +34,10 @@ void vg_ball_target(const struct vg_sizing *sizing, const double x[3],
 int vg_ball_shapes(const struct vg_ball_faces *b, const double x[3],
                    double stop, double *q);
 
+/** Shapes (vg_shape) of cells first to first + n - 1. q out: [n <=
+ * VG_BALL_MAX]. */
+void vg_ball_cells(const struct vg_tets *t, uint32_t first, size_t n, float *q);
+
 /** Terms of the rating of position x in addition to the shapes. E is the sum of
  * the squared edges of a cell. The first term is a weighted sum of volume^2 /
  * E^3, which large angles reduce as small angles do. A weighted sum of (E /
