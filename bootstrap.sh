@@ -70,7 +70,7 @@ command=${1:-}
 case $command in
 demo)
   need "$required" "$optional"
-  build vanguard_program "$@"
+  build vanguard_run "$@"
   rm -rf build/demo
   ./build/release/bin/vanguard demo wing --cells 600000 --out build/demo
   ./build/release/bin/vanguard mesh -p build/demo/wing \

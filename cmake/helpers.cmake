@@ -35,7 +35,7 @@ function(vg_helper name folder)
     target_sources(${name} PRIVATE cmake/coverage.c)
   endif()
   install(TARGETS ${name} RUNTIME DESTINATION ${VG_HELPER_FOLDER}
-    COMPONENT program)
+    COMPONENT helpers)
   set_property(GLOBAL APPEND PROPERTY VG_HELPERS ${name})
 endfunction()
 

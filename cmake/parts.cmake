@@ -41,3 +41,13 @@ function(vg_print_parts)
   endforeach()
   message(STATUS "")
 endfunction()
+
+# vg_variant(OPTION SOURCE STUB): compiles SOURCE if the option is ON, otherwise
+# its stub.
+macro(vg_variant option source stub)
+  if(${option})
+    set_source_files_properties(${stub} PROPERTIES HEADER_FILE_ONLY ON)
+  else()
+    set_source_files_properties(${source} PROPERTIES HEADER_FILE_ONLY ON)
+  endif()
+endmacro()

@@ -54,6 +54,20 @@ octahedron() {
 
 skip() { echo "skipped: $*"; exit 77; }
 
+# needs PART...: skip the case in a build without one of the parts (tetgen,
+# wrap, metis, mpi).
+needs() {
+  local part parts
+  parts=$("$program" --version --verbose)
+  for part; do
+    case $part in
+      tetgen | wrap) [[ $parts != *"vanguard-$part not found"* ]] ;;
+      metis) [[ $parts != *"METIS    none"* ]] ;;
+      mpi) [[ $parts != *"MPI      none"* ]] ;;
+    esac || skip "built without $part"
+  done
+}
+
 # shellcheck source=/dev/null
 . "$case_file"
 [ "$failures" = 0 ]

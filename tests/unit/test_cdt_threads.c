@@ -20,6 +20,7 @@
 #include "base/parallel.h"
 #include "base/child.h"
 #include "core/recover/cdt_tetgen.h"
+#include "parts_support.h"
 
 #define N_JOB 3
 #define N_MAX 4000
@@ -139,6 +140,7 @@ static void the_same_as_in_place(void **state)
   struct batch *a = answered(1, 200), *b;
 
   (void)state;
+  needs_tetgen();
   assert_int_equal(vg_child_server_is_alive(), 0);
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
@@ -178,6 +180,7 @@ static void several_threads_at_once(void **state)
   struct batch *a[4];
 
   (void)state;
+  needs_tetgen();
   for (int k = 0; k < 4; k++) a[k] = answered((uint64_t)k, 100);
   for (size_t i = 0; i < N_CALL; i++) c.b[i] = batch_new(i % 4, 100);
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
@@ -214,6 +217,7 @@ static void a_server_killed_at_any_time(void **state)
   struct batch *a = answered(7, N_MAX), *b;
 
   (void)state;
+  needs_tetgen();
   for (useconds_t us = 0; us < 120000; us += 12000) {
     struct blow blow = { .after_us = us };
     pthread_t thread;
@@ -242,6 +246,7 @@ static void signals_are_left_to_the_parent(void **state)
   pid_t pid;
 
   (void)state;
+  needs_tetgen();
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
   batch_free(answered(1, 50)); /* so it has started */
   pid = child_of(getpid());

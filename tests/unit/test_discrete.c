@@ -11,6 +11,7 @@
 #include "partition/discrete/discrete.h"
 #include "partition/discrete/discrete_parts.h"
 #include "partition/graph/bisect.h"
+#include "parts_support.h"
 
 enum { SERIAL = 9 };
 
@@ -72,6 +73,7 @@ static void parts_make_up_the_void(void **state)
   struct case_of c;
 
   (void)state;
+  needs_metis();
   case_begin(&c, "sphere", 20000);
   for (int way = 0; way < 4; way++) {
     struct vg_decomposition p, q;
@@ -105,6 +107,7 @@ static void interfaces_have_the_local_size(void **state)
   struct case_of c;
 
   (void)state;
+  needs_metis();
   case_begin(&c, "box", 30000);
   for (int h = 0; h < 2; h++) {
     struct vg_decomposition p;
@@ -238,6 +241,7 @@ static void interfaces_avoid_flat_cells(void **state)
   const double flat = 0.02; /* 8 degrees */
 
   (void)state;
+  needs_metis();
   case_begin(&c, "box", 30000);
   coarse(&c, 1, &m);
   squeeze(&m);
@@ -258,6 +262,7 @@ static void one_part_is_the_void(void **state)
   struct case_of c;
 
   (void)state;
+  needs_metis();
   case_begin(&c, "box", 5000);
   part(&c, how(1, VG_PARTITIONER_METIS, 0), &p);
   assert_int_equal(p.n_part, 1);
@@ -344,6 +349,7 @@ static void bytes_and_back(void **state)
   struct case_of c;
 
   (void)state;
+  needs_metis();
   case_begin(&c, "box", 5000);
   part(&c, how(3, VG_PARTITIONER_METIS, 0), &p);
   vg_decomposition_put(&w, &p, SERIAL);
@@ -420,6 +426,7 @@ static void meshes_are_valid_in_any_order(void **state)
   struct scene s;
 
   (void)state;
+  needs_metis();
   scene_demo(&s, "sphere", 20000);
   first = run_of(NULL, &s, &o, 1, &r);
   assert_true(r.n_part > 4 && r.n_leaf == r.n_part && !r.n_zone_cell);
@@ -440,6 +447,7 @@ static void parts_that_cannot_be_filled(void **state)
   struct scene s;
 
   (void)state;
+  needs_metis();
   scene_demo(&s, "sphere", 20000);
   o.fail_leaves = 0.3;
   o.fail_rounds = 2;

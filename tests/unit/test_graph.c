@@ -11,6 +11,7 @@
 
 #include "partition/graph/bisect.h"
 #include "partition/graph/graph.h"
+#include "parts_support.h"
 
 enum { SIDE = 40, N = SIDE * SIDE };
 
@@ -94,6 +95,7 @@ static void subdomains_are_balanced_and_connected(void **state)
   uint32_t part[N], again[N];
 
   (void)state;
+  needs_metis();
   for (size_t k = 0; k < sizeof n / sizeof *n; k++) {
     struct vg_graph_options o = { n[k], 1.03, 1, NULL };
 
@@ -116,6 +118,7 @@ static void weights_count(void **state)
   uint32_t part[N];
 
   (void)state;
+  needs_metis();
   for (int k = 0; k < N; k++) weight[k] = 1e-7 * (1 + k * k);
   g.weight = weight;
   assert_int_equal(vg_graph_part(&g, &o, part, NULL), VG_OK);
@@ -131,6 +134,7 @@ static void edge_weights_count(void **state)
   uint32_t part[N];
 
   (void)state;
+  needs_metis();
   for (size_t k = 0; k < N; k++) /* rows are connected by heavy edges */
     for (uint64_t j = g.begin[k]; j < g.begin[k + 1]; j++)
       price[j] = g.to[j] / SIDE == k / SIDE ? 1000 : 1;
@@ -149,6 +153,7 @@ static void invalid_requests_are_refused(void **state)
   uint32_t part[N] = { 7 };
 
   (void)state;
+  needs_metis();
   assert_int_equal(vg_graph_part(&g, &o, part, &err), VG_ERR_INPUT);
   assert_non_null(strstr(err.text, "1601 subdomains of 1600 vertices"));
   o.n_part = 0;

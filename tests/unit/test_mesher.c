@@ -18,6 +18,7 @@
 #include "core/mesher/mesher_parts.h"
 #include "fill_shapes.h"
 #include "fill_support.h"
+#include "parts_support.h"
 
 static struct vg_sizing *sizing;
 static struct vg_mesh surface[2];
@@ -245,6 +246,7 @@ static void fills_by_size(const char *name)
 static void tetgen_fills_around_a_hollow(void **state)
 {
   (void)state;
+  needs_tetgen();
   fills_by_size("tetgen");
 }
 
@@ -363,6 +365,7 @@ static void stops_and_keeps_limits(void **state)
   struct vg_filled f;
 
   (void)state;
+  needs_tetgen();
   o.stop.ask = at_once;
   assert_int_equal(fill(p, &box, &o, &f, &r), VG_ERR_STOPPED);
   vg_mesher_close(p);

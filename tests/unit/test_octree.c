@@ -8,6 +8,7 @@
 #include "core/fill/fill.h"
 #include "partition/octree/octree.h"
 #include "partition/octree/octree_parts.h"
+#include "parts_support.h"
 
 enum { SERIAL = 7 };
 
@@ -246,6 +247,7 @@ static void uniform_voids_are_decomposed(void **state)
   struct parted q;
 
   (void)state;
+  needs_metis();
   scene_demo(&q.s, "box", 200000);
   check_scene(&q, 5, 12);
 }
@@ -256,6 +258,7 @@ static void graded_voids_are_decomposed(void **state)
   struct parted q;
 
   (void)state;
+  needs_metis();
   scene_demo(&q.s, "sphere", 60000);
   check_scene(&q, 3, 12);
   graded_scene(&q.s, 20000);
@@ -267,6 +270,7 @@ static void half_bodies_are_decomposed(void **state)
   struct parted q;
 
   (void)state;
+  needs_metis();
   scene_demo(&q.s, "wing-half", 100000);
   check_scene(&q, 3, 12);
 }
@@ -324,6 +328,7 @@ static void parts_can_be_filled(void **state)
   struct parted q;
 
   (void)state;
+  needs_metis();
   scene_demo(&q.s, "sphere", 30000);
   enter(&q);
   part(&q, (struct vg_decomposition_options){ .n_part = 8 });
@@ -379,6 +384,7 @@ static void it_is_the_same_every_time(void **state)
   struct parted q;
 
   (void)state;
+  needs_metis();
   scene_demo(&q.s, "sphere", 60000);
   enter(&q);
   part(&q, o);

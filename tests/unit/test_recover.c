@@ -18,6 +18,7 @@
 #include "core/recover/recover.h"
 #include "fill_shapes.h"
 #include "tets_support.h"
+#include "parts_support.h"
 
 #define TRI(m) (const uint32_t(*)[3])(m)->tri
 #define POINT(m) (const double(*)[3])(m)->point
@@ -208,6 +209,7 @@ static void diagonals_turned_at_random(void **state)
   static const int turns[4] = { 1, 20, 150, 600 };
 
   (void)state;
+  needs_tetgen();
   for (int k = 0; k < 4; k++) {
     struct vg_mesh m = VG_MESH_INIT;
     struct vg_boundary_report r;
@@ -257,6 +259,7 @@ static void a_twisted_prism_gets_a_point(void **state)
   static const double twist[3] = { 0.2, 0.5, 0.9 };
 
   (void)state;
+  needs_tetgen();
   for (int k = 0; k < 3; k++) {
     struct vg_mesh m = VG_MESH_INIT;
     struct vg_boundary_report r;
@@ -276,6 +279,7 @@ static void long_slivers(void **state)
   const double lo[3] = { 0, 0, 0 }, hi[3] = { 300, 2, 0.02 };
 
   (void)state;
+  needs_tetgen();
   for (uint64_t seed = 1; seed < 5; seed++) {
     struct vg_mesh m = VG_MESH_INIT;
 
@@ -308,6 +312,7 @@ static void lost_faces_are_counted(void **state)
   size_t n, again = 0, n_point;
 
   (void)state;
+  needs_tetgen();
   shape_box(&m, 4, 0.5);
   turn_edges(&m, 100, 5);
   tets_box(&t, -2, 2);
@@ -350,6 +355,7 @@ static void the_same_bytes_again(void **state)
   struct vg_boundary_report r[2];
 
   (void)state;
+  needs_tetgen();
   shape_box(&m, 6, 0.5);
   turn_edges(&m, 300, 21);
   for (int k = 0; k < 2; k++)
@@ -501,6 +507,7 @@ static void tetgen_fails_alone(void **state)
   vg_status st = vg_cdt_tetgen(4, job, NULL);
 
   (void)state;
+  needs_tetgen();
   nothing_was_printed(kept, to);
   assert_int_equal(st, VG_OK);
   for (int k = 0; k < 4; k += 3) {

@@ -13,6 +13,7 @@
 #include "core/recover/recover.h"
 #include "core/recover/recover_flip.h"
 #include "tets_support.h"
+#include "parts_support.h"
 
 enum { N_POINT = 300 };
 
@@ -230,6 +231,7 @@ static void twisted_prisms_need_steiner_points(void **state)
   size_t n = 0, n_point, lost, left;
 
   (void)state;
+  needs_tetgen();
   for (uint32_t k = 0; k < 5; k++) {
     for (uint32_t i = 0; i < 6; i++) {
       double angle = 2 * M_PI / 3 * i + (i < 3 ? 0 : 0.2 + 0.15 * k);

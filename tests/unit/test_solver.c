@@ -11,6 +11,7 @@
 #include "io/vgrid/vgrid.h"
 #include "join_support.h"
 #include "partition/solver/solver.h"
+#include "parts_support.h"
 
 enum { SIDE = 10, N_HEX = SIDE * SIDE * SIDE };
 
@@ -183,6 +184,7 @@ static void check_balance(const struct made *m, uint64_t n,
 static void no_stack_is_cut(void **state)
 {
   (void)state;
+  needs_metis();
   for (int mixed = 0; mixed < 2; mixed++) {
     struct vg_solver_options o = parts(7);
     struct vg_solver_report r;
@@ -211,6 +213,7 @@ static void clusters_keep_stacks_and_balance(void **state)
   uint64_t n_stack, n_cell;
 
   (void)state;
+  needs_metis();
   make(&m, VG_LAYER_TETS, 1.05);
   tell_apart(&m, &o, &fine);
   o.cluster_above = (m.n_cell - m.info.n_layer_tet) / 8;
@@ -231,6 +234,7 @@ static void weights_shift_cells(void **state)
   double weight[2] = { 0, 0 };
 
   (void)state;
+  needs_metis();
   make(&m, VG_LAYER_MIXED, 1.2);
   o.weight[2] = 5;
   tell_apart(&m, &o, &r);
@@ -249,6 +253,7 @@ static void a_wrong_number_of_layers_is_noticed(void **state)
   struct made m;
 
   (void)state;
+  needs_metis();
   make(&m, VG_LAYER_TETS, 1.5);
   l.n_tet = m.mesh.n_tet;
   assert_int_equal(vg_solver_part(&m.mesh, &l, &o, "x", m.part, &r, NULL),
@@ -270,6 +275,7 @@ static void refuses_parts_that_cannot_be(void **state)
   struct made m;
 
   (void)state;
+  needs_metis();
   make(&m, VG_LAYER_TETS, 1.5);
   assert_int_equal(vg_solver_part(&m.mesh, NULL, &o, "x", m.part, &r, &err),
                    VG_ERR_INPUT);
@@ -363,6 +369,7 @@ static void hexahedra_stand_on_walls(void **state)
   uint32_t part[N_HEX];
 
   (void)state;
+  needs_metis();
   make_cube(&m);
   assert_int_equal(vg_solver_part(&m, &l, &o, "cube", part, &r, NULL), VG_OK);
   assert_int_equal(r.n_stack, SIDE * SIDE);

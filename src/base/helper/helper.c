@@ -18,10 +18,10 @@
 #define VARIABLE "VANGUARD_HELPERS"
 
 static const struct {
-  const char *name, *holds, *package;
+  const char *name, *holds, *package, *option;
 } helper_names[VG_HELPER_N] = {
-  { "vanguard-tetgen", "TetGen", "libtet1.5-dev" },
-  { "vanguard-wrap", "CGAL", "libcgal-dev" },
+  { "vanguard-tetgen", "TetGen", "libtet1.5-dev", "VG_TETGEN" },
+  { "vanguard-wrap", "CGAL", "libcgal-dev", "VG_WRAP" },
 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -135,7 +135,8 @@ static int try_folder(const char *in, const char *below, struct vg_helper *h)
 }
 
 /* Find the file of a helper. */
-static int find_file(struct vg_helper *h, const char *package)
+static int find_file(struct vg_helper *h, const char *package,
+                     const char *option)
 {
   static const char *const below[] = { "", VG_LIBEXEC_FROM_BIN,
                                        VG_LIBEXEC_FROM_LIB, "../bin" };
@@ -153,11 +154,12 @@ static int find_file(struct vg_helper *h, const char *package)
   for (size_t k = 0;
        own_folder(own, sizeof own) && k < sizeof below / sizeof *below; k++)
     if (try_folder(own, below[k], h)) return 1;
-  snprintf(h->why, sizeof h->why,
-           "%s, the helper program with %s, was not found; install it (a build "
-           "makes it if Debian's %s is installed), or name its folder with "
-           "--helpers",
-           h->name, h->holds, package);
+  snprintf(
+    h->why, sizeof h->why,
+    "%s, the helper program with %s, was not found; install it, name its "
+    "folder with --helpers, or build Vanguard with it (Debian's %s, CMake "
+    "option %s)",
+    h->name, h->holds, package, option);
   return 0;
 }
 
@@ -172,7 +174,8 @@ static void search(enum vg_helper_kind kind, struct vg_helper *h)
   h->name = helper_names[kind].name;
   h->holds = helper_names[kind].holds;
   snprintf(h->identity, sizeof h->identity, "none");
-  if (!find_file(h, helper_names[kind].package)) return;
+  if (!find_file(h, helper_names[kind].package, helper_names[kind].option))
+    return;
   wrong = start(h->path, h->name, NULL, &c, &l, &hello);
   if (wrong) {
     snprintf(h->why, sizeof h->why,

@@ -48,8 +48,8 @@ void vg_version_libraries(FILE *to)
 void vg_version_print(FILE *to, int verbose)
 {
   fprintf(to, "vanguard " VG_VERSION "\n"
-              "Licence AGPL-3.0-or-later: "
-              "https://www.gnu.org/licenses/agpl-3.0.html\n");
+              "Licence LGPL-3.0-or-later: "
+              "https://www.gnu.org/licenses/lgpl-3.0.html\n");
   if (!verbose) return;
   fprintf(to, "source   %s\ncompiler %s\nlibraries\n", vg_source_digest,
           __VERSION__);

@@ -6,7 +6,7 @@
 static vg_status absent(struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "this build has no portal; install "
+                 "this build has no portal (CMake option VG_PORTAL); install "
                  "libmicrohttpd-dev, then configure and build again");
 }
 

@@ -9,7 +9,8 @@ int vg_cgns_tree_is_built(void)
 static vg_status absent(struct vg_error *err)
 {
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "this build does not support CGNS: install libhdf5-dev and "
+                 "this build does not support CGNS, because it was configured "
+                 "without HDF5 (CMake option VG_HDF5): install libhdf5-dev and "
                  "configure again");
 }
 
@@ -21,8 +22,8 @@ vg_status vg_cgns_tree_new(struct vg_cgns_store *store, const char *name,
   (void)out;
   (void)root;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: this build cannot write CGNS: "
-                 "install libhdf5-dev and configure again",
+                 "%s: this build cannot write CGNS (CMake "
+                 "option VG_HDF5): install libhdf5-dev and configure again",
                  name);
 }
 
@@ -41,8 +42,8 @@ vg_status vg_cgns_tree_open(struct vg_input *in, struct vg_cgns_tree **out,
   (void)out;
   (void)root;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: this build cannot read CGNS: "
-                 "install libhdf5-dev and configure again",
+                 "%s: this build cannot read CGNS (CMake "
+                 "option VG_HDF5): install libhdf5-dev and configure again",
                  in->path);
 }
 

@@ -30,6 +30,10 @@ struct vg_graph_options {
                        process is not charged for it; may be NULL */
 };
 
+/** Returns 1 if this build has METIS. Without it vg_graph_part returns
+ * VG_ERR_UNSUPPORTED. */
+int vg_graph_is_built(void);
+
 /** Assigns each vertex to a subdomain 0 .. n_part - 1. Some subdomains may stay
  * empty when there are few vertices per subdomain.
  *

@@ -1,6 +1,7 @@
 # Decomposition of the void by the faces of a coarse mesh, or by octants: the
 # same files for any number of ranks and threads, in any order; reports; what
 # is refused.
+needs metis mpi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \

@@ -2,6 +2,7 @@
 # settings without effect are reported; and edges across gaps. The input
 # ellipsoids are finer than any level requests, because coarser facets would
 # show in the edge counts.
+needs tetgen
 body() { # NAME X Y Z DX: an ellipsoid of these half axes, moved by DX
   awk -v n=48 -v x="$2" -v y="$3" -v z="$4" -v dx="$5" 'BEGIN {
     pi = atan2(0, -1)

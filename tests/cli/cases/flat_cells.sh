@@ -1,5 +1,6 @@
 # Causes of flat cells, in all reports: two boxes with layers that nearly fill
 # the gap between them, cut into subdomains.
+needs tetgen
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \

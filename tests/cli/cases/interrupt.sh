@@ -1,5 +1,6 @@
 # Ctrl-C ends a run cleanly: a message, status 1, and no partial files. The
 # signal is sent when the work has begun, before the fill.
+needs mpi
 vanguard demo box --cells 400000 --out p
 
 # signalled SIGNAL STAGE COMMAND...: runs the command and sends SIGNAL $late s

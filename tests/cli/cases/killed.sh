@@ -1,5 +1,6 @@
 # A run killed by SIGKILL while a decomposed void is filled, and resumed,
 # writes the files of an undisturbed run, for every way to decompose.
+needs metis mpi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \

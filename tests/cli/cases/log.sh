@@ -44,6 +44,6 @@ says run.log "validity: valid"
 vanguard --version --verbose
 exits 0
 says out "vanguard 0.2.0"
-says out "TetGen   1.5"
+says out "vanguard-tetgen"
 grep -qE '^  hwloc    [0-9]+\.[0-9]+\.[0-9]+$' out || fail "no hwloc"
 grep -qE '^source   [0-9a-f]{64}$' out || fail "no digest of the source"

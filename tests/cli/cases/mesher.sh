@@ -1,6 +1,7 @@
 # Other meshers in the leaves: TetGen, a plug-in, and faulty plug-ins. The
 # files are the same for any number of threads. A resumed run checks the
 # mesher.
+needs tetgen
 plugins=$(dirname "$program")/../tests/unit
 vanguard demo sphere --cells 20000 --out p
 exits 0

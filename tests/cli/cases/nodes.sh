@@ -1,5 +1,6 @@
 # Ranks on separate nodes each make surface, layers and sizes: the files equal
 # those of one rank, or the run is refused, naming the nodes that differ.
+needs mpi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1
 timeout 20 mpirun -n 2 true >/dev/null 2>&1 || skip "no mpirun"

@@ -1,6 +1,7 @@
 # Cut, filled and written by threads and ranks: the same files for any number
 # of both, in any order, and after a resume; refusals; a stop that leaves no
 # partial files.
+needs metis mpi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \

@@ -1,5 +1,6 @@
 # The same command three times in a folder gives the same mesh and the same
 # notes: files left there by a run are not read, which one more note reports.
+needs tetgen
 octahedron >octa.obj
 vanguard surface -q octa.obj --surface-size 0.8 --out s \
   --write stl,tri,obj,mesh,meshb,msh,ugrid,lb8.ugrid,b4.ugrid,r8.ugrid

@@ -1,5 +1,6 @@
 # PROJECT.report.html: its contents; it loads nothing; names cannot break it;
 # it depends on the input alone, except for the section about the run.
+needs mpi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 \
   OMPI_MCA_hwloc_base_binding_policy=none \

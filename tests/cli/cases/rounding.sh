@@ -1,6 +1,7 @@
 # Files of 4-byte reals: a cube so far from the origin that rounding flattens
 # its cells is not written, by any number of ranks, nor is any other file of
 # that run.
+needs tetgen
 cat >far.obj <<'END'
 v 1000000 0 0
 v 1000001 0 0

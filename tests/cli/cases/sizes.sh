@@ -1,5 +1,6 @@
 # Edge lengths from a file: the mesh of a first run, with a size at each of
 # its points, controls the next run; and invalid files are refused.
+needs mpi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
   OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
 

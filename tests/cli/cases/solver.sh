@@ -1,5 +1,6 @@
 # Solver partitions: of a mesh as it is made, by ranks and threads, and of a
 # mesh file, in three forms; refusals.
+needs metis mpi
 vanguard demo wing-half --cells 8000 --out p
 exits 0
 layers="--first 0.001 --layer-count 6 --fan-angle 60"

@@ -1,6 +1,7 @@
 # The gap between two boxes, far narrower than their edges, cut into far more
 # subdomains than it holds cells: some regions of the lattice contain no face
 # of the front.
+needs tetgen
 awk '
 function corner(axis, side, u, v, half,  w) {
   w[axis] = side * half

@@ -30,7 +30,7 @@ vanguard --version
 exits 0
 is out <<'END'
 vanguard 0.2.0
-Licence AGPL-3.0-or-later: https://www.gnu.org/licenses/agpl-3.0.html
+Licence LGPL-3.0-or-later: https://www.gnu.org/licenses/lgpl-3.0.html
 END
 
 vanguard chekc

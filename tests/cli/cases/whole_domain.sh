@@ -1,5 +1,6 @@
 # A closed surface without conditions and with normals out of the fluid: a
 # room that contains a block is taken as a domain, with a note.
+needs tetgen
 cat >room.obj <<'END'
 v 0 0 0
 v 9 0 0
