@@ -146,5 +146,18 @@ else
   "$python" "$here/consumer/test_vanguard.py" "$folder/files" \
     "$prefix/bin/vanguard"
   "$python" "$examples/notebook.py"
+  # The wheel finds the library by the program on the PATH.
+  unset PYTHONPATH
+  if "$python" -c 'import venv, ensurepip, setuptools, wheel' 2>/dev/null; then
+    "$python" -m venv --system-site-packages "$folder/venv"
+    "$folder/venv/bin/pip" -q install --no-build-isolation --no-deps \
+      "$here/../.." >/dev/null
+    found=$(cd / && PATH="$prefix/bin:$PATH" "$folder/venv/bin/python" -c \
+      'import vanguard; print(vanguard.Job() and vanguard._find())')
+    [ "$(realpath "$found")" = "$(realpath "$library")" ] ||
+      fail "the wheel uses $found instead of $library"
+  else
+    echo "the wheel is omitted: Python has no setuptools, wheel or venv"
+  fi
   [ -s ellipsoid.b8.ugrid ] || fail "the example wrote no ellipsoid.b8.ugrid"
 fi

@@ -19,8 +19,8 @@
 
 #include "base/parallel.h"
 #include "base/child.h"
+#include "base/helper/helper.h"
 #include "core/recover/cdt_tetgen.h"
-#include "parts_support.h"
 
 #define N_JOB 3
 #define N_MAX 4000
@@ -140,7 +140,6 @@ static void the_same_as_in_place(void **state)
   struct batch *a = answered(1, 200), *b;
 
   (void)state;
-  needs_tetgen();
   assert_int_equal(vg_child_server_is_alive(), 0);
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
@@ -180,7 +179,6 @@ static void several_threads_at_once(void **state)
   struct batch *a[4];
 
   (void)state;
-  needs_tetgen();
   for (int k = 0; k < 4; k++) a[k] = answered((uint64_t)k, 100);
   for (size_t i = 0; i < N_CALL; i++) c.b[i] = batch_new(i % 4, 100);
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
@@ -217,7 +215,6 @@ static void a_server_killed_at_any_time(void **state)
   struct batch *a = answered(7, N_MAX), *b;
 
   (void)state;
-  needs_tetgen();
   for (useconds_t us = 0; us < 120000; us += 12000) {
     struct blow blow = { .after_us = us };
     pthread_t thread;
@@ -246,7 +243,6 @@ static void signals_are_left_to_the_parent(void **state)
   pid_t pid;
 
   (void)state;
-  needs_tetgen();
   assert_int_equal(vg_child_server_start(NULL), VG_OK);
   batch_free(answered(1, 50)); /* so it has started */
   pid = child_of(getpid());
@@ -315,5 +311,12 @@ int main(void)
     cmocka_unit_test(it_ends_with_its_parent),
   };
 
+  struct vg_helper h;
+
+  vg_helper_find(VG_HELPER_TETGEN, &h);
+  if (!h.is_found) {
+    print_message("%s: skipped\n", h.why);
+    return 77;
+  }
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
