@@ -7,7 +7,8 @@ target_compile_options(vg_flags INTERFACE
   $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes>
   -ffp-contract=off -fno-fast-math
   $<$<BOOL:${VG_WERROR}>:-Werror>)
-target_compile_definitions(vg_flags INTERFACE $<$<BOOL:${VG_CHECKS}>:VG_CHECKS>)
+target_compile_definitions(vg_flags INTERFACE $<$<BOOL:${VG_CHECKS}>:VG_CHECKS>
+  $<$<BOOL:${VG_PORTABLE}>:VG_PORTABLE>)
 target_include_directories(vg_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
 set(CMAKE_C_FLAGS_RELEASE "-O3 -g -DNDEBUG")
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g -DNDEBUG")

@@ -10,13 +10,13 @@
  *     static VG_WIDE void add_wide(...) { add(...); }
  *     #endif
  *
- * With VG_NARROW defined the wide variants are left out, for comparisons. */
+ * With VG_PORTABLE defined the wide variants are left out, for comparisons. */
 #ifndef VG_BASE_WIDE_H
 #define VG_BASE_WIDE_H
 
 #define VG_WITHIN static inline __attribute__((always_inline))
 
-#if defined __x86_64__ && !defined VG_NARROW
+#if defined __x86_64__ && !defined VG_PORTABLE
 #define VG_WIDE __attribute__((target("avx2")))
 #define VG_IS_WIDE __builtin_cpu_supports("avx2")
 #else

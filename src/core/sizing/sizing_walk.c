@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __SSE2__
+#if defined __SSE2__ && !defined VG_PORTABLE
 #include <emmintrin.h>
 #endif
 
@@ -57,7 +57,7 @@ static inline lanes lanes_choose(masks m, lanes a, lanes b)
 
 static inline lanes lanes_sqrt(lanes v)
 {
-#ifdef __SSE2__
+#if defined __SSE2__ && !defined VG_PORTABLE
   return (lanes)_mm_sqrt_ps((__m128)v);
 #else
   for (int j = 0; j < 4; j++) v[j] = sqrtf(v[j]);
@@ -67,7 +67,7 @@ static inline lanes lanes_sqrt(lanes v)
 
 static inline lanes lanes_min(lanes a, lanes b)
 {
-#ifdef __SSE2__
+#if defined __SSE2__ && !defined VG_PORTABLE
   return (lanes)_mm_min_ps((__m128)a, (__m128)b);
 #else
   return lanes_choose((masks)(a < b), a, b);
