@@ -8,7 +8,7 @@
 #   --data      folder of real geometry (verification/fetch.md), for aircraft
 #   --vanguard  the program (default build/release/bin/vanguard)
 #   --others    programs from other builds of the same source, such as clang's,
-#               or one with -DCMAKE_C_FLAGS=-DVG_NARROW, which has no variants
+#               or one with -DCMAKE_C_FLAGS=-DVG_PORTABLE, which has no variants
 #               for AVX2 (base/wide.h)
 #   --work      scratch folder, kept (default: a temporary one, removed)
 #   --out       write the table to FILE too (markdown)

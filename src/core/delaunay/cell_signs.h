@@ -13,7 +13,7 @@
 #include "base/wide.h"
 #include "core/delaunay/tets.h"
 
-#if defined __x86_64__
+#if defined __x86_64__ && !defined VG_PORTABLE
 #include <immintrin.h>
 #endif
 
@@ -38,7 +38,7 @@ static inline unsigned vg_lane_faces(unsigned m)
 
 static inline vg_d2 vg_max2(vg_d2 a, vg_d2 b)
 {
-#if defined __x86_64__
+#if defined __x86_64__ && !defined VG_PORTABLE
   return _mm_max_pd(a, b);
 #else
   return (vg_d2){ a[0] > b[0] ? a[0] : b[0], a[1] > b[1] ? a[1] : b[1] };
@@ -48,7 +48,7 @@ static inline vg_d2 vg_max2(vg_d2 a, vg_d2 b)
 /* Bits 0 and 1: the lanes of a comparison result. */
 static inline unsigned vg_lanes2(vg_l2 m)
 {
-#if defined __x86_64__
+#if defined __x86_64__ && !defined VG_PORTABLE
   return (unsigned)_mm_movemask_pd((__m128d)m);
 #else
   return (unsigned)((m[0] & 1) | (m[1] & 2));

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined __x86_64__
+#if defined __x86_64__ && !defined VG_PORTABLE
 #include <immintrin.h>
 #endif
 
@@ -173,7 +173,7 @@ typedef int32_t i4 __attribute__((vector_size(16)));
 
 static inline unsigned lanes(i4 m)
 {
-#if defined __x86_64__
+#if defined __x86_64__ && !defined VG_PORTABLE
   return (unsigned)_mm_movemask_ps((__m128)m);
 #else
   m &= (i4){ 1, 2, 4, 8 };

@@ -708,7 +708,7 @@ static vg_status check_rounded(const struct vg_ugrid_kind *kind,
                                const struct vg_mesh *m, struct vg_error *err)
 {
   const double(*x)[3] = (const double(*)[3])m->point;
-  struct vg_narrow n = VG_PORTABLE_INIT;
+  struct vg_narrow n = VG_NARROW_INIT;
   double(*rounded)[3];
   vg_status st;
 

@@ -81,7 +81,7 @@ static vg_status note_rounded(struct vg_slices_ugrid *u,
                               struct vg_error *err)
 {
   double(*rounded)[3] = vg_alloc(slice->n_point, sizeof *rounded);
-  struct vg_narrow n = VG_PORTABLE_INIT;
+  struct vg_narrow n = VG_NARROW_INIT;
 
   if (!rounded) return vg_fail_memory(err, "the points of a slice");
   vg_narrow_round(slice->n_point, slice->x, rounded);

@@ -120,7 +120,7 @@ vg_status vg_narrow_share(struct vg_comm *comm, struct vg_narrow *n,
   size_t size = (size_t)vg_comm_size(comm);
   struct vg_bytes mine = { sizeof *n, (unsigned char *)n };
   struct vg_bytes *all = vg_calloc(size, sizeof *all);
-  struct vg_narrow sum = VG_PORTABLE_INIT;
+  struct vg_narrow sum = VG_NARROW_INIT;
   vg_status st = all ? VG_OK : vg_fail_memory(err, "the cells of a file");
 
   VG_TRY(vg_comm_agree(comm, st, err));

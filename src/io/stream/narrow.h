@@ -18,7 +18,7 @@ struct vg_narrow {
   uint64_t point;      /* first such point */
   double x[3];
 };
-#define VG_PORTABLE_INIT                                                         \
+#define VG_NARROW_INIT                                                         \
   {                                                                            \
     .n_cell = 0                                                                \
   }
