@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Builds and runs Vanguard on a fresh Debian 12 with one command:
 #   ./bootstrap.sh demo   build, mesh the built-in example, show the report
 #   ./bootstrap.sh test   build, run the whole test suite

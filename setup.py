@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Wheel of the Python module alone: `pip install .` after the library was
 installed with CMake. The module finds the library on its own (_find in
 python/vanguard.py.in)."""

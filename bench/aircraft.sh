@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # bench/aircraft.sh: surfaces of the data folder, and their settings for layers.
 # Sourced after common.sh; `vanguard` is the program.
 # shellcheck shell=bash disable=SC2034,SC2154 # for, and from, the caller

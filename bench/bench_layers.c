@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The program of bench/layers.sh: cost of viscous layers, phase by phase.
  *
  * vg_bench_layers [OPTION...] --demo NAME --cells N

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* bench_sizing [N [M [GROWTH [SPAN [THREADS]]]]]: cost of the sizing field.
  *
  * A sphere of 12 N^2 triangles within a box of 12 M^2 triangles, SPAN times

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # bench/common.sh: functions shared by the scripts of bench/ and verification/.
 # Sourced by bash with `root` set; `script` is the caller's name in messages.
 # shellcheck shell=bash

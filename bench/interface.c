@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* interface CASE CELLS LEAF [THREADS [PARTS [remesh|h-refine|octree
  * [metis|rcb]]]]: are cells near interfaces as good as all cells?
  *

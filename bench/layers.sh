@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # bench/layers.sh: the cost of viscous layers, phase by phase.
 #
 # usage: bench/layers.sh [--quick] [--out FILE] [--build DIR] [--work DIR]

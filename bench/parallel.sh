@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # bench/parallel.sh: the cost of cutting, and the effect of ranks and threads.
 #
 # usage: bench/parallel.sh [--quick] [--scale X] [--runs N] [--data DIR]

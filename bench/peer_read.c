@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Readers for meshes of other programs. */
 #include <stdio.h>
 #include <stdlib.h>

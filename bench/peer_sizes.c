@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The sizing field as a background mesh for other programs. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vg_bench_peers: converts between Vanguard and other meshers for bench/run.sh.
  *
  *   prepare SURFACE DECK STEM  the boundary of a .ugrid mesh as STEM.smesh

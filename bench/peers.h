@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* bench/peers.h: functions shared by the files of vg_bench_peers. */
 #ifndef VG_BENCH_PEERS_H
 #define VG_BENCH_PEERS_H

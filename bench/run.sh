@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # bench/run.sh: Vanguard, TetGen and gmsh HXT on the same surfaces.
 #
 # usage: bench/run.sh [--quick] [--out FILE] [--build DIR] [--work DIR]

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # bench/scale.sh: does the cost of a cell stay constant in large meshes? The
 # layered demo wing with a number of cells that grows by factors of four:
 # seconds per million cells for each phase, and for each kind of task per

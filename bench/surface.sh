@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # bench/surface.sh: the speed of vanguard surface.
 #
 # usage: bench/surface.sh --data DIR [--runs N] [--build DIR] [--out FILE]

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Only used by the preset `coverage`. gcov writes the counts of a process in
  * exit(), but the child processes of Vanguard end with _exit(). With the option
  * --wrap the linker replaces calls of _exit by __wrap__exit. */

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Writes OUT, a C file with the bytes of FILES (separated by ;) as arrays
 # vg_asset_NAME, and their sizes. HEADER declares them. In NAME, all characters
 # other than letters and digits become _.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The signs of predicates and the bytes of output must not depend on how a
 # compiler fuses or reorders floating-point operations: contraction and
 # fast-math are never allowed.

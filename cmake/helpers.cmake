@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The helper programs (src/base/helper/helper.h): libraries whose licences must not
 # apply to program and library. Each is optional and has the licence of its
 # library.

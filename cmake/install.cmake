@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Installs the program, the library with its headers, the pkg-config file and
 # the CMake package. Components become packages (cmake/package.cmake).
 include(CMakePackageConfigHelpers)

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Generates man pages and bash completions from the --help output of the program:
 # manual.sh PROGRAM VERSION FOLDER
 set -eu

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Open CASCADE, for CAD files: optional. The code that uses it is a separate
 # library, which only child processes load when they read CAD files
 # (io/cad/cad.h), so that no other process loads Open CASCADE's seventy

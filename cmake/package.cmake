@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Debian packages, by `cpack` in a build of the preset `package`. One package
 # for each licence and each set of dependencies.
 if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Optional parts of a build. Each is an option that is ON if what it needs was
 # found. A part that is switched ON although something is missing stops the
 # configuration.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Writes OUT, a C file with the digest of all sources below SOURCE_DIR, or below
 # its FOLDERS (separated by commas). A stored
 # outcome of a task depends on this digest and on the input of the task.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-2-Clause
 """Meshes a wing-like body given as arrays. Run it as a script, or as a notebook
 in editors that use `# %%` as cell marks (VS Code, Jupytext, Spyder)."""
 # %% A surface: a triangulated ellipsoid, all of it patch 1.

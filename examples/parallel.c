@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
 /* Meshing with MPI: each rank holds pieces of the mesh, and all ranks write one
  * file. usage: mpirun -n RANKS parallel SURFACE STEM */
 #include <mpi.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
 /* User-defined sizes: meshes a surface file with a size function that refines
  * around a point, and prints progress. usage: sizes SURFACE X Y Z SIZE STEM */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
 /* Minimal complete program: meshes the inside of a surface given in memory and
  * writes a file.
  *

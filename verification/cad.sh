@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/cad.sh: CAD files, and surfaces on which a mesher once failed,
 # with the default command.
 #

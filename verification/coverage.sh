@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/coverage.sh: the share of the lines of each module that the tests
 # execute, from the counts of gcov in a build of the preset `coverage`:
 #   cmake --preset coverage -G Ninja && cmake --build --preset coverage

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/decompositions.sh: all decompositions: every mesh must be valid;
 # cells, balance and angles are compared with the advancing partition.
 #

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/digests.sh: digests of the meshes of twelve cases, made by one or
 # two programs, to show that a change of the code leaves every byte unchanged.
 #

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/processors.sh: the same files on different processors, with
 # different BLAS libraries and compilers, in separate runs and in one run.
 #

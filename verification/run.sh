@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/run.sh: mesh real geometry and check every result.
 #
 # usage: verification/run.sh --data DIR [--quick] [--vanguard PROGRAM]

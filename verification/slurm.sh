@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/slurm.sh: share/slurm/vanguard.sbatch under a Slurm on one host.
 #
 # usage: verification/slurm.sh [--vanguard PROGRAM] [--work DIR] [--cells N]

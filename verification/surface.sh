@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/surface.sh: tessellations remeshed by vanguard surface.
 #
 # usage: verification/surface.sh --data DIR [--vanguard PROGRAM] [--work DIR]

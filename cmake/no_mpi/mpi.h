@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cmake/no_mpi/mpi.h: takes the place of MPI's header in a build with
  * VG_MPI=OFF. A job of one rank never calls MPI. Under a launcher the program
  * asks MPI to start, which fails here with an explanation; all other functions

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Draws the cells that a plane cuts, for docs/reference/layers.md:
  *
  *   cut MESH PNG PLANE U V WIDTH PIXELS [LAYER_TETS]

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* docs/pictures/png.h: writes a picture of samples as a PNG file. */
 #ifndef VG_PICTURES_PNG_H
 #define VG_PICTURES_PNG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Draws a mesh as a PNG: the cells below the plane z = CUT, with the exposed
  * faces of the cells, and the walls (conditions 4 and 5) inside. For the
  * picture of the README: `cmake --build --preset release --target picture`,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Draws a section through the subdomains of each decomposition, for
  * docs/design/decompositions.md:
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
 /* A minimal mesher for Vanguard: it adds a point at the centre of the void and
  * connects each triangle of the front to it. This fills only voids that are
  * star-shaped about their centre. For all others it returns an error, and

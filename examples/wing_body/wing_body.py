@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-2-Clause
 """Writes wing_body.d3m and wing_body.mapbc: a faceted wing-body half model.
 
 Every patch is planar, so the project needs no .front. Lengths are in metres.

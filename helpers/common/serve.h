@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* helpers/common/serve.h: what all helper programs share: requests from
  * standard input, replies to standard output (src/base/helper/helper_format.h,
  * docs/reference/helpers.md). A helper is one process with one thread. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
 /* TetGen as a mesher of whole voids (H. Si, "TetGen, a Delaunay-based quality
  * tetrahedral mesh generator", ACM TOMS 41(2), 2015). */
 #include "tetgen/jobs.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
 /* helpers/tetgen/jobs.h: the two jobs of vanguard-tetgen. TetGen may end the
  * process during either. */
 #ifndef VG_HELPERS_TETGEN_JOBS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
 /* vanguard-tetgen: TetGen as a helper program of Vanguard. */
 #include <exception>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: AGPL-3.0-or-later */
 /* helpers/tetgen/tetgen_input.h: a triangulation as input to TetGen. */
 #ifndef VG_HELPERS_TETGEN_TETGEN_INPUT_H
 #define VG_HELPERS_TETGEN_TETGEN_INPUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* vanguard-wrap: CGAL's alpha wrap and its tree of triangles as a helper
  * program of Vanguard. */
 #include <array>

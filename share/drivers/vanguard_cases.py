@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Cases of Vanguard: makes them, runs them here or on Slurm or PBS, and collects
 their reports in a table. Needs the standard library only.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 // The geometry of a project before a run: the 3-D view with its patches, the
 // check, its defects, and the forecast.
 import { clearWrong, make, markWrong, settings } from "./form.js";

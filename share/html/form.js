@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 // The form of a run: search, marks of changed and wrong settings, and editors
 // for tables. The tables stay text areas for the server, which reads them as in
 // a deck; an editor rewrites the text on each change.

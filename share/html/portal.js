@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 // Functions of the list of runs beyond plain forms: it is updated continuously,
 // and buttons work without loading a page.
 "use strict";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 // The 3-D view of PROJECT.report.html, drawn by view.js. Its data are in the
 // page: #facts (JSON) and #scene (zlib, base64), written by
 // src/cli/html/html_scene.c. If the browser lacks a feature, the page stays

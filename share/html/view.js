@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 // The 3-D view of a surface, for the report and the portal. WebGL 2 alone: the
 // page of the portal forbids scripts to compile further scripts.
 'use strict';

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Access to a finished mesh: the last part of api/vanguard.h. */
 #include <stdlib.h>
 #include <string.h>

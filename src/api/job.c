@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Jobs, their settings and their surface: the first half of api/vanguard.h. */
 #define _GNU_SOURCE
 #include "api/job.h"

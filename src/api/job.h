@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* api/job.h: the members of a vanguard_job. Private to api. */
 #ifndef VG_API_JOB_H
 #define VG_API_JOB_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Meshing: vanguard_mesh of api/vanguard.h. */
 #define _GNU_SOURCE
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard/vanguard.h: the Vanguard library. It takes a surface triangulation
  * and returns a volume mesh.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/buckets.h: a priority queue of numbered items. Items of the lowest class
  * leave first, and the items of one class leave in the order of their arrival.
  * Uses memory.h.

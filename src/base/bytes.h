@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/bytes.h: flat bytes for messages and records, written and read in
  * sequence, in this machine's byte order. Uses base/comm.h. */
 #ifndef VG_BASE_BYTES_H

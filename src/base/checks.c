@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Aborts the program when a stage has left a wrong result. */
 #include "base/checks.h"
 

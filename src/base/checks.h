@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/checks.h: checks of the complete result of a stage, too expensive for
  * assert. The CMake option VG_CHECKS compiles them in (presets asan and fuzz);
  * without it they cost nothing. Uses nothing.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/child.h: child processes for third-party libraries that must not run in
  * this process, because they keep state in static variables, end the process,
  * take over signals or never return.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Bytes over a child's socket, from either end: base/child.h. Helper programs
  * contain this file, and may use pipes instead of the socket. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/clock.h: clocks for reports and progress displays. No result may depend
  * on them. */
 #ifndef VG_BASE_CLOCK_H

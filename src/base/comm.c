@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Joining and leaving a job, and waiting without spinning; see base/comm.h. */
 #include "base/comm.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/comm.h: the ranks of a job. One process without a launcher is a job of
  * one rank and never touches MPI. Under mpirun or srun, MPI is used with calls
  * from several threads. Only the files comm*.c of base include mpi.h.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Collectives of base/comm.h. Ranks sleep while they wait. Where one rank may
  * run out of memory, all ranks agree before they continue. */
 #include <assert.h>

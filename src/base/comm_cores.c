@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Cores of a node, and which ranks may use them; see base/comm.h. The only file
  * that includes hwloc.h: the kernel knows which processors a process may use,
  * hwloc which of them are hyperthreads of one core. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Messages between ranks; see base/comm.h.
  *
  * The tag of a message is 2 * kind, and the receiver finds its length by

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/comm_parts.h: declarations shared by the comm*.c files. Private to
  * base. */
 #ifndef VG_BASE_COMM_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Memory shared by the ranks of a node; see base/comm.h.
  *
  * The first rank writes an unnamed file. The other ranks open it through /proc,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Wakeups; see base/comm.h. MPI has no wait that sleeps, so a polling rank only
  * notices a message at its next poll. Therefore each rank of a node has a word
  * of shared memory on which it sleeps, and which another rank changes after it

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/entries.h: tables of the fields of a report. The functions that add
  * reports, sum them over ranks, store them and write them as JSON all use the
  * table, so that a new field needs one new row. Uses base only. */

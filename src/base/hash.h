@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/hash.h: hash functions of numbers and coordinates. Uses nothing.
  *
  * base/table.h uses the upper bits of a hash. Some hashes also affect the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/heap.h: a binary heap in an array of the caller. Uses nothing.
  *
  * The order in which equal items leave depends on the order of all calls. Where

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/library.h: names and versions of the third-party libraries in use,
  * provided by the files that adapt them. */
 #ifndef VG_BASE_LIBRARY_H

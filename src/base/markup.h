@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/markup.h: escaping of characters that are special in HTML and XML. */
 #ifndef VG_BASE_MARKUP_H
 #define VG_BASE_MARKUP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/memory.h: allocation with overflow checks. All functions return NULL if
  * there is not enough memory. */
 #ifndef VG_BASE_MEMORY_H

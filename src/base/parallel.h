@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/parallel.h: loops over threads. Uses only pthreads. */
 #ifndef VG_BASE_PARALLEL_H
 #define VG_BASE_PARALLEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/progress.h: progress reports of long operations. base/stop.h lets the
  * caller stop them. */
 #ifndef VG_BASE_PROGRESS_H

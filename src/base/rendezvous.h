@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/rendezvous.h: brings equal items of all ranks together (a distributed
  * directory). Uses comm.h and hash.h.
  *

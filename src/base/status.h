@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/status.h: how every function of the library that can fail reports it.
  *
  * The library never prints and never exits. It returns a vg_status and, if

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/stop.h: lets the caller stop a long operation before it is complete. */
 #ifndef VG_BASE_STOP_H
 #define VG_BASE_STOP_H

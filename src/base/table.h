@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/table.h: a hash table that finds items by their keys. Uses nothing.
  *
  * Items and keys are in an array of the caller; a slot of the table holds the

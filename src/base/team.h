@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/team.h: loops over the threads of several processes that hold the same
  * data. The members of a team are the first ranks of the nodes, while they
  * compute data that every node needs. Each member processes a part of the

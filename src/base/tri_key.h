@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/tri_key.h: vertices of edges, triangles and quadrilaterals in ascending
  * order, used as keys to match the two sides of a face. Uses hash.h. */
 #ifndef VG_BASE_TRI_KEY_H

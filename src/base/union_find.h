@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/union_find.h: union-find of disjoint sets. up: [n] parent of each
  * number, which belongs to the same set; initially every number is its own
  * parent. A number that is its own parent is the root of its set. Threads: one

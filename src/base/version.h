@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/version.h: identification of this program. */
 #ifndef VG_BASE_VERSION_H
 #define VG_BASE_VERSION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The program `vanguard`: dispatches to the subcommands. Exit status: 0
  * success, 1 failure, 2 wrong usage, 4 finished, but a limit on the layers is
  * not met or runs of a sweep differ. */

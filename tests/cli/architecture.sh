@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Checks the sources against src/CMakeLists.txt, which lists the modules from
 # the bottom up with the modules that each one may include. Fails on
 #   - a source folder that is not a module, a module of more than 40 files

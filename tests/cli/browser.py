@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Controls a headless Chromium over its DevTools pipe, for tests of pages."""
 import base64
 import json

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Installs the build tree, then builds external programs against it with CMake
 # and with pkg-config, and runs them: the examples, and consumer.c, which uses
 # the whole library. The same for the Python module.

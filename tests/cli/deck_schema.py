@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Compares the JSON Schema of decks with the program, both ways: of random
 documents, those that the schema accepts are accepted by the program, and those
 that it does not accept are refused.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Checks that all sources are laid out as CONTRIBUTING requires. Fails, naming
 # the place, on
 #   - a C or C++ source that clang-format 14 would change (.clang-format)

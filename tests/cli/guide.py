@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Checks that the worked cases of docs/guide give the results on their pages.
 
 guide.py SOURCE PROGRAM FOLDER [PAGE...]

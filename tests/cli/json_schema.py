@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Checks JSON reports by their schema: json_schema.py SCHEMA FILE...
 
 Also reports a member that the schema does not describe, so that the schema

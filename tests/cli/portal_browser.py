@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Starts, stops and resumes runs by clicks on the page of a portal.
 
 portal_browser.py CHROMIUM URL PROJECT RUNS PICTURE

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """From an uploaded STEP file to finished meshes, with the page of a portal:
 patches picked in the 3-D view, errors at their fields, check, forecast, start,
 stop, resume, report, comparison, deletion, the defects of a refused surface,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A portal in a folder of its own, queried over a socket pair instead of a
  * network. Used by tests and the fuzzer. */
 #ifndef VG_TESTS_PORTAL_SUPPORT_H

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Finds phrases that make comments, documents and messages hard to read.
 
 Prints file:line, the phrase and a remedy for each. The list is a filter for the

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Resolves every reference to a document and reports those without a target:
 
   NAME.md                    a document in docs or in one of its folders

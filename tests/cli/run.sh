@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Runs one case: run.sh CASE PROGRAM FOLDER. The case is a shell script that
 # is sourced in an empty FOLDER and uses the functions below. Every failed
 # expectation is shown; the case fails if one did. `skip` skips it (77).

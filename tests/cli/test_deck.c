@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The run deck: grammar, messages with line numbers and suggestions, and the
  * round trip parse(write(s)) == s. */
 #include <math.h>

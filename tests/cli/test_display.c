@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The displayed progress never decreases. */
 #include <setjmp.h>
 #include <stdarg.h>

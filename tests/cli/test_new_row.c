@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A new setting is one row of run/settings/setting_rows.h: this program
  * compiles the settings with three additional rows (tests/cli/new_row) and no
  * other change. Default, deck, command line, help, digest and the check of a

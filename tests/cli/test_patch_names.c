@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Patches given by number, range, name and pattern, in lists and in table
  * rows. */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Pictures: PNG files read back, cuts of known cells, surfaces seen from known
  * directions, decimated surfaces, worst cells with their neighbours. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Figures are well-formed, contain the expected elements, and are the same for
  * the same data. Their appearance is not tested. */
 #include <math.h>

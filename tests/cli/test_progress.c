@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Which signals end the process, and when. Each case runs in a process of its
  * own. */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Lists of numbers as a user types them. */
 #include <setjmp.h>
 #include <stdarg.h>

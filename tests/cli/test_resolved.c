@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Requested, read and resolved settings: the steps of a run leave `asked`
  * unchanged, and a run with resolved settings resolves to the same settings. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Which settings a resumed run may change: every value of every row of every
  * table is changed in turn, and the run directory of the unchanged settings is
  * opened with it. */

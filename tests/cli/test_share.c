@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A surface is packed into bytes and unpacked. */
 #include <setjmp.h>
 #include <stdarg.h>

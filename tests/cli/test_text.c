@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Names as displayed: valid UTF-8, width in columns, where a name is cut. */
 #include <setjmp.h>
 #include <stdarg.h>

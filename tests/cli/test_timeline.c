@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The timeline of a run: round trip, columns in any order, error messages. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Driver shared by the fuzz targets of the readers: it turns bytes into an
  * input and checks that a reader's answer keeps its promises. */
 #ifndef VG_TESTS_FUZZ_H

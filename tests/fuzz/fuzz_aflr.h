@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Invariants of the settings by patch in AFLR's files, for all of their
  * formats. */
 #ifndef VG_FUZZ_AFLR_H

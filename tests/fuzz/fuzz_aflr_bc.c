@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "fuzz_aflr.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* CAD, read through the child process in which Open CASCADE runs. The result is
  * not checked, but there must be an answer, and a child for the next input. */
 #include "fuzz.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The mesh that was read is converted to the table of faces from which OpenFOAM
  * files and solver partitions are made. Any cells must give a complete table or
  * an error message. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Replies of helper programs, as the program reads them: the first message,
  * cells of vanguard-tetgen, a surface of vanguard-wrap. */
 #include "fuzz.h"

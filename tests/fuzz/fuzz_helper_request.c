@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Requests to helper programs, as the helpers read them. */
 #include "fuzz.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "fuzz.h"
 
 /* The stream itself: gzip recognised by its first bytes, tokens, lines, numbers

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "fuzz.h"
 
 #include "io/mesh/vtu_read.h"

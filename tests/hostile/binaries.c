@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Binary files that break their format, and files with a misleading name. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Malformed and hostile files, made by a program so that the defect of each one
  * can be read here. Each table below is one kind of defect. */
 #ifndef VG_TESTS_HOSTILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* make_hostile FOLDER: writes all hostile files into FOLDER and their list,
  * CASES, one line for each: command, file, verdict, phrase, separated by '|'.
  * Deterministic; tests/hostile/run.sh reads the list. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Project files and run decks that break their rules, given to `vanguard mesh`,
  * which must stop before it meshes anything. */
 #include <stdio.h>

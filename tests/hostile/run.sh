@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Gives every hostile file to the program: run.sh MAKE_HOSTILE PROGRAM FOLDER.
 # A refused file: exit status 1, stderr names the file, and the answer
 # contains the phrase of its line in CASES. A repaired file: status 0 and the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Surfaces that are well-formed files but bound no volume. */
 #include <stdio.h>
 #include <stdlib.h>

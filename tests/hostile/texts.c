@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Text files that break their format. */
 #include <string.h>
 #include <zlib.h>

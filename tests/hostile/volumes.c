@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Volume meshes that are well-formed files but wrong. All are made from the
  * unit tetrahedron with its four faces, or from two tetrahedra that share a
  * face. */

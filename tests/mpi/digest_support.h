@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Broadcasts rank 0's digest of a mesh. Uses mpi_support.h,
  * unit/advance_support.h. */
 #ifndef VG_TESTS_DIGEST_SUPPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A rank that fails, for faults.sh: `fault abort` ends the job with status 7,
  * `fault kill` dies at once, `fault leave` closes while messages are under way;
  * the other ranks wait in a collective, or close too. */

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Ways to end a job: faults.sh PROGRAM MPIRUN [FLAG] (-n). None of them may
 # hang.
 set -u

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Open and close the job around a program of cmocka tests. */
 #ifndef VG_TESTS_MPI_SUPPORT_H
 #define VG_TESTS_MPI_SUPPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Voids cut and filled by all ranks: the mesh equals that of a single rank;
  * every rank learns of stops and failures; runs are resumed on other numbers of
  * ranks. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Collective operations. */
 #define _GNU_SOURCE
 #include "mpi_support.h"

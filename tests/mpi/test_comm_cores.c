@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Cores of a node, and their assignment to ranks. */
 #define _GNU_SOURCE
 #include "mpi_support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Messages: all arrive, complete, and those of one rank in the order of
  * posting. */
 #define _GNU_SOURCE

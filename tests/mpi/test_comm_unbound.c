@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Ranks that the launcher does not bind share the cores of the node. */
 #define _GNU_SOURCE
 #include "mpi_support.h"

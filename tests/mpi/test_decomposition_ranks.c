@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Voids decomposed before they are filled, by all ranks: the mesh equals that
  * of a single rank; also stopped and resumed elsewhere, and with subdomains
  * that cannot be filled. */

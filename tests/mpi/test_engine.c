@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The engine on several ranks: the same results as on one, pinned tasks, large
  * inputs, stops and failures that every rank learns of, and the cost of a task
  * and of an idle rank (printed). */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The mesh check of slices on several ranks: every rank gets the same report as
  * for the mesh in one piece. */
 #include "mpi_support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Other meshers in the subdomains, for all ways to decompose, on all ranks: the
  * mesh equals that of a single rank. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* One copy for the ranks of a node: bytes, the sizing field, layers and
  * surfaces. */
 #include "../unit/layer_cases.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Voids decomposed into octants and filled by all ranks: the mesh equals that
  * of a single rank, and that of a run begun on another number of ranks. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Subdomains that cannot be filled: any number of ranks gives the result of
  * one. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Repairs on any number of ranks and threads make the same cells. */
 #include "mpi_support.h"
 

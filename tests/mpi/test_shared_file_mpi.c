@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* One file written by several ranks and threads, and its fate when one of them
  * fails. tests/unit/test_shared_file.c has the tests for one rank without
  * MPI. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Files written by all ranks equal those written by one rank. */
 #define _GNU_SOURCE
 #include "mpi_support.h"

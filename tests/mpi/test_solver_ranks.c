@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Solver partitions of a mesh in slices: the same for any number of ranks and
  * threads; the files written by all ranks equal those written by one. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outcomes of tasks are kept by all ranks and found by any of them; refusals
  * reach all. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Loops over several nodes: every member has all results in the end, for any
  * shape of the arrays. If one member fails, all fail, and none waits forever.
  * Ranks are taken for separate nodes. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Voids for the advancing partition, and the invariants of its mesh for any
  * distribution and timing of the tasks. Header only: one program per module. */
 #ifndef TESTS_UNIT_ADVANCE_SUPPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Surfaces with columns built by hand: one column per wall point, and all
  * layers of equal thickness, so that the height of n layers is n times the
  * thickness. */

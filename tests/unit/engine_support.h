@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A tree of tasks for the tests of the engine. A node's children depend on its
  * path; its value depends on its path and on its children's values, in order.
  * The root's value therefore proves that every task ran once and its outcome

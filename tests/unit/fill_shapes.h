@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Closed surfaces for the tests of the fill: blocks of boxes, spheres, a torus.
  * Normals point into the fluid. Header only: one program per module. */
 #ifndef TESTS_UNIT_FILL_SHAPES_H

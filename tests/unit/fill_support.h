@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Fill a surface with tetrahedra, for tests that need a mesh. Header only: one
  * program per module. */
 #ifndef TESTS_UNIT_FILL_SUPPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Connected components of a front, for tests: separator zones must divide the
  * front. */
 #ifndef FRONT_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Arrays that tests fill one by one. */
 #ifndef VG_TESTS_GROW_H
 #define VG_TESTS_GROW_H

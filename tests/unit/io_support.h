@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Shared by the tests of readers and writers: the reference mesh T1 of the
  * format notes, files in VG_TMP_DIR, real files of VG_DATA_DIR. */
 #ifndef VG_TESTS_IO_SUPPORT_H

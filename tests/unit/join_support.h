@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Columns built by hand for the tests of join: a hipped roof whose ridges have
  * fans, under an apex, with a cone of cells filling the rest. Header only. */
 #ifndef TESTS_UNIT_JOIN_SUPPORT_H

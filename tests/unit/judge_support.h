@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Meshes for the tests of the mesh check in slices: valid ones, damaged ones,
  * and the isotropic region of a cut by itself. Header only. */
 #ifndef TESTS_UNIT_JUDGE_SUPPORT_H

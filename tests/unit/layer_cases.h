@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Closed surfaces that are hard for layers, each with a chosen edge length:
  * slots, concave corners, bodies with edges and apexes, near misses, walls that
  * meet a symmetry plane at an angle. Normals point into the fluid; walls have

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Scenes for the load estimates: a void with its sizes, its load, and the mesh
  * to compare with. */
 #ifndef VG_TEST_LOAD_SUPPORT_H

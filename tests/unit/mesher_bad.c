@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Faulty plug-ins, one for each BAD, for test_mesher.c. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A closed mesh of all kinds of cells for tests, made of columns of three
  * cubes. The lowest cube is a hexahedron; the middle one consists of five
  * pyramids around its centre and, on top, two tetrahedra; the highest of two

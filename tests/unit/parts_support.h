@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Tests of optional parts are skipped in builds without them. */
 #ifndef VG_TESTS_PARTS_SUPPORT_H
 #define VG_TESTS_PARTS_SUPPORT_H

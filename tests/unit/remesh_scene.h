@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A surface being remeshed, for the tests of core/remesh's changes. */
 #ifndef VG_TESTS_REMESH_SCENE_H
 #define VG_TESTS_REMESH_SCENE_H

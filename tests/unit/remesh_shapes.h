@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Surfaces for the tests of core/remesh. */
 #ifndef VG_TESTS_REMESH_SHAPES_H
 #define VG_TESTS_REMESH_SHAPES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A box of cells cut into slabs, which are the pieces of a partition as tasks
  * leave them. Slab g belongs to rank g % size. Header only. */
 #ifndef TESTS_UNIT_REPAIR_SUPPORT_H

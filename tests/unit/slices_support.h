@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A mesh in memory, cut at random into slices with local numbers, as a server
  * of core/mesh/slices.h; for the tests of functions that read slices. Header
  * only. Slice g of the cut is served by rank g % size. */

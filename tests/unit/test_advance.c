@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The advancing partition on one rank: rules, records, refusals, and voids that
  * turn out larger than expected. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Voids cut and filled in threads: the same mesh for any number of threads and
  * any order. Also run under the thread sanitizer. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Trees of boxes: every answer equals that of a loop over all boxes. */
 #include <setjmp.h>
 #include <stdarg.h>

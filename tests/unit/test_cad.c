@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* CAD, read through the child process in which Open CASCADE runs; files:
  * ../cad. */
 #include "io_support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* TetGen's child processes come from a server: the answers equal those in
  * place, from several threads at once, and even if the server is killed. */
 #define _GNU_SOURCE

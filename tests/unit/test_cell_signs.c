@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/delaunay/cell_signs.h compared with the predicates that it replaces. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* CGNS: written meshes are read back, trees of other programs are read, and
  * invalid ones are refused. */
 #include "mixed_support.h"

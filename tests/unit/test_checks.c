@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Checks of stages: which states are defects, and how a program ends that has
  * one. */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Clearance of layers from each other and from the opposite surface. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A job of one rank, without a launcher. With a launcher:
  * tests/mpi/test_comm_*.c. */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The discrete decomposition: subdomains that fit together, meshes of them,
  * voids that cannot be decomposed. */
 #define _GNU_SOURCE

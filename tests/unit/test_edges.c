@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Edges of triangulations, compared with a comparison of all half-edges. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The engine on one rank: order, counts, records, stops and failures. Also run
  * under the thread sanitizer. */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Body or flow domain: known shapes, the examples, and real geometry. */
 #include "io_support.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The fill gives a valid mesh that preserves its surface, for any shape. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Regions that are cut out of a front one after the other, and the remaining
  * void that is filled: at any moment the cells and the void together are the
  * domain. If the kernel refuses its input or is stopped, it returns nothing. */

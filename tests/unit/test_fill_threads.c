@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Two fills at once give the same bytes as one after the other. Also run under
  * the thread sanitizer. */
 #include <pthread.h>

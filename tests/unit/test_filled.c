@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The result of the kernel: serialized and restored, and each of its defects,
  * which must be detected. */
 #include "zone_scene.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Causes of flat cells: the kinds of the points of a cell, patches, connections
  * along the boundary; the same numbers for any cut into slices. */
 #include <setjmp.h>

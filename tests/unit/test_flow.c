@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The side of a surface on which the fluid is. Every kind of surface for which
  * the answer was once wrong, and random ones, with shells reversed at
  * random. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Meshes for Fluent, read back by the published grammar: every side of every
  * cell occurs once, with the required orientation. */
 #include "mixed_support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Forecasts: regular trees of uniform boxes, sums, tasks that the model can
  * run, and agreement with the tasks of a real run. */
 #include <math.h>

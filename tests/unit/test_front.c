@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Projects (.d3m) and surface fronts (.front) of VGRID. */
 #include "io_support.h"
 

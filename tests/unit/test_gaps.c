@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Gaps between facing surfaces: known widths, cases without a gap, and the
  * edges of a surface remeshed for gaps. */
 #include "remesh_shapes.h"

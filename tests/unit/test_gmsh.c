@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Gmsh's .msh: written meshes are read back; every layout that Gmsh itself
  * writes is read; damaged files are refused. */
 #include "mixed_support.h"

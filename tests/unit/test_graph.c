@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Graphs partitioned by METIS: balanced, few edges cut, each part connected,
  * reproducible; graphs that cannot be partitioned are refused. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The growth law of layers. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/heap.h and base/buckets.h, compared with a list that is searched. */
 #include <setjmp.h>
 #include <stdarg.h>

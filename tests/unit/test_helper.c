@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Helper programs that are missing, foreign, damaged, that crash and that hang:
  * each is refused or ended with its reason, and the tests go on. The helpers
  * here are shell scripts; cli/cases/helpers.sh uses the real ones. */

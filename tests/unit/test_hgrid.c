@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The spatial hash: points near a position are found, distant ones are not. */
 #include <math.h>
 #include <setjmp.h>

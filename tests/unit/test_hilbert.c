@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/hilbert.h: interleaved bits, compared one by one. */
 #include <setjmp.h>
 #include <stdarg.h>

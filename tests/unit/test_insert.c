@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Insertion by cavities: the result is Delaunay for any points, constraints are
  * kept, and a refusal changes nothing. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Layers and isotropic region in one mesh: conforming, positive, in order. */
 #include <setjmp.h>
 #include <stdarg.h>

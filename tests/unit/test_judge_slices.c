@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The mesh check of slices: the report equals that of vg_mesh_judge for any
  * cut, number of threads and damage. */
 #include <setjmp.h>

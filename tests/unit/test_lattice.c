@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Cut planes of a void: planes at quantiles of the load, the regions of each
  * stage, and the walls that keep regions apart. */
 #include "io_support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Layers measured and checked, on columns built by hand. */
 #include <math.h>
 #include <setjmp.h>

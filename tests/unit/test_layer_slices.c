@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Layers and isotropic region in slices: together they equal the mesh of
  * vg_layers_join. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* First heights in acute wedges, by random search: two walls at an angle, and
  * balls and cones sunk into a plane, in any orientation. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Layers as a whole, on difficult surfaces. For any shape: valid cells, the
  * first height kept, a front that bounds the remaining void, and every limit
  * explained; then the fill and the join. */

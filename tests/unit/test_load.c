@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Load estimates: volumes of shapes, cells compared with the mesher's, the
  * split among children, quantiles, messages. */
 #include "load_support.h"

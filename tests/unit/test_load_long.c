@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Load estimates that take long: meshes of a million cells, real surfaces. */
 #include "load_support.h"
 

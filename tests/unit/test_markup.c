@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Escaping of markup in files. */
 #include "io_support.h"
 

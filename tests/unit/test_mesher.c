@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Other meshers: their result is accepted only if it fills the front; whatever
  * they do to their process affects no other. */
 #include <setjmp.h>

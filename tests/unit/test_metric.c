@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Lengths and shapes measured by a tensor, and surfaces remeshed with a given
  * metric. */
 #include "remesh_scene.h"

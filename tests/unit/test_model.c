@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The simulation of a timeline on other machines: graphs whose schedules are
  * known. Durations are sums of powers of two, so results are exact unless a
  * tolerance is given. */

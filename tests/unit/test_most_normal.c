@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The most normal direction, compared with a search through all active sets,
  * whose systems LAPACK solves. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The front of a void that is being cut, on fronts built by hand: front
  * updates, open places where blocks are still connected, and the division into
  * children. */

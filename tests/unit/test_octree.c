@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The octree-guided decomposition: subdomains of octants and the gap region at
  * the front are closed, make up the void, share each interface with exactly one
  * other, and can be filled; octants are balanced; impossible requests are

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Optimisation: the worst cell improves, and the input is preserved: boundary,
  * volume, orientation. */
 #include <math.h>

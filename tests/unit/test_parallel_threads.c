@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Loops over threads, alone and in their callers. Also run under the thread
  * sanitizer. */
 #include <pthread.h>

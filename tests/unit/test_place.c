@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Point placement in the isotropic region: distances that match the spacing, no
  * gaps, all points in the fluid, reproducible. */
 #include <math.h>

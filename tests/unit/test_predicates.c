@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Signs of core/geometry/predicates.h compared with integer arithmetic of
  * arbitrary length: every coordinate here is a whole number, so the reference
  * has no rounding. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Points projected back to a shape: located on old triangles, moved all at
  * once, and kept where triangles would fold, become slivers or intersect. */
 #include "remesh_shapes.h"

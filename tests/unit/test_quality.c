@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The mesh check: known figures, and every kind of fault found and counted. */
 #include <math.h>
 #include <stdint.h>

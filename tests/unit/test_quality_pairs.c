@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The mesh check of tetrahedra alone: faces are matched in the order of cells
  * (core/judge/quality_pairs.c), with many faces waiting and in columns of
  * layers. */

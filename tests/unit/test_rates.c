@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The speed of the machine that recorded a timeline. */
 #include <setjmp.h>
 #include <stdarg.h>

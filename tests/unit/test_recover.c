@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Surfaces whose triangles are not Delaunay are recovered in the cells;
  * surfaces that are not a boundary are refused with a message, and nothing is
  * changed. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Flips towards Delaunay tetrahedra: faces that can be flipped back are, fixed
  * faces stay, and the cells still fill the same box. */
 #include <math.h>

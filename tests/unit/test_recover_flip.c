@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Edges and triangles recovered by flips: all that can be are, the tetrahedra
  * still fill the same box, and recovered ones are kept. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Subdomains that cannot be filled are filled together with their
  * neighbours. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Selection of the triangles near a region, where sizes vary along it. */
 #include <math.h>
 #include <setjmp.h>

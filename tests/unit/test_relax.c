@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Lowering tops of layers under flat cells of the field. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Remeshed surfaces: shapes with known feature edges, areas and distances, a
  * random search, and refusals. */
 #include "remesh_shapes.h"

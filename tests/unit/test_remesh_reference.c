@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reference surfaces with the faults of tessellations: short edges, folds,
  * flaps, intersecting sheets, long feature edges. The remeshed surface is
  * checked. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A surface changed in blocks: for any division the reassembled surface is
  * consistent and close to the input, and it is the same for any number of
  * threads. */

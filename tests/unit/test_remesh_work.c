@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The single changes of a surface: after any sequence of them the surface is
  * consistent and encloses the same volume, and each change was made completely
  * or not at all. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Repairs: bad cells across an interface improve, and nothing else changes. */
 #include <math.h>
 #include <setjmp.h>

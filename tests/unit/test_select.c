@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The faces of a front that a region is given: all that may intersect it, in
  * any order of additions, with indices that lead back to the front. */
 #define _GNU_SOURCE

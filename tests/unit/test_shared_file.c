@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Files written at arbitrary offsets, in a job of one rank. Under MPI:
  * tests/mpi/test_shared_file_mpi.c. */
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/fill/sites.h: bits of a lattice compared with a plain table. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The sizing field: laws of the sources, and the octree that caches them. */
 #include <math.h>
 #include <setjmp.h>

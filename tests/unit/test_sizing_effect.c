@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Sources that do not reach their requested size, and the location of sample
  * points. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Sizes from a function, and from points. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Meshes in slices: the files equal those of the writers of whole meshes, byte
  * for byte. */
 #define _GNU_SOURCE

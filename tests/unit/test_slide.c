@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Slide patches: how they are found, their normals, and the front around
  * columns. Columns are made here from point normals, one per wall point. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Medit's .sol and .solb. */
 #include <math.h>
 #include <setjmp.h>

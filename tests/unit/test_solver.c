@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Solver partitions: no stack is cut, partitions are balanced, the report is
  * correct; and the files of partitions. */
 #include "io_support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outcomes of finished tasks are found again, completely or not at all;
  * directories of other runs are refused with a message. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Edges stretched along feature curves: the tensors around these, and remeshed
  * wings with longer edges along their leading edges. */
 #include "remesh_scene.h"

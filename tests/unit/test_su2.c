@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Meshes for SU2, read back by the published grammar and by VTK's kinds. */
 #include "mixed_support.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Each kind of defect on constructed surfaces, the repair, the nesting of
  * shells, and the published figures of real data. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The surface check on real geometry, clean and dirty: the figures that come
  * with the data (open and non-manifold edges, intersecting pairs, shells),
  * which were found with other programs. */

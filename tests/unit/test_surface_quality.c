@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Figures of the triangles of a surface, for known triangles. */
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Rims that coincide except for rounding are distinguished from holes, and
  * welded. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Swaps and collapses: constructed surfaces with known results, and real ones
  * that must stay valid and improve. */
 #include <math.h>

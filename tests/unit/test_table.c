@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/table.h, base/hash.h, base/tri_key.h: tables compared with plain
  * lists. */
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Fronts of tasks: components where voids touch, splitting and joining, checks,
  * volume, serialization. */
 #include "io_support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Cells with their neighbours: links, location, housekeeping; the Hilbert curve
  * and the sort along it. */
 #include <math.h>

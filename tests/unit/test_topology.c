@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Columns, faces and boundary edges of walls, with and without fans. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "mixed_support.h"
 
 #include "io/mesh/ugrid.h"

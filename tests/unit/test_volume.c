@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Volumes by cones: known bodies, from points inside and outside. */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* VTK's XML with a size at each point, in every permitted encoding. */
 #include <math.h>
 #include <setjmp.h>

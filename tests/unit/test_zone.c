@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Separator zones: final cells along planes, made from the part of a front near
  * them. Tests their division of the void, their cost, and their refusals. */
 #include "io/mesh/ugrid.h"

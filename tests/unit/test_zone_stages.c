@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Pencils, tiles and blocks of a lattice of planes: all regions of a stage are
  * grown from the same front, kept apart by walls. */
 #include "partition/cut/lattice.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Cells for the tests of the kernel, and their invariants. Header only: one
  * program per module. */
 #ifndef TESTS_UNIT_TETS_SUPPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Bodies with sharp edges for the tests of columns. */
 #ifndef TESTS_UNIT_TOPOLOGY_SHAPES_H
 #define TESTS_UNIT_TOPOLOGY_SHAPES_H

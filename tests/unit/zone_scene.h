@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Domains from which separator zones are cut, and their invariants at any
  * moment. Header only: one program per module. */
 #ifndef TESTS_UNIT_ZONE_SCENE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A domain that is filled piece by piece, as in the advancing partition: the
  * kernel fills regions of its void, one after the other, and finally the whole
  * remaining void. Header only: one program per module. */

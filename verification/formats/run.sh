@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/formats/run.sh: compares the contents of the files as other
 # programs read them with those of the .b8.ugrid of the same run as `vanguard
 # check` reads it: cells of each kind, faces of each patch by name, the volume.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Measures the layers in a mesh file, independently of the program's report.
  *
  * vg_measure_layers box MESH.cogsg PATCH DELTA1 R1 R2

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/layers/run.sh: layers on VGRID's example, wings and aircraft,
 # checked by independent programs.
 #

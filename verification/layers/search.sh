@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/layers/search.sh: layers with random settings, to find settings
 # that break them.
 #

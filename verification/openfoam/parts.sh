@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/openfoam/parts.sh: does decomposePar accept the partitions of a
 # mesh, with the numbers of cells and faces that Vanguard reports?
 #

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/openfoam/run.sh: does OpenFOAM accept the meshes, and does a
 # solver converge on them?
 #

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/parallel/determinism.sh: the same files for any number of ranks
 # and threads, any order of the tasks, and runs resumed after kill -9.
 #

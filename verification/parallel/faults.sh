@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/parallel/faults.sh: behaviour of runs that fail.
 #
 # usage: verification/parallel/faults.sh [--vanguard PROGRAM] [--cells N]

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/parallel/memory.sh: memory of a large mesh with layers, on one
 # rank and on several.
 #

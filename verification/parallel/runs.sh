@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/parallel/runs.sh: background runs that can be killed. Sourced by
 # bash after bench/common.sh; the caller sets `vanguard`, `work`, `out_dir`,
 # `run_dir` and the mesh_options, which give input and settings.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/thesis/discrete.sh: the discrete decomposition on the cases of
 # the thesis, with and without viscous layers, compared with the octree-guided
 # decomposition and the advancing partition.

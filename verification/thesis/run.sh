@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # verification/thesis/run.sh: the cases of the thesis on PVGRID, at sizes for 2
 # cores and 24 GiB.
 #

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/helper/helper.h: helper programs, which contain the libraries whose
  * licences must not apply to this program: vanguard-tetgen (TetGen) and
  * vanguard-wrap (CGAL). Each runs in a child process (base/child.h) and

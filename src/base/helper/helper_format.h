@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/helper/helper_format.h: the messages between this program and its helper
  * programs (docs/reference/helpers.md). A helper reads requests from its
  * standard input and writes replies to its standard output, both in the byte

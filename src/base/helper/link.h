@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/helper/link.h: a stream socket to another process that may crash, hang
  * or send anything. Every transfer ends on a request to stop, or when the
  * process has transferred nothing for a given time. */

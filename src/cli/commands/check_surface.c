@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "cli/commands/check_surface.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/commands/check_surface.h: vanguard check of a surface. Private to
  * cli/commands. */
 #ifndef VG_CLI_COMMANDS_CHECK_SURFACE_H

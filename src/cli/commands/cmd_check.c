@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard check: whether a surface can be meshed; validity and quality of a
  * volume mesh. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard deck: a commented run deck with every setting at its default, as
  * text or JSON; the JSON Schema of decks. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard demo: complete example projects that need no external data. */
 #define _GNU_SOURCE
 #include <stdlib.h>

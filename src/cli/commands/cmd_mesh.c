@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard mesh: generates the volume mesh of a project. */
 #define _GNU_SOURCE
 #include <stdlib.h>

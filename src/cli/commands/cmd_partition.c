@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard partition: partitions a volume mesh for the processes of a flow
  * solver. */
 #define _GNU_SOURCE

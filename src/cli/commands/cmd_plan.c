@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard plan: forecasts a run, also on other machines. */
 #include <stdio.h>
 #include <stdlib.h>

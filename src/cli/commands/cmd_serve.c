@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard serve: the portal, from which runs are started in a browser. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard surface: remeshes a surface to target edge lengths. */
 #define _GNU_SOURCE
 #include <stdlib.h>

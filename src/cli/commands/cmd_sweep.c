@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard sweep: runs vanguard mesh over a grid of parameters. */
 #include <math.h>
 #include <stdio.h>

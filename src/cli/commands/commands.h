@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/commands/commands.h: the subcommands. Each is one file with one entry
  * point, which takes argc and argv and returns an exit status
  * (cli/common/cli.h). */

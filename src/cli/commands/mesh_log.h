@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/commands/mesh_log.h: the head of the log of vanguard mesh, which is not
  * printed to the terminal. Private to cli/commands. */
 #ifndef VG_CLI_COMMANDS_MESH_LOG_H

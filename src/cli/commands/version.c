@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Version of the program and of its libraries. */
 #include <gnu/libc-version.h>
 #include <jansson.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/common/cli.h: exit of a command after a failure. Uses
  * run/common/progress.h, jansson. */
 #ifndef VG_CLI_COMMON_CLI_H

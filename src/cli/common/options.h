@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/common/options.h: command-line options, generated from the rows of the
  * settings. Uses run/settings/settings.h. */
 #ifndef VG_CLI_COMMON_OPTIONS_H

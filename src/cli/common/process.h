@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/common/process.h: support for runs of this program as child processes:
  * command lines, the path of this program, and the reason why a run failed. */
 #ifndef VG_CLI_COMMON_PROCESS_H

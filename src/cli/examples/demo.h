@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/examples/demo.h: the geometry of `vanguard demo`: complete flow domains
  * of any size that need no external data. Uses core/mesh/mesh.h,
  * core/sizing/sizing.h. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/examples/demo_parts.h: declarations shared by demo*.c; private. */
 #ifndef VG_CLI_EXAMPLES_DEMO_PARTS_H
 #define VG_CLI_EXAMPLES_DEMO_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A swept, tapered wing with one section throughout is a cone: all its
  * chords meet at an apex beyond the tip. A cone unrolls into the plane
  * without stretching anything, so the plane mesher makes isotropic triangles

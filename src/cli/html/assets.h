@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/html/assets.h: files of share/html, embedded in the program. Private to
  * cli/html. */
 #ifndef VG_CLI_HTML_ASSETS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Histograms as SVG, in the colours of the page. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Colours of layer counts and causes, for pictures and legends. */
 #include "cli/html/page.h"
 

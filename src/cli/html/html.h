@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/html/html.h: PROJECT.report.html, the report of a run as a web page: one
  * file that loads no other, with pictures that need no scripts. Uses
  * run/stages. */

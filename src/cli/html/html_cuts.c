@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Cuts through field and layers. */
 #include <stdio.h>
 

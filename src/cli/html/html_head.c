@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The top of the page: title, flow domain, summary and key figures. */
 #include <math.h>
 #include <stdio.h>

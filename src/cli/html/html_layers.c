@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Table of the layers of each wall. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Patches, and the surface that was meshed. */
 #include "cli/html/page.h"
 

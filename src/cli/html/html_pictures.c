@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Draws all pictures of a page in parallel on threads. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Quality of the cells: histograms and figures. */
 #include <stdio.h>
 

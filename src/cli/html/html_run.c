@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The run itself: times, memory, timeline, files. Only this section differs
  * between runs that make the same mesh. */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Data of the 3-D view: points, triangles and colours of the surface,
  * compressed; share/html/view.js and report.js draw it. */
 #include <stdlib.h>

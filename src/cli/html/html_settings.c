@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Settings: requested ones, those resolved by the program, and the rest. */
 #include <stdio.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Pictures of the surface: patches, number of layers, causes. */
 #include <stdio.h>
 

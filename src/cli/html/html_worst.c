@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The worst cells: drawings with the adjacent cells, and a table. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Elements of a page. */
 #include "cli/html/page.h"
 

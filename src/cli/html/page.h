@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/html: elements and sections of a page. */
 #ifndef VG_CLI_HTML_PAGE_H
 #define VG_CLI_HTML_PAGE_H

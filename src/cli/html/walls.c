@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Colours of surface triangles by patch, number of layers and cause, for
  * pictures. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/http/archive.h: the files of a folder as one download, a tar file that is
  * made while it is sent, so that it needs neither memory nor disk. */
 #ifndef VG_CLI_HTTP_ARCHIVE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/http/fields.h: the named values of forms and queries. */
 #ifndef VG_CLI_HTTP_FIELDS_H
 #define VG_CLI_HTTP_FIELDS_H

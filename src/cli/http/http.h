@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/http/http.h: HTTP server for the portal, by libmicrohttpd. It is
  * single-threaded, so callbacks need no locks. */
 #ifndef VG_CLI_HTTP_HTTP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Stub of cli/http/http.h for builds without libmicrohttpd. */
 #include <unistd.h>
 

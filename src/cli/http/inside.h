@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/http/inside.h: confinement of paths to a folder. */
 #ifndef VG_CLI_HTTP_INSIDE_H
 #define VG_CLI_HTTP_INSIDE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/http/upload.h: uploaded files, one after the other. Each has a
  * temporary name until it is complete, and never overwrites an existing file.
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "cli/look/look.h"
 
 #include <stdlib.h>

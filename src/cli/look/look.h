@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/look/look.h: examines the surface of a project for the portal, in a
  * process of its own, since reading CAD may take long or crash. Uses run/input,
  * cli/scene. */

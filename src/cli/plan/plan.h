@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/plan/plan.h: the two forecasts of vanguard plan. Uses cli/common/cli.h,
  * run/common/ranges.h, partition/model/model.h. */
 #ifndef VG_CLI_PLAN_PLAN_H

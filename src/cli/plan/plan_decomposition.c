@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The domain decomposition with which vanguard mesh would begin, made in the
  * same way, but with the coarser sizing field of a forecast. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard plan: forecasts mesh and run of a project from the surface and the
  * sizing field only. */
 #include "cli/plan/plan_estimate.h"

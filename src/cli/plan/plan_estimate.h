@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/plan/plan_estimate.h: the forecast of a project, for plan_*.c. Uses
  * run/input/layers.h, partition/model/rates.h.
  *

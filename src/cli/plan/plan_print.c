@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Output of the forecast of a project: text, JSON, plot. */
 #include <jansson.h>
 #include <math.h>

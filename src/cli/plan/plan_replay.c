@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* vanguard plan --replay: simulates the tasks of a recorded run on other
  * machines. */
 #include <jansson.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Plots of one run: its timeline and the sizes of its leaves. */
 #include "cli/plot/plot.h"
 

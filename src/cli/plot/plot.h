@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/plot/plot.h: plots of runs, as SVG. Uses cli/plot/svg.h,
  * cli/plot/timeline.h. */
 #ifndef VG_CLI_PLOT_PLOT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Plots that compare several runs: speed-up and phases. */
 #include "cli/plot/plot.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/plot/svg.h: shapes, text and axes of a plot in an SVG file. Numbers are
  * written with two decimals and independently of the locale, so that equal data
  * give equal bytes. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/plot/timeline.h: the trace of a run as a file, STEM.timeline.json: facts
  * of the run and the tasks of each worker with their times. vanguard plan
  * replays it, and vanguard sweep plots it. Uses partition/model/model.h.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/scene/assets.h: the script that draws a scene (share/html/view.js),
  * embedded in the program. */
 #ifndef VG_CLI_SCENE_ASSETS_H

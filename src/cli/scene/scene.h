@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/scene/scene.h: a surface for the 3-D view of share/html/view.js, which
  * the report and the portal use. Uses core/mesh/mesh.h,
  * run/picture/decimate.h. */

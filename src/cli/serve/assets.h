@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: files of share, embedded in the program. */
 #ifndef VG_CLI_SERVE_ASSETS_H
 #define VG_CLI_SERVE_ASSETS_H

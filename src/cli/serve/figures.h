@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: results of a run, from the report that it has
  * written. */
 #ifndef VG_CLI_SERVE_FIGURES_H

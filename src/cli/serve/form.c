@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Converts form fields to settings. Declared in cli/serve/form.h. */
 #define _GNU_SOURCE
 #include "cli/serve/form.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: the form of a run. It has a field for every setting and
  * for every column of the one-line tables; the other tables are text areas. */
 #ifndef VG_CLI_SERVE_FORM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Starts and stops runs as processes. Declared in cli/serve/runs.h. */
 #define _GNU_SOURCE
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: looks, processes that examine a project before a run
  * without meshing: they show the surface, check it, or forecast a run.
  * There is at most one look of each kind; a new one ends the old one, and all

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The page of the portal. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The form of a run. Declared in cli/serve/form.h. */
 #define _GNU_SOURCE
 #include <jansson.h>

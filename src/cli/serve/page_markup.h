@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: escaping of text in pages. */
 #ifndef VG_CLI_SERVE_MARKUP_H
 #define VG_CLI_SERVE_MARKUP_H

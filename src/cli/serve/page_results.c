@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Pages of results: the report of a run, a comparison of runs, the figures of a
  * sweep. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/serve/portal.h: the portal, from which runs are started in a browser: a
  * single-threaded web server that lists the projects below a folder, starts
  * vanguard mesh and vanguard sweep as separate processes, on this machine or

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: the structure of a portal. */
 #ifndef VG_CLI_SERVE_PORTAL_PARTS_H
 #define VG_CLI_SERVE_PORTAL_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: finds the projects below a folder. */
 #ifndef VG_CLI_SERVE_PROJECTS_H
 #define VG_CLI_SERVE_PROJECTS_H

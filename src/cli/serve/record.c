@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run.json: parameters and state of a run, for the next portal. Declared in
  * cli/serve/runs.h. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Replies other than pages. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Answers requests by method and path. Declared in cli/serve/portal_parts.h. */
 #define _GNU_SOURCE
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Paths of looks, for the script of the page: POST looks/KIND with a form
  * starts one, GET looks/ID has its state and result, GET looks/ID/scene the 3-D
  * view, POST looks/ID/stop ends it. Declared in cli/serve/portal_parts.h. */

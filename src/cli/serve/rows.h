@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: tables of a deck with many lines, as text: a line of
  * column names above lines of values. */
 #ifndef VG_CLI_SERVE_ROWS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The list of runs and their folders. Declared in cli/serve/runs.h. */
 #define _GNU_SOURCE
 #include "cli/serve/runs.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: the runs of a portal. Each has a folder with all its
  * files:
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Runs as Slurm jobs, by a copy of share/slurm/vanguard.sbatch in the folder of
  * the run. sbatch, scancel and squeue may take long, so the portal does not
  * wait for them. Declared in cli/serve/runs.h. */

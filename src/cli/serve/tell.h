@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Private to cli/serve: parses the progress lines of a run. */
 #ifndef VG_CLI_SERVE_TELL_H
 #define VG_CLI_SERVE_TELL_H

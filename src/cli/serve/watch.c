@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Monitors runs: their end, the queue, and their progress. Declared in
  * cli/serve/runs.h. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* cli/sweep/sweep.h: vanguard sweep: one run of vanguard mesh for each point of
  * a grid of parameters, and the comparison of the runs. Uses
  * run/common/ranges.h, cli/plot/timeline.h, partition/advance/ways.h. */

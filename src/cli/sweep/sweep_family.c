@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A grid family: its members, and how well they follow the family rule. */
 #define _GNU_SOURCE
 #include <jansson.h>

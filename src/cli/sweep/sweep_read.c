@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reads report and timeline of the runs of a sweep, and compares runs. */
 #define _GNU_SOURCE
 #include <dirent.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Creates the cases of a sweep and runs them one after the other. */
 #define _GNU_SOURCE
 #include <dirent.h>

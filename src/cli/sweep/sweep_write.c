@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes the tables and plots of a sweep. */
 #define _GNU_SOURCE
 #include <jansson.h>

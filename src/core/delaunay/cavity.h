@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/delaunay/cavity.h: the star of an edge, and replacement of the cells of
  * a cavity. Shared by the flips of boundary recovery and of the optimisation.
  * Uses tets.h. */

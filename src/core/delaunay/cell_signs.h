@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/delaunay/cell_signs.h: is a point inside the circumsphere of a cell,
  * and on which side of the cell's faces is it? Both are computed together: the
  * insphere determinant is the sum of the cell's four orientations with the

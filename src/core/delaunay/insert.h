@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/delaunay/insert.h: point insertion with the Bowyer-Watson cavity in a
  * tetrahedralisation with constrained faces. Uses core/delaunay/tets.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/delaunay/tets.h: a modifiable tetrahedralisation: cells with their
  * neighbours, constrained faces, and a location walk. The working state of
  * boundary recovery, point insertion and optimisation. Uses base only.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: find the open edges of the body. Without open edges it gets a whole
  * farfield. If all of them are in one coordinate plane, they are moved exactly
  * into it; half a farfield is added whose border is in the plane, and the plane

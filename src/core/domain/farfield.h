@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/domain/farfield.h: spheres and boxes, whole or cut in half by a
  * coordinate plane, appended to a surface. Used by vg_domain_complete and the
  * examples. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: open edges are joined to rims. The rims of the cut of a half model
  * stay open; each other rim is closed by a plane patch of its own. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/domain/open_edges.h: the open edges of a surface. Private to
  * core/domain. */
 #ifndef VG_CORE_DOMAIN_OPEN_EDGES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: build the constrained Delaunay triangulation of the boundary, flood
  * the inside from the left of the segments, add points by an advancing front,
  * smooth. */

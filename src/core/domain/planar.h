@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/domain/planar.h: triangulates planar regions with a given edge length by
  * a two-dimensional advancing front, and builds surfaces from them: planar
  * patches of a project, farfields, symmetry planes. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Checks the invariant of planar_tri.h, as a stage check (base/checks.h). */
 #include "core/domain/planar_tri.h"
 #include "core/geometry/predicates.h"

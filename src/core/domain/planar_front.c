@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Front point placement in a Delaunay triangulation (Rebay, "Efficient
  * unstructured mesh generation by means of Delaunay triangulation and
  * Bowyer-Watson algorithm", J. Comput. Phys. 106, 1993). The front separates

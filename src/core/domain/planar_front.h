@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/domain/planar_front.h: points of a plane region by an advancing front,
  * and smoothing. Private to planar*.c. */
 #ifndef VG_CORE_DOMAIN_PLANAR_FRONT_H

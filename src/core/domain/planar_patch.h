@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/domain/planar_patch.h: triangulates a plane patch of a surface in space
  * inside its boundary by vg_planar_mesh. Uses core/mesh/mesh.h. */
 #ifndef VG_CORE_DOMAIN_PLANAR_PATCH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Smoothing: each free vertex moves towards the mean of the apexes of
  * equilateral triangles on the edges of its ring, as far as the sum of squared
  * inverse qualities of its triangles decreases. Then edges are flipped to

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/domain/planar_tri.h: the constrained Delaunay triangulation used by
  * vg_planar_mesh. Private to planar*.c.
  *

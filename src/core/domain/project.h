@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/domain/project.h: the data of a mesh project besides surface triangles:
  * planar patches bounded by curves, sources, layer settings. Filled by the .d3m
  * reader and by the run deck. Uses core/mesh/mesh.h, core/sizing/sizing.h. */

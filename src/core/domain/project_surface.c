@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Surface of a project of planar patches. Curves are marched as in VGRID
  * (formats.md 1.7): the step is the spacing at the current point, until it
  * would pass the end; the last three steps are then made equal. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/domain/symmetry.h: decides whether an opening in one plane is the cut of
  * a half body. Private to core/domain. */
 #ifndef VG_CORE_DOMAIN_SYMMETRY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/fill/fill.h: the kernel, which makes all tetrahedra.
  *
  * The kernel tetrahedralises a front (core/recover/boundary.h), places points

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/fill/fill_parts.h: the steps of the kernel. Private to core/fill. */
 #ifndef VG_CORE_FILL_FILL_PARTS_H
 #define VG_CORE_FILL_FILL_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The fields of the kernel's report. */
 #include "core/fill/fill.h"
 

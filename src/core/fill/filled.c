@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The result of the kernel: the cells that are kept, and the resulting change
  * of the front. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/fill/hgrid.h: search for the points around a position. A spatial hash
  * with the level of the local spacing in its key, so that a query accesses few
  * cells for any range of spacings. Uses base only.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/fill/place.h: placement of field points by a front of points that
  * starts at the surface and advances by the local spacing.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Insertion of points into the cells of a front, and improvement of the cells.
  */
 #include "core/fill/fill_parts.h"

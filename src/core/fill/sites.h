@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/fill/sites.h: settled points of a body-centred cubic lattice. One bit
  * per point, in blocks of 8 x 8 x 8 half sides, whose bits fill a cache line.
  * Uses base only. */

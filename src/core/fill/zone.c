@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Selection of the cells that a region keeps: those along a plane (a separator
  * zone) or along a line (an edge separator, pencil). */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: shells are arranged in trees by nesting. Each outermost shell gets
  * the roles of its patches. Shells that contain others, and a shell that is the
  * only one, are compared with their convex hull. */

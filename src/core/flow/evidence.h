@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/flow/evidence.h: evidence for a body or for an outer boundary, shell by
  * shell. Private to core/flow and its tests. */
 #ifndef VG_CORE_FLOW_EVIDENCE_H

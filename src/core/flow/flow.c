@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: the cap of a half model is removed, and a half model is joined with
  * its mirror image. Each outermost shell is classified, and the verdicts are
  * combined. Shells are then turned and sealed cavities dropped. */

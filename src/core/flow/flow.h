@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/flow/flow.h: determines on which side of a surface the fluid is, and
  * which parts of the surface bound it.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/flow/half.h: half models. Private to core/flow.
  *
  *        given with a cap          open              with its mirror image

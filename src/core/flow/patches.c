@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Finds flat patches and ends of shells. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The role of a patch, by its condition or its name. Declared in
  * core/flow/flow.h. */
 #include <ctype.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The shape of an outermost shell: whether it is a box, or a part of a sphere
  * cut by coordinate planes, and how deep the rest of it reaches inside.
  * Farfields and tunnels have these shapes; a wing or a rocket does not,

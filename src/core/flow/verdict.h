@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/flow/verdict.h: classifies an outermost shell as body or outer boundary.
  * Private to core/flow and its tests. */
 #ifndef VG_CORE_FLOW_VERDICT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/front/front.h: the boundary of a region that is still to be meshed.
  *
  * A front is an oriented triangulation whose faces look into the void, the

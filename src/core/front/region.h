@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/front/region.h: a region that restricts where the kernel makes cells:
  * along a plane or a line, within walls. Uses core/sizing/sizing.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/exact_sum.h: sums of doubles without rounding errors. The
  * result depends neither on the order of the summands nor on the thread or
  * rank that adds them. Uses base only.

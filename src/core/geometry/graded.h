@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/graded.h: division of a curve into steps of the local spacing.
  */
 #ifndef VG_CORE_GEOMETRY_GRADED_H

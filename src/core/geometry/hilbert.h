@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/hilbert.h: ordering of points that keeps neighbours together.
  */
 #ifndef VG_CORE_GEOMETRY_HILBERT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/nearest.h: distance of a point from a triangle. Uses
  * core/geometry/vector.h. */
 #ifndef VG_CORE_GEOMETRY_NEAREST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Continuation of the predicates in predicates.h for the calls that their
  * filter cannot decide, in steps:
  *   0. For spheres: the formula of the filter in long double with a 64-bit

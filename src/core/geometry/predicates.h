@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/predicates.h: signs of determinants, exact for every finite
  * input.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/shape.h: a fast quality measure of tetrahedra. */
 #ifndef VG_CORE_GEOMETRY_SHAPE_H
 #define VG_CORE_GEOMETRY_SHAPE_H

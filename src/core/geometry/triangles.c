@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Uses signs of determinants only (the idea of Guigue and Devillers, J.
  * Graphics Tools 8, 2003): two triangles intersect if and only if an edge of
  * one intersects the other. Shared nodes are recognised first, by their

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/triangles.h: intersection test of two triangles. */
 #ifndef VG_CORE_GEOMETRY_TRIANGLES_H
 #define VG_CORE_GEOMETRY_TRIANGLES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/vector.h: three-dimensional vectors in plain floating-point
  * arithmetic. Use core/geometry/predicates.h where a sign must be exact. */
 #ifndef VG_CORE_GEOMETRY_VECTOR_H

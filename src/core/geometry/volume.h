@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/geometry/volume.h: volumes as sums of cones from a point over faces.
  * The sums are in plain arithmetic, in the order of the faces; core/judge has
  * exact ones. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/judge/flat_cells.h: causes of flat cells. A flat cell is a tetrahedron
  * outside the layers whose smallest dihedral angle is below VG_FLAT_LIMIT. It
  * is classified by the kinds of its four points. Uses base and

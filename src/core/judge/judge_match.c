@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Matching of faces, edges and positions shared by slices. */
 #include <assert.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Check of one slice: measures the figures within it, and keeps the data that
  * other slices need. */
 #include <stdlib.h>

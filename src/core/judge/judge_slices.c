@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Check of a mesh in slices: distributes the work and assembles the report. */
 #include "core/judge/judge_slices.h"
 

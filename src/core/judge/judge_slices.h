@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/judge/judge_slices.h: check of a mesh that no process holds as a whole:
  * the report of core/judge/quality.h, from slices. */
 #ifndef VG_CORE_JUDGE_JUDGE_SLICES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/judge/judge_slices_parts.h: declarations shared by the files of
  * judge_slices.c. Private.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The mesh check: runs the sweeps one after the other and draws the
  * conclusion. */
 #include "core/judge/quality.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/judge/quality.h: check of a finished mesh: validity and element
  * quality. */
 #ifndef VG_CORE_JUDGE_QUALITY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Edge lengths compared with the sizing field: every interior edge once.
  *
  * An edge is entered in the bucket of its lower node. Second and later entries

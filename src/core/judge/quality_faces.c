@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Conformity: every face of every cell must match a face of a neighbour or a
  * boundary face.
  *

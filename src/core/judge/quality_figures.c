@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Figures of a mesh check: added up in any order, and converted to a report. */
 #include <assert.h>
 #include <math.h>

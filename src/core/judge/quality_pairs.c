@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Matching of the faces of tetrahedra in the order of the cells.
  *
  * A face waits in a hash table until its other side arrives, and then leaves

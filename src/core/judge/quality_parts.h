@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/judge/quality_parts.h: declarations shared by the files of quality.c
  * and judge_slices.c. Private.
  *

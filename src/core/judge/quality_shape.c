@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Shape of cells: sign and size of volumes, dihedral angles, radius ratio.
  *
  * For a tetrahedron a b c d with u = b - a, v = c - a, w = d - a:

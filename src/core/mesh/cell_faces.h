@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/mesh/cell_faces.h: faces of the cells of core/mesh/mesh.h (formats.md
  * 2.3), with normals into the cell. A triangle repeats its last node. */
 #ifndef VG_CORE_MESH_CELL_FACES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Matching of half-faces: core/mesh/cell_links.h.
  *
  * One pass visits the cells in order. A half-face whose mate has not been met

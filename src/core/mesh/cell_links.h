@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/mesh/cell_links.h: which cells of a mesh share which faces. Uses
  * mesh.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Edges from half-edges: bucket by the lower node, then sort each bucket by
  * the higher node. Linear, except for nodes with very many edges. */
 #include "core/mesh/edges.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/mesh/edges.h: the edges of a triangulation, with the half-edges that
  * lie on each.
  *

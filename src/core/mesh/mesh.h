@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/mesh/mesh.h: the mesh that readers fill, the mesher consumes and
  * produces, and writers store. A surface is a mesh without cells. Uses base
  * only.

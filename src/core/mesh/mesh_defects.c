@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Checks of the boundary faces of a mesh. */
 #include "core/mesh/mesh_defects.h"
 

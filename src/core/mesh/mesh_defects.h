@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/mesh/mesh_defects.h: checks of a mesh produced by a stage of the
  * program (base/checks.h). Files are checked where they are read. Uses mesh.h.
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/mesh/slices.h: a mesh that no process holds as a whole. Uses base,
  * mesh.h.
  *

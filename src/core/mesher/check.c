@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Check that the result of a mesher fills the front. The cells must be
  * positive, each inner face must have two cells on opposite sides, and each
  * face of the front must have exactly one cell, on its inner side. The number

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The process that runs a mesher: core/mesher/mesher_parts.h. */
 #define _GNU_SOURCE
 #include <assert.h>

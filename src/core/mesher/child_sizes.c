@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Target edge lengths from the other side of a socket. Asking for each of them
  * would take longer than the meshing. They are therefore cached on an octree
  * over the box of the front and interpolated trilinearly. Cells are split if

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The parent's side of meshers in child processes: core/mesher/mesher_parts.h.
  */
 #include "core/mesher/fill_with.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/mesher/fill_with.h: other meshers (mesher.h) that fill voids in child
  * processes (base/child.h): TetGen, HXT of gmsh, plug-ins. */
 #ifndef VG_CORE_MESHER_FILL_WITH_H

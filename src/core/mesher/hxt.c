@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* HXT of gmsh (C. Marot, J. Pellerin, J.-F. Remacle, "One machine, one minute,
  * three billion tetrahedra", Int. J. Numer. Methods Eng. 117(9), 2019),
  * through gmsh's C interface. The library is loaded in a child process when

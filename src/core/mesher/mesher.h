@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
 /* core/mesher/mesher.h: interface of meshers that fill voids for Vanguard.
  * This header is self-contained and installed as vanguard/mesher.h, for
  * plug-ins in C and C++: a shared library that exports vg_mesher_plugin can be

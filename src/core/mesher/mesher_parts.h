@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/mesher/mesher_parts.h: declarations shared by the two processes of a
  * mesher, parent and child. Private to core/mesher.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Shells of a void, determined from the edges of its front. Where more than
  * two triangles meet at an edge, two neighbouring triangles with the void
  * between them belong to the same shell. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/optimise/optimise.h: improvement of cells within a given boundary. */
 #ifndef VG_CORE_OPTIMISE_OPTIMISE_H
 #define VG_CORE_OPTIMISE_OPTIMISE_H

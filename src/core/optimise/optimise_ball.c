@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Shapes of the cells around a point and their gradients, as loops without
  * branches over arrays, which compilers vectorise. */
 #include "core/optimise/optimise_ball.h"

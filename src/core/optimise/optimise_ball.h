@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/optimise/optimise_ball.h: the cells around a point, stored as arrays
  * for fast loops. Each cell is represented by the face opposite the point,
  * with all quantities that do not change when the point moves. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Smoothing of points among cells that are only listed, without links between
  * them. There are few such points, so each of them gets more steps than in a
  * sweep of the optimisation. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/optimise/optimise_parts.h: declarations shared by the steps of the
  * optimisation. */
 #ifndef VG_CORE_OPTIMISE_OPTIMISE_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Removal and insertion of points for bad cells that neither swaps nor
  * smoothing improve (Klingner, Shewchuk, "Aggressive tetrahedral mesh
  * improvement", 2007). Both are only accepted if the worst cell improves. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Smoothing: a point moves within its ball if the worst cell around it
  * improves, or, if all of them are good already, if their mean improves.
  * Targets are the volume-weighted mean of the cells' centroids, which evens

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Swaps: a face is replaced by an edge (2-3), or an edge by the best
  * triangulation of the polygon around it (3-2, 4-4, ... by dynamic
  * programming: Shewchuk, "Two discrete optimization algorithms for the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* One pass of swaps: the first half of a sweep of the optimisation. */
 #include <assert.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/recover/boundary.h: the coarsest tetrahedralisation that contains a
  * surface: only points of the surface, and every triangle is a constrained
  * face. */

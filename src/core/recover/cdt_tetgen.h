@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/recover/cdt_tetgen.h: the only interface to TetGen for boundary
  * recovery (H. Si, "TetGen, a Delaunay-based quality tetrahedral mesh
  * generator", ACM TOMS 41(2), 2015).

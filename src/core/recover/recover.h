@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/recover/recover.h: recovery of surface triangles that are missing from
  * Delaunay tetrahedra, by flips or pocket by pocket. */
 #ifndef VG_CORE_RECOVER_RECOVER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Flips that restore Delaunay tetrahedra once all triangles of the surface are
  * recovered. A face is locally Delaunay if the circumsphere of one of its
  * cells does not contain the far corner of the other. Each flip lowers the

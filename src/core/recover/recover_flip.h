@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/recover/recover_flip.h: flips that recover an edge or a triangle of a
  * surface among tetrahedra on its points. Edges and faces of the surface that
  * are already present are preserved.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Recovery by flips: first the edges, then the triangles. */
 #include "core/recover/recover_flip.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Queries of the flips about the surface: its edges and triangles, and
  * obstructions of an edge or triangle to be recovered. */
 #include "core/recover/recover_flip.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Recovery of one edge or triangle of a surface: its obstructions are searched
  * for from its first point and removed by flips. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: every triangle is assigned to a block. Each block copies its
  * triangles into a surface of its own with local numbers, in which edges shared
  * with other blocks are open and their end points frozen. When all blocks have

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/blocks.h: changes a surface in blocks, in parallel. Private to
  * core/remesh.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Assigns triangles to blocks: recursive bisection of their centroids across
  * the longest side of the bounding box, by histogram. */
 #include "core/remesh/blocks_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: the remaining points and triangles and the new ones are numbered
  * block by block; each block writes its range. Open edges of blocks are matched
  * by their end points, which have not moved. Points near these edges count as

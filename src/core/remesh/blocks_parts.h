@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/blocks_parts.h: declarations shared by blocks.c, blocks_cut.c and
  * blocks_join.c. Private to core/remesh. */
 #ifndef VG_CORE_REMESH_BLOCKS_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: sweeps collapse short edges, the shortest first, unless a triangle
  * around the edge has already changed in the same sweep. After each sweep the
  * longest edges of flat triangles are swapped. At triangles that intersect each

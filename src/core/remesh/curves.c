@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: edges become feature edges by the angle between their faces. Loose
  * ends are extended along edges that are not quite as sharp. Short isolated
  * curves that a displacement by the tolerance could produce are dropped. Points

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/curves.h: the feature curves of a surface, which remeshing
  * preserves: sharp edges, fixed patch borders and open rims. Private to
  * core/remesh. */

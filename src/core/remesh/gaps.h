@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/gaps.h: finds gaps, narrow fluid regions between surfaces that
  * face each other, and returns places with target edge lengths, for remeshing
  * the surface and for the cells in the gaps.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: remove small faults of the input surface, find feature curves, close
  * narrow strips, and compute the sizing field. Long feature edges are split if
  * the sizes at their ends do not represent the size at their midpoint. Feature

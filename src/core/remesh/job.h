@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/job.h: the data that vg_remesh works on: the reference surface
  * with its feature curves and sizing field. Private to core/remesh. */
 #ifndef VG_CORE_REMESH_JOB_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/metric.h: target edge length as a function of position and
  * direction: a size, and a symmetric tensor (form) that scales it in each
  * direction (George and Borouchaki, "Delaunay Triangulation and Meshing", 1998,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/passes.h: the remeshing passes, sequences of local changes.
  * Private to core/remesh. */
 #ifndef VG_CORE_REMESH_PASSES_H

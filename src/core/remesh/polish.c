@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: triangles with a small angle are treated one by one. The gain of
  * each possible change is first computed from the surrounding points, which is
  * cheap; only the best change is checked against the reference surface. */

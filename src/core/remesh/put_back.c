@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: all points move at once, since neighbours move by nearly the same
  * vector. Points of bad triangles are then moved back, until no triangle is
  * bad, and so are points of triangles that intersect. If triangles still

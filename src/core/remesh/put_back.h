@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/put_back.h: moves points of a remeshed surface to the shape that
  * the old triangles approximate. */
 #ifndef VG_CORE_REMESH_PUT_BACK_H

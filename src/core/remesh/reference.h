@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/reference.h: the reference surface: the triangles of the input
  * with a search tree for queries of distance, orientation and size while the
  * surface is remeshed. Private to core/remesh.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: the input surface becomes the reference; its feature curves and
  * sizes are computed. A copy is changed pass by pass, and the result is checked
  * like any surface before meshing. Each change examines its neighbourhood

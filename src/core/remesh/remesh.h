@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/remesh.h: remeshes a surface triangulation to target edge
  * lengths.
  *

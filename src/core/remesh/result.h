@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/result.h: converts a remeshed surface to a mesh. Private to
  * core/remesh. */
 #ifndef VG_CORE_REMESH_RESULT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/sizes.h: sizes from the shape of a surface. Private to
  * core/remesh. */
 #ifndef VG_CORE_REMESH_SIZES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/stretch.h: feature curves along which edges are longer than
  * across them (stretched), and the resulting metric around them. Private to
  * core/remesh.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: the width of the strip on each side of every feature curve is
  * measured at many places. Stretches of the shorter of two curves along which
  * the strip is narrow are closed. Edges are split where a stretch begins or

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/strips.h: narrow strips between two feature curves. Strips
  * narrower than the tolerance can only be filled with needles and are closed:
  * one of the two curves is dropped along the strip. Private to core/remesh.

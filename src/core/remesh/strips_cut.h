@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/strips_cut.h: splits edges of a surface without changing its
  * shape, and marks the parts between the cuts. Private to core/remesh. */
 #ifndef VG_CORE_REMESH_STRIPS_CUT_H

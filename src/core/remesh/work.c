@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "core/remesh/stretch.h"
 #include "core/remesh/work_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/work.h: the surface that is being changed, and the checks that
  * every change must pass. Private to core/remesh. */
 #ifndef VG_CORE_REMESH_WORK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The five changes: split, collapse, swap, move and slide. Each collects the
  * old and the new triangles, has them checked, the cheapest test first, and
  * only then modifies the surface. */

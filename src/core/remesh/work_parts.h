@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/remesh/work_parts.h: the checks shared by the changes of work_change.c.
  * Private to core/remesh. */
 #ifndef VG_CORE_REMESH_WORK_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/search/box.h: axis-parallel boxes. An empty box has lo > hi. */
 #ifndef VG_CORE_SEARCH_BOX_H
 #define VG_CORE_SEARCH_BOX_H

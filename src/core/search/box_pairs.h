@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/search/box_pairs.h: all pairs of touching boxes in a tree. */
 #ifndef VG_CORE_SEARCH_BOX_PAIRS_H
 #define VG_CORE_SEARCH_BOX_PAIRS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/search/box_tree.h: a tree of the bounding boxes of items, for overlap
  * and distance queries.
  *

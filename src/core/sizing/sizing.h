@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing.h: target edge length (spacing) in space. Uses base and
  * core/mesh/mesh.h.
  *

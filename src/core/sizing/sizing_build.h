@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_build.h: an octree of spacings under construction.
  * Internal to core/sizing. */
 #ifndef VG_CORE_SIZING_SIZING_BUILD_H

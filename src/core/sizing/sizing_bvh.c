@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "core/sizing/sizing_bvh_parts.h"
 
 #include <assert.h>

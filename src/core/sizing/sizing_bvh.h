@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_bvh.h: growth of the spacing from very many point
  * samples, by a bounding volume hierarchy. Internal to core/sizing. Uses base
  * only.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_bvh_parts.h: the hierarchy of samples that
  * core/sizing/sizing_bvh.c builds and core/sizing/sizing_walk.c searches.
  * Internal to core/sizing.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Check that the octree of spacings is a valid tree, and that every spacing is
  * a number (base/checks.h). */
 #include "core/sizing/sizing_octree.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A sizing field coarser than another one. */
 #include <assert.h>
 #include <math.h>

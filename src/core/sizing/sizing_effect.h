@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_effect.h: do sources have the requested effect? Uses
  * core/sizing/sizing.h, core/mesh/slices.h.
  *

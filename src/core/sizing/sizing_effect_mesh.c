@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Does a mesh have points near the sample points of sources? */
 #include <stdatomic.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The exact field: sources, and growth of the spacing from the surface. */
 #include "core/sizing/sizing_octree.h"
 

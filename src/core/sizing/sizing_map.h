@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_map.h: spacings given at points, as a map for
  * vg_sizing_options. Uses core/sizing/sizing.h. */
 #ifndef VG_CORE_SIZING_SIZING_MAP_H

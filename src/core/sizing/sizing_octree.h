@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_octree.h: the exact sizing field and the octree that
  * caches it. Internal to core/sizing. */
 #ifndef VG_CORE_SIZING_SIZING_OCTREE_H

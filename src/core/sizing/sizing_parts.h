@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_parts.h: data of a sizing field. Internal to core/sizing.
  */
 #ifndef VG_CORE_SIZING_SIZING_PARTS_H

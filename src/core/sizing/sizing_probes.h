@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_probes.h: sample points in and around a source, and
  * whether they are in a void. For core/sizing/sizing_effect.c. */
 #ifndef VG_CORE_SIZING_SIZING_PROBES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* One sizing field shared by the ranks of a node. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_source.h: laws of single sources, and lists of sources
  * that are prepared for many evaluations. Uses core/sizing/sizing.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/sizing/sizing_surface.h: spacings prescribed by a boundary
  * triangulation. Internal to core/sizing. Uses core/mesh/mesh.h. */
 #ifndef VG_CORE_SIZING_SIZING_SURFACE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Searches in the hierarchy of samples (core/sizing/sizing_bvh_parts.h), four
  * lanes at a time in the vector types of gcc and clang. Only sqrt and masks
  * need intrinsics. Every operation rounds as its scalar form does, so that all

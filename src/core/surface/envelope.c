@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: points that are extreme in many directions represent the convex
  * hull. Each triangle is on the hull or off it, and union-find over the edges
  * joins triangles of either kind into pieces. The largest piece on the hull is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/surface/envelope.h: decides whether a closed surface is a body or the
  * boundary of a whole flow domain. Uses core/mesh/mesh.h. */
 #ifndef VG_CORE_SURFACE_ENVELOPE_H

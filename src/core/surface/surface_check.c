@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The surface check: repairs a copy of the surface where the repair is
  * unambiguous, then searches for the remaining defects, kind by kind. The steps
  * are in surface_parts.h. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/surface/surface_check.h: checks whether a triangulation can bound a
  * mesh, and repairs it. */
 #ifndef VG_CORE_SURFACE_SURFACE_CHECK_H

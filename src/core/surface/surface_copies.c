@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Classifies regions of faces with the same three nodes. A region consists of
  * such faces that are connected through common edges. The other faces at its
  * border distinguish a duplicated piece of a skin (one other face at each edge)

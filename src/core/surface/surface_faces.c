@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The boundary faces as triangles on points with distinct coordinates. */
 #include "core/surface/surface_parts.h"
 

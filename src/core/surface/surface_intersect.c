@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Finds triangles of a surface that share more than their common nodes and
  * edges: all pairs, sorted by their numbers. */
 #include "core/surface/surface_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Connected components of the surface, and consistent orientation. */
 #include "core/surface/surface_parts.h"
 

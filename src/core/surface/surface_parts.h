@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/surface/surface_parts.h: the steps of vg_surface_check, grouped by the
  * file that defines them. Private to core and its tests. */
 #ifndef VG_CORE_SURFACE_SURFACE_PARTS_H

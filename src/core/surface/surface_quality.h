@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/surface/surface_quality.h: quality of the triangles of a surface. A cell
  * cannot be better than the boundary face that it contains. */
 #ifndef VG_CORE_SURFACE_SURFACE_QUALITY_H

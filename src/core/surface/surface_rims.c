@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Welds open edges whose ends are next to those of another open edge because
  * the two parts of the surface were rounded differently: see surface_check.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Shells: their volumes, nesting and sides. */
 #include "core/surface/surface_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Improves triangles without adding points. A copy of the triangles is changed
  * and then tested for intersections. Points of intersecting triangles are
  * locked, and the changes start again from the input. Every round locks more

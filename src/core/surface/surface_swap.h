@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/surface/surface_swap.h: improves the triangles of a surface without
  * adding points.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Edge swaps. The smallest angle of the two triangles grows with every swap,
  * hence also the sorted list of all smallest angles, so that the process
  * terminates. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/surface/surface_swap_parts.h: declarations shared by surface_swap*.c.
  * Not part of the public interface. */
 #ifndef VG_CORE_SURFACE_SURFACE_SWAP_PARTS_H

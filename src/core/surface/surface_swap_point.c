@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Removes points by collapsing a short edge into one of its ends. */
 #include "core/surface/surface_swap_parts.h"
 

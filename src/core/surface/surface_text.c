@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Findings of the surface check as text. */
 #include <assert.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Tree of the bounding boxes of surface triangles. */
 #include "core/surface/surface_parts.h"
 

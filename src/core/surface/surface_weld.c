@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Merges points that coincide, and renumbers after points and triangles were
  * merged or dropped. */
 #include "core/surface/surface_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/wrap/wrap.h: makes a closed surface around an input that cannot be
  * repaired: overlapping parts, holes, sheets, triangles without connectivity.
  *

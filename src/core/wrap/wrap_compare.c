@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Compares the input with its wrap: is a part of the input missing, and is the
  * wrap a hollow shell? */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Moves the points of a wrap onto the input where the wrap stays sound. Around
  * a convex edge the nearest point is on the edge, so that sharp edges and
  * corners are restored. */

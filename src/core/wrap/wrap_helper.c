@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Requests to the helper program vanguard-wrap, which contains CGAL
  * (base/helper/helper.h). */
 #include <assert.h>

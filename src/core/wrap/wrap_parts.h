@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* core/wrap/wrap_parts.h: the requests to vanguard-wrap, and the steps that
  * follow it. */
 #ifndef VG_CORE_WRAP_WRAP_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Parts and rims of the input: the holes through which a wrap can enter. */
 #include <assert.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The shells of a wrap: removes those that bound no body, and appends the outer
  * boundaries that were kept. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Finds a size for a wrap by trial. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Closes the ends of a wrap at sharp edges of zero thickness, which are as wide
  * as twice its offset.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #define _GNU_SOURCE
 #include "io/cad/cad.h"
 
@@ -102,11 +103,10 @@ vg_status vg_cad_open(struct vg_cad **out, struct vg_error *err)
   if (!vg_cad_is_built())
     return vg_fail(
       err, VG_ERR_UNSUPPORTED,
-      "this build of vanguard cannot read CAD (CMake option "
-      "VG_CAD): install Open CASCADE (Debian's "
-      "libocct-data-exchange-dev) and configure again, or mesh the surface with another "
-      "program ('gmsh -2 FILE -o NAME.stl') and use its "
-      "triangles");
+      "this build of vanguard cannot read CAD (CMake option VG_CAD): install "
+      "Open CASCADE (Debian's libocct-data-exchange-dev) and configure again, "
+      "or mesh the surface with another program ('gmsh -2 FILE -o NAME.stl') "
+      "and use its triangles");
   c = vg_calloc(1, sizeof *c);
   if (!c) return vg_fail_memory(err, "a CAD model");
   st = start_child(c, err);

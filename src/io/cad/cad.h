@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/cad/cad.h: surfaces from CAD files (STEP, IGES, BREP), read by Open
  * CASCADE.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/cad/wire.h: the protocol between io/cad and io/occt over the socket, in
  * the byte order of the machine. */
 #ifndef VG_IO_CAD_WIRE_H

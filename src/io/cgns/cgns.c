@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writer of CGNS files of whole meshes, and of the frame of files of slices;
  * see io/cgns/cgns.h and io/cgns/cgns_put.h. HDF5 makes the nodes in a store in
  * which the arrays are left out; the bytes between the arrays are taken from

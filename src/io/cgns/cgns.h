@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/cgns/cgns.h: CGNS files in HDF5 (cgns.github.io: SIDS, and its mapping to
  * HDF5). Uses io/vgrid/mapbc.h for boundary conditions.
  *

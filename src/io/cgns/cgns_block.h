@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/cgns/cgns_block.h: converts faces of a structured zone to triangles.
  * Private to its module.
  *

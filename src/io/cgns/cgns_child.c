@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Runs the HDF5 library in a child process, which a damaged file may crash or
  * keep in an endless loop; see io/cgns/cgns.h. */
 #define _GNU_SOURCE

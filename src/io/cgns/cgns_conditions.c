@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "io/cgns/cgns_conditions.h"
 
 #include <string.h>

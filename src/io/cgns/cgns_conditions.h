@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/cgns/cgns_conditions.h: boundary conditions of CGNS (SIDS, BCType_t).
  * Private to its module. */
 #ifndef VG_IO_CGNS_CONDITIONS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Stub of io/cgns/cgns_tree.h in a build without the HDF5 library. */
 #include "io/cgns/cgns_tree.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reader of CGNS; see io/cgns/cgns.h. For each zone it reads the points, then
  * the patches that the zone's BC_t give to the elements of each section, then
  * the elements. */

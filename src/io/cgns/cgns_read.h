@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/cgns/cgns_read.h: converts the tree of a CGNS file to a mesh. Private to
  * its module; only called in the child process of cgns_child.c. */
 #ifndef VG_IO_CGNS_READ_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Structured zones; see io/cgns/cgns.h. All faces of a surface are read; of a
  * block with cells, only the faces of its conditions. */
 #include "io/cgns/cgns_read_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/cgns/cgns_read_parts.h: declarations shared by the readers of unstructured
  * and of structured zones. Private to its module. */
 #ifndef VG_IO_CGNS_READ_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/cgns/cgns_store.h: a sparse file in memory, in which only the pages
  * written take memory, or a read-only view of existing bytes. Private to its
  * module.

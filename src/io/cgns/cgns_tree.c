@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* CGNS nodes in HDF5; see io/cgns/cgns_tree.h and, in the standard, "CGNS/HDF5
  * file mapping". Files are reproducible: HDF5 records no times, and space for
  * arrays is reserved at once. */

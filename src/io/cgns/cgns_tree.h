@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/cgns/cgns_tree.h: the tree of nodes of a CGNS file in HDF5. Private to its
  * module. Only cgns_tree.c uses the HDF5 library; cgns_none.c replaces it in
  * builds without HDF5.

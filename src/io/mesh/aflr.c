@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* .surf, .tags and AFLR's .bc; see io/mesh/aflr.h and formats.md 2.5 and
  * 2.6. */
 #include "io/mesh/aflr.h"

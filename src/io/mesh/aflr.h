@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/aflr.h: surfaces and layer settings of AFLR3: .surf, .tags and AFLR's
  * .bc (formats.md 2.5 and 2.6). All are text; 1-based. */
 #ifndef VG_IO_MESH_AFLR_H

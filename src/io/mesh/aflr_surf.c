@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Surface files of AFLR3; see io/mesh/aflr.h and formats.md 2.5. */
 #include <stdlib.h>
 #include <string.h>

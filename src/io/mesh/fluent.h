@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/fluent.h: writer of meshes for Fluent, as text (ANSYS Fluent User's
  * Guide, "Mesh file format"): points, faces with the cells on both sides, and
  * the kinds of cells. Numbers of points, faces and cells start from 1 and are

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The five files of an OpenFOAM mesh; see io/mesh/foam.h and formats.md 4.3. A
  * list is either text, one item per line, or its length, '(', the bytes and
  * ')'. Binary faces are two lists of labels: where each face starts, and the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/foam.h: writer of OpenFOAM's polyMesh (formats.md 4.3).
  *
  * A case is a folder:

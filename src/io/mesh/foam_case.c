@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Folders of an OpenFOAM case; see io/mesh/foam.h. */
 #include "io/mesh/foam.h"
 

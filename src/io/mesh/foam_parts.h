@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/foam_parts.h: declarations shared by foam.c (the five files of a
  * mesh), foam_case.c (folders) and, for faces, fluent.c. Private. */
 #ifndef VG_IO_MESH_FOAM_PARTS_H

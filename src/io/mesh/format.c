@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The table of formats; see io/mesh/format.h. */
 #define _GNU_SOURCE
 #include "io/mesh/format.h"

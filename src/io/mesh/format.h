@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/format.h: the table of formats. A format is recognised by its suffix,
  * in upper or lower case, optionally followed by ".gz". Read and written: .stl
  * .tri .obj .mesh .meshb .msh .cgns .ugrid (and .b8.ugrid, ...,

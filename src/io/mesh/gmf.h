@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/gmf.h: parts shared by Medit's mesh and solution files (the GMF of
  * libMeshb): version, dimension, keywords. Private to io/mesh. */
 #ifndef VG_IO_MESH_GMF_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writer of Gmsh's .msh, version 4.1 binary; see io/mesh/gmsh.h. Sizes and tags
  * of nodes and elements have 8 bytes, tags of entities 4. */
 #include "io/mesh/gmsh.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/gmsh.h: Gmsh's .msh. Version 4.1 binary is written; versions 4.1 and
  * 2.x are read, both text and binary of either byte order (gmsh.info, "Gmsh
  * file formats").

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/gmsh_parts.h: patches of a Gmsh file. Private to io/mesh. */
 #ifndef VG_IO_MESH_GMSH_PARTS_H
 #define VG_IO_MESH_GMSH_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reader of Gmsh's .msh; see io/mesh/gmsh.h. Sections are enclosed by $Name and
  * $EndName; unknown sections are skipped. Versions 2.x have 4-byte integers in
  * binary files, and groups with every element. Version 4.1 has sizes and tags

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/medit.h: Medit / GMF .mesh (text) and .meshb (binary, versions 1 to
  * 4, either byte order; formats.md 4.6). 1-based. References of boundary faces
  * are patch ids. Pyramids have ring 1 2 3 4 and apex 5 in the file. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/obj.h: Wavefront OBJ surfaces (formats.md 3.3). 1-based text;
  * negative indices count back from the last vertex. Faces point out of the
  * solid, which is into the fluid: their orientation is kept. */

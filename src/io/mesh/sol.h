@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/sol.h: Medit's solution files, .sol (text) and .solb (binary,
  * versions 1 to 4): values at the vertices of the mesh of the same name (the
  * GMF of libMeshb). One scalar per vertex is read. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/stl.h: STL surfaces, ASCII and binary (formats.md 3.1; the 1989
  * specification of 3D Systems). There are no indices: facets contain
  * coordinates, and points whose bits are equal (-0 as 0) are merged. Normals

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/su2.h: writer of meshes for SU2.
  *
  * The native text format of SU2 (su2code.github.io/docs_v7/Mesh-File): cells

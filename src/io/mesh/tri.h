@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/tri.h: Cart3D surfaces .tri and .triq (formats.md 3.2). 1-based;
  * triangles point out of the solid, which is into the fluid: their orientation
  * is kept. Text, or Fortran records of either byte order with 4- or 8-byte

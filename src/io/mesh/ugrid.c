@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reader and writer of the UGRID family; see io/mesh/ugrid.h and formats.md
  * 2. */
 #include "io/mesh/ugrid.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/ugrid.h: AFLR / UGRID meshes in every variant of formats.md 2.1:
  * text, and binary with 4- or 8-byte integers, 4- or 8-byte reals, either byte
  * order, as streams or Fortran records. 1-based; cells and boundary faces as in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/vtu.h: VTK unstructured grids for ParaView and VisIt, as appended raw
  * data with UInt64 headers (formats.md 4.4). 0-based; pyramids and wedges in
  * VTK's node order. Written in the byte order of the machine, array by array,

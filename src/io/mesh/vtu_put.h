@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/vtu_put.h: functions that write parts of a .vtu file, for the serial
  * writer and for the writer of slices, in which all ranks write
  * (io/slices/slices_parts.h). */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/mesh/vtu_read.h: reads the points of a VTK file and one value at each
  * (.vtu, .vtp: VTK's XML, in one piece), the format in which solvers export
  * their results. Text, base64 or raw, of either byte order, uncompressed or

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Repair of triangles whose three points are collinear. Open CASCADE
  * triangulates in the parameter plane. On cones, cylinders and ruled faces, the
  * points of one generator are collinear there as well; triangles between them

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Removes superfluous faces, and starts the repair, sewing and uniting of
  * faces. */
 #include "io/occt/occt_parts.h"

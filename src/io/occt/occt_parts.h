@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/occt/occt_parts.h: a CAD file in Open CASCADE, in the child process of
  * io/cad. All functions may throw a Failure, or exceptions of Open CASCADE. */
 #ifndef VG_IO_OCCT_OCCT_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Projection of points to faces and curves. */
 #include "io/occt/occt_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reads faces and their names, colours and layers from STEP, IGES and BREP
  * files. */
 #include "io/occt/occt_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Repair of triangles that do not follow their face.
  *
  * A triangle of a curved face whose vertices are all on the rim lies in the

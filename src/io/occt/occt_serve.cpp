@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Answers the questions of the parent and handles their errors. */
 #include "io/occt/occt_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Sewing of open edges, orientation of faces, and volume of the model. */
 #include "io/occt/occt_parts.h"
 

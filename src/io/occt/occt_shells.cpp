@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Open CASCADE's repair of translated shapes, except that the orientation of
  * faces is omitted in shells of very many faces, where Open CASCADE searches
  * all faces for each face. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Collapse of edges that are too short to be useful. Curves that end in a cusp
  * are divided indefinitely there, since their direction changes at every
  * scale. */

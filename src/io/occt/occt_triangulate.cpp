@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Triangulates faces so that they share points by topology: a vertex is one
  * point, and so is each division of an edge, for all faces that meet there. */
 #include "io/occt/occt_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Replaces solids that touch or overlap by their union.
  *
  * Open CASCADE's general fuse divides all solids of a group by each other into

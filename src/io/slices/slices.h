@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/slices/slices.h: writes meshes that are available as slices, by all ranks
  * at once, into files that are byte for byte those of a single process. */
 #ifndef VG_IO_SLICES_SLICES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes a mesh in slices as one .cgns with the bytes of vg_cgns_write. Rank 0
  * lays out the file and writes nodes and faces; it sends the offsets of the
  * arrays to the other ranks. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes a mesh in slices as one .fluent.msh with the bytes of vg_fluent_write.
  *
  * A face is written with the numbers of the cells on its two sides. Faces

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Collects a mesh in slices on rank 0, for writers of whole meshes. */
 #include <assert.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes a mesh in slices as one .msh with the bytes of vg_gmsh_write. The
  * bounding boxes of patches need the boundary points, which are collected from
  * the slices. */

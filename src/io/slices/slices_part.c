@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes METIS's .part file for a mesh in slices. Its lines have different
  * lengths, so all ranks first exchange the sizes of their text. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/slices/slices_parts.h: declarations shared by the writers of whole meshes
  * and of meshes in slices.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* .pvtu: a mesh in slices as pieces, each in a file of its own. A piece is a
  * sequence of slices in the order of the mesh. Each slice has copies of all its
  * points, so that nothing has to be matched between slices. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes a mesh in slices as one .su2 with the bytes of vg_su2_write. */
 #include "io/slices/slices_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes a mesh in slices as one .vtu with the bytes of vg_vtu_write. */
 #include "core/judge/quality.h"
 #include "io/slices/slices_parts.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/stream/boundary.h: boundary faces sorted by patch, as some formats list
  * them. */
 #ifndef VG_IO_STREAM_BOUNDARY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Orientation, index base and patches of meshes read from files. */
 #include "io/stream/convention.h"
 

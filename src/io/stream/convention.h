@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/stream/convention.h: conversion of file contents to the conventions of
  * core/mesh/mesh.h. Shared by the readers. Orientations in files are never
  * trusted. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Complete files in memory, binary values and Fortran records; see
  * io/stream/stream.h. */
 #include "io/stream/stream.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/stream/metis_part.h: subdomains of cells in the files that METIS's
  * programs write, STEM.part.N. Each line holds the subdomain number of a cell,
  * counted from 0, in the order of the cells. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "io/stream/narrow.h"
 
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/stream/narrow.h: effects of rounding coordinates to 4-byte reals: cells
  * that become flat or inverted, and points that coincide. Uses core. */
 #ifndef VG_IO_STREAM_NARROW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Buffered output to a temporary file name, Fortran records and numbers; see
  * io/stream/stream.h. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/stream/patch_words.h: patch names for formats in which a name must be a
  * single word. */
 #ifndef VG_IO_STREAM_PATCH_WORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* One file written by all ranks; see io/stream/shared_file.h. */
 #define _GNU_SOURCE
 #include "io/stream/shared_file.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/stream/shared_file.h: one file written by all ranks at different offsets,
  * with MPI-IO, or with pwrite in a job without MPI. Uses base/comm.h.
  *

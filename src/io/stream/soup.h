@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/stream/soup.h: a surface that grows while a file without counts (STL, OBJ)
  * is read: points, which may be merged if all their bits are equal, triangles
  * and named patches. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/stream/stream.h: input and output functions for all readers and writers.
  * Uses base only.
  *

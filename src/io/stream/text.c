@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Tokens, numbers and lines of text files; see io/stream/stream.h. */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE /* for strtod_l */

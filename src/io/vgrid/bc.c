@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* .bc: boundary triangles of a VGRID mesh, text (formats.md 1.3). */
 #include <assert.h>
 #include <stdlib.h>

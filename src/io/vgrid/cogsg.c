@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* .cogsg and its companion files (formats.md 1.2). */
 #define _GNU_SOURCE
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reader of .d3m project files (formats.md 1.6). Lines with '#' are titles,
  * blank lines separate, and text after the numbers of a line is ignored. */
 #include <assert.h>

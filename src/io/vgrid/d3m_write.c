@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writer of .d3m project files. It uses the columns of VGRID's own example
  * (formats.md 1.6), since it is not known whether VGRID reads by column. */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* .front: VGRID's surface mesh and restart file (formats.md 1.9). Points, faces
  * and curve edges are read; everything else is skipped. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Assigns the faces of a front to patches. The file does not contain the
  * patches (formats.md 1.9), but it lists the edges on the curves of the
  * project.

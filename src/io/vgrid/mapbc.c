@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Both layouts of .mapbc, and the codes: io/vgrid/mapbc.h, formats.md 1.4,
  * 1.5. */
 #include "io/vgrid/mapbc.h"

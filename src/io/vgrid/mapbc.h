@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/vgrid/mapbc.h: boundary conditions of patches in both layouts of .mapbc,
  * that of USM3D and that of FUN3D (formats.md 1.4 and 1.5), and the translation
  * of their codes. */

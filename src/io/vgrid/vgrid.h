@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* io/vgrid/vgrid.h: files of VGRID / TetrUSS (formats.md 1): the volume mesh
  * .cogsg with its .bc, the surface front .front and the project .d3m.
  * Big-endian Fortran records and text; 1-based; cells have positive volume and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Point order of VGRID (formats.md 1.2): corners, points along the curves
  * between patches, other surface points, field points. */
 #include <assert.h>

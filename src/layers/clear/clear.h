@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/clear/clear.h: keeps layers free of collisions with other surfaces and
  * with each other. Uses core, columns.h, topology.h. */
 #ifndef VG_LAYERS_CLEAR_CLEAR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Finds the surface opposite each column: triangles that face the column,
  * within a cone of 45 degrees. Bounding boxes of triangles and of their normals
  * exclude everything in most places, which is determined for groups of

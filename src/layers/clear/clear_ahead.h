@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/clear/clear_ahead.h: the steps of vg_clear_ahead; the file of each
  * step is named above its functions. Private to clear*.c. */
 #ifndef VG_LAYERS_CLEAR_CLEAR_AHEAD_H

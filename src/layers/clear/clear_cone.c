@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Intersection of one triangle with a line or with a cone of 45 degrees. */
 #include "layers/clear/clear_ahead.h"
 

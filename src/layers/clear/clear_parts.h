@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/clear/clear_parts.h: tree of bounding boxes of triangles, for
  * clear*.c. Private.
  *

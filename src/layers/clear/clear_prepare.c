@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Prepares the search for opposite surfaces: the face and columns on each
  * triangle, normals and their bounding boxes, and an order of the columns that
  * keeps neighbours together. */

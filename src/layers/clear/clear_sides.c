@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Overlaps of the side faces of the layers in one slide patch. The patch may be
  * plane only up to noise, or curved, so the test is two-dimensional: the
  * coordinate along which the normals of both side faces are largest is dropped,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Finds tops that collide. Bounding boxes of the tops that may have moved find
  * the candidate pairs, and exact determinants decide. Contact at a shared
  * column, or at a shared root that has no column with a level, is recognised by

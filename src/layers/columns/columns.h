@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/columns/columns.h: viscous layers stored as columns. Uses
  * core/mesh/mesh.h, layers/columns/growth_law.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/columns/growth_law.h: growth law, the thickness of each layer. Uses
  * base only.
  *

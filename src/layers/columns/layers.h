@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/columns/layers.h: viscous layers on the walls of a closed surface,
  * which are grown before the rest of the volume is meshed. Uses core,
  * layers/columns/columns.h.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Sharing one copy of the layers between the ranks of a node. */
 #include "layers/columns/share.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/columns/share.h: layers in memory shared by the ranks of a node, and
  * access to all their bytes. Uses base/comm.h, layers/columns/layers.h. */
 #ifndef VG_LAYERS_COLUMNS_SHARE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Numbers and coordinates of the points of columns. Cells are in
  * expand_cells.c. */
 #include "layers/expand/expand.h"

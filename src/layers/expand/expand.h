@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/expand/expand.h: expands columns into points and cells. Private to the
  * files of join.h.
  *

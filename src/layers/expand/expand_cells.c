@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Cells of wall faces, and the side faces at boundary edges, from the wall
  * upwards.
  *

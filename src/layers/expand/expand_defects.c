@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Checks of columns: their indices, and every one of their cells. */
 #include "layers/expand/expand_defects.h"
 

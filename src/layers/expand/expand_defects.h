@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/expand/expand_defects.h: checks of columns made by a stage
  * (base/checks.h). Uses columns.h, core/judge/quality.h. */
 #ifndef VG_LAYERS_EXPAND_DEFECTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/expand/expand_parts.h: private to expand*.c. */
 #ifndef VG_LAYERS_EXPAND_EXPAND_PARTS_H
 #define VG_LAYERS_EXPAND_EXPAND_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Merges layers and field into one mesh in memory. */
 #include "layers/expand/join.h"
 

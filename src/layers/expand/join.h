@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/expand/join.h: the complete mesh from columns and field. Uses core,
  * layers.h. */
 #ifndef VG_LAYERS_EXPAND_JOIN_H

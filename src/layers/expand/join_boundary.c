@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The boundary of the mesh of layers and field: remaining triangles of the
  * surface, side faces of the layers, and remeshed patches. */
 #include <stdlib.h>

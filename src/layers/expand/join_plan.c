@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Numbering of the points of the mesh. The boundary is in join_boundary.c. */
 #include "layers/expand/join_plan.h"
 

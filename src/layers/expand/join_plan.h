@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/expand/join_plan.h: numbering of the points of layers and field in the
  * mesh, and its boundary, for meshes made as a whole or in slices. Private to
  * join*.c and slices*.c. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Layers and field in slices: division into slices, and their assignment to
  * ranks. */
 #include "layers/expand/slices.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/expand/slices.h: vg_layers_join for a field in slices. Layers are
  * expanded slice by slice, on the rank that requests a slice. Uses
  * core/mesh/slices.h. */

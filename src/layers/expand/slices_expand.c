@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* One slice of the layers: a run of faces with all its cells and new points.
  *
  * Local points: first the new inner points, in the order of the mesh, so that

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/expand/slices_parts.h: private to slices*.c. */
 #ifndef VG_LAYERS_EXPAND_SLICES_PARTS_H
 #define VG_LAYERS_EXPAND_SLICES_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Volumes on both sides of the tops of the layers.
  *
  * The points of the front come first in the field, so a cell of the field on a

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Shape of the layer cells on one face. Declared in layers/expand/stack.h. */
 #include "layers/expand/stack.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/expand/stack.h: shape of the layer cells on one face. Uses core,
  * layers/columns/columns.h, join.h. */
 #ifndef VG_LAYERS_EXPAND_STACK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Bending of directions. Declared in layers/grow/grow_parts.h.
  *
  * Where columns converge (in a concave corner, or at a wall at an acute angle

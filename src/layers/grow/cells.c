@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Checks the shape of the cells of all columns. Declared in
  * layers/grow/grow_parts.h. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Marching directions: normal to the wall where it is smooth, and visible from
  * all faces at edges and corners. Declared in layers/grow/grow_parts.h. */
 #include "layers/grow/direct.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/grow/direct.h: data shared by the files about directions. Private to
  * direct.c (first directions), bend.c (bending) and lift.c (lengths, first
  * points, evening out of columns). */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/grow/grow.h: grows viscous layers on the walls of a surface before the
  * rest of the volume is meshed. Uses core, layers/columns/layers.h. */
 #ifndef VG_LAYERS_GROW_GROW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/grow/grow_parts.h: data shared by the steps of vg_layers_grow. Private
  * to layers. Arrays are per column unless stated otherwise. "height" is
  * measured in units of column.dir, so that the wall distance of the first point

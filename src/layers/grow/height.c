@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Number and heights of the layers, and their reduction where necessary.
  * Declared in layers/grow/grow_parts.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Lengths of columns, first points, and evening out of columns. Declared in
  * layers/grow/grow_parts.h. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Sorts the faces so that neighbours are close: cells and points of the layers
  * are numbered by face. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Checks every cell of the columns.
  *
  * Faces are processed in chunks of nearby faces. The points of the columns of a

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Fields over the wall: levels and distances, measured on the points.
  *
  * The distance of a point from the wall is that from triangles near its root.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/measure/measure.h: properties of the layers, measured on their points
  * and not taken from the requested values. Uses core, layers.h. */
 #ifndef VG_LAYERS_MEASURE_MEASURE_H

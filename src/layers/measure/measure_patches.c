@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Statistics of layers by patch. */
 #include "layers/measure/measure.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Volume ratios between layers and field, by patch. */
 #include <assert.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Collects the cells at the tops of flat cells, has them improved on the first
  * rank, and moves the tops on all ranks. */
 #include "layers/relax/relax.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/relax/relax.h: lowers tops of columns under flat cells of the field.
  * Uses base/comm.h, core/mesh/slices.h, layers/columns.
  *

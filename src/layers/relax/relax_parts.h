@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/relax/relax_parts.h: data of vg_layers_relax. Private. */
 #ifndef VG_LAYERS_RELAX_RELAX_PARTS_H
 #define VG_LAYERS_RELAX_RELAX_PARTS_H

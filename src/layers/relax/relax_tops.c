@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Lowers tops one after the other, in the order of their columns. Declared in
  * layers/relax/relax_parts.h. */
 #include <assert.h>

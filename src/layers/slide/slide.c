@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The front: tops, remeshed slide patches, and all other triangles
  * unchanged. */
 #include "layers/slide/slide.h"

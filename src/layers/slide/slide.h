@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/slide/slide.h: slide patches, the patches in which columns slide:
  * symmetry planes, inviscid walls, tunnel walls and farfields that touch a
  * wall. Uses core, columns.h.

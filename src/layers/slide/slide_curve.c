@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Columns that slide in two patches follow the common curve of the patches.
  * Points that a column passes are removed from the curve, and new points are
  * placed between its top and the next remaining point. */

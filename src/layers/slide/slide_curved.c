@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Curved slide patches, as graphs over their mean plane. They are remeshed in
  * that plane, and new points are projected back onto the former triangles. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Plane patches over which the layers of a wall continue. */
 #include <assert.h>
 #include <math.h>

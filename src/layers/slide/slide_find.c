@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Finds the patches that touch walls, and their normals. */
 #include "layers/slide/slide.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The new boundary of a slide patch, which is its former one with the edges at
  * walls moved to the tops, and checks of the region that it encloses. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/slide/slide_parts.h: data shared by the steps of vg_slide_front.
  * Private to slide*.c.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Remeshing of a slide patch inside its new boundary. */
 #include <assert.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Finds the parts to be remeshed: plane patches with columns as a whole, but of
  * curved patches only the area that columns reach and a few edges more. New
  * points lie on the facets of the given surface, so the rest should remain

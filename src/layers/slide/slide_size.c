@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Target edge length for remeshing a slide patch. The sizing field was built
  * for the walls, which are now covered by layers: where tops spread apart,
  * their edges are longer than the field requests, and the meshing that follows

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A tree of boxes in the plane, ordered along a Morton curve. The order
  * determines which of several faults of a boundary is found first and thus
  * reported. */

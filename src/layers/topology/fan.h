@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/topology/fan.h: fans, several columns at one point of a convex edge.
  * Private to topology*.c and fan*.c. Uses core, topology_wall.h.
  *

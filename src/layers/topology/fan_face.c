@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Virtual faces along ridges and at points, and boundary edges of fans. */
 #include "base/memory.h"
 #include "layers/topology/fan.h"

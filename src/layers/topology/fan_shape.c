@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Directions of the columns at one point of a convex edge. */
 #include <assert.h>
 #include <string.h>

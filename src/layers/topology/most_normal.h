@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/topology/most_normal.h: the most normal direction of several faces.
  *
  * Among all w with w . n_i >= 1 for the normals n_i, the shortest is chosen.

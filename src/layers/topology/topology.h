@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/topology/topology.h: columns, faces and boundary edges of a wall. Uses
  * core, columns.h, slide.h. */
 #ifndef VG_LAYERS_TOPOLOGY_TOPOLOGY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* layers/topology/topology_wall.h: the triangles of the walls and their
  * adjacency. Private to topology*.c and fan*.c. Uses core, slide.h. */
 #ifndef VG_LAYERS_TOPOLOGY_TOPOLOGY_WALL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/advance/advance.h: the advancing partition: separator zones of
  * final cells cut a void until the voids between them are small, and these are
  * filled, as tasks over ranks and threads. Uses core, load.h, lattice.h,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Tasks of the advancing partition: their execution, the tasks that follow,
  * and their transfer to other ranks and back. */
 #include "partition/advance/advance_tasks.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/advance/advance_tasks.h: the tasks of the advancing partition for
  * the engine. Private to advance*.c. */
 #ifndef VG_PARTITION_ADVANCE_ADVANCE_TASKS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/advance/coarse.h: the coarse mesh of the discrete decomposition,
  * made like any mesh: cut by planes and filled by all workers. Private to
  * partition/advance. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/advance/ways.h: the methods to decompose a void. */
 #ifndef VG_PARTITION_ADVANCE_WAYS_H
 #define VG_PARTITION_ADVANCE_WAYS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/cut/decomposition.h: decomposition of a void by interfaces before
  * any of it is filled, as the discrete and the octree-guided decomposition make
  * it. The subdomains are filled, or cut further, like the children of a cut.

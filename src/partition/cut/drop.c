@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Dropped cells: those of zones whose changes cross the front. Their home rank
  * finds this after the executing rank has kept the cells. */
 #include <assert.h>

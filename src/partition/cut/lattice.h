@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/cut/lattice.h: positions of cuts. Uses load.h,
  * core/front/region.h.
  *

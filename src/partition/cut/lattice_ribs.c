@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Division of large tiles by ribs. Outline: the distribution of cells in the
  * tile's zone is sampled at the octants that its plane passes through, as dots
  * of the plane. Candidate lines divide the dots evenly, either parallel to an

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/cut/needles.h: planes that sliver triangles of the front rule out.
  * Private to cut. */
 #ifndef VG_PARTITION_CUT_NEEDLES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/cut/node.h: a node of the decomposition tree: one void from the
  * plan of its cut to its children. For the modules of partition alone.
  *

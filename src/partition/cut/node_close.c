@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Closes places where a void is still connected across a lattice. Outline:
  * every cell that touches a plane is made in a stage, so the remaining faces
  * are on one side of each plane, except where cells could not be kept because

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Detects changes that cross the front. Outline: a zone is given the front
  * within a band around its planes, whose width is a number of local spacings,
  * and it keeps cells by their corners. A long cell can leave that band between

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Decomposition of a void by a maker: its subdomains become children, like
  * those of a cut. Interface points are on two or more subdomains. A subdomain
  * that is filled without a cut owns them: its leaf adopts them, as the leaves

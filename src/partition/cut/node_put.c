@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Front update: inserts the changes of a stage into the front of its node.
  * Outline: each task gets its range of indices behind the front, in the order
  * of the tasks. Points are then copied, and new faces are tested against the

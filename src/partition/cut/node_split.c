@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Divides the front that a cut leaves by the blocks of the lattice. Outline:
  * the remaining faces are on one side of every plane (node_close.c). The block
  * of a point is therefore the block of its faces, and the front of a void

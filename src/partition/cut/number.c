@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Numbers the points and cells of all ranks: tasks in the order of their
  * paths, each with its points and cells in its own order. One exchange of
  * counts. */

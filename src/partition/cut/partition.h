@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/cut/partition.h: settings, report and result of the decomposition
  * and filling of a void. Uses core, lattice.h, store.h. */
 #ifndef VG_PARTITION_CUT_PARTITION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Members of the decomposition's report that ranks combine when all cells are
  * numbered. Repairs combine theirs earlier (repair/repair.c). */
 #include "partition/cut/partition.h"

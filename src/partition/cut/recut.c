@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Repeated decomposition (recut) around leaves that could not be filled.
  * Outline: such a leaf is set aside, and all other tasks continue. When they
  * are done, the cells of the adjacent zones are removed. The boundary of these

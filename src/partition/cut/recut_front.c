@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The front of a void from the cells that were made in it: the faces that only
  * one cell has. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Points of removed pieces. Their cells are gone, but other pieces share
  * points with them, by ids with the serial of the removed piece. The void that
  * is filled there has all of these points on its front, and its leaf adopts

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/cut/select.h: selection of the faces of a front that a region
  * needs. Uses core/search/box.h, task_data.h, engine.h. */
 #ifndef VG_PARTITION_CUT_SELECT_H

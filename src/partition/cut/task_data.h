@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/cut/task_data.h: input and outcome of a task of the advancing
  * partition. Uses core. */
 #ifndef VG_PARTITION_CUT_TASK_DATA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Tasks that make cells: look in the store, otherwise make the cells, and keep
  * the result. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/discrete/discrete.h: discrete domain decomposition: the cells of a
  * coarse mesh of the void are assigned to subdomains, whose interfaces are
  * remeshed to the local size. Uses core, graph.h, load.h, decomposition.h.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Generates the coarse mesh with the kernel that makes all cells. */
 #include <assert.h>
 #include <math.h>

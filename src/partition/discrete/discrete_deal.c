@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Assigns coarse cells to subdomains. */
 #include <assert.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Remeshes interfaces to the local size: first points along their edges, then
  * each coarse face as a plane region. */
 #include <assert.h>

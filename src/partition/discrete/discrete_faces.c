@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Faces and edges between subdomains. */
 #include <assert.h>
 #include <stdlib.h>

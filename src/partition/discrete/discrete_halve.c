@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Refines interfaces to the local size by bisection, as in the original
  * method. The longest edge of a triangle is halved if it is too long, and
  * triangles split into two, three or four by their halved edges, repeatedly

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/discrete/discrete_parts.h: declarations shared by the steps of the
  * discrete decomposition. */
 #ifndef VG_PARTITION_DISCRETE_DISCRETE_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Smooths interfaces: a point moves towards the mean of its neighbours on the
  * interfaces or, on a curve where subdomains meet, of its neighbours on the
  * curve, as long as the coarse cells stay good. */

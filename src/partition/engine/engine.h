@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/engine/engine.h: task scheduler over ranks and threads. Uses base
  * only.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Parallel loops inside a task. While a loop is open, idle workers of the rank
  * take chunks of it. The worker that opened it also takes chunks, so the loop
  * ends with or without help. Tasks take precedence over loops, but a helper

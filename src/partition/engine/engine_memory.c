@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "partition/engine/engine_memory.h"
 
 #include <stdlib.h>

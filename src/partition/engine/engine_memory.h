@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/engine/engine_memory.h: arrays that grow inside a task. Uses
  * engine.h. */
 #ifndef VG_PARTITION_ENGINE_ENGINE_MEMORY_H

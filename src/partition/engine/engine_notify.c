@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Messages of a rank to the schedule: a function call on rank 0, a message
  * elsewhere. */
 #include <assert.h>

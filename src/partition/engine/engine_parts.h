@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/engine/engine_parts.h: declarations shared by the files of the
  * engine.
  *

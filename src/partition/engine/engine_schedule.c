@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The list of ready tasks on rank 0, which decides who executes what.
  *
  * A rank is given a task while it has fewer tasks than workers. It is given

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The calling thread of vg_engine_run serves messages and polls the caller's
  * stop and progress.
  *

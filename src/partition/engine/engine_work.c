@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The workers: they execute tasks, and call `done` for tasks that have
  * ended. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/engine/spans.h: the trace of a run: which worker did what and
  * when. It serves the report and plots, and can be replayed on other machines
  * (model.h). */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/graph/bisect.h: recursive coordinate bisection (M. J. Berger, S. H.
  * Bokhari, "A partitioning strategy for nonuniform problems on
  * multiprocessors", IEEE Trans. Comput. C-36(5), 1987). Uses base only. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/graph/graph.h: partitioning of weighted graphs by METIS (G.
  * Karypis, V. Kumar, "A fast and high quality multilevel scheme for
  * partitioning irregular graphs", SIAM J. Sci. Comput. 20(1), 1998). Uses base

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Stub of partition/graph/graph.h in a build without METIS. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: an octree is refined until its nodes are a few target edges wide.
  * Nodes that are completely outside are dropped immediately. Several threads
  * process branches, whose octants are joined in the order of the tree. */

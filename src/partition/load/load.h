@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/load/load.h: load estimate: the number and distribution of the
  * cells that a void needs. Uses core.
  *

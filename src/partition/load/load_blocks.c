@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: octants are assigned to the blocks of a lattice by position, in
  * chunks that threads share. All octants are counted first and then written, so
  * that their order in a block is the parent's order. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Loads as messages. The index is not sent, because it is rebuilt from the
  * octants. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: octants are in octree order. The same order applies to positions:
  * the highest bit in which two positions differ along some axis decides. The
  * octant of a position is therefore found by bisection. */

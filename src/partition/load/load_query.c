@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: each axis is divided into bins at the faces of octants, of all
  * octants if they are few, else of a sample, so that bins are narrow where
  * octants are small. Each bin stores the number of cells below it, the density

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: the parent's octants and the front of each child are descended
  * together. In a node without any front, all octants are inside or all are
  * outside. In an octant that the front crosses, inside samples are counted. The

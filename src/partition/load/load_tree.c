@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: the owner of a point follows from a point with a known owner and
  * the triangles that a path of axis-parallel segments crosses: +1 where the
  * path runs along a normal, -1 against it. A path within a node meets only

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/load/load_tree.h: an octree that distributes triangles to its
  * nodes, and determines for the lower corner of each node which void
  * contains it. For load.c and load_split.c.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/model/forecast.h: forecast of a whole run from the load estimate
  * alone, before any cell is made: the decomposition tree, and the tasks with
  * their expected times, for vg_model_replay. Uses lattice.h, spans.h.

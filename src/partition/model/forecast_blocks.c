@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Divides a void of a forecast into the blocks of its lattice. */
 #include <stdlib.h>
 

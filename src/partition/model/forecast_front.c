@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The coarse front of a forecast, and the effect of separator zones on it. */
 #include <assert.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/model/forecast_parts.h: a void of the forecast's tree, with its
  * load and a coarse front (forecast_front.c), divided into blocks
  * (forecast_blocks.c). Private to forecast*.c. The result of every function

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The simulation. There are two kinds of event, processed by time: a task has
  * been computed, and its outcome has arrived at home, which ends the task. All
  * events of one moment are processed before tasks are assigned again. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/model/model.h: replay of the same tasks on another machine. Uses
  * spans.h.
  *

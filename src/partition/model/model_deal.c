@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Cyclic schedule: static assignment of leaves to workers before any leaf is
  * filled. */
 #include <assert.h>

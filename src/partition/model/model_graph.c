@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The dependency graph of the tasks. Rules: model.h. */
 #include "partition/model/model_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/model/model_parts.h: the dependency graph, and the assignment of a
  * cyclic schedule; for model*.c only. */
 #ifndef VG_PARTITION_MODEL_MODEL_PARTS_H

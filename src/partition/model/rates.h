@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/model/rates.h: how fast is this machine? The times of traced tasks
  * are fitted, by least squares, as a sum over their cells and the faces of
  * their fronts. Uses spans.h, forecast.h. */

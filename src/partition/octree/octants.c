@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: the octree is refined together with the triangles of the front,
  * which determine what is in the void, until octants are as narrow as the
  * sizes require. It is then balanced, and each triangle removes the octants

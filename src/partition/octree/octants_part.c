@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: each connected component of free leaves is divided into its share
  * of the subdomains. Disconnected components of a subdomain join an adjacent
  * subdomain, or become subdomains of their own. Each connected component of

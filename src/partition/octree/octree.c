@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: octants, their subdomains, patches between subdomains, triangles on
  * patches; then the fronts that these form, which are checked before they are
  * returned. */

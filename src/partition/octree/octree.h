@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/octree/octree.h: octree-guided decomposition: the part of the void
  * away from the front is filled with octants, graded by the sizes and assigned
  * to subdomains, and the sides of these are the interfaces. The remaining

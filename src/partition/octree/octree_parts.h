@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/octree/octree_parts.h: octants, the faces between them, and the
  * plane patches that faces between subdomains form. Private to the module.
  *

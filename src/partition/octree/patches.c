@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: curves are divided, then the patches between them are triangulated
  * separately and numbered in their order. */
 #include <assert.h>

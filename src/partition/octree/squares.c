@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Outline: edges of faces between subdomains are divided at all ends of edges
  * on their line (where octants of two sizes meet, edges overlap). A segment
  * with two faces in one plane, between the same two subdomains, is inside a

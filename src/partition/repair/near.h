@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/repair/near.h: quality of the cells near interfaces. Uses core,
  * node.h. */
 #ifndef VG_PARTITION_REPAIR_NEAR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Repairs: gathers cells by cluster, repairs them, and puts them back as
  * pieces. */
 #include "partition/repair/repair.h"

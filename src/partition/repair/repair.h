@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/repair/repair.h: improves cells at interfaces, across the pieces
  * of all tasks. Uses core, node.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Points adjacent to interface points: these have moved, so the adjacent
  * points get another sweep. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Boundary triangles between some of the boundary points. */
 #include <assert.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Joins cells of several pieces by the global ids of their points, and repairs
  * them. */
 #include <assert.h>

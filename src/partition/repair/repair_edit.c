@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Removes and adds cells of a piece. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Balls around bad cells, owners of pieces, and messages to other ranks. */
 #include <assert.h>
 #include <math.h>

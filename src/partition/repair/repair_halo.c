@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Halos: the cells of other pieces that the owner of interface points needs. */
 #include <assert.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Makes the overlap of an owner: the cells around its interface points, where
  * the cells of other pieces are joined to its own by the global ids of their
  * points. */

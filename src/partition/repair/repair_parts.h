@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/repair/repair_parts.h: declarations shared by the steps of the
  * repair. */
 #ifndef VG_PARTITION_REPAIR_REPAIR_PARTS_H

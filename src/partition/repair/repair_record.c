@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Times of repairs, as tasks in the trace of a run: they wait for all leaves
  * and for nothing else. */
 #include <assert.h>

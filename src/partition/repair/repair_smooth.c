@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Swaps and smoothing across interfaces, and the bad cells that remain there.
  *
  * A task can move neither the points of its front nor, in a zone, the points

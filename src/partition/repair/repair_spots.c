@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Balls of very different sizes, in one hashed grid per size. */
 #include <assert.h>
 #include <math.h>

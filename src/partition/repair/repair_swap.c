@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Swaps across interfaces: the cells around those to be swapped are linked to
  * a patch. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Partitions of a mesh in slices.
  *
  * Every rank finds the stacks and clusters in its slices, one slice at a time,

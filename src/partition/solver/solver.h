@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/solver/solver.h: partitioning of a finished mesh for a flow
  * solver. Uses core/mesh, partition/graph.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/solver/solver_parts.h: declarations shared by the files of
  * solver.h. Private.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The graph of the units, and its partitioning by METIS. */
 #include <assert.h>
 #include <stdlib.h>

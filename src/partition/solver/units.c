@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Units of cells that stay together: stacks of layer cells, and clusters of
  * the other cells.
  *

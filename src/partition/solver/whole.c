@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Partitions of a mesh in one piece. */
 #include <assert.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/store/store.h: outcomes of finished tasks, kept in a run
  * directory, so that an interrupted run can be resumed. Uses base only.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* partition/store/store_parts.h: declarations shared by the files of the
  * store. The run directory holds run.txt (the job that the records belong to),
  * run.settings, run.lock, and records/XX/KEY, where KEY has 32 hexadecimal

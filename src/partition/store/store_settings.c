@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The settings of a run as lines of "name=value", kept next to run.txt so that
  * a refusal can list the differences. No decision depends on them. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 #include "run/common/folder.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/common/folder.h: folders for the files of a run. Uses base. */
 #ifndef VG_RUN_COMMON_FOLDER_H
 #define VG_RUN_COMMON_FOLDER_H

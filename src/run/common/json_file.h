@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/common/json_file.h: writes JSON files. Uses jansson, io/stream. */
 #ifndef VG_RUN_COMMON_JSON_FILE_H
 #define VG_RUN_COMMON_JSON_FILE_H

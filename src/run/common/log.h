@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/common/log.h: the file of --log, which receives the output of a run. One
  * per process, like the standard output. */
 #ifndef VG_RUN_COMMON_LOG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/common/progress.h: progress display on stderr, a live line on a terminal
  * and plain lines elsewhere, and requests to stop (SIGINT, SIGTERM, SIGUSR1).
  * Times are only displayed and influence nothing. */

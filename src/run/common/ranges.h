@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/common/ranges.h: lists of numbers as entered by users: "1,2,4", "3:7",
  * "0:100:20", "1:512:x2" (each number is twice the previous one), and
  * combinations separated by commas. */

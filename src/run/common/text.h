@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/common/text.h: names from files for display: valid UTF-8 is kept, invalid
  * bytes become '?', and columns of tables stay aligned; and formatted counts.
  * Uses jansson. */

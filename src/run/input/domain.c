@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The flow domain: passes settings and file contents to the decision of
  * core/flow, and completes the domain. Declared in run/input/input.h. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Sizes from gaps between facing surfaces, combined with those of a file or the
  * calling program. Declared in run/input/sizes.h. */
 #include "core/remesh/gaps.h"

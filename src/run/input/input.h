@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/input/input.h: finds and reads the files of a project and checks their
  * contents, up to the surface that bounds the mesh. */
 #ifndef VG_RUN_INPUT_INPUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Checks the limits on layers, once layers and field are known. */
 #include <assert.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/input/layers.h: the layer stage of vanguard mesh, from settings to the
  * requested layers of each patch, growth, measurement and limits. Uses layers,
  * run/input/walls.h. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writes the walls with properties of their layers, for visualisation. */
 #include <stdlib.h>
 #include <string.h>

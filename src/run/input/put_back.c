@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Projects a surface that was remeshed from CAD back onto its CAD faces and
  * curves.
  *

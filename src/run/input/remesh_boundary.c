@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Remeshes the surface as the settings request. If one tessellation of a CAD
  * model leads to no valid surface, others are tried in a fixed order. */
 #include <math.h>

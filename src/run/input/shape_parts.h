@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/input/shape_parts.h: the steps from the triangles read to the closed
  * boundary of a fluid. Private to run/input. */
 #ifndef VG_RUN_INPUT_SHAPE_PARTS_H

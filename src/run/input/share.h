@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/input/share.h: distributes data of the first rank of a node to its other
  * ranks. Uses base/comm.h, core/mesh/mesh.h. */
 #ifndef VG_RUN_INPUT_SHARE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/input/sizes.h: sizes from a file, such as those from the error estimate
  * of a flow solver, and from gaps. Uses core/sizing/sizing_map.h,
  * run/input/input.h. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/input/source_effect.h: notes and JSON on sources without effect. Uses
  * core/sizing/sizing_effect.h, run/input/input.h. */
 #ifndef VG_RUN_INPUT_SOURCE_EFFECT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* From the triangles read to the closed boundary of a fluid. Declared in
  * run/input/input.h. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The table `surface`: target edge lengths of single patches, curves, leading
  * edges and strips of a surface to be remeshed, as largest sizes at its current
  * points, and curves along which edges are stretched. */

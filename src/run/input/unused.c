@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Notes on settings without effect. Declared in run/input/input.h. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/input/walls.h: determines the patches on which layers grow. Uses
  * run/input/input.h. */
 #ifndef VG_RUN_INPUT_WALLS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Wraps the surface of a problem. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/picture/body.h: chooses views of a domain. The same on every rank that
  * has the surface and the columns. Uses layers/columns/columns.h,
  * run/picture/cuts.h. */

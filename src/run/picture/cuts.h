@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/picture/cuts.h: pictures of planes through a mesh that no process holds
  * as a whole. Uses core/mesh/slices.h, run/picture/image.h.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Draws convex polygons into the samples of a cut. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Converts samples of a cut to pixels. */
 #include "run/picture/cuts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/picture/cuts_parts.h: samples of a cut. Private to run/picture. */
 #ifndef VG_RUN_PICTURE_CUTS_PARTS_H
 #define VG_RUN_PICTURE_CUTS_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/picture/decimate.h: reduces the number of triangles of a surface for
  * display. Uses core/mesh/mesh.h. */
 #ifndef VG_RUN_PICTURE_DECIMATE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/picture/image.h: pixels, and their conversion to PNG. Uses base; the
  * adapter of zlib for pictures. */
 #ifndef VG_RUN_PICTURE_IMAGE_H

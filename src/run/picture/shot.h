@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/picture/shot.h: renders a surface: the visible triangle at each sample
  * and its brightness. Colours are applied afterwards, so one shot can be used
  * for several pictures. Uses core/mesh/mesh.h, run/picture/image.h. */

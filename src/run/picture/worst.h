@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/picture/worst.h: selected cells with the cells around them. Uses
  * core/mesh/slices.h. */
 #ifndef VG_RUN_PICTURE_WORST_H

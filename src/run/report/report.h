@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/report/report.h: reports as text for the terminal and as JSON for
  * programs. */
 #ifndef VG_RUN_REPORT_REPORT_H

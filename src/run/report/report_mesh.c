@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reports on volume meshes and the volume fill. Declared in
  * run/report/report.h. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reports on solver partitions. Declared in run/report/report.h. */
 #include "run/common/text.h"
 #include "run/report/report.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/settings/deck.h: the run deck, a text file with all settings that the
  * mesh files do not contain, modelled on USM3D's input file. Its grammar is
  * documented in docs/reference/deck.md:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reader and writer of JSON decks. Declared in run/settings/deck_json.h. */
 #define _GNU_SOURCE
 #include "run/settings/deck_json.h"

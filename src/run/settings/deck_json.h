@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/settings/deck_json.h: the run deck as a JSON document, and the JSON
  * Schema that describes such documents. Uses run/settings/settings.h, jansson.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reader of the run deck: a state machine over lines. Declared in
  * run/settings/deck.h; grammar in docs/reference/deck.md. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The JSON Schema of JSON decks. Declared in run/settings/deck_json.h. */
 #include <math.h>
 #include <stdio.h>

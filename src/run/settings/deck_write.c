@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Writer of the run deck. Declared in run/settings/deck.h; grammar in
  * docs/reference/deck.md. */
 #include <stdio.h>

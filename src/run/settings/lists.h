@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/settings/lists.h: values of the settings `write` (a list of formats) and
  * `mesher`. Uses io. */
 #ifndef VG_RUN_SETTINGS_LISTS_H

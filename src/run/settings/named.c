@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Access to settings and table rows by name. Declared in
  * run/settings/settings.h. */
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Conversion of settings from and to text, and the search for the nearest name
  * to a misspelt one. Declared in run/settings/settings.h. */
 #include <assert.h>

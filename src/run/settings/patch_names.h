@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/settings/patch_names.h: lists of patches given by number, range, name or
  * pattern, and their lookup on a surface. Uses core/mesh and run/settings. */
 #ifndef VG_RUN_SETTINGS_PATCH_NAMES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/settings/plan_options.h: converts settings to the options of the modules
  * of core, layers, partition and io. One function fills each structure. The
  * caller sets the members that are not settings ("unset" below): threads,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/settings/resolved.h: the three stages of the settings of a run.
  *
  *   asked     the requested values of deck, options or calls; not changed

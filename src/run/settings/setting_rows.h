@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* clang-format off */
 /* run/settings/setting_rows.h: one row for each plain setting (one that is not
  * a table).

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/settings/settings.h: all settings of a run, and the descriptions by which
  * they are read, written and documented.
  *

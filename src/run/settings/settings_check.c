@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Checks for contradictory settings and table rows. Declared in
  * run/settings/settings.h. */
 #include <math.h>

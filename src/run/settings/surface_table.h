@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/settings/surface_table.h: the table `surface` of the deck. */
 #ifndef VG_RUN_SETTINGS_SURFACE_TABLE_H
 #define VG_RUN_SETTINGS_SURFACE_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/stages/agree.h: checks that the nodes, each of which computes surface,
  * layers and sizes itself, have obtained the same result, and that they use the
  * same vanguard-tetgen. Uses partition/store,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/stages/hidden.h: the hidden folder DIR/.vanguard-XXXXXX of the files that
  * a run has not completed.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/stages/output.h: the files of a run. They are written into a hidden
  * folder next to their final location and moved there together at the end, so
  * that a run that fails or is stopped leaves no incomplete files. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/stages/pictures.h: pictures of a mesh, drawn while its slices are in
  * memory, for PROJECT.report.html. Uses run/picture. */
 #ifndef VG_RUN_STAGES_PICTURES_H

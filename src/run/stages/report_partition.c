@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reports on the domain decomposition, as text and as JSON. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* run/stages/run.h: the stages of vanguard mesh from a closed surface to files,
  * on all ranks. Uses partition, layers. */
 #ifndef VG_RUN_STAGES_RUN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Settings that affect the mesh of a run, as a digest and as lines for its run
  * directory: a refused resume lists those that differ. The rows of the settings
  * state which values affect it (vg_param.keeps_mesh). */

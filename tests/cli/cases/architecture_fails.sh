@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The architecture test can fail, for each of its reasons.
 check="$here/architecture.sh"
 mkdir -p good/src/base good/src/core/mesh good/src/core/fill

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # From CAD to a mesh with one command. The output reports what was read,
 # healed and assumed. The files are the same for any number of ranks.
 cad=$here/../cad

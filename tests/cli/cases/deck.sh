@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The deck that is written can be read, and holds the patches of a surface.
 vanguard deck
 exits 0

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The JSON Schema of decks agrees with the program: every deck of the examples,
 # of the demonstrations and of the other tests is valid, and of random documents
 # the program accepts exactly those that are valid. VG_LONG: more of them.

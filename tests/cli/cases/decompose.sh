@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Decomposition of the void by the faces of a coarse mesh, or by octants: the
 # same files for any number of ranks and threads, in any order; reports; what
 # is refused.

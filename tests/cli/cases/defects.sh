@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # A surface that cannot bound a mesh is reported, drawn and refused. The input
 # is a unit tetrahedron as text without its slanted face.
 cat >open.ugrid <<'END'

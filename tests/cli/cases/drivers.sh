@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The driver: cases are made, run here, submitted to Slurm and PBS (simulated by
 # programs of the same names), stopped, resumed and collected.
 command -v python3 >/dev/null || skip "python3 is not installed"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Grid families: a small body meshed at three levels follows the rule;
 # settings without effect are reported; and edges across gaps. The input
 # ellipsoids are finer than any level requests, because coarser facets would

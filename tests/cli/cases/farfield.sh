@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # A body alone gets a farfield; a half body gets a symmetry plane too.
 octahedron >octa.obj
 vanguard mesh -q -p octa --farfield-lengths 4 --growth 1.5

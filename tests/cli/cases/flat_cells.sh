@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Causes of flat cells, in all reports: two boxes with layers that nearly fill
 # the gap between them, cut into subdomains.
 needs tetgen

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The helper programs: their interface on the command line, and runs without
 # them and with unusable ones.
 bin=$(dirname "$program")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Ctrl-C ends a run cleanly: a message, status 1, and no partial files. The
 # signal is sent when the work has begun, before the fill.
 needs mpi

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # A run killed by SIGKILL while a decomposed void is filled, and resumed,
 # writes the files of an undisturbed run, for every way to decompose.
 needs metis mpi

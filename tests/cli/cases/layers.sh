@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Viscous layers: which patches are walls, heights, limits, files, errors.
 vanguard demo box --cells 2000 --out p
 exits 0

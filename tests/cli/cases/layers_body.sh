@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Layers on a body without conditions, and as AFLR's files request them.
 corners=("1 0 0" "0 1 0" "0 0 1" "-1 0 0" "0 -1 0" "0 0 -1")
 facet() {

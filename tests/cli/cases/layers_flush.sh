@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Layers of walls that end in the plane of a slip patch: a flat plate with slip
 # upstream, on the floor of a box.
 quad() {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The hidden folder of a run that was killed is removed by the next run, which
 # says so. The folder of a run that is alive stays.
 vanguard demo box --cells 200000 --out p

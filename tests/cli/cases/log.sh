@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # --log holds everything printed, and versions, host, ranks and threads,
 # settings, and the phases. Existing files are not lost.
 vanguard demo box --cells 2000 --out .

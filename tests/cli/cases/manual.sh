@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Man pages and completions agree with the program.
 share=$(dirname "$program")/../share
 for command in mesh surface check partition plan sweep serve deck demo; do

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # A demo meshed: files, report, check, and the run repeated from its deck.
 vanguard demo box --cells 3000 --out p
 exits 0

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Other meshers in the leaves: TetGen, a plug-in, and faulty plug-ins. The
 # files are the same for any number of threads. A resumed run checks the
 # mesher.

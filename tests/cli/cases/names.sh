@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Titles and names in other alphabets are kept, in tables that stay aligned.
 # Bytes that are not UTF-8 become '?', and no name is cut inside a character.
 vanguard demo box --cells 2000 --out p

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # An input file is never overwritten: reported before anything is computed.
 vanguard demo box --cells 2000 --out a
 vanguard mesh -q -p a/box --out b --write b8.ugrid

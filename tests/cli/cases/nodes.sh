@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Ranks on separate nodes each make surface, layers and sizes: the files equal
 # those of one rank, or the run is refused, naming the nodes that differ.
 needs mpi

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Cut, filled and written by threads and ranks: the same files for any number
 # of both, in any order, and after a resume; refusals; a stop that leaves no
 # partial files.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # A recorded run simulated on other machines: text, JSON, figure and messages.
 cat >r.timeline.json <<'END'
 {"vanguard_timeline": 1,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # A .d3m of planar patches meshes without a .front.
 cat >T1.d3m <<'END'
 #VGRID VERSION

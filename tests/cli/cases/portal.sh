@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # vanguard serve, queried by curl: access, refused paths, runs, stops and
 # resumes, a portal that dies, jobs, sweeps. Needs curl.
 command -v curl >/dev/null || skip "no curl"

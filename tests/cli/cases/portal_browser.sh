@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The portal's page in a browser: twenty runs started, stopped and resumed by
 # clicks; their meshes equal those of the command line. Needs Debian's
 # chromium.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The portal in a browser, from an uploaded STEP file to finished meshes:
 # portal_case.py lists the steps. Needs Debian's chromium.
 browser=$(command -v chromium) || skip "no chromium"

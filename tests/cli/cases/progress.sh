@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Progress goes to stderr: plain lines to a file, a live line to a terminal.
 vanguard demo box --cells 2000 --out made/on/the/way
 exits 0

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The commands of the README work as a newcomer would type them (coarser), and
 # its figures are those of the guide, which cli.guide holds against the report.
 root=$(realpath "$here/../..")

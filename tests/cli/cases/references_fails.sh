@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The test of references to documents can fail, for each of its reasons.
 command -v python3 >/dev/null || skip "no python3"
 mkdir -p good/src/core/mesh good/docs/reference good/docs/design

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The same command three times in a folder gives the same mesh and the same
 # notes: files left there by a run are not read, which one more note reports.
 needs tetgen

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # PROJECT.report.html in a browser: with scripts the surface rotates, without
 # them all pictures are present. Needs Debian's chromium.
 browser=$(command -v chromium) || skip "no chromium"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # PROJECT.report.html: its contents; it loads nothing; names cannot break it;
 # it depends on the input alone, except for the section about the run.
 needs mpi

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Files of 4-byte reals: a cube so far from the origin that rounding flattens
 # its cells is not written, by any number of ranks, nor is any other file of
 # that run.

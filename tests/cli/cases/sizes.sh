@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Edge lengths from a file: the mesh of a first run, with a size at each of
 # its points, controls the next run; and invalid files are refused.
 needs mpi

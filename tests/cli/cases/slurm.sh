@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The batch script under plain bash, with a program whose end is known, and
 # with vanguard mesh: stopped by the signal that Slurm sends, then continued.
 script=$here/../../share/slurm/vanguard.sbatch

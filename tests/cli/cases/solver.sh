@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Solver partitions: of a mesh as it is made, by ranks and threads, and of a
 # mesh file, in three forms; refusals.
 needs metis mpi

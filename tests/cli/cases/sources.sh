@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Sources that are limited by coarse faces, or that are outside the domain,
 # are reported with a remedy; those of the demos are not.
 vanguard demo sphere --cells 20000 --out p

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # vanguard surface: a surface of sliver triangles remeshed, its files and
 # report; refusals; and the same within a run of vanguard mesh.
 beam() { # NAME: a bar 4 x 1 x 1, its long sides cut into needles across

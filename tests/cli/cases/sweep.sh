@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # A grid of runs: tables, figures, digests, failures. A small program stands
 # in for vanguard mesh, so that times and digests are known.
 cat >fake <<'END'

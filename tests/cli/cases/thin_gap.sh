@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The gap between two boxes, far narrower than their edges, cut into far more
 # subdomains than it holds cells: some regions of the lattice contain no face
 # of the front.

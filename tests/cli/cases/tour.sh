@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # The tour of CONTRIBUTING.md names functions that exist in the files it
 # gives.
 root=$here/../..

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Without a command, with help, with a typing error: texts and exit status.
 vanguard
 exits 2

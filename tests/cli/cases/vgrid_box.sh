@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # An unmodified VGRID project meshes with the layers that it requests.
 [ -d "${VG_DATA_DIR:-}/vgrid_box" ] ||
   skip "VG_DATA_DIR has no vgrid_box: verification/fetch.md has the sources"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # A closed surface without conditions and with normals out of the fluid: a
 # room that contains a block is taken as a domain, with a note.
 needs tetgen

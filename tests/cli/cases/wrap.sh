@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Bodies that intersect cannot bound a mesh until they are wrapped; the files
 # are the same for any number of ranks.
 needs wrap

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* A program outside the project that calls every function of the library, also
  * with input that the library must refuse. Usage: consumer FOLDER */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 // The header must compile in C++.
 #include <cstdio>
 #include <vanguard/vanguard.h>

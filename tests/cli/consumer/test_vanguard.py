@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Tests the module `vanguard` with the installed library. test_vanguard.py FOLDER
 VANGUARD: folder for output, program for comparison."""
 import importlib

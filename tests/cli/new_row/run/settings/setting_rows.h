@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The rows of the program, plus three rows for test_new_row.c. */
 #include "../../../../../src/run/settings/setting_rows.h"
 
