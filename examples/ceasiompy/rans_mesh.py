@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-2-Clause
 """CEASIOMpy's step from the parts of an aircraft to a RANS mesh: a folder of BREP
 files in, an SU2 mesh out, whose markers are the names of the files and Farfield.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-3.0-or-later
 """Solver cases for a mesh of Vanguard: external flow with SU2 or OpenFOAM,
 complete enough to start the solver. Needs the standard library only.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* base/wide.h: variants of functions for processors with AVX2. Uses nothing.
  *
  * A loop over lanes is written once, as a VG_WITHIN function without calls, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Examples for users of other projects, from geometry to a file that the client
 # reads: CEASIOMpy (BREP parts to SU2), OpenVSP (.stp), ESP (.egads). gmsh unites
 # the parts, and meshio reads the meshes, if they are installed.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
 # Complete cases for SU2 and OpenFOAM: SU2's by its grammar and its markers,
 # OpenFOAM's by a first iteration of simpleFoam, if it is installed.
 command -v python3 >/dev/null || skip "python3 is not installed"
