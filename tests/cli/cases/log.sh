@@ -25,7 +25,7 @@ is logged <printed
 # a failure is logged too, and the next run replaces the log
 vanguard mesh -q -p nothing --log run.log
 exits 1
-says run.log "vanguard: nothing: no project found"
+says run.log "vanguard: nothing: there is no such file"
 says run.log "exit status 1 after"
 lacks run.log "hmax"
 
