@@ -98,6 +98,7 @@ starts() {
 launcher=
 ! timeout 20 mpirun --oversubscribe -n 2 true >/dev/null 2>&1 || launcher=1
 [ -n "$launcher" ] || skip "mpirun does not start here"
+needs mpi
 
 cases make runs/s in/box.lb8.ugrid --set write=b8.ugrid
 cases submit --queue slurm --ranks 2 runs/s

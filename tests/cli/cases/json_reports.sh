@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # What programs rely on: every exit status, and JSON reports, also of failures,
 # that follow their schemas.
+needs metis
 command -v python3 >/dev/null || skip "python3 is not installed"
 schemas=$here/../../share/schema
 octahedron >octa.obj
