@@ -178,13 +178,23 @@ static double shape_of(const struct tops *t, size_t cell)
   return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
 }
 
-static double worst(const struct tops *t, size_t top)
-{
-  double least = INFINITY;
+/* Cells at a top. */
+struct quality {
+  double least; /* Least shape. */
+  size_t n_flat;
+};
 
-  for (size_t i = t->cells.first[top]; i < t->cells.first[top + 1]; i++)
-    least = fmin(least, shape_of(t, t->cells.item[i]));
-  return least;
+static struct quality quality_of(const struct tops *t, size_t top)
+{
+  struct quality q = { INFINITY, 0 };
+
+  for (size_t i = t->cells.first[top]; i < t->cells.first[top + 1]; i++) {
+    double shape = shape_of(t, t->cells.item[i]);
+
+    q.least = fmin(q.least, shape);
+    q.n_flat += shape < VG_RELAX_FLAT;
+  }
+  return q;
 }
 
 static int is_sound(struct tops *t, size_t top)
@@ -214,25 +224,28 @@ static void set_cap(struct tops *t, size_t top, double cap)
   vg_column_top(&t->columns, t->surface, t->top[top], t->x[t->point[top]]);
 }
 
-/* Lowers a column to the height that is best for its worst cell. */
+/* Lowers a column to the height that is best for its worst cell, without making
+ * more of its cells flat. */
 static int lower(struct tops *t, size_t top)
 {
-  struct vg_column *c = &t->columns.column[t->top[top]];
+  const struct vg_column *c = &t->columns.column[t->top[top]];
   const struct vg_growth_law *law = &t->columns.law[c->law];
-  double least = worst(t, top), cap = c->cap, best = cap;
+  struct quality before = quality_of(t, top);
+  double least = fmax(GAIN * before.least, 0), cap = c->cap, best = cap;
   double h = height(t, top), step = (h - t->least[top]) / STEPS;
 
-  if (least >= VG_RELAX_FLAT) return 0;
-  least = fmax(GAIN * least, 0);
+  if (!before.n_flat) return 0;
   for (int k = 1; k <= STEPS; k++) {
-    double next = vg_growth_law_compress(law, c->n, h - k * step), q;
+    double next = vg_growth_law_compress(law, c->n, h - k * step);
+    struct quality q;
 
     if (!(next > 0)) break;
     if (!(next < cap)) continue;
     set_cap(t, top, next);
-    q = worst(t, top);
-    if (!(q > least) || !is_sound(t, top)) continue;
-    least = q;
+    q = quality_of(t, top);
+    if (!(q.least > least) || q.n_flat > before.n_flat || !is_sound(t, top))
+      continue;
+    least = q.least;
     best = next;
   }
   set_cap(t, top, best);
