@@ -15,8 +15,8 @@
  * A column keeps its number of levels and its first height, and grows more
  * slowly (its cap is reduced). Points and cells therefore keep their numbers. A
  * move is accepted if it improves the worst cell of the field at the top, does
- * not increase the number of flat cells there, and leaves all layer cells of the
- * column sound, in both kinds of output. */
+ * not increase the number of flat cells there, and leaves all layer cells of
+ * the column sound, in both kinds of output. */
 #ifndef VG_LAYERS_RELAX_RELAX_H
 #define VG_LAYERS_RELAX_RELAX_H
 
