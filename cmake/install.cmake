@@ -44,7 +44,7 @@ install(PROGRAMS share/slurm/vanguard.sbatch
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard COMPONENT program)
 install(PROGRAMS share/drivers/vanguard_cases.py
   share/drivers/vanguard_solvers.py
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard/drivers COMPONENT program)
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard/drivers COMPONENT python3)
 install(DIRECTORY share/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard
   COMPONENT program)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff
