@@ -65,8 +65,9 @@ vg_status vg_clear_ahead(const struct vg_mesh *surface,
  *                      ----'----'----    tops of the other front
  *
  *                  Side faces are not tested then, and a top without area is
- *                  no contact. Tops that pass with a margin still need the test
- *                  without: a large margin may exceed the fluid behind a sheet
+ *                  no contact. This test does not replace the one without a
+ *                  margin, because two raised tops may have passed through each
+ *                  other
  * @param bad       out: [n_column] 1 for each column with n > 0 of a face that
  *                  touches, active or not; 0 for all others
  *

@@ -9,10 +9,10 @@
 #include "layers/expand/join.h"
 
 /* L24 */
-#define FLAT 0.00005 /* Least sine between a column and a layer. */
-#define SHRUNK                                                                 \
-  0.04 /* Least area of a layer, relative to its area at the                   \
-          wall. */
+/* Least sine between a column and a layer. */
+#define FLAT 0.00005
+/* Least area of a layer, relative to its area at the wall. */
+#define SHRUNK 0.04
 
 static int positive(double det, double area2, const double up[3])
 {

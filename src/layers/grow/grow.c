@@ -365,9 +365,9 @@ static void unbend(struct vg_columns *c)
 
 struct rounds {
   uint8_t *moved, *turned, *bad;
-  uint8_t *cells, *tops,
-    *near;      /* Columns still to be tested: their cells, their
-                   tops, and their tops raised by the margin. */
+  /* Columns still to be tested: their cells, their tops, and their tops raised
+   * by the margin. */
+  uint8_t *cells, *tops, *near;
   size_t sound; /* Number of rounds in which all cells were valid. */
   int is_near;  /* Raised tops were tested before. */
 };

@@ -21,13 +21,6 @@ struct search {
   struct vg_relax_cell *cell;
 };
 
-/* Column whose top is point `id` of the field; VG_NO_INDEX: not a top. */
-static uint32_t column_of(const struct vg_layers *l, uint32_t id)
-{
-  return id < l->front.n_point ? vg_layer_column_of(l->front.id[id])
-                               : VG_NO_INDEX;
-}
-
 static double shape_of(const struct vg_slice *s, const uint32_t t[4])
 {
   return vg_shape(s->x[t[0]], s->x[t[1]], s->x[t[2]], s->x[t[3]]);
@@ -46,7 +39,7 @@ static vg_status mark_slice(void *context, const struct vg_slice *s,
     int n = 0;
 
     for (int k = 0; k < 4; k++) {
-      uint32_t c = column_of(q->layers, s->id[tet[i][k]]);
+      uint32_t c = vg_relax_column_of(&q->layers->front, s->id[tet[i][k]]);
 
       if (c != VG_NO_INDEX && vg_relax_may_move(&q->layers->columns.column[c]))
         column[n++] = c;
@@ -59,7 +52,7 @@ static vg_status mark_slice(void *context, const struct vg_slice *s,
 
 static int is_marked(const struct search *q, uint32_t id)
 {
-  uint32_t c = column_of(q->layers, id);
+  uint32_t c = vg_relax_column_of(&q->layers->front, id);
 
   return c != VG_NO_INDEX && q->mark[c];
 }
@@ -169,7 +162,7 @@ static void apply(struct vg_layers *l, const struct vg_mesh *surface,
     mark[move[i].column] = 1;
   }
   for (size_t i = 0; i < l->front.n_point; i++) {
-    uint32_t c = column_of(l, (uint32_t)i);
+    uint32_t c = vg_relax_column_of(&l->front, (uint32_t)i);
 
     if (c != VG_NO_INDEX && mark[c])
       vg_column_top(&l->columns, surface, c, l->front.x[i]);

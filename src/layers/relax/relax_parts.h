@@ -21,6 +21,12 @@ struct vg_relax_move {
   double cap;
 };
 
+/** Column whose top is point `id` of the field; VG_NO_INDEX: not a top. */
+static inline uint32_t vg_relax_column_of(const struct vg_front *f, uint32_t id)
+{
+  return id < f->n_point ? vg_layer_column_of(f->id[id]) : VG_NO_INDEX;
+}
+
 /** Whether lowering a column may move its top. */
 static inline int vg_relax_may_move(const struct vg_column *c)
 {

@@ -117,9 +117,7 @@ static vg_status list_tops(struct tops *t, const uint8_t *mark,
     t->top[t->n_top++] = (uint32_t)i;
   }
   for (size_t i = 0; i < t->n_point; i++) {
-    uint32_t c = t->id[i] < t->front->n_point
-                 ? vg_layer_column_of(t->front->id[t->id[i]])
-                 : VG_NO_INDEX;
+    uint32_t c = vg_relax_column_of(t->front, t->id[i]);
 
     if (c != VG_NO_INDEX && mark[c]) t->point[t->top_of[c]] = (uint32_t)i;
   }
@@ -162,10 +160,8 @@ static uint32_t top_of_face(const struct tops *t, size_t f, int k)
 
 static uint32_t top_of_cell(const struct tops *t, size_t i, int k)
 {
-  uint32_t id = t->id[t->cell[i][k]], c;
+  uint32_t c = vg_relax_column_of(t->front, t->id[t->cell[i][k]]);
 
-  if (id >= t->front->n_point) return VG_NO_INDEX;
-  c = vg_layer_column_of(t->front->id[id]);
   return c == VG_NO_INDEX ? VG_NO_INDEX : t->top_of[c];
 }
 
