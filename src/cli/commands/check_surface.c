@@ -123,15 +123,6 @@ static vg_status write_defects(const struct vg_check_surface *a,
   return st;
 }
 
-static json_t *notes_json(const struct vg_notes *notes)
-{
-  json_t *list = json_array();
-
-  for (size_t i = 0; i < notes->n; i++)
-    json_array_append_new(list, vg_text_json(notes->text[i]));
-  return list;
-}
-
 /* Whether vanguard mesh adds a farfield to this surface. */
 static int adds_farfield(const struct vg_boundary *b)
 {
@@ -149,7 +140,7 @@ static void print_json(const struct vg_check_surface *a,
     vg_text_json(a->file), "ok", st >= 0, "flow",
     vg_report_flow_json(&b->flow, adds_farfield(b)), "surface", body, "remesh",
     vg_report_remesh_json(&b->remeshing, &b->surface), "notes",
-    notes_json(b->notes), "lines",
+    vg_report_notes_json(b->notes), "lines",
     f->has_lines ? vg_report_lines_json(&f->lines, a->has_deck) : json_null(),
     "against",
     a->against ? vg_report_distances_json(a->against, f->off) : json_null());

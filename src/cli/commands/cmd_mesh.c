@@ -188,15 +188,6 @@ done:
   return st;
 }
 
-static json_t *strings(const struct vg_notes *notes)
-{
-  json_t *list = json_array();
-
-  for (size_t i = 0; i < notes->n; i++)
-    json_array_append_new(list, vg_text_json(notes->text[i]));
-  return list;
-}
-
 static json_t *files_json(const struct run *r)
 {
   json_t *list = json_array();
@@ -257,7 +248,7 @@ static json_t *report_json(const struct run *r, int ok,
                       vg_report_surface_json(m, &b->check, VG_LISTED_DEFECTS));
   json_object_set_new(o, "remesh", vg_report_remesh_json(&b->remeshing, m));
   json_object_set_new(o, "domain", vg_report_domain_json(&b->domain));
-  json_object_set_new(o, "notes", strings(&p->notes));
+  json_object_set_new(o, "notes", vg_report_notes_json(&p->notes));
   if (ok) {
     json_object_set_new(o, "sources",
                         vg_effects_json(&r->mesh.effects, &front,

@@ -143,15 +143,6 @@ static json_t *patches(const struct look *l, const struct vg_mesh *m)
   return list;
 }
 
-static json_t *notes(const struct vg_notes *n)
-{
-  json_t *list = json_array();
-
-  for (size_t i = 0; i < n->n; i++)
-    json_array_append_new(list, vg_text_json(n->text[i]));
-  return list;
-}
-
 /* Names of the kinds of defects, by which the bytes of the scene count. */
 static json_t *kinds(void)
 {
@@ -183,7 +174,7 @@ static void describe(struct look *l, const struct vg_mesh *m, vg_status st,
   json_object_set_new(o, "size", vg_report_size_json(m));
   json_object_set_new(o, "patches", patches(l, m));
   json_object_set_new(o, "layers", json_boolean(l->layers.is_on));
-  json_object_set_new(o, "notes", notes(&l->problem.notes));
+  json_object_set_new(o, "notes", vg_report_notes_json(&l->problem.notes));
   json_object_set_new(o, "kinds", kinds());
   json_object_set_new(o, "scene", vg_scene_json(&l->scene, m, l->body, toward));
 }

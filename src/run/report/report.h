@@ -21,6 +21,9 @@
 #define VG_SHOWN_ITEMS 20    /* shells, or patch numbers, listed in the text */
 #define VG_SHOWN_FACES 3     /* poor triangles listed in the text */
 
+/** The notes of a run, as a list of texts. */
+json_t *vg_report_notes_json(const struct vg_notes *notes);
+
 /** Counts of a mesh and its bounding box. */
 void vg_report_size_text(FILE *to, const struct vg_mesh *m);
 json_t *vg_report_size_json(const struct vg_mesh *m);

@@ -39,6 +39,15 @@ void vg_report_size_text(FILE *to, const struct vg_mesh *m)
           lo[2], hi[0], hi[1], hi[2]);
 }
 
+json_t *vg_report_notes_json(const struct vg_notes *notes)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < notes->n; i++)
+    json_array_append_new(list, vg_text_json(notes->text[i]));
+  return list;
+}
+
 json_t *vg_report_size_json(const struct vg_mesh *m)
 {
   double lo[3], hi[3];
