@@ -9,6 +9,8 @@
 #include "base/checks.h"
 #include "base/memory.h"
 #include "base/team.h"
+#include "core/geometry/tensor.h"
+#include "core/geometry/vector.h"
 #include "core/sizing/sizing_parts.h"
 #include "core/sizing/sizing_surface.h"
 
@@ -213,6 +215,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
   f.near = near;
   f.under = under;
   VG_TRY(build(options, surface, &f, &samples, s, err));
+  if (options->map && options->map->metric) s->map = *options->map;
   find_range(s);
   steep = is_steep;
   VG_TRY(vg_team_any(options->team, &steep, err));
@@ -238,9 +241,43 @@ void vg_sizing_free(struct vg_sizing *s)
   free(s);
 }
 
+int vg_sizing_is_stretched(const struct vg_sizing *s)
+{
+  return s->map.metric != NULL;
+}
+
+double vg_sizing_stretch_at(const struct vg_sizing *s, const double x[3],
+                            double t[6])
+{
+  double h;
+
+  if (!s->map.metric) {
+    h = vg_sizing_at(s, x);
+    vg_tensor_uniform(1 / h, t);
+    return h;
+  }
+  s->map.metric(s->map.user, x, t);
+  vg_tensor_root(t, t);
+  return 1 / vg_cube_root(vg_tensor_det(t));
+}
+
+double vg_sizing_along(const struct vg_sizing *s, const double x[3],
+                       const double n[3])
+{
+  double t[6], v[3];
+
+  vg_sizing_stretch_at(s, x, t);
+  vg_tensor_apply(t, n, v);
+  return 1 / vg_norm(v);
+}
+
 double vg_sizing_at(const struct vg_sizing *s, const double x[3])
 {
   assert(s);
+
+  double t[6];
+
+  if (s->map.metric) return vg_sizing_stretch_at(s, x, t);
 
   double outside, h = vg_octree_at(&s->octree, x, &outside);
 

@@ -70,6 +70,10 @@ struct vg_size_map {
    * smaller than 1/32 of the domain's box are then only found where another
    * source makes the spacing small. */
   double (*least)(void *user, const double lo[3], const double hi[3]);
+  /* Metric M at x (core/geometry/tensor.h), which replaces at(); positive
+   * and finite, or all zero: no requirement. NULL: the map is isotropic.
+   * Called as at() is. */
+  void (*metric)(void *user, const double x[3], double m[6]);
   double most; /* largest spacing of the map; 0: not known */
   void *user;
 };
@@ -150,7 +154,23 @@ void vg_sizing_show(const struct vg_sizing *s,
 /** Number of bytes of the field that the ranks of a node share. */
 size_t vg_sizing_shmem(const struct vg_sizing *s);
 
-/** Target edge length at x, > 0. Outside the root cube: the value at the
+/** Does the field depend on the direction anywhere? If not, the functions
+ * below that take a direction give the values of vg_sizing_at. */
+int vg_sizing_is_stretched(const struct vg_sizing *s);
+
+/** Stretch T = M^(1/2) of the metric at x (core/geometry/tensor.h): the
+ * vector T e has the length of the edge e in the metric. Returns
+ * vg_sizing_at(s, x) = det(T)^(-1/3). Threads: safe on a shared field. */
+double vg_sizing_stretch_at(const struct vg_sizing *s, const double x[3],
+                            double t[6]);
+
+/** Target edge length at x along the unit vector n. */
+double vg_sizing_along(const struct vg_sizing *s, const double x[3],
+                       const double n[3]);
+
+/** Target edge length at x, > 0. In a metric: the geometric mean of the target
+ * edge lengths along its axes, so that the integral of 1 / h^3 is the
+ * complexity. Outside the root cube: the value at the
  * nearest point of the cube, grown with the distance, up to h_max if it is
  * given, or up to the largest source if there are VGRID sources. Threads: safe
  * on a shared field. Cost: below 0.2 us. */
