@@ -10,6 +10,7 @@
 #include "base/table.h"
 #include "base/tri_key.h"
 #include "core/delaunay/cell_signs.h"
+#include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 
 enum { CUT_MAX = 16 }; /* K5: number of times that a cavity may be cut back */
@@ -96,6 +97,27 @@ static void drop_faces(struct vg_inserter *s, size_t first)
   s->n_face = n;
 }
 
+/* Is p in the sphere of cell v in the metric with stretch t? The determinant
+ * is that of core/geometry/predicates.h, for corners relative to p. */
+static int in_stretched_sphere(const double (*x)[3], const uint32_t v[4],
+                               const double p[3], const double t[6])
+{
+  double e[4][3], l[4], n[3], det = 0;
+
+  for (int i = 0; i < 4; i++) {
+    vg_sub(x[v[i]], p, e[i]);
+    vg_tensor_apply(t, e[i], e[i]);
+    l[i] = vg_dot(e[i], e[i]);
+  }
+  for (int i = 0; i < 4; i++) {
+    const uint8_t *f = vg_face[i];
+
+    vg_cross(e[f[1]], e[f[2]], n);
+    det -= l[i] * vg_dot(e[f[0]], n);
+  }
+  return det > 0;
+}
+
 /* Signs of the point and a cell (core/delaunay/cell_signs.h). */
 VG_WITHIN unsigned signs_of(const struct vg_inserter *s, const uint32_t v[4],
                             const double p[3], int is_wide)
@@ -103,6 +125,10 @@ VG_WITHIN unsigned signs_of(const struct vg_inserter *s, const uint32_t v[4],
   const double(*x)[3] = (const double(*)[3])s->t->x;
   const vg_d2 both[3] = { { p[0], p[0] }, { p[1], p[1] }, { p[2], p[2] } };
 
+  if (s->stretch)
+    return in_stretched_sphere(x, v, p, s->stretch)
+           ? VG_IN_SPHERE | vg_cell_sides(x, v, p, 0, 0)
+           : 0;
 #ifdef VG_WIDE
   if (is_wide) return vg_cell_signs_wide(x, v, p);
 #endif
@@ -268,32 +294,50 @@ static void number_vertices(struct vg_inserter *s)
  * clearance is relative to the root mean square of the edges, or to `most` (0:
  * no limit) if that is shorter, as it is above a needle. */
 static int too_low(const double a[3], const double b[3], const double c[3],
-                   const double x[3], double clearance, double most)
+                   const double x[3], double clearance, double most,
+                   const double *stretch)
 {
   double u[3], v[3], w[3], n[3], dot, n2, e2;
 
   vg_sub(b, a, u);
   vg_sub(c, a, v);
   vg_sub(x, a, w);
+  if (stretch) {
+    vg_tensor_apply(stretch, u, u);
+    vg_tensor_apply(stretch, v, v);
+    vg_tensor_apply(stretch, w, w);
+  }
   vg_cross(u, v, n);
   dot = vg_dot(n, w);
   n2 = vg_dot(n, n);
-  e2 = (vg_distance2(a, b) + vg_distance2(b, c) + vg_distance2(c, a)) / 3;
+  e2 = stretch ? vg_dot(u, u) + vg_distance2(u, v) + vg_dot(v, v)
+               : vg_distance2(a, b) + vg_distance2(b, c) + vg_distance2(c, a);
+  e2 /= 3;
   if (most > 0 && e2 > most * most) e2 = most * most;
   return dot * dot < clearance * clearance * e2 * n2;
+}
+
+/* Squared distance of point v from x. */
+static double apart2(const struct vg_inserter *s, uint32_t v, const double x[3])
+{
+  double d[3];
+
+  if (!s->stretch) return vg_distance2(s->t->x[v], x);
+  vg_sub(s->t->x[v], x, d);
+  vg_tensor_apply(s->stretch, d, d);
+  return vg_dot(d, d);
 }
 
 static int too_near(const struct vg_inserter *s, const double x[3],
                     double nearest)
 {
-  const double(*at)[3] = (const double(*)[3])s->t->x;
   double least = nearest * nearest;
 
   for (uint32_t i = 0; i < s->n_vertex; i++)
-    if (vg_distance2(at[s->vertex[i]], x) < least) return 1;
+    if (apart2(s, s->vertex[i], x) < least) return 1;
   for (size_t k = 0; k < s->n_face && !s->n_vertex; k++)
     for (int i = 0; i < 3; i++)
-      if (vg_distance2(at[s->face[k].v[i]], x) < least) return 1;
+      if (apart2(s, s->face[k].v[i], x) < least) return 1;
   return 0;
 }
 
@@ -305,8 +349,8 @@ static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
   for (size_t k = 0; k < s->n_face && clearance > 0; k++) {
     const uint32_t *v = s->face[k].v;
 
-    if (s->face[k].fixed &&
-        too_low(t->x[v[0]], t->x[v[1]], t->x[v[2]], x, clearance, most))
+    if (s->face[k].fixed && too_low(t->x[v[0]], t->x[v[1]], t->x[v[2]], x,
+                                    clearance, most, s->stretch))
       return 1;
   }
   return 0;

@@ -6,7 +6,12 @@
  * sphere contains it. It grows through unconstrained faces only, and is then
  * cut back until every face of it is strictly visible from the point. The
  * result is therefore valid for any degenerate input, and Delaunay wherever no
- * constraint interferes. (Bowyer, Watson, Comput. J. 24, 1981.) */
+ * constraint interferes. (Bowyer, Watson, Comput. J. 24, 1981.)
+ *
+ * With a stretch, the sphere is one in the metric at the new point, tested in
+ * plain arithmetic (Borouchaki, George, Hecht, Laug, Saltel, Finite Elem. Anal.
+ * Des. 25, 1997). Visibility stays exact, and with it the validity of the
+ * result. */
 #ifndef VG_CORE_DELAUNAY_INSERT_H
 #define VG_CORE_DELAUNAY_INSERT_H
 
@@ -32,7 +37,11 @@ enum { VG_CAVITY_TABLE = 64 };
 /** Working memory of insertions, reused from one to the next; one per thread.
  */
 struct vg_inserter {
-  struct vg_tets *t; /* borrowed */
+  struct vg_tets *t;     /* borrowed */
+  const double *stretch; /* stretch of the metric at the next point
+                            (core/geometry/tensor.h), in which spheres and
+                            distances are measured; NULL: Euclidean. Set by
+                            the caller */
   size_t n_cell, cap_cell, n_face, cap_face, n_tried, cap_tried;
   struct vg_cavity_cell { /* the cavity; for signs see
                              core/delaunay/cell_signs.h */

@@ -20,6 +20,9 @@ struct vg_filling {
 /** Place points in the fluid cells of t and insert them. (populate.c) */
 vg_status vg_filling_populate(struct vg_filling *g, struct vg_error *err);
 
+/** As vg_filling_populate, in a metric. (stretched.c) */
+vg_status vg_stretched_populate(struct vg_filling *g, struct vg_error *err);
+
 /** Remove the cells outside, reorder the others, optimise. (populate.c) */
 vg_status vg_filling_improve(struct vg_filling *g, struct vg_error *err);
 

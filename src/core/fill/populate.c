@@ -103,6 +103,7 @@ vg_status vg_filling_populate(struct vg_filling *g, struct vg_error *err)
   vg_status st;
 
   assert(g->t.n_point >= g->front->n_point);
+  if (vg_sizing_is_stretched(g->sizing)) return vg_stretched_populate(g, err);
   VG_TRY(vg_place_seeds(g->front->n_point, (const double(*)[3])g->t.x,
                         g->sizing, g->region, &placed, err));
   st = insert_placed(g, &placed, seed_distance, err);
@@ -129,7 +130,7 @@ vg_status vg_filling_improve(struct vg_filling *g, struct vg_error *err)
   VG_TRY(vg_stopped(&g->options->stop, err));
   if (g->region) near = *g->region;
   near.reach += margin;
-  if (g->options->sweeps > 0) {
+  if (g->options->sweeps > 0 && !vg_sizing_is_stretched(g->sizing)) {
     st = vg_optimise(&g->t, g->front->n_point, g->options->sweeps,
                      g->region ? &near : NULL, g->sizing, &r, err);
     g->report->n_smoothed += r.n_smoothed;

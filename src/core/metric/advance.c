@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+#include "core/metric/advance.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/buckets.h"
+#include "base/memory.h"
+
+/* Side of the cubic pattern, as for isotropic points (K9). */
+static const double lattice = 1.083;
+/* Height of the apex over a surface face: regular tetrahedron. */
+static const double apex = 0.8165;
+/* Least distance between points. */
+static const double exclusion = 0.70; /* M1 */
+/* Least height over a face of the surface, relative to its mean edge. */
+static const double least_height = 0.3;
+
+enum { N_BUCKET = 8192, BUCKET_ZERO = 4096, STOP_STEP = 1 << 12 };
+
+struct advance {
+  struct vg_tets *t;
+  struct vg_metrics *metrics;
+  const struct vg_region *region;
+  struct vg_inserter s;
+  struct vg_buckets queue; /* Faces of the surface, then points. */
+  size_t n_face;
+  uint32_t *face;      /* [n_face][3] Corners of faces of the surface. */
+  uint32_t *face_cell; /* [n_face] A cell near each face. */
+  uint32_t *star;      /* [points] A cell near each point. */
+  size_t cap_star;
+  struct vg_metric_advance_report *report;
+};
+
+/* Four buckets per doubling of the mean size. */
+static int bucket_of(double root)
+{
+  int e;
+  double m = frexp(1 / root, &e); /* h^3 */
+
+  return 2 * e + (m >= 0.7071067811865476) + BUCKET_ZERO;
+}
+
+static int push_point(struct advance *a, uint32_t p)
+{
+  size_t n = a->n_face + p + 1;
+
+  if (vg_buckets_reserve(&a->queue, n)) return -1;
+  vg_buckets_push(&a->queue, bucket_of(a->metrics->at[p].root),
+                  (uint32_t)a->n_face + p);
+  return 0;
+}
+
+static int is_wanted(const struct advance *a, const double x[3])
+{
+  return !a->region ||
+         vg_region_near(a->region, a->metrics->sizing, x, VG_BAND_PLACE);
+}
+
+/* --- proposals ------------------------------------------------------------ */
+
+/* Does a corner of the cell exclude the position x with stretch t? */
+static int is_excluded(const struct advance *a, uint32_t cell,
+                       const double x[3], const double t[6])
+{
+  const uint32_t *v = a->t->cell[cell].v;
+
+  for (int i = 0; i < 4; i++) {
+    double d[3];
+
+    vg_sub(a->t->x[v[i]], x, d);
+    vg_tensor_apply(t, d, d);
+    if (vg_dot(d, d) < exclusion * exclusion) return 1;
+  }
+  return 0;
+}
+
+/* Insert x with stretch t into its cell. Returns -1 if memory is refused. */
+static int insert(struct advance *a, const double x[3], const double t[6],
+                  uint32_t cell, struct vg_error *err)
+{
+  struct vg_tets *tets = a->t;
+  uint32_t p = (uint32_t)tets->n_point;
+  vg_status st;
+
+  if (vg_tets_reserve_points(tets, 1) ||
+      vg_reserve(&a->star, &a->cap_star, p + 1, sizeof *a->star))
+    return -1;
+  memcpy(tets->x[p], x, sizeof *tets->x);
+  tets->n_point++;
+  a->s.stretch = t;
+  st = vg_insert(&a->s, p, cell, least_height, exclusion, err);
+  if (st != VG_OK) {
+    tets->n_point--;
+    a->report->n_refused++;
+    return st < 0 ? -1 : 0;
+  }
+  if (vg_metrics_add(a->metrics, tets, p, p + 1) || push_point(a, p)) return -1;
+  a->star[p] = a->s.last;
+  a->report->n_inserted++;
+  return 0;
+}
+
+/* Propose the point at `unit`, in units of the metric, from c, where the size
+ * tensor is h. The displacement is the mean of those by the sizes at both of
+ * its ends. */
+static int propose(struct advance *a, const double c[3], const double h[6],
+                   const double unit[3], uint32_t *start, struct vg_error *err)
+{
+  double d[3], far[3], x[3], t[6], there[6];
+  uint32_t cell;
+
+  vg_tensor_apply(h, unit, d);
+  for (int k = 0; k < 3; k++) x[k] = c[k] + d[k];
+  vg_sizing_stretch_at(a->metrics->sizing, x, t);
+  vg_tensor_invert(t, there);
+  vg_tensor_apply(there, unit, far);
+  for (int k = 0; k < 3; k++) x[k] = c[k] + 0.5 * (d[k] + far[k]);
+  if (!is_wanted(a, x)) return 0;
+  a->report->n_proposed++;
+  cell = vg_tets_locate(a->t, *start, x);
+  if (cell == VG_NONE || a->t->flag[cell] & VG_OUTSIDE) return 0;
+  vg_sizing_stretch_at(a->metrics->sizing, x, t);
+  if (is_excluded(a, cell, x, t)) return 0;
+  if (insert(a, x, t, cell, err)) return -1;
+  if (a->t->flag[*start] & VG_DEAD) *start = a->s.last;
+  return 0;
+}
+
+/* A live cell to start a search from. */
+static uint32_t live(const struct advance *a, uint32_t cell)
+{
+  return a->t->flag[cell] & VG_DEAD ? a->s.last : cell;
+}
+
+static int grow_point(struct advance *a, uint32_t p, struct vg_error *err)
+{
+  static const double sign[8][3] = { { 1, 1, 1 },  { -1, -1, -1 },
+                                     { 1, 1, -1 }, { -1, -1, 1 },
+                                     { 1, -1, 1 }, { -1, 1, -1 },
+                                     { -1, 1, 1 }, { 1, -1, -1 } };
+  uint32_t start = live(a, a->star[p]);
+  double c[3], h[6];
+
+  memcpy(c, a->t->x[p], sizeof c);
+  vg_tensor_root(a->metrics->at[p].m, h);
+  vg_tensor_invert(h, h);
+  for (int i = 0; i < 8; i++) {
+    double unit[3];
+
+    for (int k = 0; k < 3; k++) unit[k] = 0.5 * lattice * sign[i][k];
+    if (propose(a, c, h, unit, &start, err)) return -1;
+  }
+  return 0;
+}
+
+/* The apex over a face: its normal in the metric at the centre. */
+static int grow_face(struct advance *a, size_t face, struct vg_error *err)
+{
+  const uint32_t *v = &a->face[3 * face];
+  double c[3], t[6], h[6], e[3], f[3], n[3], length;
+  uint32_t start = live(a, a->face_cell[face]);
+
+  for (int k = 0; k < 3; k++)
+    c[k] = (a->t->x[v[0]][k] + a->t->x[v[1]][k] + a->t->x[v[2]][k]) / 3;
+  vg_sizing_stretch_at(a->metrics->sizing, c, t);
+  vg_tensor_invert(t, h);
+  vg_sub(a->t->x[v[1]], a->t->x[v[0]], e);
+  vg_sub(a->t->x[v[2]], a->t->x[v[0]], f);
+  vg_tensor_apply(t, e, e);
+  vg_tensor_apply(t, f, f);
+  vg_cross(e, f, n);
+  length = vg_norm(n);
+  if (!(length > 0)) return 0;
+  for (int k = 0; k < 3; k++) n[k] *= apex / length;
+  return propose(a, c, h, n, &start, err);
+}
+
+/* --- the front ------------------------------------------------------------ */
+
+static int start_faces(struct advance *a)
+{
+  const struct vg_tets *t = a->t;
+  size_t n = 0;
+
+  for (size_t c = 0; c < t->n_cell; c++)
+    if (!(t->flag[c] & (VG_OUTSIDE | VG_DEAD)))
+      n += (size_t)__builtin_popcount(t->flag[c] & VG_FIXED_FACES);
+  a->face = vg_alloc(3 * n, sizeof *a->face);
+  a->face_cell = vg_alloc(n, sizeof *a->face_cell);
+  if (!a->face || !a->face_cell) return -1;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (uint32_t i = 0; i < 4; i++) {
+      if (t->flag[c] & (VG_OUTSIDE | VG_DEAD) || !(t->flag[c] >> i & 1))
+        continue;
+      for (int k = 0; k < 3; k++)
+        a->face[3 * a->n_face + (size_t)k] = t->cell[c].v[vg_face[i][k]];
+      a->face_cell[a->n_face++] = c;
+    }
+  return vg_buckets_reserve(&a->queue, n);
+}
+
+static double finest_root(const struct advance *a, const uint32_t v[3])
+{
+  double root = 0;
+
+  for (int k = 0; k < 3; k++) root = fmax(root, a->metrics->at[v[k]].root);
+  return root;
+}
+
+/* Faces are pushed first, so that they come before points of equal size. */
+static int start(struct advance *a)
+{
+  const struct vg_tets *t = a->t;
+
+  if (vg_reserve(&a->star, &a->cap_star, t->n_point, sizeof *a->star) ||
+      vg_buckets_init(&a->queue, N_BUCKET) || start_faces(a))
+    return -1;
+  for (uint32_t i = 0; i < a->n_face; i++)
+    vg_buckets_push(&a->queue, bucket_of(finest_root(a, &a->face[3 * i])), i);
+  for (size_t p = 0; p < t->n_point; p++) a->star[p] = VG_NONE;
+  for (uint32_t c = 0; c < t->n_cell; c++)
+    for (int k = 0; k < 4 && !(t->flag[c] & (VG_OUTSIDE | VG_DEAD)); k++) {
+      a->star[t->cell[c].v[k]] = c;
+      a->s.last = c;
+    }
+  for (uint32_t p = 0; p < t->n_point; p++)
+    if (a->star[p] != VG_NONE && push_point(a, p)) return -1;
+  return 0;
+}
+
+static vg_status run(struct advance *a, size_t limit,
+                     const struct vg_stop *stop, struct vg_error *err)
+{
+  uint32_t item;
+
+  if (start(a)) return vg_fail_memory(err, "placing points");
+  for (size_t k = 0; (item = vg_buckets_pop(&a->queue)) != VG_BUCKETS_NONE;
+       k++) {
+    int bad = item < a->n_face ? grow_face(a, item, err)
+                               : grow_point(a, item - (uint32_t)a->n_face, err);
+
+    if (bad) return vg_fail_memory(err, "placing points");
+    if (limit && a->report->n_inserted > limit)
+      return vg_fail(err, VG_ERR_UNSUPPORTED,
+                     "more than %zu field points are needed; use a coarser "
+                     "spacing or raise the limit",
+                     limit);
+    if (k % STOP_STEP == 0) {
+      vg_status st = vg_stopped(stop, err);
+
+      if (st != VG_OK) return st;
+    }
+  }
+  return VG_OK;
+}
+
+vg_status vg_metric_advance(struct vg_tets *t, struct vg_metrics *metrics,
+                            const struct vg_region *region, size_t limit,
+                            const struct vg_stop *stop,
+                            struct vg_metric_advance_report *report,
+                            struct vg_error *err)
+{
+  struct advance a = {
+    .t = t, .metrics = metrics, .region = region, .report = report
+  };
+  vg_status st = vg_inserter_init(&a.s, t, err);
+
+  if (st == VG_OK) st = run(&a, limit, stop, err);
+  vg_inserter_release(&a.s);
+  vg_buckets_release(&a.queue);
+  free(a.face);
+  free(a.face_cell);
+  free(a.star);
+  return st;
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* core/metric/metrics.h: metrics at the points of a tetrahedralisation, and
+ * the quality of its cells and the lengths of its edges in them. */
+#ifndef VG_CORE_METRIC_METRICS_H
+#define VG_CORE_METRIC_METRICS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/delaunay/tets.h"
+#include "core/geometry/tensor.h"
+#include "core/geometry/vector.h"
+#include "core/sizing/sizing.h"
+
+struct vg_point_metric {
+  double m[6]; /* Metric at the point. */
+  double root; /* Square root of its determinant. */
+};
+
+struct vg_metrics {
+  const struct vg_sizing *sizing;
+  struct vg_point_metric *at; /* [points] Metric of each point. */
+  size_t cap;
+};
+
+/** The metric at x. */
+void vg_metric_at(const struct vg_sizing *sizing, const double x[3],
+                  struct vg_point_metric *out);
+
+/** Evaluate the metrics of points from..n-1 of t. Returns 0, or -1 if memory is
+ * refused. */
+int vg_metrics_add(struct vg_metrics *s, const struct vg_tets *t, size_t from,
+                   size_t n);
+
+void vg_metrics_release(struct vg_metrics *s);
+
+/** Cube of the mean ratio of the tetrahedron a b c d in metric m. The mean
+ * ratio is 12 (3 V)^(2/3) / sum of the squared edge lengths, and 1 for the
+ * regular tetrahedron; its cube needs no roots. 0 if the volume is not
+ * positive, or if rounding determines its sign. */
+double vg_metric_shape(const struct vg_point_metric *m, const double a[3],
+                       const double b[3], const double c[3], const double d[3]);
+
+/** The finest metric of four points: that of the largest determinant. */
+static inline const struct vg_point_metric *vg_metrics_finest(
+  const struct vg_metrics *s, const uint32_t v[4])
+{
+  const struct vg_point_metric *m = &s->at[v[0]];
+
+  for (int i = 1; i < 4; i++)
+    if (s->at[v[i]].root > m->root) m = &s->at[v[i]];
+  return m;
+}
+
+/** Shape of a cell in the finest metric of its corners. */
+static inline double vg_metrics_shape(const struct vg_metrics *s,
+                                      const struct vg_tets *t,
+                                      const uint32_t v[4])
+{
+  return vg_metric_shape(vg_metrics_finest(s, v), t->x[v[0]], t->x[v[1]],
+                         t->x[v[2]], t->x[v[3]]);
+}
+
+/** Length of the edge between two points. */
+static inline double vg_metrics_length(const struct vg_metrics *s,
+                                       const struct vg_tets *t, uint32_t a,
+                                       uint32_t b)
+{
+  double e[3];
+
+  vg_sub(t->x[b], t->x[a], e);
+  return vg_metric_length(s->at[a].m, s->at[b].m, e);
+}
+
+#endif
