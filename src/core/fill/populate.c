@@ -130,7 +130,7 @@ vg_status vg_filling_improve(struct vg_filling *g, struct vg_error *err)
   VG_TRY(vg_stopped(&g->options->stop, err));
   if (g->region) near = *g->region;
   near.reach += margin;
-  if (g->options->sweeps > 0 && !vg_sizing_is_stretched(g->sizing)) {
+  if (g->options->sweeps > 0) {
     st = vg_optimise(&g->t, g->front->n_point, g->options->sweeps,
                      g->region ? &near : NULL, g->sizing, &r, err);
     g->report->n_smoothed += r.n_smoothed;

@@ -14,11 +14,16 @@
  * to, in degrees. Cells below `aim` (angles below 25 or above 155) are
  * improved one by one. Sweeps swap cells below `fair` (30, 150). The first
  * sweep moves the points of cells below `good` (45, 135), the next ones only
- * those of cells below `fair`. */
-static const double aim = VG_SHAPE_TARGET;
-static const float fair = 0.25, good = VG_SHAPE_GOOD; /* K24 */
-/* Below this shape (15, 165), points are removed or inserted. */
-static const double desperate = 0.067; /* K25 */
+ * those of cells below `fair`. Below `desperate` (15, 165), points are removed
+ * or inserted; `worst` is 10 or 170 degrees. */
+static const struct vg_shape_levels euclidean = {
+  VG_SHAPE_TARGET, 0.25F, VG_SHAPE_GOOD, 0.067, 0.03F /* K24, K25 */
+};
+
+/* In a metric: cubes of the mean ratios 0.6, 0.85, 1, 0.4, 0.2. */
+static const struct vg_shape_levels in_metric = {
+  0.216, 0.614F, 1, 0.064, 0.008F /* M2 */
+};
 
 /* Number of rounds over bad cells. They end early if a round improves at most
  * one percent of its cells. */
@@ -42,7 +47,11 @@ static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
       vg_reserve(&o->failed_cell, &o->cap_failed_cell, t->cap_cell,
                  sizeof *o->failed_cell))
     return vg_fail_memory(err, "optimisation");
-  for (uint32_t c = 0, n; c < t->n_cell; c += n) {
+  if (o->metrics && vg_metrics_add(o->metrics, t, 0, t->n_point))
+    return vg_fail_memory(err, "optimisation");
+  for (uint32_t c = 0; o->metrics && c < t->n_cell; c++)
+    o->q[c] = (float)vg_metrics_shape(o->metrics, t, t->cell[c].v);
+  for (uint32_t c = 0, n; !o->metrics && c < t->n_cell; c += n) {
     n = t->n_cell - c < SHAPES ? (uint32_t)t->n_cell - c : SHAPES;
     vg_ball_cells(t, c, n, o->q + c);
   }
@@ -77,7 +86,8 @@ static int makes_slit(const struct vg_optimiser *o, uint32_t c)
 {
   const struct vg_tets *t = o->t;
 
-  if (o->q[c] >= desperate || !(t->flag[c] & VG_FIXED_FACES)) return 0;
+  if (o->q[c] >= o->level->desperate || !(t->flag[c] & VG_FIXED_FACES))
+    return 0;
   for (int i = 0; i < 4; i++)
     if (!(t->flag[c] >> i & 1) && t->cell[c].link[i] != VG_NONE &&
         is_in_region(o, t->cell[c].link[i] >> 2))
@@ -123,13 +133,14 @@ static vg_status sweep(struct vg_optimiser *o, float limit,
   float *least;
 
   for (uint32_t c = 0; c < t->n_cell; c++)
-    if (is_live(t, c) && o->q[c] < fair && concerns(o, c)) vg_swap(o, c);
+    if (is_live(t, c) && o->q[c] < o->level->fair && concerns(o, c))
+      vg_swap(o, c);
   if (o->region) return VG_OK;
   least = vg_alloc(t->n_point, sizeof *least);
   if (!least) return vg_fail_memory(err, "optimisation");
   worst_around(o, limit, least);
   for (uint32_t p = (uint32_t)o->n_fixed; p < t->n_point; p++)
-    if (least[p] < limit) vg_smooth(o, p, aim);
+    if (least[p] < limit) vg_smooth(o, p, o->level->aim);
   free(least);
   return VG_OK;
 }
@@ -137,8 +148,8 @@ static vg_status sweep(struct vg_optimiser *o, float limit,
 /* A cell for which all steps failed is flagged VG_TRIED until it changes. */
 static int needs_improvement(const struct vg_optimiser *o, uint32_t c)
 {
-  return is_live(o->t, c) && o->q[c] < aim && !(o->t->flag[c] & VG_TRIED) &&
-         concerns(o, c);
+  return is_live(o->t, c) && o->q[c] < o->level->aim &&
+         !(o->t->flag[c] & VG_TRIED) && concerns(o, c);
 }
 
 /* List the cells to improve: a few classes of shape, the worst class first,
@@ -156,8 +167,9 @@ static vg_status list_bad(const struct vg_optimiser *o, size_t *n,
     if (needs_improvement(o, c)) {
       double q = o->q[c] > 0 ? o->q[c] : 0;
 
-      (*list)[k].key = q < desperate ? (uint64_t)(CLASSES * q / desperate)
-                                     : CLASSES;
+      (*list)[k].key = q < o->level->desperate
+                       ? (uint64_t)(CLASSES * q / o->level->desperate)
+                       : CLASSES;
       (*list)[k++].index = c;
     }
   return vg_sort_keys(*n, *list, err);
@@ -169,10 +181,10 @@ static int improve_cell(struct vg_optimiser *o, uint32_t c)
   int better = 0;
 
   if (vg_swap(o, c)) return 1;
-  for (int i = 0; i < 4 && o->q[c] < aim; i++)
-    better |= vg_smooth(o, o->t->cell[c].v[i], aim);
-  if (better || o->q[c] >= desperate) return better;
-  return vg_collapse(o, c) || vg_split(o, c, aim);
+  for (int i = 0; i < 4 && o->q[c] < o->level->aim; i++)
+    better |= vg_smooth(o, o->t->cell[c].v[i], o->level->aim);
+  if (better || o->q[c] >= o->level->desperate) return better;
+  return vg_collapse(o, c) || vg_split(o, c, o->level->aim);
 }
 
 static vg_status improve_bad(struct vg_optimiser *o, int *again,
@@ -201,7 +213,7 @@ static size_t count_left(const struct vg_optimiser *o)
 
   if (o->spent <= o->budget) return 0;
   for (uint32_t c = 0; c < o->t->n_cell; c++)
-    n += is_live(o->t, c) && o->q[c] < desperate && concerns(o, c) &&
+    n += is_live(o->t, c) && o->q[c] < o->level->desperate && concerns(o, c) &&
          !(o->failed_cell[c] & VG_FAILED_SPLIT);
   return n;
 }
@@ -212,8 +224,10 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
   int again = 1;
   vg_status st = start(o, t, err);
 
+  for (int k = 0; st == VG_OK && o->metrics && k < 2 && sweeps; k++)
+    st = vg_even_lengths(o, err);
   for (int k = 0; st == VG_OK && k < sweeps; k++)
-    st = sweep(o, k ? fair : good, err);
+    st = sweep(o, k && !o->metrics ? o->level->fair : o->level->good, err);
   for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
     st = improve_bad(o, &again, err);
   if (st == VG_OK) o->report->n_left = count_left(o);
@@ -224,6 +238,7 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
   free(o->star);
   free(o->failed);
   free(o->failed_cell);
+  if (o->metrics) vg_metrics_release(o->metrics);
   free(o);
   return st;
 }
@@ -237,6 +252,7 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
   assert((!region || sizing) && report);
 
   struct vg_optimiser *o = vg_calloc(1, sizeof *o);
+  struct vg_metrics metrics = { .sizing = sizing };
 
   memset(report, 0, sizeof *report);
   if (!o) return vg_fail_memory(err, "optimisation");
@@ -244,6 +260,11 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
   o->region = region;
   o->sizing = sizing;
   o->report = report;
+  o->level = &euclidean;
+  if (sizing && vg_sizing_is_stretched(sizing)) {
+    o->metrics = &metrics;
+    o->level = &in_metric;
+  }
   return optimise(o, t, sweeps, err);
 }
 
@@ -260,5 +281,6 @@ vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
   o->n_fixed = n_fixed;
   o->n_keep = n_keep;
   o->report = report;
+  o->level = &euclidean;
   return optimise(o, t, 0, err);
 }

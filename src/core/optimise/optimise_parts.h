@@ -6,6 +6,7 @@
 
 #include "core/delaunay/cavity.h"
 #include "core/geometry/shape.h"
+#include "core/metric/metrics.h"
 #include "core/optimise/optimise.h"
 
 enum {
@@ -22,6 +23,16 @@ enum { /* steps that failed; cleared by a change */
        VG_NOT_IN_REGION = 8    /* for a cell: does not belong to the region */
 };
 
+/* Shapes that decide which cells the steps improve. Without metrics, shapes are
+ * those of vg_shape, with metrics those of vg_metric_shape. */
+struct vg_shape_levels {
+  double aim;       /* cells below this are improved one by one */
+  float fair;       /* sweeps swap cells below this */
+  float good;       /* the first sweep moves the points of cells below this */
+  double desperate; /* points are removed and inserted below this */
+  float worst;      /* more positions are tried for cells below this */
+};
+
 struct vg_optimiser {
   struct vg_tets *t;
   size_t n_fixed;                 /* points with a lower index do not move */
@@ -29,7 +40,10 @@ struct vg_optimiser {
                                      removed */
   const struct vg_region *region; /* NULL: all cells are improved */
   const struct vg_sizing *sizing; /* measures the region */
-  float *q;                       /* [cap_cell] shape of each cell */
+  struct vg_metrics *metrics;     /* metrics of the points, in which shapes
+                                     are measured; NULL: Euclidean shapes */
+  const struct vg_shape_levels *level; /* limits of shapes for the steps */
+  float *q;                            /* [cap_cell] shape of each cell */
   size_t cap_q;
   uint8_t *failed_cell; /* [cap_cell] VG_FAILED_... bits of each cell */
   size_t cap_failed_cell;
@@ -60,11 +74,18 @@ struct vg_optimiser {
 #define VG_CLIMB_NEXT 0.4
 #define VG_CLIMB_LEAST 0.01
 
-static inline double vg_cell_shape(const struct vg_tets *t, uint32_t c)
+/** Shape of the cell with corners a b c d. */
+static inline double vg_shape_of(const struct vg_optimiser *o, uint32_t a,
+                                 uint32_t b, uint32_t c, uint32_t d)
 {
-  const uint32_t *v = t->cell[c].v;
+  const struct vg_tets *t = o->t;
 
-  return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+  if (o->metrics) {
+    const uint32_t v[4] = { a, b, c, d };
+
+    return vg_metrics_shape(o->metrics, t, v);
+  }
+  return vg_shape(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
 
 /** To be called when cell c has changed: steps that failed for it and its
@@ -96,6 +117,17 @@ int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
  * where every cell is above aim are rated by the mean shape instead. */
 int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim);
 
+/** vg_smooth with metrics. */
+int vg_smooth_metric(struct vg_optimiser *o, uint32_t p);
+
+/** Collapse edges that are too short in the metric, and split those that are
+ * too long, in one pass over the cells. VG_ERR_MEMORY. (optimise_lengths.c) */
+vg_status vg_even_lengths(struct vg_optimiser *o, struct vg_error *err);
+
+/** Put x at index n_point of the points, with its metric if there are metrics,
+ * without adding it. Returns 0, or -1 if memory was refused. */
+int vg_try_point(struct vg_optimiser *o, const double x[3]);
+
 /** Remove faces and edges of cell c if this improves the worst of the affected
  * cells. */
 int vg_swap(struct vg_optimiser *o, uint32_t c);
@@ -103,6 +135,17 @@ int vg_swap(struct vg_optimiser *o, uint32_t c);
 /** Remove a vertex of the bad cell c by collapsing it onto one of its
  * neighbours. */
 int vg_collapse(struct vg_optimiser *o, uint32_t c);
+
+/** Collapse p onto its neighbour `to`, with metrics. Refused if a new shape is
+ * below `need` and below the worst shape around p, or if a new edge is longer
+ * than `most` in the metric. */
+int vg_merge_onto(struct vg_optimiser *o, uint32_t p, uint32_t to, double need,
+                  double most);
+
+/** Insert a point in the middle of edge a b of cell c. Refused if a new shape
+ * is below `share` times the worst one around the edge. */
+int vg_split_edge(struct vg_optimiser *o, uint32_t c, uint32_t a, uint32_t b,
+                  double share);
 
 /** Limit of the number of cells that vg_split examines in t. */
 size_t vg_split_budget(const struct vg_tets *t);

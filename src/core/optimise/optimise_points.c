@@ -33,13 +33,12 @@ struct merger {
 static int move_cell(const struct vg_optimiser *o, size_t k, uint32_t to,
                      uint32_t w[4], double *q)
 {
-  const struct vg_tets *t = o->t;
-  const uint32_t *v = t->cell[o->ball[k] >> 2].v;
+  const uint32_t *v = o->t->cell[o->ball[k] >> 2].v;
 
   if (v[0] == to || v[1] == to || v[2] == to || v[3] == to) return 0;
   memcpy(w, v, 4 * sizeof *w);
   w[o->ball[k] & 3] = to;
-  *q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], t->x[w[3]]);
+  *q = vg_shape_of(o, w[0], w[1], w[2], w[3]);
   return 1;
 }
 
@@ -144,6 +143,43 @@ static int merge_point(struct vg_optimiser *o, uint32_t p)
   return 1;
 }
 
+/* Is an edge from `to` to a point of the ball of p longer than `most`? */
+static int stretches(const struct vg_optimiser *o, uint32_t p, uint32_t to,
+                     double most)
+{
+  for (size_t k = 0; k < o->n_ball; k++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t v = o->t->cell[o->ball[k] >> 2].v[i];
+
+      if (v != p && v != to &&
+          vg_metrics_length(o->metrics, o->t, v, to) > most)
+        return 1;
+    }
+  return 0;
+}
+
+int vg_merge_onto(struct vg_optimiser *o, uint32_t p, uint32_t to, double need,
+                  double most)
+{
+  struct merger plan;
+  uint32_t old[VG_OLD_MAX];
+  double worst, now = 1;
+
+  if (p < o->n_keep || !vg_ball(o, p) || o->n_ball > VG_OLD_MAX) return 0;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    old[k] = o->ball[k] >> 2;
+    now = fmin(now, o->q[old[k]]);
+  }
+  if (!plan_merge(o, to, fmin(need, now), &plan, &worst) ||
+      stretches(o, p, to, most) ||
+      vg_replace(o, (int)o->n_ball, old, plan.n_new,
+                 (const uint32_t(*)[4])plan.v, plan.q, NULL))
+    return 0;
+  o->star[p] = VG_NONE;
+  o->report->n_collapse++;
+  return 1;
+}
+
 int vg_collapse(struct vg_optimiser *o, uint32_t c)
 {
   uint32_t v[4];
@@ -165,9 +201,6 @@ enum { CAVITY_MAX = 44 }; /* K27 */
  * (F-16) to 16 (low-boom) per cell, others hardly any, an aerofoil meshed with
  * slivers only 340. */
 enum { SPEND_PER_CELL = 24, SPEND_FREELY = 100000 }; /* K30 */
-
-/* Shape (vg_shape) of cells with angles of 10 or 170 degrees. */
-static const float worst_of_all = 0.03F;
 
 struct cavity {
   int n_old, n_new;
@@ -209,13 +242,13 @@ static int drop_shared(const struct vg_tets *t, uint32_t c, struct cavity *h)
   return 1;
 }
 
-/* Connect the faces of the cavity to x. A face that makes a cell no better
- * than `need` is opened: the cell behind it joins the cavity. Returns 0 if
- * this fails. */
-static int open_cavity(struct vg_optimiser *o, const double x[3], double need,
-                       struct cavity *h)
+/* Connect the faces of the cavity to the point that is tried. A face that makes
+ * a cell no better than `need` is opened: the cell behind it joins the cavity.
+ * Returns 0 if this fails. */
+static int open_cavity(struct vg_optimiser *o, double need, struct cavity *h)
 {
   const struct vg_tets *t = o->t;
+  const uint32_t p = (uint32_t)t->n_point;
 
   h->n_new = 0;
   for (int k = 0; k < h->n_old; k++) {
@@ -235,7 +268,7 @@ static int open_cavity(struct vg_optimiser *o, const double x[3], double need,
       if (h->n_new == VG_NEW_MAX) return 0;
       w = h->v[h->n_new];
       for (int j = 0; j < 3; j++) w[j] = t->cell[c].v[f[j]];
-      q = vg_shape(t->x[w[0]], t->x[w[1]], t->x[w[2]], x);
+      q = vg_shape_of(o, w[0], w[1], w[2], p);
       if (q > need) {
         h->from[h->n_new] = 4 * c + i;
         h->q[h->n_new++] = (float)q;
@@ -264,21 +297,29 @@ static int swallows(const struct vg_tets *t, const struct cavity *h)
   return 0;
 }
 
-static int put_point(struct vg_optimiser *o, const double x[3],
-                     struct cavity *h)
+int vg_try_point(struct vg_optimiser *o, const double x[3])
+{
+  struct vg_tets *t = o->t;
+  size_t p = t->n_point;
+
+  if (vg_tets_reserve_points(t, 1) ||
+      vg_reserve(&o->star, &o->cap_star, p + 1, sizeof *o->star) ||
+      vg_reserve(&o->failed, &o->cap_failed, p + 1, sizeof *o->failed) ||
+      (o->metrics && vg_metrics_reserve(o->metrics, p + 1))) {
+    o->refused = 1;
+    return -1;
+  }
+  memcpy(t->x[p], x, sizeof *t->x);
+  if (o->metrics) vg_metric_at(o->metrics->sizing, x, &o->metrics->at[p]);
+  return 0;
+}
+
+static int put_point(struct vg_optimiser *o, struct cavity *h)
 {
   struct vg_tets *t = o->t;
   uint32_t p = (uint32_t)t->n_point;
 
   if (swallows(t, h)) return 0;
-  if (vg_tets_reserve_points(t, 1) ||
-      vg_reserve(&o->star, &o->cap_star, t->n_point + 1, sizeof *o->star) ||
-      vg_reserve(&o->failed, &o->cap_failed, t->n_point + 1,
-                 sizeof *o->failed)) {
-    o->refused = 1;
-    return 0;
-  }
-  memcpy(t->x[p], x, sizeof *t->x);
   for (int k = 0; k < h->n_new; k++) h->v[k][3] = p;
   if (vg_replace(o, h->n_old, h->old, h->n_new, (const uint32_t(*)[4])h->v,
                  h->q, NULL))
@@ -295,11 +336,28 @@ static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
 
   h.n_old = 1;
   h.old[0] = c;
-  if (!open_cavity(o, x, worth(o->q[c]), &h) || !put_point(o, x, &h)) return 0;
+  if (vg_try_point(o, x) || !open_cavity(o, worth(o->q[c]), &h) ||
+      !put_point(o, &h))
+    return 0;
   for (int k = 0; k < 3 && vg_smooth(o, (uint32_t)o->t->n_point - 1, aim);
        k++) {
   }
   return 1;
+}
+
+int vg_split_edge(struct vg_optimiser *o, uint32_t c, uint32_t a, uint32_t b,
+                  double share)
+{
+  struct cavity h;
+  uint32_t ring[VG_OLD_MAX];
+  double x[3], worst = 1;
+
+  h.n_old = vg_cavity_ring(o->t, c, a, b, CAVITY_MAX, 0, h.old, ring);
+  if (!h.n_old) return 0;
+  for (int k = 0; k < h.n_old; k++) worst = fmin(worst, o->q[h.old[k]]);
+  for (int k = 0; k < 3; k++) x[k] = 0.5 * (o->t->x[a][k] + o->t->x[b][k]);
+  return !vg_try_point(o, x) && open_cavity(o, share * worst, &h) &&
+         put_point(o, &h);
 }
 
 static void centre(const struct vg_tets *t, uint32_t c, const double share[4],
@@ -314,9 +372,10 @@ static void centre(const struct vg_tets *t, uint32_t c, const double share[4],
 /* A position above the centroid of face i of cell c. Its height is `share`
  * times the square root of twice the area of the face; 0.88 gives a regular
  * tetrahedron. */
-static void above(const struct vg_tets *t, uint32_t c, int i, double share,
+static void above(const struct vg_optimiser *o, uint32_t c, int i, double share,
                   double x[3])
 {
+  const struct vg_tets *t = o->t;
   const uint32_t *v = t->cell[c].v;
   const double *a = t->x[v[vg_face[i][0]]], *b = t->x[v[vg_face[i][1]]];
   const double *d = t->x[v[vg_face[i][2]]];
@@ -325,7 +384,8 @@ static void above(const struct vg_tets *t, uint32_t c, int i, double share,
   vg_sub(b, a, e);
   vg_sub(d, a, f);
   vg_cross(e, f, n);
-  size = sqrt(vg_norm(n));
+  size = sqrt(o->metrics ? vg_metric_normal(vg_metrics_finest(o->metrics, v), n)
+                         : vg_norm(n));
   for (int k = 0; k < 3; k++)
     x[k] = (a[k] + b[k] + d[k]) / 3 + (size > 0 ? share * n[k] / size : 0);
 }
@@ -339,7 +399,7 @@ static int split_above(struct vg_optimiser *o, uint32_t c, double aim)
   for (int i = 0; i < 4; i++) {
     if (!(o->t->flag[c] >> i & 1)) continue;
     for (double share = 1; share > least_share; share *= 0.5) {
-      above(o->t, c, i, share, x);
+      above(o, c, i, share, x);
       if (split_at(o, c, x, aim)) return 1;
     }
   }
@@ -356,7 +416,7 @@ int vg_split(struct vg_optimiser *o, uint32_t c, double aim)
                                       { .5, 0, .5, 0 },       { .5, 0, 0, .5 },
                                       { 0, .5, .5, 0 },       { 0, .5, 0, .5 },
                                       { 0, 0, .5, .5 } };
-  int n = o->q[c] < worst_of_all ? 7 : 1;
+  int n = o->q[c] < o->level->worst ? 7 : 1;
   double x[3];
 
   if (o->failed_cell[c] & VG_FAILED_SPLIT || o->spent > o->budget) return 0;

@@ -165,7 +165,7 @@ int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
   assert(p < o->t->n_point && aim >= 0);
   if (p < o->n_fixed || o->failed[p] & VG_FAILED_SMOOTH || !vg_ball(o, p))
     return 0;
-  if (smooth_ball(o, p, aim)) return 1;
+  if (o->metrics ? vg_smooth_metric(o, p) : smooth_ball(o, p, aim)) return 1;
   o->failed[p] |= VG_FAILED_SMOOTH;
   return 0;
 }

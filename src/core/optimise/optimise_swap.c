@@ -9,12 +9,6 @@
 
 #include "core/optimise/optimise_parts.h"
 
-static double shape_of(const struct vg_tets *t, uint32_t a, uint32_t b,
-                       uint32_t c, uint32_t d)
-{
-  return vg_shape(t->x[a], t->x[b], t->x[c], t->x[d]);
-}
-
 /* Smallest gain that justifies a swap; also prevents rounding from causing
  * endless swaps. */
 static const double gain = 1.0001; /* K41 */
@@ -41,7 +35,7 @@ static int swap_face(struct vg_optimiser *o, uint32_t c, int i)
   for (int k = 0; k < 3; k++) {
     uint32_t from = t->cell[c].v[vg_face[i][k]];
     uint32_t to = t->cell[c].v[vg_face[i][(k + 1) % 3]];
-    double s = shape_of(t, from, to, b, a);
+    double s = vg_shape_of(o, from, to, b, a);
 
     if (s <= need) return 0;
     q[k] = (float)s;
@@ -58,7 +52,7 @@ static int swap_face(struct vg_optimiser *o, uint32_t c, int i)
 /* --- edge removal --------------------------------------------------------- */
 
 struct ring_plan {
-  const struct vg_tets *t;
+  const struct vg_optimiser *o;
   uint32_t a, b, ring[VG_SHELL_MAX];
   double need;
   double best[VG_SHELL_MAX][VG_SHELL_MAX]; /* for the polygon i..j */
@@ -72,10 +66,10 @@ struct ring_plan {
 static double triangle_shape(const struct ring_plan *r, int i, int k, int j)
 {
   const uint32_t *v = r->ring;
-  double lo = shape_of(r->t, v[i], v[k], v[j], r->b), hi;
+  double lo = vg_shape_of(r->o, v[i], v[k], v[j], r->b), hi;
 
   if (lo <= r->need) return 0;
-  hi = shape_of(r->t, v[i], v[j], v[k], r->a);
+  hi = vg_shape_of(r->o, v[i], v[j], v[k], r->a);
   return hi < lo ? hi : lo;
 }
 
@@ -109,7 +103,7 @@ static int plan_ring(struct ring_plan *r, int n)
 static void emit(struct ring_plan *r, uint32_t a, uint32_t b, uint32_t c,
                  uint32_t d)
 {
-  r->q[r->n_new] = (float)shape_of(r->t, a, b, c, d);
+  r->q[r->n_new] = (float)vg_shape_of(r->o, a, b, c, d);
   r->v[r->n_new][0] = a;
   r->v[r->n_new][1] = b;
   r->v[r->n_new][2] = c;
@@ -135,7 +129,7 @@ static int remove_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
   double worst;
   int n;
 
-  r.t = o->t;
+  r.o = o;
   r.a = o->t->cell[c].v[i];
   r.b = o->t->cell[c].v[j];
   n = vg_cavity_ring(o->t, c, r.a, r.b, VG_SHELL_MAX, 0, cell, r.ring);

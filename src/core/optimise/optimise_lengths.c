@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Lengths of edges in a metric: short edges are collapsed, long ones split. */
+#include <assert.h>
+#include <math.h>
+
+#include "core/optimise/optimise_parts.h"
+
+/* M4: edges shorter or longer than this are changed. */
+static const double shortest = 0.68, longest = 1.45;
+/* Collapses may not make cells worse than this shape, or than the worst one.
+ * Splits may reduce the worst shape around the edge by this factor. */
+static const double least_shape = 0.125, split_share = 0.6;
+
+static int is_live(const struct vg_tets *t, uint32_t c)
+{
+  return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
+}
+
+/* Change edge i j of cell c if its length requires it. */
+static int even_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
+{
+  uint32_t a = o->t->cell[c].v[i], b = o->t->cell[c].v[j];
+  double length = vg_metrics_length(o->metrics, o->t, a, b);
+
+  if (length < shortest)
+    return vg_merge_onto(o, a, b, least_shape, longest) ||
+           vg_merge_onto(o, b, a, least_shape, longest);
+  return length > longest && vg_split_edge(o, c, a, b, split_share);
+}
+
+static int even_cell(struct vg_optimiser *o, uint32_t c)
+{
+  for (int i = 0; i < 4; i++)
+    for (int j = i + 1; j < 4; j++)
+      if (even_edge(o, c, i, j)) return 1;
+  return 0;
+}
+
+vg_status vg_even_lengths(struct vg_optimiser *o, struct vg_error *err)
+{
+  assert(o->metrics);
+  for (uint32_t c = 0; c < o->t->n_cell; c++)
+    if (is_live(o->t, c)) even_cell(o, c);
+  return o->refused ? vg_fail_memory(err, "optimisation") : VG_OK;
+}
