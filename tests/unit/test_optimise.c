@@ -41,8 +41,8 @@ static void box_subject(struct subject *s, int n)
   s->sizing = shape_sizing(&s->m, 1.2, 0);
   assert_int_equal(vg_boundary_tets(s->m.n_point,
                                     (const double(*)[3])s->m.point, s->m.n_tri,
-                                    (const uint32_t(*)[3])s->m.tri, &s->t, &r,
-                                    NULL),
+                                    (const uint32_t(*)[3])s->m.tri, NULL, &s->t,
+                                    &r, NULL),
                    VG_OK);
   assert_int_equal(vg_inserter_init(&s->s, &s->t, NULL), VG_OK);
 }

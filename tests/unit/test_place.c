@@ -30,8 +30,8 @@ static void scene_of(struct scene *s, double growth, double h_max)
   s->sizing = shape_sizing(&s->m, growth, h_max);
   assert_int_equal(vg_boundary_tets(s->m.n_point,
                                     (const double(*)[3])s->m.point, s->m.n_tri,
-                                    (const uint32_t(*)[3])s->m.tri, &s->t, &r,
-                                    NULL),
+                                    (const uint32_t(*)[3])s->m.tri, NULL, &s->t,
+                                    &r, NULL),
                    VG_OK);
 }
 

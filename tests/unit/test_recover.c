@@ -164,7 +164,8 @@ static struct vg_boundary_report recovered(struct vg_mesh *m)
   struct vg_error err = VG_ERROR_INIT;
   double volume = enclosed(m);
 
-  if (vg_boundary_tets(m->n_point, POINT(m), m->n_tri, TRI(m), &t, &r, &err))
+  if (vg_boundary_tets(m->n_point, POINT(m), m->n_tri, TRI(m), NULL, &t, &r,
+                       &err))
     fail_msg("%s", err.text);
   assert_int_equal(vg_tets_defects(&t), 0);
   assert_memory_equal(t.x, m->point, m->n_point * sizeof *m->point);
@@ -331,7 +332,7 @@ static void lost_faces_are_counted(void **state)
   assert_true(n > 0);
   assert_int_equal(n, again);
   n_point = t.n_point;
-  assert_int_equal(vg_recover(&t, m.n_tri, TRI(&m), &r, NULL), VG_OK);
+  assert_int_equal(vg_recover(&t, m.n_tri, TRI(&m), 1, &r, NULL), VG_OK);
   assert_int_equal(r.n_face_lost, n);
   assert_true(r.n_pocket <= r.n_face_left && 10 * r.n_face_left < n);
   assert_int_equal(t.n_point, n_point + r.n_steiner);
@@ -361,7 +362,7 @@ static void the_same_bytes_again(void **state)
   turn_edges(&m, 300, 21);
   for (int k = 0; k < 2; k++)
     assert_int_equal(vg_boundary_tets(m.n_point, POINT(&m), m.n_tri, TRI(&m),
-                                      &t[k], &r[k], NULL),
+                                      NULL, &t[k], &r[k], NULL),
                      VG_OK);
   assert_int_equal(t[0].n_cell, t[1].n_cell);
   assert_int_equal(t[0].n_point, t[1].n_point);
@@ -407,8 +408,8 @@ static void refused(struct vg_mesh *m)
   struct vg_error err = VG_ERROR_INIT;
   FILE *to;
   int kept = divert(&to);
-  vg_status st = vg_boundary_tets(m->n_point, POINT(m), m->n_tri, TRI(m), &t,
-                                  &r, &err);
+  vg_status st = vg_boundary_tets(m->n_point, POINT(m), m->n_tri, TRI(m), NULL,
+                                  &t, &r, &err);
 
   nothing_was_printed(kept, to);
   assert_int_equal(st, VG_ERR_GEOMETRY);

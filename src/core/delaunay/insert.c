@@ -97,25 +97,45 @@ static void drop_faces(struct vg_inserter *s, size_t first)
   s->n_face = n;
 }
 
-/* Is p in the sphere of cell v in the metric with stretch t? The determinant
- * is that of core/geometry/predicates.h, for corners relative to p. */
-static int in_stretched_sphere(const double (*x)[3], const uint32_t v[4],
-                               const double p[3], const double t[6])
+/* Orientation of the triangle a b c and the origin, for the face of a positive
+ * cell and a point within it positive. bound out: limit of its rounding error,
+ * as in vg_orient3d. */
+static inline double cone_sign(const double a[3], const double b[3],
+                               const double c[3], double *bound)
 {
-  double e[4][3], l[4], n[3], det = 0;
+  double yz = b[1] * c[2], zy = b[2] * c[1], zx = b[2] * c[0];
+  double xz = b[0] * c[2], xy = b[0] * c[1], yx = b[1] * c[0];
 
-  for (int i = 0; i < 4; i++) {
-    vg_sub(x[v[i]], p, e[i]);
-    vg_tensor_apply(t, e[i], e[i]);
-    l[i] = vg_dot(e[i], e[i]);
-  }
+  *bound = 8.9e-16 * (fabs(a[0]) * (fabs(yz) + fabs(zy)) +
+                      fabs(a[1]) * (fabs(zx) + fabs(xz)) +
+                      fabs(a[2]) * (fabs(xy) + fabs(yx)));
+  return -(a[0] * (yz - zy) + a[1] * (zx - xz) + a[2] * (xy - yx));
+}
+
+/* As vg_cell_signs, with the sphere in a metric M: the determinant is the sum
+ * of the orientations of the point and the faces, each multiplied by a squared
+ * distance in M. */
+static unsigned metric_signs(const struct vg_inserter *s, const uint32_t v[4],
+                             const double p[3])
+{
+  const struct vg_tets *t = s->t;
+  const double *own = s->metric[s->point].m;
+  double e[4][3], m[6], det = 0;
+  unsigned in = 0;
+
+  for (int k = 0; k < 6; k++)
+    m[k] = 8 * own[k] + s->metric[v[0]].m[k] + s->metric[v[1]].m[k] +
+           s->metric[v[2]].m[k] + s->metric[v[3]].m[k];
+  for (int i = 0; i < 4; i++) vg_sub(t->x[v[i]], p, e[i]);
   for (int i = 0; i < 4; i++) {
     const uint8_t *f = vg_face[i];
+    double bound, o = cone_sign(e[f[0]], e[f[1]], e[f[2]], &bound);
 
-    vg_cross(e[f[1]], e[f[2]], n);
-    det -= l[i] * vg_dot(e[f[0]], n);
+    in |= (unsigned)(o > bound) << i;
+    det += o * vg_tensor_form(m, e[i]);
   }
-  return det > 0;
+  if (!(det > 0)) return 0;
+  return VG_IN_SPHERE | vg_cell_sides((const double(*)[3])t->x, v, p, in, 0);
 }
 
 /* Signs of the point and a cell (core/delaunay/cell_signs.h). */
@@ -125,10 +145,7 @@ VG_WITHIN unsigned signs_of(const struct vg_inserter *s, const uint32_t v[4],
   const double(*x)[3] = (const double(*)[3])s->t->x;
   const vg_d2 both[3] = { { p[0], p[0] }, { p[1], p[1] }, { p[2], p[2] } };
 
-  if (s->stretch)
-    return in_stretched_sphere(x, v, p, s->stretch)
-           ? VG_IN_SPHERE | vg_cell_sides(x, v, p, 0, 0)
-           : 0;
+  if (s->metric) return metric_signs(s, v, p);
 #ifdef VG_WIDE
   if (is_wide) return vg_cell_signs_wide(x, v, p);
 #endif
@@ -294,27 +311,39 @@ static void number_vertices(struct vg_inserter *s)
  * clearance is relative to the root mean square of the edges, or to `most` (0:
  * no limit) if that is shorter, as it is above a needle. */
 static int too_low(const double a[3], const double b[3], const double c[3],
-                   const double x[3], double clearance, double most,
-                   const double *stretch)
+                   const double x[3], double clearance, double most)
 {
   double u[3], v[3], w[3], n[3], dot, n2, e2;
 
   vg_sub(b, a, u);
   vg_sub(c, a, v);
   vg_sub(x, a, w);
-  if (stretch) {
-    vg_tensor_apply(stretch, u, u);
-    vg_tensor_apply(stretch, v, v);
-    vg_tensor_apply(stretch, w, w);
-  }
   vg_cross(u, v, n);
   dot = vg_dot(n, w);
   n2 = vg_dot(n, n);
-  e2 = stretch ? vg_dot(u, u) + vg_distance2(u, v) + vg_dot(v, v)
-               : vg_distance2(a, b) + vg_distance2(b, c) + vg_distance2(c, a);
-  e2 /= 3;
+  e2 = (vg_distance2(a, b) + vg_distance2(b, c) + vg_distance2(c, a)) / 3;
   if (most > 0 && e2 > most * most) e2 = most * most;
   return dot * dot < clearance * clearance * e2 * n2;
+}
+
+/* The same in a metric with the given inverse, in which the normal n has the
+ * squared length n' M^(-1) n, up to a factor that the height has, too. */
+static int too_low_in(const double m[6], const double inverse[6],
+                      const double a[3], const double b[3], const double c[3],
+                      const double x[3], double clearance, double most)
+{
+  double u[3], v[3], w[3], n[3], dot, e2;
+
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  vg_sub(x, a, w);
+  vg_cross(u, v, n);
+  dot = vg_dot(n, w);
+  e2 = vg_tensor_form(m, u) + vg_tensor_form(m, v);
+  vg_sub(u, v, w);
+  e2 = (e2 + vg_tensor_form(m, w)) / 3;
+  if (most > 0 && e2 > most * most) e2 = most * most;
+  return dot * dot < clearance * clearance * e2 * vg_tensor_form(inverse, n);
 }
 
 /* Squared distance of point v from x. */
@@ -322,10 +351,9 @@ static double apart2(const struct vg_inserter *s, uint32_t v, const double x[3])
 {
   double d[3];
 
-  if (!s->stretch) return vg_distance2(s->t->x[v], x);
+  if (!s->metric) return vg_distance2(s->t->x[v], x);
   vg_sub(s->t->x[v], x, d);
-  vg_tensor_apply(s->stretch, d, d);
-  return vg_dot(d, d);
+  return vg_tensor_form(s->metric[s->point].m, d);
 }
 
 static int too_near(const struct vg_inserter *s, const double x[3],
@@ -344,13 +372,18 @@ static int too_near(const struct vg_inserter *s, const double x[3],
 static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
                             double clearance, double most)
 {
-  const struct vg_tets *t = s->t;
+  const double(*at)[3] = (const double(*)[3])s->t->x;
+  const double *m = s->metric ? s->metric[s->point].m : NULL;
+  double inverse[6];
 
+  if (m) vg_tensor_invert(m, inverse);
   for (size_t k = 0; k < s->n_face && clearance > 0; k++) {
     const uint32_t *v = s->face[k].v;
 
-    if (s->face[k].fixed && too_low(t->x[v[0]], t->x[v[1]], t->x[v[2]], x,
-                                    clearance, most, s->stretch))
+    if (!s->face[k].fixed) continue;
+    if (m ? too_low_in(m, inverse, at[v[0]], at[v[1]], at[v[2]], x, clearance,
+                       most)
+          : too_low(at[v[0]], at[v[1]], at[v[2]], x, clearance, most))
       return 1;
   }
   return 0;
@@ -446,6 +479,7 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
   int state;
 
   memcpy(x, t->x[p], sizeof x);
+  s->point = p;
   state = start_flood(s, at, x);
   if (!state && grow_local(s)) state = -1;
   if (!state) number_vertices(s);

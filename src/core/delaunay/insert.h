@@ -8,10 +8,10 @@
  * result is therefore valid for any degenerate input, and Delaunay wherever no
  * constraint interferes. (Bowyer, Watson, Comput. J. 24, 1981.)
  *
- * With a stretch, the sphere is one in the metric at the new point, tested in
- * plain arithmetic (Borouchaki, George, Hecht, Laug, Saltel, Finite Elem. Anal.
- * Des. 25, 1997). Visibility stays exact, and with it the validity of the
- * result. */
+ * With metrics, the sphere of a cell is one in the mean of the metric at the
+ * new point and those of its corners, tested in plain arithmetic (Borouchaki,
+ * George, Hecht, Laug, Saltel, Finite Elem. Anal. Des. 25, 1997). Visibility
+ * stays exact, and with it the validity of the result. */
 #ifndef VG_CORE_DELAUNAY_INSERT_H
 #define VG_CORE_DELAUNAY_INSERT_H
 
@@ -20,6 +20,7 @@
 
 #include "base/status.h"
 #include "core/delaunay/tets.h"
+#include "core/geometry/tensor.h"
 
 /** A face of the cavity, seen from inside. */
 struct vg_cavity_face {
@@ -37,11 +38,11 @@ enum { VG_CAVITY_TABLE = 64 };
 /** Working memory of insertions, reused from one to the next; one per thread.
  */
 struct vg_inserter {
-  struct vg_tets *t;     /* borrowed */
-  const double *stretch; /* stretch of the metric at the next point
-                            (core/geometry/tensor.h), in which spheres and
-                            distances are measured; NULL: Euclidean. Set by
-                            the caller */
+  struct vg_tets *t;                    /* borrowed */
+  const struct vg_point_metric *metric; /* [points] metrics of the points, in
+                                           which spheres and distances are
+                                           measured; NULL: Euclidean. Set by
+                                           the caller */
   size_t n_cell, cap_cell, n_face, cap_face, n_tried, cap_tried;
   struct vg_cavity_cell { /* the cavity; for signs see
                              core/delaunay/cell_signs.h */
@@ -55,7 +56,8 @@ struct vg_inserter {
   uint32_t n_vertex; /* 0 if there are too many */
   uint32_t vertex[VG_CAVITY_TABLE];
   uint32_t table[VG_CAVITY_TABLE][VG_CAVITY_TABLE]; /* link of an edge */
-  uint32_t last; /* a cell created by the last insertion */
+  uint32_t point; /* the point that is inserted */
+  uint32_t last;  /* a cell created by the last insertion */
 };
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,

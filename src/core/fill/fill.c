@@ -34,7 +34,9 @@ static vg_status recover(struct vg_filling *g, struct vg_error *err)
   if (g->region)
     st = vg_boundary_open(f->n_point, x, f->n_face, face, g->region, g->sizing,
                           &g->t, &b, err);
-  else st = vg_boundary_tets(f->n_point, x, f->n_face, face, &g->t, &b, err);
+  else
+    st = vg_boundary_tets(f->n_point, x, f->n_face, face, g->sizing, &g->t, &b,
+                          err);
   add_boundary(g->report, &b);
   g->report->time_boundary += vg_clock() - t0;
   if (st != VG_ERR_GEOMETRY || !g->region) return st;

@@ -15,13 +15,12 @@
 static const double seed_distance = 0.8;
 
 /* Insert one seed, if its surroundings are coarse enough. */
-static vg_status insert_seed(struct vg_filling *g, struct vg_inserter *s,
-                             const double x[3], uint32_t *at,
-                             struct vg_error *err)
+static vg_status insert_seed(struct vg_filling *g, struct vg_metrics *metrics,
+                             struct vg_inserter *s, const double x[3],
+                             uint32_t *at, struct vg_error *err)
 {
   struct vg_tets *t = &g->t;
   uint32_t p = (uint32_t)t->n_point, c = vg_tets_locate(t, *at, x);
-  double stretch[6];
   vg_status st;
 
   if (c == VG_NONE) return VG_BLOCKED;
@@ -29,18 +28,19 @@ static vg_status insert_seed(struct vg_filling *g, struct vg_inserter *s,
   if (t->flag[c] & VG_OUTSIDE) return VG_BLOCKED;
   if (vg_tets_reserve_points(t, 1))
     return vg_fail_memory(err, "the points of the mesh");
-  vg_sizing_stretch_at(g->sizing, x, stretch);
-  s->stretch = stretch;
   memcpy(t->x[p], x, sizeof *t->x);
   t->n_point++;
+  if (vg_metrics_add(metrics, t, p, p + 1))
+    return vg_fail_memory(err, "the metrics of points");
+  s->metric = metrics->at;
   st = vg_insert(s, p, c, seed_distance, seed_distance, err);
   if (st == VG_OK) *at = s->last;
   else t->n_point--;
   return st;
 }
 
-static vg_status insert_seeds(struct vg_filling *g, struct vg_placed *seed,
-                              struct vg_error *err)
+static vg_status insert_seeds(struct vg_filling *g, struct vg_metrics *metrics,
+                              struct vg_placed *seed, struct vg_error *err)
 {
   uint32_t *order = vg_alloc(seed->n, sizeof *order), at = 0;
   struct vg_inserter s;
@@ -51,7 +51,7 @@ static vg_status insert_seeds(struct vg_filling *g, struct vg_placed *seed,
     st = vg_insertion_order(seed->n, (const double(*)[3])seed->x, order, err);
   while (g->t.flag[at] & (VG_OUTSIDE | VG_DEAD)) at++;
   for (size_t i = 0; st >= 0 && i < seed->n; i++) {
-    st = insert_seed(g, &s, seed->x[order[i]], &at, err);
+    st = insert_seed(g, metrics, &s, seed->x[order[i]], &at, err);
     g->report->n_inserted += st == VG_OK;
   }
   g->report->n_placed += seed->n;
@@ -70,9 +70,9 @@ vg_status vg_stretched_populate(struct vg_filling *g, struct vg_error *err)
   vg_status st = vg_place_seeds(g->front->n_point, (const double(*)[3])g->t.x,
                                 g->sizing, g->region, &seed, err);
 
-  if (st == VG_OK) st = insert_seeds(g, &seed, err);
   if (st == VG_OK && vg_metrics_add(&metrics, &g->t, 0, g->t.n_point))
     st = vg_fail_memory(err, "the metrics of points");
+  if (st == VG_OK) st = insert_seeds(g, &metrics, &seed, err);
   g->report->time_place += vg_clock() - t0;
   t0 = vg_clock();
   if (st == VG_OK)

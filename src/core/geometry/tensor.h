@@ -18,6 +18,13 @@
 
 #include <math.h>
 
+/** A metric, and the square root of its determinant: the number of unit cells
+ * per volume. */
+struct vg_point_metric {
+  double m[6];
+  double root;
+};
+
 /** out = a v. out may be v. */
 static inline void vg_tensor_apply(const double a[6], const double v[3],
                                    double out[3])

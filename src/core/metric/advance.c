@@ -77,9 +77,9 @@ static int is_excluded(const struct advance *a, uint32_t cell,
   return 0;
 }
 
-/* Insert x with stretch t into its cell. Returns -1 if memory is refused. */
-static int insert(struct advance *a, const double x[3], const double t[6],
-                  uint32_t cell, struct vg_error *err)
+/* Insert x into its cell. Returns -1 if memory is refused. */
+static int insert(struct advance *a, const double x[3], uint32_t cell,
+                  struct vg_error *err)
 {
   struct vg_tets *tets = a->t;
   uint32_t p = (uint32_t)tets->n_point;
@@ -90,14 +90,15 @@ static int insert(struct advance *a, const double x[3], const double t[6],
     return -1;
   memcpy(tets->x[p], x, sizeof *tets->x);
   tets->n_point++;
-  a->s.stretch = t;
+  if (vg_metrics_add(a->metrics, tets, p, p + 1)) return -1;
+  a->s.metric = a->metrics->at;
   st = vg_insert(&a->s, p, cell, least_height, exclusion, err);
   if (st != VG_OK) {
     tets->n_point--;
     a->report->n_refused++;
     return st < 0 ? -1 : 0;
   }
-  if (vg_metrics_add(a->metrics, tets, p, p + 1) || push_point(a, p)) return -1;
+  if (push_point(a, p)) return -1;
   a->star[p] = a->s.last;
   a->report->n_inserted++;
   return 0;
@@ -124,7 +125,7 @@ static int propose(struct advance *a, const double c[3], const double h[6],
   if (cell == VG_NONE || a->t->flag[cell] & VG_OUTSIDE) return 0;
   vg_sizing_stretch_at(a->metrics->sizing, x, t);
   if (is_excluded(a, cell, x, t)) return 0;
-  if (insert(a, x, t, cell, err)) return -1;
+  if (insert(a, x, cell, err)) return -1;
   if (a->t->flag[*start] & VG_DEAD) *start = a->s.last;
   return 0;
 }

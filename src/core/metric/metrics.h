@@ -12,11 +12,6 @@
 #include "core/geometry/vector.h"
 #include "core/sizing/sizing.h"
 
-struct vg_point_metric {
-  double m[6]; /* Metric at the point. */
-  double root; /* Square root of its determinant. */
-};
-
 struct vg_metrics {
   const struct vg_sizing *sizing;
   struct vg_point_metric *at; /* [points] Metric of each point. */

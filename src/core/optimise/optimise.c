@@ -224,10 +224,10 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
   int again = 1;
   vg_status st = start(o, t, err);
 
-  for (int k = 0; st == VG_OK && o->metrics && k < 2 && sweeps; k++)
-    st = vg_even_lengths(o, err);
-  for (int k = 0; st == VG_OK && k < sweeps; k++)
+  for (int k = 0; st == VG_OK && k < sweeps; k++) {
     st = sweep(o, k && !o->metrics ? o->level->fair : o->level->good, err);
+    if (st == VG_OK && o->metrics && k > 0) st = vg_even_lengths(o, err);
+  }
   for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
     st = improve_bad(o, &again, err);
   if (st == VG_OK) o->report->n_left = count_left(o);

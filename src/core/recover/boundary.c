@@ -11,6 +11,7 @@
 #include "base/table.h"
 #include "core/delaunay/insert.h"
 #include "core/geometry/hilbert.h"
+#include "core/metric/metrics.h"
 #include "core/recover/cdt_tetgen.h"
 #include "core/recover/recover.h"
 
@@ -401,28 +402,54 @@ static vg_status start_in_box(struct vg_tets *t, size_t n, const double (*x)[3],
   return vg_tets_link(t, err);
 }
 
+/* Insert point p of x, which is near the last one. If there is no valid cavity
+ * in the metrics, the point gets one without them. */
+static vg_status insert(struct vg_inserter *s, uint32_t p, const double x[3],
+                        uint32_t *at, struct vg_error *err)
+{
+  const struct vg_point_metric *metric = s->metric;
+  vg_status st;
+
+  *at = vg_tets_locate(s->t, *at, x);
+  st = vg_insert(s, p, *at, 0, 0, err);
+  if (st == VG_BLOCKED && metric) {
+    s->metric = NULL;
+    st = vg_insert(s, p, *at, 0, 0, err);
+    s->metric = metric;
+  }
+  if (st == VG_BLOCKED)
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "point %u (%.17g %.17g %.17g) coincides with another point; "
+                   "weld the surface",
+                   p + 1, x[0], x[1], x[2]);
+  *at = s->last;
+  return st;
+}
+
+static int is_stretched(const struct vg_sizing *sizing)
+{
+  return sizing && vg_sizing_is_stretched(sizing);
+}
+
 static vg_status delaunay(struct vg_tets *t, size_t n, const double (*x)[3],
-                          struct vg_error *err)
+                          const struct vg_sizing *sizing, struct vg_error *err)
 {
   struct vg_inserter s = { 0 };
+  struct vg_metrics metrics = { .sizing = sizing };
   uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
   vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
 
   if (st == VG_OK) st = vg_insertion_order(n, x, order, err);
   if (st == VG_OK) st = start_in_box(t, n, x, err);
   if (st == VG_OK) st = vg_inserter_init(&s, t, err);
-  for (size_t i = 0; st == VG_OK && i < n; i++) {
-    at = vg_tets_locate(t, at, x[order[i]]);
-    st = vg_insert(&s, order[i], at, 0, 0, err);
-    at = s.last;
-    if (st == VG_BLOCKED)
-      st = vg_fail(err, VG_ERR_GEOMETRY,
-                   "point %u (%.17g %.17g %.17g) coincides with another point; "
-                   "weld the surface",
-                   order[i] + 1, x[order[i]][0], x[order[i]][1],
-                   x[order[i]][2]);
-  }
+  if (st == VG_OK && is_stretched(sizing) &&
+      vg_metrics_add(&metrics, t, 0, t->n_point))
+    st = vg_fail_memory(err, "boundary recovery");
+  s.metric = metrics.at;
+  for (size_t i = 0; st == VG_OK && i < n; i++)
+    st = insert(&s, order[i], x[order[i]], &at, err);
   vg_inserter_release(&s);
+  vg_metrics_release(&metrics);
   free(order);
   return st;
 }
@@ -477,7 +504,8 @@ static size_t not_fixed(struct vg_tets *t, size_t n_tri,
 }
 
 vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
-                           const uint32_t (*tri)[3], struct vg_tets *out,
+                           const uint32_t (*tri)[3],
+                           const struct vg_sizing *sizing, struct vg_tets *out,
                            struct vg_boundary_report *report,
                            struct vg_error *err)
 {
@@ -486,8 +514,8 @@ vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
   assert(n > 0 && x && tri && report);
   assert(!out->n_point && !out->n_cell);
   memset(report, 0, sizeof *report);
-  VG_TRY(delaunay(out, n, x, err));
-  st = vg_recover(out, n_tri, tri, report, err);
+  VG_TRY(delaunay(out, n, x, sizing, err));
+  st = vg_recover(out, n_tri, tri, !is_stretched(sizing), report, err);
   if (st == VG_ERR_GEOMETRY) {
     vg_tets_release(out);
     st = whole_void(n, x, n_tri, tri, out, report, err);
@@ -513,8 +541,8 @@ vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
   assert(n > 0 && x && tri && report && region && sizing);
   assert(!out->n_point && !out->n_cell);
   memset(report, 0, sizeof *report);
-  VG_TRY(delaunay(out, n, x, err));
-  VG_TRY(vg_recover(out, n_tri, tri, report, err));
+  VG_TRY(delaunay(out, n, x, sizing, err));
+  VG_TRY(vg_recover(out, n_tri, tri, !is_stretched(sizing), report, err));
   VG_TRY(vg_boundary_sides(out, n_tri, tri, region, n, sizing, err));
   VG_CHECK("boundary recovery", vg_tets_defects(out));
   VG_CHECK("boundary recovery", not_fixed(out, n_tri, tri));

@@ -34,13 +34,17 @@ struct vg_boundary_report {
  * Without TetGen (base/helper/helper.h) only flips recover triangles.
  *
  * @param x, tri  [n][3] points, all used; [n_tri][3] facing the fluid
+ * @param sizing  NULL, or a field; if it has metrics, the cells are Delaunay in
+ *                them instead, so that most of the triangles of a surface that
+ *                was remeshed in the metric are among their faces
  * @param out     empty on entry; points 0..n-1 are x, later ones were added;
  *                cells are linked, surface faces fixed, and cells outside the
  *                fluid flagged VG_OUTSIDE
  *
  * VG_ERR_GEOMETRY if the triangles do not bound a fluid. */
 vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
-                           const uint32_t (*tri)[3], struct vg_tets *out,
+                           const uint32_t (*tri)[3],
+                           const struct vg_sizing *sizing, struct vg_tets *out,
                            struct vg_boundary_report *report,
                            struct vg_error *err);
 

@@ -526,7 +526,8 @@ static struct vg_cell *copy_of_cells(const struct vg_tets *t)
 }
 
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
-                     struct vg_boundary_report *report, struct vg_error *err)
+                     int is_delaunay, struct vg_boundary_report *report,
+                     struct vg_error *err)
 {
   assert(t->n_cell > 0 && (tri || !n_tri) && report);
 
@@ -564,7 +565,7 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
                  "%zu surface triangles could not be "
                  "recovered in pockets",
                  r.n_missing);
-  if (st == VG_OK && report->n_face_lost)
+  if (st == VG_OK && is_delaunay && report->n_face_lost)
     st = vg_recover_delaunay(t, n_before, before, &report->n_restored, err);
   if (st == VG_OK) VG_CHECK("the recovery of faces", vg_tets_defects(t));
   free(before);

@@ -19,9 +19,13 @@
  * by face before it replaces the pocket's cells. If that fails, the pocket
  * grows by a layer of cells and is tried again, up to three times. Returns
  * VG_ERR_GEOMETRY if pockets remain that cannot be closed, or if one is so
- * large that recovering the whole surface at once is more promising. */
+ * large that recovering the whole surface at once is more promising.
+ *
+ * @param is_delaunay  1: the cells of t are Delaunay, and are made Delaunay
+ *                     again where they changed (vg_recover_delaunay) */
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
-                     struct vg_boundary_report *report, struct vg_error *err);
+                     int is_delaunay, struct vg_boundary_report *report,
+                     struct vg_error *err);
 
 /** Flip faces of t that are not locally Delaunay, except fixed ones, until no
  * flip brings any of them closer to Delaunay. Points inserted afterwards
