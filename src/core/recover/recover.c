@@ -2,6 +2,7 @@
 #include "core/recover/recover.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,16 +36,67 @@ struct recovery {
 
 /* --- cells that a triangle passes through --------------------------------- */
 
+/* Coordinates i, j of the projection in which a triangle has the largest area.
+ */
+static void project(const double *const x[3], int *i, int *j)
+{
+  double most = -1;
+
+  for (int k = 0; k < 3; k++) {
+    int u = (k + 1) % 3, v = (k + 2) % 3;
+    double n = fabs((x[1][u] - x[0][u]) * (x[2][v] - x[0][v]) -
+                    (x[1][v] - x[0][v]) * (x[2][u] - x[0][u]));
+
+    if (n <= most) continue;
+    most = n;
+    *i = u;
+    *j = v;
+  }
+}
+
+/* Does the segment p q, in the plane of triangle x, run through the interior of
+ * the triangle? If not, the line of the segment or of an edge separates the
+ * two. */
+static int runs_through(const double *const x[3], const double *p,
+                        const double *q)
+{
+  double a[3][2], from[2], to[2], turn;
+  int i = 0, j = 1, left = 0, right = 0;
+
+  project(x, &i, &j);
+  for (int k = 0; k < 3; k++) {
+    a[k][0] = x[k][i];
+    a[k][1] = x[k][j];
+  }
+  from[0] = p[i];
+  from[1] = p[j];
+  to[0] = q[i];
+  to[1] = q[j];
+  turn = vg_orient2d(a[0], a[1], a[2]);
+  for (int k = 0; k < 3; k++) {
+    double at = vg_orient2d(from, to, a[k]);
+    double s = vg_orient2d(a[k], a[(k + 1) % 3], from);
+    double e = vg_orient2d(a[k], a[(k + 1) % 3], to);
+
+    left |= at > 0;
+    right |= at < 0;
+    if (turn > 0 ? s <= 0 && e <= 0 : s >= 0 && e >= 0) return 0;
+  }
+  return left && right;
+}
+
 /* Does the triangle pass through cell c? The test is conservative: contact at
  * a corner or along an edge does not count, but a cell near the triangle may
  * be reported although they do not intersect. A cell with a face in the plane
- * of the triangle counts, because that face must be replaced. */
+ * of the triangle counts, because that face must be replaced, and so does one
+ * with an edge that runs through the triangle in its plane. */
 static int passes_through(const struct vg_tets *t, const uint32_t tri[3],
                           uint32_t c)
 {
   const double *a = t->x[tri[0]], *b = t->x[tri[1]], *d = t->x[tri[2]];
+  const double *corner[3] = { a, b, d }, *within[4];
   const uint32_t *v = t->cell[c].v;
-  int above = 0, below = 0, skip = -1;
+  int above = 0, below = 0, skip = -1, n_within = 0;
 
   for (int i = 0; i < 4; i++) {
     double side = vg_orient3d(a, b, d, t->x[v[i]]);
@@ -52,7 +104,10 @@ static int passes_through(const struct vg_tets *t, const uint32_t tri[3],
     above += side > 0;
     below += side < 0;
     if (side != 0) skip = i;
+    else within[n_within++] = t->x[v[i]];
   }
+  if (n_within == 2 && !(above && below))
+    return runs_through(corner, within[0], within[1]);
   if (!(above && below) && above + below != 1) return 0;
   if (above && below) skip = -1;
   for (int i = 0; i < 4; i++) {
