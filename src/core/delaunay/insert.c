@@ -119,9 +119,10 @@ static unsigned metric_signs(const struct vg_inserter *s, const uint32_t v[4],
                              const double p[3])
 {
   const struct vg_tets *t = s->t;
+  const unsigned all = 0xf * VG_SIDE_SEES;
   const double *own = s->metric[s->point].m;
   double e[4][3], m[6], det = 0;
-  unsigned in = 0;
+  unsigned in = 0, out = 0, signs;
 
   for (int k = 0; k < 6; k++)
     m[k] = 8 * own[k] + s->metric[v[0]].m[k] + s->metric[v[1]].m[k] +
@@ -132,10 +133,24 @@ static unsigned metric_signs(const struct vg_inserter *s, const uint32_t v[4],
     double bound, o = cone_sign(e[f[0]], e[f[1]], e[f[2]], &bound);
 
     in |= (unsigned)(o > bound) << i;
+    out |= (unsigned)(o < -bound) << i;
     det += o * vg_tensor_form(m, e[i]);
   }
-  if (!(det > 0)) return 0;
-  return VG_IN_SPHERE | vg_cell_sides((const double(*)[3])t->x, v, p, in, 0);
+  if (!(det > 0) && out) return 0;
+  signs = vg_cell_sides((const double(*)[3])t->x, v, p, in, out);
+  /* A cell that contains the point is in the cavity whatever rounding makes of
+   * the determinant. */
+  return det > 0 || (signs & all) == all ? VG_IN_SPHERE | signs : 0;
+}
+
+/* Signs of a cell that is in the cavity if it contains the point. */
+static unsigned signs_within(const struct vg_inserter *s, const uint32_t v[4],
+                             const double p[3])
+{
+  const unsigned all = 0xf * VG_SIDE_SEES;
+  unsigned signs = vg_cell_sides((const double(*)[3])s->t->x, v, p, 0, 0);
+
+  return (signs & all) == all ? VG_IN_SPHERE | signs : 0;
 }
 
 /* Signs of the point and a cell (core/delaunay/cell_signs.h). */
@@ -145,6 +160,7 @@ VG_WITHIN unsigned signs_of(const struct vg_inserter *s, const uint32_t v[4],
   const double(*x)[3] = (const double(*)[3])s->t->x;
   const vg_d2 both[3] = { { p[0], p[0] }, { p[1], p[1] }, { p[2], p[2] } };
 
+  if (s->is_least) return signs_within(s, v, p);
   if (s->metric) return metric_signs(s, v, p);
 #ifdef VG_WIDE
   if (is_wide) return vg_cell_signs_wide(x, v, p);

@@ -9,9 +9,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/table.h"
-#include "core/delaunay/insert.h"
-#include "core/geometry/hilbert.h"
-#include "core/metric/metrics.h"
+#include "core/recover/boundary_parts.h"
 #include "core/recover/cdt_tetgen.h"
 #include "core/recover/recover.h"
 
@@ -366,94 +364,6 @@ vg_status vg_boundary_sides(struct vg_tets *t, size_t n_tri,
   return st;
 }
 
-/* --- Delaunay tetrahedra of the points ------------------------------------ */
-
-/* The five tetrahedra of a box whose corners have the bits x, y, z = 1, 2, 4.
- */
-static const uint32_t box_cell[5][4] = {
-  { 0, 1, 2, 4 }, { 3, 2, 1, 7 }, { 5, 4, 7, 1 }, { 6, 7, 4, 2 }, { 1, 2, 4, 7 }
-};
-
-static vg_status start_in_box(struct vg_tets *t, size_t n, const double (*x)[3],
-                              struct vg_error *err)
-{
-  double lo[3], hi[3], side = 0;
-
-  if (vg_tets_reserve_points(t, n + 8) || vg_tets_reserve_cells(t, 7 * n + 5))
-    return vg_fail_memory(err, "boundary recovery");
-  memcpy(t->x, x, n * sizeof *x);
-  t->n_point = n + 8;
-  for (int k = 0; k < 3; k++) {
-    lo[k] = hi[k] = x[0][k];
-    for (size_t i = 1; i < n; i++) {
-      if (x[i][k] < lo[k]) lo[k] = x[i][k];
-      if (x[i][k] > hi[k]) hi[k] = x[i][k];
-    }
-    if (hi[k] - lo[k] > side) side = hi[k] - lo[k];
-  }
-  for (size_t corner = 0; corner < 8; corner++)
-    for (int k = 0; k < 3; k++)
-      t->x[n + corner][k] = corner >> k & 1 ? hi[k] + side : lo[k] - side;
-  for (int c = 0; c < 5; c++) {
-    for (int i = 0; i < 4; i++) t->cell[c].v[i] = (uint32_t)n + box_cell[c][i];
-    t->flag[c] = 0;
-  }
-  t->n_cell = 5;
-  return vg_tets_link(t, err);
-}
-
-/* Insert point p of x, which is near the last one. If there is no valid cavity
- * in the metrics, the point gets one without them. */
-static vg_status insert(struct vg_inserter *s, uint32_t p, const double x[3],
-                        uint32_t *at, struct vg_error *err)
-{
-  const struct vg_point_metric *metric = s->metric;
-  vg_status st;
-
-  *at = vg_tets_locate(s->t, *at, x);
-  st = vg_insert(s, p, *at, 0, 0, err);
-  if (st == VG_BLOCKED && metric) {
-    s->metric = NULL;
-    st = vg_insert(s, p, *at, 0, 0, err);
-    s->metric = metric;
-  }
-  if (st == VG_BLOCKED)
-    return vg_fail(err, VG_ERR_GEOMETRY,
-                   "point %u (%.17g %.17g %.17g) coincides with another point; "
-                   "weld the surface",
-                   p + 1, x[0], x[1], x[2]);
-  *at = s->last;
-  return st;
-}
-
-static int is_stretched(const struct vg_sizing *sizing)
-{
-  return sizing && vg_sizing_is_stretched(sizing);
-}
-
-static vg_status delaunay(struct vg_tets *t, size_t n, const double (*x)[3],
-                          const struct vg_sizing *sizing, struct vg_error *err)
-{
-  struct vg_inserter s = { 0 };
-  struct vg_metrics metrics = { .sizing = sizing };
-  uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
-  vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
-
-  if (st == VG_OK) st = vg_insertion_order(n, x, order, err);
-  if (st == VG_OK) st = start_in_box(t, n, x, err);
-  if (st == VG_OK) st = vg_inserter_init(&s, t, err);
-  if (st == VG_OK && is_stretched(sizing) &&
-      vg_metrics_add(&metrics, t, 0, t->n_point))
-    st = vg_fail_memory(err, "boundary recovery");
-  s.metric = metrics.at;
-  for (size_t i = 0; st == VG_OK && i < n; i++)
-    st = insert(&s, order[i], x[order[i]], &at, err);
-  vg_inserter_release(&s);
-  vg_metrics_release(&metrics);
-  free(order);
-  return st;
-}
-
 /* --- the whole void at once ----------------------------------------------- */
 
 static vg_status whole_void(size_t n, const double (*x)[3], size_t n_tri,
@@ -503,19 +413,39 @@ static size_t not_fixed(struct vg_tets *t, size_t n_tri,
                                                                     : n_missing;
 }
 
+/* Cells in which every triangle is a face, before sides are determined. In a
+ * metric, apexes help, unless one of them is in a triangle or too near to it.
+ */
+static vg_status recover(const struct vg_boundary_input *in,
+                         struct vg_tets *out, struct vg_boundary_report *report,
+                         struct vg_error *err)
+{
+  int is_stretched = vg_boundary_is_stretched(in);
+  vg_status st = VG_OK;
+
+  for (int apexes = is_stretched; apexes >= 0; apexes--) {
+    vg_tets_release(out);
+    st = vg_boundary_cells(out, in, apexes, err);
+    if (st == VG_OK)
+      st = vg_recover(out, in->n_tri, in->tri, !is_stretched, report, err);
+    if (st != VG_ERR_GEOMETRY) break;
+  }
+  return st;
+}
+
 vg_status vg_boundary_tets(size_t n, const double (*x)[3], size_t n_tri,
                            const uint32_t (*tri)[3],
                            const struct vg_sizing *sizing, struct vg_tets *out,
                            struct vg_boundary_report *report,
                            struct vg_error *err)
 {
+  const struct vg_boundary_input in = { n, n_tri, x, tri, sizing, NULL };
   vg_status st;
 
   assert(n > 0 && x && tri && report);
   assert(!out->n_point && !out->n_cell);
   memset(report, 0, sizeof *report);
-  VG_TRY(delaunay(out, n, x, sizing, err));
-  st = vg_recover(out, n_tri, tri, !is_stretched(sizing), report, err);
+  st = recover(&in, out, report, err);
   if (st == VG_ERR_GEOMETRY) {
     vg_tets_release(out);
     st = whole_void(n, x, n_tri, tri, out, report, err);
@@ -536,13 +466,13 @@ vg_status vg_boundary_open(size_t n, const double (*x)[3], size_t n_tri,
                            struct vg_boundary_report *report,
                            struct vg_error *err)
 {
+  const struct vg_boundary_input in = { n, n_tri, x, tri, sizing, region };
   vg_status st;
 
   assert(n > 0 && x && tri && report && region && sizing);
   assert(!out->n_point && !out->n_cell);
   memset(report, 0, sizeof *report);
-  VG_TRY(delaunay(out, n, x, sizing, err));
-  VG_TRY(vg_recover(out, n_tri, tri, !is_stretched(sizing), report, err));
+  VG_TRY(recover(&in, out, report, err));
   VG_TRY(vg_boundary_sides(out, n_tri, tri, region, n, sizing, err));
   VG_CHECK("boundary recovery", vg_tets_defects(out));
   VG_CHECK("boundary recovery", not_fixed(out, n_tri, tri));

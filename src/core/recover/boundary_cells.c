@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Cells of the points of a surface, before its triangles are recovered. */
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "core/delaunay/insert.h"
+#include "core/geometry/hilbert.h"
+#include "core/recover/boundary_parts.h"
+
+/* The five tetrahedra of a box whose corners have the bits x, y, z = 1, 2, 4.
+ */
+static const uint32_t box_cell[5][4] = {
+  { 0, 1, 2, 4 }, { 3, 2, 1, 7 }, { 5, 4, 7, 1 }, { 6, 7, 4, 2 }, { 1, 2, 4, 7 }
+};
+
+static vg_status start_in_box(struct vg_tets *t, size_t n, const double (*x)[3],
+                              struct vg_error *err)
+{
+  double lo[3], hi[3], side = 0;
+
+  if (vg_tets_reserve_points(t, n + 8) || vg_tets_reserve_cells(t, 7 * n + 5))
+    return vg_fail_memory(err, "boundary recovery");
+  memcpy(t->x, x, n * sizeof *x);
+  t->n_point = n + 8;
+  for (int k = 0; k < 3; k++) {
+    lo[k] = hi[k] = x[0][k];
+    for (size_t i = 1; i < n; i++) {
+      if (x[i][k] < lo[k]) lo[k] = x[i][k];
+      if (x[i][k] > hi[k]) hi[k] = x[i][k];
+    }
+    if (hi[k] - lo[k] > side) side = hi[k] - lo[k];
+  }
+  for (size_t corner = 0; corner < 8; corner++)
+    for (int k = 0; k < 3; k++)
+      t->x[n + corner][k] = corner >> k & 1 ? hi[k] + side : lo[k] - side;
+  for (int c = 0; c < 5; c++) {
+    for (int i = 0; i < 4; i++) t->cell[c].v[i] = (uint32_t)n + box_cell[c][i];
+    t->flag[c] = 0;
+  }
+  t->n_cell = 5;
+  return vg_tets_link(t, err);
+}
+
+/* Insert point p at x, near the last one. Among cells that are Delaunay in
+ * metrics, a cavity cannot always be cut back to a valid one: the point then
+ * gets the cells that contain it. */
+static vg_status insert(struct vg_inserter *s, uint32_t p, const double x[3],
+                        uint32_t *at, struct vg_error *err)
+{
+  vg_status st;
+
+  *at = vg_tets_locate(s->t, *at, x);
+  st = vg_insert(s, p, *at, 0, 0, err);
+  if (st == VG_BLOCKED && s->metric) {
+    s->is_least = 1;
+    st = vg_insert(s, p, *at, 0, 0, err);
+    s->is_least = 0;
+  }
+  if (st == VG_BLOCKED)
+    return vg_fail(err, VG_ERR_GEOMETRY,
+                   "point %u (%.17g %.17g %.17g) coincides with another point; "
+                   "weld the surface",
+                   p + 1, x[0], x[1], x[2]);
+  *at = s->last;
+  return st;
+}
+
+/* --- apexes --------------------------------------------------------------- */
+
+/* Height of the apex over a triangle in the metric, and its least distance from
+ * other points, as in core/metric/advance.c. */
+static const double apex = 0.8165, exclusion = 0.7; /* M1 */
+
+/* The apex over a triangle: a regular cell in the metric at its centre. Returns
+ * 0 if the triangle is degenerate. */
+static int find_apex(const struct vg_tets *t, const struct vg_sizing *sizing,
+                     const uint32_t v[3], double x[3])
+{
+  struct vg_point_metric m;
+  double c[3], e[3], f[3], n[3], length;
+
+  for (int k = 0; k < 3; k++)
+    c[k] = (t->x[v[0]][k] + t->x[v[1]][k] + t->x[v[2]][k]) / 3;
+  vg_metric_at(sizing, c, &m);
+  vg_sub(t->x[v[1]], t->x[v[0]], e);
+  vg_sub(t->x[v[2]], t->x[v[0]], f);
+  vg_cross(e, f, n);
+  length = vg_metric_normal(&m, n);
+  for (int k = 0; k < 3; k++) x[k] = c[k] + apex * n[k] / length;
+  return length > 0;
+}
+
+/* Insert the apex over triangle v if it is in the box and away from all
+ * points. */
+static vg_status insert_apex(struct vg_inserter *s, struct vg_metrics *metrics,
+                             const struct vg_region *region,
+                             const uint32_t v[3], uint32_t *at,
+                             struct vg_error *err)
+{
+  struct vg_tets *t = s->t;
+  uint32_t p = (uint32_t)t->n_point;
+  double x[3];
+  vg_status st;
+
+  if (!find_apex(t, metrics->sizing, v, x) ||
+      (region && !vg_region_near(region, metrics->sizing, x, VG_BAND_PLACE)))
+    return VG_OK;
+  *at = vg_tets_locate(t, *at, x);
+  if (*at == VG_NONE) {
+    *at = s->last;
+    return VG_OK;
+  }
+  if (vg_tets_reserve_points(t, 1))
+    return vg_fail_memory(err, "boundary recovery");
+  memcpy(t->x[p], x, sizeof x);
+  t->n_point++;
+  if (vg_metrics_add(metrics, t, p, p + 1))
+    return vg_fail_memory(err, "boundary recovery");
+  s->metric = metrics->at;
+  st = vg_insert(s, p, *at, 0, exclusion, err);
+  if (st == VG_OK) *at = s->last;
+  else t->n_point--;
+  return st == VG_BLOCKED ? VG_OK : st;
+}
+
+/* In a metric, cells that reach from one side of the void to the other are so
+ * thin that few flips are possible among them. Apexes over all triangles make
+ * cells near the surface that are well-shaped in the metric. */
+static vg_status insert_apexes(struct vg_inserter *s,
+                               struct vg_metrics *metrics,
+                               const struct vg_boundary_input *in,
+                               struct vg_error *err)
+{
+  double(*x)[3] = vg_alloc(in->n_tri, sizeof *x);
+  uint32_t *order = vg_alloc(in->n_tri, sizeof *order), at = s->last;
+  vg_status st = x && order ? VG_OK : vg_fail_memory(err, "boundary recovery");
+
+  for (size_t i = 0; st == VG_OK && i < in->n_tri; i++)
+    memcpy(x[i], in->x[in->tri[i][0]], sizeof *x);
+  if (st == VG_OK)
+    st = vg_hilbert_order(in->n_tri, (const double(*)[3])x, order, err);
+  for (size_t i = 0; st == VG_OK && i < in->n_tri; i++)
+    st = insert_apex(s, metrics, in->region, in->tri[order[i]], &at, err);
+  free(x);
+  free(order);
+  return st;
+}
+
+vg_status vg_boundary_cells(struct vg_tets *t,
+                            const struct vg_boundary_input *in, int apexes,
+                            struct vg_error *err)
+{
+  size_t n = in->n;
+  const double(*x)[3] = in->x;
+  struct vg_inserter s = { 0 };
+  struct vg_metrics metrics = { .sizing = in->sizing };
+  uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
+  vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
+
+  if (st == VG_OK) st = vg_insertion_order(n, x, order, err);
+  if (st == VG_OK) st = start_in_box(t, n, x, err);
+  if (st == VG_OK) st = vg_inserter_init(&s, t, err);
+  if (st == VG_OK && vg_boundary_is_stretched(in) &&
+      vg_metrics_add(&metrics, t, 0, t->n_point))
+    st = vg_fail_memory(err, "boundary recovery");
+  s.metric = metrics.at;
+  for (size_t i = 0; st == VG_OK && i < n; i++)
+    st = insert(&s, order[i], x[order[i]], &at, err);
+  if (st == VG_OK && apexes && vg_boundary_is_stretched(in))
+    st = insert_apexes(&s, &metrics, in, err);
+  vg_inserter_release(&s);
+  vg_metrics_release(&metrics);
+  free(order);
+  return st;
+}
