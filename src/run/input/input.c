@@ -400,6 +400,8 @@ static void use_ifact(struct vg_settings *s, double ifact)
   for (size_t i = 0; i < s->n_source; i++) {
     s->source[i].h0 *= ifact;
     s->source[i].h1 *= ifact;
+    s->source[i].sp0 *= ifact;
+    s->source[i].sp1 *= ifact;
   }
 }
 
