@@ -79,38 +79,31 @@ static struct vg_size_limits limits_of(const struct vg_stat *f)
 }
 
 void vg_stat_tensor_source(const struct vg_stat *f, const double x[3],
-                           double h[6], double *iso)
+                           double h[6], double range[2], double *iso)
 {
   const struct vg_size_limits l = limits_of(f);
-  double range[2];
 
   *iso = fmin(vg_source_at(&f->set, x), f->h_max);
   vg_source_metric_at(&f->set, x, *iso, h);
   vg_size_from_metric(h, &l, h, range);
 }
 
-static void keep(const double h[6], const double range[2], struct vg_size *out)
+void vg_stat_tensor_limit(const struct vg_stat *f, double h[6], double range[2])
 {
-  for (int k = 0; k < 6; k++) out->h[k] = (float)h[k];
-  out->least = (float)range[0];
-  out->most = (float)range[1];
+  const struct vg_size_limits l = limits_of(f);
+
+  vg_size_limit(h, &l, range);
 }
 
 /* The bounds of the surface apply to each eigenvalue as vg_stat_combine applies
  * them to an isotropic size. */
-void vg_stat_tensor_combine(const struct vg_stat *f, const double x[3],
-                            double h[6], struct vg_bvh_reach *reach,
-                            uint32_t *hint, struct vg_size *out, double *most)
+static void bound(const struct vg_stat *f, const double x[3], double h[6],
+                  double range[2], struct vg_bvh_reach *reach, uint32_t *hint,
+                  double *most)
 {
   struct vg_size_limits l = limits_of(f);
-  double range[2], below, by;
+  double below, by;
 
-  vg_size_limit(h, &l, range);
-  *most = INFINITY;
-  if (!f->near) {
-    keep(h, range, out);
-    return;
-  }
   *most = vg_bvh_above(f->near, x, x, f->h_max, hint);
   l.aspect = INFINITY;
   l.most = fmin(fmax(*most, l.least), l.most);
@@ -120,17 +113,31 @@ void vg_stat_tensor_combine(const struct vg_stat *f, const double x[3],
       atomic_store_explicit(f->is_steep, 1, memory_order_relaxed);
     l.least = fmax(l.least, fmin(below, l.most));
   }
-  vg_size_limit(h, &l, range);
-  keep(h, range, out);
+  if (range[0] < l.least || range[1] > l.most) vg_size_limit(h, &l, range);
+}
+
+void vg_stat_tensor_combine(const struct vg_stat *f, const double x[3],
+                            const double h[6], const double range[2],
+                            struct vg_bvh_reach *reach, uint32_t *hint,
+                            struct vg_size *out, double *most)
+{
+  double bounded[6], its[2] = { range[0], range[1] };
+
+  memcpy(bounded, h, sizeof bounded);
+  *most = INFINITY;
+  if (f->near) bound(f, x, bounded, its, reach, hint, most);
+  for (int k = 0; k < 6; k++) out->h[k] = (float)bounded[k];
+  out->least = (float)its[0];
+  out->most = (float)its[1];
 }
 
 void vg_stat_tensor_at(const struct vg_stat *f, const double x[3],
                        struct vg_bvh_reach *reach, uint32_t *hint,
                        struct vg_size *out, float *iso)
 {
-  double h[6], least, most;
+  double h[6], range[2], least, most;
 
-  vg_stat_tensor_source(f, x, h, &least);
-  vg_stat_tensor_combine(f, x, h, reach, hint, out, &most);
+  vg_stat_tensor_source(f, x, h, range, &least);
+  vg_stat_tensor_combine(f, x, h, range, reach, hint, out, &most);
   *iso = (float)fmin(least, most);
 }

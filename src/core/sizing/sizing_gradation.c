@@ -6,6 +6,7 @@
  * of the sweep before, in the order of its leaves. A point needs the corners
  * only that changed in the sweep before, because it satisfies the conditions of
  * the others already. After the first sweep, few points change. */
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,10 +44,10 @@ static void source_body(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
-    double x[3], h[6], iso;
+    double x[3], h[6], range[2], iso;
 
     vg_octree_place(b, b->point[i].at, x);
-    vg_stat_tensor_source(b->f, x, h, &iso);
+    vg_stat_tensor_source(b->f, x, h, range, &iso);
     for (int k = 0; k < 6; k++) g->now[i][k] = (float)h[k];
   }
 }
@@ -134,6 +135,7 @@ static size_t finish_sweep(struct gradation *g)
     memcpy(g->now[p], g->next[p], sizeof *g->now);
   }
   list_due(g);
+
   return g->n_due;
 }
 
@@ -158,12 +160,14 @@ static void combine_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t i = first; i < end; i++) {
     struct vg_octree_point *p = b->point + i;
-    double x[3], h[6], most;
+    double x[3], h[6], range[2], most;
 
     if (p->is_hanging || !g->is_lowered[i]) continue;
     vg_octree_place(b, p->at, x);
     widen(g->now[i], h);
-    vg_stat_tensor_combine(b->f, x, h, NULL, &p->hint, b->tensor + i, &most);
+    vg_stat_tensor_limit(b->f, h, range);
+    vg_stat_tensor_combine(b->f, x, h, range, NULL, &p->hint, b->tensor + i,
+                           &most);
   }
 }
 

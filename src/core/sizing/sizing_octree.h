@@ -78,15 +78,23 @@ void vg_stat_tensor_at(const struct vg_stat *f, const double x[3],
                        struct vg_size *out, float *iso);
 
 /** Size tensor of all sources and maps at x, within the limits of sizes and
- * aspect. *iso: as above. */
+ * aspect, and the range of its eigenvalues. *iso: as above. */
 void vg_stat_tensor_source(const struct vg_stat *f, const double x[3],
-                           double h[6], double *iso);
+                           double h[6], double range[2], double *iso);
 
-/** Apply all limits and the bounds of the surface to the size tensor of the
- * sources at x. *most out: bound from above of the surface; INFINITY: none. */
+/** Limit the sizes and the aspect of a size tensor. range out: of its
+ * eigenvalues. */
+void vg_stat_tensor_limit(const struct vg_stat *f, double h[6],
+                          double range[2]);
+
+/** Apply the bounds of the surface to the size tensor of the sources at x.
+ *
+ * @param h, range  from vg_stat_tensor_source or vg_stat_tensor_limit
+ * @param most      out: bound from above of the surface; INFINITY: none */
 void vg_stat_tensor_combine(const struct vg_stat *f, const double x[3],
-                            double h[6], struct vg_bvh_reach *reach,
-                            uint32_t *hint, struct vg_size *out, double *most);
+                            const double h[6], const double range[2],
+                            struct vg_bvh_reach *reach, uint32_t *hint,
+                            struct vg_size *out, double *most);
 
 /** Lower bound of the field within a cube, without sources that depend on the
  * direction. For VGRID's mean, it is an estimate
