@@ -554,6 +554,7 @@ static void sizes_may_span_five_decades(void **state)
  * short edges at the corners, and grows along the long ones. */
 static void stretched_faces_take_their_short_edges(void **state)
 {
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_mesh m = VG_MESH_INIT;
   struct vg_sizing *s;
   const uint32_t n = 60;
@@ -569,8 +570,8 @@ static void stretched_faces_take_their_short_edges(void **state)
     memcpy(m.tri[m.n_tri++], (uint32_t[3]){ 2 * i - 2, 2 * i, 2 * i - 1 }, 12);
     memcpy(m.tri[m.n_tri++], (uint32_t[3]){ 2 * i, 2 * i + 1, 2 * i - 1 }, 12);
   }
-  s = field(&(struct vg_sizing_options){ 0, 100, 1.2, 1, 1, 1, 1, NULL, NULL },
-            0, NULL, &m);
+  o.h_max = 100;
+  s = field(&o, 0, NULL, &m);
   assert_near(vg_sizing_at(s, (double[3]){ 30, 0, 0 }), 3, 0.5);
   assert_near(vg_sizing_at(s, (double[3]){ 30.5, 50, 0 }), 13, 1);
   vg_sizing_free(s);

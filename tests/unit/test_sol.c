@@ -18,7 +18,10 @@ static vg_status parse(const void *data, size_t size, size_t *n, double **v,
   vg_status st = vg_input_memory("t.sol", data, size, &in, err);
 
   *v = NULL;
-  if (st >= 0) st = vg_sol_parse(&in, n, v, err);
+  int components = 0;
+
+  if (st >= 0) st = vg_sol_parse(&in, n, &components, v, err);
+  if (st >= 0) assert_int_equal(components, 1);
   vg_input_release(&in);
   return st;
 }
@@ -36,6 +39,28 @@ static void reads_text(void **state)
   assert_int_equal(n, 3);
   assert_true(v[0] == 0.5 && v[1] == 1e-3 && v[2] == 2);
   free(v);
+}
+
+static void reads_metrics(void **state)
+{
+  const char text[] = "MeshVersionFormatted 2 Dimension 3 SolAtVertices 2\n"
+                      "1 3\n1 2 3 4 5 6\n1 0 1 0 0 1e4\nEnd\n";
+  const double want[12] = { 1, 2, 3, 4, 5, 6, 1, 0, 1, 0, 0, 1e4 };
+  struct vg_input in = VG_INPUT_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  double *v = NULL;
+  size_t n = 0;
+  int components = 0;
+
+  (void)state;
+  assert_int_equal(vg_input_memory("t.sol", text, sizeof text - 1, &in, &err),
+                   VG_OK);
+  assert_int_equal(vg_sol_parse(&in, &n, &components, &v, &err), VG_OK);
+  assert_int_equal(n, 2);
+  assert_int_equal(components, 6);
+  assert_memory_equal(v, want, sizeof want);
+  free(v);
+  vg_input_release(&in);
 }
 
 /* --- binary, as libMeshb writes it --- */
@@ -170,6 +195,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(reads_text),
+    cmocka_unit_test(reads_metrics),
     cmocka_unit_test(reads_binary),
     cmocka_unit_test(every_truncation_is_refused),
     cmocka_unit_test(refuses_unsupported_files),

@@ -222,6 +222,80 @@ static void reads_text(void **state)
   accept(&b);
 }
 
+/* A tetrahedron, and a triangle, which is skipped. */
+#define METRIC_FILE(metric, nodes, types)                                          \
+  "<VTKFile byte_order=\"LittleEndian\"><Piece NumberOfPoints=\"5\" "              \
+  "NumberOfCells=\"2\">" POINTS                                                    \
+  "<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">" nodes \
+  "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" "                        \
+  "format=\"ascii\">4 7</DataArray><DataArray type=\"UInt8\" Name=\"types\" "      \
+  "format=\"ascii\">" types "</DataArray></Cells><PointData><DataArray "           \
+  "type=\"Float64\" Name=\"metric\" NumberOfComponents=\"6\" "                     \
+  "format=\"ascii\">" metric "</DataArray></PointData></Piece></VTKFile>"
+#define FIVE "1 1 1 0 0 0 2 1 1 0 0 0 3 1 1 0 0 0 4 1 1 0 0 0 5 1 1 .5 0 0"
+
+static vg_status parse_metric(const char *text, struct vg_mesh *m, int *n,
+                              double **v, struct vg_error *err)
+{
+  struct vg_input in = VG_INPUT_INIT;
+  vg_status st = vg_input_memory("t.vtu", text, strlen(text), &in, err);
+
+  *v = NULL;
+  *m = (struct vg_mesh)VG_MESH_INIT;
+  if (st >= 0) {
+    assert_true(vg_vtu_has_array(&in, "metric"));
+    assert_false(vg_vtu_has_array(&in, "size"));
+    st = vg_vtu_values_parse(&in, "metric", m, n, v, err);
+  }
+  vg_input_release(&in);
+  return st;
+}
+
+static void reads_metrics_and_cells(void **state)
+{
+  const uint32_t tet[4] = { 0, 1, 2, 3 };
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh m;
+  double *v;
+  int n = 0;
+
+  (void)state;
+  if (parse_metric(METRIC_FILE(FIVE, "0 1 2 3 1 2 4", "10 5"), &m, &n, &v,
+                   &err) < 0)
+    fail_msg("%s", err.text);
+  assert_int_equal(n, 6);
+  assert_int_equal(m.n_point, N);
+  assert_int_equal(m.n_tet, 1);
+  assert_memory_equal(m.tet[0], tet, sizeof tet);
+  assert_true(v[0] == 1 && v[6] == 2 && v[27] == 0.5);
+  free(v);
+  vg_mesh_release(&m);
+}
+
+static void refuses_bad_cells(void **state)
+{
+  static const struct {
+    const char *text, *says;
+  } bad[] = {
+    { METRIC_FILE(FIVE, "0 1 2 5 1 2 4", "10 5"), "cell 1 uses point 6" },
+    { METRIC_FILE(FIVE, "0 1 2 3 1 2 4", "12 5"), "has 4 nodes, not 8" },
+    { METRIC_FILE(FIVE, "0 1 2 3 1 2", "10 5"), "is not a number" },
+    { METRIC_FILE("1 1 1 0 0 0", "0 1 2 3 1 2 4", "10 5"), "is not a number" },
+  };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    struct vg_error err = VG_ERROR_INIT;
+    struct vg_mesh m;
+    double *v;
+    int n;
+
+    assert_true(parse_metric(bad[i].text, &m, &n, &v, &err) < 0);
+    assert_true(!v && !m.point);
+    if (!strstr(err.text, bad[i].says)) fail_msg("%s", err.text);
+  }
+}
+
 static void reads_its_own_output(void **state)
 {
   const struct vg_vtu_field field = { "size", VG_VTU_POINT, VG_VTU_FLOAT64, 1,
@@ -314,6 +388,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(reads_every_way),
     cmocka_unit_test(reads_text),
+    cmocka_unit_test(reads_metrics_and_cells),
+    cmocka_unit_test(refuses_bad_cells),
     cmocka_unit_test(reads_its_own_output),
     cmocka_unit_test(damage_is_never_read_as_data),
     cmocka_unit_test(refuses_unsupported_files),

@@ -10,6 +10,10 @@
  * reached after at most six. */
 enum { SWEEPS = 12 };
 
+/* Smaller components off the diagonal, relative to those on it, change no
+ * eigenvalue: their effect is of the second order. */
+#define NEGLIGIBLE 1e-17
+
 /* Rotate rows and columns p and q of a, so that a[p][q] vanishes, and the
  * vectors with them. */
 static void rotate(double a[3][3], double v[3][3], int p, int q)
@@ -60,8 +64,9 @@ void vg_tensor_eigen(const double a[6], double value[3], double vector[3][3])
     for (int j = 0; j < 3; j++) vector[i][j] = i == j;
   for (int k = 0; k < SWEEPS; k++) {
     double off = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
+    double size = fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]);
 
-    if (!(off > 0)) break;
+    if (!(off > NEGLIGIBLE * size)) break;
     rotate(m, vector, 0, 1);
     rotate(m, vector, 0, 2);
     rotate(m, vector, 1, 2);

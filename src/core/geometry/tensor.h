@@ -50,6 +50,13 @@ static inline double vg_tensor_det(const double a[6])
          a[2] * (a[1] * a[4] - a[3] * a[2]);
 }
 
+/** Trace of the product a b. */
+static inline double vg_tensor_trace2(const double a[6], const double b[6])
+{
+  return a[0] * b[0] + a[3] * b[3] + a[5] * b[5] +
+         2 * (a[1] * b[1] + a[2] * b[2] + a[4] * b[4]);
+}
+
 /** out = 1 / a for a positive tensor. out may be a. Returns the determinant of
  * a; if it is not positive, out has no meaning. */
 static inline double vg_tensor_invert(const double a[6], double out[6])

@@ -36,6 +36,10 @@ static vg_status check_options(const struct vg_sizing_options *o,
                    "coarseness %g of the sizing field is "
                    "below 1; give 1 or more",
                    o->coarseness);
+  if (!(o->aspect_max == 0 || o->aspect_max >= 1))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "largest aspect %g of the sizes is below 1; 100 is usual",
+                   o->aspect_max);
   if (!isfinite(o->h_min) || o->h_min < 0)
     return vg_fail(err, VG_ERR_INPUT,
                    "smallest size %g is negative or not finite; 0 means no "
@@ -69,7 +73,14 @@ static double largest(const struct vg_source_set *set,
     if (set->bounded[i].law.h0 > h) h = set->bounded[i].law.h0;
     if (set->bounded[i].law.h1 > h) h = set->bounded[i].law.h1;
   }
+  for (size_t i = 0; i < set->n_stretched; i++) {
+    const struct vg_stretched *t = set->stretched + i;
+
+    h = fmax(h, t->law.h0 * fmax(1, t->ratio[0]));
+    h = fmax(h, t->law.h1 * fmax(1, t->ratio[1]));
+  }
   if (set->map && set->map->most > h) h = set->map->most;
+  if (set->metric && set->metric->most > h) h = set->metric->most;
   return h;
 }
 
@@ -96,15 +107,42 @@ static double root_cube(const struct vg_mesh *surface,
 
 static void find_range(struct vg_sizing *s)
 {
-  const float *h = s->octree.leaf[0];
+  const struct vg_octree *t = &s->octree;
+  const float *h = t->leaf[0].h;
   float least = h[0], most = h[0];
+  double range[2], slope;
 
-  for (size_t i = 0; i < 8 * s->octree.n_leaf; i++) {
-    if (h[i] < least) least = h[i];
-    if (h[i] > most) most = h[i];
+  if (t->is_stretched) {
+    vg_octree_tensor_range(t, range, &slope);
+    s->least = range[0];
+    s->most = range[1];
+    s->slope = fmax(s->slope, slope);
+    return;
   }
+  for (size_t i = 0; i < t->n_leaf; i++)
+    for (int k = 0; k < 8; k++) {
+      least = fminf(least, t->leaf[i].h[k]);
+      most = fmaxf(most, t->leaf[i].h[k]);
+    }
   s->least = (double)least;
   s->most = (double)most;
+}
+
+/* Limits of the sizes. A field of size tensors needs a largest size: without
+ * one, it is the side of the root cube. */
+static void set_limits(const struct vg_sizing_options *o, double cap,
+                       int has_surface, double side, struct vg_stat *f,
+                       struct vg_sizing *s)
+{
+  f->slope = o->growth - 1;
+  f->h_min = o->h_min;
+  f->h_max = o->h_max > 0 ? o->h_max : has_surface ? cap : INFINITY;
+  f->aspect_max = o->aspect_max > 0 ? o->aspect_max : VG_ASPECT_MAX;
+  f->is_stretched = vg_source_any_stretched(&f->set);
+  if (f->is_stretched && f->h_max == INFINITY) f->h_max = side;
+  if (f->h_max < f->h_min) f->h_max = f->h_min;
+  s->growth = f->slope;
+  s->cap = o->h_max > 0 ? o->h_max : f->set.n_mean ? cap : INFINITY;
 }
 
 /* Part of vg_sizing_new, called after the input was checked. Owns no memory. */
@@ -116,22 +154,22 @@ static vg_status build(const struct vg_sizing_options *o,
   size_t n = samples->n_sized, limit = LEAF_BASE;
   double lo[3] = { 0, 0, 0 }, cap = largest(&f->set, samples), side;
 
-  if (!(cap > 0) && !(o->h_max > 0 && isfinite(o->h_max)))
+  if (!(cap > 0) && !(o->h_max > 0 && isfinite(o->h_max)) &&
+      !(f->set.metric && surface && surface->n_point))
     return vg_fail(err, VG_ERR_INPUT,
                    "nothing defines a size: no source, no edge of the surface "
                    "(surface_sizes) and no largest size; give one of them");
-  side = root_cube(surface, &f->set, cap > 0 ? cap : o->h_max, lo);
+  side = root_cube(surface, &f->set,
+                   cap > 0              ? cap
+                   : isfinite(o->h_max) ? o->h_max
+                                        : 0,
+                   lo);
   if (!isfinite(side) || !isfinite(lo[0] + lo[1] + lo[2]))
     return vg_fail(err, VG_ERR_INPUT,
                    "coordinates are too large for the sizing field (extent "
                    "%g); use another unit of length",
                    side);
-  f->slope = o->growth - 1;
-  f->h_min = o->h_min;
-  f->h_max = o->h_max > 0 ? o->h_max : n ? cap : INFINITY;
-  if (f->h_max < f->h_min) f->h_max = f->h_min;
-  s->growth = f->slope;
-  s->cap = o->h_max > 0 ? o->h_max : f->set.n_mean ? cap : INFINITY;
+  set_limits(o, cap, n > 0, side, f, s);
   if (n < (VG_OCTREE_LEAF - LEAF_BASE) / LEAF_PER_SAMPLE)
     limit += n * LEAF_PER_SAMPLE;
   return vg_octree_build(f, lo, side, o->coarseness, limit, o->threads, o->team,
@@ -157,13 +195,23 @@ done:
   return st;
 }
 
-static vg_status check_map(const struct vg_map_fault *f, struct vg_error *err)
+static vg_status check_map(const struct vg_map_fault *f, int is_metric,
+                           struct vg_error *err)
 {
+  const double *v = f->value;
+
   if (!f->n) return VG_OK;
+  if (is_metric)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "the metric given for the point (%.9g, %.9g, %.9g) is not "
+                   "positive: xx %g, xy %g, xz %g, yy %g, yz %g, zz %g; its "
+                   "eigenvalues are 1 / size^2 and must be above 0 and finite",
+                   f->x[0], f->x[1], f->x[2], v[0], v[1], v[2], v[3], v[4],
+                   v[5]);
   return vg_fail(err, VG_ERR_INPUT,
                  "the edge length given for the point "
                  "(%.9g, %.9g, %.9g) is %g; it must be above 0",
-                 f->x[0], f->x[1], f->x[2], f->h);
+                 f->x[0], f->x[1], f->x[2], v[0]);
 }
 
 /* Apply the scale to all options except those of the sources, whose laws apply
@@ -189,7 +237,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
   vg_status st = VG_OK;
   atomic_int is_steep = 0;
   int steep;
-  struct vg_map_fault fault = { ATOMIC_FLAG_INIT, 0, { 0, 0, 0 }, 0 };
+  struct vg_map_fault fault = { ATOMIC_FLAG_INIT, 0, { 0, 0, 0 }, { 0 } };
   struct vg_stat f = { .set = VG_SOURCE_SET_INIT, .is_steep = &is_steep };
   struct vg_samples samples = VG_SAMPLES_INIT;
   struct vg_bvh *near = NULL, *under = NULL;
@@ -204,7 +252,8 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
     goto done;
   }
   VG_TRY(vg_source_prepare(options, n, source, 1, &f.set, err));
-  f.set.map = options->map;
+  if (options->map && options->map->metric) f.set.metric = options->map;
+  else f.set.map = options->map;
   f.set.fault = &fault;
   if (surface && options->from_surface)
     VG_TRY(vg_samples_make(surface, options->threads, &samples, err));
@@ -215,12 +264,11 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
   f.near = near;
   f.under = under;
   VG_TRY(build(options, surface, &f, &samples, s, err));
-  if (options->map && options->map->metric) s->map = *options->map;
-  find_range(s);
   steep = is_steep;
   VG_TRY(vg_team_any(options->team, &steep, err));
-  VG_TRY(check_map(&fault, err));
+  VG_TRY(check_map(&fault, f.set.metric != NULL, err));
   s->slope = steep ? vg_bvh_steep(s->growth) : s->growth;
+  find_range(s);
   VG_CHECK("the sizing field", vg_octree_defects(&s->octree));
   *out = s;
   s = NULL;
@@ -243,7 +291,30 @@ void vg_sizing_free(struct vg_sizing *s)
 
 int vg_sizing_is_stretched(const struct vg_sizing *s)
 {
-  return s->map.metric != NULL;
+  return s->octree.is_stretched;
+}
+
+/* Outside of the root cube, the tensor at its nearest point grows with the
+ * distance, up to the largest size. */
+static void grow_outside(const struct vg_sizing *s, const double x[3],
+                         double h[6])
+{
+  struct vg_size_limits l = { 0, s->cap, INFINITY };
+  double way[3], range[2];
+
+  for (int k = 0; k < 3; k++)
+    way[k] = x[k] - fmin(fmax(x[k], s->octree.lo[k]),
+                         s->octree.lo[k] + s->octree.side);
+  vg_size_grow(h, way, s->growth, h);
+  vg_size_limit(h, &l, range);
+}
+
+static void tensor_at(const struct vg_sizing *s, const double x[3], double h[6])
+{
+  double outside;
+
+  vg_octree_tensor_at(&s->octree, x, h, &outside);
+  if (outside > 0) grow_outside(s, x, h);
 }
 
 double vg_sizing_stretch_at(const struct vg_sizing *s, const double x[3],
@@ -251,14 +322,13 @@ double vg_sizing_stretch_at(const struct vg_sizing *s, const double x[3],
 {
   double h;
 
-  if (!s->map.metric) {
+  if (!s->octree.is_stretched) {
     h = vg_sizing_at(s, x);
     vg_tensor_uniform(1 / h, t);
     return h;
   }
-  s->map.metric(s->map.user, x, t);
-  vg_tensor_root(t, t);
-  return 1 / vg_cube_root(vg_tensor_det(t));
+  tensor_at(s, x, t);
+  return vg_cube_root(vg_tensor_invert(t, t));
 }
 
 double vg_sizing_along(const struct vg_sizing *s, const double x[3],
@@ -266,6 +336,7 @@ double vg_sizing_along(const struct vg_sizing *s, const double x[3],
 {
   double t[6], v[3];
 
+  if (!s->octree.is_stretched) return vg_sizing_at(s, x);
   vg_sizing_stretch_at(s, x, t);
   vg_tensor_apply(t, n, v);
   return 1 / vg_norm(v);
@@ -275,12 +346,13 @@ double vg_sizing_at(const struct vg_sizing *s, const double x[3])
 {
   assert(s);
 
-  double t[6];
+  double outside, h, tensor[6];
 
-  if (s->map.metric) return vg_sizing_stretch_at(s, x, t);
-
-  double outside, h = vg_octree_at(&s->octree, x, &outside);
-
+  if (s->octree.is_stretched) {
+    tensor_at(s, x, tensor);
+    return vg_size_mean(tensor);
+  }
+  h = vg_octree_at(&s->octree, x, &outside);
   if (!(outside > 0)) return h;
   h += s->growth * outside;
   return h < s->cap ? h : s->cap;
@@ -299,6 +371,9 @@ double vg_sizing_least(const struct vg_sizing *s, const double lo[3],
 
   const struct vg_octree *t = &s->octree;
   double h = vg_octree_least(t, lo, side, x), gap2 = 0;
+  double growth = s->growth;
+
+  if (t->is_stretched) growth *= 1 - VG_GROWTH_IN_METRIC;
 
   for (int k = 0; k < 3; k++) {
     double gap = fmax(t->lo[k] - lo[k] - side, lo[k] - t->lo[k] - t->side);
@@ -306,7 +381,7 @@ double vg_sizing_least(const struct vg_sizing *s, const double lo[3],
     if (gap > 0) gap2 += gap * gap;
   }
   if (!(gap2 > 0)) return h;
-  h += s->growth * sqrt(gap2);
+  h += growth * sqrt(gap2);
   return h < s->cap ? h : s->cap;
 }
 
@@ -358,11 +433,15 @@ double vg_sizing_sources_at(const struct vg_sizing_options *options, size_t n,
 {
   const struct vg_sizing_options o = scaled(options);
   struct vg_source_set set = VG_SOURCE_SET_INIT;
-  double h;
+  double h, m[6];
 
   if (!n || vg_source_prepare(&o, n, source, 0, &set, NULL) < 0)
     return INFINITY;
   h = vg_source_at(&set, x);
+  if (vg_source_any_stretched(&set)) {
+    vg_source_metric_at(&set, x, h, m);
+    h = 1 / sqrt(vg_cube_root(vg_tensor_det(m)));
+  }
   vg_source_release(&set);
   if (o.h_max > 0 && h > o.h_max) h = o.h_max;
   return h > o.h_min ? h : o.h_min;

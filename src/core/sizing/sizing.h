@@ -96,10 +96,14 @@ struct vg_sizing_options {
   struct vg_team *team; /* processes that build the field together
                            (base/team.h), or NULL */
   const struct vg_size_map *map; /* NULL: no map; borrowed for the call */
+  double aspect_max; /* largest ratio of two target edge lengths at a point, >=
+                        1; larger lengths are reduced; 0: default,
+                        VG_ASPECT_MAX */
 };
+#define VG_ASPECT_MAX 100
 #define VG_SIZING_OPTIONS_INIT                                                 \
   {                                                                            \
-    0, 0, 1.2, 1, 1, 1, 1, NULL, NULL                                          \
+    0, 0, 1.2, 1, 1, 1, 1, NULL, NULL, VG_ASPECT_MAX                           \
   }
 
 /** Growth rate of a sizing field that is scaled by `scale`. */
@@ -127,8 +131,8 @@ vg_status vg_sizing_new(const struct vg_sizing_options *options, size_t n,
                         struct vg_error *err);
 
 /** Create a new field: the spacing of another field times a factor >= 1,
- * limited by the field `most`. Cost: a copy, and one evaluation of `most` per
- * corner of a leaf. VG_ERR_MEMORY. */
+ * limited by the isotropic field `most`. Cost: a copy, and one evaluation of
+ * `most` per corner of a leaf. VG_ERR_MEMORY. */
 vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
                               const struct vg_sizing *most,
                               struct vg_sizing **out, struct vg_error *err);

@@ -35,7 +35,11 @@ struct vg_octree_build {
   const struct vg_stat *f;
   struct vg_octree_cell *cell;
   struct vg_octree_point *point;
-  size_t n_cell, n_point, cap_cell, cap_point, max_cell;
+  struct vg_size *tensor; /* [n_point] size tensors at the points; NULL if the
+                             field is isotropic. The h of a point is then an
+                             upper bound of its sizes from isotropic sources and
+                             the surface. */
+  size_t n_cell, n_point, cap_cell, cap_point, cap_tensor, max_cell;
   size_t level[VG_OCTREE_DEPTH + 2]; /* first cell of each level; n_cell
                                         after the last */
   int n_level;
@@ -59,6 +63,75 @@ static inline void vg_octree_place(const struct vg_octree_build *b,
                                    const uint32_t at[3], double x[3])
 {
   for (int k = 0; k < 3; k++) x[k] = b->lo[k] + at[k] * b->unit;
+}
+
+/** Decisions about the eight children of a cell together. */
+struct vg_octree_family {
+  const struct vg_octree_build *b;
+  uint32_t half; /* half the side of a child, in units of the finest cell */
+  double side;   /* side of a child */
+  struct vg_bvh_reach reach;
+  float face[125];            /* field at the centres of their faces; NAN if
+                                 not evaluated */
+  struct vg_size tensor[125]; /* the same of a field of size tensors; `least`
+                                 is NAN if not evaluated */
+};
+
+/** Prepare y, whose first members b, half and side are set, for the family
+ * whose first cell is c. */
+void vg_octree_family_start(struct vg_octree_family *y,
+                            const struct vg_octree_cell *c);
+
+/** Forget the values at the centres of faces. */
+void vg_octree_family_clear(struct vg_octree_family *y);
+
+/** Field at point i of the 3 x 3 x 3 lattice of a cell. */
+float vg_octree_sample(struct vg_octree_family *y,
+                       const struct vg_octree_cell *c, int i);
+
+/** The same of a field of size tensors. *iso out: the h of the point. */
+void vg_octree_sample_tensor(struct vg_octree_family *y,
+                             const struct vg_octree_cell *c, int i,
+                             struct vg_size *out, float *iso);
+
+/** Is a cell of the family to be split? Sets the floor and the rest of the
+ * cell.
+ *
+ * @param sibling  index of the cell in its family
+ * @param centre   out: field at its centre, unchanged if it was not evaluated;
+ *                 of a field of size tensors, the number of points that the
+ *                 cell will contain */
+int vg_octree_wants_split(struct vg_octree_family *y, struct vg_octree_cell *c,
+                          int sibling, float *centre);
+
+/** Coordinates 0 .. 2 of point i of a lattice of 3 x 3 x 3 points. */
+static inline void vg_octree_lattice(int i, int at[3])
+{
+  for (int k = 0; k < 3; k++, i /= 3) at[k] = i % 3;
+}
+
+/** Lower the size tensors of the sources at the points until the growth from
+ * each corner of a leaf to each other one is at most the slope, and update the
+ * field. Fails as vg_octree_grow. */
+vg_status vg_octree_limit_tensors(struct vg_octree_build *b,
+                                  struct vg_error *err);
+
+/** Size tensor of a hanging point: the mean of its parents. */
+static inline void vg_octree_hanging_tensor(const struct vg_octree_build *b,
+                                            const struct vg_octree_point *p,
+                                            struct vg_size *out)
+{
+  double sum[6] = { 0 };
+
+  *out = b->tensor[p->parent[0]];
+  for (int k = 0; k < p->n_parent; k++) {
+    const struct vg_size *s = b->tensor + p->parent[k];
+
+    for (int i = 0; i < 6; i++) sum[i] += (double)s->h[i];
+    out->least = s->least < out->least ? s->least : out->least;
+    out->most = s->most > out->most ? s->most : out->most;
+  }
+  for (int i = 0; i < 6; i++) out->h[i] = (float)(sum[i] / p->n_parent);
 }
 
 /** Value of a hanging point: the mean of its parents. */

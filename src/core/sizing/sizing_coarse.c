@@ -19,6 +19,33 @@ static float size_at(const struct coarsening *c, const double x[3], float h)
   return (float)fmin(c->factor * (double)h, vg_sizing_at(c->most, x));
 }
 
+static void tensor_at(const struct coarsening *c, const double x[3],
+                      const float from[6], float to[6])
+{
+  struct vg_size_limits l = { 0, vg_sizing_at(c->most, x), INFINITY };
+  double h[6], range[2];
+
+  for (int k = 0; k < 6; k++) h[k] = c->factor * (double)from[k];
+  vg_size_limit(h, &l, range);
+  for (int k = 0; k < 6; k++) to[k] = (float)h[k];
+}
+
+/* Coarsen corner i, at x, of the leaf of entry e. Returns its spacing. */
+static float coarsen_corner(const struct coarsening *c, uint32_t e, int i,
+                            const double x[3])
+{
+  union vg_octree_leaf *leaf = c->to->leaf + (e & VG_OCTREE_LEAF_INDEX);
+  const struct vg_octree *from = &c->from->octree;
+  double h[6];
+  float *to;
+
+  if (!(e & VG_OCTREE_TENSOR)) return leaf->h[i] = size_at(c, x, leaf->h[i]);
+  to = c->to->tensor[leaf->corner[i]];
+  tensor_at(c, x, from->tensor[leaf->corner[i]], to);
+  for (int k = 0; k < 6; k++) h[k] = (double)to[k];
+  return (float)vg_size_mean(h);
+}
+
 /* Coarsen entry e of the tree, the cube at lo. Returns the smallest spacing in
  * it. */
 static float coarsen(const struct coarsening *c, uint32_t e, const double lo[3],
@@ -32,13 +59,8 @@ static float coarsen(const struct coarsening *c, uint32_t e, const double lo[3],
     float h;
 
     for (int k = 0; k < 3; k++) x[k] = lo[k] + (i >> k & 1 ? part : 0);
-    if (e & VG_OCTREE_LEAF) {
-      float *at = &c->to->leaf[e & ~VG_OCTREE_LEAF][i];
-
-      h = *at = size_at(c, x, *at);
-    } else {
-      h = coarsen(c, c->to->child[e][i], x, part);
-    }
+    h = e & VG_OCTREE_LEAF ? coarsen_corner(c, e, i, x)
+                           : coarsen(c, c->to->child[e][i], x, part);
     if (h < least) least = h;
   }
   if (!(e & VG_OCTREE_LEAF)) c->to->least[e] = least;
@@ -58,6 +80,7 @@ vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
                               struct vg_sizing **out, struct vg_error *err)
 {
   assert(s && most && out && factor >= 1);
+  assert(!most->octree.is_stretched);
 
   struct vg_sizing *to = copy_of(s, 1, sizeof *s);
   const struct vg_octree *t = &s->octree;
@@ -67,8 +90,10 @@ vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
   to->octree.child = copy_of(t->child, t->n_split, sizeof *t->child);
   to->octree.least = copy_of(t->least, t->n_split, sizeof *t->least);
   to->octree.leaf = copy_of(t->leaf, t->n_leaf, sizeof *t->leaf);
+  to->octree.tensor = copy_of(t->tensor, t->n_tensor, sizeof *t->tensor);
   memset(&to->common, 0, sizeof to->common);
-  if (!to->octree.child || !to->octree.least || !to->octree.leaf) {
+  if (!to->octree.child || !to->octree.least || !to->octree.leaf ||
+      !to->octree.tensor) {
     vg_sizing_free(to);
     return vg_fail_memory(err, "the sizing field");
   }

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The exact field: sources, and growth of the spacing from the surface. */
+#include <math.h>
+#include <string.h>
+
+#include "core/geometry/tensor.h"
 #include "core/sizing/sizing_octree.h"
 
 /* H6: sources count as finer than the surface if they are below this share of
@@ -48,7 +52,7 @@ double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
     mid[k] = lo[k] + 0.5 * side;
   }
   h = vg_source_floor(&f->set, lo, hi);
-  if (f->set.n_mean) {
+  if (f->set.n_mean && !f->set.mean_is_stretched) {
     double mean = vg_source_mean(f->set.n_mean, f->set.mean, mid);
 
     h = mean < h ? mean : h;
@@ -65,4 +69,75 @@ double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
   if (more > 0 && below - more > h) h = below - more;
   else if (!(more > 0)) h = below;
   return vg_stat_clamp(f, h < most ? h : most);
+}
+
+static struct vg_size_limits limits_of(const struct vg_stat *f)
+{
+  return (struct vg_size_limits){
+    fmin(fmax(f->h_min, 1e-30 * f->h_max), f->h_max), f->h_max, f->aspect_max
+  };
+}
+
+void vg_stat_tensor_source(const struct vg_stat *f, const double x[3],
+                           double h[6], double range[2], double *iso)
+{
+  const struct vg_size_limits l = limits_of(f);
+
+  *iso = fmin(vg_source_at(&f->set, x), f->h_max);
+  vg_source_metric_at(&f->set, x, *iso, h);
+  vg_size_from_metric(h, &l, h, range);
+}
+
+void vg_stat_tensor_limit(const struct vg_stat *f, double h[6], double range[2])
+{
+  const struct vg_size_limits l = limits_of(f);
+
+  vg_size_limit(h, &l, range);
+}
+
+/* The bounds of the surface apply to each eigenvalue as vg_stat_combine applies
+ * them to an isotropic size. */
+static void bound(const struct vg_stat *f, const double x[3], double h[6],
+                  double range[2], struct vg_bvh_reach *reach, uint32_t *hint,
+                  double *most)
+{
+  struct vg_size_limits l = limits_of(f);
+  double below, by;
+
+  *most = vg_bvh_above(f->near, x, x, f->h_max, hint);
+  l.aspect = INFINITY;
+  l.most = fmin(fmax(*most, l.least), l.most);
+  if (range[0] < *most && f->under) {
+    below = vg_bvh_below(f->under, x, range[0], *most, reach, &by);
+    if (below < *most && below < vg_bvh_knee(f->under, by))
+      atomic_store_explicit(f->is_steep, 1, memory_order_relaxed);
+    l.least = fmax(l.least, fmin(below, l.most));
+  }
+  if (range[0] < l.least || range[1] > l.most) vg_size_limit(h, &l, range);
+}
+
+void vg_stat_tensor_combine(const struct vg_stat *f, const double x[3],
+                            const double h[6], const double range[2],
+                            struct vg_bvh_reach *reach, uint32_t *hint,
+                            struct vg_size *out, double *most)
+{
+  double bounded[6], its[2] = { range[0], range[1] };
+
+  memcpy(bounded, h, sizeof bounded);
+  *most = INFINITY;
+  if (f->near) bound(f, x, bounded, its, reach, hint, most);
+  for (int k = 0; k < 6; k++) out->h[k] = (float)bounded[k];
+  out->least = (float)its[0];
+  out->most = (float)its[1];
+}
+
+void vg_stat_tensor_at(const struct vg_stat *f, const double x[3],
+                       struct vg_bvh_reach *reach, uint32_t *hint,
+                       struct vg_size *out, float *iso)
+{
+  double h[6], range[2], least, most;
+
+  vg_stat_tensor_source(f, x, h, range, &least);
+  vg_stat_tensor_combine(f, x, h, range, reach, hint, out, &most);
+  *iso = (float)fmin(least, most);
 }

@@ -7,24 +7,19 @@
 #include "base/parallel.h"
 #include "core/sizing/sizing_build.h"
 
-/* The octree is built level by level. A cell is split if trilinear
- * interpolation between its corners would miss the field by more than
- * TOLERANCE, but not below the spacing found in it (floor times that spacing):
- * within such a cell the field varies by a few per cent only.
- *
- * A split creates up to 19 new points: midpoints of 12 edges and 6 faces, and
- * the centre. A midpoint that is a corner of all cells around it is sampled.
- * If a neighbour is not split, the midpoint hangs: it takes the mean of the
- * ends of its edge or of the corners of its face. This equals the neighbour's
- * interpolation there, so the result is continuous. The parents of a hanging
- * point are corners of split cells, i.e. points of earlier levels.
+/* The octree is built level by level (sizing_split.c decides which cells are
+ * split). A split creates up to 19 new points: midpoints of 12 edges and 6
+ * faces, and the centre. A midpoint that is a corner of all cells around it is
+ * sampled. If a neighbour is not split, the midpoint hangs: it takes the mean
+ * of the ends of its edge or of the corners of its face. This equals the
+ * neighbour's interpolation there, so the result is continuous. The parents of
+ * a hanging point are corners of split cells, i.e. points of earlier levels.
  *
  * Cells find their neighbours through those of their parents. A midpoint
  * shared by several cells therefore belongs to the first of them, and each
  * cell counts its own midpoints: no table of points is searched, and threads
  * share no data. */
-#define TOLERANCE 0.03 /* H1 */
-#define MAP_CELLS 32   /* H7 */
+#define CELLS_PER_POINT 4 /* H13 */
 #define NONE UINT32_MAX
 #define POINT_MAX (UINT32_MAX - 1)
 #define FAMILIES 16 /* families of eight cells per thread and step */
@@ -45,7 +40,8 @@ struct level {
   uint32_t half;   /* half the side of a cell */
   double side;
   uint8_t *mark; /* [n] 1: cell is split */
-  float *centre; /* [n] field at the centre, NAN if not evaluated */
+  float *centre; /* [n] field at the centre, NAN if not evaluated; of a field
+                    of size tensors, the number of points in the cell */
   size_t n_split;
   uint32_t *which;             /* [n_split] split cells */
   uint32_t (*around)[27];      /* [n_split] cells by direction, the cell
@@ -59,140 +55,39 @@ struct level {
 
 static const int stride[3] = { 1, 3, 9 };
 
-static void coordinates(int i, int at[3])
-{
-  for (int k = 0; k < 3; k++, i /= 3) at[k] = i % 3;
-}
-
-/* Split decisions for the eight children of a cell together. */
-
-struct family {
-  const struct level *l;
-  struct vg_bvh_reach reach;
-  float face[125]; /* field at the centres of their faces; NAN if not
-                      evaluated */
-};
-
-/* Prepare for the family whose first cell is c. */
-static void start_family(struct family *y, const struct vg_octree_cell *c)
-{
-  const struct level *l = y->l;
-
-  vg_octree_place(l->b, c->at, y->reach.mid);
-  for (int k = 0; k < 3; k++) y->reach.mid[k] += l->side;
-  y->reach.trifle = 0.25f * c->floor;
-  y->reach.is_known = 0;
-}
-
-/* Field at point i of the lattice of a cell. */
-static float sample(struct family *y, const struct vg_octree_cell *c, int i)
-{
-  const struct level *l = y->l;
-  uint32_t hint = c->hint, q[3];
-  double x[3];
-  int at[3];
-
-  coordinates(i, at);
-  for (int k = 0; k < 3; k++) q[k] = c->at[k] + l->half * (uint32_t)at[k];
-  vg_octree_place(l->b, q, x);
-  return (float)vg_stat_at(l->b->f, x, &y->reach, &hint);
-}
-
-/* Field at the centre of a face, which siblings share. */
-static float sample_face(struct family *y, const struct vg_octree_cell *c,
-                         int sibling, int i)
-{
-  static const int wide[3] = { 1, 5, 25 };
-  int at[3], slot = 0;
-
-  coordinates(i, at);
-  for (int k = 0; k < 3; k++)
-    slot += wide[k] * (at[k] + 2 * (sibling >> k & 1));
-  if (isnan(y->face[slot])) y->face[slot] = sample(y, c, i);
-  return y->face[slot];
-}
-
-/* Mean of the corners on face (axis, end); of all corners if axis < 0. */
-static float corner_mean(const float h[8], int axis, int end)
-{
-  float sum = 0;
-
-  for (int i = 0; i < 8; i++)
-    if (axis < 0 || (i >> axis & 1) == end) sum += h[i];
-  return axis < 0 ? sum / 8 : sum / 4;
-}
-
-static int misses(float interpolated, float exact)
-{
-  return fabsf(interpolated - exact) > (float)TOLERANCE * exact;
-}
-
-static int test_cell(struct family *y, const struct vg_octree_cell *c,
-                     int sibling, const float h[8], float *centre)
-{
-  *centre = sample(y, c, 13);
-  if (misses(corner_mean(h, -1, 0), *centre)) return 1;
-  for (int i = 0; i < 6; i++) {
-    int at = 13 + stride[i / 2] * (i % 2 ? 1 : -1);
-
-    if (misses(corner_mean(h, i / 2, i % 2), sample_face(y, c, sibling, at)))
-      return 1;
-  }
-  return 0;
-}
-
-/* A map without known bounds is sampled everywhere (H7). */
-static int is_unsampled(const struct vg_octree_build *b, double side)
-{
-  const struct vg_size_map *map = b->f->set.map;
-
-  return map && !map->least && MAP_CELLS * side > VG_OCTREE_TOP * b->unit;
-}
-
-static int wants_split(struct family *y, struct vg_octree_cell *c, int sibling,
-                       float *centre)
-{
-  const struct level *l = y->l;
-  const struct vg_octree_build *b = l->b;
-  float h[8], low = INFINITY;
-  double lo[3], hi[3];
-  int by_sources;
-
-  if (is_unsampled(b, l->side)) return 1;
-  if (l->side <= b->floor * (double)c->floor) return 0;
-  vg_octree_place(b, c->at, lo);
-  for (int k = 0; k < 3; k++) hi[k] = lo[k] + l->side;
-  c->floor = (float)vg_stat_floor(b->f, lo, l->side, &y->reach, &c->hint,
-                                  &by_sources);
-  c->rest = by_sources ? c->floor : c->floor * b->surface;
-  if (l->side <= b->floor * (double)c->rest) return 0;
-  if (!b->f->set.n_mean && b->f->h_max <= c->floor * (1 + TOLERANCE)) return 0;
-  for (int i = 0; i < 8; i++) {
-    h[i] = b->point[c->corner[i]].h;
-    if (h[i] < low) low = h[i];
-  }
-  if (low > c->floor * (1 + 2 * TOLERANCE)) return 1;
-  if (!vg_source_resolved(&b->f->set, lo, hi, l->side)) return 1;
-  return test_cell(y, c, sibling, h, centre);
-}
-
 /* The root has no siblings. */
 static void decide_body(void *context, size_t first, size_t end, int worker)
 {
   const struct level *l = context;
   struct vg_octree_build *b = l->b;
-  struct family y = { .l = l };
+  struct vg_octree_family y = { b,       l->half,
+                                l->side, { .is_known = 0 },
+                                { 0 },   { { { 0 }, 0, 0 } } };
 
   (void)worker;
   for (size_t k = first; k < end; k++) {
-    start_family(&y, b->cell + l->first + 8 * k);
-    for (int i = 0; i < 125; i++) y.face[i] = NAN;
+    vg_octree_family_start(&y, b->cell + l->first + 8 * k);
+    vg_octree_family_clear(&y);
     for (size_t i = 8 * k; i < 8 * k + 8 && i < l->n; i++) {
       l->centre[i] = NAN;
-      l->mark[i] = (uint8_t)wants_split(&y, b->cell + l->first + i,
-                                        (int)(i % 8), l->centre + i);
+      l->mark[i] = (uint8_t)vg_octree_wants_split(&y, b->cell + l->first + i,
+                                                  (int)(i % 8), l->centre + i);
     }
   }
+}
+
+/* A field of size tensors may have more leaves if the mesh will be large (H13).
+ * The limit follows from the points that the cells of this level will contain.
+ */
+static void raise_limit(const struct level *l)
+{
+  struct vg_octree_build *b = l->b;
+  double n = 0;
+
+  for (size_t i = 0; i < l->n; i++) n += (double)l->centre[i];
+  n *= CELLS_PER_POINT;
+  if (n > (double)b->max_cell)
+    b->max_cell = n < VG_OCTREE_LEAF / 4 ? (size_t)n : VG_OCTREE_LEAF / 4;
 }
 
 /* Decide which cells are split. If the tree would exceed its limit, the floor
@@ -212,6 +107,7 @@ static vg_status decide(struct level *l, struct vg_error *err)
                    l, sizeof out / sizeof *out, out, err);
   if (st < 0) return st;
   for (size_t i = 0; i < l->n; i++) n += l->mark[i];
+  if (b->tensor) raise_limit(l);
   while (n && b->n_cell + 8 * n > b->max_cell) {
     b->floor *= 1.25;
     n = 0;
@@ -255,7 +151,7 @@ static void around_body(void *context, size_t first, size_t end, int worker)
     for (int way = 0; way < 27; way++) {
       int d[3], off = 0;
 
-      coordinates(way, d);
+      vg_octree_lattice(way, d);
       for (int k = 0; k < 3; k++) off += --d[k] != 0;
       l->around[s][way] = off < 3 ? neighbour(l, l->which[s], d) : NONE;
     }
@@ -270,7 +166,7 @@ static void make_shares(struct level *l)
   for (int i = 0; i < 27; i++) {
     int at[3], axis[3], n = 0;
 
-    coordinates(i, at);
+    vg_octree_lattice(i, at);
     for (int k = 0; k < 3; k++)
       if (at[k] != 1) axis[n++] = k;
     l->share[i] = (struct share){ .n = 0 };
@@ -322,7 +218,7 @@ static int is_corner(int i)
 {
   int at[3];
 
-  coordinates(i, at);
+  vg_octree_lattice(i, at);
   return at[0] != 1 && at[1] != 1 && at[2] != 1;
 }
 
@@ -354,15 +250,16 @@ static unsigned full_count(const struct vg_octree_point *p)
 
 /* Create midpoint i, which split s owns. Its parents span its odd coordinates.
  * They are points of earlier levels, so their values are known. */
-static void make_point(const struct level *l, struct family *y, size_t s, int i,
-                       unsigned n_cell, struct vg_octree_point *p)
+static void make_point(const struct level *l, struct vg_octree_family *y,
+                       size_t s, int i, unsigned n_cell,
+                       struct vg_octree_point *p)
 {
   struct vg_octree_build *b = l->b;
   const struct vg_octree_cell *c = b->cell + l->which[s];
   float known = l->centre[l->which[s] - l->first];
   int at[3];
 
-  coordinates(i, at);
+  vg_octree_lattice(i, at);
   *p = (struct vg_octree_point){ .hint = c->hint };
   for (int k = 0; k < 3; k++) p->at[k] = c->at[k] + l->half * (uint32_t)at[k];
   for (int j = 0; j < 8 && i != 13; j++) {
@@ -374,8 +271,14 @@ static void make_point(const struct level *l, struct family *y, size_t s, int i,
   }
   p->is_hanging = n_cell < full_count(p);
   if (p->is_hanging) p->h = vg_octree_hanging_size(b, p);
-  else if (i == 13 && !isnan(known)) p->h = known;
-  else p->h = sample(y, c, i);
+  if (b->tensor) {
+    struct vg_size *tensor = b->tensor + (p - b->point);
+
+    if (p->is_hanging) vg_octree_hanging_tensor(b, p, tensor);
+    else vg_octree_sample_tensor(y, c, i, tensor, &p->h);
+  } else if (!p->is_hanging) {
+    p->h = i == 13 && !isnan(known) ? known : vg_octree_sample(y, c, i);
+  }
 }
 
 static void make_children(const struct level *l, size_t s,
@@ -400,7 +303,9 @@ static void split_body(void *context, size_t first, size_t end, int worker)
 {
   const struct level *l = context;
   struct vg_octree_build *b = l->b;
-  struct family y = { .l = l };
+  struct vg_octree_family y = { b,       l->half,
+                                l->side, { .is_known = 0 },
+                                { 0 },   { { { 0 }, 0, 0 } } };
   size_t family = SIZE_MAX;
 
   (void)worker;
@@ -408,7 +313,7 @@ static void split_body(void *context, size_t first, size_t end, int worker)
     const struct vg_octree_cell *c = b->cell + l->which[s];
     uint32_t id[27], next = l->base[s];
 
-    if ((l->which[s] - l->first) / 8 != family) start_family(&y, c);
+    if ((l->which[s] - l->first) / 8 != family) vg_octree_family_start(&y, c);
     family = (l->which[s] - l->first) / 8;
     for (int j = 0; j < 8; j++)
       id[2 * (j & 1) + 6 * (j >> 1 & 1) + 18 * (j >> 2)] = c->corner[j];
@@ -443,7 +348,9 @@ static int number_splits(struct level *l)
   }
   l->base[n] = (uint32_t)n_point;
   if (vg_reserve(&b->point, &b->cap_point, n_point, sizeof *b->point) ||
-      vg_reserve(&b->cell, &b->cap_cell, b->n_cell + 8 * n, sizeof *b->cell))
+      vg_reserve(&b->cell, &b->cap_cell, b->n_cell + 8 * n, sizeof *b->cell) ||
+      (b->tensor &&
+       vg_reserve(&b->tensor, &b->cap_tensor, n_point, sizeof *b->tensor)))
     return -1;
   b->n_point = n_point;
   return 0;
@@ -454,10 +361,11 @@ static vg_status split(struct level *l, struct vg_error *err)
   struct vg_octree_build *b = l->b;
   const struct vg_team_out out[] = {
     { b->cell + b->n_cell, 8 * sizeof *b->cell, 0, NULL },
-    { b->point, sizeof *b->point, 0, l->base }
+    { b->point, sizeof *b->point, 0, l->base },
+    { b->tensor, sizeof *b->tensor, 0, l->base }
   };
   vg_status st = vg_team_for(b->team, b->threads, l->n_split, FAMILIES,
-                             split_body, l, sizeof out / sizeof *out, out, err);
+                             split_body, l, b->tensor ? 3 : 2, out, err);
 
   b->n_cell += 8 * l->n_split;
   return st;
@@ -511,7 +419,9 @@ static vg_status grow_level(struct vg_octree_build *b, int level,
 static int make_root(struct vg_octree_build *b)
 {
   if (vg_reserve(&b->cell, &b->cap_cell, ROOM, sizeof *b->cell) ||
-      vg_reserve(&b->point, &b->cap_point, ROOM, sizeof *b->point))
+      vg_reserve(&b->point, &b->cap_point, ROOM, sizeof *b->point) ||
+      (b->f->is_stretched &&
+       vg_reserve(&b->tensor, &b->cap_tensor, ROOM, sizeof *b->tensor)))
     return -1;
   memset(b->cell, 0, sizeof *b->cell);
   b->n_cell = 1;
@@ -522,7 +432,9 @@ static int make_root(struct vg_octree_build *b)
     *p = (struct vg_octree_point){ .hint = 0 };
     for (int k = 0; k < 3; k++) p->at[k] = (i >> k & 1) * VG_OCTREE_TOP;
     vg_octree_place(b, p->at, x);
-    p->h = (float)vg_stat_at(b->f, x, NULL, &p->hint);
+    if (b->tensor)
+      vg_stat_tensor_at(b->f, x, NULL, &p->hint, b->tensor + i, &p->h);
+    else p->h = (float)vg_stat_at(b->f, x, NULL, &p->hint);
     b->cell->corner[i] = i;
   }
   return 0;

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "core/geometry/tensor.h"
 #include "core/sizing/sizing_build.h"
 
 /* Cells are not split below FLOOR times the spacing (H2), or SURFACE times
@@ -39,6 +40,15 @@ struct compaction {
   size_t first; /* first cell of the level */
 };
 
+static float corner_size(const struct vg_octree_build *b, uint32_t point)
+{
+  double h[6];
+
+  if (!b->tensor) return b->point[point].h;
+  for (int k = 0; k < 6; k++) h[k] = (double)b->tensor[point].h[k];
+  return (float)vg_size_mean(h);
+}
+
 static void count_body(void *context, size_t first, size_t end, int worker)
 {
   const struct compaction *m = context;
@@ -52,7 +62,7 @@ static void count_body(void *context, size_t first, size_t end, int worker)
       struct span below = { 0, 0, 0 };
 
       if (c->child) below = m->span[c->child + j];
-      else below.least = m->b->point[c->corner[j]].h;
+      else below.least = corner_size(m->b, c->corner[j]);
       sum.leaf += below.leaf;
       sum.split += below.split;
       sum.least = below.least < sum.least ? below.least : sum.least;
@@ -61,12 +71,35 @@ static void count_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
+/* Are the size tensors at the corners of a leaf multiples of I? */
+static int is_uniform(const struct vg_octree_build *b,
+                      const struct vg_octree_cell *c)
+{
+  for (int i = 0; b->tensor && i < 8; i++)
+    if (!vg_size_is_uniform(b->tensor[c->corner[i]].h)) return 0;
+  return 1;
+}
+
+/* Corners of leaves with tensors are points of the construction until they are
+ * numbered. */
 static void put_leaf(const struct compaction *m, size_t cell)
 {
   const struct vg_octree_cell *c = m->b->cell + cell;
+  union vg_octree_leaf *leaf = m->t->leaf + m->span[cell].leaf;
+  int uniform = is_uniform(m->b, c);
 
   for (int i = 0; i < 8; i++)
-    m->t->leaf[m->span[cell].leaf][i] = m->b->point[c->corner[i]].h;
+    if (!uniform) leaf->corner[i] = c->corner[i];
+    else if (m->b->tensor) leaf->h[i] = m->b->tensor[c->corner[i]].h[0];
+    else leaf->h[i] = m->b->point[c->corner[i]].h;
+}
+
+static uint32_t leaf_entry(const struct compaction *m, size_t cell,
+                           uint32_t leaf)
+{
+  uint32_t e = VG_OCTREE_LEAF | leaf;
+
+  return is_uniform(m->b, m->b->cell + cell) ? e : e | VG_OCTREE_TENSOR;
 }
 
 static void emit_body(void *context, size_t first, size_t end, int worker)
@@ -88,13 +121,42 @@ static void emit_body(void *context, size_t first, size_t end, int worker)
 
       m->t->child[m->span[i].split][j] = m->b->cell[child + j].child
                                          ? next.split
-                                         : VG_OCTREE_LEAF | next.leaf;
+                                         : leaf_entry(m, child + j, next.leaf);
       next.least = below.least;
       m->span[child + j] = next;
       next.leaf += below.leaf;
       next.split += below.split;
     }
   }
+}
+
+/* Number the tensors in the order of the tree's entries. */
+static int number_tensors(const struct vg_octree_build *b, struct vg_octree *t)
+{
+  uint32_t *number = vg_calloc(b->n_point, sizeof *number), n = 0;
+  size_t n_entry = 8 * t->n_split;
+  const uint32_t *entry = n_entry ? t->child[0] : &t->root;
+
+  if (!number) return -1;
+  for (size_t i = 0; i < (n_entry ? n_entry : 1); i++) {
+    union vg_octree_leaf *leaf = t->leaf + (entry[i] & VG_OCTREE_LEAF_INDEX);
+
+    if (!(entry[i] & VG_OCTREE_LEAF) || !(entry[i] & VG_OCTREE_TENSOR))
+      continue;
+    for (int j = 0; j < 8; j++) {
+      uint32_t *at = number + leaf->corner[j];
+
+      if (!*at) *at = ++n;
+      leaf->corner[j] = *at - 1;
+    }
+  }
+  t->n_tensor = n;
+  t->tensor = vg_alloc(n, sizeof *t->tensor);
+  for (size_t i = 0; t->tensor && i < b->n_point; i++)
+    if (number[i])
+      memcpy(t->tensor[number[i] - 1], b->tensor[i].h, sizeof *t->tensor);
+  free(number);
+  return t->tensor ? 0 : -1;
 }
 
 static int compact(const struct vg_octree_build *b, struct vg_octree *t)
@@ -123,8 +185,9 @@ static int compact(const struct vg_octree_build *b, struct vg_octree *t)
   if (bad) return -1;
   t->n_split = n_split;
   t->n_leaf = b->n_cell - n_split;
-  t->root = b->cell->child ? 0 : VG_OCTREE_LEAF;
-  return 0;
+  t->root = b->cell->child ? 0 : leaf_entry(&m, 0, 0);
+  t->is_stretched = b->tensor != NULL;
+  return t->is_stretched ? number_tensors(b, t) : 0;
 }
 
 vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
@@ -149,11 +212,13 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
   for (int k = 0; k < 3; k++) b.lo[k] = out->lo[k] = lo[k];
   out->side = side;
   st = vg_octree_grow(&b, err);
-  if (st >= 0 && vg_source_any(&f->set)) st = vg_octree_limit(&b, err);
+  if (st >= 0 && b.tensor) st = vg_octree_limit_tensors(&b, err);
+  else if (st >= 0 && vg_source_any(&f->set)) st = vg_octree_limit(&b, err);
   if (st >= 0 && compact(&b, out))
     st = vg_fail_memory(err, "the octree of the sizing field");
   free(b.cell);
   free(b.point);
+  free(b.tensor);
   if (st < 0) vg_octree_release(out);
   return st;
 }
@@ -163,6 +228,7 @@ void vg_octree_release(struct vg_octree *t)
   free(t->child);
   free(t->least);
   free(t->leaf);
+  free(t->tensor);
   memset(t, 0, sizeof *t);
 }
 
@@ -181,12 +247,14 @@ static inline double trilinear(const float h[8], const double f[3])
   return a + f[2] * (c - a);
 }
 
-double vg_octree_at(const struct vg_octree *t, const double x[3],
-                    double *outside)
+/* Leaf at x, as an entry of the tree. f out: position in the leaf, from 0 to 1.
+ * *outside out: distance to the root cube. */
+static inline uint32_t find_leaf(const struct vg_octree *t, const double x[3],
+                                 double f[3], double *outside)
 {
   assert(t->n_leaf > 0 && outside);
 
-  double f[3], d2 = 0, scale = 1;
+  double d2 = 0, scale = 1;
   uint32_t at[3], e = t->root;
   int bit = VG_OCTREE_DEPTH;
 
@@ -206,7 +274,58 @@ double vg_octree_at(const struct vg_octree *t, const double x[3],
   scale = (double)(VG_OCTREE_TOP >> bit);
   for (int k = 0; k < 3; k++) f[k] = f[k] * scale - (double)(at[k] >> bit);
   *outside = d2 > 0 ? sqrt(d2) * t->side : 0;
-  return trilinear(t->leaf[e & ~VG_OCTREE_LEAF], f);
+  return e;
+}
+
+double vg_octree_at(const struct vg_octree *t, const double x[3],
+                    double *outside)
+{
+  assert(!t->is_stretched);
+
+  double f[3];
+  uint32_t e = find_leaf(t, x, f, outside);
+
+  return trilinear(t->leaf[e & VG_OCTREE_LEAF_INDEX].h, f);
+}
+
+/* Trilinear size tensor in the leaf of entry e. */
+static inline void tensor_in(const struct vg_octree *t, uint32_t e,
+                             const double f[3], double h[6])
+{
+  const union vg_octree_leaf *leaf = t->leaf + (e & VG_OCTREE_LEAF_INDEX);
+
+  if (!(e & VG_OCTREE_TENSOR)) {
+    vg_tensor_uniform(trilinear(leaf->h, f), h);
+    return;
+  }
+  for (int k = 0; k < 6; k++) h[k] = 0;
+  for (int i = 0; i < 8; i++) {
+    const float *corner = t->tensor[leaf->corner[i]];
+    double w = (i & 1 ? f[0] : 1 - f[0]) * (i & 2 ? f[1] : 1 - f[1]) *
+               (i & 4 ? f[2] : 1 - f[2]);
+
+    for (int k = 0; k < 6; k++) h[k] += w * (double)corner[k];
+  }
+}
+
+void vg_octree_tensor_at(const struct vg_octree *t, const double x[3],
+                         double h[6], double *outside)
+{
+  double f[3];
+  uint32_t e = find_leaf(t, x, f, outside);
+
+  tensor_in(t, e, f, h);
+}
+
+/* Spacing in the leaf of entry e. */
+static double size_in(const struct vg_octree *t, uint32_t e, const double f[3])
+{
+  double h[6];
+
+  if (!(e & VG_OCTREE_TENSOR))
+    return trilinear(t->leaf[e & VG_OCTREE_LEAF_INDEX].h, f);
+  tensor_in(t, e, f, h);
+  return vg_size_mean(h);
 }
 
 /* Search for the smallest value by branch and bound. Lengths are relative to
@@ -217,8 +336,8 @@ struct search {
 };
 
 /* A trilinear function has its minimum at a corner of the part of the leaf in
- * the box. */
-static void search_leaf(struct search *s, const float h[8], const double at[3],
+ * the box. So has det(H)^(1/3), which is concave along the axes. */
+static void search_leaf(struct search *s, uint32_t e, const double at[3],
                         double side)
 {
   for (int i = 0; i < 8; i++) {
@@ -228,7 +347,7 @@ static void search_leaf(struct search *s, const float h[8], const double at[3],
       x[k] = i >> k & 1 ? fmin(s->hi[k], at[k] + side) : fmax(s->lo[k], at[k]);
       f[k] = (x[k] - at[k]) / side;
     }
-    v = trilinear(h, f);
+    v = size_in(s->t, e, f);
     if (!(v < s->least)) continue;
     s->least = v;
     memcpy(s->x, x, sizeof x);
@@ -237,14 +356,15 @@ static void search_leaf(struct search *s, const float h[8], const double at[3],
 
 static double least_below(const struct vg_octree *t, uint32_t e)
 {
-  const float *h;
-  float least;
+  double least = INFINITY;
 
   if (!(e & VG_OCTREE_LEAF)) return (double)t->least[e];
-  h = t->leaf[e & ~VG_OCTREE_LEAF];
-  least = h[0];
-  for (int i = 1; i < 8; i++) least = h[i] < least ? h[i] : least;
-  return (double)least;
+  for (int i = 0; i < 8; i++) {
+    const double f[3] = { i & 1, i >> 1 & 1, i >> 2 };
+
+    least = fmin(least, size_in(t, e, f));
+  }
+  return least;
 }
 
 static void search(struct search *s, uint32_t e, const double at[3],
@@ -254,7 +374,7 @@ static void search(struct search *s, uint32_t e, const double at[3],
   for (int k = 0; k < 3; k++)
     if (at[k] > s->hi[k] || at[k] + side < s->lo[k]) return;
   if (e & VG_OCTREE_LEAF) {
-    search_leaf(s, s->t->leaf[e & ~VG_OCTREE_LEAF], at, side);
+    search_leaf(s, e, at, side);
     return;
   }
   for (int i = 0; i < 8; i++) {
@@ -280,4 +400,63 @@ double vg_octree_least(const struct vg_octree *t, const double lo[3],
   search(&s, t->root, root, 1);
   for (int k = 0; k < 3; k++) x[k] = t->lo[k] + t->side * s.x[k];
   return s.least;
+}
+
+/* --- range of size tensors ------------------------------------------------ */
+
+/* Extend the range and the slope by a leaf with tensors. With the tensor B in
+ * its middle, the mean of H is at most det(B)^(1/3) tr(B^-1 H) / 3, which is
+ * largest at a corner. The gradient of the mean h is h tr(H^-1 dH) / 3. */
+static void extend_range(const struct vg_octree *t, uint32_t e, double side,
+                         double range[2], double *slope)
+{
+  const uint32_t *corner = t->leaf[e & VG_OCTREE_LEAF_INDEX].corner;
+  double h[8][6], b[6], mean, most = 0;
+
+  tensor_in(t, e, (const double[3]){ 0.5, 0.5, 0.5 }, b);
+  mean = vg_size_mean(b);
+  vg_tensor_invert(b, b);
+  for (int i = 0; i < 8; i++) {
+    for (int k = 0; k < 6; k++) h[i][k] = (double)t->tensor[corner[i]][k];
+    range[0] = fmin(range[0], vg_size_mean(h[i]));
+    most = fmax(most, vg_tensor_trace2(b, h[i]));
+  }
+  range[1] = fmax(range[1], mean * most / 3);
+  for (int i = 0; i < 8; i++) {
+    double inverse[6], g2 = 0, size = vg_size_mean(h[i]);
+
+    vg_tensor_invert(h[i], inverse);
+    for (int k = 0; k < 3; k++) {
+      double g = vg_tensor_trace2(inverse, h[i ^ 1 << k]) - 3;
+
+      g2 += g * g;
+    }
+    *slope = fmax(*slope, size * sqrt(g2) / (3 * side));
+  }
+}
+
+static void range_below(const struct vg_octree *t, uint32_t e, double side,
+                        double range[2], double *slope)
+{
+  if (!(e & VG_OCTREE_LEAF)) {
+    for (int i = 0; i < 8; i++)
+      range_below(t, t->child[e][i], 0.5 * side, range, slope);
+  } else if (e & VG_OCTREE_TENSOR) {
+    extend_range(t, e, side, range, slope);
+  } else {
+    for (int i = 0; i < 8; i++) {
+      double h = (double)t->leaf[e & VG_OCTREE_LEAF_INDEX].h[i];
+
+      range[0] = fmin(range[0], h);
+      range[1] = fmax(range[1], h);
+    }
+  }
+}
+
+void vg_octree_tensor_range(const struct vg_octree *t, double range[2],
+                            double *slope)
+{
+  range[0] = INFINITY;
+  range[1] = *slope = 0;
+  range_below(t, t->root, t->side, range, slope);
 }

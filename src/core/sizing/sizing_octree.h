@@ -8,6 +8,7 @@
 
 #include "core/sizing/sizing_bvh.h"
 #include "core/sizing/sizing_source.h"
+#include "core/sizing/sizing_tensor.h"
 
 /** The field to be cached: min(above, max(below, sources)), then clamped. above
  * and below are the bounds from the growth of the surface spacing
@@ -23,19 +24,35 @@ struct vg_stat {
   atomic_int *is_steep; /* out: sources are limited by faces beyond the knee
                            somewhere (sizing_bvh.h) */
   double h_min, h_max;  /* limits; 0 and INFINITY: no limit */
+  int is_stretched;     /* 1: the field is one of size tensors; h_max is then
+                           finite */
+  double aspect_max;    /* limit of the aspect in a field of size tensors */
 };
 
 #define VG_OCTREE_LEAF 0x80000000u
+#define VG_OCTREE_TENSOR 0x40000000u /* only in entries of leaves */
+#define VG_OCTREE_LEAF_INDEX 0x3fffffffu
 #define VG_OCTREE_DEPTH 28 /* levels below the root */
+
+/** Corners of a leaf; x fastest, then y. */
+union vg_octree_leaf {
+  float h[8];         /* spacings */
+  uint32_t corner[8]; /* in a leaf with tensors: their indices */
+};
 
 struct vg_octree {
   double lo[3], side;   /* root cube */
   uint32_t root;        /* as an entry of child */
-  uint32_t (*child)[8]; /* [n_split] VG_OCTREE_LEAF | leaf, or split */
-  float *least;         /* [n_split] smallest corner value below each */
-  float (*leaf)[8];     /* [n_leaf] spacings at the corners; x fastest, then
-                           y */
-  size_t n_split, n_leaf;
+  uint32_t (*child)[8]; /* [n_split] split, or leaf with VG_OCTREE_LEAF and, if
+                           it has tensors, VG_OCTREE_TENSOR */
+  float *least;         /* [n_split] smallest corner value below each; of
+                           tensors, the geometric mean of the eigenvalues */
+  union vg_octree_leaf *leaf; /* [n_leaf] */
+  float (*tensor)[6];         /* [n_tensor] size tensors at corners of leaves,
+                                 in the order of the entries of child */
+  size_t n_split, n_leaf, n_tensor;
+  int is_stretched; /* 1: evaluate with vg_octree_tensor_at; there may be leaves
+                       with tensors */
 };
 #define VG_OCTREE_INIT                                                         \
   {                                                                            \
@@ -54,7 +71,33 @@ double vg_stat_combine(const struct vg_stat *f, const double x[3],
                        double source, struct vg_bvh_reach *reach,
                        uint32_t *hint);
 
-/** Lower bound of the field within a cube. For VGRID's mean, it is an estimate
+/** As vg_stat_at, for a field of size tensors. *iso out: upper bound of all
+ * sizes, from isotropic sources and the surface. */
+void vg_stat_tensor_at(const struct vg_stat *f, const double x[3],
+                       struct vg_bvh_reach *reach, uint32_t *hint,
+                       struct vg_size *out, float *iso);
+
+/** Size tensor of all sources and maps at x, within the limits of sizes and
+ * aspect, and the range of its eigenvalues. *iso: as above. */
+void vg_stat_tensor_source(const struct vg_stat *f, const double x[3],
+                           double h[6], double range[2], double *iso);
+
+/** Limit the sizes and the aspect of a size tensor. range out: of its
+ * eigenvalues. */
+void vg_stat_tensor_limit(const struct vg_stat *f, double h[6],
+                          double range[2]);
+
+/** Apply the bounds of the surface to the size tensor of the sources at x.
+ *
+ * @param h, range  from vg_stat_tensor_source or vg_stat_tensor_limit
+ * @param most      out: bound from above of the surface; INFINITY: none */
+void vg_stat_tensor_combine(const struct vg_stat *f, const double x[3],
+                            const double h[6], const double range[2],
+                            struct vg_bvh_reach *reach, uint32_t *hint,
+                            struct vg_size *out, double *most);
+
+/** Lower bound of the field within a cube, without sources that depend on the
+ * direction. For VGRID's mean, it is an estimate
  * from the centre, which is accurate in a cube that resolves its sources.
  * by_sources out: 1: the sources require less than the surface does. */
 double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
@@ -81,6 +124,16 @@ size_t vg_octree_defects(const struct vg_octree *t);
  * *outside is the distance to the cube (0 inside). */
 double vg_octree_at(const struct vg_octree *t, const double x[3],
                     double *outside);
+
+/** As vg_octree_at, for the size tensor; also if the field is isotropic. */
+void vg_octree_tensor_at(const struct vg_octree *t, const double x[3],
+                         double h[6], double *outside);
+
+/** Range of the geometric mean, and bound on its gradient. The upper bound
+ * allows for the interpolation between different tensors. Only if is_stretched.
+ */
+void vg_octree_tensor_range(const struct vg_octree *t, double range[2],
+                            double *slope);
 
 /** Smallest value within the cube lo, side, and a point x where it occurs. For
  * a cube outside the root cube, the nearest point of the root cube is used. */

@@ -8,7 +8,6 @@
 #include "core/sizing/sizing_octree.h"
 
 struct vg_sizing {
-  struct vg_size_map map; /* evaluated directly if it has a metric */
   struct vg_octree octree;
   double growth, cap;     /* for spacings outside the octree: rate - 1, and
                              their upper limit */

@@ -6,8 +6,9 @@
 #include "base/memory.h"
 #include "core/sizing/sizing_parts.h"
 
-/* The scalar members, the tree, its smallest spacings, the leaves. */
-enum { PARTS = 4 };
+/* The scalar members, the tree, its smallest spacings, the leaves, their
+ * tensors. */
+enum { PARTS = 5 };
 
 static struct vg_bytes part(size_t n, const void *data)
 {
@@ -22,6 +23,7 @@ static void list_parts(const struct vg_sizing *s, struct vg_bytes p[PARTS])
   p[1] = part(t->n_split * sizeof *t->child, t->child);
   p[2] = part(t->n_split * sizeof *t->least, t->least);
   p[3] = part(t->n_leaf * sizeof *t->leaf, t->leaf);
+  p[4] = part(t->n_tensor * sizeof *t->tensor, t->tensor);
 }
 
 void vg_sizing_show(const struct vg_sizing *s,
@@ -35,7 +37,8 @@ void vg_sizing_show(const struct vg_sizing *s,
   look(user, sizeof s->octree.side, &s->octree.side);
   look(user, sizeof s->growth, &s->growth);
   look(user, sizeof s->cap, &s->cap);
-  for (int k = 1; k < PARTS; k++) look(user, p[k].n, p[k].data);
+  for (int k = 1; k < PARTS; k++)
+    if (k < 4 || p[k].n) look(user, p[k].n, p[k].data);
 }
 
 /* Takes over the shared memory. Returns NULL if memory is refused. */
@@ -55,6 +58,8 @@ static struct vg_sizing *view(const struct vg_shmem *common)
   s->octree.least = (void *)at;
   at += vg_shmem_padded(p[2].n);
   s->octree.leaf = (void *)at;
+  at += vg_shmem_padded(p[3].n);
+  s->octree.tensor = (void *)at;
   return s;
 }
 

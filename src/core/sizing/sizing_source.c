@@ -6,7 +6,10 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
+#include "core/sizing/sizing_shape.h"
+#include "core/sizing/sizing_tensor.h"
 
 static double least(double a, double b)
 {
@@ -16,11 +19,6 @@ static double least(double a, double b)
 static double most(double a, double b)
 {
   return a > b ? a : b;
-}
-
-static double within(double t, double lo, double hi)
-{
-  return t < lo ? lo : t > hi ? hi : t;
 }
 
 /* --- checks --------------------------------------------------------------- */
@@ -81,6 +79,7 @@ vg_status vg_source_check(size_t n, const struct vg_source *source,
     const struct vg_source *s = source + i;
     const char *what = defect(s);
 
+    if (!what) what = vg_source_stretch_defect(s);
     if (!what) continue;
     return vg_fail(err, VG_ERR_INPUT, "source %zu%s%.32s%s at (%g, %g, %g): %s",
                    i + 1, s->group[0] ? " (" : "", s->group,
@@ -197,102 +196,49 @@ double vg_source_mean(size_t n, const struct vg_source *source,
   return top / bottom;
 }
 
-/* --- distances from shapes ------------------------------------------------ */
-
-static double segment_distance(const double a[3], const double b[3],
-                               const double x[3], double *t)
+/* The tensor `across` I + (along - across) u u'. */
+static void axial(double across, double along, const double u[3], double h[6])
 {
-  double d[3], u[3], len2;
+  int n = 0;
 
-  vg_sub(b, a, d);
-  vg_sub(x, a, u);
-  len2 = vg_dot(d, d);
-  *t = len2 > 0 ? within(vg_dot(u, d) / len2, 0, 1) : 0;
-  for (int k = 0; k < 3; k++) u[k] -= *t * d[k];
-  return sqrt(vg_dot(u, u));
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++)
+      h[n++] = (i == j ? across : 0) + (along - across) * u[i] * u[j];
 }
 
-/* As segment_distance, with the vector from the segment to x. */
-static double segment_way(const double a[3], const double b[3],
-                          const double x[3], double *t, double way[3])
+void vg_source_mean_tensor(size_t n, const struct vg_source *source,
+                           const double x[3], double h[6])
 {
-  double d = segment_distance(a, b, x, t);
+  double bottom = 0, top[6] = { 0 };
 
-  for (int k = 0; k < 3; k++) way[k] = x[k] - a[k] - *t * (b[k] - a[k]);
-  return d;
-}
+  for (size_t i = 0; i < n; i++) {
+    const struct vg_source *s = source + i;
+    double w = 1, across = s->h0, along = s->sp0, one[6];
+    int is_off = 1;
 
-/* Within the three edge planes, the distance is that from the plane, otherwise
- * that from the nearest edge. A degenerate triangle has only edges. way out:
- * direction from the triangle to x, not normalised. */
-static double triangle_distance(const struct vg_source *s, const double x[3],
-                                double way[3])
-{
-  const double *p[3] = { s->p0, s->p1, s->p2 };
-  double e[3][3], n[3], u[3], m[3], d, t;
-  int inside = 1;
+    if (s->kind == VG_SOURCE_VGRID_LINE) {
+      struct vg_source other = *s;
 
-  for (int k = 0; k < 3; k++) vg_sub(p[(k + 1) % 3], p[k], e[k]);
-  vg_cross(e[0], e[1], n);
-  for (int i = 0; i < 3 && inside; i++) {
-    vg_sub(x, p[i], u);
-    vg_cross(n, e[i], m);
-    inside = vg_dot(m, u) >= 0;
+      other.h0 = s->sp0;
+      other.h1 = s->sp1;
+      is_off = line_kernel(s, x, &w, &across);
+      line_kernel(&other, x, &w, &along);
+    } else if (vg_distance2(x, s->p0) > 0) {
+      w = 1 / vg_distance2(x, s->p0);
+      across *= w;
+      along *= w;
+    } else {
+      is_off = 0;
+    }
+    axial(across, along, s->p, one);
+    if (!is_off) {
+      memcpy(h, one, sizeof one);
+      return;
+    }
+    bottom += s->an * w;
+    for (int k = 0; k < 6; k++) top[k] += s->an * one[k];
   }
-  vg_sub(x, s->p0, u);
-  if (inside && vg_dot(n, n) > 0) {
-    memcpy(way, n, sizeof n);
-    return fabs(vg_dot(u, n)) / sqrt(vg_dot(n, n));
-  }
-  d = segment_way(p[0], p[1], x, &t, way);
-  for (int i = 1; i < 3; i++) {
-    double other = segment_way(p[i], p[(i + 1) % 3], x, &t, u);
-
-    if (other >= d) continue;
-    d = other;
-    memcpy(way, u, sizeof u);
-  }
-  return d;
-}
-
-static double box_distance(const double lo[3], const double hi[3],
-                           const double x[3])
-{
-  double d2 = 0;
-
-  for (int k = 0; k < 3; k++) {
-    double d = x[k] - within(x[k], lo[k], hi[k]);
-
-    d2 += d * d;
-  }
-  return sqrt(d2);
-}
-
-/* In the half plane (axial z, radial r), the cone is a trapezium. */
-static double cone_distance(const struct vg_source *s, const double x[3],
-                            double *t)
-{
-  double d[3], u[3], len, z, r, r_at;
-  double foot[3], rim0[3] = { 0, s->r0, 0 }, rim1[3], mid0[3] = { 0, 0, 0 };
-  double mid1[3], at[3], f;
-
-  vg_sub(s->p1, s->p0, d);
-  vg_sub(x, s->p0, u);
-  len = sqrt(vg_dot(d, d));
-  z = vg_dot(u, d) / len;
-  for (int k = 0; k < 3; k++) foot[k] = u[k] - z * (d[k] / len);
-  r = sqrt(vg_dot(foot, foot));
-  *t = within(z / len, 0, 1);
-  r_at = s->r0 + *t * (s->r1 - s->r0);
-  if (z >= 0 && z <= len && r <= r_at) return 0;
-  rim1[0] = mid1[0] = len;
-  rim1[1] = s->r1;
-  at[0] = z;
-  at[1] = r;
-  rim1[2] = mid1[1] = mid1[2] = at[2] = 0;
-  f = segment_distance(rim0, rim1, at, &r_at);
-  f = least(f, segment_distance(mid0, rim0, at, &r_at));
-  return least(f, segment_distance(mid1, rim1, at, &r_at));
+  for (int k = 0; k < 6; k++) h[k] = top[k] / bottom;
 }
 
 /* Spacing of one bounded source at x. */
@@ -303,14 +249,16 @@ static double bounded_at(const struct vg_bounded *b, const double x[3])
 
   switch (s->kind) {
   case VG_SOURCE_VGRID_LINE:
-  case VG_SOURCE_LINE: d = segment_distance(s->p0, s->p1, x, &t) - s->r0; break;
-  case VG_SOURCE_TRIANGLE: d = triangle_distance(s, x, way) - s->r0; break;
-  case VG_SOURCE_BOX: d = box_distance(s->p0, s->p1, x); break;
-  case VG_SOURCE_CYLINDER: d = cone_distance(s, x, &t); break;
+  case VG_SOURCE_LINE:
+    d = vg_segment_distance(s->p0, s->p1, x, &t) - s->r0;
+    break;
+  case VG_SOURCE_TRIANGLE: d = vg_triangle_distance(s, x, way) - s->r0; break;
+  case VG_SOURCE_BOX: d = vg_box_distance(s->p0, s->p1, x); break;
+  case VG_SOURCE_CYLINDER: d = vg_cone_distance(s, x, &t); break;
   case VG_SOURCE_VGRID_NODE:
   case VG_SOURCE_POINT:
   case VG_SOURCE_SPHERE:
-    d = segment_distance(s->p0, s->p0, x, &t) - s->r0;
+    d = vg_segment_distance(s->p0, s->p0, x, &t) - s->r0;
     break;
   }
   return s->h0 + t * (s->h1 - s->h0) + b->slope * most(d, 0);
@@ -338,8 +286,8 @@ static double bounded_floor(const struct vg_bounded *b, const double mid[3],
 
   if (s->kind == VG_SOURCE_BOX || s->kind == VG_SOURCE_CYLINDER)
     return bounded_at(b, mid) - b->steep * sqrt(vg_dot(half, half));
-  if (s->kind == VG_SOURCE_TRIANGLE) d = triangle_distance(s, mid, way);
-  else d = segment_way(s->p0, is_line ? s->p1 : s->p0, mid, &t, way);
+  if (s->kind == VG_SOURCE_TRIANGLE) d = vg_triangle_distance(s, mid, way);
+  else d = vg_segment_way(s->p0, is_line ? s->p1 : s->p0, mid, &t, way);
   if (is_line) {
     double len;
 
@@ -355,25 +303,24 @@ static double bounded_floor(const struct vg_bounded *b, const double mid[3],
 /* --- lists of sources ----------------------------------------------------- */
 
 /* Box around the shape; for a slanted cone larger than necessary. */
-static void bound_shape(struct vg_bounded *b)
+static void bound_shape(const struct vg_source *s, double lo[3], double hi[3])
 {
-  const struct vg_source *s = &b->law;
   double r = s->kind == VG_SOURCE_BOX ? 0 : s->r0;
 
   if (s->kind == VG_SOURCE_CYLINDER) r = most(s->r0, s->r1);
   for (int k = 0; k < 3; k++) {
-    b->lo[k] = b->hi[k] = s->p0[k];
+    lo[k] = hi[k] = s->p0[k];
     if (has_axis(s->kind) || s->kind == VG_SOURCE_TRIANGLE ||
         s->kind == VG_SOURCE_BOX) {
-      b->lo[k] = least(b->lo[k], s->p1[k]);
-      b->hi[k] = most(b->hi[k], s->p1[k]);
+      lo[k] = least(lo[k], s->p1[k]);
+      hi[k] = most(hi[k], s->p1[k]);
     }
     if (s->kind == VG_SOURCE_TRIANGLE) {
-      b->lo[k] = least(b->lo[k], s->p2[k]);
-      b->hi[k] = most(b->hi[k], s->p2[k]);
+      lo[k] = least(lo[k], s->p2[k]);
+      hi[k] = most(hi[k], s->p2[k]);
     }
-    b->lo[k] -= r;
-    b->hi[k] += r;
+    lo[k] -= r;
+    hi[k] += r;
   }
 }
 
@@ -390,7 +337,7 @@ static void prepare_bounded(const struct vg_sizing_options *o,
                                                  : o->growth - 1;
   b->least = least(b->law.h0, b->law.h1);
   b->steep = b->slope;
-  bound_shape(b);
+  bound_shape(&b->law, b->lo, b->hi);
   if (s->kind == VG_SOURCE_BOX)
     for (int k = 0; k < 3; k++) {
       b->law.p0[k] = b->lo[k];
@@ -407,20 +354,38 @@ static void prepare_bounded(const struct vg_sizing_options *o,
   b->steep = sqrt(b->slope * b->slope + along);
 }
 
-/* A VGRID line of zero length is treated as a node with its mean spacing. */
+static void prepare_stretched(const struct vg_sizing_options *o,
+                              const struct vg_source *s, struct vg_stretched *t)
+{
+  struct vg_bounded b;
+
+  prepare_bounded(o, s, &b);
+  t->law = b.law;
+  t->slope = b.slope;
+  memcpy(t->lo, b.lo, sizeof t->lo);
+  memcpy(t->hi, b.hi, sizeof t->hi);
+  vg_stretched_prepare(t);
+}
+
+/* A VGRID line of zero length is treated as a node with its mean spacing. The
+ * axis of the size tensor goes to p, the spacings along it to sp0 and sp1. */
 static void prepare_mean(const struct vg_sizing_options *o,
                          const struct vg_source *s, struct vg_source *m)
 {
-  double d[3];
+  double d[3], ratio[2];
 
   *m = *s;
   m->h0 *= o->scale;
   m->h1 *= o->scale;
+  if (!vg_source_stretch(s, m->p, ratio)) memset(m->p, 0, sizeof m->p);
+  m->sp0 = ratio[0] * m->h0;
+  m->sp1 = ratio[1] * m->h1;
   if (m->kind != VG_SOURCE_VGRID_LINE) return;
   vg_sub(m->p1, m->p0, d);
   if (vg_dot(d, d) > 0) return;
   m->kind = VG_SOURCE_VGRID_NODE;
   m->h0 = 0.5 * (m->h0 + m->h1);
+  m->sp0 = 0.5 * (m->sp0 + m->sp1);
 }
 
 #define REACH 0.25 /* H10: the fraction described below */
@@ -436,18 +401,31 @@ static void find_reach(struct vg_source_set *set)
     double d = INFINITY, t;
 
     if (s->kind == VG_SOURCE_VGRID_LINE)
-      d = segment_distance(s->p0, s->p0, s->p1, &t);
+      d = vg_segment_distance(s->p0, s->p0, s->p1, &t);
     else
       for (size_t j = 0; j < set->n_mean; j++) {
         const struct vg_source *o = set->mean + j;
         int is_line = o->kind == VG_SOURCE_VGRID_LINE;
 
         if (j == i) continue;
-        d = least(d,
-                  segment_distance(o->p0, is_line ? o->p1 : o->p0, s->p0, &t));
+        d = least(d, vg_segment_distance(o->p0, is_line ? o->p1 : o->p0, s->p0,
+                                         &t));
       }
     set->reach[i] = REACH * d;
   }
+}
+
+static void put_shape(const struct vg_sizing_options *o,
+                      const struct vg_source *s, struct vg_source_set *set)
+{
+  struct vg_stretched *t = set->stretched + set->n_stretched;
+
+  if (!vg_source_stretch(s, t->axis, t->ratio)) {
+    prepare_bounded(o, s, set->bounded + set->n_bounded++);
+    return;
+  }
+  prepare_stretched(o, s, t);
+  set->n_stretched++;
 }
 
 vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
@@ -458,17 +436,19 @@ vg_status vg_source_prepare(const struct vg_sizing_options *options, size_t n,
   set->bounded = vg_alloc(n, sizeof *set->bounded);
   set->mean = vg_alloc(n, sizeof *set->mean);
   set->reach = vg_alloc(n, sizeof *set->reach);
-  if (!set->bounded || !set->mean || !set->reach) {
+  set->stretched = vg_alloc(n, sizeof *set->stretched);
+  if (!set->bounded || !set->mean || !set->reach || !set->stretched) {
     vg_source_release(set);
     return vg_fail_memory(err, "the sources");
   }
   for (size_t i = 0; i < n; i++)
     if (is_vgrid(source[i].kind))
       prepare_mean(options, source + i, set->mean + set->n_mean++);
-    else prepare_bounded(options, source + i, set->bounded + set->n_bounded++);
+    else put_shape(options, source + i, set);
+  for (size_t i = 0; i < set->n_mean; i++)
+    if (vg_dot(set->mean[i].p, set->mean[i].p) > 0) set->mean_is_stretched = 1;
   for (size_t i = 0; cones && i < n; i++)
-    if (is_vgrid(source[i].kind))
-      prepare_bounded(options, source + i, set->bounded + set->n_bounded++);
+    if (is_vgrid(source[i].kind)) put_shape(options, source + i, set);
   if (cones) find_reach(set);
   return VG_OK;
 }
@@ -478,6 +458,7 @@ void vg_source_release(struct vg_source_set *set)
   free(set->bounded);
   free(set->mean);
   free(set->reach);
+  free(set->stretched);
   memset(set, 0, sizeof *set);
 }
 
@@ -488,13 +469,14 @@ static int is_before(const double a[3], const double b[3])
   return 0;
 }
 
-static double note_fault(struct vg_map_fault *f, const double x[3], double h)
+static double note_fault(struct vg_map_fault *f, const double x[3],
+                         const double *value, size_t n)
 {
   while (atomic_flag_test_and_set(&f->busy)) {
   }
   if (!f->n++ || is_before(x, f->x)) {
     memcpy(f->x, x, sizeof f->x);
-    f->h = h;
+    memcpy(f->value, value, n * sizeof *value);
   }
   atomic_flag_clear(&f->busy);
   return INFINITY;
@@ -504,7 +486,7 @@ static double map_at(const struct vg_source_set *set, const double x[3])
 {
   double h = set->map->at(set->map->user, x);
 
-  return h > 0 ? h : note_fault(set->fault, x, h);
+  return h > 0 ? h : note_fault(set->fault, x, &h, 1);
 }
 
 static double map_floor(const struct vg_source_set *set, const double lo[3],
@@ -524,18 +506,83 @@ static double map_floor(const struct vg_source_set *set, const double lo[3],
 
 double vg_source_at(const struct vg_source_set *set, const double x[3])
 {
-  double h = vg_source_mean(set->n_mean, set->mean, x);
+  double h = set->mean_is_stretched ? INFINITY
+                                    : vg_source_mean(set->n_mean, set->mean, x);
 
   if (set->map) h = least(h, map_at(set, x));
   for (size_t i = 0; i < set->n_bounded; i++) {
     const struct vg_bounded *b = set->bounded + i;
 
     if (b->least >= h ||
-        b->least + b->slope * box_distance(b->lo, b->hi, x) >= h)
+        b->least + b->slope * vg_box_distance(b->lo, b->hi, x) >= h)
       continue;
     h = least(h, bounded_at(b, x));
   }
   return h;
+}
+
+static int is_metric(const double m[6])
+{
+  for (int k = 0; k < 6; k++)
+    if (!isfinite(m[k])) return 0;
+  return m[0] > 0 && m[0] * m[3] > m[1] * m[1] && vg_tensor_det(m) > 0;
+}
+
+static int is_zero(const double m[6])
+{
+  for (int k = 0; k < 6; k++)
+    if (m[k] != 0) return 0;
+  return 1;
+}
+
+/* Is a - b positive semidefinite? */
+static int is_at_least(const double a[6], const double b[6])
+{
+  double d[6];
+
+  for (int k = 0; k < 6; k++) d[k] = a[k] - b[k];
+  return d[0] >= 0 && d[3] >= 0 && d[5] >= 0 && d[0] * d[3] >= d[1] * d[1] &&
+         d[0] * d[5] >= d[2] * d[2] && d[3] * d[5] >= d[4] * d[4] &&
+         vg_tensor_det(d) >= 0;
+}
+
+/* Intersect m with n. Most metrics are finer than the other in all directions,
+ * which costs no eigenvalues. */
+static void intersect(double m[6], const double n[6])
+{
+  if (is_at_least(n, m)) memcpy(m, n, 6 * sizeof *m);
+  else if (!is_at_least(m, n)) vg_metric_intersect(m, n, m);
+}
+
+static void add_map(const struct vg_source_set *set, const double x[3],
+                    double m[6])
+{
+  double n[6];
+
+  set->metric->metric(set->metric->user, x, n);
+  if (is_zero(n)) return;
+  if (is_metric(n)) intersect(m, n);
+  else note_fault(set->fault, x, n, 6);
+}
+
+void vg_source_metric_at(const struct vg_source_set *set, const double x[3],
+                         double h, double m[6])
+{
+  double other[6];
+
+  vg_tensor_uniform(h < INFINITY ? 1 / (h * h) : 0, m);
+  if (set->mean_is_stretched) {
+    vg_source_mean_tensor(set->n_mean, set->mean, x, other);
+    vg_size_metric(other, other);
+    intersect(m, other);
+  }
+  for (size_t i = 0; i < set->n_stretched; i++) {
+    if (vg_stretched_floor(set->stretched + i, x, x) >= h) continue;
+    vg_stretched_at(set->stretched + i, x, other);
+    vg_size_metric(other, other);
+    intersect(m, other);
+  }
+  if (set->metric) add_map(set, x, m);
 }
 
 /* There are two bounds per source: one from the box around its shape, which is
@@ -581,22 +628,29 @@ int vg_source_resolved(const struct vg_source_set *set, const double lo[3],
   for (size_t i = 0; i < set->n_mean; i++) {
     const struct vg_source *s = set->mean + i;
     int is_line = s->kind == VG_SOURCE_VGRID_LINE;
-    double d = segment_distance(s->p0, is_line ? s->p1 : s->p0, mid, &t);
+    double d = vg_segment_distance(s->p0, is_line ? s->p1 : s->p0, mid, &t);
 
     if (side > most(d - sqrt(r2), set->reach[i])) return 0;
   }
   return 1;
 }
 
+static void widen(const double from_lo[3], const double from_hi[3],
+                  int is_first, double lo[3], double hi[3])
+{
+  for (int k = 0; k < 3; k++) {
+    if (is_first || from_lo[k] < lo[k]) lo[k] = from_lo[k];
+    if (is_first || from_hi[k] > hi[k]) hi[k] = from_hi[k];
+  }
+}
+
 int vg_source_bounds(const struct vg_source_set *set, double lo[3],
                      double hi[3])
 {
   for (size_t i = 0; i < set->n_bounded; i++)
-    for (int k = 0; k < 3; k++) {
-      const struct vg_bounded *b = set->bounded + i;
-
-      if (!i || b->lo[k] < lo[k]) lo[k] = b->lo[k];
-      if (!i || b->hi[k] > hi[k]) hi[k] = b->hi[k];
-    }
-  return set->n_bounded > 0;
+    widen(set->bounded[i].lo, set->bounded[i].hi, !i, lo, hi);
+  for (size_t i = 0; i < set->n_stretched; i++)
+    widen(set->stretched[i].lo, set->stretched[i].hi, !i && !set->n_bounded, lo,
+          hi);
+  return set->n_bounded || set->n_stretched;
 }

@@ -10,6 +10,7 @@
 #include <stdatomic.h>
 
 #include "core/sizing/sizing.h"
+#include "core/sizing/sizing_stretch.h"
 
 /** A bounded-growth source, with the data for quick rejection. */
 struct vg_bounded {
@@ -21,25 +22,28 @@ struct vg_bounded {
   double lo[3], hi[3];  /* box around all points of the shape */
 };
 
-/** Position where a map returned an invalid spacing; if there are several, the
- * one with the smallest x, y, z. Guarded by `busy`. */
+/** Position where a map returned an invalid spacing or metric; if there are
+ * several, the one with the smallest x, y, z. Guarded by `busy`. */
 struct vg_map_fault {
   atomic_flag busy;
   int n;
-  double x[3], h;
+  double x[3], value[6]; /* spacing, or components of the metric */
 };
 
 /** Sources prepared for evaluation. VGRID sources appear twice: in the mean,
- * and as bounded cones with the global growth, which is what limiting the
- * gradient of the mean gives near a source. */
+ * and as bounded (or stretched) cones with the global growth, which is what
+ * limiting the gradient of the mean gives near a source. */
 struct vg_source_set {
   struct vg_bounded *bounded; /* [n_bounded], cones of VGRID sources last */
   struct vg_source *mean;     /* [n_mean] scaled VGRID sources */
   double *reach;              /* [n_mean] distance over which the mean varies
                                  next to the source */
-  size_t n_bounded, n_mean;
-  const struct vg_size_map *map; /* NULL: no map; neither scaled nor owned */
-  struct vg_map_fault *fault;    /* fault of the map */
+  struct vg_stretched *stretched; /* [n_stretched] */
+  size_t n_bounded, n_mean, n_stretched;
+  int mean_is_stretched;            /* 1: the mean is one of size tensors */
+  const struct vg_size_map *map;    /* NULL: no map; neither scaled nor owned */
+  const struct vg_size_map *metric; /* map with a metric, instead of map */
+  struct vg_map_fault *fault;       /* fault of the map */
 };
 #define VG_SOURCE_SET_INIT                                                     \
   {                                                                            \
@@ -69,8 +73,24 @@ static inline int vg_source_any(const struct vg_source_set *set)
   return set->n_bounded || set->n_mean || set->map;
 }
 
-/** Minimum of mean, bounded sources and map at x; INFINITY for an empty set.
- */
+/** Do sizes depend on the direction? */
+static inline int vg_source_any_stretched(const struct vg_source_set *set)
+{
+  return set->n_stretched || set->mean_is_stretched || set->metric;
+}
+
+/** Inverse-square mean of the size tensors at x. */
+void vg_source_mean_tensor(size_t n, const struct vg_source *source,
+                           const double x[3], double h[6]);
+
+/** Metric at x: the intersection of the metrics of all sources and maps with
+ * that of the isotropic size h, which may be INFINITY. Zero if nothing requires
+ * a size. */
+void vg_source_metric_at(const struct vg_source_set *set, const double x[3],
+                         double h, double m[6]);
+
+/** Minimum of mean, bounded sources and map at x, without those that depend on
+ * the direction; INFINITY if there are none. */
 double vg_source_at(const struct vg_source_set *set, const double x[3]);
 
 /** Lower bound of the bounded sources and the map within the box lo..hi. For a

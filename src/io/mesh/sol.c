@@ -11,12 +11,13 @@
 
 /* GMF code of SolAtVertices. */
 enum { CODE_VERTICES = 62 };
-enum { SCALAR = 1 };
+enum { SCALAR = 1, TENSOR = 3 };
 
 struct reader {
   struct vg_gmf g;
   size_t n;
-  double *value; /* [n]; NULL: not read yet */
+  int components;
+  double *value; /* [n][components]; NULL: not read yet */
 };
 
 /* In all versions these integers have 4 bytes. */
@@ -33,20 +34,20 @@ static vg_status read_int(struct reader *r, int64_t *v, struct vg_error *err)
 
 static vg_status read_values(struct reader *r, struct vg_error *err)
 {
-  size_t size = r->g.version == 1 ? 4 : 8;
+  size_t size = r->g.version == 1 ? 4 : 8, n = r->n * (size_t)r->components;
   vg_status st;
 
   VG_TRY(
-    vg_input_need(r->g.in, r->n, r->g.binary ? size : 2, "SolAtVertices", err));
-  r->value = vg_alloc(r->n, sizeof *r->value);
+    vg_input_need(r->g.in, n, r->g.binary ? size : 2, "SolAtVertices", err));
+  r->value = vg_alloc(n, sizeof *r->value);
   if (!r->value) return vg_fail_memory(err, "SolAtVertices");
   if (r->g.binary && size == 4)
-    st = vg_input_f32(r->g.in, r->n, r->value, "SolAtVertices", err);
+    st = vg_input_f32(r->g.in, n, r->value, "SolAtVertices", err);
   else if (r->g.binary)
-    st = vg_input_f64(r->g.in, r->n, r->value, "SolAtVertices", err);
-  for (size_t i = 0; i < r->n && st >= 0; i++) {
+    st = vg_input_f64(r->g.in, n, r->value, "SolAtVertices", err);
+  for (size_t i = 0; i < n && st >= 0; i++) {
     if (!r->g.binary) st = vg_input_real(r->g.in, &r->value[i], "a value", err);
-    if (st >= 0 && !isfinite(r->value[i]))
+    if (st >= 0 && r->components == 1 && !isfinite(r->value[i]))
       st = vg_fail(err, VG_ERR_FORMAT,
                    "%s: the value at vertex %zu is not "
                    "finite",
@@ -72,12 +73,13 @@ static vg_status read_section(struct reader *r, struct vg_error *err)
                    r->g.in->path, (long long)n);
   VG_TRY(read_int(r, &n_kind, err));
   if (n_kind == 1) VG_TRY(read_int(r, &kind, err));
-  if (n_kind != 1 || kind != SCALAR)
+  if (n_kind != 1 || (kind != SCALAR && kind != TENSOR))
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: SolAtVertices must have one scalar per vertex (1 "
-                   "1), not %lld fields, the first of kind %lld",
+                   "%s: SolAtVertices must have one scalar (1 1) or one metric "
+                   "(1 3) per vertex, not %lld fields, the first of kind %lld",
                    r->g.in->path, (long long)n_kind, (long long)kind);
   r->n = (size_t)n;
+  r->components = kind == TENSOR ? 6 : 1;
   st = read_values(r, err);
 done:
   return st;
@@ -121,13 +123,13 @@ done:
   return st;
 }
 
-vg_status vg_sol_parse(struct vg_input *in, size_t *n, double **value,
-                       struct vg_error *err)
+vg_status vg_sol_parse(struct vg_input *in, size_t *n, int *components,
+                       double **value, struct vg_error *err)
 {
   struct reader r = { .g = { .in = in } };
   vg_status st = vg_gmf_open(&r.g, err);
 
-  assert(in && n && value);
+  assert(in && n && components && value);
   if (st >= 0) st = r.g.binary ? read_binary(&r, err) : read_text(&r, err);
   if (st >= 0 && !r.value)
     st = vg_fail(err, VG_ERR_FORMAT, "%s: the file has no SolAtVertices",
@@ -137,17 +139,18 @@ vg_status vg_sol_parse(struct vg_input *in, size_t *n, double **value,
     return st;
   }
   *n = r.n;
+  *components = r.components;
   *value = r.value;
   return VG_OK;
 }
 
-vg_status vg_sol_read(const char *path, size_t *n, double **value,
-                      struct vg_error *err)
+vg_status vg_sol_read(const char *path, size_t *n, int *components,
+                      double **value, struct vg_error *err)
 {
   struct vg_input in = VG_INPUT_INIT;
   vg_status st = vg_input_open(path, &in, err);
 
-  if (st >= 0) st = vg_sol_parse(&in, n, value, err);
+  if (st >= 0) st = vg_sol_parse(&in, n, components, value, err);
   vg_input_release(&in);
   return st;
 }

@@ -30,6 +30,8 @@ struct array {
   const char *tag, *body, *end; /* positions of "<DataArray", after its '>',
                                    and of "</DataArray" */
   size_t width;                 /* size of a value in bytes */
+  char kind;                    /* 'f' real, 'i' signed, 'u' unsigned */
+  int components;
 };
 
 /* --- the necessary part of XML --- */
@@ -139,45 +141,81 @@ static vg_status read_piece(const struct file *f, size_t *n,
   return VG_OK;
 }
 
-/* Find an array of a section: the first one, or the one with this name. */
-static vg_status find_array(const struct file *f, const char *section,
-                            const char *name, int components, struct array *out,
-                            struct vg_error *err)
+/* Type of the values: Float64, Int32, UInt8, ... */
+static void read_type(const char *word, struct array *out)
+{
+  static const char *const bits[] = { "8", "16", "32", "64" };
+  const char *number = word + strcspn(word, "0123456789");
+
+  out->kind = !strncmp(word, "Float", 5) ? 'f'
+            : !strncmp(word, "Int", 3)   ? 'i'
+            : !strncmp(word, "UInt", 4)  ? 'u'
+                                         : 0;
+  out->width = 0;
+  for (int k = 0; k < 4 && out->kind; k++)
+    if (!strcmp(number, bits[k])) out->width = (size_t)1 << k;
+  if (out->kind == 'f' && out->width < 4) out->width = 0;
+}
+
+/* The array of a section with this name, or the first one. Returns NULL if
+ * there is none. */
+static const char *seek_array(const struct file *f, const char *section,
+                              const char *name, const char **section_end)
 {
   char word[256], close[32];
-  const char *at = find_tag(f->text, f->end, section), *end, *stop;
-  int64_t n = 1;
+  const char *at = find_tag(f->text, f->end, section), *end;
 
   snprintf(close, sizeof close, "</%s", section);
-  end = find(at, f->end, close);
+  *section_end = end = find(at, f->end, close);
   for (at = find_tag(at, end, "DataArray"); at && name;
        at = find_tag(at + 1, end, "DataArray"))
     if (attribute(at, end, "Name", word, sizeof word) && !strcmp(word, name))
       break;
-  stop = at ? find(at, end, ">") : NULL;
+  return at;
+}
+
+/* Find an array of a section. */
+static vg_status find_array(const struct file *f, const char *section,
+                            const char *name, struct array *out,
+                            struct vg_error *err)
+{
+  const char *end, *at = seek_array(f, section, name, &end);
+  const char *stop = at ? find(at, end, ">") : NULL;
+  char word[64];
+  int64_t n = 1;
+
   if (!stop)
     return vg_fail(err, VG_ERR_FORMAT, "%s: there is no %s%s%s in <%s>",
                    f->in->path, name ? "array '" : "array", name ? name : "",
                    name ? "'" : "", section);
   if (attribute(at, end, "NumberOfComponents", word, sizeof word) &&
-      !vg_parse_int(word, strlen(word), &n))
+      (!vg_parse_int(word, strlen(word), &n) || n < 1 || n > 1000))
     n = -1;
-  if (n != components)
-    return vg_fail(err, VG_ERR_FORMAT,
-                   "%s: the array in <%s> has %lld "
-                   "components, not %d",
-                   f->in->path, section, (long long)n, components);
   if (!attribute(at, end, "type", word, sizeof word)) *word = 0;
-  out->width = !strcmp(word, "Float64") ? 8 : !strcmp(word, "Float32") ? 4 : 0;
-  if (!out->width)
-    return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: the array in <%s> is of type '%.20s'; only Float32 "
-                   "and Float64 are supported",
-                   f->in->path, section, word);
+  read_type(word, out);
+  out->components = (int)n;
   out->tag = at;
   out->body = stop + 1;
   out->end = stop[-1] == '/' ? stop + 1 : find(stop, f->end, "</DataArray");
   return out->end ? VG_OK : damaged(f, err, "the end of an array is missing");
+}
+
+/* Refuse an array of another type or number of components. */
+static vg_status check_array(const struct file *f, const char *section,
+                             const struct array *a, int components, int is_real,
+                             struct vg_error *err)
+{
+  if (a->components != components)
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: the array in <%s> has %d "
+                   "components, not %d",
+                   f->in->path, section, a->components, components);
+  if (a->width && (a->kind == 'f') == is_real) return VG_OK;
+  return vg_fail(err, VG_ERR_UNSUPPORTED,
+                 "%s: the type of the array in <%s> is not supported; only %s "
+                 "are",
+                 f->in->path, section,
+                 is_real ? "Float32 and Float64" : "integers");
 }
 
 /* --- data bytes, raw or in base64 --- */
@@ -341,6 +379,30 @@ static vg_status read_text(const struct file *f, const struct array *a,
   return VG_OK;
 }
 
+static double value_at(const struct array *a, const unsigned char *raw)
+{
+  union {
+    double f64;
+    float f32;
+    int8_t i8;
+    int16_t i16;
+    int32_t i32;
+    int64_t i64;
+    uint8_t u8;
+    uint16_t u16;
+    uint32_t u32;
+    uint64_t u64;
+  } v;
+
+  memcpy(&v, raw, a->width);
+  if (a->kind == 'f') return a->width == 8 ? v.f64 : (double)v.f32;
+  if (a->kind == 'i' && a->width == 8) return (double)v.i64;
+  if (a->kind == 'i')
+    return a->width == 4 ? v.i32 : a->width == 2 ? v.i16 : v.i8;
+  if (a->width == 8) return (double)v.u64;
+  return a->width == 4 ? v.u32 : (double)(a->width == 2 ? v.u16 : v.u8);
+}
+
 static vg_status read_bytes(const struct file *f, const struct array *a,
                             struct source *s, size_t n, double *v,
                             struct vg_error *err)
@@ -352,21 +414,17 @@ static vg_status read_bytes(const struct file *f, const struct array *a,
   bad = f->is_packed ? take_packed(f, s, n * a->width, raw)
                      : take_plain(f, s, n * a->width, raw);
   if (!bad && f->swaps) swap(raw, n, a->width);
-  for (size_t i = 0; i < n && !bad; i++) {
-    float narrow;
-
-    if (a->width == 8) memcpy(&v[i], raw + 8 * i, 8);
-    else memcpy(&narrow, raw + 4 * i, 4), v[i] = (double)narrow;
-  }
+  for (size_t i = 0; i < n && !bad; i++) v[i] = value_at(a, raw + i * a->width);
   free(raw);
   return bad ? damaged(f, err,
                        "truncated or damaged: an array is not as long as "
-                       "NumberOfPoints requires")
+                       "the number of points or cells requires")
              : VG_OK;
 }
 
-static vg_status read_array(const struct file *f, const struct array *a,
-                            size_t n, double *v, struct vg_error *err)
+/* Values that need not be finite. */
+static vg_status read_any(const struct file *f, const struct array *a, size_t n,
+                          double *v, struct vg_error *err)
 {
   const char *data_end = (const char *)f->in->data + f->in->size;
   struct source s = { a->body, a->end, 1 };
@@ -389,6 +447,14 @@ static vg_status read_array(const struct file *f, const struct array *a,
     s = (struct source){ f->appended + offset, data_end, f->is_base64 };
     st = read_bytes(f, a, &s, n, v, err);
   }
+  return st;
+}
+
+static vg_status read_array(const struct file *f, const struct array *a,
+                            size_t n, double *v, struct vg_error *err)
+{
+  vg_status st = read_any(f, a, n, v, err);
+
   for (size_t i = 0; i < n && st >= 0; i++)
     if (!isfinite(v[i]))
       st = vg_fail(err, VG_ERR_FORMAT,
@@ -411,8 +477,10 @@ vg_status vg_vtu_points_parse(struct vg_input *in, const char *name, size_t *n,
   assert(in && name && n && x && value);
   VG_TRY(read_head(&f, err));
   VG_TRY(read_piece(&f, &count, err));
-  VG_TRY(find_array(&f, "Points", NULL, 3, &point, err));
-  VG_TRY(find_array(&f, "PointData", name, 1, &scalar, err));
+  VG_TRY(find_array(&f, "Points", NULL, &point, err));
+  VG_TRY(check_array(&f, "Points", &point, 3, 1, err));
+  VG_TRY(find_array(&f, "PointData", name, &scalar, err));
+  VG_TRY(check_array(&f, "PointData", &scalar, 1, 1, err));
   own[0] = vg_alloc(count, 3 * sizeof *own[0]);
   own[1] = vg_alloc(count, sizeof *own[1]);
   if (!own[0] || !own[1]) {
@@ -440,5 +508,182 @@ vg_status vg_vtu_points_read(const char *path, const char *name, size_t *n,
 
   if (st >= 0) st = vg_vtu_points_parse(&in, name, n, x, value, err);
   vg_input_release(&in);
+  return st;
+}
+
+/* --- values with cells ---------------------------------------------------- */
+
+/* VTK's cells with volume: type, number of nodes, and our index of each node
+ * (formats.md 2.3). */
+static const struct cell {
+  int type, n, node[8];
+} cells[] = { { 10, 4, { 0, 1, 2, 3 } },
+              { 14, 5, { 1, 0, 3, 4, 2 } },
+              { 13, 6, { 1, 0, 2, 4, 3, 5 } },
+              { 12, 8, { 0, 1, 2, 3, 4, 5, 6, 7 } } };
+enum { KINDS = sizeof cells / sizeof *cells };
+
+/* Arrays of the cells: the type of each, the end of its nodes, and the nodes of
+ * all cells. */
+struct grid {
+  size_t n, n_node;
+  double *type, *end, *node;
+};
+
+static vg_status read_integers(const struct file *f, const char *name, size_t n,
+                               double **out, struct vg_error *err)
+{
+  struct array a;
+  vg_status st = find_array(f, "Cells", name, &a, err);
+
+  if (st >= 0) st = check_array(f, "Cells", &a, 1, 0, err);
+  if (st < 0) return st;
+  if (n > f->in->size * MOST_PACKED)
+    return damaged(f, err,
+                   "truncated: there are more cells than the file can "
+                   "hold");
+  *out = vg_alloc(n, sizeof **out);
+  if (!*out) return vg_fail_memory(err, "the cells of a VTK file");
+  return read_array(f, &a, n, *out, err);
+}
+
+static vg_status read_grid(const struct file *f, struct grid *g,
+                           struct vg_error *err)
+{
+  const char *piece = find_tag(f->text, f->end, "Piece");
+  char word[32];
+  int64_t n = 0;
+  vg_status st = VG_OK;
+
+  if (!attribute(piece, f->end, "NumberOfCells", word, sizeof word))
+    return VG_OK;
+  if (!vg_parse_int(word, strlen(word), &n) || n < 0 || n >= UINT32_MAX)
+    return damaged(f, err, "NumberOfCells is not a number from 0 to 2^32 - 2");
+  if (!n || !find_tag(f->text, f->end, "Cells")) return VG_OK;
+  VG_TRY(read_integers(f, "types", (size_t)n, &g->type, err));
+  VG_TRY(read_integers(f, "offsets", (size_t)n, &g->end, err));
+  for (int64_t i = 0; i < n; i++)
+    if (!(g->end[i] >= (i ? g->end[i - 1] : 0)) || g->end[i] > 8e15)
+      return damaged(f, err, "the offsets of the cells are not ascending");
+  g->n = (size_t)n;
+  g->n_node = (size_t)g->end[n - 1];
+  VG_TRY(read_integers(f, "connectivity", g->n_node, &g->node, err));
+done:
+  return st;
+}
+
+/* Kind of cell i; KINDS: one without volume. */
+static int kind_of(const struct grid *g, size_t i)
+{
+  int k = 0;
+
+  while (k < KINDS && cells[k].type != (int)g->type[i]) k++;
+  return k;
+}
+
+static vg_status put_cells(const struct file *f, const struct grid *g,
+                           struct vg_mesh *m, struct vg_error *err)
+{
+  size_t n[KINDS + 1] = { 0 };
+
+  for (size_t i = 0; i < g->n; i++) n[kind_of(g, i)]++;
+  m->tet = vg_alloc(n[0], sizeof *m->tet);
+  m->pyr = vg_alloc(n[1], sizeof *m->pyr);
+  m->pri = vg_alloc(n[2], sizeof *m->pri);
+  m->hex = vg_alloc(n[3], sizeof *m->hex);
+  if (!m->tet || !m->pyr || !m->pri || !m->hex)
+    return vg_fail_memory(err, "the cells of a VTK file");
+  for (size_t i = 0; i < g->n; i++) {
+    int kind = kind_of(g, i);
+    size_t from = i ? (size_t)g->end[i - 1] : 0;
+    uint32_t *to = kind == 0 ? m->tet[m->n_tet++]
+                 : kind == 1 ? m->pyr[m->n_pyr++]
+                 : kind == 2 ? m->pri[m->n_pri++]
+                 : kind == 3 ? m->hex[m->n_hex++]
+                             : NULL;
+
+    if (!to) continue;
+    if ((size_t)g->end[i] - from != (size_t)cells[kind].n)
+      return vg_fail(err, VG_ERR_FORMAT,
+                     "%s: cell %zu of type %d has %zu nodes, not %d",
+                     f->in->path, i + 1, cells[kind].type,
+                     (size_t)g->end[i] - from, cells[kind].n);
+    for (int k = 0; k < cells[kind].n; k++) {
+      double v = g->node[from + (size_t)k];
+
+      if (!(v >= 0 && v < (double)m->n_point))
+        return vg_fail(err, VG_ERR_FORMAT,
+                       "%s: cell %zu uses point %.0f, but there are %zu points",
+                       f->in->path, i + 1, v + 1, m->n_point);
+      to[cells[kind].node[k]] = (uint32_t)v;
+    }
+  }
+  return VG_OK;
+}
+
+static vg_status read_values(const struct file *f, const char *name,
+                             struct vg_mesh *m, int *components, double **value,
+                             struct vg_error *err)
+{
+  struct array point, a;
+  vg_status st;
+
+  VG_TRY(read_piece(f, &m->n_point, err));
+  VG_TRY(find_array(f, "Points", NULL, &point, err));
+  VG_TRY(check_array(f, "Points", &point, 3, 1, err));
+  VG_TRY(find_array(f, "PointData", name, &a, err));
+  *components = a.components;
+  VG_TRY(check_array(f, "PointData", &a, a.components, 1, err));
+  if (*components < 1 || *components > 9)
+    return vg_fail(err, VG_ERR_FORMAT,
+                   "%s: the array '%s' has %d components; a metric has 6 or 9",
+                   f->in->path, name, *components);
+  m->point = vg_alloc(m->n_point, sizeof *m->point);
+  *value = vg_alloc(m->n_point, (size_t)*components * sizeof **value);
+  if (!m->point || !*value)
+    return vg_fail_memory(err, "the points of a VTK file");
+  VG_TRY(read_array(f, &point, 3 * m->n_point, m->point[0], err));
+  VG_TRY(read_any(f, &a, m->n_point * (size_t)*components, *value, err));
+done:
+  return st;
+}
+
+int vg_vtu_has_array(struct vg_input *in, const char *name)
+{
+  struct vg_error err = VG_ERROR_INIT;
+  struct file f = { .in = in };
+  const char *end;
+
+  return read_head(&f, &err) >= 0 && seek_array(&f, "PointData", name, &end);
+}
+
+vg_status vg_vtu_values_parse(struct vg_input *in, const char *name,
+                              struct vg_mesh *out, int *components,
+                              double **value, struct vg_error *err)
+{
+  assert(in && name && out && components && value);
+
+  struct file f = { .in = in };
+  struct vg_mesh m = VG_MESH_INIT;
+  struct grid g = { 0, 0, NULL, NULL, NULL };
+  double *own = NULL;
+  int n = 0;
+  vg_status st;
+
+  VG_TRY(read_head(&f, err));
+  VG_TRY(read_values(&f, name, &m, &n, &own, err));
+  VG_TRY(read_grid(&f, &g, err));
+  VG_TRY(put_cells(&f, &g, &m, err));
+  *out = m;
+  *components = n;
+  *value = own;
+  m = (struct vg_mesh)VG_MESH_INIT;
+  own = NULL;
+done:
+  free(g.type);
+  free(g.end);
+  free(g.node);
+  free(own);
+  vg_mesh_release(&m);
   return st;
 }

@@ -6,6 +6,7 @@
 #ifndef VG_IO_MESH_VTU_READ_H
 #define VG_IO_MESH_VTU_READ_H
 
+#include "core/mesh/mesh.h"
 #include "io/stream/stream.h"
 
 /** Read the points and the scalar point array `name`.
@@ -22,5 +23,20 @@ vg_status vg_vtu_points_parse(struct vg_input *in, const char *name, size_t *n,
 vg_status vg_vtu_points_read(const char *path, const char *name, size_t *n,
                              double (**x)[3], double **value,
                              struct vg_error *err);
+
+/** Is there a point array `name`? 0 for a damaged file, too. */
+int vg_vtu_has_array(struct vg_input *in, const char *name);
+
+/** Read the points, the cells with volume (tetrahedra, pyramids, wedges,
+ * hexahedra of first order; all others are skipped) and the point array `name`.
+ *
+ * @param out         empty before; points and cells, without faces
+ * @param components  out: number of values per point, 1 to 9
+ * @param value       out: [n_point][components], which need not be finite; to
+ *                    be freed. All are unchanged on failure
+ * Failures as above. */
+vg_status vg_vtu_values_parse(struct vg_input *in, const char *name,
+                              struct vg_mesh *out, int *components,
+                              double **value, struct vg_error *err);
 
 #endif

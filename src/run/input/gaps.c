@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "core/geometry/tensor.h"
 #include "run/input/sizes.h"
 #include "run/settings/plan_options.h"
 
@@ -36,6 +37,17 @@ static double least(void *user, const double lo[3], const double hi[3])
               g->other->least(g->other->user, lo, hi));
 }
 
+/* The metric of the other map, intersected with the size of the gaps. */
+static void metric(void *user, const double x[3], double m[6])
+{
+  const struct vg_gap_sizes *g = user;
+  double h = g->gaps->at(g->gaps->user, x), gap[6];
+
+  g->other->metric(g->other->user, x, m);
+  vg_tensor_uniform(1 / (h * h), gap);
+  vg_metric_intersect(gap, m, m);
+}
+
 /* The other map may have no lower bound. */
 static void join_maps(struct vg_gap_sizes *g, const struct vg_size_map *other)
 {
@@ -44,6 +56,7 @@ static void join_maps(struct vg_gap_sizes *g, const struct vg_size_map *other)
   g->map = *g->gaps;
   if (!other) return;
   g->map = (struct vg_size_map){ .at = at,
+                                 .metric = other->metric ? metric : NULL,
                                  .user = g,
                                  .least = other->least ? least : NULL,
                                  .most = other->most > 0

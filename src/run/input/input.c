@@ -78,6 +78,7 @@ static void release_read(struct vg_read *r)
   vg_settings_release(&r->settings);
   vg_project_release(&r->project);
   vg_size_samples_free(r->samples);
+  vg_size_mesh_free(r->metrics);
   vg_mesh_release(&r->surface);
   vg_cad_model_release(&r->model);
   free(r->heights.item);
@@ -86,9 +87,11 @@ static void release_read(struct vg_read *r)
 void vg_problem_forget_sizes(struct vg_problem *p)
 {
   vg_boundary_forget_gaps(&p->boundary);
-  if (!p->read.samples) return;
+  if (!p->read.samples && !p->read.metrics) return;
   vg_size_samples_free(p->read.samples);
+  vg_size_mesh_free(p->read.metrics);
   p->read.samples = NULL;
+  p->read.metrics = NULL;
   p->read.map = p->boundary.map = NULL;
 }
 
@@ -400,6 +403,8 @@ static void use_ifact(struct vg_settings *s, double ifact)
   for (size_t i = 0; i < s->n_source; i++) {
     s->source[i].h0 *= ifact;
     s->source[i].h1 *= ifact;
+    s->source[i].sp0 *= ifact;
+    s->source[i].sp1 *= ifact;
   }
 }
 
@@ -418,6 +423,7 @@ static vg_status merge_sources(struct vg_read *r, struct vg_error *err)
   all = vg_alloc(total, sizeof *all);
   if (!all) return vg_fail_memory(err, "the sources");
   memcpy(all, r->project.source, n * sizeof *all);
+  for (size_t i = 0; i < n && !r->project.stretch; i++) all[i].stretch = 0;
   if (s->n_source) memcpy(all + n, s->source, s->n_source * sizeof *all);
   free(s->source);
   s->source = all;

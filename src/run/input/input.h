@@ -12,6 +12,7 @@
 #include "core/flow/flow.h"
 #include "core/remesh/remesh.h"
 #include "core/sizing/sizing_map.h"
+#include "core/sizing/sizing_mesh.h"
 #include "core/surface/surface_check.h"
 #include "io/cad/cad.h"
 #include "run/common/progress.h"
@@ -87,6 +88,8 @@ struct vg_read {
   const struct vg_size_map *map;   /* Sizes in addition to sources; NULL:
                                       none. */
   struct vg_size_samples *samples; /* Sizes of the setting `sizes`; NULL:
+                                      none. */
+  struct vg_size_mesh *metrics;    /* Metrics of the setting `sizes`; NULL:
                                       none. */
   struct vg_project project;       /* Empty without a .d3m. */
   struct vg_mesh surface;

@@ -56,7 +56,7 @@ static void law_at(void *user, const double x[3], struct vg_growth_law *law)
 {
   const struct vg_layer_laws *l = user;
   const struct vg_sizing_options o = {
-    0, INFINITY, 1.2, 1, 0, 1, 1, NULL, NULL
+    .h_max = INFINITY, .growth = 1.2, .scale = 1, .threads = 1, .coarseness = 1
   };
   double v[3];
 
@@ -98,6 +98,7 @@ static void put_values(struct vg_layer_laws *l, int k)
 
     s[i].h0 = s[i].layer0[k];
     s[i].h1 = end[k];
+    s[i].stretch = 0;
     least = fmin(least, fmin(s[i].h0, s[i].h1));
     most = fmax(most, fmax(s[i].h0, s[i].h1));
   }

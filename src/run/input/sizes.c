@@ -121,21 +121,56 @@ static int ends_in(const char *path, const char *suffix)
   return n > len && !strcasecmp(path + n - len, suffix);
 }
 
-/* Points without cells: sizes grow between them. */
-static vg_status read_vtk(const char *path, struct vg_mesh *m, double **h,
-                          struct vg_error *err)
-{
-  double(*x)[3];
-  size_t n;
-  vg_status st = vg_vtu_points_read(path, "size", &n, &x, h, err);
+/* Values of a file at the points of a mesh. */
+struct values {
+  struct vg_mesh m;
+  int components; /* 1: sizes; 6 or 9: metrics */
+  double *value;  /* [n_point][components] */
+  int is_vtk;
+};
 
-  if (st < 0) return st;
-  m->point = x;
-  m->n_point = n;
-  return VG_OK;
+static vg_status read_metrics_vtk(struct vg_input *in, struct values *v,
+                                  struct vg_error *err)
+{
+  vg_status st;
+
+  if (vg_vtu_has_array(in, "size"))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s has both arrays 'size' and 'metric'; keep only one of "
+                   "them",
+                   in->path);
+  st = vg_vtu_values_parse(in, "metric", &v->m, &v->components, &v->value, err);
+  if (st >= 0 && v->components != 6 && v->components != 9)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "%s: the array 'metric' has %d components; a metric has 6 "
+                   "(symmetric) or 9",
+                   in->path, v->components);
+  return st;
 }
 
-static vg_status read_values(const char *path, struct vg_mesh *m, double **h,
+/* The sizes of points without cells grow between them; those of metrics are
+ * interpolated in cells. */
+static vg_status read_vtk(const char *path, struct values *v,
+                          struct vg_error *err)
+{
+  struct vg_input in = VG_INPUT_INIT;
+  vg_status st;
+
+  v->is_vtk = 1;
+  VG_TRY(vg_input_open(path, &in, err));
+  if (vg_vtu_has_array(&in, "metric")) {
+    st = read_metrics_vtk(&in, v, err);
+    goto done;
+  }
+  v->components = 1;
+  st = vg_vtu_points_parse(&in, "size", &v->m.n_point, &v->m.point, &v->value,
+                           err);
+done:
+  vg_input_release(&in);
+  return st;
+}
+
+static vg_status read_values(const char *path, struct values *v,
                              struct vg_error *err)
 {
   char *mesh = NULL;
@@ -143,51 +178,94 @@ static vg_status read_values(const char *path, struct vg_mesh *m, double **h,
   vg_status st;
 
   if (ends_in(path, ".vtu") || ends_in(path, ".vtp"))
-    return read_vtk(path, m, h, err);
+    return read_vtk(path, v, err);
   if (!ends_in(path, ".sol") && !ends_in(path, ".solb"))
     return vg_fail(err, VG_ERR_FORMAT,
                    "%s: sizes can be read from Medit's .sol and .solb next to "
-                   "a mesh, and from a point array 'size' in VTK's .vtu",
+                   "a mesh, and from a point array 'size' or 'metric' in VTK's "
+                   ".vtu",
                    path);
-  VG_TRY(vg_sol_read(path, &n, h, err));
+  VG_TRY(vg_sol_read(path, &n, &v->components, &v->value, err));
   VG_TRY(find_mesh(path, &mesh, err));
-  VG_TRY(vg_format_read(mesh, m, err));
-  if (n != m->n_point)
-    st = vg_fail(err, VG_ERR_INPUT, "%s has %zu sizes, but %s has %zu points",
-                 path, n, mesh, m->n_point);
+  VG_TRY(vg_format_read(mesh, &v->m, err));
+  if (n != v->m.n_point)
+    st = vg_fail(err, VG_ERR_INPUT, "%s has %zu %s, but %s has %zu points",
+                 path, n, v->components == 1 ? "sizes" : "metrics", mesh,
+                 v->m.n_point);
 done:
   free(mesh);
+  return st;
+}
+
+static vg_status use_sizes(struct vg_read *r, const struct values *v,
+                           struct vg_error *err)
+{
+  const struct vg_settings *set = &r->settings;
+  struct samples s = { 0 };
+  vg_status st;
+
+  VG_TRY(vg_size_samples_check(set->sizes, v->m.n_point,
+                               (const double(*)[3])v->m.point, v->value, err));
+  VG_TRY(make_samples(&v->m, v->value, &s, err));
+  VG_TRY(vg_size_samples_new(s.n, (const double(*)[3])s.x, s.h,
+                             vg_options_growth(set), (int)set->threads,
+                             &r->samples, err));
+  r->map = vg_size_samples_map(r->samples);
+  vg_note(r->notes, "sizes at %zu points were read from %s", v->m.n_point,
+          set->sizes);
+done:
+  free(s.x);
+  free(s.h);
+  return st;
+}
+
+static vg_status use_metrics(struct vg_read *r, const struct values *v,
+                             struct vg_error *err)
+{
+  const struct vg_settings *set = &r->settings;
+  enum vg_tensor_order order = (enum vg_tensor_order)set->metric_order;
+  double(*metric)[6] = vg_alloc(v->m.n_point, sizeof *metric);
+  size_t n_limited;
+  vg_status st;
+
+  if (!metric) return vg_fail_memory(err, "the metrics of a mesh");
+  if (order == VG_TENSOR_FILE)
+    order = v->is_vtk ? VG_TENSOR_VTK : VG_TENSOR_MEDIT;
+  VG_TRY(vg_size_metrics_read(set->sizes, v->m.n_point,
+                              (const double(*)[3])v->m.point, v->components,
+                              order, v->value, set->aspect_max, metric,
+                              &n_limited, err));
+  VG_TRY(vg_size_mesh_new(&v->m, (const double(*)[6])metric,
+                          vg_options_growth(set), &r->metrics, err));
+  r->map = vg_size_mesh_map(r->metrics);
+  vg_note(r->notes, "metrics at %zu points were read from %s", v->m.n_point,
+          set->sizes);
+  if (n_limited)
+    vg_note(r->notes,
+            "%zu of these metrics have an aspect above %g (aspect_max): their "
+            "larger edge lengths are reduced",
+            n_limited, set->aspect_max);
+done:
+  free(metric);
   return st;
 }
 
 vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err)
 {
   const struct vg_settings *set = &r->settings;
-  struct vg_mesh m = VG_MESH_INIT;
-  struct samples s = { 0 };
-  double *h = NULL;
+  struct values v = { VG_MESH_INIT, 0, NULL, 0 };
   vg_status st;
 
-  if (!*set->sizes || r->samples) return VG_OK;
+  if (!*set->sizes || r->samples || r->metrics) return VG_OK;
   if (r->map)
     return vg_fail(err, VG_ERR_INPUT,
                    "sizes are given both by the file %s and by the calling "
                    "program; give only one of them",
                    set->sizes);
-  VG_TRY(read_values(set->sizes, &m, &h, err));
-  VG_TRY(vg_size_samples_check(set->sizes, m.n_point,
-                               (const double(*)[3])m.point, h, err));
-  VG_TRY(make_samples(&m, h, &s, err));
-  VG_TRY(vg_size_samples_new(s.n, (const double(*)[3])s.x, s.h,
-                             vg_options_growth(set), (int)set->threads,
-                             &r->samples, err));
-  r->map = vg_size_samples_map(r->samples);
-  vg_note(r->notes, "sizes at %zu points were read from %s", m.n_point,
-          set->sizes);
-done:
-  free(s.x);
-  free(s.h);
-  free(h);
-  vg_mesh_release(&m);
+  st = read_values(set->sizes, &v, err);
+  if (st >= 0)
+    st = v.components == 1 ? use_sizes(r, &v, err) : use_metrics(r, &v, err);
+  free(v.value);
+  vg_mesh_release(&v.m);
   return st;
 }

@@ -170,6 +170,7 @@ struct vg_sizing_options vg_options_sizing(const struct vg_settings *s,
   o.growth = s->growth;
   o.scale = s->scale;
   o.from_surface = s->surface_sizes;
+  o.aspect_max = s->aspect_max;
   o.map = map;
   return o;
 }

@@ -46,7 +46,16 @@ VG_TEXT_ROW(plain, sizes, VG_LIST_MAX, "sizes", "",
   .unit = "", .argument = "FILE", .help = "Target edge lengths at the points "
   "of a background mesh: a Medit .sol or .solb with its mesh (.meshb, "
   ".b8.ugrid, ...) in the same folder, or the point array `size` of a VTK "
-  ".vtu; \"\": none")
+  ".vtu. Metrics, which depend on the direction, are a .sol of kind 3, or the "
+  "array `metric`; \"\": none")
+VG_ROW(WORD, plain, metric_order, "metric_order", 0,
+  .words = order_words, .unit = "", .help = "Order of the six components of a "
+  "metric in the file of sizes. medit: xx xy yy xz yz zz; upper: xx xy xz yy "
+  "yz zz; vtk: xx yy zz xy yz xz; file: medit in a .sol, vtk in a .vtu")
+VG_ROW(REAL, plain, aspect_max, "aspect_max", sizing.aspect_max,
+  .lo = 1, .hi = 1e5, .unit = "", .help = "Largest ratio of two edge lengths "
+  "at a point, where metrics or stretched sources request lengths that depend "
+  "on the direction; larger lengths are reduced")
 VG_TEXT_ROW(plain, mapbc, VG_LIST_MAX, "mapbc", "",
   .unit = "", .argument = "FILE", .help = "Boundary conditions of the "
   "patches; \"\": PROJECT.mapbc if it exists, unless an earlier run of "

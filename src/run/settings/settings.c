@@ -34,6 +34,9 @@ static const char *const answer_words[] = { "auto", "no", "yes", NULL };
 /* In the order of enum vg_cad_unit, of enum vg_cad_patches. */
 static const char *const unit_words[] = { "file", "mm",   "cm",   "m",
                                           "km",   "inch", "foot", NULL };
+/* In the order of enum vg_tensor_order. */
+static const char *const order_words[] = { "file", "medit", "upper", "vtk",
+                                           NULL };
 static const char *const cad_patch_words[] = { "face",  "name", "colour",
                                                "layer", "part", NULL };
 /* In the order of enum vg_layer_cells. */
@@ -225,17 +228,20 @@ static const struct vg_param source_columns[] = {
   ANY("an", an, "", "Weight of a VGRID source"),
   AS_READ("bn", bn, "", "VGRID bias intensity; stored, not used"),
   AS_READ("alpha", alpha, "", "VGRID directional bias; stored, not used"),
-  AS_READ("stretch", stretch, "", "VGRID stretching flag; stored, not used"),
-  AS_READ("sp0", sp0, "length",
-          "VGRID second spacing at point 1; stored, not used"),
-  AS_READ("sp1", sp1, "length",
-          "VGRID second spacing at point 2; stored, not used"),
-  AS_READ("ux", u[0], "", "VGRID bias vector, x; stored, not used"),
-  AS_READ("uy", u[1], "", "VGRID bias vector, y; stored, not used"),
-  AS_READ("uz", u[2], "", "VGRID bias vector, z; stored, not used"),
-  AS_READ("px", p[0], "", "VGRID stretching vector, x; stored, not used"),
-  AS_READ("py", p[1], "", "VGRID stretching vector, y; stored, not used"),
-  AS_READ("pz", p[2], "", "VGRID stretching vector, z; stored, not used"),
+  ANY("stretch", stretch, "",
+      "Edge length along ux uy uz over that across it, which is h0: above 1 "
+      "needles, below 1 thin cells; 0 and 1: none. 1 in a VGRID source: its "
+      "stretching flag, with sp0, sp1 along px py pz"),
+  ANY("sp0", sp0, "length",
+      "Spacing of a VGRID source along px py pz at point 1"),
+  ANY("sp1", sp1, "length",
+      "Spacing of a VGRID source along px py pz at point 2"),
+  ANY("ux", u[0], "", "Direction of stretch, x (of VGRID: bias, not used)"),
+  ANY("uy", u[1], "", "Direction of stretch, y"),
+  ANY("uz", u[2], "", "Direction of stretch, z"),
+  ANY("px", p[0], "", "Stretching vector of a VGRID source, x"),
+  ANY("py", p[1], "", "Stretching vector of a VGRID source, y"),
+  ANY("pz", p[2], "", "Stretching vector of a VGRID source, z"),
   ANY("delta1_0", layer0[0], "length",
       "First layer height at point 1 (with layer_sources)"),
   ANY("rate1_0", layer0[1], "", "Layer rate 1 at point 1"),

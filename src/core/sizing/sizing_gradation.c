@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Gradation of size tensors (Alauzet, Finite Elem. Anal. Des. 46, 2010). The
+ * tensor at each point is intersected with those at the other corners of its
+ * leaves, grown over the distance (vg_size_grow). Intersections depend on their
+ * order, so the sweeps are Jacobi steps: each point is computed from the values
+ * of the sweep before, in the order of its leaves. A point needs the corners
+ * only that changed in the sweep before, because it satisfies the conditions of
+ * the others already. After the first sweep, few points change. */
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "core/sizing/sizing_build.h"
+
+/* H15: excess of a size over the growth that is not corrected. */
+#define SLACK 0.01
+
+struct gradation {
+  struct vg_octree_build *b;
+  float (*now)[6], (*next)[6]; /* [n_point] size tensors of the sources */
+  uint32_t *begin;             /* [n_point + 1] first leaf of each point */
+  uint32_t *leaf;              /* cells */
+  uint32_t *due;               /* [n_due] points of this sweep */
+  size_t n_due;
+  uint8_t *is_new;     /* [n_point] changed in the sweep before */
+  uint8_t *is_changed; /* [n_point] changed in this sweep */
+  uint8_t *is_due;     /* [n_point] is listed in due */
+  uint8_t *is_lowered; /* [n_point] changed in any sweep */
+};
+
+enum { NEIGHBOURS = 64 };
+
+static void widen(const float from[6], double h[6])
+{
+  for (int k = 0; k < 6; k++) h[k] = (double)from[k];
+}
+
+static void source_body(void *context, size_t first, size_t end, int worker)
+{
+  struct gradation *g = context;
+  struct vg_octree_build *b = g->b;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    double x[3], h[6], range[2], iso;
+
+    vg_octree_place(b, b->point[i].at, x);
+    vg_stat_tensor_source(b->f, x, h, range, &iso);
+    for (int k = 0; k < 6; k++) g->now[i][k] = (float)h[k];
+  }
+}
+
+/* Limit h, the tensor of point p, by that of point q. Returns whether it
+ * changed. */
+static int limit_by(const struct gradation *g, size_t p, size_t q, double h[6])
+{
+  const struct vg_octree_build *b = g->b;
+  double from[6], way[3];
+
+  for (int k = 0; k < 3; k++)
+    way[k] = b->unit * ((double)b->point[p].at[k] - (double)b->point[q].at[k]);
+  widen(g->now[q], from);
+  vg_size_grow(from, way, b->f->slope, from);
+  if (vg_size_is_within(h, from, SLACK)) return 0;
+  vg_size_intersect(h, from, h);
+  return 1;
+}
+
+/* Corners of the leaves of point p that changed in the sweep before, each once,
+ * in the order of the leaves. Returns their number. */
+static int list_new(const struct gradation *g, uint32_t p,
+                    uint32_t out[NEIGHBOURS])
+{
+  int n = 0;
+
+  for (uint32_t i = g->begin[p]; i < g->begin[p + 1]; i++)
+    for (int j = 0; j < 8; j++) {
+      uint32_t q = g->b->cell[g->leaf[i]].corner[j];
+      int k = 0;
+
+      if (q == p || !g->is_new[q]) continue;
+      while (k < n && out[k] != q) k++;
+      if (k == n && n < NEIGHBOURS) out[n++] = q;
+    }
+  return n;
+}
+
+static void sweep_body(void *context, size_t first, size_t end, int worker)
+{
+  struct gradation *g = context;
+  uint32_t other[NEIGHBOURS];
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    uint32_t p = g->due[i];
+    int n = list_new(g, p, other), changed = 0;
+    double h[6];
+
+    widen(g->now[p], h);
+    for (int k = 0; k < n; k++) changed |= limit_by(g, p, other[k], h);
+    g->is_changed[p] = (uint8_t)changed;
+    g->is_lowered[p] |= (uint8_t)changed;
+    for (int k = 0; k < 6 && changed; k++) g->next[p][k] = (float)h[k];
+  }
+}
+
+/* List the corners of the leaves of all points that changed. */
+static void list_due(struct gradation *g)
+{
+  g->n_due = 0;
+  for (size_t q = 0; q < g->b->n_point; q++)
+    for (uint32_t i = g->begin[q]; g->is_new[q] && i < g->begin[q + 1]; i++)
+      for (int j = 0; j < 8; j++) {
+        uint32_t p = g->b->cell[g->leaf[i]].corner[j];
+
+        if (g->is_due[p]) continue;
+        g->is_due[p] = 1;
+        g->due[g->n_due++] = p;
+      }
+  for (size_t i = 0; i < g->n_due; i++) g->is_due[g->due[i]] = 0;
+}
+
+/* Take over the changes of a sweep, and list the points of the next one.
+ * Returns their number. */
+static size_t finish_sweep(struct gradation *g)
+{
+  memset(g->is_new, 0, g->b->n_point);
+  for (size_t i = 0; i < g->n_due; i++) {
+    uint32_t p = g->due[i];
+
+    if (!g->is_changed[p]) continue;
+    g->is_new[p] = 1;
+    memcpy(g->now[p], g->next[p], sizeof *g->now);
+  }
+  list_due(g);
+
+  return g->n_due;
+}
+
+static void list_leaves(struct gradation *g)
+{
+  const struct vg_octree_build *b = g->b;
+
+  for (size_t i = 0; i < b->n_cell; i++)
+    for (int j = 0; j < 8 && !b->cell[i].child; j++)
+      g->begin[b->cell[i].corner[j]]++;
+  for (size_t i = 0; i < b->n_point; i++) g->begin[i + 1] += g->begin[i];
+  for (size_t i = b->n_cell; i-- > 0;)
+    for (int j = 0; j < 8 && !b->cell[i].child; j++)
+      g->leaf[--g->begin[b->cell[i].corner[j]]] = (uint32_t)i;
+}
+
+static void combine_body(void *context, size_t first, size_t end, int worker)
+{
+  struct gradation *g = context;
+  struct vg_octree_build *b = g->b;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++) {
+    struct vg_octree_point *p = b->point + i;
+    double x[3], h[6], range[2], most;
+
+    if (p->is_hanging || !g->is_lowered[i]) continue;
+    vg_octree_place(b, p->at, x);
+    widen(g->now[i], h);
+    vg_stat_tensor_limit(b->f, h, range);
+    vg_stat_tensor_combine(b->f, x, h, range, NULL, &p->hint, b->tensor + i,
+                           &most);
+  }
+}
+
+static vg_status limit(struct gradation *g, struct vg_error *err)
+{
+  struct vg_octree_build *b = g->b;
+  const struct vg_team_out out[] = { { g->now, sizeof *g->now, 0, NULL } };
+  vg_status st = vg_team_for(b->team, b->threads, b->n_point, VG_OCTREE_GRAIN,
+                             source_body, g, 1, out, err);
+
+  if (st < 0) return st;
+  list_leaves(g);
+  memset(g->is_new, 1, b->n_point);
+  for (size_t i = 0; i < b->n_point; i++) g->due[i] = (uint32_t)i;
+  g->n_due = b->n_point;
+  do {
+    vg_parallel_for(b->threads, g->n_due, VG_OCTREE_GRAIN, sweep_body, g);
+  } while (finish_sweep(g));
+  vg_parallel_for(b->threads, b->n_point, VG_OCTREE_GRAIN, combine_body, g);
+  for (size_t i = 0; i < b->n_point; i++)
+    if (b->point[i].is_hanging)
+      vg_octree_hanging_tensor(b, b->point + i, b->tensor + i);
+  return VG_OK;
+}
+
+vg_status vg_octree_limit_tensors(struct vg_octree_build *b,
+                                  struct vg_error *err)
+{
+  size_t n = b->n_point, n_leaf = b->n_cell - b->n_cell / 8;
+  struct gradation g = { .b = b,
+                         .now = vg_alloc(n, sizeof *g.now),
+                         .next = vg_alloc(n, sizeof *g.next),
+                         .begin = vg_calloc(n + 1, sizeof *g.begin),
+                         .leaf = vg_alloc(8 * n_leaf, sizeof *g.leaf),
+                         .due = vg_alloc(n, sizeof *g.due),
+                         .is_new = vg_alloc(n, 1),
+                         .is_changed = vg_alloc(n, 1),
+                         .is_due = vg_calloc(n, 1),
+                         .is_lowered = vg_calloc(n, 1) };
+  vg_status st;
+
+  if (!g.now || !g.next || !g.begin || !g.leaf || !g.due || !g.is_new ||
+      !g.is_changed || !g.is_due || !g.is_lowered)
+    st = vg_fail_memory(err, "the octree of the sizing field");
+  else st = limit(&g, err);
+  free(g.now);
+  free(g.next);
+  free(g.begin);
+  free(g.leaf);
+  free(g.due);
+  free(g.is_new);
+  free(g.is_changed);
+  free(g.is_due);
+  free(g.is_lowered);
+  return st;
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* core/sizing/sizing_shape.h: distances from the shapes of sources. Internal to
+ * core/sizing. Uses core/sizing/sizing.h. */
+#ifndef VG_CORE_SIZING_SIZING_SHAPE_H
+#define VG_CORE_SIZING_SIZING_SHAPE_H
+
+#include "core/sizing/sizing.h"
+
+/** Distance of x from the segment a b. t out: position of the nearest point,
+ * from 0 at a to 1 at b. */
+double vg_segment_distance(const double a[3], const double b[3],
+                           const double x[3], double *t);
+
+/** As vg_segment_distance, with the vector from the segment to x. */
+double vg_segment_way(const double a[3], const double b[3], const double x[3],
+                      double *t, double way[3]);
+
+/** Distance of x from the triangle of the source. way out: direction from the
+ * triangle to x, not normalised. */
+double vg_triangle_distance(const struct vg_source *s, const double x[3],
+                            double way[3]);
+
+double vg_box_distance(const double lo[3], const double hi[3],
+                       const double x[3]);
+
+/** Distance of x from the cylinder or cone of the source. t out: position along
+ * the axis, from 0 to 1. */
+double vg_cone_distance(const struct vg_source *s, const double x[3],
+                        double *t);
+
+/** Distance of x from the shape of a source, including its radius. The corners
+ * of a box must be ordered.
+ *
+ * @param t    out: position along the axis, from 0 to 1; 0 without an axis
+ * @param way  out: vector to x from the point of the shape nearest to it; zero
+ *             within the shape */
+double vg_shape_way(const struct vg_source *s, const double x[3], double *t,
+                    double way[3]);
+
+#endif
