@@ -26,7 +26,7 @@ static const struct {
     "schedule threads min_full min_any min_height max_first_error "
     "max_top_ratio " },
   { "layers", " min_full min_any min_height max_first_error max_top_ratio " },
-  { "sources", " bn alpha stretch sp0 sp1 ux uy uz px py pz group " },
+  { "sources", " bn alpha group " },
   { "sweep", " ranks threads bisections leaf_cells decompose subdomains family "
              "repeat " },
 };

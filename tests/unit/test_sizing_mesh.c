@@ -34,7 +34,7 @@ static void linear(const double x[3], double h[6])
   h[5] = 0.3;
 }
 
-/* The unit cube divided into N^3 hexahedra (kind 1), twice as many prisms (2),
+/* The unit cube divided into N^3 hexahedra (kind 1), two prisms in each (2),
  * or its points only. */
 static void make_box(struct vg_mesh *m, int kind, double (*metric)[6])
 {

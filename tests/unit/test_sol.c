@@ -86,9 +86,10 @@ static void put_int(struct bytes *b, int64_t v, int wide, int big)
   else put(b, &narrow, 4, big);
 }
 
-static struct bytes binary(int version, int big, int64_t n)
+/* n_value: 3 scalars at 3 vertices, or one metric of 6 components. */
+static struct bytes binary(int version, int big, int64_t n, int n_value)
 {
-  const double value[3] = { 0.5, 0.25, 2 };
+  const double value[6] = { 0.5, 0.25, 2, 3, 4, 5 };
   struct bytes b = { 0, { 0 } };
   int wide = version >= 3;
   int64_t head = 4 + (wide ? 8 : 4);
@@ -101,12 +102,12 @@ static struct bytes binary(int version, int big, int64_t n)
   put_int(&b, 62, 0, big);
   put_int(&b,
           (int64_t)b.n - 4 + head + (version == 4 ? 8 : 4) + 8 +
-            3 * (version == 1 ? 4 : 8),
+            n_value * (version == 1 ? 4 : 8),
           wide, big);
   put_int(&b, n, version == 4, big);
   put_int(&b, 1, 0, big);
-  put_int(&b, 1, 0, big);
-  for (int i = 0; i < 3; i++) {
+  put_int(&b, n_value == 6 ? 3 : 1, 0, big);
+  for (int i = 0; i < n_value; i++) {
     float f = (float)value[i];
 
     if (version == 1) put(&b, &f, 4, big);
@@ -117,6 +118,29 @@ static struct bytes binary(int version, int big, int64_t n)
   return b;
 }
 
+static void reads_binary_metrics(void **state)
+{
+  (void)state;
+  for (int version = 1; version <= 4; version++)
+    for (int big = 0; big < 2; big++) {
+      struct bytes b = binary(version, big, 1, 6);
+      struct vg_input in = VG_INPUT_INIT;
+      struct vg_error err = VG_ERROR_INIT;
+      double *v = NULL;
+      size_t n = 0;
+      int components = 0;
+
+      assert_int_equal(vg_input_memory("t.solb", b.data, b.n, &in, &err),
+                       VG_OK);
+      if (vg_sol_parse(&in, &n, &components, &v, &err) < 0)
+        fail_msg("%s", err.text);
+      assert_true(n == 1 && components == 6);
+      assert_true(v[0] == 0.5 && v[2] == 2 && v[5] == 5);
+      free(v);
+      vg_input_release(&in);
+    }
+}
+
 static void reads_binary(void **state)
 {
   struct vg_error err = VG_ERROR_INIT;
@@ -124,7 +148,7 @@ static void reads_binary(void **state)
   (void)state;
   for (int version = 1; version <= 4; version++)
     for (int big = 0; big < 2; big++) {
-      struct bytes b = binary(version, big, 3);
+      struct bytes b = binary(version, big, 3, 3);
       double *v;
       size_t n;
 
@@ -137,7 +161,7 @@ static void reads_binary(void **state)
 
 static void every_truncation_is_refused(void **state)
 {
-  struct bytes b = binary(2, 0, 3);
+  struct bytes b = binary(2, 0, 3, 3);
   struct vg_error err = VG_ERROR_INIT;
   double *v;
   size_t n;
@@ -147,9 +171,9 @@ static void every_truncation_is_refused(void **state)
     assert_true(parse(b.data, size, &n, &v, &err) < 0);
     assert_null(v);
   }
-  b = binary(4, 1, (int64_t)1 << 33);
+  b = binary(4, 1, (int64_t)1 << 33, 3);
   assert_int_equal(parse(b.data, b.n, &n, &v, &err), VG_ERR_FORMAT);
-  b = binary(3, 0, 1000000);
+  b = binary(3, 0, 1000000, 3);
   assert_int_equal(parse(b.data, b.n, &n, &v, &err), VG_ERR_FORMAT);
   assert_non_null(strstr(err.text, "truncated"));
 }
@@ -178,7 +202,7 @@ static void refuses_unsupported_files(void **state)
   refuses("MeshVersionFormatted 2\nSolAtVertices 1 1 1 1", VG_ERR_FORMAT,
           "before the dimension");
   refuses(HEAD "End", VG_ERR_FORMAT, "no SolAtVertices");
-  refuses(HEAD "SolAtVertices 1\n1 3\n1 0 1 0 0 1\nEnd", VG_ERR_UNSUPPORTED,
+  refuses(HEAD "SolAtVertices 1\n1 2\n1 0 1\nEnd", VG_ERR_UNSUPPORTED,
           "one scalar");
   refuses(HEAD "SolAtVertices 1\n2 1 1\n1 2\nEnd", VG_ERR_UNSUPPORTED,
           "one scalar");
@@ -197,6 +221,7 @@ int main(void)
     cmocka_unit_test(reads_text),
     cmocka_unit_test(reads_metrics),
     cmocka_unit_test(reads_binary),
+    cmocka_unit_test(reads_binary_metrics),
     cmocka_unit_test(every_truncation_is_refused),
     cmocka_unit_test(refuses_unsupported_files),
   };

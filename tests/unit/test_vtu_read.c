@@ -222,24 +222,45 @@ static void reads_text(void **state)
   accept(&b);
 }
 
-/* A tetrahedron, and a triangle, which is skipped. */
-#define METRIC_FILE(metric, nodes, types)                                          \
-  "<VTKFile byte_order=\"LittleEndian\"><Piece NumberOfPoints=\"5\" "              \
-  "NumberOfCells=\"2\">" POINTS                                                    \
-  "<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">" nodes \
-  "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" "                        \
-  "format=\"ascii\">4 7</DataArray><DataArray type=\"UInt8\" Name=\"types\" "      \
-  "format=\"ascii\">" types "</DataArray></Cells><PointData><DataArray "           \
-  "type=\"Float64\" Name=\"metric\" NumberOfComponents=\"6\" "                     \
-  "format=\"ascii\">" metric "</DataArray></PointData></Piece></VTKFile>"
+/* A file with a tetrahedron, and with a triangle, which is skipped. */
+struct metric_file {
+  const char *metric, *nodes, *types;
+};
+
+static void put_ascii(struct bytes *b, const char *attributes, const char *data)
+{
+  put_text(b, "<DataArray format=\"ascii\" ");
+  put_text(b, attributes);
+  put_text(b, ">");
+  put_text(b, data);
+  put_text(b, "</DataArray>");
+}
+
+static void put_metric_file(struct bytes *b, const struct metric_file *f)
+{
+  put_text(b,
+           "<VTKFile byte_order=\"LittleEndian\">"
+           "<Piece NumberOfPoints=\"5\" NumberOfCells=\"2\">" POINTS "<Cells>");
+  put_ascii(b, "type=\"Int64\" Name=\"connectivity\"", f->nodes);
+  put_ascii(b, "type=\"Int32\" Name=\"offsets\"", "4 7");
+  put_ascii(b, "type=\"UInt8\" Name=\"types\"", f->types);
+  put_text(b, "</Cells><PointData>");
+  put_ascii(b, "type=\"Float64\" Name=\"metric\" NumberOfComponents=\"6\"",
+            f->metric);
+  put_text(b, "</PointData></Piece></VTKFile>");
+}
+
 #define FIVE "1 1 1 0 0 0 2 1 1 0 0 0 3 1 1 0 0 0 4 1 1 0 0 0 5 1 1 .5 0 0"
 
-static vg_status parse_metric(const char *text, struct vg_mesh *m, int *n,
-                              double **v, struct vg_error *err)
+static vg_status parse_metric(const struct metric_file *f, struct vg_mesh *m,
+                              int *n, double **v, struct vg_error *err)
 {
   struct vg_input in = VG_INPUT_INIT;
-  vg_status st = vg_input_memory("t.vtu", text, strlen(text), &in, err);
+  struct bytes b = { .n = 0 };
+  vg_status st;
 
+  put_metric_file(&b, f);
+  st = vg_input_memory("t.vtu", b.data, b.n, &in, err);
   *v = NULL;
   *m = (struct vg_mesh)VG_MESH_INIT;
   if (st >= 0) {
@@ -253,6 +274,7 @@ static vg_status parse_metric(const char *text, struct vg_mesh *m, int *n,
 
 static void reads_metrics_and_cells(void **state)
 {
+  const struct metric_file f = { FIVE, "0 1 2 3 1 2 4", "10 5" };
   const uint32_t tet[4] = { 0, 1, 2, 3 };
   struct vg_error err = VG_ERROR_INIT;
   struct vg_mesh m;
@@ -260,9 +282,7 @@ static void reads_metrics_and_cells(void **state)
   int n = 0;
 
   (void)state;
-  if (parse_metric(METRIC_FILE(FIVE, "0 1 2 3 1 2 4", "10 5"), &m, &n, &v,
-                   &err) < 0)
-    fail_msg("%s", err.text);
+  if (parse_metric(&f, &m, &n, &v, &err) < 0) fail_msg("%s", err.text);
   assert_int_equal(n, 6);
   assert_int_equal(m.n_point, N);
   assert_int_equal(m.n_tet, 1);
@@ -275,12 +295,13 @@ static void reads_metrics_and_cells(void **state)
 static void refuses_bad_cells(void **state)
 {
   static const struct {
-    const char *text, *says;
+    struct metric_file file;
+    const char *says;
   } bad[] = {
-    { METRIC_FILE(FIVE, "0 1 2 5 1 2 4", "10 5"), "cell 1 uses point 6" },
-    { METRIC_FILE(FIVE, "0 1 2 3 1 2 4", "12 5"), "has 4 nodes, not 8" },
-    { METRIC_FILE(FIVE, "0 1 2 3 1 2", "10 5"), "is not a number" },
-    { METRIC_FILE("1 1 1 0 0 0", "0 1 2 3 1 2 4", "10 5"), "is not a number" },
+    { { FIVE, "0 1 2 5 1 2 4", "10 5" }, "cell 1 uses point 6" },
+    { { FIVE, "0 1 2 3 1 2 4", "12 5" }, "has 4 nodes, not 8" },
+    { { FIVE, "0 1 2 3 1 2", "10 5" }, "is not a number" },
+    { { "1 1 1 0 0 0", "0 1 2 3 1 2 4", "10 5" }, "is not a number" },
   };
 
   (void)state;
@@ -290,7 +311,7 @@ static void refuses_bad_cells(void **state)
     double *v;
     int n;
 
-    assert_true(parse_metric(bad[i].text, &m, &n, &v, &err) < 0);
+    assert_true(parse_metric(&bad[i].file, &m, &n, &v, &err) < 0);
     assert_true(!v && !m.point);
     if (!strstr(err.text, bad[i].says)) fail_msg("%s", err.text);
   }

@@ -4,8 +4,8 @@
 #ifndef VG_CORE_SIZING_SIZING_TENSOR_H
 #define VG_CORE_SIZING_SIZING_TENSOR_H
 
-/* H12: share of the growth that is measured in the metric; the rest is measured
- * in physical space. */
+/* H12: share of the growth that is measured in the metric; the other part is
+ * measured in physical space. */
 #define VG_GROWTH_IN_METRIC 0.875
 
 /** A size tensor of the field. */

@@ -32,6 +32,7 @@ struct array {
   size_t width;                 /* size of a value in bytes */
   char kind;                    /* 'f' real, 'i' signed, 'u' unsigned */
   int components;
+  char type[20]; /* as in the file, for messages */
 };
 
 /* --- the necessary part of XML --- */
@@ -192,6 +193,7 @@ static vg_status find_array(const struct file *f, const char *section,
       (!vg_parse_int(word, strlen(word), &n) || n < 1 || n > 1000))
     n = -1;
   if (!attribute(at, end, "type", word, sizeof word)) *word = 0;
+  snprintf(out->type, sizeof out->type, "%.19s", word);
   read_type(word, out);
   out->components = (int)n;
   out->tag = at;
@@ -212,9 +214,8 @@ static vg_status check_array(const struct file *f, const char *section,
                    f->in->path, section, a->components, components);
   if (a->width && (a->kind == 'f') == is_real) return VG_OK;
   return vg_fail(err, VG_ERR_UNSUPPORTED,
-                 "%s: the type of the array in <%s> is not supported; only %s "
-                 "are",
-                 f->in->path, section,
+                 "%s: the array in <%s> is of type '%s'; only %s are supported",
+                 f->in->path, section, a->type,
                  is_real ? "Float32 and Float64" : "integers");
 }
 
