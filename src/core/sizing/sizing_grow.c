@@ -19,7 +19,6 @@
  * shared by several cells therefore belongs to the first of them, and each
  * cell counts its own midpoints: no table of points is searched, and threads
  * share no data. */
-#define CELLS_PER_POINT 4 /* H13 */
 #define NONE UINT32_MAX
 #define POINT_MAX (UINT32_MAX - 1)
 #define FAMILIES 16 /* families of eight cells per thread and step */
@@ -76,16 +75,14 @@ static void decide_body(void *context, size_t first, size_t end, int worker)
   }
 }
 
-/* A field of size tensors may have more leaves if the mesh will be large (H13).
- * The limit follows from the points that the cells of this level will contain.
- */
+/* H13: a field of size tensors may have one cell per point of the mesh. Their
+ * number follows from the sizes at the corners of this level's cells. */
 static void raise_limit(const struct level *l)
 {
   struct vg_octree_build *b = l->b;
   double n = 0;
 
   for (size_t i = 0; i < l->n; i++) n += (double)l->centre[i];
-  n *= CELLS_PER_POINT;
   if (n > (double)b->max_cell)
     b->max_cell = n < VG_OCTREE_LEAF / 4 ? (size_t)n : VG_OCTREE_LEAF / 4;
 }

@@ -92,7 +92,7 @@ vanguard mesh -q -p box --sizes first/box.sol --out no
 exits 1
 says err "first/box.sol: the metric at point 17, ("
 says err "), is not positive; its eigenvalues must be 1 / length^2, above 0"
-metrics first/box.sol "1e8 0 100 0 0 100"
+metrics first/box.sol "1562500 0 100 0 0 100"
 vanguard plan -p box --sizes first/box.sol --surface-sizes no
 says out "have an aspect above 100 (aspect_max)"
 metrics first/box.sol "2500 30 0 100 0 100"
