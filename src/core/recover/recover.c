@@ -31,6 +31,8 @@ struct recovery {
   uint32_t *star;    /* [points] a cell of each point */
   size_t n_cell, cap_cell;
   uint32_t *cell; /* cells of all pockets, in the order of discovery */
+  int is_apart;   /* 1: pockets are not merged; a triangle whose pocket meets
+                     another one waits for the next round */
   struct vg_boundary_report *report;
 };
 
@@ -122,9 +124,12 @@ static int passes_through(const struct vg_tets *t, const uint32_t tri[3],
   return 1;
 }
 
+/* Returns 1 if the cell belongs to another pocket and pockets are not merged.
+ */
 static int claim(struct recovery *r, uint32_t c, uint32_t k)
 {
   if (r->owner[c] != VG_NONE) {
+    if (r->is_apart) return r->owner[c] != k;
     vg_union(r->parent, r->owner[c], k);
     return 0;
   }
@@ -168,6 +173,7 @@ static int find_pocket(struct recovery *r, struct visit *list, uint32_t k)
 {
   struct vg_tets *t = r->t;
   const uint32_t *tri = r->tri[r->missing[k]];
+  size_t n_before = r->n_cell;
   int bad = 0;
 
   list->n = 0;
@@ -186,7 +192,9 @@ static int find_pocket(struct recovery *r, struct visit *list, uint32_t k)
   }
   for (size_t m = 0; m < list->n; m++)
     t->flag[list->cell[m]] &= (uint8_t)~VG_MARK;
-  return bad;
+  while (bad > 0 && r->n_cell > n_before)
+    r->owner[r->cell[--r->n_cell]] = VG_NONE;
+  return bad < 0 ? -1 : 0;
 }
 
 /* Add one more layer of cells around every pocket. */
@@ -198,7 +206,7 @@ static int add_ring(struct recovery *r)
     for (int i = 0; i < 4; i++) {
       uint32_t link = r->t->cell[r->cell[m]].link[i];
 
-      if (link != VG_NONE && claim(r, link >> 2, r->owner[r->cell[m]]))
+      if (link != VG_NONE && claim(r, link >> 2, r->owner[r->cell[m]]) < 0)
         return -1;
     }
   return 0;
@@ -559,13 +567,45 @@ static int is_complete(const struct recovery *r)
   return !r->n_missing && n == 2 * r->n_tri;
 }
 
-static vg_status flip_first(struct recovery *r, uint8_t *missing,
-                            struct vg_error *err)
+static vg_status flip_missing(struct recovery *r, uint8_t *missing,
+                              struct vg_error *err)
 {
   vg_status st = vg_recover_flips(r->t, r->n_tri, r->tri, &r->n_missing,
                                   r->missing, err);
 
   if (st == VG_OK && !is_complete(r)) st = list_missing(r, missing, err);
+  return st;
+}
+
+/* Close pockets with this number of rings of cells around them. */
+static vg_status close_round(struct recovery *r, int rings, uint8_t *missing,
+                             struct vg_error *err)
+{
+  vg_status st = find_pockets(r, rings, err);
+
+  if (st == VG_OK) st = close_pockets(r, err);
+  if (st == VG_OK) st = vg_tets_link(r->t, err);
+  if (st == VG_OK) st = list_missing(r, missing, err);
+  return st;
+}
+
+/* TetGen closes small pockets more reliably than large ones. While that helps,
+ * close the pocket of each missing triangle by itself, without or with rings,
+ * and try flips again among the changed cells. */
+static vg_status close_apart(struct recovery *r, uint8_t *missing,
+                             struct vg_error *err)
+{
+  vg_status st = VG_OK;
+
+  for (int rings = 0; st == VG_OK && r->n_missing && rings < ROUNDS;) {
+    size_t before = r->n_missing;
+
+    r->is_apart = 1;
+    st = close_round(r, rings, missing, err);
+    r->is_apart = 0;
+    if (st == VG_OK && r->n_missing) st = flip_missing(r, missing, err);
+    rings = r->n_missing < before ? 0 : rings + 1;
+  }
   return st;
 }
 
@@ -607,13 +647,11 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
     before = copy_of_cells(t);
     if (!before) st = vg_fail_memory(err, "boundary recovery");
   }
-  if (st == VG_OK && r.n_missing) st = flip_first(&r, missing, err);
+  if (st == VG_OK && r.n_missing) st = flip_missing(&r, missing, err);
   report->n_face_left = r.n_missing;
-  for (int round = 0; st == VG_OK && r.n_missing && round < ROUNDS; round++) {
-    st = find_pockets(&r, round, err);
-    if (st == VG_OK) st = close_pockets(&r, err);
-    if (st == VG_OK) st = vg_tets_link(t, err);
-    if (st == VG_OK) st = list_missing(&r, missing, err);
+  for (int rings = 0; st == VG_OK && r.n_missing && rings < ROUNDS; rings++) {
+    st = close_round(&r, rings, missing, err);
+    if (st == VG_OK && !rings) st = close_apart(&r, missing, err);
   }
   if (st == VG_OK && r.n_missing)
     st = vg_fail(err, VG_ERR_GEOMETRY,
