@@ -4,6 +4,7 @@
 #include "mpi_support.h"
 
 #include "../unit/judge_support.h"
+#include "../unit/metric_support.h"
 
 static void check(const struct vg_mesh *m, const struct vg_sizing *sizing,
                   size_t n_slice, int threads)
@@ -45,6 +46,22 @@ static void ranks_agree_with_one_piece(void **state)
     struct vg_sizing *sizing = shape_sizing(&m, 1.5, 0);
 
     check(&m, sizing, 1, 1); /* ranks without slices */
+    check(&m, sizing, 9, 1);
+    check(&m, sizing, 30, 2);
+    vg_sizing_free(sizing);
+    vg_mesh_release(&m);
+  }
+}
+
+static void ranks_agree_in_a_metric(void **state)
+{
+  (void)state;
+  for (int cells = 0; cells < 2; cells++) {
+    struct vg_mesh m = judge_mesh(cells ? VG_LAYER_MIXED : VG_LAYER_TETS);
+    double scale = 0.1;
+    struct vg_sizing *sizing = metric_oblique_field(&m, &scale);
+
+    check(&m, sizing, 1, 1);
     check(&m, sizing, 9, 1);
     check(&m, sizing, 30, 2);
     vg_sizing_free(sizing);
@@ -117,6 +134,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(ranks_agree_with_one_piece),
+    cmocka_unit_test(ranks_agree_in_a_metric),
     cmocka_unit_test(ranks_count_every_damage),
     cmocka_unit_test(invalid_points_end_the_check_on_all_ranks),
     cmocka_unit_test(one_failure_reaches_every_rank),

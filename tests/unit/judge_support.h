@@ -245,6 +245,13 @@ static inline void assert_same_report(const struct vg_mesh_report *a,
   SAME(edge_mean);
   SAME(edge_within);
   SAME_LIST(hist_edge);
+  SAME(has_metric);
+  SAME(metric.length_min);
+  SAME(metric.length_max);
+  SAME(metric.mean_ratio_mean);
+  SAME(metric.mean_ratio_min);
+  SAME(metric.complexity);
+  assert_memory_equal(&a->metric, &b->metric, sizeof a->metric);
 #undef SAME
 #undef SAME_LIST
 }

@@ -194,12 +194,16 @@ static void meet_edge(void *context, const unsigned char *item, size_t n,
                       int worker)
 {
   struct vg_slices_judgement *j = context;
+  struct vg_stats *f = j->worker[worker].figures[j->edges_of];
   const struct vg_edge_item *e = (const void *)item;
-  double least = e[0].ratio;
+  double least = e[0].ratio, most = least;
 
-  for (size_t i = 1; i < n; i++)
+  for (size_t i = 1; i < n; i++) {
     if (e[i].ratio < least) least = e[i].ratio;
-  if (least >= 0) vg_stats_edge(j->worker[worker].figures[j->edges_of], least);
+    if (e[i].ratio > most) most = e[i].ratio;
+  }
+  if (least >= 0) vg_stats_edge(f, least);
+  if (j->in_metric && most >= 0) vg_stats_length(f, most);
 }
 
 static void meet_place(void *context, const unsigned char *item, size_t n,

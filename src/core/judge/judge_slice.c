@@ -181,6 +181,27 @@ static vg_status keep_edges(struct work *k, struct vg_error *err)
   return VG_OK;
 }
 
+/* Compare the edges of the slice with the field; in its metric, measure cells,
+ * too. */
+static vg_status judge_sizes(struct work *k, struct vg_error *err)
+{
+  const struct vg_sizing *sizing = k->j->sizing;
+  struct vg_point_metrics metrics;
+  vg_status st;
+
+  if (!sizing || !(k->is_field || k->j->edges_of == VG_JUDGED_WHOLE))
+    return VG_OK;
+  if (!k->j->in_metric)
+    return vg_judge_edges(&k->view, sizing, NULL, k->f, &k->unpaired, err);
+  st = vg_point_metrics_init(&metrics, sizing, k->slice->n_point, k->slice->x,
+                             err);
+  if (st < 0) return st;
+  vg_judge_metric(&k->view, &metrics, k->f);
+  st = vg_judge_edges(&k->view, sizing, &metrics, k->f, &k->unpaired, err);
+  vg_point_metrics_release(&metrics);
+  return st;
+}
+
 static vg_status judge_cells(struct work *k, struct vg_error *err)
 {
   struct vg_slices_judgement *j = k->j;
@@ -199,8 +220,7 @@ static vg_status judge_cells(struct work *k, struct vg_error *err)
     vg_judge_faces(&k->view, volume, k->f, &k->unpaired, &n_component, err));
   j->n_component[k->at] = (uint32_t)n_component;
   if (k->is_field) k->w->n_field_component += n_component;
-  if (j->sizing && (k->is_field || j->edges_of == VG_JUDGED_WHOLE))
-    VG_TRY(vg_judge_edges(&k->view, j->sizing, k->f, &k->unpaired, err));
+  VG_TRY(judge_sizes(k, err));
   VG_TRY(note_used(k, err));
   VG_TRY(keep_faces(k, err));
   VG_TRY(keep_edges(k, err));

@@ -333,7 +333,7 @@ static vg_status sum_stats(struct vg_slices_judgement *j, int q,
                            struct vg_error *err)
 {
   struct vg_stats *f = j->worker[0].figures[q];
-  double extreme[3];
+  double extreme[3 + VG_MOST_N];
   vg_status st;
 
   for (int i = 1; i < j->n_worker; i++)
@@ -342,13 +342,15 @@ static vg_status sum_stats(struct vg_slices_judgement *j, int q,
   extreme[0] = -f->angle_min;
   extreme[1] = f->angle_max;
   extreme[2] = -f->radius_ratio_min;
+  memcpy(extreme + 3, f->most, sizeof f->most);
   VG_TRY(vg_comm_sum(j->comm, sizeof f->n / sizeof(uint64_t), (uint64_t *)&f->n,
                      err));
-  VG_TRY(vg_comm_max(j->comm, 3, extreme, err));
+  VG_TRY(vg_comm_max(j->comm, 3 + VG_MOST_N, extreme, err));
   VG_TRY(gather_worst(j->comm, f, err));
   f->angle_min = -extreme[0];
   f->angle_max = extreme[1];
   f->radius_ratio_min = -extreme[2];
+  memcpy(f->most, extreme + 3, sizeof f->most);
 done:
   return st;
 }
@@ -379,10 +381,12 @@ static void report_all(struct vg_slices_judgement *j, const size_t *n_component,
                        uint64_t front_faces, double enclosed,
                        struct vg_mesh_report *r)
 {
+  int has = (j->sizing ? VG_HAS_SIZING : 0) |
+            (j->in_metric ? VG_HAS_METRIC : 0) | (j->flat ? VG_HAS_FLAT : 0);
+
   for (int q = 0; q < j->n_judged; q++)
     vg_stats_report(j->worker[0].figures[q], n_component[q],
-                    j->sizing && j->edges_of == q, j->flat && j->edges_of == q,
-                    &r[q]);
+                    j->edges_of == q ? has : 0, &r[q]);
   r[VG_JUDGED_WHOLE].enclosed = enclosed;
   vg_report_conclude(&r[VG_JUDGED_WHOLE]);
   if (j->n_judged == 1) return;
@@ -508,6 +512,7 @@ static vg_status judge_again(struct vg_slices_judgement *j,
                                        .sizing = j->sizing,
                                        .threads = j->threads,
                                        .n_judged = j->n_judged,
+                                       .in_metric = j->in_metric,
                                        .edges_of = j->edges_of,
                                        .flat = j->flat };
   vg_status st;
@@ -541,16 +546,18 @@ vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
 {
   assert(s->boundary && whole);
   assert(threads >= 0);
-  struct vg_slices_judgement j = { .comm = comm,
-                                   .s = s,
-                                   .sizing = sizing,
-                                   .threads = threads,
-                                   .flat = flat,
-                                   .body = body,
-                                   .context = context,
-                                   .n_judged = field ? VG_JUDGED : 1,
-                                   .edges_of = field ? VG_JUDGED_FIELD
-                                                     : VG_JUDGED_WHOLE };
+  struct vg_slices_judgement j = {
+    .comm = comm,
+    .s = s,
+    .sizing = sizing,
+    .threads = threads,
+    .flat = flat,
+    .body = body,
+    .context = context,
+    .n_judged = field ? VG_JUDGED : 1,
+    .in_metric = sizing && vg_sizing_is_stretched(sizing),
+    .edges_of = field ? VG_JUDGED_FIELD : VG_JUDGED_WHOLE
+  };
   struct vg_mesh_report r[VG_JUDGED];
   vg_status st = prepare(&j, err);
 

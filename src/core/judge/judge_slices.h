@@ -32,13 +32,16 @@
  *
  * @param sizing  may be NULL; edges are those of the field if a report for it
  *                is requested (except those of its faces without a neighbour),
- *                else those of the whole mesh (except those of the boundary)
+ *                else those of the whole mesh (except those of the boundary).
+ *                Figures in the metric of a stretched field are in the same
+ *                report, and include these exceptions
  * @param field   may be NULL
  *
  * VG_ERR_MEMORY. VG_ERR_INPUT if slices and their counts do not agree. Errors
  * of the server of slices are passed on. Reports are unchanged on failure.
  * Memory: one slice and its faces per thread; 28 bytes per unmatched face and
- * 8 per point, twice that while they are sent; n_point / 8. */
+ * 8 per point, twice that while they are sent; n_point / 8; in a metric, 57
+ * bytes per point of a slice per thread. */
 vg_status vg_slices_judge(struct vg_comm *comm, const struct vg_slices *s,
                           uint64_t front_faces, const struct vg_sizing *sizing,
                           int threads, struct vg_mesh_report *whole,

@@ -39,7 +39,8 @@ struct vg_face_key {
 
 struct vg_edge_item {
   uint32_t node[2]; /* lower, upper node */
-  double ratio;     /* length / target; < 0: do not count */
+  double ratio;     /* length / target, or length in the metric; < 0: the edge
+                       is on the boundary of the checked cells */
 };
 
 struct vg_place_item {
@@ -73,6 +74,7 @@ struct vg_slices_judgement {
   const struct vg_slices *s;
   const struct vg_sizing *sizing;
   int threads, n_judged;      /* n_judged 1: no report of the field */
+  int in_metric;              /* 1: measure lengths and cells in the metric */
   int edges_of;               /* VG_JUDGED_...: whole mesh or field for the edge
                                  statistics and flat cells */
   const struct vg_flat *flat; /* NULL: do not classify flat cells */

@@ -156,9 +156,28 @@ double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
   return vg_exact_value(&sum) / 6;
 }
 
+/* Compare edges with the field; in its metric, measure cells, too. */
+static vg_status judge_sizes(const struct vg_mesh *m,
+                             const struct vg_sizing *sizing, int in_metric,
+                             struct vg_stats *f, struct vg_error *err)
+{
+  struct vg_point_metrics metrics;
+  vg_status st;
+
+  if (!in_metric) return vg_judge_edges(m, sizing, NULL, f, NULL, err);
+  st = vg_point_metrics_init(&metrics, sizing, m->n_point,
+                             (const double(*)[3])m->point, err);
+  if (st < 0) return st;
+  vg_judge_metric(m, &metrics, f);
+  st = vg_judge_edges(m, sizing, &metrics, f, NULL, err);
+  vg_point_metrics_release(&metrics);
+  return st;
+}
+
 static vg_status judge_all(const struct vg_mesh *m,
-                           const struct vg_sizing *sizing, struct vg_stats *f,
-                           size_t *n_component, struct vg_error *err)
+                           const struct vg_sizing *sizing, int has,
+                           struct vg_stats *f, size_t *n_component,
+                           struct vg_error *err)
 {
   float *volume = NULL;
   vg_status st;
@@ -174,14 +193,16 @@ static vg_status judge_all(const struct vg_mesh *m,
   VG_TRY(vg_judge_faces(m, volume, f, NULL, n_component, err));
   free(volume);
   volume = NULL;
-  if (sizing) VG_TRY(vg_judge_edges(m, sizing, f, NULL, err));
+  if (has & VG_HAS_SIZING)
+    VG_TRY(judge_sizes(m, sizing, has & VG_HAS_METRIC, f, err));
 done:
   free(volume);
   return st;
 }
 
-vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
-                        struct vg_mesh_report *report, struct vg_error *err)
+static vg_status judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
+                       int has, struct vg_mesh_report *report,
+                       struct vg_error *err)
 {
   assert(m && report);
 
@@ -199,8 +220,9 @@ vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
                                         (const double(*)[3])m->point);
   /* With bad indices or coordinates no other figure is meaningful. */
   sound = !f->n.bad_index && !f->n.not_finite && f->n.n_cell;
-  if (sound) VG_TRY(judge_all(m, sizing, f, &n_component, err));
-  vg_stats_report(f, n_component, sound && sizing, 0, report);
+  if (!sound) has = 0;
+  if (sound) VG_TRY(judge_all(m, sizing, has, f, &n_component, err));
+  vg_stats_report(f, n_component, has, report);
   if (!sound) goto done;
   vg_mesh_bounds(m, lo, hi);
   report->enclosed = vg_enclosed_volume(m, lo, hi);
@@ -208,4 +230,22 @@ vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
 done:
   free(f);
   return st;
+}
+
+vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
+                        struct vg_mesh_report *report, struct vg_error *err)
+{
+  int has = sizing ? VG_HAS_SIZING : 0;
+
+  if (sizing && vg_sizing_is_stretched(sizing)) has |= VG_HAS_METRIC;
+  return judge(m, sizing, has, report, err);
+}
+
+vg_status vg_mesh_judge_in_metric(const struct vg_mesh *m,
+                                  const struct vg_sizing *sizing,
+                                  struct vg_mesh_report *report,
+                                  struct vg_error *err)
+{
+  assert(sizing);
+  return judge(m, sizing, VG_HAS_SIZING | VG_HAS_METRIC, report, err);
 }

@@ -15,6 +15,12 @@
 #define VG_HIST_UNIT 20  /* bins of 0.05 */
 #define VG_WORST 10
 
+/* Lengths in the metric are counted in bins of equal ratio, twelve per octave,
+ * from 2^-5 to 2^5; shorter and longer edges are in the first and last bin. */
+#define VG_PER_OCTAVE 12
+#define VG_LENGTH_LOWEST 0.03125
+#define VG_HIST_LENGTH (10 * VG_PER_OCTAVE)
+
 struct vg_worst_cell {
   size_t cell;                  /* 0-based: tets, pyramids, prisms, hexes */
   double value, at[3];          /* minimum dihedral in degrees, centroid */
@@ -26,6 +32,23 @@ struct vg_flat_count {
   size_t n;
   size_t at_interface, spanning, needle; /* of these: as in struct
                                             vg_flat_class */
+};
+
+/* Figures in the metric of the sizing field, of the tetrahedra that are
+ * checked. Mean ratios are 12 (3V)^(2/3) / sum of squared edges, with volume
+ * and edges measured in the metric of the corner where cells are smallest. */
+struct vg_metric_report {
+  size_t n_edge, n_cell;
+  double length_min, length_max;
+  double within[3]; /* % of edges with lengths within 0.7 to 1.4,
+                       1/sqrt 2 to sqrt 2, 0.5 to 2 */
+  double mean_ratio_mean, mean_ratio_min;
+  double below[2];   /* % of cells with mean ratios below 0.1, 0.2 */
+  double complexity; /* integral of sqrt(det M) over the cells */
+  double ideal;      /* number of regular tetrahedra of edge length 1
+                        with the volume of the mesh in the metric */
+  size_t hist_length[VG_HIST_LENGTH];
+  size_t hist_mean_ratio[VG_HIST_UNIT];
 };
 
 struct vg_mesh_report {
@@ -63,15 +86,28 @@ struct vg_mesh_report {
   double edge_mean;               /* mean of length / target */
   double edge_within;             /* % within [0.7, 1.5] of the target */
   size_t hist_edge[VG_HIST_UNIT]; /* length / target, bins of 0.1 */
+  /* Figures in the metric (if has_metric). */
+  int has_metric;
+  struct vg_metric_report metric;
 };
 
 /** Check m. sizing may be NULL. The target length of an edge is the sizing
- * field at its midpoint. Extreme angles are computed with libm and only used
- * for reporting. Cost: O(n) memory for one face table, O(n log n) time or
- * better. VG_ERR_MEMORY if memory is refused; an invalid mesh is VG_OK with
- * is_valid 0. */
+ * field at its midpoint. If the field is stretched, the length in the metric
+ * (vg_metric_length) takes the place of length / target, edges are those of
+ * tetrahedra, and the report has figures in the metric. Extreme angles are
+ * computed with libm and only used for reporting. Cost: O(n) memory for one
+ * face table, O(n log n) time or better; in a metric, 56 bytes per point more.
+ * VG_ERR_MEMORY if memory is refused; an invalid mesh is VG_OK with is_valid 0.
+ */
 vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
                         struct vg_mesh_report *report, struct vg_error *err);
+
+/** As vg_mesh_judge with a stretched field, for any field: the metric of an
+ * isotropic field is 1 / h^2 times the identity. */
+vg_status vg_mesh_judge_in_metric(const struct vg_mesh *m,
+                                  const struct vg_sizing *sizing,
+                                  struct vg_mesh_report *report,
+                                  struct vg_error *err);
 
 /** Does the mesh check regard a cell as positive? The exact sign of the volume
  * for a tetrahedron; for other cells, the signs of the volume and of the

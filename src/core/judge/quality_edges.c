@@ -22,11 +22,16 @@
 struct edges {
   const struct vg_mesh *m;
   const struct vg_sizing *sizing;
+  struct vg_point_metrics *metrics; /* NULL: lengths are not measured in a
+                                       metric */
   uint32_t *count;      /* [n_point] entries by lower node; then ends of
                            buckets */
   uint32_t *n_boundary; /* [n_point] entries from boundary faces */
   uint32_t *mark;       /* [n_point] lower node + 1 of the last edge with
                            this upper node */
+  uint8_t *is_boundary; /* [n_point] in a metric: the last edge with this
+                           upper node was entered by a boundary face, and not
+                           yet by a cell */
   uint32_t *entry;
   uint32_t lo, n;
   int pass; /* 0: count, 1: enter */
@@ -87,6 +92,7 @@ static void enter_cells(struct edges *e)
   const struct vg_mesh *m = e->m;
 
   enter_all(e, (const uint32_t *)m->tet, m->n_tet, 4, tet_edge, 6);
+  if (e->metrics) return;
   enter_all(e, (const uint32_t *)m->pyr, m->n_pyr, 5, pyr_edge, 8);
   enter_all(e, (const uint32_t *)m->pri, m->n_pri, 6, pri_edge, 9);
   enter_all(e, (const uint32_t *)m->hex, m->n_hex, 8, hex_edge, 12);
@@ -162,12 +168,57 @@ static void measure_unpaired(struct edges *e)
   for (size_t at = 0, n; at < e->unpaired->n_edge; at += n) {
     struct vg_unpaired_edge *edge = e->unpaired->edge + at;
 
+    if (e->metrics) {
+      n = 1;
+      edge->ratio = vg_length_in_metric(e->metrics, edge->node[0],
+                                        edge->node[1]);
+      continue;
+    }
     n = e->unpaired->n_edge - at;
     if (n > GROUP) n = GROUP;
     for (size_t i = 0; i < n; i++)
       for (int k = 0; k < 2; k++) pair[i][k] = edge[i].node[k];
     measure(e->m, e->sizing, n, (const uint32_t(*)[2])pair, ratio);
     for (size_t i = 0; i < n; i++) edge[i].ratio = ratio[i];
+  }
+}
+
+static void count_in_metric(struct edges *e, uint32_t a, uint32_t b,
+                            int is_boundary)
+{
+  double length;
+
+  if (is_boundary && e->unpaired) {
+    add_unpaired(e, a, b);
+    return;
+  }
+  length = vg_length_in_metric(e->metrics, a, b);
+  vg_stats_length(e->f, length);
+  if (!is_boundary) vg_stats_edge(e->f, length);
+}
+
+/* As measure_range. An edge of a boundary face counts when the first
+ * tetrahedron enters it. */
+static void measure_range_in_metric(struct edges *e)
+{
+  size_t at = 0;
+
+  for (uint32_t v = e->lo; v < e->lo + e->n; v++) {
+    size_t inner = at + e->n_boundary[v], end = e->count[v];
+
+    for (; at < inner; at++) {
+      e->mark[e->entry[at]] = v + 1;
+      e->is_boundary[e->entry[at]] = 1;
+    }
+    for (; at < end; at++) {
+      uint32_t w = e->entry[at];
+      int is_seen = e->mark[w] == v + 1, is_boundary = e->is_boundary[w];
+
+      if (is_seen && !is_boundary) continue;
+      e->mark[w] = v + 1;
+      e->is_boundary[w] = 0;
+      count_in_metric(e, v, w, is_seen);
+    }
   }
 }
 
@@ -219,6 +270,10 @@ static vg_status prepare(struct edges *e, size_t *room, struct vg_error *err)
   e->count = vg_calloc(m->n_point, sizeof *e->count);
   e->n_boundary = vg_calloc(m->n_point, sizeof *e->n_boundary);
   e->mark = vg_calloc(m->n_point, sizeof *e->mark);
+  if (e->metrics) {
+    e->is_boundary = vg_calloc(m->n_point, 1);
+    if (!e->is_boundary) return vg_fail_memory(err, "the edges of the mesh");
+  }
   if (!e->count || !e->n_boundary || !e->mark)
     return vg_fail_memory(err, "the edges of the mesh");
   count_entries(e);
@@ -234,7 +289,8 @@ static vg_status prepare(struct edges *e, size_t *room, struct vg_error *err)
 }
 
 vg_status vg_judge_edges(const struct vg_mesh *m,
-                         const struct vg_sizing *sizing, struct vg_stats *f,
+                         const struct vg_sizing *sizing,
+                         struct vg_point_metrics *metrics, struct vg_stats *f,
                          struct vg_unpaired *unpaired, struct vg_error *err)
 {
   assert(sizing && f);
@@ -246,6 +302,7 @@ vg_status vg_judge_edges(const struct vg_mesh *m,
   if (!e) return vg_fail_memory(err, "the edges of the mesh");
   e->m = m;
   e->sizing = sizing;
+  e->metrics = metrics;
   e->f = f;
   e->unpaired = unpaired;
   VG_TRY(prepare(e, &room, err));
@@ -255,7 +312,8 @@ vg_status vg_judge_edges(const struct vg_mesh *m,
     e->n = hi - lo;
     enter_boundary(e);
     enter_cells(e);
-    measure_range(e);
+    if (metrics) measure_range_in_metric(e);
+    else measure_range(e);
   }
   flush(e);
   if (e->refused) {
@@ -267,6 +325,7 @@ done:
   free(e->count);
   free(e->n_boundary);
   free(e->mark);
+  free(e->is_boundary);
   free(e->entry);
   free(e);
   return st;

@@ -20,6 +20,7 @@ struct vg_stats *vg_stats_new(void)
   if (!f) return NULL;
   f->angle_min = 180;
   f->radius_ratio_min = 1;
+  for (int k = 0; k < VG_MOST_N; k++) f->most[k] = -INFINITY;
   return f;
 }
 
@@ -56,6 +57,8 @@ void vg_stats_add(struct vg_stats *f, const struct vg_stats *more)
   if (more->angle_max > f->angle_max) f->angle_max = more->angle_max;
   if (more->radius_ratio_min < f->radius_ratio_min)
     f->radius_ratio_min = more->radius_ratio_min;
+  for (int k = 0; k < VG_MOST_N; k++)
+    if (more->most[k] > f->most[k]) f->most[k] = more->most[k];
   for (size_t i = 0; i < more->n_worst; i++) vg_stats_worst(f, &more->worst[i]);
 }
 
@@ -195,15 +198,17 @@ static void report_flat(const struct vg_counts *n, struct vg_mesh_report *r)
                                          (size_t)n->flat_needle[c] };
 }
 
-void vg_stats_report(const struct vg_stats *f, size_t n_component,
-                     int has_sizing, int has_flat, struct vg_mesh_report *r)
+void vg_stats_report(const struct vg_stats *f, size_t n_component, int has,
+                     struct vg_mesh_report *r)
 {
   memset(r, 0, sizeof *r);
   report_validity(&f->n, r);
   report_shape(f, r);
   report_ratios(&f->n, r);
-  if (has_sizing) report_edges(&f->n, r);
-  if (has_flat) report_flat(&f->n, r);
+  if (has & VG_HAS_SIZING) report_edges(&f->n, r);
+  if (has & VG_HAS_FLAT) report_flat(&f->n, r);
+  r->has_metric = has & VG_HAS_METRIC ? 1 : 0;
+  if (r->has_metric) vg_stats_report_metric(f, &r->metric);
   r->n_component = n_component;
 }
 

@@ -3,10 +3,11 @@
  * and judge_slices.c. Private.
  *
  * A mesh check consists of four sweeps: points (quality.c), shape of cells
- * (quality_shape.c), faces (quality_faces.c) and edges (quality_edges.c). All
- * of them add to one set of figures. These are integers, exact sums and
- * extremes, and may thus be added up in any order. The last three sweeps run
- * only if all indices are in range and all coordinates are finite. */
+ * (quality_shape.c), faces (quality_faces.c) and edges (quality_edges.c). In a
+ * metric, a fifth sweep measures the cells in it (quality_metric.c). All of
+ * them add to one set of figures. These are integers, exact sums and extremes,
+ * and may thus be added up in any order. All sweeps but the first run only if
+ * all indices are in range and all coordinates are finite. */
 #ifndef VG_CORE_JUDGE_QUALITY_PARTS_H
 #define VG_CORE_JUDGE_QUALITY_PARTS_H
 
@@ -35,14 +36,22 @@ struct vg_counts {
   uint64_t angle_min[VG_HIST_ANGLE], angle_max[VG_HIST_ANGLE];
   uint64_t radius_ratio[VG_HIST_UNIT], edge[VG_HIST_UNIT];
   uint64_t fine[VG_N_FINE], ratio[VG_N_RATIO];
+  uint64_t n_length, within[3], length[VG_HIST_LENGTH];
+  uint64_t n_metric_cell, metric_below[2], metric_ratio[VG_HIST_UNIT];
   uint64_t flat[VG_FLAT_CAUSES], flat_interface[VG_FLAT_CAUSES];
   uint64_t flat_spanning[VG_FLAT_CAUSES], flat_needle[VG_FLAT_CAUSES];
   struct vg_exact volume, sum_radius, sum_mean, sum_edge, sum_length;
+  struct vg_exact sum_metric_ratio, complexity;
 };
+
+/** Extremes in the metric; smallest values are stored as the largest of their
+ * negatives, so that all extremes of ranks are combined in the same way. */
+enum { VG_MOST_SHORT, VG_MOST_LONG, VG_MOST_DISTORTED, VG_MOST_N };
 
 struct vg_stats {
   struct vg_counts n;
   double angle_min, angle_max, radius_ratio_min;
+  double most[VG_MOST_N];
   struct vg_worst_cell worst[VG_WORST]; /* sorted by angle, then by cell */
   size_t n_worst;
 };
@@ -67,11 +76,25 @@ void vg_stats_ratio(struct vg_stats *f, float v, float w);
 /** Count an edge whose length is `ratio` times its target. */
 void vg_stats_edge(struct vg_stats *f, double ratio);
 
+/** Count an edge of this length in the metric. */
+void vg_stats_length(struct vg_stats *f, double length);
+
+/** Groups of figures that a report includes on request. */
+enum {
+  VG_HAS_SIZING = 1, /* edges, compared with the sizing field */
+  VG_HAS_METRIC = 2, /* figures in the metric */
+  VG_HAS_FLAT = 4    /* causes of flat cells */
+};
+
 /** Fill the report, except for `enclosed` and the members that depend on it.
- * has_sizing: include the figures of edges; has_flat:
- * include the causes of flat cells. */
-void vg_stats_report(const struct vg_stats *f, size_t n_component,
-                     int has_sizing, int has_flat, struct vg_mesh_report *r);
+ *
+ * @param has  sum of VG_HAS_... */
+void vg_stats_report(const struct vg_stats *f, size_t n_component, int has,
+                     struct vg_mesh_report *r);
+
+/** Fill the figures in the metric. */
+void vg_stats_report_metric(const struct vg_stats *f,
+                            struct vg_metric_report *r);
 
 /** Compute the volume error from r->volume and r->enclosed, and whether the
  * mesh is valid. */
@@ -129,6 +152,32 @@ void vg_judge_shape(const struct vg_mesh *m, size_t first,
                     const struct vg_flat_part *part, float *volume,
                     struct vg_stats *f);
 
+/** Metrics at the points of a mesh or slice, evaluated when they are first
+ * needed. Threads: one. */
+struct vg_judged_point {
+  double m[6];
+  double size; /* det(M)^(-1/6); 0: not yet evaluated */
+};
+struct vg_point_metrics {
+  const struct vg_sizing *sizing;
+  const double (*x)[3];
+  struct vg_judged_point *at; /* [number of points] */
+};
+
+/** Metrics of the field at n points; VG_ERR_MEMORY. Points are borrowed. */
+vg_status vg_point_metrics_init(struct vg_point_metrics *p,
+                                const struct vg_sizing *sizing, size_t n,
+                                const double (*x)[3], struct vg_error *err);
+void vg_point_metrics_release(struct vg_point_metrics *p);
+
+/** Length of the edge a b in the metric. Exchanging a and b gives the same
+ * bits. */
+double vg_length_in_metric(struct vg_point_metrics *p, uint32_t a, uint32_t b);
+
+/** Measure the tetrahedra of m in the metric: mean ratios, complexity. */
+void vg_judge_metric(const struct vg_mesh *m, struct vg_point_metrics *metrics,
+                     struct vg_stats *f);
+
 /** Faces of a part of a mesh that have no neighbour in it, or too many. */
 struct vg_unpaired_face {
   uint32_t node[4];   /* outward winding; VG_NO_NODE: not a quad */
@@ -137,14 +186,14 @@ struct vg_unpaired_face {
 };
 struct vg_unpaired_edge {
   uint32_t node[2];
-  double ratio;
+  double ratio; /* length / target, or length in the metric */
 };
 
 struct vg_unpaired {
   size_t n_face, cap_face, n_edge, cap_edge;
   struct vg_unpaired_face *face;
-  struct vg_unpaired_edge *edge; /* edges of these faces, each once: length /
-                                    target */
+  struct vg_unpaired_edge *edge; /* edges of these faces, each once; in a
+                                    metric only those of tetrahedra */
   /* NULL, or selects faces with two cells that must also be listed. */
   int (*is_shared)(const void *context, const uint32_t node[4]);
   const void *context;
@@ -179,9 +228,14 @@ vg_status vg_pair_faces(const struct vg_mesh *m, const float *volume,
                         uint32_t *parent, struct vg_error *err);
 
 /** Compare edges with the sizing field, except edges of boundary faces. With
- * unpaired: except edges of unpaired faces, which are listed. */
+ * unpaired: except edges of unpaired faces, which are listed.
+ *
+ * @param metrics  not NULL: edges of tetrahedra are measured in the metric
+ *                 instead, and the lengths of all of them are counted,
+ *                 including those of boundary faces */
 vg_status vg_judge_edges(const struct vg_mesh *m,
-                         const struct vg_sizing *sizing, struct vg_stats *f,
+                         const struct vg_sizing *sizing,
+                         struct vg_point_metrics *metrics, struct vg_stats *f,
                          struct vg_unpaired *unpaired, struct vg_error *err);
 
 #endif
