@@ -13,12 +13,14 @@
 #include "io/mesh/ugrid.h"
 #include "run/common/text.h"
 #include "run/input/input.h"
+#include "run/input/sizes.h"
 #include "run/report/report.h"
 #include "run/settings/plan_options.h"
 
 struct arguments {
   struct vg_cli_one one;
   const char *deck, *defects, *against, *vtu;
+  const char *sizes; /* NULL: not on the command line */
   struct vg_cli_overrides kept;
   int *written; /* set to 1 once the report has been printed as JSON */
 };
@@ -34,19 +36,47 @@ static error_t option(int key, char *arg, struct argp_state *state)
   case 'v': a->vtu = arg; return 0;
   default: break;
   }
+  if (key == vg_cli_option_key("sizes")) a->sizes = arg;
   if (!vg_cli_one(&a->one, "file", key, arg, state)) return 0;
   return vg_cli_add_override(&a->kept, key, arg, state);
 }
 
-/* The sizing field of the deck, with which edges are compared. */
-static vg_status field(const struct arguments *a, const struct vg_settings *s,
+/* The sizing field of the deck and of the file of sizes, with which the mesh is
+ * compared. Without a deck, the sizes of the file alone. */
+static vg_status field(const struct arguments *a, struct vg_problem *p,
                        const struct vg_mesh *m, struct vg_sizing **out,
                        struct vg_error *err)
 {
-  struct vg_sizing_options options = vg_options_sizing(s, NULL);
+  struct vg_read read = { .settings = p->asked, .notes = &p->notes };
+  const struct vg_settings *s = &p->asked;
+  struct vg_sizing_options options;
+  vg_status st;
 
-  if (!a->deck) return VG_OK;
-  return vg_sizing_new(&options, s->n_source, s->source, m, out, err);
+  if (!a->deck && !a->sizes) return VG_OK;
+  st = vg_read_sizes(&read, err);
+  if (st < 0) return st;
+  options = vg_options_sizing(s, read.map);
+  if (!a->deck) options.from_surface = 0;
+  st = vg_sizing_new(&options, a->deck ? s->n_source : 0, s->source, m, out,
+                     err);
+  vg_size_samples_free(read.samples);
+  return st;
+}
+
+/* Sizes of a file request figures in the metric, even if they do not depend on
+ * the direction. */
+static vg_status judge(const struct arguments *a, struct vg_problem *p,
+                       const struct vg_mesh *m, struct vg_mesh_report *r,
+                       struct vg_error *err)
+{
+  struct vg_sizing *sizing = NULL;
+  vg_status st = field(a, p, m, &sizing, err);
+
+  if (st < 0) return st;
+  st = a->sizes ? vg_mesh_judge_in_metric(m, sizing, r, err)
+                : vg_mesh_judge(m, sizing, r, err);
+  vg_sizing_free(sizing);
+  return st;
 }
 
 static void print_json(json_t *o, const struct arguments *a)
@@ -78,18 +108,16 @@ static vg_status not_valid(const struct arguments *a,
                  a->one.file, cells);
 }
 
-static vg_status check_mesh(const struct arguments *a,
-                            const struct vg_settings *s, struct vg_mesh *m,
+static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
+                            const struct vg_mesh *m,
                             const struct vg_turned *turned,
                             struct vg_error *err)
 {
   struct vg_mesh_report r;
-  struct vg_sizing *sizing = NULL;
   vg_status st;
 
   memset(&r, 0, sizeof r);
-  VG_TRY(field(a, s, m, &sizing, err));
-  VG_TRY(vg_mesh_judge(m, sizing, &r, err));
+  VG_TRY(judge(a, p, m, &r, err));
   if (!r.is_valid) st = not_valid(a, turned, err);
   if (a->one.json) {
     json_t *o = json_pack("{s:s s:o s:b s:I s:o s:o s:o}", "vanguard",
@@ -109,10 +137,11 @@ static vg_status check_mesh(const struct arguments *a,
     if (turned->cell)
       printf("  cells of negative volume, mirrored on reading: %zu\n",
              turned->cell);
+    for (size_t i = 0; a->sizes && i < p->notes.n; i++)
+      printf("  note: %s\n", p->notes.text[i]);
     vg_report_mesh_text(stdout, &r, 1);
   }
 done:
-  vg_sizing_free(sizing);
   return st;
 }
 
@@ -126,7 +155,7 @@ static vg_status check_volume(const struct arguments *a, struct vg_problem *p,
 
   VG_TRY(vg_mesh_read(a->one.file, &m, &info, err));
   vg_display_clear(show);
-  st = check_mesh(a, &p->asked, &m, &info.turned, err);
+  st = check_mesh(a, p, &m, &info.turned, err);
 done:
   vg_mesh_release(&m);
   return st;
@@ -200,7 +229,8 @@ int vg_cmd_check(int argc, char **argv)
     .args_doc = "FILE",
     .doc =
       "Check a volume mesh or a surface. For a volume mesh, report validity, "
-      "dihedral angles, radius ratio, histograms and worst cells. For a "
+      "dihedral angles, radius ratio, histograms and worst cells, with "
+      "--sizes also lengths and shapes in the metric of the sizes. For a "
       "surface, report how 'vanguard mesh' with the same options would "
       "process it: flow domain, patches, repairs, remeshing, and every defect "
       "for which it would be rejected.\v"

@@ -38,10 +38,29 @@ static double height_of(double count, double decades)
          : 0;
 }
 
+/* Begin of bin i; of equal ratios: `lowest` times a power of 2^(1/4). */
+static double begin_of(const struct bars *b, size_t i)
+{
+  static const double root[4] = { 1, 1.189207115002721, 1.4142135623730951,
+                                  1.681792830507429 };
+  size_t quarter;
+
+  if (!(b->lowest > 0)) return b->step * (double)i;
+  quarter = i * (size_t)(4 / b->per_octave);
+  return ldexp(b->lowest * root[quarter % 4], (int)(quarter / 4));
+}
+
+/* Number of bins from one label to the next. */
+static size_t label_each(const struct bars *b, size_t n)
+{
+  if (b->lowest > 0) return 2 * (size_t)b->per_octave;
+  return n > 20 ? 6 : 4;
+}
+
 static void axes(struct page *p, const struct bars *b, size_t n, double decades)
 {
   double wide = (WIDTH - LEFT - RIGHT) / (double)n;
-  size_t each = n > 20 ? 6 : 4;
+  size_t each = label_each(b, n);
   double at = 1;
 
   for (int d = 0; d <= (int)decades; d++, at *= 10) {
@@ -58,7 +77,7 @@ static void axes(struct page *p, const struct bars *b, size_t n, double decades)
   for (size_t i = 0; i <= n; i += each) {
     vg_page_format(p, "<text x=\"%d\" y=\"%d\" class=\"middle\">",
                    (int)(LEFT + wide * (double)i), HEIGHT - BOTTOM + 15);
-    vg_page_fixed(p, b->step * (double)i, b->decimals);
+    vg_page_fixed(p, begin_of(b, i), b->decimals);
     vg_page_markup(p, "</text>");
   }
   vg_page_format(p, "<text x=\"%d\" y=\"%d\" class=\"middle\">%s</text>",
@@ -69,7 +88,7 @@ static void bar(struct page *p, const struct bars *b, size_t i, size_t n,
                 double count, double decades)
 {
   double wide = (WIDTH - LEFT - RIGHT) / (double)n;
-  double low = b->step * (double)i, high = low + b->step;
+  double low = begin_of(b, i), high = begin_of(b, i + 1);
   double height = height_of(count, decades);
   int is_bad = high <= b->bad_below + 1e-9 || low >= b->bad_from - 1e-9;
 

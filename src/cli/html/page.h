@@ -110,12 +110,15 @@ vg_status vg_html_run(struct page *p, struct vg_error *err);
 /* html_cuts.c: a cut with its cells coloured by smallest angle. */
 void vg_html_angles(struct page *p);
 
-/* A histogram with bins of width `step` from 0; bins below bad_below and from
- * bad_from on are highlighted. Counts have a logarithmic scale. */
+/* A histogram with bins of width `step` from 0, or of equal ratio; bins below
+ * bad_below and from bad_from on are highlighted. Counts have a logarithmic
+ * scale. */
 struct bars {
   const char *title, *unit, *alt;
   int decimals;
   double step, bad_below, bad_from;
+  double lowest;  /* begin of the first bin if bins have equal ratios, else 0 */
+  int per_octave; /* number of such bins per factor of 2: 1, 2 or 4 */
 };
 void vg_html_bars(struct page *p, const struct bars *b, const json_t *counts);
 

@@ -6,6 +6,7 @@
 #include "run/common/text.h"
 #include "run/input/layers.h"
 #include "run/report/report.h"
+#include "run/report/report_parts.h"
 
 #define FIRST_SHOWN                                                            \
   1e-3 /* relative difference of first heights from which a                    \
@@ -316,20 +317,10 @@ void vg_report_missed_text(FILE *to, const struct vg_layer_stage *s,
   }
 }
 
-static json_t *real(double v)
-{
-  return isfinite(v) ? json_real(v) : json_null();
-}
-
-static json_t *whole(size_t n)
-{
-  return json_integer((json_int_t)n);
-}
-
 static json_t *range(const struct vg_range *r)
 {
-  return json_pack("{s:o s:o s:o}", "min", real(r->min), "mean", real(r->mean),
-                   "max", real(r->max));
+  return json_pack("{s:o s:o s:o}", "min", vg_json_real(r->min), "mean",
+                   vg_json_real(r->mean), "max", vg_json_real(r->max));
 }
 
 static json_t *causes_json(const size_t *count)
@@ -338,7 +329,7 @@ static json_t *causes_json(const size_t *count)
 
   for (int c = 0; c < VG_CAUSE_N; c++)
     json_object_set_new(o, vg_layer_cause_name((enum vg_layer_cause)c),
-                        whole(count[c]));
+                        vg_json_count(count[c]));
   return o;
 }
 
@@ -354,25 +345,28 @@ static json_t *wall_json(const struct vg_patch_layers *w)
   };
   json_t *o = json_object();
 
-  json_object_set_new(o, "faces", whole(w->n_face));
-  json_object_set_new(o, "points", whole(w->n_point));
-  json_object_set_new(o, "percent_full", real(w->full));
-  json_object_set_new(o, "percent_uncompressed", real(w->uncompressed));
-  json_object_set_new(o, "percent_any", real(w->any));
+  json_object_set_new(o, "faces", vg_json_count(w->n_face));
+  json_object_set_new(o, "points", vg_json_count(w->n_point));
+  json_object_set_new(o, "percent_full", vg_json_real(w->full));
+  json_object_set_new(o, "percent_uncompressed", vg_json_real(w->uncompressed));
+  json_object_set_new(o, "percent_any", vg_json_real(w->any));
   json_object_set_new(o, "height_over_growth_law",
-                      json_pack("{s:o s:o s:o}", "mean", real(w->share_mean),
-                                "percentile_5", real(w->share_low),
-                                "percent_area_above_0.9", real(w->share_area)));
+                      json_pack("{s:o s:o s:o}", "mean",
+                                vg_json_real(w->share_mean), "percentile_5",
+                                vg_json_real(w->share_low),
+                                "percent_area_above_0.9",
+                                vg_json_real(w->share_area)));
   for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
     json_object_set_new(o, ranges[i].name, range(ranges[i].r));
   json_object_set_new(o, "top_volume_ratio",
                       json_pack("{s:o s:o s:o s:o s:[f,f,f]}", "faces",
-                                whole(w->n_top), "median",
-                                real(w->top_ratio[0]), "percentile_95",
-                                real(w->top_ratio[1]), "max",
-                                real(w->top_ratio[2]), "max_at", w->top_at[0],
-                                w->top_at[1], w->top_at[2]));
-  json_object_set_new(o, "first_error_percent", real(100 * w->first_error));
+                                vg_json_count(w->n_top), "median",
+                                vg_json_real(w->top_ratio[0]), "percentile_95",
+                                vg_json_real(w->top_ratio[1]), "max",
+                                vg_json_real(w->top_ratio[2]), "max_at",
+                                w->top_at[0], w->top_at[1], w->top_at[2]));
+  json_object_set_new(o, "first_error_percent",
+                      vg_json_real(100 * w->first_error));
   json_object_set_new(o, "fewer_by_cause", causes_json(w->cause));
   json_object_set_new(o, "thinner_by_cause", causes_json(w->compressed));
   return o;
@@ -406,12 +400,11 @@ static json_t *missed_json(const struct vg_layer_stage *s,
     const struct vg_limit_missed *m = &s->missed[i];
     const struct vg_patch *p = &surface->patch[m->patch];
 
-    json_array_append_new(list,
-                          json_pack("{s:i s:o s:s s:o s:o}", "patch",
-                                    (int)p->id, "name", vg_text_json(p->name),
-                                    "limit", m->name, "required",
-                                    real(m->wanted), "got",
-                                    m->is_bare ? json_null() : real(m->got)));
+    json_array_append_new(
+      list, json_pack("{s:i s:o s:s s:o s:o}", "patch", (int)p->id, "name",
+                      vg_text_json(p->name), "limit", m->name, "required",
+                      vg_json_real(m->wanted), "got",
+                      m->is_bare ? json_null() : vg_json_real(m->got)));
   }
   return list;
 }
@@ -459,10 +452,11 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
   json_t *o = json_object();
 
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-    json_object_set_new(o, row[i].name, whole(row[i].n));
-  json_object_set_new(o, "top_angle_min", real(s->judgement.top_angle_min));
-  json_object_set_new(o, "reynolds", real(s->reynolds));
-  json_object_set_new(o, "reference_length", real(s->length));
+    json_object_set_new(o, row[i].name, vg_json_count(row[i].n));
+  json_object_set_new(o, "top_angle_min",
+                      vg_json_real(s->judgement.top_angle_min));
+  json_object_set_new(o, "reynolds", vg_json_real(s->reynolds));
+  json_object_set_new(o, "reference_length", vg_json_real(s->length));
   json_object_set_new(o, "columns_by_cause", causes_json(r->cause));
   json_object_set_new(o, "columns_compressed_by_cause",
                       causes_json(r->compressed));
@@ -472,8 +466,8 @@ json_t *vg_report_layers_json(const struct vg_layer_stage *s,
   json_object_set_new(o, "limits_missed", missed_json(s, surface));
   json_object_set_new(o, "seconds", seconds_json(s));
   json_object_set_new(o, "columns_per_second",
-                      whole(rate(r->n_column, r->time_total)));
+                      vg_json_count(rate(r->n_column, r->time_total)));
   json_object_set_new(o, "cells_per_second",
-                      whole(rate(r->n_cell, r->time_total)));
+                      vg_json_count(rate(r->n_cell, r->time_total)));
   return o;
 }

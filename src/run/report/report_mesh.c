@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Reports on volume meshes and the volume fill. Declared in
  * run/report/report.h. */
-#include <math.h>
+#include <assert.h>
 #include <string.h>
 #include <sys/resource.h>
 
 #include "run/common/text.h"
 #include "run/report/report.h"
+#include "run/report/report_parts.h"
 
 #define BAR_WIDTH 40
 
@@ -52,30 +53,40 @@ static size_t validity(const struct vg_mesh_report *r, int i, const char **key,
   return row[i].n;
 }
 
-static void bars(FILE *to, const char *title, const size_t *hist, int n,
-                 double width, int digits)
+void vg_report_bars(FILE *to, const char *title, size_t n, const size_t *hist,
+                    const double *limit, int digits)
 {
-  size_t total = 0, most = 0;
-  int first = n, last = -1;
+  size_t total = 0, most = 0, first = n, end = 0;
   char bar[BAR_WIDTH + 1], count[32];
 
-  for (int i = 0; i < n; i++) {
+  for (size_t i = 0; i < n; i++) {
     total += hist[i];
     if (hist[i] > most) most = hist[i];
     if (hist[i] && first == n) first = i;
-    if (hist[i]) last = i;
+    if (hist[i]) end = i + 1;
   }
   if (!total) return;
   fprintf(to, "\n  %s\n", title);
-  for (int i = first; i <= last; i++) {
+  for (size_t i = first; i < end; i++) {
     size_t len = (size_t)(BAR_WIDTH * (double)hist[i] / (double)most + 0.5);
 
     memset(bar, '#', len);
     bar[len] = 0;
-    fprintf(to, "  %6.*f - %6.*f %13s %7.3f %%  %s\n", digits, width * i,
-            digits, width * (i + 1), vg_text_count(hist[i], count),
+    fprintf(to, "  %6.*f - %6.*f %13s %7.3f %%  %s\n", digits, limit[i], digits,
+            limit[i + 1], vg_text_count(hist[i], count),
             100.0 * (double)hist[i] / (double)total, bar);
   }
+}
+
+/* A histogram with bins of equal width from 0. */
+static void bars(FILE *to, const char *title, const size_t *hist, size_t n,
+                 double width, int digits)
+{
+  double limit[VG_HIST_ANGLE + 1];
+
+  assert(n <= VG_HIST_ANGLE);
+  for (size_t i = 0; i <= n; i++) limit[i] = width * (double)i;
+  vg_report_bars(to, title, n, hist, limit, digits);
 }
 
 static void validity_text(FILE *to, const struct vg_mesh_report *r)
@@ -183,6 +194,7 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
 {
   validity_text(to, r);
   quality_text(to, r);
+  if (r->has_metric) vg_report_metric_text(to, &r->metric);
   flat_text(to, r);
   if (!full) return;
   bars(to, "Smallest dihedral angle of each cell (degrees)", r->hist_angle_min,
@@ -190,7 +202,8 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
   bars(to, "Largest dihedral angle of each cell (degrees)", r->hist_angle_max,
        VG_HIST_ANGLE, 5, 0);
   bars(to, "Radius ratio (3 r/R)", r->hist_radius_ratio, VG_HIST_UNIT, 0.05, 2);
-  if (r->has_sizing)
+  if (r->has_metric) vg_report_metric_bars(to, &r->metric);
+  else if (r->has_sizing)
     bars(to, "Edge length / target edge length", r->hist_edge, VG_HIST_UNIT,
          0.1, 1);
   if (r->n_worst) fprintf(to, "\n  Worst cells\n");
@@ -198,28 +211,6 @@ void vg_report_mesh_text(FILE *to, const struct vg_mesh_report *r, int full)
     fprintf(to, "    cell %zu: smallest angle %.2f degrees at (%g, %g, %g)\n",
             r->worst[i].cell + 1, r->worst[i].value, r->worst[i].at[0],
             r->worst[i].at[1], r->worst[i].at[2]);
-}
-
-static json_t *real(double v)
-{
-  return isfinite(v) ? json_real(v) : json_null();
-}
-
-static json_t *reals(const double *v, int n)
-{
-  json_t *list = json_array();
-
-  for (int i = 0; i < n; i++) json_array_append_new(list, real(v[i]));
-  return list;
-}
-
-static json_t *counts(const size_t *v, int n)
-{
-  json_t *list = json_array();
-
-  for (int i = 0; i < n; i++)
-    json_array_append_new(list, json_integer((json_int_t)v[i]));
-  return list;
 }
 
 static json_t *worst_json(const struct vg_mesh_report *r)
@@ -231,8 +222,8 @@ static json_t *worst_json(const struct vg_mesh_report *r)
 
     json_object_set_new(one, "cell",
                         json_integer((json_int_t)r->worst[i].cell + 1));
-    json_object_set_new(one, "angle_min", real(r->worst[i].value));
-    json_object_set_new(one, "at", reals(r->worst[i].at, 3));
+    json_object_set_new(one, "angle_min", vg_json_real(r->worst[i].value));
+    json_object_set_new(one, "at", vg_json_reals(r->worst[i].at, 3));
     json_array_append_new(list, one);
   }
   return list;
@@ -270,8 +261,8 @@ static json_t *flat_worst_json(const struct vg_mesh_report *r,
 
     if (w->points.kind[0] == VG_POINT_UNKNOWN) continue;
     one = json_object();
-    json_object_set_new(one, "angle", real(w->value));
-    json_object_set_new(one, "at", reals(w->at, 3));
+    json_object_set_new(one, "angle", vg_json_real(w->value));
+    json_object_set_new(one, "at", vg_json_reals(w->at, 3));
     json_object_set_new(one, "points", points_json(&w->points, patches));
     json_array_append_new(list, one);
   }
@@ -295,7 +286,7 @@ static json_t *flat_json(const struct vg_mesh_report *r,
                                   (json_int_t)f->spanning, "on_needles",
                                   (json_int_t)f->needle));
   }
-  json_object_set_new(o, "limit", real(VG_FLAT_LIMIT));
+  json_object_set_new(o, "limit", vg_json_real(VG_FLAT_LIMIT));
   json_object_set_new(o, "cells", json_integer(n));
   json_object_set_new(o, "by_cause", causes);
   json_object_set_new(o, "worst", flat_worst_json(r, patches));
@@ -322,9 +313,10 @@ static json_t *edges_json(const struct vg_mesh_report *r)
 
   if (!r->has_sizing) return json_null();
   o = json_object();
-  json_object_set_new(o, "mean", real(r->edge_mean));
-  json_object_set_new(o, "percent_within", real(r->edge_within));
-  json_object_set_new(o, "histogram", counts(r->hist_edge, VG_HIST_UNIT));
+  json_object_set_new(o, "mean", vg_json_real(r->edge_mean));
+  json_object_set_new(o, "percent_within", vg_json_real(r->edge_within));
+  json_object_set_new(o, "histogram",
+                      vg_json_counts(r->hist_edge, VG_HIST_UNIT));
   return o;
 }
 
@@ -338,27 +330,32 @@ json_t *vg_report_mesh_json(const struct vg_mesh_report *r,
   json_object_set_new(o, "points", json_integer((json_int_t)r->n_point));
   json_object_set_new(o, "cells", json_integer((json_int_t)r->n_cell));
   json_object_set_new(o, "regions", json_integer((json_int_t)r->n_component));
-  json_object_set_new(o, "volume", real(r->volume));
-  json_object_set_new(o, "enclosed", real(r->enclosed));
-  json_object_set_new(o, "volume_error", real(r->volume_error));
-  json_object_set_new(o, "angle_min", real(r->angle_min));
-  json_object_set_new(o, "angle_max", real(r->angle_max));
-  json_object_set_new(o, "angle_min_p1", real(r->angle_min_p1));
-  json_object_set_new(o, "percent_below_5_10_15_20_30", reals(r->below, 5));
-  json_object_set_new(o, "percent_above_150_160_170", reals(r->above, 3));
-  json_object_set_new(o, "radius_ratio_mean", real(r->radius_ratio_mean));
-  json_object_set_new(o, "radius_ratio_min", real(r->radius_ratio_min));
-  json_object_set_new(o, "mean_ratio_mean", real(r->mean_ratio_mean));
-  json_object_set_new(o, "edge_length", real(r->edge_length));
+  json_object_set_new(o, "volume", vg_json_real(r->volume));
+  json_object_set_new(o, "enclosed", vg_json_real(r->enclosed));
+  json_object_set_new(o, "volume_error", vg_json_real(r->volume_error));
+  json_object_set_new(o, "angle_min", vg_json_real(r->angle_min));
+  json_object_set_new(o, "angle_max", vg_json_real(r->angle_max));
+  json_object_set_new(o, "angle_min_p1", vg_json_real(r->angle_min_p1));
+  json_object_set_new(o, "percent_below_5_10_15_20_30",
+                      vg_json_reals(r->below, 5));
+  json_object_set_new(o, "percent_above_150_160_170",
+                      vg_json_reals(r->above, 3));
+  json_object_set_new(o, "radius_ratio_mean",
+                      vg_json_real(r->radius_ratio_mean));
+  json_object_set_new(o, "radius_ratio_min", vg_json_real(r->radius_ratio_min));
+  json_object_set_new(o, "mean_ratio_mean", vg_json_real(r->mean_ratio_mean));
+  json_object_set_new(o, "edge_length", vg_json_real(r->edge_length));
   json_object_set_new(o, "volume_ratio_median_95_max",
-                      reals(r->volume_ratio, 3));
+                      vg_json_reals(r->volume_ratio, 3));
   json_object_set_new(o, "histogram_angle_min",
-                      counts(r->hist_angle_min, VG_HIST_ANGLE));
+                      vg_json_counts(r->hist_angle_min, VG_HIST_ANGLE));
   json_object_set_new(o, "histogram_angle_max",
-                      counts(r->hist_angle_max, VG_HIST_ANGLE));
+                      vg_json_counts(r->hist_angle_max, VG_HIST_ANGLE));
   json_object_set_new(o, "histogram_radius_ratio",
-                      counts(r->hist_radius_ratio, VG_HIST_UNIT));
+                      vg_json_counts(r->hist_radius_ratio, VG_HIST_UNIT));
   json_object_set_new(o, "edges", edges_json(r));
+  if (r->has_metric)
+    json_object_set_new(o, "metric", vg_report_metric_json(&r->metric));
   json_object_set_new(o, "worst", worst_json(r));
   if (r->has_flat) json_object_set_new(o, "flat_cells", flat_json(r, patches));
   return o;
@@ -457,7 +454,8 @@ json_t *vg_report_fill_json(const struct vg_fill_report *r, size_t n_cell)
   vg_report_entries(o, seconds, &vg_fill_entries, r);
   json_object_set_new(o, "seconds", seconds);
   json_object_set_new(o, "cells_per_second",
-                      real(r->time_total > 0 ? (double)n_cell / r->time_total
-                                             : 0));
+                      vg_json_real(r->time_total > 0
+                                     ? (double)n_cell / r->time_total
+                                     : 0));
   return o;
 }

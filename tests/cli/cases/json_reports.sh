@@ -9,6 +9,14 @@ head -n -1 octa.obj >open.obj
 vanguard demo box --cells 2000 --out p
 vanguard demo wing-half --cells 30000 --out p
 vanguard demo sphere --cells 20000 --out p
+cat >one.vtu <<'END'
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">
+<UnstructuredGrid><Piece NumberOfPoints="1" NumberOfCells="0">
+<PointData><DataArray type="Float64" Name="size" format="ascii">0.1
+</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">
+.5 .5 .5</DataArray></Points></Piece></UnstructuredGrid></VTKFile>
+END
 n=0
 
 # reports KIND STATUS ARGS...: the JSON output becomes KIND.N.json.
@@ -36,6 +44,7 @@ reports report 0 mesh -q --json -p octa.obj --remesh-surface yes --out octa \
 reports check 0 check -q --json p/box.lb8.ugrid
 reports check 0 check -q --json p/wing-half.lb8.ugrid --deck p/wing-half.deck
 reports check 0 check -q --json one/box.b8.ugrid
+reports check 0 check -q --json one/box.b8.ugrid --sizes one.vtu
 reports check 0 check -q --json wing/wing-half.b8.ugrid
 reports check 0 check -q --json octa.obj --against octa.obj
 reports check 1 check -q --json open.obj --farfield none
@@ -51,6 +60,7 @@ for words in "mesh --no-such -p p/box" "mesh -p p/box --growth 0.5" \
   exits 2
   [ ! -s out ] || fail "output of $words"
 done
+grep -q '"complexity"' check.*.json || fail "no figures in the metric"
 grep -q '"error_kind": "geometry"' report.*.json || fail "no kind geometry"
 grep -q '"error_kind": "input"' check.*.json || fail "no kind input"
 # The report file is the same document.

@@ -50,6 +50,27 @@ if mpirun -n 2 true >/dev/null 2>&1; then
   cmp finer/box.b8.ugrid ranks/box.b8.ugrid || fail "ranks differ"
 fi
 
+# the mesh is measured in the metric of the sizes: with those of the deck, which
+# the run used, most edges are as requested; without the file, there are no such
+# figures
+vanguard check -q finer/box.b8.ugrid --sizes first/box.sol --deck box.deck
+exits 0
+says out "note: sizes at 3862 points were read from first/box.sol"
+within=$(sed -n 's/.*between 0.7 and 1.4 \([0-9]*\)\..*/\1/p' out)
+[ "${within:-0}" -ge 95 ] || fail "$within % of the edges have a length near 1"
+vanguard check -q finer/box.b8.ugrid --json --sizes first/box.sol
+exits 0
+says out '"histogram_mean_ratio"'
+vanguard check -q plain/box.b8.ugrid --json --sizes first/box.sol
+coarse=$(sed -n 's/.*"length_max": \([0-9]*\)\..*/\1/p' out)
+[ "${coarse:-0}" -ge 4 ] || fail "a mesh without the sizes has lengths to $coarse"
+vanguard check -q finer/box.b8.ugrid --json --deck finer/box.resolved.deck
+exits 0
+grep -q '"metric"' out && fail "figures in the metric without a request"
+vanguard check -q finer/box.b8.ugrid --sizes nowhere.sol
+exits 1
+says err "nowhere.sol"
+
 # VTK files have their own points
 cat >one.vtu <<'END'
 <VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Private to run/report: numbers as JSON, histograms, and figures in the
+ * metric. */
+#ifndef VG_RUN_REPORT_REPORT_PARTS_H
+#define VG_RUN_REPORT_REPORT_PARTS_H
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "core/judge/quality.h"
+
+/** null if v is not finite. */
+static inline json_t *vg_json_real(double v)
+{
+  return isfinite(v) ? json_real(v) : json_null();
+}
+
+static inline json_t *vg_json_reals(const double *v, size_t n)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < n; i++)
+    json_array_append_new(list, vg_json_real(v[i]));
+  return list;
+}
+
+static inline json_t *vg_json_count(size_t n)
+{
+  return json_integer((json_int_t)n);
+}
+
+static inline json_t *vg_json_counts(const size_t *v, size_t n)
+{
+  json_t *list = json_array();
+
+  for (size_t i = 0; i < n; i++)
+    json_array_append_new(list, vg_json_count(v[i]));
+  return list;
+}
+
+/** A histogram as text, without empty bins at both ends; nothing if all bins
+ * are empty.
+ *
+ * @param limit   [n + 1] limits of the bins
+ * @param digits  decimals of the limits */
+void vg_report_bars(FILE *to, const char *title, size_t n, const size_t *hist,
+                    const double *limit, int digits);
+
+/** report_metric.c: figures in the metric; their histograms. */
+void vg_report_metric_text(FILE *to, const struct vg_metric_report *r);
+void vg_report_metric_bars(FILE *to, const struct vg_metric_report *r);
+json_t *vg_report_metric_json(const struct vg_metric_report *r);
+
+#endif
