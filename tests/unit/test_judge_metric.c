@@ -27,7 +27,7 @@ static struct vg_mesh_report judge(const struct vg_mesh *m,
   struct vg_mesh_report r;
   struct vg_error err = VG_ERROR_INIT;
 
-  if (vg_mesh_judge_in_metric(m, sizing, &r, &err) < 0)
+  if (vg_mesh_judge_in_metric(m, 0, sizing, &r, &err) < 0)
     fail_msg("%s", err.text);
   assert_int_equal(r.has_metric, 1);
   return r;
@@ -433,6 +433,29 @@ static void layers_of_prisms_are_left_out(void **state)
   vg_mesh_release(&m);
 }
 
+/* Nor do tetrahedra of layers, the first ones of the mesh: the figures are
+ * those of the others alone. */
+static void layers_of_tetrahedra_are_left_out(void **state)
+{
+  struct vg_mesh m = judge_mesh(VG_LAYER_TETS);
+  double scale = 0.1;
+  struct vg_sizing *sizing = metric_oblique_field(&m, &scale);
+  struct vg_mesh_report r, whole;
+  size_t n = m.n_tet, n_layer = n / 3;
+
+  (void)state;
+  assert_int_equal(vg_mesh_judge_in_metric(&m, n_layer, sizing, &r, NULL),
+                   VG_OK);
+  assert_int_equal(vg_mesh_judge(&m, NULL, &whole, NULL), VG_OK);
+  assert_near(r.volume, whole.volume, 0);
+  assert_int_equal(r.metric.n_cell, n - n_layer);
+  memmove(m.tet, m.tet + n_layer, (n - n_layer) * sizeof *m.tet);
+  m.n_tet = n - n_layer;
+  check_figures(&m, sizing, &r.metric);
+  vg_sizing_free(sizing);
+  vg_mesh_release(&m);
+}
+
 /* The size of an isotropic field stands for its metric; without a request
  * there are no figures in it. */
 static void isotropic_fields_on_request(void **state)
@@ -546,6 +569,7 @@ int main(void)
     cmocka_unit_test(affine_images_have_the_figures_of_the_original),
     cmocka_unit_test(figures_are_those_of_the_definitions),
     cmocka_unit_test(layers_of_prisms_are_left_out),
+    cmocka_unit_test(layers_of_tetrahedra_are_left_out),
     cmocka_unit_test(isotropic_fields_on_request),
     cmocka_unit_test(slices_give_the_figures_of_the_whole),
     cmocka_unit_test(also_of_invalid_meshes),

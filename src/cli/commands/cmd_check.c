@@ -63,6 +63,19 @@ static vg_status field(const struct arguments *a, struct vg_problem *p,
   return st;
 }
 
+/* Number of tetrahedra of layers, if the file records it. They are the first
+ * ones of the mesh. */
+static vg_status count_layers(const struct arguments *a,
+                              const struct vg_mesh *m, size_t *n,
+                              struct vg_error *err)
+{
+  int is_known;
+  vg_status st = vg_format_layer_tets(a->one.file, &is_known, n, err);
+
+  if (st < 0 || !is_known || *n > m->n_tet) *n = 0;
+  return st;
+}
+
 /* Sizes of a file request figures in the metric, even if they do not depend on
  * the direction. */
 static vg_status judge(const struct arguments *a, struct vg_problem *p,
@@ -70,11 +83,16 @@ static vg_status judge(const struct arguments *a, struct vg_problem *p,
                        struct vg_error *err)
 {
   struct vg_sizing *sizing = NULL;
+  size_t n_layer = 0;
   vg_status st = field(a, p, m, &sizing, err);
 
   if (st < 0) return st;
-  st = a->sizes ? vg_mesh_judge_in_metric(m, sizing, r, err)
-                : vg_mesh_judge(m, sizing, r, err);
+  if (a->sizes || (sizing && vg_sizing_is_stretched(sizing))) {
+    st = count_layers(a, m, &n_layer, err);
+    if (st >= 0) st = vg_mesh_judge_in_metric(m, n_layer, sizing, r, err);
+  } else {
+    st = vg_mesh_judge(m, sizing, r, err);
+  }
   vg_sizing_free(sizing);
   return st;
 }

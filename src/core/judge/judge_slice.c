@@ -193,10 +193,9 @@ static vg_status judge_sizes(struct work *k, struct vg_error *err)
     return VG_OK;
   if (!k->j->in_metric)
     return vg_judge_edges(&k->view, sizing, NULL, k->f, &k->unpaired, err);
-  st = vg_point_metrics_init(&metrics, sizing, k->slice->n_point, k->slice->x,
-                             err);
+  st = vg_point_metrics_init(&metrics, sizing, &k->view, 0, err);
   if (st < 0) return st;
-  vg_judge_metric(&k->view, &metrics, k->f);
+  vg_judge_metric(&metrics, k->f);
   st = vg_judge_edges(&k->view, sizing, &metrics, k->f, &k->unpaired, err);
   vg_point_metrics_release(&metrics);
   return st;

@@ -159,16 +159,16 @@ double vg_enclosed_volume(const struct vg_mesh *m, const double lo[3],
 /* Compare edges with the field; in its metric, measure cells, too. */
 static vg_status judge_sizes(const struct vg_mesh *m,
                              const struct vg_sizing *sizing, int in_metric,
-                             struct vg_stats *f, struct vg_error *err)
+                             size_t n_layer, struct vg_stats *f,
+                             struct vg_error *err)
 {
   struct vg_point_metrics metrics;
   vg_status st;
 
   if (!in_metric) return vg_judge_edges(m, sizing, NULL, f, NULL, err);
-  st = vg_point_metrics_init(&metrics, sizing, m->n_point,
-                             (const double(*)[3])m->point, err);
+  st = vg_point_metrics_init(&metrics, sizing, m, n_layer, err);
   if (st < 0) return st;
-  vg_judge_metric(m, &metrics, f);
+  vg_judge_metric(&metrics, f);
   st = vg_judge_edges(m, sizing, &metrics, f, NULL, err);
   vg_point_metrics_release(&metrics);
   return st;
@@ -176,8 +176,8 @@ static vg_status judge_sizes(const struct vg_mesh *m,
 
 static vg_status judge_all(const struct vg_mesh *m,
                            const struct vg_sizing *sizing, int has,
-                           struct vg_stats *f, size_t *n_component,
-                           struct vg_error *err)
+                           size_t n_layer, struct vg_stats *f,
+                           size_t *n_component, struct vg_error *err)
 {
   float *volume = NULL;
   vg_status st;
@@ -194,14 +194,14 @@ static vg_status judge_all(const struct vg_mesh *m,
   free(volume);
   volume = NULL;
   if (has & VG_HAS_SIZING)
-    VG_TRY(judge_sizes(m, sizing, has & VG_HAS_METRIC, f, err));
+    VG_TRY(judge_sizes(m, sizing, has & VG_HAS_METRIC, n_layer, f, err));
 done:
   free(volume);
   return st;
 }
 
 static vg_status judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
-                       int has, struct vg_mesh_report *report,
+                       int has, size_t n_layer, struct vg_mesh_report *report,
                        struct vg_error *err)
 {
   assert(m && report);
@@ -221,7 +221,7 @@ static vg_status judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
   /* With bad indices or coordinates no other figure is meaningful. */
   sound = !f->n.bad_index && !f->n.not_finite && f->n.n_cell;
   if (!sound) has = 0;
-  if (sound) VG_TRY(judge_all(m, sizing, has, f, &n_component, err));
+  if (sound) VG_TRY(judge_all(m, sizing, has, n_layer, f, &n_component, err));
   vg_stats_report(f, n_component, has, report);
   if (!sound) goto done;
   vg_mesh_bounds(m, lo, hi);
@@ -238,14 +238,14 @@ vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
   int has = sizing ? VG_HAS_SIZING : 0;
 
   if (sizing && vg_sizing_is_stretched(sizing)) has |= VG_HAS_METRIC;
-  return judge(m, sizing, has, report, err);
+  return judge(m, sizing, has, 0, report, err);
 }
 
-vg_status vg_mesh_judge_in_metric(const struct vg_mesh *m,
+vg_status vg_mesh_judge_in_metric(const struct vg_mesh *m, size_t n_layer,
                                   const struct vg_sizing *sizing,
                                   struct vg_mesh_report *report,
                                   struct vg_error *err)
 {
-  assert(sizing);
-  return judge(m, sizing, VG_HAS_SIZING | VG_HAS_METRIC, report, err);
+  assert(sizing && n_layer <= m->n_tet);
+  return judge(m, sizing, VG_HAS_SIZING | VG_HAS_METRIC, n_layer, report, err);
 }

@@ -103,8 +103,11 @@ vg_status vg_mesh_judge(const struct vg_mesh *m, const struct vg_sizing *sizing,
                         struct vg_mesh_report *report, struct vg_error *err);
 
 /** As vg_mesh_judge with a stretched field, for any field: the metric of an
- * isotropic field is 1 / h^2 times the identity. */
-vg_status vg_mesh_judge_in_metric(const struct vg_mesh *m,
+ * isotropic field is 1 / h^2 times the identity.
+ *
+ * @param n_layer  number of tetrahedra of layers, which are the first ones of m
+ *                 and are not compared with the field */
+vg_status vg_mesh_judge_in_metric(const struct vg_mesh *m, size_t n_layer,
                                   const struct vg_sizing *sizing,
                                   struct vg_mesh_report *report,
                                   struct vg_error *err);

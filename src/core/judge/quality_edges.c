@@ -91,8 +91,14 @@ static void enter_cells(struct edges *e)
 {
   const struct vg_mesh *m = e->m;
 
+  if (e->metrics) {
+    size_t first = e->metrics->first;
+
+    if (first < m->n_tet)
+      enter_all(e, m->tet[first], m->n_tet - first, 4, tet_edge, 6);
+    return;
+  }
   enter_all(e, (const uint32_t *)m->tet, m->n_tet, 4, tet_edge, 6);
-  if (e->metrics) return;
   enter_all(e, (const uint32_t *)m->pyr, m->n_pyr, 5, pyr_edge, 8);
   enter_all(e, (const uint32_t *)m->pri, m->n_pri, 6, pri_edge, 9);
   enter_all(e, (const uint32_t *)m->hex, m->n_hex, 8, hex_edge, 12);

@@ -16,13 +16,15 @@
 /* --- metrics at points ---------------------------------------------------- */
 
 vg_status vg_point_metrics_init(struct vg_point_metrics *p,
-                                const struct vg_sizing *sizing, size_t n,
-                                const double (*x)[3], struct vg_error *err)
+                                const struct vg_sizing *sizing,
+                                const struct vg_mesh *m, size_t first,
+                                struct vg_error *err)
 {
-  assert(sizing && (x || !n));
+  assert(sizing && m && first <= m->n_tet);
   p->sizing = sizing;
-  p->x = x;
-  p->at = vg_calloc(n, sizeof *p->at);
+  p->m = m;
+  p->first = first;
+  p->at = vg_calloc(m->n_point, sizeof *p->at);
   return p->at ? VG_OK : vg_fail_memory(err, "the metrics at the points");
 }
 
@@ -39,7 +41,7 @@ static const struct vg_judged_point *metric_at(struct vg_point_metrics *p,
   double t[6];
 
   if (at->size > 0) return at;
-  at->size = vg_sizing_stretch_at(p->sizing, p->x[i], t);
+  at->size = vg_sizing_stretch_at(p->sizing, p->m->point[i], t);
   vg_tensor_square(t, at->m);
   return at;
 }
@@ -48,9 +50,10 @@ static const struct vg_judged_point *metric_at(struct vg_point_metrics *p,
 
 double vg_length_in_metric(struct vg_point_metrics *p, uint32_t a, uint32_t b)
 {
+  const double *from = p->m->point[a], *to = p->m->point[b];
   double e[3];
 
-  for (int k = 0; k < 3; k++) e[k] = p->x[b][k] - p->x[a][k];
+  for (int k = 0; k < 3; k++) e[k] = to[k] - from[k];
   return vg_metric_length(metric_at(p, a)->m, metric_at(p, b)->m, e);
 }
 
@@ -157,18 +160,18 @@ static void count_cell(struct vg_stats *f, double mean_ratio)
 }
 
 /* A cell without positive volume has the mean ratio 0. */
-static void judge_cell(const struct vg_mesh *m, const uint32_t node[4],
-                       struct vg_point_metrics *metrics, struct vg_stats *f)
+static void judge_cell(struct vg_point_metrics *p, const uint32_t node[4],
+                       struct vg_stats *f)
 {
+  double(*const x)[3] = p->m->point;
   const struct vg_judged_point *corner[4], *finest;
   double e[3][3], six, sum, ratio = 0;
 
-  for (int k = 0; k < 4; k++) corner[k] = metric_at(metrics, node[k]);
+  for (int k = 0; k < 4; k++) corner[k] = metric_at(p, node[k]);
   finest = corner[0];
   for (int k = 1; k < 4; k++) {
     if (corner[k]->size < finest->size) finest = corner[k];
-    for (int c = 0; c < 3; c++)
-      e[k - 1][c] = m->point[node[k]][c] - m->point[node[0]][c];
+    for (int c = 0; c < 3; c++) e[k - 1][c] = x[node[k]][c] - x[node[0]][c];
   }
   six = volume6(e[0], e[1], e[2]);
   sum = edges_squared(finest->m, e[0], e[1], e[2]);
@@ -181,11 +184,11 @@ static void judge_cell(const struct vg_mesh *m, const uint32_t node[4],
   vg_exact_add(&f->n.complexity, six / 6 * mean_density(corner));
 }
 
-void vg_judge_metric(const struct vg_mesh *m, struct vg_point_metrics *metrics,
-                     struct vg_stats *f)
+void vg_judge_metric(struct vg_point_metrics *p, struct vg_stats *f)
 {
-  assert(metrics && f);
-  for (size_t i = 0; i < m->n_tet; i++) judge_cell(m, m->tet[i], metrics, f);
+  assert(p && f);
+  for (size_t i = p->first; i < p->m->n_tet; i++)
+    judge_cell(p, p->m->tet[i], f);
 }
 
 /* --- report --------------------------------------------------------------- */

@@ -160,23 +160,25 @@ struct vg_judged_point {
 };
 struct vg_point_metrics {
   const struct vg_sizing *sizing;
-  const double (*x)[3];
-  struct vg_judged_point *at; /* [number of points] */
+  const struct vg_mesh *m;
+  size_t first;               /* first tetrahedron to be measured */
+  struct vg_judged_point *at; /* [m->n_point] */
 };
 
-/** Metrics of the field at n points; VG_ERR_MEMORY. Points are borrowed. */
+/** Metrics of the field at the points of m, to measure its tetrahedra from
+ * `first` on; VG_ERR_MEMORY. The mesh is borrowed. */
 vg_status vg_point_metrics_init(struct vg_point_metrics *p,
-                                const struct vg_sizing *sizing, size_t n,
-                                const double (*x)[3], struct vg_error *err);
+                                const struct vg_sizing *sizing,
+                                const struct vg_mesh *m, size_t first,
+                                struct vg_error *err);
 void vg_point_metrics_release(struct vg_point_metrics *p);
 
 /** Length of the edge a b in the metric. Exchanging a and b gives the same
  * bits. */
 double vg_length_in_metric(struct vg_point_metrics *p, uint32_t a, uint32_t b);
 
-/** Measure the tetrahedra of m in the metric: mean ratios, complexity. */
-void vg_judge_metric(const struct vg_mesh *m, struct vg_point_metrics *metrics,
-                     struct vg_stats *f);
+/** Measure tetrahedra in the metric: mean ratios, complexity. */
+void vg_judge_metric(struct vg_point_metrics *p, struct vg_stats *f);
 
 /** Faces of a part of a mesh that have no neighbour in it, or too many. */
 struct vg_unpaired_face {
