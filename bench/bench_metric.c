@@ -11,7 +11,8 @@
  *   --measure FILE     measure this mesh instead of making one
  *   --seconds S        time of that mesh, for the table
  *   --background STEM  write a background mesh STEM.meshb with STEM.sol instead
- *   --head             print the head of the table before the row
+ *   --head             print the head of the table before the row; as the only
+ *                      argument: alone
  *
  * Fills the surface with one call of vg_fill_front on one thread and prints a
  * row of a table: figures in the analytic metric, and the time of the sizing
@@ -210,6 +211,10 @@ int main(int argc, char **argv)
   struct vg_error err = VG_ERROR_INIT;
   vg_status st;
 
+  if (argc == 2 && !strcmp(argv[1], "--head")) {
+    metric_head(stdout);
+    return 0;
+  }
   if (parse(argc, argv, &b)) {
     fprintf(stderr, "wrong usage: see the head of bench/bench_metric.c\n");
     return 2;

@@ -77,7 +77,8 @@ static void axes(struct page *p, const struct bars *b, size_t n, double decades)
   for (size_t i = 0; i <= n; i += each) {
     vg_page_format(p, "<text x=\"%d\" y=\"%d\" class=\"middle\">",
                    (int)(LEFT + wide * (double)i), HEIGHT - BOTTOM + 15);
-    vg_page_fixed(p, begin_of(b, i), b->decimals);
+    if (b->lowest > 0) vg_page_real(p, begin_of(b, i), 3);
+    else vg_page_fixed(p, begin_of(b, i), b->decimals);
     vg_page_markup(p, "</text>");
   }
   vg_page_format(p, "<text x=\"%d\" y=\"%d\" class=\"middle\">%s</text>",

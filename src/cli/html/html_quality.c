@@ -78,7 +78,8 @@ static void metric_facts(struct page *p, const json_t *m)
        share_of(m, "percent_below", 0), 4, " %");
   fact(p, "Cells with a mean ratio below 0.2 in the metric",
        share_of(m, "percent_below", 1), 4, " %");
-  fact(p, "Complexity of the metric", real_of(m, "complexity"), 0, "");
+  vg_page_fact_count(p, "Complexity of the metric",
+                     (uint64_t)real_of(m, "complexity"));
   fact(p, "Number of cells / ideal number in the metric",
        real_of(m, "cells_per_ideal"), 3, "");
 }
@@ -135,7 +136,6 @@ static void metric_bars(struct page *p, const json_t *metric)
     .title = "Edge length in the metric",
     .unit = "1: as requested",
     .alt = "Histogram of the edge length in the metric.",
-    .decimals = 2,
     .bad_below = 0.5,
     .bad_from = 2,
     .lowest = VG_LENGTH_LOWEST,
