@@ -123,9 +123,18 @@ static void add_source(struct vg_settings *s, int kind)
 static void everything_survives_a_round_trip(void **state)
 {
   struct vg_settings s;
-  struct vg_farfield_row far = {
-    VG_DOMAIN_BOX, 12.5, 0, 3, { NAN, NAN, NAN }, { -1, -2, -3 }, { 1, 2, 1e9 }
-  };
+  struct vg_farfield_row far = { VG_DOMAIN_BOX,
+                                 12.5,
+                                 0,
+                                 3,
+                                 { NAN, NAN, NAN },
+                                 { -1, -2, -3 },
+                                 { 1, 2, 1e9 },
+                                 NAN,
+                                 NAN,
+                                 NAN,
+                                 NAN,
+                                 { NAN, NAN, NAN } };
   struct vg_patch_row patch = { -7, 4000, 1, "left wing", "" };
   struct vg_layer_row layer = {
     -7,  VG_ANSWER_YES, 1e-5, 1.15,
@@ -289,6 +298,17 @@ static void tables_are_checked_too(void **state)
          "in y the lower corner must be below the upper corner");
   refuse("t\nfarfield\nkind xlo ylo zlo xhi yhi zhi\nsphere 0 0 0 1 1 1\n",
          "set kind to box");
+  refuse("t\nfarfield\nkind\nmach\n", "requires the Mach number");
+  refuse("t\nfarfield\nkind mach\nmach 1\n", "must be above 1");
+  refuse("t\nfarfield\nkind mach\nmach 101\n", "at most 100");
+  refuse("t\nfarfield\nkind mach\nmach nan\n", "must be a number");
+  refuse("t\nfarfield\nkind mach\nsphere 2\n", "set kind to mach");
+  refuse("t\nfarfield\nkind radial\nsphere 2\n", "set kind to mach");
+  refuse("t\nfarfield\nkind mach radial\nmach 2 0\n", "must be above 0");
+  refuse("t\nfarfield\nkind ux uy uz\nbox 1 0 0\n", "set kind to mach");
+  refuse("t\nfarfield\nkind mach ux uy\nmach 2 1 0\n", "give all three");
+  refuse("t\nfarfield\nkind mach size\nmach 2 3\n", "set radial");
+  refuse("t\nfarfield\nkind mach lengths\nmach 2 30\n", "set radial");
   refuse("t\npatches\nid bc\n1 4\n2 3\n1 5\n", "patch 1 is listed twice");
   refuse("t\npatches\nid name\n1 a b\n", "3 values for 2 names");
   refuse("t\nlayers\nid\n3\n3\n", "layers: patch 3 is listed twice");

@@ -186,9 +186,11 @@ static void puts_a_box_around_a_body(void **state)
 {
   struct vg_mesh m = ball(-1, 0.1);
   struct vg_sizing *s = field(&m, 1.2);
-  struct vg_farfield far = { VG_FARFIELD_BOX, 0,           0, { 0 }, 0,
-                             { -9, -5, -4 },  { 7, 5, 4 }, 1, 0,     0.8,
-                             { NULL, NULL } };
+  struct vg_farfield far = { .kind = VG_FARFIELD_BOX,
+                             .lo = { -9, -5, -4 },
+                             .hi = { 7, 5, 4 },
+                             .has_box = 1,
+                             .spacing = 0.8 };
   struct vg_error err = VG_ERROR_INIT;
   double body, lo[3], hi[3];
 

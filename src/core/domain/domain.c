@@ -12,6 +12,7 @@
 #include "base/checks.h"
 #include "base/memory.h"
 #include "core/domain/farfield.h"
+#include "core/domain/mach.h"
 #include "core/domain/open_edges.h"
 #include "core/domain/planar.h"
 #include "core/domain/symmetry.h"
@@ -28,6 +29,7 @@ struct domain {
   const struct vg_size_function *law;
   double lo[3], hi[3], length; /* Of the body. */
   double centre[3], radius;
+  struct vg_mach mach; /* Used by VG_FARFIELD_MACH. */
   int axis, side; /* Symmetry: axis (-1: none), and the side of the body (1:
                      above). */
   double at;
@@ -177,6 +179,8 @@ static double domain_size(void *user, const double x[3])
   }
   /* At least 4 edges per radius, so that a farfield is round and its sides are
    * resolved. */
+  if (d->farfield->kind == VG_FARFIELD_MACH)
+    return fmin(h, vg_mach_edge(&d->mach, x));
   return h < d->radius / 4 ? h : d->radius / 4;
 }
 
@@ -266,6 +270,19 @@ static vg_status add_box(struct domain *d, uint32_t patch,
   return vg_add_box(&d->m, lo, hi, open, &law, of, border, err);
 }
 
+static vg_status add_mach(struct domain *d, uint32_t patch,
+                          struct vg_border *border, struct vg_error *err)
+{
+  const struct vg_size_function law = { domain_size, d, d->farfield->stop };
+  vg_status st = vg_mach_place(&d->m, &d->farfield->extent, d->length,
+                               d->centre,
+                               d->axis < 0 ? -1 : 2 * d->axis + d->side,
+                               &d->mach, err);
+
+  if (st < 0) return st;
+  return vg_add_revolution(&d->m, &d->mach.shape, &law, patch, border, err);
+}
+
 /* --- patches ------------------------------------------------------------- */
 
 static vg_status add_patch(struct vg_mesh *m, const char *name, int32_t bc,
@@ -328,9 +345,12 @@ static vg_status build(struct domain *d, struct vg_error *err)
   VG_TRY(check_orientation(d, err));
   VG_TRY(place_farfield(d, err));
   VG_TRY(add_patch(&d->m, "farfield", 3, 5000, &patch, err));
-  VG_TRY(d->farfield->kind == VG_FARFIELD_SPHERE
-           ? add_sphere(d, patch, &border, err)
-           : add_box(d, patch, &border, err));
+  switch (d->farfield->kind) {
+  case VG_FARFIELD_MACH: st = add_mach(d, patch, &border, err); break;
+  case VG_FARFIELD_BOX: st = add_box(d, patch, &border, err); break;
+  default: st = add_sphere(d, patch, &border, err);
+  }
+  VG_TRY(st);
   if (d->axis >= 0) VG_TRY(add_symmetry(d, &border, err));
 done:
   vg_border_release(&border);

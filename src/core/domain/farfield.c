@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/domain/farfield_parts.h"
 #include "core/domain/planar.h"
 #include "core/geometry/graded.h"
 
@@ -27,7 +28,7 @@ vg_status vg_border_add(struct vg_border *r, uint32_t a, uint32_t b,
   return VG_OK;
 }
 
-static vg_status add_points(struct vg_mesh *m, size_t n, struct vg_error *err)
+vg_status vg_farfield_points(struct vg_mesh *m, size_t n, struct vg_error *err)
 {
   double(*point)[3];
 
@@ -39,17 +40,76 @@ static vg_status add_points(struct vg_mesh *m, size_t n, struct vg_error *err)
   return VG_OK;
 }
 
-/* Call vg_graded_steps. When the caller has asked to stop, sizes are 0, which
- * ends the division. */
-static vg_status divide(double len, double (*size)(void *user, double s),
-                        void *user, const struct vg_size_function *law,
-                        size_t least, size_t *n, double **s,
-                        struct vg_error *err)
+vg_status vg_farfield_divide(double len, double (*size)(void *user, double s),
+                             void *user, const struct vg_size_function *law,
+                             size_t least, size_t *n, double **s,
+                             struct vg_error *err)
 {
   vg_status st = vg_graded_steps(len, size, user, least, n, s, err);
 
   if (st < 0 && vg_stops(&law->stop))
     st = vg_fail(err, VG_ERR_STOPPED, "interrupted");
+  return st;
+}
+
+void vg_on_circle(double turn, double p[2])
+{
+  const int quarter = turn < 4 ? (int)turn : 0;
+  double s, c;
+
+  assert(turn >= 0 && turn <= 4);
+  vg_quarter_turn(turn < 4 ? turn - quarter : 0, &s, &c);
+  p[0] = quarter == 0 ? c : quarter == 1 ? -s : quarter == 2 ? -c : s;
+  p[1] = quarter == 0 ? s : quarter == 1 ? c : quarter == 2 ? -s : -c;
+}
+
+vg_status vg_farfield_chart(struct vg_mesh *m, const struct vg_chart *chart,
+                            size_t n, const double (*loop)[2],
+                            const uint32_t *id, int swap, uint32_t patch,
+                            struct vg_error *err)
+{
+  size_t n_new = 0, n_tri = 0;
+  double(*add)[2] = NULL;
+  uint32_t(*edge)[2] = vg_alloc(n, sizeof *edge), (*tri)[3] = NULL;
+  uint32_t(*list)[3], *of, base;
+  vg_status st = VG_OK;
+
+  if (!edge) {
+    st = vg_fail_memory(err, "the farfield");
+    goto done;
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    edge[i][0] = i;
+    edge[i][1] = i + 1 < n ? i + 1 : 0;
+  }
+  VG_TRY(vg_planar_mesh(n, loop, n, (const uint32_t(*)[2])edge, &chart->law,
+                        &n_new, &add, &n_tri, &tri, err));
+  VG_TRY(vg_farfield_points(m, n_new, err));
+  list = vg_realloc(m->tri, m->n_tri + n_tri, sizeof *list);
+  if (list) m->tri = list;
+  of = vg_realloc(m->tri_patch, m->n_tri + n_tri, sizeof *of);
+  if (of) m->tri_patch = of;
+  if (!list || !of) {
+    st = vg_fail_memory(err, "the farfield");
+    goto done;
+  }
+  base = (uint32_t)m->n_point;
+  for (size_t i = 0; i < n_new; i++)
+    chart->to_space(chart->law.user, add[i], m->point[base + i]);
+  for (size_t i = 0; i < n_tri; i++) {
+    for (int k = 0; k < 3; k++) {
+      const uint32_t v = tri[i][swap && k ? 3 - k : k];
+
+      list[m->n_tri + i][k] = v < n ? id[v] : base + (v - (uint32_t)n);
+    }
+    of[m->n_tri + i] = patch;
+  }
+  m->n_point += n_new;
+  m->n_tri += n_tri;
+done:
+  free(edge);
+  free(add);
+  free(tri);
   return st;
 }
 
@@ -66,9 +126,9 @@ struct half_sphere {
   const struct vg_size_function *size;
 };
 
-static void to_sphere(const struct half_sphere *s, const double p[2],
-                      double x[3])
+static void to_sphere(void *user, const double p[2], double x[3])
 {
+  const struct half_sphere *s = user;
   const double rr = p[0] * p[0] + p[1] * p[1], f = s->radius / (1 + rr);
 
   x[s->axis] = s->centre[s->axis] + s->side * f * (1 - rr);
@@ -81,21 +141,9 @@ static double size_on_disc(void *user, const double p[2])
   const struct half_sphere *s = user;
   double x[3];
 
-  to_sphere(s, p, x);
+  to_sphere((void *)s, p, x);
   return s->size->at(s->size->user, x) * (1 + p[0] * p[0] + p[1] * p[1]) /
          (2 * s->radius);
-}
-
-/* Point of the unit circle; turn is in quarters of the circle, 0 <= turn <
- * 4. */
-static void on_circle(double turn, double p[2])
-{
-  const int quarter = (int)turn;
-  double s, c;
-
-  vg_quarter_turn(turn - quarter, &s, &c);
-  p[0] = quarter == 0 ? c : quarter == 1 ? -s : quarter == 2 ? -c : s;
-  p[1] = quarter == 0 ? s : quarter == 1 ? c : quarter == 2 ? -s : -c;
 }
 
 static double size_on_circle(void *user, double turn)
@@ -104,8 +152,8 @@ static double size_on_circle(void *user, double turn)
   double p[2], x[3];
 
   if (vg_stops(&s->size->stop)) return 0;
-  on_circle(turn >= 4 ? 0 : turn, p);
-  to_sphere(s, p, x);
+  vg_on_circle(turn, p);
+  to_sphere((void *)s, p, x);
   return s->size->at(s->size->user, x) / (s->radius * 1.57079632679489662);
 }
 
@@ -118,18 +166,19 @@ static vg_status add_equator(struct vg_mesh *m, const struct half_sphere *s,
   double *turn = NULL;
   vg_status st;
 
-  VG_TRY(divide(4, size_on_circle, (void *)s, s->size, 8, n, &turn, err));
+  VG_TRY(vg_farfield_divide(4, size_on_circle, (void *)s, s->size, 8, n, &turn,
+                            err));
   *disc = vg_alloc(*n, sizeof **disc);
   if (!*disc) {
     st = vg_fail_memory(err, "the farfield");
     goto done;
   }
-  VG_TRY(add_points(m, *n, err));
+  VG_TRY(vg_farfield_points(m, *n, err));
   for (size_t i = 0; i < *n; i++) {
     double *x = m->point[m->n_point++];
 
-    on_circle(turn[i], (*disc)[i]);
-    to_sphere(s, (*disc)[i], x);
+    vg_on_circle(turn[i], (*disc)[i]);
+    to_sphere((void *)s, (*disc)[i], x);
     x[s->axis] = s->centre[s->axis];
   }
 done:
@@ -141,49 +190,16 @@ static vg_status add_half(struct vg_mesh *m, const struct half_sphere *s,
                           size_t n, const double (*disc)[2], uint32_t first,
                           int inward, uint32_t patch, struct vg_error *err)
 {
-  size_t n_new = 0, n_tri = 0;
+  const struct vg_chart chart = { { size_on_disc, (void *)s, s->size->stop },
+                                  to_sphere };
   const int swap = inward ? s->side > 0 : s->side < 0;
-  double(*add)[2] = NULL;
-  uint32_t(*edge)[2] = vg_alloc(n, sizeof *edge), (*tri)[3] = NULL;
-  uint32_t(*list)[3], *of, base;
-  const struct vg_planar_law law = { size_on_disc, (void *)s, s->size->stop };
-  vg_status st = VG_OK;
+  uint32_t *id = vg_alloc(n, sizeof *id);
+  vg_status st;
 
-  if (!edge) {
-    st = vg_fail_memory(err, "the farfield");
-    goto done;
-  }
-  for (uint32_t i = 0; i < n; i++) {
-    edge[i][0] = i;
-    edge[i][1] = i + 1 < n ? i + 1 : 0;
-  }
-  VG_TRY(vg_planar_mesh(n, disc, n, (const uint32_t(*)[2])edge, &law, &n_new,
-                        &add, &n_tri, &tri, err));
-  VG_TRY(add_points(m, n_new, err));
-  list = vg_realloc(m->tri, m->n_tri + n_tri, sizeof *list);
-  if (list) m->tri = list;
-  of = vg_realloc(m->tri_patch, m->n_tri + n_tri, sizeof *of);
-  if (of) m->tri_patch = of;
-  if (!list || !of) {
-    st = vg_fail_memory(err, "the farfield");
-    goto done;
-  }
-  base = (uint32_t)m->n_point;
-  for (size_t i = 0; i < n_new; i++) to_sphere(s, add[i], m->point[base + i]);
-  for (size_t i = 0; i < n_tri; i++) {
-    for (int k = 0; k < 3; k++) {
-      const uint32_t v = tri[i][swap && k ? 3 - k : k];
-
-      list[m->n_tri + i][k] = v < n ? first + v : base + (v - (uint32_t)n);
-    }
-    of[m->n_tri + i] = patch;
-  }
-  m->n_point += n_new;
-  m->n_tri += n_tri;
-done:
-  free(edge);
-  free(add);
-  free(tri);
+  if (!id) return vg_fail_memory(err, "the farfield");
+  for (size_t i = 0; i < n; i++) id[i] = first + (uint32_t)i;
+  st = vg_farfield_chart(m, &chart, n, disc, id, swap, patch, err);
+  free(id);
   return st;
 }
 
@@ -265,13 +281,13 @@ static vg_status add_edge(struct vg_mesh *m, uint32_t a, uint32_t b, int axis,
   vg_status st;
 
   memcpy(from, m->point[a], sizeof from);
-  VG_TRY(divide(l.len, size_on_line, &l, size, 1, &n, &s, err));
+  VG_TRY(vg_farfield_divide(l.len, size_on_line, &l, size, 1, &n, &s, err));
   e->point = vg_alloc(n + 1, sizeof *e->point);
   if (!e->point) {
     st = vg_fail_memory(err, "the farfield");
     goto done;
   }
-  VG_TRY(add_points(m, n, err));
+  VG_TRY(vg_farfield_points(m, n, err));
   e->n = n + 1;
   e->point[0] = a;
   e->point[n] = b;
@@ -338,7 +354,7 @@ vg_status vg_add_box(struct vg_mesh *m, const double lo[3], const double hi[3],
   struct vg_border loop = VG_BORDER_INIT;
   vg_status st;
 
-  VG_TRY(add_points(m, 8, err));
+  VG_TRY(vg_farfield_points(m, 8, err));
   for (int c = 0; c < 8; c++) {
     for (int k = 0; k < 3; k++)
       m->point[m->n_point][k] = c >> k & 1 ? hi[k] : lo[k];

@@ -48,7 +48,30 @@ vg_status vg_project_surface(const struct vg_project *project,
                              const struct vg_stop *stop, struct vg_mesh *out,
                              struct vg_error *err);
 
-enum vg_farfield_kind { VG_FARFIELD_NONE, VG_FARFIELD_SPHERE, VG_FARFIELD_BOX };
+enum vg_farfield_kind {
+  VG_FARFIELD_NONE,
+  VG_FARFIELD_SPHERE,
+  VG_FARFIELD_BOX,
+  VG_FARFIELD_MACH
+};
+
+/** A boundary swept along the Mach cone, for sonic booms. Its inflow and
+ * outflow faces are parallel to the Mach cone, so that shocks run along them:
+ *
+ *                      ______________
+ *                     /             /   radius
+ *        flow -->    /   /<shock   /
+ *                   /   /         /
+ *         upstream |  <body>     | downstream     <- axis, caps
+ *
+ * The cone has the half angle asin(1 / mach). Lengths are in body lengths. */
+struct vg_mach_extent {
+  double mach;       /* Mach number of the flow, above 1. */
+  double flow[3];    /* Direction of the flow, not normalised. */
+  double upstream;   /* From the upstream cap to the foremost point. */
+  double downstream; /* From the rearmost point to the downstream cap. */
+  double radial;     /* Radius of the domain. */
+};
 
 struct vg_farfield {
   enum vg_farfield_kind kind;
@@ -66,12 +89,16 @@ struct vg_farfield {
   double spacing;      /* Edge length on the farfield; 0: from the growth of the
                           sizing field. */
   struct vg_stop stop; /* Polled regularly. */
+  struct vg_mach_extent extent; /* Used by VG_FARFIELD_MACH, with `centre` as a
+                                   point of the axis. */
 };
 #define VG_FARFIELD_INIT                                                       \
   {                                                                            \
-    VG_FARFIELD_SPHERE, 0, 20, { 0 }, 0, { 0 }, { 0 }, 0, 0, 0,                \
-    {                                                                          \
-      NULL, NULL                                                               \
+    .kind = VG_FARFIELD_SPHERE, .lengths = 20, .extent = {                     \
+      .flow = { 1, 0, 0 },                                                     \
+      .upstream = 0.5,                                                         \
+      .downstream = 1,                                                         \
+      .radial = 5                                                              \
     }                                                                          \
   }
 
@@ -128,7 +155,9 @@ vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
  * triangulated around its footprint, and half a farfield. New patches get new
  * ids, the names "farfield" and "symmetry" and the conditions 3 and 1 (USM3D),
  * 5000 and 666x (FUN3D). Triangles of the body must point into the fluid.
- * Points in the plane have its coordinate exactly, to the last bit. */
+ * Points in the plane have its coordinate exactly, to the last bit.
+ * VG_ERR_INPUT, VG_ERR_GEOMETRY: the farfield cannot contain the body; the
+ * message gives the extent that would. */
 vg_status vg_domain_complete(struct vg_mesh *surface,
                              const struct vg_farfield *farfield,
                              const struct vg_sizing *sizing,

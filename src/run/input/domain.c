@@ -157,6 +157,9 @@ static vg_status check_farfield(const struct vg_boundary *b,
     size = fmax(size, far->lengths * (hi[k] - lo[k]));
     if (far->has_box) size = fmax(size, (far->hi[k] - far->lo[k]) / 2);
   }
+  if (far->kind == VG_FARFIELD_MACH)
+    /* The generators of both cones are longer than the radius by `mach`. */
+    size *= far->extent.radial / far->lengths * sqrt(far->extent.mach);
   if (far->size > 0) size = far->size;
   /* Area of a sphere divided by that of a triangle. */
   n = edge > 0 ? 29 * (size / edge) * (size / edge) : 0;

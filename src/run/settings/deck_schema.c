@@ -40,6 +40,7 @@ static const struct {
 #define POSITIVE "{'exclusiveMinimum':0}"
 #define NUMBER "{'type':'number'}"
 #define TRUE "{'const':true}"
+#define MACH "{'const':'mach'}"
 #define ONE_OR_MORE "{'minimum':1}"
 
 /* Conditions on two members of an object: if `first` is given and is `a`, then
@@ -73,6 +74,17 @@ static const struct {
   { "farfield", "yhi", NUMBER, NEEDS, "zhi", NUMBER },
   { "farfield", "zhi", NUMBER, NEEDS, "xlo", NUMBER },
   { "farfield", "xlo", NUMBER, NEEDS, "kind", "{'const':'box'}" },
+  { "farfield", "kind", MACH, NEEDS, "mach", NUMBER },
+  { "farfield", "mach", NUMBER, NEEDS, "kind", MACH },
+  { "farfield", "upstream", NUMBER, NEEDS, "kind", MACH },
+  { "farfield", "downstream", NUMBER, NEEDS, "kind", MACH },
+  { "farfield", "radial", NUMBER, NEEDS, "kind", MACH },
+  { "farfield", "ux", NUMBER, NEEDS, "kind", MACH },
+  { "farfield", "ux", NUMBER, NEEDS, "uy", NUMBER },
+  { "farfield", "uy", NUMBER, NEEDS, "uz", NUMBER },
+  { "farfield", "uz", NUMBER, NEEDS, "ux", NUMBER },
+  { "farfield", "kind", MACH, EXCLUDES, "size", POSITIVE },
+  { "farfield", "kind", MACH, EXCLUDES, "lengths", "{'not':{'const':20}}" },
 };
 
 /* Further conditions on an object, as in pair_condition; object "": the whole
@@ -95,7 +107,7 @@ static const struct {
         "'settings':{'required':['flow'],"
         "'properties':{'flow':{'const':'internal'}}},"
         "'farfield':{'required':['kind'],"
-        "'properties':{'kind':{'enum':['sphere','box']}}}}}}" },
+        "'properties':{'kind':{'enum':['sphere','box','mach']}}}}}}" },
   { "", "{'not':{'required':['settings','farfield'],'properties':{"
         "'settings':{'required':['flow'],"
         "'properties':{'flow':{'const':'external'}}},"

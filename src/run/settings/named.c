@@ -17,6 +17,10 @@ static const struct {
   { "lengths", "farfield_lengths" },
   { "size", "farfield_size" },
   { "spacing", "farfield_spacing" },
+  { "mach", "farfield_mach" },
+  { "upstream", "farfield_upstream" },
+  { "downstream", "farfield_downstream" },
+  { "radial", "farfield_radial" },
 };
 #define N_FARFIELD (sizeof farfield_names / sizeof *farfield_names)
 

@@ -77,8 +77,9 @@ struct vg_flow_options vg_options_flow(const struct vg_settings *s,
     o.asked_by = "farfield none";
   } else if (s->farfield.kind != VG_DOMAIN_AUTO) {
     o.kind = VG_FLOW_EXTERNAL;
-    o.asked_by = s->farfield.kind == VG_DOMAIN_BOX ? "farfield box"
-                                                   : "farfield sphere";
+    o.asked_by = s->farfield.kind == VG_DOMAIN_BOX  ? "farfield box"
+               : s->farfield.kind == VG_DOMAIN_MACH ? "farfield mach"
+                                                    : "farfield sphere";
   } else if (has_cells) {
     o.kind = VG_FLOW_INTERNAL;
     o.asked_by = "flow internal (implied by a volume mesh as input)";
@@ -140,6 +141,7 @@ struct vg_farfield vg_options_farfield(const struct vg_settings *s)
 
   f.kind = row->kind == VG_DOMAIN_NONE ? VG_FARFIELD_NONE
          : row->kind == VG_DOMAIN_BOX  ? VG_FARFIELD_BOX
+         : row->kind == VG_DOMAIN_MACH ? VG_FARFIELD_MACH
                                        : VG_FARFIELD_SPHERE;
   f.lengths = row->lengths;
   f.size = row->size;
@@ -155,6 +157,13 @@ struct vg_farfield vg_options_farfield(const struct vg_settings *s)
     f.lo[k] = f.has_box ? row->lo[k] : 0;
     f.hi[k] = f.has_box ? row->hi[k] : 0;
   }
+  if (f.kind == VG_FARFIELD_MACH)
+    f.extent = (struct vg_mach_extent){ .mach = row->mach,
+                                        .flow = { row->flow[0], row->flow[1],
+                                                  row->flow[2] },
+                                        .upstream = row->upstream,
+                                        .downstream = row->downstream,
+                                        .radial = row->radial };
   return f;
 }
 

@@ -31,6 +31,18 @@ double vg_settings_first(const struct vg_layer_settings *l, double first,
          : 0;
 }
 
+/* Replace values that are not given by their defaults. */
+static void resolve_mach(struct vg_farfield_row *f)
+{
+  const struct vg_farfield plain = VG_FARFIELD_INIT;
+
+  if (isnan(f->upstream)) f->upstream = plain.extent.upstream;
+  if (isnan(f->downstream)) f->downstream = plain.extent.downstream;
+  if (isnan(f->radial)) f->radial = plain.extent.radial;
+  for (int k = 0; k < 3; k++)
+    if (isnan(f->flow[k])) f->flow[k] = plain.extent.flow[k];
+}
+
 void vg_resolve_flow(struct vg_settings *s, int flow, int axis)
 {
   assert(axis >= -1 && axis < 3);
@@ -38,6 +50,7 @@ void vg_resolve_flow(struct vg_settings *s, int flow, int axis)
   if (s->farfield.kind == VG_DOMAIN_AUTO)
     s->farfield.kind = flow == VG_FLOW_EXTERNAL ? VG_DOMAIN_SPHERE
                                                 : VG_DOMAIN_NONE;
+  if (s->farfield.kind == VG_DOMAIN_MACH) resolve_mach(&s->farfield);
   s->flow = flow;
   s->half = axis < 0 ? VG_HALF_NO : (int)VG_HALF_X + axis;
 }

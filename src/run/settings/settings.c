@@ -20,10 +20,11 @@
 #include "run/settings/patch_names.h"
 #include "run/settings/surface_table.h"
 
+#define MACH_MAX 100   /* beyond all flows of continua */
 #define HUGE_SIZE 1e60 /* the geometric predicates are safe up to this */
 
-static const char *const domain_words[] = { "auto", "none", "sphere", "box",
-                                            NULL };
+static const char *const domain_words[] = { "auto", "none", "sphere",
+                                            "box",  "mach", NULL };
 /* In the order of enum vg_flow_kind, enum vg_flow_half. */
 static const char *const flow_words[] = { "auto", "external", "internal",
                                           NULL };
@@ -90,11 +91,25 @@ static const struct vg_param params[] = {
                         .help = about                                          \
   }
 
+#define EXTENT(name, field, about)                                             \
+  {                                                                            \
+    name, AT(field), .type = VG_PARAM_REAL, .hi = HUGE_SIZE, .above_lo = 1,    \
+                     .optional = 1, .unit = "body lengths", .help = about      \
+  }
+#define FLOW(name, k, about)                                                   \
+  {                                                                            \
+    name, AT(flow[k]), .type = VG_PARAM_REAL, .lo = -HUGE_SIZE,                \
+                       .hi = HUGE_SIZE, .optional = 1, .unit = "",             \
+                       .help = about                                           \
+  }
+
 static const struct vg_param farfield_columns[] = {
   { "kind", AT(kind), .use = VG_USE_ALWAYS, .type = VG_PARAM_WORD,
     .words = domain_words, .unit = "", .required = 1,
-    .help = "Shape of the generated outer boundary: auto (a sphere, only "
-            "if the surface has no outer boundary), none, sphere or box" },
+    .help =
+      "Shape of the generated outer boundary: auto (a sphere, only "
+      "if the surface has no outer boundary), none, sphere, box, or mach "
+      "(swept along the Mach cone, for sonic booms)" },
   { "lengths", AT(lengths), .type = VG_PARAM_REAL, .hi = HUGE_SIZE,
     .above_lo = 1, .unit = "body lengths",
     .help = "Radius of the farfield sphere, or half width of the box" },
@@ -104,7 +119,9 @@ static const struct vg_param farfield_columns[] = {
   { "spacing", AT(spacing), .type = VG_PARAM_REAL, LENGTH,
     .help = "Edge length on the farfield; 0: the edge length that growth "
             "from the body leads to" },
-  POINT("x", centre, 0, "Centre of the farfield, x; -: centre of the body"),
+  POINT("x", centre, 0,
+        "Centre of the farfield, or a point of the axis of "
+        "kind mach, x; -: centre of the body"),
   POINT("y", centre, 1, "Centre, y"),
   POINT("z", centre, 2, "Centre, z"),
   POINT("xlo", lo, 0, "Lower corner of a box given by its corners, x"),
@@ -113,7 +130,24 @@ static const struct vg_param farfield_columns[] = {
   POINT("xhi", hi, 0, "Upper corner, x"),
   POINT("yhi", hi, 1, "Upper corner, y"),
   POINT("zhi", hi, 2, "Upper corner, z"),
+  { "mach", AT(mach), .type = VG_PARAM_REAL, .lo = 1, .hi = MACH_MAX,
+    .above_lo = 1, .optional = 1, .unit = "",
+    .help = "Mach number of the flow, for kind mach" },
+  EXTENT("upstream", upstream,
+         "Distance of the upstream end of kind mach from the foremost point of "
+         "the body; -: 0.5"),
+  EXTENT("downstream", downstream,
+         "Distance of the downstream end of kind mach from the rearmost point "
+         "of the body, on the axis; -: 1"),
+  EXTENT("radial", radial, "Radius of kind mach; -: 5"),
+  FLOW("ux", 0,
+       "Direction of the flow for kind mach, x (any length); -: "
+       "along x"),
+  FLOW("uy", 1, "Direction of the flow, y"),
+  FLOW("uz", 2, "Direction of the flow, z"),
 };
+#undef EXTENT
+#undef FLOW
 
 #undef AT
 #define AT(field)                                                              \
@@ -337,7 +371,9 @@ void vg_settings_row_default(enum vg_table_kind kind, void *row)
   struct vg_sweep_row sweep = { .repeat = 0 };
 
   assert(kind < VG_TABLE_N && row);
-  for (int k = 0; k < 3; k++) far.centre[k] = far.lo[k] = far.hi[k] = NAN;
+  far.mach = far.upstream = far.downstream = far.radial = NAN;
+  for (int k = 0; k < 3; k++)
+    far.centre[k] = far.lo[k] = far.hi[k] = far.flow[k] = NAN;
   switch (kind) {
   case VG_TABLE_FARFIELD: memcpy(row, &far, sizeof far); break;
   case VG_TABLE_PATCHES: memcpy(row, &patch, sizeof patch); break;

@@ -26,7 +26,8 @@ enum vg_domain_choice {
   VG_DOMAIN_AUTO, /* a farfield if the surface has no outer boundary */
   VG_DOMAIN_NONE,
   VG_DOMAIN_SPHERE,
-  VG_DOMAIN_BOX
+  VG_DOMAIN_BOX,
+  VG_DOMAIN_MACH
 };
 
 /** The farfield table has one row. NAN: not given. */
@@ -34,6 +35,7 @@ struct vg_farfield_row {
   int kind; /* enum vg_domain_choice */
   double lengths, size, spacing;
   double centre[3], lo[3], hi[3];
+  double mach, upstream, downstream, radial, flow[3]; /* of VG_DOMAIN_MACH */
 };
 
 /** Name and condition of a patch. */

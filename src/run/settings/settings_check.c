@@ -123,6 +123,44 @@ static vg_status check_layers(const struct vg_settings *s, struct vg_error *err)
   return check_layer_rows(s, err);
 }
 
+/* Kind mach needs a Mach number; its other columns belong to it alone. */
+static vg_status check_mach(const struct vg_farfield_row *f,
+                            struct vg_error *err)
+{
+  const double own[4] = { f->mach, f->upstream, f->downstream, f->radial };
+  static const char *const name[4] = { "mach", "upstream", "downstream",
+                                       "radial" };
+  struct vg_farfield_row plain;
+  int flow = n_given(f->flow);
+
+  vg_settings_row_default(VG_TABLE_FARFIELD, &plain);
+  if (f->kind == VG_DOMAIN_MACH && isnan(f->mach))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "farfield: kind mach requires the Mach number of the flow "
+                   "(column mach, option --farfield-mach)");
+  for (int i = 0; i < 4 && f->kind != VG_DOMAIN_MACH; i++)
+    if (!isnan(own[i]))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "farfield: %s is given, but kind is %s; set kind to mach",
+                     name[i], kind_name(f));
+  if (flow && f->kind != VG_DOMAIN_MACH)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "farfield: the direction ux uy uz is given, but kind is "
+                   "%s; set kind to mach",
+                   kind_name(f));
+  if (flow % 3)
+    return vg_fail(err, VG_ERR_INPUT,
+                   "farfield: ux, uy and uz must be given together; give all "
+                   "three or none");
+  if (f->kind == VG_DOMAIN_MACH &&
+      (f->size != plain.size || f->lengths != plain.lengths))
+    return vg_fail(err, VG_ERR_INPUT,
+                   "farfield: %s has no effect with kind mach; set radial, in "
+                   "body lengths",
+                   f->size != plain.size ? "size" : "lengths");
+  return VG_OK;
+}
+
 vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
 {
   const struct vg_farfield_row *f = &s->farfield;
@@ -170,6 +208,7 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
                    "farfield: corners are given, but kind "
                    "is %s; set kind to box",
                    kind_name(f));
+  if (check_mach(f, err) < 0) return VG_ERR_INPUT;
   for (size_t i = 0; i < s->n_source; i++)
     if (s->source[i].growth != 0 && !(s->source[i].growth > 1))
       return vg_fail(err, VG_ERR_INPUT,
