@@ -41,8 +41,11 @@ enum vg_source_kind {
   VG_SOURCE_TRIANGLE,   /* p0 p1 p2; h0 within distance r0 */
   VG_SOURCE_BOX,        /* corners p0, p1 (axis-aligned); h0 inside */
   VG_SOURCE_SPHERE,     /* centre p0, radius r0; h0 inside */
-  VG_SOURCE_CYLINDER    /* axis p0 p1, radii r0 at p0 and r1 at p1 (a cone if
+  VG_SOURCE_CYLINDER,   /* axis p0 p1, radii r0 at p0 and r1 at p1 (a cone if
                            they differ); h0 to h1 along the axis */
+  VG_SOURCE_MACHCONE    /* Mach cones with apexes from p0 to p1, up to radius
+                           r0; across them h0 on the axis to h1 at r0, along
+                           them `stretch` times as much (sizing_cone.h) */
 };
 
 struct vg_source {
@@ -56,6 +59,7 @@ struct vg_source {
   double stretch, sp0, sp1, u[3], p[3]; /* VGRID stretching data, as in the
                                            file */
   double layer0[3], layer1[3]; /* delta1 rate1 rate2 at p0 and p1 (grid=2) */
+  double mach; /* Mach number of Mach cones, > 1 */
   char group[32];
 };
 

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "core/geometry/predicates.h"
+#include "core/geometry/vector.h"
 
 /* Factor on radii: keeps sample points off the border, where their side is
  * undefined. */
@@ -103,6 +104,28 @@ static void put_tube(struct vg_probes *p, const struct vg_source *s, uint32_t i,
   }
 }
 
+/* Points at three radii of cones with some apexes. */
+static void put_cones(struct vg_probes *p, const struct vg_source *s,
+                      uint32_t i, int is_fine)
+{
+  const double cot = sqrt((s->mach - 1) * (s->mach + 1));
+  const int n = is_fine ? 8 : 2, n_radius = 3;
+  double d[3], axis[3], way[2][3];
+
+  for (int k = 0; k < 3; k++) axis[k] = d[k] = s->p1[k] - s->p0[k];
+  vg_unit(axis);
+  cross_ways(d, way);
+  for (int j = 0; j <= n; j++)
+    for (int l = 1; l <= n_radius; l++) {
+      const double t = 0.5 + WITHIN * ((double)j / n - 0.5);
+      const double r = WITHIN * s->r0 * l / n_radius;
+      double x[3];
+
+      for (int k = 0; k < 3; k++) x[k] = s->p0[k] + t * d[k] + r * cot * axis[k];
+      for (int w = 0; w < 4; w++) put(p, i, x, w % 2 ? r : -r, way[w / 2]);
+    }
+}
+
 static void put_triangle(struct vg_probes *p, const struct vg_source *s,
                          uint32_t i, int is_fine)
 {
@@ -160,6 +183,7 @@ void vg_probes_shape(struct vg_probes *p, const struct vg_source *s, uint32_t i,
   case VG_SOURCE_CYLINDER: put_tube(p, s, i, is_fine); break;
   case VG_SOURCE_TRIANGLE: put_triangle(p, s, i, is_fine); break;
   case VG_SOURCE_BOX: put_box(p, s, i, is_fine); break;
+  case VG_SOURCE_MACHCONE: put_cones(p, s, i, is_fine); break;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/geometry/vector.h"
+#include "core/sizing/sizing_cone.h"
 
 static double least(double a, double b)
 {
@@ -165,6 +166,7 @@ double vg_shape_way(const struct vg_source *s, const double x[3], double *t,
       way[k] = x[k] - within(x[k], s->p0[k], s->p1[k]);
     return vg_norm(way);
   case VG_SOURCE_CYLINDER: return cone_way(s, x, t, way);
+  case VG_SOURCE_MACHCONE: return vg_mach_cone_way(s, x, t, way);
   case VG_SOURCE_VGRID_NODE:
   case VG_SOURCE_POINT:
   case VG_SOURCE_SPHERE: d = vg_segment_way(s->p0, s->p0, x, t, way); break;

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
+#include "core/sizing/sizing_cone.h"
 #include "core/sizing/sizing_shape.h"
 #include "core/sizing/sizing_tensor.h"
 
@@ -31,7 +32,7 @@ static int is_finite3(const double p[3])
 static int has_axis(enum vg_source_kind kind)
 {
   return kind == VG_SOURCE_VGRID_LINE || kind == VG_SOURCE_LINE ||
-         kind == VG_SOURCE_CYLINDER;
+         kind == VG_SOURCE_CYLINDER || kind == VG_SOURCE_MACHCONE;
 }
 
 static int is_vgrid(enum vg_source_kind kind)
@@ -44,7 +45,7 @@ static const char *defect(const struct vg_source *s)
 {
   double d[3];
 
-  if (s->kind < VG_SOURCE_VGRID_NODE || s->kind > VG_SOURCE_CYLINDER)
+  if (s->kind < VG_SOURCE_VGRID_NODE || s->kind > VG_SOURCE_MACHCONE)
     return "its kind is unknown; use one of the documented kinds";
   if (!is_finite3(s->p0)) return "point 1 is not finite; give numbers";
   if ((has_axis(s->kind) || s->kind == VG_SOURCE_TRIANGLE ||
@@ -65,6 +66,7 @@ static const char *defect(const struct vg_source *s)
     return "its radius is negative or not finite; give zero or more";
   if (s->growth != 0 && !(isfinite(s->growth) && s->growth > 1))
     return "its growth rate is not above 1; use 0 for the global rate";
+  if (s->kind == VG_SOURCE_MACHCONE) return vg_mach_cone_defect(s);
   if (s->kind != VG_SOURCE_CYLINDER) return NULL;
   if (!isfinite(s->r1) || s->r1 < 0)
     return "its second radius is negative or not finite; give zero or more";
@@ -255,6 +257,7 @@ static double bounded_at(const struct vg_bounded *b, const double x[3])
   case VG_SOURCE_TRIANGLE: d = vg_triangle_distance(s, x, way) - s->r0; break;
   case VG_SOURCE_BOX: d = vg_box_distance(s->p0, s->p1, x); break;
   case VG_SOURCE_CYLINDER: d = vg_cone_distance(s, x, &t); break;
+  case VG_SOURCE_MACHCONE: d = vg_mach_cone_way(s, x, &t, way); break;
   case VG_SOURCE_VGRID_NODE:
   case VG_SOURCE_POINT:
   case VG_SOURCE_SPHERE:
@@ -284,7 +287,8 @@ static double bounded_floor(const struct vg_bounded *b, const double mid[3],
   double d, t = 0, h = s->h0, way[3], axis[3];
   int is_line = s->kind == VG_SOURCE_LINE || s->kind == VG_SOURCE_VGRID_LINE;
 
-  if (s->kind == VG_SOURCE_BOX || s->kind == VG_SOURCE_CYLINDER)
+  if (s->kind == VG_SOURCE_BOX || s->kind == VG_SOURCE_CYLINDER ||
+      s->kind == VG_SOURCE_MACHCONE)
     return bounded_at(b, mid) - b->steep * sqrt(vg_dot(half, half));
   if (s->kind == VG_SOURCE_TRIANGLE) d = vg_triangle_distance(s, mid, way);
   else d = vg_segment_way(s->p0, is_line ? s->p1 : s->p0, mid, &t, way);
@@ -307,6 +311,10 @@ static void bound_shape(const struct vg_source *s, double lo[3], double hi[3])
 {
   double r = s->kind == VG_SOURCE_BOX ? 0 : s->r0;
 
+  if (s->kind == VG_SOURCE_MACHCONE) {
+    vg_mach_cone_bounds(s, lo, hi);
+    return;
+  }
   if (s->kind == VG_SOURCE_CYLINDER) r = most(s->r0, s->r1);
   for (int k = 0; k < 3; k++) {
     lo[k] = hi[k] = s->p0[k];
@@ -350,6 +358,7 @@ static void prepare_bounded(const struct vg_sizing_options *o,
     b->law.h0 = b->law.h1 = b->least;
     return;
   }
+  if (s->kind == VG_SOURCE_MACHCONE) along = s->r0 * s->r0;
   along = (b->law.h1 - b->law.h0) * (b->law.h1 - b->law.h0) / along;
   b->steep = sqrt(b->slope * b->slope + along);
 }

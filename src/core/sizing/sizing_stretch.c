@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/geometry/vector.h"
+#include "core/sizing/sizing_cone.h"
 #include "core/sizing/sizing_shape.h"
 #include "core/sizing/sizing_tensor.h"
 
@@ -25,6 +26,7 @@ const char *vg_source_stretch_defect(const struct vg_source *s)
 {
   const double *axis = has_flag(s) ? s->p : s->u;
 
+  if (s->kind == VG_SOURCE_MACHCONE) return NULL; /* vg_mach_cone_defect */
   if (!isfinite(s->stretch) || s->stretch < 0)
     return "its stretching is negative or not finite; 0 means none";
   if (s->stretch == 0 || (s->stretch == 1 && !is_vgrid(s))) return NULL;
@@ -50,6 +52,12 @@ int vg_source_stretch(const struct vg_source *s, double axis[3],
 
   ratio[0] = ratio[1] = 1;
   if (s->stretch == 0) return 0;
+  if (s->kind == VG_SOURCE_MACHCONE) { /* Its axes depend on the point. */
+    vg_sub(s->p1, s->p0, axis);
+    vg_unit(axis);
+    ratio[0] = ratio[1] = s->stretch;
+    return s->stretch != 1;
+  }
   memcpy(axis, by_flag ? s->p : s->u, 3 * sizeof *axis);
   if (!(vg_unit(axis) > 0)) return 0;
   if (by_flag) {
@@ -72,9 +80,27 @@ void vg_stretched_prepare(struct vg_stretched *s)
             (1 - VG_GROWTH_IN_METRIC + VG_GROWTH_IN_METRIC * thin / wide);
 }
 
+/* Size tensor at the nearest point of the cones, grown over the way from
+ * there. */
+static void cone_at(const struct vg_stretched *s, const double x[3],
+                    double h[6])
+{
+  double way[3], foot[3], t;
+  const double d = vg_mach_cone_way(&s->law, x, &t, way);
+
+  vg_sub(x, way, foot);
+  vg_mach_cone_tensor(&s->law, foot, h);
+  if (d > 0) vg_size_grow(h, way, s->slope, h);
+}
+
 void vg_stretched_at(const struct vg_stretched *s, const double x[3],
                      double h[6])
 {
+  if (s->law.kind == VG_SOURCE_MACHCONE) {
+    cone_at(s, x, h);
+    return;
+  }
+
   double way[3], t, d = vg_shape_way(&s->law, x, &t, way), size, along, across;
   double l2, factor, more;
   const double *u = s->axis;

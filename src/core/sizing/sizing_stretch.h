@@ -4,7 +4,7 @@
  *
  * A stretched source has the size h across its axis u, and `ratio` times h
  * along it: a ratio above 1 requests needles along u, a ratio below 1 thin
- * cells normal to u. In its shape, the size tensor is
+ * cells normal to u. Mach cones have other axes at each point (sizing_cone.h). In its shape, the size tensor is
  *   H = h (I + (ratio - 1) u u'),
  * and it grows outside as in vg_size_grow. */
 #ifndef VG_CORE_SIZING_SIZING_STRETCH_H
@@ -45,8 +45,7 @@ double vg_stretched_floor(const struct vg_stretched *s, const double lo[3],
                           const double hi[3]);
 
 /** Point of the box lo..hi where the source is near, by projections from the
- * shape to the box and back. Both are convex, so the distance falls with every
- * projection. */
+ * shape to the box and back, with which the distance falls. */
 void vg_stretched_near(const struct vg_stretched *s, const double lo[3],
                        const double hi[3], double x[3]);
 

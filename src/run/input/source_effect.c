@@ -29,7 +29,8 @@ static const char *kind_of(const struct vg_source *s)
                                       [VG_SOURCE_TRIANGLE] = "triangle",
                                       [VG_SOURCE_BOX] = "box",
                                       [VG_SOURCE_SPHERE] = "sphere",
-                                      [VG_SOURCE_CYLINDER] = "cylinder" };
+                                      [VG_SOURCE_CYLINDER] = "cylinder",
+                                      [VG_SOURCE_MACHCONE] = "machcone" };
 
   return name[s->kind];
 }

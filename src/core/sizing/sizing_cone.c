@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+#include "core/sizing/sizing_cone.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "core/geometry/tensor.h"
+#include "core/geometry/vector.h"
+
+/* The half plane of a point: axial and radial direction, with the coordinates z
+ * and r of the point. */
+struct half_plane {
+  double axis[3], out[3], length, z, r;
+  double sine, cosine; /* Of the half angle of the cones. */
+};
+
+static struct half_plane half_plane_of(const struct vg_source *s,
+                                       const double x[3])
+{
+  struct half_plane p;
+  double u[3];
+
+  vg_sub(s->p1, s->p0, p.axis);
+  p.length = vg_unit(p.axis);
+  p.sine = 1 / s->mach;
+  p.cosine = sqrt((1 - p.sine) * (1 + p.sine));
+  vg_sub(x, s->p0, u);
+  p.z = vg_dot(u, p.axis);
+  for (int k = 0; k < 3; k++) p.out[k] = u[k] - p.z * p.axis[k];
+  p.r = vg_norm(p.out);
+  if (p.r > 0) {
+    for (int k = 0; k < 3; k++) p.out[k] /= p.r;
+  } else { /* On the axis any radial direction will do. */
+    double other[3] = { 0, 0, 0 };
+
+    other[fabs(p.axis[2]) < 0.6 ? 2 : 1] = 1;
+    vg_cross(p.axis, other, p.out);
+    if (!(vg_unit(p.out) > 0)) p.out[0] = 1;
+  }
+  return p;
+}
+
+const char *vg_mach_cone_defect(const struct vg_source *s)
+{
+  double d[3];
+
+  vg_sub(s->p1, s->p0, d);
+  if (!(s->mach > 1) || !isfinite(s->mach))
+    return "its Mach number is not above 1; give that of the flow (mach)";
+  if (!(vg_dot(d, d) > 0))
+    return "its axis has no length; give the foremost and the rearmost point of "
+           "the body (x0 y0 z0, x1 y1 z1)";
+  if (!(s->r0 > 0) || !isfinite(s->r0))
+    return "its radius is not positive; give the radius where the cones end "
+           "(r0)";
+  if (!(s->h1 > 0) || !isfinite(s->h1))
+    return "its spacing at the radius r0 is not positive; give a length above "
+           "zero (h1)";
+  if (!(s->stretch >= 1) || !isfinite(s->stretch))
+    return "its stretching is below 1; give the ratio of the sizes along and "
+           "across the cone (stretch)";
+  return NULL;
+}
+
+/* --- distance ------------------------------------------------------------- */
+
+/* Nearest point of the segment a b of the half plane, if it is nearer to p than
+ * `best`. */
+static double nearer(const double a[2], const double b[2], const double p[2],
+                     double best, double foot[2])
+{
+  const double d[2] = { b[0] - a[0], b[1] - a[1] };
+  const double len2 = d[0] * d[0] + d[1] * d[1];
+  double t = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / len2, at[2], dd;
+
+  t = t < 0 ? 0 : t > 1 ? 1 : t;
+  at[0] = a[0] + t * d[0];
+  at[1] = a[1] + t * d[1];
+  dd = (p[0] - at[0]) * (p[0] - at[0]) + (p[1] - at[1]) * (p[1] - at[1]);
+  if (!(dd < best)) return best;
+  foot[0] = at[0];
+  foot[1] = at[1];
+  return dd;
+}
+
+double vg_mach_cone_way(const struct vg_source *s, const double x[3], double *t,
+                        double way[3])
+{
+  const struct half_plane h = half_plane_of(s, x);
+  const double shift = s->r0 * h.cosine / h.sine;
+  const double apex = h.z - h.r * h.cosine / h.sine;
+  const double p[2] = { h.z, h.r };
+  const double corner[5][2] = { { 0, 0 },
+                                { shift, s->r0 },
+                                { shift + h.length, s->r0 },
+                                { h.length, 0 },
+                                { 0, 0 } };
+  double foot[2] = { h.z, h.r }, d2 = INFINITY;
+
+  assert(s->mach > 1 && s->r0 > 0);
+  if (apex >= 0 && apex <= h.length && h.r <= s->r0) d2 = 0;
+  for (int i = 0; d2 > 0 && i < 4; i++)
+    d2 = nearer(corner[i], corner[i + 1], p, d2, foot);
+  *t = foot[1] / s->r0;
+  for (int k = 0; k < 3; k++)
+    way[k] = (h.z - foot[0]) * h.axis[k] + (h.r - foot[1]) * h.out[k];
+  return sqrt(d2);
+}
+
+/* --- sizes ---------------------------------------------------------------- */
+
+void vg_mach_cone_tensor(const struct vg_source *s, const double x[3],
+                         double h[6])
+{
+  const struct half_plane p = half_plane_of(s, x);
+  const double t = p.r < s->r0 ? p.r / s->r0 : 1;
+  const double across = s->h0 + t * (s->h1 - s->h0);
+  const double most = fmin(s->stretch * across, p.r);
+  const double round = fmin(most, sqrt(2 * p.r * across));
+  double size[3], direction[3][3];
+
+  if (!(most > across)) { /* Near the axis. */
+    vg_tensor_uniform(across, h);
+    return;
+  }
+  size[0] = across;
+  size[1] = most;
+  size[2] = fmax(across, round);
+  for (int k = 0; k < 3; k++) {
+    direction[0][k] = p.sine * p.axis[k] - p.cosine * p.out[k];
+    direction[1][k] = p.cosine * p.axis[k] + p.sine * p.out[k];
+  }
+  vg_cross(p.axis, p.out, direction[2]);
+  vg_tensor_from_eigen(size, (const double(*)[3])direction, h);
+}
+
+void vg_mach_cone_bounds(const struct vg_source *s, double lo[3], double hi[3])
+{
+  const double cot = sqrt((s->mach - 1) * (s->mach + 1));
+  double axis[3];
+
+  vg_sub(s->p1, s->p0, axis);
+  vg_unit(axis);
+  for (int k = 0; k < 3; k++) {
+    /* The circle of radius r0 around the axis, at the end of the cones. */
+    const double wide = s->r0 * sqrt(fmax(0, 1 - axis[k] * axis[k]));
+    const double along = s->r0 * cot * axis[k];
+
+    lo[k] = fmin(fmin(s->p0[k], s->p1[k]),
+                 fmin(s->p0[k], s->p1[k]) + along - wide);
+    hi[k] = fmax(fmax(s->p0[k], s->p1[k]),
+                 fmax(s->p0[k], s->p1[k]) + along + wide);
+  }
+}

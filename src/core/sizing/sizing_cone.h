@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* core/sizing/sizing_cone.h: sizes along the Mach cones of a body, for sonic
+ * booms. Internal to core/sizing. Uses core/sizing/sizing.h.
+ *
+ * A source of kind VG_SOURCE_MACHCONE is a bundle of cones with the half angle
+ * asin(1 / mach) that open along the axis p0 p1. Their apexes are on the axis
+ * between p0 and p1, and they end at the radius r0:
+ *
+ *          /      /  r0
+ *         /      /          n: normal to the cone, size h
+ *        / n_   /           along the line from the apex: stretch * h
+ *       /   |\ /            around the axis: stretch * h
+ *      p0 ---- p1
+ *
+ * h is h0 on the axis and h1 at r0. The two large sizes are at most the
+ * distance r from the axis, and that around the axis is at most sqrt(2 r h):
+ * the end of an edge of that length along a tangent is at the distance h from
+ * the cone. No size is below h. Results are computed with + - * / and sqrt
+ * only. Threads: safe. */
+#ifndef VG_CORE_SIZING_SIZING_CONE_H
+#define VG_CORE_SIZING_SIZING_CONE_H
+
+#include "core/sizing/sizing.h"
+
+/** Defect of a source of this kind and how to correct it, or NULL. */
+const char *vg_mach_cone_defect(const struct vg_source *s);
+
+/** Distance of x from the cones.
+ *
+ * @param t    out: distance from the axis, as a fraction of r0, at most 1
+ * @param way  out: vector to x from the nearest point of the cones; zero within
+ *             them */
+double vg_mach_cone_way(const struct vg_source *s, const double x[3], double *t,
+                        double way[3]);
+
+/** Size tensor at a point of the cones (core/geometry/tensor.h). */
+void vg_mach_cone_tensor(const struct vg_source *s, const double x[3],
+                         double h[6]);
+
+/** Box around the cones. */
+void vg_mach_cone_bounds(const struct vg_source *s, double lo[3], double hi[3]);
+
+#endif

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* Sizes along Mach cones. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "core/geometry/tensor.h"
+#include "core/geometry/vector.h"
+#include "core/sizing/sizing_cone.h"
+#include "core/sizing/sizing_source.h"
+
+/* Cones of a flow along x at Mach 1.6 with apexes from -1 to 2, up to r = 10.
+ */
+static struct vg_source cones(void)
+{
+  return (struct vg_source){ .kind = VG_SOURCE_MACHCONE,
+                             .p0 = { -1, 0, 0 },
+                             .p1 = { 2, 0, 0 },
+                             .h0 = 0.02,
+                             .h1 = 0.04,
+                             .r0 = 10,
+                             .stretch = 20,
+                             .mach = 1.6,
+                             .an = 1 };
+}
+
+static double size_along(const double h[6], double x, double y, double z)
+{
+  double d[3] = { x, y, z }, to[3], inverse[6];
+
+  vg_unit(d);
+  vg_tensor_invert(h, inverse);
+  vg_tensor_apply(inverse, d, to);
+  return 1 / vg_norm(to);
+}
+
+static void near(double a, double b)
+{
+  if (!(fabs(a - b) <= 1e-12 * fmax(1, fabs(b)))) fail_msg("%.17g %.17g", a, b);
+}
+
+static void has_its_sizes_along_and_across(void **state)
+{
+  const struct vg_source s = cones();
+  const double sine = 1 / 1.6, cosine = sqrt(1 - sine * sine);
+  /* On the cone with the apex at x = 0.5, at radius 5. */
+  const double x[3] = { 0.5 + 5 * cosine / sine, 3, -4 };
+  double h[6], value[3], vector[3][3], t, way[3];
+
+  (void)state;
+  assert_true(vg_mach_cone_way(&s, x, &t, way) == 0);
+  near(t, 0.5);
+  vg_mach_cone_tensor(&s, x, h);
+  near(size_along(h, sine, -cosine * 0.6, cosine * 0.8), 0.03);
+  near(size_along(h, cosine, sine * 0.6, -sine * 0.8), 0.6);
+  near(size_along(h, 0, 0.8, 0.6), sqrt(2 * 5 * 0.03));
+  vg_tensor_eigen(h, value, vector);
+  near(value[0], 0.03);
+  near(value[1], sqrt(0.3));
+  near(value[2], 0.6);
+}
+
+/* An edge of the size around the axis leaves the cone by the size across it. */
+static void keeps_chords_near_the_cone(void **state)
+{
+  const struct vg_source s = cones();
+
+  (void)state;
+  for (double r = 0.01; r < 10; r *= 1.5) {
+    const double x[3] = { r * sqrt(1.56), r, 0 };
+    double h[6], round, across;
+
+    vg_mach_cone_tensor(&s, x, h);
+    round = size_along(h, 0, 0, 1);
+    across = 0.02 + 0.02 * r / 10;
+    assert_true(hypot(r, round) - r <= across * (1 + 1e-9));
+    assert_true(round >= across - 1e-12);
+    assert_true(size_along(h, sqrt(1.56), 1, 0) <= fmax(across, r) + 1e-12);
+  }
+}
+
+/* The tensor is isotropic, with exactly equal components, at the axis, and
+ * changes continuously. */
+static void is_isotropic_at_the_axis(void **state)
+{
+  const struct vg_source s = cones();
+  const double on[3] = { 1, 0, 0 }, at[3] = { 1, 0.015, 0 };
+  const double beyond[3] = { 1, 0.0203, 0 };
+  double h[6];
+
+  (void)state;
+  vg_mach_cone_tensor(&s, on, h);
+  assert_true(h[0] == 0.02 && h[3] == h[0] && h[5] == h[0]);
+  assert_true(h[1] == 0 && h[2] == 0 && h[4] == 0);
+  vg_mach_cone_tensor(&s, at, h);
+  assert_true(h[0] == h[3] && h[3] == h[5] && h[1] == 0);
+  vg_mach_cone_tensor(&s, beyond, h);
+  assert_true(fabs(h[0] - h[3]) < 0.001 && fabs(h[0] - h[5]) < 0.001);
+}
+
+static double distance(const struct vg_source *s, const double x[3])
+{
+  double t, way[3];
+
+  return vg_mach_cone_way(s, x, &t, way);
+}
+
+/* The way leads to a point of the shape, the distance is its length, and no
+ * sampled point of the shape is nearer. */
+static void finds_the_nearest_point(void **state)
+{
+  struct vg_source s = cones();
+  const double cot = sqrt(1.56);
+  double lo[3], hi[3];
+
+  (void)state;
+  vg_mach_cone_bounds(&s, lo, hi);
+  near(lo[0], -1);
+  near(hi[0], 2 + 10 * cot);
+  near(lo[1], -10);
+  near(hi[2], 10);
+  for (double z = -20; z < 40; z += 2.7)
+    for (double r = 0; r < 25; r += 1.9) {
+      const double x[3] = { z, 0.6 * r, 0.8 * r };
+      double t, way[3], foot[3], least = INFINITY;
+      const double d = vg_mach_cone_way(&s, x, &t, way);
+
+      near(vg_norm(way), d);
+      vg_sub(x, way, foot);
+      assert_true(distance(&s, foot) < 1e-12);
+      for (int k = 0; k < 3; k++)
+        assert_true(foot[k] >= lo[k] - 1e-12 && foot[k] <= hi[k] + 1e-12);
+      for (int i = 0; i <= 60; i++)
+        for (int j = 0; j <= 60; j++)
+          least = fmin(least,
+                       hypot(-1 + i / 20.0 + j / 6.0 * cot - z, j / 6.0 - r));
+      assert_true(d <= least + 1e-12);
+      assert_true(d >= least - 0.17); /* Half a diagonal of the samples. */
+    }
+}
+
+/* A turned source gives turned tensors. */
+static void follows_its_axis(void **state)
+{
+  const struct vg_source s = cones();
+  struct vg_source turned = s;
+  const double x[3] = { 6, 2, 3 }, y[3] = { 3, 6, 2 };
+  double a[6], b[6];
+
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    turned.p0[(k + 1) % 3] = s.p0[k];
+    turned.p1[(k + 1) % 3] = s.p1[k];
+  }
+  vg_mach_cone_tensor(&s, x, a);
+  vg_mach_cone_tensor(&turned, y, b);
+  near(a[0], b[3]);
+  near(a[1], b[4]);
+  near(a[2], b[1]);
+  near(a[3], b[5]);
+  near(a[4], b[2]);
+  near(a[5], b[0]);
+  near(distance(&s, x), distance(&turned, y));
+}
+
+static void refuses_bad_sources(void **state)
+{
+  struct {
+    size_t at;
+    double value;
+    const char *text;
+  } const bad[] = {
+    { offsetof(struct vg_source, mach), 1, "Mach number is not above 1" },
+    { offsetof(struct vg_source, mach), NAN, "Mach number is not above 1" },
+    { offsetof(struct vg_source, r0), 0, "radius is not positive" },
+    { offsetof(struct vg_source, h1), 0, "not positive" },
+    { offsetof(struct vg_source, p1), -1, "axis has no length" },
+    { offsetof(struct vg_source, stretch), 0.5, "stretching is below 1" },
+  };
+  struct vg_source s = cones();
+  struct vg_error err = VG_ERROR_INIT;
+
+  (void)state;
+  assert_int_equal(vg_source_check(1, &s, &err), VG_OK);
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    s = cones();
+    memcpy((char *)&s + bad[i].at, &bad[i].value, sizeof(double));
+    assert_int_equal(vg_source_check(1, &s, &err), VG_ERR_INPUT);
+    if (!strstr(err.text, bad[i].text)) fail_msg("%s", err.text);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(has_its_sizes_along_and_across),
+    cmocka_unit_test(keeps_chords_near_the_cone),
+    cmocka_unit_test(is_isotropic_at_the_axis),
+    cmocka_unit_test(finds_the_nearest_point),
+    cmocka_unit_test(follows_its_axis),
+    cmocka_unit_test(refuses_bad_sources),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
