@@ -111,6 +111,7 @@ static void add_source(struct vg_settings *s, int kind)
   row.r1 = M_PI;
   row.growth = kind % 2 ? 1.15 : 0;
   row.an = 1.5;
+  row.mach = kind % 2 ? 1.6 : 0;
   row.bn = 0.25;
   row.alpha = 1;
   row.stretch = 1;
@@ -194,7 +195,7 @@ static void everything_survives_a_round_trip(void **state)
   surface.lead = surface.across = 0;
   surface.stretch = 12.5;
   vg_settings_add(&s, VG_TABLE_SURFACE, &surface, NULL);
-  for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_CYLINDER; kind++)
+  for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_MACHCONE; kind++)
     add_source(&s, kind);
   vg_settings_add(&s, VG_TABLE_SWEEP, &sweep, NULL);
   round_trip(&s, 0);
@@ -290,6 +291,7 @@ static void tables_are_checked_too(void **state)
   refuse("t\nsources\nkind h0\npoint -\n", "h0 must be a number");
   refuse("t\nsources\nkind h0\npoint 0\n", "must be above 0");
   refuse("t\nsources\nkind h0 growth\npoint 1 0.5\n", "growth of source 1");
+  refuse("t\nsources\nkind h0 mach\nmachcone 1 0.5\n", "mach of source 1");
   refuse("t\nsources\nkind h0\npoint 1\n\nsources\nkind h0\npoint 1\n",
          "run.deck:6: table 'sources' was already given on line 2;");
   refuse("t\nfarfield\nkind\nbox\nbox\n", "one line of values");

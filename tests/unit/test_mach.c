@@ -117,14 +117,18 @@ static void is_closed_around_the_body(void **state)
     struct vg_domain_report report = { 0 };
     struct vg_error err = VG_ERROR_INIT;
     struct vg_mach d;
-    double want;
+    double want, lo[3], hi[3];
 
     assert_int_equal(vg_mach_place(&m, &far.extent, length_of(&m), c->centre,
                                    c->half, &d, &err),
                      VG_OK);
     want = (solid(&d) - 4 * PI / 3) * (c->half < 0 ? 1 : 0.5);
+    vg_domain_bounds(&m, &far, lo, hi);
     if (vg_domain_complete(&m, &far, NULL, &report, &err) != VG_OK)
       fail_msg("%s", err.text);
+    for (size_t j = 0; j < m.n_point; j++)
+      for (int k = 0; k < 3; k++)
+        assert_true(m.point[j][k] > lo[k] && m.point[j][k] < hi[k]);
     assert_true(report.added_farfield);
     assert_int_equal(report.added_symmetry, c->half >= 0);
     assert_int_equal(vg_mesh_open_edges(&m), 0);

@@ -61,15 +61,14 @@ static int list_cases(void)
 }
 
 /* Cases with viscous layers: Reynolds number 5 million based on the mean
- * chord. */
+ * chord, or on the length of the body. */
 static const struct rans {
   const char *name;
   double y_plus, reynolds, length;
 } rans_cases[] = {
-  { "wing", 1, 5e6, 0.7 },
-  { "wing-half", 1, 5e6, 0.7 },
-  { "wing-sharp", 1, 5e6, 0.7 },
-  { "wing-sharp-half", 1, 5e6, 0.7 },
+  { "wing", 1, 5e6, 0.7 },       { "wing-half", 1, 5e6, 0.7 },
+  { "wing-sharp", 1, 5e6, 0.7 }, { "wing-sharp-half", 1, 5e6, 0.7 },
+  { "boom", 1, 5e6, 1 },         { "boom-half", 1, 5e6, 1 },
 };
 
 static const char layer_comment[] =
@@ -91,6 +90,28 @@ static int set_layers(const char *name, struct vg_settings *s)
   return 0;
 }
 
+/* A farfield along the Mach cone, and sources along the cones of the body,
+ * whose place follows from the body and the farfield. Other sizes grow from the
+ * surface of the body. */
+static vg_status ask_for_boom(const struct vg_mach_extent *e,
+                              const struct vg_source *cones,
+                              struct vg_settings *s, struct vg_error *err)
+{
+  struct vg_source source;
+
+  s->farfield.kind = VG_DOMAIN_MACH;
+  s->farfield.mach = e->mach;
+  s->farfield.upstream = e->upstream;
+  s->farfield.downstream = e->downstream;
+  s->farfield.radial = e->radial;
+  vg_settings_row_default(VG_TABLE_SOURCES, &source);
+  source.kind = VG_SOURCE_MACHCONE;
+  source.h0 = cones->h0;
+  source.h1 = cones->h1;
+  source.stretch = cones->stretch;
+  return vg_settings_add(s, VG_TABLE_SOURCES, &source, err);
+}
+
 /* The recommended settings of the case. */
 static vg_status settings_of(const char *name, const struct vg_demo *demo,
                              struct vg_settings *s, struct vg_error *err)
@@ -105,6 +126,8 @@ static vg_status settings_of(const char *name, const struct vg_demo *demo,
   s->hmax = demo->sizing.h_max;
   s->surface_sizes = demo->sizing.from_surface;
   s->farfield.kind = VG_DOMAIN_NONE;
+  if (demo->farfield.kind == VG_FARFIELD_MACH)
+    return ask_for_boom(&demo->farfield.extent, &demo->source[0], s, err);
   for (size_t i = 0; i < demo->n_source && st >= 0; i++)
     st = vg_settings_add(s, VG_TABLE_SOURCES, &demo->source[i], err);
   return st;
@@ -131,21 +154,25 @@ static vg_status write_project(char *const path[3], const char *stem,
 {
   char points[32], triangles[32], cells[32];
   struct vg_settings s = VG_SETTINGS_INIT;
+  struct vg_mesh surface = demo->surface; /* Borrowed. */
   int has_layers;
   vg_status st;
 
+  if (demo->farfield.kind == VG_FARFIELD_MACH) { /* The body alone. */
+    surface.n_tri = demo->n_body_tri;
+    surface.n_point = demo->n_body_point;
+    surface.n_patch = 1;
+  }
   VG_TRY(settings_of(name, demo, &s, err));
-  VG_TRY(vg_format_write(path[0], &demo->surface, err));
-  VG_TRY(
-    vg_mapbc_write(path[1], &demo->surface, VG_MAPBC_VGRID, name, NULL, err));
+  VG_TRY(vg_format_write(path[0], &surface, err));
+  VG_TRY(vg_mapbc_write(path[1], &surface, VG_MAPBC_VGRID, name, NULL, err));
   has_layers = set_layers(name, &s);
   VG_TRY(vg_deck_write(path[2], &s, has_layers ? layer_comment : NULL,
                        has_layers, err));
   printf("%s: surface of %s points, %s triangles\n", path[0],
-         vg_text_count(demo->surface.n_point, points),
-         vg_text_count(demo->surface.n_tri, triangles));
-  printf("%s: boundary conditions of %zu patches\n", path[1],
-         demo->surface.n_patch);
+         vg_text_count(surface.n_point, points),
+         vg_text_count(surface.n_tri, triangles));
+  printf("%s: boundary conditions of %zu patches\n", path[1], surface.n_patch);
   printf("%s: settings, for about %s cells%s\n", path[2],
          vg_text_count((unsigned long long)demo->n_cell, cells),
          has_layers ? " without the viscous layers" : "");

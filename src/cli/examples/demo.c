@@ -20,7 +20,7 @@
 #define SPHERE_FINE 0.02
 #define SPHERE_COARSE 1.5
 
-enum kind { BOX, SPHERE, WING };
+enum kind { BOX, SPHERE, WING, BOOM };
 
 static const struct vg_demo_case cases[] = {
   { "box", "unit cube, uniform spacing", 100000 },
@@ -30,6 +30,8 @@ static const struct vg_demo_case cases[] = {
   { "wing-sharp", "swept tapered wing, sharp trailing edge", 1000000 },
   { "wing-sharp-half", "half model of wing-sharp, on a symmetry plane",
     500000 },
+  { "boom", "body of revolution at Mach 1.6, with its sonic boom", 500000 },
+  { "boom-half", "half model of boom, on a symmetry plane", 250000 },
 };
 
 enum { N_ENTRY = sizeof cases / sizeof *cases };
@@ -41,6 +43,7 @@ static const struct entry {
 } entries[N_ENTRY] = {
   { BOX, { 0, 0 } },  { SPHERE, { 0, 0 } }, { WING, { 0, 0 } },
   { WING, { 0, 1 } }, { WING, { 1, 0 } },   { WING, { 1, 1 } },
+  { BOOM, { 0, 0 } }, { BOOM, { 0, 1 } },
 };
 
 const struct vg_demo_case *vg_demo_cases(size_t *n)
@@ -167,6 +170,7 @@ static void make_law(struct scaled *s)
     vg_demo_wing_law(&s->entry->wing, f, law);
     law->h_max = 0.2 * FARFIELD * (f < 1 ? f : 1);
     break;
+  case BOOM: vg_demo_boom_law(f, law); break;
   }
   for (size_t i = 0; i < law->n; i++) law->source[i].an = 1;
 }
@@ -192,6 +196,7 @@ static int in_fluid(void *user, const double x[3])
 
   if (s->entry->kind == BOX) return 1;
   if (s->entry->kind == SPHERE) return rr > 1;
+  if (s->entry->kind == BOOM) return vg_demo_boom_holds(x);
   return rr < FARFIELD * FARFIELD && !vg_demo_wing_holds(&s->entry->wing, x);
 }
 
@@ -199,10 +204,11 @@ static int in_fluid(void *user, const double x[3])
 static double n_cell_of(struct scaled *s,
                         double (*size)(void *user, const double x[3]))
 {
-  const double lo[3] = { -FARFIELD, s->entry->wing.is_half ? 0 : -FARFIELD,
-                         -FARFIELD };
-  const double hi[3] = { FARFIELD, FARFIELD, FARFIELD };
+  double lo[3] = { -FARFIELD, s->entry->wing.is_half ? 0 : -FARFIELD,
+                   -FARFIELD };
+  double hi[3] = { FARFIELD, FARFIELD, FARFIELD };
 
+  if (s->entry->kind == BOOM) vg_demo_boom_box(s->entry->wing.is_half, lo, hi);
   return VG_DEMO_CELLS_PER_CUBE * VG_DEMO_GRADED *
          cubes(lo, hi, size, in_fluid, s);
 }
@@ -303,6 +309,7 @@ static vg_status add_farfield(const struct scaled *s, struct vg_demo *d,
   far.size = FARFIELD;
   far.has_centre = 1;
   far.kind = s->entry->kind == SPHERE ? VG_FARFIELD_BOX : VG_FARFIELD_SPHERE;
+  if (s->entry->kind == BOOM) far = d->farfield = vg_demo_boom_farfield();
   return vg_domain_complete_by(&d->surface, &far, &law, NULL, err);
 }
 
@@ -323,11 +330,16 @@ static vg_status build(const struct scaled *s, struct vg_demo *d,
   switch (s->entry->kind) {
   case BOX: return box_surface(s, &d->surface, err);
   case SPHERE: st = sphere_surface(s, &d->surface, err); break;
+  case BOOM:
+    st = vg_demo_boom_surface(s->entry->wing.is_half, &s->law, &d->surface,
+                              err);
+    break;
   default:
     st = vg_demo_wing_surface(&s->entry->wing, &s->law, &d->surface, err);
   }
   if (st != VG_OK) return st;
   d->n_body_tri = d->surface.n_tri;
+  d->n_body_point = d->surface.n_point;
   return add_farfield(s, d, err);
 }
 

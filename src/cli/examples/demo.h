@@ -36,6 +36,10 @@ struct vg_demo {
                              have names and conditions of both solvers */
   size_t n_body_tri;      /* the first triangles of the surface, which are the
                              body; 0: no body */
+  size_t n_body_point;    /* the first points, which are those of the body */
+  struct vg_farfield farfield; /* of kind VG_FARFIELD_MACH: that of the surface,
+                                  which the settings of the project ask for;
+                                  else VG_FARFIELD_NONE */
   struct vg_sizing_options sizing; /* recommended, with from_surface */
   size_t n_source;
   struct vg_source *source;
@@ -43,7 +47,7 @@ struct vg_demo {
 };
 #define VG_DEMO_INIT                                                           \
   {                                                                            \
-    .n_body_tri = 0                                                            \
+    .farfield = {.kind = VG_FARFIELD_NONE }                                    \
   }
 
 /** Make a case.
@@ -51,7 +55,9 @@ struct vg_demo {
  * @param name    "box" unit cube, even spacing; "sphere" of radius 1 in a box
  *                of half width 20; "wing", "wing-half" swept tapered wing
  *                with a blunt trailing edge, whole and on a symmetry plane;
- *                "wing-sharp", "wing-sharp-half" with a sharp one
+ *                "wing-sharp", "wing-sharp-half" with a sharp one; "boom",
+ *                "boom-half" a body of revolution at Mach 1.6 in a domain
+ *                along the Mach cone, with cells stretched along it
  * @param n_cell  requested number of cells, 0: the default. The geometry sets a
  *                lower bound: see the estimate in *out
  * @param out     owned by the caller, vg_demo_release; unchanged on failure

@@ -36,4 +36,23 @@ vg_status vg_demo_wing_surface(const struct vg_demo_wing *w,
                                const struct vg_demo_spacing *law,
                                struct vg_mesh *out, struct vg_error *err);
 
+/** Add the mirror image of a surface at y >= 0; points at y = 0 are shared. */
+vg_status vg_demo_mirror(struct vg_mesh *m, struct vg_error *err);
+
+/** A body of revolution of length 1 from the origin along x, in a domain for
+ * its sonic boom: sources for a factor on all spacings; the first one stretches
+ * cells along the Mach cones. */
+void vg_demo_boom_law(double factor, struct vg_demo_spacing *law);
+
+/** Its domain, and the box around that. */
+struct vg_farfield vg_demo_boom_farfield(void);
+void vg_demo_boom_box(int is_half, double lo[3], double hi[3]);
+
+/** Returns 1 for a point of the fluid in the domain. */
+int vg_demo_boom_holds(const double x[3]);
+
+/** Surface without farfield: closed, or open along y = 0. */
+vg_status vg_demo_boom_surface(int is_half, const struct vg_demo_spacing *law,
+                               struct vg_mesh *out, struct vg_error *err);
+
 #endif

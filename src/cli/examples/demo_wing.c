@@ -526,8 +526,7 @@ done:
   return st;
 }
 
-/* Add the mirror image; points at y = 0 are shared. */
-static vg_status mirror(struct vg_mesh *m, struct vg_error *err)
+vg_status vg_demo_mirror(struct vg_mesh *m, struct vg_error *err)
 {
   const size_t n = m->n_point, n_tri = m->n_tri;
   uint32_t *other = vg_alloc(n, sizeof *other), *of;
@@ -541,7 +540,7 @@ static vg_status mirror(struct vg_mesh *m, struct vg_error *err)
   if (of) m->tri_patch = of;
   if (!other || !point || !tri || !of) {
     free(other);
-    return vg_fail_memory(err, "the wing");
+    return vg_fail_memory(err, "the mirror image");
   }
   for (size_t i = 0; i < n; i++) {
     other[i] = (uint32_t)i;
@@ -593,7 +592,7 @@ vg_status vg_demo_wing_surface(const struct vg_demo_wing *w,
   VG_TRY(add_edges(&f, err));
   VG_TRY(fill_skin(&f, err));
   VG_TRY(fill_caps(&f, err));
-  if (!w->is_half) VG_TRY(mirror(&m, err));
+  if (!w->is_half) VG_TRY(vg_demo_mirror(&m, err));
   vg_mesh_move(out, &m);
 done:
   vg_mesh_release(&m);

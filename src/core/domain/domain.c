@@ -357,6 +357,32 @@ done:
   return st;
 }
 
+void vg_domain_bounds(const struct vg_mesh *surface,
+                      const struct vg_farfield *farfield, double lo[3],
+                      double hi[3])
+{
+  double centre[3], length = 0;
+  struct vg_mach mach;
+
+  vg_mesh_bounds(surface, lo, hi);
+  if (farfield->kind != VG_FARFIELD_MACH) return;
+  for (int k = 0; k < 3; k++) {
+    centre[k] = farfield->has_centre ? farfield->centre[k]
+                                     : 0.5 * (lo[k] + hi[k]);
+    length = fmax(length, hi[k] - lo[k]);
+  }
+  if (!(length > 0) || vg_mach_place(surface, &farfield->extent, length, centre,
+                                     -1, &mach, NULL) < 0)
+    return;
+  vg_mach_bounds(&mach, lo, hi);
+  for (int k = 0; k < 3; k++) {
+    const double more = 0.1 * (hi[k] - lo[k]);
+
+    lo[k] -= more;
+    hi[k] += more;
+  }
+}
+
 vg_status vg_domain_half(const struct vg_mesh *surface, int symmetry, int *axis,
                          double *at, struct vg_error *err)
 {

@@ -138,6 +138,22 @@ done:
   return st;
 }
 
+void vg_mach_bounds(const struct vg_mach *d, double lo[3], double hi[3])
+{
+  for (int k = 0; k < 3; k++) {
+    const double a = d->shape.axis[k], wide = sqrt(fmax(0, 1 - a * a));
+
+    lo[k] = INFINITY;
+    hi[k] = -INFINITY;
+    for (int i = 0; i < VG_MACH_CORNERS; i++) {
+      const double at = d->shape.origin[k] + d->corner[i][0] * a;
+
+      lo[k] = fmin(lo[k], at - d->corner[i][1] * wide);
+      hi[k] = fmax(hi[k], at + d->corner[i][1] * wide);
+    }
+  }
+}
+
 double vg_mach_edge(const struct vg_mach *d, const double x[3])
 {
   double z, radius;

@@ -33,6 +33,9 @@ vg_status vg_mach_place(const struct vg_mesh *body,
                         const double centre[3], int half, struct vg_mach *out,
                         struct vg_error *err);
 
+/** Box around the domain as a whole. */
+void vg_mach_bounds(const struct vg_mach *d, double lo[3], double hi[3]);
+
 /** Largest edge on the farfield at x for which circles are round and the window
  * is resolved. */
 double vg_mach_edge(const struct vg_mach *d, const double x[3]);

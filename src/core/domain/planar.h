@@ -147,6 +147,16 @@ vg_status vg_domain_close_holes(struct vg_mesh *surface, int symmetry,
                                 const struct vg_sizing *sizing, size_t *n_hole,
                                 size_t *n_tri, struct vg_error *err);
 
+/** Box around the surface and, if the farfield is swept along the Mach cone,
+ * around that, with a margin of a tenth. The sizes on such a farfield are those
+ * of sources beyond the body, so the sizing field must cover it.
+ *
+ * @param surface  at least one point
+ * Extents that vg_domain_complete refuses leave the box of the surface. */
+void vg_domain_bounds(const struct vg_mesh *surface,
+                      const struct vg_farfield *farfield, double lo[3],
+                      double hi[3]);
+
 /** Complete a surface to a closed boundary of the fluid. Without a farfield
  * only the symmetry plane of a half domain is added.
  *

@@ -45,7 +45,7 @@ enum vg_source_kind {
                            they differ); h0 to h1 along the axis */
   VG_SOURCE_MACHCONE    /* Mach cones with apexes from p0 to p1, up to radius
                            r0; across them h0 on the axis to h1 at r0, along
-                           them `stretch` times as much (sizing_cone.h) */
+                           them `stretch` times that size (sizing_cone.h) */
 };
 
 struct vg_source {
@@ -59,7 +59,7 @@ struct vg_source {
   double stretch, sp0, sp1, u[3], p[3]; /* VGRID stretching data, as in the
                                            file */
   double layer0[3], layer1[3]; /* delta1 rate1 rate2 at p0 and p1 (grid=2) */
-  double mach; /* Mach number of Mach cones, > 1 */
+  double mach;                 /* Mach number of Mach cones, > 1 */
   char group[32];
 };
 

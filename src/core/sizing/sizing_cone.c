@@ -48,8 +48,8 @@ const char *vg_mach_cone_defect(const struct vg_source *s)
   if (!(s->mach > 1) || !isfinite(s->mach))
     return "its Mach number is not above 1; give that of the flow (mach)";
   if (!(vg_dot(d, d) > 0))
-    return "its axis has no length; give the foremost and the rearmost point of "
-           "the body (x0 y0 z0, x1 y1 z1)";
+    return "its axis has no length; give the foremost and the rearmost point "
+           "of the body (x0 y0 z0, x1 y1 z1)";
   if (!(s->r0 > 0) || !isfinite(s->r0))
     return "its radius is not positive; give the radius where the cones end "
            "(r0)";

@@ -121,7 +121,8 @@ static void put_cones(struct vg_probes *p, const struct vg_source *s,
       const double r = WITHIN * s->r0 * l / n_radius;
       double x[3];
 
-      for (int k = 0; k < 3; k++) x[k] = s->p0[k] + t * d[k] + r * cot * axis[k];
+      for (int k = 0; k < 3; k++)
+        x[k] = s->p0[k] + t * d[k] + r * cot * axis[k];
       for (int w = 0; w < 4; w++) put(p, i, x, w % 2 ? r : -r, way[w / 2]);
     }
 }

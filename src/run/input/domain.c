@@ -180,23 +180,44 @@ static struct vg_farfield decided_farfield(const struct vg_boundary *b)
   return vg_options_farfield(&view);
 }
 
-vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
-                               struct vg_error *err)
+/* The sizing field for the surfaces of the domain. It covers a box beyond the
+ * body, whose corners are appended to the points of the surface. */
+static vg_status make_sizing(const struct vg_boundary *b,
+                             const struct vg_farfield *far,
+                             struct vg_sizing **out, struct vg_error *err)
 {
   const struct vg_settings *s = &b->read->settings;
   struct vg_sizing_options options = vg_boundary_sizing(b);
+  struct vg_mesh view = b->surface; /* Borrowed, except for its points. */
+  vg_status st;
+
+  /* The farfield is far from the body, so the largest edge of the body does not
+   * limit it. */
+  if (!(options.h_max > 0)) options.h_max = INFINITY;
+  options.threads = b->threads;
+  if (far->kind == VG_FARFIELD_MACH) {
+    view.point = vg_alloc(view.n_point + 2, sizeof *view.point);
+    if (!view.point) return vg_fail_memory(err, "the sizing field");
+    memcpy(view.point, b->surface.point, view.n_point * sizeof *view.point);
+    vg_domain_bounds(&b->surface, far, view.point[view.n_point],
+                     view.point[view.n_point + 1]);
+    view.n_point += 2;
+  }
+  st = vg_sizing_new(&options, s->n_source, s->source, &view, out, err);
+  if (view.point != b->surface.point) free(view.point);
+  return st;
+}
+
+vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
+                               struct vg_error *err)
+{
   struct vg_farfield far = decided_farfield(b);
   struct vg_sizing *sizing = NULL;
   vg_status st;
 
   far.symmetry = b->flow.axis < 0 ? -1 : 1;
   VG_TRY(check_farfield(b, &far, err));
-  /* The farfield is far from the body, so the largest edge of the body does not
-   * limit it. */
-  if (!(options.h_max > 0)) options.h_max = INFINITY;
-  options.threads = b->threads;
-  VG_TRY(
-    vg_sizing_new(&options, s->n_source, s->source, &b->surface, &sizing, err));
+  VG_TRY(make_sizing(b, &far, &sizing, err));
   far.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(vg_domain_complete(&b->surface, &far, sizing, &b->domain, err));
 done:

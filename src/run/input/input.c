@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 #define _GNU_SOURCE
+#include "run/input/cones.h"
 #include "run/input/input.h"
 
 #include <math.h>
@@ -733,7 +734,8 @@ vg_status vg_problem_given(struct vg_problem *p, const char *name,
   if (bad || !f->stem) return vg_fail_memory(err, "the names of a surface");
   VG_TRY(vg_read_sizes(r, err));
   VG_TRY(apply_conditions(r, err));
-  st = apply_patch_table(r, err);
+  VG_TRY(apply_patch_table(r, err));
+  st = vg_read_place_cones(r, err);
 done:
   return st;
 }
@@ -765,7 +767,8 @@ static vg_status read_patches(struct vg_read *r, struct vg_error *err)
   VG_TRY(read_heights(r, err));
   /* All layer settings are in the settings now, except heights by point. */
   if (!r->heights.n) r->settings.layer.from_files = 0;
-  st = apply_patch_table(r, err);
+  VG_TRY(apply_patch_table(r, err));
+  st = vg_read_place_cones(r, err);
 done:
   return st;
 }

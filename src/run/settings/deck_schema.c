@@ -35,6 +35,7 @@ static const struct {
   { "surface", "across", "{'anyOf':[{'const':0},{'minimum':1}]}" },
   { "surface", "stretch", "{'anyOf':[{'const':0},{'minimum':1}]}" },
   { "sources", "growth", "{'anyOf':[{'const':0},{'exclusiveMinimum':1}]}" },
+  { "sources", "mach", "{'anyOf':[{'const':0},{'exclusiveMinimum':1}]}" },
 };
 
 #define POSITIVE "{'exclusiveMinimum':0}"

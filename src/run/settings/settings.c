@@ -51,9 +51,10 @@ static const char *const rule_words[] = { "no", "even", "workshop", NULL };
 static const char *const interface_words[] = { "remesh", "h-refine", NULL };
 static const char *const schedule_words[] = { "dynamic", "cyclic", NULL };
 /* In the order of enum vg_source_kind. */
-static const char *const source_words[] = { "vgrid_node", "vgrid_line", "point",
-                                            "line",       "triangle",   "box",
-                                            "sphere",     "cylinder",   NULL };
+static const char *const source_words[] = {
+  "vgrid_node", "vgrid_line", "point",    "line",     "triangle",
+  "box",        "sphere",     "cylinder", "machcone", NULL
+};
 
 #define VG_AT_plain
 #define VG_AT_cad cad.
@@ -236,7 +237,8 @@ static const struct vg_param source_columns[] = {
       "Shape of the source. vgrid_node and vgrid_line follow "
       "VGRID's inverse-square law; around a point, line, triangle, box, "
       "sphere or cylinder (a cone if r0 and r1 differ) the spacing grows at a "
-      "bounded rate" },
+      "bounded rate. machcone: along the Mach cones of the body, with apexes "
+      "from the first to the second point (both 0: those of the body)" },
   ANY("x0", p0[0], "length", "First point, centre or lower corner, x"),
   ANY("y0", p0[1], "length", "First point, y"),
   ANY("z0", p0[2], "length", "First point, z"),
@@ -251,13 +253,19 @@ static const struct vg_param source_columns[] = {
   { "h0", AT(h0), .type = VG_PARAM_REAL, LENGTH, .above_lo = 1, .required = 1,
     .help = "Spacing at the first point, or inside the shape" },
   { "h1", AT(h1), .type = VG_PARAM_REAL, LENGTH,
-    .help = "Spacing at the second point; 0: as h0" },
+    .help =
+      "Spacing at the second point, or at the radius r0 (machcone); 0: as "
+      "h0" },
   { "r0", AT(r0), .type = VG_PARAM_REAL, LENGTH,
-    .help = "Radius within which the spacing is h0" },
+    .help = "Radius within which the spacing is h0, or at which Mach cones end "
+            "(0: that of the farfield)" },
   { "r1", AT(r1), .type = VG_PARAM_REAL, LENGTH,
     .help = "Radius at the second point (cylinder)" },
   { "growth", AT(growth), .type = VG_PARAM_REAL, .hi = 10, .unit = "",
     .help = "Growth around this source, > 1; 0: the global growth" },
+  { "mach", AT(mach), .type = VG_PARAM_REAL, .hi = MACH_MAX, .unit = "",
+    .help =
+      "Mach number of the cones (machcone), > 1; 0: that of the farfield" },
   ANY("an", an, "", "Weight of a VGRID source"),
   AS_READ("bn", bn, "", "VGRID bias intensity; stored, not used"),
   AS_READ("alpha", alpha, "", "VGRID directional bias; stored, not used"),

@@ -123,6 +123,26 @@ static vg_status check_layers(const struct vg_settings *s, struct vg_error *err)
   return check_layer_rows(s, err);
 }
 
+static vg_status check_sources(const struct vg_settings *s,
+                               struct vg_error *err)
+{
+  for (size_t i = 0; i < s->n_source; i++) {
+    const struct vg_source *a = &s->source[i];
+
+    if (a->growth != 0 && !(a->growth > 1))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "sources: growth of source %zu is %g; "
+                     "it must be above 1, or 0 for the global growth",
+                     i + 1, a->growth);
+    if (a->mach != 0 && !(a->mach > 1))
+      return vg_fail(err, VG_ERR_INPUT,
+                     "sources: mach of source %zu is %g; it must be above 1, "
+                     "or 0 for that of the farfield",
+                     i + 1, a->mach);
+  }
+  return VG_OK;
+}
+
 /* Kind mach needs a Mach number; its other columns belong to it alone. */
 static vg_status check_mach(const struct vg_farfield_row *f,
                             struct vg_error *err)
@@ -209,12 +229,7 @@ vg_status vg_settings_check(const struct vg_settings *s, struct vg_error *err)
                    "is %s; set kind to box",
                    kind_name(f));
   if (check_mach(f, err) < 0) return VG_ERR_INPUT;
-  for (size_t i = 0; i < s->n_source; i++)
-    if (s->source[i].growth != 0 && !(s->source[i].growth > 1))
-      return vg_fail(err, VG_ERR_INPUT,
-                     "sources: growth of source %zu is %g; "
-                     "it must be above 1, or 0 for the global growth",
-                     i + 1, s->source[i].growth);
+  if (check_sources(s, err) < 0) return VG_ERR_INPUT;
   if (vg_surface_rows_check(s, err) < 0) return VG_ERR_INPUT;
   if (s->n_patch && check_numbers(s, VG_TABLE_PATCHES, err) < 0)
     return VG_ERR_INPUT;
