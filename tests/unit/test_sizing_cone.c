@@ -15,6 +15,8 @@
 #include "core/sizing/sizing_cone.h"
 #include "core/sizing/sizing_source.h"
 
+#define SLOPE 0.2 /* growth - 1 */
+
 /* Cones of a flow along x at Mach 1.6 with apexes from -1 to 2, up to r = 10.
  */
 static struct vg_source cones(void)
@@ -56,17 +58,18 @@ static void has_its_sizes_along_and_across(void **state)
   (void)state;
   assert_true(vg_mach_cone_way(&s, x, &t, way) == 0);
   near(t, 0.5);
-  vg_mach_cone_tensor(&s, x, h);
+  vg_mach_cone_tensor(&s, SLOPE, x, h);
   near(size_along(h, sine, -cosine * 0.6, cosine * 0.8), 0.03);
   near(size_along(h, cosine, sine * 0.6, -sine * 0.8), 0.6);
-  near(size_along(h, 0, 0.8, 0.6), sqrt(2 * 5 * 0.03));
+  near(size_along(h, 0, 0.8, 0.6), sqrt(5 * 0.03));
   vg_tensor_eigen(h, value, vector);
   near(value[0], 0.03);
-  near(value[1], sqrt(0.3));
+  near(value[1], sqrt(0.15));
   near(value[2], 0.6);
 }
 
-/* An edge of the size around the axis leaves the cone by the size across it. */
+/* An edge of the size around the axis leaves the cone by at most half of the
+ * size across it, and no size exceeds what growth from the axis allows. */
 static void keeps_chords_near_the_cone(void **state)
 {
   const struct vg_source s = cones();
@@ -76,12 +79,12 @@ static void keeps_chords_near_the_cone(void **state)
     const double x[3] = { r * sqrt(1.56), r, 0 };
     double h[6], round, across;
 
-    vg_mach_cone_tensor(&s, x, h);
+    vg_mach_cone_tensor(&s, SLOPE, x, h);
     round = size_along(h, 0, 0, 1);
     across = 0.02 + 0.02 * r / 10;
-    assert_true(hypot(r, round) - r <= across * (1 + 1e-9));
+    assert_true(hypot(r, round) - r <= fmax(0.5, across / r) * across);
     assert_true(round >= across - 1e-12);
-    assert_true(size_along(h, sqrt(1.56), 1, 0) <= fmax(across, r) + 1e-12);
+    assert_true(size_along(h, sqrt(1.56), 1, 0) <= across + SLOPE * r);
   }
 }
 
@@ -95,12 +98,12 @@ static void is_isotropic_at_the_axis(void **state)
   double h[6];
 
   (void)state;
-  vg_mach_cone_tensor(&s, on, h);
+  vg_mach_cone_tensor(&s, SLOPE, on, h);
   assert_true(h[0] == 0.02 && h[3] == h[0] && h[5] == h[0]);
   assert_true(h[1] == 0 && h[2] == 0 && h[4] == 0);
-  vg_mach_cone_tensor(&s, at, h);
+  vg_mach_cone_tensor(&s, SLOPE, at, h);
   assert_true(h[0] == h[3] && h[3] == h[5] && h[1] == 0);
-  vg_mach_cone_tensor(&s, beyond, h);
+  vg_mach_cone_tensor(&s, SLOPE, beyond, h);
   assert_true(fabs(h[0] - h[3]) < 0.001 && fabs(h[0] - h[5]) < 0.001);
 }
 
@@ -158,8 +161,8 @@ static void follows_its_axis(void **state)
     turned.p0[(k + 1) % 3] = s.p0[k];
     turned.p1[(k + 1) % 3] = s.p1[k];
   }
-  vg_mach_cone_tensor(&s, x, a);
-  vg_mach_cone_tensor(&turned, y, b);
+  vg_mach_cone_tensor(&s, SLOPE, x, a);
+  vg_mach_cone_tensor(&turned, SLOPE, y, b);
   near(a[0], b[3]);
   near(a[1], b[4]);
   near(a[2], b[1]);
@@ -167,6 +170,51 @@ static void follows_its_axis(void **state)
   near(a[4], b[2]);
   near(a[5], b[0]);
   near(distance(&s, x), distance(&turned, y));
+}
+
+/* The octree of the field follows the law: gradation shortens lengths in the
+ * metric by no more than a tenth across the cones and a third along them (the
+ * metric turns around the axis). Coarse sizes, since the field is large. */
+static void makes_a_field(void **state)
+{
+  struct vg_source s = cones();
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_sizing *field = NULL;
+  double before = INFINITY;
+
+  (void)state;
+  s.h0 = s.h1 = 0.15;
+  s.stretch = 10;
+  o.coarseness = 2;
+  if (vg_sizing_new(&o, 1, &s, NULL, &field, &err) != VG_OK)
+    fail_msg("%s", err.text);
+  assert_true(vg_sizing_is_stretched(field));
+  for (double apex = -0.5; apex <= 1.5; apex += 0.25)
+    for (double r = 1; r <= 9; r += 0.5) {
+      const double x[3] = { apex + r * sqrt(1.56), 0.6 * r, -0.8 * r };
+      double h[6], t[6], value[3], axis[3][3], e[3];
+
+      vg_mach_cone_tensor(&s, SLOPE, x, h);
+      vg_sizing_stretch_at(field, x, t);
+      vg_tensor_eigen(h, value, axis);
+      for (int i = 0; i < 3; i++) {
+        vg_tensor_apply(t, axis[i], e);
+        if (!(vg_norm(e) * value[i] > 0.9 &&
+              vg_norm(e) * value[i] < (i ? 1.4 : 1.15)))
+          fail_msg("apex %g, r %g, axis %d: %g", apex, r, i,
+                   vg_norm(e) * value[i]);
+      }
+    }
+  /* Outside, sizes grow with the distance. */
+  for (double apex = -3; apex < -1; apex += 0.25) {
+    const double x[3] = { apex + 5 * sqrt(1.56), 3, 4 };
+    const double h = vg_sizing_at(field, x);
+
+    assert_true(h < before);
+    before = h;
+  }
+  vg_sizing_free(field);
 }
 
 static void refuses_bad_sources(void **state)
@@ -204,6 +252,7 @@ int main(void)
     cmocka_unit_test(is_isotropic_at_the_axis),
     cmocka_unit_test(finds_the_nearest_point),
     cmocka_unit_test(follows_its_axis),
+    cmocka_unit_test(makes_a_field),
     cmocka_unit_test(refuses_bad_sources),
   };
 

@@ -16,7 +16,7 @@
 #define MACH 1.6
 #define UPSTREAM 0.5
 #define DOWNSTREAM 1.0
-#define RADIAL 3.0
+#define RADIAL 2.0
 #define CAP (0.25 * UPSTREAM) /* radius of the ends of the domain */
 
 /* Spacings at factor 1, and their upper bounds. */
@@ -24,7 +24,7 @@
 #define H_BODY_MAX 0.03
 #define H_TIP 0.003
 #define H_TIP_MAX 0.006
-#define H_CONE 0.02
+#define H_CONE 0.03
 #define H_CONE_MAX 0.1
 #define STRETCH 10.0
 #define MARGIN 0.1 /* of the cones before and behind the body */

@@ -109,14 +109,15 @@ double vg_mach_cone_way(const struct vg_source *s, const double x[3], double *t,
 
 /* --- sizes ---------------------------------------------------------------- */
 
-void vg_mach_cone_tensor(const struct vg_source *s, const double x[3],
-                         double h[6])
+void vg_mach_cone_tensor(const struct vg_source *s, double slope,
+                         const double x[3], double h[6])
 {
   const struct half_plane p = half_plane_of(s, x);
   const double t = p.r < s->r0 ? p.r / s->r0 : 1;
   const double across = s->h0 + t * (s->h1 - s->h0);
-  const double most = fmin(s->stretch * across, p.r);
-  const double round = fmin(most, sqrt(2 * p.r * across));
+  const double most = fmin(s->stretch * across,
+                           across + slope * (p.r - across));
+  const double round = fmin(most, sqrt(p.r * across));
   double size[3], direction[3][3];
 
   if (!(most > across)) { /* Near the axis. */

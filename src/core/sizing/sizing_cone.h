@@ -12,11 +12,12 @@
  *       /   |\ /            around the axis: stretch * h
  *      p0 ---- p1
  *
- * h is h0 on the axis and h1 at r0. The two large sizes are at most the
- * distance r from the axis, and that around the axis is at most sqrt(2 r h):
- * the end of an edge of that length along a tangent is at the distance h from
- * the cone. No size is below h. Results are computed with + - * / and sqrt
- * only. Threads: safe. */
+ * h is h0 on the axis and h1 at r0. The two large sizes are at most h plus the
+ * growth over the distance r from the axis, and that around the axis is at most
+ * sqrt(r h): such an edge along a tangent leaves the cone by h / 2. With these
+ * bounds the metric turns around the axis about as fast as the gradation
+ * allows. No size is below h. Results are computed with + - * / and sqrt only.
+ * Threads: safe. */
 #ifndef VG_CORE_SIZING_SIZING_CONE_H
 #define VG_CORE_SIZING_SIZING_CONE_H
 
@@ -33,9 +34,10 @@ const char *vg_mach_cone_defect(const struct vg_source *s);
 double vg_mach_cone_way(const struct vg_source *s, const double x[3], double *t,
                         double way[3]);
 
-/** Size tensor at a point of the cones (core/geometry/tensor.h). */
-void vg_mach_cone_tensor(const struct vg_source *s, const double x[3],
-                         double h[6]);
+/** Size tensor at a point of the cones (core/geometry/tensor.h). slope: growth
+ * rate - 1. */
+void vg_mach_cone_tensor(const struct vg_source *s, double slope,
+                         const double x[3], double h[6]);
 
 /** Box around the cones. */
 void vg_mach_cone_bounds(const struct vg_source *s, double lo[3], double hi[3]);

@@ -89,18 +89,14 @@ static void cone_at(const struct vg_stretched *s, const double x[3],
   const double d = vg_mach_cone_way(&s->law, x, &t, way);
 
   vg_sub(x, way, foot);
-  vg_mach_cone_tensor(&s->law, foot, h);
+  vg_mach_cone_tensor(&s->law, s->slope, foot, h);
   if (d > 0) vg_size_grow(h, way, s->slope, h);
 }
 
-void vg_stretched_at(const struct vg_stretched *s, const double x[3],
+/* The same for a source with one axis. */
+static void shape_at(const struct vg_stretched *s, const double x[3],
                      double h[6])
 {
-  if (s->law.kind == VG_SOURCE_MACHCONE) {
-    cone_at(s, x, h);
-    return;
-  }
-
   double way[3], t, d = vg_shape_way(&s->law, x, &t, way), size, along, across;
   double l2, factor, more;
   const double *u = s->axis;
@@ -119,6 +115,13 @@ void vg_stretched_at(const struct vg_stretched *s, const double x[3],
   h[3] = across + along * u[1] * u[1];
   h[4] = along * u[1] * u[2];
   h[5] = across + along * u[2] * u[2];
+}
+
+void vg_stretched_at(const struct vg_stretched *s, const double x[3],
+                     double h[6])
+{
+  if (s->law.kind == VG_SOURCE_MACHCONE) cone_at(s, x, h);
+  else shape_at(s, x, h);
 }
 
 double vg_stretched_floor(const struct vg_stretched *s, const double lo[3],

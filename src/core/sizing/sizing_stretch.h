@@ -4,9 +4,9 @@
  *
  * A stretched source has the size h across its axis u, and `ratio` times h
  * along it: a ratio above 1 requests needles along u, a ratio below 1 thin
- * cells normal to u. Mach cones have other axes at each point (sizing_cone.h). In its shape, the size tensor is
- *   H = h (I + (ratio - 1) u u'),
- * and it grows outside as in vg_size_grow. */
+ * cells normal to u. Mach cones have other axes at each point (sizing_cone.h).
+ * In its shape, the size tensor is H = h (I + (ratio - 1) u u'), and it grows
+ * outside as in vg_size_grow. */
 #ifndef VG_CORE_SIZING_SIZING_STRETCH_H
 #define VG_CORE_SIZING_SIZING_STRETCH_H
 

@@ -13,6 +13,9 @@
 
 #define FARFIELD_TRIANGLES 1e8
 #define SHOWN_RIMS 3
+/* S68: finest octree cells of the sizing field for a farfield along the Mach
+ * cone, relative to those of the field of the cells. */
+#define BOOM_COARSENESS 4
 
 /* --- the decision -------------------------------------------------------- */
 
@@ -196,6 +199,7 @@ static vg_status make_sizing(const struct vg_boundary *b,
   if (!(options.h_max > 0)) options.h_max = INFINITY;
   options.threads = b->threads;
   if (far->kind == VG_FARFIELD_MACH) {
+    options.coarseness = BOOM_COARSENESS;
     view.point = vg_alloc(view.n_point + 2, sizeof *view.point);
     if (!view.point) return vg_fail_memory(err, "the sizing field");
     memcpy(view.point, b->surface.point, view.n_point * sizeof *view.point);
