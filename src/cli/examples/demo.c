@@ -34,7 +34,7 @@ static const struct vg_demo_case cases[] = {
   { "wing-sharp", "swept tapered wing, sharp trailing edge", 1000000 },
   { "wing-sharp-half", "half model of wing-sharp, on a symmetry plane",
     500000 },
-  { "boom", "body of revolution at Mach 1.6, with its sonic boom", 500000 },
+  { "boom", "body of revolution at Mach 1.6, with its sonic boom", 300000 },
   { "boom-half", "half model of boom, on a symmetry plane", 250000 },
 };
 
