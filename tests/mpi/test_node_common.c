@@ -75,12 +75,17 @@ static void nothing_can_be_shared(void **state)
 
 /* --- sizes --------------------------------------------------------------- */
 
-static struct vg_sizing *field(void)
+static struct vg_sizing *field(double stretch)
 {
   const struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   const struct vg_source source[2] = {
     { .kind = VG_SOURCE_POINT, .h0 = 0.01, .p0 = { 1, 2, 3 } },
-    { .kind = VG_SOURCE_SPHERE, .h0 = 0.3, .r0 = 2, .p0 = { 9, 0, 0 } }
+    { .kind = VG_SOURCE_SPHERE,
+      .h0 = 0.3,
+      .r0 = 2,
+      .p0 = { 9, 0, 0 },
+      .stretch = stretch,
+      .u = { 1, 2, 0 } }
   };
   struct vg_sizing *s = NULL;
   struct vg_error err = VG_ERROR_INIT;
@@ -90,10 +95,10 @@ static struct vg_sizing *field(void)
 }
 
 /* Every rank also makes the field itself, to know the expected one. */
-static void share_field(void)
+static void share_field(double stretch)
 {
-  struct vg_sizing *own = field();
-  struct vg_sizing *s = vg_comm_node_rank(job) ? NULL : field();
+  struct vg_sizing *own = field(stretch);
+  struct vg_sizing *s = vg_comm_node_rank(job) ? NULL : field(stretch);
   double h[2][2];
 
   assert_int_equal(vg_sizing_share(job, &s, NULL), VG_OK);
@@ -104,6 +109,10 @@ static void share_field(void)
                       own->octree.n_split * sizeof *own->octree.least);
   assert_memory_equal(s->octree.leaf, own->octree.leaf,
                       own->octree.n_leaf * sizeof *own->octree.leaf);
+  assert_int_equal(vg_sizing_is_stretched(s), stretch > 0);
+  assert_true((s->octree.n_tensor > 0) == (stretch > 0));
+  assert_memory_equal(s->octree.tensor, own->octree.tensor,
+                      own->octree.n_tensor * sizeof *own->octree.tensor);
   vg_sizing_range(s, &h[0][0], &h[0][1]);
   vg_sizing_range(own, &h[1][0], &h[1][1]);
   assert_memory_equal(h[0], h[1], sizeof h[0]);
@@ -122,9 +131,11 @@ static void share_field(void)
 static void a_field_is_shared_by_a_node(void **state)
 {
   (void)state;
-  share_field();
+  share_field(0);
+  share_field(5);
   if (job) job->apart = 1;
-  share_field();
+  share_field(0);
+  share_field(5);
   if (job) job->apart = 0;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/comm_parts.h"
 #include "base/team.h"
+#include "core/sizing/sizing.h"
 
 enum { N = 1000, GRAIN = 8 };
 
@@ -97,6 +98,58 @@ static void all_members_get_all_results(void **state)
   assert_int_equal(vg_team_close(t, VG_OK, NULL), VG_OK);
 }
 
+struct digest {
+  size_t n;
+  uint64_t sum;
+};
+
+static void add_bytes(void *user, size_t n, const void *data)
+{
+  struct digest *d = user;
+  const unsigned char *byte = data;
+
+  for (size_t i = 0; i < n; i++) d->sum = (d->sum ^ byte[i]) * 1099511628211ull;
+  d->n += n;
+}
+
+static struct digest field(struct vg_team *t, int threads)
+{
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  const struct vg_source source[2] = {
+    { .kind = VG_SOURCE_LINE,
+      .h0 = 0.02,
+      .h1 = 0.02,
+      .p1 = { 1, 1, 0 },
+      .stretch = 8,
+      .u = { 1, 1, 0 } },
+    { .kind = VG_SOURCE_SPHERE, .h0 = 0.1, .r0 = 0.5, .p0 = { 1, 0, 0 } }
+  };
+  struct digest d = { 0, 0 };
+  struct vg_sizing *s = NULL;
+
+  o.team = t;
+  o.threads = threads;
+  assert_int_equal(vg_sizing_new(&o, 2, source, NULL, &s, NULL), VG_OK);
+  assert_true(vg_sizing_is_stretched(s));
+  vg_sizing_show(s, add_bytes, &d);
+  vg_sizing_free(s);
+  return d;
+}
+
+/* All members build the field of size tensors that one process builds. */
+static void a_field_of_tensors_is_the_same(void **state)
+{
+  struct digest own = field(NULL, 1), joint;
+  struct vg_team *t;
+
+  (void)state;
+  assert_int_equal(vg_team_open(job, &t, NULL), VG_OK);
+  joint = field(t, 2);
+  assert_int_equal(vg_team_close(t, VG_OK, NULL), VG_OK);
+  assert_true(own.n > 100000);
+  assert_true(own.n == joint.n && own.sum == joint.sum);
+}
+
 static void one_flag_sets_all(void **state)
 {
   int last = vg_comm_size(job) - 1, flag = vg_comm_rank(job) == last;
@@ -141,6 +194,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_members_get_all_results),
+    cmocka_unit_test(a_field_of_tensors_is_the_same),
     cmocka_unit_test(one_flag_sets_all),
     cmocka_unit_test(one_failure_fails_the_whole_team),
   };
