@@ -77,8 +77,18 @@ struct vg_octree_family {
                                  is NAN if not evaluated */
 };
 
-/** Prepare y, whose first members b, half and side are set, for the family
- * whose first cell is c. */
+/** Use y for families of a level whose cells have this side. The values at the
+ * centres of faces stay undefined. */
+static inline void vg_octree_family_open(struct vg_octree_family *y,
+                                         const struct vg_octree_build *b,
+                                         uint32_t half, double side)
+{
+  y->b = b;
+  y->half = half;
+  y->side = side;
+}
+
+/** Prepare y for the family whose first cell is c. */
 void vg_octree_family_start(struct vg_octree_family *y,
                             const struct vg_octree_cell *c);
 

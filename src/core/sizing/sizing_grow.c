@@ -59,11 +59,10 @@ static void decide_body(void *context, size_t first, size_t end, int worker)
 {
   const struct level *l = context;
   struct vg_octree_build *b = l->b;
-  struct vg_octree_family y = { b,       l->half,
-                                l->side, { .is_known = 0 },
-                                { 0 },   { { { 0 }, 0, 0 } } };
+  struct vg_octree_family y;
 
   (void)worker;
+  vg_octree_family_open(&y, b, l->half, l->side);
   for (size_t k = first; k < end; k++) {
     vg_octree_family_start(&y, b->cell + l->first + 8 * k);
     vg_octree_family_clear(&y);
@@ -300,12 +299,11 @@ static void split_body(void *context, size_t first, size_t end, int worker)
 {
   const struct level *l = context;
   struct vg_octree_build *b = l->b;
-  struct vg_octree_family y = { b,       l->half,
-                                l->side, { .is_known = 0 },
-                                { 0 },   { { { 0 }, 0, 0 } } };
+  struct vg_octree_family y;
   size_t family = SIZE_MAX;
 
   (void)worker;
+  vg_octree_family_open(&y, b, l->half, l->side);
   for (size_t s = first; s < end; s++) {
     const struct vg_octree_cell *c = b->cell + l->which[s];
     uint32_t id[27], next = l->base[s];

@@ -12,24 +12,6 @@ static double least(double a, double b)
   return a < b ? a : b;
 }
 
-static double within(double t, double lo, double hi)
-{
-  return t < lo ? lo : t > hi ? hi : t;
-}
-
-double vg_segment_distance(const double a[3], const double b[3],
-                           const double x[3], double *t)
-{
-  double d[3], u[3], len2;
-
-  vg_sub(b, a, d);
-  vg_sub(x, a, u);
-  len2 = vg_dot(d, d);
-  *t = len2 > 0 ? within(vg_dot(u, d) / len2, 0, 1) : 0;
-  for (int k = 0; k < 3; k++) u[k] -= *t * d[k];
-  return sqrt(vg_dot(u, u));
-}
-
 double vg_segment_way(const double a[3], const double b[3], const double x[3],
                       double *t, double way[3])
 {
@@ -71,19 +53,6 @@ double vg_triangle_distance(const struct vg_source *s, const double x[3],
   return d;
 }
 
-double vg_box_distance(const double lo[3], const double hi[3],
-                       const double x[3])
-{
-  double d2 = 0;
-
-  for (int k = 0; k < 3; k++) {
-    double d = x[k] - within(x[k], lo[k], hi[k]);
-
-    d2 += d * d;
-  }
-  return sqrt(d2);
-}
-
 /* In the half plane (axial z, radial r), the cone is a trapezium. */
 double vg_cone_distance(const struct vg_source *s, const double x[3], double *t)
 {
@@ -97,7 +66,7 @@ double vg_cone_distance(const struct vg_source *s, const double x[3], double *t)
   z = vg_dot(u, d) / len;
   for (int k = 0; k < 3; k++) foot[k] = u[k] - z * (d[k] / len);
   r = sqrt(vg_dot(foot, foot));
-  *t = within(z / len, 0, 1);
+  *t = vg_within(z / len, 0, 1);
   r_at = s->r0 + *t * (s->r1 - s->r0);
   if (z >= 0 && z <= len && r <= r_at) return 0;
   rim1[0] = mid1[0] = len;
@@ -125,7 +94,7 @@ static double cone_way(const struct vg_source *s, const double x[3], double *t,
   z = vg_dot(u, axis);
   for (int k = 0; k < 3; k++) out[k] = u[k] - z * axis[k];
   r = vg_unit(out);
-  *t = within(z / len, 0, 1);
+  *t = vg_within(z / len, 0, 1);
   for (int k = 0; k < 3; k++) way[k] = 0;
   if (z >= 0 && z <= len && r <= s->r0 + *t * (s->r1 - s->r0)) return 0;
   at[0] = z;
@@ -163,7 +132,7 @@ double vg_shape_way(const struct vg_source *s, const double x[3], double *t,
     break;
   case VG_SOURCE_BOX:
     for (int k = 0; k < 3; k++)
-      way[k] = x[k] - within(x[k], s->p0[k], s->p1[k]);
+      way[k] = x[k] - vg_within(x[k], s->p0[k], s->p1[k]);
     return vg_norm(way);
   case VG_SOURCE_CYLINDER: return cone_way(s, x, t, way);
   case VG_SOURCE_MACHCONE: return vg_mach_cone_way(s, x, t, way);
