@@ -2,6 +2,16 @@
 /* core/sizing/sizing.h: target edge length (spacing) in space. Uses base and
  * core/mesh/mesh.h.
  *
+ * A source with `stretch`, and a map with a metric, request spacings that
+ * depend on the direction. The field is then one of metrics
+ * (core/geometry/tensor.h): the intersection of those of all sources with the
+ * spacing described below, limited by the growth in the metric's own directions
+ * (sizing_gradation.c). The bounds of the boundary apply to the spacing in each
+ * direction. The octree interpolates size tensors, with errors of a few per
+ * cent of an edge. Where a thin sheet of small spacings would take more octants
+ * than the mesh has points, the octants are larger, and the spacing at the
+ * sheet is larger than requested, by up to the growth over half an octant.
+ *
  * There are two families of sources (formats.md 1.7; deck.md, "Table
  * sources"):
  *   inverse square: VGRID's nodal and line sources,
@@ -51,13 +61,17 @@ enum vg_source_kind {
 struct vg_source {
   enum vg_source_kind kind;
   double p0[3], p1[3], p2[3];
-  double h0, h1;        /* spacing, length unit of the input, > 0 */
+  double h0, h1;        /* spacing, length unit of the input, > 0; of a
+                           stretched source, across its direction */
   double r0, r1;        /* radii, >= 0 */
   double growth;        /* growth rate of this source, > 1; 0: global rate */
   double an, bn, alpha; /* VGRID intensities; an > 0; bn, alpha as in the
                            file */
-  double stretch, sp0, sp1, u[3], p[3]; /* VGRID stretching data, as in the
-                                           file */
+  double stretch; /* spacing along u over that across it; 0 or 1: isotropic. 1
+                     in a VGRID source is the flag of the file: the spacing
+                     along p is sp0 at p0 and sp1 at p1 */
+  double u[3];    /* direction of stretch, of any length > 0 */
+  double sp0, sp1, p[3];       /* VGRID stretching data, as in the file */
   double layer0[3], layer1[3]; /* delta1 rate1 rate2 at p0 and p1 (grid=2) */
   double mach;                 /* Mach number of Mach cones, > 1 */
   char group[32];
@@ -214,7 +228,7 @@ double vg_sizing_below(double growth, double h, double d);
 double vg_sizing_below_edge(double growth, double h, double d);
 
 /** Number of leaves of the octree. A leaf takes 32 bytes, and 5.1 bytes of
- * tree. */
+ * tree; in a stretched field, its share of the tensors about 36 bytes more. */
 size_t vg_sizing_leaves(const struct vg_sizing *s);
 
 /** Exact spacing of the sources at x, within h_min and h_max, without octree,

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "core/sizing/sizing_probes.h"
+#include "core/sizing/sizing_stretch.h"
 
 #define NEARBY                                                                 \
   3 /* distance of sample points around a source without points                \
@@ -48,7 +49,10 @@ void vg_effects_release(struct vg_effects *h)
 static double asked_at(const struct finder *f, size_t i, const double x[3])
 {
   struct vg_source s = f->source[i];
+  double ratio[2];
 
+  /* A VGRID source may have a flag instead of the ratio. */
+  s.stretch = vg_source_stretch(&f->source[i], s.u, ratio) ? ratio[0] : 0;
   if (s.kind == VG_SOURCE_VGRID_NODE) s.kind = VG_SOURCE_POINT;
   if (s.kind == VG_SOURCE_VGRID_LINE) s.kind = VG_SOURCE_LINE;
   if (s.kind != f->source[i].kind) s.r0 = s.growth = 0;
