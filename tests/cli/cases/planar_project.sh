@@ -76,6 +76,24 @@ exits 0
 [ "$(stat -c %s fine/T1.b8.ugrid)" -gt "$(stat -c %s T1.b8.ugrid)" ] ||
   fail "a smaller scale made no finer mesh"
 
+# A stretched source has larger cells along its vector P, if strch is 1.
+awk '/\(type, stretching\)/ { $0 = "0 1" } /S SP point 1/ { $0 = "0.2 0.4" }
+  /\(P\)/ { $0 = "1 0 0" } { print }' T1.d3m >off.d3m
+sed 's/ 0 (strch)/ 1 (strch)/' off.d3m >on.d3m
+for name in off on; do
+  vanguard plan -p $name --json
+  exits 0
+  cp out $name.json
+done
+vanguard mesh -q -p off --out off
+exits 0
+same T1.b8.ugrid off/off.b8.ugrid
+expected() {
+  sed -n 's/^ *"cells": \([0-9]*\).*/\1/p' "$1" | head -n 1
+}
+[ "$(expected on.json)" -lt $(($(expected off.json) * 2 / 3)) ] ||
+  fail "strch 1: $(expected on.json) cells, strch 0: $(expected off.json)"
+
 # A rate that is given leaves the other rate of the .d3m.
 cp "$here/../../examples/wing_body/wing_body.d3m" .
 vanguard mesh -q -p wing_body --scale 3 --rate2 0.01 --out rates
