@@ -163,11 +163,11 @@ void vg_metric_intersect(const double a[6], const double b[6], double out[6])
   congruent(t, reduced, out);
 }
 
-/* Logarithmic mean of two lengths: between the geometric mean g and the
- * arithmetic mean m as (2 g + m) / 3, whose error is of the fourth order in
- * the logarithm of the ratio; halved by roots where the ratio is large:
+/* The logarithmic mean is between the geometric mean g and the arithmetic
+ * mean m, as (2 g + m) / 3, whose error is of the fourth order in the
+ * logarithm of the ratio; halved by roots where the ratio is large:
  * L(a, b) = (sqrt a + sqrt b) / 2 * L(sqrt a, sqrt b). */
-static double log_mean(double a, double b)
+double vg_log_mean(double a, double b)
 {
   double factor = 1;
 
@@ -182,6 +182,6 @@ static double log_mean(double a, double b)
 
 double vg_metric_length(const double a[6], const double b[6], const double v[3])
 {
-  return log_mean(sqrt(fmax(vg_tensor_form(a, v), 0)),
-                  sqrt(fmax(vg_tensor_form(b, v), 0)));
+  return vg_log_mean(sqrt(fmax(vg_tensor_form(a, v), 0)),
+                     sqrt(fmax(vg_tensor_form(b, v), 0)));
 }

@@ -113,6 +113,10 @@ void vg_tensor_root(const double a[6], double out[6]);
  * directions. out may be a or b. */
 void vg_metric_intersect(const double a[6], const double b[6], double out[6]);
 
+/** Logarithmic mean (a - b) / ln(a / b) of two lengths >= 0, within 1e-3 of
+ * it. */
+double vg_log_mean(double a, double b);
+
 /** Length of the edge v from a point with metric a to one with metric b:
  * (la - lb) / ln(la / lb), the exact length for sizes that change
  * geometrically along the edge; within 1e-3 of it. */

@@ -11,6 +11,7 @@
 
 #include <assert.h>
 
+#include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 
 struct vg_metric {
@@ -52,6 +53,12 @@ static inline double vg_form_area2(const double *form, const double n[3])
               (f[3] * f[4] - f[5] * f[1]) * n[2] * n[0]);
 }
 
+/** Mean of three forms on a triangle with the normal n, which need not be a
+ * unit vector. The forms are scaled such that areas on the triangle are equal
+ * in all of them. Returns 0 if the triangle has no area. */
+int vg_form_mean(const double *a, const double *b, const double *c,
+                 const double n[3], double *form);
+
 /** Squared sine of the smallest angle of a triangle in the metric of the
  * form. */
 static inline double vg_form_shape(const double *form, const double *a,
@@ -86,9 +93,9 @@ double vg_form_aspect(const double *form, const double n[3]);
 
 /** Length of the edge e between points with metrics a and b, relative to the
  * mean of their target lengths along e. 0 for an edge of zero length. */
-static inline double vg_metric_length(const struct vg_metric *a,
-                                      const struct vg_metric *b,
-                                      const double e[3])
+static inline double vg_metric_ratio(const struct vg_metric *a,
+                                     const struct vg_metric *b,
+                                     const double e[3])
 {
   assert(a->size > 0 && b->size > 0);
 
@@ -96,6 +103,17 @@ static inline double vg_metric_length(const struct vg_metric *a,
   const double lb = vg_form_norm(b->form, e) / b->size;
 
   return la + lb > 0 ? 2 * la * lb / (la + lb) : 0;
+}
+
+/** Length of the edge e between points with metrics a and b in a metric whose
+ * sizes change geometrically along it (core/geometry/tensor.h). */
+static inline double vg_metric_span(const struct vg_metric *a,
+                                    const struct vg_metric *b,
+                                    const double e[3])
+{
+  assert(a->size > 0 && b->size > 0);
+  return vg_log_mean(vg_form_norm(a->form, e) / a->size,
+                     vg_form_norm(b->form, e) / b->size);
 }
 
 /** Target length along d, which may have any length but 0. */

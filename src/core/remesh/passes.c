@@ -46,7 +46,8 @@ static double size_of_edges(const struct curve_size *c, double s,
   struct vg_metric asked = { .size = size };
   double a[3], b[3], d[3];
 
-  w->form(w->of_form, x, size, asked.form);
+  vg_tris_stretch(w, x, NULL, &asked);
+  size = asked.size;
   vg_curve_at(w->curves, w->ref, c->curve, fmax(s - size / 2, 0), a);
   vg_curve_at(w->curves, w->ref, c->curve, fmin(s + size / 2, whole), b);
   vg_sub(b, a, d);
@@ -61,7 +62,7 @@ static double size_along(void *user, double s)
 
   vg_curve_at(w->curves, w->ref, c->curve, s, x);
   size = vg_tris_size(w, x, &c->by);
-  return w->form ? size_of_edges(c, s, x, size) : size;
+  return vg_tris_is_stretched(w) ? size_of_edges(c, s, x, size) : size;
 }
 
 /* A half-edge of feature edge i; VG_REF_NONE: not found. */

@@ -44,6 +44,21 @@ static double length2(const double *form, const double *a, const double *b)
   return vg_form_dot(form, e, e);
 }
 
+/* Form of the triangle p a b; that of p if it has no area. */
+static void mean_form(const struct vg_tris *w, uint32_t p,
+                      const struct vg_tris_point *a,
+                      const struct vg_tris_point *b, double form[6])
+{
+  const struct vg_tris_point *o = &w->point[p];
+  double u[3], v[3], n[3];
+
+  vg_sub(a->x, o->x, u);
+  vg_sub(b->x, o->x, v);
+  vg_cross(u, v, n);
+  if (!vg_form_mean(o->asked.form, a->asked.form, b->asked.form, n, form))
+    memcpy(form, o->asked.form, sizeof o->asked.form);
+}
+
 static int take_ring(const struct vg_tris *w, uint32_t p, struct ring *r)
 {
   const double *own = w->point[p].asked.form;
@@ -54,14 +69,15 @@ static int take_ring(const struct vg_tris *w, uint32_t p, struct ring *r)
     return 0;
   r->n = vg_tris_ring(w, p, r->half, &open);
   if (!r->n || r->n > MOST) return 0;
-  r->is_stretched = w->form != NULL;
+  r->is_stretched = vg_tris_is_stretched(w);
   for (size_t i = 0; i < r->n; i++)
     r->at[i] = &w->point[vg_tris_to(w, r->half[i])];
   r->at[r->n] = &w->point[vg_tris_from(w, vg_half_prev(r->half[r->n - 1]))];
   for (size_t i = 0; i < r->n; i++) {
     const struct vg_tris_point *a = r->at[i], *b = r->at[i + 1];
 
-    for (int k = 0; k < 6 && r->is_stretched; k++)
+    if (w->field) mean_form(w, p, a, b, r->form[i]);
+    for (int k = 0; k < 6 && r->is_stretched && !w->field; k++)
       r->form[i][k] = (own[k] + a->asked.form[k] + b->asked.form[k]) / 3;
     r->rim2[i] = length2(form_of(r, i), a->x, b->x);
   }

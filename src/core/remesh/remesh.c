@@ -364,13 +364,17 @@ static vg_status ask_sources(const struct vg_remesh_job *j, struct vg_tris *w,
   const struct vg_sizing_options s = {
     .growth = vg_scaled_growth(j->o->growth, j->o->scale), .scale = j->o->scale
   };
+  /* A field contains the sources of the options. */
+  const size_t first = j->o->field ? j->o->n_source : 0;
+  const struct vg_size_map *map = j->o->field ? NULL : j->o->map;
   vg_status st = VG_OK;
 
   vg_source_release(set);
-  if (!j->n_source && !j->o->map) return VG_OK;
-  VG_TRY(vg_source_check(j->n_source, j->source, err));
-  VG_TRY(vg_source_prepare(&s, j->n_source, j->source, 1, set, err));
-  set->map = j->o->map;
+  if (j->n_source == first && !map) return VG_OK;
+  VG_TRY(vg_source_check(j->n_source - first, j->source + first, err));
+  VG_TRY(
+    vg_source_prepare(&s, j->n_source - first, j->source + first, 1, set, err));
+  set->map = map;
   w->other_size = source_size;
   w->user = set;
 done:
@@ -389,6 +393,7 @@ static void narrow(struct vg_tris *w)
     h = w->other_size(w->user, q->x);
     if (h < w->h_min) h = w->h_min;
     if (!(h < q->asked.size)) continue;
+    if (w->field) vg_tris_ask(w, q, h);
     q->asked.size = h;
     vg_tris_find_room(w, q);
     q->changed = ++w->clock;
@@ -416,7 +421,7 @@ static vg_status swap_flat(struct vg_remesh_job *j, struct vg_mesh *m,
   size_t n = 0;
   vg_status st;
 
-  if (j->stretch || j->o->stretch) return VG_OK;
+  if (j->stretch || j->o->stretch || j->o->field) return VG_OK;
   VG_TRY(vg_flat_swap(m, &(struct vg_flat_limit){ FLAT * r->tolerance, j->far },
                       &j->n_flat, err));
   if (!j->n_flat) goto done;
@@ -456,6 +461,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
                        .tolerance = r->tolerance,
                        .relative = VG_JOB_RELATIVE,
                        .far = j->far,
+                       .field = j->o->field,
                        .h_min = r->h_min,
                        .h_max = r->h_max,
                        .threads = j->o->threads,

@@ -46,6 +46,11 @@ struct vg_remesh_options {
                                     tolerance is multiplied by its square, like
                                     the sagitta of arcs. */
   const struct vg_size_map *map; /* Additional sizes; may be NULL. */
+  const struct vg_sizing *field; /* Stretched sizing field: edges follow its
+                                    metric where it is finer than the sizes
+                                    that the surface requests. Replaces sources
+                                    and map, which it must contain. NULL: sizes
+                                    are equal in all directions. */
   const double *cap;             /* [n_point] of m: largest size at each point;
                                     may be NULL. */
   const double *across;          /* [n_patch] Edges across narrow strips; NULL:

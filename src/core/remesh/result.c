@@ -188,7 +188,7 @@ static vg_status list_bad(const struct vg_tris *w, size_t t, size_t face,
 
   b.angle = asin(fmin(sine, 1)) * (180 / M_PI); /* for the report only: libm */
   if (!face || b.angle < r->angle_min) r->angle_min = b.angle;
-  if (w->form) count_aspect(w, t, r);
+  if (vg_tris_is_stretched(w)) count_aspect(w, t, r);
   if (sine >= 0.34202014332566873) return VG_OK; /* sine of VG_REMESH_BAD */
   if (vg_reserve(&r->bad, cap, r->n_bad + 1, sizeof *r->bad))
     return vg_fail_memory(err, "the list of bad triangles");

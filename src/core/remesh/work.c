@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
+#include "core/remesh/follow.h"
 #include "core/remesh/stretch.h"
 #include "core/remesh/work_parts.h"
 
@@ -285,7 +286,17 @@ double vg_tris_shape(const struct vg_tris *w, const struct vg_tris_point *a,
 {
   double form[6];
 
-  if (!w->form) return vg_form_shape(NULL, a->x, b->x, c->x);
+  if (!vg_tris_is_stretched(w)) return vg_form_shape(NULL, a->x, b->x, c->x);
+  if (w->field) {
+    double u[3], v[3], n[3];
+
+    vg_sub(b->x, a->x, u);
+    vg_sub(c->x, a->x, v);
+    vg_cross(u, v, n);
+    return vg_form_mean(a->asked.form, b->asked.form, c->asked.form, n, form)
+           ? vg_form_shape(form, a->x, b->x, c->x)
+           : 0;
+  }
   for (int k = 0; k < 6; k++)
     form[k] = (a->asked.form[k] + b->asked.form[k] + c->asked.form[k]) / 3;
   return vg_form_shape(form, a->x, b->x, c->x);
@@ -295,6 +306,14 @@ double vg_tris_tri_shape(const struct vg_tris *w, size_t t)
 {
   return vg_tris_shape(w, &w->point[w->tri[t][0]], &w->point[w->tri[t][1]],
                        &w->point[w->tri[t][2]]);
+}
+
+void vg_tris_stretch(const struct vg_tris *w, const double x[3],
+                     const double *n, struct vg_metric *m)
+{
+  assert(vg_tris_is_stretched(w));
+  if (w->form) w->form(w->of_form, x, m->size, m->form);
+  if (w->field) vg_follow_field(w->field, x, n, w->form != NULL, m);
 }
 
 double vg_tris_tolerance(const struct vg_tris *w, double size)
@@ -310,6 +329,8 @@ void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p)
   const struct vg_ref *r = w->ref;
   double size = p->asked.size;
 
+  /* The geometric mean of the sizes within the surface. */
+  if (w->field) size = sqrt(size * vg_tris_largest(w, p));
   p->room = w->tolerance;
   if (r->strip && r->strip[p->home] == VG_REF_CLOSED) return;
   if (r->strip && r->strip[p->by]) {

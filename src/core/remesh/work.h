@@ -9,6 +9,7 @@
 #include "base/stop.h"
 #include "core/remesh/curves.h"
 #include "core/remesh/metric.h"
+#include "core/sizing/sizing.h"
 
 #define VG_WORK_RING 256 /* most triangles around a point that may change */
 #define VG_WORK_NEARER                                                         \
@@ -77,8 +78,10 @@ struct vg_tris {
   void (*form)(const void *of_form, const double x[3], double size,
                double form[6]);
   const void *of_form;
-  struct vg_stretch *stretch; /* Set up by vg_tris_begin, for `form`; may be
-                                 NULL. */
+  const struct vg_sizing *field; /* Metric that edges follow where it requests
+                                    smaller sizes; NULL: none. */
+  struct vg_stretch *stretch;    /* Set up by vg_tris_begin, for `form`; may be
+                                    NULL. */
   double h_min, h_max;
   int threads;         /* Used by vg_tris_begin. */
   const uint8_t *keep; /* [points of ref] Input triangles with three marked
@@ -218,20 +221,47 @@ double vg_tris_size_near(const struct vg_tris *w, const double x[3],
  * tolerance alone applies. */
 void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p);
 
-/** Set the target length of q, whose position, home and by are set, to
- * `size`. */
+/** Do target lengths depend on the direction? */
+static inline int vg_tris_is_stretched(const struct vg_tris *w)
+{
+  return w->form || w->field;
+}
+
+/** Set the form of a metric at x whose size is set; with a field, intersect it
+ * with the metric of the field. The surface must be stretched.
+ *
+ * @param n  as for vg_follow_field */
+void vg_tris_stretch(const struct vg_tris *w, const double x[3],
+                     const double *n, struct vg_metric *m);
+
+/** Set the target length of q, whose position, kind, home and by are set, to
+ * `size`, or to a smaller one that a field requests. */
 static inline void vg_tris_ask(const struct vg_tris *w, struct vg_tris_point *q,
                                double size)
 {
   q->asked.size = size;
-  if (w->form) w->form(w->of_form, q->x, size, q->asked.form);
+  if (vg_tris_is_stretched(w))
+    vg_tris_stretch(w, q->x,
+                    q->kind == VG_WORK_FACE ? w->ref->shape[q->home].n : NULL,
+                    &q->asked);
   vg_tris_find_room(w, q);
 }
 
 /** Form at point p; NULL if the surface is not stretched. */
 static inline const double *vg_tris_form(const struct vg_tris *w, uint32_t p)
 {
-  return w->form ? w->point[p].asked.form : NULL;
+  return vg_tris_is_stretched(w) ? w->point[p].asked.form : NULL;
+}
+
+/** Largest target length of q within the surface. */
+static inline double vg_tris_largest(const struct vg_tris *w,
+                                     const struct vg_tris_point *q)
+{
+  double det;
+
+  if (!w->field) return q->asked.size;
+  det = vg_form_area2(q->asked.form, w->ref->shape[q->home].n);
+  return det > 0 ? q->asked.size / sqrt(det) : q->asked.size;
 }
 
 /** Length of an edge relative to the mean target length at its ends. */
@@ -242,7 +272,8 @@ static inline double vg_tris_length(const struct vg_tris *w,
   double e[3];
 
   vg_sub(a->x, b->x, e);
-  if (w->form) return vg_metric_length(&a->asked, &b->asked, e);
+  if (w->field) return vg_metric_span(&a->asked, &b->asked, e);
+  if (w->form) return vg_metric_ratio(&a->asked, &b->asked, e);
   return 2 * vg_norm(e) / (a->asked.size + b->asked.size);
 }
 

@@ -228,7 +228,7 @@ uint32_t vg_tris_split(struct vg_tris *w, uint32_t h, const double *at)
   p.kind = w->edge[h] ? VG_WORK_CURVE : VG_WORK_FACE;
   p.frozen = p.kept = p.goes = 0;
   p.given = VG_REF_NONE;
-  for (int k = 0; w->form && k < 6; k++)
+  for (int k = 0; vg_tris_is_stretched(w) && k < 6; k++)
     p.asked.form[k] = (p.asked.form[k] + w->point[b].asked.form[k]) / 2;
   c.hint = p.home;
   if (!split_fits(w, h, &p, &c)) return VG_REF_NONE;
@@ -574,7 +574,8 @@ int vg_tris_move(struct vg_tris *w, uint32_t p, const double x[3], double shape)
   before = fmin(shape, move_cavity(w, p, n_ring, ring, &q, &c));
   vg_cavity_measure(w, &c); /* approximately and cheaply first, then exactly */
   if (!(c.shape > ALMOST * before) ||
-      !(vg_ref_project(w->ref, x, n, &q.home, q.x) <= STRAY * q.asked.size))
+      !(vg_ref_project(w->ref, x, n, &q.home, q.x) <=
+        STRAY * vg_tris_largest(w, &q)))
     return 0;
   c.hint = q.home;
   vg_cavity_measure(w, &c);
