@@ -97,12 +97,14 @@ static void intersect(const double metric[6], const double *n, int has_form,
 }
 
 void vg_follow_field(const struct vg_sizing *field, const double x[3],
-                     const double *n, int has_form, struct vg_metric *m)
+                     const double *n, double factor, int has_form,
+                     struct vg_metric *m)
 {
   double t[6], metric[6];
 
-  assert(field && m->size > 0);
+  assert(field && factor > 0 && m->size > 0);
   vg_sizing_stretch_at(field, x, t);
+  for (int k = 0; k < 6; k++) t[k] /= factor;
   vg_tensor_square(t, metric);
   if (n && vg_dot(n, n) == 0) n = NULL; /* too flat to have a normal */
   if (n && !has_form) intersect_in_plane(metric, n, m);

@@ -17,6 +17,7 @@
  *
  * @param n         unit normal of the surface, to whose plane the metric of
  *                  the field is restricted; NULL: not restricted
+ * @param factor    on the sizes of the field
  * @param has_form  0: m->form is not set, and lengths are equal in all
  *                  directions
  * @param m         in: the size and form that the surface requests; out: the
@@ -24,6 +25,7 @@
  *                  the largest length within it.
  * Threads: safe. */
 void vg_follow_field(const struct vg_sizing *field, const double x[3],
-                     const double *n, int has_form, struct vg_metric *m);
+                     const double *n, double factor, int has_form,
+                     struct vg_metric *m);
 
 #endif

@@ -27,6 +27,8 @@
 #define SHAPE_FLOOR 0.05
 #define STEP_GOOD 0.1   /* of the size: least step among good triangles */
 #define STEP_BAD 0.02   /* of the size: least step at a poor triangle */
+#define STEP_EVEN 0.02  /* of both feature edges: least slide along a curve */
+#define EVEN2 0.25      /* (sin 30 degrees)^2: slides create no smaller angle */
 #define SHAPE_GAIN 0.02 /* of 1 - worst shape: least gain there */
 
 /* --- curves -------------------------------------------------------------- */
@@ -455,5 +457,46 @@ size_t vg_pass_smooth(struct vg_tris *w, int sweeps)
     for (uint32_t p = 0; p < w->n_point && !w->ends; p++)
       if (w->point[p].half != VG_REF_NONE && w->point[p].kind == VG_WORK_FACE)
         n += (size_t)smooth_point(w, p);
+  return n;
+}
+
+/* --- curve points --------------------------------------------------------- */
+
+/* Arc length at which the two feature edges of a span have equal lengths in
+ * the metric, if each keeps its ratio of both lengths. */
+static double even_place(const struct vg_tris *w, uint32_t p,
+                         const struct vg_tris_span *s)
+{
+  const struct vg_tris_line *line[2] = { &w->line[s->line[0]],
+                                         &w->line[s->line[1]] };
+  const double a = vg_tris_length(w, &w->point[line[0]->end[0]], &w->point[p]);
+  const double b = vg_tris_length(w, &w->point[p], &w->point[line[1]->end[1]]);
+  const double half = (a + b) / 2;
+
+  if (!(a > 0 && b > 0)) return s->at;
+  return a > half ? s->lo + (s->at - s->lo) * half / a
+                  : s->hi - (s->hi - s->at) * half / b;
+}
+
+static int even_point(struct vg_tris *w, uint32_t p)
+{
+  struct vg_tris_span s;
+  double at;
+
+  if (!vg_tris_span(w, p, &s)) return 0;
+  at = even_place(w, p, &s);
+  if (fabs(at - s.at) < STEP_EVEN * (s.hi - s.lo)) return 0;
+  return vg_tris_slide(w, p, at, EVEN2);
+}
+
+size_t vg_pass_even(struct vg_tris *w, int sweeps)
+{
+  size_t n = 0;
+
+  assert(sweeps >= 0);
+  for (int i = 0; i < sweeps; i++)
+    for (uint32_t p = 0; p < w->n_point && !w->ends; p++)
+      if (w->point[p].half != VG_REF_NONE && w->point[p].kind == VG_WORK_CURVE)
+        n += (size_t)even_point(w, p);
   return n;
 }

@@ -32,6 +32,11 @@ size_t vg_pass_swap(struct vg_tris *w);
  * equilateral, for a number of sweeps. Returns the number of moves. */
 size_t vg_pass_smooth(struct vg_tris *w, int sweeps);
 
+/** Slide points of curves to positions where both adjacent feature edges have
+ * the same length in the metric, for a number of sweeps. Returns the number of
+ * moves. */
+size_t vg_pass_even(struct vg_tris *w, int sweeps);
+
 /** Apply all kinds of changes to triangles with a smallest angle below that of
  * `shape` (squared sine). */
 vg_status vg_pass_polish(struct vg_tris *w, double shape, size_t *n,

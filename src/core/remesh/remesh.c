@@ -18,6 +18,7 @@
 #include "core/mesh/mesh_defects.h"
 #include "core/remesh/blocks.h"
 #include "core/remesh/job.h"
+#include "core/remesh/levels.h"
 #include "core/remesh/passes.h"
 #include "core/remesh/result.h"
 #include "core/remesh/stretch.h"
@@ -37,6 +38,8 @@
   0.005 /* S47: largest share of triangles below VG_REMESH_BAD: more are worse \
            than small sizes all along an edge */
 #define PHASES 2    /* of blocks, before the whole surface */
+#define EVEN 2      /* sweeps along curves in each round in a metric */
+#define ROUGH 1     /* rounds of smoothing on levels with enlarged sizes */
 #define HALVINGS 16 /* most rounds of splitting needles */
 #define POLISH2                                                                \
   0.46 /* S21: (sin 42.7 degrees)^2: below, triangles are polished */
@@ -154,6 +157,7 @@ static vg_status change_block(void *user, struct vg_tris *w,
 
   VG_TRY(halve(user, w, err));
   for (int i = 0; i < 4; i++) {
+    if (w->field) vg_pass_even(w, EVEN);
     vg_pass_smooth(w, 1);
     VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n, err));
     VG_TRY(vg_pass_split(w, VG_WORK_LONG, 0, &n, err));
@@ -186,6 +190,26 @@ done:
   return st;
 }
 
+/* A level in which sizes are still enlarged: triangles need not have their
+ * final quality. */
+static vg_status change_roughly(void *user, struct vg_tris *w,
+                                struct vg_error *err)
+{
+  size_t n;
+  vg_status st;
+
+  VG_TRY(halve(user, w, err));
+  for (int i = 0; i < ROUGH; i++) {
+    vg_pass_even(w, EVEN);
+    vg_pass_smooth(w, 1);
+    VG_TRY(vg_pass_collapse(w, VG_WORK_SHORT, VG_WORK_LONG, &n, err));
+    VG_TRY(vg_pass_split(w, VG_WORK_LONG, 0, &n, err));
+  }
+  vg_pass_smooth(w, 1);
+done:
+  return st;
+}
+
 /* Edges are first split everywhere: next to large triangles, as at block
  * borders, points would otherwise be inserted and removed repeatedly. */
 static vg_status change(struct vg_remesh_job *j, struct vg_tris *w,
@@ -194,6 +218,10 @@ static vg_status change(struct vg_remesh_job *j, struct vg_tris *w,
   vg_status st;
 
   VG_TRY(vg_pass_divide(w, j->o->threads, err));
+  for (double factor = w->coarse; factor > 1; factor /= 2) {
+    VG_TRY(run(j, w, change_roughly, err));
+    VG_TRY(vg_levels_set(w, factor / 2, err));
+  }
   VG_TRY(run(j, w, halve, err));
   VG_TRY(run(j, w, change_block, err));
 done:
@@ -462,6 +490,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
                        .relative = VG_JOB_RELATIVE,
                        .far = j->far,
                        .field = j->o->field,
+                       .coarse = 1,
                        .h_min = r->h_min,
                        .h_max = r->h_max,
                        .threads = j->o->threads,
@@ -472,6 +501,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
   if (stretch.by) w.stretch = &stretch;
   VG_TRY(ask_sources(j, &w, &set, err));
   if (j->n_source > j->o->n_source) w.h_min *= SPOT_LEAST;
+  if (!j->looks) w.coarse = 1 << vg_levels_number(&j->ref, w.field, r->h_max);
   VG_TRY(vg_tris_begin(&w, err));
   if (!j->looks) VG_TRY(change(j, &w, err));
   for (int mend = 0; !*sound && mend < a->mends; mend++) {

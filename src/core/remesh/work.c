@@ -313,7 +313,7 @@ void vg_tris_stretch(const struct vg_tris *w, const double x[3],
 {
   assert(vg_tris_is_stretched(w));
   if (w->form) w->form(w->of_form, x, m->size, m->form);
-  if (w->field) vg_follow_field(w->field, x, n, w->form != NULL, m);
+  if (w->field) vg_follow_field(w->field, x, n, w->coarse, w->form != NULL, m);
 }
 
 double vg_tris_tolerance(const struct vg_tris *w, double size)

@@ -80,6 +80,7 @@ struct vg_tris {
   const void *of_form;
   const struct vg_sizing *field; /* Metric that edges follow where it requests
                                     smaller sizes; NULL: none. */
+  double coarse;                 /* Factor on the sizes of the field, >= 1. */
   struct vg_stretch *stretch;    /* Set up by vg_tris_begin, for `form`; may be
                                     NULL. */
   double h_min, h_max;
