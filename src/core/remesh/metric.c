@@ -15,21 +15,6 @@ void vg_form_stretch(double *form, const double d[3], double by)
   }
 }
 
-int vg_form_mean(const double *a, const double *b, const double *c,
-                 const double n[3], double *form)
-{
-  const double a2 = vg_form_area2(a, n), b2 = vg_form_area2(b, n);
-  const double c2 = vg_form_area2(c, n);
-  double wa, wb, wc;
-
-  if (!(a2 > 0 && b2 > 0 && c2 > 0)) return 0;
-  wa = 1 / sqrt(a2);
-  wb = 1 / sqrt(b2);
-  wc = 1 / sqrt(c2);
-  for (int k = 0; k < 6; k++) form[k] = wa * a[k] + wb * b[k] + wc * c[k];
-  return 1;
-}
-
 void vg_form_frame(const double *form, double u[3], double v[3])
 {
   double l = vg_form_norm(form, u), along;

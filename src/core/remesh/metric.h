@@ -56,8 +56,21 @@ static inline double vg_form_area2(const double *form, const double n[3])
 /** Mean of three forms on a triangle with the normal n, which need not be a
  * unit vector. The forms are scaled such that areas on the triangle are equal
  * in all of them. Returns 0 if the triangle has no area. */
-int vg_form_mean(const double *a, const double *b, const double *c,
-                 const double n[3], double *form);
+static inline int vg_form_mean(const double *a, const double *b,
+                               const double *c, const double n[3],
+                               double *form)
+{
+  const double a2 = vg_form_area2(a, n), b2 = vg_form_area2(b, n);
+  const double c2 = vg_form_area2(c, n);
+  double wa, wb, wc;
+
+  if (!(a2 > 0 && b2 > 0 && c2 > 0)) return 0;
+  wa = sqrt(b2 * c2);
+  wb = sqrt(a2 * c2);
+  wc = sqrt(a2 * b2);
+  for (int k = 0; k < 6; k++) form[k] = wa * a[k] + wb * b[k] + wc * c[k];
+  return 1;
+}
 
 /** Squared sine of the smallest angle of a triangle in the metric of the
  * form. */
