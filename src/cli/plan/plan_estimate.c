@@ -213,7 +213,8 @@ static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
   vg_display_update(&p->show, "sizing field", 0, 0);
   vg_sizing_free(p->sizing);
   p->sizing = NULL;
-  st = vg_sizing_new(&options, s->n_source, s->source, m, &p->sizing, err);
+  st = vg_boundary_measure(&p->problem.boundary, &options, s, m, &p->sizing,
+                           err);
   p->phase[VG_PHASE_SIZES] += finer * (vg_clock_process() - start);
   return st;
 }

@@ -435,6 +435,23 @@ done:
   return st;
 }
 
+/* --- fixed patches -------------------------------------------------------- */
+
+static vg_status keep_fixed(struct vg_remesh_job *j, struct vg_error *err)
+{
+  const struct vg_mesh *m = j->whole;
+
+  if (!j->o->fixed || j->looks) return VG_OK;
+  j->keep = vg_calloc(m->n_point, 1);
+  if (!j->keep) return vg_fail_memory(err, "the remeshed surface");
+  for (size_t t = 0; t < m->n_tri; t++)
+    for (int k = 0; k < 3 && j->o->fixed[m->tri_patch[t]]; k++)
+      j->keep[m->tri[t][k]] = VG_WORK_FIXED;
+  for (size_t p = 0; p < m->n_point; p++) j->n_keep += j->keep[p] != 0;
+  j->no_cuts = 1;
+  return VG_OK;
+}
+
 /* --- preparation ---------------------------------------------------------- */
 
 vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
@@ -450,7 +467,8 @@ vg_status vg_job_prepare(struct vg_remesh_job *j, struct vg_error *err)
     memcpy(j->source, o->source, o->n_source * sizeof *j->source);
   j->n_source = j->cap_source = o->n_source;
   if (o->is_reference && !j->looks) VG_TRY(clean(j, err));
-  VG_TRY(vg_job_set_reference(j, !j->looks, err));
+  VG_TRY(keep_fixed(j, err));
+  VG_TRY(vg_job_set_reference(j, !j->looks && !o->fixed, err));
   if (!j->looks && !j->no_cuts) VG_TRY(cut_edges(j, 1, err));
 done:
   return st;

@@ -36,9 +36,9 @@ struct vg_remesh_job {
   struct vg_source *source; /* Sources of the options, followed by sources added
                                at intersections. */
   size_t n_source, cap_source;
-  uint8_t *keep;     /* [whole->n_point] 1: corner of input triangles that are
-                        kept unchanged; NULL: none. Strips are then not
-                        closed. */
+  uint8_t *keep;     /* [whole->n_point] VG_WORK_KEPT, VG_WORK_FIXED: corner of
+                        input triangles that are kept unchanged; NULL: none.
+                        Strips are then not closed. */
   size_t n_keep;     /* Number of such points. */
   int is_all_kept;   /* The last search found no further input triangles to
                         keep. */

@@ -57,8 +57,7 @@ static inline double vg_form_area2(const double *form, const double n[3])
  * unit vector. The forms are scaled such that areas on the triangle are equal
  * in all of them. Returns 0 if the triangle has no area. */
 static inline int vg_form_mean(const double *a, const double *b,
-                               const double *c, const double n[3],
-                               double *form)
+                               const double *c, const double n[3], double *form)
 {
   const double a2 = vg_form_area2(a, n), b2 = vg_form_area2(b, n);
   const double c2 = vg_form_area2(c, n);

@@ -281,7 +281,7 @@ static size_t keep_near(struct vg_remesh_job *j, const struct vg_mesh *m,
     uint8_t *keep = &j->keep[j->ref.tri[tri[i / 3]][i % 3]];
 
     n_new += !*keep;
-    *keep = 1;
+    if (!*keep) *keep = VG_WORK_KEPT;
   }
   free(tri);
   return n_new;

@@ -71,6 +71,10 @@ struct vg_remesh_options {
                                     is checked. */
   const uint8_t *hard;           /* [n_patch] 1: all borders of the patch are
                                     fixed; may be NULL. */
+  const uint8_t *fixed;          /* [n_patch] 1: the triangles of the patch are
+                                    kept unchanged. Strips are then not closed,
+                                    and faults of the input not removed
+                                    (is_reference 0). May be NULL. */
   int threads;                   /* 0: one per core. The result is bitwise
                                     independent of it. */
   struct vg_stop stop;           /* Polled before every change. */
@@ -165,7 +169,7 @@ vg_status vg_remesh_arrange(struct vg_mesh *m, struct vg_error *err);
  * positions. If two feature curves run closer together than the tolerance,
  * pieces of the shorter one are dropped, except for rims and fixed borders
  * (strips.h). Patches keep their number and order; smooth patch borders follow
- * the edges of new triangles.
+ * the edges of new triangles. Points that remain keep their order.
  *
  * @param r  released first; may be NULL
  * Untouched on failure. VG_ERR_INPUT for a surface with quadrilaterals, edges

@@ -134,7 +134,7 @@ static vg_status make_points(struct vg_tris *w, struct vg_error *err)
     memcpy(q->x, r->point[p], sizeof q->x);
     q->half = q->home = VG_REF_NONE;
     q->given = (uint32_t)p;
-    q->kept = w->keep && w->keep[p];
+    q->kept = w->keep ? w->keep[p] : 0;
     q->changed = 1;
   }
   for (uint32_t h = 0; h < 3 * w->n_tri; h++) {
@@ -272,6 +272,13 @@ size_t vg_tris_ring(const struct vg_tris *w, uint32_t p, uint32_t *half,
     h = w->mate[vg_half_prev(h)];
   } while (h != VG_REF_NONE && h != first);
   return n;
+}
+
+int vg_tris_is_kept_side(const struct vg_tris *w, uint32_t h)
+{
+  for (int side = 0; side < 2 && h != VG_REF_NONE; side++, h = w->mate[h])
+    if (w->point[vg_tris_from(w, vg_half_prev(h))].kept) return 1;
+  return 0;
 }
 
 double vg_tris_ratio(const struct vg_tris *w, uint32_t h)

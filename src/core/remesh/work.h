@@ -22,6 +22,10 @@ enum { VG_WORK_FACE, VG_WORK_CURVE, VG_WORK_CORNER };
 
 enum { VG_WORK_FREE, VG_WORK_FROZEN, VG_WORK_FANS };
 
+/* KEPT: edges between such points stay. FIXED: only those of triangles with
+ * three fixed corners stay, so that edges across other patches are split. */
+enum { VG_WORK_KEPT = 1, VG_WORK_FIXED };
+
 struct vg_tris_point {
   double x[3];
   double room;    /* Largest distance from the reference; see
@@ -38,8 +42,8 @@ struct vg_tris_point {
                              new edges to other frozen points are made. FANS: no
                              new edges to it at all, because its triangles in
                              the block form several umbrellas. */
-  uint8_t kept;           /* Corner of input triangles that are kept
-                             unchanged. */
+  uint8_t kept;           /* VG_WORK_KEPT, VG_WORK_FIXED: corner of input
+                             triangles that are kept unchanged. */
   uint64_t changed;       /* Clock of the last change of its triangles. */
   struct vg_metric asked; /* Target length; the form is not set if the surface
                              is not stretched. */
@@ -85,8 +89,9 @@ struct vg_tris {
                                     NULL. */
   double h_min, h_max;
   int threads;         /* Used by vg_tris_begin. */
-  const uint8_t *keep; /* [points of ref] Input triangles with three marked
-                          corners are kept unchanged; NULL: none. */
+  const uint8_t *keep; /* [points of ref] Values of vg_tris_point.kept. Input
+                          triangles with three marked corners are kept
+                          unchanged; NULL: none. */
   size_t n_point, cap_point, n_tri, cap_tri, cap_mate, cap_edge, cap_first,
     cap_stamp;
   size_t n_line, cap_line;
@@ -164,12 +169,20 @@ static inline int vg_tris_is_border(const struct vg_tris *w, uint32_t h)
          w->point[vg_tris_to(w, h)].frozen;
 }
 
+/** Does the edge, whose ends are kept, belong to a triangle with three kept
+ * corners? */
+int vg_tris_is_kept_side(const struct vg_tris *w, uint32_t h);
+
 /** Must the edge stay unchanged, as part of a block border or of input
  * triangles that are kept? */
 static inline int vg_tris_stays(const struct vg_tris *w, uint32_t h)
 {
+  const uint8_t from = w->point[vg_tris_from(w, h)].kept;
+  const uint8_t to = w->point[vg_tris_to(w, h)].kept;
+
   return vg_tris_is_border(w, h) ||
-         (w->point[vg_tris_from(w, h)].kept && w->point[vg_tris_to(w, h)].kept);
+         (from && to &&
+          (from + to < 2 * VG_WORK_FIXED || vg_tris_is_kept_side(w, h)));
 }
 
 /** May a new edge between a and b be created? */

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/vector.h"
+#include "core/remesh/remesh.h"
 #include "io/stream/convention.h"
 #include "run/input/input.h"
 #include "run/input/shape_parts.h"
@@ -183,6 +185,73 @@ static struct vg_farfield decided_farfield(const struct vg_boundary *b)
   return vg_options_farfield(&view);
 }
 
+/* Replaces the triangles of the patches from n_own on by those of `made`, whose
+ * first points are those of the body. The body keeps its triangles in their
+ * order. */
+static vg_status take_added(struct vg_mesh *m, struct vg_mesh *made,
+                            size_t n_own, struct vg_error *err)
+{
+  uint32_t(*tri)[3] = vg_alloc(m->n_tri + made->n_tri, sizeof *tri);
+  uint32_t *patch = vg_alloc(m->n_tri + made->n_tri, sizeof *patch);
+  const struct vg_mesh *from[2] = { m, made };
+  size_t n = 0;
+
+  if (!tri || !patch) {
+    free(tri);
+    free(patch);
+    return vg_fail_memory(err, "the farfield");
+  }
+  for (int i = 0; i < 2; i++)
+    for (size_t t = 0; t < from[i]->n_tri; t++) {
+      if ((from[i]->tri_patch[t] >= n_own) != i) continue;
+      memcpy(tri[n], from[i]->tri[t], sizeof *tri);
+      patch[n++] = from[i]->tri_patch[t];
+    }
+  free(made->tri);
+  free(made->tri_patch);
+  made->tri = tri;
+  made->tri_patch = patch;
+  made->n_tri = n;
+  vg_mesh_move(m, made);
+  return VG_OK;
+}
+
+/* Remeshes the added patches in the metric of a stretched field. The body and
+ * the rims that it shares with them do not change. */
+static vg_status stretch_added(struct vg_boundary *b, size_t n_own,
+                               const struct vg_sizing *field, double spacing,
+                               struct vg_display *show, struct vg_error *err)
+{
+  struct vg_remesh_options o = vg_options_remesh(&b->read->settings);
+  struct vg_mesh made = VG_MESH_INIT;
+  uint8_t *fixed = NULL;
+  double lo[3], hi[3];
+  vg_status st = VG_OK;
+
+  if (!vg_sizing_is_stretched(field) || b->surface.n_patch == n_own) return st;
+  vg_display_update(show, "farfield remeshing", b->domain.n_added_tri, 0);
+  fixed = vg_calloc(b->surface.n_patch, 1);
+  if (!fixed) return vg_fail_memory(err, "the farfield");
+  memset(fixed, 1, n_own);
+  vg_mesh_bounds(&b->surface, lo, hi);
+  o.fixed = fixed;
+  o.field = field;
+  o.scale = 1; /* `spacing` and the field are scaled */
+  o.h_max = spacing > 0 ? spacing : vg_distance(lo, hi);
+  o.h_min = fmin(o.h_min, o.h_max);
+  o.threads = b->threads;
+  o.stop = (struct vg_stop){ vg_display_stop, show };
+  VG_TRY(vg_mesh_copy(&made, &b->surface, err));
+  VG_TRY(vg_remesh(&made, &o, NULL, err));
+  b->domain.n_added_tri -= b->surface.n_tri;
+  VG_TRY(take_added(&b->surface, &made, n_own, err));
+  b->domain.n_added_tri += b->surface.n_tri;
+done:
+  free(fixed);
+  vg_mesh_release(&made);
+  return st;
+}
+
 /* The sizing field for the surfaces of the domain. It covers a box beyond the
  * body, whose corners are appended to the points of the surface. */
 static vg_status make_sizing(const struct vg_boundary *b,
@@ -207,7 +276,7 @@ static vg_status make_sizing(const struct vg_boundary *b,
                      view.point[view.n_point + 1]);
     view.n_point += 2;
   }
-  st = vg_sizing_new(&options, s->n_source, s->source, &view, out, err);
+  st = vg_boundary_measure(b, &options, s, &view, out, err);
   if (view.point != b->surface.point) free(view.point);
   return st;
 }
@@ -217,6 +286,7 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
 {
   struct vg_farfield far = decided_farfield(b);
   struct vg_sizing *sizing = NULL;
+  const size_t n_own = b->surface.n_patch;
   vg_status st;
 
   far.symmetry = b->flow.axis < 0 ? -1 : 1;
@@ -224,6 +294,7 @@ vg_status vg_boundary_complete(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(make_sizing(b, &far, &sizing, err));
   far.stop = (struct vg_stop){ vg_display_stop, show };
   VG_TRY(vg_domain_complete(&b->surface, &far, sizing, &b->domain, err));
+  VG_TRY(stretch_added(b, n_own, sizing, far.spacing, show, err));
 done:
   vg_sizing_free(sizing);
   /* The message of the library has less detail. */

@@ -204,6 +204,25 @@ int vg_read_is_by_first(const struct vg_read *read, struct vg_comm *comm);
 /** Options of the sizing field: settings and map. */
 struct vg_sizing_options vg_boundary_sizing(const struct vg_boundary *b);
 
+/** 1 if sources or the map may request sizes that depend on the direction. */
+int vg_boundary_is_stretched(const struct vg_boundary *b);
+
+/** Builds the sizing field of sources and map over the surface, to whose edges
+ * it does not refer, if its sizes depend on the direction; if not, *field is
+ * unchanged. Freed by the caller with vg_sizing_free. */
+vg_status vg_boundary_field(const struct vg_boundary *b,
+                            struct vg_sizing **field, struct vg_error *err);
+
+/** As vg_sizing_new, with the sources of s, for a boundary or front m. In a
+ * stretched field only those faces request sizes whose edges do not follow the
+ * metric; a surface remeshed in the metric requests none, except where its
+ * shape required smaller triangles. */
+vg_status vg_boundary_measure(const struct vg_boundary *b,
+                              const struct vg_sizing_options *options,
+                              const struct vg_settings *s,
+                              const struct vg_mesh *m, struct vg_sizing **out,
+                              struct vg_error *err);
+
 struct vg_shape_options {
   int threads;     /* Number of threads; 0: one per core. */
   int remesh_open; /* 1: also remesh an open surface that is not a half

@@ -116,6 +116,17 @@ static void areas(const struct vg_mesh *m, int after, double *area)
   }
 }
 
+/* A metric given at all points requests large sizes, too; without a setting,
+ * its largest size is not limited. */
+static double largest_edge(const struct vg_boundary *b, double h_max)
+{
+  double lo[3], hi[3];
+
+  if (h_max > 0 || !b->map || !b->map->metric) return h_max;
+  vg_mesh_bounds(&b->surface, lo, hi);
+  return vg_distance(lo, hi);
+}
+
 static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
                         const struct vg_surface_sizes *sizes, int is_reference,
                         struct vg_display *show, struct vg_error *err)
@@ -123,6 +134,8 @@ static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
   struct vg_remesh_options o = vg_options_remesh(&b->read->settings);
 
   o.map = b->map;
+  o.field = sizes->field;
+  o.h_max = largest_edge(b, o.h_max);
   o.hard = hard;
   o.is_body = b->flow.kind == VG_FLOW_EXTERNAL;
   o.is_reference = is_reference;
@@ -239,7 +252,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
                              struct vg_error *err)
 {
   struct vg_remeshing *r = &b->remeshing;
-  struct vg_surface_sizes sizes = { NULL, NULL, NULL };
+  struct vg_surface_sizes sizes = { NULL, NULL, NULL, NULL };
   struct vg_mesh given = VG_MESH_INIT;
   uint8_t *hard = NULL;
   double t = vg_display_now();
@@ -254,6 +267,7 @@ vg_status vg_boundary_remesh(struct vg_boundary *b, struct vg_display *show,
   VG_TRY(vg_mesh_copy(&given, &b->surface, err));
   VG_TRY(hard_patches(b, &hard, err));
   VG_TRY(vg_surface_sizes_make(b, &sizes, err));
+  VG_TRY(vg_boundary_field(b, &sizes.field, err));
   VG_TRY(remesh_cad(b, &given, hard, &sizes, show, err));
   r->seconds = vg_display_now() - t;
   VG_TRY(measure(b, &given, show, err));

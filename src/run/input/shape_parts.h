@@ -39,6 +39,8 @@ struct vg_surface_sizes {
   double *across;  /* [n_patch] edges across strips. */
   double *stretch; /* [3 n_tri] as in vg_remesh_options; NULL if nothing is
                       stretched. */
+  struct vg_sizing *field; /* Sources and map if their sizes depend on the
+                              direction; else NULL. */
 };
 
 /** Computes them from the settings for the current surface. VG_ERR_INPUT for

@@ -263,5 +263,6 @@ void vg_surface_sizes_release(struct vg_surface_sizes *s)
   free(s->cap);
   free(s->across);
   free(s->stretch);
+  vg_sizing_free(s->field);
   memset(s, 0, sizeof *s);
 }

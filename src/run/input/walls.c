@@ -333,7 +333,9 @@ vg_status vg_walls_swap(struct vg_boundary *b,
   const int answer = b->read->settings.swap;
   vg_status st;
 
-  b->is_swapped = answer == VG_ANSWER_AUTO ? has_slivers(&b->surface, reason)
+  /* Triangles in a stretched metric may have small angles. */
+  b->is_swapped = answer == VG_ANSWER_AUTO ? !vg_boundary_is_stretched(b) &&
+                                               has_slivers(&b->surface, reason)
                                            : answer == VG_ANSWER_YES;
   if (!b->is_swapped) return VG_OK;
   st = vg_surface_swap(&b->surface, &o, &r, err);

@@ -153,7 +153,7 @@ static vg_status measure_sizes(struct vg_run *r, const struct vg_problem *p,
   options.coarseness = coarseness;
   options.team = team;
   vg_display_update(show, "sizing field", 0, 0);
-  st = vg_sizing_new(&options, s->n_source, s->source, boundary, sizing, err);
+  st = vg_boundary_measure(&p->boundary, &options, s, boundary, sizing, err);
   r->time_size += vg_display_now() - t;
   return st < 0 ? st : vg_display_stopped(show, err);
 }
