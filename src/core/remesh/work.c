@@ -336,8 +336,8 @@ void vg_tris_find_room(const struct vg_tris *w, struct vg_tris_point *p)
   const struct vg_ref *r = w->ref;
   double size = p->asked.size;
 
-  /* The geometric mean of the sizes within the surface. */
-  if (w->field) size = sqrt(size * vg_tris_largest(w, p));
+  /* In a metric, edges in its long direction deviate most. */
+  if (w->field) size = vg_tris_largest(w, p);
   p->room = w->tolerance;
   if (r->strip && r->strip[p->home] == VG_REF_CLOSED) return;
   if (r->strip && r->strip[p->by]) {
