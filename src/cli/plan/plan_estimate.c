@@ -78,29 +78,48 @@ static void add_triangle(struct lift *l, size_t i)
   }
 }
 
+/* The place x at height d above point i, and the target edge length along the
+ * normal there. */
+static double size_above(const struct lift *l, size_t i, double length,
+                         double d, double x[3])
+{
+  const double *v = l->normal[i];
+  double n[3];
+
+  for (int k = 0; k < 3; k++) n[k] = v[k] / length;
+  for (int k = 0; k < 3; k++) x[k] = l->m->point[i][k] + n[k] * d;
+  return vg_sizing_is_stretched(l->sizing) ? vg_sizing_along(l->sizing, x, n)
+                                           : vg_sizing_at(l->sizing, x);
+}
+
 /* Stack layers at a point by the rule of the layer module: until the next one
- * would be thicker than the local edge length, at the wall and at the top. */
+ * would be thicker than the local edge length, at the wall and at the top. In a
+ * stretched field, edges of the wall are no measure of it. */
 static void lift_point(struct lift *l, size_t i, double x[3])
 {
   const struct vg_layer_request *q = &l->s->request[l->patch[i]];
   const struct vg_layer_options *o = &l->s->options;
-  double d[VG_LEVELS_MAX + 1], *v = l->normal[i], length;
+  const int is_stretched = vg_sizing_is_stretched(l->sizing);
+  double d[VG_LEVELS_MAX + 1], length;
   int n = 0, most = q->n_max > 0 && q->n_max < VG_LEVELS_MAX ? q->n_max
                                                              : VG_LEVELS_MAX;
   struct vg_growth_law law = q->law;
 
   if (o->law_at) o->law_at(o->law_user, l->m->point[i], &law);
-  length = vg_norm(v);
+  length = vg_norm(l->normal[i]);
   if (!(length > 0) || !(law.delta1 > 0)) return;
   vg_growth_law_heights(&law, INFINITY, most, d);
-  while (n < most && (q->n_exact || d[n + 1] - d[n] <= o->end * l->edge[i]) &&
-         !(q->total > 0 && d[n + 1] > q->total))
+  while (n < most && !(q->total > 0 && d[n + 1] > q->total)) {
+    const double h = is_stretched ? size_above(l, i, length, d[n + 1], x)
+                                  : l->edge[i];
+
+    if (!q->n_exact && !(d[n + 1] - d[n] <= o->end * h)) break;
     n++;
+  }
   for (;; n--) {
-    for (int k = 0; k < 3; k++) x[k] = l->m->point[i][k] + v[k] / length * d[n];
-    if (n == 0 || q->n_exact ||
-        d[n] - d[n - 1] <= o->end * vg_sizing_at(l->sizing, x))
-      break;
+    const double h = size_above(l, i, length, d[n], x);
+
+    if (n == 0 || q->n_exact || d[n] - d[n - 1] <= o->end * h) break;
   }
   l->level[i] = (uint16_t)n;
 }

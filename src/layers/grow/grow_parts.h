@@ -37,7 +37,8 @@ struct vg_layer_work {
   double (*root_dir)[3]; /* Unit direction before smoothing. */
   double *visibility;    /* Visibility: least cosine with its faces that dir
                       must keep; 0: no direction sees all faces. */
-  double *edge;          /* Local isotropic edge length. */
+  double *edge;          /* Local isotropic edge length; in a stretched field,
+                            target edge length along the column above it. */
   double *margin;        /* Distance that its top keeps from opposite tops,
                             as far as its height reaches. */
   double *wanted;        /* Height of n_wanted levels by the growth law. */

@@ -112,6 +112,31 @@ static uint32_t patch_of(const struct vg_layer_work *w, uint32_t i)
   return best;
 }
 
+/* Target edge length along column i at height d. */
+static double size_along(const struct vg_layer_work *w, uint32_t i, double d)
+{
+  const struct vg_column *c = &w->c->column[i];
+  double x[3];
+
+  vg_column_at(c, w->m->point[c->root], d, x);
+  return vg_sizing_along(w->sizing, x, c->dir);
+}
+
+/* In a metric, the edges of the wall do not determine the height of the cells
+ * above the layers. */
+static int levels_along(const struct vg_layer_work *w, uint32_t i, int max,
+                        const struct vg_layer_request *r, const double *d)
+{
+  int n = 0;
+
+  while (
+    n < max &&
+    (r->n_exact || d[n + 1] - d[n] <= w->o->end * size_along(w, i, d[n + 1])) &&
+    !(r->total > 0 && d[n + 1] > r->total))
+    n++;
+  return n;
+}
+
 /* Number of levels before a level would be thicker than the local cell. */
 static int levels(const struct vg_layer_work *w, uint32_t i,
                   const struct vg_layer_request *r,
@@ -123,6 +148,7 @@ static int levels(const struct vg_layer_work *w, uint32_t i,
   int n = 0;
 
   vg_growth_law_heights(law, INFINITY, max, d);
+  if (vg_sizing_is_stretched(w->sizing)) return levels_along(w, i, max, r, d);
   while (n < max && (r->n_exact || d[n + 1] - d[n] <= end) &&
          !(r->total > 0 && d[n + 1] > r->total))
     n++;
@@ -253,6 +279,15 @@ static vg_status all_wanted(struct vg_layer_work *w, struct vg_error *err)
                      w, w->o->law_at ? 3 : 2, out, err);
 }
 
+static void along_body(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_layer_work *w = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++)
+    w->edge[i] = size_along(w, (uint32_t)i, w->wanted[i]);
+}
+
 vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
 {
   struct vg_columns *c = w->c;
@@ -275,6 +310,8 @@ vg_status vg_heights_wanted(struct vg_layer_work *w, struct vg_error *err)
     w->why[i] = VG_CAUSE_NONE;
     w->settled[i] = -1;
   }
+  if (vg_sizing_is_stretched(w->sizing))
+    vg_parallel_for(w->o->threads, c->n_column, GRAIN, along_body, w);
 done:
   return st;
 }
