@@ -989,6 +989,61 @@ static void a_varying_growth_law(void **state)
   finish(&b);
 }
 
+/* A uniform metric with half the size along z. */
+static void half_along_z(void *user, const double x[3], double m[6])
+{
+  const double h = *(const double *)user;
+
+  (void)x;
+  memset(m, 0, 6 * sizeof *m);
+  m[0] = m[3] = 1 / (h * h);
+  m[5] = 4 / (h * h);
+}
+
+static double uniform_size(void *user, const double x[3])
+{
+  (void)x;
+  return *(const double *)user;
+}
+
+/* Layers of a cube end at 0.1 on its sides and at 0.05 on its top and bottom;
+ * edges of its surface are 0.1 long everywhere. */
+static void layers_end_at_the_size_along_them(void **state)
+{
+  double h = 0.1;
+  const struct vg_size_map map = {
+    .at = uniform_size, .metric = half_along_z, .most = h, .user = &h
+  };
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct bench b = { .options.smooth = 0 };
+  size_t n[2] = { 0, 0 };
+
+  (void)state;
+  case_cube(&b.surface, 0.1);
+  start(&b, 0.1);
+  vg_sizing_free(b.sizing);
+  o.map = &map;
+  o.from_surface = 0;
+  o.h_max = 0.1;
+  assert_int_equal(vg_sizing_new(&o, 0, NULL, &b.surface, &b.sizing, NULL),
+                   VG_OK);
+  b.options.end = 1;
+  grow(&b, 1, &b.layers, &b.report);
+  for (size_t i = 0; i < b.layers.columns.n_column; i++) {
+    const struct vg_column *c = &b.layers.columns.column[i];
+    const int along_z = fabs(c->dir[2]) > 0.999999;
+    double d[VG_LEVELS_MAX + 1];
+
+    if (!along_z && fabs(c->dir[0]) < 0.999999) continue;
+    vg_growth_law_heights(&b.layers.columns.law[c->law], INFINITY,
+                          c->n_wanted + 1, d);
+    assert_true(d[c->n_wanted] - d[c->n_wanted - 1] <= h / (1 + along_z));
+    n[along_z] += d[c->n_wanted + 1] - d[c->n_wanted] > h / (1 + along_z);
+  }
+  assert_true(n[0] > 8 && n[1] > 8);
+  finish(&b);
+}
+
 static int stop_at_once(void *user)
 {
   (void)user;
@@ -1049,6 +1104,7 @@ int main(void)
     cmocka_unit_test(a_window_in_a_wall),
     cmocka_unit_test(levels_and_height_as_requested),
     cmocka_unit_test(a_varying_growth_law),
+    cmocka_unit_test(layers_end_at_the_size_along_them),
     cmocka_unit_test(refusals_leave_nothing),
   };
 
