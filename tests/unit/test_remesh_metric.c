@@ -133,7 +133,7 @@ static void remesh(struct vg_mesh *m, const struct vg_remesh_options *o,
 /* --- tests ---------------------------------------------------------------- */
 
 /* The faces of a box are remeshed from two triangles each. The share of fitting
- * edges in a uniform metric is 98 %; the rest is for its variation, and for
+ * edges in a uniform metric is 98 %; others are due to its variation and to
  * corners of the box whose angles are small in the metric: edges across them
  * are short. */
 static void planes_follow_random_metrics(void **unused)

@@ -5,7 +5,12 @@
  * chapter 10). Private to core/remesh.
  *
  * Where edges are not stretched the size is sufficient: functions that take a
- * form accept NULL and then compute isotropic lengths. */
+ * form accept NULL and then compute isotropic lengths.
+ *
+ * The metric of a sizing field is restricted to the tangent plane: its size
+ * normal to the surface has no influence, since the shape of the surface
+ * determines how far an edge may deviate from it. Points of feature curves have
+ * no tangent plane and take the metric in all directions. */
 #ifndef VG_CORE_REMESH_METRIC_H
 #define VG_CORE_REMESH_METRIC_H
 
@@ -13,6 +18,7 @@
 
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
+#include "core/sizing/sizing.h"
 
 struct vg_metric {
   double size;    /* Smallest target length over all directions. */
@@ -135,5 +141,20 @@ static inline double vg_metric_along(const struct vg_metric *m,
   assert(m->size > 0);
   return m->size * vg_norm(d) / vg_form_norm(m->form, d);
 }
+
+/** Intersect *m with the metric of the field at x.
+ *
+ * @param n         unit normal of the surface, to whose plane the metric of
+ *                  the field is restricted; NULL: not restricted
+ * @param factor    on the sizes of the field
+ * @param has_form  0: m->form is not set, and lengths are equal in all
+ *                  directions
+ * @param m         in: the size and form that the surface requests; out: the
+ *                  same, with the form set. Normal to the surface, edges have
+ *                  the largest length within it.
+ * Threads: safe. */
+void vg_follow_field(const struct vg_sizing *field, const double x[3],
+                     const double *n, double factor, int has_form,
+                     struct vg_metric *m);
 
 #endif

@@ -18,9 +18,9 @@
 #include "core/mesh/mesh_defects.h"
 #include "core/remesh/blocks.h"
 #include "core/remesh/job.h"
-#include "core/remesh/levels.h"
 #include "core/remesh/passes.h"
 #include "core/remesh/result.h"
+#include "core/remesh/sizes.h"
 #include "core/remesh/stretch.h"
 #include "core/sizing/sizing_source.h"
 #include "core/surface/surface_check.h"
@@ -220,7 +220,7 @@ static vg_status change(struct vg_remesh_job *j, struct vg_tris *w,
   VG_TRY(vg_pass_divide(w, j->o->threads, err));
   for (double factor = w->coarse; factor > 1; factor /= 2) {
     VG_TRY(run(j, w, change_roughly, err));
-    VG_TRY(vg_levels_set(w, factor / 2, err));
+    VG_TRY(vg_tris_set_level(w, factor / 2, err));
   }
   VG_TRY(run(j, w, halve, err));
   VG_TRY(run(j, w, change_block, err));
@@ -501,7 +501,7 @@ static vg_status make(struct vg_remesh_job *j, struct vg_mesh *out,
   if (stretch.by) w.stretch = &stretch;
   VG_TRY(ask_sources(j, &w, &set, err));
   if (j->n_source > j->o->n_source) w.h_min *= SPOT_LEAST;
-  if (!j->looks) w.coarse = 1 << vg_levels_number(&j->ref, w.field, r->h_max);
+  if (!j->looks) w.coarse = 1 << vg_sizes_levels(&j->ref, w.field, r->h_max);
   VG_TRY(vg_tris_begin(&w, err));
   if (!j->looks) VG_TRY(change(j, &w, err));
   for (int mend = 0; !*sound && mend < a->mends; mend++) {

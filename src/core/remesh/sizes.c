@@ -8,11 +8,14 @@
 
 #include "base/memory.h"
 #include "core/geometry/vector.h"
+#include "core/remesh/metric.h"
 #include "core/remesh/strips.h"
 
-#define SMOOTH 2   /* sweeps that average curvature over neighbours */
-#define AROUND 3   /* S36: rings of triangles around a closed strip */
-#define FLOOR 0.02 /* S26: of the size without strips: least size */
+#define SMOOTH 2      /* sweeps that average curvature over neighbours */
+#define AROUND 3      /* S36: rings of triangles around a closed strip */
+#define SAMPLES 65536 /* least number of points at which a field is sampled */
+#define LEVELS 8      /* most levels with enlarged sizes */
+#define FLOOR 0.02    /* S26: of the size without strips: least size */
 
 /* Curvature tensor of a triangle, the sum over its edges, and its area. */
 struct bend {
@@ -303,4 +306,45 @@ vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
 done:
   free(far);
   return st;
+}
+
+/* --- the sizes of a field ------------------------------------------------- */
+
+/* Sizes are sampled at the centroids of n * n triangles in each triangle. */
+static double triangles_in(const struct vg_ref *r, uint32_t t, int n,
+                           const struct vg_sizing *field, double h_max)
+{
+  const struct vg_ref_tri *s = &r->shape[t];
+  const uint32_t *v = r->tri[t];
+  double sum = 0, area[3];
+
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k < 2 * (n - i) - 1; k++) {
+      const double a = (i + (1 + k % 2) / 3.0) / n;
+      const double b = (k / 2 + (1 + k % 2) / 3.0) / n;
+      struct vg_metric m;
+      double x[3];
+
+      for (int d = 0; d < 3; d++) x[d] = s->a[d] + a * s->u[d] + b * s->v[d];
+      m.size = fmin(h_max, (1 - a - b) * r->size[v[0]] + a * r->size[v[1]] +
+                             b * r->size[v[2]]);
+      vg_follow_field(field, x, s->n, 1, 0, &m);
+      sum += sqrt(vg_form_area2(m.form, s->n)) / (m.size * m.size);
+    }
+  vg_cross(s->u, s->v, area);
+  return sum / (n * n) * vg_norm(area) / 0.8660254037844386;
+}
+
+int vg_sizes_levels(const struct vg_ref *r, const struct vg_sizing *field,
+                    double h_max)
+{
+  const double each = SAMPLES / (double)r->n_tri;
+  double n = 0, most = 4 * (double)r->n_tri;
+  int level = 0;
+
+  if (!field) return 0;
+  for (uint32_t t = 0; t < r->n_tri; t++)
+    n += triangles_in(r, t, each > 1 ? (int)ceil(sqrt(each)) : 1, field, h_max);
+  for (; level < LEVELS && n > most; n /= 4) level++;
+  return level;
 }

@@ -5,6 +5,7 @@
 #define VG_CORE_REMESH_SIZES_H
 
 #include "core/remesh/curves.h"
+#include "core/sizing/sizing.h"
 
 struct vg_sizes_options {
   double per_turn;     /* Edges around a full circle. */
@@ -28,5 +29,14 @@ struct vg_sizes_options {
  * VG_ERR_STOPPED. */
 vg_status vg_sizes_make(struct vg_ref *r, const struct vg_curves *c,
                         const struct vg_sizes_options *o, struct vg_error *err);
+
+/** Number of levels with enlarged sizes with which remeshing in the metric of a
+ * field begins. The triangles of a coarse input are needles in a stretched
+ * metric whose directions differ between their corners. They are therefore
+ * first remeshed with larger sizes of the field, which are halved from level to
+ * level. 0 without a field, or if the surface has about the number of triangles
+ * that the field requests. O(n) */
+int vg_sizes_levels(const struct vg_ref *r, const struct vg_sizing *field,
+                    double h_max);
 
 #endif

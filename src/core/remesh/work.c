@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "core/remesh/follow.h"
 #include "core/remesh/stretch.h"
 #include "core/remesh/work_parts.h"
 
@@ -158,6 +157,32 @@ static vg_status make_points(struct vg_tris *w, struct vg_error *err)
   }
   pass_sizes_on(w);
   vg_parallel_for(w->threads, w->n_point, 1024, find_sizes, w);
+  return vg_stopped(&w->stop, err);
+}
+
+static void ask_again(void *context, size_t first, size_t end, int worker)
+{
+  struct vg_tris *w = context;
+
+  (void)worker;
+  for (size_t p = first; p < end && !vg_stops(&w->stop); p++) {
+    struct vg_tris_point *q = &w->point[p];
+
+    if (q->half == VG_REF_NONE) continue;
+    vg_tris_ask(w, q, vg_tris_size(w, q->x, &q->by));
+  }
+}
+
+vg_status vg_tris_set_level(struct vg_tris *w, double factor,
+                            struct vg_error *err)
+{
+  assert(w->field && factor >= 1);
+
+  w->coarse = factor;
+  vg_parallel_for(w->threads, w->n_point, 1024, ask_again, w);
+  w->clock++;
+  for (size_t p = 0; p < w->n_point; p++) w->point[p].changed = w->clock;
+  for (size_t t = 0; t < w->n_tri; t++) w->stamp[t] = w->clock;
   return vg_stopped(&w->stop, err);
 }
 

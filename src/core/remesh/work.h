@@ -196,6 +196,11 @@ static inline int vg_tris_may_join(const struct vg_tris *w, uint32_t a,
 /** Set up w as a copy of the reference surface. */
 vg_status vg_tris_begin(struct vg_tris *w, struct vg_error *err);
 
+/** Set the factor on the sizes of the field, and the target lengths of all
+ * points. O(n log n). VG_ERR_STOPPED. */
+vg_status vg_tris_set_level(struct vg_tris *w, double factor,
+                            struct vg_error *err);
+
 void vg_tris_release(struct vg_tris *w);
 
 /** Number of inconsistencies among triangles, their mates, feature edges and
