@@ -23,7 +23,7 @@ int vg_boundary_is_stretched(const struct vg_boundary *b)
 
   if (b->map && b->map->metric) return 1;
   for (size_t i = 0; i < s->n_source; i++)
-    if (s->source[i].stretch > 1) return 1;
+    if (s->source[i].stretch != 0) return 1;
   return 0;
 }
 
@@ -124,7 +124,9 @@ vg_status vg_boundary_measure(const struct vg_boundary *b,
     return vg_sizing_new(&o, s->n_source, s->source, m, out, err);
   o.from_surface = 0;
   VG_TRY(vg_sizing_new(&o, s->n_source, s->source, m, &field, err));
-  VG_TRY(take_sized(m, field, o.threads, &view, err));
+  if (vg_sizing_is_stretched(field))
+    VG_TRY(take_sized(m, field, o.threads, &view, err));
+  else view = *m;
   if (view.n_tri || view.n_quad) {
     vg_sizing_free(field);
     field = NULL;
@@ -135,6 +137,6 @@ vg_status vg_boundary_measure(const struct vg_boundary *b,
   field = NULL;
 done:
   vg_sizing_free(field);
-  free(view.tri);
+  if (view.tri != m->tri) free(view.tri);
   return st;
 }
