@@ -114,7 +114,9 @@ static void describe_surface(vanguard_job *job)
   if (!m->n_tri || vg_comm_node_rank(job->comm)) return;
   to = open_memstream(&job->details, &size);
   if (!to) return;
-  vg_report_surface_text(to, m, &p->boundary.check, VG_SHOWN_DEFECTS);
+  vg_report_surface_text(to, m, &p->boundary.check,
+                         vg_boundary_is_stretched(&p->boundary),
+                         VG_SHOWN_DEFECTS);
   if (fclose(to)) {
     free(job->details);
     job->details = NULL;

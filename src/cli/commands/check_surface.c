@@ -168,7 +168,8 @@ static vg_status print_text(const struct vg_check_surface *a,
   vg_report_size_text(stdout, &b->surface);
   VG_TRY(vg_report_patches_text(stdout, &b->surface, err));
   vg_report_remesh_text(stdout, &b->remeshing);
-  vg_report_surface_text(stdout, &b->surface, &b->check, VG_SHOWN_DEFECTS);
+  vg_report_surface_text(stdout, &b->surface, &b->check,
+                         vg_boundary_is_stretched(b), VG_SHOWN_DEFECTS);
   if (f->has_lines) vg_report_lines_text(stdout, &f->lines, a->has_deck);
   if (a->against) vg_report_distances_text(stdout, a->against, f->off);
   if (!b->check.n_defect) printf("  no defects\n");

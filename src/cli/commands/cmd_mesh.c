@@ -420,7 +420,8 @@ static void print_surface(FILE *to, const struct run *r)
             b->n_welded, b->n_dropped);
   vg_report_remesh_text(to, &b->remeshing);
   vg_report_domain_text(to, &b->domain);
-  vg_report_surface_text(to, m, &b->check, VG_SHOWN_DEFECTS);
+  vg_report_surface_text(to, m, &b->check, vg_boundary_is_stretched(b),
+                         VG_SHOWN_DEFECTS);
 }
 
 static void print_count(FILE *to, const char *name, size_t n)

@@ -205,7 +205,8 @@ static void print(const struct vg_problem *p, const struct files *f)
   const struct vg_boundary *b = &p->boundary;
 
   vg_report_remesh_text(stdout, &b->remeshing);
-  vg_report_surface_text(stdout, &b->surface, &b->check, 0);
+  vg_report_surface_text(stdout, &b->surface, &b->check,
+                         vg_boundary_is_stretched(b), 0);
   for (size_t i = 0; i < p->notes.n; i++)
     printf("  note: %s\n", p->notes.text[i]);
   for (size_t i = 0; i < f->outputs.n_file; i++) {

@@ -27,9 +27,11 @@
 #define SHAPE_FLOOR 0.05
 #define STEP_GOOD 0.1   /* of the size: least step among good triangles */
 #define STEP_BAD 0.02   /* of the size: least step at a poor triangle */
-#define STEP_EVEN 0.02  /* of both feature edges: least slide along a curve */
-#define EVEN2 0.25      /* (sin 30 degrees)^2: slides create no smaller angle */
 #define SHAPE_GAIN 0.02 /* of 1 - worst shape: least gain there */
+/* S77: least slide along a curve, relative to both feature edges; slides create
+ * no angle below 30 degrees (squared sine). */
+#define STEP_EVEN 0.02
+#define EVEN2 0.25
 
 /* --- curves -------------------------------------------------------------- */
 

@@ -11,11 +11,12 @@
 #include "core/remesh/metric.h"
 #include "core/remesh/strips.h"
 
-#define SMOOTH 2      /* sweeps that average curvature over neighbours */
-#define AROUND 3      /* S36: rings of triangles around a closed strip */
-#define SAMPLES 65536 /* least number of points at which a field is sampled */
-#define LEVELS 8      /* most levels with enlarged sizes */
-#define FLOOR 0.02    /* S26: of the size without strips: least size */
+#define SMOOTH 2 /* sweeps that average curvature over neighbours */
+#define AROUND 3 /* S36: rings of triangles around a closed strip */
+/* S76: least number of points at which a field is sampled. */
+#define SAMPLES 65536
+#define LEVELS 8   /* most levels with enlarged sizes */
+#define FLOOR 0.02 /* S26: of the size without strips: least size */
 
 /* Curvature tensor of a triangle, the sum over its edges, and its area. */
 struct bend {

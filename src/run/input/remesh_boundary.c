@@ -79,7 +79,7 @@ void vg_boundary_note_slivers(struct vg_boundary *b)
             "surface is treated as a tessellation and is remeshed "
             "(--remesh-surface no keeps it unchanged)",
             100 * share);
-  else if (!(b->read->settings.wrap > 0))
+  else if (!(b->read->settings.wrap > 0) && !vg_boundary_is_stretched(b))
     vg_note(b->notes,
             "%.0f %% of the triangles have an angle below 10 degrees, and so "
             "will the cells on them: --remesh-surface yes remeshes the surface",

@@ -12,7 +12,7 @@
 #include "run/input/input.h"
 #include "run/settings/plan_options.h"
 
-/* Edges of these lengths in the metric follow it. */
+/* S78: edges of these lengths in the metric follow it. */
 #define SHORT 0.5
 #define LONG 2.0
 #define GRAIN 1024

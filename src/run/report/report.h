@@ -36,9 +36,11 @@ vg_status vg_report_patches_text(FILE *to, const struct vg_mesh *m,
 json_t *vg_report_patches_json(const struct vg_mesh *m);
 
 /** Shells, repairs, triangle quality, and the number of defects of each kind
- * with a description of the first `shown` ones. */
+ * with a description of the first `shown` ones. is_stretched: sizes depend on
+ * the direction, so that slivers are no fault and are not listed. */
 void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
-                            const struct vg_surface_report *r, size_t shown);
+                            const struct vg_surface_report *r, int is_stretched,
+                            size_t shown);
 json_t *vg_report_surface_json(const struct vg_mesh *m,
                                const struct vg_surface_report *r, size_t shown);
 

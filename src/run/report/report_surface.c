@@ -253,7 +253,7 @@ static void slivers_text(FILE *to, const struct vg_mesh *m,
             q->n_cap + q->n_needle - VG_SHOWN_FACES);
 }
 
-static void quality_text(FILE *to, const struct vg_mesh *m)
+static void quality_text(FILE *to, const struct vg_mesh *m, int is_stretched)
 {
   struct vg_surface_quality q;
 
@@ -266,7 +266,7 @@ static void quality_text(FILE *to, const struct vg_mesh *m)
     "(2 r/R): mean %.3f; mean edge length %.6g\n",
     q.angle_min, q.angle_min_p1, q.below[0], q.below[1], q.below[2], q.below[3],
     q.ratio_mean, q.edge_mean);
-  slivers_text(to, m, &q);
+  if (!is_stretched) slivers_text(to, m, &q);
 }
 
 static json_t *quality_json(const struct vg_mesh *m)
@@ -295,14 +295,15 @@ static json_t *quality_json(const struct vg_mesh *m)
 }
 
 void vg_report_surface_text(FILE *to, const struct vg_mesh *m,
-                            const struct vg_surface_report *r, size_t shown)
+                            const struct vg_surface_report *r, int is_stretched,
+                            size_t shown)
 {
   char text[1024], count[32];
   size_t at = 0;
 
   shells_text(to, r);
   repair_text(to, r);
-  quality_text(to, m);
+  quality_text(to, m, is_stretched);
   for (int kind = 0; kind < VG_DEFECT_N; kind++) {
     size_t n = r->count[kind], said = 0;
 
