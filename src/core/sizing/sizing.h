@@ -176,6 +176,9 @@ void vg_sizing_show(const struct vg_sizing *s,
 /** Number of bytes of the field that the ranks of a node share. */
 size_t vg_sizing_shmem(const struct vg_sizing *s);
 
+/** Does the source request sizes that depend on the direction? */
+int vg_source_is_stretched(const struct vg_source *s);
+
 /** Does the field depend on the direction anywhere? If not, the functions
  * below that take a direction give the values of vg_sizing_at. */
 int vg_sizing_is_stretched(const struct vg_sizing *s);

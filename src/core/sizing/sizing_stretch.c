@@ -69,6 +69,13 @@ int vg_source_stretch(const struct vg_source *s, double axis[3],
   return ratio[0] != 1 || ratio[1] != 1;
 }
 
+int vg_source_is_stretched(const struct vg_source *s)
+{
+  double axis[3], ratio[2];
+
+  return vg_source_stretch(s, axis, ratio);
+}
+
 void vg_stretched_prepare(struct vg_stretched *s)
 {
   double thin = fmin(1, fmin(s->ratio[0], s->ratio[1]));

@@ -213,6 +213,11 @@ int vg_boundary_is_stretched(const struct vg_boundary *b);
 vg_status vg_boundary_field(const struct vg_boundary *b,
                             struct vg_sizing **field, struct vg_error *err);
 
+/** Largest size of a remeshed surface where the setting is h_max, 0: the
+ * default. A map that gives a metric at all points requests large sizes, too,
+ * so that the default does not apply. */
+double vg_boundary_largest_edge(const struct vg_boundary *b, double h_max);
+
 /** As vg_sizing_new, with the sources of s, for a boundary or front m. In a
  * stretched field only those faces request sizes whose edges do not follow the
  * metric; a surface remeshed in the metric requests none, except where its

@@ -116,17 +116,6 @@ static void areas(const struct vg_mesh *m, int after, double *area)
   }
 }
 
-/* A metric given at all points requests large sizes, too; without a setting,
- * its largest size is not limited. */
-static double largest_edge(const struct vg_boundary *b, double h_max)
-{
-  double lo[3], hi[3];
-
-  if (h_max > 0 || !b->map || !b->map->metric) return h_max;
-  vg_mesh_bounds(&b->surface, lo, hi);
-  return vg_distance(lo, hi);
-}
-
 static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
                         const struct vg_surface_sizes *sizes, int is_reference,
                         struct vg_display *show, struct vg_error *err)
@@ -135,7 +124,7 @@ static vg_status remesh(struct vg_boundary *b, const uint8_t *hard,
 
   o.map = b->map;
   o.field = sizes->field;
-  o.h_max = largest_edge(b, o.h_max);
+  o.h_max = vg_boundary_largest_edge(b, o.h_max);
   o.hard = hard;
   o.is_body = b->flow.kind == VG_FLOW_EXTERNAL;
   o.is_reference = is_reference;

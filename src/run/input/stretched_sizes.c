@@ -23,7 +23,7 @@ int vg_boundary_is_stretched(const struct vg_boundary *b)
 
   if (b->map && b->map->metric) return 1;
   for (size_t i = 0; i < s->n_source; i++)
-    if (s->source[i].stretch != 0) return 1;
+    if (vg_source_is_stretched(&s->source[i])) return 1;
   return 0;
 }
 
@@ -44,6 +44,15 @@ vg_status vg_boundary_field(const struct vg_boundary *b,
   if (vg_sizing_is_stretched(made)) *field = made;
   else vg_sizing_free(made);
   return VG_OK;
+}
+
+double vg_boundary_largest_edge(const struct vg_boundary *b, double h_max)
+{
+  double lo[3], hi[3];
+
+  if (h_max > 0 || !b->map || !b->map->metric) return h_max;
+  vg_mesh_bounds(&b->surface, lo, hi);
+  return vg_distance(lo, hi);
 }
 
 /* Faces of m that do not follow the metric. */

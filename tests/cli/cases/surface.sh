@@ -48,6 +48,58 @@ vanguard surface -q bar.obj --surface-size 0.3 --out new
 exits 1
 says err "exists and is not overwritten"
 
+# Sizes that depend on the direction: edges of 0.5 along x and of 0.05 across
+# it, in a metric given at the corners of a box around the bar.
+cat >metric.mesh <<END
+MeshVersionFormatted 2
+Dimension 3
+Vertices
+8
+-1 -1 -1 0
+5 -1 -1 0
+-1 2 -1 0
+5 2 -1 0
+-1 -1 2 0
+5 -1 2 0
+-1 2 2 0
+5 2 2 0
+Tetrahedra
+5
+1 2 3 5 1
+4 3 2 8 1
+6 5 8 2 1
+7 8 5 3 1
+2 3 5 8 1
+End
+END
+{
+  printf 'MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n8\n1 3\n'
+  for ((i = 0; i < 8; i++)); do echo "4 0 400 0 0 400"; done
+  echo End
+} >metric.sol
+vanguard surface -q bar.obj --sizes metric.sol --write ugrid --out stretched
+exits 0
+says out "8 corners and 12 feature curves preserved, length of curves 24 -> 24"
+lacks out "They cause poor cells"
+awk 'NR == 1 { n_point = $1; n_tri = $2 }
+  NR > 1 && NR <= 1 + n_point { for (k = 1; k <= 3; k++) x[NR - 1, k] = $k }
+  NR > 1 + n_point && NR <= 1 + n_point + n_tri {
+    for (k = 1; k <= 3; k++) {
+      a = $k; b = $(k % 3 + 1)
+      l = 4 * (x[a, 1] - x[b, 1])^2
+      l += 400 * (x[a, 2] - x[b, 2])^2
+      l += 400 * (x[a, 3] - x[b, 3])^2
+      l = sqrt(l)
+      n++; fit += l >= 0.71 && l <= 1.41
+    }
+  }
+  END { exit !(n_tri > 2500 && n_tri < 4500 && fit > 0.95 * n) }' \
+  stretched/bar.ugrid || fail "edges do not follow the metric"
+vanguard surface -q bar.obj --sizes metric.sol --write ugrid --out stretched2 \
+  -t 2
+exits 0
+same stretched/bar.ugrid stretched2/bar.ugrid
+
 # A fixed patch border stays. In the folder of the input the output has
 # another name.
 cat >hard.deck <<'END'
