@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "core/fill/fill_parts.h"
 #include "core/geometry/shape.h"
+#include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 
 /* Band for a plane without walls, which may use the whole known part of the
@@ -70,7 +71,7 @@ static int is_overlong(const struct zone *z, uint32_t c)
 {
   const struct vg_tets *t = &z->g->t;
   const uint32_t *v = t->cell[c].v;
-  double most = 0, middle[3] = { 0 }, h;
+  double most = 0, middle[3] = { 0 }, edge[3] = { 0 }, stretch[6], h;
   int is_new = 0;
 
   for (int i = 0; i < 4; i++)
@@ -82,7 +83,13 @@ static int is_overlong(const struct zone *z, uint32_t c)
       is_new = v[i] >= z->g->front->n_point || v[j] >= z->g->front->n_point;
       for (int k = 0; k < 3; k++)
         middle[k] = 0.5 * (t->x[v[i]][k] + t->x[v[j]][k]);
+      vg_sub(t->x[v[i]], t->x[v[j]], edge);
     }
+  if (vg_sizing_is_stretched(z->g->sizing)) {
+    vg_sizing_stretch_at(z->g->sizing, middle, stretch);
+    vg_tensor_apply(stretch, edge, edge);
+    return is_new && vg_dot(edge, edge) > overlong * overlong;
+  }
   h = vg_sizing_at(z->g->sizing, middle);
   return is_new && most > overlong * overlong * h * h;
 }
@@ -182,11 +189,22 @@ static int is_within(const struct zone *z, uint32_t c)
   return 1;
 }
 
-static double shape_of(const struct vg_tets *t, uint32_t c)
+/* Shape of a cell; in a metric, that of its image under the stretch at its
+ * first corner. */
+static double shape_of(const struct zone *z, uint32_t c)
 {
+  const struct vg_tets *t = &z->g->t;
   const uint32_t *v = t->cell[c].v;
+  double stretch[6], x[4][3] = { { 0 } };
 
-  return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+  if (!vg_sizing_is_stretched(z->g->sizing))
+    return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+  vg_sizing_stretch_at(z->g->sizing, t->x[v[0]], stretch);
+  for (int i = 1; i < 4; i++) {
+    vg_sub(t->x[v[i]], t->x[v[0]], x[i]);
+    vg_tensor_apply(stretch, x[i], x[i]);
+  }
+  return vg_shape(x[0], x[1], x[2], x[3]);
 }
 
 /* Does the circumsphere of cell c lie where points are placed? A larger sphere
@@ -197,21 +215,26 @@ static int is_settled(const struct zone *z, uint32_t c)
   const double(*x)[3] = (const double(*)[3])z->g->t.x;
   const uint32_t *v = z->g->t.cell[c].v;
   const struct vg_region *region = z->g->region;
-  double e[3][3], n[3][3], d2[3], det, r2 = 0, r, middle[3];
+  double e[3][3], n[3][3], d[3], d2[3], det, r, middle[3], t[6];
+  int is_stretched = vg_sizing_is_stretched(z->g->sizing);
 
+  if (is_stretched) vg_sizing_stretch_at(z->g->sizing, x[v[0]], t);
   for (int i = 0; i < 3; i++) {
     vg_sub(x[v[i + 1]], x[v[0]], e[i]);
+    if (is_stretched) vg_tensor_apply(t, e[i], e[i]);
     d2[i] = vg_dot(e[i], e[i]);
   }
   for (int i = 0; i < 3; i++) vg_cross(e[(i + 1) % 3], e[(i + 2) % 3], n[i]);
   det = vg_dot(e[0], n[0]);
-  for (int k = 0; k < 3; k++) {
-    double d = (d2[0] * n[0][k] + d2[1] * n[1][k] + d2[2] * n[2][k]) / det / 2;
-
-    middle[k] = x[v[0]][k] + d;
-    r2 += d * d;
+  for (int k = 0; k < 3; k++)
+    d[k] = (d2[0] * n[0][k] + d2[1] * n[1][k] + d2[2] * n[2][k]) / det / 2;
+  r = vg_norm(d);
+  if (is_stretched) {
+    vg_tensor_invert(t, t);
+    vg_tensor_apply(t, d, d);
   }
-  r = sqrt(r2) / vg_region_spacing(region, z->g->sizing, middle);
+  for (int k = 0; k < 3; k++) middle[k] = x[v[0]][k] + d[k];
+  if (!is_stretched) r /= vg_region_spacing(region, z->g->sizing, middle);
   return vg_region_near(region, z->g->sizing, middle, VG_BAND_PLACE - r);
 }
 
@@ -235,7 +258,7 @@ static void leave_no_slits(struct zone *z)
 
   for (uint32_t c = 0; c < t->n_cell; c++) {
     if (t->flag[c] & (VG_DEAD | VG_OUTSIDE | VG_MARK) ||
-        !(t->flag[c] & VG_FIXED_FACES) || shape_of(t, c) >= slit)
+        !(t->flag[c] & VG_FIXED_FACES) || shape_of(z, c) >= slit)
       continue;
     for (int i = 0; i < 4; i++) {
       uint32_t link = t->cell[c].link[i];
@@ -267,7 +290,7 @@ vg_status vg_zone_choose(struct vg_filling *g, struct vg_error *err)
   }
   for (uint32_t c = 0; c < t->n_cell; c++)
     if (!(t->flag[c] & (VG_DEAD | VG_MARK)) && all_four(&z, used, c) &&
-        is_within(&z, c) && shape_of(t, c) > dent && is_settled(&z, c))
+        is_within(&z, c) && shape_of(&z, c) > dent && is_settled(&z, c))
       take(&z, c);
   leave_no_slits(&z);
 done:

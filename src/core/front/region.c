@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/tensor.h"
+#include "core/geometry/vector.h"
 
 static int is_unit(const double n[3])
 {
@@ -41,13 +43,35 @@ void vg_region_foot(const struct vg_region *r, const double x[3],
   }
 }
 
+/* In a metric, the largest of the sizes across the planes and half of those
+ * across the walls, beyond which only half of a band counts. */
+static double spacing_across(const struct vg_region *r,
+                             const struct vg_sizing *sizing,
+                             const double foot[3])
+{
+  double h = 0, t[6], v[3];
+
+  vg_sizing_stretch_at(sizing, foot, t);
+  for (int i = 0; i < r->n_plane + r->n_wall; i++) {
+    int is_wall = i >= r->n_plane;
+
+    vg_tensor_apply(t,
+                    is_wall ? r->wall[i - r->n_plane].normal
+                            : r->plane[i].normal,
+                    v);
+    h = fmax(h, (is_wall ? VG_BEYOND_WALLS : 1) / vg_norm(v));
+  }
+  return h;
+}
+
 double vg_region_spacing(const struct vg_region *r,
                          const struct vg_sizing *sizing, const double x[3])
 {
   double foot[3];
 
   vg_region_foot(r, x, foot);
-  return vg_sizing_at(sizing, foot);
+  return vg_sizing_is_stretched(sizing) ? spacing_across(r, sizing, foot)
+                                        : vg_sizing_at(sizing, foot);
 }
 
 int vg_region_within(const struct vg_region *r, const double x[3])
@@ -98,7 +122,7 @@ int vg_region_near_by(const struct vg_region *r, const struct vg_sizing *sizing,
 
     foot2 += s * s;
   }
-  off = vg_sizing_slope(sizing) * (sqrt(foot2) + d);
+  off = vg_sizing_slope_along(sizing) * (sqrt(foot2) + d);
   if (far <= most * (h - off)) return 1;
   if (far > most * (h + off)) return 0;
   return far <= most * vg_region_spacing(r, sizing, x);
@@ -109,7 +133,7 @@ int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
 {
   double far = gap(r, 1, &x), most = vg_region_band(r, band), h_min, h_max;
 
-  vg_sizing_range(sizing, &h_min, &h_max);
+  vg_sizing_range_along(sizing, &h_min, &h_max);
   if (far == 0 || far <= most * h_min) return 1;
   return far <= most * h_max && far <= most * vg_region_spacing(r, sizing, x);
 }
@@ -254,7 +278,7 @@ int vg_region_may_meet(const struct vg_region *r,
 static int has_corner(const struct vg_region *r, const struct vg_sizing *sizing,
                       const double *const corner[4], const double far[4])
 {
-  double slope = vg_sizing_slope(sizing);
+  double slope = vg_sizing_slope_along(sizing);
   double first = vg_region_spacing(r, sizing, corner[0]);
 
   if (far[0] <= r->reach * first) return 1;
@@ -308,9 +332,10 @@ vg_status vg_region_cache_init(struct vg_region_cache *cache,
 
   assert(cache && sizing && (x || !n));
   assert(vg_region_is_sound(region));
-  vg_sizing_range(sizing, &least, &most);
+  vg_sizing_range_along(sizing, &least, &most);
   *cache = (struct vg_region_cache){
-    region, sizing, x, vg_sizing_slope(sizing), most - least, m, NULL, NULL
+    region,       sizing, x,    vg_sizing_slope_along(sizing),
+    most - least, m,      NULL, NULL
   };
   cache->side = vg_alloc(n, (size_t)(m ? m : 1) * sizeof *cache->side);
   cache->spacing = vg_alloc(n, sizeof *cache->spacing);

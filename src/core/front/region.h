@@ -93,7 +93,7 @@ static inline double vg_region_band(const struct vg_region *r, double band)
   return r->reach + band + (band >= VG_BAND_FLUID ? r->wide : 0);
 }
 
-/** Spacing at the foot of x. */
+/** Spacing at the foot of x; in a metric, that across the region. */
 double vg_region_spacing(const struct vg_region *r,
                          const struct vg_sizing *sizing, const double x[3]);
 

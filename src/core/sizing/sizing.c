@@ -269,6 +269,10 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
   VG_TRY(check_map(&fault, f.set.metric != NULL, err));
   s->slope = steep ? vg_bvh_steep(s->growth) : s->growth;
   find_range(s);
+  s->reach = 1;
+  if (s->octree.is_stretched)
+    s->reach = vg_cube_root(o.aspect_max > 0 ? o.aspect_max * o.aspect_max
+                                             : VG_ASPECT_MAX * VG_ASPECT_MAX);
   VG_CHECK("the sizing field", vg_octree_defects(&s->octree));
   *out = s;
   s = NULL;
@@ -395,6 +399,21 @@ void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max)
 double vg_sizing_slope(const struct vg_sizing *s)
 {
   return s->slope;
+}
+
+/* With an aspect a, the mean of three sizes is at least a^(1/3) times the
+ * smallest one, and at least a^(-2/3) times the largest one. */
+void vg_sizing_range_along(const struct vg_sizing *s, double *h_min,
+                           double *h_max)
+{
+  assert(h_min && h_max);
+  *h_min = s->least / s->reach;
+  *h_max = s->most * s->reach;
+}
+
+double vg_sizing_slope_along(const struct vg_sizing *s)
+{
+  return s->octree.is_stretched ? INFINITY : s->slope;
 }
 
 double vg_sizing_growth(const struct vg_sizing *s)

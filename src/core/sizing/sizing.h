@@ -220,6 +220,15 @@ void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max);
  * somewhere. */
 double vg_sizing_slope(const struct vg_sizing *s);
 
+/** Bounds of the target edge length along any direction within the root cube.
+ * Cost O(1). */
+void vg_sizing_range_along(const struct vg_sizing *s, double *h_min,
+                           double *h_max);
+
+/** As vg_sizing_slope, for the target edge length along any fixed direction;
+ * INFINITY if the field is stretched, since its axes may turn. */
+double vg_sizing_slope_along(const struct vg_sizing *s);
+
 /** The scaled value of growth - 1. */
 double vg_sizing_growth(const struct vg_sizing *s);
 

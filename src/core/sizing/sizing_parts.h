@@ -13,6 +13,8 @@ struct vg_sizing {
                              their upper limit */
   double slope;           /* bound on the gradient within the octree */
   double least, most;     /* range over the octree */
+  double reach;           /* bound on the ratio of the largest and the mean
+                             size at a point; 1 if the field is isotropic */
   struct vg_shmem common; /* shared memory with the octree's arrays, if it is
                              used */
 };

@@ -161,6 +161,7 @@ static void widen(struct place *p, const struct place *by)
 static double width_of(const struct search *s, const struct touching *t)
 {
   const struct vg_front *f = &s->n->front;
+  const double across[3] = { s->axis == 0, s->axis == 1, s->axis == 2 };
   double at = s->n->lattice.at[s->axis][t->plane], most = 0;
 
   for (int k = 0; k < 3; k++) {
@@ -168,7 +169,8 @@ static double width_of(const struct search *s, const struct touching *t)
     double foot[3] = { x[0], x[1], x[2] };
 
     foot[s->axis] = at;
-    most = fmax(most, fabs(x[s->axis] - at) / vg_sizing_at(s->sizing, foot));
+    most = fmax(most, fabs(x[s->axis] - at) /
+                        vg_sizing_along(s->sizing, foot, across));
   }
   return most;
 }

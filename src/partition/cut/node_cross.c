@@ -387,7 +387,7 @@ int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
 
   assert(i < n->n_work && first <= n->front.n_point);
   if (!r->n_plane || !sizing) return 0;
-  b.slope = vg_sizing_slope(sizing);
+  b.slope = vg_sizing_slope_along(sizing);
   for (size_t k = 0; k < n_around(&c) && !found; k++) {
     const double *x[3];
 

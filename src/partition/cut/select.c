@@ -128,7 +128,7 @@ static double most_spacing(const struct list *l, const struct vg_box *b)
     d2 += (b->hi[k] - middle[k]) * (b->hi[k] - middle[k]);
   }
   return vg_region_spacing(l->region, l->s->sizing, middle) +
-         vg_sizing_slope(l->s->sizing) * sqrt(d2);
+         vg_sizing_slope_along(l->s->sizing) * sqrt(d2);
 }
 
 /* Distance by which sign * n . x is below sign * offset in the whole box. */
@@ -247,7 +247,7 @@ static int list_faces(struct list *l)
   int top = VG_SELECT_LEVELS - 1;
   double most;
 
-  vg_sizing_range(l->s->sizing, &l->least, &most);
+  vg_sizing_range_along(l->s->sizing, &l->least, &most);
   while (top > 0 && !l->s->level[top].n) top--;
   for (size_t b = 0; b < l->s->level[top].n; b++)
     if (list_box(l, top, b, most)) return -1;
