@@ -405,6 +405,29 @@ static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
   return 0;
 }
 
+static int is_on_hull(const struct vg_inserter *s, uint32_t v)
+{
+  if (s->n_vertex) {
+    uint32_t at = s->local[v];
+
+    return at < s->n_vertex && s->vertex[at] == v;
+  }
+  for (size_t k = 0; k < s->n_face; k++)
+    for (int i = 0; i < 3; i++)
+      if (s->face[k].v[i] == v) return 1;
+  return 0;
+}
+
+/* Are all cells of a vertex in the cavity, so that it would lose them? This
+ * cannot happen among Delaunay cells, but among cells made in metrics. */
+static int swallows(const struct vg_inserter *s)
+{
+  for (size_t k = 0; k < s->n_cell; k++)
+    for (int i = 0; i < 4; i++)
+      if (!is_on_hull(s, s->t->cell[s->cell[k].at].v[i])) return 1;
+  return 0;
+}
+
 /* --- refilling ------------------------------------------------------------ */
 
 /* Make a cell in front of each face of the cavity. The link of the face
@@ -505,6 +528,7 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
     state = cut == CUT_MAX ? 1 : cut_back(s, x);
   }
   if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
+  if (!state && s->metric) state = swallows(s);
   if (!state && ((!s->n_vertex && vg_table_init(&edge, 2 * s->n_face)) ||
                  vg_tets_reserve_cells(t, s->n_face) ||
                  vg_reserve(&t->free, &t->cap_free, t->n_free + s->n_cell,
