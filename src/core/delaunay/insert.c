@@ -124,7 +124,7 @@ static unsigned metric_signs(const struct vg_inserter *s, const uint32_t v[4],
   double e[4][3], m[6], det = 0;
   unsigned in = 0, out = 0, signs;
 
-  for (int k = 0; k < 6; k++)
+  for (int k = 0; k < 6; k++) /* K46 */
     m[k] = 8 * own[k] + s->metric[v[0]].m[k] + s->metric[v[1]].m[k] +
            s->metric[v[2]].m[k] + s->metric[v[3]].m[k];
   for (int i = 0; i < 4; i++) vg_sub(t->x[v[i]], p, e[i]);

@@ -9,7 +9,7 @@
 #include "core/fill/fill_parts.h"
 #include "core/fill/place.h"
 #include "core/geometry/hilbert.h"
-#include "core/metric/advance.h"
+#include "core/metric/metric_points.h"
 
 /* Least distance of a seed from other points, in the metric (K7). */
 static const double seed_distance = 0.8;

@@ -12,6 +12,11 @@
 #include "core/geometry/vector.h"
 #include "core/sizing/sizing.h"
 
+/* Height of the apex over a face of the surface, that of a regular tetrahedron,
+ * and least distance of a field point from other points. */
+#define VG_METRIC_APEX 0.8165
+#define VG_METRIC_EXCLUSION 0.7 /* K42 */
+
 struct vg_metrics {
   const struct vg_sizing *sizing;
   struct vg_point_metric *at; /* [points] Metric of each point. */

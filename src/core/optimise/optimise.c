@@ -17,12 +17,13 @@
  * those of cells below `fair`. Below `desperate` (15, 165), points are removed
  * or inserted; `worst` is 10 or 170 degrees. */
 static const struct vg_shape_levels euclidean = {
-  VG_SHAPE_TARGET, 0.25F, VG_SHAPE_GOOD, 0.067, 0.03F /* K24, K25 */
+  VG_SHAPE_TARGET, 0.25F, VG_SHAPE_GOOD, /* K24 */
+  0.067, 0.03F                           /* K25 */
 };
 
 /* In a metric: cubes of the mean ratios 0.6, 0.85, 1, 0.4, 0.2. */
 static const struct vg_shape_levels in_metric = {
-  0.216, 0.614F, 1, 0.064, 0.008F /* M2 */
+  0.216, 0.614F, 1, 0.064, 0.008F /* K43 */
 };
 
 /* Number of rounds over bad cells. They end early if a round improves at most

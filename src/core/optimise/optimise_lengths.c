@@ -5,7 +5,7 @@
 
 #include "core/optimise/optimise_parts.h"
 
-/* M4: edges shorter or longer than this are changed. */
+/* K45: edges shorter or longer than this are changed. */
 static const double shortest = 0.68, longest = 1.45;
 /* Collapses may not make cells worse than this shape, or than the worst one.
  * Splits may reduce the worst shape around the edge by this factor. */

@@ -14,7 +14,7 @@
 #include "core/geometry/vector.h"
 #include "core/optimise/optimise_parts.h"
 
-/* M3: weight w of the size; steps in units of the metric; least relative
+/* K44: weight w of the size; steps in units of the metric; least relative
  * decrease of f. */
 static const double size_weight = 0.5, gain = 1e-3;
 static const double step[] = { 0.25, 0.1, 0.04 };

@@ -69,10 +69,6 @@ static vg_status insert(struct vg_inserter *s, uint32_t p, const double x[3],
 
 /* --- apexes --------------------------------------------------------------- */
 
-/* Height of the apex over a triangle in the metric, and its least distance from
- * other points, as in core/metric/advance.c. */
-static const double apex = 0.8165, exclusion = 0.7; /* M1 */
-
 /* The apex over a triangle: a regular cell in the metric at its centre. Returns
  * 0 if the triangle is degenerate. */
 static int find_apex(const struct vg_tets *t, const struct vg_sizing *sizing,
@@ -88,7 +84,7 @@ static int find_apex(const struct vg_tets *t, const struct vg_sizing *sizing,
   vg_sub(t->x[v[2]], t->x[v[0]], f);
   vg_cross(e, f, n);
   length = vg_metric_normal(&m, n);
-  for (int k = 0; k < 3; k++) x[k] = c[k] + apex * n[k] / length;
+  for (int k = 0; k < 3; k++) x[k] = c[k] + VG_METRIC_APEX * n[k] / length;
   return length > 0;
 }
 
@@ -119,7 +115,7 @@ static vg_status insert_apex(struct vg_inserter *s, struct vg_metrics *metrics,
   if (vg_metrics_add(metrics, t, p, p + 1))
     return vg_fail_memory(err, "boundary recovery");
   s->metric = metrics->at;
-  st = vg_insert(s, p, *at, 0, exclusion, err);
+  st = vg_insert(s, p, *at, 0, VG_METRIC_EXCLUSION, err);
   if (st == VG_OK) *at = s->last;
   else t->n_point--;
   return st == VG_BLOCKED ? VG_OK : st;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "core/metric/advance.h"
+#include "core/metric/metric_points.h"
 
 #include <assert.h>
 #include <math.h>
@@ -11,10 +11,6 @@
 
 /* Side of the cubic pattern, as for isotropic points (K9). */
 static const double lattice = 1.083;
-/* Height of the apex over a surface face: regular tetrahedron. */
-static const double apex = 0.8165;
-/* Least distance between points. */
-static const double exclusion = 0.70; /* M1 */
 /* Least height over a face of the surface, relative to its mean edge. */
 static const double least_height = 0.3;
 
@@ -72,7 +68,7 @@ static int is_excluded(const struct advance *a, uint32_t cell,
 
     vg_sub(a->t->x[v[i]], x, d);
     vg_tensor_apply(t, d, d);
-    if (vg_dot(d, d) < exclusion * exclusion) return 1;
+    if (vg_dot(d, d) < VG_METRIC_EXCLUSION * VG_METRIC_EXCLUSION) return 1;
   }
   return 0;
 }
@@ -92,7 +88,7 @@ static int insert(struct advance *a, const double x[3], uint32_t cell,
   tets->n_point++;
   if (vg_metrics_add(a->metrics, tets, p, p + 1)) return -1;
   a->s.metric = a->metrics->at;
-  st = vg_insert(&a->s, p, cell, least_height, exclusion, err);
+  st = vg_insert(&a->s, p, cell, least_height, VG_METRIC_EXCLUSION, err);
   if (st != VG_OK) {
     tets->n_point--;
     a->report->n_refused++;
@@ -175,7 +171,7 @@ static int grow_face(struct advance *a, size_t face, struct vg_error *err)
   vg_cross(e, f, n);
   length = vg_norm(n);
   if (!(length > 0)) return 0;
-  for (int k = 0; k < 3; k++) n[k] *= apex / length;
+  for (int k = 0; k < 3; k++) n[k] *= VG_METRIC_APEX / length;
   return propose(a, c, h, n, &start, err);
 }
 

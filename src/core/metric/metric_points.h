@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* core/metric/advance.h: field points in a metric, by a front of points that
- * starts at the surface and advances by one unit of the metric.
+/* core/metric/metric_points.h: field points in a metric, by a front of points
+ * that starts at the surface and advances by one unit of the metric.
  *
  * Each face of the surface proposes the apex of a cell that is regular in the
  * metric, and each point that is accepted proposes its neighbours in a
@@ -15,8 +15,8 @@
  * once, and the cells around it serve as the search structure for the next
  * proposals: the cavity of a point contains its nearest neighbours in the
  * metric, whatever the aspect of the cells. */
-#ifndef VG_CORE_METRIC_ADVANCE_H
-#define VG_CORE_METRIC_ADVANCE_H
+#ifndef VG_CORE_METRIC_METRIC_POINTS_H
+#define VG_CORE_METRIC_METRIC_POINTS_H
 
 #include "base/stop.h"
 #include "core/delaunay/insert.h"
