@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Separator zones: final cells along planes, made from the part of a front near
  * them. Tests their division of the void, their cost, and their refusals. */
+#include "core/recover/boundary.h"
 #include "io/mesh/ugrid.h"
 #include "zone_scene.h"
 
@@ -316,6 +317,106 @@ static void an_edge_separator_exits_a_plume(void **state)
   scene_end(&s);
 }
 
+/* A plate with n x n edges, and m edges thick, in a wide box. */
+static void plate_scene(struct scene *s, int n, int m, double growth)
+{
+  const int count[3] = { n, n, m };
+  const double lo[3] = { -1, -1, -(double)m / n }, hi[3] = { 1, 1, -lo[2] };
+  size_t first;
+
+  memset(s, 0, sizeof *s);
+  shape_box(&s->m, 6, 9);
+  first = s->m.n_tri;
+  shape_block(&s->m, count, lo, hi, shape_all);
+  for (size_t t = first; t < s->m.n_tri; t++) {
+    uint32_t *v = s->m.tri[t], w = v[1];
+
+    v[1] = v[2];
+    v[2] = w;
+  }
+  scene_begin(s, growth, 0);
+}
+
+/* Number of cells whose side is wrong next to their corner nearest to the plane
+ * z = at, of those with a corner within the known band. */
+static size_t wrong_sides(const struct scene *s, const struct zone_part *p,
+                          const struct vg_region *plane, double half)
+{
+  struct vg_boundary_report report;
+  struct vg_tets t = VG_TETS_INIT;
+  size_t n_wrong = 0;
+
+  assert_int_equal(vg_boundary_open(p->front.n_point,
+                                    (const double(*)[3])p->front.x,
+                                    p->front.n_face,
+                                    (const uint32_t(*)[3])p->front.face, plane,
+                                    s->sizing, &t, &report, NULL),
+                   VG_OK);
+  for (uint32_t c = 0; c < t.n_cell; c++) {
+    double least = VG_BAND_FLUID, x[3];
+    int best = -1, is_solid = 1, is_outside = 0;
+
+    for (int i = 0; i < 4 && !(t.flag[c] & VG_DEAD); i++) {
+      const double *y = t.x[t.cell[c].v[i]];
+      double far = fabs(vg_plane_side(&plane->plane[0], y)) /
+                   vg_region_spacing(plane, s->sizing, y);
+
+      if (far > least) continue;
+      least = far;
+      best = i;
+    }
+    if (best < 0) continue;
+    for (int k = 0; k < 3; k++) {
+      double sum = 0;
+
+      for (int i = 0; i < 4; i++) sum += t.x[t.cell[c].v[i]][k];
+      x[k] = t.x[t.cell[c].v[best]][k];
+      x[k] += (sum / 4 - x[k]) / 64;
+      is_solid &= fabs(x[k]) < (k < 2 ? 1 : half);
+      is_outside |= fabs(x[k]) > 9;
+    }
+    n_wrong += (is_solid | is_outside) != !!(t.flag[c] & VG_OUTSIDE);
+  }
+  vg_tets_release(&t);
+  return n_wrong;
+}
+
+/* A plane along a plate ends on its sides, where the spacing and with it the
+ * known part of the front grow quickly away from the body: the part is open,
+ * and cells reach from its rim far into the fluid. Their sides are right,
+ * whatever the plate and the plane. */
+static void a_plane_along_a_thin_body(void **state)
+{
+  uint64_t r = 88172645463325252;
+  size_t all = 0;
+
+  (void)state;
+  for (int k = 0; k < 24; k++) {
+    struct vg_region plane = plane_at(2, 0);
+    struct zone_part p;
+    struct scene s;
+    double u[4];
+    int n, m;
+
+    for (int i = 0; i < 4; i++) {
+      r ^= r << 13;
+      r ^= r >> 7;
+      r ^= r << 17;
+      u[i] = (double)(r >> 11) * 0x1p-53;
+    }
+    n = 24 + (int)(24 * u[0]);
+    m = 7 + (int)(6 * u[1]);
+    plate_scene(&s, n, m, 1.1 + 0.2 * u[2]);
+    plane.plane[0].offset = 0.01 * (u[3] - 0.5);
+    zone_select(&s, &plane, &p);
+    assert_true(p.front.n_face < s.front.n_face);
+    all += wrong_sides(&s, &p, &plane, (double)m / n);
+    zone_part_release(&p);
+    scene_end(&s);
+  }
+  assert_int_equal(all, 0);
+}
+
 /* Without reach, a pencil consists of the cells that the line passes
  * through. */
 static void a_pencil_is_thin(void **state)
@@ -539,6 +640,7 @@ int main(void)
     cmocka_unit_test(the_same_bytes_again),
     cmocka_unit_test(figures_reported_by_a_zone),
     cmocka_unit_test(an_edge_separator_exits_a_plume),
+    cmocka_unit_test(a_plane_along_a_thin_body),
     cmocka_unit_test(a_pencil_is_thin),
     cmocka_unit_test(a_real_surface),
     cmocka_unit_test(a_zone_without_front_nearby),

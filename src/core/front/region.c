@@ -399,6 +399,12 @@ static double gap_of_point(const struct vg_region_cache *cache, uint32_t p)
   return far;
 }
 
+double vg_region_cache_far(const struct vg_region_cache *cache, uint32_t p)
+{
+  assert(cache->region && cache->side && cache->spacing);
+  return gap_of_point(cache, p) / cache->spacing[p];
+}
+
 /* Large triangles that plain distances do not decide are tested as in
  * vg_region_meets. The distances are compared using the smallest and the
  * largest possible spacing anywhere on the triangle, or at its middle, which

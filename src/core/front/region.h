@@ -148,6 +148,10 @@ vg_status vg_region_cache_init(struct vg_region_cache *cache,
                                const double (*x)[3], struct vg_error *err);
 void vg_region_cache_release(struct vg_region_cache *cache);
 
+/** Distance of point p from the region, in spacings at its foot: from the
+ * farthest plane, or beyond a wall, divided by VG_BEYOND_WALLS. */
+double vg_region_cache_far(const struct vg_region_cache *cache, uint32_t p);
+
 /** vg_region_meets for points given by their indices. */
 int vg_region_cache_meets(const struct vg_region_cache *cache,
                           const uint32_t v[3], double band);

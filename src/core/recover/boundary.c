@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/table.h"
+#include "core/geometry/predicates.h"
 #include "core/recover/boundary_parts.h"
 #include "core/recover/cdt_tetgen.h"
 #include "core/recover/recover.h"
@@ -240,8 +241,131 @@ static vg_status spread_sides(struct sides *s, struct vg_error *err)
   return st;
 }
 
-/* Sides spread in this number of bands of growing width (K29). */
+/* --- sides by straight walks -----------------------------------------------
+ */
+
+/* Sides are determined in this number of bands of growing width (K29). */
 enum { BANDS = 4 };
+
+/* Walks end after this number of cells. */
+enum { MOST_STEPS = 512 };
+
+/* Cells that a walk went through, from the first one on. */
+struct walk {
+  double from[3], to[3];
+  uint32_t n, cell[MOST_STEPS];
+};
+
+static int passes(const struct walk *w, const double *a, const double *b,
+                  const double *c)
+{
+  double u = vg_orient3d(w->from, w->to, a, b);
+  double v = vg_orient3d(w->from, w->to, b, c);
+  double x = vg_orient3d(w->from, w->to, c, a);
+
+  return (u >= 0 && v >= 0 && x >= 0) || (u <= 0 && v <= 0 && x <= 0);
+}
+
+/* The face by which a straight walk leaves cell c, which it entered by `link`;
+ * -1: the walk ends in c. */
+static int way_out(const struct vg_tets *t, const struct walk *w, uint32_t c,
+                   uint32_t link)
+{
+  const struct vg_cell *cell = &t->cell[c];
+  int out = -1;
+
+  for (int i = 0; i < 4; i++) {
+    const double *x[3];
+
+    if (link != VG_NONE && cell->link[i] == link) continue;
+    for (int k = 0; k < 3; k++) x[k] = t->x[cell->v[vg_face[i][k]]];
+    if (vg_orient3d(x[0], x[1], x[2], w->to) >= 0) continue;
+    out = i;
+    if (passes(w, x[0], x[1], x[2])) break;
+  }
+  return out;
+}
+
+/* Side of cell c, by the first surface triangle, or the first cell with a
+ * known side, that the walk comes to. */
+static uint8_t walk(const struct sides *s, struct walk *w, uint32_t c)
+{
+  uint32_t link = VG_NONE;
+
+  for (w->n = 0; w->n < MOST_STEPS && !s->side[c];) {
+    int i = way_out(s->t, w, c, link);
+
+    w->cell[w->n++] = c;
+    if (i < 0) return SIDE_UNKNOWN;
+    if (s->front[c] >> i & 1) return SIDE_FLUID;
+    if (s->front[c] >> i & 0x10) return SIDE_SOLID;
+    if (s->t->cell[c].link[i] == VG_NONE) return SIDE_UNKNOWN;
+    link = 4 * c + (uint32_t)i;
+    c = s->t->cell[c].link[i] >> 2;
+  }
+  return s->side[c];
+}
+
+/* Start in cell c next to the corner that is nearest to the region, in
+ * spacings. Returns 0 if all corners are beyond the band. */
+static int start_walk(const struct sides *s, struct walk *w, uint32_t c)
+{
+  const struct vg_tets *t = s->t;
+  const uint32_t *v = t->cell[c].v;
+  double least = vg_region_band(s->cache->region, s->band);
+  int best = -1;
+
+  for (int i = 0; i < 4; i++) {
+    double far = vg_region_cache_far(s->cache, v[i]);
+
+    if (far > least) continue;
+    least = far;
+    best = i;
+  }
+  if (best < 0) return 0;
+  for (int k = 0; k < 3; k++) {
+    double middle = (t->x[v[0]][k] + t->x[v[1]][k] + t->x[v[2]][k] +
+                     t->x[v[3]][k]) /
+                    4;
+
+    w->from[k] = t->x[v[best]][k] + (middle - t->x[v[best]][k]) / 64;
+  }
+  vg_region_foot(s->cache->region, w->from, w->to);
+  return 1;
+}
+
+/* Determine the sides of the cells in the band of a plane by walks to it, those
+ * near it first. All points on a walk have the same foot, and all front faces
+ * within the band are known, so the walk meets every surface between the cell
+ * and the plane, and the side that it finds is certain. A plane along a thin
+ * body needs this: there the spacing and with it the band grow quickly away
+ * from the body, and cells reach from the rim of the known front at the body to
+ * points far away. If sides spread around that rim, such cells become solid,
+ * and the faces between them and the fluid keep points and cells away from the
+ * plane. Pencils do without, since edges there are no shorter with walks. */
+static void walk_to_region(struct sides *s)
+{
+  double reach = s->cache->region->reach;
+  struct walk w;
+
+  if (s->cache->region->n_plane != 1) return;
+  for (int k = 1; k <= BANDS; k++) {
+    s->band = (reach + VG_BAND_FLUID) * k / BANDS - reach;
+    for (uint32_t c = 0; c < s->t->n_cell; c++) {
+      uint8_t is;
+
+      if (s->side[c] || s->t->flag[c] & VG_DEAD ||
+          (s->is_local && is_around(s, c)) || !start_walk(s, &w, c))
+        continue;
+      is = walk(s, &w, c);
+      for (uint32_t m = 0; is && m < w.n; m++)
+        if (!s->is_local || !is_around(s, w.cell[m]))
+          set_side(s, w.cell[m], is);
+    }
+  }
+}
+
+/* --- sides that spread ---------------------------------------------------- */
 
 static vg_status spread_in_bands(struct sides *s, struct vg_error *err)
 {
@@ -263,13 +387,14 @@ done:
 }
 
 /* Determine the sides. On the region itself every front face is known, so
- * sides that spread along the region are certain. From there they spread over
- * bands of growing width. Where sides contradict each other because faces are
- * missing, the side nearest to the region wins: far from the region, the front
- * continues beyond the known faces, and sides may leak around the rim of the
- * known part. Cells with a corner of the box extend around the whole front,
- * past all rims. They are only included in a second round, when the sides
- * between are determined. */
+ * sides that spread along the region are certain, and so are sides found by
+ * walks to it. The remaining cells have no corner in the band. Sides spread to
+ * them over bands of growing width. Where sides contradict each other because
+ * faces are missing, the side nearest to the region wins: far from the region,
+ * the front continues beyond the known faces, and sides may leak around the
+ * rim of the known part. Cells with a corner of the box extend around the whole
+ * front, past all rims. They are only included in a second round, when the
+ * sides between are determined. */
 static vg_status tell_sides(struct sides *s, struct vg_error *err)
 {
   double reach = s->cache ? s->cache->region->reach : 0;
@@ -282,8 +407,10 @@ static vg_status tell_sides(struct sides *s, struct vg_error *err)
   if (!s->cache) goto done;
   s->is_strict = 0;
   s->is_local = 1;
+  walk_to_region(s);
   VG_TRY(spread_in_bands(s, err));
   s->is_local = 0;
+  walk_to_region(s);
   VG_TRY(spread_in_bands(s, err));
 done:
   return st;
