@@ -258,6 +258,7 @@ static json_t *report_json(const struct run *r, int ok,
                         vg_report_fill_json(&r->mesh.partition.fill,
                                             r->mesh.n_field_cell));
     json_object_set_new(o, "partition", vg_report_partition_json(&r->mesh));
+    json_object_set_new(o, "memory_bytes", vg_report_memory_json(&r->mesh));
     if (r->layers.is_on) {
       json_object_set_new(o, "field",
                           vg_report_mesh_json(&r->mesh.field_judge, m));
@@ -442,8 +443,7 @@ static void print_times(FILE *to, const struct run *r)
   if (r->mesh.parts) fprintf(to, "solver partition %.2f, ", r->mesh.time_parts);
   fprintf(to, "write %.2f, total %.2f\n", r->time_write,
           vg_display_now() - r->start);
-  fprintf(to, "\nPeak memory%s: %.0f MB\n",
-          r->mesh.size > 1 ? " of a rank" : "", r->mesh.memory / 1e6);
+  vg_report_memory_text(to, &r->mesh);
 }
 
 static void print_files(FILE *to, const struct run *r)

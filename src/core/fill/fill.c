@@ -2,6 +2,7 @@
 #include "core/fill/fill.h"
 
 #include <assert.h>
+#include <math.h>
 
 #include "base/checks.h"
 #include "base/clock.h"
@@ -58,12 +59,23 @@ static vg_status choose(struct vg_filling *g, struct vg_error *err)
   return VG_OK;
 }
 
+/* Slots in use: reserved ones cost no memory. */
+static void note_bytes(const struct vg_filling *g)
+{
+  const struct vg_tets *t = &g->t;
+  size_t bytes = t->n_point * sizeof *t->x + t->n_free * sizeof *t->free +
+                 t->n_cell * (sizeof *t->cell + sizeof *t->flag);
+
+  g->report->bytes = fmax(g->report->bytes, (double)bytes);
+}
+
 static vg_status make(struct vg_filling *g, struct vg_error *err)
 {
   vg_status st = vg_stopped(&g->options->stop, err);
 
   if (st == VG_OK) st = recover(g, err);
   if (st == VG_OK) st = vg_filling_populate(g, err);
+  note_bytes(g);
   if (st == VG_OK && g->region) st = vg_zone_narrow(g, err);
   if (st == VG_OK) st = vg_filling_improve(g, err);
   if (st == VG_OK) st = choose(g, err);

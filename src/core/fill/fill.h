@@ -61,6 +61,8 @@ struct vg_fill_report {
   size_t n_smoothed, n_flip, n_collapse, n_split; /* optimisation steps */
   size_t n_left; /* bad cells into which no point was inserted because the
                     budget was spent (core/optimise/optimise.h) */
+  double bytes;  /* memory of the largest void: its tetrahedra and points
+                    when all points are inserted */
   size_t n_other,
     n_other_cell;        /* voids filled by another mesher, and their cells */
   size_t n_other_failed; /* voids that another mesher failed to fill */

@@ -27,6 +27,7 @@ static const struct vg_entry entry[] = {
   ROW("flip_lists_truncated", n_list_cut, COUNT),
   ROW("bad_cells_left", n_left, COUNT),
   ROW("whole_void", whole_void, FLAG),
+  VG_ENTRY(NULL, struct vg_fill_report, bytes, REAL, MOST),
   ROW("other_mesher", time_other, SECONDS),
   ROW("boundary", time_boundary, SECONDS),
   ROW("place", time_place, SECONDS),

@@ -201,6 +201,20 @@ static vg_status run_again(struct vg_partition *p, struct vg_comm *comm,
   return st;
 }
 
+/* Memory of the pieces of this rank. */
+static uint64_t bytes_of_pieces(const struct vg_partition *p)
+{
+  uint64_t sum = 0;
+
+  for (size_t i = 0; i < p->n_piece; i++) {
+    const struct vg_piece *q = &p->piece[i];
+
+    sum += q->n_in * sizeof *q->in + (q->n_in + q->n_point) * sizeof *q->x +
+           q->n_cell * sizeof *q->cell;
+  }
+  return sum;
+}
+
 /* Combines counts and times of all ranks. */
 static vg_status sum_report(struct vg_partition_report *r, struct vg_comm *comm,
                             struct vg_error *err)
@@ -249,6 +263,7 @@ vg_status vg_partition_grow(struct vg_comm *comm, const struct vg_mesh *front,
   if (st == VG_OK) st = vg_partition_repair(p, comm, spans, err);
   if (st == VG_OK) vg_partition_tell(p, "numbering", p->n_piece, 0);
   if (st == VG_OK) st = vg_partition_number(p, comm, err);
+  p->report.cell_bytes = (double)bytes_of_pieces(p);
   if (st == VG_OK) st = sum_report(&p->report, comm, err);
   p->report.number = vg_clock() - t0 - p->report.wall - p->report.repair;
   if (st == VG_OK)

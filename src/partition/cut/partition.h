@@ -92,9 +92,11 @@ struct vg_partition_report {
   double widened;          /* Wall time in s of the repeated decomposition. */
   uint64_t n_part; /* Subdomains that a maker made; 0: no maker was used. */
   struct vg_decomposition_report decomposition;
-  double estimate; /* Cells expected at the start. */
-  double wall;     /* Wall time in s of the engine. */
-  double number;   /* Time of numbering in s. */
+  double cell_bytes; /* Memory of the cells and points that a rank keeps
+                          until they are written; of the rank with the most. */
+  double estimate;   /* Cells expected at the start. */
+  double wall;       /* Wall time in s of the engine. */
+  double number;     /* Time of numbering in s. */
 };
 
 /** Members of the report, and of its decomposition, that ranks combine

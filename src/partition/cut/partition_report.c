@@ -24,6 +24,7 @@ static const struct vg_entry count[] = {
   COUNT("subdomains_extended", n_widened),
   COUNT("cells_regenerated", n_widened_cell),
   COUNT(NULL, n_part),
+  VG_ENTRY(NULL, struct vg_partition_report, cell_bytes, REAL, MOST),
   VG_ENTRY("estimate", struct vg_partition_report, estimate, REAL, MOST),
 };
 

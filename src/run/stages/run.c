@@ -318,6 +318,7 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   vg_display_update(show, "load estimate", 0, 0);
   VG_TRY(open_store(r, p, boundary, sizing, &o, err));
   o.store = r->store;
+  vg_run_measure(r, &p->boundary.surface, layers, sizing);
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
                          &r->partition, &r->spans, err);
   r->time_fill = vg_display_now() - t - r->partition.number;

@@ -32,6 +32,13 @@ struct vg_run_options {
   enum vg_agree change; /* Data that the last node pretends to have changed. */
 };
 
+/* Bytes of data of which every rank, or every node, has one copy. */
+struct vg_memory_parts {
+  size_t surface; /* Triangles and points of the surface. */
+  size_t columns; /* Columns of the layers and the front above them. */
+  size_t sizes;   /* Sizing field. */
+};
+
 struct vg_run {
   struct vg_run_options options;
   struct vg_outputs *outputs;      /* Written in part during the mesh check;
@@ -63,9 +70,10 @@ struct vg_run {
   double time_fill; /* Cuts, leaves and repairs. */
   double time_near; /* Measuring the cells near interfaces. */
   double time_parts;
-  size_t common;     /* Bytes of surface, layers and sizing field, of which a
-                        node has one copy. */
-  double memory;     /* Bytes of the rank with the largest memory. */
+  size_t common; /* Bytes of surface, layers and sizing field, of which a
+                    node has one copy. */
+  double memory; /* Bytes of the rank with the largest memory. */
+  struct vg_memory_parts memory_of;
   double memory_sum; /* Sum over all ranks, with data shared on a node counted
                         once. */
 };
@@ -116,6 +124,18 @@ char *vg_run_settings(const struct vg_settings *s,
 /** Digest of the plug-in mesher; returns 0 if the mesher is not a plug-in or
  * cannot be read. */
 int vg_run_mesher_digest(const struct vg_settings *s, struct vg_digest *d);
+
+/** run/stages/report_memory.c: measures surface, layers (NULL: none) and sizing
+ * field, in r->memory_of. */
+void vg_run_measure(struct vg_run *r, const struct vg_mesh *surface,
+                    const struct vg_layers *layers,
+                    const struct vg_sizing *sizing);
+
+/** Peak memory and its largest parts: bytes of the surface, the columns, the
+ * sizing field, the cells of the rank with the most, and the kernel in the
+ * largest subdomain. The parts are not all in memory at the same time. */
+void vg_report_memory_text(FILE *to, const struct vg_run *r);
+json_t *vg_report_memory_json(const struct vg_run *r);
 
 /** run/stages/report_partition.c: cuts, tasks, balance. */
 void vg_report_partition_text(FILE *to, const struct vg_run *r);
