@@ -132,6 +132,42 @@ static uint32_t live(const struct advance *a, uint32_t cell)
   return a->t->flag[cell] & VG_DEAD ? a->s.last : cell;
 }
 
+/* Sizes along two axes that differ by less than this factor count as equal. */
+static const double like = 1.3; /* K47 */
+
+/* Replace b and c by the axes across the unit vector a that follow the axis of
+ * space that is most oblique to a. */
+static void follow_space(const double a[3], double b[3], double c[3])
+{
+  int k = 0;
+
+  for (int i = 1; i < 3; i++)
+    if (fabs(a[i]) < fabs(a[k])) k = i;
+  for (int i = 0; i < 3; i++) b[i] = (i == k) - a[k] * a[i];
+  vg_unit(b);
+  vg_cross(a, b, c);
+}
+
+/* Size tensor h of a metric, and the axes of the pattern: those of the metric,
+ * whose layers the pattern follows where they turn. The pattern has all
+ * symmetries of a cube, so that the order and the signs of axes do not matter.
+ * Axes of like sizes would turn at random, and follow those of space. */
+static void find_axes(const double m[6], double h[6], double axis[3][3])
+{
+  double size[3];
+  int low, high;
+
+  vg_tensor_eigen(m, size, axis);
+  for (int k = 0; k < 3; k++) size[k] = 1 / sqrt(size[k]);
+  vg_tensor_from_eigen(size, (const double(*)[3])axis, h);
+  high = size[0] < like * size[1];
+  low = size[1] < like * size[2];
+  if (high && low)
+    for (int k = 0; k < 9; k++) axis[k / 3][k % 3] = k % 4 == 0;
+  else if (high) follow_space(axis[2], axis[0], axis[1]);
+  else if (low) follow_space(axis[0], axis[1], axis[2]);
+}
+
 static int grow_point(struct advance *a, uint32_t p, struct vg_error *err)
 {
   static const double sign[8][3] = { { 1, 1, 1 },  { -1, -1, -1 },
@@ -139,15 +175,17 @@ static int grow_point(struct advance *a, uint32_t p, struct vg_error *err)
                                      { 1, -1, 1 }, { -1, 1, -1 },
                                      { -1, 1, 1 }, { 1, -1, -1 } };
   uint32_t start = live(a, a->star[p]);
-  double c[3], h[6];
+  double c[3], h[6], axis[3][3];
 
   memcpy(c, a->t->x[p], sizeof c);
-  vg_tensor_root(a->metrics->at[p].m, h);
-  vg_tensor_invert(h, h);
+  find_axes(a->metrics->at[p].m, h, axis);
   for (int i = 0; i < 8; i++) {
     double unit[3];
 
-    for (int k = 0; k < 3; k++) unit[k] = 0.5 * lattice * sign[i][k];
+    for (int k = 0; k < 3; k++)
+      unit[k] = 0.5 * lattice *
+                (sign[i][0] * axis[0][k] + sign[i][1] * axis[1][k] +
+                 sign[i][2] * axis[2][k]);
     if (propose(a, c, h, unit, &start, err)) return -1;
   }
   return 0;

@@ -25,7 +25,7 @@ static int even_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
   if (length < shortest)
     return vg_merge_onto(o, a, b, least_shape, longest) ||
            vg_merge_onto(o, b, a, least_shape, longest);
-  return length > longest && vg_split_edge(o, c, a, b, split_share);
+  return length > longest && vg_split_edge(o, c, a, b, split_share, shortest);
 }
 
 static int even_cell(struct vg_optimiser *o, uint32_t c)

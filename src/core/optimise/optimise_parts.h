@@ -143,9 +143,10 @@ int vg_merge_onto(struct vg_optimiser *o, uint32_t p, uint32_t to, double need,
                   double most);
 
 /** Insert a point in the middle of edge a b of cell c. Refused if a new shape
- * is below `share` times the worst one around the edge. */
+ * is below `share` times the worst one around the edge, or if a new edge is
+ * shorter than `least` in the metric. */
 int vg_split_edge(struct vg_optimiser *o, uint32_t c, uint32_t a, uint32_t b,
-                  double share);
+                  double share, double least);
 
 /** Limit of the number of cells that vg_split examines in t. */
 size_t vg_split_budget(const struct vg_tets *t);

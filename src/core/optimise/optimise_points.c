@@ -345,8 +345,20 @@ static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
   return 1;
 }
 
+/* Is a corner of the cavity nearer to the point that is tried than `least`? */
+static int is_crowded(const struct vg_optimiser *o, const struct cavity *h,
+                      double least)
+{
+  for (int k = 0; k < h->n_new; k++)
+    for (int i = 0; i < 3; i++)
+      if (vg_metrics_length(o->metrics, o->t, h->v[k][i],
+                            (uint32_t)o->t->n_point) < least)
+        return 1;
+  return 0;
+}
+
 int vg_split_edge(struct vg_optimiser *o, uint32_t c, uint32_t a, uint32_t b,
-                  double share)
+                  double share, double least)
 {
   struct cavity h;
   uint32_t ring[VG_OLD_MAX];
@@ -357,7 +369,7 @@ int vg_split_edge(struct vg_optimiser *o, uint32_t c, uint32_t a, uint32_t b,
   for (int k = 0; k < h.n_old; k++) worst = fmin(worst, o->q[h.old[k]]);
   for (int k = 0; k < 3; k++) x[k] = 0.5 * (o->t->x[a][k] + o->t->x[b][k]);
   return !vg_try_point(o, x) && open_cavity(o, share * worst, &h) &&
-         put_point(o, &h);
+         !is_crowded(o, &h, least) && put_point(o, &h);
 }
 
 static void centre(const struct vg_tets *t, uint32_t c, const double share[4],
