@@ -248,7 +248,7 @@ static void cubes_of_random_metrics(void **state)
     assert_true(fabs(r.volume / volume - 1) < 1e-9);
     assert_true(fabs(r.volume / volume - 1) < 1e-9);
     assert_true(r.fit > 0.95);
-    assert_true(r.mean > 0.84 && r.low < 0.001);
+    assert_true(r.mean > 0.84 && r.low < 0.002);
     assert_in_range(n, 6 * SIDE * SIDE * SIDE, 12 * SIDE * SIDE * SIDE);
   }
 }

@@ -120,7 +120,7 @@ says err "constant_direction requires a split_direction of 1, 2 or 3"
 parts=$(sed -n '/"leaf_cells": \[/,/\]/s/^ *\([0-9]*\),*$/\1/p
   s/.*"\(fragment_cells\|separator_cells\|repair_cells\)": \([-0-9]*\).*/\2/p' \
   two/box.report.json | paste -sd+)
-cells=$(sed -n 's/^    "cells": \([0-9]*\).*/\1/p' two/box.report.json | tail -1)
+cells=$(sed -n '/^  "mesh": {/,/^  }/s/^    "cells": \([0-9]*\).*/\1/p' two/box.report.json)
 [ "$((parts))" = "$cells" ] || fail "the parts have $parts cells, the mesh $cells"
 grep -q '"repair_cells": -*[1-9]' two/box.report.json || fail "no repair"
 
