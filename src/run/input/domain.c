@@ -18,6 +18,10 @@
 /* S68: finest octree cells of the sizing field for a farfield along the Mach
  * cone, relative to those of the field of the cells. */
 #define BOOM_COARSENESS 4
+/* S79: edges around a full circle, and tolerance relative to the diagonal of
+ * the domain, when a generated boundary is remeshed in a metric. */
+#define FARFIELD_PER_TURN 8
+#define FARFIELD_TOLERANCE 0.01
 
 /* --- the decision -------------------------------------------------------- */
 
@@ -236,6 +240,9 @@ static vg_status stretch_added(struct vg_boundary *b, size_t n_own,
   vg_mesh_bounds(&b->surface, lo, hi);
   o.fixed = fixed;
   o.field = field;
+  /* Only its sizes count, since a generated boundary has no shape to keep. */
+  o.per_turn = FARFIELD_PER_TURN;
+  o.tolerance = FARFIELD_TOLERANCE * vg_distance(lo, hi);
   o.scale = 1; /* `spacing` and the field are scaled */
   o.h_max = spacing > 0 ? spacing : vg_distance(lo, hi);
   o.h_min = fmin(o.h_min, o.h_max);
