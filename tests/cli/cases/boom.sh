@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # A sonic boom: the demo in two commands, sources along the Mach cones, and what
 # they refuse.
-vanguard demo boom-half --cells 100000 --out p
+needs tetgen
+vanguard demo boom-half --cells 30000 --out p
 exits 0
 says out "Next: vanguard mesh -p p/boom-half"
 says p/boom-half.deck "machcone"
@@ -12,7 +13,7 @@ says out "note: source 1: Mach cones at M 1.6 with apexes from (-0.1, 0, 0) to (
 says out "validity: valid"
 says out "layer cells:"
 lacks out "is limited everywhere"
-vanguard demo boom --cells 150000 --out p
+vanguard demo boom --cells 40000 --out p
 exits 0
 vanguard mesh -q -p p/boom --layers no --out whole
 exits 0
