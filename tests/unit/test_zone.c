@@ -5,6 +5,8 @@
 #include "io/mesh/ugrid.h"
 #include "zone_scene.h"
 
+#include "parts_support.h"
+
 /* --- planes, one after the other ----------------------------------------- */
 
 static void three_zones_make_eight_boxes(void **state)
@@ -391,6 +393,7 @@ static void a_plane_along_a_thin_body(void **state)
   size_t all = 0;
 
   (void)state;
+  needs_tetgen();
   for (int k = 0; k < 24; k++) {
     struct vg_region plane = plane_at(2, 0);
     struct zone_part p;
