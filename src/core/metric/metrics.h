@@ -62,8 +62,8 @@ static inline double vg_metric_shape_sum(const struct vg_point_metric *m,
   *sum = 3 * (vg_dot(u, mu) + vg_dot(v, mv) + vg_dot(w, mw)) -
          2 * (vg_dot(u, mv) + vg_dot(v, mw) + vg_dot(w, mu));
   volume = 0.5 * det * m->root; /* 3 V */
-  return (det > 0) &
-             (det * det > 1e-26 * vg_dot(u, u) * vg_dot(v, v) * vg_dot(w, w))
+  return det > 0 &&
+             det * det > 1e-26 * vg_dot(u, u) * vg_dot(v, v) * vg_dot(w, w)
          ? 1728 * volume * volume / (*sum * *sum * *sum)
          : 0;
 }
