@@ -13,18 +13,9 @@
 #include "core/fill/fill.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
+#include "tensor_support.h"
 
 enum { SIDE = 6 };
-
-static double random_in(double lo, double hi)
-{
-  static uint64_t seed = 0x9e3779b97f4a7c15u;
-
-  seed ^= seed << 13;
-  seed ^= seed >> 7;
-  seed ^= seed << 17;
-  return lo + (hi - lo) * (double)(seed >> 11) / 9007199254740992.0;
-}
 
 /* --- metrics -------------------------------------------------------------- */
 
@@ -202,16 +193,6 @@ static struct figures fill(struct box *b, const struct vg_size_map *map,
 
 /* --- cases ---------------------------------------------------------------- */
 
-static void random_frame(double v[3][3])
-{
-  for (int k = 0; k < 3; k++) v[0][k] = random_in(-1, 1);
-  for (int k = 0; k < 3; k++) v[1][k] = random_in(-1, 1);
-  vg_unit(v[0]);
-  vg_cross(v[0], v[1], v[2]);
-  vg_unit(v[2]);
-  vg_cross(v[2], v[0], v[1]);
-}
-
 /* The rounded image of a plane may be concave by its rounding, with a flat cell
  * in the dent; hence the small share of low mean ratios.
  *
@@ -285,5 +266,6 @@ int main(void)
     cmocka_unit_test(a_graded_box),
   };
 
+  random_state = 0x9e3779b97f4a7c15u;
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

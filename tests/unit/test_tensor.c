@@ -11,26 +11,7 @@
 
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
-
-static double random_in(double lo, double hi)
-{
-  static uint64_t seed = 88172645463325252u;
-
-  seed ^= seed << 13;
-  seed ^= seed >> 7;
-  seed ^= seed << 17;
-  return lo + (hi - lo) * (double)(seed >> 11) / 9007199254740992.0;
-}
-
-static void random_frame(double v[3][3])
-{
-  for (int k = 0; k < 3; k++) v[0][k] = random_in(-1, 1);
-  for (int k = 0; k < 3; k++) v[1][k] = random_in(-1, 1);
-  vg_unit(v[0]);
-  vg_cross(v[0], v[1], v[2]);
-  vg_unit(v[2]);
-  vg_cross(v[2], v[0], v[1]);
-}
+#include "tensor_support.h"
 
 static void random_metric(double aspect, double m[6])
 {

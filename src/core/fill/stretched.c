@@ -20,22 +20,17 @@ static vg_status insert_seed(struct vg_filling *g, struct vg_metrics *metrics,
                              uint32_t *at, struct vg_error *err)
 {
   struct vg_tets *t = &g->t;
-  uint32_t p = (uint32_t)t->n_point, c = vg_tets_locate(t, *at, x);
+  uint32_t c = vg_tets_locate(t, *at, x);
+  struct vg_point_metric m;
   vg_status st;
 
   if (c == VG_NONE) return VG_BLOCKED;
   *at = c;
   if (t->flag[c] & VG_OUTSIDE) return VG_BLOCKED;
-  if (vg_tets_reserve_points(t, 1))
-    return vg_fail_memory(err, "the points of the mesh");
-  memcpy(t->x[p], x, sizeof *t->x);
-  t->n_point++;
-  if (vg_metrics_add(metrics, t, p, p + 1))
-    return vg_fail_memory(err, "the metrics of points");
-  s->metric = metrics->at;
-  st = vg_insert(s, p, c, seed_distance, seed_distance, err);
+  vg_metric_at(g->sizing, x, &m);
+  st = vg_metrics_insert(metrics, s, x, &m, c, seed_distance, seed_distance,
+                         err);
   if (st == VG_OK) *at = s->last;
-  else t->n_point--;
   return st;
 }
 

@@ -73,24 +73,19 @@ static int is_excluded(const struct advance *a, uint32_t cell,
   return 0;
 }
 
-/* Insert x into its cell. Returns -1 if memory is refused. */
-static int insert(struct advance *a, const double x[3], uint32_t cell,
-                  struct vg_error *err)
+/* Insert x with stretch t into its cell. Returns -1 if memory is refused. */
+static int insert(struct advance *a, const double x[3], const double t[6],
+                  uint32_t cell, struct vg_error *err)
 {
-  struct vg_tets *tets = a->t;
-  uint32_t p = (uint32_t)tets->n_point;
+  uint32_t p = (uint32_t)a->t->n_point;
+  struct vg_point_metric m;
   vg_status st;
 
-  if (vg_tets_reserve_points(tets, 1) ||
-      vg_reserve(&a->star, &a->cap_star, p + 1, sizeof *a->star))
-    return -1;
-  memcpy(tets->x[p], x, sizeof *tets->x);
-  tets->n_point++;
-  if (vg_metrics_add(a->metrics, tets, p, p + 1)) return -1;
-  a->s.metric = a->metrics->at;
-  st = vg_insert(&a->s, p, cell, least_height, VG_METRIC_EXCLUSION, err);
+  if (vg_reserve(&a->star, &a->cap_star, p + 1, sizeof *a->star)) return -1;
+  vg_metric_of_stretch(t, &m);
+  st = vg_metrics_insert(a->metrics, &a->s, x, &m, cell, least_height,
+                         VG_METRIC_EXCLUSION, err);
   if (st != VG_OK) {
-    tets->n_point--;
     a->report->n_refused++;
     return st < 0 ? -1 : 0;
   }
@@ -121,7 +116,7 @@ static int propose(struct advance *a, const double c[3], const double h[6],
   if (cell == VG_NONE || a->t->flag[cell] & VG_OUTSIDE) return 0;
   vg_sizing_stretch_at(a->metrics->sizing, x, t);
   if (is_excluded(a, cell, x, t)) return 0;
-  if (insert(a, x, cell, err)) return -1;
+  if (insert(a, x, t, cell, err)) return -1;
   if (a->t->flag[*start] & VG_DEAD) *start = a->s.last;
   return 0;
 }

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "core/delaunay/tets.h"
+#include "core/delaunay/insert.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 #include "core/sizing/sizing.h"
@@ -23,6 +23,9 @@ struct vg_metrics {
   size_t cap;
 };
 
+/** The metric with stretch t. */
+void vg_metric_of_stretch(const double t[6], struct vg_point_metric *out);
+
 /** The metric at x. */
 void vg_metric_at(const struct vg_sizing *sizing, const double x[3],
                   struct vg_point_metric *out);
@@ -31,6 +34,14 @@ void vg_metric_at(const struct vg_sizing *sizing, const double x[3],
  * refused. */
 int vg_metrics_add(struct vg_metrics *s, const struct vg_tets *t, size_t from,
                    size_t n);
+
+/** Add the point x with metric m to the points of in->t, and insert it from
+ * `cell`, which contains it (vg_insert). VG_BLOCKED, and nothing is added, if
+ * it cannot be inserted; VG_ERR_MEMORY. */
+vg_status vg_metrics_insert(struct vg_metrics *s, struct vg_inserter *in,
+                            const double x[3], const struct vg_point_metric *m,
+                            uint32_t cell, double clearance, double nearest,
+                            struct vg_error *err);
 
 /** Make room for the metrics of n points. Returns 0, or -1 if memory is
  * refused. */

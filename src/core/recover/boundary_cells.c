@@ -96,7 +96,7 @@ static vg_status insert_apex(struct vg_inserter *s, struct vg_metrics *metrics,
                              struct vg_error *err)
 {
   struct vg_tets *t = s->t;
-  uint32_t p = (uint32_t)t->n_point;
+  struct vg_point_metric m;
   double x[3];
   vg_status st;
 
@@ -108,16 +108,9 @@ static vg_status insert_apex(struct vg_inserter *s, struct vg_metrics *metrics,
     *at = s->last;
     return VG_OK;
   }
-  if (vg_tets_reserve_points(t, 1))
-    return vg_fail_memory(err, "boundary recovery");
-  memcpy(t->x[p], x, sizeof x);
-  t->n_point++;
-  if (vg_metrics_add(metrics, t, p, p + 1))
-    return vg_fail_memory(err, "boundary recovery");
-  s->metric = metrics->at;
-  st = vg_insert(s, p, *at, 0, VG_METRIC_EXCLUSION, err);
+  vg_metric_at(metrics->sizing, x, &m);
+  st = vg_metrics_insert(metrics, s, x, &m, *at, 0, VG_METRIC_EXCLUSION, err);
   if (st == VG_OK) *at = s->last;
-  else t->n_point--;
   return st == VG_BLOCKED ? VG_OK : st;
 }
 

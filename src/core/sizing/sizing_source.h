@@ -90,7 +90,7 @@ void vg_source_metric_at(const struct vg_source_set *set, const double x[3],
                          double h, double m[6]);
 
 /** Minimum of mean, bounded sources and map at x, without those that depend on
- * the direction; INFINITY if there are none. */
+ * the direction; INFINITY without any such source. */
 double vg_source_at(const struct vg_source_set *set, const double x[3]);
 
 /** Lower bound of the bounded sources and the map within the box lo..hi. For a

@@ -159,7 +159,7 @@ static void read_type(const char *word, struct array *out)
 }
 
 /* The array of a section with this name, or the first one. Returns NULL if
- * there is none. */
+ * the section has no such array. */
 static const char *seek_array(const struct file *f, const char *section,
                               const char *name, const char **section_end)
 {
