@@ -719,6 +719,7 @@ static void the_least_of_a_cube_is_found(void **state)
 
     random_in(lo, i % 2 ? 4 : 12, &seed);
     least = vg_sizing_least(s, lo, side, at);
+    assert_true(vg_sizing_bound(s, lo, side) <= (1 + 1e-6) * least);
     assert_true(vg_sizing_at(s, at) <= (1 + 1e-6) * least);
     if (i % 2) assert_near(vg_sizing_at(s, at), least, 1e-6 * least);
     for (int j = 0; j < 500; j++) {

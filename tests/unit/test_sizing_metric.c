@@ -410,6 +410,7 @@ static void the_least_size_in_a_box_is_found(void **state)
 
     random_in(lo, &seed);
     least = vg_sizing_least(s, lo, side, at);
+    assert_true(vg_sizing_bound(s, lo, side) <= (1 + 1e-6) * least);
     for (int k = 0; k < 3; k++)
       assert_true(lo[k] + side >= 1 ||
                   (at[k] >= lo[k] - 1e-9 && at[k] <= lo[k] + side + 1e-9));

@@ -13,6 +13,7 @@
 #include "core/fill/fill.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
+#include "core/metric/metric_seeds.h"
 #include "tensor_support.h"
 
 enum { SIDE = 6 };
@@ -259,11 +260,47 @@ static void a_graded_box(void **state)
   assert_true(r.mean > 0.8 && r.low < 0.001);
 }
 
+/* The complexity of the graded metric in the unit cube is
+ * 1000 log(0.12 / 0.02) = 1792, which makes 56 seeds (K49). As many lie on each
+ * side of the plane, and half of them within 0.15 of it. */
+static void seeds_follow_the_complexity(void **state)
+{
+  const double corner[2][3] = { { 0, 0, 0 }, { 1, 1, 1 } };
+  struct vg_size_map map = { .at = graded_size,
+                             .metric = graded_metric,
+                             .most = 1 };
+  struct vg_sizing_options options = VG_SIZING_OPTIONS_INIT;
+  struct vg_metric_seeds seeds = { 0 };
+  struct vg_sizing *sizing = NULL;
+  struct vg_error err = VG_ERROR_INIT;
+  struct vg_mesh mesh = VG_MESH_INIT;
+  size_t near = 0, above = 0;
+
+  (void)state;
+  mesh.n_point = 2;
+  mesh.point = (double(*)[3])corner;
+  options.map = &map;
+  options.from_surface = 0;
+  assert_int_equal(vg_sizing_new(&options, 0, NULL, &mesh, &sizing, &err),
+                   VG_OK);
+  assert_int_equal(vg_metric_seeds(2, corner, sizing, &seeds, &err), VG_OK);
+  for (size_t i = 0; i < seeds.n; i++) {
+    near += fabs(seeds.x[i][2] - 0.5) < 0.15;
+    above += seeds.x[i][2] > 0.5;
+  }
+  assert_in_range(seeds.n, 40, 80);
+  assert_in_range(above, 2 * seeds.n / 5, 3 * seeds.n / 5);
+  assert_in_range(near, 2 * seeds.n / 5, 3 * seeds.n / 4);
+  free(seeds.x);
+  vg_sizing_free(sizing);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(cubes_of_random_metrics),
     cmocka_unit_test(a_graded_box),
+    cmocka_unit_test(seeds_follow_the_complexity),
   };
 
   random_state = 0x9e3779b97f4a7c15u;

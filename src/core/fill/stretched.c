@@ -7,9 +7,9 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "core/fill/fill_parts.h"
-#include "core/fill/place.h"
 #include "core/geometry/hilbert.h"
 #include "core/metric/metric_points.h"
+#include "core/metric/metric_seeds.h"
 
 /* Least distance of a seed from other points, in the metric (K7). */
 static const double seed_distance = 0.8;
@@ -35,7 +35,8 @@ static vg_status insert_seed(struct vg_filling *g, struct vg_metrics *metrics,
 }
 
 static vg_status insert_seeds(struct vg_filling *g, struct vg_metrics *metrics,
-                              struct vg_placed *seed, struct vg_error *err)
+                              struct vg_metric_seeds *seed,
+                              struct vg_error *err)
 {
   uint32_t *order = vg_alloc(seed->n, sizeof *order), at = 0;
   struct vg_inserter s;
@@ -60,13 +61,13 @@ vg_status vg_stretched_populate(struct vg_filling *g, struct vg_error *err)
 {
   struct vg_metric_advance_report r = { 0 };
   struct vg_metrics metrics = { .sizing = g->sizing };
-  struct vg_placed seed = { 0 };
+  struct vg_metric_seeds seed = { 0 };
   double t0 = vg_clock();
   vg_status st = VG_OK;
 
   if (!g->region) /* the cells of a region are small enough */
-    st = vg_place_seeds(g->front->n_point, (const double(*)[3])g->t.x,
-                        g->sizing, NULL, &seed, err);
+    st = vg_metric_seeds(g->front->n_point, (const double(*)[3])g->t.x,
+                         g->sizing, &seed, err);
 
   if (st == VG_OK && vg_metrics_add(&metrics, &g->t, 0, g->t.n_point))
     st = vg_fail_memory(err, "the metrics of points");

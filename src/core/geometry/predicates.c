@@ -242,6 +242,8 @@ double vg_orient3d_exact(const double a[3], const double b[3],
 
   assert(FINITE3(a) && FINITE3(b) && FINITE3(c) && FINITE3(d));
   for (int k = 0; k < 3; k++) {
+    if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k])
+      return 0; /* A plane normal to an axis is common. */
     p[k] = dd_diff(b[k], a[k]);
     q[k] = dd_diff(c[k], a[k]);
     r[k] = dd_diff(d[k], a[k]);

@@ -2,6 +2,8 @@
 #include "core/geometry/tensor.h"
 
 #include <assert.h>
+#include <float.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "core/geometry/vector.h"
@@ -77,19 +79,25 @@ void vg_tensor_eigen(const double a[6], double value[3], double vector[3][3])
   exchange(value, vector, 0, 1);
 }
 
+/* A third of the bits of x, with the bias of the exponent restored, is within
+ * 6 % of the root. Each of Halley's steps cubes the error. */
 double vg_cube_root(double x)
 {
-  int e;
-  double m = frexp(x, &e), y;
+  static const uint64_t bias = 0x2a9f789300000000; /* 2/3 of that of a double */
+  uint64_t bits;
+  double y;
 
   assert(x > 0);
-  while (e % 3) { /* m in [0.5, 4) */
-    m *= 2;
-    e--;
+  if (x < DBL_MIN) return vg_cube_root(x * 0x1p54) * 0x1p-18;
+  memcpy(&bits, &x, sizeof bits);
+  bits = bits / 3 + bias;
+  memcpy(&y, &bits, sizeof y);
+  for (int k = 0; k < 3; k++) {
+    double y3 = y * y * y;
+
+    y *= (y3 + 2 * x) / (2 * y3 + x);
   }
-  y = 0.6 + 0.3 * m;
-  for (int k = 0; k < 6; k++) y -= (y * y * y - m) / (3 * y * y);
-  return ldexp(y, e / 3);
+  return y;
 }
 
 void vg_tensor_from_eigen(const double value[3], const double vector[3][3],

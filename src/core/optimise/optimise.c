@@ -21,9 +21,9 @@ static const struct vg_shape_levels euclidean = {
   0.067, 0.03F                           /* K25 */
 };
 
-/* In a metric: cubes of the mean ratios 0.6, 0.85, 1, 0.4, 0.2. */
+/* In a metric: cubes of the mean ratios 0.6, 0.77, 1, 0.4, 0.2. */
 static const struct vg_shape_levels in_metric = {
-  0.216, 0.614F, 1, 0.064, 0.008F /* K43 */
+  0.216, 0.45F, 1, 0.064, 0.008F /* K43 */
 };
 
 /* Number of rounds over bad cells. They end early if a round improves at most

@@ -389,6 +389,12 @@ double vg_sizing_least(const struct vg_sizing *s, const double lo[3],
   return h < s->cap ? h : s->cap;
 }
 
+double vg_sizing_bound(const struct vg_sizing *s, const double lo[3],
+                       double side)
+{
+  return vg_octree_bound(&s->octree, lo, side);
+}
+
 void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max)
 {
   assert(h_min && h_max);

@@ -211,6 +211,12 @@ void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
 double vg_sizing_least(const struct vg_sizing *s, const double lo[3],
                        double side, double x[3]);
 
+/** A lower bound of vg_sizing_at within the cube lo, side: the least value in
+ * octants of about half its side that intersect it. Threads: safe on a shared
+ * field. Cost: at most about 100 octants. */
+double vg_sizing_bound(const struct vg_sizing *s, const double lo[3],
+                       double side);
+
 /** Smallest and largest value of vg_sizing_at within the root cube. Cost O(1).
  */
 void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max);

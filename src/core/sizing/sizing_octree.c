@@ -332,7 +332,8 @@ static double size_in(const struct vg_octree *t, uint32_t e, const double f[3])
  * the side of the root. */
 struct search {
   const struct vg_octree *t;
-  double lo[3], hi[3], x[3], least;
+  double lo[3], hi[3], side; /* The cube, relative to the root cube. */
+  double x[3], least;        /* The least value so far, and its position. */
 };
 
 /* A trilinear function has its minimum at a corner of the part of the leaf in
@@ -386,20 +387,58 @@ static void search(struct search *s, uint32_t e, const double at[3],
   }
 }
 
+/* The cube in units of the root cube, of which it becomes a part. */
+static void start_search(struct search *s, const double lo[3], double side)
+{
+  const struct vg_octree *t = s->t;
+
+  assert(t->n_leaf > 0 && side >= 0);
+  for (int k = 0; k < 3; k++) {
+    s->lo[k] = fmin(fmax((lo[k] - t->lo[k]) / t->side, 0), 1);
+    s->hi[k] = fmin(fmax((lo[k] + side - t->lo[k]) / t->side, 0), 1);
+  }
+}
+
 double vg_octree_least(const struct vg_octree *t, const double lo[3],
                        double side, double x[3])
 {
   struct search s = { .t = t, .least = INFINITY };
   double root[3] = { 0, 0, 0 };
 
-  assert(t->n_leaf > 0 && side >= 0);
-  for (int k = 0; k < 3; k++) {
-    s.lo[k] = fmin(fmax((lo[k] - t->lo[k]) / t->side, 0), 1);
-    s.hi[k] = fmin(fmax((lo[k] + side - t->lo[k]) / t->side, 0), 1);
-  }
+  start_search(&s, lo, side);
   search(&s, t->root, root, 1);
   for (int k = 0; k < 3; k++) x[k] = t->lo[k] + t->side * s.x[k];
   return s.least;
+}
+
+/* Least value in the octants of about half the side of the cube that intersect
+ * it. */
+static double bound(const struct search *s, uint32_t e, const double at[3],
+                    double side)
+{
+  double least = INFINITY;
+
+  for (int k = 0; k < 3; k++)
+    if (at[k] > s->hi[k] || at[k] + side < s->lo[k]) return INFINITY;
+  if (e & VG_OCTREE_LEAF || 2 * side <= s->side) return least_below(s->t, e);
+  for (int i = 0; i < 8; i++) {
+    double child[3];
+
+    for (int k = 0; k < 3; k++)
+      child[k] = at[k] + (i >> k & 1 ? 0.5 * side : 0);
+    least = fmin(least, bound(s, s->t->child[e][i], child, 0.5 * side));
+  }
+  return least;
+}
+
+double vg_octree_bound(const struct vg_octree *t, const double lo[3],
+                       double side)
+{
+  static const double root[3] = { 0 };
+  struct search s = { .t = t, .side = side / t->side };
+
+  start_search(&s, lo, side);
+  return bound(&s, t->root, root, 1);
 }
 
 /* --- range of size tensors ------------------------------------------------ */

@@ -140,4 +140,8 @@ void vg_octree_tensor_range(const struct vg_octree *t, double range[2],
 double vg_octree_least(const struct vg_octree *t, const double lo[3],
                        double side, double x[3]);
 
+/** A lower bound of the values within the cube lo, side. */
+double vg_octree_bound(const struct vg_octree *t, const double lo[3],
+                       double side);
+
 #endif

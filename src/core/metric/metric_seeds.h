@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* core/metric/metric_seeds.h: sparse points throughout a void, in a metric. */
+#ifndef VG_CORE_METRIC_METRIC_SEEDS_H
+#define VG_CORE_METRIC_METRIC_SEEDS_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+#include "core/sizing/sizing.h"
+
+struct vg_metric_seeds {
+  size_t n, cap;
+  double (*x)[3]; /* [n] Owned by the caller: free. */
+};
+
+/** Seeds within the bounding box of the points x: about one for SEED_POINTS
+ * points of the mesh (metric_seeds.c), even where the metric is stretched.
+ * Cells between seeds are so small that the metric changes little over them,
+ * while cells between the points of a boundary alone extend across regions of
+ * different metrics, whose connections later insertions do not repair.
+ *
+ * @param x    [n] the points that bound the void
+ * @param out  starts empty; some seeds may lie outside the void
+ *
+ * VG_ERR_MEMORY. Deterministic. */
+vg_status vg_metric_seeds(size_t n, const double (*x)[3],
+                          const struct vg_sizing *sizing,
+                          struct vg_metric_seeds *out, struct vg_error *err);
+
+#endif
