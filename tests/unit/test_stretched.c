@@ -261,8 +261,8 @@ static void a_graded_box(void **state)
 }
 
 /* The complexity of the graded metric in the unit cube is
- * 1000 log(0.12 / 0.02) = 1792, which makes 56 seeds (K49). As many lie on each
- * side of the plane, and half of them within 0.15 of it. */
+ * 1000 log(0.12 / 0.02) = 1792, which makes 56 seeds (K49). Half of them lie on
+ * each side of the plane z = 0.5, and half of them within 0.15 of it. */
 static void seeds_follow_the_complexity(void **state)
 {
   const double corner[2][3] = { { 0, 0, 0 }, { 1, 1, 1 } };

@@ -390,7 +390,7 @@ static int too_low_anywhere(const struct vg_inserter *s, const double x[3],
 {
   const double(*at)[3] = (const double(*)[3])s->t->x;
   const double *m = s->metric ? s->metric[s->point].m : NULL;
-  double inverse[6] = {0}; /* of m; zeros without a metric */
+  double inverse[6] = { 0 }; /* of m; zeros without a metric */
 
   if (m) vg_tensor_invert(m, inverse);
   for (size_t k = 0; k < s->n_face && clearance > 0; k++) {

@@ -236,6 +236,7 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
   }
   for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
     st = improve_bad(o, &again, err);
+  if (st == VG_OK && o->metrics && sweeps > 0) st = vg_even_lengths(o, err);
   if (st == VG_OK) o->report->n_left = count_left(o);
   for (size_t c = 0; c < t->n_cell; c++) t->flag[c] &= (uint8_t)~VG_TRIED;
   if (st == VG_OK && o->refused) st = vg_fail_memory(err, "optimisation");

@@ -5,8 +5,9 @@
 
 #include "core/optimise/optimise_parts.h"
 
-/* K45: edges shorter or longer than this are changed. */
-static const double shortest = 0.68, longest = 1.45;
+/* K45: edges shorter or longer than this are changed. Edges shorter than
+ * `tiny` may leave edges up to `far`. */
+static const double shortest = 0.68, longest = 1.45, tiny = 0.4, far = 2;
 /* Collapses may not make cells worse than this shape, or than the worst one.
  * Splits may reduce the worst shape around the edge by this factor. */
 static const double least_shape = 0.125, split_share = 0.6;
@@ -16,6 +17,13 @@ static int is_live(const struct vg_tets *t, uint32_t c)
   return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
 }
 
+static int merge_edge(struct vg_optimiser *o, uint32_t a, uint32_t b,
+                      double most)
+{
+  return vg_merge_onto(o, a, b, least_shape, most) ||
+         vg_merge_onto(o, b, a, least_shape, most);
+}
+
 /* Change edge i j of cell c if its length requires it. */
 static int even_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
 {
@@ -23,8 +31,8 @@ static int even_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
   double length = vg_metrics_length(o->metrics, o->t, a, b);
 
   if (length < shortest)
-    return vg_merge_onto(o, a, b, least_shape, longest) ||
-           vg_merge_onto(o, b, a, least_shape, longest);
+    return merge_edge(o, a, b, longest) ||
+           (length < tiny && merge_edge(o, a, b, far));
   return length > longest && vg_split_edge(o, c, a, b, split_share, shortest);
 }
 

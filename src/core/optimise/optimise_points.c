@@ -15,6 +15,9 @@
  */
 static const double gain = 1.01, least_share = 0.2;
 
+/* K52: least length, in a metric, of the edges at a point for a bad cell. */
+static const double least_length = 0.45;
+
 static double worth(double old)
 {
   return old < VG_SHAPE_FLAT ? VG_SHAPE_FLAT : old * gain;
@@ -329,22 +332,6 @@ static int put_point(struct vg_optimiser *o, struct cavity *h)
   return 1;
 }
 
-static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
-                    double aim)
-{
-  struct cavity h;
-
-  h.n_old = 1;
-  h.old[0] = c;
-  if (vg_try_point(o, x) || !open_cavity(o, worth(o->q[c]), &h) ||
-      !put_point(o, &h))
-    return 0;
-  for (int k = 0; k < 3 && vg_smooth(o, (uint32_t)o->t->n_point - 1, aim);
-       k++) {
-  }
-  return 1;
-}
-
 /* Is a corner of the cavity nearer to the point that is tried than `least`? */
 static int is_crowded(const struct vg_optimiser *o, const struct cavity *h,
                       double least)
@@ -355,6 +342,22 @@ static int is_crowded(const struct vg_optimiser *o, const struct cavity *h,
                             (uint32_t)o->t->n_point) < least)
         return 1;
   return 0;
+}
+
+static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
+                    double aim)
+{
+  struct cavity h;
+
+  h.n_old = 1;
+  h.old[0] = c;
+  if (vg_try_point(o, x) || !open_cavity(o, worth(o->q[c]), &h) ||
+      (o->metrics && is_crowded(o, &h, least_length)) || !put_point(o, &h))
+    return 0;
+  for (int k = 0; k < 3 && vg_smooth(o, (uint32_t)o->t->n_point - 1, aim);
+       k++) {
+  }
+  return 1;
 }
 
 int vg_split_edge(struct vg_optimiser *o, uint32_t c, uint32_t a, uint32_t b,
