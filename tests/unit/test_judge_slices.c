@@ -344,29 +344,49 @@ static void sums_are_exact(void **state)
 }
 
 /* Adding many terms at once equals adding them one after the other. */
+static void check_sum_of_many(size_t n, const double *x)
+{
+  struct vg_exact s = { .n_odd = 0 }, t = { .n_odd = 0 };
+
+  for (size_t i = 0; i < n; i++) vg_exact_add(&s, x[i]);
+  vg_exact_add_all(&t, n, x);
+  assert_true(vg_exact_value(&s) == vg_exact_value(&t));
+  for (size_t i = 0; i < n; i++) vg_exact_add(&t, -x[i]);
+  assert_true(vg_exact_value(&t) == 0);
+}
+
 static void sums_of_many_are_those_of_each(void **state)
 {
   static double x[1500];
-  struct vg_exact s = { .n_odd = 0 }, t = { .n_odd = 0 };
+  struct vg_exact t = { .n_odd = 0 };
   size_t n = sizeof x / sizeof *x;
   uint64_t seed = 1;
 
   (void)state;
-  for (size_t i = 0; i < n; i++) {
-    seed = seed * UINT64_C(6364136223846793005) + 1;
-    x[i] = ldexp((double)(int64_t)seed, i < 700 ? -70 : (int)(i % 2000) - 1130);
-    vg_exact_add(&s, x[i]);
-  }
-  vg_exact_add_all(&t, n, x);
-  assert_true(vg_exact_value(&s) == vg_exact_value(&t));
-  vg_exact_add_all(&t, 0, x);
-  assert_true(vg_exact_value(&s) == vg_exact_value(&t));
-  for (size_t i = 0; i < n; i++) x[i] = -x[i];
-  vg_exact_add_all(&t, n, x);
-  assert_true(vg_exact_value(&t) == 0);
+  for (int wide = 0; wide < 2000; wide = 2 * wide + 1)
+    for (int middle = -1100; middle < 1000; middle += 29) {
+      for (size_t i = 0; i < n; i++) {
+        int e = middle;
+
+        seed = seed * UINT64_C(6364136223846793005) + 1;
+        if (wide) e += (int)(seed >> 40) % wide - wide / 2;
+        seed = seed * UINT64_C(6364136223846793005) + 1;
+        x[i] = ldexp((double)(int64_t)seed, e < 940 ? e - 63 : 877);
+        if (seed >> 20 & 1 && seed >> 21 & 1) x[i] = trunc(x[i]);
+      }
+      check_sum_of_many(n, x);
+      check_sum_of_many(513, x);
+      check_sum_of_many(3, x);
+    }
+  for (size_t i = 0; i < n; i++) x[i] = 0;
+  check_sum_of_many(n, x);
+  check_sum_of_many(0, x);
   x[7] = INFINITY;
   vg_exact_add_all(&t, 8, x);
   assert_int_equal(t.n_odd, 1);
+  x[3] = NAN;
+  vg_exact_add_all(&t, 8, x);
+  assert_int_equal(t.n_odd, 3);
 }
 
 /* Ties round to even, unless a much smaller term decides. */
