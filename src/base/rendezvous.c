@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/wide.h"
 
 /* Number of items per part: they fit into the second-level cache, where they
  * are sorted into small buckets and compared. */
@@ -55,48 +56,64 @@ int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key)
 
 /* --- counting sort ------------------------------------------------------- */
 
-/* Items of several sources to be sorted by bin. A bin is a rank or a part. */
+/* Loops over items are compiled with constant sizes of items and keys for the
+ * items that are most frequent: in the mesh check, keys of positions and faces.
+ * `call` is a call with the arguments `size` and `key`. */
+#define WITH_SIZES(m, call)                                                    \
+  do {                                                                         \
+    if ((m)->size == 8 && (m)->key == 8) {                                     \
+      const size_t size = 8, key = 8;                                          \
+      call;                                                                    \
+    } else if ((m)->size == 28 && (m)->key == 16) {                            \
+      const size_t size = 28, key = 16;                                        \
+      call;                                                                    \
+    } else {                                                                   \
+      const size_t size = (m)->size, key = (m)->key;                           \
+      call;                                                                    \
+    }                                                                          \
+  } while (0)
+
+/* Items of several sources to be sorted by bin. */
 struct sorting {
   const struct vg_rendezvous *m;
-  size_t (*bin)(const struct sorting *s, uint64_t h);
+  int by_rank;           /* 1: a bin is a rank; 0: a part */
   struct vg_bytes *from; /* [n_from] */
   size_t n_from, n_bin;
   size_t *at; /* [n_from][n_bin + 1] offsets of the bins, the first 0 */
 };
 
-static size_t rank_bin(const struct sorting *s, uint64_t h)
+VG_WITHIN size_t bin_of(const struct sorting *s, const unsigned char *item,
+                        size_t key)
 {
-  return (size_t)rank_of(h, (int)s->n_bin);
+  uint64_t h = vg_rendezvous_hash(item, key);
+
+  return s->by_rank ? (size_t)rank_of(h, (int)s->n_bin)
+                    : (size_t)h & (s->n_bin - 1);
 }
 
-static size_t part_bin(const struct sorting *s, uint64_t h)
+/* Add the number of items in each bin to at[bin + 1]. */
+VG_WITHIN void count_items(const struct sorting *s, const struct vg_bytes *from,
+                           size_t *at, size_t size, size_t key)
 {
-  return (size_t)h & (s->n_bin - 1);
-}
-
-static size_t bin_of(const struct sorting *s, const unsigned char *item)
-{
-  return s->bin(s, vg_rendezvous_hash(item, s->m->key));
+  for (size_t i = 0; i < from->n; i += size)
+    at[bin_of(s, from->data + i, key) + 1]++;
 }
 
 /* Compute where each bin begins in each source after sorting. */
 static void count_sources(void *context, size_t first, size_t end, int worker)
 {
   const struct sorting *s = context;
-  size_t size = s->m->size;
 
   (void)worker;
   for (size_t r = first; r < end; r++) {
-    const struct vg_bytes *from = &s->from[r];
     size_t *at = s->at + r * (s->n_bin + 1);
 
-    for (size_t i = 0; i < from->n; i += size)
-      at[bin_of(s, from->data + i) + 1]++;
+    WITH_SIZES(s->m, count_items(s, &s->from[r], at, size, key));
     for (size_t b = 0; b < s->n_bin; b++) at[b + 1] += at[b];
   }
 }
 
-static void swap_items(unsigned char *a, unsigned char *b, size_t size)
+VG_WITHIN void swap_items(unsigned char *a, unsigned char *b, size_t size)
 {
   for (size_t i = 0; i < size; i += sizeof(uint32_t)) {
     uint32_t x, y;
@@ -108,21 +125,32 @@ static void swap_items(unsigned char *a, unsigned char *b, size_t size)
   }
 }
 
-/* Sort the items of bins low to up - 1 in place by groups of `width` bins:
- * every swap moves one item to its group. next, end: [n_group] item offsets */
-static void order_groups(const struct sorting *s, unsigned char *item,
-                         size_t low, size_t width, size_t n_group, size_t *next,
-                         const size_t *end)
+/* Groups of 2^shift bins, from bin `low` on. next, end: [n] item offsets */
+struct groups {
+  size_t low, n, *next;
+  const size_t *end;
+  unsigned shift;
+};
+
+/* Sort the items of the groups in place: every swap moves one item to its
+ * group. */
+VG_WITHIN void order_items(const struct sorting *s, unsigned char *item,
+                           const struct groups *g, size_t size, size_t key)
 {
-  size_t size = s->m->size;
+  for (size_t k = 0; k < g->n; k++)
+    while (g->next[k] < g->end[k]) {
+      unsigned char *here = item + size * g->next[k];
+      size_t to = (bin_of(s, here, key) - g->low) >> g->shift;
+      size_t at = g->next[to]++;
 
-  for (size_t g = 0; g < n_group; g++)
-    while (next[g] < end[g]) {
-      unsigned char *here = item + size * next[g];
-      size_t to = (bin_of(s, here) - low) / width, at = next[to]++;
-
-      if (to != g) swap_items(here, item + size * at, size);
+      if (to != k) swap_items(here, item + size * at, size);
     }
+}
+
+static void order_groups(const struct sorting *s, unsigned char *item,
+                         const struct groups *g)
+{
+  WITH_SIZES(s->m, order_items(s, item, g, size, key));
 }
 
 /* Sort the items of a source by bin, first by groups of bins, so that each
@@ -131,21 +159,25 @@ static void order_source(const struct sorting *s, size_t r, size_t *next,
                          size_t *end)
 {
   const size_t *at = s->at + r * (s->n_bin + 1);
-  size_t width = 1, n_group;
+  unsigned shift = 0;
+  size_t width, n_group;
 
-  while (width * width < s->n_bin) width *= 2;
+  while ((size_t)1 << 2 * shift < s->n_bin) shift++;
+  width = (size_t)1 << shift;
   n_group = (s->n_bin - 1) / width + 1;
   for (size_t g = 0, b = 0; g < n_group; g++) {
     next[g] = at[b];
     b = b + width < s->n_bin ? b + width : s->n_bin;
     end[g] = at[b];
   }
-  order_groups(s, s->from[r].data, 0, width, n_group, next, end);
+  order_groups(s, s->from[r].data,
+               &(struct groups){ 0, n_group, next, end, shift });
   memcpy(next, at, s->n_bin * sizeof *next);
   for (size_t b = 0; b < s->n_bin; b += width) {
     size_t n = s->n_bin - b < width ? s->n_bin - b : width;
 
-    order_groups(s, s->from[r].data, b, 1, n, next + b, at + b + 1);
+    order_groups(s, s->from[r].data,
+                 &(struct groups){ b, n, next + b, at + b + 1, 0 });
   }
 }
 
@@ -221,7 +253,7 @@ static vg_status send(const struct vg_rendezvous *m, struct vg_bytes *list,
 {
   size_t size = (size_t)vg_comm_size(m->comm);
   struct sorting s = {
-    .m = m, .bin = rank_bin, .from = list, .n_from = n_list, .n_bin = size
+    .m = m, .by_rank = 1, .from = list, .n_from = n_list, .n_bin = size
   };
   struct vg_bytes *to = vg_calloc(size, sizeof *to);
   struct vg_bytes *from = vg_calloc(size, sizeof *from);
@@ -256,15 +288,15 @@ struct hall {
   atomic_int refused;
 };
 
-static size_t bucket_of(const struct hall *h, const unsigned char *item,
-                        size_t n_bucket)
+VG_WITHIN size_t bucket_of(const unsigned char *item, size_t n_bucket,
+                           size_t key)
 {
-  return (size_t)(vg_rendezvous_hash(item, h->m->key) >> 20) & (n_bucket - 1);
+  return (size_t)(vg_rendezvous_hash(item, key) >> 20) & (n_bucket - 1);
 }
 
 /* An arbitrary total order of keys of n bytes. */
-static inline int key_order(const unsigned char *a, const unsigned char *b,
-                            size_t n)
+VG_WITHIN int key_order(const unsigned char *a, const unsigned char *b,
+                        size_t n)
 {
   for (size_t i = 0; i < n; i += sizeof(uint32_t)) {
     uint32_t x, y;
@@ -278,16 +310,13 @@ static inline int key_order(const unsigned char *a, const unsigned char *b,
 
 /* Insertion sort by key. Items with equal keys are not moved, so that many
  * equal keys cost nothing extra. */
-static void sort_bucket(const struct vg_rendezvous *m, unsigned char *item,
-                        size_t n, unsigned char *spare)
+VG_WITHIN void sort_bucket(unsigned char *item, size_t n, unsigned char *spare,
+                           size_t size, size_t key)
 {
-  size_t size = m->size;
-
   for (size_t i = 1; i < n; i++) {
     size_t j = i;
 
-    while (j && key_order(item + size * (j - 1), item + size * i, m->key) > 0)
-      j--;
+    while (j && key_order(item + size * (j - 1), item + size * i, key) > 0) j--;
     if (j == i) continue;
     memcpy(spare, item + size * i, size);
     memmove(item + size * (j + 1), item + size * j, size * (i - j));
@@ -312,16 +341,14 @@ static void inspect(struct hall *h, const unsigned char *item, size_t n,
   }
 }
 
-static void inspect_all(struct hall *h, const unsigned char *item, size_t n,
-                        int worker)
+VG_WITHIN void inspect_all(struct hall *h, const unsigned char *item, size_t n,
+                           int worker, size_t size, size_t key)
 {
-  const struct vg_rendezvous *m = h->m;
-
   for (size_t i = 0, j; i < n; i = j) {
-    const unsigned char *first = item + m->size * i;
+    const unsigned char *first = item + size * i;
 
     for (j = i + 1; j < n; j++)
-      if (key_order(first, item + m->size * j, m->key)) break;
+      if (key_order(first, item + size * j, key)) break;
     inspect(h, first, j - i, worker);
   }
 }
@@ -340,16 +367,17 @@ static const unsigned char *part_of(const struct hall *h, size_t r, size_t p,
 
 /* Copy the items of a part into `room`, sorted by bucket. On return, each
  * bucket [n_bucket] holds the end of its items. */
-static void fill_buckets(const struct hall *h, size_t p, unsigned char *room,
-                         size_t *bucket, size_t n_bucket)
+VG_WITHIN void fill_buckets(const struct hall *h, size_t p, unsigned char *room,
+                            size_t *bucket, size_t n_bucket, size_t size,
+                            size_t key)
 {
-  size_t size = h->m->size, at = 0;
+  size_t at = 0;
   const unsigned char *item, *end;
 
   memset(bucket, 0, n_bucket * sizeof *bucket);
   for (size_t r = 0; r < h->s.n_from; r++)
     for (item = part_of(h, r, p, &end); item < end; item += size)
-      bucket[bucket_of(h, item, n_bucket)]++;
+      bucket[bucket_of(item, n_bucket, key)]++;
   for (size_t b = 0; b < n_bucket; b++) {
     size_t count = bucket[b];
 
@@ -358,23 +386,22 @@ static void fill_buckets(const struct hall *h, size_t p, unsigned char *room,
   }
   for (size_t r = 0; r < h->s.n_from; r++)
     for (item = part_of(h, r, p, &end); item < end; item += size)
-      memcpy(room + size * bucket[bucket_of(h, item, n_bucket)]++, item, size);
+      memcpy(room + size * bucket[bucket_of(item, n_bucket, key)]++, item,
+             size);
 }
 
 /* Process a part. room: space for the largest part and one more item; bucket:
  * [n_bucket]. */
-static void meet_part(struct hall *h, size_t p, unsigned char *room,
-                      size_t *bucket, size_t n_bucket, int worker)
+VG_WITHIN void meet_part(struct hall *h, size_t p, unsigned char *room,
+                         size_t *bucket, size_t n_bucket, int worker,
+                         size_t size, size_t key)
 {
-  size_t size = h->m->size;
-
-  fill_buckets(h, p, room, bucket, n_bucket);
+  fill_buckets(h, p, room, bucket, n_bucket, size, key);
   for (size_t b = 0; b < n_bucket; b++) {
-    size_t begin = b ? bucket[b - 1] : 0;
+    size_t begin = b ? bucket[b - 1] : 0, n = bucket[b] - begin;
 
-    sort_bucket(h->m, room + size * begin, bucket[b] - begin,
-                room + size * h->most);
-    inspect_all(h, room + size * begin, bucket[b] - begin, worker);
+    sort_bucket(room + size * begin, n, room + size * h->most, size, key);
+    inspect_all(h, room + size * begin, n, worker, size, key);
   }
 }
 
@@ -388,7 +415,8 @@ static void meet_parts(void *context, size_t first, size_t end, int worker)
   if (!room || !bucket) atomic_store(&h->refused, 1);
   else
     for (size_t p = first; p < end; p++)
-      meet_part(h, p, room, bucket, n_bucket, worker);
+      WITH_SIZES(h->m,
+                 meet_part(h, p, room, bucket, n_bucket, worker, size, key));
   free(room);
   free(bucket);
 }
@@ -397,11 +425,10 @@ static vg_status meet_here(const struct vg_rendezvous *m, struct vg_bytes *from,
                            size_t n_from, struct vg_items *left,
                            struct vg_error *err)
 {
-  struct hall h = {
-    .m = m,
-    .left = left,
-    .s = { .m = m, .bin = part_bin, .from = from, .n_from = n_from, .n_bin = 1 }
-  };
+  struct hall h = { .m = m,
+                    .left = left,
+                    .s = {
+                      .m = m, .from = from, .n_from = n_from, .n_bin = 1 } };
   size_t n = 0;
   vg_status st;
 
