@@ -53,10 +53,14 @@ struct vg_cells vg_mesh_cells(const struct vg_mesh *m, int kind)
   return all[kind];
 }
 
+/* The largest node is found by vectors. */
 static size_t out_of_range(const uint32_t *node, size_t n, size_t n_point)
 {
   size_t bad = 0;
+  uint32_t most = 0;
 
+  for (size_t i = 0; i < n; i++) most = node[i] > most ? node[i] : most;
+  if (!n || most < n_point) return 0;
   for (size_t i = 0; i < n; i++) bad += node[i] >= n_point;
   return bad;
 }

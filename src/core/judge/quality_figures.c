@@ -83,18 +83,6 @@ int vg_stats_face(struct vg_stats *f, size_t n_cell, size_t n_boundary,
   return 0;
 }
 
-void vg_stats_ratio(struct vg_stats *f, float v, float w)
-{
-  float ratio;
-  uint32_t bits;
-
-  if (!(v > 0) || !(w > 0)) return;
-  ratio = v > w ? v / w : w / v;
-  memcpy(&bits, &ratio, sizeof bits);
-  bits = (bits - VG_ONE_BITS) >> VG_RATIO_SHIFT;
-  f->n.ratio[bits < VG_N_RATIO ? bits : VG_N_RATIO - 1]++;
-}
-
 void vg_stats_edge(struct vg_stats *f, double ratio)
 {
   double bin = ratio * 10;

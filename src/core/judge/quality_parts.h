@@ -11,6 +11,8 @@
 #ifndef VG_CORE_JUDGE_QUALITY_PARTS_H
 #define VG_CORE_JUDGE_QUALITY_PARTS_H
 
+#include <string.h>
+
 #include "core/geometry/exact_sum.h"
 #include "core/judge/quality.h"
 
@@ -71,7 +73,17 @@ int vg_stats_face(struct vg_stats *f, size_t n_cell, size_t n_boundary,
                   int same_side);
 
 /** Count two cells of volumes v and w that share a face. */
-void vg_stats_ratio(struct vg_stats *f, float v, float w);
+static inline void vg_stats_ratio(struct vg_stats *f, float v, float w)
+{
+  float ratio;
+  uint32_t bits;
+
+  if (!(v > 0) || !(w > 0)) return;
+  ratio = v > w ? v / w : w / v;
+  memcpy(&bits, &ratio, sizeof bits);
+  bits = (bits - VG_ONE_BITS) >> VG_RATIO_SHIFT;
+  f->n.ratio[bits < VG_N_RATIO ? bits : VG_N_RATIO - 1]++;
+}
 
 /** Count an edge whose length is `ratio` times its target. */
 void vg_stats_edge(struct vg_stats *f, double ratio);

@@ -346,6 +346,14 @@ double vg_sizing_along(const struct vg_sizing *s, const double x[3],
   return 1 / vg_norm(v);
 }
 
+/* The size h at the nearest point of the root cube grows with the distance. */
+static double grown(const struct vg_sizing *s, double h, double outside)
+{
+  if (!(outside > 0)) return h;
+  h += s->growth * outside;
+  return h < s->cap ? h : s->cap;
+}
+
 double vg_sizing_at(const struct vg_sizing *s, const double x[3])
 {
   assert(s);
@@ -357,15 +365,25 @@ double vg_sizing_at(const struct vg_sizing *s, const double x[3])
     return vg_size_mean(tensor);
   }
   h = vg_octree_at(&s->octree, x, &outside);
-  if (!(outside > 0)) return h;
-  h += s->growth * outside;
-  return h < s->cap ? h : s->cap;
+  return grown(s, h, outside);
 }
+
+#define SOME 256 /* points that are evaluated together */
 
 void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
                     double *h)
 {
-  for (size_t i = 0; i < n; i++) h[i] = vg_sizing_at(s, x[i]);
+  double outside[SOME];
+
+  if (s->octree.is_stretched) {
+    for (size_t i = 0; i < n; i++) h[i] = vg_sizing_at(s, x[i]);
+    return;
+  }
+  for (size_t i = 0, m; i < n; i += m) {
+    m = n - i < SOME ? n - i : SOME;
+    vg_octree_eval(&s->octree, m, x + i, h + i, outside);
+    for (size_t k = 0; k < m; k++) h[i + k] = grown(s, h[i + k], outside[k]);
+  }
 }
 
 double vg_sizing_least(const struct vg_sizing *s, const double lo[3],

@@ -247,6 +247,46 @@ static inline double trilinear(const float h[8], const double f[3])
   return a + f[2] * (c - a);
 }
 
+/* A position in the octree. */
+struct spot {
+  uint32_t at[3]; /* in units of the finest cell */
+  double f[3];    /* in the root cube, from 0 to 1; later in the leaf */
+  double outside; /* distance to the root cube */
+};
+
+static inline void find_spot(const struct vg_octree *t, const double x[3],
+                             struct spot *s)
+{
+  double d2 = 0;
+
+  for (int k = 0; k < 3; k++) {
+    double u = (x[k] - t->lo[k]) / t->side, v = u > 0 ? u < 1 ? u : 1 : 0;
+
+    d2 += (u - v) * (u - v);
+    s->f[k] = v;
+    s->at[k] = (uint32_t)(v * VG_OCTREE_TOP);
+    if (s->at[k] >= VG_OCTREE_TOP) s->at[k] = VG_OCTREE_TOP - 1;
+  }
+  s->outside = d2 > 0 ? sqrt(d2) * t->side : 0;
+}
+
+/* Entry of the child that contains the spot. bit: that of the child's level. */
+static inline uint32_t child_at(const struct vg_octree *t, uint32_t e,
+                                const struct spot *s, int bit)
+{
+  return t->child[e][(s->at[0] >> bit & 1) | (s->at[1] >> bit & 1) << 1 |
+                     (s->at[2] >> bit & 1) << 2];
+}
+
+/* Convert the position in the root cube to that in a leaf of this level. */
+static inline void enter_leaf(struct spot *s, int bit)
+{
+  double scale = (double)(VG_OCTREE_TOP >> bit);
+
+  for (int k = 0; k < 3; k++)
+    s->f[k] = s->f[k] * scale - (double)(s->at[k] >> bit);
+}
+
 /* Leaf at x, as an entry of the tree. f out: position in the leaf, from 0 to 1.
  * *outside out: distance to the root cube. */
 static inline uint32_t find_leaf(const struct vg_octree *t, const double x[3],
@@ -254,26 +294,15 @@ static inline uint32_t find_leaf(const struct vg_octree *t, const double x[3],
 {
   assert(t->n_leaf > 0 && outside);
 
-  double d2 = 0, scale = 1;
-  uint32_t at[3], e = t->root;
+  struct spot s;
+  uint32_t e = t->root;
   int bit = VG_OCTREE_DEPTH;
 
-  for (int k = 0; k < 3; k++) {
-    double u = (x[k] - t->lo[k]) / t->side, v = u > 0 ? u < 1 ? u : 1 : 0;
-
-    d2 += (u - v) * (u - v);
-    f[k] = v;
-    at[k] = (uint32_t)(v * VG_OCTREE_TOP);
-    if (at[k] >= VG_OCTREE_TOP) at[k] = VG_OCTREE_TOP - 1;
-  }
-  while (!(e & VG_OCTREE_LEAF)) {
-    bit--;
-    e = t->child[e][(at[0] >> bit & 1) | (at[1] >> bit & 1) << 1 |
-                    (at[2] >> bit & 1) << 2];
-  }
-  scale = (double)(VG_OCTREE_TOP >> bit);
-  for (int k = 0; k < 3; k++) f[k] = f[k] * scale - (double)(at[k] >> bit);
-  *outside = d2 > 0 ? sqrt(d2) * t->side : 0;
+  find_spot(t, x, &s);
+  while (!(e & VG_OCTREE_LEAF)) e = child_at(t, e, &s, --bit);
+  enter_leaf(&s, bit);
+  memcpy(f, s.f, sizeof s.f);
+  *outside = s.outside;
   return e;
 }
 
@@ -286,6 +315,52 @@ double vg_octree_at(const struct vg_octree *t, const double x[3],
   uint32_t e = find_leaf(t, x, f, outside);
 
   return trilinear(t->leaf[e & VG_OCTREE_LEAF_INDEX].h, f);
+}
+
+/* The entries from the root to a leaf. */
+struct path {
+  uint32_t at[3], entry[VG_OCTREE_DEPTH + 1]; /* by level; at: the spot */
+  int level;                                  /* level of the leaf */
+};
+
+/* Move the path to the leaf of the spot, from the last common cell on. */
+static inline uint32_t follow(const struct vg_octree *t, const struct spot *s,
+                              struct path *p)
+{
+  uint32_t differ = (s->at[0] ^ p->at[0]) | (s->at[1] ^ p->at[1]) |
+                    (s->at[2] ^ p->at[2]),
+           e;
+  int bit = differ ? 32 - __builtin_clz(differ) : 0;
+
+  if (bit < VG_OCTREE_DEPTH - p->level) bit = VG_OCTREE_DEPTH - p->level;
+  e = p->entry[VG_OCTREE_DEPTH - bit];
+  while (!(e & VG_OCTREE_LEAF)) {
+    e = child_at(t, e, s, --bit);
+    p->entry[VG_OCTREE_DEPTH - bit] = e;
+  }
+  p->level = VG_OCTREE_DEPTH - bit;
+  memcpy(p->at, s->at, sizeof p->at);
+  return e;
+}
+
+void vg_octree_eval(const struct vg_octree *t, size_t n, const double (*x)[3],
+                    double *h, double *outside)
+{
+  assert(!t->is_stretched && t->n_leaf > 0);
+
+  struct path p = { .level = 0 };
+
+  p.entry[0] = t->root;
+  for (size_t i = 0; i < n; i++) {
+    struct spot s;
+    uint32_t e;
+
+    find_spot(t, x[i], &s);
+    e = follow(t, &s, &p);
+    enter_leaf(&s, VG_OCTREE_DEPTH - p.level);
+    h[i] = trilinear(t->leaf[e & VG_OCTREE_LEAF_INDEX].h, s.f);
+    outside[i] = s.outside;
+  }
 }
 
 /* Trilinear size tensor in the leaf of entry e. */

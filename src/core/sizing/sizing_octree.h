@@ -125,6 +125,11 @@ size_t vg_octree_defects(const struct vg_octree *t);
 double vg_octree_at(const struct vg_octree *t, const double x[3],
                     double *outside);
 
+/** As vg_octree_at, for n points. Successive points that are near each other
+ * cost less. h, outside: [n] */
+void vg_octree_eval(const struct vg_octree *t, size_t n, const double (*x)[3],
+                    double *h, double *outside);
+
 /** As vg_octree_at, for the size tensor; also if the field is isotropic. */
 void vg_octree_tensor_at(const struct vg_octree *t, const double x[3],
                          double h[6], double *outside);
