@@ -4,7 +4,7 @@
 #include "../unit/layer_cases.h"
 #include "base/comm_parts.h"
 #include "run/input/share.h"
-#include "core/sizing/sizing_parts.h"
+#include "core/sizing/sizing_octree.h"
 #include "layers/columns/share.h"
 #include "layers/grow/grow.h"
 #include "mpi_support.h"

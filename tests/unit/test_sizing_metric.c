@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "core/geometry/tensor.h"
-#include "core/sizing/sizing_parts.h"
+#include "core/sizing/sizing_octree.h"
 #include "core/sizing/sizing_tensor.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

@@ -11,7 +11,7 @@
 #include "base/team.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
-#include "core/sizing/sizing_parts.h"
+#include "core/sizing/sizing_octree.h"
 #include "core/sizing/sizing_surface.h"
 
 /* Number of leaves in addition to those that the surface accounts for, since

@@ -49,4 +49,18 @@ struct vg_bvh {
   float steep, rise; /* slope and offset from below, beyond the knee */
 };
 
+/** vg_bvh_above and vg_bvh_below with four lanes, and with eight for processors
+ * with AVX2 (only if VG_WIDE is defined, base/wide.h). Same results, bit by
+ * bit. */
+double vg_bvh_above_narrow(const struct vg_bvh *t, const double lo[3],
+                           const double hi[3], double below, uint32_t *hint);
+double vg_bvh_below_narrow(const struct vg_bvh *t, const double x[3],
+                           double above, double enough,
+                           struct vg_bvh_reach *reach, double *by);
+double vg_bvh_above_wide(const struct vg_bvh *t, const double lo[3],
+                         const double hi[3], double below, uint32_t *hint);
+double vg_bvh_below_wide(const struct vg_bvh *t, const double x[3],
+                         double above, double enough,
+                         struct vg_bvh_reach *reach, double *by);
+
 #endif

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/sizing/sizing_parts.h"
+#include "core/sizing/sizing_octree.h"
 
 struct coarsening {
   const struct vg_sizing *from, *most;

@@ -149,4 +149,17 @@ double vg_octree_least(const struct vg_octree *t, const double lo[3],
 double vg_octree_bound(const struct vg_octree *t, const double lo[3],
                        double side);
 
+/** A sizing field (sizing.h). */
+struct vg_sizing {
+  struct vg_octree octree;
+  double growth, cap;     /* for spacings outside the octree: rate - 1, and
+                             their upper limit */
+  double slope;           /* bound on the gradient within the octree */
+  double least, most;     /* range over the octree */
+  double reach;           /* bound on the ratio of the largest and the mean
+                             size at a point; 1 if the field is isotropic */
+  struct vg_shmem common; /* shared memory with the octree's arrays, if it is
+                             used */
+};
+
 #endif

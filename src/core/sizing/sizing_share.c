@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/sizing/sizing_parts.h"
+#include "core/sizing/sizing_octree.h"
 
 /* The scalar members, the tree, its smallest spacings, the leaves, their
  * tensors. */
