@@ -213,10 +213,8 @@ VG_WITHIN int32_t bin_of(double x, double per_unit, int32_t n)
   return (int32_t)(at < n - 1 ? at : n - 1);
 }
 
-VG_WITHIN void count(const struct vg_tet_batch *b, struct vg_tet_bins *out)
+VG_WITHIN void find_bins(const struct vg_tet_batch *b, struct vg_tet_bins *out)
 {
-  static const double low[5] = { 5, 10, 15, 20, 30 };
-  static const double high[3] = { 150, 160, 170 };
   size_t n = b->n;
 
   for (size_t t = 0; t < n; t++)
@@ -228,13 +226,24 @@ VG_WITHIN void count(const struct vg_tet_batch *b, struct vg_tet_bins *out)
   for (size_t t = 0; t < n; t++)
     out->radius_ratio[t] = bin_of(b->radius_ratio[t], VG_HIST_UNIT,
                                   VG_HIST_UNIT);
+}
+
+/* Cells below and above the limits, if the extremes say that there are any. */
+VG_WITHIN void count_limits(const struct vg_tet_batch *b,
+                            struct vg_tet_bins *out)
+{
+  static const double low[5] = { 5, 10, 15, 20, 30 };
+  static const double high[3] = { 150, 160, 170 };
+
   for (int k = 0; k < 5; k++) {
+    size_t n = out->angle_least < low[k] ? b->n : 0;
     uint64_t sum = 0;
 
     for (size_t t = 0; t < n; t++) sum += b->least[t] < low[k];
     out->below[k] = sum;
   }
   for (int k = 0; k < 3; k++) {
+    size_t n = out->angle_most > high[k] ? b->n : 0;
     uint64_t sum = 0;
 
     for (size_t t = 0; t < n; t++) sum += b->most[t] > high[k];
@@ -282,8 +291,9 @@ VG_WITHIN void find_extremes(const struct vg_tet_batch *b,
 static VG_WIDE void count_wide(const struct vg_tet_batch *b,
                                struct vg_tet_bins *out)
 {
-  count(b, out);
+  find_bins(b, out);
   find_extremes(b, out);
+  count_limits(b, out);
 }
 #endif
 
@@ -295,6 +305,7 @@ void vg_tets_count(const struct vg_tet_batch *b, struct vg_tet_bins *out)
     return;
   }
 #endif
-  count(b, out);
+  find_bins(b, out);
   find_extremes(b, out);
+  count_limits(b, out);
 }
