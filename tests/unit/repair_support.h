@@ -117,13 +117,13 @@ static inline void fill_slab(const struct scene *s, int g, const int *owner,
 {
   const struct vg_tets *t = &s->t;
   uint32_t *to = vg_alloc(t->n_point, sizeof *to);
+  uint32_t(*cell)[4] = vg_alloc(t->n_cell, sizeof *cell);
   int pass;
 
   memset(q, 0, sizeof *q);
   q->in = vg_alloc(t->n_point, sizeof *q->in);
   q->x = vg_alloc(t->n_point, sizeof *q->x);
-  q->cell = vg_alloc(t->n_cell, sizeof *q->cell);
-  if (!to || !q->in || !q->x || !q->cell) abort();
+  if (!to || !q->in || !q->x || !cell) abort();
   memset(to, 0xff, t->n_point * sizeof *to);
   for (size_t c = 0; c < t->n_cell; c++)
     for (int i = 0; i < 4; i++)
@@ -139,10 +139,14 @@ static inline void fill_slab(const struct scene *s, int g, const int *owner,
     }
   for (size_t c = 0; c < t->n_cell; c++) {
     if (slab_of_cell(s, c) != g) continue;
-    for (int i = 0; i < 4; i++) q->cell[q->n_cell][i] = to[t->cell[c].v[i]];
+    for (int i = 0; i < 4; i++) cell[q->n_cell][i] = to[t->cell[c].v[i]];
     q->n_cell++;
   }
+  if (vg_packed_cells_new(q->n_cell, (const uint32_t(*)[4])cell,
+                          q->n_in + q->n_point, &q->cell))
+    abort();
   free(to);
+  free(cell);
 }
 
 /* The pieces of this rank. */
@@ -212,7 +216,12 @@ static inline struct print print_of(const struct vg_piece *q)
   memcpy(p.path, q->path, sizeof p.path);
   p.d = vg_digest_of(p.d, sizeof n, n);
   p.d = vg_digest_of(p.d, (q->n_in + q->n_point) * sizeof *q->x, q->x);
-  p.d = vg_digest_of(p.d, q->n_cell * sizeof *q->cell, q->cell);
+  for (size_t c = 0; c < q->n_cell; c++) {
+    uint32_t v[4];
+
+    vg_piece_cell(q, c, v);
+    p.d = vg_digest_of(p.d, sizeof v, v);
+  }
   for (size_t k = 0; k < q->n_in; k++) {
     uint32_t place = (uint32_t)q->in[k];
 

@@ -541,7 +541,7 @@ static void dropped_cells_are_forgotten(void **state)
     assert_int_equal(vg_spans_add(&spans, &span, NULL), VG_OK);
     memcpy(p.piece[k].path, span.path, sizeof span.path);
     p.piece[k].serial = 4 + k;
-    p.piece[k].cell = vg_alloc(1, sizeof *p.piece[k].cell);
+    assert_int_equal(vg_packed_cells_new(0, NULL, 1, &p.piece[k].cell), 0);
   }
   assert_int_equal(vg_partition_drop(&p, NULL, &spans, NULL), VG_OK);
   assert_int_equal(p.n_piece, 3);

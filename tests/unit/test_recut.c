@@ -21,11 +21,10 @@ static struct vg_piece piece_of(size_t n_cell, const uint32_t (*cell)[4])
 
   q.in = vg_alloc(5, sizeof *q.in);
   q.x = vg_alloc(5, sizeof *q.x);
-  q.cell = vg_alloc(n_cell, sizeof *q.cell);
-  assert_true(q.in && q.x && q.cell);
+  assert_true(q.in && q.x);
+  assert_int_equal(vg_packed_cells_new(n_cell, cell, 5, &q.cell), 0);
   for (uint32_t k = 0; k < 5; k++) q.in[k] = VG_POINT_ID(3, 9 - k);
   memcpy(q.x, x, sizeof x);
-  memcpy(q.cell, cell, n_cell * sizeof *cell);
   return q;
 }
 

@@ -60,8 +60,8 @@ static void whole(const struct scene *s, struct vg_tets *t)
     const struct vg_piece *q = &s->p.piece[k];
 
     for (size_t c = 0; c < q->n_cell; c++, at++)
-      for (int i = 0; i < 4; i++) {
-        uint32_t v = q->cell[c][i];
+      for (size_t i = 0; i < 4; i++) {
+        uint32_t v = vg_packed_corner(&q->cell, 4 * c + i);
         size_t p = index_of(s,
                             v < q->n_in ? q->in[v]
                                         : VG_POINT_ID(q->serial, v - q->n_in),
@@ -181,8 +181,8 @@ static void test_border_stays(void **state)
       n_moved += (size_t)moved;
       if (d > 4.5) assert_false(moved);
     }
-    for (size_t c = 0; c < q->n_cell; c++)
-      for (int i = 0; i < 4; i++) used[q->cell[c][i]] = 1;
+    for (size_t k = 0; k < 4 * q->n_cell; k++)
+      used[vg_packed_corner(&q->cell, k)] = 1;
     for (size_t i = 0; i < q->n_in; i++) assert_true(used[i]);
     free(used);
   }

@@ -206,12 +206,7 @@ static uint64_t bytes_of_pieces(const struct vg_partition *p)
 {
   uint64_t sum = 0;
 
-  for (size_t i = 0; i < p->n_piece; i++) {
-    const struct vg_piece *q = &p->piece[i];
-
-    sum += q->n_in * sizeof *q->in + (q->n_in + q->n_point) * sizeof *q->x +
-           q->n_cell * sizeof *q->cell;
-  }
+  for (size_t i = 0; i < p->n_piece; i++) sum += vg_piece_bytes(&p->piece[i]);
   return sum;
 }
 

@@ -144,7 +144,7 @@ static vg_status serve(const struct vg_slices *s, size_t i,
 {
   const struct vg_partition *p = s->user;
   const struct vg_piece *piece;
-  uint32_t *id, *own;
+  uint32_t *id, *own, (*cell)[4];
 
   memset(out, 0, sizeof *out);
   if (p->rank == 0 && i-- == 0) {
@@ -154,8 +154,11 @@ static vg_status serve(const struct vg_slices *s, size_t i,
   piece = &p->piece[i];
   out->n_point = piece->n_in + piece->n_point;
   out->n_own = piece->n_point;
-  id = vg_alloc(out->n_point + out->n_own, sizeof *id);
-  if (!id) return vg_fail_memory(err, "a slice of the mesh");
+  /* one block: cells, then numbers of points */
+  cell = vg_alloc(4 * piece->n_cell + out->n_point + out->n_own, sizeof *id);
+  if (!cell) return vg_fail_memory(err, "a slice of the mesh");
+  vg_packed_cells_all(&piece->cell, piece->n_cell, cell);
+  id = cell[piece->n_cell];
   own = id + out->n_point;
   for (size_t k = 0; k < piece->n_in; k++) id[k] = id_of(p, piece->in[k]);
   for (size_t k = 0; k < piece->n_point; k++) {
@@ -163,12 +166,13 @@ static vg_status serve(const struct vg_slices *s, size_t i,
     own[k] = (uint32_t)(piece->n_in + k);
   }
   out->x = (const double(*)[3])piece->x;
-  out->id = out->keep = id;
+  out->id = id;
   out->own = own;
   out->point_at = p->point_at[i];
   out->cell_at[VG_SLICE_TET] = p->cell_at[i];
   out->n_cell[VG_SLICE_TET] = piece->n_cell;
-  out->cell[VG_SLICE_TET] = piece->cell[0];
+  out->cell[VG_SLICE_TET] = cell[0];
+  out->keep = cell;
   out->domain = p->domain[i];
   out->kind = (uint8_t)kind_of(piece->kind);
   return VG_OK;

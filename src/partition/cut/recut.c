@@ -212,12 +212,13 @@ static uint64_t n_common(const struct unfilled *u, const struct vg_piece *q,
   uint64_t n = 0;
 
   for (size_t k = 0; k < 4 * q->n_cell && n < most; k++) {
-    const uint32_t *v = q->cell[k / 4];
     const uint8_t *f = vg_face[k % 4];
-    const struct corners c = corners_of(name_in(q, v[f[0]]),
-                                        name_in(q, v[f[1]]),
-                                        name_in(q, v[f[2]]));
+    struct corners c;
+    uint32_t v[4];
 
+    vg_piece_cell(q, k / 4, v);
+    c = corners_of(name_in(q, v[f[0]]), name_in(q, v[f[1]]),
+                   name_in(q, v[f[2]]));
     n += bsearch(&c, u->face, u->n_face, sizeof c, by_corners) != NULL;
   }
   return n;

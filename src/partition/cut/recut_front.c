@@ -134,8 +134,11 @@ vg_status vg_recut_front(const struct vg_piece *q, struct vg_front *f,
   memcpy(f->x, q->x, f->n_point * sizeof *f->x);
   for (size_t k = 0; k < f->n_point; k++)
     f->id[k] = k < q->n_in ? q->in[k] : VG_POINT_ID(q->serial, k - q->n_in);
-  for (size_t k = 0; k < f->n_face; k++)
-    for (int i = 0; i < 3; i++)
-      f->face[k][i] = q->cell[k / 4][vg_face[k % 4][i]];
+  for (size_t k = 0; k < f->n_face; k++) {
+    uint32_t v[4];
+
+    vg_piece_cell(q, k / 4, v);
+    for (int i = 0; i < 3; i++) f->face[k][i] = v[vg_face[k % 4][i]];
+  }
   return vg_recut_settle(f, err);
 }

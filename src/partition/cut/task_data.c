@@ -32,8 +32,14 @@ void vg_piece_release(struct vg_piece *p)
 {
   free(p->in);
   free(p->x);
-  free(p->cell);
+  vg_packed_cells_release(&p->cell);
   memset(p, 0, sizeof *p);
+}
+
+size_t vg_piece_bytes(const struct vg_piece *p)
+{
+  return p->n_in * sizeof *p->in + (p->n_in + p->n_point) * sizeof *p->x +
+         vg_packed_cells_bytes(&p->cell, p->n_cell);
 }
 
 void vg_change_release(struct vg_change *c)

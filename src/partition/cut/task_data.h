@@ -11,6 +11,7 @@
 #include "core/fill/fill.h"
 #include "core/front/front.h"
 #include "core/front/region.h"
+#include "core/mesh/packed_cells.h"
 #include "partition/load/load.h"
 
 /* Global id of a point in a front: the serial of the task that created it, and
@@ -34,11 +35,11 @@ struct vg_piece {
   char kind; /* VG_SPAN_... */
   uint32_t serial;
   size_t n_in, n_point, n_cell;
-  size_t n_adopted;    /* Part of n_point: adopted points of a leaf, which
-                          other pieces also use. */
-  uint64_t *in;        /* [n_in] Global ids of points of other pieces. */
-  double (*x)[3];      /* [n_in + n_point] Points of others, then its own. */
-  uint32_t (*cell)[4]; /* [n_cell] Indices into x. */
+  size_t n_adopted; /* Part of n_point: adopted points of a leaf, which
+                       other pieces also use. */
+  uint64_t *in;     /* [n_in] Global ids of points of other pieces. */
+  double (*x)[3];   /* [n_in + n_point] Points of others, then its own. */
+  struct vg_packed_cells cell; /* [n_cell] Indices into x. */
 };
 #define VG_PIECE_INIT                                                          \
   {                                                                            \
@@ -46,6 +47,16 @@ struct vg_piece {
   }
 
 void vg_piece_release(struct vg_piece *p);
+
+/** Points of cell c, indices into p->x. */
+static inline void vg_piece_cell(const struct vg_piece *p, size_t c,
+                                 uint32_t v[4])
+{
+  vg_packed_cell(&p->cell, c, v);
+}
+
+/** Bytes of memory of the arrays. */
+size_t vg_piece_bytes(const struct vg_piece *p);
 
 /** Outcome of a zone for its home rank: the change of the front. */
 struct vg_change {

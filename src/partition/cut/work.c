@@ -126,7 +126,7 @@ static size_t number_used(const struct vg_filled *m, size_t n_front,
 }
 
 /* Copies the points of the front that the cells use, then the new points, and
- * renumbers the cells. The piece takes the cells over. */
+ * renumbers the cells. */
 static void take_points(struct vg_piece *piece, struct vg_filled *m,
                         const struct vg_front *f, const uint32_t *number,
                         size_t n_used)
@@ -144,8 +144,6 @@ static void take_points(struct vg_piece *piece, struct vg_filled *m,
 
       *v = *v < f->n_point ? number[*v] : (uint32_t)(*v - f->n_point + n_used);
     }
-  piece->cell = m->cell;
-  m->cell = NULL;
 }
 
 /* Keeps the cells on this rank. */
@@ -168,6 +166,11 @@ static vg_status to_piece(struct vg_partition *p, struct vg_filled *m,
   piece.x = vg_alloc(n_used + m->n_point, sizeof *piece.x);
   if (!piece.in || !piece.x) goto refused;
   take_points(&piece, m, f, number, n_used);
+  if (vg_packed_cells_new(m->n_cell, (const uint32_t(*)[4])m->cell,
+                          n_used + m->n_point, &piece.cell))
+    goto refused;
+  free(m->cell);
+  m->cell = NULL;
   /* points that a leaf adopts are the last ones of its front (recut_ids.c) */
   piece.n_in = n_used;
   while (piece.n_in && piece.in[piece.n_in - 1] >> 32 == serial) piece.n_in--;

@@ -37,19 +37,20 @@ static int touches(const uint8_t *ring, const uint32_t cell[4], int reach)
   return 0;
 }
 
-/* Lists the cells near interfaces. cell out: [*n]. */
+/* Lists the cells near interfaces. cell out: [q.n_cell], *n of them used. */
 static void list_near(const struct vg_piece *q, uint8_t *ring,
                       uint32_t (*cell)[4], size_t *n)
 {
   *n = 0;
   for (size_t v = 0; v < q->n_in + q->n_point; v++)
     ring[v] = (uint8_t)on_interface(q, (uint32_t)v);
+  vg_packed_cells_all(&q->cell, q->n_cell, cell);
   for (size_t i = 0; i < q->n_cell; i++)
-    for (int k = 0; k < 4 && touches(ring, q->cell[i], 1); k++)
-      if (!ring[q->cell[i][k]]) ring[q->cell[i][k]] = 2;
+    for (int k = 0; k < 4 && touches(ring, cell[i], 1); k++)
+      if (!ring[cell[i][k]]) ring[cell[i][k]] = 2;
   for (size_t i = 0; i < q->n_cell; i++)
-    if (q->kind != VG_SPAN_LEAF || touches(ring, q->cell[i], 2))
-      memcpy(cell[(*n)++], q->cell[i], sizeof *cell);
+    if (q->kind != VG_SPAN_LEAF || touches(ring, cell[i], 2))
+      memmove(cell[(*n)++], cell[i], sizeof *cell);
 }
 
 static void count(struct census *c, const struct vg_piece *q, int worker)

@@ -94,10 +94,10 @@ static vg_status pick_in(const struct vg_piece *q, const uint32_t *in,
                          struct picks *s)
 {
   for (size_t c = 0; c < q->n_cell; c++) {
-    const uint32_t *v = q->cell[c];
-    uint32_t least = VG_NO_CLUSTER, all = VG_NO_CLUSTER;
+    uint32_t v[4], least = VG_NO_CLUSTER, all = VG_NO_CLUSTER;
     int taken = 0;
 
+    vg_piece_cell(q, c, v);
     for (int i = 0; i < 4; i++) {
       all &= in[v[i]];
       if (in[v[i]] < least) least = in[v[i]];
@@ -156,9 +156,11 @@ static uint64_t name_of(const struct vg_piece *q, uint32_t v)
 static void put_taken(struct repair *r, const struct vg_piece *q,
                       const struct vg_key *taken, struct vg_outbox *post)
 {
+  uint32_t corner[4];
+
+  vg_piece_cell(q, taken->index, corner);
   for (int i = 0; i < 4; i++) {
-    uint32_t v = q->cell[taken->index][i];
-    uint32_t cluster = vg_spot_grid_at(&r->balls, q->x[v]);
+    uint32_t v = corner[i], cluster = vg_spot_grid_at(&r->balls, q->x[v]);
     uint64_t name = name_of(q, v);
     uint8_t hold = 1;
     struct vg_cluster_cells b = { .cluster = cluster,
@@ -179,24 +181,27 @@ static void fill_block(const struct vg_piece *q, size_t n,
                        const struct vg_key *pick, uint32_t *number,
                        struct vg_cluster_cells *b)
 {
+  uint32_t v[4];
+
   b->cluster = (uint32_t)pick->key;
   b->n_point = 0;
   b->n_cell = n;
   memcpy(b->path, q->path, sizeof b->path);
-  for (size_t c = 0; c < n; c++)
+  for (size_t c = 0; c < n; c++) {
+    vg_piece_cell(q, pick[c].index, v);
     for (int i = 0; i < 4; i++) {
-      uint32_t v = q->cell[pick[c].index][i];
-
-      if (number[v] == VG_NO_CLUSTER) {
-        b->name[b->n_point] = name_of(q, v);
-        memcpy(b->x[b->n_point], q->x[v], sizeof *b->x);
-        number[v] = (uint32_t)b->n_point++;
+      if (number[v[i]] == VG_NO_CLUSTER) {
+        b->name[b->n_point] = name_of(q, v[i]);
+        memcpy(b->x[b->n_point], q->x[v[i]], sizeof *b->x);
+        number[v[i]] = (uint32_t)b->n_point++;
       }
-      b->cell[c][i] = number[v];
+      b->cell[c][i] = number[v[i]];
     }
-  for (size_t c = 0; c < n; c++)
-    for (int i = 0; i < 4; i++)
-      number[q->cell[pick[c].index][i]] = VG_NO_CLUSTER;
+  }
+  for (size_t c = 0; c < n; c++) {
+    vg_piece_cell(q, pick[c].index, v);
+    for (int i = 0; i < 4; i++) number[v[i]] = VG_NO_CLUSTER;
+  }
 }
 
 static vg_status put_piece(struct repair *r, size_t k, struct vg_outbox *post,
@@ -546,9 +551,10 @@ static size_t bad_cells(const struct vg_partition *p)
     const struct vg_piece *q = &p->piece[k];
 
     for (size_t c = 0; c < q->n_cell; c++) {
-      const uint32_t *v = q->cell[c];
+      uint32_t v[4];
       int is_in = 1;
 
+      vg_piece_cell(q, c, v);
       for (int i = 0; i < 4; i++) is_in &= v[i] < q->n_in + q->n_point;
       bad += !is_in ||
              !(vg_orient3d(q->x[v[0]], q->x[v[1]], q->x[v[2]], q->x[v[3]]) > 0);

@@ -32,12 +32,14 @@ static vg_status find_points(struct strip *s)
   s->moves = vg_calloc(s->t.n_point, 1);
   s->point = vg_alloc(q->n_point, sizeof *s->point);
   if (!s->moves || !s->point) return VG_ERR_MEMORY;
-  for (size_t k = 0; k < s->n_hit; k++)
-    for (int i = 0; i < 4; i++) {
-      uint32_t v = q->cell[s->hit[k]][i];
+  for (size_t k = 0; k < s->n_hit; k++) {
+    uint32_t v[4];
 
-      s->moves[v] = v >= q->n_in && !(s->shared && s->shared[v - q->n_in]);
-    }
+    vg_piece_cell(q, s->hit[k], v);
+    for (int i = 0; i < 4; i++)
+      s->moves[v[i]] = v[i] >= q->n_in &&
+                       !(s->shared && s->shared[v[i] - q->n_in]);
+  }
   for (size_t v = q->n_in; v < s->t.n_point; v++)
     if (s->moves[v]) s->point[s->n++] = (uint32_t)v;
   return VG_OK;
@@ -67,8 +69,9 @@ static vg_status take_cells(struct strip *s)
   size_t k = 0;
 
   for (size_t c = 0; c < q->n_cell; c++) {
-    const uint32_t *v = q->cell[c];
+    uint32_t v[4];
 
+    vg_piece_cell(q, c, v);
     while (k < s->n_hit && s->hit[k] < c) k++;
     if ((s->moves[v[0]] | s->moves[v[1]] | s->moves[v[2]] | s->moves[v[3]]) &&
         add_cell(s, v, k < s->n_hit && s->hit[k] == c))

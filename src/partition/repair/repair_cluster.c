@@ -286,15 +286,16 @@ static vg_status to_piece(const struct joint *j, struct vg_repaired *m,
 {
   const struct vg_tets *t = &j->t;
   struct vg_piece *p = &m->piece;
+  uint32_t(*cell)[4] = vg_alloc(p->n_cell, sizeof *cell);
   size_t n = 0;
+  int refused;
 
   p->in = vg_alloc(p->n_in, sizeof *p->in);
   p->x = vg_alloc(p->n_in + p->n_point, sizeof *p->x);
-  p->cell = vg_alloc(p->n_cell, sizeof *p->cell);
   m->moved = vg_alloc(p->n_in, sizeof *m->moved);
   m->x = vg_alloc(p->n_in, sizeof *m->x);
-  if (!p->in || !p->x || !p->cell || !m->moved || !m->x)
-    return vg_fail_memory(err, "repairs");
+  refused = !p->in || !p->x || !cell || !m->moved || !m->x;
+  if (refused) goto done;
   for (size_t q = 0; q < t->n_point; q++)
     if (to[q] != VG_NONE) memcpy(p->x[to[q]], t->x[q], sizeof *p->x);
   for (size_t q = 0; q < j->n_point; q++) {
@@ -309,10 +310,14 @@ static vg_status to_piece(const struct joint *j, struct vg_repaired *m,
   }
   for (size_t c = 0; c < t->n_cell; c++) {
     if (t->flag[c] & VG_DEAD) continue;
-    for (int i = 0; i < 4; i++) p->cell[n][i] = to[t->cell[c].v[i]];
+    for (int i = 0; i < 4; i++) cell[n][i] = to[t->cell[c].v[i]];
     n++;
   }
-  return VG_OK;
+  refused = vg_packed_cells_new(n, (const uint32_t(*)[4])cell,
+                                p->n_in + p->n_point, &p->cell);
+done:
+  free(cell);
+  return refused ? vg_fail_memory(err, "repairs") : VG_OK;
 }
 
 /* Lists balls around cells for which another attempt needs more room. */

@@ -15,27 +15,17 @@ void vg_edit_release(struct vg_edit *c)
   memset(c, 0, sizeof *c);
 }
 
-/* Keeps the remaining cells and appends the new ones. */
-static vg_status edit_cells(struct vg_piece *q, const struct vg_edit *c)
+/* Lists the remaining cells, then the new ones. cell out: [q.n_cell +
+ * c.n_cell]; returns their number. */
+static size_t list_cells(const struct vg_piece *q, const struct vg_edit *c,
+                         uint32_t (*cell)[4])
 {
   size_t kept = 0;
 
-  for (size_t k = 0; k < q->n_cell; k++) {
-    if (c->gone && c->gone[k]) continue;
-    if (kept < k) memcpy(q->cell[kept], q->cell[k], sizeof *q->cell);
-    kept++;
-  }
-  if (kept + c->n_cell > q->n_cell) {
-    uint32_t(*cell)[4] = vg_alloc(kept + c->n_cell, sizeof *cell);
-
-    if (!cell) return VG_ERR_MEMORY;
-    if (kept) memcpy(cell, q->cell, kept * sizeof *cell);
-    free(q->cell);
-    q->cell = cell;
-  }
-  if (c->n_cell) memcpy(q->cell + kept, c->cell, c->n_cell * sizeof *q->cell);
-  q->n_cell = kept + c->n_cell;
-  return VG_OK;
+  for (size_t k = 0; k < q->n_cell; k++)
+    if (!c->gone || !c->gone[k]) vg_piece_cell(q, k, cell[kept++]);
+  if (c->n_cell) memcpy(cell + kept, c->cell, c->n_cell * sizeof *cell);
+  return kept + c->n_cell;
 }
 
 /* Makes room for new points of other pieces. */
@@ -94,19 +84,30 @@ static void edit_points(struct vg_piece *q, const struct vg_edit *c,
 
 vg_status vg_piece_edit(struct vg_piece *q, const struct vg_edit *c)
 {
-  size_t n = q->n_in + q->n_point + c->n_point;
+  size_t n = q->n_in + q->n_point + c->n_point, n_cell;
   uint32_t *to = vg_alloc(n, sizeof *to);
+  uint32_t(*cell)[4] = vg_alloc(q->n_cell + c->n_cell, sizeof *cell);
+  struct vg_packed_cells packed = { 0 };
+  vg_status st = to && cell ? make_room(q, c->n_point) : VG_ERR_MEMORY;
 
-  if (!to || make_room(q, c->n_point) < 0 || edit_cells(q, c) < 0) {
-    free(to);
-    return VG_ERR_MEMORY;
-  }
+  if (st < 0) goto done;
+  n_cell = list_cells(q, c, cell);
   memset(to, 0xff, n * sizeof *to);
-  for (size_t k = 0; k < q->n_cell; k++)
-    for (int i = 0; i < 4; i++) to[q->cell[k][i]] = 0;
+  for (size_t k = 0; k < n_cell; k++)
+    for (int i = 0; i < 4; i++) to[cell[k][i]] = 0;
   edit_points(q, c, to);
-  for (size_t k = 0; k < q->n_cell; k++)
-    for (int i = 0; i < 4; i++) q->cell[k][i] = to[q->cell[k][i]];
+  for (size_t k = 0; k < n_cell; k++)
+    for (int i = 0; i < 4; i++) cell[k][i] = to[cell[k][i]];
+  if (vg_packed_cells_new(n_cell, (const uint32_t(*)[4])cell,
+                          q->n_in + q->n_point, &packed)) {
+    st = VG_ERR_MEMORY;
+    goto done;
+  }
+  vg_packed_cells_release(&q->cell);
+  q->cell = packed;
+  q->n_cell = n_cell;
+done:
   free(to);
-  return VG_OK;
+  free(cell);
+  return st;
 }

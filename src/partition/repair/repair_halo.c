@@ -143,9 +143,9 @@ static vg_status find_hits(struct user *u)
   const struct vg_piece *q = u->q;
 
   for (size_t c = 0; c < q->n_cell; c++) {
-    const uint32_t *v = q->cell[c];
-    uint32_t at[4];
+    uint32_t v[4], at[4];
 
+    vg_piece_cell(q, c, v);
     if (v[0] >= q->n_in && v[1] >= q->n_in && v[2] >= q->n_in &&
         v[3] >= q->n_in)
       continue;
@@ -180,8 +180,8 @@ static size_t number_vertices(struct user *u, uint32_t owner, size_t n,
 
   for (int pass = 0; pass < 2; pass++)
     for (size_t c = 0; c < n; c++)
-      for (int i = 0; i < 4; i++) {
-        uint32_t v = q->cell[cell[c]][i];
+      for (size_t i = 0; i < 4; i++) {
+        uint32_t v = vg_packed_corner(&q->cell, 4 * (size_t)cell[c] + i);
         int known = v < q->n_in && u->of[v] == owner;
 
         if (known == pass || u->number[v] != VG_NO_CLUSTER) continue;
@@ -239,8 +239,11 @@ static vg_status fill_halo(struct user *u, uint32_t owner, size_t n,
     s->zone[k] = zone_of(u, v);
   }
   for (size_t c = 0; c < n; c++) {
+    uint32_t v[4];
+
     s->place[c] = cell[c];
-    for (int i = 0; i < 4; i++) s->cell[c][i] = u->number[q->cell[cell[c]][i]];
+    vg_piece_cell(q, cell[c], v);
+    for (int i = 0; i < 4; i++) s->cell[c][i] = u->number[v[i]];
   }
   for (size_t k = 0; k < n_list; k++) u->number[u->list[k]] = VG_NO_CLUSTER;
   return VG_OK;

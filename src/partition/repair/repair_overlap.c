@@ -95,8 +95,12 @@ static vg_status make_room(struct vg_overlap *f)
     n_cell += s->n_cell;
     n_other += s->n_other;
   }
-  for (size_t c = 0; c < q->n_cell; c++)
-    f->n_own += (size_t)has_shared(f, q->cell[c]);
+  for (size_t c = 0; c < q->n_cell; c++) {
+    uint32_t v[4];
+
+    vg_piece_cell(q, c, v);
+    f->n_own += (size_t)has_shared(f, v);
+  }
   n_cell += f->n_own;
   f->t.x = vg_alloc(f->n_base + n_other, sizeof *f->t.x);
   f->t.cell = vg_alloc(n_cell, sizeof *f->t.cell);
@@ -142,9 +146,10 @@ static void add_own(struct vg_overlap *f, const struct vg_owners *owners)
   const struct vg_owner *last = NULL;
 
   for (size_t c = 0; c < f->q->n_cell; c++) {
-    const uint32_t *v = f->q->cell[c];
+    uint32_t v[4];
     int later = 0;
 
+    vg_piece_cell(f->q, c, v);
     if (!has_shared(f, v)) continue;
     for (int i = 0; i < 4; i++)
       if (v[i] < f->q->n_in)
