@@ -2,6 +2,7 @@
 #include "base/memory.h"
 
 #include <assert.h>
+#include <malloc.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,4 +61,11 @@ int vg_reserve(void *block, size_t *cap, size_t need, size_t size)
   memcpy(block, &new, sizeof new);
   *cap = n;
   return 0;
+}
+
+void vg_memory_trim(void)
+{
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }

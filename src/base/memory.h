@@ -24,4 +24,9 @@ void *vg_realloc(void *block, size_t n, size_t size);
  * unchanged). */
 int vg_reserve(void *block, size_t *cap, size_t need, size_t size);
 
+/** Return the free memory of the heap to the system, after a stage that freed
+ * much. Otherwise it stays with the process, in gaps in which the arrays of the
+ * next stage may not fit. Threads: safe. */
+void vg_memory_trim(void);
+
 #endif

@@ -16,6 +16,10 @@
 #define BUCKET_ITEMS 4
 #define MOST_PARTS ((size_t)1 << 20)
 
+/* Bytes of the first block of a list, and of the largest ones. */
+#define LEAST_BLOCK ((size_t)1 << 14)
+#define MOST_BLOCK ((size_t)1 << 23)
+
 void *vg_items_add(struct vg_items *list, size_t size)
 {
   assert(list && size > 0);
@@ -38,6 +42,52 @@ vg_status vg_items_append(struct vg_items *to, const struct vg_items *more,
 void vg_items_release(struct vg_items *list)
 {
   free(list->data);
+  memset(list, 0, sizeof *list);
+}
+
+/* --- lists in blocks ------------------------------------------------------ */
+
+static struct vg_items *new_block(struct vg_item_blocks *list, size_t size)
+{
+  size_t bytes = LEAST_BLOCK;
+  struct vg_items *b;
+
+  for (size_t k = 0; k < list->n_block && bytes < MOST_BLOCK; k++) bytes *= 2;
+  if (vg_reserve(&list->block, &list->room, list->n_block + 1,
+                 sizeof *list->block))
+    return NULL;
+  b = &list->block[list->n_block];
+  b->n = 0;
+  b->room = bytes / size + 1;
+  b->data = vg_alloc(b->room, size);
+  if (!b->data) return NULL;
+  list->n_block++;
+  return b;
+}
+
+void *vg_item_blocks_add(struct vg_item_blocks *list, size_t size)
+{
+  assert(list && size > 0);
+
+  struct vg_items *b = list->n_block ? &list->block[list->n_block - 1] : NULL;
+
+  if (!b || b->n == b->room) b = new_block(list, size);
+  return b ? b->data + size * b->n++ : NULL;
+}
+
+size_t vg_item_blocks_n(const struct vg_item_blocks *list)
+{
+  size_t n = 0;
+
+  assert(list);
+  for (size_t k = 0; k < list->n_block; k++) n += list->block[k].n;
+  return n;
+}
+
+void vg_item_blocks_release(struct vg_item_blocks *list)
+{
+  for (size_t k = 0; k < list->n_block; k++) vg_items_release(&list->block[k]);
+  free(list->block);
   memset(list, 0, sizeof *list);
 }
 
@@ -520,5 +570,46 @@ vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
   st = vg_comm_agree(m->comm, st, err);
 done:
   release(from, n_from);
+  return st;
+}
+
+/* Moves the blocks of all lists to *all, which has space for them. */
+static void join_blocks(struct vg_item_blocks *list, size_t n_list,
+                        size_t stride, struct vg_item_blocks *all)
+{
+  for (size_t l = 0; l < n_list; l++) {
+    struct vg_item_blocks *one = (void *)((unsigned char *)list + l * stride);
+
+    if (one->n_block)
+      memcpy(all->block + all->n_block, one->block,
+             one->n_block * sizeof *one->block);
+    all->n_block += one->n_block;
+    one->n_block = 0;
+    vg_item_blocks_release(one);
+  }
+}
+
+vg_status vg_rendezvous_blocks(const struct vg_rendezvous *m,
+                               struct vg_item_blocks *list, size_t n_list,
+                               size_t stride, struct vg_error *err)
+{
+  assert(list || !n_list);
+  assert(stride >= sizeof *list &&
+         stride % _Alignof(struct vg_item_blocks) == 0);
+
+  struct vg_item_blocks all = { 0 };
+  vg_status st = VG_OK;
+
+  for (size_t l = 0; l < n_list; l++)
+    all.room += ((struct vg_item_blocks *)(void *)((unsigned char *)list +
+                                                   l * stride))
+                  ->n_block;
+  all.block = vg_calloc(all.room, sizeof *all.block);
+  if (all.block) join_blocks(list, n_list, stride, &all);
+  else st = vg_fail_memory(err, "the data shared by slices");
+  VG_TRY(vg_comm_agree(m->comm, st, err));
+  st = vg_rendezvous_run(m, all.block, all.n_block, sizeof *all.block, err);
+done:
+  vg_item_blocks_release(&all);
   return st;
 }

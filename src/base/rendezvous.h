@@ -31,6 +31,22 @@ vg_status vg_items_append(struct vg_items *to, const struct vg_items *more,
 
 void vg_items_release(struct vg_items *list);
 
+/** A list of items in blocks, each twice as large as the previous one, but not
+ * above 8 MB: a long list grows without a copy and without much unused memory.
+ * Empty if zeroed. */
+struct vg_item_blocks {
+  size_t n_block, room;
+  struct vg_items *block; /* [n_block] */
+};
+
+/** As vg_items_add. */
+void *vg_item_blocks_add(struct vg_item_blocks *list, size_t size);
+
+/** Number of items. */
+size_t vg_item_blocks_n(const struct vg_item_blocks *list);
+
+void vg_item_blocks_release(struct vg_item_blocks *list);
+
 struct vg_rendezvous {
   struct vg_comm *comm;
   int threads;
@@ -69,5 +85,11 @@ int vg_rendezvous_rank(const struct vg_rendezvous *m, const void *key);
 vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
                             struct vg_items *list, size_t n_list, size_t stride,
                             struct vg_error *err);
+
+/** vg_rendezvous_run for lists in blocks. Lists keep their items if it fails
+ * before the first message. */
+vg_status vg_rendezvous_blocks(const struct vg_rendezvous *m,
+                               struct vg_item_blocks *list, size_t n_list,
+                               size_t stride, struct vg_error *err);
 
 #endif

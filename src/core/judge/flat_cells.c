@@ -98,6 +98,14 @@ vg_status vg_flat_new(const struct vg_flat_boundary *b, struct vg_flat **out,
   return VG_OK;
 }
 
+size_t vg_flat_bytes(const struct vg_flat *f)
+{
+  if (!f) return 0;
+  return (size_t)(f->table.end - f->table.slot) * sizeof *f->table.slot +
+         (f->b.n_point + 1) * sizeof *f->first +
+         3 * f->b.n_face * sizeof *f->list;
+}
+
 void vg_flat_free(struct vg_flat *f)
 {
   if (!f) return;

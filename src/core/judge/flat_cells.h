@@ -86,6 +86,9 @@ struct vg_flat;
 vg_status vg_flat_new(const struct vg_flat_boundary *b, struct vg_flat **out,
                       struct vg_error *err);
 
+/** Bytes of memory; 0 for NULL. */
+size_t vg_flat_bytes(const struct vg_flat *f);
+
 /** Accepts NULL. */
 void vg_flat_free(struct vg_flat *f);
 

@@ -13,7 +13,7 @@
 
 static void add_edge(struct vg_judge_worker *w, uint32_t a, uint32_t b)
 {
-  struct vg_edge_item *e = vg_items_add(&w->edge, sizeof *e);
+  struct vg_edge_item *e = vg_item_blocks_add(&w->edge, sizeof *e);
 
   if (!e) {
     w->st = vg_fail_memory(&w->err, "the edges between slices");
@@ -134,7 +134,7 @@ static void boundary_body(void *context, size_t first, size_t end, int worker)
     vg_face_item_set(&f, node);
     if (vg_rendezvous_rank(c->m, &f) != me) continue;
     f.flags |= VG_FACE_BOUNDARY;
-    to = vg_items_add(&w->face, sizeof f);
+    to = vg_item_blocks_add(&w->face, sizeof f);
     if (to) *to = f;
     else w->st = vg_fail_memory(&w->err, "the faces of the boundary");
   }
@@ -157,12 +157,15 @@ static vg_status add_boundary(struct vg_slices_judgement *j,
 static void number_components(struct vg_slices_judgement *j)
 {
   for (int i = 0; i < j->n_worker; i++) {
-    struct vg_items *list = &j->worker[i].face;
-    struct vg_face_item *f = (void *)list->data;
+    const struct vg_item_blocks *list = &j->worker[i].face;
 
-    for (size_t k = 0; k < list->n; k++) {
-      f[k].component += j->n_component[f[k].flags >> VG_FACE_BITS];
-      f[k].flags &= (1u << VG_FACE_BITS) - 1;
+    for (size_t b = 0; b < list->n_block; b++) {
+      struct vg_face_item *f = (void *)list->block[b].data;
+
+      for (size_t k = 0; k < list->block[b].n; k++) {
+        f[k].component += j->n_component[f[k].flags >> VG_FACE_BITS];
+        f[k].flags &= (1u << VG_FACE_BITS) - 1;
+      }
     }
   }
 }
@@ -176,13 +179,17 @@ static vg_status meet_faces(struct vg_slices_judgement *j, struct vg_error *err)
                              meet_face,
                              j,
                              is_whole_face };
+  size_t bytes = 0;
   vg_status st;
 
   number_components(j);
   st = add_boundary(j, &m, err);
   VG_TRY(vg_comm_agree(j->comm, st, err));
-  VG_TRY(vg_rendezvous_run(&m, &j->worker[0].face, (size_t)j->n_worker,
-                           sizeof *j->worker, err));
+  for (int i = 0; i < j->n_worker; i++)
+    bytes += vg_item_blocks_n(&j->worker[i].face) * m.size;
+  VG_TRY(vg_rendezvous_blocks(&m, &j->worker[0].face, (size_t)j->n_worker,
+                              sizeof *j->worker, err));
+  vg_judge_note_bytes(j, bytes); /* edges were added before faces were freed */
   st = vg_comm_agree(j->comm, worst_status(j, err), err);
 done:
   return st;
@@ -239,8 +246,8 @@ static vg_status meet_edges(struct vg_slices_judgement *j, struct vg_error *err)
                              j,
                              NULL };
 
-  return vg_rendezvous_run(&m, &j->worker[0].edge, (size_t)j->n_worker,
-                           sizeof *j->worker, err);
+  return vg_rendezvous_blocks(&m, &j->worker[0].edge, (size_t)j->n_worker,
+                              sizeof *j->worker, err);
 }
 
 static int by_key(const void *a, const void *b)
@@ -341,8 +348,8 @@ static vg_status meet_places(struct vg_slices_judgement *j,
   struct vg_bytes crowd = { 0, NULL };
   vg_status st;
 
-  VG_TRY(vg_rendezvous_run(&m, &j->worker[0].place, (size_t)j->n_worker,
-                           sizeof *j->worker, err));
+  VG_TRY(vg_rendezvous_blocks(&m, &j->worker[0].place, (size_t)j->n_worker,
+                              sizeof *j->worker, err));
   st = vg_comm_agree(j->comm, worst_status(j, err), err);
   if (st >= 0) st = gather_crowds(j, &crowd, err);
   if (st >= 0 && crowd.n) st = count_duplicates(j, &crowd, err);
@@ -355,9 +362,9 @@ vg_status vg_judge_match(struct vg_slices_judgement *j, struct vg_error *err)
 {
   vg_status st;
 
+  VG_TRY(meet_places(j, err)); /* first: meeting faces adds edges */
   VG_TRY(meet_faces(j, err));
   if (j->sizing) VG_TRY(meet_edges(j, err));
-  VG_TRY(meet_places(j, err));
 done:
   return st;
 }

@@ -119,7 +119,7 @@ static vg_status note_points(struct work *k, struct vg_error *err)
   for (size_t i = 0; i < s->n_own; i++) {
     const double *x = s->x[s->own[i]];
     struct vg_place_item place = vg_place_item(x);
-    uint64_t *key = vg_items_add(&k->w->place, sizeof *key);
+    uint64_t *key = vg_item_blocks_add(&k->w->place, sizeof *key);
 
     if (!key) return vg_fail_memory(err, "the points of slices");
     *key = vg_rendezvous_hash(&place, sizeof place);
@@ -154,7 +154,7 @@ static vg_status keep_faces(struct work *k, struct vg_error *err)
 {
   for (size_t i = 0; i < k->unpaired.n_face; i++) {
     const struct vg_unpaired_face *from = &k->unpaired.face[i];
-    struct vg_face_item *f = vg_items_add(&k->w->face, sizeof *f);
+    struct vg_face_item *f = vg_item_blocks_add(&k->w->face, sizeof *f);
 
     if (!f) return vg_fail_memory(err, "the faces between slices");
     item_of_local(k, from->node, f);
@@ -170,7 +170,7 @@ static vg_status keep_edges(struct work *k, struct vg_error *err)
 {
   for (size_t i = 0; i < k->unpaired.n_edge; i++) {
     const struct vg_unpaired_edge *from = &k->unpaired.edge[i];
-    struct vg_edge_item *e = vg_items_add(&k->w->edge, sizeof *e);
+    struct vg_edge_item *e = vg_item_blocks_add(&k->w->edge, sizeof *e);
     uint32_t a = k->slice->id[from->node[0]], b = k->slice->id[from->node[1]];
 
     if (!e) return vg_fail_memory(err, "the edges between slices");
@@ -228,6 +228,18 @@ done:
   return st;
 }
 
+/* Note the bytes of the arrays of a slice and of the volumes of its cells. */
+static void note_size(const struct work *k)
+{
+  const struct vg_slice *s = k->slice;
+  size_t n = s->n_point * (sizeof *s->x + sizeof *s->id) +
+             s->n_own * sizeof *s->own + k->n_cell * sizeof(float);
+
+  for (size_t kind = 0; kind < VG_SLICE_KINDS; kind++)
+    n += s->n_cell[kind] * (4 + kind) * sizeof(uint32_t);
+  if (n > k->w->slice_bytes) k->w->slice_bytes = n;
+}
+
 static vg_status judge_slice(struct vg_slices_judgement *j,
                              struct vg_judge_worker *w, size_t at,
                              struct vg_error *err)
@@ -246,6 +258,7 @@ static vg_status judge_slice(struct vg_slices_judgement *j,
     w->n_cell[kind] += slice.n_cell[kind];
     k.n_cell += slice.n_cell[kind];
   }
+  note_size(&k);
   k.f->n.n_cell += k.n_cell;
   k.f->n.n_point += slice.n_own;
   if (!check(&k)) goto done;

@@ -99,9 +99,9 @@ static void release(struct vg_slices_judgement *j)
   for (int i = 0; i < j->n_worker; i++) {
     struct vg_judge_worker *w = &j->worker[i];
 
-    vg_items_release(&w->face);
-    vg_items_release(&w->edge);
-    vg_items_release(&w->place);
+    vg_item_blocks_release(&w->face);
+    vg_item_blocks_release(&w->edge);
+    vg_item_blocks_release(&w->place);
     vg_items_release(&w->crowd);
     vg_items_release(&w->suspect);
     for (int q = 0; q < VG_JUDGED; q++) {
@@ -114,6 +114,21 @@ static void release(struct vg_slices_judgement *j)
   free(j->place);
   free(j->n_component);
   free(j->suspect);
+}
+
+void vg_judge_note_bytes(struct vg_slices_judgement *j, size_t more)
+{
+  size_t n = more + j->n_place * sizeof *j->place +
+             (size_t)j->n_judged * j->n_word * sizeof **j->used;
+
+  for (int i = 0; i < j->n_worker; i++) {
+    const struct vg_judge_worker *w = &j->worker[i];
+
+    n += vg_item_blocks_n(&w->face) * sizeof(struct vg_face_item) +
+         vg_item_blocks_n(&w->edge) * sizeof(struct vg_edge_item) +
+         vg_item_blocks_n(&w->place) * sizeof(uint64_t);
+  }
+  if (n > j->bytes) j->bytes = n;
 }
 
 /* --- slices --------------------------------------------------------------- */
@@ -388,6 +403,9 @@ static void report_all(struct vg_slices_judgement *j, const size_t *n_component,
     vg_stats_report(j->worker[0].figures[q], n_component[q],
                     j->edges_of == q ? has : 0, &r[q]);
   r[VG_JUDGED_WHOLE].enclosed = enclosed;
+  r[VG_JUDGED_WHOLE].bytes_shared = j->bytes;
+  for (int i = 0; i < j->n_worker; i++)
+    r[VG_JUDGED_WHOLE].bytes_slices += j->worker[i].slice_bytes;
   vg_report_conclude(&r[VG_JUDGED_WHOLE]);
   if (j->n_judged == 1) return;
   r += VG_JUDGED_FIELD;
@@ -427,6 +445,7 @@ static vg_status judge(struct vg_slices_judgement *j, uint64_t front_faces,
   vg_status st = judge_all_slices(j, err);
 
   VG_TRY(vg_comm_agree(j->comm, st, err));
+  vg_judge_note_bytes(j, 0);
   VG_TRY(take_census(j, &c, err));
   if (c.bad_index || c.not_finite || !(c.n_cell[0] + c.n_cell[1] + c.n_cell[2]))
     return report_unsound(j, r, err);

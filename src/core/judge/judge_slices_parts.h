@@ -3,7 +3,7 @@
  * judge_slices.c. Private.
  *
  * First, every thread checks slices one by one (judge_slice.c) and keeps the
- * data that other slices need. Then faces, edges and positions are matched
+ * data that other slices need. Then positions, faces and edges are matched
  * (judge_match.c). Finally the figures are summed and reported
  * (judge_slices.c). */
 #ifndef VG_CORE_JUDGE_JUDGE_SLICES_PARTS_H
@@ -55,16 +55,17 @@ static inline struct vg_place_item vg_place_item(const double x[3])
 
 /** Data of one thread. */
 struct vg_judge_worker {
-  struct vg_items face, edge;
-  struct vg_items place;   /* keys of positions */
-  struct vg_items crowd;   /* keys that several points have */
-  struct vg_items suspect; /* keys of faces that do not join two sides */
+  struct vg_item_blocks face, edge;
+  struct vg_item_blocks place; /* keys of positions */
+  struct vg_items crowd;       /* keys that several points have */
+  struct vg_items suspect;     /* keys of faces that do not join two sides */
   /* Figures of slices: first of layers and of the field; later of the whole
    * mesh and of the field. */
   struct vg_stats *figures[VG_JUDGED];
   uint32_t *parent[VG_JUDGED]; /* [n_component of all] union-find forests */
   double lo[3], hi[3];         /* bounding box of the points */
   uint64_t n_cell[VG_SLICE_KINDS], n_field_component;
+  size_t slice_bytes; /* arrays of the largest slice */
   vg_status st;
   struct vg_error err;
 };
@@ -95,11 +96,15 @@ struct vg_slices_judgement {
    * slices: sorted, of all ranks, known on all ranks. */
   size_t n_suspect;
   struct vg_face_key *suspect;
+  size_t bytes; /* largest memory of the data that slices share so far */
 };
 
 /** Set the canonical form of a face with these nodes in the mesh, in cyclic
  * order. node[3] is VG_NO_NODE for a triangle. */
 void vg_face_item_set(struct vg_face_item *f, const uint32_t node[4]);
+
+/** Update j->bytes with the present lists and `more` bytes. */
+void vg_judge_note_bytes(struct vg_slices_judgement *j, size_t more);
 
 /** Check slices first .. end - 1; a body of vg_parallel_for on j. */
 void vg_judge_some_slices(void *j, size_t first, size_t end, int worker);
@@ -107,7 +112,7 @@ void vg_judge_some_slices(void *j, size_t first, size_t end, int worker);
 /** Comparison of keys, for qsort and bsearch. */
 int vg_face_key_order(const void *a, const void *b);
 
-/** Match faces, then edges, then positions. Collective. */
+/** Match positions, then faces, then edges. Collective. */
 vg_status vg_judge_match(struct vg_slices_judgement *j, struct vg_error *err);
 
 /** Count the components of cells. *n_component out: [n_judged]. Collective. */

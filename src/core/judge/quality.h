@@ -78,6 +78,10 @@ struct vg_mesh_report {
   size_t hist_radius_ratio[VG_HIST_UNIT];
   struct vg_worst_cell worst[VG_WORST];
   size_t n_worst;
+  /* Memory of the check of slices on this rank, in bytes: data that is shared
+   * by slices, at the most, and the slices in work, each with the largest
+   * number of points and cells. */
+  size_t bytes_shared, bytes_slices;
   /* Flat cells by cause (if has_flat). */
   int has_flat;
   struct vg_flat_count flat[VG_FLAT_CAUSES];

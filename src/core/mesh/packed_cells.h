@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* core/mesh/packed_cells.h: finished tetrahedra in memory, with as many bits
- * per corner as the largest point index needs. A subdomain of 200,000 cells has
- * 45,000 points, so that a cell takes 8 bytes instead of 16. Any cell can be
- * read on its own; cells keep their order and that of their corners. */
+/* core/mesh/packed_cells.h: finished tetrahedra in memory, with only the bits
+ * per corner that the largest point index needs. A subdomain of 200,000 cells
+ * has 45,000 points, so that a cell takes 8 bytes instead of 16. Any cell can
+ * be read on its own; cells keep their order and that of their corners. */
 #ifndef VG_CORE_MESH_PACKED_CELLS_H
 #define VG_CORE_MESH_PACKED_CELLS_H
 
