@@ -357,6 +357,24 @@ const uint32_t *vg_layer_slices_roots(const struct vg_layer_slices *keep)
   return keep->plan.root;
 }
 
+size_t vg_layer_slices_bytes(const struct vg_layer_slices *k)
+{
+  assert(k);
+
+  const struct vg_join_plan *p = &k->plan;
+  const struct vg_expand *e = &p->expand;
+  const struct vg_mesh *b = &p->boundary;
+
+  return p->columns->n_column *
+           (sizeof *e->mark + sizeof *e->foot + sizeof *e->base) +
+         (e->n_block + 1) * (1 + VG_N_KIND) * sizeof *e->inner +
+         p->surface->n_point * sizeof *p->root +
+         p->front->n_point * (sizeof *p->id + sizeof *k->kind) +
+         b->n_tri * (sizeof *b->tri + sizeof *b->tri_patch) +
+         b->n_quad * (sizeof *b->quad + sizeof *b->quad_patch) +
+         p->first_inner * sizeof *k->point;
+}
+
 void vg_layer_slices_close(struct vg_layer_slices *k)
 {
   if (!k) return;

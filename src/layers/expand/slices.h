@@ -68,6 +68,10 @@ struct vg_flat;
 vg_status vg_layer_slices_flat(struct vg_layer_slices *keep,
                                struct vg_flat **out, struct vg_error *err);
 
+/** Bytes of memory on this rank: numbers of points and cells, the boundary of
+ * the mesh and its points. */
+size_t vg_layer_slices_bytes(const struct vg_layer_slices *keep);
+
 /** [surface n_point] point of the mesh for each point of the surface;
  * VG_NO_INDEX: the point no longer exists because its slide patch was
  * remeshed. On every rank, valid until closed. */

@@ -25,19 +25,6 @@ uint64_t vg_run_cells(const struct vg_run *r)
   return n;
 }
 
-vg_status vg_run_memory(struct vg_run *r, struct vg_error *err)
-{
-  uint64_t sum = (uint64_t)vg_report_peak_memory();
-  vg_status st;
-
-  r->memory = (double)sum;
-  if (vg_comm_node_rank(r->comm)) sum -= sum < r->common ? sum : r->common;
-  st = vg_comm_max(r->comm, 1, &r->memory, err);
-  if (st >= 0) st = vg_comm_sum(r->comm, 1, &sum, err);
-  r->memory_sum = (double)sum;
-  return st;
-}
-
 /* --- sizing field and layers, on every node ------------------------------ */
 
 /* These steps are done by the first rank of each node, on the cores of all
@@ -112,6 +99,8 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
   r->common += vg_shared_bytes(&b->common);
   st = vg_comm_agree(r->comm, st, err);
 done:
+  vg_run_stage_ends(r, VG_STAGE_SURFACE);
+  vg_memory_trim();
   return st;
 }
 
@@ -319,6 +308,8 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(open_store(r, p, boundary, sizing, &o, err));
   o.store = r->store;
   vg_run_measure(r, &p->boundary.surface, layers, sizing);
+  vg_run_stage_ends(r, VG_STAGE_SIZES);
+  vg_memory_trim();
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
                          &r->partition, &r->spans, err);
   r->time_fill = vg_display_now() - t - r->partition.number;
@@ -331,6 +322,8 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   if (st >= 0)
     r->n_field_cell = vg_partition_slices(r->field)->n_cell[VG_SLICE_TET];
 done:
+  vg_run_stage_ends(r, VG_STAGE_FILL);
+  vg_memory_trim();
   vg_mesher_close(o.mesher);
   return st;
 }
@@ -393,6 +386,8 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
   VG_TRY(vg_run_pictures_plan(&r->pictures, r->comm, &p->boundary.surface,
                               layers ? &layers->columns : NULL, err));
   VG_TRY(prepare_flat(r, &p->boundary.surface, &flat, err));
+  r->memory_of.numbers = vg_flat_bytes(flat);
+  if (r->layers) r->memory_of.numbers += vg_layer_slices_bytes(r->layers);
   VG_TRY(vg_outputs_open(r->outputs, p, r->comm, &r->slices, err));
   st = vg_slices_judge_with(r->comm, &r->slices, front_faces, sizing,
                             r->threads, flat, put_slice, r, &r->judge,
@@ -410,6 +405,7 @@ static vg_status judge(struct vg_run *r, const struct vg_problem *p,
                                 r->threads,
                                 r->layers ? &r->field_judge : &r->judge, err);
 done:
+  vg_run_stage_ends(r, VG_STAGE_CHECK);
   vg_flat_free(flat);
   if (r->outputs)
     r->time_put = 1e-9 * (double)r->outputs->put_time / r->threads;

@@ -32,11 +32,25 @@ struct vg_run_options {
   enum vg_agree change; /* Data that the last node pretends to have changed. */
 };
 
-/* Bytes of data of which every rank, or every node, has one copy. */
+/* Stages of a run, in their order, after which its memory is measured. */
+enum vg_run_stage {
+  VG_STAGE_SURFACE,
+  VG_STAGE_SIZES, /* Sizing field and layers. */
+  VG_STAGE_FILL,
+  VG_STAGE_CHECK,
+  VG_STAGE_WRITE,
+  VG_STAGES
+};
+
+/* Bytes of data on this rank. */
 struct vg_memory_parts {
   size_t surface; /* Triangles and points of the surface. */
   size_t columns; /* Columns of the layers and the front above them. */
   size_t sizes;   /* Sizing field. */
+  size_t numbers; /* Numbers of the points of the layers, the boundary of the
+                     mesh, and the search for causes of flat cells. */
+  double peak[VG_STAGES]; /* Peak memory of the process up to the end of the
+                             stage. */
 };
 
 struct vg_run {
@@ -73,6 +87,7 @@ struct vg_run {
   size_t common; /* Bytes of surface, layers and sizing field, of which a
                     node has one copy. */
   double memory; /* Bytes of the rank with the largest memory. */
+  enum vg_run_stage memory_stage; /* Stage in which this rank needed them. */
   struct vg_memory_parts memory_of;
   double memory_sum; /* Sum over all ranks, with data shared on a node counted
                         once. */
@@ -104,7 +119,8 @@ const struct vg_slices *vg_run_slices(const struct vg_run *r);
 /** Number of cells of all kinds. */
 uint64_t vg_run_cells(const struct vg_run *r);
 
-/** Determines the peak memory of any rank, and of all together. Collective. */
+/** Determines the peak memory of any rank with its stage and parts, and that of
+ * all ranks together, after the last stage. Collective. */
 vg_status vg_run_memory(struct vg_run *r, struct vg_error *err);
 
 /** Collective. success: remove the data kept for a resume. */
@@ -131,9 +147,11 @@ void vg_run_measure(struct vg_run *r, const struct vg_mesh *surface,
                     const struct vg_layers *layers,
                     const struct vg_sizing *sizing);
 
-/** Peak memory and its largest parts: bytes of the surface, the columns, the
- * sizing field, the cells of the rank with the most, and the kernel in the
- * largest subdomain. The parts are not all in memory at the same time. */
+/** Measures the peak memory of this rank at the end of a stage. */
+void vg_run_stage_ends(struct vg_run *r, enum vg_run_stage stage);
+
+/** Peak memory, the stage in which it occurred, and the parts that were in
+ * memory then, each of the rank that had most of it. */
 void vg_report_memory_text(FILE *to, const struct vg_run *r);
 json_t *vg_report_memory_json(const struct vg_run *r);
 
