@@ -84,6 +84,21 @@ size_t vg_item_blocks_n(const struct vg_item_blocks *list)
   return n;
 }
 
+vg_status vg_item_blocks_join(struct vg_item_blocks *to,
+                              struct vg_item_blocks *more, struct vg_error *err)
+{
+  assert(to && more && to != more);
+  if (!more->n_block) return VG_OK;
+  if (vg_reserve(&to->block, &to->room, to->n_block + more->n_block,
+                 sizeof *to->block))
+    return vg_fail_memory(err, "the data shared by slices");
+  memcpy(to->block + to->n_block, more->block,
+         more->n_block * sizeof *more->block);
+  to->n_block += more->n_block;
+  more->n_block = 0;
+  return VG_OK;
+}
+
 void vg_item_blocks_release(struct vg_item_blocks *list)
 {
   for (size_t k = 0; k < list->n_block; k++) vg_items_release(&list->block[k]);
@@ -333,8 +348,9 @@ struct hall {
   struct sorting s; /* sorts items by part; the number of parts is a power of
                        two */
   size_t most;      /* number of items of the largest part */
-  struct vg_items *left; /* NULL, or [threads]: lists for groups that are not
-                            complete */
+  /* NULL, or [threads]: lists for groups that are not complete */
+  struct vg_item_blocks *left;
+  int first_worker; /* number of the first thread for m->group */
   atomic_int refused;
 };
 
@@ -380,11 +396,11 @@ static void inspect(struct hall *h, const unsigned char *item, size_t n,
   const struct vg_rendezvous *m = h->m;
 
   if (!h->left || m->is_whole(m->context, item, n)) {
-    m->group(m->context, item, n, worker);
+    m->group(m->context, item, n, h->first_worker + worker);
     return;
   }
   for (size_t i = 0; i < n; i++) {
-    unsigned char *to = vg_items_add(&h->left[worker], m->size);
+    unsigned char *to = vg_item_blocks_add(&h->left[worker], m->size);
 
     if (to) memcpy(to, item + m->size * i, m->size);
     else atomic_store(&h->refused, 1);
@@ -472,11 +488,12 @@ static void meet_parts(void *context, size_t first, size_t end, int worker)
 }
 
 static vg_status meet_here(const struct vg_rendezvous *m, struct vg_bytes *from,
-                           size_t n_from, struct vg_items *left,
-                           struct vg_error *err)
+                           size_t n_from, struct vg_item_blocks *left,
+                           int first_worker, struct vg_error *err)
 {
   struct hall h = { .m = m,
                     .left = left,
+                    .first_worker = first_worker,
                     .s = {
                       .m = m, .from = from, .n_from = n_from, .n_bin = 1 } };
   size_t n = 0;
@@ -521,6 +538,47 @@ static struct vg_bytes *take_lists(const struct vg_rendezvous *m,
   return from;
 }
 
+/* The same for lists in blocks; *n_from out: number of blocks. */
+static struct vg_bytes *take_blocks(const struct vg_rendezvous *m,
+                                    struct vg_item_blocks *list, size_t n_list,
+                                    size_t *n_from)
+{
+  struct vg_bytes *from;
+  size_t n = 0;
+
+  for (size_t l = 0; l < n_list; l++) n += list[l].n_block;
+  from = vg_calloc(n, sizeof *from);
+  *n_from = from ? n : 0;
+  for (size_t l = 0, at = 0; l < n_list; l++) {
+    for (size_t k = 0; from && k < list[l].n_block; k++, at++) {
+      struct vg_items *b = &list[l].block[k];
+
+      from[at] = (struct vg_bytes){ b->n * m->size, b->data };
+      b->data = NULL;
+    }
+    vg_item_blocks_release(&list[l]);
+  }
+  return from;
+}
+
+vg_status vg_rendezvous_thin(const struct vg_rendezvous *m, int worker,
+                             struct vg_item_blocks *list, struct vg_error *err)
+{
+  assert(m->is_whole && worker >= 0 && list);
+
+  struct vg_rendezvous one = *m;
+  size_t n_from;
+  struct vg_bytes *from = take_blocks(m, list, 1, &n_from);
+  vg_status st;
+
+  one.threads = 1;
+  st = from ? meet_here(&one, from, n_from, list, worker, err)
+            : vg_fail_memory(err, "the data shared by slices");
+  release(from, n_from);
+  if (st < 0) vg_item_blocks_release(list);
+  return st;
+}
+
 /* Process the groups that are complete on this rank. *from, *n_from: the items
  * of the other groups. Local. */
 static vg_status meet_first(const struct vg_rendezvous *m,
@@ -528,17 +586,19 @@ static vg_status meet_first(const struct vg_rendezvous *m,
                             struct vg_error *err)
 {
   size_t n = (size_t)(m->threads > 0 ? m->threads : 1);
-  struct vg_items *left = vg_calloc(n, sizeof *left);
+  struct vg_item_blocks *left = vg_calloc(n, sizeof *left);
   struct vg_rendezvous one = *m;
   vg_status st = *from && left
                  ? VG_OK
                  : vg_fail_memory(err, "the data shared by slices");
 
   one.threads = (int)n;
-  if (st >= 0) st = meet_here(&one, *from, *n_from, left, err);
+  if (st >= 0) st = meet_here(&one, *from, *n_from, left, 0, err);
   release(*from, *n_from);
-  *from = left ? take_lists(m, left, n, sizeof *left) : NULL;
-  *n_from = n;
+  *from = NULL;
+  *n_from = 0;
+  if (left) *from = take_blocks(m, left, n, n_from);
+  if (st >= 0 && !*from) st = vg_fail_memory(err, "the data shared by slices");
   free(left);
   return st;
 }
@@ -565,7 +625,7 @@ vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
     from = got;
     n_from = (size_t)vg_comm_size(m->comm);
   }
-  st = from ? meet_here(m, from, n_from, NULL, err)
+  st = from ? meet_here(m, from, n_from, NULL, 0, err)
             : vg_fail_memory(err, "the data shared by slices");
   st = vg_comm_agree(m->comm, st, err);
 done:
@@ -611,5 +671,61 @@ vg_status vg_rendezvous_blocks(const struct vg_rendezvous *m,
   st = vg_rendezvous_run(m, all.block, all.n_block, sizeof *all.block, err);
 done:
   vg_item_blocks_release(&all);
+  return st;
+}
+
+/* --- items that wait ------------------------------------------------------ */
+
+void vg_waiting_items_init(struct vg_waiting_items *w, size_t limit)
+{
+  assert(w);
+  memset(w, 0, sizeof *w);
+  pthread_mutex_init(&w->lock, NULL);
+  w->limit = limit;
+}
+
+void vg_waiting_items_release(struct vg_waiting_items *w)
+{
+  vg_item_blocks_release(&w->items);
+  pthread_mutex_destroy(&w->lock);
+}
+
+vg_status vg_waiting_items_add(struct vg_waiting_items *w,
+                               struct vg_item_blocks *list,
+                               struct vg_item_blocks *taken,
+                               struct vg_error *err)
+{
+  size_t n;
+  vg_status st;
+
+  assert(w && list && taken);
+  memset(taken, 0, sizeof *taken);
+  pthread_mutex_lock(&w->lock);
+  st = vg_item_blocks_join(&w->items, list, err);
+  n = vg_item_blocks_n(&w->items);
+  if (n > w->most) w->most = n;
+  if (st >= 0 && !w->is_taken && n > w->limit) {
+    w->is_taken = 1;
+    *taken = w->items;
+    memset(&w->items, 0, sizeof w->items);
+  }
+  pthread_mutex_unlock(&w->lock);
+  return st;
+}
+
+vg_status vg_waiting_items_return(struct vg_waiting_items *w,
+                                  struct vg_item_blocks *list,
+                                  struct vg_error *err)
+{
+  size_t n = vg_item_blocks_n(list);
+  vg_status st;
+
+  pthread_mutex_lock(&w->lock);
+  assert(w->is_taken);
+  if (2 * n > w->limit) w->limit = 2 * n;
+  st = vg_item_blocks_join(&w->items, list, err);
+  w->is_taken = 0;
+  pthread_mutex_unlock(&w->lock);
+  vg_item_blocks_release(list);
   return st;
 }

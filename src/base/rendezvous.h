@@ -8,6 +8,7 @@
 #ifndef VG_BASE_RENDEZVOUS_H
 #define VG_BASE_RENDEZVOUS_H
 
+#include <pthread.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -44,6 +45,11 @@ void *vg_item_blocks_add(struct vg_item_blocks *list, size_t size);
 
 /** Number of items. */
 size_t vg_item_blocks_n(const struct vg_item_blocks *list);
+
+/** Append the blocks of `more`, which is empty afterwards, to *to. */
+vg_status vg_item_blocks_join(struct vg_item_blocks *to,
+                              struct vg_item_blocks *more,
+                              struct vg_error *err);
 
 void vg_item_blocks_release(struct vg_item_blocks *list);
 
@@ -86,10 +92,47 @@ vg_status vg_rendezvous_run(const struct vg_rendezvous *m,
                             struct vg_items *list, size_t n_list, size_t stride,
                             struct vg_error *err);
 
+/** Process those groups of one list that are complete (m->is_whole) in the
+ * calling thread, which m->group knows as `worker`, before vg_rendezvous_blocks
+ * processes the other ones. They leave the list. On failure it is empty. */
+vg_status vg_rendezvous_thin(const struct vg_rendezvous *m, int worker,
+                             struct vg_item_blocks *list, struct vg_error *err);
+
 /** vg_rendezvous_run for lists in blocks. Lists keep their items if it fails
  * before the first message. */
 vg_status vg_rendezvous_blocks(const struct vg_rendezvous *m,
                                struct vg_item_blocks *list, size_t n_list,
                                size_t stride, struct vg_error *err);
+
+/** Items of all threads of a rank that wait for others with the same key.
+ * Threads hand over their lists; from time to time one of them takes all items,
+ * removes the complete groups with vg_rendezvous_thin, and returns the others.
+ */
+struct vg_waiting_items {
+  pthread_mutex_t lock;        /* Guards the other members. */
+  struct vg_item_blocks items; /* Those that wait. */
+  size_t most;                 /* Largest number of them so far. */
+  size_t limit;                /* Number from which a thread takes them. */
+  int is_taken;                /* 1: a thread has taken items. */
+};
+
+/** @param limit  number of items below which they are never taken */
+void vg_waiting_items_init(struct vg_waiting_items *w, size_t limit);
+void vg_waiting_items_release(struct vg_waiting_items *w);
+
+/** Hand a list over, which is empty afterwards. If it is time, *taken has all
+ * waiting items, for vg_waiting_items_return; otherwise it is empty. On failure
+ * the list is unchanged. Threads: safe. */
+vg_status vg_waiting_items_add(struct vg_waiting_items *w,
+                               struct vg_item_blocks *list,
+                               struct vg_item_blocks *taken,
+                               struct vg_error *err);
+
+/** Return the items that still wait; *list is empty afterwards, also on
+ * failure. They are taken again when twice as many wait, so that the cost of
+ * all is proportional to the number of items. Threads: safe. */
+vg_status vg_waiting_items_return(struct vg_waiting_items *w,
+                                  struct vg_item_blocks *list,
+                                  struct vg_error *err);
 
 #endif

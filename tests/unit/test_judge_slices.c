@@ -151,39 +151,72 @@ static void components_are_those_of_the_whole(void **state)
 /* Slices of kind 0 are layers, the others are the isotropic region. Compared
  * with a mesh of only the latter's cells, bounded by their faces without a
  * neighbour. */
+static void check_field(const struct vg_mesh *m, const struct vg_sizing *sizing)
+{
+  struct vg_mesh_report whole, field, want, want_field;
+  struct vg_error err = VG_ERROR_INIT;
+  struct cut c;
+  struct vg_mesh part;
+
+  cut_make(&c, m, 11, 0, NULL, 3);
+  part = judge_field(&c);
+  assert_int_equal(vg_mesh_judge(m, NULL, &want, &err), VG_OK);
+  assert_int_equal(vg_mesh_judge(&part, sizing, &want_field, &err), VG_OK);
+  judge_cut(&c, sizing, 2, part.n_tri + part.n_quad, &whole, &field);
+  assert_same_report(&whole, &want);
+  /* cell numbers are those in the whole mesh, and the volume enclosed by the
+   * boundary of the isotropic region is not computed */
+  judge_map_worst(&c, &want_field);
+  assert_true(want_field.volume_error < 1e-12);
+  want_field.enclosed = want_field.volume;
+  want_field.volume_error = 0;
+  assert_same_report(&field, &want_field);
+  assert_true(field.is_valid);
+  judge_cut(&c, sizing, 2, part.n_tri + part.n_quad + 3, &whole, &field);
+  assert_int_equal(field.open_face, 3);
+  assert_false(field.is_valid);
+  cut_release(&c);
+  vg_mesh_release(&part);
+}
+
 static void the_isotropic_region_is_checked_separately(void **state)
 {
   (void)state;
   for (int cells = 0; cells < 2; cells++) {
     struct vg_mesh m = judge_mesh(cells ? VG_LAYER_MIXED : VG_LAYER_TETS);
     struct vg_sizing *sizing = shape_sizing(&m, 1.5, 0);
-    struct vg_mesh_report whole, field, want, want_field;
-    struct vg_error err = VG_ERROR_INIT;
-    struct cut c;
-    struct vg_mesh part;
 
-    cut_make(&c, &m, 11, 0, NULL, 3);
-    part = judge_field(&c);
-    assert_int_equal(vg_mesh_judge(&m, NULL, &want, &err), VG_OK);
-    assert_int_equal(vg_mesh_judge(&part, sizing, &want_field, &err), VG_OK);
-    judge_cut(&c, sizing, 2, part.n_tri + part.n_quad, &whole, &field);
-    assert_same_report(&whole, &want);
-    /* cell numbers are those in the whole mesh, and the volume enclosed by the
-     * boundary of the isotropic region is not computed */
-    judge_map_worst(&c, &want_field);
-    assert_true(want_field.volume_error < 1e-12);
-    want_field.enclosed = want_field.volume;
-    want_field.volume_error = 0;
-    assert_same_report(&field, &want_field);
-    assert_true(field.is_valid);
-    judge_cut(&c, sizing, 2, part.n_tri + part.n_quad + 3, &whole, &field);
-    assert_int_equal(field.open_face, 3);
-    assert_false(field.is_valid);
-    cut_release(&c);
-    vg_mesh_release(&part);
+    check_field(&m, sizing);
     vg_sizing_free(sizing);
     vg_mesh_release(&m);
   }
+}
+
+/* 65,536 prisms in random order: nearly all of their faces are between slices,
+ * of which many join cells of the same region and are matched early. */
+static void many_faces_are_between_slices(void **state)
+{
+  struct vg_mesh m = judge_prisms(32, 32, 32);
+  struct vg_mesh_report r;
+  uint64_t seed = 1;
+
+  (void)state;
+  for (size_t k = m.n_pri; k-- > 1;) {
+    size_t with = model_random(&seed) % (k + 1);
+    uint32_t prism[6];
+
+    memcpy(prism, m.pri[k], sizeof prism);
+    memcpy(m.pri[k], m.pri[with], sizeof prism);
+    memcpy(m.pri[with], prism, sizeof prism);
+  }
+  check_cuts(&m, NULL, &r);
+  assert_true(r.is_valid);
+  assert_int_equal(r.n_component, 1);
+  check_field(&m, NULL);
+  memcpy(m.pri[m.n_pri - 1], m.pri[m.n_pri / 2], sizeof *m.pri);
+  check_cuts(&m, NULL, &r);
+  assert_true(r.crowded_face > 0);
+  vg_mesh_release(&m);
 }
 
 static void points_that_are_not_finite(void **state)
@@ -416,6 +449,7 @@ int main(void)
     cmocka_unit_test(slices_count_every_defect_equally),
     cmocka_unit_test(components_are_those_of_the_whole),
     cmocka_unit_test(the_isotropic_region_is_checked_separately),
+    cmocka_unit_test(many_faces_are_between_slices),
     cmocka_unit_test(points_that_are_not_finite),
     cmocka_unit_test(indices_that_point_nowhere),
     cmocka_unit_test(failures_are_reported),

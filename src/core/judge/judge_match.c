@@ -153,21 +153,97 @@ static vg_status add_boundary(struct vg_slices_judgement *j,
   return worst_status(j, err);
 }
 
-/* Convert the component numbers of each slice to global numbers. */
-static void number_components(struct vg_slices_judgement *j)
+/* Least number of faces that a thread hands over at once. */
+enum { HANDED_FACES = 1 << 13 };
+
+/* Two cells of the layers, or two of the field. A face between both waits until
+ * the end, since it counts as a boundary of the field. */
+static int is_pair(const void *context, const unsigned char *item, size_t n)
 {
+  const struct vg_face_item *f = (const void *)item;
+
+  (void)context;
+  return n == 2 && !((f[0].flags ^ f[1].flags) & VG_FACE_FIELD);
+}
+
+/* The figures of the field are added to those of the whole mesh later. */
+static void meet_pair(void *context, const unsigned char *item, size_t n,
+                      int worker)
+{
+  const struct vg_slices_judgement *j = context;
+  struct vg_judge_worker *w = &j->worker[worker];
+  const struct vg_face_item *f = (const void *)item;
+  int in_field = j->n_judged > 1 && f->flags & VG_FACE_FIELD;
+  struct vg_stats
+    *stats = w->figures[in_field ? VG_JUDGED_FIELD : VG_JUDGED_WHOLE];
+
+  assert(n == 2);
+  if (!vg_stats_face(stats, n, 0,
+                     !((f[0].flags ^ f[1].flags) & VG_FACE_WINDING)))
+    return;
+  vg_stats_ratio(stats, f[0].volume, f[1].volume);
+  for (int q = 0; q <= in_field; q++)
+    vg_union(w->parent[q], f[0].component, f[1].component);
+}
+
+/* Extend the forests of a thread to all components of this rank that faces may
+ * have. */
+static vg_status extend_parents(struct vg_slices_judgement *j,
+                                struct vg_judge_worker *w, struct vg_error *err)
+{
+  size_t n = (size_t)atomic_load(&j->n_here);
+
+  for (int q = 0; q < j->n_judged; q++) {
+    if (vg_reserve(&w->parent[q], &w->room_parent[q], n, sizeof **w->parent))
+      return vg_fail_memory(err, "the components of the mesh");
+    for (size_t k = w->n_parent; k < n; k++) w->parent[q][k] = (uint32_t)k;
+  }
+  w->n_parent = n;
+  return VG_OK;
+}
+
+/* Most faces between slices join two slices that are checked one shortly after
+ * the other. Matching them early keeps the memory of the check small. */
+vg_status vg_judge_thin(struct vg_slices_judgement *j, int worker,
+                        struct vg_error *err)
+{
+  struct vg_judge_worker *w = &j->worker[worker];
+  struct vg_rendezvous m = {
+    j->comm, 1, sizeof(struct vg_face_item), 4 * sizeof(uint32_t), meet_pair, j,
+    is_pair
+  };
+  struct vg_item_blocks all;
+  vg_status st;
+
+  if (j->n_suspect || vg_item_blocks_n(&w->face) < HANDED_FACES) return VG_OK;
+  st = vg_waiting_items_add(&j->waiting, &w->face, &all, err);
+  if (st < 0 || !all.n_block) return st;
+  st = extend_parents(j, w, err);
+  if (st >= 0) st = vg_rendezvous_thin(&m, worker, &all, err);
+  if (st >= 0) return vg_waiting_items_return(&j->waiting, &all, err);
+  vg_item_blocks_release(&all);
+  return st;
+}
+
+/* Take the faces that still wait, and convert the component numbers of this
+ * rank to those of the mesh. */
+static vg_status number_components(struct vg_slices_judgement *j,
+                                   struct vg_error *err)
+{
+  vg_status st = vg_item_blocks_join(&j->worker[0].face, &j->waiting.items,
+                                     err);
+
   for (int i = 0; i < j->n_worker; i++) {
     const struct vg_item_blocks *list = &j->worker[i].face;
 
     for (size_t b = 0; b < list->n_block; b++) {
       struct vg_face_item *f = (void *)list->block[b].data;
 
-      for (size_t k = 0; k < list->block[b].n; k++) {
-        f[k].component += j->n_component[f[k].flags >> VG_FACE_BITS];
-        f[k].flags &= (1u << VG_FACE_BITS) - 1;
-      }
+      for (size_t k = 0; k < list->block[b].n; k++)
+        f[k].component += (uint32_t)j->first_here;
     }
   }
+  return st;
 }
 
 static vg_status meet_faces(struct vg_slices_judgement *j, struct vg_error *err)
@@ -180,10 +256,10 @@ static vg_status meet_faces(struct vg_slices_judgement *j, struct vg_error *err)
                              j,
                              is_whole_face };
   size_t bytes = 0;
-  vg_status st;
+  vg_status st = number_components(j, err);
 
-  number_components(j);
-  st = add_boundary(j, &m, err);
+  j->waiting.most = 0;
+  if (st >= 0) st = add_boundary(j, &m, err);
   VG_TRY(vg_comm_agree(j->comm, st, err));
   for (int i = 0; i < j->n_worker; i++)
     bytes += vg_item_blocks_n(&j->worker[i].face) * m.size;

@@ -14,7 +14,8 @@ struct work {
   struct vg_mesh view; /* view of the slice: borrowed points and cells */
   struct vg_stats *f;
   struct vg_unpaired unpaired;
-  size_t at, n_cell; /* number of the slice, and of its cells */
+  size_t n_cell;            /* number of cells of the slice */
+  uint32_t first_component; /* number of its first component on this rank */
   int is_field;
 };
 
@@ -158,12 +159,11 @@ static vg_status keep_faces(struct work *k, struct vg_error *err)
 
     if (!f) return vg_fail_memory(err, "the faces between slices");
     item_of_local(k, from->node, f);
-    f->component = from->component;
+    f->component = k->first_component + from->component;
     f->volume = from->volume;
-    f->flags |= (uint32_t)k->at << VG_FACE_BITS |
-                (k->is_field ? VG_FACE_FIELD : 0);
+    if (k->is_field) f->flags |= VG_FACE_FIELD;
   }
-  return VG_OK;
+  return vg_judge_thin(k->j, (int)(k->w - k->j->worker), err);
 }
 
 static vg_status keep_edges(struct work *k, struct vg_error *err)
@@ -217,7 +217,7 @@ static vg_status judge_cells(struct work *k, struct vg_error *err)
                  volume, k->f);
   VG_TRY(
     vg_judge_faces(&k->view, volume, k->f, &k->unpaired, &n_component, err));
-  j->n_component[k->at] = (uint32_t)n_component;
+  k->first_component = (uint32_t)atomic_fetch_add(&j->n_here, n_component);
   if (k->is_field) k->w->n_field_component += n_component;
   VG_TRY(judge_sizes(k, err));
   VG_TRY(note_used(k, err));
@@ -245,7 +245,7 @@ static vg_status judge_slice(struct vg_slices_judgement *j,
                              struct vg_error *err)
 {
   struct vg_slice slice;
-  struct work k = { .j = j, .w = w, .slice = &slice, .at = at };
+  struct work k = { .j = j, .w = w, .slice = &slice };
   vg_status st = j->s->get(j->s, at, &slice, err);
 
   if (st < 0) return st;

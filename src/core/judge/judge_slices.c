@@ -13,9 +13,8 @@
 
 #define MOST_WORKERS 256 /* limit of vg_parallel_for */
 
-/* Largest number of slices on one rank, from the number of bits that remain
- * for it. */
-#define MOST_SLICES ((size_t)1 << (32 - VG_FACE_BITS))
+/* Number of waiting faces from which they are matched early: 4 MB. */
+#define LEAST_WAITING ((size_t)1 << 17)
 
 /* --- preparation ---------------------------------------------------------- */
 
@@ -75,21 +74,18 @@ static vg_status prepare(struct vg_slices_judgement *j, struct vg_error *err)
 {
   vg_status st;
 
-  if (j->s->n_slice >= MOST_SLICES || j->s->n_point > UINT32_MAX)
+  if (j->s->n_point > UINT32_MAX)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%zu slices with %llu points are "
-                   "too many for the mesh check (limits 2^29 and "
-                   "2^32)",
-                   j->s->n_slice, (unsigned long long)j->s->n_point);
+                   "%llu points are too many for the mesh check (limit 2^32)",
+                   (unsigned long long)j->s->n_point);
   VG_TRY(make_workers(j, err));
   VG_TRY(make_places(j, err));
   j->n_word = (size_t)(j->s->n_point / 64 + 1);
-  j->n_component = vg_calloc(j->s->n_slice, sizeof *j->n_component);
   for (int q = 0; q < j->n_judged; q++) {
     j->used[q] = vg_calloc(j->n_word, sizeof *j->used[q]);
     if (!j->used[q]) st = VG_ERR_MEMORY;
   }
-  if (!j->n_component || st < 0) st = vg_fail_memory(err, "the points in use");
+  if (st < 0) st = vg_fail_memory(err, "the points in use");
 done:
   return st;
 }
@@ -112,14 +108,15 @@ static void release(struct vg_slices_judgement *j)
   free(j->worker);
   for (int q = 0; q < VG_JUDGED; q++) free(j->used[q]);
   free(j->place);
-  free(j->n_component);
+  vg_waiting_items_release(&j->waiting);
   free(j->suspect);
 }
 
 void vg_judge_note_bytes(struct vg_slices_judgement *j, size_t more)
 {
   size_t n = more + j->n_place * sizeof *j->place +
-             (size_t)j->n_judged * j->n_word * sizeof **j->used;
+             (size_t)j->n_judged * j->n_word * sizeof **j->used +
+             j->waiting.most * sizeof(struct vg_face_item);
 
   for (int i = 0; i < j->n_worker; i++) {
     const struct vg_judge_worker *w = &j->worker[i];
@@ -195,39 +192,30 @@ static vg_status take_census(struct vg_slices_judgement *j, struct census *c,
     (unsigned long long)s->n_cell[1], (unsigned long long)s->n_cell[2]);
 }
 
-/* Replace the number of components of each slice by the global number of its
- * first component. */
+/* Find the numbers of the components of this rank in the mesh. */
 static vg_status number_slices(struct vg_slices_judgement *j,
                                struct vg_error *err)
 {
   size_t size = (size_t)vg_comm_size(j->comm);
   size_t me = (size_t)vg_comm_rank(j->comm);
-  uint64_t *n = vg_calloc(size + 1, sizeof *n), at = 0;
+  uint64_t *n = vg_calloc(size + 1, sizeof *n);
   vg_status st = VG_OK;
 
   if (!n) st = vg_fail_memory(err, "the components of the mesh");
   VG_TRY(vg_comm_agree(j->comm, st, err));
-  for (size_t i = 0; i < j->s->n_slice; i++) n[me] += j->n_component[i];
+  n[me] = atomic_load(&j->n_here);
   for (int i = 0; i < j->n_worker; i++)
     n[size] += j->worker[i].n_field_component;
   VG_TRY(vg_comm_sum(j->comm, size + 1, n, err));
   for (size_t r = 0; r < size; r++) {
-    if (r == me) at = j->n_all;
+    if (r == me) j->first_here = j->n_all;
     j->n_all += n[r];
   }
   j->n_all_field = n[size];
-  if (j->n_all > UINT32_MAX) {
+  if (j->n_all > UINT32_MAX)
     st = vg_fail(err, VG_ERR_UNSUPPORTED,
                  "the mesh has too many "
                  "components for the mesh check (limit 2^32)");
-    goto done;
-  }
-  for (size_t i = 0; i < j->s->n_slice; i++) {
-    uint32_t count = j->n_component[i];
-
-    j->n_component[i] = (uint32_t)at;
-    at += count;
-  }
 done:
   free(n);
   return st;
@@ -238,11 +226,17 @@ static vg_status make_parents(struct vg_slices_judgement *j,
 {
   for (int i = 0; i < j->n_worker; i++)
     for (int q = 0; q < j->n_judged; q++) {
+      struct vg_judge_worker *w = &j->worker[i];
       uint32_t *parent = vg_alloc((size_t)j->n_all, sizeof *parent);
+      uint32_t first = (uint32_t)j->first_here;
 
       if (!parent) return vg_fail_memory(err, "the components of the mesh");
       for (uint32_t k = 0; k < j->n_all; k++) parent[k] = k;
-      j->worker[i].parent[q] = parent;
+      /* what thinning has united already */
+      for (uint32_t k = 0; k < w->n_parent; k++)
+        parent[first + k] = first + w->parent[q][k];
+      free(w->parent[q]);
+      w->parent[q] = parent;
     }
   return VG_OK;
 }
@@ -536,6 +530,7 @@ static vg_status judge_again(struct vg_slices_judgement *j,
                                        .flat = j->flat };
   vg_status st;
 
+  vg_waiting_items_init(&again.waiting, LEAST_WAITING);
   VG_TRY(gather_suspects(j, &again.n_suspect, &again.suspect, err));
   if (!again.n_suspect) goto done;
   st = prepare(&again, err);
@@ -578,8 +573,10 @@ vg_status vg_slices_judge_with(struct vg_comm *comm, const struct vg_slices *s,
     .edges_of = field ? VG_JUDGED_FIELD : VG_JUDGED_WHOLE
   };
   struct vg_mesh_report r[VG_JUDGED];
-  vg_status st = prepare(&j, err);
+  vg_status st;
 
+  vg_waiting_items_init(&j.waiting, LEAST_WAITING);
+  st = prepare(&j, err);
   VG_TRY(vg_comm_agree(comm, st, err));
   VG_TRY(judge(&j, front_faces, r, err));
   VG_TRY(judge_again(&j, front_faces, r, err));

@@ -9,24 +9,25 @@
 #ifndef VG_CORE_JUDGE_JUDGE_SLICES_PARTS_H
 #define VG_CORE_JUDGE_JUDGE_SLICES_PARTS_H
 
+#include <stdatomic.h>
+
 #include "base/rendezvous.h"
 #include "core/judge/judge_slices.h"
 #include "core/judge/quality_parts.h"
 
 enum { VG_JUDGED_WHOLE, VG_JUDGED_FIELD, VG_JUDGED };
 
-/* Bits of face_item.flags; the bits above hold the slice. */
+/* Bits of face_item.flags. */
 enum {
   VG_FACE_WINDING = 1, /* as in quality_faces.c, by index in the mesh */
   VG_FACE_BOUNDARY = 2,
-  VG_FACE_FIELD = 4,
-  VG_FACE_BITS = 3
+  VG_FACE_FIELD = 4
 };
 
 struct vg_face_item {
   uint32_t node[4];   /* lowest node, lower and upper one of its neighbours,
                          and the opposite node of a quad or VG_NO_NODE */
-  uint32_t component; /* component of its cell: number in the slice, later in
+  uint32_t component; /* component of its cell: number on the rank, later in
                          the mesh */
   float volume;       /* volume of its cell */
   uint32_t flags;
@@ -62,8 +63,11 @@ struct vg_judge_worker {
   /* Figures of slices: first of layers and of the field; later of the whole
    * mesh and of the field. */
   struct vg_stats *figures[VG_JUDGED];
-  uint32_t *parent[VG_JUDGED]; /* [n_component of all] union-find forests */
-  double lo[3], hi[3];         /* bounding box of the points */
+  /* [n_parent] union-find forests: components of this rank that exist so far,
+   * later [n_all]. */
+  uint32_t *parent[VG_JUDGED];
+  size_t n_parent, room_parent[VG_JUDGED];
+  double lo[3], hi[3]; /* bounding box of the points */
   uint64_t n_cell[VG_SLICE_KINDS], n_field_component;
   size_t slice_bytes; /* arrays of the largest slice */
   vg_status st;
@@ -87,11 +91,13 @@ struct vg_slices_judgement {
                                 mesh */
   uint64_t *used[VG_JUDGED]; /* [n_word] points used by cells */
   size_t n_place;
-  double (*place)[3];          /* [n_place] positions of the boundary's
-                                  points */
-  uint32_t *n_component;       /* [n_slice] number of components, later the
-                                  number of the first one */
-  uint64_t n_all, n_all_field; /* sums of the components of all slices */
+  double (*place)[3];              /* [n_place] positions of the boundary's
+                                      points */
+  atomic_uint_fast64_t n_here;     /* components of the slices of this rank */
+  uint64_t first_here;             /* number of the first one in the mesh */
+  uint64_t n_all, n_all_field;     /* sums of the components of all slices */
+  struct vg_waiting_items waiting; /* faces of all threads whose other sides
+                                      are in slices not yet checked */
   /* Faces that did not join two sides when all other faces were matched in
    * slices: sorted, of all ranks, known on all ranks. */
   size_t n_suspect;
@@ -111,6 +117,11 @@ void vg_judge_some_slices(void *j, size_t first, size_t end, int worker);
 
 /** Comparison of keys, for qsort and bsearch. */
 int vg_face_key_order(const void *a, const void *b);
+
+/** Hand the faces of a thread over to those that wait, and match the ones that
+ * are complete if many wait. Threads: safe. */
+vg_status vg_judge_thin(struct vg_slices_judgement *j, int worker,
+                        struct vg_error *err);
 
 /** Match positions, then faces, then edges. Collective. */
 vg_status vg_judge_match(struct vg_slices_judgement *j, struct vg_error *err);
