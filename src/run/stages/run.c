@@ -100,7 +100,6 @@ vg_status vg_run_surface(struct vg_run *r, struct vg_problem *p,
   st = vg_comm_agree(r->comm, st, err);
 done:
   vg_run_stage_ends(r, VG_STAGE_SURFACE);
-  vg_memory_trim();
   return st;
 }
 
@@ -309,7 +308,6 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.store = r->store;
   vg_run_measure(r, &p->boundary.surface, layers, sizing);
   vg_run_stage_ends(r, VG_STAGE_SIZES);
-  vg_memory_trim();
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
                          &r->partition, &r->spans, err);
   r->time_fill = vg_display_now() - t - r->partition.number;
