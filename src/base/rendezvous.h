@@ -129,8 +129,8 @@ vg_status vg_waiting_items_add(struct vg_waiting_items *w,
                                struct vg_error *err);
 
 /** Return the items that still wait; *list is empty afterwards, also on
- * failure. They are taken again when twice as many wait, so that the cost of
- * all is proportional to the number of items. Threads: safe. */
+ * failure. They are taken again when their number has doubled, so that the cost
+ * of all is proportional to the number of items. Threads: safe. */
 vg_status vg_waiting_items_return(struct vg_waiting_items *w,
                                   struct vg_item_blocks *list,
                                   struct vg_error *err);
