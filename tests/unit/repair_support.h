@@ -36,20 +36,38 @@ static inline double cell_shape(const struct vg_tets *t, size_t c)
   return vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
 }
 
-/* nx x ny x nz unit cubes; spacing 1 everywhere. */
-static inline void scene_new(struct scene *s, int nx, int ny, int nz)
+static inline void scene_sizes(struct scene *s, double stretch)
 {
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_source box = { .kind = VG_SOURCE_BOX,
                            .h0 = 1,
-                           .p1 = { nx, ny, nz } };
+                           .p1 = { s->n[0], s->n[1], s->n[2] },
+                           .stretch = stretch,
+                           .u = { 0, 1, 0 } };
 
+  vg_sizing_free(s->sizing);
+  s->sizing = NULL;
+  if (vg_sizing_new(&o, 1, &box, NULL, &s->sizing, NULL) != VG_OK) abort();
+}
+
+/* nx x ny x nz unit cubes; spacing 1 everywhere. */
+static inline void scene_new(struct scene *s, int nx, int ny, int nz)
+{
   memset(s, 0, sizeof *s);
   s->n[0] = nx;
   s->n[1] = ny;
   s->n[2] = nz;
   tets_grid(&s->t, s->n);
-  if (vg_sizing_new(&o, 1, &box, NULL, &s->sizing, NULL) != VG_OK) abort();
+  scene_sizes(s, 1);
+}
+
+/* Stretch the cells and their sizes along y, which leaves all shapes in the
+ * metric of the sizes as they are. Before scene_cut. */
+static inline void scene_stretch(struct scene *s, int by)
+{
+  for (uint32_t p = 0; p < s->t.n_point; p++) s->t.x[p][1] *= by;
+  s->n[1] *= by;
+  scene_sizes(s, by);
 }
 
 /* Move a point, unless a cell around it would fall below quality `least`. */

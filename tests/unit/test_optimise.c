@@ -405,7 +405,8 @@ static double smooth_points(int by_size, double *mean)
   for (size_t p = s.m.n_point; p < s.t.n_point; p++) point[n++] = (uint32_t)p;
   for (int k = 0; k < 3; k++)
     assert_int_equal(vg_optimise_points(&s.t, n, point, 0.7f,
-                                        by_size ? s.sizing : NULL, q, &r, NULL),
+                                        by_size ? s.sizing : NULL, NULL, q, &r,
+                                        NULL),
                      VG_OK);
   assert_true(worst(&s.t) >= fmin(before, aim) * (1 - 1e-6));
   *mean = 0;

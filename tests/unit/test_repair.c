@@ -99,6 +99,26 @@ static double mean_of(const struct vg_tets *t)
   return sum / (double)t->n_cell;
 }
 
+/* Worst and mean shape in the metric of the scene. */
+static double shapes_in_metric(const struct scene *s, const struct vg_tets *t,
+                               double *mean)
+{
+  struct vg_metrics *m;
+  double worst = 2, sum = 0;
+
+  assert_int_equal(vg_metrics_of_corners(s->sizing, t, &m), VG_OK);
+  assert_non_null(m);
+  for (size_t c = 0; c < t->n_cell; c++) {
+    double q = vg_metrics_shape(m, t, t->cell[c].v);
+
+    worst = fmin(worst, q);
+    sum += q / (double)t->n_cell;
+  }
+  vg_metrics_free(m);
+  *mean = sum;
+  return worst;
+}
+
 /* Every face without neighbour is on the hull of the box. */
 static void check_hull(const struct scene *s, const struct vg_tets *t)
 {
@@ -322,6 +342,88 @@ static void test_many(void **state)
   assert_memory_equal(&d[0], &d[1], sizeof *d);
 }
 
+/* --- in a metric -----------------------------------------------------------
+ */
+
+/* All cells are bad by their angles, and good in the metric, except those
+ * around one point of an interface. */
+static void test_mends_in_metric(void **state)
+{
+  const double by[3] = { 0.1, 0.72, -0.12 };
+  struct scene s;
+  struct vg_tets t;
+  double mean;
+
+  (void)state;
+  scene_new(&s, 16, 8, 8);
+  assert_true(scene_move(&s, scene_point(&s, 8, 4, 4), by, 1e-6));
+  scene_stretch(&s, 16);
+  assert_true(shapes_in_metric(&s, &s.t, &mean) < 0.05);
+  scene_cut(&s, NULL, 1);
+  assert_int_equal(vg_partition_repair(&s.p, NULL, NULL, NULL), VG_OK);
+  assert_int_equal(s.p.report.n_repair, 1);
+  assert_int_equal(s.p.report.n_repaired, 1);
+  assert_in_range(s.p.report.n_repair_cell, 50, s.t.n_cell / 4);
+  assert_int_equal(s.p.report.n_repair_bad_left, 0);
+  whole(&s, &t);
+  check_hull(&s, &t);
+  check_volume(&s, &t);
+  assert_true(shapes_in_metric(&s, &t, &mean) >= VG_METRIC_TARGET);
+  assert_true(s.p.report.repair_worst_left >= VG_METRIC_TARGET);
+  vg_tets_release(&t);
+  scene_end(&s);
+}
+
+static void test_good_in_metric_is_left(void **state)
+{
+  struct scene s;
+
+  (void)state;
+  scene_new(&s, 8, 3, 3);
+  scene_stretch(&s, 32);
+  assert_true(worst_of(&s.t) < aim);
+  scene_cut(&s, NULL, 1);
+  unchanged(&s);
+  assert_int_equal(s.p.report.n_repair, 0);
+  scene_end(&s);
+}
+
+/* The same cells improve by the same means as without stretching: points of the
+ * interfaces and their neighbours move, and cells are swapped across. */
+static void test_smooths_in_metric(void **state)
+{
+  struct vg_digest d[2];
+
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    struct vg_tets before, after;
+    struct scene s;
+    double was, is, worst;
+
+    scene_new(&s, 16, 6, 6);
+    scene_shake(&s, 0.16, 11);
+    scene_stretch(&s, 20);
+    scene_cut(&s, NULL, k ? 3 : 1);
+    scene_zones(&s);
+    whole(&s, &before);
+    worst = shapes_in_metric(&s, &before, &was);
+    assert_int_equal(vg_partition_repair(&s.p, NULL, NULL, NULL), VG_OK);
+    whole(&s, &after);
+    check_hull(&s, &after);
+    check_volume(&s, &after);
+    assert_true(shapes_in_metric(&s, &after, &is) >=
+                fmin(VG_METRIC_TARGET, worst));
+    assert_true(is > 1.02 * was);
+    assert_true(s.p.report.n_repair_moved >= 75);
+    assert_true(s.p.report.n_repair_swapped > 0);
+    d[k] = scene_digest(&s, NULL);
+    vg_tets_release(&before);
+    vg_tets_release(&after);
+    scene_end(&s);
+  }
+  assert_memory_equal(&d[0], &d[1], sizeof *d);
+}
+
 /* --- balls --------------------------------------------------------------- */
 
 enum { N_BALL = 600 };
@@ -329,8 +431,11 @@ enum { N_BALL = 600 };
 static void scatter(struct vg_spot *spot, uint64_t seed)
 {
   for (int i = 0; i < N_BALL; i++) {
-    for (int k = 0; k < 3; k++) spot[i].at[k] = 4 * tets_random(&seed) - 2;
-    spot[i].radius = 0.3 * ldexp(1, -(int)(8 * tets_random(&seed)));
+    double at[3];
+
+    for (int k = 0; k < 3; k++) at[k] = 4 * tets_random(&seed) - 2;
+    spot[i] = vg_spot_of(at, 0.3 * ldexp(1, -(int)(8 * tets_random(&seed))),
+                         NULL);
   }
 }
 
@@ -372,6 +477,44 @@ static void test_balls(void **state)
   vg_spot_grid_release(&b);
 }
 
+/* Balls of one metric are round in its space: the same balls overlap, and the
+ * same points are inside. */
+static void test_balls_in_metric(void **state)
+{
+  static const double axis[3][3] = { { 1. / 3, 2. / 3, 2. / 3 },
+                                     { 2. / 3, 1. / 3, -2. / 3 },
+                                     { 2. / 3, -2. / 3, 1. / 3 } };
+  static const double value[3] = { 1. / 36, 6, 6 };
+  static struct vg_spot spot[N_BALL], round[N_BALL];
+  struct vg_spot_grid b, r;
+  uint64_t seed = 5;
+  double m[6], h[6];
+
+  (void)state;
+  vg_tensor_from_eigen(value, axis, m);
+  vg_tensor_root(m, h);
+  vg_tensor_invert(h, h);
+  scatter(round, 11);
+  for (int i = 0; i < N_BALL; i++) {
+    double at[3];
+
+    vg_tensor_apply(h, round[i].at, at);
+    spot[i] = vg_spot_of(at, round[i].radius, m);
+  }
+  assert_int_equal(vg_spot_grid_new(N_BALL, round, 8, &r, NULL), VG_OK);
+  assert_int_equal(vg_spot_grid_new(N_BALL, spot, 8, &b, NULL), VG_OK);
+  assert_memory_equal(b.cluster, r.cluster, N_BALL * sizeof *b.cluster);
+  for (int k = 0; k < 20000; k++) {
+    double x[3], y[3];
+
+    for (int a = 0; a < 3; a++) x[a] = 4 * tets_random(&seed) - 2;
+    vg_tensor_apply(h, x, y);
+    assert_int_equal(vg_spot_grid_at(&b, y), vg_spot_grid_at(&r, x));
+  }
+  vg_spot_grid_release(&b);
+  vg_spot_grid_release(&r);
+}
+
 /* No cluster has more balls than requested; the remaining balls are in no
  * cluster, and clusters stay apart. */
 static void test_balls_capped(void **state)
@@ -406,7 +549,8 @@ static void test_thin(void **state)
 
   (void)state;
   scatter(all, 13);
-  for (int i = 0; i < N_BALL; i++) all[i].radius = 0.5 + 0.1 * (i % 2);
+  for (int i = 0; i < N_BALL; i++)
+    all[i] = vg_spot_of(all[i].at, 0.5 + 0.1 * (i % 2), NULL);
   memcpy(spot, all, sizeof all);
   assert_int_equal(vg_spots_thin(&n, spot, NULL), VG_OK);
   assert_true(n > 10 && n < N_BALL);
@@ -435,7 +579,11 @@ int main(void)
     cmocka_unit_test(test_inside_is_left),
     cmocka_unit_test(test_slabs_that_cannot_be_improved),
     cmocka_unit_test(test_many),
+    cmocka_unit_test(test_mends_in_metric),
+    cmocka_unit_test(test_good_in_metric_is_left),
+    cmocka_unit_test(test_smooths_in_metric),
     cmocka_unit_test(test_balls),
+    cmocka_unit_test(test_balls_in_metric),
     cmocka_unit_test(test_balls_capped),
     cmocka_unit_test(test_thin),
   };

@@ -36,6 +36,45 @@ int vg_metrics_add(struct vg_metrics *s, const struct vg_tets *t, size_t from,
   return 0;
 }
 
+/* A determinant of 0 marks points without metric. */
+static void add_corners(struct vg_metrics *s, const struct vg_tets *t)
+{
+  for (size_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++) {
+      uint32_t p = t->cell[c].v[i];
+
+      if (s->at[p].root == 0) vg_metric_at(s->sizing, t->x[p], &s->at[p]);
+    }
+}
+
+vg_status vg_metrics_of_corners(const struct vg_sizing *sizing,
+                                const struct vg_tets *t,
+                                struct vg_metrics **out)
+{
+  struct vg_metrics *s;
+
+  assert(sizing && out);
+  *out = NULL;
+  if (!vg_sizing_is_stretched(sizing)) return VG_OK;
+  s = vg_calloc(1, sizeof *s);
+  if (s) s->at = vg_calloc(t->n_point, sizeof *s->at);
+  if (!s || !s->at) {
+    free(s);
+    return VG_ERR_MEMORY;
+  }
+  s->sizing = sizing;
+  s->cap = t->n_point;
+  add_corners(s, t);
+  *out = s;
+  return VG_OK;
+}
+
+void vg_metrics_free(struct vg_metrics *s)
+{
+  if (s) vg_metrics_release(s);
+  free(s);
+}
+
 vg_status vg_metrics_insert(struct vg_metrics *s, struct vg_inserter *in,
                             const double x[3], const struct vg_point_metric *m,
                             uint32_t cell, double clearance, double nearest,

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "core/delaunay/insert.h"
+#include "core/geometry/shape.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 #include "core/sizing/sizing.h"
@@ -34,6 +35,19 @@ void vg_metric_at(const struct vg_sizing *sizing, const double x[3],
  * refused. */
 int vg_metrics_add(struct vg_metrics *s, const struct vg_tets *t, size_t from,
                    size_t n);
+
+/** Evaluate the metrics at the corners of all cells of t.
+ *
+ * @param out  owned by the caller, vg_metrics_free; NULL if sizes do not depend
+ *             on the direction. Other points have no meaningful metric.
+ *
+ * VG_ERR_MEMORY. */
+vg_status vg_metrics_of_corners(const struct vg_sizing *sizing,
+                                const struct vg_tets *t,
+                                struct vg_metrics **out);
+
+/** NULL is accepted. */
+void vg_metrics_free(struct vg_metrics *s);
 
 /** Add the point x with metric m to the points of in->t, and insert it from
  * `cell`, which contains it (vg_insert). VG_BLOCKED, and nothing is added, if
@@ -111,6 +125,14 @@ static inline double vg_metrics_shape(const struct vg_metrics *s,
 {
   return vg_metric_shape(vg_metrics_finest(s, v), t->x[v[0]], t->x[v[1]],
                          t->x[v[2]], t->x[v[3]]);
+}
+
+/** Shape of a cell: vg_metrics_shape, or vg_shape if s is NULL. */
+static inline double vg_cell_shape(const struct vg_metrics *s,
+                                   const struct vg_tets *t, const uint32_t v[4])
+{
+  return s ? vg_metrics_shape(s, t, v)
+           : vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
 }
 
 /** Length of the edge between two points. */

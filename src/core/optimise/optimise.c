@@ -23,8 +23,14 @@ static const struct vg_shape_levels euclidean = {
 
 /* In a metric: cubes of the mean ratios 0.6, 0.77, 1, 0.4, 0.2. */
 static const struct vg_shape_levels in_metric = {
-  0.216, 0.45F, 1, 0.064, 0.008F /* K43 */
+  VG_METRIC_TARGET, 0.45F, 1, 0.064, 0.008F /* K43 */
 };
+
+static void set_metrics(struct vg_optimiser *o, struct vg_metrics *metrics)
+{
+  o->metrics = metrics;
+  o->level = metrics ? &in_metric : &euclidean;
+}
 
 /* Number of rounds over bad cells. They end early if a round improves at most
  * one percent of its cells. */
@@ -47,8 +53,6 @@ static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
       vg_reserve(&o->q, &o->cap_q, t->cap_cell, sizeof *o->q) ||
       vg_reserve(&o->failed_cell, &o->cap_failed_cell, t->cap_cell,
                  sizeof *o->failed_cell))
-    return vg_fail_memory(err, "optimisation");
-  if (o->metrics && vg_metrics_add(o->metrics, t, 0, t->n_point))
     return vg_fail_memory(err, "optimisation");
   for (uint32_t c = 0; o->metrics && c < t->n_cell; c++)
     o->q[c] = (float)vg_metrics_shape(o->metrics, t, t->cell[c].v);
@@ -245,7 +249,6 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
   free(o->star);
   free(o->failed);
   free(o->failed_cell);
-  if (o->metrics) vg_metrics_release(o->metrics);
   free(o);
   return st;
 }
@@ -260,22 +263,26 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
 
   struct vg_optimiser *o = vg_calloc(1, sizeof *o);
   struct vg_metrics metrics = { .sizing = sizing };
+  int is_stretched = sizing && vg_sizing_is_stretched(sizing);
+  vg_status st;
 
   memset(report, 0, sizeof *report);
-  if (!o) return vg_fail_memory(err, "optimisation");
+  if (!o || (is_stretched && vg_metrics_add(&metrics, t, 0, t->n_point))) {
+    free(o);
+    return vg_fail_memory(err, "optimisation");
+  }
   o->n_fixed = o->n_keep = n_fixed;
   o->region = region;
   o->sizing = sizing;
   o->report = report;
-  o->level = &euclidean;
-  if (sizing && vg_sizing_is_stretched(sizing)) {
-    o->metrics = &metrics;
-    o->level = &in_metric;
-  }
-  return optimise(o, t, sweeps, err);
+  set_metrics(o, is_stretched ? &metrics : NULL);
+  st = optimise(o, t, sweeps, err);
+  vg_metrics_release(&metrics);
+  return st;
 }
 
 vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
+                          struct vg_metrics *metrics,
                           struct vg_optimise_report *report,
                           struct vg_error *err)
 {
@@ -288,6 +295,6 @@ vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
   o->n_fixed = n_fixed;
   o->n_keep = n_keep;
   o->report = report;
-  o->level = &euclidean;
+  set_metrics(o, metrics);
   return optimise(o, t, 0, err);
 }

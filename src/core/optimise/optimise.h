@@ -9,6 +9,7 @@
 #include "base/status.h"
 #include "core/delaunay/tets.h"
 #include "core/front/region.h"
+#include "core/metric/metrics.h"
 
 struct vg_optimise_report {
   size_t n_smoothed, n_flip, n_collapse, n_split;
@@ -38,21 +39,27 @@ vg_status vg_optimise(struct vg_tets *t, size_t n_fixed, int sweeps,
                       const struct vg_sizing *sizing,
                       struct vg_optimise_report *report, struct vg_error *err);
 
+/* The functions below measure shapes by vg_cell_shape. metrics: of the points
+ * of t, kept up to date where points move or are added; NULL: shapes are
+ * Euclidean. */
+
 /** Improve the bad cells of t only: the part of vg_optimise after its sweeps.
  *
  * @param n_keep  >= n_fixed; points n_fixed to n_keep - 1 may move, but are
  *                not removed */
 vg_status vg_optimise_bad(struct vg_tets *t, size_t n_fixed, size_t n_keep,
+                          struct vg_metrics *metrics,
                           struct vg_optimise_report *report,
                           struct vg_error *err);
 
 /** Swap faces and edges of cells with a shape below `below`, in one pass. No
  * point moves; fixed faces are preserved.
  *
- * *q in, out: [t.n_cell] shapes (vg_shape) of the cells, allocated by
- * vg_alloc. Deterministic. VG_ERR_MEMORY if memory is refused (t is then still
+ * *q in, out: [t.n_cell] shapes of the cells, allocated by vg_alloc.
+ * Deterministic. VG_ERR_MEMORY if memory is refused (t is then still
  * valid). */
-vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
+vg_status vg_optimise_swaps(struct vg_tets *t, float below,
+                            struct vg_metrics *metrics, float **q,
                             struct vg_optimise_report *report,
                             struct vg_error *err);
 
@@ -63,15 +70,17 @@ vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
  *
  * t: links are not used, and cells must be positive. All cells around each of
  * the points must be present, and none of them may have a fixed face. q in,
- * out: [t.n_cell] shapes (vg_shape) of the cells. Deterministic. VG_ERR_MEMORY
- * if memory is refused. */
+ * out: [t.n_cell] shapes of the cells. Deterministic. VG_ERR_MEMORY if memory
+ * is refused. */
 vg_status vg_optimise_points(struct vg_tets *t, size_t n, const uint32_t *point,
                              float below, const struct vg_sizing *sizing,
-                             float *q, struct vg_optimise_report *report,
+                             struct vg_metrics *metrics, float *q,
+                             struct vg_optimise_report *report,
                              struct vg_error *err);
 
-/** Cells with a shape (core/geometry/shape.h) below this are improved one by
- * one. */
+/** Cells with a shape below this are improved one by one: a shape
+ * (core/geometry/shape.h), and the cube of a mean ratio of 0.6 in a metric. */
 #define VG_SHAPE_TARGET 0.1786 /* K23 */
+#define VG_METRIC_TARGET 0.216 /* K43 */
 
 #endif

@@ -182,9 +182,43 @@ static int improve(struct mover *m)
   return better;
 }
 
+/* Smooth a point among Euclidean shapes. Returns 1 if it moves. */
+static int smooth(struct mover *m, struct vg_tets *t, uint32_t p, size_t n,
+                  const uint32_t *link, float below,
+                  const struct vg_sizing *sizing, float *q)
+{
+  if (!take_ball(m, t, n, link, p, below, sizing, q) || !improve(m)) return 0;
+  memcpy(t->x[p], m->now.x, sizeof m->now.x);
+  for (size_t c = 0; c < n; c++) q[link[c] >> 2] = (float)m->now.q[c];
+  return 1;
+}
+
+/* Largest number of moves of one point in a metric. */
+enum { MOVES_IN_METRIC = 4 }; /* K49 */
+
+/* The same in metrics. */
+static int smooth_in_metric(struct mover *m, struct vg_tets *t, uint32_t p,
+                            size_t n, const uint32_t *link, float below,
+                            struct vg_metrics *metrics, float *q)
+{
+  float worst = 2;
+  int moves = 0;
+
+  if (!n || n > VG_BALL_MAX) return 0;
+  for (size_t c = 0; c < n; c++) worst = fminf(worst, q[link[c] >> 2]);
+  if (worst >= below) return 0;
+  while (moves < MOVES_IN_METRIC &&
+         vg_move_in_metric(t, metrics, p, n, link, m->now.q)) {
+    for (size_t c = 0; c < n; c++) q[link[c] >> 2] = (float)m->now.q[c];
+    moves++;
+  }
+  return moves > 0;
+}
+
 vg_status vg_optimise_points(struct vg_tets *t, size_t n, const uint32_t *point,
                              float below, const struct vg_sizing *sizing,
-                             float *q, struct vg_optimise_report *report,
+                             struct vg_metrics *metrics, float *q,
+                             struct vg_optimise_report *report,
                              struct vg_error *err)
 {
   assert((point || !n) && (q || !t->n_cell) && report);
@@ -198,15 +232,13 @@ vg_status vg_optimise_points(struct vg_tets *t, size_t n, const uint32_t *point,
     st = vg_fail_memory(err, "optimisation");
   for (size_t k = 0; st == VG_OK && k < n; k++) {
     const uint32_t *link = b.link + b.first[k];
+    size_t n_cell = b.first[k + 1] - b.first[k];
 
-    if (!take_ball(m, t, b.first[k + 1] - b.first[k], link, point[k], below,
-                   sizing, q) ||
-        !improve(m))
-      continue;
-    memcpy(t->x[point[k]], m->now.x, sizeof m->now.x);
-    for (size_t c = 0; c < m->faces.n; c++)
-      q[link[c] >> 2] = (float)m->now.q[c];
-    report->n_smoothed++;
+    report->n_smoothed += (size_t)(metrics
+                                     ? smooth_in_metric(m, t, point[k], n_cell,
+                                                        link, below, metrics, q)
+                                     : smooth(m, t, point[k], n_cell, link,
+                                              below, sizing, q));
   }
   VG_CHECK("the smoothing of points", vg_tets_inverted(t));
   balls_release(&b);

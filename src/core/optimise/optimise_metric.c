@@ -29,18 +29,18 @@ struct stretched_ball {
   const struct vg_point_metric *finest[VG_BALL_MAX]; /* Of these corners. */
 };
 
-static void gather(const struct vg_optimiser *o, struct stretched_ball *b)
+static void gather(const struct vg_tets *t, const struct vg_metrics *metrics,
+                   size_t n, const uint32_t *link, struct stretched_ball *b)
 {
-  const struct vg_tets *t = o->t;
+  assert(n > 0 && n <= VG_BALL_MAX);
+  b->n = n;
+  for (size_t k = 0; k < n; k++) {
+    const uint32_t *v = t->cell[link[k] >> 2].v;
+    const uint8_t *f = vg_face[link[k] & 3];
 
-  b->n = o->n_ball;
-  for (size_t k = 0; k < b->n; k++) {
-    const uint32_t *v = t->cell[o->ball[k] >> 2].v;
-    const uint8_t *f = vg_face[o->ball[k] & 3];
-
-    b->finest[k] = &o->metrics->at[v[f[0]]];
+    b->finest[k] = &metrics->at[v[f[0]]];
     for (int i = 0; i < 3; i++) {
-      const struct vg_point_metric *m = &o->metrics->at[v[f[i]]];
+      const struct vg_point_metric *m = &metrics->at[v[f[i]]];
 
       b->x[k][i] = t->x[v[f[i]]];
       if (m->root > b->finest[k]->root) b->finest[k] = m;
@@ -97,40 +97,43 @@ static void slope(const struct stretched_ball *b, const double x[3],
   }
 }
 
-static void keep(struct vg_optimiser *o, uint32_t p, const double x[3],
-                 const struct vg_point_metric *m, const double *q)
-{
-  memcpy(o->t->x[p], x, sizeof *o->t->x);
-  o->metrics->at[p] = *m;
-  for (size_t k = 0; k < o->n_ball; k++) {
-    o->q[o->ball[k] >> 2] = (float)q[k];
-    vg_changed(o, o->ball[k] >> 2);
-  }
-  o->report->n_smoothed++;
-}
-
-int vg_smooth_metric(struct vg_optimiser *o, uint32_t p)
+int vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics, uint32_t p,
+                      size_t n, const uint32_t *link, double *q)
 {
   struct stretched_ball b;
-  struct vg_point_metric m = o->metrics->at[p];
-  double q[VG_BALL_MAX], x[3], g[3], d[3], inverse[6], f, length, least = 1;
+  struct vg_point_metric m = metrics->at[p];
+  double x[3], g[3], d[3], inverse[6], f, length, least = 1;
 
-  gather(o, &b);
-  f = value(&b, o->t->x[p], &m, 0, q);
+  gather(t, metrics, n, link, &b);
+  f = value(&b, t->x[p], &m, 0, q);
   if (!(f < INFINITY)) return 0;
-  for (size_t k = 0; k < b.n; k++) least = fmin(least, q[k]);
+  for (size_t k = 0; k < n; k++) least = fmin(least, q[k]);
   least = fmin(0.999 * least, least_shape);
-  slope(&b, o->t->x[p], &m, g);
+  slope(&b, t->x[p], &m, g);
   vg_tensor_invert(m.m, inverse);
   vg_tensor_apply(inverse, g, d);
   length = sqrt(fmax(vg_dot(g, d), 0));
   if (!(length > 0)) return 0;
   for (int k = 0; k < STEPS; k++) {
-    for (int i = 0; i < 3; i++) x[i] = o->t->x[p][i] - step[k] / length * d[i];
-    vg_metric_at(o->metrics->sizing, x, &m);
+    for (int i = 0; i < 3; i++) x[i] = t->x[p][i] - step[k] / length * d[i];
+    vg_metric_at(metrics->sizing, x, &m);
     if (!(value(&b, x, &m, least, q) < (1 - gain) * f)) continue;
-    keep(o, p, x, &m, q);
+    memcpy(t->x[p], x, sizeof x);
+    metrics->at[p] = m;
     return 1;
   }
   return 0;
+}
+
+int vg_smooth_metric(struct vg_optimiser *o, uint32_t p)
+{
+  double q[VG_BALL_MAX];
+
+  if (!vg_move_in_metric(o->t, o->metrics, p, o->n_ball, o->ball, q)) return 0;
+  for (size_t k = 0; k < o->n_ball; k++) {
+    o->q[o->ball[k] >> 2] = (float)q[k];
+    vg_changed(o, o->ball[k] >> 2);
+  }
+  o->report->n_smoothed++;
+  return 1;
 }

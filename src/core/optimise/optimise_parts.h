@@ -78,14 +78,9 @@ struct vg_optimiser {
 static inline double vg_shape_of(const struct vg_optimiser *o, uint32_t a,
                                  uint32_t b, uint32_t c, uint32_t d)
 {
-  const struct vg_tets *t = o->t;
+  const uint32_t v[4] = { a, b, c, d };
 
-  if (o->metrics) {
-    const uint32_t v[4] = { a, b, c, d };
-
-    return vg_metrics_shape(o->metrics, t, v);
-  }
-  return vg_shape(t->x[a], t->x[b], t->x[c], t->x[d]);
+  return vg_cell_shape(o->metrics, o->t, v);
 }
 
 /** To be called when cell c has changed: steps that failed for it and its
@@ -119,6 +114,12 @@ int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim);
 
 /** vg_smooth with metrics. */
 int vg_smooth_metric(struct vg_optimiser *o, uint32_t p);
+
+/** The step of vg_smooth_metric: move p, with its metric, among the cells
+ * around it, if that improves them. link: [n] 4 * cell + index of p, with
+ * 0 < n <= VG_BALL_MAX. q out: [VG_BALL_MAX] their new shapes if p moves. */
+int vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics, uint32_t p,
+                      size_t n, const uint32_t *link, double *q);
 
 /** Collapse edges that are too short in the metric, and split those that are
  * too long, in one pass over the cells. VG_ERR_MEMORY. (optimise_lengths.c) */

@@ -20,7 +20,8 @@ static int prepare(struct vg_optimiser *o)
   return o->star && o->failed && o->failed_cell ? 0 : -1;
 }
 
-vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
+vg_status vg_optimise_swaps(struct vg_tets *t, float below,
+                            struct vg_metrics *metrics, float **q,
                             struct vg_optimise_report *report,
                             struct vg_error *err)
 {
@@ -34,6 +35,7 @@ vg_status vg_optimise_swaps(struct vg_tets *t, float below, float **q,
   if (!o) return vg_fail_memory(err, "optimisation");
   o->t = t;
   o->q = *q;
+  o->metrics = metrics;
   o->report = report;
   if (prepare(o) < 0) st = vg_fail_memory(err, "optimisation");
   for (uint32_t c = 0; st == VG_OK && c < n; c++)

@@ -79,11 +79,13 @@ struct vg_partition_report {
                                 improved ones. */
   uint64_t n_repaired;
   uint64_t n_repair_cell; /* Cells in all these regions. */
-  uint64_t n_repair_bad;  /* Cells in them below VG_SHAPE_TARGET, before and
-                             after. */
+  uint64_t n_repair_bad;  /* Bad cells in them, before and after: below
+                             VG_SHAPE_TARGET, or VG_METRIC_TARGET in a
+                             metric. */
   uint64_t n_repair_bad_left;
-  double repair_worst; /* Worst shape in them (core/geometry/shape.h), before
-                          and after. */
+  double repair_worst; /* Worst shape in them, before and after: vg_shape
+                          (core/geometry/shape.h), or vg_metrics_shape
+                          (core/metric/metrics.h) in a metric. */
   double repair_worst_left;
   double repair;           /* Time of repairs in s. */
   uint64_t n_widened;      /* Leaves that could not be filled, and were

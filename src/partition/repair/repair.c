@@ -575,9 +575,7 @@ vg_status vg_partition_repair(struct vg_partition *p, struct vg_comm *comm,
   /* regular tetrahedron, if there is nothing to do */
   p->report.repair_worst = p->report.repair_worst_left = 8.0 / 9;
   VG_CHECK("the tasks of the partition", bad_cells(p));
-  /* Repairs rate cells by Euclidean shapes, which a metric does not ask for. */
-  st = vg_sizing_is_stretched(p->sizing) ? VG_OK
-                                         : all_rounds(p, comm, &own, err);
+  st = all_rounds(p, comm, &own, err);
   if (st == VG_OK) VG_CHECK("repairs at interfaces", bad_cells(p));
   if (st == VG_OK) st = vg_entries_agree(&fields, &p->report, comm, err);
   if (st == VG_OK && spans)

@@ -9,12 +9,7 @@
 #include "base/memory.h"
 #include "base/table.h"
 #include "core/delaunay/tets.h"
-#include "core/geometry/shape.h"
 #include "partition/repair/repair_parts.h"
-
-/* Value of vg_shape: cells that stay below 5 degrees, or above 175, are tried
- * again. */
-static const double hopeless = 0.0076; /* R7 */
 
 /* --- messages ------------------------------------------------------------ */
 
@@ -73,6 +68,8 @@ struct joint {
   const struct vg_cluster_cells *block;
   const struct vg_spot_grid *balls;
   const struct vg_repair_boundary *boundary;
+  const struct vg_sizing *sizing;
+  const struct vg_repair_levels *level;
   /* points in the order of first use */
   size_t n_point, n_fixed, n_cell;
   uint64_t *name;
@@ -83,6 +80,7 @@ struct joint {
   struct vg_table table; /* Points by global id. */
   uint32_t **local;      /* [n_block][block.n_point] */
   struct vg_tets t;
+  struct vg_metrics *metrics; /* Of the points of t, or NULL. */
 };
 
 static void joint_free(struct joint *j)
@@ -95,6 +93,7 @@ static void joint_free(struct joint *j)
   free(j->number);
   free(j->point);
   vg_table_release(&j->table);
+  vg_metrics_free(j->metrics);
   vg_tets_release(&j->t);
 }
 
@@ -211,33 +210,35 @@ static vg_status join_cells(struct joint *j, struct vg_error *err)
   st = vg_tets_from_cells(&j->t, j->n_point, x, n, (const uint32_t(*)[4])cell,
                           err);
   free(cell);
-  if (st == VG_OK) fix_faces(j);
-  return st;
+  if (st < 0) return st;
+  fix_faces(j);
+  return vg_metrics_of_corners(j->sizing, &j->t, &j->metrics) < 0
+         ? vg_fail_memory(err, "repairs")
+         : VG_OK;
 }
 
 /* --- results ------------------------------------------------------------- */
 
-enum { CLASSES = 3 };
+enum { CLASSES = VG_REPAIR_CLASSES };
 
-/* Shape of the worst cell, and number of cells below 5, 10 and 25 degrees. */
+/* Shape of the worst cell, and number of cells in each class. */
 struct tally {
   double worst;
   uint64_t n[CLASSES];
 };
 
-static struct tally measure(const struct vg_tets *t)
+static struct tally measure(const struct joint *j)
 {
-  static const double below[CLASSES] = { 0.0076, 0.03, VG_SHAPE_TARGET };
+  const struct vg_tets *t = &j->t;
   struct tally s = { .worst = 2 };
 
   for (size_t c = 0; c < t->n_cell; c++) {
-    const uint32_t *v = t->cell[c].v;
     double q;
 
     if (t->flag[c] & VG_DEAD) continue;
-    q = vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
+    q = vg_cell_shape(j->metrics, t, t->cell[c].v);
     if (q < s.worst) s.worst = q;
-    for (int k = 0; k < CLASSES; k++) s.n[k] += q < below[k];
+    for (int k = 0; k < CLASSES; k++) s.n[k] += q < j->level->tally[k];
   }
   return s;
 }
@@ -321,9 +322,8 @@ done:
 }
 
 /* Lists balls around cells for which another attempt needs more room. */
-static vg_status list_left(const struct joint *j,
-                           const struct vg_sizing *sizing,
-                           struct vg_repaired *m, struct vg_error *err)
+static vg_status list_left(const struct joint *j, struct vg_repaired *m,
+                           struct vg_error *err)
 {
   const struct vg_tets *t = &j->t;
 
@@ -331,11 +331,12 @@ static vg_status list_left(const struct joint *j,
     const double *x[4];
 
     if (t->flag[c] & VG_DEAD) continue;
+    if (vg_cell_shape(j->metrics, t, t->cell[c].v) >= j->level->hopeless)
+      continue;
     for (int i = 0; i < 4; i++) x[i] = t->x[t->cell[c].v[i]];
-    if (vg_shape(x[0], x[1], x[2], x[3]) >= hopeless) continue;
     if (vg_reserve(&m->spot, &m->cap_spot, m->n_spot + 1, sizeof *m->spot))
       return vg_fail_memory(err, "repairs");
-    m->spot[m->n_spot++] = vg_spot_around(sizing, x, VG_SPOT_LARGE);
+    m->spot[m->n_spot++] = vg_spot_around(j->sizing, x, VG_SPOT_LARGE);
   }
   return VG_OK;
 }
@@ -343,7 +344,7 @@ static vg_status list_left(const struct joint *j,
 static vg_status take(const struct joint *j, const struct tally *old,
                       struct vg_repaired *m, struct vg_error *err)
 {
-  struct tally now = measure(&j->t);
+  struct tally now = measure(j);
   uint32_t *to;
   vg_status st = VG_OK;
 
@@ -371,9 +372,12 @@ vg_status vg_repair_cluster(size_t n, const struct vg_cluster_cells *block,
 {
   assert(n > 0 && block && balls && boundary && out);
 
-  struct joint j = {
-    .n_block = n, .block = block, .balls = balls, .boundary = boundary
-  };
+  struct joint j = { .n_block = n,
+                     .block = block,
+                     .balls = balls,
+                     .boundary = boundary,
+                     .sizing = sizing,
+                     .level = vg_repair_levels(sizing) };
   struct vg_optimise_report r;
   struct vg_repaired m = { .better = 0 };
   struct tally old;
@@ -385,13 +389,13 @@ vg_status vg_repair_cluster(size_t n, const struct vg_cluster_cells *block,
     st = join_cells(&j, err);
   }
   if (st == VG_OK) {
-    old = measure(&j.t);
+    old = measure(&j);
     m.worst = m.worst_left = old.worst;
     m.n_bad = m.n_bad_left = old.n[CLASSES - 1];
-    st = vg_optimise_bad(&j.t, j.n_fixed, j.n_point, &r, err);
+    st = vg_optimise_bad(&j.t, j.n_fixed, j.n_point, j.metrics, &r, err);
   }
   if (st == VG_OK) st = take(&j, &old, &m, err);
-  if (st == VG_OK) st = list_left(&j, sizing, &m, err);
+  if (st == VG_OK) st = list_left(&j, &m, err);
   if (st == VG_ERR_GEOMETRY) {
     /* inconsistent or flat cells are left to the mesh check */
     m.better = 0;

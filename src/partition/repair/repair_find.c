@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/geometry/vector.h"
 #include "partition/repair/repair_parts.h"
 
 /* R10: the worse a cell, the larger its ball: `reach` local spacings, and
@@ -149,35 +148,44 @@ vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
  * share of its radius (R8), even if the cell's own corners are then outside. */
 static const double least_spacing = 1.0 / 48;
 
-static void keep_small(const struct vg_sizing *sizing, struct vg_spot *s)
+static int is_too_large(const struct vg_sizing *sizing, const struct vg_spot *s)
 {
-  for (;; s->radius *= 0.5) {
-    double lo[3], x[3];
+  double half = fmax(s->half[0], fmax(s->half[1], s->half[2])), lo[3], x[3];
 
-    for (int k = 0; k < 3; k++) lo[k] = s->at[k] - s->radius;
-    if (vg_sizing_least(sizing, lo, 2 * s->radius, x) >=
-        least_spacing * s->radius)
-      return;
-  }
+  for (int k = 0; k < 3; k++) lo[k] = s->at[k] - half;
+  return vg_sizing_least(sizing, lo, 2 * half, x) < least_spacing * s->radius;
+}
+
+/* The metric at x, scaled to the determinant 1. Returns the spacing there. */
+static double metric_at(const struct vg_sizing *sizing, const double x[3],
+                        double m[6])
+{
+  double t[6], h = vg_sizing_stretch_at(sizing, x, t);
+
+  vg_tensor_uniform(1, m);
+  if (!vg_sizing_is_stretched(sizing)) return h;
+  vg_tensor_square(t, m);
+  for (int k = 0; k < 6; k++) m[k] *= h * h;
+  return h;
 }
 
 struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
                               const double *const x[4], enum vg_spot_size k)
 {
   struct vg_spot s;
-  double far = 0, reach;
+  double at[3], m[6], far = 0, reach;
 
   for (int a = 0; a < 3; a++)
-    s.at[a] = 0.25 * (x[0][a] + x[1][a] + x[2][a] + x[3][a]);
+    at[a] = 0.25 * (x[0][a] + x[1][a] + x[2][a] + x[3][a]);
+  reach = ball[k].reach * metric_at(sizing, at, m);
   for (int i = 0; i < 4; i++) {
-    double d = vg_distance2(s.at, x[i]);
+    double d[3];
 
-    if (d > far) far = d;
+    vg_sub(at, x[i], d);
+    far = fmax(far, vg_tensor_form(m, d));
   }
-  reach = ball[k].reach * vg_sizing_at(sizing, s.at);
-  s.radius = ball[k].most * sqrt(far);
-  if (s.radius < reach) s.radius = reach;
-  keep_small(sizing, &s);
+  s = vg_spot_of(at, fmax(ball[k].most * sqrt(far), reach), m);
+  while (is_too_large(sizing, &s)) s = vg_spot_of(at, 0.5 * s.radius, m);
   return s;
 }
 
@@ -187,8 +195,9 @@ vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
   if (vg_reserve(&s->at, &s->cap, s->n + 1, sizeof *s->at))
     return VG_ERR_MEMORY;
   s->at[s->n++] = vg_spot_around(sizing, x,
-                                 shape < VG_SHAPE_BAD ? VG_SPOT_MIDDLE
-                                                      : VG_SPOT_SMALL);
+                                 shape < vg_repair_levels(sizing)->bad
+                                   ? VG_SPOT_MIDDLE
+                                   : VG_SPOT_SMALL);
   return VG_OK;
 }
 

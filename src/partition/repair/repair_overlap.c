@@ -7,11 +7,11 @@
 
 #include "base/hash.h"
 #include "base/memory.h"
-#include "core/geometry/shape.h"
 #include "partition/repair/repair_parts.h"
 
 void vg_overlap_release(struct vg_overlap *f)
 {
+  vg_metrics_free(f->metrics);
   vg_tets_release(&f->t);
   free(f->shared);
   free(f->stays);
@@ -186,13 +186,15 @@ static void add_halo(struct vg_overlap *f, const struct vg_halo *s,
   }
 }
 
-static void find_shapes(const struct vg_tets *t, float *q)
+static vg_status find_shapes(struct vg_overlap *f)
 {
-  for (size_t c = 0; c < t->n_cell; c++) {
-    const uint32_t *v = t->cell[c].v;
+  const struct vg_tets *t = &f->t;
 
-    q[c] = (float)vg_shape(t->x[v[0]], t->x[v[1]], t->x[v[2]], t->x[v[3]]);
-  }
+  if (vg_metrics_of_corners(f->sizing, t, &f->metrics) < 0)
+    return VG_ERR_MEMORY;
+  for (size_t c = 0; c < t->n_cell; c++)
+    f->shape[c] = (float)vg_cell_shape(f->metrics, t, t->cell[c].v);
+  return VG_OK;
 }
 
 static vg_status list_points(struct vg_overlap *f)
@@ -226,6 +228,6 @@ vg_status vg_overlap_new(struct vg_overlap *f, const struct vg_owners *owners,
   add_own(f, owners);
   for (size_t k = 0; k < f->n_halo; k++) add_halo(f, f->halo[k], vertex);
   free(vertex);
-  find_shapes(&f->t, f->shape);
-  return list_points(f);
+  st = find_shapes(f);
+  return st == VG_OK ? list_points(f) : st;
 }

@@ -6,6 +6,8 @@
 
 #include "base/bytes.h"
 #include "base/table.h"
+#include "core/geometry/tensor.h"
+#include "core/geometry/vector.h"
 #include "core/optimise/optimise.h"
 #include "partition/repair/repair.h"
 
@@ -46,12 +48,52 @@ vg_status vg_outbox_send(struct vg_outbox *post, struct vg_comm *comm,
                          vg_status st, struct vg_bytes **from,
                          struct vg_error *err);
 
+/* --- limits of shapes (repair_levels.c) ---------------------------------- */
+
+enum { VG_REPAIR_CLASSES = 3 };
+
+/* Limits of shapes (vg_cell_shape), which depend on the measure of shapes. */
+struct vg_repair_levels {
+  float smooth;    /* Points with a cell below this are smoothed in the first
+                      round. */
+  float adjacent;  /* The same in the second round, and for adjacent points. */
+  float swap;      /* Cells below this are swapped. */
+  double target;   /* Cells below this get a repair region. */
+  double bad;      /* Cells below this get a larger one. */
+  double hopeless; /* Cells that stay below this are tried again. */
+  double tally[VG_REPAIR_CLASSES]; /* A repair may not increase the number of
+                                      cells below the first two; the last one
+                                      is the target. */
+};
+
+/** The limits for shapes in the metrics of the field, or for Euclidean shapes
+ * if it is not stretched. */
+const struct vg_repair_levels *vg_repair_levels(const struct vg_sizing *sizing);
+
 /* --- repair regions (repair_smooth.c, repair_spots.c) -------------------- */
 
-/* A ball around a bad cell. */
+/* A ball around a bad cell: the points x with (x - at)' m (x - at) <= radius^2.
+ * m is the metric of the field at the centre, scaled to the determinant 1, so
+ * that the ball has the volume of a round one. Where sizes do not depend on the
+ * direction, m is exactly the unit tensor. */
 struct vg_spot {
   double at[3], radius;
+  double m[6];
+  double half[3]; /* Half the lengths of the ball's bounding box. */
 };
+
+/** A ball; m: NULL: the unit tensor. */
+struct vg_spot vg_spot_of(const double at[3], double radius, const double *m);
+
+/** Squared distance of x from the centre, in the metric of the ball. */
+static inline double vg_spot_distance2(const struct vg_spot *s,
+                                       const double x[3])
+{
+  double d[3];
+
+  vg_sub(x, s->at, d);
+  return vg_tensor_form(s->m, d);
+}
 
 /* Ball sizes for cells that are not good, bad cells, and cells that stayed
  * bad. */
@@ -66,7 +108,7 @@ enum vg_spot_size {
 struct vg_spot vg_spot_around(const struct vg_sizing *sizing,
                               const double *const x[4], enum vg_spot_size k);
 
-/** Adds a ball around a cell with a shape below VG_SHAPE_TARGET. */
+/** Adds a ball around a cell with a shape below the target. */
 struct vg_spots {
   size_t n, cap;
   struct vg_spot *at;
@@ -80,9 +122,6 @@ vg_status vg_spots_add(struct vg_spots *s, const struct vg_sizing *sizing,
 vg_status vg_spots_gather(struct vg_writer *w, int n_rank, struct vg_comm *comm,
                           size_t *n, struct vg_spot **out,
                           struct vg_error *err);
-
-/** Value of vg_shape: dihedral angles below 18 or above 162 degrees. */
-#define VG_SHAPE_BAD 0.0955 /* R4 */
 
 /** Swaps and smooths across interfaces. Lists balls around the cells with a
  * corner there that stay bad, of all ranks, by their coordinates. Collective.
@@ -145,14 +184,6 @@ vg_status vg_halos_of(const struct vg_partition *p, size_t k,
 /** Updates the coordinates of a halo's corners. */
 void vg_halo_refresh(const struct vg_piece *q, struct vg_halo *s);
 
-/** Values of vg_shape. Points around which a cell is below the first (42
- * degrees) are smoothed in the first round, below the second (48) in the
- * second round and as adjacent points; cells below the third (39) are
- * swapped. */
-#define VG_SHAPE_LEVEL 0.45f    /* R1 */
-#define VG_SHAPE_ADJACENT 0.55f /* R2 */
-#define VG_SHAPE_SWAP 0.4f      /* R3 */
-
 /** Smooths the points of a piece that are corners of the cells hit [n], which
  * are the cells with a corner on an interface, ascending. Points marked in
  * shared [q.n_point] stay; NULL: none. out: cells that got bad, other than
@@ -173,6 +204,7 @@ enum {                         /* flags of a cell in an overlap */
  * (repair_overlap.c) */
 struct vg_overlap {
   const struct vg_piece *q;
+  const struct vg_sizing *sizing;
   const struct vg_owner *self;
   int first; /* See vg_overlap_new. */
   size_t n_halo;
@@ -186,6 +218,7 @@ struct vg_overlap {
   size_t n_own;           /* Cells of q, which come first. */
   uint32_t *place;        /* [n_own] Index in q. */
   struct vg_tets t;       /* Without links. */
+  struct vg_metrics *metrics; /* Of the corners of its cells, or NULL. */
   size_t cap_kind, cap_shape;
   uint8_t *kind; /* [t.n_cell] Flags. */
   float *shape;  /* [t.n_cell] */
@@ -303,8 +336,8 @@ int vg_repair_boundary_has(const struct vg_repair_boundary *r,
 struct vg_repaired {
   int better;                 /* 0: the cells stay unchanged. */
   uint64_t n_cell;            /* Cells of the cluster. */
-  uint64_t n_bad, n_bad_left; /* Cells below VG_SHAPE_TARGET before, after. */
-  double worst, worst_left;   /* Values of vg_shape before, after. */
+  uint64_t n_bad, n_bad_left; /* Cells below the target before, after. */
+  double worst, worst_left;   /* Their worst shape before, after. */
   struct vg_piece piece;      /* Without path and serial. */
   size_t n_moved;
   uint64_t *moved; /* [n_moved] Points of other pieces that moved. */

@@ -20,7 +20,6 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/delaunay/tets.h"
-#include "core/geometry/shape.h"
 #include "partition/repair/repair_parts.h"
 
 /* Sizes count as uniform when fewer than one in this many cells at interfaces
@@ -39,8 +38,8 @@ struct outcome {
   uint8_t *shared; /* [n_point] Interface points of a zone, or NULL. */
   struct vg_spots bad;
   size_t n_moved, n_swap;
-  size_t n_cell, n_fair;       /* Cells around its points; those below
-                                  VG_SHAPE_SWAP. */
+  size_t n_cell, n_fair;       /* Cells around its points; those that would be
+                                  swapped. */
   struct vg_edit edit;         /* Swapped cells. */
   struct vg_span span[N_SPAN]; /* Trace of the steps for it. */
   vg_status st;
@@ -49,6 +48,7 @@ struct outcome {
 struct smoothing {
   struct vg_partition *p;
   const struct vg_owners *owners;
+  const struct vg_repair_levels *level;
   int first;           /* 1: the first of two passes. */
   struct outcome *out; /* [n_piece] */
   size_t n_far, cap_far;
@@ -191,7 +191,8 @@ static vg_status send_halos(struct smoothing *s, struct vg_comm *comm,
 
 /* --- smoothing of one owner ---------------------------------------------- */
 
-static vg_status smooth(struct vg_overlap *f, const struct vg_sizing *sizing,
+static vg_status smooth(struct vg_overlap *f,
+                        const struct vg_repair_levels *level,
                         struct outcome *out)
 {
   struct vg_optimise_report r;
@@ -200,8 +201,8 @@ static vg_status smooth(struct vg_overlap *f, const struct vg_sizing *sizing,
   f->t.flag = vg_calloc(f->t.n_cell, 1);
   if (!f->t.flag ||
       vg_optimise_points(&f->t, f->n_point, f->point,
-                         f->first ? VG_SHAPE_LEVEL : VG_SHAPE_ADJACENT, sizing,
-                         f->shape, &r, NULL) < 0)
+                         f->first ? level->smooth : level->adjacent, f->sizing,
+                         f->metrics, f->shape, &r, NULL) < 0)
     return VG_ERR_MEMORY;
   for (size_t i = 0; i < f->n_point; i++) {
     uint32_t v = f->point[i];
@@ -217,7 +218,8 @@ static vg_status smooth(struct vg_overlap *f, const struct vg_sizing *sizing,
 
 /* Lists bad cells, and counts the cells that would be swapped. */
 static vg_status list_bad(const struct vg_overlap *f,
-                          const struct vg_sizing *sizing, struct outcome *out)
+                          const struct vg_repair_levels *level,
+                          struct outcome *out)
 {
   out->n_cell = f->t.n_cell;
   out->n_fair = 0;
@@ -225,11 +227,11 @@ static vg_status list_bad(const struct vg_overlap *f,
     const uint32_t *v = f->t.cell[c].v;
     const double *x[4];
 
-    out->n_fair += f->shape[c] < VG_SHAPE_SWAP;
-    if (f->kind[c] & VG_OVERLAP_CLAIMED || f->shape[c] >= VG_SHAPE_TARGET)
+    out->n_fair += f->shape[c] < level->swap;
+    if (f->kind[c] & VG_OVERLAP_CLAIMED || f->shape[c] >= level->target)
       continue;
     for (int i = 0; i < 4; i++) x[i] = f->t.x[v[i]];
-    if (vg_spots_add(&out->bad, sizing, x, f->shape[c]) < 0)
+    if (vg_spots_add(&out->bad, f->sizing, x, f->shape[c]) < 0)
       return VG_ERR_MEMORY;
   }
   return VG_OK;
@@ -264,6 +266,7 @@ static vg_status smooth_piece(const struct smoothing *s, size_t k,
 {
   const struct vg_piece *q = &s->p->piece[k];
   struct vg_overlap f = { .q = q,
+                          .sizing = s->p->sizing,
                           .halo = s->halo + s->first_halo[k],
                           .n_halo = s->first_halo[k + 1] - s->first_halo[k],
                           .self = vg_owners_find(s->owners,
@@ -275,8 +278,8 @@ static vg_status smooth_piece(const struct smoothing *s, size_t k,
   st = out->moved ? vg_overlap_new(&f, s->owners, s->first) : VG_ERR_MEMORY;
   if (st == VG_OK && !s->first && f.self->is_zone)
     st = vg_overlap_swap(&f, &out->edit, &out->n_swap);
-  if (st == VG_OK) st = smooth(&f, s->p->sizing, out);
-  if (st == VG_OK) st = list_bad(&f, s->p->sizing, out);
+  if (st == VG_OK) st = smooth(&f, s->level, out);
+  if (st == VG_OK) st = list_bad(&f, s->level, out);
   if (st == VG_OK && out->n_swap) st = vg_overlap_take(&f, &out->edit);
   if (st == VG_OK && s->first && f.self->is_zone) st = keep_hits(&f, out);
   vg_overlap_release(&f);
@@ -541,7 +544,9 @@ vg_status vg_repair_smooth(struct vg_partition *p, struct vg_comm *comm,
                            struct vg_spans *spans, size_t *n,
                            struct vg_spot **out, struct vg_error *err)
 {
-  struct smoothing s = { .p = p, .owners = owners };
+  struct smoothing s = { .p = p,
+                         .owners = owners,
+                         .level = vg_repair_levels(p->sizing) };
   struct vg_writer w = { .cap = 0 };
   int level = 1;
   vg_status st = send_halos(&s, comm, err);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Balls of very different sizes, in one hashed grid per size. */
+/* Balls of very different sizes, in one hashed grid per size. The size of a
+ * ball is that of its bounding box. */
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +9,6 @@
 #include "base/hash.h"
 #include "base/memory.h"
 #include "base/union_find.h"
-#include "core/geometry/vector.h"
 #include "partition/repair/repair_parts.h"
 
 /* Grid cells per unit length. A ball of a level is smaller than a cell of its
@@ -18,12 +18,27 @@ static double share(int level)
   return ldexp(0.5, -level);
 }
 
-static int level_of(double radius)
+static int level_of(const struct vg_spot *s)
 {
   int e;
 
-  frexp(radius, &e);
+  frexp(fmax(s->half[0], fmax(s->half[1], s->half[2])), &e);
   return e;
+}
+
+struct vg_spot vg_spot_of(const double at[3], double radius, const double *m)
+{
+  struct vg_spot s = { { at[0], at[1], at[2] }, radius, { 0 }, { 0 } };
+  double inverse[6];
+
+  assert(radius >= 0);
+  if (m) memcpy(s.m, m, sizeof s.m);
+  else vg_tensor_uniform(1, s.m);
+  vg_tensor_invert(s.m, inverse);
+  s.half[0] = radius * sqrt(inverse[0]);
+  s.half[1] = radius * sqrt(inverse[3]);
+  s.half[2] = radius * sqrt(inverse[5]);
+  return s;
 }
 
 static int64_t grid(double x, double share)
@@ -39,7 +54,7 @@ static uint64_t hash(int level, int64_t i, int64_t j, int64_t k)
 }
 
 /* Slots of the grid cells of a level that a ball meets: [8]; returns their
- * number. radius: at most that of the level's balls. */
+ * number. The ball is at most as large as those of the level. */
 static int slots(const struct vg_spot_grid *b, const struct vg_spot *s,
                  int level, uint64_t *slot)
 {
@@ -48,8 +63,8 @@ static int slots(const struct vg_spot_grid *b, const struct vg_spot *s,
   int n = 0;
 
   for (int a = 0; a < 3; a++) {
-    lo[a] = grid(s->at[a] - s->radius, m);
-    hi[a] = grid(s->at[a] + s->radius, m);
+    lo[a] = grid(s->at[a] - s->half[a], m);
+    hi[a] = grid(s->at[a] + s->half[a], m);
   }
   for (int64_t i = lo[0]; i <= hi[0]; i++)
     for (int64_t j = lo[1]; j <= hi[1]; j++)
@@ -61,7 +76,7 @@ static int slots(const struct vg_spot_grid *b, const struct vg_spot *s,
 static void list_levels(struct vg_spot_grid *b)
 {
   for (size_t i = 0; i < b->n; i++) {
-    int e = level_of(b->spot[i].radius), k = 0;
+    int e = level_of(&b->spot[i]), k = 0;
 
     while (k < b->n_level && b->level[k] != e) k++;
     if (k < b->n_level || k == VG_LEVEL_MAX) continue;
@@ -81,7 +96,7 @@ static vg_status fill_grid(struct vg_spot_grid *b, struct vg_error *err)
   if (!b->first || !b->ball) return vg_fail_memory(err, "repairs");
   for (int put = 0; put < 2; put++) {
     for (size_t i = 0; i < b->n; i++) {
-      int n = slots(b, &b->spot[i], level_of(b->spot[i].radius), slot);
+      int n = slots(b, &b->spot[i], level_of(&b->spot[i]), slot);
 
       for (int k = 0; k < n; k++)
         if (put) b->ball[b->first[slot[k] + 1]++] = (uint32_t)i;
@@ -105,7 +120,7 @@ uint32_t vg_spot_grid_at(const struct vg_spot_grid *b, const double x[3])
       const struct vg_spot *t = &b->spot[b->ball[k]];
 
       if (b->cluster[b->ball[k]] != VG_NO_CLUSTER &&
-          vg_distance2(t->at, x) <= t->radius * t->radius)
+          vg_spot_distance2(t, x) <= t->radius * t->radius)
         return b->cluster[b->ball[k]];
     }
   }
@@ -120,11 +135,15 @@ struct forest {
   size_t n_near, cap_near;
 };
 
+/* Do the balls overlap on the line between their centres? Balls that overlap
+ * elsewhere only, in metrics with different axes, remain separate: a point in
+ * both belongs to the first one that vg_spot_grid_at finds. */
 static int overlaps(const struct vg_spot *a, const struct vg_spot *b)
 {
-  double r = a->radius + b->radius;
+  double in_a = sqrt(vg_spot_distance2(a, b->at));
+  double in_b = sqrt(vg_spot_distance2(b, a->at));
 
-  return vg_distance2(a->at, b->at) <= r * r;
+  return in_a * in_b <= a->radius * in_b + b->radius * in_a;
 }
 
 /* Pairs of overlapping balls, the later ball first. */
@@ -139,7 +158,7 @@ static vg_status add_pairs(const struct vg_spot_grid *b, uint32_t i,
 {
   const struct vg_spot *s = &b->spot[i];
   uint64_t slot[8];
-  int own = level_of(s->radius);
+  int own = level_of(s);
 
   for (int l = 0; l < b->n_level; l++) {
     int n = b->level[l] < own ? 0 : slots(b, s, b->level[l], slot);
@@ -279,7 +298,7 @@ static int is_covered(const struct vg_spot_grid *b, uint32_t i)
 
       if (b->cluster[b->ball[k]] != VG_NO_CLUSTER && b->ball[k] < i &&
           t->radius > COVER_RADIUS * s->radius &&
-          vg_distance2(s->at, t->at) < COVER_DEPTH2 * t->radius * t->radius)
+          vg_spot_distance2(t, s->at) < COVER_DEPTH2 * t->radius * t->radius)
         return 1;
     }
   }

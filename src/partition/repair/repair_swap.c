@@ -9,19 +9,22 @@
 
 struct patch {
   struct vg_overlap *f;
+  float below;   /* Cells below this shape are swapped. */
   uint8_t *mark; /* [f.t.n_point] 1: corner of a cell to be swapped. */
   size_t n;
   uint32_t *cell;   /* [n] Indices in the overlap. */
   uint32_t *number; /* [f.t.n_point] Index in the patch, or VG_NONE. */
   uint32_t *vertex; /* [t.n_point] Inverse. */
   struct vg_tets t;
-  uint32_t (*old)[4]; /* [n] Vertices before the swaps. */
-  float *q;           /* [t.n_cell] Shapes. */
-  uint8_t *gone;      /* [f.t.n_cell] 1: removed. */
+  struct vg_metrics *metrics; /* Of the points of t, or NULL. */
+  uint32_t (*old)[4];         /* [n] Vertices before the swaps. */
+  float *q;                   /* [t.n_cell] Shapes. */
+  uint8_t *gone;              /* [f.t.n_cell] 1: removed. */
 };
 
 static void patch_release(struct patch *p)
 {
+  vg_metrics_free(p->metrics);
   vg_tets_release(&p->t);
   free(p->mark);
   free(p->cell);
@@ -49,7 +52,7 @@ static vg_status choose(struct patch *p)
   p->mark = vg_calloc(f->t.n_point, 1);
   if (!p->mark) return VG_ERR_MEMORY;
   for (size_t c = 0; c < n; c++) {
-    if (f->shape[c] >= VG_SHAPE_SWAP || !is_ours(f, c)) continue;
+    if (f->shape[c] >= p->below || !is_ours(f, c)) continue;
     for (int i = 0; i < 4; i++) p->mark[f->t.cell[c].v[i]] = 1;
     n_want++;
   }
@@ -133,6 +136,7 @@ static vg_status link_cells(struct patch *p)
     memcpy(x[v], f->t.x[p->vertex[v]], sizeof *x);
   st = vg_tets_from_cells(&p->t, n_point, x, p->n, (const uint32_t(*)[4])p->old,
                           NULL);
+  if (st == VG_OK) st = vg_metrics_of_corners(f->sizing, &p->t, &p->metrics);
   if (st < 0) return st;
   for (size_t k = 0; k < p->n; k++) {
     memcpy(p->old[k], p->t.cell[k].v, sizeof *p->old);
@@ -215,7 +219,7 @@ static vg_status put_back(struct patch *p)
 vg_status vg_overlap_swap(struct vg_overlap *f, struct vg_edit *out,
                           size_t *n_swap)
 {
-  struct patch p = { .f = f };
+  struct patch p = { .f = f, .below = vg_repair_levels(f->sizing)->swap };
   struct vg_optimise_report r = { 0 };
   vg_status st = choose(&p);
 
@@ -224,7 +228,7 @@ vg_status vg_overlap_swap(struct vg_overlap *f, struct vg_edit *out,
     st = make_room(&p);
     if (st == VG_OK) st = link_cells(&p);
     if (st == VG_OK)
-      st = vg_optimise_swaps(&p.t, VG_SHAPE_SWAP, &p.q, &r, NULL);
+      st = vg_optimise_swaps(&p.t, p.below, p.metrics, &p.q, &r, NULL);
     if (st == VG_OK && find_gone(&p)) {
       st = note_gone(&p, out);
       if (st == VG_OK) st = put_back(&p);
