@@ -4,6 +4,8 @@
  * Ranks are taken for separate nodes. */
 #include "mpi_support.h"
 
+#include "../unit/metric_support.h"
+
 #include "base/comm_parts.h"
 #include "base/team.h"
 #include "core/sizing/sizing.h"
@@ -98,21 +100,7 @@ static void all_members_get_all_results(void **state)
   assert_int_equal(vg_team_close(t, VG_OK, NULL), VG_OK);
 }
 
-struct digest {
-  size_t n;
-  uint64_t sum;
-};
-
-static void add_bytes(void *user, size_t n, const void *data)
-{
-  struct digest *d = user;
-  const unsigned char *byte = data;
-
-  for (size_t i = 0; i < n; i++) d->sum = (d->sum ^ byte[i]) * 1099511628211ull;
-  d->n += n;
-}
-
-static struct digest field(struct vg_team *t, int threads)
+static struct field_digest field(struct vg_team *t, int threads)
 {
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   const struct vg_source source[2] = {
@@ -124,14 +112,14 @@ static struct digest field(struct vg_team *t, int threads)
       .u = { 1, 1, 0 } },
     { .kind = VG_SOURCE_SPHERE, .h0 = 0.1, .r0 = 0.5, .p0 = { 1, 0, 0 } }
   };
-  struct digest d = { 0, 0 };
+  struct field_digest d;
   struct vg_sizing *s = NULL;
 
   o.team = t;
   o.threads = threads;
   assert_int_equal(vg_sizing_new(&o, 2, source, NULL, &s, NULL), VG_OK);
   assert_true(vg_sizing_is_stretched(s));
-  vg_sizing_show(s, add_bytes, &d);
+  d = field_digest(s);
   vg_sizing_free(s);
   return d;
 }
@@ -139,7 +127,7 @@ static struct digest field(struct vg_team *t, int threads)
 /* All members build the field of size tensors that one process builds. */
 static void a_field_of_tensors_is_the_same(void **state)
 {
-  struct digest own = field(NULL, 1), joint;
+  struct field_digest own = field(NULL, 1), joint;
   struct vg_team *t;
 
   (void)state;

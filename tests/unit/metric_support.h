@@ -51,4 +51,27 @@ static inline struct vg_sizing *metric_oblique_field(const struct vg_mesh *m,
   return metric_field(&map, m);
 }
 
+struct field_digest {
+  size_t n;
+  uint64_t sum;
+};
+
+static inline void field_bytes(void *user, size_t n, const void *data)
+{
+  struct field_digest *d = user;
+  const unsigned char *byte = data;
+
+  for (size_t i = 0; i < n; i++) d->sum = (d->sum ^ byte[i]) * 1099511628211ull;
+  d->n += n;
+}
+
+/* Number and digest of the bytes of a field. */
+static inline struct field_digest field_digest(const struct vg_sizing *s)
+{
+  struct field_digest d = { 0, 0 };
+
+  vg_sizing_show(s, field_bytes, &d);
+  return d;
+}
+
 #endif

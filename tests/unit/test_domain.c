@@ -10,16 +10,11 @@
 
 #include <cmocka.h>
 
+#include "ball_support.h"
 #include "core/domain/farfield.h"
 #include "core/domain/planar.h"
 #include "core/domain/project.h"
 #include "io/vgrid/vgrid.h"
-
-static double even(void *user, const double x[3])
-{
-  (void)x;
-  return *(double *)user;
-}
 
 struct side {
   uint32_t a, b;
@@ -95,22 +90,7 @@ static double angle_min_deg(const struct vg_mesh *m)
   return least;
 }
 
-/* A sphere body, whole or half, radius 1 at the origin, normals outward. */
-static struct vg_mesh ball(int half, double h)
-{
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_border border = VG_BORDER_INIT;
-  const struct vg_size_function law = { .at = even, .user = &h };
-  const double centre[3] = { 0, 0, 0 };
-  struct vg_error err = VG_ERROR_INIT;
-
-  assert_int_equal(vg_mesh_add_patch(&m, 7, "ball"), 0);
-  assert_int_equal(vg_add_sphere(&m, centre, 1, half, 0, &law, 0, &border,
-                                 &err),
-                   VG_OK);
-  vg_border_release(&border);
-  return m;
-}
+static const double origin[3] = { 0, 0, 0 };
 
 static int counts_down(void *user)
 {
@@ -134,7 +114,7 @@ static void makes_even_spheres(void **state)
 {
   (void)state;
   for (int n = 4; n <= 40; n *= 3) {
-    struct vg_mesh m = ball(-1, 1.0 / n);
+    struct vg_mesh m = ball(origin, -1, 1.0 / n);
     /* equilateral triangles of edge h on a sphere */
     const double want = 4 * 3.14159265 * n * n / (0.4330127);
 
@@ -153,7 +133,7 @@ static void makes_even_spheres(void **state)
 
 static void puts_a_sphere_around_a_body(void **state)
 {
-  struct vg_mesh m = ball(-1, 0.1);
+  struct vg_mesh m = ball(origin, -1, 0.1);
   const size_t n_point = m.n_point, n_tri = m.n_tri;
   struct vg_sizing *s = field(&m, 1.2);
   struct vg_farfield far = VG_FARFIELD_INIT;
@@ -184,7 +164,7 @@ static void puts_a_sphere_around_a_body(void **state)
 
 static void puts_a_box_around_a_body(void **state)
 {
-  struct vg_mesh m = ball(-1, 0.1);
+  struct vg_mesh m = ball(origin, -1, 0.1);
   struct vg_sizing *s = field(&m, 1.2);
   struct vg_farfield far = { .kind = VG_FARFIELD_BOX,
                              .lo = { -9, -5, -4 },
@@ -213,7 +193,7 @@ static void completes_half_bodies(void **state)
   (void)state;
   for (int half = 0; half < 6; half++)
     for (int kind = VG_FARFIELD_SPHERE; kind <= VG_FARFIELD_BOX; kind++) {
-      struct vg_mesh m = ball(half, 0.1);
+      struct vg_mesh m = ball(origin, half, 0.1);
       struct vg_sizing *s;
       struct vg_farfield far = VG_FARFIELD_INIT;
       struct vg_domain_report report;
@@ -255,7 +235,7 @@ static void completes_half_bodies(void **state)
  * rim has `rim` of its radius and widens over half of the depth. */
 static struct vg_mesh open_body(int axis, double deep, double rim, double at)
 {
-  struct vg_mesh m = ball(2 * axis + 1, 0.1);
+  struct vg_mesh m = ball(origin, 2 * axis + 1, 0.1);
 
   for (size_t i = 0; i < m.n_point; i++) {
     double *x = m.point[i], t = 2 * x[axis];
@@ -360,7 +340,7 @@ static vg_status close_holes(struct vg_mesh *m, int symmetry, size_t *n_hole)
 
 static void closes_holes_but_not_half_bodies(void **state)
 {
-  struct vg_mesh m = ball(-1, 0.1);
+  struct vg_mesh m = ball(origin, -1, 0.1);
   double whole = -volume(&m);
   size_t n;
 
@@ -378,14 +358,14 @@ static void closes_holes_but_not_half_bodies(void **state)
   assert_int_equal(m.patch[2].bc, VG_BC_NONE);
   assert_true(-volume(&m) > 0.95 * whole && -volume(&m) < whole);
   vg_mesh_release(&m);
-  m = ball(-1, 0.1); /* open at both ends: no half model */
+  m = ball(origin, -1, 0.1); /* open at both ends: no half model */
   cut_end(&m, 1, 1, 0.3);
   cut_end(&m, 1, -1, -0.3);
   assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 2);
   check_closed(&m);
   vg_mesh_release(&m);
-  m = ball(5, 0.1); /* half a ball with a hole at its end */
+  m = ball(origin, 5, 0.1); /* half a ball with a hole at its end */
   cut_end(&m, 2, 1, 0.95);
   assert_int_equal(close_holes(&m, 1, &n), VG_OK);
   assert_int_equal(n, 1);
@@ -395,7 +375,7 @@ static void closes_holes_but_not_half_bodies(void **state)
   assert_int_equal(n, 1);
   check_closed(&m);
   vg_mesh_release(&m);
-  m = ball(5, 0.1); /* a section that is open at both ends */
+  m = ball(origin, 5, 0.1); /* a section that is open at both ends */
   cut_end(&m, 2, 1, 0.95);
   assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 2);
@@ -407,7 +387,7 @@ static void closes_holes_but_not_half_bodies(void **state)
   assert_int_equal(close_holes(&m, 0, &n), VG_OK);
   assert_int_equal(n, 1);
   vg_mesh_release(&m);
-  m = ball(-1, 0.1);
+  m = ball(origin, -1, 0.1);
   cut_end(&m, 2, 1, 0.9);
   for (size_t i = 0; i < m.n_point; i++)
     m.point[i][2] += 0.5 * m.point[i][1] * m.point[i][1];
@@ -441,13 +421,14 @@ static void copy_shifted(struct vg_mesh *to, const struct vg_mesh *from,
 
 static void takes_several_bodies(void **state)
 {
-  struct vg_mesh m = ball(3, 0.2), other = ball(3, 0.1), free_body;
+  struct vg_mesh m = ball(origin, 3, 0.2), other = ball(origin, 3, 0.1),
+                 free_body;
   struct vg_sizing *s;
   struct vg_farfield far = VG_FARFIELD_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
   (void)state;
-  free_body = ball(-1, 0.15);
+  free_body = ball(origin, -1, 0.15);
   for (size_t i = 0; i < free_body.n_point; i++) free_body.point[i][1] += 3;
   copy_shifted(&m, &other, 2.5);
   copy_shifted(&m, &free_body, 1);
@@ -482,7 +463,7 @@ static void refuses(struct vg_mesh m, const struct vg_farfield *far,
 static void adds_a_symmetry_plane_alone(void **state)
 {
   struct vg_farfield none = VG_FARFIELD_INIT;
-  struct vg_mesh m = ball(2, 0.3);
+  struct vg_mesh m = ball(origin, 2, 0.3);
   struct vg_sizing *s = field(&m, 1.2);
   struct vg_domain_report r;
   struct vg_error err = VG_ERROR_INIT;
@@ -503,19 +484,20 @@ static void refuses_half_bodies_it_cannot_complete(void **state)
 {
   struct vg_farfield far = VG_FARFIELD_INIT, small = VG_FARFIELD_INIT,
                      nowhere = VG_FARFIELD_INIT;
-  struct vg_mesh m = ball(-1, 0.3);
+  struct vg_mesh m = ball(origin, -1, 0.3);
 
   (void)state;
   m.n_tri--; /* a hole in the middle of the surface */
   refuses(m, &far, VG_ERR_GEOMETRY, "open edges");
   small.size = 1.02;
-  refuses(ball(-1, 0.3), &small, VG_ERR_GEOMETRY, "inside the farfield");
+  refuses(ball(origin, -1, 0.3), &small, VG_ERR_GEOMETRY,
+          "inside the farfield");
   small.kind = VG_FARFIELD_BOX;
   small.size = 0.9;
-  refuses(ball(3, 0.3), &small, VG_ERR_GEOMETRY, "inside the farfield");
+  refuses(ball(origin, 3, 0.3), &small, VG_ERR_GEOMETRY, "inside the farfield");
   nowhere.lengths = NAN;
-  refuses(ball(-1, 0.3), &nowhere, VG_ERR_INPUT, "positive");
-  m = ball(-1, 0.3);
+  refuses(ball(origin, -1, 0.3), &nowhere, VG_ERR_INPUT, "positive");
+  m = ball(origin, -1, 0.3);
   for (size_t i = 0; i < m.n_tri; i++) {
     const uint32_t v = m.tri[i][0];
 
@@ -523,7 +505,7 @@ static void refuses_half_bodies_it_cannot_complete(void **state)
     m.tri[i][1] = v;
   }
   refuses(m, &far, VG_ERR_INPUT, "into the body");
-  m = ball(3, 0.3);
+  m = ball(origin, 3, 0.3);
   for (size_t i = 0; i < m.n_point; i++) /* bulges through its plane */
     if (m.point[i][1] > 0.9) m.point[i][1] = -0.2;
   refuses(m, &far, VG_ERR_GEOMETRY, "plane");
@@ -761,7 +743,7 @@ static void stops_when_asked(void **state)
   (void)state;
   for (int k = 0; k < 2; k++)
     for (int half = -1; half < 1; half++) {
-      struct vg_mesh m = ball(half, 0.1);
+      struct vg_mesh m = ball(origin, half, 0.1);
       const size_t n_tri = m.n_tri, n_patch = m.n_patch;
       struct vg_farfield far = VG_FARFIELD_INIT;
       struct vg_error err = VG_ERROR_INIT;

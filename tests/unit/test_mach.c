@@ -10,35 +10,13 @@
 
 #include <cmocka.h>
 
+#include "ball_support.h"
 #include "core/domain/farfield.h"
 #include "core/domain/mach.h"
 #include "core/geometry/vector.h"
 #include "core/mesh/mesh_defects.h"
 
 #define PI 3.14159265358979324
-
-static double even(void *user, const double x[3])
-{
-  (void)x;
-  return *(double *)user;
-}
-
-/* A sphere of radius 1, whole or half, as the body. */
-static struct vg_mesh ball(const double centre[3], int half)
-{
-  struct vg_mesh m = VG_MESH_INIT;
-  struct vg_border border = VG_BORDER_INIT;
-  double h = 0.3;
-  const struct vg_size_function law = { .at = even, .user = &h };
-  struct vg_error err = VG_ERROR_INIT;
-
-  assert_int_equal(vg_mesh_add_patch(&m, 7, "ball"), 0);
-  assert_int_equal(vg_add_sphere(&m, centre, 1, half, 0, &law, 0, &border,
-                                 &err),
-                   VG_OK);
-  vg_border_release(&border);
-  return m;
-}
 
 static double length_of(const struct vg_mesh *m)
 {
@@ -112,7 +90,7 @@ static void is_closed_around_the_body(void **state)
   (void)state;
   for (int i = 0; i < N_SCENE; i++) {
     const struct scene *c = &scenes[i];
-    struct vg_mesh m = ball(c->centre, c->half);
+    struct vg_mesh m = ball(c->centre, c->half, 0.3);
     const struct vg_farfield far = farfield_of(c, 0.9);
     struct vg_domain_report report = { 0 };
     struct vg_error err = VG_ERROR_INIT;
@@ -160,7 +138,7 @@ static int face_of(const struct vg_mach *d, double mach, const double x[3])
  * half as long; the mean by less than 1 %. */
 static void check_generators(const struct scene *c)
 {
-  struct vg_mesh m = ball(c->centre, c->half);
+  struct vg_mesh m = ball(c->centre, c->half, 0.3);
   const struct vg_farfield far = farfield_of(c, 0.5);
   struct vg_error err = VG_ERROR_INIT;
   struct vg_mach d;
@@ -206,7 +184,7 @@ static void has_generators_at_the_mach_angle(void **state)
 static void keeps_its_extents(void **state)
 {
   const double centre[3] = { 0, 0, 0 };
-  struct vg_mesh m = ball(centre, -1);
+  struct vg_mesh m = ball(centre, -1, 0.3);
   struct vg_mach_extent e = { 1.5, { 1, 0, 0 }, 0.7, 1.3, 4 };
   struct vg_error err = VG_ERROR_INIT;
   const double tangent = 1 / sqrt(1.25);
@@ -235,7 +213,7 @@ static void refuse(const struct vg_mach_extent *e, int half, vg_status want,
                    const char *text)
 {
   const double centre[3] = { 0, 0, 0 };
-  struct vg_mesh m = ball(centre, -1);
+  struct vg_mesh m = ball(centre, -1, 0.3);
   struct vg_error err = VG_ERROR_INIT;
   struct vg_mach d;
 

@@ -13,6 +13,7 @@
 #include "core/geometry/tensor.h"
 #include "core/sizing/sizing_octree.h"
 #include "core/sizing/sizing_tensor.h"
+#include "metric_support.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
@@ -463,30 +464,16 @@ static void a_coarser_field_keeps_its_aspect(void **state)
   vg_sizing_free(to);
 }
 
-struct digest {
-  size_t n;
-  uint64_t sum;
-};
-
-static void add_bytes(void *user, size_t n, const void *data)
-{
-  struct digest *d = user;
-  const unsigned char *byte = data;
-
-  for (size_t i = 0; i < n; i++) d->sum = (d->sum ^ byte[i]) * 1099511628211ull;
-  d->n += n;
-}
-
 static void bytes_do_not_depend_on_threads(void **state)
 {
   const struct vg_size_map map = { .metric = sheet };
-  struct digest d[3] = { { 0, 0 }, { 0, 0 }, { 0, 0 } };
+  struct field_digest d[3];
 
   (void)state;
   for (int i = 0; i < 3; i++) {
     struct vg_sizing *s = map_field(&map, 1 + 2 * i);
 
-    vg_sizing_show(s, add_bytes, d + i);
+    d[i] = field_digest(s);
     vg_sizing_free(s);
   }
   assert_true(d[0].n > 1000000);

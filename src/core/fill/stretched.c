@@ -14,6 +14,8 @@
 /* Least distance of a seed from other points, in the metric (K7). */
 static const double seed_distance = 0.8;
 
+enum { STOP_STEP = 1 << 12 };
+
 /* Insert one seed, if its surroundings are coarse enough. */
 static vg_status insert_seed(struct vg_filling *g, struct vg_metrics *metrics,
                              struct vg_inserter *s, const double x[3],
@@ -49,6 +51,7 @@ static vg_status insert_seeds(struct vg_filling *g, struct vg_metrics *metrics,
   for (size_t i = 0; st >= 0 && i < seed->n; i++) {
     st = insert_seed(g, metrics, &s, seed->x[order[i]], &at, err);
     g->report->n_inserted += st == VG_OK;
+    if (st >= 0 && i % STOP_STEP == 0) st = vg_stopped(&g->options->stop, err);
   }
   g->report->n_placed += seed->n;
   vg_inserter_release(&s);

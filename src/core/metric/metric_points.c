@@ -186,26 +186,18 @@ static int grow_point(struct advance *a, uint32_t p, struct vg_error *err)
   return 0;
 }
 
-/* The apex over a face: its normal in the metric at the centre. */
+/* Propose the apex over a face. */
 static int grow_face(struct advance *a, size_t face, struct vg_error *err)
 {
   const uint32_t *v = &a->face[3 * face];
-  double c[3], t[6], h[6], e[3], f[3], n[3], length;
+  const double(*x)[3] = (const double(*)[3])a->t->x;
+  double c[3], h[6], unit[3];
   uint32_t start = live(a, a->face_cell[face]);
 
-  for (int k = 0; k < 3; k++)
-    c[k] = (a->t->x[v[0]][k] + a->t->x[v[1]][k] + a->t->x[v[2]][k]) / 3;
-  vg_sizing_stretch_at(a->metrics->sizing, c, t);
-  vg_tensor_invert(t, h);
-  vg_sub(a->t->x[v[1]], a->t->x[v[0]], e);
-  vg_sub(a->t->x[v[2]], a->t->x[v[0]], f);
-  vg_tensor_apply(t, e, e);
-  vg_tensor_apply(t, f, f);
-  vg_cross(e, f, n);
-  length = vg_norm(n);
-  if (!(length > 0)) return 0;
-  for (int k = 0; k < 3; k++) n[k] *= VG_METRIC_APEX / length;
-  return propose(a, c, h, n, &start, err);
+  if (!vg_metric_apex(a->metrics->sizing, x[v[0]], x[v[1]], x[v[2]], c, h,
+                      unit))
+    return 0;
+  return propose(a, c, h, unit, &start, err);
 }
 
 /* --- the front ------------------------------------------------------------ */

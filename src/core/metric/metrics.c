@@ -112,3 +112,22 @@ double vg_metric_normal(const struct vg_point_metric *m, double n[3])
   for (int k = 0; k < 3; k++) n[k] *= m->root;
   return sqrt(fmax(vg_tensor_form(m->m, n), 0));
 }
+
+int vg_metric_apex(const struct vg_sizing *sizing, const double x[3],
+                   const double y[3], const double z[3], double c[3],
+                   double h[6], double unit[3])
+{
+  double t[6], e[3], f[3], length;
+
+  for (int k = 0; k < 3; k++) c[k] = (x[k] + y[k] + z[k]) / 3;
+  vg_sizing_stretch_at(sizing, c, t);
+  vg_tensor_invert(t, h);
+  vg_sub(y, x, e);
+  vg_sub(z, x, f);
+  vg_tensor_apply(t, e, e);
+  vg_tensor_apply(t, f, f);
+  vg_cross(e, f, unit);
+  length = vg_norm(unit);
+  for (int k = 0; k < 3; k++) unit[k] *= VG_METRIC_APEX / length;
+  return length > 0;
+}

@@ -107,6 +107,13 @@ static inline double vg_metric_shape(const struct vg_point_metric *m,
  * twice the area of the face in the metric. */
 double vg_metric_normal(const struct vg_point_metric *m, double n[3]);
 
+/** The apex of a regular cell over the triangle x, y, z, in the metric at its
+ * centre c. h out: the size tensor there; unit out: the apex is at c + h unit.
+ * Returns 0 if the triangle is degenerate. */
+int vg_metric_apex(const struct vg_sizing *sizing, const double x[3],
+                   const double y[3], const double z[3], double c[3],
+                   double h[6], double unit[3]);
+
 /** The finest metric of four points: that of the largest determinant. */
 static inline const struct vg_point_metric *vg_metrics_finest(
   const struct vg_metrics *s, const uint32_t v[4])

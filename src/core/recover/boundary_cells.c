@@ -69,25 +69,6 @@ static vg_status insert(struct vg_inserter *s, uint32_t p, const double x[3],
 
 /* --- apexes --------------------------------------------------------------- */
 
-/* The apex over a triangle: a regular cell in the metric at its centre. Returns
- * 0 if the triangle is degenerate. */
-static int find_apex(const struct vg_tets *t, const struct vg_sizing *sizing,
-                     const uint32_t v[3], double x[3])
-{
-  struct vg_point_metric m;
-  double c[3], e[3], f[3], n[3], length;
-
-  for (int k = 0; k < 3; k++)
-    c[k] = (t->x[v[0]][k] + t->x[v[1]][k] + t->x[v[2]][k]) / 3;
-  vg_metric_at(sizing, c, &m);
-  vg_sub(t->x[v[1]], t->x[v[0]], e);
-  vg_sub(t->x[v[2]], t->x[v[0]], f);
-  vg_cross(e, f, n);
-  length = vg_metric_normal(&m, n);
-  for (int k = 0; k < 3; k++) x[k] = c[k] + VG_METRIC_APEX * n[k] / length;
-  return length > 0;
-}
-
 /* Insert the apex over triangle v if it is in the box and away from all
  * points. */
 static vg_status insert_apex(struct vg_inserter *s, struct vg_metrics *metrics,
@@ -97,11 +78,15 @@ static vg_status insert_apex(struct vg_inserter *s, struct vg_metrics *metrics,
 {
   struct vg_tets *t = s->t;
   struct vg_point_metric m;
-  double x[3];
+  double c[3], h[6], x[3];
   vg_status st;
 
-  if (!find_apex(t, metrics->sizing, v, x) ||
-      (region && !vg_region_near(region, metrics->sizing, x, VG_BAND_PLACE)))
+  if (!vg_metric_apex(metrics->sizing, t->x[v[0]], t->x[v[1]], t->x[v[2]], c, h,
+                      x))
+    return VG_OK;
+  vg_tensor_apply(h, x, x);
+  for (int k = 0; k < 3; k++) x[k] += c[k];
+  if (region && !vg_region_near(region, metrics->sizing, x, VG_BAND_PLACE))
     return VG_OK;
   *at = vg_tets_locate(t, *at, x);
   if (*at == VG_NONE) {
