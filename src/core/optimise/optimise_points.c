@@ -285,19 +285,32 @@ static int open_cavity(struct vg_optimiser *o, double need, struct cavity *h)
   return 1;
 }
 
-/* Would a point of the old cells not be a corner of any new cell? */
-static int swallows(const struct vg_tets *t, const struct cavity *h)
+static int is_kept(const struct cavity *h, uint32_t p)
 {
+  for (int m = 0; m < h->n_new; m++)
+    if (h->v[m][0] == p || h->v[m][1] == p || h->v[m][2] == p) return 1;
+  return 0;
+}
+
+/* Points of the old cells that are not corners of new cells lose their stars.
+ * Returns 0, and changes nothing, if such a point may not be removed. Only in a
+ * metric may any point be: flat cells over dents of a rounded boundary often
+ * need a large cavity. */
+static int swallow(struct vg_optimiser *o, const struct cavity *h)
+{
+  uint32_t lost[4 * VG_OLD_MAX];
+  int n = 0;
+
   for (int k = 0; k < h->n_old; k++)
     for (int i = 0; i < 4; i++) {
-      uint32_t p = t->cell[h->old[k]].v[i];
-      int found = 0;
+      uint32_t p = o->t->cell[h->old[k]].v[i];
 
-      for (int m = 0; m < h->n_new && !found; m++)
-        found = h->v[m][0] == p || h->v[m][1] == p || h->v[m][2] == p;
-      if (!found) return 1;
+      if (is_kept(h, p)) continue;
+      if (!o->metrics || p < o->n_keep) return 0;
+      lost[n++] = p;
     }
-  return 0;
+  for (int k = 0; k < n; k++) o->star[lost[k]] = VG_NONE;
+  return 1;
 }
 
 int vg_try_point(struct vg_optimiser *o, const double x[3])
@@ -322,7 +335,7 @@ static int put_point(struct vg_optimiser *o, struct cavity *h)
   struct vg_tets *t = o->t;
   uint32_t p = (uint32_t)t->n_point;
 
-  if (swallows(t, h)) return 0;
+  if (!swallow(o, h)) return 0;
   for (int k = 0; k < h->n_new; k++) h->v[k][3] = p;
   if (vg_replace(o, h->n_old, h->old, h->n_new, (const uint32_t(*)[4])h->v,
                  h->q, NULL))
