@@ -5,6 +5,7 @@
 #include "../unit/repair_support.h"
 
 static struct vg_digest repaired(struct vg_comm *comm, int threads, int zones,
+                                 int stretch,
                                  struct vg_partition_report *report)
 {
   struct vg_digest d;
@@ -12,6 +13,7 @@ static struct vg_digest repaired(struct vg_comm *comm, int threads, int zones,
 
   scene_new(&s, 16, 6, 6);
   scene_shake(&s, 0.45, 7);
+  if (stretch > 1) scene_stretch(&s, stretch);
   scene_cut(&s, comm, threads);
   if (zones) scene_zones(&s);
   assert_int_equal(vg_partition_repair(&s.p, comm, NULL, NULL), VG_OK);
@@ -21,15 +23,15 @@ static struct vg_digest repaired(struct vg_comm *comm, int threads, int zones,
   return d;
 }
 
-static void same_as_alone(int zones)
+static void same_as_alone(int zones, int stretch)
 {
   struct vg_partition_report one, all;
-  struct vg_digest want = repaired(NULL, 1, zones, &one);
+  struct vg_digest want = repaired(NULL, 1, zones, stretch, &one);
 
   assert_true(one.n_repaired > 0);
   assert_int_equal(one.n_repair_moved > 0, zones);
   for (int threads = 1; threads <= 3; threads += 2) {
-    struct vg_digest got = repaired(job, threads, zones, &all);
+    struct vg_digest got = repaired(job, threads, zones, stretch, &all);
 
     assert_memory_equal(&got, &want, sizeof want);
     assert_int_equal(all.n_repair_moved, one.n_repair_moved);
@@ -46,13 +48,20 @@ static void same_as_alone(int zones)
 static void test_same_as_alone(void **state)
 {
   (void)state;
-  same_as_alone(0);
+  same_as_alone(0, 1);
 }
 
 static void test_zones_as_alone(void **state)
 {
   (void)state;
-  same_as_alone(1);
+  same_as_alone(1, 1);
+}
+
+static void test_metric_as_alone(void **state)
+{
+  (void)state;
+  same_as_alone(0, 12);
+  same_as_alone(1, 12);
 }
 
 /* In the timeline each task belongs to the rank that ran it, and follows the
@@ -107,6 +116,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_same_as_alone),
     cmocka_unit_test(test_zones_as_alone),
+    cmocka_unit_test(test_metric_as_alone),
     cmocka_unit_test(test_recorded),
     cmocka_unit_test(test_empty),
   };

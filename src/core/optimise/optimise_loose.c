@@ -194,7 +194,7 @@ static int smooth(struct mover *m, struct vg_tets *t, uint32_t p, size_t n,
 }
 
 /* Largest number of moves of one point in a metric. */
-enum { MOVES_IN_METRIC = 4 }; /* K49 */
+enum { MOVES_IN_METRIC = 4 }; /* K50 */
 
 /* The same in metrics. */
 static int smooth_in_metric(struct mover *m, struct vg_tets *t, uint32_t p,
