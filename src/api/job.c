@@ -114,8 +114,7 @@ vanguard_status vanguard_close(vanguard_job *job)
   vg_job_release_run(job, 1);
   vg_settings_release(&job->settings);
   vg_mesh_release(&job->surface);
-  free(job->size_at);
-  free(job->size_of);
+  vg_job_forget_sizes(job);
   free(job->project);
   free(job->deck);
   free(job->name);
@@ -343,60 +342,5 @@ vanguard_status vanguard_surface(vanguard_job *job, const char *name,
   keep_text(&job->deck, NULL);
 done:
   vg_mesh_release(&m);
-  return vg_job_status(st);
-}
-
-/* --- sizes --------------------------------------------------------------- */
-
-static void forget_sizes(vanguard_job *job)
-{
-  free(job->size_at);
-  free(job->size_of);
-  job->size_at = NULL;
-  job->size_of = NULL;
-  job->n_size = 0;
-  job->size = NULL;
-}
-
-vanguard_status vanguard_sizes(vanguard_job *job, vanguard_size_function *size,
-                               void *user)
-{
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
-  vg_status st = vg_job_usable(job);
-
-  if (st < 0) return vg_job_status(st);
-  forget_sizes(job);
-  job->size = size;
-  job->size_user = user;
-  return VANGUARD_OK;
-}
-
-vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
-                                     const double *xyz, const double *size)
-{
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
-  double(*at)[3] = NULL, *of = NULL;
-  vg_status st;
-
-  VG_TRY(vg_job_usable(job));
-  VG_TRY(vg_size_samples_check("size_points", n, (const double(*)[3])xyz, size,
-                               &job->err));
-  at = vg_alloc(n, sizeof *at);
-  of = vg_alloc(n, sizeof *of);
-  if (!at || !of) {
-    st = vg_fail_memory(&job->err, "the target edge lengths at points");
-    goto done;
-  }
-  if (n) memcpy(at, xyz, n * sizeof *at);
-  if (n) memcpy(of, size, n * sizeof *of);
-  forget_sizes(job);
-  job->n_size = n;
-  job->size_at = at;
-  job->size_of = of;
-  at = NULL;
-  of = NULL;
-done:
-  free(at);
-  free(of);
   return vg_job_status(st);
 }

@@ -8,6 +8,7 @@
 #include "api/vanguard.h"
 #include "base/comm.h"
 #include "core/sizing/sizing_map.h"
+#include "core/sizing/sizing_mesh.h"
 #include "run/input/input.h"
 #include "run/input/layers.h"
 #include "run/stages/run.h"
@@ -22,18 +23,23 @@ struct vanguard_job {
   char *project, *deck;   /* names given to vanguard_open; else NULL */
   char *name;             /* name of `surface` */
   struct vg_mesh surface; /* surface given to vanguard_surface */
+  /* Sizes: at most one of the following is given. */
   vanguard_size_function *size;
-  void *size_user;
-  struct vg_size_map map; /* sizing field of `size` or `samples`; `at` is
-                             NULL without either */
+  vanguard_metric_function *metric;
+  void *size_user;        /* of `size` or `metric` */
+  struct vg_size_map map; /* map of `size` or `metric` */
   size_t n_size;
   double (*size_at)[3], *size_of; /* [n_size] points and sizes given to
                                      vanguard_size_points */
+  struct vg_mesh background;      /* points and cells given to
+                                     vanguard_metric_points */
+  double (*metric_of)[6];         /* [background.n_point] their metrics */
   /* State of the last run. */
   vanguard_progress *progress;
   void *progress_user;
   struct vg_display show;
-  struct vg_size_samples *samples;
+  struct vg_size_samples *samples; /* of `size_of` */
+  struct vg_size_mesh *metrics;    /* of `metric_of` */
   struct vg_problem problem;
   struct vg_layer_stage layers;
   struct vg_run run;
@@ -65,6 +71,9 @@ void vg_job_leave(const vanguard_job *const *job);
 /** VG_ERR_USAGE if the job could not be created, or if it has no mesh. */
 vg_status vg_job_usable(vanguard_job *job);
 vg_status vg_job_meshed(vanguard_job *job);
+
+/** Forget the sizes that the caller has given. (sizes.c) */
+void vg_job_forget_sizes(vanguard_job *job);
 
 /** Release everything that belongs to the last run. Collective. */
 void vg_job_release_run(vanguard_job *job, int success);

@@ -21,6 +21,8 @@ void vg_job_release_run(vanguard_job *job, int success)
   job->problem = (struct vg_problem)VG_PROBLEM_INIT;
   vg_size_samples_free(job->samples);
   job->samples = NULL;
+  vg_size_mesh_free(job->metrics);
+  job->metrics = NULL;
   free(job->wall_point);
   job->wall_point = NULL;
   free(job->details);
@@ -48,15 +50,29 @@ static double size_at(void *user, const double x[3])
   return job->size(job->size_user, x);
 }
 
+static void metric_at(void *user, const double x[3], double m[6])
+{
+  const vanguard_job *job = user;
+
+  job->metric(job->size_user, x, m);
+}
+
 /* Pass the caller's sizes to the run. */
 static vg_status use_sizes(vanguard_job *job)
 {
   struct vg_problem *p = &job->problem;
   vg_status st = VG_OK;
 
-  if (job->size) {
-    job->map = (struct vg_size_map){ .at = size_at, .user = job };
+  if (job->size || job->metric) {
+    job->map = (struct vg_size_map){ .at = job->size ? size_at : NULL,
+                                     .metric = job->metric ? metric_at : NULL,
+                                     .user = job };
     p->read.map = &job->map;
+  } else if (job->metric_of) {
+    st = vg_size_mesh_new(&job->background, (const double(*)[6])job->metric_of,
+                          vg_options_growth(&p->asked), &job->metrics,
+                          &job->err);
+    if (st >= 0) p->read.map = vg_size_mesh_map(job->metrics);
   } else if (job->n_size) {
     st = vg_size_samples_new(job->n_size, (const double(*)[3])job->size_at,
                              job->size_of, vg_options_growth(&p->asked),

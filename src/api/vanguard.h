@@ -212,7 +212,8 @@ typedef double vanguard_size_function(void *user, const double x[3]);
  * smallest of the sizes from surface, sources and function holds, and the
  * growth limit applies to all of them. Features of the function that are
  * narrower than 1/32 of the domain's bounding box are only found where other
- * sizes are small. NULL removes the function.
+ * sizes are small. This replaces the sizes given before by this function or
+ * those below, and vice versa; NULL removes the function.
  *
  * @param size  called by several threads at once during vanguard_mesh; its
  *              result must depend on x alone and be the same on all ranks */
@@ -222,8 +223,7 @@ VANGUARD_API vanguard_status vanguard_sizes(vanguard_job *job,
 
 /** Add target edge lengths at points to the sizing field. From each point the
  * size grows at the rate of the setting "growth". The arrays are copied. This
- * replaces the function of vanguard_sizes, and vice versa; n = 0 removes the
- * points.
+ * replaces the sizes given before, and vice versa; n = 0 removes the points.
  *
  * @param xyz   [n][3] coordinates
  * @param size  [n] edge lengths, finite and above 0
@@ -231,6 +231,42 @@ VANGUARD_API vanguard_status vanguard_sizes(vanguard_job *job,
 VANGUARD_API vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
                                                   const double *xyz,
                                                   const double *size);
+
+/** User-defined metric at x, for target edge lengths that depend on the
+ * direction. m out: xx, xy, xz, yy, yz, zz of a symmetric positive tensor M. An
+ * edge e has its target length if e' M e = 1: the eigenvalues are 1 / length^2,
+ * and the eigenvectors are the directions of these lengths. All zero where the
+ * function sets no limit. */
+typedef void vanguard_metric_function(void *user, const double x[3],
+                                      double m[6]);
+
+/** Add a user-defined metric function to the sizing field. At each point the
+ * intersection of the metrics of surface, sources and function holds, limited
+ * by the settings "growth" and "aspect_max". For narrow features, as for
+ * threads and ranks, see vanguard_sizes. This replaces the sizes given before,
+ * and vice versa; NULL removes the function. */
+VANGUARD_API vanguard_status vanguard_metrics(vanguard_job *job,
+                                              vanguard_metric_function *metric,
+                                              void *user);
+
+/** Add metrics at the points of a background mesh to the sizing field. Within
+ * its tetrahedra, the tensor of sizes M^(-1/2) is interpolated linearly;
+ * elsewhere, that of the nearest point grows at the rate of the setting
+ * "growth". The arrays are copied. This replaces the sizes given before, and
+ * vice versa; n = 0 removes the points.
+ *
+ * @param xyz     [n][3] coordinates
+ * @param metric  [n][6] xx, xy, xz, yy, yz, zz (vanguard_metric_function), all
+ *                positive
+ * @param n_tet   number of tetrahedra; may be 0
+ * @param tet     [n_tet][4] point numbers, from 0, in any orientation
+ * VANGUARD_ERR_INPUT: a value is invalid; the message names the point or the
+ * tetrahedron. */
+VANGUARD_API vanguard_status vanguard_metric_points(vanguard_job *job, size_t n,
+                                                    const double *xyz,
+                                                    const double *metric,
+                                                    size_t n_tet,
+                                                    const uint32_t *tet);
 
 /* --- meshing ------------------------------------------------------------- */
 

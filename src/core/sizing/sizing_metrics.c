@@ -107,7 +107,7 @@ static vg_status check_metric(const char *name, size_t n, size_t i,
                   err);
   snprintf(what, sizeof what,
            "positive if its components are %s; in the order %s, all metrics "
-           "are: set metric_order to %s",
+           "are: reorder them, or set metric_order to %s for a file",
            lists[order], lists[other], names[other]);
   return refuse(name, i, x, m, what, err);
 }

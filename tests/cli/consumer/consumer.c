@@ -444,6 +444,79 @@ static void takes_sizes(void)
   vanguard_free(job);
 }
 
+/* Edges of 0.025 along z, and of 0.1 across. */
+static const double flat[6] = { 100, 0, 0, 100, 0, 1600 };
+
+static void flat_metric(void *user, const double x[3], double m[6])
+{
+  (void)x;
+  memcpy(m, flat, sizeof flat);
+  if (user) m[5] = *(const double *)user;
+}
+
+/* Mean of |z| over that of |x|, of the edges in the middle of the cube. */
+static double flatness(const struct arrays *a)
+{
+  double sum[3] = { 0 };
+
+  for (uint64_t c = 0; c < a->n.n_tet; c++)
+    for (int e = 0; e < 6; e++) {
+      static const int end[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 },
+                                     { 1, 2 }, { 1, 3 }, { 2, 3 } };
+      const double *p = a->x + 3 * a->cell[0][4 * c + (size_t)end[e][0]];
+      const double *q = a->x + 3 * a->cell[0][4 * c + (size_t)end[e][1]];
+      int k = 0;
+
+      while (k < 3 && fabs(p[k] - 0.5) < 0.25 && fabs(q[k] - 0.5) < 0.25) k++;
+      for (int d = 0; k == 3 && d < 3; d++) sum[d] += fabs(p[d] - q[d]);
+    }
+  return sum[2] / sum[0];
+}
+
+static void takes_metrics(void)
+{
+  static const uint32_t tet[6][4] = { { 0, 1, 3, 7 }, { 0, 3, 2, 7 },
+                                      { 0, 2, 6, 7 }, { 0, 6, 4, 7 },
+                                      { 0, 4, 5, 7 }, { 0, 5, 1, 7 } };
+  const uint32_t beyond[4] = { 0, 1, 2, 8 };
+  double at[8][3], metric[8][6], negative = -1;
+  vanguard_job *job = new_cube();
+  struct arrays plain, made;
+
+  for (int i = 0; i < 8; i++) {
+    for (int k = 0; k < 3; k++) at[i][k] = i >> k & 1;
+    memcpy(metric[i], flat, sizeof flat);
+  }
+  CHECK(!vanguard_mesh(job, NULL, NULL));
+  take(job, &plain);
+  CHECK(!vanguard_metrics(job, flat_metric, NULL));
+  for (int k = 0; k < 2; k++) {
+    CHECK(!vanguard_mesh(job, NULL, NULL));
+    take(job, &made);
+    CHECK(made.n.n_tet > 1.5 * (double)plain.n.n_tet && flatness(&made) < 0.5);
+    CHECK(flatness(&plain) > 0.8);
+    drop(&made);
+    CHECK(!vanguard_metric_points(job, 8, at[0], metric[0], 6, tet[0]));
+  }
+  CHECK(vanguard_metric_points(job, 8, at[0], metric[0], 1, beyond) ==
+          VANGUARD_ERR_INPUT &&
+        says(job, "tetrahedron 1 has point 8"));
+  metric[3][1] = 101;
+  CHECK(vanguard_metric_points(job, 8, at[0], metric[0], 0, NULL) ==
+          VANGUARD_ERR_INPUT &&
+        says(job, "point 4") && says(job, "not positive"));
+  CHECK(!vanguard_metrics(job, flat_metric, &negative));
+  CHECK(vanguard_mesh(job, NULL, NULL) == VANGUARD_ERR_INPUT &&
+        says(job, "not positive"));
+  CHECK(!vanguard_metric_points(job, 0, NULL, NULL, 0, NULL));
+  CHECK(!vanguard_mesh(job, NULL, NULL));
+  take(job, &made);
+  CHECK(same(&plain, &made));
+  drop(&plain);
+  drop(&made);
+  vanguard_free(job);
+}
+
 static void writes(const char *dir)
 {
   vanguard_job *job = new_cube();
@@ -508,6 +581,7 @@ int main(int argc, char **argv)
   stops();
   refuses_a_second_call();
   takes_sizes();
+  takes_metrics();
   if (argc > 1) writes(argv[1]);
   CHECK(!vanguard_prepare());
   meshes_in_threads();

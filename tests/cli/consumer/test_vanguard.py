@@ -293,6 +293,57 @@ def test_sizes():
     assert len(job.mesh().tetrahedra) == plain
 
 
+def test_metrics():
+    points, triangles, patches = cube(12)
+    job = vanguard.Job()
+    job.surface(points, triangles, patches)
+    corners = [[i & 1, i >> 1 & 1, i >> 2] for i in range(8)]
+    tets = [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7],
+            [0, 4, 5, 7], [0, 5, 1, 7]]
+    tensor = np.diag([100., 100., 1600.])
+    six = [100, 0, 0, 100, 0, 1600]
+
+    def flatness():
+        mesh = job.mesh()
+        x = mesh.points[mesh.tetrahedra]
+        middle = (abs(x - 0.5) < 0.25).all(axis=(1, 2))
+        d = abs(x[middle][:, 1:] - x[middle][:, :1]).mean(axis=(0, 1))
+        return d[2] / d[0]
+
+    assert flatness() > 0.8
+    job.metric_points(corners, [tensor] * 8, tets)
+    one = flatness()
+    assert one < 0.5
+    job.metric_points(corners, [six] * 8, tets)
+    assert flatness() == one
+    grid = np.stack(np.meshgrid(*[np.linspace(0, 1, 9)] * 3), -1)
+    job.metric_points(grid.reshape(-1, 3), [six] * 729)
+    assert flatness() < 0.7
+    job.metric_function(lambda x, y, z: tensor)
+    one = flatness()
+    assert one < 0.5
+    job.metric_function(lambda x, y, z: six)
+    assert flatness() == one
+    job.metric_function(None)
+    assert flatness() > 0.8
+    refused("input", "point 1", job.metric_points, [[0, 0, 0]], [[1] * 6])
+    tensor[0, 1] = 1
+    for metrics, what in ([tensor], "point 1 is not symmetric"), (
+            [[1, 2]], "[n][6]"), ([six] * 2, "2 metrics for 1 points"):
+        try:
+            job.metric_points([[0, 0, 0]], metrics)
+            raise AssertionError("no error: %s" % what)
+        except ValueError as error:
+            assert what in str(error), error
+    for result in (None, 1.0, "abc", [[1, 2], [3, 4]]):
+        job.metric_function(lambda x, y, z: result)
+        try:
+            job.mesh()
+            raise AssertionError("no error for %r" % (result,))
+        except TypeError as error:
+            assert "the metric function returned" in str(error), error
+
+
 def test_size_function_without_result():
     """The first bad result ends the run with one error, and standard error stays
     empty: ctypes reports every result that it cannot convert."""
@@ -343,7 +394,9 @@ def test_one_call_at_a_time():
              lambda: job.get("growth"), lambda: job.surface(points, triangles),
              lambda: job.size_points([[0, 0, 0]], [1]),
              lambda: job.deck("A deck"), lambda: job.open("x"),
-             lambda: job.patch(10, name="a"), lambda: job.size_function(None)]
+             lambda: job.patch(10, name="a"), lambda: job.size_function(None),
+             lambda: job.metric_function(None),
+             lambda: job.metric_points([[0, 0, 0]], [[1, 0, 0, 1, 0, 1]])]
     refusals = []
 
     def try_all():
