@@ -8,6 +8,7 @@
 
 #include "api/job.h"
 #include "base/memory.h"
+#include "run/input/sizes.h"
 #include "run/report/report.h"
 #include "run/settings/plan_options.h"
 
@@ -72,7 +73,12 @@ static vg_status use_sizes(vanguard_job *job)
     st = vg_size_mesh_new(&job->background, (const double(*)[6])job->metric_of,
                           vg_options_growth(&p->asked), &job->metrics,
                           &job->err);
-    if (st >= 0) p->read.map = vg_size_mesh_map(job->metrics);
+    if (st < 0) return st;
+    p->read.map = vg_size_mesh_map(job->metrics);
+    vg_note(&p->notes, "metrics at %zu points were given",
+            job->background.n_point);
+    vg_note_aspects(&p->notes, job->background.n_point,
+                    (const double(*)[6])job->metric_of, p->asked.aspect_max);
   } else if (job->n_size) {
     st = vg_size_samples_new(job->n_size, (const double(*)[3])job->size_at,
                              job->size_of, vg_options_growth(&p->asked),

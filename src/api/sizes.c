@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The caller's sizes: the part of api/vanguard.h before vanguard_mesh. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -100,7 +99,6 @@ vanguard_status vanguard_metric_points(vanguard_job *job, size_t n,
   VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   struct vg_mesh m = VG_MESH_INIT;
   double(*of)[6] = NULL;
-  size_t n_limited;
   vg_status st;
 
   VG_TRY(vg_job_usable(job));
@@ -113,8 +111,7 @@ vanguard_status vanguard_metric_points(vanguard_job *job, size_t n,
   if (n) memcpy(m.point, xyz, n * sizeof *m.point);
   m.n_point = n;
   VG_TRY(vg_size_metrics_read("metric_points", n, (const double(*)[3])m.point,
-                              6, VG_TENSOR_UPPER, metric, INFINITY, of,
-                              &n_limited, &job->err));
+                              6, VG_TENSOR_UPPER, metric, of, &job->err));
   VG_TRY(copy_tets(&m, n_tet, tet, &job->err));
   vg_job_forget_sizes(job);
   if (n) {

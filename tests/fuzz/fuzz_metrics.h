@@ -16,12 +16,10 @@ static void fuzz_metrics(size_t n, struct vg_mesh *m, int components,
   double(*metric)[6] = calloc(n, sizeof *metric), got[6];
   struct vg_size_mesh *s = NULL;
   struct vg_error err = VG_ERROR_INIT;
-  size_t n_limited;
 
   if (x && metric &&
       vg_size_metrics_read("fuzz", n, (const double(*)[3])x, components,
-                           VG_TENSOR_MEDIT, value, 100, metric, &n_limited,
-                           &err) >= 0) {
+                           VG_TENSOR_MEDIT, value, metric, &err) >= 0) {
     for (size_t i = 0; i < n; i++)
       fuzz_expect(metric[i][0] > 0 && metric[i][3] > 0 && metric[i][5] > 0,
                   "accepted metrics are positive");

@@ -78,9 +78,14 @@ struct vg_optimiser {
 static inline double vg_shape_of(const struct vg_optimiser *o, uint32_t a,
                                  uint32_t b, uint32_t c, uint32_t d)
 {
-  const uint32_t v[4] = { a, b, c, d };
+  const struct vg_tets *t = o->t;
 
-  return vg_cell_shape(o->metrics, o->t, v);
+  if (o->metrics) {
+    const uint32_t v[4] = { a, b, c, d };
+
+    return vg_metrics_shape(o->metrics, t, v);
+  }
+  return vg_shape(t->x[a], t->x[b], t->x[c], t->x[d]);
 }
 
 /** To be called when cell c has changed: steps that failed for it and its

@@ -22,18 +22,19 @@ enum vg_tensor_order {
  *                    concern
  * @param order       not VG_TENSOR_FILE
  * @param value       [n][components]
- * @param aspect_max  limit of the aspect
  * @param out         out: [n]
- * @param n_limited   out: number of metrics with a larger aspect
  *
  * VG_ERR_INPUT names the first point (counted from 1) that is not finite, or
  * whose metric is not finite, not symmetric or not positive. The message says
  * with which other order all metrics would be positive. */
 vg_status vg_size_metrics_read(const char *name, size_t n, const double (*x)[3],
                                int components, enum vg_tensor_order order,
-                               const double *value, double aspect_max,
-                               double (*out)[6], size_t *n_limited,
+                               const double *value, double (*out)[6],
                                struct vg_error *err);
+
+/** Number of metrics whose aspect is above aspect_max. */
+size_t vg_size_metrics_beyond(size_t n, const double (*metric)[6],
+                              double aspect_max);
 
 struct vg_size_mesh; /* opaque, read-only */
 

@@ -112,17 +112,29 @@ static vg_status check_metric(const char *name, size_t n, size_t i,
   return refuse(name, i, x, m, what, err);
 }
 
+size_t vg_size_metrics_beyond(size_t n, const double (*metric)[6],
+                              double aspect_max)
+{
+  size_t beyond = 0;
+
+  for (size_t i = 0; i < n; i++) {
+    double value[3], vector[3][3];
+
+    vg_tensor_eigen(metric[i], value, vector);
+    beyond += value[2] > value[0] * aspect_max * aspect_max * (1 + 1e-9);
+  }
+  return beyond;
+}
+
 vg_status vg_size_metrics_read(const char *name, size_t n, const double (*x)[3],
                                int components, enum vg_tensor_order order,
-                               const double *value, double aspect_max,
-                               double (*out)[6], size_t *n_limited,
+                               const double *value, double (*out)[6],
                                struct vg_error *err)
 {
   assert(components == 6 || components == 9);
-  assert(order != VG_TENSOR_FILE && n_limited);
-  *n_limited = 0;
+  assert(order != VG_TENSOR_FILE);
   for (size_t i = 0; i < n; i++) {
-    double m[6], eigen[3], vector[3][3];
+    double m[6];
     vg_status st;
 
     if (!is_finite(x[i], 3))
@@ -131,8 +143,6 @@ vg_status vg_size_metrics_read(const char *name, size_t n, const double (*x)[3],
     convert(components, order, value + i * (size_t)components, m);
     st = check_metric(name, n, i, x[i], components, order, value, m, err);
     if (st < 0) return st;
-    vg_tensor_eigen(m, eigen, vector);
-    *n_limited += eigen[2] > eigen[0] * aspect_max * aspect_max * (1 + 1e-9);
     memcpy(out[i], m, sizeof m);
   }
   return VG_OK;

@@ -219,13 +219,24 @@ done:
   return st;
 }
 
+void vg_note_aspects(struct vg_notes *notes, size_t n,
+                     const double (*metric)[6], double aspect_max)
+{
+  size_t beyond = vg_size_metrics_beyond(n, metric, aspect_max);
+
+  if (beyond)
+    vg_note(notes,
+            "%zu of these metrics have an aspect above %g (aspect_max): their "
+            "larger edge lengths are reduced",
+            beyond, aspect_max);
+}
+
 static vg_status use_metrics(struct vg_read *r, const struct values *v,
                              struct vg_error *err)
 {
   const struct vg_settings *set = &r->settings;
   enum vg_tensor_order order = (enum vg_tensor_order)set->metric_order;
   double(*metric)[6] = vg_alloc(v->m.n_point, sizeof *metric);
-  size_t n_limited;
   vg_status st;
 
   if (!metric) return vg_fail_memory(err, "the metrics of a mesh");
@@ -233,18 +244,14 @@ static vg_status use_metrics(struct vg_read *r, const struct values *v,
     order = v->is_vtk ? VG_TENSOR_VTK : VG_TENSOR_MEDIT;
   VG_TRY(vg_size_metrics_read(set->sizes, v->m.n_point,
                               (const double(*)[3])v->m.point, v->components,
-                              order, v->value, set->aspect_max, metric,
-                              &n_limited, err));
+                              order, v->value, metric, err));
   VG_TRY(vg_size_mesh_new(&v->m, (const double(*)[6])metric,
                           vg_options_growth(set), &r->metrics, err));
   r->map = vg_size_mesh_map(r->metrics);
   vg_note(r->notes, "metrics at %zu points were read from %s", v->m.n_point,
           set->sizes);
-  if (n_limited)
-    vg_note(r->notes,
-            "%zu of these metrics have an aspect above %g (aspect_max): their "
-            "larger edge lengths are reduced",
-            n_limited, set->aspect_max);
+  vg_note_aspects(r->notes, v->m.n_point, (const double(*)[6])metric,
+                  set->aspect_max);
 done:
   free(metric);
   return st;

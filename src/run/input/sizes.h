@@ -16,6 +16,11 @@
  * points, a value that is not a size, or an existing map. */
 vg_status vg_read_sizes(struct vg_read *r, struct vg_error *err);
 
+/** Adds a note if some of the metrics, which an earlier note mentions, have an
+ * aspect above aspect_max. */
+void vg_note_aspects(struct vg_notes *notes, size_t n,
+                     const double (*metric)[6], double aspect_max);
+
 /** If the setting gap_edges requests it, computes sizes from gaps between
  * surfaces into b->gaps. b->map becomes the smaller of these and of the sizes
  * read. Called for the closed surface before it is remeshed; adds a note. */

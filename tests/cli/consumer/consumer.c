@@ -26,6 +26,15 @@ static int says(const vanguard_job *job, const char *word)
   return 0;
 }
 
+static int notes_say(const vanguard_job *job, const char *words)
+{
+  const char *note;
+
+  for (size_t i = 0; (note = vanguard_note(job, i)); i++)
+    if (strstr(note, words)) return 1;
+  return 0;
+}
+
 /* --- a cube of N x N squares a side -------------------------------------- */
 
 enum { N = 12, SIDE = 6 * N * N };
@@ -501,6 +510,11 @@ static void takes_metrics(void)
   CHECK(vanguard_metric_points(job, 8, at[0], metric[0], 1, beyond) ==
           VANGUARD_ERR_INPUT &&
         says(job, "tetrahedron 1 has point 8"));
+  metric[5][5] = 100 * 101 * 101;
+  CHECK(!vanguard_metric_points(job, 8, at[0], metric[0], 6, tet[0]));
+  CHECK(!vanguard_set(job, "aspect_max", "20"));
+  CHECK(!vanguard_mesh(job, NULL, NULL) &&
+        notes_say(job, "1 of these metrics have an aspect above 20"));
   metric[3][1] = 101;
   CHECK(vanguard_metric_points(job, 8, at[0], metric[0], 0, NULL) ==
           VANGUARD_ERR_INPUT &&
