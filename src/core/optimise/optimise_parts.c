@@ -53,6 +53,19 @@ static int grow_shapes(struct vg_optimiser *o)
                     sizeof *o->failed_cell);
 }
 
+/* Steps that failed for a cell may work after a change of its neighbours. In a
+ * metric this matters for sheets of flat cells, which disappear one by one. */
+static void retry_neighbours(struct vg_optimiser *o, uint32_t c)
+{
+  for (int i = 0; i < 4; i++) {
+    uint32_t link = o->t->cell[c].link[i];
+
+    if (link == VG_NONE || o->q[link >> 2] >= VG_SHAPE_FLAT) continue;
+    o->t->flag[link >> 2] &= (uint8_t)~VG_TRIED;
+    o->failed_cell[link >> 2] = 0;
+  }
+}
+
 int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
                int n_new, const uint32_t (*v)[4], const float *q,
                uint32_t *made)
@@ -71,6 +84,7 @@ int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
     vg_changed(o, slot[k]);
     for (int i = 0; i < 4; i++) o->star[v[k][i]] = slot[k];
   }
+  for (int k = 0; k < n_new && o->metrics; k++) retry_neighbours(o, slot[k]);
   if (made) memcpy(made, slot, (size_t)n_new * sizeof *slot);
   return 0;
 }

@@ -293,10 +293,9 @@ static int is_kept(const struct cavity *h, uint32_t p)
 }
 
 /* Points of the old cells that are not corners of new cells lose their stars.
- * Returns 0, and changes nothing, if such a point may not be removed. Only in a
- * metric may any point be: flat cells over dents of a rounded boundary often
- * need a large cavity. */
-static int swallow(struct vg_optimiser *o, const struct cavity *h)
+ * Returns 0, and changes nothing, if such a point may not be removed: with
+ * is_flat, any field point may be. */
+static int swallow(struct vg_optimiser *o, const struct cavity *h, int is_flat)
 {
   uint32_t lost[4 * VG_OLD_MAX];
   int n = 0;
@@ -306,7 +305,7 @@ static int swallow(struct vg_optimiser *o, const struct cavity *h)
       uint32_t p = o->t->cell[h->old[k]].v[i];
 
       if (is_kept(h, p)) continue;
-      if (!o->metrics || p < o->n_keep) return 0;
+      if (!is_flat || p < o->n_keep) return 0;
       lost[n++] = p;
     }
   for (int k = 0; k < n; k++) o->star[lost[k]] = VG_NONE;
@@ -330,12 +329,12 @@ int vg_try_point(struct vg_optimiser *o, const double x[3])
   return 0;
 }
 
-static int put_point(struct vg_optimiser *o, struct cavity *h)
+static int put_point(struct vg_optimiser *o, struct cavity *h, int is_flat)
 {
   struct vg_tets *t = o->t;
   uint32_t p = (uint32_t)t->n_point;
 
-  if (!swallow(o, h)) return 0;
+  if (!swallow(o, h, is_flat)) return 0;
   for (int k = 0; k < h->n_new; k++) h->v[k][3] = p;
   if (vg_replace(o, h->n_old, h->old, h->n_new, (const uint32_t(*)[4])h->v,
                  h->q, NULL))
@@ -361,11 +360,15 @@ static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
                     double aim)
 {
   struct cavity h;
+  /* In a metric, flat cells over dents of a rounded boundary often need a
+   * cavity that contains all cells of a field point. */
+  int is_flat = o->metrics && o->q[c] < VG_SHAPE_FLAT;
 
   h.n_old = 1;
   h.old[0] = c;
   if (vg_try_point(o, x) || !open_cavity(o, worth(o->q[c]), &h) ||
-      (o->metrics && is_crowded(o, &h, least_length)) || !put_point(o, &h))
+      (o->metrics && is_crowded(o, &h, least_length)) ||
+      !put_point(o, &h, is_flat))
     return 0;
   for (int k = 0; k < 3 && vg_smooth(o, (uint32_t)o->t->n_point - 1, aim);
        k++) {
@@ -385,7 +388,7 @@ int vg_split_edge(struct vg_optimiser *o, uint32_t c, uint32_t a, uint32_t b,
   for (int k = 0; k < h.n_old; k++) worst = fmin(worst, o->q[h.old[k]]);
   for (int k = 0; k < 3; k++) x[k] = 0.5 * (o->t->x[a][k] + o->t->x[b][k]);
   return !vg_try_point(o, x) && open_cavity(o, share * worst, &h) &&
-         !is_crowded(o, &h, least) && put_point(o, &h);
+         !is_crowded(o, &h, least) && put_point(o, &h, 0);
 }
 
 static void centre(const struct vg_tets *t, uint32_t c, const double share[4],
