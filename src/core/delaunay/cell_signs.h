@@ -135,24 +135,41 @@ typedef int64_t vg_l4 __attribute__((vector_size(32)));
 #define VG_PICK4(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #define VG_TURN4(a, ...) __builtin_shufflevector(a, a, __VA_ARGS__)
 
-/** As vg_cell_signs, with a vertex or a face in each of four lanes. at: the
- * point. Rounding differs, but not the result, which is exact. */
-static inline VG_WIDE unsigned vg_cell_signs_wide(const double (*x)[3],
-                                                  const uint32_t v[4],
-                                                  const double at[3])
+/* A point of three coordinates; the fourth lane is 0. */
+static inline VG_WIDE vg_d4 vg_load3(const double x[3])
 {
-  const double *pa = x[v[0]], *pb = x[v[1]], *pc = x[v[2]], *pd = x[v[3]];
-  const vg_l4 magnitude = { INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX };
-  const vg_d4 e = { at[0], at[1], at[2], 0 };
-  vg_d4 a = (vg_d4){ pa[0], pa[1], pa[2], 0 } - e;
-  vg_d4 b = (vg_d4){ pb[0], pb[1], pb[2], 0 } - e;
-  vg_d4 c = (vg_d4){ pc[0], pc[1], pc[2], 0 } - e;
-  vg_d4 d = (vg_d4){ pd[0], pd[1], pd[2], 0 } - e;
-  vg_d4 ab = VG_PICK4(a, b, 0, 4, 2, 6), cd = VG_PICK4(c, d, 0, 4, 2, 6);
-  vg_d4 ab1 = VG_PICK4(a, b, 1, 5, 3, 7), cd1 = VG_PICK4(c, d, 1, 5, 3, 7);
+  return (vg_d4)_mm256_maskload_pd(x, (__m256i)(vg_l4){ -1, -1, -1, 0 });
+}
+
+/* Per lane, the magnitude of a. */
+static inline VG_WIDE vg_d4 vg_abs4(vg_d4 a)
+{
+  return (vg_d4)((vg_l4)a &
+                 (vg_l4){ INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX });
+}
+
+/** A cell seen from a point, with a vertex, or the face opposite it, in each of
+ * four lanes. */
+struct vg_cell_view {
+  vg_d4 x, y, z;    /* the vertices relative to the point */
+  vg_d4 o;          /* orientations of the faces and the point */
+  vg_d4 most;       /* largest magnitudes of x, y, z in lanes 0 to 2 */
+  double cube;      /* their product */
+  unsigned in, out; /* bit i: the point is certainly on the inner or the outer
+                       side of face i */
+};
+
+static inline VG_WIDE void vg_cell_view(const double (*x)[3],
+                                        const uint32_t v[4], const double at[3],
+                                        struct vg_cell_view *c)
+{
+  vg_d4 e = vg_load3(at);
+  vg_d4 pa = vg_load3(x[v[0]]) - e, pb = vg_load3(x[v[1]]) - e;
+  vg_d4 pc = vg_load3(x[v[2]]) - e, pd = vg_load3(x[v[3]]) - e;
+  vg_d4 ab = VG_PICK4(pa, pb, 0, 4, 2, 6), cd = VG_PICK4(pc, pd, 0, 4, 2, 6);
+  vg_d4 ab1 = VG_PICK4(pa, pb, 1, 5, 3, 7), cd1 = VG_PICK4(pc, pd, 1, 5, 3, 7);
   vg_d4 px = VG_PICK4(ab, cd, 0, 1, 4, 5), pz = VG_PICK4(ab, cd, 2, 3, 6, 7);
   vg_d4 py = VG_PICK4(ab1, cd1, 0, 1, 4, 5);
-  vg_d4 l = px * px + py * py + pz * pz;
   /* Minors of x and y, of the vertex and the next one, and the one after it. */
   vg_d4 next = px * VG_TURN4(py, 1, 2, 3, 0) - VG_TURN4(px, 1, 2, 3, 0) * py;
   vg_d4 far = px * VG_TURN4(py, 2, 3, 0, 1) - VG_TURN4(px, 2, 3, 0, 1) * py;
@@ -160,28 +177,41 @@ static inline VG_WIDE unsigned vg_cell_signs_wide(const double (*x)[3],
   vg_d4 o = VG_TURN4(pz, 3, 0, 1, 2) * VG_TURN4(next, 1, 2, 3, 0) -
             VG_TURN4(pz, 2, 3, 0, 1) * VG_TURN4(far, 1, 2, 3, 0) +
             VG_TURN4(pz, 1, 2, 3, 0) * VG_TURN4(next, 2, 3, 0, 1);
-  vg_d4 sum, most;
-  double det, cube, flat;
-  unsigned in, out;
+  double flat;
 
-  a = (vg_d4)((vg_l4)a & magnitude);
-  b = (vg_d4)((vg_l4)b & magnitude);
-  c = (vg_d4)((vg_l4)c & magnitude);
-  d = (vg_d4)((vg_l4)d & magnitude);
-  most = _mm256_max_pd(_mm256_max_pd(a, b), _mm256_max_pd(c, d));
-  o = (vg_d4)((vg_l4)o ^ (vg_l4){ 0, INT64_MIN, 0, INT64_MIN });
-  sum = l * o;
+  c->x = px;
+  c->y = py;
+  c->z = pz;
+  c->o = (vg_d4)((vg_l4)o ^ (vg_l4){ 0, INT64_MIN, 0, INT64_MIN });
+  c->most = _mm256_max_pd(_mm256_max_pd(vg_abs4(pa), vg_abs4(pb)),
+                          _mm256_max_pd(vg_abs4(pc), vg_abs4(pd)));
+  c->cube = c->most[0] * c->most[1] * c->most[2];
+  flat = 5.4e-15 * c->cube;
+  c->in = (unsigned)_mm256_movemask_pd((__m256d)(c->o > flat));
+  c->out = (unsigned)_mm256_movemask_pd((__m256d)(c->o < -flat));
+}
+
+/** As vg_cell_signs. at: the point. Rounding differs, but not the result, which
+ * is exact. */
+static inline VG_WIDE unsigned vg_cell_signs_wide(const double (*x)[3],
+                                                  const uint32_t v[4],
+                                                  const double at[3])
+{
+  struct vg_cell_view c;
+  vg_d4 l, sum;
+  double det;
+
+  vg_cell_view(x, v, at, &c);
+  l = c.x * c.x + c.y * c.y + c.z * c.z;
+  sum = l * c.o;
   det = (sum[0] + sum[2]) + (sum[1] + sum[3]);
-  cube = most[0] * most[1] * most[2];
   l = _mm256_max_pd(l, VG_TURN4(l, 2, 3, 0, 1));
-  flat = 5.4e-15 * cube;
-  in = (unsigned)_mm256_movemask_pd((__m256d)(o > flat));
-  out = (unsigned)_mm256_movemask_pd((__m256d)(o < -flat));
-  if (!(fabs(det) > 4.27e-14 * cube * (l[0] > l[1] ? l[0] : l[1])))
-    return vg_cell_signs_exact(x, v, at, in, out);
+  if (!(fabs(det) > 4.27e-14 * c.cube * (l[0] > l[1] ? l[0] : l[1])))
+    return vg_cell_signs_exact(x, v, at, c.in, c.out);
   if (!(det > 0)) return 0;
-  if ((in | out) != 0xf) return VG_IN_SPHERE | vg_cell_sides(x, v, at, in, out);
-  return VG_IN_SPHERE | in * (VG_SIDE_IN | VG_SIDE_SEES);
+  if ((c.in | c.out) != 0xf)
+    return VG_IN_SPHERE | vg_cell_sides(x, v, at, c.in, c.out);
+  return VG_IN_SPHERE | c.in * (VG_SIDE_IN | VG_SIDE_SEES);
 }
 #endif
 

@@ -9,6 +9,8 @@
 #include "base/memory.h"
 #include "base/table.h"
 #include "base/tri_key.h"
+#include "base/wide.h"
+#include "core/delaunay/cell_signs.h"
 #include "core/geometry/hilbert.h"
 #include "core/geometry/predicates.h"
 
@@ -162,35 +164,91 @@ static uint32_t search_all(const struct vg_tets *t, const double x[3])
   return VG_NONE;
 }
 
+/* Faces of cell c on whose outer side x is certainly, and on whose inner side
+ * or plane. Without AVX2 all faces are left to exact tests. */
+VG_WITHIN void view(const struct vg_tets *t, uint32_t c, const double x[3],
+                    unsigned *in, unsigned *out, int is_wide)
+{
+  *in = *out = 0;
+#ifdef VG_WIDE
+  if (is_wide) {
+    struct vg_cell_view v;
+
+    vg_cell_view((const double(*)[3])t->x, t->cell[c].v, x, &v);
+    *in = v.in;
+    *out = v.out;
+  }
+#endif
+  (void)t;
+  (void)c;
+  (void)x;
+  (void)is_wide;
+}
+
+/* Is x strictly on the outer side of face i of a cell? */
+static inline int is_beyond(const struct vg_tets *t, const struct vg_cell *cell,
+                            uint32_t i, const double x[3])
+{
+  const uint8_t *f = vg_face[i];
+
+  return vg_orient3d(t->x[cell->v[f[0]]], t->x[cell->v[f[1]]],
+                     t->x[cell->v[f[2]]], x) < 0;
+}
+
+/* The walk of vg_tets_locate. *c in: start; out: the cell. Returns 0 if the
+ * walk was too long. */
+VG_WITHIN int walk_with(const struct vg_tets *t, uint32_t *c, const double x[3],
+                        int is_wide)
+{
+  uint32_t from = VG_NONE, most = 4096 + (uint32_t)(t->n_cell / 64);
+
+  /* A walk along a sheet of many points is long, but shorter than a search
+   * through all cells. */
+  for (uint32_t step = 0; step < most; step++) {
+    const struct vg_cell *cell = &t->cell[*c];
+    uint32_t turn = vg_walk_turn(step), k = 0;
+    unsigned in, out;
+
+    view(t, *c, x, &in, &out, is_wide);
+    for (; in != 0xf && k < 4; k++) {
+      uint32_t i = (turn + k) & 3;
+
+      if (in >> i & 1 || (cell->link[i] == from && from != VG_NONE)) continue;
+      if (!(out >> i & 1) && !is_beyond(t, cell, i, x)) continue;
+      from = 4 * *c + i;
+      *c = cell->link[i] == VG_NONE ? VG_NONE : cell->link[i] >> 2;
+      break;
+    }
+    if (*c == VG_NONE || in == 0xf || k == 4) return 1;
+  }
+  return 0;
+}
+
+#ifdef VG_WIDE
+static VG_WIDE int walk_wide(const struct vg_tets *t, uint32_t *c,
+                             const double x[3])
+{
+  return walk_with(t, c, x, 1);
+}
+#endif
+
+/* All faces of a cell at once if the processor supports AVX2. */
+static int walk(const struct vg_tets *t, uint32_t *c, const double x[3])
+{
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) return walk_wide(t, c, x);
+#endif
+  return walk_with(t, c, x, 0);
+}
+
 uint32_t vg_tets_locate(const struct vg_tets *t, uint32_t start,
                         const double x[3])
 {
   assert(start < t->n_cell && !(t->flag[start] & VG_DEAD));
 
-  uint32_t c = start, from = VG_NONE, most = 4096 + t->n_cell / 64;
+  uint32_t c = start;
 
-  /* A walk along a sheet of many points is long, but shorter than a search
-   * through all cells. */
-  for (uint32_t step = 0; step < most; step++) {
-    const struct vg_cell *cell = &t->cell[c];
-    uint32_t turn = vg_walk_turn(step), k = 0;
-
-    for (; k < 4; k++) {
-      uint32_t i = (turn + k) & 3;
-      const uint8_t *f = vg_face[i];
-
-      if (cell->link[i] == from && from != VG_NONE) continue;
-      if (vg_orient3d(t->x[cell->v[f[0]]], t->x[cell->v[f[1]]],
-                      t->x[cell->v[f[2]]], x) >= 0)
-        continue;
-      if (cell->link[i] == VG_NONE) return VG_NONE;
-      from = 4 * c + i;
-      c = cell->link[i] >> 2;
-      break;
-    }
-    if (k == 4) return c;
-  }
-  return search_all(t, x);
+  return walk(t, &c, x) ? c : search_all(t, x);
 }
 
 /* --- housekeeping --------------------------------------------------------- */

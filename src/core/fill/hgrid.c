@@ -206,36 +206,85 @@ static inline unsigned within(const struct vg_hgrid_page *page,
   return bits & ((1u << page->n) - 1);
 }
 
+/* List the points of a page, translated by d, that are within a distance of
+ * sqrt(r2), after the first n of the list. Returns their number. */
+static inline size_t take_page(struct vg_hgrid *s, size_t n,
+                               const struct vg_hgrid_page *page,
+                               const float d[3], float r2)
+{
+  size_t first = n;
+
+  for (unsigned left = within(page, d, r2); left; left &= left - 1) {
+    int k = __builtin_ctz(left);
+
+    for (int a = 0; a < 3; a++) s->x[a][n] = page->x[a][k] + d[a];
+    n++;
+  }
+  return n - first;
+}
+
+/* Number of listed points from `first` on that are nearer than sqrt(r2) to
+ * d. */
+static inline int count_from(const struct vg_hgrid *s, size_t first,
+                             const float d[3], float r2)
+{
+  int n = 0;
+
+  for (size_t k = first; k < s->n; k++) {
+    float u = s->x[0][k] - d[0], v = s->x[1][k] - d[1], w = s->x[2][k] - d[2];
+
+    n += u * u + v * v + w * w < r2;
+  }
+  return n;
+}
+
 #ifdef VG_WIDE
 typedef float f8 __attribute__((vector_size(32)));
+typedef int32_t i8 __attribute__((vector_size(32)));
 _Static_assert(VG_HGRID_PAGE == 8, "a page has a lane for each point");
 
-/* As `within`, for the whole page at once. */
-static inline VG_WIDE unsigned within_wide(const struct vg_hgrid_page *page,
-                                           const float d[3], float r2)
+static inline VG_WIDE f8 eight(const float *from)
 {
-  f8 u, v, w;
+  return (f8)_mm256_loadu_ps(from);
+}
 
-  memcpy(&u, page->x[0], sizeof u);
-  memcpy(&v, page->x[1], sizeof v);
-  memcpy(&w, page->x[2], sizeof w);
-  u += d[0];
-  v += d[1];
-  w += d[2];
-  return (unsigned)_mm256_movemask_ps((__m256)(u * u + v * v + w * w <= r2)) &
-         ((1u << page->n) - 1);
+/* As take_page, for the whole page at once and without branches. Writes eight
+ * entries. */
+static inline VG_WIDE size_t take_wide(struct vg_hgrid *s, size_t n,
+                                       const struct vg_hgrid_page *page,
+                                       const float d[3], float r2)
+{
+  f8 u = eight(page->x[0]) + d[0], v = eight(page->x[1]) + d[1];
+  f8 w = eight(page->x[2]) + d[2];
+  i8 is_near = u * u + v * v + w * w <= r2;
+  unsigned bits = (unsigned)_mm256_movemask_ps((__m256)is_near) &
+                  ((1u << page->n) - 1);
+  __m256i pick = _mm256_cvtepu8_epi32(
+    _mm_loadl_epi64((const __m128i *)&s->pick[bits]));
+
+  _mm256_storeu_ps(s->x[0] + n, _mm256_permutevar8x32_ps((__m256)u, pick));
+  _mm256_storeu_ps(s->x[1] + n, _mm256_permutevar8x32_ps((__m256)v, pick));
+  _mm256_storeu_ps(s->x[2] + n, _mm256_permutevar8x32_ps((__m256)w, pick));
+  return (size_t)__builtin_popcount(bits);
+}
+
+/* As count_from(s, 0, d, r2), eight points at a time. */
+static VG_WIDE int count_wide(const struct vg_hgrid *s, const float d[3],
+                              float r2)
+{
+  size_t n = s->n / 8 * 8;
+  i8 sum = { 0 };
+
+  for (size_t k = 0; k < n; k += 8) {
+    f8 u = eight(s->x[0] + k) - d[0], v = eight(s->x[1] + k) - d[1];
+    f8 w = eight(s->x[2] + k) - d[2];
+
+    sum -= u * u + v * v + w * w < r2;
+  }
+  return sum[0] + sum[1] + sum[2] + sum[3] + sum[4] + sum[5] + sum[6] + sum[7] +
+         count_from(s, n, d, r2);
 }
 #endif
-
-VG_WITHIN unsigned near_in(const struct vg_hgrid_page *page, const float d[3],
-                           float r2, int is_wide)
-{
-#ifdef VG_WIDE
-  if (is_wide) return within_wide(page, d, r2);
-#endif
-  (void)is_wide;
-  return within(page, d, r2);
-}
 
 /* List the points of the cells that the query has found. */
 VG_WITHIN void gather_with(struct vg_hgrid *s, float r2, int is_wide)
@@ -244,22 +293,19 @@ VG_WITHIN void gather_with(struct vg_hgrid *s, float r2, int is_wide)
 
   for (size_t i = 0; i < s->n_cell; i++) {
     const struct vg_hgrid_cell *f = &s->cell[i];
-    float x = f->d[0], y = f->d[1], z = f->d[2];
 
     for (uint32_t at = f->page; at != VG_NONE && n < VG_HGRID_MAX;
          at = s->page[at].next) {
-      const struct vg_hgrid_page *page = &s->page[at];
-
-      for (unsigned left = near_in(page, f->d, r2, is_wide); left;
-           left &= left - 1) {
-        int k = __builtin_ctz(left);
-
-        s->x[0][n] = page->x[0][k] + x;
-        s->x[1][n] = page->x[1][k] + y;
-        s->x[2][n++] = page->x[2][k] + z;
+#ifdef VG_WIDE
+      if (is_wide) {
+        n += take_wide(s, n, &s->page[at], f->d, r2);
+        continue;
       }
+#endif
+      n += take_page(s, n, &s->page[at], f->d, r2);
     }
   }
+  (void)is_wide;
   s->n = n;
 }
 
@@ -281,34 +327,14 @@ static void gather(struct vg_hgrid *s, float r2)
   gather_with(s, r2, 0);
 }
 
-/* The loop has no branch, so that it can be vectorised. */
-VG_WITHIN int count(const struct vg_hgrid *s, const double d[3], double r)
-{
-  float x = (float)d[0], y = (float)d[1], z = (float)d[2], r2 = (float)(r * r);
-  int n = 0;
-
-  for (size_t k = 0; k < s->n; k++) {
-    float u = s->x[0][k] - x, v = s->x[1][k] - y, w = s->x[2][k] - z;
-
-    n += u * u + v * v + w * w < r2;
-  }
-  return n;
-}
-
-#ifdef VG_WIDE
-static VG_WIDE int count_wide(const struct vg_hgrid *s, const double d[3],
-                              double r)
-{
-  return count(s, d, r);
-}
-#endif
-
 int vg_hgrid_count(const struct vg_hgrid *s, const double d[3], double r)
 {
+  const float at[3] = { (float)d[0], (float)d[1], (float)d[2] };
+
 #ifdef VG_WIDE
-  if (VG_IS_WIDE) return count_wide(s, d, r);
+  if (VG_IS_WIDE) return count_wide(s, at, (float)(r * r));
 #endif
-  return count(s, d, r);
+  return count_from(s, 0, at, (float)(r * r));
 }
 
 /* Distance along one axis from the centre to a cell that begins at d. */
@@ -402,6 +428,12 @@ int vg_hgrid_init(struct vg_hgrid *s, const double lo[3], double h_min,
   s->slope = slope;
   s->level_lo = level_of(h_min) - 1;
   s->level_hi = level_of(h_max) + 1;
+  for (unsigned bits = 0; bits < 256; bits++) {
+    int n = 0;
+
+    for (unsigned k = 0; k < 8; k++)
+      if (bits >> k & 1) s->pick[bits] |= (uint64_t)k << 8 * n++;
+  }
   return vg_table_init(&s->table, 1 << 9);
 }
 

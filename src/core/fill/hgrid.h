@@ -47,8 +47,10 @@ struct vg_hgrid {
     uint32_t page;
     float d[3];
   } cell[VG_HGRID_CELLS];
-  size_t n_cut; /* number of queries whose list was truncated */
-  size_t n;     /* the list: [3][n], relative to the centre */
+  uint64_t pick[256]; /* the bits of the index, in ascending order, one in a
+                         byte: lanes of a page to be listed */
+  size_t n_cut;       /* number of queries whose list was truncated */
+  size_t n;           /* the list: [3][n], relative to the centre */
   float x[3][VG_HGRID_MAX + VG_HGRID_PAGE];
 };
 
