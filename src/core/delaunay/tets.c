@@ -195,31 +195,39 @@ static inline int is_beyond(const struct vg_tets *t, const struct vg_cell *cell,
                      t->x[cell->v[f[2]]], x) < 0;
 }
 
+/* The first of the faces (bits) in the order of step `step` of a walk. */
+static inline uint32_t first_face(unsigned faces, uint32_t step)
+{
+  uint32_t turn = vg_walk_turn(step);
+
+  return (turn + (uint32_t)__builtin_ctz((faces | faces << 4) >> turn)) & 3;
+}
+
 /* The walk of vg_tets_locate. *c in: start; out: the cell. Returns 0 if the
  * walk was too long. */
 VG_WITHIN int walk_with(const struct vg_tets *t, uint32_t *c, const double x[3],
                         int is_wide)
 {
-  uint32_t from = VG_NONE, most = 4096 + (uint32_t)(t->n_cell / 64);
+  uint32_t most = 4096 + (uint32_t)(t->n_cell / 64);
+  unsigned back = 0; /* bit of the face through which the walk came */
 
   /* A walk along a sheet of many points is long, but shorter than a search
    * through all cells. */
   for (uint32_t step = 0; step < most; step++) {
     const struct vg_cell *cell = &t->cell[*c];
-    uint32_t turn = vg_walk_turn(step), k = 0;
-    unsigned in, out;
+    unsigned in, out, left;
+    uint32_t i;
 
     view(t, *c, x, &in, &out, is_wide);
-    for (; in != 0xf && k < 4; k++) {
-      uint32_t i = (turn + k) & 3;
-
-      if (in >> i & 1 || (cell->link[i] == from && from != VG_NONE)) continue;
-      if (!(out >> i & 1) && !is_beyond(t, cell, i, x)) continue;
-      from = 4 * *c + i;
-      *c = cell->link[i] == VG_NONE ? VG_NONE : cell->link[i] >> 2;
-      break;
+    out &= ~back;
+    for (left = 0xf & ~(in | back); left; left &= ~(1u << i)) {
+      i = first_face(left, step);
+      if (out >> i & 1 || is_beyond(t, cell, i, x)) break;
     }
-    if (*c == VG_NONE || in == 0xf || k == 4) return 1;
+    if (!left) return 1;
+    *c = cell->link[i] == VG_NONE ? VG_NONE : cell->link[i] >> 2;
+    if (*c == VG_NONE) return 1;
+    back = 1u << (cell->link[i] & 3);
   }
   return 0;
 }

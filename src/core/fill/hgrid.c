@@ -22,12 +22,23 @@ static const double widest_cell = 2.8; /* K39 */
 /* A search assumes that the spacing changes by at most this share. */
 static const double largest_change = 0.6; /* K39 */
 
-static int level_of(double h)
+/* The exponent of widest_cell * h, a normal number. */
+static inline int level_of(double h)
 {
-  int e;
+  double wide = widest_cell * h;
+  uint64_t bits;
 
-  frexp(widest_cell * h, &e);
-  return e - 1;
+  assert(isnormal(wide) && wide > 0);
+  memcpy(&bits, &wide, sizeof bits);
+  return (int)(bits >> 52) - 1023;
+}
+
+/* Largest integer up to x, without a call to the mathematical library. */
+static inline int64_t floor_of(double x)
+{
+  int64_t i = (int64_t)x;
+
+  return i - (x < (double)i);
 }
 
 /* Side of a cell of a level, without a call to the mathematical library. */
@@ -133,8 +144,7 @@ int vg_hgrid_add(struct vg_hgrid *s, const double x[3], double h)
   struct vg_hgrid_page *page;
   uint32_t *head;
 
-  for (int k = 0; k < 3; k++)
-    i[k] = (int64_t)floor((x[k] - s->lo[k]) * inverse);
+  for (int k = 0; k < 3; k++) i[k] = floor_of((x[k] - s->lo[k]) * inverse);
   head = cell_head(s, level, i);
   if (!head) return -1;
   if (*head == VG_NONE || s->page[*head].n == VG_HGRID_PAGE) {
@@ -148,24 +158,6 @@ int vg_hgrid_add(struct vg_hgrid *s, const double x[3], double h)
     page->x[k][page->n] = (float)(x[k] - s->lo[k] - side * (double)i[k]);
   page->n++;
   return 0;
-}
-
-/* Record a grid cell found by a search and prefetch its page while the other
- * cells are looked up. x, y, z: lower corner of the cell relative to the
- * centre. */
-static void find_cell(struct vg_hgrid *s, uint32_t page, double x, double y,
-                      double z)
-{
-  struct vg_hgrid_cell *f = &s->cell[s->n_cell];
-
-  if (s->n_cell == VG_HGRID_CELLS) return;
-  __builtin_prefetch(&s->page[page]);
-  __builtin_prefetch((const char *)(&s->page[page] + 1) - 1);
-  f->page = page;
-  f->d[0] = (float)x;
-  f->d[1] = (float)y;
-  f->d[2] = (float)z;
-  s->n_cell++;
 }
 
 /* Four lanes, in the vector syntax of GCC and Clang for any processor. */
@@ -350,14 +342,19 @@ enum { AXIS_MAX = 16 }; /* cells are wider than 0.56 h, by K39 */
 struct query {
   double r2;
   int64_t lo[3], hi[3]; /* range of cells to examine */
-  double d[3][AXIS_MAX], gap2[3][AXIS_MAX];
+  float d[3][AXIS_MAX];
+  double gap2[3][AXIS_MAX];
 };
 
+/* Record the cells of a block that are within the radius, and prefetch their
+ * pages while the other cells are looked up. Whether a cell is within it cannot
+ * be predicted; therefore every cell is written, and only counted if it is. */
 static void find_in_block(struct vg_hgrid *s, const struct query *q,
                           const int64_t b[3],
                           const struct vg_hgrid_block *block)
 {
   int first[3], from[3], to[3]; /* first: cell 0 of the block in the query */
+  size_t n = s->n_cell;
   uint64_t left;
 
   for (int k = 0; k < 3; k++) {
@@ -368,10 +365,18 @@ static void find_in_block(struct vg_hgrid *s, const struct query *q,
   for (left = block->used & cells_between(from, to); left; left &= left - 1) {
     int at = __builtin_ctzll(left), x = first[0] + (at >> 4);
     int y = first[1] + (at >> 2 & 3), z = first[2] + (at & 3);
+    const struct vg_hgrid_page *page = &s->page[block->page[at]];
+    struct vg_hgrid_cell *f = &s->cell[n];
 
-    if (q->gap2[0][x] + q->gap2[1][y] + q->gap2[2][z] > q->r2) continue;
-    find_cell(s, block->page[at], q->d[0][x], q->d[1][y], q->d[2][z]);
+    __builtin_prefetch(page);
+    __builtin_prefetch((const char *)(page + 1) - 1);
+    f->page = block->page[at];
+    f->d[0] = q->d[0][x];
+    f->d[1] = q->d[1][y];
+    f->d[2] = q->d[2][z];
+    n += q->gap2[0][x] + q->gap2[1][y] + q->gap2[2][z] <= q->r2;
   }
+  s->n_cell = n < VG_HGRID_CELLS ? n : VG_HGRID_CELLS;
 }
 
 static void find_level(struct vg_hgrid *s, const double c[3], double r,
@@ -383,13 +388,13 @@ static void find_level(struct vg_hgrid *s, const double c[3], double r,
 
   q.r2 = r * r;
   for (int k = 0; k < 3; k++) {
-    q.lo[k] = (int64_t)floor((c[k] - r - s->lo[k]) * inverse);
-    q.hi[k] = (int64_t)floor((c[k] + r - s->lo[k]) * inverse);
+    q.lo[k] = floor_of((c[k] - r - s->lo[k]) * inverse);
+    q.hi[k] = floor_of((c[k] + r - s->lo[k]) * inverse);
     assert(q.hi[k] - q.lo[k] < AXIS_MAX);
     for (int64_t i = q.lo[k]; i <= q.hi[k]; i++) {
       double d = s->lo[k] + side * (double)i - c[k], g = gap(d, side);
 
-      q.d[k][i - q.lo[k]] = d;
+      q.d[k][i - q.lo[k]] = (float)d;
       q.gap2[k][i - q.lo[k]] = g * g;
     }
   }

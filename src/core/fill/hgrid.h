@@ -46,7 +46,7 @@ struct vg_hgrid {
   struct vg_hgrid_cell {
     uint32_t page;
     float d[3];
-  } cell[VG_HGRID_CELLS];
+  } cell[VG_HGRID_CELLS + 64];
   uint64_t pick[256]; /* the bits of the index, in ascending order, one in a
                          byte: lanes of a page to be listed */
   size_t n_cut;       /* number of queries whose list was truncated */

@@ -186,11 +186,22 @@ static int is_uniform(const struct placer *p, const double x[3], double h)
   return fabs(vg_sizing_at(p->sizing, x) - h) <= uniform_within * h;
 }
 
-/* In how many of six directions does the sizing field keep its value? */
+/* Does the sizing field change along all axes? */
+static int is_graded(const struct placer *p, const double c[3])
+{
+  double g[3];
+
+  vg_sizing_gradient_at(p->sizing, c, g);
+  return fmin(fabs(g[0]), fmin(fabs(g[1]), fabs(g[2]))) > 2 * uniform_within;
+}
+
+/* In how many of six directions does the sizing field keep its value? Where its
+ * gradient shows that there are none, no other values are needed. */
 static int level_around(const struct placer *p, const double c[3], double h)
 {
   int n = 0;
 
+  if (is_graded(p, c)) return 0;
   for (int k = 0; k < 3; k++)
     for (int side = -1; side <= 1; side += 2) {
       double x[3] = { c[0], c[1], c[2] };
@@ -690,8 +701,11 @@ vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,
   out->n = p->n - t->n_point;
   out->n_cut = p->near.n_cut;
   memmove(p->x, p->x + t->n_point, out->n * sizeof *p->x);
+  memmove(p->h, p->h + t->n_point, out->n * sizeof *p->h);
   out->x = p->x;
+  out->h = p->h;
   p->x = NULL;
+  p->h = NULL;
   release(p);
   return VG_OK;
 }

@@ -24,6 +24,8 @@
 struct vg_placed {
   size_t n;
   double (*x)[3]; /* [n], owned by the caller */
+  float *h;       /* [n] spacings at the points, owned by the caller; NULL: not
+                     computed */
   size_t n_cut;   /* number of truncated lists of surrounding points
                      (hgrid.h) */
 };
@@ -36,7 +38,8 @@ struct vg_placed {
  * advancing points would step over them.
  *
  * @param x    in: [n][3] the points that bound the void
- * @param out  owned by the caller: free(out->x); some points may lie outside */
+ * @param out  owned by the caller: free(out->x); some points may lie outside;
+ *             without spacings */
 vg_status vg_place_seeds(size_t n, const double (*x)[3],
                          const struct vg_sizing *sizing,
                          const struct vg_region *region, struct vg_placed *out,

@@ -28,6 +28,8 @@ static const double seed_distance = 0.8; /* K7 */
 
 enum { STOP_STEP = 1 << 15 };
 
+/* Insert a point at x. *at in: a cell near it; out: a cell near the next one.
+ */
 static vg_status insert_one(struct vg_filling *g, struct vg_inserter *s,
                             const double x[3], double nearest, uint32_t *at,
                             struct vg_error *err)
@@ -45,8 +47,7 @@ static vg_status insert_one(struct vg_filling *g, struct vg_inserter *s,
     return vg_fail_memory(err, "the points of the mesh");
   memcpy(t->x[p], x, sizeof *t->x);
   t->n_point++;
-  st = vg_insert(s, p, c, least_height, nearest * vg_sizing_at(g->sizing, x),
-                 err);
+  st = vg_insert(s, p, c, least_height, nearest, err);
   if (st == VG_OK) *at = s->last;
   else t->n_point--;
   return st;
@@ -65,7 +66,11 @@ static vg_status insert_all(struct vg_filling *g,
   if (st == VG_OK && vg_tets_reserve_points(&g->t, placed->n))
     st = vg_fail_memory(err, "the points of the mesh");
   for (size_t i = 0; st >= 0 && i < placed->n; i++) {
-    st = insert_one(g, &s, placed->x[order[i]], nearest, &at, err);
+    const double *x = placed->x[order[i]];
+    double h = placed->h ? (double)placed->h[order[i]]
+                         : vg_sizing_at(g->sizing, x);
+
+    st = insert_one(g, &s, x, nearest * h, &at, err);
     g->report->n_inserted += st == VG_OK;
     g->report->n_refused += st == VG_BLOCKED;
     if (st >= 0 && i % STOP_STEP == 0) st = vg_stopped(&g->options->stop, err);
@@ -91,6 +96,7 @@ static vg_status insert_placed(struct vg_filling *g, struct vg_placed *placed,
 done:
   free(order);
   free(placed->x);
+  free(placed->h);
   g->report->n_placed += placed->n;
   g->report->time_insert += vg_clock() - t0;
   return st;

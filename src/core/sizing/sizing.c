@@ -368,6 +368,13 @@ double vg_sizing_at(const struct vg_sizing *s, const double x[3])
   return grown(s, h, outside);
 }
 
+void vg_sizing_gradient_at(const struct vg_sizing *s, const double x[3],
+                           double g[3])
+{
+  assert(s);
+  vg_octree_gradient_at(&s->octree, x, g);
+}
+
 #define SOME 256 /* points that are evaluated together */
 
 void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],

@@ -201,6 +201,11 @@ double vg_sizing_along(const struct vg_sizing *s, const double x[3],
  * on a shared field. Cost: below 0.2 us. */
 double vg_sizing_at(const struct vg_sizing *s, const double x[3]);
 
+/** Gradient at x of the interpolated field within the octree. g out. Not if the
+ * field is stretched. Threads: safe on a shared field. */
+void vg_sizing_gradient_at(const struct vg_sizing *s, const double x[3],
+                           double g[3]);
+
 /** As vg_sizing_at, for n points. h out: [n]. */
 void vg_sizing_eval(const struct vg_sizing *s, size_t n, const double (*x)[3],
                     double *h);

@@ -288,9 +288,10 @@ static inline void enter_leaf(struct spot *s, int bit)
 }
 
 /* Leaf at x, as an entry of the tree. f out: position in the leaf, from 0 to 1.
- * *outside out: distance to the root cube. */
+ * *scale out: side of the root cube over that of the leaf. *outside out:
+ * distance to the root cube. */
 static inline uint32_t find_leaf(const struct vg_octree *t, const double x[3],
-                                 double f[3], double *outside)
+                                 double f[3], double *scale, double *outside)
 {
   assert(t->n_leaf > 0 && outside);
 
@@ -302,6 +303,7 @@ static inline uint32_t find_leaf(const struct vg_octree *t, const double x[3],
   while (!(e & VG_OCTREE_LEAF)) e = child_at(t, e, &s, --bit);
   enter_leaf(&s, bit);
   memcpy(f, s.f, sizeof s.f);
+  *scale = (double)(VG_OCTREE_TOP >> bit);
   *outside = s.outside;
   return e;
 }
@@ -311,8 +313,8 @@ double vg_octree_at(const struct vg_octree *t, const double x[3],
 {
   assert(!t->is_stretched);
 
-  double f[3];
-  uint32_t e = find_leaf(t, x, f, outside);
+  double f[3], scale;
+  uint32_t e = find_leaf(t, x, f, &scale, outside);
 
   return trilinear(t->leaf[e & VG_OCTREE_LEAF_INDEX].h, f);
 }
@@ -363,6 +365,30 @@ void vg_octree_eval(const struct vg_octree *t, size_t n, const double (*x)[3],
   }
 }
 
+void vg_octree_gradient_at(const struct vg_octree *t, const double x[3],
+                           double g[3])
+{
+  assert(!t->is_stretched);
+
+  double f[3], scale, outside;
+  uint32_t e = find_leaf(t, x, f, &scale, &outside);
+  const float *h = t->leaf[e & VG_OCTREE_LEAF_INDEX].h;
+
+  /* Differences along axis k of the edges whose lower corners i lack bit k. */
+  for (int k = 0; k < 3; k++) {
+    int u = (k + 1) % 3, v = (k + 2) % 3;
+
+    g[k] = 0;
+    for (int i = 0; i < 4; i++) {
+      int corner = (i & 1) << u | (i >> 1) << v;
+
+      g[k] += (i & 1 ? f[u] : 1 - f[u]) * (i & 2 ? f[v] : 1 - f[v]) *
+              ((double)h[corner | 1 << k] - (double)h[corner]);
+    }
+    g[k] *= scale / t->side;
+  }
+}
+
 /* Trilinear size tensor in the leaf of entry e. */
 static inline void tensor_in(const struct vg_octree *t, uint32_t e,
                              const double f[3], double h[6])
@@ -386,8 +412,8 @@ static inline void tensor_in(const struct vg_octree *t, uint32_t e,
 void vg_octree_tensor_at(const struct vg_octree *t, const double x[3],
                          double h[6], double *outside)
 {
-  double f[3];
-  uint32_t e = find_leaf(t, x, f, outside);
+  double f[3], scale;
+  uint32_t e = find_leaf(t, x, f, &scale, outside);
 
   tensor_in(t, e, f, h);
 }

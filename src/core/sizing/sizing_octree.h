@@ -130,6 +130,11 @@ double vg_octree_at(const struct vg_octree *t, const double x[3],
 void vg_octree_eval(const struct vg_octree *t, size_t n, const double (*x)[3],
                     double *h, double *outside);
 
+/** Gradient of the trilinear spacing in the leaf at x, or at the nearest point
+ * of the cube. */
+void vg_octree_gradient_at(const struct vg_octree *t, const double x[3],
+                           double g[3]);
+
 /** As vg_octree_at, for the size tensor; also if the field is isotropic. */
 void vg_octree_tensor_at(const struct vg_octree *t, const double x[3],
                          double h[6], double *outside);
