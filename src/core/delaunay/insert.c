@@ -61,8 +61,8 @@ static int add_tried(struct vg_inserter *s, uint32_t c)
 }
 
 /* Add face i of a cell of the cavity, with the flags and signs of the cell. */
-static inline void add_face(struct vg_inserter *s, const struct vg_cell *cell,
-                            int i, uint8_t flag, unsigned signs)
+VG_WITHIN void add_face(struct vg_inserter *s, const struct vg_cell *cell,
+                        int i, uint8_t flag, unsigned signs)
 {
   struct vg_cavity_face *f = &s->face[s->n_face++];
 

@@ -126,6 +126,28 @@ static void worst_around(const struct vg_optimiser *o, float limit,
         if (o->q[c] < least[t->cell[c].v[i]]) least[t->cell[c].v[i]] = o->q[c];
 }
 
+/* Smooth the points with a cell below `limit` that should be improved. The list
+ * of all balls pays for itself if most points are smoothed. */
+static vg_status smooth_all(struct vg_optimiser *o, float limit,
+                            struct vg_error *err)
+{
+  struct vg_tets *t = o->t;
+  struct vg_balls balls = { NULL, NULL, NULL };
+  float *least = vg_alloc(t->n_point, sizeof *least);
+  int all = limit >= o->level->good && !o->metrics, bad = !least;
+
+  if (all && !bad) bad = vg_balls_init(t, &balls);
+  if (!bad) worst_around(o, limit, least);
+  for (uint32_t p = (uint32_t)o->n_fixed; !bad && p < t->n_point; p++) {
+    if (!(least[p] < limit)) continue;
+    if (all) vg_smooth_within(o, &balls, p, o->level->aim);
+    else vg_smooth(o, p, o->level->aim);
+  }
+  vg_balls_release(&balls);
+  free(least);
+  return bad ? vg_fail_memory(err, "optimisation") : VG_OK;
+}
+
 /* Swaps come first, since smoothing a sliver spoils its neighbours. Points
  * without a cell below `limit` are not moved; in a uniform sizing field these
  * are nearly all points. The points of a region are not smoothed either: they
@@ -134,20 +156,12 @@ static void worst_around(const struct vg_optimiser *o, float limit,
 static vg_status sweep(struct vg_optimiser *o, float limit,
                        struct vg_error *err)
 {
-  struct vg_tets *t = o->t;
-  float *least;
+  const struct vg_tets *t = o->t;
 
   for (uint32_t c = 0; c < t->n_cell; c++)
     if (is_live(t, c) && o->q[c] < o->level->fair && concerns(o, c))
       vg_swap(o, c);
-  if (o->region) return VG_OK;
-  least = vg_alloc(t->n_point, sizeof *least);
-  if (!least) return vg_fail_memory(err, "optimisation");
-  worst_around(o, limit, least);
-  for (uint32_t p = (uint32_t)o->n_fixed; p < t->n_point; p++)
-    if (least[p] < limit) vg_smooth(o, p, o->level->aim);
-  free(least);
-  return VG_OK;
+  return o->region ? VG_OK : smooth_all(o, limit, err);
 }
 
 /* A cell for which all steps failed is flagged VG_TRIED until it changes. */

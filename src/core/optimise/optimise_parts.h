@@ -117,6 +117,21 @@ int vg_replace(struct vg_optimiser *o, int n_old, const uint32_t *old,
  * where every cell is above aim are rated by the mean shape instead. */
 int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim);
 
+/** The balls of all points, for a pass that changes no cells. */
+struct vg_balls {
+  uint32_t *first;  /* [n_point + 1] first link of each point */
+  uint32_t *link;   /* [first[n_point]] 4 * cell + index of the point */
+  uint8_t *is_open; /* [n_point] 1: a fixed face or the hull cuts the ball */
+};
+
+/** Returns 0, or -1 if memory is refused. Call vg_balls_release in any case. */
+int vg_balls_init(const struct vg_tets *t, struct vg_balls *b);
+void vg_balls_release(struct vg_balls *b);
+
+/** vg_smooth for a point whose ball is known. Not with metrics. */
+int vg_smooth_within(struct vg_optimiser *o, const struct vg_balls *b,
+                     uint32_t p, double aim);
+
 /** vg_smooth with metrics. */
 int vg_smooth_metric(struct vg_optimiser *o, uint32_t p);
 
