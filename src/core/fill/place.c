@@ -69,6 +69,8 @@ struct placer {
                               point. Points of the front and points proposed
                               by its faces have 0; UINT8_MAX: that many or
                               more */
+  uint8_t *open;           /* [t.n_point] bit i: direction i of the pattern does
+                              not lead behind all faces of the point */
   struct vg_buckets queue; /* surface faces first, then points */
   size_t n_face;
   uint32_t *face; /* surface faces, as links 4 * cell + face */
@@ -333,6 +335,7 @@ static int grow_point(struct placer *p, uint32_t point)
   for (int i = 0; i < 8; i++) {
     double unit[3];
 
+    if (point < p->t->n_point && !(p->open[point] >> i & 1)) continue;
     for (int k = 0; k < 3; k++) unit[k] = lattice * pattern[i][k];
     if (propose(p, c, unit, h, start)) return -1;
   }
@@ -572,15 +575,40 @@ static int may_propose(const struct placer *p, const double x[3], double h)
                                          VG_BAND_PLACE + sideways, h, 0);
 }
 
+/* Bit i: direction i of the pattern leads in front of the face with normal n.
+ */
+static unsigned open_by(const double n[3])
+{
+  unsigned bits = 0;
+
+  for (unsigned i = 0; i < 8; i++)
+    bits |= (unsigned)(vg_dot(n, pattern[i]) > 0) << i;
+  return bits;
+}
+
 /* Points without a face, i.e. seeds, count as far from the front. */
 static void start_steps(struct placer *p)
 {
-  memset(p->steps, UINT8_MAX, p->n * sizeof *p->steps);
-  for (size_t i = 0; i < p->n_face; i++) {
-    const struct vg_cell *cell = &p->t->cell[p->face[i] >> 2];
+  const struct vg_tets *t = p->t;
 
-    for (int k = 0; k < 3; k++)
-      p->steps[cell->v[vg_face[p->face[i] & 3][k]]] = 0;
+  memset(p->steps, UINT8_MAX, p->n * sizeof *p->steps);
+  memset(p->open, UINT8_MAX, t->n_point * sizeof *p->open);
+  for (size_t i = 0; i < p->n_face; i++) {
+    const struct vg_cell *cell = &t->cell[p->face[i] >> 2];
+    const uint8_t *f = vg_face[p->face[i] & 3];
+    double a[3], b[3], n[3];
+    unsigned open;
+
+    vg_sub(t->x[cell->v[f[1]]], t->x[cell->v[f[0]]], a);
+    vg_sub(t->x[cell->v[f[2]]], t->x[cell->v[f[0]]], b);
+    vg_cross(a, b, n);
+    open = open_by(n);
+    for (int k = 0; k < 3; k++) {
+      uint32_t v = cell->v[f[k]];
+
+      p->open[v] = (uint8_t)(p->steps[v] ? open : p->open[v] | open);
+      p->steps[v] = 0;
+    }
   }
 }
 
@@ -613,7 +641,8 @@ static int start_faces(struct placer *p)
     if (!(t->flag[c] & (VG_OUTSIDE | VG_DEAD)))
       n += (size_t)__builtin_popcount(t->flag[c] & VG_FIXED_FACES);
   p->face = vg_alloc(n, sizeof *p->face);
-  if (!p->face) return -1;
+  p->open = vg_alloc(t->n_point, sizeof *p->open);
+  if (!p->face || !p->open) return -1;
   p->n_face = n;
   n = 0;
   for (uint32_t c = 0; c < t->n_cell; c++)
@@ -645,6 +674,7 @@ static void release(struct placer *p)
   free(p->h);
   free(p->cell);
   free(p->steps);
+  free(p->open);
   vg_buckets_release(&p->queue);
   free(p->face);
   vg_hgrid_release(&p->near);
