@@ -7,6 +7,7 @@
  * one. */
 #include <assert.h>
 
+#include "core/geometry/vector.h"
 #include "core/optimise/optimise_parts.h"
 
 /* Smallest gain that justifies a swap; also prevents rounding from causing
@@ -147,12 +148,48 @@ static int remove_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
   return 1;
 }
 
+/* Would the removal of the edge between the faces with normals n and m, which
+ * point into the cell, leave a better shape than `need` at the opposite edge,
+ * which joins these faces? The removal divides the angle there in two, of which
+ * the smaller one has at most the squared sine (1 - cos) / 2. */
+static int may_divide(const double n[3], const double m[3], double need)
+{
+  double minus_cos = vg_dot(n, m), most = 1 - 2 * need;
+
+  return minus_cos > 0 || most < 0 ||
+         minus_cos * minus_cos < most * most * vg_dot(n, n) * vg_dot(m, m);
+}
+
+/* Bits 4 i + j: the edge of corners i < j may be removed. */
+static unsigned edges_to_remove(const struct vg_optimiser *o, uint32_t c)
+{
+  const struct vg_tets *t = o->t;
+  const uint32_t *v = t->cell[c].v;
+  double n[4][3], a[3], b[3], need = worth(o->q[c]);
+  unsigned bits = 0;
+
+  if (o->metrics || need >= 0.5) return ~0u;
+  for (int i = 0; i < 4; i++) {
+    const double *from = t->x[v[vg_face[i][0]]];
+
+    vg_sub(t->x[v[vg_face[i][1]]], from, a);
+    vg_sub(t->x[v[vg_face[i][2]]], from, b);
+    vg_cross(a, b, n[i]);
+  }
+  for (int i = 0; i < 4; i++)
+    for (int j = i + 1; j < 4; j++)
+      bits |= (unsigned)may_divide(n[i], n[j], need) << (4 * i + j);
+  return bits;
+}
+
 int vg_swap(struct vg_optimiser *o, uint32_t c)
 {
   assert(c < o->t->n_cell);
+  unsigned edges = edges_to_remove(o, c);
+
   for (int i = 0; i < 4; i++)
     for (int j = i + 1; j < 4; j++)
-      if (remove_edge(o, c, i, j)) return 1;
+      if (edges >> (4 * i + j) & 1 && remove_edge(o, c, i, j)) return 1;
   for (int i = 0; i < 4; i++)
     if (swap_face(o, c, i)) return 1;
   return 0;
