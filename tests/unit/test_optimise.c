@@ -12,6 +12,7 @@
 
 #include "core/geometry/shape.h"
 #include "core/optimise/optimise.h"
+#include "core/optimise/optimise_parts.h"
 #include "core/recover/boundary.h"
 #include "fill_shapes.h"
 #include "tets_support.h"
@@ -486,6 +487,49 @@ static void cells_outside_stay(void **state)
   subject_end(&s);
 }
 
+static int by_link(const void *a, const void *b)
+{
+  uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+  return x < y ? -1 : x > y;
+}
+
+/* The list of all balls has those that a search around each point finds, and
+ * is open where the search stops. */
+static void all_balls_are_those_of_the_points(void **state)
+{
+  struct subject s;
+  struct vg_optimiser *o = vg_calloc(1, sizeof *o);
+  struct vg_balls b;
+  size_t n_whole = 0;
+
+  (void)state;
+  random_subject(&s, 4, 150, 31);
+  assert_non_null(o);
+  o->t = &s.t;
+  o->star = vg_alloc(s.t.n_point, sizeof *o->star);
+  assert_non_null(o->star);
+  memset(o->star, 0xff, s.t.n_point * sizeof *o->star);
+  for (uint32_t c = 0; c < s.t.n_cell; c++)
+    for (int i = 0; i < 4; i++) o->star[s.t.cell[c].v[i]] = c;
+  assert_int_equal(vg_balls_init(&s.t, &b), 0);
+  for (uint32_t p = 0; p < s.t.n_point; p++) {
+    size_t n = b.first[p + 1] - b.first[p];
+
+    assert_int_equal(vg_ball(o, p), !b.is_open[p]);
+    if (b.is_open[p]) continue;
+    n_whole++;
+    assert_int_equal(o->n_ball, n);
+    qsort(o->ball, n, sizeof *o->ball, by_link);
+    assert_memory_equal(o->ball, b.link + b.first[p], n * sizeof *o->ball);
+  }
+  assert_int_equal(n_whole, 150);
+  vg_balls_release(&b);
+  free(o->star);
+  free(o);
+  subject_end(&s);
+}
+
 /* A plane of fixed faces through the fluid is not crossed. */
 static void a_fixed_plane_stays(void **state)
 {
@@ -572,6 +616,7 @@ int main(void)
     cmocka_unit_test(sizes_count_in_addition_to_shapes),
     cmocka_unit_test(surplus_points_are_removed),
     cmocka_unit_test(cells_outside_stay),
+    cmocka_unit_test(all_balls_are_those_of_the_points),
     cmocka_unit_test(a_fixed_plane_stays),
     cmocka_unit_test(all_points_fixed),
     cmocka_unit_test(a_single_cell),

@@ -406,6 +406,40 @@ static void leaves_join_continuously(void **state)
   vg_mesh_release(&m);
 }
 
+/* The gradient is that of the interpolation: differences over a step that
+ * stays within a leaf agree with it. */
+static void gradients_are_those_of_the_values(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_source source = node(3, 0, 0, 0.02);
+  struct vg_sizing *s;
+  uint64_t seed = 3;
+  int n_off = 0, n_steep = 0;
+
+  (void)state;
+  two_sizes(&m);
+  s = field(&plain, 1, &source, &m);
+  for (int i = 0; i < 30000; i++) {
+    double x[3], g[3], step = 1e-6;
+
+    random_in(x, 6, &seed);
+    vg_sizing_gradient_at(s, x, g);
+    for (int k = 0; k < 3; k++) {
+      double up[3] = { x[0], x[1], x[2] }, down[3] = { x[0], x[1], x[2] }, d;
+
+      up[k] += step;
+      down[k] -= step;
+      d = (vg_sizing_at(s, up) - vg_sizing_at(s, down)) / (2 * step);
+      n_off += fabs(d - g[k]) > 1e-6;
+      n_steep += fabs(d) > 0.05;
+    }
+  }
+  assert_true(n_off < 30); /* steps across the border of a leaf */
+  assert_true(n_steep > 10000);
+  vg_sizing_free(s);
+  vg_mesh_release(&m);
+}
+
 /* Without a surface the cache follows the law; the sources grow at the global
  * rate, so limiting the gradient changes nothing. */
 static void the_cache_follows_the_law(void **state)
@@ -841,6 +875,7 @@ int main(void)
     cmocka_unit_test(sizes_grow_away_from_the_surface),
     cmocka_unit_test(gradients_are_bounded),
     cmocka_unit_test(leaves_join_continuously),
+    cmocka_unit_test(gradients_are_those_of_the_values),
     cmocka_unit_test(the_cache_follows_the_law),
     cmocka_unit_test(vgrid_sources_alone_define_a_field),
     cmocka_unit_test(the_surface_prevails_on_itself),

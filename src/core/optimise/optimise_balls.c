@@ -13,13 +13,15 @@ static int is_live(const struct vg_tets *t, size_t c)
   return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
 }
 
-/* Mark the points of cell c that are on a fixed face or on the hull. */
+/* Mark the points of cell c that are on a fixed face, on the hull, or on a cell
+ * outside. */
 static void mark_open(const struct vg_tets *t, size_t c, uint8_t *is_open)
 {
   const struct vg_cell *cell = &t->cell[c];
 
   for (int i = 0; i < 4; i++)
-    if (t->flag[c] >> i & 1 || cell->link[i] == VG_NONE)
+    if (t->flag[c] >> i & 1 || cell->link[i] == VG_NONE ||
+        t->flag[cell->link[i] >> 2] & VG_OUTSIDE)
       for (int k = 0; k < 3; k++) is_open[cell->v[vg_face[i][k]]] = 1;
 }
 

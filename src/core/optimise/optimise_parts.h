@@ -121,7 +121,8 @@ int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim);
 struct vg_balls {
   uint32_t *first;  /* [n_point + 1] first link of each point */
   uint32_t *link;   /* [first[n_point]] 4 * cell + index of the point */
-  uint8_t *is_open; /* [n_point] 1: a fixed face or the hull cuts the ball */
+  uint8_t *is_open; /* [n_point] 1: a fixed face, the hull or a cell outside
+                       cuts the ball */
 };
 
 /** Returns 0, or -1 if memory is refused. Call vg_balls_release in any case. */
