@@ -197,8 +197,8 @@ static int is_graded(const struct placer *p, const double c[3])
   return fmin(fabs(g[0]), fmin(fabs(g[1]), fabs(g[2]))) > 2 * uniform_within;
 }
 
-/* In how many of six directions does the sizing field keep its value? Where its
- * gradient shows that there are none, no other values are needed. */
+/* In how many of six directions does the sizing field keep its value? In none
+ * where it is graded, so that no other values are needed there. */
 static int level_around(const struct placer *p, const double c[3], double h)
 {
   int n = 0;
