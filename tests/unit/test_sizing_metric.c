@@ -534,6 +534,87 @@ static void the_surface_keeps_its_sizes(void **state)
   vg_mesh_release(&m);
 }
 
+static void random_way(double n[3], uint64_t *state)
+{
+  double size = 0;
+
+  while (!(size > 0.01 && size < 1)) {
+    random_in(n, state);
+    for (int k = 0; k < 3; k++) n[k] = 2 * n[k] - 1;
+    size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  }
+  for (int k = 0; k < 3; k++) n[k] /= size;
+}
+
+/* A random box in the unit cube, with sides up to `side`; flat in z if is_flat.
+ */
+static void random_box(double side, int is_flat, double lo[3], double hi[3],
+                       uint64_t *state)
+{
+  random_in(lo, state);
+  for (int k = 0; k < 3; k++) {
+    double to = lo[k] + side * random_unit(state);
+
+    hi[k] = k == 2 && is_flat ? lo[k] : fmin(to, 1);
+  }
+}
+
+/* Bounds along random directions in a box hold at points of the box. Returns
+ * the ratio of the bounds. */
+static double bounds_hold(const struct vg_sizing *s, const double lo[3],
+                          const double hi[3], uint64_t *state)
+{
+  double way[4][3], least[4], most[4], ratio = 1;
+
+  for (int i = 0; i < 4; i++) random_way(way[i], state);
+  vg_sizing_bounds_along(s, lo, hi, 4, (const double(*)[3])way, least, most);
+  for (int j = 0; j < 20; j++) {
+    double x[3];
+
+    random_in(x, state);
+    for (int k = 0; k < 3; k++) x[k] = lo[k] + x[k] * (hi[k] - lo[k]);
+    for (int i = 0; i < 4; i++) {
+      double h = vg_sizing_along(s, x, way[i]);
+
+      assert_true(h >= least[i] && h <= most[i]);
+    }
+  }
+  for (int i = 0; i < 4; i++) ratio = fmax(ratio, most[i] / least[i]);
+  return ratio;
+}
+
+/* In the sheet, a box far from the jump has nearly constant sizes: bounds from
+ * its own octants have a ratio close to 1. In the polar metric, of aspect 100,
+ * axes turn by up to half an edge per edge, so that bounds are wider. */
+static void bounds_in_boxes_hold(void **state)
+{
+  const struct vg_size_map map = { .metric = sheet };
+  struct vg_sizing *s = map_field(&map, 1), *coarse;
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  const double lo[3] = { 0.3, 0.3, 0.5 }, hi[3] = { 0.31, 0.32, 0.5 };
+  struct vg_source wide = { .kind = VG_SOURCE_POINT, .h0 = 0.1 };
+  struct vg_sizing *most = field(&o, 1, &wide, &box);
+  uint64_t seed = 7;
+  int n_narrow = 0;
+
+  (void)state;
+  assert_int_equal(vg_sizing_coarsened(benchmark, 2, most, &coarse, NULL),
+                   VG_OK);
+  assert_true(bounds_hold(s, lo, hi, &seed) < 1.02);
+  for (int i = 0; i < 4000; i++) {
+    double side = pow(0.5, i % 10), a[3], b[3];
+
+    random_box(side, i & 1, a, b, &seed);
+    bounds_hold(s, a, b, &seed);
+    bounds_hold(coarse, a, b, &seed);
+    if (bounds_hold(benchmark, a, b, &seed) < 3 && side < 0.02) n_narrow++;
+  }
+  assert_true(n_narrow > 4000 * 3 / 10);
+  vg_sizing_free(coarse);
+  vg_sizing_free(most);
+  vg_sizing_free(s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -552,6 +633,7 @@ int main(void)
     cmocka_unit_test(a_coarser_field_keeps_its_aspect),
     cmocka_unit_test(bytes_do_not_depend_on_threads),
     cmocka_unit_test(the_surface_keeps_its_sizes),
+    cmocka_unit_test(bounds_in_boxes_hold),
   };
 
   return cmocka_run_group_tests(tests, make_polar, free_polar);

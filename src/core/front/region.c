@@ -74,6 +74,77 @@ double vg_region_spacing(const struct vg_region *r,
                                         : vg_sizing_at(sizing, foot);
 }
 
+/* The feet of the box are those of its middle, plus or minus the projection of
+ * half its diagonals. */
+static void foot_box(const struct vg_region *r, const double lo[3],
+                     const double hi[3], double foot_lo[3], double foot_hi[3])
+{
+  double middle[3];
+
+  for (int k = 0; k < 3; k++) middle[k] = 0.5 * (lo[k] + hi[k]);
+  vg_region_foot(r, middle, middle);
+  for (int k = 0; k < 3; k++) {
+    double half = 0;
+
+    for (int j = 0; j < 3; j++) {
+      double p = k == j;
+
+      for (int i = 0; i < r->n_plane; i++)
+        p -= r->plane[i].normal[k] * r->plane[i].normal[j];
+      half += 0.5 * fabs(p) * (hi[j] - lo[j]);
+    }
+    foot_lo[k] = middle[k] - half;
+    foot_hi[k] = middle[k] + half;
+  }
+}
+
+static void spacing_in_metric(const struct vg_region *r,
+                              const struct vg_sizing *sizing,
+                              const double lo[3], const double hi[3],
+                              double *least, double *most)
+{
+  double way[2 + VG_REGION_WALLS][3], low[2 + VG_REGION_WALLS];
+  double high[2 + VG_REGION_WALLS], foot_lo[3], foot_hi[3];
+  int n = r->n_plane + r->n_wall;
+
+  for (int i = 0; i < n; i++)
+    memcpy(way[i],
+           i < r->n_plane ? r->plane[i].normal : r->wall[i - r->n_plane].normal,
+           sizeof way[i]);
+  foot_box(r, lo, hi, foot_lo, foot_hi);
+  vg_sizing_bounds_along(sizing, foot_lo, foot_hi, n, (const double(*)[3])way,
+                         low, high);
+  *least = *most = 0;
+  for (int i = 0; i < n; i++) {
+    double share = i < r->n_plane ? 1 : VG_BEYOND_WALLS;
+
+    *least = fmax(*least, share * low[i]);
+    *most = fmax(*most, share * high[i]);
+  }
+}
+
+void vg_region_spacing_within(const struct vg_region *r,
+                              const struct vg_sizing *sizing,
+                              const double lo[3], const double hi[3],
+                              double *least, double *most)
+{
+  double middle[3], d2 = 0, h, change;
+
+  assert(least && most);
+  if (vg_sizing_is_stretched(sizing)) {
+    spacing_in_metric(r, sizing, lo, hi, least, most);
+    return;
+  }
+  for (int k = 0; k < 3; k++) {
+    middle[k] = 0.5 * (lo[k] + hi[k]);
+    d2 += (hi[k] - middle[k]) * (hi[k] - middle[k]);
+  }
+  h = vg_region_spacing(r, sizing, middle);
+  change = vg_sizing_slope(sizing) * sqrt(d2);
+  *least = h - change;
+  *most = h + change;
+}
+
 int vg_region_within(const struct vg_region *r, const double x[3])
 {
   assert(r->n_wall >= 0 && r->n_wall <= VG_REGION_WALLS);

@@ -97,6 +97,13 @@ static inline double vg_region_band(const struct vg_region *r, double band)
 double vg_region_spacing(const struct vg_region *r,
                          const struct vg_sizing *sizing, const double x[3]);
 
+/** Bounds of the spacing at the feet of all points in the box lo..hi. Exact in
+ * a metric, else within the errors of vg_sizing_slope. */
+void vg_region_spacing_within(const struct vg_region *r,
+                              const struct vg_sizing *sizing,
+                              const double lo[3], const double hi[3],
+                              double *least, double *most);
+
 /** Project x onto all planes. */
 void vg_region_foot(const struct vg_region *r, const double x[3],
                     double foot[3]);

@@ -11,6 +11,7 @@
 #include "base/team.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
+#include "core/sizing/sizing_bounds.h"
 #include "core/sizing/sizing_octree.h"
 #include "core/sizing/sizing_surface.h"
 
@@ -445,6 +446,21 @@ void vg_sizing_range_along(const struct vg_sizing *s, double *h_min,
 double vg_sizing_slope_along(const struct vg_sizing *s)
 {
   return s->octree.is_stretched ? INFINITY : s->slope;
+}
+
+/* Outside of the root cube, sizes are not below those at its nearest point. */
+void vg_sizing_bounds_along(const struct vg_sizing *s, const double lo[3],
+                            const double hi[3], int n, const double (*way)[3],
+                            double *least, double *most)
+{
+  const struct vg_octree *t = &s->octree;
+  int outside = 0;
+
+  assert(t->is_stretched && n >= 0 && way && least && most);
+  vg_octree_range_along(t, lo, hi, n, way, least, most);
+  for (int k = 0; k < 3; k++)
+    outside |= lo[k] < t->lo[k] || hi[k] > t->lo[k] + t->side;
+  for (int i = 0; outside && i < n; i++) most[i] = fmax(most[i], s->cap);
 }
 
 double vg_sizing_growth(const struct vg_sizing *s)

@@ -240,6 +240,18 @@ void vg_sizing_range_along(const struct vg_sizing *s, double *h_min,
  * INFINITY if the field is stretched, since its axes may turn. */
 double vg_sizing_slope_along(const struct vg_sizing *s);
 
+/** Bounds of the target edge length along n unit vectors in the box lo..hi, in
+ * a stretched field. They hold exactly, errors of the octree included, and are
+ * narrow where sizes and axes change little within the box and its own size
+ * around it.
+ *
+ * @param least, most  out: [n]; most is INFINITY outside of the root cube if
+ *                     there is no largest size
+ * Threads: safe. Cost: some evaluations. */
+void vg_sizing_bounds_along(const struct vg_sizing *s, const double lo[3],
+                            const double hi[3], int n, const double (*way)[3],
+                            double *least, double *most);
+
 /** The scaled value of growth - 1. */
 double vg_sizing_growth(const struct vg_sizing *s);
 
@@ -251,7 +263,8 @@ double vg_sizing_below(double growth, double h, double d);
 double vg_sizing_below_edge(double growth, double h, double d);
 
 /** Number of leaves of the octree. A leaf takes 32 bytes, and 5.1 bytes of
- * tree; in a stretched field, its share of the tensors about 36 bytes more. */
+ * tree; in a stretched field, its share of the tensors and
+ * their bounds about 41 bytes more. */
 size_t vg_sizing_leaves(const struct vg_sizing *s);
 
 /** Exact spacing of the sources at x, within h_min and h_max, without octree,

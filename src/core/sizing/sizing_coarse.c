@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/sizing/sizing_bounds.h"
 #include "core/sizing/sizing_octree.h"
 
 struct coarsening {
@@ -91,6 +92,7 @@ vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
   to->octree.least = copy_of(t->least, t->n_split, sizeof *t->least);
   to->octree.leaf = copy_of(t->leaf, t->n_leaf, sizeof *t->leaf);
   to->octree.tensor = copy_of(t->tensor, t->n_tensor, sizeof *t->tensor);
+  to->octree.bounds = NULL;
   memset(&to->common, 0, sizeof to->common);
   if (!to->octree.child || !to->octree.least || !to->octree.leaf ||
       !to->octree.tensor) {
@@ -102,6 +104,10 @@ vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
   to->growth = fmin(factor * s->growth, most->growth);
   to->cap = fmin(factor * s->cap, most->cap);
   to->slope = fmax(factor * s->slope, most->slope);
+  if (t->is_stretched && vg_octree_bounds(&to->octree, err)) {
+    vg_sizing_free(to);
+    return VG_ERR_MEMORY;
+  }
   *out = to;
   return VG_OK;
 }

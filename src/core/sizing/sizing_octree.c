@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/tensor.h"
+#include "core/sizing/sizing_bounds.h"
 #include "core/sizing/sizing_build.h"
 
 /* Cells are not split below FLOOR times the spacing (H2), or SURFACE times
@@ -216,6 +217,7 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
   else if (st >= 0 && vg_source_any(&f->set)) st = vg_octree_limit(&b, err);
   if (st >= 0 && compact(&b, out))
     st = vg_fail_memory(err, "the octree of the sizing field");
+  if (st >= 0 && out->is_stretched) st = vg_octree_bounds(out, err);
   free(b.cell);
   free(b.point);
   free(b.tensor);
@@ -229,6 +231,7 @@ void vg_octree_release(struct vg_octree *t)
   free(t->least);
   free(t->leaf);
   free(t->tensor);
+  free(t->bounds);
   memset(t, 0, sizeof *t);
 }
 

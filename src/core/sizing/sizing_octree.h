@@ -40,6 +40,12 @@ union vg_octree_leaf {
   uint32_t corner[8]; /* in a leaf with tensors: their indices */
 };
 
+/** Bounds of the target edge lengths below a split cell (sizing_bounds.h). */
+struct vg_octree_bounds {
+  float h[6];      /* size tensor */
+  float low, high; /* factors on its target edge lengths */
+};
+
 struct vg_octree {
   double lo[3], side;   /* root cube */
   uint32_t root;        /* as an entry of child */
@@ -50,6 +56,7 @@ struct vg_octree {
   union vg_octree_leaf *leaf; /* [n_leaf] */
   float (*tensor)[6];         /* [n_tensor] size tensors at corners of leaves,
                                  in the order of the entries of child */
+  struct vg_octree_bounds *bounds; /* [n_split] if is_stretched, else NULL */
   size_t n_split, n_leaf, n_tensor;
   int is_stretched; /* 1: evaluate with vg_octree_tensor_at; there may be leaves
                        with tensors */

@@ -7,8 +7,8 @@
 #include "core/sizing/sizing_octree.h"
 
 /* The scalar members, the tree, its smallest spacings, the leaves, their
- * tensors. */
-enum { PARTS = 5 };
+ * tensors, the bounds of these. */
+enum { PARTS = 6 };
 
 static struct vg_bytes part(size_t n, const void *data)
 {
@@ -24,6 +24,7 @@ static void list_parts(const struct vg_sizing *s, struct vg_bytes p[PARTS])
   p[2] = part(t->n_split * sizeof *t->least, t->least);
   p[3] = part(t->n_leaf * sizeof *t->leaf, t->leaf);
   p[4] = part(t->n_tensor * sizeof *t->tensor, t->tensor);
+  p[5] = part(t->is_stretched ? t->n_split * sizeof *t->bounds : 0, t->bounds);
 }
 
 void vg_sizing_show(const struct vg_sizing *s,
@@ -37,7 +38,7 @@ void vg_sizing_show(const struct vg_sizing *s,
   look(user, sizeof s->octree.side, &s->octree.side);
   look(user, sizeof s->growth, &s->growth);
   look(user, sizeof s->cap, &s->cap);
-  for (int k = 1; k < PARTS; k++)
+  for (int k = 1; k < PARTS - 1; k++)
     if (k < 4 || p[k].n) look(user, p[k].n, p[k].data);
 }
 
@@ -60,6 +61,8 @@ static struct vg_sizing *view(const struct vg_shmem *common)
   s->octree.leaf = (void *)at;
   at += vg_shmem_padded(p[3].n);
   s->octree.tensor = (void *)at;
+  at += vg_shmem_padded(p[4].n);
+  s->octree.bounds = p[5].n ? (void *)at : NULL;
   return s;
 }
 

@@ -49,6 +49,18 @@ static int is_within(const struct band *b, const double *const x[3],
   return most <= b->width * (b->h - b->slope * sqrt(far2));
 }
 
+/* The same in a metric, by a lower bound of the spacing. */
+static int is_within_metric(const struct band *b, const double *const x[3],
+                            double most)
+{
+  struct vg_box box = VG_BOX_EMPTY;
+  double low, high;
+
+  for (int k = 0; k < 3; k++) vg_box_add(&box, x[k]);
+  vg_region_spacing_within(b->region, b->sizing, box.lo, box.hi, &low, &high);
+  return most <= b->width * low;
+}
+
 /* Does the triangle stay within the known band? Also no in doubt. */
 static int stays(struct band *b, const double *const x[3])
 {
@@ -58,6 +70,7 @@ static int stays(struct band *b, const double *const x[3])
   for (int i = 0; i < r->n_plane; i++)
     for (int k = 0; k < 3; k++)
       most = fmax(most, fabs(vg_plane_side(&r->plane[i], x[k])));
+  if (vg_sizing_is_stretched(b->sizing)) return is_within_metric(b, x, most);
   if (is_within(b, x, most)) return 1;
   for (int k = 0; k < 3; k++) b->x[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
   b->h = vg_region_spacing(r, b->sizing, b->x);
@@ -387,7 +400,7 @@ int vg_node_crosses(const struct vg_node *n, size_t i, size_t first)
 
   assert(i < n->n_work && first <= n->front.n_point);
   if (!r->n_plane || !sizing) return 0;
-  b.slope = vg_sizing_slope_along(sizing);
+  b.slope = vg_sizing_slope(sizing);
   for (size_t k = 0; k < n_around(&c) && !found; k++) {
     const double *x[3];
 

@@ -121,14 +121,11 @@ struct list {
 /* Upper bound of the spacing at the foot of any point of a box. */
 static double most_spacing(const struct list *l, const struct vg_box *b)
 {
-  double middle[3], d2 = 0;
+  double least, most;
 
-  for (int k = 0; k < 3; k++) {
-    middle[k] = 0.5 * (b->lo[k] + b->hi[k]);
-    d2 += (b->hi[k] - middle[k]) * (b->hi[k] - middle[k]);
-  }
-  return vg_region_spacing(l->region, l->s->sizing, middle) +
-         vg_sizing_slope_along(l->s->sizing) * sqrt(d2);
+  vg_region_spacing_within(l->region, l->s->sizing, b->lo, b->hi, &least,
+                           &most);
+  return most;
 }
 
 /* Distance by which sign * n . x is below sign * offset in the whole box. */

@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+#include "core/sizing/sizing_bounds.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "core/geometry/tensor.h"
+#include "core/geometry/vector.h"
+
+/* The stored tensors have single precision; the factors are rounded outwards
+ * by more than that. */
+static const double outwards = 1e-6;
+
+struct bounds {
+  double h[6], low, high;
+};
+
+/* --- bounds of a cell ----------------------------------------------------- */
+
+/* Frobenius norms of the product X = a h of two symmetric tensors, and of
+ * X - I. They are not below the spectral norms. */
+static void norms(const double a[6], const double h[6], double *of,
+                  double *of_rest)
+{
+  static const int at[3][3] = { { 0, 1, 2 }, { 1, 3, 4 }, { 2, 4, 5 } };
+  double sum = 0, rest = 0;
+
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      double x = a[at[i][0]] * h[at[0][j]] + a[at[i][1]] * h[at[1][j]] +
+                 a[at[i][2]] * h[at[2][j]];
+
+      sum += x * x;
+      rest += (x - (i == j)) * (x - (i == j));
+    }
+  *of = sqrt(sum);
+  *of_rest = sqrt(rest);
+}
+
+/* Upper bound of the spectral norm of a h. */
+static double norm_of(const double a[6], const double h[6])
+{
+  double of, of_rest;
+
+  norms(a, h, &of, &of_rest);
+  return fmin(of, 1 + of_rest);
+}
+
+static double norm(const double a[6])
+{
+  return sqrt(vg_tensor_trace2(a, a));
+}
+
+static void uniform_leaf(const float h[8], struct bounds *b)
+{
+  double least = (double)h[0], most = (double)h[0];
+
+  for (int i = 1; i < 8; i++) {
+    least = fmin(least, (double)h[i]);
+    most = fmax(most, (double)h[i]);
+  }
+  vg_tensor_uniform(most, b->h);
+  b->low = least / most;
+  b->high = 1;
+}
+
+/* If the corners of a leaf differ too much for the bound of H^-1 B from the
+ * middle, the smallest eigenvalues at the corners bound it. */
+static void stretched_leaf(const struct vg_octree *t,
+                           const union vg_octree_leaf *leaf, struct bounds *b)
+{
+  double h[8][6], inverse[6], off = 0, fine = 0;
+
+  for (int k = 0; k < 6; k++) b->h[k] = 0;
+  for (int i = 0; i < 8; i++)
+    for (int k = 0; k < 6; k++) {
+      h[i][k] = (double)t->tensor[leaf->corner[i]][k];
+      b->h[k] += 0.125 * h[i][k];
+    }
+  vg_tensor_invert(b->h, inverse);
+  b->high = 0;
+  for (int i = 0; i < 8; i++) {
+    double of, of_rest;
+
+    norms(inverse, h[i], &of, &of_rest);
+    b->high = fmax(b->high, fmin(of, 1 + of_rest));
+    off = fmax(off, of_rest);
+    vg_tensor_invert(h[i], h[i]);
+    fine = fmax(fine, norm(h[i]));
+  }
+  b->low = fmax(1 - off, 1 / (fine * norm(b->h)));
+}
+
+static void bound_leaf(const struct vg_octree *t, uint32_t e, struct bounds *b)
+{
+  const union vg_octree_leaf *leaf = t->leaf + (e & VG_OCTREE_LEAF_INDEX);
+
+  if (e & VG_OCTREE_TENSOR) stretched_leaf(t, leaf, b);
+  else uniform_leaf(leaf->h, b);
+}
+
+static void bound_split(const struct vg_octree *t, uint32_t e, struct bounds *b)
+{
+  const struct vg_octree_bounds *of = t->bounds + e;
+
+  for (int k = 0; k < 6; k++) b->h[k] = (double)of->h[k];
+  b->low = (double)of->low;
+  b->high = (double)of->high;
+}
+
+static void bound_entry(const struct vg_octree *t, uint32_t e, struct bounds *b)
+{
+  if (e & VG_OCTREE_LEAF) bound_leaf(t, e, b);
+  else bound_split(t, e, b);
+}
+
+/* The bounds of a split cell follow from those of its children. */
+static void join(const struct bounds child[8], struct vg_octree_bounds *out)
+{
+  double h[6] = { 0 }, inverse[6], low = INFINITY, high = 0;
+
+  for (int i = 0; i < 8; i++)
+    for (int k = 0; k < 6; k++) h[k] += 0.125 * child[i].h[k];
+  for (int k = 0; k < 6; k++) out->h[k] = (float)h[k];
+  for (int k = 0; k < 6; k++) h[k] = (double)out->h[k];
+  vg_tensor_invert(h, inverse);
+  for (int i = 0; i < 8; i++) {
+    double t[6];
+
+    vg_tensor_invert(child[i].h, t);
+    high = fmax(high, child[i].high * norm_of(inverse, child[i].h));
+    low = fmin(low, child[i].low / norm_of(t, h));
+  }
+  out->low = (float)(low * (1 - outwards));
+  out->high = (float)(high * (1 + outwards));
+}
+
+/* Children follow their parents in the tree. */
+vg_status vg_octree_bounds(struct vg_octree *t, struct vg_error *err)
+{
+  assert(t->is_stretched && !t->bounds);
+  t->bounds = vg_alloc(t->n_split, sizeof *t->bounds);
+  if (!t->bounds) return vg_fail_memory(err, "the sizing field");
+  for (size_t i = t->n_split; i-- > 0;) {
+    struct bounds child[8];
+
+    for (int k = 0; k < 8; k++) bound_entry(t, t->child[i][k], &child[k]);
+    join(child, t->bounds + i);
+  }
+  return VG_OK;
+}
+
+/* --- queries -------------------------------------------------------------- */
+
+/* Lengths are relative to the side of the root. */
+struct query {
+  const struct vg_octree *t;
+  double lo[3], hi[3], fine; /* box; half of its longest side */
+  int n;
+  const double (*way)[3];
+  double *least, *most; /* [n] */
+};
+
+static void extend(const struct query *q, uint32_t e)
+{
+  struct bounds b;
+
+  bound_entry(q->t, e, &b);
+  vg_tensor_invert(b.h, b.h);
+  for (int i = 0; i < q->n; i++) {
+    double v[3], h;
+
+    vg_tensor_apply(b.h, q->way[i], v);
+    h = 1 / vg_norm(v);
+    q->least[i] = fmin(q->least[i], b.low * h * (1 - outwards));
+    q->most[i] = fmax(q->most[i], b.high * h * (1 + outwards));
+  }
+}
+
+static void visit(const struct query *q, uint32_t e, const double at[3],
+                  double side)
+{
+  for (int k = 0; k < 3; k++)
+    if (at[k] > q->hi[k] || at[k] + side < q->lo[k]) return;
+  if (e & VG_OCTREE_LEAF || side <= q->fine) {
+    extend(q, e);
+    return;
+  }
+  for (int i = 0; i < 8; i++) {
+    double child[3];
+
+    for (int k = 0; k < 3; k++)
+      child[k] = at[k] + (i >> k & 1 ? 0.5 * side : 0);
+    visit(q, q->t->child[e][i], child, 0.5 * side);
+  }
+}
+
+void vg_octree_range_along(const struct vg_octree *t, const double lo[3],
+                           const double hi[3], int n, const double (*way)[3],
+                           double *least, double *most)
+{
+  const double root[3] = { 0, 0, 0 };
+  struct query q = { .t = t, .n = n, .way = way, .least = least, .most = most };
+
+  assert(t->is_stretched && t->bounds);
+  for (int k = 0; k < 3; k++) {
+    q.lo[k] = fmin(fmax((lo[k] - t->lo[k]) / t->side, 0), 1);
+    q.hi[k] = fmin(fmax((hi[k] - t->lo[k]) / t->side, 0), 1);
+    q.fine = fmax(q.fine, 0.5 * (q.hi[k] - q.lo[k]));
+  }
+  for (int i = 0; i < n; i++) {
+    least[i] = INFINITY;
+    most[i] = 0;
+  }
+  visit(&q, t->root, root, 1);
+}
