@@ -3,6 +3,7 @@
  * stage, and the walls that keep regions apart. */
 #include "io_support.h"
 
+#include "core/geometry/tensor.h"
 #include "fill_shapes.h"
 #include "partition/cut/lattice.h"
 #include "tets_support.h"
@@ -618,6 +619,69 @@ static void patches_end_with_their_box(void **state)
   }
 }
 
+/* --- metrics -------------------------------------------------------------- */
+
+/* Cells have the size 0.08 / factor along the axis, and 0.08 across it. */
+struct constant {
+  int axis;
+  double factor;
+};
+
+static void constant_metric(void *user, const double x[3], double m[6])
+{
+  static const int diagonal[3] = { 0, 3, 5 };
+  const struct constant *c = user;
+
+  (void)x;
+  vg_tensor_uniform(156.25, m);
+  m[diagonal[c->axis]] *= c->factor * c->factor;
+}
+
+static void metric_scene(struct scene *s, struct constant *c)
+{
+  const struct vg_size_map map = { .metric = constant_metric, .user = c };
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_front front;
+
+  shape_box(&m, 4, 1);
+  front = vg_front_of(&m);
+  o.from_surface = 0;
+  o.map = &map;
+  s->load = (struct vg_load)VG_LOAD_INIT;
+  assert_int_equal(vg_sizing_new(&o, 0, NULL, &m, &s->sizing, NULL), VG_OK);
+  assert_int_equal(vg_load_new(&front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+                               &s->load, NULL),
+                   VG_OK);
+  vg_mesh_release(&m);
+}
+
+/* A plane of the cube, of area 4, crosses 4 / (h h') layers of cells with the
+ * sizes h and h' along it. Without the metric, all planes have the same cost,
+ * and the plane across x is chosen. */
+static void planes_cross_the_fewest_cells(void **state)
+{
+  const struct vg_cut_rule rule = { 0, -1, 0 };
+
+  (void)state;
+  for (int i = 0; i < 6; i++) {
+    struct constant c = { i % 3, i < 3 ? 4 : 0.25 };
+    struct vg_lattice l;
+    struct scene s;
+
+    metric_scene(&s, &c);
+    for (int axis = 0; axis < 3; axis++) {
+      double crossed = 4 / (0.08 * 0.08) * (axis == c.axis ? 1 : c.factor);
+      double cells = 2 * VG_LOAD_CELLS_PER_CUBE * crossed;
+
+      assert_true(fabs(vg_load_zone(&s.load, axis, 0, 1) / cells - 1) < 0.05);
+    }
+    assert_int_equal(vg_lattice_plan(&s.load, &rule, 1, 0, &l), 1);
+    assert_int_equal(l.n[c.axis], c.factor > 1);
+    scene_end(&s);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -625,6 +689,7 @@ int main(void)
     cmocka_unit_test(planes_are_at_quantiles),
     cmocka_unit_test(planes_keep_their_distance),
     cmocka_unit_test(the_cheapest_axis_is_cut),
+    cmocka_unit_test(planes_cross_the_fewest_cells),
     cmocka_unit_test(an_axis_can_be_requested),
     cmocka_unit_test(leaves_have_their_size),
     cmocka_unit_test(attempts_differ),

@@ -302,8 +302,10 @@ static void a_small_void_has_octants(void **state)
 
 static void two_octants(struct vg_load *l)
 {
-  static struct vg_load_octant octant[2] = { { { 1, 5, 0 }, 1, 0.5f, 1, 300 },
-                                             { { 4, 5, 0 }, 2, 1, 1, 100 } };
+  static struct vg_load_octant octant[2] = {
+    { { 1, 5, 0 }, 1, 0.5f, { 0.5f, 0.5f, 0.5f }, 1, 300 },
+    { { 4, 5, 0 }, 2, 1, { 1, 1, 1 }, 1, 100 }
+  };
 
   *l = (struct vg_load){ .n = 2, .octant = octant, .cells = 400, .unit = 1 };
   assert_int_equal(vg_load_index(l, 1, NULL), VG_OK);

@@ -301,9 +301,13 @@ static void patches_stay_open_near_many_cells(void **state)
     struct vg_load_octant *c = &s.n->load.octant[0];
 
     if (k)
-      *c = (struct vg_load_octant){
-        { (float)at[0], (float)at[1], (float)at[2] }, 0.1f, 0.01f, 1, 1e6f
-      };
+      *c = (struct vg_load_octant){ { (float)at[0], (float)at[1],
+                                      (float)at[2] },
+                                    0.1f,
+                                    0.01f,
+                                    { 0.01f, 0.01f, 0.01f },
+                                    1,
+                                    1e6f };
     assert_int_equal(vg_node_open_places(&s.p, s.n, k > 1 ? 0 : -1, NULL, &r,
                                          &n_region, NULL),
                      VG_OK);

@@ -28,8 +28,8 @@ enum { MOST_PIECES = 8 };
 /* The share of an octant in the zone. */
 struct dot {
   size_t tile, number;
-  double x[2], half, h, cells;
-  double key; /* Candidate lines have a constant key. */
+  double x[2], half, h[2], cells; /* h: edges along the axes of the tile */
+  double key;                     /* Candidate lines have a constant key. */
 };
 
 struct tile {
@@ -144,6 +144,12 @@ static double distance_to_sides(const struct tile *t, int way,
   return fmin(fabs(x[0] - at[0]), fabs(x[1] - at[1]));
 }
 
+/* Target edge length across a line. */
+static double across(const struct dot *d, int way)
+{
+  return way < 2 ? d->h[way] : fmax(d->h[0], d->h[1]);
+}
+
 static void find_cost(const struct tile *t, int way, struct lines *all)
 {
   all->cost = 0;
@@ -151,14 +157,14 @@ static void find_cost(const struct tile *t, int way, struct lines *all)
     for (int k = 0; k < all->n; k++) {
       const struct dot *d = &t->dot[i];
       const struct line *l = &all->line[k];
-      double off = beyond(l, d->x), foot[2];
+      double off = beyond(l, d->x), h = across(d, way), foot[2];
 
-      all->cost += d->cells * d->h / d->half *
+      all->cost += d->cells * h / d->half *
                    fmax(1 - fabs(off) / (2 * d->half), 0);
       if (fabs(off) > d->half) continue;
       for (int j = 0; j < 2; j++) foot[j] = d->x[j] - off * l->normal[j];
-      if (room_at(all, k, foot) < room * d->h ||
-          distance_to_sides(t, way, foot) < room * d->h)
+      if (room_at(all, k, foot) < room * h ||
+          distance_to_sides(t, way, foot) < room * h)
         all->cost = INFINITY;
     }
 }
@@ -251,7 +257,7 @@ static vg_status find_dots(const struct vg_load *load,
 
   for (size_t k = 0; k < load->n; k++) {
     const struct vg_load_octant *q = &load->octant[k];
-    double half = (double)q->half, h = (double)q->h;
+    double half = (double)q->half, h = (double)q->along[axis];
     double x[2] = { (double)q->at[b], (double)q->at[c] };
 
     if (fabs((double)q->at[axis] - l->at[axis][i]) > half) continue;
@@ -263,7 +269,7 @@ static vg_status find_dots(const struct vg_load *load,
       .number = k,
       .x = { x[0], x[1] },
       .half = half,
-      .h = h,
+      .h = { (double)q->along[b], (double)q->along[c] },
       .cells = (double)q->cells * fmin(VG_TILE_REACH * h / half, 1)
     };
     ++*n;

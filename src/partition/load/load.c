@@ -290,6 +290,20 @@ static int sample(const struct maker *m, const struct vg_load_stack *s,
   return inside;
 }
 
+/* Edges along the axes, in proportion to those at the centre. */
+static void set_along(const struct maker *m, const double mid[3],
+                      struct vg_load_octant *c)
+{
+  for (int k = 0; k < 3; k++) {
+    const double axis[3] = { k == 0, k == 1, k == 2 };
+
+    c->along[k] = c->h;
+    if (vg_sizing_is_stretched(m->sizing))
+      c->along[k] *= (float)(vg_sizing_along(m->sizing, mid, axis) /
+                             vg_sizing_at(m->sizing, mid));
+  }
+}
+
 static int emit(const struct maker *m, struct branch *b,
                 const struct vg_load_node *node, struct density density,
                 int inside)
@@ -298,6 +312,7 @@ static int emit(const struct maker *m, struct branch *b,
   const double side = vg_load_side(node) * t->unit;
   const double volume = side * side * side;
   struct vg_load_octant *c;
+  double mid[3];
 
   if (node->n) b->crossed += volume * volume;
   if (!inside) return 0;
@@ -305,10 +320,11 @@ static int emit(const struct maker *m, struct branch *b,
   if (vg_reserve(&b->out.octant, &b->out.cap, b->out.n + 1, sizeof *c))
     return -1;
   c = &b->out.octant[b->out.n++];
-  for (int k = 0; k < 3; k++)
-    c->at[k] = (float)(t->lo[k] + node->at[k] * t->unit + 0.5 * side);
+  middle_of(m, node, mid);
+  for (int k = 0; k < 3; k++) c->at[k] = (float)mid[k];
   c->half = (float)(0.5 * side);
   c->h = (float)(1 / cube_root(density.cubes));
+  set_along(m, mid, c);
   c->part = (float)inside / VG_LOAD_SAMPLES;
   c->cells = (float)(m->per_cube * density.cells * volume * (double)c->part);
   return 0;
@@ -561,6 +577,7 @@ static int lone_octant(const struct maker *m, const double lo[3],
   h = edge_at(m, x);
   c->half = (float)(0.5 * side);
   c->h = (float)h;
+  set_along(m, x, c);
   c->part = (float)(volume / (side * side * side));
   c->cells = (float)(m->per_cube * volume / (h * h * h));
   free(l->octant);

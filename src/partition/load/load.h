@@ -31,11 +31,23 @@
 struct vg_load_octant {
   float at[3], half; /* Centre, half of the side. */
   float h;           /* Target edge length, averaged like 1 / h^3. */
+  float along[3];    /* Target edge lengths along the axes; h if the sizes do
+                        not depend on the direction. */
   /* Fraction of the octant in the void, > 0; scaled so that all octants sum up
    * to the volume that the front encloses. */
   float part;
   float cells; /* Cells expected in that fraction. */
 };
+
+/** Target edge length across a plane with this unit normal; of oblique planes,
+ * the mean one. */
+static inline double vg_load_across(const struct vg_load_octant *c,
+                                    const double normal[3])
+{
+  for (int k = 0; k < 3; k++)
+    if (normal[k] == 1 || normal[k] == -1) return (double)c->along[k];
+  return (double)c->h;
+}
 
 struct vg_load_index;
 struct vg_engine;
@@ -121,10 +133,13 @@ double vg_load_quantile(const struct vg_load *l, int axis, double part);
 
 /** Cells expected within `width` target edges on each side of the plane x[axis]
  * = at, the cost of a separator zone. The density on the plane is used
- * throughout. */
+ * throughout. In a metric, the edges are those across the plane, so that the
+ * cost is in proportion to the area of the plane in the metric: a plane that
+ * contains the long edges of the cells crosses the fewest cells. */
 double vg_load_zone(const struct vg_load *l, int axis, double at, double width);
 
-/** Largest target edge length on the plane (0: the plane misses the void). */
+/** Largest target edge length across the plane, among the octants on it (0: the
+ * plane misses the void). */
 double vg_load_coarsest(const struct vg_load *l, int axis, double at);
 
 /** Cells expected in the box lo ... hi. O(octants). */

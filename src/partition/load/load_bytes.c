@@ -18,7 +18,7 @@ struct head {
   double from[3], to[3];
 };
 
-static const char magic[8] = { 'V', 'G', 'L', 'O', 'A', 'D', '2', '\n' };
+static const char magic[8] = { 'V', 'G', 'L', 'O', 'A', 'D', '3', '\n' };
 
 vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,
                        struct vg_error *err)
@@ -46,7 +46,8 @@ vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,
 static int is_sound(const struct vg_load_octant *c)
 {
   for (int k = 0; k < 3; k++)
-    if (!isfinite(c->at[k])) return 0;
+    if (!isfinite(c->at[k]) || !isfinite(c->along[k]) || !(c->along[k] > 0))
+      return 0;
   return isfinite(c->half) && c->half > 0 && isfinite(c->h) && c->h > 0 &&
          isfinite(c->part) && c->part > 0 && isfinite(c->cells) &&
          c->cells >= 0;

@@ -187,7 +187,8 @@ vg_status vg_bins_take(struct vg_subdomain *p, const struct vg_region *r,
     int passes = 1;
 
     for (int k = 0; share > 0 && k < r->n_plane; k++)
-      share *= overlap(c, &r->plane[k], reach * (double)c->h);
+      share *= overlap(c, &r->plane[k],
+                       reach * vg_load_across(c, r->plane[k].normal));
     if (!(share > 0) || !is_over(r, c->at, 0)) continue;
     for (int k = 0; k < r->n_plane; k++)
       passes &= fabs(side_of_plane(&r->plane[k], c->at)) <=
