@@ -559,7 +559,7 @@ static void random_box(double side, int is_flat, double lo[3], double hi[3],
   }
 }
 
-/* Bounds along random directions in a box hold at points of the box. Returns
+/* Bounds across random planes in a box hold at points of the box. Returns
  * the ratio of the bounds. */
 static double bounds_hold(const struct vg_sizing *s, const double lo[3],
                           const double hi[3], uint64_t *state)
@@ -567,14 +567,14 @@ static double bounds_hold(const struct vg_sizing *s, const double lo[3],
   double way[4][3], least[4], most[4], ratio = 1;
 
   for (int i = 0; i < 4; i++) random_way(way[i], state);
-  vg_sizing_bounds_along(s, lo, hi, 4, (const double(*)[3])way, least, most);
+  vg_sizing_bounds_across(s, lo, hi, 4, (const double(*)[3])way, least, most);
   for (int j = 0; j < 20; j++) {
     double x[3];
 
     random_in(x, state);
     for (int k = 0; k < 3; k++) x[k] = lo[k] + x[k] * (hi[k] - lo[k]);
     for (int i = 0; i < 4; i++) {
-      double h = vg_sizing_along(s, x, way[i]);
+      double h = vg_sizing_across(s, x, way[i]);
 
       assert_true(h >= least[i] && h <= most[i]);
     }

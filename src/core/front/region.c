@@ -43,25 +43,25 @@ void vg_region_foot(const struct vg_region *r, const double x[3],
   }
 }
 
-/* In a metric, the largest of the sizes across the planes and half of those
+/* In a metric, the largest of the distances across the planes and half of those
  * across the walls, beyond which only half of a band counts. */
 static double spacing_across(const struct vg_region *r,
                              const struct vg_sizing *sizing,
                              const double foot[3])
 {
-  double h = 0, t[6], v[3];
+  double most = 0, h[6], v[3];
 
-  vg_sizing_stretch_at(sizing, foot, t);
+  vg_sizing_tensor_at(sizing, foot, h);
   for (int i = 0; i < r->n_plane + r->n_wall; i++) {
     int is_wall = i >= r->n_plane;
 
-    vg_tensor_apply(t,
+    vg_tensor_apply(h,
                     is_wall ? r->wall[i - r->n_plane].normal
                             : r->plane[i].normal,
                     v);
-    h = fmax(h, (is_wall ? VG_BEYOND_WALLS : 1) / vg_norm(v));
+    most = fmax(most, (is_wall ? VG_BEYOND_WALLS : 1) * vg_norm(v));
   }
-  return h;
+  return most;
 }
 
 double vg_region_spacing(const struct vg_region *r,
@@ -112,8 +112,8 @@ static void spacing_in_metric(const struct vg_region *r,
            i < r->n_plane ? r->plane[i].normal : r->wall[i - r->n_plane].normal,
            sizeof way[i]);
   foot_box(r, lo, hi, foot_lo, foot_hi);
-  vg_sizing_bounds_along(sizing, foot_lo, foot_hi, n, (const double(*)[3])way,
-                         low, high);
+  vg_sizing_bounds_across(sizing, foot_lo, foot_hi, n, (const double(*)[3])way,
+                          low, high);
   *least = *most = 0;
   for (int i = 0; i < n; i++) {
     double share = i < r->n_plane ? 1 : VG_BEYOND_WALLS;

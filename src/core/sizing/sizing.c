@@ -347,6 +347,24 @@ double vg_sizing_along(const struct vg_sizing *s, const double x[3],
   return 1 / vg_norm(v);
 }
 
+void vg_sizing_tensor_at(const struct vg_sizing *s, const double x[3],
+                         double h[6])
+{
+  if (s->octree.is_stretched) tensor_at(s, x, h);
+  else vg_tensor_uniform(vg_sizing_at(s, x), h);
+}
+
+double vg_sizing_across(const struct vg_sizing *s, const double x[3],
+                        const double n[3])
+{
+  double h[6], v[3];
+
+  if (!s->octree.is_stretched) return vg_sizing_at(s, x);
+  tensor_at(s, x, h);
+  vg_tensor_apply(h, n, v);
+  return vg_norm(v);
+}
+
 /* The size h at the nearest point of the root cube grows with the distance. */
 static double grown(const struct vg_sizing *s, double h, double outside)
 {
@@ -449,15 +467,16 @@ double vg_sizing_slope_along(const struct vg_sizing *s)
 }
 
 /* Outside of the root cube, sizes are not below those at its nearest point. */
-void vg_sizing_bounds_along(const struct vg_sizing *s, const double lo[3],
-                            const double hi[3], int n, const double (*way)[3],
-                            double *least, double *most)
+void vg_sizing_bounds_across(const struct vg_sizing *s, const double lo[3],
+                             const double hi[3], int n,
+                             const double (*normal)[3], double *least,
+                             double *most)
 {
   const struct vg_octree *t = &s->octree;
   int outside = 0;
 
-  assert(t->is_stretched && n >= 0 && way && least && most);
-  vg_octree_range_along(t, lo, hi, n, way, least, most);
+  assert(t->is_stretched && n >= 0 && normal && least && most);
+  vg_octree_range_across(t, lo, hi, n, normal, least, most);
   for (int k = 0; k < 3; k++)
     outside |= lo[k] < t->lo[k] || hi[k] > t->lo[k] + t->side;
   for (int i = 0; outside && i < n; i++) most[i] = fmax(most[i], s->cap);

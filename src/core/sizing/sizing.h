@@ -193,6 +193,17 @@ double vg_sizing_stretch_at(const struct vg_sizing *s, const double x[3],
 double vg_sizing_along(const struct vg_sizing *s, const double x[3],
                        const double n[3]);
 
+/** Size tensor H = M^(-1/2) of the metric at x (core/geometry/tensor.h). */
+void vg_sizing_tensor_at(const struct vg_sizing *s, const double x[3],
+                         double h[6]);
+
+/** Distance of x from a plane with the unit normal n that has the length 1 in
+ * the metric: |H n|, the extent of a cell at x across the plane. It exceeds
+ * vg_sizing_along where the axes of the metric are oblique to the plane,
+ * because the shortest way to the plane in the metric is not normal to it. */
+double vg_sizing_across(const struct vg_sizing *s, const double x[3],
+                        const double n[3]);
+
 /** Target edge length at x, > 0. In a metric: the geometric mean of the target
  * edge lengths along its axes, so that the integral of 1 / h^3 is the
  * complexity. Outside the root cube: the value at the
@@ -231,26 +242,29 @@ void vg_sizing_range(const struct vg_sizing *s, double *h_min, double *h_max);
  * somewhere. */
 double vg_sizing_slope(const struct vg_sizing *s);
 
-/** Bounds of the target edge length along any direction within the root cube.
+/** Bounds of the target edge length along any direction within the root cube,
+ * and of the distance across any plane.
  * Cost O(1). */
 void vg_sizing_range_along(const struct vg_sizing *s, double *h_min,
                            double *h_max);
 
-/** As vg_sizing_slope, for the target edge length along any fixed direction;
+/** As vg_sizing_slope, for the target edge length along any fixed direction, or
+ * the distance across any fixed plane;
  * INFINITY if the field is stretched, since its axes may turn. */
 double vg_sizing_slope_along(const struct vg_sizing *s);
 
-/** Bounds of the target edge length along n unit vectors in the box lo..hi, in
- * a stretched field. They hold exactly, errors of the octree included, and are
- * narrow where sizes and axes change little within the box and its own size
+/** Bounds of vg_sizing_across for n unit normals in the box lo..hi, in a
+ * stretched field. They hold exactly, errors of the octree included, and are
+ * narrow where sizes and axes change little within the box and half its size
  * around it.
  *
  * @param least, most  out: [n]; most is INFINITY outside of the root cube if
  *                     there is no largest size
  * Threads: safe. Cost: some evaluations. */
-void vg_sizing_bounds_along(const struct vg_sizing *s, const double lo[3],
-                            const double hi[3], int n, const double (*way)[3],
-                            double *least, double *most);
+void vg_sizing_bounds_across(const struct vg_sizing *s, const double lo[3],
+                             const double hi[3], int n,
+                             const double (*normal)[3], double *least,
+                             double *most);
 
 /** The scaled value of growth - 1. */
 double vg_sizing_growth(const struct vg_sizing *s);

@@ -66,7 +66,7 @@ static void uniform_leaf(const float h[8], struct bounds *b)
   b->high = 1;
 }
 
-/* If the corners of a leaf differ too much for the bound of H^-1 B from the
+/* If the corners of a leaf differ too much for the bound of B H^-1 from the
  * middle, the smallest eigenvalues at the corners bound it. */
 static void stretched_leaf(const struct vg_octree *t,
                            const union vg_octree_leaf *leaf, struct bounds *b)
@@ -159,7 +159,7 @@ struct query {
   const struct vg_octree *t;
   double lo[3], hi[3], fine; /* box; half of its longest side */
   int n;
-  const double (*way)[3];
+  const double (*normal)[3];
   double *least, *most; /* [n] */
 };
 
@@ -168,12 +168,11 @@ static void extend(const struct query *q, uint32_t e)
   struct bounds b;
 
   bound_entry(q->t, e, &b);
-  vg_tensor_invert(b.h, b.h);
   for (int i = 0; i < q->n; i++) {
     double v[3], h;
 
-    vg_tensor_apply(b.h, q->way[i], v);
-    h = 1 / vg_norm(v);
+    vg_tensor_apply(b.h, q->normal[i], v);
+    h = vg_norm(v);
     q->least[i] = fmin(q->least[i], b.low * h * (1 - outwards));
     q->most[i] = fmax(q->most[i], b.high * h * (1 + outwards));
   }
@@ -197,12 +196,15 @@ static void visit(const struct query *q, uint32_t e, const double at[3],
   }
 }
 
-void vg_octree_range_along(const struct vg_octree *t, const double lo[3],
-                           const double hi[3], int n, const double (*way)[3],
-                           double *least, double *most)
+void vg_octree_range_across(const struct vg_octree *t, const double lo[3],
+                            const double hi[3], int n,
+                            const double (*normal)[3], double *least,
+                            double *most)
 {
   const double root[3] = { 0, 0, 0 };
-  struct query q = { .t = t, .n = n, .way = way, .least = least, .most = most };
+  struct query q = {
+    .t = t, .n = n, .normal = normal, .least = least, .most = most
+  };
 
   assert(t->is_stretched && t->bounds);
   for (int k = 0; k < 3; k++) {

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* core/sizing/sizing_bounds.h: bounds of the target edge lengths in a box of an
+/* core/sizing/sizing_bounds.h: bounds of the sizes in a box of an
  * octree with size tensors. Internal to core/sizing.
  *
- * Every split cell of the tree has a size tensor B and two factors. The target
- * edge length along n at any point of the cell, 1 / |H^-1 n|, is between `low`
- * and `high` times that of B, whatever n is:
+ * Every split cell of the tree has a size tensor B and two factors. The
+ * distance |H n| across a plane (vg_sizing_across) at any point of the cell is
+ * between `low` and `high` times |B n|, whatever n is:
  *
- *   |B^-1 n| = |B^-1 H  H^-1 n| <= |B^-1 H| |H^-1 n|
- *   |H^-1 n| = |H^-1 B  B^-1 n| <= |H^-1 B| |B^-1 n|
+ *   |H n| = |H B^-1  B n| <= |H B^-1| |B n|
+ *   |B n| = |B H^-1  H n| <= |B H^-1| |H n|
  *
  * Sizes that are equal up to a factor and axes that turn little in the metric
  * give narrow bounds. The tensors in a leaf are means of those at its corners,
  * and norms are convex. Therefore the corners bound the first norm exactly,
- * and the second by 1 / (1 - |B^-1 H - I|). */
+ * and the second by 1 / (1 - |H B^-1 - I|). */
 #ifndef VG_CORE_SIZING_SIZING_BOUNDS_H
 #define VG_CORE_SIZING_SIZING_BOUNDS_H
 
@@ -22,13 +22,14 @@
  * O(leaves). VG_ERR_MEMORY. */
 vg_status vg_octree_bounds(struct vg_octree *t, struct vg_error *err);
 
-/** Bounds of the target edge length along n unit vectors in the box lo..hi,
+/** Bounds of the distance across planes with n unit normals in the box lo..hi,
  * within the root cube. The tree is descended down to cells of half the longest
  * side of the box, and to leaves.
  *
  * @param least, most  out: [n] */
-void vg_octree_range_along(const struct vg_octree *t, const double lo[3],
-                           const double hi[3], int n, const double (*way)[3],
-                           double *least, double *most);
+void vg_octree_range_across(const struct vg_octree *t, const double lo[3],
+                            const double hi[3], int n,
+                            const double (*normal)[3], double *least,
+                            double *most);
 
 #endif

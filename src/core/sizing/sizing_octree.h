@@ -40,10 +40,10 @@ union vg_octree_leaf {
   uint32_t corner[8]; /* in a leaf with tensors: their indices */
 };
 
-/** Bounds of the target edge lengths below a split cell (sizing_bounds.h). */
+/** Bounds of the sizes below a split cell (sizing_bounds.h). */
 struct vg_octree_bounds {
   float h[6];      /* size tensor */
-  float low, high; /* factors on its target edge lengths */
+  float low, high; /* factors on its sizes */
 };
 
 struct vg_octree {

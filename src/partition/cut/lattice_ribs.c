@@ -257,7 +257,7 @@ static vg_status find_dots(const struct vg_load *load,
 
   for (size_t k = 0; k < load->n; k++) {
     const struct vg_load_octant *q = &load->octant[k];
-    double half = (double)q->half, h = (double)q->along[axis];
+    double half = (double)q->half, h = (double)q->across[axis];
     double x[2] = { (double)q->at[b], (double)q->at[c] };
 
     if (fabs((double)q->at[axis] - l->at[axis][i]) > half) continue;
@@ -269,7 +269,7 @@ static vg_status find_dots(const struct vg_load *load,
       .number = k,
       .x = { x[0], x[1] },
       .half = half,
-      .h = { (double)q->along[b], (double)q->along[c] },
+      .h = { (double)q->across[b], (double)q->across[c] },
       .cells = (double)q->cells * fmin(VG_TILE_REACH * h / half, 1)
     };
     ++*n;

@@ -170,7 +170,7 @@ static double width_of(const struct search *s, const struct touching *t)
 
     foot[s->axis] = at;
     most = fmax(most, fabs(x[s->axis] - at) /
-                        vg_sizing_along(s->sizing, foot, across));
+                        vg_sizing_across(s->sizing, foot, across));
   }
   return most;
 }

@@ -290,17 +290,17 @@ static int sample(const struct maker *m, const struct vg_load_stack *s,
   return inside;
 }
 
-/* Edges along the axes, in proportion to those at the centre. */
-static void set_along(const struct maker *m, const double mid[3],
-                      struct vg_load_octant *c)
+/* Distances across the axes, in proportion to those at the centre. */
+static void set_across(const struct maker *m, const double mid[3],
+                       struct vg_load_octant *c)
 {
   for (int k = 0; k < 3; k++) {
     const double axis[3] = { k == 0, k == 1, k == 2 };
 
-    c->along[k] = c->h;
+    c->across[k] = c->h;
     if (vg_sizing_is_stretched(m->sizing))
-      c->along[k] *= (float)(vg_sizing_along(m->sizing, mid, axis) /
-                             vg_sizing_at(m->sizing, mid));
+      c->across[k] *= (float)(vg_sizing_across(m->sizing, mid, axis) /
+                              vg_sizing_at(m->sizing, mid));
   }
 }
 
@@ -324,7 +324,7 @@ static int emit(const struct maker *m, struct branch *b,
   for (int k = 0; k < 3; k++) c->at[k] = (float)mid[k];
   c->half = (float)(0.5 * side);
   c->h = (float)(1 / cube_root(density.cubes));
-  set_along(m, mid, c);
+  set_across(m, mid, c);
   c->part = (float)inside / VG_LOAD_SAMPLES;
   c->cells = (float)(m->per_cube * density.cells * volume * (double)c->part);
   return 0;
@@ -577,7 +577,7 @@ static int lone_octant(const struct maker *m, const double lo[3],
   h = edge_at(m, x);
   c->half = (float)(0.5 * side);
   c->h = (float)h;
-  set_along(m, x, c);
+  set_across(m, x, c);
   c->part = (float)(volume / (side * side * side));
   c->cells = (float)(m->per_cube * volume / (h * h * h));
   free(l->octant);

@@ -31,8 +31,9 @@
 struct vg_load_octant {
   float at[3], half; /* Centre, half of the side. */
   float h;           /* Target edge length, averaged like 1 / h^3. */
-  float along[3];    /* Target edge lengths along the axes; h if the sizes do
-                        not depend on the direction. */
+  float across[3];   /* Distances of length 1 in the metric across planes normal
+                        to   the axes (vg_sizing_across); h if the sizes do not
+                        depend   on the direction. */
   /* Fraction of the octant in the void, > 0; scaled so that all octants sum up
    * to the volume that the front encloses. */
   float part;
@@ -45,7 +46,7 @@ static inline double vg_load_across(const struct vg_load_octant *c,
                                     const double normal[3])
 {
   for (int k = 0; k < 3; k++)
-    if (normal[k] == 1 || normal[k] == -1) return (double)c->along[k];
+    if (normal[k] == 1 || normal[k] == -1) return (double)c->across[k];
   return (double)c->h;
 }
 

@@ -38,7 +38,7 @@ static double slice(const struct distribution *d,
                     const struct vg_load_octant *c, int axis, int k)
 {
   const struct vg_load *l = d->parent;
-  const double *at = d->at[axis], zone = d->reach * (double)c->along[axis];
+  const double *at = d->at[axis], zone = d->reach * (double)c->across[axis];
   double lo = (double)c->at[axis] - (double)c->half;
   double hi = (double)c->at[axis] + (double)c->half, from, to;
 

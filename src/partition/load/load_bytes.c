@@ -46,7 +46,7 @@ vg_status vg_load_pack(const struct vg_load *l, struct vg_bytes *out,
 static int is_sound(const struct vg_load_octant *c)
 {
   for (int k = 0; k < 3; k++)
-    if (!isfinite(c->at[k]) || !isfinite(c->along[k]) || !(c->along[k] > 0))
+    if (!isfinite(c->at[k]) || !isfinite(c->across[k]) || !(c->across[k] > 0))
       return 0;
   return isfinite(c->half) && c->half > 0 && isfinite(c->h) && c->h > 0 &&
          isfinite(c->part) && c->part > 0 && isfinite(c->cells) &&

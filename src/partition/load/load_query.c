@@ -179,12 +179,12 @@ static void add_cells(struct sums *s, size_t bin, double cells, double h)
   s->weight[bin] += cells * h;
 }
 
-/* along: target edge length along the axis. */
+/* across: that of the axis. */
 static void add_octant(const struct axis *a, struct sums *s, double lo,
-                       double hi, const struct vg_load_octant *c, float along)
+                       double hi, const struct vg_load_octant *c, float across)
 {
   const double near = 2 * ONE_EDGE * (double)c->half;
-  const double h = (double)along, cells = (double)c->cells;
+  const double h = (double)across, cells = (double)c->cells;
   size_t f = bin_of(a, lo), g = bin_of(a, hi);
   double rate;
 
@@ -192,7 +192,7 @@ static void add_octant(const struct axis *a, struct sums *s, double lo,
    * beyond */
   if (g > f && a->edge[f + 1] - lo <= near) lo = a->edge[++f];
   if (g > f && hi - a->edge[g] <= near) hi = a->edge[g--];
-  most_over(s, a->n, f, g + 1, along);
+  most_over(s, a->n, f, g + 1, across);
   if (f == g) {
     add_cells(s, f, cells, h);
     return;
@@ -246,7 +246,7 @@ static int fill_bins(const struct vg_load *l, int k, struct axis *a)
       double lo, hi;
 
       reach_of(l, &l->octant[i], k, &lo, &hi);
-      add_octant(a, &s, lo, hi, &l->octant[i], l->octant[i].along[k]);
+      add_octant(a, &s, lo, hi, &l->octant[i], l->octant[i].across[k]);
     }
     conclude(a, &s);
     bad = 0;

@@ -226,7 +226,7 @@ static int lone_octant(const struct split *s, const struct vg_front *v,
   for (int k = 0; k < 3; k++) c->at[k] = (float)x[k];
   c->half = (float)(0.5 * side);
   c->h = near->h;
-  memcpy(c->along, near->along, sizeof c->along);
+  memcpy(c->across, near->across, sizeof c->across);
   c->part = (float)(volume / (side * side * side));
   c->cells = (float)(correction * (double)near->cells * volume /
                      (old * old * old * (double)near->part));
