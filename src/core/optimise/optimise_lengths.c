@@ -12,6 +12,10 @@ static const double shortest = 0.68, longest = 1.45, tiny = 0.4, far = 2;
  * Splits may reduce the worst shape around the edge by this factor. */
 static const double least_shape = 0.125, split_share = 0.6;
 
+/* Edges of cells within this many spacings of those that a region optimises are
+ * changed, too. */
+static const double around = 1; /* K51 */
+
 static int is_live(const struct vg_tets *t, uint32_t c)
 {
   return !(t->flag[c] & (VG_DEAD | VG_OUTSIDE));
@@ -22,6 +26,21 @@ static int merge_edge(struct vg_optimiser *o, uint32_t a, uint32_t b,
 {
   return vg_merge_onto(o, a, b, least_shape, most) ||
          vg_merge_onto(o, b, a, least_shape, most);
+}
+
+/* Does cell c have a corner within the band of the region where points are
+ * placed? Beyond it, the void has no points yet, and all edges are long. */
+static int concerns(const struct vg_optimiser *o, uint32_t c)
+{
+  const struct vg_tets *t = o->t;
+  const uint32_t *v = t->cell[c].v;
+  struct vg_region r;
+
+  if (!o->region) return 1;
+  r = *o->region;
+  r.reach += around;
+  return vg_region_has_cell(&r, o->sizing, t->x[v[0]], t->x[v[1]], t->x[v[2]],
+                            t->x[v[3]]);
 }
 
 /* Change edge i j of cell c if its length requires it. */
@@ -48,6 +67,6 @@ vg_status vg_even_lengths(struct vg_optimiser *o, struct vg_error *err)
 {
   assert(o->metrics);
   for (uint32_t c = 0; c < o->t->n_cell; c++)
-    if (is_live(o->t, c)) even_cell(o, c);
+    if (is_live(o->t, c) && concerns(o, c)) even_cell(o, c);
   return o->refused ? vg_fail_memory(err, "optimisation") : VG_OK;
 }
