@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "core/front/region.h"
+#include "core/geometry/tensor.h"
 
 /* Fine near the origin, growing away from it. */
 static struct vg_sizing *graded(void)
@@ -121,6 +122,71 @@ static void test_small(void **state)
   vg_sizing_free(s);
 }
 
+/* Sizes 2 along (1, 1, 0), and 0.1 across it. */
+static void oblique(void *user, const double x[3], double m[6])
+{
+  const double along = 1 / 4.0, across = 100;
+
+  (void)user;
+  (void)x;
+  m[0] = m[3] = 0.5 * (along + across);
+  m[1] = 0.5 * (along - across);
+  m[2] = m[4] = 0;
+  m[5] = across;
+}
+
+static struct vg_sizing *stretched(void)
+{
+  static double corner[2][3] = { { 0, 0, 0 }, { 8, 8, 8 } };
+  const struct vg_mesh box = { .n_point = 2, .point = corner };
+  const struct vg_size_map map = { .metric = oblique };
+  struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
+  struct vg_sizing *s = NULL;
+
+  o.map = &map;
+  assert_int_equal(vg_sizing_new(&o, 0, NULL, &box, &s, NULL), VG_OK);
+  return s;
+}
+
+/* Shortest length in the metric of the edges from x to the points of a plane
+ * normal to y at the distance d, which are sampled along x. */
+static double length_to_plane(const struct vg_sizing *s, const double x[3],
+                              double d)
+{
+  double least = INFINITY, t[6], m[6];
+
+  vg_sizing_stretch_at(s, x, t);
+  vg_tensor_square(t, m);
+  for (int i = -4000; i <= 4000; i++) {
+    const double e[3] = { 1e-3 * i, d, 0 };
+
+    least = fmin(least, sqrt(vg_tensor_form(m, e)));
+  }
+  return least;
+}
+
+/* Cells that are oblique to a plane reach far from it: their length counts, and
+ * not their thickness, which is 0.14 normal to the plane. */
+static void test_spacing_in_a_metric(void **state)
+{
+  const struct vg_region r = { .n_plane = 1, .plane = { { { 0, 1, 0 }, 4 } } };
+  const double x[3] = { 4, 4, 4 }, y_axis[3] = { 0, 1, 0 };
+  const double lo[3] = { 2, 1, 2 }, hi[3] = { 5, 6, 6 };
+  struct vg_sizing *s = stretched();
+  double h = vg_region_spacing(&r, s, x), least, most;
+
+  (void)state;
+  assert_true(fabs(h - sqrt(0.5 * (4 + 0.01))) < 1e-5);
+  assert_true(fabs(length_to_plane(s, x, h) - 1) < 1e-4);
+  assert_true(fabs(vg_sizing_across(s, x, y_axis) - h) < 1e-12);
+  assert_true(vg_sizing_along(s, x, y_axis) < 0.15);
+  vg_region_spacing_within(&r, s, lo, hi, &least, &most);
+  assert_true(least <= h && h <= most && most - least < 1e-4);
+  assert_true(vg_region_near(&r, s, (double[3]){ 4, 4 + 0.9 * h, 4 }, 1));
+  assert_false(vg_region_near(&r, s, (double[3]){ 4, 4 + 1.1 * h, 4 }, 1));
+  vg_sizing_free(s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -128,6 +194,7 @@ int main(void)
     cmocka_unit_test(test_large_but_far),
     cmocka_unit_test(test_large_beyond_a_wall),
     cmocka_unit_test(test_small),
+    cmocka_unit_test(test_spacing_in_a_metric),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
