@@ -11,7 +11,6 @@
 #include "base/team.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
-#include "core/sizing/sizing_bounds.h"
 #include "core/sizing/sizing_octree.h"
 #include "core/sizing/sizing_surface.h"
 

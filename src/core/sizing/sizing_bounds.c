@@ -1,5 +1,18 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "core/sizing/sizing_bounds.h"
+/* Bounds of the sizes in a box of an octree with size tensors.
+ *
+ * Every split cell of the tree has a size tensor B and two factors. The
+ * distance |H n| across a plane (vg_sizing_across) at any point of the cell is
+ * between `low` and `high` times |B n|, whatever n is:
+ *
+ *   |H n| = |H B^-1  B n| <= |H B^-1| |B n|
+ *   |B n| = |B H^-1  H n| <= |B H^-1| |H n|
+ *
+ * Sizes that are equal up to a factor and axes that turn little in the metric
+ * give narrow bounds. The tensors in a leaf are means of those at its corners,
+ * and norms are convex. Therefore the corners bound the first norm exactly,
+ * and the second by 1 / (1 - |H B^-1 - I|). */
+#include "core/sizing/sizing_octree.h"
 
 #include <assert.h>
 #include <math.h>

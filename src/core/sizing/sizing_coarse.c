@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/sizing/sizing_bounds.h"
 #include "core/sizing/sizing_octree.h"
 
 struct coarsening {

@@ -9,7 +9,6 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "core/geometry/tensor.h"
-#include "core/sizing/sizing_bounds.h"
 #include "core/sizing/sizing_build.h"
 
 /* Cells are not split below FLOOR times the spacing (H2), or SURFACE times

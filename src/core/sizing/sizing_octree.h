@@ -40,7 +40,7 @@ union vg_octree_leaf {
   uint32_t corner[8]; /* in a leaf with tensors: their indices */
 };
 
-/** Bounds of the sizes below a split cell (sizing_bounds.h). */
+/** Bounds of the sizes below a split cell (sizing_bounds.c). */
 struct vg_octree_bounds {
   float h[6];      /* size tensor */
   float low, high; /* factors on its sizes */
@@ -156,6 +156,20 @@ void vg_octree_tensor_range(const struct vg_octree *t, double range[2],
  * a cube outside the root cube, the nearest point of the root cube is used. */
 double vg_octree_least(const struct vg_octree *t, const double lo[3],
                        double side, double x[3]);
+
+/** Compute the bounds of all split cells of a stretched octree. Cost:
+ * O(leaves). VG_ERR_MEMORY. */
+vg_status vg_octree_bounds(struct vg_octree *t, struct vg_error *err);
+
+/** Bounds of the distance across planes with n unit normals in the box lo..hi,
+ * within the root cube. The tree is descended down to cells of half the longest
+ * side of the box, and to leaves.
+ *
+ * @param least, most  out: [n] */
+void vg_octree_range_across(const struct vg_octree *t, const double lo[3],
+                            const double hi[3], int n,
+                            const double (*normal)[3], double *least,
+                            double *most);
 
 /** A lower bound of the values within the cube lo, side. */
 double vg_octree_bound(const struct vg_octree *t, const double lo[3],
