@@ -18,7 +18,8 @@
 #include "base/union_find.h"
 #include "partition/cut/node.h"
 
-/* A box extends this many spacings beyond the faces that it is made for. */
+/* A box extends this many spacings beyond the faces that it is made for; in a
+ * metric, spacings across its sides. */
 static const double margin = 1.5, patch_margin = 2.5; /* C11 */
 /* Larger places, in cubes of their spacing, are not filled. */
 static const double most_volume = 1500;
@@ -190,8 +191,11 @@ static void place_of_face(const struct search *s, const struct touching *t,
   out->spacing = vg_sizing_at(s->sizing, middle);
   out->wide = s->axis < 0 ? 0 : width_of(s, t);
   for (int k = 0; k < 3; k++) {
-    out->lo[k] -= s->margin * out->spacing;
-    out->hi[k] += s->margin * out->spacing;
+    const double normal[3] = { k == 0, k == 1, k == 2 };
+    double room = s->margin * vg_sizing_across(s->sizing, middle, normal);
+
+    out->lo[k] -= room;
+    out->hi[k] += room;
   }
 }
 
