@@ -13,11 +13,11 @@ struct vg_metric_seeds {
   double (*x)[3]; /* [n] Owned by the caller: free. */
 };
 
-/** Seeds within the bounding box of the points x: about one for SEED_POINTS
- * points of the mesh (metric_seeds.c), even where the metric is stretched.
- * Cells between seeds are so small that the metric changes little over them,
- * while cells between the points of a boundary alone extend across regions of
- * different metrics, whose connections later insertions do not repair.
+/** Seeds within the bounding box of the points x: about one for 32 points of
+ * the mesh (K49), even where the metric is stretched. Cells between seeds are
+ * so small that the metric changes little over them, while cells between the
+ * points of a boundary alone extend across regions of different metrics, whose
+ * connections later insertions do not repair.
  *
  * @param x    [n] the points that bound the void
  * @param out  starts empty; some seeds may lie outside the void
