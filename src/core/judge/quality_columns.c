@@ -48,10 +48,10 @@ struct rung {
                      to, other. */
 };
 
-/* Next face of the strip; 0: there is none. In vg_faces_of_tet, a face opposite
- * the node in position k has side k & 1 in the order of the positions. From
- * that follows side 1 in the order from, to, other if `other` is the line after
- * the raised one, in cyclic order. */
+/* Find the next face of the strip. Returns 0 at its end. In vg_faces_of_tet, a
+ * face opposite the node in position k has side k & 1 in the order of the
+ * positions. From that follows side 1 in the order from, to, other if `other`
+ * is the line after the raised one, in cyclic order. */
 static inline int next_rung(const struct vg_mesh *m, struct vg_strip *s,
                             struct rung *r)
 {

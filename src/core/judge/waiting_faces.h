@@ -74,8 +74,8 @@ static inline unsigned vg_face_slots(const struct vg_face_bucket *b,
 #endif
 }
 
-/** Owner of the equal face, which leaves the table. VG_NOBODY: there is none,
- * and f waits. */
+/** Remove the face equal to f from the table, and return its owner. If the
+ * table has no such face, f is added to it, and VG_NOBODY is returned. */
 static inline uint32_t vg_waiting_meet(struct vg_waiting *w,
                                        const struct vg_face *f)
 {
