@@ -6,6 +6,7 @@
 
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
+#include "core/sizing/sizing_tensor.h"
 
 /* The half plane of a point: axial and radial direction, with the coordinates z
  * and r of the point. */
@@ -109,29 +110,100 @@ double vg_mach_cone_way(const struct vg_source *s, const double x[3], double *t,
 
 /* --- sizes ---------------------------------------------------------------- */
 
+/* Sizes normal to the cone, along the line from the apex, and around the axis.
+ */
+enum { ACROSS, ALONG, ROUND };
+
+/* Nearest point (z, r) of the cones without their end at r0. */
+static void foot_of(const struct half_plane *p, double foot[2])
+{
+  const double apex = p->z - p->r * p->cosine / p->sine;
+  const double from = fmin(fmax(apex, 0), p->length);
+  double along;
+
+  foot[0] = p->z;
+  foot[1] = p->r;
+  if (apex == from) return;
+  along = fmax((p->z - from) * p->cosine + p->r * p->sine, 0);
+  foot[0] = from + along * p->cosine;
+  foot[1] = along * p->sine;
+}
+
+/* Grow the sizes over the vector `way` of the half plane (vg_size_grow). */
+static void grow(const struct half_plane *p, double slope, const double way[2],
+                 double size[3])
+{
+  const double n = p->sine * way[0] - p->cosine * way[1];
+  const double g = p->cosine * way[0] + p->sine * way[1];
+  const double l = sqrt(n * n / (size[ACROSS] * size[ACROSS]) +
+                        g * g / (size[ALONG] * size[ALONG]));
+  const double factor = 1 + VG_GROWTH_IN_METRIC * slope * l;
+  const double more = (1 - VG_GROWTH_IN_METRIC) * slope * sqrt(n * n + g * g);
+
+  for (int k = 0; k < 3; k++) size[k] = factor * size[k] + more;
+}
+
+/* Limit the sizes, since the metric turns around the axis. A step of the length
+ * d on a circle of radius r turns it by d / r. The grown size tensor contains
+ * that of the next point if the sizes a, b, c across, along and around satisfy
+ *   (cosine (c^2 - a^2) / a)^2 + (sine (b^2 - c^2) / b)^2 <= (2 q slope r)^2,
+ * q = VG_GROWTH_IN_METRIC. With b - a <= slope r, the second term is at most
+ * (sine slope r)^2. Along the cone, c grows no faster than allowed if `turn` is
+ * at most 2 q / sine. wide: growth of b - a from the axis. */
+static void limit_turn(const struct half_plane *p, double slope, double wide,
+                       double r, double size[3])
+{
+  const double q = 2 * VG_GROWTH_IN_METRIC;
+  const double turn = fmin(sqrt(q * q - p->sine * p->sine) / p->cosine,
+                           q / p->sine);
+  const double a = size[ACROSS];
+
+  size[ALONG] = fmin(size[ALONG], a + wide);
+  size[ROUND] = fmin(fmin(size[ROUND], size[ALONG]),
+                     sqrt(a * (a + turn * slope * r)));
+}
+
+/* Sizes at a point of the half plane. */
+static void sizes_at(const struct vg_source *s, const struct half_plane *p,
+                     double slope, double size[3])
+{
+  double foot[2], t, r, wide;
+
+  foot_of(p, foot);
+  t = fmin(foot[1] / s->r0, 1);
+  r = fmin(foot[1], p->r);
+  size[ACROSS] = s->h0 + t * (s->h1 - s->h0);
+  size[ALONG] = size[ROUND] = s->stretch * size[ACROSS];
+  wide = slope * fmax(r - size[ACROSS], 0);
+  limit_turn(p, slope, slope * fmax(t * s->r0 - size[ACROSS], 0), t * s->r0,
+             size);
+  if (foot[1] > s->r0) {
+    const double beyond[2] = { (foot[1] - s->r0) * p->cosine / p->sine,
+                               foot[1] - s->r0 };
+
+    grow(p, slope, beyond, size);
+  }
+  if (foot[0] != p->z || foot[1] != p->r)
+    grow(p, slope, (const double[2]){ p->z - foot[0], p->r - foot[1] }, size);
+  limit_turn(p, slope, wide, r, size);
+}
+
 void vg_mach_cone_tensor(const struct vg_source *s, double slope,
                          const double x[3], double h[6])
 {
   const struct half_plane p = half_plane_of(s, x);
-  const double t = p.r < s->r0 ? p.r / s->r0 : 1;
-  const double across = s->h0 + t * (s->h1 - s->h0);
-  const double most = fmin(s->stretch * across,
-                           across + slope * (p.r - across));
-  const double round = fmin(most, sqrt(p.r * across));
   double size[3], direction[3][3];
 
-  if (!(most > across)) { /* Near the axis. */
-    vg_tensor_uniform(across, h);
+  sizes_at(s, &p, slope, size);
+  if (!(size[ALONG] > size[ACROSS])) { /* Near the axis. */
+    vg_tensor_uniform(size[ACROSS], h);
     return;
   }
-  size[0] = across;
-  size[1] = most;
-  size[2] = fmax(across, round);
   for (int k = 0; k < 3; k++) {
-    direction[0][k] = p.sine * p.axis[k] - p.cosine * p.out[k];
-    direction[1][k] = p.cosine * p.axis[k] + p.sine * p.out[k];
+    direction[ACROSS][k] = p.sine * p.axis[k] - p.cosine * p.out[k];
+    direction[ALONG][k] = p.cosine * p.axis[k] + p.sine * p.out[k];
   }
-  vg_cross(p.axis, p.out, direction[2]);
+  vg_cross(p.axis, p.out, direction[ROUND]);
   vg_tensor_from_eigen(size, (const double(*)[3])direction, h);
 }
 

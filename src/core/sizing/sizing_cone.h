@@ -13,10 +13,16 @@
  *      p0 ---- p1
  *
  * h is h0 on the axis and h1 at r0. The two large sizes are at most h plus the
- * growth over the distance r from the axis, and that around the axis is at most
- * sqrt(r h): such an edge along a tangent leaves the cone by h / 2. With these
- * bounds the metric turns around the axis about as fast as the gradation
- * allows. No size is below h. Results are computed with + - * / and sqrt only.
+ * growth over the distance r from the axis. The metric turns around the axis,
+ * and a growth of 1 + s allows for that up to a size of about
+ * sqrt(h (h + 2 s r)) around it. Such an edge along a tangent leaves the cone
+ * by less than h / 2. No size is below h. Results are computed with + - * / and
+ * sqrt only.
+ *
+ * Outside the cones, the sizes are those at the nearest point, grown; beyond r0
+ * they are those on the same line at r0, grown. These sizes obey the law of
+ * vg_size_grow: gradation changes them by a few per cent only. (If it had to
+ * change them everywhere, the sizing field would take ten times as long.)
  * Threads: safe. */
 #ifndef VG_CORE_SIZING_SIZING_CONE_H
 #define VG_CORE_SIZING_SIZING_CONE_H
@@ -34,8 +40,8 @@ const char *vg_mach_cone_defect(const struct vg_source *s);
 double vg_mach_cone_way(const struct vg_source *s, const double x[3], double *t,
                         double way[3]);
 
-/** Size tensor at a point of the cones (core/geometry/tensor.h). slope: growth
- * rate - 1. */
+/** Size tensor at any point (core/geometry/tensor.h). slope: growth rate - 1.
+ */
 void vg_mach_cone_tensor(const struct vg_source *s, double slope,
                          const double x[3], double h[6]);
 

@@ -87,20 +87,7 @@ void vg_stretched_prepare(struct vg_stretched *s)
             (1 - VG_GROWTH_IN_METRIC + VG_GROWTH_IN_METRIC * thin / wide);
 }
 
-/* Size tensor at the nearest point of the cones, grown over the way from
- * there. */
-static void cone_at(const struct vg_stretched *s, const double x[3],
-                    double h[6])
-{
-  double way[3], foot[3], t;
-  const double d = vg_mach_cone_way(&s->law, x, &t, way);
-
-  vg_sub(x, way, foot);
-  vg_mach_cone_tensor(&s->law, s->slope, foot, h);
-  if (d > 0) vg_size_grow(h, way, s->slope, h);
-}
-
-/* The same for a source with one axis. */
+/* Size tensor of a source with one axis. */
 static void shape_at(const struct vg_stretched *s, const double x[3],
                      double h[6])
 {
@@ -127,7 +114,8 @@ static void shape_at(const struct vg_stretched *s, const double x[3],
 void vg_stretched_at(const struct vg_stretched *s, const double x[3],
                      double h[6])
 {
-  if (s->law.kind == VG_SOURCE_MACHCONE) cone_at(s, x, h);
+  if (s->law.kind == VG_SOURCE_MACHCONE)
+    vg_mach_cone_tensor(&s->law, s->slope, x, h);
   else shape_at(s, x, h);
 }
 
