@@ -9,52 +9,50 @@
 
 /* --- the star of an edge -------------------------------------------------- */
 
-/* Is (from, to, a, b) an odd permutation of the corners of cell c? */
-static int is_odd(const struct vg_cell *c, uint32_t from, uint32_t to,
-                  uint32_t a, uint32_t b)
-{
-  uint32_t want[4] = { from, to, a, b };
-  int place[4] = { 0 }, odd = 0;
+/* [i][j]: the corners k, l for which (k, l, i, j) is an even permutation. */
+static const uint8_t across[4][4][2] = {
+  { { 0, 0 }, { 2, 3 }, { 3, 1 }, { 1, 2 } },
+  { { 3, 2 }, { 0, 0 }, { 0, 3 }, { 2, 0 } },
+  { { 1, 3 }, { 3, 0 }, { 0, 0 }, { 0, 1 } },
+  { { 2, 1 }, { 0, 2 }, { 1, 0 }, { 0, 0 } },
+};
 
-  for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++)
-      if (c->v[j] == want[i]) place[i] = j;
-  for (int i = 0; i < 4; i++)
-    for (int j = i + 1; j < 4; j++) odd ^= place[i] > place[j];
-  return odd;
+/* Index of point p among the corners of cell c, without branches. */
+static inline uint32_t corner_of(const struct vg_cell *c, uint32_t p)
+{
+  assert(c->v[0] == p || c->v[1] == p || c->v[2] == p || c->v[3] == p);
+  return (uint32_t)(c->v[1] == p) + 2 * (uint32_t)(c->v[2] == p) +
+         3 * (uint32_t)(c->v[3] == p);
 }
 
 int vg_cavity_ring(const struct vg_tets *t, uint32_t c, uint32_t a, uint32_t b,
                    int most, int fixed, uint32_t *cell, uint32_t *ring)
 {
-  uint32_t first = c, other[2], from, to;
-  int n = 0, i, k = 0;
+  const struct vg_cell *at = &t->cell[c];
+  uint32_t first = c, from, to, i;
+  const uint8_t *other;
+  int n = 0;
 
   assert(a != b && c < t->n_cell && most > 0);
   assert(!(t->flag[c] & VG_DEAD));
-  for (i = 0; i < 4; i++)
-    if (t->cell[c].v[i] != a && t->cell[c].v[i] != b)
-      other[k++] = t->cell[c].v[i];
-  k = is_odd(&t->cell[c], other[0], other[1], a, b);
-  from = other[k];
-  to = other[!k];
-  do {
-    const struct vg_cell *at = &t->cell[c];
-    uint32_t link;
+  other = across[corner_of(at, a)][corner_of(at, b)];
+  i = other[0];
+  from = at->v[i];
+  to = at->v[other[1]];
+  for (;;) {
+    uint32_t link = at->link[i];
 
     if (n == most) return 0;
     cell[n] = c;
     ring[n++] = from;
-    for (i = 0; at->v[i] != from; i++) {
-    }
-    if (t->flag[c] >> i & 1 && !fixed) return 0;
-    link = at->link[i];
-    if (link == VG_NONE) return 0;
+    if ((t->flag[c] >> i & 1 && !fixed) || link == VG_NONE) return 0;
     c = link >> 2;
+    if (c == first) return n;
+    at = &t->cell[c];
     from = to;
-    to = t->cell[c].v[link & 3];
-  } while (c != first);
-  return n;
+    to = at->v[link & 3];
+    i = corner_of(at, from);
+  }
 }
 
 /* --- replacing cells ------------------------------------------------------ */

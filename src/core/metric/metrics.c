@@ -18,7 +18,8 @@ void vg_metric_at(const struct vg_sizing *sizing, const double x[3],
 {
   double t[6];
 
-  vg_sizing_stretch_at(sizing, x, t);
+  vg_sizing_tensor_at(sizing, x, t);
+  vg_tensor_invert(t, t);
   vg_metric_of_stretch(t, out);
 }
 

@@ -43,23 +43,73 @@ static int concerns(const struct vg_optimiser *o, uint32_t c)
                             t->x[v[3]]);
 }
 
+/* Bit of the edge between corners i and j of a cell. */
+static uint8_t edge_bit(int i, int j)
+{
+  static const uint8_t edge[4][4] = {
+    { 0, 0, 1, 2 }, { 0, 0, 3, 4 }, { 1, 3, 0, 5 }, { 2, 4, 5, 0 }
+  };
+
+  return (uint8_t)(VG_FAILED_LENGTH << edge[i][j]);
+}
+
+/* Length of the edge between two points in the metric, or 1 if the lengths in
+ * the metrics of both ends, between which it lies, require no change. */
+static double length_of(const struct vg_optimiser *o, uint32_t a, uint32_t b)
+{
+  double e[3], la, lb;
+
+  vg_sub(o->t->x[b], o->t->x[a], e);
+  la = vg_tensor_form(o->metrics->at[a].m, e);
+  lb = vg_tensor_form(o->metrics->at[b].m, e);
+  if (la >= shortest * shortest && lb >= shortest * shortest &&
+      la <= longest * longest && lb <= longest * longest)
+    return 1;
+  return vg_log_mean(sqrt(fmax(la, 0)), sqrt(fmax(lb, 0)));
+}
+
+/* The edge a b of cell c could not be changed. The other cells around it need
+ * not try again. */
+static void mark_edge(struct vg_optimiser *o, uint32_t c, uint32_t a,
+                      uint32_t b)
+{
+  uint32_t cell[VG_OLD_MAX], ring[VG_OLD_MAX];
+  int n = vg_cavity_ring(o->t, c, a, b, VG_OLD_MAX, 1, cell, ring);
+
+  if (!n) cell[n++] = c;
+  for (int k = 0; k < n; k++) {
+    const uint32_t *v = o->t->cell[cell[k]].v;
+    int i = 0, j = 0;
+
+    while (v[i] != a) i++;
+    while (v[j] != b) j++;
+    o->failed_cell[cell[k]] |= edge_bit(i, j);
+  }
+}
+
 /* Change edge i j of cell c if its length requires it. */
 static int even_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
 {
   uint32_t a = o->t->cell[c].v[i], b = o->t->cell[c].v[j];
-  double length = vg_metrics_length(o->metrics, o->t, a, b);
+  double length = length_of(o, a, b);
 
-  if (length < shortest)
-    return merge_edge(o, a, b, longest) ||
-           (length < tiny && merge_edge(o, a, b, far));
-  return length > longest && vg_split_edge(o, c, a, b, split_share, shortest);
+  if (length >= shortest && length <= longest) return 0;
+  if (length > longest) {
+    if (vg_split_edge(o, c, a, b, split_share, shortest)) return 1;
+  } else if (merge_edge(o, a, b, longest) ||
+             (length < tiny && merge_edge(o, a, b, far))) {
+    return 1;
+  }
+  mark_edge(o, c, a, b);
+  return 0;
 }
 
 static int even_cell(struct vg_optimiser *o, uint32_t c)
 {
   for (int i = 0; i < 4; i++)
     for (int j = i + 1; j < 4; j++)
-      if (even_edge(o, c, i, j)) return 1;
+      if (!(o->failed_cell[c] & edge_bit(i, j)) && even_edge(o, c, i, j))
+        return 1;
   return 0;
 }
 

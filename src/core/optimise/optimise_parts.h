@@ -16,11 +16,16 @@ enum {
   VG_OLD_MAX = VG_CAVITY_MAX
 };
 
-enum { /* steps that failed; cleared by a change */
+enum { /* steps that failed for a point; cleared by a change */
        VG_FAILED_SMOOTH = 1,
-       VG_FAILED_COLLAPSE = 2, /* for a point */
-       VG_FAILED_SPLIT = 4,    /* for a cell */
-       VG_NOT_IN_REGION = 8    /* for a cell: does not belong to the region */
+       VG_FAILED_COLLAPSE = 2
+};
+
+enum { /* for a cell; cleared by a change */
+       VG_FAILED_SPLIT = 1,
+       VG_NOT_IN_REGION = 2, /* does not belong to the region */
+       VG_FAILED_LENGTH = 4  /* << edge: the length of this edge could not be
+                                changed (optimise_lengths.c) */
 };
 
 /* Shapes that decide which cells the steps improve. Without metrics, shapes are
@@ -45,11 +50,11 @@ struct vg_optimiser {
   const struct vg_shape_levels *level; /* limits of shapes for the steps */
   float *q;                            /* [cap_cell] shape of each cell */
   size_t cap_q;
-  uint8_t *failed_cell; /* [cap_cell] VG_FAILED_... bits of each cell */
+  uint8_t *failed_cell; /* [cap_cell] bits of each cell, as above */
   size_t cap_failed_cell;
   uint32_t *star; /* [n_point] a cell of each point, or VG_NONE */
   size_t cap_star;
-  uint8_t *failed; /* [n_point] VG_FAILED_... bits of each point */
+  uint8_t *failed; /* [n_point] bits of each point, as above */
   size_t cap_failed;
   size_t n_ball;
   uint32_t ball[VG_BALL_MAX]; /* links 4 * cell + index of the centre */

@@ -356,6 +356,17 @@ static int is_crowded(const struct vg_optimiser *o, const struct cavity *h,
   return 0;
 }
 
+/* The same for corner ring[k] of the cells around an edge. */
+static int is_ring_crowded(const struct vg_optimiser *o, int n,
+                           const uint32_t *ring, double least)
+{
+  for (int k = 0; k < n; k++)
+    if (vg_metrics_length(o->metrics, o->t, ring[k], (uint32_t)o->t->n_point) <
+        least)
+      return 1;
+  return 0;
+}
+
 static int split_at(struct vg_optimiser *o, uint32_t c, const double x[3],
                     double aim)
 {
@@ -387,8 +398,11 @@ int vg_split_edge(struct vg_optimiser *o, uint32_t c, uint32_t a, uint32_t b,
   if (!h.n_old) return 0;
   for (int k = 0; k < h.n_old; k++) worst = fmin(worst, o->q[h.old[k]]);
   for (int k = 0; k < 3; k++) x[k] = 0.5 * (o->t->x[a][k] + o->t->x[b][k]);
-  return !vg_try_point(o, x) && open_cavity(o, share * worst, &h) &&
-         !is_crowded(o, &h, least) && put_point(o, &h, 0);
+  /* No corner of these cells may disappear into the cavity, so that nearly all
+   * attempts that fail do so before it is opened. */
+  return !vg_try_point(o, x) && !is_ring_crowded(o, h.n_old, ring, least) &&
+         open_cavity(o, share * worst, &h) && !is_crowded(o, &h, least) &&
+         put_point(o, &h, 0);
 }
 
 static void centre(const struct vg_tets *t, uint32_t c, const double share[4],
