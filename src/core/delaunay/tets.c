@@ -195,10 +195,16 @@ static inline int is_beyond(const struct vg_tets *t, const struct vg_cell *cell,
                      t->x[cell->v[f[2]]], x) < 0;
 }
 
+/* Steps of a walk whose turns follow the golden ratio. Where the mesh is not
+ * Delaunay, they may repeat in step with a cycle of cells; those of later steps
+ * have no such order, so that the walk leaves every cycle. */
+enum { EVEN_STEPS = 4096 };
+
 /* The first of the faces (bits) in the order of step `step` of a walk. */
 static inline uint32_t first_face(unsigned faces, uint32_t step)
 {
-  uint32_t turn = vg_walk_turn(step);
+  uint32_t turn = step < EVEN_STEPS ? vg_walk_turn(step)
+                                    : (uint32_t)(vg_hash_mix(step) >> 62);
 
   return (turn + (uint32_t)__builtin_ctz((faces | faces << 4) >> turn)) & 3;
 }
