@@ -360,6 +360,38 @@ static void the_same_bytes_again(void **state)
   vg_tets_release(&t[1]);
 }
 
+/* The cell of each point contains it, after any insertion. */
+static void stars_are_kept_up_to_date(void **state)
+{
+  enum { N = 300 };
+  struct vg_tets t = VG_TETS_INIT;
+  struct vg_inserter s;
+  uint32_t star[N + 8];
+  uint64_t seed = 7;
+
+  (void)state;
+  tets_box(&t, -1, 1);
+  assert_int_equal(vg_inserter_init(&s, &t, NULL), VG_OK);
+  memset(star, 0xff, sizeof star);
+  for (uint32_t c = 0; c < t.n_cell; c++)
+    for (int i = 0; i < 4; i++) star[t.cell[c].v[i]] = c;
+  s.star = star;
+  for (int n = 0; n < N; n++) {
+    double x[3];
+
+    for (int k = 0; k < 3; k++) x[k] = 1.8 * tets_random(&seed) - 0.9;
+    assert_int_equal(tets_insert(&s, x, 0, 0), VG_OK);
+    for (uint32_t p = 0; p < t.n_point; p++) {
+      const uint32_t *v = t.cell[star[p]].v;
+
+      assert_true(star[p] < t.n_cell && !(t.flag[star[p]] & VG_DEAD));
+      assert_true(v[0] == p || v[1] == p || v[2] == p || v[3] == p);
+    }
+  }
+  vg_inserter_release(&s);
+  vg_tets_release(&t);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -375,6 +407,7 @@ int main(void)
     cmocka_unit_test(clearance_over_constrained_faces),
     cmocka_unit_test(an_enclosed_point),
     cmocka_unit_test(the_same_bytes_again),
+    cmocka_unit_test(stars_are_kept_up_to_date),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

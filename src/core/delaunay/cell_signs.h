@@ -22,6 +22,13 @@
 typedef double vg_d2 __attribute__((vector_size(16)));
 typedef int64_t vg_l2 __attribute__((vector_size(16)));
 
+/* Four lanes; two registers without AVX2. */
+typedef double vg_d4 __attribute__((vector_size(32)));
+typedef int64_t vg_l4 __attribute__((vector_size(32)));
+
+#define VG_PICK4(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#define VG_TURN4(a, ...) __builtin_shufflevector(a, a, __VA_ARGS__)
+
 enum {                      /* result for a point and a positive cell */
        VG_SIDE_IN = 0x01,   /* times 1 << i: strictly on the inner side of
                                face i */
@@ -129,12 +136,6 @@ static inline unsigned vg_cell_signs(const double (*x)[3], const uint32_t v[4],
 }
 
 #ifdef VG_WIDE
-typedef double vg_d4 __attribute__((vector_size(32)));
-typedef int64_t vg_l4 __attribute__((vector_size(32)));
-
-#define VG_PICK4(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
-#define VG_TURN4(a, ...) __builtin_shufflevector(a, a, __VA_ARGS__)
-
 /* A point of three coordinates; the fourth lane is 0. */
 static inline VG_WIDE vg_d4 vg_load3(const double x[3])
 {

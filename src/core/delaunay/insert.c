@@ -97,47 +97,53 @@ static void drop_faces(struct vg_inserter *s, size_t first)
   s->n_face = n;
 }
 
-/* Orientation of the triangle a b c and the origin, for the face of a positive
- * cell and a point within it positive. bound out: limit of its rounding error,
- * as in vg_orient3d. */
-static inline double cone_sign(const double a[3], const double b[3],
-                               const double c[3], double *bound)
+VG_WITHIN double sum4(vg_d4 a)
 {
-  double yz = b[1] * c[2], zy = b[2] * c[1], zx = b[2] * c[0];
-  double xz = b[0] * c[2], xy = b[0] * c[1], yx = b[1] * c[0];
+  return (a[0] + a[2]) + (a[1] + a[3]);
+}
 
-  *bound = 8.9e-16 * (fabs(a[0]) * (fabs(yz) + fabs(zy)) +
-                      fabs(a[1]) * (fabs(zx) + fabs(xz)) +
-                      fabs(a[2]) * (fabs(xy) + fabs(yx)));
-  return -(a[0] * (yz - zy) + a[1] * (zx - xz) + a[2] * (xy - yx));
+/* An upper bound of the magnitudes of a. */
+VG_WITHIN double bound4(vg_d4 a)
+{
+  return sum4(
+    (vg_d4)((vg_l4)a & (vg_l4){ INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX }));
 }
 
 /* As vg_cell_signs, with the sphere in a metric M: the determinant is the sum
  * of the orientations of the point and the faces, each multiplied by a squared
- * distance in M. */
-static unsigned metric_signs(const struct vg_inserter *s, const uint32_t v[4],
-                             const double p[3])
+ * distance in M. The operations, and so the result, are the same with and
+ * without AVX2. */
+VG_WITHIN unsigned metric_signs(const struct vg_inserter *s,
+                                const uint32_t v[4], const double p[3])
 {
-  const struct vg_tets *t = s->t;
+  const double(*x)[3] = (const double(*)[3])s->t->x;
+  const double *a = x[v[0]], *b = x[v[1]], *c = x[v[2]], *d = x[v[3]];
   const unsigned all = 0xf * VG_SIDE_SEES;
-  const double *own = s->metric[s->point].m;
-  double e[4][3], m[6], det = 0;
+  vg_d4 px = (vg_d4){ a[0], b[0], c[0], d[0] } - p[0];
+  vg_d4 py = (vg_d4){ a[1], b[1], c[1], d[1] } - p[1];
+  vg_d4 pz = (vg_d4){ a[2], b[2], c[2], d[2] } - p[2];
+  /* As in vg_cell_view. */
+  vg_d4 next = px * VG_TURN4(py, 1, 2, 3, 0) - VG_TURN4(px, 1, 2, 3, 0) * py;
+  vg_d4 far = px * VG_TURN4(py, 2, 3, 0, 1) - VG_TURN4(px, 2, 3, 0, 1) * py;
+  vg_d4 o = (VG_TURN4(pz, 3, 0, 1, 2) * VG_TURN4(next, 1, 2, 3, 0) -
+             VG_TURN4(pz, 2, 3, 0, 1) * VG_TURN4(far, 1, 2, 3, 0) +
+             VG_TURN4(pz, 1, 2, 3, 0) * VG_TURN4(next, 2, 3, 0, 1)) *
+            (vg_d4){ 1, -1, 1, -1 };
+  double flat = 5.4e-15 * bound4(px) * bound4(py) * bound4(pz), m[6], det;
   unsigned in = 0, out = 0, signs;
 
   for (int k = 0; k < 6; k++) /* K46 */
-    m[k] = 8 * own[k] + s->metric[v[0]].m[k] + s->metric[v[1]].m[k] +
-           s->metric[v[2]].m[k] + s->metric[v[3]].m[k];
-  for (int i = 0; i < 4; i++) vg_sub(t->x[v[i]], p, e[i]);
+    m[k] = 8 * s->metric[s->point].m[k] + s->metric[v[0]].m[k] +
+           s->metric[v[1]].m[k] + s->metric[v[2]].m[k] + s->metric[v[3]].m[k];
+  det = sum4(o * (px * (m[0] * px + 2 * (m[1] * py + m[2] * pz)) +
+                  py * (m[3] * py + 2 * m[4] * pz) + m[5] * pz * pz));
   for (int i = 0; i < 4; i++) {
-    const uint8_t *f = vg_face[i];
-    double bound, o = cone_sign(e[f[0]], e[f[1]], e[f[2]], &bound);
-
-    in |= (unsigned)(o > bound) << i;
-    out |= (unsigned)(o < -bound) << i;
-    det += o * vg_tensor_form(m, e[i]);
+    in |= (unsigned)(o[i] > flat) << i;
+    out |= (unsigned)(o[i] < -flat) << i;
   }
   if (!(det > 0) && out) return 0;
-  signs = vg_cell_sides((const double(*)[3])t->x, v, p, in, out);
+  signs = in == 0xf ? in * (VG_SIDE_IN | VG_SIDE_SEES)
+                    : vg_cell_sides(x, v, p, in, out);
   /* A cell that contains the point is in the cavity whatever rounding makes of
    * the determinant. */
   return det > 0 || (signs & all) == all ? VG_IN_SPHERE | signs : 0;
@@ -452,6 +458,8 @@ static void make_cells(struct vg_inserter *s, uint32_t p)
     if (f->link != VG_NONE) t->cell[f->link >> 2].link[f->link & 3] = 4 * c + 3;
     f->link = c;
     s->last = c;
+    if (s->star)
+      for (int i = 0; i < 4; i++) s->star[cell->v[i]] = c;
   }
   /* A star-shaped cavity with n vertices has 2n - 4 faces and at least n - 3
    * cells. There can be fewer faces than cells only around flat cells. */

@@ -43,8 +43,10 @@ struct vg_inserter {
                                            which spheres and distances are
                                            measured; NULL: Euclidean. Set by
                                            the caller */
-  int is_least; /* 1: the cavity is the cells that contain the point, which is
-                   always valid. Set by the caller */
+  uint32_t *star; /* [points] a cell of each point, kept up to date for all
+                     points of new cells; NULL: not kept. Set by the caller */
+  int is_least;   /* 1: the cavity is the cells that contain the point, which is
+                     always valid. Set by the caller */
   size_t n_cell, cap_cell, n_face, cap_face, n_tried, cap_tried;
   struct vg_cavity_cell { /* the cavity; for signs see
                              core/delaunay/cell_signs.h */

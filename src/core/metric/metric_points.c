@@ -14,7 +14,12 @@ static const double lattice = 1.083;
 /* Least height over a face of the surface, relative to its mean edge. */
 static const double least_height = 0.3;
 
-enum { N_BUCKET = 8192, BUCKET_ZERO = 4096, STOP_STEP = 1 << 12 };
+enum {
+  N_BUCKET = 8192,
+  BUCKET_ZERO = 4096,
+  STOP_STEP = 1 << 12,
+  NEAR_MAX = 64
+};
 
 struct advance {
   struct vg_tets *t;
@@ -23,9 +28,8 @@ struct advance {
   struct vg_inserter s;
   struct vg_buckets queue; /* Faces of the surface, then points. */
   size_t n_face;
-  uint32_t *face;      /* [n_face][3] Corners of faces of the surface. */
-  uint32_t *face_cell; /* [n_face] A cell near each face. */
-  uint32_t *star;      /* [points] A cell near each point. */
+  uint32_t *face; /* [n_face][3] Corners of faces of the surface. */
+  uint32_t *star; /* [points] A cell of each point, or VG_NONE. */
   size_t cap_star;
   struct vg_metric_advance_report *report;
 };
@@ -57,20 +61,60 @@ static int is_wanted(const struct advance *a, const double x[3])
 
 /* --- proposals ------------------------------------------------------------ */
 
-/* Does a corner of the cell exclude the position x with stretch t? */
-static int is_excluded(const struct advance *a, uint32_t cell,
+/* Do the given points exclude the position x with stretch t? */
+static int is_excluded(const struct advance *a, int n, const uint32_t *point,
                        const double x[3], const double t[6])
 {
-  const uint32_t *v = a->t->cell[cell].v;
-
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < n; i++) {
     double d[3];
 
-    vg_sub(a->t->x[v[i]], x, d);
+    vg_sub(a->t->x[point[i]], x, d);
     vg_tensor_apply(t, d, d);
     if (vg_dot(d, d) < VG_METRIC_EXCLUSION * VG_METRIC_EXCLUSION) return 1;
   }
   return 0;
+}
+
+/* Points that share an edge with a point. */
+struct near {
+  int n;
+  uint32_t point[NEAR_MAX];
+};
+
+static void add_near(struct near *near, uint32_t p)
+{
+  for (int k = 0; k < near->n; k++)
+    if (near->point[k] == p) return;
+  if (near->n < NEAR_MAX) near->point[near->n++] = p;
+}
+
+/* The neighbours of p, which exclude most of the positions that it proposes,
+ * before these are located. */
+static void find_near(const struct advance *a, uint32_t p, struct near *near)
+{
+  const struct vg_tets *t = a->t;
+  uint32_t ball[NEAR_MAX];
+  int n = 1;
+
+  near->n = 0;
+  ball[0] = a->star[p];
+  t->flag[ball[0]] |= VG_MARK;
+  for (int k = 0; k < n; k++) {
+    const struct vg_cell *cell = &t->cell[ball[k]];
+
+    for (int i = 0; i < 4; i++) {
+      uint32_t other = cell->link[i] >> 2;
+
+      if (cell->v[i] == p) continue;
+      add_near(near, cell->v[i]);
+      if (cell->link[i] == VG_NONE || t->flag[ball[k]] >> i & 1 ||
+          t->flag[other] & VG_MARK || n == NEAR_MAX)
+        continue;
+      t->flag[other] |= VG_MARK;
+      ball[n++] = other;
+    }
+  }
+  for (int k = 0; k < n; k++) t->flag[ball[k]] &= (uint8_t)~VG_MARK;
 }
 
 /* Insert x with stretch t into its cell. Returns -1 if memory is refused. */
@@ -83,6 +127,7 @@ static int insert(struct advance *a, const double x[3], const double t[6],
 
   if (vg_reserve(&a->star, &a->cap_star, p + 1, sizeof *a->star)) return -1;
   vg_metric_of_stretch(t, &m);
+  a->s.star = a->star;
   st = vg_metrics_insert(a->metrics, &a->s, x, &m, cell, least_height,
                          VG_METRIC_EXCLUSION, err);
   if (st != VG_OK) {
@@ -90,41 +135,35 @@ static int insert(struct advance *a, const double x[3], const double t[6],
     return st < 0 ? -1 : 0;
   }
   if (push_point(a, p)) return -1;
-  a->star[p] = a->s.last;
   a->report->n_inserted++;
   return 0;
 }
 
 /* Propose the point at `unit`, in units of the metric, from c, where the size
  * tensor is h. The displacement is the mean of those by the sizes at both of
- * its ends. */
+ * its ends. near: points that may exclude it. */
 static int propose(struct advance *a, const double c[3], const double h[6],
-                   const double unit[3], uint32_t *start, struct vg_error *err)
+                   const double unit[3], const struct near *near,
+                   uint32_t start, struct vg_error *err)
 {
   double d[3], far[3], x[3], t[6], there[6];
   uint32_t cell;
 
   vg_tensor_apply(h, unit, d);
   for (int k = 0; k < 3; k++) x[k] = c[k] + d[k];
-  vg_sizing_stretch_at(a->metrics->sizing, x, t);
-  vg_tensor_invert(t, there);
+  vg_sizing_tensor_at(a->metrics->sizing, x, there);
   vg_tensor_apply(there, unit, far);
   for (int k = 0; k < 3; k++) x[k] = c[k] + 0.5 * (d[k] + far[k]);
   if (!is_wanted(a, x)) return 0;
   a->report->n_proposed++;
-  cell = vg_tets_locate(a->t, *start, x);
-  if (cell == VG_NONE || a->t->flag[cell] & VG_OUTSIDE) return 0;
-  vg_sizing_stretch_at(a->metrics->sizing, x, t);
-  if (is_excluded(a, cell, x, t)) return 0;
-  if (insert(a, x, t, cell, err)) return -1;
-  if (a->t->flag[*start] & VG_DEAD) *start = a->s.last;
-  return 0;
-}
-
-/* A live cell to start a search from. */
-static uint32_t live(const struct advance *a, uint32_t cell)
-{
-  return a->t->flag[cell] & VG_DEAD ? a->s.last : cell;
+  vg_sizing_tensor_at(a->metrics->sizing, x, there);
+  vg_tensor_invert(there, t);
+  if (is_excluded(a, near->n, near->point, x, t)) return 0;
+  cell = vg_tets_locate(a->t, start, x);
+  if (cell == VG_NONE || a->t->flag[cell] & VG_OUTSIDE ||
+      is_excluded(a, 4, a->t->cell[cell].v, x, t))
+    return 0;
+  return insert(a, x, t, cell, err);
 }
 
 /* Sizes along two axes that differ by less than this factor count as equal. */
@@ -169,11 +208,12 @@ static int grow_point(struct advance *a, uint32_t p, struct vg_error *err)
                                      { 1, 1, -1 }, { -1, -1, 1 },
                                      { 1, -1, 1 }, { -1, 1, -1 },
                                      { -1, 1, 1 }, { 1, -1, -1 } };
-  uint32_t start = live(a, a->star[p]);
   double c[3], h[6], axis[3][3];
+  struct near near;
 
   memcpy(c, a->t->x[p], sizeof c);
   find_axes(a->metrics->at[p].m, h, axis);
+  find_near(a, p, &near);
   for (int i = 0; i < 8; i++) {
     double unit[3];
 
@@ -181,7 +221,7 @@ static int grow_point(struct advance *a, uint32_t p, struct vg_error *err)
       unit[k] = 0.5 * lattice *
                 (sign[i][0] * axis[0][k] + sign[i][1] * axis[1][k] +
                  sign[i][2] * axis[2][k]);
-    if (propose(a, c, h, unit, &start, err)) return -1;
+    if (propose(a, c, h, unit, &near, a->star[p], err)) return -1;
   }
   return 0;
 }
@@ -192,12 +232,12 @@ static int grow_face(struct advance *a, size_t face, struct vg_error *err)
   const uint32_t *v = &a->face[3 * face];
   const double(*x)[3] = (const double(*)[3])a->t->x;
   double c[3], h[6], unit[3];
-  uint32_t start = live(a, a->face_cell[face]);
+  const struct near corners = { 3, { v[0], v[1], v[2] } };
 
   if (!vg_metric_apex(a->metrics->sizing, x[v[0]], x[v[1]], x[v[2]], c, h,
                       unit))
     return 0;
-  return propose(a, c, h, unit, &start, err);
+  return propose(a, c, h, unit, &corners, a->star[v[0]], err);
 }
 
 /* --- the front ------------------------------------------------------------ */
@@ -211,15 +251,14 @@ static int start_faces(struct advance *a)
     if (!(t->flag[c] & (VG_OUTSIDE | VG_DEAD)))
       n += (size_t)__builtin_popcount(t->flag[c] & VG_FIXED_FACES);
   a->face = vg_alloc(3 * n, sizeof *a->face);
-  a->face_cell = vg_alloc(n, sizeof *a->face_cell);
-  if (!a->face || !a->face_cell) return -1;
+  if (!a->face) return -1;
   for (uint32_t c = 0; c < t->n_cell; c++)
     for (uint32_t i = 0; i < 4; i++) {
       if (t->flag[c] & (VG_OUTSIDE | VG_DEAD) || !(t->flag[c] >> i & 1))
         continue;
       for (int k = 0; k < 3; k++)
         a->face[3 * a->n_face + (size_t)k] = t->cell[c].v[vg_face[i][k]];
-      a->face_cell[a->n_face++] = c;
+      a->n_face++;
     }
   return vg_buckets_reserve(&a->queue, n);
 }
@@ -244,10 +283,8 @@ static int start(struct advance *a)
     vg_buckets_push(&a->queue, bucket_of(finest_root(a, &a->face[3 * i])), i);
   for (size_t p = 0; p < t->n_point; p++) a->star[p] = VG_NONE;
   for (uint32_t c = 0; c < t->n_cell; c++)
-    for (int k = 0; k < 4 && !(t->flag[c] & (VG_OUTSIDE | VG_DEAD)); k++) {
+    for (int k = 0; k < 4 && !(t->flag[c] & (VG_OUTSIDE | VG_DEAD)); k++)
       a->star[t->cell[c].v[k]] = c;
-      a->s.last = c;
-    }
   for (uint32_t p = 0; p < t->n_point; p++)
     if (a->star[p] != VG_NONE && push_point(a, p)) return -1;
   return 0;
@@ -294,7 +331,6 @@ vg_status vg_metric_advance(struct vg_tets *t, struct vg_metrics *metrics,
   vg_inserter_release(&a.s);
   vg_buckets_release(&a.queue);
   free(a.face);
-  free(a.face_cell);
   free(a.star);
   return st;
 }
