@@ -5,12 +5,14 @@
 
 #include "core/optimise/optimise_parts.h"
 
-/* K45: edges shorter or longer than this are changed. Edges shorter than
- * `tiny` may leave edges up to `far`. */
-static const double shortest = 0.68, longest = 1.45, tiny = 0.4, far = 2;
-/* Collapses may not make cells worse than this shape, or than the worst one.
- * Splits may reduce the worst shape around the edge by this factor. */
+/* K45: edges shorter or longer than this are changed. Collapses may not make
+ * cells worse than this shape, or than the worst one. Splits may reduce the
+ * worst shape around the edge by this factor. */
+static const double shortest = 0.68, longest = 1.45;
 static const double least_shape = 0.125, split_share = 0.6;
+/* Edges shorter than `tiny` may leave edges up to `far` and cells down to this
+ * shape. */
+static const double tiny = 0.4, far = 2, tiny_shape = 0.027;
 
 /* Edges of cells within this many spacings of those that a region optimises are
  * changed, too. */
@@ -22,10 +24,10 @@ static int is_live(const struct vg_tets *t, uint32_t c)
 }
 
 static int merge_edge(struct vg_optimiser *o, uint32_t a, uint32_t b,
-                      double most)
+                      double shape, double most)
 {
-  return vg_merge_onto(o, a, b, least_shape, most) ||
-         vg_merge_onto(o, b, a, least_shape, most);
+  return vg_merge_onto(o, a, b, shape, most) ||
+         vg_merge_onto(o, b, a, shape, most);
 }
 
 /* Does cell c have a corner within the band of the region where points are
@@ -68,8 +70,8 @@ static double length_of(const struct vg_optimiser *o, uint32_t a, uint32_t b)
   return vg_log_mean(sqrt(fmax(la, 0)), sqrt(fmax(lb, 0)));
 }
 
-/* The edge a b of cell c could not be changed. The other cells around it need
- * not try again. */
+/* The edge a b of cell c could not be changed. In this pass, the other cells
+ * around it try again only if they change. */
 static void mark_edge(struct vg_optimiser *o, uint32_t c, uint32_t a,
                       uint32_t b)
 {
@@ -96,8 +98,8 @@ static int even_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
   if (length >= shortest && length <= longest) return 0;
   if (length > longest) {
     if (vg_split_edge(o, c, a, b, split_share, shortest)) return 1;
-  } else if (merge_edge(o, a, b, longest) ||
-             (length < tiny && merge_edge(o, a, b, far))) {
+  } else if (merge_edge(o, a, b, least_shape, longest) ||
+             (length < tiny && merge_edge(o, a, b, tiny_shape, far))) {
     return 1;
   }
   mark_edge(o, c, a, b);
@@ -116,6 +118,8 @@ static int even_cell(struct vg_optimiser *o, uint32_t c)
 vg_status vg_even_lengths(struct vg_optimiser *o, struct vg_error *err)
 {
   assert(o->metrics);
+  for (uint32_t c = 0; c < o->t->n_cell; c++)
+    o->failed_cell[c] &= VG_FAILED_LENGTH - 1;
   for (uint32_t c = 0; c < o->t->n_cell; c++)
     if (is_live(o->t, c) && concerns(o, c)) even_cell(o, c);
   return o->refused ? vg_fail_memory(err, "optimisation") : VG_OK;

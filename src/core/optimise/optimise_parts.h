@@ -25,7 +25,7 @@ enum { /* for a cell; cleared by a change */
        VG_FAILED_SPLIT = 1,
        VG_NOT_IN_REGION = 2, /* does not belong to the region */
        VG_FAILED_LENGTH = 4  /* << edge: the length of this edge could not be
-                                changed (optimise_lengths.c) */
+                                changed in this pass (optimise_lengths.c) */
 };
 
 /* Shapes that decide which cells the steps improve. Without metrics, shapes are
@@ -134,7 +134,7 @@ struct vg_balls {
 int vg_balls_init(const struct vg_tets *t, struct vg_balls *b);
 void vg_balls_release(struct vg_balls *b);
 
-/** vg_smooth for a point whose ball is known. Not with metrics. */
+/** vg_smooth for a point whose ball is known. */
 int vg_smooth_within(struct vg_optimiser *o, const struct vg_balls *b,
                      uint32_t p, double aim);
 
