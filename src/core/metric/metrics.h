@@ -66,40 +66,29 @@ void vg_metrics_release(struct vg_metrics *s);
 /** Cube of the mean ratio of the tetrahedron a b c d in metric m. The mean
  * ratio is 12 (3 V)^(2/3) / sum of the squared edge lengths, and 1 for the
  * regular tetrahedron; its cube needs no roots. 0 if the volume is not
- * positive, or if rounding determines its sign. sum out: sum of the squared
- * edge lengths. */
-static inline double vg_metric_shape_sum(const struct vg_point_metric *m,
-                                         const double a[3], const double b[3],
-                                         const double c[3], const double d[3],
-                                         double *sum)
+ * positive, or if rounding determines its sign. */
+static inline double vg_metric_shape(const struct vg_point_metric *m,
+                                     const double a[3], const double b[3],
+                                     const double c[3], const double d[3])
 {
-  double u[3], v[3], w[3], n[3], det, volume, mu[3], mv[3], mw[3];
+  double u[3], v[3], w[3], n[3], det, sum, volume, mu[3], mv[3], mw[3];
 
   vg_sub(b, a, u);
   vg_sub(c, a, v);
   vg_sub(d, a, w);
   vg_cross(u, v, n);
   det = vg_dot(n, w);
+  if (!(det > 0) ||
+      det * det <= 1e-26 * vg_dot(u, u) * vg_dot(v, v) * vg_dot(w, w))
+    return 0;
   vg_tensor_apply(m->m, u, mu);
   vg_tensor_apply(m->m, v, mv);
   vg_tensor_apply(m->m, w, mw);
   /* |v - u|^2 = u' M u + v' M v - 2 u' M v, and so on. */
-  *sum = 3 * (vg_dot(u, mu) + vg_dot(v, mv) + vg_dot(w, mw)) -
-         2 * (vg_dot(u, mv) + vg_dot(v, mw) + vg_dot(w, mu));
+  sum = 3 * (vg_dot(u, mu) + vg_dot(v, mv) + vg_dot(w, mw)) -
+        2 * (vg_dot(u, mv) + vg_dot(v, mw) + vg_dot(w, mu));
   volume = 0.5 * det * m->root; /* 3 V */
-  return det > 0 &&
-             det * det > 1e-26 * vg_dot(u, u) * vg_dot(v, v) * vg_dot(w, w)
-         ? 1728 * volume * volume / (*sum * *sum * *sum)
-         : 0;
-}
-
-static inline double vg_metric_shape(const struct vg_point_metric *m,
-                                     const double a[3], const double b[3],
-                                     const double c[3], const double d[3])
-{
-  double sum;
-
-  return vg_metric_shape_sum(m, a, b, c, d, &sum);
+  return 1728 * volume * volume / (sum * sum * sum);
 }
 
 /** Replace the normal n of a face, of twice its area, by the conormal

@@ -134,7 +134,7 @@ static vg_status smooth_all(struct vg_optimiser *o, float limit,
   struct vg_tets *t = o->t;
   struct vg_balls balls = { NULL, NULL, NULL };
   float *least = vg_alloc(t->n_point, sizeof *least);
-  int all = limit >= o->level->good && !o->metrics, bad = !least;
+  int all = limit >= o->level->good, bad = !least;
 
   if (all && !bad) bad = vg_balls_init(t, &balls);
   if (!bad) worst_around(o, limit, least);

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/wide.h"
 #include "core/geometry/vector.h"
 #include "core/optimise/optimise_parts.h"
 
@@ -22,79 +23,231 @@ enum { STEPS = 3 };
 /* Positions may not make a cell worse than this, or than the worst one. */
 static const double least_shape = 0.125;
 
-struct stretched_ball {
-  size_t n;
-  const double *x[VG_BALL_MAX][3]; /* Corners of the face opposite the point,
-                                      with the point on the positive side. */
-  const struct vg_point_metric *finest[VG_BALL_MAX]; /* Of these corners. */
+/* Cells are processed BLOCK at a time, in loops that compilers vectorise. */
+enum { BLOCK = 8, BLOCKS = VG_BALL_MAX / BLOCK };
+
+/* Cells of the ball. Each one is represented by the face opposite the point,
+ * with the point on its positive side. Positions are relative to the point
+ * before it moves. The last block is filled up with copies of the last cell. */
+struct block {
+  double live[BLOCK]; /* 1, or 0 for a copy */
+  double m[6][BLOCK]; /* finest metric of the corners of the face */
+  double root[BLOCK]; /* root of its determinant */
+  double x[3][BLOCK]; /* a corner of the face */
+  double e[3][BLOCK], f[3][BLOCK]; /* vectors from it to the other corners */
+  double normal[3][BLOCK];         /* e x f */
+  double mid[3][BLOCK];            /* centroid of the face */
+  double gram[6][BLOCK];           /* 4 / 3 of the sum of the products of its
+                                      edges with themselves, so that its product
+                                      with a metric is 4 / 3 of the sum of their
+                                      squared lengths */
+  double flat[BLOCK];              /* squared volumes below this factor times a
+                                      squared length are rounding */
+  double far[BLOCK];               /* squared distance of the farthest corner */
 };
 
+struct stretched_ball {
+  size_t n, n_block;
+  struct block at[BLOCKS];
+};
+
+/* f at a position, or INFINITY. */
+struct rating {
+  double f;
+  double worst; /* largest 1 / Q */
+  double g[3];  /* gradient of f */
+};
+
+static void gather_cell(const struct vg_tets *t,
+                        const struct vg_metrics *metrics, const double from[3],
+                        uint32_t link, struct block *b, size_t k)
+{
+  const uint32_t *v = t->cell[link >> 2].v;
+  const uint8_t *f = vg_face[link & 3];
+  const struct vg_point_metric *m = &metrics->at[v[f[0]]];
+  const double *x = t->x[v[f[0]]], *y = t->x[v[f[1]]], *z = t->x[v[f[2]]];
+
+  for (int i = 1; i < 3; i++)
+    if (metrics->at[v[f[i]]].root > m->root) m = &metrics->at[v[f[i]]];
+  for (int i = 0; i < 6; i++) b->m[i][k] = m->m[i];
+  b->root[k] = m->root;
+  for (int i = 0; i < 3; i++) {
+    b->x[i][k] = x[i] - from[i];
+    b->e[i][k] = y[i] - x[i];
+    b->f[i][k] = z[i] - x[i];
+  }
+}
+
 static void gather(const struct vg_tets *t, const struct vg_metrics *metrics,
-                   size_t n, const uint32_t *link, struct stretched_ball *b)
+                   const double from[3], size_t n, const uint32_t *link,
+                   struct stretched_ball *b)
 {
   assert(n > 0 && n <= VG_BALL_MAX);
   b->n = n;
-  for (size_t k = 0; k < n; k++) {
-    const uint32_t *v = t->cell[link[k] >> 2].v;
-    const uint8_t *f = vg_face[link[k] & 3];
+  b->n_block = (n + BLOCK - 1) / BLOCK;
+  for (size_t k = 0; k < b->n_block * BLOCK; k++) {
+    struct block *to = &b->at[k / BLOCK];
 
-    b->finest[k] = &metrics->at[v[f[0]]];
+    to->live[k % BLOCK] = k < n;
+    gather_cell(t, metrics, from, link[k < n ? k : n - 1], to, k % BLOCK);
+  }
+}
+
+VG_WITHIN double larger(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+/* Quantities of a block that do not depend on the position of the point. */
+VG_WITHIN void measure(struct block *b)
+{
+  static const int row[6] = { 0, 0, 0, 1, 1, 2 }, col[6] = { 0, 1, 2, 1, 2, 2 };
+
+  for (int k = 0; k < BLOCK; k++) {
+    double e2 = 0, f2 = 0, x2 = 0, y2 = 0, z2 = 0;
+
     for (int i = 0; i < 3; i++) {
-      const struct vg_point_metric *m = &metrics->at[v[f[i]]];
+      int j = (i + 1) % 3, l = (i + 2) % 3;
+      double y = b->x[i][k] + b->e[i][k], z = b->x[i][k] + b->f[i][k];
 
-      b->x[k][i] = t->x[v[f[i]]];
-      if (m->root > b->finest[k]->root) b->finest[k] = m;
+      b->normal[i][k] = b->e[j][k] * b->f[l][k] - b->e[l][k] * b->f[j][k];
+      b->mid[i][k] = b->x[i][k] + (b->e[i][k] + b->f[i][k]) * (1.0 / 3);
+      e2 += b->e[i][k] * b->e[i][k];
+      f2 += b->f[i][k] * b->f[i][k];
+      x2 += b->x[i][k] * b->x[i][k];
+      y2 += y * y;
+      z2 += z * z;
+    }
+    b->flat[k] = 1e-26 * e2 * f2;
+    b->far[k] = larger(larger(x2, y2), z2);
+    for (int i = 0; i < 6; i++) {
+      double e = b->e[row[i]][k], f = b->f[row[i]][k];
+      double ee = b->e[col[i]][k], ff = b->f[col[i]][k];
+      double sum = e * ee + f * ff + (f - e) * (ff - ee);
+
+      b->gram[i][k] = (row[i] == col[i] ? 4.0 / 3 : 8.0 / 3) * sum;
     }
   }
 }
 
-/* f with the point at x and its metric m. q out: shapes. INFINITY as soon as a
- * shape is not above `stop`. */
-static double value(const struct stretched_ball *b, const double x[3],
-                    const struct vg_point_metric *m, double stop, double *q)
+/* The terms of a block with the point at `to`, with metric m, are added to
+ * those in f[BLOCK] and g[3][BLOCK]. inverse out: [BLOCK] 1 / Q, INFINITY for a
+ * cell that is not positive. With the sum S of the squared edges and V = 3
+ * times the volume, 1 / Q = S^3 / (1728 V^2). */
+VG_WITHIN void rate(const struct block *b, const double to[3],
+                    const struct vg_point_metric *m, double *inverse, double *f,
+                    double (*g)[BLOCK])
 {
-  double f = 0;
+  for (int k = 0; k < BLOCK; k++) {
+    int finer = m->root > b->root[k];
+    double a[6], r[3], ar[3], sum, det, high, off, root, square;
 
-  for (size_t k = 0; k < b->n; k++) {
-    const struct vg_point_metric *of = m->root > b->finest[k]->root
-                                       ? m
-                                       : b->finest[k];
-    double sum, off;
+    for (int i = 0; i < 6; i++) a[i] = finer ? m->m[i] : b->m[i][k];
+    root = finer ? m->root : b->root[k];
+    for (int i = 0; i < 3; i++) r[i] = to[i] - b->mid[i][k];
+    ar[0] = a[0] * r[0] + a[1] * r[1] + a[2] * r[2];
+    ar[1] = a[1] * r[0] + a[3] * r[1] + a[4] * r[2];
+    ar[2] = a[2] * r[0] + a[4] * r[1] + a[5] * r[2];
+    det = b->normal[0][k] * r[0] + b->normal[1][k] * r[1] +
+          b->normal[2][k] * r[2];
+    sum = 3 * (r[0] * ar[0] + r[1] * ar[1] + r[2] * ar[2]);
+    for (int i = 0; i < 6; i++) sum += b->gram[i][k] * a[i];
+    square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + b->far[k];
+    high = det * root;
+    inverse[k] = (det > 0) & (det * det > b->flat[k] * square)
+                 ? sum * sum * sum / (432 * high * high)
+                 : INFINITY;
+    off = sum * (1.0 / 6) - 1;
+    f[k] += b->live[k] * (inverse[k] + size_weight * off * off);
+    if (g) {
+      double wide = 18 * inverse[k] / sum + 2 * size_weight * off;
+      double steep = 2 * inverse[k] / det;
 
-    q[k] = vg_metric_shape_sum(of, b->x[k][0], b->x[k][1], b->x[k][2], x, &sum);
-    if (!(q[k] > stop)) return INFINITY;
-    off = sum / 6 - 1;
-    f += 1 / q[k] + size_weight * off * off;
+      for (int i = 0; i < 3; i++)
+        g[i][k] += b->live[k] * (wide * ar[i] - steep * b->normal[i][k]);
+    }
   }
-  return f;
 }
 
-/* Gradient of f. S = sum of the squared edges, V = 3 times the volume:
- * 1 / Q = S^3 / (1728 V^2). */
-static void slope(const struct stretched_ball *b, const double x[3],
-                  const struct vg_point_metric *m, double g[3])
+VG_WITHIN double total(const double *part)
 {
-  memset(g, 0, 3 * sizeof *g);
-  for (size_t k = 0; k < b->n; k++) {
-    const struct vg_point_metric *of = m->root > b->finest[k]->root
-                                       ? m
-                                       : b->finest[k];
-    double sum, inverse, e[3], f[3], n[3], s[3], ms[3], det, high, wide;
+  double sum = 0;
 
-    inverse = 1 / vg_metric_shape_sum(of, b->x[k][0], b->x[k][1], b->x[k][2], x,
-                                      &sum);
-    vg_sub(b->x[k][1], b->x[k][0], e);
-    vg_sub(b->x[k][2], b->x[k][0], f);
-    vg_cross(e, f, n);
-    vg_sub(x, b->x[k][0], s);
-    det = vg_dot(n, s);
-    for (int i = 0; i < 3; i++)
-      s[i] = 3 * x[i] - b->x[k][0][i] - b->x[k][1][i] - b->x[k][2][i];
-    vg_tensor_apply(of->m, s, ms); /* half the gradient of S */
-    wide = 6 * inverse / sum + size_weight * (sum / 6 - 1) * (2.0 / 3);
-    high = 2 * inverse / det;
-    for (int i = 0; i < 3; i++) g[i] += wide * ms[i] - high * n[i];
+  for (int k = 0; k < BLOCK; k++) sum += part[k];
+  return sum;
+}
+
+/* f at the present position of the point, where it has metric m. */
+VG_WITHIN void start(struct stretched_ball *b, const struct vg_point_metric *m,
+                     struct rating *out)
+{
+  static const double origin[3] = { 0 };
+  double f[BLOCK] = { 0 }, g[3][BLOCK] = { { 0 } }, inverse[BLOCK];
+
+  out->worst = 0;
+  for (size_t i = 0; i < b->n_block; i++) {
+    measure(&b->at[i]);
+    rate(&b->at[i], origin, m, inverse, f, g);
+    for (int k = 0; k < BLOCK; k++) out->worst = larger(out->worst, inverse[k]);
   }
+  out->f = out->worst < INFINITY ? total(f) : INFINITY;
+  for (int i = 0; i < 3; i++) out->g[i] = total(g[i]);
+}
+
+/* f with the point at `to`, with metric m. inverse out: [BLOCK * BLOCKS] 1 / Q.
+ * INFINITY as soon as one is not below `most`. */
+VG_WITHIN double value(const struct stretched_ball *b, const double to[3],
+                       const struct vg_point_metric *m, double most,
+                       double *inverse)
+{
+  double f[BLOCK] = { 0 }, worst = 0;
+
+  for (size_t i = 0; i < b->n_block; i++) {
+    rate(&b->at[i], to, m, inverse + i * BLOCK, f, NULL);
+    for (int k = 0; k < BLOCK; k++)
+      worst = larger(worst, inverse[i * BLOCK + (size_t)k]);
+    if (!(worst < most)) return INFINITY;
+  }
+  return total(f);
+}
+
+#ifdef VG_WIDE
+static VG_WIDE void start_wide(struct stretched_ball *b,
+                               const struct vg_point_metric *m,
+                               struct rating *out)
+{
+  start(b, m, out);
+}
+
+static VG_WIDE double value_wide(const struct stretched_ball *b,
+                                 const double to[3],
+                                 const struct vg_point_metric *m, double most,
+                                 double *inverse)
+{
+  return value(b, to, m, most, inverse);
+}
+#endif
+
+static void rate_start(struct stretched_ball *b,
+                       const struct vg_point_metric *m, struct rating *out)
+{
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) {
+    start_wide(b, m, out);
+    return;
+  }
+#endif
+  start(b, m, out);
+}
+
+static double value_at(const struct stretched_ball *b, const double to[3],
+                       const struct vg_point_metric *m, double most,
+                       double *inverse)
+{
+#ifdef VG_WIDE
+  if (VG_IS_WIDE) return value_wide(b, to, m, most, inverse);
+#endif
+  return value(b, to, m, most, inverse);
 }
 
 int vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics, uint32_t p,
@@ -102,22 +255,25 @@ int vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics, uint32_t p,
 {
   struct stretched_ball b;
   struct vg_point_metric m = metrics->at[p];
-  double x[3], g[3], d[3], inverse[6], f, length, least = 1;
+  struct rating now;
+  double x[3], d[3], to[3], tensor[6], length, most;
 
-  gather(t, metrics, n, link, &b);
-  f = value(&b, t->x[p], &m, 0, q);
-  if (!(f < INFINITY)) return 0;
-  for (size_t k = 0; k < n; k++) least = fmin(least, q[k]);
-  least = fmin(0.999 * least, least_shape);
-  slope(&b, t->x[p], &m, g);
-  vg_tensor_invert(m.m, inverse);
-  vg_tensor_apply(inverse, g, d);
-  length = sqrt(fmax(vg_dot(g, d), 0));
+  gather(t, metrics, t->x[p], n, link, &b);
+  rate_start(&b, &m, &now);
+  if (!(now.f < INFINITY)) return 0;
+  most = fmax(now.worst / 0.999, 1 / least_shape);
+  vg_tensor_invert(m.m, tensor);
+  vg_tensor_apply(tensor, now.g, d);
+  length = sqrt(fmax(vg_dot(now.g, d), 0));
   if (!(length > 0)) return 0;
   for (int k = 0; k < STEPS; k++) {
-    for (int i = 0; i < 3; i++) x[i] = t->x[p][i] - step[k] / length * d[i];
+    for (int i = 0; i < 3; i++) {
+      x[i] = t->x[p][i] - step[k] / length * d[i];
+      to[i] = x[i] - t->x[p][i];
+    }
     vg_metric_at(metrics->sizing, x, &m);
-    if (!(value(&b, x, &m, least, q) < (1 - gain) * f)) continue;
+    if (!(value_at(&b, to, &m, most, q) < (1 - gain) * now.f)) continue;
+    for (size_t c = 0; c < n; c++) q[c] = 1 / q[c];
     memcpy(t->x[p], x, sizeof x);
     metrics->at[p] = m;
     return 1;

@@ -173,7 +173,7 @@ int vg_smooth(struct vg_optimiser *o, uint32_t p, double aim)
 int vg_smooth_within(struct vg_optimiser *o, const struct vg_balls *b,
                      uint32_t p, double aim)
 {
-  assert(p < o->t->n_point && aim >= 0 && !o->metrics);
+  assert(p < o->t->n_point && aim >= 0);
   size_t n = b->first[p + 1] - b->first[p];
 
   if (p < o->n_fixed || o->failed[p] & VG_FAILED_SMOOTH || b->is_open[p] ||
@@ -181,7 +181,7 @@ int vg_smooth_within(struct vg_optimiser *o, const struct vg_balls *b,
     return 0;
   o->n_ball = n;
   memcpy(o->ball, b->link + b->first[p], n * sizeof *o->ball);
-  if (smooth_ball(o, p, aim)) return 1;
+  if (o->metrics ? vg_smooth_metric(o, p) : smooth_ball(o, p, aim)) return 1;
   o->failed[p] |= VG_FAILED_SMOOTH;
   return 0;
 }

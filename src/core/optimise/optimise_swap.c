@@ -6,6 +6,7 @@
  * worst cell of the new configuration is better than the worst cell of the old
  * one. */
 #include <assert.h>
+#include <math.h>
 
 #include "core/geometry/vector.h"
 #include "core/optimise/optimise_parts.h"
@@ -160,15 +161,24 @@ static int may_divide(const double n[3], const double m[3], double need)
          minus_cos * minus_cos < most * most * vg_dot(n, n) * vg_dot(m, m);
 }
 
-/* Bits 4 i + j: the edge of corners i < j may be removed. */
-static unsigned edges_to_remove(const struct vg_optimiser *o, uint32_t c)
+/* The same in a metric, with `inner` = n' M^(-1) m and the squares of both
+ * normals likewise. Half of the angle a at the opposite edge leaves a cube of
+ * the mean ratio of at most 8 sin^2 a / (3 - cos a)^2. */
+static int may_divide_in_metric(double inner, double n2, double m2, double need)
 {
-  const struct vg_tets *t = o->t;
-  const uint32_t *v = t->cell[c].v;
-  double n[4][3], a[3], b[3], need = worth(o->q[c]);
-  unsigned bits = 0;
+  double cosine = -inner / sqrt(n2 * m2), half;
 
-  if (o->metrics || need >= 0.5) return ~0u;
+  if (!(cosine > -7.0 / 9)) return 1; /* half is above that of a regular cell */
+  half = 3 - sqrt(0.5 * (1 + cosine));
+  return 4 * (1 - cosine) > need * half * half;
+}
+
+/* Normals of the faces of cell c, which point into it. */
+static void face_normals(const struct vg_tets *t, uint32_t c, double n[4][3])
+{
+  const uint32_t *v = t->cell[c].v;
+  double a[3], b[3];
+
   for (int i = 0; i < 4; i++) {
     const double *from = t->x[v[vg_face[i][0]]];
 
@@ -176,6 +186,36 @@ static unsigned edges_to_remove(const struct vg_optimiser *o, uint32_t c)
     vg_sub(t->x[v[vg_face[i][2]]], from, b);
     vg_cross(a, b, n[i]);
   }
+}
+
+static unsigned edges_in_metric(const struct vg_optimiser *o, uint32_t c)
+{
+  double n[4][3], mn[4][3], square[4], inverse[6], need = worth(o->q[c]);
+  unsigned bits = 0;
+
+  vg_tensor_invert(vg_metrics_finest(o->metrics, o->t->cell[c].v)->m, inverse);
+  face_normals(o->t, c, n);
+  for (int i = 0; i < 4; i++) {
+    vg_tensor_apply(inverse, n[i], mn[i]);
+    square[i] = vg_dot(n[i], mn[i]);
+  }
+  for (int i = 0; i < 4; i++)
+    for (int j = i + 1; j < 4; j++)
+      bits |= (unsigned)may_divide_in_metric(vg_dot(n[i], mn[j]), square[i],
+                                             square[j], need)
+           << (4 * i + j);
+  return bits;
+}
+
+/* Bits 4 i + j: the edge of corners i < j may be removed. */
+static unsigned edges_to_remove(const struct vg_optimiser *o, uint32_t c)
+{
+  double n[4][3], need = worth(o->q[c]);
+  unsigned bits = 0;
+
+  if (o->metrics) return edges_in_metric(o, c);
+  if (need >= 0.5) return ~0u;
+  face_normals(o->t, c, n);
   for (int i = 0; i < 4; i++)
     for (int j = i + 1; j < 4; j++)
       bits |= (unsigned)may_divide(n[i], n[j], need) << (4 * i + j);
