@@ -161,9 +161,10 @@ static int may_divide(const double n[3], const double m[3], double need)
          minus_cos * minus_cos < most * most * vg_dot(n, n) * vg_dot(m, m);
 }
 
-/* The same in a metric, with `inner` = n' M^(-1) m and the squares of both
- * normals likewise. Half of the angle a at the opposite edge leaves a cube of
- * the mean ratio of at most 8 sin^2 a / (3 - cos a)^2. */
+/* The same in a metric M. inner, n2, m2: the products n' M^(-1) m of the
+ * normals with each other and with themselves. Half of the angle a at the
+ * opposite edge leaves a cube of the mean ratio of at most
+ * 8 sin^2 a / (3 - cos a)^2. */
 static int may_divide_in_metric(double inner, double n2, double m2, double need)
 {
   double cosine = -inner / sqrt(n2 * m2), half;
