@@ -135,17 +135,34 @@ static void oblique(void *user, const double x[3], double m[6])
   m[5] = across;
 }
 
-static struct vg_sizing *stretched(void)
+/* Sizes 0.1 across x, and 2 across y and z. */
+static void thin(void *user, const double x[3], double m[6])
+{
+  (void)user;
+  (void)x;
+  for (int k = 0; k < 6; k++) m[k] = 0;
+  m[0] = 100;
+  m[3] = m[5] = 0.25;
+}
+
+static struct vg_sizing *stretched_by(void (*metric)(void *user,
+                                                     const double x[3],
+                                                     double m[6]))
 {
   static double corner[2][3] = { { 0, 0, 0 }, { 8, 8, 8 } };
   const struct vg_mesh box = { .n_point = 2, .point = corner };
-  const struct vg_size_map map = { .metric = oblique };
+  const struct vg_size_map map = { .metric = metric };
   struct vg_sizing_options o = VG_SIZING_OPTIONS_INIT;
   struct vg_sizing *s = NULL;
 
   o.map = &map;
   assert_int_equal(vg_sizing_new(&o, 0, NULL, &box, &s, NULL), VG_OK);
   return s;
+}
+
+static struct vg_sizing *stretched(void)
+{
+  return stretched_by(oblique);
 }
 
 /* Shortest length in the metric of the edges from x to the points of a plane
@@ -187,6 +204,41 @@ static void test_spacing_in_a_metric(void **state)
   vg_sizing_free(s);
 }
 
+/* A pencil along cells that are thin across one of its planes is as thin there,
+ * however long the cells are across the other plane and across a wall. */
+static void test_each_side_has_its_spacing(void **state)
+{
+  static const double small[3][3] = { { 4.15, 4, 4 },
+                                      { 4.25, 4, 4 },
+                                      { 4.15, 4.1, 4 } };
+  static const double large[3][3] = { { 4.15, 1, 4 },
+                                      { 4.25, 7, 4 },
+                                      { 4.15, 4, 7 } };
+  struct vg_region r = {
+    .n_plane = 2,
+    .n_wall = 1,
+    .plane = { { { 1, 0, 0 }, 4 }, { { 0, 1, 0 }, 4 } },
+    .wall = { { { 0, 0, 1 }, 3 } },
+  };
+  struct vg_sizing *s = stretched_by(thin);
+  double h[VG_REGION_SIDES];
+
+  (void)state;
+  vg_region_across(&r, s, small[0], h);
+  assert_true(fabs(h[0] - 0.1) < 1e-6 && fabs(h[1] - 2) < 1e-4);
+  assert_true(fabs(h[2] - 2) < 1e-4);
+  assert_false(vg_region_near(&r, s, small[0], 1));
+  assert_true(vg_region_near(&r, s, small[0], 1.6));
+  assert_true(vg_region_near(&r, s, (double[3]){ 4.05, 5.9, 4 }, 1));
+  assert_true(vg_region_near(&r, s, (double[3]){ 4, 4, 2.1 }, 1));
+  assert_false(vg_region_near(&r, s, (double[3]){ 4, 4, 1.9 }, 1));
+  assert_false(met(&r, s, small, 1));
+  assert_true(met(&r, s, small, 1.6));
+  assert_false(met(&r, s, large, 1));
+  assert_true(met(&r, s, large, 1.6));
+  vg_sizing_free(s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -195,6 +247,7 @@ int main(void)
     cmocka_unit_test(test_large_beyond_a_wall),
     cmocka_unit_test(test_small),
     cmocka_unit_test(test_spacing_in_a_metric),
+    cmocka_unit_test(test_each_side_has_its_spacing),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -267,6 +267,27 @@ static void a_graded_box(void **state)
   assert_true(r.mean > 0.8 && r.low == 0);
 }
 
+/* A region gets those seeds that lie in the band in which it places points. */
+static void seeds_stay_near(const double corner[2][3],
+                            const struct vg_sizing *sizing)
+{
+  const struct vg_region plane = { .n_plane = 1,
+                                   .plane = { { { 0, 0, 1 }, 0.6 } } };
+  struct vg_metric_seeds all = { 0 }, some = { 0 };
+  size_t n = 0;
+
+  assert_int_equal(vg_metric_seeds(2, corner, sizing, NULL, &all, NULL), VG_OK);
+  assert_int_equal(vg_metric_seeds(2, corner, sizing, &plane, &some, NULL),
+                   VG_OK);
+  for (size_t i = 0; i < all.n; i++)
+    if (vg_region_near(&plane, sizing, all.x[i], VG_BAND_PLACE))
+      assert_memory_equal(all.x[i], some.x[n++], sizeof *all.x);
+  assert_int_equal(n, some.n);
+  assert_true(n > 0 && n < all.n);
+  free(all.x);
+  free(some.x);
+}
+
 /* The complexity of the graded metric in the unit cube is
  * 1000 log(0.12 / 0.02) = 1792, which makes 56 seeds (K49). Half of them lie on
  * each side of the plane z = 0.5, and half of them within 0.15 of it. */
@@ -290,7 +311,8 @@ static void seeds_follow_the_complexity(void **state)
   options.from_surface = 0;
   assert_int_equal(vg_sizing_new(&options, 0, NULL, &mesh, &sizing, &err),
                    VG_OK);
-  assert_int_equal(vg_metric_seeds(2, corner, sizing, &seeds, &err), VG_OK);
+  assert_int_equal(vg_metric_seeds(2, corner, sizing, NULL, &seeds, &err),
+                   VG_OK);
   for (size_t i = 0; i < seeds.n; i++) {
     near += fabs(seeds.x[i][2] - 0.5) < 0.15;
     above += seeds.x[i][2] > 0.5;
@@ -299,6 +321,7 @@ static void seeds_follow_the_complexity(void **state)
   assert_in_range(above, 2 * seeds.n / 5, 3 * seeds.n / 5);
   assert_in_range(near, 2 * seeds.n / 5, 3 * seeds.n / 4);
   free(seeds.x);
+  seeds_stay_near(corner, sizing);
   vg_sizing_free(sizing);
 }
 

@@ -66,11 +66,10 @@ vg_status vg_stretched_populate(struct vg_filling *g, struct vg_error *err)
   struct vg_metrics metrics = { .sizing = g->sizing };
   struct vg_metric_seeds seed = { 0 };
   double t0 = vg_clock();
-  vg_status st = VG_OK;
+  vg_status st;
 
-  if (!g->region) /* the cells of a region are small enough */
-    st = vg_metric_seeds(g->front->n_point, (const double(*)[3])g->t.x,
-                         g->sizing, &seed, err);
+  st = vg_metric_seeds(g->front->n_point, (const double(*)[3])g->t.x, g->sizing,
+                       g->region, &seed, err);
 
   if (st == VG_OK && vg_metrics_add(&metrics, &g->t, 0, g->t.n_point))
     st = vg_fail_memory(err, "the metrics of points");

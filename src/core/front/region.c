@@ -7,8 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "core/geometry/tensor.h"
-#include "core/geometry/vector.h"
+#include "core/front/region_parts.h"
 
 static int is_unit(const double n[3])
 {
@@ -43,84 +42,14 @@ void vg_region_foot(const struct vg_region *r, const double x[3],
   }
 }
 
-/* In a metric, the largest of the distances across the planes and half of those
- * across the walls, beyond which only half of a band counts. */
-static double spacing_across(const struct vg_region *r,
-                             const struct vg_sizing *sizing,
-                             const double foot[3])
-{
-  double most = 0, h[6], v[3];
-
-  vg_sizing_tensor_at(sizing, foot, h);
-  for (int i = 0; i < r->n_plane + r->n_wall; i++) {
-    int is_wall = i >= r->n_plane;
-
-    vg_tensor_apply(h,
-                    is_wall ? r->wall[i - r->n_plane].normal
-                            : r->plane[i].normal,
-                    v);
-    most = fmax(most, (is_wall ? VG_BEYOND_WALLS : 1) * vg_norm(v));
-  }
-  return most;
-}
-
 double vg_region_spacing(const struct vg_region *r,
                          const struct vg_sizing *sizing, const double x[3])
 {
   double foot[3];
 
+  if (vg_sizing_is_stretched(sizing)) return vg_region_widest(r, sizing, x);
   vg_region_foot(r, x, foot);
-  return vg_sizing_is_stretched(sizing) ? spacing_across(r, sizing, foot)
-                                        : vg_sizing_at(sizing, foot);
-}
-
-/* The feet of the box are those of its middle, plus or minus the projection of
- * half its diagonals. */
-static void foot_box(const struct vg_region *r, const double lo[3],
-                     const double hi[3], double foot_lo[3], double foot_hi[3])
-{
-  double middle[3];
-
-  for (int k = 0; k < 3; k++) middle[k] = 0.5 * (lo[k] + hi[k]);
-  vg_region_foot(r, middle, middle);
-  for (int k = 0; k < 3; k++) {
-    double half = 0;
-
-    for (int j = 0; j < 3; j++) {
-      double p = k == j;
-
-      for (int i = 0; i < r->n_plane; i++)
-        p -= r->plane[i].normal[k] * r->plane[i].normal[j];
-      half += 0.5 * fabs(p) * (hi[j] - lo[j]);
-    }
-    foot_lo[k] = middle[k] - half;
-    foot_hi[k] = middle[k] + half;
-  }
-}
-
-static void spacing_in_metric(const struct vg_region *r,
-                              const struct vg_sizing *sizing,
-                              const double lo[3], const double hi[3],
-                              double *least, double *most)
-{
-  double way[2 + VG_REGION_WALLS][3], low[2 + VG_REGION_WALLS];
-  double high[2 + VG_REGION_WALLS], foot_lo[3], foot_hi[3];
-  int n = r->n_plane + r->n_wall;
-
-  for (int i = 0; i < n; i++)
-    memcpy(way[i],
-           i < r->n_plane ? r->plane[i].normal : r->wall[i - r->n_plane].normal,
-           sizeof way[i]);
-  foot_box(r, lo, hi, foot_lo, foot_hi);
-  vg_sizing_bounds_across(sizing, foot_lo, foot_hi, n, (const double(*)[3])way,
-                          low, high);
-  *least = *most = 0;
-  for (int i = 0; i < n; i++) {
-    double share = i < r->n_plane ? 1 : VG_BEYOND_WALLS;
-
-    *least = fmax(*least, share * low[i]);
-    *most = fmax(*most, share * high[i]);
-  }
+  return vg_sizing_at(sizing, foot);
 }
 
 void vg_region_spacing_within(const struct vg_region *r,
@@ -132,7 +61,7 @@ void vg_region_spacing_within(const struct vg_region *r,
 
   assert(least && most);
   if (vg_sizing_is_stretched(sizing)) {
-    spacing_in_metric(r, sizing, lo, hi, least, most);
+    vg_region_widest_within(r, sizing, lo, hi, least, most);
     return;
   }
   for (int k = 0; k < 3; k++) {
@@ -202,8 +131,11 @@ int vg_region_near_by(const struct vg_region *r, const struct vg_sizing *sizing,
 int vg_region_near(const struct vg_region *r, const struct vg_sizing *sizing,
                    const double x[3], double band)
 {
-  double far = gap(r, 1, &x), most = vg_region_band(r, band), h_min, h_max;
+  double far, most = vg_region_band(r, band), h_min, h_max;
 
+  if (vg_sizing_is_stretched(sizing))
+    return vg_region_near_in_metric(r, sizing, x, most);
+  far = gap(r, 1, &x);
   vg_sizing_range_along(sizing, &h_min, &h_max);
   if (far == 0 || far <= most * h_min) return 1;
   return far <= most * h_max && far <= most * vg_region_spacing(r, sizing, x);
@@ -237,22 +169,20 @@ static int clip(int n, double (*x)[3], const struct vg_plane *p, double sign,
   return m;
 }
 
-/* Is any part of the triangle within `most` of every plane, and within
- * VG_BEYOND_WALLS * most beyond every wall? middle out: mean of the corners of
- * that part. */
-static int reaches(const struct vg_region *r, const double *const corner[3],
-                   double most, double middle[3])
+int vg_region_reaches(const struct vg_region *r, const double *const corner[3],
+                      const double *most, int step, double middle[3])
 {
   double x[CORNERS][3];
   int n = 3;
 
   for (int k = 0; k < 3; k++) memcpy(x[k], corner[k], sizeof *x);
   for (int i = 0; i < r->n_plane && n; i++) {
-    n = clip(n, x, &r->plane[i], 1, most);
-    if (n) n = clip(n, x, &r->plane[i], -1, most);
+    n = clip(n, x, &r->plane[i], 1, most[i * step]);
+    if (n) n = clip(n, x, &r->plane[i], -1, most[i * step]);
   }
   for (int i = 0; i < r->n_wall && n; i++)
-    n = clip(n, x, &r->wall[i], -1, VG_BEYOND_WALLS * most);
+    n = clip(n, x, &r->wall[i], -1,
+             VG_BEYOND_WALLS * most[(r->n_plane + i) * step]);
   for (int k = 0; k < 3; k++) {
     middle[k] = 0;
     for (int i = 0; i < n; i++) middle[k] += x[i][k] / n;
@@ -260,7 +190,7 @@ static int reaches(const struct vg_region *r, const double *const corner[3],
   return n > 0;
 }
 
-static double longest(const double *const corner[3])
+double vg_region_longest(const double *const corner[3])
 {
   double most = 0;
 
@@ -289,13 +219,12 @@ static int large_meets(const struct vg_region *r,
                        const double *const corner[3], double most, double band,
                        int is_sure)
 {
-  double middle[3];
+  double middle[3], reach = vg_region_band(r, band) * most;
 
-  if (!reaches(r, corner, vg_region_band(r, band) * most, middle)) return 0;
-  return !is_sure ||
-         reaches(r, corner,
-                 vg_region_band(r, band) * vg_region_spacing(r, sizing, middle),
-                 middle);
+  if (!vg_region_reaches(r, corner, &reach, 0, middle)) return 0;
+  if (!is_sure) return 1;
+  reach = vg_region_band(r, band) * vg_region_spacing(r, sizing, middle);
+  return vg_region_reaches(r, corner, &reach, 0, middle);
 }
 
 static double spacing_amid(const struct vg_region *r,
@@ -314,11 +243,14 @@ static int meets(const struct vg_region *r, const struct vg_sizing *sizing,
 {
   double reach = vg_region_band(r, band), h[3], most = 0;
 
+  if (vg_sizing_is_stretched(sizing))
+    return vg_region_meets_in_metric(r, sizing, corner, reach, is_sure);
   for (int k = 0; k < 3; k++) {
     h[k] = vg_region_spacing(r, sizing, corner[k]);
     most = fmax(most, h[k]);
   }
-  if (longest(corner) <= 2 * most) return gap(r, 3, corner) <= reach * most;
+  if (vg_region_longest(corner) <= 2 * most)
+    return gap(r, 3, corner) <= reach * most;
   for (int k = 0; k < 3; k++)
     if (gap(r, 1, &corner[k]) <= reach * h[k]) return 1;
   most = fmax(most, spacing_amid(r, sizing, corner));
@@ -388,7 +320,10 @@ int vg_region_has_cell(const struct vg_region *r,
   if (!crosses && !(r->reach > 0)) return 0;
   for (int k = 0; k < 4; k++)
     if (!vg_region_within(r, corner[k])) return 0;
-  return crosses || has_corner(r, sizing, corner, far);
+  if (crosses) return 1;
+  return vg_sizing_is_stretched(sizing)
+         ? vg_region_has_corner_in_metric(r, sizing, corner)
+         : has_corner(r, sizing, corner, far);
 }
 
 /* --- many points ---------------------------------------------------------- */
@@ -399,17 +334,18 @@ vg_status vg_region_cache_init(struct vg_region_cache *cache,
                                const double (*x)[3], struct vg_error *err)
 {
   int m = region->n_plane + region->n_wall;
+  int n_spacing = vg_sizing_is_stretched(sizing) && m ? m : 1;
   double least, most;
 
   assert(cache && sizing && (x || !n));
   assert(vg_region_is_sound(region));
   vg_sizing_range_along(sizing, &least, &most);
   *cache = (struct vg_region_cache){
-    region,       sizing, x,    vg_sizing_slope_along(sizing),
-    most - least, m,      NULL, NULL
+    region,    sizing, x,   vg_sizing_slope_along(sizing), most - least, m,
+    n_spacing, NULL,   NULL
   };
   cache->side = vg_alloc(n, (size_t)(m ? m : 1) * sizeof *cache->side);
-  cache->spacing = vg_alloc(n, sizeof *cache->spacing);
+  cache->spacing = vg_alloc(n, (size_t)n_spacing * sizeof *cache->spacing);
   if (!cache->side || !cache->spacing)
     return vg_fail_memory(err, "measuring a front");
   for (size_t p = 0; p < n; p++) {
@@ -419,7 +355,10 @@ vg_status vg_region_cache_init(struct vg_region_cache *cache,
       s[i] = vg_plane_side(&region->plane[i], x[p]);
     for (int i = region->n_plane; i < m; i++)
       s[i] = vg_plane_side(&region->wall[i - region->n_plane], x[p]);
-    cache->spacing[p] = vg_region_spacing(region, sizing, x[p]);
+    if (vg_sizing_is_stretched(sizing))
+      vg_region_across(region, sizing, x[p],
+                       cache->spacing + p * (size_t)n_spacing);
+    else cache->spacing[p] = vg_region_spacing(region, sizing, x[p]);
   }
   return VG_OK;
 }
@@ -470,12 +409,6 @@ static double gap_of_point(const struct vg_region_cache *cache, uint32_t p)
   return far;
 }
 
-double vg_region_cache_far(const struct vg_region_cache *cache, uint32_t p)
-{
-  assert(cache->region && cache->side && cache->spacing);
-  return gap_of_point(cache, p) / cache->spacing[p];
-}
-
 /* Large triangles that plain distances do not decide are tested as in
  * vg_region_meets. The distances are compared using the smallest and the
  * largest possible spacing anywhere on the triangle, or at its middle, which
@@ -490,7 +423,7 @@ static int cache_meets(const struct vg_region_cache *cache, const uint32_t v[3],
   double least = h[v[0]] < h[v[1]] ? h[v[0]] : h[v[1]];
   double most = h[v[0]] < h[v[1]] ? h[v[1]] : h[v[0]];
   double reach = vg_region_band(r, band);
-  double far = gap_of(cache, v), size = longest(corner), rise, up;
+  double far = gap_of(cache, v), size = vg_region_longest(corner), rise, up;
 
   if (h[v[2]] < least) least = h[v[2]];
   if (h[v[2]] > most) most = h[v[2]];
@@ -507,16 +440,25 @@ static int cache_meets(const struct vg_region_cache *cache, const uint32_t v[3],
          large_meets(r, cache->sizing, corner, most, band, is_sure);
 }
 
+static int cached(const struct vg_region_cache *cache, const uint32_t v[3],
+                  double band, int is_sure)
+{
+  assert(cache->region && cache->side && cache->spacing);
+  return vg_sizing_is_stretched(cache->sizing)
+         ? vg_region_cache_meets_in_metric(cache, v,
+                                           vg_region_band(cache->region, band),
+                                           is_sure)
+         : cache_meets(cache, v, band, is_sure);
+}
+
 int vg_region_cache_meets(const struct vg_region_cache *cache,
                           const uint32_t v[3], double band)
 {
-  assert(cache->region && cache->side && cache->spacing);
-  return cache_meets(cache, v, band, 1);
+  return cached(cache, v, band, 1);
 }
 
 int vg_region_cache_may_meet(const struct vg_region_cache *cache,
                              const uint32_t v[3], double band)
 {
-  assert(cache->region && cache->side && cache->spacing);
-  return cache_meets(cache, v, band, 0);
+  return cached(cache, v, band, 0);
 }

@@ -5,7 +5,8 @@
  * A region lies along the intersection of its planes: one plane makes a
  * separator zone, two planes make an edge separator (pencil) around the line
  * where they meet. Distances from the region are measured in units of the
- * spacing at the foot of a point, its projection onto all planes. The
+ * spacing at the foot of a point, its projection onto all planes; in a metric,
+ * the distance from each plane in units of the spacing across that plane. The
  * thickness of a region therefore depends on the cells along it, however fast
  * the spacing grows away from it.
  *
@@ -35,7 +36,8 @@ struct vg_plane {
   double normal[3], offset;
 }; /* normal . x = offset */
 
-enum { VG_REGION_WALLS = 12 };
+/* Largest numbers of walls, and of planes and walls. */
+enum { VG_REGION_WALLS = 12, VG_REGION_SIDES = 2 + VG_REGION_WALLS };
 
 struct vg_region {
   int n_plane; /* number of planes; 0: no restriction */
@@ -93,7 +95,9 @@ static inline double vg_region_band(const struct vg_region *r, double band)
   return r->reach + band + (band >= VG_BAND_FLUID ? r->wide : 0);
 }
 
-/** Spacing at the foot of x; in a metric, that across the region. */
+/** Spacing at the foot of x. In a metric, the largest of those across the
+ * planes and half of those across the walls: an upper bound of the distances
+ * that count as one spacing. */
 double vg_region_spacing(const struct vg_region *r,
                          const struct vg_sizing *sizing, const double x[3]);
 
@@ -103,6 +107,17 @@ void vg_region_spacing_within(const struct vg_region *r,
                               const struct vg_sizing *sizing,
                               const double lo[3], const double hi[3],
                               double *least, double *most);
+
+/** In a metric: the spacings across the planes, then across the walls, at the
+ * foot of x. */
+void vg_region_across(const struct vg_region *r, const struct vg_sizing *sizing,
+                      const double x[3], double h[VG_REGION_SIDES]);
+
+/** Bounds of vg_region_across for all points in the box lo..hi. */
+void vg_region_across_within(const struct vg_region *r,
+                             const struct vg_sizing *sizing, const double lo[3],
+                             const double hi[3], double least[VG_REGION_SIDES],
+                             double most[VG_REGION_SIDES]);
 
 /** Project x onto all planes. */
 void vg_region_foot(const struct vg_region *r, const double x[3],
@@ -143,8 +158,9 @@ struct vg_region_cache {
                           distance, and its largest difference */
   int n_side;          /* distances per point: from all planes, then all
                           walls */
+  int n_spacing;       /* spacings per point: 1; in a metric, n_side */
   double *side;        /* [points][n_side] */
-  double *spacing;     /* [points] spacing at the foot */
+  double *spacing;     /* [points][n_spacing] spacings at the foot */
 };
 
 /** VG_ERR_MEMORY if memory is refused. Call vg_region_cache_release in any

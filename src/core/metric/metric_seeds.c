@@ -18,6 +18,43 @@ struct box {
   double lo[3], side[3];
 };
 
+struct seeder {
+  const struct vg_sizing *sizing;
+  const struct vg_region *region;
+  struct vg_metric_seeds *out;
+};
+
+/* May the box contain points that are placed along the region? */
+static int near_region(const struct seeder *s, const struct box *b)
+{
+  const struct vg_region *r = s->region;
+  double gap[VG_REGION_SIDES], far = 0, hi[3];
+  double least[VG_REGION_SIDES], most[VG_REGION_SIDES];
+  int n = r->n_plane + r->n_wall;
+
+  for (int i = 0; i < n; i++) {
+    int is_wall = i >= r->n_plane;
+    const struct vg_plane *p = is_wall ? &r->wall[i - r->n_plane]
+                                       : &r->plane[i];
+    double mid[3], half = 0, d;
+
+    for (int k = 0; k < 3; k++) {
+      mid[k] = b->lo[k] + 0.5 * b->side[k];
+      half += 0.5 * fabs(p->normal[k]) * b->side[k];
+    }
+    d = vg_plane_side(p, mid);
+    gap[i] = ((is_wall ? -d : fabs(d)) - half) /
+             (is_wall ? VG_BEYOND_WALLS : 1);
+    far = fmax(far, gap[i]);
+  }
+  if (far == 0) return 1;
+  for (int k = 0; k < 3; k++) hi[k] = b->lo[k] + b->side[k];
+  vg_region_across_within(r, s->sizing, b->lo, hi, least, most);
+  for (int i = 0; i < n; i++)
+    if (gap[i] > vg_region_band(r, VG_BAND_PLACE) * most[i]) return 0;
+  return 1;
+}
+
 /* The axis along which the box is longest in the metric of stretch t. */
 static int longest(const struct box *b, const double t[6])
 {
@@ -56,8 +93,12 @@ static double share_of(const double x[3])
          0x1p-53;
 }
 
-static int add_seed(struct vg_metric_seeds *out, const double x[3])
+static int add_seed(const struct seeder *s, const double x[3])
 {
+  struct vg_metric_seeds *out = s->out;
+
+  if (s->region && !vg_region_near(s->region, s->sizing, x, VG_BAND_PLACE))
+    return 0;
   if (vg_reserve(&out->x, &out->cap, out->n + 1, sizeof *out->x)) return -1;
   memcpy(out->x[out->n++], x, sizeof *out->x);
   return 0;
@@ -76,32 +117,34 @@ static int is_even(const struct vg_sizing *sizing, const struct box *b,
 /* Halve the box along its longest side in the metric until its complexity is
  * small. A box with less than seed_points gets a seed with the corresponding
  * probability. */
-static int seed(const struct vg_sizing *sizing, const struct box *b,
-                struct vg_metric_seeds *out)
+static int seed(const struct seeder *s, const struct box *b)
 {
   double x[3], t[6], h, volume = 1, points;
   struct box half = *b;
   int axis;
 
+  if (s->region && !near_region(s, b)) return 0;
   for (int k = 0; k < 3; k++) {
     x[k] = b->lo[k] + 0.5 * b->side[k];
     volume *= b->side[k];
   }
-  h = vg_sizing_stretch_at(sizing, x, t);
+  h = vg_sizing_stretch_at(s->sizing, x, t);
   points = volume / (h * h * h);
-  if (points <= seed_points && is_even(sizing, b, volume, h))
-    return share_of(x) * seed_points <= points ? add_seed(out, x) : 0;
+  if (points <= seed_points && is_even(s->sizing, b, volume, h))
+    return share_of(x) * seed_points <= points ? add_seed(s, x) : 0;
   axis = longest(b, t);
   half.side[axis] *= 0.5;
-  if (seed(sizing, &half, out)) return -1;
+  if (seed(s, &half)) return -1;
   half.lo[axis] += half.side[axis];
-  return seed(sizing, &half, out);
+  return seed(s, &half);
 }
 
 vg_status vg_metric_seeds(size_t n, const double (*x)[3],
                           const struct vg_sizing *sizing,
+                          const struct vg_region *region,
                           struct vg_metric_seeds *out, struct vg_error *err)
 {
+  const struct seeder s = { sizing, region, out };
   struct box b;
 
   assert(sizing && out && !out->n && (x || !n));
@@ -117,5 +160,5 @@ vg_status vg_metric_seeds(size_t n, const double (*x)[3],
     b.side[k] = hi - b.lo[k];
     if (!(b.side[k] > 0)) return VG_OK;
   }
-  return seed(sizing, &b, out) ? vg_fail_memory(err, "placing points") : VG_OK;
+  return seed(&s, &b) ? vg_fail_memory(err, "placing points") : VG_OK;
 }

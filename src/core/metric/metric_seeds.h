@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
+#include "core/front/region.h"
 #include "core/sizing/sizing.h"
 
 struct vg_metric_seeds {
@@ -19,12 +20,15 @@ struct vg_metric_seeds {
  * points of a boundary alone extend across regions of different metrics, whose
  * connections later insertions do not repair.
  *
- * @param x    [n] the points that bound the void
+ * @param x    [n] the points that bound the void * @param region  NULL, or the
+ * region along which points are placed: the seeds lie within its band
+ * VG_BAND_PLACE
  * @param out  starts empty; some seeds may lie outside the void
  *
  * VG_ERR_MEMORY. Deterministic. */
 vg_status vg_metric_seeds(size_t n, const double (*x)[3],
                           const struct vg_sizing *sizing,
+                          const struct vg_region *region,
                           struct vg_metric_seeds *out, struct vg_error *err);
 
 #endif

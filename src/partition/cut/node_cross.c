@@ -49,16 +49,19 @@ static int is_within(const struct band *b, const double *const x[3],
   return most <= b->width * (b->h - b->slope * sqrt(far2));
 }
 
-/* The same in a metric, by a lower bound of the spacing. */
-static int is_within_metric(const struct band *b, const double *const x[3],
-                            double most)
+/* The same in a metric, by lower bounds of the spacings across the planes. */
+static int is_within_metric(const struct band *b, const double *const x[3])
 {
+  const struct vg_region *r = b->region;
   struct vg_box box = VG_BOX_EMPTY;
-  double low, high;
+  double low[VG_REGION_SIDES], high[VG_REGION_SIDES];
 
   for (int k = 0; k < 3; k++) vg_box_add(&box, x[k]);
-  vg_region_spacing_within(b->region, b->sizing, box.lo, box.hi, &low, &high);
-  return most <= b->width * low;
+  vg_region_across_within(r, b->sizing, box.lo, box.hi, low, high);
+  for (int i = 0; i < r->n_plane; i++)
+    for (int k = 0; k < 3; k++)
+      if (fabs(vg_plane_side(&r->plane[i], x[k])) > b->width * low[i]) return 0;
+  return 1;
 }
 
 /* Does the triangle stay within the known band? Also no in doubt. */
@@ -67,10 +70,10 @@ static int stays(struct band *b, const double *const x[3])
   const struct vg_region *r = b->region;
   double most = 0;
 
+  if (vg_sizing_is_stretched(b->sizing)) return is_within_metric(b, x);
   for (int i = 0; i < r->n_plane; i++)
     for (int k = 0; k < 3; k++)
       most = fmax(most, fabs(vg_plane_side(&r->plane[i], x[k])));
-  if (vg_sizing_is_stretched(b->sizing)) return is_within_metric(b, x, most);
   if (is_within(b, x, most)) return 1;
   for (int k = 0; k < 3; k++) b->x[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
   b->h = vg_region_spacing(r, b->sizing, b->x);

@@ -364,14 +364,17 @@ static double farthest(const struct list *l, const double *const x[3])
   double most = 0;
 
   for (int k = 0; k < 3; k++) {
-    double h = vg_region_spacing(r, l->s->sizing, x[k]);
+    int is_stretched = vg_sizing_is_stretched(l->s->sizing);
+    double h[VG_REGION_SIDES];
 
+    if (is_stretched) vg_region_across(r, l->s->sizing, x[k], h);
+    else h[0] = vg_region_spacing(r, l->s->sizing, x[k]);
     for (int i = 0; i < r->n_plane; i++) {
       const double *n = r->plane[i].normal;
       double d = n[0] * x[k][0] + n[1] * x[k][1] + n[2] * x[k][2] -
                  r->plane[i].offset;
 
-      most = fmax(most, fabs(d) / h);
+      most = fmax(most, fabs(d) / h[is_stretched ? i : 0]);
     }
   }
   return most;
