@@ -10,6 +10,8 @@
 #include "core/geometry/shape.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
+#include "core/metric/metrics.h"
+#include "core/optimise/optimise.h"
 
 /* Band for a plane without walls, which may use the whole known part of the
  * front; large surface triangles need that. Regions with adjacent regions use
@@ -128,6 +130,62 @@ static void fix_faces(struct vg_tets *t)
     }
 }
 
+/* Is cell c a hole: a cell of the region that cannot be kept, because it has a
+ * corner around which the front is not known? */
+static int is_hole(const struct zone *z, const uint8_t *is_known, uint32_t c)
+{
+  return !(z->g->t.flag[c] & (VG_DEAD | VG_OUTSIDE)) &&
+         !all_four(z, is_known, c) && belongs(z, c);
+}
+
+static size_t count_holes(const struct zone *z, const uint8_t *is_known)
+{
+  size_t n = 0;
+
+  for (uint32_t c = 0; c < z->g->t.n_cell; c++)
+    n += (size_t)is_hole(z, is_known, c);
+  return n;
+}
+
+/* K53: passes of swaps that remove holes, and the largest shape of a cell that
+ * is swapped. */
+enum { HOLE_PASSES = 3 };
+static const float hole_shape = 0.45F;
+
+/* In a metric, the cavity of a point is found in a mean of metrics. Slivers
+ * between a distant corner and placed points may stay outside all cavities,
+ * across cells that are dense otherwise. Swaps remove them, as long as their
+ * faces are not fixed. */
+static vg_status swap_holes(const struct zone *z, const uint8_t *is_known,
+                            struct vg_error *err)
+{
+  struct vg_tets *t = &z->g->t;
+  struct vg_metrics metrics = { .sizing = z->g->sizing };
+  struct vg_optimise_report r = { 0 };
+  size_t n_hole = count_holes(z, is_known), before = SIZE_MAX;
+  float *q;
+  vg_status st = VG_OK;
+
+  if (!n_hole) return VG_OK;
+  q = vg_alloc(t->n_cell, sizeof *q);
+  if (!q || vg_metrics_add(&metrics, t, 0, t->n_point))
+    st = vg_fail_memory(err, "the points of a zone");
+  for (uint32_t c = 0; st == VG_OK && c < t->n_cell; c++)
+    q[c] = t->flag[c] & (VG_DEAD | VG_OUTSIDE)
+           ? 1
+           : (float)vg_metrics_shape(&metrics, t, t->cell[c].v);
+  for (int k = 0; st == VG_OK && n_hole && n_hole < before && k < HOLE_PASSES;
+       k++) {
+    st = vg_optimise_swaps(t, hole_shape, &metrics, &q, &r, err);
+    z->g->report->n_flip += r.n_flip;
+    before = n_hole;
+    n_hole = count_holes(z, is_known);
+  }
+  vg_metrics_release(&metrics);
+  free(q);
+  return st;
+}
+
 vg_status vg_zone_narrow(struct vg_filling *g, struct vg_error *err)
 {
   struct zone z = { .g = g };
@@ -144,6 +202,8 @@ vg_status vg_zone_narrow(struct vg_filling *g, struct vg_error *err)
   for (uint32_t p = 0; p < t->n_point; p++)
     is_known[p] = !is_corner(&z, p) &&
                   vg_region_near(r, g->sizing, t->x[p], band);
+  if (vg_sizing_is_stretched(g->sizing)) st = swap_holes(&z, is_known, err);
+  if (st < 0) goto done;
   for (uint32_t c = 0; c < t->n_cell; c++) {
     if (t->flag[c] & (VG_DEAD | VG_OUTSIDE) || all_four(&z, is_known, c))
       continue;
