@@ -33,6 +33,10 @@ struct zone {
   uint8_t *at; /* [t.n_point] bits 2 i and 2 i + 1: the point is not below
                   and not above plane i; NULL: cells within reach belong to
                   the region, too */
+  size_t cap_at;
+  double band;    /* width within which the front is known */
+  uint8_t *known; /* [t.n_point] 1: within that band */
+  size_t cap_known;
 };
 
 static int is_corner(const struct zone *z, uint32_t p)
@@ -47,21 +51,38 @@ static int all_four(const struct zone *z, const uint8_t *flag, uint32_t c)
   return flag[v[0]] && flag[v[1]] && flag[v[2]] && flag[v[3]];
 }
 
-/* Set z->at: the sides of the planes on which the points are. */
-static vg_status find_point_sides(struct zone *z, struct vg_error *err)
+/* Set z->at: the sides of the planes on which the points from `first` on
+ * are. */
+static vg_status find_point_sides(struct zone *z, size_t first,
+                                  struct vg_error *err)
 {
   const struct vg_tets *t = &z->g->t;
   const struct vg_region *r = z->g->region;
 
   if (r->reach > 0) return VG_OK;
-  z->at = vg_calloc(t->n_point, 1);
-  if (!z->at) return vg_fail_memory(err, "the points of a zone");
-  for (int i = 0; i < r->n_plane; i++)
-    for (size_t p = 0; p < t->n_point; p++) {
+  if (vg_reserve(&z->at, &z->cap_at, t->n_point, 1))
+    return vg_fail_memory(err, "the points of a zone");
+  for (size_t p = first; p < t->n_point; p++) {
+    z->at[p] = 0;
+    for (int i = 0; i < r->n_plane; i++) {
       double s = vg_plane_side(&r->plane[i], t->x[p]);
 
       z->at[p] |= (uint8_t)(((s >= 0) | (s <= 0) << 1) << 2 * i);
     }
+  }
+  return VG_OK;
+}
+
+/* The same for z->known. */
+static vg_status find_known(struct zone *z, size_t first, struct vg_error *err)
+{
+  const struct vg_tets *t = &z->g->t;
+
+  if (vg_reserve(&z->known, &z->cap_known, t->n_point, 1))
+    return vg_fail_memory(err, "the points of a zone");
+  for (size_t p = first; p < t->n_point; p++)
+    z->known[p] = !is_corner(z, (uint32_t)p) &&
+                  vg_region_near(z->g->region, z->g->sizing, t->x[p], z->band);
   return VG_OK;
 }
 
@@ -130,82 +151,147 @@ static void fix_faces(struct vg_tets *t)
     }
 }
 
+/* --- holes ---------------------------------------------------------------- */
+
 /* Is cell c a hole: a cell of the region that cannot be kept, because it has a
  * corner around which the front is not known? */
-static int is_hole(const struct zone *z, const uint8_t *is_known, uint32_t c)
+static int is_hole(const struct zone *z, uint32_t c)
 {
   return !(z->g->t.flag[c] & (VG_DEAD | VG_OUTSIDE)) &&
-         !all_four(z, is_known, c) && belongs(z, c);
+         !all_four(z, z->known, c) && belongs(z, c);
 }
 
-static size_t count_holes(const struct zone *z, const uint8_t *is_known)
+static size_t count_holes(const struct zone *z)
 {
   size_t n = 0;
 
-  for (uint32_t c = 0; c < z->g->t.n_cell; c++)
-    n += (size_t)is_hole(z, is_known, c);
+  for (uint32_t c = 0; c < z->g->t.n_cell; c++) n += (size_t)is_hole(z, c);
   return n;
 }
 
 /* K53: passes of swaps that remove holes, and the largest shape of a cell that
- * is swapped. */
+ * is swapped; least distance of a point in a hole from other points. */
 enum { HOLE_PASSES = 3 };
 static const float hole_shape = 0.45F;
+static const double hole_distance = 0.45;
 
-/* In a metric, the cavity of a point is found in a mean of metrics. Slivers
- * between a distant corner and placed points may stay outside all cavities,
- * across cells that are dense otherwise. Swaps remove them, as long as their
- * faces are not fixed. */
-static vg_status swap_holes(const struct zone *z, const uint8_t *is_known,
-                            struct vg_error *err)
+/* Swap bad cells until the number of holes, which is n_hole, does not
+ * decrease. */
+static vg_status swap_holes(const struct zone *z, struct vg_metrics *metrics,
+                            size_t n_hole, struct vg_error *err)
 {
   struct vg_tets *t = &z->g->t;
-  struct vg_metrics metrics = { .sizing = z->g->sizing };
   struct vg_optimise_report r = { 0 };
-  size_t n_hole = count_holes(z, is_known), before = SIZE_MAX;
-  float *q;
-  vg_status st = VG_OK;
+  size_t before = SIZE_MAX;
+  float *q = vg_alloc(t->n_cell, sizeof *q);
+  vg_status st = q ? VG_OK : vg_fail_memory(err, "the points of a zone");
 
-  if (!n_hole) return VG_OK;
-  q = vg_alloc(t->n_cell, sizeof *q);
-  if (!q || vg_metrics_add(&metrics, t, 0, t->n_point))
-    st = vg_fail_memory(err, "the points of a zone");
   for (uint32_t c = 0; st == VG_OK && c < t->n_cell; c++)
     q[c] = t->flag[c] & (VG_DEAD | VG_OUTSIDE)
            ? 1
-           : (float)vg_metrics_shape(&metrics, t, t->cell[c].v);
+           : (float)vg_metrics_shape(metrics, t, t->cell[c].v);
   for (int k = 0; st == VG_OK && n_hole && n_hole < before && k < HOLE_PASSES;
        k++) {
-    st = vg_optimise_swaps(t, hole_shape, &metrics, &q, &r, err);
+    st = vg_optimise_swaps(t, hole_shape, metrics, &q, &r, err);
     z->g->report->n_flip += r.n_flip;
     before = n_hole;
-    n_hole = count_holes(z, is_known);
+    n_hole = count_holes(z);
+  }
+  free(q);
+  return st;
+}
+
+/* A position within hole c: one length from the centre of its known corners
+ * towards the others, at most halfway. Returns 0 if no corner is known. */
+static int inside_hole(const struct zone *z, uint32_t c, double x[3])
+{
+  const struct vg_tets *t = &z->g->t;
+  const uint32_t *v = t->cell[c].v;
+  double mean[2][3] = { { 0 } }, d[3], e[3], stretch[6], share;
+  int n[2] = { 0, 0 };
+
+  for (int i = 0; i < 4; i++) {
+    int is = z->known[v[i]];
+
+    n[is]++;
+    for (int k = 0; k < 3; k++) mean[is][k] += t->x[v[i]][k];
+  }
+  if (!n[1]) return 0;
+  for (int k = 0; k < 3; k++) {
+    mean[1][k] /= n[1];
+    d[k] = mean[0][k] / n[0] - mean[1][k];
+  }
+  vg_sizing_stretch_at(z->g->sizing, mean[1], stretch);
+  vg_tensor_apply(stretch, d, e);
+  share = fmin(0.5, 1 / vg_norm(e));
+  for (int k = 0; k < 3; k++) x[k] = mean[1][k] + share * d[k];
+  return 1;
+}
+
+/* Insert a point into each hole whose surroundings are coarse enough. */
+static vg_status split_holes(struct zone *z, struct vg_metrics *metrics,
+                             struct vg_error *err)
+{
+  struct vg_tets *t = &z->g->t;
+  struct vg_inserter s;
+  vg_status st = vg_inserter_init(&s, t, err);
+
+  for (uint32_t c = 0; st >= 0 && c < t->n_cell; c++) {
+    size_t first = t->n_point;
+    struct vg_point_metric m;
+    double x[3];
+
+    if (!is_hole(z, c) || !inside_hole(z, c, x)) continue;
+    vg_metric_at(z->g->sizing, x, &m);
+    st = vg_metrics_insert(metrics, &s, x, &m, c, hole_distance, hole_distance,
+                           err);
+    if (st != VG_OK) continue;
+    z->g->report->n_inserted++;
+    st = find_point_sides(z, first, err);
+    if (st == VG_OK) st = find_known(z, first, err);
+  }
+  vg_inserter_release(&s);
+  return st < 0 ? st : VG_OK;
+}
+
+/* In a metric, the cavity of a point is found in a mean of metrics. Slivers
+ * between a distant corner and placed points may stay outside all cavities,
+ * across cells that are dense otherwise. Swaps remove most of them; others get
+ * a point, and swaps follow again. */
+static vg_status close_holes(struct zone *z, struct vg_error *err)
+{
+  struct vg_metrics metrics = { .sizing = z->g->sizing };
+  size_t n_hole = count_holes(z);
+  vg_status st = VG_OK;
+
+  if (!n_hole) return VG_OK;
+  if (vg_metrics_add(&metrics, &z->g->t, 0, z->g->t.n_point))
+    st = vg_fail_memory(err, "the points of a zone");
+  if (st == VG_OK) st = swap_holes(z, &metrics, n_hole, err);
+  if (st == VG_OK && count_holes(z)) {
+    st = split_holes(z, &metrics, err);
+    if (st == VG_OK) st = swap_holes(z, &metrics, count_holes(z), err);
   }
   vg_metrics_release(&metrics);
-  free(q);
   return st;
 }
 
 vg_status vg_zone_narrow(struct vg_filling *g, struct vg_error *err)
 {
-  struct zone z = { .g = g };
-  struct vg_tets *t = &g->t;
   const struct vg_region *r = g->region;
-  uint8_t *is_known = vg_alloc(t->n_point, 1);
-  double band = r->n_plane > 1 || r->n_wall ? VG_BAND_FLUID : whole_band;
-  vg_status st = is_known ? find_point_sides(&z, err)
-                          : vg_fail_memory(err, "the points of a zone");
+  struct vg_tets *t = &g->t;
+  struct zone z = { .g = g };
+  vg_status st = find_point_sides(&z, 0, err);
 
   assert(r && (r->n_plane > 0 || r->n_wall > 0));
   assert(t->n_point >= g->front->n_point + 8);
-  if (st < 0) goto done;
-  for (uint32_t p = 0; p < t->n_point; p++)
-    is_known[p] = !is_corner(&z, p) &&
-                  vg_region_near(r, g->sizing, t->x[p], band);
-  if (vg_sizing_is_stretched(g->sizing)) st = swap_holes(&z, is_known, err);
+  z.band = r->n_plane > 1 || r->n_wall ? VG_BAND_FLUID : whole_band;
+  if (st == VG_OK) st = find_known(&z, 0, err);
+  if (st == VG_OK && vg_sizing_is_stretched(g->sizing))
+    st = close_holes(&z, err);
   if (st < 0) goto done;
   for (uint32_t c = 0; c < t->n_cell; c++) {
-    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE) || all_four(&z, is_known, c))
+    if (t->flag[c] & (VG_DEAD | VG_OUTSIDE) || all_four(&z, z.known, c))
       continue;
     t->flag[c] |= VG_OUTSIDE;
     g->out.n_hole += (size_t)belongs(&z, c);
@@ -213,9 +299,11 @@ vg_status vg_zone_narrow(struct vg_filling *g, struct vg_error *err)
   fix_faces(t);
 done:
   free(z.at);
-  free(is_known);
+  free(z.known);
   return st;
 }
+
+/* --- cells that are kept -------------------------------------------------- */
 
 static double shares_of_spacing(const struct vg_sizing *sizing,
                                 const double *const x[4])
@@ -338,7 +426,7 @@ vg_status vg_zone_choose(struct vg_filling *g, struct vg_error *err)
   struct zone z = { .g = g };
   struct vg_tets *t = &g->t;
   uint8_t *used = vg_calloc(t->n_point, 1);
-  vg_status st = used ? find_point_sides(&z, err)
+  vg_status st = used ? find_point_sides(&z, 0, err)
                       : vg_fail_memory(err, "the points of a zone");
 
   assert(g->region && !g->out.n_cell);
