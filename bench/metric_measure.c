@@ -126,8 +126,11 @@ vg_status metric_measure(const struct metric_case *c, const struct vg_mesh *m,
     metric_case_at(c, m->point[p], k.metric[p]);
   measure_edges(&k);
   for (size_t i = 0; i < m->n_tet; i++) measure_cell(&k, m->tet[i]);
-  for (int i = 0; i < 4; i++) out->within[i] *= 100 / (double)out->n_edge;
-  for (int i = 0; i < 2; i++) out->below[i] *= 100 / (double)out->n_cell;
+  /* the division comes last: 100 % is exact, and its rest is not negative */
+  for (int i = 0; i < 4; i++)
+    out->within[i] = 100 * out->within[i] / (double)out->n_edge;
+  for (int i = 0; i < 2; i++)
+    out->below[i] = 100 * out->below[i] / (double)out->n_cell;
   out->mean /= (double)out->n_cell;
 done:
   free(k.metric);

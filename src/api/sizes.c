@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* The caller's sizes: the part of api/vanguard.h before vanguard_mesh. */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,17 +21,29 @@ void vg_job_forget_sizes(vanguard_job *job)
   job->metric = NULL;
 }
 
-vanguard_status vanguard_sizes(vanguard_job *job, vanguard_size_function *size,
-                               void *user)
+/* Forget the previous sizes of a job and use the given function. The other one
+ * is NULL; both are NULL to use none. */
+static vanguard_status use_function(vanguard_job *job,
+                                    vanguard_size_function *size,
+                                    vanguard_metric_function *metric,
+                                    void *user)
 {
   VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
   vg_status st = vg_job_usable(job);
 
+  assert(!size || !metric);
   if (st < 0) return vg_job_status(st);
   vg_job_forget_sizes(job);
   job->size = size;
+  job->metric = metric;
   job->size_user = user;
   return VANGUARD_OK;
+}
+
+vanguard_status vanguard_sizes(vanguard_job *job, vanguard_size_function *size,
+                               void *user)
+{
+  return use_function(job, size, NULL, user);
 }
 
 vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
@@ -66,14 +79,7 @@ done:
 vanguard_status vanguard_metrics(vanguard_job *job,
                                  vanguard_metric_function *metric, void *user)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
-  vg_status st = vg_job_usable(job);
-
-  if (st < 0) return vg_job_status(st);
-  vg_job_forget_sizes(job);
-  job->metric = metric;
-  job->size_user = user;
-  return VANGUARD_OK;
+  return use_function(job, NULL, metric, user);
 }
 
 static vg_status copy_tets(struct vg_mesh *m, size_t n, const uint32_t *tet,

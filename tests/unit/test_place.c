@@ -94,12 +94,6 @@ static struct vg_placed place(const struct scene *s,
   return out;
 }
 
-static void free_placed(struct vg_placed *p)
-{
-  free(p->x);
-  free(p->h);
-}
-
 /* The least distance between points is 0.66 spacings, measured in single
  * precision; slightly less where the sizing field has a steep gradient, as it
  * is evaluated twice. */
@@ -149,7 +143,7 @@ static void a_uniform_field(void **state)
   assert_in_range(p.n, 300, 1000);
   keep_their_distance(&s, &p, 0.65);
   leave_no_gap(&s, &p, lo, hi);
-  free_placed(&p);
+  vg_placed_release(&p);
   scene_end(&s);
 }
 
@@ -170,7 +164,7 @@ static void a_graded_field(void **state)
 
     assert_true(distance(p.x[i], zero) > 1); /* none in the body */
   }
-  free_placed(&p);
+  vg_placed_release(&p);
   scene_end(&s);
 }
 
@@ -185,8 +179,8 @@ static void the_same_bytes_again(void **state)
   q = place(&s, NULL, 0);
   assert_int_equal(p.n, q.n);
   assert_memory_equal(p.x, q.x, p.n * sizeof *p.x);
-  free_placed(&p);
-  free_placed(&q);
+  vg_placed_release(&p);
+  vg_placed_release(&q);
   scene_end(&s);
 }
 
@@ -210,8 +204,8 @@ static void the_limit_is_exact(void **state)
   assert_int_equal(vg_place(&s.t, s.sizing, NULL, 1, &none, &err),
                    VG_ERR_UNSUPPORTED);
   assert_null(none.x);
-  free_placed(&p);
-  free_placed(&q);
+  vg_placed_release(&p);
+  vg_placed_release(&q);
   scene_end(&s);
 }
 
@@ -231,8 +225,8 @@ static void existing_points_count(void **state)
   q = place(&s, NULL, 0);
   assert_true(q.n <= p.n / 20);
   vg_inserter_release(&inserter);
-  free_placed(&p);
-  free_placed(&q);
+  vg_placed_release(&p);
+  vg_placed_release(&q);
   scene_end(&s);
 }
 
@@ -255,8 +249,8 @@ static void a_slab_gets_only_its_own_points(void **state)
     assert_true(vg_region_near(&zone, s.sizing, p.x[i], VG_BAND_PLACE));
   keep_their_distance(&s, &p, 0.65);
   leave_no_gap(&s, &p, lo, hi);
-  free_placed(&p);
-  free_placed(&all);
+  vg_placed_release(&p);
+  vg_placed_release(&all);
   scene_end(&s);
 }
 
@@ -280,7 +274,7 @@ static double least_within(const struct scene *s,
     n++;
   }
   assert_true(n > 100);
-  free_placed(&p);
+  vg_placed_release(&p);
   return least;
 }
 
@@ -392,9 +386,9 @@ static void seeds_are_few_and_spread(void **state)
                    VG_OK);
   assert_true(some.n > 0 && some.n < p.n);
   for (size_t i = 0; i < some.n; i++) assert_true(fabs(some.x[i][2]) < 1e-9);
-  free_placed(&p);
-  free_placed(&q);
-  free_placed(&some);
+  vg_placed_release(&p);
+  vg_placed_release(&q);
+  vg_placed_release(&some);
   assert_int_equal(vg_place_seeds(0, x, s.sizing, NULL, &p, NULL), VG_OK);
   assert_int_equal(p.n, 0);
   assert_null(p.x);
@@ -431,7 +425,7 @@ static double seed_near(const struct vg_source *source, double growth,
   struct vg_placed p = seeds_of(source, growth, region);
   double d = nearest(p.n, (const double(*)[3])p.x, x);
 
-  free_placed(&p);
+  vg_placed_release(&p);
   return d;
 }
 
@@ -485,7 +479,7 @@ static void thin_lines_have_seeds(void **state)
       x[k] = source.p0[k] + (i + 0.5) / 200 * (source.p1[k] - source.p0[k]);
     assert_true(nearest(p.n, (const double(*)[3])p.x, x) < 8 * 1.8 * source.h0);
   }
-  free_placed(&p);
+  vg_placed_release(&p);
   for (int k = 0; k < 3; k++)
     x[k] = source.p0[k] + 0.5 * (source.p1[k] - source.p0[k]);
   assert_true(seed_near(&source, 3, &zone, x) < 2 * source.h0);

@@ -561,8 +561,7 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
       (!seed(&s, lo, side) && (vg_sizing_slope(sizing) <= steepest ||
                                seed_hidden(&s, lo, side, 0) >= 0)))
     return VG_OK;
-  free(out->x);
-  memset(out, 0, sizeof *out);
+  vg_placed_release(out);
   return vg_fail_memory(err, "placing points");
 }
 
@@ -702,6 +701,14 @@ static struct placer *start(const struct vg_tets *t,
     return NULL;
   }
   return p;
+}
+
+void vg_placed_release(struct vg_placed *p)
+{
+  assert(p);
+  free(p->x);
+  free(p->h);
+  memset(p, 0, sizeof *p);
 }
 
 vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,

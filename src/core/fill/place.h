@@ -21,14 +21,17 @@
 #include "core/front/region.h"
 #include "core/sizing/sizing.h"
 
+/** Points in the order of their placement; empty if zeroed. */
 struct vg_placed {
   size_t n;
-  double (*x)[3]; /* [n], owned by the caller */
-  float *h;       /* [n] spacings at the points, owned by the caller; NULL: not
-                     computed */
+  double (*x)[3]; /* [n] */
+  float *h;       /* [n] spacings at the points; NULL: not computed */
   size_t n_cut;   /* number of truncated lists of surrounding points
                      (hgrid.h) */
 };
+
+/** Free the points; p is empty afterwards. */
+void vg_placed_release(struct vg_placed *p);
 
 /** A sparse set of points, one for every few hundred points of the field, to be
  * inserted first. They break up the long cells that span a void from surface
@@ -38,8 +41,8 @@ struct vg_placed {
  * advancing points would step over them.
  *
  * @param x    in: [n][3] the points that bound the void
- * @param out  owned by the caller: free(out->x); some points may lie outside;
- *             without spacings */
+ * @param out  replaced without being released, to be released by the caller;
+ *             some points may lie outside; without spacings */
 vg_status vg_place_seeds(size_t n, const double (*x)[3],
                          const struct vg_sizing *sizing,
                          const struct vg_region *region, struct vg_placed *out,
@@ -49,6 +52,7 @@ vg_status vg_place_seeds(size_t n, const double (*x)[3],
  *
  * @param region  NULL: everywhere
  * @param limit   fail if more points are needed; 0: no limit
+ * @param out     as for vg_place_seeds, but unchanged on failure
  *
  * Returns VG_ERR_UNSUPPORTED if the limit is exceeded. Deterministic. */
 vg_status vg_place(const struct vg_tets *t, const struct vg_sizing *sizing,

@@ -79,8 +79,9 @@ static vg_status insert_all(struct vg_filling *g,
   return st < 0 ? st : VG_OK;
 }
 
-static vg_status insert_placed(struct vg_filling *g, struct vg_placed *placed,
-                               double nearest, struct vg_error *err)
+static vg_status insert_placed(struct vg_filling *g,
+                               const struct vg_placed *placed, double nearest,
+                               struct vg_error *err)
 {
   uint32_t *order = vg_alloc(placed->n, sizeof *order);
   double t0 = vg_clock();
@@ -95,8 +96,6 @@ static vg_status insert_placed(struct vg_filling *g, struct vg_placed *placed,
   st = insert_all(g, placed, order, nearest, err);
 done:
   free(order);
-  free(placed->x);
-  free(placed->h);
   g->report->n_placed += placed->n;
   g->report->time_insert += vg_clock() - t0;
   return st;
@@ -113,6 +112,7 @@ vg_status vg_filling_populate(struct vg_filling *g, struct vg_error *err)
   VG_TRY(vg_place_seeds(g->front->n_point, (const double(*)[3])g->t.x,
                         g->sizing, g->region, &placed, err));
   st = insert_placed(g, &placed, seed_distance, err);
+  vg_placed_release(&placed);
   if (st != VG_OK) goto done;
   t0 = vg_clock();
   VG_TRY(vg_place(&g->t, g->sizing, g->region, g->options->point_limit, &placed,
@@ -121,6 +121,7 @@ vg_status vg_filling_populate(struct vg_filling *g, struct vg_error *err)
   g->report->time_place += vg_clock() - t0;
   st = insert_placed(g, &placed, least_distance, err);
 done:
+  vg_placed_release(&placed);
   return st;
 }
 
