@@ -21,23 +21,10 @@
 #define GROW_LIMIT 50000
 /* Least efficiency of the best machine if there is no target. */
 #define EFFICIENT 0.8
-/* A sizing field of this coarseness is accurate enough to count cells (M6). */
-#define COARSENESS 2
-
 /* Seconds on one core; docs/lab/performance-parallel.md, "Model". */
 static const double spread_per_cell = 0.35e-6; /* number, judge, encode */
 static const double digest_per_byte = 0.4e-9;  /* digest of the files */
 static const double layer_per_cell = 0.1e-6;   /* growing and measuring */
-
-/* Bytes per cell of the field in pieces, and of a void while it is filled; per
- * point of the layers; per triangle of the front; per wall point with columns;
- * per octant of the load; per leaf of the octree of the sizing field
- * (vg_sizing_leaves), which has fewer leaves here than in the run; of the
- * program. Fitted to wings of 74, 206 and 562 M cells, box and sphere (M7). */
-static const double mesh_per_cell = 35, fill_per_cell = 60, per_point = 8;
-static const double per_triangle = 250, per_wall_point = 1540, per_cube = 28;
-static const double per_leaf = 37 * COARSENESS * COARSENESS;
-static const double program = 18e6;
 
 /* --- estimated layers ---------------------------------------------------- */
 
@@ -264,7 +251,8 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
     VG_TRY(estimate_layers(p, err));
   }
   count_time(p, VG_PHASE_LAYERS, start);
-  st = measure_sizes(p, p->front, COARSENESS, COARSENESS * COARSENESS, err);
+  st = measure_sizes(p, p->front, VG_PLAN_COARSENESS,
+                     VG_PLAN_COARSENESS * VG_PLAN_COARSENESS, err);
 done:
   free(view.tri);
   free(view.tri_patch);
@@ -295,25 +283,6 @@ static double bytes_written(const struct vg_plan *p)
        word = strtok_r(NULL, " ,", &save))
     sum += vg_plan_bytes(p, word);
   return sum;
-}
-
-/* Memory of every rank, and of each of its cells and threads. */
-static void count_memory(struct vg_plan *p)
-{
-  double most = 0;
-
-  for (size_t i = 0; i < p->forecast.n_node; i++) {
-    const struct vg_forecast_node *n = &p->forecast.node[i];
-
-    if (vg_forecast_is_leaf(n) && n->cells > most) most = n->cells;
-  }
-  p->shared = program + per_triangle * (double)p->front->n_tri +
-              per_wall_point * (double)p->n_wall_point +
-              per_cube * (double)p->load.n +
-              per_leaf * (double)vg_sizing_leaves(p->sizing);
-  p->per_cell = (mesh_per_cell * p->load.cells + per_point * p->layer_point) /
-                p->cell;
-  p->per_thread = fill_per_cell * most;
 }
 
 /* --- the run ------------------------------------------------------------- */
@@ -395,8 +364,10 @@ static vg_status run_on(const struct vg_plan *p, const struct vg_forecast *o,
   }
   row->speedup = (row->tasks.work + outside / m.rate) / row->wall;
   row->efficiency = row->speedup / ranks / threads;
-  row->memory = p->shared + p->per_cell * p->cell / ranks +
-                threads * p->per_thread;
+  vg_plan_memory(p, o, ranks, threads, row->stage);
+  row->memory = 0;
+  for (int i = 0; i < VG_PLAN_STAGES; i++)
+    row->memory = fmax(row->memory, row->stage[i]);
   return VG_OK;
 }
 
@@ -487,8 +458,8 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   p->front = &p->problem.boundary.surface;
   if (p->layers.is_on) VG_TRY(make_layers(p, err));
   else
-    VG_TRY(
-      measure_sizes(p, p->front, COARSENESS, COARSENESS * COARSENESS, err));
+    VG_TRY(measure_sizes(p, p->front, VG_PLAN_COARSENESS,
+                         VG_PLAN_COARSENESS * VG_PLAN_COARSENESS, err));
   VG_TRY(vg_boundary_effects(&p->problem.boundary, p->front, p->sizing,
                              &p->effects, err));
   vg_effects_note(&p->effects, p->front, &p->problem.resolved.settings,
@@ -508,7 +479,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
     vg_ways[s->decompose].maker != NULL, p->rule.leaf_cells);
   VG_TRY(forecast(p, p->rule.leaf_cells, &p->forecast, err));
   count_mesh(p);
-  count_memory(p);
+  p->shared = vg_plan_shared(p);
   p->phase[VG_PHASE_JUDGE] = p->spread_per_cell * p->cell;
   p->phase[VG_PHASE_WRITE] = digest_per_byte * bytes_written(p);
   st = run_all(p, err);

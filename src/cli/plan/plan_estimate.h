@@ -15,13 +15,25 @@
 
 enum { VG_PLAN_LEAVES = 8 };
 
+/* A sizing field of this coarseness is accurate enough to count cells (M6). */
+#define VG_PLAN_COARSENESS 2
+
+/** Stages of a run whose memory is forecast. */
+enum vg_plan_stage {
+  VG_PLAN_SIZES, /* Surface, sizing field and layers. */
+  VG_PLAN_FILL,
+  VG_PLAN_CHECK, /* Mesh check, during which files are written. */
+  VG_PLAN_STAGES
+};
+
 /** Forecast of a complete run on one machine. */
 struct vg_plan_row {
   int ranks, threads, ranks_per_node;
   struct vg_model_result tasks; /* cutting and filling only */
   double wall;                  /* seconds of the complete run */
   double speedup, efficiency;   /* of the complete run, over one worker */
-  double memory;                /* bytes per rank */
+  double stage[VG_PLAN_STAGES]; /* bytes of the rank that needs most */
+  double memory;                /* the largest of these */
 };
 
 /** The decomposition (discrete or octree) made before anything is filled. */
@@ -60,8 +72,8 @@ struct vg_plan {
   double phase[VG_PHASE_N];       /* seconds on one core, outside the tasks;
                                      the mesh check includes the files written
                                      with it, writing the files after it */
-  double shared, per_cell, per_thread; /* bytes: of every rank; per cell of the
-                                  mesh, mean of field and layers; of a leaf */
+  double shared;                  /* bytes of surface, layers and sizing field,
+                                     of which a node has one copy */
   size_t n_row;
   struct vg_plan_row *row; /* [n_row] */
   size_t best;             /* best row; SIZE_MAX: none meets the criterion */
@@ -79,6 +91,15 @@ struct vg_plan {
  * Returns their sum. */
 double vg_plan_phase(const struct vg_plan *p, const struct vg_plan_row *r,
                      enum vg_phase phase, double parts[3]);
+
+/** Bytes of surface, layers and sizing field, of which a node has one copy.
+ * (plan_memory.c) */
+double vg_plan_shared(const struct vg_plan *p);
+
+/** Bytes of the rank that needs most, in each stage. o: the forecast of the
+ * tasks. (plan_memory.c) */
+void vg_plan_memory(const struct vg_plan *p, const struct vg_forecast *o,
+                    int ranks, int threads, double stage[VG_PLAN_STAGES]);
 
 /** Size in bytes of the files of a format in the write list; 0: unknown. */
 double vg_plan_bytes(const struct vg_plan *p, const char *item);

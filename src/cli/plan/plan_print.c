@@ -92,7 +92,7 @@ static const char *bytes(double n, char text[32])
 static void print_mesh(const struct vg_plan *p)
 {
   const struct vg_notes *notes = &p->problem.notes;
-  char a[32], b[32];
+  char a[32];
 
   printf("%s\n\nExpected mesh\n", p->problem.asked.title);
   printf("  %-24s %15s\n", "cells", count(p->cell, a));
@@ -110,9 +110,6 @@ static void print_mesh(const struct vg_plan *p)
   printf("  %-24s %15s\n", "triangles of the front",
          count((double)p->front->n_tri, a));
   for (size_t i = 0; i < notes->n; i++) printf("  note: %s\n", notes->text[i]);
-  printf("\nMemory\n  each rank %s, plus %.0f B for each of its cells and %s "
-         "for each thread\n",
-         bytes(p->shared, a), p->per_cell, bytes(p->per_thread, b));
 }
 
 static void print_files(const struct vg_plan *p)
@@ -331,6 +328,23 @@ static void print_limits(const struct vg_plan *p)
   }
 }
 
+static const struct {
+  const char *key, *text;
+} memory_stage[VG_PLAN_STAGES] = { { "sizes", "sizing field and layers" },
+                                   { "fill", "fill" },
+                                   { "check", "mesh check and files" } };
+
+static void print_memory(const struct vg_plan *p)
+{
+  const struct vg_plan_row *r = row_of_limits(p);
+  char text[32];
+
+  printf("\nMemory of a rank with %d x %d\n", r->ranks, r->threads);
+  for (int i = 0; i < VG_PLAN_STAGES; i++)
+    printf("  %-24s %15s\n", memory_stage[i].text, bytes(r->stage[i], text));
+  printf("  %-24s %15s\n", "one copy per node", bytes(p->shared, text));
+}
+
 static const char *kind_name(char kind)
 {
   return kind == VG_SPAN_LEAF   ? "leaves"
@@ -380,6 +394,7 @@ void vg_plan_text(const struct vg_plan *p)
          "                  s         s     %%     %%\n");
   for (size_t i = 0; i < p->n_row; i++) print_row(&p->row[i]);
   print_limits(p);
+  print_memory(p);
   print_best(p);
 }
 
@@ -387,16 +402,22 @@ void vg_plan_text(const struct vg_plan *p)
 
 static json_t *row_json(const struct vg_plan_row *r)
 {
-  return json_pack("{s:i s:i s:i s:i s:f s:f s:f s:f s:{s:f s:f s:f s:f s:f "
-                   "s:f s:f s:f}}",
-                   "ranks", r->ranks, "threads", r->threads, "ranks_per_node",
-                   r->ranks_per_node, "workers", r->ranks * r->threads,
-                   "seconds", r->wall, "speedup", r->speedup, "efficiency",
-                   r->efficiency, "memory_bytes", r->memory, "tasks", "seconds",
-                   r->tasks.wall, "speedup", r->tasks.speedup, "critical",
-                   r->tasks.critical, "cuts", r->tasks.cuts, "cuts_extra",
-                   r->tasks.cuts_extra, "cuts_end", r->tasks.cuts_wall, "idle",
-                   r->tasks.idle, "bytes_sent", r->tasks.bytes);
+  json_t *o = json_pack(
+    "{s:i s:i s:i s:i s:f s:f s:f s:f s:{s:f s:f s:f s:f s:f "
+    "s:f s:f s:f}}",
+    "ranks", r->ranks, "threads", r->threads, "ranks_per_node",
+    r->ranks_per_node, "workers", r->ranks * r->threads, "seconds", r->wall,
+    "speedup", r->speedup, "efficiency", r->efficiency, "memory_bytes",
+    r->memory, "tasks", "seconds", r->tasks.wall, "speedup", r->tasks.speedup,
+    "critical", r->tasks.critical, "cuts", r->tasks.cuts, "cuts_extra",
+    r->tasks.cuts_extra, "cuts_end", r->tasks.cuts_wall, "idle", r->tasks.idle,
+    "bytes_sent", r->tasks.bytes);
+  json_t *memory = json_object();
+
+  for (int i = 0; i < VG_PLAN_STAGES; i++)
+    json_object_set_new(memory, memory_stage[i].key, json_real(r->stage[i]));
+  json_object_set_new(o, "memory_stages", memory);
+  return o;
 }
 
 static json_t *node_json(const struct vg_forecast_node *n)
@@ -540,10 +561,7 @@ vg_status vg_plan_json(const struct vg_plan *p, struct vg_error *err)
                       vg_effects_json(&p->effects, p->front,
                                       &p->problem.resolved.settings));
   json_object_set_new(o, "files", files_json(p));
-  json_object_set_new(o, "memory",
-                      json_pack("{s:f s:f s:f}", "shared", p->shared,
-                                "per_cell", p->per_cell, "per_thread",
-                                p->per_thread));
+  json_object_set_new(o, "memory", json_pack("{s:f}", "shared", p->shared));
   if (p->decomposition.n_part)
     json_object_set_new(o, "decomposition", decomposition_json(p));
   json_object_set_new(o, "tree", tree_json(p));

@@ -137,6 +137,20 @@ figures out | paste -d ' ' planned - >both
 awk '$1 != $3 || $2 / $4 < 0.94 || $2 / $4 > 1.06 { exit 1 }' both ||
   fail "plan and mesh differ: $(cat both)"
 
+# The memory of a rank is that of the stage that needs most. Another thread needs
+# memory in the fill and in the mesh check.
+vanguard plan -q -p p/box --leaf-cells 8000 -n 1,4 -t 1,2 -j
+exits 0
+jq -e '.memory.shared > 0 and ([.forecast[] | .memory_bytes ==
+  ([.memory_stages[]] | max)] | all)' out >same || fail "not the largest stage"
+jq -e '.forecast | (.[0].memory_stages.fill < .[2].memory_stages.fill) and
+  (.[0].memory_stages.check < .[2].memory_stages.check) and
+  (.[0].memory_stages.sizes == .[2].memory_stages.sizes)' out >threads ||
+  fail "the memory does not depend on the threads"
+vanguard plan -q -p p/box --leaf-cells 8000 -n 1
+says out "Memory of a rank with 1 x 1"
+says out "  one copy per node "
+
 # One leaf if requested; an impossible target, and a possible one.
 vanguard plan -q -p p/box --leaf-cells 0 -n 1
 says out "0 cuts into 1 leaf"
