@@ -203,9 +203,11 @@ static void refuses_unsupported_files(void **state)
           "before the dimension");
   refuses(HEAD "End", VG_ERR_FORMAT, "no SolAtVertices");
   refuses(HEAD "SolAtVertices 1\n1 2\n1 0 1\nEnd", VG_ERR_UNSUPPORTED,
-          "one scalar");
+          "kind 2, a vector");
   refuses(HEAD "SolAtVertices 1\n2 1 1\n1 2\nEnd", VG_ERR_UNSUPPORTED,
-          "one scalar");
+          "has 2 fields");
+  refuses(HEAD "SolAtVertices 2\n1 3\n1.00 0.00 1.00 0 0 1.00\n1 0 1\nEnd",
+          VG_ERR_FORMAT, "number 4 of 6 at vertex 2 of 2");
   refuses(HEAD "SolAtVertices 1 1 1 nan\nEnd", VG_ERR_FORMAT, "a value");
   refuses(HEAD "SolAtVertices 2 1 1 1\n", VG_ERR_FORMAT, "t.sol");
   refuses(HEAD "SolAtVertices 0 1 1\nEnd", VG_ERR_FORMAT, "not positive");

@@ -387,8 +387,9 @@ static void refuses_unsupported_files(void **state)
   refuses(HEAD "<Piece NumberOfPoints=\"5\">", VG_ERR_UNSUPPORTED, "pieces");
   refuses(HEAD POINTS, VG_ERR_FORMAT, "no array 'size'");
   refuses(HEAD SIZES("1 1 1 1 1"), VG_ERR_FORMAT, "no array in <Points>");
-  refuses(HEAD POINTS SIZES("1 1 1 1"), VG_ERR_FORMAT, "number 5 of 5");
-  refuses(HEAD POINTS SIZES("1 1 nan 1 1"), VG_ERR_FORMAT, "number 3 of 5");
+  refuses(HEAD POINTS SIZES("1 1 1 1"), VG_ERR_FORMAT, "value 5 of 5");
+  refuses(HEAD POINTS SIZES("1 1 nan 1 1"), VG_ERR_FORMAT,
+          "array 'size': value 3 of 5");
   refuses(HEAD POINTS "<PointData><DataArray type=\"Int32\" Name=\"size\" "
                       "format=\"ascii\">1 1 1 1 1</DataArray></PointData>",
           VG_ERR_UNSUPPORTED, "'Int32'");

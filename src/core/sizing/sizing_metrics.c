@@ -97,8 +97,13 @@ static vg_status check_metric(const char *name, size_t n, size_t i,
                   "finite; write the metric of the largest edge length there "
                   "instead",
                   err);
-  if (components == 9 && !is_symmetric(v))
-    return refuse(name, i, x, m, "symmetric", err);
+  if (components == 9 && !is_symmetric(v)) {
+    snprintf(what, sizeof what,
+             "symmetric; by rows it is %g %g %g, %g %g %g, %g %g %g; its upper "
+             "half",
+             v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]);
+    return refuse(name, i, x, m, what, err);
+  }
   if (is_positive(m)) return VG_OK;
   other = components == 6 ? other_order(n, value, order) : order;
   if (other == order)
@@ -107,7 +112,7 @@ static vg_status check_metric(const char *name, size_t n, size_t i,
                   err);
   snprintf(what, sizeof what,
            "positive if its components are %s; in the order %s, all metrics "
-           "are: reorder them, or set metric_order to %s for a file",
+           "are: reorder them or, in the deck, set metric_order to %s",
            lists[order], lists[other], names[other]);
   return refuse(name, i, x, m, what, err);
 }

@@ -32,6 +32,19 @@ static vg_status read_int(struct reader *r, int64_t *v, struct vg_error *err)
   return st;
 }
 
+/* Number i of a text file; the message of a failure names the vertex. */
+static vg_status read_number(struct reader *r, size_t i, struct vg_error *err)
+{
+  struct vg_error inner = VG_ERROR_INIT;
+  const size_t each = (size_t)r->components;
+  vg_status st = vg_input_real(r->g.in, &r->value[i], "a value", &inner);
+
+  if (st >= 0) return st;
+  return vg_fail(err, st,
+                 "%s: number %zu of %zu at vertex %zu of %zu in SolAtVertices",
+                 inner.text, i % each + 1, each, i / each + 1, r->n);
+}
+
 static vg_status read_values(struct reader *r, struct vg_error *err)
 {
   size_t size = r->g.version == 1 ? 4 : 8, n = r->n * (size_t)r->components;
@@ -46,7 +59,7 @@ static vg_status read_values(struct reader *r, struct vg_error *err)
   else if (r->g.binary)
     st = vg_input_f64(r->g.in, n, r->value, "SolAtVertices", err);
   for (size_t i = 0; i < n && st >= 0; i++) {
-    if (!r->g.binary) st = vg_input_real(r->g.in, &r->value[i], "a value", err);
+    if (!r->g.binary) st = read_number(r, i, err);
     if (st >= 0 && r->components == 1 && !isfinite(r->value[i]))
       st = vg_fail(err, VG_ERR_FORMAT,
                    "%s: the value at vertex %zu is not "
@@ -73,11 +86,19 @@ static vg_status read_section(struct reader *r, struct vg_error *err)
                    r->g.in->path, (long long)n);
   VG_TRY(read_int(r, &n_kind, err));
   if (n_kind == 1) VG_TRY(read_int(r, &kind, err));
-  if (n_kind != 1 || (kind != SCALAR && kind != TENSOR))
+  if (n_kind != 1)
     return vg_fail(err, VG_ERR_UNSUPPORTED,
-                   "%s: SolAtVertices must have one scalar (1 1) or one metric "
-                   "(1 3) per vertex, not %lld fields, the first of kind %lld",
-                   r->g.in->path, (long long)n_kind, (long long)kind);
+                   "%s: SolAtVertices has %lld fields; sizes are a file with "
+                   "one field, a scalar or a metric per vertex",
+                   r->g.in->path, (long long)n_kind);
+  if (kind != SCALAR && kind != TENSOR)
+    return vg_fail(err, VG_ERR_UNSUPPORTED,
+                   "%s: SolAtVertices has a field of kind %lld%s; sizes are a "
+                   "scalar (kind 1) or a metric (kind 3) per vertex",
+                   r->g.in->path, (long long)kind,
+                   kind == 2   ? ", a vector"
+                   : kind == 4 ? ", a tensor that is not symmetric"
+                               : "");
   r->n = (size_t)n;
   r->components = kind == TENSOR ? 6 : 1;
   st = read_values(r, err);

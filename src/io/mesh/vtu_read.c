@@ -33,6 +33,7 @@ struct array {
   char kind;                    /* 'f' real, 'i' signed, 'u' unsigned */
   int components;
   char type[20]; /* as in the file, for messages */
+  char name[40]; /* of the array, or of its section if it has none */
 };
 
 /* --- the necessary part of XML --- */
@@ -195,6 +196,7 @@ static vg_status find_array(const struct file *f, const char *section,
   if (!attribute(at, end, "type", word, sizeof word)) *word = 0;
   snprintf(out->type, sizeof out->type, "%.19s", word);
   read_type(word, out);
+  snprintf(out->name, sizeof out->name, "%.39s", name ? name : section);
   out->components = (int)n;
   out->tag = at;
   out->body = stop + 1;
@@ -361,6 +363,21 @@ static int take_packed(const struct file *f, struct source *s, size_t bytes,
   return bad ? -1 : 0;
 }
 
+/* Number i of the n numbers of an array: a component of a value. */
+static vg_status refuse_number(const struct file *f, const struct array *a,
+                               size_t i, size_t n, const char *what,
+                               struct vg_error *err)
+{
+  const size_t each = (size_t)a->components;
+  char component[40] = "";
+
+  if (each > 1)
+    snprintf(component, sizeof component, "component %zu of ", i % each + 1);
+  return vg_fail(err, VG_ERR_FORMAT,
+                 "%s: array '%s': %svalue %zu of %zu is not %s", f->in->path,
+                 a->name, component, i / each + 1, n / each, what);
+}
+
 static vg_status read_text(const struct file *f, const struct array *a,
                            size_t n, double *v, struct vg_error *err)
 {
@@ -372,9 +389,7 @@ static vg_status read_text(const struct file *f, const struct array *a,
     while (at < a->end && isspace((unsigned char)*at)) at++;
     for (to = at; to < a->end && !isspace((unsigned char)*to);) to++;
     if (to == at || !vg_parse_real(at, (size_t)(to - at), &v[i]))
-      return vg_fail(err, VG_ERR_FORMAT,
-                     "%s: number %zu of %zu of an array is not a number",
-                     f->in->path, i + 1, n);
+      return refuse_number(f, a, i, n, "a number", err);
     at = to;
   }
   return VG_OK;
@@ -457,11 +472,7 @@ static vg_status read_array(const struct file *f, const struct array *a,
   vg_status st = read_any(f, a, n, v, err);
 
   for (size_t i = 0; i < n && st >= 0; i++)
-    if (!isfinite(v[i]))
-      st = vg_fail(err, VG_ERR_FORMAT,
-                   "%s: number %zu of an array is not "
-                   "finite",
-                   f->in->path, i + 1);
+    if (!isfinite(v[i])) st = refuse_number(f, a, i, n, "finite", err);
   return st;
 }
 

@@ -154,6 +154,7 @@ static vg_status read_vtk(const char *path, struct values *v,
                           struct vg_error *err)
 {
   struct vg_input in = VG_INPUT_INIT;
+  struct vg_error inner = VG_ERROR_INIT;
   vg_status st;
 
   v->is_vtk = 1;
@@ -164,7 +165,13 @@ static vg_status read_vtk(const char *path, struct values *v,
   }
   v->components = 1;
   st = vg_vtu_points_parse(&in, "size", &v->m.n_point, &v->m.point, &v->value,
-                           err);
+                           &inner);
+  if (st < 0)
+    vg_fail(err, st, "%s%s", inner.text,
+            vg_vtu_has_array(&in, "size")
+              ? ""
+              : "; edge lengths are read from a point array 'size', metrics "
+                "from 'metric'");
 done:
   vg_input_release(&in);
   return st;
