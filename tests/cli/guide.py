@@ -18,7 +18,7 @@ import shutil
 import subprocess
 import sys
 
-PAGES = ["wing_from_cad", "wing_body", "duct"]
+PAGES = ["wing_from_cad", "wing_body", "duct", "adaptation"]
 HEADER = "| figure | in the report | expected | within |"
 
 

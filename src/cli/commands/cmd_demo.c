@@ -158,21 +158,25 @@ static vg_status write_project(char *const path[3], const char *stem,
   int has_layers;
   vg_status st;
 
-  if (demo->farfield.kind == VG_FARFIELD_MACH) { /* The body alone. */
+  /* The run adds farfield and symmetry plane to the body. The .mapbc contains
+   * their patches, too: an input of the run, which is not overwritten. */
+  if (demo->farfield.kind == VG_FARFIELD_MACH) {
     surface.n_tri = demo->n_body_tri;
     surface.n_point = demo->n_body_point;
     surface.n_patch = 1;
   }
   VG_TRY(settings_of(name, demo, &s, err));
   VG_TRY(vg_format_write(path[0], &surface, err));
-  VG_TRY(vg_mapbc_write(path[1], &surface, VG_MAPBC_VGRID, name, NULL, err));
+  VG_TRY(
+    vg_mapbc_write(path[1], &demo->surface, VG_MAPBC_VGRID, name, NULL, err));
   has_layers = set_layers(name, &s);
   VG_TRY(vg_deck_write(path[2], &s, has_layers ? layer_comment : NULL,
                        has_layers, err));
   printf("%s: surface of %s points, %s triangles\n", path[0],
          vg_text_count(surface.n_point, points),
          vg_text_count(surface.n_tri, triangles));
-  printf("%s: boundary conditions of %zu patches\n", path[1], surface.n_patch);
+  printf("%s: boundary conditions of %zu patches\n", path[1],
+         demo->surface.n_patch);
   printf("%s: settings, for about %s cells%s\n", path[2],
          vg_text_count((unsigned long long)demo->n_cell, cells),
          has_layers ? " without the viscous layers" : "");

@@ -6,7 +6,7 @@ vanguard demo boom-half --cells 30000 --out p
 exits 0
 says out "Next: vanguard mesh -p p/boom-half"
 says p/boom-half.deck "machcone"
-vanguard mesh -q -p p/boom-half --out half
+vanguard mesh -q -p p/boom-half
 exits 0
 says out "(half model, cut at y = 0); symmetry plane and half a farfield added."
 says out "note: source 1: Mach cones at M 1.6 with apexes from (-0.1, 0, 0) to (1.1, 0, 0), up to 2 from the axis"
