@@ -163,7 +163,7 @@ static vg_status begin(struct measuring *m, struct vg_error *err)
   m->order = vg_alloc(m->from->n_tri, sizeof *m->order);
   if (!m->d || !m->by || !m->order)
     return vg_fail_memory(err, "the distances of the surfaces");
-  VG_TRY(vg_ref_build(&m->ref, m->from, m->stop, err));
+  VG_TRY(vg_ref_build_sparse(&m->ref, m->from, m->stop, err));
   arrange(m);
 done:
   return st;

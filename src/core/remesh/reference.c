@@ -13,6 +13,8 @@
 #define FLAT 1e-9 /* height over edge below which a normal is noise */
 #define PIECE 2.0 /* mean edges: longer triangles are cut into pieces */
 #define PIECES 64 /* most pieces of a triangle */
+#define FEW_PIECES                                                             \
+  3               /* mean number of pieces of a tree that takes less memory */
 #define GRAIN 256 /* leaves per task */
 #define OPPOSED                                                                \
   0.03 /* cosine below which a direction and its opposite may both be faced    \
@@ -149,11 +151,12 @@ static struct vg_box box_piece(const struct vg_ref *r, size_t t, int edge,
   return b;
 }
 
-/* Number the pieces so that each is about as long as the mean edge. */
-static vg_status make_pieces(const struct vg_ref *r, struct pieces *p,
-                             struct vg_error *err)
+/* Length of a piece: about that of the mean edge, or more if triangles would
+ * have more than `most` pieces on average. */
+static double piece_length(const struct vg_ref *r, double most)
 {
-  double area = 0, step;
+  const double n = (double)r->n_tri;
+  double area = 0, sum = 0, step;
   int edge = 0;
 
   for (size_t t = 0; t < r->n_tri; t++) {
@@ -162,7 +165,19 @@ static vg_status make_pieces(const struct vg_ref *r, struct pieces *p,
     vg_cross(r->shape[t].u, r->shape[t].v, x);
     area += vg_norm(x) / 2;
   }
-  step = PIECE * sqrt(area / (double)r->n_tri);
+  step = PIECE * sqrt(area / n);
+  if (!(step > 0) || isinf(most)) return step;
+  for (size_t t = 0; t < r->n_tri; t++)
+    sum += fmin(ceil(longest_edge(r, t, &edge) / step), PIECES);
+  return step * fmax(sum / (most * n), 1);
+}
+
+static vg_status make_pieces(const struct vg_ref *r, double most,
+                             struct pieces *p, struct vg_error *err)
+{
+  const double step = piece_length(r, most);
+  int edge = 0;
+
   for (size_t t = 0; t < r->n_tri; t++) {
     double parts = ceil(longest_edge(r, t, &edge) / step);
     int k = parts > 1 ? parts < PIECES ? (int)parts : PIECES : 1;
@@ -279,14 +294,14 @@ vg_status vg_ref_set_faces(struct vg_ref *r, const struct vg_mesh *m,
   return set_faces(r, m, 1, stop, err);
 }
 
-vg_status vg_ref_add_tree(struct vg_ref *r, const struct vg_stop *stop,
-                          struct vg_error *err)
+static vg_status add_tree(struct vg_ref *r, double most,
+                          const struct vg_stop *stop, struct vg_error *err)
 {
   struct pieces piece = { 0 };
   vg_status st;
 
   assert(r->shape || !r->n_tri);
-  VG_TRY(make_pieces(r, &piece, err));
+  VG_TRY(make_pieces(r, most, &piece, err));
   VG_TRY(vg_stopped(stop, err));
   VG_TRY(make_tree(r, &piece, err));
 done:
@@ -294,14 +309,20 @@ done:
   return st;
 }
 
+vg_status vg_ref_add_tree(struct vg_ref *r, const struct vg_stop *stop,
+                          struct vg_error *err)
+{
+  return add_tree(r, INFINITY, stop, err);
+}
+
 static vg_status build(struct vg_ref *r, const struct vg_mesh *m,
-                       int with_mates, const struct vg_stop *stop,
+                       int with_mates, double most, const struct vg_stop *stop,
                        struct vg_error *err)
 {
   vg_status st;
 
   VG_TRY(set_faces(r, m, with_mates, stop, err));
-  VG_TRY(vg_ref_add_tree(r, stop, err));
+  VG_TRY(add_tree(r, most, stop, err));
 done:
   if (st < 0) vg_ref_release(r);
   return st;
@@ -310,13 +331,19 @@ done:
 vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
                        const struct vg_stop *stop, struct vg_error *err)
 {
-  return build(r, m, 1, stop, err);
+  return build(r, m, 1, INFINITY, stop, err);
+}
+
+vg_status vg_ref_build_sparse(struct vg_ref *r, const struct vg_mesh *m,
+                              const struct vg_stop *stop, struct vg_error *err)
+{
+  return build(r, m, 1, FEW_PIECES, stop, err);
 }
 
 vg_status vg_ref_build_tree(struct vg_ref *r, const struct vg_mesh *m,
                             const struct vg_stop *stop, struct vg_error *err)
 {
-  return build(r, m, 0, stop, err);
+  return build(r, m, 0, INFINITY, stop, err);
 }
 
 void vg_ref_sizes(struct vg_ref *r)

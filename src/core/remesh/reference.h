@@ -96,6 +96,11 @@ static inline const double *vg_ref_at(const struct vg_ref *r, uint32_t h)
 vg_status vg_ref_build(struct vg_ref *r, const struct vg_mesh *m,
                        const struct vg_stop *stop, struct vg_error *err);
 
+/** As vg_ref_build. On a surface of needles, as a metric requests them, the
+ * tree needs a third of the memory or less, and searches take longer. */
+vg_status vg_ref_build_sparse(struct vg_ref *r, const struct vg_mesh *m,
+                              const struct vg_stop *stop, struct vg_error *err);
+
 /** First half of vg_ref_build: mates and shapes without the tree, which is
  * sufficient to find feature curves and strips. */
 vg_status vg_ref_set_faces(struct vg_ref *r, const struct vg_mesh *m,

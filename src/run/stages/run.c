@@ -308,6 +308,9 @@ static vg_status fill(struct vg_run *r, const struct vg_problem *p,
   o.store = r->store;
   vg_run_measure(r, &p->boundary.surface, layers, sizing);
   vg_run_stage_ends(r, VG_STAGE_SIZES);
+  /* The surface and the field needed much more than the fill will. In other
+   * fields, the fill is faster in the large pages that are free. */
+  if (vg_sizing_is_stretched(sizing)) vg_memory_trim();
   st = vg_partition_grow(r->comm, boundary, sizing, &o, &r->field,
                          &r->partition, &r->spans, err);
   r->time_fill = vg_display_now() - t - r->partition.number;
