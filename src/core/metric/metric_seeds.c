@@ -12,7 +12,7 @@
 
 /* K49: largest complexity of the box of a seed, and least spacing within the
  * cube around the box relative to that at its centre. */
-static const double seed_points = 32, falls = 1. / 3;
+static const double seed_points = 16, falls = 1. / 3;
 
 struct box {
   double lo[3], side[3];

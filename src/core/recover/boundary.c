@@ -541,8 +541,8 @@ static size_t not_fixed(struct vg_tets *t, size_t n_tri,
 }
 
 /* Cells in which every triangle is a face, before sides are determined. In a
- * metric, apexes help, unless one of them is in a triangle or too near to it.
- */
+ * metric, points in the void help, unless one of them is in a triangle or too
+ * near to it. */
 static vg_status recover(const struct vg_boundary_input *in,
                          struct vg_tets *out, struct vg_boundary_report *report,
                          struct vg_error *err)
@@ -550,9 +550,9 @@ static vg_status recover(const struct vg_boundary_input *in,
   int is_stretched = vg_boundary_is_stretched(in);
   vg_status st = VG_OK;
 
-  for (int apexes = is_stretched; apexes >= 0; apexes--) {
+  for (int inner = is_stretched; inner >= 0; inner--) {
     vg_tets_release(out);
-    st = vg_boundary_cells(out, in, apexes, err);
+    st = vg_boundary_cells(out, in, inner, err);
     if (st == VG_OK)
       st = vg_recover(out, in->n_tri, in->tri, !is_stretched, report, err);
     if (st != VG_ERR_GEOMETRY) break;

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "core/delaunay/insert.h"
 #include "core/geometry/hilbert.h"
+#include "core/metric/metric_seeds.h"
 #include "core/recover/boundary_parts.h"
 
 /* The five tetrahedra of a box whose corners have the bits x, y, z = 1, 2, 4.
@@ -67,41 +68,50 @@ static vg_status insert(struct vg_inserter *s, uint32_t p, const double x[3],
   return st;
 }
 
-/* --- apexes --------------------------------------------------------------- */
+/* --- points in the void, in a metric ---------------------------------------
+ */
 
-/* Insert the apex over triangle v if it is in the box and away from all
- * points. */
-static vg_status insert_apex(struct vg_inserter *s, struct vg_metrics *metrics,
-                             const struct vg_region *region,
-                             const uint32_t v[3], uint32_t *at,
-                             struct vg_error *err)
+/* K54: least distance of a seed from other points, in the metric. */
+static const double seed_distance = 1;
+
+/* Insert x if it is in the box, at the distance `nearest` from all points, and
+ * in the band of the region. */
+static vg_status insert_inner(struct vg_inserter *s, struct vg_metrics *metrics,
+                              const struct vg_region *region, const double x[3],
+                              double nearest, uint32_t *at,
+                              struct vg_error *err)
 {
-  struct vg_tets *t = s->t;
   struct vg_point_metric m;
-  double c[3], h[6], x[3];
   vg_status st;
 
-  if (!vg_metric_apex(metrics->sizing, t->x[v[0]], t->x[v[1]], t->x[v[2]], c, h,
-                      x))
-    return VG_OK;
-  vg_tensor_apply(h, x, x);
-  for (int k = 0; k < 3; k++) x[k] += c[k];
   if (region && !vg_region_near(region, metrics->sizing, x, VG_BAND_PLACE))
     return VG_OK;
-  *at = vg_tets_locate(t, *at, x);
+  *at = vg_tets_locate(s->t, *at, x);
   if (*at == VG_NONE) {
     *at = s->last;
     return VG_OK;
   }
   vg_metric_at(metrics->sizing, x, &m);
-  st = vg_metrics_insert(metrics, s, x, &m, *at, 0, VG_METRIC_EXCLUSION, err);
+  st = vg_metrics_insert(metrics, s, x, &m, *at, 0, nearest, err);
   if (st == VG_OK) *at = s->last;
   return st == VG_BLOCKED ? VG_OK : st;
 }
 
-/* In a metric, cells that reach from one side of the void to the other are so
- * thin that few flips are possible among them. Apexes over all triangles make
- * cells near the surface that are well-shaped in the metric. */
+/* Apex over a triangle. Returns 0 if the triangle has no area. */
+static int find_apex(const struct vg_boundary_input *in, const uint32_t v[3],
+                     double apex[3])
+{
+  double c[3], h[6];
+
+  if (!vg_metric_apex(in->sizing, in->x[v[0]], in->x[v[1]], in->x[v[2]], c, h,
+                      apex))
+    return 0;
+  vg_tensor_apply(h, apex, apex);
+  for (int k = 0; k < 3; k++) apex[k] += c[k];
+  return 1;
+}
+
+/* Apexes make cells near the surface that are well-shaped in the metric. */
 static vg_status insert_apexes(struct vg_inserter *s,
                                struct vg_metrics *metrics,
                                const struct vg_boundary_input *in,
@@ -115,15 +125,95 @@ static vg_status insert_apexes(struct vg_inserter *s,
     memcpy(x[i], in->x[in->tri[i][0]], sizeof *x);
   if (st == VG_OK)
     st = vg_hilbert_order(in->n_tri, (const double(*)[3])x, order, err);
-  for (size_t i = 0; st == VG_OK && i < in->n_tri; i++)
-    st = insert_apex(s, metrics, in->region, in->tri[order[i]], &at, err);
+  for (size_t i = 0; st == VG_OK && i < in->n_tri; i++) {
+    double apex[3];
+
+    if (find_apex(in, in->tri[order[i]], apex))
+      st = insert_inner(s, metrics, in->region, apex, VG_METRIC_EXCLUSION, &at,
+                        err);
+  }
   free(x);
   free(order);
   return st;
 }
 
+/* Seeds are sparse points throughout the void (core/metric/metric_seeds.h). */
+static vg_status insert_seeds(struct vg_inserter *s, struct vg_metrics *metrics,
+                              const struct vg_boundary_input *in,
+                              struct vg_error *err)
+{
+  struct vg_metric_seeds seed = { 0 };
+  uint32_t *order = NULL, at = s->last;
+  vg_status st;
+
+  VG_TRY(vg_metric_seeds(in->n, in->x, in->sizing, in->region, &seed, err));
+  order = vg_alloc(seed.n, sizeof *order);
+  if (!order) {
+    st = vg_fail_memory(err, "boundary recovery");
+    goto done;
+  }
+  VG_TRY(vg_insertion_order(seed.n, (const double(*)[3])seed.x, order, err));
+  for (size_t i = 0; i < seed.n; i++)
+    VG_TRY(insert_inner(s, metrics, NULL, seed.x[order[i]], seed_distance, &at,
+                        err));
+done:
+  free(order);
+  free(seed.x);
+  return st;
+}
+
+/* Replace t by new cells of the same points, which are inserted in one order.
+ * Points n to n + 7 are the corners of the box. */
+static vg_status insert_again(struct vg_tets *t, size_t n,
+                              struct vg_metrics *metrics, struct vg_error *err)
+{
+  struct vg_tets all = { 0 };
+  struct vg_inserter s = { 0 };
+  const size_t n_all = t->n_point;
+  uint32_t *order = vg_alloc(n_all, sizeof *order), at = 0;
+  vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
+
+  VG_TRY(st);
+  VG_TRY(vg_insertion_order(n_all, (const double(*)[3])t->x, order, err));
+  VG_TRY(start_in_box(&all, n, (const double(*)[3])t->x, err));
+  if (vg_tets_reserve_points(&all, n_all - all.n_point)) {
+    st = vg_fail_memory(err, "boundary recovery");
+    goto done;
+  }
+  memcpy(all.x, t->x, n_all * sizeof *t->x);
+  all.n_point = n_all;
+  VG_TRY(vg_inserter_init(&s, &all, err));
+  s.metric = metrics->at;
+  for (size_t i = 0; i < n_all; i++)
+    if (order[i] < n || order[i] >= n + 8)
+      VG_TRY(insert(&s, order[i], all.x[order[i]], &at, err));
+done:
+  vg_inserter_release(&s);
+  free(order);
+  vg_tets_release(t);
+  *t = all;
+  return st;
+}
+
+/* In a metric, cells that reach from one side of the void to the other extend
+ * across regions of different metrics. They are so thin that few flips are
+ * possible among them, and later insertions do not repair their connections.
+ * Points in the void give better cells if all points are inserted once more,
+ * since the first insertions then are local, too. */
+static vg_status insert_all_inner(struct vg_tets *t, struct vg_inserter *s,
+                                  struct vg_metrics *metrics,
+                                  const struct vg_boundary_input *in,
+                                  struct vg_error *err)
+{
+  vg_status st = insert_apexes(s, metrics, in, err);
+
+  if (st == VG_OK) st = insert_seeds(s, metrics, in, err);
+  if (st == VG_OK) st = insert_again(t, in->n, metrics, err);
+  return st;
+}
+
 vg_status vg_boundary_cells(struct vg_tets *t,
-                            const struct vg_boundary_input *in, int apexes,
+                            const struct vg_boundary_input *in, int inner,
                             struct vg_error *err)
 {
   size_t n = in->n;
@@ -142,8 +232,8 @@ vg_status vg_boundary_cells(struct vg_tets *t,
   s.metric = metrics.at;
   for (size_t i = 0; st == VG_OK && i < n; i++)
     st = insert(&s, order[i], x[order[i]], &at, err);
-  if (st == VG_OK && apexes && vg_boundary_is_stretched(in))
-    st = insert_apexes(&s, &metrics, in, err);
+  if (st == VG_OK && inner && vg_boundary_is_stretched(in))
+    st = insert_all_inner(t, &s, &metrics, in, err);
   vg_inserter_release(&s);
   vg_metrics_release(&metrics);
   free(order);

@@ -22,10 +22,11 @@ static inline int vg_boundary_is_stretched(const struct vg_boundary_input *in)
 }
 
 /** Delaunay cells of the points, in a wide box with the corners n to n + 7. If
- * the sizes are stretched, cells are Delaunay in the metric, and, with
- * apexes = 1, points follow over the triangles. (boundary_cells.c) */
+ * the sizes are stretched, cells are Delaunay in the metric. With inner = 1,
+ * they have other points, too: apexes over the triangles, and seeds.
+ * (boundary_cells.c) */
 vg_status vg_boundary_cells(struct vg_tets *t,
-                            const struct vg_boundary_input *in, int apexes,
+                            const struct vg_boundary_input *in, int inner,
                             struct vg_error *err);
 
 #endif
