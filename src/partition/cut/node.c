@@ -93,8 +93,23 @@ int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
 /* --- tasks of a stage ---------------------------------------------------- */
 
 /* Behind the stages of the lattice: places where the void is still connected,
- * as boxes, then across x, y and z. */
-enum { STAGES = VG_LATTICE_STAGES + 4 };
+ * as boxes, then across x, y and z. Boxes around cells that are oblique and
+ * long overlap, and those of a round do not: in a metric, there are more
+ * rounds. */
+enum { BOX_ROUNDS = 6 /* C20 */, AXES = 3 };
+
+static int box_rounds(const struct vg_partition *p)
+{
+  return vg_sizing_is_stretched(p->sizing) ? BOX_ROUNDS : 1;
+}
+
+/* Axis of the patches of the node's stage; -1: boxes. */
+static int closing_axis(const struct vg_partition *p, const struct vg_node *n)
+{
+  int axis = n->stage - VG_LATTICE_STAGES - box_rounds(p);
+
+  return axis < 0 ? -1 : axis;
+}
 
 static vg_status make_room(struct vg_node *n, size_t n_work,
                            struct vg_error *err)
@@ -254,8 +269,7 @@ static vg_status list_regions(struct vg_partition *p, struct vg_node *n,
 {
   *region = NULL;
   if (n->stage >= VG_LATTICE_STAGES)
-    return vg_node_open_places(p, n, n->stage - VG_LATTICE_STAGES - 1, e,
-                               region, count, err);
+    return vg_node_open_places(p, n, closing_axis(p, n), e, region, count, err);
   *count = vg_lattice_count(&n->lattice, n->stage);
   *region = vg_alloc(*count, sizeof **region);
   if (!*region) return vg_fail_memory(err, "cutting a front");
@@ -282,9 +296,10 @@ static vg_status prepare_stage(struct vg_partition *p, struct vg_node *n,
 static vg_status prepare(struct vg_partition *p, struct vg_node *n,
                          const struct vg_engine *e, struct vg_error *err)
 {
+  const int stages = VG_LATTICE_STAGES + box_rounds(p) + AXES;
   vg_status st = VG_OK;
 
-  for (; !n->n_work && n->stage < STAGES && st == VG_OK; n->stage++) {
+  for (; !n->n_work && n->stage < stages && st == VG_OK; n->stage++) {
     drop_stage(n);
     st = prepare_stage(p, n, e, err);
   }
