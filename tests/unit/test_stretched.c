@@ -290,8 +290,8 @@ static void seeds_stay_near(const double corner[2][3],
 }
 
 /* The complexity of the graded metric in the unit cube is
- * 1000 log(0.12 / 0.02) = 1792, which makes 56 seeds (K49). Half of them lie on
- * each side of the plane z = 0.5, and half of them within 0.15 of it. */
+ * 1000 log(0.12 / 0.02) = 1792, which makes 112 seeds (K49). Half of them lie
+ * on each side of the plane z = 0.5, and half of them within 0.15 of it. */
 static void seeds_follow_the_complexity(void **state)
 {
   const double corner[2][3] = { { 0, 0, 0 }, { 1, 1, 1 } };
@@ -318,7 +318,7 @@ static void seeds_follow_the_complexity(void **state)
     near += fabs(seeds.x[i][2] - 0.5) < 0.15;
     above += seeds.x[i][2] > 0.5;
   }
-  assert_in_range(seeds.n, 40, 80);
+  assert_in_range(seeds.n, 90, 135);
   assert_in_range(above, 2 * seeds.n / 5, 3 * seeds.n / 5);
   assert_in_range(near, 2 * seeds.n / 5, 3 * seeds.n / 4);
   free(seeds.x);
@@ -381,38 +381,48 @@ static void keep_near(struct vg_front *f, const struct vg_region *r,
   free(to);
 }
 
-/* A plane through the thin cells of a cone gets no holes: no sliver to a
- * distant point of the front remains between the points. Without swaps there
- * are seven. */
-static void a_separator_has_no_holes(void **state)
+/* Number of holes of a separator along z = at. */
+static size_t holes_along(double at, struct vg_size_map *map)
 {
-  struct vg_size_map map = { .at = cone_size,
-                             .metric = cone_metric,
-                             .most = 1 };
   const struct vg_region plane = { .n_plane = 1,
-                                   .plane = { { { 0, 0, 1 }, 0.414 } } };
+                                   .plane = { { { 0, 0, 1 }, at } } };
   struct vg_fill_options options = VG_FILL_OPTIONS_INIT;
   struct vg_filled made = VG_FILLED_INIT;
   struct vg_fill_report report = { 0 };
   double line[11];
   struct box b = { .n = { 10, 10, 10 }, .line = { line, line, line } };
   struct vg_sizing *sizing;
+  size_t n_hole;
 
-  (void)state;
   for (int i = 0; i <= 10; i++) line[i] = 0.1 * i;
   make_box(&b);
-  sizing = field(&b, &map);
+  sizing = field(&b, map);
   keep_near(&b.front, &plane, sizing);
   assert_int_equal(vg_fill_front(&b.front, &plane, sizing, &options, &made,
                                  &report, NULL),
                    VG_OK);
   assert_int_equal(vg_filled_defects(&b.front, &made, 1), 0);
   assert_true(made.n_cell > 1000);
-  assert_int_equal(made.n_hole, 0);
+  n_hole = made.n_hole;
   vg_filled_release(&made);
   vg_sizing_free(sizing);
   free(b.front.x);
   free(b.front.face);
+  return n_hole;
+}
+
+/* Planes through the thin cells of a cone get no holes: slivers to a distant
+ * point of the front that remain between the points. Without swaps and points
+ * in holes there are 38. */
+static void separators_have_no_holes(void **state)
+{
+  struct vg_size_map map = { .at = cone_size,
+                             .metric = cone_metric,
+                             .most = 1 };
+
+  (void)state;
+  for (int i = 0; i < 7; i++)
+    assert_int_equal(holes_along(0.31 + 0.025 * i, &map), 0);
 }
 
 static int counts_down(void *user)
@@ -451,8 +461,8 @@ static void stops(void **state)
     vg_filled_release(&made);
   }
   assert_int_equal(st, VG_OK);
-  /* At the start, among seeds, among points and before the optimisation. */
-  assert_int_equal(n, 5);
+  /* At the start, among points and before the optimisation. */
+  assert_int_equal(n, 4);
   vg_sizing_free(sizing);
   free(b.front.x);
   free(b.front.face);
@@ -465,7 +475,7 @@ int main(void)
     cmocka_unit_test(cubes_of_random_metrics),
     cmocka_unit_test(a_graded_box),
     cmocka_unit_test(seeds_follow_the_complexity),
-    cmocka_unit_test(a_separator_has_no_holes),
+    cmocka_unit_test(separators_have_no_holes),
   };
 
   random_state = 0x9e3779b97f4a7c15u;
