@@ -45,6 +45,9 @@ struct vg_rates {
 /** Measured rates; forecast.c gives the source. */
 extern const struct vg_rates vg_rates_measured;
 
+/** The same in a sizing field of metrics. */
+extern const struct vg_rates vg_rates_in_metric;
+
 /** A void of the tree. */
 struct vg_forecast_node {
   char path[VG_PATH_MAX];
