@@ -7,12 +7,13 @@ vanguard demo box --cells 2000 --out small
 # hidden: the hidden folders in o.
 hidden() { find o -maxdepth 1 -name '.vanguard-*' 2>/dev/null; }
 
-# start ARGS...: a run in the background whose hidden folder exists.
+# start ARGS...: a run in the background whose hidden folder is locked.
 start() {
   "$program" "$@" >out 2>err </dev/null &
   job=$!
   for _ in $(seq 3000); do
-    [ -z "$(hidden)" ] || break
+    left=$(hidden)
+    if [ -n "$left" ] && [ -e "$left/lock" ]; then break; fi
     sleep 0.01
   done
   left=$(hidden)
