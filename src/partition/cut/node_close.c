@@ -225,18 +225,41 @@ static vg_status make_places(struct search *s, struct vg_error *err)
   return st;
 }
 
+/* Point i of 3 x 3 x 3 in the box. */
+static void point_in(const struct place *p, int i, double x[3])
+{
+  for (int k = 0; k < 3; k++, i /= 3)
+    x[k] = p->lo[k] + 0.5 * (i % 3) * (p->hi[k] - p->lo[k]);
+}
+
+/* Are few cells expected in the box by the complexity at some points? A box
+ * around oblique cells extends across many of them, where the sizes differ and
+ * the octants of the load are large. */
+static int is_small_in_metric(const struct search *s, const struct place *p)
+{
+  double each = VG_LOAD_CELLS_PER_CUBE / 27, n = 0;
+
+  for (int k = 0; k < 3; k++) each *= p->hi[k] - p->lo[k];
+  for (int i = 0; i < 27 && n <= most_cells; i++) {
+    double x[3], h;
+
+    point_in(p, i, x);
+    h = vg_sizing_at(s->sizing, x);
+    n += each / (h * h * h);
+  }
+  return n <= most_cells;
+}
+
 /* Are few cells expected in the box, by the spacing at the faces, by the
  * spacing elsewhere in the box, and by the load? */
 static int is_small(const struct search *s, const struct place *p)
 {
   double volume = 1, x[3];
 
+  if (vg_sizing_is_stretched(s->sizing)) return is_small_in_metric(s, p);
   for (int k = 0; k < 3; k++) volume *= (p->hi[k] - p->lo[k]) / p->spacing;
   for (int i = 0; i < 27 && volume <= most_volume; i++) {
-    int at[3] = { i % 3, i / 3 % 3, i / 9 };
-
-    for (int k = 0; k < 3; k++)
-      x[k] = p->lo[k] + 0.5 * at[k] * (p->hi[k] - p->lo[k]);
+    point_in(p, i, x);
     if (vg_sizing_at(s->sizing, x) < finer * p->spacing) return 0;
   }
   return volume <= most_volume &&
