@@ -97,16 +97,19 @@ static void drop_faces(struct vg_inserter *s, size_t first)
   s->n_face = n;
 }
 
-VG_WITHIN double sum4(vg_d4 a)
+/* Four lanes are passed by address: without AVX, they fit no register. */
+VG_WITHIN double sum4(const vg_d4 *a)
 {
-  return (a[0] + a[2]) + (a[1] + a[3]);
+  return ((*a)[0] + (*a)[2]) + ((*a)[1] + (*a)[3]);
 }
 
 /* An upper bound of the magnitudes of a. */
-VG_WITHIN double bound4(vg_d4 a)
+VG_WITHIN double bound4(const vg_d4 *a)
 {
-  return sum4(
-    (vg_d4)((vg_l4)a & (vg_l4){ INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX }));
+  const vg_l4 all = { INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX };
+  const vg_d4 magnitude = (vg_d4)((vg_l4)*a & all);
+
+  return sum4(&magnitude);
 }
 
 /* As vg_cell_signs, with the sphere in a metric M: the determinant is the sum
@@ -128,15 +131,17 @@ VG_WITHIN unsigned metric_signs(const struct vg_inserter *s,
   vg_d4 o = (VG_TURN4(pz, 3, 0, 1, 2) * VG_TURN4(next, 1, 2, 3, 0) -
              VG_TURN4(pz, 2, 3, 0, 1) * VG_TURN4(far, 1, 2, 3, 0) +
              VG_TURN4(pz, 1, 2, 3, 0) * VG_TURN4(next, 2, 3, 0, 1)) *
-            (vg_d4){ 1, -1, 1, -1 };
-  double flat = 5.4e-15 * bound4(px) * bound4(py) * bound4(pz), m[6], det;
+            (vg_d4){ 1, -1, 1, -1 },
+        term;
+  double flat = 5.4e-15 * bound4(&px) * bound4(&py) * bound4(&pz), m[6], det;
   unsigned in = 0, out = 0, signs;
 
   for (int k = 0; k < 6; k++) /* K46 */
     m[k] = 8 * s->metric[s->point].m[k] + s->metric[v[0]].m[k] +
            s->metric[v[1]].m[k] + s->metric[v[2]].m[k] + s->metric[v[3]].m[k];
-  det = sum4(o * (px * (m[0] * px + 2 * (m[1] * py + m[2] * pz)) +
-                  py * (m[3] * py + 2 * m[4] * pz) + m[5] * pz * pz));
+  term = o * (px * (m[0] * px + 2 * (m[1] * py + m[2] * pz)) +
+              py * (m[3] * py + 2 * m[4] * pz) + m[5] * pz * pz);
+  det = sum4(&term);
   for (int i = 0; i < 4; i++) {
     in |= (unsigned)(o[i] > flat) << i;
     out |= (unsigned)(o[i] < -flat) << i;

@@ -154,7 +154,7 @@ VG_WITHIN void rate(const struct block *b, const double to[3],
     for (int i = 0; i < 6; i++) sum += b->gram[i][k] * a[i];
     square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + b->far[k];
     high = det * root;
-    inverse[k] = (det > 0) & (det * det > b->flat[k] * square)
+    inverse[k] = ((det > 0) & (det * det > b->flat[k] * square))
                  ? sum * sum * sum / (432 * high * high)
                  : INFINITY;
     off = sum * (1.0 / 6) - 1;

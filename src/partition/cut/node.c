@@ -95,20 +95,29 @@ int vg_node_wants_cut(const struct vg_partition *p, struct vg_node *n)
 /* Behind the stages of the lattice: places where the void is still connected,
  * as boxes, then across x, y and z. Boxes around cells that are oblique and
  * long overlap, and those of a round do not: in a metric, there are more
- * rounds. */
-enum { BOX_ROUNDS = 6 /* C20 */, AXES = 3 };
+ * rounds. Cells that close a place may cross other planes: all this is done
+ * twice. */
+enum { BOX_ROUNDS = 6, CYCLES = 2 /* C20 */, AXES = 3 };
 
 static int box_rounds(const struct vg_partition *p)
 {
   return vg_sizing_is_stretched(p->sizing) ? BOX_ROUNDS : 1;
 }
 
+static int count_stages(const struct vg_partition *p)
+{
+  int cycles = vg_sizing_is_stretched(p->sizing) ? CYCLES : 1;
+
+  return VG_LATTICE_STAGES + cycles * (box_rounds(p) + AXES);
+}
+
 /* Axis of the patches of the node's stage; -1: boxes. */
 static int closing_axis(const struct vg_partition *p, const struct vg_node *n)
 {
-  int axis = n->stage - VG_LATTICE_STAGES - box_rounds(p);
+  int rounds = box_rounds(p);
+  int at = (n->stage - VG_LATTICE_STAGES) % (rounds + AXES);
 
-  return axis < 0 ? -1 : axis;
+  return at < rounds ? -1 : at - rounds;
 }
 
 static vg_status make_room(struct vg_node *n, size_t n_work,
@@ -296,7 +305,7 @@ static vg_status prepare_stage(struct vg_partition *p, struct vg_node *n,
 static vg_status prepare(struct vg_partition *p, struct vg_node *n,
                          const struct vg_engine *e, struct vg_error *err)
 {
-  const int stages = VG_LATTICE_STAGES + box_rounds(p) + AXES;
+  const int stages = count_stages(p);
   vg_status st = VG_OK;
 
   for (; !n->n_work && n->stage < stages && st == VG_OK; n->stage++) {
