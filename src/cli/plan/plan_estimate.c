@@ -469,7 +469,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, vg_cores(),
                      &p->load, err));
   if (!p->o->rates && vg_sizing_is_stretched(p->sizing))
-    p->rates = vg_rates_in_metric;
+    p->rates = vg_rates_in_metric();
   VG_TRY(vg_plan_part(p, err));
   if (p->o->serial >= 0) {
     memset(p->phase, 0, sizeof p->phase);

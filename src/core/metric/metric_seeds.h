@@ -14,16 +14,16 @@ struct vg_metric_seeds {
   double (*x)[3]; /* [n] Owned by the caller: free. */
 };
 
-/** Seeds within the bounding box of the points x: about one for 32 points of
+/** Seeds within the bounding box of the points x: about one for 16 points of
  * the mesh (K49), even where the metric is stretched. Cells between seeds are
  * so small that the metric changes little over them, while cells between the
  * points of a boundary alone extend across regions of different metrics, whose
  * connections later insertions do not repair.
  *
- * @param x    [n] the points that bound the void * @param region  NULL, or the
- * region along which points are placed: the seeds lie within its band
- * VG_BAND_PLACE
- * @param out  starts empty; some seeds may lie outside the void
+ * @param x       [n] the points that bound the void
+ * @param region  NULL, or the region along which points are placed: the seeds
+ *                lie within its band VG_BAND_PLACE
+ * @param out     starts empty; some seeds may lie outside the void
  *
  * VG_ERR_MEMORY. Deterministic. */
 vg_status vg_metric_seeds(size_t n, const double (*x)[3],

@@ -68,8 +68,7 @@ static vg_status insert(struct vg_inserter *s, uint32_t p, const double x[3],
   return st;
 }
 
-/* --- points in the void, in a metric ---------------------------------------
- */
+/* --- points in the void ------------------------------------------------- */
 
 /* K54: least distance of a seed from other points, in the metric. */
 static const double seed_distance = 1;

@@ -27,21 +27,17 @@ const struct vg_rates vg_rates_measured = {
   .octree = { 1.6e-6, 23e-6, 1.9e-6, 0.45, 9.5e-6, 0 },
 };
 
-/* M10: the same where the tasks differ in a metric. */
-const struct vg_rates vg_rates_in_metric = {
-  .pencil = { 0, 20e-6, 20e-6, 18e-6, 0, 0, 0 },
-  .rib = { 0, 20e-6, 20e-6, 18e-6, 0, 0, 0 },
-  .tile = { 0, 11e-6, 11e-6, 11.5e-6, 0, 0, 0 },
-  .leaf = { 0, 3.3e-6, 3.3e-6, 5e-6, 0, 0, 0 },
-  .closing = { 2.5e-3, 0, 0, 0, 0, 0, 0 },
-  .repair = { 0, 0.6e-6, 1.9e-6, 0, 0, 0, 0 },
-  .plan = { 0, 0, 0, 0.021e-6, 0, 0.12e-6, 0.98 },
-  .join = { 0, 0, 0, 0.04e-6, 0, 0.12e-6, 0.98 },
-  .close = { 0, 0, 0, 0.025e-6, 0.3e-3, 0, 0.98 },
-  .split = { 0, 0, 0, 0.045e-6, 0, 0, 0.98 },
-  .discrete = { 0, 3.3e-6, 3.5e-6, 0.47, 6.7e-6, 5e-6 },
-  .octree = { 1.6e-6, 23e-6, 1.9e-6, 0.45, 9.5e-6, 0 },
-};
+/* M10: the tasks that take longer in a metric. */
+struct vg_rates vg_rates_in_metric(void)
+{
+  struct vg_rates r = vg_rates_measured;
+
+  r.pencil = r.rib = (struct vg_task_rate){ 0, 20e-6, 20e-6, 18e-6, 0, 0, 0 };
+  r.tile = (struct vg_task_rate){ 0, 11e-6, 11e-6, 11.5e-6, 0, 0, 0 };
+  r.leaf = (struct vg_task_rate){ 0, 3.3e-6, 3.3e-6, 5e-6, 0, 0, 0 };
+  r.repair.even = 0.6e-6;
+  return r;
+}
 
 /* Loops over fewer faces have only one or two chunks (node_split.c). */
 static const double loop_faces = 5000; /* M2 */

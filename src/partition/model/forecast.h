@@ -46,7 +46,7 @@ struct vg_rates {
 extern const struct vg_rates vg_rates_measured;
 
 /** The same in a sizing field of metrics. */
-extern const struct vg_rates vg_rates_in_metric;
+struct vg_rates vg_rates_in_metric(void);
 
 /** A void of the tree. */
 struct vg_forecast_node {
