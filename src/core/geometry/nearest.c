@@ -48,3 +48,52 @@ double vg_to_triangle2(const double x[3], const double a[3], const double b[3],
   height = vg_dot(n, p);
   return height * height / vg_dot(n, n);
 }
+
+static void set_weights(double w[3], double wa, double wb, double wc)
+{
+  w[0] = wa;
+  w[1] = wb;
+  w[2] = wc;
+}
+
+/* As above. d[i]: products of the edges u and v with the way from corner i to
+ * x. */
+void vg_nearest_weights(const double x[3], const double a[3], const double b[3],
+                        const double c[3], double w[3])
+{
+  double u[3], v[3], d[3][2], va, vb, vc, t;
+  const double *corner[3] = { a, b, c };
+
+  vg_sub(b, a, u);
+  vg_sub(c, a, v);
+  for (int i = 0; i < 3; i++) {
+    double p[3];
+
+    vg_sub(x, corner[i], p);
+    d[i][0] = vg_dot(u, p);
+    d[i][1] = vg_dot(v, p);
+  }
+  va = d[1][0] * d[2][1] - d[2][0] * d[1][1];
+  vb = d[2][0] * d[0][1] - d[0][0] * d[2][1];
+  vc = d[0][0] * d[1][1] - d[1][0] * d[0][1];
+  if (d[0][0] <= 0 && d[0][1] <= 0) {
+    set_weights(w, 1, 0, 0);
+  } else if (d[1][0] >= 0 && d[1][1] <= d[1][0]) {
+    set_weights(w, 0, 1, 0);
+  } else if (d[2][1] >= 0 && d[2][0] <= d[2][1]) {
+    set_weights(w, 0, 0, 1);
+  } else if (vc <= 0 && d[0][0] >= 0 && d[1][0] <= 0) {
+    t = d[0][0] / (d[0][0] - d[1][0]);
+    set_weights(w, 1 - t, t, 0);
+  } else if (vb <= 0 && d[0][1] >= 0 && d[2][1] <= 0) {
+    t = d[0][1] / (d[0][1] - d[2][1]);
+    set_weights(w, 1 - t, 0, t);
+  } else if (va <= 0) {
+    t = d[1][1] - d[1][0];
+    t /= t + d[2][0] - d[2][1];
+    set_weights(w, 0, 1 - t, t);
+  } else {
+    t = va + vb + vc;
+    set_weights(w, va / t, vb / t, vc / t);
+  }
+}

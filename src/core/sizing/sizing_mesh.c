@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "core/geometry/nearest.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 #include "core/search/box_tree.h"
@@ -68,11 +69,14 @@ static int visit_cell(void *context, uint32_t item)
   return least >= 0;
 }
 
+/* The nearest point of the background mesh, as a mean of mesh points. */
 struct nearest {
   const struct vg_size_mesh *s;
   const double *x;
   double d2;
-  uint32_t point;
+  int n; /* number of mesh points */
+  uint32_t point[3];
+  double w[3]; /* their weights; their sum is 1 */
 };
 
 static int enter_near(void *context, size_t node, double d2)
@@ -81,32 +85,83 @@ static int enter_near(void *context, size_t node, double d2)
   return d2 < ((struct nearest *)context)->d2;
 }
 
-static void leaf_near(void *context, size_t node)
+static void try_point(struct nearest *n, uint32_t p)
+{
+  double d2 = vg_distance2(n->s->x[p], n->x);
+
+  if (!(d2 < n->d2)) return;
+  n->d2 = d2;
+  n->n = 1;
+  n->point[0] = p;
+  n->w[0] = 1;
+}
+
+static void try_face(struct nearest *n, uint32_t a, uint32_t b, uint32_t c)
+{
+  const double(*x)[3] = (const double(*)[3])n->s->x;
+  double w[3], near[3], d2;
+
+  vg_nearest_weights(n->x, x[a], x[b], x[c], w);
+  for (int k = 0; k < 3; k++)
+    near[k] = w[0] * x[a][k] + w[1] * x[b][k] + w[2] * x[c][k];
+  d2 = vg_distance2(near, n->x);
+  if (!(d2 < n->d2)) return;
+  n->d2 = d2;
+  n->n = 3;
+  n->point[0] = a;
+  n->point[1] = b;
+  n->point[2] = c;
+  memcpy(n->w, w, sizeof w);
+}
+
+static void leaf_of_points(void *context, size_t node)
 {
   struct nearest *n = context;
   const struct vg_box_tree *t = &n->s->points;
 
+  for (size_t i = vg_box_tree_first(t, node); i < vg_box_tree_end(t, node); i++)
+    try_point(n, t->item[i]);
+}
+
+static void leaf_of_cells(void *context, size_t node)
+{
+  struct nearest *n = context;
+  const struct vg_box_tree *t = &n->s->cells;
+
   for (size_t i = vg_box_tree_first(t, node); i < vg_box_tree_end(t, node);
        i++) {
-    double d2 = vg_distance2(n->s->x[t->item[i]], n->x);
+    const uint32_t *v = n->s->tet[t->item[i]];
 
-    if (!(d2 < n->d2)) continue;
-    n->d2 = d2;
-    n->point = t->item[i];
+    for (int k = 0; k < 4; k++)
+      try_face(n, v[(k + 1) % 4], v[(k + 2) % 4], v[(k + 3) % 4]);
   }
 }
 
-/* Size tensor of the nearest point, grown over the distance. */
+/* Size tensor at the nearest point of the cells, or the nearest point if there
+ * are no cells. It grows over the distance beyond one edge length: the domain
+ * may extend beyond the cells by less than that, where its boundary is curved
+ * or by rounding. */
 static void size_outside(const struct vg_size_mesh *s, const double x[3],
                          double h[6])
 {
-  struct nearest n = { s, x, INFINITY, 0 };
-  double way[3];
+  struct nearest n = { .s = s, .x = x, .d2 = INFINITY };
+  double way[3] = { x[0], x[1], x[2] }, t[6], v[3], edges;
 
-  vg_box_tree_approach(&s->points, x, enter_near, leaf_near, &n);
-  vg_sub(x, s->x[n.point], way);
-  for (int k = 0; k < 6; k++) h[k] = (double)s->size[n.point].h[k];
-  if (n.d2 > 0) vg_size_grow(h, way, s->slope, h);
+  if (s->n_tet)
+    vg_box_tree_approach(&s->cells, x, enter_near, leaf_of_cells, &n);
+  if (!n.n) vg_box_tree_approach(&s->points, x, enter_near, leaf_of_points, &n);
+  memset(h, 0, 6 * sizeof *h);
+  for (int i = 0; i < n.n; i++) {
+    for (int k = 0; k < 3; k++) way[k] -= n.w[i] * s->x[n.point[i]][k];
+    for (int k = 0; k < 6; k++)
+      h[k] += n.w[i] * (double)s->size[n.point[i]].h[k];
+  }
+  vg_tensor_invert(h, t);
+  vg_tensor_apply(t, way, v);
+  edges = vg_norm(v);
+  if (!(edges > 1)) return;
+  for (int k = 0; k < 3; k++) way[k] *= 1 - 1 / edges;
+  vg_size_grow(h, way, s->slope, h);
 }
 
 static void size_at(const struct vg_size_mesh *s, const double x[3],

@@ -40,7 +40,8 @@ struct vg_size_mesh; /* opaque, read-only */
 
 /** Metrics that are interpolated within the cells of a mesh: linear in the size
  * tensor on tetrahedra, into which other cells are divided. Outside of all
- * cells, the size tensor of the nearest point grows with the distance.
+ * cells, the size tensor at the nearest point grows with the distance beyond
+ * one edge length. Without cells, that of the nearest given point does.
  *
  * @param m       points and cells, copied; its faces are ignored
  * @param metric  [n_point] positive; copied
