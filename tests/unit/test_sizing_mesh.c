@@ -100,13 +100,23 @@ static void cells_interpolate_linearly(void **state)
   }
 }
 
-/* Outside, and without cells: the size tensor of the nearest point, grown. */
+static void sizes_at(const struct vg_size_map *map, double x, double y,
+                     double z, double h[6])
+{
+  double metric[6], t[6];
+
+  map->metric(map->user, (const double[3]){ x, y, z }, metric);
+  vg_tensor_root(metric, t);
+  vg_tensor_invert(t, h);
+}
+
+/* Without cells, the size tensor of the nearest point grows beyond one edge
+ * length. */
 static void the_nearest_point_grows(void **state)
 {
   struct vg_size_mesh *s = NULL;
   const struct vg_size_map *map;
-  double metric[POINTS][6], got[6], h[6], t[6];
-  const double x[3] = { 0.26, 0.5, 0.5 }, far[3] = { 1.5, 0, 0 };
+  double metric[POINTS][6], h[6];
   struct vg_mesh m;
 
   (void)state;
@@ -115,18 +125,44 @@ static void the_nearest_point_grows(void **state)
                                     NULL),
                    VG_OK);
   map = vg_size_mesh_map(s);
-  map->metric(map->user, (const double[3]){ 0.25, 0.5, 0.5 }, got);
-  vg_tensor_root(got, t);
-  vg_tensor_invert(t, h);
+  sizes_at(map, 0.25, 0.5, 0.5, h);
   assert_near(h[0], 0.1125, 1e-6);
-  map->metric(map->user, x, got);
-  vg_tensor_root(got, t);
-  vg_tensor_invert(t, h);
-  assert_near(h[0], 0.1125 + 0.2 * 0.01, 2e-4);
-  map->metric(map->user, far, got);
-  vg_tensor_root(got, t);
-  vg_tensor_invert(t, h);
-  assert_near(h[0], 0.15 + 0.2 * 0.5, 3e-3);
+  sizes_at(map, 0.26, 0.5, 0.5, h);
+  assert_near(h[0], 0.1125, 1e-6);
+  sizes_at(map, 1.5, 0, 0, h);
+  assert_near(h[0], 0.15 + 0.2 * (0.5 - 0.15), 3e-3);
+  vg_size_mesh_free(s);
+  vg_mesh_release(&m);
+}
+
+/* Outside of cells, the size tensor at the nearest point of a face does. */
+static void the_nearest_face_grows(void **state)
+{
+  struct vg_size_mesh *s = NULL;
+  const struct vg_size_map *map;
+  double metric[POINTS][6], h[6], near[6], exact[6];
+  struct vg_mesh m;
+  uint64_t seed = 1;
+
+  (void)state;
+  make_box(&m, 1, metric);
+  assert_int_equal(vg_size_mesh_new(&m, (const double(*)[6])metric, 1.2, &s,
+                                    NULL),
+                   VG_OK);
+  map = vg_size_mesh_map(s);
+  for (int i = 0; i < 1000; i++) {
+    double x[3] = { 1, random_unit(&seed), random_unit(&seed) };
+
+    linear(x, exact);
+    sizes_at(map, 1.001, x[1], x[2], near);
+    sizes_at(map, 1.1, x[1], x[2], h);
+    for (int k = 0; k < 6; k++) {
+      assert_near(near[k], exact[k], 1e-5);
+      assert_near(h[k], exact[k], 1e-5);
+    }
+    sizes_at(map, 1.5, x[1], x[2], h);
+    assert_true(h[0] > exact[0] + 0.2 * 0.3 && h[0] < exact[0] + 0.2 * 0.5);
+  }
   vg_size_mesh_free(s);
   vg_mesh_release(&m);
 }
@@ -208,6 +244,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(cells_interpolate_linearly),
     cmocka_unit_test(the_nearest_point_grows),
+    cmocka_unit_test(the_nearest_face_grows),
     cmocka_unit_test(orders_are_converted),
     cmocka_unit_test(bad_metrics_are_refused),
   };
