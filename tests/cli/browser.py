@@ -78,7 +78,7 @@ class Browser:
             return None
         return result["result"].get("value")
 
-    def until(self, script, seconds=30):
+    def until(self, script, seconds=120):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             value = self.ask(script)

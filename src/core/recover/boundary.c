@@ -554,7 +554,8 @@ static vg_status recover(const struct vg_boundary_input *in,
     vg_tets_release(out);
     st = vg_boundary_cells(out, in, inner, err);
     if (st == VG_OK)
-      st = vg_recover(out, in->n_tri, in->tri, !is_stretched, report, err);
+      st = vg_recover(out, in->n_tri, in->tri, !is_stretched, inner, report,
+                      err);
     if (st != VG_ERR_GEOMETRY) break;
   }
   return st;

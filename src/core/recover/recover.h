@@ -22,10 +22,12 @@
  * large that recovering the whole surface at once is more promising.
  *
  * @param is_delaunay  1: the cells of t are Delaunay, and are made Delaunay
- *                     again where they changed (vg_recover_delaunay) */
+ *                     again where they changed (vg_recover_delaunay)
+ * @param has_inner    1: there are points in the void. Pockets are then small,
+ *                     and need not wait for deep flips */
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
-                     int is_delaunay, struct vg_boundary_report *report,
-                     struct vg_error *err);
+                     int is_delaunay, int has_inner,
+                     struct vg_boundary_report *report, struct vg_error *err);
 
 /** Flip faces of t that are not locally Delaunay, except fixed ones, until no
  * flip brings any of them closer to Delaunay. Points inserted afterwards
