@@ -202,18 +202,48 @@ static void find_axes(const double m[6], double h[6], double axis[3][3])
   else if (low) follow_space(axis[0], axis[1], axis[2]);
 }
 
+/* Most positions that a point proposes are so near to a neighbour, in the
+ * metric of the point, that no change of the metric on the way makes them
+ * possible: nearer than this factor of the least distance. */
+static const double surely = 0.85; /* K56 */
+
+/* Positions of the neighbours of p relative to it, in units of its metric with
+ * size tensor h. */
+static void place_near(const struct advance *a, uint32_t p, const double h[6],
+                       const struct near *near, double (*unit)[3])
+{
+  double t[6];
+
+  vg_tensor_invert(h, t);
+  for (int i = 0; i < near->n; i++) {
+    vg_sub(a->t->x[near->point[i]], a->t->x[p], unit[i]);
+    vg_tensor_apply(t, unit[i], unit[i]);
+  }
+}
+
+static int is_surely_excluded(int n, const double (*near)[3],
+                              const double unit[3])
+{
+  const double least = surely * VG_METRIC_EXCLUSION;
+
+  for (int i = 0; i < n; i++)
+    if (vg_distance2(near[i], unit) < least * least) return 1;
+  return 0;
+}
+
 static int grow_point(struct advance *a, uint32_t p, struct vg_error *err)
 {
   static const double sign[8][3] = { { 1, 1, 1 },  { -1, -1, -1 },
                                      { 1, 1, -1 }, { -1, -1, 1 },
                                      { 1, -1, 1 }, { -1, 1, -1 },
                                      { -1, 1, 1 }, { 1, -1, -1 } };
-  double c[3], h[6], axis[3][3];
+  double c[3], h[6], axis[3][3], around[NEAR_MAX][3];
   struct near near;
 
   memcpy(c, a->t->x[p], sizeof c);
   find_axes(a->metrics->at[p].m, h, axis);
   find_near(a, p, &near);
+  place_near(a, p, h, &near, around);
   for (int i = 0; i < 8; i++) {
     double unit[3];
 
@@ -221,6 +251,7 @@ static int grow_point(struct advance *a, uint32_t p, struct vg_error *err)
       unit[k] = 0.5 * lattice *
                 (sign[i][0] * axis[0][k] + sign[i][1] * axis[1][k] +
                  sign[i][2] * axis[2][k]);
+    if (is_surely_excluded(near.n, (const double(*)[3])around, unit)) continue;
     if (propose(a, c, h, unit, &near, a->star[p], err)) return -1;
   }
   return 0;

@@ -239,7 +239,7 @@ static size_t count_left(const struct vg_optimiser *o)
 
 /* Sweeps in a metric for each one without, since points start in a pattern that
  * fits less well. */
-enum { SWEEPS_IN_METRIC = 2 }; /* K48 */
+enum { SWEEPS_IN_METRIC = 1 }; /* K48 */
 
 static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
                           struct vg_error *err)
@@ -250,7 +250,7 @@ static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
   if (o->metrics) sweeps *= SWEEPS_IN_METRIC;
   for (int k = 0; st == VG_OK && k < sweeps; k++) {
     st = sweep(o, k && !o->metrics ? o->level->fair : o->level->good, err);
-    if (st == VG_OK && o->metrics && k > 0) st = vg_even_lengths(o, err);
+    if (st == VG_OK && o->metrics) st = vg_even_lengths(o, err);
   }
   for (int k = 0; st == VG_OK && k < ROUNDS && again; k++)
     st = improve_bad(o, &again, err);

@@ -1,12 +1,23 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Smoothing in a metric: a point moves against the gradient of
+/* Smoothing in a metric: a point moves by a step of Newton's method towards the
+ * minimum of
  *
  *     f = sum over its cells of 1 / Q + w (S / 6 - 1)^2,
  *
  * with the cube Q of the mean ratio and the sum S of the squared edge lengths,
  * which is 6 for a regular cell of the right size. Both are measured in the
- * finest metric of the corners. The gradient treats the metrics as constant;
- * each position that is tried has its own metric. */
+ * finest metric of the corners. The derivatives treat the metrics as constant;
+ * each position that is tried has its own metric.
+ *
+ * With the metric A, the vector r from the centroid of the opposite face to the
+ * point, and the normal n of that face, grad S = 6 A r and grad V = n, so that
+ * with u = grad S / S and v = grad V / V
+ *
+ *     grad 1/Q = (3 u - 2 v) / Q
+ *     hess 1/Q = (6 (u - v) (u - v)^T + 18 A / S) / Q
+ *
+ * which is positive definite. The term of the size is made so: the part of its
+ * second derivative that is negative for S < 6 is left out. */
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -15,11 +26,11 @@
 #include "core/geometry/vector.h"
 #include "core/optimise/optimise_parts.h"
 
-/* K44: weight w of the size; steps in units of the metric; least relative
- * decrease of f. */
-static const double size_weight = 0.5, gain = 1e-3;
-static const double step[] = { 0.25, 0.1, 0.04 };
-enum { STEPS = 3 };
+/* K44: weight w of the size; longest step, in units of the metric; parts of the
+ * step that are tried; least relative decrease of f. */
+static const double size_weight = 0.5, longest = 0.5, gain = 1e-3;
+static const double share[] = { 1, 0.4, 0.15 };
+enum { SHARES = 3 };
 /* Positions may not make a cell worse than this, or than the worst one. */
 static const double least_shape = 0.125;
 
@@ -56,6 +67,7 @@ struct rating {
   double f;
   double worst; /* largest 1 / Q */
   double g[3];  /* gradient of f */
+  double s[6];  /* second derivative of f, positive definite */
 };
 
 static void gather_cell(const struct vg_tets *t,
@@ -98,11 +110,12 @@ VG_WITHIN double larger(double a, double b)
   return a > b ? a : b;
 }
 
+/* Rows and columns of the components of a tensor. */
+static const int row[6] = { 0, 0, 0, 1, 1, 2 }, col[6] = { 0, 1, 2, 1, 2, 2 };
+
 /* Quantities of a block that do not depend on the position of the point. */
 VG_WITHIN void measure(struct block *b)
 {
-  static const int row[6] = { 0, 0, 0, 1, 1, 2 }, col[6] = { 0, 1, 2, 1, 2, 2 };
-
   for (int k = 0; k < BLOCK; k++) {
     double e2 = 0, f2 = 0, x2 = 0, y2 = 0, z2 = 0;
 
@@ -131,9 +144,10 @@ VG_WITHIN void measure(struct block *b)
 }
 
 /* The terms of a block with the point at `to`, with metric m, are added to
- * those in f[BLOCK] and g[3][BLOCK]. inverse out: [BLOCK] 1 / Q, INFINITY for a
- * cell that is not positive. With the sum S of the squared edges and V = 3
- * times the volume, 1 / Q = S^3 / (1728 V^2). */
+ * those in f[BLOCK] and, unless it is NULL, in g: the first three rows are the
+ * gradient, the other six the second derivative. inverse out: [BLOCK] 1 / Q,
+ * INFINITY for a cell that is not positive. With the sum S of the squared edges
+ * and V = 3 times the volume, 1 / Q = S^3 / (1728 V^2). */
 VG_WITHIN void rate(const struct block *b, const double to[3],
                     const struct vg_point_metric *m, double *inverse, double *f,
                     double (*g)[BLOCK])
@@ -160,11 +174,19 @@ VG_WITHIN void rate(const struct block *b, const double to[3],
     off = sum * (1.0 / 6) - 1;
     f[k] += b->live[k] * (inverse[k] + size_weight * off * off);
     if (g) {
-      double wide = 18 * inverse[k] / sum + 2 * size_weight * off;
-      double steep = 2 * inverse[k] / det;
+      double wide = 18 * inverse[k] / sum, size = 2 * size_weight;
+      double steep = 1 / det, curved = wide + size * larger(off, 0), way[3];
 
-      for (int i = 0; i < 3; i++)
-        g[i][k] += b->live[k] * (wide * ar[i] - steep * b->normal[i][k]);
+      for (int i = 0; i < 3; i++) {
+        way[i] = ar[i] * (6 / sum) - steep * b->normal[i][k];
+        g[i][k] += b->live[k] * ((wide + size * off) * ar[i] -
+                                 2 * inverse[k] * steep * b->normal[i][k]);
+      }
+      for (int i = 0; i < 6; i++)
+        g[3 + i][k] += b->live[k] *
+                       (curved * a[i] +
+                        6 * inverse[k] * way[row[i]] * way[col[i]] +
+                        size * ar[row[i]] * ar[col[i]]);
     }
   }
 }
@@ -182,7 +204,7 @@ VG_WITHIN void start(struct stretched_ball *b, const struct vg_point_metric *m,
                      struct rating *out)
 {
   static const double origin[3] = { 0 };
-  double f[BLOCK] = { 0 }, g[3][BLOCK] = { { 0 } }, inverse[BLOCK];
+  double f[BLOCK] = { 0 }, g[9][BLOCK] = { { 0 } }, inverse[BLOCK];
 
   out->worst = 0;
   for (size_t i = 0; i < b->n_block; i++) {
@@ -192,6 +214,7 @@ VG_WITHIN void start(struct stretched_ball *b, const struct vg_point_metric *m,
   }
   out->f = out->worst < INFINITY ? total(f) : INFINITY;
   for (int i = 0; i < 3; i++) out->g[i] = total(g[i]);
+  for (int i = 0; i < 6; i++) out->s[i] = total(g[3 + i]);
 }
 
 /* f with the point at `to`, with metric m. inverse out: [BLOCK * BLOCKS] 1 / Q.
@@ -250,25 +273,36 @@ static double value_at(const struct stretched_ball *b, const double to[3],
   return value(b, to, m, most, inverse);
 }
 
+/* Step of Newton's method from a point with metric m, of limited length.
+ * Returns 0 if there is none. */
+static int find_step(const struct rating *now, const struct vg_point_metric *m,
+                     double d[3])
+{
+  double inverse[6], length;
+
+  vg_tensor_invert(now->s, inverse);
+  vg_tensor_apply(inverse, now->g, d);
+  length = sqrt(vg_tensor_form(m->m, d));
+  if (!(length > 0 && length < INFINITY)) return 0;
+  for (int i = 0; i < 3 && length > longest; i++) d[i] *= longest / length;
+  return 1;
+}
+
 int vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics, uint32_t p,
                       size_t n, const uint32_t *link, double *q)
 {
   struct stretched_ball b;
   struct vg_point_metric m = metrics->at[p];
   struct rating now;
-  double x[3], d[3], to[3], tensor[6], length, most;
+  double x[3], d[3], to[3], most;
 
   gather(t, metrics, t->x[p], n, link, &b);
   rate_start(&b, &m, &now);
-  if (!(now.f < INFINITY)) return 0;
+  if (!(now.f < INFINITY) || !find_step(&now, &m, d)) return 0;
   most = fmax(now.worst / 0.999, 1 / least_shape);
-  vg_tensor_invert(m.m, tensor);
-  vg_tensor_apply(tensor, now.g, d);
-  length = sqrt(fmax(vg_dot(now.g, d), 0));
-  if (!(length > 0)) return 0;
-  for (int k = 0; k < STEPS; k++) {
+  for (int k = 0; k < SHARES; k++) {
     for (int i = 0; i < 3; i++) {
-      x[i] = t->x[p][i] - step[k] / length * d[i];
+      x[i] = t->x[p][i] - share[k] * d[i];
       to[i] = x[i] - t->x[p][i];
     }
     vg_metric_at(metrics->sizing, x, &m);
