@@ -81,9 +81,11 @@ static vg_status link_faces(struct vg_tets *t, const struct vg_table *table,
   for (uint32_t c = 0; c < t->n_cell; c++) {
     if (t->flag[c] & VG_DEAD) continue;
     for (uint32_t i = 0; i < 4; i++) {
-      struct vg_tri_key key = face_key(&t->cell[c], i);
+      struct vg_tri_key key;
       uint32_t *at;
 
+      if (t->cell[c].link[i] != VG_NONE) continue;
+      key = face_key(&t->cell[c], i);
       VG_TABLE_FIND(table, at, vg_tri_key_hash(key), has_key(t, *at, key));
       if (*at == VG_TABLE_FREE) {
         *at = 4 * c + i;
@@ -100,21 +102,36 @@ static vg_status link_faces(struct vg_tets *t, const struct vg_table *table,
   return VG_OK;
 }
 
-/* Of the 4 n_cell halves, one of each inner face and all halves on the hull
- * enter the table. */
-vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err)
+static vg_status link_with_table(struct vg_tets *t, size_t n_entry,
+                                 struct vg_error *err)
 {
   struct vg_table table;
   vg_status st;
 
   assert(t->n_cell < VG_CELL_MAX);
-  if (vg_table_init(&table, 5 * t->n_cell / 2))
+  if (vg_table_init(&table, n_entry))
     return vg_fail_memory(err, "the neighbour table");
-  for (size_t c = 0; c < t->n_cell; c++)
-    memset(t->cell[c].link, 0xff, sizeof t->cell[c].link);
   st = link_faces(t, &table, err);
   vg_table_release(&table);
   return st;
+}
+
+/* Of the 4 n_cell halves, one of each inner face and all halves on the hull
+ * enter the table. */
+vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err)
+{
+  for (size_t c = 0; c < t->n_cell; c++)
+    memset(t->cell[c].link, 0xff, sizeof t->cell[c].link);
+  return link_with_table(t, 5 * t->n_cell / 2, err);
+}
+
+vg_status vg_tets_link_open(struct vg_tets *t, struct vg_error *err)
+{
+  size_t n = 0;
+
+  for (size_t c = 0; c < t->n_cell; c++)
+    for (int i = 0; i < 4; i++) n += t->cell[c].link[i] == VG_NONE;
+  return link_with_table(t, n, err);
 }
 
 vg_status vg_tets_from_cells(struct vg_tets *t, size_t n_point, double (*x)[3],

@@ -87,6 +87,10 @@ static inline void vg_tets_connect(struct vg_tets *t, uint32_t a, uint32_t b)
  * if a face has more than two cells. */
 vg_status vg_tets_link(struct vg_tets *t, struct vg_error *err);
 
+/** Link the faces whose link is VG_NONE with one another where their vertices
+ * are the same. Errors as above, among these faces. */
+vg_status vg_tets_link_open(struct vg_tets *t, struct vg_error *err);
+
 /** Build *t (empty) from points and cells of either orientation, and link them.
  * t takes ownership of x, also on failure. VG_ERR_GEOMETRY for a flat cell. */
 vg_status vg_tets_from_cells(struct vg_tets *t, size_t n_point, double (*x)[3],

@@ -324,12 +324,27 @@ static vg_status verify(struct vg_tets *local, const struct pocket *p,
   return st;
 }
 
-/* Replace the pocket's cells by the local cells. Links are rebuilt later. */
+/* Remove cell c, whose neighbours then have open faces. */
+static vg_status remove_cell(struct vg_tets *t, uint32_t c,
+                             struct vg_error *err)
+{
+  for (int i = 0; i < 4; i++) {
+    uint32_t link = t->cell[c].link[i];
+
+    if (link != VG_NONE) t->cell[link >> 2].link[link & 3] = VG_NONE;
+  }
+  return vg_tets_free_cell(t, c) ? vg_fail_memory(err, "boundary recovery")
+                                 : VG_OK;
+}
+
+/* Replace the pocket's cells by the local cells, whose faces are linked later.
+ */
 static vg_status replace(struct recovery *r, const struct pocket *p,
                          const struct vg_tets *local, struct vg_error *err)
 {
   struct vg_tets *t = r->t;
   size_t added = local->n_point - p->n_point, first = t->n_point;
+  vg_status st = VG_OK;
 
   if (vg_tets_reserve_points(t, added) ||
       vg_tets_reserve_cells(t, local->n_cell))
@@ -337,8 +352,7 @@ static vg_status replace(struct recovery *r, const struct pocket *p,
   memcpy(t->x + first, local->x + p->n_point, added * sizeof *t->x);
   t->n_point += added;
   for (size_t m = 0; m < p->n_cell; m++)
-    if (vg_tets_free_cell(t, p->cell[m].index))
-      return vg_fail_memory(err, "boundary recovery");
+    VG_TRY(remove_cell(t, p->cell[m].index, err));
   for (size_t c = 0; c < local->n_cell; c++) {
     uint32_t slot;
 
@@ -349,13 +363,15 @@ static vg_status replace(struct recovery *r, const struct pocket *p,
 
       t->cell[slot].v[i] = v < p->n_point ? p->point[v]
                                           : (uint32_t)(first + v - p->n_point);
+      t->cell[slot].link[i] = VG_NONE;
     }
     t->flag[slot] = 0;
   }
   r->report->n_pocket++;
   r->report->n_pocket_cell += local->n_cell;
   r->report->n_steiner += added;
-  return VG_OK;
+done:
+  return st;
 }
 
 /* Set up the input to TetGen for one pocket. tri: its missing triangles.
@@ -588,7 +604,7 @@ static vg_status close_round(struct recovery *r, int rings, uint8_t *missing,
   vg_status st = find_pockets(r, rings, err);
 
   if (st == VG_OK) st = close_pockets(r, err);
-  if (st == VG_OK) st = vg_tets_link(r->t, err);
+  if (st == VG_OK) st = vg_tets_link_open(r->t, err);
   if (st == VG_OK) st = list_missing(r, missing, err);
   return st;
 }

@@ -458,17 +458,24 @@ static void search_leaf(struct search *s, uint32_t e, const double at[3],
   }
 }
 
+/* Least value at the corners of the leaf or split of entry e. */
 static double least_below(const struct vg_octree *t, uint32_t e)
 {
+  const union vg_octree_leaf *leaf = t->leaf + (e & VG_OCTREE_LEAF_INDEX);
   double least = INFINITY;
 
   if (!(e & VG_OCTREE_LEAF)) return (double)t->least[e];
   for (int i = 0; i < 8; i++) {
-    const double f[3] = { i & 1, i >> 1 & 1, i >> 2 };
+    double h[6];
 
-    least = fmin(least, size_in(t, e, f));
+    if (!(e & VG_OCTREE_TENSOR)) {
+      least = fmin(least, (double)leaf->h[i]);
+      continue;
+    }
+    for (int k = 0; k < 6; k++) h[k] = (double)t->tensor[leaf->corner[i]][k];
+    least = fmin(least, vg_tensor_det(h));
   }
-  return least;
+  return e & VG_OCTREE_TENSOR ? vg_cube_root(least) : least;
 }
 
 static void search(struct search *s, uint32_t e, const double at[3],
