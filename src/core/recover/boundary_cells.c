@@ -123,7 +123,7 @@ static vg_status insert_apexes(struct vg_inserter *s,
   for (size_t i = 0; st == VG_OK && i < in->n_tri; i++)
     memcpy(x[i], in->x[in->tri[i][0]], sizeof *x);
   if (st == VG_OK)
-    st = vg_hilbert_order(in->n_tri, (const double(*)[3])x, order, err);
+    st = vg_insertion_order(in->n_tri, (const double(*)[3])x, order, err);
   for (size_t i = 0; st == VG_OK && i < in->n_tri; i++) {
     double apex[3];
 
