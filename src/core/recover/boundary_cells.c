@@ -110,6 +110,14 @@ static int find_apex(const struct vg_boundary_input *in, const uint32_t v[3],
   return 1;
 }
 
+static uint32_t a_cell(const struct vg_tets *t)
+{
+  uint32_t c = 0;
+
+  while (t->flag[c] & VG_DEAD) c++;
+  return c;
+}
+
 /* Apexes make cells near the surface that are well-shaped in the metric. */
 static vg_status insert_apexes(struct vg_inserter *s,
                                struct vg_metrics *metrics,
@@ -117,7 +125,7 @@ static vg_status insert_apexes(struct vg_inserter *s,
                                struct vg_error *err)
 {
   double(*x)[3] = vg_alloc(in->n_tri, sizeof *x);
-  uint32_t *order = vg_alloc(in->n_tri, sizeof *order), at = s->last;
+  uint32_t *order = vg_alloc(in->n_tri, sizeof *order), at = a_cell(s->t);
   vg_status st = x && order ? VG_OK : vg_fail_memory(err, "boundary recovery");
 
   for (size_t i = 0; st == VG_OK && i < in->n_tri; i++)
@@ -197,17 +205,23 @@ done:
 /* In a metric, cells that reach from one side of the void to the other extend
  * across regions of different metrics. They are so thin that few flips are
  * possible among them, and later insertions do not repair their connections.
- * Points in the void give better cells if all points are inserted once more,
- * since the first insertions then are local, too. */
+ * Seeds in the void give better cells if all points are inserted once more,
+ * together, since the first insertions then are local, too. Apexes come last:
+ * in the same rounds as the others, they would make thin cells again. */
 static vg_status insert_all_inner(struct vg_tets *t, struct vg_inserter *s,
                                   struct vg_metrics *metrics,
                                   const struct vg_boundary_input *in,
                                   struct vg_error *err)
 {
-  vg_status st = insert_apexes(s, metrics, in, err);
+  vg_status st;
 
-  if (st == VG_OK) st = insert_seeds(s, metrics, in, err);
-  if (st == VG_OK) st = insert_again(t, in->n, metrics, err);
+  VG_TRY(insert_seeds(s, metrics, in, err));
+  VG_TRY(insert_again(t, in->n, metrics, err));
+  vg_inserter_release(s);
+  VG_TRY(vg_inserter_init(s, t, err));
+  s->metric = metrics->at;
+  st = insert_apexes(s, metrics, in, err);
+done:
   return st;
 }
 
