@@ -75,6 +75,7 @@ struct maker {
    * is steeper; else NULL. */
   const struct vg_sizing *pace;
   int is_steep; /* 1: the sizing field has steep gradients. */
+  int is_stretched;
   double per_cube;
   double narrow, wide; /* Divisor and factor of the width limits. */
   size_t n_branch, cap_branch, large;
@@ -123,8 +124,10 @@ static struct density density_around(const struct maker *m, const double mid[3],
   for (int k = 0; k < 3; k++) gg += g[k] * g[k];
   slope = sqrt(gg) / (4 * off);
   sum /= 4;
-  graded = fmin(slope / GRADIENT, 1) *
-           fmax(0, fmin((PACE - slope) / (PACE - PACE_FROM), 1));
+  graded = m->is_stretched
+           ? 0
+           : fmin(slope / GRADIENT, 1) *
+               fmax(0, fmin((PACE - slope) / (PACE - PACE_FROM), 1));
   return (struct density){ sum, sum * (1 + VG_LOAD_GRADED * graded), slope };
 }
 
@@ -679,6 +682,7 @@ vg_status vg_load_new(const struct vg_front *v, const struct vg_sizing *sizing,
   struct maker m = { .tree = &t,
                      .sizing = sizing,
                      .is_steep = vg_sizing_slope(sizing) > HIDES,
+                     .is_stretched = vg_sizing_is_stretched(sizing),
                      .per_cube = cells_per_cube,
                      .narrow = 1,
                      .emitted = &emitted };

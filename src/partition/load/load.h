@@ -25,7 +25,9 @@
 
 /** Where the target edge length varies, the number of cells rises by this
  * share, and so does the cost per cell. The share is nearly the same for
- * growth rates from 1.1 to 1.35; uniform spacing allows regular cells. */
+ * growth rates from 1.1 to 1.35; uniform spacing allows regular cells. In a
+ * field of metrics, points advance one by one (core/metric/metric_points.h)
+ * rather than as a lattice, and the share is zero. */
 #define VG_LOAD_GRADED 0.21 /* C15 */
 
 struct vg_load_octant {
