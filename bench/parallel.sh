@@ -28,8 +28,8 @@
 #   leaf          time, memory and forecast for 64 workers, by leaf size
 #   memory        memory of the largest rank, by number of ranks
 #   model         forecasts from the load estimate compared with timelines of
-#                 one thread: box and sphere 5 M, DLR-F6 with layers, three leaf
-#                 sizes
+#                 one thread: box and sphere 5 M, sonic boom in a metric 1.5 M,
+#                 DLR-F6 with layers, three leaf sizes
 #   replay        box 23 M and sphere 12 M, cut for 64 workers: additional time
 #                 of cutting; replays of their timelines on 1 to 512 threads;
 #                 box 100 M on 512 from its estimate alone
@@ -283,8 +283,11 @@ part_model() {
 | case | leaf cells | cells off by, % | leaves | tasks, s | cuts, % | extra, % | speed-up on 1 x 2 | 1 x 4 | 1 x 8 | 1 x 16 | 1 x 32 | 1 x 64 | 1 x 64 off by, % |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|
 ROW
-  for name in box sphere dlr_f6_coarse; do
+  for name in box sphere boom dlr_f6_coarse; do
     case $name in
+      boom)
+        demo_project boom "$(cells 1500000)" "$work/input"
+        options=(--layers no) ;;
       dlr*)
         if [ -z "$data" ] || ! aircraft "$data" $name "$work/input"; then
           echo "no $name: --data DIR" >&2

@@ -443,6 +443,78 @@ static void a_run_has_these_tasks(void **state)
   release(&s);
 }
 
+/* The box, with coordinates along z and the sizes along it divided by
+ * `squeeze`. */
+static void make_squeezed(struct scene *s, size_t n_cell, double squeeze)
+{
+  struct vg_source all = { .kind = VG_SOURCE_BOX,
+                           .p0 = { -1, -1, -1 },
+                           .p1 = { 2, 2, 2 },
+                           .stretch = 1 / squeeze,
+                           .u = { 0, 0, 1 } };
+  struct vg_sizing_options o;
+
+  make(s, "box", n_cell);
+  vg_load_release(&s->load);
+  vg_sizing_free(s->sizing);
+  all.h0 = all.h1 = s->demo.source[0].h0;
+  for (size_t i = 0; i < s->demo.surface.n_point; i++)
+    s->demo.surface.point[i][2] /= squeeze;
+  o = s->demo.sizing;
+  o.from_surface = 0;
+  assert_int_equal(vg_sizing_new(&o, 1, &all, &s->demo.surface, &s->sizing,
+                                 NULL),
+                   VG_OK);
+  assert_true(vg_sizing_is_stretched(s->sizing));
+  assert_int_equal(vg_load_new(&s->front, s->sizing, VG_LOAD_CELLS_PER_CUBE, 1,
+                               &s->load, NULL),
+                   VG_OK);
+}
+
+static double received(const struct vg_spans *s, const char *kinds)
+{
+  double sum = 0;
+
+  for (size_t i = 0; i < s->n; i++)
+    if (strchr(kinds, s->span[i].kind)) sum += (double)s->span[i].bytes_in;
+  return sum;
+}
+
+static int is_near(double a, double b)
+{
+  return fabs(a / b - 1) < 0.12;
+}
+
+/* A metric maps the squeezed box to the box, and hence each task to one with as
+ * many cells and faces. Octants are cubes in both, so that the shares of them
+ * in zones differ by some per cent. With distances along the normals of planes
+ * instead of those in the metric, separators receive 49 % more faces and leaves
+ * 27 %. */
+static void a_metric_squeezes_the_forecast(void **state)
+{
+  struct vg_cut_rule rule = { .leaf_cells = 0, .first_axis = -1 };
+  struct vg_forecast o, p;
+  struct scene s, t;
+
+  (void)state;
+  make(&s, "box", 200000);
+  make_squeezed(&t, 200000, 8);
+  o = look(&s, rule, 3);
+  p = look(&t, rule, 3);
+  assert_true(is_near(t.load.cells, s.load.cells));
+  assert_int_equal(p.n_leaf, o.n_leaf);
+  assert_int_equal(p.n_pencil, o.n_pencil);
+  assert_int_equal(p.n_tile, o.n_tile);
+  assert_true(is_near(p.separator_cells, o.separator_cells));
+  assert_true(is_near(received(&p.spans, "PT"), received(&o.spans, "PT")));
+  assert_true(is_near(received(&p.spans, "L"), received(&o.spans, "L")));
+  assert_true(is_near(received(&p.spans, "J"), received(&o.spans, "J")));
+  vg_forecast_release(&o);
+  vg_forecast_release(&p);
+  release(&s);
+  release(&t);
+}
+
 /* Measured meshes of boxes and spheres: 2,068,887 and 1,921,331 cells. */
 static void points_follow_from_cells(void **state)
 {
@@ -466,6 +538,7 @@ int main(void)
     cmocka_unit_test(a_faster_core_takes_less_time),
     cmocka_unit_test(repairs_come_last),
     cmocka_unit_test(a_run_has_these_tasks),
+    cmocka_unit_test(a_metric_squeezes_the_forecast),
     cmocka_unit_test(points_follow_from_cells),
   };
 

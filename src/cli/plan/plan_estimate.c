@@ -15,6 +15,7 @@
 #include "core/geometry/vector.h"
 #include "partition/advance/advance.h"
 #include "partition/advance/ways.h"
+#include "run/report/report.h"
 #include "run/settings/plan_options.h"
 
 /* Layers on more wall points than this are estimated, not grown. */
@@ -204,7 +205,7 @@ done:
 }
 
 /* Build the sizing field and add its time to the phase. finer: factor on that
- * time, since the field of the run is finer. */
+ * time if the field of the run is finer. */
 static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
                                double coarseness, double finer,
                                struct vg_error *err)
@@ -223,6 +224,21 @@ static vg_status measure_sizes(struct vg_plan *p, const struct vg_mesh *m,
                            err);
   p->phase[VG_PHASE_SIZES] += finer * (vg_clock_process() - start);
   return st;
+}
+
+/* The sizing field of the front. Most leaves of an octree of sizes are near the
+ * surface, so that a coarser one has a quarter of the leaves of the run's. An
+ * octree of size tensors has no such ratio: its leaves follow the change of the
+ * tensors, and their number has a limit (H13). The forecast builds it as the
+ * run does. */
+static vg_status measure_front(struct vg_plan *p, struct vg_error *err)
+{
+  const double coarseness = vg_boundary_is_stretched(&p->problem.boundary)
+                            ? 1
+                            : VG_PLAN_COARSENESS;
+
+  p->finer = coarseness * coarseness;
+  return measure_sizes(p, p->front, coarseness, p->finer, err);
 }
 
 static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
@@ -251,8 +267,7 @@ static vg_status make_layers(struct vg_plan *p, struct vg_error *err)
     VG_TRY(estimate_layers(p, err));
   }
   count_time(p, VG_PHASE_LAYERS, start);
-  st = measure_sizes(p, p->front, VG_PLAN_COARSENESS,
-                     VG_PLAN_COARSENESS * VG_PLAN_COARSENESS, err);
+  st = measure_front(p, err);
 done:
   free(view.tri);
   free(view.tri_patch);
@@ -300,18 +315,17 @@ static vg_status forecast(const struct vg_plan *p, double leaf_cells,
                          &p->rates, out, err);
 }
 
-/* Rates fitted to the given record, or the built-in ones. */
+/* Fit the rates to the given record. */
 static vg_status learn_rates(struct vg_plan *p, struct vg_error *err)
 {
   struct vg_timeline t = VG_TIMELINE_INIT;
   struct vg_machine m = VG_MACHINE_INIT;
   vg_status st = VG_OK;
 
-  p->rates = vg_rates_measured;
   p->spread_per_cell = spread_per_cell;
   if (!p->o->rates) return VG_OK;
   VG_TRY(vg_timeline_read(p->o->rates, &t, err));
-  VG_TRY(vg_rates_of(&t.spans, p->fit, &p->rates, err));
+  VG_TRY(vg_rates_of(&t.spans, p->fit, err));
   vg_timeline_outside(&t, &m);
   if (t.n_cell) p->spread_per_cell = m.by_all / (double)t.n_cell;
 done:
@@ -455,11 +469,10 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
 
   VG_TRY(learn_rates(p, err));
   VG_TRY(read_project(p, err));
+  p->surface_peak = vg_report_peak_memory();
   p->front = &p->problem.boundary.surface;
   if (p->layers.is_on) VG_TRY(make_layers(p, err));
-  else
-    VG_TRY(measure_sizes(p, p->front, VG_PLAN_COARSENESS,
-                         VG_PLAN_COARSENESS * VG_PLAN_COARSENESS, err));
+  else VG_TRY(measure_front(p, err));
   VG_TRY(vg_boundary_effects(&p->problem.boundary, p->front, p->sizing,
                              &p->effects, err));
   vg_effects_note(&p->effects, p->front, &p->problem.resolved.settings,
@@ -468,8 +481,9 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   vg_display_update(&p->show, "forecast", 0, 0);
   VG_TRY(vg_load_new(&v, p->sizing, VG_LOAD_CELLS_PER_CUBE, vg_cores(),
                      &p->load, err));
-  if (!p->o->rates && vg_sizing_is_stretched(p->sizing))
-    p->rates = vg_rates_in_metric();
+  p->rates = vg_sizing_is_stretched(p->sizing) ? vg_rates_in_metric()
+                                               : vg_rates_measured;
+  vg_rates_replace(&p->rates, p->fit);
   VG_TRY(vg_plan_part(p, err));
   if (p->o->serial >= 0) {
     memset(p->phase, 0, sizeof p->phase);

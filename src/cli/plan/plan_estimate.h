@@ -15,12 +15,14 @@
 
 enum { VG_PLAN_LEAVES = 8 };
 
-/* A sizing field of this coarseness is accurate enough to count cells (M6). */
+/* A sizing field of this coarseness is accurate enough to count cells (M6), if
+ * its sizes do not depend on the direction. */
 #define VG_PLAN_COARSENESS 2
 
 /** Stages of a run whose memory is forecast. */
 enum vg_plan_stage {
-  VG_PLAN_SIZES, /* Surface, sizing field and layers. */
+  VG_PLAN_SURFACE, /* Closed, completed and remeshed. */
+  VG_PLAN_SIZES,   /* Sizing field and layers. */
   VG_PLAN_FILL,
   VG_PLAN_CHECK, /* Mesh check, during which files are written. */
   VG_PLAN_STAGES
@@ -57,6 +59,8 @@ struct vg_plan {
                                   borrowed from layers and problem */
   const struct vg_mesh *front; /* boundary of the field; borrowed */
   struct vg_sizing *sizing;    /* sizing field for the front */
+  double finer;                /* leaves in the octree of the run's sizing field
+                                  for each leaf in that of `sizing` */
   struct vg_effects effects;
   struct vg_load load;
   struct vg_plan_decomposition decomposition;
@@ -72,6 +76,8 @@ struct vg_plan {
   double phase[VG_PHASE_N];       /* seconds on one core, outside the tasks;
                                      the mesh check includes the files written
                                      with it, writing the files after it */
+  double surface_peak;            /* bytes of this process at most until the
+                                     surface was complete */
   double shared;                  /* bytes of surface, layers and sizing field,
                                      of which a node has one copy */
   size_t n_row;

@@ -14,14 +14,13 @@ static const double program = 15e6, mpi = 16e6;
 
 /* Of every node: a triangle of the surface with its points; columns and front
  * of the layers, by wall points; a leaf of the octree of sizes, and of one with
- * size tensors. The leaves of the run are
- * VG_PLAN_COARSENESS^2 times those of the forecast. */
+ * size tensors. */
 static const double surface_triangle = 28, layer_column = 193,
-                    leaf[2] = { 37, 56 };
+                    leaf[2] = { 37, 75 };
 
 /* Temporary arrays of the surface check, by triangles; of the sizing field, by
  * leaves without and with tensors; of the layers, by wall points. */
-static const double check_triangle = 270, sizes_leaf[2] = { 125, 190 },
+static const double check_triangle = 270, sizes_leaf[2] = { 125, 235 },
                     sizes_column = 60;
 
 /* A cell outside the layers until it is written, with its points. */
@@ -57,8 +56,7 @@ static double largest_leaf(const struct vg_forecast *o)
 static double leaves(const struct vg_plan *p, const double bytes[2])
 {
   return bytes[vg_sizing_is_stretched(p->sizing) != 0] *
-         (double)vg_sizing_leaves(p->sizing) * VG_PLAN_COARSENESS *
-         VG_PLAN_COARSENESS;
+         (double)vg_sizing_leaves(p->sizing) * p->finer;
 }
 
 double vg_plan_shared(const struct vg_plan *p)
@@ -67,9 +65,10 @@ double vg_plan_shared(const struct vg_plan *p)
          layer_column * (double)p->n_wall_point + leaves(p, leaf);
 }
 
-/* Until the layers are made, the first rank of a node works for all. Later the
- * ranks divide the cells of the field and the faces between slices, but not the
- * fronts and the boundary. */
+/* Until the layers are made, the first rank of a node works for all. The
+ * forecast itself goes through the stage of the surface. Later the ranks divide
+ * the cells of the field and the faces between slices, but not the fronts and
+ * the boundary. */
 void vg_plan_memory(const struct vg_plan *p, const struct vg_forecast *o,
                     int ranks, int threads, double stage[VG_PLAN_STAGES])
 {
@@ -79,6 +78,7 @@ void vg_plan_memory(const struct vg_plan *p, const struct vg_forecast *o,
   const double node = program + (ranks > 1 ? mpi : 0) + p->shared;
 
   assert(ranks > 0 && threads > 0);
+  stage[VG_PLAN_SURFACE] = p->surface_peak + (ranks > 1 ? mpi : 0);
   stage[VG_PLAN_SIZES] = node + check_triangle * triangles +
                          leaves(p, sizes_leaf) + sizes_column * columns;
   stage[VG_PLAN_FILL] = node + fill_triangle * triangles +

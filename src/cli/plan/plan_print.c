@@ -330,7 +330,8 @@ static void print_limits(const struct vg_plan *p)
 
 static const struct {
   const char *key, *text;
-} memory_stage[VG_PLAN_STAGES] = { { "sizes", "sizing field and layers" },
+} memory_stage[VG_PLAN_STAGES] = { { "surface", "surface" },
+                                   { "sizes", "sizing field and layers" },
                                    { "fill", "fill" },
                                    { "check", "mesh check and files" } };
 

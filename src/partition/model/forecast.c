@@ -27,15 +27,26 @@ const struct vg_rates vg_rates_measured = {
   .octree = { 1.6e-6, 23e-6, 1.9e-6, 0.45, 9.5e-6, 0 },
 };
 
-/* M10: the tasks that take longer in a metric. */
+/* M10: the tasks that take longer in a metric; seconds per cell and per face.
+ */
+static const struct {
+  double pencil[2], tile[2], leaf[2], repair[2];
+} metric = { { 20e-6, 18e-6 }, { 18e-6, 16e-6 }, { 4.5e-6, 6e-6 }, { 9e-6 } };
+
+static struct vg_task_rate rate_of(const double per[2])
+{
+  return (
+    struct vg_task_rate){ .even = per[0], .graded = per[0], .face = per[1] };
+}
+
 struct vg_rates vg_rates_in_metric(void)
 {
   struct vg_rates r = vg_rates_measured;
 
-  r.pencil = r.rib = (struct vg_task_rate){ 0, 20e-6, 20e-6, 18e-6, 0, 0, 0 };
-  r.tile = (struct vg_task_rate){ 0, 11e-6, 11e-6, 11.5e-6, 0, 0, 0 };
-  r.leaf = (struct vg_task_rate){ 0, 3.3e-6, 3.3e-6, 5e-6, 0, 0, 0 };
-  r.repair.even = 0.6e-6;
+  r.pencil = r.rib = rate_of(metric.pencil);
+  r.tile = rate_of(metric.tile);
+  r.leaf = rate_of(metric.leaf);
+  r.repair = rate_of(metric.repair);
   return r;
 }
 
@@ -467,15 +478,48 @@ static void line_up(struct vg_spans *s)
   }
 }
 
+static int is_stretched(const struct vg_load *l)
+{
+  for (size_t i = 0; i < l->n; i++)
+    for (int k = 0; k < 3; k++)
+      if (l->octant[i].across[k] != l->octant[i].h) return 1;
+  return 0;
+}
+
+/* The octant into which a face at x points; NULL: none near it. */
+static const struct vg_load_octant *octant_at(const struct vg_load *l,
+                                              const struct vg_load_finder *f,
+                                              const struct vg_bin *b,
+                                              const double normal[3])
+{
+  const double step = (double)b->h / vg_norm(normal);
+
+  for (int i = 0; i < 4; i++) {
+    double x[3];
+    size_t at;
+
+    for (int k = 0; k < 3; k++) x[k] = (double)b->x[k] + i * step * normal[k];
+    at = vg_load_find(f, x);
+    if (at != SIZE_MAX) return &l->octant[at];
+  }
+  return NULL;
+}
+
 static vg_status add_surface(const struct vg_front *v, struct vg_subdomain *p,
                              struct vg_error *err)
 {
+  struct vg_load_finder *finder = NULL;
+  vg_status st = VG_OK;
+
   p->front.bit = vg_alloc(v->n_face, sizeof *p->front.bit);
   if (!p->front.bit) return vg_fail_memory(err, "a forecast");
+  if (is_stretched(&p->load)) st = vg_load_finder_new(&p->load, &finder, err);
+  if (st < 0) return st;
   p->front.cap = p->front.n = v->n_face;
   for (size_t i = 0; i < v->n_face; i++) {
     const double *a = v->x[v->face[i][0]], *b = v->x[v->face[i][1]];
     const double *d = v->x[v->face[i][2]];
+    const struct vg_load_octant *c = NULL;
     struct vg_bin *f = &p->front.bit[i];
     double u[3], w[3], n[3];
 
@@ -485,7 +529,11 @@ static vg_status add_surface(const struct vg_front *v, struct vg_subdomain *p,
     vg_cross(u, w, n);
     f->n = 1;
     f->h = (float)sqrt(0.5 * VG_FACES_PER_SQUARE * vg_norm(n));
+    for (int k = 0; k < 3; k++) f->across[k] = f->h;
+    if (finder) c = octant_at(&p->load, finder, f, n);
+    if (c) memcpy(f->across, c->across, sizeof f->across);
   }
+  vg_load_finder_free(finder);
   return VG_OK;
 }
 

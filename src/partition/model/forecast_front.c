@@ -91,22 +91,49 @@ static double reach_of(const struct vg_region *r)
                          : rib_reach;
 }
 
-/* Is the foot of x on the planes within the walls, moved outwards by `band`? */
-static int is_over(const struct vg_region *r, const float x[3], double band)
+/* Target edge length of a bin across a plane of a lattice. */
+static double across(const struct vg_bin *b, const struct vg_plane *p)
+{
+  return (double)b->across[axis_of(p)];
+}
+
+/* Is the foot of x on the planes within the walls? If x is a bin, it may be
+ * `band` of its target edges outside of them. */
+static int is_over(const struct vg_region *r, const float x[3],
+                   const struct vg_bin *b, double band)
 {
   double at[3] = { (double)x[0], (double)x[1], (double)x[2] }, foot[3];
 
   vg_region_foot(r, at, foot);
-  for (int k = 0; k < r->n_wall; k++)
-    if (!(vg_dot(r->wall[k].normal, foot) > r->wall[k].offset - band)) return 0;
+  for (int k = 0; k < r->n_wall; k++) {
+    const double beyond = b ? band * across(b, &r->wall[k]) : 0;
+
+    if (!(vg_dot(r->wall[k].normal, foot) > r->wall[k].offset - beyond))
+      return 0;
+  }
   return 1;
 }
 
-static int is_near(const struct vg_region *r, const float x[3], double band)
+/* Is the bin within `band` target edges of all planes, and within the walls or
+ * at most `beyond` target edges outside of them? */
+static int is_near(const struct vg_region *r, const struct vg_bin *b,
+                   double band, double beyond)
 {
   for (int k = 0; k < r->n_plane; k++)
-    if (fabs(side_of_plane(&r->plane[k], x)) > band) return 0;
-  return 1;
+    if (fabs(side_of_plane(&r->plane[k], b->x)) >
+        band * across(b, &r->plane[k]))
+      return 0;
+  return is_over(r, b->x, b, beyond);
+}
+
+/* Area of a face of the octant's cells in a plane, relative to an equilateral
+ * triangle of edge 1. A unit cube of the metric has the volume h^3, and extends
+ * by `distance` across the plane. */
+static double face_area(const struct vg_load_octant *c, double distance)
+{
+  const double h = (double)c->h;
+
+  return h * h * h / distance;
 }
 
 /* Adds the faces that a zone leaves where it passes through the octant: on both
@@ -115,23 +142,30 @@ static vg_status add_sides(const struct vg_load_octant *c,
                            const struct vg_region *r, struct vg_bins *f,
                            struct vg_error *err)
 {
-  double side = 2 * (double)c->half, h = (double)c->h;
-  double reach = reach_of(r) * h;
-  double area = (double)c->part * side * side;
-  struct vg_bin b = { .h = c->h };
+  const double side = 2 * (double)c->half, part = (double)c->part;
+  const double first = vg_load_across(c, r->plane[0].normal);
+  const double reach = reach_of(r) * first;
+  double area = face_area(c, first);
+  struct vg_bin b = { .n = 0 };
   vg_status st = VG_OK;
 
   memcpy(b.x, c->at, sizeof b.x);
+  memcpy(b.across, c->across, sizeof b.across);
   if (r->n_plane > 1) {
+    const double second = vg_load_across(c, r->plane[1].normal);
     double at[3] = { (double)b.x[0], (double)b.x[1], (double)b.x[2] }, foot[3];
 
     vg_region_foot(r, at, foot);
     for (int k = 0; k < 3; k++) b.x[k] = (float)foot[k];
-    area = (double)c->part * side * 8 * reach;
-    b.n = (float)(area * VG_FACES_PER_SQUARE / (h * h));
+    /* two sides of each kind, with the same number of faces */
+    b.n = (float)(VG_FACES_PER_SQUARE * part * side * 8 * reach_of(r) * second /
+                  area);
+    area = (first + second) / (2 * second) * area;
+    b.h = (float)sqrt(area);
     return vg_bins_add(f, &b, err);
   }
-  b.n = (float)(area * VG_FACES_PER_SQUARE / (h * h));
+  b.h = (float)sqrt(area);
+  b.n = (float)(VG_FACES_PER_SQUARE * part * side * side / area);
   for (int sign = -1; st >= 0 && sign <= 1; sign += 2) {
     b.x[axis_of(&r->plane[0])] = (float)(r->plane[0].offset +
                                          sign * 1.01 * reach);
@@ -145,12 +179,10 @@ void vg_bins_cover(struct vg_bins *f, size_t n, const struct vg_region *r)
 {
   assert(n <= f->n);
 
-  double reach = reach_of(r);
   size_t left = 0;
 
   for (size_t i = 0; i < f->n; i++)
-    if (i >= n || !is_near(r, f->bit[i].x, reach * (double)f->bit[i].h) ||
-        !is_over(r, f->bit[i].x, 0))
+    if (i >= n || !is_near(r, &f->bit[i], reach_of(r), 0))
       f->bit[left++] = f->bit[i];
   f->n = left;
 }
@@ -162,13 +194,8 @@ double vg_bins_near(const struct vg_bins *f, size_t n,
 
   double band = vg_region_band(r, VG_BAND_FRONT), sum = 0;
 
-  for (size_t i = 0; i < n; i++) {
-    const struct vg_bin *b = &f->bit[i];
-
-    if (is_near(r, b->x, band * (double)b->h) &&
-        is_over(r, b->x, VG_BAND_FRONT * (double)b->h))
-      sum += (double)b->n;
-  }
+  for (size_t i = 0; i < n; i++)
+    if (is_near(r, &f->bit[i], band, VG_BAND_FRONT)) sum += (double)f->bit[i].n;
   return sum;
 }
 
@@ -189,7 +216,7 @@ vg_status vg_bins_take(struct vg_subdomain *p, const struct vg_region *r,
     for (int k = 0; share > 0 && k < r->n_plane; k++)
       share *= overlap(c, &r->plane[k],
                        reach * vg_load_across(c, r->plane[k].normal));
-    if (!(share > 0) || !is_over(r, c->at, 0)) continue;
+    if (!(share > 0) || !is_over(r, c->at, NULL, 0)) continue;
     for (int k = 0; k < r->n_plane; k++)
       passes &= fabs(side_of_plane(&r->plane[k], c->at)) <=
                 half_across(c, &r->plane[k]);

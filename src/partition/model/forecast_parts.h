@@ -13,9 +13,11 @@
 /* Triangles of edge h per square of side h, 4 / sqrt(3). */
 #define VG_FACES_PER_SQUARE 2.309
 
-/* A piece of front: n faces of edge h around x. */
+/* A piece of front: n faces around x with the area of an equilateral triangle
+ * of edge h. across: the target edge length across planes normal to the axes
+ * (vg_load_octant); h if the sizes do not depend on the direction. */
 struct vg_bin {
-  float x[3], h, n;
+  float x[3], h, across[3], n;
 };
 
 struct vg_bins {

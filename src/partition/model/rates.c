@@ -151,21 +151,26 @@ static void take(struct vg_task_rate *rate, const struct vg_rate_fit *fit)
 
 vg_status vg_rates_of(const struct vg_spans *s,
                       struct vg_rate_fit fit[VG_RATE_FITS],
-                      struct vg_rates *out, struct vg_error *err)
+                      struct vg_error *err)
 {
   static const char kind[VG_RATE_FITS] = { VG_SPAN_LEAF, VG_SPAN_PENCIL,
                                            VG_SPAN_TILE };
 
-  assert(s && fit && out);
-  *out = vg_rates_measured;
+  assert(s && fit);
   for (int k = 0; k < VG_RATE_FITS; k++) {
     vg_status st = vg_rates_fit(s, kind[k], &fit[k], err);
 
     if (st < 0) return st;
   }
-  take(&out->leaf, &fit[0]);
-  take(&out->pencil, &fit[1]);
-  take(&out->rib, &fit[1]);
-  take(&out->tile, &fit[2]);
   return VG_OK;
+}
+
+void vg_rates_replace(struct vg_rates *r,
+                      const struct vg_rate_fit fit[VG_RATE_FITS])
+{
+  assert(r && fit);
+  take(&r->leaf, &fit[0]);
+  take(&r->pencil, &fit[1]);
+  take(&r->rib, &fit[1]);
+  take(&r->tile, &fit[2]);
 }

@@ -23,13 +23,15 @@ struct vg_rate_fit {
 vg_status vg_rates_fit(const struct vg_spans *s, char kind,
                        struct vg_rate_fit *out, struct vg_error *err);
 
-/** The measured rates (forecast.h), with seconds per cell and per face of
- * leaves, pencils and tiles replaced by those of a trace if it has enough
- * tasks; joins and repairs are unchanged. fit out: the fits for kinds L, P, T.
- * Errors as of vg_rates_fit. */
+/** Fits the kinds L, P and T. Errors as of vg_rates_fit. */
 enum { VG_RATE_FITS = 3 };
 vg_status vg_rates_of(const struct vg_spans *s,
                       struct vg_rate_fit fit[VG_RATE_FITS],
-                      struct vg_rates *out, struct vg_error *err);
+                      struct vg_error *err);
+
+/** Replaces the seconds per cell and per face of leaves, pencils and tiles by
+ * those of a fit that had enough tasks; joins and repairs are unchanged. */
+void vg_rates_replace(struct vg_rates *r,
+                      const struct vg_rate_fit fit[VG_RATE_FITS]);
 
 #endif

@@ -205,3 +205,39 @@ says out '"ranks_per_node": '
 vanguard plan -q -p p/box --cores 6 -t 2
 exits 2
 says err "omit --threads and --ranks-per-node"
+
+# Sizes that depend on the direction. A thin sheet of flat cells has more leaves in
+# its octree of sizes than the mesh has points, and the octree needs most of the
+# memory.
+mkdir thin
+cp p/box.lb8.ugrid thin/thin.lb8.ugrid
+cat >thin/thin.deck <<'END'
+thin
+flow     remesh_surface surface_sizes hmax
+internal yes            no            0.15
+
+farfield
+kind
+none
+
+sources
+kind x0 y0 z0   x1 y1 z1   h0  stretch ux uy uz
+box  0  0  0.45 1  1  0.55 0.1 0.05    0  0  1
+END
+one_thread() { # COMMAND [OPTION...]: cells and memory by one thread
+  vanguard "$1" -q --json -p thin/thin --write b8.ugrid --report-html no "${@:2}"
+  exits 0
+  cp out "$1.json"
+}
+one_thread plan -n 1 -t 1
+one_thread mesh --threads 1 --out m3
+jq -es '.[0].mesh.cells / .[1].mesh.cells | . > 0.85 and . < 1.15' \
+  plan.json mesh.json >near || fail "cells in a metric are not those forecast"
+jq -es '.[0].memory.shared / (.[1].memory_bytes | .surface + .sizes) |
+  . > 0.85 and . < 1.15' plan.json mesh.json >near ||
+  fail "the octree in a metric is not that forecast"
+# Resident memory, unless a sanitizer needs most of it.
+grep -q __asan_init "$program" ||
+  jq -es '.[0].forecast[0].memory_bytes / .[1].peak_memory_bytes |
+    . > 0.75 and . < 1.25' plan.json mesh.json >near ||
+  fail "the memory in a metric is not that forecast"
