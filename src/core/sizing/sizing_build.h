@@ -10,24 +10,34 @@
 #define VG_OCTREE_TOP (1u << VG_OCTREE_DEPTH) /* side of the root cube */
 #define VG_OCTREE_GRAIN 128 /* cells or points per thread and step */
 
+/* Numbers of leaves and splits below a cell, later the indices of the first
+ * ones in the compact tree. */
+struct vg_octree_span {
+  uint32_t leaf, split;
+  float least; /* smallest value at a corner */
+};
+
 struct vg_octree_cell {
-  uint32_t at[3];     /* lower corner, in units of the finest cell */
   uint32_t corner[8]; /* indices of points */
   uint32_t child;     /* first of eight children; 0: leaf */
-  uint32_t hint;      /* start of the search for near samples */
-  float floor;        /* lower bound of the spacing within */
-  float rest;         /* the cell is not split if its side is at most this
-                         times b->floor */
+  union {
+    struct {
+      uint32_t hint; /* start of the search for near samples */
+      float floor;   /* lower bound of the spacing within */
+      float rest;    /* the cell is not split if its side is at most this
+                        times b->floor */
+    };
+    struct vg_octree_span span; /* while the tree is compacted */
+  };
 };
 
 struct vg_octree_point {
-  uint32_t at[3];     /* in units of the finest cell */
-  uint32_t parent[4]; /* of a midpoint: ends of the edge, or corners of the
-                         face */
+  uint32_t at[3]; /* in units of the finest cell */
   uint32_t hint;
   float h;
-  uint8_t n_parent; /* 0: corner of the root, or centre; otherwise 2 or 4 */
-  uint8_t is_hanging;
+  uint32_t parent[4]; /* of a hanging point: ends of the edge, or corners of
+                         the face */
+  uint8_t n_parent;   /* of a hanging point 2 or 4, of others 0 */
 };
 
 /* Cells of a level are contiguous, and so are the eight children of a cell. */
@@ -63,6 +73,13 @@ static inline void vg_octree_place(const struct vg_octree_build *b,
                                    const uint32_t at[3], double x[3])
 {
   for (int k = 0; k < 3; k++) x[k] = b->lo[k] + at[k] * b->unit;
+}
+
+/** Lower corner of a cell, in units of the finest cell. */
+static inline const uint32_t *vg_octree_corner(const struct vg_octree_build *b,
+                                               const struct vg_octree_cell *c)
+{
+  return b->point[c->corner[0]].at;
 }
 
 /** Decisions about the eight children of a cell together. */

@@ -162,7 +162,7 @@ static void combine_body(void *context, size_t first, size_t end, int worker)
     struct vg_octree_point *p = b->point + i;
     double x[3], h[6], range[2], most;
 
-    if (p->is_hanging || !g->is_lowered[i]) continue;
+    if (p->n_parent || !g->is_lowered[i]) continue;
     vg_octree_place(b, p->at, x);
     widen(g->now[i], h);
     vg_stat_tensor_limit(b->f, h, range);
@@ -188,7 +188,7 @@ static vg_status limit(struct gradation *g, struct vg_error *err)
   } while (finish_sweep(g));
   vg_parallel_for(b->threads, b->n_point, VG_OCTREE_GRAIN, combine_body, g);
   for (size_t i = 0; i < b->n_point; i++)
-    if (b->point[i].is_hanging)
+    if (b->point[i].n_parent)
       vg_octree_hanging_tensor(b, b->point + i, b->tensor + i);
   return VG_OK;
 }

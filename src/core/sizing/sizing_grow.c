@@ -235,29 +235,28 @@ static void own_body(void *context, size_t first, size_t end, int worker)
  * split. */
 static unsigned full_count(const struct vg_octree_point *p)
 {
-  unsigned n = p->n_parent == 2 ? 4 : p->n_parent == 4 ? 2 : 1;
-  unsigned on_side = 0;
+  unsigned n = p->n_parent == 2 ? 4 : 2, on_side = 0;
 
-  if (!p->n_parent) return 0;
   for (int k = 0; k < 3; k++)
     on_side += p->at[k] == 0 || p->at[k] == VG_OCTREE_TOP;
   return n >> on_side;
 }
 
-/* Create midpoint i, which split s owns. Its parents span its odd coordinates.
- * They are points of earlier levels, so their values are known. */
+/* Create midpoint i, which split s owns. If it hangs, its parents span its odd
+ * coordinates. They are points of earlier levels, so their values are known. */
 static void make_point(const struct level *l, struct vg_octree_family *y,
                        size_t s, int i, unsigned n_cell,
                        struct vg_octree_point *p)
 {
   struct vg_octree_build *b = l->b;
   const struct vg_octree_cell *c = b->cell + l->which[s];
+  const uint32_t *from = vg_octree_corner(b, c);
   float known = l->centre[l->which[s] - l->first];
   int at[3];
 
   vg_octree_lattice(i, at);
   *p = (struct vg_octree_point){ .hint = c->hint };
-  for (int k = 0; k < 3; k++) p->at[k] = c->at[k] + l->half * (uint32_t)at[k];
+  for (int k = 0; k < 3; k++) p->at[k] = from[k] + l->half * (uint32_t)at[k];
   for (int j = 0; j < 8 && i != 13; j++) {
     int on = 1;
 
@@ -265,14 +264,14 @@ static void make_point(const struct level *l, struct vg_octree_family *y,
       on = on && (at[k] == 1 || at[k] / 2 == (j >> k & 1));
     if (on && p->n_parent < 4) p->parent[p->n_parent++] = c->corner[j];
   }
-  p->is_hanging = n_cell < full_count(p);
-  if (p->is_hanging) p->h = vg_octree_hanging_size(b, p);
+  if (i == 13 || n_cell >= full_count(p)) p->n_parent = 0;
+  if (p->n_parent) p->h = vg_octree_hanging_size(b, p);
   if (b->tensor) {
     struct vg_size *tensor = b->tensor + (p - b->point);
 
-    if (p->is_hanging) vg_octree_hanging_tensor(b, p, tensor);
+    if (p->n_parent) vg_octree_hanging_tensor(b, p, tensor);
     else vg_octree_sample_tensor(y, c, i, tensor, &p->h);
-  } else if (!p->is_hanging) {
+  } else if (!p->n_parent) {
     p->h = i == 13 && !isnan(known) ? known : vg_octree_sample(y, c, i);
   }
 }
@@ -289,7 +288,6 @@ static void make_children(const struct level *l, size_t s,
 
     *d = *c;
     d->child = 0;
-    for (int k = 0; k < 3; k++) d->at[k] += l->half * (uint32_t)(j >> k & 1);
     for (int i = 0; i < 8; i++)
       d->corner[i] = id[base + (i & 1) + (i >> 1 & 1) * 3 + (i >> 2) * 9];
   }

@@ -59,7 +59,8 @@ static int lower_corners(const struct limit *l, const struct vg_octree_cell *c)
 {
   static const unsigned char apart[8] = { 0, 1, 1, 2, 1, 2, 2, 3 };
   const struct vg_octree_build *b = l->b;
-  double side = b->unit * (b->point[c->corner[1]].at[0] - c->at[0]);
+  double side = b->unit *
+                (b->point[c->corner[1]].at[0] - vg_octree_corner(b, c)[0]);
   float reach[4], h[8], low = INFINITY, high = 0;
   int changed = 0;
 
@@ -141,7 +142,7 @@ static void remesh_body(void *context, size_t first, size_t end, int worker)
     float h = value(atomic_load_explicit(l->bits + i, memory_order_relaxed));
     double x[3];
 
-    if (p->is_hanging || h == l->before[i]) continue;
+    if (p->n_parent || h == l->before[i]) continue;
     vg_octree_place(b, p->at, x);
     p->h = (float)vg_stat_combine(b->f, x, (double)h, NULL, &p->hint);
   }
@@ -156,7 +157,7 @@ static void renew(struct limit *l)
 
   vg_parallel_for(b->threads, b->n_point, VG_OCTREE_GRAIN, remesh_body, l);
   for (size_t i = 0; i < b->n_point; i++)
-    if (b->point[i].is_hanging)
+    if (b->point[i].n_parent)
       b->point[i].h = vg_octree_hanging_size(b, b->point + i);
 }
 

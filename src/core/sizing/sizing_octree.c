@@ -27,15 +27,8 @@
  * counted, from the last level up. Then each cell passes its first numbers on
  * to its children. */
 
-struct span {
-  uint32_t leaf, split;
-  float least;
-};
-
 struct compaction {
   const struct vg_octree_build *b;
-  struct span *span; /* [n_cell] numbers below each cell, later the first
-                        number */
   struct vg_octree *t;
   size_t first; /* first cell of the level */
 };
@@ -55,19 +48,19 @@ static void count_body(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t i = m->first + first; i < m->first + end; i++) {
-    const struct vg_octree_cell *c = m->b->cell + i;
-    struct span sum = { !c->child, c->child != 0, INFINITY };
+    struct vg_octree_cell *c = m->b->cell + i;
+    struct vg_octree_span sum = { !c->child, c->child != 0, INFINITY };
 
     for (uint32_t j = 0; j < 8; j++) {
-      struct span below = { 0, 0, 0 };
+      struct vg_octree_span below = { 0, 0, 0 };
 
-      if (c->child) below = m->span[c->child + j];
+      if (c->child) below = m->b->cell[c->child + j].span;
       else below.least = corner_size(m->b, c->corner[j]);
       sum.leaf += below.leaf;
       sum.split += below.split;
       sum.least = below.least < sum.least ? below.least : sum.least;
     }
-    m->span[i] = sum;
+    c->span = sum;
   }
 }
 
@@ -85,7 +78,7 @@ static int is_uniform(const struct vg_octree_build *b,
 static void put_leaf(const struct compaction *m, size_t cell)
 {
   const struct vg_octree_cell *c = m->b->cell + cell;
-  union vg_octree_leaf *leaf = m->t->leaf + m->span[cell].leaf;
+  union vg_octree_leaf *leaf = m->t->leaf + c->span.leaf;
   int uniform = is_uniform(m->b, c);
 
   for (int i = 0; i < 8; i++)
@@ -108,22 +101,23 @@ static void emit_body(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t i = m->first + first; i < m->first + end; i++) {
-    uint32_t child = m->b->cell[i].child;
-    struct span next = m->span[i];
+    const struct vg_octree_cell *c = m->b->cell + i;
+    struct vg_octree_span next = c->span;
 
-    if (!child) {
+    if (!c->child) {
       put_leaf(m, i);
       continue;
     }
     m->t->least[next.split++] = next.least;
     for (uint32_t j = 0; j < 8; j++) {
-      struct span below = m->span[child + j];
+      struct vg_octree_cell *d = m->b->cell + c->child + j;
+      struct vg_octree_span below = d->span;
 
-      m->t->child[m->span[i].split][j] = m->b->cell[child + j].child
-                                         ? next.split
-                                         : leaf_entry(m, child + j, next.leaf);
+      m->t->child[c->span.split][j] = d->child
+                                      ? next.split
+                                      : leaf_entry(m, c->child + j, next.leaf);
       next.least = below.least;
-      m->span[child + j] = next;
+      d->span = next;
       next.leaf += below.leaf;
       next.split += below.split;
     }
@@ -159,34 +153,40 @@ static int number_tensors(const struct vg_octree_build *b, struct vg_octree *t)
   return t->tensor ? 0 : -1;
 }
 
-static int compact(const struct vg_octree_build *b, struct vg_octree *t)
+/* Frees what is no longer needed of b: of size tensors, the points before, and
+ * the cells before the tensors are numbered. */
+static int compact(struct vg_octree_build *b, struct vg_octree *t)
 {
   struct compaction m = { .b = b, .t = t };
   size_t n_split = b->n_cell / 8;
   int bad;
 
-  m.span = vg_alloc(b->n_cell, sizeof *m.span);
+  if (b->tensor) {
+    free(b->point);
+    b->point = NULL;
+  }
   t->child = vg_alloc(n_split, sizeof *t->child);
   t->least = vg_alloc(n_split, sizeof *t->least);
   t->leaf = vg_alloc(b->n_cell - n_split, sizeof *t->leaf);
-  bad = !m.span || !t->child || !t->least || !t->leaf;
+  bad = !t->child || !t->least || !t->leaf;
   for (int k = b->n_level; !bad && k-- > 0;) {
     m.first = b->level[k];
     vg_parallel_for(b->threads, b->level[k + 1] - m.first, VG_OCTREE_GRAIN,
                     count_body, &m);
   }
-  if (!bad) m.span[0].leaf = m.span[0].split = 0;
+  if (!bad) b->cell->span.leaf = b->cell->span.split = 0;
   for (int k = 0; !bad && k < b->n_level; k++) {
     m.first = b->level[k];
     vg_parallel_for(b->threads, b->level[k + 1] - m.first, VG_OCTREE_GRAIN,
                     emit_body, &m);
   }
-  free(m.span);
   if (bad) return -1;
   t->n_split = n_split;
   t->n_leaf = b->n_cell - n_split;
   t->root = b->cell->child ? 0 : leaf_entry(&m, 0, 0);
   t->is_stretched = b->tensor != NULL;
+  free(b->cell);
+  b->cell = NULL;
   return t->is_stretched ? number_tensors(b, t) : 0;
 }
 
@@ -216,10 +216,10 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
   else if (st >= 0 && vg_source_any(&f->set)) st = vg_octree_limit(&b, err);
   if (st >= 0 && compact(&b, out))
     st = vg_fail_memory(err, "the octree of the sizing field");
-  if (st >= 0 && out->is_stretched) st = vg_octree_bounds(out, err);
   free(b.cell);
   free(b.point);
   free(b.tensor);
+  if (st >= 0 && out->is_stretched) st = vg_octree_bounds(out, err);
   if (st < 0) vg_octree_release(out);
   return st;
 }

@@ -22,7 +22,7 @@
 void vg_octree_family_start(struct vg_octree_family *y,
                             const struct vg_octree_cell *c)
 {
-  vg_octree_place(y->b, c->at, y->reach.mid);
+  vg_octree_place(y->b, vg_octree_corner(y->b, c), y->reach.mid);
   for (int k = 0; k < 3; k++) y->reach.mid[k] += y->side;
   y->reach.trifle = 0.25f * c->floor;
   y->reach.is_known = 0;
@@ -37,11 +37,12 @@ void vg_octree_family_clear(struct vg_octree_family *y)
 static void place(const struct vg_octree_family *y,
                   const struct vg_octree_cell *c, int i, double x[3])
 {
+  const uint32_t *from = vg_octree_corner(y->b, c);
   uint32_t q[3];
   int at[3];
 
   vg_octree_lattice(i, at);
-  for (int k = 0; k < 3; k++) q[k] = c->at[k] + y->half * (uint32_t)at[k];
+  for (int k = 0; k < 3; k++) q[k] = from[k] + y->half * (uint32_t)at[k];
   vg_octree_place(y->b, q, x);
 }
 
@@ -142,7 +143,7 @@ static int wants_split_size(struct vg_octree_family *y,
 
   if (is_unsampled(b, y->side)) return 1;
   if (y->side <= b->floor * (double)c->floor) return 0;
-  vg_octree_place(b, c->at, lo);
+  vg_octree_place(b, vg_octree_corner(b, c), lo);
   for (int k = 0; k < 3; k++) hi[k] = lo[k] + y->side;
   c->floor = (float)vg_stat_floor(b->f, lo, y->side, &y->reach, &c->hint,
                                   &by_sources);
@@ -285,7 +286,7 @@ int vg_octree_wants_split(struct vg_octree_family *y, struct vg_octree_cell *c,
   double mid[6];
 
   if (!b->tensor) return wants_split_size(y, c, sibling, centre);
-  vg_octree_place(b, c->at, t.lo);
+  vg_octree_place(b, vg_octree_corner(b, c), t.lo);
   for (int k = 0; k < 3; k++) t.hi[k] = t.lo[k] + y->side;
   for (int i = 0; i < 8; i++) {
     t.corner[i] = b->tensor + c->corner[i];
