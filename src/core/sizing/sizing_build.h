@@ -35,9 +35,12 @@ struct vg_octree_point {
   uint32_t at[3]; /* in units of the finest cell */
   uint32_t hint;
   float h;
-  uint32_t parent[4]; /* of a hanging point: ends of the edge, or corners of
-                         the face */
-  uint8_t n_parent;   /* of a hanging point 2 or 4, of others 0 */
+  uint8_t n_parent; /* of a hanging point 2 or 4, of others 0 */
+  union {
+    uint32_t parent[4]; /* of a hanging point: ends of the edge, or corners of
+                           the face */
+    uint32_t number;    /* of another point, during the gradation */
+  };
 };
 
 /* Cells of a level are contiguous, and so are the eight children of a cell. */
@@ -138,8 +141,8 @@ static inline void vg_octree_lattice(int i, int at[3])
 }
 
 /** Lower the size tensors of the sources at the points until the growth from
- * each corner of a leaf to each other one is at most the slope, and update the
- * field. Fails as vg_octree_grow. */
+ * each corner of a leaf to each other one is at most the slope, except for
+ * hanging points, and update the field. Fails as vg_octree_grow. */
 vg_status vg_octree_limit_tensors(struct vg_octree_build *b,
                                   struct vg_error *err);
 

@@ -5,7 +5,11 @@
  * order, so the sweeps are Jacobi steps: each point is computed from the values
  * of the sweep before, in the order of its leaves. A point needs the corners
  * only that changed in the sweep before, because it satisfies the conditions of
- * the others already. After the first sweep, few points change. */
+ * the others already. After the first sweep, few points change.
+ *
+ * Hanging points, the majority, are left out: their final tensors are means of
+ * those of their parents, and the other corners of their leaves are connected
+ * without them. */
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,18 +23,35 @@
 
 struct gradation {
   struct vg_octree_build *b;
-  float (*now)[6], (*next)[6]; /* [n_point] size tensors of the sources */
-  uint32_t *begin;             /* [n_point + 1] first leaf of each point */
+  size_t n;                    /* number of points that do not hang */
+  uint32_t *point;             /* [n] these points */
+  float (*now)[6], (*next)[6]; /* [n] size tensors of the sources */
+  uint32_t *begin;             /* [n + 1] first leaf of each point */
   uint32_t *leaf;              /* cells */
   uint32_t *due;               /* [n_due] points of this sweep */
   size_t n_due;
-  uint8_t *is_new;     /* [n_point] changed in the sweep before */
-  uint8_t *is_changed; /* [n_point] changed in this sweep */
-  uint8_t *is_due;     /* [n_point] is listed in due */
-  uint8_t *is_lowered; /* [n_point] changed in any sweep */
+  uint8_t *is_new;     /* [n] changed in the sweep before */
+  uint8_t *is_changed; /* [n] changed in this sweep */
+  uint8_t *is_due;     /* [n] is listed in due */
+  uint8_t *is_lowered; /* [n] changed in any sweep */
 };
 
 enum { NEIGHBOURS = 64 };
+
+static const struct vg_octree_point *point_of(const struct gradation *g,
+                                              size_t i)
+{
+  return g->b->point + g->point[i];
+}
+
+/* Number of corner j of a cell, or SIZE_MAX if it hangs. */
+static size_t corner(const struct gradation *g, const struct vg_octree_cell *c,
+                     int j)
+{
+  const struct vg_octree_point *p = g->b->point + c->corner[j];
+
+  return p->n_parent ? SIZE_MAX : p->number;
+}
 
 static void widen(const float from[6], double h[6])
 {
@@ -46,7 +67,7 @@ static void source_body(void *context, size_t first, size_t end, int worker)
   for (size_t i = first; i < end; i++) {
     double x[3], h[6], range[2], iso;
 
-    vg_octree_place(b, b->point[i].at, x);
+    vg_octree_place(b, point_of(g, i)->at, x);
     vg_stat_tensor_source(b->f, x, h, range, &iso);
     for (int k = 0; k < 6; k++) g->now[i][k] = (float)h[k];
   }
@@ -57,10 +78,11 @@ static void source_body(void *context, size_t first, size_t end, int worker)
 static int limit_by(const struct gradation *g, size_t p, size_t q, double h[6])
 {
   const struct vg_octree_build *b = g->b;
+  const uint32_t *to = point_of(g, p)->at, *at = point_of(g, q)->at;
   double from[6], way[3];
 
   for (int k = 0; k < 3; k++)
-    way[k] = b->unit * ((double)b->point[p].at[k] - (double)b->point[q].at[k]);
+    way[k] = b->unit * ((double)to[k] - (double)at[k]);
   widen(g->now[q], from);
   vg_size_grow(from, way, b->f->slope, from);
   if (vg_size_is_within(h, from, SLACK)) return 0;
@@ -77,12 +99,12 @@ static int list_new(const struct gradation *g, uint32_t p,
 
   for (uint32_t i = g->begin[p]; i < g->begin[p + 1]; i++)
     for (int j = 0; j < 8; j++) {
-      uint32_t q = g->b->cell[g->leaf[i]].corner[j];
+      size_t q = corner(g, g->b->cell + g->leaf[i], j);
       int k = 0;
 
-      if (q == p || !g->is_new[q]) continue;
+      if (q == SIZE_MAX || q == p || !g->is_new[q]) continue;
       while (k < n && out[k] != q) k++;
-      if (k == n && n < NEIGHBOURS) out[n++] = q;
+      if (k == n && n < NEIGHBOURS) out[n++] = (uint32_t)q;
     }
   return n;
 }
@@ -110,14 +132,14 @@ static void sweep_body(void *context, size_t first, size_t end, int worker)
 static void list_due(struct gradation *g)
 {
   g->n_due = 0;
-  for (size_t q = 0; q < g->b->n_point; q++)
+  for (size_t q = 0; q < g->n; q++)
     for (uint32_t i = g->begin[q]; g->is_new[q] && i < g->begin[q + 1]; i++)
       for (int j = 0; j < 8; j++) {
-        uint32_t p = g->b->cell[g->leaf[i]].corner[j];
+        size_t p = corner(g, g->b->cell + g->leaf[i], j);
 
-        if (g->is_due[p]) continue;
+        if (p == SIZE_MAX || g->is_due[p]) continue;
         g->is_due[p] = 1;
-        g->due[g->n_due++] = p;
+        g->due[g->n_due++] = (uint32_t)p;
       }
   for (size_t i = 0; i < g->n_due; i++) g->is_due[g->due[i]] = 0;
 }
@@ -126,7 +148,7 @@ static void list_due(struct gradation *g)
  * Returns their number. */
 static size_t finish_sweep(struct gradation *g)
 {
-  memset(g->is_new, 0, g->b->n_point);
+  memset(g->is_new, 0, g->n);
   for (size_t i = 0; i < g->n_due; i++) {
     uint32_t p = g->due[i];
 
@@ -139,17 +161,39 @@ static size_t finish_sweep(struct gradation *g)
   return g->n_due;
 }
 
-static void list_leaves(struct gradation *g)
+/* Number the points that do not hang. */
+static int number_points(struct gradation *g)
+{
+  struct vg_octree_build *b = g->b;
+  size_t n = 0;
+
+  for (size_t i = 0; i < b->n_point; i++) g->n += !b->point[i].n_parent;
+  g->point = vg_alloc(g->n, sizeof *g->point);
+  if (!g->point) return -1;
+  for (size_t i = 0; i < b->n_point; i++) {
+    if (b->point[i].n_parent) continue;
+    b->point[i].number = (uint32_t)n;
+    g->point[n++] = (uint32_t)i;
+  }
+  return 0;
+}
+
+static int list_leaves(struct gradation *g)
 {
   const struct vg_octree_build *b = g->b;
+  size_t q;
 
   for (size_t i = 0; i < b->n_cell; i++)
     for (int j = 0; j < 8 && !b->cell[i].child; j++)
-      g->begin[b->cell[i].corner[j]]++;
-  for (size_t i = 0; i < b->n_point; i++) g->begin[i + 1] += g->begin[i];
+      if ((q = corner(g, b->cell + i, j)) < SIZE_MAX) g->begin[q]++;
+  for (size_t i = 0; i < g->n; i++) g->begin[i + 1] += g->begin[i];
+  g->leaf = vg_alloc(g->begin[g->n], sizeof *g->leaf);
+  if (!g->leaf) return -1;
   for (size_t i = b->n_cell; i-- > 0;)
     for (int j = 0; j < 8 && !b->cell[i].child; j++)
-      g->leaf[--g->begin[b->cell[i].corner[j]]] = (uint32_t)i;
+      if ((q = corner(g, b->cell + i, j)) < SIZE_MAX)
+        g->leaf[--g->begin[q]] = (uint32_t)i;
+  return 0;
 }
 
 static void combine_body(void *context, size_t first, size_t end, int worker)
@@ -159,15 +203,15 @@ static void combine_body(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
-    struct vg_octree_point *p = b->point + i;
+    struct vg_octree_point *p = b->point + g->point[i];
     double x[3], h[6], range[2], most;
 
-    if (p->n_parent || !g->is_lowered[i]) continue;
+    if (!g->is_lowered[i]) continue;
     vg_octree_place(b, p->at, x);
     widen(g->now[i], h);
     vg_stat_tensor_limit(b->f, h, range);
-    vg_stat_tensor_combine(b->f, x, h, range, NULL, &p->hint, b->tensor + i,
-                           &most);
+    vg_stat_tensor_combine(b->f, x, h, range, NULL, &p->hint,
+                           b->tensor + g->point[i], &most);
   }
 }
 
@@ -175,44 +219,52 @@ static vg_status limit(struct gradation *g, struct vg_error *err)
 {
   struct vg_octree_build *b = g->b;
   const struct vg_team_out out[] = { { g->now, sizeof *g->now, 0, NULL } };
-  vg_status st = vg_team_for(b->team, b->threads, b->n_point, VG_OCTREE_GRAIN,
+  vg_status st = vg_team_for(b->team, b->threads, g->n, VG_OCTREE_GRAIN,
                              source_body, g, 1, out, err);
 
   if (st < 0) return st;
-  list_leaves(g);
-  memset(g->is_new, 1, b->n_point);
-  for (size_t i = 0; i < b->n_point; i++) g->due[i] = (uint32_t)i;
-  g->n_due = b->n_point;
+  memset(g->is_new, 1, g->n);
+  for (size_t i = 0; i < g->n; i++) g->due[i] = (uint32_t)i;
+  g->n_due = g->n;
   do {
     vg_parallel_for(b->threads, g->n_due, VG_OCTREE_GRAIN, sweep_body, g);
   } while (finish_sweep(g));
-  vg_parallel_for(b->threads, b->n_point, VG_OCTREE_GRAIN, combine_body, g);
+  vg_parallel_for(b->threads, g->n, VG_OCTREE_GRAIN, combine_body, g);
   for (size_t i = 0; i < b->n_point; i++)
     if (b->point[i].n_parent)
       vg_octree_hanging_tensor(b, b->point + i, b->tensor + i);
   return VG_OK;
 }
 
+static int allocate(struct gradation *g)
+{
+  size_t n;
+
+  if (number_points(g)) return -1;
+  n = g->n;
+  g->now = vg_alloc(n, sizeof *g->now);
+  g->next = vg_alloc(n, sizeof *g->next);
+  g->begin = vg_calloc(n + 1, sizeof *g->begin);
+  g->due = vg_alloc(n, sizeof *g->due);
+  g->is_new = vg_alloc(n, 1);
+  g->is_changed = vg_alloc(n, 1);
+  g->is_due = vg_calloc(n, 1);
+  g->is_lowered = vg_calloc(n, 1);
+  return g->now && g->next && g->begin && g->due && g->is_new &&
+             g->is_changed && g->is_due && g->is_lowered
+         ? list_leaves(g)
+         : -1;
+}
+
 vg_status vg_octree_limit_tensors(struct vg_octree_build *b,
                                   struct vg_error *err)
 {
-  size_t n = b->n_point, n_leaf = b->n_cell - b->n_cell / 8;
-  struct gradation g = { .b = b,
-                         .now = vg_alloc(n, sizeof *g.now),
-                         .next = vg_alloc(n, sizeof *g.next),
-                         .begin = vg_calloc(n + 1, sizeof *g.begin),
-                         .leaf = vg_alloc(8 * n_leaf, sizeof *g.leaf),
-                         .due = vg_alloc(n, sizeof *g.due),
-                         .is_new = vg_alloc(n, 1),
-                         .is_changed = vg_alloc(n, 1),
-                         .is_due = vg_calloc(n, 1),
-                         .is_lowered = vg_calloc(n, 1) };
-  vg_status st;
+  struct gradation g = { .b = b };
+  vg_status st = allocate(&g)
+                 ? vg_fail_memory(err, "the octree of the sizing field")
+                 : limit(&g, err);
 
-  if (!g.now || !g.next || !g.begin || !g.leaf || !g.due || !g.is_new ||
-      !g.is_changed || !g.is_due || !g.is_lowered)
-    st = vg_fail_memory(err, "the octree of the sizing field");
-  else st = limit(&g, err);
+  free(g.point);
   free(g.now);
   free(g.next);
   free(g.begin);
