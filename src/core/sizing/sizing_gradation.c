@@ -266,8 +266,7 @@ static int allocate(struct gradation *g)
  * there, and the interpolation between exact values at the corners exceeds it.
  * Therefore corners are lowered by a share of the largest relative excess in
  * the middle of their leaves. The octree needs fewer cells for the same
- * accuracy then, and the field requests about as many points as the exact one.
- */
+ * accuracy then, and the field keeps the complexity of the exact one. */
 struct kinks {
   struct vg_octree_build *b;
   float *excess; /* [n_cell] of leaves, from 0 to the tolerance */
