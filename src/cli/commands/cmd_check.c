@@ -56,8 +56,8 @@ static vg_status field(const struct arguments *a, struct vg_problem *p,
   VG_TRY(vg_read_sizes(&read, err));
   options = vg_options_sizing(s, read.map);
   if (!a->deck) options.from_surface = 0;
-  VG_TRY(vg_sizing_new(&options, a->deck ? s->n_source : 0, s->source, m, out,
-                       err));
+  VG_TRY(
+    vg_sizing_new(&options, a->deck ? s->n_source : 0, s->source, m, out, err));
 done:
   vg_size_samples_free(read.samples);
   vg_size_mesh_free(read.metrics);

@@ -203,8 +203,8 @@ static void find_axes(const double m[6], double h[6], double axis[3][3])
 }
 
 /* Most positions that a point proposes are so near to a neighbour, in the
- * metric of the point, that no change of the metric on the way makes them
- * possible: nearer than this factor of the least distance. */
+ * metric of the point, that the metrics at the positions themselves do not make
+ * them possible: nearer than this factor of the least distance. */
 static const double surely = 0.85; /* K56 */
 
 /* Positions of the neighbours of p relative to it, in units of its metric with
