@@ -401,7 +401,7 @@ static void test_smooths_in_metric(void **state)
     double was, is, worst;
 
     scene_new(&s, 16, 6, 6);
-    scene_shake(&s, 0.16, 11);
+    scene_shake(&s, 0.2, 11);
     scene_stretch(&s, 20);
     scene_cut(&s, NULL, k ? 3 : 1);
     scene_zones(&s);

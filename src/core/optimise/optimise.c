@@ -237,17 +237,12 @@ static size_t count_left(const struct vg_optimiser *o)
   return n;
 }
 
-/* Sweeps in a metric for each one without, since points start in a pattern that
- * fits less well. */
-enum { SWEEPS_IN_METRIC = 1 }; /* K48 */
-
 static vg_status optimise(struct vg_optimiser *o, struct vg_tets *t, int sweeps,
                           struct vg_error *err)
 {
   int again = 1;
   vg_status st = start(o, t, err);
 
-  if (o->metrics) sweeps *= SWEEPS_IN_METRIC;
   for (int k = 0; st == VG_OK && k < sweeps; k++) {
     st = sweep(o, k && !o->metrics ? o->level->fair : o->level->good, err);
     if (st == VG_OK && o->metrics) st = vg_even_lengths(o, err);

@@ -274,7 +274,7 @@ static double value_at(const struct stretched_ball *b, const double to[3],
 }
 
 /* Step of Newton's method from a point with metric m, of limited length.
- * Returns 0 if there is none. */
+ * Returns 0 if the gradient vanishes. */
 static int find_step(const struct rating *now, const struct vg_point_metric *m,
                      double d[3])
 {

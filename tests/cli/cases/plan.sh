@@ -222,7 +222,7 @@ none
 
 sources
 kind x0 y0 z0   x1 y1 z1   h0  stretch ux uy uz
-box  0  0  0.45 1  1  0.55 0.1 0.05    0  0  1
+box  0  0  0.45 1  1  0.55 0.05 0.05   0  0  1
 END
 one_thread() { # COMMAND [OPTION...]: cells and memory by one thread
   vanguard "$1" -q --json -p thin/thin --write b8.ugrid --report-html no "${@:2}"

@@ -279,19 +279,27 @@ until_kept() {
   done
   fail "run $1 keeps nothing"
 }
+# Runs are held in mid-work, so that none ends before it is stopped.
+signal() { # SIGNAL RUN
+  kill "-$1" -- "-$(sed -n 's/.*"pid": \([0-9]*\).*/\1/p' \
+    "mine/vanguard-runs/$2/run.json")"
+}
+hold() { until_kept "$1"; signal STOP "$1"; }
 posts 303 runs "${slow[@]}"
 posts 303 runs "${slow[@]}"
 [ "$(state 4)" = queued ] || fail "two runs work at the same time"
-until_kept 0003
+hold 0003
 posts 303 runs/3/stop
+signal CONT 0003
 await 3 stopped 30
 says runs.json 'finished tasks are stored'
 # the next run begins by itself; it survives when its portal dies
-until_kept 0004
+hold 0004
 kill -9 "$server"
 wait "$server" 2>/dev/null
 serve mine
 asks 200 "${url}runs"
+signal CONT 0004
 posts 303 runs/3/resume
 await 3 done 120
 await 4 done 120
@@ -304,7 +312,7 @@ absent mine/vanguard-runs/0003/kept
 # the portal is ended while a run works: the run continues, and the next
 # portal shows it
 posts 303 runs "${slow[@]}"
-until_kept 0005
+hold 0005
 kill "$server"
 wait "$server"
 status=$?
@@ -313,6 +321,7 @@ says mine.err "1 run still waiting or running"
 serve mine
 [[ $(state 5) = @(running|done) ]] || fail "run 5 is $(state 5)"
 posts 303 runs/5/stop
+signal CONT 0005
 await 5 stopped 30
 
 # a sweep
