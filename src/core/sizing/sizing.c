@@ -85,14 +85,11 @@ static double largest(const struct vg_source_set *set,
 }
 
 /* Cube around the surface, or around the sources if there is no surface. It is
- * slightly larger, so that rounding moves no point of the domain outside. In a
- * metric the margin is smaller than any size: sources that end at the sides of
- * the domain would otherwise have kinks within the cube, which cost octants. */
+ * slightly larger, so that rounding moves no point of the domain outside. */
 static double root_cube(const struct vg_mesh *surface,
                         const struct vg_source_set *set, double h, double lo[3])
 {
   double hi[3] = { 0, 0, 0 }, side = 0, far = 0;
-  double margin = vg_source_any_stretched(set) ? 1 + 1e-9 : 1.001;
   int on_surface = surface && surface->n_point;
 
   if (on_surface) vg_mesh_bounds(surface, lo, hi);
@@ -102,7 +99,7 @@ static double root_cube(const struct vg_mesh *surface,
     if (fabs(lo[k]) > far) far = fabs(lo[k]);
     if (fabs(hi[k]) > far) far = fabs(hi[k]);
   }
-  side = on_surface && side > 0 ? margin * side : 3 * side + 20 * h;
+  side = on_surface && side > 0 ? 1.001 * side : 3 * side + 20 * h;
   if (side < 1e-6 * far) side = 1e-6 * far;
   for (int k = 0; k < 3; k++) lo[k] = 0.5 * (lo[k] + hi[k]) - 0.5 * side;
   return side;
