@@ -48,7 +48,8 @@ class Case:
         self.b.files("form.upload input[type=file]",
                      [os.path.join(self.folder, name)])
         self.b.click("form.upload button")
-        self.b.until(f"location.search.endsWith('={name}')")
+        self.b.until(f"location.search.endsWith('={name}') && "
+                     "document.readyState === 'complete'")
 
     def drawn(self):
         self.b.until("document.querySelector('.viewbox')?.dataset.drawn")

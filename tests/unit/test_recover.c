@@ -332,7 +332,7 @@ static void lost_faces_are_counted(void **state)
   assert_true(n > 0);
   assert_int_equal(n, again);
   n_point = t.n_point;
-  assert_int_equal(vg_recover(&t, m.n_tri, TRI(&m), 1, 3, &r, NULL), VG_OK);
+  assert_int_equal(vg_recover(&t, m.n_tri, TRI(&m), 1, 0, &r, NULL), VG_OK);
   assert_int_equal(r.n_face_lost, n);
   assert_true(r.n_pocket <= r.n_face_left && 10 * r.n_face_left < n);
   assert_int_equal(t.n_point, n_point + r.n_steiner);

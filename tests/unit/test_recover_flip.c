@@ -96,7 +96,7 @@ static size_t left_of(struct vg_tets *t, size_t n, const uint32_t (*tri)[3],
   again = vg_alloc(n, sizeof *again);
   assert_true(told && again);
   *lost = left = missing_of(t, n, tri, told);
-  assert_int_equal(vg_recover_flips(t, n, tri, 3, &left, told, NULL), VG_OK);
+  assert_int_equal(vg_recover_flips(t, n, tri, &left, told, NULL), VG_OK);
   is_sound(t);
   assert_int_equal(missing_of(t, n, tri, again), left);
   assert_memory_equal(told, again, left * sizeof *told);
@@ -143,7 +143,7 @@ static void triangles_among_points(double height, double near)
     choose(&t, near, &seed, v[0]);
     n_left += left_of(&t, 1, (const uint32_t(*)[3])v, &lost);
     n_lost += lost;
-    assert_int_equal(vg_recover(&t, 1, (const uint32_t(*)[3])v, 1, 3, &r, NULL),
+    assert_int_equal(vg_recover(&t, 1, (const uint32_t(*)[3])v, 1, 0, &r, NULL),
                      VG_OK);
     is_sound(&t);
     assert_int_equal(missing_of(&t, 1, (const uint32_t(*)[3])v, v[0]), 0);
@@ -257,7 +257,7 @@ static void twisted_prisms_need_steiner_points(void **state)
   left = left_of(&t, n, (const uint32_t(*)[3])tri, &lost);
   assert_in_range(left, 5, lost);
   assert_int_equal(t.n_point, n_point);
-  assert_int_equal(vg_recover(&t, n, (const uint32_t(*)[3])tri, 1, 3, &r, NULL),
+  assert_int_equal(vg_recover(&t, n, (const uint32_t(*)[3])tri, 1, 0, &r, NULL),
                    VG_OK);
   assert_true(r.n_face_left > 0 && r.n_steiner >= 5);
   is_sound(&t);

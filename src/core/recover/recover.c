@@ -20,9 +20,6 @@
  * triangles were worth closing. */
 enum { ROUNDS = 4, POCKET_MAX = 40000 }; /* K1 */
 
-/* Depth of the flips (vg_recover_flips) without and with points in the void. */
-static const int flip_depth[2] = { 3, 1 }; /* K55 */
-
 struct recovery {
   struct vg_tets *t;
   size_t n_tri;
@@ -34,7 +31,6 @@ struct recovery {
   uint32_t *star;    /* [points] a cell of each point */
   size_t n_cell, cap_cell;
   uint32_t *cell; /* cells of all pockets, in the order of discovery */
-  int flip_depth; /* largest depth of flips (vg_recover_flips) */
   int is_apart;   /* 1: pockets are not merged; a triangle whose pocket meets
                      another one waits for the next round */
   struct vg_boundary_report *report;
@@ -590,8 +586,8 @@ static int is_complete(const struct recovery *r)
 static vg_status flip_missing(struct recovery *r, uint8_t *missing,
                               struct vg_error *err)
 {
-  vg_status st = vg_recover_flips(r->t, r->n_tri, r->tri, r->flip_depth,
-                                  &r->n_missing, r->missing, err);
+  vg_status st = vg_recover_flips(r->t, r->n_tri, r->tri, &r->n_missing,
+                                  r->missing, err);
 
   if (st == VG_OK && !is_complete(r)) st = list_missing(r, missing, err);
   return st;
@@ -655,7 +651,6 @@ vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
   r.t = t;
   r.n_tri = n_tri;
   r.tri = tri;
-  r.flip_depth = flip_depth[has_inner];
   r.report = report;
   r.missing = vg_alloc(n_tri, sizeof *r.missing);
   r.parent = vg_alloc(n_tri, sizeof *r.parent);

@@ -23,8 +23,8 @@
  *
  * @param is_delaunay  1: the cells of t are Delaunay, and are made Delaunay
  *                     again where they changed (vg_recover_delaunay)
- * @param has_inner    1: there are points in the void. Pockets are then small,
- *                     and need not wait for deep flips */
+ * @param has_inner    1: there are points in the void. Each triangle then has a
+ *                     small pocket, which is closed by itself first */
 vg_status vg_recover(struct vg_tets *t, size_t n_tri, const uint32_t (*tri)[3],
                      int is_delaunay, int has_inner,
                      struct vg_boundary_report *report, struct vg_error *err);

@@ -90,14 +90,12 @@ int vg_flip_make_tri(struct vg_flipper *f, const uint32_t v[3], int depth);
 
 /* --- recovery of all triangles (recover_flips.c) -------------------------- */
 
-/** Recover missing triangles by flips, as far as possible. depth: as for
- * vg_flip_edge, at most 3; rounds start with less. Triangles that exist
+/** Recover missing triangles by flips, as far as possible. Triangles that exist
  * must be fixed faces, and remain so; links are maintained. missing:
  * [*n_missing] triangles that are still missing remain in the list, in order.
  */
 vg_status vg_recover_flips(struct vg_tets *t, size_t n_tri,
-                           const uint32_t (*tri)[3], int depth,
-                           size_t *n_missing, uint32_t *missing,
-                           struct vg_error *err);
+                           const uint32_t (*tri)[3], size_t *n_missing,
+                           uint32_t *missing, struct vg_error *err);
 
 #endif

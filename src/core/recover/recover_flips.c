@@ -90,12 +90,10 @@ done:
 }
 
 vg_status vg_recover_flips(struct vg_tets *t, size_t n_tri,
-                           const uint32_t (*tri)[3], int depth,
-                           size_t *n_missing, uint32_t *missing,
-                           struct vg_error *err)
+                           const uint32_t (*tri)[3], size_t *n_missing,
+                           uint32_t *missing, struct vg_error *err)
 {
   assert(n_missing && *n_missing <= n_tri && missing);
-  assert(depth >= 0 && depth <= 3);
 
   struct vg_flipper f = { 0 };
   uint32_t(*edge)[2] = vg_alloc(3 * *n_missing, sizeof *edge);
@@ -106,10 +104,9 @@ vg_status vg_recover_flips(struct vg_tets *t, size_t n_tri,
   if (edge) n = list_edges(&f.front, *n_missing, missing, edge);
   f.refused = n == SIZE_MAX;
   for (size_t k = 0; k < sizeof edge_round / sizeof *edge_round; k++)
-    if (!f.refused && n && edge_round[k] <= depth)
-      n = make_edges(&f, n, edge, edge_round[k]);
+    if (!f.refused && n) n = make_edges(&f, n, edge, edge_round[k]);
   for (size_t k = 0; k < sizeof tri_round / sizeof *tri_round; k++)
-    if (!f.refused && *n_missing && tri_round[k] <= depth)
+    if (!f.refused && *n_missing)
       *n_missing = make_tris(&f, *n_missing, missing, tri_round[k]);
   if (f.refused) st = vg_fail_memory(err, "boundary recovery");
   VG_CHECK("the recovery of faces by flips", vg_tets_defects(t));
