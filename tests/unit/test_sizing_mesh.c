@@ -68,21 +68,28 @@ static void make_box(struct vg_mesh *m, int kind, double (*metric)[6])
   }
 }
 
+/* The metrics of the box (make_box). */
+static const struct vg_size_map *map_box(int kind, struct vg_size_mesh **s)
+{
+  double metric[POINTS][6];
+  struct vg_mesh m;
+
+  make_box(&m, kind, metric);
+  assert_int_equal(vg_size_mesh_new(&m, (const double(*)[6])metric, 1.2, s,
+                                    NULL),
+                   VG_OK);
+  vg_mesh_release(&m);
+  return vg_size_mesh_map(*s);
+}
+
 static void cells_interpolate_linearly(void **state)
 {
   (void)state;
   for (int kind = 1; kind <= 2; kind++) {
     struct vg_size_mesh *s = NULL;
-    const struct vg_size_map *map;
-    double metric[POINTS][6];
-    struct vg_mesh m;
+    const struct vg_size_map *map = map_box(kind, &s);
     uint64_t seed = 1;
 
-    make_box(&m, kind, metric);
-    assert_int_equal(vg_size_mesh_new(&m, (const double(*)[6])metric, 1.2, &s,
-                                      NULL),
-                     VG_OK);
-    map = vg_size_mesh_map(s);
     assert_non_null(map->least);
     assert_near(map->most, 0.302, 2e-3);
     for (int i = 0; i < 1000; i++) {
@@ -96,7 +103,6 @@ static void cells_interpolate_linearly(void **state)
         assert_near(got[k], exact[k], 1e-5 * exact[0] + 1e-5 * exact[3]);
     }
     vg_size_mesh_free(s);
-    vg_mesh_release(&m);
   }
 }
 
@@ -115,16 +121,10 @@ static void sizes_at(const struct vg_size_map *map, double x, double y,
 static void the_nearest_point_grows(void **state)
 {
   struct vg_size_mesh *s = NULL;
-  const struct vg_size_map *map;
-  double metric[POINTS][6], h[6];
-  struct vg_mesh m;
+  const struct vg_size_map *map = map_box(0, &s);
+  double h[6];
 
   (void)state;
-  make_box(&m, 0, metric);
-  assert_int_equal(vg_size_mesh_new(&m, (const double(*)[6])metric, 1.2, &s,
-                                    NULL),
-                   VG_OK);
-  map = vg_size_mesh_map(s);
   sizes_at(map, 0.25, 0.5, 0.5, h);
   assert_near(h[0], 0.1125, 1e-6);
   sizes_at(map, 0.26, 0.5, 0.5, h);
@@ -132,24 +132,17 @@ static void the_nearest_point_grows(void **state)
   sizes_at(map, 1.5, 0, 0, h);
   assert_near(h[0], 0.15 + 0.2 * (0.5 - 0.15), 3e-3);
   vg_size_mesh_free(s);
-  vg_mesh_release(&m);
 }
 
 /* Outside of cells, the size tensor at the nearest point of a face does. */
 static void the_nearest_face_grows(void **state)
 {
   struct vg_size_mesh *s = NULL;
-  const struct vg_size_map *map;
-  double metric[POINTS][6], h[6], near[6], exact[6];
-  struct vg_mesh m;
+  const struct vg_size_map *map = map_box(1, &s);
+  double h[6], near[6], exact[6];
   uint64_t seed = 1;
 
   (void)state;
-  make_box(&m, 1, metric);
-  assert_int_equal(vg_size_mesh_new(&m, (const double(*)[6])metric, 1.2, &s,
-                                    NULL),
-                   VG_OK);
-  map = vg_size_mesh_map(s);
   for (int i = 0; i < 1000; i++) {
     double x[3] = { 1, random_unit(&seed), random_unit(&seed) };
 
@@ -164,7 +157,6 @@ static void the_nearest_face_grows(void **state)
     assert_true(h[0] > exact[0] + 0.2 * 0.3 && h[0] < exact[0] + 0.2 * 0.5);
   }
   vg_size_mesh_free(s);
-  vg_mesh_release(&m);
 }
 
 static const double at[2][3] = { { 0, 0, 0 }, { 1, 2, 3 } };

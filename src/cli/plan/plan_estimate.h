@@ -21,8 +21,8 @@ enum { VG_PLAN_LEAVES = 8 };
 
 /** Stages of a run whose memory is forecast. */
 enum vg_plan_stage {
-  VG_PLAN_SURFACE, /* Closed, completed and remeshed. */
-  VG_PLAN_SIZES,   /* Sizing field and layers. */
+  VG_PLAN_SURFACE, /* The surface is closed, completed and remeshed. */
+  VG_PLAN_SIZES,   /* The sizing field and the layers are built. */
   VG_PLAN_FILL,
   VG_PLAN_CHECK, /* Mesh check, during which files are written. */
   VG_PLAN_STAGES

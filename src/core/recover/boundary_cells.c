@@ -110,14 +110,6 @@ static int find_apex(const struct vg_boundary_input *in, const uint32_t v[3],
   return 1;
 }
 
-static uint32_t a_cell(const struct vg_tets *t)
-{
-  uint32_t c = 0;
-
-  while (t->flag[c] & VG_DEAD) c++;
-  return c;
-}
-
 /* Apexes make cells near the surface that are well-shaped in the metric. */
 static vg_status insert_apexes(struct vg_inserter *s,
                                struct vg_metrics *metrics,
@@ -125,7 +117,7 @@ static vg_status insert_apexes(struct vg_inserter *s,
                                struct vg_error *err)
 {
   double(*x)[3] = vg_alloc(in->n_tri, sizeof *x);
-  uint32_t *order = vg_alloc(in->n_tri, sizeof *order), at = a_cell(s->t);
+  uint32_t *order = vg_alloc(in->n_tri, sizeof *order), at = s->last;
   vg_status st = x && order ? VG_OK : vg_fail_memory(err, "boundary recovery");
 
   for (size_t i = 0; st == VG_OK && i < in->n_tri; i++)
@@ -169,13 +161,15 @@ done:
   return st;
 }
 
-/* Replace t by new cells of the same points, which are inserted in one order.
- * Points n to n + 7 are the corners of the box. */
-static vg_status insert_again(struct vg_tets *t, size_t n,
-                              struct vg_metrics *metrics, struct vg_error *err)
+/* Replace t by new cells of the same points, which are inserted in one order,
+ * and s by an inserter for these cells. Points n to n + 7 are the corners of
+ * the box. */
+static vg_status insert_again(struct vg_tets *t, struct vg_inserter *s,
+                              size_t n, struct vg_metrics *metrics,
+                              struct vg_error *err)
 {
   struct vg_tets all = { 0 };
-  struct vg_inserter s = { 0 };
+  struct vg_inserter again = { 0 };
   const size_t n_all = t->n_point;
   uint32_t *order = vg_alloc(n_all, sizeof *order), at = 0;
   vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
@@ -189,14 +183,16 @@ static vg_status insert_again(struct vg_tets *t, size_t n,
   }
   memcpy(all.x, t->x, n_all * sizeof *t->x);
   all.n_point = n_all;
-  VG_TRY(vg_inserter_init(&s, &all, err));
-  s.metric = metrics->at;
+  VG_TRY(vg_inserter_init(&again, &all, err));
+  again.metric = metrics->at;
   for (size_t i = 0; i < n_all; i++)
     if (order[i] < n || order[i] >= n + 8)
-      VG_TRY(insert(&s, order[i], all.x[order[i]], &at, err));
+      VG_TRY(insert(&again, order[i], all.x[order[i]], &at, err));
 done:
-  vg_inserter_release(&s);
   free(order);
+  vg_inserter_release(s);
+  *s = again;
+  s->t = t;
   vg_tets_release(t);
   *t = all;
   return st;
@@ -213,15 +209,10 @@ static vg_status insert_all_inner(struct vg_tets *t, struct vg_inserter *s,
                                   const struct vg_boundary_input *in,
                                   struct vg_error *err)
 {
-  vg_status st;
+  vg_status st = insert_seeds(s, metrics, in, err);
 
-  VG_TRY(insert_seeds(s, metrics, in, err));
-  VG_TRY(insert_again(t, in->n, metrics, err));
-  vg_inserter_release(s);
-  VG_TRY(vg_inserter_init(s, t, err));
-  s->metric = metrics->at;
-  st = insert_apexes(s, metrics, in, err);
-done:
+  if (st == VG_OK) st = insert_again(t, s, in->n, metrics, err);
+  if (st == VG_OK) st = insert_apexes(s, metrics, in, err);
   return st;
 }
 

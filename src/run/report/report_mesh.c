@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "run/common/text.h"
 #include "run/report/report.h"
@@ -12,17 +13,19 @@
 #define BAR_WIDTH 40
 
 /* The peak of getrusage survives exec: it contains the memory of the program
- * that started this one. */
+ * that started this one. It serves where there is no /proc. */
 double vg_report_peak_memory(void)
 {
   FILE *f = fopen("/proc/self/status", "r");
   char line[128];
   double kilobytes = 0;
+  struct rusage use;
 
-  if (!f) return 0;
-  while (fgets(line, sizeof line, f))
+  while (f && fgets(line, sizeof line, f))
     if (sscanf(line, "VmHWM: %lf", &kilobytes) == 1) break;
-  fclose(f);
+  if (f) fclose(f);
+  if (!(kilobytes > 0) && !getrusage(RUSAGE_SELF, &use))
+    kilobytes = (double)use.ru_maxrss;
   return 1024 * kilobytes;
 }
 
