@@ -251,9 +251,9 @@ VANGUARD_API vanguard_status vanguard_metrics(vanguard_job *job,
 
 /** Add metrics at the points of a background mesh to the sizing field. Within
  * its tetrahedra, the tensor of sizes M^(-1/2) is interpolated linearly;
- * elsewhere, that at the nearest point of a tetrahedron, or of the nearest
- * point if there are none, grows beyond one edge length at the rate of the
- * setting "growth". The arrays are copied. This replaces the sizes given
+ * elsewhere, that at their nearest point, or without tetrahedra that of the
+ * nearest given point, grows beyond one edge length at the rate of the setting
+ * "growth". The arrays are copied. This replaces the sizes given
  * before, and vice versa; n = 0 removes the points.
  *
  * @param xyz     [n][3] coordinates
