@@ -468,6 +468,7 @@ static vg_status make(struct vg_plan *p, struct vg_error *err)
   vg_status st;
 
   VG_TRY(learn_rates(p, err));
+  p->program = vg_report_peak_memory();
   VG_TRY(read_project(p, err));
   p->surface_peak = vg_report_peak_memory();
   p->front = &p->problem.boundary.surface;

@@ -76,6 +76,8 @@ struct vg_plan {
   double phase[VG_PHASE_N];       /* seconds on one core, outside the tasks;
                                      the mesh check includes the files written
                                      with it, writing the files after it */
+  double program;                 /* bytes of this process before it read the
+                                     project */
   double surface_peak;            /* bytes of this process at most until the
                                      surface was complete */
   double shared;                  /* bytes of surface, layers and sizing field,

@@ -9,8 +9,8 @@
 
 #include "cli/plan/plan_estimate.h"
 
-/* Of every rank: the program, and MPI. */
-static const double program = 15e6, mpi = 16e6;
+/* MPI of every rank, if there are several. */
+static const double mpi = 16e6;
 
 /* Of every node: a triangle of the surface with its points; columns and front
  * of the layers, by wall points; a leaf of the octree of sizes, and of one with
@@ -75,7 +75,7 @@ void vg_plan_memory(const struct vg_plan *p, const struct vg_forecast *o,
   const double triangles = (double)p->front->n_tri;
   const double columns = (double)p->n_wall_point;
   const double busy = fmin(threads, (double)o->n_leaf);
-  const double node = program + (ranks > 1 ? mpi : 0) + p->shared;
+  const double node = p->program + (ranks > 1 ? mpi : 0) + p->shared;
 
   assert(ranks > 0 && threads > 0);
   stage[VG_PLAN_SURFACE] = p->surface_peak + (ranks > 1 ? mpi : 0);
