@@ -16,26 +16,57 @@ static const uint32_t box_cell[5][4] = {
   { 0, 1, 2, 4 }, { 3, 2, 1, 7 }, { 5, 4, 7, 1 }, { 6, 7, 4, 2 }, { 1, 2, 4, 7 }
 };
 
+/* Axes of the box, orthonormal and right-handed. Without a metric, they are those
+ * of the coordinates. In a metric, they are the eigenvectors of the mean size
+ * tensor: the corners of the box are then on one sphere in the mean metric, too,
+ * so that its five cells are Delaunay. The cells of the first points would
+ * otherwise not be, and cavities among cells that are not Delaunay leave
+ * further ones. */
+static void box_axes(size_t n, const double (*x)[3],
+                     const struct vg_sizing *sizing, double axis[3][3])
+{
+  double mean[6] = { 1, 0, 0, 1, 0, 1 }, h[6], value[3];
+
+  for (size_t i = 0; i < n && sizing; i++) {
+    vg_sizing_tensor_at(sizing, x[i], h);
+    for (int k = 0; k < 6; k++) mean[k] += (h[k] - mean[k]) / (double)(i + 1);
+  }
+  vg_tensor_eigen(mean, value, axis);
+  if (!(vg_triple(axis[0], axis[1], axis[2]) > 0))
+    for (int k = 0; k < 3; k++) axis[2][k] = -axis[2][k];
+}
+
+/* sizing: NULL without a metric. */
 static vg_status start_in_box(struct vg_tets *t, size_t n, const double (*x)[3],
+                              const struct vg_sizing *sizing,
                               struct vg_error *err)
 {
-  double lo[3], hi[3], side = 0;
+  double axis[3][3], lo[3], hi[3], side = 0;
 
   if (vg_tets_reserve_points(t, n + 8) || vg_tets_reserve_cells(t, 7 * n + 5))
     return vg_fail_memory(err, "boundary recovery");
   memcpy(t->x, x, n * sizeof *x);
   t->n_point = n + 8;
+  box_axes(n, x, sizing, axis);
   for (int k = 0; k < 3; k++) {
-    lo[k] = hi[k] = x[0][k];
+    lo[k] = hi[k] = vg_dot(x[0], axis[k]);
     for (size_t i = 1; i < n; i++) {
-      if (x[i][k] < lo[k]) lo[k] = x[i][k];
-      if (x[i][k] > hi[k]) hi[k] = x[i][k];
+      double at = vg_dot(x[i], axis[k]);
+
+      if (at < lo[k]) lo[k] = at;
+      if (at > hi[k]) hi[k] = at;
     }
     if (hi[k] - lo[k] > side) side = hi[k] - lo[k];
   }
-  for (size_t corner = 0; corner < 8; corner++)
+  for (size_t corner = 0; corner < 8; corner++) {
+    double at[3];
+
     for (int k = 0; k < 3; k++)
-      t->x[n + corner][k] = corner >> k & 1 ? hi[k] + side : lo[k] - side;
+      at[k] = corner >> k & 1 ? hi[k] + side : lo[k] - side;
+    for (int k = 0; k < 3; k++)
+      t->x[n + corner][k] = axis[0][k] * at[0] + axis[1][k] * at[1] +
+                            axis[2][k] * at[2];
+  }
   for (int c = 0; c < 5; c++) {
     for (int i = 0; i < 4; i++) t->cell[c].v[i] = (uint32_t)n + box_cell[c][i];
     t->flag[c] = 0;
@@ -176,7 +207,7 @@ static vg_status insert_again(struct vg_tets *t, struct vg_inserter *s,
 
   VG_TRY(st);
   VG_TRY(vg_insertion_order(n_all, (const double(*)[3])t->x, order, err));
-  VG_TRY(start_in_box(&all, n, (const double(*)[3])t->x, err));
+  VG_TRY(start_in_box(&all, n, (const double(*)[3])t->x, metrics->sizing, err));
   if (vg_tets_reserve_points(&all, n_all - all.n_point)) {
     st = vg_fail_memory(err, "boundary recovery");
     goto done;
@@ -228,7 +259,9 @@ vg_status vg_boundary_cells(struct vg_tets *t,
   vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
 
   if (st == VG_OK) st = vg_insertion_order(n, x, order, err);
-  if (st == VG_OK) st = start_in_box(t, n, x, err);
+  if (st == VG_OK)
+    st = start_in_box(t, n, x, vg_boundary_is_stretched(in) ? in->sizing : NULL,
+                      err);
   if (st == VG_OK) st = vg_inserter_init(&s, t, err);
   if (st == VG_OK && vg_boundary_is_stretched(in) &&
       vg_metrics_add(&metrics, t, 0, t->n_point))
