@@ -13,7 +13,9 @@
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 
-enum { CUT_MAX = 16 }; /* K5: number of times that a cavity may be cut back */
+/* K5, K57: number of times that a cavity may be cut back; that it first grows
+ * through hidden faces, in metrics */
+enum { CUT_MAX = 16, GROW_MAX = 2 };
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
                            struct vg_error *err)
@@ -297,6 +299,40 @@ static int cut_back(struct vg_inserter *s, const double p[3])
   return start_flood(s, seed, p);
 }
 
+/* Add the cells behind hidden faces, and all that are reached from them. The
+ * point sees the cell in front of such a face only through the cell behind it:
+ *
+ *         a           Cell a is in the cavity, and cell b is not. Among
+ * Delaunay
+ *      -------        cells, the sphere of b would contain p, too.
+ *         b
+ *         p
+ *
+ * Returns 0: done; 1: there are none. */
+static int grow(struct vg_inserter *s, const double p[3])
+{
+  uint8_t *flag = s->t->flag;
+  size_t n = s->n_cell;
+
+  for (size_t f = 0; f < s->n_face; f++) {
+    const struct vg_cavity_face *face = &s->face[f];
+    uint32_t out = face->link >> 2;
+
+    if (!face->hidden || face->fixed || face->link == VG_NONE ||
+        flag[out] & VG_MARK)
+      continue;
+    if (make_room(s)) return -1;
+    flag[out] = (uint8_t)((flag[out] & ~VG_TRIED) | VG_MARK);
+    s->cell[s->n_cell++] = (struct vg_cavity_cell){
+      out,
+      vg_cell_sides((const double(*)[3])s->t->x, s->t->cell[out].v, p, 0, 0)
+    };
+  }
+  if (s->n_cell == n) return 1;
+  s->n_face = 0;
+  return flood(s, p);
+}
+
 static int grow_local(struct vg_inserter *s)
 {
   size_t old = s->cap_local;
@@ -538,7 +574,8 @@ vg_status vg_insert(struct vg_inserter *s, uint32_t p, uint32_t at,
   if (!state && nearest > 0) state = too_near(s, x, nearest);
   for (int cut = 0; !state; cut++) {
     if (cut) number_vertices(s);
-    state = cut == CUT_MAX ? 1 : cut_back(s, x);
+    state = s->metric && cut < GROW_MAX ? grow(s, x) : 1;
+    if (state > 0) state = cut == CUT_MAX ? 1 : cut_back(s, x);
   }
   if (state == 2) state = too_low_anywhere(s, x, clearance, 2 * nearest);
   if (!state && s->metric) state = swallows(s);

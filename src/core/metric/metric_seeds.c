@@ -3,12 +3,15 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/hash.h"
 #include "base/memory.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
+#include "core/metric/metrics.h"
+#include "core/search/box_tree.h"
 
 /* K49: largest complexity of the box of a seed, and least spacing within the
  * cube around the box relative to that at its centre. */
@@ -21,6 +24,8 @@ struct box {
 struct seeder {
   const struct vg_sizing *sizing;
   const struct vg_region *region;
+  const double (*x)[3];           /* points that bound the void */
+  const struct vg_box_tree *near; /* of these points */
   struct vg_metric_seeds *out;
 };
 
@@ -93,11 +98,50 @@ static double share_of(const double x[3])
          0x1p-53;
 }
 
+/* A seed that may be too near to a point that bounds the void. */
+struct candidate {
+  const double (*x)[3];
+  const double *at;
+  struct vg_point_metric metric;
+};
+
+static int is_too_near(void *context, uint32_t item)
+{
+  const struct candidate *c = context;
+  double d[3];
+
+  vg_sub(c->x[item], c->at, d);
+  return vg_tensor_form(c->metric.m, d) < VG_SEED_DISTANCE * VG_SEED_DISTANCE;
+}
+
+/* Is the point in the ellipsoid of the metric at x? Its half extents are the
+ * square roots of the diagonal of the squared size tensor. */
+static int has_point_near(const struct seeder *s, const double x[3])
+{
+  static const int diagonal[3] = { 0, 3, 5 };
+  struct candidate c = { .x = s->x, .at = x };
+  struct vg_box box;
+  double h[6], square[6];
+
+  vg_sizing_tensor_at(s->sizing, x, h);
+  vg_tensor_square(h, square);
+  for (int k = 0; k < 3; k++) {
+    double half = VG_SEED_DISTANCE * sqrt(square[diagonal[k]]);
+
+    box.lo[k] = x[k] - half;
+    box.hi[k] = x[k] + half;
+  }
+  vg_tensor_invert(h, h);
+  vg_metric_of_stretch(h, &c.metric);
+  return vg_box_tree_touched(s->near, &box, is_too_near, &c);
+}
+
 static int add_seed(const struct seeder *s, const double x[3])
 {
   struct vg_metric_seeds *out = s->out;
 
-  if (s->region && !vg_region_near(s->region, s->sizing, x, VG_BAND_PLACE))
+  if ((s->region && !vg_region_near(s->region, s->sizing, x, VG_BAND_PLACE)) ||
+      has_point_near(s, x))
     return 0;
   if (vg_reserve(&out->x, &out->cap, out->n + 1, sizeof *out->x)) return -1;
   memcpy(out->x[out->n++], x, sizeof *out->x);
@@ -139,13 +183,31 @@ static int seed(const struct seeder *s, const struct box *b)
   return seed(s, &half);
 }
 
+static vg_status build_tree(size_t n, const double (*x)[3],
+                            struct vg_box_tree *tree, struct vg_error *err)
+{
+  struct vg_box *box = vg_alloc(n, sizeof *box);
+  vg_status st = VG_OK;
+
+  if (!box) return vg_fail_memory(err, "placing points");
+  for (size_t i = 0; i < n; i++) {
+    memcpy(box[i].lo, x[i], sizeof box->lo);
+    memcpy(box[i].hi, x[i], sizeof box->hi);
+  }
+  st = vg_box_tree_build_items(tree, n, box, NULL, err);
+  free(box);
+  return st;
+}
+
 vg_status vg_metric_seeds(size_t n, const double (*x)[3],
                           const struct vg_sizing *sizing,
                           const struct vg_region *region,
                           struct vg_metric_seeds *out, struct vg_error *err)
 {
-  const struct seeder s = { sizing, region, out };
+  struct vg_box_tree tree = VG_BOX_TREE_INIT;
+  const struct seeder s = { sizing, region, x, &tree, out };
   struct box b;
+  vg_status st;
 
   assert(sizing && out && !out->n && (x || !n));
   if (!n) return VG_OK;
@@ -160,5 +222,8 @@ vg_status vg_metric_seeds(size_t n, const double (*x)[3],
     b.side[k] = hi - b.lo[k];
     if (!(b.side[k] > 0)) return VG_OK;
   }
-  return seed(&s, &b) ? vg_fail_memory(err, "placing points") : VG_OK;
+  st = build_tree(n, x, &tree, err);
+  if (st == VG_OK && seed(&s, &b)) st = vg_fail_memory(err, "placing points");
+  vg_box_tree_release(&tree);
+  return st;
 }

@@ -9,13 +9,18 @@
 #include "core/front/region.h"
 #include "core/sizing/sizing.h"
 
+/* Least distance of seeds from the points that bound the void, and of seeds
+ * from each other when they are inserted, in the metric. */
+#define VG_SEED_DISTANCE 1 /* K54 */
+
 struct vg_metric_seeds {
   size_t n, cap;
   double (*x)[3]; /* [n] Owned by the caller: free. */
 };
 
 /** Seeds within the bounding box of the points x: about one for 16 points of
- * the mesh (K49), even where the metric is stretched. Cells between seeds are
+ * the mesh (K49), even where the metric is stretched. They keep their distance
+ * from the points x, but not from each other. Cells between seeds are
  * so small that the metric changes little over them, while cells between the
  * points of a boundary alone extend across regions of different metrics, whose
  * connections later insertions do not repair.

@@ -16,12 +16,12 @@ static const uint32_t box_cell[5][4] = {
   { 0, 1, 2, 4 }, { 3, 2, 1, 7 }, { 5, 4, 7, 1 }, { 6, 7, 4, 2 }, { 1, 2, 4, 7 }
 };
 
-/* Axes of the box, orthonormal and right-handed. Without a metric, they are those
- * of the coordinates. In a metric, they are the eigenvectors of the mean size
- * tensor: the corners of the box are then on one sphere in the mean metric, too,
- * so that its five cells are Delaunay. The cells of the first points would
- * otherwise not be, and cavities among cells that are not Delaunay leave
- * further ones. */
+/* Axes of the box, orthonormal and right-handed. Without a metric, they are
+ * those of the coordinates. In a metric, they are the eigenvectors of the mean
+ * size tensor: the corners of the box are then on one sphere in the mean
+ * metric, too, so that its five cells are Delaunay. The cells of the first
+ * points would otherwise not be, and cavities among cells that are not Delaunay
+ * leave further ones. */
 static void box_axes(size_t n, const double (*x)[3],
                      const struct vg_sizing *sizing, double axis[3][3])
 {
@@ -101,9 +101,6 @@ static vg_status insert(struct vg_inserter *s, uint32_t p, const double x[3],
 
 /* --- points in the void ------------------------------------------------- */
 
-/* K54: least distance of a seed from other points, in the metric. */
-static const double seed_distance = 1;
-
 /* Insert x if it is in the box, at the distance `nearest` from all points, and
  * in the band of the region. */
 static vg_status insert_inner(struct vg_inserter *s, struct vg_metrics *metrics,
@@ -167,83 +164,71 @@ static vg_status insert_apexes(struct vg_inserter *s,
   return st;
 }
 
-/* Seeds are sparse points throughout the void (core/metric/metric_seeds.h). */
-static vg_status insert_seeds(struct vg_inserter *s, struct vg_metrics *metrics,
-                              const struct vg_boundary_input *in,
-                              struct vg_error *err)
+/* Insert the points of the surface and the seeds in one order, so that the
+ * first insertions are local, too. Cells that reach from one side of the void
+ * to the other would extend across regions of different metrics. They are so
+ * thin that few flips are possible among them, and later insertions do not
+ * repair their connections. */
+static vg_status insert_all(struct vg_inserter *s, struct vg_metrics *metrics,
+                            const struct vg_boundary_input *in,
+                            const struct vg_metric_seeds *seeds,
+                            struct vg_error *err)
 {
-  struct vg_metric_seeds seed = { 0 };
-  uint32_t *order = NULL, at = s->last;
-  vg_status st;
-
-  VG_TRY(vg_metric_seeds(in->n, in->x, in->sizing, in->region, &seed, err));
-  order = vg_alloc(seed.n, sizeof *order);
-  if (!order) {
-    st = vg_fail_memory(err, "boundary recovery");
-    goto done;
-  }
-  VG_TRY(vg_insertion_order(seed.n, (const double(*)[3])seed.x, order, err));
-  for (size_t i = 0; i < seed.n; i++)
-    VG_TRY(insert_inner(s, metrics, NULL, seed.x[order[i]], seed_distance, &at,
-                        err));
-done:
-  free(order);
-  free(seed.x);
-  return st;
-}
-
-/* Replace t by new cells of the same points, which are inserted in one order,
- * and s by an inserter for these cells. Points n to n + 7 are the corners of
- * the box. */
-static vg_status insert_again(struct vg_tets *t, struct vg_inserter *s,
-                              size_t n, struct vg_metrics *metrics,
-                              struct vg_error *err)
-{
-  struct vg_tets all = { 0 };
-  struct vg_inserter again = { 0 };
-  const size_t n_all = t->n_point;
-  uint32_t *order = vg_alloc(n_all, sizeof *order), at = 0;
-  vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
+  size_t n = in->n + seeds->n;
+  uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
+  double(*x)[3] = vg_alloc(n, sizeof *x);
+  vg_status st = order && x ? VG_OK : vg_fail_memory(err, "boundary recovery");
 
   VG_TRY(st);
-  VG_TRY(vg_insertion_order(n_all, (const double(*)[3])t->x, order, err));
-  VG_TRY(start_in_box(&all, n, (const double(*)[3])t->x, metrics->sizing, err));
-  if (vg_tets_reserve_points(&all, n_all - all.n_point)) {
-    st = vg_fail_memory(err, "boundary recovery");
-    goto done;
-  }
-  memcpy(all.x, t->x, n_all * sizeof *t->x);
-  all.n_point = n_all;
-  VG_TRY(vg_inserter_init(&again, &all, err));
-  again.metric = metrics->at;
-  for (size_t i = 0; i < n_all; i++)
-    if (order[i] < n || order[i] >= n + 8)
-      VG_TRY(insert(&again, order[i], all.x[order[i]], &at, err));
+  memcpy(x, in->x, in->n * sizeof *x);
+  memcpy(x + in->n, seeds->x, seeds->n * sizeof *x);
+  VG_TRY(vg_insertion_order(n, (const double(*)[3])x, order, err));
+  for (size_t i = 0; i < n; i++)
+    if (order[i] < in->n) VG_TRY(insert(s, order[i], x[order[i]], &at, err));
+    else
+      VG_TRY(insert_inner(s, metrics, NULL, x[order[i]], VG_SEED_DISTANCE, &at,
+                          err));
 done:
   free(order);
-  vg_inserter_release(s);
-  *s = again;
-  s->t = t;
-  vg_tets_release(t);
-  *t = all;
+  free(x);
   return st;
 }
 
-/* In a metric, cells that reach from one side of the void to the other extend
- * across regions of different metrics. They are so thin that few flips are
- * possible among them, and later insertions do not repair their connections.
- * Seeds in the void give better cells if all points are inserted once more,
- * together, since the first insertions then are local, too. Apexes come last:
- * in the same rounds as the others, they would make thin cells again. */
-static vg_status insert_all_inner(struct vg_tets *t, struct vg_inserter *s,
-                                  struct vg_metrics *metrics,
-                                  const struct vg_boundary_input *in,
+/* Seeds are sparse points throughout the void (core/metric/metric_seeds.h).
+ * Apexes come last: in the same rounds as the others, they would make thin
+ * cells again. */
+static vg_status insert_stretched(struct vg_inserter *s,
+                                  const struct vg_boundary_input *in, int inner,
                                   struct vg_error *err)
 {
-  vg_status st = insert_seeds(s, metrics, in, err);
+  struct vg_metrics metrics = { .sizing = in->sizing };
+  struct vg_metric_seeds seeds = { 0 };
+  vg_status st = VG_OK;
 
-  if (st == VG_OK) st = insert_again(t, s, in->n, metrics, err);
-  if (st == VG_OK) st = insert_apexes(s, metrics, in, err);
+  if (vg_metrics_add(&metrics, s->t, 0, s->t->n_point))
+    st = vg_fail_memory(err, "boundary recovery");
+  VG_TRY(st);
+  s->metric = metrics.at;
+  if (inner)
+    VG_TRY(vg_metric_seeds(in->n, in->x, in->sizing, in->region, &seeds, err));
+  VG_TRY(insert_all(s, &metrics, in, &seeds, err));
+  if (inner) VG_TRY(insert_apexes(s, &metrics, in, err));
+done:
+  free(seeds.x);
+  vg_metrics_release(&metrics);
+  return st;
+}
+
+static vg_status insert_surface(struct vg_inserter *s, size_t n,
+                                const double (*x)[3], struct vg_error *err)
+{
+  uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
+  vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
+
+  if (st == VG_OK) st = vg_insertion_order(n, x, order, err);
+  for (size_t i = 0; st == VG_OK && i < n; i++)
+    st = insert(s, order[i], x[order[i]], &at, err);
+  free(order);
   return st;
 }
 
@@ -251,28 +236,15 @@ vg_status vg_boundary_cells(struct vg_tets *t,
                             const struct vg_boundary_input *in, int inner,
                             struct vg_error *err)
 {
-  size_t n = in->n;
-  const double(*x)[3] = in->x;
+  const int is_stretched = vg_boundary_is_stretched(in);
   struct vg_inserter s = { 0 };
-  struct vg_metrics metrics = { .sizing = in->sizing };
-  uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
-  vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
+  vg_status st;
 
-  if (st == VG_OK) st = vg_insertion_order(n, x, order, err);
-  if (st == VG_OK)
-    st = start_in_box(t, n, x, vg_boundary_is_stretched(in) ? in->sizing : NULL,
-                      err);
-  if (st == VG_OK) st = vg_inserter_init(&s, t, err);
-  if (st == VG_OK && vg_boundary_is_stretched(in) &&
-      vg_metrics_add(&metrics, t, 0, t->n_point))
-    st = vg_fail_memory(err, "boundary recovery");
-  s.metric = metrics.at;
-  for (size_t i = 0; st == VG_OK && i < n; i++)
-    st = insert(&s, order[i], x[order[i]], &at, err);
-  if (st == VG_OK && inner && vg_boundary_is_stretched(in))
-    st = insert_all_inner(t, &s, &metrics, in, err);
+  VG_TRY(start_in_box(t, in->n, in->x, is_stretched ? in->sizing : NULL, err));
+  VG_TRY(vg_inserter_init(&s, t, err));
+  st = is_stretched ? insert_stretched(&s, in, inner, err)
+                    : insert_surface(&s, in->n, in->x, err);
+done:
   vg_inserter_release(&s);
-  vg_metrics_release(&metrics);
-  free(order);
   return st;
 }
