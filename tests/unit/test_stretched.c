@@ -289,6 +289,44 @@ static void seeds_stay_near(const double corner[2][3],
   free(some.x);
 }
 
+/* Seeds that are too near to a point that bounds the void are left out, and no
+ * others. */
+static void seeds_keep_their_distance(const double corner[2][3],
+                                      const struct vg_sizing *sizing)
+{
+  enum { N = 60 };
+  struct vg_metric_seeds all = { 0 }, some = { 0 };
+  double x[N][3];
+  size_t n = 0;
+
+  memcpy(x, corner, 2 * sizeof *x);
+  for (int i = 2; i < N; i++)
+    for (int k = 0; k < 3; k++) x[i][k] = random_in(0, 1);
+  assert_int_equal(vg_metric_seeds(2, corner, sizing, NULL, &all, NULL), VG_OK);
+  assert_int_equal(vg_metric_seeds(N, (const double(*)[3])x, sizing, NULL,
+                                   &some, NULL),
+                   VG_OK);
+  for (size_t i = 0; i < all.n; i++) {
+    double least = INFINITY;
+
+    for (int k = 0; k < N; k++) {
+      double h[6], d[3];
+
+      vg_sizing_tensor_at(sizing, all.x[i], h);
+      vg_tensor_invert(h, h);
+      vg_sub(x[k], all.x[i], d);
+      vg_tensor_apply(h, d, d);
+      least = fmin(least, vg_norm(d));
+    }
+    if (least >= VG_SEED_DISTANCE)
+      assert_memory_equal(all.x[i], some.x[n++], sizeof *all.x);
+  }
+  assert_int_equal(n, some.n);
+  assert_true(n > 0 && n < all.n);
+  free(all.x);
+  free(some.x);
+}
+
 /* The complexity of the graded metric in the unit cube is
  * 1000 log(0.12 / 0.02) = 1792, which makes 112 seeds (K49). Half of them lie
  * on each side of the plane z = 0.5, and half of them within 0.15 of it. */
@@ -323,6 +361,7 @@ static void seeds_follow_the_complexity(void **state)
   assert_in_range(near, 2 * seeds.n / 5, 3 * seeds.n / 4);
   free(seeds.x);
   seeds_stay_near(corner, sizing);
+  seeds_keep_their_distance(corner, sizing);
   vg_sizing_free(sizing);
 }
 

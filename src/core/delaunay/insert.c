@@ -15,7 +15,7 @@
 
 /* K5, K57: number of times that a cavity may be cut back; that it first grows
  * through hidden faces, in metrics */
-enum { CUT_MAX = 16, GROW_MAX = 2 };
+enum { CUT_MAX = 16, GROW_MAX = 3 };
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
                            struct vg_error *err)
@@ -139,7 +139,7 @@ VG_WITHIN unsigned metric_signs(const struct vg_inserter *s,
   unsigned in = 0, out = 0, signs;
 
   for (int k = 0; k < 6; k++) /* K46 */
-    m[k] = 8 * s->metric[s->point].m[k] + s->metric[v[0]].m[k] +
+    m[k] = 3 * s->metric[s->point].m[k] + s->metric[v[0]].m[k] +
            s->metric[v[1]].m[k] + s->metric[v[2]].m[k] + s->metric[v[3]].m[k];
   term = o * (px * (m[0] * px + 2 * (m[1] * py + m[2] * pz)) +
               py * (m[3] * py + 2 * m[4] * pz) + m[5] * pz * pz);
@@ -308,7 +308,7 @@ static int cut_back(struct vg_inserter *s, const double p[3])
  *         b
  *         p
  *
- * Returns 0: done; 1: there are none. */
+ * Returns 0: done; 1: no cell was added. */
 static int grow(struct vg_inserter *s, const double p[3])
 {
   uint8_t *flag = s->t->flag;

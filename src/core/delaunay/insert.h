@@ -10,8 +10,10 @@
  *
  * With metrics, the sphere of a cell is one in the mean of the metric at the
  * new point and those of its corners, tested in plain arithmetic (Borouchaki,
- * George, Hecht, Laug, Saltel, Finite Elem. Anal. Des. 25, 1997). Visibility
- * stays exact, and with it the validity of the result. */
+ * George, Hecht, Laug, Saltel, Finite Elem. Anal. Des. 25, 1997). The cells are
+ * then not all Delaunay in the metric of the new point. Therefore a cavity
+ * first grows through its hidden faces. Visibility stays exact, and with it the
+ * validity of the result. */
 #ifndef VG_CORE_DELAUNAY_INSERT_H
 #define VG_CORE_DELAUNAY_INSERT_H
 

@@ -101,6 +101,20 @@ static vg_status insert(struct vg_inserter *s, uint32_t p, const double x[3],
 
 /* --- points in the void ------------------------------------------------- */
 
+/* Is a corner of the cell nearer to x than `nearest`, in metric m? Most points
+ * are refused for that reason, before the search for their cavities. */
+static int has_corner_near(const struct vg_tets *t, uint32_t cell,
+                           const double x[3], const double m[6], double nearest)
+{
+  for (int i = 0; i < 4; i++) {
+    double d[3];
+
+    vg_sub(t->x[t->cell[cell].v[i]], x, d);
+    if (vg_tensor_form(m, d) < nearest * nearest) return 1;
+  }
+  return 0;
+}
+
 /* Insert x if it is in the box, at the distance `nearest` from all points, and
  * in the band of the region. */
 static vg_status insert_inner(struct vg_inserter *s, struct vg_metrics *metrics,
@@ -119,6 +133,7 @@ static vg_status insert_inner(struct vg_inserter *s, struct vg_metrics *metrics,
     return VG_OK;
   }
   vg_metric_at(metrics->sizing, x, &m);
+  if (has_corner_near(s->t, *at, x, m.m, nearest)) return VG_OK;
   st = vg_metrics_insert(metrics, s, x, &m, *at, 0, nearest, err);
   if (st == VG_OK) *at = s->last;
   return st == VG_BLOCKED ? VG_OK : st;
