@@ -79,6 +79,9 @@ class Browser:
         return result["result"].get("value")
 
     def until(self, script, seconds=120):
+        """Waits until the page is complete and the expression is true. Returns its
+        value."""
+        script = f"document.readyState === 'complete' && ({script})"
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             value = self.ask(script)
@@ -89,8 +92,7 @@ class Browser:
 
     def go(self, url):
         self.call("Page.navigate", url=url)
-        self.until("document.readyState === 'complete' && "
-                   f"location.href.startsWith({json.dumps(url)})")
+        self.until(f"location.href.startsWith({json.dumps(url)})")
 
     def size(self, width, height, mobile=False):
         self.call("Emulation.setDeviceMetricsOverride", width=width,

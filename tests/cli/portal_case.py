@@ -48,8 +48,7 @@ class Case:
         self.b.files("form.upload input[type=file]",
                      [os.path.join(self.folder, name)])
         self.b.click("form.upload button")
-        self.b.until(f"location.search.endsWith('={name}') && "
-                     "document.readyState === 'complete'")
+        self.b.until(f"location.search.endsWith('={name}')")
 
     def drawn(self):
         self.b.until("document.querySelector('.viewbox')?.dataset.drawn")
