@@ -302,11 +302,13 @@ static int cut_back(struct vg_inserter *s, const double p[3])
 /* Add the cells behind hidden faces, and all that are reached from them. The
  * point sees the cell in front of such a face only through the cell behind it:
  *
- *         a           Cell a is in the cavity, and cell b is not. Among
- * Delaunay
- *      -------        cells, the sphere of b would contain p, too.
+ *         a
+ *      -------
  *         b
  *         p
+ *
+ * Cell a is in the cavity, and cell b is not. Among Delaunay cells, the sphere
+ * of b would contain p, too.
  *
  * Returns 0: done; 1: no cell was added. */
 static int grow(struct vg_inserter *s, const double p[3])

@@ -196,7 +196,7 @@ static vg_status insert_all(struct vg_inserter *s, struct vg_metrics *metrics,
 
   VG_TRY(st);
   memcpy(x, in->x, in->n * sizeof *x);
-  memcpy(x + in->n, seeds->x, seeds->n * sizeof *x);
+  if (seeds->n) memcpy(x + in->n, seeds->x, seeds->n * sizeof *x);
   VG_TRY(vg_insertion_order(n, (const double(*)[3])x, order, err));
   for (size_t i = 0; i < n; i++)
     if (order[i] < in->n) VG_TRY(insert(s, order[i], x[order[i]], &at, err));
@@ -211,7 +211,7 @@ done:
 
 /* Seeds are sparse points throughout the void (core/metric/metric_seeds.h).
  * Apexes come last: in the same rounds as the others, they would make thin
- * cells again. */
+ * cells. */
 static vg_status insert_stretched(struct vg_inserter *s,
                                   const struct vg_boundary_input *in, int inner,
                                   struct vg_error *err)
