@@ -13,9 +13,11 @@
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 
-/* K5, K57: number of times that a cavity may be cut back; that it first grows
- * through hidden faces, in metrics */
-enum { CUT_MAX = 16, GROW_MAX = 3 };
+enum {
+  CUT_MAX = 16, /* K5: number of times that a cavity may be cut back */
+  GROW_MAX = 3  /* K57: in metrics, number of times that it first grows through
+                   hidden faces */
+};
 
 vg_status vg_inserter_init(struct vg_inserter *s, struct vg_tets *t,
                            struct vg_error *err)
