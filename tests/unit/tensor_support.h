@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Random numbers and frames for tests of tensors and metrics. */
+/* Random numbers and frames, and the constant metric, for tests of tensors and
+ * metrics. */
 #ifndef TESTS_UNIT_TENSOR_SUPPORT_H
 #define TESTS_UNIT_TENSOR_SUPPORT_H
 
+#include <math.h>
 #include <stdint.h>
+#include <string.h>
 
+#include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 
 /* State of random_in, which a program may set first. */
@@ -28,6 +32,19 @@ static inline void random_frame(double v[3][3])
   vg_cross(v[0], v[1], v[2]);
   vg_unit(v[2]);
   vg_cross(v[2], v[0], v[1]);
+}
+
+/* A struct vg_size_map of the metric user[6], which is the same everywhere. */
+static inline void constant_metric(void *user, const double x[3], double m[6])
+{
+  (void)x;
+  memcpy(m, user, 6 * sizeof *m);
+}
+
+static inline double constant_size(void *user, const double x[3])
+{
+  (void)x;
+  return 1 / vg_cube_root(sqrt(vg_tensor_det(user)));
 }
 
 #endif

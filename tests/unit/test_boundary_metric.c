@@ -24,18 +24,6 @@ static double aspect_of(int i)
   return 1.5 + 2.5 * i;
 }
 
-static void constant_metric(void *user, const double x[3], double m[6])
-{
-  (void)x;
-  memcpy(m, user, 6 * sizeof *m);
-}
-
-static double constant_size(void *user, const double x[3])
-{
-  (void)x;
-  return 1 / vg_cube_root(sqrt(vg_tensor_det(user)));
-}
-
 /* A metric of random axes, with lengths from 0.1 down to 0.1 / aspect. */
 static void random_metric(double aspect, double m[6])
 {

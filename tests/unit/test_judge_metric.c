@@ -13,6 +13,7 @@
 #include "base/memory.h"
 #include "judge_support.h"
 #include "metric_support.h"
+#include "tensor_support.h"
 
 #define assert_near(a, b, tolerance)                                           \
   do {                                                                         \
@@ -34,18 +35,6 @@ static struct vg_mesh_report judge(const struct vg_mesh *m,
 }
 
 /* --- constant metrics ---------------------------------------------------- */
-
-static void constant_metric(void *user, const double x[3], double m[6])
-{
-  (void)x;
-  memcpy(m, user, 6 * sizeof *m);
-}
-
-static double constant_size(void *user, const double x[3])
-{
-  (void)x;
-  return 1 / vg_cube_root(sqrt(vg_tensor_det(user)));
-}
 
 static struct vg_sizing *constant_field(const struct vg_mesh *m, double form[6])
 {

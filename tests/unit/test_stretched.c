@@ -21,18 +21,6 @@ enum { SIDE = 6 };
 
 /* --- metrics -------------------------------------------------------------- */
 
-static void constant_metric(void *user, const double x[3], double m[6])
-{
-  (void)x;
-  memcpy(m, user, 6 * sizeof *m);
-}
-
-static double constant_size(void *user, const double x[3])
-{
-  (void)x;
-  return 1 / vg_cube_root(sqrt(vg_tensor_det(user)));
-}
-
 /* The size along z grows from 0.02 in the plane z = 0.5. */
 static void graded_metric(void *user, const double x[3], double m[6])
 {

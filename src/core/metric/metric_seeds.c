@@ -25,7 +25,7 @@ struct seeder {
   const struct vg_sizing *sizing;
   const struct vg_region *region;
   const double (*x)[3];           /* points that bound the void */
-  const struct vg_box_tree *near; /* of these points */
+  const struct vg_box_tree *near; /* box tree of these points */
   struct vg_metric_seeds *out;
 };
 

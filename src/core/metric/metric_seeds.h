@@ -19,11 +19,11 @@ struct vg_metric_seeds {
 };
 
 /** Seeds within the bounding box of the points x: about one for 16 points of
- * the mesh (K49), even where the metric is stretched. They keep their distance
- * from the points x, but not from each other. Cells between seeds are
- * so small that the metric changes little over them, while cells between the
- * points of a boundary alone extend across regions of different metrics, whose
- * connections later insertions do not repair.
+ * the mesh (K49), even where the metric is stretched. They keep the distance
+ * VG_SEED_DISTANCE from the points x, but not from each other. Cells between
+ * seeds are so small that the metric changes little over them, while cells
+ * between the points of a boundary alone extend across regions of different
+ * metrics, whose connections later insertions do not repair.
  *
  * @param x       [n] the points that bound the void
  * @param region  NULL, or the region along which points are placed: the seeds

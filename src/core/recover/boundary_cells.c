@@ -180,10 +180,10 @@ static vg_status insert_apexes(struct vg_inserter *s,
 }
 
 /* Insert the points of the surface and the seeds in one order, so that the
- * first insertions are local, too. Cells that reach from one side of the void
- * to the other would extend across regions of different metrics. They are so
- * thin that few flips are possible among them, and later insertions do not
- * repair their connections. */
+ * first insertions are local, too. Without a metric there are no seeds. In a
+ * metric, cells that reach from one side of the void to the other would extend
+ * across regions of different metrics. They are so thin that few flips are
+ * possible among them, and later insertions do not repair their connections. */
 static vg_status insert_all(struct vg_inserter *s, struct vg_metrics *metrics,
                             const struct vg_boundary_input *in,
                             const struct vg_metric_seeds *seeds,
@@ -198,11 +198,14 @@ static vg_status insert_all(struct vg_inserter *s, struct vg_metrics *metrics,
   memcpy(x, in->x, in->n * sizeof *x);
   if (seeds->n) memcpy(x + in->n, seeds->x, seeds->n * sizeof *x);
   VG_TRY(vg_insertion_order(n, (const double(*)[3])x, order, err));
-  for (size_t i = 0; i < n; i++)
-    if (order[i] < in->n) VG_TRY(insert(s, order[i], x[order[i]], &at, err));
-    else
-      VG_TRY(insert_inner(s, metrics, NULL, x[order[i]], VG_SEED_DISTANCE, &at,
-                          err));
+  for (size_t i = 0; i < n; i++) {
+    const double *point = x[order[i]];
+
+    st = order[i] < in->n
+         ? insert(s, order[i], point, &at, err)
+         : insert_inner(s, metrics, NULL, point, VG_SEED_DISTANCE, &at, err);
+    VG_TRY(st);
+  }
 done:
   free(order);
   free(x);
@@ -212,54 +215,31 @@ done:
 /* Seeds are sparse points throughout the void (core/metric/metric_seeds.h).
  * Apexes come last: in the same rounds as the others, they would make thin
  * cells. */
-static vg_status insert_stretched(struct vg_inserter *s,
-                                  const struct vg_boundary_input *in, int inner,
-                                  struct vg_error *err)
-{
-  struct vg_metrics metrics = { .sizing = in->sizing };
-  struct vg_metric_seeds seeds = { 0 };
-  vg_status st = VG_OK;
-
-  if (vg_metrics_add(&metrics, s->t, 0, s->t->n_point))
-    st = vg_fail_memory(err, "boundary recovery");
-  VG_TRY(st);
-  s->metric = metrics.at;
-  if (inner)
-    VG_TRY(vg_metric_seeds(in->n, in->x, in->sizing, in->region, &seeds, err));
-  VG_TRY(insert_all(s, &metrics, in, &seeds, err));
-  if (inner) VG_TRY(insert_apexes(s, &metrics, in, err));
-done:
-  free(seeds.x);
-  vg_metrics_release(&metrics);
-  return st;
-}
-
-static vg_status insert_surface(struct vg_inserter *s, size_t n,
-                                const double (*x)[3], struct vg_error *err)
-{
-  uint32_t *order = vg_alloc(n, sizeof *order), at = 0;
-  vg_status st = order ? VG_OK : vg_fail_memory(err, "boundary recovery");
-
-  if (st == VG_OK) st = vg_insertion_order(n, x, order, err);
-  for (size_t i = 0; st == VG_OK && i < n; i++)
-    st = insert(s, order[i], x[order[i]], &at, err);
-  free(order);
-  return st;
-}
-
 vg_status vg_boundary_cells(struct vg_tets *t,
                             const struct vg_boundary_input *in, int inner,
                             struct vg_error *err)
 {
   const int is_stretched = vg_boundary_is_stretched(in);
   struct vg_inserter s = { 0 };
+  struct vg_metrics metrics = { .sizing = in->sizing };
+  struct vg_metric_seeds seeds = { 0 };
   vg_status st;
 
   VG_TRY(start_in_box(t, in->n, in->x, is_stretched ? in->sizing : NULL, err));
   VG_TRY(vg_inserter_init(&s, t, err));
-  st = is_stretched ? insert_stretched(&s, in, inner, err)
-                    : insert_surface(&s, in->n, in->x, err);
+  if (is_stretched && vg_metrics_add(&metrics, t, 0, t->n_point)) {
+    st = vg_fail_memory(err, "boundary recovery");
+    goto done;
+  }
+  s.metric = metrics.at;
+  inner = inner && is_stretched;
+  if (inner)
+    VG_TRY(vg_metric_seeds(in->n, in->x, in->sizing, in->region, &seeds, err));
+  VG_TRY(insert_all(&s, &metrics, in, &seeds, err));
+  if (inner) VG_TRY(insert_apexes(&s, &metrics, in, err));
 done:
+  free(seeds.x);
+  vg_metrics_release(&metrics);
   vg_inserter_release(&s);
   return st;
 }
