@@ -41,6 +41,9 @@ struct run {
   struct vg_layer_stage layers;
   struct vg_run mesh;
   double start, time_read, time_check, time_write, time_digest, time_page;
+  /* Seconds from the start to the printed report. The terminal and the log
+   * print the same value. */
+  double time_total;
 };
 
 /* Options that are not settings: they do not change the mesh. */
@@ -441,8 +444,7 @@ static void print_times(FILE *to, const struct run *r)
   fprintf(to, "fill %.2f, numbering %.2f,\n  mesh check %.2f, ",
           r->mesh.time_fill, r->mesh.partition.number, r->mesh.time_judge);
   if (r->mesh.parts) fprintf(to, "solver partition %.2f, ", r->mesh.time_parts);
-  fprintf(to, "write %.2f, total %.2f\n", r->time_write,
-          vg_display_now() - r->start);
+  fprintf(to, "write %.2f, total %.2f\n", r->time_write, r->time_total);
   vg_report_memory_text(to, &r->mesh);
 }
 
@@ -558,6 +560,7 @@ static int report_success(struct run *r, const struct arguments *a)
   int status = VG_EXIT_DONE;
 
   if (r->mesh.rank) return status;
+  r->time_total = vg_display_now() - r->start;
   if (a->json) status = print_json(r, 1, NULL);
   else print_report(stdout, r);
   if (vg_log()) print_report(vg_log(), r);
