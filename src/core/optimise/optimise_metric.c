@@ -152,12 +152,18 @@ VG_WITHIN void rate(const struct block *b, const double to[3],
                     const struct vg_point_metric *m, double *inverse, double *f,
                     double (*g)[BLOCK])
 {
-  for (int k = 0; k < BLOCK; k++) {
-    int finer = m->root > b->root[k];
-    double a[6], r[3], ar[3], sum, det, high, off, root, square;
+  const struct vg_point_metric own = *m; /* selections need values, not loads */
 
-    for (int i = 0; i < 6; i++) a[i] = finer ? m->m[i] : b->m[i][k];
-    root = finer ? m->root : b->root[k];
+  for (int k = 0; k < BLOCK; k++) {
+    double a[6], r[3], ar[3], root = b->root[k];
+    double sum, det, sound, high, off, square;
+
+    for (int i = 0; i < 6; i++) {
+      double other = b->m[i][k];
+
+      a[i] = own.root > root ? own.m[i] : other;
+    }
+    root = larger(own.root, root);
     for (int i = 0; i < 3; i++) r[i] = to[i] - b->mid[i][k];
     ar[0] = a[0] * r[0] + a[1] * r[1] + a[2] * r[2];
     ar[1] = a[1] * r[0] + a[3] * r[1] + a[4] * r[2];
@@ -167,10 +173,9 @@ VG_WITHIN void rate(const struct block *b, const double to[3],
     sum = 3 * (r[0] * ar[0] + r[1] * ar[1] + r[2] * ar[2]);
     for (int i = 0; i < 6; i++) sum += b->gram[i][k] * a[i];
     square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + b->far[k];
-    high = det * root;
-    inverse[k] = ((det > 0) & (det * det > b->flat[k] * square))
-                 ? sum * sum * sum / (432 * high * high)
-                 : INFINITY;
+    sound = det * det > b->flat[k] * square ? det : 0;
+    high = larger(sound, 0) * root;
+    inverse[k] = sum * sum * sum / (432 * high * high);
     off = sum * (1.0 / 6) - 1;
     f[k] += b->live[k] * (inverse[k] + size_weight * off * off);
     if (g) {
