@@ -52,7 +52,7 @@ static uint8_t edge_bit(int i, int j)
     { 0, 0, 1, 2 }, { 0, 0, 3, 4 }, { 1, 3, 0, 5 }, { 2, 4, 5, 0 }
   };
 
-  return (uint8_t)(VG_FAILED_LENGTH << edge[i][j]);
+  return (uint8_t)(VG_LENGTH << edge[i][j]);
 }
 
 /* Length of the edge between two points in the metric, or 1 if the lengths in
@@ -70,8 +70,8 @@ static double length_of(const struct vg_optimiser *o, uint32_t a, uint32_t b)
   return vg_log_mean(sqrt(fmax(la, 0)), sqrt(fmax(lb, 0)));
 }
 
-/* The edge a b of cell c could not be changed. In this pass, the other cells
- * around it try again only if they change. */
+/* The edge a b of cell c could not be changed. The other cells around it try
+ * again only if they change. */
 static void mark_edge(struct vg_optimiser *o, uint32_t c, uint32_t a,
                       uint32_t b)
 {
@@ -93,8 +93,10 @@ static void mark_edge(struct vg_optimiser *o, uint32_t c, uint32_t a,
 static int even_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
 {
   uint32_t a = o->t->cell[c].v[i], b = o->t->cell[c].v[j];
-  double length = length_of(o, a, b);
+  double length;
 
+  if (o->failed_cell[c] & edge_bit(i, j)) return 0;
+  length = length_of(o, a, b);
   if (length >= shortest && length <= longest) return 0;
   if (length > longest) {
     if (vg_split_edge(o, c, a, b, split_share, shortest)) return 1;
@@ -110,8 +112,7 @@ static int even_cell(struct vg_optimiser *o, uint32_t c)
 {
   for (int i = 0; i < 4; i++)
     for (int j = i + 1; j < 4; j++)
-      if (!(o->failed_cell[c] & edge_bit(i, j)) && even_edge(o, c, i, j))
-        return 1;
+      if (even_edge(o, c, i, j)) return 1;
   return 0;
 }
 
@@ -119,8 +120,8 @@ vg_status vg_even_lengths(struct vg_optimiser *o, struct vg_error *err)
 {
   assert(o->metrics);
   for (uint32_t c = 0; c < o->t->n_cell; c++)
-    o->failed_cell[c] &= VG_FAILED_LENGTH - 1;
-  for (uint32_t c = 0; c < o->t->n_cell; c++)
-    if (is_live(o->t, c) && concerns(o, c)) even_cell(o, c);
+    if (is_live(o->t, c) && (o->failed_cell[c] & VG_LENGTHS) != VG_LENGTHS &&
+        (!concerns(o, c) || !even_cell(o, c)))
+      o->failed_cell[c] |= VG_LENGTHS;
   return o->refused ? vg_fail_memory(err, "optimisation") : VG_OK;
 }
