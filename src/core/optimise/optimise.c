@@ -36,8 +36,9 @@ static void set_metrics(struct vg_optimiser *o, struct vg_metrics *metrics)
  * one percent of its cells. */
 enum { ROUNDS = 8, CLASSES = 8 }; /* K26 */
 
-/* Number of cells whose shapes are computed together. */
-enum { SHAPES = 64 };
+/* Number of cells whose shapes are computed together, and number of points
+ * after which a point is smoothed whose cells are fetched now. */
+enum { SHAPES = 64, AHEAD = 2 };
 
 static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
                        struct vg_error *err)
@@ -126,6 +127,16 @@ static void worst_around(const struct vg_optimiser *o, float limit,
         if (o->q[c] < least[t->cell[c].v[i]]) least[t->cell[c].v[i]] = o->q[c];
 }
 
+/* The cells of a ball are scattered in memory. They are fetched while points
+ * before it are smoothed. */
+static void prefetch_ball(const struct vg_tets *t, const struct vg_balls *b,
+                          uint32_t p)
+{
+  if (p >= t->n_point) return;
+  for (uint32_t k = b->first[p]; k < b->first[p + 1]; k++)
+    __builtin_prefetch(&t->cell[b->link[k] >> 2]);
+}
+
 /* Smooth the points with a cell below `limit` that should be improved. The list
  * of all balls pays for itself if most points are smoothed. */
 static vg_status smooth_all(struct vg_optimiser *o, float limit,
@@ -140,8 +151,12 @@ static vg_status smooth_all(struct vg_optimiser *o, float limit,
   if (!bad) worst_around(o, limit, least);
   for (uint32_t p = (uint32_t)o->n_fixed; !bad && p < t->n_point; p++) {
     if (!(least[p] < limit)) continue;
-    if (all) vg_smooth_within(o, &balls, p, o->level->aim);
-    else vg_smooth(o, p, o->level->aim);
+    if (all) {
+      prefetch_ball(t, &balls, p + AHEAD);
+      vg_smooth_within(o, &balls, p, o->level->aim);
+    } else {
+      vg_smooth(o, p, o->level->aim);
+    }
   }
   vg_balls_release(&balls);
   free(least);

@@ -70,8 +70,8 @@ static double length_of(const struct vg_optimiser *o, uint32_t a, uint32_t b)
   return vg_log_mean(sqrt(fmax(la, 0)), sqrt(fmax(lb, 0)));
 }
 
-/* The edge a b of cell c could not be changed. The other cells around it try
- * again only if they change. */
+/* The edge a b of cell c could not be changed. In this pass, the other cells
+ * around it try again only if they change. */
 static void mark_edge(struct vg_optimiser *o, uint32_t c, uint32_t a,
                       uint32_t b)
 {
@@ -108,20 +108,23 @@ static int even_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
   return 0;
 }
 
-static int even_cell(struct vg_optimiser *o, uint32_t c)
+static void even_cell(struct vg_optimiser *o, uint32_t c)
 {
-  for (int i = 0; i < 4; i++)
-    for (int j = i + 1; j < 4; j++)
-      if (even_edge(o, c, i, j)) return 1;
-  return 0;
+  if (concerns(o, c))
+    for (int i = 0; i < 4; i++)
+      for (int j = i + 1; j < 4; j++)
+        if (even_edge(o, c, i, j)) return;
+  if (!(o->failed_cell[c] & VG_LENGTHS)) o->failed_cell[c] |= VG_LENGTHS;
 }
 
 vg_status vg_even_lengths(struct vg_optimiser *o, struct vg_error *err)
 {
   assert(o->metrics);
   for (uint32_t c = 0; c < o->t->n_cell; c++)
-    if (is_live(o->t, c) && (o->failed_cell[c] & VG_LENGTHS) != VG_LENGTHS &&
-        (!concerns(o, c) || !even_cell(o, c)))
-      o->failed_cell[c] |= VG_LENGTHS;
+    if ((o->failed_cell[c] & VG_LENGTHS) != VG_LENGTHS)
+      o->failed_cell[c] &= (uint8_t)~VG_LENGTHS;
+  for (uint32_t c = 0; c < o->t->n_cell; c++)
+    if (is_live(o->t, c) && (o->failed_cell[c] & VG_LENGTHS) != VG_LENGTHS)
+      even_cell(o, c);
   return o->refused ? vg_fail_memory(err, "optimisation") : VG_OK;
 }

@@ -193,8 +193,10 @@ static int smooth(struct mover *m, struct vg_tets *t, uint32_t p, size_t n,
   return 1;
 }
 
-/* Largest number of moves of one point in a metric. */
-enum { MOVES_IN_METRIC = 4 }; /* K50 */
+/* K50: largest number of moves of one point in a metric, and relative decrease
+ * by one move that is followed by another one. */
+enum { MOVES_IN_METRIC = 4 };
+static const double enough = 0.02;
 
 /* The same in metrics. */
 static int smooth_in_metric(struct mover *m, struct vg_tets *t, uint32_t p,
@@ -202,13 +204,15 @@ static int smooth_in_metric(struct mover *m, struct vg_tets *t, uint32_t p,
                             struct vg_metrics *metrics, float *q)
 {
   float worst = 2;
+  double gain = 1;
   int moves = 0;
 
   if (!n || n > VG_BALL_MAX) return 0;
   for (size_t c = 0; c < n; c++) worst = fminf(worst, q[link[c] >> 2]);
   if (worst >= below) return 0;
-  while (moves < MOVES_IN_METRIC &&
-         vg_move_in_metric(t, metrics, p, n, link, m->now.q)) {
+  while (moves < MOVES_IN_METRIC && gain > enough) {
+    gain = vg_move_in_metric(t, metrics, p, n, link, m->now.q);
+    if (!(gain > 0)) break;
     for (size_t c = 0; c < n; c++) q[link[c] >> 2] = (float)m->now.q[c];
     moves++;
   }

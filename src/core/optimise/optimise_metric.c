@@ -76,11 +76,13 @@ static void gather_cell(const struct vg_tets *t,
 {
   const uint32_t *v = t->cell[link >> 2].v;
   const uint8_t *f = vg_face[link & 3];
-  const struct vg_point_metric *m = &metrics->at[v[f[0]]];
-  const double *x = t->x[v[f[0]]], *y = t->x[v[f[1]]], *z = t->x[v[f[2]]];
+  uint32_t p = v[f[0]], q = v[f[1]], r = v[f[2]];
+  const double *x = t->x[p], *y = t->x[q], *z = t->x[r];
+  const struct vg_point_metric *at = metrics->at, *m;
 
-  for (int i = 1; i < 3; i++)
-    if (metrics->at[v[f[i]]].root > m->root) m = &metrics->at[v[f[i]]];
+  /* Conditional moves: which corner is the finest cannot be predicted. */
+  p = at[q].root > at[p].root ? q : p;
+  m = &at[at[r].root > at[p].root ? r : p];
   for (int i = 0; i < 6; i++) b->m[i][k] = m->m[i];
   b->root[k] = m->root;
   for (int i = 0; i < 3; i++) {
@@ -293,13 +295,13 @@ static int find_step(const struct rating *now, const struct vg_point_metric *m,
   return 1;
 }
 
-int vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics, uint32_t p,
-                      size_t n, const uint32_t *link, double *q)
+double vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics,
+                         uint32_t p, size_t n, const uint32_t *link, double *q)
 {
   struct stretched_ball b;
   struct vg_point_metric m = metrics->at[p];
   struct rating now;
-  double x[3], d[3], to[3], most;
+  double x[3], d[3], to[3], most, f;
 
   gather(t, metrics, t->x[p], n, link, &b);
   rate_start(&b, &m, &now);
@@ -311,11 +313,12 @@ int vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics, uint32_t p,
       to[i] = x[i] - t->x[p][i];
     }
     vg_metric_at(metrics->sizing, x, &m);
-    if (!(value_at(&b, to, &m, most, q) < (1 - gain) * now.f)) continue;
+    f = value_at(&b, to, &m, most, q);
+    if (!(f < (1 - gain) * now.f)) continue;
     for (size_t c = 0; c < n; c++) q[c] = 1 / q[c];
     memcpy(t->x[p], x, sizeof x);
     metrics->at[p] = m;
-    return 1;
+    return 1 - f / now.f;
   }
   return 0;
 }
@@ -324,7 +327,8 @@ int vg_smooth_metric(struct vg_optimiser *o, uint32_t p)
 {
   double q[VG_BALL_MAX];
 
-  if (!vg_move_in_metric(o->t, o->metrics, p, o->n_ball, o->ball, q)) return 0;
+  if (!(vg_move_in_metric(o->t, o->metrics, p, o->n_ball, o->ball, q) > 0))
+    return 0;
   for (size_t k = 0; k < o->n_ball; k++) {
     o->q[o->ball[k] >> 2] = (float)q[k];
     vg_changed(o, o->ball[k] >> 2);

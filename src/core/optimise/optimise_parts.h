@@ -24,9 +24,9 @@ enum { /* steps that failed for a point; cleared by a change */
 enum { /* for a cell; cleared by a change */
        VG_FAILED_SPLIT = 1,
        VG_NOT_IN_REGION = 2, /* does not belong to the region */
-       VG_LENGTH = 4,        /* << edge: the length of this edge requires no
-                                change, or could not be changed */
-       VG_LENGTHS = 63 * VG_LENGTH /* all six edges */
+       VG_LENGTH = 4,        /* << edge: the length of this edge could not be
+                                changed in this pass (optimise_lengths.c) */
+       VG_LENGTHS = 63 * VG_LENGTH /* all: no length requires a change */
 };
 
 /* Shapes that decide which cells the steps improve. Without metrics, shapes are
@@ -144,9 +144,11 @@ int vg_smooth_metric(struct vg_optimiser *o, uint32_t p);
 
 /** The step of vg_smooth_metric: move p, with its metric, among the cells
  * around it, if that improves them. link: [n] 4 * cell + index of p, with
- * 0 < n <= VG_BALL_MAX. q out: [VG_BALL_MAX] their new shapes if p moves. */
-int vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics, uint32_t p,
-                      size_t n, const uint32_t *link, double *q);
+ * 0 < n <= VG_BALL_MAX. q out: [VG_BALL_MAX] their new shapes if p moves.
+ * Returns the relative decrease of the function that is minimised, or 0 if p
+ * does not move. */
+double vg_move_in_metric(struct vg_tets *t, struct vg_metrics *metrics,
+                         uint32_t p, size_t n, const uint32_t *link, double *q);
 
 /** Collapse edges that are too short in the metric, and split those that are
  * too long, in one pass over the cells. VG_ERR_MEMORY. (optimise_lengths.c) */
