@@ -103,15 +103,17 @@ int vg_metric_apex(const struct vg_sizing *sizing, const double x[3],
                    const double y[3], const double z[3], double c[3],
                    double h[6], double unit[3]);
 
-/** The finest metric of four points: that of the largest determinant. */
+/** The finest metric of four points: that of the largest determinant, and the
+ * first of equal ones. Which it is cannot be predicted, so that this is written
+ * for conditional moves. */
 static inline const struct vg_point_metric *vg_metrics_finest(
   const struct vg_metrics *s, const uint32_t v[4])
 {
-  const struct vg_point_metric *m = &s->at[v[0]];
+  const struct vg_point_metric *at = s->at;
+  uint32_t p = at[v[1]].root > at[v[0]].root ? v[1] : v[0];
+  uint32_t q = at[v[3]].root > at[v[2]].root ? v[3] : v[2];
 
-  for (int i = 1; i < 4; i++)
-    if (s->at[v[i]].root > m->root) m = &s->at[v[i]];
-  return m;
+  return &at[at[q].root > at[p].root ? q : p];
 }
 
 /** Shape of a cell in the finest metric of its corners. */
