@@ -195,7 +195,8 @@ double vg_ref_size_by(const struct vg_ref *r, uint32_t t, const double x[3]);
 
 /** Triangles whose box is within `distance` of the given box, and a few that
  * are farther; some occur more than once. Returns their number; the first cap
- * of them are stored in tri. */
+ * of them are stored in tri. The search ends when it finds more than these,
+ * unless tri is NULL. */
 size_t vg_ref_around(const struct vg_ref *r, const struct vg_box *box,
                      double distance, size_t cap, uint32_t *tri);
 

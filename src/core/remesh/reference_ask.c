@@ -428,7 +428,7 @@ static inline int list_triangles(void *context, size_t node)
 
   for (size_t k = vg_box_tree_first(tree, node); k < end; k++, a->n++)
     if (a->n < a->cap) a->tri[a->n] = tree->item[k];
-  return 0;
+  return a->tri && a->n > a->cap;
 }
 
 size_t vg_ref_around(const struct vg_ref *r, const struct vg_box *box,
