@@ -49,6 +49,18 @@ static inline double vg_unit(double a[3])
   return l;
 }
 
+/** Two unit vectors normal to the unit vector u and to each other. */
+static inline void vg_normals(const double u[3], double v[3], double w[3])
+{
+  int k = fabs(u[0]) > fabs(u[1]) ? 0 : 1;
+  double len = sqrt(u[k] * u[k] + u[2] * u[2]);
+
+  v[1 - k] = 0;
+  v[k] = -u[2] / len;
+  v[2] = u[k] / len;
+  vg_cross(u, v, w);
+}
+
 static inline double vg_distance2(const double a[3], const double b[3])
 {
   double d[3];

@@ -517,14 +517,15 @@ double vg_sizing_sources_at(const struct vg_sizing_options *options, size_t n,
 {
   const struct vg_sizing_options o = scaled(options);
   struct vg_source_set set = VG_SOURCE_SET_INIT;
-  double h, m[6];
+  struct vg_size_axes a;
+  double h;
 
   if (!n || vg_source_prepare(&o, n, source, 0, &set, NULL) < 0)
     return INFINITY;
   h = vg_source_at(&set, x);
   if (vg_source_any_stretched(&set)) {
-    vg_source_metric_at(&set, x, h, m);
-    h = 1 / sqrt(vg_cube_root(vg_tensor_det(m)));
+    vg_source_axes_at(&set, x, h, &a);
+    h = vg_cube_root(a.size[0] * a.size[1] * a.size[2]);
   }
   vg_source_release(&set);
   if (o.h_max > 0 && h > o.h_max) h = o.h_max;

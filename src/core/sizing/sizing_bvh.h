@@ -79,6 +79,7 @@ double vg_bvh_above(const struct vg_bvh *t, const double lo[3],
 struct vg_bvh_reach {
   double mid[3];
   float trifle; /* smaller values need not be known */
+  float above;  /* lower bound of the "from above" values at the points */
   int is_known;
   float most[VG_BVH_CLASSES];
 };

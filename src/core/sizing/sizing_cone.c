@@ -188,23 +188,20 @@ static void sizes_at(const struct vg_source *s, const struct half_plane *p,
   limit_turn(p, slope, wide, r, size);
 }
 
-void vg_mach_cone_tensor(const struct vg_source *s, double slope,
-                         const double x[3], double h[6])
+/* Near the axis of the cones, the sizes are equal. */
+void vg_mach_cone_axes(const struct vg_source *s, double slope,
+                       const double x[3], struct vg_size_axes *a)
 {
   const struct half_plane p = half_plane_of(s, x);
-  double size[3], direction[3][3];
 
-  sizes_at(s, &p, slope, size);
-  if (!(size[ALONG] > size[ACROSS])) { /* Near the axis. */
-    vg_tensor_uniform(size[ACROSS], h);
-    return;
-  }
+  sizes_at(s, &p, slope, a->size);
+  if (!(a->size[ALONG] > a->size[ACROSS]))
+    a->size[ALONG] = a->size[ROUND] = a->size[ACROSS];
   for (int k = 0; k < 3; k++) {
-    direction[ACROSS][k] = p.sine * p.axis[k] - p.cosine * p.out[k];
-    direction[ALONG][k] = p.cosine * p.axis[k] + p.sine * p.out[k];
+    a->axis[ACROSS][k] = p.sine * p.axis[k] - p.cosine * p.out[k];
+    a->axis[ALONG][k] = p.cosine * p.axis[k] + p.sine * p.out[k];
   }
-  vg_cross(p.axis, p.out, direction[ROUND]);
-  vg_tensor_from_eigen(size, (const double(*)[3])direction, h);
+  vg_cross(p.axis, p.out, a->axis[ROUND]);
 }
 
 void vg_mach_cone_bounds(const struct vg_source *s, double lo[3], double hi[3])

@@ -28,6 +28,7 @@
 #define VG_CORE_SIZING_SIZING_CONE_H
 
 #include "core/sizing/sizing.h"
+#include "core/sizing/sizing_tensor.h"
 
 /** Defect of a source of this kind and how to correct it, or NULL. */
 const char *vg_mach_cone_defect(const struct vg_source *s);
@@ -40,10 +41,9 @@ const char *vg_mach_cone_defect(const struct vg_source *s);
 double vg_mach_cone_way(const struct vg_source *s, const double x[3], double *t,
                         double way[3]);
 
-/** Size tensor at any point (core/geometry/tensor.h). slope: growth rate - 1.
- */
-void vg_mach_cone_tensor(const struct vg_source *s, double slope,
-                         const double x[3], double h[6]);
+/** Size tensor at any point. slope: growth rate - 1. */
+void vg_mach_cone_axes(const struct vg_source *s, double slope,
+                       const double x[3], struct vg_size_axes *a);
 
 /** Box around the cones. */
 void vg_mach_cone_bounds(const struct vg_source *s, double lo[3], double hi[3]);

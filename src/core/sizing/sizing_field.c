@@ -10,6 +10,9 @@
  * the spacing that it allows. */
 #define FINER 0.65
 
+/* Searches have single precision. */
+#define WIDER (1 + 1e-6)
+
 double vg_stat_clamp(const struct vg_stat *f, double h)
 {
   h = h < f->h_max ? h : f->h_max;
@@ -61,6 +64,7 @@ double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
   *by_sources = 1;
   if (!f->near) return vg_stat_clamp(f, h);
   most = vg_bvh_above(f->near, lo, hi, f->h_max, hint);
+  if (reach) reach->above = (float)most;
   *by_sources = h < FINER * most;
   if (most <= h) return vg_stat_clamp(f, most);
   below = vg_bvh_below(f->under, mid, h + fall, most + fall, reach, &by);
@@ -74,70 +78,82 @@ double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
 static struct vg_size_limits limits_of(const struct vg_stat *f)
 {
   return (struct vg_size_limits){
-    fmin(fmax(f->h_min, 1e-30 * f->h_max), f->h_max), f->h_max, f->aspect_max
+    vg_lesser(vg_greater(f->h_min, 1e-30 * f->h_max), f->h_max), f->h_max,
+    f->aspect_max
   };
 }
 
 void vg_stat_tensor_source(const struct vg_stat *f, const double x[3],
-                           double h[6], double range[2], double *iso)
+                           struct vg_size_axes *a, double *iso)
 {
-  const struct vg_size_limits l = limits_of(f);
-
-  *iso = fmin(vg_source_at(&f->set, x), f->h_max);
-  vg_source_metric_at(&f->set, x, *iso, h);
-  vg_size_from_metric(h, &l, h, range);
+  *iso = vg_lesser(vg_source_at(&f->set, x), f->h_max);
+  vg_source_axes_at(&f->set, x, *iso, a);
+  vg_stat_tensor_limit(f, a);
 }
 
-void vg_stat_tensor_limit(const struct vg_stat *f, double h[6], double range[2])
+void vg_stat_tensor_limit(const struct vg_stat *f, struct vg_size_axes *a)
 {
   const struct vg_size_limits l = limits_of(f);
+  double range[2];
 
-  vg_size_limit(h, &l, range);
+  vg_size_axes_limit(a, &l, range);
 }
 
 /* The bounds of the surface apply to each eigenvalue as vg_stat_combine applies
- * them to an isotropic size. */
-static void bound(const struct vg_stat *f, const double x[3], double h[6],
-                  double range[2], struct vg_bvh_reach *reach, uint32_t *hint,
-                  double *most)
+ * them to an isotropic size. Unless the bound from above is asked for, only
+ * values below the largest size are searched for: a larger one matters only
+ * where the bound from below exceeds that size. */
+static void bound(const struct vg_stat *f, const double x[3],
+                  struct vg_size_axes *a, struct vg_bvh_reach *reach,
+                  uint32_t *hint, double *above)
 {
+  const double least = vg_size_axes_least(a);
+  const double wide = (double)(float)(vg_size_axes_most(a) * WIDER);
   struct vg_size_limits l = limits_of(f);
-  double below, by;
+  double most = above ? f->h_max : vg_lesser(wide, f->h_max), below, by;
+  double range[2], fine = 0;
 
-  *most = vg_bvh_above(f->near, x, x, f->h_max, hint);
-  l.aspect = INFINITY;
-  l.most = fmin(fmax(*most, l.least), l.most);
-  if (range[0] < *most && f->under) {
-    below = vg_bvh_below(f->under, x, range[0], *most, reach, &by);
-    if (below < *most && below < vg_bvh_knee(f->under, by))
+  if (above || !reach || !(wide < (double)reach->above))
+    most = vg_bvh_above(f->near, x, x, most, hint);
+  if (least < most && f->under) {
+    below = vg_bvh_below(f->under, x, least, most, reach, &by);
+    if (most == wide && below >= most) {
+      most = vg_bvh_above(f->near, x, x, f->h_max, hint);
+      below = vg_bvh_below(f->under, x, least, most, reach, &by);
+    }
+    if (below < most && below < vg_bvh_knee(f->under, by))
       atomic_store_explicit(f->is_steep, 1, memory_order_relaxed);
-    l.least = fmax(l.least, fmin(below, l.most));
+    if (by > 0) fine = below;
   }
-  if (range[0] < l.least || range[1] > l.most) vg_size_limit(h, &l, range);
+  l.aspect = INFINITY;
+  l.most = vg_lesser(vg_greater(most, l.least), l.most);
+  l.least = vg_greater(l.least, vg_lesser(fine, l.most));
+  vg_size_axes_limit(a, &l, range);
+  if (above) *above = most;
 }
 
 void vg_stat_tensor_combine(const struct vg_stat *f, const double x[3],
-                            const double h[6], const double range[2],
-                            struct vg_bvh_reach *reach, uint32_t *hint,
-                            struct vg_size *out, double *most)
+                            struct vg_size_axes *a, struct vg_bvh_reach *reach,
+                            uint32_t *hint, struct vg_size *out, double *above)
 {
-  double bounded[6], its[2] = { range[0], range[1] };
+  double h[6];
 
-  memcpy(bounded, h, sizeof bounded);
-  *most = INFINITY;
-  if (f->near) bound(f, x, bounded, its, reach, hint, most);
-  for (int k = 0; k < 6; k++) out->h[k] = (float)bounded[k];
-  out->least = (float)its[0];
-  out->most = (float)its[1];
+  if (above) *above = INFINITY;
+  if (f->near) bound(f, x, a, reach, hint, above);
+  vg_size_axes_tensor(a, h);
+  for (int k = 0; k < 6; k++) out->h[k] = (float)h[k];
+  out->least = (float)vg_size_axes_least(a);
+  out->most = (float)vg_size_axes_most(a);
 }
 
 void vg_stat_tensor_at(const struct vg_stat *f, const double x[3],
                        struct vg_bvh_reach *reach, uint32_t *hint,
                        struct vg_size *out, float *iso)
 {
-  double h[6], range[2], least, most;
+  struct vg_size_axes a;
+  double least, above;
 
-  vg_stat_tensor_source(f, x, h, range, &least);
-  vg_stat_tensor_combine(f, x, h, range, reach, hint, out, &most);
-  *iso = (float)fmin(least, most);
+  vg_stat_tensor_source(f, x, &a, &least);
+  vg_stat_tensor_combine(f, x, &a, reach, hint, out, iso ? &above : NULL);
+  if (iso) *iso = (float)vg_lesser(least, above);
 }

@@ -71,10 +71,12 @@ static void source_body(void *context, size_t first, size_t end, int worker)
 
   (void)worker;
   for (size_t i = first; i < end; i++) {
-    double x[3], h[6], range[2], iso;
+    struct vg_size_axes a;
+    double x[3], h[6], iso;
 
     vg_octree_place(b, point_of(g, i)->at, x);
-    vg_stat_tensor_source(b->f, x, h, range, &iso);
+    vg_stat_tensor_source(b->f, x, &a, &iso);
+    vg_size_axes_tensor(&a, h);
     for (int k = 0; k < 6; k++) g->now[i][k] = (float)h[k];
   }
 }
@@ -210,14 +212,16 @@ static void combine_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t i = first; i < end; i++) {
     struct vg_octree_point *p = b->point + g->point[i];
-    double x[3], h[6], range[2], most;
+    struct vg_size_axes a;
+    double x[3], h[6];
 
     if (!g->is_lowered[i]) continue;
     vg_octree_place(b, p->at, x);
     widen(g->now[i], h);
-    vg_stat_tensor_limit(b->f, h, range);
-    vg_stat_tensor_combine(b->f, x, h, range, NULL, &p->hint,
-                           b->tensor + g->point[i], &most);
+    vg_size_axes_of(h, &a);
+    vg_stat_tensor_limit(b->f, &a);
+    vg_stat_tensor_combine(b->f, x, &a, NULL, &p->hint, b->tensor + g->point[i],
+                           NULL);
   }
 }
 
@@ -279,12 +283,11 @@ static double find_excess(const struct vg_octree_build *b,
   double lo[3], x[3], h[6] = { 0 }, exact[6];
   struct vg_size size;
   uint32_t hint = c->hint;
-  float iso;
 
   vg_octree_place(b, vg_octree_corner(b, c), lo);
   vg_octree_place(b, b->point[c->corner[7]].at, x);
   for (int k = 0; k < 3; k++) x[k] = 0.5 * (lo[k] + x[k]);
-  vg_stat_tensor_at(b->f, x, NULL, &hint, &size, &iso);
+  vg_stat_tensor_at(b->f, x, NULL, &hint, &size, NULL);
   for (int k = 0; k < 6; k++) {
     exact[k] = (double)size.h[k];
     for (int i = 0; i < 8; i++)

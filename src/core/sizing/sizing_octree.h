@@ -79,29 +79,29 @@ double vg_stat_combine(const struct vg_stat *f, const double x[3],
                        uint32_t *hint);
 
 /** As vg_stat_at, for a field of size tensors. *iso out: upper bound of all
- * sizes, from isotropic sources and the surface. */
+ * sizes, from isotropic sources and the surface. NULL if it is not needed,
+ * which takes less time. */
 void vg_stat_tensor_at(const struct vg_stat *f, const double x[3],
                        struct vg_bvh_reach *reach, uint32_t *hint,
                        struct vg_size *out, float *iso);
 
 /** Size tensor of all sources and maps at x, within the limits of sizes and
- * aspect, and the range of its eigenvalues. *iso: as above. */
+ * aspect. *iso out: size of the isotropic ones. */
 void vg_stat_tensor_source(const struct vg_stat *f, const double x[3],
-                           double h[6], double range[2], double *iso);
+                           struct vg_size_axes *a, double *iso);
 
-/** Limit the sizes and the aspect of a size tensor. range out: of its
- * eigenvalues. */
-void vg_stat_tensor_limit(const struct vg_stat *f, double h[6],
-                          double range[2]);
+/** Limit the sizes and the aspect of a size tensor. */
+void vg_stat_tensor_limit(const struct vg_stat *f, struct vg_size_axes *a);
 
 /** Apply the bounds of the surface to the size tensor of the sources at x.
  *
- * @param h, range  from vg_stat_tensor_source or vg_stat_tensor_limit
- * @param most      out: bound from above of the surface; INFINITY: none */
+ * @param a      from vg_stat_tensor_source or vg_stat_tensor_limit; out:
+ *               bounded
+ * @param above  out: bound from above of the surface, INFINITY: none; or NULL
+ */
 void vg_stat_tensor_combine(const struct vg_stat *f, const double x[3],
-                            const double h[6], const double range[2],
-                            struct vg_bvh_reach *reach, uint32_t *hint,
-                            struct vg_size *out, double *most);
+                            struct vg_size_axes *a, struct vg_bvh_reach *reach,
+                            uint32_t *hint, struct vg_size *out, double *above);
 
 /** Lower bound of the field within a cube, without sources that depend on the
  * direction. For VGRID's mean, it is an estimate

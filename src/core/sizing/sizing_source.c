@@ -429,7 +429,7 @@ static void put_shape(const struct vg_sizing_options *o,
 {
   struct vg_stretched *t = set->stretched + set->n_stretched;
 
-  if (!vg_source_stretch(s, t->axis, t->ratio)) {
+  if (!vg_source_stretch(s, t->axis[0], t->ratio)) {
     prepare_bounded(o, s, set->bounded + set->n_bounded++);
     return;
   }
@@ -555,43 +555,88 @@ static int is_at_least(const double a[6], const double b[6])
          vg_tensor_det(d) >= 0;
 }
 
-/* Intersect m with n. Most metrics are finer than the other in all directions,
- * which costs no eigenvalues. */
-static void intersect(double m[6], const double n[6])
+/* Intersection of the sizes so far: by its axes and, if it is not known, as a
+ * metric. Most tensors are finer than the other in all directions, or one of
+ * both is isotropic, which costs no eigenvalues. */
+struct joined {
+  struct vg_size_axes a;
+  double m[6];
+  int has_axes, has_metric;
+};
+
+static void limit_sizes(struct vg_size_axes *a, double h)
 {
-  if (is_at_least(n, m)) memcpy(m, n, 6 * sizeof *m);
-  else if (!is_at_least(m, n)) vg_metric_intersect(m, n, m);
+  for (int k = 0; k < 3; k++) a->size[k] = least(a->size[k], h);
 }
 
-static void add_map(const struct vg_source_set *set, const double x[3],
-                    double m[6])
+static void join_axes(struct joined *j, const struct vg_size_axes *b)
 {
-  double n[6];
+  double m[6];
 
-  set->metric->metric(set->metric->user, x, n);
-  if (is_zero(n)) return;
-  if (is_metric(n)) intersect(m, n);
-  else note_fault(set->fault, x, n, 6);
+  if (j->has_axes && vg_size_axes_are_equal(b)) {
+    limit_sizes(&j->a, b->size[0]);
+    j->has_metric = 0;
+    return;
+  }
+  if (j->has_axes && vg_size_axes_are_equal(&j->a)) {
+    double h = j->a.size[0];
+
+    j->a = *b;
+    limit_sizes(&j->a, h);
+    j->has_metric = 0;
+    return;
+  }
+  if (!j->has_metric) vg_size_axes_metric(&j->a, j->m);
+  j->has_metric = 1;
+  vg_size_axes_metric(b, m);
+  if (is_at_least(m, j->m)) {
+    j->a = *b;
+    j->has_axes = 1;
+    memcpy(j->m, m, sizeof m);
+  } else if (!is_at_least(j->m, m)) {
+    vg_metric_intersect(j->m, m, j->m);
+    j->has_axes = 0;
+  }
 }
 
-void vg_source_metric_at(const struct vg_source_set *set, const double x[3],
-                         double h, double m[6])
+static void join_map(const struct vg_source_set *set, const double x[3],
+                     struct joined *j)
 {
-  double other[6];
+  struct vg_size_axes a;
+  double m[6];
 
-  vg_tensor_uniform(h < INFINITY ? 1 / (h * h) : 0, m);
+  set->metric->metric(set->metric->user, x, m);
+  if (is_zero(m)) return;
+  if (!is_metric(m)) {
+    note_fault(set->fault, x, m, 6);
+    return;
+  }
+  vg_size_axes_of_metric(m, &a);
+  join_axes(j, &a);
+}
+
+void vg_source_axes_at(const struct vg_source_set *set, const double x[3],
+                       double h, struct vg_size_axes *out)
+{
+  struct joined j = { .a = { .size = { h, h, h } }, .has_axes = 1 };
+  struct vg_size_axes a;
+
   if (set->mean_is_stretched) {
-    vg_source_mean_tensor(set->n_mean, set->mean, x, other);
-    vg_size_metric(other, other);
-    intersect(m, other);
+    double mean[6];
+
+    vg_source_mean_tensor(set->n_mean, set->mean, x, mean);
+    vg_size_axes_of(mean, &a);
+    join_axes(&j, &a);
   }
   for (size_t i = 0; i < set->n_stretched; i++) {
+    if (j.has_axes) h = vg_size_axes_most(&j.a);
     if (vg_stretched_floor(set->stretched + i, x, x) >= h) continue;
-    vg_stretched_at(set->stretched + i, x, other);
-    vg_size_metric(other, other);
-    intersect(m, other);
+    vg_stretched_at(set->stretched + i, x, &a);
+    join_axes(&j, &a);
   }
-  if (set->metric) add_map(set, x, m);
+  if (set->metric) join_map(set, x, &j);
+  if (!j.has_axes) vg_size_axes_of_metric(j.m, &j.a);
+  *out = j.a;
 }
 
 /* There are two bounds per source: one from the box around its shape, which is

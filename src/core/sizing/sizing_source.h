@@ -83,11 +83,10 @@ static inline int vg_source_any_stretched(const struct vg_source_set *set)
 void vg_source_mean_tensor(size_t n, const struct vg_source *source,
                            const double x[3], double h[6]);
 
-/** Metric at x: the intersection of the metrics of all sources and maps with
- * that of the isotropic size h, which may be INFINITY. Zero if nothing requires
- * a size. */
-void vg_source_metric_at(const struct vg_source_set *set, const double x[3],
-                         double h, double m[6]);
+/** Size tensor at x: the intersection of those of all sources and maps with the
+ * isotropic size h, which may be INFINITY. */
+void vg_source_axes_at(const struct vg_source_set *set, const double x[3],
+                       double h, struct vg_size_axes *out);
 
 /** Minimum of mean, bounded sources and map at x, without those that depend on
  * the direction; INFINITY without any such source. */

@@ -30,6 +30,7 @@ void vg_octree_family_start(struct vg_octree_family *y,
   vg_octree_place(y->b, vg_octree_corner(y->b, c), y->reach.mid);
   for (int k = 0; k < 3; k++) y->reach.mid[k] += y->side;
   y->reach.trifle = 0.25f * c->floor;
+  y->reach.above = 0;
   y->reach.is_known = 0;
 }
 
@@ -172,8 +173,10 @@ struct tensor_cell {
   struct vg_octree_cell *cell;
   double lo[3], hi[3];
   const struct vg_size *corner[8];
-  double least, most; /* range of sizes at the corners, and at the samples so
-                         far */
+  double least, most;    /* range of sizes at the corners, and at the samples so
+                            far */
+  struct vg_size centre; /* field at the centre, if it is known */
+  int is_known;
 };
 
 /* Trilinear size tensor at the position f, from 0 to 1. */
@@ -209,22 +212,36 @@ static int misses_tensor(const struct tensor_cell *c,
   return vg_size_error(interpolated, h) > vg_octree_tolerance(c->y->b);
 }
 
+static const struct vg_size *centre_of(struct tensor_cell *c)
+{
+  if (!c->is_known)
+    vg_octree_sample_tensor(c->y, c->cell, 13, &c->centre, NULL);
+  c->is_known = 1;
+  return &c->centre;
+}
+
 /* Does the interpolation miss the source where it is near? */
 static int misses_source(struct tensor_cell *c, const struct vg_stretched *s)
 {
   double x[3], f[3], h[6], source[6];
-  struct vg_size exact;
-  float iso;
+  struct vg_size_axes a;
+  struct vg_size found;
+  const struct vg_size *exact = &found;
+  int is_centre;
 
   if (vg_stretched_floor(s, c->lo, c->hi) >= c->most) return 0;
-  vg_stretched_near(s, c->lo, c->hi, x);
+  is_centre = vg_stretched_near(s, c->lo, c->hi, x);
   for (int k = 0; k < 3; k++) f[k] = (x[k] - c->lo[k]) / c->y->side;
   interpolate(c, f, h);
-  vg_stretched_at(s, x, source);
+  vg_stretched_at(s, x, &a);
+  vg_size_axes_tensor(&a, source);
   if (vg_size_is_within(h, source, vg_octree_tolerance(c->y->b))) return 0;
-  vg_stat_tensor_at(c->y->b->f, x, &c->y->reach, &c->cell->hint, &exact, &iso);
-  c->least = fmin(c->least, (double)exact.least);
-  return misses_tensor(c, h, &exact);
+  if (is_centre) exact = centre_of(c);
+  else
+    vg_stat_tensor_at(c->y->b->f, x, &c->y->reach, &c->cell->hint, &found,
+                      NULL);
+  c->least = fmin(c->least, (double)exact->least);
+  return misses_tensor(c, h, exact);
 }
 
 /* Isotropic sources, the surface and a map with known bounds must not be missed
@@ -256,21 +273,20 @@ static int misses_floor(struct tensor_cell *c)
          c->y->side > b->floor * floor;
 }
 
-static int misses_samples(const struct tensor_cell *c, int sibling)
+static int misses_samples(struct tensor_cell *c, int sibling)
 {
-  for (int i = 0; i < 7; i++) {
-    double f[3] = { 0.5, 0.5, 0.5 }, h[6];
-    struct vg_size centre, *exact = &centre;
-    int at = 13;
-    float iso;
+  double h[6];
 
-    if (i) {
-      at = face_point(i - 1);
-      f[(i - 1) / 2] = (i - 1) % 2 ? 1 : 0;
-      exact = c->y->tensor + face_slot(sibling, at);
-    }
-    if (!i || isnan(exact->least))
-      vg_octree_sample_tensor(c->y, c->cell, at, exact, &iso);
+  interpolate(c, (const double[3]){ 0.5, 0.5, 0.5 }, h);
+  if (misses_tensor(c, h, centre_of(c))) return 1;
+  for (int i = 0; i < 6; i++) {
+    int at = face_point(i);
+    double f[3] = { 0.5, 0.5, 0.5 };
+    struct vg_size *exact = c->y->tensor + face_slot(sibling, at);
+
+    f[i / 2] = i % 2;
+    if (isnan(exact->least))
+      vg_octree_sample_tensor(c->y, c->cell, at, exact, NULL);
     interpolate(c, f, h);
     if (misses_tensor(c, h, exact)) return 1;
   }

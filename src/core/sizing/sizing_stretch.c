@@ -81,6 +81,7 @@ void vg_stretched_prepare(struct vg_stretched *s)
   double thin = fmin(1, fmin(s->ratio[0], s->ratio[1]));
   double wide = fmax(1, fmax(s->ratio[0], s->ratio[1]));
 
+  vg_normals(s->axis[0], s->axis[1], s->axis[2]);
   s->least = fmin(s->law.h0 * fmin(1, s->ratio[0]),
                   s->law.h1 * fmin(1, s->ratio[1]));
   s->rise = s->slope *
@@ -89,34 +90,28 @@ void vg_stretched_prepare(struct vg_stretched *s)
 
 /* Size tensor of a source with one axis. */
 static void shape_at(const struct vg_stretched *s, const double x[3],
-                     double h[6])
+                     struct vg_size_axes *a)
 {
-  double way[3], t, d = vg_shape_way(&s->law, x, &t, way), size, along, across;
+  double way[3], t, d = vg_shape_way(&s->law, x, &t, way), size, along;
   double l2, factor, more;
-  const double *u = s->axis;
 
   size = s->law.h0 + t * (s->law.h1 - s->law.h0);
   along = size * (s->ratio[0] + t * (s->ratio[1] - s->ratio[0]));
-  l2 = vg_dot(way, u) * vg_dot(way, u);
+  l2 = vg_dot(way, s->axis[0]) * vg_dot(way, s->axis[0]);
   l2 = l2 / (along * along) + fmax(d * d - l2, 0) / (size * size);
   factor = 1 + VG_GROWTH_IN_METRIC * s->slope * sqrt(l2);
   more = (1 - VG_GROWTH_IN_METRIC) * s->slope * d;
-  across = factor * size + more;
-  along = factor * (along - size);
-  h[0] = across + along * u[0] * u[0];
-  h[1] = along * u[0] * u[1];
-  h[2] = along * u[0] * u[2];
-  h[3] = across + along * u[1] * u[1];
-  h[4] = along * u[1] * u[2];
-  h[5] = across + along * u[2] * u[2];
+  a->size[0] = factor * along + more;
+  a->size[1] = a->size[2] = factor * size + more;
+  memcpy(a->axis, s->axis, sizeof a->axis);
 }
 
 void vg_stretched_at(const struct vg_stretched *s, const double x[3],
-                     double h[6])
+                     struct vg_size_axes *a)
 {
   if (s->law.kind == VG_SOURCE_MACHCONE)
-    vg_mach_cone_tensor(&s->law, s->slope, x, h);
-  else shape_at(s, x, h);
+    vg_mach_cone_axes(&s->law, s->slope, x, a);
+  else shape_at(s, x, a);
 }
 
 double vg_stretched_floor(const struct vg_stretched *s, const double lo[3],
@@ -132,14 +127,15 @@ double vg_stretched_floor(const struct vg_stretched *s, const double lo[3],
   return s->least + s->rise * sqrt(d2);
 }
 
-void vg_stretched_near(const struct vg_stretched *s, const double lo[3],
-                       const double hi[3], double x[3])
+int vg_stretched_near(const struct vg_stretched *s, const double lo[3],
+                      const double hi[3], double x[3])
 {
   double way[3], t;
 
   for (int k = 0; k < 3; k++) x[k] = 0.5 * (lo[k] + hi[k]);
   for (int i = 0; i < PROJECTIONS; i++) {
-    if (!(vg_shape_way(&s->law, x, &t, way) > 0)) return;
+    if (!(vg_shape_way(&s->law, x, &t, way) > 0)) return i == 0;
     for (int k = 0; k < 3; k++) x[k] = fmin(fmax(x[k] - way[k], lo[k]), hi[k]);
   }
+  return 0;
 }

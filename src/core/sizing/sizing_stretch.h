@@ -11,12 +11,14 @@
 #define VG_CORE_SIZING_SIZING_STRETCH_H
 
 #include "core/sizing/sizing.h"
+#include "core/sizing/sizing_tensor.h"
 
 /** A prepared source. */
 struct vg_stretched {
   struct vg_source law; /* source with scaled spacings; corners of a box are
                            ordered */
-  double axis[3];       /* unit vector u */
+  double axis[3][3];    /* unit vector u, and two unit vectors normal to it and
+                           to each other */
   double ratio[2];      /* at p0 and p1 */
   double slope;         /* rate of growth - 1 */
   double least;         /* smallest size */
@@ -38,15 +40,16 @@ void vg_stretched_prepare(struct vg_stretched *s);
 
 /** Size tensor of the source at x. */
 void vg_stretched_at(const struct vg_stretched *s, const double x[3],
-                     double h[6]);
+                     struct vg_size_axes *a);
 
 /** Smallest size of the source in the box lo..hi, or less. */
 double vg_stretched_floor(const struct vg_stretched *s, const double lo[3],
                           const double hi[3]);
 
 /** Point of the box lo..hi where the source is near, by projections from the
- * shape to the box and back, with which the distance falls. */
-void vg_stretched_near(const struct vg_stretched *s, const double lo[3],
-                       const double hi[3], double x[3]);
+ * shape to the box and back, with which the distance falls. Returns whether it
+ * is the centre, because that is in the shape. */
+int vg_stretched_near(const struct vg_stretched *s, const double lo[3],
+                      const double hi[3], double x[3]);
 
 #endif

@@ -66,23 +66,49 @@ int vg_size_is_uniform(const float h[6])
   return h[1] == 0 && h[2] == 0 && h[4] == 0 && h[0] == h[3] && h[0] == h[5];
 }
 
-/* Limit sizes. Returns whether one changed. */
-static int limit(double h[3], const struct vg_size_limits *l, double range[2])
+void vg_size_axes_of(const double h[6], struct vg_size_axes *a)
 {
-  double least = INFINITY, most;
+  if (is_multiple(h)) a->size[0] = a->size[1] = a->size[2] = h[0];
+  else vg_tensor_eigen(h, a->size, a->axis);
+}
+
+void vg_size_axes_of_metric(const double m[6], struct vg_size_axes *a)
+{
+  vg_size_axes_of(m, a);
+  for (int k = 0; k < 3; k++) a->size[k] = 1 / sqrt(fmax(a->size[k], 0));
+}
+
+void vg_size_axes_tensor(const struct vg_size_axes *a, double h[6])
+{
+  if (vg_size_axes_are_equal(a)) vg_tensor_uniform(a->size[0], h);
+  else vg_tensor_from_eigen(a->size, (const double(*)[3])a->axis, h);
+}
+
+void vg_size_axes_metric(const struct vg_size_axes *a, double m[6])
+{
+  double value[3];
+
+  for (int k = 0; k < 3; k++) value[k] = 1 / (a->size[k] * a->size[k]);
+  if (vg_size_axes_are_equal(a)) vg_tensor_uniform(value[0], m);
+  else vg_tensor_from_eigen(value, (const double(*)[3])a->axis, m);
+}
+
+int vg_size_axes_limit(struct vg_size_axes *a, const struct vg_size_limits *l,
+                       double range[2])
+{
+  double low = vg_lesser(vg_lesser(a->size[0], a->size[1]), a->size[2]), high;
   int changed = 0;
 
   assert(l->least <= l->most && l->aspect >= 1);
-  for (int k = 0; k < 3; k++) least = fmin(least, h[k]);
-  least = fmin(fmax(least, l->least), l->most);
-  most = fmin(l->aspect * least, l->most);
-  range[0] = range[1] = least;
+  low = vg_lesser(vg_greater(low, l->least), l->most);
+  high = vg_lesser(l->aspect * low, l->most);
+  range[0] = range[1] = low;
   for (int k = 0; k < 3; k++) {
-    double v = fmin(fmax(h[k], least), most);
+    double v = vg_lesser(vg_greater(a->size[k], low), high);
 
-    changed |= v != h[k];
-    h[k] = v;
-    range[1] = fmax(range[1], v);
+    changed |= v != a->size[k];
+    a->size[k] = v;
+    range[1] = vg_greater(range[1], v);
   }
   return changed;
 }
@@ -90,34 +116,19 @@ static int limit(double h[3], const struct vg_size_limits *l, double range[2])
 void vg_size_from_metric(const double m[6], const struct vg_size_limits *l,
                          double out[6], double range[2])
 {
-  double value[3], vector[3][3];
+  struct vg_size_axes a;
 
-  if (is_multiple(m)) {
-    for (int k = 0; k < 3; k++) value[k] = 1 / sqrt(m[0]);
-    limit(value, l, range);
-    vg_tensor_uniform(value[0], out);
-    return;
-  }
-  vg_tensor_eigen(m, value, vector);
-  for (int k = 0; k < 3; k++) value[k] = 1 / sqrt(fmax(value[k], 0));
-  limit(value, l, range);
-  if (range[0] == range[1]) vg_tensor_uniform(range[0], out);
-  else vg_tensor_from_eigen(value, (const double(*)[3])vector, out);
+  vg_size_axes_of_metric(m, &a);
+  vg_size_axes_limit(&a, l, range);
+  vg_size_axes_tensor(&a, out);
 }
 
 void vg_size_limit(double h[6], const struct vg_size_limits *l, double range[2])
 {
-  double value[3], vector[3][3];
+  struct vg_size_axes a;
 
-  if (is_multiple(h)) {
-    for (int k = 0; k < 3; k++) value[k] = h[0];
-    if (limit(value, l, range)) vg_tensor_uniform(value[0], h);
-    return;
-  }
-  vg_tensor_eigen(h, value, vector);
-  if (!limit(value, l, range)) return;
-  if (range[0] == range[1]) vg_tensor_uniform(range[0], h);
-  else vg_tensor_from_eigen(value, (const double(*)[3])vector, h);
+  vg_size_axes_of(h, &a);
+  if (vg_size_axes_limit(&a, l, range)) vg_size_axes_tensor(&a, h);
 }
 
 double vg_size_error(const double h[6], const double exact[6])

@@ -14,6 +14,47 @@ struct vg_size {
   float least, most; /* bounds on its eigenvalues */
 };
 
+/** As fmin and fmax for numbers, which the compiler leaves to libm. */
+static inline double vg_lesser(double a, double b)
+{
+  return a < b ? a : b;
+}
+
+static inline double vg_greater(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+/** A size tensor by its eigenvalues and orthonormal eigenvectors. If the sizes
+ * are equal, the vectors have no meaning. */
+struct vg_size_axes {
+  double size[3], axis[3][3];
+};
+
+/** Eigenvalues and eigenvectors of a size tensor, or of a metric M, whose
+ * eigenvalues may be 0: the sizes are INFINITY then. */
+void vg_size_axes_of(const double h[6], struct vg_size_axes *a);
+void vg_size_axes_of_metric(const double m[6], struct vg_size_axes *a);
+
+/** The size tensor, or its metric. */
+void vg_size_axes_tensor(const struct vg_size_axes *a, double h[6]);
+void vg_size_axes_metric(const struct vg_size_axes *a, double m[6]);
+
+static inline int vg_size_axes_are_equal(const struct vg_size_axes *a)
+{
+  return a->size[0] == a->size[1] && a->size[0] == a->size[2];
+}
+
+static inline double vg_size_axes_least(const struct vg_size_axes *a)
+{
+  return vg_lesser(vg_lesser(a->size[0], a->size[1]), a->size[2]);
+}
+
+static inline double vg_size_axes_most(const struct vg_size_axes *a)
+{
+  return vg_greater(vg_greater(a->size[0], a->size[1]), a->size[2]);
+}
+
 /** out = the size tensor h, grown over the vector `way` at a rate of 1 + slope.
  * Over the distance d, which is l edges of h,
  *   out = h (1 + q slope l) + (1 - q) slope d I,  q = VG_GROWTH_IN_METRIC.
@@ -41,8 +82,13 @@ struct vg_size_limits {
                          reduced */
 };
 
+/** Limit the sizes. range out: the smallest and the largest one. Returns
+ * whether one changed. */
+int vg_size_axes_limit(struct vg_size_axes *a, const struct vg_size_limits *l,
+                       double range[2]);
+
 /** Size tensor of a metric, with limited eigenvalues. m may have eigenvalues of
- * 0. out may be m. range out: smallest and largest eigenvalue. */
+ * 0. out may be m. range as above. */
 void vg_size_from_metric(const double m[6], const struct vg_size_limits *l,
                          double out[6], double range[2]);
 
