@@ -57,21 +57,30 @@ static inline double vg_tensor_trace2(const double a[6], const double b[6])
          2 * (a[1] * b[1] + a[2] * b[2] + a[4] * b[4]);
 }
 
-/** out = 1 / a for a positive tensor. out may be a. Returns the determinant of
- * a; if it is not positive, out has no meaning. */
-static inline double vg_tensor_invert(const double a[6], double out[6])
+/** out = det(a) / a, the adjugate. out may be a. Returns the determinant. */
+static inline double vg_tensor_adjugate(const double a[6], double out[6])
 {
   double xx = a[3] * a[5] - a[4] * a[4], xy = a[2] * a[4] - a[1] * a[5];
   double xz = a[1] * a[4] - a[2] * a[3], yy = a[0] * a[5] - a[2] * a[2];
   double yz = a[1] * a[2] - a[0] * a[4], zz = a[0] * a[3] - a[1] * a[1];
   double det = a[0] * xx + a[1] * xy + a[2] * xz;
 
-  out[0] = xx / det;
-  out[1] = xy / det;
-  out[2] = xz / det;
-  out[3] = yy / det;
-  out[4] = yz / det;
-  out[5] = zz / det;
+  out[0] = xx;
+  out[1] = xy;
+  out[2] = xz;
+  out[3] = yy;
+  out[4] = yz;
+  out[5] = zz;
+  return det;
+}
+
+/** out = 1 / a for a positive tensor. out may be a. Returns the determinant of
+ * a; if it is not positive, out has no meaning. */
+static inline double vg_tensor_invert(const double a[6], double out[6])
+{
+  double det = vg_tensor_adjugate(a, out);
+
+  for (int k = 0; k < 6; k++) out[k] /= det;
   return det;
 }
 

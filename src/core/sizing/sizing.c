@@ -105,7 +105,7 @@ static double root_cube(const struct vg_mesh *surface,
   return side;
 }
 
-static void find_range(struct vg_sizing *s)
+static void find_range(struct vg_sizing *s, int threads)
 {
   const struct vg_octree *t = &s->octree;
   const float *h = t->leaf[0].h;
@@ -113,7 +113,7 @@ static void find_range(struct vg_sizing *s)
   double range[2], slope;
 
   if (t->is_stretched) {
-    vg_octree_tensor_range(t, range, &slope);
+    vg_octree_tensor_range(t, threads, range, &slope);
     s->least = range[0];
     s->most = range[1];
     s->slope = fmax(s->slope, slope);
@@ -268,7 +268,7 @@ vg_status vg_sizing_new(const struct vg_sizing_options *given, size_t n,
   VG_TRY(vg_team_any(options->team, &steep, err));
   VG_TRY(check_map(&fault, f.set.metric != NULL, err));
   s->slope = steep ? vg_bvh_steep(s->growth) : s->growth;
-  find_range(s);
+  find_range(s, options->threads);
   s->reach = 1;
   if (s->octree.is_stretched)
     s->reach = vg_cube_root(o.aspect_max > 0 ? o.aspect_max * o.aspect_max

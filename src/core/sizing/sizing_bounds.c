@@ -19,12 +19,15 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "core/geometry/tensor.h"
 #include "core/geometry/vector.h"
 
 /* The stored tensors have single precision; the factors are rounded outwards
  * by more than that. */
 static const double outwards = 1e-6;
+
+#define GRAIN 512 /* cells per thread and step */
 
 struct bounds {
   double h[6], low, high;
@@ -95,13 +98,13 @@ static void stretched_leaf(const struct vg_octree *t,
   vg_tensor_invert(b->h, inverse);
   b->high = 0;
   for (int i = 0; i < 8; i++) {
-    double of, of_rest;
+    double of, of_rest, det;
 
     norms(inverse, h[i], &of, &of_rest);
-    b->high = fmax(b->high, fmin(of, 1 + of_rest));
-    off = fmax(off, of_rest);
-    vg_tensor_invert(h[i], h[i]);
-    fine = fmax(fine, norm(h[i]));
+    b->high = vg_greater(b->high, vg_lesser(of, 1 + of_rest));
+    off = vg_greater(off, of_rest);
+    det = vg_tensor_adjugate(h[i], h[i]);
+    fine = vg_greater(fine, norm(h[i]) / det);
   }
   b->low = fmax(1 - off, 1 / (fine * norm(b->h)));
 }
@@ -150,18 +153,40 @@ static void join(const struct bounds child[8], struct vg_octree_bounds *out)
   out->high = (float)(high * (1 + outwards));
 }
 
+static int has_leaves_only(const struct vg_octree *t, size_t split)
+{
+  for (int k = 0; k < 8; k++)
+    if (!(t->child[split][k] & VG_OCTREE_LEAF)) return 0;
+  return 1;
+}
+
+static void bound_children(const struct vg_octree *t, size_t split)
+{
+  struct bounds child[8];
+
+  for (int k = 0; k < 8; k++) bound_entry(t, t->child[split][k], &child[k]);
+  join(child, t->bounds + split);
+}
+
+static void leaves_body(void *context, size_t first, size_t end, int worker)
+{
+  const struct vg_octree *t = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++)
+    if (has_leaves_only(t, i)) bound_children(t, i);
+}
+
 /* Children follow their parents in the tree. */
-vg_status vg_octree_bounds(struct vg_octree *t, struct vg_error *err)
+vg_status vg_octree_bounds(struct vg_octree *t, int threads,
+                           struct vg_error *err)
 {
   assert(t->is_stretched && !t->bounds);
   t->bounds = vg_alloc(t->n_split, sizeof *t->bounds);
   if (!t->bounds) return vg_fail_memory(err, "the sizing field");
-  for (size_t i = t->n_split; i-- > 0;) {
-    struct bounds child[8];
-
-    for (int k = 0; k < 8; k++) bound_entry(t, t->child[i][k], &child[k]);
-    join(child, t->bounds + i);
-  }
+  vg_parallel_for(threads, t->n_split, GRAIN, leaves_body, t);
+  for (size_t i = t->n_split; i-- > 0;)
+    if (!has_leaves_only(t, i)) bound_children(t, i);
   return VG_OK;
 }
 

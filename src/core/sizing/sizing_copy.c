@@ -195,7 +195,7 @@ vg_status vg_sizing_coarsened(const struct vg_sizing *s, double factor,
   to->growth = fmin(factor * s->growth, most->growth);
   to->cap = fmin(factor * s->cap, most->cap);
   to->slope = fmax(factor * s->slope, most->slope);
-  if (t->is_stretched && vg_octree_bounds(&to->octree, err)) {
+  if (t->is_stretched && vg_octree_bounds(&to->octree, 1, err)) {
     vg_sizing_free(to);
     return VG_ERR_MEMORY;
   }

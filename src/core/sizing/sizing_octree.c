@@ -33,13 +33,20 @@ struct compaction {
   size_t first; /* first cell of the level */
 };
 
-static float corner_size(const struct vg_octree_build *b, uint32_t point)
+static float corner_size(const struct vg_octree_build *b,
+                         const struct vg_octree_cell *c)
 {
-  double h[6];
+  float least = INFINITY;
+  double det = INFINITY, h[6];
 
-  if (!b->tensor) return b->point[point].h;
-  for (int k = 0; k < 6; k++) h[k] = (double)b->tensor[point].h[k];
-  return (float)vg_size_mean(h);
+  for (int i = 0; i < 8 && !b->tensor; i++)
+    least = fminf(least, b->point[c->corner[i]].h);
+  if (!b->tensor) return least;
+  for (int i = 0; i < 8; i++) {
+    for (int k = 0; k < 6; k++) h[k] = (double)b->tensor[c->corner[i]].h[k];
+    det = vg_lesser(det, vg_tensor_det(h));
+  }
+  return (float)vg_cube_root(det);
 }
 
 static void count_body(void *context, size_t first, size_t end, int worker)
@@ -49,17 +56,16 @@ static void count_body(void *context, size_t first, size_t end, int worker)
   (void)worker;
   for (size_t i = m->first + first; i < m->first + end; i++) {
     struct vg_octree_cell *c = m->b->cell + i;
-    struct vg_octree_span sum = { !c->child, c->child != 0, INFINITY };
+    struct vg_octree_span sum = { 0, 1, INFINITY };
 
-    for (uint32_t j = 0; j < 8; j++) {
-      struct vg_octree_span below = { 0, 0, 0 };
+    for (uint32_t j = 0; j < 8 && c->child; j++) {
+      struct vg_octree_span below = m->b->cell[c->child + j].span;
 
-      if (c->child) below = m->b->cell[c->child + j].span;
-      else below.least = corner_size(m->b, c->corner[j]);
       sum.leaf += below.leaf;
       sum.split += below.split;
       sum.least = below.least < sum.least ? below.least : sum.least;
     }
+    if (!c->child) sum = (struct vg_octree_span){ 1, 0, corner_size(m->b, c) };
     c->span = sum;
   }
 }
@@ -219,7 +225,7 @@ vg_status vg_octree_build(const struct vg_stat *f, const double lo[3],
   free(b.cell);
   free(b.point);
   free(b.tensor);
-  if (st >= 0 && out->is_stretched) st = vg_octree_bounds(out, err);
+  if (st >= 0 && out->is_stretched) st = vg_octree_bounds(out, threads, err);
   if (st < 0) vg_octree_release(out);
   return st;
 }
@@ -553,61 +559,121 @@ double vg_octree_bound(const struct vg_octree *t, const double lo[3],
 
 /* --- range of size tensors ------------------------------------------------ */
 
-/* Extend the range and the slope by a leaf with tensors. With the tensor B in
- * its middle, the mean of H is at most det(B)^(1/3) tr(B^-1 H) / 3, which is
- * largest at a corner. The gradient of the mean h is h tr(H^-1 dH) / 3. */
+/* Leaves with tensors give determinants and the sixth power of the slope, whose
+ * roots are taken at the end only. */
+struct range {
+  double least, most;         /* values in other leaves */
+  double det_least, det_most; /* determinants */
+  double slope6;
+};
+
+static const struct range no_range = { INFINITY, 0, INFINITY, 0, 0 };
+
+static void join_range(struct range *r, const struct range *other)
+{
+  r->least = vg_lesser(r->least, other->least);
+  r->most = vg_greater(r->most, other->most);
+  r->det_least = vg_lesser(r->det_least, other->det_least);
+  r->det_most = vg_greater(r->det_most, other->det_most);
+  r->slope6 = vg_greater(r->slope6, other->slope6);
+}
+
+/* Extend the range by a leaf with tensors. With the tensor B in its middle, the
+ * mean of H is at most det(B)^(1/3) tr(B^-1 H) / 3, which is largest at a
+ * corner. The gradient of the mean h is h tr(H^-1 dH) / 3. */
 static void extend_range(const struct vg_octree *t, uint32_t e, double side,
-                         double range[2], double *slope)
+                         struct range *r)
 {
   const uint32_t *corner = t->leaf[e & VG_OCTREE_LEAF_INDEX].corner;
-  double h[8][6], b[6], mean, most = 0;
+  const double volume = 27 * side * side * side;
+  double h[8][6], b[6], det, most = 0;
 
   tensor_in(t, e, (const double[3]){ 0.5, 0.5, 0.5 }, b);
-  mean = vg_size_mean(b);
-  vg_tensor_invert(b, b);
+  det = vg_tensor_adjugate(b, b);
   for (int i = 0; i < 8; i++) {
     for (int k = 0; k < 6; k++) h[i][k] = (double)t->tensor[corner[i]][k];
-    range[0] = fmin(range[0], vg_size_mean(h[i]));
-    most = fmax(most, vg_tensor_trace2(b, h[i]));
+    most = vg_greater(most, vg_tensor_trace2(b, h[i]));
   }
-  range[1] = fmax(range[1], mean * most / 3);
+  most /= 3 * det;
+  r->det_most = vg_greater(r->det_most, det * (most * most * most));
   for (int i = 0; i < 8; i++) {
-    double inverse[6], g2 = 0, size = vg_size_mean(h[i]);
+    double inverse[6], g2 = 0;
 
-    vg_tensor_invert(h[i], inverse);
+    det = vg_tensor_adjugate(h[i], inverse);
+    r->det_least = vg_lesser(r->det_least, det);
     for (int k = 0; k < 3; k++) {
-      double g = vg_tensor_trace2(inverse, h[i ^ 1 << k]) - 3;
+      double g = vg_tensor_trace2(inverse, h[i ^ 1 << k]) / det - 3;
 
       g2 += g * g;
     }
-    *slope = fmax(*slope, size * sqrt(g2) / (3 * side));
+    det /= volume;
+    r->slope6 = vg_greater(r->slope6, det * det * (g2 * g2 * g2));
   }
 }
 
 static void range_below(const struct vg_octree *t, uint32_t e, double side,
-                        double range[2], double *slope)
+                        struct range *r)
 {
   if (!(e & VG_OCTREE_LEAF)) {
-    for (int i = 0; i < 8; i++)
-      range_below(t, t->child[e][i], 0.5 * side, range, slope);
+    for (int i = 0; i < 8; i++) range_below(t, t->child[e][i], 0.5 * side, r);
   } else if (e & VG_OCTREE_TENSOR) {
-    extend_range(t, e, side, range, slope);
+    extend_range(t, e, side, r);
   } else {
     for (int i = 0; i < 8; i++) {
       double h = (double)t->leaf[e & VG_OCTREE_LEAF_INDEX].h[i];
 
-      range[0] = fmin(range[0], h);
-      range[1] = fmax(range[1], h);
+      r->least = vg_lesser(r->least, h);
+      r->most = vg_greater(r->most, h);
     }
   }
 }
 
-void vg_octree_tensor_range(const struct vg_octree *t, double range[2],
-                            double *slope)
+enum { PART_LEVEL = 3, PARTS = 1 << 3 * PART_LEVEL };
+
+/* Parts of the tree, whose ranges are found in parallel. */
+struct parts {
+  const struct vg_octree *t;
+  size_t n;
+  struct part {
+    uint32_t entry;
+    double side;
+    struct range range;
+  } part[PARTS];
+};
+
+static void list_parts(struct parts *p, uint32_t e, int level)
 {
-  range[0] = INFINITY;
-  range[1] = *slope = 0;
-  range_below(t, t->root, t->side, range, slope);
+  for (int i = 0; !(e & VG_OCTREE_LEAF) && level < PART_LEVEL && i < 8; i++)
+    list_parts(p, p->t->child[e][i], level + 1);
+  if (e & VG_OCTREE_LEAF || level == PART_LEVEL)
+    p->part[p->n++] = (struct part){ e, p->t->side / (double)(1 << level),
+                                     no_range };
+}
+
+static void range_body(void *context, size_t first, size_t end, int worker)
+{
+  struct parts *p = context;
+
+  (void)worker;
+  for (size_t i = first; i < end; i++)
+    range_below(p->t, p->part[i].entry, p->part[i].side, &p->part[i].range);
+}
+
+void vg_octree_tensor_range(const struct vg_octree *t, int threads,
+                            double range[2], double *slope)
+{
+  struct parts p = { .t = t };
+  struct range all = no_range;
+
+  list_parts(&p, t->root, 0);
+  vg_parallel_for(threads, p.n, 1, range_body, &p);
+  for (size_t i = 0; i < p.n; i++) join_range(&all, &p.part[i].range);
+  range[0] = all.least;
+  range[1] = all.most;
+  *slope = all.slope6 > 0 ? sqrt(vg_cube_root(all.slope6)) : 0;
+  if (!(all.det_most > 0)) return;
+  range[0] = vg_lesser(range[0], vg_cube_root(all.det_least));
+  range[1] = vg_greater(range[1], vg_cube_root(all.det_most));
 }
 
 /* --- check ---------------------------------------------------------------- */

@@ -149,8 +149,8 @@ void vg_octree_tensor_at(const struct vg_octree *t, const double x[3],
 /** Range of the geometric mean, and bound on its gradient. The upper bound
  * allows for the interpolation between different tensors. Only if is_stretched.
  */
-void vg_octree_tensor_range(const struct vg_octree *t, double range[2],
-                            double *slope);
+void vg_octree_tensor_range(const struct vg_octree *t, int threads,
+                            double range[2], double *slope);
 
 /** Smallest value within the cube lo, side, and a point x where it occurs. For
  * a cube outside the root cube, the nearest point of the root cube is used. */
@@ -159,7 +159,8 @@ double vg_octree_least(const struct vg_octree *t, const double lo[3],
 
 /** Compute the bounds of all split cells of a stretched octree. Cost:
  * O(leaves). VG_ERR_MEMORY. */
-vg_status vg_octree_bounds(struct vg_octree *t, struct vg_error *err);
+vg_status vg_octree_bounds(struct vg_octree *t, int threads,
+                           struct vg_error *err);
 
 /** Bounds of the distance across planes with n unit normals in the box lo..hi,
  * within the root cube. The tree is descended down to cells of half the longest
