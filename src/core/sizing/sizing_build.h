@@ -35,12 +35,9 @@ struct vg_octree_point {
   uint32_t at[3]; /* in units of the finest cell */
   uint32_t hint;
   float h;
-  uint8_t n_parent; /* of a hanging point 2 or 4, of others 0 */
-  union {
-    uint32_t parent[4]; /* of a hanging point: ends of the edge, or corners of
-                           the face */
-    uint32_t number;    /* of another point, during the gradation */
-  };
+  uint8_t n_parent;   /* of a hanging point 2 or 4, of others 0 */
+  uint32_t parent[4]; /* of a hanging point: ends of the edge, or corners of
+                         the face */
 };
 
 /* Cells of a level are contiguous, and so are the eight children of a cell. */

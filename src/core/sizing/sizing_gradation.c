@@ -29,12 +29,14 @@
 
 struct gradation {
   struct vg_octree_build *b;
-  size_t n;                    /* number of points that do not hang */
-  uint32_t *point;             /* [n] these points */
-  float (*now)[6], (*next)[6]; /* [n] size tensors of the sources */
-  uint32_t *begin;             /* [n + 1] first leaf of each point */
-  uint32_t *leaf;              /* cells */
-  uint32_t *due;               /* [n_due] points of this sweep */
+  size_t n;         /* number of points that do not hang */
+  uint32_t *point;  /* [n] these points */
+  uint32_t *number; /* [b->n_point] their numbers; HANGS: of other points */
+  float (*now)[6];  /* [n] size tensors of the sources; the next ones are stored
+                       as the field, which is updated at the end */
+  uint32_t *begin;  /* [n + 1] first leaf of each point */
+  uint32_t *leaf;   /* cells */
+  uint32_t *due;    /* [n_due] points of this sweep */
   size_t n_due;
   uint8_t *is_new;     /* [n] changed in the sweep before */
   uint8_t *is_changed; /* [n] changed in this sweep */
@@ -42,7 +44,11 @@ struct gradation {
   uint8_t *is_lowered; /* [n] changed in any sweep */
 };
 
-enum { NEIGHBOURS = 64 };
+enum { NEIGHBOURS = 64, AHEAD = 2 };
+
+#define HANGS UINT32_MAX
+
+#define HALF_DIAGONAL 0.8660254037844387 /* of a cube of side 1 */
 
 static const struct vg_octree_point *point_of(const struct gradation *g,
                                               size_t i)
@@ -50,13 +56,15 @@ static const struct vg_octree_point *point_of(const struct gradation *g,
   return g->b->point + g->point[i];
 }
 
-/* Number of corner j of a cell, or SIZE_MAX if it hangs. */
-static size_t corner(const struct gradation *g, const struct vg_octree_cell *c,
-                     int j)
+/* Number of corner j of a leaf of the list. */
+static uint32_t corner(const struct gradation *g, uint32_t leaf, int j)
 {
-  const struct vg_octree_point *p = g->b->point + c->corner[j];
+  return g->number[g->b->cell[g->leaf[leaf]].corner[j]];
+}
 
-  return p->n_parent ? SIZE_MAX : p->number;
+static float *next_of(const struct gradation *g, size_t p)
+{
+  return g->b->tensor[g->point[p]].h;
 }
 
 static void widen(const float from[6], double h[6])
@@ -99,22 +107,41 @@ static int limit_by(const struct gradation *g, size_t p, size_t q, double h[6])
 }
 
 /* Corners of the leaves of point p that changed in the sweep before, each once,
- * in the order of the leaves. Returns their number. */
+ * in the order of the leaves. A point is a corner of at most eight leaves.
+ * Returns their number. */
 static int list_new(const struct gradation *g, uint32_t p,
                     uint32_t out[NEIGHBOURS])
 {
-  int n = 0;
+  uint32_t all[NEIGHBOURS];
+  uint64_t seen = 0; /* bit q % 64 */
+  int n_all = 0, n = 0;
 
   for (uint32_t i = g->begin[p]; i < g->begin[p + 1]; i++)
     for (int j = 0; j < 8; j++) {
-      size_t q = corner(g, g->b->cell + g->leaf[i], j);
-      int k = 0;
-
-      if (q == SIZE_MAX || q == p || !g->is_new[q]) continue;
-      while (k < n && out[k] != q) k++;
-      if (k == n && n < NEIGHBOURS) out[n++] = (uint32_t)q;
+      all[n_all] = corner(g, i, j);
+      n_all += all[n_all] != HANGS && all[n_all] != p;
     }
+  for (int i = 0; i < n_all; i++) {
+    uint64_t bit = (uint64_t)1 << all[i] % 64;
+    int k = seen & bit ? 0 : n;
+
+    while (k < n && out[k] != all[i]) k++;
+    if (k < n || !g->is_new[all[i]]) continue;
+    seen |= bit;
+    __builtin_prefetch(point_of(g, all[i]));
+    __builtin_prefetch(g->now[all[i]]);
+    out[n++] = all[i];
+  }
   return n;
+}
+
+/* Load the leaves of the next point but AHEAD into the cache. */
+static void prefetch_leaves(const struct gradation *g, size_t i)
+{
+  uint32_t p = i + AHEAD < g->n_due ? g->due[i + AHEAD] : 0;
+
+  for (uint32_t k = g->begin[p]; k < g->begin[p + 1]; k++)
+    __builtin_prefetch(g->b->cell[g->leaf[k]].corner);
 }
 
 static void sweep_body(void *context, size_t first, size_t end, int worker)
@@ -128,11 +155,12 @@ static void sweep_body(void *context, size_t first, size_t end, int worker)
     int n = list_new(g, p, other), changed = 0;
     double h[6];
 
+    prefetch_leaves(g, i);
     widen(g->now[p], h);
     for (int k = 0; k < n; k++) changed |= limit_by(g, p, other[k], h);
     g->is_changed[p] = (uint8_t)changed;
     g->is_lowered[p] |= (uint8_t)changed;
-    for (int k = 0; k < 6 && changed; k++) g->next[p][k] = (float)h[k];
+    for (int k = 0; k < 6 && changed; k++) next_of(g, p)[k] = (float)h[k];
   }
 }
 
@@ -143,11 +171,11 @@ static void list_due(struct gradation *g)
   for (size_t q = 0; q < g->n; q++)
     for (uint32_t i = g->begin[q]; g->is_new[q] && i < g->begin[q + 1]; i++)
       for (int j = 0; j < 8; j++) {
-        size_t p = corner(g, g->b->cell + g->leaf[i], j);
+        uint32_t p = corner(g, i, j);
 
-        if (p == SIZE_MAX || g->is_due[p]) continue;
+        if (p == HANGS || g->is_due[p]) continue;
         g->is_due[p] = 1;
-        g->due[g->n_due++] = (uint32_t)p;
+        g->due[g->n_due++] = p;
       }
   for (size_t i = 0; i < g->n_due; i++) g->is_due[g->due[i]] = 0;
 }
@@ -162,7 +190,7 @@ static size_t finish_sweep(struct gradation *g)
 
     if (!g->is_changed[p]) continue;
     g->is_new[p] = 1;
-    memcpy(g->now[p], g->next[p], sizeof *g->now);
+    memcpy(g->now[p], next_of(g, p), sizeof *g->now);
   }
   list_due(g);
 
@@ -177,10 +205,12 @@ static int number_points(struct gradation *g)
 
   for (size_t i = 0; i < b->n_point; i++) g->n += !b->point[i].n_parent;
   g->point = vg_alloc(g->n, sizeof *g->point);
-  if (!g->point) return -1;
+  g->number = vg_alloc(b->n_point, sizeof *g->number);
+  if (!g->point || !g->number) return -1;
   for (size_t i = 0; i < b->n_point; i++) {
+    g->number[i] = HANGS;
     if (b->point[i].n_parent) continue;
-    b->point[i].number = (uint32_t)n;
+    g->number[i] = (uint32_t)n;
     g->point[n++] = (uint32_t)i;
   }
   return 0;
@@ -189,17 +219,17 @@ static int number_points(struct gradation *g)
 static int list_leaves(struct gradation *g)
 {
   const struct vg_octree_build *b = g->b;
-  size_t q;
+  uint32_t q;
 
   for (size_t i = 0; i < b->n_cell; i++)
     for (int j = 0; j < 8 && !b->cell[i].child; j++)
-      if ((q = corner(g, b->cell + i, j)) < SIZE_MAX) g->begin[q]++;
+      if ((q = g->number[b->cell[i].corner[j]]) != HANGS) g->begin[q]++;
   for (size_t i = 0; i < g->n; i++) g->begin[i + 1] += g->begin[i];
   g->leaf = vg_alloc(g->begin[g->n], sizeof *g->leaf);
   if (!g->leaf) return -1;
   for (size_t i = b->n_cell; i-- > 0;)
     for (int j = 0; j < 8 && !b->cell[i].child; j++)
-      if ((q = corner(g, b->cell + i, j)) < SIZE_MAX)
+      if ((q = g->number[b->cell[i].corner[j]]) != HANGS)
         g->leaf[--g->begin[q]] = (uint32_t)i;
   return 0;
 }
@@ -251,15 +281,14 @@ static int allocate(struct gradation *g)
   if (number_points(g)) return -1;
   n = g->n;
   g->now = vg_alloc(n, sizeof *g->now);
-  g->next = vg_alloc(n, sizeof *g->next);
   g->begin = vg_calloc(n + 1, sizeof *g->begin);
   g->due = vg_alloc(n, sizeof *g->due);
   g->is_new = vg_alloc(n, 1);
   g->is_changed = vg_alloc(n, 1);
   g->is_due = vg_calloc(n, 1);
   g->is_lowered = vg_calloc(n, 1);
-  return g->now && g->next && g->begin && g->due && g->is_new &&
-             g->is_changed && g->is_due && g->is_lowered
+  return g->now && g->begin && g->due && g->is_new && g->is_changed &&
+             g->is_due && g->is_lowered
          ? list_leaves(g)
          : -1;
 }
@@ -277,8 +306,34 @@ struct kinks {
   float *most;   /* [n_point] largest one of the leaves at a point */
 };
 
+/* Prepare for points around the last corner of a cell. */
+static void start_reach(const struct vg_octree_build *b,
+                        const struct vg_octree_cell *c,
+                        struct vg_bvh_reach *reach)
+{
+  vg_octree_place(b, b->point[c->corner[7]].at, reach->mid);
+  reach->trifle = 0.25f * c->floor;
+  reach->is_known = 0;
+}
+
+/* Lower bound of the values from above of the surface in the middle of a cell:
+ * they change by the slope at most, and a point that does not hang has one. */
+static float above_middle(const struct vg_octree_build *b,
+                          const struct vg_octree_cell *c, double side)
+{
+  double most = 0;
+
+  for (int i = 0; i < 8; i++) {
+    const struct vg_octree_point *p = b->point + c->corner[i];
+
+    if (!p->n_parent) most = vg_greater(most, (double)p->h);
+  }
+  return (float)(most - HALF_DIAGONAL * side * b->f->slope);
+}
+
 static double find_excess(const struct vg_octree_build *b,
-                          const struct vg_octree_cell *c)
+                          const struct vg_octree_cell *c,
+                          struct vg_bvh_reach *reach)
 {
   double lo[3], x[3], h[6] = { 0 }, exact[6];
   struct vg_size size;
@@ -286,8 +341,9 @@ static double find_excess(const struct vg_octree_build *b,
 
   vg_octree_place(b, vg_octree_corner(b, c), lo);
   vg_octree_place(b, b->point[c->corner[7]].at, x);
+  reach->above = above_middle(b, c, x[0] - lo[0]);
   for (int k = 0; k < 3; k++) x[k] = 0.5 * (lo[k] + x[k]);
-  vg_stat_tensor_at(b->f, x, NULL, &hint, &size, NULL);
+  vg_stat_tensor_at(b->f, x, reach, &hint, &size, NULL);
   for (int k = 0; k < 6; k++) {
     exact[k] = (double)size.h[k];
     for (int i = 0; i < 8; i++)
@@ -298,14 +354,24 @@ static double find_excess(const struct vg_octree_build *b,
               vg_octree_tolerance(b));
 }
 
+/* Families of eight cells follow the root. */
 static void excess_body(void *context, size_t first, size_t end, int worker)
 {
   struct kinks *f = context;
-  const struct vg_octree_cell *cell = f->b->cell;
+  const struct vg_octree_build *b = f->b;
+  struct vg_bvh_reach reach = { .is_known = 0 };
+  size_t family = SIZE_MAX;
 
   (void)worker;
-  for (size_t i = first; i < end; i++)
-    f->excess[i] = cell[i].child ? 0 : (float)find_excess(f->b, cell + i);
+  for (size_t i = first; i < end; i++) {
+    size_t at = i ? (i - 1) / 8 * 8 + 1 : 0;
+
+    f->excess[i] = 0;
+    if (b->cell[i].child) continue;
+    if (at != family) start_reach(b, b->cell + at, &reach);
+    family = at;
+    f->excess[i] = (float)find_excess(b, b->cell + i, &reach);
+  }
 }
 
 /* Hanging points are means of their parents. */
@@ -358,8 +424,8 @@ vg_status vg_octree_limit_tensors(struct vg_octree_build *b,
                  : limit(&g, err);
 
   free(g.point);
+  free(g.number);
   free(g.now);
-  free(g.next);
   free(g.begin);
   free(g.leaf);
   free(g.due);

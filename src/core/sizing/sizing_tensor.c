@@ -11,11 +11,10 @@
 void vg_size_grow(const double h[6], const double way[3], double slope,
                   double out[6])
 {
-  double t[6], v[3], factor, more;
+  double t[6], v[3], factor, more, det = vg_tensor_adjugate(h, t);
 
-  vg_tensor_invert(h, t);
   vg_tensor_apply(t, way, v);
-  factor = 1 + VG_GROWTH_IN_METRIC * slope * vg_norm(v);
+  factor = 1 + VG_GROWTH_IN_METRIC * slope * (vg_norm(v) / det);
   more = (1 - VG_GROWTH_IN_METRIC) * slope * vg_norm(way);
   for (int k = 0; k < 6; k++) out[k] = factor * h[k];
   out[0] += more;
