@@ -21,9 +21,11 @@
 static void cone_tensor(const struct vg_source *s, double slope,
                         const double x[3], double h[6])
 {
+  struct vg_mach_cones c;
   struct vg_size_axes a;
 
-  vg_mach_cone_axes(s, slope, x, &a);
+  vg_mach_cones_prepare(s, slope, &c);
+  vg_mach_cones_axes(&c, x, &a);
   vg_size_axes_tensor(&a, h);
 }
 

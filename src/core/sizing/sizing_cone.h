@@ -33,17 +33,35 @@
 /** Defect of a source of this kind and how to correct it, or NULL. */
 const char *vg_mach_cone_defect(const struct vg_source *s);
 
+/** Cones that are prepared for many evaluations. */
+struct vg_mach_cones {
+  double p0[3], axis[3], length; /* line of apexes: from p0 along a unit vector
+                                  */
+  double sine, cosine, cot;      /* of the half angle */
+  double r0, h0, h1, stretch;    /* as in the source */
+  double slope;                  /* growth rate - 1 */
+  double turn;                   /* bound on the turning of the axes, from
+                                    slope and half angle */
+};
+
+void vg_mach_cones_prepare(const struct vg_source *s, double slope,
+                           struct vg_mach_cones *c);
+
 /** Distance of x from the cones.
  *
  * @param t    out: distance from the axis, as a fraction of r0, at most 1
  * @param way  out: vector to x from the nearest point of the cones; zero within
  *             them */
+double vg_mach_cones_way(const struct vg_mach_cones *c, const double x[3],
+                         double *t, double way[3]);
+
+/** The same for cones that are not prepared. */
 double vg_mach_cone_way(const struct vg_source *s, const double x[3], double *t,
                         double way[3]);
 
-/** Size tensor at any point. slope: growth rate - 1. */
-void vg_mach_cone_axes(const struct vg_source *s, double slope,
-                       const double x[3], struct vg_size_axes *a);
+/** Size tensor at any point. */
+void vg_mach_cones_axes(const struct vg_mach_cones *c, const double x[3],
+                        struct vg_size_axes *a);
 
 /** Box around the cones. */
 void vg_mach_cone_bounds(const struct vg_source *s, double lo[3], double hi[3]);

@@ -5,9 +5,7 @@
 #include <string.h>
 
 #include "core/geometry/vector.h"
-#include "core/sizing/sizing_cone.h"
 #include "core/sizing/sizing_shape.h"
-#include "core/sizing/sizing_tensor.h"
 
 enum { PROJECTIONS = 4 };
 
@@ -82,6 +80,8 @@ void vg_stretched_prepare(struct vg_stretched *s)
   double wide = fmax(1, fmax(s->ratio[0], s->ratio[1]));
 
   vg_normals(s->axis[0], s->axis[1], s->axis[2]);
+  if (s->law.kind == VG_SOURCE_MACHCONE)
+    vg_mach_cones_prepare(&s->law, s->slope, &s->cones);
   s->least = fmin(s->law.h0 * fmin(1, s->ratio[0]),
                   s->law.h1 * fmin(1, s->ratio[1]));
   s->rise = s->slope *
@@ -109,9 +109,18 @@ static void shape_at(const struct vg_stretched *s, const double x[3],
 void vg_stretched_at(const struct vg_stretched *s, const double x[3],
                      struct vg_size_axes *a)
 {
-  if (s->law.kind == VG_SOURCE_MACHCONE)
-    vg_mach_cone_axes(&s->law, s->slope, x, a);
+  if (s->law.kind == VG_SOURCE_MACHCONE) vg_mach_cones_axes(&s->cones, x, a);
   else shape_at(s, x, a);
+}
+
+static double shape_way(const struct vg_stretched *s, const double x[3],
+                        double way[3])
+{
+  double t;
+
+  return s->law.kind == VG_SOURCE_MACHCONE
+         ? vg_mach_cones_way(&s->cones, x, &t, way)
+         : vg_shape_way(&s->law, x, &t, way);
 }
 
 double vg_stretched_floor(const struct vg_stretched *s, const double lo[3],
@@ -120,7 +129,7 @@ double vg_stretched_floor(const struct vg_stretched *s, const double lo[3],
   double d2 = 0;
 
   for (int k = 0; k < 3; k++) {
-    double d = fmax(fmax(s->lo[k] - hi[k], lo[k] - s->hi[k]), 0);
+    double d = vg_greater(vg_greater(s->lo[k] - hi[k], lo[k] - s->hi[k]), 0);
 
     d2 += d * d;
   }
@@ -130,12 +139,13 @@ double vg_stretched_floor(const struct vg_stretched *s, const double lo[3],
 int vg_stretched_near(const struct vg_stretched *s, const double lo[3],
                       const double hi[3], double x[3])
 {
-  double way[3], t;
+  double way[3];
 
   for (int k = 0; k < 3; k++) x[k] = 0.5 * (lo[k] + hi[k]);
   for (int i = 0; i < PROJECTIONS; i++) {
-    if (!(vg_shape_way(&s->law, x, &t, way) > 0)) return i == 0;
-    for (int k = 0; k < 3; k++) x[k] = fmin(fmax(x[k] - way[k], lo[k]), hi[k]);
+    if (!(shape_way(s, x, way) > 0)) return i == 0;
+    for (int k = 0; k < 3; k++)
+      x[k] = vg_lesser(vg_greater(x[k] - way[k], lo[k]), hi[k]);
   }
   return 0;
 }

@@ -11,7 +11,7 @@
 #define VG_CORE_SIZING_SIZING_STRETCH_H
 
 #include "core/sizing/sizing.h"
-#include "core/sizing/sizing_tensor.h"
+#include "core/sizing/sizing_cone.h"
 
 /** A prepared source. */
 struct vg_stretched {
@@ -21,9 +21,10 @@ struct vg_stretched {
                            to each other */
   double ratio[2];      /* at p0 and p1 */
   double slope;         /* rate of growth - 1 */
-  double least;         /* smallest size */
-  double rise;          /* smallest growth of the smallest size per distance */
-  double lo[3], hi[3];  /* box around all points of the shape */
+  struct vg_mach_cones cones; /* of this kind of source only */
+  double least;               /* smallest size */
+  double rise;         /* smallest growth of the smallest size per distance */
+  double lo[3], hi[3]; /* box around all points of the shape */
 };
 
 /** Does the source stretch? Gives its axis and the ratios at p0 and p1. For
