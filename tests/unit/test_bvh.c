@@ -61,6 +61,19 @@ static void random_box(double lo[3], double hi[3])
   }
 }
 
+/* A cube of up to four times the side around a box, which is not at its centre.
+ */
+static struct vg_bvh_reach reach_around(const double lo[3], const double hi[3])
+{
+  struct vg_bvh_reach r = { .is_known = 0 };
+  double side = hi[0] - lo[0] + 0.1 * random_number();
+
+  for (int k = 0; k < 3; k++)
+    r.mid[k] = 0.5 * (lo[k] + hi[k]) + side * (random_number() - 0.5);
+  vg_bvh_reach_clear(&r, 1.001 * side, 1e-5f);
+  return r;
+}
+
 static double distance(const double lo[3], const double hi[3],
                        const double p[3])
 {
@@ -85,6 +98,7 @@ static void values_are_those_of_all_samples(void **state)
   make(&s);
   for (int q = 0; q < QUERIES; q++) {
     double lo[3], hi[3], above = INFINITY, below = 0, by, value;
+    struct vg_bvh_reach reach;
 
     random_box(lo, hi);
     for (int i = 0; i < SAMPLES; i++) {
@@ -95,8 +109,12 @@ static void values_are_those_of_all_samples(void **state)
       below = fmax(below, fmin(h, fmin(h * (1 + offset) - SLOPE * d,
                                        h * rise - steep * d)));
     }
-    value = vg_bvh_above(s.tree, lo, hi, INFINITY, &hint);
+    value = vg_bvh_above(s.tree, lo, hi, INFINITY, NULL, &hint);
     assert_true(fabs(value - above) <= 1e-5 * above);
+    reach = reach_around(lo, hi);
+    for (int i = 0; i < 2; i++)
+      assert_true(vg_bvh_above(s.tree, lo, hi, INFINITY, &reach, &hint) ==
+                  value);
     value = vg_bvh_below(s.tree, lo, 1e-4, INFINITY, NULL, &by);
     below = fmax(below, 1e-4);
     assert_true(fabs(value - below) <= 1e-5 * fmax(below, by));
@@ -118,8 +136,11 @@ static void all_widths_have_the_same_bits(void **state)
     struct vg_bvh_reach reach[2];
 
     random_box(lo, hi);
-    v[0] = vg_bvh_above_narrow(s.tree, lo, hi, 1, &hint[0]);
-    v[1] = vg_bvh_above_wide(s.tree, lo, hi, 1, &hint[1]);
+    reach[0] = reach[1] = reach_around(lo, hi);
+    v[0] = vg_bvh_above_narrow(s.tree, lo, hi, 1, q % 2 ? &reach[0] : NULL,
+                               &hint[0]);
+    v[1] = vg_bvh_above_wide(s.tree, lo, hi, 1, q % 2 ? &reach[1] : NULL,
+                             &hint[1]);
     assert_true(v[0] == v[1] && hint[0] == hint[1]);
     enough = v[0] * (0.5 + random_number());
     for (int w = 0; w < 2; w++) {

@@ -63,26 +63,43 @@ vg_status vg_bvh_new(size_t n, const double (*p)[3], const double *h,
 /** Free; NULL is accepted. */
 void vg_bvh_free(struct vg_bvh *t);
 
+/** Bounds of the values at points in a box, computed when first needed. They
+ * limit the searches there. is_known and has_start must be 0 initially, and
+ * the functions below are called with one hierarchy each. */
+struct vg_bvh_reach {
+  double mid[3], half; /* centre of the box, which is a cube, and half its side
+                        */
+  float trifle; /* values from below that are smaller need not be known */
+  float above;  /* lower bound of the values from above at the points */
+  int is_known, has_start;
+  float most[VG_BVH_CLASSES]; /* largest value from below of each size class at
+                                 the centre */
+  uint32_t start[VG_BVH_CLASSES]; /* group of each class with all samples that
+                                     may have the smallest value from above */
+  int8_t level[VG_BVH_CLASSES];   /* its level; -1: there is no such sample */
+};
+
+/** Use r for another box. */
+static inline void vg_bvh_reach_clear(struct vg_bvh_reach *r, double half,
+                                      float trifle)
+{
+  r->half = half;
+  r->trifle = trifle;
+  r->above = 0;
+  r->is_known = r->has_start = 0;
+}
+
 /** Smallest "from above" value in the box lo..hi (a point: lo == hi).
  *
  * @param below   only smaller values are searched for; returned if there is no
  *                smaller value
+ * @param reach   for speed, or NULL; lo..hi is within its box
  * @param hint    in/out: start of the search, and its end. Any value returned
  *                by an earlier call, initially 0. It only affects speed, not
  *                the result. */
 double vg_bvh_above(const struct vg_bvh *t, const double lo[3],
-                    const double hi[3], double below, uint32_t *hint);
-
-/** Upper bounds of the "from below" values of each size class near some point,
- * computed when first needed. They limit the values at other points nearby.
- * is_known must be 0 initially. */
-struct vg_bvh_reach {
-  double mid[3];
-  float trifle; /* smaller values need not be known */
-  float above;  /* lower bound of the "from above" values at the points */
-  int is_known;
-  float most[VG_BVH_CLASSES];
-};
+                    const double hi[3], double below,
+                    struct vg_bvh_reach *reach, uint32_t *hint);
 
 /** Largest "from below" value at x. Returns `above` if no value exceeds it, or
  * any value that is at least `enough`.

@@ -53,12 +53,14 @@ struct vg_bvh {
  * with AVX2 (only if VG_WIDE is defined, base/wide.h). Same results, bit by
  * bit. */
 double vg_bvh_above_narrow(const struct vg_bvh *t, const double lo[3],
-                           const double hi[3], double below, uint32_t *hint);
+                           const double hi[3], double below,
+                           struct vg_bvh_reach *reach, uint32_t *hint);
 double vg_bvh_below_narrow(const struct vg_bvh *t, const double x[3],
                            double above, double enough,
                            struct vg_bvh_reach *reach, double *by);
 double vg_bvh_above_wide(const struct vg_bvh *t, const double lo[3],
-                         const double hi[3], double below, uint32_t *hint);
+                         const double hi[3], double below,
+                         struct vg_bvh_reach *reach, uint32_t *hint);
 double vg_bvh_below_wide(const struct vg_bvh *t, const double x[3],
                          double above, double enough,
                          struct vg_bvh_reach *reach, double *by);

@@ -29,7 +29,7 @@ double vg_stat_combine(const struct vg_stat *f, const double x[3],
   double h = source < f->h_max ? source : f->h_max, most, by;
 
   if (!f->near) return vg_stat_clamp(f, h);
-  most = vg_bvh_above(f->near, x, x, f->h_max, hint);
+  most = vg_bvh_above(f->near, x, x, f->h_max, reach, hint);
   if (most <= h) return vg_stat_clamp(f, most);
   h = vg_bvh_below(f->under, x, h, most, reach, &by);
   if (h < most && h < vg_bvh_knee(f->under, by))
@@ -63,7 +63,7 @@ double vg_stat_floor(const struct vg_stat *f, const double lo[3], double side,
   if (!(h < f->h_max)) h = f->h_max;
   *by_sources = 1;
   if (!f->near) return vg_stat_clamp(f, h);
-  most = vg_bvh_above(f->near, lo, hi, f->h_max, hint);
+  most = vg_bvh_above(f->near, lo, hi, f->h_max, reach, hint);
   if (reach) reach->above = (float)most;
   *by_sources = h < FINER * most;
   if (most <= h) return vg_stat_clamp(f, most);
@@ -114,11 +114,11 @@ static void bound(const struct vg_stat *f, const double x[3],
   double range[2], fine = 0;
 
   if (above || !reach || !(wide < (double)reach->above))
-    most = vg_bvh_above(f->near, x, x, most, hint);
+    most = vg_bvh_above(f->near, x, x, most, reach, hint);
   if (least < most && f->under) {
     below = vg_bvh_below(f->under, x, least, most, reach, &by);
     if (most == wide && below >= most) {
-      most = vg_bvh_above(f->near, x, x, f->h_max, hint);
+      most = vg_bvh_above(f->near, x, x, f->h_max, reach, hint);
       below = vg_bvh_below(f->under, x, least, most, reach, &by);
     }
     if (below < most && below < vg_bvh_knee(f->under, by))
@@ -128,7 +128,8 @@ static void bound(const struct vg_stat *f, const double x[3],
   l.aspect = INFINITY;
   l.most = vg_lesser(vg_greater(most, l.least), l.most);
   l.least = vg_greater(l.least, vg_lesser(fine, l.most));
-  vg_size_axes_limit(a, &l, range);
+  if (least < l.least || vg_size_axes_most(a) > l.most)
+    vg_size_axes_limit(a, &l, range);
   if (above) *above = most;
 }
 

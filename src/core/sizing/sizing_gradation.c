@@ -306,16 +306,6 @@ struct kinks {
   float *most;   /* [n_point] largest one of the leaves at a point */
 };
 
-/* Prepare for points around the last corner of a cell. */
-static void start_reach(const struct vg_octree_build *b,
-                        const struct vg_octree_cell *c,
-                        struct vg_bvh_reach *reach)
-{
-  vg_octree_place(b, b->point[c->corner[7]].at, reach->mid);
-  reach->trifle = 0.25f * c->floor;
-  reach->is_known = 0;
-}
-
 /* Lower bound of the values from above of the surface in the middle of a cell:
  * they change by the slope at most, and a point that does not hang has one. */
 static float above_middle(const struct vg_octree_build *b,
@@ -354,12 +344,24 @@ static double find_excess(const struct vg_octree_build *b,
               vg_octree_tolerance(b));
 }
 
+/* The centre of a family is the last corner of its first cell. */
+static void start_family(const struct vg_octree_build *b,
+                         const struct vg_octree_cell *c,
+                         struct vg_bvh_reach *reach)
+{
+  double lo[3];
+
+  vg_octree_place(b, vg_octree_corner(b, c), lo);
+  vg_octree_place(b, b->point[c->corner[7]].at, reach->mid);
+  vg_bvh_reach_clear(reach, reach->mid[0] - lo[0], 0.25f * c->floor);
+}
+
 /* Families of eight cells follow the root. */
 static void excess_body(void *context, size_t first, size_t end, int worker)
 {
   struct kinks *f = context;
   const struct vg_octree_build *b = f->b;
-  struct vg_bvh_reach reach = { .is_known = 0 };
+  struct vg_bvh_reach reach;
   size_t family = SIZE_MAX;
 
   (void)worker;
@@ -368,7 +370,7 @@ static void excess_body(void *context, size_t first, size_t end, int worker)
 
     f->excess[i] = 0;
     if (b->cell[i].child) continue;
-    if (at != family) start_reach(b, b->cell + at, &reach);
+    if (at != family) start_family(b, b->cell + at, &reach);
     family = at;
     f->excess[i] = (float)find_excess(b, b->cell + i, &reach);
   }

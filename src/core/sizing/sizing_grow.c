@@ -305,9 +305,10 @@ static void split_body(void *context, size_t first, size_t end, int worker)
   for (size_t s = first; s < end; s++) {
     const struct vg_octree_cell *c = b->cell + l->which[s];
     uint32_t id[27], next = l->base[s];
+    size_t first_cell = l->first + (l->which[s] - l->first) / 8 * 8;
 
-    if ((l->which[s] - l->first) / 8 != family) vg_octree_family_start(&y, c);
-    family = (l->which[s] - l->first) / 8;
+    if (first_cell != family) vg_octree_family_start(&y, b->cell + first_cell);
+    family = first_cell;
     for (int j = 0; j < 8; j++)
       id[2 * (j & 1) + 6 * (j >> 1 & 1) + 18 * (j >> 2)] = c->corner[j];
     for (int i = 0; i < 27; i++) {

@@ -36,7 +36,7 @@ static double least(void *user, const double lo[3], const double hi[3])
   const struct vg_size_samples *s = user;
   uint32_t hint = 0;
 
-  return vg_bvh_above(s->tree, lo, hi, INFINITY, &hint);
+  return vg_bvh_above(s->tree, lo, hi, INFINITY, NULL, &hint);
 }
 
 static double at(void *user, const double x[3])

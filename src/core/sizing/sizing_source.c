@@ -555,11 +555,11 @@ static int is_at_least(const double a[6], const double b[6])
          vg_tensor_det(d) >= 0;
 }
 
-/* Intersection of the sizes so far: by its axes and, if it is not known, as a
- * metric. Most tensors are finer than the other in all directions, or one of
+/* Intersection of the sizes so far: by its axes and, if they are not known, as
+ * a metric. Most tensors are finer than the other in all directions, or one of
  * both is isotropic, which costs no eigenvalues. */
 struct joined {
-  struct vg_size_axes a;
+  struct vg_size_axes *a;
   double m[6];
   int has_axes, has_metric;
 };
@@ -569,28 +569,25 @@ static void limit_sizes(struct vg_size_axes *a, double h)
   for (int k = 0; k < 3; k++) a->size[k] = least(a->size[k], h);
 }
 
+static int is_isotropic(const struct joined *j)
+{
+  return j->has_axes && vg_size_axes_are_equal(j->a);
+}
+
 static void join_axes(struct joined *j, const struct vg_size_axes *b)
 {
   double m[6];
 
   if (j->has_axes && vg_size_axes_are_equal(b)) {
-    limit_sizes(&j->a, b->size[0]);
+    limit_sizes(j->a, b->size[0]);
     j->has_metric = 0;
     return;
   }
-  if (j->has_axes && vg_size_axes_are_equal(&j->a)) {
-    double h = j->a.size[0];
-
-    j->a = *b;
-    limit_sizes(&j->a, h);
-    j->has_metric = 0;
-    return;
-  }
-  if (!j->has_metric) vg_size_axes_metric(&j->a, j->m);
+  if (!j->has_metric) vg_size_axes_metric(j->a, j->m);
   j->has_metric = 1;
   vg_size_axes_metric(b, m);
   if (is_at_least(m, j->m)) {
-    j->a = *b;
+    *j->a = *b;
     j->has_axes = 1;
     memcpy(j->m, m, sizeof m);
   } else if (!is_at_least(j->m, m)) {
@@ -599,11 +596,29 @@ static void join_axes(struct joined *j, const struct vg_size_axes *b)
   }
 }
 
-static void join_map(const struct vg_source_set *set, const double x[3],
-                     struct joined *j)
+static void join_source(struct joined *j, const struct vg_stretched *s,
+                        const double x[3])
 {
   struct vg_size_axes a;
-  double m[6];
+  double h = j->a->size[0];
+
+  if (j->has_axes && vg_stretched_floor(s, x, x) >= vg_size_axes_most(j->a))
+    return;
+  if (is_isotropic(j)) {
+    vg_stretched_at(s, x, j->a);
+    limit_sizes(j->a, h);
+    j->has_metric = 0;
+  } else {
+    vg_stretched_at(s, x, &a);
+    join_axes(j, &a);
+  }
+}
+
+static void join_map(struct joined *j, const struct vg_source_set *set,
+                     const double x[3])
+{
+  struct vg_size_axes a;
+  double m[6], h = j->a->size[0];
 
   set->metric->metric(set->metric->user, x, m);
   if (is_zero(m)) return;
@@ -611,32 +626,34 @@ static void join_map(const struct vg_source_set *set, const double x[3],
     note_fault(set->fault, x, m, 6);
     return;
   }
-  vg_size_axes_of_metric(m, &a);
-  join_axes(j, &a);
+  if (is_isotropic(j)) {
+    vg_size_axes_of_metric(m, j->a);
+    limit_sizes(j->a, h);
+  } else {
+    vg_size_axes_of_metric(m, &a);
+    join_axes(j, &a);
+  }
 }
 
 void vg_source_axes_at(const struct vg_source_set *set, const double x[3],
                        double h, struct vg_size_axes *out)
 {
-  struct joined j = { .a = { .size = { h, h, h } }, .has_axes = 1 };
-  struct vg_size_axes a;
+  struct joined j;
+  double mean[6];
 
+  j.a = out;
+  j.has_axes = 1;
+  j.has_metric = 0;
+  out->size[0] = out->size[1] = out->size[2] = h;
   if (set->mean_is_stretched) {
-    double mean[6];
-
     vg_source_mean_tensor(set->n_mean, set->mean, x, mean);
-    vg_size_axes_of(mean, &a);
-    join_axes(&j, &a);
+    vg_size_axes_of(mean, out);
+    limit_sizes(out, h);
   }
-  for (size_t i = 0; i < set->n_stretched; i++) {
-    if (j.has_axes) h = vg_size_axes_most(&j.a);
-    if (vg_stretched_floor(set->stretched + i, x, x) >= h) continue;
-    vg_stretched_at(set->stretched + i, x, &a);
-    join_axes(&j, &a);
-  }
-  if (set->metric) join_map(set, x, &j);
-  if (!j.has_axes) vg_size_axes_of_metric(j.m, &j.a);
-  *out = j.a;
+  for (size_t i = 0; i < set->n_stretched; i++)
+    join_source(&j, set->stretched + i, x);
+  if (set->metric) join_map(&j, set, x);
+  if (!j.has_axes) vg_size_axes_of_metric(j.m, out);
 }
 
 /* There are two bounds per source: one from the box around its shape, which is

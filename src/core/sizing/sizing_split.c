@@ -29,9 +29,7 @@ void vg_octree_family_start(struct vg_octree_family *y,
 {
   vg_octree_place(y->b, vg_octree_corner(y->b, c), y->reach.mid);
   for (int k = 0; k < 3; k++) y->reach.mid[k] += y->side;
-  y->reach.trifle = 0.25f * c->floor;
-  y->reach.above = 0;
-  y->reach.is_known = 0;
+  vg_bvh_reach_clear(&y->reach, y->side, 0.25f * c->floor);
 }
 
 void vg_octree_family_clear(struct vg_octree_family *y)

@@ -133,17 +133,16 @@ void vg_size_limit(double h[6], const struct vg_size_limits *l, double range[2])
 double vg_size_error(const double h[6], const double exact[6])
 {
   static const int at[3][3] = { { 0, 1, 2 }, { 1, 3, 4 }, { 2, 4, 5 } };
-  double t[6], most = 0;
+  double t[6], most = 0, det = vg_tensor_adjugate(exact, t);
 
-  vg_tensor_invert(exact, t);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
-      double sum = i == j ? -1 : 0;
+      double sum = i == j ? -det : 0;
 
       for (int k = 0; k < 3; k++) sum += t[at[i][k]] * h[at[k][j]];
-      most = fmax(most, fabs(sum));
+      most = vg_greater(most, fabs(sum));
     }
-  return most;
+  return most / det;
 }
 
 double vg_size_mean(const double h[6])

@@ -10,12 +10,13 @@
 #include "core/sizing/sizing_walk_lanes.h"
 
 double vg_bvh_above(const struct vg_bvh *t, const double lo[3],
-                    const double hi[3], double below, uint32_t *hint)
+                    const double hi[3], double below,
+                    struct vg_bvh_reach *reach, uint32_t *hint)
 {
 #ifdef VG_WIDE
-  if (VG_IS_WIDE) return vg_bvh_above_wide(t, lo, hi, below, hint);
+  if (VG_IS_WIDE) return vg_bvh_above_wide(t, lo, hi, below, reach, hint);
 #endif
-  return vg_bvh_above_narrow(t, lo, hi, below, hint);
+  return vg_bvh_above_narrow(t, lo, hi, below, reach, hint);
 }
 
 double vg_bvh_below(const struct vg_bvh *t, const double x[3], double above,

@@ -226,14 +226,15 @@ static TARGET void descend_above(struct search *q, int level, size_t at)
   }
 }
 
-static TARGET void above_all(struct search *q)
+static TARGET void above_all(struct search *q, const struct vg_bvh_reach *r)
 {
   const struct vg_bvh *t = q->t;
 
   for (int c = 0; c < t->n_tree; c++) {
     q->tree = t->tree + c;
     if (q->tree->h_min > q->best) break;
-    descend_above(q, q->tree->n_level - 1, 0);
+    if (!r) descend_above(q, q->tree->n_level - 1, 0);
+    else if (r->level[c] >= 0) descend_above(q, r->level[c], r->start[c]);
   }
 }
 
@@ -246,8 +247,49 @@ static TARGET void set_box(struct search *q, const double lo[3],
   }
 }
 
+/* Descend to the lowest group of a tree with all samples below q->best. Returns
+ * its level, or -1 if no sample has such a value. */
+static TARGET int find_start(const struct search *q, uint32_t *start)
+{
+  int level = q->tree->n_level - 1;
+
+  *start = 0;
+  for (;;) {
+    lanes bound[PARTS];
+    unsigned j;
+
+    bounds_above(q, q->tree->group[level] + *start, bound);
+    j = take_least(bound, q->best);
+    if (j == LANES) return -1;
+    if (!level || least_of(bound) < q->best) return level;
+    *start = *start * LANES + j;
+    level--;
+  }
+}
+
+/* No value in the box exceeds that at its centre by more than the growth to its
+ * corners. */
+static TARGET void know_start(const struct vg_bvh *t, struct vg_bvh_reach *r,
+                              uint32_t hint)
+{
+  struct search q = { .t = t,
+                      .best = VG_BVH_NEVER,
+                      .mid = { r->mid[0], r->mid[1], r->mid[2] } };
+
+  visit_above(&q, t->block + hint);
+  above_all(&q, NULL);
+  for (int k = 0; k < 3; k++) q.half[k] = (float)r->half * (1 + SHY);
+  q.best = (q.best + t->slope * 1.7321f * (float)r->half) * (1 + SHY);
+  for (int c = 0; c < t->n_tree; c++) {
+    q.tree = t->tree + c;
+    r->level[c] = (int8_t)find_start(&q, r->start + c);
+  }
+  r->has_start = 1;
+}
+
 TARGET double ABOVE(const struct vg_bvh *t, const double lo[3],
-                    const double hi[3], double below, uint32_t *hint)
+                    const double hi[3], double below,
+                    struct vg_bvh_reach *reach, uint32_t *hint)
 {
   assert(hint && lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]);
 
@@ -255,9 +297,10 @@ TARGET double ABOVE(const struct vg_bvh *t, const double lo[3],
                                                          : 0.1f * VG_BVH_NEVER;
   struct search q = { .t = t, .best = start, .hint = *hint };
 
+  if (reach && !reach->has_start) know_start(t, reach, *hint);
   set_box(&q, lo, hi);
   visit_above(&q, t->block + *hint);
-  above_all(&q);
+  above_all(&q, reach);
   *hint = q.hint;
   return q.best < start ? (double)q.best : below;
 }
