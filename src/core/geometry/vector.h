@@ -49,16 +49,16 @@ static inline double vg_unit(double a[3])
   return l;
 }
 
-/** Two unit vectors normal to the unit vector u and to each other. */
-static inline void vg_normals(const double u[3], double v[3], double w[3])
+/** Two unit vectors normal to the unit vector n and to each other. */
+static inline void vg_normals(const double n[3], double u[3], double v[3])
 {
-  int k = fabs(u[0]) > fabs(u[1]) ? 0 : 1;
-  double len = sqrt(u[k] * u[k] + u[2] * u[2]);
+  int k = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
 
-  v[1 - k] = 0;
-  v[k] = -u[2] / len;
-  v[2] = u[k] / len;
-  vg_cross(u, v, w);
+  if (fabs(n[2]) < fabs(n[k])) k = 2;
+  for (int i = 0; i < 3; i++) u[i] = i == k;
+  vg_cross(n, u, v);
+  vg_unit(v);
+  vg_cross(v, n, u);
 }
 
 static inline double vg_distance2(const double a[3], const double b[3])

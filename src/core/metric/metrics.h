@@ -104,8 +104,8 @@ int vg_metric_apex(const struct vg_sizing *sizing, const double x[3],
                    double h[6], double unit[3]);
 
 /** The finest metric of four points: that of the largest determinant, and the
- * first of equal ones. Which it is cannot be predicted, so that this is written
- * for conditional moves. */
+ * first of equal ones. Processors cannot predict these comparisons, so that
+ * they select values instead of branching. */
 static inline const struct vg_point_metric *vg_metrics_finest(
   const struct vg_metrics *s, const uint32_t v[4])
 {

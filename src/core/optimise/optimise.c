@@ -36,9 +36,10 @@ static void set_metrics(struct vg_optimiser *o, struct vg_metrics *metrics)
  * one percent of its cells. */
 enum { ROUNDS = 8, CLASSES = 8 }; /* K26 */
 
-/* Number of cells whose shapes are computed together, and number of points
- * after which a point is smoothed whose cells are fetched now. */
-enum { SHAPES = 64, AHEAD = 2 };
+enum {
+  SHAPES = 64, /* Number of cells whose shapes are computed together. */
+  AHEAD = 2    /* The cells of a ball are fetched this many points ahead. */
+};
 
 static vg_status start(struct vg_optimiser *o, struct vg_tets *t,
                        struct vg_error *err)
@@ -127,8 +128,7 @@ static void worst_around(const struct vg_optimiser *o, float limit,
         if (o->q[c] < least[t->cell[c].v[i]]) least[t->cell[c].v[i]] = o->q[c];
 }
 
-/* The cells of a ball are scattered in memory. They are fetched while points
- * before it are smoothed. */
+/* Fetch the cells around point p, which are scattered in memory. */
 static void prefetch_ball(const struct vg_tets *t, const struct vg_balls *b,
                           uint32_t p)
 {

@@ -52,7 +52,7 @@ static uint8_t edge_bit(int i, int j)
     { 0, 0, 1, 2 }, { 0, 0, 3, 4 }, { 1, 3, 0, 5 }, { 2, 4, 5, 0 }
   };
 
-  return (uint8_t)(VG_LENGTH << edge[i][j]);
+  return (uint8_t)(VG_FAILED_LENGTH << edge[i][j]);
 }
 
 /* Length of the edge between two points in the metric, or 1 if the lengths in
@@ -108,23 +108,27 @@ static int even_edge(struct vg_optimiser *o, uint32_t c, int i, int j)
   return 0;
 }
 
+static int is_even(const struct vg_optimiser *o, uint32_t c)
+{
+  return (o->failed_cell[c] & VG_EVEN) == VG_EVEN;
+}
+
 static void even_cell(struct vg_optimiser *o, uint32_t c)
 {
   if (concerns(o, c))
     for (int i = 0; i < 4; i++)
       for (int j = i + 1; j < 4; j++)
         if (even_edge(o, c, i, j)) return;
-  if (!(o->failed_cell[c] & VG_LENGTHS)) o->failed_cell[c] |= VG_LENGTHS;
+  if (!(o->failed_cell[c] & VG_EVEN)) o->failed_cell[c] |= VG_EVEN;
 }
 
+/* A cell that was even after an earlier pass remains so until it changes. */
 vg_status vg_even_lengths(struct vg_optimiser *o, struct vg_error *err)
 {
   assert(o->metrics);
   for (uint32_t c = 0; c < o->t->n_cell; c++)
-    if ((o->failed_cell[c] & VG_LENGTHS) != VG_LENGTHS)
-      o->failed_cell[c] &= (uint8_t)~VG_LENGTHS;
+    if (!is_even(o, c)) o->failed_cell[c] &= (uint8_t)~VG_EVEN;
   for (uint32_t c = 0; c < o->t->n_cell; c++)
-    if (is_live(o->t, c) && (o->failed_cell[c] & VG_LENGTHS) != VG_LENGTHS)
-      even_cell(o, c);
+    if (is_live(o->t, c) && !is_even(o, c)) even_cell(o, c);
   return o->refused ? vg_fail_memory(err, "optimisation") : VG_OK;
 }

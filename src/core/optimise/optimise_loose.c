@@ -193,8 +193,8 @@ static int smooth(struct mover *m, struct vg_tets *t, uint32_t p, size_t n,
   return 1;
 }
 
-/* K50: largest number of moves of one point in a metric, and relative decrease
- * by one move that is followed by another one. */
+/* K50: largest number of moves of one point in a metric. A point whose last
+ * move decreased the function by this share or less is not moved again. */
 enum { MOVES_IN_METRIC = 4 };
 static const double enough = 0.02;
 
@@ -205,16 +205,15 @@ static int smooth_in_metric(struct mover *m, struct vg_tets *t, uint32_t p,
 {
   float worst = 2;
   double gain = 1;
-  int moves = 0;
+  int moves;
 
   if (!n || n > VG_BALL_MAX) return 0;
   for (size_t c = 0; c < n; c++) worst = fminf(worst, q[link[c] >> 2]);
   if (worst >= below) return 0;
-  while (moves < MOVES_IN_METRIC && gain > enough) {
+  for (moves = 0; moves < MOVES_IN_METRIC && gain > enough; moves++) {
     gain = vg_move_in_metric(t, metrics, p, n, link, m->now.q);
     if (!(gain > 0)) break;
     for (size_t c = 0; c < n; c++) q[link[c] >> 2] = (float)m->now.q[c];
-    moves++;
   }
   return moves > 0;
 }

@@ -80,7 +80,7 @@ static void gather_cell(const struct vg_tets *t,
   const double *x = t->x[p], *y = t->x[q], *z = t->x[r];
   const struct vg_point_metric *at = metrics->at, *m;
 
-  /* Conditional moves: which corner is the finest cannot be predicted. */
+  /* As vg_metrics_finest. */
   p = at[q].root > at[p].root ? q : p;
   m = &at[at[r].root > at[p].root ? r : p];
   for (int i = 0; i < 6; i++) b->m[i][k] = m->m[i];
@@ -154,7 +154,8 @@ VG_WITHIN void rate(const struct block *b, const double to[3],
                     const struct vg_point_metric *m, double *inverse, double *f,
                     double (*g)[BLOCK])
 {
-  const struct vg_point_metric own = *m; /* selections need values, not loads */
+  /* Loops with conditional loads are not vectorised: own is a copy. */
+  const struct vg_point_metric own = *m;
 
   for (int k = 0; k < BLOCK; k++) {
     double a[6], r[3], ar[3], root = b->root[k];
@@ -175,6 +176,7 @@ VG_WITHIN void rate(const struct block *b, const double to[3],
     sum = 3 * (r[0] * ar[0] + r[1] * ar[1] + r[2] * ar[2]);
     for (int i = 0; i < 6; i++) sum += b->gram[i][k] * a[i];
     square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + b->far[k];
+    /* 0 if rounding determines the volume: 1 / Q is infinite then. */
     sound = det * det > b->flat[k] * square ? det : 0;
     high = larger(sound, 0) * root;
     inverse[k] = sum * sum * sum / (432 * high * high);

@@ -24,9 +24,10 @@ enum { /* steps that failed for a point; cleared by a change */
 enum { /* for a cell; cleared by a change */
        VG_FAILED_SPLIT = 1,
        VG_NOT_IN_REGION = 2, /* does not belong to the region */
-       VG_LENGTH = 4,        /* << edge: the length of this edge could not be
+       VG_FAILED_LENGTH = 4, /* << edge: the length of this edge could not be
                                 changed in this pass (optimise_lengths.c) */
-       VG_LENGTHS = 63 * VG_LENGTH /* all: no length requires a change */
+       VG_EVEN = 63 * VG_FAILED_LENGTH /* all six bits: no length requires a
+                                          change, or none could be changed */
 };
 
 /* Shapes that decide which cells the steps improve. Without metrics, shapes are

@@ -57,19 +57,6 @@ double vg_form_aspect(const double *form, const double n[3])
 /* Component of a form for each component of a tensor. */
 static const int place[6] = { 0, 3, 5, 1, 4, 2 };
 
-/* Two unit vectors normal to each other and to n. */
-static void tangents(const double n[3], double u[3], double v[3])
-{
-  int k = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
-
-  if (fabs(n[2]) < fabs(n[k])) k = 2;
-  memset(u, 0, 3 * sizeof *u);
-  u[k] = 1;
-  vg_cross(n, u, v);
-  vg_unit(v);
-  vg_cross(v, n, u);
-}
-
 /* Eigenvalues of the metric in the plane normal to n, and its larger
  * eigenvalue's direction d within it. */
 static void eigen_in_plane(const double metric[6], const double n[3],
@@ -77,7 +64,7 @@ static void eigen_in_plane(const double metric[6], const double n[3],
 {
   double u[3], v[3], mu[3], mv[3], a, b, c, mean, gap, s, t;
 
-  tangents(n, u, v);
+  vg_normals(n, u, v);
   vg_tensor_apply(metric, u, mu);
   vg_tensor_apply(metric, v, mv);
   a = vg_dot(u, mu);

@@ -135,11 +135,13 @@ static int list_new(const struct gradation *g, uint32_t p,
   return n;
 }
 
-/* Load the leaves of the next point but AHEAD into the cache. */
+/* Fetch the leaves of point i of this sweep. */
 static void prefetch_leaves(const struct gradation *g, size_t i)
 {
-  uint32_t p = i + AHEAD < g->n_due ? g->due[i + AHEAD] : 0;
+  uint32_t p;
 
+  if (i >= g->n_due) return;
+  p = g->due[i];
   for (uint32_t k = g->begin[p]; k < g->begin[p + 1]; k++)
     __builtin_prefetch(g->b->cell[g->leaf[k]].corner);
 }
@@ -155,7 +157,7 @@ static void sweep_body(void *context, size_t first, size_t end, int worker)
     int n = list_new(g, p, other), changed = 0;
     double h[6];
 
-    prefetch_leaves(g, i);
+    prefetch_leaves(g, i + AHEAD);
     widen(g->now[p], h);
     for (int k = 0; k < n; k++) changed |= limit_by(g, p, other[k], h);
     g->is_changed[p] = (uint8_t)changed;

@@ -6,11 +6,7 @@
 
 #include "core/geometry/vector.h"
 #include "core/sizing/sizing_cone.h"
-
-static double least(double a, double b)
-{
-  return a < b ? a : b;
-}
+#include "core/sizing/sizing_tensor.h"
 
 double vg_segment_way(const double a[3], const double b[3], const double x[3],
                       double *t, double way[3])
@@ -75,8 +71,8 @@ double vg_cone_distance(const struct vg_source *s, const double x[3], double *t)
   at[1] = r;
   rim1[2] = mid1[1] = mid1[2] = at[2] = 0;
   f = vg_segment_distance(rim0, rim1, at, &r_at);
-  f = least(f, vg_segment_distance(mid0, rim0, at, &r_at));
-  return least(f, vg_segment_distance(mid1, rim1, at, &r_at));
+  f = vg_lesser(f, vg_segment_distance(mid0, rim0, at, &r_at));
+  return vg_lesser(f, vg_segment_distance(mid1, rim1, at, &r_at));
 }
 
 /* As vg_cone_distance: the nearest point of the trapezium, in the half plane

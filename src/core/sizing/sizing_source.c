@@ -12,16 +12,6 @@
 #include "core/sizing/sizing_shape.h"
 #include "core/sizing/sizing_tensor.h"
 
-static double least(double a, double b)
-{
-  return a < b ? a : b;
-}
-
-static double most(double a, double b)
-{
-  return a > b ? a : b;
-}
-
 /* --- checks --------------------------------------------------------------- */
 
 static int is_finite3(const double p[3])
@@ -264,7 +254,7 @@ static double bounded_at(const struct vg_bounded *b, const double x[3])
     d = vg_segment_distance(s->p0, s->p0, x, &t) - s->r0;
     break;
   }
-  return s->h0 + t * (s->h1 - s->h0) + b->slope * most(d, 0);
+  return s->h0 + t * (s->h1 - s->h0) + b->slope * vg_greater(d, 0);
 }
 
 /* Extent of a box from its centre along a direction, which need not be
@@ -301,7 +291,7 @@ static double bounded_floor(const struct vg_bounded *b, const double mid[3],
     if (len > 0) h -= fabs(s->h1 - s->h0) / len * reach_along(axis, half);
   }
   d -= s->r0 + reach_along(way, half);
-  return most(h, b->least) + b->slope * most(d, 0);
+  return vg_greater(h, b->least) + b->slope * vg_greater(d, 0);
 }
 
 /* --- lists of sources ----------------------------------------------------- */
@@ -315,17 +305,17 @@ static void bound_shape(const struct vg_source *s, double lo[3], double hi[3])
     vg_mach_cone_bounds(s, lo, hi);
     return;
   }
-  if (s->kind == VG_SOURCE_CYLINDER) r = most(s->r0, s->r1);
+  if (s->kind == VG_SOURCE_CYLINDER) r = vg_greater(s->r0, s->r1);
   for (int k = 0; k < 3; k++) {
     lo[k] = hi[k] = s->p0[k];
     if (has_axis(s->kind) || s->kind == VG_SOURCE_TRIANGLE ||
         s->kind == VG_SOURCE_BOX) {
-      lo[k] = least(lo[k], s->p1[k]);
-      hi[k] = most(hi[k], s->p1[k]);
+      lo[k] = vg_lesser(lo[k], s->p1[k]);
+      hi[k] = vg_greater(hi[k], s->p1[k]);
     }
     if (s->kind == VG_SOURCE_TRIANGLE) {
-      lo[k] = least(lo[k], s->p2[k]);
-      hi[k] = most(hi[k], s->p2[k]);
+      lo[k] = vg_lesser(lo[k], s->p2[k]);
+      hi[k] = vg_greater(hi[k], s->p2[k]);
     }
     lo[k] -= r;
     hi[k] += r;
@@ -343,7 +333,7 @@ static void prepare_bounded(const struct vg_sizing_options *o,
   if (is_vgrid(s->kind)) b->law.r0 = b->law.r1 = 0;
   b->slope = !is_vgrid(s->kind) && s->growth > 0 ? o->scale * (s->growth - 1)
                                                  : o->growth - 1;
-  b->least = least(b->law.h0, b->law.h1);
+  b->least = vg_lesser(b->law.h0, b->law.h1);
   b->steep = b->slope;
   bound_shape(&b->law, b->lo, b->hi);
   if (s->kind == VG_SOURCE_BOX)
@@ -417,8 +407,8 @@ static void find_reach(struct vg_source_set *set)
         int is_line = o->kind == VG_SOURCE_VGRID_LINE;
 
         if (j == i) continue;
-        d = least(d, vg_segment_distance(o->p0, is_line ? o->p1 : o->p0, s->p0,
-                                         &t));
+        d = vg_lesser(d, vg_segment_distance(o->p0, is_line ? o->p1 : o->p0,
+                                             s->p0, &t));
       }
     set->reach[i] = REACH * d;
   }
@@ -508,7 +498,7 @@ static double map_floor(const struct vg_source_set *set, const double lo[3],
   h = map_at(set, x);
   for (int i = 0; i < 8; i++) {
     for (int k = 0; k < 3; k++) x[k] = i >> k & 1 ? hi[k] : lo[k];
-    h = least(h, map_at(set, x));
+    h = vg_lesser(h, map_at(set, x));
   }
   return h;
 }
@@ -518,14 +508,14 @@ double vg_source_at(const struct vg_source_set *set, const double x[3])
   double h = set->mean_is_stretched ? INFINITY
                                     : vg_source_mean(set->n_mean, set->mean, x);
 
-  if (set->map) h = least(h, map_at(set, x));
+  if (set->map) h = vg_lesser(h, map_at(set, x));
   for (size_t i = 0; i < set->n_bounded; i++) {
     const struct vg_bounded *b = set->bounded + i;
 
     if (b->least >= h ||
         b->least + b->slope * vg_box_distance(b->lo, b->hi, x) >= h)
       continue;
-    h = least(h, bounded_at(b, x));
+    h = vg_lesser(h, bounded_at(b, x));
   }
   return h;
 }
@@ -566,18 +556,19 @@ struct joined {
 
 static void limit_sizes(struct vg_size_axes *a, double h)
 {
-  for (int k = 0; k < 3; k++) a->size[k] = least(a->size[k], h);
+  for (int k = 0; k < 3; k++) a->size[k] = vg_lesser(a->size[k], h);
 }
 
-static int is_isotropic(const struct joined *j)
+static void join(struct joined *j, const struct vg_size_axes *b)
 {
-  return j->has_axes && vg_size_axes_are_equal(j->a);
-}
+  double m[6], h = j->a->size[0];
 
-static void join_axes(struct joined *j, const struct vg_size_axes *b)
-{
-  double m[6];
-
+  if (j->has_axes && vg_size_axes_are_equal(j->a)) {
+    *j->a = *b;
+    limit_sizes(j->a, h);
+    j->has_metric = 0;
+    return;
+  }
   if (j->has_axes && vg_size_axes_are_equal(b)) {
     limit_sizes(j->a, b->size[0]);
     j->has_metric = 0;
@@ -600,25 +591,18 @@ static void join_source(struct joined *j, const struct vg_stretched *s,
                         const double x[3])
 {
   struct vg_size_axes a;
-  double h = j->a->size[0];
 
   if (j->has_axes && vg_stretched_floor(s, x, x) >= vg_size_axes_most(j->a))
     return;
-  if (is_isotropic(j)) {
-    vg_stretched_at(s, x, j->a);
-    limit_sizes(j->a, h);
-    j->has_metric = 0;
-  } else {
-    vg_stretched_at(s, x, &a);
-    join_axes(j, &a);
-  }
+  vg_stretched_at(s, x, &a);
+  join(j, &a);
 }
 
 static void join_map(struct joined *j, const struct vg_source_set *set,
                      const double x[3])
 {
   struct vg_size_axes a;
-  double m[6], h = j->a->size[0];
+  double m[6];
 
   set->metric->metric(set->metric->user, x, m);
   if (is_zero(m)) return;
@@ -626,13 +610,8 @@ static void join_map(struct joined *j, const struct vg_source_set *set,
     note_fault(set->fault, x, m, 6);
     return;
   }
-  if (is_isotropic(j)) {
-    vg_size_axes_of_metric(m, j->a);
-    limit_sizes(j->a, h);
-  } else {
-    vg_size_axes_of_metric(m, &a);
-    join_axes(j, &a);
-  }
+  vg_size_axes_of_metric(m, &a);
+  join(j, &a);
 }
 
 void vg_source_axes_at(const struct vg_source_set *set, const double x[3],
@@ -673,13 +652,13 @@ double vg_source_floor(const struct vg_source_set *set, const double lo[3],
     double d2 = 0, d, bound;
 
     for (int k = 0; k < 3; k++) {
-      d = most(most(b->lo[k] - hi[k], lo[k] - b->hi[k]), 0);
+      d = vg_greater(vg_greater(b->lo[k] - hi[k], lo[k] - b->hi[k]), 0);
       d2 += d * d;
     }
     bound = b->least + b->slope * sqrt(d2);
     if (bound >= h) continue;
-    bound = most(bound, bounded_floor(b, mid, half));
-    h = least(h, bound);
+    bound = vg_greater(bound, bounded_floor(b, mid, half));
+    h = vg_lesser(h, bound);
   }
   return h;
 }
@@ -701,7 +680,7 @@ int vg_source_resolved(const struct vg_source_set *set, const double lo[3],
     int is_line = s->kind == VG_SOURCE_VGRID_LINE;
     double d = vg_segment_distance(s->p0, is_line ? s->p1 : s->p0, mid, &t);
 
-    if (side > most(d - sqrt(r2), set->reach[i])) return 0;
+    if (side > vg_greater(d - sqrt(r2), set->reach[i])) return 0;
   }
   return 1;
 }

@@ -95,7 +95,7 @@ void vg_size_axes_metric(const struct vg_size_axes *a, double m[6])
 int vg_size_axes_limit(struct vg_size_axes *a, const struct vg_size_limits *l,
                        double range[2])
 {
-  double low = vg_lesser(vg_lesser(a->size[0], a->size[1]), a->size[2]), high;
+  double low = vg_size_axes_least(a), high;
   int changed = 0;
 
   assert(l->least <= l->most && l->aspect >= 1);

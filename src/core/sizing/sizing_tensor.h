@@ -14,7 +14,8 @@ struct vg_size {
   float least, most; /* bounds on its eigenvalues */
 };
 
-/** As fmin and fmax for numbers, which the compiler leaves to libm. */
+/** Smaller and larger of two numbers that are not NaN. Compilers call libm for
+ * fmin and fmax. */
 static inline double vg_lesser(double a, double b)
 {
   return a < b ? a : b;
