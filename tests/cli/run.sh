@@ -14,7 +14,7 @@ failures=0
 rm -rf "$folder"
 mkdir -p "$folder"
 cd "$folder" || exit 1
-unset VANGUARD_OPTIONS
+unset VANGUARD_HELPERS
 export LC_ALL=C COLUMNS=80
 
 # vanguard ARGS...: output in files out and err, exit status in $status.
