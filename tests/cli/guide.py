@@ -126,7 +126,7 @@ def main():
     # too.
     os.symlink(program, os.path.join(folder, "path", "vanguard"))
     environment = dict(os.environ, LC_ALL="C", COLUMNS="80")
-    environment.pop("VANGUARD_OPTIONS", None)
+    environment.pop("VANGUARD_HELPERS", None)
     environment["PATH"] = os.path.join(folder, "path") + ":" + os.environ["PATH"]
     failed = skipped = 0
     for page in pages:
