@@ -17,13 +17,13 @@ vg_status vg_job_meshed(vanguard_job *job)
 
 const char *vanguard_details(const vanguard_job *job)
 {
-  VG_JOB_CALL(job, "");
+  VG_JOB_ASK(job, "");
   return job->details ? job->details : "";
 }
 
 const char *vanguard_note(const vanguard_job *job, size_t i)
 {
-  VG_JOB_CALL(job, NULL);
+  VG_JOB_ASK(job, NULL);
   const struct vg_notes *notes = &job->problem.notes;
 
   return i < notes->n ? notes->text[i] : NULL;
@@ -31,7 +31,7 @@ const char *vanguard_note(const vanguard_job *job, size_t i)
 
 vanguard_status vanguard_count(vanguard_job *job, struct vanguard_counts *out)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   const struct vg_slices *s = &job->run.slices;
   struct vanguard_counts n = { .struct_size = sizeof n };
   vg_status st = vg_job_meshed(job);
@@ -49,14 +49,13 @@ vanguard_status vanguard_count(vanguard_job *job, struct vanguard_counts *out)
   n.n_layer_pyr = s->n_layer_cell[VG_SLICE_PYR];
   n.n_layer_pri = s->n_layer_cell[VG_SLICE_PRI];
   n.n_patch = s->boundary->n_patch;
-  vg_job_give(out, &n, sizeof n);
-  return VANGUARD_OK;
+  return vg_job_status(vg_job_give(job, out, &n, sizeof n));
 }
 
 vanguard_status vanguard_patch(vanguard_job *job, size_t i,
                                struct vanguard_patch *out)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   struct vanguard_patch p = { .struct_size = sizeof p };
   const struct vg_patch *from;
   vg_status st = vg_job_meshed(job);
@@ -71,8 +70,7 @@ vanguard_status vanguard_patch(vanguard_job *job, size_t i,
   p.bc = from->bc;
   p.bc_fun3d = from->bc_fun3d;
   p.name = from->name;
-  vg_job_give(out, &p, sizeof p);
-  return VANGUARD_OK;
+  return vg_job_status(vg_job_give(job, out, &p, sizeof p));
 }
 
 static const struct vg_mesh *boundary_of(const vanguard_job *job)
@@ -84,134 +82,26 @@ static const struct vg_mesh *boundary_of(const vanguard_job *job)
 
 const uint32_t *vanguard_triangles(const vanguard_job *job)
 {
-  VG_JOB_CALL(job, NULL);
+  VG_JOB_ASK(job, NULL);
   return (const uint32_t *)boundary_of(job)->tri;
 }
 
 const uint32_t *vanguard_triangle_patches(const vanguard_job *job)
 {
-  VG_JOB_CALL(job, NULL);
+  VG_JOB_ASK(job, NULL);
   return boundary_of(job)->tri_patch;
 }
 
 const uint32_t *vanguard_quads(const vanguard_job *job)
 {
-  VG_JOB_CALL(job, NULL);
+  VG_JOB_ASK(job, NULL);
   return (const uint32_t *)boundary_of(job)->quad;
 }
 
 const uint32_t *vanguard_quad_patches(const vanguard_job *job)
 {
-  VG_JOB_CALL(job, NULL);
+  VG_JOB_ASK(job, NULL);
   return boundary_of(job)->quad_patch;
-}
-
-/* --- arrays and pieces --------------------------------------------------- */
-
-struct arrays {
-  double *xyz;
-  uint32_t *cell[VG_SLICE_KINDS];
-};
-
-static vg_status fill_arrays(void *context, const struct vg_slice *s,
-                             struct vg_error *err)
-{
-  static const size_t width[VG_SLICE_KINDS] = { 4, 5, 6 };
-  const struct arrays *a = context;
-
-  (void)err;
-  for (size_t k = 0; a->xyz && k < s->n_own; k++)
-    memcpy(a->xyz + 3 * (s->point_at + k), s->x[s->own[k]], sizeof *s->x);
-  for (int k = 0; k < VG_SLICE_KINDS; k++) {
-    uint32_t *to = a->cell[k];
-    size_t n = s->n_cell[k] * width[k];
-
-    if (!to) continue;
-    to += s->cell_at[k] * width[k];
-    for (size_t i = 0; i < n; i++) to[i] = s->id[s->cell[k][i]];
-  }
-  return VG_OK;
-}
-
-vanguard_status vanguard_arrays(vanguard_job *job, double *xyz, uint32_t *tet,
-                                uint32_t *pyr, uint32_t *pri)
-{
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
-  struct arrays a = { xyz, { tet, pyr, pri } };
-  vg_status st = vg_job_meshed(job);
-
-  if (st < 0) return vg_job_status(st);
-  if (job->run.size > 1)
-    return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED,
-                                 "no process holds the whole mesh of a job "
-                                 "with %d ranks: use vanguard_piece_get or "
-                                 "vanguard_write",
-                                 job->run.size));
-  if (job->run.slices.n_point >= UINT32_MAX)
-    return vg_job_status(vg_fail(&job->err, VG_ERR_UNSUPPORTED,
-                                 "%llu points cannot be numbered with 32 "
-                                 "bits: use vanguard_piece_get, or write "
-                                 "b8l.ugrid",
-                                 (unsigned long long)job->run.slices.n_point));
-  st = vg_slices_each(&job->run.slices, job->run.threads, fill_arrays, &a,
-                      &job->err);
-  return vg_job_status(st);
-}
-
-size_t vanguard_pieces(const vanguard_job *job)
-{
-  VG_JOB_CALL(job, 0);
-  return job->is_meshed ? job->run.slices.n_slice : 0;
-}
-
-vanguard_status vanguard_piece_get(vanguard_job *job, size_t i,
-                                   struct vanguard_piece *out)
-{
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
-  const struct vg_slices *s = &job->run.slices;
-  struct vanguard_piece p = { .struct_size = sizeof p };
-  struct vg_slice *slice;
-  vg_status st = vg_job_meshed(job);
-
-  if (st >= 0 && i >= s->n_slice)
-    st = vg_fail(&job->err, VG_ERR_USAGE,
-                 "there is no piece %zu: this rank has %zu", i, s->n_slice);
-  if (st < 0) return vg_job_status(st);
-  slice = vg_calloc(1, sizeof *slice);
-  st = slice ? s->get(s, i, slice, &job->err)
-             : vg_fail_memory(&job->err, "a piece of the mesh");
-  if (st < 0) {
-    free(slice);
-    return vg_job_status(st);
-  }
-  p.n_point = slice->n_point;
-  p.xyz = (const double *)slice->x;
-  p.id = slice->id;
-  p.own_at = slice->point_at;
-  p.n_own = slice->n_own;
-  p.own = slice->own;
-  p.tet_at = slice->cell_at[VG_SLICE_TET];
-  p.pyr_at = slice->cell_at[VG_SLICE_PYR];
-  p.pri_at = slice->cell_at[VG_SLICE_PRI];
-  p.n_tet = slice->n_cell[VG_SLICE_TET];
-  p.n_pyr = slice->n_cell[VG_SLICE_PYR];
-  p.n_pri = slice->n_cell[VG_SLICE_PRI];
-  p.tet = slice->cell[VG_SLICE_TET];
-  p.pyr = slice->cell[VG_SLICE_PYR];
-  p.pri = slice->cell[VG_SLICE_PRI];
-  p.subdomain = slice->domain;
-  p.keep = slice;
-  vg_job_give(out, &p, sizeof p);
-  return VANGUARD_OK;
-}
-
-void vanguard_piece_put(vanguard_job *job, struct vanguard_piece *piece)
-{
-  if (!piece->keep || !vg_job_enter(job)) return;
-  job->run.slices.put(&job->run.slices, piece->keep);
-  free(piece->keep);
-  piece->keep = NULL;
-  vg_job_leave(&(const vanguard_job *){ job });
 }
 
 /* --- figures ------------------------------------------------------------- */
@@ -219,7 +109,7 @@ void vanguard_piece_put(vanguard_job *job, struct vanguard_piece *piece)
 vanguard_status vanguard_measure(vanguard_job *job,
                                  struct vanguard_quality *out)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   const struct vg_mesh_report *field = job->run.layers ? &job->run.field_judge
                                                        : &job->run.judge;
   struct vanguard_quality q = { .struct_size = sizeof q };
@@ -235,8 +125,7 @@ vanguard_status vanguard_measure(vanguard_job *job,
   q.volume_ratio_p95 = field->volume_ratio[1];
   q.volume_ratio_max = field->volume_ratio[2];
   q.edge_within = field->edge_within;
-  vg_job_give(out, &q, sizeof q);
-  return VANGUARD_OK;
+  return vg_job_status(vg_job_give(job, out, &q, sizeof q));
 }
 
 static size_t n_walls(const vanguard_job *job)
@@ -246,7 +135,7 @@ static size_t n_walls(const vanguard_job *job)
 
 size_t vanguard_walls(const vanguard_job *job)
 {
-  VG_JOB_CALL(job, 0);
+  VG_JOB_ASK(job, 0);
   return n_walls(job);
 }
 
@@ -260,7 +149,7 @@ static void put_range(double to[3], const struct vg_range *r)
 vanguard_status vanguard_wall(vanguard_job *job, size_t i,
                               struct vanguard_wall *out)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   struct vanguard_wall w = { .struct_size = sizeof w };
   const struct vg_patch_layers *from;
   vg_status st = vg_job_meshed(job);
@@ -284,8 +173,7 @@ vanguard_status vanguard_wall(vanguard_job *job, size_t i,
   w.share = from->share_mean;
   w.first_error = from->first_error;
   memcpy(w.top_ratio, from->top_ratio, sizeof w.top_ratio);
-  vg_job_give(out, &w, sizeof w);
-  return VANGUARD_OK;
+  return vg_job_status(vg_job_give(job, out, &w, sizeof w));
 }
 
 /* Numbers of the wall points in the mesh; NULL if there is not enough
@@ -305,7 +193,7 @@ static const uint32_t *wall_points(vanguard_job *job)
 vanguard_status vanguard_wall_points(vanguard_job *job,
                                      struct vanguard_wall_points *out)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   struct vanguard_wall_points p = { .struct_size = sizeof p };
   const struct vg_wall_fields *w = &job->layers.fields;
   vg_status st = vg_job_meshed(job);
@@ -325,8 +213,7 @@ vanguard_status vanguard_wall_points(vanguard_job *job,
     if (!p.point) st = vg_fail_memory(&job->err, "the points of the walls");
   }
   if (st < 0) return vg_job_status(st);
-  vg_job_give(out, &p, sizeof p);
-  return VANGUARD_OK;
+  return vg_job_status(vg_job_give(job, out, &p, sizeof p));
 }
 
 const char *vanguard_cause(int32_t cause)
@@ -378,10 +265,11 @@ done:
 vanguard_status vanguard_write(vanguard_job *job, const char *stem,
                                const char *forms)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   struct vg_outputs o = VG_OUTPUTS_INIT;
   vg_status st = vg_job_meshed(job);
 
+  if (st >= 0) st = vg_job_needs(job, stem, "stem");
   if (st < 0) return vg_job_status(st);
   st = vg_comm_agree(job->comm, plan_files(job, stem, forms, &o), &job->err);
   if (st >= 0 && !job->run.rank) vg_outputs_sweep(&o, &job->problem.notes);

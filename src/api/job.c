@@ -33,12 +33,14 @@ vanguard_status vanguard_prepare(void)
  * accepted. */
 static _Thread_local const vanguard_job *refused;
 
-int vg_job_enter(const vanguard_job *job)
+vanguard_status vg_job_enter(const vanguard_job *job)
 {
-  int is_free = !atomic_exchange(&((vanguard_job *)job)->busy, 1);
+  int is_free;
 
+  if (!job) return VANGUARD_ERR_USAGE;
+  is_free = !atomic_exchange(&((vanguard_job *)job)->busy, 1);
   refused = is_free ? NULL : job;
-  return is_free;
+  return is_free ? VANGUARD_OK : VANGUARD_ERR_BUSY;
 }
 
 void vg_job_leave(const vanguard_job *const *job)
@@ -80,6 +82,7 @@ static vanguard_status settle(vanguard_job *job, vg_status st,
 
 vanguard_status vanguard_new(int abi, vanguard_job **out)
 {
+  if (!out) return VANGUARD_ERR_USAGE;
   *out = new_job(abi);
   if (!*out) return VANGUARD_ERR_MEMORY;
   return settle(*out, (*out)->err.code, out);
@@ -89,9 +92,11 @@ vanguard_status vanguard_new_mpi(int abi, const void *comm, vanguard_job **out)
 {
   vg_status st;
 
+  if (!out) return VANGUARD_ERR_USAGE;
   *out = new_job(abi);
   if (!*out) return VANGUARD_ERR_MEMORY;
   st = (*out)->err.code;
+  if (st >= 0) st = vg_job_needs(*out, comm, "comm");
   if (st >= 0) st = vg_comm_of(comm, &(*out)->comm, &(*out)->err);
   return settle(*out, st, out);
 }
@@ -100,6 +105,7 @@ vanguard_status vanguard_new_fortran(int abi, int32_t comm, vanguard_job **out)
 {
   vg_status st;
 
+  if (!out) return VANGUARD_ERR_USAGE;
   *out = new_job(abi);
   if (!*out) return VANGUARD_ERR_MEMORY;
   st = (*out)->err.code;
@@ -110,7 +116,7 @@ vanguard_status vanguard_new_fortran(int abi, int32_t comm, vanguard_job **out)
 vanguard_status vanguard_close(vanguard_job *job)
 {
   if (!job) return VANGUARD_OK;
-  if (!vg_job_enter(job)) return VANGUARD_ERR_BUSY;
+  if (vg_job_enter(job)) return VANGUARD_ERR_BUSY;
   vg_job_release_run(job, 1);
   vg_settings_release(&job->settings);
   vg_mesh_release(&job->surface);
@@ -130,7 +136,8 @@ void vanguard_free(vanguard_job *job)
 
 const char *vanguard_message(const vanguard_job *job)
 {
-  if (!job) return "not enough memory for a job";
+  if (!job)
+    return "no job: it has not been created, or there was not enough memory";
   if (job == refused || atomic_load(&job->busy))
     return "the job is in use by another call: a callback cannot use the job "
            "that called it, and only one thread at a time can use a job; wait "
@@ -143,14 +150,24 @@ vg_status vg_job_usable(vanguard_job *job)
   return job->is_refused ? VG_ERR_USAGE : VG_OK;
 }
 
+vg_status vg_job_needs(vanguard_job *job, const void *argument,
+                       const char *name)
+{
+  if (job->is_refused) return VG_ERR_USAGE;
+  if (argument) return VG_OK;
+  return vg_fail(&job->err, VG_ERR_USAGE,
+                 "the argument '%s' is NULL, but this call needs it", name);
+}
+
 /* --- settings ------------------------------------------------------------ */
 
 vanguard_status vanguard_set(vanguard_job *job, const char *name,
                              const char *value)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
-  vg_status st = vg_job_usable(job);
+  VG_JOB_CALL(job);
+  vg_status st = vg_job_needs(job, name, "name");
 
+  if (st >= 0) st = vg_job_needs(job, value, "value");
   if (st >= 0) st = vg_settings_set(&job->settings, name, value, &job->err);
   return vg_job_status(st);
 }
@@ -158,10 +175,11 @@ vanguard_status vanguard_set(vanguard_job *job, const char *name,
 vanguard_status vanguard_get(vanguard_job *job, const char *name, char *value,
                              size_t size)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   char text[2 * VG_LIST_MAX + 4];
-  vg_status st = vg_job_usable(job);
+  vg_status st = vg_job_needs(job, name, "name");
 
+  if (st >= 0 && size) st = vg_job_needs(job, value, "value");
   if (st >= 0)
     st = vg_settings_get(&job->settings, name, text, sizeof text, &job->err);
   if (st >= 0 && strlen(text) >= size)
@@ -177,9 +195,15 @@ vanguard_status vanguard_add(vanguard_job *job, const char *table, size_t n,
                              const char *const *column,
                              const char *const *value)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
-  vg_status st = vg_job_usable(job);
+  VG_JOB_CALL(job);
+  vg_status st = vg_job_needs(job, table, "table");
 
+  if (st >= 0 && n) st = vg_job_needs(job, column, "column");
+  if (st >= 0 && n) st = vg_job_needs(job, value, "value");
+  for (size_t i = 0; i < n && st >= 0; i++) {
+    st = vg_job_needs(job, column[i], "column[i]");
+    if (st >= 0) st = vg_job_needs(job, value[i], "value[i]");
+  }
   if (st >= 0)
     st = vg_settings_add_named(&job->settings, table, n, column, value,
                                &job->err);
@@ -188,12 +212,37 @@ vanguard_status vanguard_add(vanguard_job *job, const char *table, size_t n,
 
 vanguard_status vanguard_deck(vanguard_job *job, const char *text)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
-  vg_status st = vg_job_usable(job);
+  VG_JOB_CALL(job);
+  vg_status st = vg_job_needs(job, text, "text");
 
   if (st >= 0)
     st = vg_deck_parse("deck", text, strlen(text), &job->settings, &job->err);
   return vg_job_status(st);
+}
+
+/* Copies what fits; returns 0 if `out` has no size. */
+static int give(void *out, const void *full, size_t size)
+{
+  size_t known = 0;
+
+  assert(size >= sizeof known);
+  if (out) memcpy(&known, out, sizeof known);
+  if (known < sizeof known) return 0;
+  if (known < size) size = known;
+  if (size > sizeof known)
+    memcpy((char *)out + sizeof known, (const char *)full + sizeof known,
+           size - sizeof known);
+  return 1;
+}
+
+vg_status vg_job_give(vanguard_job *job, void *out, const void *full,
+                      size_t size)
+{
+  if (give(out, full, size)) return VG_OK;
+  return vg_fail(&job->err, VG_ERR_USAGE,
+                 out ? "the struct_size of the structure is not set: "
+                       "initialise it with VANGUARD_INIT"
+                     : "the structure for the result is NULL");
 }
 
 int vanguard_setting(size_t i, struct vanguard_setting *out)
@@ -215,20 +264,7 @@ int vanguard_setting(size_t i, struct vanguard_setting *out)
   s.words = p->words;
   s.least = p->lo;
   s.most = p->hi;
-  vg_job_give(out, &s, sizeof s);
-  return 1;
-}
-
-void vg_job_give(void *out, const void *full, size_t size)
-{
-  size_t known;
-
-  assert(size >= sizeof known);
-  memcpy(&known, out, sizeof known);
-  if (known < size) size = known;
-  if (size > sizeof known)
-    memcpy((char *)out + sizeof known, (const char *)full + sizeof known,
-           size - sizeof known);
+  return give(out, &s, sizeof s);
 }
 
 /* --- input --------------------------------------------------------------- */
@@ -246,11 +282,11 @@ static int keep_text(char **to, const char *text)
 vanguard_status vanguard_open(vanguard_job *job, const char *project,
                               const char *deck)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   struct vg_problem p = VG_PROBLEM_INIT;
   vg_status st;
 
-  VG_TRY(vg_job_usable(job));
+  VG_TRY(vg_job_needs(job, project, "project"));
   VG_TRY(vg_problem_open(&p, project, deck, &job->err));
   if (keep_text(&job->project, project) || keep_text(&job->deck, deck)) {
     st = vg_fail_memory(&job->err, "the names of the project");
@@ -319,11 +355,13 @@ vanguard_status vanguard_surface(vanguard_job *job, const char *name,
                                  size_t n_tri, const uint32_t *tri,
                                  const int32_t *patch)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   struct vg_mesh m = VG_MESH_INIT;
   vg_status st;
 
-  VG_TRY(vg_job_usable(job));
+  VG_TRY(vg_job_needs(job, name, "name"));
+  if (n_point) VG_TRY(vg_job_needs(job, xyz, "xyz"));
+  if (n_tri) VG_TRY(vg_job_needs(job, tri, "tri"));
   VG_TRY(check_triangles(name, n_point, n_tri, tri, &job->err));
   m.point = vg_alloc(n_point, sizeof *m.point);
   m.tri = vg_alloc(n_tri, sizeof *m.tri);

@@ -13,6 +13,16 @@
 #include "run/input/layers.h"
 #include "run/stages/run.h"
 
+/* Pieces of the mesh that have been given to the caller, in the order of their
+ * numbers (pieces.c). */
+struct vg_job_lent {
+  size_t n, cap, n_held;
+  struct vg_job_piece {
+    uintptr_t number;       /* Value of vanguard_piece.keep. */
+    struct vg_slice *slice; /* NULL: taken back. */
+  } * piece;
+};
+
 struct vanguard_job {
   atomic_int busy; /* 1 while a call uses the job */
   struct vg_comm *comm;
@@ -44,8 +54,9 @@ struct vanguard_job {
   struct vg_layer_stage layers;
   struct vg_run run;
   int is_meshed;
-  uint32_t *wall_point; /* [n_point] made by vanguard_wall_points at its
-                           first call; NULL before */
+  struct vg_job_lent lent; /* Pieces that the caller holds. */
+  uint32_t *wall_point;    /* [n_point] made by vanguard_wall_points at its
+                              first call; NULL before */
   char *details;
 };
 
@@ -55,22 +66,41 @@ static inline vanguard_status vg_job_status(vg_status st)
   return st < 0 ? (vanguard_status)st : VANGUARD_OK;
 }
 
-/** Claim the job for a call, or return 0 if another call uses it, in another
- * thread or further up in this one, which runs its callback. The calling thread
- * then gets the message of VANGUARD_ERR_BUSY. */
-int vg_job_enter(const vanguard_job *job);
+/** Claim the job for a call: VANGUARD_OK; VANGUARD_ERR_BUSY if another call
+ * uses it, in another thread or further up in this one, which runs its
+ * callback; VANGUARD_ERR_USAGE if it is NULL. After VANGUARD_ERR_BUSY the
+ * calling thread gets the message of that status. */
+vanguard_status vg_job_enter(const vanguard_job *job);
 void vg_job_leave(const vanguard_job *const *job);
 
-/** First line of a public function: claims the job until the function returns,
- * or returns `refusal`. */
-#define VG_JOB_CALL(job, refusal)                                              \
-  if (!vg_job_enter(job)) return refusal;                                      \
+#define VG_JOB_CLAIM(job)                                                      \
   const vanguard_job *const claimed                                            \
     __attribute__((cleanup(vg_job_leave), unused)) = (job)
+
+/** First line of a public function that returns a status: claims the job until
+ * the function returns, or returns the status of vg_job_enter. */
+#define VG_JOB_CALL(job)                                                       \
+  const vanguard_status entered = vg_job_enter(job);                           \
+  if (entered) return entered;                                                 \
+  VG_JOB_CLAIM(job)
+
+/** As VG_JOB_CALL, in a function that returns something else: `nothing` if the
+ * job cannot be claimed. */
+#define VG_JOB_ASK(job, nothing)                                               \
+  if (vg_job_enter(job)) return nothing;                                       \
+  VG_JOB_CLAIM(job)
 
 /** VG_ERR_USAGE if the job could not be created, or if it has no mesh. */
 vg_status vg_job_usable(vanguard_job *job);
 vg_status vg_job_meshed(vanguard_job *job);
+
+/** VG_ERR_USAGE if the job could not be created, or if an argument of the
+ * call is NULL. name: that of the argument, for the message. */
+vg_status vg_job_needs(vanguard_job *job, const void *argument,
+                       const char *name);
+
+/** Take back all pieces that the caller holds. (pieces.c) */
+void vg_job_take_back(vanguard_job *job);
 
 /** Forget the sizes that the caller has given. (sizes.c) */
 void vg_job_forget_sizes(vanguard_job *job);
@@ -79,7 +109,9 @@ void vg_job_forget_sizes(vanguard_job *job);
 void vg_job_release_run(vanguard_job *job, int success);
 
 /** Copy those members of a structure to the caller that the caller's
- * struct_size covers. Both structures begin with their size. */
-void vg_job_give(void *out, const void *full, size_t size);
+ * struct_size covers. Both structures begin with their size. VG_ERR_USAGE if
+ * `out` is NULL or its struct_size is not set. */
+vg_status vg_job_give(vanguard_job *job, void *out, const void *full,
+                      size_t size);
 
 #endif

@@ -14,6 +14,7 @@
 
 void vg_job_release_run(vanguard_job *job, int success)
 {
+  vg_job_take_back(job);
   vg_run_release(&job->run, success);
   memset(&job->run, 0, sizeof job->run);
   vg_layer_stage_release(&job->layers);
@@ -33,7 +34,7 @@ void vg_job_release_run(vanguard_job *job, int success)
 
 void vanguard_cancel(vanguard_job *job)
 {
-  atomic_store(&job->show.asked, 1);
+  if (job) atomic_store(&job->show.asked, 1);
 }
 
 static int tell(void *user, const char *stage, size_t done, size_t expected)
@@ -125,7 +126,7 @@ static vg_status read_input(vanguard_job *job)
 }
 
 /* Store the report on the surface for vanguard_details, whether or not meshing
- * has succeeded. */
+ * has succeeded. A run that failed before the surface was checked has none. */
 static void describe_surface(vanguard_job *job)
 {
   const struct vg_problem *p = &job->problem;
@@ -133,7 +134,7 @@ static void describe_surface(vanguard_job *job)
   size_t size;
   FILE *to;
 
-  if (!m->n_tri || vg_comm_node_rank(job->comm)) return;
+  if (!p->boundary.read || !m->n_tri || vg_comm_node_rank(job->comm)) return;
   to = open_memstream(&job->details, &size);
   if (!to) return;
   vg_report_surface_text(to, m, &p->boundary.check,
@@ -167,7 +168,7 @@ done:
 vanguard_status vanguard_mesh(vanguard_job *job, vanguard_progress *progress,
                               void *user)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   struct vg_run *r = &job->run;
   vg_status st = vg_job_usable(job);
 

@@ -28,7 +28,7 @@ static vanguard_status use_function(vanguard_job *job,
                                     vanguard_metric_function *metric,
                                     void *user)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   vg_status st = vg_job_usable(job);
 
   assert(!size || !metric);
@@ -49,11 +49,13 @@ vanguard_status vanguard_sizes(vanguard_job *job, vanguard_size_function *size,
 vanguard_status vanguard_size_points(vanguard_job *job, size_t n,
                                      const double *xyz, const double *size)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   double(*at)[3] = NULL, *of = NULL;
   vg_status st;
 
   VG_TRY(vg_job_usable(job));
+  if (n) VG_TRY(vg_job_needs(job, xyz, "xyz"));
+  if (n) VG_TRY(vg_job_needs(job, size, "size"));
   VG_TRY(vg_size_samples_check("size_points", n, (const double(*)[3])xyz, size,
                                &job->err));
   at = vg_alloc(n, sizeof *at);
@@ -102,12 +104,15 @@ vanguard_status vanguard_metric_points(vanguard_job *job, size_t n,
                                        const double *xyz, const double *metric,
                                        size_t n_tet, const uint32_t *tet)
 {
-  VG_JOB_CALL(job, VANGUARD_ERR_BUSY);
+  VG_JOB_CALL(job);
   struct vg_mesh m = VG_MESH_INIT;
   double(*of)[6] = NULL;
   vg_status st;
 
   VG_TRY(vg_job_usable(job));
+  if (n) VG_TRY(vg_job_needs(job, xyz, "xyz"));
+  if (n) VG_TRY(vg_job_needs(job, metric, "metric"));
+  if (n_tet) VG_TRY(vg_job_needs(job, tet, "tet"));
   of = vg_alloc(n, sizeof *of);
   m.point = vg_alloc(n, sizeof *m.point);
   if (!of || !m.point) {

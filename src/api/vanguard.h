@@ -13,7 +13,10 @@
  * Errors. Functions that can fail return a vanguard_status, 0 on success. After
  * a failure, vanguard_message describes the problem, its location and a remedy.
  * The library never prints and never ends the process. A failed call leaves the
- * job unchanged, except that a failed vanguard_mesh discards the old mesh.
+ * job unchanged, except that a failed vanguard_mesh discards the old mesh. Calls
+ * in the wrong order, NULL for a job or for an argument that is needed, an index
+ * that is out of range, and a structure without VANGUARD_INIT give
+ * VANGUARD_ERR_USAGE (or 0, NULL or "").
  *
  * Numbering and units. Points and patches are numbered from 0. Coordinates are
  * in the length unit of the surface. The mesh depends only on the input and the
@@ -124,7 +127,7 @@ VANGUARD_API void vanguard_free(vanguard_job *job);
 /** Error message of the last call that failed; "" if none has failed. While a
  * call uses the job, and in a thread whose last call was refused with
  * VANGUARD_ERR_BUSY, the message of that status. Valid until the next call with
- * this job. Accepts NULL (out of memory). */
+ * this job. Accepts NULL (no job). */
 VANGUARD_API const char *vanguard_message(const vanguard_job *job);
 
 /** Report on the surface after vanguard_mesh, in lines of text: the repairs
@@ -369,7 +372,8 @@ struct vanguard_piece {
 VANGUARD_API size_t vanguard_pieces(const vanguard_job *job);
 
 /** Get piece i. Release it with vanguard_piece_put; several pieces may be held
- * at once. */
+ * at once. vanguard_mesh and vanguard_free release the pieces that are still
+ * held; vanguard_piece_put then does nothing. */
 VANGUARD_API vanguard_status vanguard_piece_get(vanguard_job *job, size_t i,
                                                 struct vanguard_piece *out);
 VANGUARD_API void vanguard_piece_put(vanguard_job *job,

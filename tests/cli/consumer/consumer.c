@@ -227,6 +227,32 @@ static void refuses_bad_surfaces(void)
   vanguard_free(job);
 }
 
+/* Failures before the surface has been checked, and arguments that are NULL. */
+static void survives_early_failures(void)
+{
+  const char *column[] = { "id", "bc" }, *value[] = { "99", "4" };
+  vanguard_job *job = new_cube();
+  struct vanguard_counts n = { 0 };
+  struct vanguard_piece s = VANGUARD_INIT(s);
+
+  CHECK(!vanguard_add(job, "patches", 2, column, value));
+  CHECK(vanguard_mesh(job, NULL, NULL) == VANGUARD_ERR_INPUT &&
+        says(job, "no patch 99") && !*vanguard_details(job));
+  vanguard_free(job);
+  job = new_cube();
+  CHECK(!vanguard_set(job, "sizes", "/nowhere/sizes.vtu"));
+  CHECK(vanguard_mesh(job, NULL, NULL) < 0 && says(job, "/nowhere/sizes.vtu"));
+  CHECK(!vanguard_set(job, "sizes", "") && !vanguard_mesh(job, NULL, NULL));
+  CHECK(vanguard_set(job, NULL, "1") == VANGUARD_ERR_USAGE &&
+        says(job, "'name' is NULL"));
+  CHECK(vanguard_set(NULL, "growth", "1") == VANGUARD_ERR_USAGE);
+  CHECK(vanguard_count(job, &n) == VANGUARD_ERR_USAGE &&
+        says(job, "VANGUARD_INIT"));
+  CHECK(!vanguard_piece_get(job, 0, &s) && !vanguard_mesh(job, NULL, NULL));
+  vanguard_piece_put(job, &s); /* a piece of the mesh before */
+  vanguard_free(job);
+}
+
 static void gives_arrays_and_pieces(void)
 {
   vanguard_job *job = new_cube();
@@ -589,6 +615,7 @@ int main(int argc, char **argv)
   refuses_another_abi();
   sets_by_name();
   refuses_bad_surfaces();
+  survives_early_failures();
   gives_arrays_and_pieces();
   names_causes();
   grows_layers();
