@@ -5,7 +5,7 @@
 #   ./bootstrap.sh test   build, run the whole test suite
 # Both install missing packages first (as root, or with sudo). Without root they
 # use the installed packages and name the missing ones. Further arguments go to
-# CMake, such as -DVG_CAD=OFF.
+# CMake, such as -DVG_CAD=OFF. VG_TESTS=REGEX limits the tests to some names.
 set -eu
 cd "$(dirname "$0")"
 
@@ -71,7 +71,7 @@ command=${1:-}
 case $command in
 demo)
   need "$required" "$optional"
-  build vanguard_run "$@"
+  build vanguard_run -DBUILD_TESTING=OFF "$@"
   rm -rf build/demo
   ./build/release/bin/vanguard demo wing --cells 600000 --out build/demo
   ./build/release/bin/vanguard mesh -p build/demo/wing \
@@ -82,11 +82,11 @@ demo)
   ;;
 test)
   need "$required libcmocka-dev" "$optional python3-numpy"
-  build all "$@"
-  ctest --preset release
+  build all -DBUILD_TESTING=ON "$@"
+  ctest --preset release ${VG_TESTS:+-R "$VG_TESTS"}
   ;;
 *)
-  sed -n '2,7s/^# *//p' "$0" >&2
+  sed -n '3,8s/^# *//p' "$0" >&2
   exit 2
   ;;
 esac
