@@ -50,7 +50,7 @@ mount -t tmpfs -o size=8g,mode=755 bare "$systems"
 tar=$cache/bookworm-$(date +%F).tar
 if [ ! -s "$tar" ]; then
   rm -f "$cache"/bookworm-*.tar
-  TMPDIR=$systems mmdebstrap --quiet --mode=root --variant=apt \
+  TMPDIR=$systems mmdebstrap --quiet --mode=root --variant=apt --format=tar \
     --aptopt='Acquire::Languages "none"' bookworm "$tar.part"
   mv "$tar.part" "$tar"
   say "a bare system was made: $(du -h "$tar" | cut -f1)"

@@ -40,10 +40,10 @@ complain() {
 
 sources=$(find src helpers tests bench \( -name '*.[ch]' -o -name '*.cpp' \) \
   -not -path '*/corpus/*' | sort)
-for file in $sources; do
-  "$format" "$file" | cmp -s - "$file" ||
-    complain "$file: $format -i $file changes it"
-done
+while IFS= read -r file; do
+  complain "$file: $format -i $file changes it"
+done < <(xargs -n 16 -P "$(nproc)" "$format" --dry-run <<<"$sources" 2>&1 |
+  sed -n 's/:[0-9]*:[0-9]*: warning: .*//p' | sort -u)
 while IFS= read -r place; do
   complain "$place: more than 80 columns"
 done < <(awk 'length > 80 { print FILENAME ":" FNR }' $sources)

@@ -12,6 +12,9 @@
   /* K17 ..., (K17)            the same in comments of the code
   [text](FILE#anchor)        in documents: the file and its heading
   core/mesh/mesh.h           a source file below src
+  `mesh.h`                   in documents for contributors: the only source file
+                             of that name, or that of a module which the same
+                             line names
 
 references.py ROOT
 """
@@ -36,6 +39,9 @@ IN_BRACKETS = re.compile(rf"\(({ROW}(?:{LIST}{ROW})*)\)")
 LINK = re.compile(r"\]\(([^)\s#]*)(?:#([^)\s]+))?\)")
 SOURCE = re.compile(r"(?<![\w/.-])(?:src/)?((?:base|core|layers|partition|io|"
                     r"run|api|cli)/[\w/]+\.(?:c|h|cpp))\b")
+BARE = re.compile(r"`([a-z]\w*\.(?:c|h|cpp))`")
+FOR_CONTRIBUTORS = ("docs/design/", "CONTRIBUTING.md", "tests/README.md")
+FOLDERS_OF_CODE = ("src/", "helpers/", "tests/", "bench/", "examples/")
 problems = []
 
 
@@ -130,6 +136,30 @@ def check_sources(root, path, text):
             complain(path, f"src/{name} does not exist")
 
 
+def check_bare_names(path, text, code):
+    if not path.startswith(FOR_CONTRIBUTORS):
+        return
+    for line in text.splitlines():
+        for name in BARE.findall(line):
+            places = code.get(name, [])
+            named = [p for p in places if p.replace("src/", "") in line]
+            if not places:
+                complain(path, f"there is no source file {name}")
+            elif len(places) > 1 and len(named) != 1:
+                complain(path, f"{name} is in " + ", ".join(places) +
+                         ": name the folder")
+
+
+def source_names(paths):
+    """Folders of each file name of the code."""
+    code = {}
+    for path in paths:
+        if path.startswith(FOLDERS_OF_CODE) and path.endswith(CODE):
+            folder, name = os.path.split(path)
+            code.setdefault(name, []).append(folder)
+    return code
+
+
 def main(root):
     texts = {path: read(root, path) for path in files(root)
              if "references" not in path and not path.endswith("_fails.sh")}
@@ -139,11 +169,13 @@ def main(root):
                         texts.get(DECISIONS, ""), re.M)
     for row in sorted({row for row in listed if listed.count(row) > 1}):
         complain(DECISIONS, f"row {row} occurs twice")
+    code = source_names(files(root))
     for path, text in texts.items():
         joined = running(text)
         check_cited(root, path, joined, documents)
         check_rows(path, joined, set(listed))
         check_sources(root, path, text)
+        check_bare_names(path, text, code)
         if path in documents:
             check_links(root, path, text, documents)
     print("\n".join(problems) or

@@ -50,6 +50,11 @@ refused row "docs/design/decisions.md has no row K6" docs/reference/formats.md "
 refused twice "row K2 occurs twice" docs/design/decisions.md '| K2 | 1 | `b.c` |'
 refused source "src/core/mesh/m.h does not exist" src/a.c \
   "/* core/mesh/m.h has it. */"
+refused bare "there is no source file mash.h" docs/design/decisions.md \
+  'The header `mash.h` has it.'
+mkdir -p good/src/io/mesh && touch good/src/io/mesh/mesh.h
+refused folder "mesh.h is in src/core/mesh, src/io/mesh: name the folder" \
+  docs/design/decisions.md 'The header `mesh.h` has it.'
 refused link "the link to x.md leads nowhere" docs/reference/formats.md "[x](x.md)"
 refused anchor "docs/design/decisions.md has no heading for #zones" docs/reference/formats.md \
   "[x](../design/decisions.md#zones)"
