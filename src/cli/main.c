@@ -10,7 +10,7 @@
 #include "cli/commands/commands.h"
 #include "cli/common/cli.h"
 #include "run/common/progress.h"
-#include "run/settings/settings.h"
+#include "run/settings/names.h"
 
 static const struct command {
   const char *name, *summary;
@@ -63,16 +63,12 @@ static const char *command_name(const void *user, size_t i)
 
 static int unknown(const char *word)
 {
-  const char *near = vg_nearest_name(word, N_COMMAND, command_name, NULL);
+  const struct vg_names names = { N_COMMAND, command_name, NULL };
+  char hint[VG_HINT_SIZE];
 
-  if (near)
-    fprintf(stderr, "vanguard: unknown command '%s'; did you mean '%s'?\n",
-            word, near);
-  else
-    fprintf(stderr,
-            "vanguard: unknown command '%s'; 'vanguard --help' lists "
-            "the commands\n",
-            word);
+  fprintf(stderr, "vanguard: unknown command '%s'; %s\n", word,
+          vg_hint_for(word, &names, "", "'vanguard --help' lists the commands",
+                      hint));
   return VG_EXIT_USAGE;
 }
 

@@ -10,17 +10,24 @@
 
 #include "base/memory.h"
 #include "cli/common/cli.h"
+#include "run/settings/names.h"
 
 /* --- parsing ------------------------------------------------------------- */
 
-/* The first option whose long name begins with name[0..len). */
+/* The option with the long name name[0..len), else the first one whose long
+ * name begins with it. */
 static const struct argp_option *long_option(const struct argp_option *o,
                                              const char *name, size_t len)
 {
-  for (; o->name || o->key || o->doc; o++)
-    if (o->name && !(o->flags & OPTION_DOC) && !strncmp(o->name, name, len))
-      return o;
-  return NULL;
+  const struct argp_option *first = NULL;
+
+  for (; o->name || o->key || o->doc; o++) {
+    if (!o->name || o->flags & OPTION_DOC || strncmp(o->name, name, len) != 0)
+      continue;
+    if (!o->name[len]) return o;
+    if (!first) first = o;
+  }
+  return first;
 }
 
 static const struct argp_option *short_option(const struct argp_option *o,
@@ -36,60 +43,132 @@ static const char *long_name(const void *user, size_t i)
   return (*((const struct argp_option *const *)user + i))->name;
 }
 
-/* The long name nearest to an unknown word; NULL if all are far. */
-static const char *nearest_option(const struct argp_option *o, const char *word,
-                                  size_t len)
+/* The long options that the help lists, as candidates of suggestions. */
+static struct vg_names long_names(const struct argp_option *o,
+                                  const struct argp_option **known)
 {
-  const struct argp_option *known[VG_KEY_SETTING];
-  char text[64];
-  size_t n = 0;
+  struct vg_names names = { 0, long_name, known };
 
-  snprintf(text, sizeof text, "%.*s", (int)len, word);
-  for (char *c = text; *c; c++)
-    if (*c == '_') *c = '-';
-  for (; (o->name || o->key || o->doc) && n < VG_KEY_SETTING; o++)
-    if (o->name && !(o->flags & (OPTION_DOC | OPTION_HIDDEN))) known[n++] = o;
-  return vg_nearest_name(text, n, long_name, known);
+  for (; (o->name || o->key || o->doc) && names.n < VG_KEY_SETTING; o++)
+    if (o->name && !(o->flags & (OPTION_DOC | OPTION_HIDDEN)))
+      known[names.n++] = o;
+  return names;
 }
 
-static void refuse_option(const char *command, const char *dashes,
-                          const char *word, size_t len, const char *near)
+/* The word means the number of ranks in other programs. */
+static int means_ranks(const char *word)
 {
-  fprintf(stderr, "%s: unknown option '%s%.*s'", command, dashes, (int)len,
-          word);
-  if (near) fprintf(stderr, "; did you mean '--%s'?\n", near);
-  else fprintf(stderr, "; '%s --help' lists the options\n", command);
+  static const struct argp_option option = { .name = "ranks" };
+  const struct argp_option *known = &option;
+  const struct vg_names names = { 1, long_name, &known };
+  struct vg_suggestion s;
+
+  vg_suggest_field(word, &names, &s);
+  return s.n > 0;
+}
+
+struct command_line {
+  const struct argp_option *option;
+  const char *command; /* "vanguard mesh" */
+  int argc;
+  char **argv;
+  int at; /* the word that is checked */
+};
+
+/* Ranks are given to the launcher of MPI, not to the program. */
+static void refuse_ranks(const struct command_line *l, const char *dashes,
+                         const char *word)
+{
+  const char *next = l->at + 1 < l->argc ? l->argv[l->at + 1] : "";
+  const int is_number = *next && !next[strspn(next, "0123456789")];
+  const char *n = is_number ? next : "N";
+
+  fprintf(stderr, "%s: unknown option '%s%s'; ", l->command, dashes, word);
+  if (!strcmp(l->command, "vanguard mesh"))
+    fprintf(stderr,
+            "the launcher of MPI sets the number of ranks, as in 'mpirun -n %s "
+            "vanguard mesh -p PROJECT', and '--threads %s' the number of "
+            "threads of each rank\n",
+            n, n);
+  else
+    fprintf(stderr,
+            "'%s' runs in one process, and '--threads %s' sets the number of "
+            "its threads\n",
+            l->command, n);
   exit(VG_EXIT_USAGE);
 }
 
+static void refuse_option(const struct command_line *l, const char *dashes,
+                          const char *given, size_t len)
+{
+  const struct argp_option *known[VG_KEY_SETTING];
+  const struct vg_names names = long_names(l->option, known);
+  char word[64], hint[VG_HINT_SIZE], help[96];
+  struct vg_suggestion near;
+
+  snprintf(word, sizeof word, "%.*s", (int)len, given);
+  if (means_ranks(word) && long_option(l->option, "threads", 7) &&
+      !long_option(l->option, "ranks", 5) &&
+      !long_option(l->option, "parts", 5))
+    refuse_ranks(l, dashes, word);
+  vg_suggest(word, &names, &near);
+  snprintf(help, sizeof help, "'%.64s --help' lists the options", l->command);
+  fprintf(stderr, "%s: unknown option '%s%.*s'; %s\n", l->command, dashes,
+          (int)len, given, vg_hint(&near, "--", help, hint));
+  exit(VG_EXIT_USAGE);
+}
+
+/* getopt completes "--size" to "--sizes". An abbreviation that other mesh
+ * generators use for another option is refused. */
+static void check_abbreviation(const struct command_line *l, const char *given,
+                               size_t len)
+{
+  const struct argp_option *known[VG_KEY_SETTING];
+  const struct vg_names names = long_names(l->option, known);
+  struct vg_suggestion field;
+  char word[64];
+
+  if (len >= sizeof word) return;
+  snprintf(word, sizeof word, "%.*s", (int)len, given);
+  vg_suggest_field(word, &names, &field);
+  for (size_t i = 0; i < field.n; i++) {
+    if (!strncmp(field.name[i], given, len)) continue;
+    fprintf(stderr,
+            "%s: option '--%s' is ambiguous: it abbreviates '--%s', but other "
+            "mesh generators use the word for '--%s'%s%s%s; write the option "
+            "in full\n",
+            l->command, word, long_option(l->option, word, len)->name,
+            field.name[0], field.n > 1 ? " or '--" : "",
+            field.n > 1 ? field.name[1] : "", field.n > 1 ? "'" : "");
+    exit(VG_EXIT_USAGE);
+  }
+}
+
 /* "--name" or "--name=value". Returns 1 if the next word is its value. */
-static int check_long(const struct argp_option *o, const char *command,
-                      const char *word)
+static int check_long(const struct command_line *l, const char *word)
 {
   size_t len = strcspn(word, "=");
-  const struct argp_option *found = long_option(o, word, len);
+  const struct argp_option *found = long_option(l->option, word, len);
   static const char *const own[] = { "help", "usage" };
 
+  if (found && found->name[len]) check_abbreviation(l, word, len);
   if (found) return found->arg && !word[len];
   for (size_t i = 0; i < sizeof own / sizeof *own; i++)
     if (!strncmp(own[i], word, len)) return 0;
-  refuse_option(command, "--", word, len, nearest_option(o, word, len));
+  refuse_option(l, "--", word, len);
   return 0;
 }
 
 /* "-abc". Returns 1 if the next word is the value of the last letter. */
-static int check_short(const struct argp_option *o, const char *command,
-                       const char *word)
+static int check_short(const struct command_line *l, const char *word)
 {
   for (const char *c = word; *c; c++) {
-    const struct argp_option *found = short_option(o, (unsigned char)*c);
+    const struct argp_option *found = short_option(l->option,
+                                                   (unsigned char)*c);
 
     if (found && found->arg) return !c[1];
     if (!found && !strchr("?h", *c))
-      refuse_option(command, "-", word, strlen(word),
-                    strlen(word) > 2
-                      ? nearest_option(o, word, strcspn(word, "="))
-                      : NULL);
+      refuse_option(l, "-", word, strcspn(word, "="));
   }
   return 0;
 }
@@ -98,13 +177,15 @@ static int check_short(const struct argp_option *o, const char *command,
  * that are values of options are skipped. */
 static void check_options(const struct argp_option *o, int argc, char **argv)
 {
-  for (int i = 1; i < argc; i++) {
-    const char *word = argv[i];
+  struct command_line l = { o, argv[0], argc, argv, 1 };
+
+  for (; l.at < argc; l.at++) {
+    const char *word = argv[l.at];
 
     if (!strcmp(word, "--")) return;
     if (word[0] != '-' || !word[1]) continue;
-    i += word[1] == '-' ? check_long(o, argv[0], word + 2)
-                        : check_short(o, argv[0], word + 1);
+    l.at += word[1] == '-' ? check_long(&l, word + 2)
+                           : check_short(&l, word + 1);
   }
 }
 

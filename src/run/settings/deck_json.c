@@ -12,6 +12,7 @@
 
 #include "io/stream/stream.h"
 #include "run/common/text.h"
+#include "run/settings/names.h"
 
 #define PLACE_SIZE 200 /* the place of a member, as in sources[2].h0 */
 #define MAX_EXACT                                                              \
@@ -51,13 +52,59 @@ static const char *top_name(const void *user, size_t i)
   return vg_settings_table((enum vg_table_kind)(i - N_TOP))->name;
 }
 
-static vg_status unknown(const char *file, const char *place, const char *near,
+static vg_status unknown(const char *file, const char *place,
+                         const struct vg_suggestion *near, const char *before,
                          struct vg_error *err)
 {
-  if (near)
-    return refuse(err, file, place, "unknown name; did you mean '%s'?", near);
-  return refuse(err, file, place,
-                "unknown name; 'vanguard deck --schema' describes all names");
+  char hint[VG_HINT_SIZE];
+
+  return refuse(err, file, place, "unknown name; %s",
+                vg_hint(near, before,
+                        "'vanguard deck --schema' describes all names", hint));
+}
+
+/* A member that is not in p[n]: the settings or the columns of a table. */
+static vg_status unknown_member(const char *file, const char *place,
+                                const char *name, const struct vg_param *p,
+                                size_t n, struct vg_error *err)
+{
+  const struct vg_names columns = { n, param_name, p };
+  struct vg_suggestion near;
+  size_t n_setting;
+
+  if (p != vg_settings_params(&n_setting)) {
+    vg_suggest(name, &columns, &near);
+    return unknown(file, place, &near, "", err);
+  }
+  for (int k = 0; k < VG_TABLE_N; k++)
+    if (!strcmp(name, vg_settings_table((enum vg_table_kind)k)->name))
+      return refuse(err, file, place,
+                    "'%s' is a table; give it outside of 'settings'", name);
+  vg_suggest_setting(name, &near);
+  vg_suggest_place(&near);
+  return unknown(file, place, &near, "", err);
+}
+
+/* A member of the deck that is neither a table nor `settings`, into which
+ * settings belong. */
+static vg_status unknown_top(const char *file, const char *name,
+                             struct vg_error *err)
+{
+  const struct vg_names names = { N_TOP + VG_TABLE_N, top_name, NULL };
+  struct vg_suggestion near;
+  size_t n;
+  const struct vg_param *p = vg_settings_params(&n);
+
+  for (size_t i = 0; i < n; i++)
+    if (!strcmp(p[i].name, name))
+      return refuse(err, file, name,
+                    "this is a setting; give it as a member of 'settings'");
+  vg_suggest(name, &names, &near);
+  if (near.n) return unknown(file, name, &near, "", err);
+  vg_suggest_setting(name, &near);
+  vg_suggest_place(&near);
+  return unknown(file, name, &near,
+                 near.n && strchr(near.name[0], '.') ? "" : "settings.", err);
 }
 
 /* --- values -------------------------------------------------------------- */
@@ -170,8 +217,7 @@ static vg_status set_members(const char *file, const char *place,
 
     while (i < n && strcmp(p[i].name, name) != 0) i++;
     snprintf(at, sizeof at, "%s.%s", place, name);
-    if (i == n)
-      return unknown(file, at, vg_nearest_name(name, n, param_name, p), err);
+    if (i == n) return unknown_member(file, at, name, p, n, err);
     if (set_value(file, at, &p[i], value, base, err) < 0) return VG_ERR_INPUT;
   }
   for (size_t i = 0; i < n; i++)
@@ -250,9 +296,7 @@ static vg_status set_top(const char *file, const char *name, json_t *value,
   for (int k = 0; k < VG_TABLE_N; k++)
     if (!strcmp(name, vg_settings_table((enum vg_table_kind)k)->name))
       return add_table(file, (enum vg_table_kind)k, value, s, err);
-  return unknown(file, name,
-                 vg_nearest_name(name, N_TOP + VG_TABLE_N, top_name, NULL),
-                 err);
+  return unknown_top(file, name, err);
 }
 
 static json_t *load(const char *name, const void *data, size_t size,

@@ -9,6 +9,7 @@
 #include "io/stream/stream.h"
 #include "run/settings/deck.h"
 #include "run/settings/deck_json.h"
+#include "run/settings/names.h"
 
 #define MAX_TOKENS 64 /* more than any table has columns */
 #define TOKEN_SIZE 512
@@ -139,39 +140,38 @@ static int find_table(const char *name)
   return -1;
 }
 
-/* Names that may begin a block: parameters, then tables. */
+/* Names that may begin a block: tables, then settings. */
 static const char *any_name(const void *user, size_t i)
 {
-  size_t n;
-  const struct vg_param *p = vg_settings_params(&n);
+  const char *name = "";
+  int in_farfield;
 
   (void)user;
-  if (i < n) return p[i].name;
-  return vg_settings_table((enum vg_table_kind)(i - n))->name;
+  if (i < VG_TABLE_N) return vg_settings_table((enum vg_table_kind)i)->name;
+  vg_settings_name(i - VG_TABLE_N, &name, &in_farfield);
+  return name;
 }
 
-/* Suggest the nearest column of the table or, outside tables, the nearest
- * parameter or table. */
+/* Suggest a column of the table or, outside tables, a setting or a table. */
 static vg_status unknown_name(const struct reader *r, const char *name,
                               const struct vg_setting_table *table,
                               struct vg_error *err)
 {
-  size_t n;
-  const char *near, *where = table ? table->name : "this deck";
+  struct vg_names names = { VG_TABLE_N, any_name, NULL };
+  struct vg_suggestion near;
+  char hint[VG_HINT_SIZE];
+  const char *text;
+  int in_farfield;
 
-  vg_settings_params(&n);
-  near = table
-         ? vg_nearest_name(name, table->n_column, param_name, table->column)
-         : vg_nearest_name(name, n + VG_TABLE_N, any_name, NULL);
-  if (near)
-    return vg_fail(err, VG_ERR_FORMAT,
-                   "%s:%zu: unknown name '%s' in "
-                   "%s; did you mean '%s'?",
-                   r->in.path, r->line, name, where, near);
-  return vg_fail(err, VG_ERR_FORMAT,
-                 "%s:%zu: unknown name '%s' in %s; "
-                 "'vanguard deck' writes a deck with all names",
-                 r->in.path, r->line, name, where);
+  while (vg_settings_name(names.n - VG_TABLE_N, &text, &in_farfield)) names.n++;
+  if (table)
+    names = (struct vg_names){ table->n_column, param_name, table->column };
+  vg_suggest(name, &names, &near);
+  if (!table) vg_suggest_place(&near);
+  return vg_fail(err, VG_ERR_FORMAT, "%s:%zu: unknown name '%s' in %s; %s",
+                 r->in.path, r->line, name, table ? table->name : "this deck",
+                 vg_hint(&near, "",
+                         "'vanguard deck' writes a deck with all names", hint));
 }
 
 /* Look up the tokens as names in p[n]; table NULL: the parameters. */

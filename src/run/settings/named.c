@@ -6,21 +6,22 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "run/settings/names.h"
 #include "run/settings/settings.h"
 
 /* Columns of the farfield table that are also plain settings, with their
  * names. */
 static const struct {
-  const char *column, *name;
+  const char *column, *name, *place;
 } farfield_names[] = {
-  { "kind", "farfield" },
-  { "lengths", "farfield_lengths" },
-  { "size", "farfield_size" },
-  { "spacing", "farfield_spacing" },
-  { "mach", "farfield_mach" },
-  { "upstream", "farfield_upstream" },
-  { "downstream", "farfield_downstream" },
-  { "radial", "farfield_radial" },
+  { "kind", "farfield", "farfield.kind" },
+  { "lengths", "farfield_lengths", "farfield.lengths" },
+  { "size", "farfield_size", "farfield.size" },
+  { "spacing", "farfield_spacing", "farfield.spacing" },
+  { "mach", "farfield_mach", "farfield.mach" },
+  { "upstream", "farfield_upstream", "farfield.upstream" },
+  { "downstream", "farfield_downstream", "farfield.downstream" },
+  { "radial", "farfield_radial", "farfield.radial" },
 };
 #define N_FARFIELD (sizeof farfield_names / sizeof *farfield_names)
 
@@ -105,22 +106,37 @@ static const char *name_at(const void *user, size_t i)
   return name;
 }
 
+void vg_suggest_place(struct vg_suggestion *s)
+{
+  for (size_t i = 0; i < s->n; i++)
+    for (size_t k = 0; k < N_FARFIELD; k++)
+      if (!strcmp(s->name[i], farfield_names[k].name))
+        s->name[i] = farfield_names[k].place;
+}
+
+void vg_suggest_setting(const char *text, struct vg_suggestion *out)
+{
+  struct vg_names names = { 0, name_at, NULL };
+  const char *name;
+  int in_farfield;
+
+  while (vg_settings_name(names.n, &name, &in_farfield)) names.n++;
+  vg_suggest(text, &names, out);
+}
+
 static const struct vg_param *find(const char *name, int *in_farfield,
                                    struct vg_error *err)
 {
+  struct vg_suggestion near;
+  char hint[VG_HINT_SIZE];
   const struct vg_param *p;
-  const char *known, *near;
-  size_t n;
+  const char *known;
 
-  for (n = 0; (p = vg_settings_name(n, &known, in_farfield)); n++)
+  for (size_t i = 0; (p = vg_settings_name(i, &known, in_farfield)); i++)
     if (same_name(name, known)) return p;
-  near = vg_nearest_name(name, n, name_at, NULL);
-  if (near)
-    vg_fail(err, VG_ERR_INPUT, "unknown setting '%s'; did you mean '%s'?", name,
-            near);
-  else
-    vg_fail(err, VG_ERR_INPUT,
-            "unknown setting '%s'; 'vanguard deck' lists all settings", name);
+  vg_suggest_setting(name, &near);
+  vg_fail(err, VG_ERR_INPUT, "unknown setting '%s'; %s", name,
+          vg_hint(&near, "", "'vanguard deck' lists all settings", hint));
   return NULL;
 }
 
@@ -152,32 +168,51 @@ vg_status vg_settings_get(const struct vg_settings *s, const char *name,
 
 /* --- rows ---------------------------------------------------------------- */
 
+static const char *table_name(const void *user, size_t i)
+{
+  (void)user;
+  return vg_settings_table((enum vg_table_kind)i)->name;
+}
+
+static const char *column_name(const void *table, size_t i)
+{
+  return ((const struct vg_setting_table *)table)->column[i].name;
+}
+
 static vg_status find_table(const char *name, enum vg_table_kind *kind,
                             struct vg_error *err)
 {
+  const struct vg_names names = { VG_TABLE_N, table_name, NULL };
+  char hint[VG_HINT_SIZE];
+
   for (int k = 0; k < VG_TABLE_N; k++)
     if (!strcmp(name, vg_settings_table((enum vg_table_kind)k)->name)) {
       *kind = (enum vg_table_kind)k;
       return VG_OK;
     }
-  return vg_fail(err, VG_ERR_INPUT,
-                 "unknown table '%s'; the tables are farfield, "
-                 "patches, layers, surface, sources and sweep",
-                 name);
+  return vg_fail(err, VG_ERR_INPUT, "unknown table '%s'; %s", name,
+                 vg_hint_for(name, &names, "",
+                             "the tables are farfield, patches, layers, "
+                             "surface, sources and sweep",
+                             hint));
 }
 
 static vg_status set_columns(const struct vg_setting_table *t, void *row,
                              size_t n, const char *const *column,
                              const char *const *value, struct vg_error *err)
 {
+  const struct vg_names names = { t->n_column, column_name, t };
   struct vg_error why = VG_ERROR_INIT;
+  char hint[VG_HINT_SIZE];
 
   for (size_t i = 0; i < n; i++) {
     const struct vg_param *p = column_of(t, column[i]);
 
     if (!p)
-      return vg_fail(err, VG_ERR_INPUT, "%s: unknown column '%s'", t->name,
-                     column[i]);
+      return vg_fail(err, VG_ERR_INPUT, "%s: unknown column '%s'; %s", t->name,
+                     column[i],
+                     vg_hint_for(column[i], &names, "",
+                                 "'vanguard deck' lists the columns", hint));
     if (vg_param_set(p, row, value[i], strlen(value[i]), &why) < 0)
       return vg_fail(err, why.code, "%s: %s", t->name, why.text);
   }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-/* Conversion of settings from and to text, and the search for the nearest name
- * to a misspelt one. Declared in run/settings/settings.h. */
+/* Conversion of settings from and to text. Declared in
+ * run/settings/settings.h. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,6 +9,7 @@
 
 #include "io/stream/stream.h"
 #include "run/common/ranges.h"
+#include "run/settings/names.h"
 #include "run/settings/settings.h"
 
 static vg_status out_of_range(const struct vg_param *p, const char *text,
@@ -110,8 +111,8 @@ static vg_status set_word(const struct vg_param *p, const char *const *words,
                           void *at, const char *text, size_t len,
                           struct vg_error *err)
 {
-  char list[256] = "", word[64];
-  const char *near;
+  char list[256] = "", word[64], hint[VG_HINT_SIZE];
+  struct vg_names names = { 0, word_at, words };
   size_t n = 0, used = 0;
 
   for (; words[n]; n++) {
@@ -125,12 +126,11 @@ static vg_status set_word(const struct vg_param *p, const char *const *words,
                              n ? ", " : "", words[n]);
   }
   snprintf(word, sizeof word, "%.*s", (int)len, text);
-  near = vg_nearest_name(word, n, word_at, words);
-  if (near)
-    return vg_fail(err, VG_ERR_INPUT,
-                   "%s cannot be '%s'; did you mean '%s'? "
-                   "(one of %s)",
-                   p->name, word, near, list);
+  names.n = n;
+  vg_hint_for(word, &names, "", "", hint);
+  if (*hint)
+    return vg_fail(err, VG_ERR_INPUT, "%s cannot be '%s'; %s (one of %s)",
+                   p->name, word, hint, list);
   return vg_fail(err, VG_ERR_INPUT, "%s cannot be '%s'; it is one of %s",
                  p->name, word, list);
 }
@@ -241,60 +241,4 @@ void vg_param_format(const struct vg_param *p, const void *base, char *out,
     break;
   case VG_PARAM_TEXT: format_text(at, out, size); break;
   }
-}
-
-/* Edit distance with transpositions (optimal string alignment). */
-static size_t distance(const char *a, const char *b)
-{
-  size_t row[3][72], n = strlen(a), m = strlen(b);
-
-  if (n > 70 || m > 70) return SIZE_MAX;
-  for (size_t j = 0; j <= m; j++) row[0][j] = j;
-  for (size_t i = 1; i <= n; i++) {
-    size_t *now = row[i % 3], *up = row[(i + 2) % 3], *two = row[(i + 1) % 3];
-
-    now[0] = i;
-    for (size_t j = 1; j <= m; j++) {
-      size_t best = up[j - 1] + (a[i - 1] != b[j - 1]);
-
-      if (up[j] + 1 < best) best = up[j] + 1;
-      if (now[j - 1] + 1 < best) best = now[j - 1] + 1;
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
-          two[j - 2] + 1 < best)
-        best = two[j - 2] + 1;
-      now[j] = best;
-    }
-  }
-  return row[n % 3][m];
-}
-
-/* Names of earlier versions and their successors. */
-static const char *const renamed[][2] = { { "ridge_angle", "feature_angle" },
-                                          { "levels", "bisections" },
-                                          { "parts", "subdomains" },
-                                          { "beside", "adjacent" },
-                                          { "symmetry", "half" } };
-
-static const char *successor(const char *name)
-{
-  for (size_t k = 0; k < sizeof renamed / sizeof *renamed; k++)
-    if (!strcmp(name, renamed[k][0])) return renamed[k][1];
-  return name;
-}
-
-const char *vg_nearest_name(const char *text, size_t n,
-                            const char *(*get)(const void *user, size_t i),
-                            const void *user)
-{
-  size_t limit = 1 + strlen(text) / 3, best = SIZE_MAX;
-  const char *name = NULL, *now = successor(text);
-
-  for (size_t i = 0; i < n; i++) {
-    const char *candidate = get(user, i);
-    size_t d = distance(text, candidate);
-
-    if (now != text && !strcmp(now, candidate)) return candidate;
-    if (d < best) best = d, name = candidate;
-  }
-  return best <= limit ? name : NULL;
 }

@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "io/stream/stream.h"
+#include "run/settings/names.h"
 
 #define SHOWN_PATCHES 30
 
@@ -147,15 +148,14 @@ static vg_status no_name(const char *what, const char *name,
                          const struct vg_mesh *m, size_t n,
                          struct vg_error *err)
 {
-  const char *near = vg_nearest_name(name, n, name_of, m);
-  char list[600], hint[VG_NAME_MAX + 32] = ".";
+  const struct vg_names names = { n, name_of, m };
+  char list[600], hint[VG_HINT_SIZE];
 
   vg_patch_list_text(m, n, list, sizeof list);
-  if (near && *near)
-    snprintf(hint, sizeof hint, "; did you mean '%.*s'?", VG_NAME_MAX, near);
+  vg_hint_for(name, &names, "", "", hint);
   return vg_fail(err, VG_ERR_INPUT,
-                 "%s: no patch of the surface is named '%s'%s Patches: %s",
-                 what, name, hint, list);
+                 "%s: no patch of the surface is named '%s'%s%s Patches: %s",
+                 what, name, *hint ? "; " : ".", hint, list);
 }
 
 static vg_status no_number(const char *what, int64_t from, int64_t to,

@@ -303,13 +303,6 @@ vg_status vg_param_set(const struct vg_param *p, void *base, const char *text,
 void vg_param_format(const struct vg_param *p, const void *base, char *out,
                      size_t size);
 
-/** The name nearest to `text` (names are get(user, i), i < n), or NULL if none
- * is near enough for `text` to be a misspelling of it. If `text` is the name of
- * a setting in an earlier version, its present name. */
-const char *vg_nearest_name(const char *text, size_t n,
-                            const char *(*get)(const void *user, size_t i),
-                            const void *user);
-
 /** Reset the alternatives of a setting. Some quantities can be given in two
  * ways (first and y_plus, ratio and the rates, leaf_cells and bisections); the
  * one that was set last applies.
