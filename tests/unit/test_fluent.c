@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Meshes for Fluent, read back by the published grammar: every side of every
  * cell occurs once, with the required orientation. */
+#define _GNU_SOURCE
 #include "mixed_support.h"
 
 #include "io/mesh/fluent.h"
@@ -192,6 +193,29 @@ static void all_kinds_of_cells(void **state)
   vg_mesh_release(&m);
 }
 
+/* Zones of cells and inner faces have names that no patch has. */
+static void zones_have_unique_names(void **state)
+{
+  const char *path = io_temp("zones.fluent.msh");
+  struct vg_mesh m = VG_MESH_INIT;
+  unsigned char *data;
+  size_t n;
+
+  (void)state;
+  mixed_make(&m, 2, 2);
+  strcpy(m.patch[0].name, "fluid");
+  strcpy(m.patch[1].name, "interior");
+  assert_int_equal(vg_fluent_write(path, &m, NULL), VG_OK);
+  data = io_slurp(path, &n);
+  assert_non_null(memmem(data, n, "(2 fluid fluid_1)", 17));
+  assert_non_null(memmem(data, n, "(3 interior interior_1)", 23));
+  assert_non_null(memmem(data, n, " fluid)()", 9));
+  assert_non_null(memmem(data, n, " interior)()", 12));
+  free(data);
+  unlink(path);
+  vg_mesh_release(&m);
+}
+
 static void refusals(void **state)
 {
   const char *path = io_temp("refused.fluent.msh");
@@ -218,6 +242,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_kinds_of_cells),
+    cmocka_unit_test(zones_have_unique_names),
     cmocka_unit_test(refusals),
   };
 

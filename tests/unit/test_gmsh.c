@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
 /* Gmsh's .msh: written meshes are read back; every layout that Gmsh itself
  * writes is read; damaged files are refused. */
+#define _GNU_SOURCE
 #include "mixed_support.h"
 
 #include "io/mesh/gmsh.h"
@@ -381,6 +382,59 @@ static void surfaces_come_back(void **state)
   vg_mesh_release(&back);
 }
 
+/* The first occurrence of text in the bytes of a file. */
+static const char *find_text(const unsigned char *data, size_t n,
+                             const char *text)
+{
+  return memmem(data, n, text, strlen(text));
+}
+
+/* Programs look up a group by its number or its name without the dimension, so
+ * the group of the cells differs from all patches in both. */
+static void the_volume_has_its_own_number_and_name(void **state)
+{
+  static const struct {
+    int32_t id[3];
+    const char *name[3], *volume;
+  } c[] = {
+    { { 1, 2, 3 }, { "low", "top", "far" }, "3 4 \"fluid\"\n" },
+    { { 1, 7, 3 }, { "low", "fluid", "far" }, "3 8 \"fluid_1\"\n" },
+    { { 3, 2, 1 }, { "Fluid", "fluid_1", "x" }, "3 4 \"fluid_2\"\n" },
+    { { -5, 2, 9 }, { "low", "top", "far" }, "3 4 \"fluid\"\n" },
+    { { INT32_MAX, 2, 9 }, { "a", "b", "c" }, "3 4 \"fluid\"\n" },
+  };
+  const char *path = io_temp("volume.msh");
+
+  (void)state;
+  for (size_t i = 0; i < sizeof c / sizeof *c; i++) {
+    struct vg_mesh m = VG_MESH_INIT, back = VG_MESH_INIT;
+    unsigned char *data;
+    size_t n;
+
+    mixed_make(&m, 2, 2);
+    for (int p = 0; p < 3; p++) {
+      m.patch[p].id = c[i].id[p];
+      strcpy(m.patch[p].name, c[i].name[p]);
+    }
+    assert_int_equal(vg_gmsh_write(path, &m, NULL), VG_OK);
+    data = io_slurp(path, &n);
+    if (!find_text(data, n, c[i].volume))
+      fail_msg("case %zu has no %s", i, c[i].volume);
+    free(data);
+    assert_int_equal(vg_gmsh_read(path, &back, NULL), VG_OK);
+    assert_int_equal(back.n_patch, 3);
+    for (int p = 0; p < 3; p++) {
+      int k = 0;
+
+      while (k < 3 && strcmp(back.patch[k].name, c[i].name[p])) k++;
+      assert_true(k < 3);
+    }
+    vg_mesh_release(&m);
+    vg_mesh_release(&back);
+  }
+  unlink(path);
+}
+
 static void writes_nothing_for_an_empty_mesh(void **state)
 {
   const char *path = io_temp("nothing.msh");
@@ -405,6 +459,7 @@ int main(void)
     cmocka_unit_test(refusals),
     cmocka_unit_test(all_kinds_come_back),
     cmocka_unit_test(surfaces_come_back),
+    cmocka_unit_test(the_volume_has_its_own_number_and_name),
     cmocka_unit_test(writes_nothing_for_an_empty_mesh),
   };
 

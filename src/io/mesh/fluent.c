@@ -146,9 +146,14 @@ static void put_head(struct vg_output *out, size_t zone, uint64_t before,
 /* Zone numbers are decimal in this section. */
 static void put_names(struct vg_output *out, const struct vg_fluent *f)
 {
-  vg_output_format(out, "(45 (%d fluid fluid)())\n", FLUID);
+  const char(*word)[VG_PATCH_WORD] = (const char(*)[VG_PATCH_WORD])f->word;
+  char name[VG_PATCH_WORD];
+
+  vg_patch_free_word(word, f->frame->n_patch, "fluid", name);
+  vg_output_format(out, "(45 (%d fluid %s)())\n", FLUID, name);
+  vg_patch_free_word(word, f->frame->n_patch, "interior", name);
   if (f->n_internal)
-    vg_output_format(out, "(45 (%d interior interior)())\n", INTERIOR);
+    vg_output_format(out, "(45 (%d interior %s)())\n", INTERIOR, name);
   for (size_t p = 0; p < f->frame->n_patch; p++)
     if (f->start[p] < f->start[p + 1])
       vg_output_format(out, "(45 (%zu %s %s)())\n", PATCHES + p,

@@ -13,7 +13,8 @@
 #define VG_FLUENT_SUFFIX "fluent.msh"
 
 /** Write the cells as zone "fluid", the faces between them as zone "interior",
- * and one zone per patch. Names of patches are those of vg_patch_words. The
+ * and one zone per patch. Names of patches are those of vg_patch_words; a zone
+ * whose name a patch has is called "fluid_1" or "interior_1". The
  * type of a zone follows from its boundary condition: wall, symmetry,
  * pressure-far-field, pressure-inlet or pressure-outlet; a patch without a
  * condition is a wall. Cells keep their order: tetrahedra, pyramids, prisms,

@@ -67,7 +67,8 @@ static void put_head(struct vg_output *out, const struct vg_gmsh *g)
   for (size_t p = 0; p < g->frame->n_patch; p++)
     if (!is_empty(g, p))
       vg_output_format(out, "2 %d \"%s\"\n", (int)tag_of(g, p), g->word[p]);
-  if (has_cells) vg_output_text(out, "3 1 \"fluid\"\n");
+  if (has_cells)
+    vg_output_format(out, "3 %d \"%s\"\n", (int)g->volume, g->volume_word);
   vg_output_text(out, "$EndPhysicalNames\n");
 }
 
@@ -139,7 +140,7 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
     widen(all, box + 3);
   }
   if (has_cells) {
-    put_entity(out, 1, all, 1, g->n_surface);
+    put_entity(out, g->volume, all, g->volume, g->n_surface);
     for (size_t p = 0; p < g->frame->n_patch; p++) {
       int32_t inward = -tag_of(g, p); /* surfaces are oriented as our faces,
                                          inward */
@@ -156,7 +157,7 @@ void vg_gmsh_put_entities(struct vg_output *out, const struct vg_gmsh *g,
  * surface if there are no cells. */
 static void put_nodes_head(struct vg_output *out, const struct vg_gmsh *g)
 {
-  int32_t entity[3] = { VOLUME, 1, 0 };
+  int32_t entity[3] = { VOLUME, g->volume, 0 };
   uint64_t n = g->frame->n_point;
   size_t p = 0;
 
@@ -307,7 +308,8 @@ static void put_cells(struct vg_output *out, const struct vg_gmsh *g,
                                                 (const uint32_t *)m->hex };
 
   for (int k = 0; k < VG_GMSH_KINDS; k++) {
-    if (g->n_cell[k]) put_block(out, VOLUME, 1, kinds[k].type, g->n_cell[k]);
+    if (g->n_cell[k])
+      put_block(out, VOLUME, g->volume, kinds[k].type, g->n_cell[k]);
     at[k] = out->written;
     if (!m->point) vg_output_skip(out, g->n_cell[k] * cell_size(k));
     else vg_gmsh_put_cells(out, g, k, 0, (size_t)g->n_cell[k], cell[k], NULL);
@@ -354,6 +356,26 @@ static vg_status find_places(struct vg_gmsh *g, struct vg_error *err)
   return VG_OK;
 }
 
+/* Number surfaces and the volume, and name the volume. Some programs look up a
+ * group by its number or name alone, without the dimension, so both are unique
+ * over dimensions. */
+static void number_groups(struct vg_gmsh *g)
+{
+  const struct vg_mesh *m = g->frame;
+  int32_t last = 0;
+
+  for (size_t p = 0; p < m->n_patch; p++) {
+    int32_t id = m->patch[p].id;
+
+    g->n_surface += !is_empty(g, p);
+    g->has_ids &= id > 0 && id < INT32_MAX;
+    if (id > last) last = id;
+  }
+  g->volume = 1 + (g->has_ids ? last : (int32_t)m->n_patch);
+  vg_patch_free_word((const char(*)[VG_PATCH_WORD])g->word, m->n_patch, "fluid",
+                     g->volume_word);
+}
+
 vg_status vg_gmsh_plan(const char *path, const struct vg_mesh *frame,
                        struct vg_gmsh *g, struct vg_error *err)
 {
@@ -371,10 +393,7 @@ vg_status vg_gmsh_plan(const char *path, const struct vg_mesh *frame,
   g->word = vg_patch_words(frame, VG_PATCH_WORD_MOST);
   if (!g->word) return vg_fail_memory(err, "the names of the patches");
   VG_TRY(vg_boundary_by_patch(frame, &g->face_first, &g->face, err));
-  for (size_t p = 0; p < frame->n_patch; p++) {
-    g->n_surface += !is_empty(g, p);
-    g->has_ids &= frame->patch[p].id > 0;
-  }
+  number_groups(g);
   g->first[0] = count_faces(g) + 1;
   for (int k = 1; k < VG_GMSH_KINDS; k++)
     g->first[k] = g->first[k - 1] + g->n_cell[k - 1];

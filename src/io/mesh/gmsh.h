@@ -5,8 +5,9 @@
  *
  * A patch is a physical group of surfaces, with the patch's name. If all
  * patches have positive ids, the ids are the group numbers; otherwise groups
- * are numbered from 1. The cells are the physical group "fluid". The format
- * cannot store boundary conditions. */
+ * are numbered from 1. The cells are the physical group "fluid", or "fluid_1"
+ * and so on if a patch has that name; its number is one more than the highest
+ * of the patches. The format cannot store boundary conditions. */
 #ifndef VG_IO_MESH_GMSH_H
 #define VG_IO_MESH_GMSH_H
 

@@ -14,10 +14,12 @@ enum { VG_GMSH_KINDS = 4 }; /* tetrahedra, pyramids, prisms, hexahedra */
 /** Layout of a file; determined by counts and boundary of the frame. */
 struct vg_gmsh {
   const struct vg_mesh *frame;
-  char (*word)[VG_PATCH_WORD]; /* [n_patch] */
-  size_t *face_first, *face;   /* from vg_boundary_by_patch */
-  size_t n_surface;            /* number of patches with faces */
-  int has_ids;                 /* patches keep their ids */
+  char (*word)[VG_PATCH_WORD];     /* [n_patch] */
+  size_t *face_first, *face;       /* from vg_boundary_by_patch */
+  size_t n_surface;                /* number of patches with faces */
+  int has_ids;                     /* patches keep their ids */
+  int32_t volume;                  /* number of the volume and of its group */
+  char volume_word[VG_PATCH_WORD]; /* name of that group */
   uint64_t n_cell[VG_GMSH_KINDS];
   /* Offsets in the file. */
   uint64_t at_entities, at_tag, at_point, at[VG_GMSH_KINDS];

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/memory.h"
 
@@ -83,4 +84,17 @@ char (*vg_patch_words(const struct vg_mesh *m, size_t most))[VG_PATCH_WORD]
   }
   free(list);
   return name;
+}
+
+void vg_patch_free_word(const char (*used)[VG_PATCH_WORD], size_t n,
+                        const char *word, char out[VG_PATCH_WORD])
+{
+  assert(word && strlen(word) < VG_NAME_MAX && out);
+
+  snprintf(out, VG_PATCH_WORD, "%s", word);
+  for (size_t turn = 1, i = 0; i < n; i++)
+    if (!strcasecmp(used[i], out)) {
+      snprintf(out, VG_PATCH_WORD, "%s_%zu", word, turn++);
+      i = SIZE_MAX; /* compare with all again */
+    }
 }
