@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: LGPL-3.0-or-later */
-#include "io_support.h"
+#include "mixed_support.h"
 
 #include "io/mesh/format.h"
+#include "io/stream/convention.h"
 #include "io/vgrid/vgrid.h"
 
 static int can_write(const char *suffix)
@@ -279,6 +280,102 @@ static void reads_real_surfaces(void **state)
   }
 }
 
+/* A function that returns different numbers in each call. */
+static uint32_t next_random(uint32_t *state)
+{
+  *state = *state * 1664525u + 1013904223u;
+  return *state >> 8;
+}
+
+/* Append a face with w nodes at a random position of the list of its kind. */
+static void insert_face(struct vg_mesh *m, const uint32_t *node, int w,
+                        uint32_t patch, uint32_t *random)
+{
+  size_t n = w == 3 ? m->n_tri++ : m->n_quad++, at = next_random(random) % n;
+  uint32_t(*tri)[3] = m->tri, (*quad)[4] = m->quad;
+  uint32_t *of = w == 3 ? m->tri_patch : m->quad_patch;
+
+  memmove(of + at + 1, of + at, (n - at) * sizeof *of);
+  of[at] = patch;
+  if (w == 3) {
+    memmove(tri + at + 1, tri + at, (n - at) * sizeof *tri);
+    memcpy(tri[at], node, sizeof *tri);
+  } else {
+    memmove(quad + at + 1, quad + at, (n - at) * sizeof *quad);
+    memcpy(quad[at], node, sizeof *quad);
+  }
+}
+
+/* List a third of the faces between cells as boundary, from one side or both.
+ * Patch 3 has only such faces, patch 2 others too. Returns their number. */
+static size_t list_inner(struct vg_mesh *m, uint32_t *random)
+{
+  struct mixed_side *s;
+  size_t n = mixed_sides(m, &s), room = m->n_tri + m->n_quad + n, n_inner = 0;
+
+  m->tri = realloc(m->tri, room * sizeof *m->tri);
+  m->quad = realloc(m->quad, room * sizeof *m->quad);
+  m->tri_patch = realloc(m->tri_patch, room * sizeof *m->tri_patch);
+  m->quad_patch = realloc(m->quad_patch, room * sizeof *m->quad_patch);
+  vg_mesh_add_patch(m, 14, "interface");
+  for (size_t i = 1; i < n; i++) {
+    uint32_t what = next_random(random) % 9;
+
+    if (mixed_by_key(s + i - 1, s + i)) continue;
+    for (uint32_t side = 0; side < 2; side++) {
+      if (what != side && what != 2) continue;
+      insert_face(m, s[i - side].node, s[i].node[3] == UINT32_MAX ? 3 : 4,
+                  n_inner % 3 ? 3 : 2, random);
+      n_inner++;
+    }
+  }
+  free(s);
+  return n_inner;
+}
+
+static void inner_faces_are_removed(void **state)
+{
+  uint32_t random = 7;
+
+  (void)state;
+  for (uint32_t turn = 0; turn < 20; turn++) {
+    struct vg_mesh m = VG_MESH_INIT, want = VG_MESH_INIT;
+    struct vg_inner_faces found;
+    size_t n;
+
+    mixed_make(&m, 1 + turn % 4, 1 + turn % 3);
+    assert_int_equal(vg_mesh_copy(&want, &m, NULL), VG_OK);
+    n = list_inner(&m, &random);
+    assert_int_equal(vg_mesh_drop_inner(&m, &found, NULL), VG_OK);
+    assert_int_equal(found.n_face, n);
+    if (n > 1) assert_non_null(strstr(found.patches, "interface ("));
+    if (n < 2) m.n_patch = 3; /* patch 3 had no faces at all */
+    io_same(&want, &m, 1);
+    assert_int_equal(vg_mesh_drop_inner(&m, &found, NULL), VG_OK);
+    assert_int_equal(found.n_face, 0);
+    assert_string_equal(found.patches, "");
+    vg_mesh_release(&m);
+    vg_mesh_release(&want);
+  }
+}
+
+/* Two cells on the same side of a face overlap: the face remains, and the mesh
+ * check reports the cells. */
+static void faces_of_overlapping_cells_remain(void **state)
+{
+  struct vg_mesh m = VG_MESH_INIT;
+  struct vg_inner_faces found;
+
+  (void)state;
+  io_make_t1(&m, 1);
+  m.tet = realloc(m.tet, 2 * sizeof *m.tet);
+  memcpy(m.tet[m.n_tet++], m.tet[0], sizeof *m.tet);
+  assert_int_equal(vg_mesh_drop_inner(&m, &found, NULL), VG_OK);
+  assert_int_equal(found.n_face, 0);
+  assert_int_equal(m.n_tri, 4);
+  vg_mesh_release(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -288,6 +385,8 @@ int main(void)
     cmocka_unit_test(the_mapbc_in_the_same_folder_is_used),
     cmocka_unit_test(the_mapbc_of_a_run_is_no_input),
     cmocka_unit_test(surface_files_omit_inner_points),
+    cmocka_unit_test(inner_faces_are_removed),
+    cmocka_unit_test(faces_of_overlapping_cells_remain),
     cmocka_unit_test(reads_the_real_project),
     cmocka_unit_test(reads_real_surfaces),
   };

@@ -129,9 +129,11 @@ static vg_status not_valid(const struct arguments *a,
 
 static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
                             const struct vg_mesh *m,
-                            const struct vg_turned *turned,
+                            const struct vg_read_info *info,
                             struct vg_error *err)
 {
+  const struct vg_turned *turned = &info->turned;
+  const struct vg_inner_faces *inner = &info->inner;
   struct vg_mesh_report r;
   vg_status st;
 
@@ -139,10 +141,11 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
   VG_TRY(judge(a, p, m, &r, err));
   if (!r.is_valid) st = not_valid(a, turned, err);
   if (a->one.json) {
-    json_t *o = json_pack("{s:s s:o s:b s:I s:o s:o s:o}", "vanguard",
+    json_t *o = json_pack("{s:s s:o s:b s:I s:I s:o s:o s:o}", "vanguard",
                           VG_VERSION, "file", vg_text_json(a->one.file), "ok",
                           r.is_valid, "cells_turned", (json_int_t)turned->cell,
-                          "size", vg_report_size_json(m), "patches",
+                          "inner_faces", (json_int_t)inner->n_face, "size",
+                          vg_report_size_json(m), "patches",
                           vg_report_patches_json(m), "mesh",
                           vg_report_mesh_json(&r, m));
 
@@ -156,6 +159,9 @@ static vg_status check_mesh(const struct arguments *a, struct vg_problem *p,
     if (turned->cell)
       printf("  cells of negative volume, mirrored on reading: %zu\n",
              turned->cell);
+    if (inner->n_face)
+      printf("  note: " VG_INNER_FACES_NOTE "\n", a->one.file, inner->n_face,
+             inner->patches);
     for (size_t i = 0; a->sizes && i < p->notes.n; i++)
       printf("  note: %s\n", p->notes.text[i]);
     vg_report_mesh_text(stdout, &r, 1);
@@ -174,7 +180,7 @@ static vg_status check_volume(const struct arguments *a, struct vg_problem *p,
 
   VG_TRY(vg_mesh_read(a->one.file, &m, &info, err));
   vg_display_clear(show);
-  st = check_mesh(a, p, &m, &info.turned, err);
+  st = check_mesh(a, p, &m, &info, err);
 done:
   vg_mesh_release(&m);
   return st;

@@ -36,6 +36,7 @@ struct arguments {
 struct run {
   const struct arguments *a;
   struct vg_mesh mesh;
+  struct vg_read_info info;
   size_t n_cell;
   struct vg_solver_layers layers;
   unsigned char *is_wall;
@@ -134,7 +135,7 @@ static vg_status read_mesh(struct run *r, struct vg_error *err)
   double t = vg_display_now();
   vg_status st;
 
-  VG_TRY(vg_mesh_read(path, m, NULL, err));
+  VG_TRY(vg_mesh_read(path, m, &r->info, err));
   r->n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
   if (!r->n_cell) {
     st = vg_fail(err, VG_ERR_INPUT,
@@ -236,8 +237,9 @@ static void print_json(const struct run *r)
 
   for (size_t i = 0; i < r->n_file; i++)
     json_array_append_new(files, vg_text_json(r->file[i]));
-  o = json_pack("{s:o s:o s:f s:f s:f s:o}", "file",
-                vg_text_json(r->a->one.file), "solver_parts",
+  o = json_pack("{s:o s:I s:o s:f s:f s:f s:o}", "file",
+                vg_text_json(r->a->one.file), "inner_faces",
+                (json_int_t)r->info.inner.n_face, "solver_parts",
                 vg_report_solver_json(&r->report), "seconds_read", r->time_read,
                 "seconds_write", r->time_write, "peak_memory_bytes",
                 vg_report_peak_memory(), "files", files);
@@ -250,6 +252,9 @@ static void print_text(const struct run *r)
 {
   printf("%s: solver partition\n", r->a->one.file);
   vg_report_size_text(stdout, &r->mesh);
+  if (r->info.inner.n_face)
+    printf("  note: " VG_INNER_FACES_NOTE "\n", r->a->one.file,
+           r->info.inner.n_face, r->info.inner.patches);
   vg_report_solver_text(stdout, &r->report);
   printf("  time (s): read %.2f, write %.2f; peak memory %.0f MB\n",
          r->time_read, r->time_write, vg_report_peak_memory() / 1e6);

@@ -387,6 +387,9 @@ vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
 
   VG_TRY(read_by_name(path, &m, &found, err));
   VG_TRY(use_mapbc(path, &m, &found, err));
+  VG_TRY(vg_mesh_drop_inner(&m, &found.inner, err));
+  if (found.turned.loose_face >= found.inner.n_copy)
+    found.turned.loose_face -= found.inner.n_copy;
   vg_mesh_move(out, &m);
   if (info) *info = found;
 done:

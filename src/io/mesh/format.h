@@ -23,10 +23,11 @@ struct vg_read_info {
   /* in: file with boundary conditions; NULL or "": STEM.mapbc, unless the mesh
    * is a surface and Vanguard wrote that file */
   const char *mapbc;
-  const char *format;      /* suffix in the table; static */
-  struct vg_turned turned; /* zero for formats without cells */
-  size_t n_cell;           /* number of cells in the file */
-  int has_mapbc;           /* a .mapbc was used */
+  const char *format;          /* suffix in the table; static */
+  struct vg_turned turned;     /* zero for formats without cells */
+  struct vg_inner_faces inner; /* faces between cells, which were removed */
+  size_t n_cell;               /* number of cells in the file */
+  int has_mapbc;               /* a .mapbc was used */
   int has_own_mapbc; /* STEM.mapbc was ignored because Vanguard wrote it */
   enum vg_mapbc_layout layout; /* layout of the .mapbc */
   struct vg_mapbc_match match; /* patches without an entry, entries without a
@@ -72,8 +73,9 @@ vg_status vg_format_read(const char *path, struct vg_mesh *out,
                          struct vg_error *err);
 
 /** As vg_format_read, with conditions and names from info->mapbc, or from
- * STEM.mapbc if it exists. info: the caller sets the members marked "in", the
- * function sets the others; may be NULL. */
+ * STEM.mapbc if it exists, and without boundary faces that lie between two
+ * cells (vg_mesh_drop_inner). info: the caller sets the members marked "in",
+ * the function sets the others; may be NULL. */
 vg_status vg_mesh_read(const char *path, struct vg_mesh *out,
                        struct vg_read_info *info, struct vg_error *err);
 

@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <float.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -232,8 +233,12 @@ static size_t turn_cells(struct vg_mesh *m)
  * UINT32_MAX. Of several faces with the same nodes the first is kept. */
 struct face_table {
   struct vg_table table;
-  unsigned char *found; /* [n_tri + n_quad] */
+  unsigned char *found; /* [n_tri + n_quad] result of `meet` */
   unsigned char *on;    /* [n_point] is the point on the boundary? */
+  /* Processes a face of a cell, listed inward, that may be on the boundary. */
+  void (*meet)(struct vg_mesh *m, struct face_table *t, const uint32_t *inward,
+               int width);
+  size_t n_turned;
 };
 
 static void make_key(const uint32_t *n, int width, uint32_t key[4])
@@ -319,9 +324,8 @@ static int same_cycle(const uint32_t *a, const uint32_t *b, int w, int step)
  * same nodes, unless another cell has been matched to it before. A
  * quadrilateral that visits the same nodes in another cyclic order is a
  * different face and counts as loose. */
-static void meet_face(struct vg_mesh *m, struct face_table *t,
-                      const uint32_t *inward, int width,
-                      struct vg_turned *turned)
+static void turn_face(struct vg_mesh *m, struct face_table *t,
+                      const uint32_t *inward, int width)
 {
   uint32_t f = *find_face(m, t, inward, width), *node;
   int w, forwards;
@@ -333,13 +337,28 @@ static void meet_face(struct vg_mesh *m, struct face_table *t,
   t->found[f] = 1;
   if (forwards) return;
   swap(node, 1, w - 1);
-  turned->face++;
+  t->n_turned++;
+}
+
+enum { SIDE_FRONT = 1, SIDE_BACK = 2, SIDE_BOTH = 3 };
+
+/* Record on which sides of a boundary face there are cells. */
+static void note_side(struct vg_mesh *m, struct face_table *t,
+                      const uint32_t *inward, int width)
+{
+  uint32_t f = *find_face(m, t, inward, width);
+  const uint32_t *node;
+  int w;
+
+  if (f == VG_TABLE_FREE) return;
+  node = face_nodes(m, f, &w);
+  if (same_cycle(node, inward, w, 1)) t->found[f] |= SIDE_FRONT;
+  else if (same_cycle(node, inward, w, w - 1)) t->found[f] |= SIDE_BACK;
 }
 
 static void meet_cells(struct vg_mesh *m, struct face_table *t, size_t n,
                        const uint32_t *cell, int width,
-                       const unsigned char (*face)[4], int n_face,
-                       struct vg_turned *turned)
+                       const unsigned char (*face)[4], int n_face)
 {
   for (size_t i = 0; i < n; i++) {
     const uint32_t *c = cell + i * (size_t)width;
@@ -355,16 +374,24 @@ static void meet_cells(struct vg_mesh *m, struct face_table *t, size_t n,
         node[k] = c[face[f][k]];
         all &= t->on[node[k]];
       }
-      if (all) meet_face(m, t, node, w, turned);
+      if (all) t->meet(m, t, node, w);
     }
   }
+}
+
+static void meet_all(struct vg_mesh *m, struct face_table *t)
+{
+  meet_cells(m, t, m->n_tet, (const uint32_t *)m->tet, 4, vg_tet_face, 4);
+  meet_cells(m, t, m->n_pyr, (const uint32_t *)m->pyr, 5, vg_pyr_face, 5);
+  meet_cells(m, t, m->n_pri, (const uint32_t *)m->pri, 6, vg_pri_face, 5);
+  meet_cells(m, t, m->n_hex, (const uint32_t *)m->hex, 8, vg_hex_face, 6);
 }
 
 vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
                        struct vg_error *err)
 {
   struct vg_turned result = { 0, 0, 0 };
-  struct face_table t = { 0 };
+  struct face_table t = { .meet = turn_face };
   vg_status st;
 
   assert(m);
@@ -372,20 +399,126 @@ vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
     st = face_build(&t, m, err);
     if (st < 0) return st;
     result.cell = turn_cells(m);
-    meet_cells(m, &t, m->n_tet, (const uint32_t *)m->tet, 4, vg_tet_face, 4,
-               &result);
-    meet_cells(m, &t, m->n_pyr, (const uint32_t *)m->pyr, 5, vg_pyr_face, 5,
-               &result);
-    meet_cells(m, &t, m->n_pri, (const uint32_t *)m->pri, 6, vg_pri_face, 5,
-               &result);
-    meet_cells(m, &t, m->n_hex, (const uint32_t *)m->hex, 8, vg_hex_face, 6,
-               &result);
+    meet_all(m, &t);
+    result.face = t.n_turned;
     for (size_t f = 0; f < m->n_tri + m->n_quad; f++)
       result.loose_face += !t.found[f];
     face_release(&t);
   }
   if (turned) *turned = result;
   return VG_OK;
+}
+
+/* --- faces between cells --- */
+
+static uint32_t *patch_of(const struct vg_mesh *m, size_t f)
+{
+  return f < m->n_tri ? m->tri_patch + f : m->quad_patch + (f - m->n_tri);
+}
+
+/* Append "name (count)" to the list, if there is room. */
+static void list_patch(struct vg_inner_faces *found, const struct vg_patch *p,
+                       size_t n)
+{
+  size_t at = strlen(found->patches), room = sizeof found->patches - at;
+  char name[VG_NAME_MAX + 16], text[VG_NAME_MAX + 48];
+
+  snprintf(name, sizeof name, *p->name ? "%s" : "%.0spatch %d", p->name, p->id);
+  snprintf(text, sizeof text, "%s%s (%zu)", at ? ", " : "", name, n);
+  if (strlen(text) + 6 <= room) strcpy(found->patches + at, text);
+  else if (room > 5 && (at < 3 || strcmp(found->patches + at - 3, "...")))
+    strcpy(found->patches + at, ", ...");
+}
+
+/* Remove the patches without faces that had inner[p] faces between cells. */
+static void drop_patches(struct vg_mesh *m, const size_t *inner, size_t *kept,
+                         struct vg_inner_faces *found)
+{
+  size_t n_face = m->n_tri + m->n_quad, n = 0;
+
+  memset(kept, 0, m->n_patch * sizeof *kept);
+  for (size_t f = 0; f < n_face; f++) kept[*patch_of(m, f)]++;
+  for (size_t p = 0; p < m->n_patch; p++) {
+    int is_gone = inner[p] && !kept[p];
+
+    if (inner[p]) list_patch(found, m->patch + p, inner[p]);
+    kept[p] = n;
+    if (!is_gone) m->patch[n++] = m->patch[p];
+  }
+  m->n_patch = n;
+  for (size_t f = 0; f < n_face; f++)
+    *patch_of(m, f) = (uint32_t)kept[*patch_of(m, f)];
+}
+
+static void drop_faces(struct vg_mesh *m, const unsigned char *is_inner)
+{
+  size_t n = 0;
+
+  for (size_t i = 0; i < m->n_tri; i++) {
+    if (is_inner[i]) continue;
+    memmove(m->tri[n], m->tri[i], sizeof *m->tri);
+    m->tri_patch[n++] = m->tri_patch[i];
+  }
+  is_inner += m->n_tri;
+  m->n_tri = n;
+  n = 0;
+  for (size_t i = 0; i < m->n_quad; i++) {
+    if (is_inner[i]) continue;
+    memmove(m->quad[n], m->quad[i], sizeof *m->quad);
+    m->quad_patch[n++] = m->quad_patch[i];
+  }
+  m->n_quad = n;
+}
+
+/* Set is_inner for all copies of the faces that have cells on both sides, and
+ * count them, also per patch. */
+static void find_inner(const struct vg_mesh *m, const struct face_table *t,
+                       unsigned char *is_inner, size_t *inner,
+                       struct vg_inner_faces *found)
+{
+  for (size_t f = 0; f < m->n_tri + m->n_quad; f++) {
+    int width;
+    const uint32_t *node = face_nodes(m, f, &width);
+
+    uint32_t first = *find_face(m, t, node, width);
+
+    is_inner[f] = t->found[first] == SIDE_BOTH;
+    if (!is_inner[f]) continue;
+    inner[*patch_of(m, f)]++;
+    found->n_face++;
+    found->n_copy += first != f;
+  }
+}
+
+vg_status vg_mesh_drop_inner(struct vg_mesh *m, struct vg_inner_faces *found,
+                             struct vg_error *err)
+{
+  struct face_table t = { .meet = note_side };
+  unsigned char *is_inner;
+  size_t *inner, *kept;
+  vg_status st = VG_OK;
+
+  assert(m && found);
+  memset(found, 0, sizeof *found);
+  if (!(m->n_tet + m->n_pyr + m->n_pri + m->n_hex)) return VG_OK;
+  VG_TRY(face_build(&t, m, err));
+  meet_all(m, &t);
+  is_inner = vg_calloc(m->n_tri + m->n_quad, 1);
+  inner = vg_calloc(m->n_patch, sizeof *inner);
+  kept = vg_calloc(m->n_patch, sizeof *kept);
+  if (!is_inner || !inner || !kept)
+    st = vg_fail_memory(err, "the faces between cells");
+  else find_inner(m, &t, is_inner, inner, found);
+  if (found->n_face) {
+    drop_faces(m, is_inner);
+    drop_patches(m, inner, kept, found);
+  }
+  free(is_inner);
+  free(inner);
+  free(kept);
+  face_release(&t);
+done:
+  return st;
 }
 
 static void mark_used(size_t n, const uint32_t *node, uint32_t *mark)

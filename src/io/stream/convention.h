@@ -25,6 +25,29 @@ struct vg_turned {
 vg_status vg_mesh_turn(struct vg_mesh *m, struct vg_turned *turned,
                        struct vg_error *err);
 
+/* Faces listed as boundary that lie between two cells. */
+struct vg_inner_faces {
+  size_t n_face;     /* faces removed */
+  size_t n_copy;     /* of these: faces whose points an earlier face has */
+  char patches[160]; /* their patches with the number of faces of each:
+                        "interface (120), wake (48)" */
+};
+
+/* Format of a note: path, n_face, patches. */
+#define VG_INNER_FACES_NOTE                                                    \
+  "%s: %zu boundary faces lie between two cells; they were removed, because "  \
+  "only faces with one cell bound a mesh (patches: %s)"
+
+/** Remove the boundary faces that join two cells on opposite sides, and the
+ * patches that have no other faces. Programs write them for the interface of
+ * two volumes (Gmsh) or of two kinds of cells (Mmg). A face that is listed
+ * several times is removed each time. The order of faces and patches is kept.
+ * Indices must be valid. O(n) time; memory O(points + boundary).
+ * @param found  all zero if nothing was removed
+ * VG_ERR_MEMORY: the mesh is unchanged. */
+vg_status vg_mesh_drop_inner(struct vg_mesh *m, struct vg_inner_faces *found,
+                             struct vg_error *err);
+
 /* Up to this magnitude, products of three coordinate differences are exact
  * (core/geometry/predicates.h). */
 #define VG_COORDINATE_MAX 1e60

@@ -365,6 +365,9 @@ static vg_status read_surface_file(struct vg_read *r, struct vg_error *err)
             "%s: %zu boundary faces pointed out of their cells; their "
             "orientation was reversed",
             path, info.turned.face);
+  if (info.inner.n_face)
+    vg_note(r->notes, VG_INNER_FACES_NOTE, path, info.inner.n_face,
+            info.inner.patches);
   if (info.turned.loose_face)
     vg_note(r->notes, "%s: %zu boundary faces belong to no cell", path,
             info.turned.loose_face);
