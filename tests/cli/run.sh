@@ -69,6 +69,28 @@ needs() {
   done
 }
 
+# python FILE ARGS...: run python/FILE with the module vanguard of this build:
+# output in files out and err, exit status in $status. Status 77 skips the case.
+python() {
+  local try python='' build=${program%/bin/*} file=$1 preload
+  shift
+  for try in python3 /usr/bin/python3; do
+    ! "$try" -c 'import numpy' 2>/dev/null || { python=$try; break; }
+  done
+  [ -n "$python" ] || skip "NumPy is not installed (python3-numpy)"
+  # A sanitizer of the library must be loaded first. Python itself has leaks.
+  preload=$(ldd "$build/lib/libvanguard.so.1" |
+    awk '/lib[at]san|libubsan/ { print $3 }')
+  [ -z "$preload" ] ||
+    preload+=" $(ldd "$build/lib/libvanguard.so.1" |
+      awk '/libstdc/ { print $3 }')"
+  PYTHONPATH=$build:$here/python VANGUARD_LIBRARY=$build/lib/libvanguard.so.1 \
+    PYTHONDONTWRITEBYTECODE=1 LD_PRELOAD=$preload \
+    ASAN_OPTIONS=detect_leaks=0 "$python" "$here/python/$file" "$@" >out 2>err
+  status=$?
+  [ $status != 77 ] || skip "$(cat out)"
+}
+
 # shellcheck source=/dev/null
 . "$case_file"
 [ "$failures" = 0 ]
