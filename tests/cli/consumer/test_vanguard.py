@@ -147,9 +147,10 @@ def layered(points, triangles, patches):
 
 
 def cell_volumes(points, cells):
-    """Volumes of meshio's cells by tetrahedra: positive in VTK's node order."""
+    """Volumes of meshio's cells by tetrahedra: positive in its node order, which
+    is that of Gmsh. tests/cli/python/meshio_files.py asks VTK and Gmsh."""
     split = {"tetra": [[0, 1, 2, 3]], "pyramid": [[0, 1, 2, 4], [0, 2, 3, 4]],
-             "wedge": [[0, 2, 1, 3], [1, 2, 5, 3], [1, 5, 4, 3]]}
+             "wedge": [[0, 1, 2, 3], [2, 1, 4, 3], [2, 4, 5, 3]]}
     for kind, nodes in cells:
         for corner in split.get(kind, ()):
             x = points[np.asarray(nodes, np.int64)[:, corner]]
