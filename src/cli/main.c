@@ -26,6 +26,8 @@ static const struct command {
     0 },
   { "partition", "partition a volume mesh for a parallel flow solver",
     vg_cmd_partition, "vanguard partition", 1 },
+  { "convert", "write a mesh or a surface in another format", vg_cmd_convert,
+    "vanguard convert", 0 },
   { "plan", "forecast cells, memory and time of a run", vg_cmd_plan,
     "vanguard plan", 0 },
   { "sweep", "mesh with various subdomain sizes, ranks and threads; compare",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 # Man pages and completions agree with the program.
 share=$(dirname "$program")/../share
-for command in mesh surface check partition plan sweep serve deck demo; do
+for command in mesh surface check partition convert plan sweep serve deck demo; do
   page=$share/man/man1/vanguard-$command.1
   exists "$page"
   vanguard $command --help
@@ -51,7 +51,7 @@ is out <<'END'
 
 END
 # Every long option of every command is completed, and nothing else.
-for command in mesh surface check partition plan sweep serve deck demo; do
+for command in mesh surface check partition convert plan sweep serve deck demo; do
   vanguard $command --help
   sed -n 's/^ \{2,6\}\(-[^ ], \)*--\([a-z0-9-]*\).*/--\2/p' out | sort -u >options
   complete_words vanguard $command --

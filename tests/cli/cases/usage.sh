@@ -11,6 +11,7 @@ layers on the walls, tetrahedra elsewhere.
   surface   remesh a surface to target edge lengths
   check     check a surface or a volume mesh
   partition partition a volume mesh for a parallel flow solver
+  convert   write a mesh or a surface in another format
   plan      forecast cells, memory and time of a run
   sweep     mesh with various subdomain sizes, ranks and threads; compare
   serve     start, monitor and resume runs from a browser
@@ -44,7 +45,7 @@ vanguard help chekc
 exits 2
 says err "did you mean 'check'?"
 
-for command in mesh surface check partition sweep serve plan deck demo; do
+for command in mesh surface check partition convert sweep serve plan deck demo; do
   vanguard $command --help
   exits 0
   says out "Usage: vanguard $command [OPTION...]"

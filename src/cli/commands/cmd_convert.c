@@ -1,0 +1,444 @@
+/* SPDX-License-Identifier: LGPL-3.0-or-later */
+/* vanguard convert: writes a mesh or a surface in another format, and reports
+ * what that format cannot hold. */
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/commands/commands.h"
+#include "cli/common/cli.h"
+#include "cli/common/options.h"
+#include "io/mesh/foam.h"
+#include "io/mesh/format.h"
+#include "io/mesh/ugrid.h"
+#include "io/stream/patch_words.h"
+#include "run/common/text.h"
+#include "run/input/input.h"
+#include "run/report/report.h"
+
+/* First line of a .mapbc of this command, which may be overwritten. */
+#define TITLE "converted by Vanguard"
+
+enum { KEY_FORM = 500, KEY_MAPBC };
+
+/* What a format stores. CODES: the conditions as they are; TYPES: a type that
+ * follows from the condition. IDS: patch numbers, to which a .mapbc refers. */
+enum {
+  CELLS = 1,
+  BOUNDARY = 2,
+  QUADS = 4,
+  NAMES = 8,
+  WORDS = 16,
+  IDS = 32,
+  CODES = 64,
+  TYPES = 128
+};
+
+static const struct held {
+  const char *suffix;
+  int what;
+} held[] = {
+  { "stl", BOUNDARY | NAMES },
+  { "tri", BOUNDARY | IDS },
+  { "obj", BOUNDARY | QUADS | NAMES },
+  { "mesh", CELLS | BOUNDARY | QUADS | IDS },
+  { "meshb", CELLS | BOUNDARY | QUADS | IDS },
+  { "fluent.msh", CELLS | BOUNDARY | QUADS | WORDS | TYPES },
+  { "msh", CELLS | BOUNDARY | QUADS | WORDS | IDS },
+  { "cgns", CELLS | BOUNDARY | QUADS | WORDS | TYPES },
+  { "cogsg", CELLS | BOUNDARY | IDS | WORDS | CODES },
+  { VG_FOAM_SUFFIX, CELLS | BOUNDARY | QUADS | WORDS | TYPES },
+  { "su2", CELLS | BOUNDARY | QUADS | WORDS },
+  { "vtu", CELLS },
+};
+/* All kinds of UGRID. */
+static const int held_by_ugrid = CELLS | BOUNDARY | QUADS | IDS;
+
+struct arguments {
+  const char *in, *out, *form, *mapbc;
+  int json, quiet;
+};
+
+struct conversion {
+  const struct arguments *a;
+  struct vg_mesh mesh;
+  struct vg_read_info info;
+  size_t n_cell, n_layer; /* n_layer: layer tetrahedra; 0: none, or unknown */
+  char *file, *mapbc;     /* files written; mapbc: NULL without one */
+  const char *suffix;     /* of the format written */
+  struct vg_foam_options foam;
+  int what; /* stored in it */
+  struct vg_notes notes;
+};
+
+/* --- the name of the output ---------------------------------------------- */
+
+/* Suffix of the format that a word of --form, or a file name, stands for; NULL:
+ * none that can be written. */
+static const char *output_suffix(const char *word)
+{
+  const char *suffix, *best = NULL;
+  size_t n = strlen(word);
+
+  for (size_t i = 0; (suffix = vg_format_output_suffix(i)); i++) {
+    size_t len = strlen(suffix);
+
+    if (n < len || strcasecmp(word + n - len, suffix)) continue;
+    if (n > len && word[n - len - 1] != '.') continue;
+    if (!best || len > strlen(best)) best = suffix;
+  }
+  return best;
+}
+
+static vg_status unknown_form(const char *word, struct vg_error *err)
+{
+  return vg_fail(err, VG_ERR_USAGE,
+                 "%s: not a format that can be written; known formats are %s; "
+                 "the suffix of OUT or --form selects one (foam and foam-ascii "
+                 "are OpenFOAM cases)",
+                 word, vg_format_list());
+}
+
+/* Does the path name the input? Writing would destroy it. */
+static int is_input(const char *in, const char *path)
+{
+  struct stat a, b;
+
+  return !stat(in, &a) && !stat(path, &b) && a.st_dev == b.st_dev &&
+         a.st_ino == b.st_ino;
+}
+
+static int held_by(const char *suffix)
+{
+  struct vg_ugrid_kind kind;
+
+  for (size_t i = 0; i < sizeof held / sizeof *held; i++)
+    if (!strcmp(held[i].suffix, suffix)) return held[i].what;
+  return vg_ugrid_kind(suffix, &kind) ? held_by_ugrid : 0;
+}
+
+/* Set file, suffix and what. */
+static vg_status choose(struct conversion *c, struct vg_error *err)
+{
+  const char *form = c->a->form, *own = output_suffix(c->a->out);
+
+  c->suffix = !form                        ? own
+            : vg_foam_word(form, &c->foam) ? VG_FOAM_SUFFIX
+                                           : output_suffix(form);
+  if (!c->suffix || (form && *c->suffix != *VG_FOAM_SUFFIX &&
+                     strcasecmp(form, c->suffix) != 0))
+    return unknown_form(form ? form : c->a->out, err);
+  if (asprintf(&c->file, own == c->suffix ? "%s" : "%s.%s", c->a->out,
+               c->suffix) < 0) {
+    c->file = NULL;
+    return vg_fail_memory(err, "a file name");
+  }
+  if (is_input(c->a->in, c->file))
+    return vg_fail(err, VG_ERR_USAGE,
+                   "%s: this is the input; give another name", c->file);
+  c->what = held_by(c->suffix);
+  return VG_OK;
+}
+
+/* --- what is lost -------------------------------------------------------- */
+
+static size_t count_codes(const struct vg_mesh *m)
+{
+  size_t n = 0;
+
+  for (size_t p = 0; p < m->n_patch; p++)
+    n += m->patch[p].bc != VG_BC_NONE || m->patch[p].bc_fun3d != VG_BC_NONE;
+  return n;
+}
+
+static size_t count_names(const struct vg_mesh *m)
+{
+  size_t n = 0;
+
+  for (size_t p = 0; p < m->n_patch; p++) n += *m->patch[p].name != 0;
+  return n;
+}
+
+static void note_words(struct conversion *c)
+{
+  const struct vg_mesh *m = &c->mesh;
+  char(*word)[VG_PATCH_WORD] = vg_patch_words(m, VG_PATCH_WORD_MOST);
+
+  for (size_t p = 0; word && p < m->n_patch; p++) {
+    const struct vg_patch *from = m->patch + p;
+    char name[VG_NAME_MAX];
+
+    if (*from->name && strcmp(from->name, word[p]))
+      vg_note(&c->notes, "patch %d is called %s instead of '%s'", from->id,
+              word[p], vg_text_clean(from->name, name, sizeof name));
+  }
+  free(word);
+}
+
+/* Names and conditions that neither the format nor a .mapbc holds. */
+static void note_patches(struct conversion *c)
+{
+  size_t n_name = count_names(&c->mesh), n_code = count_codes(&c->mesh);
+
+  if (!(c->what & (NAMES | WORDS)) && n_name && !c->mapbc)
+    vg_note(&c->notes, ".%s has no names of patches: %zu names are lost",
+            c->suffix, n_name);
+  if (c->what & WORDS) note_words(c);
+  if (c->what & CODES && n_code < c->mesh.n_patch)
+    vg_note(&c->notes,
+            "%zu patches without a condition are inviscid walls (5) in the "
+            ".mapbc",
+            c->mesh.n_patch - n_code);
+  if (c->what & TYPES && n_code)
+    vg_note(&c->notes,
+            "conditions are written as the types of .%s, which cover fewer "
+            "cases",
+            c->suffix);
+  else if (!(c->what & CODES) && n_code && !c->mapbc)
+    vg_note(&c->notes,
+            ".%s has no boundary conditions: those of %zu patches are lost",
+            c->suffix, n_code);
+}
+
+static void note_mesh(struct conversion *c)
+{
+  const struct vg_mesh *m = &c->mesh;
+  struct vg_ugrid_kind kind;
+
+  if (c->info.inner.n_face)
+    vg_note(&c->notes, VG_INNER_FACES_NOTE, c->a->in, c->info.inner.n_face,
+            c->info.inner.patches);
+  if (c->info.turned.cell)
+    vg_note(&c->notes, "%zu cells of negative volume were mirrored",
+            c->info.turned.cell);
+  if (c->n_cell && !(c->what & CELLS))
+    vg_note(&c->notes,
+            ".%s holds surfaces: the %zu cells are omitted, and the boundary "
+            "is written",
+            c->suffix, c->n_cell);
+  if (m->n_quad && c->what & BOUNDARY && !(c->what & QUADS))
+    vg_note(&c->notes,
+            ".%s has no quadrilaterals: %zu are written as two triangles each",
+            c->suffix, m->n_quad);
+  if (c->n_cell && !(c->what & BOUNDARY))
+    vg_note(&c->notes, ".%s holds the cells only: the %zu patches are omitted",
+            c->suffix, m->n_patch);
+  else note_patches(c);
+  if (vg_ugrid_kind(c->suffix, &kind)) {
+    if (kind.real_size == 4)
+      vg_note(&c->notes, "coordinates are rounded to 4-byte reals");
+  } else if (c->n_layer)
+    vg_note(&c->notes,
+            "the number of layer tetrahedra (%zu) is not written; "
+            "'vanguard partition' needs it to keep their stacks together",
+            c->n_layer);
+}
+
+/* --- the .mapbc ---------------------------------------------------------- */
+
+/* May the file be written: is it absent, or made by this command? */
+static int is_free(const char *path)
+{
+  char line[256] = "";
+  FILE *f = fopen(path, "r");
+  int is_own;
+
+  if (!f) return access(path, F_OK) != 0;
+  is_own = fgets(line, sizeof line, f) && strstr(line, TITLE);
+  if (!is_own) is_own = fgets(line, sizeof line, f) && strstr(line, TITLE);
+  fclose(f);
+  return is_own;
+}
+
+/* Conditions and names in STEM.mapbc, for formats that have patch numbers but
+ * no conditions. */
+static vg_status write_mapbc(struct conversion *c, struct vg_error *err)
+{
+  size_t n = strlen(c->file), n_stem = n - strlen(c->suffix) - 1, n_unset = 0;
+  vg_status st;
+
+  if (!(c->what & IDS) || c->what & CODES || !count_codes(&c->mesh))
+    return VG_OK;
+  if (asprintf(&c->mapbc, "%.*s.mapbc", (int)n_stem, c->file) < 0) {
+    c->mapbc = NULL;
+    return vg_fail_memory(err, "a file name");
+  }
+  if (!is_free(c->mapbc)) {
+    vg_note(&c->notes,
+            "%s exists and is not overwritten; remove it or write under "
+            "another name if it does not belong to this mesh",
+            c->mapbc);
+    free(c->mapbc);
+    c->mapbc = NULL;
+    return VG_OK;
+  }
+  st = vg_mapbc_write(c->mapbc, &c->mesh, VG_MAPBC_VGRID, TITLE, &n_unset, err);
+  if (st >= 0 && n_unset)
+    vg_note(&c->notes,
+            "%zu patches without a condition are inviscid walls (5) in %s",
+            n_unset, c->mapbc);
+  return st;
+}
+
+/* Gmsh requires positive numbers of groups; without them the writer numbers the
+ * patches from 1. */
+static void check_ids(struct conversion *c)
+{
+  if (strcmp(c->suffix, "msh") != 0) return;
+  for (size_t p = 0; p < c->mesh.n_patch; p++)
+    if (c->mesh.patch[p].id <= 0 || c->mesh.patch[p].id == INT32_MAX)
+      c->what &= ~IDS;
+}
+
+/* --- steps --------------------------------------------------------------- */
+
+static vg_status read_input(struct conversion *c, struct vg_error *err)
+{
+  const struct vg_mesh *m = &c->mesh;
+  int is_known;
+  vg_status st;
+
+  c->info.mapbc = c->a->mapbc;
+  VG_TRY(vg_mesh_read(c->a->in, &c->mesh, &c->info, err));
+  c->n_cell = m->n_tet + m->n_pyr + m->n_pri + m->n_hex;
+  VG_TRY(vg_format_layer_tets(c->a->in, &is_known, &c->n_layer, err));
+  if (!is_known || c->n_layer > m->n_tet) c->n_layer = 0;
+  if (c->info.has_own_mapbc)
+    vg_note_own_mapbc(&c->notes, c->a->in,
+                      strlen(c->a->in) - vg_format_suffix_length(c->a->in));
+  if (c->info.match.n_missing)
+    vg_note(&c->notes,
+            "%zu patches have no entry in the .mapbc, first patch %d",
+            c->info.match.n_missing, c->info.match.first_missing);
+done:
+  return st;
+}
+
+static vg_status write_output(struct conversion *c, struct vg_error *err)
+{
+  struct vg_ugrid_kind kind;
+
+  if (!strcmp(c->suffix, VG_FOAM_SUFFIX))
+    return vg_foam_write(c->file, &c->mesh, &c->foam, err);
+  if (c->n_layer && vg_ugrid_kind(c->suffix, &kind) && !kind.is_text)
+    return vg_ugrid_write_tail(c->file, &c->mesh, c->n_layer, err);
+  return vg_format_write(c->file, &c->mesh, err);
+}
+
+static vg_status convert(struct conversion *c, struct vg_display *show,
+                         struct vg_error *err)
+{
+  vg_status st;
+
+  VG_TRY(choose(c, err));
+  vg_display_update(show, "read", 0, 0);
+  VG_TRY(read_input(c, err));
+  vg_display_update(show, "write", c->n_cell, 0);
+  VG_TRY(write_output(c, err));
+  check_ids(c);
+  VG_TRY(write_mapbc(c, err));
+  note_mesh(c);
+done:
+  return st;
+}
+
+static void print_json(const struct conversion *c)
+{
+  json_t *files = json_array(), *o;
+
+  json_array_append_new(files, vg_text_json(c->file));
+  if (c->mapbc) json_array_append_new(files, vg_text_json(c->mapbc));
+  o = json_pack("{s:o s:s s:o s:o s:o s:f}", "file", vg_text_json(c->a->in),
+                "format", c->suffix, "files", files, "size",
+                vg_report_size_json(&c->mesh), "notes",
+                vg_report_notes_json(&c->notes), "peak_memory_bytes",
+                vg_report_peak_memory());
+  json_dumpf(o, stdout, JSON_INDENT(2));
+  printf("\n");
+  json_decref(o);
+}
+
+static void print_text(const struct conversion *c)
+{
+  printf("%s: %s\n", c->a->in, c->n_cell ? "volume mesh" : "surface");
+  vg_report_size_text(stdout, &c->mesh);
+  for (size_t i = 0; i < c->notes.n; i++)
+    printf("  note: %s\n", c->notes.text[i]);
+  printf("  %s\n", c->file);
+  if (c->mapbc) printf("  %s\n", c->mapbc);
+}
+
+/* --- options ------------------------------------------------------------- */
+
+static error_t option(int key, char *arg, struct argp_state *state)
+{
+  struct arguments *a = state->input;
+
+  switch (key) {
+  case KEY_FORM: a->form = arg; return 0;
+  case KEY_MAPBC: a->mapbc = arg; return 0;
+  case 'j': a->json = 1; return 0;
+  case 'q': a->quiet = 1; return 0;
+  case ARGP_KEY_ARG:
+    if (a->out) argp_error(state, "a third argument, %s", arg);
+    if (a->in) a->out = arg;
+    else a->in = arg;
+    return 0;
+  case ARGP_KEY_END:
+    if (!a->out) argp_error(state, "give the input and the output file");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+int vg_cmd_convert(int argc, char **argv)
+{
+  const struct argp_option options[] = {
+    { "form", KEY_FORM, "WORD", 0,
+      "Format of the output, as in the write list of 'vanguard mesh': "
+      "lb8.ugrid, msh, cgns, su2, vtu, meshb, fluent.msh, foam, foam-ascii, "
+      "stl, ... [default: by the suffix of OUT]",
+      0 },
+    { "mapbc", KEY_MAPBC, "FILE", 0,
+      "Boundary conditions and names of the patches of IN [default: the "
+      ".mapbc with the stem of IN, if there is one]",
+      0 },
+    { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 0 },
+    { "quiet", 'q', NULL, 0, "Do not show progress", 0 },
+    { 0 }
+  };
+  const struct argp argp = {
+    .options = options,
+    .parser = option,
+    .args_doc = "IN OUT",
+    .doc = "Write the volume mesh or the surface IN in the format of OUT. "
+           "Points, cells and their order are kept. Names and conditions of "
+           "patches that the format cannot hold are written to a .mapbc with "
+           "the stem of OUT, if the format has patch numbers; notes list "
+           "everything that is lost."
+  };
+  struct arguments a = { NULL };
+  struct conversion c = { .a = &a };
+  struct vg_display show;
+  struct vg_error err = VG_ERROR_INIT;
+  vg_status st;
+
+  vg_cli_parse(&argp, argc, argv, &a);
+  vg_display_init(&show, a.quiet);
+  vg_display_end_at_once(1);
+  st = convert(&c, &show, &err);
+  vg_display_clear(&show);
+  if (st >= 0) {
+    if (a.json) print_json(&c);
+    else print_text(&c);
+  }
+  vg_mesh_release(&c.mesh);
+  vg_notes_release(&c.notes);
+  free(c.file);
+  free(c.mapbc);
+  return st < 0 ? vg_cli_fail(&err) : VG_EXIT_DONE;
+}
