@@ -12,22 +12,16 @@ const uint8_t vg_level_colour[LEVEL_COLOURS][3] = {
 };
 
 const uint8_t vg_cause_colour[VG_CAUSE_N][3] = {
-  { 176, 208, 190 }, { 176, 208, 190 }, { 230, 159, 0 }, { 160, 110, 190 },
-  { 200, 40, 50 },   { 130, 70, 40 },   { 0, 114, 178 }, { 240, 100, 150 }
+#define ROW(name, key, text, red, green, blue) { red, green, blue },
+  VG_LAYER_CAUSES(ROW)
+#undef ROW
 };
 
 const char *vg_cause_words(enum vg_layer_cause cause)
 {
-  static const char *const words[VG_CAUSE_N] = {
-    "full layers",
-    "ended at the local edge length, as intended",
-    "proximity to an opposite surface",
-    "columns converge in a concave corner",
-    "no direction sees all faces of the point",
-    "a cell would be inverted or flat",
-    "tops or side faces of the layers would intersect",
-    "the wall meets a slide patch at too flat an angle"
-  };
+#define ROW(name, key, text, red, green, blue) text,
+  static const char *const words[] = { VG_LAYER_CAUSES(ROW) };
+#undef ROW
 
   return words[cause];
 }

@@ -114,112 +114,91 @@ static vg_status write_foam(const char *path, const struct vg_mesh *m,
   return vg_foam_write(path, m, NULL, err);
 }
 
-#define UGRID(name)                                                            \
-  {                                                                            \
-    name, vg_ugrid_read, vg_ugrid_write                                        \
-  }
+/* The formats: a row each, in the table of those that are read and written,
+ * only written, or only read.
+ *
+ * ROW(SUFFIX, READ, WRITE, KIND, USES)
+ *   KIND  of CAD files, which io/cad reads with its own options
+ *   USES  INPUT: a project's surface may have the suffix; TESSELLATION: its
+ *         triangles approximate a shape and are not meant for meshing */
+#define READ_AND_WRITTEN(ROW)                                                  \
+  ROW("stl", read_stl, vg_stl_write, NONE, INPUT | TESSELLATION)               \
+  ROW("tri", read_tri, vg_tri_write, NONE, INPUT | TESSELLATION)               \
+  ROW("obj", read_obj, vg_obj_write, NONE, INPUT | TESSELLATION)               \
+  ROW("mesh", read_medit, vg_medit_write, NONE, INPUT)                         \
+  ROW("meshb", read_medit, vg_medit_write, NONE, INPUT)                        \
+  ROW("msh", read_gmsh, vg_gmsh_write, NONE, INPUT)                            \
+  ROW("cgns", read_cgns, vg_cgns_write, NONE, INPUT)                           \
+  UGRID(ROW, "b8.ugrid")                                                       \
+  UGRID(ROW, "lb8.ugrid")                                                      \
+  UGRID(ROW, "b4.ugrid")                                                       \
+  UGRID(ROW, "lb4.ugrid")                                                      \
+  UGRID(ROW, "r8.ugrid")                                                       \
+  UGRID(ROW, "lr8.ugrid")                                                      \
+  UGRID(ROW, "r4.ugrid")                                                       \
+  UGRID(ROW, "lr4.ugrid")                                                      \
+  UGRID(ROW, "b8l.ugrid")                                                      \
+  UGRID(ROW, "lb8l.ugrid")                                                     \
+  UGRID(ROW, "b8.ugrid64")                                                     \
+  UGRID(ROW, "lb8.ugrid64")                                                    \
+  UGRID(ROW, "ugrid")                                                          \
+  ROW("cogsg", read_cogsg, write_cogsg, NONE, 0)
+#define WRITTEN(ROW)                                                           \
+  ROW(VG_FLUENT_SUFFIX, NULL, vg_fluent_write, NONE, 0)                        \
+  ROW(VG_FOAM_SUFFIX, NULL, write_foam, NONE, 0)                               \
+  ROW("su2", NULL, vg_su2_write, NONE, 0)                                      \
+  ROW("vtu", NULL, write_vtu, NONE, 0)
+#define READ_ONLY(ROW)                                                         \
+  ROW("triq", read_tri, NULL, NONE, INPUT | TESSELLATION)                      \
+  ROW("front", read_front, NULL, NONE, 0)                                      \
+  ROW("surf", read_surf, NULL, NONE, INPUT)                                    \
+  ROW("step", NULL, NULL, STEP, INPUT)                                         \
+  ROW("stp", NULL, NULL, STEP, INPUT)                                          \
+  ROW("iges", NULL, NULL, IGES, INPUT)                                         \
+  ROW("igs", NULL, NULL, IGES, INPUT)                                          \
+  ROW("brep", NULL, NULL, BREP, INPUT)                                         \
+  ROW("egads", NULL, NULL, BREP, INPUT)
+#define UGRID(ROW, suffix)                                                     \
+  ROW(suffix, vg_ugrid_read, vg_ugrid_write, NONE, INPUT)
+#define ALL(ROW) READ_AND_WRITTEN(ROW) WRITTEN(ROW) READ_ONLY(ROW)
+
+enum { INPUT = 1, TESSELLATION = 2 };
 
 static const struct format {
   const char *suffix;
   reader read;
   writer write;
+  enum vg_cad_kind cad;
+  int uses;
 } formats[] = {
-  { "stl", read_stl, vg_stl_write },
-  { "tri", read_tri, vg_tri_write },
-  { "triq", read_tri, NULL },
-  { "obj", read_obj, vg_obj_write },
-  { "mesh", read_medit, vg_medit_write },
-  { "meshb", read_medit, vg_medit_write },
-  { VG_FLUENT_SUFFIX, NULL, vg_fluent_write },
-  { "msh", read_gmsh, vg_gmsh_write },
-  { "cgns", read_cgns, vg_cgns_write },
-  UGRID("b8.ugrid"),
-  UGRID("lb8.ugrid"),
-  UGRID("b4.ugrid"),
-  UGRID("lb4.ugrid"),
-  UGRID("r8.ugrid"),
-  UGRID("lr8.ugrid"),
-  UGRID("r4.ugrid"),
-  UGRID("lr4.ugrid"),
-  UGRID("b8l.ugrid"),
-  UGRID("lb8l.ugrid"),
-  UGRID("b8.ugrid64"),
-  UGRID("lb8.ugrid64"),
-  UGRID("ugrid"),
-  { "cogsg", read_cogsg, write_cogsg },
-  { "front", read_front, NULL },
-  { "surf", read_surf, NULL },
-  { VG_FOAM_SUFFIX, NULL, write_foam },
-  { "su2", NULL, vg_su2_write },
-  { "vtu", NULL, write_vtu },
-  { "step", NULL, NULL },
-  { "stp", NULL, NULL },
-  { "iges", NULL, NULL },
-  { "igs", NULL, NULL },
-  { "brep", NULL, NULL },
-  { "egads", NULL, NULL },
+#define ROW(suffix, read, write, kind, uses)                                   \
+  { suffix, read, write, VG_CAD_##kind, uses },
+  ALL(ROW)
+#undef ROW
 };
 #define N_FORMAT (sizeof formats / sizeof formats[0])
 
-/* The formats of the table that io/cad reads, which has its own options. */
-static const struct {
-  const char *suffix;
-  enum vg_cad_kind kind;
-} cad[] = {
-  { "step", VG_CAD_STEP }, { "stp", VG_CAD_STEP },  { "iges", VG_CAD_IGES },
-  { "igs", VG_CAD_IGES },  { "brep", VG_CAD_BREP }, { "egads", VG_CAD_BREP },
-};
-
-static enum vg_cad_kind cad_kind(const struct format *f)
-{
-  for (size_t i = 0; f && i < sizeof cad / sizeof *cad; i++)
-    if (!strcmp(f->suffix, cad[i].suffix)) return cad[i].kind;
-  return VG_CAD_NONE;
-}
-
-/* Every suffix of a surface, uncompressed and compressed. */
-static const char *const input_suffix[] = { "stl",           "tri",
-                                            "triq",          "obj",
-                                            "mesh",          "meshb",
-                                            "b8.ugrid",      "lb8.ugrid",
-                                            "b4.ugrid",      "lb4.ugrid",
-                                            "r8.ugrid",      "lr8.ugrid",
-                                            "r4.ugrid",      "lr4.ugrid",
-                                            "b8l.ugrid",     "lb8l.ugrid",
-                                            "b8.ugrid64",    "lb8.ugrid64",
-                                            "ugrid",         "surf",
-                                            "msh",           "cgns",
-                                            "step",          "stp",
-                                            "iges",          "igs",
-                                            "brep",          "egads",
-                                            "stl.gz",        "tri.gz",
-                                            "triq.gz",       "obj.gz",
-                                            "mesh.gz",       "meshb.gz",
-                                            "b8.ugrid.gz",   "lb8.ugrid.gz",
-                                            "b4.ugrid.gz",   "lb4.ugrid.gz",
-                                            "r8.ugrid.gz",   "lr8.ugrid.gz",
-                                            "r4.ugrid.gz",   "lr4.ugrid.gz",
-                                            "b8l.ugrid.gz",  "lb8l.ugrid.gz",
-                                            "b8.ugrid64.gz", "lb8.ugrid64.gz",
-                                            "ugrid.gz",      "surf.gz",
-                                            "msh.gz",        "cgns.gz",
-                                            "step.gz",       "stp.gz",
-                                            "iges.gz",       "igs.gz",
-                                            "brep.gz",       "egads.gz" };
-
 const char *vg_format_input_suffix(size_t i)
 {
-  return i < sizeof input_suffix / sizeof input_suffix[0] ? input_suffix[i]
-                                                          : NULL;
+  static const char *const packed[N_FORMAT] = {
+#define ROW(suffix, ...) suffix ".gz",
+    ALL(ROW)
+#undef ROW
+  };
+
+  for (size_t k = 0; k < 2 * N_FORMAT; k++)
+    if (formats[k % N_FORMAT].uses & INPUT && !i--)
+      return k < N_FORMAT ? formats[k].suffix : packed[k - N_FORMAT];
+  return NULL;
 }
 
 const char *vg_format_list(void)
 {
-  return ".stl .tri .triq .obj .mesh .meshb .msh .cgns .ugrid, .X.ugrid "
-         "with X of b8 lb8 b4 lb4 r8 lr8 r4 lr4 b8l lb8l, .b8.ugrid64 "
-         ".lb8.ugrid64, .cogsg, .front .surf .step .stp .iges .igs .brep "
-         "(read only), .fluent.msh .su2 .vtu .openfoam (write only); files "
-         "that are read may be compressed (.gz)";
+#define ROW(suffix, ...) "." suffix " "
+  return READ_AND_WRITTEN(ROW) "(read and written), " READ_ONLY(
+    ROW) "(read only), " WRITTEN(ROW) "(written only); files that are read may "
+                                      "be compressed (.gz)";
+#undef ROW
 }
 
 /* Does name[0..n) end in ".suffix"? */
@@ -231,12 +210,17 @@ static int ends_in(const char *name, size_t n, const char *suffix)
          !strncasecmp(name + n - len, suffix, len);
 }
 
-/* In the table, longer suffixes precede those that they end in. */
+/* The format with the longest suffix in which the name ends: x.fluent.msh is
+ * not a .msh. */
 static const struct format *find(const char *name, size_t n)
 {
+  const struct format *found = NULL;
+
   for (size_t i = 0; i < N_FORMAT; i++)
-    if (ends_in(name, n, formats[i].suffix)) return formats + i;
-  return NULL;
+    if (ends_in(name, n, formats[i].suffix) &&
+        (!found || strlen(formats[i].suffix) > strlen(found->suffix)))
+      found = formats + i;
+  return found;
 }
 
 static size_t without_gz(const char *name)
@@ -265,17 +249,14 @@ int vg_format_is_cad(const char *path)
 {
   const struct format *f = find(path, without_gz(path));
 
-  return cad_kind(f) != VG_CAD_NONE;
+  return f && f->cad != VG_CAD_NONE;
 }
 
 int vg_format_is_tessellation(const char *path)
 {
-  static const char *const name[] = { "stl", "tri", "triq", "obj" };
   const struct format *f = find(path, without_gz(path));
 
-  for (size_t i = 0; f && i < sizeof name / sizeof *name; i++)
-    if (!strcmp(f->suffix, name[i])) return 1;
-  return 0;
+  return f && f->uses & TESSELLATION;
 }
 
 int vg_format_holds_cells(const char *path)
@@ -321,7 +302,7 @@ static vg_status read_by_name(const char *path, struct vg_mesh *out,
                               struct vg_read_info *info, struct vg_error *err)
 {
   const struct format *f = find(path, without_gz(path));
-  enum vg_cad_kind kind = cad_kind(f);
+  enum vg_cad_kind kind = f ? f->cad : VG_CAD_NONE;
   vg_status st;
 
   if (!f || (!f->read && !kind)) return vg_format_unknown(path, err);

@@ -7,10 +7,9 @@
 
 const char *vg_layer_cause_name(enum vg_layer_cause cause)
 {
-  static const char *const name[VG_CAUSE_N] = { "none",       "size",
-                                                "proximity",  "corner",
-                                                "visibility", "cell",
-                                                "collision",  "slide" };
+#define ROW(name, key, text, red, green, blue) key,
+  static const char *const name[] = { VG_LAYER_CAUSES(ROW) };
+#undef ROW
 
   return (unsigned)cause < VG_CAUSE_N ? name[cause] : "?";
 }

@@ -47,18 +47,31 @@
 
 #define VG_NO_INDEX UINT32_MAX
 
-/** Why a column has fewer or thinner layers than its growth law requests. */
+/** Why a column has fewer or thinner layers than its growth law requests: a row
+ * per cause. ROW(NAME, KEY, TEXT, RED, GREEN, BLUE): enum VG_CAUSE_NAME, name
+ * in reports and files, explanation, colour in pictures. The first two are no
+ * restrictions: all requested layers were grown, or they ended at the local
+ * edge length, as intended. New causes are appended, since numbers are part of
+ * files and of the library. */
+#define VG_LAYER_CAUSES(ROW)                                                   \
+  ROW(NONE, "none", "full layers", 176, 208, 190)                              \
+  ROW(SIZE, "size", "ended at the local edge length, as intended", 176, 208,   \
+      190)                                                                     \
+  ROW(PROXIMITY, "proximity", "proximity to an opposite surface", 230, 159, 0) \
+  ROW(CORNER, "corner", "columns converge in a concave corner", 160, 110, 190) \
+  ROW(VISIBILITY, "visibility", "no direction sees all faces of the point",    \
+      200, 40, 50)                                                             \
+  ROW(CELL, "cell", "a cell would be inverted or flat", 130, 70, 40)           \
+  ROW(COLLISION, "collision",                                                  \
+      "tops or side faces of the layers would intersect", 0, 114, 178)         \
+  ROW(SLIDE, "slide", "the wall meets a slide patch at too flat an angle",     \
+      240, 100, 150)
+
 enum vg_layer_cause {
-  VG_CAUSE_NONE,       /* All requested layers were grown. */
-  VG_CAUSE_SIZE,       /* Ended at the local cell size, as intended. */
-  VG_CAUSE_PROXIMITY,  /* The opposite surface is too close. */
-  VG_CAUSE_CORNER,     /* Columns converge in a concave corner. */
-  VG_CAUSE_VISIBILITY, /* No direction sees all faces at the point. */
-  VG_CAUSE_CELL,       /* A cell would be inverted or too flat. */
-  VG_CAUSE_COLLISION,  /* Tops or side faces would intersect. */
-  VG_CAUSE_SLIDE, /* The column meets a slide patch at too flat an angle, or
-                     the patch could not be remeshed around the layers. */
-  VG_CAUSE_N
+#define ROW(name, key, text, red, green, blue) VG_CAUSE_##name,
+  VG_LAYER_CAUSES(ROW)
+#undef ROW
+    VG_CAUSE_N
 };
 
 /** Name of a cause in reports: "none", "size", ... Static string. */

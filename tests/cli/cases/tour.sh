@@ -22,3 +22,18 @@ while IFS='|' read -r _ row _ file _; do
   n=$((n + 1))
 done < <(grep -E '^\| [A-Z][0-9]+ \|[^|]*\| `' "$root/docs/design/decisions.md")
 [ "$n" -ge 60 ] || fail "only $n constants in docs/design/decisions.md"
+
+# Every cause of layers/columns/columns.h is explained to users, and known to
+# the schema of the report and to the header of the library.
+n=0
+for key in $(sed -n '/define VG_LAYER_CAUSES/,/^$/s/.*ROW([A-Z_]*, "\([a-z_]*\)".*/\1/p' \
+    "$root/src/layers/columns/columns.h"); do
+  [ "$key" = none ] || grep -q "^| $key |" "$root/docs/reference/layers.md" ||
+    fail "docs/reference/layers.md has no row for the cause $key"
+  grep -qF "\"$key\"" "$root/src/api/vanguard.h" ||
+    fail "src/api/vanguard.h does not name the cause $key"
+  grep -qF "\"$key\": {" "$root/share/schema/report.schema.json" ||
+    fail "share/schema/report.schema.json lacks the cause $key"
+  n=$((n + 1))
+done
+[ "$n" -ge 8 ] || fail "only $n causes in layers/columns/columns.h"
