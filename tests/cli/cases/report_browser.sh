@@ -50,3 +50,17 @@ exits 0
 [ "$(wc -c <page.png)" -gt 300000 ] || fail "the page is blank"
 look /dev/null --window-size=500,6000 --screenshot="$PWD/narrow.png" "$page"
 [ "$(wc -c <narrow.png)" -gt 100000 ] || fail "the narrow page is blank"
+
+# The summary of a run with nothing to be flagged: each label is on one line.
+vanguard demo box --cells 2000 --out p
+vanguard mesh -q -p p/box --write b8.ugrid --out o
+exits 0
+sed 's/<meta http-equiv="Content-Security-Policy"[^>]*>//
+  s|</body>|<script>for (const label of document.querySelectorAll(".first b")) {\
+  const range = document.createRange(); range.selectNodeContents(label);\
+  label.dataset.lines = range.getClientRects().length; }</script></body>|' \
+  o/box.report.html >label.html
+for width in 1200 800 500; do
+  look label.dom --window-size=$width,900 --dump-dom "file://$PWD/label.html"
+  says label.dom '<b data-lines="1">As requested</b>'
+done
