@@ -54,6 +54,39 @@ int vg_cad_is_built(void)
 
 /* --- code that runs in the child ----------------------------------------- */
 
+#ifdef VG_CAD_LIBRARY
+/* What is missing, and what to install. `why` is the message of dlopen, which
+ * begins with the name of the library that it did not find. */
+static void explain(const char *why, char text[TEXT_MAX])
+{
+  const size_t n = strlen(VG_CAD_LIBRARY);
+
+  if (!why)
+    snprintf(text, TEXT_MAX,
+             VG_CAD_LIBRARY " belongs to another build; install the packages "
+                            "vanguard and libvanguard-cad0 of one version, or "
+                            "build all targets again");
+  else if (!strncmp(why, VG_CAD_LIBRARY ":", n + 1))
+    snprintf(text, TEXT_MAX,
+             "CAD files need " VG_CAD_LIBRARY
+             ", which was not found (in ../lib, seen from the folder of the "
+             "program, in LD_LIBRARY_PATH and in the folders of the system); "
+             "install libvanguard-cad0, or build its target vanguard-cad");
+  else if (!strstr(why, VG_CAD_LIBRARY))
+    snprintf(text, TEXT_MAX,
+             "CAD files need Open CASCADE, which was not found (%.400s); "
+             "install libocct-data-exchange-" VG_OCCT_VERSION
+             " and libocct-ocaf-" VG_OCCT_VERSION,
+             why);
+  else
+    snprintf(text, TEXT_MAX,
+             "CAD files need " VG_CAD_LIBRARY
+             ", which cannot be loaded (%.400s); install libvanguard-cad0 "
+             "again, or build its target vanguard-cad",
+             why);
+}
+#endif
+
 static void serve(int fd)
 {
 #ifdef VG_CAD_LIBRARY
@@ -61,6 +94,7 @@ static void serve(int fd)
   struct vg_cad_tell gone = { VG_CAD_TELL_FAIL, VG_ERR_UNSUPPORTED, 0 };
   void *library = dlopen(VG_CAD_LIBRARY, RTLD_NOW | RTLD_LOCAL), *at;
   const char *why = library ? NULL : dlerror();
+  char text[TEXT_MAX];
   vg_occt_entry *entry;
 
   at = library ? dlsym(library, VG_OCCT_ENTRY) : NULL;
@@ -68,10 +102,10 @@ static void serve(int fd)
     memcpy(&entry, &at, sizeof entry);
     entry(fd, &wire);
   }
-  if (!why) why = VG_CAD_LIBRARY " belongs to another build";
-  gone.n = strlen(why) < TEXT_MAX ? strlen(why) : TEXT_MAX - 1;
+  explain(why, text);
+  gone.n = strlen(text);
   vg_child_put(fd, &gone, sizeof gone);
-  vg_child_put(fd, why, gone.n);
+  vg_child_put(fd, text, gone.n);
 #endif
   close(fd);
   _exit(1);
