@@ -227,6 +227,8 @@ static void print_failure(const struct arguments *a, const struct vg_error *err)
 int vg_cmd_check(int argc, char **argv)
 {
   const struct argp_option own[] = {
+    { "project", 'p', "PROJECT", 0,
+      "Same as FILE: a file, or the stem of a project", 1 },
     { "deck", 'd', "FILE", 0,
       "Settings, patches and sources; if given, edges are compared with the "
       "target edge lengths of the deck [default STEM.deck if it exists, "

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/memory.h"
 #include "cli/commands/commands.h"
@@ -35,6 +36,8 @@ struct arguments {
 
 struct run {
   const struct arguments *a;
+  char *path;  /* of the mesh */
+  char *other; /* another mesh with the same stem, or NULL */
   struct vg_mesh mesh;
   struct vg_read_info info;
   size_t n_cell;
@@ -128,9 +131,52 @@ static error_t option(int key, char *arg, struct argp_state *state)
 
 /* --- steps --------------------------------------------------------------- */
 
+/* Add the mesh STEM.suffix, if it exists: the first one is partitioned. */
+static vg_status try_mesh(struct run *r, const char *stem, size_t n,
+                          const char *suffix, struct vg_error *err)
+{
+  char *path;
+
+  if (asprintf(&path, "%.*s.%s", (int)n, stem, suffix) < 0)
+    return vg_fail_memory(err, "a file name");
+  if (r->other || access(path, F_OK) || !vg_format_holds_cells(path) ||
+      (r->path && !strcmp(r->path, path)))
+    free(path);
+  else if (r->path) r->other = path;
+  else r->path = path;
+  return VG_OK;
+}
+
+/* A file, or the volume mesh of a project. A .cogsg comes first, since it
+ * contains the number of layer tetrahedra. */
+static vg_status find_mesh(struct run *r, struct vg_error *err)
+{
+  const char *name = r->a->one.file, *suffix;
+  size_t n = strlen(name);
+  vg_status st;
+
+  if (n > 4 && !strcmp(name + n - 4, ".d3m")) n -= 4;
+  else if (!access(name, F_OK) || vg_format_suffix_length(name)) {
+    r->path = strdup(name);
+    return r->path ? VG_OK : vg_fail_memory(err, "a file name");
+  }
+  VG_TRY(try_mesh(r, name, n, "cogsg", err));
+  for (size_t i = 0; (suffix = vg_format_input_suffix(i)); i++)
+    VG_TRY(try_mesh(r, name, n, suffix, err));
+  if (!r->path)
+    st = vg_fail(
+      err, VG_ERR_INPUT,
+      "%s: there is no such file, and no volume mesh of a project: "
+      "there is neither %.*s.cogsg nor %.*s.b8.ugrid; 'vanguard mesh "
+      "-p %.*s' generates them",
+      name, (int)n, name, (int)n, name, (int)n, name);
+done:
+  return st;
+}
+
 static vg_status read_mesh(struct run *r, struct vg_error *err)
 {
-  const char *path = r->a->one.file;
+  const char *path = r->path;
   struct vg_mesh *m = &r->mesh;
   double t = vg_display_now();
   vg_status st;
@@ -212,10 +258,13 @@ static vg_status write_files(struct run *r, struct vg_error *err)
 static vg_status run_all(struct run *r, struct vg_display *show,
                          struct vg_error *err)
 {
-  const char *path = r->a->one.file;
-  size_t n = strlen(path) - vg_format_suffix_length(path);
+  const char *path;
+  size_t n;
   vg_status st;
 
+  VG_TRY(find_mesh(r, err));
+  path = r->path;
+  n = strlen(path) - vg_format_suffix_length(path);
   r->stem = r->a->out ? strdup(r->a->out) : strndup(path, n);
   if (!r->stem) return vg_fail_memory(err, "a file name");
   vg_display_update(show, "read", 0, 0);
@@ -237,9 +286,8 @@ static void print_json(const struct run *r)
 
   for (size_t i = 0; i < r->n_file; i++)
     json_array_append_new(files, vg_text_json(r->file[i]));
-  o = json_pack("{s:o s:I s:o s:f s:f s:f s:o}", "file",
-                vg_text_json(r->a->one.file), "inner_faces",
-                (json_int_t)r->info.inner.n_face, "solver_parts",
+  o = json_pack("{s:o s:I s:o s:f s:f s:f s:o}", "file", vg_text_json(r->path),
+                "inner_faces", (json_int_t)r->info.inner.n_face, "solver_parts",
                 vg_report_solver_json(&r->report), "seconds_read", r->time_read,
                 "seconds_write", r->time_write, "peak_memory_bytes",
                 vg_report_peak_memory(), "files", files);
@@ -250,11 +298,14 @@ static void print_json(const struct run *r)
 
 static void print_text(const struct run *r)
 {
-  printf("%s: solver partition\n", r->a->one.file);
+  printf("%s: solver partition\n", r->path);
+  if (r->other)
+    printf("  note: %s is also a volume mesh; its complete name selects it\n",
+           r->other);
   vg_report_size_text(stdout, &r->mesh);
   if (r->info.inner.n_face)
-    printf("  note: " VG_INNER_FACES_NOTE "\n", r->a->one.file,
-           r->info.inner.n_face, r->info.inner.patches);
+    printf("  note: " VG_INNER_FACES_NOTE "\n", r->path, r->info.inner.n_face,
+           r->info.inner.patches);
   vg_report_solver_text(stdout, &r->report);
   printf("  time (s): read %.2f, write %.2f; peak memory %.0f MB\n",
          r->time_read, r->time_write, vg_report_peak_memory() / 1e6);
@@ -264,6 +315,8 @@ static void print_text(const struct run *r)
 static void release(struct run *r)
 {
   vg_mesh_release(&r->mesh);
+  free(r->path);
+  free(r->other);
   free(r->is_wall);
   free(r->part);
   free(r->stem);
@@ -273,6 +326,8 @@ static void release(struct run *r)
 int vg_cmd_partition(int argc, char **argv)
 {
   const struct argp_option options[] = {
+    { "project", 'p', "PROJECT", 0,
+      "Same as MESH: a file, or the stem of a project with one", 0 },
     { "parts", 'n', "N", 0, "Number of partitions", 0 },
     { "out", 'o', "STEM", 0,
       "Stem of the names of the output files [default: that "

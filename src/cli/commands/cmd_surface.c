@@ -287,6 +287,8 @@ done:
 int vg_cmd_surface(int argc, char **argv)
 {
   const struct argp_option own[] = {
+    { "project", 'p', "PROJECT", 0,
+      "Same as INPUT: a file, or the stem of a project", 0 },
     { "deck", 'd', "FILE", 0,
       "Settings, patches and sources [default "
       "STEM.deck if it exists]",

@@ -234,6 +234,7 @@ error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key, char *arg,
   switch (key) {
   case 'j': one->json = 1; return 0;
   case 'q': one->quiet = 1; return 0;
+  case 'p':
   case ARGP_KEY_ARG:
     if (one->file) argp_error(state, "only one %s is accepted: %s", what, arg);
     one->file = arg;

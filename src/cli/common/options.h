@@ -13,8 +13,9 @@
 void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input);
 
 /** Parser of a command that takes exactly one argument, called `what` in
- * messages ("file"): handles the argument, the end of arguments, and the
- * options 'j' (JSON) and 'q' (no progress). ARGP_ERR_UNKNOWN for other keys. A
+ * messages ("file"): handles the argument, which may also be the value of the
+ * option 'p', the end of arguments, and the options 'j' (JSON) and 'q' (no
+ * progress). ARGP_ERR_UNKNOWN for other keys. A
  * second argument, or none, is wrong usage. */
 struct vg_cli_one {
   const char *file;
