@@ -228,26 +228,27 @@ int vg_cmd_check(int argc, char **argv)
 {
   const struct argp_option own[] = {
     { "project", 'p', "PROJECT", 0,
-      "Same as FILE: a file, or the stem of a project", 1 },
+      "Same as FILE: a file, or the stem of a project", VG_GROUP_COMMON },
     { "deck", 'd', "FILE", 0,
       "Settings, patches and sources; if given, edges are compared with the "
       "target edge lengths of the deck [default STEM.deck if it exists, "
       "without this comparison]",
-      1 },
+      VG_GROUP_COMMON },
     { "defects", 'f', "FILE", 0,
       "Write all faces with a defect to this .vtu "
       "file",
-      1 },
+      VG_GROUP_COMMON },
     { "against", 'a', "FILE", 0,
       "Measure the distances between the surface and the one in FILE, in both "
       "directions",
-      1 },
+      VG_GROUP_COMMON },
     { "vtu", 'v', "FILE", 0,
       "Write the triangles of a surface with smallest angle, radius ratio "
       "(2 r/R) and distance to this .vtu file",
-      1 },
-    { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 1 },
-    { "quiet", 'q', NULL, 0, "Do not show progress", 1 },
+      VG_GROUP_COMMON },
+    { "json", 'j', NULL, 0, "Write the report as JSON to standard output",
+      VG_GROUP_COMMON },
+    { "quiet", 'q', NULL, 0, "Do not show progress", VG_GROUP_COMMON },
     { 0 }
   };
   struct vg_cli_options options;

@@ -637,59 +637,62 @@ static const struct argp_option own[] = {
   { "project", 'p', "PROJECT", 0,
     "Stem of the project files, or the full "
     "name of a surface file",
-    1 },
+    VG_GROUP_COMMON },
   { "deck", 'd', "FILE", 0,
     "Run deck [default PROJECT.deck if it "
     "exists]",
-    1 },
+    VG_GROUP_COMMON },
   { "out", 'o', "DIR", 0,
     "Folder for the results [default: that of the "
     "input]",
-    1 },
-  { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 1 },
-  { "quiet", 'q', NULL, 0, "Do not show progress", 1 },
+    VG_GROUP_COMMON },
+  { "json", 'j', NULL, 0, "Write the report as JSON to standard output",
+    VG_GROUP_OWN },
+  { "quiet", 'q', NULL, 0, "Do not show progress", VG_GROUP_OWN },
   { "progress", KEY_PROGRESS, "SECONDS", 0,
     "Interval between progress lines if "
     "standard error is not a terminal [s, default 10]",
-    1 },
+    VG_GROUP_OWN },
   { "timeline", KEY_TIMELINE, NULL, 0,
     "Write the trace of all workers to "
     "PROJECT.timeline.json, for 'vanguard plan' and 'vanguard sweep', and "
     "report the quality of cells near interfaces",
-    1 },
+    VG_GROUP_OWN },
   { "log", KEY_LOG, "FILE", 0,
     "Also write all output to FILE, "
     "with versions, host, ranks, threads and settings",
-    1 },
+    VG_GROUP_OWN },
   { "run-dir", KEY_RUN_DIR, "DIR", 0,
     "Store finished tasks in DIR, so that a "
     "run that is stopped or killed can be resumed; removed on success",
-    1 },
+    VG_GROUP_OWN },
   { "resume", KEY_RESUME, NULL, 0,
     "Resume the run stored in --run-dir, "
     "on any number of ranks and threads",
-    1 },
-  { "keep-run", KEY_KEEP, NULL, 0, "Keep --run-dir on success", 1 },
+    VG_GROUP_OWN },
+  { "keep-run", KEY_KEEP, NULL, 0, "Keep --run-dir on success", VG_GROUP_OWN },
   { "run-limit", KEY_LIMIT, "BYTES", 0,
     "Largest total size of --run-dir, over all "
     "ranks [bytes, default 0: no limit]",
-    1 },
+    VG_GROUP_OWN },
   { "shuffle-tasks", KEY_SHUFFLE, "SEED", 0,
     "Execute tasks in a random order; "
     "the files do not change (for tests) [default 0: heaviest first]",
-    1 },
+    VG_GROUP_OWN },
   { "test-node-ranks", KEY_NODE_RANKS, "N", OPTION_HIDDEN,
-    "Treat every N consecutive ranks as those of one node (for tests)", 1 },
+    "Treat every N consecutive ranks as those of one node (for tests)",
+    VG_GROUP_OWN },
   { "test-differ", KEY_DIFFER, "WHAT", OPTION_HIDDEN,
     "Let the last node report a different surface, layers or sizes (for "
     "tests)",
-    1 },
+    VG_GROUP_OWN },
   { "test-fail-leaves", KEY_FAIL, "SHARE[,ROUNDS]", OPTION_HIDDEN,
     "Let this fraction of the leaves fail in the first ROUNDS attempts (for "
     "tests)",
-    1 },
-  { NULL, 't', "N", 0, "Same as --threads", 1 },
-  { NULL, 'L', "N", 0, "Same as --bisections", 1 },
+    VG_GROUP_OWN },
+  { NULL, 't', "N", 0, "Same as --threads", VG_GROUP_COMMON },
+  { NULL, 'L', "N", 0, "Same as --bisections",
+    VG_GROUP_TOPIC + VG_TOPIC_PARALLEL },
   { 0 }
 };
 

@@ -137,71 +137,75 @@ static const struct argp_option own[] = {
   { "project", 'p', "PROJECT", 0,
     "Stem of the project files, or the full name of a surface file, as for "
     "'vanguard mesh'",
-    1 },
-  { "deck", 'd', "FILE", 0, "Run deck [default PROJECT.deck if it exists]", 1 },
+    VG_GROUP_COMMON },
+  { "deck", 'd', "FILE", 0, "Run deck [default PROJECT.deck if it exists]",
+    VG_GROUP_COMMON },
   { "replay", 'r', "FILE", 0,
     "Replay the timeline of a run, as written by 'vanguard mesh "
     "--timeline'",
-    1 },
+    VG_GROUP_COMMON },
   { "ranks", 'n', "LIST", 0,
     "Numbers of ranks, as in 1,2,4 or 3:7 or 1:64:x2 "
     "[default 1:512:x2]",
-    1 },
+    VG_GROUP_COMMON },
   { "threads", 't', "LIST", 0,
     "Numbers of threads per rank; idle threads help with front updates "
     "(joins), so the cores of a node perform better as one rank than as ranks "
     "with one thread each [default 1]",
-    1 },
+    VG_GROUP_COMMON },
   { "ranks-per-node", KEY_RANKS_PER_NODE, "N", 0,
     "Number of ranks per node; there is no latency between them, and they "
     "share the surface check, sizing field and layers [default 1]",
-    1 },
+    VG_GROUP_COMMON },
   { "cores", KEY_CORES, "N", 0,
     "Number of cores per node; --ranks are then numbers of nodes, all "
     "combinations of ranks and threads that fill a node are tried, and the "
     "best is shown with its mpirun line; for a project only",
-    1 },
-  { "latency", KEY_LATENCY, "S", 0, "Time per message [s, default 2e-6]", 1 },
+    VG_GROUP_COMMON },
+  { "latency", KEY_LATENCY, "S", 0, "Time per message [s, default 2e-6]",
+    VG_GROUP_COMMON },
   { "bandwidth", KEY_BANDWIDTH, "B", 0,
     "Bandwidth of the link of a rank "
     "[bytes/s, default 1e10]",
-    1 },
+    VG_GROUP_COMMON },
   { "rate", KEY_RATE, "X", 0,
     "Speed of a core relative to that of the timeline; without a timeline, "
     "relative to the core on which the built-in rates were measured [default "
     "1]",
-    1 },
+    VG_GROUP_COMMON },
   { "rates", KEY_RATES, "FILE", 0,
     "Fit the times per cell and face by least squares to the timeline of a "
     "run on this machine [default: rates of the machine named in "
     "docs/lab/performance-parallel.md]",
-    1 },
+    VG_GROUP_COMMON },
   { "target", KEY_TARGET, "S", 0,
     "Find the smallest machine that needs at most S seconds; for a project "
     "only [default: the largest machine with at least 80 % efficiency]",
-    1 },
+    VG_GROUP_COMMON },
   { "serial", KEY_SERIAL, "S", 0,
     "Time outside the tasks that is not parallel [s, default: the phases of "
     "the timeline, parallel within a node or over all workers; without a "
     "timeline, estimated from the times of reading, checking and sizing now]",
-    1 },
+    VG_GROUP_COMMON },
   { "joins-roam", KEY_ROAM, NULL, 0,
-    "Let any rank perform front updates (joins), not only the home rank", 1 },
+    "Let any rank perform front updates (joins), not only the home rank",
+    VG_GROUP_COMMON },
   { "loop-threads", KEY_LOOPS, "N", 0,
     "Largest number of threads that speed up loops of front updates; they "
     "share the memory bandwidth of a rank [default 16]",
-    1 },
+    VG_GROUP_COMMON },
   { "json", 'j', NULL, 0,
     "Write the forecast as JSON to standard output, with "
     "the whole decomposition tree",
-    1 },
+    VG_GROUP_COMMON },
   { "depth", KEY_DEPTH, "N", 0,
     "Levels of the decomposition tree to show "
     "[default 2]",
-    1 },
-  { "quiet", 'q', NULL, 0, "Do not show progress", 1 },
-  { "plot", KEY_PLOT, "FILE", 0, "Write a plot of the speed-up (SVG)", 1 },
-  { NULL, 'L', "N", 0, "Same as --bisections", 1 },
+    VG_GROUP_COMMON },
+  { "quiet", 'q', NULL, 0, "Do not show progress", VG_GROUP_COMMON },
+  { "plot", KEY_PLOT, "FILE", 0, "Write a plot of the speed-up (SVG)",
+    VG_GROUP_COMMON },
+  { NULL, 'L', "N", 0, "Same as --bisections", VG_GROUP_COMMON },
   { 0 }
 };
 

@@ -288,19 +288,20 @@ int vg_cmd_surface(int argc, char **argv)
 {
   const struct argp_option own[] = {
     { "project", 'p', "PROJECT", 0,
-      "Same as INPUT: a file, or the stem of a project", 0 },
+      "Same as INPUT: a file, or the stem of a project", VG_GROUP_COMMON },
     { "deck", 'd', "FILE", 0,
       "Settings, patches and sources [default "
       "STEM.deck if it exists]",
-      0 },
+      VG_GROUP_COMMON },
     { "out", 'o', "DIR", 0,
       "Folder for the files, created if it does not exist; they "
       "have the stem of the input [default: the folder of the input, with the "
       "stem STEM.new]",
-      0 },
-    { "json", 'j', NULL, 0, "Write the report as JSON to standard output", 0 },
-    { "quiet", 'q', NULL, 0, "Do not show progress", 0 },
-    { NULL, 't', "N", 0, "Same as --threads", 0 },
+      VG_GROUP_COMMON },
+    { "json", 'j', NULL, 0, "Write the report as JSON to standard output",
+      VG_GROUP_COMMON },
+    { "quiet", 'q', NULL, 0, "Do not show progress", VG_GROUP_COMMON },
+    { NULL, 't', "N", 0, "Same as --threads", VG_GROUP_COMMON },
     { 0 }
   };
   struct vg_cli_options options;

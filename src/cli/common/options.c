@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "cli/common/cli.h"
+#include "run/settings/lists.h"
 #include "run/settings/names.h"
 
 /* --- parsing ------------------------------------------------------------- */
@@ -149,7 +150,7 @@ static int check_long(const struct command_line *l, const char *word)
 {
   size_t len = strcspn(word, "=");
   const struct argp_option *found = long_option(l->option, word, len);
-  static const char *const own[] = { "help", "usage" };
+  static const char *const own[] = { "help", "usage", "option-table" };
 
   if (found && found->name[len]) check_abbreviation(l, word, len);
   if (found) return found->arg && !word[len];
@@ -189,7 +190,45 @@ static void check_options(const struct argp_option *o, int argc, char **argv)
   }
 }
 
-#define KEY_USAGE 256 /* not a letter */
+/* Not letters. */
+enum { KEY_USAGE = 256, KEY_TABLE };
+
+/* Words that an option may take, separated by blanks. */
+static void put_words(FILE *to, const struct argp_option *o)
+{
+  static const char *const yes_no[] = { "no", "yes", NULL };
+  const struct vg_param *p = NULL;
+  const char *const *words, *name;
+  int in_farfield;
+
+  if (o->key >= VG_KEY_SETTING)
+    p = vg_settings_name((size_t)(o->key - VG_KEY_SETTING), &name,
+                         &in_farfield);
+  if (!p) return;
+  words = p->type == VG_PARAM_FLAG ? yes_no : p->words;
+  for (size_t i = 0; words && words[i]; i++)
+    fprintf(to, "%s%s", i ? " " : "", words[i]);
+  if (p->check == vg_write_list_check)
+    for (size_t i = 0; vg_write_word(i); i++)
+      fprintf(to, "%s%s", i ? " " : "", vg_write_word(i));
+  if (p->check == vg_mesher_name_check) fputs("builtin tetgen hxt", to);
+}
+
+/* For cmake/manual.sh: a line for each option, with its long name, letter,
+ * argument, words and help, separated by tabs. */
+static void put_table(const struct argp_option *o, FILE *to)
+{
+  for (; o->name || o->key || o->doc; o++) {
+    const int is_letter = o->key > ' ' && o->key < 127;
+
+    if (o->flags & (OPTION_DOC | OPTION_HIDDEN) || (!o->name && !o->key))
+      continue;
+    fprintf(to, "%s\t%.*s\t%s\t", o->name ? o->name : "", is_letter,
+            (const char[]){ (char)o->key, 0 }, o->arg ? o->arg : "");
+    put_words(to, o);
+    fprintf(to, "\t%s\n", o->doc ? o->doc : "");
+  }
+}
 
 /* Replaces argp's own options, of which -? is the only short one for help. */
 static error_t show_help(int key, char *arg, struct argp_state *state)
@@ -204,6 +243,9 @@ static error_t show_help(int key, char *arg, struct argp_state *state)
     argp_state_help(state, state->out_stream,
                     ARGP_HELP_USAGE | ARGP_HELP_EXIT_OK);
     return 0;
+  case KEY_TABLE:
+    put_table(state->root_argp->options, state->out_stream);
+    exit(VG_EXIT_DONE);
   default: return ARGP_ERR_UNKNOWN;
   }
 }
@@ -214,6 +256,7 @@ void vg_cli_parse(const struct argp *argp, int argc, char **argv, void *input)
     { "help", 'h', NULL, 0, "Give this help list", -1 },
     { NULL, '?', NULL, OPTION_ALIAS, NULL, -1 },
     { "usage", KEY_USAGE, NULL, 0, "Give a short usage message", -1 },
+    { "option-table", KEY_TABLE, NULL, OPTION_HIDDEN, NULL, -1 },
     { 0 }
   };
   static const struct argp help = { .options = options, .parser = show_help };
@@ -254,7 +297,7 @@ static char *keep(struct vg_cli_options *o, char *text)
 
 /* Add the option of setting p; base contains its default. */
 static int add_option(struct vg_cli_options *o, const struct vg_param *p,
-                      const char *name, int key, const void *base)
+                      const char *name, int key, const void *base, int group)
 {
   char value[2 * VG_LIST_MAX + 4], *long_name, *help;
   struct argp_option *to = &o->option[o->n];
@@ -278,9 +321,28 @@ static int add_option(struct vg_cli_options *o, const struct vg_param *p,
           : strcmp(p->unit, "length") == 0 ? "LENGTH"
                                            : "NUMBER";
   to->doc = help;
-  to->group = 2;
+  to->group = p->is_common ? VG_GROUP_COMMON : group;
   o->n++;
   return 0;
+}
+
+static const char *const topic_title[VG_TOPIC_N] = {
+  [VG_TOPIC_SIZES] = "Edge lengths in the volume:",
+  [VG_TOPIC_SURFACE] = "Surface and flow domain:",
+  [VG_TOPIC_CAD] = "CAD files:",
+  [VG_TOPIC_REMESH] = "Remeshing of the surface:",
+  [VG_TOPIC_FARFIELD] = "Outer boundary:",
+  [VG_TOPIC_LAYERS] = "Viscous layers:",
+  [VG_TOPIC_LIMITS] = "Limits on the layers:",
+  [VG_TOPIC_VOLUME] = "Volume mesh:",
+  [VG_TOPIC_PARALLEL] = "Domain decomposition and threads:",
+  [VG_TOPIC_OUTPUT] = "Output files:",
+};
+
+static void add_title(struct vg_cli_options *o, const char *title, int group)
+{
+  o->option[o->n].doc = title;
+  o->option[o->n++].group = group;
 }
 
 vg_status vg_cli_options(const struct argp_option *own,
@@ -290,11 +352,11 @@ vg_status vg_cli_options(const struct argp_option *own,
   const struct vg_param *p;
   struct vg_settings defaults;
   const char *name;
-  int bad = 0, in_farfield;
+  int bad = 0, has_own = 0, in_farfield;
 
   while (own[n_own].name || own[n_own].key || own[n_own].doc) n_own++;
   while (vg_settings_name(n, &name, &in_farfield)) n++;
-  room = n_own + 1 + n + 1;
+  room = n_own + 2 + VG_TOPIC_N + n + 1;
   memset(out, 0, sizeof *out);
   out->option = vg_calloc(room, sizeof *out->option);
   out->text = vg_calloc(2 * room, sizeof *out->text);
@@ -304,13 +366,18 @@ vg_status vg_cli_options(const struct argp_option *own,
   }
   memcpy(out->option, own, n_own * sizeof *own);
   out->n = n_own;
-  out->option[out->n].doc = "Settings, which override those of the deck:";
-  out->option[out->n++].group = 2;
+  add_title(out, "Most used options (settings override those of the deck):",
+            VG_GROUP_COMMON);
+  for (size_t i = 0; i < n_own; i++) has_own |= own[i].group == VG_GROUP_OWN;
+  if (has_own) add_title(out, "The run and its reports:", VG_GROUP_OWN);
+  for (int t = VG_TOPIC_SIZES; t < VG_TOPIC_N; t++)
+    add_title(out, topic_title[t], VG_GROUP_TOPIC + t);
   vg_settings_default(&defaults);
   for (size_t i = 0; (p = vg_settings_name(i, &name, &in_farfield)); i++)
     bad |= add_option(out, p, name, VG_KEY_SETTING + (int)i,
                       in_farfield ? (void *)&defaults.farfield
-                                  : (void *)&defaults);
+                                  : (void *)&defaults,
+                      VG_GROUP_TOPIC + (int)vg_param_topic(p, in_farfield));
   if (!bad) return VG_OK;
   vg_cli_options_free(out);
   return VG_ERR_MEMORY;

@@ -24,10 +24,13 @@ struct vg_cli_one {
 error_t vg_cli_one(struct vg_cli_one *one, const char *what, int key, char *arg,
                    const struct argp_state *state);
 
-/** The options of a command: its own, followed by one for each plain setting
- * and for kind, lengths, size and spacing of the farfield, whose help ends with
- * "[unit, default x]". Keys of settings are VG_KEY_SETTING + position. The
- * texts are owned by the table and freed by vg_cli_options_free. */
+/** The options of a command: its own, followed by one for each setting
+ * (vg_settings_name), whose help ends with "[unit, default x]". The help has a
+ * group for the most used options, one for other options of the command, and
+ * one for each topic of settings. Keys of settings are VG_KEY_SETTING +
+ * position. The texts are owned by the table and freed by
+ * vg_cli_options_free. */
+enum { VG_GROUP_COMMON = 1, VG_GROUP_OWN, VG_GROUP_TOPIC };
 #define VG_KEY_SETTING 1000
 struct vg_cli_options {
   struct argp_option *option; /* terminated by a zero entry */

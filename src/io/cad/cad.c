@@ -55,7 +55,7 @@ int vg_cad_is_built(void)
 /* --- code that runs in the child ----------------------------------------- */
 
 #ifdef VG_CAD_LIBRARY
-/* What is missing, and what to install. `why` is the message of dlopen, which
+/* The missing library, and the package to install. `why` is the message of dlopen, which
  * begins with the name of the library that it did not find. */
 static void explain(const char *why, char text[TEXT_MAX])
 {

@@ -23,8 +23,7 @@ static const char *const own_word[] = { "mapbc", "fun3d.mapbc", "pvtu", "foam",
                                         "foam-ascii" };
 #define N_OWN (sizeof own_word / sizeof *own_word)
 
-/* Word i of a write list; NULL past the last one. */
-static const char *write_word(size_t i)
+const char *vg_write_word(size_t i)
 {
   return i < N_OWN ? own_word[i] : vg_format_output_suffix(i - N_OWN);
 }
@@ -33,7 +32,7 @@ static int is_write_word(const char *item)
 {
   const char *word;
 
-  for (size_t i = 0; (word = write_word(i)); i++)
+  for (size_t i = 0; (word = vg_write_word(i)); i++)
     if (!strcmp(word, item)) return 1;
   return 0;
 }
@@ -106,7 +105,7 @@ char *vg_write_list_pattern(void)
 
   if (!to) return NULL;
   fprintf(to, "^(?:auto|[, ]*|[, ]*(?:(?:");
-  for (size_t i = 0; (word = write_word(i)); i++) {
+  for (size_t i = 0; (word = vg_write_word(i)); i++) {
     if (i) fputc('|', to);
     for (; *word; word++) fprintf(to, *word == '.' ? "\\%c" : "%c", *word);
   }

@@ -18,6 +18,10 @@ enum { VG_WRITE_ITEMS = 48, VG_WRITE_NAME = 24 };
 vg_status vg_write_list(const char *list, size_t *n,
                         char (*item)[VG_WRITE_NAME], struct vg_error *err);
 
+/** Word i that a list of formats may contain; NULL past the last one. Static
+ * string. */
+const char *vg_write_word(size_t i);
+
 /** Check of the setting `mesher`: "builtin", "tetgen", "hxt", or a path that
  * contains a '/'. */
 vg_status vg_mesher_name_check(const char *name, const char *mesher,

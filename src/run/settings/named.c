@@ -65,6 +65,25 @@ enum vg_use vg_param_use(const struct vg_param *p, int in_farfield)
   return VG_USE_ALWAYS;
 }
 
+enum vg_topic vg_param_topic(const struct vg_param *p, int in_farfield)
+{
+  const struct vg_settings *s = NULL;
+  const size_t limit = offsetof(struct vg_settings, layer.limit);
+
+  if (p->topic != VG_TOPIC_BY_USE) return p->topic;
+  if (in_farfield) return VG_TOPIC_FARFIELD;
+  if (p->offset >= limit && p->offset < limit + sizeof s->layer.limit)
+    return VG_TOPIC_LIMITS;
+  switch (vg_param_use(p, 0)) {
+  case VG_USE_CAD: return VG_TOPIC_CAD;
+  case VG_USE_REMESH: return VG_TOPIC_REMESH;
+  case VG_USE_LAYERS: return VG_TOPIC_LAYERS;
+  case VG_USE_PLANES:
+  case VG_USE_PARTS: return VG_TOPIC_PARALLEL;
+  default: return VG_TOPIC_VOLUME;
+  }
+}
+
 uint8_t *vg_settings_given(const struct vg_settings *s)
 {
   char a[2 * VG_LIST_MAX + 4], b[2 * VG_LIST_MAX + 4];

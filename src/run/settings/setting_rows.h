@@ -17,8 +17,11 @@
  * limit (vg_layer_limits, whose members are written by hand because the rows of
  * the table `layers` contain them too). DEFAULT may use the local variables of
  * vg_settings_default. DESCRIPTION initialises members of struct vg_param; a
- * setting that does not affect the mesh has .keeps_mesh = 1. */
+ * setting that does not affect the mesh has .keeps_mesh = 1. .topic is the group
+ * of its option in the help; .is_common = 1 puts it into the first group, of the
+ * most used options. */
 VG_ROW(REAL, plain, scale, "scale", sizing.scale,
+  .topic = VG_TOPIC_SIZES, .is_common = 1,
   .hi = HUGE_SIZE, .above_lo = 1, .unit = "", .help = "Factor on all target "
   "edge lengths: those of the sources, of a remeshed surface, of a generated "
   "farfield, hmin and hmax; also applied to growth - 1; > 1 is coarser")
@@ -29,34 +32,43 @@ VG_ROW(WORD, layer, scale_rule, "scale_layers", 0,
   "even, but with the growth ratios of the AIAA Drag Prediction Workshop "
   "grids")
 VG_ROW(REAL, plain, growth, "growth", sizing.growth,
+  .topic = VG_TOPIC_SIZES, .is_common = 1,
   .lo = 1, .hi = 10, .above_lo = 1, .unit = "", .help = "Largest ratio of "
   "neighbouring edges away from the surface and the sources")
 VG_ROW(REAL, plain, hmin, "hmin", 0,
+  .topic = VG_TOPIC_SIZES,
   LENGTH, .help = "Smallest edge length; 0: no limit")
 VG_ROW(REAL, plain, hmax, "hmax", 0,
+  .topic = VG_TOPIC_SIZES, .is_common = 1,
   LENGTH, .help = "Largest edge length; 0: the largest edge requested by the "
   "surface (including its farfield) or by a source")
 VG_ROW(FLAG, plain, surface_sizes, "surface_sizes", sizing.from_surface,
+  .topic = VG_TOPIC_SIZES,
   .unit = "", .help = "Start the sizing field in the volume from the edge "
   "lengths of the surface")
 VG_ROW(FLAG, plain, d3m_sources, "d3m_sources", 1,
+  .topic = VG_TOPIC_SIZES,
   .use = VG_USE_D3M, .unit = "", .help = "Use the sources and ifact of the "
   ".d3m in addition to the sources given here")
 VG_TEXT_ROW(plain, sizes, VG_LIST_MAX, "sizes", "",
+  .topic = VG_TOPIC_SIZES,
   .unit = "", .argument = "FILE", .help = "Target edge lengths at the points "
   "of a background mesh: a Medit .sol or .solb with its mesh (.meshb, "
   ".b8.ugrid, ...) in the same folder, or the point array `size` of a VTK "
   ".vtu. Metrics, which depend on the direction, are a .sol of kind 3, or the "
   "array `metric`; \"\": none")
 VG_ROW(WORD, plain, metric_order, "metric_order", 0,
+  .topic = VG_TOPIC_SIZES,
   .words = order_words, .unit = "", .help = "Order of the six components of a "
   "metric in the file of sizes. medit: xx xy yy xz yz zz; upper: xx xy xz yy "
   "yz zz; vtk: xx yy zz xy yz xz; file: medit in a .sol, vtk in a .vtu")
 VG_ROW(REAL, plain, aspect_max, "aspect_max", sizing.aspect_max,
+  .topic = VG_TOPIC_SIZES,
   .lo = 1, .hi = 1e5, .unit = "", .help = "Largest ratio of two edge lengths "
   "at a point, where metrics or stretched sources request lengths that depend "
   "on the direction; larger lengths are reduced")
 VG_TEXT_ROW(plain, mapbc, VG_LIST_MAX, "mapbc", "",
+  .topic = VG_TOPIC_SURFACE,
   .unit = "", .argument = "FILE", .help = "Boundary conditions of the "
   "patches; \"\": PROJECT.mapbc if it exists, unless an earlier run of "
   "Vanguard wrote it")
@@ -83,22 +95,27 @@ VG_ROW(REAL, cad, seconds, "cad_seconds", cad.seconds,
   .keeps_mesh = 1, .hi = HUGE_SIZE, .unit = "s", .help = "Time limit for "
   "reading a CAD file; 0: none")
 VG_ROW(REAL, plain, weld, "weld", 0,
+  .topic = VG_TOPIC_SURFACE,
   LENGTH, .help = "Merge points that are closer than this distance; 0: merge "
   "identical points only")
 VG_ROW(REAL, plain, wrap, "wrap", 0,
+  .topic = VG_TOPIC_SURFACE,
   LENGTH, .help = "Shrink-wrap the bodies with a closed surface of about this "
   "edge length that bridges gaps narrower than it; for overlapping parts and "
   "holes that cannot be closed; 0: no wrap")
 VG_ROW(FLAG, plain, repair, "repair", 1,
+  .topic = VG_TOPIC_SURFACE,
   .unit = "", .help = "Make all unambiguous repairs: orientation, unused and "
                       "duplicate points and faces")
 VG_ROW(WORD, plain, flow, "flow", 0,
+  .topic = VG_TOPIC_SURFACE,
   .words = flow_words, .unit = "", .help = "Flow domain. external: the "
   "surface consists of bodies, and the fluid is outside; internal: the "
   "surface encloses the fluid; auto: decided from boundary conditions, patch "
   "names, nesting and shape of the shells and, where the format defines it, "
   "their orientation; the report lists the evidence")
 VG_ROW(WORD, plain, half, "half", 0,
+  .topic = VG_TOPIC_SURFACE,
   .words = half_words, .unit = "", .help = "Half model. x, y, z: the symmetry "
   "plane is normal to this axis, and a flat cap in it is removed; yes: open "
   "edges in one plane x, y or z = constant lie in the symmetry plane; no: the "
@@ -106,17 +123,21 @@ VG_ROW(WORD, plain, half, "half", 0,
   "edges that span a good part of the body and whose plane the surface meets "
   "steeply, or from caps with a symmetry condition")
 VG_ROW(WORD, plain, all_regions, "regions", 0,
+  .topic = VG_TOPIC_SURFACE,
   .words = region_words, .unit = "", .help = "Regions of fluid to mesh. one: "
   "sealed cavities are ignored, and more than one region is an error; all: "
   "every region is meshed")
 VG_ROW(FLAG, plain, close_holes, "close_holes", 0,
+  .topic = VG_TOPIC_SURFACE,
   .unit = "", .help = "Close holes of the surface whose rims are nearly "
   "plane; each gets a patch of its own: cap_1, cap_2, ...")
 VG_ROW(WORD, plain, swap, "surface_swap", 0,
+  .topic = VG_TOPIC_SURFACE,
   .words = answer_words, .unit = "", .help = "Swap and collapse edges of the "
   "surface at poor triangles, without visible change of its shape; auto: if "
   "layers grow and the surface has slivers")
 VG_ROW(WORD, plain, remesh, "remesh_surface", 0,
+  .topic = VG_TOPIC_REMESH, .is_common = 1,
   .words = answer_words, .unit = "", .help = "Remesh the surface to the "
   "target edge lengths, preserving feature edges, corners and patches; auto: "
   "for surfaces from CAD, where new points are projected onto the CAD faces "
@@ -126,6 +147,7 @@ VG_ROW(REAL, plain, surface_tolerance, "surface_tolerance", 0,
   "surface from the input surface; 0: 1e-4 of the body length, or 1/30 of "
   "wrap if that is more; nowhere more than 0.05 of the local edge length")
 VG_ROW(REAL, plain, surface_size, "surface_size", 0,
+  .is_common = 1,
   .use = VG_USE_REMESH, LENGTH, .help = "Largest edge of the remeshed "
   "surface; 0: hmax, or 0.02 of the body length (for an outer boundary 0.04 "
   "of its own length)")
@@ -137,6 +159,7 @@ VG_ROW(REAL, plain, per_turn, "edges_per_turn", remesh.per_turn,
   .use = VG_USE_REMESH, .lo = 3, .hi = 10000, .unit = "edges",
   .help = "Edges per full circle on curved parts of the remeshed surface")
 VG_ROW(REAL, plain, gap_edges, "gap_edges", 0,
+  .topic = VG_TOPIC_REMESH,
   .hi = 1000, .unit = "edges", .help = "Minimum number of edges across the "
   "gap between facing surfaces, on the remeshed surface and in the volume; 0: "
   "no requirement")
@@ -148,19 +171,24 @@ VG_ROW(COUNT, plain, max_cells, "max_cells", 0,
   "mesh, including its layers, would have more cells than "
         "this; 0: no limit")
 VG_TEXT_ROW(plain, write, VG_WRITE_MAX, "write", "auto",
+  .topic = VG_TOPIC_OUTPUT, .is_common = 1,
   .keeps_mesh = 1, .unit = "", .check = vg_write_list_check,
   .pattern = vg_write_list_pattern, .help = "Output formats, separated by "
   "commas; auto: cogsg,b8.ugrid, or b8.ugrid for mixed cells")
 VG_ROW(FLAG, plain, report_html, "report_html", 1,
+  .topic = VG_TOPIC_OUTPUT,
   .keeps_mesh = 1, .unit = "", .help = "Write PROJECT.report.html, a report "
   "of the run with pictures")
 VG_ROW(WORD, plain, cells, "cells", 0,
+  .is_common = 1,
   .words = cell_words, .unit = "", .help = "Cell types in the layers: tets, "
   "or mixed (prisms, pyramids and tetrahedra)")
 VG_ROW(FLAG, plain, ugrid_tail, "ugrid_tail", 0,
+  .topic = VG_TOPIC_OUTPUT,
   .keeps_mesh = 1, .unit = "", .help = "Append the number of layer tetrahedra "
   "after the cells of a .ugrid")
 VG_ROW(COUNT, plain, solver_parts, "solver_parts", 0,
+  .topic = VG_TOPIC_OUTPUT,
   .keeps_mesh = 1, .hi = 2147483647, .unit = "partitions",
   .help = "Partition the mesh for this many flow-solver processes without "
   "cutting a stack of layer cells: writes PROJECT.part.N, a cell array in a "
@@ -177,6 +205,7 @@ VG_TEXT_ROW(plain, helpers, VG_LIST_MAX, "helpers", "",
   "of the environment variable VANGUARD_HELPERS, or else the folder of the "
   "program or its libexec/vanguard")
 VG_ROW(COUNT, plain, leaf_cells, "leaf_cells", VG_LEAF_CELLS,
+  .topic = VG_TOPIC_PARALLEL,
   .hi = 9e15, .unit = "cells", .help = "Target number of cells per subdomain; "
   "the space outside the layers is divided into subdomains, which are filled "
   "in parallel; 0: not divided")
@@ -191,12 +220,14 @@ VG_ROW(FLAG, plain, constant_direction, "constant_direction", 0,
   .use = VG_USE_PLANES, .unit = "", .help = "Make all cuts normal to "
   "split_direction")
 VG_ROW(WORD, plain, decompose, "decompose", 0,
+  .topic = VG_TOPIC_PARALLEL,
   .words = decompose_words, .unit = "", .help = "Domain decomposition of the "
   "space outside the layers. advancing: recursive cuts by planes of final "
   "cells; discrete: along the faces of a coarse mesh, whose cells are "
   "assigned to subdomains; octree: by octants away from the layers, assigned "
   "to subdomains, and cut planes near the layers")
 VG_ROW(COUNT, plain, subdomains, "subdomains", VG_COUNT_NONE,
+  .topic = VG_TOPIC_PARALLEL,
   .lo = 1, .hi = 1e6, .optional = 1, .unit = "subdomains",
   .help = "Number of subdomains. advancing: approximate; octree: octants get a "
   "share of them in proportion to their cells; -: expected number of cells "
@@ -215,29 +246,38 @@ VG_ROW(WORD, plain, h_refine, "interfaces", 0,
   .help = "How interfaces between subdomains are refined to the local edge "
   "length: remesh, or h-refine (bisect their edges)")
 VG_ROW(WORD, plain, cyclic, "schedule", 0,
+  .topic = VG_TOPIC_PARALLEL,
   .keeps_mesh = 1, .words = schedule_words, .unit = "",
   .help = "Assignment of subdomains to workers. dynamic: an idle worker takes "
   "the next one; cyclic: all are assigned in turn once the last one is known, "
   "for comparison. The mesh does not depend on it")
 VG_ROW(COUNT, plain, threads, "threads", 0,
+  .topic = VG_TOPIC_PARALLEL, .is_common = 1,
   .keeps_mesh = 1, .hi = 4096, .unit = "threads", .help = "Threads per "
   "process; 0: one per core to which the process is bound; the mesh does not "
   "depend on it")
 VG_ROW(WORD, layer, grow, "layers", 0,
-  .use = VG_USE_ALWAYS, .words = answer_words, .unit = "",
+  .is_common = 1,
+  .topic = VG_TOPIC_LAYERS, .use = VG_USE_ALWAYS,
+  .words = answer_words, .unit = "",
   .help = "Grow viscous layers on the walls; auto: if the project requests "
   "them (.d3m, a viscous condition, walls) and the first height is known")
 VG_ROW(REAL, layer, first, "first", 0,
+  .is_common = 1,
   LENGTH, .help = "Height of the first layer; 0: from y_plus")
 VG_ROW(REAL, layer, y_plus, "y_plus", 0,
+  .is_common = 1,
   .hi = HUGE_SIZE, .unit = "", .help = "y+ of the first height, from reynolds "
   "and reference_length; 0: first is given")
 VG_ROW(REAL, layer, reynolds, "reynolds", 0,
+  .is_common = 1,
   .hi = HUGE_SIZE, .unit = "", .help = "Reynolds number based on "
   "reference_length; 0: unknown, y+ is not available")
 VG_ROW(REAL, layer, length, "reference_length", 0,
+  .is_common = 1,
   LENGTH, .help = "Reference length of the Reynolds number")
 VG_ROW(REAL, layer, ratio, "ratio", NAN,
+  .is_common = 1,
   .lo = 1, .hi = 10, .optional = 1, .unit = "", .help = "Growth ratio: height "
   "of a layer over that of the one below it; -: 1 + rate1, or the ratio that "
   "follows from layer_count and layer_total, or 1.2")
@@ -248,6 +288,7 @@ VG_ROW(REAL, layer, rate2, "rate2", NAN,
   .hi = 9, .optional = 1, .unit = "", .help = "Second rate of VGRID's growth "
   "law, see rate1; -: 0")
 VG_ROW(COUNT, layer, count, "layer_count", 0,
+  .is_common = 1,
   .hi = VG_LEVELS_MAX, .unit = "layers", .help = "Number of layers; 0: until "
   "a layer is as high as the local edge length")
 VG_ROW(COUNT, layer, most, "layer_max", 0,
@@ -263,6 +304,7 @@ VG_ROW(REAL, layer, cap, "layer_cap", NAN,
   "ratio of every layer; 0: none; -: 1.3, or none if the .d3m gives the "
   "growth law")
 VG_TEXT_ROW(layer, walls, VG_LIST_MAX, "walls", "",
+  .is_common = 1,
   .unit = "", .check = vg_patch_list_check,
   .pattern = vg_patch_list_pattern, .help = "Patches with layers, to "
   "the exclusion of all others, by number or name, as in 3-12,15,wing*; \"\": "
@@ -297,7 +339,8 @@ VG_ROW(FLAG, layer, by_source, "layer_sources", 0,
   .unit = "", .help = "Take first heights and rates from the sources (VGRID's "
   "grid 2)")
 VG_ROW(FLAG, layer, from_files, "file_layers", 1,
-  .use = VG_USE_ALWAYS, .unit = "", .help = "Use the layer settings of a "
+  .topic = VG_TOPIC_LAYERS, .use = VG_USE_ALWAYS,
+  .unit = "", .help = "Use the layer settings of a "
   ".d3m, .surf, .tags or AFLR .bc where none are given here")
 VG_ROW(REAL, limit, min_full, "min_full", NAN,
   LIMIT(0, 100, "%", "Minimum percentage of the faces of each wall patch with "

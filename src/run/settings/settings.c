@@ -105,8 +105,8 @@ static const struct vg_param params[] = {
   }
 
 static const struct vg_param farfield_columns[] = {
-  { "kind", AT(kind), .use = VG_USE_ALWAYS, .type = VG_PARAM_WORD,
-    .words = domain_words, .unit = "", .required = 1,
+  { "kind", AT(kind), .use = VG_USE_ALWAYS, .is_common = 1,
+    .type = VG_PARAM_WORD, .words = domain_words, .unit = "", .required = 1,
     .help = "Shape of the generated outer boundary: auto (a sphere, only "
             "if the surface has no outer boundary), none, sphere, box, or mach "
             "(swept along the Mach cone, for sonic booms)" },

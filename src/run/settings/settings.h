@@ -177,11 +177,30 @@ enum vg_use {
   VG_USE_N
 };
 
+/** Groups of the options in the help, in this order. */
+enum vg_topic {
+  VG_TOPIC_BY_USE, /* CAD, REMESH, FARFIELD, LAYERS, LIMITS and PARALLEL by
+                      vg_param_use and place, else VOLUME */
+  VG_TOPIC_SIZES,
+  VG_TOPIC_SURFACE,
+  VG_TOPIC_CAD,
+  VG_TOPIC_REMESH,
+  VG_TOPIC_FARFIELD,
+  VG_TOPIC_LAYERS,
+  VG_TOPIC_LIMITS,
+  VG_TOPIC_VOLUME,
+  VG_TOPIC_PARALLEL,
+  VG_TOPIC_OUTPUT,
+  VG_TOPIC_N
+};
+
 /** One value: its name, location, permitted range and help text. */
 struct vg_param {
   const char *name;
   enum vg_param_type type;
   enum vg_use use;
+  enum vg_topic topic;
+  int is_common;            /* 1: one of the most used options */
   size_t offset, size;      /* in the row or in vg_settings; size of a text */
   size_t name_at;           /* offset of the char[VG_NAME_MAX] with the name or
                                pattern of a VG_PARAM_PATCH; the number is then
@@ -278,6 +297,9 @@ const struct vg_param *vg_settings_name(size_t i, const char **name,
 
 /** The part of a run that the setting affects; never VG_USE_BY_PLACE. */
 enum vg_use vg_param_use(const struct vg_param *p, int in_farfield);
+
+/** The topic of the setting; never VG_TOPIC_BY_USE. */
+enum vg_topic vg_param_topic(const struct vg_param *p, int in_farfield);
 
 /** Array with one byte for each i of vg_settings_name, 1 if the setting differs
  * from its default. The caller frees it. NULL: out of memory. */
