@@ -39,6 +39,7 @@ install(FILES ${CMAKE_BINARY_DIR}/vanguard.pc
 install(DIRECTORY ${CMAKE_BINARY_DIR}/share/man/man1
   DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program)
 install(DIRECTORY ${CMAKE_BINARY_DIR}/share/bash-completion
+    ${CMAKE_BINARY_DIR}/share/zsh ${CMAKE_BINARY_DIR}/share/fish
   DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT program)
 install(PROGRAMS share/slurm/vanguard.sbatch
   DESTINATION ${CMAKE_INSTALL_DATADIR}/vanguard COMPONENT program)
