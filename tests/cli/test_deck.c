@@ -66,13 +66,13 @@ static void assert_same_settings(const struct vg_settings *a,
   }
 }
 
-static void round_trip(struct vg_settings *s, int explain)
+static void round_trip(struct vg_settings *s, enum vg_deck_form form)
 {
   const char *path = VG_TMP_DIR "/round_trip.deck";
   struct vg_settings back = VG_SETTINGS_INIT;
   struct vg_error err = VG_ERROR_INIT;
 
-  assert_int_equal(vg_deck_write(path, s, "# comment\n", explain, &err), VG_OK);
+  assert_int_equal(vg_deck_write(path, s, "# comment\n", form, &err), VG_OK);
   if (vg_deck_read(path, &back, &err) < 0) fail_msg("%s", err.text);
   assert_same_settings(s, &back);
   vg_settings_release(&back);
@@ -85,8 +85,9 @@ static void defaults_survive_a_round_trip(void **state)
 
   (void)state;
   vg_settings_default(&s);
-  round_trip(&s, 0);
-  round_trip(&s, 1);
+  round_trip(&s, VG_DECK_ALL);
+  round_trip(&s, VG_DECK_CHANGED);
+  round_trip(&s, VG_DECK_EXPLAINED);
   vg_settings_release(&s);
 }
 
@@ -198,8 +199,9 @@ static void everything_survives_a_round_trip(void **state)
   for (int kind = VG_SOURCE_VGRID_NODE; kind <= VG_SOURCE_MACHCONE; kind++)
     add_source(&s, kind);
   vg_settings_add(&s, VG_TABLE_SWEEP, &sweep, NULL);
-  round_trip(&s, 0);
-  round_trip(&s, 1);
+  round_trip(&s, VG_DECK_ALL);
+  round_trip(&s, VG_DECK_CHANGED);
+  round_trip(&s, VG_DECK_EXPLAINED);
   vg_settings_release(&s);
 }
 
@@ -345,7 +347,7 @@ static void layers_are_a_setting_and_a_table(void **state)
   assert_int_equal(s.layer_row[1].count, VG_COUNT_NONE);
   assert_string_equal(s.layer.walls, "3-12,15");
   assert_true(s.layer.y_plus == 1 && s.layer.length == 2.5);
-  round_trip(&s, 1);
+  round_trip(&s, VG_DECK_EXPLAINED);
   vg_settings_release(&s);
   if (parse("t\ncells layers first\nmixed no 0.1\n", &s, &err) < 0)
     fail_msg("%s", err.text);
@@ -385,7 +387,7 @@ static void patches_come_from_a_mesh(void **state)
   assert_int_equal(s.patch[0].id, 3);
   assert_int_equal(s.patch[0].bc, VG_BC_NONE);
   assert_int_equal(s.patch[1].bc, 5000);
-  round_trip(&s, 1);
+  round_trip(&s, VG_DECK_EXPLAINED);
   vg_settings_release(&s);
   vg_mesh_release(&m);
 }

@@ -57,7 +57,8 @@ static void is_in_the_deck(void **state)
 
   (void)state;
   set(&s);
-  assert_int_equal(vg_deck_write(DECK, &s, NULL, 1, &err), VG_OK);
+  assert_int_equal(vg_deck_write(DECK, &s, NULL, VG_DECK_EXPLAINED, &err),
+                   VG_OK);
   assert_int_equal(vg_deck_read(DECK, &back, &err), VG_OK);
   assert_true(back.tip_size == 0.5);
   assert_int_equal(back.layer.tip_sweeps, 7);

@@ -333,7 +333,7 @@ static void a_printed_form_comes_back(void **state)
   assert_int_equal(settings_of(&f, &back, &err), VG_OK);
   assert_true(back.growth == 1.1 && back.layer.first == 1e-5);
   snprintf(path, sizeof path, "%s/back.deck", scene.dir);
-  assert_int_equal(vg_deck_write(path, &back, NULL, 0, &err), VG_OK);
+  assert_int_equal(vg_deck_write(path, &back, NULL, VG_DECK_ALL, &err), VG_OK);
   assert_int_equal(vg_deck_read(path, &s, &err), VG_OK);
   assert_true(s.growth == 1.1 && s.layer.first == 1e-5);
   free(text);

@@ -78,7 +78,7 @@ static vg_status write_json(const char *path, json_t *o, struct vg_error *err)
 }
 
 /* Write the deck to a temporary file and copy it to standard output. */
-static vg_status to_stdout(const struct vg_settings *s, int explain,
+static vg_status to_stdout(const struct vg_settings *s, enum vg_deck_form form,
                            struct vg_error *err)
 {
   char path[] = P_tmpdir "/vanguard-deck-XXXXXX", part[4096];
@@ -89,7 +89,7 @@ static vg_status to_stdout(const struct vg_settings *s, int explain,
 
   if (fd < 0) return vg_fail(err, VG_ERR_IO, "cannot write in " P_tmpdir);
   close(fd);
-  st = vg_deck_write(path, s, NULL, explain, err);
+  st = vg_deck_write(path, s, NULL, form, err);
   f = st < 0 ? NULL : fopen(path, "r");
   while (f && (n = fread(part, 1, sizeof part, f)) > 0)
     fwrite(part, 1, n, stdout);
@@ -111,7 +111,7 @@ static vg_status refuse_existing(const char *path, struct vg_error *err)
 static vg_status write_deck(const struct arguments *a, struct vg_error *err)
 {
   struct vg_settings s;
-  const int explain = !a->deck;
+  const enum vg_deck_form form = a->deck ? VG_DECK_ALL : VG_DECK_EXPLAINED;
   vg_status st = VG_OK;
 
   vg_settings_default(&s);
@@ -119,8 +119,8 @@ static vg_status write_deck(const struct arguments *a, struct vg_error *err)
   if (a->deck) VG_TRY(vg_deck_read(a->deck, &s, err));
   if (a->surface) VG_TRY(describe(a->surface, &s, err));
   if (a->json) st = write_json(a->output, vg_deck_json(&s), err);
-  else if (a->output) st = vg_deck_write(a->output, &s, NULL, explain, err);
-  else st = to_stdout(&s, explain, err);
+  else if (a->output) st = vg_deck_write(a->output, &s, NULL, form, err);
+  else st = to_stdout(&s, form, err);
 done:
   vg_settings_release(&s);
   return st;

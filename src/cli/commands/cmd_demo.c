@@ -171,7 +171,7 @@ static vg_status write_project(char *const path[3], const char *stem,
     vg_mapbc_write(path[1], &demo->surface, VG_MAPBC_VGRID, name, NULL, err));
   has_layers = set_layers(name, &s);
   VG_TRY(vg_deck_write(path[2], &s, has_layers ? layer_comment : NULL,
-                       has_layers, err));
+                       VG_DECK_CHANGED, err));
   printf("%s: surface of %s points, %s triangles\n", path[0],
          vg_text_count(surface.n_point, points),
          vg_text_count(surface.n_tri, triangles));

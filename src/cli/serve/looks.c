@@ -167,7 +167,8 @@ vg_status vg_looks_start(struct vg_looks *l, const struct vg_look_order *o,
   p->state = VG_SEE_NOTHING;
   for (size_t i = 0; i < sizeof files / sizeof *files; i++)
     unlink(path_of(p, files[i], path));
-  VG_TRY(vg_deck_write(path_of(p, VG_LOOK_DECK, path), o->s, NULL, 0, err));
+  VG_TRY(vg_deck_write(path_of(p, VG_LOOK_DECK, path), o->s, NULL, VG_DECK_ALL,
+                       err));
   VG_TRY((o->type == VG_SEE_PLAN ? plan_line : look_line)(o, &w, err));
   p->pid = vg_run_spawn(p->dir, w.word, OUTPUT, NULL);
   if (p->pid < 0) {

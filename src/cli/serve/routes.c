@@ -249,7 +249,8 @@ static vg_status make_run(struct vg_portal *p, const struct vg_fields *f,
   run->cpus = given.is_slurm ? given.cpus : s.threads > 0 ? (int)s.threads : 1;
   strcpy(run->time, given.time);
   strcpy(run->partition, given.partition);
-  st = vg_deck_write(vg_run_path(run, "run.deck", path), &s, NULL, 0, err);
+  st = vg_deck_write(vg_run_path(run, "run.deck", path), &s, NULL, VG_DECK_ALL,
+                     err);
   if (st >= 0) st = vg_record_write(run, err);
   if (st < 0) { /* the run stays in the list, with the reason */
     run->state = VG_SERVE_FAILED;

@@ -33,13 +33,17 @@ vg_status vg_deck_parse(const char *name, const void *data, size_t size,
 vg_status vg_deck_read(const char *path, struct vg_settings *s,
                        struct vg_error *err);
 
+/** Content of a deck: all settings, with or without an explanation of each
+ * value (unit and default), or only those that differ from the default. */
+enum vg_deck_form { VG_DECK_ALL, VG_DECK_EXPLAINED, VG_DECK_CHANGED };
+
 /** Write a deck that vg_deck_parse reads back to equal settings.
  *
  * @param comment  lines written after the title, each starting with '#'; may
- *                 be NULL
- * @param explain  1: document every value, with unit and default */
+ *                 be NULL */
 vg_status vg_deck_write(const char *path, const struct vg_settings *s,
-                        const char *comment, int explain, struct vg_error *err);
+                        const char *comment, enum vg_deck_form form,
+                        struct vg_error *err);
 
 /** Append one row to the patch table for every patch of m. */
 vg_status vg_deck_patches_of(const struct vg_mesh *m, struct vg_settings *s,

@@ -58,40 +58,6 @@ static void explain_param(struct vg_output *out, const struct vg_param *p,
   vg_output_text(out, "\n");
 }
 
-/* Write the names p[first..last) above their values, in columns. */
-static void write_block(struct vg_output *out, const struct vg_param *p,
-                        size_t first, size_t last, const struct vg_settings *s)
-{
-  for (int line = 0; line < 2; line++) {
-    for (size_t i = first; i < last; i++) {
-      char value[CELL_SIZE];
-      size_t width = strlen(p[i].name);
-
-      vg_param_format(&p[i], s, value, sizeof value);
-      if (strlen(value) > width) width = strlen(value);
-      pad(out, line ? value : p[i].name, i + 1 < last ? width + 2 : 0);
-    }
-    vg_output_text(out, "\n");
-  }
-  vg_output_text(out, "\n");
-}
-
-static void write_params(struct vg_output *out, const struct vg_settings *s,
-                         const struct vg_settings *defaults, int explain)
-{
-  size_t n;
-  const struct vg_param *p = vg_settings_params(&n);
-  const size_t per_block = 6;
-
-  for (size_t first = 0; first < n; first += per_block) {
-    size_t last = first + per_block < n ? first + per_block : n;
-
-    for (size_t i = first; explain && i < last; i++)
-      explain_param(out, &p[i], defaults);
-    write_block(out, p, first, last, s);
-  }
-}
-
 static int is_default(const struct vg_param *p, const void *row,
                       const void *defaults)
 {
@@ -102,19 +68,66 @@ static int is_default(const struct vg_param *p, const void *row,
   return strcmp(a, b) == 0;
 }
 
+static int is_default_row(const struct vg_setting_table *t, const void *row,
+                          const void *defaults)
+{
+  for (size_t c = 0; c < t->n_column; c++)
+    if (!is_default(&t->column[c], row, defaults)) return 0;
+  return 1;
+}
+
+/* Write the names of the n settings in p above their values, in columns. */
+static void write_block(struct vg_output *out, const struct vg_param *const *p,
+                        size_t n, const struct vg_settings *s)
+{
+  for (int line = 0; line < 2; line++) {
+    for (size_t i = 0; i < n; i++) {
+      char value[CELL_SIZE];
+      size_t width = strlen(p[i]->name);
+
+      vg_param_format(p[i], s, value, sizeof value);
+      if (strlen(value) > width) width = strlen(value);
+      pad(out, line ? value : p[i]->name, i + 1 < n ? width + 2 : 0);
+    }
+    vg_output_text(out, "\n");
+  }
+  vg_output_text(out, "\n");
+}
+
+static void write_params(struct vg_output *out, const struct vg_settings *s,
+                         const struct vg_settings *defaults,
+                         enum vg_deck_form form)
+{
+  enum { PER_BLOCK = 6 };
+  const struct vg_param *block[PER_BLOCK];
+  size_t n, n_block = 0;
+  const struct vg_param *p = vg_settings_params(&n);
+
+  for (size_t i = 0; i < n; i++) {
+    if (form != VG_DECK_CHANGED || !is_default(&p[i], s, defaults))
+      block[n_block++] = &p[i];
+    if (n_block < PER_BLOCK && (i + 1 < n || !n_block)) continue;
+    for (size_t k = 0; form == VG_DECK_EXPLAINED && k < n_block; k++)
+      explain_param(out, block[k], defaults);
+    write_block(out, block, n_block, s);
+    n_block = 0;
+  }
+}
+
 /* Widths of the columns that are written; 0: the column is omitted, since all
  * its values are defaults. */
 static void column_widths(const struct vg_setting_table *t,
                           enum vg_table_kind kind, const struct vg_settings *s,
-                          const void *defaults, size_t *width)
+                          const void *defaults, enum vg_deck_form form,
+                          size_t *width)
 {
   char value[CELL_SIZE];
   size_t n = vg_settings_rows(s, kind);
 
   for (size_t c = 0; c < t->n_column; c++) {
     const struct vg_param *p = &t->column[c];
-    int used = kind == VG_TABLE_FARFIELD || kind == VG_TABLE_PATCHES ||
-               p->required;
+    int used = p->required || kind == VG_TABLE_PATCHES ||
+               (kind == VG_TABLE_FARFIELD && form != VG_DECK_CHANGED);
 
     width[c] = strlen(p->name);
     for (size_t i = 0; i < n; i++) {
@@ -143,8 +156,9 @@ static const char *const example[VG_TABLE_N] = {
 };
 
 static void write_table(struct vg_output *out, const struct vg_settings *s,
-                        enum vg_table_kind kind, int explain)
+                        enum vg_table_kind kind, enum vg_deck_form form)
 {
+  const int explain = form == VG_DECK_EXPLAINED;
   const struct vg_setting_table *t = vg_settings_table(kind);
   union {
     struct vg_farfield_row f;
@@ -167,7 +181,10 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
     if (explain) vg_output_text(out, example[kind]);
     return;
   }
-  column_widths(t, kind, s, &defaults, width);
+  column_widths(t, kind, s, &defaults, form, width);
+  if (kind == VG_TABLE_FARFIELD && form == VG_DECK_CHANGED &&
+      is_default_row(t, &s->farfield, &defaults))
+    return;
   vg_output_format(out, "%s\n", t->name);
   for (size_t i = 0; i <= n; i++) {
     size_t gap = 0;
@@ -187,7 +204,8 @@ static void write_table(struct vg_output *out, const struct vg_settings *s,
 }
 
 vg_status vg_deck_write(const char *path, const struct vg_settings *s,
-                        const char *comment, int explain, struct vg_error *err)
+                        const char *comment, enum vg_deck_form form,
+                        struct vg_error *err)
 {
   struct vg_output out = VG_OUTPUT_INIT;
   struct vg_settings defaults;
@@ -197,16 +215,19 @@ vg_status vg_deck_write(const char *path, const struct vg_settings *s,
   vg_settings_default(&defaults);
   vg_output_format(&out, "%s\n", s->title);
   if (comment) vg_output_text(&out, comment);
-  if (explain)
+  if (form == VG_DECK_CHANGED)
+    vg_output_text(&out, "# All other settings have their defaults, which "
+                         "'vanguard deck' lists.\n");
+  if (form == VG_DECK_EXPLAINED)
     vg_output_text(
       &out,
       "# Each line of names is followed by a line of values, in any order.\n"
       "# A table consists of its name, a line of column names and lines of\n"
       "# values up to a blank line. Lengths are in the unit of the surface.\n");
   vg_output_text(&out, "\n");
-  write_params(&out, s, &defaults, explain);
+  write_params(&out, s, &defaults, form);
   for (int t = 0; t < VG_TABLE_N; t++)
-    write_table(&out, s, (enum vg_table_kind)t, explain);
+    write_table(&out, s, (enum vg_table_kind)t, form);
   st = vg_output_commit(&out, err);
   vg_output_release(&out);
   return st;

@@ -544,7 +544,7 @@ static vg_status write_deck(struct vg_outputs *o, const struct vg_problem *p,
   }
   settings.threads = 0;
   *settings.helpers = 0;
-  st = vg_deck_write(path, &settings, comment, 0, err);
+  st = vg_deck_write(path, &settings, comment, VG_DECK_ALL, err);
   free(path);
   free(comment);
   return st < 0 ? st : vg_outputs_add(o, "resolved.deck", err);

@@ -41,3 +41,14 @@ absent three
 vanguard mesh -q -p box --deck missing.deck
 exits 1
 says err "missing.deck"
+
+# The deck of a demo contains what differs from the defaults, and no more.
+vanguard demo wing-half --cells 3000 --out d
+exits 0
+says d/wing-half.deck "hmax"
+says d/wing-half.deck "y_plus"
+says d/wing-half.deck "All other settings have their defaults"
+lacks d/wing-half.deck "growth"
+lacks d/wing-half.deck "leaf_cells"
+[ "$(wc -l <d/wing-half.deck)" -lt 30 ] ||
+  fail "the deck has $(wc -l <d/wing-half.deck) lines"
