@@ -155,7 +155,7 @@ static vg_status find_mesh(struct run *r, struct vg_error *err)
   size_t n = strlen(name);
   vg_status st;
 
-  if (n > 4 && !strcmp(name + n - 4, ".d3m")) n -= 4;
+  if (vg_text_ends(name, ".d3m")) n -= 4;
   else if (!access(name, F_OK) || vg_format_suffix_length(name)) {
     r->path = strdup(name);
     return r->path ? VG_OK : vg_fail_memory(err, "a file name");

@@ -14,6 +14,7 @@
 #include "base/memory.h"
 #include "cli/http/inside.h"
 #include "io/mesh/format.h"
+#include "run/common/text.h"
 #include "run/input/input.h"
 #include "run/settings/deck.h"
 
@@ -24,19 +25,12 @@ void vg_projects_release(struct vg_projects *p)
   memset(p, 0, sizeof *p);
 }
 
-static int is_d3m(const char *name)
-{
-  size_t n = strlen(name);
-
-  return n > 4 && !strcmp(name + n - 4, ".d3m");
-}
-
 int vg_projects_is_name(const char *name)
 {
   size_t suffix = vg_format_suffix_length(name), n = strlen(name);
   const char *known;
 
-  if (is_d3m(name)) return 1;
+  if (vg_text_ends(name, ".d3m")) return 1;
   if (!suffix || suffix >= n) return 0;
   for (size_t i = 0; (known = vg_format_input_suffix(i)); i++)
     if (!strcasecmp(known, name + n - suffix + 1)) return 1;
@@ -66,7 +60,8 @@ static vg_status take_file(const char *root, const char *name, int64_t size,
   int is_one;
 
   if (st < 0) return VG_OK;
-  is_one = is_d3m(name) || (!vg_format_holds_cells(real) && !is_part(real));
+  is_one = vg_text_ends(name, ".d3m") ||
+           (!vg_format_holds_cells(real) && !is_part(real));
   free(real);
   if (!is_one) return VG_OK;
   if (p->n == VG_PROJECTS_MAX) {
@@ -207,7 +202,7 @@ vg_status vg_project_settings(const char *root, const char *name,
                  name);
     goto done;
   }
-  if (is_d3m(name)) n -= 4;
+  if (vg_text_ends(name, ".d3m")) n -= 4;
   if (asprintf(&path, "%s/%.*s", root, (int)n, name) < 0) {
     path = NULL;
     st = vg_fail_memory(err, "a path");

@@ -55,8 +55,8 @@ int vg_cad_is_built(void)
 /* --- code that runs in the child ----------------------------------------- */
 
 #ifdef VG_CAD_LIBRARY
-/* The missing library, and the package to install. `why` is the message of dlopen, which
- * begins with the name of the library that it did not find. */
+/* The missing library, and the package to install. `why` is the message of
+ * dlopen, which begins with the name of the library that was not found. */
 static void explain(const char *why, char text[TEXT_MAX])
 {
   const size_t n = strlen(VG_CAD_LIBRARY);

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* Length of a character by its first byte c; 0 if c cannot be a first byte. */
 static size_t announced(unsigned char c)
@@ -112,6 +113,13 @@ void vg_text_trim_end(char *text)
     back++;
   if (back < n && announced((unsigned char)text[n - 1 - back]) > back + 1)
     text[n - 1 - back] = 0;
+}
+
+int vg_text_ends(const char *text, const char *suffix)
+{
+  size_t n = strlen(text), m = strlen(suffix);
+
+  return n > m && !strcasecmp(text + n - m, suffix);
 }
 
 json_t *vg_text_json(const char *text)

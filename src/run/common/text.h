@@ -31,6 +31,9 @@ json_t *vg_text_json(const char *text);
 /** Removes an incomplete character that truncation has left at the end. */
 void vg_text_trim_end(char *text);
 
+/** 1: text has the suffix, in any case, and something in front of it. */
+int vg_text_ends(const char *text, const char *suffix);
+
 /** Formats a count as "12,345,678" in text[32]; returns text. */
 char *vg_text_count(unsigned long long n, char *text);
 

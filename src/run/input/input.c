@@ -162,14 +162,6 @@ static vg_status find_surface(const char *stem, char **out,
   return found ? VG_OK : vg_fail_memory(err, "a path");
 }
 
-/* The name is that of a .d3m, from which the stem of a project follows. */
-static int is_d3m(const char *name)
-{
-  size_t n = strlen(name);
-
-  return n > 4 && !strcasecmp(name + n - 4, ".d3m");
-}
-
 /* Stem of a complete surface name; NULL if it is not one. */
 static char *stem_of(const char *name)
 {
@@ -211,7 +203,7 @@ static vg_status refuse_absent(const char *name, struct vg_error *err)
   if (folder && !has_mode(folder, S_IFDIR))
     st = vg_fail(err, VG_ERR_INPUT, "%s: the folder %s does not exist", name,
                  folder);
-  else if (vg_format_suffix_length(name) || is_d3m(name))
+  else if (vg_format_suffix_length(name) || vg_text_ends(name, ".d3m"))
     st = vg_fail(err, VG_ERR_INPUT, "%s: this file does not exist", name);
   else
     st = vg_fail(err, VG_ERR_INPUT,
@@ -227,7 +219,7 @@ static vg_status refuse_absent(const char *name, struct vg_error *err)
 static vg_status find_stem(const char *given, struct vg_input_files *f,
                            struct vg_error *err)
 {
-  const size_t suffix = is_d3m(given) && exists(given) ? 4 : 0;
+  const size_t suffix = vg_text_ends(given, ".d3m") && exists(given) ? 4 : 0;
   const char *name;
   vg_status st;
 

@@ -17,9 +17,9 @@
  * limit (vg_layer_limits, whose members are written by hand because the rows of
  * the table `layers` contain them too). DEFAULT may use the local variables of
  * vg_settings_default. DESCRIPTION initialises members of struct vg_param; a
- * setting that does not affect the mesh has .keeps_mesh = 1. .topic is the group
- * of its option in the help; .is_common = 1 puts it into the first group, of the
- * most used options. */
+ * setting that does not affect the mesh has .keeps_mesh = 1. .topic is the
+ * group of its option in the help; .is_common = 1 puts it into the first group,
+ * of the most used options. */
 VG_ROW(REAL, plain, scale, "scale", sizing.scale,
   .topic = VG_TOPIC_SIZES, .is_common = 1,
   .hi = HUGE_SIZE, .above_lo = 1, .unit = "", .help = "Factor on all target "

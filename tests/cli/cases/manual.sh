@@ -14,7 +14,7 @@ for command in mesh surface check partition convert plan sweep serve deck demo; 
   done <options
 done
 page=$share/man/man1/vanguard.1
-for command in mesh surface check partition plan sweep serve deck demo; do
+for command in mesh surface check partition convert plan sweep serve deck demo; do
   says "$page" ".BR vanguard\\-$command (1)$([ $command = demo ] || echo ,)"
 done
 for section in COMMANDS EXAMPLES ENVIRONMENT "SEE ALSO"; do
