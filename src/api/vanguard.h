@@ -13,9 +13,9 @@
  * Errors. Functions that can fail return a vanguard_status, 0 on success. After
  * a failure, vanguard_message describes the problem, its location and a remedy.
  * The library never prints and never ends the process. A failed call leaves the
- * job unchanged, except that a failed vanguard_mesh discards the old mesh. Calls
- * in the wrong order, NULL for a job or for an argument that is needed, an index
- * that is out of range, and a structure without VANGUARD_INIT give
+ * job unchanged, except that a failed vanguard_mesh discards the old mesh.
+ * Calls in the wrong order, NULL for a job or for an argument that is needed,
+ * an index that is out of range, and a structure without VANGUARD_INIT give
  * VANGUARD_ERR_USAGE (or 0, NULL or "").
  *
  * Numbering and units. Points and patches are numbered from 0. Coordinates are

@@ -53,16 +53,24 @@ static void close_from(unsigned first, unsigned end)
     close((int)fd);
 }
 
-/* Close all inherited descriptors except fd. Otherwise they would keep files,
- * pipes and sockets of the parent open. */
-static void keep_only(int fd)
+/* Close all inherited descriptors except a and b (-1: none). Otherwise they
+ * would keep files, pipes and sockets of the parent open. */
+static void keep_only(int a, int b)
 {
+  const int lo = a < b ? a : b, hi = a < b ? b : a;
+  unsigned next = STDERR_FILENO + 1;
   int nowhere = open("/dev/null", O_RDWR);
 
   for (int k = 0; k <= STDERR_FILENO; k++)
-    if (k != fd && nowhere >= 0 && k != nowhere) dup2(nowhere, k);
-  close_from(STDERR_FILENO + 1, fd > STDERR_FILENO ? (unsigned)fd : 0);
-  close_from(fd > STDERR_FILENO ? (unsigned)fd + 1 : STDERR_FILENO + 1, ~0u);
+    if (k != a && k != b && nowhere >= 0 && k != nowhere) dup2(nowhere, k);
+  for (int k = 0; k < 2; k++) {
+    int keep = k ? hi : lo;
+
+    if (keep <= STDERR_FILENO) continue;
+    close_from(next, (unsigned)keep);
+    next = (unsigned)keep + 1;
+  }
+  close_from(next, ~0u);
 }
 
 /* Ignore the signals that a terminal or a batch system sends to the whole
@@ -83,16 +91,34 @@ static void set_signals(void)
   sigprocmask(SIG_SETMASK, &none, NULL);
 }
 
-static void detach(pid_t parent, int fd)
+static void detach(int fd, int line)
 {
   struct rlimit none = { 0, 0 };
 
-  set_signals();
+  setrlimit(RLIMIT_CORE, &none);
+  keep_only(fd, line);
+}
+
+/* End this process when `parent` ends, which must have a single thread:
+ * PR_SET_PDEATHSIG follows the thread that forked, not its process. */
+static void end_with(pid_t parent)
+{
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent)
     _exit(1); /* the parent ended before PR_SET_PDEATHSIG took effect */
-  setrlimit(RLIMIT_CORE, &none);
-  keep_only(fd);
+}
+
+/* End this process when the last copy of the other end of a pipe is closed.
+ * This holds for whatever the process does, also after exec. */
+static void end_with_line(int line)
+{
+  struct pollfd p = { .fd = line, .events = 0 };
+
+  fcntl(line, F_SETFD, 0);
+  fcntl(line, F_SETOWN, getpid());
+  fcntl(line, F_SETSIG, SIGKILL);
+  fcntl(line, F_SETFL, O_ASYNC);
+  if (poll(&p, 1, 0) > 0) _exit(1); /* closed before O_ASYNC took effect */
 }
 
 /* --- the server ---------------------------------------------------------- */
@@ -124,7 +150,9 @@ static ssize_t take_request(int from, struct request *r, int *fd)
 __attribute__((noreturn)) static void be_child(pid_t parent, int fd,
                                                const struct request *r)
 {
-  detach(parent, fd);
+  set_signals();
+  end_with(parent);
+  detach(fd, -1);
   if (r->has_affinity) sched_setaffinity(0, sizeof r->affinity, &r->affinity);
   if (send(fd, "", 1, MSG_NOSIGNAL) != 1) _exit(1);
   r->body(fd);
@@ -142,7 +170,7 @@ __attribute__((noreturn)) static void serve(int from)
   signal(SIGPIPE, SIG_IGN);
   signal(SIGCHLD, SIG_IGN); /* children leave no zombies */
   prctl(PR_SET_NAME, "vanguard-child");
-  keep_only(from);
+  keep_only(from, -1);
   while ((n = take_request(from, &r, &fd)) > 0) {
     if (fd < 0) continue;
     if (n == sizeof r && fork() == 0) be_child(self, fd, &r);
@@ -248,21 +276,33 @@ static int ask_server(vg_child_body *body)
   return -1;
 }
 
-static int fork_here(vg_child_body *body, pid_t *pid)
+/* The child may outlive the calling thread, but not this process. */
+static int fork_here(vg_child_body *body, struct vg_child *out)
 {
-  int ends[2];
-  pid_t self = getpid();
+  int ends[2], line[2];
 
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends)) return -1;
-  *pid = fork();
-  if (*pid == 0) {
-    detach(self, ends[1]);
+  if (pipe2(line, O_CLOEXEC)) {
+    close(ends[0]);
+    close(ends[1]);
+    return -1;
+  }
+  out->pid = fork();
+  if (out->pid == 0) {
+    set_signals();
+    close(line[1]);
+    end_with_line(line[0]);
+    detach(ends[1], line[0]);
     body(ends[1]);
     _exit(1);
   }
   close(ends[1]);
-  if (*pid > 0) return ends[0];
+  close(line[0]);
+  out->fd = ends[0];
+  out->line = line[1];
+  if (out->pid > 0) return 0;
   close(ends[0]);
+  close(line[1]);
   return -1;
 }
 
@@ -270,9 +310,9 @@ int vg_child_open(vg_child_body *body, struct vg_child *out)
 {
   assert(body && out);
   out->pid = 0;
+  out->line = -1;
   out->fd = ask_server(body);
-  if (out->fd < 0) out->fd = fork_here(body, &out->pid);
-  return out->fd < 0 ? -1 : 0;
+  return out->fd < 0 ? fork_here(body, out) : 0;
 }
 
 void vg_child_close(struct vg_child *c)
@@ -282,6 +322,7 @@ void vg_child_close(struct vg_child *c)
   close(c->fd);
   while (c->pid > 0 && waitpid(c->pid, NULL, 0) < 0 && errno == EINTR) {
   }
+  if (c->line >= 0) close(c->line);
 }
 
 /* A child body that ends at once. */

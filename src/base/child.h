@@ -50,11 +50,14 @@ int vg_child_server_is_alive(void);
  * function serves it until the parent shuts the other end, and does not return.
  * The child shares nothing else with the parent: it has no other open files,
  * default signal actions (except for the ignored signals that the parent
- * handles), discarded output, and it ends when the parent ends. */
+ * handles), discarded output, and it ends when the parent process ends,
+ * whatever becomes of the thread that started it. */
 typedef void vg_child_body(int fd);
 
 struct vg_child {
   int fd;    /* stream socket; the child ends when the other end is shut */
+  int line;  /* write end of a pipe at whose end the child is killed, if forked
+                by this process; -1: child of the server */
   pid_t pid; /* process id if forked by this process; 0: child of the server */
 };
 
